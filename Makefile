@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+#   make            build everything into build/
+#   make demo       set up, build, run the main job on the simulated machine
+#   make check      set up, build, all tests; ends with the runner's own lines
+#   make bench      speed, as medians side by side
+#   make fuzz       the NC reader under libFuzzer, a bounded time
+#   make lint       what the cycle may call, headers alone, who may include whom
+#   make install    DESTDIR and PREFIX are honoured
+#
+#   V=1             show the commands
+#   SAN=1           address and undefined sanitizers, into build-san/
+#   TSAN=1          thread sanitizer, into build-tsan/
+#   CC=clang        as usual
+
+V	?= 0
+Q	:= $(if $(filter 1,$(V)),,@)
+say	= $(if $(filter 1,$(V)),,@printf '  %-7s %s\n' $1 $2)
+
+PREFIX	?= /usr/local
+BINDIR	= $(DESTDIR)$(PREFIX)/bin
+UNITDIR	= $(DESTDIR)/usr/lib/systemd/system
+VERSION	:= $(shell sed -n 's/^\#\# \([0-9][0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)
+
+SAN	?= 0
+TSAN	?= 0
+B	:= build$(if $(filter 1,$(SAN)),-san)$(if $(filter 1,$(TSAN)),-tsan)
+SANFLAGS = $(if $(filter 1,$(SAN)),-fsanitize=address$(,)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer) \
+	   $(if $(filter 1,$(TSAN)),-fsanitize=thread)
+,	:= ,
+
+OPT	?= -O2
+WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
+CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
+	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
+LDFLAGS	= $(SANFLAGS)
+
+# The parts, in the order data flows.
+INTERP	:= $(wildcard libinterp/*/*.c)
+RT	:= $(wildcard daemon/rt/*.c)
+IO	:= $(wildcard daemon/io/*.c)
+CONFIG	:= $(wildcard daemon/config/*.c)
+SHM	:= $(wildcard daemon/shm/*.c)
+SETUP	:= $(wildcard daemon/setup/*.c)
+EDMD	:= $(wildcard daemon/edmd/*.c)
+JOBS	:= $(wildcard daemon/jobs/*.c)
+SIM	:= $(wildcard clients/sim/*.c)
+CTL	:= $(wildcard clients/ctl/*.c)
+UNIT	:= $(wildcard tests/unit/test_*.c)
+BENCH	:= $(wildcard tests/bench/*.c)
+
+# What a part may include.  A header not on its list does not resolve.
+INC_libinterp	= -Ilibinterp/include -Ilibinterp
+INC_rt		= -Idaemon/rt -Idaemon/io -Ilibinterp/include
+INC_io		= -Idaemon/io -Idaemon/config -Ilibinterp/include
+INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io -Ilibinterp/include
+INC_shm		= -Idaemon/shm
+INC_setup	= -Idaemon/setup
+INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
+INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
+INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
+INC_ctl		= -Iclients/ctl -Idaemon/shm -I$(B)/messages
+INC_dds		= -Iclients/dds -Idaemon/shm -I$(B)/messages
+INC_unit	= -Itests/unit -Ilibinterp $(INC_edmd) $(INC_jobs)
+INC_bench	= $(INC_edmd)
+INC_fuzz	= -Ilibinterp/include
+part = $(word $(if $(filter libinterp,$(firstword $(subst /, ,$1))),1,2),$(subst /, ,$1))
+
+obj	= $(patsubst %.c,$(B)/%.o,$1)
+INTERP_O := $(call obj,$(INTERP))
+RT_O	 := $(call obj,$(RT))
+IO_O	 := $(call obj,$(IO))
+CONFIG_O := $(call obj,$(CONFIG))
+SHM_O	 := $(call obj,$(SHM))
+SETUP_O	 := $(call obj,$(SETUP))
+LCM_O	 := $(B)/messages/edm_lcm.o
+DDS_O	 := $(B)/messages/edm.o
+
+PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet
+UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
+BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
+
+all: $(PROGRAMS)
+
+# -- Compile ------------------------------------------------------------------
+
+$(B)/%.o: %.c
+	$(call say,CC,$<)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
+
+# Generated messages: compiled without our warnings, they are not ours.
+LCM_TYPES := $(shell sed -n 's/^struct \([a-z_]*_t\).*/\1/p' messages/edm.lcm 2>/dev/null)
+LCM_C	  := $(LCM_TYPES:%=$(B)/messages/edm_%.c)
+
+$(B)/messages/lcm.stamp: messages/edm.lcm
+	$(call say,LCMGEN,$<)
+	@mkdir -p $(@D)
+	$(Q)lcm-gen -c --c-cpath $(B)/messages --c-hpath $(B)/messages $<
+	$(Q)lcm-gen -p --ppath $(B)/python $<
+	@touch $@
+
+$(B)/messages/edm_lcm.o: $(B)/messages/lcm.stamp
+	$(call say,CC,$(@F))
+	$(Q)cat $(LCM_C) > $(@D)/edm_lcm_all.c
+	$(Q)$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) -c -o $@ $(@D)/edm_lcm_all.c
+
+$(B)/messages/edm.c: messages/edm.idl
+	$(call say,IDLC,$<)
+	@mkdir -p $(@D)
+	$(Q)idlc -o $(@D) $<
+
+$(B)/messages/edm.o: $(B)/messages/edm.c
+	$(call say,CC,$(@F))
+	$(Q)$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) -c -o $@ $<
+
+$(call obj,$(JOBS) $(CTL)): | $(B)/messages/lcm.stamp
+$(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
+
+# -- Link ---------------------------------------------------------------------
+
+link	= $(call say,LD,$@)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $1
+
+$(B)/edmsim: $(call obj,$(SIM)) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+	$(call link,-linih -ljansson -lm)
+
+$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+	$(call link,-linih -lsystemd -lpthread -lm)
+
+$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
+	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
+
+$(B)/edmctl: $(call obj,$(CTL)) $(SHM_O) $(LCM_O)
+	$(call link,-llcm -lsodium -ljansson -lm)
+
+$(B)/edm-dds: $(B)/clients/dds/edm-dds.o $(SHM_O) $(DDS_O)
+	$(call link,-lddsc -lm)
+
+$(B)/edm-fleet: $(B)/clients/dds/edm-fleet.o $(DDS_O)
+	$(call link,-lddsc -ljansson -lm)
+
+$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+	$(call link,-lcmocka -linih -lpthread -lm)
+
+$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+	$(call link,-linih -lpthread -lm)
+
+-include $(shell find $(B) -name '*.d' 2>/dev/null)
+
+.PHONY: all
+.SECONDARY:

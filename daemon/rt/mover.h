@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * mover.h - go to another place on the path, within speed and acceleration
+ *
+ * A trapezoidal move along the path, in either direction.  Jumps, retracts by
+ * command and positioning use this one.
+ *
+ * Units: mm along the path, + toward the program's end.
+ * Threads: RT-safe.
+ */
+#ifndef RT_MOVER_H
+#define RT_MOVER_H
+
+#include <stdbool.h>
+
+struct mover {
+	double v_mm_s;			/* signed */
+};
+
+struct mover_limits {
+	double v_max_mm_s, a_max_mm_s2;
+	double period_s;
+};
+
+/**
+ * mover_step() - the distance to walk this cycle to come nearer to a place
+ * @left_mm away (signed), without passing it.
+ *
+ * Standing there with no speed left gives 0.
+ */
+double mover_step(struct mover *m, const struct mover_limits *l,
+		  double left_mm);
+
+/** mover_stop() - the distance this cycle while braking to a stand. */
+double mover_stop(struct mover *m, const struct mover_limits *l);
+
+#endif /* RT_MOVER_H */

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * state.h - the states of a machine on its path, and what leads to which
+ *
+ * Transitions and duties are tables (state.c); reading them is pure.
+ * Threads: RT-safe.
+ */
+#ifndef RT_STATE_H
+#define RT_STATE_H
+
+#include <stdbool.h>
+
+enum cycle_state {
+	STATE_STAY,		/* in the table only: no transition */
+	STATE_IDLE,		/* no job */
+	STATE_TRAVEL,		/* positioning, or a dry run: power off */
+	STATE_APPROACH,		/* power on, feeding until it sparks */
+	STATE_ERODE,		/* gap servo */
+	STATE_RETRACT,		/* back along the path, out of a short */
+	STATE_JUMP,		/* timed lift and return along the path */
+	STATE_HOLD,		/* stands on the path, or walks back by command */
+	STATE_FAULT,		/* latched; power off, no motion */
+	CYCLE_NSTATES
+};
+
+enum cycle_event {
+	EVENT_NONE,
+	EVENT_START,		/* start or resume */
+	EVENT_HOLD,
+	EVENT_STOP,
+	EVENT_RESET,
+	EVENT_FREE,		/* the segment ahead is positioned, not cut */
+	EVENT_CUT,		/* the segment ahead is cut */
+	EVENT_SPARK,		/* gap voltage in the sparking range */
+	EVENT_OPEN,		/* gap voltage above open_v */
+	EVENT_SHORT,		/* below short_v */
+	EVENT_CLEAR,		/* a retract's short is gone */
+	EVENT_JUMP_DUE,
+	EVENT_MOVE_DONE,	/* the mover is where it was sent */
+	EVENT_END,		/* end of the program */
+	CYCLE_NEVENTS
+};
+
+/* What a state does. */
+struct state_duty {
+	const char *name;
+	bool power;		/* sparks allowed */
+	bool running;		/* a job is under way */
+};
+
+extern const struct state_duty state_duty[CYCLE_NSTATES];
+
+/** state_next() - the state that @ev leads to from @s; @s if nowhere. */
+enum cycle_state state_next(enum cycle_state s, enum cycle_event ev);
+
+#endif /* RT_STATE_H */

@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * shm.h - edmd's shared memory: layout and the three crossings
+ *
+ * Three objects in /dev/shm, named edmd.<machine>.*:
+ *
+ *	status		edmd writes, anyone of the group reads: one snapshot,
+ *			a ring of per-cycle trace records, a ring of events
+ *	command		edmd-jobs writes, edmd reads: a ring of commands, each
+ *			answered by an event with its id
+ *	program.<n>	edmd-jobs writes once; edmd maps it read-only
+ *			(interp/program.h)
+ *
+ * Every object begins with a struct shm_head.  A reader whose layout version
+ * or size differs must not read on.  All numbers are of the machine's byte
+ * order; the objects never leave it.
+ *
+ * Units: in every name.  Sign: feed + toward the program's end.
+ */
+#ifndef EDM_SHM_H
+#define EDM_SHM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <ck_ring.h>
+#include <ck_sequence.h>
+
+#define SHM_MAGIC	0x65646d64u	/* "edmd" */
+#define SHM_LAYOUT	1
+#define SHM_NAXES	8		/* X Y Z A B C U V */
+#define SHM_NAME_MAX	32
+
+#define SHM_TRACE_SLOTS		16384	/* powers of two */
+#define SHM_EVENT_SLOTS		1024
+#define SHM_COMMAND_SLOTS	64
+#define SHM_LATENCY_BINS	256	/* of 1 us; the last holds all above */
+
+struct shm_head {
+	uint32_t magic;
+	uint32_t layout;
+	uint64_t bytes;
+	char machine[SHM_NAME_MAX];
+	int32_t pid;			/* of the writer */
+	uint32_t instance;		/* drawn anew at every start of edmd */
+};
+
+/* Mirrors enum cycle_state; fixed here because others rely on it. */
+enum shm_state {
+	SHM_IDLE = 1, SHM_TRAVEL, SHM_APPROACH, SHM_ERODE, SHM_RETRACT,
+	SHM_JUMP, SHM_HOLD, SHM_FAULT
+};
+
+struct shm_snapshot {
+	uint64_t cycle;			/* since edmd started */
+	int64_t time_ns;		/* CLOCK_REALTIME of this cycle */
+	uint32_t state;			/* enum shm_state */
+	uint32_t fault;			/* enum cycle_fault; 0 none */
+	uint32_t outcome;		/* enum cycle_outcome of the last job */
+	uint32_t program;		/* n of program.<n>; 0 none */
+	uint32_t seg, tick;		/* place, exactly */
+	uint32_t line;			/* of the source */
+	uint32_t cond_number;
+	char cond_letter;
+	bool power, pump, negative;
+	uint8_t pad[4];
+	int32_t pos[SHM_NAXES];		/* pulses */
+	double pulse_mm[SHM_NAXES];
+	double place_mm, far_mm, length_mm;	/* along the path */
+	double feed_mm_s, gap_v;
+	double depth_mm;		/* travel of Z below the program's start */
+	/* Sums of the job. */
+	uint64_t job_cycles, erode_cycles, jump_cycles;
+	uint32_t retracts, jumps, shorts, overruns;
+	double retract_mm_max;
+	/* The cycle's own time, ns. */
+	int64_t period_ns;
+	int64_t wake_late_ns, wake_late_max_ns;
+	int64_t took_ns, took_max_ns;
+};
+
+struct shm_trace {
+	uint64_t cycle;
+	double place_mm, feed_mm_s, gap_v;
+	uint32_t line;
+	uint32_t state;			/* enum shm_state */
+	int32_t pos[SHM_NAXES];
+};
+
+enum shm_event_kind {
+	SHM_EV_ANSWER = 1,		/* id: the command's; code: cycle_answer */
+	SHM_EV_STATE,			/* code: the new enum shm_state */
+	SHM_EV_FAULT,			/* code: cycle_fault */
+	SHM_EV_LOADED,			/* code: program n */
+	SHM_EV_ENDED,			/* code: cycle_outcome */
+};
+
+struct shm_event {
+	uint64_t cycle;
+	int64_t time_ns;
+	uint32_t kind, id;
+	int32_t code;
+	uint32_t program;
+	double place_mm;
+};
+
+/*
+ * A ring that one writer fills and any number of readers follow at their own
+ * pace.  Slot i holds record number n when its stamp is 2n + 2; an odd stamp
+ * is being written.  A reader that fell behind skips and is told how many.
+ */
+struct shm_trace_slot {
+	uint64_t stamp;
+	struct shm_trace record;
+};
+
+struct shm_event_slot {
+	uint64_t stamp;
+	struct shm_event record;
+};
+
+/*
+ * Cycle n goes to snap[n & 1], so that a writer killed in the middle of one
+ * leaves the other whole.
+ */
+struct shm_snap {
+	ck_sequence_t seq;
+	struct shm_snapshot s;
+};
+
+struct shm_status {
+	struct shm_head head;
+	uint32_t latency_us[SHM_LATENCY_BINS];	/* histogram of wake_late */
+	struct shm_snap snap[2];
+	uint64_t trace_next;		/* records written so far */
+	uint64_t event_next;
+	struct shm_trace_slot trace[SHM_TRACE_SLOTS];
+	struct shm_event_slot event[SHM_EVENT_SLOTS];
+};
+
+enum shm_verb {
+	SHM_LOAD = 100,			/* arg: program n */
+	SHM_UNLOAD,			/* forget the program, unmap it */
+	/* below 100: enum cycle_verb */
+};
+
+struct shm_command {
+	uint32_t id;			/* never 0 */
+	uint32_t verb;
+	uint32_t arg;
+	uint32_t instance;		/* of the edmd it is meant for */
+	double arg_mm;
+};
+
+struct shm_command_ring {
+	struct shm_head head;
+	ck_ring_t ring;
+	struct shm_command slot[SHM_COMMAND_SLOTS];
+};
+
+/* -- Writer: edmd ------------------------------------------------------- */
+
+/**
+ * shm_status_create() - make or take over edmd.<machine>.status.
+ *
+ * @ret_before: the last snapshot a predecessor left, or cycle 0.
+ * Return: 0 or a negative errno; -EBUSY if a living edmd owns it.
+ * Startup only.
+ */
+int shm_status_create(struct shm_status **ret, const char *machine,
+		      struct shm_snapshot *ret_before);
+
+/** shm_publish() - a whole snapshot and its trace record. RT-safe. */
+void shm_publish(struct shm_status *s, const struct shm_snapshot *snap);
+
+/** shm_event() - append to the event ring. RT-safe; one writer. */
+void shm_event(struct shm_status *s, const struct shm_event *e);
+
+/** shm_command_create() - make edmd.<machine>.command anew. Startup only. */
+int shm_command_create(struct shm_command_ring **ret, const char *machine,
+		       uint32_t instance);
+
+/** shm_command_take() - the next command, if any. RT-safe. */
+bool shm_command_take(struct shm_command_ring *r, struct shm_command *ret);
+
+/* -- Readers, and edmd-jobs --------------------------------------------- */
+
+/**
+ * shm_status_open() - map read-only.
+ * Return: 0; -ENOENT no edmd yet; -EPROTO another layout; else -errno.
+ */
+int shm_status_open(const struct shm_status **ret, const char *machine);
+
+/**
+ * shm_snapshot() - the last whole snapshot.  Never spins.
+ * Return: false if there is none yet.  Any thread.
+ */
+bool shm_snapshot(const struct shm_status *s, struct shm_snapshot *ret);
+
+/** shm_alive() - is the writer's process still there? Any thread. */
+bool shm_alive(const struct shm_status *s);
+
+/** Follows a ring; start with next = 0 (all there is) or *_next (only new). */
+struct shm_follow {
+	uint64_t next;
+	uint64_t lost;			/* records this reader missed, in all */
+};
+
+/** shm_trace_next() - the next record; false if there is none yet. */
+bool shm_trace_next(const struct shm_status *s, struct shm_follow *f,
+		    struct shm_trace *ret);
+
+/** shm_event_next() - the same for events. */
+bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
+		    struct shm_event *ret);
+
+/** shm_command_open() - map the ring to write it. One process only. */
+int shm_command_open(struct shm_command_ring **ret, const char *machine);
+
+/** shm_command_put() - Return: 0, or -EAGAIN if the ring is full. */
+int shm_command_put(struct shm_command_ring *r, const struct shm_command *c);
+
+/**
+ * shm_program_create() - edmd.<machine>.program.<n>, @bytes to fill.
+ * The caller unmaps it with shm_program_unmap() when it is written.
+ */
+int shm_program_create(void **ret, const char *machine, uint32_t n,
+		       size_t bytes);
+int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
+		     uint32_t n);
+void shm_program_unmap(const void *block, size_t bytes);
+void shm_program_remove(const char *machine, uint32_t n);
+
+/** shm_close() - unmap any of the above; NULL is fine. */
+void shm_close(const void *object, size_t bytes);
+
+/** shm_state_name() - "erode", ...; "?" if unknown. Any thread. */
+const char *shm_state_name(uint32_t state);
+/** shm_fault_name() - "short-not-cleared", ... */
+const char *shm_fault_name(uint32_t fault);
+
+#endif /* EDM_SHM_H */

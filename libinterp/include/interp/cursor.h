@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * cursor.h - a place on a program's path, walked by a signed distance
+ *
+ * The one idea of this library: a machine's state on its path is one number,
+ * and every motion is a walk to another place.  A segment is a row of lattice
+ * points, numbered by ticks 0 ... seg.ticks; which points they are depends on
+ * the segment and the strategy alone, never on feed, period or direction.
+ * Walking back n points visits exactly the last n, over any number of
+ * segments, with no history kept.
+ *
+ *	interp_cursor_aim(&c, ds_mm);
+ *	while ((what = interp_cursor_step(&c)) == INTERP_MOVED)
+ *		output c.pos;
+ *
+ * Units: places in mm along the path from its start, positions in pulses.
+ * Sign: + toward the end of the program.
+ * Threads: RT-safe unless marked.  No call allocates, blocks or touches a
+ * global.  One object belongs to one thread.
+ */
+#ifndef INTERP_CURSOR_H
+#define INTERP_CURSOR_H
+
+#include "interp/program.h"
+
+enum interp_step {
+	INTERP_MOVED,		/* one lattice point on; pos is the new one */
+	INTERP_ARRIVED,		/* at the place aimed at */
+	INTERP_AT_ACTION,	/* forward, in front of an action: do it, then
+				 * interp_cursor_pass() */
+	INTERP_AT_START,	/* backward, at the start of the program */
+	INTERP_AT_END,		/* forward, in front of INTERP_END */
+	INTERP_BAD_SEGMENT,	/* the next segment failed its check */
+};
+
+/* One axis of a straight walk: see pulse/line.c. */
+struct interp_dda {
+	int64_t sub;			/* place, subpulses */
+	int64_t quot;			/* subpulses per tick, floor */
+	int64_t rem, err;		/* remainder per tick; its sum, < ticks */
+};
+
+/* One node of a point-by-point tree: see pulse/tree.c. */
+struct interp_pair {
+	int64_t a, b;			/* totals of the two inputs */
+	int64_t dev;			/* deviation F = m_b*a - m_a*b */
+	int8_t in_a, in_b;		/* child: >= 0 axis, < 0: ~pair */
+};
+
+/* A circle by point-by-point comparison: see pulse/arc.c. */
+struct interp_pbp_arc {
+	int64_t x, y;			/* from the centre, pulses */
+	int64_t dev;			/* F = x*x + y*y - R*R */
+	int64_t xe, ye;			/* end */
+	int64_t area2;			/* twice the area swept so far */
+	int8_t ccw;			/* +1 counter-clockwise, -1 clockwise */
+	int8_t quad;			/* quadrant 0..3 being walked */
+	uint8_t left;			/* axis crossings still to come */
+	uint8_t crossings;		/* in the whole arc */
+	int64_t meet;			/* where the circle meets an axis */
+};
+
+/* Placed by the caller, filled by interp_cursor_init(); read, do not write. */
+struct interp_cursor {
+	struct interp_program p;
+	struct interp_seg seg;		/* checked copy of segment `index` */
+	struct interp_arc arc;		/* checked copy, if seg is an arc */
+	uint32_t index;
+	uint32_t tick;			/* 0 ... seg.ticks */
+	int32_t pos[INTERP_NAXES];	/* pulses */
+	double s_mm;			/* place in the segment */
+	double want_mm;			/* place aimed at, from seg's start */
+	uint32_t want_tick;		/* the same as a tick of this segment */
+	bool backward;			/* direction of the walk aimed at */
+	uint32_t moved;			/* bit per axis moved by the last step */
+	/* Private: the strategy's state. */
+	struct interp_dda dda[INTERP_NAXES];
+	struct interp_pair pair[INTERP_NAXES];
+	uint8_t npairs, root;
+	struct interp_pbp_arc circle;
+	double arc_cos, arc_sin;
+	int8_t sign[INTERP_NAXES];
+};
+
+/**
+ * interp_cursor_init() - stand at the start of @p.
+ *
+ * Return: 0, or -EBADMSG if the first segment fails its check.
+ */
+int interp_cursor_init(struct interp_cursor *c, const struct interp_program *p);
+
+/**
+ * interp_cursor_seek() - stand at tick @tick of segment @index.
+ *
+ * Takes as long as @tick in the worst case: startup only.
+ * Return: 0, -ERANGE if there is no such place, -EBADMSG.
+ */
+int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick);
+
+/** interp_cursor_place_mm() - where it stands on the path. */
+static inline double interp_cursor_place_mm(const struct interp_cursor *c)
+{
+	return c->seg.s_mm + c->s_mm;
+}
+
+/** interp_cursor_aim() - set out to walk @ds_mm from here. */
+void interp_cursor_aim(struct interp_cursor *c, double ds_mm);
+
+/**
+ * interp_cursor_step() - one lattice point toward the place aimed at.
+ *
+ * Crosses at most INTERP_CROSS_MAX segment ends without meeting a new lattice
+ * point; beyond that it says INTERP_ARRIVED early and the distance not walked
+ * is lost.
+ */
+enum interp_step interp_cursor_step(struct interp_cursor *c);
+
+#define INTERP_CROSS_MAX	64
+
+/** interp_cursor_pass() - step over the action in front, forward. */
+enum interp_step interp_cursor_pass(struct interp_cursor *c);
+
+/** interp_cursor_stop() - forget the rest of the distance aimed at. */
+void interp_cursor_stop(struct interp_cursor *c);
+
+/**
+ * interp_cursor_deviation_mm() - distance of pos from the programmed path,
+ * square to it, over the axes its length is counted in.
+ */
+double interp_cursor_deviation_mm(const struct interp_cursor *c);
+
+#endif /* INTERP_CURSOR_H */

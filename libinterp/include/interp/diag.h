@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * diag.h - why an input was refused, and where
+ *
+ * Printed by the programs as
+ *	FILE:LINE:COLUMN: error: FOUND; WANTED
+ * Both texts are one sentence without a full stop; WANTED says what would
+ * have been accepted.
+ */
+#ifndef INTERP_DIAG_H
+#define INTERP_DIAG_H
+
+#include <stdint.h>
+
+struct interp_diag {
+	uint32_t line;			/* from 1; 0: the whole input */
+	uint32_t column;		/* from 1, in bytes; 0: the whole line */
+	char found[160];
+	char wanted[160];
+};
+
+#endif /* INTERP_DIAG_H */

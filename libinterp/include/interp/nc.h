@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * nc.h - read NC code, one pass, into a program
+ *
+ * Dialect `generic`: RS-274 words as most sinkers and wire machines share
+ * them; docs/nc-code.md has the table.  The reader keeps modal state, checks
+ * every word and hands absolute machine coordinates to the builder.  A word it
+ * does not know is refused with line and column; nothing is skipped silently.
+ *
+ * Memory is bounded by the program: no recursion on the input, subprograms by
+ * a stack of fixed depth, total lines executed bounded.
+ *
+ * Threads: allocates through the builder.  Never in the cycle.
+ */
+#ifndef INTERP_NC_H
+#define INTERP_NC_H
+
+#include "interp/build.h"
+
+#define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */
+#define INTERP_NC_LINE_MAX	4096		/* bytes in a line */
+#define INTERP_NC_SEGS_MAX	50000000u	/* segments a program may have */
+#define INTERP_NC_NWORK		6		/* G54 ... G59 */
+
+struct interp_nc_options {
+	const struct interp_machine *machine;
+	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
+	double feed_mm_s;	/* until the first F; 0: an F is demanded */
+};
+
+struct interp_nc_result {
+	uint32_t lines;			/* lines in the text */
+	uint32_t executed;		/* lines executed, subprograms unrolled */
+};
+
+/**
+ * interp_nc_compile() - read @bytes bytes at @text into @b.
+ *
+ * @text need not be NUL-terminated.  LF, CRLF and CR end a line.
+ *
+ * Return: 0, -EINVAL with all of @diag filled, or -ENOMEM.
+ */
+int interp_nc_compile(const char *text, size_t bytes,
+		      const struct interp_nc_options *o,
+		      struct interp_build *b, struct interp_nc_result *ret,
+		      struct interp_diag *diag);
+
+#endif /* INTERP_NC_H */

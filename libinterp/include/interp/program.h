@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * program.h - a compiled program: one flat block of segments, nodes and arcs
+ *
+ * A program is a path.  Segment i leads from node i to node i+1; a segment of
+ * no length (dwell, stop, switched output) has two equal nodes and is an
+ * *action*, done when the walk first comes to it.  The block holds offsets
+ * only, no pointers: the job service writes it into shared memory once, the
+ * real-time process maps it read-only.
+ *
+ *	head | segments[nsegs] | nodes[nsegs + 1][naxes] | arcs[narcs]
+ *	     | conditions[nconds]
+ *
+ * Nodes are fixed-point: 1 pulse = INTERP_SUB subpulses, so a programmed
+ * point finer than a pulse is kept, and there and back is exact.  A node has
+ * one column for every axis that the program moves; the others stand.
+ *
+ * Units: mm, mm/s along the path; rotary axes in degrees.  Path length is
+ * that of X Y Z; if none of them moves, that of U V; else of A B C (degrees).
+ * Threads: a mapped program is never written; any thread may read it.
+ */
+#ifndef INTERP_PROGRAM_H
+#define INTERP_PROGRAM_H
+
+#include "interp/axis.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define INTERP_SUB_BITS		16
+#define INTERP_SUB		(1 << INTERP_SUB_BITS)
+
+#define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
+#define INTERP_PROGRAM_VERSION	1
+
+/* How a path becomes pulses. */
+enum interp_strategy {
+	INTERP_SIMULTANEOUS,		/* every axis may pulse at once */
+	INTERP_POINT_BY_POINT,		/* one axis, one pulse at a time */
+	INTERP_NSTRATEGIES
+};
+
+enum interp_kind {
+	INTERP_LINE,
+	INTERP_ARC,			/* circular or helical; arg: arc index */
+	/* From here on: actions, of no length. */
+	INTERP_DWELL,			/* arg: milliseconds */
+	INTERP_STOP,			/* M0: hold until resumed */
+	INTERP_OPTIONAL_STOP,		/* M1 */
+	INTERP_AUX,			/* arg: enum interp_aux */
+	INTERP_END,			/* M2, M30, or the end of the text */
+	INTERP_NKINDS
+};
+
+/* Outputs a program may switch. */
+enum interp_aux {
+	INTERP_AUX_POWER_OFF,		/* M5: cut without power from here on */
+	INTERP_AUX_POWER_POSITIVE,	/* M3: electrode positive */
+	INTERP_AUX_POWER_NEGATIVE,	/* M4: electrode negative */
+	INTERP_AUX_PUMP_ON,		/* T84: dielectric on */
+	INTERP_AUX_PUMP_OFF,		/* T85 */
+	INTERP_NAUX
+};
+
+#define INTERP_SEG_RAPID	0x01	/* G0: positioned, not eroded */
+
+struct interp_seg {
+	double s_mm;			/* place of its first node on the path */
+	double length_mm;		/* 0 for an action */
+	float feed_mm_s;		/* as programmed; for a rapid, the ceiling */
+	float feed_max_mm_s;		/* the fastest any of its axes allows */
+	uint32_t line;			/* of the source text, from 1 */
+	uint32_t ticks;			/* lattice points after the first */
+	uint32_t arg;			/* by kind */
+	uint16_t cond;			/* conditions[cond]; 0 is "none called" */
+	uint8_t kind;			/* enum interp_kind */
+	uint8_t flags;			/* INTERP_SEG_* */
+};
+
+/*
+ * A circular arc in the plane (a, b), every other axis linear beside it.  The
+ * radius goes linearly from r_mm to r_mm + dr_mm, so that an end which is off
+ * the circle by a rounding is still met.
+ */
+struct interp_arc {
+	double a_mm, b_mm;		/* centre */
+	double r_mm, dr_mm;
+	double theta;			/* radian, from a toward b, at the start */
+	double sweep;			/* radian, signed; + is counter-clockwise */
+	int64_t area2;			/* point-by-point: twice the swept area */
+	uint32_t tail;			/* point-by-point: tick of the first forced
+					 * pulse, see pulse/arc.c */
+	uint8_t axis_a, axis_b;		/* enum interp_axis */
+	uint8_t pad[2];
+};
+
+/* A technology condition called by the program, such as C120 or E001. */
+struct interp_cond {
+	uint32_t number;
+	char letter;			/* 'C' or 'E'; 0: none called yet */
+	char pad[3];
+};
+
+struct interp_program_head {
+	char magic[8];
+	uint32_t version;
+	uint32_t head_bytes;
+	uint64_t bytes;			/* of the whole block */
+	uint32_t nsegs, narcs, nconds, naxes;
+	uint64_t segs_at, nodes_at, arcs_at, conds_at;	/* bytes from the head */
+	uint8_t column[INTERP_NAXES];	/* axis of node column j, j < naxes */
+	uint32_t strategy;		/* enum interp_strategy */
+	uint32_t lines;			/* of the source text */
+	double length_mm;
+	double pulse_mm[INTERP_NAXES];
+	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
+	uint8_t hash[32];		/* SHA-256 of the source text, or zeros */
+	char name[64];			/* of the job; NUL-terminated */
+};
+
+/** A view of a block; nothing in it is owned. */
+struct interp_program {
+	const struct interp_program_head *head;
+	const struct interp_seg *segs;
+	const int64_t *nodes;
+	const struct interp_arc *arcs;
+	const struct interp_cond *conds;
+};
+
+/**
+ * interp_program_map() - look at @bytes bytes at @block as a program.
+ *
+ * Checks the head and that every table lies inside the block; the segments
+ * are checked one by one when a cursor enters them.
+ *
+ * Return: 0, or -EBADMSG.  Any thread.
+ */
+int interp_program_map(struct interp_program *p, const void *block,
+		       size_t bytes);
+
+/**
+ * interp_program_seg_ok() - is segment @i, copied to @seg, safe to walk?
+ *
+ * Finite numbers, known kind, arc index in range, nodes in range.  RT-safe.
+ */
+bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
+			   const struct interp_seg *seg);
+
+/** interp_program_name() - "simultaneous", ...; NULL if unknown. Any thread. */
+const char *interp_strategy_name(enum interp_strategy s);
+
+/** interp_strategy_parse() - the reverse; -EINVAL if unknown. Any thread. */
+int interp_strategy_parse(const char *name);
+
+/** interp_round_sub() - subpulses to the nearest pulse. RT-safe. */
+static inline int32_t interp_round_sub(int64_t sub)
+{
+	return (int32_t)((sub + INTERP_SUB / 2) >> INTERP_SUB_BITS);
+}
+
+#endif /* INTERP_PROGRAM_H */
