@@ -46,6 +46,7 @@ EDMD	:= $(wildcard daemon/edmd/*.c)
 JOBS	:= $(wildcard daemon/jobs/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
+PLOT	:= $(wildcard clients/plot/*.c)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 
@@ -59,7 +60,7 @@ INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
 INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
 INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
-INC_ctl		= -Iclients/ctl -Idaemon/shm -I$(B)/messages
+INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -I$(B)/messages
 INC_dds		= -Iclients/dds -Idaemon/shm -I$(B)/messages
 INC_unit	= -Itests/unit -Ilibinterp $(INC_edmd) $(INC_jobs)
 INC_bench	= $(INC_edmd)
@@ -119,11 +120,13 @@ $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 
 # -- Link ---------------------------------------------------------------------
 
-link	= $(call say,LD,$@)
-	@mkdir -p $(@D)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $1
+define link
+$(call say,LD,$@)
+@mkdir -p $(@D)
+$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $1
+endef
 
-$(B)/edmsim: $(call obj,$(SIM)) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
 	$(call link,-linih -ljansson -lm)
 
 $(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
@@ -132,13 +135,13 @@ $(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $
 $(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL)) $(SHM_O) $(LCM_O)
+$(B)/edmctl: $(call obj,$(CTL) $(PLOT)) $(SHM_O) $(LCM_O)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(B)/clients/dds/edm-dds.o $(SHM_O) $(DDS_O)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(SHM_O) $(DDS_O)
 	$(call link,-lddsc -lm)
 
-$(B)/edm-fleet: $(B)/clients/dds/edm-fleet.o $(DDS_O)
+$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c)) $(DDS_O)
 	$(call link,-lddsc -ljansson -lm)
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)

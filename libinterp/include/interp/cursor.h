@@ -38,27 +38,31 @@ struct interp_dda {
 	int64_t sub;			/* place, subpulses */
 	int64_t quot;			/* subpulses per tick, floor */
 	int64_t rem, err;		/* remainder per tick; its sum, < ticks */
+	uint32_t axis;
 };
 
 /* One node of a point-by-point tree: see pulse/tree.c. */
 struct interp_pair {
-	int64_t a, b;			/* totals of the two inputs */
-	int64_t dev;			/* deviation F = m_b*a - m_a*b */
-	int8_t in_a, in_b;		/* child: >= 0 axis, < 0: ~pair */
+	int64_t a, b;			/* pulses of the two inputs, a >= b */
+	int64_t dev;			/* deviation F = m_b * a - m_a * b */
+	int8_t in_a, in_b;		/* an axis, a circle, or another pair */
 };
 
-/* A circle by point-by-point comparison: see pulse/arc.c. */
-struct interp_pbp_arc {
+/* A circle by point-by-point comparison: see pulse/circle.c. */
+struct interp_circle {
 	int64_t x, y;			/* from the centre, pulses */
-	int64_t dev;			/* F = x*x + y*y - R*R */
-	int64_t xe, ye;			/* end */
-	int64_t area2;			/* twice the area swept so far */
-	int8_t ccw;			/* +1 counter-clockwise, -1 clockwise */
-	int8_t quad;			/* quadrant 0..3 being walked */
-	uint8_t left;			/* axis crossings still to come */
-	uint8_t crossings;		/* in the whole arc */
+	int64_t xe, ye;			/* the end */
+	int64_t dev;			/* deviation F = x*x + y*y - R*R */
 	int64_t meet;			/* where the circle meets an axis */
+	int64_t xt, yt;			/* where the tail begins */
+	uint32_t tick, ticks, tail;
+	uint32_t left;			/* axis crossings still to come */
+	uint32_t crossings;		/* in the whole arc */
+	int8_t ccw;			/* +1 counter-clockwise, -1 clockwise */
+	int8_t quad;			/* quadrant 0 ... 3 being walked */
 };
+
+struct interp_walk;
 
 /* Placed by the caller, filled by interp_cursor_init(); read, do not write. */
 struct interp_cursor {
@@ -68,18 +72,22 @@ struct interp_cursor {
 	uint32_t index;
 	uint32_t tick;			/* 0 ... seg.ticks */
 	int32_t pos[INTERP_NAXES];	/* pulses */
+	uint32_t moved;			/* bit per axis moved by the last step */
 	double s_mm;			/* place in the segment */
 	double want_mm;			/* place aimed at, from seg's start */
-	uint32_t want_tick;		/* the same as a tick of this segment */
 	bool backward;			/* direction of the walk aimed at */
-	uint32_t moved;			/* bit per axis moved by the last step */
+
 	/* Private: the strategy's state. */
+	const struct interp_walk *walk;
+	int64_t measure, want, whole;	/* place, aim and end of the segment in
+					 * the strategy's own measure */
 	struct interp_dda dda[INTERP_NAXES];
+	uint32_t ndda;
 	struct interp_pair pair[INTERP_NAXES];
-	uint8_t npairs, root;
-	struct interp_pbp_arc circle;
-	double arc_cos, arc_sin;
+	int8_t root;
 	int8_t sign[INTERP_NAXES];
+	struct interp_circle circle;
+	double pulses_mm[INTERP_NAXES];	/* pulses per mm */
 };
 
 /**

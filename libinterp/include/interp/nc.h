@@ -20,12 +20,15 @@
 #define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */
 #define INTERP_NC_LINE_MAX	4096		/* bytes in a line */
 #define INTERP_NC_SEGS_MAX	50000000u	/* segments a program may have */
+#define INTERP_NC_EXECUTED_MAX	100000000u	/* lines, repeats counted */
 #define INTERP_NC_NWORK		6		/* G54 ... G59 */
 
 struct interp_nc_options {
 	const struct interp_machine *machine;
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
 	double feed_mm_s;	/* until the first F; 0: an F is demanded */
+	uint32_t segs_max;	/* 0: INTERP_NC_SEGS_MAX */
+	uint32_t executed_max;	/* 0: INTERP_NC_EXECUTED_MAX */
 };
 
 struct interp_nc_result {
@@ -38,7 +41,8 @@ struct interp_nc_result {
  *
  * @text need not be NUL-terminated.  LF, CRLF and CR end a line.
  *
- * Return: 0, -EINVAL with all of @diag filled, or -ENOMEM.
+ * Return: 0, -EINVAL with all of @diag filled, or -ENOMEM.  @ret is filled only
+ * with 0.
  */
 int interp_nc_compile(const char *text, size_t bytes,
 		      const struct interp_nc_options *o,

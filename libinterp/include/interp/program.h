@@ -44,11 +44,12 @@ enum interp_kind {
 	INTERP_LINE,
 	INTERP_ARC,			/* circular or helical; arg: arc index */
 	/* From here on: actions, of no length. */
+	INTERP_BEGIN,			/* always the first, does nothing */
 	INTERP_DWELL,			/* arg: milliseconds */
 	INTERP_STOP,			/* M0: hold until resumed */
 	INTERP_OPTIONAL_STOP,		/* M1 */
 	INTERP_AUX,			/* arg: enum interp_aux */
-	INTERP_END,			/* M2, M30, or the end of the text */
+	INTERP_END,			/* always the last: M2, M30, end of text */
 	INTERP_NKINDS
 };
 
@@ -87,9 +88,12 @@ struct interp_arc {
 	double r_mm, dr_mm;
 	double theta;			/* radian, from a toward b, at the start */
 	double sweep;			/* radian, signed; + is counter-clockwise */
-	int64_t area2;			/* point-by-point: twice the swept area */
-	uint32_t tail;			/* point-by-point: tick of the first forced
-					 * pulse, see pulse/arc.c */
+	/* Point-by-point only, see pulse/circle.c: */
+	int64_t measure;		/* of the whole circle: area and ticks */
+	uint32_t circle_ticks;		/* pulses in the plane */
+	uint32_t tail;			/* ticks before the first forced pulse */
+	int32_t tail_a, tail_b;		/* forced pulses from there to the end */
+	uint32_t crossings;		/* of the axes through the centre */
 	uint8_t axis_a, axis_b;		/* enum interp_axis */
 	uint8_t pad[2];
 };
@@ -146,7 +150,7 @@ int interp_program_map(struct interp_program *p, const void *block,
 bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 			   const struct interp_seg *seg);
 
-/** interp_program_name() - "simultaneous", ...; NULL if unknown. Any thread. */
+/** interp_strategy_name() - "simultaneous", ...; NULL if unknown. Any thread. */
 const char *interp_strategy_name(enum interp_strategy s);
 
 /** interp_strategy_parse() - the reverse; -EINVAL if unknown. Any thread. */

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_arc.c - from the words of a G2 or G3 to an arc segment
+ */
+#include "path/build_arc.h"
+#include "pulse/walk.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define TURN	(2 * 3.14159265358979323846)
+
+/* Start and end radius may differ by a rounding of the last digit, or this. */
+#define RADIUS_PULSES	2.0
+#define RADIUS_SHARE	0.001
+
+static const struct interp_axis_limits *limits(const struct build_arc *p,
+					       enum interp_axis a)
+{
+	return &p->machine->axis[a];
+}
+
+static int refuse_radius(double r0, double r1, struct interp_diag *diag)
+{
+	snprintf(diag->found, sizeof(diag->found),
+		 "the arc starts %.4f mm from its centre and ends %.4f mm from it",
+		 r0, r1);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "radii that agree within %g pulses or %g %%", RADIUS_PULSES,
+		 RADIUS_SHARE * 100);
+	return -EINVAL;
+}
+
+/* Angle from theta0 on to theta1 in the arc's direction, whole turns added. */
+static double sweep_of(const struct build_arc *p, double theta0, double theta1)
+{
+	const enum interp_axis a = p->word->axis_a, b = p->word->axis_b;
+	double sweep = theta1 - theta0;
+
+	if (p->from_mm[a] == p->to_mm[a] && p->from_mm[b] == p->to_mm[b])
+		sweep = 0;
+	if (p->word->clockwise) {
+		while (sweep >= 0)
+			sweep -= TURN;
+		return sweep - TURN * p->word->turns;
+	}
+	while (sweep <= 0)
+		sweep += TURN;
+	return sweep + TURN * p->word->turns;
+}
+
+static int arc_geometry(struct build_arc *p, struct interp_diag *diag)
+{
+	const struct interp_build_arc *w = p->word;
+	const double a0 = p->from_mm[w->axis_a] - w->centre_a_mm;
+	const double b0 = p->from_mm[w->axis_b] - w->centre_b_mm;
+	const double a1 = p->to_mm[w->axis_a] - w->centre_a_mm;
+	const double b1 = p->to_mm[w->axis_b] - w->centre_b_mm;
+	const double r0 = hypot(a0, b0), r1 = hypot(a1, b1);
+	const double pulse = fmax(limits(p, w->axis_a)->pulse_mm,
+				  limits(p, w->axis_b)->pulse_mm);
+
+	if (!(fabs(r1 - r0) <= fmax(RADIUS_PULSES * pulse,
+				    RADIUS_SHARE * fmin(r0, r1))))
+		return refuse_radius(r0, r1, diag);
+	if (r0 < pulse / 2) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "an arc of radius %.6f mm", r0);
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "a radius of half a pulse or more");
+		return -EINVAL;
+	}
+	p->arc = (struct interp_arc) {
+		.a_mm = w->centre_a_mm, .b_mm = w->centre_b_mm,
+		.r_mm = r0, .dr_mm = r1 - r0, .theta = atan2(b0, a0),
+		.axis_a = (uint8_t)w->axis_a, .axis_b = (uint8_t)w->axis_b,
+	};
+	p->arc.sweep = sweep_of(p, p->arc.theta, atan2(b1, a1));
+	return 0;
+}
+
+/* Does the arc pass the angle @quarter * 90 degrees? */
+static bool passes(const struct interp_arc *arc, int quarter)
+{
+	double ahead = quarter * (TURN / 4) - arc->theta;
+
+	ahead -= TURN * floor(ahead / TURN);
+	return arc->sweep > 0 ? ahead < arc->sweep :
+				ahead - TURN > arc->sweep || ahead == 0;
+}
+
+/* The four places farthest out lie between the ends, where no node is. */
+static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
+
+	for (int q = 0; q < 4; q++) {
+		const enum interp_axis axis = q % 2 ? arc->axis_b : arc->axis_a;
+		const struct interp_axis_limits *l = limits(p, axis);
+		const double at = (q % 2 ? arc->b_mm : arc->a_mm) +
+				  (q < 2 ? r : -r);
+
+		if (passes(arc, q) && (at > l->travel_max_mm + l->pulse_mm ||
+				       at < l->travel_min_mm - l->pulse_mm))
+			return build_refuse_travel(p->machine, (int)axis, at,
+						   diag);
+	}
+	return 0;
+}
+
+static void arc_length(struct build_arc *p)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double plane = fabs(arc->sweep) * (arc->r_mm + arc->dr_mm / 2);
+	double l2 = plane * plane;
+	double seconds = plane / fmin(limits(p, arc->axis_a)->v_max_mm_s,
+				      limits(p, arc->axis_b)->v_max_mm_s);
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const double d = p->to_mm[i] - p->from_mm[i];
+
+		if (i == arc->axis_a || i == arc->axis_b || d == 0)
+			continue;
+		seconds = fmax(seconds, fabs(d) / limits(p, i)->v_max_mm_s);
+		if (i <= INTERP_Z)
+			l2 += d * d;
+	}
+	p->length_mm = sqrt(l2);
+	p->feed_max_mm_s = p->length_mm / seconds;
+}
+
+static int refuse_ticks(struct interp_diag *diag)
+{
+	snprintf(diag->found, sizeof(diag->found),
+		 "the arc has too many pulses for one segment");
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "a smaller radius, or fewer turns");
+	return -EINVAL;
+}
+
+/* Ticks closer than a pulse, by a margin no rounding can use up. */
+static int ticks_simultaneous(struct build_arc *p, struct interp_diag *diag)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double pulse = fmin(limits(p, arc->axis_a)->pulse_mm,
+				  limits(p, arc->axis_b)->pulse_mm);
+	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double plane = (fabs(arc->sweep) * r + fabs(arc->dr_mm)) / pulse;
+	const double other = (double)p->others_sub / INTERP_SUB;
+	const double ticks = ceil(fmax(plane, other) * (1 + 1e-6)) + 1;
+
+	if (ticks > INTERP_PULSES_MAX)
+		return refuse_ticks(diag);
+	p->ticks = (uint32_t)ticks;
+	return 0;
+}
+
+static int ticks_point_by_point(struct build_arc *p, struct interp_diag *diag)
+{
+	struct interp_arc *arc = &p->arc;
+	const double pulse = limits(p, arc->axis_a)->pulse_mm;
+	const int64_t a = llround(arc->a_mm / pulse);
+	const int64_t b = llround(arc->b_mm / pulse);
+	const int64_t start[2] = { p->from[arc->axis_a] - a,
+				   p->from[arc->axis_b] - b };
+	const int64_t end[2] = { p->to[arc->axis_a] - a,
+				 p->to[arc->axis_b] - b };
+	uint64_t ticks;
+
+	if (limits(p, arc->axis_b)->pulse_mm != pulse) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "a point-by-point arc over axes of unequal pulses");
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "strategy simultaneous, or equal pulses");
+		return -EINVAL;
+	}
+	if (fabs(arc->sweep) * arc->r_mm / pulse > INTERP_PULSES_MAX / 2.0)
+		return refuse_ticks(diag);
+	/* A circle of one pulse would pass through its own centre. */
+	if (start[0] * start[0] + start[1] * start[1] <= 1) {
+		p->straight = true;
+		return 0;
+	}
+	if (!circle_measure(arc, start, end)) {
+		/* Under a pulse or two an arc may have no way round. */
+		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
+		return p->straight ? 0 : refuse_ticks(diag);
+	}
+	ticks = arc->circle_ticks;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (i != arc->axis_a && i != arc->axis_b)
+			ticks += (uint64_t)llabs((int64_t)p->to[i] -
+						 p->from[i]);
+	}
+	if (ticks > INTERP_PULSES_MAX)
+		return refuse_ticks(diag);
+	p->ticks = (uint32_t)ticks;
+	return 0;
+}
+
+int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
+{
+	int r = arc_geometry(p, diag);
+
+	if (r < 0)
+		return r;
+	r = arc_travel(p, diag);
+	if (r < 0)
+		return r;
+	arc_length(p);
+	return p->strategy == INTERP_POINT_BY_POINT ?
+	       ticks_point_by_point(p, diag) : ticks_simultaneous(p, diag);
+}

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * cursor.c - a place on the path, walked by a signed distance
+ *
+ * A place s in a segment belongs to the tick nearest to it: how far the walk
+ * has come does not depend on the steps it came by.
+ */
+#include "interp/cursor.h"
+#include "pulse/walk.h"
+
+#include <errno.h>
+#include <math.h>
+
+/* -- Actions: no length, no points ---------------------------------------- */
+
+static uint32_t none_step(struct interp_cursor *c)
+{
+	(void)c;
+	return WALK_BAD;
+}
+
+static const struct interp_walk walk_action = {
+	.enter = walk_stand,
+	.forward = none_step,
+	.back = none_step,
+	.last = walk_last_tick,
+};
+
+static const struct interp_walk *walk_of(const struct interp_cursor *c)
+{
+	const bool arc = c->seg.kind == INTERP_ARC;
+
+	if (c->seg.kind >= INTERP_BEGIN)
+		return &walk_action;
+	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
+		return arc ? &walk_arc : &walk_line;
+	/* A flat circle keeps its own measure; a helix is a tree. */
+	return arc && c->seg.ticks == c->arc.circle_ticks ? &walk_circle :
+							    &walk_tree;
+}
+
+/*
+ * Stand at the start or end of segment @i, if it is sound.  A cursor that met
+ * an unsound one has no walk any more and never moves again.
+ */
+static bool cursor_enter(struct interp_cursor *c, uint32_t i, bool at_end)
+{
+	const struct interp_walk *walk;
+
+	c->walk = NULL;
+	c->seg = c->p.segs[i];
+	c->index = i;
+	if (!interp_program_seg_ok(&c->p, i, &c->seg))
+		return false;
+	if (c->seg.kind == INTERP_ARC)
+		c->arc = c->p.arcs[c->seg.arg];
+	walk = walk_of(c);
+	if (!walk->enter(c, at_end))
+		return false;
+	c->walk = walk;
+	c->s_mm = at_end ? c->seg.length_mm : 0;
+	return true;
+}
+
+/* The place aimed at, in this segment's own measure. */
+static void cursor_want(struct interp_cursor *c)
+{
+	const double len = c->seg.length_mm;
+
+	if (c->want_mm >= len)
+		c->want = c->whole;
+	else if (c->want_mm <= 0)
+		c->want = 0;
+	else
+		c->want = (int64_t)(c->want_mm / len * (double)c->whole + 0.5);
+}
+
+int interp_cursor_init(struct interp_cursor *c, const struct interp_program *p)
+{
+	*c = (struct interp_cursor) { .p = *p };
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		c->pos[i] = p->head->start_pulses[i];
+		c->pulses_mm[i] = 1 / p->head->pulse_mm[i];
+	}
+	return cursor_enter(c, 0, false) ? 0 : -EBADMSG;
+}
+
+int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick)
+{
+	if (index >= c->p.head->nsegs)
+		return -ERANGE;
+	if (!cursor_enter(c, index, false))
+		return -EBADMSG;
+	if (tick > c->seg.ticks)
+		return -ERANGE;
+	while (c->tick < tick) {
+		if (c->walk->forward(c) == WALK_BAD) {
+			c->walk = NULL;
+			return -EBADMSG;
+		}
+	}
+	interp_cursor_stop(c);
+	return 0;
+}
+
+void interp_cursor_aim(struct interp_cursor *c, double ds_mm)
+{
+	c->want_mm = c->s_mm + ds_mm;
+	c->backward = ds_mm < 0;
+	cursor_want(c);
+}
+
+void interp_cursor_stop(struct interp_cursor *c)
+{
+	if (c->whole > 0)
+		c->s_mm = c->seg.length_mm * (double)c->measure /
+			  (double)c->whole;
+	c->want_mm = c->s_mm;
+	c->want = c->measure;
+}
+
+/* -- Crossing from one segment into the next ------------------------------- */
+
+/* MOVED here means: crossed, look again. */
+static enum interp_step cross_forward(struct interp_cursor *c)
+{
+	const double over_mm = c->want_mm - c->seg.length_mm;
+	const uint32_t next = c->index + 1;
+
+	if (next >= c->p.head->nsegs)
+		return INTERP_BAD_SEGMENT;
+	if (c->p.segs[next].kind >= INTERP_BEGIN) {
+		const bool end = c->p.segs[next].kind == INTERP_END;
+
+		c->s_mm = c->want_mm = c->seg.length_mm;
+		return end ? INTERP_AT_END : INTERP_AT_ACTION;
+	}
+	if (!cursor_enter(c, next, false))
+		return INTERP_BAD_SEGMENT;
+	c->want_mm = over_mm;
+	cursor_want(c);
+	return INTERP_MOVED;
+}
+
+static enum interp_step cross_back(struct interp_cursor *c)
+{
+	if (c->index == 0) {
+		c->s_mm = c->want_mm = 0;
+		return INTERP_AT_START;
+	}
+	if (!cursor_enter(c, c->index - 1, true))
+		return INTERP_BAD_SEGMENT;
+	c->want_mm += c->seg.length_mm;
+	cursor_want(c);
+	return INTERP_MOVED;
+}
+
+static bool may_go_on(const struct interp_cursor *c)
+{
+	if (!c->backward)
+		return c->measure < c->want;
+	return c->measure > c->want &&
+	       c->measure - c->walk->last(c) >= c->want;
+}
+
+/* Standing exactly on a segment's end is still in it, unless something is to
+ * be done there. */
+static bool must_cross(const struct interp_cursor *c)
+{
+	if (c->backward || c->want_mm < c->seg.length_mm)
+		return c->want_mm < 0;
+	return c->want_mm > c->seg.length_mm ||
+	       (c->index + 1 < c->p.head->nsegs &&
+		c->p.segs[c->index + 1].kind >= INTERP_BEGIN);
+}
+
+static enum interp_step cursor_bad(struct interp_cursor *c)
+{
+	c->walk = NULL;
+	return INTERP_BAD_SEGMENT;
+}
+
+enum interp_step interp_cursor_step(struct interp_cursor *c)
+{
+	if (!c->walk)
+		return INTERP_BAD_SEGMENT;
+	for (int crossed = 0; ; crossed++) {
+		enum interp_step s;
+
+		while (may_go_on(c)) {
+			c->moved = c->backward ? c->walk->back(c) :
+						 c->walk->forward(c);
+			if (c->moved == WALK_BAD)
+				return cursor_bad(c);
+			if (c->moved)
+				return INTERP_MOVED;
+		}
+		if (!must_cross(c)) {
+			c->s_mm = c->want_mm;
+			return INTERP_ARRIVED;
+		}
+		if (crossed == INTERP_CROSS_MAX) {
+			interp_cursor_stop(c);
+			return INTERP_ARRIVED;
+		}
+		s = c->backward ? cross_back(c) : cross_forward(c);
+		if (s != INTERP_MOVED)
+			return s;
+	}
+}
+
+enum interp_step interp_cursor_pass(struct interp_cursor *c)
+{
+	const uint32_t next = c->index + 1;
+
+	if (!c->walk)
+		return INTERP_BAD_SEGMENT;
+	if (next >= c->p.head->nsegs)
+		return INTERP_AT_END;
+	if (!cursor_enter(c, next, false))
+		return INTERP_BAD_SEGMENT;
+	c->want_mm = 0;
+	c->want = 0;
+	return INTERP_ARRIVED;
+}

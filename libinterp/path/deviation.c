@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * deviation.c - how far a lattice point lies from the programmed path
+ */
+#include "interp/cursor.h"
+#include "pulse/walk.h"
+
+#include <math.h>
+
+/* The axes a program's length is counted in: X Y Z, else U V, else A B C. */
+static uint32_t length_axes(const struct interp_cursor *c)
+{
+	static const uint32_t sets[] = {
+		1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_Z,
+		1u << INTERP_U | 1u << INTERP_V,
+	};
+	uint32_t moved = 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		if (walk_node(c, j, false) != walk_node(c, j, true))
+			moved |= 1u << c->p.head->column[j];
+	}
+	if (c->seg.kind == INTERP_ARC)
+		moved |= 1u << c->arc.axis_a | 1u << c->arc.axis_b;
+	for (int i = 0; i < 2; i++) {
+		if (moved & sets[i])
+			return sets[i];
+	}
+	return ~0u;
+}
+
+static double node_mm(const struct interp_cursor *c, uint32_t j, bool at_end)
+{
+	return (double)walk_node(c, j, at_end) / INTERP_SUB *
+	       c->p.head->pulse_mm[c->p.head->column[j]];
+}
+
+/* Square to the line from node to node. */
+static double line_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	double d2 = 0, r2 = 0, dr = 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+		const double from = node_mm(c, j, false);
+		const double d = node_mm(c, j, true) - from;
+		const double r = c->pos[axis] * c->p.head->pulse_mm[axis] -
+				 from;
+
+		if (!(axes & 1u << axis))
+			continue;
+		d2 += d * d;
+		r2 += r * r;
+		dr += d * r;
+	}
+	if (d2 > 0) {
+		const double t = dr <= 0 ? 0 : dr >= d2 ? 1 : dr / d2;
+
+		r2 += t * t * d2 - 2 * t * dr;
+	}
+	return r2 > 0 ? sqrt(r2) : 0;
+}
+
+/* Squared distance from the point at share @t of the arc. */
+static double arc_gap2(const struct interp_cursor *c, uint32_t axes, double t)
+{
+	const struct interp_arc *arc = &c->arc;
+	const double *pulse = c->p.head->pulse_mm;
+	const double theta = arc->theta + arc->sweep * t;
+	const double r = arc->r_mm + arc->dr_mm * t;
+	const double a = c->pos[arc->axis_a] * pulse[arc->axis_a] -
+			 arc->a_mm - r * cos(theta);
+	const double b = c->pos[arc->axis_b] * pulse[arc->axis_b] -
+			 arc->b_mm - r * sin(theta);
+	double d2 = a * a + b * b;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+		const double from = node_mm(c, j, false);
+		const double off = c->pos[axis] * pulse[axis] - from -
+				   (node_mm(c, j, true) - from) * t;
+
+		if (axis != arc->axis_a && axis != arc->axis_b &&
+		    axes & 1u << axis)
+			d2 += off * off;
+	}
+	return d2;
+}
+
+/* A helix's nearest place lies a few ticks from the point's own. */
+static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	const double at = (double)c->measure / (double)c->whole;
+	double lo = at - 8.0 / c->seg.ticks, hi = at + 8.0 / c->seg.ticks;
+
+	for (int i = 0; i < 40; i++) {
+		const double third = (hi - lo) / 3;
+
+		if (arc_gap2(c, axes, lo + third) <
+		    arc_gap2(c, axes, hi - third))
+			hi -= third;
+		else
+			lo += third;
+	}
+	return sqrt(arc_gap2(c, axes, (lo + hi) / 2));
+}
+
+static double arc_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	const struct interp_arc *arc = &c->arc;
+	const double *pulse = c->p.head->pulse_mm;
+	const double at = c->whole ? (double)c->measure / (double)c->whole : 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+
+		if (axis != arc->axis_a && axis != arc->axis_b &&
+		    axes & 1u << axis && c->whole &&
+		    walk_node(c, j, false) != walk_node(c, j, true))
+			return helix_deviation(c, axes);
+	}
+	return fabs(hypot(c->pos[arc->axis_a] * pulse[arc->axis_a] - arc->a_mm,
+			  c->pos[arc->axis_b] * pulse[arc->axis_b] -
+			  arc->b_mm) - arc->r_mm - arc->dr_mm * at);
+}
+
+double interp_cursor_deviation_mm(const struct interp_cursor *c)
+{
+	const uint32_t axes = length_axes(c);
+
+	return c->seg.kind == INTERP_ARC ? arc_deviation(c, axes) :
+					   line_deviation(c, axes);
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * program.c - look at a block as a program, and distrust it
+ */
+#include "interp/program.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+/* Is a table of @n entries of @size bytes at @at wholly inside the block? */
+static bool table_ok(const struct interp_program_head *h, uint64_t at,
+		     uint64_t n, uint64_t size)
+{
+	return at % 8 == 0 && at >= sizeof(*h) && at <= h->bytes &&
+	       n <= (h->bytes - at) / size;
+}
+
+static bool head_ok(const struct interp_program_head *h, size_t bytes)
+{
+	if (memcmp(h->magic, INTERP_PROGRAM_MAGIC, sizeof(h->magic)) != 0 ||
+	    h->version != INTERP_PROGRAM_VERSION ||
+	    h->head_bytes != sizeof(*h) || h->bytes > bytes)
+		return false;
+	if (h->nsegs < 2 || h->nconds < 1 || h->naxes > INTERP_NAXES ||
+	    h->strategy >= INTERP_NSTRATEGIES || !isfinite(h->length_mm))
+		return false;
+	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
+		if (!(h->pulse_mm[i] > 0 && isfinite(h->pulse_mm[i])))
+			return false;
+		if (h->start_pulses[i] > INTERP_PULSES_MAX ||
+		    h->start_pulses[i] < -INTERP_PULSES_MAX)
+			return false;
+		if (i < h->naxes && h->column[i] >= INTERP_NAXES)
+			return false;
+	}
+	return true;
+}
+
+int interp_program_map(struct interp_program *p, const void *block,
+		       size_t bytes)
+{
+	const struct interp_program_head *h = block;
+	const char *base = block;
+
+	if (bytes < sizeof(*h) || !head_ok(h, bytes))
+		return -EBADMSG;
+	if (!table_ok(h, h->segs_at, h->nsegs, sizeof(*p->segs)) ||
+	    !table_ok(h, h->nodes_at, ((uint64_t)h->nsegs + 1) * h->naxes,
+		      sizeof(*p->nodes)) ||
+	    !table_ok(h, h->arcs_at, h->narcs, sizeof(*p->arcs)) ||
+	    !table_ok(h, h->conds_at, h->nconds, sizeof(*p->conds)))
+		return -EBADMSG;
+
+	p->head = h;
+	p->segs = (const void *)(base + h->segs_at);
+	p->nodes = (const void *)(base + h->nodes_at);
+	p->arcs = (const void *)(base + h->arcs_at);
+	p->conds = (const void *)(base + h->conds_at);
+	if (p->segs[0].kind != INTERP_BEGIN ||
+	    p->segs[h->nsegs - 1].kind != INTERP_END)
+		return -EBADMSG;
+	return 0;
+}
+
+bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
+			   const struct interp_seg *seg)
+{
+	const uint32_t n = p->head->nsegs;
+
+	if (i >= n || seg->kind >= INTERP_NKINDS ||
+	    seg->cond >= p->head->nconds)
+		return false;
+	if ((seg->kind == INTERP_BEGIN) != (i == 0) ||
+	    (seg->kind == INTERP_END) != (i == n - 1))
+		return false;
+	if (seg->kind >= INTERP_BEGIN)
+		return seg->length_mm == 0 && seg->ticks == 0 &&
+		       isfinite(seg->s_mm);
+	return isfinite(seg->s_mm) && isfinite(seg->length_mm) &&
+	       seg->length_mm > 0 && isfinite(seg->feed_mm_s) &&
+	       seg->feed_mm_s > 0 && isfinite(seg->feed_max_mm_s) &&
+	       seg->feed_max_mm_s > 0 &&
+	       (seg->kind != INTERP_ARC || seg->arg < p->head->narcs);
+}
+
+static const char *const strategies[INTERP_NSTRATEGIES] = {
+	[INTERP_SIMULTANEOUS]	= "simultaneous",
+	[INTERP_POINT_BY_POINT]	= "point-by-point",
+};
+
+const char *interp_strategy_name(enum interp_strategy s)
+{
+	return s < INTERP_NSTRATEGIES ? strategies[s] : NULL;
+}
+
+int interp_strategy_parse(const char *name)
+{
+	for (int i = 0; i < INTERP_NSTRATEGIES; i++) {
+		if (strcmp(strategies[i], name) == 0)
+			return i;
+	}
+	return -EINVAL;
+}
