@@ -25,7 +25,7 @@ struct config_gap {
 	int source;			/* 0 sim; more with their backends */
 	double servo_v, short_v, open_v;
 	double feed_gain_mm_s_v, feed_max_mm_s, approach_mm_s;
-	double retract_mm_s, retract_limit_mm;
+	double retract_mm_s, retract_limit_mm, retract_wait_s;
 };
 
 /* [jump] */
@@ -49,6 +49,7 @@ struct config_sim {
 	double flush_mm;		/* jump stroke that halves the debris */
 	double bridge_per_s;		/* debris bridges per second at debris 1 */
 	double bridge_mm;		/* mean length of a bridge */
+	double bridge_settle_s;		/* it shrinks with this time constant */
 	double noise_v;			/* sigma of the gap voltage */
 };
 

@@ -30,6 +30,7 @@ struct io_inputs {
 struct io_outputs {
 	int32_t target[IO_NAXES];	/* pulses, absolute */
 	double place_mm;		/* on the path; for a simulated gap */
+	uint32_t path;			/* counts the programs loaded */
 	bool rapid;			/* positioning through free space */
 	bool power;			/* sparks allowed */
 	bool negative;			/* electrode polarity */
@@ -56,6 +57,16 @@ struct machine_config;
  */
 int io_sim_open(struct io_machine *m, const struct machine_config *c,
 		uint64_t seed);
+
+/* What a simulated cut came to. */
+struct io_sim_result {
+	double removed_mm3;
+	double wear_mm;			/* electrode length lost */
+	double debris;			/* 0 clean ... 1 choked */
+};
+
+/** io_sim_result() - of a machine opened by io_sim_open(). Any time. */
+void io_sim_result(const struct io_machine *m, struct io_sim_result *ret);
 
 /** io_null_open() - nothing, correctly: no gap, axes follow at once. */
 int io_null_open(struct io_machine *m);

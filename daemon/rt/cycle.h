@@ -52,7 +52,8 @@ struct cycle_gap_config {
 	double feed_max_mm_s;		/* fastest feed while eroding */
 	double approach_mm_s;		/* feed until the first spark */
 	double retract_mm_s;		/* back along the path on a short */
-	double retract_limit_mm;	/* then fault short-not-cleared */
+	double retract_limit_mm;	/* then stand, and wait ... */
+	uint64_t retract_wait_cycles;	/* ... then fault short-not-cleared */
 };
 
 struct cycle_jump_config {
@@ -73,6 +74,7 @@ struct cycle_config {
 	uint32_t points_max;		/* lattice points in one cycle */
 	bool dry_run;			/* no gap: walk at the programmed feed */
 	bool optional_stop;		/* M1 holds */
+	bool hold_at_end;		/* stand held at the end; no job's end */
 };
 
 enum cycle_verb {
@@ -80,9 +82,9 @@ enum cycle_verb {
 	CYCLE_HOLD,			/* power off, stop on the path */
 	CYCLE_RESUME,			/* the same as start, after a hold */
 	CYCLE_STOP,			/* end the job here */
-	CYCLE_RETRACT,			/* arg_mm back along the path, then hold */
+	CYCLE_RETRACT,			/* hold, arg_mm back along the path */
 	CYCLE_ESTOP,			/* the software e-stop */
-	CYCLE_RESET,			/* leave fault, to hold */
+	CYCLE_RESET,			/* leave fault: held, or idle */
 	CYCLE_NVERBS
 };
 
@@ -122,16 +124,26 @@ struct cycle {
 	double feed_mm_s;		/* of this cycle, as walked */
 	double gap_v;			/* as read */
 	double far_mm;			/* farthest place eroded or passed */
-	struct mover mover;		/* jump, retract by command */
-	enum cycle_state after_move;	/* where the mover's end leads */
+	double jump_from_mm;		/* place the jump began */
+	double jump_to_mm;		/* place the lift or the return leads to */
+	double move_to_mm;		/* place a retract by command leads to */
 	double retract_from_mm;		/* place the retract began */
-	double jump_from_mm;
+	uint64_t retract_waited;	/* cycles stood at its limit */
+	struct mover mover;		/* speed along the path */
+	bool lifting;			/* a jump on its way up */
+	bool moving;			/* held, but walking back by command */
+	enum cycle_state after_stand;	/* held: where to, once it stands */
 	uint64_t since_jump;		/* cycles of erosion */
 	uint64_t dwell_left;		/* cycles */
 	uint32_t overruns_in_row;
-	bool short_seen;		/* gap is short now */
+	bool overran;			/* since the last step */
+	uint32_t action_done;		/* actions up to this index are done */
+	bool dwelling;
+	bool power_off;			/* the program switched it off (M5) */
+	bool gap_short, gap_open;	/* this cycle's gap */
+	bool short_before;		/* it was short the cycle before */
 	bool free_seen;			/* not short since positioning began */
-	uint32_t action_done;		/* actions before this index are done */
+	bool at_start;			/* the walk met the program's start */
 	struct io_outputs out;		/* as last given */
 
 	/* Called after every lattice point with the cursor on it; may be NULL. */

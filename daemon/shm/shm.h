@@ -11,9 +11,20 @@
  *	program.<n>	edmd-jobs writes once; edmd maps it read-only
  *			(interp/program.h)
  *
- * Every object begins with a struct shm_head.  A reader whose layout version
- * or size differs must not read on.  All numbers are of the machine's byte
- * order; the objects never leave it.
+ * Status and command begin with a struct shm_head.  A reader whose layout
+ * version or size differs must not read on.  All numbers are of the machine's
+ * byte order; the objects never leave it.
+ *
+ * A machine's name is 1 to 31 of A-Z a-z 0-9 _ -; every call that takes one
+ * returns -EINVAL for any other.
+ *
+ * A restarted edmd takes its predecessor's status over in place: mappings
+ * stay good, both rings go on counting, head.instance is new.  The command
+ * ring is made anew and must be opened again; its head.instance tells which
+ * edmd reads it.  An edmd that ends in order removes both objects.
+ *
+ * Everything that two processes touch at once is read and written through C11
+ * atomics, the records word by word, so a torn one is noticed, never used.
  *
  * Units: in every name.  Sign: feed + toward the program's end.
  */
@@ -58,13 +69,14 @@ struct shm_snapshot {
 	uint32_t state;			/* enum shm_state */
 	uint32_t fault;			/* enum cycle_fault; 0 none */
 	uint32_t outcome;		/* enum cycle_outcome of the last job */
-	uint32_t program;		/* n of program.<n>; 0 none */
+	uint32_t program;		/* program.<n>, until unloaded; or 0 */
 	uint32_t seg, tick;		/* place, exactly */
 	uint32_t line;			/* of the source */
 	uint32_t cond_number;
 	char cond_letter;
 	bool power, pump, negative;
-	uint8_t pad[4];
+	bool loaded;			/* the job has not ended: held counts */
+	uint8_t pad[3];
 	int32_t pos[SHM_NAXES];		/* pulses */
 	double pulse_mm[SHM_NAXES];
 	double place_mm, far_mm, length_mm;	/* along the path */
@@ -121,8 +133,8 @@ struct shm_event_slot {
 };
 
 /*
- * Cycle n goes to snap[n & 1], so that a writer killed in the middle of one
- * leaves the other whole.
+ * Snapshot n goes to snap[n & 1] and snap_next becomes n + 1 when it is whole,
+ * so that a writer killed in the middle of one leaves the other.
  */
 struct shm_snap {
 	ck_sequence_t seq;
@@ -133,16 +145,36 @@ struct shm_status {
 	struct shm_head head;
 	uint32_t latency_us[SHM_LATENCY_BINS];	/* histogram of wake_late */
 	struct shm_snap snap[2];
+	uint64_t snap_next;		/* snapshots written so far */
 	uint64_t trace_next;		/* records written so far */
 	uint64_t event_next;
 	struct shm_trace_slot trace[SHM_TRACE_SLOTS];
 	struct shm_event_slot event[SHM_EVENT_SLOTS];
 };
 
+/* Below 100: mirrors enum cycle_verb; fixed here because others rely on it. */
 enum shm_verb {
-	SHM_LOAD = 100,			/* arg: program n */
-	SHM_UNLOAD,			/* forget the program, unmap it */
-	/* below 100: enum cycle_verb */
+	SHM_DO_START,			/* from held: begin or go on */
+	SHM_DO_HOLD,			/* power off, stop on the path */
+	SHM_DO_RESUME,			/* the same as start, after a hold */
+	SHM_DO_STOP,			/* end the job here */
+	SHM_DO_RETRACT,			/* arg_mm back along the path, then hold */
+	SHM_DO_ESTOP,			/* the software e-stop */
+	SHM_DO_RESET,			/* leave fault, to hold */
+	SHM_LOAD = 100,			/* arg: program n; when idle */
+	SHM_UNLOAD,			/* forget program n and unmap it; a
+					 * held one is stopped first */
+};
+
+/* Mirrors enum cycle_answer: the code of an SHM_EV_ANSWER. */
+enum shm_answer {
+	SHM_DONE, SHM_NO_PROGRAM, SHM_WRONG_STATE, SHM_BAD_ARGUMENT
+};
+
+/* Mirrors enum cycle_outcome. */
+enum shm_outcome {
+	SHM_OUTCOME_NONE, SHM_OUTCOME_DONE, SHM_OUTCOME_FAULT,
+	SHM_OUTCOME_STOPPED
 };
 
 struct shm_command {
@@ -164,15 +196,27 @@ struct shm_command_ring {
 /**
  * shm_status_create() - make or take over edmd.<machine>.status.
  *
+ * A lock on the object lasts as long as the process and tells a living owner
+ * from a killed one; its descriptor stays open for that reason and is in no
+ * one's hands.
+ *
  * @ret_before: the last snapshot a predecessor left, or cycle 0.
- * Return: 0 or a negative errno; -EBUSY if a living edmd owns it.
+ * Return: 0 or a negative errno; -EBUSY if a living edmd owns it, -EPERM if
+ * the object is another user's.
  * Startup only.
  */
 int shm_status_create(struct shm_status **ret, const char *machine,
 		      struct shm_snapshot *ret_before);
 
+/** shm_status_destroy() - remove and unmap; NULL is fine. */
+void shm_status_destroy(struct shm_status *s, const char *machine);
+
 /** shm_publish() - a whole snapshot and its trace record. RT-safe. */
 void shm_publish(struct shm_status *s, const struct shm_snapshot *snap);
+
+/** The two halves of it, for one who has more of one than of the other. */
+void shm_snapshot_put(struct shm_status *s, const struct shm_snapshot *snap);
+void shm_trace_put(struct shm_status *s, const struct shm_trace *t);
 
 /** shm_event() - append to the event ring. RT-safe; one writer. */
 void shm_event(struct shm_status *s, const struct shm_event *e);
@@ -181,7 +225,15 @@ void shm_event(struct shm_status *s, const struct shm_event *e);
 int shm_command_create(struct shm_command_ring **ret, const char *machine,
 		       uint32_t instance);
 
-/** shm_command_take() - the next command, if any. RT-safe. */
+/** shm_command_destroy() - remove and unmap; NULL is fine. */
+void shm_command_destroy(struct shm_command_ring *r, const char *machine);
+
+/**
+ * shm_command_take() - the next command, if any. RT-safe.
+ *
+ * Whatever the other side did to the ring, this reads inside it.  The command
+ * itself is not checked.
+ */
 bool shm_command_take(struct shm_command_ring *r, struct shm_command *ret);
 
 /* -- Readers, and edmd-jobs --------------------------------------------- */
@@ -193,15 +245,23 @@ bool shm_command_take(struct shm_command_ring *r, struct shm_command *ret);
 int shm_status_open(const struct shm_status **ret, const char *machine);
 
 /**
- * shm_snapshot() - the last whole snapshot.  Never spins.
+ * shm_snapshot() - the last whole snapshot.  A bounded number of tries.
  * Return: false if there is none yet.  Any thread.
  */
 bool shm_snapshot(const struct shm_status *s, struct shm_snapshot *ret);
 
-/** shm_alive() - is the writer's process still there? Any thread. */
+/**
+ * shm_alive() - is the process that writes @s still there?
+ *
+ * False also once another edmd has made the object anew: open it again.
+ * A few system calls; not for a tight loop.  Any thread.
+ */
 bool shm_alive(const struct shm_status *s);
 
-/** Follows a ring; start with next = 0 (all there is) or *_next (only new). */
+/**
+ * Follows a ring; start with next = 0 (all there is) or *_next (only new).
+ * A new mapping wants a new one.
+ */
 struct shm_follow {
 	uint64_t next;
 	uint64_t lost;			/* records this reader missed, in all */
@@ -215,7 +275,10 @@ bool shm_trace_next(const struct shm_status *s, struct shm_follow *f,
 bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
 		    struct shm_event *ret);
 
-/** shm_command_open() - map the ring to write it. One process only. */
+/**
+ * shm_command_open() - map the ring to write it. One process only.
+ * Return: as shm_status_open().
+ */
 int shm_command_open(struct shm_command_ring **ret, const char *machine);
 
 /** shm_command_put() - Return: 0, or -EAGAIN if the ring is full. */
@@ -223,10 +286,15 @@ int shm_command_put(struct shm_command_ring *r, const struct shm_command *c);
 
 /**
  * shm_program_create() - edmd.<machine>.program.<n>, @bytes to fill.
+ *
+ * Zeroed.  One of the same n is replaced; who has that one mapped keeps it.
  * The caller unmaps it with shm_program_unmap() when it is written.
+ * Return: 0; -EINVAL for n 0 or no bytes; -ENOSPC; else -errno.
  */
 int shm_program_create(void **ret, const char *machine, uint32_t n,
 		       size_t bytes);
+
+/** shm_program_open() - map read-only. Return: 0, -ENOENT, else -errno. */
 int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 		     uint32_t n);
 void shm_program_unmap(const void *block, size_t bytes);

@@ -34,9 +34,10 @@ static const struct interp_walk *walk_of(const struct interp_cursor *c)
 		return &walk_action;
 	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
 		return arc ? &walk_arc : &walk_line;
-	/* A flat circle keeps its own measure; a helix is a tree. */
-	return arc && c->seg.ticks == c->arc.circle_ticks ? &walk_circle :
-							    &walk_tree;
+	if (!arc)
+		return &walk_tree;
+	return c->seg.ticks == c->arc.circle_ticks ? &walk_circle :
+						     &walk_helix;
 }
 
 /*
@@ -45,13 +46,14 @@ static const struct interp_walk *walk_of(const struct interp_cursor *c)
  */
 static bool cursor_enter(struct interp_cursor *c, uint32_t i, bool at_end)
 {
+	const struct interp_seg seg = c->p.segs[i];
 	const struct interp_walk *walk;
 
 	c->walk = NULL;
-	c->seg = c->p.segs[i];
-	c->index = i;
-	if (!interp_program_seg_ok(&c->p, i, &c->seg))
+	if (!interp_program_seg_ok(&c->p, i, &seg))
 		return false;
+	c->seg = seg;
+	c->index = i;
 	if (c->seg.kind == INTERP_ARC)
 		c->arc = c->p.arcs[c->seg.arg];
 	walk = walk_of(c);

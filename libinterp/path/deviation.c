@@ -87,11 +87,14 @@ static double arc_gap2(const struct interp_cursor *c, uint32_t axes, double t)
 	return d2;
 }
 
-/* A helix's nearest place lies a few ticks from the point's own. */
+/* A helix's nearest place lies near the point's own: a few ticks, or, where
+ * it is steep, less than a quarter of a radian. */
 static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
 {
 	const double at = (double)c->measure / (double)c->whole;
-	double lo = at - 8.0 / c->seg.ticks, hi = at + 8.0 / c->seg.ticks;
+	const double near = fmax(16.0 / c->seg.ticks,
+				 fmin(0.25 / fabs(c->arc.sweep), 1));
+	double lo = fmax(at - near, 0), hi = fmin(at + near, 1);
 
 	for (int i = 0; i < 40; i++) {
 		const double third = (hi - lo) / 3;

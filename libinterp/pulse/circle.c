@@ -237,6 +237,9 @@ static int64_t circle_crossings(const struct interp_arc *arc,
 
 	if (ahead < 0)
 		ahead += turn;
+	/* Start and end at one place on an axis are quadrants apart. */
+	if (ahead < (quads - 1) * (turn / 4))
+		ahead += turn;
 	/* Same quadrant, but the end lies behind: once round. */
 	return quads + 4 * llround((fabs(arc->sweep) - ahead) / turn) +
 	       (quads == 0 && ahead > turn / 2 ? 4 : 0);
@@ -323,9 +326,14 @@ static bool walk_circle_enter(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
-static uint32_t circle_settle(struct interp_cursor *c, const int8_t was[2])
+uint32_t walk_circle_pulse(struct interp_cursor *c, int dir)
 {
-	c->tick = c->circle.tick;
+	int8_t was[2];
+
+	if (dir > 0)
+		circle_forward(&c->circle, was);
+	else
+		circle_back(&c->circle, was);
 	c->pos[c->arc.axis_a] += was[0];
 	c->pos[c->arc.axis_b] += was[1];
 	return (uint32_t)(was[0] != 0) << c->arc.axis_a |
@@ -334,24 +342,26 @@ static uint32_t circle_settle(struct interp_cursor *c, const int8_t was[2])
 
 static uint32_t walk_circle_forward(struct interp_cursor *c)
 {
-	int8_t was[2];
+	uint32_t moved;
 
 	if (c->circle.tick >= c->circle.ticks)
 		return WALK_BAD;
-	circle_forward(&c->circle, was);
-	c->measure += pulse_measure(&c->circle, was);
-	return circle_settle(c, was);
+	moved = walk_circle_pulse(c, 1);
+	c->measure += circle_last(&c->circle);
+	c->tick = c->circle.tick;
+	return moved;
 }
 
 static uint32_t walk_circle_back(struct interp_cursor *c)
 {
-	int8_t was[2];
+	uint32_t moved;
 
 	if (c->circle.tick == 0)
 		return WALK_BAD;
 	c->measure -= circle_last(&c->circle);
-	circle_back(&c->circle, was);
-	return circle_settle(c, was);
+	moved = walk_circle_pulse(c, -1);
+	c->tick = c->circle.tick;
+	return moved;
 }
 
 static int64_t walk_circle_last(const struct interp_cursor *c)

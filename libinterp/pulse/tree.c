@@ -14,16 +14,18 @@
  * F stays in [-b, a), where the rule is a rotation by -b modulo (a + b); so
  * the last pulse was a's if and only if F < a - b.  At both ends F is 0.
  *
- * A helix is the same tree with the circle as one of the inputs.
+ * A helix is led by its circle: the other axes are one such tree, and one of
+ * their pulses is due whenever their share of the way falls half a pulse
+ * behind the circle's, measured by swept area so that it follows the arc's
+ * length.  What is due depends on the circle's place alone, so the last pulse
+ * was the tree's if more have been sent than were due one circle pulse ago.
  */
 #include "pulse/walk.h"
 
 #include <stdlib.h>
 
-#define CIRCLE_INPUT	64
-
 struct input {
-	int8_t code;			/* axis, CIRCLE_INPUT, or ~pair */
+	int8_t code;			/* axis, or ~pair */
 	int64_t pulses;
 };
 
@@ -78,24 +80,18 @@ static int64_t tree_build(struct interp_cursor *c, struct input *in, uint32_t n)
 	return in[0].pulses;
 }
 
+/* Aim the tree at all axes but @except; the sum of their pulses. */
+static int64_t tree_set(struct interp_cursor *c, uint32_t except)
+{
+	struct input in[INTERP_NAXES];
+	const uint32_t n = tree_leaves(c, except, in);
+
+	return n == 0 ? 0 : tree_build(c, in, n);
+}
+
 static bool tree_enter(struct interp_cursor *c, bool at_end)
 {
-	struct input in[INTERP_NAXES + 1];
-	uint32_t except = 0, n = 0;
-
-	if (!walk_stand(c, at_end))
-		return false;
-	if (c->seg.kind == INTERP_ARC) {
-		if (!walk_circle_set(c, at_end))
-			return false;
-		except = 1u << c->arc.axis_a | 1u << c->arc.axis_b;
-		if (c->circle.ticks > 0)
-			in[n++] = (struct input) { CIRCLE_INPUT,
-						   c->circle.ticks };
-	}
-	n += tree_leaves(c, except, in + n);
-	return n == 0 ? c->seg.ticks == 0 :
-			tree_build(c, in, n) == c->seg.ticks;
+	return walk_stand(c, at_end) && tree_set(c, 0) == c->seg.ticks;
 }
 
 /* The leaf whose pulse comes next, from the root. */
@@ -136,39 +132,24 @@ static int8_t tree_last(struct interp_cursor *c)
 	return code;
 }
 
-/* One pulse of leaf @code, @dir +1 or -1. */
-static uint32_t tree_pulse(struct interp_cursor *c, int8_t code, int dir)
-{
-	int8_t was[2];
-
-	if (code != CIRCLE_INPUT) {
-		c->pos[code] += dir * c->sign[code];
-		return 1u << code;
-	}
-	if (dir > 0 ? c->circle.tick >= c->circle.ticks : c->circle.tick == 0)
-		return WALK_BAD;
-	if (dir > 0)
-		circle_forward(&c->circle, was);
-	else
-		circle_back(&c->circle, was);
-	c->pos[c->arc.axis_a] += was[0];
-	c->pos[c->arc.axis_b] += was[1];
-	return (uint32_t)(was[0] != 0) << c->arc.axis_a |
-	       (uint32_t)(was[1] != 0) << c->arc.axis_b;
-}
-
 static uint32_t tree_forward(struct interp_cursor *c)
 {
+	const int8_t axis = tree_next(c);
+
 	c->tick++;
 	c->measure++;
-	return tree_pulse(c, tree_next(c), 1);
+	c->pos[axis] += c->sign[axis];
+	return 1u << axis;
 }
 
 static uint32_t tree_back(struct interp_cursor *c)
 {
+	const int8_t axis = tree_last(c);
+
 	c->tick--;
 	c->measure--;
-	return tree_pulse(c, tree_last(c), -1);
+	c->pos[axis] -= c->sign[axis];
+	return 1u << axis;
 }
 
 const struct interp_walk walk_tree = {
@@ -176,4 +157,83 @@ const struct interp_walk walk_tree = {
 	.forward = tree_forward,
 	.back = tree_back,
 	.last = walk_last_tick,
+};
+
+/* -- Helices ---------------------------------------------------------------- */
+
+static bool helix_enter(struct interp_cursor *c, bool at_end)
+{
+	if (!walk_stand(c, at_end) || !walk_circle_set(c, at_end))
+		return false;
+	c->others = tree_set(c, 1u << c->arc.axis_a | 1u << c->arc.axis_b);
+	c->circle_at = at_end ? c->arc.measure : 0;
+	c->whole = c->arc.measure + c->others;
+	c->measure = at_end ? c->whole : 0;
+	return c->seg.ticks == c->circle.ticks + c->others &&
+	       (c->circle.ticks == 0) == (c->arc.measure == 0);
+}
+
+/* The tree's pulses due when the circle is at measure @m. */
+static int64_t helix_due(const struct interp_cursor *c, int64_t m)
+{
+	const walk_wide whole = c->arc.measure;
+
+	if (whole == 0)
+		return c->others;
+	return (int64_t)((2 * (walk_wide)m * c->others + whole) / (2 * whole));
+}
+
+static int64_t helix_sent(const struct interp_cursor *c)
+{
+	return c->measure - c->circle_at;
+}
+
+static uint32_t helix_forward(struct interp_cursor *c)
+{
+	uint32_t moved;
+
+	if (helix_sent(c) < helix_due(c, c->circle_at))
+		return tree_forward(c);
+	if (c->circle.tick >= c->circle.ticks)
+		return WALK_BAD;
+	moved = walk_circle_pulse(c, 1);
+	c->tick++;
+	c->circle_at += circle_last(&c->circle);
+	c->measure += circle_last(&c->circle);
+	return moved;
+}
+
+/* Was the last pulse the tree's? */
+static bool helix_last_tree(const struct interp_cursor *c)
+{
+	return c->circle.tick == 0 ||
+	       helix_sent(c) >
+	       helix_due(c, c->circle_at - circle_last(&c->circle));
+}
+
+static uint32_t helix_back(struct interp_cursor *c)
+{
+	int64_t last;
+
+	if (c->tick == 0)
+		return WALK_BAD;
+	if (helix_last_tree(c))
+		return tree_back(c);
+	last = circle_last(&c->circle);
+	c->tick--;
+	c->circle_at -= last;
+	c->measure -= last;
+	return walk_circle_pulse(c, -1);
+}
+
+static int64_t helix_last(const struct interp_cursor *c)
+{
+	return helix_last_tree(c) ? 1 : circle_last(&c->circle);
+}
+
+const struct interp_walk walk_helix = {
+	.enter = helix_enter,
+	.forward = helix_forward,
+	.back = helix_back,
+	.last = helix_last,
 };

@@ -14,6 +14,9 @@
 
 #include "interp/cursor.h"
 
+/* For products of two measures. */
+__extension__ typedef __int128 walk_wide;
+
 #define WALK_BAD	UINT32_MAX	/* instead of a mask of axes moved */
 
 struct interp_walk {
@@ -30,8 +33,9 @@ struct interp_walk {
 extern const struct interp_walk walk_line;
 /* Arcs, every axis at once: arc.c. */
 extern const struct interp_walk walk_arc;
-/* Lines, and helices' other axes, one axis at a time: tree.c. */
+/* Lines and helices, one axis at a time: tree.c. */
 extern const struct interp_walk walk_tree;
+extern const struct interp_walk walk_helix;
 /* Circles, one axis at a time: circle.c. */
 extern const struct interp_walk walk_circle;
 /* Actions: no points at all: cursor.c. */
@@ -83,5 +87,8 @@ bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 
 /** walk_circle_set() - aim c->circle at c->arc; false if it is unsound. */
 bool walk_circle_set(struct interp_cursor *c, bool at_end);
+
+/** walk_circle_pulse() - one pulse of c->circle, @dir +1 or -1. */
+uint32_t walk_circle_pulse(struct interp_cursor *c, int dir);
 
 #endif /* PULSE_WALK_H */

@@ -125,6 +125,8 @@ static void check_arc(enum interp_strategy s, int x0, int y0, int x1, int y1,
 	}
 	assert_int_equal(out.at[out.n - 1].pos[0], x1);
 	assert_int_equal(out.at[out.n - 1].pos[1], y1);
+	/* Once round at most: 8 R pulses, and the line to the start. */
+	assert_true((double)out.n < 8 * fmax(r0, r1) + 9 + abs(x0) + abs(y0));
 	points_free(&out);
 	walk_retraces(&m);
 	unmake(&m);
@@ -247,6 +249,25 @@ static void simultaneous_points_are_within_half_a_pulse_of_the_path(void **st)
 	}
 }
 
+static void point_by_point_points_are_near_the_path(void **st)
+{
+	(void)st;
+	for (uint64_t seed = 300; seed <= 340; seed++) {
+		uint64_t s = seed;
+		struct made m = random_program(INTERP_POINT_BY_POINT, &s, 30);
+		struct interp_cursor c;
+
+		print_on_failure("seed", seed);
+		assert_int_equal(interp_cursor_init(&c, &m.p), 0);
+		interp_cursor_aim(&c, 1e9);
+		/* A tree is three levels deep at the most, a pulse each. */
+		while (interp_cursor_step(&c) == INTERP_MOVED)
+			assert_true(interp_cursor_deviation_mm(&c) <
+				    0.001 * 3);
+		unmake(&m);
+	}
+}
+
 static void a_place_can_be_sought(void **st)
 {
 	uint64_t s = 7;
@@ -301,6 +322,7 @@ int main(void)
 		cmocka_unit_test(no_axis_ever_moves_more_than_one_pulse),
 		cmocka_unit_test(
 		simultaneous_points_are_within_half_a_pulse_of_the_path),
+		cmocka_unit_test(point_by_point_points_are_near_the_path),
 		cmocka_unit_test(a_place_can_be_sought),
 		cmocka_unit_test(a_damaged_block_never_leads_astray),
 	};

@@ -87,6 +87,8 @@ struct interp_cursor {
 	int8_t root;
 	int8_t sign[INTERP_NAXES];
 	struct interp_circle circle;
+	int64_t others, circle_at;	/* a helix's other pulses; measure of
+					 * its circle alone */
 	double pulses_mm[INTERP_NAXES];	/* pulses per mm */
 };
 

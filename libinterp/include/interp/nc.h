@@ -10,7 +10,7 @@
  * Memory is bounded by the program: no recursion on the input, subprograms by
  * a stack of fixed depth, total lines executed bounded.
  *
- * Threads: allocates through the builder.  Never in the cycle.
+ * Threads: allocates.  Never in the cycle.
  */
 #ifndef INTERP_NC_H
 #define INTERP_NC_H

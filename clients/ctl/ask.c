@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * ask.c - verbs that are one question and its answer
+ */
+#include "ctl.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+#include <time.h>
+
+int ctl_unanswered(const struct ctl *c, int err)
+{
+	if (err == -EINTR) {
+		fprintf(stderr, "edmctl: interrupted before an answer came\n");
+		return EX_TEMPFAIL;
+	}
+	fprintf(stderr, "edmctl: no answer from edmd-jobs of machine %s; is it "
+		"running? systemctl start edmd-jobs\n", c->machine);
+	return EX_UNAVAILABLE;
+}
+
+int ctl_ask(struct ctl *c, const struct talk_question *q,
+	    struct talk_answer *ret)
+{
+	int err = talk_ask(c->talk, q, c->timeout_s, ret);
+	int code;
+
+	if (err < 0)
+		return ctl_unanswered(c, err);
+	if (ret->code == 0)
+		return 0;
+	fprintf(stderr, "edmctl: %s%s%s: %s\n", q->verb, q->job ? " " : "",
+		q->job ? q->job : "", ret->reason);
+	code = ret->code;
+	talk_answer_free(ret);
+	return code;
+}
+
+/* A verb whose answer is a word of its success. */
+static int command(struct ctl *c, const struct talk_question *q)
+{
+	struct talk_answer a;
+	int rc = ctl_ask(c, q, &a);
+
+	if (rc)
+		return rc;
+	if (c->json)
+		printf("{\"verb\": \"%s\", \"code\": 0}\n", q->verb);
+	else
+		printf("%s: %s\n", q->verb, a.reason);
+	talk_answer_free(&a);
+	return 0;
+}
+
+int ctl_command(struct ctl *c)
+{
+	return command(c, &(struct talk_question) { .verb = c->verb });
+}
+
+int ctl_start(struct ctl *c)
+{
+	return command(c, &(struct talk_question) {
+		.verb = "start", .job = c->arg,
+	});
+}
+
+int ctl_remove(struct ctl *c)
+{
+	return command(c, &(struct talk_question) {
+		.verb = "remove", .job = c->arg,
+	});
+}
+
+int ctl_retract(struct ctl *c)
+{
+	char *end;
+	double mm = strtod(c->arg, &end);
+
+	if (end == c->arg || *end || !(mm > 0)) {
+		fprintf(stderr, "edmctl: retract %s: not a length; a number of "
+			"mm above 0\n", c->arg);
+		return EX_USAGE;
+	}
+	return command(c, &(struct talk_question) {
+		.verb = "retract", .arg = mm,
+	});
+}
+
+/* -- Lists ---------------------------------------------------------------- */
+
+static const char *text_of(json_t *job, const char *key)
+{
+	const char *s = json_string_value(json_object_get(job, key));
+
+	return s ? s : "";
+}
+
+static double number_of(json_t *job, const char *key)
+{
+	return json_number_value(json_object_get(job, key));
+}
+
+static void when(char to[32], json_t *job, const char *key)
+{
+	int64_t us = json_integer_value(json_object_get(job, key));
+	time_t t = us / 1000000;
+	struct tm tm;
+
+	snprintf(to, 32, "-");
+	if (us > 0 && localtime_r(&t, &tm))
+		strftime(to, 32, "%Y-%m-%d %H:%M:%S", &tm);
+}
+
+static void print_queued(json_t *job)
+{
+	char at[32];
+
+	when(at, job, "submitted_us");
+	printf("%-14s %-24s %-8s %9.0f  %s%s\n", text_of(job, "job"),
+	       text_of(job, "name"), text_of(job, "state"),
+	       number_of(job, "lines"), at,
+	       json_is_true(json_object_get(job, "hold")) ?
+	       "  waits for start" : "");
+}
+
+static void print_ended(json_t *job)
+{
+	char at[32], took[32];
+
+	when(at, job, "ended_us");
+	ctl_duration(took, sizeof(took), number_of(job, "job_s"));
+	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n", text_of(job, "job"),
+	       text_of(job, "name"), text_of(job, "state"), at,
+	       number_of(job, "depth_mm"), took,
+	       *text_of(job, "reason") ? "  " : "", text_of(job, "reason"));
+}
+
+static void print_one(json_t *job)
+{
+	static const struct {
+		const char *label, *key;
+	} times[] = {
+		{ "submitted", "submitted_us" }, { "begun", "begun_us" },
+		{ "ended", "ended_us" },
+	};
+	char text[32];
+
+	printf("job        %s\nname       %s\nstate      %s\n",
+	       text_of(job, "job"), text_of(job, "name"),
+	       text_of(job, "state"));
+	if (*text_of(job, "reason"))
+		printf("reason     %s\n", text_of(job, "reason"));
+	printf("lines      %.0f\n", number_of(job, "lines"));
+	for (size_t i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
+		when(text, job, times[i].key);
+		printf("%-10s %s\n", times[i].label, text);
+	}
+	ctl_duration(text, sizeof(text), number_of(job, "job_s"));
+	printf("path       %.3f mm of %.3f mm\ndepth      %.3f mm\n"
+	       "time       %s\njumps      %.0f\nretracts   %.0f\n"
+	       "shorts     %.0f\nsha256     %s\n", number_of(job, "path_mm"),
+	       number_of(job, "length_mm"), number_of(job, "depth_mm"), text,
+	       number_of(job, "jumps"), number_of(job, "retracts"),
+	       number_of(job, "shorts"), text_of(job, "sha256"));
+}
+
+static int list(struct ctl *c, const struct talk_question *q,
+		const char *head, void (*print)(json_t *job))
+{
+	struct talk_answer a;
+	json_t *rows, *row;
+	size_t i;
+	int rc = ctl_ask(c, q, &a);
+
+	if (rc)
+		return rc;
+	rows = json_loads(a.body, 0, NULL);
+	if (c->json) {
+		printf("%s\n", a.body);
+	} else if (json_is_object(rows)) {
+		print(rows);
+	} else if (json_array_size(rows)) {
+		printf("%s\n", head);
+		json_array_foreach(rows, i, row)
+			print(row);
+	} else {
+		printf("none\n");
+	}
+	rc = rows ? 0 : EX_PROTOCOL;
+	json_decref(rows);
+	talk_answer_free(&a);
+	return rc;
+}
+
+int ctl_queue(struct ctl *c)
+{
+	return list(c, &(struct talk_question) { .verb = "queue" },
+		    "JOB            NAME                     STATE        LINES"
+		    "  SUBMITTED", print_queued);
+}
+
+int ctl_history(struct ctl *c)
+{
+	return list(c, &(struct talk_question) { .verb = "history" },
+		    "JOB            NAME                     STATE    ENDED    "
+		    "                   DEPTH  TIME", print_ended);
+}
+
+int ctl_show(struct ctl *c)
+{
+	return list(c, &(struct talk_question) {
+		.verb = "show", .job = c->arg,
+	}, "", print_one);
+}

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * ctl.h - edmctl: what its verbs share
+ *
+ * A verb is a row of the table in main.c and a function here.  Each returns
+ * what the program exits with.
+ */
+#ifndef CTL_CTL_H
+#define CTL_CTL_H
+
+#include "talk.h"
+
+#include <jansson.h>
+
+struct ctl {
+	/* Options. */
+	const char *machine, *url;
+	bool json;
+	double timeout_s;
+	const char *name, *id;
+	bool hold, wait, once;
+	/* The verb, and what follows it. */
+	const char *verb;
+	const char *arg;		/* NULL if there is none */
+	struct talk *talk;
+};
+
+int ctl_submit(struct ctl *c);
+int ctl_command(struct ctl *c);
+int ctl_start(struct ctl *c);
+int ctl_retract(struct ctl *c);
+int ctl_remove(struct ctl *c);
+int ctl_queue(struct ctl *c);
+int ctl_show(struct ctl *c);
+int ctl_history(struct ctl *c);
+int ctl_status(struct ctl *c);
+int ctl_watch(struct ctl *c);
+
+/** ctl_ask() - ask; what went wrong is printed, nothing else.
+ *  Return: what to exit with; 0: @ret is filled and to be freed. */
+int ctl_ask(struct ctl *c, const struct talk_question *q,
+	    struct talk_answer *ret);
+
+/** ctl_unanswered() - print that there is no service. Return: EX_*. */
+int ctl_unanswered(const struct ctl *c, int err);
+
+/** ctl_wait() - follow job @id to its end. */
+int ctl_wait(struct ctl *c, const char *id);
+
+/** ctl_duration() - "1 h 02 min 03 s" */
+void ctl_duration(char *to, size_t size, double s);
+
+/* -- line.c: progress in one line ----------------------------------------- */
+
+struct line {
+	bool tty;
+	bool drawn;			/* something to wipe or end */
+	double told_s;			/* when the last line was printed */
+	char state[3 * TALK_WORD_MAX];	/* of that line */
+};
+
+void line_init(struct line *l);
+/** line_status() - draw it; on no terminal once a second or on a change. */
+void line_status(struct line *l, const struct talk_status *s);
+/** line_bar() - @done of 1, with a text behind. */
+void line_bar(struct line *l, double done, const char *text);
+/** line_end() - the next print begins on a line of its own. */
+void line_end(struct line *l);
+
+#endif /* CTL_CTL_H */

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * line.c - progress in one line: redrawn on a terminal, repeated elsewhere
+ */
+#include "ctl.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#define BAR_CHARS	24
+#define BAR_LEAST	8
+#define LINE_MAX_CHARS	320
+#define PLAIN_EVERY_S	1.0
+
+void line_init(struct line *l)
+{
+	*l = (struct line) { .tty = isatty(STDOUT_FILENO) };
+}
+
+void ctl_duration(char *to, size_t size, double s)
+{
+	long n = s > 0 && s < 1e9 ? lround(s) : 0;
+
+	if (n >= 3600)
+		snprintf(to, size, "%ld h %02ld min %02ld s", n / 3600,
+			 n / 60 % 60, n % 60);
+	else if (n >= 60)
+		snprintf(to, size, "%ld min %02ld s", n / 60, n % 60);
+	else
+		snprintf(to, size, "%ld s", n);
+}
+
+/* A line that wraps could not be wiped with \r. */
+static int columns(void)
+{
+	struct winsize w;
+
+	if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &w) == 0 && w.ws_col > 20)
+		return w.ws_col - 1;
+	return 79;
+}
+
+/* As wide as @room, within reason. */
+static void bar(char ret[BAR_CHARS + 3], double done, int room)
+{
+	int wide = room < BAR_LEAST ? BAR_LEAST :
+		   room > BAR_CHARS ? BAR_CHARS : room;
+	int n = (int)(fmin(fmax(done, 0), 1) * wide);
+
+	ret[0] = '[';
+	memset(ret + 1, '=', (size_t)n);
+	memset(ret + 1 + n, ' ', (size_t)(wide - n));
+	if (n < wide)
+		ret[1 + n] = '>';
+	ret[wide + 1] = ']';
+	ret[wide + 2] = '\0';
+}
+
+static void draw(struct line *l, const char *text)
+{
+	if (l->tty)
+		printf("\r\033[K%.*s", columns(), text);
+	else
+		printf("%s\n", text);
+	l->drawn = l->tty;
+	fflush(stdout);
+}
+
+void line_bar(struct line *l, double done, const char *text)
+{
+	char b[BAR_CHARS + 3], whole[LINE_MAX_CHARS];
+	double now_s = talk_now_s();
+
+	if (!l->tty && now_s - l->told_s < PLAIN_EVERY_S)
+		return;
+	l->told_s = now_s;
+	bar(b, done, columns() - 12 - (int)strlen(text));
+	snprintf(whole, sizeof(whole), "%s %5.1f %%  %s", b, done * 100, text);
+	draw(l, whole);
+}
+
+static void describe(char *to, size_t size, const struct talk_status *s)
+{
+	char left[32], b[BAR_CHARS + 3], rest[LINE_MAX_CHARS - BAR_CHARS - 3];
+
+	if (strcmp(s->daemon, "ok") != 0) {
+		snprintf(to, size, "edmd is %s; job %s, %s, was at %.3f mm",
+			 s->daemon, *s->job ? s->job_name : "none",
+			 *s->job ? s->job_state : "-", s->place_mm);
+		return;
+	}
+	if (!*s->job) {
+		snprintf(to, size, "%s, no job, %d wait, fault %s", s->state,
+			 s->queue_len, s->fault);
+		return;
+	}
+	if (s->left_s >= 0)
+		ctl_duration(left, sizeof(left), s->left_s);
+	else
+		snprintf(left, sizeof(left), "?");
+	snprintf(rest, sizeof(rest), "%5.1f %% %-8s left %s, depth %.3f mm, "
+		 "gap %.0f V, feed %.2f mm/min, jumps %d, retracts %d",
+		 s->progress * 100, s->state, left, s->depth_mm, s->gap_v,
+		 s->feed_mm_s * 60, s->jumps, s->retracts);
+	bar(b, s->progress, columns() - 3 - (int)strlen(rest));
+	snprintf(to, size, "%s %s", b, rest);
+}
+
+/* The states of the gap come and go many times a second. */
+static void what_changes(char *to, size_t size, const struct talk_status *s)
+{
+	snprintf(to, size, "%s %s %s", s->daemon, s->job, s->job_state);
+}
+
+void line_status(struct line *l, const struct talk_status *s)
+{
+	char text[LINE_MAX_CHARS], state[sizeof(l->state)];
+	double now_s = talk_now_s();
+
+	what_changes(state, sizeof(state), s);
+	if (!l->tty && now_s - l->told_s < PLAIN_EVERY_S &&
+	    strcmp(state, l->state) == 0)
+		return;
+	l->told_s = now_s;
+	memcpy(l->state, state, sizeof(state));
+	describe(text, sizeof(text), s);
+	draw(l, text);
+}
+
+void line_end(struct line *l)
+{
+	if (l->drawn)
+		putchar('\n');
+	l->drawn = false;
+	fflush(stdout);
+}

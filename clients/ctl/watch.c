@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * watch.c - follow what edmd-jobs tells: status, watch, and submit --wait
+ */
+#include "ctl.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sysexits.h>
+
+#define ASK_S		1.0
+#define GIVE_UP_S	60.0		/* a restarted service is back by then */
+
+static void print_json(const struct talk_status *s)
+{
+	json_t *pos = json_array(), *j;
+	char *text;
+
+	for (int i = 0; i < TALK_NAXES; i++)
+		json_array_append_new(pos, json_real(s->pos_mm[i]));
+	j = json_pack("{s:I,s:s,s:s,s:s,s:s,s:s,s:s,s:s,s:i,s:i,s:f,s:f,s:f,"
+		      "s:o,s:f,s:f,s:f,s:i,s:i,s:i,s:f,s:f,s:i,s:i,s:i}",
+		      "utime", (json_int_t)s->utime, "machine", s->machine,
+		      "daemon", s->daemon, "state", s->state,
+		      "fault", s->fault, "job", s->job,
+		      "job_name", s->job_name, "job_state", s->job_state,
+		      "line", s->line, "lines", s->lines,
+		      "place_mm", s->place_mm, "length_mm", s->length_mm,
+		      "progress", s->progress, "pos_mm", pos,
+		      "gap_v", s->gap_v, "feed_mm_s", s->feed_mm_s,
+		      "depth_mm", s->depth_mm, "jumps", s->jumps,
+		      "retracts", s->retracts, "shorts", s->shorts,
+		      "job_s", s->job_s, "left_s", s->left_s,
+		      "queue_len", s->queue_len, "overruns", s->overruns,
+		      "wake_late_max_us", s->wake_late_max_us);
+	text = j ? json_dumps(j, JSON_COMPACT) : NULL;
+	if (text)
+		printf("%s\n", text);
+	fflush(stdout);
+	free(text);
+	json_decref(j);
+}
+
+static void print_text(const struct talk_status *s)
+{
+	char took[32], left[32] = "?";
+
+	ctl_duration(took, sizeof(took), s->job_s);
+	if (s->left_s >= 0)
+		ctl_duration(left, sizeof(left), s->left_s);
+	printf("machine    %s\nedmd       %s\nstate      %s\nfault      %s\n",
+	       s->machine, s->daemon, s->state, s->fault);
+	if (*s->job)
+		printf("job        %s, %s, %s\nline       %d of %d\n"
+		       "path       %.3f mm of %.3f mm, %.1f %%\n"
+		       "depth      %.3f mm\n"
+		       "sums       jumps %d, retracts %d, shorts %d\n"
+		       "time       %s, left %s\n", s->job, s->job_name,
+		       s->job_state, s->line, s->lines, s->place_mm,
+		       s->length_mm, s->progress * 100, s->depth_mm, s->jumps,
+		       s->retracts, s->shorts, took, left);
+	else
+		printf("job        none\n");
+	printf("gap        %.1f V\nfeed       %.3f mm/min\nposition  ",
+	       s->gap_v, s->feed_mm_s * 60);
+	for (int i = 0; i < TALK_NAXES; i++)
+		printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
+	printf(" (mm, degrees)\nqueue      %d\n"
+	       "timing     woken late by %d us at most, %d overruns\n",
+	       s->queue_len, s->wake_late_max_us, s->overruns);
+}
+
+/* The first status from now on; NULL: none within the timeout. */
+static const struct talk_status *first_status(struct ctl *c)
+{
+	double until_s = talk_now_s() + c->timeout_s;
+	uint64_t before, count;
+
+	talk_status(c->talk, &before);
+	do {
+		const struct talk_status *s;
+
+		talk_wait(c->talk, 50);
+		s = talk_status(c->talk, &count);
+		if (count != before)
+			return s;
+	} while (talk_now_s() < until_s && !talk_interrupted());
+	return NULL;
+}
+
+int ctl_status(struct ctl *c)
+{
+	const struct talk_status *s = first_status(c);
+
+	if (!s)
+		return ctl_unanswered(c, talk_interrupted() ? -EINTR :
+				      -ETIMEDOUT);
+	if (c->json)
+		print_json(s);
+	else
+		print_text(s);
+	return strcmp(s->daemon, "ok") == 0 ? 0 : EX_UNAVAILABLE;
+}
+
+static void goes_on(const struct ctl *c, const char *job)
+{
+	fprintf(stderr, "edmctl: no longer watching; %s%s goes on.  edmctl "
+		"--machine %s watch shows it, stop ends it\n",
+		*job ? "job " : "the machine", job, c->machine);
+}
+
+static int watch_once(struct ctl *c, struct line *l,
+		      const struct talk_status *s)
+{
+	if (c->json)
+		print_json(s);
+	else
+		line_status(l, s);
+	line_end(l);
+	return 0;
+}
+
+/* Return: 0 when interrupted, -ETIMEDOUT when no status came any more. */
+static int watch_on(struct ctl *c, struct line *l)
+{
+	double heard_s = talk_now_s();
+	uint64_t seen = 0, count;
+
+	while (!talk_interrupted()) {
+		const struct talk_status *s = talk_status(c->talk, &count);
+
+		if (count != seen && c->json)
+			print_json(s);
+		else if (count != seen)
+			line_status(l, s);
+		if (count != seen)
+			heard_s = talk_now_s();
+		seen = count;
+		if (talk_now_s() - heard_s > c->timeout_s)
+			return -ETIMEDOUT;
+		talk_wait(c->talk, 100);
+	}
+	return 0;
+}
+
+int ctl_watch(struct ctl *c)
+{
+	const struct talk_status *s = first_status(c);
+	struct line l;
+	uint64_t count;
+	int err;
+
+	if (!s)
+		return ctl_unanswered(c, talk_interrupted() ? -EINTR :
+				      -ETIMEDOUT);
+	line_init(&l);
+	if (c->once)
+		return watch_once(c, &l, s);
+	err = watch_on(c, &l);
+	line_end(&l);
+	if (err < 0)
+		return ctl_unanswered(c, err);
+	goes_on(c, talk_status(c->talk, &count)->job);
+	return 0;
+}
+
+/* -- submit --wait -------------------------------------------------------- */
+
+static bool is_over(const char *state)
+{
+	return strcmp(state, "done") == 0 || strcmp(state, "fault") == 0 ||
+	       strcmp(state, "stopped") == 0;
+}
+
+static int report(const struct ctl *c, const char *body, json_t *job)
+{
+	const char *name = "", *state = "", *reason = "";
+	double path = 0, length = 0, depth = 0, took_s = 0;
+	int jumps = 0, retracts = 0, shorts = 0;
+	char took[32];
+
+	/* What was never begun has no sums: null is left at 0. */
+	json_unpack(job, "{s:s,s:s,s:s}", "name", &name, "state", &state,
+		    "reason", &reason);
+	json_unpack(job, "{s:F,s:F,s:F,s:F,s:i,s:i,s:i}", "path_mm", &path,
+		    "length_mm", &length, "depth_mm", &depth, "job_s", &took_s,
+		    "jumps", &jumps, "retracts", &retracts, "shorts", &shorts);
+	ctl_duration(took, sizeof(took), took_s);
+	if (c->json)
+		printf("%s\n", body);
+	else
+		printf("job %s: %s%s%s\n"
+		       "path       %.3f mm of %.3f mm\ndepth      %.3f mm\n"
+		       "time       %s\njumps      %d\nretracts   %d\n"
+		       "shorts     %d\n", name, state, *reason ? ": " : "",
+		       reason, path, length, depth, took, jumps, retracts,
+		       shorts);
+	return strcmp(state, "done") == 0 ? 0 : 1;
+}
+
+/* Return: < 0 while it goes on, else what to exit with. */
+static int look(struct ctl *c, const char *id, struct line *l, double *heard_s)
+{
+	struct talk_question q = { .verb = "show", .job = id };
+	struct talk_answer a;
+	const char *state = "";
+	json_t *job;
+	int rc = -1;
+
+	if (talk_ask(c->talk, &q, c->timeout_s, &a) < 0)
+		return -1;
+	*heard_s = talk_now_s();
+	job = a.code ? NULL : json_loads(a.body, 0, NULL);
+	if (a.code) {
+		line_end(l);
+		fprintf(stderr, "edmctl: job %s: %s\n", id, a.reason);
+		rc = a.code;
+	} else if (json_unpack(job, "{s:s}", "state", &state) == 0 &&
+		   is_over(state)) {
+		line_end(l);
+		rc = report(c, a.body, job);
+	}
+	json_decref(job);
+	talk_answer_free(&a);
+	return rc;
+}
+
+static void draw(struct ctl *c, struct line *l, const char *id,
+		 uint64_t *seen)
+{
+	uint64_t count;
+	const struct talk_status *s = talk_status(c->talk, &count);
+
+	if (count == *seen || c->json)
+		return;
+	*seen = count;
+	if (strcmp(s->job, id) == 0 || strcmp(s->daemon, "ok") != 0)
+		line_status(l, s);
+}
+
+int ctl_wait(struct ctl *c, const char *id)
+{
+	struct line l;
+	double heard_s = talk_now_s(), asked_s = 0;
+	uint64_t seen = 0, events = 0;
+	int rc = -1;
+
+	line_init(&l);
+	while (rc < 0 && !talk_interrupted()) {
+		bool told = talk_events(c->talk) != events;
+
+		if (told || talk_now_s() - asked_s > ASK_S) {
+			events = talk_events(c->talk);
+			asked_s = talk_now_s();
+			rc = look(c, id, &l, &heard_s);
+		}
+		if (rc < 0 && talk_now_s() - heard_s > GIVE_UP_S) {
+			line_end(&l);
+			return ctl_unanswered(c, -ETIMEDOUT);
+		}
+		if (rc < 0)
+			talk_wait(c->talk, 100);
+		draw(c, &l, id, &seen);
+	}
+	line_end(&l);
+	if (rc >= 0)
+		return rc;
+	goes_on(c, id);
+	return EX_TEMPFAIL;
+}

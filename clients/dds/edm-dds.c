@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * edm-dds - tell the fleet how one machine is
+ *
+ * Reads edmd's shared memory and publishes an edm::MachineState at a fixed
+ * rate.  It only reads; nothing that comes over DDS reaches the machine.
+ */
+#include "topic.h"
+#include "watch.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+#include <time.h>
+#include <unistd.h>
+
+#define NS	1000000000LL
+#define ONCE_NS	(2 * NS)		/* --once waits this long for a reader */
+
+#define NAME_LETTERS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
+			"abcdefghijklmnopqrstuvwxyz0123456789_-"
+
+struct options {
+	const char *machine;
+	dds_domainid_t domain;
+	double hz;
+	bool once;
+};
+
+struct bridge {
+	struct watch watch;
+	dds_entity_t participant, writer;
+	sigset_t stops;
+	char host[sizeof(((edm_MachineState *)0)->host)];
+	char said[sizeof(((edm_MachineState *)0)->state)];
+};
+
+static void usage(FILE *f)
+{
+	fputs("usage: edm-dds [options]\n"
+	      "Publish a machine's state to the fleet over DDS.\n"
+	      "\n"
+	      "  --machine NAME  which edmd to read (edm)\n"
+	      "  --domain N      DDS domain, 0 to 230 (0)\n"
+	      "  --hz N          samples a second, 2 to 100 (10)\n"
+	      "  --once          publish one sample to whoever listens within\n"
+	      "                  2 s, then leave; 1 if nobody does\n"
+	      "  --help, --version\n"
+	      "\n"
+	      "CYCLONEDDS_URI chooses the network interface and peers;\n"
+	      "see docs/fleet.md.\n", f);
+}
+
+static int refuse(const char *option, const char *found, const char *wanted)
+{
+	fprintf(stderr, "edm-dds: error: %s %s; %s\n", option, found, wanted);
+	return EX_USAGE;
+}
+
+static int set_machine(struct options *o, const char *name)
+{
+	size_t n = strlen(name);
+
+	if (n == 0 || n >= SHM_NAME_MAX || strspn(name, NAME_LETTERS) != n)
+		return refuse("--machine", name,
+			      "1 to 31 of A-Z a-z 0-9 _ - are wanted");
+	o->machine = name;
+	return 0;
+}
+
+static int set_option(struct options *o, int c)
+{
+	switch (c) {
+	case 'm':
+		return set_machine(o, optarg);
+	case 'd':
+		if (topic_domain_parse(optarg, &o->domain) < 0)
+			return refuse("--domain", optarg,
+				      "a whole number from 0 to 230");
+		return 0;
+	case 'r':
+		if (topic_number_parse(optarg, TOPIC_HZ_MIN, 100, &o->hz) < 0)
+			return refuse("--hz", optarg, "a number, 2 to 100");
+		return 0;
+	case '1':
+		o->once = true;
+		return 0;
+	case 'h':
+		usage(stdout);
+		exit(EX_OK);
+	case 'V':
+		puts("edm-dds " EDM_VERSION);
+		exit(EX_OK);
+	default:
+		return EX_USAGE;
+	}
+}
+
+static int parse(struct options *o, int argc, char **argv)
+{
+	static const struct option longs[] = {
+		{ "machine", required_argument, NULL, 'm' },
+		{ "domain", required_argument, NULL, 'd' },
+		{ "hz", required_argument, NULL, 'r' },
+		{ "once", no_argument, NULL, '1' },
+		{ "help", no_argument, NULL, 'h' },
+		{ "version", no_argument, NULL, 'V' },
+		{ NULL, 0, NULL, 0 }
+	};
+	int c, r;
+
+	while ((c = getopt_long(argc, argv, "", longs, NULL)) != -1) {
+		r = set_option(o, c);
+		if (r)
+			return r;
+	}
+	if (optind < argc)
+		return refuse("argument", argv[optind], "options only");
+	return 0;
+}
+
+/* Blocked in every thread, so that the wait between samples takes them. */
+static void block_stops(sigset_t *stops)
+{
+	sigemptyset(stops);
+	sigaddset(stops, SIGINT);
+	sigaddset(stops, SIGTERM);
+	sigprocmask(SIG_BLOCK, stops, NULL);
+}
+
+static int bridge_open(struct bridge *b, const struct options *o)
+{
+	dds_entity_t topic;
+
+	watch_init(&b->watch, o->machine);
+	gethostname(b->host, sizeof(b->host) - 1);
+	block_stops(&b->stops);
+
+	b->participant = dds_create_participant(o->domain, NULL, NULL);
+	if (b->participant < 0)
+		return b->participant;
+	topic = topic_create(b->participant);
+	if (topic < 0)
+		return topic;
+	b->writer = topic_writer_create(b->participant, topic);
+	return b->writer < 0 ? b->writer : 0;
+}
+
+/* Deleting the writer disposes of its instance: readers see it leave. */
+static void bridge_close(struct bridge *b)
+{
+	if (b->participant > 0)
+		dds_delete(b->participant);
+	watch_fini(&b->watch);
+}
+
+static int64_t now_ns(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return t.tv_sec * NS + t.tv_nsec;
+}
+
+static bool is_missing(const char *state)
+{
+	return !strcmp(state, "absent") || !strcmp(state, "lost");
+}
+
+/* A line for every time the machine comes or goes, not for every state. */
+static void say(struct bridge *b, const edm_MachineState *m)
+{
+	const char *word = is_missing(m->state) ? m->state : "here";
+
+	if (!strcmp(b->said, word))
+		return;
+
+	snprintf(b->said, sizeof(b->said), "%s", word);
+	if (is_missing(word) && b->watch.open_error < 0 &&
+	    b->watch.open_error != -ENOENT)
+		fprintf(stderr, "edm-dds: machine %s is %s: %s\n", m->machine,
+			word, b->watch.open_error == -EPROTO ?
+			"its edmd is of another release" :
+			strerror(-b->watch.open_error));
+	else
+		fprintf(stderr, "edm-dds: machine %s is %s\n", m->machine,
+			word);
+}
+
+static int publish(struct bridge *b)
+{
+	edm_MachineState m;
+
+	watch_look(&b->watch, now_ns(), &m);
+	memcpy(m.host, b->host, sizeof(m.host));
+	say(b, &m);
+	return dds_write(b->writer, &m);
+}
+
+/* Wait until @until_ns; true if told to stop meanwhile. */
+static bool wait_until(const struct bridge *b, int64_t until_ns)
+{
+	int64_t left = until_ns - now_ns();
+	struct timespec t = { 0 };
+
+	if (left > 0) {
+		t.tv_sec = left / NS;
+		t.tv_nsec = left % NS;
+	}
+	return sigtimedwait(&b->stops, NULL, &t) > 0;
+}
+
+static int run(struct bridge *b, double hz)
+{
+	int64_t period = (int64_t)((double)NS / hz);
+	int64_t next = now_ns();
+	int r;
+
+	do {
+		r = publish(b);
+		/* A slow reader costs this sample, not the next. */
+		if (r < 0 && r != DDS_RETCODE_TIMEOUT)
+			return r;
+		next += period;
+		if (next < now_ns())
+			next = now_ns();
+	} while (!wait_until(b, next));
+	return 0;
+}
+
+static bool has_reader(const struct bridge *b)
+{
+	dds_publication_matched_status_t s;
+
+	return dds_get_publication_matched_status(b->writer, &s) == 0 &&
+	       s.current_count > 0;
+}
+
+/* Return: 0, 1 if nobody listened, or a negative DDS code. */
+static int run_once(struct bridge *b)
+{
+	int64_t until = now_ns() + ONCE_NS;
+	int r;
+
+	while (!has_reader(b) && now_ns() < until)
+		if (wait_until(b, now_ns() + NS / 50))
+			break;
+	if (!has_reader(b)) {
+		fputs("edm-dds: nobody listened within 2 s\n", stderr);
+		return 1;
+	}
+	r = publish(b);
+	return r < 0 ? r : dds_wait_for_acks(b->writer, DDS_SECS(2));
+}
+
+int main(int argc, char **argv)
+{
+	struct options o = { .machine = "edm", .hz = 10 };
+	struct bridge b = { 0 };
+	int r = parse(&o, argc, argv);
+
+	if (r)
+		return r;
+
+	r = bridge_open(&b, &o);
+	if (r == 0)
+		r = o.once ? run_once(&b) : run(&b, o.hz);
+	bridge_close(&b);
+	if (r < 0) {
+		fprintf(stderr, "edm-dds: error: DDS, domain %u: %s; "
+			"a free domain and a network interface are wanted "
+			"(CYCLONEDDS_URI)\n", o.domain, dds_strretcode(r));
+		return EX_UNAVAILABLE;
+	}
+	return r;
+}

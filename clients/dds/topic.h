@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * topic.h - the fleet's one DDS topic and its quality of service
+ *
+ * What writer and reader have to agree on, in one place; docs/fleet.md is for
+ * those who write another reader.
+ *
+ * Threads: startup only.
+ */
+#ifndef DDS_TOPIC_H
+#define DDS_TOPIC_H
+
+#include "dds/dds.h"
+#include "edm.h"
+
+#define TOPIC_NAME	"EDM_MachineState"
+
+/*
+ * A writer promises a sample each second and gives a sign of life with each;
+ * one that is silent for two seconds is gone.  edm-dds sends at least 2 Hz.
+ */
+#define TOPIC_DEADLINE	DDS_SECS(1)
+#define TOPIC_LEASE	DDS_SECS(2)
+#define TOPIC_HZ_MIN	2.0
+
+/** topic_create() - Return: the topic, or a negative DDS code. */
+dds_entity_t topic_create(dds_entity_t participant);
+
+/** topic_writer_create() - Return: the writer, or a negative DDS code. */
+dds_entity_t topic_writer_create(dds_entity_t participant, dds_entity_t topic);
+
+/** topic_reader_create() - Return: the reader, or a negative DDS code. */
+dds_entity_t topic_reader_create(dds_entity_t participant, dds_entity_t topic);
+
+/**
+ * topic_domain_parse() - a domain number from the command line.
+ *
+ * Return: 0, or -EINVAL if @word is no number from 0 to 230.
+ */
+int topic_domain_parse(const char *word, dds_domainid_t *ret);
+
+/** topic_number_parse() - a number from @min to @max, or -EINVAL. */
+int topic_number_parse(const char *word, double min, double max, double *ret);
+
+#endif /* DDS_TOPIC_H */

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* watch.c - one machine, seen through its shared memory */
+#include "watch.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A cycle that stands this long is as good as dead, whoever holds its pid. */
+#define STAND_NS	1000000000LL
+
+void watch_init(struct watch *w, const char *machine)
+{
+	*w = (struct watch) { .open_error = -ENOENT };
+	snprintf(w->machine, sizeof(w->machine), "%s", machine);
+}
+
+void watch_fini(struct watch *w)
+{
+	shm_close(w->status, sizeof(*w->status));
+	w->status = NULL;
+}
+
+/*
+ * A new edmd may have made a new object under the old name, so a mapping
+ * whose writer is dead is opened again at every look.  An edmd that stops in
+ * order removes its object: the machine is absent then, not lost.
+ */
+static void reopen(struct watch *w)
+{
+	watch_fini(w);
+	w->open_error = shm_status_open(&w->status, w->machine);
+	if (w->open_error < 0)
+		w->status = NULL;
+	if (w->open_error == -ENOENT)
+		w->heard = false;
+}
+
+/* Take the newest snapshot; a moving cycle is the sign of life. */
+static void refresh(struct watch *w, int64_t now_ns)
+{
+	uint32_t instance = w->status->head.instance;
+	struct shm_snapshot s;
+
+	if (!shm_snapshot(w->status, &s))
+		return;
+
+	if (!w->heard || instance != w->instance || s.cycle != w->last.cycle)
+		w->moved_ns = now_ns;
+	w->instance = instance;
+	w->last = s;
+	w->heard = true;
+}
+
+static const char *look(struct watch *w, int64_t now_ns)
+{
+	bool alive = w->status && shm_alive(w->status);
+
+	if (!alive) {
+		reopen(w);
+		alive = w->status && shm_alive(w->status);
+	}
+	if (w->status)
+		refresh(w, now_ns);
+	if (!w->heard)
+		return "absent";
+	if (!alive || now_ns - w->moved_ns > STAND_NS)
+		return "lost";
+	return shm_state_name(w->last.state);
+}
+
+static edm_GeneratorState generator(const struct shm_snapshot *s)
+{
+	if (s->state == SHM_FAULT)
+		return edm_GENERATOR_ERROR;
+	if (s->power)
+		return edm_GENERATOR_ACTIVE_HIGH_VOLTAGE;
+	return edm_GENERATOR_READY;
+}
+
+static double progress(const struct shm_snapshot *s)
+{
+	double p = s->length_mm > 0 ? s->far_mm / s->length_mm : 0;
+
+	if (!(p > 0))
+		return 0;
+	return p < 1 ? p : 1;
+}
+
+static void fill_place(const struct shm_snapshot *s, edm_MachineState *m)
+{
+	m->program = s->program;
+	m->line = s->line;
+	m->progress = progress(s);
+	m->place_mm = s->place_mm;
+	m->length_mm = s->length_mm;
+	m->depth_mm = s->depth_mm;
+	m->feed_mm_s = s->feed_mm_s;
+	m->gap_v = s->gap_v;
+	for (int i = 0; i < SHM_NAXES; i++)
+		m->position_mm[i] = s->pos[i] * s->pulse_mm[i];
+}
+
+static void fill_sums(const struct shm_snapshot *s, edm_MachineState *m)
+{
+	m->jumps = s->jumps;
+	m->retracts = s->retracts;
+	m->shorts = s->shorts;
+	m->overruns = s->overruns;
+	m->wake_late_max_us = (double)s->wake_late_max_ns * 1e-3;
+}
+
+void watch_look(struct watch *w, int64_t now_ns, edm_MachineState *ret)
+{
+	const char *state = look(w, now_ns);
+	const struct shm_snapshot *s = &w->last;
+	bool here = strcmp(state, "absent") != 0 && strcmp(state, "lost") != 0;
+
+	*ret = (edm_MachineState) { 0 };
+	snprintf(ret->machine, sizeof(ret->machine), "%s", w->machine);
+	snprintf(ret->state, sizeof(ret->state), "%s", state);
+	snprintf(ret->fault, sizeof(ret->fault), "%s",
+		 w->heard && s->fault ? shm_fault_name(s->fault) : "none");
+	if (!w->heard)
+		return;
+
+	ret->utime = s->time_ns / 1000;
+	ret->cycle = s->cycle;
+	fill_place(s, ret);
+	fill_sums(s, ret);
+	/* Of a generator that nobody drives nothing can be said. */
+	if (here) {
+		ret->generator_state = generator(s);
+		ret->is_on = s->power;
+	}
+}

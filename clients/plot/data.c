@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* data.c - data blocks of the panels over time */
+#include "script.h"
+
+#include <math.h>
+
+/* Hulls over the time, where jumps are many. */
+#define HULLS		150
+
+/* Marks closer than this share of the time are one mark. */
+#define MARK_SPACE	(1.0 / 300)
+
+static double bin_time(const struct thin *t, size_t i)
+{
+	const struct thin_survey *s = &t->survey;
+
+	return s->t_min + (s->t_max - s->t_min) * ((double)i + 0.5) /
+	       (double)t->nbins;
+}
+
+/* time min max mean; a blank line where there is nothing. */
+static void write_bins(FILE *f, const struct thin *t, const char *name,
+		       const struct thin_bin *bin, double unit_s)
+{
+	bool open = false;
+
+	fprintf(f, "$%s << EOD\n", name);
+	for (size_t i = 0; i < t->nbins; i++) {
+		if (bin[i].n)
+			fprintf(f, "%.9g %.9g %.9g %.9g\n",
+				bin_time(t, i) / unit_s, bin[i].min,
+				bin[i].max, bin[i].sum / (double)bin[i].n);
+		else if (open)
+			fputc('\n', f);
+		open = bin[i].n > 0;
+	}
+	fputs("EOD\n", f);
+}
+
+/*
+ * All that was swept: time min max.  Many jumps are drawn as the hull of
+ * some strips each, or strips with and without one would alternate.
+ */
+static void write_swept_band(FILE *f, const struct thin *t, double unit_s)
+{
+	size_t group = t->survey.jumps.n > SCRIPT_FEW ?
+		       t->nbins / HULLS + 1 : 1;
+
+	fputs("$place << EOD\n", f);
+	for (size_t i = 0; i < t->nbins; i += group) {
+		struct thin_bin b = { 0 };
+
+		for (size_t j = i; j < i + group && j < t->nbins; j++)
+			if (t->place[j].n) {
+				b.min = b.n ? fmin(b.min, t->place[j].min) :
+					t->place[j].min;
+				b.max = b.n ? fmax(b.max, t->place[j].max) :
+					t->place[j].max;
+				b.n++;
+			}
+		if (b.n)
+			fprintf(f, "%.9g %.9g %.9g\n",
+				bin_time(t, i + group / 2) / unit_s, b.min,
+				b.max);
+	}
+	fputs("EOD\n", f);
+}
+
+static void write_far(FILE *f, const struct thin *t, double unit_s)
+{
+	fputs("$far << EOD\n", f);
+	for (size_t i = 0; i < t->nbins; i++)
+		if (t->place[i].n)
+			fprintf(f, "%.9g %.9g\n", bin_time(t, i) / unit_s,
+				t->far_mm[i]);
+	fputs("EOD\n", f);
+}
+
+static void write_events(FILE *f, const struct thin *t, const char *name,
+			 const struct thin_events *e, double unit_s)
+{
+	double space = (t->survey.t_max - t->survey.t_min) * MARK_SPACE;
+	double last = -1e300;
+
+	fprintf(f, "$%s << EOD\n", name);
+	for (size_t i = 0; i < e->n; i++) {
+		if (e->at[i].t_s - last < space)
+			continue;
+		last = e->at[i].t_s;
+		fprintf(f, "%.9g %.9g\n", last / unit_s, e->at[i].s_mm);
+	}
+	fputs("EOD\n", f);
+}
+
+static void write_share(FILE *f, const struct thin *t, size_t c, double time)
+{
+	unsigned long all = 0, sum = 0;
+
+	for (int i = 0; i < CSV_NSTATES; i++)
+		all += t->share[c][i];
+	if (all == 0)
+		return;
+	fprintf(f, "%.9g 0", time);
+	for (int i = 0; i < CSV_NSTATES; i++) {
+		sum += t->share[c][i];
+		fprintf(f, " %.4f", 100 * (double)sum / (double)all);
+	}
+	fputc('\n', f);
+}
+
+/* Stacked: time, then the tops of all states, at each column's two edges. */
+static void write_shares(FILE *f, const struct thin *t, double unit_s)
+{
+	const struct thin_survey *s = &t->survey;
+	double width = (s->t_max - s->t_min) / THIN_COLUMNS;
+
+	fputs("$share << EOD\n", f);
+	for (size_t c = 0; c < THIN_COLUMNS; c++) {
+		double from = s->t_min + (double)c * width;
+
+		write_share(f, t, c, from / unit_s);
+		write_share(f, t, c, (from + width) / unit_s);
+	}
+	fputs("EOD\n", f);
+}
+
+/* A strip as two points, the one nearer to where the line stands first. */
+static double write_swept(FILE *f, double time_s, const struct thin_bin *b,
+			  double at)
+{
+	bool up = at - b->min < b->max - at;
+	double first = up ? b->min : b->max, last = up ? b->max : b->min;
+
+	fprintf(f, "%.9g %.9g\n%.9g %.9g\n", time_s, first, time_s, last);
+	return last;
+}
+
+/* The pieces of one state, each begun where the piece before it ended. */
+static void write_zoom(FILE *f, const struct thin *t, enum csv_state state)
+{
+	const struct thin_survey *s = &t->survey;
+	double width = (s->zoom_to_s - s->zoom_from_s) / (double)t->nzoom;
+	double at = t->zoom[0].place.min, before_s = s->zoom_from_s;
+	bool open = false;
+
+	fprintf(f, "$zoom%d << EOD\n", (int)state);
+	for (size_t i = 0; i < t->nzoom; i++) {
+		const struct thin_zoom *z = &t->zoom[i];
+		double time_s = s->zoom_from_s + ((double)i + 0.5) * width;
+		bool mine = z->state == state;
+
+		if (z->place.n == 0)
+			continue;
+		if (mine && !open && i)
+			fprintf(f, "\n%.9g %.9g\n", before_s, at);
+		if (mine)
+			at = write_swept(f, time_s, &z->place, at);
+		else
+			at = z->place.sum / (double)z->place.n;
+		open = mine;
+		before_s = time_s;
+	}
+	fputs("EOD\n", f);
+}
+
+void data_write(FILE *f, const struct thin *t, double unit_s)
+{
+	write_swept_band(f, t, unit_s);
+	write_bins(f, t, "gap", t->gap, unit_s);
+	write_bins(f, t, "feed", t->feed, unit_s);
+	write_far(f, t, unit_s);
+	write_events(f, t, "jumps", &t->survey.jumps, unit_s);
+	write_events(f, t, "retracts", &t->survey.retracts, unit_s);
+	write_shares(f, t, unit_s);
+	for (int i = 0; t->nzoom && i < CSV_NSTATES; i++)
+		write_zoom(f, t, (enum csv_state)i);
+}

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* plot.c - a picture of a job: read, thin, let gnuplot draw */
+#include "plot.h"
+#include "script.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+static bool ends_with(const char *s, const char *ending)
+{
+	size_t n = strlen(s), m = strlen(ending);
+
+	return n > m && !strcasecmp(s + n - m, ending);
+}
+
+/*
+ * gnuplot reads the script from @in and writes the picture to @out, so no
+ * file name has to be quoted for it.  Return: its exit code or -errno.
+ */
+static int run_gnuplot(char *const argv[], int in, int out)
+{
+	posix_spawn_file_actions_t files;
+	pid_t pid;
+	int err, status;
+
+	posix_spawn_file_actions_init(&files);
+	if (in >= 0)
+		posix_spawn_file_actions_adddup2(&files, in, STDIN_FILENO);
+	if (out >= 0)
+		posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
+	err = posix_spawnp(&pid, "gnuplot", &files, NULL, argv, environ);
+	posix_spawn_file_actions_destroy(&files);
+	if (err)
+		return -err;
+	while (waitpid(pid, &status, 0) < 0)
+		if (errno != EINTR)
+			return -errno;
+	return WIFEXITED(status) ? WEXITSTATUS(status) : -EIO;
+}
+
+static int check_gnuplot(const char *program)
+{
+	char *argv[] = { "gnuplot", "--version", NULL };
+	int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
+	int r = run_gnuplot(argv, -1, null);
+
+	if (null >= 0)
+		close(null);
+	if (r == 0)
+		return 0;
+	fprintf(stderr, "%s: error: plot: gnuplot does not start; "
+		"the Debian package gnuplot-nox is wanted\n", program);
+	return -ENOPKG;
+}
+
+int plot_check(const char *program, const char *output)
+{
+	if (!ends_with(output, ".png") && !ends_with(output, ".svg")) {
+		fprintf(stderr, "%s: error: plot: %s; a name ending in .png "
+			"or .svg is wanted\n", program, output);
+		return -EINVAL;
+	}
+	return check_gnuplot(program);
+}
+
+/* The script in memory, ready to be read.  Return: descriptor or -errno. */
+static int script_fd(const struct thin *t, const struct plot_options *o)
+{
+	int fd = memfd_create("edm-plot", MFD_CLOEXEC);
+	FILE *f = fd < 0 ? NULL : fdopen(dup(fd), "w");
+	int err;
+
+	if (!f) {
+		err = -errno;
+		if (fd >= 0)
+			close(fd);
+		return err;
+	}
+	script_write(f, t, o, ends_with(o->output, ".svg"));
+	err = ferror(f) ? -EIO : 0;
+	if (fclose(f) != 0 && err == 0)
+		err = -errno;
+	if (err < 0) {
+		close(fd);
+		return err;
+	}
+	lseek(fd, 0, SEEK_SET);
+	return fd;
+}
+
+static int draw(const struct thin *t, const struct plot_options *o, int out)
+{
+	char *argv[] = { "gnuplot", "-d", "-", NULL };
+	int in = script_fd(t, o);
+	int r;
+
+	if (in < 0)
+		return in;
+	r = run_gnuplot(argv, in, out);
+	close(in);
+	if (r > 0)
+		fprintf(stderr, "%s: error: plot: gnuplot ended with %d\n",
+			o->program, r);
+	return r > 0 ? -EIO : r;
+}
+
+static int draw_to_file(const struct thin *t, const struct plot_options *o)
+{
+	int out = open(o->output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC,
+		       0666);
+	int err;
+
+	if (out < 0) {
+		err = -errno;
+		fprintf(stderr, "%s: error: plot: %s: %s; a folder that may "
+			"be written is wanted\n", o->program, o->output,
+			strerror(-err));
+		return err;
+	}
+	err = draw(t, o, out);
+	if (close(out) < 0 && err == 0)
+		err = -errno;
+	/* Half a picture is none. */
+	if (err < 0)
+		unlink(o->output);
+	return err;
+}
+
+int plot_trace(const struct plot_options *o)
+{
+	struct csv csv = { 0 };
+	struct thin *t = NULL;
+	int err = plot_check(o->program, o->output);
+
+	if (err < 0)
+		return err;
+	err = csv_open(&csv, o->program, o->trace);
+	if (err == 0)
+		err = thin_create(&t, &csv);
+	csv_close(&csv);
+	if (err == 0)
+		err = draw_to_file(t, o);
+	thin_destroy(t);
+	return err;
+}

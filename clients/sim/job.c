@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * job.c - read and compile the job's text
+ */
+#include "sim.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sysexits.h>
+#include <time.h>
+
+#define JOB_BYTES_MAX	(1u << 30)
+
+struct text {
+	char *at;
+	size_t n;
+};
+
+static int refuse_file(const char *path, const char *why)
+{
+	fprintf(stderr, "edmsim: %s: %s; a file of NC code, or - for stdin\n",
+		path, why);
+	return EX_NOINPUT;
+}
+
+static int read_all(FILE *f, const char *path, struct text *t)
+{
+	size_t room = 0;
+
+	for (;;) {
+		size_t n;
+
+		if (t->n == room) {
+			char *more = realloc(t->at, room = room ? 2 * room
+								: 65536);
+
+			if (!more)
+				return EX_OSERR;
+			t->at = more;
+		}
+		n = fread(t->at + t->n, 1, room - t->n, f);
+		if (n == 0)
+			break;
+		t->n += n;
+		if (t->n > JOB_BYTES_MAX)
+			return refuse_file(path, "more than 1 GiB");
+	}
+	return ferror(f) ? refuse_file(path, strerror(errno)) : 0;
+}
+
+static int text_load(const char *path, struct text *t)
+{
+	struct stat st;
+	FILE *f;
+	int r;
+
+	if (strcmp(path, "-") == 0)
+		return read_all(stdin, path, t);
+	f = fopen(path, "rb");
+	if (!f)
+		return refuse_file(path, strerror(errno));
+	if (fstat(fileno(f), &st) == 0 && S_ISDIR(st.st_mode))
+		r = refuse_file(path, "is a directory");
+	else
+		r = read_all(f, path, t);
+	fclose(f);
+	return r;
+}
+
+static void say_refusal(const char *path, const struct interp_diag *d)
+{
+	fprintf(stderr, "%s:%u:%u: error: %s; %s\n", path, d->line, d->column,
+		d->found, d->wanted);
+}
+
+static int lay_out(struct sim_job *job, struct interp_build *b,
+		   const char *path)
+{
+	const struct interp_build_about about = { .lines = job->lines,
+						  .name = path };
+	const size_t bytes = interp_build_bytes(b);
+
+	job->block = malloc(bytes);
+	if (!job->block)
+		return EX_OSERR;
+	interp_build_write(b, &about, job->block);
+	return interp_program_map(&job->program, job->block, bytes) ?
+	       EX_SOFTWARE : 0;
+}
+
+static double now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+static int compile(struct sim_job *job, const struct sim_options *o,
+		   const struct machine_config *c, const struct text *t)
+{
+	struct interp_build_options bo = {
+		.machine = &c->axes,
+		.strategy = (enum interp_strategy)c->strategy,
+	};
+	struct interp_nc_options no = {
+		.machine = &c->axes,
+		.feed_mm_s = c->feed_default_mm_min / 60,
+	};
+	struct interp_nc_result done = { 0 };
+	struct interp_diag diag = { 0 };
+	const double from_s = now_s();
+	struct interp_build *b;
+	int r;
+
+	memcpy(bo.start_mm, c->start_mm, sizeof(bo.start_mm));
+	memcpy(no.work_offset_mm, c->work_offset_mm, sizeof(no.work_offset_mm));
+	b = interp_build_create(&bo);
+	if (!b)
+		return EX_OSERR;
+	r = interp_nc_compile(t->at, t->n, &no, b, &done, &diag);
+	job->lines = done.lines;
+	job->compile_lines_s = done.lines / (now_s() - from_s);
+	if (r == -EINVAL)
+		say_refusal(o->job, &diag);
+	r = r == 0 ? lay_out(job, b, o->job) :
+	    r == -EINVAL ? EX_DATAERR : EX_OSERR;
+	interp_build_destroy(b);
+	return r;
+}
+
+int job_load(struct sim_job *job, const struct sim_options *o,
+	     const struct machine_config *c)
+{
+	struct text t = { 0 };
+	int r = text_load(o->job, &t);
+
+	if (r == 0)
+		r = compile(job, o, c, &t);
+	if (r == EX_OSERR)
+		fprintf(stderr, "edmsim: %s: out of memory\n", o->job);
+	free(t.at);
+	return r;
+}
+
+void job_unload(struct sim_job *job)
+{
+	free(job->block);
+}
+
+void job_describe(const struct sim_job *job, FILE *f)
+{
+	const struct interp_program_head *h = job->program.head;
+	const struct interp_seg *s = job->program.segs;
+	double cut_mm = 0, free_mm = 0, free_s = 0;
+	uint32_t motions = 0;
+
+	for (uint32_t i = 0; i < h->nsegs; i++) {
+		const bool rapid = s[i].flags & INTERP_SEG_RAPID;
+
+		motions += s[i].kind < INTERP_BEGIN;
+		cut_mm += rapid ? 0 : s[i].length_mm;
+		free_mm += rapid ? s[i].length_mm : 0;
+		free_s += rapid ? s[i].length_mm / s[i].feed_mm_s : 0;
+	}
+	fprintf(f, "lines      %u\nsegments   %u\nstrategy   %s\n", h->lines,
+		motions,
+		interp_strategy_name((enum interp_strategy)h->strategy));
+	fprintf(f, "path       %.3f mm: %.3f mm cut, %.3f mm positioned in "
+		"%.1f s\n", h->length_mm, cut_mm, free_mm, free_s);
+}

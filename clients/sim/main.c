@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * main.c - edmsim: options, and what to do with them
+ */
+#include "plot.h"
+#include "sim.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+#include <unistd.h>
+
+static const char usage[] =
+"Usage: edmsim [options] JOB\n"
+"Runs a job in virtual time: the daemon's own cycle on a simulated machine.\n"
+"JOB is NC code (.ngc .nc .iso), - for stdin.\n"
+"\n"
+"  --machine FILE       machine file; without: eight axes, +-200 mm\n"
+"  --dialect NAME       generic\n"
+"  --strategy NAME      simultaneous, point-by-point (machine file's)\n"
+"  --dry-run            no gap: walk at the programmed feed\n"
+"  --there-and-back     with --dry-run: to the end, back, to the end again\n"
+"  --period-us N        cycle period (machine file's, 1000)\n"
+"  --seed N             of every random process (machine file's, 1)\n"
+"  --speed X            pace at X times real time; 0 as fast as possible (0)\n"
+"  --limit-s S          stop after S virtual seconds\n"
+"  --pulses FILE        CSV of every lattice point passed\n"
+"  --trace FILE         CSV of every cycle\n"
+"  --report FILE        JSON report; - for stdout\n"
+"  --plot FILE          picture, PNG or SVG by the name\n"
+"  --check              read and compile only; print what it would do\n"
+"  --quiet              no progress, no summary\n"
+"  --print-config       the machine file in force, and exit\n"
+"  --document-config    every key of a machine file as Markdown, and exit\n"
+"  --help, --version\n"
+"\n"
+"Exit: 0 done, 1 ended by a fault or the limit, 64 usage, 65 bad job,\n"
+"66 no such file, 73 cannot create, 78 bad machine file.\n";
+
+enum {
+	OPT_MACHINE = 256, OPT_DIALECT, OPT_STRATEGY, OPT_TOLERANCE,
+	OPT_PERPENDICULAR, OPT_DRY_RUN, OPT_THERE, OPT_PERIOD, OPT_SEED,
+	OPT_SPEED, OPT_LIMIT, OPT_PULSES, OPT_TRACE, OPT_REPORT, OPT_PLOT,
+	OPT_CHECK, OPT_QUIET, OPT_PRINT, OPT_DOCUMENT, OPT_HELP, OPT_VERSION,
+};
+
+static const struct option options[] = {
+	{ "machine", required_argument, NULL, OPT_MACHINE },
+	{ "dialect", required_argument, NULL, OPT_DIALECT },
+	{ "strategy", required_argument, NULL, OPT_STRATEGY },
+	{ "tolerance", required_argument, NULL, OPT_TOLERANCE },
+	{ "perpendicular", no_argument, NULL, OPT_PERPENDICULAR },
+	{ "dry-run", no_argument, NULL, OPT_DRY_RUN },
+	{ "there-and-back", no_argument, NULL, OPT_THERE },
+	{ "period-us", required_argument, NULL, OPT_PERIOD },
+	{ "seed", required_argument, NULL, OPT_SEED },
+	{ "speed", required_argument, NULL, OPT_SPEED },
+	{ "limit-s", required_argument, NULL, OPT_LIMIT },
+	{ "pulses", required_argument, NULL, OPT_PULSES },
+	{ "trace", required_argument, NULL, OPT_TRACE },
+	{ "report", required_argument, NULL, OPT_REPORT },
+	{ "plot", required_argument, NULL, OPT_PLOT },
+	{ "check", no_argument, NULL, OPT_CHECK },
+	{ "quiet", no_argument, NULL, OPT_QUIET },
+	{ "print-config", no_argument, NULL, OPT_PRINT },
+	{ "document-config", no_argument, NULL, OPT_DOCUMENT },
+	{ "help", no_argument, NULL, OPT_HELP },
+	{ "version", no_argument, NULL, OPT_VERSION },
+	{ 0 },
+};
+
+static void refuse(const char *what, const char *value, const char *wanted)
+{
+	fprintf(stderr, "edmsim: %s %s; %s\n", what, value, wanted);
+	exit(EX_USAGE);
+}
+
+static double number(const char *name, const char *s, double min, double max)
+{
+	char *end, wanted[80];
+	double v;
+
+	errno = 0;
+	v = strtod(s, &end);
+	if (end != s && *end == '\0' && errno == 0 && v >= min && v <= max)
+		return v;
+	snprintf(wanted, sizeof(wanted), "a number from %g to %g", min, max);
+	refuse(name, s, wanted);
+	return 0;
+}
+
+static uint64_t whole(const char *name, const char *s)
+{
+	char *end;
+	uint64_t v;
+
+	errno = 0;
+	v = strtoull(s, &end, 10);
+	if (s[0] < '0' || s[0] > '9' || *end != '\0' || errno != 0)
+		refuse(name, s, "a whole number from 0 to 2^64 - 1");
+	return v;
+}
+
+/* Words, then flags, then numbers; false if none of them. */
+static bool take_word(struct sim_options *o, int opt)
+{
+	switch (opt) {
+	case OPT_MACHINE:
+		o->machine_file = optarg;
+		return true;
+	case OPT_STRATEGY:
+		o->strategy = optarg;
+		return true;
+	case OPT_PULSES:
+		o->pulses = optarg;
+		return true;
+	case OPT_TRACE:
+		o->trace = optarg;
+		return true;
+	case OPT_REPORT:
+		o->report = optarg;
+		return true;
+	case OPT_PLOT:
+		o->plot = optarg;
+		return true;
+	case OPT_DIALECT:
+		if (strcmp(optarg, "generic") != 0)
+			refuse("--dialect", optarg, "generic");
+		return true;
+	default:
+		return false;
+	}
+}
+
+static bool take_flag(struct sim_options *o, int opt)
+{
+	switch (opt) {
+	case OPT_DRY_RUN:
+		o->dry_run = true;
+		return true;
+	case OPT_THERE:
+		o->there_and_back = true;
+		return true;
+	case OPT_CHECK:
+		o->check = true;
+		return true;
+	case OPT_QUIET:
+		o->quiet = true;
+		return true;
+	default:
+		return false;
+	}
+}
+
+static bool take_number(struct sim_options *o, int opt)
+{
+	switch (opt) {
+	case OPT_PERIOD:
+		o->period_us = number("--period-us", optarg, 20, 20000);
+		return true;
+	case OPT_SEED:
+		o->seed = whole("--seed", optarg);
+		o->seed_given = true;
+		return true;
+	case OPT_SPEED:
+		o->speed = number("--speed", optarg, 0, 1e6);
+		return true;
+	case OPT_LIMIT:
+		o->limit_s = number("--limit-s", optarg, 1e-6, 1e9);
+		return true;
+	default:
+		return false;
+	}
+}
+
+/* Options that print and leave. */
+static bool take_print(const struct sim_options *o, int opt, bool *print)
+{
+	(void)o;
+	switch (opt) {
+	case OPT_PRINT:
+		*print = true;
+		return true;
+	case OPT_DOCUMENT:
+		config_document(stdout);
+		exit(0);
+	case OPT_HELP:
+		fputs(usage, stdout);
+		exit(0);
+	case OPT_VERSION:
+		puts("edmsim " EDM_VERSION);
+		exit(0);
+	case OPT_TOLERANCE:
+	case OPT_PERPENDICULAR:
+		refuse(opt == OPT_TOLERANCE ? "--tolerance" : "--perpendicular",
+		       "has no use here",
+		       "it belongs to strategies this version does not have");
+		return true;
+	default:
+		return false;
+	}
+}
+
+static void parse(struct sim_options *o, int argc, char **argv, bool *print)
+{
+	int opt;
+
+	while ((opt = getopt_long(argc, argv, "", options, NULL)) != -1) {
+		if (!take_print(o, opt, print) && !take_word(o, opt) &&
+		    !take_flag(o, opt) && !take_number(o, opt))
+			exit(EX_USAGE);
+	}
+	if (*print)
+		return;
+	if (optind + 1 != argc) {
+		fputs(usage, stderr);
+		exit(EX_USAGE);
+	}
+	o->job = argv[optind];
+	if (o->there_and_back && !o->dry_run)
+		refuse("--there-and-back", "alone", "--dry-run beside it");
+}
+
+static int configure(struct machine_config *c, const struct sim_options *o)
+{
+	struct interp_diag d = { 0 };
+	int r = 0;
+
+	config_defaults(c);
+	if (o->machine_file)
+		r = config_read(c, o->machine_file, &d);
+	if (r == -EINVAL) {
+		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", o->machine_file,
+			d.line, d.column, d.found, d.wanted);
+		return EX_CONFIG;
+	}
+	if (r < 0) {
+		fprintf(stderr, "edmsim: %s: %s; a machine file\n",
+			o->machine_file, strerror(-r));
+		return EX_NOINPUT;
+	}
+	if (o->period_us > 0)
+		c->period_us = o->period_us;
+	if (!o->strategy)
+		return 0;
+	r = interp_strategy_parse(o->strategy);
+	if (r < 0)
+		refuse("--strategy", o->strategy,
+		       "simultaneous or point-by-point");
+	c->strategy = r;
+	return 0;
+}
+
+static int draw(const struct sim_run *r)
+{
+	const struct plot_options p = {
+		.program = "edmsim",
+		.trace = r->o->trace ? r->o->trace : r->trace_path,
+		.output = r->o->plot,
+		.title = r->o->job,
+		.servo_v = r->config->gap.servo_v,
+		.short_v = r->config->gap.short_v,
+		.open_v = r->config->gap.open_v,
+	};
+	const int e = plot_trace(&p) < 0 ? EX_CANTCREAT : 0;
+
+	if (r->trace_path)
+		unlink(r->trace_path);
+	return e;
+}
+
+static int finish(const struct sim_run *r)
+{
+	const bool to_stdout = r->o->report && strcmp(r->o->report, "-") == 0;
+	int e = 0;
+
+	if (!r->o->quiet)
+		report_print(r, to_stdout ? stderr : stdout);
+	if (r->o->report)
+		e = report_write(r, r->o->report);
+	if (e == 0 && r->o->plot)
+		e = draw(r);
+	return e ? e : strcmp(r->result.outcome, "done") != 0;
+}
+
+int main(int argc, char **argv)
+{
+	static struct machine_config config;
+	static struct sim_run run;
+	struct sim_options o = { 0 };
+	bool print = false;
+	int e;
+
+	parse(&o, argc, argv, &print);
+	e = configure(&config, &o);
+	if (e)
+		return e;
+	if (print) {
+		config_print(&config, stdout);
+		return 0;
+	}
+	if (o.plot && plot_check("edmsim", o.plot) < 0)
+		return EX_CANTCREAT;
+	run.o = &o;
+	run.config = &config;
+	e = job_load(&run.job, &o, &config);
+	if (e == 0 && o.check)
+		job_describe(&run.job, stdout);
+	else if (e == 0)
+		e = run_job(&run);
+	if (e == 0 && !o.check)
+		e = finish(&run);
+	job_unload(&run.job);
+	return e;
+}

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * record.c - the files of lattice points and of cycles
+ */
+#include "sim.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+#include <unistd.h>
+
+static int open_out(FILE **f, const char *path)
+{
+	*f = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
+	if (*f)
+		return 0;
+	fprintf(stderr, "edmsim: %s: %s; a file that can be written\n", path,
+		strerror(errno));
+	return EX_CANTCREAT;
+}
+
+static char *put_int(char *p, int64_t v)
+{
+	char digits[24];
+	int n = 0;
+	uint64_t u = v < 0 ? 0 - (uint64_t)v : (uint64_t)v;
+
+	if (v < 0)
+		*p++ = '-';
+	do {
+		digits[n++] = (char)('0' + u % 10);
+		u /= 10;
+	} while (u);
+	while (n)
+		*p++ = digits[--n];
+	return p;
+}
+
+/* cycle,line,X,...,V: a million of these a second would be slow by printf. */
+static void put_point(FILE *f, const struct cycle *c)
+{
+	char row[160], *p = put_int(row, (int64_t)c->totals.cycles);
+
+	*p++ = ',';
+	p = put_int(p, c->cursor.seg.line);
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		*p++ = ',';
+		p = put_int(p, c->cursor.pos[i]);
+	}
+	*p++ = '\n';
+	fwrite(row, 1, (size_t)(p - row), f);
+}
+
+int record_open(struct sim_run *r)
+{
+	const struct sim_options *o = r->o;
+	static char temporary[] = "/tmp/edmsim-XXXXXX";
+	int e = 0;
+
+	if (o->pulses)
+		e = open_out(&r->pulses, o->pulses);
+	if (e)
+		return e;
+	if (o->trace) {
+		e = open_out(&r->trace, o->trace);
+	} else if (o->plot) {
+		const int fd = mkstemp(temporary);
+
+		r->trace = fd < 0 ? NULL : fdopen(fd, "w");
+		r->trace_path = temporary;
+		e = r->trace ? 0 : EX_CANTCREAT;
+	}
+	if (e)
+		return e;
+	if (r->pulses) {
+		fprintf(r->pulses, "cycle,line,X,Y,Z,A,B,C,U,V\n");
+		put_point(r->pulses, &r->cycle);
+	}
+	if (r->trace)
+		fprintf(r->trace, "t_s,line,s_mm,feed_mm_s,gap_v,state,"
+			"X,Y,Z,A,B,C,U,V\n");
+	return 0;
+}
+
+void record_point(void *arg, const struct cycle *c)
+{
+	struct sim_run *r = arg;
+	struct sim_result *w = &r->result;
+
+	w->points++;
+	w->switches += w->last_moved && c->cursor.moved != w->last_moved;
+	w->last_moved = c->cursor.moved;
+	if (r->deviation) {
+		const double d = interp_cursor_deviation_mm(&c->cursor);
+
+		w->deviation_mm_sum += d;
+		if (d > w->deviation_mm_max)
+			w->deviation_mm_max = d;
+	}
+	if (r->pulses)
+		put_point(r->pulses, c);
+}
+
+void record_cycle(struct sim_run *r)
+{
+	const struct cycle *c = &r->cycle;
+	const double *pulse = c->cursor.p.head->pulse_mm;
+
+	if (!r->trace)
+		return;
+	fprintf(r->trace, "%.6f,%u,%.6f,%.6f,%.2f,%s",
+		(double)c->totals.cycles * (double)c->config.period_ns * 1e-9,
+		c->cursor.seg.line, interp_cursor_place_mm(&c->cursor),
+		c->feed_mm_s, c->gap_v, state_duty[c->state].name);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		fprintf(r->trace, ",%.10g", c->cursor.pos[i] * pulse[i]);
+	fputc('\n', r->trace);
+}
+
+static int close_out(FILE *f, const char *path)
+{
+	const bool bad = f && (ferror(f) | (f != stdout && fclose(f) != 0));
+
+	if (!bad)
+		return 0;
+	fprintf(stderr, "edmsim: %s: could not be written\n", path);
+	return EX_IOERR;
+}
+
+int record_close(struct sim_run *r)
+{
+	const int e = close_out(r->pulses, r->o->pulses);
+	const int f = close_out(r->trace, r->o->trace ? r->o->trace :
+							"trace");
+
+	return e ? e : f;
+}

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * report.c - what a run came to, for a person and as JSON
+ *
+ * The keys are a contract; a key that does not apply is absent.
+ */
+#include "sim.h"
+
+#include <errno.h>
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+#include <sysexits.h>
+
+static double seconds(const struct cycle *c, uint64_t n)
+{
+	return (double)n * (double)c->config.period_ns * 1e-9;
+}
+
+static uint32_t motions(const struct interp_program *p)
+{
+	uint32_t n = 0;
+
+	for (uint32_t i = 0; i < p->head->nsegs; i++)
+		n += p->segs[i].kind < INTERP_BEGIN;
+	return n;
+}
+
+static void add_int(json_t *o, const char *key, uint64_t v)
+{
+	json_object_set_new(o, key, json_integer((json_int_t)v));
+}
+
+static void add_real(json_t *o, const char *key, double v)
+{
+	if (isfinite(v))
+		json_object_set_new(o, key, json_real(v));
+}
+
+static void add_path(json_t *o, const struct sim_run *r)
+{
+	const struct interp_program_head *h = r->job.program.head;
+	const struct sim_result *w = &r->result;
+	json_t *pulses = json_object();
+
+	for (uint32_t j = 0; j < h->naxes; j++) {
+		const char name[2] = { INTERP_AXIS_LETTERS[h->column[j]] };
+
+		add_int(pulses, name, r->cycle.totals.pulses[h->column[j]]);
+	}
+	add_int(o, "lines", h->lines);
+	add_int(o, "segments", motions(&r->job.program));
+	add_real(o, "path_mm", h->length_mm);
+	json_object_set_new(o, "pulses", pulses);
+	add_int(o, "switches", w->switches);
+	add_real(o, "deviation_um_max", w->deviation_mm_max * 1e3);
+	if (w->points)
+		add_real(o, "deviation_um_mean",
+			 w->deviation_mm_sum * 1e3 / (double)w->points);
+	if (strcmp(w->outcome, "done") == 0)
+		json_object_set_new(o, "end_error_pulses",
+				    json_integer(w->end_error_pulses));
+}
+
+static void add_cut(json_t *o, const struct sim_run *r)
+{
+	const struct cycle_totals *t = &r->cycle.totals;
+	const double s = seconds(&r->cycle, t->cycles);
+
+	add_int(o, "retracts", t->retracts);
+	add_real(o, "retract_mm_max", t->retract_mm_max);
+	add_int(o, "jumps", t->jumps);
+	add_real(o, "jump_s", seconds(&r->cycle, t->jump_cycles));
+	add_real(o, "erosion_s", seconds(&r->cycle, t->erode_cycles));
+	add_int(o, "shorts", t->shorts);
+	add_real(o, "removed_mm3", r->result.cut.removed_mm3);
+	add_real(o, "removal_mm3_min",
+		 s > 0 ? r->result.cut.removed_mm3 / s * 60 : NAN);
+	add_real(o, "wear_mm", r->result.cut.wear_mm);
+}
+
+static json_t *report(const struct sim_run *r)
+{
+	const struct cycle *c = &r->cycle;
+	json_t *o = json_object();
+
+	json_object_set_new(o, "outcome", json_string(r->result.outcome));
+	if (c->fault != FAULT_NONE)
+		json_object_set_new(o, "fault",
+				    json_string(cycle_fault_name(c->fault)));
+	add_int(o, "cycles", c->totals.cycles);
+	add_real(o, "virtual_s", seconds(c, c->totals.cycles));
+	add_real(o, "wall_s", r->result.wall_s);
+	add_path(o, r);
+	if (!c->config.dry_run)
+		add_cut(o, r);
+	add_real(o, "compile_lines_s", r->job.compile_lines_s);
+	add_real(o, "cycles_s", (double)c->totals.cycles / r->result.wall_s);
+	return o;
+}
+
+int report_write(const struct sim_run *r, const char *path)
+{
+	json_t *o = report(r);
+	FILE *f = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
+	int e = 0;
+
+	if (!f || json_dumpf(o, f, JSON_INDENT(2)) < 0 || fputc('\n', f) < 0) {
+		fprintf(stderr, "edmsim: %s: %s\n", path, strerror(errno));
+		e = EX_CANTCREAT;
+	}
+	if (f && f != stdout)
+		fclose(f);
+	json_decref(o);
+	return e;
+}
+
+void report_print(const struct sim_run *r, FILE *f)
+{
+	const struct cycle *c = &r->cycle;
+	const struct cycle_totals *t = &c->totals;
+	const double s = seconds(c, t->cycles);
+
+	fprintf(f, "outcome    %s", r->result.outcome);
+	if (c->fault != FAULT_NONE)
+		fprintf(f, ": %s at line %u", cycle_fault_name(c->fault),
+			c->cursor.seg.line);
+	fprintf(f, "\npath       %.3f mm in %u segments, %u lines\n",
+		r->job.program.head->length_mm, motions(&r->job.program),
+		r->job.program.head->lines);
+	fprintf(f, "time       %.3f s virtual, %.3f s here (%.3g cycles/s)\n",
+		s, r->result.wall_s, (double)t->cycles / r->result.wall_s);
+	if (c->config.dry_run)
+		return;
+	fprintf(f, "erosion    %.1f s; removed %.3f mm3, wear %.4f mm\n",
+		seconds(c, t->erode_cycles), r->result.cut.removed_mm3,
+		r->result.cut.wear_mm);
+	fprintf(f, "jumps      %u in %.1f s\n", t->jumps,
+		seconds(c, t->jump_cycles));
+	fprintf(f, "retracts   %u, the longest %.3f mm, from %u shorts\n",
+		t->retracts, t->retract_mm_max, t->shorts);
+}

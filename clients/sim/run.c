@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * run.c - the cycle, as fast as the processor goes or at a pace
+ */
+#include "sim.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <sysexits.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Cycles between two looks at the clock. */
+#define LOOK_CYCLES	4096
+
+static volatile sig_atomic_t interrupted;
+
+static void on_signal(int sig)
+{
+	(void)sig;
+	interrupted = 1;
+}
+
+static double now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+static double virtual_s(const struct cycle *c)
+{
+	return (double)c->totals.cycles * (double)c->config.period_ns * 1e-9;
+}
+
+static void command(struct sim_run *r, enum cycle_verb v, double arg_mm)
+{
+	const struct cycle_command m = { .verb = v, .arg_mm = arg_mm };
+
+	cycle_command(&r->cycle, &m);
+}
+
+static int open_machine(struct sim_run *r)
+{
+	const uint64_t seed = r->o->seed_given ? r->o->seed :
+						 (uint64_t)r->config->sim.seed;
+	int e;
+
+	if (r->o->dry_run || r->config->backend == BACKEND_NULL)
+		e = io_null_open(&r->machine);
+	else
+		e = io_sim_open(&r->machine, r->config, seed);
+	return e ? EX_OSERR : 0;
+}
+
+static int set_up(struct sim_run *r)
+{
+	struct cycle_config cc;
+	int e = open_machine(r);
+
+	if (e)
+		return e;
+	config_cycle(r->config, &cc);
+	cc.dry_run = r->o->dry_run || r->config->backend == BACKEND_NULL;
+	cc.overrun_limit = 0;
+	if (r->machine.edges_per_cycle)
+		cc.points_max = r->machine.edges_per_cycle;
+	if (r->o->there_and_back) {
+		cc.hold_at_end = true;
+		cc.gap.retract_mm_s = 1e3;
+	}
+	cycle_init(&r->cycle, &cc);
+	if (cycle_load(&r->cycle, &r->job.program) != ANSWER_DONE)
+		return EX_SOFTWARE;
+	e = record_open(r);
+	r->deviation = r->o->report != NULL;
+	r->cycle.on_point = record_point;
+	r->cycle.on_point_arg = r;
+	return e;
+}
+
+static void progress(const struct sim_run *r, bool last)
+{
+	const double len = r->job.program.head->length_mm;
+	const double share = len > 0 ? r->cycle.far_mm / len : 1;
+
+	if (r->o->quiet || !isatty(STDERR_FILENO))
+		return;
+	fprintf(stderr, "\r%3.0f %%  %10.1f s  %-8s %s", share * 100,
+		virtual_s(&r->cycle), state_duty[r->cycle.state].name,
+		last ? "\n" : "");
+}
+
+/* Sleep until virtual time is due. */
+static void pace(const struct sim_run *r, double from_s)
+{
+	const double due_s = from_s + virtual_s(&r->cycle) / r->o->speed;
+	const double wait_s = due_s - now_s();
+	const struct timespec t = {
+		.tv_sec = (time_t)wait_s,
+		.tv_nsec = (long)((wait_s - (double)(time_t)wait_s) * 1e9),
+	};
+
+	if (wait_s > 0)
+		nanosleep(&t, NULL);
+}
+
+/* Held: by a programmed stop, or at an end of there and back. */
+static void go_on(struct sim_run *r)
+{
+	struct cycle *c = &r->cycle;
+
+	if (c->moving || c->mover.v_mm_s != 0 || c->after_stand != STATE_HOLD)
+		return;
+	if (r->o->there_and_back && r->leg == 0 &&
+	    c->far_mm >= r->job.program.head->length_mm - 1e-9) {
+		r->leg = 1;
+		command(r, CYCLE_RETRACT, 1e9);
+		return;
+	}
+	if (r->leg == 1) {
+		r->leg = 2;
+		c->config.hold_at_end = false;
+	}
+	command(r, CYCLE_START, 0);
+}
+
+static bool over(struct sim_run *r)
+{
+	const struct cycle *c = &r->cycle;
+
+	if (c->state == STATE_IDLE || c->state == STATE_FAULT) {
+		r->result.outcome = cycle_outcome_name(c->outcome);
+		return true;
+	}
+	if (interrupted ||
+	    (r->o->limit_s > 0 && virtual_s(c) >= r->o->limit_s)) {
+		r->result.outcome = "limit";
+		return true;
+	}
+	return false;
+}
+
+static void cycles(struct sim_run *r)
+{
+	const double from_s = now_s();
+	struct cycle *c = &r->cycle;
+	struct io_outputs out;
+	struct io_inputs in;
+
+	r->machine.write(r->machine.self, &c->out);
+	for (uint64_t n = 1; !over(r); n++) {
+		if (c->state == STATE_HOLD)
+			go_on(r);
+		r->machine.read(r->machine.self, &in);
+		cycle_step(c, &in, &out);
+		r->machine.write(r->machine.self, &out);
+		record_cycle(r);
+		if (n % LOOK_CYCLES == 0)
+			progress(r, false);
+		if (r->o->speed > 0 && n % 16 == 0)
+			pace(r, from_s);
+	}
+	r->result.wall_s = now_s() - from_s;
+	progress(r, true);
+}
+
+/* How far from the programmed end it stands. */
+static int32_t end_error(const struct sim_run *r)
+{
+	const struct interp_program *p = &r->job.program;
+	const int64_t *end = p->nodes + (uint64_t)p->head->nsegs *
+					p->head->naxes;
+	int32_t worst = 0;
+
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		const int32_t d = abs(r->cycle.cursor.pos[p->head->column[j]] -
+				      interp_round_sub(end[j]));
+
+		worst = d > worst ? d : worst;
+	}
+	return worst;
+}
+
+int run_job(struct sim_run *r)
+{
+	int e = set_up(r);
+
+	if (e)
+		return e;
+	signal(SIGINT, on_signal);
+	signal(SIGTERM, on_signal);
+	cycles(r);
+	r->result.end_error_pulses = end_error(r);
+	if (!r->cycle.config.dry_run)
+		io_sim_result(&r->machine, &r->result.cut);
+	r->machine.close(r->machine.self);
+	return record_close(r);
+}

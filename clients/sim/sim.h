@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * sim.h - edmsim: a job in virtual time
+ */
+#ifndef SIM_SIM_H
+#define SIM_SIM_H
+
+#include "config.h"
+#include "cycle.h"
+#include "io.h"
+
+#include <stdio.h>
+
+struct sim_options {
+	const char *job;
+	const char *machine_file;
+	const char *strategy;		/* NULL: the machine file's */
+	const char *pulses, *trace, *report, *plot;
+	double period_us;		/* 0: the machine file's */
+	double speed, limit_s;		/* 0: as fast as possible; no limit */
+	uint64_t seed;
+	bool seed_given, dry_run, there_and_back, check, quiet;
+};
+
+/* A compiled job. */
+struct sim_job {
+	struct interp_program program;
+	void *block;
+	uint32_t lines;
+	double compile_lines_s;
+};
+
+/* What happened, beside the cycle's own sums. */
+struct sim_result {
+	const char *outcome;		/* done, fault, limit */
+	double wall_s;
+	uint64_t points, switches;
+	uint32_t last_moved;
+	double deviation_mm_max, deviation_mm_sum;
+	int32_t end_error_pulses;
+	struct io_sim_result cut;
+};
+
+struct sim_run {
+	const struct sim_options *o;
+	const struct machine_config *config;
+	struct sim_job job;
+	struct cycle cycle;
+	struct io_machine machine;
+	struct sim_result result;
+	FILE *pulses, *trace;
+	char *trace_path;		/* a temporary one, if only for a plot */
+	bool deviation;			/* worth its time: a report is wanted */
+	int leg;			/* of there and back: 0, 1, 2 */
+};
+
+/** job_load() - read and compile. Return: 0 or an exit code, said why. */
+int job_load(struct sim_job *job, const struct sim_options *o,
+	     const struct machine_config *c);
+void job_unload(struct sim_job *job);
+/** job_describe() - what --check prints. */
+void job_describe(const struct sim_job *job, FILE *f);
+
+/** run_job() - the whole run. Return: 0 or an exit code, said why. */
+int run_job(struct sim_run *r);
+
+/** record_*() - the files of lattice points and cycles: record.c. */
+int record_open(struct sim_run *r);
+void record_point(void *arg, const struct cycle *c);
+void record_cycle(struct sim_run *r);
+int record_close(struct sim_run *r);
+
+/** report_print() - for a person; report_write() - JSON. */
+void report_print(const struct sim_run *r, FILE *f);
+int report_write(const struct sim_run *r, const char *path);
+
+#endif /* SIM_SIM_H */

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * keys.h - the table of machine file keys, and one key's value as text
+ *
+ * A section with instances, such as [axis.X] ... [axis.V], has its rows once;
+ * a row then serves every instance at its own stride.  A key is a row and an
+ * instance.  Defaults are text and pass the same parser and range check as
+ * the file.
+ *
+ * Units: a row's unit is that of a linear axis; on a rotary one mm is deg.
+ * Threads: startup only.
+ */
+#ifndef CONFIG_KEYS_H
+#define CONFIG_KEYS_H
+
+#include "config.h"
+
+#include <stddef.h>
+
+enum config_section_id {
+	SECTION_MACHINE,
+	SECTION_AXIS,
+	SECTION_WORK,
+	SECTION_GAP,
+	SECTION_JUMP,
+	SECTION_SIM,
+	SECTION_LCM,
+	SECTION_DDS,
+	SECTION_JOBS,
+	CONFIG_NSECTIONS
+};
+
+enum config_kind {
+	KEY_NUMBER,			/* double */
+	KEY_WHOLE,			/* double without a fraction */
+	KEY_ENUM,			/* int, one of word(0), word(1), ... */
+	KEY_BIT,			/* yes or no: a bit of a uint32_t */
+	KEY_NAME,			/* char[]: letters, digits, - and _ */
+	KEY_STRING,			/* char[]: any text without controls */
+};
+
+struct config_section {
+	const char *name;
+	const char *const *instance;	/* NULL: the section stands alone */
+	int ninstances;
+	const char *help;
+};
+
+struct config_key {
+	enum config_section_id section;
+	const char *name;
+	enum config_kind kind;
+	const char *unit;		/* "" if it has none */
+	const char *def;		/* as it would stand in the file */
+	double min, max;		/* numbers only */
+	size_t offset;			/* of instance 0 in machine_config */
+	size_t stride;			/* from one instance to the next */
+	size_t bytes;			/* text only: room, with its NUL */
+	const char *def_rotary;		/* for A B C; NULL: as def */
+	const char *(*word)(int i);	/* enums only; NULL past the last */
+	const char *help;
+};
+
+#define CONFIG_NKEYS_MAX	96	/* rows the table may have */
+#define CONFIG_NINSTANCES_MAX	8
+#define CONFIG_TEXT_MAX		256	/* of a value, with its NUL */
+
+extern const struct config_section config_section[CONFIG_NSECTIONS];
+extern const struct config_key config_key[];
+extern const int config_nkeys;
+
+/* Where each key was set: config_lines.at[row][instance]; 0: not at all. */
+struct config_lines {
+	uint32_t at[CONFIG_NKEYS_MAX][CONFIG_NINSTANCES_MAX];
+};
+
+/** config_section_name() - "gap", "axis.X", ... into @buf; returns it. */
+const char *config_section_name(enum config_section_id s, int instance,
+				char *buf, size_t size);
+
+/**
+ * config_section_find() - the section called @name.
+ * Return: enum config_section_id, @ret_instance set; or -ENOENT.
+ */
+int config_section_find(const char *name, int *ret_instance);
+
+/** config_key_find() - its row in config_key[], or -ENOENT. */
+int config_key_find(enum config_section_id s, const char *name);
+
+/** config_key_default() - the text for @instance. */
+const char *config_key_default(const struct config_key *k, int instance);
+
+/** config_key_unit() - with a space in front, or "", into @buf. */
+const char *config_key_unit(const struct config_key *k, int instance,
+			    char *buf, size_t size);
+
+/** config_key_range() - what is accepted, in words, into @buf. */
+const char *config_key_range(const struct config_key *k, int instance,
+			     char *buf, size_t size);
+
+/** config_key_at() - where @k keeps its value in @c. */
+void *config_key_at(const struct config_key *k, int instance,
+		    struct machine_config *c);
+const void *config_key_in(const struct config_key *k, int instance,
+			  const struct machine_config *c);
+
+/**
+ * config_key_parse() - put @text into @c.
+ * Return: 0, or -EINVAL with @diag's found and wanted filled.
+ */
+int config_key_parse(const struct config_key *k, int instance,
+		     const char *text, struct machine_config *c,
+		     struct interp_diag *diag);
+
+/** config_key_format() - the value in @c, as config_key_parse() takes it. */
+const char *config_key_format(const struct config_key *k, int instance,
+			      const struct machine_config *c, char *buf,
+			      size_t size);
+
+/** config_number() - shortest decimal that reads back as @x, into @buf. */
+const char *config_number(double x, char *buf, size_t size);
+
+/**
+ * config_check() - what one key alone cannot tell: orders and extents.
+ * Return: 0, or -EINVAL with @diag filled, the line from @lines.
+ */
+int config_check(const struct machine_config *c,
+		 const struct config_lines *lines, struct interp_diag *diag);
+
+#endif /* CONFIG_KEYS_H */

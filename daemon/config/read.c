@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * read.c - a machine file into a struct machine_config
+ *
+ * libinih knows the syntax.  It gets its lines from take_line(), which counts
+ * them, because a handler is not told where it is, and which refuses what
+ * libinih would pass over: text behind a heading, lines too long for it, NUL
+ * bytes.
+ */
+#include "keys.h"
+#include "nearest.h"
+
+#include <errno.h>
+#include <ini.h>
+#include <string.h>
+
+#define LINE_BYTES	1024		/* of a line, with its end and a NUL */
+#define BLANK		" \t\r\n\v\f"
+#define BOM		"\xef\xbb\xbf"	/* some editors begin UTF-8 so */
+
+struct reading {
+	FILE *f;
+	struct machine_config config;
+	struct config_lines lines;
+	struct interp_diag *diag;
+	uint32_t line;			/* of text, from 1 */
+	char text[LINE_BYTES];		/* as it stands in the file */
+	int err;			/* the first thing refused ends it */
+};
+
+/* Words that are accepted; with what goes before it, it fits a diag. */
+struct list {
+	char text[104];
+	bool full;
+};
+
+/* "a, b, c", or as much of it as fits and ", ..." */
+static void append_word(struct list *l, const char *word)
+{
+	size_t n = strlen(l->text), left = sizeof(l->text) - n;
+
+	if (l->full)
+		return;
+	l->full = strlen(word) + sizeof(", , ...") > left;
+	snprintf(l->text + n, left, "%s%s", n ? ", " : "",
+		 l->full ? "..." : word);
+}
+
+static void refuse(struct reading *r, size_t column)
+{
+	r->diag->line = r->line;
+	r->diag->column = (uint32_t)column;
+	r->err = -EINVAL;
+}
+
+/* @list is what is accepted, @near what was perhaps meant. */
+static void want_one_of(struct reading *r, const struct nearest *near,
+			const struct list *list)
+{
+	if (near->word[0])
+		snprintf(r->diag->wanted, sizeof(r->diag->wanted),
+			 "did you mean %s? one of %s", near->word, list->text);
+	else
+		snprintf(r->diag->wanted, sizeof(r->diag->wanted),
+			 "one of %s", list->text);
+}
+
+static void refuse_section(struct reading *r, const char *name, size_t column)
+{
+	char buf[NEAREST_MAX], range[NEAREST_MAX];
+	struct list list = { "", false };
+	struct nearest near;
+
+	nearest_init(&near, name);
+	for (int s = 0; s < CONFIG_NSECTIONS; s++) {
+		const struct config_section *sec = &config_section[s];
+		int last = sec->ninstances - 1;
+
+		for (int i = 0; i <= last; i++)
+			nearest_offer(&near, config_section_name(
+				(enum config_section_id)s, i, buf,
+				sizeof(buf)));
+		snprintf(range, sizeof(range), "%s", sec->name);
+		if (sec->instance)
+			snprintf(range, sizeof(range), "%s.%s to %s.%s",
+				 sec->name, sec->instance[0], sec->name,
+				 sec->instance[last]);
+		append_word(&list, range);
+	}
+	snprintf(r->diag->found, sizeof(r->diag->found),
+		 "unknown section [%.60s]", name);
+	want_one_of(r, &near, &list);
+	refuse(r, column);
+}
+
+static void refuse_key(struct reading *r, const char *section,
+		       enum config_section_id s, const char *name)
+{
+	struct list list = { "", false };
+	struct nearest near;
+
+	nearest_init(&near, name);
+	for (int i = 0; i < config_nkeys; i++) {
+		if (config_key[i].section != s)
+			continue;
+		nearest_offer(&near, config_key[i].name);
+		append_word(&list, config_key[i].name);
+	}
+	snprintf(r->diag->found, sizeof(r->diag->found),
+		 "unknown key %s.%.60s", section, name);
+	want_one_of(r, &near, &list);
+	refuse(r, strspn(r->text, BLANK) + 1);
+}
+
+static void refuse_syntax(struct reading *r, const char *found,
+			  const char *wanted)
+{
+	snprintf(r->diag->found, sizeof(r->diag->found), "%s", found);
+	snprintf(r->diag->wanted, sizeof(r->diag->wanted), "%s", wanted);
+	refuse(r, strspn(r->text, BLANK) + 1);
+}
+
+static void check_heading(struct reading *r, const char *bracket)
+{
+	size_t n = strcspn(bracket + 1, "]");
+	const char *rest = bracket + 1 + n;
+	size_t column = (size_t)(bracket - r->text) + 2;
+	char name[LINE_BYTES];
+	int instance;
+
+	if (*rest != ']') {
+		refuse_syntax(r, "a section without its ]", "[section]");
+		return;
+	}
+	snprintf(name, sizeof(name), "%.*s", (int)n, bracket + 1);
+	rest += 1 + strspn(rest + 1, BLANK);
+	if (config_section_find(name, &instance) < 0)
+		refuse_section(r, name, column);
+	else if (*rest && *rest != ';' && *rest != '#')
+		refuse_syntax(r, "text behind a section",
+			      "its keys from the next line on");
+}
+
+/* One line into r->text; false at the end of the file. */
+static bool get_line(struct reading *r)
+{
+	size_t n = 0;
+	int ch;
+
+	while ((ch = getc(r->f)) != EOF) {
+		if (ch == '\0') {
+			refuse_syntax(r, "a NUL byte", "a text file");
+			return false;
+		}
+		if (n + 2 > sizeof(r->text)) {
+			refuse_syntax(r, "a line too long",
+				      "1022 bytes at most");
+			return false;
+		}
+		r->text[n++] = (char)ch;
+		r->text[n] = '\0';
+		if (ch == '\n')
+			break;
+	}
+	return n > 0;
+}
+
+static char *take_line(char *str, int num, void *stream)
+{
+	struct reading *r = stream;
+	const char *first;
+
+	r->line++;
+	r->text[0] = '\0';
+	if (!get_line(r))
+		return NULL;
+
+	first = r->text;
+	if (r->line == 1 && strncmp(first, BOM, strlen(BOM)) == 0)
+		first += strlen(BOM);
+	first += strspn(first, BLANK);
+	if (*first == '[')
+		check_heading(r, first);
+	if (r->err)
+		return NULL;
+	snprintf(str, (size_t)num, "%s", r->text);
+	return str;
+}
+
+static size_t value_column(const struct reading *r)
+{
+	size_t n = strcspn(r->text, "=:");
+
+	if (r->text[n])
+		n++;
+	return n + strspn(r->text + n, " \t") + 1;
+}
+
+static void set_key(struct reading *r, int row, int instance,
+		    const char *value)
+{
+	uint32_t *at = &r->lines.at[row][instance];
+	const struct config_key *k = &config_key[row];
+	char section[NEAREST_MAX], found[128];
+
+	if (*at) {
+		config_section_name(k->section, instance, section,
+				    sizeof(section));
+		snprintf(found, sizeof(found),
+			 "%s.%s again, first in line %u", section, k->name,
+			 *at);
+		refuse_syntax(r, found, "each key once");
+		return;
+	}
+	*at = r->line;
+	if (config_key_parse(k, instance, value, &r->config, r->diag))
+		refuse(r, value_column(r));
+}
+
+/* Called by libinih; nonzero goes on. */
+static int take_key(void *user, const char *section, const char *name,
+		    const char *value)
+{
+	struct reading *r = user;
+	int instance, s, row;
+
+	s = config_section_find(section, &instance);
+	if (s < 0) {
+		refuse_syntax(r, "a key before any section",
+			      "a [section] above it");
+		return 0;
+	}
+	row = config_key_find((enum config_section_id)s, name);
+	if (row < 0)
+		refuse_key(r, section, (enum config_section_id)s, name);
+	else
+		set_key(r, row, instance, value);
+	return !r->err;
+}
+
+/* libinih's options are variables of the library. */
+static void set_syntax(void)
+{
+	static char comment[] = ";#";
+
+	ini_inline_comment_prefixes = comment;
+	ini_allow_multiline = false;	/* an indented key is a key */
+	ini_stop_on_first_error = true;
+	ini_use_stack = false;		/* its stack buffer is 200 bytes */
+	ini_initial_alloc = LINE_BYTES;
+	ini_max_line = LINE_BYTES;
+}
+
+static int read_all(struct reading *r)
+{
+	int n;
+
+	set_syntax();
+	n = ini_parse_stream(take_line, r, take_key, r);
+	if (r->err)
+		return r->err;
+	if (ferror(r->f))
+		return -EIO;
+	if (n < 0)
+		return -ENOMEM;
+	if (n > 0) {
+		refuse_syntax(r, "neither a key nor a section",
+			      "key = value, [section], or ; and a comment");
+		return r->err;
+	}
+	return config_check(&r->config, &r->lines, r->diag);
+}
+
+int config_read(struct machine_config *c, const char *path,
+		struct interp_diag *diag)
+{
+	struct reading r = { .diag = diag };
+	int err;
+
+	memset(diag, 0, sizeof(*diag));
+	config_defaults(&r.config);
+	r.f = fopen(path, "re");
+	if (!r.f)
+		return -errno;
+
+	err = read_all(&r);
+	fclose(r.f);
+	if (!err)
+		*c = r.config;
+	return err;
+}

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * commands.c - commands from the ring, and what each comes to
+ *
+ * The other side is another process with fewer rights: every field is checked
+ * here or in the cycle.  A command meant for an edmd that is gone never moves
+ * anything.
+ */
+#include "loop.h"
+
+/* Taken in one period; the ring holds more, the period does not. */
+#define COMMANDS_A_PERIOD	4
+
+static enum cycle_answer load_ask(struct loop *l, const struct shm_command *c)
+{
+	struct ask a = { .id = c->id, .n = c->arg };
+
+	if (c->arg == 0)
+		return ANSWER_BAD_ARGUMENT;
+	if (l->opening || l->unloading || l->cycle.state != STATE_IDLE ||
+	    !crossing_ask(&l->crossing, &a))
+		return ANSWER_WRONG_STATE;
+	l->opening = true;
+	return ANSWER_DONE;
+}
+
+/* The ring has room: one program is open at a time, one more is asked for. */
+static void program_retire(struct loop *l, struct program *p)
+{
+	struct ask a = { .close = p };
+
+	if (p)
+		crossing_ask(&l->crossing, &a);
+}
+
+/* A held job is stopped first, which takes the cycle a period. */
+static enum cycle_answer unload_ask(struct loop *l,
+				    const struct shm_command *c)
+{
+	static const struct cycle_command stop = { .verb = CYCLE_STOP };
+
+	if (!l->program || (c->arg && c->arg != l->program->n))
+		return ANSWER_NO_PROGRAM;
+	if (l->opening || l->unloading || !loop_stands(l))
+		return ANSWER_WRONG_STATE;
+	if (l->cycle.loaded && l->cycle.state == STATE_FAULT)
+		return ANSWER_WRONG_STATE;
+	if (l->cycle.loaded)
+		cycle_command(&l->cycle, &stop);
+	l->unloading = c->id;
+	return ANSWER_DONE;
+}
+
+static void unload_finish(struct loop *l)
+{
+	enum cycle_answer answer = ANSWER_DONE;
+	uint32_t id = l->unloading;
+
+	if (id == 0 || (l->cycle.loaded && l->cycle.state != STATE_FAULT))
+		return;
+	l->unloading = 0;
+	if (l->cycle.loaded) {
+		answer = ANSWER_WRONG_STATE;
+	} else {
+		program_retire(l, l->program);
+		l->program = NULL;
+	}
+	loop_answer(l, id, answer);
+}
+
+static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
+{
+	struct cycle_command m = {
+		.id = c->id, .verb = c->verb, .arg_mm = c->arg_mm,
+	};
+
+	if (c->verb >= CYCLE_NVERBS)
+		return ANSWER_BAD_ARGUMENT;
+	return cycle_command(&l->cycle, &m);
+}
+
+/* 0 is no command's id; without one there is nothing to answer. */
+static bool is_for_us(const struct loop *l, const struct shm_command *c)
+{
+	return c->id != 0 && c->instance == l->status->head.instance &&
+	       !l->ending;
+}
+
+static void carry_out(struct loop *l, const struct shm_command *c)
+{
+	bool later = c->verb == SHM_LOAD || c->verb == SHM_UNLOAD;
+	enum cycle_answer answer = ANSWER_WRONG_STATE;
+
+	if (!is_for_us(l, c))
+		later = false;
+	else if (c->verb == SHM_LOAD)
+		answer = load_ask(l, c);
+	else if (c->verb == SHM_UNLOAD)
+		answer = unload_ask(l, c);
+	else
+		answer = pass_on(l, c);
+
+	/* What is under way is answered when it is done. */
+	if (later && answer == ANSWER_DONE)
+		return;
+	loop_answer(l, c->id, answer);
+	loop_notice(l);
+}
+
+void loop_commands(struct loop *l)
+{
+	struct shm_command c;
+
+	unload_finish(l);
+	for (int i = 0; i < COMMANDS_A_PERIOD; i++) {
+		if (!shm_command_take(l->commands, &c))
+			return;
+		carry_out(l, &c);
+	}
+}
+
+/* There may have been a fault while the program was opened. */
+static enum cycle_answer load(struct loop *l, struct program *p)
+{
+	enum cycle_answer answer;
+
+	if (l->ending)
+		return ANSWER_WRONG_STATE;
+	answer = cycle_load(&l->cycle, &p->cursor.p);
+	if (answer != ANSWER_DONE)
+		return answer;
+	program_retire(l, l->program);
+	l->program = p;
+	return ANSWER_DONE;
+}
+
+void loop_replies(struct loop *l)
+{
+	struct reply r;
+
+	if (!crossing_reply_take(&l->crossing, &r))
+		return;
+	l->opening = false;
+	if (r.answer == ANSWER_DONE) {
+		r.answer = load(l, r.program);
+		if (r.answer != ANSWER_DONE)
+			program_retire(l, r.program);
+	}
+	loop_answer(l, r.id, r.answer);
+	if (r.answer == ANSWER_DONE)
+		loop_event(l, SHM_EV_LOADED, r.id, (int32_t)l->program->n);
+	loop_notice(l);
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * crossing.h - between edmd's cycle and its main thread
+ *
+ * The cycle may not map, allocate or print.  It asks the main thread for what
+ * needs that, over one ring, and gets the answer over another.
+ *
+ * Threads: each call names the one it belongs to; those of the cycle are
+ * RT-safe.
+ */
+#ifndef EDMD_CROSSING_H
+#define EDMD_CROSSING_H
+
+#include "cycle.h"
+
+#include <ck_ring.h>
+
+#define CROSSING_SLOTS	16
+
+/* A program in memory, ready to walk.  Made and freed by the main thread. */
+struct program {
+	uint32_t n;			/* of program.<n> */
+	const void *block;
+	size_t bytes;
+	struct interp_cursor cursor;
+};
+
+/* Cycle to main thread. */
+struct ask {
+	uint32_t id;			/* of the command behind it */
+	uint32_t n;			/* open program.<n>, ... */
+	struct program *close;		/* ... unless there is one to close */
+};
+
+/* Main thread to cycle: an opened program, or why not. */
+struct reply {
+	uint32_t id;
+	enum cycle_answer answer;
+	struct program *program;	/* NULL unless ANSWER_DONE */
+};
+
+struct crossing {
+	ck_ring_t asks, replies;
+	struct ask ask[CROSSING_SLOTS];
+	struct reply reply[CROSSING_SLOTS];
+	uint64_t beats;			/* periods the cycle has run */
+	bool hold;			/* main: bring the machine to a stand */
+	bool stands;			/* cycle: it does */
+	bool quit;			/* main: leave the loop */
+};
+
+void crossing_init(struct crossing *x);
+
+/** Cycle. Return: false if the ring is full. */
+bool crossing_ask(struct crossing *x, const struct ask *a);
+bool crossing_reply_take(struct crossing *x, struct reply *ret);
+
+/** Main thread. */
+bool crossing_ask_take(struct crossing *x, struct ask *ret);
+bool crossing_reply(struct crossing *x, const struct reply *r);
+
+static inline bool crossing_flag(const bool *flag)
+{
+	return __atomic_load_n(flag, __ATOMIC_ACQUIRE);
+}
+
+static inline void crossing_flag_set(bool *flag, bool value)
+{
+	__atomic_store_n(flag, value, __ATOMIC_RELEASE);
+}
+
+#endif /* EDMD_CROSSING_H */

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * loop.c - the real-time thread
+ */
+#include "loop.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <time.h>
+
+/* Share of a period that simulated periods may take, in percent. */
+#define SPEED_SHARE	75
+
+static int64_t realtime_ns(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_REALTIME, &t);
+	return t.tv_sec * 1000000000LL + t.tv_nsec;
+}
+
+bool loop_stands(const struct loop *l)
+{
+	const struct cycle *c = &l->cycle;
+
+	return (c->state == STATE_IDLE || c->state == STATE_HOLD ||
+		c->state == STATE_FAULT) && c->feed_mm_s == 0 && !c->moving;
+}
+
+static void count_latency(struct loop *l, int64_t late_ns)
+{
+	size_t bin = setup_latency_bin(late_ns, SHM_LATENCY_BINS);
+	uint32_t *count = &l->status->latency_us[bin];
+
+	__atomic_store_n(count, *count + 1, __ATOMIC_RELAXED);
+	l->timing.late_ns = late_ns;
+	if (late_ns > l->timing.late_max_ns)
+		l->timing.late_max_ns = late_ns;
+}
+
+/*
+ * At another speed than 1 a missed period is only a slower picture, nothing
+ * that happens to the simulated machine.
+ */
+static void tell_missed(struct loop *l, uint64_t missed)
+{
+	uint32_t told = missed < UINT32_MAX ? (uint32_t)missed : UINT32_MAX;
+
+	if (l->speed == 1 && missed > 0)
+		cycle_overrun(&l->cycle, told);
+}
+
+static void step(struct loop *l)
+{
+	struct io_inputs in;
+	struct io_outputs out;
+	struct shm_trace t;
+
+	l->io.read(l->io.self, &in);
+	cycle_step(&l->cycle, &in, &out);
+	l->io.write(l->io.self, &out);
+	loop_trace(l, &t);
+	shm_trace_put(l->status, &t);
+	loop_notice(l);
+}
+
+/* As many periods as the speed says, or as go into the time there is. */
+static void steps(struct loop *l, int64_t woke_ns)
+{
+	int64_t until_ns = woke_ns + l->clock.period_ns * SPEED_SHARE / 100;
+
+	for (uint32_t i = 0; i < l->speed; i++) {
+		step(l);
+		if (l->speed > 1 && setup_now_ns() >= until_ns)
+			break;
+	}
+}
+
+/* Bring the machine to a stand and let nothing start it again. */
+static void end_if_asked(struct loop *l)
+{
+	static const struct cycle_command hold = { .verb = CYCLE_HOLD };
+
+	if (l->ending || !crossing_flag(&l->crossing.hold))
+		return;
+	l->ending = true;
+	if (!loop_stands(l))
+		cycle_command(&l->cycle, &hold);
+}
+
+static void period(struct loop *l, const struct setup_wake *w)
+{
+	struct crossing *x = &l->crossing;
+	struct shm_snapshot s;
+
+	l->time_ns = realtime_ns();
+	count_latency(l, w->late_ns);
+	tell_missed(l, w->missed);
+	end_if_asked(l);
+	loop_commands(l);
+	loop_replies(l);
+	steps(l, w->woke_ns);
+
+	l->timing.took_ns = setup_now_ns() - w->woke_ns;
+	if (l->timing.took_ns > l->timing.took_max_ns)
+		l->timing.took_max_ns = l->timing.took_ns;
+	loop_snapshot(l, &s);
+	shm_snapshot_put(l->status, &s);
+	crossing_flag_set(&x->stands, l->ending && loop_stands(l));
+	__atomic_store_n(&x->beats, x->beats + 1, __ATOMIC_RELAXED);
+}
+
+/* Power and pump off, axes where they are. */
+static void outputs_safe(struct loop *l)
+{
+	struct io_outputs out = l->cycle.out;
+
+	out.power = false;
+	out.pump = false;
+	l->io.write(l->io.self, &out);
+}
+
+static void *run(void *arg)
+{
+	struct loop *l = arg;
+
+	setup_thread(l->report, &l->wanted);
+	sem_post(&l->ready);
+	setup_clock_start(&l->clock, l->cycle.config.period_ns);
+	while (!crossing_flag(&l->crossing.quit)) {
+		struct setup_wake w = setup_clock_wait(&l->clock);
+
+		period(l, &w);
+	}
+	outputs_safe(l);
+	return NULL;
+}
+
+/* No signal is ever delivered to the cycle. */
+static int thread_start(struct loop *l)
+{
+	pthread_attr_t attr;
+	sigset_t all, before;
+	int err;
+
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	pthread_attr_init(&attr);
+	err = pthread_attr_setstacksize(&attr, SETUP_STACK_BYTES);
+	if (err == 0)
+		err = pthread_create(&l->thread, &attr, run, l);
+	pthread_attr_destroy(&attr);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	return -err;
+}
+
+int loop_start(struct loop *l, struct setup_report *report)
+{
+	int err;
+
+	l->report = report;
+	l->told = (struct loop_told) { l->cycle.state, l->cycle.fault,
+				       l->cycle.outcome };
+	sem_init(&l->ready, 0, 0);
+	err = thread_start(l);
+	while (err == 0 && sem_wait(&l->ready) < 0 && errno == EINTR)
+		;
+	sem_destroy(&l->ready);
+	return err;
+}
+
+void loop_stop(struct loop *l)
+{
+	crossing_flag_set(&l->crossing.quit, true);
+	pthread_join(l->thread, NULL);
+}

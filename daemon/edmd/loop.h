@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * loop.h - the real-time thread: once a period, commands in, one cycle, out
+ *
+ * The loop is placed and filled by the main thread, which from loop_start()
+ * to loop_stop() touches nothing of it but `crossing`.
+ */
+#ifndef EDMD_LOOP_H
+#define EDMD_LOOP_H
+
+#include "clock.h"
+#include "crossing.h"
+#include "rt.h"
+#include "shm.h"
+
+#include <pthread.h>
+#include <semaphore.h>
+
+/* What the events told last. */
+struct loop_told {
+	enum cycle_state state;
+	enum cycle_fault fault;
+	enum cycle_outcome outcome;
+};
+
+struct loop_timing {
+	int64_t late_ns, late_max_ns;
+	int64_t took_ns, took_max_ns;
+};
+
+struct loop {
+	/* Filled by the main thread. */
+	struct cycle cycle;
+	struct io_machine io;
+	struct setup_wanted wanted;
+	struct shm_status *status;
+	struct shm_command_ring *commands;
+	struct program *program;	/* loaded; or NULL */
+	double pulse_mm[SHM_NAXES];
+	uint32_t speed;			/* periods for each one of time */
+
+	struct crossing crossing;
+
+	/* Private. */
+	struct setup_clock clock;
+	struct setup_report *report;
+	struct loop_told told;
+	struct loop_timing timing;
+	int64_t time_ns;		/* CLOCK_REALTIME of this period */
+	bool opening;			/* a program was asked for */
+	uint32_t unloading;		/* command that waits for a stop */
+	bool ending;			/* no more commands: shutting down */
+	pthread_t thread;
+	sem_t ready;
+};
+
+/**
+ * loop_start() - start the thread and wait until it is set up.
+ *
+ * @report: filled with what the thread got of the host.
+ * Return: 0 or -errno.  Startup only.
+ */
+int loop_start(struct loop *l, struct setup_report *report);
+
+/** loop_stop() - outputs safe, thread ended.  Startup only. */
+void loop_stop(struct loop *l);
+
+/* -- Its parts, all of them RT-safe ------------------------------------- */
+
+/** loop_commands() - carry out what is in the ring, a few at a time. */
+void loop_commands(struct loop *l);
+
+/** loop_replies() - take what the main thread has opened. */
+void loop_replies(struct loop *l);
+
+/** loop_notice() - events for what has changed since the last call. */
+void loop_notice(struct loop *l);
+
+/** loop_answer() - the event that answers command @id. */
+void loop_answer(struct loop *l, uint32_t id, enum cycle_answer answer);
+
+/** loop_event() - an event of @kind, here and now. */
+void loop_event(struct loop *l, uint32_t kind, uint32_t id, int32_t code);
+
+/** loop_snapshot() - the cycle's state as others see it. */
+void loop_snapshot(const struct loop *l, struct shm_snapshot *ret);
+
+/** loop_trace() - the same for one record of the trace. */
+void loop_trace(const struct loop *l, struct shm_trace *ret);
+
+/** loop_stands() - no motion, and none to come by itself. */
+bool loop_stands(const struct loop *l);
+
+#endif /* EDMD_LOOP_H */

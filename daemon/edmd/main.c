@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * main.c - edmd: start, run, end in the reverse order
+ */
+#include "log.h"
+#include "options.h"
+#include "programs.h"
+#include "resume.h"
+#include "serve.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sysexits.h>
+
+/* Before any thread: the event loop reads them as a file. */
+static void signals_block(void)
+{
+	sigset_t set;
+
+	sigemptyset(&set);
+	sigaddset(&set, SIGTERM);
+	sigaddset(&set, SIGINT);
+	sigprocmask(SIG_BLOCK, &set, NULL);
+}
+
+static int machine_open(struct loop *l, const struct machine_config *c)
+{
+	int err;
+
+	if (c->backend == BACKEND_NULL)
+		err = io_null_open(&l->io);
+	else
+		err = io_sim_open(&l->io, c, (uint64_t)c->sim.seed);
+	if (err < 0)
+		log_line(LOG_ERROR, "edmd: machine: %s", strerror(-err));
+	return err;
+}
+
+static void loop_configure(struct loop *l, const struct machine_config *c)
+{
+	struct cycle_config cycle;
+
+	config_cycle(c, &cycle);
+	/* No machine has no gap either. */
+	cycle.dry_run = c->backend == BACKEND_NULL;
+	cycle_init(&l->cycle, &cycle);
+	crossing_init(&l->crossing);
+	for (int a = 0; a < SHM_NAXES; a++)
+		l->pulse_mm[a] = c->axes.axis[a].pulse_mm;
+	l->wanted.cpu = (int)c->cpu;
+	l->wanted.priority = (int)c->priority;
+	l->speed = c->backend == BACKEND_SIM ? (uint32_t)c->sim.speed : 1;
+}
+
+static int status_refuse(const char *name, int err)
+{
+	if (err == -EBUSY)
+		log_line(LOG_ERROR, "edmd: machine %s has an edmd already; one "
+			 "with another --name, or end that one", name);
+	else if (err == -EPERM || err == -EACCES)
+		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status belongs to "
+			 "another user; run as that one, or remove it", name);
+	else
+		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status: %s", name,
+			 strerror(-err));
+	return err == -EBUSY ? EX_UNAVAILABLE : EX_CANTCREAT;
+}
+
+static int run(struct loop *l, const struct machine_config *c,
+	       struct setup_report *setup)
+{
+	struct server s = { .loop = l, .config = c };
+	int err = loop_start(l, setup);
+
+	if (err < 0) {
+		log_line(LOG_ERROR, "edmd: real-time thread: %s",
+			 strerror(-err));
+		return EX_OSERR;
+	}
+	report_init(&s.report, l->status);
+	report_setup(setup);
+	log_line(LOG_INFO, "edmd: machine %s, backend %s, period %g us, speed "
+		 "%u, %s", c->name, l->io.name,
+		 (double)config_period_ns(c) / 1000, l->speed,
+		 l->program ? "a program held" : "no program");
+	report_ready();
+	err = serve(&s);
+	loop_stop(l);
+	return err < 0 ? EX_SOFTWARE : EX_OK;
+}
+
+static int commands_open(struct loop *l, const char *name)
+{
+	int err = shm_command_create(&l->commands, name,
+				     l->status->head.instance);
+
+	if (err < 0)
+		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.command: %s",
+			 name, strerror(-err));
+	return err;
+}
+
+static int run_with_machine(struct loop *l, const struct machine_config *c,
+			    const struct shm_snapshot *before)
+{
+	struct setup_report setup = { .item = { { .what = NULL } } };
+	int code;
+
+	if (commands_open(l, c->name) < 0)
+		return EX_CANTCREAT;
+	setup_process(&setup);
+	resume(l, c, before);
+	code = run(l, c, &setup);
+	program_close(l->program);
+	shm_command_destroy(l->commands, c->name);
+	return code;
+}
+
+/*
+ * The status comes first: who does not own it must not touch the machine.
+ * After a failure it stays: it is where a predecessor's job stands.
+ */
+static int run_owner(struct loop *l, const struct machine_config *c)
+{
+	struct shm_snapshot before;
+	int err = shm_status_create(&l->status, c->name, &before);
+	int code;
+
+	if (err < 0)
+		return status_refuse(c->name, err);
+	if (machine_open(l, c) < 0)
+		return EX_UNAVAILABLE;
+	code = run_with_machine(l, c, &before);
+	l->io.close(l->io.self);
+	if (code == EX_OK)
+		shm_status_destroy(l->status, c->name);
+	return code;
+}
+
+int main(int argc, char **argv)
+{
+	struct machine_config config;
+	struct loop loop = { .speed = 1 };
+	struct options o;
+	int code = options_read(&o, argc, argv);
+
+	if (code < 0)
+		code = options_config(&o, &config);
+	if (code >= 0)
+		return code;
+	if (o.print_config) {
+		config_print(&config, stdout);
+		return EX_OK;
+	}
+	if (o.check) {
+		printf("%s: good\n", o.config ? o.config : "built-in machine");
+		return EX_OK;
+	}
+	signals_block();
+	loop_configure(&loop, &config);
+	return run_owner(&loop, &config);
+}

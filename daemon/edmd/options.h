@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * options.h - edmd's command line
+ */
+#ifndef EDMD_OPTIONS_H
+#define EDMD_OPTIONS_H
+
+#include "config.h"
+
+struct options {
+	const char *config;		/* NULL: the built-in machine */
+	const char *name;		/* NULL: as the machine file says */
+	bool check;
+	bool print_config;
+};
+
+/**
+ * options_read() - the command line.
+ *
+ * Return: -1 to go on, or the exit code: help, version, a usage error.
+ */
+int options_read(struct options *o, int argc, char **argv);
+
+/** options_config() - the machine they name. Return: -1 or the exit code. */
+int options_config(const struct options *o, struct machine_config *c);
+
+#endif /* EDMD_OPTIONS_H */

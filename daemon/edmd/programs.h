@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * programs.h - map a program for the cycle, and let it go
+ *
+ * Threads: main thread only.
+ */
+#ifndef EDMD_PROGRAMS_H
+#define EDMD_PROGRAMS_H
+
+#include "crossing.h"
+
+#include "config.h"
+
+/**
+ * program_open() - map program.<n>, check it, keep it in memory.
+ *
+ * Says in the log why it cannot.  Return: NULL then.
+ */
+struct program *program_open(const struct machine_config *c, uint32_t n);
+
+/** program_close() - NULL is fine. */
+void program_close(struct program *p);
+
+/** programs_serve() - do what the cycle has asked for. */
+void programs_serve(struct crossing *x, const struct machine_config *c);
+
+#endif /* EDMD_PROGRAMS_H */

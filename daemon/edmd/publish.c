@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * publish.c - the cycle's state in the words of shared memory
+ *
+ * The one file that knows both.  Their numbers are the same, so that they
+ * need no table.
+ */
+#include "loop.h"
+
+#include <string.h>
+
+#define SAME(a, b)	_Static_assert((int)(a) == (int)(b), #a " is " #b)
+
+SAME(SHM_IDLE, STATE_IDLE);
+SAME(SHM_TRAVEL, STATE_TRAVEL);
+SAME(SHM_APPROACH, STATE_APPROACH);
+SAME(SHM_ERODE, STATE_ERODE);
+SAME(SHM_RETRACT, STATE_RETRACT);
+SAME(SHM_JUMP, STATE_JUMP);
+SAME(SHM_HOLD, STATE_HOLD);
+SAME(SHM_FAULT, STATE_FAULT);
+SAME(SHM_FAULT + 1, CYCLE_NSTATES);
+SAME(SHM_NAXES, INTERP_NAXES);
+SAME(SHM_NAXES, IO_NAXES);
+_Static_assert((int)CYCLE_NVERBS <= (int)SHM_LOAD, "verbs do not overlap");
+
+/* A job that has ended still shows its last place, until it is unloaded. */
+static double place_mm(const struct loop *l)
+{
+	return l->program ? interp_cursor_place_mm(&l->cycle.cursor) : 0;
+}
+
+void loop_event(struct loop *l, uint32_t kind, uint32_t id, int32_t code)
+{
+	struct shm_event e = {
+		.cycle = l->cycle.count,
+		.time_ns = l->time_ns,
+		.kind = kind,
+		.id = id,
+		.code = code,
+		.program = l->program ? l->program->n : 0,
+		.place_mm = place_mm(l),
+	};
+
+	shm_event(l->status, &e);
+}
+
+void loop_answer(struct loop *l, uint32_t id, enum cycle_answer answer)
+{
+	loop_event(l, SHM_EV_ANSWER, id, (int32_t)answer);
+}
+
+/* Fault first, so that who reads "state: fault" already knows which. */
+void loop_notice(struct loop *l)
+{
+	const struct cycle *c = &l->cycle;
+	struct loop_told was = l->told;
+
+	l->told = (struct loop_told) { c->state, c->fault, c->outcome };
+	if (c->fault != was.fault && c->fault != FAULT_NONE)
+		loop_event(l, SHM_EV_FAULT, 0, (int32_t)c->fault);
+	if (c->state != was.state)
+		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
+	if (c->outcome != was.outcome && c->outcome != OUTCOME_NONE)
+		loop_event(l, SHM_EV_ENDED, 0, (int32_t)c->outcome);
+}
+
+static void snapshot_place(const struct cycle *c, struct shm_snapshot *s)
+{
+	const struct interp_cursor *at = &c->cursor;
+	const struct interp_program_head *h = at->p.head;
+
+	s->seg = at->index;
+	s->tick = at->tick;
+	s->line = at->seg.line;
+	s->place_mm = interp_cursor_place_mm(at);
+	s->far_mm = c->far_mm;
+	s->length_mm = h->length_mm;
+	s->depth_mm = ((double)h->start_pulses[INTERP_Z] - s->pos[INTERP_Z]) *
+		      s->pulse_mm[INTERP_Z];
+}
+
+static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
+{
+	const struct cycle_totals *t = &c->totals;
+
+	s->job_cycles = t->cycles;
+	s->erode_cycles = t->erode_cycles;
+	s->jump_cycles = t->jump_cycles;
+	s->retracts = t->retracts;
+	s->jumps = t->jumps;
+	s->shorts = t->shorts;
+	s->overruns = t->overruns;
+	s->retract_mm_max = t->retract_mm_max;
+}
+
+static void snapshot_timing(const struct loop *l, struct shm_snapshot *s)
+{
+	const struct loop_timing *t = &l->timing;
+
+	s->period_ns = l->cycle.config.period_ns;
+	s->wake_late_ns = t->late_ns;
+	s->wake_late_max_ns = t->late_max_ns;
+	s->took_ns = t->took_ns;
+	s->took_max_ns = t->took_max_ns;
+}
+
+void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
+{
+	const struct cycle *c = &l->cycle;
+
+	*ret = (struct shm_snapshot) {
+		.cycle = c->count,
+		.time_ns = l->time_ns,
+		.state = c->state,
+		.fault = c->fault,
+		.outcome = c->outcome,
+		.program = l->program ? l->program->n : 0,
+		.cond_number = c->out.cond_number,
+		.cond_letter = c->out.cond_letter,
+		.power = c->out.power,
+		.pump = c->out.pump,
+		.negative = c->out.negative,
+		.loaded = c->loaded,
+		.feed_mm_s = c->feed_mm_s,
+		.gap_v = c->gap_v,
+	};
+	memcpy(ret->pos, c->out.target, sizeof(ret->pos));
+	memcpy(ret->pulse_mm, l->pulse_mm, sizeof(ret->pulse_mm));
+	if (l->program)
+		snapshot_place(c, ret);
+	snapshot_sums(c, ret);
+	snapshot_timing(l, ret);
+}
+
+void loop_trace(const struct loop *l, struct shm_trace *ret)
+{
+	const struct cycle *c = &l->cycle;
+
+	*ret = (struct shm_trace) {
+		.cycle = c->count,
+		.place_mm = place_mm(l),
+		.feed_mm_s = c->feed_mm_s,
+		.gap_v = c->gap_v,
+		.line = l->program ? c->cursor.seg.line : 0,
+		.state = c->state,
+	};
+	memcpy(ret->pos, c->out.target, sizeof(ret->pos));
+}

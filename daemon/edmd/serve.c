@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * serve.c - the main thread's event loop
+ *
+ * The cycle makes no system call to wake anyone, so this one looks every few
+ * milliseconds.
+ */
+#include "serve.h"
+
+#include "clock.h"
+#include "log.h"
+#include "programs.h"
+
+#include <signal.h>
+#include <string.h>
+#include <systemd/sd-event.h>
+
+#define LOOK_US		10000
+#define STAND_NS	1000000000LL	/* the machine gets this to stop */
+
+static uint64_t beats(const struct loop *l)
+{
+	return __atomic_load_n(&l->crossing.beats, __ATOMIC_RELAXED);
+}
+
+/* Power goes off with the hold, at once; motion ends within its limits. */
+static bool end_is_due(const struct server *s)
+{
+	if (s->end_by_ns == 0)
+		return false;
+	if (crossing_flag(&s->loop->crossing.stands))
+		return true;
+	if (setup_now_ns() < s->end_by_ns)
+		return false;
+	log_line(LOG_WARNING, "edmd: no stand within 1 s; ending");
+	return true;
+}
+
+static int on_look(sd_event_source *src, uint64_t usec, void *arg)
+{
+	struct server *s = arg;
+
+	(void)usec;
+	programs_serve(&s->loop->crossing, s->config);
+	report_events(&s->report, s->loop->status);
+	report_watchdog(&s->report, beats(s->loop));
+	if (end_is_due(s))
+		return sd_event_exit(sd_event_source_get_event(src), 0);
+	return sd_event_source_set_time_relative(src, LOOK_US);
+}
+
+static int on_signal(sd_event_source *src, const struct signalfd_siginfo *si,
+		     void *arg)
+{
+	struct server *s = arg;
+
+	if (s->end_by_ns != 0)
+		return sd_event_exit(sd_event_source_get_event(src), 0);
+	log_line(LOG_INFO, "edmd: %s: hold, then end",
+		 si->ssi_signo == SIGINT ? "interrupt" : "terminated");
+	report_stopping();
+	crossing_flag_set(&s->loop->crossing.hold, true);
+	s->end_by_ns = setup_now_ns() + STAND_NS;
+	return 0;
+}
+
+static int sources_add(sd_event *e, struct server *s)
+{
+	sd_event_source *look = NULL;
+	int err = sd_event_add_signal(e, NULL, SIGTERM, on_signal, s);
+
+	if (err >= 0)
+		err = sd_event_add_signal(e, NULL, SIGINT, on_signal, s);
+	if (err >= 0)
+		err = sd_event_add_time_relative(e, &look, CLOCK_MONOTONIC,
+						 LOOK_US, 1000, on_look, s);
+	if (err >= 0)
+		err = sd_event_source_set_enabled(look, SD_EVENT_ON);
+	return err;
+}
+
+int serve(struct server *s)
+{
+	sd_event *e = NULL;
+	int err = sd_event_default(&e);
+
+	if (err >= 0)
+		err = sources_add(e, s);
+	if (err >= 0)
+		err = sd_event_loop(e);
+	if (err < 0)
+		log_line(LOG_ERROR, "edmd: event loop: %s", strerror(-err));
+	report_events(&s->report, s->loop->status);
+	sd_event_unref(e);
+	return err;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * serve.h - the main thread beside a running loop
+ */
+#ifndef EDMD_SERVE_H
+#define EDMD_SERVE_H
+
+#include "loop.h"
+#include "report.h"
+
+#include "config.h"
+
+struct server {
+	struct loop *loop;
+	const struct machine_config *config;
+	struct report report;
+	int64_t end_by_ns;		/* 0: not being ended */
+};
+
+/**
+ * serve() - maps programs, logs, pets the watchdog, until a signal and then
+ * a stand.  Return: 0 or a negative errno.
+ */
+int serve(struct server *s);
+
+#endif /* EDMD_SERVE_H */

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * compile.c - NC code to a program, in a thread of its own
+ */
+#include "compile.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+struct compile {
+	pthread_t thread;
+	int fd;				/* readable when it is done */
+	sd_event_source *source;
+	struct compile_request request;
+	struct compile_result result;
+	compile_done_fn done;
+	void *arg;
+};
+
+static int compile_text(struct compile *c)
+{
+	const struct machine_config *m = c->request.config;
+	struct interp_build_options b = {
+		.machine = &m->axes,
+		.strategy = (enum interp_strategy)m->strategy,
+	};
+	struct interp_nc_options nc = {
+		.machine = &m->axes,
+		.feed_mm_s = m->feed_default_mm_min / 60,
+	};
+	struct interp_nc_result counted = { .lines = 0 };
+	int err;
+
+	memcpy(b.start_mm, c->request.start_mm, sizeof(b.start_mm));
+	memcpy(nc.work_offset_mm, m->work_offset_mm,
+	       sizeof(nc.work_offset_mm));
+	c->result.build = interp_build_create(&b);
+	if (!c->result.build)
+		return -ENOMEM;
+	err = interp_nc_compile(c->request.text, c->request.bytes, &nc,
+				c->result.build, &counted, &c->result.diag);
+	c->result.lines = counted.lines;
+	return err;
+}
+
+static void *compile_main(void *arg)
+{
+	struct compile *c = arg;
+	uint64_t one = 1;
+
+	c->result.err = compile_text(c);
+	/* An eventfd at 0 takes a 1 without fail. */
+	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
+		abort();
+	return NULL;
+}
+
+static void compile_free(struct compile *c)
+{
+	sd_event_source_unref(c->source);
+	if (c->fd >= 0)
+		close(c->fd);
+	interp_build_destroy(c->result.build);
+	free(c);
+}
+
+static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
+{
+	struct compile *c = arg;
+
+	(void)source, (void)fd, (void)events;
+	pthread_join(c->thread, NULL);
+	c->done(c->arg, &c->result);
+	compile_free(c);
+	return 0;
+}
+
+/* Signals are the event loop's: the thread blocks them all. */
+static int thread_start(struct compile *c)
+{
+	sigset_t all, old;
+	int err;
+
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &old);
+	err = pthread_create(&c->thread, NULL, compile_main, c);
+	pthread_sigmask(SIG_SETMASK, &old, NULL);
+	return -err;
+}
+
+int compile_start(struct compile **ret, sd_event *event,
+		  const struct compile_request *request,
+		  compile_done_fn done, void *arg)
+{
+	struct compile *c = calloc(1, sizeof(*c));
+	int err;
+
+	if (!c)
+		return -ENOMEM;
+	c->request = *request;
+	c->done = done;
+	c->arg = arg;
+	c->fd = eventfd(0, EFD_CLOEXEC);
+	err = c->fd < 0 ? -errno :
+	      sd_event_add_io(event, &c->source, c->fd, EPOLLIN, on_done, c);
+	if (err >= 0)
+		err = thread_start(c);
+	if (err < 0) {
+		compile_free(c);
+		return err;
+	}
+	*ret = c;
+	return 0;
+}
+
+void *compile_destroy(struct compile *c)
+{
+	void *arg;
+
+	if (!c)
+		return NULL;
+	arg = c->arg;
+	pthread_join(c->thread, NULL);
+	compile_free(c);
+	return arg;
+}

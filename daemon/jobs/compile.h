@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * compile.h - NC code to a program, in a thread of its own
+ *
+ * A text of millions of lines takes seconds; commands and status go on
+ * meanwhile.
+ *
+ * Threads: the event loop's, which also gets the result.
+ */
+#ifndef JOBS_COMPILE_H
+#define JOBS_COMPILE_H
+
+#include "config.h"
+#include "interp/build.h"
+
+#include <systemd/sd-event.h>
+
+struct compile;
+
+struct compile_request {
+	const struct machine_config *config;	/* lent, until the end */
+	double start_mm[INTERP_NAXES];
+	const char *text;			/* lent, until the end */
+	size_t bytes;
+};
+
+/* @build is lent; diag is filled if err is -EINVAL. */
+struct compile_result {
+	int err;
+	struct interp_diag diag;
+	uint32_t lines;
+	struct interp_build *build;
+};
+
+typedef void (*compile_done_fn)(void *arg, const struct compile_result *r);
+
+/**
+ * compile_start() - begin; @done is called from the event loop, once.
+ * Return: 0 or a negative errno.
+ */
+int compile_start(struct compile **ret, sd_event *event,
+		  const struct compile_request *request,
+		  compile_done_fn done, void *arg);
+
+/**
+ * compile_destroy() - give up: waits for the thread, never calls @done.
+ *
+ * Not for one whose @done was called: that frees itself.  NULL is fine.
+ * Return: the @arg of compile_start().
+ */
+void *compile_destroy(struct compile *c);
+
+#endif /* JOBS_COMPILE_H */

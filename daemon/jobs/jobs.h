@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * jobs.h - edmd-jobs as a whole: what its parts share
+ *
+ * One object, owned by main.c, passed to every part.
+ * Threads: one, that of the event loop.
+ */
+#ifndef JOBS_JOBS_H
+#define JOBS_JOBS_H
+
+#include "config.h"
+#include "link.h"
+#include "queue.h"
+#include "reply.h"
+#include "store.h"
+#include "upload.h"
+#include "wire.h"
+
+#include <systemd/sd-event.h>
+
+struct jobs {
+	const struct machine_config *config;
+	const char *machine;
+	sd_event *event;
+	struct wire *wire;
+	struct store *store;
+	struct link link;
+	struct uploads uploads;
+	struct replies replies;
+	struct queue queue;
+	struct compile *check[UPLOAD_SLOTS];	/* of uploads.slot[i] */
+	int64_t status_us;		/* when the last was sent, monotonic */
+	uint64_t status_key;		/* what a change of is sent at once */
+};
+
+/** jobs_now_us() - monotonic; jobs_utime() - since 1970. */
+int64_t jobs_now_us(void);
+int64_t jobs_utime(void);
+
+/* Something that happened, for EVENT, store and journal. */
+struct jobs_note {
+	const char *kind, *job, *outcome;
+	double place_mm;
+};
+
+/** jobs_note() - tell it; @text as for printf. */
+void jobs_note(struct jobs *j, const struct jobs_note *n,
+	       const char *text, ...)
+	__attribute__((format(printf, 3, 4)));
+
+/** jobs_answer() - to a command; remembered for its repeats. */
+void jobs_answer(struct jobs *j, const struct wire_ack *a);
+
+/** status_tick() - publish STATUS if it is due or has changed. */
+void status_tick(struct jobs *j, int64_t now_us);
+
+/** verb_take() - a COMMAND, from wire.c. */
+void verb_take(void *jobs, const struct wire_command *c);
+
+/** submit_take() - a JOB chunk, from wire.c. */
+void submit_take(void *jobs, const struct wire_chunk *c);
+
+/** submit_fini() - forget what is being checked. */
+void submit_fini(struct jobs *j);
+
+#endif /* JOBS_JOBS_H */

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * link.h - edmd as edmd-jobs sees it: there or not, its snapshot, its answers
+ *
+ * Looked at every 20 ms.  edmd counts as there while its process lives and its
+ * cycle counter moves; it counts as lost 0.5 s after the counter stood, at
+ * once if the process is gone.  One that was started anew is another
+ * instance, even if it was never seen missing.
+ *
+ * Units: in every name; now_us is monotonic.
+ * Threads: one, that of the event loop.
+ */
+#ifndef JOBS_LINK_H
+#define JOBS_LINK_H
+
+#include "shm.h"
+
+#define LINK_PENDING	32		/* commands under way */
+
+enum link_state { LINK_ABSENT, LINK_OK, LINK_LOST };
+
+/* @code: enum shm_answer; -ETIMEDOUT no answer; -ENOTCONN edmd went away. */
+typedef void (*link_answer_fn)(void *arg, int code);
+
+struct link_handlers {
+	/* Events may come again after edmd or this service was restarted. */
+	void (*event)(void *arg, const struct shm_event *e);
+	/* state has changed; on LINK_OK, instance is the one in force. */
+	void (*changed)(void *arg);
+	void *arg;
+};
+
+struct link_pending {
+	uint32_t id;			/* 0: free */
+	int64_t until_us;
+	link_answer_fn answer;
+	void *arg;
+};
+
+/* Placed by the caller; read, do not write. */
+struct link {
+	enum link_state state;
+	uint32_t instance;
+	struct shm_snapshot snap;	/* the last one seen */
+	/* Private. */
+	char machine[SHM_NAME_MAX];
+	struct link_handlers handlers;
+	const struct shm_status *status;
+	struct shm_command_ring *ring;
+	struct shm_follow events;
+	int64_t moved_us, looked_us;
+	bool moved;			/* a new cycle was seen since opening */
+	uint32_t next_id;
+	struct link_pending pending[LINK_PENDING];
+};
+
+/* What to tell edmd. */
+struct link_command {
+	uint32_t verb;			/* enum shm_verb */
+	uint32_t arg;
+	double arg_mm;
+	link_answer_fn answer;		/* called once, never from link_send() */
+	void *answer_arg;
+};
+
+void link_init(struct link *l, const char *machine,
+	       const struct link_handlers *h);
+void link_fini(struct link *l);
+
+/** link_poll() - look; calls the handlers. */
+void link_poll(struct link *l, int64_t now_us);
+
+/** link_send() - Return: 0; -ENOTCONN no edmd; -EAGAIN too many under way. */
+int link_send(struct link *l, const struct link_command *c, int64_t now_us);
+
+/** link_state_name() - "ok", "lost", "absent". */
+const char *link_state_name(enum link_state s);
+
+#endif /* JOBS_LINK_H */

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * load.c - from the store into edmd: compile, lay out, load
+ *
+ * The text is compiled again although submit did so: the machine may stand
+ * somewhere else by now, and the path begins there.
+ */
+#include "jobs.h"
+
+#include "compile.h"
+#include "log.h"
+
+#include <errno.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define AGAIN_US	1000000
+
+static const char *answer_text(int code)
+{
+	switch (code) {
+	case SHM_DONE:
+		return "done";
+	case SHM_NO_PROGRAM:
+		return "it has no such program";
+	case SHM_WRONG_STATE:
+		return "not in its present state";
+	case SHM_BAD_ARGUMENT:
+		return "a segment failed its check";
+	case -ETIMEDOUT:
+		return "no answer";
+	default:
+		return "it went away";
+	}
+}
+
+static void on_asked(void *arg, int code)
+{
+	struct jobs *j = arg;
+
+	j->queue.asked = false;
+	if (code != SHM_DONE && code != -ENOTCONN) {
+		j->queue.again_us = jobs_now_us() + AGAIN_US;
+		log_warning("load: edmd refused to start or unload program "
+			    "%u: %s", j->queue.job.n, answer_text(code));
+	}
+}
+
+int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us)
+{
+	struct link_command c = {
+		.verb = verb, .arg = n, .answer = on_asked, .answer_arg = j,
+	};
+	int err = link_send(&j->link, &c, now_us);
+
+	j->queue.asked = err == 0;
+	return err;
+}
+
+/* The job did not get as far as edmd. */
+static void load_refuse(struct jobs *j, struct store_job job,
+			const char *reason)
+{
+	j->queue.job = job;
+	j->queue.snap = (struct shm_snapshot) { .program = 0 };
+	queue_end(j, JOB_FAULT, reason);
+	queue_drop(j, false);
+}
+
+static void on_loaded(void *arg, int code)
+{
+	struct jobs *j = arg;
+	char reason[128];
+
+	j->queue.loading = false;
+	if (code == SHM_DONE || !j->queue.job.n)
+		return;
+	snprintf(reason, sizeof(reason), "edmd did not load it: %s",
+		 answer_text(code));
+	log_warning("load: job %s: %s", j->queue.job.id, reason);
+	if (code < 0 || code == SHM_WRONG_STATE) {
+		j->queue.again_us = jobs_now_us() + AGAIN_US;
+		queue_drop(j, true);
+	} else {
+		load_refuse(j, j->queue.job, reason);
+	}
+}
+
+static int load_write(struct jobs *j, const struct compile_result *r)
+{
+	struct queue *q = &j->queue;
+	struct interp_build_about about = {
+		.lines = r->lines, .name = q->job.name,
+	};
+	size_t bytes = interp_build_bytes(r->build);
+	void *block;
+	int err;
+
+	sodium_hex2bin(about.hash, sizeof(about.hash), q->job.sha256,
+		       strlen(q->job.sha256), NULL, NULL, NULL);
+	/* Before the object exists: a killed service finds and removes it. */
+	err = store_set_loaded(j->store, q->job.n, true);
+	if (err == 0)
+		err = shm_program_create(&block, j->machine, q->job.n, bytes);
+	if (err < 0)
+		return err;
+	interp_build_write(r->build, &about, block);
+	shm_program_unmap(block, bytes);
+	return 0;
+}
+
+static void load_ask(struct jobs *j, const struct compile_result *r)
+{
+	struct link_command c = {
+		.verb = SHM_LOAD, .arg = j->queue.job.n,
+		.answer = on_loaded, .answer_arg = j,
+	};
+	char reason[128];
+	int err = load_write(j, r);
+
+	if (err < 0) {
+		snprintf(reason, sizeof(reason), "no room for its program: %s",
+			 strerror(-err));
+		load_refuse(j, j->queue.job, reason);
+		return;
+	}
+	j->queue.loading = true;
+	if (link_send(&j->link, &c, jobs_now_us()) < 0) {
+		j->queue.loading = false;
+		queue_drop(j, true);
+	}
+}
+
+static void on_compiled(void *arg, const struct compile_result *r)
+{
+	struct jobs *j = arg;
+	struct queue *q = &j->queue;
+	struct store_job job = q->next, found;
+	char reason[512];
+
+	q->compile = NULL;
+	free(q->next_text);
+	q->next_text = NULL;
+	/* It may have been removed, and edmd may have gone, meanwhile. */
+	if (q->job.n || store_find(j->store, job.id, &found) < 0 ||
+	    found.state != JOB_QUEUED || j->link.state != LINK_OK)
+		return;
+	if (r->err == 0) {
+		q->job = found;
+		load_ask(j, r);
+		queue_recount(j);
+		return;
+	}
+	snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s", job.name,
+		 r->diag.line, r->diag.column, r->diag.found, r->diag.wanted);
+	load_refuse(j, job, r->err == -EINVAL ? reason : strerror(-r->err));
+}
+
+void load_begin(struct jobs *j, int64_t now_us)
+{
+	const struct shm_snapshot *s = &j->link.snap;
+	struct queue *q = &j->queue;
+	struct compile_request request = { .config = j->config };
+	int err;
+
+	if (!q->behind || store_head(j->store, &q->next) < 0)
+		return;
+	err = store_text(j->store, q->next.n, &q->next_text, &request.bytes);
+	if (err == 0) {
+		request.text = q->next_text;
+		for (int i = 0; i < INTERP_NAXES; i++)
+			request.start_mm[i] = s->pos[i] * s->pulse_mm[i];
+		err = compile_start(&q->compile, j->event, &request,
+				    on_compiled, j);
+	}
+	if (err < 0) {
+		q->again_us = now_us + AGAIN_US;
+		free(q->next_text);
+		q->next_text = NULL;
+		log_error("load: job %s: %s", q->next.id, strerror(-err));
+	}
+}
+
+void load_fini(struct jobs *j)
+{
+	compile_destroy(j->queue.compile);
+	j->queue.compile = NULL;
+	free(j->queue.next_text);
+	j->queue.next_text = NULL;
+}

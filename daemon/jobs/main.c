@@ -1,0 +1,314 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * main.c - edmd-jobs: options, the event loop, beginning and end
+ */
+#include "jobs.h"
+
+#include "log.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <signal.h>
+#include <sodium.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+#include <time.h>
+
+#define TICK_US		20000
+#define TICK_SLACK_US	1000
+
+struct options {
+	const char *config, *name, *store;
+};
+
+static const char usage[] =
+	"Usage: edmd-jobs --config FILE [options]\n"
+	"\n"
+	"Takes jobs over LCM, keeps them in a queue, loads them into edmd and\n"
+	"tells how they go.  A job that runs goes on without it.\n"
+	"\n"
+	"  --config FILE  the machine file, the same as edmd's\n"
+	"  --name NAME    of the machine; default: the file's [machine] name\n"
+	"  --store DIR    for the database; default: the file's [jobs] store\n"
+	"  --help         this\n"
+	"  --version      its version\n";
+
+static int64_t clock_us(clockid_t clock)
+{
+	struct timespec t;
+
+	clock_gettime(clock, &t);
+	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
+}
+
+int64_t jobs_now_us(void)
+{
+	return clock_us(CLOCK_MONOTONIC);
+}
+
+int64_t jobs_utime(void)
+{
+	return clock_us(CLOCK_REALTIME);
+}
+
+void jobs_note(struct jobs *j, const struct jobs_note *n,
+	       const char *text, ...)
+{
+	char words[512];
+	va_list ap;
+
+	va_start(ap, text);
+	vsnprintf(words, sizeof(words), text, ap);
+	va_end(ap);
+	log_notice("%s: %s", n->kind, words);
+	store_note(j->store, &(struct store_note) {
+		.kind = n->kind, .job = n->job ? n->job : "",
+		.outcome = n->outcome ? n->outcome : "", .text = words,
+		.place_mm = n->place_mm, .now_us = jobs_utime(),
+	});
+	wire_event(j->wire, &(struct wire_event) {
+		.kind = n->kind, .job = n->job, .outcome = n->outcome,
+		.text = words, .place_mm = n->place_mm,
+	});
+}
+
+void jobs_answer(struct jobs *j, const struct wire_ack *a)
+{
+	reply_keep(&j->replies, a);
+	wire_ack(j->wire, a);
+}
+
+static void on_link_event(void *arg, const struct shm_event *e)
+{
+	queue_event(arg, e);
+}
+
+static void on_link_changed(void *arg)
+{
+	struct jobs *j = arg;
+	bool ok = j->link.state == LINK_OK;
+
+	jobs_note(j, &(struct jobs_note) {
+		.kind = ok ? "back" : "lost", .job = j->queue.job.id,
+		.place_mm = j->link.snap.place_mm,
+	}, ok ? "edmd is there" : "edmd is lost: its cycle stands still");
+	if (ok)
+		queue_attach(j);
+}
+
+static int on_wire(sd_event_source *s, int fd, uint32_t events, void *arg)
+{
+	struct jobs *j = arg;
+
+	(void)s, (void)fd, (void)events;
+	return wire_handle(j->wire);
+}
+
+static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
+{
+	struct jobs *j = arg;
+	int64_t now_us = jobs_now_us();
+	int dropped;
+
+	(void)usec;
+	link_poll(&j->link, now_us);
+	if (j->link.state == LINK_OK)
+		queue_step(j, now_us);
+	dropped = upload_expire(&j->uploads, now_us);
+	if (dropped)
+		log_notice("submit: dropped %d uploads that did not go on for "
+			   "30 s", dropped);
+	status_tick(j, now_us);
+	sd_event_source_set_enabled(s, SD_EVENT_ONESHOT);
+	return sd_event_source_set_time_relative(s, TICK_US);
+}
+
+/* 0, or what to exit with. */
+static int parse(int argc, char **argv, struct options *o)
+{
+	static const struct option longs[] = {
+		{ "config", required_argument, NULL, 'c' },
+		{ "name", required_argument, NULL, 'n' },
+		{ "store", required_argument, NULL, 's' },
+		{ "help", no_argument, NULL, 'h' },
+		{ "version", no_argument, NULL, 'v' },
+		{ NULL, 0, NULL, 0 },
+	};
+	int opt;
+
+	while ((opt = getopt_long(argc, argv, "", longs, NULL)) != -1) {
+		if (opt == 'h' || opt == 'v') {
+			fputs(opt == 'h' ? usage :
+			      "edmd-jobs " EDM_VERSION "\n", stdout);
+			exit(EX_OK);
+		}
+		if (opt == 'c')
+			o->config = optarg;
+		else if (opt == 'n')
+			o->name = optarg;
+		else if (opt == 's')
+			o->store = optarg;
+		else
+			return EX_USAGE;
+	}
+	if (optind == argc && o->config)
+		return 0;
+	fprintf(stderr, "edmd-jobs: %s; --help tells more\n", o->config ?
+		"arguments that are no options" : "--config FILE is missing");
+	return EX_USAGE;
+}
+
+static int configure(struct jobs *j, struct machine_config *config,
+		     const struct options *o)
+{
+	struct interp_diag d = { .line = 0 };
+	int err = config_read(config, o->config, &d);
+	const char *wrong;
+
+	if (err == -EINVAL) {
+		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", o->config, d.line,
+			d.column, d.found, d.wanted);
+		return EX_CONFIG;
+	}
+	if (err < 0) {
+		fprintf(stderr, "edmd-jobs: %s: %s\n", o->config,
+			strerror(-err));
+		return EX_NOINPUT;
+	}
+	wrong = wire_url_check(config->lcm_url);
+	if (wrong) {
+		fprintf(stderr, "%s: error: [lcm] url %s: %s; commands are "
+			"not signed, so only udpm://...?ttl=0, which stays on "
+			"this host\n", o->config, config->lcm_url, wrong);
+		return EX_CONFIG;
+	}
+	j->config = config;
+	j->machine = o->name ? o->name : config->name;
+	if (strlen(j->machine) - 1 >= SHM_NAME_MAX - 1 ||
+	    j->machine[strspn(j->machine, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefgh"
+			      "ijklmnopqrstuvwxyz0123456789_-")]) {
+		fprintf(stderr, "edmd-jobs: machine name %s; 1 to 31 of A-Z "
+			"a-z 0-9 _ -\n", j->machine);
+		return EX_USAGE;
+	}
+	return 0;
+}
+
+static int open_store(struct jobs *j, const char *dir)
+{
+	int err = store_open(&j->store, dir, j->machine);
+
+	if (err == 0)
+		return 0;
+	if (err == -EBUSY) {
+		log_error("store: %s/%s.db is in use; one edmd-jobs for a "
+			  "machine", dir, j->machine);
+		return EX_TEMPFAIL;
+	}
+	if (err == -EPROTO) {
+		log_error("store: %s/%s.db is of a newer edmd-jobs", dir,
+			  j->machine);
+		return EX_CONFIG;
+	}
+	log_error("store: %s: %s; a folder that can be written", dir,
+		  strerror(-err));
+	return EX_CANTCREAT;
+}
+
+static int open_wire(struct jobs *j)
+{
+	struct wire_handlers h = {
+		.command = verb_take, .chunk = submit_take, .arg = j,
+	};
+	int err = wire_open(&j->wire, j->config->lcm_url, j->machine, &h);
+
+	if (err < 0)
+		log_error("wire: cannot open %s; does the host have a "
+			  "multicast route? ip link set lo multicast on; "
+			  "ip route add 224.0.0.0/4 dev lo",
+			  j->config->lcm_url);
+	return err < 0 ? EX_UNAVAILABLE : 0;
+}
+
+/* Signals end the loop; its exit code is the program's. */
+static int add_sources(struct jobs *j)
+{
+	static const int signals[] = { SIGTERM, SIGINT };
+	sigset_t set;
+	int err;
+
+	sigemptyset(&set);
+	for (int i = 0; i < 2; i++)
+		sigaddset(&set, signals[i]);
+	sigprocmask(SIG_BLOCK, &set, NULL);
+	signal(SIGPIPE, SIG_IGN);
+	for (int i = 0; i < 2; i++) {
+		err = sd_event_add_signal(j->event, NULL, signals[i], NULL,
+					  NULL);
+		if (err < 0)
+			return err;
+	}
+	err = sd_event_add_io(j->event, NULL, wire_fd(j->wire), EPOLLIN,
+			      on_wire, j);
+	if (err < 0)
+		return err;
+	err = sd_event_add_time_relative(j->event, NULL, CLOCK_MONOTONIC, 0,
+					 TICK_SLACK_US, on_tick, j);
+	if (err < 0)
+		return err;
+	return sd_event_set_watchdog(j->event, true);
+}
+
+static int run(struct jobs *j)
+{
+	struct link_handlers h = {
+		.event = on_link_event, .changed = on_link_changed, .arg = j,
+	};
+	int err = sd_event_new(&j->event);
+
+	link_init(&j->link, j->machine, &h);
+	if (err >= 0)
+		err = queue_init(j);
+	if (err >= 0)
+		err = add_sources(j);
+	if (err >= 0) {
+		log_notice("machine %s on %s", j->machine, j->config->lcm_url);
+		sd_notify(0, "READY=1\nSTATUS=taking jobs");
+		err = sd_event_loop(j->event);
+		sd_notify(0, "STOPPING=1");
+	}
+	if (err < 0)
+		log_error("ends: %s", strerror(-err));
+	submit_fini(j);
+	queue_fini(j);
+	link_fini(&j->link);
+	sd_event_unref(j->event);
+	return err < 0 ? EX_SOFTWARE : EX_OK;
+}
+
+int main(int argc, char **argv)
+{
+	static struct machine_config config;
+	static struct jobs jobs;
+	struct options o = { .config = NULL };
+	int rc = parse(argc, argv, &o);
+
+	if (rc)
+		return rc;
+	if (sodium_init() < 0)
+		return EX_SOFTWARE;
+	rc = configure(&jobs, &config, &o);
+	if (rc)
+		return rc;
+	rc = open_store(&jobs, o.store ? o.store : config.store_dir);
+	if (rc == 0)
+		rc = open_wire(&jobs);
+	if (rc == 0)
+		rc = run(&jobs);
+	reply_fini(&jobs.replies);
+	wire_close(jobs.wire);
+	store_close(jobs.store);
+	return rc;
+}

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * queue.c - follow the job at the machine
+ */
+#include "jobs.h"
+
+#include "log.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#define MISSING_US	500000		/* edmd needs a moment to come back */
+#define AGAIN_US	1000000
+
+bool queue_is_leaving(const struct queue *q)
+{
+	return q->job.n && (q->job.state == JOB_DONE ||
+			    q->job.state == JOB_STOPPED);
+}
+
+void queue_recount(struct jobs *j)
+{
+	j->queue.behind = store_waiting(j->store);
+}
+
+static void set_waiting(struct jobs *j, bool waiting)
+{
+	if (j->queue.waiting == waiting)
+		return;
+	j->queue.waiting = waiting;
+	store_set_number(j->store, "waiting", waiting);
+}
+
+void queue_go(struct jobs *j)
+{
+	set_waiting(j, false);
+}
+
+static void set_state(struct jobs *j, enum job_state state)
+{
+	struct queue *q = &j->queue;
+
+	if (q->job.state == state)
+		return;
+	log_info("queue: job %s %s, was %s, at %.3f mm", q->job.id,
+		 job_state_name(state), job_state_name(q->job.state),
+		 q->snap.place_mm);
+	q->job.state = state;
+	store_set_state(j->store, q->job.n, state);
+}
+
+int queue_init(struct jobs *j)
+{
+	struct queue *q = &j->queue;
+	int err = store_loaded(j->store, &q->job);
+
+	if (err < 0 && err != -ENOENT)
+		return err;
+	q->waiting = store_number(j->store, "waiting", 0) != 0;
+	queue_recount(j);
+	if (q->job.n)
+		log_notice("queue: job %s was %s when last seen", q->job.id,
+			   job_state_name(q->job.state));
+	return 0;
+}
+
+/* The sums of the job, as far as they are known. */
+static void record_end(struct jobs *j, enum job_state state,
+		       const char *reason)
+{
+	const struct shm_snapshot *s = &j->queue.snap;
+	struct store_end e = {
+		.state = state,
+		.reason = reason,
+		.now_us = jobs_utime(),
+		.place_mm = s->far_mm,
+		.length_mm = s->length_mm,
+		.depth_mm = s->depth_mm,
+		.job_s = (double)s->job_cycles * (double)s->period_ns / 1e9,
+		.jumps = s->jumps,
+		.retracts = s->retracts,
+		.shorts = s->shorts,
+	};
+
+	j->queue.job.state = state;
+	store_end(j->store, j->queue.job.n, &e);
+}
+
+void queue_end(struct jobs *j, enum job_state state, const char *reason)
+{
+	struct queue *q = &j->queue;
+
+	record_end(j, state, reason);
+	queue_recount(j);
+	q->ended = SHM_OUTCOME_NONE;
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "ended", .job = q->job.id,
+		.outcome = job_state_name(state),
+		.place_mm = q->snap.place_mm,
+	}, "job %s %s%s%s", q->job.name, job_state_name(state),
+		  *reason ? ": " : "", reason);
+	if (state != JOB_DONE)
+		set_waiting(j, q->behind > 0);
+}
+
+void queue_drop(struct jobs *j, bool again)
+{
+	struct queue *q = &j->queue;
+
+	if (again)
+		set_state(j, JOB_QUEUED);
+	shm_program_remove(j->machine, q->job.n);
+	store_set_loaded(j->store, q->job.n, false);
+	q->job = (struct store_job) { .n = 0 };
+	q->snap = (struct shm_snapshot) { .program = 0 };
+	q->ended = SHM_OUTCOME_NONE;
+	q->missing_us = 0;
+	queue_recount(j);
+}
+
+void queue_attach(struct jobs *j)
+{
+	struct queue *q = &j->queue;
+	bool anew = store_number(j->store, "instance", 0) != j->link.instance;
+
+	q->missing_us = 0;
+	q->again_us = 0;
+	if (!anew)
+		return;
+	store_set_number(j->store, "instance", j->link.instance);
+	if (q->job.n || q->behind) {
+		log_notice("queue: edmd was started anew; nothing moves until "
+			   "start");
+		set_waiting(j, true);
+	}
+}
+
+void queue_event(struct jobs *j, const struct shm_event *e)
+{
+	struct queue *q = &j->queue;
+
+	/* May be an old one, of an earlier loading: only used if it is gone. */
+	if (e->kind != SHM_EV_ENDED || !q->job.n || e->program != q->job.n)
+		return;
+	if (e->code == SHM_OUTCOME_DONE || e->code == SHM_OUTCOME_STOPPED)
+		q->ended = (uint32_t)e->code;
+}
+
+static void follow_fault(struct jobs *j)
+{
+	struct queue *q = &j->queue;
+	const char *fault = shm_fault_name(q->snap.fault);
+
+	if (q->job.state == JOB_FAULT)
+		return;
+	record_end(j, JOB_FAULT, fault);
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "alarm", .job = q->job.id, .outcome = fault,
+		.place_mm = q->snap.place_mm,
+	}, "job %s: fault %s in line %u; reset, then start goes on, stop "
+		  "ends it", q->job.name, fault, q->snap.line);
+	/* A reset alone must not set it in motion. */
+	set_waiting(j, true);
+}
+
+static void follow_running(struct jobs *j)
+{
+	struct queue *q = &j->queue;
+
+	set_state(j, JOB_RUNNING);
+	q->ended = SHM_OUTCOME_NONE;
+	if (q->job.begun_us)
+		return;
+	q->job.begun_us = jobs_utime();
+	store_begin(j->store, q->job.n, q->job.begun_us);
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "begun", .job = q->job.id,
+	}, "job %s begun", q->job.name);
+}
+
+static void follow_hold(struct jobs *j, int64_t now_us)
+{
+	struct queue *q = &j->queue;
+
+	if (q->job.begun_us || q->snap.job_cycles) {
+		set_state(j, JOB_HELD);
+		return;
+	}
+	set_state(j, JOB_READY);
+	if (!q->job.hold && !q->waiting && !q->asked && !q->loading &&
+	    now_us >= q->again_us && load_send(j, SHM_DO_START, 0, now_us) < 0)
+		q->again_us = now_us + AGAIN_US;
+}
+
+static void follow_ended(struct jobs *j, uint32_t outcome)
+{
+	if (outcome == SHM_OUTCOME_DONE)
+		queue_end(j, JOB_DONE, "");
+	else if (outcome == SHM_OUTCOME_STOPPED)
+		queue_end(j, JOB_STOPPED, "by command");
+}
+
+static void follow_leaving(struct jobs *j, int64_t now_us)
+{
+	struct queue *q = &j->queue;
+
+	if (q->asked || now_us < q->again_us)
+		return;
+	q->again_us = now_us + AGAIN_US;
+	load_send(j, SHM_UNLOAD, q->job.n, now_us);
+}
+
+static void follow_state(struct jobs *j, int64_t now_us)
+{
+	struct queue *q = &j->queue;
+
+	switch (q->snap.state) {
+	case SHM_IDLE:
+		follow_ended(j, q->snap.outcome);
+		break;
+	case SHM_HOLD:
+		follow_hold(j, now_us);
+		break;
+	case SHM_FAULT:
+		follow_fault(j);
+		break;
+	default:
+		follow_running(j);
+		break;
+	}
+}
+
+/* edmd shows another program, or none: for a moment, or for good? */
+static void follow_missing(struct jobs *j, int64_t now_us)
+{
+	struct queue *q = &j->queue;
+
+	if (queue_is_leaving(q)) {
+		queue_drop(j, false);
+	} else if (q->ended) {
+		follow_ended(j, q->ended);
+	} else if (!q->missing_us) {
+		q->missing_us = now_us;
+	} else if (now_us - q->missing_us > MISSING_US && !q->loading) {
+		if (q->job.begun_us)
+			queue_end(j, JOB_STOPPED,
+				  "edmd restarted without its program");
+		else
+			set_waiting(j, true);
+		queue_drop(j, !q->job.begun_us);
+	}
+}
+
+/* A program that this service did not load, or has forgotten. */
+static void unload_stranger(struct jobs *j, int64_t now_us)
+{
+	struct queue *q = &j->queue;
+	uint32_t n = j->link.snap.program;
+
+	if (q->asked || now_us < q->again_us)
+		return;
+	q->again_us = now_us + AGAIN_US;
+	if (j->link.snap.state == SHM_IDLE) {
+		log_notice("queue: edmd has program %u, which is no job here; "
+			   "unloading it", n);
+		load_send(j, SHM_UNLOAD, n, now_us);
+		shm_program_remove(j->machine, n);
+	}
+}
+
+void queue_step(struct jobs *j, int64_t now_us)
+{
+	struct queue *q = &j->queue;
+	const struct shm_snapshot *s = &j->link.snap;
+
+	if (q->job.n && s->program == q->job.n) {
+		q->missing_us = 0;
+		q->snap = *s;
+		if (queue_is_leaving(q))
+			follow_leaving(j, now_us);
+		else
+			follow_state(j, now_us);
+	} else if (q->job.n) {
+		follow_missing(j, now_us);
+	} else if (s->program) {
+		unload_stranger(j, now_us);
+	} else if (s->state == SHM_FAULT) {
+		/* A reset alone must set nothing in motion. */
+		set_waiting(j, q->waiting || q->behind > 0);
+	} else if (!q->compile && now_us >= q->again_us) {
+		load_begin(j, now_us);
+	}
+}
+
+void queue_fini(struct jobs *j)
+{
+	struct queue *q = &j->queue;
+
+	load_fini(j);
+	if (!q->job.n || (q->job.begun_us && !queue_is_leaving(q)))
+		return;
+	load_send(j, SHM_UNLOAD, q->job.n, jobs_now_us());
+	queue_drop(j, !queue_is_leaving(q));
+}

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * queue.h - the job at the machine, and which comes next
+ *
+ * At most one job is loaded.  Where it stands is read from edmd's snapshot
+ * and written to the store, never the other way round, so that this service
+ * may be killed at any time and finds its job again.
+ *
+ *	queued -> ready -> running <-> held -> done, stopped
+ *	                      |  ^
+ *	                      v  |
+ *	                      fault
+ *
+ * Nothing starts by itself after a fault, a stop, or a new start of edmd: the
+ * queue waits for "start".
+ *
+ * Threads: one, that of the event loop.
+ */
+#ifndef JOBS_QUEUE_H
+#define JOBS_QUEUE_H
+
+#include "shm.h"
+#include "store.h"
+
+struct compile;
+struct compile_result;
+struct jobs;
+
+/* Read, do not write. */
+struct queue {
+	struct store_job job;		/* loaded; n 0: none */
+	struct shm_snapshot snap;	/* the last one that was of that job */
+	uint32_t behind;		/* jobs that wait */
+	bool waiting;			/* for "start" */
+	/* Private. */
+	uint32_t ended;			/* enum shm_outcome, by its event */
+	bool loading;			/* LOAD is under way */
+	bool asked;			/* START or UNLOAD is under way */
+	int64_t missing_us;		/* since when edmd has not got it */
+	int64_t again_us;		/* not before: what was refused */
+	struct compile *compile;	/* of `next`, to be loaded */
+	struct store_job next;
+	char *next_text;
+};
+
+/** queue_init() - find the job that was loaded. Startup only. */
+int queue_init(struct jobs *j);
+
+/** queue_fini() - leave running jobs alone, take the others back. */
+void queue_fini(struct jobs *j);
+
+/** queue_attach() - edmd came, or came back. */
+void queue_attach(struct jobs *j);
+
+/** queue_event() - one of edmd's events. */
+void queue_event(struct jobs *j, const struct shm_event *e);
+
+/** queue_step() - every 20 ms while edmd is there. */
+void queue_step(struct jobs *j, int64_t now_us);
+
+/** queue_recount() - jobs were added or removed. */
+void queue_recount(struct jobs *j);
+
+/** queue_go() - "start": the queue waits no more. */
+void queue_go(struct jobs *j);
+
+/** queue_is_leaving() - ended, still to be unloaded. */
+bool queue_is_leaving(const struct queue *q);
+
+/** queue_end() - the job is over: record it, tell. */
+void queue_end(struct jobs *j, enum job_state state, const char *reason);
+
+/** queue_drop() - edmd has no program of ours any more. */
+void queue_drop(struct jobs *j, bool again);
+
+/* -- load.c: from the store into edmd ------------------------------------- */
+
+/** load_begin() - compile the first that waits, if any, then load it. */
+void load_begin(struct jobs *j, int64_t now_us);
+
+/** load_send() - a command about program @n whose answer ends `asked`. */
+int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us);
+
+/** load_fini() - forget what is being compiled. */
+void load_fini(struct jobs *j);
+
+#endif /* JOBS_QUEUE_H */

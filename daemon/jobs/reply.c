@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * reply.c - a command repeated is answered again, not done again
+ */
+#include "reply.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct reply *reply_find(const struct replies *r, const char *client,
+			       int64_t seq)
+{
+	for (int i = 0; i < REPLY_SLOTS; i++)
+		if (r->slot[i].seq == seq && r->slot[i].client[0] &&
+		    strcmp(r->slot[i].client, client) == 0)
+			return &r->slot[i];
+	return NULL;
+}
+
+static void reply_clear(struct reply *one)
+{
+	free(one->reason);
+	free(one->body);
+	*one = (struct reply) { .seq = 0 };
+}
+
+void reply_expect(struct replies *r, const char *client, int64_t seq)
+{
+	struct reply *one = &r->slot[r->next];
+
+	r->next = (r->next + 1) % REPLY_SLOTS;
+	reply_clear(one);
+	snprintf(one->client, sizeof(one->client), "%s", client);
+	one->seq = seq;
+}
+
+void reply_keep(struct replies *r, const struct wire_ack *a)
+{
+	const struct reply *found = reply_find(r, a->client, a->seq);
+	struct reply *one;
+
+	if (!found)
+		return;
+	one = &r->slot[found - r->slot];
+	one->done = true;
+	one->code = a->code;
+	free(one->reason);
+	free(one->body);
+	one->reason = strdup(a->reason ? a->reason : "");
+	one->body = strdup(a->body ? a->body : "");
+}
+
+void reply_fini(struct replies *r)
+{
+	for (int i = 0; i < REPLY_SLOTS; i++)
+		reply_clear(&r->slot[i]);
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * reply.h - a command repeated is answered again, not done again
+ *
+ * Remembers the last commands by client and seq, with what was answered.
+ *
+ * Threads: one object belongs to one thread.
+ */
+#ifndef JOBS_REPLY_H
+#define JOBS_REPLY_H
+
+#include "wire.h"
+
+#define REPLY_SLOTS	128
+
+struct reply {
+	char client[WIRE_CLIENT_MAX];	/* "": free */
+	int64_t seq;
+	bool done;
+	int code;
+	char *reason, *body;
+};
+
+struct replies {
+	struct reply slot[REPLY_SLOTS];
+	unsigned int next;
+};
+
+/** reply_find() - the one to this command; NULL if it is new. */
+const struct reply *reply_find(const struct replies *r, const char *client,
+			       int64_t seq);
+
+/** reply_expect() - this command is under way. */
+void reply_expect(struct replies *r, const char *client, int64_t seq);
+
+/** reply_keep() - it is answered. */
+void reply_keep(struct replies *r, const struct wire_ack *a);
+
+/** reply_fini() - free everything. */
+void reply_fini(struct replies *r);
+
+#endif /* JOBS_REPLY_H */

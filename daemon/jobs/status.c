@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * status.c - edmd's snapshot and the job loaded, as STATUS
+ */
+#include "jobs.h"
+
+#include <string.h>
+
+#define STATUS_US	100000
+
+/* Whatever of this changes is told at once. */
+static uint64_t key_of(const struct jobs *j)
+{
+	const struct shm_snapshot *s = &j->link.snap;
+
+	return (uint64_t)j->link.state << 60 | (uint64_t)(s->state & 15) << 56 |
+	       (uint64_t)(s->fault & 255) << 48 |
+	       (uint64_t)j->queue.job.state << 44 |
+	       (uint64_t)(j->queue.behind & 0xfff) << 32 | j->queue.job.n;
+}
+
+/* By the farthest place reached and the time it took. */
+static double left_s(const struct wire_status *w, double far_mm)
+{
+	if (far_mm <= 0 || w->job_s <= 0)
+		return -1;
+	return w->job_s * (w->length_mm - far_mm) / far_mm;
+}
+
+static void fill_job(struct wire_status *w, const struct queue *q)
+{
+	const struct shm_snapshot *s = &q->snap;
+
+	w->job = q->job.id;
+	w->job_name = q->job.name;
+	w->job_state = q->job.n ? job_state_name(q->job.state) : "";
+	w->lines = q->job.lines;
+	w->line = s->line;
+	w->place_mm = s->place_mm;
+	w->length_mm = s->length_mm;
+	w->progress = s->length_mm > 0 ? s->far_mm / s->length_mm : 0;
+	w->depth_mm = s->depth_mm;
+	w->jumps = s->jumps;
+	w->retracts = s->retracts;
+	w->shorts = s->shorts;
+	w->job_s = (double)s->job_cycles * (double)s->period_ns / 1e9;
+	w->left_s = left_s(w, s->far_mm);
+	w->queue_len = q->behind;
+}
+
+static void fill_machine(struct wire_status *w, const struct link *l)
+{
+	const struct shm_snapshot *s = &l->snap;
+	bool there = l->state == LINK_OK;
+
+	w->daemon = link_state_name(l->state);
+	w->state = there ? shm_state_name(s->state) : "unknown";
+	w->fault = shm_fault_name(s->fault);
+	for (int i = 0; i < WIRE_NAXES; i++)
+		w->pos_mm[i] = s->pos[i] * s->pulse_mm[i];
+	if (there) {
+		w->gap_v = s->gap_v;
+		w->feed_mm_s = s->feed_mm_s;
+	}
+	w->overruns = s->overruns;
+	w->wake_late_max_us = (uint32_t)(s->wake_late_max_ns / 1000);
+}
+
+void status_tick(struct jobs *j, int64_t now_us)
+{
+	uint64_t key = key_of(j);
+	struct wire_status w = { .line = 0 };
+
+	if (key == j->status_key && now_us - j->status_us < STATUS_US)
+		return;
+	j->status_key = key;
+	j->status_us = now_us;
+	fill_machine(&w, &j->link);
+	fill_job(&w, &j->queue);
+	wire_status(j->wire, &w);
+}

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * store.h - jobs, events and a few numbers, kept through a power cut
+ *
+ * One SQLite database, <dir>/<machine>.db, in WAL with synchronous=FULL: what
+ * a call has returned from is on the disk.  A lock file beside it keeps a
+ * second service of the same machine out.
+ *
+ * Every job has a number n, never used twice, which is also the n of its
+ * program.<n> in shared memory.
+ *
+ * Units: in every name; times are microseconds since 1970.
+ * Threads: one.  Calls return 0 or -EIO unless they say more, and log what
+ * SQLite said.
+ */
+#ifndef JOBS_STORE_H
+#define JOBS_STORE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum job_state {
+	JOB_QUEUED, JOB_READY, JOB_RUNNING, JOB_HELD,
+	JOB_DONE, JOB_FAULT, JOB_STOPPED,
+	JOB_NSTATES
+};
+
+struct store;
+
+struct store_job {
+	uint32_t n;
+	char id[64], name[64];
+	char sha256[65];		/* hex */
+	enum job_state state;
+	bool hold;			/* waits for "start" */
+	bool loaded;			/* program.<n> exists, or may exist */
+	int64_t begun_us;		/* 0: not yet */
+	uint32_t lines;			/* of the text */
+};
+
+struct store_new {
+	const char *id, *name, *sha256;
+	const char *text;
+	size_t bytes;
+	uint32_t lines;
+	bool hold;
+	int64_t now_us;
+};
+
+/* How a job ended. */
+struct store_end {
+	enum job_state state;
+	const char *reason;		/* in words; "" if done */
+	int64_t now_us;
+	double place_mm, length_mm, depth_mm, job_s;
+	uint32_t jumps, retracts, shorts;
+};
+
+struct store_note {
+	const char *kind, *job, *outcome, *text;
+	double place_mm;
+	int64_t now_us;
+};
+
+enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY };
+
+/** job_state_name() - "queued", ... */
+const char *job_state_name(enum job_state s);
+
+/**
+ * store_open() - open or make the database.
+ *
+ * Return: 0; -EBUSY if another service has it; -EPROTO if a newer version
+ * made it; -errno if @dir cannot be used; -EIO.
+ */
+int store_open(struct store **ret, const char *dir, const char *machine);
+/** store_close() - NULL is fine. */
+void store_close(struct store *s);
+
+/** store_add() - a new job, queued.  @ret_n its number. */
+int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n);
+
+/* Find one: 0, or -ENOENT. */
+int store_find(struct store *s, const char *id, struct store_job *ret);
+int store_loaded(struct store *s, struct store_job *ret);
+int store_head(struct store *s, struct store_job *ret);
+
+/** store_text() - the text of job @n; to be freed. */
+int store_text(struct store *s, uint32_t n, char **ret, size_t *ret_bytes);
+
+int store_set_state(struct store *s, uint32_t n, enum job_state state);
+int store_set_hold(struct store *s, uint32_t n, bool hold);
+int store_set_loaded(struct store *s, uint32_t n, bool loaded);
+int store_begin(struct store *s, uint32_t n, int64_t now_us);
+int store_end(struct store *s, uint32_t n, const struct store_end *e);
+int store_note(struct store *s, const struct store_note *e);
+
+/** store_waiting() - jobs that are queued and not loaded. */
+uint32_t store_waiting(struct store *s);
+
+/** store_number() - a number kept by name; @otherwise if there is none. */
+int64_t store_number(struct store *s, const char *key, int64_t otherwise);
+int store_set_number(struct store *s, const char *key, int64_t value);
+
+/**
+ * store_json() - a list as JSON; @id for show, @rows for history.
+ * Return: to be freed; NULL if there is no such job or no memory.
+ */
+char *store_json(struct store *s, enum store_list what, const char *id,
+		 int rows);
+
+#endif /* JOBS_STORE_H */

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * submit.c - from the first chunk of a job to its place in the queue
+ *
+ * Each chunk is answered.  When the text is whole it is compiled, and the
+ * chunk that made it whole is answered once more: accepted, with the job as
+ * JSON, or refused, with line and column.
+ */
+#include "jobs.h"
+
+#include "compile.h"
+#include "log.h"
+
+#include <errno.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+
+/* Which upload a compile belongs to. */
+struct check {
+	struct jobs *jobs;
+	struct upload *upload;
+};
+
+static void hash_hex(char ret[65], const uint8_t hash[32])
+{
+	sodium_bin2hex(ret, 65, hash, 32);
+}
+
+static void answer_end(struct jobs *j, struct upload *up, int code,
+		       const char *reason, const char *body)
+{
+	struct wire_ack a = {
+		.client = up->client, .seq = up->seq, .code = code,
+		.reason = reason, .body = body,
+	};
+
+	wire_ack(j->wire, &a);
+	upload_forget(&j->uploads, up, code, reason, body);
+}
+
+/* A JSON string's inside: what would end it or is no text, as \u00xx. */
+static void json_put(char *to, size_t size, const char *from)
+{
+	size_t n = 0;
+
+	for (; *from && n + 7 < size; from++) {
+		unsigned char c = (unsigned char)*from;
+
+		if (c < ' ' || c >= 0x7f || c == '"' || c == '\\')
+			n += (size_t)snprintf(to + n, size - n, "\\u%04x", c);
+		else
+			to[n++] = (char)c;
+	}
+	to[n] = '\0';
+}
+
+static void refuse_text(struct jobs *j, struct upload *up,
+			const struct interp_diag *d)
+{
+	char reason[480], body[2100];
+	char found[6 * sizeof(d->found)], wanted[6 * sizeof(d->wanted)];
+
+	snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s", up->name,
+		 d->line, d->column, d->found, d->wanted);
+	json_put(found, sizeof(found), d->found);
+	json_put(wanted, sizeof(wanted), d->wanted);
+	snprintf(body, sizeof(body), "{\"line\":%u,\"column\":%u,"
+		 "\"found\":\"%s\",\"wanted\":\"%s\"}", d->line, d->column,
+		 found, wanted);
+	log_info("submit: refused %s", reason);
+	answer_end(j, up, EX_DATAERR, reason, body);
+}
+
+static const char *what_next(const struct jobs *j, bool hold)
+{
+	if (j->link.state != LINK_OK)
+		return "edmd is not there: it waits, and wants a start";
+	if (j->link.snap.state == SHM_FAULT)
+		return "a fault is latched: it wants a reset, then a start";
+	if (j->queue.waiting)
+		return "the queue waits for start";
+	if (hold)
+		return "it will wait for start";
+	return j->queue.job.n || j->queue.behind > 1 ?
+	       "it starts when those before it are done" : "it starts now";
+}
+
+static void accept_text(struct jobs *j, struct upload *up, uint32_t lines)
+{
+	struct queue *q = &j->queue;
+	char hex[65], reason[160], *body;
+	struct store_new n = {
+		.id = up->id, .name = up->name, .sha256 = hex,
+		.text = up->text, .bytes = up->bytes, .lines = lines,
+		.hold = up->hold, .now_us = jobs_utime(),
+	};
+	uint32_t number;
+
+	hash_hex(hex, up->sha256);
+	/* What a queue waited for is over when there is no queue. */
+	if (q->behind == 0 && (q->job.n == 0 || queue_is_leaving(q)))
+		queue_go(j);
+	if (store_add(j->store, &n, &number) < 0) {
+		answer_end(j, up, EX_IOERR, "the store failed; see the "
+			   "journal of edmd-jobs", NULL);
+		return;
+	}
+	queue_recount(j);
+	jobs_note(j, &(struct jobs_note) { .kind = "queued", .job = n.id },
+		  "job %s queued, %u lines, %zu bytes", n.name, lines,
+		  n.bytes);
+	snprintf(reason, sizeof(reason), "accepted; %s",
+		 what_next(j, up->hold));
+	body = store_json(j->store, STORE_SHOW, n.id, 0);
+	answer_end(j, up, 0, reason, body);
+	free(body);
+}
+
+/* Already there: 0 if it is the same text, else refused. */
+static bool answer_known(struct jobs *j, const struct wire_chunk *c)
+{
+	struct wire_ack a = { .client = c->client, .seq = c->seq };
+	struct store_job job;
+	char hex[65], *body = NULL;
+
+	if (store_find(j->store, c->job, &job) < 0)
+		return false;
+	hash_hex(hex, c->sha256);
+	if (strcmp(hex, job.sha256) == 0) {
+		a.reason = "this job is here already";
+		a.body = body = store_json(j->store, STORE_SHOW, c->job, 0);
+	} else {
+		a.code = EX_DATAERR;
+		a.reason = "another text has this job id; draw a new id";
+	}
+	wire_ack(j->wire, &a);
+	free(body);
+	return true;
+}
+
+static void on_checked(void *arg, const struct compile_result *r)
+{
+	struct check *c = arg;
+	struct jobs *j = c->jobs;
+	struct upload *up = c->upload;
+	struct store_job job;
+
+	free(c);
+	j->check[up - j->uploads.slot] = NULL;
+	if (r->err == -EINVAL)
+		refuse_text(j, up, &r->diag);
+	else if (r->err < 0)
+		answer_end(j, up, EX_SOFTWARE, strerror(-r->err), NULL);
+	else if (store_find(j->store, up->id, &job) == 0)
+		answer_end(j, up, EX_TEMPFAIL, "another client sends this job "
+			   "id too; try again", NULL);
+	else
+		accept_text(j, up, r->lines);
+}
+
+/* From where the machine stands, or will when there is none yet. */
+static void start_place(const struct jobs *j, double ret_mm[INTERP_NAXES])
+{
+	const struct shm_snapshot *s = &j->link.snap;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret_mm[i] = j->link.state == LINK_OK ?
+			    s->pos[i] * s->pulse_mm[i] : j->config->start_mm[i];
+}
+
+static void check_begin(struct jobs *j, struct upload *up)
+{
+	struct compile_request request = {
+		.config = j->config, .text = up->text, .bytes = up->bytes,
+	};
+	struct check *c = malloc(sizeof(*c));
+	int err = c ? 0 : -ENOMEM;
+
+	start_place(j, request.start_mm);
+	if (c) {
+		*c = (struct check) { .jobs = j, .upload = up };
+		err = compile_start(&j->check[up - j->uploads.slot], j->event,
+				    &request, on_checked, c);
+	}
+	if (err < 0) {
+		free(c);
+		answer_end(j, up, EX_TEMPFAIL, strerror(-err), NULL);
+	}
+}
+
+void submit_take(void *arg, const struct wire_chunk *c)
+{
+	struct jobs *j = arg;
+	struct upload_answer answer;
+	struct upload *whole = NULL;
+	struct wire_ack a = { .client = c->client, .seq = c->seq };
+
+	if (upload_check(c, &answer)) {
+		if (answer_known(j, c))
+			return;
+		upload_take(&j->uploads, c, jobs_now_us(), &whole, &answer);
+		a.body = answer.body;
+	}
+	a.code = answer.code;
+	a.reason = answer.reason;
+	wire_ack(j->wire, &a);
+	if (whole)
+		check_begin(j, whole);
+}
+
+void submit_fini(struct jobs *j)
+{
+	for (int i = 0; i < UPLOAD_SLOTS; i++) {
+		free(compile_destroy(j->check[i]));
+		j->check[i] = NULL;
+	}
+	upload_fini(&j->uploads);
+}

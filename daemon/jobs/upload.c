@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * upload.c - a job's text put together from chunks
+ */
+#include "upload.h"
+
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+
+#define ID_CHARS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
+			"abcdefghijklmnopqrstuvwxyz0123456789._-"
+
+static void refuse(struct upload_answer *a, int code, const char *reason)
+{
+	a->code = code;
+	snprintf(a->reason, sizeof(a->reason), "%s", reason);
+	a->body = NULL;
+}
+
+/* Bytes of the UTF-8 character at @s; 0 if it is none, or a control. */
+static size_t utf8_bytes(const unsigned char *s)
+{
+	size_t n = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 :
+		   s[0] < 0xf0 ? 3 : s[0] < 0xf5 ? 4 : 0;
+
+	if (s[0] < ' ' || s[0] == 0x7f)
+		return 0;
+	for (size_t i = 1; i < n; i++)
+		if ((s[i] & 0xc0) != 0x80)
+			return 0;
+	return n;
+}
+
+static bool name_is_plain(const char *name)
+{
+	const unsigned char *s = (const unsigned char *)name;
+	size_t n = strlen(name), step = 1;
+
+	for (; *s && step; s += step)
+		step = utf8_bytes(s);
+	return n > 0 && n < WIRE_ID_MAX && step;
+}
+
+static bool place_is_inside(const struct wire_chunk *c)
+{
+	return c->chunks >= 1 && c->chunks <= UPLOAD_CHUNKS_MAX &&
+	       c->chunk >= 0 && c->chunk < c->chunks &&
+	       c->size <= WIRE_CHUNK_MAX && c->offset >= 0 &&
+	       c->offset <= c->bytes &&
+	       (int64_t)c->size <= c->bytes - c->offset;
+}
+
+bool upload_check(const struct wire_chunk *c, struct upload_answer *a)
+{
+	size_t client = strlen(c->client), id = strlen(c->job);
+
+	if (client == 0 || client >= WIRE_CLIENT_MAX)
+		refuse(a, EX_PROTOCOL, "client name of no or too many bytes; "
+		       "1 to 63");
+	else if (id == 0 || id >= WIRE_ID_MAX || strspn(c->job, ID_CHARS) != id)
+		refuse(a, EX_DATAERR, "job id not fit; 1 to 63 of A-Z a-z "
+		       "0-9 . _ -");
+	else if (!name_is_plain(c->name))
+		refuse(a, EX_DATAERR, "job name not fit; 1 to 63 bytes of "
+		       "UTF-8 without control characters");
+	else if (c->bytes < 0 || c->bytes > UPLOAD_BYTES_MAX)
+		refuse(a, EX_DATAERR, "job too long; at most 64 MiB");
+	else if (!place_is_inside(c))
+		refuse(a, EX_PROTOCOL, "chunk outside its job; at most "
+		       "32768 bytes, inside the size given");
+	else
+		return true;
+	return false;
+}
+
+static bool upload_is(const struct upload *up, const struct wire_chunk *c)
+{
+	return up->state != UPLOAD_FREE && strcmp(up->client, c->client) == 0 &&
+	       strcmp(up->id, c->job) == 0;
+}
+
+static struct upload *upload_find(struct uploads *u, const struct wire_chunk *c)
+{
+	for (int i = 0; i < UPLOAD_SLOTS; i++)
+		if (upload_is(&u->slot[i], c))
+			return &u->slot[i];
+	return NULL;
+}
+
+static const struct upload_verdict *verdict_find(const struct uploads *u,
+						 const struct wire_chunk *c)
+{
+	for (int i = 0; i < UPLOAD_VERDICTS; i++) {
+		const struct upload_verdict *v = &u->verdict[i];
+
+		if (v->reason && strcmp(v->client, c->client) == 0 &&
+		    strcmp(v->id, c->job) == 0 && c->seq >= v->seq_min &&
+		    c->seq <= v->seq_max)
+			return v;
+	}
+	return NULL;
+}
+
+static void upload_clear(struct upload *up)
+{
+	free(up->seen);
+	free(up->text);
+	*up = (struct upload) { .state = UPLOAD_FREE };
+}
+
+static struct upload *upload_begin(struct uploads *u,
+				   const struct wire_chunk *c,
+				   struct upload_answer *a)
+{
+	struct upload *up = NULL;
+
+	for (int i = 0; i < UPLOAD_SLOTS && !up; i++)
+		if (u->slot[i].state == UPLOAD_FREE)
+			up = &u->slot[i];
+	if (!up) {
+		refuse(a, EX_TEMPFAIL, "8 uploads are under way; try again "
+		       "when one is done");
+		return NULL;
+	}
+	up->seen = calloc(((size_t)c->chunks + 7) / 8, 1);
+	up->text = calloc((size_t)c->bytes + 1, 1);
+	if (!up->seen || !up->text) {
+		upload_clear(up);
+		refuse(a, EX_TEMPFAIL, "no memory for the job; try again");
+		return NULL;
+	}
+	up->state = UPLOAD_FILLING;
+	snprintf(up->client, sizeof(up->client), "%s", c->client);
+	snprintf(up->id, sizeof(up->id), "%s", c->job);
+	snprintf(up->name, sizeof(up->name), "%s", c->name);
+	memcpy(up->sha256, c->sha256, sizeof(up->sha256));
+	up->bytes = (size_t)c->bytes;
+	up->chunks = (uint32_t)c->chunks;
+	up->hold = c->hold;
+	up->seq_min = up->seq_max = c->seq;
+	return up;
+}
+
+static bool upload_agrees(const struct upload *up, const struct wire_chunk *c)
+{
+	return up->bytes == (size_t)c->bytes &&
+	       up->chunks == (uint32_t)c->chunks &&
+	       memcmp(up->sha256, c->sha256, sizeof(up->sha256)) == 0;
+}
+
+static void upload_put(struct upload *up, const struct wire_chunk *c,
+		       int64_t now_us)
+{
+	uint8_t bit = (uint8_t)(1 << (c->chunk & 7));
+
+	if (c->seq < up->seq_min)
+		up->seq_min = c->seq;
+	if (c->seq > up->seq_max)
+		up->seq_max = c->seq;
+	if (up->state == UPLOAD_WHOLE || (up->seen[c->chunk / 8] & bit))
+		return;
+	up->seen[c->chunk / 8] |= bit;
+	up->have++;
+	up->seq = c->seq;
+	up->last_us = now_us;
+	if (c->size)
+		memcpy(up->text + c->offset, c->data, c->size);
+}
+
+static bool upload_hash_fits(const struct upload *up)
+{
+	uint8_t hash[crypto_hash_sha256_BYTES];
+
+	crypto_hash_sha256(hash, (const unsigned char *)up->text, up->bytes);
+	return memcmp(hash, up->sha256, sizeof(hash)) == 0;
+}
+
+static void upload_finish(struct uploads *u, struct upload *up,
+			  struct upload **ret, struct upload_answer *a)
+{
+	if (upload_hash_fits(up)) {
+		up->state = UPLOAD_WHOLE;
+		snprintf(a->reason, sizeof(a->reason), "whole; compiling");
+		*ret = up;
+		return;
+	}
+	refuse(a, EX_PROTOCOL, "the text does not fit its SHA-256; send the "
+	       "job again");
+	upload_forget(u, up, a->code, a->reason, NULL);
+}
+
+void upload_take(struct uploads *u, const struct wire_chunk *c,
+		 int64_t now_us, struct upload **ret, struct upload_answer *a)
+{
+	const struct upload_verdict *v = verdict_find(u, c);
+	struct upload *up = upload_find(u, c);
+
+	*ret = NULL;
+	*a = (struct upload_answer) { .code = 0 };
+	if (!up && v) {
+		refuse(a, v->code, v->reason);
+		a->body = v->body;
+		return;
+	}
+	if (!up)
+		up = upload_begin(u, c, a);
+	if (!up)
+		return;
+	if (!upload_agrees(up, c)) {
+		refuse(a, EX_PROTOCOL, "chunk of another size or hash than "
+		       "those before it; one text for one job id");
+		return;
+	}
+	upload_put(up, c, now_us);
+	snprintf(a->reason, sizeof(a->reason), "%u of %u chunks", up->have,
+		 up->chunks);
+	if (up->state == UPLOAD_FILLING && up->have == up->chunks)
+		upload_finish(u, up, ret, a);
+}
+
+void upload_forget(struct uploads *u, struct upload *up, int code,
+		   const char *reason, const char *body)
+{
+	struct upload_verdict *v = &u->verdict[u->next_verdict];
+
+	u->next_verdict = (u->next_verdict + 1) % UPLOAD_VERDICTS;
+	free(v->reason);
+	free(v->body);
+	memcpy(v->client, up->client, sizeof(v->client));
+	memcpy(v->id, up->id, sizeof(v->id));
+	v->seq_min = up->seq_min;
+	v->seq_max = up->seq_max;
+	v->code = code;
+	v->reason = strdup(reason);
+	v->body = body ? strdup(body) : NULL;
+	upload_clear(up);
+}
+
+int upload_expire(struct uploads *u, int64_t now_us)
+{
+	int dropped = 0;
+
+	for (int i = 0; i < UPLOAD_SLOTS; i++) {
+		struct upload *up = &u->slot[i];
+
+		if (up->state != UPLOAD_FILLING ||
+		    now_us - up->last_us < UPLOAD_IDLE_US)
+			continue;
+		upload_clear(up);
+		dropped++;
+	}
+	return dropped;
+}
+
+void upload_fini(struct uploads *u)
+{
+	for (int i = 0; i < UPLOAD_SLOTS; i++)
+		upload_clear(&u->slot[i]);
+	for (int i = 0; i < UPLOAD_VERDICTS; i++) {
+		free(u->verdict[i].reason);
+		free(u->verdict[i].body);
+		u->verdict[i].reason = u->verdict[i].body = NULL;
+	}
+}

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * upload.h - a job's text put together from chunks
+ *
+ * Chunks come in any order, twice, or never.  An upload becomes whole when
+ * every chunk is there and the text fits its hash; until then it is nothing.
+ * What was decided about one is remembered for a while, for a client that
+ * missed the answer and repeats a chunk.
+ *
+ * Threads: one object belongs to one thread.
+ */
+#ifndef JOBS_UPLOAD_H
+#define JOBS_UPLOAD_H
+
+#include "wire.h"
+
+#define UPLOAD_SLOTS		8
+#define UPLOAD_BYTES_MAX	(64 << 20)
+#define UPLOAD_CHUNKS_MAX	65536
+#define UPLOAD_IDLE_US		30000000	/* without a new chunk */
+#define UPLOAD_VERDICTS		32
+
+enum upload_state { UPLOAD_FREE, UPLOAD_FILLING, UPLOAD_WHOLE };
+
+struct upload {
+	enum upload_state state;
+	char client[WIRE_CLIENT_MAX];
+	char id[WIRE_ID_MAX];
+	char name[WIRE_ID_MAX];
+	uint8_t sha256[32];
+	size_t bytes;
+	uint32_t chunks, have;
+	bool hold;
+	uint8_t *seen;			/* bit per chunk */
+	char *text;
+	int64_t last_us;		/* of the last new chunk, monotonic */
+	int64_t seq_min, seq_max;	/* seen so far */
+	int64_t seq;			/* of the chunk that made it whole */
+};
+
+/* What was said about an upload that is gone. */
+struct upload_verdict {
+	char client[WIRE_CLIENT_MAX];
+	char id[WIRE_ID_MAX];
+	int64_t seq_min, seq_max;
+	int code;
+	char *reason, *body;
+};
+
+struct uploads {
+	struct upload slot[UPLOAD_SLOTS];
+	struct upload_verdict verdict[UPLOAD_VERDICTS];
+	unsigned int next_verdict;
+};
+
+/* What to answer to a chunk. */
+struct upload_answer {
+	int code;
+	char reason[192];
+	const char *body;		/* NULL, or lent until the next call */
+};
+
+/**
+ * upload_take() - one chunk, already known to be of no job in the store.
+ *
+ * @ret is set to the upload if this chunk made it whole, else to NULL.
+ */
+void upload_take(struct uploads *u, const struct wire_chunk *c,
+		 int64_t now_us, struct upload **ret,
+		 struct upload_answer *answer);
+
+/** upload_check() - are the chunk's fields fit to be looked at?
+ *  Return: true, or false with @answer filled. */
+bool upload_check(const struct wire_chunk *c, struct upload_answer *answer);
+
+/** upload_forget() - done with it: remember the verdict, free the text. */
+void upload_forget(struct uploads *u, struct upload *up, int code,
+		   const char *reason, const char *body);
+
+/** upload_expire() - drop what has waited too long.
+ *  Return: how many were dropped. */
+int upload_expire(struct uploads *u, int64_t now_us);
+
+/** upload_fini() - free everything. */
+void upload_fini(struct uploads *u);
+
+#endif /* JOBS_UPLOAD_H */

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * state.c - the tables
+ */
+#include "state.h"
+
+#include <stdint.h>
+
+const struct state_duty state_duty[CYCLE_NSTATES] = {
+	/*		      name		power	running */
+	[STATE_STAY]	 = { "?",		false,	false },
+	[STATE_IDLE]	 = { "idle",		false,	false },
+	[STATE_TRAVEL]	 = { "travel",		false,	true },
+	[STATE_APPROACH] = { "approach",	true,	true },
+	[STATE_ERODE]	 = { "erode",		true,	true },
+	[STATE_RETRACT]	 = { "retract",		false,	true },
+	[STATE_JUMP]	 = { "jump",		false,	true },
+	[STATE_HOLD]	 = { "hold",		false,	false },
+	[STATE_FAULT]	 = { "fault",		false,	false },
+};
+
+/*
+ * Read a row as "while in this state, this event leads to...".  A fault, a
+ * stop and a hold lead the same way from every running state; cycle.c has
+ * them, so no row has to remember them.
+ */
+static const uint8_t next[CYCLE_NSTATES][CYCLE_NEVENTS] = {
+	[STATE_TRAVEL] = {
+		[EVENT_CUT]		= STATE_APPROACH,
+		[EVENT_END]		= STATE_IDLE,
+	},
+	[STATE_APPROACH] = {
+		[EVENT_SPARK]		= STATE_ERODE,
+		[EVENT_SHORT]		= STATE_RETRACT,
+		[EVENT_FREE]		= STATE_TRAVEL,
+		[EVENT_END]		= STATE_IDLE,
+	},
+	[STATE_ERODE] = {
+		[EVENT_SHORT]		= STATE_RETRACT,
+		[EVENT_JUMP_DUE]	= STATE_JUMP,
+		[EVENT_FREE]		= STATE_TRAVEL,
+		[EVENT_END]		= STATE_IDLE,
+	},
+	[STATE_RETRACT] = {
+		[EVENT_CLEAR]		= STATE_APPROACH,
+	},
+	[STATE_JUMP] = {
+		[EVENT_MOVE_DONE]	= STATE_APPROACH,
+		[EVENT_SHORT]		= STATE_RETRACT,
+	},
+	[STATE_HOLD] = {
+		[EVENT_START]		= STATE_TRAVEL,
+	},
+	[STATE_FAULT] = {
+		[EVENT_RESET]		= STATE_HOLD,
+	},
+};
+
+enum cycle_state state_next(enum cycle_state s, enum cycle_event ev)
+{
+	/* Running states give way to a hold or a stop alike. */
+	if (state_duty[s].running && (ev == EVENT_HOLD || ev == EVENT_STOP))
+		return STATE_HOLD;
+
+	return next[s][ev] == STATE_STAY ? s : (enum cycle_state)next[s][ev];
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * object.c - names, heads and mappings of the shared objects
+ */
+#include "object.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define NAME_CHARS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
+			"abcdefghijklmnopqrstuvwxyz0123456789_-"
+
+/* A view of a record that may alias anything. */
+typedef uint64_t __attribute__((may_alias)) word_t;
+
+int object_path(char path[OBJECT_PATH_MAX], const char *machine,
+		const char *what)
+{
+	size_t n = strnlen(machine, SHM_NAME_MAX);
+
+	if (n == 0 || n >= SHM_NAME_MAX || strspn(machine, NAME_CHARS) != n)
+		return -EINVAL;
+
+	snprintf(path, OBJECT_PATH_MAX, "/edmd.%.31s.%s", machine, what);
+	return 0;
+}
+
+int64_t object_size(int fd)
+{
+	struct stat st;
+
+	if (fstat(fd, &st) < 0)
+		return -errno;
+	return S_ISREG(st.st_mode) ? st.st_size : -EPROTO;
+}
+
+/*
+ * The memory is taken at once: a sparse object would end its writer with
+ * SIGBUS on the day /dev/shm is full.
+ */
+int object_grow(int fd, size_t bytes, unsigned int mode)
+{
+	int err;
+
+	/* shm_open() has cut the mode by the umask. */
+	if (fchmod(fd, mode) < 0 || ftruncate(fd, (off_t)bytes) < 0)
+		return -errno;
+
+	do {
+		err = posix_fallocate(fd, 0, (off_t)bytes);
+	} while (err == EINTR);
+	return -err;
+}
+
+int object_map(void **ret, int fd, size_t bytes, bool writable)
+{
+	int prot = writable ? PROT_READ | PROT_WRITE : PROT_READ;
+	void *at = mmap(NULL, bytes, prot, MAP_SHARED, fd, 0);
+
+	if (at == MAP_FAILED)
+		return -errno;
+	*ret = at;
+	return 0;
+}
+
+void object_head_fill(struct shm_head *h, const char *machine,
+		      uint64_t bytes, uint32_t instance)
+{
+	strncpy(h->machine, machine, sizeof(h->machine) - 1);
+	h->layout = SHM_LAYOUT;
+	h->bytes = bytes;
+	__atomic_store_n(&h->pid, (int32_t)getpid(), __ATOMIC_RELAXED);
+	__atomic_store_n(&h->instance, instance, __ATOMIC_RELAXED);
+	__atomic_store_n(&h->magic, SHM_MAGIC, __ATOMIC_RELEASE);
+}
+
+int object_head_check(const struct shm_head *h, uint64_t bytes)
+{
+	uint32_t magic = __atomic_load_n(&h->magic, __ATOMIC_ACQUIRE);
+
+	if (magic == 0 && h->layout == 0)
+		return -ENOENT;
+	if (magic != SHM_MAGIC || h->layout != SHM_LAYOUT ||
+	    h->bytes != bytes || h->machine[SHM_NAME_MAX - 1] != '\0')
+		return -EPROTO;
+	return 0;
+}
+
+static int object_open_fd(void **ret, int fd, size_t bytes, bool writable)
+{
+	int64_t size = object_size(fd);
+	void *at = NULL;
+	int err;
+
+	if (size < 0)
+		return (int)size;
+	if (size == 0)
+		return -ENOENT;
+	if ((uint64_t)size != bytes)
+		return -EPROTO;
+
+	err = object_map(&at, fd, bytes, writable);
+	if (err < 0)
+		return err;
+	err = object_head_check(at, bytes);
+	if (err < 0) {
+		munmap(at, bytes);
+		return err;
+	}
+	*ret = at;
+	return 0;
+}
+
+int object_open(void **ret, const char *machine, const char *what,
+		size_t bytes, bool writable)
+{
+	char path[OBJECT_PATH_MAX];
+	int err = object_path(path, machine, what);
+	int fd;
+
+	if (err < 0)
+		return err;
+	fd = shm_open(path, (writable ? O_RDWR : O_RDONLY) | O_CLOEXEC, 0);
+	if (fd < 0)
+		return -errno;
+	err = object_open_fd(ret, fd, bytes, writable);
+	close(fd);
+	return err;
+}
+
+/*
+ * A record under a sequence is read while it may be written; the sequence
+ * tells afterwards.  In C11 that is a race unless every word is atomic.
+ * Release and acquire on the words also hold the order against the stamps, on
+ * any processor, with no fence; on x86 they are plain moves.
+ */
+void object_words_put(void *shared, const void *from, size_t bytes)
+{
+	word_t *to = shared;
+	const word_t *w = from;
+
+	for (size_t i = 0; i < bytes / sizeof(*w); i++)
+		__atomic_store_n(&to[i], w[i], __ATOMIC_RELEASE);
+}
+
+void object_words_get(void *to, const void *shared, size_t bytes)
+{
+	const word_t *from = shared;
+	word_t *w = to;
+
+	for (size_t i = 0; i < bytes / sizeof(*w); i++)
+		w[i] = __atomic_load_n(&from[i], __ATOMIC_ACQUIRE);
+}
+
+void shm_close(const void *object, size_t bytes)
+{
+	if (object)
+		munmap((void *)(uintptr_t)object, bytes);
+}

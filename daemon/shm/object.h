@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * object.h - what the shared objects have in common: name, head, mapping
+ *
+ * Private to this folder.  Startup only, but for the words.
+ */
+#ifndef EDM_SHM_OBJECT_H
+#define EDM_SHM_OBJECT_H
+
+#include "shm.h"
+
+#define OBJECT_PATH_MAX	64
+
+/** object_path() - "/edmd.<machine>.<what>"; -EINVAL for a bad name. */
+int object_path(char path[OBJECT_PATH_MAX], const char *machine,
+		const char *what);
+
+/** object_size() - bytes of @fd, which must be a plain file; else -errno. */
+int64_t object_size(int fd);
+
+/** object_grow() - give the empty @fd @bytes of memory and @mode. */
+int object_grow(int fd, size_t bytes, unsigned int mode);
+
+/** object_map() - map @bytes of @fd. */
+int object_map(void **ret, int fd, size_t bytes, bool writable);
+
+/** object_head_fill() - magic last, so that a reader sees all or nothing. */
+void object_head_fill(struct shm_head *h, const char *machine,
+		      uint64_t bytes, uint32_t instance);
+
+/** object_head_check() - 0; -ENOENT not filled yet; -EPROTO not ours. */
+int object_head_check(const struct shm_head *h, uint64_t bytes);
+
+/** object_open() - map a whole object that another process made. */
+int object_open(void **ret, const char *machine, const char *what,
+		size_t bytes, bool writable);
+
+/** object_words_put() - to shared memory; @bytes is a multiple of 8. */
+void object_words_put(void *shared, const void *from, size_t bytes);
+
+/** object_words_get() - from shared memory. */
+void object_words_get(void *to, const void *shared, size_t bytes);
+
+#endif /* EDM_SHM_OBJECT_H */

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * program.c - program blocks: written once by one process, read by another
+ */
+#include "object.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+static int program_path(char path[OBJECT_PATH_MAX], const char *machine,
+			uint32_t n)
+{
+	char what[24];
+
+	if (n == 0)
+		return -EINVAL;
+	snprintf(what, sizeof(what), "program.%u", n);
+	return object_path(path, machine, what);
+}
+
+int shm_program_create(void **ret, const char *machine, uint32_t n,
+		       size_t bytes)
+{
+	char path[OBJECT_PATH_MAX];
+	int err = program_path(path, machine, n);
+	int fd;
+
+	if (err < 0)
+		return err;
+	if (bytes == 0)
+		return -EINVAL;
+	/* A new file: the old one must not change under who has it mapped. */
+	if (shm_unlink(path) < 0 && errno != ENOENT)
+		return -errno;
+	fd = shm_open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0640);
+	if (fd < 0)
+		return -errno;
+
+	err = object_grow(fd, bytes, 0640);
+	if (err == 0)
+		err = object_map(ret, fd, bytes, true);
+	close(fd);
+	if (err < 0)
+		shm_unlink(path);
+	return err;
+}
+
+int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
+		     uint32_t n)
+{
+	char path[OBJECT_PATH_MAX];
+	int err = program_path(path, machine, n);
+	int64_t size;
+	void *at = NULL;
+	int fd;
+
+	if (err < 0)
+		return err;
+	fd = shm_open(path, O_RDONLY | O_CLOEXEC, 0);
+	if (fd < 0)
+		return -errno;
+
+	size = object_size(fd);
+	if (size > 0)
+		err = object_map(&at, fd, (size_t)size, false);
+	else
+		err = size < 0 ? (int)size : -EPROTO;
+	close(fd);
+	if (err < 0)
+		return err;
+	*ret = at;
+	*ret_bytes = (size_t)size;
+	return 0;
+}
+
+void shm_program_unmap(const void *block, size_t bytes)
+{
+	shm_close(block, bytes);
+}
+
+void shm_program_remove(const char *machine, uint32_t n)
+{
+	char path[OBJECT_PATH_MAX];
+
+	if (program_path(path, machine, n) == 0)
+		shm_unlink(path);
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * status.c - make, take over, open and remove the status object
+ *
+ * The owner holds a write lock of its open file description on the whole
+ * object.  The kernel drops it with the process, however that ends, and
+ * anyone may ask for it without taking it, so a reader that looks never
+ * hinders an edmd that starts.
+ */
+#include "object.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define CREATE_TRIES	8
+
+static uint32_t instance_draw(void)
+{
+	uint32_t n = 0;
+
+	while (n == 0) {
+		if (getrandom(&n, sizeof(n), 0) != sizeof(n))
+			n = (uint32_t)getpid();
+	}
+	return n;
+}
+
+/* Locked and still under its name: 0.  -EAGAIN: removed meanwhile. */
+static int status_own(int fd)
+{
+	struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+	struct stat st;
+
+	if (fcntl(fd, F_OFD_SETLK, &lock) < 0)
+		return errno == EACCES || errno == EAGAIN ? -EBUSY : -errno;
+	if (fstat(fd, &st) < 0)
+		return -errno;
+	if (st.st_nlink == 0)
+		return -EAGAIN;
+	return st.st_uid == geteuid() ? 0 : -EPERM;
+}
+
+/* A whole object of this layout, left by a dead edmd of this machine? */
+static bool status_fits(const struct shm_status *s, const char *machine)
+{
+	return object_head_check(&s->head, sizeof(*s)) == 0 &&
+	       strcmp(s->head.machine, machine) == 0;
+}
+
+/*
+ * The snapshots stay until the first new one: an edmd killed before that
+ * loses nothing.  A slot the dead one was writing has an odd sequence, which
+ * the next write would turn even in its middle.
+ */
+static void status_adopt(struct shm_status *s)
+{
+	memset(s->latency_us, 0, sizeof(s->latency_us));
+	for (int i = 0; i < 2; i++)
+		s->snap[i].seq.sequence += s->snap[i].seq.sequence & 1;
+}
+
+static int status_make(void **ret, int fd)
+{
+	int err = object_grow(fd, sizeof(struct shm_status), 0640);
+
+	return err < 0 ? err :
+	       object_map(ret, fd, sizeof(struct shm_status), true);
+}
+
+/* -EAGAIN: of another layout, now removed; try again. */
+static int status_take_over(void **ret, int fd, const char *path,
+			    const char *machine)
+{
+	int err;
+
+	if (object_size(fd) == (int64_t)sizeof(struct shm_status)) {
+		err = object_map(ret, fd, sizeof(struct shm_status), true);
+		if (err < 0)
+			return err;
+		if (status_fits(*ret, machine))
+			return 0;
+		munmap(*ret, sizeof(struct shm_status));
+	}
+	return shm_unlink(path) < 0 && errno != ENOENT ? -errno : -EAGAIN;
+}
+
+/* One try.  The descriptor stays open if all is well: it carries the lock. */
+static int status_try(void **ret, const char *path, const char *machine,
+		      struct shm_snapshot *ret_before)
+{
+	int fd = shm_open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+	int err;
+
+	if (fd < 0)
+		return -errno;
+
+	err = status_own(fd);
+	if (err == 0 && object_size(fd) == 0)
+		err = status_make(ret, fd);
+	else if (err == 0)
+		err = status_take_over(ret, fd, path, machine);
+	if (err < 0) {
+		close(fd);
+		return err;
+	}
+	if (!shm_snapshot(*ret, ret_before))
+		*ret_before = (struct shm_snapshot) { .cycle = 0 };
+	return 0;
+}
+
+int shm_status_create(struct shm_status **ret, const char *machine,
+		      struct shm_snapshot *ret_before)
+{
+	char path[OBJECT_PATH_MAX];
+	struct shm_snapshot before;
+	int err = object_path(path, machine, "status");
+	struct shm_status *s;
+	void *at = NULL;
+
+	if (err < 0)
+		return err;
+	err = -EAGAIN;
+	for (int i = 0; i < CREATE_TRIES && err == -EAGAIN; i++)
+		err = status_try(&at, path, machine, &before);
+	if (err < 0)
+		return err;
+
+	s = at;
+	status_adopt(s);
+	object_head_fill(&s->head, machine, sizeof(*s), instance_draw());
+	*ret_before = before;
+	*ret = s;
+	return 0;
+}
+
+void shm_status_destroy(struct shm_status *s, const char *machine)
+{
+	char path[OBJECT_PATH_MAX];
+
+	if (!s)
+		return;
+	if (object_path(path, machine, "status") == 0)
+		shm_unlink(path);
+	shm_close(s, sizeof(*s));
+}
+
+int shm_status_open(const struct shm_status **ret, const char *machine)
+{
+	void *at;
+	int err = object_open(&at, machine, "status",
+			      sizeof(struct shm_status), false);
+
+	if (err == 0)
+		*ret = at;
+	return err;
+}
+
+/* Locked by another, and the object that @s maps: told by the instance. */
+static bool status_is_owned(int fd, const struct shm_status *s)
+{
+	struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+	struct shm_head h;
+
+	if (pread(fd, &h, sizeof(h), 0) != sizeof(h))
+		return false;
+	if (h.instance != __atomic_load_n(&s->head.instance, __ATOMIC_RELAXED))
+		return false;
+	return fcntl(fd, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}
+
+bool shm_alive(const struct shm_status *s)
+{
+	char path[OBJECT_PATH_MAX];
+	bool alive;
+	int fd;
+
+	if (object_path(path, s->head.machine, "status") < 0)
+		return false;
+	fd = shm_open(path, O_RDONLY | O_CLOEXEC, 0);
+	if (fd < 0)
+		return false;
+	alive = status_is_owned(fd, s);
+	close(fd);
+	return alive;
+}

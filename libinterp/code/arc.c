@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * arc.c - G2 and G3: the centre, from I J K or from R
+ */
+#include "code/reader.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Shorter than this is no radius and no chord. */
+#define NOTHING_MM	1e-6
+
+/* a toward b is counter-clockwise; ca, cb are the centre words, other takes
+ * no part. */
+static const struct plane {
+	enum interp_axis a, b;
+	enum nc_slot ca, cb, other;
+	const char *name, *centre;
+} planes[] = {
+	{ INTERP_X, INTERP_Y, NC_I, NC_J, NC_K, "G17 (XY)", "I and J, or R" },
+	{ INTERP_Z, INTERP_X, NC_K, NC_I, NC_J, "G18 (ZX)", "I and K, or R" },
+	{ INTERP_Y, INTERP_Z, NC_J, NC_K, NC_I, "G19 (YZ)", "J and K, or R" },
+};
+
+static int by_centre(struct nc_reader *r, const struct plane *p,
+		     struct interp_build_arc *arc)
+{
+	const struct nc_block *b = &r->block;
+	const double *here = interp_build_here(r->build);
+	const uint8_t *at = b->code_at[NC_MOTION];
+	const bool has_a = nc_has(r, p->ca), has_b = nc_has(r, p->cb);
+	const double ca = has_a ? b->value[p->ca] * r->unit_mm : 0;
+	const double cb = has_b ? b->value[p->cb] * r->unit_mm : 0;
+
+	if (nc_has(r, p->other))
+		return nc_refuse(r, b->at[p->other], p->centre,
+				 "%s for an arc in the plane %s",
+				 nc_quote_word(r, b->at[p->other]).s, p->name);
+	if (!has_a && !has_b)
+		return nc_refuse(r, at, p->centre, "an arc without a centre");
+	if (!r->arc_incremental && !(has_a && has_b))
+		return nc_refuse(r, at, "both words of the centre; G91.1 makes "
+				 "them distances, where one may be missing",
+				 "half a centre under G90.1");
+	arc->centre_a_mm = ca + (r->arc_incremental ? here[p->a] :
+				 r->offset_mm[p->a]);
+	arc->centre_b_mm = cb + (r->arc_incremental ? here[p->b] :
+				 r->offset_mm[p->b]);
+	if (hypot(arc->centre_a_mm - here[p->a],
+		  arc->centre_b_mm - here[p->b]) < NOTHING_MM)
+		return nc_refuse(r, b->at[has_a ? p->ca : p->cb],
+				 "a centre away from the start",
+				 "an arc of radius 0: its centre is its start");
+	return 0;
+}
+
+static int refuse_radius(struct nc_reader *r, double radius, double half)
+{
+	char wanted[96];
+
+	snprintf(wanted, sizeof(wanted),
+		 "R of at least %.6g mm, half the way from start to end", half);
+	return nc_refuse(r, r->block.at[NC_R], wanted,
+			 "a radius of %.6g mm, too small to reach the end",
+			 radius);
+}
+
+/*
+ * The centre lies on the chord's perpendicular bisector, on the left of a
+ * counter-clockwise arc of less than half a turn.  Each of clockwise and
+ * longer than half a turn swaps the side.
+ */
+static int by_radius(struct nc_reader *r, const struct plane *p,
+		     const double end_mm[INTERP_NAXES],
+		     struct interp_build_arc *arc)
+{
+	const double *here = interp_build_here(r->build);
+	const double value = r->block.value[NC_R] * r->unit_mm;
+	const double radius = fabs(value);
+	const double da = end_mm[p->a] - here[p->a];
+	const double db = end_mm[p->b] - here[p->b];
+	const double chord = hypot(da, db), half = chord / 2;
+	double off = 0;
+
+	if (radius < NOTHING_MM)
+		return nc_refuse(r, r->block.at[NC_R], "R above 0 for the "
+				 "shorter arc, below 0 for the longer",
+				 "an arc of radius 0");
+	if (chord < NOTHING_MM)
+		return nc_refuse(r, r->block.at[NC_R], "an end away from the "
+				 "start; I J K for a full circle",
+				 "R on an arc that ends at its start");
+	if (half - radius > fmax(2 * r->o->machine->axis[p->a].pulse_mm,
+				 0.001 * radius))
+		return refuse_radius(r, radius, half);
+	if (radius > half)
+		off = sqrt((radius - half) * (radius + half)) / chord;
+	if (arc->clockwise != (value < 0))
+		off = -off;
+	arc->centre_a_mm = here[p->a] + da / 2 - off * db;
+	arc->centre_b_mm = here[p->b] + db / 2 + off * da;
+	return 0;
+}
+
+static int centre(struct nc_reader *r, const struct plane *p,
+		  const double end_mm[INTERP_NAXES],
+		  struct interp_build_arc *arc)
+{
+	if (!nc_has(r, NC_R))
+		return by_centre(r, p, arc);
+	if (r->block.words & NC_CENTRE)
+		return nc_refuse(r, r->block.at[NC_R], p->centre,
+				 "R beside a centre");
+	return by_radius(r, p, end_mm, arc);
+}
+
+int nc_arc(struct nc_reader *r, bool clockwise)
+{
+	const struct plane *p = &planes[r->plane];
+	struct interp_build_arc arc = {
+		.axis_a = p->a, .axis_b = p->b, .clockwise = clockwise,
+	};
+	double end_mm[INTERP_NAXES];
+	int rc;
+
+	if (r->absent & (NC_BIT(p->a) | NC_BIT(p->b)))
+		return nc_refuse(r, r->block.code_at[NC_MOTION],
+				 "a plane of axes the machine has",
+				 "an arc in the plane %s", p->name);
+	nc_target(r, end_mm);
+	rc = centre(r, p, end_mm, &arc);
+	if (!rc)
+		rc = nc_word(r, end_mm, false);
+	if (!rc)
+		rc = nc_room(r);
+	if (rc)
+		return rc;
+	rc = interp_build_arc(r->build, end_mm, &arc, &r->word, r->diag);
+	r->moved |= NC_BIT(p->a) | NC_BIT(p->b);
+	return nc_placed(r, rc, end_mm);
+}

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * flow.c - subprograms and the end
+ *
+ * A subprogram is O1000 ... M99, behind the main program's M2 or M30 in the
+ * same text.  M98 P1000 L3 carries it out three times; so does M98 P31000.
+ * Where the O words stand is looked up once, at the first M98.
+ */
+#include "code/number.h"
+#include "code/reader.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#define LABEL_MAX	9999
+#define A_CALL		"M98 P1000, with L3 to repeat it; or M98 P31000"
+
+const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end)
+{
+	while (p < end && nc_classes[*p] != NC_EOL)
+		p++;
+	return p;
+}
+
+/* Over blanks and comments. */
+static const uint8_t *skip_void(const uint8_t *p, const uint8_t *end)
+{
+	for (;;) {
+		p = nc_skip_blanks(p, end);
+		if (p == end || *p != '(')
+			return p;
+		while (p < end && *p != ')')
+			p++;
+		if (p < end)
+			p++;
+	}
+}
+
+/* The number behind an O that begins the line @p to @end; 0: none does. */
+static uint32_t label_of(const uint8_t *p, const uint8_t *end,
+			 const uint8_t **ret_at)
+{
+	uint64_t n = 0, ignored = 0;
+	const uint8_t *first;
+
+	p = skip_void(p, end);
+	if (p < end && (*p | 0x20) == 'n') {
+		p = nc_skip_blanks(p + 1, end);
+		p = skip_void(nc_digits(p, end, &ignored), end);
+	}
+	if (p == end || (*p | 0x20) != 'o')
+		return 0;
+	*ret_at = p;
+	first = nc_skip_blanks(p + 1, end);
+	p = nc_digits(first, end, &n);
+	return p - first <= NC_DIGITS_MAX && n <= LABEL_MAX ? (uint32_t)n : 0;
+}
+
+static int refuse_second(struct nc_reader *r, struct nc_label l,
+			 const uint8_t *at, uint32_t n)
+{
+	r->line_at = l.at;
+	r->line = l.line;
+	return nc_refuse(r, at, "each O number once",
+			 "a second O%u; the first is in line %u", n,
+			 r->labels[n].line);
+}
+
+/* Note the O word of a line, if it has one. */
+static int note_label(struct nc_reader *r, struct nc_label l,
+		      const uint8_t *end)
+{
+	const uint8_t *at;
+	const uint32_t n = label_of(l.at, end, &at);
+
+	if (n == 0)
+		return 0;
+	if (r->labels[n].line)
+		return refuse_second(r, l, at, n);
+	r->labels[n] = l;
+	return 0;
+}
+
+/* One look at every line, as far as the second %. */
+static int find_labels(struct nc_reader *r)
+{
+	struct nc_label l = { r->text, 1 };
+	bool fresh = true;
+	int rc = 0;
+
+	r->labels = calloc(LABEL_MAX + 1, sizeof(r->labels[0]));
+	if (!r->labels)
+		return -ENOMEM;
+	for (; !rc && l.at < r->end; l.line++) {
+		const uint8_t *end = nc_line_end(l.at, r->end);
+		const uint8_t *p = skip_void(l.at, end);
+
+		if (p < end && *p == '%' && !fresh)
+			break;
+		if (p < end && *p != ';' && *p != '/')
+			fresh = false;
+		rc = note_label(r, l, end);
+		l.at = nc_line_next(end, r->end);
+	}
+	return rc;
+}
+
+/* Where the words end that must not stand in front of an O. */
+static const uint8_t *first_word(const struct nc_block *b)
+{
+	const uint32_t codes = ~(NC_BIT(NC_LABEL) | NC_BIT(NC_FEED));
+	const uint8_t *at = b->at[NC_O];
+
+	for (int i = 0; i < NC_NSLOTS; i++) {
+		if ((b->words & NC_BIT(i)) && i != NC_N && b->at[i] < at)
+			at = b->at[i];
+	}
+	for (int i = 0; i < NC_NGROUPS; i++) {
+		if ((b->groups & codes & NC_BIT(i)) && b->code_at[i] < at)
+			at = b->code_at[i];
+	}
+	return at;
+}
+
+int nc_run_label(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+	const uint8_t *at = b->at[NC_O];
+
+	if (first_word(b) < at)
+		return nc_refuse(r, at, "O as the first word of its line",
+				 "%s behind other words",
+				 nc_quote_word(r, at).s);
+	if (!r->fresh)
+		return nc_refuse(r, at, r->depth ?
+				 "M99 at the end of a subprogram" :
+				 "M2 or M30 at the end of the main program",
+				 "the next program, %s, without an end of this "
+				 "one", nc_quote_word(r, at).s);
+	r->frame[r->depth].number = (uint32_t)b->value[NC_O];
+	return 0;
+}
+
+static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats)
+{
+	const struct nc_label *l = &r->labels[number];
+	const uint8_t *at = r->block.at[NC_P];
+
+	if (l->line == 0)
+		return nc_refuse(r, at, "the number of an O word that begins "
+				 "a line of this text",
+				 "a call of O%u, which is not there", number);
+	for (uint32_t i = 0; i <= r->depth; i++) {
+		if (r->frame[i].number == number)
+			return nc_refuse(r, at, "calls of other subprograms",
+					 "recursion: O%u is being carried out "
+					 "already", number);
+	}
+	if (r->depth == INTERP_NC_DEPTH_MAX)
+		return nc_refuse(r, at, "up to 8 calls inside each other",
+				 "a call inside %d others",
+				 INTERP_NC_DEPTH_MAX);
+	r->frame[++r->depth] = (struct nc_frame) {
+		.number = number, .left = repeats - 1,
+		.entry = l->at, .entry_line = l->line,
+		.back = r->at, .return_line = r->line,
+	};
+	r->at = l->at;
+	r->line = l->line - 1;
+	r->fresh = true;
+	return 0;
+}
+
+/* M98 P1000 L3, or P31000: the last four digits are the number. */
+static int call(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+	const double p = nc_has(r, NC_P) ? b->value[NC_P] : 0;
+	uint32_t number = (uint32_t)p, repeats = 1;
+
+	if (!nc_has(r, NC_P))
+		return nc_refuse(r, b->code_at[NC_STOP], A_CALL,
+				 "M98 without P");
+	if (number > LABEL_MAX && !nc_has(r, NC_L)) {
+		repeats = number / (LABEL_MAX + 1);
+		number %= LABEL_MAX + 1;
+	}
+	if (p != floor(p) || number == 0 || number > LABEL_MAX)
+		return nc_refuse(r, b->at[NC_P], A_CALL,
+				 "%s names no subprogram",
+				 nc_quote_word(r, b->at[NC_P]).s);
+	if (nc_has(r, NC_L))
+		repeats = (uint32_t)b->value[NC_L];
+	if (!r->labels) {
+		const int rc = find_labels(r);
+
+		if (rc)
+			return rc;
+	}
+	return enter(r, number, repeats);
+}
+
+static int back(struct nc_reader *r)
+{
+	struct nc_frame *f = &r->frame[r->depth];
+
+	if (r->depth == 0)
+		return nc_refuse(r, r->block.code_at[NC_STOP],
+				 "M2 or M30 at the end of the main program",
+				 "M99 outside a subprogram");
+	if (f->left > 0) {
+		f->left--;
+		r->at = f->entry;
+		r->line = f->entry_line - 1;
+		r->fresh = true;
+		return 0;
+	}
+	r->at = f->back;
+	r->line = f->return_line;
+	r->depth--;
+	return 0;
+}
+
+static int finish(struct nc_reader *r)
+{
+	r->over = NC_FINISHED;
+	r->word.line = r->line;
+	return interp_build_action(r->build, INTERP_END, 0, &r->word, r->diag);
+}
+
+static int halt(struct nc_reader *r)
+{
+	return nc_action(r, INTERP_STOP, 0, r->block.code_at[NC_STOP]);
+}
+
+static int optional_halt(struct nc_reader *r)
+{
+	return nc_action(r, INTERP_OPTIONAL_STOP, 0,
+			 r->block.code_at[NC_STOP]);
+}
+
+int nc_run_stop(struct nc_reader *r)
+{
+	static int (*const stops[])(struct nc_reader *) = {
+		[NC_HALT]		= halt,
+		[NC_OPTIONAL_HALT]	= optional_halt,
+		[NC_FINISH]		= finish,
+		[NC_CALL]		= call,
+		[NC_RETURN]		= back,
+	};
+
+	return stops[r->block.code[NC_STOP]->value](r);
+}
+
+int nc_end_of_text(struct nc_reader *r)
+{
+	if (r->depth > 0 && r->over != NC_FINISHED)
+		return nc_refuse_at(r, r->line,
+				    "M99 at the end of a subprogram",
+				    "the end of the text inside O%u",
+				    r->frame[r->depth].number);
+	if (r->segs == 0)
+		return nc_refuse_at(r, 0, "at least one motion or action",
+				    "empty program");
+	return 0;
+}

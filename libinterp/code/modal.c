@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * modal.c - carry a block out, group by group
+ */
+#include "code/reader.h"
+
+void nc_set_units(struct nc_reader *r, bool inches)
+{
+	r->unit_mm = inches ? 25.4 : 1;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->scale[i] = interp_axis_is_rotary((enum interp_axis)i) ?
+			      1 : r->unit_mm;
+}
+
+void nc_set_offset(struct nc_reader *r)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->offset_mm[i] = r->o->work_offset_mm[r->work][i] +
+				  r->shift_mm[i];
+}
+
+/* The first % begins the text, the second ends it. */
+static int run_tape(struct nc_reader *r)
+{
+	if (r->block.words || r->block.groups != NC_BIT(NC_TAPE))
+		return nc_refuse(r, r->block.code_at[NC_TAPE],
+				 "% alone on its line", "words behind %%");
+	if (r->fresh && !r->tape)
+		r->tape = true;
+	else
+		r->over = NC_TAPE_ENDED;
+	return 0;
+}
+
+static int run_units(struct nc_reader *r)
+{
+	nc_set_units(r, r->block.code[NC_UNITS]->value);
+	return 0;
+}
+
+static int run_plane(struct nc_reader *r)
+{
+	r->plane = r->block.code[NC_PLANE]->value;
+	return 0;
+}
+
+static int run_distance(struct nc_reader *r)
+{
+	r->incremental = r->block.code[NC_DISTANCE]->value;
+	return 0;
+}
+
+static int run_arc_distance(struct nc_reader *r)
+{
+	r->arc_incremental = r->block.code[NC_ARC_DISTANCE]->value;
+	return 0;
+}
+
+static int run_work(struct nc_reader *r)
+{
+	r->work = r->block.code[NC_WORK]->value;
+	nc_set_offset(r);
+	return 0;
+}
+
+/* Feed per minute is the only mode there is. */
+static int run_feed_mode(struct nc_reader *r)
+{
+	(void)r;
+	return 0;
+}
+
+static int run_feed(struct nc_reader *r)
+{
+	r->feed_deg_s = r->block.value[NC_F] / 60;
+	r->feed_mm_s = r->block.value[NC_F] * r->unit_mm / 60;
+	return 0;
+}
+
+static int run_condition(struct nc_reader *r)
+{
+	r->word.cond_letter = r->block.cond_letter;
+	r->word.cond_number = r->block.cond_number;
+	return 0;
+}
+
+static int run_power(struct nc_reader *r)
+{
+	return nc_action(r, INTERP_AUX, r->block.code[NC_POWER]->value,
+			 r->block.code_at[NC_POWER]);
+}
+
+static int run_pump(struct nc_reader *r)
+{
+	return nc_action(r, INTERP_AUX, r->block.code[NC_PUMP]->value,
+			 r->block.code_at[NC_PUMP]);
+}
+
+/* G53 itself is obeyed by nc_target(); this is who may use it. */
+static int run_machine(struct nc_reader *r)
+{
+	const struct nc_code *motion = nc_has_group(r, NC_MOTION) ?
+				       r->block.code[NC_MOTION] : NULL;
+
+	if (motion && motion->value <= 1 && (r->block.words & NC_AXES))
+		return 0;
+	return nc_refuse(r, r->block.code_at[NC_MACHINE],
+			 "G53 with axis words, under G0 or G1",
+			 motion && motion->value > 1 ? "G53 with an arc" :
+			 "G53 without a motion");
+}
+
+static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
+	[NC_TAPE]		= run_tape,
+	[NC_LABEL]		= nc_run_label,
+	[NC_UNITS]		= run_units,
+	[NC_PLANE]		= run_plane,
+	[NC_DISTANCE]		= run_distance,
+	[NC_ARC_DISTANCE]	= run_arc_distance,
+	[NC_WORK]		= run_work,
+	[NC_FEED_MODE]		= run_feed_mode,
+	[NC_FEED]		= run_feed,
+	[NC_CONDITION]		= run_condition,
+	[NC_POWER]		= run_power,
+	[NC_PUMP]		= run_pump,
+	[NC_MACHINE]		= run_machine,
+	[NC_ONE_SHOT]		= nc_run_one_shot,
+	[NC_MOTION]		= nc_run_motion,
+	[NC_STOP]		= nc_run_stop,
+};
+
+static int run_groups(struct nc_reader *r, uint32_t groups)
+{
+	for (; groups; groups &= groups - 1) {
+		const int rc = run[__builtin_ctz(groups)](r);
+
+		if (rc)
+			return rc;
+	}
+	return 0;
+}
+
+/* Words of no use on this line: a mistake, so the line is refused. */
+static int refuse_leftover(struct nc_reader *r, uint32_t left)
+{
+	const int slot = __builtin_ctz(left);
+	const uint8_t *at = r->block.at[slot];
+
+	return nc_refuse(r, at, nc_words[slot].goes_with,
+			 "%s has no use on this line", nc_quote_word(r, at).s);
+}
+
+static int refuse_absent(struct nc_reader *r, uint32_t absent)
+{
+	const int slot = __builtin_ctz(absent);
+	char axes[2 * INTERP_NAXES + 32] = "one of";
+	size_t n = 6;
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (!(r->absent & NC_BIT(i))) {
+			axes[n++] = ' ';
+			axes[n++] = INTERP_AXIS_LETTERS[i];
+		}
+	}
+	return nc_refuse(r, r->block.at[slot], axes,
+			 "axis %c, which this machine has not",
+			 nc_words[slot].letter);
+}
+
+/* A line with places but no motion word goes by the motion in force. */
+static int add_motion(struct nc_reader *r)
+{
+	struct nc_block *b = &r->block;
+	const int slot = __builtin_ctz(b->words & NC_MOVES);
+
+	if (!r->motion)
+		return nc_refuse(r, b->at[slot], "G0 G1 G2 or G3 in this line "
+				 "or before it",
+				 "%s with no motion mode in force",
+				 nc_quote_word(r, b->at[slot]).s);
+	b->groups |= NC_BIT(NC_MOTION);
+	b->code[NC_MOTION] = r->motion;
+	b->code_at[NC_MOTION] = b->at[slot];
+	b->takes |= r->motion->takes;
+	return 0;
+}
+
+static int complete(struct nc_reader *r)
+{
+	struct nc_block *b = &r->block;
+
+	if (nc_has_group(r, NC_ONE_SHOT)) {
+		if (b->groups & (NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE)))
+			return nc_refuse(r, b->code_at[NC_ONE_SHOT],
+					 "G4 G28 G92 and G92.1 on lines of "
+					 "their own, without G0 G1 G2 G3 G53",
+					 "%s on a line with a motion word",
+					 nc_quote_word(r,
+					 b->code_at[NC_ONE_SHOT]).s);
+		return 0;
+	}
+	if ((b->words & NC_MOVES) && !nc_has_group(r, NC_MOTION))
+		return add_motion(r);
+	return 0;
+}
+
+int nc_run_line(struct nc_reader *r)
+{
+	const uint32_t first = NC_BIT(NC_TAPE) | NC_BIT(NC_LABEL);
+	struct nc_block *b = &r->block;
+	int rc = complete(r);
+
+	if (rc)
+		return rc;
+	if (b->words & ~b->takes)
+		return refuse_leftover(r, b->words & ~b->takes);
+	if (b->words & r->absent)
+		return refuse_absent(r, b->words & r->absent);
+
+	if (b->groups & first) {
+		rc = run_groups(r, b->groups & first);
+		if (rc)
+			return rc;
+	}
+	if ((b->words | b->groups) && !nc_has_group(r, NC_TAPE))
+		r->fresh = false;
+	return run_groups(r, b->groups & ~first);
+}

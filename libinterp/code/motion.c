@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * motion.c - what axis words do: lines, machine zero, dwell, offsets
+ */
+#include "code/reader.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double zero_mm[INTERP_NAXES];
+
+#define EACH_AXIS(mask, i) \
+	(uint32_t left_ = (mask), i; \
+	 left_ && (i = (uint32_t)__builtin_ctz(left_), true); \
+	 left_ &= left_ - 1)
+
+void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
+{
+	const struct nc_block *b = &r->block;
+	const double *here = interp_build_here(r->build);
+	const double *base = r->incremental ? here : r->offset_mm;
+
+	if (nc_has_group(r, NC_MACHINE))
+		base = zero_mm;
+	memcpy(ret_end_mm, here, sizeof(zero_mm));
+	for EACH_AXIS(b->words & NC_AXES, i)
+		ret_end_mm[i] = base[i] + b->value[i] * r->scale[i];
+}
+
+/* F counts degrees per minute if nothing but rotary axes move, and these know
+ * no inches. */
+static double feed_for(const struct nc_reader *r,
+		       const double end_mm[INTERP_NAXES])
+{
+	const double *here = interp_build_here(r->build);
+
+	if (r->feed_mm_s == r->feed_deg_s)
+		return r->feed_mm_s;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (!interp_axis_is_rotary((enum interp_axis)i) &&
+		    end_mm[i] != here[i])
+			return r->feed_mm_s;
+	}
+	return r->feed_deg_s;
+}
+
+int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid)
+{
+	r->word.line = r->line;
+	r->word.rapid = rapid;
+	if (rapid)
+		return 0;
+	r->word.feed_mm_s = feed_for(r, end_mm);
+	if (r->word.feed_mm_s > 0)
+		return 0;
+	return nc_refuse(r, r->block.code_at[NC_MOTION],
+			 "an F word, such as F5, in this line or before it",
+			 "a motion at a feed, and no feed given yet");
+}
+
+int nc_room(struct nc_reader *r)
+{
+	char wanted[96];
+
+	if (r->segs++ < r->segs_max)
+		return 0;
+	snprintf(wanted, sizeof(wanted), "up to %u, with fewer repeats (L)",
+		 r->segs_max);
+	return nc_refuse_at(r, r->line, wanted,
+			    "more than %u segments in all", r->segs_max);
+}
+
+/* The word to blame: the axis beyond its travel, or the line's first. */
+static const uint8_t *blame(const struct nc_reader *r,
+			    const double end_mm[INTERP_NAXES])
+{
+	const struct nc_block *b = &r->block;
+	const uint8_t *at = NULL;
+
+	for EACH_AXIS(b->words & NC_AXES, i) {
+		const struct interp_axis_limits *l = &r->o->machine->axis[i];
+
+		if (!(end_mm[i] >= l->travel_min_mm &&
+		      end_mm[i] <= l->travel_max_mm))
+			return b->at[i];
+	}
+	for EACH_AXIS(b->words & NC_MOVES, i) {
+		if (!at || b->at[i] < at)
+			at = b->at[i];
+	}
+	if (at)
+		return at;
+	return b->code_at[nc_has_group(r, NC_ONE_SHOT) ? NC_ONE_SHOT :
+							 NC_MOTION];
+}
+
+int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES])
+{
+	if (rc == -EINVAL) {
+		r->diag->line = r->line;
+		r->diag->column =
+			(uint32_t)(blame(r, end_mm) - r->line_at) + 1;
+	}
+	r->moved |= r->block.words & NC_AXES;
+	return rc;
+}
+
+int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
+	      const uint8_t *at)
+{
+	int rc = nc_room(r);
+
+	if (rc)
+		return rc;
+	r->word.line = r->line;
+	r->word.rapid = false;
+	rc = interp_build_action(r->build, kind, arg, &r->word, r->diag);
+	if (rc == -EINVAL) {
+		r->diag->line = r->line;
+		r->diag->column = (uint32_t)(at - r->line_at) + 1;
+	}
+	return rc;
+}
+
+static int line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		   bool rapid)
+{
+	int rc = nc_word(r, end_mm, rapid);
+
+	if (!rc)
+		rc = nc_room(r);
+	if (rc)
+		return rc;
+	rc = interp_build_line(r->build, end_mm, &r->word, r->diag);
+	return nc_placed(r, rc, end_mm);
+}
+
+int nc_run_motion(struct nc_reader *r)
+{
+	const struct nc_code *motion = r->block.code[NC_MOTION];
+	double end_mm[INTERP_NAXES];
+
+	r->motion = motion;
+	if (!(r->block.words & NC_MOVES))
+		return 0;
+	if (motion->value >= 2)
+		return nc_arc(r, motion->value == 2);
+	nc_target(r, end_mm);
+	return line_to(r, end_mm, motion->value == 0);
+}
+
+static int dwell(struct nc_reader *r)
+{
+	const enum nc_slot slot = nc_has(r, NC_P) ? NC_P : NC_X;
+	double s;
+
+	if (nc_has(r, NC_P) == nc_has(r, NC_X))
+		return nc_refuse(r, r->block.code_at[NC_ONE_SHOT],
+				 "G4 with P or X in seconds, as in G4 P0.5",
+				 nc_has(r, NC_P) ? "G4 with both P and X" :
+				 "G4 without a time");
+	s = r->block.value[slot];
+	if (!(s >= 0 && s <= 1000000))
+		return nc_refuse(r, r->block.at[slot],
+				 "0 to 1000000 seconds", "a dwell of %g s", s);
+	return nc_action(r, INTERP_DWELL, (uint32_t)(s * 1000 + 0.5),
+			 r->block.code_at[NC_ONE_SHOT]);
+}
+
+/* Through the place named, if one is, to machine zero of the axes named; of
+ * all the program has moved, if none is. */
+static int home(struct nc_reader *r)
+{
+	uint32_t axes = r->block.words & NC_AXES;
+	double end_mm[INTERP_NAXES];
+	int rc;
+
+	nc_target(r, end_mm);
+	if (axes) {
+		rc = line_to(r, end_mm, true);
+		if (rc)
+			return rc;
+	} else {
+		axes = r->moved;
+	}
+	if (!axes)
+		return nc_refuse(r, r->block.code_at[NC_ONE_SHOT],
+				 "the axes to send to machine zero, as in "
+				 "G91 G28 Z0",
+				 "G28 without axis words before any motion");
+	for EACH_AXIS(axes, i)
+		end_mm[i] = 0;
+	return line_to(r, end_mm, true);
+}
+
+static int set_here(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+	const double *here = interp_build_here(r->build);
+
+	if (!(b->words & NC_AXES))
+		return nc_refuse(r, b->code_at[NC_ONE_SHOT],
+				 "the place to call this one, as in G92 X0 Y0; "
+				 "G92.1 to cancel", "G92 without axis words");
+	for EACH_AXIS(b->words & NC_AXES, i)
+		r->shift_mm[i] = here[i] - b->value[i] * r->scale[i] -
+				 r->o->work_offset_mm[r->work][i];
+	nc_set_offset(r);
+	return 0;
+}
+
+static int set_cancel(struct nc_reader *r)
+{
+	memset(r->shift_mm, 0, sizeof(r->shift_mm));
+	nc_set_offset(r);
+	return 0;
+}
+
+int nc_run_one_shot(struct nc_reader *r)
+{
+	static int (*const shots[])(struct nc_reader *) = {
+		[NC_DWELL]	= dwell,
+		[NC_HOME]	= home,
+		[NC_SET]	= set_here,
+		[NC_SET_CANCEL]	= set_cancel,
+	};
+
+	return shots[r->block.code[NC_ONE_SHOT]->value](r);
+}

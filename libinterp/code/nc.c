@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * nc.c - read NC code, line after line
+ */
+#include "code/reader.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A byte order mark is no part of the text. */
+static void open_text(struct nc_reader *r, const char *text, size_t bytes)
+{
+	r->text = (const uint8_t *)text;
+	r->end = r->text + bytes;
+	if (bytes >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
+		r->text += 3;
+	r->at = r->text;
+	r->line_at = r->text;
+}
+
+/* As if G21 G17 G90 G91.1 G54 G94 stood in front. */
+static void reset_modes(struct nc_reader *r)
+{
+	const struct interp_nc_options *o = r->o;
+
+	r->arc_incremental = true;
+	r->feed_mm_s = o->feed_mm_s;
+	r->feed_deg_s = o->feed_mm_s;
+	r->fresh = true;
+	r->absent = NC_AXES & ~o->machine->present;
+	r->segs_max = o->segs_max ? o->segs_max : INTERP_NC_SEGS_MAX;
+	r->executed_max = o->executed_max ? o->executed_max :
+					    INTERP_NC_EXECUTED_MAX;
+	nc_set_units(r, false);
+	nc_set_offset(r);
+}
+
+static int refuse_executed(struct nc_reader *r)
+{
+	char wanted[96];
+
+	snprintf(wanted, sizeof(wanted), "up to %u, with fewer repeats (L)",
+		 r->executed_max);
+	return nc_refuse_at(r, r->line, wanted,
+			    "more than %u lines carried out", r->executed_max);
+}
+
+static int read_lines(struct nc_reader *r)
+{
+	int rc = 0;
+
+	while (!rc && !r->over && r->at < r->end) {
+		r->line++;
+		if (r->executed++ >= r->executed_max)
+			return refuse_executed(r);
+		rc = nc_scan_line(r);
+		if (!rc)
+			rc = nc_run_line(r);
+	}
+	return rc ? rc : nc_end_of_text(r);
+}
+
+/* Lines in the text: those the main program has come to, and the rest. */
+static uint32_t count_lines(const struct nc_reader *r)
+{
+	const uint8_t *p = r->depth ? r->frame[1].back : r->at;
+	uint32_t n = r->depth ? r->frame[1].return_line : r->line;
+
+	for (; p < r->end; n++)
+		p = nc_line_next(nc_line_end(p, r->end), r->end);
+	return n;
+}
+
+int interp_nc_compile(const char *text, size_t bytes,
+		      const struct interp_nc_options *o,
+		      struct interp_build *b, struct interp_nc_result *ret,
+		      struct interp_diag *diag)
+{
+	struct nc_reader r = { .o = o, .build = b, .diag = diag };
+	int rc;
+
+	open_text(&r, bytes ? text : "", bytes);
+	reset_modes(&r);
+	rc = read_lines(&r);
+	if (!rc) {
+		ret->lines = count_lines(&r);
+		ret->executed = r.executed;
+	}
+	free(r.labels);
+	return rc;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * number.c - numbers of more digits than anybody means
+ */
+#include "code/number.h"
+
+const double nc_pow10[NC_POW10_MAX + 1] = {
+	1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+	1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+};
+
+/* Digits that no longer change a double are dropped behind the point; in
+ * front of it they make the number too large for any word. */
+double nc_number_long(const uint8_t *p, const uint8_t *end)
+{
+	uint64_t mantissa = 0;
+	int fraction = 0;
+	bool behind = false;
+
+	for (; p < end; p++) {
+		const bool full = mantissa >= UINT64_C(100000000000000000);
+
+		if (*p == '.') {
+			behind = true;
+		} else if (full && !behind) {
+			return HUGE_VAL;
+		} else if (!full && fraction < NC_POW10_MAX) {
+			mantissa = mantissa * 10 + (uint64_t)(*p - '0');
+			fraction += behind;
+		}
+	}
+	return (double)(int64_t)mantissa / nc_pow10[fraction];
+}

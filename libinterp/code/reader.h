@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * reader.h - the state of the NC reader, and who does what
+ *
+ *	scan.c		one line of text into a block of words
+ *	modal.c		carry a block out, group by group
+ *	motion.c	lines, machine zero, dwell, offsets: what axis words do
+ *	arc.c		G2 and G3
+ *	flow.c		subprograms and the end
+ *	nc.c		line after line
+ *	refuse.c	say what was found and what would be accepted
+ *
+ * A function that refuses fills the diag and returns -EINVAL (NULL where it
+ * returns a place in the text).
+ */
+#ifndef CODE_READER_H
+#define CODE_READER_H
+
+#include "code/words.h"
+#include "interp/nc.h"
+
+/* Why no further line is read. */
+enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
+
+/* The words of one line.  Only what `words` and `groups` name is filled. */
+struct nc_block {
+	uint32_t words;			/* bit per enum nc_slot */
+	uint32_t groups;		/* bit per enum nc_group */
+	uint32_t takes;			/* slots its codes use */
+	uint32_t cond_number;
+	char cond_letter;
+	double value[NC_NSLOTS];
+	const uint8_t *at[NC_NSLOTS];	/* the letter */
+	const struct nc_code *code[NC_NGROUPS];
+	const uint8_t *code_at[NC_NGROUPS];
+};
+
+/* A program or subprogram being carried out. */
+struct nc_frame {
+	uint32_t number;		/* of its O word; 0: none */
+	uint32_t left;			/* repeats still to come */
+	uint32_t entry_line, return_line;
+	const uint8_t *entry, *back;	/* its first line; the caller's next */
+};
+
+/* Where O words stand; line 0: nowhere. */
+struct nc_label {
+	const uint8_t *at;
+	uint32_t line;
+};
+
+struct nc_reader {
+	/* The text, and the line in hand. */
+	const uint8_t *text, *end;
+	const uint8_t *at;		/* the next line */
+	const uint8_t *line_at, *stop;	/* this line, its farthest end */
+	const uint8_t *word_at;		/* the word read last */
+	const uint8_t *value_end;	/* behind the decimal read last */
+	uint32_t line;			/* its number, from 1 */
+	struct nc_block block;
+
+	/* Modes, until changed. */
+	const struct nc_code *motion;	/* NULL: none yet */
+	uint8_t plane;			/* 0 ... 2: G17 ... G19 */
+	uint8_t work;			/* 0 ... 5: G54 ... G59 */
+	bool incremental, arc_incremental;
+	double unit_mm;			/* 1 or 25.4 */
+	double scale[INTERP_NAXES];	/* unit_mm, for rotary axes 1 */
+	double shift_mm[INTERP_NAXES];	/* by G92 */
+	double offset_mm[INTERP_NAXES];	/* work offset and shift together */
+	double feed_mm_s, feed_deg_s;	/* 0: none yet */
+	struct interp_build_word word;	/* its condition is modal too */
+
+	/* Flow. */
+	struct nc_frame frame[INTERP_NC_DEPTH_MAX + 1];
+	uint32_t depth;			/* frame in use; 0: the main program */
+	struct nc_label *labels;	/* by O number; NULL before an M98 */
+	bool fresh;			/* no words yet in this program */
+	bool tape;			/* the first % is read */
+	enum nc_over over;
+
+	uint32_t moved;			/* axes the program has moved */
+	uint32_t absent;		/* axes the machine has not */
+	uint32_t segs, segs_max;
+	uint32_t executed, executed_max;
+
+	const struct interp_nc_options *o;
+	struct interp_build *build;
+	struct interp_diag *diag;
+};
+
+static inline bool nc_has(const struct nc_reader *r, enum nc_slot slot)
+{
+	return r->block.words & NC_BIT(slot);
+}
+
+static inline bool nc_has_group(const struct nc_reader *r, enum nc_group group)
+{
+	return r->block.groups & NC_BIT(group);
+}
+
+/** nc_scan_line() - the line at r->at into r->block; r->at is the next. */
+int nc_scan_line(struct nc_reader *r);
+
+/** nc_run_line() - carry r->block out. */
+int nc_run_line(struct nc_reader *r);
+
+/** nc_set_units(), nc_set_offset() - after a change of units; of offsets. */
+void nc_set_units(struct nc_reader *r, bool inches);
+void nc_set_offset(struct nc_reader *r);
+
+/* Functions of groups, called by nc_run_line(). */
+int nc_run_motion(struct nc_reader *r);
+int nc_run_one_shot(struct nc_reader *r);
+int nc_run_stop(struct nc_reader *r);
+int nc_run_label(struct nc_reader *r);
+
+/** nc_arc() - G2 or G3. */
+int nc_arc(struct nc_reader *r, bool clockwise);
+
+/** nc_target() - where the axis words of the line lead, machine mm. */
+void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES]);
+
+/** nc_word() - r->word made ready for a move to @end_mm. */
+int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid);
+
+/** nc_room() - count a segment, or refuse one too many. */
+int nc_room(struct nc_reader *r);
+
+/** nc_placed() - what the builder said to a move, with its place. */
+int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES]);
+
+/** nc_action() - an action of the line at hand. */
+int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
+	      const uint8_t *at);
+
+/** nc_end_of_text() - the text is over: may it be? */
+int nc_end_of_text(struct nc_reader *r);
+
+/** nc_line_end() - the line break at or after @p, or @end. */
+const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end);
+
+/** nc_line_next() - behind the line break at @p. */
+static inline const uint8_t *nc_line_next(const uint8_t *p, const uint8_t *end)
+{
+	if (p < end && *p == '\r' && p + 1 < end && p[1] == '\n')
+		return p + 2;
+	return p < end ? p + 1 : end;
+}
+
+/** nc_refuse() - fill the diag for the byte at @at. Return: -EINVAL. */
+int nc_refuse(struct nc_reader *r, const uint8_t *at, const char *wanted,
+	      const char *found, ...)
+	__attribute__((cold, format(printf, 4, 5)));
+
+/** nc_refuse_at() - the same for any place; @line 0 is the whole text. */
+int nc_refuse_at(struct nc_reader *r, uint32_t line, const char *wanted,
+		 const char *found, ...)
+	__attribute__((cold, format(printf, 4, 5)));
+
+/* Some of the text, fit to be quoted. */
+struct nc_quote {
+	char s[24];
+};
+
+/** nc_quote_word() - a letter and what can belong to its number. */
+struct nc_quote nc_quote_word(const struct nc_reader *r, const uint8_t *at);
+
+/** nc_quote_run() - everything up to a blank. */
+struct nc_quote nc_quote_run(const struct nc_reader *r, const uint8_t *at);
+
+#endif /* CODE_READER_H */

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * words.c - the tables of dialect `generic`; a new word is a new row
+ */
+#include "code/words.h"
+
+#include "interp/program.h"
+
+#define ANY_PLACE	-999999999, 999999999, "-999999999 to 999999999"
+#define AXIS_LINES	"an axis word goes with G0 G1 G2 G3 G28 G92, and X " \
+			"with G4"
+#define CENTRE_LINES	"goes with G2 or G3"
+
+/* clang-format off */
+const struct nc_word nc_words[NC_NSLOTS] = {
+	[NC_X] = { 'X', false, ANY_PLACE, AXIS_LINES },
+	[NC_Y] = { 'Y', false, ANY_PLACE, AXIS_LINES },
+	[NC_Z] = { 'Z', false, ANY_PLACE, AXIS_LINES },
+	[NC_A] = { 'A', false, ANY_PLACE, AXIS_LINES },
+	[NC_B] = { 'B', false, ANY_PLACE, AXIS_LINES },
+	[NC_C] = { 'C', false, ANY_PLACE, AXIS_LINES },
+	[NC_U] = { 'U', false, ANY_PLACE, AXIS_LINES },
+	[NC_V] = { 'V', false, ANY_PLACE, AXIS_LINES },
+	[NC_I] = { 'I', false, ANY_PLACE, "I " CENTRE_LINES },
+	[NC_J] = { 'J', false, ANY_PLACE, "J " CENTRE_LINES },
+	[NC_K] = { 'K', false, ANY_PLACE, "K " CENTRE_LINES },
+	[NC_R] = { 'R', false, ANY_PLACE, "R " CENTRE_LINES },
+	[NC_F] = { 'F', false, 0.0001, 1000000,
+		   "a feed of 0.0001 to 1000000 per minute", "" },
+	[NC_N] = { 'N', true, 0, 999999999, "0 to 999999999", "" },
+	[NC_S] = { 'S', false, 0, 999999999, "0 to 999999999", "" },
+	[NC_P] = { 'P', false, 0, 99999999, "0 to 99999999",
+		   "P goes with G4 or M98" },
+	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats",
+		   "L goes with M98" },
+	[NC_O] = { 'O', true, 1, 9999, "a program number of 1 to 9999", "" },
+};
+
+#define LETTER(upper, lower, class)	[upper] = (class), [lower] = (class)
+#define SLOT(upper, lower, slot) \
+	LETTER(upper, lower, NC_WORD + (slot))
+
+const uint8_t nc_classes[256] = {
+	SLOT('X', 'x', NC_X), SLOT('Y', 'y', NC_Y), SLOT('Z', 'z', NC_Z),
+	SLOT('A', 'a', NC_A), SLOT('B', 'b', NC_B),
+	SLOT('U', 'u', NC_U), SLOT('V', 'v', NC_V),
+	SLOT('I', 'i', NC_I), SLOT('J', 'j', NC_J), SLOT('K', 'k', NC_K),
+	SLOT('R', 'r', NC_R), SLOT('F', 'f', NC_F), SLOT('N', 'n', NC_N),
+	SLOT('S', 's', NC_S), SLOT('P', 'p', NC_P), SLOT('L', 'l', NC_L),
+	SLOT('O', 'o', NC_O),
+	LETTER('C', 'c', NC_LETTER_C), LETTER('E', 'e', NC_LETTER_E),
+	LETTER('G', 'g', NC_LETTER_G), LETTER('M', 'm', NC_LETTER_M),
+	LETTER('T', 't', NC_LETTER_T),
+	[' '] = NC_BLANK, ['\t'] = NC_BLANK,
+	['\n'] = NC_EOL, ['\r'] = NC_EOL,
+	['0'] = NC_NUMERIC, ['1'] = NC_NUMERIC, ['2'] = NC_NUMERIC,
+	['3'] = NC_NUMERIC, ['4'] = NC_NUMERIC, ['5'] = NC_NUMERIC,
+	['6'] = NC_NUMERIC, ['7'] = NC_NUMERIC, ['8'] = NC_NUMERIC,
+	['9'] = NC_NUMERIC, ['.'] = NC_NUMERIC, ['+'] = NC_NUMERIC,
+	['-'] = NC_NUMERIC,
+	['('] = NC_OPEN, [';'] = NC_SEMICOLON, ['/'] = NC_SLASH,
+	['%'] = NC_PERCENT,
+};
+
+#define P_	NC_BIT(NC_P)
+#define ARC_	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
+
+const struct nc_code nc_g[NC_NG] = {
+	[0]   = { NC_MOTION, 0, NC_AXES },
+	[10]  = { NC_MOTION, 1, NC_AXES },
+	[20]  = { NC_MOTION, 2, ARC_ },
+	[30]  = { NC_MOTION, 3, ARC_ },
+	[40]  = { NC_ONE_SHOT, NC_DWELL, P_ | NC_BIT(NC_X) },
+	[170] = { NC_PLANE, 0, 0 },
+	[180] = { NC_PLANE, 1, 0 },
+	[190] = { NC_PLANE, 2, 0 },
+	[200] = { NC_UNITS, true, 0 },
+	[210] = { NC_UNITS, false, 0 },
+	[280] = { NC_ONE_SHOT, NC_HOME, NC_AXES },
+	[530] = { NC_MACHINE, 0, 0 },
+	[540] = { NC_WORK, 0, 0 },
+	[550] = { NC_WORK, 1, 0 },
+	[560] = { NC_WORK, 2, 0 },
+	[570] = { NC_WORK, 3, 0 },
+	[580] = { NC_WORK, 4, 0 },
+	[590] = { NC_WORK, 5, 0 },
+	[900] = { NC_DISTANCE, false, 0 },
+	[910] = { NC_DISTANCE, true, 0 },
+	[901] = { NC_ARC_DISTANCE, false, 0 },
+	[911] = { NC_ARC_DISTANCE, true, 0 },
+	[920] = { NC_ONE_SHOT, NC_SET, NC_AXES },
+	[921] = { NC_ONE_SHOT, NC_SET_CANCEL, 0 },
+	[940] = { NC_FEED_MODE, 0, 0 },
+};
+
+const struct nc_code nc_m[NC_NM] = {
+	[0]  = { NC_STOP, NC_HALT, 0 },
+	[1]  = { NC_STOP, NC_OPTIONAL_HALT, 0 },
+	[2]  = { NC_STOP, NC_FINISH, 0 },
+	[3]  = { NC_POWER, INTERP_AUX_POWER_POSITIVE, 0 },
+	[4]  = { NC_POWER, INTERP_AUX_POWER_NEGATIVE, 0 },
+	[5]  = { NC_POWER, INTERP_AUX_POWER_OFF, 0 },
+	[30] = { NC_STOP, NC_FINISH, 0 },
+	[98] = { NC_STOP, NC_CALL, P_ | NC_BIT(NC_L) },
+	[99] = { NC_STOP, NC_RETURN, 0 },
+};
+
+const struct nc_code nc_t[NC_NM] = {
+	[84] = { NC_PUMP, INTERP_AUX_PUMP_ON, 0 },
+	[85] = { NC_PUMP, INTERP_AUX_PUMP_OFF, 0 },
+};
+/* clang-format on */

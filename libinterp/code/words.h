@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * words.h - the words of dialect `generic`, as tables
+ *
+ * A word is a letter and a number.  Words with a value have a slot; G, M and T
+ * words are codes, each of a modal group; C with three digits and E call a
+ * condition.  docs/nc-code.md says what each does.
+ */
+#ifndef CODE_WORDS_H
+#define CODE_WORDS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Words with a value.  The axes come first, in the order of enum interp_axis,
+ * so that a mask of slots and a mask of axes agree. */
+enum nc_slot {
+	NC_X, NC_Y, NC_Z, NC_A, NC_B, NC_C, NC_U, NC_V,
+	NC_I, NC_J, NC_K, NC_R,
+	NC_F, NC_N, NC_S,
+	NC_P, NC_L, NC_O,
+	NC_NSLOTS
+};
+
+#define NC_BIT(slot)	(1u << (slot))
+#define NC_AXES		(NC_BIT(NC_I) - 1)
+#define NC_CENTRE	(NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_K))
+#define NC_MOVES	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
+#define NC_ANYWHERE	(NC_BIT(NC_F) | NC_BIT(NC_N) | NC_BIT(NC_S) | \
+			 NC_BIT(NC_O))
+
+/* What may follow a letter. */
+struct nc_word {
+	char letter;
+	bool whole;			/* no fraction */
+	double min, max;
+	const char *range;		/* the same in words */
+	const char *goes_with;		/* the lines it may stand on */
+};
+
+extern const struct nc_word nc_words[NC_NSLOTS];
+
+/* What a byte can begin.  NC_WORD + slot for the letter of a value. */
+enum nc_class {
+	NC_BAD,
+	NC_WORD,
+	NC_OTHER = NC_WORD + NC_NSLOTS,
+	NC_BLANK = NC_OTHER,
+	NC_EOL,
+	NC_LETTER_C,			/* an axis or a condition */
+	NC_LETTER_E,
+	NC_LETTER_G,
+	NC_LETTER_M,
+	NC_LETTER_T,
+	NC_NUMERIC,			/* digit, point or sign: a stray one */
+	NC_OPEN,			/* ( comment ) */
+	NC_SEMICOLON,
+	NC_SLASH,
+	NC_PERCENT,
+	NC_NCLASSES
+};
+
+extern const uint8_t nc_classes[256];
+
+/* Modal groups, one word of each on a line; a line is carried out in this
+ * order, whatever the order of its words. */
+enum nc_group {
+	NC_UNKNOWN,
+	NC_TAPE,			/* % */
+	NC_LABEL,			/* O */
+	NC_UNITS,			/* G20 G21 */
+	NC_PLANE,			/* G17 G18 G19 */
+	NC_DISTANCE,			/* G90 G91 */
+	NC_ARC_DISTANCE,		/* G90.1 G91.1 */
+	NC_WORK,			/* G54 ... G59 */
+	NC_FEED_MODE,			/* G94 */
+	NC_FEED,			/* F */
+	NC_CONDITION,			/* C120 E001 */
+	NC_POWER,			/* M3 M4 M5 */
+	NC_PUMP,			/* T84 T85 */
+	NC_MACHINE,			/* G53 */
+	NC_ONE_SHOT,			/* G4 G28 G92 G92.1 */
+	NC_MOTION,			/* G0 G1 G2 G3 */
+	NC_STOP,			/* M0 M1 M2 M30 M98 M99 */
+	NC_NGROUPS
+};
+
+/* What a member of NC_ONE_SHOT or NC_STOP does. */
+enum nc_one_shot { NC_DWELL, NC_HOME, NC_SET, NC_SET_CANCEL };
+enum nc_stop { NC_HALT, NC_OPTIONAL_HALT, NC_FINISH, NC_CALL, NC_RETURN };
+
+/* One G, M or T word. */
+struct nc_code {
+	uint8_t group;			/* enum nc_group */
+	uint8_t value;			/* meant for the group's function */
+	uint32_t takes;			/* slots it uses on its line */
+};
+
+/* Index: ten times the number for G, the number itself for M and T. */
+#define NC_NG	1000
+#define NC_NM	100
+
+extern const struct nc_code nc_g[NC_NG], nc_m[NC_NM], nc_t[NC_NM];
+
+#endif /* CODE_WORDS_H */

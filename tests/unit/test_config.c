@@ -1,0 +1,604 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_config.c - the machine file: what it takes, what it refuses and where
+ */
+#include "config.h"
+#include "cycle.h"
+#include "keys.h"
+
+#include <errno.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define COUNT(a)	(sizeof(a) / sizeof((a)[0]))
+
+static char path[] = "/tmp/test_config.XXXXXX";
+
+static int make_file(void **state)
+{
+	int fd = mkstemp(path);
+
+	(void)state;
+	if (fd < 0)
+		return -1;
+	return close(fd);
+}
+
+static int remove_file(void **state)
+{
+	(void)state;
+	return unlink(path);
+}
+
+static int read_bytes(const void *text, size_t n, struct machine_config *c,
+		      struct interp_diag *diag)
+{
+	FILE *f = fopen(path, "w");
+
+	assert_non_null(f);
+	assert_int_equal(fwrite(text, 1, n, f), n);
+	assert_int_equal(fclose(f), 0);
+	return config_read(c, path, diag);
+}
+
+static int read_text(const char *text, struct machine_config *c,
+		     struct interp_diag *diag)
+{
+	return read_bytes(text, strlen(text), c, diag);
+}
+
+static void read_good(const char *text, struct machine_config *c)
+{
+	struct interp_diag diag;
+
+	if (read_text(text, c, &diag) != 0)
+		fail_msg("%u:%u: %s; %s", diag.line, diag.column, diag.found,
+			 diag.wanted);
+}
+
+/* Equal key by key: padding between fields has no value. */
+static void assert_same(const struct machine_config *a,
+			const struct machine_config *b)
+{
+	char x[CONFIG_TEXT_MAX], y[CONFIG_TEXT_MAX];
+
+	for (int i = 0; i < config_nkeys; i++) {
+		const struct config_key *k = &config_key[i];
+		int n = config_section[k->section].ninstances;
+
+		for (int j = 0; j < n; j++)
+			assert_string_equal(
+				config_key_format(k, j, a, x, sizeof(x)),
+				config_key_format(k, j, b, y, sizeof(y)));
+	}
+}
+
+static char *print_text(const struct machine_config *c)
+{
+	char *text = NULL;
+	size_t n;
+	FILE *f = open_memstream(&text, &n);
+
+	assert_non_null(f);
+	config_print(c, f);
+	assert_int_equal(fclose(f), 0);
+	return text;
+}
+
+/* -- What is taken ------------------------------------------------------- */
+
+static void the_built_in_machine_is_the_documented_one(void **state)
+{
+	struct machine_config c;
+
+	(void)state;
+	config_defaults(&c);
+	assert_string_equal(c.name, "edm");
+	assert_int_equal(c.backend, BACKEND_SIM);
+	assert_int_equal(c.strategy, INTERP_SIMULTANEOUS);
+	assert_int_equal(c.axes.present, 0xff);
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const struct interp_axis_limits *l = &c.axes.axis[i];
+		bool rotary = interp_axis_is_rotary((enum interp_axis)i);
+		double travel = rotary ? 1e6 : 200;
+
+		assert_true(l->pulse_mm == 0.001);
+		assert_true(l->travel_min_mm == -travel);
+		assert_true(l->travel_max_mm == travel);
+		assert_true(l->v_max_mm_s == (rotary ? 60 : 80));
+		assert_true(l->a_max_mm_s2 == 1000);
+		assert_true(l->j_max_mm_s3 == 20000);
+		assert_true(c.start_mm[i] == 0);
+	}
+	assert_true(c.gap.servo_v == 15 && c.gap.short_v == 8);
+	assert_true(c.sim.area_mm2 == 19.635);
+	assert_string_equal(c.lcm_url, "udpm://239.255.76.67:7667?ttl=0");
+	assert_string_equal(c.store_dir, "/var/lib/edmd");
+	assert_int_equal(config_period_ns(&c), 1000000);
+}
+
+static void every_default_passes_the_check_between_keys(void **state)
+{
+	struct machine_config c, d;
+
+	(void)state;
+	config_defaults(&d);
+	read_good("", &c);
+	assert_same(&c, &d);
+}
+
+static void a_key_changes_its_value_and_no_other(void **state)
+{
+	struct machine_config c, d;
+
+	(void)state;
+	config_defaults(&d);
+	d.work_offset_mm[1][INTERP_C] = -12.5;
+	d.axes.axis[INTERP_B].v_max_mm_s = 7;
+	d.axes.present &= ~(UINT32_C(1) << INTERP_V);
+	d.backend = BACKEND_NULL;
+	strcpy(d.name, "sinker-2");
+	read_good("[work.G55]\nc = -12.5\n[axis.B]\nv_max_mm_s = 7\n"
+		  "[axis.V]\npresent = no\n"
+		  "[machine]\nbackend = null\nname = sinker-2\n", &c);
+	assert_same(&c, &d);
+}
+
+static void comments_blanks_and_line_ends_do_not_matter(void **state)
+{
+	struct machine_config c;
+
+	(void)state;
+	read_good("\xef\xbb\xbf; first\r\n# second\r\n\r\n"
+		  "  [gap]  ; of a sinker\r\n"
+		  "\tservo_v=20 # volts\r\n"
+		  "   short_v : 9 ; volts\r\n[jump]\r\nheight_mm = 3", &c);
+	assert_true(c.gap.servo_v == 20 && c.gap.short_v == 9);
+	assert_true(c.jump.height_mm == 3);
+}
+
+static void the_longest_store_that_fits_is_taken_whole(void **state)
+{
+	struct machine_config c;
+	struct interp_diag diag;
+	char text[400] = "[jobs]\nstore = ";
+	size_t n = strlen(text), most = sizeof(c.store_dir) - 1;
+
+	(void)state;
+	memset(text + n, 'x', most);
+	read_good(text, &c);
+	assert_string_equal(c.store_dir, text + n);
+
+	text[n + most] = 'x';
+	assert_int_equal(read_text(text, &c, &diag), -EINVAL);
+	assert_non_null(strstr(diag.found, "is too long"));
+}
+
+/* -- Print and read ------------------------------------------------------ */
+
+static void what_is_printed_reads_back_the_same(void **state)
+{
+	struct machine_config c, back;
+	char *text;
+
+	(void)state;
+	config_defaults(&c);
+	c.period_us = 1e3 / 3;
+	c.strategy = INTERP_POINT_BY_POINT;
+	c.axes.present = 0x81;
+	c.axes.axis[INTERP_Y].pulse_mm = 0.1 + 0.2;
+	c.start_mm[INTERP_Z] = -1e-17;
+	c.work_offset_mm[5][INTERP_V] = 1.0 / 7;
+	c.sim.seed = 9007199254740991.0;
+	strcpy(c.store_dir, "/srv/my jobs");
+	text = print_text(&c);
+	read_good(text, &back);
+	free(text);
+	assert_same(&c, &back);
+	assert_true(back.period_us == c.period_us);
+	assert_true(back.start_mm[INTERP_Z] == c.start_mm[INTERP_Z]);
+	assert_true(back.sim.seed == c.sim.seed);
+}
+
+static void every_key_reads_back_at_its_smallest_and_largest(void **state)
+{
+	struct machine_config c;
+	struct interp_diag diag;
+	char num[32], back[32];
+
+	(void)state;
+	config_defaults(&c);
+	for (int i = 0; i < config_nkeys; i++) {
+		const struct config_key *k = &config_key[i];
+		const double ends[] = { k->min, k->max };
+
+		if (k->kind != KEY_NUMBER && k->kind != KEY_WHOLE)
+			continue;
+		for (int e = 0; e < 2; e++) {
+			config_number(ends[e], num, sizeof(num));
+			assert_int_equal(
+				config_key_parse(k, 0, num, &c, &diag), 0);
+			assert_string_equal(
+				config_key_format(k, 0, &c, back,
+						  sizeof(back)), num);
+		}
+	}
+}
+
+static void the_document_names_every_key_once(void **state)
+{
+	char *text = NULL, cell[64];
+	size_t n;
+	FILE *f = open_memstream(&text, &n);
+
+	(void)state;
+	assert_non_null(f);
+	config_document(f);
+	assert_int_equal(fclose(f), 0);
+	for (int i = 0; i < config_nkeys; i++) {
+		char *at = text;
+		int rows = 0, same = 0;
+
+		snprintf(cell, sizeof(cell), "\n| `%s` |", config_key[i].name);
+		while ((at = strstr(at, cell))) {
+			rows++;
+			at++;
+		}
+		for (int j = 0; j < config_nkeys; j++)
+			same += strcmp(config_key[j].name,
+				       config_key[i].name) == 0;
+		assert_int_equal(rows, same);
+	}
+	free(text);
+}
+
+/* -- What is refused ----------------------------------------------------- */
+
+struct refusal {
+	const char *text;
+	uint32_t line, column;
+	const char *found, *wanted;
+};
+
+static const struct refusal refusals[] = {
+	/* Names. */
+	{ "[gap]\nservo_volt = 15\n", 2, 1,
+	  "unknown key gap.servo_volt", "did you mean servo_v? one of source" },
+	{ "[gap]\nqqqqqqqqqqqqqqqqqqqqqqq = 15\n", 2, 1,
+	  "unknown key gap.qqq", "one of source, servo_v, " },
+	{ "\n[gapp]\nservo_v = 15\n", 2, 2,
+	  "unknown section [gapp]", "did you mean gap? one of machine" },
+	{ "[axis.W]\n", 1, 2,
+	  "unknown section [axis.W]", "axis.X to axis.V" },
+	{ "[AXIS.Z]\n", 1, 2, "[AXIS.Z]", "did you mean axis.Z?" },
+	{ "\n\nname = x\n", 3, 1, "a key before any section", "[section]" },
+	{ "[dds]\nhz = 5\n\n[dds]\n  hz = 6\n", 5, 3,
+	  "dds.hz again, first in line 2", "each key once" },
+	{ "[axis.X]\nv_max_mm_s = 1\n[axis.X]\nv_max_mm_s = 1\n", 4, 1,
+	  "axis.X.v_max_mm_s again, first in line 2", "each key once" },
+	{ "[gap]\n= 4\n", 2, 1, "unknown key gap.", "one of source" },
+	/* Syntax. */
+	{ "[gap\n", 1, 1, "a section without its ]", "[section]" },
+	{ "[gap] servo_v = 20\n", 1, 1, "text behind a section",
+	  "from the next line" },
+	{ "[gap]\nservo_v\n", 2, 1, "neither a key nor a section",
+	  "key = value" },
+	/* Kinds. */
+	{ "[gap]\nservo_v =  fifteen\n", 2, 12,
+	  "gap.servo_v 'fifteen' is not a number",
+	  "number from 0.1 to 500 V" },
+	{ "[gap]\nservo_v = \n", 2, 11, "'' is not a number", "to 500 V" },
+	{ "[gap]\nservo_v = nan\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = inf\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = 0x10\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = 15 V\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = 1e\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = 1e999\n", 2, 11, "is too large", "500 V" },
+	{ "[gap]\nservo_v = -1e999\n", 2, 11, "is too small", "500 V" },
+	{ "[machine]\npriority = 1.5\n", 2, 12,
+	  "is not a whole number", "whole number from 1 to 99" },
+	{ "[machine]\npriority = 100\n", 2, 12, "is too large", "to 99" },
+	{ "[machine]\nbackend = simulator\n", 2, 11,
+	  "machine.backend 'simulator' is not known", "one of sim, null" },
+	{ "[machine]\nstrategy = zigzag\n", 2, 12, "is not known",
+	  "one of simultaneous, point-by-point" },
+	{ "[axis.U]\npresent = 1\n", 2, 11, "is neither yes nor no",
+	  "yes or no" },
+	{ "[machine]\nname = a/b\n", 2, 8, "does not go into a file's name",
+	  "1 to 31 letters, digits, - and _" },
+	{ "[machine]\nname = \n", 2, 8, "is empty", "1 to 31" },
+	{ "[machine]\nname = abcdefghijklmnopqrstuvwxyz012345\n", 2, 8,
+	  "is too long", "1 to 31" },
+	{ "[jobs]\nstore = /a\001b\n", 2, 9, "has a control character",
+	  "text of 1 to 255 bytes" },
+	/* Units of rotary axes. */
+	{ "[axis.C]\nv_max_mm_s = -1\n", 2, 14, "is too small", "deg/s" },
+	/* Between keys. */
+	{ "[axis.Z]\ntravel_min_mm = 5\ntravel_max_mm = 5\n", 3, 0,
+	  "axis.Z.travel_min_mm 5 mm is not below travel_max_mm 5 mm",
+	  "travel_min_mm below travel_max_mm" },
+	{ "[axis.A]\n\nstart_mm = 1000000.5\n", 3, 0,
+	  "axis.A.start_mm 1000000.5 deg is not at most travel_max_mm",
+	  "start_mm at most travel_max_mm" },
+	{ "[axis.Y]\nstart_mm = -200.5\n", 2, 0,
+	  "axis.Y.travel_min_mm -200 mm is not at most start_mm -200.5 mm",
+	  "travel_min_mm at most start_mm" },
+	{ "[axis.X]\ntravel_max_mm = 200\npulse_mm = 1e-7\n", 3, 12,
+	  "is too small", "number from 1e-06 to 1 mm" },
+	{ "[axis.X]\ntravel_max_mm = 2000\npulse_mm = 1e-6\n", 3, 0,
+	  "axis.X.travel_max_mm 2000 mm is 2000000000 pulses",
+	  "at most 1073741824 pulses either way: 1073.74 mm" },
+	{ "[axis.X]\ntravel_min_mm = -1073742\n", 2, 0,
+	  "travel_min_mm -1073742 mm is -1073742000 pulses", "1.07374e+06" },
+	{ "[gap]\nshort_v = 15\n", 2, 0, "gap.short_v 15 V is not below",
+	  "short_v below servo_v" },
+	{ "[gap]\nopen_v = 15\n", 2, 0, "gap.servo_v 15 V is not below",
+	  "servo_v below open_v" },
+	{ "[sim]\nspark_v = 100\nopen_v = 90\n", 3, 0, "sim.spark_v 100 V",
+	  "spark_v below open_v" },
+	{ "[sim]\nshort_gap_mm = 0.02\n", 2, 0, "sim.short_gap_mm 0.02 mm",
+	  "short_gap_mm below best_gap_mm" },
+	{ "[sim]\nbest_gap_mm = 0.07\n", 2, 0, "sim.best_gap_mm 0.07 mm",
+	  "best_gap_mm below open_gap_mm" },
+	{ "[machine]\nperiod_us = 0.5\n", 2, 0,
+	  "machine.period_us 0.5 us is too short", "20 us and more" },
+	{ "[axis.X]\npresent=no\n[axis.Y]\npresent=no\n[axis.Z]\npresent=no\n"
+	  "[axis.A]\npresent=no\n[axis.B]\npresent=no\n[axis.C]\npresent=no\n"
+	  "[axis.U]\npresent=no\n[axis.V]\npresent=no\n", 16, 0,
+	  "no axis is present", "at least one" },
+};
+
+static void a_refusal_says_where_what_and_what_is_accepted(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+
+	(void)state;
+	for (size_t i = 0; i < COUNT(refusals); i++) {
+		const struct refusal *r = &refusals[i];
+
+		assert_int_equal(read_text(r->text, &c, &d), -EINVAL);
+		if (d.line != r->line || d.column != r->column ||
+		    !strstr(d.found, r->found) || !strstr(d.wanted, r->wanted))
+			fail_msg("%s\ngave %u:%u: %s; %s", r->text, d.line,
+				 d.column, d.found, d.wanted);
+	}
+}
+
+static void every_number_is_refused_outside_its_range(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+	char num[40];
+
+	(void)state;
+	config_defaults(&c);
+	for (int i = 0; i < config_nkeys; i++) {
+		const struct config_key *k = &config_key[i];
+
+		if (k->kind != KEY_NUMBER && k->kind != KEY_WHOLE)
+			continue;
+		config_number(nextafter(k->min, -1e300), num, sizeof(num));
+		assert_int_equal(config_key_parse(k, 0, num, &c, &d), -EINVAL);
+		config_number(nextafter(k->max, 1e300), num, sizeof(num));
+		assert_int_equal(config_key_parse(k, 0, num, &c, &d), -EINVAL);
+	}
+}
+
+static void every_misspelt_key_is_met_with_the_right_one(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+	char text[128], section[32], meant[64];
+
+	(void)state;
+	for (int i = 0; i < config_nkeys; i++) {
+		const struct config_key *k = &config_key[i];
+
+		if (strlen(k->name) < 4)
+			continue;
+		config_section_name(k->section, 0, section, sizeof(section));
+		snprintf(text, sizeof(text), "[%s]\n%sx = 1\n", section,
+			 k->name);
+		snprintf(meant, sizeof(meant), "did you mean %s?", k->name);
+		assert_int_equal(read_text(text, &c, &d), -EINVAL);
+		assert_non_null(strstr(d.wanted, meant));
+	}
+}
+
+static void a_nul_byte_or_an_endless_line_is_refused(void **state)
+{
+	static const char nul[] = "[gap]\nservo_v = 1\0" "5\n";
+	struct machine_config c;
+	struct interp_diag d;
+	char text[3000];
+
+	(void)state;
+	assert_int_equal(read_bytes(nul, sizeof(nul) - 1, &c, &d), -EINVAL);
+	assert_int_equal(d.line, 2);
+	assert_string_equal(d.found, "a NUL byte");
+
+	memset(text, 'x', sizeof(text));
+	memcpy(text, "[gap]\n", 6);
+	assert_int_equal(read_bytes(text, sizeof(text), &c, &d), -EINVAL);
+	assert_int_equal(d.line, 2);
+	assert_string_equal(d.found, "a line too long");
+}
+
+static void a_refused_file_leaves_the_machine_alone(void **state)
+{
+	struct machine_config c, before;
+	struct interp_diag d;
+
+	(void)state;
+	memset(&c, 0x5a, sizeof(c));
+	before = c;
+	assert_int_equal(read_text("[gap]\nservo_v = 20\nx = 1\n", &c, &d),
+			 -EINVAL);
+	assert_memory_equal(&c, &before, sizeof(c));
+}
+
+static void a_missing_file_is_told_from_a_bad_one(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+
+	(void)state;
+	assert_int_equal(config_read(&c, "/nonexistent/machine.ini", &d),
+			 -ENOENT);
+	assert_int_equal(config_read(&c, "/", &d), -EIO);
+}
+
+/* Bytes flipped, dropped and doubled anywhere in a good file. */
+static size_t damage(char *text, size_t n, size_t room)
+{
+	int hits = 1 + rand() % 4;
+
+	while (hits-- && n > 1) {
+		size_t at = (size_t)rand() % n;
+		size_t run = 1 + (size_t)rand() % 40;
+
+		if (run > n - at)
+			run = n - at;
+		switch (rand() % 3) {
+		case 0:
+			text[at] = (char)rand();
+			break;
+		case 1:
+			memmove(text + at, text + at + run, n - at - run);
+			n -= run;
+			break;
+		case 2:
+			if (n + run > room)
+				break;
+			memmove(text + at + run, text + at, n - at);
+			n += run;
+			break;
+		}
+	}
+	return n;
+}
+
+static void a_damaged_file_is_read_or_refused_with_its_line(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+	const char *given = getenv("SEED");
+	unsigned seed = given ? (unsigned)strtoul(given, NULL, 10) :
+				(unsigned)time(NULL);
+	char *whole, text[32768];
+	int refused = 0;
+
+	(void)state;
+	print_message("SEED=%u\n", seed);
+	srand(seed);
+	config_defaults(&c);
+	whole = print_text(&c);
+	for (int i = 0; i < 2000; i++) {
+		size_t n = strlen(whole);
+		int err;
+
+		assert_true(n < sizeof(text));
+		memcpy(text, whole, n);
+		n = damage(text, n, sizeof(text));
+		err = read_bytes(text, n, &c, &d);
+		if (!err)
+			continue;
+		refused++;
+		assert_int_equal(err, -EINVAL);
+		assert_true(d.line > 0 && d.found[0] && d.wanted[0]);
+	}
+	free(whole);
+	assert_true(refused > 100);
+}
+
+/* -- What the cycle gets ------------------------------------------------- */
+
+static void soft_limits_are_rounded_inward(void **state)
+{
+	struct machine_config c;
+	struct cycle_config cycle;
+
+	(void)state;
+	read_good("[axis.X]\npulse_mm = 0.003\ntravel_min_mm = -1\n"
+		  "travel_max_mm = 2\n", &c);
+	config_cycle(&c, &cycle);
+	assert_int_equal(cycle.travel_min[INTERP_X], -333);
+	assert_int_equal(cycle.travel_max[INTERP_X], 666);
+	assert_int_equal(cycle.travel_min[INTERP_Z], -200000);
+	assert_int_equal(cycle.travel_max[INTERP_C], 1000000000);
+}
+
+static void the_cycle_gets_seconds_as_cycles_of_its_period(void **state)
+{
+	struct machine_config c;
+	struct cycle_config cycle;
+
+	(void)state;
+	read_good("[machine]\nperiod_us = 250\noverrun_limit = 7\n"
+		  "[jump]\nevery_s = 1.5\n[gap]\nfeed_gain_mm_s_v = 0.03\n",
+		  &c);
+	config_cycle(&c, &cycle);
+	assert_int_equal(cycle.period_ns, 250000);
+	assert_int_equal(cycle.jump.every_cycles, 6000);
+	assert_int_equal(cycle.overrun_limit, 7);
+	assert_int_equal(cycle.points_max, 4096);
+	assert_true(cycle.gap.gain_mm_s_v == 0.03);
+	assert_true(cycle.gap.retract_limit_mm == 3);
+	assert_false(cycle.dry_run);
+}
+
+static void positioning_is_as_weak_as_the_weakest_linear_axis(void **state)
+{
+	struct machine_config c;
+	struct cycle_config cycle;
+
+	(void)state;
+	read_good("[axis.X]\na_max_mm_s2 = 900\n[axis.B]\na_max_mm_s2 = 5\n"
+		  "[axis.U]\na_max_mm_s2 = 7\npresent = no\n", &c);
+	config_cycle(&c, &cycle);
+	assert_true(cycle.travel_a_mm_s2 == 900);
+
+	c.axes.present = 1u << INTERP_B;
+	config_cycle(&c, &cycle);
+	assert_true(cycle.travel_a_mm_s2 == 5);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(the_built_in_machine_is_the_documented_one),
+		cmocka_unit_test(every_default_passes_the_check_between_keys),
+		cmocka_unit_test(a_key_changes_its_value_and_no_other),
+		cmocka_unit_test(comments_blanks_and_line_ends_do_not_matter),
+		cmocka_unit_test(the_longest_store_that_fits_is_taken_whole),
+		cmocka_unit_test(what_is_printed_reads_back_the_same),
+		cmocka_unit_test(
+			every_key_reads_back_at_its_smallest_and_largest),
+		cmocka_unit_test(the_document_names_every_key_once),
+		cmocka_unit_test(
+			a_refusal_says_where_what_and_what_is_accepted),
+		cmocka_unit_test(every_number_is_refused_outside_its_range),
+		cmocka_unit_test(every_misspelt_key_is_met_with_the_right_one),
+		cmocka_unit_test(a_nul_byte_or_an_endless_line_is_refused),
+		cmocka_unit_test(a_refused_file_leaves_the_machine_alone),
+		cmocka_unit_test(a_missing_file_is_told_from_a_bad_one),
+		cmocka_unit_test(
+			a_damaged_file_is_read_or_refused_with_its_line),
+		cmocka_unit_test(soft_limits_are_rounded_inward),
+		cmocka_unit_test(
+			the_cycle_gets_seconds_as_cycles_of_its_period),
+		cmocka_unit_test(
+			positioning_is_as_weak_as_the_weakest_linear_axis),
+	};
+
+	return cmocka_run_group_tests_name("config", tests, make_file,
+					   remove_file);
+}

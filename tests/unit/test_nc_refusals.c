@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_nc_refusals.c - what the NC reader refuses, and the place it names
+ */
+#include "nc_read.h"
+
+struct refusal {
+	const char *text;
+	uint32_t line, column;
+	const char *found, *wanted;	/* parts of the two sentences */
+};
+
+static const struct refusal numbers[] = {
+	{ "G0 X1e999",		1, 6,	"X1e999", "without exponent" },
+	{ "G0 X1 Y-1.5E3",	1, 12,	"Y-1.5E3", "without exponent" },
+	{ "G0 X--5",		1, 4,	"X--5", "a sign, digits" },
+	{ "--5",		1, 1,	"--5 without a letter", "one of G M" },
+	{ "nan",		1, 1,	"nan is not", "a sign, digits" },
+	{ "G0 Xnan",		1, 4,	"Xnan is not", "a sign, digits" },
+	{ "G0 Xinf",		1, 4,	"Xinf is not", "a sign, digits" },
+	{ "G0 X1.2.3",		1, 8,	"X1.2.3 is not", "one decimal point" },
+	{ "G0 X1-2",		1, 6,	"X1-2 is not", "a sign, digits" },
+	{ "G0 X",		1, 4,	"X is not", "a sign, digits" },
+	{ "G0 X-.",		1, 4,	"X-. is not", "digits" },
+	{ "G0 X1 2",		1, 7,	"2 without a letter", "no blank" },
+	{ "G",			1, 1,	"G is not", "digits" },
+	{ "\nM-3",		2, 1,	"M-3 is not", "digits" },
+	{ "E.5",		1, 1,	"E.5 is not a cond", "E001" },
+	{ "G0 X1000000000",	1, 4,	"out of range", "999999999" },
+	{ "G0 X99999999999999999999999", 1, 4, "out of range", "999999999" },
+	{ "N1.5",		1, 1,	"N1.5 is not a whole", "0 to" },
+	{ "S-1",		1, 1,	"S-1 is out of range", "0 to" },
+	{ "O10000",		1, 1,	"O10000 is out of", "1 to 9999" },
+	{ "G1 F0 X1",		1, 4,	"F0 is out of range", "a feed of" },
+	{ "G1 F-3 X1",		1, 4,	"F-3 is out of range", "a feed of" },
+	{ "G4 P2000000",	1, 4,	"a dwell of 2e+06 s", "1000000 s" },
+};
+
+static const struct refusal words[] = {
+	{ "G0 X1\n  H12",	2, 3,	"unknown word H12",
+	  "one of G M F N S T X Y Z A B C U V I J K R P L O E" },
+	{ "G33.1 X1",		1, 1,	"unknown word G33.1", "G91.1" },
+	{ "M8",			1, 1,	"unknown word M8", "M30" },
+	{ "T1",			1, 1,	"unknown word T1", "T84" },
+	{ "G0 X1 $",		1, 7,	"'$'", "one of G" },
+	{ "G0 X1 \xc3\xa9",	1, 7,	"byte 0xc3", "in comments only" },
+	{ "G0 G1 X1",		1, 4,	"G1 on a line with G0", "modal group" },
+	{ "M3 M5",		1, 4,	"M5 on a line with M3", "modal group" },
+	{ "M0 M30",		1, 4,	"M30 on a line", "modal group" },
+	{ "G0 X1 Y2 X3",	1, 10,	"a second word X3", "once" },
+	{ "C100 E1",		1, 6,	"a second condition", "one cond" },
+	{ "X5",			1, 1,	"X5 with no motion mode", "G0 G1" },
+	{ "G0 X1 (abc\nX2)",	1, 7,	"comment without an end", "a )" },
+	{ "G0 X1)",		1, 6,	"')'", "one of G" },
+	{ "G0 X1 /X2",		1, 7,	"a / inside", "first character" },
+	{ "G0 X1 %",		1, 7,	"% behind other words", "alone" },
+	{ "% G0 X1",		1, 1,	"words behind %", "alone" },
+	{ "G0 X1 P4",		1, 7,	"P4 has no use", "G4 or M98" },
+	{ "G1 F1 X1 R4",	1, 10,	"R4 has no use", "G2 or G3" },
+	{ "G4 P1 Y1",		1, 7,	"Y1 has no use", "G28" },
+	{ "G4",			1, 1,	"without a time", "G4 P0.5" },
+	{ "G28 G0 X1",		1, 1,	"G28 on a line with", "their own" },
+	{ "G28",		1, 1,	"before any motion", "G28 Z0" },
+	{ "G92",		1, 1,	"without axis words", "G92.1" },
+	{ "G53 G0",		1, 1,	"G53 without a motion", "G0 or G1" },
+	{ "G53 G2 F1 X1 R1",	1, 1,	"G53 with an arc", "G0 or G1" },
+	{ "G1 X1",		1, 1,	"no feed given", "F word" },
+	{ "G0 X1\nY200.1",	2, 1,	"beyond the travel", "-200 to 200" },
+	{ "G0 X1 Y-201 Z9",	1, 7,	"beyond the travel", "-200 to 200" },
+};
+
+static const struct refusal arcs[] = {
+	{ "G2 F1 X10 I3",	1, 7,	"3.0000 mm from its centre", "agree" },
+	{ "G2 F1 X10",		1, 1,	"without a centre", "I and J, or R" },
+	{ "G18 G2 F1 X10",	1, 5,	"without a centre", "I and K, or R" },
+	{ "G2 F1 X10 R2",	1, 11,	"2 mm, too small", "at least 5 mm" },
+	{ "G2 F1 X10 R0",	1, 11,	"radius 0", "above 0" },
+	{ "G2 F1 Z10 R5",	1, 11,	"ends at its start", "I J K" },
+	{ "G2 F1 X10 I0 J0",	1, 11,	"radius 0", "away from the start" },
+	{ "G2 F1 X10 I5 K1",	1, 14,	"K1 for an arc", "I and J" },
+	{ "G2 F1 X10 I5 R5",	1, 14,	"R beside a centre", "or R" },
+	{ "G90.1 G2 F1 X9 I5",	1, 7,	"half a centre", "both words" },
+	{ "G2 X10 R5",		1, 1,	"no feed given", "F word" },
+	{ "G0 Y195\nG2 F1 X20 R10", 2, 7, "beyond the travel", "200" },
+};
+
+static const struct refusal flow[] = {
+	{ "M98",		1, 1,	"without P", "M98 P1000" },
+	{ "M98 P7",		1, 5,	"O7, which is not there", "O word" },
+	{ "M98 P.5",		1, 5,	"P.5 names no", "M98 P1000" },
+	{ "M98 P10000",		1, 5,	"P10000 names no", "M98 P1000" },
+	{ "M98 P7 L0\nM2\nO7 M99", 1, 8, "L0 is out of", "1 to 9999" },
+	{ "M98 P7\nM2\nO7\nM98 P7\nM99",
+				4, 5,	"recursion: O7", "other" },
+	{ "M98 P7\nM2\nO7\nM98 P8\nM99\nO8\n  M98 P7\nM99",
+				7, 7,	"recursion: O7", "other" },
+	{ "O1 G0 X1\nM98 P1",	2, 5,	"recursion: O1", "other" },
+	{ "M98 P7\nM2\nO7 G0 X1", 3, 0,	"end of the text inside O7", "M99" },
+	{ "M98 P7\nM2\nO7\nO8\nM99", 4, 1, "the next program, O8", "M99" },
+	{ "G0 X1\nO7\nM99",	2, 1,	"the next program, O7", "M2 or M30" },
+	{ "M98 P7\nM2\nO7\nM99\nN1 O7\nM99", 5, 4, "a second O7", "once" },
+	{ "G0 O7",		1, 4,	"O7 behind other words", "first" },
+	{ "G0 X1\nM99",		2, 1,	"M99 outside", "M2 or M30" },
+	{ "",			0, 0,	"empty program", "at least one" },
+	{ "%\n\n(x)\nG21 F3 C120\nM30\n%", 0, 0, "empty program", "at least" },
+};
+
+static void assert_refused(const struct refusal *want, size_t n)
+{
+	for (; n-- > 0; want++) {
+		struct nc_read r = nc_ready();
+
+		nc_read_bytes(&r, want->text, strlen(want->text));
+		if (r.rc != -EINVAL)
+			fail_msg("taken: %s", want->text);
+		if (r.diag.line != want->line ||
+		    r.diag.column != want->column ||
+		    !strstr(r.diag.found, want->found) ||
+		    !strstr(r.diag.wanted, want->wanted))
+			fail_msg("%s\n%u:%u: %s; %s", want->text, r.diag.line,
+				 r.diag.column, r.diag.found, r.diag.wanted);
+		nc_done(&r);
+	}
+}
+
+#define assert_all_refused(table) \
+	assert_refused(table, sizeof(table) / sizeof(table[0]))
+
+static void a_bad_number_is_refused_at_its_place(void **state)
+{
+	(void)state;
+	assert_all_refused(numbers);
+}
+
+static void a_word_without_sense_is_refused_at_its_place(void **state)
+{
+	(void)state;
+	assert_all_refused(words);
+}
+
+static void an_arc_that_is_none_is_refused_with_its_numbers(void **state)
+{
+	(void)state;
+	assert_all_refused(arcs);
+}
+
+static void a_program_that_goes_astray_is_refused(void **state)
+{
+	(void)state;
+	assert_all_refused(flow);
+}
+
+static void a_ninth_call_inside_the_others_is_refused(void **state)
+{
+	char text[512], *at = text;
+	struct nc_read n = nc_ready();
+
+	(void)state;
+	at += sprintf(at, "M98 P1\nM2\n");
+	for (int i = 1; i <= INTERP_NC_DEPTH_MAX; i++)
+		at += sprintf(at, "O%d\nM98 P%d\nM99\n", i, i + 1);
+	sprintf(at, "O%d G0 X1 M99\n", INTERP_NC_DEPTH_MAX + 1);
+	nc_read_bytes(&n, text, strlen(text));
+	assert_int_equal(n.rc, -EINVAL);
+	assert_non_null(strstr(n.diag.found, "inside 8 others"));
+	nc_done(&n);
+}
+
+static void an_axis_the_machine_has_not_is_refused(void **state)
+{
+	struct nc_read n = nc_ready();
+
+	(void)state;
+	n.machine.present = 7;
+	nc_read_bytes(&n, "G0 X1 U2", 8);
+	assert_int_equal(n.rc, -EINVAL);
+	assert_int_equal(n.diag.column, 7);
+	assert_string_equal(n.diag.found,
+			    "axis U, which this machine has not");
+	assert_string_equal(n.diag.wanted, "one of X Y Z");
+	nc_done(&n);
+}
+
+static void a_nul_byte_is_refused_even_in_a_comment(void **state)
+{
+	static const char *const texts[] = {
+		"G0 X1\0", "G0 X1(\0)", "G0 X1;\0\n", "/abc \0\n",
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		struct nc_read n = nc_ready();
+
+		nc_read_bytes(&n, texts[i], strlen(texts[i]) + 1);
+		assert_int_equal(n.rc, -EINVAL);
+		assert_int_equal(n.diag.column, strlen(texts[i]) + 1);
+		assert_string_equal(n.diag.found, "byte 0x00");
+		nc_done(&n);
+	}
+}
+
+static void random_bytes_are_refused_at_a_place(void **state)
+{
+	static char bytes[1 << 16];
+
+	(void)state;
+	for (uint64_t first = 1; first <= 200; first++) {
+		struct nc_read n = nc_ready();
+		uint64_t seed = first;
+
+		for (size_t i = 0; i < sizeof(bytes); i++)
+			bytes[i] = (char)nc_random(&seed);
+		nc_read_bytes(&n, bytes, sizeof(bytes));
+		if (n.rc != -EINVAL || n.diag.line < 1 || n.diag.column < 1 ||
+		    !n.diag.found[0] || !n.diag.wanted[0])
+			fail_msg("seed %llu", (unsigned long long)first);
+		nc_done(&n);
+	}
+}
+
+/* Damage a good program at random: taken or refused, but never mistaken for
+ * something a segment cannot be. */
+static void a_damaged_program_is_sound_or_refused(void **state)
+{
+	static const char good[] =
+		"%\nO1 N1 G21 G90\nG0 X1 Y2\nG1 F5 Z-.5 C120\n"
+		"G2 X2 Y3 I1 J0\nG3 X1 R2\nM98 P2 L3\nG4 P.5\nG28 Z0\n"
+		"M30\nO2 G91 X.1\nG90 M99\n%\n";
+	char text[sizeof(good)];
+	uint64_t seed = 31;
+	int taken = 0;
+
+	(void)state;
+	print_message("seed %llu\n", (unsigned long long)seed);
+	for (int k = 0; k < 5000; k++) {
+		struct nc_read n = nc_ready();
+
+		memcpy(text, good, sizeof(good));
+		for (uint32_t i = nc_random(&seed) % 3; i < 3; i++)
+			text[nc_random(&seed) % (sizeof(good) - 1)] =
+				good[nc_random(&seed) % (sizeof(good) - 1)];
+		nc_read_bytes(&n, text, sizeof(good) - 1);
+		for (uint32_t i = 0; !n.rc && i < n.p.head->nsegs; i++)
+			assert_true(interp_program_seg_ok(&n.p, i,
+							  &n.p.segs[i]));
+		if (n.rc)
+			assert_true(n.diag.found[0] && n.diag.wanted[0]);
+		else
+			taken++;
+		nc_done(&n);
+	}
+	assert_in_range(taken, 1, 4999);
+}
+
+static void a_line_of_a_megabyte_is_refused(void **state)
+{
+	static const char *const fillings[] = { " ", "(", ";", "/" };
+	static char text[1 << 20];
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(fillings) / sizeof(fillings[0]); i++) {
+		struct nc_read n = nc_ready();
+
+		memset(text, i ? 'x' : ' ', sizeof(text));
+		memcpy(text, "\n\n", 2);
+		text[2] = fillings[i][0];
+		nc_read_bytes(&n, text, sizeof(text));
+		assert_int_equal(n.rc, -EINVAL);
+		assert_int_equal(n.diag.line, 3);
+		assert_int_equal(n.diag.column, INTERP_NC_LINE_MAX + 1);
+		assert_non_null(strstr(n.diag.found, "longer than 4096"));
+		nc_done(&n);
+	}
+}
+
+static void a_line_of_just_the_limit_is_taken(void **state)
+{
+	static char text[INTERP_NC_LINE_MAX + 4];
+	struct nc_read n = nc_ready();
+
+	(void)state;
+	memset(text, ' ', INTERP_NC_LINE_MAX);
+	memcpy(text, "G0X1", 4);
+	memcpy(text + INTERP_NC_LINE_MAX - 2, "Y2\nM2", 5);
+	nc_read_bytes(&n, text, INTERP_NC_LINE_MAX + 3);
+	assert_int_equal(n.rc, 0);
+	assert_xyz(&n, 0, 1, 2, 0);
+	nc_done(&n);
+}
+
+static void runaway_repeats_are_bounded(void **state)
+{
+	static const char text[] =
+		"M98 P1 L9999\nM2\nO1 M98 P2 L9999\nM99\n"
+		"O2 M98 P3 L9999\nM99\nO3\nM99\n";
+	static const char moving[] =
+		"G91 G0\nM98 P1 L9999\nM2\nO1 X1\nX-1\nM99\n";
+	struct nc_read n = nc_ready();
+
+	(void)state;
+	n.o.executed_max = 100000;
+	nc_read_bytes(&n, text, strlen(text));
+	assert_int_equal(n.rc, -EINVAL);
+	assert_string_equal(n.diag.found, "more than 100000 lines carried out");
+	nc_done(&n);
+
+	n.o.segs_max = 1000;
+	nc_read_bytes(&n, moving, strlen(moving));
+	assert_int_equal(n.rc, -EINVAL);
+	assert_string_equal(n.diag.found, "more than 1000 segments in all");
+	assert_int_equal(n.diag.line, 4);
+	nc_done(&n);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_bad_number_is_refused_at_its_place),
+		cmocka_unit_test(a_word_without_sense_is_refused_at_its_place),
+		cmocka_unit_test(
+			an_arc_that_is_none_is_refused_with_its_numbers),
+		cmocka_unit_test(a_program_that_goes_astray_is_refused),
+		cmocka_unit_test(a_ninth_call_inside_the_others_is_refused),
+		cmocka_unit_test(an_axis_the_machine_has_not_is_refused),
+		cmocka_unit_test(a_nul_byte_is_refused_even_in_a_comment),
+		cmocka_unit_test(random_bytes_are_refused_at_a_place),
+		cmocka_unit_test(a_damaged_program_is_sound_or_refused),
+		cmocka_unit_test(a_line_of_a_megabyte_is_refused),
+		cmocka_unit_test(a_line_of_just_the_limit_is_taken),
+		cmocka_unit_test(runaway_repeats_are_bounded),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

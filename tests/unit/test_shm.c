@@ -1,0 +1,426 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_shm.c - the shared objects, as daemon/shm/shm.h promises them
+ *
+ * Status, trace and events; the machine is named by the test's process.
+ * Commands and programs are in test_shm_command.c, all of it under load in
+ * test_shm_stress.c.
+ */
+#include "cycle.h"
+#include "shm.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char machine[SHM_NAME_MAX];
+
+static struct shm_snapshot snapshot_of(uint64_t n)
+{
+	struct shm_snapshot s = { .cycle = n, .state = SHM_ERODE };
+
+	s.place_mm = (double)n * 0.5;
+	s.line = (uint32_t)n;
+	s.took_max_ns = (int64_t)n * 3;
+	s.pos[SHM_NAXES - 1] = -(int32_t)n;
+	return s;
+}
+
+static struct shm_status *status_new(void)
+{
+	struct shm_snapshot before;
+	struct shm_status *s;
+
+	assert_int_equal(shm_status_create(&s, machine, &before), 0);
+	return s;
+}
+
+static const struct shm_status *status_open(void)
+{
+	const struct shm_status *s;
+
+	assert_int_equal(shm_status_open(&s, machine), 0);
+	return s;
+}
+
+/* A process that owns the status, does @work on it and stays. */
+static pid_t owner_start(void (*work)(struct shm_status *s))
+{
+	int ready[2];
+	char byte;
+	pid_t pid;
+
+	assert_int_equal(pipe(ready), 0);
+	pid = fork();
+	assert_true(pid >= 0);
+	if (pid == 0) {
+		struct shm_snapshot before;
+		struct shm_status *s;
+
+		if (shm_status_create(&s, machine, &before) < 0)
+			_exit(1);
+		work(s);
+		if (write(ready[1], "", 1) != 1)
+			_exit(1);
+		for (;;)
+			pause();
+	}
+	close(ready[1]);
+	assert_int_equal(read(ready[0], &byte, 1), 1);
+	close(ready[0]);
+	return pid;
+}
+
+static void owner_kill(pid_t pid)
+{
+	kill(pid, SIGKILL);
+	assert_int_equal(waitpid(pid, NULL, 0), pid);
+}
+
+static void object_name(char name[64], const char *what)
+{
+	snprintf(name, 64, "/edmd.%s.%s", machine, what);
+}
+
+static int object_fd(const char *what)
+{
+	char name[64];
+	int fd;
+
+	object_name(name, what);
+	fd = shm_open(name, O_RDWR, 0);
+	assert_true(fd >= 0);
+	return fd;
+}
+
+static unsigned int object_mode(const char *what)
+{
+	struct stat st;
+	int fd = object_fd(what);
+
+	assert_int_equal(fstat(fd, &st), 0);
+	close(fd);
+	return st.st_mode & 0777;
+}
+
+static void shared_structs_keep_their_size(void **state)
+{
+	(void)state;
+	assert_int_equal(sizeof(struct shm_head), 56);
+	assert_int_equal(sizeof(struct shm_snapshot), 288);
+	assert_int_equal(sizeof(struct shm_trace), 72);
+	assert_int_equal(sizeof(struct shm_trace_slot), 80);
+	assert_int_equal(sizeof(struct shm_event), 40);
+	assert_int_equal(sizeof(struct shm_event_slot), 48);
+	assert_int_equal(sizeof(struct shm_snap), 296);
+	assert_int_equal(sizeof(struct shm_command), 24);
+	assert_int_equal(offsetof(struct shm_status, trace), 1696);
+	assert_int_equal(sizeof(struct shm_status),
+			 1696 + 16384 * 80 + 1024 * 48);
+	assert_int_equal(offsetof(struct shm_command_ring, slot),
+			 56 + 8 + 2 * CK_MD_CACHELINE);
+}
+
+static void names_are_those_of_the_cycle(void **state)
+{
+	(void)state;
+	for (unsigned int i = STATE_IDLE; i < CYCLE_NSTATES; i++)
+		assert_string_equal(shm_state_name(i), state_duty[i].name);
+	for (unsigned int i = 0; i < CYCLE_NFAULTS; i++)
+		assert_string_equal(shm_fault_name(i),
+				    cycle_fault_name((enum cycle_fault)i));
+	assert_string_equal(shm_state_name(0), "?");
+	assert_string_equal(shm_state_name(CYCLE_NSTATES), "?");
+	assert_string_equal(shm_fault_name(CYCLE_NFAULTS), "?");
+}
+
+static void a_machine_name_with_other_characters_is_refused(void **state)
+{
+	static const char *const bad[] = {
+		"", "a/b", "..", "a.b", "a b", "\303\244",
+		"12345678901234567890123456789012",
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
+		struct shm_command_ring *r;
+		const struct shm_status *c;
+		struct shm_snapshot before;
+		struct shm_status *s;
+		void *block;
+
+		assert_int_equal(shm_status_create(&s, bad[i], &before),
+				 -EINVAL);
+		assert_int_equal(shm_status_open(&c, bad[i]), -EINVAL);
+		assert_int_equal(shm_command_create(&r, bad[i], 1), -EINVAL);
+		assert_int_equal(shm_command_open(&r, bad[i]), -EINVAL);
+		assert_int_equal(shm_program_create(&block, bad[i], 1, 8),
+				 -EINVAL);
+	}
+}
+
+static void objects_are_for_owner_and_group_alone(void **state)
+{
+	mode_t before = umask(0077);
+	struct shm_status *s = status_new();
+	struct shm_command_ring *r;
+	void *block;
+
+	(void)state;
+	assert_int_equal(shm_command_create(&r, machine, 1), 0);
+	assert_int_equal(shm_program_create(&block, machine, 1, 8), 0);
+	umask(before);
+	assert_int_equal(object_mode("status"), 0640);
+	assert_int_equal(object_mode("command"), 0660);
+	assert_int_equal(object_mode("program.1"), 0640);
+	shm_program_unmap(block, 8);
+	shm_program_remove(machine, 1);
+	shm_command_destroy(r, machine);
+	shm_status_destroy(s, machine);
+}
+
+static void a_snapshot_is_read_as_it_was_published(void **state)
+{
+	struct shm_status *s = status_new();
+	const struct shm_status *seen = status_open();
+	struct shm_snapshot got;
+
+	(void)state;
+	assert_false(shm_snapshot(seen, &got));
+	for (uint64_t n = 1; n < 10; n++) {
+		struct shm_snapshot put = snapshot_of(n);
+
+		shm_publish(s, &put);
+		assert_true(shm_snapshot(seen, &got));
+		assert_memory_equal(&got, &put, sizeof(got));
+	}
+	shm_close(seen, sizeof(*seen));
+	shm_status_destroy(s, machine);
+	assert_int_equal(shm_status_open(&seen, machine), -ENOENT);
+}
+
+static void publish_seven(struct shm_status *s)
+{
+	for (uint64_t n = 1; n <= 7; n++) {
+		struct shm_snapshot put = snapshot_of(n);
+
+		shm_publish(s, &put);
+	}
+}
+
+/* As if killed while cycle 8 was half in its slot. */
+static void publish_seven_and_a_half(struct shm_status *s)
+{
+	publish_seven(s);
+	ck_sequence_write_begin(&s->snap[1].seq);
+	memset(&s->snap[1].s, 0xff, sizeof(s->snap[1].s) / 2);
+}
+
+static void a_living_owner_is_not_displaced(void **state)
+{
+	pid_t pid = owner_start(publish_seven);
+	struct shm_snapshot before;
+	struct shm_status *s;
+
+	(void)state;
+	assert_int_equal(shm_status_create(&s, machine, &before), -EBUSY);
+	owner_kill(pid);
+	assert_int_equal(shm_status_create(&s, machine, &before), 0);
+	shm_status_destroy(s, machine);
+}
+
+static void a_killed_owner_leaves_its_last_snapshot(void **state)
+{
+	pid_t pid = owner_start(publish_seven);
+	const struct shm_status *seen = status_open();
+	uint32_t instance = seen->head.instance;
+	struct shm_snapshot before, want = snapshot_of(7);
+	struct shm_status *s;
+
+	(void)state;
+	owner_kill(pid);
+	assert_int_equal(shm_status_create(&s, machine, &before), 0);
+	assert_memory_equal(&before, &want, sizeof(want));
+	/* The reader's mapping is still the object; the rings go on. */
+	assert_int_not_equal(seen->head.instance, instance);
+	assert_int_equal(seen->head.pid, getpid());
+	assert_int_equal(seen->trace_next, 7);
+	/* Still there for whoever comes after one killed before its first. */
+	assert_true(shm_snapshot(seen, &before));
+	assert_memory_equal(&before, &want, sizeof(want));
+	/* A lower cycle of the new owner is the newer one. */
+	want = snapshot_of(1);
+	shm_publish(s, &want);
+	assert_true(shm_snapshot(seen, &before));
+	assert_memory_equal(&before, &want, sizeof(want));
+	shm_close(seen, sizeof(*seen));
+	shm_status_destroy(s, machine);
+}
+
+static void a_half_written_snapshot_is_never_returned(void **state)
+{
+	pid_t pid = owner_start(publish_seven_and_a_half);
+	struct shm_snapshot before, want = snapshot_of(7);
+	struct shm_status *s;
+
+	(void)state;
+	owner_kill(pid);
+	assert_int_equal(shm_status_create(&s, machine, &before), 0);
+	assert_memory_equal(&before, &want, sizeof(want));
+	for (uint64_t n = 1; n < 5; n++) {
+		want = snapshot_of(n);
+		shm_publish(s, &want);
+		assert_true(shm_snapshot(s, &before));
+		assert_memory_equal(&before, &want, sizeof(want));
+	}
+	shm_status_destroy(s, machine);
+}
+
+static void alive_means_the_writer_of_this_object(void **state)
+{
+	pid_t pid = owner_start(publish_seven);
+	const struct shm_status *seen = status_open();
+	char name[64];
+
+	(void)state;
+	assert_true(shm_alive(seen));
+	owner_kill(pid);
+	assert_false(shm_alive(seen));
+
+	/* One that was made anew is another object with another writer. */
+	object_name(name, "status");
+	shm_unlink(name);
+	pid = owner_start(publish_seven);
+	assert_false(shm_alive(seen));
+	shm_close(seen, sizeof(*seen));
+	seen = status_open();
+	assert_true(shm_alive(seen));
+	owner_kill(pid);
+	shm_close(seen, sizeof(*seen));
+	shm_unlink(name);
+}
+
+static void another_layout_size_or_magic_is_refused(void **state)
+{
+	struct shm_status *s = status_new();
+	const struct shm_status *seen;
+	int fd = object_fd("status");
+
+	(void)state;
+	s->head.layout++;
+	assert_int_equal(shm_status_open(&seen, machine), -EPROTO);
+	s->head.layout--;
+	s->head.magic ^= 1;
+	assert_int_equal(shm_status_open(&seen, machine), -EPROTO);
+	s->head.magic ^= 1;
+	s->head.bytes++;
+	assert_int_equal(shm_status_open(&seen, machine), -EPROTO);
+	s->head.bytes--;
+	assert_int_equal(shm_status_open(&seen, machine), 0);
+	shm_close(seen, sizeof(*seen));
+	assert_int_equal(ftruncate(fd, (off_t)sizeof(*s) + 4096), 0);
+	assert_int_equal(shm_status_open(&seen, machine), -EPROTO);
+	close(fd);
+	shm_status_destroy(s, machine);
+}
+
+static void spoil_layout(struct shm_status *s)
+{
+	publish_seven(s);
+	s->head.layout++;
+}
+
+static void an_object_of_another_layout_is_replaced(void **state)
+{
+	pid_t pid = owner_start(spoil_layout);
+	struct shm_snapshot before;
+	struct shm_status *s;
+
+	(void)state;
+	owner_kill(pid);
+	assert_int_equal(shm_status_create(&s, machine, &before), 0);
+	assert_int_equal(before.cycle, 0);
+	assert_int_equal(s->trace_next, 0);
+	shm_status_destroy(s, machine);
+}
+
+static void a_reader_gets_every_trace_record_in_order(void **state)
+{
+	struct shm_status *s = status_new();
+	struct shm_follow f = { 0 }, late = { 0 };
+	struct shm_trace t;
+
+	(void)state;
+	for (uint64_t n = 1; n <= 100; n++) {
+		struct shm_snapshot put = snapshot_of(n);
+
+		shm_publish(s, &put);
+	}
+	for (uint64_t n = 1; n <= 100; n++) {
+		assert_true(shm_trace_next(s, &f, &t));
+		assert_int_equal(t.cycle, n);
+		assert_int_equal(t.line, n);
+		assert_int_equal(t.pos[SHM_NAXES - 1], -(int64_t)n);
+	}
+	assert_false(shm_trace_next(s, &f, &t));
+	assert_int_equal(f.lost, 0);
+	late.next = s->trace_next;
+	assert_false(shm_trace_next(s, &late, &t));
+	shm_status_destroy(s, machine);
+}
+
+static void a_slow_reader_is_told_how_many_it_lost(void **state)
+{
+	struct shm_status *s = status_new();
+	struct shm_follow f = { 0 };
+	uint64_t got = 0, last = 0;
+	struct shm_event e = { .kind = SHM_EV_STATE };
+
+	(void)state;
+	for (uint32_t n = 0; n < 3 * SHM_EVENT_SLOTS; n++) {
+		e.id = n;
+		shm_event(s, &e);
+	}
+	while (shm_event_next(s, &f, &e)) {
+		assert_true(got == 0 || e.id == last + 1);
+		last = e.id;
+		got++;
+	}
+	assert_int_equal(last, 3 * SHM_EVENT_SLOTS - 1);
+	assert_int_equal(got + f.lost, 3 * SHM_EVENT_SLOTS);
+	assert_true(got > SHM_EVENT_SLOTS / 2);
+	shm_status_destroy(s, machine);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(shared_structs_keep_their_size),
+		cmocka_unit_test(names_are_those_of_the_cycle),
+		cmocka_unit_test(
+			a_machine_name_with_other_characters_is_refused),
+		cmocka_unit_test(objects_are_for_owner_and_group_alone),
+		cmocka_unit_test(a_snapshot_is_read_as_it_was_published),
+		cmocka_unit_test(a_living_owner_is_not_displaced),
+		cmocka_unit_test(a_killed_owner_leaves_its_last_snapshot),
+		cmocka_unit_test(a_half_written_snapshot_is_never_returned),
+		cmocka_unit_test(alive_means_the_writer_of_this_object),
+		cmocka_unit_test(another_layout_size_or_magic_is_refused),
+		cmocka_unit_test(an_object_of_another_layout_is_replaced),
+		cmocka_unit_test(a_reader_gets_every_trace_record_in_order),
+		cmocka_unit_test(a_slow_reader_is_told_how_many_it_lost),
+	};
+
+	snprintf(machine, sizeof(machine), "unit-%d", (int)getpid());
+	return cmocka_run_group_tests_name("shm", tests, NULL, NULL);
+}

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_shm_stress.c - the crossings with a writer and a reader at full speed
+ *
+ * Far faster than any machine's cycle, so that readers do get overtaken.
+ * Clean under the thread sanitizer, which sees all of it but the sequence
+ * counter of a snapshot: that one is inline assembly of ConcurrencyKit, and
+ * what it guards is checked word by word here.
+ */
+#include "shm.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define RUN_S		0.5
+#define COMMANDS	200000u
+
+static char machine[SHM_NAME_MAX];
+
+struct stress {
+	struct shm_status *status;
+	struct shm_command_ring *ring;
+	bool end;
+	uint64_t written;
+};
+
+static double now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+/* Every word tells of @n, so a torn one shows. */
+static struct shm_snapshot snapshot_of(uint64_t n)
+{
+	struct shm_snapshot s = { .cycle = n };
+	double d = (double)n;
+
+	s.time_ns = (int64_t)(n * 3);
+	s.line = (uint32_t)n;
+	s.seg = s.tick = (uint32_t)~n;
+	for (int a = 0; a < SHM_NAXES; a++) {
+		s.pos[a] = (int32_t)(n + (uint64_t)a);
+		s.pulse_mm[a] = d;
+	}
+	s.place_mm = s.far_mm = s.length_mm = d;
+	s.feed_mm_s = s.gap_v = s.depth_mm = -d;
+	s.job_cycles = s.erode_cycles = s.jump_cycles = n;
+	s.retract_mm_max = d;
+	s.took_ns = s.took_max_ns = (int64_t)n;
+	return s;
+}
+
+static void *write_status(void *arg)
+{
+	struct stress *st = arg;
+
+	while (!__atomic_load_n(&st->end, __ATOMIC_RELAXED)) {
+		struct shm_snapshot s = snapshot_of(++st->written);
+
+		shm_publish(st->status, &s);
+	}
+	return NULL;
+}
+
+static struct stress stress_status(void)
+{
+	struct stress st = { .status = NULL };
+	struct shm_snapshot before;
+
+	assert_int_equal(shm_status_create(&st.status, machine, &before), 0);
+	return st;
+}
+
+/* From here on there is something to read. */
+static void stress_start(struct stress *st, pthread_t *t)
+{
+	struct shm_snapshot s;
+
+	assert_int_equal(pthread_create(t, NULL, write_status, st), 0);
+	while (!shm_snapshot(st->status, &s))
+		sched_yield();
+}
+
+/* A reader that does something else until it is behind by a whole ring. */
+static void fall_behind(const struct stress *st, const struct shm_follow *f)
+{
+	const uint64_t *next = &st->status->trace_next;
+
+	while (__atomic_load_n(next, __ATOMIC_RELAXED) <=
+	       f->next + SHM_TRACE_SLOTS)
+		sched_yield();
+}
+
+static void stress_end(struct stress *st, pthread_t t)
+{
+	__atomic_store_n(&st->end, true, __ATOMIC_RELAXED);
+	pthread_join(t, NULL);
+}
+
+static void no_snapshot_is_ever_torn_or_older_than_the_last(void **state)
+{
+	pthread_t t;
+	struct stress st = stress_status();
+	double until = now_s() + RUN_S;
+	uint64_t got = 0, none = 0, last = 0;
+
+	(void)state;
+	stress_start(&st, &t);
+	while (now_s() < until) {
+		struct shm_snapshot s, want;
+
+		if (!shm_snapshot(st.status, &s)) {
+			none++;
+			continue;
+		}
+		want = snapshot_of(s.cycle);
+		assert_memory_equal(&s, &want, sizeof(s));
+		assert_true(s.cycle >= last);
+		last = s.cycle;
+		got++;
+	}
+	stress_end(&st, t);
+	print_message("snapshots: %llu written, %llu read, %llu not there\n",
+		      (unsigned long long)st.written, (unsigned long long)got,
+		      (unsigned long long)none);
+	assert_true(got > 1000);
+	assert_int_equal(none, 0);
+	shm_status_destroy(st.status, machine);
+}
+
+static void no_trace_record_is_torn_and_none_lost_uncounted(void **state)
+{
+	pthread_t t;
+	struct stress st = stress_status();
+	double until = now_s() + RUN_S;
+	struct shm_follow f = { 0 };
+	struct shm_trace r;
+	uint64_t got = 0, last = 0;
+	bool more = true;
+
+	(void)state;
+	stress_start(&st, &t);
+	while (more || !st.end) {
+		if (!st.end && now_s() >= until)
+			stress_end(&st, t);
+		more = shm_trace_next(st.status, &f, &r);
+		if (!more)
+			continue;
+		assert_true(r.cycle > last);
+		assert_true(r.place_mm == (double)r.cycle);
+		assert_true(r.gap_v == -(double)r.cycle);
+		assert_int_equal(r.line, (uint32_t)r.cycle);
+		assert_int_equal(r.pos[7], (int32_t)(r.cycle + 7));
+		last = r.cycle;
+		if (++got % 5000 == 0 && !st.end)
+			fall_behind(&st, &f);
+	}
+	print_message("trace: %llu written, %llu read, %llu lost\n",
+		      (unsigned long long)st.written, (unsigned long long)got,
+		      (unsigned long long)f.lost);
+	assert_int_equal(last, st.written);
+	assert_int_equal(got + f.lost, st.written);
+	assert_true(f.lost > 0);
+	shm_status_destroy(st.status, machine);
+}
+
+static void *write_commands(void *arg)
+{
+	struct stress *st = arg;
+
+	for (uint32_t id = 1; id <= COMMANDS; id++) {
+		struct shm_command c = {
+			.id = id, .verb = ~id, .arg = id * 3,
+			.arg_mm = (double)id,
+		};
+
+		while (shm_command_put(st->ring, &c) < 0)
+			sched_yield();
+	}
+	return NULL;
+}
+
+static void every_command_comes_once_in_order_and_whole(void **state)
+{
+	struct stress st = { .status = NULL };
+	double begin = now_s();
+	uint64_t empty = 0;
+	pthread_t t;
+
+	(void)state;
+	assert_int_equal(shm_command_create(&st.ring, machine, 1), 0);
+	assert_int_equal(pthread_create(&t, NULL, write_commands, &st), 0);
+	for (uint32_t id = 1; id <= COMMANDS; id++) {
+		struct shm_command c;
+
+		while (!shm_command_take(st.ring, &c)) {
+			empty++;
+			sched_yield();
+		}
+		assert_int_equal(c.id, id);
+		assert_int_equal(c.verb, ~id);
+		assert_int_equal(c.arg, id * 3);
+		assert_true(c.arg_mm == (double)id);
+	}
+	pthread_join(t, NULL);
+	print_message("commands: %u in %.2f s, found none %llu times\n",
+		      COMMANDS, now_s() - begin, (unsigned long long)empty);
+	shm_command_destroy(st.ring, machine);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(
+			no_snapshot_is_ever_torn_or_older_than_the_last),
+		cmocka_unit_test(
+			no_trace_record_is_torn_and_none_lost_uncounted),
+		cmocka_unit_test(every_command_comes_once_in_order_and_whole),
+	};
+
+	snprintf(machine, sizeof(machine), "stress-%d", (int)getpid());
+	return cmocka_run_group_tests_name("shm_stress", tests, NULL, NULL);
+}
