@@ -15,7 +15,7 @@
 
 V	?= 0
 Q	:= $(if $(filter 1,$(V)),,@)
-say	= $(if $(filter 1,$(V)),,@printf '  %-7s %s\n' $1 $2)
+say	= $(if $(filter 1,$(V)),,@printf '  %-7s %s\n' '$1' '$2')
 
 PREFIX	?= /usr/local
 BINDIR	= $(DESTDIR)$(PREFIX)/bin
@@ -150,7 +150,121 @@ $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O)
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
 	$(call link,-linih -lpthread -lm)
 
+# -- The commands -------------------------------------------------------------
+
+demo:
+	@tests/setup build
+	@$(MAKE) --no-print-directory all
+	@EDM_BUILD=$(B) tests/netns examples/demo
+
+# Everything: ends with the test runner's own lines.
+check:
+	@tests/setup check
+	@$(MAKE) --no-print-directory -j2 all units WERROR=1
+	@$(MAKE) --no-print-directory lint
+	@$(MAKE) --no-print-directory run-units
+	@$(MAKE) --no-print-directory -j2 SAN=1 all units
+	@$(MAKE) --no-print-directory SAN=1 run-units
+	@$(MAKE) --no-print-directory TSAN=1 run-crossings
+	@$(MAKE) --no-print-directory fuzz FUZZ_S=20
+	@$(MAKE) --no-print-directory clang
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system
+
+units: $(UNIT_X)
+
+run-units: $(UNIT_X)
+	$(Q)for t in $^; do $$t >$$t.log 2>&1 || \
+		{ cat $$t.log; echo "FAILED: $$t"; exit 1; }; \
+		printf '  UNIT    %s: ' $$t; \
+		sed -n 's/^\[==========\] \([0-9]* test(s) run\).*/\1/p' $$t.log; done
+
+# The shared-memory crossings between threads, under the thread sanitizer.
+run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
+	$(Q)for t in $^; do $$t >$$t.log 2>&1 || { cat $$t.log; exit 1; }; \
+		echo "  TSAN    $$t"; done
+
+# Another compiler's opinion: warnings are errors, nothing is linked.
+clang:
+	$(call say,CLANG,all sources)
+	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(SHM) $(SETUP) $(EDMD) \
+		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
+		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
+			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
+			$(INC_dds) $(INC_libinterp)) $$f || exit 1; done
+
+bench: all
+	@tests/setup check
+	@$(MAKE) --no-print-directory $(BENCH_X)
+	@EDM_BUILD=$(B) tests/bench/run
+
+FUZZ_S	?= 60
+fuzz: $(B)/fuzz_nc
+	$(Q)mkdir -p $(B)/corpus && cp examples/*.ngc $(B)/corpus/
+	$(Q)$(B)/fuzz_nc -max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
+		-print_final_stats=1 $(B)/corpus 2>$(B)/fuzz.log || \
+		{ tail -n 40 $(B)/fuzz.log; exit 1; }
+	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    nc: runs /p' $(B)/fuzz.log
+
+$(B)/fuzz_nc: tests/fuzz/fuzz_nc.c $(INTERP)
+	$(call say,CLANG,$@)
+	$(Q)mkdir -p $(@D)
+	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
+		-fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
+		$(INC_libinterp) -o $@ $^ -lm
+
+# -- Lint ---------------------------------------------------------------------
+
+# What the cycle can reach, linked alone: nothing but tests/rt-symbols.
+RT_ENTRY = cycle_step cycle_command cycle_load cycle_load_at cycle_overrun
+HEADERS	 = $(wildcard libinterp/include/interp/*.h daemon/*/*.h clients/*/*.h)
+
+lint: $(INTERP_O) $(RT_O)
+	$(call say,LINT,what the cycle may call)
+	$(Q)$(LD) --gc-sections --unresolved-symbols=ignore-all -e cycle_step \
+		$(RT_ENTRY:%=-u %) -o $(B)/rt.elf $^
+	$(Q)nm -u $(B)/rt.elf | awk '{print $$2}' | sort -u > $(B)/rt.undefined
+	$(Q)! grep -vxFf tests/rt-symbols $(B)/rt.undefined
+	$(call say,LINT,each header alone)
+	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
+		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
+		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
+	$(call say,LINT,generated messages stay in their files)
+	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
+		grep -vE 'daemon/jobs/wire.c|clients/ctl/talk.c'
+	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
+	$(call say,LINT,no function over 80 lines)
+	$(Q)tests/function-lengths 80
+
+# -- Install ------------------------------------------------------------------
+
+install: all
+	$(call say,INSTALL,$(DESTDIR)$(PREFIX))
+	$(Q)install -d $(BINDIR) $(UNITDIR) $(DESTDIR)/usr/lib/sysusers.d \
+		$(DESTDIR)/usr/lib/udev/rules.d $(DESTDIR)/etc/edmd \
+		$(DESTDIR)$(PREFIX)/share/man/man1 \
+		$(DESTDIR)$(PREFIX)/share/man/man8 \
+		$(DESTDIR)$(PREFIX)/share/edmd
+	$(Q)install -m 755 $(PROGRAMS) $(BINDIR)
+	$(Q)for u in systemd/*.service.in; do \
+		sed 's,@BINDIR@,$(PREFIX)/bin,g' $$u \
+			> $(UNITDIR)/$$(basename $$u .in) && \
+		chmod 644 $(UNITDIR)/$$(basename $$u .in); done
+	$(Q)install -m 644 systemd/edmd.sysusers \
+		$(DESTDIR)/usr/lib/sysusers.d/edmd.conf
+	$(Q)install -m 644 systemd/edmd.rules \
+		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules
+	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
+		examples/machine.ini $(DESTDIR)/etc/edmd/machine.ini
+	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
+		$(DESTDIR)$(PREFIX)/share/edmd
+	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
+
+clean:
+	rm -rf build build-san build-tsan
+
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all
+.PHONY: all demo check units run-units run-crossings clang bench fuzz lint \
+	install clean
 .SECONDARY:

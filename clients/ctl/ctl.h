@@ -19,6 +19,9 @@ struct ctl {
 	double timeout_s;
 	const char *name, *id;
 	bool hold, wait, once;
+	unsigned int every;		/* record: cycles; 0: not given */
+	const char *plot;
+	bool until_end;
 	/* The verb, and what follows it. */
 	const char *verb;
 	const char *arg;		/* NULL if there is none */
@@ -35,6 +38,7 @@ int ctl_show(struct ctl *c);
 int ctl_history(struct ctl *c);
 int ctl_status(struct ctl *c);
 int ctl_watch(struct ctl *c);
+int ctl_record(struct ctl *c);
 
 /** ctl_ask() - ask; what went wrong is printed, nothing else.
  *  Return: what to exit with; 0: @ret is filled and to be freed. */

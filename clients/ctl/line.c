@@ -40,7 +40,7 @@ static int columns(void)
 
 	if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &w) == 0 && w.ws_col > 20)
 		return w.ws_col - 1;
-	return 79;
+	return isatty(STDOUT_FILENO) ? 79 : LINE_MAX_CHARS;
 }
 
 /* As wide as @room, within reason. */

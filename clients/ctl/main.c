@@ -50,6 +50,8 @@ static const struct verb verbs[] = {
 	  "the machine now; exits with 69 if edmd is not there" },
 	{ "watch", "", ctl_watch, false, false, "o",
 	  "the machine as it goes, until Ctrl-C" },
+	{ "record", "CSV", ctl_record, true, true, "epU",
+	  "every cycle to a trace file, until Ctrl-C" },
 	{ "history", "", ctl_history, false, false, "",
 	  "jobs that have ended, newest first" },
 };
@@ -64,6 +66,9 @@ static const struct option longs[] = {
 	{ "hold",    no_argument,       NULL, 'h' },
 	{ "wait",    no_argument,       NULL, 'w' },
 	{ "once",    no_argument,       NULL, 'o' },
+	{ "every",   required_argument, NULL, 'e' },
+	{ "plot",    required_argument, NULL, 'p' },
+	{ "until-end", no_argument,     NULL, 'U' },
 	{ "help",    no_argument,       NULL, 'H' },
 	{ "version", no_argument,       NULL, 'V' },
 	{ NULL, 0, NULL, 0 },
@@ -91,8 +96,26 @@ static void print_usage(FILE *f)
 	      "  --hold          submit: load it, wait for start\n"
 	      "  --wait          submit: follow it; exit 0 if done, 1 if not\n"
 	      "  --once          watch: one line\n"
+	      "  --every N       record: one cycle of N; default: 1\n"
+	      "  --plot FILE     record: then draw it, .png or .svg\n"
+	      "  --until-end     record: until the job that runs, or the "
+	      "next, ends\n"
 	      "  --help          this\n"
 	      "  --version       its version\n", f);
+}
+
+static int every_take(struct ctl *c, const char *word)
+{
+	char *end;
+	long n = strtol(word, &end, 10);
+
+	if (end == word || *end || n < 1 || n > 1000000) {
+		fprintf(stderr, "edmctl: --every %s; a whole number of "
+			"cycles, 1 to 1000000\n", word);
+		return EX_USAGE;
+	}
+	c->every = (unsigned int)n;
+	return 0;
 }
 
 static int option_take(struct ctl *c, int opt)
@@ -131,6 +154,14 @@ static int option_take(struct ctl *c, int opt)
 		break;
 	case 'o':
 		c->once = true;
+		break;
+	case 'e':
+		return every_take(c, optarg);
+	case 'p':
+		c->plot = optarg;
+		break;
+	case 'U':
+		c->until_end = true;
 		break;
 	}
 	return 0;

@@ -259,9 +259,10 @@ int ctl_wait(struct ctl *c, const char *id)
 			line_end(&l);
 			return ctl_unanswered(c, -ETIMEDOUT);
 		}
-		if (rc < 0)
+		if (rc < 0) {
+			draw(c, &l, id, &seen);
 			talk_wait(c->talk, 100);
-		draw(c, &l, id, &seen);
+		}
 	}
 	line_end(&l);
 	if (rc >= 0)

@@ -31,6 +31,7 @@ struct jobs {
 	struct compile *check[UPLOAD_SLOTS];	/* of uploads.slot[i] */
 	int64_t status_us;		/* when the last was sent, monotonic */
 	uint64_t status_key;		/* what a change of is sent at once */
+	int64_t begun_us;		/* of this service */
 };
 
 /** jobs_now_us() - monotonic; jobs_utime() - since 1970. */

@@ -268,6 +268,7 @@ static int run(struct jobs *j)
 	};
 	int err = sd_event_new(&j->event);
 
+	j->begun_us = jobs_now_us();
 	link_init(&j->link, j->machine, &h);
 	if (err >= 0)
 		err = queue_init(j);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #define STATUS_US	100000
+#define GRACE_US	300000		/* to find edmd, after a start */
 
 /* Whatever of this changes is told at once. */
 static uint64_t key_of(const struct jobs *j)
@@ -72,6 +73,9 @@ void status_tick(struct jobs *j, int64_t now_us)
 	struct wire_status w = { .line = 0 };
 
 	if (key == j->status_key && now_us - j->status_us < STATUS_US)
+		return;
+	/* "absent" would be a guess as yet. */
+	if (j->link.state == LINK_ABSENT && now_us - j->begun_us < GRACE_US)
 		return;
 	j->status_key = key;
 	j->status_us = now_us;

@@ -237,7 +237,7 @@ static const struct verb verbs[] = {
 	{ "resume",  verb_resume,  SHM_DO_RESUME,  "a job that is held" },
 	{ "stop",    verb_machine, SHM_DO_STOP,    "a job, and no fault; reset "
 						   "first" },
-	{ "retract", verb_retract, SHM_DO_RETRACT, "a job that is held; hold "
+	{ "retract", verb_retract, SHM_DO_RETRACT, "a job, and no fault; reset "
 						   "first" },
 	{ "estop",   verb_machine, SHM_DO_ESTOP,   "nothing" },
 	{ "reset",   verb_machine, SHM_DO_RESET,   "a fault" },

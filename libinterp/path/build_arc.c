@@ -17,7 +17,7 @@
 #define RADIUS_SHARE	0.001
 
 static const struct interp_axis_limits *limits(const struct build_arc *p,
-					       enum interp_axis a)
+					       uint32_t a)
 {
 	return &p->machine->axis[a];
 }
@@ -119,7 +119,7 @@ static void arc_length(struct build_arc *p)
 	double seconds = plane / fmin(limits(p, arc->axis_a)->v_max_mm_s,
 				      limits(p, arc->axis_b)->v_max_mm_s);
 
-	for (int i = 0; i < INTERP_NAXES; i++) {
+	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
 		const double d = p->to_mm[i] - p->from_mm[i];
 
 		if (i == arc->axis_a || i == arc->axis_b || d == 0)
@@ -190,7 +190,7 @@ static int ticks_point_by_point(struct build_arc *p, struct interp_diag *diag)
 		return p->straight ? 0 : refuse_ticks(diag);
 	}
 	ticks = arc->circle_ticks;
-	for (int i = 0; i < INTERP_NAXES; i++) {
+	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
 		if (i != arc->axis_a && i != arc->axis_b)
 			ticks += (uint64_t)llabs((int64_t)p->to[i] -
 						 p->from[i]);

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * record.c - write the cycles of a running machine to a trace CSV
+ *
+ * Follows the trace ring in edmd's shared memory, so it runs on the machine's
+ * own host.  The reader never slows the cycle: one that falls behind loses
+ * records, and is told how many.
+ */
+#include "ctl.h"
+#include "plot.h"
+#include "shm.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sysexits.h>
+#include <unistd.h>
+
+#define PAUSE_US	20000		/* far less than the ring holds */
+#define ALIVE_S		0.5
+
+struct recording {
+	const struct shm_status *status;
+	FILE *f;
+	struct shm_follow trace, events;
+	struct shm_snapshot about;	/* period and worth of a pulse */
+	uint64_t first_cycle, written;
+	uint32_t state;			/* of the last record */
+	bool begun;			/* a record was seen */
+	bool ended;			/* the job; @outcome and @end_cycle */
+	int32_t outcome;
+	uint64_t end_cycle;
+	bool dead;			/* edmd is no longer there */
+	double looked_s;
+	struct line line;
+};
+
+static int refuse(const struct ctl *c, const char *what, const char *why,
+		  int code)
+{
+	fprintf(stderr, "edmctl: %s: %s: %s\n", c->verb, what, why);
+	return code;
+}
+
+static int open_status(const struct ctl *c, struct recording *r)
+{
+	int err = shm_status_open(&r->status, c->machine);
+
+	if (err == -EPROTO)
+		return refuse(c, c->machine, "its edmd is of another release; "
+			      "an edmctl of the same is wanted", EX_PROTOCOL);
+	if (err == -EACCES)
+		return refuse(c, c->machine, "its shared memory is not yours "
+			      "to read; the group edm is wanted", EX_NOPERM);
+	if (err < 0 || !shm_alive(r->status) ||
+	    !shm_snapshot(r->status, &r->about))
+		return refuse(c, c->machine, "no edmd runs on this host; "
+			      "systemctl start edmd", EX_UNAVAILABLE);
+
+	/* Only what is new from here on. */
+	r->trace.next = __atomic_load_n(&r->status->trace_next,
+					__ATOMIC_ACQUIRE);
+	r->events.next = __atomic_load_n(&r->status->event_next,
+					 __ATOMIC_ACQUIRE);
+	return 0;
+}
+
+static int open_csv(const struct ctl *c, struct recording *r)
+{
+	r->f = fopen(c->arg, "we");
+	if (!r->f)
+		return refuse(c, c->arg, strerror(errno), EX_CANTCREAT);
+	fputs("t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V\n", r->f);
+	return 0;
+}
+
+static void write_row(struct recording *r, const struct shm_trace *t)
+{
+	double t_s = (double)(t->cycle - r->first_cycle) *
+		     (double)r->about.period_ns * 1e-9;
+
+	fprintf(r->f, "%.6f,%u,%.6f,%.6f,%.2f,%s", t_s, t->line, t->place_mm,
+		t->feed_mm_s, t->gap_v, shm_state_name(t->state));
+	for (int i = 0; i < SHM_NAXES; i++)
+		fprintf(r->f, ",%.10g", t->pos[i] * r->about.pulse_mm[i]);
+	fputc('\n', r->f);
+	r->written++;
+}
+
+/* Every n-th cycle, and each in which the state changes. */
+static void take(const struct ctl *c, struct recording *r,
+		 const struct shm_trace *t)
+{
+	bool changed = !r->begun || t->state != r->state;
+
+	if (!r->begun)
+		r->first_cycle = t->cycle;
+	r->begun = true;
+	r->state = t->state;
+	if (changed || (t->cycle - r->first_cycle) % c->every == 0)
+		write_row(r, t);
+}
+
+static void look_for_end(struct recording *r)
+{
+	struct shm_event e;
+
+	while (!r->ended && shm_event_next(r->status, &r->events, &e)) {
+		if (e.kind != SHM_EV_ENDED)
+			continue;
+		r->ended = true;
+		r->outcome = e.code;
+		r->end_cycle = e.cycle;
+	}
+}
+
+static void look_for_life(struct recording *r)
+{
+	if (talk_now_s() - r->looked_s < ALIVE_S)
+		return;
+	r->looked_s = talk_now_s();
+	r->dead = !shm_alive(r->status);
+}
+
+static void tell(struct recording *r)
+{
+	struct shm_snapshot s;
+	char text[80];
+
+	if (!r->line.tty || !shm_snapshot(r->status, &s))
+		return;
+	snprintf(text, sizeof(text), "%-8s %.3f mm, %llu rows, %llu lost",
+		 shm_state_name(s.state), s.place_mm,
+		 (unsigned long long)r->written,
+		 (unsigned long long)r->trace.lost);
+	line_bar(&r->line, s.length_mm > 0 ? s.far_mm / s.length_mm : 0, text);
+}
+
+/* What is in the ring now, up to the job's end if that is the aim. */
+static void drain(const struct ctl *c, struct recording *r)
+{
+	struct shm_trace t;
+
+	while (shm_trace_next(r->status, &r->trace, &t)) {
+		if (c->until_end && r->ended && t.cycle > r->end_cycle)
+			return;
+		take(c, r, &t);
+	}
+}
+
+static void follow(const struct ctl *c, struct recording *r)
+{
+	line_init(&r->line);
+	do {
+		look_for_end(r);
+		drain(c, r);
+		look_for_life(r);
+		tell(r);
+		if (r->dead || ferror(r->f) || (c->until_end && r->ended))
+			break;
+		usleep(PAUSE_US);
+	} while (!talk_interrupted());
+	line_end(&r->line);
+}
+
+static int close_csv(const struct ctl *c, struct recording *r)
+{
+	int bad = ferror(r->f);
+
+	if (fclose(r->f) != 0 || bad)
+		return refuse(c, c->arg, "could not be written", EX_IOERR);
+	return 0;
+}
+
+static const char *why_ended(const struct ctl *c, const struct recording *r)
+{
+	if (r->dead)
+		return "edmd is gone";
+	if (!c->until_end || !r->ended)
+		return "interrupted";
+	return r->outcome == SHM_OUTCOME_DONE ? "the job is done" :
+	       r->outcome == SHM_OUTCOME_FAULT ? "the job faulted" :
+	       "the job was stopped";
+}
+
+static void report(const struct ctl *c, const struct recording *r)
+{
+	if (c->json)
+		printf("{\"rows\": %llu, \"lost\": %llu, \"ended\": \"%s\"}\n",
+		       (unsigned long long)r->written,
+		       (unsigned long long)r->trace.lost, why_ended(c, r));
+	else
+		printf("%s: %llu rows, %llu cycles lost; %s\n", c->arg,
+		       (unsigned long long)r->written,
+		       (unsigned long long)r->trace.lost, why_ended(c, r));
+	fflush(stdout);
+}
+
+static int draw(const struct ctl *c)
+{
+	const struct plot_options o = {
+		.program = "edmctl", .trace = c->arg, .output = c->plot,
+	};
+
+	return plot_trace(&o) < 0 ? EX_CANTCREAT : 0;
+}
+
+static int record(const struct ctl *c, struct recording *r)
+{
+	int rc = open_csv(c, r);
+
+	if (rc)
+		return rc;
+	follow(c, r);
+	rc = close_csv(c, r);
+	if (rc)
+		return rc;
+	report(c, r);
+	if (c->plot && r->written)
+		rc = draw(c);
+	if (rc == 0 && r->dead)
+		return EX_UNAVAILABLE;
+	return rc ? rc : r->ended && r->outcome != SHM_OUTCOME_DONE;
+}
+
+int ctl_record(struct ctl *c)
+{
+	struct recording r = { 0 };
+	int rc;
+
+	if (c->every == 0)
+		c->every = 1;
+	if (c->plot && plot_check("edmctl", c->plot) < 0)
+		return EX_USAGE;
+	rc = open_status(c, &r);
+	if (rc == 0)
+		rc = record(c, &r);
+	shm_close(r.status, sizeof(*r.status));
+	return rc;
+}

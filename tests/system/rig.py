@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A machine to test: edmd and edmd-jobs, and a client written by others.
+
+The client is PyPI's lcm with the types that lcm-gen makes for Python, so that
+what is tested is what is on the wire, not our own idea of it.
+"""
+
+import hashlib
+import json
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import time
+
+BUILD = pathlib.Path(os.environ.get("BUILD", "build")).resolve()
+sys.path.insert(0, str(BUILD / "python"))
+
+import lcm  # noqa: E402
+from edm import ack_t, command_t, event_t, job_chunk_t, status_t  # noqa: E402
+
+URL = "udpm://239.255.76.67:7667?ttl=0"
+CHUNK = 32768
+
+# No gap: the path is walked at the programmed feed, so times are known.
+NULL_MACHINE = """
+[machine]
+name = {name}
+backend = null
+period_us = 1000
+overrun_limit = 0
+cpu = -1
+
+[jobs]
+store = {store}
+"""
+
+# 2 mm at 60 mm/min take 2 s.
+SLOW_JOB = b"G21 G90\nG1 X2 F60\nM30\n"
+QUICK_JOB = b"G21 G90\nG1 X0.2 F600\nG1 X0\nM30\n"
+
+
+def until(what, timeout=5.0, step=0.01):
+    """Wait for what() to be true; give what it returned."""
+    end = time.monotonic() + timeout
+    while True:
+        got = what()
+        if got:
+            return got
+        assert time.monotonic() < end, f"not within {timeout} s"
+        time.sleep(step)
+
+
+class Client:
+    """Speaks LCM; keeps what it hears."""
+
+    def __init__(self, machine):
+        self.machine = machine
+        self.lcm = lcm.LCM(URL)
+        self.name = f"test-{os.getpid()}-{random.getrandbits(32):08x}"
+        self.seq = 0
+        self.acks, self.statuses, self.events = [], [], []
+        for channel, kind, where in (
+            ("ACK", ack_t, self.acks),
+            ("STATUS", status_t, self.statuses),
+            ("EVENT", event_t, self.events),
+        ):
+            subscription = self.lcm.subscribe(
+                f"EDM\\.{machine}\\.{channel}",
+                lambda _, data, kind=kind, where=where: where.append(
+                    kind.decode(data)
+                ),
+            )
+            subscription.set_queue_capacity(1000)
+
+    def hear(self, seconds=0.02):
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            self.lcm.handle_timeout(max(1, int(left * 1000)))
+
+    def number(self):
+        self.seq += 1
+        return self.seq
+
+    def acks_to(self, seq):
+        return [
+            a for a in self.acks if a.client == self.name and a.seq == seq
+        ]
+
+    def heard(self, what, timeout=5.0):
+        """Listen until what() is true; give what it returned."""
+        end = time.monotonic() + timeout
+        while True:
+            got = what()
+            if got:
+                return got
+            assert time.monotonic() < end, (
+                f"not heard within {timeout} s; last status: "
+                f"{vars_of(self.statuses[-1]) if self.statuses else None}, "
+                f"last acks: {[vars_of(a) for a in self.acks[-3:]]}"
+            )
+            self.hear()
+
+    def send_command(self, verb, job="", arg=0.0, seq=None):
+        m = command_t()
+        m.utime = int(time.time() * 1e6)
+        m.client = self.name
+        m.seq = self.number() if seq is None else seq
+        m.verb, m.job, m.arg, m.text = verb, job, float(arg), ""
+        self.lcm.publish(f"EDM.{self.machine}.COMMAND", m.encode())
+        return m.seq
+
+    def ask(self, verb, job="", arg=0.0, timeout=6.0):
+        """Ask, and ask again with the same seq, until answered."""
+        seq = self.send_command(verb, job, arg)
+        again = time.monotonic() + 0.5
+
+        def answered():
+            nonlocal again
+            if time.monotonic() > again:
+                self.send_command(verb, job, arg, seq)
+                again += 0.5
+            return self.acks_to(seq)
+
+        return self.heard(answered, timeout)[0]
+
+    def chunks(self, text, job, name="job.ngc", size=CHUNK, hold=False):
+        pieces = [text[i:i + size] for i in range(0, len(text), size)] or [b""]
+        made = []
+        for i, piece in enumerate(pieces):
+            m = job_chunk_t()
+            m.utime = int(time.time() * 1e6)
+            m.client, m.seq = self.name, self.number()
+            m.job, m.name = job, name
+            m.bytes = len(text)
+            m.sha256 = hashlib.sha256(text).digest()
+            m.chunk, m.chunks, m.offset = i, len(pieces), i * size
+            m.hold = hold
+            m.size, m.data = len(piece), piece
+            made.append(m)
+        return made
+
+    def send(self, chunks):
+        for m in chunks:
+            self.lcm.publish(f"EDM.{self.machine}.JOB", m.encode())
+
+    def verdict(self, chunks):
+        """The ack that says what became of the job, if it is there."""
+        seqs = {m.seq for m in chunks}
+        for a in self.acks:
+            if a.client == self.name and a.seq in seqs:
+                if a.code or a.body:
+                    return a
+        return None
+
+    def submit(self, text, job, timeout=5.0, **more):
+        chunks = self.chunks(text, job, **more)
+        self.send(chunks)
+        return self.heard(lambda: self.verdict(chunks), timeout)
+
+    def status(self, timeout=2.0):
+        """One that is told from now on."""
+        n = len(self.statuses)
+        self.heard(lambda: len(self.statuses) > n, timeout)
+        return self.statuses[-1]
+
+    def status_where(self, what, timeout=5.0):
+        """The first, from now on, for which what(status) is true."""
+        self.hear(0.001)
+        n = len(self.statuses)
+        return self.heard(
+            lambda: next((s for s in self.statuses[n:] if what(s)), None),
+            timeout,
+        )
+
+    def job(self, job):
+        a = self.ask("show", job)
+        return json.loads(a.body) if a.code == 0 else None
+
+    def job_where(self, job, state, timeout=10.0):
+        end = time.monotonic() + timeout
+        while (j := self.job(job))["state"] != state:
+            assert time.monotonic() < end, f"job is {j}, not {state}"
+            self.hear(0.05)
+        return j
+
+
+def vars_of(m):
+    return {k: getattr(m, k) for k in m.__slots__}
+
+
+class Machine:
+    """edmd and edmd-jobs of one machine, in a folder of its own."""
+
+    count = 0
+
+    def __init__(self, folder, config=NULL_MACHINE):
+        Machine.count += 1
+        self.name = f"test{os.getpid()}-{Machine.count}"
+        self.folder = pathlib.Path(folder)
+        self.store = self.folder / "store"
+        self.config = self.folder / "machine.ini"
+        self.config.write_text(
+            config.format(name=self.name, store=self.store)
+        )
+        self.edmd = self.jobs = None
+        self.client = Client(self.name)
+
+    def start_edmd(self):
+        self.edmd = self._start("edmd", "--config", str(self.config))
+        until(lambda: self.shm("status"))
+
+    def start_jobs(self, *more):
+        self.jobs = self._start(
+            "edmd-jobs", "--config", str(self.config), *more
+        )
+
+    def start(self):
+        self.start_edmd()
+        self.start_jobs()
+        self.client.status_where(lambda s: s.daemon == "ok")
+
+    def _start(self, program, *args):
+        with open(self.folder / f"{program}.log", "ab") as log:
+            return subprocess.Popen(
+                [str(BUILD / program), *args], stdout=log, stderr=log
+            )
+
+    def kill(self, which):
+        p = getattr(self, which)
+        p.kill()
+        p.wait()
+
+    def end(self, which):
+        p = getattr(self, which)
+        if p is None or p.poll() is not None:
+            return None
+        p.send_signal(signal.SIGTERM)
+        return p.wait(timeout=10)
+
+    def close(self):
+        """End both in order: a job that is still there is ended first."""
+        if self.jobs and self.jobs.poll() is None:
+            if self.edmd and self.edmd.poll() is None:
+                self._clear()
+            self.end("jobs")
+        self.end("edmd")
+        for log in ("edmd", "edmd-jobs"):
+            path = self.folder / f"{log}.log"
+            if path.exists():
+                print(f"-- {log}\n{path.read_text()}")
+
+    def _clear(self):
+        try:
+            for verb in ("hold", "reset", "stop"):
+                self.client.ask(verb)
+                self.client.hear(0.1)
+            self.client.status_where(lambda s: not s.job)
+        except AssertionError as e:
+            print(f"not cleared: {e}")
+
+    def shm(self, what=""):
+        """What is in /dev/shm of this machine."""
+        return sorted(
+            p.name
+            for p in pathlib.Path("/dev/shm").glob(f"edmd.{self.name}.{what}*")
+        )
+
+    def ctl(self, *args, timeout=30, **more):
+        return subprocess.run(
+            [str(BUILD / "edmctl"), "--machine", self.name, *args],
+            capture_output=True, text=True, timeout=timeout, **more,
+        )

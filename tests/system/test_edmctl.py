@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""edmctl: what it prints and what it exits with."""
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import time
+
+from rig import BUILD, QUICK_JOB, SLOW_JOB, until
+
+
+def write(machine, name, text):
+    path = machine.folder / name
+    path.write_bytes(text)
+    return str(path)
+
+
+def test_submit_wait_exits_0_and_reports(machine):
+    p = machine.ctl("submit", write(machine, "q.ngc", SLOW_JOB), "--wait")
+    assert p.returncode == 0, p.stderr
+    assert "job q.ngc: done" in p.stdout
+    assert "path       2.000 mm" in p.stdout
+    for word in ("depth", "time", "jumps", "retracts", "shorts"):
+        assert word in p.stdout
+
+
+def test_submit_from_standard_input(machine):
+    p = machine.ctl("--json", "submit", "-", "--name", "piped", "--wait",
+                    input=QUICK_JOB.decode())
+    assert p.returncode == 0, p.stderr
+    job = json.loads(p.stdout)
+    assert (job["name"], job["state"]) == ("piped", "done")
+
+
+def test_a_big_job_gets_there_whole(machine):
+    text = b"G21 G90 F600\n" + b"(%s)\n" % (b"x" * 99) * 30000 + QUICK_JOB
+    p = machine.ctl("submit", write(machine, "big.ngc", text), "--wait",
+                    timeout=60)
+    assert p.returncode == 0, p.stderr
+
+
+def test_refused_code_is_told_with_file_line_and_column(machine):
+    path = write(machine, "bad.ngc", b"G21\nG1 X5 Q7\n")
+    p = machine.ctl("submit", path, "--name", "other")
+    assert p.returncode == 65
+    assert p.stderr.startswith(f"{path}:2:7: error: ")
+    assert ";" in p.stderr
+
+
+def test_input_that_is_not_there(machine):
+    assert machine.ctl("submit", "/no/such/file").returncode == 66
+    assert machine.ctl("submit", str(machine.folder)).returncode == 66
+    p = machine.ctl("submit", write(machine, "empty.ngc", b""))
+    assert p.returncode == 65
+    assert "empty" in p.stderr
+
+
+def test_a_job_that_is_stopped_exits_1(machine):
+    path = write(machine, "slow.ngc", SLOW_JOB)
+    with subprocess.Popen(
+        [str(BUILD / "edmctl"), "--machine", machine.name, "submit", path,
+         "--wait"], stdout=subprocess.PIPE, text=True,
+    ) as p:
+        machine.client.status_where(lambda s: s.place_mm > 0.3)
+        assert machine.ctl("hold").returncode == 0
+        machine.client.status_where(lambda s: s.state == "hold")
+        assert machine.ctl("stop").returncode == 0
+        out, _ = p.communicate(timeout=10)
+    assert p.returncode == 1
+    assert "stopped" in out
+
+
+def test_a_job_that_faults_exits_1(machine):
+    path = write(machine, "slow.ngc", SLOW_JOB)
+    with subprocess.Popen(
+        [str(BUILD / "edmctl"), "--machine", machine.name, "submit", path,
+         "--wait"], stdout=subprocess.PIPE, text=True,
+    ) as p:
+        machine.client.status_where(lambda s: s.place_mm > 0.3)
+        assert machine.ctl("estop").returncode == 0
+        out, _ = p.communicate(timeout=10)
+    assert p.returncode == 1
+    assert "fault: e-stop" in out
+
+
+def test_ctrl_c_leaves_the_job_running(machine):
+    path = write(machine, "slow.ngc", SLOW_JOB)
+    with subprocess.Popen(
+        [str(BUILD / "edmctl"), "--machine", machine.name, "submit", path,
+         "--wait"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    ) as p:
+        machine.client.status_where(lambda s: s.place_mm > 0.3)
+        p.send_signal(signal.SIGINT)
+        _, err = p.communicate(timeout=5)
+    assert p.returncode == 75
+    assert "goes on" in err
+    job = json.loads(machine.ctl("--json", "queue").stdout)[0]["job"]
+    machine.client.job_where(job, "done")
+
+
+def test_watch_redraws_one_line_on_a_terminal(machine):
+    main, tty = pty.openpty()
+    p = subprocess.Popen(
+        [str(BUILD / "edmctl"), "--machine", machine.name, "submit",
+         write(machine, "slow.ngc", SLOW_JOB), "--wait"],
+        stdout=tty, stderr=tty,
+    )
+    os.close(tty)
+    out = b""
+    while True:
+        try:
+            piece = os.read(main, 4096)
+        except OSError:
+            break
+        if not piece:
+            break
+        out += piece
+    os.close(main)
+    assert p.wait(timeout=10) == 0
+    drawn = [x for x in out.split(b"\r") if b"%" in x]
+    assert len(drawn) > 10
+    assert all(b"\n" not in x for x in drawn[:-1])
+    assert any(b"=" in x and b"left" in x for x in drawn)
+
+
+def test_watch_once_status_and_lists(machine):
+    p = machine.ctl("watch", "--once")
+    assert (p.returncode, p.stdout.count("\n")) == (0, 1)
+    p = machine.ctl("--json", "status")
+    s = json.loads(p.stdout)
+    assert p.returncode == 0
+    assert (s["machine"], s["daemon"]) == (machine.name, "ok")
+    assert len(s["pos_mm"]) == 8
+    assert "none" in machine.ctl("queue").stdout
+    path = write(machine, "q.ngc", QUICK_JOB)
+    p = machine.ctl("submit", path, "--id", "mine", "--wait")
+    assert p.returncode == 0
+    p = machine.ctl("submit", path, "--id", "mine")
+    assert (p.returncode, "already" in p.stdout) == (0, True)
+    assert "mine" in machine.ctl("history").stdout
+    assert "done" in machine.ctl("show", "mine").stdout
+    assert machine.ctl("show", "nobody").returncode == 66
+
+
+def test_watch_ends_by_ctrl_c_with_0(machine):
+    p = subprocess.Popen(
+        [str(BUILD / "edmctl"), "--machine", machine.name, "watch"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )
+    time.sleep(1.5)
+    p.send_signal(signal.SIGINT)
+    out, err = p.communicate(timeout=5)
+    assert p.returncode == 0
+    assert out.count("\n") >= 1
+    assert "goes on" in err
+
+
+def test_status_of_a_killed_edmd_exits_69(machine):
+    machine.kill("edmd")
+    until(lambda: machine.ctl("status").returncode == 69, timeout=3)
+    p = machine.ctl("status")
+    assert "lost" in p.stdout
+    assert machine.ctl("hold").returncode == 69
+    machine.start_edmd()
+
+
+def test_no_service_is_told_within_the_timeout(idle):
+    for verb in (["queue"], ["status"], ["watch"], ["hold"]):
+        begun = time.monotonic()
+        p = idle.ctl("--timeout", "1", *verb)
+        assert p.returncode == 69, verb
+        assert time.monotonic() - begun < 2.5
+        assert f"no answer from edmd-jobs of machine {idle.name}" in p.stderr
+    path = write(idle, "q.ngc", QUICK_JOB)
+    assert idle.ctl("--timeout", "1", "submit", path).returncode == 69
+
+
+def test_usage(idle):
+    assert idle.ctl("--help").returncode == 0
+    assert "submit" in idle.ctl("--help").stdout
+    assert idle.ctl("--version").stdout.startswith("edmctl ")
+    for args in (
+        [], ["dance"], ["submit"], ["hold", "now"], ["hold", "--wait"],
+        ["retract"], ["retract", "x"], ["retract", "0"], ["--timeout", "0",
+                                                          "queue"],
+        ["--nonsense"], ["show"], ["show", "a", "b"],
+    ):
+        p = idle.ctl(*args)
+        assert p.returncode == 64, args
+        assert p.stderr, args
