@@ -6,6 +6,7 @@
  */
 #include "interp/build.h"
 #include "path/build_arc.h"
+#include "path/build_pair.h"
 #include "pulse/walk.h"
 
 #include <errno.h>
@@ -29,6 +30,7 @@ struct interp_build {
 	uint32_t naxes, columns;	/* columns: mask of axes */
 	double length_mm;
 	struct table segs, nodes, arcs, conds;	/* nodes: n counts columns */
+	struct table couples, bits;
 	char cond_letter;
 	uint32_t cond_number;
 	uint16_t cond;
@@ -112,6 +114,8 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	b->nodes.size = sizeof(int64_t);
 	b->arcs.size = sizeof(struct interp_arc);
 	b->conds.size = sizeof(struct interp_cond);
+	b->couples.size = sizeof(struct interp_couple);
+	b->bits.size = sizeof(uint64_t);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		b->sub_mm[i] = INTERP_SUB / o->machine->axis[i].pulse_mm;
 		b->here_mm[i] = o->start_mm[i];
@@ -137,6 +141,8 @@ void interp_build_destroy(struct interp_build *b)
 	free(b->nodes.at);
 	free(b->arcs.at);
 	free(b->conds.at);
+	free(b->couples.at);
+	free(b->bits.at);
 	free(b);
 }
 
@@ -423,6 +429,111 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	return seg_finish(b, &seg, w, diag);
 }
 
+/* -- Pairs ----------------------------------------------------------------- */
+
+/* The couple and its bits, into the tables. */
+static int couple_add(struct interp_build *b, struct build_pair *p)
+{
+	const size_t words = p->bits ? ((size_t)p->ticks + 63) / 64 : 0;
+	struct interp_couple *c = table_add(&b->couples);
+
+	if (!c)
+		return -ENOMEM;
+	*c = p->couple;
+	c->bits_at = b->bits.n;
+	for (size_t i = 0; i < words; i++) {
+		uint64_t *w = table_add(&b->bits);
+
+		if (!w)
+			return -ENOMEM;
+		*w = p->bits[i];
+	}
+	return 0;
+}
+
+static int pair_finish(struct interp_build *b, struct build_pair *p,
+		       const struct interp_build_word *w,
+		       struct interp_diag *diag)
+{
+	struct interp_seg seg = { .kind = INTERP_PAIR, .ticks = p->ticks,
+				  .length_mm = p->length_mm,
+				  .arg = (uint32_t)b->couples.n };
+
+	seg_feed(&seg, w, p->feed_max_mm_s);
+	if (columns_for(b, 1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_U |
+			   1u << INTERP_V) < 0 || couple_add(b, p) < 0)
+		return -ENOMEM;
+	return seg_finish(b, &seg, w, diag);
+}
+
+static int refuse_others(struct interp_diag *diag)
+{
+	snprintf(diag->found, sizeof(diag->found),
+		 "another axis beside two contours");
+	snprintf(diag->wanted, sizeof(diag->wanted), "X Y U V alone");
+	return -EINVAL;
+}
+
+/* One contour alone, the other stands: -ENOENT if both have a way to go. */
+static int pair_alone(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		      const struct interp_build_contour c[2], uint32_t moved,
+		      const struct interp_build_word *w,
+		      struct interp_diag *diag)
+{
+	const uint32_t xy = 1u << INTERP_X | 1u << INTERP_Y;
+	const int i = moved & xy || c[0].arc ? 0 : 1;
+	const struct interp_build_arc arc = {
+		.axis_a = i ? INTERP_U : INTERP_X,
+		.axis_b = i ? INTERP_V : INTERP_Y,
+		.centre_a_mm = c[i].centre_mm[0],
+		.centre_b_mm = c[i].centre_mm[1], .clockwise = c[i].clockwise,
+	};
+	const bool other = i == 0 && (moved & ~xy || c[1].arc);
+
+	if (other && (c[0].arc || c[1].arc ||
+		      b->o.strategy != INTERP_SIMULTANEOUS))
+		return -ENOENT;
+	return c[i].arc ? interp_build_arc(b, end_mm, &arc, w, diag) :
+			  interp_build_line(b, end_mm, w, diag);
+}
+
+int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		      const struct interp_build_contour contour[2],
+		      const struct interp_build_word *w,
+		      struct interp_diag *diag)
+{
+	struct build_pair plan = { .machine = b->o.machine, .contour = contour,
+				   .strategy = b->o.strategy };
+	int64_t to[INTERP_NAXES];
+	struct measure m;
+	const int bad = measure(b, end_mm, to, &m);
+	int r;
+
+	if (bad < 0)
+		return build_refuse_travel(b->o.machine, -bad - 1,
+					   end_mm[-bad - 1], diag);
+	if (m.moved & ~(1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_U |
+			1u << INTERP_V))
+		return refuse_others(diag);
+	r = pair_alone(b, end_mm, contour, m.moved, w, diag);
+	if (r != -ENOENT)
+		return r;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		plan.from_mm[i] = (double)b->here[i] / b->sub_mm[i];
+		plan.to_mm[i] = (double)to[i] / b->sub_mm[i];
+		plan.from[i] = interp_round_sub(b->here[i]);
+		plan.to[i] = interp_round_sub(to[i]);
+	}
+	plan.longest_sub = m.longest;
+	r = build_pair_plan(&plan, diag);
+	if (r == 0) {
+		stand_at(b, end_mm, to);
+		r = pair_finish(b, &plan, w, diag);
+	}
+	free(plan.bits);
+	return r;
+}
+
 /* -- The block ------------------------------------------------------------- */
 
 static bool ends(const struct interp_build *b)
@@ -442,6 +553,8 @@ static struct interp_program_head layout(const struct interp_build *b)
 		.nsegs = (uint32_t)nsegs,
 		.narcs = (uint32_t)b->arcs.n,
 		.nconds = (uint32_t)b->conds.n,
+		.ncouples = b->couples.n,
+		.nbits = b->bits.n,
 		.naxes = b->naxes,
 		.strategy = b->o.strategy,
 		.length_mm = b->length_mm,
@@ -451,7 +564,9 @@ static struct interp_program_head layout(const struct interp_build *b)
 	h.nodes_at = h.segs_at + nsegs * b->segs.size;
 	h.arcs_at = h.nodes_at + (nsegs + 1) * b->naxes * b->nodes.size;
 	h.conds_at = h.arcs_at + b->arcs.n * b->arcs.size;
-	h.bytes = h.conds_at + b->conds.n * b->conds.size;
+	h.couples_at = h.conds_at + b->conds.n * b->conds.size;
+	h.bits_at = h.couples_at + b->couples.n * b->couples.size;
+	h.bytes = h.bits_at + b->bits.n * b->bits.size;
 	return h;
 }
 
@@ -508,4 +623,6 @@ void interp_build_write(struct interp_build *b,
 	}
 	write_table(base + h.arcs_at, &b->arcs);
 	write_table(base + h.conds_at, &b->conds);
+	write_table(base + h.couples_at, &b->couples);
+	write_table(base + h.bits_at, &b->bits);
 }

@@ -32,6 +32,9 @@ static const struct interp_walk *walk_of(const struct interp_cursor *c)
 
 	if (c->seg.kind >= INTERP_BEGIN)
 		return &walk_action;
+	if (c->seg.kind == INTERP_PAIR)
+		return c->p.head->strategy == INTERP_SIMULTANEOUS ?
+		       &walk_pair_at_once : &walk_pair;
 	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
 		return arc ? &walk_arc : &walk_line;
 	if (!arc)
@@ -56,6 +59,8 @@ static bool cursor_enter(struct interp_cursor *c, uint32_t i, bool at_end)
 	c->index = i;
 	if (c->seg.kind == INTERP_ARC)
 		c->arc = c->p.arcs[c->seg.arg];
+	if (c->seg.kind == INTERP_PAIR)
+		c->couple = c->p.couples[c->seg.arg];
 	walk = walk_of(c);
 	if (!walk->enter(c, at_end))
 		return false;

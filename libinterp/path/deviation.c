@@ -108,11 +108,21 @@ static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
 	return sqrt(arc_gap2(c, axes, (lo + hi) / 2));
 }
 
+/* Off the circle, in its plane. */
+static double circle_deviation(const struct interp_cursor *c,
+			       const struct interp_arc *arc)
+{
+	const double *pulse = c->p.head->pulse_mm;
+	const double at = c->whole ? (double)c->measure / (double)c->whole : 0;
+
+	return fabs(hypot(c->pos[arc->axis_a] * pulse[arc->axis_a] - arc->a_mm,
+			  c->pos[arc->axis_b] * pulse[arc->axis_b] -
+			  arc->b_mm) - arc->r_mm - arc->dr_mm * at);
+}
+
 static double arc_deviation(const struct interp_cursor *c, uint32_t axes)
 {
 	const struct interp_arc *arc = &c->arc;
-	const double *pulse = c->p.head->pulse_mm;
-	const double at = c->whole ? (double)c->measure / (double)c->whole : 0;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const uint32_t axis = c->p.head->column[j];
@@ -122,15 +132,28 @@ static double arc_deviation(const struct interp_cursor *c, uint32_t axes)
 		    walk_node(c, j, false) != walk_node(c, j, true))
 			return helix_deviation(c, axes);
 	}
-	return fabs(hypot(c->pos[arc->axis_a] * pulse[arc->axis_a] - arc->a_mm,
-			  c->pos[arc->axis_b] * pulse[arc->axis_b] -
-			  arc->b_mm) - arc->r_mm - arc->dr_mm * at);
+	return circle_deviation(c, arc);
+}
+
+/* Off the contour the length is counted on. */
+static double pair_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	const uint32_t xy = 1u << INTERP_X | 1u << INTERP_Y;
+	const struct interp_arc *xy_arc = &c->couple.side[0];
+	const struct interp_arc *arc = xy_arc->r_mm > 0 || axes & xy ? xy_arc :
+				       &c->couple.side[1];
+
+	return arc->r_mm > 0 ? circle_deviation(c, arc) :
+			       line_deviation(c, 1u << arc->axis_a |
+						 1u << arc->axis_b);
 }
 
 double interp_cursor_deviation_mm(const struct interp_cursor *c)
 {
 	const uint32_t axes = length_axes(c);
 
+	if (c->seg.kind == INTERP_PAIR)
+		return pair_deviation(c, axes);
 	return c->seg.kind == INTERP_ARC ? arc_deviation(c, axes) :
 					   line_deviation(c, axes);
 }

@@ -49,7 +49,9 @@ int interp_program_map(struct interp_program *p, const void *block,
 	    !table_ok(h, h->nodes_at, ((uint64_t)h->nsegs + 1) * h->naxes,
 		      sizeof(*p->nodes)) ||
 	    !table_ok(h, h->arcs_at, h->narcs, sizeof(*p->arcs)) ||
-	    !table_ok(h, h->conds_at, h->nconds, sizeof(*p->conds)))
+	    !table_ok(h, h->conds_at, h->nconds, sizeof(*p->conds)) ||
+	    !table_ok(h, h->couples_at, h->ncouples, sizeof(*p->couples)) ||
+	    !table_ok(h, h->bits_at, h->nbits, sizeof(*p->bits)))
 		return -EBADMSG;
 
 	p->head = h;
@@ -57,6 +59,8 @@ int interp_program_map(struct interp_program *p, const void *block,
 	p->nodes = (const void *)(base + h->nodes_at);
 	p->arcs = (const void *)(base + h->arcs_at);
 	p->conds = (const void *)(base + h->conds_at);
+	p->couples = (const void *)(base + h->couples_at);
+	p->bits = (const void *)(base + h->bits_at);
 	if (p->segs[0].kind != INTERP_BEGIN ||
 	    p->segs[h->nsegs - 1].kind != INTERP_END)
 		return -EBADMSG;
@@ -81,7 +85,8 @@ bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 	       seg->length_mm > 0 && isfinite(seg->feed_mm_s) &&
 	       seg->feed_mm_s > 0 && isfinite(seg->feed_max_mm_s) &&
 	       seg->feed_max_mm_s > 0 &&
-	       (seg->kind != INTERP_ARC || seg->arg < p->head->narcs);
+	       (seg->kind != INTERP_ARC || seg->arg < p->head->narcs) &&
+	       (seg->kind != INTERP_PAIR || seg->arg < p->head->ncouples);
 }
 
 static const char *const strategies[INTERP_NSTRATEGIES] = {

@@ -18,9 +18,9 @@ struct plane {
 };
 
 /* Where the plane's axes stand at tick c->tick. */
-static struct plane arc_at(const struct interp_cursor *c)
+static struct plane arc_at(const struct interp_cursor *c,
+			   const struct interp_arc *arc)
 {
-	const struct interp_arc *arc = &c->arc;
 	const double t = (double)c->tick / c->seg.ticks;
 	const double theta = arc->theta + arc->sweep * t;
 	const double r = arc->r_mm + arc->dr_mm * t;
@@ -34,29 +34,30 @@ static struct plane arc_at(const struct interp_cursor *c)
 }
 
 /* The node's own pulses at either end: exact, whatever sin and cos say. */
-static struct plane arc_node(const struct interp_cursor *c, bool at_end)
+static struct plane arc_node(const struct interp_cursor *c,
+			     const struct interp_arc *arc, bool at_end)
 {
 	struct plane p = { 0, 0 };
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const int32_t at = interp_round_sub(walk_node(c, j, at_end));
 
-		if (c->p.head->column[j] == c->arc.axis_a)
+		if (c->p.head->column[j] == arc->axis_a)
 			p.a = at;
-		if (c->p.head->column[j] == c->arc.axis_b)
+		if (c->p.head->column[j] == arc->axis_b)
 			p.b = at;
 	}
 	return p;
 }
 
-static uint32_t arc_settle(struct interp_cursor *c)
+uint32_t walk_arc_settle(struct interp_cursor *c, const struct interp_arc *arc)
 {
-	const struct plane p = c->tick == 0 ? arc_node(c, false) :
-			       c->tick == c->seg.ticks ? arc_node(c, true) :
-			       arc_at(c);
-	int32_t *a = &c->pos[c->arc.axis_a], *b = &c->pos[c->arc.axis_b];
-	uint32_t moved = (uint32_t)(p.a != *a) << c->arc.axis_a |
-			 (uint32_t)(p.b != *b) << c->arc.axis_b;
+	const struct plane p = c->tick == 0 ? arc_node(c, arc, false) :
+			       c->tick == c->seg.ticks ?
+			       arc_node(c, arc, true) : arc_at(c, arc);
+	int32_t *a = &c->pos[arc->axis_a], *b = &c->pos[arc->axis_b];
+	uint32_t moved = (uint32_t)(p.a != *a) << arc->axis_a |
+			 (uint32_t)(p.b != *b) << arc->axis_b;
 
 	if (p.a - *a > 1 || *a - p.a > 1 || p.b - *b > 1 || *b - p.b > 1)
 		return WALK_BAD;
@@ -70,10 +71,8 @@ static bool near(double mm, double pulses_mm)
 	return fabs(mm) * pulses_mm < INTERP_PULSES_MAX;
 }
 
-bool walk_plane_ok(const struct interp_cursor *c)
+bool walk_plane_ok(const struct interp_cursor *c, const struct interp_arc *arc)
 {
-	const struct interp_arc *arc = &c->arc;
-
 	return arc->axis_a < INTERP_NAXES && arc->axis_b < INTERP_NAXES &&
 	       arc->axis_a != arc->axis_b &&
 	       near(arc->a_mm, c->pulses_mm[arc->axis_a]) &&
@@ -84,15 +83,21 @@ bool walk_plane_ok(const struct interp_cursor *c)
 	       isfinite(arc->sweep);
 }
 
-/* As many ticks as the builder gives, no more: no walk on the spot. */
-static bool ticks_ok(const struct interp_cursor *c, uint32_t plane)
+double walk_arc_ticks_max(const struct interp_cursor *c,
+			  const struct interp_arc *arc)
 {
-	const struct interp_arc *arc = &c->arc;
 	const double pulses_mm = fmax(c->pulses_mm[arc->axis_a],
 				      c->pulses_mm[arc->axis_b]);
 	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
-	const double n = fmax((fabs(arc->sweep) * r + fabs(arc->dr_mm)) *
-			      pulses_mm, (double)walk_longest(c, plane));
+
+	return (fabs(arc->sweep) * r + fabs(arc->dr_mm)) * pulses_mm;
+}
+
+/* As many ticks as the builder gives, no more: no walk on the spot. */
+static bool ticks_ok(const struct interp_cursor *c, uint32_t plane)
+{
+	const double n = fmax(walk_arc_ticks_max(c, &c->arc),
+			      (double)walk_longest(c, plane));
 
 	return c->seg.ticks > 0 && c->seg.ticks <= n * 1.00001 + 3;
 }
@@ -101,7 +106,7 @@ static bool arc_enter(struct interp_cursor *c, bool at_end)
 {
 	uint32_t plane;
 
-	if (!walk_plane_ok(c))
+	if (!walk_plane_ok(c, &c->arc))
 		return false;
 	plane = 1u << c->arc.axis_a | 1u << c->arc.axis_b;
 	return walk_dda_enter(c, at_end, plane) && ticks_ok(c, plane);
@@ -110,7 +115,7 @@ static bool arc_enter(struct interp_cursor *c, bool at_end)
 static uint32_t arc_forward(struct interp_cursor *c)
 {
 	const uint32_t moved = walk_dda_forward(c);
-	const uint32_t plane = arc_settle(c);
+	const uint32_t plane = walk_arc_settle(c, &c->arc);
 
 	return plane == WALK_BAD ? WALK_BAD : moved | plane;
 }
@@ -118,7 +123,7 @@ static uint32_t arc_forward(struct interp_cursor *c)
 static uint32_t arc_back(struct interp_cursor *c)
 {
 	const uint32_t moved = walk_dda_back(c);
-	const uint32_t plane = arc_settle(c);
+	const uint32_t plane = walk_arc_settle(c, &c->arc);
 
 	return plane == WALK_BAD ? WALK_BAD : moved | plane;
 }

@@ -286,34 +286,31 @@ bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 
 /* -- As a walk --------------------------------------------------------- */
 
-/* Node @at_end of the plane's two axes, from the centre, pulses. */
-static void circle_node(const struct interp_cursor *c, bool at_end,
-			int64_t ret[2])
+void walk_arc_nodes(const struct interp_cursor *c, const struct interp_arc *arc,
+		    int64_t start[2], int64_t end[2])
 {
-	const struct interp_arc *arc = &c->arc;
-
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		const int64_t at = interp_round_sub(walk_node(c, j, at_end));
+		const uint32_t axis = c->p.head->column[j];
+		const bool b = axis == arc->axis_b;
+		int64_t centre;
 
-		if (c->p.head->column[j] == arc->axis_a)
-			ret[0] = at - llround(arc->a_mm *
-					      c->pulses_mm[arc->axis_a]);
-		if (c->p.head->column[j] == arc->axis_b)
-			ret[1] = at - llround(arc->b_mm *
-					      c->pulses_mm[arc->axis_b]);
+		if (axis != arc->axis_a && !b)
+			continue;
+		centre = llround((b ? arc->b_mm : arc->a_mm) *
+				 c->pulses_mm[axis]);
+		start[b] = interp_round_sub(walk_node(c, j, false)) - centre;
+		end[b] = interp_round_sub(walk_node(c, j, true)) - centre;
 	}
 }
 
 bool walk_circle_set(struct interp_cursor *c, bool at_end)
 {
-	const struct interp_arc *arc = &c->arc;
 	int64_t start[2] = { 0, 0 }, end[2] = { 0, 0 };
 
-	if (!walk_plane_ok(c))
+	if (!walk_plane_ok(c, &c->arc))
 		return false;
-	circle_node(c, false, start);
-	circle_node(c, true, end);
-	return circle_enter(&c->circle, arc, start, end, at_end);
+	walk_arc_nodes(c, &c->arc, start, end);
+	return circle_enter(&c->circle, &c->arc, start, end, at_end);
 }
 
 static bool walk_circle_enter(struct interp_cursor *c, bool at_end)

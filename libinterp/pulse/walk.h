@@ -38,6 +38,10 @@ extern const struct interp_walk walk_tree;
 extern const struct interp_walk walk_helix;
 /* Circles, one axis at a time: circle.c. */
 extern const struct interp_walk walk_circle;
+/* Two contours together: pair.c, one axis at a time; all at once:
+ * pair_at_once.c. */
+extern const struct interp_walk walk_pair;
+extern const struct interp_walk walk_pair_at_once;
 /* Actions: no points at all: cursor.c. */
 
 /** walk_node() - node column @j at the start or end of c->seg, subpulses. */
@@ -67,7 +71,19 @@ uint32_t walk_dda_back(struct interp_cursor *c);
 int64_t walk_last_tick(const struct interp_cursor *c);
 
 /** walk_plane_ok() - are an arc's axes and centre in range? */
-bool walk_plane_ok(const struct interp_cursor *c);
+bool walk_plane_ok(const struct interp_cursor *c, const struct interp_arc *arc);
+
+/** walk_arc_settle() - the plane's axes to their place at c->tick: arc.c.
+ *  Return: the mask of axes moved, or WALK_BAD. */
+uint32_t walk_arc_settle(struct interp_cursor *c, const struct interp_arc *arc);
+
+/** walk_arc_ticks_max() - the most ticks an honest builder gives an arc. */
+double walk_arc_ticks_max(const struct interp_cursor *c,
+			  const struct interp_arc *arc);
+
+/** walk_arc_nodes() - an arc's start and end, from its centre, pulses. */
+void walk_arc_nodes(const struct interp_cursor *c, const struct interp_arc *arc,
+		    int64_t start[2], int64_t end[2]);
 
 /* The circle alone, used by walk_circle, by trees and by the builder. */
 bool circle_enter(struct interp_circle *k, const struct interp_arc *arc,
@@ -84,6 +100,15 @@ int64_t circle_last(const struct interp_circle *k);
  */
 bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 		    const int64_t end[2]);
+
+/* One contour of a pair, used by the walk and by the builder: pair.c. */
+bool side_enter(struct interp_side *s, const struct interp_arc *arc,
+		const int64_t start[2], const int64_t end[2], bool at_end);
+/** One pulse; ret[0], ret[1] in -1, 0, +1; false: the contour is broken. */
+bool side_forward(struct interp_side *s, int8_t ret[2]);
+bool side_back(struct interp_side *s, int8_t ret[2]);
+/** What the last pulse added to the side's measure: > 0. */
+int64_t side_last(const struct interp_side *s);
 
 /** walk_circle_set() - aim c->circle at c->arc; false if it is unsound. */
 bool walk_circle_set(struct interp_cursor *c, bool at_end);

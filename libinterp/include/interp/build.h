@@ -64,6 +64,27 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_word *w,
 		     struct interp_diag *diag);
 
+/* One contour of a pair as a reader knows it. */
+struct interp_build_contour {
+	bool arc;
+	bool clockwise;
+	double centre_mm[2];		/* X and Y, or U and V; arcs only.  Equal
+					 * ends make a full circle */
+};
+
+/**
+ * interp_build_pair() - two contours at once: @contour[0] on X Y, [1] on U V.
+ *
+ * Each goes from where its axes stand to their places in @end_mm; no other
+ * axis may move.  They are walked together: arcs of one sense, phase and sweep
+ * by angle, all others by their shares of length.  If but one of them moves,
+ * a plain line or arc is made of it.
+ */
+int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		      const struct interp_build_contour contour[2],
+		      const struct interp_build_word *w,
+		      struct interp_diag *diag);
+
 /** interp_build_action() - something done on the spot.
  *  @kind INTERP_DWELL or later, @arg as struct interp_seg says. */
 int interp_build_action(struct interp_build *b, enum interp_kind kind,

@@ -62,6 +62,15 @@ struct interp_circle {
 	int8_t quad;			/* quadrant 0 ... 3 being walked */
 };
 
+/* One contour of a pair: see pulse/pair.c. */
+struct interp_side {
+	struct interp_circle circle;	/* if it is an arc */
+	struct interp_pair line;	/* if not; inputs 0 and 1 */
+	uint32_t tick, ticks;
+	int8_t sign[2];			/* of the line's axes */
+	bool arc;
+};
+
 struct interp_walk;
 
 /* Placed by the caller, filled by interp_cursor_init(); read, do not write. */
@@ -69,6 +78,7 @@ struct interp_cursor {
 	struct interp_program p;
 	struct interp_seg seg;		/* checked copy of segment `index` */
 	struct interp_arc arc;		/* checked copy, if seg is an arc */
+	struct interp_couple couple;	/* the same, if seg is a pair */
 	uint32_t index;
 	uint32_t tick;			/* 0 ... seg.ticks */
 	int32_t pos[INTERP_NAXES];	/* pulses */
@@ -87,6 +97,7 @@ struct interp_cursor {
 	int8_t root;
 	int8_t sign[INTERP_NAXES];
 	struct interp_circle circle;
+	struct interp_side side[2];
 	int64_t others, circle_at;	/* a helix's other pulses; measure of
 					 * its circle alone */
 	double pulses_mm[INTERP_NAXES];	/* pulses per mm */

@@ -9,7 +9,7 @@
  * real-time process maps it read-only.
  *
  *	head | segments[nsegs] | nodes[nsegs + 1][naxes] | arcs[narcs]
- *	     | conditions[nconds]
+ *	     | conditions[nconds] | couples[ncouples] | bits[nbits]
  *
  * Nodes are fixed-point: 1 pulse = INTERP_SUB subpulses, so a programmed
  * point finer than a pulse is kept, and there and back is exact.  A node has
@@ -43,6 +43,8 @@ enum interp_strategy {
 enum interp_kind {
 	INTERP_LINE,
 	INTERP_ARC,			/* circular or helical; arg: arc index */
+	INTERP_PAIR,			/* X Y and U V, each a line or an arc;
+					 * arg: couple index */
 	/* From here on: actions, of no length. */
 	INTERP_BEGIN,			/* always the first, does nothing */
 	INTERP_DWELL,			/* arg: milliseconds */
@@ -98,6 +100,18 @@ struct interp_arc {
 	uint8_t pad[2];
 };
 
+/*
+ * Two contours walked together, as a tapered wire needs: side[0] on X Y,
+ * side[1] on U V.  A side of radius 0 is a straight line.  One axis at a time,
+ * bit k of the string at bits[bits_at] says whose tick k + 1 is: 0 for
+ * side[0], 1 for side[1].  The builder makes the string; the walk reads it
+ * both ways, so it needs no memory of its own.
+ */
+struct interp_couple {
+	struct interp_arc side[2];
+	uint64_t bits_at;		/* first word; ticks bits from there */
+};
+
 /* A technology condition called by the program, such as C120 or E001. */
 struct interp_cond {
 	uint32_t number;
@@ -116,6 +130,8 @@ struct interp_program_head {
 	uint32_t strategy;		/* enum interp_strategy */
 	uint32_t lines;			/* of the source text */
 	double length_mm;
+	uint64_t ncouples, couples_at;
+	uint64_t nbits, bits_at;		/* words of 64 bits */
 	double pulse_mm[INTERP_NAXES];
 	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
 	uint8_t hash[32];		/* SHA-256 of the source text, or zeros */
@@ -129,6 +145,8 @@ struct interp_program {
 	const int64_t *nodes;
 	const struct interp_arc *arcs;
 	const struct interp_cond *conds;
+	const struct interp_couple *couples;
+	const uint64_t *bits;
 };
 
 /**

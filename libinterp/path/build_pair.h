@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_pair.h - from two contours to a pair segment
+ */
+#ifndef PATH_BUILD_PAIR_H
+#define PATH_BUILD_PAIR_H
+
+#include "interp/build.h"
+
+struct build_pair {
+	/* In. */
+	const struct interp_machine *machine;
+	const struct interp_build_contour *contour;	/* [2] */
+	enum interp_strategy strategy;
+	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
+	int32_t from[INTERP_NAXES], to[INTERP_NAXES];	/* pulses */
+	int64_t longest_sub;	/* of all four axes, subpulses */
+	/* Out. */
+	struct interp_couple couple;
+	uint32_t ticks;
+	uint64_t *bits;		/* (ticks + 63) / 64 words, or NULL; free() */
+	double length_mm, feed_max_mm_s;
+};
+
+/** build_pair_plan() - 0, -ENOMEM, or -EINVAL with @diag's found and wanted. */
+int build_pair_plan(struct build_pair *p, struct interp_diag *diag);
+
+#endif /* PATH_BUILD_PAIR_H */
