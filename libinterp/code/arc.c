@@ -26,7 +26,7 @@ static int by_centre(struct nc_reader *r, const struct plane *p,
 		     struct interp_build_arc *arc)
 {
 	const struct nc_block *b = &r->block;
-	const double *here = interp_build_here(r->build);
+	const double *here = nc_here(r);
 	const uint8_t *at = b->code_at[NC_MOTION];
 	const bool has_a = nc_has(r, p->ca), has_b = nc_has(r, p->cb);
 	const double ca = has_a ? b->value[p->ca] * r->unit_mm : 0;
@@ -74,7 +74,7 @@ static int by_radius(struct nc_reader *r, const struct plane *p,
 		     const double end_mm[INTERP_NAXES],
 		     struct interp_build_arc *arc)
 {
-	const double *here = interp_build_here(r->build);
+	const double *here = nc_here(r);
 	const double value = r->block.value[NC_R] * r->unit_mm;
 	const double radius = fabs(value);
 	const double da = end_mm[p->a] - here[p->a];
@@ -114,6 +114,21 @@ static int centre(struct nc_reader *r, const struct plane *p,
 	return by_radius(r, p, end_mm, arc);
 }
 
+/* With U or V the top is a contour of its own: straight to its end. */
+static int go_round(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		    const struct interp_build_arc *arc)
+{
+	const struct interp_build_contour two[2] = {
+		{ .arc = true, .clockwise = arc->clockwise,
+		  .centre_mm = { arc->centre_a_mm, arc->centre_b_mm } },
+	};
+
+	if (nc_has_guides(r) && arc->axis_a == INTERP_X &&
+	    (nc_has(r, NC_U) || nc_has(r, NC_V)))
+		return contour_two(&r->contour, end_mm, two, &r->word, r->diag);
+	return contour_arc(&r->contour, end_mm, arc, &r->word, r->diag);
+}
+
 int nc_arc(struct nc_reader *r, bool clockwise)
 {
 	const struct plane *p = &planes[r->plane];
@@ -135,7 +150,7 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 		rc = nc_room(r);
 	if (rc)
 		return rc;
-	rc = interp_build_arc(r->build, end_mm, &arc, &r->word, r->diag);
+	rc = go_round(r, end_mm, &arc);
 	r->moved |= NC_BIT(p->a) | NC_BIT(p->b);
 	return nc_placed(r, rc, end_mm);
 }

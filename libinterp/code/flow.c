@@ -226,7 +226,7 @@ static int finish(struct nc_reader *r)
 {
 	r->over = NC_FINISHED;
 	r->word.line = r->line;
-	return interp_build_action(r->build, INTERP_END, 0, &r->word, r->diag);
+	return contour_action(&r->contour, INTERP_END, 0, &r->word, r->diag);
 }
 
 static int halt(struct nc_reader *r)
@@ -263,5 +263,5 @@ int nc_end_of_text(struct nc_reader *r)
 	if (r->segs == 0)
 		return nc_refuse_at(r, 0, "at least one motion or action",
 				    "empty program");
-	return 0;
+	return contour_flush(&r->contour, r->diag);
 }

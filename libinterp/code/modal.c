@@ -17,6 +17,11 @@ void nc_set_offset(struct nc_reader *r)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		r->offset_mm[i] = r->o->work_offset_mm[r->work][i] +
 				  r->shift_mm[i];
+	/* The second plane is measured from the same origin. */
+	if (nc_has_guides(r)) {
+		r->offset_mm[INTERP_U] = r->offset_mm[INTERP_X];
+		r->offset_mm[INTERP_V] = r->offset_mm[INTERP_Y];
+	}
 }
 
 /* The first % begins the text, the second ends it. */
@@ -123,6 +128,9 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_CONDITION]		= run_condition,
 	[NC_POWER]		= run_power,
 	[NC_PUMP]		= run_pump,
+	[NC_REGISTER]		= nc_run_register,
+	[NC_OFFSET]		= nc_run_offset,
+	[NC_TAPER]		= nc_run_taper,
 	[NC_MACHINE]		= run_machine,
 	[NC_ONE_SHOT]		= nc_run_one_shot,
 	[NC_MOTION]		= nc_run_motion,
@@ -208,8 +216,10 @@ int nc_run_line(struct nc_reader *r)
 {
 	const uint32_t first = NC_BIT(NC_TAPE) | NC_BIT(NC_LABEL);
 	struct nc_block *b = &r->block;
-	int rc = complete(r);
+	int rc = nc_take_angle(r);
 
+	if (!rc)
+		rc = complete(r);
 	if (rc)
 		return rc;
 	if (b->words & ~b->takes)

@@ -15,10 +15,26 @@ static const double zero_mm[INTERP_NAXES];
 	 left_ && (i = (uint32_t)__builtin_ctz(left_), true); \
 	 left_ &= left_ - 1)
 
+/* The top of the wire, where no word leads it, goes with the bottom. */
+static void follow(const struct nc_reader *r, uint32_t named,
+		   double end_mm[INTERP_NAXES])
+{
+	const double *here = nc_here(r);
+
+	if (!nc_has_guides(r))
+		return;
+	if (!(named & NC_BIT(NC_U)))
+		end_mm[INTERP_U] = here[INTERP_U] + end_mm[INTERP_X] -
+				   here[INTERP_X];
+	if (!(named & NC_BIT(NC_V)))
+		end_mm[INTERP_V] = here[INTERP_V] + end_mm[INTERP_Y] -
+				   here[INTERP_Y];
+}
+
 void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 {
 	const struct nc_block *b = &r->block;
-	const double *here = interp_build_here(r->build);
+	const double *here = nc_here(r);
 	const double *base = r->incremental ? here : r->offset_mm;
 
 	if (nc_has_group(r, NC_MACHINE))
@@ -26,6 +42,7 @@ void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 	memcpy(ret_end_mm, here, sizeof(zero_mm));
 	for EACH_AXIS(b->words & NC_AXES, i)
 		ret_end_mm[i] = base[i] + b->value[i] * r->scale[i];
+	follow(r, b->words, ret_end_mm);
 }
 
 /* F counts degrees per minute if nothing but rotary axes move, and these know
@@ -33,7 +50,7 @@ void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 static double feed_for(const struct nc_reader *r,
 		       const double end_mm[INTERP_NAXES])
 {
-	const double *here = interp_build_here(r->build);
+	const double *here = nc_here(r);
 
 	if (r->feed_mm_s == r->feed_deg_s)
 		return r->feed_mm_s;
@@ -97,11 +114,9 @@ static const uint8_t *blame(const struct nc_reader *r,
 
 int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES])
 {
-	if (rc == -EINVAL) {
-		r->diag->line = r->line;
+	if (rc == -EINVAL && r->diag->line == r->line)
 		r->diag->column =
 			(uint32_t)(blame(r, end_mm) - r->line_at) + 1;
-	}
 	r->moved |= r->block.words & NC_AXES;
 	return rc;
 }
@@ -115,11 +130,9 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 		return rc;
 	r->word.line = r->line;
 	r->word.rapid = false;
-	rc = interp_build_action(r->build, kind, arg, &r->word, r->diag);
-	if (rc == -EINVAL) {
-		r->diag->line = r->line;
+	rc = contour_action(&r->contour, kind, arg, &r->word, r->diag);
+	if (rc == -EINVAL && r->diag->line == r->line)
 		r->diag->column = (uint32_t)(at - r->line_at) + 1;
-	}
 	return rc;
 }
 
@@ -132,7 +145,7 @@ static int line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		rc = nc_room(r);
 	if (rc)
 		return rc;
-	rc = interp_build_line(r->build, end_mm, &r->word, r->diag);
+	rc = contour_line(&r->contour, end_mm, &r->word, r->diag);
 	return nc_placed(r, rc, end_mm);
 }
 
@@ -191,18 +204,22 @@ static int home(struct nc_reader *r)
 				 "G28 without axis words before any motion");
 	for EACH_AXIS(axes, i)
 		end_mm[i] = 0;
+	follow(r, axes, end_mm);
 	return line_to(r, end_mm, true);
 }
 
 static int set_here(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
-	const double *here = interp_build_here(r->build);
+	const double *here = nc_here(r);
 
 	if (!(b->words & NC_AXES))
 		return nc_refuse(r, b->code_at[NC_ONE_SHOT],
 				 "the place to call this one, as in G92 X0 Y0; "
 				 "G92.1 to cancel", "G92 without axis words");
+	if (nc_has_guides(r) && (b->words & (NC_BIT(NC_U) | NC_BIT(NC_V))))
+		return nc_refuse(r, b->code_at[NC_ONE_SHOT], "G92 with X and Y",
+				 "G92 with U or V, which go with X and Y");
 	for EACH_AXIS(b->words & NC_AXES, i)
 		r->shift_mm[i] = here[i] - b->value[i] * r->scale[i] -
 				 r->o->work_offset_mm[r->work][i];

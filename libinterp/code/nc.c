@@ -79,8 +79,13 @@ int interp_nc_compile(const char *text, size_t bytes,
 		      struct interp_diag *diag)
 {
 	struct nc_reader r = { .o = o, .build = b, .diag = diag };
+	static const struct interp_wire none = { .corner_angle_deg = 180 };
 	int rc;
 
+	diag->line = diag->column = 0;
+	contour_init(&r.contour, o->wire ? o->wire : &none, o->machine, b);
+	memcpy(r.registers_mm, o->offset_mm, sizeof(r.registers_mm));
+	r.offset_register = -1;
 	open_text(&r, bytes ? text : "", bytes);
 	reset_modes(&r);
 	rc = read_lines(&r);

@@ -6,6 +6,7 @@
  *	modal.c		carry a block out, group by group
  *	motion.c	lines, machine zero, dwell, offsets: what axis words do
  *	arc.c		G2 and G3
+ *	wire.c		offset and taper: G40 ... G42, G50 ... G52, D and H
  *	flow.c		subprograms and the end
  *	nc.c		line after line
  *	refuse.c	say what was found and what would be accepted
@@ -18,6 +19,7 @@
 
 #include "code/words.h"
 #include "interp/nc.h"
+#include "wire/contour.h"
 
 /* Why no further line is read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
@@ -71,6 +73,13 @@ struct nc_reader {
 	double feed_mm_s, feed_deg_s;	/* 0: none yet */
 	struct interp_build_word word;	/* its condition is modal too */
 
+	/* The wire. */
+	struct contour contour;
+	double registers_mm[INTERP_NOFFSETS];
+	int offset_side, taper_side;	/* +1 left, -1 right, 0 off */
+	int offset_register;		/* -1: none yet */
+	double slope;			/* tangent of the taper */
+
 	/* Flow. */
 	struct nc_frame frame[INTERP_NC_DEPTH_MAX + 1];
 	uint32_t depth;			/* frame in use; 0: the main program */
@@ -114,6 +123,25 @@ int nc_run_motion(struct nc_reader *r);
 int nc_run_one_shot(struct nc_reader *r);
 int nc_run_stop(struct nc_reader *r);
 int nc_run_label(struct nc_reader *r);
+
+int nc_run_register(struct nc_reader *r);
+int nc_run_offset(struct nc_reader *r);
+int nc_run_taper(struct nc_reader *r);
+
+/** nc_take_angle() - the A of a G51 or G52 is no axis. */
+int nc_take_angle(struct nc_reader *r);
+
+/** nc_here() - where the program has come to, machine mm. */
+static inline const double *nc_here(const struct nc_reader *r)
+{
+	return r->contour.here_mm;
+}
+
+/** nc_has_guides() - are U V the contour on the second plane? */
+static inline bool nc_has_guides(const struct nc_reader *r)
+{
+	return guides_on(&r->contour.guides);
+}
 
 /** nc_arc() - G2 or G3. */
 int nc_arc(struct nc_reader *r, bool clockwise);

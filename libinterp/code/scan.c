@@ -10,7 +10,8 @@
 #include <errno.h>
 #include <math.h>
 
-#define ANY_WORD	"one of G M F N S T X Y Z A B C U V I J K R P L O E"
+#define ANY_WORD	"one of G M F N S T X Y Z A B C U V I J K R P L O D H E"
+#define OFFSET_MAX_MM	50
 #define A_NUMBER	"a sign, digits and one decimal point, as in " \
 			"X-12.345; no exponent"
 
@@ -81,7 +82,8 @@ static const struct letter {
 	const char *known;
 } letters[] = {
 	{ nc_g, NC_NG, 10,
-	  "one of G0 G1 G2 G3 G4 G17 G18 G19 G20 G21 G28 G53 G54 ... G59 "
+	  "one of G0 G1 G2 G3 G4 G17 G18 G19 G20 G21 G28 G40 G41 G42 G50 G51 "
+	  "G52 G53 G54 ... G59 "
 	  "G90 G90.1 G91 G91.1 G92 G92.1 G94" },
 	{ nc_m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" },
 	{ nc_t, NC_NM, 1, "T84 (pump on) or T85 (pump off)" },
@@ -176,6 +178,33 @@ static const uint8_t *scan_e(struct nc_reader *r, const uint8_t *at)
 	return NULL;
 }
 
+/* H1 uses a register, H1=0.11 fills it. */
+static const uint8_t *scan_register(struct nc_reader *r, const uint8_t *at)
+{
+	const bool h = nc_classes[*at] == NC_LETTER_H;
+	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p;
+	uint64_t n = 0;
+	double v;
+
+	p = nc_skip_blanks(nc_digits(first, r->stop, &n), r->stop);
+	if (p == first || p == r->stop || *p != '=')
+		return scan_value(r, at, h ? NC_H : NC_D);
+	if (p - first > NC_DIGITS_MAX || n >= INTERP_NOFFSETS)
+		return refuse_range(r, at, &nc_words[NC_H]);
+	p = nc_number(p + 1, r->stop, &v);
+	if (!p || !(fabs(v * r->unit_mm) <= OFFSET_MAX_MM)) {
+		nc_refuse(r, at, "a register of 0 to 99 and an offset of up to "
+			  "50 mm, as in H1=0.11", "%s is no such offset",
+			  nc_quote_run(r, at).s);
+		return NULL;
+	}
+	r->registers_mm[n] = v * r->unit_mm;
+	r->block.groups |= NC_BIT(NC_REGISTER);
+	r->word_at = at;
+	r->value_end = p;
+	return p;
+}
+
 /* A digit, point or sign where a letter should be. */
 static const uint8_t *scan_stray(struct nc_reader *r, const uint8_t *at)
 {
@@ -265,6 +294,8 @@ static scan_fn *const scan_other[NC_NCLASSES] = {
 	[NC_LETTER_G]	= scan_code,
 	[NC_LETTER_M]	= scan_code,
 	[NC_LETTER_T]	= scan_code,
+	[NC_LETTER_D]	= scan_register,
+	[NC_LETTER_H]	= scan_register,
 	[NC_NUMERIC]	= scan_stray,
 	[NC_OPEN]	= scan_comment,
 	[NC_SEMICOLON]	= scan_to_end,
@@ -314,6 +345,8 @@ int nc_scan_line(struct nc_reader *r)
 				 INTERP_NC_LINE_MAX);
 	if (b->words & NC_BIT(NC_F))
 		b->groups |= NC_BIT(NC_FEED);
+	if (b->words & (NC_BIT(NC_D) | NC_BIT(NC_H)))
+		b->groups |= NC_BIT(NC_REGISTER);
 	if (b->words & NC_BIT(NC_O))
 		b->groups |= NC_BIT(NC_LABEL);
 	r->at = nc_line_next(p, r->end);

@@ -5,6 +5,7 @@
 #include "code/words.h"
 
 #include "interp/program.h"
+#include "interp/wire.h"
 
 #define ANY_PLACE	-999999999, 999999999, "-999999999 to 999999999"
 #define AXIS_LINES	"an axis word goes with G0 G1 G2 G3 G28 G92, and X " \
@@ -34,6 +35,10 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats",
 		   "L goes with M98" },
 	[NC_O] = { 'O', true, 1, 9999, "a program number of 1 to 9999", "" },
+	[NC_D] = { 'D', true, 0, INTERP_NOFFSETS - 1, "a register of 0 to 99",
+		   "" },
+	[NC_H] = { 'H', true, 0, INTERP_NOFFSETS - 1, "a register of 0 to 99",
+		   "" },
 };
 
 #define LETTER(upper, lower, class)	[upper] = (class), [lower] = (class)
@@ -51,6 +56,7 @@ const uint8_t nc_classes[256] = {
 	LETTER('C', 'c', NC_LETTER_C), LETTER('E', 'e', NC_LETTER_E),
 	LETTER('G', 'g', NC_LETTER_G), LETTER('M', 'm', NC_LETTER_M),
 	LETTER('T', 't', NC_LETTER_T),
+	LETTER('D', 'd', NC_LETTER_D), LETTER('H', 'h', NC_LETTER_H),
 	[' '] = NC_BLANK, ['\t'] = NC_BLANK,
 	['\n'] = NC_EOL, ['\r'] = NC_EOL,
 	['0'] = NC_NUMERIC, ['1'] = NC_NUMERIC, ['2'] = NC_NUMERIC,
@@ -77,6 +83,12 @@ const struct nc_code nc_g[NC_NG] = {
 	[200] = { NC_UNITS, true, 0 },
 	[210] = { NC_UNITS, false, 0 },
 	[280] = { NC_ONE_SHOT, NC_HOME, NC_AXES },
+	[400] = { NC_OFFSET, 0, 0 },
+	[410] = { NC_OFFSET, 1, 0 },
+	[420] = { NC_OFFSET, 2, 0 },
+	[500] = { NC_TAPER, 0, 0 },
+	[510] = { NC_TAPER, 1, NC_BIT(NC_A) },
+	[520] = { NC_TAPER, 2, NC_BIT(NC_A) },
 	[530] = { NC_MACHINE, 0, 0 },
 	[540] = { NC_WORK, 0, 0 },
 	[550] = { NC_WORK, 1, 0 },

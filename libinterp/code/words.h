@@ -19,6 +19,7 @@ enum nc_slot {
 	NC_I, NC_J, NC_K, NC_R,
 	NC_F, NC_N, NC_S,
 	NC_P, NC_L, NC_O,
+	NC_D, NC_H,
 	NC_NSLOTS
 };
 
@@ -27,7 +28,7 @@ enum nc_slot {
 #define NC_CENTRE	(NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_K))
 #define NC_MOVES	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
 #define NC_ANYWHERE	(NC_BIT(NC_F) | NC_BIT(NC_N) | NC_BIT(NC_S) | \
-			 NC_BIT(NC_O))
+			 NC_BIT(NC_O) | NC_BIT(NC_D) | NC_BIT(NC_H))
 
 /* What may follow a letter. */
 struct nc_word {
@@ -52,6 +53,8 @@ enum nc_class {
 	NC_LETTER_G,
 	NC_LETTER_M,
 	NC_LETTER_T,
+	NC_LETTER_D,			/* D and H: a register, or its value */
+	NC_LETTER_H,
 	NC_NUMERIC,			/* digit, point or sign: a stray one */
 	NC_OPEN,			/* ( comment ) */
 	NC_SEMICOLON,
@@ -78,6 +81,9 @@ enum nc_group {
 	NC_CONDITION,			/* C120 E001 */
 	NC_POWER,			/* M3 M4 M5 */
 	NC_PUMP,			/* T84 T85 */
+	NC_REGISTER,			/* D H */
+	NC_OFFSET,			/* G40 G41 G42 */
+	NC_TAPER,			/* G50 G51 G52 */
 	NC_MACHINE,			/* G53 */
 	NC_ONE_SHOT,			/* G4 G28 G92 G92.1 */
 	NC_MOTION,			/* G0 G1 G2 G3 */

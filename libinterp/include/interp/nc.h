@@ -16,6 +16,7 @@
 #define INTERP_NC_H
 
 #include "interp/build.h"
+#include "interp/wire.h"
 
 #define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */
 #define INTERP_NC_LINE_MAX	4096		/* bytes in a line */
@@ -26,6 +27,8 @@
 struct interp_nc_options {
 	const struct interp_machine *machine;
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
+	const struct interp_wire *wire;	/* lent; NULL: no guides, no corners */
+	double offset_mm[INTERP_NOFFSETS];	/* registers D and H */
 	double feed_mm_s;	/* until the first F; 0: an F is demanded */
 	uint32_t segs_max;	/* 0: INTERP_NC_SEGS_MAX */
 	uint32_t executed_max;	/* 0: INTERP_NC_EXECUTED_MAX */

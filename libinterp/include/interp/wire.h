@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * wire.h - the wire of a wire-cut machine: its guides, its planes, its corners
+ *
+ * The wire runs straight from the lower guide to the upper one.  A program
+ * speaks of two planes of the workpiece: X Y is the contour on the programmed
+ * plane (the bottom), U V the contour on the second plane (the top).  The
+ * machine moves the guides.  With heights z along the wire and
+ *
+ *	k(z) = (z - z_program) / (z_second - z_program)
+ *
+ * the wire at height z is, by similar triangles,
+ *
+ *	W(z) = P + k(z) * (Q - P)	P = (X, Y), Q = (U, V) of the program
+ *
+ *	axes X Y = W(z_lower)
+ *	axes U V = W(z_upper)			guides absolute
+ *	axes U V = W(z_upper) - W(z_lower)	guides relative: the upper slide
+ *						rides on the lower one
+ *
+ * This is done in one place, wire/guide.c.  With guides off there are no
+ * planes: U V are axes as any other, and a taper is refused.
+ *
+ * Units: mm, degrees.  Threads: plain data.
+ */
+#ifndef INTERP_WIRE_H
+#define INTERP_WIRE_H
+
+#include <stdbool.h>
+
+enum interp_guides {
+	INTERP_GUIDES_OFF,
+	INTERP_GUIDES_ABSOLUTE,
+	INTERP_GUIDES_RELATIVE,
+	INTERP_NGUIDES
+};
+
+struct interp_wire {
+	int guides;			/* enum interp_guides */
+	double z_lower_mm, z_upper_mm;	/* guides; lower below upper */
+	double z_program_mm, z_second_mm;	/* planes; program below second */
+	double angle_max_deg;		/* of the wire from upright, < 90 */
+
+	/* Corner control; corner_angle_deg of 180 and more: none. */
+	double corner_angle_deg;	/* the contour turns by this or more */
+	double corner_feed_percent;	/* of the programmed feed, before it */
+	double corner_before_mm;	/* so far */
+	double corner_dwell_s;		/* and wait on it; 0: no wait */
+};
+
+#define INTERP_NOFFSETS	100		/* registers D0 ... D99, also called H */
+
+#endif /* INTERP_WIRE_H */

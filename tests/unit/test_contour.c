@@ -1,0 +1,495 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_contour.c - wire offset, taper, guides and corners, by hand
+ */
+#include "nc_read.h"
+
+#include "interp/cursor.h"
+
+#include <float.h>
+
+#define TENTH_DEG	"5.710593137499643"	/* its tangent is 0.1 */
+
+static const struct interp_wire no_guides = { .corner_angle_deg = 180 };
+
+/* Planes at 0 and 40, guides 20 below and 40 above: k is -0.5 and 2. */
+static const struct interp_wire guides = {
+	.guides = INTERP_GUIDES_ABSOLUTE, .z_lower_mm = -20, .z_upper_mm = 80,
+	.z_program_mm = 0, .z_second_mm = 40, .angle_max_deg = 30,
+	.corner_angle_deg = 180,
+};
+
+static struct nc_read ready(const struct interp_wire *w)
+{
+	struct nc_read n = nc_ready();
+
+	n.o.wire = w;
+	n.o.offset_mm[1] = 0.11;
+	n.o.offset_mm[2] = 0.2;
+	return n;
+}
+
+struct at {
+	double x, y, u, v;
+};
+
+/* The segments that move end at @want, in this order. */
+static void assert_path(const struct interp_wire *w, const char *text,
+			const struct at *want, uint32_t n)
+{
+	struct nc_read r = ready(w);
+	uint32_t k = 0;
+
+	nc_read(&r, text);
+	for (uint32_t i = 0; i < nc_count(&r); i++) {
+		const double at[] = {
+			nc_end(&r, i, INTERP_X), nc_end(&r, i, INTERP_Y),
+			nc_end(&r, i, INTERP_U), nc_end(&r, i, INTERP_V),
+		};
+
+		if (nc_seg(&r, i)->kind >= INTERP_BEGIN)
+			continue;
+		if (k >= n || hypot(at[0] - want[k].x, at[1] - want[k].y) >
+		    1e-6 || hypot(at[2] - want[k].u, at[3] - want[k].v) > 1e-6)
+			fail_msg("%s\nsegment %u at %.6f %.6f, %.6f %.6f", text,
+				 k, at[0], at[1], at[2], at[3]);
+		k++;
+	}
+	assert_int_equal(k, n);
+	nc_done(&r);
+}
+
+static void assert_refused(const struct interp_wire *w, const char *text,
+			   uint32_t line, const char *found)
+{
+	struct nc_read r = ready(w);
+
+	nc_read_bytes(&r, text, strlen(text));
+	if (r.rc != -EINVAL)
+		fail_msg("taken: %s", text);
+	if (r.diag.line != line || !strstr(r.diag.found, found))
+		fail_msg("%s\n%u:%u: %s; %s", text, r.diag.line, r.diag.column,
+			 r.diag.found, r.diag.wanted);
+	assert_true(r.diag.wanted[0] != 0);
+	nc_done(&r);
+}
+
+#define N(a)	(sizeof(a) / sizeof((a)[0]))
+
+/* -- Offset ------------------------------------------------------------------ */
+
+#define SQUARE	"G1 X5 Y0\nX10\nY10\nX0\nY0\nX5\nG40 X5 Y-5\n"
+
+static void a_square_grows_by_the_offset_outside(void **st)
+{
+	static const struct at want[] = {
+		{ 5, -5, 0, 0 }, { 5, -.11, 0, 0 }, { 10.11, -.11, 0, 0 },
+		{ 10.11, 10.11, 0, 0 }, { -.11, 10.11, 0, 0 },
+		{ -.11, -.11, 0, 0 }, { 5, -.11, 0, 0 }, { 5, -5, 0, 0 },
+	};
+
+	(void)st;
+	assert_path(&no_guides, "F5 G0 X5 Y-5\nG42 D1\n" SQUARE, want, N(want));
+	assert_path(&no_guides, "F5 G0 X5 Y-5\nG42 H1 " SQUARE "M2\n", want,
+		    N(want));
+	/* Right of minus is left. */
+	assert_path(&no_guides, "H7=-0.11 F5 G0 X5 Y-5\nG41 H7 " SQUARE, want,
+		    N(want));
+}
+
+static void a_square_shrinks_by_the_offset_inside(void **st)
+{
+	static const struct at want[] = {
+		{ 5, -5, 0, 0 }, { 5, .11, 0, 0 }, { 9.89, .11, 0, 0 },
+		{ 9.89, 9.89, 0, 0 }, { .11, 9.89, 0, 0 }, { .11, .11, 0, 0 },
+		{ 5, .11, 0, 0 }, { 5, -5, 0, 0 },
+	};
+
+	(void)st;
+	assert_path(&no_guides, "F5 G0 X5 Y-5\nG41 D1\n" SQUARE, want, N(want));
+	assert_path(&no_guides, "F5 D3=0.11 G0 X5 Y-5\nG41 D3 " SQUARE, want,
+		    N(want));
+}
+
+static void inches_hold_for_registers_too(void **st)
+{
+	static const struct at want[] = {
+		{ 25.4, 0, 0, 0 }, { 50.8, 2.54, 0, 0 }, { 76.2, 2.54, 0, 0 },
+	};
+
+	(void)st;
+	assert_path(&no_guides, "G20\nH5=0.1 F5\nG1 X1\nG41 H5 X2\nX3\n", want,
+		    N(want));
+}
+
+static void a_sharp_outer_corner_is_rounded(void **st)
+{
+	/* A turn by 135 degrees to the left, the wire on the right. */
+	const double h = sqrt(0.5) * 0.11;
+	const struct at want[] = {
+		{ 10, -.11, 0, 0 }, { 20, -.11, 0, 0 }, { 20 + h, h, 0, 0 },
+		{ 10 + h, 10 + h, 0, 0 },
+	};
+	struct nc_read r = ready(&no_guides);
+	const char *text = "F5 G42 D1 G1 X10\nX20\nX10 Y10\n";
+
+	(void)st;
+	assert_path(&no_guides, text, want, N(want));
+	nc_read(&r, text);
+	assert_near(nc_arc_of(&r, 2)->a_mm, 20);
+	assert_near(nc_arc_of(&r, 2)->r_mm, 0.11);
+	assert_near(nc_arc_of(&r, 2)->sweep, 3 * acos(-1) / 4);
+	nc_done(&r);
+}
+
+static void going_back_goes_round_the_end(void **st)
+{
+	static const struct at want[] = {
+		{ 10, .11, 0, 0 }, { 20, .11, 0, 0 }, { 20, -.11, 0, 0 },
+		{ 10, -.11, 0, 0 },
+	};
+
+	(void)st;
+	assert_path(&no_guides, "F5 G41 D1 G1 X10\nX20\nX10\n", want, N(want));
+}
+
+static void arcs_change_their_radius(void **st)
+{
+	struct nc_read r = ready(&no_guides);
+
+	(void)st;
+	/* Line, fillet of 2 inside, line: the wire inside. */
+	nc_read(&r, "F5 G41 D1 G1 X5\nX8\nG3 X10 Y2 J2\nG1 Y9\nG40 X0\n");
+	assert_near(nc_arc_of(&r, 2)->r_mm, 1.89);
+	assert_xyz(&r, 1, 8, .11, 0);
+	assert_xyz(&r, 2, 9.89, 2, 0);
+	assert_xyz(&r, 3, 9.89, 9, 0);
+	nc_done(&r);
+	/* A whole circle, both sides. */
+	r = ready(&no_guides);
+	nc_read(&r, "F5 G42 D1 G1 X5\nG3 X5 I-5\nG40 G1 X9\n");
+	assert_near(nc_arc_of(&r, 1)->r_mm, 5.11);
+	assert_near(nc_arc_of(&r, 1)->sweep, 2 * acos(-1));
+	assert_xyz(&r, 1, 5.11, 0, 0);
+	nc_done(&r);
+}
+
+static void a_line_and_an_arc_meet_inside(void **st)
+{
+	struct nc_read r = ready(&no_guides);
+	const double x = -sqrt(4.9 * 4.9 - 0.1 * 0.1);
+
+	(void)st;
+	/* Along the diameter, then the half circle above; the wire inside. */
+	nc_read(&r, "H9=0.1 F5 G1 X-5\nG41 H9 X0\nX5\nG3 X-5 I-5\nG1 X0\n");
+	assert_xyz(&r, 2, -x, .1, 0);
+	assert_xyz(&r, 3, x, .1, 0);
+	assert_near(nc_arc_of(&r, 3)->r_mm, 4.9);
+	nc_done(&r);
+}
+
+static void the_register_may_change_on_the_way(void **st)
+{
+	static const struct at want[] = {
+		{ 5, .11, 0, 0 }, { 10, .11, 0, 0 }, { 20, .2, 0, 0 },
+		{ 30, .2, 0, 0 },
+	};
+
+	(void)st;
+	assert_path(&no_guides, "F5 G41 D1 G1 X5\nX10\nD2 X20\nX30\n", want,
+		    N(want));
+}
+
+static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
+{
+	const struct interp_wire *w = &no_guides;
+
+	(void)st;
+	/* A step of 0.1 between two inner corners. */
+	assert_refused(w, "F5 G41 D1 G1 X5\nX10\nY0.1\nX5\nM2\n", 3,
+		       "nothing is left of a motion of 0.1000");
+	assert_refused(w, "F5 G41 D1 G1 X5\nX10\nG3 X10.1 Y.1 J.1\nG1 Y5\n", 3,
+		       "inside radius of 0.1000 mm under an offset of 0.1100");
+	assert_refused(w, "F5 G41 D2 G1 X5\nX8\nG3 X8.1 Y.1 J.1\n", 3,
+		       "inside radius of 0.1000 mm under an offset of 0.2000");
+	assert_refused(w, "F5\nG41 D1 G1 X.11\nX8\n", 2,
+		       "a lead of 0.1100 mm for a change of offset of 0.1100");
+	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG40 Y.05\n", 3, "a lead of");
+	assert_refused(w, "F5 G41 D1\nG3 X5 I2.5\n", 2, "an arc where");
+	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG40\nG2 X9 I.5\n", 4,
+		       "an arc where");
+	assert_refused(w, "F5 G41 D1 G1 X5\nG18 G2 X9 I2\n", 2, "plane XY");
+	assert_refused(w, "F5 G41 D1 G1 X5\nX6\nZ4\nX9\n", 3, "another axis");
+	assert_refused(w, "F5\nG41 G1 X5\n", 2, "without D or H");
+	assert_refused(w, "F5\nG41 D1 H1 G1 X5\n", 2, "D and H");
+	assert_refused(w, "H1=60\n", 1, "no such offset");
+	assert_refused(w, "H100=1\n", 1, "out of range");
+	assert_refused(w, "D1.5\n", 1, "not a whole");
+}
+
+static void an_inside_radius_equal_to_the_offset_is_a_point(void **st)
+{
+	static const struct at want[] = {
+		{ 5, .11, 0, 0 }, { 8, .11, 0, 0 }, { 8, 4, 0, 0 },
+	};
+
+	(void)st;
+	assert_path(&no_guides, "F5 G41 D1 G1 X5\nX8\nG3 X8.11 Y.11 J.11\n"
+		    "G1 Y4\n", want, N(want));
+}
+
+static void actions_stay_at_their_corner(void **st)
+{
+	struct nc_read r = ready(&no_guides);
+
+	(void)st;
+	nc_read(&r, "F5 G42 D1 G1 X5\nX10\nG4 P0.5\nM0\nX5 Y10\n");
+	assert_int_equal(nc_seg(&r, 1)->kind, INTERP_LINE);
+	assert_int_equal(nc_seg(&r, 2)->kind, INTERP_DWELL);
+	assert_int_equal(nc_seg(&r, 3)->kind, INTERP_STOP);
+	assert_int_equal(nc_seg(&r, 4)->kind, INTERP_ARC);
+	assert_int_equal(nc_seg(&r, 5)->kind, INTERP_LINE);
+	nc_done(&r);
+}
+
+/* -- Taper ---------------------------------------------------------------------- */
+
+#define GO_SQUARE "G1 X5 Y0\nX10\nY10\nX0\nY0\nX5\n"
+
+/* To the right of a square cut counter-clockwise the top is 4 mm larger all
+ * round: P (10, 0) under Q (14, -4), so the lower guide is at (8, 2) and the
+ * upper at (18, -8). */
+static void the_guides_of_a_tapered_square(void **st)
+{
+	static const struct at want[] = {
+		{ 5, -5, 5, -5 }, { 5, 2, 5, -8 }, { 8, 2, 18, -8 },
+		{ 8, 8, 18, 18 }, { 2, 8, -8, 18 }, { 2, 2, -8, -8 },
+		{ 5, 2, 5, -8 }, { 5, -5, 5, -5 },
+	};
+	const char *text = "F5 G0 X5 Y-5\nG52 A" TENTH_DEG "\n" GO_SQUARE
+			   "G50 X5 Y-5\n";
+
+	(void)st;
+	assert_path(&guides, text, want, N(want));
+}
+
+static void relative_upper_guides_move_by_the_difference(void **st)
+{
+	static const struct at want[] = {
+		{ 5, -5, 0, 0 }, { 5, 2, 0, -10 }, { 8, 2, 10, -10 },
+	};
+	struct interp_wire w = guides;
+
+	(void)st;
+	w.guides = INTERP_GUIDES_RELATIVE;
+	assert_path(&w, "F5 G0 X5 Y-5\nG52 A" TENTH_DEG " G1 X5 Y0\nX10\n"
+		    "Y10\nM2\n", (const struct at[]) {
+		    want[0], want[1], want[2], { 8, 10, 10, 0 } }, 4);
+}
+
+static const struct interp_couple *couple_of(const struct nc_read *r,
+					     uint32_t i)
+{
+	assert_int_equal(nc_seg(r, i)->kind, INTERP_PAIR);
+	return &r->p.couples[nc_seg(r, i)->arg];
+}
+
+static void the_guides_of_a_cone_go_round_its_axis(void **st)
+{
+	struct nc_read r = ready(&guides);
+
+	(void)st;
+	nc_read(&r, "F5 G0 X15\nG52 A" TENTH_DEG " G1 X10\nG3 X10 I-10\n"
+		"G50 G1 X15\n");
+	for (int i = 0; i < 2; i++) {
+		const struct interp_arc *arc = &couple_of(&r, 2)->side[i];
+
+		assert_near(arc->a_mm, 0);
+		assert_near(arc->b_mm, 0);
+		assert_near(arc->r_mm, i ? 18 : 8);
+		assert_near(arc->sweep, 2 * acos(-1));
+	}
+	assert_xyz(&r, 2, 8, 0, 0);
+	nc_done(&r);
+	/* So steep that the lower guide goes round the far side of the axis:
+	 * the top is larger by 22, 10 - 11 = -1 and 10 + 44 = 54. */
+	r = ready(&guides);
+	nc_read(&r, "F5 G0 X15\nG52 A28.810793742973065 G1 X10\n"
+		"G3 X-10 I-10\n");
+	assert_near(couple_of(&r, 2)->side[0].r_mm, 1);
+	assert_near(couple_of(&r, 2)->side[1].r_mm, 54);
+	assert_near(nc_end(&r, 2, INTERP_U), -54);
+	assert_near(nc_end(&r, 2, INTERP_X), 1);
+	nc_done(&r);
+}
+
+/* A leaning wire touches the face at D / cos A: 0.11 * sqrt(1.01). */
+static void both_contours_have_the_offset_of_the_leaning_wire(void **st)
+{
+	const double d = 0.11 * sqrt(1.01), q = d + 4;
+	const double low = d - 2, high = d + 8;
+	const struct at want[] = {
+		{ 5, low, 5, high }, { 10 - low, low, 10 - high, high },
+		{ 10 - low, 30, 10 - high, 30 },
+	};
+
+	(void)st;
+	assert_near(low, d - 0.5 * (q - d));
+	assert_path(&guides, "F5 G41 D1 G51 A" TENTH_DEG " G1 X5\nX10\nY30\n",
+		    want, N(want));
+}
+
+static void a_different_top_is_led_by_u_and_v(void **st)
+{
+	/* P (10, 0), Q (12, 4): lower (9, -2), upper (14, 8); then the top
+	 * goes along, then alone. */
+	static const struct at want[] = {
+		{ 9, -2, 14, 8 }, { 9, 3, 14, 13 }, { 10, 5, 10, 5 },
+	};
+
+	(void)st;
+	assert_path(&guides, "F5 G1 X10 U12 V4\nY5\nU10 V5\n", want, N(want));
+}
+
+/* Every point of the walk puts both contours within a pulse or two. */
+static void an_arc_under_a_line_is_cut_within_a_pulse(void **st)
+{
+	const char *text = "F5 G1 X10 U10\nG3 X0 Y10 I-10 U0 V10\n";
+
+	(void)st;
+	for (int s = 0; s < 2; s++) {
+		struct nc_read r = ready(&guides);
+		struct interp_cursor c;
+		uint32_t chords = 0;
+
+		nc_read(&r, text);
+		assert_int_equal(interp_cursor_init(&c, &r.p), 0);
+		interp_cursor_aim(&c, 1e9);
+		while (interp_cursor_step(&c) == INTERP_MOVED) {
+			const double k = 1.0 / 5;
+			const double x = c.pos[0] + k * (c.pos[6] - c.pos[0]);
+			const double y = c.pos[1] + k * (c.pos[7] - c.pos[1]);
+
+			if (c.seg.line != 2)
+				continue;
+			assert_true(fabs(hypot(x, y) - 10000) < 1.0);
+		}
+		for (uint32_t i = 0; i < nc_count(&r); i++)
+			chords += nc_seg(&r, i)->line == 2;
+		assert_in_range(chords, 100, 2000);
+		assert_int_equal(c.pos[INTERP_X], 0);
+		assert_int_equal(c.pos[INTERP_Y], 10000);
+		nc_done(&r);
+	}
+}
+
+/* With the guides in the planes there is nothing to convert. */
+static void guides_in_the_planes_walk_the_contours_themselves(void **st)
+{
+	struct interp_wire w = guides;
+	struct nc_read r;
+
+	(void)st;
+	w.z_lower_mm = w.z_program_mm;
+	w.z_upper_mm = w.z_second_mm;
+	r = ready(&w);
+	nc_read(&r, "F5 G1 X10 U10\nG3 X0 Y10 I-10 U0 V10\n");
+	assert_near(couple_of(&r, nc_count(&r) - 1)->side[0].r_mm, 10);
+	assert_near(couple_of(&r, nc_count(&r) - 1)->side[1].r_mm, 0);
+	nc_done(&r);
+}
+
+static void a_lean_beyond_the_machine_is_refused(void **st)
+{
+	struct interp_wire w = guides;
+
+	(void)st;
+	assert_refused(&guides, "F5\nG51 A30.01\n", 2, "a taper of 30.01");
+	assert_refused(&guides, "F5\nG1 X1\nX5 U50 V0\nX7\n", 3, "leans by");
+	assert_refused(&guides, "F5\nG51\n", 2, "without A");
+	assert_refused(&no_guides, "F5\nG51 A1\n", 2, "without wire guides");
+	assert_refused(&guides, "G92 U0\n", 1, "G92 with U");
+	/* At the square's edge both faces lean: atan(0.1 * sqrt(2)) = 8.05. */
+	w.angle_max_deg = 7;
+	assert_refused(&w, "F5 G0 X5 Y-5\nG52 A" TENTH_DEG "\n" GO_SQUARE
+		       "G50 X5 Y-5\n", 4, "leans by 8.049 degrees");
+}
+
+/* -- Corners --------------------------------------------------------------------- */
+
+static void a_corner_is_approached_slowly_and_waited_on(void **st)
+{
+	struct interp_wire w = no_guides;
+	struct nc_read r;
+
+	(void)st;
+	w.corner_angle_deg = 60;
+	w.corner_feed_percent = 25;
+	w.corner_before_mm = 0.5;
+	w.corner_dwell_s = 0.25;
+	r = ready(&w);
+	/* 90 degrees is a corner, 45 is none. */
+	nc_read(&r, "F60 G1 X10\nY10\nX0 Y20\n");
+	assert_int_equal(nc_count(&r), 5);
+	assert_xyz(&r, 0, 9.5, 0, 0);
+	assert_near(nc_seg(&r, 0)->feed_mm_s, 1);
+	assert_xyz(&r, 1, 10, 0, 0);
+	assert_near(nc_seg(&r, 1)->feed_mm_s, 0.25);
+	assert_int_equal(nc_seg(&r, 2)->kind, INTERP_DWELL);
+	assert_int_equal(nc_seg(&r, 2)->arg, 250);
+	assert_near(nc_seg(&r, 3)->feed_mm_s, 1);
+	assert_xyz(&r, 3, 10, 10, 0);
+	nc_done(&r);
+}
+
+static void a_short_motion_is_slow_as_a_whole(void **st)
+{
+	struct interp_wire w = guides;
+	struct nc_read r;
+
+	(void)st;
+	w.corner_angle_deg = 60;
+	w.corner_feed_percent = 50;
+	w.corner_before_mm = 5;
+	r = ready(&w);
+	nc_read(&r, "F60 G1 X1\nG3 X1 I-1\nG1 Y5\nX5\n");
+	assert_near(nc_seg(&r, 0)->feed_mm_s, 0.5);
+	assert_near(nc_end(&r, 0, INTERP_U), 1);
+	/* The circle leaves upward, and the line goes on so. */
+	assert_near(nc_seg(&r, 1)->feed_mm_s, 1);
+	assert_near(nc_seg(&r, 2)->feed_mm_s, 0.5);
+	nc_done(&r);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_square_grows_by_the_offset_outside),
+		cmocka_unit_test(a_square_shrinks_by_the_offset_inside),
+		cmocka_unit_test(inches_hold_for_registers_too),
+		cmocka_unit_test(a_sharp_outer_corner_is_rounded),
+		cmocka_unit_test(going_back_goes_round_the_end),
+		cmocka_unit_test(arcs_change_their_radius),
+		cmocka_unit_test(a_line_and_an_arc_meet_inside),
+		cmocka_unit_test(the_register_may_change_on_the_way),
+		cmocka_unit_test(
+		what_the_wire_cannot_reach_is_refused_with_its_line),
+		cmocka_unit_test(
+			an_inside_radius_equal_to_the_offset_is_a_point),
+		cmocka_unit_test(actions_stay_at_their_corner),
+		cmocka_unit_test(the_guides_of_a_tapered_square),
+		cmocka_unit_test(relative_upper_guides_move_by_the_difference),
+		cmocka_unit_test(the_guides_of_a_cone_go_round_its_axis),
+		cmocka_unit_test(
+			both_contours_have_the_offset_of_the_leaning_wire),
+		cmocka_unit_test(a_different_top_is_led_by_u_and_v),
+		cmocka_unit_test(an_arc_under_a_line_is_cut_within_a_pulse),
+		cmocka_unit_test(
+			guides_in_the_planes_walk_the_contours_themselves),
+		cmocka_unit_test(a_lean_beyond_the_machine_is_refused),
+		cmocka_unit_test(a_corner_is_approached_slowly_and_waited_on),
+		cmocka_unit_test(a_short_motion_is_slow_as_a_whole),
+	};
+
+	return cmocka_run_group_tests_name("interp/contour", tests, NULL, NULL);
+}
