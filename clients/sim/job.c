@@ -107,6 +107,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	};
 	struct interp_nc_options no = {
 		.machine = &c->axes,
+		.wire = &c->wire,
 		.feed_mm_s = c->feed_default_mm_min / 60,
 	};
 	struct interp_nc_result done = { 0 };
@@ -117,6 +118,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 
 	memcpy(bo.start_mm, c->start_mm, sizeof(bo.start_mm));
 	memcpy(no.work_offset_mm, c->work_offset_mm, sizeof(no.work_offset_mm));
+	memcpy(no.offset_mm, c->offset_mm, sizeof(no.offset_mm));
 	b = interp_build_create(&bo);
 	if (!b)
 		return EX_OSERR;

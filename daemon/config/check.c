@@ -21,6 +21,8 @@ static const struct order orders[] = {
 	{ SECTION_AXIS, "travel_min_mm", "travel_max_mm", false },
 	{ SECTION_AXIS, "travel_min_mm", "start_mm", true },
 	{ SECTION_AXIS, "start_mm", "travel_max_mm", true },
+	{ SECTION_WIRE, "z_lower_mm", "z_upper_mm", false },
+	{ SECTION_WIRE, "z_program_mm", "z_second_mm", false },
 	{ SECTION_GAP, "short_v", "servo_v", false },
 	{ SECTION_GAP, "servo_v", "open_v", false },
 	{ SECTION_SIM, "spark_v", "open_v", false },
@@ -130,6 +132,28 @@ static int check_present(struct check *q)
 	return -EINVAL;
 }
 
+/* Guides are X Y below and U V above. */
+static int check_guides(struct check *q)
+{
+	static const int four[] = { INTERP_X, INTERP_Y, INTERP_U, INTERP_V };
+	int k = key_of(SECTION_WIRE, "guides");
+
+	if (q->c->wire.guides == INTERP_GUIDES_OFF)
+		return 0;
+	for (int i = 0; i < 4; i++) {
+		if (q->c->axes.present & 1u << four[i])
+			continue;
+		blame(q, k, k, 0);
+		snprintf(q->diag->found, sizeof(q->diag->found),
+			 "wire.guides without an axis %c",
+			 INTERP_AXIS_LETTERS[four[i]]);
+		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+			 "X Y U V present, or guides = off");
+		return -EINVAL;
+	}
+	return 0;
+}
+
 int config_check(const struct machine_config *c,
 		 const struct config_lines *lines, struct interp_diag *diag)
 {
@@ -147,5 +171,6 @@ int config_check(const struct machine_config *c,
 		    check_extent(&q, "travel_max_mm", j))
 			return -EINVAL;
 
-	return check_period(&q) || check_present(&q) ? -EINVAL : 0;
+	return check_period(&q) || check_present(&q) || check_guides(&q) ?
+	       -EINVAL : 0;
 }

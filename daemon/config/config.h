@@ -68,6 +68,9 @@ struct machine_config {
 	double start_mm[INTERP_NAXES];	/* where a simulated machine begins */
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* [work] */
 
+	struct interp_wire wire;	/* [wire] */
+	double offset_mm[INTERP_NOFFSETS];	/* [wire] offset_mm is D1 */
+
 	struct config_gap gap;
 	struct config_jump jump;
 	struct config_sim sim;

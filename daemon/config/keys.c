@@ -26,6 +26,17 @@ static const char *strategy_word(int i)
 	return interp_strategy_name((enum interp_strategy)i);
 }
 
+static const char *guides_word(int i)
+{
+	static const char *const words[INTERP_NGUIDES] = {
+		[INTERP_GUIDES_OFF] = "off",
+		[INTERP_GUIDES_ABSOLUTE] = "absolute",
+		[INTERP_GUIDES_RELATIVE] = "relative",
+	};
+
+	return i >= 0 && i < INTERP_NGUIDES ? words[i] : NULL;
+}
+
 static const char *const axes[INTERP_NAXES] = {
 	"X", "Y", "Z", "A", "B", "C", "U", "V"
 };
@@ -41,6 +52,8 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"one axis: its pulse, travel and limits; A B C are rotary" },
 	[SECTION_WORK] = { "work", works, INTERP_NC_NWORK,
 		"origin of a work coordinate system, in machine coordinates" },
+	[SECTION_WIRE] = { "wire", NULL, 1,
+		"a wire machine's guides, planes and corners; docs/taper.md" },
 	[SECTION_GAP] = { "gap", NULL, 1,
 		"the gap servo: feed from the mean gap voltage" },
 	[SECTION_JUMP] = { "jump", NULL, 1,
@@ -132,6 +145,40 @@ const struct config_key config_key[] = {
 	  -1e7, 1e7, WORK(INTERP_U), .help = "origin on U" },
 	{ SECTION_WORK, "v", KEY_NUMBER, "mm", "0",
 	  -1e7, 1e7, WORK(INTERP_V), .help = "origin on V" },
+
+	{ SECTION_WIRE, "guides", KEY_ENUM, "", "off",
+	  0, 0, AT(wire.guides), .word = guides_word,
+	  .help = "what U V are: off: axes as any other; the upper guide" },
+	{ SECTION_WIRE, "z_lower_mm", KEY_NUMBER, "mm", "-20",
+	  -2000, 2000, AT(wire.z_lower_mm),
+	  .help = "height of the lower guide" },
+	{ SECTION_WIRE, "z_upper_mm", KEY_NUMBER, "mm", "80",
+	  -2000, 2000, AT(wire.z_upper_mm),
+	  .help = "height of the upper guide" },
+	{ SECTION_WIRE, "z_program_mm", KEY_NUMBER, "mm", "0",
+	  -2000, 2000, AT(wire.z_program_mm),
+	  .help = "height of the plane X Y are programmed on" },
+	{ SECTION_WIRE, "z_second_mm", KEY_NUMBER, "mm", "40",
+	  -2000, 2000, AT(wire.z_second_mm),
+	  .help = "height of the plane U V are programmed on" },
+	{ SECTION_WIRE, "angle_max_deg", KEY_NUMBER, "deg", "30",
+	  0, 80, AT(wire.angle_max_deg),
+	  .help = "the wire may lean so far from upright" },
+	{ SECTION_WIRE, "corner_angle_deg", KEY_NUMBER, "deg", "180",
+	  1, 180, AT(wire.corner_angle_deg),
+	  .help = "a turn by so much is a corner; 180: no corner control" },
+	{ SECTION_WIRE, "corner_feed_percent", KEY_NUMBER, "%", "50",
+	  1, 100, AT(wire.corner_feed_percent),
+	  .help = "of the feed, at most, in front of a corner" },
+	{ SECTION_WIRE, "corner_before_mm", KEY_NUMBER, "mm", "0.2",
+	  0, 100, AT(wire.corner_before_mm),
+	  .help = "so far in front of it" },
+	{ SECTION_WIRE, "corner_dwell_s", KEY_NUMBER, "s", "0",
+	  0, 3600, AT(wire.corner_dwell_s),
+	  .help = "wait on a corner, for the wire to straighten" },
+	{ SECTION_WIRE, "offset_mm", KEY_NUMBER, "mm", "0",
+	  -50, 50, AT(offset_mm[1]),
+	  .help = "register D1, H1 before a program fills it" },
 
 	{ SECTION_GAP, "source", KEY_ENUM, "", "sim",
 	  0, 0, AT(gap.source), .word = source_word,

@@ -31,6 +31,7 @@ static int compile_text(struct compile *c)
 	};
 	struct interp_nc_options nc = {
 		.machine = &m->axes,
+		.wire = &m->wire,
 		.feed_mm_s = m->feed_default_mm_min / 60,
 	};
 	struct interp_nc_result counted = { .lines = 0 };
@@ -39,6 +40,7 @@ static int compile_text(struct compile *c)
 	memcpy(b.start_mm, c->request.start_mm, sizeof(b.start_mm));
 	memcpy(nc.work_offset_mm, m->work_offset_mm,
 	       sizeof(nc.work_offset_mm));
+	memcpy(nc.offset_mm, m->offset_mm, sizeof(nc.offset_mm));
 	c->result.build = interp_build_create(&b);
 	if (!c->result.build)
 		return -ENOMEM;

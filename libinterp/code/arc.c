@@ -114,19 +114,77 @@ static int centre(struct nc_reader *r, const struct plane *p,
 	return by_radius(r, p, end_mm, arc);
 }
 
-/* With U or V the top is a contour of its own: straight to its end. */
+/* The top: the G word behind the :, without one as the bottom; with U or V
+ * alone straight. */
+static int top(struct nc_reader *r, int motion, struct interp_build_contour *c)
+{
+	const struct nc_block *b = &r->block;
+	const double *here = nc_here(r);
+
+	*c = (struct interp_build_contour) { .arc = false };
+	if (b->upper)
+		motion = b->upper->value;
+	if (!b->colon || motion < 2) {
+		if (b->words & (NC_BIT(NC_UI) | NC_BIT(NC_UJ)))
+			return nc_refuse_at(r, r->line, "G2 or G3 before it",
+					    "a centre of a straight top");
+		return 0;
+	}
+	c->arc = true;
+	c->clockwise = motion == 2;
+	for (int i = 0; i < 2; i++) {
+		const enum nc_slot slot = i ? NC_UJ : NC_UI;
+		const int axis = i ? INTERP_V : INTERP_U;
+
+		if (!nc_has(r, slot) && !r->arc_incremental)
+			return nc_refuse_at(r, r->line, "both I and J",
+					    "half a centre under G90.1");
+		c->centre_mm[i] = (r->arc_incremental ? here[axis] :
+				   r->offset_mm[axis]) +
+				  (nc_has(r, slot) ? b->value[slot] *
+				   r->unit_mm : 0);
+	}
+	if (hypot(c->centre_mm[0] - here[INTERP_U],
+		  c->centre_mm[1] - here[INTERP_V]) < NOTHING_MM)
+		return nc_refuse_at(r, r->line, "I or J away from 0",
+				    "a top arc of radius 0");
+	return 0;
+}
+
+static int go_two(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		  int motion, const struct interp_build_contour *bottom)
+{
+	struct interp_build_contour two[2] = { *bottom };
+	const int rc = top(r, motion, &two[1]);
+
+	return rc ? rc : contour_two(&r->contour, end_mm, two, &r->word,
+				     r->diag);
+}
+
 static int go_round(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		    const struct interp_build_arc *arc)
 {
-	const struct interp_build_contour two[2] = {
-		{ .arc = true, .clockwise = arc->clockwise,
-		  .centre_mm = { arc->centre_a_mm, arc->centre_b_mm } },
+	const struct interp_build_contour bottom = {
+		.arc = true, .clockwise = arc->clockwise,
+		.centre_mm = { arc->centre_a_mm, arc->centre_b_mm },
 	};
 
 	if (nc_has_guides(r) && arc->axis_a == INTERP_X &&
-	    (nc_has(r, NC_U) || nc_has(r, NC_V)))
-		return contour_two(&r->contour, end_mm, two, &r->word, r->diag);
+	    (r->block.colon || nc_has(r, NC_U) || nc_has(r, NC_V)))
+		return go_two(r, end_mm, arc->clockwise ? 2 : 3, &bottom);
 	return contour_arc(&r->contour, end_mm, arc, &r->word, r->diag);
+}
+
+int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES])
+{
+	const struct interp_build_contour bottom = { .arc = false };
+	int rc = nc_word(r, end_mm, r->block.code[NC_MOTION]->value == 0);
+
+	if (!rc)
+		rc = nc_room(r);
+	if (rc)
+		return rc;
+	return nc_placed(r, go_two(r, end_mm, 1, &bottom), end_mm);
 }
 
 int nc_arc(struct nc_reader *r, bool clockwise)

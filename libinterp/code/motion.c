@@ -80,7 +80,7 @@ int nc_room(struct nc_reader *r)
 {
 	char wanted[96];
 
-	if (r->segs++ < r->segs_max)
+	if (r->segs++ + r->contour.guides.cuts < r->segs_max)
 		return 0;
 	snprintf(wanted, sizeof(wanted), "up to %u, with fewer repeats (L)",
 		 r->segs_max);
@@ -160,6 +160,8 @@ int nc_run_motion(struct nc_reader *r)
 	if (motion->value >= 2)
 		return nc_arc(r, motion->value == 2);
 	nc_target(r, end_mm);
+	if (r->block.colon)
+		return nc_line_two(r, end_mm);
 	return line_to(r, end_mm, motion->value == 0);
 }
 

@@ -35,6 +35,8 @@ struct nc_block {
 	const uint8_t *at[NC_NSLOTS];	/* the letter */
 	const struct nc_code *code[NC_NGROUPS];
 	const uint8_t *code_at[NC_NGROUPS];
+	const struct nc_code *upper;	/* G word behind a :, or NULL */
+	bool colon;			/* the top has words of its own */
 };
 
 /* A program or subprogram being carried out. */
@@ -145,6 +147,9 @@ static inline bool nc_has_guides(const struct nc_reader *r)
 
 /** nc_arc() - G2 or G3. */
 int nc_arc(struct nc_reader *r, bool clockwise);
+
+/** nc_line_two() - G1 with a : for the top. */
+int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
 
 /** nc_target() - where the axis words of the line lead, machine mm. */
 void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES]);

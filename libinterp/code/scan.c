@@ -74,6 +74,37 @@ static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 	return p;
 }
 
+/* Behind a : the words are those of the second plane. */
+static const uint8_t *scan_upper(struct nc_reader *r, const uint8_t *at,
+				 unsigned int slot)
+{
+	static const uint8_t upper[NC_NSLOTS] = {
+		[NC_X] = NC_U + 1, [NC_Y] = NC_V + 1, [NC_U] = NC_U + 1,
+		[NC_V] = NC_V + 1, [NC_I] = NC_UI + 1, [NC_J] = NC_UJ + 1,
+	};
+
+	if (upper[slot])
+		return scan_value(r, at, upper[slot] - 1u);
+	nc_refuse(r, at, "G1 G2 G3, X Y and I J behind a :",
+		  "%s behind a :", nc_quote_word(r, at).s);
+	return NULL;
+}
+
+static const uint8_t *scan_colon(struct nc_reader *r, const uint8_t *at)
+{
+	struct nc_block *b = &r->block;
+
+	if (!nc_has_guides(r) || b->colon) {
+		nc_refuse(r, at, "one : on a line, on a machine with "
+			  "wire.guides", b->colon ? "a second :" :
+			  "a : on a machine without wire guides");
+		return NULL;
+	}
+	b->colon = true;
+	b->takes |= NC_BIT(NC_UI) | NC_BIT(NC_UJ);
+	return at + 1;
+}
+
 /* The letters of coded words. */
 static const struct letter {
 	const struct nc_code *codes;
@@ -98,6 +129,19 @@ static const uint8_t *refuse_group(struct nc_reader *r, const uint8_t *at,
 	return NULL;
 }
 
+static bool scan_upper_code(struct nc_reader *r, const uint8_t *at,
+			    const struct nc_code *code)
+{
+	if (code->group != NC_MOTION || code->value == 0 || r->block.upper) {
+		nc_refuse(r, at, "one of G1 G2 G3 behind a :", "%s behind a :",
+			  nc_quote_word(r, at).s);
+		return false;
+	}
+	r->block.upper = code;
+	r->word_at = at;
+	return true;
+}
+
 static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 {
 	const struct letter *l = &letters[nc_classes[*at] - NC_LETTER_G];
@@ -119,6 +163,8 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 		return NULL;
 	}
 	code = &l->codes[n];
+	if (b->colon)
+		return scan_upper_code(r, at, code) ? p : NULL;
 	if (b->groups & NC_BIT(code->group))
 		return refuse_group(r, at, code->group);
 	b->groups |= NC_BIT(code->group);
@@ -301,6 +347,7 @@ static scan_fn *const scan_other[NC_NCLASSES] = {
 	[NC_SEMICOLON]	= scan_to_end,
 	[NC_SLASH]	= scan_slash,
 	[NC_PERCENT]	= scan_percent,
+	[NC_COLON]	= scan_colon,
 };
 
 /* Words from @p to the end of the line, which is returned. */
@@ -316,7 +363,9 @@ static const uint8_t *scan_words(struct nc_reader *r, const uint8_t *p)
 		if (class == NC_EOL)
 			return p;
 		if (class - NC_WORD < NC_NSLOTS)
-			p = scan_value(r, p, class - NC_WORD);
+			p = r->block.colon ?
+			    scan_upper(r, p, class - NC_WORD) :
+			    scan_value(r, p, class - NC_WORD);
 		else
 			p = scan_other[class](r, p);
 	}
@@ -335,6 +384,8 @@ int nc_scan_line(struct nc_reader *r)
 	b->words = 0;
 	b->groups = 0;
 	b->takes = NC_ANYWHERE;
+	b->upper = NULL;
+	b->colon = false;
 
 	p = scan_words(r, p);
 	if (!p)

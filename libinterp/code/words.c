@@ -37,6 +37,8 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_O] = { 'O', true, 1, 9999, "a program number of 1 to 9999", "" },
 	[NC_D] = { 'D', true, 0, INTERP_NOFFSETS - 1, "a register of 0 to 99",
 		   "" },
+	[NC_UI] = { 'I', false, ANY_PLACE, "I " CENTRE_LINES },
+	[NC_UJ] = { 'J', false, ANY_PLACE, "J " CENTRE_LINES },
 	[NC_H] = { 'H', true, 0, INTERP_NOFFSETS - 1, "a register of 0 to 99",
 		   "" },
 };
@@ -65,7 +67,7 @@ const uint8_t nc_classes[256] = {
 	['9'] = NC_NUMERIC, ['.'] = NC_NUMERIC, ['+'] = NC_NUMERIC,
 	['-'] = NC_NUMERIC,
 	['('] = NC_OPEN, [';'] = NC_SEMICOLON, ['/'] = NC_SLASH,
-	['%'] = NC_PERCENT,
+	['%'] = NC_PERCENT, [':'] = NC_COLON,
 };
 
 #define P_	NC_BIT(NC_P)

@@ -20,6 +20,7 @@ enum nc_slot {
 	NC_F, NC_N, NC_S,
 	NC_P, NC_L, NC_O,
 	NC_D, NC_H,
+	NC_UI, NC_UJ,			/* I J behind a : */
 	NC_NSLOTS
 };
 
@@ -60,6 +61,7 @@ enum nc_class {
 	NC_SEMICOLON,
 	NC_SLASH,
 	NC_PERCENT,
+	NC_COLON,
 	NC_NCLASSES
 };
 

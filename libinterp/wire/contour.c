@@ -106,7 +106,7 @@ static int refuse_todo(const struct contour_motion *m, struct interp_diag *diag)
 /* -- Out ------------------------------------------------------------------- */
 
 /* Share @t0 to @t1 of a motion along @c. */
-static int cut_part(const struct contour *k, const struct curve c[2],
+static int cut_part(struct contour *k, const struct curve c[2],
 		    const double t[2], const struct interp_build_word *w,
 		    struct interp_diag *diag)
 {
@@ -136,7 +136,7 @@ static bool is_corner(const struct contour *k, const struct contour_motion *next
 }
 
 /* The motion held, its last part slower if a corner follows. */
-static int cut_held(const struct contour *k, const struct curve c[2],
+static int cut_held(struct contour *k, const struct curve c[2],
 		    bool corner, struct interp_diag *diag)
 {
 	const struct interp_wire *w = k->guides.wire;
@@ -185,7 +185,7 @@ static int do_corner(struct contour *k, bool corner, struct interp_diag *diag)
 	return r < 0 ? r : do_todo(k, diag);
 }
 
-static int cut_fill(const struct contour *k, const struct contour_join j[2],
+static int cut_fill(struct contour *k, const struct contour_join j[2],
 		    struct interp_diag *diag)
 {
 	const double whole[2] = { 0, 1 };

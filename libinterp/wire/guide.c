@@ -19,7 +19,7 @@
 
 #define DEGREE		(3.14159265358979323846 / 180)
 
-#define CHORDS_MAX	200000.0
+#define CHORDS_MAX	20000.0
 #define TILT_SAMPLES	16		/* along an arc */
 
 static double share_at(const struct interp_wire *w, double z_mm)
@@ -105,13 +105,14 @@ static int check_tilt(const struct guides *g, const struct curve c[2],
 /* -- To the builder ---------------------------------------------------------- */
 
 /* Both guides from where they stand to where P and Q lead them. */
-static int put(const struct guides *g, const struct vec to[2],
+static int put(struct guides *g, const struct vec to[2],
 	       const struct interp_build_contour k[2],
 	       const double end_mm[INTERP_NAXES],
 	       const struct interp_build_word *w, struct interp_diag *diag)
 {
 	double end[INTERP_NAXES];
 
+	g->cuts++;
 	memcpy(end, end_mm, sizeof(end));
 	for (int i = 0; i < 2; i++) {
 		const struct vec at = guide_at(g->guide[i], to[0], to[1]);
@@ -122,7 +123,7 @@ static int put(const struct guides *g, const struct vec to[2],
 	return interp_build_pair(g->build, end, k, w, diag);
 }
 
-static int cut_lines(const struct guides *g, const struct curve c[2],
+static int cut_lines(struct guides *g, const struct curve c[2],
 		     const double end_mm[INTERP_NAXES],
 		     const struct interp_build_word *w,
 		     struct interp_diag *diag)
@@ -157,7 +158,7 @@ static bool are_similar(const struct guides *g, const struct curve c[2])
 	       fmax(c[0].r, c[1].r) < g->pulse_mm / 2;
 }
 
-static int cut_arcs(const struct guides *g, const struct curve c[2],
+static int cut_arcs(struct guides *g, const struct curve c[2],
 		    const double end_mm[INTERP_NAXES],
 		    const struct interp_build_word *w,
 		    struct interp_diag *diag)
@@ -190,7 +191,7 @@ static bool is_direct(const struct guides *g)
 	       g->guide[1].from_bottom == 0 && g->guide[1].from_top == 1;
 }
 
-static int cut_direct(const struct guides *g, const struct curve c[2],
+static int cut_direct(struct guides *g, const struct curve c[2],
 		      const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag)
@@ -227,7 +228,7 @@ static double chords(const struct guides *g, const struct curve c[2])
 	return ceil(sqrt(sagitta / (g->pulse_mm / 4)));
 }
 
-static int cut_chords(const struct guides *g, const struct curve c[2],
+static int cut_chords(struct guides *g, const struct curve c[2],
 		      const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag)
@@ -256,7 +257,7 @@ static int cut_chords(const struct guides *g, const struct curve c[2],
 }
 
 /* Guides off: the bottom contour is what X Y do. */
-static int cut_bottom(const struct guides *g, const struct curve *c,
+static int cut_bottom(struct guides *g, const struct curve *c,
 		      const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag)
@@ -268,6 +269,7 @@ static int cut_bottom(const struct guides *g, const struct curve *c,
 	};
 	double end[INTERP_NAXES];
 
+	g->cuts++;
 	memcpy(end, end_mm, sizeof(end));
 	end[INTERP_X] = c->to.x;
 	end[INTERP_Y] = c->to.y;
@@ -276,7 +278,7 @@ static int cut_bottom(const struct guides *g, const struct curve *c,
 	       interp_build_line(g->build, end, w, diag);
 }
 
-int guides_cut(const struct guides *g, const struct curve c[2],
+int guides_cut(struct guides *g, const struct curve c[2],
 	       const double end_mm[INTERP_NAXES],
 	       const struct interp_build_word *w, struct interp_diag *diag)
 {

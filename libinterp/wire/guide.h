@@ -23,6 +23,7 @@ struct guides {
 	double height_mm;		/* from plane to plane */
 	double slope_max;		/* tangent of the largest angle */
 	double pulse_mm;
+	uint64_t cuts;			/* segments made so far */
 };
 
 void guides_init(struct guides *g, const struct interp_wire *w,
@@ -42,7 +43,7 @@ void guides_planes(const struct guides *g, const double at_mm[INTERP_NAXES],
  * axes beside X Y U V go to @end_mm.
  * Return: 0, -ENOMEM, or -EINVAL with @diag's found and wanted filled.
  */
-int guides_cut(const struct guides *g, const struct curve c[2],
+int guides_cut(struct guides *g, const struct curve c[2],
 	       const double end_mm[INTERP_NAXES],
 	       const struct interp_build_word *w, struct interp_diag *diag);
 

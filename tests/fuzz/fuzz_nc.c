@@ -48,7 +48,15 @@ static void check_refusal(int rc, const struct interp_diag *d, size_t size)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	struct interp_machine m = { .present = (1 << INTERP_NAXES) - 1 };
+	const struct interp_wire wire = {
+		.guides = (int)(size / 2 % INTERP_NGUIDES),
+		.z_lower_mm = -20, .z_upper_mm = 80, .z_second_mm = 40,
+		.angle_max_deg = 45, .corner_angle_deg = size % 5 ? 180 : 30,
+		.corner_feed_percent = 50, .corner_before_mm = 0.2,
+		.corner_dwell_s = 0.1,
+	};
 	const struct interp_nc_options o = {
+		.wire = size % 3 ? &wire : NULL, .offset_mm = { [1] = 0.11 },
 		.machine = &m, .segs_max = 1000, .executed_max = 10000,
 	};
 	const struct interp_build_options bo = {

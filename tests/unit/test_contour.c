@@ -383,6 +383,34 @@ static void an_arc_under_a_line_is_cut_within_a_pulse(void **st)
 	}
 }
 
+/* Bottom and top on one line, a : between them. */
+static void a_colon_gives_the_top_words_of_its_own(void **st)
+{
+	struct interp_wire w = guides;
+	struct nc_read r;
+
+	(void)st;
+	w.z_lower_mm = w.z_program_mm;
+	w.z_upper_mm = w.z_second_mm;
+	r = ready(&w);
+	nc_read(&r, "F5 G1 X10 : X10 Y0\nG3 X0 Y10 I-10 : G1 X0 Y12\n"
+		"G1 X-9 : G3 X-12 Y0 J-12\nG3 X-10 Y9 J-1 : I-2 X-16 Y0\n");
+	assert_near(couple_of(&r, 1)->side[0].r_mm, 10);
+	assert_near(couple_of(&r, 1)->side[1].r_mm, 0);
+	assert_near(nc_end(&r, 1, INTERP_V), 12);
+	assert_near(couple_of(&r, 2)->side[0].r_mm, 0);
+	assert_near(couple_of(&r, 2)->side[1].r_mm, 12);
+	assert_near(couple_of(&r, 2)->side[1].b_mm, 0);
+	assert_near(couple_of(&r, 3)->side[1].a_mm, -14);
+	nc_done(&r);
+	assert_refused(&w, "F5 G1 X1 : G4\n", 1, "G4 behind");
+	assert_refused(&w, "F5 G1 X1 : Z4\n", 1, "Z4 behind");
+	assert_refused(&w, "F5 G1 X1 : X4 : X5\n", 1, "a second :");
+	assert_refused(&w, "F5 G1 X1 : G1 X4 I5\n", 1, "of a straight top");
+	assert_refused(&w, "F5 G1 X1 : G2 X4\n", 1, "radius 0");
+	assert_refused(&no_guides, "F5 G1 X1 : X4\n", 1, "without wire guides");
+}
+
 /* With the guides in the planes there is nothing to convert. */
 static void guides_in_the_planes_walk_the_contours_themselves(void **st)
 {
@@ -484,6 +512,7 @@ int main(void)
 			both_contours_have_the_offset_of_the_leaning_wire),
 		cmocka_unit_test(a_different_top_is_led_by_u_and_v),
 		cmocka_unit_test(an_arc_under_a_line_is_cut_within_a_pulse),
+		cmocka_unit_test(a_colon_gives_the_top_words_of_its_own),
 		cmocka_unit_test(
 			guides_in_the_planes_walk_the_contours_themselves),
 		cmocka_unit_test(a_lean_beyond_the_machine_is_refused),

@@ -121,7 +121,7 @@ static void watch_point(struct watch *w, const int32_t *pos, double phase,
 	s->lag = fmax(s->lag, fabs(wrap(w->angle[1] - w->angle[0] - phase)));
 }
 
-static void check_end(const struct pair *p, const int at[2][2],
+static void check_end(const struct pair *p, const int (*at)[2],
 		      const int32_t *pos)
 {
 	for (int i = 0; i < 2; i++) {
