@@ -475,20 +475,21 @@ static int refuse_others(struct interp_diag *diag)
 }
 
 /* One contour alone, the other stands: -ENOENT if both have a way to go. */
-static int pair_alone(struct interp_build *b, const double end_mm[INTERP_NAXES],
-		      const struct interp_build_contour c[2], uint32_t moved,
+static int pair_alone(struct interp_build *b, const struct build_pair *p,
+		      const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag)
 {
 	const uint32_t xy = 1u << INTERP_X | 1u << INTERP_Y;
-	const int i = moved & xy || c[0].arc ? 0 : 1;
+	const struct interp_build_contour *c = p->contour;
+	const int i = p->moved & xy || c[0].arc ? 0 : 1;
 	const struct interp_build_arc arc = {
 		.axis_a = i ? INTERP_U : INTERP_X,
 		.axis_b = i ? INTERP_V : INTERP_Y,
 		.centre_a_mm = c[i].centre_mm[0],
 		.centre_b_mm = c[i].centre_mm[1], .clockwise = c[i].clockwise,
 	};
-	const bool other = i == 0 && (moved & ~xy || c[1].arc);
+	const bool other = i == 0 && (p->moved & ~xy || c[1].arc);
 
 	if (other && (c[0].arc || c[1].arc ||
 		      b->o.strategy != INTERP_SIMULTANEOUS))
@@ -515,7 +516,8 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	if (m.moved & ~(1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_U |
 			1u << INTERP_V))
 		return refuse_others(diag);
-	r = pair_alone(b, end_mm, contour, m.moved, w, diag);
+	plan.moved = m.moved;
+	r = pair_alone(b, &plan, end_mm, w, diag);
 	if (r != -ENOENT)
 		return r;
 	for (int i = 0; i < INTERP_NAXES; i++) {

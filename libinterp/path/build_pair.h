@@ -14,6 +14,7 @@ struct build_pair {
 	enum interp_strategy strategy;
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
 	int32_t from[INTERP_NAXES], to[INTERP_NAXES];	/* pulses */
+	uint32_t moved;		/* mask of axes */
 	int64_t longest_sub;	/* of all four axes, subpulses */
 	/* Out. */
 	struct interp_couple couple;

@@ -307,6 +307,15 @@ static void motion_init(const struct contour *k, struct contour_motion *m,
 		  m->c[0];
 }
 
+static bool moves(const struct contour *k, const double end_mm[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (fabs(end_mm[i] - k->here_mm[i]) > SAME_MM)
+			return true;
+	}
+	return false;
+}
+
 static int refuse_alone(const struct interp_build_word *w,
 			struct interp_diag *diag)
 {
@@ -324,7 +333,7 @@ static int stay(struct contour *k, const double end_mm[INTERP_NAXES],
 	double to_mm[INTERP_NAXES];
 	int r;
 
-	if (memcmp(end_mm, k->here_mm, sizeof(k->here_mm)) == 0)
+	if (!moves(k, end_mm))
 		return 0;
 	if (k->d_end[0] != 0 || k->d_end[1] != 0)
 		return refuse_alone(w, diag);

@@ -104,34 +104,61 @@ static int check_tilt(const struct guides *g, const struct curve c[2],
 
 /* -- To the builder ---------------------------------------------------------- */
 
-/* Both guides from where they stand to where P and Q lead them. */
-static int put(struct guides *g, const struct vec to[2],
-	       const struct interp_build_contour k[2],
-	       const double end_mm[INTERP_NAXES],
-	       const struct interp_build_word *w, struct interp_diag *diag)
+struct cut {
+	struct guides *g;
+	const struct curve *c;		/* the two contours */
+	const double *end_mm;
+	const struct interp_build_word *w;
+	struct interp_diag *diag;
+};
+
+/*
+ * F is the speed of the faster contour in the work; the builder counts the
+ * length on the axes X Y, or on U V if X Y stand.
+ */
+static double feed_on_axes(const struct cut *k, const double guide_mm[2])
 {
-	double end[INTERP_NAXES];
+	const double axes_mm = guide_mm[0] > 1e-9 ? guide_mm[0] : guide_mm[1];
+	const double work_mm = fmax(curve_length(&k->c[0]),
+				    curve_length(&k->c[1]));
 
-	g->cuts++;
-	memcpy(end, end_mm, sizeof(end));
-	for (int i = 0; i < 2; i++) {
-		const struct vec at = guide_at(g->guide[i], to[0], to[1]);
-
-		end[i ? INTERP_U : INTERP_X] = at.x;
-		end[i ? INTERP_V : INTERP_Y] = at.y;
-	}
-	return interp_build_pair(g->build, end, k, w, diag);
+	return axes_mm > 1e-9 && work_mm > 1e-9 ?
+	       k->w->feed_mm_s * axes_mm / work_mm : k->w->feed_mm_s;
 }
 
-static int cut_lines(struct guides *g, const struct curve c[2],
-		     const double end_mm[INTERP_NAXES],
-		     const struct interp_build_word *w,
-		     struct interp_diag *diag)
+/* Both guides from where they stand to where the contours' ends lead them. */
+static int put(const struct cut *k, const struct interp_build_contour two[2])
 {
-	const struct interp_build_contour k[2] = { { .arc = false } };
-	const struct vec to[2] = { c[0].to, c[1].to };
+	struct interp_build_word word = *k->w;
+	const double *here = interp_build_here(k->g->build);
+	double end[INTERP_NAXES], guide_mm[2];
 
-	return put(g, to, k, end_mm, w, diag);
+	k->g->cuts++;
+	memcpy(end, k->end_mm, sizeof(end));
+	for (int i = 0; i < 2; i++) {
+		const int x = i ? INTERP_U : INTERP_X, y = x + 1;
+		const struct vec at = guide_at(k->g->guide[i], k->c[0].to,
+					       k->c[1].to);
+		const struct vec from = { here[x], here[y] };
+		const struct vec centre = { two[i].centre_mm[0],
+					    two[i].centre_mm[1] };
+		const struct curve way = two[i].arc ?
+			curve_arc(from, at, centre, two[i].clockwise) :
+			curve_line(from, at);
+
+		end[x] = at.x;
+		end[y] = at.y;
+		guide_mm[i] = curve_length(&way);
+	}
+	word.feed_mm_s = feed_on_axes(k, guide_mm);
+	return interp_build_pair(k->g->build, end, two, &word, k->diag);
+}
+
+static int cut_lines(const struct cut *k)
+{
+	const struct interp_build_contour two[2] = { { .arc = false } };
+
+	return put(k, two);
 }
 
 /* A contour that stands, or has shrunk to a point, goes with any arc. */
@@ -150,38 +177,37 @@ static struct vec centre_of(const struct curve *c)
 	return c->arc && c->r > 0 ? c->centre : c->from;
 }
 
-static bool are_similar(const struct guides *g, const struct curve c[2])
+static bool are_similar(const struct cut *k)
 {
+	const struct curve *c = k->c;
+
 	if (is_point(&c[0]) || is_point(&c[1]))
 		return true;
 	return c[0].arc && c[1].arc && fabs(c[0].sweep - c[1].sweep) *
-	       fmax(c[0].r, c[1].r) < g->pulse_mm / 2;
+	       fmax(c[0].r, c[1].r) < k->g->pulse_mm / 2;
 }
 
-static int cut_arcs(struct guides *g, const struct curve c[2],
-		    const double end_mm[INTERP_NAXES],
-		    const struct interp_build_word *w,
-		    struct interp_diag *diag)
+static int cut_arcs(const struct cut *k)
 {
+	const struct curve *c = k->c;
 	const struct vec centre[2] = { centre_of(&c[0]), centre_of(&c[1]) };
-	const struct vec to[2] = { c[0].to, c[1].to };
 	const double sweep = radius_of(&c[0]) != 0 ? c[0].sweep : c[1].sweep;
-	struct interp_build_contour k[2];
+	struct interp_build_contour two[2];
 
 	for (int i = 0; i < 2; i++) {
-		const struct guide m = g->guide[i];
+		const struct guide m = k->g->guide[i];
 		const double complex r = m.from_bottom * radius_of(&c[0]) +
 					 m.from_top * radius_of(&c[1]);
 		const struct vec at = guide_at(m, centre[0], centre[1]);
 
 		/* Of a pulse or less the builder makes no circle. */
-		k[i] = (struct interp_build_contour) {
-			.arc = cabs(r) > 2 * g->pulse_mm,
+		two[i] = (struct interp_build_contour) {
+			.arc = cabs(r) > 2 * k->g->pulse_mm,
 			.clockwise = sweep < 0,
 			.centre_mm = { at.x, at.y },
 		};
 	}
-	return put(g, to, k, end_mm, w, diag);
+	return put(k, two);
 }
 
 /* The guides stand in the planes: the contours are theirs. */
@@ -191,65 +217,61 @@ static bool is_direct(const struct guides *g)
 	       g->guide[1].from_bottom == 0 && g->guide[1].from_top == 1;
 }
 
-static int cut_direct(struct guides *g, const struct curve c[2],
-		      const double end_mm[INTERP_NAXES],
-		      const struct interp_build_word *w,
-		      struct interp_diag *diag)
+static int cut_direct(const struct cut *k)
 {
-	const struct vec to[2] = { c[0].to, c[1].to };
-	struct interp_build_contour k[2];
+	struct interp_build_contour two[2];
 
 	for (int i = 0; i < 2; i++)
-		k[i] = (struct interp_build_contour) {
-			.arc = c[i].arc, .clockwise = c[i].sweep < 0,
-			.centre_mm = { c[i].centre.x, c[i].centre.y },
+		two[i] = (struct interp_build_contour) {
+			.arc = k->c[i].arc, .clockwise = k->c[i].sweep < 0,
+			.centre_mm = { k->c[i].centre.x, k->c[i].centre.y },
 		};
-	return put(g, to, k, end_mm, w, diag);
+	return put(k, two);
 }
 
 /* Chords for a sagitta of a quarter pulse at the worse guide: an arc of n
  * chords has r*(sweep/n)^2/8. */
-static double chords(const struct guides *g, const struct curve c[2])
+static double chords(const struct cut *k)
 {
 	double sagitta = 0;
 
 	for (int i = 0; i < 2; i++) {
+		const struct guide m = k->g->guide[i];
 		double s = 0;
 
 		for (int j = 0; j < 2; j++) {
-			const double k = j ? g->guide[i].from_top :
-					     g->guide[i].from_bottom;
+			const struct curve *c = &k->c[j];
 
-			if (c[j].arc)
-				s += fabs(k) * c[j].r * c[j].sweep * c[j].sweep;
+			if (c->arc)
+				s += fabs(j ? m.from_top : m.from_bottom) *
+				     c->r * c->sweep * c->sweep;
 		}
 		sagitta = fmax(sagitta, s / 8);
 	}
-	return ceil(sqrt(sagitta / (g->pulse_mm / 4)));
+	return fmax(ceil(sqrt(sagitta / (k->g->pulse_mm / 4))), 1);
 }
 
-static int cut_chords(struct guides *g, const struct curve c[2],
-		      const double end_mm[INTERP_NAXES],
-		      const struct interp_build_word *w,
-		      struct interp_diag *diag)
+static int cut_chords(const struct cut *k)
 {
-	const double n = fmax(chords(g, c), 1);
+	const double n = chords(k);
+	struct curve part[2];
+	struct cut chord = *k;
 
 	if (!(n <= CHORDS_MAX)) {
-		snprintf(diag->found, sizeof(diag->found),
+		snprintf(k->diag->found, sizeof(k->diag->found),
 			 "two contours that need %.0f chords", n);
-		snprintf(diag->wanted, sizeof(diag->wanted), "smaller arcs");
+		snprintf(k->diag->wanted, sizeof(k->diag->wanted),
+			 "smaller arcs");
 		return -EINVAL;
 	}
+	chord.c = part;
 	for (double i = 1; i <= n; i++) {
-		const struct curve part[2] = {
-			curve_line(curve_at(&c[0], (i - 1) / n),
-				   curve_at(&c[0], i / n)),
-			curve_line(curve_at(&c[1], (i - 1) / n),
-				   curve_at(&c[1], i / n)),
-		};
-		const int r = cut_lines(g, part, end_mm, w, diag);
+		int r;
 
+		for (int j = 0; j < 2; j++)
+			part[j] = curve_line(curve_at(&k->c[j], (i - 1) / n),
+					     curve_at(&k->c[j], i / n));
+		r = cut_lines(&chord);
 		if (r < 0)
 			return r;
 	}
@@ -257,11 +279,9 @@ static int cut_chords(struct guides *g, const struct curve c[2],
 }
 
 /* Guides off: the bottom contour is what X Y do. */
-static int cut_bottom(struct guides *g, const struct curve *c,
-		      const double end_mm[INTERP_NAXES],
-		      const struct interp_build_word *w,
-		      struct interp_diag *diag)
+static int cut_bottom(const struct cut *k)
 {
+	const struct curve *c = &k->c[0];
 	const struct interp_build_arc arc = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = c->centre.x, .centre_b_mm = c->centre.y,
@@ -269,30 +289,30 @@ static int cut_bottom(struct guides *g, const struct curve *c,
 	};
 	double end[INTERP_NAXES];
 
-	g->cuts++;
-	memcpy(end, end_mm, sizeof(end));
+	k->g->cuts++;
+	memcpy(end, k->end_mm, sizeof(end));
 	end[INTERP_X] = c->to.x;
 	end[INTERP_Y] = c->to.y;
 	return c->arc && c->r > 0 ?
-	       interp_build_arc(g->build, end, &arc, w, diag) :
-	       interp_build_line(g->build, end, w, diag);
+	       interp_build_arc(k->g->build, end, &arc, k->w, k->diag) :
+	       interp_build_line(k->g->build, end, k->w, k->diag);
 }
 
 int guides_cut(struct guides *g, const struct curve c[2],
 	       const double end_mm[INTERP_NAXES],
 	       const struct interp_build_word *w, struct interp_diag *diag)
 {
+	const struct cut k = { g, c, end_mm, w, diag };
 	int r;
 
 	if (!guides_on(g))
-		return cut_bottom(g, c, end_mm, w, diag);
+		return cut_bottom(&k);
 	r = check_tilt(g, c, diag);
 	if (r < 0)
 		return r;
 	if (!(c[0].arc && c[0].r > 0) && !(c[1].arc && c[1].r > 0))
-		return cut_lines(g, c, end_mm, w, diag);
-	if (are_similar(g, c))
-		return cut_arcs(g, c, end_mm, w, diag);
-	return is_direct(g) ? cut_direct(g, c, end_mm, w, diag) :
-			      cut_chords(g, c, end_mm, w, diag);
+		return cut_lines(&k);
+	if (are_similar(&k))
+		return cut_arcs(&k);
+	return is_direct(g) ? cut_direct(&k) : cut_chords(&k);
 }

@@ -273,6 +273,139 @@ static void the_guides_of_a_tapered_square(void **st)
 	assert_path(&guides, text, want, N(want));
 }
 
+/* 14 mm round the axis at the top, 8 mm at the lower guide. */
+static void the_feed_is_that_of_the_faster_contour(void **st)
+{
+	struct nc_read r = ready(&guides);
+
+	(void)st;
+	nc_read(&r, "F60 G0 X15\nG52 A" TENTH_DEG " G1 X10\nG3 X10 I-10\n");
+	assert_near(nc_seg(&r, 2)->length_mm, 16 * acos(-1));
+	assert_true(fabs(nc_seg(&r, 2)->feed_mm_s - 8.0 / 14) < 1e-6);
+	nc_done(&r);
+}
+
+/* A machine that stands with the wire aslant knows where it stands. */
+static void the_start_of_the_guides_is_the_start_of_the_wire(void **st)
+{
+	struct nc_read n = ready(&guides);
+	const struct interp_build_options bo = {
+		.machine = &n.machine,
+		.start_mm = { [INTERP_X] = 8, [INTERP_Y] = 2,
+			      [INTERP_U] = 18, [INTERP_V] = -8 },
+	};
+	const char *text = "F5 G1 X10 Y0 U14 V-4\n";
+
+	(void)st;
+	n.o.machine = &n.machine;
+	n.build = interp_build_create(&bo);
+	assert_int_equal(interp_nc_compile(text, strlen(text), &n.o, n.build,
+					   &n.result, &n.diag), 0);
+	assert_near(interp_build_here(n.build)[INTERP_X], 8);
+	assert_near(interp_build_here(n.build)[INTERP_V], -8);
+	nc_done(&n);
+}
+
+/* -- Random contours ------------------------------------------------------------ */
+
+struct polygon {
+	double x[12], y[12];
+	int n;
+};
+
+static double gap_to(const struct polygon *p, double x, double y)
+{
+	double best = DBL_MAX;
+
+	for (int i = 0; i < p->n; i++) {
+		const int j = (i + 1) % p->n;
+		const double dx = p->x[j] - p->x[i], dy = p->y[j] - p->y[i];
+		double t = ((x - p->x[i]) * dx + (y - p->y[i]) * dy) /
+			   (dx * dx + dy * dy);
+
+		t = t < 0 ? 0 : t > 1 ? 1 : t;
+		best = fmin(best, hypot(x - p->x[i] - t * dx,
+					y - p->y[i] - t * dy));
+	}
+	return best;
+}
+
+/* A star round the origin, counter-clockwise, begun in mid-side. */
+static struct polygon random_polygon(uint64_t *seed, char *text, size_t room,
+				     bool left)
+{
+	struct polygon p = { .n = 3 + (int)(nc_random(seed) % 10) };
+	int at;
+
+	for (int i = 0; i < p.n; i++) {
+		const double a = 2 * acos(-1) * i / p.n;
+		const double r = 2 + nc_random(seed) % 4000 * 0.001;
+
+		p.x[i] = round(r * cos(a) * 1000) / 1000;
+		p.y[i] = round(r * sin(a) * 1000) / 1000;
+	}
+	const double mx = (p.x[0] + p.x[1]) / 2, my = (p.y[0] + p.y[1]) / 2;
+	const double k = left ? 0.2 : 3;
+
+	at = snprintf(text, room, "F5 G0 X%.4f Y%.4f\n%s D2\nG1 X%.4f Y%.4f\n",
+		      k * mx, k * my, left ? "G41" : "G42", mx, my);
+	for (int i = 1; i <= p.n; i++)
+		at += snprintf(text + at, room - (size_t)at,
+			       "X%.3f Y%.3f\n", p.x[i % p.n], p.y[i % p.n]);
+	snprintf(text + at, room - (size_t)at,
+		 "X%.4f Y%.4f\nG40 X%.4f Y%.4f\n", mx, my, k * mx, k * my);
+	return p;
+}
+
+/* Between the leads the wire's axis is 0.2 from the contour and no nearer. */
+static bool keeps_clear(const struct nc_read *r, const struct polygon *p)
+{
+	const uint32_t first = 4, last = 3 + (uint32_t)p->n + 1;
+	struct interp_cursor c;
+	bool clear = true;
+
+	assert_int_equal(interp_cursor_init(&c, &r->p), 0);
+	interp_cursor_aim(&c, 1e9);
+	while (interp_cursor_step(&c) == INTERP_MOVED) {
+		const double gap = gap_to(p, c.pos[INTERP_X] * 0.001,
+					  c.pos[INTERP_Y] * 0.001);
+
+		if (c.seg.line < first || c.seg.line > last)
+			continue;
+		clear = clear && gap > 0.2 - 0.001 && gap < 0.2 * 1.4143;
+	}
+	return clear;
+}
+
+static void the_wire_keeps_clear_of_random_contours(void **st)
+{
+	uint64_t seed = 11;
+	int taken = 0;
+
+	(void)st;
+	print_message("    seed %llu\n", (unsigned long long)seed);
+	for (int i = 0; i < 1000; i++) {
+		char text[1024];
+		const struct polygon p = random_polygon(&seed, text,
+							sizeof(text), i % 2);
+		struct nc_read r = ready(&no_guides);
+
+		nc_read_bytes(&r, text, strlen(text));
+		if (r.rc == 0) {
+			taken++;
+			if (!keeps_clear(&r, &p))
+				fail_msg("too near: %s", text);
+		} else {
+			assert_int_equal(r.rc, -EINVAL);
+			assert_non_null(strstr(r.diag.found, "nothing is left"));
+			assert_in_range(r.diag.line, 4, 4 + p.n);
+		}
+		nc_done(&r);
+	}
+	print_message("    %d of 1000 taken\n", taken);
+	assert_in_range(taken, 900, 1000);
+}
+
 static void relative_upper_guides_move_by_the_difference(void **st)
 {
 	static const struct at want[] = {
@@ -507,6 +640,10 @@ int main(void)
 		cmocka_unit_test(actions_stay_at_their_corner),
 		cmocka_unit_test(the_guides_of_a_tapered_square),
 		cmocka_unit_test(relative_upper_guides_move_by_the_difference),
+		cmocka_unit_test(the_feed_is_that_of_the_faster_contour),
+		cmocka_unit_test(
+			the_start_of_the_guides_is_the_start_of_the_wire),
+		cmocka_unit_test(the_wire_keeps_clear_of_random_contours),
 		cmocka_unit_test(the_guides_of_a_cone_go_round_its_axis),
 		cmocka_unit_test(
 			both_contours_have_the_offset_of_the_leaning_wire),
