@@ -306,6 +306,76 @@ static void the_start_of_the_guides_is_the_start_of_the_wire(void **st)
 	nc_done(&n);
 }
 
+/* -- The wire in the work --------------------------------------------------------- */
+
+/* 20 by 20 mm with corners of 3 mm, wire outside, 3 degrees, top smaller. */
+static const char punch[] =
+	"F6 G0 X10 Y-5\nG42 D1 G51 A3\nG1 X10 Y0\n"
+	"X17\nG3 X20 Y3 J3\nG1 Y17\nG3 X17 Y20 I-3\nG1 X3\n"
+	"G3 X0 Y17 J-3\nG1 Y3\nG3 X3 Y0 I3\nG1 X10\n"
+	"G40 G50 X10 Y-5\n";
+
+/* Off the outline of the punch, below 0 inside. */
+static double off_punch(double x, double y)
+{
+	const double qx = fabs(x - 10) - 7, qy = fabs(y - 10) - 7;
+
+	return hypot(fmax(qx, 0), fmax(qy, 0)) + fmin(fmax(qx, qy), 0) - 3;
+}
+
+/* The worst the wire is off either contour, pulses, guides 20 below and 40
+ * above the planes: W(z) by similar triangles back from the guides. */
+static void punch_errors(enum interp_strategy s, double ret[2])
+{
+	const double slope = tan(3 * acos(-1) / 180);
+	const double d = 0.11 * sqrt(1 + slope * slope);
+	const double want[2] = { d, d - 40 * slope };
+	struct nc_read n = ready(&guides);
+	const struct interp_build_options bo = { .machine = &n.machine,
+						 .strategy = s };
+	const struct interp_build_about about = { .lines = 13 };
+	struct interp_cursor c;
+
+	n.o.machine = &n.machine;
+	n.build = interp_build_create(&bo);
+	assert_int_equal(interp_nc_compile(punch, sizeof(punch) - 1, &n.o,
+					   n.build, &n.result, &n.diag), 0);
+	n.block = malloc(interp_build_bytes(n.build));
+	interp_build_write(n.build, &about, n.block);
+	assert_int_equal(interp_program_map(&n.p, n.block,
+					    interp_build_bytes(n.build)), 0);
+	assert_int_equal(interp_cursor_init(&c, &n.p), 0);
+	interp_cursor_aim(&c, 1e9);
+	ret[0] = ret[1] = 0;
+	while (interp_cursor_step(&c) == INTERP_MOVED) {
+		for (int i = 0; i < 2 && c.seg.line > 3 && c.seg.line < 13;
+		     i++) {
+			const double k = i ? 0.6 : 0.2;
+			const double x = c.pos[0] + k * (c.pos[6] - c.pos[0]);
+			const double y = c.pos[1] + k * (c.pos[7] - c.pos[1]);
+			const double off = off_punch(x * 0.001, y * 0.001);
+
+			ret[i] = fmax(ret[i], fabs(off - want[i]) * 1000);
+		}
+	}
+	nc_done(&n);
+}
+
+static void the_wire_is_on_both_contours_all_the_way_round(void **st)
+{
+	(void)st;
+	for (int s = 0; s < 2; s++) {
+		const double most = s == INTERP_SIMULTANEOUS ? 1.0 : 2.0;
+		double off[2];
+
+		punch_errors((enum interp_strategy)s, off);
+		print_message("    %s: bottom %.2f, top %.2f pulses\n",
+			      interp_strategy_name((enum interp_strategy)s),
+			      off[0], off[1]);
+		assert_true(off[0] <= most && off[1] <= most);
+	}
+}
+
 /* -- Random contours ------------------------------------------------------------ */
 
 struct polygon {
@@ -643,6 +713,8 @@ int main(void)
 		cmocka_unit_test(the_feed_is_that_of_the_faster_contour),
 		cmocka_unit_test(
 			the_start_of_the_guides_is_the_start_of_the_wire),
+		cmocka_unit_test(
+			the_wire_is_on_both_contours_all_the_way_round),
 		cmocka_unit_test(the_wire_keeps_clear_of_random_contours),
 		cmocka_unit_test(the_guides_of_a_cone_go_round_its_axis),
 		cmocka_unit_test(
