@@ -10,7 +10,7 @@ set terminal svg size 700,500
 set output 'taper-path.svg'
 set xlabel 'X, mm'
 set ylabel 'Y, mm'
-plot 'taper.csv' using ($3+$9*0.2)/1000:($4+$10*0.2)/1000 every ::1 \
+plot 'taper.csv' using ($3+$9*0.2)/1000:($4+$10*0.2)/1000 every 10::1 \
 	with lines title 'bottom', \
-     '' using ($3+$9*0.6)/1000:($4+$10*0.6)/1000 every ::1 \
+     '' using ($3+$9*0.6)/1000:($4+$10*0.6)/1000 every 10::1 \
 	with lines title 'top'

@@ -11,6 +11,9 @@
 /* Nothing, against the 0.0001 mm of the finest pulse. */
 #define NOTHING_MM	1e-7
 
+/* Two that nearly touch and are written to a micrometre may miss so far. */
+#define MISS_MM		0.0015
+
 double vec_distance(struct vec a, struct vec b)
 {
 	return hypot(b.x - a.x, b.y - a.y);
@@ -138,10 +141,9 @@ static int line_circle(const struct curve *l, const struct curve *c,
 				c->centre.y - l->from.y };
 	const double along = dot(to, way);
 	const double h2 = c->r * c->r - dot(to, to) + along * along;
-	/* A line that just touches may miss by a rounding. */
 	const double h = h2 > 0 ? sqrt(h2) : 0;
 
-	if (h2 < -2 * c->r * NOTHING_MM)
+	if (h2 < -2 * c->r * MISS_MM)
 		return 0;
 	ret[0] = vec_add(l->from, along - h, way);
 	ret[1] = vec_add(l->from, along + h, way);
@@ -161,7 +163,7 @@ static int circle_circle(const struct curve *a, const struct curve *b,
 		return 0;
 	x = (d * d + a->r * a->r - b->r * b->r) / (2 * d);
 	h2 = a->r * a->r - x * x;
-	if (h2 < -2 * a->r * NOTHING_MM)
+	if (h2 < -2 * a->r * MISS_MM)
 		return 0;
 	h = h2 > 0 ? sqrt(h2) : 0;
 	foot = vec_add(a->centre, x, way);

@@ -21,6 +21,10 @@
 #define ANGLE_SLACK	1e-6
 #define TANGENT_MAX	0.1
 
+/* A tangent point written to a pulse is this far off it at the most, as long
+ * as the radius is no smaller than the offset: half of it either way. */
+#define TANGENT_PULSES	1.5
+
 struct vec contour_way(const struct contour_motion *m, int p, bool at_end)
 {
 	return curve_way(&m->c[m->point[p] ? !p : p], at_end);
@@ -105,7 +109,11 @@ bool contour_join(const struct contour_motion *a,
 		return true;
 	}
 	turn = fabs(contour_turn(a, b, p));
-	if (turn < TANGENT_MAX && turn * fabs(a->d[p]) < pulse_mm / 4) {
+	if (turn < TANGENT_MAX && turn * fabs(a->d[p]) < TANGENT_PULSES *
+							 pulse_mm) {
+		j->end = vec_add(j->end, 0.5, (struct vec) {
+				 j->start.x - j->end.x,
+				 j->start.y - j->end.y });
 		j->start = j->end;
 		return true;
 	}

@@ -6,8 +6,6 @@
 
 #include "interp/cursor.h"
 
-#include <float.h>
-
 #define TENTH_DEG	"5.710593137499643"	/* its tangent is 0.1 */
 
 static const struct interp_wire no_guides = { .corner_angle_deg = 180 };
@@ -376,105 +374,7 @@ static void the_wire_is_on_both_contours_all_the_way_round(void **st)
 	}
 }
 
-/* -- Random contours ------------------------------------------------------------ */
-
-struct polygon {
-	double x[12], y[12];
-	int n;
-};
-
-static double gap_to(const struct polygon *p, double x, double y)
-{
-	double best = DBL_MAX;
-
-	for (int i = 0; i < p->n; i++) {
-		const int j = (i + 1) % p->n;
-		const double dx = p->x[j] - p->x[i], dy = p->y[j] - p->y[i];
-		double t = ((x - p->x[i]) * dx + (y - p->y[i]) * dy) /
-			   (dx * dx + dy * dy);
-
-		t = t < 0 ? 0 : t > 1 ? 1 : t;
-		best = fmin(best, hypot(x - p->x[i] - t * dx,
-					y - p->y[i] - t * dy));
-	}
-	return best;
-}
-
-/* A star round the origin, counter-clockwise, begun in mid-side. */
-static struct polygon random_polygon(uint64_t *seed, char *text, size_t room,
-				     bool left)
-{
-	struct polygon p = { .n = 3 + (int)(nc_random(seed) % 10) };
-	int at;
-
-	for (int i = 0; i < p.n; i++) {
-		const double a = 2 * acos(-1) * i / p.n;
-		const double r = 2 + nc_random(seed) % 4000 * 0.001;
-
-		p.x[i] = round(r * cos(a) * 1000) / 1000;
-		p.y[i] = round(r * sin(a) * 1000) / 1000;
-	}
-	const double mx = (p.x[0] + p.x[1]) / 2, my = (p.y[0] + p.y[1]) / 2;
-	const double k = left ? 0.2 : 3;
-
-	at = snprintf(text, room, "F5 G0 X%.4f Y%.4f\n%s D2\nG1 X%.4f Y%.4f\n",
-		      k * mx, k * my, left ? "G41" : "G42", mx, my);
-	for (int i = 1; i <= p.n; i++)
-		at += snprintf(text + at, room - (size_t)at,
-			       "X%.3f Y%.3f\n", p.x[i % p.n], p.y[i % p.n]);
-	snprintf(text + at, room - (size_t)at,
-		 "X%.4f Y%.4f\nG40 X%.4f Y%.4f\n", mx, my, k * mx, k * my);
-	return p;
-}
-
-/* Between the leads the wire's axis is 0.2 from the contour and no nearer. */
-static bool keeps_clear(const struct nc_read *r, const struct polygon *p)
-{
-	const uint32_t first = 4, last = 3 + (uint32_t)p->n + 1;
-	struct interp_cursor c;
-	bool clear = true;
-
-	assert_int_equal(interp_cursor_init(&c, &r->p), 0);
-	interp_cursor_aim(&c, 1e9);
-	while (interp_cursor_step(&c) == INTERP_MOVED) {
-		const double gap = gap_to(p, c.pos[INTERP_X] * 0.001,
-					  c.pos[INTERP_Y] * 0.001);
-
-		if (c.seg.line < first || c.seg.line > last)
-			continue;
-		clear = clear && gap > 0.2 - 0.001 && gap < 0.2 * 1.4143;
-	}
-	return clear;
-}
-
-static void the_wire_keeps_clear_of_random_contours(void **st)
-{
-	uint64_t seed = 11;
-	int taken = 0;
-
-	(void)st;
-	print_message("    seed %llu\n", (unsigned long long)seed);
-	for (int i = 0; i < 1000; i++) {
-		char text[1024];
-		const struct polygon p = random_polygon(&seed, text,
-							sizeof(text), i % 2);
-		struct nc_read r = ready(&no_guides);
-
-		nc_read_bytes(&r, text, strlen(text));
-		if (r.rc == 0) {
-			taken++;
-			if (!keeps_clear(&r, &p))
-				fail_msg("too near: %s", text);
-		} else {
-			assert_int_equal(r.rc, -EINVAL);
-			assert_non_null(strstr(r.diag.found, "nothing is left"));
-			assert_in_range(r.diag.line, 4, 4 + p.n);
-		}
-		nc_done(&r);
-	}
-	print_message("    %d of 1000 taken\n", taken);
-	assert_in_range(taken, 900, 1000);
-}
+/* -- Other guides ------------------------------------------------------------------ */
 
 static void relative_upper_guides_move_by_the_difference(void **st)
 {
@@ -715,7 +615,6 @@ int main(void)
 			the_start_of_the_guides_is_the_start_of_the_wire),
 		cmocka_unit_test(
 			the_wire_is_on_both_contours_all_the_way_round),
-		cmocka_unit_test(the_wire_keeps_clear_of_random_contours),
 		cmocka_unit_test(the_guides_of_a_cone_go_round_its_axis),
 		cmocka_unit_test(
 			both_contours_have_the_offset_of_the_leaning_wire),
