@@ -6,7 +6,7 @@
  *	modal.c		carry a block out, group by group
  *	motion.c	lines, machine zero, dwell, offsets: what axis words do
  *	arc.c		G2 and G3
- *	wire.c		offset and taper: G40 ... G42, G50 ... G52, D and H
+ *	offset.c	offset and taper: G40 ... G42, G50 ... G52, D and H
  *	flow.c		subprograms and the end
  *	nc.c		line after line
  *	refuse.c	say what was found and what would be accepted

@@ -38,8 +38,8 @@ extern const struct interp_walk walk_tree;
 extern const struct interp_walk walk_helix;
 /* Circles, one axis at a time: circle.c. */
 extern const struct interp_walk walk_circle;
-/* Two contours together: pair.c, one axis at a time; all at once:
- * pair_at_once.c. */
+/* Two contours together: sides.c, one axis at a time; all at once:
+ * sides_at_once.c. */
 extern const struct interp_walk walk_pair;
 extern const struct interp_walk walk_pair_at_once;
 /* Actions: no points at all: cursor.c. */
@@ -101,7 +101,7 @@ int64_t circle_last(const struct interp_circle *k);
 bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 		    const int64_t end[2]);
 
-/* One contour of a pair, used by the walk and by the builder: pair.c. */
+/* One contour of a pair, used by the walk and by the builder: sides.c. */
 bool side_enter(struct interp_side *s, const struct interp_arc *arc,
 		const int64_t start[2], const int64_t end[2], bool at_end);
 /** One pulse; ret[0], ret[1] in -1, 0, +1; false: the contour is broken. */

@@ -62,7 +62,7 @@ struct interp_circle {
 	int8_t quad;			/* quadrant 0 ... 3 being walked */
 };
 
-/* One contour of a pair: see pulse/pair.c. */
+/* One contour of a pair: see pulse/sides.c. */
 struct interp_side {
 	struct interp_circle circle;	/* if it is an arc */
 	struct interp_pair line;	/* if not; inputs 0 and 1 */

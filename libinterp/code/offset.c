@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * wire.c - wire offset and taper: G40 G41 G42, G50 G51 G52, D and H
+ * offset.c - wire offset and taper: G40 G41 G42, G50 G51 G52, D and H
  */
 #include "code/reader.h"
 

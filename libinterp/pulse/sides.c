@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * pair.c - two contours together, one axis at a time
+ * sides.c - two contours together, one axis at a time
  *
  * Each contour is a line or a circle by point-by-point comparison, with an end
  * point of its own; which of the two has the next pulse is one stored bit.

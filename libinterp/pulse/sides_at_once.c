@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * pair_at_once.c - two contours together, every axis at once
+ * sides_at_once.c - two contours together, every axis at once
  *
  * Tick k of N stands at the same share k/N of both lengths: arcs by their
  * angle, lines by their dda, each axis at its nearest pulse and so within half
