@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 #define NS	1000000000LL
-#define ONCE_NS	(2 * NS)		/* --once waits this long for a reader */
+#define ONCE_NS	(2 * NS)		/* --once waits so long for a reader */
 
 #define NAME_LETTERS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
 			"abcdefghijklmnopqrstuvwxyz0123456789_-"
