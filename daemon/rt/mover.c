@@ -25,7 +25,7 @@ static double braking_speed(const struct mover_limits *l, double left_mm)
 {
 	const double at = l->a_max_mm_s2 * l->period_s;
 	const double steps = left_mm / (at * l->period_s);
-	const double n = fmax(1, ceil((sqrt(1 + 8 * steps) - 1) / 2));
+	const double n = floor((sqrt(1 + 8 * steps) + 1) / 2);
 
 	return left_mm / (n * l->period_s) + (n - 1) / 2 * at;
 }
