@@ -253,10 +253,10 @@ const struct config_key config_key[] = {
 	  .help = "where messages go; ttl=0 stays on this host" },
 
 	{ SECTION_DDS, "domain", KEY_WHOLE, "", "0",
-	  0, 232, AT(dds_domain),
+	  0, 230, AT(dds_domain),
 	  .help = "DDS domain of the fleet" },
 	{ SECTION_DDS, "hz", KEY_NUMBER, "Hz", "10",
-	  0.1, 100, AT(dds_hz),
+	  2, 100, AT(dds_hz),
 	  .help = "status samples a second" },
 
 	{ SECTION_JOBS, "store", KEY_STRING, "", "/var/lib/edmd",

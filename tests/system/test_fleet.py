@@ -63,6 +63,7 @@ class MachineState(IdlStruct, typename="edm.MachineState"):
     shorts: uint32
     overruns: uint32
     wake_late_max_us: float64
+    outcome: bounded_str[15]
 
 
 class Peer:
