@@ -99,7 +99,7 @@ static double now_s(void)
 }
 
 static int compile(struct sim_job *job, const struct sim_options *o,
-		   const struct machine_config *c, const struct text *t)
+		   const struct machine_config *c, struct text *t)
 {
 	struct interp_build_options bo = {
 		.machine = &c->axes,
@@ -123,6 +123,9 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	r = interp_nc_compile(t->at, t->n, &no, b, &done, &diag);
 	job->lines = done.lines;
 	job->compile_lines_s = done.lines / (now_s() - from_s);
+	/* A million lines are as large as half their program. */
+	free(t->at);
+	t->at = NULL;
 	if (r == -EINVAL)
 		say_refusal(o->job, &diag);
 	r = r == 0 ? lay_out(job, b, o->job) :

@@ -30,6 +30,18 @@ static double braking_speed(const struct mover_limits *l, double left_mm)
 	return left_mm / (n * l->period_s) + (n - 1) / 2 * at;
 }
 
+/*
+ * Far off the answer is v_max, and no root need be drawn: braking from v goes
+ * less than v*v/(2*a) + v*T + a*T*T.
+ */
+static bool far_off(const struct mover_limits *l, double left_mm)
+{
+	const double at = l->a_max_mm_s2 * l->period_s;
+	const double v = l->v_max_mm_s;
+
+	return 2 * l->a_max_mm_s2 * left_mm > v * v + 2 * (v + at) * at;
+}
+
 static double limit(double v, double max)
 {
 	return v > max ? max : v < -max ? -max : v;
@@ -46,7 +58,9 @@ double mover_step(struct mover *m, const struct mover_limits *l,
 		m->v_mm_s = 0;
 		return left_mm;
 	}
-	want = copysign(fmin(l->v_max_mm_s, braking_speed(l, far)), left_mm);
+	want = far_off(l, far) ? l->v_max_mm_s :
+				 fmin(l->v_max_mm_s, braking_speed(l, far));
+	want = copysign(want, left_mm);
 	m->v_mm_s += limit(want - m->v_mm_s, at);
 	return m->v_mm_s * l->period_s;
 }

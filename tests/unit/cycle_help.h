@@ -58,7 +58,7 @@ static inline struct cycle_config usual_config(void)
 	return k;
 }
 
-/* -- Programs ---------------------------------------------------------------- */
+/* -- Programs ------------------------------------------------------------ */
 
 static inline void go_z(struct interp_build *b, double z_mm, bool rapid)
 {
@@ -92,7 +92,7 @@ static inline void action(struct interp_build *b, enum interp_kind kind,
 	assert_int_equal(interp_build_action(b, kind, arg, &w, &d), 0);
 }
 
-/* -- The cycle --------------------------------------------------------------- */
+/* -- The cycle ----------------------------------------------------------- */
 
 static inline void rig_load(struct rig *r, struct interp_build *b,
 			    const struct cycle_config *k)

@@ -24,7 +24,7 @@ static void cut_at(struct rig *r, const struct cycle_config *k, double mm)
 	assert_int_equal(r->c.state, STATE_ERODE);
 }
 
-/* -- The gap ------------------------------------------------------------------ */
+/* -- The gap ------------------------------------------------------------- */
 
 static void in_three_zones_it_feeds_in_proportion_stands_or_goes_back(void **st)
 {
@@ -97,7 +97,7 @@ static void a_voltage_that_is_no_number_is_a_short(void **st)
 	rig_free(&r);
 }
 
-/* -- Retract ------------------------------------------------------------------ */
+/* -- Retract ------------------------------------------------------------- */
 
 static void a_short_that_clears_is_cut_again(void **st)
 {
@@ -160,7 +160,7 @@ static void it_goes_back_no_farther_than_the_start_of_the_path(void **st)
 	rig_free(&r);
 }
 
-/* -- Jumps --------------------------------------------------------------------- */
+/* -- Jumps --------------------------------------------------------------- */
 
 struct flight {
 	double from, top;		/* places */
@@ -269,7 +269,7 @@ static void a_short_on_the_way_down_ends_the_jump_in_a_retract(void **st)
 	rig_free(&r);
 }
 
-/* -- Actions ------------------------------------------------------------------- */
+/* -- Actions ------------------------------------------------------------- */
 
 static uint64_t cycles_with_dwell(uint32_t ms, int64_t period_ns)
 {

@@ -16,7 +16,7 @@
 
 static uint64_t seed;
 
-/* -- The lattice points of the forward walk ------------------------------------- */
+/* -- The lattice points of the forward walk ------------------------------ */
 
 static int by_place(const void *a, const void *b)
 {
@@ -64,7 +64,7 @@ static void check_target(const struct rig *r, const struct points *set)
 				by_place));
 }
 
-/* -- A random world ----------------------------------------------------------------- */
+/* -- A random world ------------------------------------------------------ */
 
 static void random_action(struct interp_build *b, uint64_t *s)
 {
@@ -161,7 +161,7 @@ static void random_world(struct rig *r, uint64_t *s)
 		tell(r, CYCLE_START);
 }
 
-/* -- What must hold ------------------------------------------------------------------ */
+/* -- What must hold ------------------------------------------------------ */
 
 static uint64_t seen[CYCLE_NSTATES];	/* cycles in each state */
 static uint64_t faults[CYCLE_NFAULTS];

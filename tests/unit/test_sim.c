@@ -81,7 +81,7 @@ static double cut(struct bench *b, double gap_mm, int n)
 	return result(b).removed_mm3 - before;
 }
 
-/* -- Seeds ------------------------------------------------------------------------ */
+/* -- Seeds --------------------------------------------------------------- */
 
 /* A servo of sorts, so that everything of the process comes into play. */
 static void run_servo(struct bench *b, double *v, int n)
@@ -123,7 +123,7 @@ static void the_same_seed_repeats_itself_and_another_does_not(void **st)
 	assert_true(differ > SEQUENCE / 2);
 }
 
-/* -- Voltage ---------------------------------------------------------------------- */
+/* -- Voltage ------------------------------------------------------------- */
 
 static void far_away_it_stands_at_the_open_voltage(void **st)
 {
@@ -196,7 +196,7 @@ static void the_noise_has_the_sigma_it_was_given(void **st)
 	close_sim(&b);
 }
 
-/* -- Removal, debris, wear --------------------------------------------------------- */
+/* -- Removal, debris, wear ----------------------------------------------- */
 
 static double removal_at(double gap_mm)
 {

@@ -90,6 +90,9 @@ struct interp_cursor {
 	int64_t others, circle_at;	/* a helix's other pulses; measure of
 					 * its circle alone */
 	double pulses_mm[INTERP_NAXES];	/* pulses per mm */
+	double arc_turn, arc_grow_mm;	/* angle, radius gained per tick */
+	double arc_cos, arc_sin;	/* of the middle of arc_block */
+	uint32_t arc_block;
 };
 
 /**
