@@ -90,8 +90,10 @@ static bool shared_ok(const struct interp_pair *p,
 	const int64_t last = pair_stop(p->a, lead->b, n,
 				       pair_stop_shared(n, count, count - 1));
 
-	return p->b * gap + p->a <= 2 * half && p->b * first <= half &&
-	       p->b * (p->a - last) <= half;
+	/* A single burst has no gap, and the widest tube no bounds. */
+	if (count > 1 && p->b * gap + p->a > 2 * half && half < p->a * p->b)
+		return false;
+	return p->b * first <= half && p->b * (p->a - last) <= half;
 }
 
 /* How few bursts at the lead's stops do for @p; 0 if no number does. */
