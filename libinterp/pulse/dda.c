@@ -62,7 +62,7 @@ static int64_t rotor_add(int64_t *rest, int64_t v, uint32_t shift)
 	const int64_t sum = *rest + v;
 	const int64_t pulse = sum >> shift;
 
-	*rest = sum - (pulse << shift);
+	*rest = sum - pulse * (INT64_C(1) << shift);
 	return pulse;
 }
 
@@ -135,13 +135,14 @@ bool dda_measure(struct interp_arc *arc, const int64_t start[2],
 static bool arc_ok(const struct interp_cursor *c)
 {
 	const struct interp_arc *arc = &c->arc;
-	const int64_t most = INT64_C(1) << DDA_SHIFT_MAX;
 	const int64_t forced = (int64_t)arc->circle_ticks - arc->tail;
+	int64_t most;
 
 	if (arc->shift < 2 || arc->shift > DDA_SHIFT_MAX ||
 	    arc->circle_ticks != c->seg.ticks ||
 	    arc->circle_ticks >= INTERP_PULSES_MAX)
 		return false;
+	most = INT64_C(1) << arc->shift;
 	return arc->rest_a >= 0 && arc->rest_a < most &&
 	       arc->rest_b >= 0 && arc->rest_b < most && forced >= 0 &&
 	       llabs(arc->tail_a) <= forced && llabs(arc->tail_b) <= forced;

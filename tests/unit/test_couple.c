@@ -131,7 +131,7 @@ static double pair_strays(const struct move *m, const struct interp_pair *p)
 static void check_node(const struct move *m, const struct interp_cursor *c,
 		       int8_t code, double bound)
 {
-	const struct interp_pair *p = &c->pair[~code];
+	const struct interp_pair *p;
 	double stray, total;
 
 	if (code >= 0) {
@@ -141,6 +141,7 @@ static void check_node(const struct move *m, const struct interp_cursor *c,
 		assert_true(fabs(abs(c->pos[code]) - share) <= bound + 1e-9);
 		return;
 	}
+	p = &c->pair[~code];
 	stray = pair_strays(m, p);
 	total = (double)(p->a + p->b);
 	check_node(m, c, p->in_a, stray + bound * (double)p->a / total);
