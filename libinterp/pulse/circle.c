@@ -135,7 +135,8 @@ static void tail_forward(struct interp_circle *k, int8_t ret[2])
 
 /* -- Along stored runs ------------------------------------------------------ */
 
-static void run_pulse(const struct interp_circle *k, uint32_t run, int8_t ret[2])
+static void run_pulse(const struct interp_circle *k, uint32_t run,
+		      int8_t ret[2])
 {
 	const int axis = (int)((run + k->run_first) & 1);
 

@@ -132,6 +132,11 @@ static bool tube_set(struct interp_pair *pair, uint32_t npairs,
 
 		if (i == lead)
 			continue;
+		if (p->b == pair[lead].b) {
+			/* The same bursts, at the same places. */
+			pair_set_bursts(p, pair[lead].bursts, NULL, at_end);
+			continue;
+		}
 		count = shared_bursts(p, &pair[lead],
 				      pair_half_width(p->a, p->b, t));
 		if (count == 0)
@@ -141,10 +146,38 @@ static bool tube_set(struct interp_pair *pair, uint32_t npairs,
 	return true;
 }
 
+/* Changes of axis, at most: to each burst, and from each stop. */
+static int64_t star_changes(const struct interp_pair *pair, uint32_t npairs,
+			    struct pair_tube t)
+{
+	int64_t n = 0;
+
+	for (uint32_t i = 0; i < npairs; i++) {
+		const struct interp_pair *p = &pair[i];
+		const int64_t burst = pair_burst(p->a, p->b,
+				pair_half_width(p->a, p->b, t));
+
+		n += 2 * ((p->b + burst - 1) / burst);
+	}
+	return n;
+}
+
+static int64_t tube_changes(const struct interp_pair *pair, uint32_t npairs)
+{
+	int64_t n = 0, stops = 0;
+
+	for (uint32_t i = 0; i < npairs; i++) {
+		n += pair[i].bursts;
+		stops = pair[i].bursts > stops ? pair[i].bursts : stops;
+	}
+	return n + stops;
+}
+
 /* The longest bursts of the lead that leave the others their tolerance. */
 static bool tube_plan(struct interp_pair *pair, uint32_t npairs,
 		      struct pair_tube t, bool at_end)
 {
+	const int64_t star = star_changes(pair, npairs, t);
 	int64_t b = 0, burst;
 
 	for (uint32_t i = 0; i < npairs; i++)
@@ -153,7 +186,7 @@ static bool tube_plan(struct interp_pair *pair, uint32_t npairs,
 	/* Each pulse less gives an axis a pulse of room: two are enough. */
 	for (int tries = 0; tries < 4 && burst >= 1; tries++, burst--) {
 		if (tube_set(pair, npairs, t, burst, at_end))
-			return true;
+			return tube_changes(pair, npairs) < star;
 	}
 	return false;
 }
@@ -164,11 +197,11 @@ bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
 	struct couple_rule axis = *r;
 
 	axis.tube = axis_tube(r->tube, npairs);
-	if (r->coupling == INTERP_TUBE && npairs > 1 &&
-	    tube_plan(pair, npairs, axis.tube, at_end))
+	if (r->coupling == INTERP_TUBE && r->strategy == INTERP_MIN_SWITCH &&
+	    npairs > 1 && tube_plan(pair, npairs, axis.tube, at_end))
 		return true;
 	couple_set(pair, npairs, &axis, at_end);
-	return r->coupling != INTERP_TUBE || npairs < 2;
+	return false;
 }
 
 /* -- What mu a line admits -------------------------------------------------- */
@@ -193,8 +226,7 @@ static bool couple_ok(const struct couple_rule *r,
 		if (!pair_tube_ok(pair[i].a, pair[i].b, t))
 			return false;
 	}
-	return n < 2 || r->coupling != INTERP_TUBE ||
-	       couple_set_flat(pair, n - 1, r, false);
+	return true;
 }
 
 uint32_t couple_smallest_milli(const struct couple_rule *r,

@@ -16,11 +16,12 @@
  * Tube: a star by bursts whose axes share their stops.  The longest secondary
  * has bursts of its own, any other waits for one of those, and not for every
  * one.  Fewest changes of axis from four axes on; mu as in a star.  With G the
- * widest gap between two stops an axis uses, it is kept to mu if
+ * widest gap between two stops an axis uses, it keeps to mu if
  *
  *	b*G + a <= 2*M
  *
- * and mu = 3/2 is enough for any line.
+ * Where shared stops are not possible, or would not save a change, it is a
+ * star.
  *
  * Threads: RT-safe but for couple_smallest_milli().
  */
@@ -57,7 +58,7 @@ void couple_set(struct interp_pair *pair, uint32_t npairs,
 
 /**
  * couple_set_flat() - the same for a star or a tube.
- * Return: false if mu is too narrow for shared stops; it is a star then.
+ * Return: true if they share stops.
  */
 bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
 		     const struct couple_rule *r, bool at_end);
