@@ -63,7 +63,7 @@ INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
 INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
 INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
 INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -I$(B)/messages
-INC_dds		= -Iclients/dds -Idaemon/shm -I$(B)/messages
+INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
 INC_unit	= -Itests/unit -Ilibinterp $(INC_edmd) $(INC_jobs)
 INC_bench	= $(INC_edmd)
 INC_fuzz	= -Ilibinterp/include
@@ -141,8 +141,8 @@ $(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
 $(B)/edmctl: $(call obj,$(CTL) $(PLOT)) $(SHM_O) $(LCM_O)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(SHM_O) $(DDS_O)
-	$(call link,-lddsc -lm)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(SHM_O) $(CONFIG_O) $(B)/libinterp/path/program.o $(DDS_O)
+	$(call link,-lddsc -linih -lm)
 
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c)) $(DDS_O)
 	$(call link,-lddsc -ljansson -lm)

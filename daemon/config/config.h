@@ -60,9 +60,10 @@ struct machine_config {
 	int backend;			/* enum config_backend */
 	int strategy;			/* enum interp_strategy */
 	double tolerance_pulses;	/* mu */
-	int perpendicular;		/* 1: mu is square to the path */
+	uint32_t perpendicular;		/* 1: mu is square to the path */
 	int coupling;			/* enum interp_coupling */
 	double feed_default_mm_min;	/* before the first F; 0: F demanded */
+	uint32_t optional_stop;		/* 1: M1 holds */
 	double cpu;			/* core the cycle is pinned to; -1: none */
 	double priority;		/* SCHED_FIFO */
 	double overrun_limit;		/* missed periods in a row; 0: no fault */

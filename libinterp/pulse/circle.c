@@ -369,21 +369,25 @@ bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 
 /* -- As a walk --------------------------------------------------------- */
 
-/* Node @at_end of the plane's two axes, from the centre, pulses. */
+/*
+ * Node @at_end of the plane's two axes, from the centre, pulses.  The centre
+ * is rounded as the builder did, tie for tie: mm / pulse_mm.
+ */
 void walk_circle_node(const struct interp_cursor *c, bool at_end,
 		      int64_t ret[2])
 {
 	const struct interp_arc *arc = &c->arc;
+	const double *pulse_mm = c->p.head->pulse_mm;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const int64_t at = interp_round_sub(walk_node(c, j, at_end));
 
 		if (c->p.head->column[j] == arc->axis_a)
-			ret[0] = at - llround(arc->a_mm *
-					      c->pulses_mm[arc->axis_a]);
+			ret[0] = at - llround(arc->a_mm /
+					      pulse_mm[arc->axis_a]);
 		if (c->p.head->column[j] == arc->axis_b)
-			ret[1] = at - llround(arc->b_mm *
-					      c->pulses_mm[arc->axis_b]);
+			ret[1] = at - llround(arc->b_mm /
+					      pulse_mm[arc->axis_b]);
 	}
 }
 
