@@ -104,6 +104,10 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	struct interp_build_options bo = {
 		.machine = &c->axes,
 		.strategy = (enum interp_strategy)c->strategy,
+		.tolerance_milli =
+			(uint32_t)(c->tolerance_pulses * 1000 + 0.5),
+		.perpendicular = c->perpendicular,
+		.coupling = (enum interp_coupling)c->coupling,
 	};
 	struct interp_nc_options no = {
 		.machine = &c->axes,
@@ -171,6 +175,13 @@ void job_describe(const struct sim_job *job, FILE *f)
 	fprintf(f, "lines      %u\nsegments   %u\nstrategy   %s\n", h->lines,
 		motions,
 		interp_strategy_name((enum interp_strategy)h->strategy));
+	if (h->strategy >= INTERP_MAIN_DIRECTION)
+		fprintf(f, "tolerance  %g pulses%s\n",
+			h->tolerance_milli / 1000.0,
+			h->perpendicular ? ", square to the path" : "");
+	if (h->strategy > INTERP_POINT_BY_POINT && h->strategy != INTERP_DDA)
+		fprintf(f, "coupling   %s\n", interp_coupling_name(
+			(enum interp_coupling)h->coupling));
 	fprintf(f, "path       %.3f mm: %.3f mm cut, %.3f mm positioned in "
 		"%.1f s\n", h->length_mm, cut_mm, free_mm, free_s);
 }

@@ -26,6 +26,13 @@ static const char *strategy_word(int i)
 	return interp_strategy_name((enum interp_strategy)i);
 }
 
+static const char *coupling_word(int i)
+{
+	if (i < 0 || i >= INTERP_NCOUPLINGS)
+		return NULL;
+	return interp_coupling_name((enum interp_coupling)i);
+}
+
 static const char *const axes[INTERP_NAXES] = {
 	"X", "Y", "Z", "A", "B", "C", "U", "V"
 };
@@ -78,6 +85,15 @@ const struct config_key config_key[] = {
 	{ SECTION_MACHINE, "strategy", KEY_ENUM, "", "simultaneous",
 	  0, 0, AT(strategy), .word = strategy_word,
 	  .help = "how a path becomes pulses" },
+	{ SECTION_MACHINE, "tolerance_pulses", KEY_NUMBER, "pulses", "2",
+	  0, INTERP_TOLERANCE_MAX / 1000, AT(tolerance_pulses),
+	  .help = "mu: how far main-direction and min-switch may stray" },
+	{ SECTION_MACHINE, "perpendicular", KEY_BIT, "", "no",
+	  0, 0, AT(perpendicular),
+	  .help = "mu is square to the path, not along the shorter axis" },
+	{ SECTION_MACHINE, "coupling", KEY_ENUM, "", "star",
+	  0, 0, AT(coupling), .word = coupling_word,
+	  .help = "how three and more axes pulse one at a time" },
 	{ SECTION_MACHINE, "feed_default_mm_min", KEY_NUMBER, "mm/min", "0",
 	  0, 60000, AT(feed_default_mm_min),
 	  .help = "feed before the first F; 0: a program must give F" },
