@@ -4,6 +4,7 @@
 #   make demo       set up, build, run the main job on the simulated machine
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make bench      speed, as medians side by side
+#   make experiments  count the pulse rules, into docs/experiments-pulse.md
 #   make fuzz       the NC reader under libFuzzer, a bounded time
 #   make lint       what the cycle may call, headers alone, who may include whom
 #   make install    DESTDIR and PREFIX are honoured
@@ -49,6 +50,7 @@ CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
+EXPERIMENTS := lines axes machining
 
 # What a part may include.  A header not on its list does not resolve.
 INC_libinterp	= -Ilibinterp/include -Ilibinterp
@@ -61,10 +63,11 @@ INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
 INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
 INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
 INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -I$(B)/messages
-INC_dds		= -Iclients/dds -Idaemon/shm -I$(B)/messages
+INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
 INC_unit	= -Itests/unit -Ilibinterp $(INC_edmd) $(INC_jobs)
 INC_bench	= $(INC_edmd)
 INC_fuzz	= -Ilibinterp/include
+INC_experiments	= -Itests/experiments $(INC_libinterp)
 part = $(word $(if $(filter libinterp,$(firstword $(subst /, ,$1))),1,2),$(subst /, ,$1))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
@@ -138,8 +141,8 @@ $(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
 $(B)/edmctl: $(call obj,$(CTL) $(PLOT)) $(SHM_O) $(LCM_O)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(SHM_O) $(DDS_O)
-	$(call link,-lddsc -lm)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(SHM_O) $(CONFIG_O) $(B)/libinterp/path/program.o $(DDS_O)
+	$(call link,-lddsc -linih -lm)
 
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c)) $(DDS_O)
 	$(call link,-lddsc -ljansson -lm)
@@ -149,6 +152,9 @@ $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O)
 
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
 	$(call link,-linih -lpthread -lm)
+
+$(B)/experiments/%: $(B)/tests/experiments/%.o $(INTERP_O)
+	$(call link,-lm)
 
 # -- The commands -------------------------------------------------------------
 
@@ -196,6 +202,13 @@ bench: all
 	@tests/setup check
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
+
+# Counted, not timed: the same on every machine.
+experiments: $(EXPERIMENTS:%=$(B)/experiments/%)
+	$(call say,WALK,docs/experiments-pulse.md)
+	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-pulse.md
+	$(Q)cp $(B)/experiments-pulse.md docs/experiments-pulse.md
+	$(Q)cat docs/experiments-pulse.md
 
 FUZZ_S	?= 60
 fuzz: $(B)/fuzz_nc
@@ -265,6 +278,6 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check units run-units run-crossings clang bench fuzz lint \
-	install clean
+.PHONY: all demo check units run-units run-crossings clang bench experiments \
+	fuzz lint install clean
 .SECONDARY:

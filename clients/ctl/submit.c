@@ -283,7 +283,8 @@ static int upload_init(struct upload *u)
 	return 0;
 }
 
-static int send_text(struct ctl *c, const struct text *t, char id[TALK_WORD_MAX])
+static int send_text(struct ctl *c, const struct text *t,
+		     char id[TALK_WORD_MAX])
 {
 	struct upload u = { .ctl = c, .text = t };
 	int err = upload_init(&u), rc;

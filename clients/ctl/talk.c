@@ -24,6 +24,9 @@
 
 struct talk {
 	lcm_t *lcm;
+	edm_ack_t_subscription_t *acks;
+	edm_status_t_subscription_t *statuses;
+	edm_event_t_subscription_t *events;
 	char machine[32];
 	char client[TALK_WORD_MAX];
 	int64_t seq;
@@ -158,20 +161,27 @@ static void pattern(const struct talk *t, const char *name,
 static int subscribe(struct talk *t)
 {
 	char channel[CHANNEL_MAX];
-	edm_ack_t_subscription_t *acks;
 
 	pattern(t, "ACK", channel);
-	acks = edm_ack_t_subscribe(t->lcm, channel, on_ack, t);
-	if (!acks)
+	t->acks = edm_ack_t_subscribe(t->lcm, channel, on_ack, t);
+	if (!t->acks)
 		return -ENETUNREACH;
-	edm_ack_t_subscription_set_queue_capacity(acks, QUEUE_MESSAGES);
+	edm_ack_t_subscription_set_queue_capacity(t->acks, QUEUE_MESSAGES);
 	pattern(t, "STATUS", channel);
-	if (!edm_status_t_subscribe(t->lcm, channel, on_status, t))
-		return -ENETUNREACH;
+	t->statuses = edm_status_t_subscribe(t->lcm, channel, on_status, t);
 	pattern(t, "EVENT", channel);
-	if (!edm_event_t_subscribe(t->lcm, channel, on_event, t))
-		return -ENETUNREACH;
-	return 0;
+	t->events = edm_event_t_subscribe(t->lcm, channel, on_event, t);
+	return t->statuses && t->events ? 0 : -ENETUNREACH;
+}
+
+static void unsubscribe(struct talk *t)
+{
+	if (t->acks)
+		edm_ack_t_unsubscribe(t->lcm, t->acks);
+	if (t->statuses)
+		edm_status_t_unsubscribe(t->lcm, t->statuses);
+	if (t->events)
+		edm_event_t_unsubscribe(t->lcm, t->events);
 }
 
 int talk_open(struct talk **ret, const char *url, const char *machine)
@@ -196,6 +206,7 @@ void talk_close(struct talk *t)
 {
 	if (!t)
 		return;
+	unsubscribe(t);
 	if (t->lcm)
 		lcm_destroy(t->lcm);
 	free(t);

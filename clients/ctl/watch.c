@@ -10,7 +10,7 @@
 #include <sysexits.h>
 
 #define ASK_S		1.0
-#define GIVE_UP_S	60.0		/* a restarted service is back by then */
+#define GIVE_UP_S	60.0		/* a restarted service is back */
 
 static void print_json(const struct talk_status *s)
 {

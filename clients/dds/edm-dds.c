@@ -5,6 +5,7 @@
  * Reads edmd's shared memory and publishes an edm::MachineState at a fixed
  * rate.  It only reads; nothing that comes over DDS reaches the machine.
  */
+#include "config.h"
 #include "topic.h"
 #include "watch.h"
 
@@ -19,7 +20,7 @@
 #include <unistd.h>
 
 #define NS	1000000000LL
-#define ONCE_NS	(2 * NS)		/* --once waits this long for a reader */
+#define ONCE_NS	(2 * NS)		/* --once waits so long for a reader */
 
 #define NAME_LETTERS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
 			"abcdefghijklmnopqrstuvwxyz0123456789_-"
@@ -44,6 +45,8 @@ static void usage(FILE *f)
 	fputs("usage: edm-dds [options]\n"
 	      "Publish a machine's state to the fleet over DDS.\n"
 	      "\n"
+	      "  --config FILE   machine file: its name, [dds] domain and hz;\n"
+	      "                  options after it win\n"
 	      "  --machine NAME  which edmd to read (edm)\n"
 	      "  --domain N      DDS domain, 0 to 230 (0)\n"
 	      "  --hz N          samples a second, 2 to 100 (10)\n"
@@ -72,9 +75,31 @@ static int set_machine(struct options *o, const char *name)
 	return 0;
 }
 
+static int set_config(struct options *o, const char *path)
+{
+	static struct machine_config config;
+	struct interp_diag d = { 0 };
+	const int r = config_read(&config, path, &d);
+
+	if (r == -EINVAL)
+		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", path, d.line,
+			d.column, d.found, d.wanted);
+	else if (r < 0)
+		fprintf(stderr, "edm-dds: error: %s: %s; a machine file\n",
+			path, strerror(-r));
+	if (r < 0)
+		return r == -EINVAL ? EX_CONFIG : EX_NOINPUT;
+	o->machine = config.name;
+	o->domain = (dds_domainid_t)config.dds_domain;
+	o->hz = config.dds_hz;
+	return 0;
+}
+
 static int set_option(struct options *o, int c)
 {
 	switch (c) {
+	case 'c':
+		return set_config(o, optarg);
 	case 'm':
 		return set_machine(o, optarg);
 	case 'd':
@@ -103,6 +128,7 @@ static int set_option(struct options *o, int c)
 static int parse(struct options *o, int argc, char **argv)
 {
 	static const struct option longs[] = {
+		{ "config", required_argument, NULL, 'c' },
 		{ "machine", required_argument, NULL, 'm' },
 		{ "domain", required_argument, NULL, 'd' },
 		{ "hz", required_argument, NULL, 'r' },

@@ -63,19 +63,33 @@ static double fit(double v, double most)
 	return fmax(-most, fmin(most, v));
 }
 
+/* A bar while a program is loaded, else how the last job ended. */
+static void progress_of(const edm_MachineState *m, char *ret, size_t n)
+{
+	char done[BAR + 1];
+
+	bar(done, m->progress);
+	if (m->program)
+		snprintf(ret, n, "[%s] %5.1f %%", done,
+			 fit(m->progress, 1) * 100);
+	else if (strcmp(m->outcome, "none") != 0)
+		snprintf(ret, n, "last job: %s", clean(m->outcome).c);
+	else
+		snprintf(ret, n, "no job yet");
+}
+
 static void print_row(const struct table_row *r, FILE *f)
 {
 	const edm_MachineState *m = r->m;
 	struct word name = clean(m->machine), host = clean(m->host);
 	struct word state = state_of(r), fault = clean(m->fault);
-	char done[BAR + 1];
+	char done[96];
 
-	bar(done, m->progress);
-	fprintf(f, "%-14s %-14s %-8s [%s] %5.1f %% %9.3f mm %6.1f V "
+	progress_of(m, done, sizeof(done));
+	fprintf(f, "%-14s %-14s %-8s %-30s %9.3f mm %6.1f V "
 		"%8.3f mm/s %6u %6u  %s\n", name.c, host.c, state.c, done,
-		fit(m->progress, 1) * 100, fit(m->depth_mm, 9999),
-		fit(m->gap_v, 999), fit(m->feed_mm_s, 999), m->jumps,
-		m->retracts, fault.c);
+		fit(m->depth_mm, 9999), fit(m->gap_v, 999),
+		fit(m->feed_mm_s, 999), m->jumps, m->retracts, fault.c);
 }
 
 void table_print(const struct table_row *row, size_t n, FILE *f)
@@ -119,6 +133,7 @@ static void json_words(json_t *o, const struct table_row *r)
 	json_object_set_new(o, "host", json_string(clean(m->host).c));
 	json_object_set_new(o, "state", json_string(state_of(r).c));
 	json_object_set_new(o, "fault", json_string(clean(m->fault).c));
+	json_object_set_new(o, "outcome", json_string(clean(m->outcome).c));
 	json_object_set_new(o, "generator_state",
 			    json_string(generator_of(m)));
 	json_object_set_new(o, "is_on", json_boolean(m->is_on));

@@ -121,6 +121,8 @@ void watch_look(struct watch *w, int64_t now_ns, edm_MachineState *ret)
 	snprintf(ret->state, sizeof(ret->state), "%s", state);
 	snprintf(ret->fault, sizeof(ret->fault), "%s",
 		 w->heard && s->fault ? shm_fault_name(s->fault) : "none");
+	snprintf(ret->outcome, sizeof(ret->outcome), "%s",
+		 shm_outcome_name(w->heard ? s->outcome : SHM_OUTCOME_NONE));
 	if (!w->heard)
 		return;
 

@@ -22,7 +22,7 @@ struct watch {
 	struct shm_snapshot last;
 	bool heard;			/* `last` holds something */
 	int open_error;			/* of the last attempt */
-	int64_t moved_ns;		/* when the cycle was last seen moving */
+	int64_t moved_ns;		/* when the cycle last moved */
 };
 
 /** watch_init() - look for @machine; nothing is opened yet. */

@@ -4,9 +4,6 @@
 
 #include <math.h>
 
-/* Hulls over the time, where jumps are many. */
-#define HULLS		150
-
 /* Marks closer than this share of the time are one mark. */
 #define MARK_SPACE	(1.0 / 300)
 
@@ -18,51 +15,81 @@ static double bin_time(const struct thin *t, size_t i)
 	       (double)t->nbins;
 }
 
-/* time min max mean; a blank line where there is nothing. */
-static void write_bins(FILE *f, const struct thin *t, const char *name,
-		       const struct thin_bin *bin, double unit_s)
+/*
+ * Strips to take together: where jumps are many, a little more than from one
+ * to the next, or strips with and without one would alternate.
+ */
+static size_t group_of(const struct thin *t)
+{
+	const struct thin_survey *s = &t->survey;
+
+	if (s->jumps.n <= SCRIPT_FEW)
+		return 1;
+	return 2 + (size_t)(1.2 * (double)t->nbins / (double)s->jumps.n);
+}
+
+static struct thin_bin join(const struct thin_bin *bin, size_t n)
+{
+	struct thin_bin b = { 0 };
+
+	for (size_t i = 0; i < n; i++) {
+		if (bin[i].n == 0)
+			continue;
+		b.min = b.n ? fmin(b.min, bin[i].min) : bin[i].min;
+		b.max = b.n ? fmax(b.max, bin[i].max) : bin[i].max;
+		b.sum += bin[i].sum;
+		b.n += bin[i].n;
+	}
+	return b;
+}
+
+/* time min max, of @group strips each; a blank line where there is nothing. */
+static void write_bands(FILE *f, const struct thin *t,
+			const struct thin_bin *bin, size_t group, double unit_s)
 {
 	bool open = false;
 
-	fprintf(f, "$%s << EOD\n", name);
-	for (size_t i = 0; i < t->nbins; i++) {
-		if (bin[i].n)
-			fprintf(f, "%.9g %.9g %.9g %.9g\n",
-				bin_time(t, i) / unit_s, bin[i].min,
-				bin[i].max, bin[i].sum / (double)bin[i].n);
-		else if (open)
-			fputc('\n', f);
-		open = bin[i].n > 0;
-	}
-	fputs("EOD\n", f);
-}
-
-/*
- * All that was swept: time min max.  Many jumps are drawn as the hull of
- * some strips each, or strips with and without one would alternate.
- */
-static void write_swept_band(FILE *f, const struct thin *t, double unit_s)
-{
-	size_t group = t->survey.jumps.n > SCRIPT_FEW ?
-		       t->nbins / HULLS + 1 : 1;
-
-	fputs("$place << EOD\n", f);
 	for (size_t i = 0; i < t->nbins; i += group) {
-		struct thin_bin b = { 0 };
+		size_t n = group < t->nbins - i ? group : t->nbins - i;
+		struct thin_bin b = join(bin + i, n);
 
-		for (size_t j = i; j < i + group && j < t->nbins; j++)
-			if (t->place[j].n) {
-				b.min = b.n ? fmin(b.min, t->place[j].min) :
-					t->place[j].min;
-				b.max = b.n ? fmax(b.max, t->place[j].max) :
-					t->place[j].max;
-				b.n++;
-			}
 		if (b.n)
 			fprintf(f, "%.9g %.9g %.9g\n",
-				bin_time(t, i + group / 2) / unit_s, b.min,
-				b.max);
+				bin_time(t, i + n / 2) / unit_s, b.min, b.max);
+		else if (open)
+			fputc('\n', f);
+		open = b.n > 0;
 	}
+}
+
+/* time mean */
+static void write_means(FILE *f, const struct thin *t,
+			const struct thin_bin *bin, size_t group, double unit_s)
+{
+	bool open = false;
+
+	for (size_t i = 0; i < t->nbins; i += group) {
+		size_t n = group < t->nbins - i ? group : t->nbins - i;
+		struct thin_bin b = join(bin + i, n);
+
+		if (b.n)
+			fprintf(f, "%.9g %.9g\n",
+				bin_time(t, i + n / 2) / unit_s,
+				b.sum / (double)b.n);
+		else if (open)
+			fputc('\n', f);
+		open = b.n > 0;
+	}
+}
+
+/* A quantity of the cut: its extremes strip by strip, its mean smoother. */
+static void write_quantity(FILE *f, const struct thin *t, const char *name,
+			   const struct thin_bin *bin, double unit_s)
+{
+	fprintf(f, "$%s << EOD\n", name);
+	write_bands(f, t, bin, 1, unit_s);
+	fprintf(f, "EOD\n$%smean << EOD\n", name);
+	write_means(f, t, bin, group_of(t), unit_s);
 	fputs("EOD\n", f);
 }
 
@@ -165,9 +192,11 @@ static void write_zoom(FILE *f, const struct thin *t, enum csv_state state)
 
 void data_write(FILE *f, const struct thin *t, double unit_s)
 {
-	write_swept_band(f, t, unit_s);
-	write_bins(f, t, "gap", t->gap, unit_s);
-	write_bins(f, t, "feed", t->feed, unit_s);
+	fputs("$place << EOD\n", f);
+	write_bands(f, t, t->place, group_of(t), unit_s);
+	fputs("EOD\n", f);
+	write_quantity(f, t, "gap", t->gap, unit_s);
+	write_quantity(f, t, "feed", t->feed, unit_s);
 	write_far(f, t, unit_s);
 	write_events(f, t, "jumps", &t->survey.jumps, unit_s);
 	write_events(f, t, "retracts", &t->survey.retracts, unit_s);

@@ -137,15 +137,17 @@ static void write_scales(FILE *f, const struct thin *t, const struct view *v)
 			"xyz"[i], letter[a], unit(a));
 	}
 	if (columns(v) == 3)
-		fputs("set view 62, 38, 1, 1\nset xyplane 0\n"
+		fprintf(f, "set view 62, 38, 1, 1\nset xyplane 0\n"
 		      "set lmargin at screen 0.100\n"
 		      "set rmargin at screen 0.325\n"
-		      "set bmargin at screen 0.515\n"
-		      "set tmargin at screen 0.770\n"
-		      "set zlabel rotate by 90 offset 1,0\n"
+		      "set bmargin at screen %.3f\n"
+		      "set tmargin at screen %.3f\n"
+		      "set zlabel rotate by 90 offset 0.2,0\n"
 		      "set xlabel offset -1,-0.8\nset ylabel offset 1,-0.8\n"
 		      "set xtics offset 0,-0.3\nset ytics offset 0,-0.3\n"
-		      "set border 4095 lc rgb '#d0d0d0'\n", f);
+		      "set border 4095 lc rgb '#d0d0d0'\n",
+			t->nzoom ? 0.515 : 0.30,
+			t->nzoom ? 0.770 : 0.70);
 	else if (least > most / 4)
 		fputs("set size ratio -1\n", f);
 }
@@ -165,11 +167,13 @@ static void write_curves(FILE *f, const struct thin *t)
 	if (s->jumps.n)
 		fprintf(f, "  $jumpsat with points pt 6 ps %.1f lw 1.3 "
 			"lc rgb '%s' title 'jumps: %zu', \\\n",
-			script_mark_size(s->jumps.n), script_colour[CSV_JUMP], s->jumps.n);
+			script_mark_size(s->jumps.n),
+			script_colour[CSV_JUMP], s->jumps.n);
 	if (s->retracts.n)
 		fprintf(f, "  $retractsat with points pt 9 ps %.1f "
 			"lc rgb '%s' title 'retracts: %zu', \\\n",
-			script_mark_size(s->retracts.n), script_colour[CSV_RETRACT], s->retracts.n);
+			script_mark_size(s->retracts.n),
+			script_colour[CSV_RETRACT], s->retracts.n);
 	if (has_pieces(t, false))
 		fprintf(f, "  $path0 with lines lw 1.4 dt (6,4) lc rgb '%s' "
 			"title 'positioned', \\\n", script_colour[CSV_TRAVEL]);

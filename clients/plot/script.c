@@ -7,6 +7,7 @@
  */
 #include "script.h"
 
+#include <math.h>
 #include <string.h>
 
 #define LEFT	"0.055", "0.375"	/* of the sheet, from the left */
@@ -173,18 +174,27 @@ static void time_axis(FILE *f, const struct thin *t, struct time_unit u,
 	      "maxrows auto maxcols auto samplen 1.5 width -2 font ',10'\n", f);
 }
 
+/* With a little room. */
+static void write_range(FILE *f, double low, double high)
+{
+	double room = high > low ? 0.05 * (high - low) : 1;
+
+	fprintf(f, "set yrange [%.9g:%.9g]\n", low < 0 ? low - room : low,
+		high + room);
+}
+
 static void panel_place(FILE *f, const struct thin *t, struct time_unit u)
 {
 	const struct thin_survey *s = &t->survey;
 	bool few = s->jumps.n <= SCRIPT_FEW;
+	double low;
 
 	write_panel(f, &(struct panel) { RIGHT, 0.665, 0.895, 0.920,
 			s->cuts ? "Place along the path, from the first cut" :
 			"Place along the path" });
 	time_axis(f, t, u, false);
-	if (s->cuts)
-		fprintf(f, "set yrange [%.9g:*]\n", s->cut_min -
-			0.05 * (s->s_max - s->cut_min));
+	low = s->cuts ? s->cut_min : s->s_min;
+	write_range(f, low - 0.05 * (s->s_max - low), s->s_max);
 	fprintf(f, "set ylabel 'mm'\n"
 		"plot $place using 1:2:3 with filledcurves "
 		"fc rgb '#f6dfae' title '%s', \\\n", few ? "swept" :
@@ -218,16 +228,21 @@ static void write_level(FILE *f, const char *name, double v,
 static void panel_gap(FILE *f, const struct thin *t, struct time_unit u,
 		      const struct plot_options *o)
 {
+	struct thin_span v;
+	char name[80];
+
 	if (!t->survey.gap)
 		return;
-	write_panel(f, &(struct panel) { RIGHT, 0.445, 0.605, 0.630,
-			t->survey.cuts ? "Gap voltage while cutting" :
-			"Gap voltage" });
+	thin_span_of(&v, t->gap, t->nbins);
+	snprintf(name, sizeof(name), "Gap voltage%s, %.4g to %.4g V",
+		 t->survey.cuts ? " while eroding" : "", v.min, v.max);
+	write_panel(f, &(struct panel) { RIGHT, 0.445, 0.605, 0.630, name });
 	time_axis(f, t, u, false);
-	fputs("set ylabel 'V'\nset yrange [0:*]\n"
+	write_range(f, 0, fmax(v.high, 1.15 * o->open_v));
+	fputs("set ylabel 'V'\n"
 	      "plot $gap using 1:2:3 with filledcurves fc rgb '#cfe3f1' "
 	      "title 'least to most', \\\n"
-	      "  $gap using 1:4 with lines lw 1.2 lc rgb '#0072b2' "
+	      "  $gapmean with lines lw 1.6 lc rgb '#0072b2' "
 	      "title 'mean'", f);
 	write_level(f, "open", o->open_v, "#009e73");
 	write_level(f, "servo", o->servo_v, "#202020");
@@ -238,13 +253,20 @@ static void panel_gap(FILE *f, const struct thin *t, struct time_unit u,
 
 static void panel_feed(FILE *f, const struct thin *t, struct time_unit u)
 {
-	write_panel(f, &(struct panel) { RIGHT, 0.235, 0.385, 0.410,
-			t->survey.cuts ? "Feed while eroding" : "Feed" });
+	struct thin_span v;
+	char name[80];
+
+	thin_span_of(&v, t->feed, t->nbins);
+	snprintf(name, sizeof(name), "Feed%s, %.4g to %.4g mm/min",
+		 t->survey.cuts ? " while eroding" : "", v.min * 60,
+		 v.max * 60);
+	write_panel(f, &(struct panel) { RIGHT, 0.235, 0.385, 0.410, name });
 	time_axis(f, t, u, false);
+	write_range(f, v.low * 60, v.high * 60);
 	fputs("set ylabel 'mm/min'\n"
 	      "plot $feed using 1:(60*$2):(60*$3) with filledcurves "
 	      "fc rgb '#cfe3f1' title 'least to most', \\\n"
-	      "  $feed using 1:(60*$4) with lines lw 1.2 lc rgb '#0072b2' "
+	      "  $feedmean using 1:(60*$2) with lines lw 1.6 lc rgb '#0072b2' "
 	      "title 'mean', \\\n"
 	      "  0 with lines lw 0.8 lc rgb '#606060' notitle\n", f);
 	write_reset(f);

@@ -52,7 +52,7 @@ static void take_strips(struct thin *t, const struct csv_row *r)
 	size_t i = strip(r->t_s, s->t_min, s->t_max, t->nbins);
 
 	add(&t->place[i], r->s_mm);
-	if (!isnan(r->gap_v) && (!s->cuts || is_cut(r->state) ||
+	if (!isnan(r->gap_v) && (!s->cuts || r->state == CSV_ERODE ||
 				 r->state == CSV_RETRACT))
 		add(&t->gap[i], r->gap_v);
 	if (!s->cuts || r->state == CSV_ERODE)
@@ -110,8 +110,6 @@ static size_t strips_for(const struct thin_survey *s, double span_s, size_t max)
 	double all_s = s->t_max - s->t_min;
 	double rows = all_s > 0 ? (double)s->rows * span_s / all_s : 1;
 
-	if (span_s <= 0 && all_s > 0)
-		return 0;
 	if (rows / 2 > (double)max)
 		return max;
 	return rows > 2 ? (size_t)(rows / 2) : 1;
@@ -147,7 +145,9 @@ static int thin_read(struct thin *t, struct csv *c)
 	if (err < 0)
 		return err;
 	t->nbins = strips_for(s, s->t_max - s->t_min, THIN_BINS);
-	t->nzoom = strips_for(s, s->zoom_to_s - s->zoom_from_s, THIN_ZOOM);
+	if (s->zoom_to_s > s->zoom_from_s)
+		t->nzoom = strips_for(s, s->zoom_to_s - s->zoom_from_s,
+				      THIN_ZOOM);
 	csv_rewind(c);
 	return fill(t, c);
 }
@@ -165,9 +165,37 @@ int thin_create(struct thin **ret, struct csv *c)
 	if (err != -EINVAL)
 		fprintf(stderr, "%s: error: %s: %s\n", c->program, c->path,
 			err == -ENODATA ?
-			"no row behind the heading; a trace with rows is wanted" :
+			"no row behind the heading; some are wanted" :
 			strerror(-err));
 	return err;
+}
+
+static int by_value(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* All but one mean in a hundred on either side, and as much again. */
+void thin_span_of(struct thin_span *ret, const struct thin_bin *bin, size_t n)
+{
+	double mean[THIN_BINS];
+	size_t m = 0;
+
+	*ret = (struct thin_span) { 0 };
+	for (size_t i = 0; i < n; i++) {
+		if (bin[i].n == 0)
+			continue;
+		ret->min = m ? fmin(ret->min, bin[i].min) : bin[i].min;
+		ret->max = m ? fmax(ret->max, bin[i].max) : bin[i].max;
+		mean[m++] = bin[i].sum / (double)bin[i].n;
+	}
+	if (m == 0)
+		return;
+	qsort(mean, m, sizeof(mean[0]), by_value);
+	ret->low = fmax(ret->min, fmin(0, 2 * mean[m / 100]));
+	ret->high = fmin(ret->max, fmax(0, 2 * mean[m - 1 - m / 100]));
 }
 
 void thin_destroy(struct thin *t)

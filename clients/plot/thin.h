@@ -66,6 +66,15 @@ struct thin {
 	struct thin_zoom zoom[THIN_ZOOM];
 };
 
+/* What a panel shows of a row of strips, and what there is. */
+struct thin_span {
+	double low, high;		/* to show: twice what means reach */
+	double min, max;		/* of all strips */
+};
+
+/** thin_span_of() - a rare spike shall not flatten all the rest. */
+void thin_span_of(struct thin_span *ret, const struct thin_bin *bin, size_t n);
+
 /**
  * thin_create() - read @c twice.
  *

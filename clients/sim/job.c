@@ -99,11 +99,15 @@ static double now_s(void)
 }
 
 static int compile(struct sim_job *job, const struct sim_options *o,
-		   const struct machine_config *c, const struct text *t)
+		   const struct machine_config *c, struct text *t)
 {
 	struct interp_build_options bo = {
 		.machine = &c->axes,
 		.strategy = (enum interp_strategy)c->strategy,
+		.tolerance_milli =
+			(uint32_t)(c->tolerance_pulses * 1000 + 0.5),
+		.perpendicular = c->perpendicular,
+		.coupling = (enum interp_coupling)c->coupling,
 	};
 	struct interp_nc_options no = {
 		.machine = &c->axes,
@@ -125,6 +129,9 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	r = interp_nc_compile(t->at, t->n, &no, b, &done, &diag);
 	job->lines = done.lines;
 	job->compile_lines_s = done.lines / (now_s() - from_s);
+	/* A million lines are as large as half their program. */
+	free(t->at);
+	t->at = NULL;
 	if (r == -EINVAL)
 		say_refusal(o->job, &diag);
 	r = r == 0 ? lay_out(job, b, o->job) :
@@ -170,6 +177,13 @@ void job_describe(const struct sim_job *job, FILE *f)
 	fprintf(f, "lines      %u\nsegments   %u\nstrategy   %s\n", h->lines,
 		motions,
 		interp_strategy_name((enum interp_strategy)h->strategy));
+	if (h->strategy >= INTERP_MAIN_DIRECTION)
+		fprintf(f, "tolerance  %g pulses%s\n",
+			h->tolerance_milli / 1000.0,
+			h->perpendicular ? ", square to the path" : "");
+	if (h->strategy > INTERP_POINT_BY_POINT && h->strategy != INTERP_DDA)
+		fprintf(f, "coupling   %s\n", interp_coupling_name(
+			(enum interp_coupling)h->coupling));
 	fprintf(f, "path       %.3f mm: %.3f mm cut, %.3f mm positioned in "
 		"%.1f s\n", h->length_mm, cut_mm, free_mm, free_s);
 }

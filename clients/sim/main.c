@@ -19,7 +19,13 @@ static const char usage[] =
 "\n"
 "  --machine FILE       machine file; without: eight axes, +-200 mm\n"
 "  --dialect NAME       generic\n"
-"  --strategy NAME      simultaneous, point-by-point (machine file's)\n"
+"  --strategy NAME      simultaneous, point-by-point, centred, dda,\n"
+"                       main-direction, min-switch (machine file's)\n"
+"  --tolerance PULSES   how far main-direction and min-switch may stray along\n"
+"                       the shorter axis (machine file's, 2)\n"
+"  --perpendicular      the tolerance is square to the path instead\n"
+"  --coupling NAME      of three and more axes: star, tree, tube (machine\n"
+"                       file's, star)\n"
 "  --dry-run            no gap: walk at the programmed feed\n"
 "  --there-and-back     with --dry-run: to the end, back, to the end again\n"
 "  --period-us N        cycle period (machine file's, 1000)\n"
@@ -41,8 +47,8 @@ static const char usage[] =
 
 enum {
 	OPT_MACHINE = 256, OPT_DIALECT, OPT_STRATEGY, OPT_TOLERANCE,
-	OPT_PERPENDICULAR, OPT_DRY_RUN, OPT_THERE, OPT_PERIOD, OPT_SEED,
-	OPT_SPEED, OPT_LIMIT, OPT_PULSES, OPT_TRACE, OPT_REPORT, OPT_PLOT,
+	OPT_PERPENDICULAR, OPT_COUPLING, OPT_DRY_RUN, OPT_THERE, OPT_PERIOD,
+	OPT_SEED, OPT_SPEED, OPT_LIMIT, OPT_PULSES, OPT_TRACE, OPT_REPORT, OPT_PLOT,
 	OPT_CHECK, OPT_QUIET, OPT_PRINT, OPT_DOCUMENT, OPT_HELP, OPT_VERSION,
 };
 
@@ -52,6 +58,7 @@ static const struct option options[] = {
 	{ "strategy", required_argument, NULL, OPT_STRATEGY },
 	{ "tolerance", required_argument, NULL, OPT_TOLERANCE },
 	{ "perpendicular", no_argument, NULL, OPT_PERPENDICULAR },
+	{ "coupling", required_argument, NULL, OPT_COUPLING },
 	{ "dry-run", no_argument, NULL, OPT_DRY_RUN },
 	{ "there-and-back", no_argument, NULL, OPT_THERE },
 	{ "period-us", required_argument, NULL, OPT_PERIOD },
@@ -113,6 +120,9 @@ static bool take_word(struct sim_options *o, int opt)
 	case OPT_STRATEGY:
 		o->strategy = optarg;
 		return true;
+	case OPT_COUPLING:
+		o->coupling = optarg;
+		return true;
 	case OPT_PULSES:
 		o->pulses = optarg;
 		return true;
@@ -140,6 +150,9 @@ static bool take_flag(struct sim_options *o, int opt)
 	case OPT_DRY_RUN:
 		o->dry_run = true;
 		return true;
+	case OPT_PERPENDICULAR:
+		o->perpendicular = true;
+		return true;
 	case OPT_THERE:
 		o->there_and_back = true;
 		return true;
@@ -159,6 +172,11 @@ static bool take_number(struct sim_options *o, int opt)
 	switch (opt) {
 	case OPT_PERIOD:
 		o->period_us = number("--period-us", optarg, 20, 20000);
+		return true;
+	case OPT_TOLERANCE:
+		o->tolerance_pulses = number("--tolerance", optarg, 0,
+					     INTERP_TOLERANCE_MAX / 1000);
+		o->tolerance_given = true;
 		return true;
 	case OPT_SEED:
 		o->seed = whole("--seed", optarg);
@@ -192,12 +210,6 @@ static bool take_print(const struct sim_options *o, int opt, bool *print)
 	case OPT_VERSION:
 		puts("edmsim " EDM_VERSION);
 		exit(0);
-	case OPT_TOLERANCE:
-	case OPT_PERPENDICULAR:
-		refuse(opt == OPT_TOLERANCE ? "--tolerance" : "--perpendicular",
-		       "has no use here",
-		       "it belongs to strategies this version does not have");
-		return true;
 	default:
 		return false;
 	}
@@ -223,6 +235,28 @@ static void parse(struct sim_options *o, int argc, char **argv, bool *print)
 		refuse("--there-and-back", "alone", "--dry-run beside it");
 }
 
+/* What the command line says of pulses goes before the machine file. */
+static void configure_pulses(struct machine_config *c,
+			     const struct sim_options *o)
+{
+	if (o->strategy) {
+		c->strategy = interp_strategy_parse(o->strategy);
+		if (c->strategy < 0)
+			refuse("--strategy", o->strategy,
+			       "simultaneous, point-by-point, centred, dda, "
+			       "main-direction or min-switch");
+	}
+	if (o->coupling) {
+		c->coupling = interp_coupling_parse(o->coupling);
+		if (c->coupling < 0)
+			refuse("--coupling", o->coupling, "star, tree or tube");
+	}
+	if (o->tolerance_given)
+		c->tolerance_pulses = o->tolerance_pulses;
+	if (o->perpendicular)
+		c->perpendicular = 1;
+}
+
 static int configure(struct machine_config *c, const struct sim_options *o)
 {
 	struct interp_diag d = { 0 };
@@ -243,13 +277,7 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	}
 	if (o->period_us > 0)
 		c->period_us = o->period_us;
-	if (!o->strategy)
-		return 0;
-	r = interp_strategy_parse(o->strategy);
-	if (r < 0)
-		refuse("--strategy", o->strategy,
-		       "simultaneous or point-by-point");
-	c->strategy = r;
+	configure_pulses(c, o);
 	return 0;
 }
 

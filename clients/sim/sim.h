@@ -14,7 +14,9 @@
 struct sim_options {
 	const char *job;
 	const char *machine_file;
-	const char *strategy;		/* NULL: the machine file's */
+	const char *strategy, *coupling;	/* NULL: the machine file's */
+	double tolerance_pulses;	/* with tolerance_given */
+	bool tolerance_given, perpendicular;
 	const char *pulses, *trace, *report, *plot;
 	double period_us;		/* 0: the machine file's */
 	double speed, limit_s;		/* 0: as fast as possible; no limit */

@@ -104,6 +104,7 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 		.travel_a_mm_s2 = travel_a_mm_s2(c),
 		.overrun_limit = (uint32_t)c->overrun_limit,
 		.points_max = POINTS_MAX,
+		.optional_stop = c->optional_stop,
 	};
 	gap_of(&c->gap, ret->period_ns, &ret->gap);
 	jump_of(&c->jump, ret->period_ns, &ret->jump);

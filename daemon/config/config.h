@@ -59,7 +59,11 @@ struct machine_config {
 	double period_us;		/* 0: by backend */
 	int backend;			/* enum config_backend */
 	int strategy;			/* enum interp_strategy */
+	double tolerance_pulses;	/* mu */
+	uint32_t perpendicular;		/* 1: mu is square to the path */
+	int coupling;			/* enum interp_coupling */
 	double feed_default_mm_min;	/* before the first F; 0: F demanded */
+	uint32_t optional_stop;		/* 1: M1 holds */
 	double cpu;			/* core the cycle is pinned to; -1: none */
 	double priority;		/* SCHED_FIFO */
 	double overrun_limit;		/* missed periods in a row; 0: no fault */

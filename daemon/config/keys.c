@@ -37,6 +37,13 @@ static const char *guides_word(int i)
 	return i >= 0 && i < INTERP_NGUIDES ? words[i] : NULL;
 }
 
+static const char *coupling_word(int i)
+{
+	if (i < 0 || i >= INTERP_NCOUPLINGS)
+		return NULL;
+	return interp_coupling_name((enum interp_coupling)i);
+}
+
 static const char *const axes[INTERP_NAXES] = {
 	"X", "Y", "Z", "A", "B", "C", "U", "V"
 };
@@ -91,9 +98,21 @@ const struct config_key config_key[] = {
 	{ SECTION_MACHINE, "strategy", KEY_ENUM, "", "simultaneous",
 	  0, 0, AT(strategy), .word = strategy_word,
 	  .help = "how a path becomes pulses" },
+	{ SECTION_MACHINE, "tolerance_pulses", KEY_NUMBER, "pulses", "2",
+	  0, INTERP_TOLERANCE_MAX / 1000, AT(tolerance_pulses),
+	  .help = "mu: how far main-direction and min-switch may stray" },
+	{ SECTION_MACHINE, "perpendicular", KEY_BIT, "", "no",
+	  0, 0, AT(perpendicular),
+	  .help = "mu is square to the path, not along the shorter axis" },
+	{ SECTION_MACHINE, "coupling", KEY_ENUM, "", "star",
+	  0, 0, AT(coupling), .word = coupling_word,
+	  .help = "how three and more axes pulse one at a time" },
 	{ SECTION_MACHINE, "feed_default_mm_min", KEY_NUMBER, "mm/min", "0",
 	  0, 60000, AT(feed_default_mm_min),
 	  .help = "feed before the first F; 0: a program must give F" },
+	{ SECTION_MACHINE, "optional_stop", KEY_BIT, "", "no",
+	  0, 0, AT(optional_stop),
+	  .help = "M1 holds as M0 does" },
 	{ SECTION_MACHINE, "cpu", KEY_WHOLE, "", "-1",
 	  -1, 1023, AT(cpu),
 	  .help = "core the cycle is pinned to; -1: none" },
@@ -300,10 +319,10 @@ const struct config_key config_key[] = {
 	  .help = "where messages go; ttl=0 stays on this host" },
 
 	{ SECTION_DDS, "domain", KEY_WHOLE, "", "0",
-	  0, 232, AT(dds_domain),
+	  0, 230, AT(dds_domain),
 	  .help = "DDS domain of the fleet" },
 	{ SECTION_DDS, "hz", KEY_NUMBER, "Hz", "10",
-	  0.1, 100, AT(dds_hz),
+	  2, 100, AT(dds_hz),
 	  .help = "status samples a second" },
 
 	{ SECTION_JOBS, "store", KEY_STRING, "", "/var/lib/edmd",

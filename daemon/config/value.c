@@ -105,7 +105,7 @@ static const char *words_of(const struct config_key *k, char *buf, size_t size)
 const char *config_key_range(const struct config_key *k, int instance,
 			     char *buf, size_t size)
 {
-	char a[32], b[32], unit[16], words[96];
+	char a[32], b[32], unit[16], words[160];
 
 	switch (k->kind) {
 	case KEY_NUMBER:

@@ -120,7 +120,8 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 
 /*
  * The status comes first: who does not own it must not touch the machine.
- * After a failure it stays: it is where a predecessor's job stands.
+ * After a failure, or with a job not ended, it stays: it is where the next
+ * edmd finds the place to stand held at.
  */
 static int run_owner(struct loop *l, const struct machine_config *c)
 {
@@ -134,7 +135,7 @@ static int run_owner(struct loop *l, const struct machine_config *c)
 		return EX_UNAVAILABLE;
 	code = run_with_machine(l, c, &before);
 	l->io.close(l->io.self);
-	if (code == EX_OK)
+	if (code == EX_OK && !l->cycle.loaded)
 		shm_status_destroy(l->status, c->name);
 	return code;
 }

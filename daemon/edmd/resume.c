@@ -15,14 +15,26 @@ static bool job_was_under_way(const struct shm_snapshot *s)
 	return s->cycle != 0 && s->program != 0 && s->loaded;
 }
 
-/* What the program has switched on its way here. */
+/* Actions behind the farthest place are done, wherever the walk stands. */
+static uint32_t last_done(const struct cycle *c)
+{
+	const struct interp_program *p = &c->cursor.p;
+	uint32_t i = c->cursor.index;
+
+	while (i + 1 < p->head->nsegs && p->segs[i + 1].s_mm < c->far_mm)
+		i++;
+	return i;
+}
+
+/* What the program has switched on its way there. */
 static void switches_restore(struct cycle *c, const struct shm_snapshot *s)
 {
 	const struct interp_program *p = &c->cursor.p;
 
 	c->out.pump = s->pump;
 	c->out.negative = s->negative;
-	for (uint32_t i = 0; i <= c->cursor.index; i++) {
+	c->action_done = last_done(c);
+	for (uint32_t i = 0; i <= c->action_done; i++) {
 		if (p->segs[i].kind != INTERP_AUX)
 			continue;
 		if (p->segs[i].arg == INTERP_AUX_POWER_OFF)
@@ -69,9 +81,9 @@ static int place_restore(struct loop *l, struct program *p,
 
 static void tell(const struct loop *l, const struct shm_snapshot *s)
 {
-	log_line(LOG_WARNING, "resume: the edmd before this one did not end "
-		 "in order; its program %u is held at %.3f mm of %.3f, line "
-		 "%u; it was in %s; start goes on",
+	log_line(LOG_WARNING, "resume: a job was under way; its program %u is "
+		 "held at %.3f mm of %.3f, line %u; it was in %s; start goes "
+		 "on",
 		 s->program, interp_cursor_place_mm(&l->cycle.cursor),
 		 l->cycle.cursor.p.head->length_mm, l->cycle.cursor.seg.line,
 		 shm_state_name(s->state));

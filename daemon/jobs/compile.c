@@ -28,6 +28,10 @@ static int compile_text(struct compile *c)
 	struct interp_build_options b = {
 		.machine = &m->axes,
 		.strategy = (enum interp_strategy)m->strategy,
+		.tolerance_milli =
+			(uint32_t)(m->tolerance_pulses * 1000 + 0.5),
+		.perpendicular = m->perpendicular,
+		.coupling = (enum interp_coupling)m->coupling,
 	};
 	struct interp_nc_options nc = {
 		.machine = &m->axes,

@@ -59,7 +59,7 @@ struct link_command {
 	uint32_t verb;			/* enum shm_verb */
 	uint32_t arg;
 	double arg_mm;
-	link_answer_fn answer;		/* called once, never from link_send() */
+	link_answer_fn answer;		/* once, never from link_send() */
 	void *answer_arg;
 };
 

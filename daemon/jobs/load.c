@@ -41,6 +41,8 @@ static void on_asked(void *arg, int code)
 	struct jobs *j = arg;
 
 	j->queue.asked = false;
+	if (code == SHM_DONE)
+		j->queue.again_us = 0;
 	if (code != SHM_DONE && code != -ENOTCONN) {
 		j->queue.again_us = jobs_now_us() + AGAIN_US;
 		log_warning("load: edmd refused to start or unload program "
@@ -65,6 +67,7 @@ static void load_refuse(struct jobs *j, struct store_job job,
 {
 	j->queue.job = job;
 	j->queue.snap = (struct shm_snapshot) { .program = 0 };
+	j->queue.depth_mm = 0;
 	queue_end(j, JOB_FAULT, reason);
 	queue_drop(j, false);
 }

@@ -7,6 +7,7 @@
 #include "log.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -76,7 +77,7 @@ static void record_end(struct jobs *j, enum job_state state,
 		.now_us = jobs_utime(),
 		.place_mm = s->far_mm,
 		.length_mm = s->length_mm,
-		.depth_mm = s->depth_mm,
+		.depth_mm = j->queue.depth_mm,
 		.job_s = (double)s->job_cycles * (double)s->period_ns / 1e9,
 		.jumps = s->jumps,
 		.retracts = s->retracts,
@@ -114,6 +115,7 @@ void queue_drop(struct jobs *j, bool again)
 	store_set_loaded(j->store, q->job.n, false);
 	q->job = (struct store_job) { .n = 0 };
 	q->snap = (struct shm_snapshot) { .program = 0 };
+	q->depth_mm = 0;
 	q->ended = SHM_OUTCOME_NONE;
 	q->missing_us = 0;
 	queue_recount(j);
@@ -277,6 +279,7 @@ void queue_step(struct jobs *j, int64_t now_us)
 	if (q->job.n && s->program == q->job.n) {
 		q->missing_us = 0;
 		q->snap = *s;
+		q->depth_mm = fmax(q->depth_mm, s->depth_mm);
 		if (queue_is_leaving(q))
 			follow_leaving(j, now_us);
 		else

@@ -30,6 +30,7 @@ struct jobs;
 struct queue {
 	struct store_job job;		/* loaded; n 0: none */
 	struct shm_snapshot snap;	/* the last one that was of that job */
+	double depth_mm;		/* deepest seen of that job */
 	uint32_t behind;		/* jobs that wait */
 	bool waiting;			/* for "start" */
 	/* Private. */

@@ -83,16 +83,17 @@ static bool shape_step(char what, const uint8_t **at, size_t *left,
 	return true;
 }
 
-static bool shape_fits(const lcm_recv_buf_t *buf, const char *shape)
+/* @ret_count: what the last i or s said. */
+static bool shape_fits(const lcm_recv_buf_t *buf, const char *shape,
+		       uint32_t *ret_count)
 {
 	const uint8_t *at = buf->data;
 	size_t left = buf->data_size;
-	uint32_t count = 0;
 
 	for (; *shape; shape++)
-		if (!shape_step(*shape, &at, &left, &count))
+		if (!shape_step(*shape, &at, &left, ret_count))
 			return false;
-	return true;
+	return left == 0;
 }
 
 /* The first q of a shape is the type's fingerprint. */
@@ -105,9 +106,10 @@ static void on_command(const lcm_recv_buf_t *buf, const char *channel,
 	struct wire *w = arg;
 	edm_command_t m;
 	struct wire_command c;
+	uint32_t count = 0;
 
 	(void)channel;
-	if (!shape_fits(buf, SHAPE_COMMAND) ||
+	if (!shape_fits(buf, SHAPE_COMMAND, &count) ||
 	    edm_command_t_decode(buf->data, 0, (int)buf->data_size, &m) < 0) {
 		w->refused++;
 		return;
@@ -120,15 +122,42 @@ static void on_command(const lcm_recv_buf_t *buf, const char *channel,
 	edm_command_t_decode_cleanup(&m);
 }
 
+/*
+ * The generated decoder copies no bytes to NULL, which C does not allow: a
+ * chunk without data, as of an empty file, is decoded as one with a byte.
+ */
+static int chunk_decode(const lcm_recv_buf_t *buf, uint32_t size,
+			edm_job_chunk_t *ret)
+{
+	uint32_t n = buf->data_size;
+	uint8_t *padded;
+	int got;
+
+	if (size > 0)
+		return edm_job_chunk_t_decode(buf->data, 0, (int)n, ret);
+	padded = calloc(n + 1, 1);
+	if (!padded)
+		return -1;
+	/* size is what the packet ends with, big-endian. */
+	memcpy(padded, buf->data, n);
+	padded[n - 1] = 1;
+	got = edm_job_chunk_t_decode(padded, 0, (int)n + 1, ret);
+	free(padded);
+	if (got >= 0)
+		ret->size = 0;
+	return got;
+}
+
 static void on_chunk(const lcm_recv_buf_t *buf, const char *channel, void *arg)
 {
 	struct wire *w = arg;
 	edm_job_chunk_t m;
 	struct wire_chunk c;
+	uint32_t size = 0;
 
 	(void)channel;
-	if (!shape_fits(buf, SHAPE_CHUNK) ||
-	    edm_job_chunk_t_decode(buf->data, 0, (int)buf->data_size, &m) < 0) {
+	if (!shape_fits(buf, SHAPE_CHUNK, &size) ||
+	    chunk_decode(buf, size, &m) < 0) {
 		w->refused++;
 		return;
 	}

@@ -79,8 +79,8 @@ static void enter(struct cycle *c, enum cycle_state s)
 		c->since_jump = 0;
 		c->lifting = true;
 		c->jump_from_mm = interp_cursor_place_mm(&c->cursor);
-		c->jump_to_mm = c->jump_from_mm -
-				c->config.jump.height_mm;
+		c->jump_to_mm = fmax(0, c->jump_from_mm -
+					c->config.jump.height_mm);
 		break;
 	case STATE_HOLD:
 		c->moving = false;
@@ -339,15 +339,26 @@ static void stand(struct cycle *c)
 		end_job(c, OUTCOME_STOPPED);
 }
 
+static void stand_held(struct cycle *c)
+{
+	happen(c, EVENT_HOLD);
+	c->mover.v_mm_s = 0;
+}
+
+/* What is held does nothing more: it stands in front of the action. */
 static void meet_action(struct cycle *c)
 {
+	if (c->state == STATE_HOLD) {
+		c->mover.v_mm_s = 0;
+		return;
+	}
 	switch (walk_action(c)) {
 	case ACTION_HOLD:
-		happen(c, EVENT_HOLD);
+		stand_held(c);
 		break;
 	case ACTION_END:
 		if (c->config.hold_at_end)
-			happen(c, EVENT_HOLD);
+			stand_held(c);
 		else
 			end_job(c, OUTCOME_DONE);
 		break;

@@ -67,6 +67,8 @@ static struct view look_ahead(const struct cycle *c)
 	for (int n = 0; n < AHEAD_MAX && w.left_mm <= need; n++) {
 		const struct interp_seg *s = &at->p.segs[++i];
 
+		if (!interp_program_seg_ok(&at->p, i, s))
+			return w;
 		if (s->kind >= INTERP_BEGIN) {
 			if (i <= c->action_done && s->kind != INTERP_END)
 				continue;
@@ -180,15 +182,14 @@ static bool there(const struct cycle *c, double to_mm)
 	return c->mover.v_mm_s == 0 && fabs(to_mm - place(c)) < 2 * ONTO_MM;
 }
 
-/* Up, or as far up as the path goes; then back to just short of the cut. */
+/* Up, then back to just short of the cut. */
 static bool jump_done(struct cycle *c)
 {
-	if (!there(c, c->jump_to_mm) && !c->at_start)
+	if (!there(c, c->jump_to_mm))
 		return false;
 	if (!c->lifting)
 		return true;
 	c->lifting = false;
-	c->mover.v_mm_s = 0;
 	c->jump_to_mm = fmax(c->jump_from_mm - c->config.jump.short_of_mm,
 			     place(c));
 	return there(c, c->jump_to_mm);
@@ -198,10 +199,7 @@ bool feed_done(struct cycle *c)
 {
 	if (c->state == STATE_JUMP)
 		return jump_done(c);
-	if (c->state == STATE_HOLD && c->moving &&
-	    (there(c, c->move_to_mm) || c->at_start)) {
+	if (c->state == STATE_HOLD && c->moving && there(c, c->move_to_mm))
 		c->moving = false;
-		c->mover.v_mm_s = 0;
-	}
 	return false;
 }

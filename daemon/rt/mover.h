@@ -24,9 +24,11 @@ struct mover_limits {
 
 /**
  * mover_step() - the distance to walk this cycle to come nearer to a place
- * @left_mm away (signed), without passing it.
+ * @left_mm away (signed).
  *
- * Standing there with no speed left gives 0.
+ * The place is met exactly and never passed, unless the speed is too high to
+ * brake before it: then it is passed, and come back to.  The speed is 0 from
+ * the cycle after the one that met it.
  */
 double mover_step(struct mover *m, const struct mover_limits *l,
 		  double left_mm);

@@ -50,13 +50,23 @@ static void count_pulses(struct cycle *c)
 		c->totals.pulses[__builtin_ctz(m)]++;
 }
 
+/* The last point was one too far: back to the one before. */
+static void undo_point(struct cycle *c)
+{
+	interp_cursor_aim(&c->cursor, c->cursor.backward ? 1e9 : -1e9);
+	interp_cursor_step(&c->cursor);
+	interp_cursor_stop(&c->cursor);
+}
+
 static enum walk_result points(struct cycle *c)
 {
 	for (uint32_t n = 0; n < c->config.points_max; n++) {
 		switch (interp_cursor_step(&c->cursor)) {
 		case INTERP_MOVED:
-			if (beyond(c))
+			if (beyond(c)) {
+				undo_point(c);
 				return WALK_BEYOND;
+			}
 			count_pulses(c);
 			if (c->on_point)
 				c->on_point(c->on_point_arg, c);
@@ -85,7 +95,7 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 
 	interp_cursor_aim(&c->cursor, ds_mm);
 	r = points(c);
-	if (r == WALK_BEYOND || r == WALK_BROKEN) {
+	if (r == WALK_BROKEN) {
 		c->feed_mm_s = 0;
 		return r;
 	}

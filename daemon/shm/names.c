@@ -38,3 +38,12 @@ const char *shm_fault_name(uint32_t fault)
 
 	return name_of(names, sizeof(names) / sizeof(names[0]), fault);
 }
+
+const char *shm_outcome_name(uint32_t outcome)
+{
+	static const char *const names[] = {
+		"none", "done", "fault", "stopped",
+	};
+
+	return name_of(names, sizeof(names) / sizeof(names[0]), outcome);
+}

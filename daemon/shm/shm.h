@@ -307,5 +307,7 @@ void shm_close(const void *object, size_t bytes);
 const char *shm_state_name(uint32_t state);
 /** shm_fault_name() - "short-not-cleared", ... */
 const char *shm_fault_name(uint32_t fault);
+/** shm_outcome_name() - "done", ...; "none" while it runs. */
+const char *shm_outcome_name(uint32_t outcome);
 
 #endif /* EDM_SHM_H */

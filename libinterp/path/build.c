@@ -7,6 +7,7 @@
 #include "interp/build.h"
 #include "path/build_arc.h"
 #include "path/build_pair.h"
+#include "path/build_rule.h"
 #include "pulse/walk.h"
 
 #include <errno.h>
@@ -29,7 +30,8 @@ struct interp_build {
 	uint8_t column[INTERP_NAXES];
 	uint32_t naxes, columns;	/* columns: mask of axes */
 	double length_mm;
-	struct table segs, nodes, arcs, conds;	/* nodes: n counts columns */
+	struct table segs, nodes, arcs, conds, runs;	/* nodes: n counts
+							 * columns */
 	struct table couples, bits;
 	char cond_letter;
 	uint32_t cond_number;
@@ -116,6 +118,7 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	b->conds.size = sizeof(struct interp_cond);
 	b->couples.size = sizeof(struct interp_couple);
 	b->bits.size = sizeof(uint64_t);
+	b->runs.size = sizeof(int32_t);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		b->sub_mm[i] = INTERP_SUB / o->machine->axis[i].pulse_mm;
 		b->here_mm[i] = o->start_mm[i];
@@ -143,6 +146,7 @@ void interp_build_destroy(struct interp_build *b)
 	free(b->conds.at);
 	free(b->couples.at);
 	free(b->bits.at);
+	free(b->runs.at);
 	free(b);
 }
 
@@ -266,7 +270,6 @@ struct measure {
 	double length_mm;
 	double seconds;			/* at every axis's own v_max */
 	int64_t longest;		/* subpulses */
-	uint64_t pulses;		/* sum over the axes */
 };
 
 static double length_of(const double d[INTERP_NAXES], uint32_t moved)
@@ -314,8 +317,6 @@ static int measure(const struct interp_build *b,
 		ret->seconds = t > ret->seconds ? t : ret->seconds;
 		len = len < 0 ? -len : len;
 		ret->longest = len > ret->longest ? len : ret->longest;
-		ret->pulses += (uint64_t)llabs(interp_round_sub(to[i]) -
-					       interp_round_sub(b->here[i]));
 	}
 	ret->length_mm = length_of(d, ret->moved);
 	return 0;
@@ -336,13 +337,18 @@ static int refuse_long(struct interp_diag *diag, double length_mm)
 	return -EINVAL;
 }
 
-/* Ticks of a straight segment, or UINT64_MAX. */
-static uint64_t line_ticks(const struct interp_build *b,
-			   const struct measure *m)
+/* From here to @to, as the strategies see it. */
+static struct build_way way_to(const struct interp_build *b,
+			       const int64_t to[INTERP_NAXES],
+			       const struct measure *m)
 {
-	if (b->o.strategy == INTERP_POINT_BY_POINT)
-		return m->pulses;
-	return (uint64_t)(m->longest + INTERP_SUB - 1) >> INTERP_SUB_BITS;
+	struct build_way w = { .longest_sub = m->longest };
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		w.from[i] = interp_round_sub(b->here[i]);
+		w.to[i] = interp_round_sub(to[i]);
+	}
+	return w;
 }
 
 int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
@@ -353,7 +359,9 @@ int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	int64_t to[INTERP_NAXES];
 	struct measure m;
 	const int bad = measure(b, end_mm, to, &m);
+	struct build_way way;
 	uint64_t ticks;
+	int r;
 
 	if (bad < 0)
 		return build_refuse_travel(b->o.machine, -bad - 1,
@@ -362,9 +370,13 @@ int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		stand_at(b, end_mm, to);
 		return 0;
 	}
-	ticks = line_ticks(b, &m);
+	way = way_to(b, to, &m);
+	ticks = build_rule_ticks(b->o.strategy, &way);
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_long(diag, m.length_mm);
+	r = build_rule_check(&b->o, &way, diag);
+	if (r < 0)
+		return r;
 	seg.ticks = (uint32_t)ticks;
 	seg.length_mm = m.length_mm;
 	seg_feed(&seg, w, m.length_mm / m.seconds);
@@ -385,14 +397,36 @@ int interp_build_action(struct interp_build *b, enum interp_kind kind,
 
 /* -- Arcs ------------------------------------------------------------------ */
 
+/* The runs of an arc that keeps them. */
+static int runs_add(struct interp_build *b, const struct build_arc *plan,
+		    struct interp_arc *arc)
+{
+	struct table *t = &b->runs;
+
+	arc->run_at = (uint32_t)t->n;
+	if (arc->nruns == 0)
+		return 0;
+	if (t->n + arc->nruns > t->room) {
+		const size_t room = 2 * t->room + arc->nruns;
+		void *at = realloc(t->at, room * t->size);
+
+		if (!at)
+			return -ENOMEM;
+		t->at = at;
+		t->room = room;
+	}
+	build_arc_runs(plan, arc, (int32_t *)t->at + t->n);
+	t->n += arc->nruns;
+	return t->n > UINT32_MAX ? -ENOMEM : 0;
+}
+
 int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_arc *a,
 		     const struct interp_build_word *w,
 		     struct interp_diag *diag)
 {
 	struct interp_seg seg = { .kind = INTERP_ARC };
-	struct build_arc plan = { .machine = b->o.machine,
-				  .strategy = b->o.strategy, .word = a };
+	struct build_arc plan = { .o = &b->o, .word = a };
 	const uint32_t plane = 1u << a->axis_a | 1u << a->axis_b;
 	int64_t to[INTERP_NAXES];
 	struct interp_arc *arc;
@@ -406,10 +440,9 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		plan.from_mm[i] = (double)b->here[i] / b->sub_mm[i];
 		plan.to_mm[i] = (double)to[i] / b->sub_mm[i];
-		plan.from[i] = interp_round_sub(b->here[i]);
-		plan.to[i] = interp_round_sub(to[i]);
 	}
-	plan.others_sub = m.longest;
+	plan.way = way_to(b, to, &m);
+	plan.way.except = plane;
 	r = build_arc_plan(&plan, diag);
 	if (r < 0)
 		return r;
@@ -425,6 +458,8 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	if (!arc)
 		return -ENOMEM;
 	*arc = plan.arc;
+	if (runs_add(b, &plan, arc) < 0)
+		return -ENOMEM;
 	stand_at(b, end_mm, to);
 	return seg_finish(b, &seg, w, diag);
 }
@@ -559,6 +594,10 @@ static struct interp_program_head layout(const struct interp_build *b)
 		.nbits = b->bits.n,
 		.naxes = b->naxes,
 		.strategy = b->o.strategy,
+		.tolerance_milli = b->o.tolerance_milli,
+		.perpendicular = b->o.perpendicular,
+		.coupling = b->o.coupling,
+		.nruns = (uint32_t)b->runs.n,
 		.length_mm = b->length_mm,
 	};
 
@@ -568,7 +607,8 @@ static struct interp_program_head layout(const struct interp_build *b)
 	h.conds_at = h.arcs_at + b->arcs.n * b->arcs.size;
 	h.couples_at = h.conds_at + b->conds.n * b->conds.size;
 	h.bits_at = h.couples_at + b->couples.n * b->couples.size;
-	h.bytes = h.bits_at + b->bits.n * b->bits.size;
+	h.runs_at = h.bits_at + b->bits.n * b->bits.size;
+	h.bytes = h.runs_at + b->runs.n * b->runs.size;
 	return h;
 }
 
@@ -627,4 +667,5 @@ void interp_build_write(struct interp_build *b,
 	write_table(base + h.conds_at, &b->conds);
 	write_table(base + h.couples_at, &b->couples);
 	write_table(base + h.bits_at, &b->bits);
+	write_table(base + h.runs_at, &b->runs);
 }

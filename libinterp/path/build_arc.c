@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define TURN	(2 * 3.14159265358979323846)
 
@@ -19,7 +20,7 @@
 static const struct interp_axis_limits *limits(const struct build_arc *p,
 					       uint32_t a)
 {
-	return &p->machine->axis[a];
+	return &p->o->machine->axis[a];
 }
 
 static int refuse_radius(double r0, double r1, struct interp_diag *diag)
@@ -105,7 +106,7 @@ static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
 
 		if (passes(arc, q) && (at > l->travel_max_mm + l->pulse_mm ||
 				       at < l->travel_min_mm - l->pulse_mm))
-			return build_refuse_travel(p->machine, (int)axis, at,
+			return build_refuse_travel(p->o->machine, (int)axis, at,
 						   diag);
 	}
 	return 0;
@@ -149,7 +150,7 @@ static int ticks_simultaneous(struct build_arc *p, struct interp_diag *diag)
 				  limits(p, arc->axis_b)->pulse_mm);
 	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
 	const double plane = (fabs(arc->sweep) * r + fabs(arc->dr_mm)) / pulse;
-	const double other = (double)p->others_sub / INTERP_SUB;
+	const double other = (double)p->way.longest_sub / INTERP_SUB;
 	const double ticks = ceil(fmax(plane, other) * (1 + 1e-6)) + 1;
 
 	if (ticks > INTERP_PULSES_MAX)
@@ -158,47 +159,118 @@ static int ticks_simultaneous(struct build_arc *p, struct interp_diag *diag)
 	return 0;
 }
 
-static int ticks_point_by_point(struct build_arc *p, struct interp_diag *diag)
+/* The plane's ends from the centre, on the lattice. */
+static void arc_ends(const struct build_arc *p, int64_t start[2],
+		     int64_t end[2])
 {
-	struct interp_arc *arc = &p->arc;
+	const struct interp_arc *arc = &p->arc;
 	const double pulse = limits(p, arc->axis_a)->pulse_mm;
 	const int64_t a = llround(arc->a_mm / pulse);
 	const int64_t b = llround(arc->b_mm / pulse);
-	const int64_t start[2] = { p->from[arc->axis_a] - a,
-				   p->from[arc->axis_b] - b };
-	const int64_t end[2] = { p->to[arc->axis_a] - a,
-				 p->to[arc->axis_b] - b };
-	uint64_t ticks;
+
+	start[0] = p->way.from[arc->axis_a] - a;
+	start[1] = p->way.from[arc->axis_b] - b;
+	end[0] = p->way.to[arc->axis_a] - a;
+	end[1] = p->way.to[arc->axis_b] - b;
+}
+
+/* With fewer changes of axis, if the tolerance and the radius let it. */
+static int measure_runs(struct build_arc *p, struct interp_diag *diag)
+{
+	const int64_t *s = p->runs.start;
+	const int64_t r2 = s[0] * s[0] + s[1] * s[1];
+	const uint32_t milli = p->o->tolerance_milli;
+	const uint32_t least = circle_smallest_milli(r2, milli);
+	struct interp_arc arc = p->arc, other = p->arc;
+
+	p->runs.milli = milli;
+	/* A circle of a few pulses: comparison is within one of it. */
+	if (milli >= 1000 && least > milli)
+		return 0;
+	if (least > milli)
+		return build_refuse_tolerance(p->o, "this arc",
+					      least < 1000 ? least : 1000,
+					      diag);
+	p->runs.first = 1;
+	if (!circle_plan_runs(&other, &p->runs, NULL, 0))
+		return 0;
+	p->runs.first = 0;
+	if (!circle_plan_runs(&arc, &p->runs, NULL, 0))
+		return 0;
+	p->runs.first = other.nruns < arc.nruns;
+	p->arc = other.nruns < arc.nruns ? other : arc;
+	return 0;
+}
+
+void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
+		    int32_t *runs)
+{
+	circle_plan_runs(arc, &p->runs, runs, arc->nruns);
+}
+
+static bool measure(struct build_arc *p, const int64_t start[2],
+		    const int64_t end[2])
+{
+	const int64_t others = (p->way.longest_sub + INTERP_SUB - 1) >>
+			       INTERP_SUB_BITS;
+
+	return p->o->strategy == INTERP_DDA ?
+	       dda_measure(&p->arc, start, end, others) :
+	       circle_measure(&p->arc, start, end);
+}
+
+/* Pulses of the other axes come one at a time, but for the dda's. */
+static int count_ticks(struct build_arc *p, struct interp_diag *diag)
+{
+	uint64_t ticks = p->arc.circle_ticks;
+	int r;
+
+	if (p->o->strategy != INTERP_DDA) {
+		r = build_rule_check(p->o, &p->way, diag);
+		if (r < 0)
+			return r;
+		ticks += build_rule_ticks(INTERP_POINT_BY_POINT, &p->way);
+	}
+	if (ticks > INTERP_PULSES_MAX)
+		return refuse_ticks(diag);
+	p->ticks = (uint32_t)ticks;
+	return 0;
+}
+
+static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
+{
+	struct interp_arc *arc = &p->arc;
+	const double pulse = limits(p, arc->axis_a)->pulse_mm;
+	int64_t start[2], end[2];
+	int r = 0;
 
 	if (limits(p, arc->axis_b)->pulse_mm != pulse) {
 		snprintf(diag->found, sizeof(diag->found),
-			 "a point-by-point arc over axes of unequal pulses");
+			 "a %s arc over axes of unequal pulses",
+			 interp_strategy_name(p->o->strategy));
 		snprintf(diag->wanted, sizeof(diag->wanted),
 			 "strategy simultaneous, or equal pulses");
 		return -EINVAL;
 	}
 	if (fabs(arc->sweep) * arc->r_mm / pulse > INTERP_PULSES_MAX / 2.0)
 		return refuse_ticks(diag);
+	arc_ends(p, start, end);
 	/* A circle of one pulse would pass through its own centre. */
 	if (start[0] * start[0] + start[1] * start[1] <= 1) {
 		p->straight = true;
 		return 0;
 	}
-	if (!circle_measure(arc, start, end)) {
+	if (!measure(p, start, end)) {
 		/* Under a pulse or two an arc may have no way round. */
 		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
 		return p->straight ? 0 : refuse_ticks(diag);
 	}
-	ticks = arc->circle_ticks;
-	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
-		if (i != arc->axis_a && i != arc->axis_b)
-			ticks += (uint64_t)llabs((int64_t)p->to[i] -
-						 p->from[i]);
+	if (p->o->strategy == INTERP_MIN_SWITCH) {
+		memcpy(p->runs.start, start, sizeof(start));
+		memcpy(p->runs.end, end, sizeof(end));
+		r = measure_runs(p, diag);
 	}
-	if (ticks > INTERP_PULSES_MAX)
-		return refuse_ticks(diag);
-	p->ticks = (uint32_t)ticks;
-	return 0;
+	return r < 0 ? r : count_ticks(p, diag);
 }
 
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
@@ -211,6 +283,6 @@ int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 	if (r < 0)
 		return r;
 	arc_length(p);
-	return p->strategy == INTERP_POINT_BY_POINT ?
-	       ticks_point_by_point(p, diag) : ticks_simultaneous(p, diag);
+	return p->o->strategy == INTERP_SIMULTANEOUS ?
+	       ticks_simultaneous(p, diag) : ticks_of_pulses(p, diag);
 }

@@ -6,24 +6,29 @@
 #define PATH_BUILD_ARC_H
 
 #include "interp/build.h"
+#include "path/build_rule.h"
+#include "pulse/walk.h"
 
 struct build_arc {
 	/* In. */
-	const struct interp_machine *machine;
+	const struct interp_build_options *o;
 	const struct interp_build_arc *word;
-	enum interp_strategy strategy;
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
-	int32_t from[INTERP_NAXES], to[INTERP_NAXES];	/* pulses */
-	int64_t others_sub;	/* the longest straight axis, subpulses */
+	struct build_way way;	/* all but the plane's axes */
 	/* Out. */
 	bool straight;		/* too short to be an arc: make it a line */
 	struct interp_arc arc;
 	uint32_t ticks;
 	double length_mm, feed_max_mm_s;
+	struct circle_plan runs;	/* if arc.nruns > 0 */
 };
 
 /** build_arc_plan() - 0, or -EINVAL with @diag's found and wanted. */
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag);
+
+/** build_arc_runs() - the arc.nruns runs of a planned arc. */
+void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
+		    int32_t *runs);
 
 /** build_refuse_travel() - say that an axis leaves its travel; -EINVAL. */
 int build_refuse_travel(const struct interp_machine *m, int axis,

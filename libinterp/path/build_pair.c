@@ -87,23 +87,26 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 		.centre_a_mm = k->centre_mm[0], .centre_b_mm = k->centre_mm[1],
 		.clockwise = k->clockwise,
 	};
-	int r;
-
-	*plan = (struct build_arc) {
-		.machine = p->machine, .word = &word,
+	const struct interp_build_options o = {
+		.machine = p->machine,
 		.strategy = p->strategy == INTERP_SIMULTANEOUS ?
 			    INTERP_SIMULTANEOUS : INTERP_POINT_BY_POINT,
 	};
+	int r;
+
+	*plan = (struct build_arc) { .o = &o, .word = &word };
 	for (int j = 0; j < 2; j++) {
 		const enum interp_axis a = plane[i][j];
 
 		plan->from_mm[a] = p->from_mm[a];
 		plan->to_mm[a] = p->to_mm[a];
-		plan->from[a] = p->from[a];
-		plan->to[a] = p->to[a];
+		plan->way.from[a] = p->from[a];
+		plan->way.to[a] = p->to[a];
+		plan->way.except |= 1u << a;
 	}
 	r = build_arc_plan(plan, diag);
 	plan->word = NULL;
+	plan->o = NULL;
 	return r;
 }
 

@@ -26,19 +26,44 @@ static const struct interp_walk walk_action = {
 	.last = walk_last_tick,
 };
 
+static uint32_t axes_moving(const struct interp_cursor *c)
+{
+	uint32_t n = 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++)
+		n += interp_round_sub(walk_node(c, j, false)) !=
+		     interp_round_sub(walk_node(c, j, true));
+	return n;
+}
+
+/* Up to two axes a tree is all there is. */
+static const struct interp_walk *walk_of_line(const struct interp_cursor *c)
+{
+	const struct interp_program_head *h = c->p.head;
+
+	if (h->strategy == INTERP_SIMULTANEOUS)
+		return &walk_line;
+	if (h->strategy == INTERP_DDA)
+		return &walk_dda_line;
+	if (h->strategy == INTERP_POINT_BY_POINT ||
+	    h->coupling == INTERP_TREE || axes_moving(c) < 3)
+		return &walk_tree;
+	return &walk_flat;
+}
+
 static const struct interp_walk *walk_of(const struct interp_cursor *c)
 {
-	const bool arc = c->seg.kind == INTERP_ARC;
-
 	if (c->seg.kind >= INTERP_BEGIN)
 		return &walk_action;
 	if (c->seg.kind == INTERP_PAIR)
 		return c->p.head->strategy == INTERP_SIMULTANEOUS ?
 		       &walk_pair_at_once : &walk_pair;
+	if (c->seg.kind != INTERP_ARC)
+		return walk_of_line(c);
 	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
-		return arc ? &walk_arc : &walk_line;
-	if (!arc)
-		return &walk_tree;
+		return &walk_arc;
+	if (c->p.head->strategy == INTERP_DDA)
+		return &walk_dda_arc;
 	return c->seg.ticks == c->arc.circle_ticks ? &walk_circle :
 						     &walk_helix;
 }

@@ -25,6 +25,9 @@ static bool head_ok(const struct interp_program_head *h, size_t bytes)
 	if (h->nsegs < 2 || h->nconds < 1 || h->naxes > INTERP_NAXES ||
 	    h->strategy >= INTERP_NSTRATEGIES || !isfinite(h->length_mm))
 		return false;
+	if (h->tolerance_milli > INTERP_TOLERANCE_MAX ||
+	    h->perpendicular > 1 || h->coupling >= INTERP_NCOUPLINGS)
+		return false;
 	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
 		if (!(h->pulse_mm[i] > 0 && isfinite(h->pulse_mm[i])))
 			return false;
@@ -50,6 +53,7 @@ int interp_program_map(struct interp_program *p, const void *block,
 		      sizeof(*p->nodes)) ||
 	    !table_ok(h, h->arcs_at, h->narcs, sizeof(*p->arcs)) ||
 	    !table_ok(h, h->conds_at, h->nconds, sizeof(*p->conds)) ||
+	    !table_ok(h, h->runs_at, h->nruns, sizeof(*p->runs)) ||
 	    !table_ok(h, h->couples_at, h->ncouples, sizeof(*p->couples)) ||
 	    !table_ok(h, h->bits_at, h->nbits, sizeof(*p->bits)))
 		return -EBADMSG;
@@ -59,6 +63,7 @@ int interp_program_map(struct interp_program *p, const void *block,
 	p->nodes = (const void *)(base + h->nodes_at);
 	p->arcs = (const void *)(base + h->arcs_at);
 	p->conds = (const void *)(base + h->conds_at);
+	p->runs = (const void *)(base + h->runs_at);
 	p->couples = (const void *)(base + h->couples_at);
 	p->bits = (const void *)(base + h->bits_at);
 	if (p->segs[0].kind != INTERP_BEGIN ||
@@ -92,7 +97,26 @@ bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 static const char *const strategies[INTERP_NSTRATEGIES] = {
 	[INTERP_SIMULTANEOUS]	= "simultaneous",
 	[INTERP_POINT_BY_POINT]	= "point-by-point",
+	[INTERP_CENTRED]	= "centred",
+	[INTERP_DDA]		= "dda",
+	[INTERP_MAIN_DIRECTION]	= "main-direction",
+	[INTERP_MIN_SWITCH]	= "min-switch",
 };
+
+static const char *const couplings[INTERP_NCOUPLINGS] = {
+	[INTERP_STAR]	= "star",
+	[INTERP_TREE]	= "tree",
+	[INTERP_TUBE]	= "tube",
+};
+
+static int parse(const char *const *names, int n, const char *name)
+{
+	for (int i = 0; i < n; i++) {
+		if (strcmp(names[i], name) == 0)
+			return i;
+	}
+	return -EINVAL;
+}
 
 const char *interp_strategy_name(enum interp_strategy s)
 {
@@ -101,9 +125,15 @@ const char *interp_strategy_name(enum interp_strategy s)
 
 int interp_strategy_parse(const char *name)
 {
-	for (int i = 0; i < INTERP_NSTRATEGIES; i++) {
-		if (strcmp(strategies[i], name) == 0)
-			return i;
-	}
-	return -EINVAL;
+	return parse(strategies, INTERP_NSTRATEGIES, name);
+}
+
+const char *interp_coupling_name(enum interp_coupling k)
+{
+	return k < INTERP_NCOUPLINGS ? couplings[k] : NULL;
+}
+
+int interp_coupling_parse(const char *name)
+{
+	return parse(couplings, INTERP_NCOUPLINGS, name);
 }

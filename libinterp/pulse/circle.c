@@ -25,6 +25,9 @@
  * The builder walks the arc once to learn where it begins.
  *
  * Centre, start and end are lattice points; R is the start's distance.
+ *
+ * An arc of min-switch has its runs planned by the builder (circle_runs.c) and
+ * stored; it walks along them either way.
  */
 #include "pulse/walk.h"
 
@@ -55,14 +58,27 @@ static const struct circle_way *way(const struct interp_circle *k)
 	return &ways[k->ccw > 0][k->quad];
 }
 
-static int64_t in_of(const struct interp_circle *k)
+int64_t circle_in(const struct interp_circle *k)
 {
 	return llabs(way(k)->in_x ? k->x : k->y);
 }
 
-static int64_t out_of(const struct interp_circle *k)
+int64_t circle_out(const struct interp_circle *k)
 {
 	return llabs(way(k)->in_x ? k->y : k->x);
+}
+
+int8_t circle_inward_axis(const struct interp_circle *k)
+{
+	return way(k)->in_x ? 0 : 1;
+}
+
+void circle_toward(const struct interp_circle *k, bool inward, int8_t ret[2])
+{
+	const struct circle_way *w = way(k);
+
+	ret[0] = inward ? w->in_x : w->out_x;
+	ret[1] = inward ? w->in_y : w->out_y;
 }
 
 /* Quadrant counter-clockwise motion is in when it leaves (x, y). */
@@ -92,6 +108,20 @@ static void circle_pulse(struct interp_circle *k, int8_t dx, int8_t dy)
 	k->y += dy;
 }
 
+void circle_move(struct interp_circle *k, const int8_t pulse[2])
+{
+	circle_pulse(k, pulse[0], pulse[1]);
+	k->tick++;
+}
+
+void circle_cross(struct interp_circle *k)
+{
+	if (k->left > 0 && circle_in(k) == 0) {
+		k->left--;
+		k->quad = (int8_t)((k->quad + k->ccw) & 3);
+	}
+}
+
 static int8_t toward(int64_t from, int64_t to)
 {
 	return (int8_t)((to > from) - (to < from));
@@ -103,34 +133,84 @@ static void tail_forward(struct interp_circle *k, int8_t ret[2])
 	ret[1] = ret[0] ? 0 : toward(k->y, k->ye);
 }
 
+/* -- Along stored runs ------------------------------------------------------ */
+
+static void run_pulse(const struct interp_circle *k, uint32_t run,
+		      int8_t ret[2])
+{
+	const int axis = (int)((run + k->run_first) & 1);
+
+	ret[axis] = k->runs[run] > 0 ? 1 : -1;
+	ret[!axis] = 0;
+}
+
+/* Of a damaged block the runs may end early: then there is no pulse. */
+static void runs_forward(struct interp_circle *k, int8_t ret[2])
+{
+	ret[0] = ret[1] = 0;
+	if (k->sent == llabs((int64_t)k->runs[k->run])) {
+		if (k->run + 1 >= k->nruns || k->runs[k->run + 1] == 0)
+			return;
+		k->run++;
+		k->sent = 0;
+	}
+	k->sent++;
+	run_pulse(k, k->run, ret);
+	circle_move(k, ret);
+}
+
+static void runs_last(const struct interp_circle *k, int8_t ret[2])
+{
+	ret[0] = ret[1] = 0;
+	if (k->sent > 0)
+		run_pulse(k, k->run, ret);
+}
+
+static void runs_back(struct interp_circle *k, int8_t ret[2])
+{
+	int8_t was[2];
+
+	runs_last(k, was);
+	ret[0] = (int8_t)-was[0];
+	ret[1] = (int8_t)-was[1];
+	circle_pulse(k, ret[0], ret[1]);
+	k->tick--;
+	if (k->sent > 0)
+		k->sent--;
+	if (k->sent == 0 && k->run > 0) {
+		k->run--;
+		k->sent = llabs((int64_t)k->runs[k->run]);
+	}
+}
+
+/* -- By comparison ---------------------------------------------------------- */
+
 void circle_forward(struct interp_circle *k, int8_t ret[2])
 {
-	const struct circle_way *w = way(k);
-
-	if (k->tick >= k->tail) {
+	if (k->runs) {
+		runs_forward(k, ret);
+		return;
+	}
+	if (k->tick >= k->tail)
 		tail_forward(k, ret);
-	} else if (k->dev >= 0) {
-		ret[0] = w->in_x;
-		ret[1] = w->in_y;
-	} else {
-		ret[0] = w->out_x;
-		ret[1] = w->out_y;
-	}
-	circle_pulse(k, ret[0], ret[1]);
-	k->tick++;
-	if (k->left > 0 && k->tick <= k->tail && in_of(k) == 0) {
-		k->left--;
-		k->quad = (int8_t)((k->quad + k->ccw) & 3);
-	}
+	else
+		circle_toward(k, k->dev >= 0, ret);
+	circle_move(k, ret);
+	if (k->tick <= k->tail)
+		circle_cross(k);
 }
 
 /* The way of the last pulse, and whether it ended in a crossing. */
 static bool last_pulse(const struct interp_circle *k, int8_t ret[2])
 {
 	struct interp_circle before = *k;
-	const int64_t in = in_of(k), out = out_of(k);
+	const int64_t in = circle_in(k), out = circle_out(k);
 	bool inward, crossed = false;
 
+	if (k->runs) {
+		runs_last(k, ret);
+		return false;
+	}
 	if (k->tick > k->tail) {
 		ret[1] = toward(k->yt, k->y);
 		ret[0] = ret[1] ? 0 : toward(k->xt, k->x);
@@ -143,8 +223,7 @@ static bool last_pulse(const struct interp_circle *k, int8_t ret[2])
 	} else {
 		inward = out == 0 || k->dev <= 2 * out - 2 * in - 3;
 	}
-	ret[0] = inward ? way(&before)->in_x : way(&before)->out_x;
-	ret[1] = inward ? way(&before)->in_y : way(&before)->out_y;
+	circle_toward(&before, inward, ret);
 	return crossed;
 }
 
@@ -152,6 +231,10 @@ void circle_back(struct interp_circle *k, int8_t ret[2])
 {
 	int8_t was[2];
 
+	if (k->runs) {
+		runs_back(k, ret);
+		return;
+	}
 	if (last_pulse(k, was)) {
 		k->left++;
 		k->quad = (int8_t)((k->quad - k->ccw) & 3);
@@ -163,7 +246,7 @@ void circle_back(struct interp_circle *k, int8_t ret[2])
 }
 
 /* Twice the area swept by a pulse that ended at (x, y), and one for itself. */
-static int64_t pulse_measure(const struct interp_circle *k, const int8_t was[2])
+int64_t circle_measure_of(const struct interp_circle *k, const int8_t was[2])
 {
 	const int64_t area = k->ccw * (k->x * was[1] - k->y * was[0]);
 
@@ -175,7 +258,7 @@ int64_t circle_last(const struct interp_circle *k)
 	int8_t was[2];
 
 	last_pulse(k, was);
-	return pulse_measure(k, was);
+	return circle_measure_of(k, was);
 }
 
 /* Smallest n with n*n >= r2 - 1. */
@@ -246,13 +329,13 @@ static int64_t circle_crossings(const struct interp_arc *arc,
 }
 
 /* In the last quadrant: is an axis home, or past it? */
-static bool circle_home(const struct interp_circle *k)
+bool circle_home(const struct interp_circle *k)
 {
 	const struct circle_way *w = way(k);
 	const int64_t in_e = llabs(w->in_x ? k->xe : k->ye);
 	const int64_t out_e = llabs(w->in_x ? k->ye : k->xe);
 
-	return k->left == 0 && (in_of(k) <= in_e || out_of(k) >= out_e);
+	return k->left == 0 && (circle_in(k) <= in_e || circle_out(k) >= out_e);
 }
 
 bool circle_measure(struct interp_arc *arc, const int64_t start[2],
@@ -271,14 +354,14 @@ bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 		return false;
 	while (!circle_home(&k)) {
 		circle_forward(&k, was);
-		arc->measure += pulse_measure(&k, was);
+		arc->measure += circle_measure_of(&k, was);
 	}
 	arc->tail = k.tail = k.tick;
 	arc->tail_a = (int32_t)(k.xe - k.x);
 	arc->tail_b = (int32_t)(k.ye - k.y);
 	while (k.x != k.xe || k.y != k.ye) {
 		circle_forward(&k, was);
-		arc->measure += pulse_measure(&k, was);
+		arc->measure += circle_measure_of(&k, was);
 	}
 	arc->circle_ticks = k.tick;
 	return true;
@@ -286,31 +369,57 @@ bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 
 /* -- As a walk --------------------------------------------------------- */
 
-void walk_arc_nodes(const struct interp_cursor *c, const struct interp_arc *arc,
-		    int64_t start[2], int64_t end[2])
+/*
+ * Node @at_end of the plane's two axes, from the centre, pulses.  The centre
+ * is rounded as the builder did, tie for tie: mm / pulse_mm.
+ */
+void walk_circle_node(const struct interp_cursor *c, bool at_end,
+		      int64_t ret[2])
 {
-	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		const uint32_t axis = c->p.head->column[j];
-		const bool b = axis == arc->axis_b;
-		int64_t centre;
+	const struct interp_arc *arc = &c->arc;
+	const double *pulse_mm = c->p.head->pulse_mm;
 
-		if (axis != arc->axis_a && !b)
-			continue;
-		centre = llround((b ? arc->b_mm : arc->a_mm) *
-				 c->pulses_mm[axis]);
-		start[b] = interp_round_sub(walk_node(c, j, false)) - centre;
-		end[b] = interp_round_sub(walk_node(c, j, true)) - centre;
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const int64_t at = interp_round_sub(walk_node(c, j, at_end));
+
+		if (c->p.head->column[j] == arc->axis_a)
+			ret[0] = at - llround(arc->a_mm /
+					      pulse_mm[arc->axis_a]);
+		if (c->p.head->column[j] == arc->axis_b)
+			ret[1] = at - llround(arc->b_mm /
+					      pulse_mm[arc->axis_b]);
 	}
+}
+
+/* Stand at the first or behind the last of the arc's stored runs. */
+static bool circle_runs_set(struct interp_cursor *c, bool at_end)
+{
+	const struct interp_arc *arc = &c->arc;
+	struct interp_circle *k = &c->circle;
+
+	if (arc->nruns > c->p.head->nruns ||
+	    arc->run_at > c->p.head->nruns - arc->nruns ||
+	    arc->circle_ticks >= INTERP_PULSES_MAX)
+		return false;
+	k->runs = c->p.runs + arc->run_at;
+	k->nruns = arc->nruns;
+	k->run_first = arc->run_first & 1;
+	k->run = at_end ? k->nruns - 1 : 0;
+	k->sent = at_end ? llabs((int64_t)k->runs[k->run]) : 0;
+	return k->runs[k->run] != 0;
 }
 
 bool walk_circle_set(struct interp_cursor *c, bool at_end)
 {
+	const struct interp_arc *arc = &c->arc;
 	int64_t start[2] = { 0, 0 }, end[2] = { 0, 0 };
 
-	if (!walk_plane_ok(c, &c->arc))
+	if (!walk_plane_ok(c))
 		return false;
-	walk_arc_nodes(c, &c->arc, start, end);
-	return circle_enter(&c->circle, &c->arc, start, end, at_end);
+	walk_circle_node(c, false, start);
+	walk_circle_node(c, true, end);
+	return circle_enter(&c->circle, arc, start, end, at_end) &&
+	       (arc->nruns == 0 || circle_runs_set(c, at_end));
 }
 
 static bool walk_circle_enter(struct interp_cursor *c, bool at_end)
@@ -331,6 +440,8 @@ uint32_t walk_circle_pulse(struct interp_cursor *c, int dir)
 		circle_forward(&c->circle, was);
 	else
 		circle_back(&c->circle, was);
+	if (was[0] == 0 && was[1] == 0)
+		return WALK_BAD;
 	c->pos[c->arc.axis_a] += was[0];
 	c->pos[c->arc.axis_b] += was[1];
 	return (uint32_t)(was[0] != 0) << c->arc.axis_a |
@@ -344,6 +455,8 @@ static uint32_t walk_circle_forward(struct interp_cursor *c)
 	if (c->circle.tick >= c->circle.ticks)
 		return WALK_BAD;
 	moved = walk_circle_pulse(c, 1);
+	if (moved == WALK_BAD)
+		return WALK_BAD;
 	c->measure += circle_last(&c->circle);
 	c->tick = c->circle.tick;
 	return moved;

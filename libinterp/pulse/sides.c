@@ -12,7 +12,7 @@
  * back to the start, and is the same both ways.
  *
  * The contours themselves are undone without memory: the circle as circle.c
- * says, the line as one pair of tree.c.
+ * says, the line by its deviation's range.
  *
  * The measure is that of X Y, a pulse of U V counts one: it follows the length
  * on X Y, and every tick adds to it.
@@ -35,9 +35,9 @@ static bool line_enter(struct interp_side *s, const int64_t start[2],
 		return false;
 	for (int i = 0; i < 2; i++)
 		s->sign[i] = d[i] > 0 ? 1 : -1;
-	s->line = (struct interp_pair) {
-		.a = n[a], .b = n[!a], .in_a = a, .in_b = !a,
-	};
+	s->longer = a;
+	s->a = n[a];
+	s->b = n[!a];
 	return n[0] + n[1] == s->ticks;
 }
 
@@ -52,30 +52,32 @@ bool side_enter(struct interp_side *s, const struct interp_arc *arc,
 			line_enter(s, start, end);
 }
 
-/* Which input of a line had the last pulse: see tree.c. */
-static bool line_last_a(const struct interp_pair *p)
+/*
+ * dev >= 0 pulses the longer axis, below 0 the shorter; it stays in [-b, a),
+ * where that is a rotation by -b modulo a + b.  So the last pulse was the
+ * longer axis's if and only if dev < a - b.
+ */
+static bool line_last_longer(const struct interp_side *s)
 {
-	return p->dev < p->a - p->b;
+	return s->dev < s->a - s->b;
 }
 
 static void line_forward(struct interp_side *s, int8_t ret[2])
 {
-	struct interp_pair *p = &s->line;
-	const bool a = p->dev >= 0;
-	const int in = a ? p->in_a : p->in_b;
+	const bool longer = s->dev >= 0;
+	const int in = longer ? s->longer : !s->longer;
 
-	p->dev += a ? -p->b : p->a;
+	s->dev += longer ? -s->b : s->a;
 	ret[in] = s->sign[in];
 	ret[!in] = 0;
 }
 
 static void line_back(struct interp_side *s, int8_t ret[2])
 {
-	struct interp_pair *p = &s->line;
-	const bool a = line_last_a(p);
-	const int in = a ? p->in_a : p->in_b;
+	const bool longer = line_last_longer(s);
+	const int in = longer ? s->longer : !s->longer;
 
-	p->dev -= a ? -p->b : p->a;
+	s->dev -= longer ? -s->b : s->a;
 	ret[in] = (int8_t)-s->sign[in];
 	ret[!in] = 0;
 }
@@ -110,7 +112,7 @@ int64_t side_last(const struct interp_side *s)
 {
 	if (s->arc)
 		return circle_last(&s->circle);
-	return line_last_a(&s->line) ? s->line.a : s->line.b;
+	return line_last_longer(s) ? s->a : s->b;
 }
 
 /* -- As a walk ---------------------------------------------------------- */
@@ -129,7 +131,7 @@ static bool others_stand(const struct interp_cursor *c)
 	return true;
 }
 
-static bool couple_ok(const struct interp_cursor *c)
+static bool couple_ok(struct interp_cursor *c)
 {
 	const struct interp_couple *p = &c->couple;
 	const uint64_t words = ((uint64_t)c->seg.ticks + 63) / 64;
@@ -137,7 +139,8 @@ static bool couple_ok(const struct interp_cursor *c)
 			       p->side[1].circle_ticks;
 
 	for (int i = 0; i < 2; i++) {
-		if (!walk_plane_ok(c, &p->side[i]) || p->side[i].measure < 0 ||
+		c->arc = p->side[i];
+		if (!walk_plane_ok(c) || p->side[i].measure < 0 ||
 		    p->side[i].measure > INT64_MAX / 2)
 			return false;
 	}
@@ -155,7 +158,9 @@ static bool pair_enter(struct interp_cursor *c, bool at_end)
 		const struct interp_arc *arc = &c->couple.side[i];
 		int64_t start[2] = { 0, 0 }, end[2] = { 0, 0 };
 
-		walk_arc_nodes(c, arc, start, end);
+		c->arc = *arc;
+		walk_circle_node(c, false, start);
+		walk_circle_node(c, true, end);
 		if (!side_enter(&c->side[i], arc, start, end, at_end))
 			return false;
 	}

@@ -1,18 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tree.c - any number of axes by point-by-point comparison
+ * tree.c - any number of axes, one at a time, by pairs of pairs
  *
- * Two axes are one comparison; more are coupled step by step, as the paper on
- * main-direction interpolation has it (section 1.3): pairs make inputs of
- * pairs, (((X,Y),(Z,A)),(B,C)), and every tick goes from the root to one leaf.
- * A pair with a and b pulses to give, a >= b, has
- *
- *	F = m_b*a - m_a*b
- *	F >= 0:  input a,  F - b
- *	F <  0:  input b,  F + a
- *
- * F stays in [-b, a), where the rule is a rotation by -b modulo (a + b); so
- * the last pulse was a's if and only if F < a - b.  At both ends F is 0.
+ * Every tick goes from the root of the tree to one leaf, each pair on the way
+ * choosing by its rule; back, each pair tells which of its inputs came last.
+ * Two axes are one pair, one axis is a leaf alone.
  *
  * A helix is led by its circle: the other axes are one such tree, and one of
  * their pulses is due whenever their share of the way falls half a pulse
@@ -20,18 +12,13 @@
  * length.  What is due depends on the circle's place alone, so the last pulse
  * was the tree's if more have been sent than were due one circle pulse ago.
  */
+#include "pulse/couple.h"
 #include "pulse/walk.h"
 
 #include <stdlib.h>
 
-struct input {
-	int8_t code;			/* axis, or ~pair */
-	int64_t pulses;
-};
-
-/* The leaves: every axis with a pulse to give, in order. */
-static uint32_t tree_leaves(struct interp_cursor *c, uint32_t except,
-			    struct input *in)
+uint32_t walk_inputs(struct interp_cursor *c, uint32_t except,
+		     struct couple_input *in)
 {
 	uint32_t n = 0;
 
@@ -43,113 +30,77 @@ static uint32_t tree_leaves(struct interp_cursor *c, uint32_t except,
 		if (d == 0 || except & 1u << axis)
 			continue;
 		c->sign[axis] = d > 0 ? 1 : -1;
-		in[n++] = (struct input) { (int8_t)axis, llabs(d) };
+		in[n++] = (struct couple_input) { (int8_t)axis, llabs(d) };
 	}
 	return n;
 }
 
-/* Couple two inputs; the one with more pulses is a, of equals the first. */
-static struct input tree_couple(struct interp_cursor *c, uint32_t i,
-				struct input p, struct input q)
+struct couple_rule walk_rule(const struct interp_cursor *c)
 {
-	const bool swap = q.pulses > p.pulses;
-	const struct input a = swap ? q : p, b = swap ? p : q;
+	const struct interp_program_head *h = c->p.head;
 
-	c->pair[i] = (struct interp_pair) {
-		.a = a.pulses, .b = b.pulses, .dev = 0,
-		.in_a = a.code, .in_b = b.code,
+	return (struct couple_rule) {
+		.strategy = (enum interp_strategy)h->strategy,
+		.coupling = (enum interp_coupling)h->coupling,
+		.tube = { h->tolerance_milli, h->perpendicular },
 	};
-	return (struct input) { (int8_t)~i, a.pulses + b.pulses };
-}
-
-/* Couple level by level; the root's total. */
-static int64_t tree_build(struct interp_cursor *c, struct input *in, uint32_t n)
-{
-	uint32_t pairs = 0;
-
-	while (n > 1) {
-		uint32_t m = 0;
-
-		for (uint32_t i = 0; i + 1 < n; i += 2, pairs++)
-			in[m++] = tree_couple(c, pairs, in[i], in[i + 1]);
-		if (n % 2)
-			in[m++] = in[n - 1];
-		n = m;
-	}
-	c->root = in[0].code;
-	return in[0].pulses;
 }
 
 /* Aim the tree at all axes but @except; the sum of their pulses. */
-static int64_t tree_set(struct interp_cursor *c, uint32_t except)
+static int64_t tree_set(struct interp_cursor *c, uint32_t except, bool at_end)
 {
-	struct input in[INTERP_NAXES];
-	const uint32_t n = tree_leaves(c, except, in);
+	const struct couple_rule rule = walk_rule(c);
+	struct couple_input in[INTERP_NAXES], root;
+	const uint32_t n = walk_inputs(c, except, in);
 
-	return n == 0 ? 0 : tree_build(c, in, n);
+	if (n == 0)
+		return 0;
+	for (uint32_t i = 0; i < n; i++) {
+		/* Of a damaged block: what no builder makes. */
+		if (in[i].pulses > INTERP_PULSES_MAX)
+			return -1;
+	}
+	root = couple_tree(c->pair, in, n);
+	if (root.pulses > INTERP_PULSES_MAX)
+		return -1;
+	couple_set(c->pair, n - 1, &rule, at_end);
+	c->root = root.code;
+	return root.pulses;
 }
 
 static bool tree_enter(struct interp_cursor *c, bool at_end)
 {
-	return walk_stand(c, at_end) && tree_set(c, 0) == c->seg.ticks;
-}
-
-/* The leaf whose pulse comes next, from the root. */
-static int8_t tree_next(struct interp_cursor *c)
-{
-	int8_t code = c->root;
-
-	while (code < 0) {
-		struct interp_pair *p = &c->pair[~code];
-
-		if (p->dev >= 0) {
-			p->dev -= p->b;
-			code = p->in_a;
-		} else {
-			p->dev += p->a;
-			code = p->in_b;
-		}
-	}
-	return code;
-}
-
-/* The leaf whose pulse came last; its comparisons are undone. */
-static int8_t tree_last(struct interp_cursor *c)
-{
-	int8_t code = c->root;
-
-	while (code < 0) {
-		struct interp_pair *p = &c->pair[~code];
-
-		if (p->dev < p->a - p->b) {
-			p->dev += p->b;
-			code = p->in_a;
-		} else {
-			p->dev -= p->a;
-			code = p->in_b;
-		}
-	}
-	return code;
+	return walk_stand(c, at_end) && tree_set(c, 0, at_end) == c->seg.ticks;
 }
 
 static uint32_t tree_forward(struct interp_cursor *c)
 {
-	const int8_t axis = tree_next(c);
+	int8_t code = c->root;
 
+	while (code < 0) {
+		struct interp_pair *p = &c->pair[~code];
+
+		code = pair_forward(p) ? p->in_a : p->in_b;
+	}
 	c->tick++;
 	c->measure++;
-	c->pos[axis] += c->sign[axis];
-	return 1u << axis;
+	c->pos[code] += c->sign[code];
+	return 1u << code;
 }
 
 static uint32_t tree_back(struct interp_cursor *c)
 {
-	const int8_t axis = tree_last(c);
+	int8_t code = c->root;
 
+	while (code < 0) {
+		struct interp_pair *p = &c->pair[~code];
+
+		code = pair_back(p) ? p->in_a : p->in_b;
+	}
 	c->tick--;
 	c->measure--;
-	c->pos[axis] -= c->sign[axis];
-	return 1u << axis;
+	c->pos[code] -= c->sign[code];
+	return 1u << code;
 }
 
 const struct interp_walk walk_tree = {
@@ -165,7 +116,10 @@ static bool helix_enter(struct interp_cursor *c, bool at_end)
 {
 	if (!walk_stand(c, at_end) || !walk_circle_set(c, at_end))
 		return false;
-	c->others = tree_set(c, 1u << c->arc.axis_a | 1u << c->arc.axis_b);
+	c->others = tree_set(c, 1u << c->arc.axis_a | 1u << c->arc.axis_b,
+			     at_end);
+	if (c->others < 0)
+		return false;
 	c->circle_at = at_end ? c->arc.measure : 0;
 	c->whole = c->arc.measure + c->others;
 	c->measure = at_end ? c->whole : 0;

@@ -16,6 +16,7 @@
 
 /* For products of two measures. */
 __extension__ typedef __int128 walk_wide;
+__extension__ typedef unsigned __int128 walk_uwide;
 
 #define WALK_BAD	UINT32_MAX	/* instead of a mask of axes moved */
 
@@ -33,6 +34,11 @@ struct interp_walk {
 extern const struct interp_walk walk_line;
 /* Arcs, every axis at once: arc.c. */
 extern const struct interp_walk walk_arc;
+/* Lines by accumulators, arcs by two that feed each other: dda.c. */
+extern const struct interp_walk walk_dda_line;
+extern const struct interp_walk walk_dda_arc;
+/* Lines of three and more axes by star or tube: flat.c. */
+extern const struct interp_walk walk_flat;
 /* Lines and helices, one axis at a time: tree.c. */
 extern const struct interp_walk walk_tree;
 extern const struct interp_walk walk_helix;
@@ -70,20 +76,20 @@ uint32_t walk_dda_forward(struct interp_cursor *c);
 uint32_t walk_dda_back(struct interp_cursor *c);
 int64_t walk_last_tick(const struct interp_cursor *c);
 
+struct couple_input;
+struct couple_rule;
+
+/** walk_inputs() - every axis but @except with a pulse to give; signs set. */
+uint32_t walk_inputs(struct interp_cursor *c, uint32_t except,
+		     struct couple_input *in);
+/** walk_rule() - strategy, coupling and tolerance of the program. */
+struct couple_rule walk_rule(const struct interp_cursor *c);
+
+/** walk_dda_ticks() - of a line of @longest pulses: a power of two, or 0. */
+int64_t walk_dda_ticks(int64_t longest);
+
 /** walk_plane_ok() - are an arc's axes and centre in range? */
-bool walk_plane_ok(const struct interp_cursor *c, const struct interp_arc *arc);
-
-/** walk_arc_settle() - the plane's axes to their place at c->tick: arc.c.
- *  Return: the mask of axes moved, or WALK_BAD. */
-uint32_t walk_arc_settle(struct interp_cursor *c, const struct interp_arc *arc);
-
-/** walk_arc_ticks_max() - the most ticks an honest builder gives an arc. */
-double walk_arc_ticks_max(const struct interp_cursor *c,
-			  const struct interp_arc *arc);
-
-/** walk_arc_nodes() - an arc's start and end, from its centre, pulses. */
-void walk_arc_nodes(const struct interp_cursor *c, const struct interp_arc *arc,
-		    int64_t start[2], int64_t end[2]);
+bool walk_plane_ok(const struct interp_cursor *c);
 
 /* The circle alone, used by walk_circle, by trees and by the builder. */
 bool circle_enter(struct interp_circle *k, const struct interp_arc *arc,
@@ -109,6 +115,47 @@ bool side_forward(struct interp_side *s, int8_t ret[2]);
 bool side_back(struct interp_side *s, int8_t ret[2]);
 /** What the last pulse added to the side's measure: > 0. */
 int64_t side_last(const struct interp_side *s);
+/* One pulse of it, for planning: circle_runs.c. */
+int64_t circle_in(const struct interp_circle *k);	/* shrinking, >= 0 */
+int64_t circle_out(const struct interp_circle *k);	/* growing, >= 0 */
+int8_t circle_inward_axis(const struct interp_circle *k);	/* 0: a, 1: b */
+/** circle_toward() - the pulse that goes inward, or outward. */
+void circle_toward(const struct interp_circle *k, bool inward, int8_t ret[2]);
+void circle_move(struct interp_circle *k, const int8_t pulse[2]);
+/** circle_cross() - into the next quadrant, if it is there. */
+void circle_cross(struct interp_circle *k);
+/** circle_home() - in the last quadrant: is an axis home, or past it? */
+bool circle_home(const struct interp_circle *k);
+/** circle_measure_of() - what a pulse that ended here adds to the measure. */
+int64_t circle_measure_of(const struct interp_circle *k, const int8_t was[2]);
+
+/* A path in a tube of +-mu, by runs: circle_runs.c.  For the builder. */
+struct circle_plan {
+	int64_t start[2], end[2];	/* from the centre, pulses */
+	uint32_t milli;			/* mu, 1/1000 pulse */
+	int8_t first;			/* the axis to begin with, 0: a, 1: b */
+};
+/**
+ * circle_plan_runs() - fill @arc's measure, ticks and number of runs, and
+ * @runs as far as there is room.  arc->crossings is known.
+ * Return: false if no path keeps to the tube.
+ */
+bool circle_plan_runs(struct interp_arc *arc, const struct circle_plan *p,
+		      int32_t *runs, uint32_t room);
+/** circle_smallest_milli() - @milli, or more if the circle needs more. */
+uint32_t circle_smallest_milli(int64_t r2, uint32_t milli);
+
+/**
+ * dda_measure() - the same for a pair of accumulators: ticks, tail and rests;
+ * at least @others ticks.
+ * Return: false if it has too many ticks.  dda.c.
+ */
+bool dda_measure(struct interp_arc *arc, const int64_t start[2],
+		 const int64_t end[2], int64_t others);
+
+/** walk_circle_node() - start or end of c->arc's plane from its centre. */
+void walk_circle_node(const struct interp_cursor *c, bool at_end,
+		      int64_t ret[2]);
 
 /** walk_circle_set() - aim c->circle at c->arc; false if it is unsound. */
 bool walk_circle_set(struct interp_cursor *c, bool at_end);

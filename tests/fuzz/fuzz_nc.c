@@ -61,8 +61,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	};
 	const struct interp_build_options bo = {
 		.machine = &m,
-		.strategy = size % 2 ? INTERP_POINT_BY_POINT :
-				       INTERP_SIMULTANEOUS,
+		.strategy = (enum interp_strategy)(size % INTERP_NSTRATEGIES),
+		.tolerance_milli = 1500,
+		.coupling = (enum interp_coupling)(size / INTERP_NSTRATEGIES %
+						   INTERP_NCOUPLINGS),
 	};
 	struct interp_diag diag = { .found = "" };
 	struct interp_nc_result result;

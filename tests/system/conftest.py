@@ -10,7 +10,7 @@ def idle(tmp_path):
     yield m
     m.close()
     if m.edmd or m.jobs:
-        assert m.shm() == [], "left in /dev/shm"
+        assert m.sweep() == [], "left in /dev/shm"
 
 
 @pytest.fixture

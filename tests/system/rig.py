@@ -15,7 +15,7 @@ import subprocess
 import sys
 import time
 
-BUILD = pathlib.Path(os.environ.get("BUILD", "build")).resolve()
+BUILD = pathlib.Path(os.environ.get("EDM_BUILD", "build")).resolve()
 sys.path.insert(0, str(BUILD / "python"))
 
 import lcm  # noqa: E402
@@ -267,6 +267,13 @@ class Machine:
             p.name
             for p in pathlib.Path("/dev/shm").glob(f"edmd.{self.name}.{what}*")
         )
+
+    def sweep(self):
+        """Remove what is left in /dev/shm; tell what it was."""
+        left = self.shm()
+        for name in left:
+            pathlib.Path("/dev/shm", name).unlink()
+        return left
 
     def ctl(self, *args, timeout=30, **more):
         return subprocess.run(

@@ -21,6 +21,11 @@ struct interp_build;
 struct interp_build_options {
 	const struct interp_machine *machine;	/* read at every call; lent */
 	enum interp_strategy strategy;
+	uint32_t tolerance_milli;	/* mu, 1/1000 pulse; main-direction and
+					 * min-switch refuse a line whose mu no
+					 * path can keep to */
+	bool perpendicular;		/* mu is measured square to the line */
+	enum interp_coupling coupling;	/* of three and more axes */
 	double start_mm[INTERP_NAXES];	/* where the machine stands */
 };
 

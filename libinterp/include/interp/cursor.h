@@ -41,11 +41,19 @@ struct interp_dda {
 	uint32_t axis;
 };
 
-/* One node of a point-by-point tree: see pulse/tree.c. */
+/* Two inputs and the rule between them: see pulse/pair.h. */
 struct interp_pair {
-	int64_t a, b;			/* pulses of the two inputs, a >= b */
-	int64_t dev;			/* deviation F = m_b * a - m_a * b */
-	int8_t in_a, in_b;		/* an axis, a circle, or another pair */
+	int64_t a, b;			/* pulses of main and secondary */
+	int64_t m, s;			/* of them, given */
+	int64_t dev;			/* deviation e = b*m - a*s */
+	int64_t limit;			/* the secondary is due above it */
+	int64_t bursts;			/* of the secondary; 0: none, by limit */
+	int64_t burst;			/* the one being sent, or next */
+	int64_t from, to;		/* s where it begins and ends */
+	int64_t due, done;		/* m where it is, where the last was */
+	int64_t lead, stops;		/* bursts at another pair's: its b and
+					 * bursts; 0: at places of its own */
+	int8_t in_a, in_b;		/* an axis, or ~another pair */
 };
 
 /* A circle by point-by-point comparison: see pulse/circle.c. */
@@ -60,13 +68,28 @@ struct interp_circle {
 	uint32_t crossings;		/* in the whole arc */
 	int8_t ccw;			/* +1 counter-clockwise, -1 clockwise */
 	int8_t quad;			/* quadrant 0 ... 3 being walked */
+	/* Along stored runs: */
+	const int32_t *runs;		/* NULL: by comparison */
+	uint32_t nruns, run;		/* run being walked */
+	int64_t sent;			/* pulses of it; 0 only at the start */
+	uint8_t run_first;		/* axis of run 0: 0 a, 1 b */
+};
+
+/* A circle by two accumulators: see pulse/dda.c. */
+struct interp_rotor {
+	int64_t x, y;			/* from the centre, pulses */
+	int64_t rest_x, rest_y;		/* accumulators, 0 ... 2^shift - 1 */
+	uint32_t shift;
+	int8_t ccw;			/* +1 counter-clockwise, -1 clockwise */
 };
 
 /* One contour of a pair: see pulse/sides.c. */
 struct interp_side {
 	struct interp_circle circle;	/* if it is an arc */
-	struct interp_pair line;	/* if not; inputs 0 and 1 */
+	int64_t a, b, dev;		/* if it is a line: pulses of the longer
+					 * and the shorter axis; b*m_a - a*m_b */
 	uint32_t tick, ticks;
+	int8_t longer;			/* 0 or 1 */
 	int8_t sign[2];			/* of the line's axes */
 	bool arc;
 };
@@ -94,13 +117,18 @@ struct interp_cursor {
 	struct interp_dda dda[INTERP_NAXES];
 	uint32_t ndda;
 	struct interp_pair pair[INTERP_NAXES];
-	int8_t root;
+	uint32_t npairs;
+	int8_t root;			/* of a tree; main axis of a star */
 	int8_t sign[INTERP_NAXES];
 	struct interp_circle circle;
 	struct interp_side side[2];
+	struct interp_rotor rotor;
 	int64_t others, circle_at;	/* a helix's other pulses; measure of
 					 * its circle alone */
 	double pulses_mm[INTERP_NAXES];	/* pulses per mm */
+	double arc_turn, arc_grow_mm;	/* angle, radius gained per tick */
+	double arc_cos, arc_sin;	/* of the middle of arc_block */
+	uint32_t arc_block;
 };
 
 /**

@@ -9,7 +9,7 @@
  * real-time process maps it read-only.
  *
  *	head | segments[nsegs] | nodes[nsegs + 1][naxes] | arcs[narcs]
- *	     | conditions[nconds] | couples[ncouples] | bits[nbits]
+ *	     | conditions[nconds] | couples[ncouples] | bits[nbits] | runs[nruns]
  *
  * Nodes are fixed-point: 1 pulse = INTERP_SUB subpulses, so a programmed
  * point finer than a pulse is kept, and there and back is exact.  A node has
@@ -31,14 +31,34 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	1
+#define INTERP_PROGRAM_VERSION	2
 
 /* How a path becomes pulses. */
 enum interp_strategy {
 	INTERP_SIMULTANEOUS,		/* every axis may pulse at once */
-	INTERP_POINT_BY_POINT,		/* one axis, one pulse at a time */
+	/* One axis, one pulse at a time, but for the dda; see pulse/pair.h: */
+	INTERP_POINT_BY_POINT,		/* toward the line, within a pulse */
+	INTERP_CENTRED,			/* as near as one axis at a time can */
+	INTERP_DDA,			/* an accumulator for each axis */
+	INTERP_MAIN_DIRECTION,		/* the main axis as far as mu allows */
+	INTERP_MIN_SWITCH,		/* few changes of axis, within mu */
 	INTERP_NSTRATEGIES
 };
+
+/*
+ * How three and more axes make a line, one at a time.  Point-by-point is a
+ * tree always; two axes are the same in each; simultaneous and dda need none.
+ */
+enum interp_coupling {
+	INTERP_STAR,			/* each axis against the longest one */
+	INTERP_TREE,			/* pairs of pairs, (((X,Y),(Z,A)),(B,C)) */
+	INTERP_TUBE,			/* a star whose axes share their stops:
+					 * min-switch only */
+	INTERP_NCOUPLINGS
+};
+
+/* The widest tolerance: keeps every product of a line inside int64_t. */
+#define INTERP_TOLERANCE_MAX	1000000		/* 1/1000 pulse */
 
 enum interp_kind {
 	INTERP_LINE,
@@ -90,14 +110,19 @@ struct interp_arc {
 	double r_mm, dr_mm;
 	double theta;			/* radian, from a toward b, at the start */
 	double sweep;			/* radian, signed; + is counter-clockwise */
-	/* Point-by-point only, see pulse/circle.c: */
+	/* But for simultaneous, see pulse/circle.c and pulse/dda.c: */
 	int64_t measure;		/* of the whole circle: area and ticks */
 	uint32_t circle_ticks;		/* pulses in the plane */
 	uint32_t tail;			/* ticks before the first forced pulse */
 	int32_t tail_a, tail_b;		/* forced pulses from there to the end */
 	uint32_t crossings;		/* of the axes through the centre */
+	uint32_t run_at, nruns;		/* runs[run_at ...], min-switch only */
+	int64_t rest_a, rest_b;		/* dda: accumulators before the tail */
+	uint32_t shift;			/* dda: their modulus is 2^shift */
 	uint8_t axis_a, axis_b;		/* enum interp_axis */
-	uint8_t pad[2];
+	uint8_t run_first;		/* axis of the first run: 0 a, 1 b */
+	uint8_t pad;
+	uint32_t pad2;
 };
 
 /*
@@ -129,6 +154,12 @@ struct interp_program_head {
 	uint8_t column[INTERP_NAXES];	/* axis of node column j, j < naxes */
 	uint32_t strategy;		/* enum interp_strategy */
 	uint32_t lines;			/* of the source text */
+	uint32_t tolerance_milli;	/* mu, 1/1000 pulse */
+	uint32_t perpendicular;		/* 1: mu is square to the line; 0: along
+					 * the secondary axis */
+	uint32_t coupling;		/* enum interp_coupling */
+	uint32_t nruns;			/* of arcs by min-switch */
+	uint64_t runs_at;		/* bytes from the head */
 	double length_mm;
 	uint64_t ncouples, couples_at;
 	uint64_t nbits, bits_at;		/* words of 64 bits */
@@ -145,6 +176,7 @@ struct interp_program {
 	const int64_t *nodes;
 	const struct interp_arc *arcs;
 	const struct interp_cond *conds;
+	const int32_t *runs;		/* pulses in a row, signed */
 	const struct interp_couple *couples;
 	const uint64_t *bits;
 };
@@ -173,6 +205,12 @@ const char *interp_strategy_name(enum interp_strategy s);
 
 /** interp_strategy_parse() - the reverse; -EINVAL if unknown. Any thread. */
 int interp_strategy_parse(const char *name);
+
+/** interp_coupling_name() - "star", ...; NULL if unknown. Any thread. */
+const char *interp_coupling_name(enum interp_coupling k);
+
+/** interp_coupling_parse() - the reverse; -EINVAL if unknown. Any thread. */
+int interp_coupling_parse(const char *name);
 
 /** interp_round_sub() - subpulses to the nearest pulse. RT-safe. */
 static inline int32_t interp_round_sub(int64_t sub)

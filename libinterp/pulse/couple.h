@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * couple.h - any number of axes by pairs, one axis at a time
+ *
+ * Tree: pairs make inputs of pairs, level by level, (((X,Y),(Z,A)),(B,C)), as
+ * the paper on the main-direction rule couples axes step by step (its section
+ * 1.3).  A pair's inputs are within D = max|e|/(a + b) of their shares of what
+ * the pair has given, so a leaf is within the sum over its levels of D times
+ * the shares below.  Nothing is promised against the longest axis: that may be
+ * twice mu off.
+ *
+ * Star: every axis is the secondary of a pair with the longest one, so each
+ * is within its own rule's bound of the line; the whole within
+ * sqrt(n - 1) of it.  With mu square to the line each gets mu/sqrt(n - 1).
+ *
+ * Tube: a star by bursts whose axes share their stops.  The longest secondary
+ * has bursts of its own, any other waits for one of those, and not for every
+ * one.  Fewest changes of axis from four axes on; mu as in a star.  With G the
+ * widest gap between two stops an axis uses, it keeps to mu if
+ *
+ *	b*G + a <= 2*M
+ *
+ * Where shared stops are not possible, or would not save a change, it is a
+ * star.
+ *
+ * Threads: RT-safe but for couple_smallest_milli().
+ */
+#ifndef PULSE_COUPLE_H
+#define PULSE_COUPLE_H
+
+#include "pulse/pair.h"
+
+struct couple_input {
+	int8_t code;			/* an axis, or ~pair */
+	int64_t pulses;			/* > 0 */
+};
+
+struct couple_rule {
+	enum interp_strategy strategy;
+	enum interp_coupling coupling;
+	struct pair_tube tube;
+};
+
+/** couple_tree() - couple @n >= 1 inputs, written over; the root. */
+struct couple_input couple_tree(struct interp_pair *pair,
+				struct couple_input *in, uint32_t n);
+
+/**
+ * couple_star() - pair every input with the longest, of equals the first.
+ * Return: the longest's place in @in; the n - 1 pairs are in order.
+ */
+uint32_t couple_star(struct interp_pair *pair, const struct couple_input *in,
+		     uint32_t n);
+
+/** couple_set() - every pair at its start or end, by a tree's rule. */
+void couple_set(struct interp_pair *pair, uint32_t npairs,
+		const struct couple_rule *r, bool at_end);
+
+/**
+ * couple_set_flat() - the same for a star or a tube.
+ * Return: true if they share stops.
+ */
+bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
+		     const struct couple_rule *r, bool at_end);
+
+/**
+ * couple_smallest_milli() - the least mu that a line of these inputs admits.
+ *
+ * Return: the rule's own mu if that is enough, else more, in 1/1000 pulse.
+ */
+uint32_t couple_smallest_milli(const struct couple_rule *r,
+			       const struct couple_input *in, uint32_t n);
+
+#endif /* PULSE_COUPLE_H */

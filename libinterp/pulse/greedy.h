@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * greedy.h - the fewest changes of axis a line in a tube can have
+ *
+ * Keep the axis while its next pulse stays in |e| <= M and below its total,
+ * else change.  Of two paths in the tube that began on the same axis and have
+ * made as many runs, the greedy one is never behind: how far a run reaches
+ * rises with where it begins, and wherever 2*floor(M/g) + 1 >= (a + b)/g some
+ * pulse is legal at every place.  So the better of the two first axes is the
+ * optimum; the other one costs a run more at the most.
+ *
+ * What it cannot do is walk back from its place alone: two places may lead to
+ * one.  It needs its list of runs, which the caller owns.  Programs use the
+ * bursts of pulse/pair.h instead; this is the yardstick they are measured by.
+ *
+ * Threads: any; planning takes as long as the line has runs.
+ */
+#ifndef PULSE_GREEDY_H
+#define PULSE_GREEDY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct greedy_line {
+	int64_t a, b;			/* pulses, a >= b >= 0, a > 0 */
+	int64_t half_width;		/* M; if too narrow the step that strays
+					 * least is taken */
+};
+
+/* Runs alternate between main and secondary. */
+struct greedy_runs {
+	uint32_t *run;			/* the caller's; may be NULL to count */
+	size_t room;
+	size_t n;			/* as many as there are, room or not */
+	bool main_first;
+};
+
+/** greedy_plan_from() - the path that begins on the axis said. */
+void greedy_plan_from(const struct greedy_line *l, bool main_first,
+		      struct greedy_runs *r);
+
+/** greedy_plan() - the better one. */
+void greedy_plan(const struct greedy_line *l, struct greedy_runs *r);
+
+/* A place on it. */
+struct greedy_walk {
+	const struct greedy_runs *r;
+	size_t i;			/* run being walked */
+	uint32_t sent;			/* of it; 0 only at the start */
+};
+
+/** greedy_forward() - true: main.  Not at the end. */
+bool greedy_forward(struct greedy_walk *w);
+/** greedy_back() - undo the last one.  Not at the start. */
+bool greedy_back(struct greedy_walk *w);
+
+#endif /* PULSE_GREEDY_H */

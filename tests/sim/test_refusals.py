@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A bad input is refused with file, line, column, what was found and what
+would be accepted; never by a crash, never slowly."""
+import random
+import re
+import time
+
+import pytest
+from edmsim import PROGRAM, run
+
+FORM = re.compile(r"^(?P<file>[^\n]*):(?P<line>\d+):(?P<column>\d+): error: "
+                  r"(?P<found>[^\n]+?); (?P<wanted>[^\n]+)\n$")
+
+
+def refused(tmp_path, data):
+    job = tmp_path / "job.ngc"
+    job.write_bytes(data if isinstance(data, bytes) else data.encode())
+    begun = time.monotonic()
+    r = run("--dry-run", job)
+    assert time.monotonic() - begun < 10
+    assert r.returncode == 65, r.stderr
+    assert r.stdout == b""
+    told = FORM.match(r.stderr.decode())
+    assert told, r.stderr
+    assert told["file"] == str(job)
+    return told
+
+
+def nest(depth):
+    text = ["G21 F60", "M98 P1", "M2"]
+    for n in range(1, depth + 1):
+        text += [f"O{n}", f"M98 P{n + 1}", "M99"]
+    return "\n".join(text + [f"O{depth + 1}", "G91 G1 X1", "M99"])
+
+
+@pytest.mark.parametrize("text, where, found", [
+    ("", "0:0", "empty"),
+    ("%\n%\n", "0:0", "empty"),
+    ("(nothing here)\n", "0:0", "empty"),
+    ("G21 F60\nG1 X1e999\n", "2:6", "an E right behind"),
+    ("G21 F60\nG1 X--5\n", "2:4", "X--5"),
+    ("G21 F60\nG1 Xnan\n", "2:4", "Xnan"),
+    ("G21 F60\nG1 Xinf\n", "2:4", "Xinf"),
+    ("G21 F60\nG1 X1.2.3\n", "2:8", "X1.2.3"),
+    ("G21 F60\nG1 X\n", "2:4", "X"),
+    ("G21 F60\nG1 X 1 2\n", "2:8", "without a letter"),
+    ("G21 F60\nG2 X10 Y0 I3 J0\n", "2:4", "the arc starts"),
+    ("G21 F60\nG2 X10 Y0\n", "2:1", "an arc without a centre"),
+    ("G21 F60\nG2 X10 R2\n", "2:8", "a radius of 2"),
+    ("G21 F60\nG1 X200.5\n", "2:4", "beyond the travel"),
+    ("G21 F60\nG1 X1\nG1 Y-1 Z-2000\n", "3:8", "beyond the travel"),
+    ("G21 F60\nG2 X0 Y0 I150 J0\n", "2:4", "beyond the travel"),
+    ("G21 F0\nG1 X1\n", "1:5", "F0"),
+    ("G21 F-5\nG1 X1\n", "1:5", "F-5"),
+    ("G21\nG1 X1\n", "2:1", "no feed"),
+    ("X5\n", "1:1", "no motion mode"),
+    ("G21 F60 G33.1\n", "1:9", "G33.1"),
+    ("G21 F60\nH12\n", "2:1", "H12"),
+    ("G21 F60\nG1 X1 X2\n", "2:7", "second word X2"),
+    ("G0 G1 X1 F60\n", "1:4", "G1 on a line with G0"),
+    ("G21 F60\nG1 X1 (open\n", "2:7", "comment"),
+    ("G21 F60\nM98 P1\nM2\nO1\nM98 P1\nM99\n", "5:5", "recursion"),
+    ("G21 F60\nM98 P1\nM2\nO1\nM98 P2\nM99\nO2\nM98 P1\nM99\n", "8:5",
+     "recursion"),
+    ("G21 F60\nM98 P7\nM2\n", "2:5", "O7"),
+    ("G21 F60\nM99\n", "2:1", "M99"),
+    (b"G21 F60\nG1 X1\0\n", "2:6", "0x00"),
+    ("G21 F60\nG1 X1 \u00e9\n", "2:7", "byte 0x"),
+])
+def test_bad_code_is_refused_where_it_stands(tmp_path, text, where, found):
+    told = refused(tmp_path, text)
+    assert f"{told['line']}:{told['column']}" == where
+    assert found in told["found"]
+
+
+def test_subprograms_nest_so_deep_and_no_deeper(tmp_path):
+    assert "8" in refused(tmp_path, nest(9))["wanted"]
+    job = tmp_path / "ok.ngc"
+    job.write_text(nest(7))
+    assert run("--dry-run", job).returncode == 0
+
+
+def test_endless_repeats_are_refused_not_carried_out(tmp_path):
+    text = ["G21 F60", "M98 P1 L9999", "M2"]
+    for n in range(1, 8):
+        text += [f"O{n}", f"M98 P{n + 1} L9999", "M99"]
+    text += ["O8", "N1", "M99"]
+    refused(tmp_path, "\n".join(text))
+
+
+def test_ten_megabytes_of_noise_are_refused(tmp_path):
+    for seed in range(3):
+        refused(tmp_path, random.Random(seed).randbytes(10 << 20))
+
+
+def test_a_line_of_a_megabyte_is_refused(tmp_path):
+    told = refused(tmp_path, "G21 F60\nG1 X1" + " " * (1 << 20) + "Y1\n")
+    assert told["line"] == "2" and "4096" in told["found"] + told["wanted"]
+    refused(tmp_path, b"\xff" * (1 << 20))
+    refused(tmp_path, "X1" * (1 << 19))
+
+
+def test_what_is_no_file_is_refused_by_name(tmp_path):
+    for what in tmp_path / "missing.ngc", tmp_path:
+        r = run("--dry-run", what)
+        assert r.returncode == 66
+        assert str(what) in r.stderr.decode() and r.stdout == b""
+
+
+def test_a_refused_job_leaves_no_files(tmp_path):
+    for name in "--pulses", "--trace", "--report":
+        r = run("--dry-run", name, tmp_path / "out", text="G1 X")
+        assert r.returncode == 65 and not (tmp_path / "out").exists()
+
+
+def test_random_words_end_in_an_answer(tmp_path):
+    """Whatever the words, the program answers; it is never killed."""
+    rnd = random.Random(4)
+    words = ("G0 G1 G2 G3 G4 G17 G18 G19 G20 G21 G28 G53 G54 G90 G91 G92 "
+             "M0 M3 M5 M98 M99 O1 P1 L2 I1 J-1 K0.5 R2 X1 Y-2 Z3 A45 C120 "
+             "E001 U1 V-1 F100 F0 X1e5 Y. Z-").split()
+    codes = set()
+    for _ in range(400):
+        text = "\n".join(" ".join(rnd.sample(words, rnd.randint(1, 5)))
+                         for _ in range(rnd.randint(1, 6)))
+        r = run("--dry-run", "--limit-s", 5, text="G21 F60\n" + text)
+        assert r.returncode in (0, 1, 65), (r.returncode, text)
+        codes.add(r.returncode)
+    assert codes >= {0, 65}, PROGRAM

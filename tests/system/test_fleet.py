@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The fleet: what a DDS peer written by others hears of the machines.
+
+The peer is PyPI's cyclonedds; its type is written out here by hand from
+messages/edm.idl, so that what is tested is what is on the wire.
+"""
+
+import dataclasses
+import gc
+import json
+import signal
+import subprocess
+
+import pytest
+import rig
+from rig import BUILD, SLOW_JOB, until
+
+pytest.importorskip("cyclonedds", reason="pip install cyclonedds")
+
+from cyclonedds.core import InstanceState, Policy, Qos  # noqa: E402
+from cyclonedds.domain import DomainParticipant  # noqa: E402
+from cyclonedds.idl import IdlEnum, IdlStruct  # noqa: E402
+from cyclonedds.idl.annotations import appendable, key  # noqa: E402
+from cyclonedds.idl.types import (  # noqa: E402
+    array, bounded_str, float64, int64, uint32, uint64,
+)
+from cyclonedds.sub import DataReader  # noqa: E402
+from cyclonedds.topic import Topic  # noqa: E402
+from cyclonedds.util import duration  # noqa: E402
+
+
+class GeneratorState(IdlEnum, typename="edm.GeneratorState"):
+    GENERATOR_UNDEFINED = 0
+    GENERATOR_READY = 1
+    GENERATOR_ACTIVE_LOW_VOLTAGE = 2
+    GENERATOR_ACTIVE_HIGH_VOLTAGE = 3
+    GENERATOR_ERROR = 4
+
+
+@dataclasses.dataclass
+@appendable
+class MachineState(IdlStruct, typename="edm.MachineState"):
+    machine: bounded_str[31]
+    key("machine")
+    host: bounded_str[63]
+    state: bounded_str[15]
+    fault: bounded_str[31]
+    utime: int64
+    cycle: uint64
+    program: uint32
+    line: uint32
+    progress: float64
+    place_mm: float64
+    length_mm: float64
+    depth_mm: float64
+    feed_mm_s: float64
+    gap_v: float64
+    position_mm: array[float64, 8]
+    generator_state: GeneratorState
+    is_on: bool
+    jumps: uint32
+    retracts: uint32
+    shorts: uint32
+    overruns: uint32
+    wake_late_max_us: float64
+    outcome: bounded_str[15]
+
+
+class Peer:
+    """Keeps the last sample of each machine and whether it is alive."""
+
+    def __init__(self, *more):
+        self.participant = DomainParticipant(0)
+        qos = Qos(
+            Policy.Reliability.Reliable(duration(milliseconds=100)),
+            Policy.Durability.TransientLocal,
+            Policy.History.KeepLast(1),
+            Policy.Liveliness.ManualByTopic(duration(seconds=2)),
+            *more,
+        )
+        self.topic = Topic(
+            self.participant, "EDM_MachineState", MachineState
+        )
+        self.reader = DataReader(self.participant, self.topic, qos=qos)
+
+    def close(self):
+        self.reader = self.topic = self.participant = None
+        gc.collect()
+
+    def look(self):
+        got = {}
+        for s in self.reader.read(N=100):
+            if isinstance(s, MachineState):
+                alive = s.sample_info.instance_state == InstanceState.Alive
+                got[s.machine] = (s, alive)
+        return got
+
+    def where(self, machine, what, timeout=8):
+        """The sample of a living machine for which what(sample) is true."""
+
+        def heard():
+            s, alive = self.look().get(machine.name, (None, False))
+            return s if alive and what(s) else None
+
+        return until(heard, timeout)
+
+    def state(self, machine, state):
+        return self.where(machine, lambda s: s.state == state)
+
+    def gone(self, machine):
+        until(lambda: not self.look()[machine.name][1], 8)
+
+
+@pytest.fixture
+def peer():
+    p = Peer()
+    yield p
+    p.close()
+
+
+class FleetMachine(rig.Machine):
+    """A machine with its edm-dds."""
+
+    dds = None
+
+    def start_dds(self):
+        self.dds = self._start("edm-dds", "--machine", self.name)
+
+    def close(self):
+        if self.dds and self.dds.poll() is None:
+            assert self.end("dds") == 0
+        super().close()
+
+
+@pytest.fixture
+def fleet(tmp_path):
+    """Two machines, not started."""
+    folders = [tmp_path / "a", tmp_path / "b"]
+    for f in folders:
+        f.mkdir()
+    machines = [FleetMachine(f) for f in folders]
+    yield machines
+    for m in machines:
+        m.close()
+        assert m.shm() == [], "left in /dev/shm"
+
+
+def edm_fleet(*args, timeout=20):
+    return subprocess.run(
+        [str(BUILD / "edm-fleet"), *args],
+        capture_output=True, text=True, timeout=timeout,
+    )
+
+
+def test_a_machine_is_absent_then_idle_then_absent(fleet, peer):
+    m, _ = fleet
+    m.start_dds()
+    s = peer.state(m, "absent")
+    assert (s.utime, s.cycle) == (0, 0)
+    assert s.generator_state == GeneratorState.GENERATOR_UNDEFINED
+
+    m.start_edmd()
+    s = peer.state(m, "idle")
+    assert s.fault == "none" and s.host
+    assert s.generator_state == GeneratorState.GENERATOR_READY and not s.is_on
+    peer.where(m, lambda later: later.cycle > s.cycle)
+
+    assert m.end("edmd") == 0
+    peer.state(m, "absent")
+
+
+def test_two_machines_are_told_apart(fleet, peer):
+    a, b = fleet
+    for m in fleet:
+        m.start_dds()
+    b.start_edmd()
+    peer.state(b, "idle")
+    peer.state(a, "absent")
+
+    a.start()
+    peer.state(a, "idle")
+    assert a.client.submit(SLOW_JOB, "job").code == 0
+    half = peer.where(a, lambda s: s.state == "travel" and s.progress > 0.5)
+    assert half.program > 0 and half.line == 2
+    assert abs(half.length_mm - 2) < 1e-6
+    assert abs(half.place_mm - 2 * half.progress) < 0.01
+    assert abs(half.position_mm[0] - half.place_mm) < 2e-3
+    assert abs(half.feed_mm_s - 1) < 0.01
+    peer.state(a, "idle")
+    s = peer.state(b, "idle")
+    assert s.program == 0 and list(s.position_mm) == [0] * 8
+
+
+def test_a_killed_edmd_is_lost_until_it_is_back(fleet, peer):
+    m, _ = fleet
+    m.start_edmd()
+    m.start_dds()
+    before = peer.state(m, "idle")
+
+    m.kill("edmd")
+    s = peer.state(m, "lost")
+    assert s.cycle >= before.cycle, "the last it said is kept"
+    assert s.generator_state == GeneratorState.GENERATOR_UNDEFINED and not s.is_on
+
+    m.start_edmd()
+    peer.state(m, "idle")
+
+
+def test_a_cycle_that_stands_is_lost(fleet, peer):
+    m, _ = fleet
+    m.start_edmd()
+    m.start_dds()
+    peer.state(m, "idle")
+    m.edmd.send_signal(signal.SIGSTOP)
+    try:
+        peer.state(m, "lost")
+    finally:
+        m.edmd.send_signal(signal.SIGCONT)
+    peer.state(m, "idle")
+
+
+@pytest.mark.parametrize("how", [
+    signal.SIGTERM, signal.SIGKILL, signal.SIGSTOP,
+])
+def test_an_edm_dds_that_left_died_or_hangs_is_gone(fleet, peer, how):
+    m, _ = fleet
+    m.start_dds()
+    peer.state(m, "absent")
+    m.dds.send_signal(how)
+    try:
+        peer.gone(m)
+    finally:
+        m.dds.send_signal(signal.SIGCONT)
+    if how == signal.SIGSTOP:
+        peer.state(m, "absent")
+
+
+def test_edm_fleet_lists_all_machines(fleet):
+    a, b = fleet
+    a.start_edmd()
+    for m in fleet:
+        m.start_dds()
+    p = edm_fleet("--once", "--wait", "3", "--json")
+    assert p.returncode == 0, p.stderr
+    got = {m["machine"]: m for m in json.loads(p.stdout)["machines"]}
+    assert got[a.name]["state"] == "idle"
+    assert got[a.name]["generator_state"] == "ready"
+    assert got[b.name]["state"] == "absent"
+
+    p = edm_fleet("--once", "--wait", "3")
+    lines = p.stdout.splitlines()
+    assert lines[0].startswith("MACHINE")
+    assert [r.split()[0] for r in lines[1:]] == [a.name, b.name]
+
+
+def test_edm_fleet_shows_who_is_gone(fleet, peer):
+    m, _ = fleet
+    m.start_dds()
+    peer.state(m, "absent")
+    with subprocess.Popen(
+        [str(BUILD / "edm-fleet"), "--watch", "--json"],
+        stdout=subprocess.PIPE, text=True,
+    ) as p:
+        try:
+            shown = iter(json.loads(line)["machines"] for line in p.stdout)
+            next(s for s in shown if s and s[0]["state"] == "absent")
+            m.kill("dds")
+            next(s for s in shown if s[0]["state"] == "gone")
+        finally:
+            p.terminate()
+        assert p.wait(5) == 0
+
+
+def test_edm_fleet_hears_none(fleet):
+    p = edm_fleet("--once", "--wait", "0.5")
+    assert p.returncode == 1
+    assert p.stdout == ""
+    assert "no machine heard" in p.stderr
+
+
+@pytest.mark.parametrize("args", [
+    ["--domain", "231"], ["--wait", "0"], ["--nonsense"], ["more"],
+])
+def test_edm_fleet_refuses_what_it_does_not_know(args):
+    assert edm_fleet(*args).returncode == 64
+
+
+def test_edm_dds_once_needs_a_listener(fleet):
+    m, _ = fleet
+    once = [str(BUILD / "edm-dds"), "--machine", m.name, "--once"]
+    assert subprocess.run(once, timeout=20).returncode == 1
+    peer = Peer()
+    try:
+        assert subprocess.run(once, timeout=20).returncode == 0
+        assert peer.look()[m.name][0].state == "absent"
+    finally:
+        peer.close()
+
+
+def test_a_peer_may_ask_for_a_sample_each_second(fleet):
+    m, _ = fleet
+    m.start_dds()
+    peer = Peer(Policy.Deadline(duration(seconds=1)))
+    try:
+        peer.state(m, "absent")
+    finally:
+        peer.close()

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_cycle_damage.c - a program whose head is sound and a segment is not
+ */
+#include "cycle_help.h"
+
+static void spoil(struct interp_seg *s, int how)
+{
+	switch (how) {
+	case 0:
+		s->length_mm = NAN;
+		break;
+	case 1:
+		s->length_mm = -1e9;
+		break;
+	case 2:
+		s->kind = 250;
+		break;
+	case 3:
+		s->ticks += 7;
+		break;
+	case 4:
+		s->feed_mm_s = -1;
+		break;
+	case 5:
+		s->kind = INTERP_ARC;
+		break;
+	case 6:
+		s->cond = 999;
+		break;
+	default:
+		s->kind = INTERP_BEGIN;
+		break;
+	}
+}
+
+static void check_damaged(bool dry, int how)
+{
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct interp_seg *segs;
+	struct rig r;
+
+	k.dry_run = dry;
+	for (int i = 1; i <= 5; i++)
+		cut_to(b, -0.5 * i);
+	rig_load(&r, b, &k);
+	segs = (void *)((char *)r.m.block + r.m.p.head->segs_at);
+	spoil(&segs[4], how);
+	assert_int_equal(interp_program_map(&r.m.p, r.m.block, r.m.bytes), 0);
+	assert_int_equal(cycle_load(&r.c, &r.m.p), ANSWER_WRONG_STATE);
+	tell(&r, CYCLE_START);
+	until(&r, STATE_FAULT, SPARKING_V, 20000);
+	assert_int_equal(r.c.fault, FAULT_PROGRAM);
+	assert_in_range(-r.out.target[INTERP_Z], 1500 - 20, 1500);
+	tell(&r, CYCLE_RESET);
+	tell(&r, CYCLE_START);
+	steps(&r, SPARKING_V, 100);
+	assert_in_range(-r.out.target[INTERP_Z], 1500 - 20, 1500);
+	rig_free(&r);
+}
+
+static void a_damaged_segment_is_a_fault_and_the_last_good_target_stays(void **st)
+{
+	(void)st;
+	for (int how = 0; how < 8; how++) {
+		check_damaged(true, how);
+		check_damaged(false, how);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_damaged_segment_is_a_fault_and_the_last_good_target_stays),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_mover.c - promises of a move along the path
+ *
+ * Over random limits, places and speeds; the seed is printed.
+ */
+#include "walk_help.h"
+
+#include "mover.h"
+
+#include <time.h>
+
+#define ROUNDS	20000
+
+/* Rounding of a sum of thousands of doubles. */
+#define ROUNDING	1e-9
+
+static uint64_t seed;
+
+/* Full speed is come to in a third of a cycle, up to some hundred cycles. */
+static struct mover_limits random_limits(uint64_t *s)
+{
+	static const double periods_s[] = { 50e-6, 250e-6, 1e-3, 4e-3 };
+	const double t = periods_s[rnd(s) % 4];
+	const double v = pow(10, uniform(s, -2, 2));
+
+	return (struct mover_limits) {
+		.v_max_mm_s = v,
+		.a_max_mm_s2 = v / t / pow(10, uniform(s, -0.5, 2.5)),
+		.period_s = t,
+	};
+}
+
+/* Worth a tenth of a cycle at full speed, up to a few hundred cycles. */
+static double random_left(uint64_t *s, const struct mover_limits *l)
+{
+	const double far = l->v_max_mm_s * l->period_s *
+			   pow(10, uniform(s, -1, 2.5));
+
+	return rnd(s) % 2 ? far : -far;
+}
+
+/* The way from speed @v to a stand, as mover.c counts it. */
+static double braking_mm(const struct mover_limits *l, double v)
+{
+	return v * v / (2 * l->a_max_mm_s2) + fabs(v) * l->period_s / 2;
+}
+
+static uint64_t enough(const struct mover_limits *l, double v0, double left)
+{
+	const double way = fabs(left) + 2 * v0 * v0 / l->a_max_mm_s2;
+	const double s = way / l->v_max_mm_s +
+			 4 * (fabs(v0) + l->v_max_mm_s) / l->a_max_mm_s2;
+
+	return (uint64_t)(2 * s / l->period_s) + 100;
+}
+
+struct course {
+	struct mover_limits l;
+	double v0, left;		/* at the beginning */
+	double way;			/* walked */
+	double over;			/* farthest beyond the place */
+	bool landed;
+};
+
+/* Walk until it stands there; speed and acceleration as they come out. */
+static void walk_course(struct course *k)
+{
+	const double at = k->l.a_max_mm_s2 * k->l.period_s;
+	struct mover m = { k->v0 };
+	double v = k->v0;
+
+	for (uint64_t n = enough(&k->l, k->v0, k->left); n && !k->landed; n--) {
+		const double ds = mover_step(&m, &k->l, k->left - k->way);
+		const double now = ds / k->l.period_s;
+		const double top = fmax(k->l.v_max_mm_s, fabs(v) - at);
+
+		assert_true(fabs(now) <= top * (1 + ROUNDING) + ROUNDING);
+		assert_true(fabs(now - v) <= at * (1 + ROUNDING) + ROUNDING);
+		v = now;
+		k->way += ds;
+		k->over = fmax(k->over, k->left > 0 ? k->way - k->left :
+						       k->left - k->way);
+		k->landed = m.v_mm_s == 0 &&
+			    fabs(k->left - k->way) <= ROUNDING;
+	}
+}
+
+static void it_keeps_within_speed_and_acceleration_and_lands_exactly(void **st)
+{
+	uint64_t s = seed;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS; i++) {
+		struct course k = { .l = random_limits(&s) };
+		struct mover m = { 0 };
+
+		k.left = random_left(&s, &k.l);
+		walk_course(&k);
+		assert_true(k.landed);
+		assert_true(k.over <= ROUNDING);
+		assert_true(mover_step(&m, &k.l, 0) == 0);
+	}
+}
+
+/* Any speed, toward the place or away from it, that it can still brake. */
+static void it_never_passes_its_place_if_it_can_still_brake(void **st)
+{
+	uint64_t s = seed + 1;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS; i++) {
+		struct course k = { .l = random_limits(&s) };
+		double room;
+
+		k.left = random_left(&s, &k.l);
+		k.v0 = uniform(&s, -2, 2) * k.l.v_max_mm_s;
+		room = fabs(k.left);
+		if (k.v0 * k.left > 0 && braking_mm(&k.l, k.v0) > room)
+			continue;
+		walk_course(&k);
+		assert_true(k.landed);
+		assert_true(k.over <= ROUNDING);
+	}
+}
+
+static void too_fast_to_stop_in_time_it_passes_and_comes_back(void **st)
+{
+	uint64_t s = seed + 2;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS / 10; i++) {
+		const struct mover_limits l = random_limits(&s);
+		const double left = random_left(&s, &l) * 0.01;
+		struct mover m = { copysign(l.v_max_mm_s, left) };
+		double way = 0;
+
+		for (uint64_t n = enough(&l, m.v_mm_s, left); n; n--) {
+			way += mover_step(&m, &l, left - way);
+			assert_true(fabs(way) <= fabs(left) +
+				    braking_mm(&l, l.v_max_mm_s) +
+				    l.v_max_mm_s * l.period_s);
+		}
+		assert_true(m.v_mm_s == 0);
+		assert_true(fabs(left - way) <= ROUNDING);
+	}
+}
+
+static void a_stop_takes_no_more_than_the_braking_distance(void **st)
+{
+	uint64_t s = seed + 3;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS; i++) {
+		const struct mover_limits l = random_limits(&s);
+		const double v0 = uniform(&s, -2, 2) * l.v_max_mm_s;
+		const double at = l.a_max_mm_s2 * l.period_s;
+		struct mover m = { v0 };
+		double way = 0, v = v0;
+		uint64_t n = (uint64_t)(fabs(v0) / at) + 2;
+
+		for (; n; n--) {
+			const double ds = mover_stop(&m, &l);
+
+			assert_true(ds * v0 >= 0);
+			assert_true(fabs(v - m.v_mm_s) <= at * (1 + ROUNDING));
+			v = m.v_mm_s;
+			way += ds;
+		}
+		assert_true(m.v_mm_s == 0);
+		assert_true(fabs(way) <= v0 * v0 / (2 * l.a_max_mm_s2) +
+			    ROUNDING);
+	}
+}
+
+static void standing_there_it_stays(void **st)
+{
+	const struct mover_limits l = { 10, 1000, 1e-3 };
+	struct mover m = { 0 };
+
+	(void)st;
+	for (int i = 0; i < 10; i++)
+		assert_true(mover_step(&m, &l, 0) == 0 && m.v_mm_s == 0);
+}
+
+int main(int argc, char **argv)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(it_keeps_within_speed_and_acceleration_and_lands_exactly),
+		cmocka_unit_test(it_never_passes_its_place_if_it_can_still_brake),
+		cmocka_unit_test(too_fast_to_stop_in_time_it_passes_and_comes_back),
+		cmocka_unit_test(a_stop_takes_no_more_than_the_braking_distance),
+		cmocka_unit_test(standing_there_it_stays),
+	};
+
+	seed = argc > 1 ? strtoull(argv[1], NULL, 0) : (uint64_t)time(NULL);
+	print_message("seed %llu; test_mover SEED repeats it\n",
+		      (unsigned long long)seed);
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
