@@ -11,7 +11,8 @@ const double nc_pow10[NC_POW10_MAX + 1] = {
 
 /* Digits that no longer change a double are dropped behind the point; in
  * front of it they make the number too large for any word. */
-double nc_number_long(const uint8_t *p, const uint8_t *end)
+double nc_number_long(const uint8_t *p, const uint8_t *end,
+		      unsigned int decimals)
 {
 	uint64_t mantissa = 0;
 	int fraction = 0;
@@ -29,5 +30,6 @@ double nc_number_long(const uint8_t *p, const uint8_t *end)
 			fraction += behind;
 		}
 	}
-	return (double)(int64_t)mantissa / nc_pow10[fraction];
+	return (double)(int64_t)mantissa /
+	       nc_pow10[behind ? fraction : (int)decimals];
 }
