@@ -39,7 +39,7 @@ static void reset_modes(struct nc_reader *r)
 
 	r->d = o->dialect ? o->dialect->nc : &nc_generic;
 	r->arc_incremental = !r->d->arc_places;
-	r->decimals[true] = r->d->decimals;
+	r->lengths = r->d->point || r->d->decimals ? NC_LENGTHS : 0;
 	r->feed_mm_s = first_feed(r);
 	r->feed_deg_s = r->feed_mm_s;
 	r->fresh = true;

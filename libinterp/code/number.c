@@ -11,8 +11,7 @@ const double nc_pow10[NC_POW10_MAX + 1] = {
 
 /* Digits that no longer change a double are dropped behind the point; in
  * front of it they make the number too large for any word. */
-double nc_number_long(const uint8_t *p, const uint8_t *end,
-		      unsigned int decimals)
+double nc_number_long(const uint8_t *p, const uint8_t *end)
 {
 	uint64_t mantissa = 0;
 	int fraction = 0;
@@ -30,6 +29,5 @@ double nc_number_long(const uint8_t *p, const uint8_t *end,
 			fraction += behind;
 		}
 	}
-	return (double)(int64_t)mantissa /
-	       nc_pow10[behind ? fraction : (int)decimals];
+	return (double)(int64_t)mantissa / nc_pow10[fraction];
 }

@@ -34,13 +34,10 @@ static inline const uint8_t *nc_digits(const uint8_t *p, const uint8_t *end,
 }
 
 /** nc_number_long() - the value of digits @p to @end, however many. */
-double nc_number_long(const uint8_t *p, const uint8_t *end,
-		      unsigned int decimals);
+double nc_number_long(const uint8_t *p, const uint8_t *end);
 
 /**
  * nc_number() - the number at @p, blanks before it and its digits allowed.
- *
- * Without a point, the last @decimals digits are decimals.
  *
  * A mantissa below 2^53 and a power of ten up to 22 are both exact, so their
  * quotient is the nearest double: every number of 15 digits comes out
@@ -49,7 +46,7 @@ double nc_number_long(const uint8_t *p, const uint8_t *end,
  * Return: behind the number; NULL if there is none.
  */
 static inline const uint8_t *nc_number(const uint8_t *p, const uint8_t *end,
-				       unsigned int decimals, double *ret)
+				       double *ret)
 {
 	const uint8_t *first, *point = NULL;
 	uint64_t mantissa = 0;
@@ -70,10 +67,10 @@ static inline const uint8_t *nc_number(const uint8_t *p, const uint8_t *end,
 	if (p - first == (point != NULL))
 		return NULL;
 	if (p - first > NC_DIGITS_MAX)
-		value = nc_number_long(first, p, decimals);
+		value = nc_number_long(first, p);
 	else
 		value = (double)(int64_t)mantissa /
-			nc_pow10[point ? p - point : decimals];
+			nc_pow10[point ? p - point : 0];
 	*ret = negative ? -value : value;
 	return p;
 }

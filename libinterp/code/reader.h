@@ -75,7 +75,7 @@ struct nc_reader {
 	uint8_t plane;			/* 0 ... 2: G17 ... G19 */
 	uint8_t work;			/* 0 ... 5: G54 ... G59 */
 	bool incremental, arc_incremental;
-	uint8_t decimals[2];		/* implied: of other words, lengths */
+	uint32_t lengths;		/* slots where a point matters */
 	bool offset_on;			/* G41 or G42 */
 	double unit_mm;			/* 1 or 25.4 */
 	double scale[INTERP_NAXES];	/* unit_mm, for rotary axes 1 */

@@ -53,12 +53,20 @@ static bool has_point(const uint8_t *p, const uint8_t *end)
 	return p < end;
 }
 
-static const uint8_t *refuse_point(struct nc_reader *r, const uint8_t *at)
+/* A length without a point, in a dialect where that matters: @v counts the
+ * last of its decimals, or is refused if it is not 0. */
+static bool pointed_length(struct nc_reader *r, const uint8_t *at,
+			   const uint8_t *end, double *v)
 {
+	if (has_point(at, end))
+		return true;
+	*v /= nc_pow10[r->d->decimals];
+	if (*v == 0 || !r->d->point)
+		return true;
 	nc_refuse(r, at, "a decimal point, as in X10.0: without one some "
 		  "controls read micrometres", "%s without a decimal point",
 		  nc_quote_word(r, at).s);
-	return NULL;
+	return false;
 }
 
 /* A word with a value. */
@@ -72,11 +80,11 @@ static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 
 	if (b->words & NC_BIT(slot))
 		return refuse_twice(r, at);
-	p = nc_number(at + 1, r->stop, r->decimals[w->length], &v);
+	p = nc_number(at + 1, r->stop, &v);
 	if (!p)
 		return refuse_number(r, at);
-	if (r->d->point && w->length && v != 0 && !has_point(at, p))
-		return refuse_point(r, at);
+	if ((r->lengths & NC_BIT(slot)) && !pointed_length(r, at, p, &v))
+		return NULL;
 	if (!(v >= w->min && v <= w->max))
 		return refuse_range(r, at, w);
 	if (!w->whole)
@@ -148,7 +156,7 @@ static const uint8_t *scan_definition(struct nc_reader *r, const uint8_t *at,
 	int n = 0;
 	double v;
 
-	for (; (next = nc_number(p, r->stop, 0, &v)); n++)
+	for (; (next = nc_number(p, r->stop, &v)); n++)
 		p = next;
 	if (n == 0) {
 		nc_refuse(r, at, "numbers behind the =, as in E001= 60 10 25",
@@ -228,13 +236,15 @@ static const uint8_t *scan_register(struct nc_reader *r, const uint8_t *at)
 		return scan_value(r, at, slot);
 	if (p == first || p - first > 9 || n >= NC_NREGISTERS)
 		return refuse_range(r, at, &nc_words[slot]);
-	p = nc_number(value, r->stop, r->d->decimals, &v);
+	p = nc_number(value, r->stop, &v);
 	if (!p) {
 		nc_refuse(r, at, "a number behind the =, as in H001=0.11",
 			  "a definition without a number");
 		return NULL;
 	}
 	r->word_at = at;
+	if (!pointed_length(r, value, p, &v))
+		return NULL;
 	return nc_define_register(r, at, (uint32_t)n, v) ? NULL : p;
 }
 

@@ -28,6 +28,8 @@ enum nc_slot {
 #define NC_AXES		(NC_BIT(NC_I) - 1)
 #define NC_CENTRE	(NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_K))
 #define NC_MOVES	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
+#define NC_LENGTHS	(NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z) | \
+			 NC_CENTRE | NC_BIT(NC_R))
 #define NC_OFFSETS	(NC_BIT(NC_D) | NC_BIT(NC_H))
 #define NC_ANYWHERE	(NC_BIT(NC_F) | NC_BIT(NC_N) | NC_BIT(NC_S) | \
 			 NC_BIT(NC_O) | NC_OFFSETS)
@@ -36,7 +38,6 @@ enum nc_slot {
 struct nc_word {
 	char letter;
 	bool whole;			/* no fraction */
-	bool length;			/* mm or inches: see nc_dialect */
 	double min, max;
 	const char *range;		/* the same in words */
 	const char *goes_with;		/* the lines it may stand on */
