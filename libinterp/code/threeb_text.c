@@ -137,7 +137,8 @@ static struct quote quote(const struct threeb_text *t, const uint8_t *p)
 		return q;
 	for (uint8_t c; n < sizeof(q.s) - 1 && !is_eol(c = at(t, p)) &&
 	     c != ' '; p += letter_at(t, p).bytes)
-		q.s[n++] = (char)(c > ' ' && c < 0x7f ? c : '?');
+		q.s[n++] = *p > ' ' && *p < 0x7f ? (char)*p :
+			   c > ' ' && c < 0x7f ? (char)c : '?';
 	q.s[n] = '\0';
 	return q;
 }

@@ -6,8 +6,9 @@
  * where that leads.  A line ends where it should.  An arc says its end by J
  * alone: one coordinate is free, the other must fall on the circle about the
  * rounded centre.  If it falls a unit beside, the centre is sought among the
- * units around the middle of the chord's bisector; more than half a circle is
- * cut in two for that, for only then does the bisector stay near.
+ * units around the nearest place that is as far from both ends.  Where none
+ * fits, or more than half a circle would take the centre far, the arc is cut
+ * in two.
  */
 #include "code/emit.h"
 #include "code/threeb.h"
@@ -112,7 +113,32 @@ static struct attempt try_centre(const struct threeb_writer *w,
 	return t;
 }
 
-/* The nine units around a centre that is as far from both ends. */
+/* How far around a good centre others are tried. */
+#define RINGS	2
+
+/* The units around @centre, near ones first, until one fits. */
+static struct attempt try_around(const struct threeb_writer *w,
+				 const struct wanted *want,
+				 const int64_t centre[2], struct attempt best)
+{
+	for (int ring = 0; ring <= RINGS && best.miss > 0; ring++) {
+		for (int dx = -ring; dx <= ring; dx++) {
+			for (int dy = -ring; dy <= ring; dy++) {
+				struct attempt t;
+
+				if (abs(dx) != ring && abs(dy) != ring)
+					continue;
+				t = try_centre(w, want, centre[0] + dx,
+					       centre[1] + dy);
+				if (t.miss < best.miss)
+					best = t;
+			}
+		}
+	}
+	return best;
+}
+
+/* Those around the nearest place that is as far from both ends. */
 static struct attempt try_bisector(const struct threeb_writer *w,
 				   const struct wanted *want,
 				   struct attempt best)
@@ -124,19 +150,14 @@ static struct attempt try_bisector(const struct threeb_writer *w,
 	const double chord = hypot(x1 - x0, y1 - y0);
 	const double shift = (hypot(x1, y1) - hypot(x0, y0)) *
 			     (hypot(x1, y1) + hypot(x0, y0)) / (2 * chord);
-	const int64_t cx = llround(want->cx + shift * (x1 - x0) / chord);
-	const int64_t cy = llround(want->cy + shift * (y1 - y0) / chord);
+	const int64_t centre[2] = {
+		llround(want->cx + shift * (x1 - x0) / chord),
+		llround(want->cy + shift * (y1 - y0) / chord),
+	};
 
 	if (fabs(want->sweep) > TURN / 2 && fabs(shift) > 1)
 		return best;
-	for (int k = 0; k < 9 && best.miss > 0; k++) {
-		const struct attempt t = try_centre(w, want, cx + (k + 1) % 3 -
-						    1, cy + (k / 3 + 1) % 3 - 1);
-
-		if (t.miss < best.miss)
-			best = t;
-	}
-	return best;
+	return try_around(w, want, centre, best);
 }
 
 static int put_attempt(struct threeb_writer *w, const struct attempt *t)
@@ -184,7 +205,7 @@ static int put_arc(struct threeb_writer *w, const struct wanted *want)
 	t = try_centre(w, want, llround(want->cx), llround(want->cy));
 	if (t.miss > 0 && !want->full)
 		t = try_bisector(w, want, t);
-	if (t.miss > 0 && fabs(want->sweep) > 0.9 * TURN / 2)
+	if (t.miss > 0 && fabs(want->sweep) * radius > 4 * ARC_MIN_UNITS)
 		return put_halves(w, want);
 	if (t.miss <= MISS_MAX_UNITS)
 		return put_attempt(w, &t);
@@ -194,6 +215,12 @@ static int put_arc(struct threeb_writer *w, const struct wanted *want)
 			   "249999999 units", "an arc that no record says");
 }
 
+/* Halves go up, as a pulse between two does, noise of a double aside. */
+static int64_t to_units(const struct threeb_writer *w, double mm)
+{
+	return (int64_t)floor(mm / w->unit_mm + 0.5 + 1e-4);
+}
+
 static struct place place_of(const struct threeb_writer *w, size_t node)
 {
 	const double x = emit_mm(w->p, INTERP_X,
@@ -201,8 +228,8 @@ static struct place place_of(const struct threeb_writer *w, size_t node)
 	const double y = emit_mm(w->p, INTERP_Y,
 				 emit_node_sub(w->p, node, INTERP_Y));
 
-	return (struct place) { llround((x - w->x0_mm) / w->unit_mm),
-				llround((y - w->y0_mm) / w->unit_mm) };
+	return (struct place) { to_units(w, x - w->x0_mm),
+				to_units(w, y - w->y0_mm) };
 }
 
 /* The sweep from where the reader is to the end, near the programmed one. */
@@ -243,7 +270,7 @@ static int arc(struct threeb_writer *w, uint32_t i)
 			return rc;
 	}
 	if (fabs(rest) * a->r_mm < 1e-3 * w->unit_mm)
-		return put_line(w, want.end);
+		return 0;
 	want.sweep = sweep_of(w, &want, rest);
 	if (want.sweep * rest <= 0)
 		return put_line(w, want.end);
