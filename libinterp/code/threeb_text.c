@@ -254,7 +254,7 @@ static int direction(struct threeb_text *t, const uint8_t *p,
 	t->p = next;
 	t->tail = true;
 	t->begun = true;
-	return r->kind;
+	return (int)r->kind;
 }
 
 static int record(struct threeb_text *t, const uint8_t *p,
