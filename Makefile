@@ -5,7 +5,7 @@
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make bench      speed, as medians side by side
 #   make experiments  count the pulse rules, into docs/experiments-pulse.md
-#   make fuzz       the NC reader under libFuzzer, a bounded time
+#   make fuzz       the readers of jobs under libFuzzer, a bounded time each
 #   make lint       what the cycle may call, headers alone, who may include whom
 #   make install    DESTDIR and PREFIX are honoured
 #
@@ -211,14 +211,20 @@ experiments: $(EXPERIMENTS:%=$(B)/experiments/%)
 	$(Q)cat docs/experiments-pulse.md
 
 FUZZ_S	?= 60
-fuzz: $(B)/fuzz_nc
-	$(Q)mkdir -p $(B)/corpus && cp examples/*.ngc $(B)/corpus/
-	$(Q)$(B)/fuzz_nc -max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
-		-print_final_stats=1 $(B)/corpus 2>$(B)/fuzz.log || \
-		{ tail -n 40 $(B)/fuzz.log; exit 1; }
-	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    nc: runs /p' $(B)/fuzz.log
+FUZZ	:= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
+SEEDS_fuzz_nc	  = examples/*.ngc
+SEEDS_fuzz_threeb = tests/fuzz/corpus_threeb/*
 
-$(B)/fuzz_nc: tests/fuzz/fuzz_nc.c $(INTERP)
+fuzz: $(FUZZ:%=run-%)
+
+run-fuzz_%: $(B)/fuzz_%
+	$(Q)mkdir -p $(B)/corpus_$* && cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/
+	$(Q)$< -max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
+		-print_final_stats=1 $(B)/corpus_$* 2>$<.log || \
+		{ tail -n 40 $<.log; exit 1; }
+	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
+
+$(B)/fuzz_%: tests/fuzz/fuzz_%.c $(INTERP)
 	$(call say,CLANG,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \

@@ -109,26 +109,31 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 		.perpendicular = c->perpendicular,
 		.coupling = (enum interp_coupling)c->coupling,
 	};
-	struct interp_nc_options no = {
-		.machine = &c->axes,
-		.wire = &c->wire,
-		.feed_mm_s = c->feed_default_mm_min / 60,
+	const struct interp_text text = {
+		.at = t->at, .bytes = t->n,
+		.dialect = o->dialect ? o->dialect :
+					interp_dialect_by_file(o->job),
 	};
-	struct interp_nc_result done = { 0 };
+	struct interp_compile_options co = {
+		.nc = { .machine = &c->axes, .wire = &c->wire,
+			.feed_mm_s = c->feed_default_mm_min / 60 },
+		.threeb = { .unit_um = c->threeb_unit_um,
+			    .offset_um = c->fourb_offset_um },
+	};
 	struct interp_diag diag = { 0 };
 	const double from_s = now_s();
 	struct interp_build *b;
 	int r;
 
 	memcpy(bo.start_mm, c->start_mm, sizeof(bo.start_mm));
-	memcpy(no.work_offset_mm, c->work_offset_mm, sizeof(no.work_offset_mm));
-	memcpy(no.offset_mm, c->offset_mm, sizeof(no.offset_mm));
+	memcpy(co.nc.work_offset_mm, c->work_offset_mm,
+	       sizeof(co.nc.work_offset_mm));
+	memcpy(co.nc.offset_mm, c->offset_mm, sizeof(co.nc.offset_mm));
 	b = interp_build_create(&bo);
 	if (!b)
 		return EX_OSERR;
-	r = interp_nc_compile(t->at, t->n, &no, b, &done, &diag);
-	job->lines = done.lines;
-	job->compile_lines_s = done.lines / (now_s() - from_s);
+	r = interp_compile(&text, &co, b, &job->lines, &diag);
+	job->compile_lines_s = job->lines / (now_s() - from_s);
 	/* A million lines are as large as half their program. */
 	free(t->at);
 	t->at = NULL;

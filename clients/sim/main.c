@@ -15,10 +15,14 @@
 static const char usage[] =
 "Usage: edmsim [options] JOB\n"
 "Runs a job in virtual time: the daemon's own cycle on a simulated machine.\n"
-"JOB is NC code (.ngc .nc .iso), - for stdin.\n"
+"JOB is NC code (.ngc .nc .iso .3b .4b), - for stdin.\n"
 "\n"
 "  --machine FILE       machine file; without: eight axes, +-200 mm\n"
-"  --dialect NAME       generic\n"
+"  --dialect NAME       generic, robofil, skd2, sodick, chmer, 3b, 4b\n"
+"                       (by the file's name: .3b, .4b, else generic)\n"
+"  --unit-um N          unit of a 3B or 4B program (machine file's, 1)\n"
+"  --offset-um N        of the wire, for 4B (machine file's, 0)\n"
+"  --emit FORMAT        3b or iso: write the job as that to stdout, no run\n"
 "  --strategy NAME      simultaneous, point-by-point, centred, dda,\n"
 "                       main-direction, min-switch (machine file's)\n"
 "  --tolerance PULSES   how far main-direction and min-switch may stray along\n"
@@ -48,8 +52,9 @@ static const char usage[] =
 enum {
 	OPT_MACHINE = 256, OPT_DIALECT, OPT_STRATEGY, OPT_TOLERANCE,
 	OPT_PERPENDICULAR, OPT_COUPLING, OPT_DRY_RUN, OPT_THERE, OPT_PERIOD,
-	OPT_SEED, OPT_SPEED, OPT_LIMIT, OPT_PULSES, OPT_TRACE, OPT_REPORT, OPT_PLOT,
-	OPT_CHECK, OPT_QUIET, OPT_PRINT, OPT_DOCUMENT, OPT_HELP, OPT_VERSION,
+	OPT_SEED, OPT_SPEED, OPT_LIMIT, OPT_PULSES, OPT_TRACE, OPT_REPORT,
+	OPT_PLOT, OPT_CHECK, OPT_EMIT, OPT_UNIT, OPT_OFFSET, OPT_QUIET,
+	OPT_PRINT, OPT_DOCUMENT, OPT_HELP, OPT_VERSION,
 };
 
 static const struct option options[] = {
@@ -70,6 +75,9 @@ static const struct option options[] = {
 	{ "report", required_argument, NULL, OPT_REPORT },
 	{ "plot", required_argument, NULL, OPT_PLOT },
 	{ "check", no_argument, NULL, OPT_CHECK },
+	{ "emit", required_argument, NULL, OPT_EMIT },
+	{ "unit-um", required_argument, NULL, OPT_UNIT },
+	{ "offset-um", required_argument, NULL, OPT_OFFSET },
 	{ "quiet", no_argument, NULL, OPT_QUIET },
 	{ "print-config", no_argument, NULL, OPT_PRINT },
 	{ "document-config", no_argument, NULL, OPT_DOCUMENT },
@@ -136,8 +144,14 @@ static bool take_word(struct sim_options *o, int opt)
 		o->plot = optarg;
 		return true;
 	case OPT_DIALECT:
-		if (strcmp(optarg, "generic") != 0)
-			refuse("--dialect", optarg, "generic");
+		o->dialect = interp_dialect_by_name(optarg);
+		if (!o->dialect)
+			refuse("--dialect", optarg, interp_dialect_names());
+		return true;
+	case OPT_EMIT:
+		if (strcmp(optarg, "3b") != 0 && strcmp(optarg, "iso") != 0)
+			refuse("--emit", optarg, "3b or iso");
+		o->emit = optarg;
 		return true;
 	default:
 		return false;
@@ -184,6 +198,12 @@ static bool take_number(struct sim_options *o, int opt)
 		return true;
 	case OPT_SPEED:
 		o->speed = number("--speed", optarg, 0, 1e6);
+		return true;
+	case OPT_UNIT:
+		o->unit_um = number("--unit-um", optarg, 0.001, 1000);
+		return true;
+	case OPT_OFFSET:
+		o->offset_um = number("--offset-um", optarg, 0, 10000);
 		return true;
 	case OPT_LIMIT:
 		o->limit_s = number("--limit-s", optarg, 1e-6, 1e9);
@@ -278,6 +298,10 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	if (o->period_us > 0)
 		c->period_us = o->period_us;
 	configure_pulses(c, o);
+	if (o->unit_um > 0)
+		c->threeb_unit_um = o->unit_um;
+	if (o->offset_um >= 0)
+		c->fourb_offset_um = o->offset_um;
 	return 0;
 }
 
@@ -313,11 +337,18 @@ static int finish(const struct sim_run *r)
 	return e ? e : strcmp(r->result.outcome, "done") != 0;
 }
 
+static int run_whole(struct sim_run *r)
+{
+	const int e = run_job(r);
+
+	return e ? e : finish(r);
+}
+
 int main(int argc, char **argv)
 {
 	static struct machine_config config;
 	static struct sim_run run;
-	struct sim_options o = { 0 };
+	struct sim_options o = { .offset_um = -1 };
 	bool print = false;
 	int e;
 
@@ -336,10 +367,10 @@ int main(int argc, char **argv)
 	e = job_load(&run.job, &o, &config);
 	if (e == 0 && o.check)
 		job_describe(&run.job, stdout);
+	else if (e == 0 && o.emit)
+		e = job_emit(&run.job, &o, &config);
 	else if (e == 0)
-		e = run_job(&run);
-	if (e == 0 && !o.check)
-		e = finish(&run);
+		e = run_whole(&run);
 	job_unload(&run.job);
 	return e;
 }

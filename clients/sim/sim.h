@@ -7,6 +7,7 @@
 
 #include "config.h"
 #include "cycle.h"
+#include "interp/compile.h"
 #include "io.h"
 
 #include <stdio.h>
@@ -17,6 +18,9 @@ struct sim_options {
 	const char *strategy, *coupling;	/* NULL: the machine file's */
 	double tolerance_pulses;	/* with tolerance_given */
 	bool tolerance_given, perpendicular;
+	const struct interp_dialect *dialect;	/* NULL: by the job's name */
+	const char *emit;		/* "3b" or "iso": write that, no run */
+	double unit_um, offset_um;	/* 0, -1: the machine file's */
 	const char *pulses, *trace, *report, *plot;
 	double period_us;		/* 0: the machine file's */
 	double speed, limit_s;		/* 0: as fast as possible; no limit */
@@ -62,6 +66,10 @@ int job_load(struct sim_job *job, const struct sim_options *o,
 void job_unload(struct sim_job *job);
 /** job_describe() - what --check prints. */
 void job_describe(const struct sim_job *job, FILE *f);
+
+/** job_emit() - the program as text to stdout. Return: 0 or an exit code. */
+int job_emit(const struct sim_job *job, const struct sim_options *o,
+	     const struct machine_config *c);
 
 /** run_job() - the whole run. Return: 0 or an exit code, said why. */
 int run_job(struct sim_run *r);

@@ -64,6 +64,8 @@ struct machine_config {
 	int coupling;			/* enum interp_coupling */
 	double feed_default_mm_min;	/* before the first F; 0: F demanded */
 	uint32_t optional_stop;		/* 1: M1 holds */
+	double threeb_unit_um;		/* of lengths in 3B and 4B programs */
+	double fourb_offset_um;		/* of the wire, by 4B's D and DD */
 	double cpu;			/* core the cycle is pinned to; -1: none */
 	double priority;		/* SCHED_FIFO */
 	double overrun_limit;		/* missed periods in a row; 0: no fault */
@@ -73,7 +75,7 @@ struct machine_config {
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* [work] */
 
 	struct interp_wire wire;	/* [wire] */
-	double offset_mm[INTERP_NOFFSETS];	/* [wire] offset_mm is D1 */
+	double offset_mm[INTERP_NOFFSETS];	/* [wire] offset_*_mm */
 
 	struct config_gap gap;
 	struct config_jump jump;

@@ -4,6 +4,8 @@
  */
 #include "compile.h"
 
+#include "interp/compile.h"
+
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
@@ -33,25 +35,26 @@ static int compile_text(struct compile *c)
 		.perpendicular = m->perpendicular,
 		.coupling = (enum interp_coupling)m->coupling,
 	};
-	struct interp_nc_options nc = {
-		.machine = &m->axes,
-		.wire = &m->wire,
-		.feed_mm_s = m->feed_default_mm_min / 60,
+	const struct interp_text text = {
+		.at = c->request.text, .bytes = c->request.bytes,
+		.dialect = interp_dialect_by_file(c->request.name),
 	};
-	struct interp_nc_result counted = { .lines = 0 };
-	int err;
+	struct interp_compile_options o = {
+		.nc = { .machine = &m->axes, .wire = &m->wire,
+			.feed_mm_s = m->feed_default_mm_min / 60 },
+		.threeb = { .unit_um = m->threeb_unit_um,
+			    .offset_um = m->fourb_offset_um },
+	};
 
 	memcpy(b.start_mm, c->request.start_mm, sizeof(b.start_mm));
-	memcpy(nc.work_offset_mm, m->work_offset_mm,
-	       sizeof(nc.work_offset_mm));
-	memcpy(nc.offset_mm, m->offset_mm, sizeof(nc.offset_mm));
+	memcpy(o.nc.work_offset_mm, m->work_offset_mm,
+	       sizeof(o.nc.work_offset_mm));
+	memcpy(o.nc.offset_mm, m->offset_mm, sizeof(o.nc.offset_mm));
 	c->result.build = interp_build_create(&b);
 	if (!c->result.build)
 		return -ENOMEM;
-	err = interp_nc_compile(c->request.text, c->request.bytes, &nc,
-				c->result.build, &counted, &c->result.diag);
-	c->result.lines = counted.lines;
-	return err;
+	return interp_compile(&text, &o, c->result.build, &c->result.lines,
+			      &c->result.diag);
 }
 
 static void *compile_main(void *arg)

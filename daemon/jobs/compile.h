@@ -20,6 +20,7 @@ struct compile;
 struct compile_request {
 	const struct machine_config *config;	/* lent, until the end */
 	double start_mm[INTERP_NAXES];
+	const char *name;			/* of its file: the dialect */
 	const char *text;			/* lent, until the end */
 	size_t bytes;
 };

@@ -174,7 +174,8 @@ static void start_place(const struct jobs *j, double ret_mm[INTERP_NAXES])
 static void check_begin(struct jobs *j, struct upload *up)
 {
 	struct compile_request request = {
-		.config = j->config, .text = up->text, .bytes = up->bytes,
+		.config = j->config, .name = up->name,
+		.text = up->text, .bytes = up->bytes,
 	};
 	struct check *c = malloc(sizeof(*c));
 	int err = c ? 0 : -ENOMEM;

@@ -3,7 +3,7 @@
  * flow.c - subprograms and the end
  *
  * A subprogram is O1000 ... M99, behind the main program's M2 or M30 in the
- * same text.  M98 P1000 L3 carries it out three times; so does M98 P31000.
+ * same text; in some dialects the label is N, which numbers other lines too.  M98 P1000 L3 carries it out three times; so does M98 P31000.
  * Where the O words stand is looked up once, at the first M98.
  */
 #include "code/number.h"
@@ -37,19 +37,20 @@ static const uint8_t *skip_void(const uint8_t *p, const uint8_t *end)
 	}
 }
 
-/* The number behind an O that begins the line @p to @end; 0: none does. */
-static uint32_t label_of(const uint8_t *p, const uint8_t *end,
+/* The number behind an O (or an N, if @letter is that) that begins the line @p
+ * to @end; 0: none does. */
+static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
 			 const uint8_t **ret_at)
 {
 	uint64_t n = 0, ignored = 0;
 	const uint8_t *first;
 
 	p = skip_void(p, end);
-	if (p < end && (*p | 0x20) == 'n') {
+	if (letter != 'N' && p < end && (*p | 0x20) == 'n') {
 		p = nc_skip_blanks(p + 1, end);
 		p = skip_void(nc_digits(p, end, &ignored), end);
 	}
-	if (p == end || (*p | 0x20) != 'o')
+	if (p == end || (*p & 0xdf) != letter)
 		return 0;
 	*ret_at = p;
 	first = nc_skip_blanks(p + 1, end);
@@ -72,20 +73,23 @@ static int note_label(struct nc_reader *r, struct nc_label l,
 		      const uint8_t *end)
 {
 	const uint8_t *at;
-	const uint32_t n = label_of(l.at, end, &at);
+	const uint32_t n = label_of(r->d->label, l.at, end, &at);
 
 	if (n == 0)
 		return 0;
-	if (r->labels[n].line)
+	if (r->labels[n].line && r->d->label == 'O')
 		return refuse_second(r, l, at, n);
-	r->labels[n] = l;
+	if (r->labels[n].line)
+		r->labels[n].second = l.line;
+	else
+		r->labels[n] = l;
 	return 0;
 }
 
 /* One look at every line, as far as the second %. */
 static int find_labels(struct nc_reader *r)
 {
-	struct nc_label l = { r->text, 1 };
+	struct nc_label l = { .at = r->text, .line = 1 };
 	bool fresh = true;
 	int rc = 0;
 
@@ -148,14 +152,21 @@ static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats)
 	const uint8_t *at = r->block.at[NC_P];
 
 	if (l->line == 0)
-		return nc_refuse(r, at, "the number of an O word that begins "
-				 "a line of this text",
-				 "a call of O%u, which is not there", number);
+		return nc_refuse(r, at, r->d->label == 'O' ?
+				 "the number of an O word that begins a line "
+				 "of this text" :
+				 "the number of an N word that begins a line "
+				 "of this text", "a call of %c%u, which is not "
+				 "there", r->d->label, number);
+	if (l->second)
+		return nc_refuse(r, at, "a number that one line has",
+				 "a call of N%u, which lines %u and %u have",
+				 number, l->line, l->second);
 	for (uint32_t i = 0; i <= r->depth; i++) {
 		if (r->frame[i].number == number)
 			return nc_refuse(r, at, "calls of other subprograms",
-					 "recursion: O%u is being carried out "
-					 "already", number);
+					 "recursion: %c%u is being carried out "
+					 "already", r->d->label, number);
 	}
 	if (r->depth == INTERP_NC_DEPTH_MAX)
 		return nc_refuse(r, at, "up to 8 calls inside each other",
@@ -258,8 +269,11 @@ int nc_end_of_text(struct nc_reader *r)
 	if (r->depth > 0 && r->over != NC_FINISHED)
 		return nc_refuse_at(r, r->line,
 				    "M99 at the end of a subprogram",
-				    "the end of the text inside O%u",
-				    r->frame[r->depth].number);
+				    "the end of the text inside %c%u",
+				    r->d->label, r->frame[r->depth].number);
+	if (r->d->m2_ends && r->over != NC_FINISHED)
+		return nc_refuse_at(r, r->line, "M02 at the end",
+				    "the end of the text without M02");
 	if (r->segs == 0)
 		return nc_refuse_at(r, 0, "at least one motion or action",
 				    "empty program");

@@ -68,13 +68,6 @@ static int run_work(struct nc_reader *r)
 	return 0;
 }
 
-/* Feed per minute is the only mode there is. */
-static int run_feed_mode(struct nc_reader *r)
-{
-	(void)r;
-	return 0;
-}
-
 static int run_feed(struct nc_reader *r)
 {
 	r->feed_deg_s = r->block.value[NC_F] / 60;
@@ -86,6 +79,14 @@ static int run_condition(struct nc_reader *r)
 {
 	r->word.cond_letter = r->block.cond_letter;
 	r->word.cond_number = r->block.cond_number;
+	return 0;
+}
+
+/* Feed per minute is the only mode there is; corners and transitions belong to
+ * an offset; no output switches wire and water. */
+static int run_nothing(struct nc_reader *r)
+{
+	(void)r;
 	return 0;
 }
 
@@ -123,14 +124,17 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_DISTANCE]		= run_distance,
 	[NC_ARC_DISTANCE]	= run_arc_distance,
 	[NC_WORK]		= run_work,
-	[NC_FEED_MODE]		= run_feed_mode,
+	[NC_FEED_MODE]		= run_nothing,
 	[NC_FEED]		= run_feed,
 	[NC_CONDITION]		= run_condition,
-	[NC_POWER]		= run_power,
-	[NC_PUMP]		= run_pump,
 	[NC_REGISTER]		= nc_run_register,
 	[NC_OFFSET]		= nc_run_offset,
 	[NC_TAPER]		= nc_run_taper,
+	[NC_CORNER]		= run_nothing,
+	[NC_TRANSITION]		= run_nothing,
+	[NC_SUPPLY]		= run_nothing,
+	[NC_POWER]		= run_power,
+	[NC_PUMP]		= run_pump,
 	[NC_MACHINE]		= run_machine,
 	[NC_ONE_SHOT]		= nc_run_one_shot,
 	[NC_MOTION]		= nc_run_motion,

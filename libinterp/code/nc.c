@@ -2,9 +2,11 @@
 /*
  * nc.c - read NC code, line after line
  */
+#include "code/dialect.h"
 #include "code/reader.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,14 +22,26 @@ static void open_text(struct nc_reader *r, const char *text, size_t bytes)
 	r->line_at = r->text;
 }
 
+/* Where a program has no feed, the gap's is what limits it. */
+static double first_feed(const struct nc_reader *r)
+{
+	const struct interp_axis_limits *l = r->o->machine->axis;
+
+	if (r->o->feed_mm_s > 0 || !r->d->no_feed)
+		return r->o->feed_mm_s;
+	return fmin(l[INTERP_X].v_max_mm_s, l[INTERP_Y].v_max_mm_s);
+}
+
 /* As if G21 G17 G90 G91.1 G54 G94 stood in front. */
 static void reset_modes(struct nc_reader *r)
 {
 	const struct interp_nc_options *o = r->o;
 
-	r->arc_incremental = true;
-	r->feed_mm_s = o->feed_mm_s;
-	r->feed_deg_s = o->feed_mm_s;
+	r->d = o->dialect ? o->dialect->nc : &nc_generic;
+	r->arc_incremental = !r->d->arc_places;
+	r->lengths = r->d->point || r->d->decimals ? NC_LENGTHS : 0;
+	r->feed_mm_s = first_feed(r);
+	r->feed_deg_s = r->feed_mm_s;
 	r->fresh = true;
 	r->absent = NC_AXES & ~o->machine->present;
 	r->segs_max = o->segs_max ? o->segs_max : INTERP_NC_SEGS_MAX;
@@ -84,8 +98,10 @@ int interp_nc_compile(const char *text, size_t bytes,
 
 	diag->line = diag->column = 0;
 	contour_init(&r.contour, o->wire ? o->wire : &none, o->machine, b);
-	memcpy(r.registers_mm, o->offset_mm, sizeof(r.registers_mm));
-	r.offset_register = -1;
+	for (int i = 0; i < INTERP_NOFFSETS; i++)
+		r.registers[i] = (struct nc_register) {
+			o->offset_mm[i] != 0, o->offset_mm[i]
+		};
 	open_text(&r, bytes ? text : "", bytes);
 	reset_modes(&r);
 	rc = read_lines(&r);

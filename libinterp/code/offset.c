@@ -7,29 +7,51 @@
 #include <math.h>
 #include <stdio.h>
 
-/* What is in force holds from the next motion on. */
-static void set_side(struct nc_reader *r)
+int nc_refuse_wire(struct nc_reader *r, const uint8_t *at)
 {
-	const double offset = r->offset_side && r->offset_register >= 0 ?
-			      r->registers_mm[r->offset_register] : 0;
+	return nc_refuse(r, at, "wire.guides absolute or relative in the "
+			 "machine file", "%s on a machine without wire guides",
+			 nc_quote_word(r, at).s);
+}
 
-	contour_side(&r->contour, r->offset_side * offset,
+int nc_define_register(struct nc_reader *r, const uint8_t *at, uint32_t n,
+		       double value)
+{
+	if (!(value >= -100 && value <= 100))
+		return nc_refuse(r, at, "an offset of -100 to 100 mm",
+				 "an offset of %g mm", value * r->unit_mm);
+	r->registers[n] = (struct nc_register) { true, value * r->unit_mm };
+	r->block.groups |= NC_BIT(NC_REGISTER);
+	return 0;
+}
+
+/* What is in force holds from the next motion on. */
+static int set_side(struct nc_reader *r, const uint8_t *at)
+{
+	const struct nc_register *g = &r->registers[r->selected];
+
+	if (r->offset_side && !g->known)
+		return nc_refuse(r, at, "a register filled before, as in "
+				 "H1=0.11 and G41 H1",
+				 "an offset by register %u, which is not "
+				 "defined", r->selected);
+	contour_side(&r->contour, r->offset_side * g->mm,
 		     r->taper_side * r->slope);
+	return 0;
 }
 
 int nc_run_register(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
+	const enum nc_slot slot = nc_has(r, NC_D) ? NC_D : NC_H;
 
 	if (nc_has(r, NC_D) && nc_has(r, NC_H))
-		return nc_refuse(r, b->at[NC_H], "D or H",
-				 "D and H on one line, two names of a register");
-	if (nc_has(r, NC_D))
-		r->offset_register = (int)b->value[NC_D];
-	if (nc_has(r, NC_H))
-		r->offset_register = (int)b->value[NC_H];
-	set_side(r);
-	return 0;
+		return nc_refuse(r, b->at[NC_H], "D or H", "H on a line with D");
+	if (!nc_has(r, slot))
+		return set_side(r, r->line_at);
+	r->selected = (uint32_t)b->value[slot];
+	/* With G41 on the line, that word sees to it. */
+	return nc_has_group(r, NC_OFFSET) ? 0 : set_side(r, b->at[slot]);
 }
 
 /* Left is 1 and right is 2 in the tables. */
@@ -41,53 +63,46 @@ static int side_of(const struct nc_code *code)
 int nc_run_offset(struct nc_reader *r)
 {
 	r->offset_side = side_of(r->block.code[NC_OFFSET]);
-	if (r->offset_side && r->offset_register < 0)
-		return nc_refuse(r, r->block.code_at[NC_OFFSET],
-				 "a register, as in G41 D1",
-				 "an offset without D or H");
-	set_side(r);
-	return 0;
+	return set_side(r, r->block.code_at[NC_OFFSET]);
 }
 
 int nc_run_taper(struct nc_reader *r)
 {
 	r->taper_side = side_of(r->block.code[NC_TAPER]);
-	set_side(r);
-	return 0;
+	return set_side(r, r->block.code_at[NC_TAPER]);
 }
 
-static int refuse_angle(struct nc_reader *r, double deg)
+static int refuse_angle(struct nc_reader *r, const uint8_t *at, double deg)
 {
+	const double most = r->contour.guides.wire->angle_max_deg;
 	char wanted[96];
 
 	snprintf(wanted, sizeof(wanted),
-		 "-%g to %g degrees, wire.angle_max_deg of the machine",
-		 r->contour.guides.wire->angle_max_deg,
-		 r->contour.guides.wire->angle_max_deg);
-	return nc_refuse(r, r->block.at[NC_A], wanted,
-			 "a taper of %g degrees", deg);
+		 "-%g to %g degrees, wire.angle_max_deg of the machine", most,
+		 most);
+	return nc_refuse(r, at, wanted, "a taper of %g degrees", deg);
 }
 
+/* The A of a taper is an axis in some dialects, in others nothing else. */
 int nc_take_angle(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
+	const enum nc_slot slot = nc_has(r, NC_ANGLE) ? NC_ANGLE : NC_A;
+	const uint8_t *at = b->code_at[NC_TAPER];
 
 	if (!nc_has_group(r, NC_TAPER) || !b->code[NC_TAPER]->value)
 		return 0;
-	if (!nc_has_guides(r))
-		return nc_refuse(r, b->code_at[NC_TAPER],
-				 "wire.guides absolute or relative in the "
-				 "machine file",
-				 "a taper on a machine without wire guides");
-	if (nc_has(r, NC_A)) {
-		r->slope = contour_tangent(&r->contour, b->value[NC_A]);
-		if (isnan(r->slope))
-			return refuse_angle(r, b->value[NC_A]);
-		b->words &= ~NC_BIT(NC_A);
-	} else if (r->slope == 0) {
-		return nc_refuse(r, b->code_at[NC_TAPER],
-				 "an angle in degrees, as in G51 A2.5",
+	if (nc_has(r, slot) && b->value[slot] == 0)
+		r->slope = 0;
+	else if (!nc_has_guides(r))
+		return nc_refuse_wire(r, at);
+	else if (nc_has(r, slot))
+		r->slope = contour_tangent(&r->contour, b->value[slot]);
+	else if (r->slope == 0)
+		return nc_refuse(r, at, "an angle in degrees, as in G51 A2.5",
 				 "a taper without A");
-	}
+	if (isnan(r->slope))
+		return refuse_angle(r, b->at[slot], b->value[slot]);
+	b->words &= ~NC_BIT(slot);
 	return 0;
 }

@@ -47,13 +47,23 @@ struct nc_frame {
 	const uint8_t *entry, *back;	/* its first line; the caller's next */
 };
 
+/* An offset register. */
+struct nc_register {
+	bool known;
+	double mm;
+};
+
+#define NC_NREGISTERS	1000
+
 /* Where O words stand; line 0: nowhere. */
 struct nc_label {
 	const uint8_t *at;
-	uint32_t line;
+	uint32_t line, second;		/* second: where it stands again */
 };
 
 struct nc_reader {
+	const struct nc_dialect *d;
+
 	/* The text, and the line in hand. */
 	const uint8_t *text, *end;
 	const uint8_t *at;		/* the next line */
@@ -68,18 +78,19 @@ struct nc_reader {
 	uint8_t plane;			/* 0 ... 2: G17 ... G19 */
 	uint8_t work;			/* 0 ... 5: G54 ... G59 */
 	bool incremental, arc_incremental;
+	uint32_t lengths;		/* slots where a point matters */
 	double unit_mm;			/* 1 or 25.4 */
 	double scale[INTERP_NAXES];	/* unit_mm, for rotary axes 1 */
 	double shift_mm[INTERP_NAXES];	/* by G92 */
 	double offset_mm[INTERP_NAXES];	/* work offset and shift together */
 	double feed_mm_s, feed_deg_s;	/* 0: none yet */
 	struct interp_build_word word;	/* its condition is modal too */
+	struct nc_register registers[NC_NREGISTERS];	/* D and H */
+	uint32_t selected;		/* the one D or H named last */
 
 	/* The wire. */
 	struct contour contour;
-	double registers_mm[INTERP_NOFFSETS];
 	int offset_side, taper_side;	/* +1 left, -1 right, 0 off */
-	int offset_register;		/* -1: none yet */
 	double slope;			/* tangent of the taper */
 
 	/* Flow. */
@@ -126,6 +137,7 @@ int nc_run_one_shot(struct nc_reader *r);
 int nc_run_stop(struct nc_reader *r);
 int nc_run_label(struct nc_reader *r);
 
+/* The same for wires. */
 int nc_run_register(struct nc_reader *r);
 int nc_run_offset(struct nc_reader *r);
 int nc_run_taper(struct nc_reader *r);
@@ -144,6 +156,13 @@ static inline bool nc_has_guides(const struct nc_reader *r)
 {
 	return guides_on(&r->contour.guides);
 }
+
+/** nc_define_register() - D or H @n is @value; the word is at @at. */
+int nc_define_register(struct nc_reader *r, const uint8_t *at, uint32_t n,
+		       double value);
+
+/** nc_refuse_wire() - the word at @at wants guides the machine has not. */
+int nc_refuse_wire(struct nc_reader *r, const uint8_t *at);
 
 /** nc_arc() - G2 or G3. */
 int nc_arc(struct nc_reader *r, bool clockwise);

@@ -9,9 +9,8 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 
-#define ANY_WORD	"one of G M F N S T X Y Z A B C U V I J K R P L O D H E"
-#define OFFSET_MAX_MM	50
 #define A_NUMBER	"a sign, digits and one decimal point, as in " \
 			"X-12.345; no exponent"
 
@@ -47,6 +46,29 @@ static const uint8_t *refuse_twice(struct nc_reader *r, const uint8_t *at)
 	return NULL;
 }
 
+static bool has_point(const uint8_t *p, const uint8_t *end)
+{
+	while (p < end && *p != '.')
+		p++;
+	return p < end;
+}
+
+/* A length without a point, in a dialect where that matters: @v counts the
+ * last of its decimals, or is refused if it is not 0. */
+static bool pointed_length(struct nc_reader *r, const uint8_t *at,
+			   const uint8_t *end, double *v)
+{
+	if (has_point(at, end))
+		return true;
+	*v /= nc_pow10[r->d->decimals];
+	if (*v == 0 || !r->d->point)
+		return true;
+	nc_refuse(r, at, "a decimal point, as in X10.0: without one some "
+		  "controls read micrometres", "%s without a decimal point",
+		  nc_quote_word(r, at).s);
+	return false;
+}
+
 /* A word with a value. */
 static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 					unsigned int slot)
@@ -61,6 +83,8 @@ static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 	p = nc_number(at + 1, r->stop, &v);
 	if (!p)
 		return refuse_number(r, at);
+	if ((r->lengths & NC_BIT(slot)) && !pointed_length(r, at, p, &v))
+		return NULL;
 	if (!(v >= w->min && v <= w->max))
 		return refuse_range(r, at, w);
 	if (!w->whole)
@@ -75,8 +99,8 @@ static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 }
 
 /* Behind a : the words are those of the second plane. */
-static const uint8_t *scan_upper(struct nc_reader *r, const uint8_t *at,
-				 unsigned int slot)
+static const uint8_t *scan_top(struct nc_reader *r, const uint8_t *at,
+			       unsigned int slot)
 {
 	static const uint8_t upper[NC_NSLOTS] = {
 		[NC_X] = NC_U + 1, [NC_Y] = NC_V + 1, [NC_U] = NC_U + 1,
@@ -105,21 +129,6 @@ static const uint8_t *scan_colon(struct nc_reader *r, const uint8_t *at)
 	return at + 1;
 }
 
-/* The letters of coded words. */
-static const struct letter {
-	const struct nc_code *codes;
-	uint32_t ncodes;
-	uint32_t scale;			/* 10: one decimal may follow */
-	const char *known;
-} letters[] = {
-	{ nc_g, NC_NG, 10,
-	  "one of G0 G1 G2 G3 G4 G17 G18 G19 G20 G21 G28 G40 G41 G42 G50 G51 "
-	  "G52 G53 G54 ... G59 "
-	  "G90 G90.1 G91 G91.1 G92 G92.1 G94" },
-	{ nc_m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" },
-	{ nc_t, NC_NM, 1, "T84 (pump on) or T85 (pump off)" },
-};
-
 static const uint8_t *refuse_group(struct nc_reader *r, const uint8_t *at,
 				   unsigned int group)
 {
@@ -144,7 +153,8 @@ static bool scan_upper_code(struct nc_reader *r, const uint8_t *at,
 
 static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 {
-	const struct letter *l = &letters[nc_classes[*at] - NC_LETTER_G];
+	const struct nc_letter *l = &r->d->letter[nc_classes[*at] -
+						  NC_LETTER_G];
 	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p;
 	const struct nc_code *code;
 	struct nc_block *b = &r->block;
@@ -175,9 +185,37 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 	return p;
 }
 
+/* Is this the = of a definition? Then behind it; else NULL. */
+static const uint8_t *behind_equals(const struct nc_reader *r,
+				    const uint8_t *p, bool allowed)
+{
+	p = nc_skip_blanks(p, r->stop);
+	return allowed && p < r->stop && *p == '=' ? p + 1 : NULL;
+}
+
+/* The numbers of E001= 60 10 25: the technology is the machine's, so they are
+ * checked and no more. */
+static const uint8_t *scan_definition(struct nc_reader *r, const uint8_t *at,
+				      const uint8_t *p)
+{
+	const uint8_t *next;
+	int n = 0;
+	double v;
+
+	for (; (next = nc_number(p, r->stop, &v)); n++)
+		p = next;
+	if (n == 0) {
+		nc_refuse(r, at, "numbers behind the =, as in E001= 60 10 25",
+			  "a definition without a number");
+		return NULL;
+	}
+	r->word_at = at;
+	return p;
+}
+
 static const uint8_t *scan_condition(struct nc_reader *r, const uint8_t *at)
 {
-	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p;
+	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p, *value;
 	struct nc_block *b = &r->block;
 	uint64_t n = 0;
 
@@ -187,6 +225,9 @@ static const uint8_t *scan_condition(struct nc_reader *r, const uint8_t *at)
 			  "%s is not a condition", nc_quote_run(r, at).s);
 		return NULL;
 	}
+	value = behind_equals(r, p, r->d->defines);
+	if (value)
+		return scan_definition(r, at, value);
 	if (b->groups & NC_BIT(NC_CONDITION)) {
 		nc_refuse(r, at, "one condition on a line",
 			  "a second condition %s", nc_quote_word(r, at).s);
@@ -212,6 +253,56 @@ static const uint8_t *scan_c(struct nc_reader *r, const uint8_t *at)
 	return scan_value(r, at, NC_C);
 }
 
+/* S100 calls a condition, SC0100= defines one. */
+static const uint8_t *scan_s(struct nc_reader *r, const uint8_t *at)
+{
+	const uint8_t *p = at + 1, *value;
+	uint64_t n = 0;
+
+	if (p == r->stop || (*p | 0x20) != 'c')
+		return scan_condition(r, at);
+	value = behind_equals(r, nc_digits(p + 1, r->stop, &n),
+			      r->d->defines);
+	if (value)
+		return scan_definition(r, at, value);
+	nc_refuse(r, at, "SC0100= and its numbers", "SC without a =");
+	return NULL;
+}
+
+/* H1 selects an offset register, H1=0.11 defines it. */
+static const uint8_t *scan_register(struct nc_reader *r, const uint8_t *at)
+{
+	const enum nc_slot slot = (*at | 0x20) == 'd' ? NC_D : NC_H;
+	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p, *value;
+	uint64_t n = 0;
+	double v;
+
+	p = nc_digits(first, r->stop, &n);
+	value = behind_equals(r, p, r->d->defines || r->d->registers);
+	if (!value)
+		return scan_value(r, at, slot);
+	if (p == first || p - first > 9 || n >= NC_NREGISTERS)
+		return refuse_range(r, at, &nc_words[slot]);
+	p = nc_number(value, r->stop, &v);
+	if (!p) {
+		nc_refuse(r, at, "a number behind the =, as in H001=0.11",
+			  "a definition without a number");
+		return NULL;
+	}
+	r->word_at = at;
+	if (!pointed_length(r, value, p, &v))
+		return NULL;
+	return nc_define_register(r, at, (uint32_t)n, v) ? NULL : p;
+}
+
+static const uint8_t *scan_upper(struct nc_reader *r, const uint8_t *at)
+{
+	if (nc_has_guides(r))
+		return scan_value(r, at, (*at | 0x20) == 'u' ? NC_U : NC_V);
+	nc_refuse_wire(r, at);
+	return NULL;
+}
+
 /* X1E5 is meant as an exponent, not as a condition. */
 static const uint8_t *scan_e(struct nc_reader *r, const uint8_t *at)
 {
@@ -224,31 +315,14 @@ static const uint8_t *scan_e(struct nc_reader *r, const uint8_t *at)
 	return NULL;
 }
 
-/* H1 uses a register, H1=0.11 fills it. */
-static const uint8_t *scan_register(struct nc_reader *r, const uint8_t *at)
+static void refuse_stray(struct nc_reader *r, const uint8_t *at)
 {
-	const bool h = nc_classes[*at] == NC_LETTER_H;
-	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p;
-	uint64_t n = 0;
-	double v;
+	char wanted[160];
 
-	p = nc_skip_blanks(nc_digits(first, r->stop, &n), r->stop);
-	if (p == first || p == r->stop || *p != '=')
-		return scan_value(r, at, h ? NC_H : NC_D);
-	if (p - first > NC_DIGITS_MAX || n >= INTERP_NOFFSETS)
-		return refuse_range(r, at, &nc_words[NC_H]);
-	p = nc_number(p + 1, r->stop, &v);
-	if (!p || !(fabs(v * r->unit_mm) <= OFFSET_MAX_MM)) {
-		nc_refuse(r, at, "a register of 0 to 99 and an offset of up to "
-			  "50 mm, as in H1=0.11", "%s is no such offset",
-			  nc_quote_run(r, at).s);
-		return NULL;
-	}
-	r->registers_mm[n] = v * r->unit_mm;
-	r->block.groups |= NC_BIT(NC_REGISTER);
-	r->word_at = at;
-	r->value_end = p;
-	return p;
+	snprintf(wanted, sizeof(wanted), "%s before a number; no blank inside "
+		 "a number", r->d->any_word);
+	nc_refuse(r, at, wanted, "the number %s without a letter",
+		  nc_quote_word(r, at).s);
 }
 
 /* A digit, point or sign where a letter should be. */
@@ -258,9 +332,7 @@ static const uint8_t *scan_stray(struct nc_reader *r, const uint8_t *at)
 		nc_refuse(r, at, A_NUMBER, "%s is not a word with a number",
 			  nc_quote_run(r, r->word_at).s);
 	else
-		nc_refuse(r, at, ANY_WORD " before a number; no blank inside a "
-			  "number", "the number %s without a letter",
-			  nc_quote_word(r, at).s);
+		refuse_stray(r, at);
 	return NULL;
 }
 
@@ -269,10 +341,10 @@ static const uint8_t *scan_bad(struct nc_reader *r, const uint8_t *at)
 	const uint8_t upper = *at & 0xdf;
 
 	if (upper >= 'A' && upper <= 'Z')
-		nc_refuse(r, at, ANY_WORD, "unknown word %s",
+		nc_refuse(r, at, r->d->any_word, "unknown word %s",
 			  nc_quote_word(r, at).s);
 	else if (*at > ' ' && *at < 0x7f)
-		nc_refuse(r, at, ANY_WORD, "'%c', which begins no word", *at);
+		nc_refuse(r, at, r->d->any_word, "'%c', which begins no word", *at);
 	else
 		nc_refuse(r, at, "ASCII text; other characters in comments "
 			  "only, and no NUL", "byte 0x%02x", *at);
@@ -303,6 +375,18 @@ static const uint8_t *scan_to_end(struct nc_reader *r, const uint8_t *at)
 			return scan_bad(r, at);
 	}
 	return at;
+}
+
+/* ; ends a block, and there is one block on a line. */
+static const uint8_t *scan_block_end(struct nc_reader *r, const uint8_t *at)
+{
+	const uint8_t *p = nc_skip_blanks(at + 1, r->stop);
+
+	if (p == r->stop || nc_classes[*p] == NC_EOL || *p == '(')
+		return p;
+	nc_refuse(r, p, "each block on a line of its own",
+		  "words behind the ; that ends a block");
+	return NULL;
 }
 
 static const uint8_t *scan_slash(struct nc_reader *r, const uint8_t *at)
@@ -340,11 +424,13 @@ static scan_fn *const scan_other[NC_NCLASSES] = {
 	[NC_LETTER_G]	= scan_code,
 	[NC_LETTER_M]	= scan_code,
 	[NC_LETTER_T]	= scan_code,
+	[NC_LETTER_S]	= scan_s,
 	[NC_LETTER_D]	= scan_register,
-	[NC_LETTER_H]	= scan_register,
+	[NC_LETTER_U]	= scan_upper,
 	[NC_NUMERIC]	= scan_stray,
 	[NC_OPEN]	= scan_comment,
 	[NC_SEMICOLON]	= scan_to_end,
+	[NC_BLOCK_END]	= scan_block_end,
 	[NC_SLASH]	= scan_slash,
 	[NC_PERCENT]	= scan_percent,
 	[NC_COLON]	= scan_colon,
@@ -353,8 +439,10 @@ static scan_fn *const scan_other[NC_NCLASSES] = {
 /* Words from @p to the end of the line, which is returned. */
 static const uint8_t *scan_words(struct nc_reader *r, const uint8_t *p)
 {
+	const uint8_t *classes = r->d->classes;
+
 	while (p && p < r->stop) {
-		const unsigned int class = nc_classes[*p];
+		const unsigned int class = classes[*p];
 
 		if (class == NC_BLANK) {
 			p++;
@@ -364,12 +452,23 @@ static const uint8_t *scan_words(struct nc_reader *r, const uint8_t *p)
 			return p;
 		if (class - NC_WORD < NC_NSLOTS)
 			p = r->block.colon ?
-			    scan_upper(r, p, class - NC_WORD) :
+			    scan_top(r, p, class - NC_WORD) :
 			    scan_value(r, p, class - NC_WORD);
 		else
 			p = scan_other[class](r, p);
 	}
 	return p;
+}
+
+/* Words with a value that do something by themselves. */
+static void add_groups(struct nc_block *b)
+{
+	if (b->words & NC_BIT(NC_F))
+		b->groups |= NC_BIT(NC_FEED);
+	if (b->words & NC_BIT(NC_O))
+		b->groups |= NC_BIT(NC_LABEL);
+	if (b->words & NC_OFFSETS)
+		b->groups |= NC_BIT(NC_REGISTER);
 }
 
 int nc_scan_line(struct nc_reader *r)
@@ -394,12 +493,8 @@ int nc_scan_line(struct nc_reader *r)
 		return nc_refuse(r, p, "lines of up to 4096 bytes",
 				 "a line longer than %d bytes",
 				 INTERP_NC_LINE_MAX);
-	if (b->words & NC_BIT(NC_F))
-		b->groups |= NC_BIT(NC_FEED);
-	if (b->words & (NC_BIT(NC_D) | NC_BIT(NC_H)))
-		b->groups |= NC_BIT(NC_REGISTER);
-	if (b->words & NC_BIT(NC_O))
-		b->groups |= NC_BIT(NC_LABEL);
+	if (b->words & (NC_BIT(NC_F) | NC_BIT(NC_O) | NC_OFFSETS))
+		add_groups(b);
 	r->at = nc_line_next(p, r->end);
 	return 0;
 }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * words.c - the tables of dialect `generic`; a new word is a new row
+ * words.c - words with values, and the tables of dialect `generic`
+ *
+ * A new word is a new row.
  */
 #include "code/words.h"
 
@@ -35,12 +37,12 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats",
 		   "L goes with M98" },
 	[NC_O] = { 'O', true, 1, 9999, "a program number of 1 to 9999", "" },
-	[NC_D] = { 'D', true, 0, INTERP_NOFFSETS - 1, "a register of 0 to 99",
-		   "" },
+	[NC_D] = { 'D', true, 0, 999, "a register of 0 to 999", "" },
+	[NC_H] = { 'H', true, 0, 999, "a register of 0 to 999", "" },
+	[NC_ANGLE] = { 'A', false, -90, 90, "-90 to 90 degrees",
+		   "A goes with G51 or G52" },
 	[NC_UI] = { 'I', false, ANY_PLACE, "I " CENTRE_LINES },
 	[NC_UJ] = { 'J', false, ANY_PLACE, "J " CENTRE_LINES },
-	[NC_H] = { 'H', true, 0, INTERP_NOFFSETS - 1, "a register of 0 to 99",
-		   "" },
 };
 
 #define LETTER(upper, lower, class)	[upper] = (class), [lower] = (class)
@@ -58,7 +60,7 @@ const uint8_t nc_classes[256] = {
 	LETTER('C', 'c', NC_LETTER_C), LETTER('E', 'e', NC_LETTER_E),
 	LETTER('G', 'g', NC_LETTER_G), LETTER('M', 'm', NC_LETTER_M),
 	LETTER('T', 't', NC_LETTER_T),
-	LETTER('D', 'd', NC_LETTER_D), LETTER('H', 'h', NC_LETTER_H),
+	LETTER('D', 'd', NC_LETTER_D), LETTER('H', 'h', NC_LETTER_D),
 	[' '] = NC_BLANK, ['\t'] = NC_BLANK,
 	['\n'] = NC_EOL, ['\r'] = NC_EOL,
 	['0'] = NC_NUMERIC, ['1'] = NC_NUMERIC, ['2'] = NC_NUMERIC,
@@ -73,7 +75,7 @@ const uint8_t nc_classes[256] = {
 #define P_	NC_BIT(NC_P)
 #define ARC_	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
 
-const struct nc_code nc_g[NC_NG] = {
+static const struct nc_code g[NC_NG] = {
 	[0]   = { NC_MOTION, 0, NC_AXES },
 	[10]  = { NC_MOTION, 1, NC_AXES },
 	[20]  = { NC_MOTION, 2, ARC_ },
@@ -107,7 +109,7 @@ const struct nc_code nc_g[NC_NG] = {
 	[940] = { NC_FEED_MODE, 0, 0 },
 };
 
-const struct nc_code nc_m[NC_NM] = {
+static const struct nc_code m[NC_NM] = {
 	[0]  = { NC_STOP, NC_HALT, 0 },
 	[1]  = { NC_STOP, NC_OPTIONAL_HALT, 0 },
 	[2]  = { NC_STOP, NC_FINISH, 0 },
@@ -119,8 +121,22 @@ const struct nc_code nc_m[NC_NM] = {
 	[99] = { NC_STOP, NC_RETURN, 0 },
 };
 
-const struct nc_code nc_t[NC_NM] = {
+static const struct nc_code t[NC_NM] = {
 	[84] = { NC_PUMP, INTERP_AUX_PUMP_ON, 0 },
 	[85] = { NC_PUMP, INTERP_AUX_PUMP_OFF, 0 },
+};
+
+const struct nc_dialect nc_generic = {
+	.classes = nc_classes,
+	.letter = {
+		{ g, NC_NG, 10,
+		  "one of G0 G1 G2 G3 G4 G17 G18 G19 G20 G21 G28 G40 G41 "
+		  "G42 G50 G51 G52 G53 G54 ... G59 G90 G90.1 G91 G91.1 G92 G92.1 G94" },
+		{ m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" },
+		{ t, NC_NM, 1, "T84 (pump on) or T85 (pump off)" },
+	},
+	.any_word = "one of G M F N S T X Y Z A B C U V I J K R P L O D H E",
+	.registers = true,
+	.label = 'O',
 };
 /* clang-format on */

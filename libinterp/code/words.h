@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * words.h - the words of dialect `generic`, as tables
+ * words.h - the words of the dialects, as tables
  *
  * A word is a letter and a number.  Words with a value have a slot; G, M and T
  * words are codes, each of a modal group; C with three digits and E call a
- * condition.  docs/nc-code.md says what each does.
+ * condition.  A dialect is a table of what bytes begin, tables of its codes,
+ * and a few rules.  docs/nc-code.md says what each does.
  */
 #ifndef CODE_WORDS_H
 #define CODE_WORDS_H
@@ -19,7 +20,7 @@ enum nc_slot {
 	NC_I, NC_J, NC_K, NC_R,
 	NC_F, NC_N, NC_S,
 	NC_P, NC_L, NC_O,
-	NC_D, NC_H,
+	NC_D, NC_H, NC_ANGLE,		/* offset registers; A of a taper */
 	NC_UI, NC_UJ,			/* I J behind a : */
 	NC_NSLOTS
 };
@@ -28,8 +29,11 @@ enum nc_slot {
 #define NC_AXES		(NC_BIT(NC_I) - 1)
 #define NC_CENTRE	(NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_K))
 #define NC_MOVES	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
+#define NC_LENGTHS	(NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z) | \
+			 NC_CENTRE | NC_BIT(NC_R))
+#define NC_OFFSETS	(NC_BIT(NC_D) | NC_BIT(NC_H))
 #define NC_ANYWHERE	(NC_BIT(NC_F) | NC_BIT(NC_N) | NC_BIT(NC_S) | \
-			 NC_BIT(NC_O) | NC_BIT(NC_D) | NC_BIT(NC_H))
+			 NC_BIT(NC_O) | NC_OFFSETS)
 
 /* What may follow a letter. */
 struct nc_word {
@@ -54,11 +58,13 @@ enum nc_class {
 	NC_LETTER_G,
 	NC_LETTER_M,
 	NC_LETTER_T,
-	NC_LETTER_D,			/* D and H: a register, or its value */
-	NC_LETTER_H,
+	NC_LETTER_S,			/* a condition, SC its definition */
+	NC_LETTER_D,			/* D or H: an offset register */
+	NC_LETTER_U,			/* U or V: only with a taper */
 	NC_NUMERIC,			/* digit, point or sign: a stray one */
 	NC_OPEN,			/* ( comment ) */
-	NC_SEMICOLON,
+	NC_SEMICOLON,			/* ; comment */
+	NC_BLOCK_END,			/* ; and nothing behind it */
 	NC_SLASH,
 	NC_PERCENT,
 	NC_COLON,
@@ -81,11 +87,14 @@ enum nc_group {
 	NC_FEED_MODE,			/* G94 */
 	NC_FEED,			/* F */
 	NC_CONDITION,			/* C120 E001 */
-	NC_POWER,			/* M3 M4 M5 */
-	NC_PUMP,			/* T84 T85 */
 	NC_REGISTER,			/* D H */
 	NC_OFFSET,			/* G40 G41 G42 */
 	NC_TAPER,			/* G50 G51 G52 */
+	NC_CORNER,			/* G60 G61 */
+	NC_TRANSITION,			/* G38 G39 */
+	NC_SUPPLY,			/* T80 ... T83 T86 T87 */
+	NC_POWER,			/* M3 M4 M5 */
+	NC_PUMP,			/* T84 T85 */
 	NC_MACHINE,			/* G53 */
 	NC_ONE_SHOT,			/* G4 G28 G92 G92.1 */
 	NC_MOTION,			/* G0 G1 G2 G3 */
@@ -108,6 +117,29 @@ struct nc_code {
 #define NC_NG	1000
 #define NC_NM	100
 
-extern const struct nc_code nc_g[NC_NG], nc_m[NC_NM], nc_t[NC_NM];
+/* The codes of a letter. */
+struct nc_letter {
+	const struct nc_code *codes;	/* NULL: none of that letter */
+	uint32_t ncodes;
+	uint32_t scale;			/* 10: one decimal may follow */
+	const char *known;
+};
+
+struct nc_dialect {
+	const uint8_t *classes;		/* of bytes */
+	struct nc_letter letter[3];	/* G M T */
+	const char *any_word;		/* the letters there are */
+	char label;			/* of subprograms: O or N */
+	uint8_t decimals;		/* of a length without a point */
+	bool point;			/* but 0, a length has a point */
+	bool arc_places;		/* I J are places */
+	bool m2_ends;			/* M2 ends the text, nothing else */
+	bool no_feed;			/* F is optional: the gap says */
+	bool defines;			/* E001= and H001= lines */
+	bool registers;			/* H001=0.11 alone */
+};
+
+extern const struct nc_dialect nc_generic, nc_robofil, nc_skd2, nc_sodick,
+			       nc_chmer;
 
 #endif /* CODE_WORDS_H */

@@ -136,6 +136,18 @@ def test_bad_code_is_refused_with_line_and_column(machine):
     assert c.job("bad") is None
 
 
+def test_the_name_of_a_job_picks_its_dialect(machine):
+    c = machine.client
+    a = c.submit(b"B100 B0 B100 GX L1\nB100 0 B100 GX L3\n", "bad3b",
+                 name="part.3b")
+    assert a.code == 65
+    assert a.reason.startswith("part.3b:2:6: error: 0 where a B should be")
+    a = c.submit(b"B100 B0 B100 GX L1\nDD\n", "good3b", name="part.3B",
+                 hold=True)
+    assert a.code == 0, a.reason
+    assert c.submit(b"B100 B0 B100 GX L1\nDD\n", "no3b").code == 65
+
+
 def test_chunks_out_of_bounds_are_refused(machine):
     c = machine.client
     for change, code in (

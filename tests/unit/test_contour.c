@@ -218,10 +218,10 @@ static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
 		       "an arc where");
 	assert_refused(w, "F5 G41 D1 G1 X5\nG18 G2 X9 I2\n", 2, "plane XY");
 	assert_refused(w, "F5 G41 D1 G1 X5\nX6\nZ4\nX9\n", 3, "another axis");
-	assert_refused(w, "F5\nG41 G1 X5\n", 2, "without D or H");
-	assert_refused(w, "F5\nG41 D1 H1 G1 X5\n", 2, "D and H");
-	assert_refused(w, "H1=60\n", 1, "no such offset");
-	assert_refused(w, "H100=1\n", 1, "out of range");
+	assert_refused(w, "F5\nG41 G1 X5\n", 2, "register 0, which is not defined");
+	assert_refused(w, "F5\nG41 D1 H1 G1 X5\n", 2, "H on a line with D");
+	assert_refused(w, "H1=160\n", 1, "an offset of 160 mm");
+	assert_refused(w, "H1000=1\n", 1, "out of range");
 	assert_refused(w, "D1.5\n", 1, "not a whole");
 }
 

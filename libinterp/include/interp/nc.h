@@ -2,8 +2,8 @@
 /*
  * nc.h - read NC code, one pass, into a program
  *
- * Dialect `generic`: RS-274 words as most sinkers and wire machines share
- * them; docs/nc-code.md has the table.  The reader keeps modal state, checks
+ * Dialect `generic` has the RS-274 words most sinkers and wire machines share;
+ * the others are those of wire machines; docs/nc-code.md has their tables.  The reader keeps modal state, checks
  * every word and hands absolute machine coordinates to the builder.  A word it
  * does not know is refused with line and column; nothing is skipped silently.
  *
@@ -24,12 +24,17 @@
 #define INTERP_NC_EXECUTED_MAX	100000000u	/* lines, repeats counted */
 #define INTERP_NC_NWORK		6		/* G54 ... G59 */
 
+struct interp_dialect;
+
 struct interp_nc_options {
+	const struct interp_dialect *dialect;	/* NULL: generic */
 	const struct interp_machine *machine;
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
 	const struct interp_wire *wire;	/* lent; NULL: no guides, no corners */
-	double offset_mm[INTERP_NOFFSETS];	/* registers D and H */
-	double feed_mm_s;	/* until the first F; 0: an F is demanded */
+	double offset_mm[INTERP_NOFFSETS];	/* D and H; 0: not filled */
+	double feed_mm_s;	/* until the first F; 0: an F is demanded, or,
+				 * where programs have none, the fastest X and
+				 * Y both go */
 	uint32_t segs_max;	/* 0: INTERP_NC_SEGS_MAX */
 	uint32_t executed_max;	/* 0: INTERP_NC_EXECUTED_MAX */
 };

@@ -140,7 +140,7 @@ struct interp_couple {
 /* A technology condition called by the program, such as C120 or E001. */
 struct interp_cond {
 	uint32_t number;
-	char letter;			/* 'C' or 'E'; 0: none called yet */
+	char letter;			/* 'C', 'E' or 'S'; 0: none yet */
 	char pad[3];
 };
 

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * emit.c - the compiled job back as text
+ */
+#include "sim.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sysexits.h>
+
+static int put(void *arg, const char *text, size_t bytes)
+{
+	return fwrite(text, 1, bytes, arg) == bytes ? 0 : -EIO;
+}
+
+/* What records have no word for does not vanish unsaid. */
+static void say_left(const struct interp_threeb_left *l)
+{
+	const struct {
+		uint32_t n;
+		const char *what;
+	} left[] = {
+		{ l->rapids, "rapid moves became lines that cut" },
+		{ l->outputs, "switched outputs were left out" },
+		{ l->waits, "dwells and optional stops were left out" },
+		{ l->conditions, "calls of conditions were left out" },
+	};
+
+	for (size_t i = 0; i < sizeof(left) / sizeof(left[0]); i++) {
+		if (left[i].n)
+			fprintf(stderr, "edmsim: %u %s: 3B has no word for "
+				"them\n", left[i].n, left[i].what);
+	}
+}
+
+int job_emit(const struct sim_job *job, const struct sim_options *o,
+	     const struct machine_config *c)
+{
+	const struct interp_sink to = { put, stdout };
+	const struct interp_threeb_options threeb = {
+		.unit_um = c->threeb_unit_um,
+	};
+	struct interp_threeb_left left = { 0 };
+	struct interp_diag d = { 0 };
+	int r;
+
+	if (strcmp(o->emit, "3b") == 0)
+		r = interp_threeb_write(&job->program, &threeb, &to, &left, &d);
+	else
+		r = interp_iso_write(&job->program, &to, &d);
+	if (r == -EINVAL) {
+		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", o->job, d.line,
+			d.column, d.found, d.wanted);
+		return EX_DATAERR;
+	}
+	if (r || fflush(stdout)) {
+		fprintf(stderr, "edmsim: stdout: cannot write\n");
+		return EX_IOERR;
+	}
+	say_left(&left);
+	return 0;
+}
