@@ -31,7 +31,7 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	2
+#define INTERP_PROGRAM_VERSION	3
 
 /* How a path becomes pulses. */
 enum interp_strategy {
