@@ -5,6 +5,7 @@
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make bench      speed, as medians side by side
 #   make experiments  count the pulse rules, into docs/experiments-pulse.md
+#   make pictures   draw what docs/ shows, into docs/pictures/
 #   make fuzz       the readers of jobs under libFuzzer, a bounded time each
 #   make lint       what the cycle may call, headers alone, who may include whom
 #   make install    DESTDIR and PREFIX are honoured
@@ -210,6 +211,13 @@ experiments: $(EXPERIMENTS:%=$(B)/experiments/%)
 	$(Q)cp $(B)/experiments-pulse.md docs/experiments-pulse.md
 	$(Q)cat docs/experiments-pulse.md
 
+# Each from a run of edmsim; needs gnuplot and python3.
+pictures: $(B)/edmsim
+	$(call say,DRAW,docs/pictures)
+	$(Q)docs/pictures/staircases $(B)
+	$(Q)$(B)/edmsim --machine examples/machine.ini --quiet \
+		--plot docs/pictures/demo.png examples/cavity.ngc
+
 FUZZ_S	?= 60
 FUZZ	:= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 SEEDS_fuzz_nc	  = examples/*.ngc
@@ -285,5 +293,5 @@ clean:
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
 .PHONY: all demo check units run-units run-crossings clang bench experiments \
-	fuzz lint install clean
+	pictures fuzz lint install clean
 .SECONDARY:
