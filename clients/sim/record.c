@@ -89,7 +89,8 @@ void record_point(void *arg, const struct cycle *c)
 	struct sim_result *w = &r->result;
 
 	w->points++;
-	w->switches += w->last_moved && c->cursor.moved != w->last_moved;
+	/* A change of axis: nothing that moved goes on. */
+	w->switches += w->last_moved && !(c->cursor.moved & w->last_moved);
 	w->last_moved = c->cursor.moved;
 	if (r->deviation) {
 		const double d = interp_cursor_deviation_mm(&c->cursor);
