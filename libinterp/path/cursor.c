@@ -23,7 +23,6 @@ static const struct interp_walk walk_action = {
 	.enter = walk_stand,
 	.forward = none_step,
 	.back = none_step,
-	.last = walk_last_tick,
 };
 
 static uint32_t axes_moving(const struct interp_cursor *c)
@@ -187,7 +186,7 @@ static bool may_go_on(const struct interp_cursor *c)
 	if (!c->backward)
 		return c->measure < c->want;
 	return c->measure > c->want &&
-	       c->measure - c->walk->last(c) >= c->want;
+	       (!c->walk->last || c->measure - c->walk->last(c) >= c->want);
 }
 
 /* Standing exactly on a segment's end is still in it, unless something is to

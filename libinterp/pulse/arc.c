@@ -189,5 +189,4 @@ const struct interp_walk walk_arc = {
 	.enter = arc_enter,
 	.forward = arc_forward,
 	.back = arc_back,
-	.last = walk_last_tick,
 };

@@ -51,7 +51,6 @@ const struct interp_walk walk_dda_line = {
 	.enter = dda_line_enter,
 	.forward = walk_dda_forward,
 	.back = walk_dda_back,
-	.last = walk_last_tick,
 };
 
 /* -- Arcs ------------------------------------------------------------------- */
@@ -221,5 +220,4 @@ const struct interp_walk walk_dda_arc = {
 	.enter = dda_arc_enter,
 	.forward = dda_arc_forward,
 	.back = dda_arc_back,
-	.last = walk_last_tick,
 };

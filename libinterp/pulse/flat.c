@@ -73,5 +73,4 @@ const struct interp_walk walk_flat = {
 	.enter = flat_enter,
 	.forward = flat_forward,
 	.back = flat_back,
-	.last = walk_last_tick,
 };

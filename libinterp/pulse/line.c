@@ -4,30 +4,31 @@
  *
  * A line of N ticks is at d*k/N on each axis after k of them; N is the
  * longest axis's pulses, rounded up, so no axis moves more than one pulse a
- * tick and each is within half a pulse of the true line.  With
+ * tick and each is within half a pulse of the true line.  From a node f
+ * subpulses above the middle between two pulses, an axis stands after k ticks
+ * at the whole pulses of
  *
- *	d = quot*N + rem,  0 <= rem < N
+ *	(f*N + |d|*k) / F,	F = N << INTERP_SUB_BITS
  *
- * one tick adds quot, and one more whenever the sum of the remainders passes
- * N.  Both sums are integers, so back is the exact inverse of forward and the
- * end is met exactly, wherever in a pulse the two nodes lie.
+ * and one tick adds |d| <= F to the remainder, and a pulse whenever that
+ * passes F.  An axis that goes down does the same in a mirror.  The remainder
+ * is an integer, kept less F so that its sign tells; back is the exact inverse
+ * of forward and the end is met exactly, wherever in a pulse the two nodes lie.
  */
 #include "pulse/walk.h"
 
 #include <stdlib.h>
 
-static void dda_set(struct interp_dda *d, int64_t from, int64_t to,
+/* Stand at @node, on the way by @len, subpulses. */
+static void dda_set(struct interp_dda *d, int64_t node, int64_t len,
 		    int64_t ticks)
 {
-	const int64_t len = to - from;
+	const int64_t full = ticks << INTERP_SUB_BITS;
+	const int64_t up = ((node + INTERP_SUB / 2) & (INTERP_SUB - 1)) * ticks;
 
-	d->quot = len / ticks;
-	d->rem = len % ticks;
-	if (d->rem < 0) {
-		d->rem += ticks;
-		d->quot--;
-	}
-	d->err = 0;
+	d->step = llabs(len);
+	d->dir = len > 0 ? 1 : -1;
+	d->err = len > 0 ? up - full : -1 - up;
 }
 
 bool walk_stand(struct interp_cursor *c, bool at_end)
@@ -53,6 +54,7 @@ bool walk_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except)
 	if (!walk_stand(c, at_end))
 		return false;
 	c->ndda = 0;
+	c->dda_full = ticks << INTERP_SUB_BITS;
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const uint32_t axis = c->p.head->column[j];
 		const int64_t from = walk_node(c, j, false);
@@ -61,42 +63,48 @@ bool walk_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except)
 
 		if (from == to || except & 1u << axis)
 			continue;
-		if (llabs(to - from) > ticks << INTERP_SUB_BITS)
+		if (llabs(to - from) > c->dda_full)
 			return false;
-		dda_set(d, from, to, ticks);
-		d->sub = at_end ? to : from;
+		dda_set(d, at_end ? to : from, to - from, ticks);
 		d->axis = axis;
 		c->ndda++;
 	}
 	return true;
 }
 
-/* Move an axis to its dda's nearest pulse; its bit if it moved. */
-static uint32_t dda_settle(struct interp_cursor *c, const struct interp_dda *d)
+/*
+ * One tick of one axis; its bit if it pulses.  No branch: whether it does is
+ * hard to foretell.
+ */
+static inline uint32_t dda_forward(struct interp_cursor *c,
+				   struct interp_dda *d, int64_t full)
 {
-	const int32_t to = interp_round_sub(d->sub);
-	const uint32_t moved = (uint32_t)(to != c->pos[d->axis]) << d->axis;
+	const int64_t err = d->err + d->step;
+	const int64_t pulse = ~(err >> 63);
 
-	c->pos[d->axis] = to;
-	return moved;
+	d->err = err - (full & pulse);
+	c->pos[d->axis] += d->dir & (int32_t)pulse;
+	return (uint32_t)(pulse & 1) << d->axis;
+}
+
+static inline uint32_t dda_back(struct interp_cursor *c, struct interp_dda *d,
+				int64_t full)
+{
+	const int64_t err = d->err - d->step;
+	const int64_t pulse = (err + full) >> 63;
+
+	d->err = err + (full & pulse);
+	c->pos[d->axis] -= d->dir & (int32_t)pulse;
+	return (uint32_t)(pulse & 1) << d->axis;
 }
 
 uint32_t walk_dda_forward(struct interp_cursor *c)
 {
-	const int64_t ticks = c->seg.ticks;
+	const int64_t full = c->dda_full;
 	uint32_t moved = 0;
 
-	for (uint32_t i = 0; i < c->ndda; i++) {
-		struct interp_dda *d = &c->dda[i];
-
-		d->sub += d->quot;
-		d->err += d->rem;
-		if (d->err >= ticks) {
-			d->err -= ticks;
-			d->sub++;
-		}
-		moved |= dda_settle(c, d);
-	}
+	for (uint32_t i = 0; i < c->ndda; i++)
+		moved |= dda_forward(c, &c->dda[i], full);
 	c->tick++;
 	c->measure++;
 	return moved;
@@ -104,29 +112,14 @@ uint32_t walk_dda_forward(struct interp_cursor *c)
 
 uint32_t walk_dda_back(struct interp_cursor *c)
 {
-	const int64_t ticks = c->seg.ticks;
+	const int64_t full = c->dda_full;
 	uint32_t moved = 0;
 
-	for (uint32_t i = 0; i < c->ndda; i++) {
-		struct interp_dda *d = &c->dda[i];
-
-		d->sub -= d->quot;
-		d->err -= d->rem;
-		if (d->err < 0) {
-			d->err += ticks;
-			d->sub--;
-		}
-		moved |= dda_settle(c, d);
-	}
+	for (uint32_t i = 0; i < c->ndda; i++)
+		moved |= dda_back(c, &c->dda[i], full);
 	c->tick--;
 	c->measure--;
 	return moved;
-}
-
-int64_t walk_last_tick(const struct interp_cursor *c)
-{
-	(void)c;
-	return 1;
 }
 
 int64_t walk_longest(const struct interp_cursor *c, uint32_t except)
@@ -154,5 +147,4 @@ const struct interp_walk walk_line = {
 	.enter = line_enter,
 	.forward = walk_dda_forward,
 	.back = walk_dda_back,
-	.last = walk_last_tick,
 };

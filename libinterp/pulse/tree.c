@@ -107,7 +107,6 @@ const struct interp_walk walk_tree = {
 	.enter = tree_enter,
 	.forward = tree_forward,
 	.back = tree_back,
-	.last = walk_last_tick,
 };
 
 /* -- Helices ---------------------------------------------------------------- */

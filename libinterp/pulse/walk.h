@@ -26,7 +26,7 @@ struct interp_walk {
 	/* One tick; update pos, tick and measure; the mask of axes moved. */
 	uint32_t (*forward)(struct interp_cursor *c);
 	uint32_t (*back)(struct interp_cursor *c);
-	/* What the last tick added to the measure. */
+	/* What the last tick added to the measure; NULL: always one. */
 	int64_t (*last)(const struct interp_cursor *c);
 };
 
@@ -70,7 +70,6 @@ bool walk_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except);
 int64_t walk_longest(const struct interp_cursor *c, uint32_t except);
 uint32_t walk_dda_forward(struct interp_cursor *c);
 uint32_t walk_dda_back(struct interp_cursor *c);
-int64_t walk_last_tick(const struct interp_cursor *c);
 
 struct couple_input;
 struct couple_rule;

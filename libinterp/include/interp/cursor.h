@@ -35,10 +35,10 @@ enum interp_step {
 
 /* One axis of a straight walk: see pulse/line.c. */
 struct interp_dda {
-	int64_t sub;			/* place, subpulses */
-	int64_t quot;			/* subpulses per tick, floor */
-	int64_t rem, err;		/* remainder per tick; its sum, < ticks */
+	int64_t err;			/* to the next pulse: -full ... -1 */
+	int64_t step;			/* of it in a tick, 0 < step <= full */
 	uint32_t axis;
+	int32_t dir;			/* +1 or -1 */
 };
 
 /* Two inputs and the rule between them: see pulse/pair.h. */
@@ -103,6 +103,7 @@ struct interp_cursor {
 	int64_t measure, want, whole;	/* place, aim and end of the segment in
 					 * the strategy's own measure */
 	struct interp_dda dda[INTERP_NAXES];
+	int64_t dda_full;		/* ticks of a segment, subpulses */
 	uint32_t ndda;
 	struct interp_pair pair[INTERP_NAXES];
 	uint32_t npairs;
