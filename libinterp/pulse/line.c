@@ -67,59 +67,78 @@ bool walk_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except)
 			return false;
 		dda_set(d, at_end ? to : from, to - from, ticks);
 		d->axis = axis;
+		d->pulse = walk_pulse(axis, d->dir < 0);
+		d->pulse_back = walk_pulse(axis, d->dir > 0);
 		c->ndda++;
 	}
 	return true;
 }
 
 /*
- * One tick of one axis; its bit if it pulses.  No branch: whether it does is
- * hard to foretell.
+ * One tick of one axis.  No branch: whether it pulses is hard to foretell.
  */
 static inline uint32_t dda_forward(struct interp_cursor *c,
-				   struct interp_dda *d, int64_t full)
+				   struct interp_dda *d)
 {
 	const int64_t err = d->err + d->step;
-	const int64_t pulse = ~(err >> 63);
+	const int64_t over = ~(err >> 63);
 
-	d->err = err - (full & pulse);
-	c->pos[d->axis] += d->dir & (int32_t)pulse;
-	return (uint32_t)(pulse & 1) << d->axis;
+	d->err = err - (c->dda_full & over);
+	c->pos[d->axis] += d->dir & (int32_t)over;
+	return d->pulse & (uint32_t)over;
 }
 
-static inline uint32_t dda_back(struct interp_cursor *c, struct interp_dda *d,
-				int64_t full)
+static inline uint32_t dda_back(struct interp_cursor *c, struct interp_dda *d)
 {
 	const int64_t err = d->err - d->step;
-	const int64_t pulse = (err + full) >> 63;
+	const int64_t under = (err + c->dda_full) >> 63;
 
-	d->err = err + (full & pulse);
-	c->pos[d->axis] -= d->dir & (int32_t)pulse;
-	return (uint32_t)(pulse & 1) << d->axis;
+	d->err = err + (c->dda_full & under);
+	c->pos[d->axis] -= d->dir & (int32_t)under;
+	return d->pulse_back & (uint32_t)under;
 }
 
-uint32_t walk_dda_forward(struct interp_cursor *c)
+static inline uint32_t line_tick(struct interp_cursor *c)
 {
-	const int64_t full = c->dda_full;
-	uint32_t moved = 0;
+	uint32_t pulses = 0;
 
 	for (uint32_t i = 0; i < c->ndda; i++)
-		moved |= dda_forward(c, &c->dda[i], full);
+		pulses |= dda_forward(c, &c->dda[i]);
 	c->tick++;
 	c->measure++;
-	return moved;
+	return pulses;
 }
 
-uint32_t walk_dda_back(struct interp_cursor *c)
+static inline uint32_t line_tick_back(struct interp_cursor *c)
 {
-	const int64_t full = c->dda_full;
-	uint32_t moved = 0;
+	uint32_t pulses = 0;
 
 	for (uint32_t i = 0; i < c->ndda; i++)
-		moved |= dda_back(c, &c->dda[i], full);
+		pulses |= dda_back(c, &c->dda[i]);
 	c->tick--;
 	c->measure--;
-	return moved;
+	return pulses;
+}
+
+uint32_t walk_dda_tick(struct interp_cursor *c)
+{
+	return line_tick(c);
+}
+
+uint32_t walk_dda_tick_back(struct interp_cursor *c)
+{
+	return line_tick_back(c);
+}
+
+uint32_t walk_dda_forward(struct interp_cursor *c, uint32_t ticks,
+			  uint16_t *ret)
+{
+	return walk_ticks(c, line_tick, ticks, ret);
+}
+
+uint32_t walk_dda_back(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
+{
+	return walk_ticks(c, line_tick_back, ticks, ret);
 }
 
 int64_t walk_longest(const struct interp_cursor *c, uint32_t except)

@@ -30,6 +30,8 @@ uint32_t walk_inputs(struct interp_cursor *c, uint32_t except,
 		if (d == 0 || except & 1u << axis)
 			continue;
 		c->sign[axis] = d > 0 ? 1 : -1;
+		c->pulse[axis] = (uint16_t)walk_pulse(axis, d < 0);
+		c->pulse_back[axis] = (uint16_t)walk_pulse(axis, d > 0);
 		in[n++] = (struct couple_input) { (int8_t)axis, llabs(d) };
 	}
 	return n;
@@ -73,7 +75,7 @@ static bool tree_enter(struct interp_cursor *c, bool at_end)
 	return walk_stand(c, at_end) && tree_set(c, 0, at_end) == c->seg.ticks;
 }
 
-static uint32_t tree_forward(struct interp_cursor *c)
+static inline uint32_t tree_tick(struct interp_cursor *c)
 {
 	int8_t code = c->root;
 
@@ -85,10 +87,10 @@ static uint32_t tree_forward(struct interp_cursor *c)
 	c->tick++;
 	c->measure++;
 	c->pos[code] += c->sign[code];
-	return 1u << code;
+	return c->pulse[code];
 }
 
-static uint32_t tree_back(struct interp_cursor *c)
+static inline uint32_t tree_tick_back(struct interp_cursor *c)
 {
 	int8_t code = c->root;
 
@@ -100,7 +102,19 @@ static uint32_t tree_back(struct interp_cursor *c)
 	c->tick--;
 	c->measure--;
 	c->pos[code] -= c->sign[code];
-	return 1u << code;
+	return c->pulse_back[code];
+}
+
+static uint32_t tree_forward(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret)
+{
+	return walk_ticks(c, tree_tick, ticks, ret);
+}
+
+static uint32_t tree_back(struct interp_cursor *c, uint32_t ticks,
+			  uint16_t *ret)
+{
+	return walk_ticks(c, tree_tick_back, ticks, ret);
 }
 
 const struct interp_walk walk_tree = {
@@ -141,12 +155,12 @@ static int64_t helix_sent(const struct interp_cursor *c)
 	return c->measure - c->circle_at;
 }
 
-static uint32_t helix_forward(struct interp_cursor *c)
+static uint32_t helix_tick(struct interp_cursor *c)
 {
 	uint32_t moved;
 
 	if (helix_sent(c) < helix_due(c, c->circle_at))
-		return tree_forward(c);
+		return tree_tick(c);
 	if (c->circle.tick >= c->circle.ticks)
 		return WALK_BAD;
 	moved = walk_circle_pulse(c, 1);
@@ -164,19 +178,31 @@ static bool helix_last_tree(const struct interp_cursor *c)
 	       helix_due(c, c->circle_at - circle_last(&c->circle));
 }
 
-static uint32_t helix_back(struct interp_cursor *c)
+static uint32_t helix_tick_back(struct interp_cursor *c)
 {
 	int64_t last;
 
 	if (c->tick == 0)
 		return WALK_BAD;
 	if (helix_last_tree(c))
-		return tree_back(c);
+		return tree_tick_back(c);
 	last = circle_last(&c->circle);
 	c->tick--;
 	c->circle_at -= last;
 	c->measure -= last;
 	return walk_circle_pulse(c, -1);
+}
+
+static uint32_t helix_forward(struct interp_cursor *c, uint32_t ticks,
+			      uint16_t *ret)
+{
+	return walk_ticks(c, helix_tick, ticks, ret);
+}
+
+static uint32_t helix_back(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret)
+{
+	return walk_ticks(c, helix_tick_back, ticks, ret);
 }
 
 static int64_t helix_last(const struct interp_cursor *c)
