@@ -39,6 +39,7 @@ struct interp_dda {
 	int64_t step;			/* of it in a tick, 0 < step <= full */
 	uint32_t axis;
 	int32_t dir;			/* +1 or -1 */
+	int32_t given;			/* pulses in a run of ticks */
 	uint32_t pulse, pulse_back;	/* INTERP_PULSE bits of one */
 };
 
