@@ -105,16 +105,102 @@ static inline uint32_t tree_tick_back(struct interp_cursor *c)
 	return c->pulse_back[code];
 }
 
+/*
+ * Many ticks at once go level by level: a pair says of each which input gives
+ * it, then each input its own, and they are put in order.  Three levels hold
+ * eight axes.
+ */
+#define RUN_MAX	64
+
+static void leaf_run(struct interp_cursor *c, int8_t axis, int ticks,
+		     uint16_t *ret)
+{
+	const uint16_t pulse = c->backward ? c->pulse_back[axis] :
+					     c->pulse[axis];
+
+	for (int k = 0; k < ticks; k++)
+		ret[k] = pulse;
+	c->pos[axis] += (c->backward ? -ticks : ticks) * c->sign[axis];
+}
+
+/* Both inputs are axes: no order to be put in. */
+static void leaves_run(struct interp_cursor *c, const struct interp_pair *p,
+		       const uint8_t *second, uint32_t ticks, uint16_t *ret)
+{
+	const uint16_t *pulse = c->backward ? c->pulse_back : c->pulse;
+	const uint32_t a = pulse[p->in_a], turn = a ^ pulse[p->in_b];
+
+	for (uint32_t k = 0; k < ticks; k++)
+		ret[k] = (uint16_t)(a ^ (turn & -(uint32_t)second[k]));
+}
+
+static void pair_ticks(struct interp_cursor *c, struct interp_pair *p,
+		       uint32_t ticks, uint8_t *second)
+{
+	if (c->backward)
+		pair_run_back(p, ticks, second);
+	else
+		pair_run(p, ticks, second);
+}
+
+static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
+		     uint16_t *ret)
+{
+	struct interp_pair *p = &c->pair[~code];
+	uint16_t pulse[2][RUN_MAX];
+	uint8_t second[RUN_MAX];
+	uint32_t n = 0;
+	const int64_t m = p->m, s = p->s;
+
+	if (code >= 0) {
+		leaf_run(c, code, (int)ticks, ret);
+		return;
+	}
+	pair_ticks(c, p, ticks, second);
+	if (p->in_a >= 0 && p->in_b >= 0) {
+		c->pos[p->in_a] += (int32_t)(p->m - m) * c->sign[p->in_a];
+		c->pos[p->in_b] += (int32_t)(p->s - s) * c->sign[p->in_b];
+		leaves_run(c, p, second, ticks, ret);
+		return;
+	}
+	for (uint32_t k = 0; k < ticks; k++)
+		n += second[k];
+	tree_run(c, p->in_a, ticks - n, pulse[0]);
+	tree_run(c, p->in_b, n, pulse[1]);
+	n = 0;
+	for (uint32_t k = 0; k < ticks; k++) {
+		ret[k] = *(second[k] ? &pulse[1][n] : &pulse[0][k - n]);
+		n += second[k];
+	}
+}
+
+/* Of every tick a pulse. */
+static uint32_t tree_ticks(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret)
+{
+	const int dir = c->backward ? -1 : 1;
+
+	for (uint32_t done = 0, n; done < ticks; done += n) {
+		n = ticks - done < RUN_MAX ? ticks - done : RUN_MAX;
+		tree_run(c, c->root, n, ret + done);
+	}
+	c->tick += (uint32_t)dir * ticks;
+	c->measure += dir * (int64_t)ticks;
+	return ticks;
+}
+
 static uint32_t tree_forward(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return walk_ticks(c, tree_tick, ticks, ret);
+	return ticks == 1 ? walk_ticks(c, tree_tick, 1, ret) :
+			    tree_ticks(c, ticks, ret);
 }
 
 static uint32_t tree_back(struct interp_cursor *c, uint32_t ticks,
 			  uint16_t *ret)
 {
-	return walk_ticks(c, tree_tick_back, ticks, ret);
+	return ticks == 1 ? walk_ticks(c, tree_tick_back, 1, ret) :
+			    tree_ticks(c, ticks, ret);
 }
 
 const struct interp_walk walk_tree = {
