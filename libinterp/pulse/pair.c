@@ -172,6 +172,12 @@ static int64_t least(int64_t a, int64_t b)
 	return a < b ? a : b;
 }
 
+/* At least one pulse: a run comes to its end, whatever a pair holds. */
+static int64_t row_of(int64_t n, int64_t row)
+{
+	return row > 1 ? least(n, row) : 1;
+}
+
 static void pair_add(struct interp_pair *p, int64_t m, int64_t s)
 {
 	p->m += m;
@@ -184,8 +190,8 @@ static void bursts_run(struct interp_pair *p, int64_t n, uint8_t *second)
 {
 	while (n > 0) {
 		const bool due = p->m >= p->due;
-		const int64_t row = least(n, due ? p->to - p->s :
-						   p->due - p->m);
+		const int64_t row = row_of(n, due ? p->to - p->s :
+						    p->due - p->m);
 
 		memset(second, due, (size_t)row);
 		second += row;
@@ -201,7 +207,7 @@ static void bursts_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
 	while (n > 0) {
 		const bool due = pair_was_due(p);
 		const int64_t left = p->s > p->from ? p->s - p->from : 1;
-		const int64_t row = least(n, due ? left : p->m - p->done);
+		const int64_t row = row_of(n, due ? left : p->m - p->done);
 
 		memset(second, due, (size_t)row);
 		second += row;
