@@ -58,9 +58,70 @@ static void undo_point(struct cycle *c)
 	interp_cursor_stop(&c->cursor);
 }
 
+/* -- Many points at once ----------------------------------------------------- */
+
+#define RUN	64
+
+/* So far inside its travel that no point of a run can be beyond it? */
+static bool well_inside(const struct cycle *c)
+{
+	const struct interp_cursor *at = &c->cursor;
+
+	for (uint32_t j = 0; j < at->p.head->naxes; j++) {
+		const uint8_t i = at->p.head->column[j];
+		const int64_t pos = at->pos[i];
+
+		if (pos - RUN < c->config.travel_min[i] ||
+		    pos + RUN > c->config.travel_max[i])
+			return false;
+	}
+	return true;
+}
+
+/* Bit i of @mask as a 1 in byte i. */
+static uint64_t spread(uint64_t mask)
+{
+	const uint64_t ones = UINT64_C(0x0101010101010101);
+	const uint64_t bits = mask * ones & UINT64_C(0x8040201008040201);
+
+	return (bits + 0x7f * ones) >> 7 & ones;
+}
+
+/* The pulses of at most 255 points: a byte for each axis holds its sum. */
+static void count_run(struct cycle *c, const uint16_t *pulses, uint32_t n)
+{
+	uint64_t sums = 0;
+
+	for (uint32_t k = 0; k < n; k++)
+		sums += spread(INTERP_PULSE_MOVED(pulses[k]));
+	for (int i = 0; i < INTERP_NAXES; i++, sums >>= 8)
+		c->totals.pulses[i] += sums & 0xff;
+}
+
+/* If nobody looks at each point; 0: go by a step. */
+static uint32_t run(struct cycle *c, uint32_t max)
+{
+	uint16_t pulses[RUN];
+	uint32_t n;
+
+	if (c->on_point || !well_inside(c))
+		return 0;
+	n = interp_cursor_run(&c->cursor, pulses, max < RUN ? max : RUN);
+	count_run(c, pulses, n);
+	return n;
+}
+
+/* -- One by one -------------------------------------------------------------- */
+
 static enum walk_result points(struct cycle *c)
 {
 	for (uint32_t n = 0; n < c->config.points_max; n++) {
+		const uint32_t ran = run(c, c->config.points_max - n);
+
+		if (ran > 0) {
+			n += ran - 1;
+			continue;
+		}
 		switch (interp_cursor_step(&c->cursor)) {
 		case INTERP_MOVED:
 			if (beyond(c)) {

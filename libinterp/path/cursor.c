@@ -13,17 +13,19 @@
 
 /* -- Actions: no length, no points ---------------------------------------- */
 
-static uint32_t none_step(struct interp_cursor *c)
+static uint32_t none_run(struct interp_cursor *c, uint32_t ticks,
+			 uint16_t *ret)
 {
 	(void)c;
+	(void)ticks;
+	(void)ret;
 	return WALK_BAD;
 }
 
 static const struct interp_walk walk_action = {
 	.enter = walk_stand,
-	.forward = none_step,
-	.back = none_step,
-	.last = walk_last_tick,
+	.forward = none_run,
+	.back = none_run,
 };
 
 static uint32_t axes_moving(const struct interp_cursor *c)
@@ -126,7 +128,9 @@ int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick)
 	if (tick > c->seg.ticks)
 		return -ERANGE;
 	while (c->tick < tick) {
-		if (c->walk->forward(c) == WALK_BAD) {
+		uint16_t pulses;
+
+		if (c->walk->forward(c, 1, &pulses) == WALK_BAD) {
 			c->walk = NULL;
 			return -EBADMSG;
 		}
@@ -192,7 +196,7 @@ static bool may_go_on(const struct interp_cursor *c)
 	if (!c->backward)
 		return c->measure < c->want;
 	return c->measure > c->want &&
-	       c->measure - c->walk->last(c) >= c->want;
+	       (!c->walk->last || c->measure - c->walk->last(c) >= c->want);
 }
 
 /* Standing exactly on a segment's end is still in it, unless something is to
@@ -212,6 +216,57 @@ static enum interp_step cursor_bad(struct interp_cursor *c)
 	return INTERP_BAD_SEGMENT;
 }
 
+static uint32_t cursor_ticks(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret)
+{
+	return c->backward ? c->walk->back(c, ticks, ret) :
+			     c->walk->forward(c, ticks, ret);
+}
+
+/* Ticks of any measure, one by one. */
+static uint32_t run_uneven(struct interp_cursor *c, uint16_t *ret,
+			   uint32_t max)
+{
+	uint32_t points = 0;
+
+	while (points < max && may_go_on(c)) {
+		const uint32_t n = cursor_ticks(c, 1, ret + points);
+
+		if (n == WALK_BAD)
+			return WALK_BAD;
+		points += n;
+	}
+	return points;
+}
+
+/* Ticks of measure one: how many there are is known. */
+static uint32_t run_even(struct interp_cursor *c, uint16_t *ret, uint32_t max)
+{
+	const int64_t left = c->backward ? c->measure - c->want :
+					   c->want - c->measure;
+
+	if (left <= 0)
+		return 0;
+	return cursor_ticks(c, left < max ? (uint32_t)left : max, ret);
+}
+
+uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
+			   uint32_t max)
+{
+	uint32_t n;
+
+	if (!c->walk)
+		return 0;
+	n = c->walk->last ? run_uneven(c, ret, max) : run_even(c, ret, max);
+	if (n == WALK_BAD) {
+		c->walk = NULL;
+		return 0;
+	}
+	if (n > 0)
+		c->moved = INTERP_PULSE_MOVED(ret[n - 1]);
+	return n;
+}
+
 enum interp_step interp_cursor_step(struct interp_cursor *c)
 {
 	if (!c->walk)
@@ -220,12 +275,15 @@ enum interp_step interp_cursor_step(struct interp_cursor *c)
 		enum interp_step s;
 
 		while (may_go_on(c)) {
-			c->moved = c->backward ? c->walk->back(c) :
-						 c->walk->forward(c);
-			if (c->moved == WALK_BAD)
+			uint16_t pulses;
+			const uint32_t n = cursor_ticks(c, 1, &pulses);
+
+			if (n == WALK_BAD)
 				return cursor_bad(c);
-			if (c->moved)
+			if (n > 0) {
+				c->moved = INTERP_PULSE_MOVED(pulses);
 				return INTERP_MOVED;
+			}
 		}
 		if (!must_cross(c)) {
 			c->s_mm = c->want_mm;

@@ -16,6 +16,27 @@ static bool table_ok(const struct interp_program_head *h, uint64_t at,
 	       n <= (h->bytes - at) / size;
 }
 
+static bool axes_ok(const struct interp_program_head *h)
+{
+	uint32_t columns = 0;
+
+	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
+		if (!(h->pulse_mm[i] > 0 && isfinite(h->pulse_mm[i])))
+			return false;
+		if (h->start_pulses[i] > INTERP_PULSES_MAX ||
+		    h->start_pulses[i] < -INTERP_PULSES_MAX)
+			return false;
+		if (i >= h->naxes)
+			continue;
+		/* One column for an axis: two would move it twice. */
+		if (h->column[i] >= INTERP_NAXES ||
+		    columns & 1u << h->column[i])
+			return false;
+		columns |= 1u << h->column[i];
+	}
+	return true;
+}
+
 static bool head_ok(const struct interp_program_head *h, size_t bytes)
 {
 	if (memcmp(h->magic, INTERP_PROGRAM_MAGIC, sizeof(h->magic)) != 0 ||
@@ -28,16 +49,7 @@ static bool head_ok(const struct interp_program_head *h, size_t bytes)
 	if (h->tolerance_milli > INTERP_TOLERANCE_MAX ||
 	    h->perpendicular > 1 || h->coupling >= INTERP_NCOUPLINGS)
 		return false;
-	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
-		if (!(h->pulse_mm[i] > 0 && isfinite(h->pulse_mm[i])))
-			return false;
-		if (h->start_pulses[i] > INTERP_PULSES_MAX ||
-		    h->start_pulses[i] < -INTERP_PULSES_MAX)
-			return false;
-		if (i < h->naxes && h->column[i] >= INTERP_NAXES)
-			return false;
-	}
-	return true;
+	return axes_ok(h);
 }
 
 int interp_program_map(struct interp_program *p, const void *block,

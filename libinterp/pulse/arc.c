@@ -112,14 +112,13 @@ static uint32_t arc_settle(struct interp_cursor *c)
 			       c->tick == c->seg.ticks ? arc_node(c, true) :
 			       arc_at(c);
 	int32_t *a = &c->pos[c->arc.axis_a], *b = &c->pos[c->arc.axis_b];
-	uint32_t moved = (uint32_t)(p.a != *a) << c->arc.axis_a |
-			 (uint32_t)(p.b != *b) << c->arc.axis_b;
+	const int64_t da = p.a - *a, db = p.b - *b;
 
-	if (p.a - *a > 1 || *a - p.a > 1 || p.b - *b > 1 || *b - p.b > 1)
+	if (da > 1 || da < -1 || db > 1 || db < -1)
 		return WALK_BAD;
 	*a = (int32_t)p.a;
 	*b = (int32_t)p.b;
-	return moved;
+	return walk_plane_pulse(c, (int32_t)da, (int32_t)db);
 }
 
 static bool near(double mm, double pulses_mm)
@@ -169,25 +168,36 @@ static bool arc_enter(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
-static uint32_t arc_forward(struct interp_cursor *c)
+static uint32_t arc_tick(struct interp_cursor *c)
 {
-	const uint32_t moved = walk_dda_forward(c);
+	const uint32_t others = walk_dda_tick(c);
 	const uint32_t plane = arc_settle(c);
 
-	return plane == WALK_BAD ? WALK_BAD : moved | plane;
+	return plane == WALK_BAD ? WALK_BAD : others | plane;
 }
 
-static uint32_t arc_back(struct interp_cursor *c)
+static uint32_t arc_tick_back(struct interp_cursor *c)
 {
-	const uint32_t moved = walk_dda_back(c);
+	const uint32_t others = walk_dda_tick_back(c);
 	const uint32_t plane = arc_settle(c);
 
-	return plane == WALK_BAD ? WALK_BAD : moved | plane;
+	return plane == WALK_BAD ? WALK_BAD : others | plane;
+}
+
+static uint32_t arc_forward(struct interp_cursor *c, uint32_t ticks,
+			    uint16_t *ret)
+{
+	return walk_ticks(c, arc_tick, ticks, ret);
+}
+
+static uint32_t arc_back(struct interp_cursor *c, uint32_t ticks,
+			 uint16_t *ret)
+{
+	return walk_ticks(c, arc_tick_back, ticks, ret);
 }
 
 const struct interp_walk walk_arc = {
 	.enter = arc_enter,
 	.forward = arc_forward,
 	.back = arc_back,
-	.last = walk_last_tick,
 };

@@ -444,11 +444,10 @@ uint32_t walk_circle_pulse(struct interp_cursor *c, int dir)
 		return WALK_BAD;
 	c->pos[c->arc.axis_a] += was[0];
 	c->pos[c->arc.axis_b] += was[1];
-	return (uint32_t)(was[0] != 0) << c->arc.axis_a |
-	       (uint32_t)(was[1] != 0) << c->arc.axis_b;
+	return walk_plane_pulse(c, was[0], was[1]);
 }
 
-static uint32_t walk_circle_forward(struct interp_cursor *c)
+static uint32_t walk_circle_tick(struct interp_cursor *c)
 {
 	uint32_t moved;
 
@@ -462,7 +461,7 @@ static uint32_t walk_circle_forward(struct interp_cursor *c)
 	return moved;
 }
 
-static uint32_t walk_circle_back(struct interp_cursor *c)
+static uint32_t walk_circle_tick_back(struct interp_cursor *c)
 {
 	uint32_t moved;
 
@@ -472,6 +471,18 @@ static uint32_t walk_circle_back(struct interp_cursor *c)
 	moved = walk_circle_pulse(c, -1);
 	c->tick = c->circle.tick;
 	return moved;
+}
+
+static uint32_t walk_circle_forward(struct interp_cursor *c, uint32_t ticks,
+				    uint16_t *ret)
+{
+	return walk_ticks(c, walk_circle_tick, ticks, ret);
+}
+
+static uint32_t walk_circle_back(struct interp_cursor *c, uint32_t ticks,
+				 uint16_t *ret)
+{
+	return walk_ticks(c, walk_circle_tick_back, ticks, ret);
 }
 
 static int64_t walk_circle_last(const struct interp_cursor *c)

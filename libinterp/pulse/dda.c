@@ -51,7 +51,6 @@ const struct interp_walk walk_dda_line = {
 	.enter = dda_line_enter,
 	.forward = walk_dda_forward,
 	.back = walk_dda_back,
-	.last = walk_last_tick,
 };
 
 /* -- Arcs ------------------------------------------------------------------- */
@@ -177,8 +176,7 @@ static uint32_t arc_tail(struct interp_cursor *c, int64_t u, int dir)
 
 	c->pos[c->arc.axis_a] += (int32_t)dx;
 	c->pos[c->arc.axis_b] += (int32_t)dy;
-	return (uint32_t)(dx != 0) << c->arc.axis_a |
-	       (uint32_t)(dy != 0) << c->arc.axis_b;
+	return walk_plane_pulse(c, (int32_t)dx, (int32_t)dy);
 }
 
 static uint32_t arc_turn(struct interp_cursor *c, int dir)
@@ -194,32 +192,42 @@ static uint32_t arc_turn(struct interp_cursor *c, int dir)
 		return WALK_BAD;
 	c->pos[c->arc.axis_a] += (int32_t)(k->x - x);
 	c->pos[c->arc.axis_b] += (int32_t)(k->y - y);
-	return (uint32_t)(k->x != x) << c->arc.axis_a |
-	       (uint32_t)(k->y != y) << c->arc.axis_b;
+	return walk_plane_pulse(c, (int32_t)(k->x - x), (int32_t)(k->y - y));
 }
 
-static uint32_t dda_arc_forward(struct interp_cursor *c)
+static uint32_t dda_arc_tick(struct interp_cursor *c)
 {
-	const uint32_t moved = walk_dda_forward(c);
+	const uint32_t others = walk_dda_tick(c);
 	const uint32_t plane = c->tick <= c->arc.tail ? arc_turn(c, 1) :
 			       arc_tail(c, (int64_t)c->tick - c->arc.tail, 1);
 
-	return plane == WALK_BAD ? WALK_BAD : moved | plane;
+	return plane == WALK_BAD ? WALK_BAD : others | plane;
 }
 
-static uint32_t dda_arc_back(struct interp_cursor *c)
+static uint32_t dda_arc_tick_back(struct interp_cursor *c)
 {
 	const uint32_t tick = c->tick;
-	const uint32_t moved = walk_dda_back(c);
+	const uint32_t others = walk_dda_tick_back(c);
 	const uint32_t plane = tick <= c->arc.tail ? arc_turn(c, -1) :
 			       arc_tail(c, (int64_t)tick - c->arc.tail, -1);
 
-	return plane == WALK_BAD ? WALK_BAD : moved | plane;
+	return plane == WALK_BAD ? WALK_BAD : others | plane;
+}
+
+static uint32_t dda_arc_forward(struct interp_cursor *c, uint32_t ticks,
+				uint16_t *ret)
+{
+	return walk_ticks(c, dda_arc_tick, ticks, ret);
+}
+
+static uint32_t dda_arc_back(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret)
+{
+	return walk_ticks(c, dda_arc_tick_back, ticks, ret);
 }
 
 const struct interp_walk walk_dda_arc = {
 	.enter = dda_arc_enter,
 	.forward = dda_arc_forward,
 	.back = dda_arc_back,
-	.last = walk_last_tick,
 };

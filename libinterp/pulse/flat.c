@@ -28,22 +28,22 @@ static bool flat_enter(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
-static uint32_t flat_move(struct interp_cursor *c, int8_t axis, int dir)
+static inline uint32_t flat_move(struct interp_cursor *c, int8_t axis, int dir)
 {
 	c->tick += (uint32_t)dir;
 	c->measure += dir;
 	c->pos[axis] += dir * c->sign[axis];
-	return 1u << axis;
+	return dir > 0 ? c->pulse[axis] : c->pulse_back[axis];
 }
 
-static uint32_t flat_main(struct interp_cursor *c, int dir)
+static inline uint32_t flat_main(struct interp_cursor *c, int dir)
 {
 	for (uint32_t i = 0; i < c->npairs; i++)
 		pair_main(&c->pair[i], dir);
 	return flat_move(c, c->root, dir);
 }
 
-static uint32_t flat_forward(struct interp_cursor *c)
+static inline uint32_t flat_tick(struct interp_cursor *c)
 {
 	for (uint32_t i = 0; i < c->npairs; i++) {
 		struct interp_pair *p = &c->pair[i];
@@ -56,7 +56,7 @@ static uint32_t flat_forward(struct interp_cursor *c)
 	return flat_main(c, 1);
 }
 
-static uint32_t flat_back(struct interp_cursor *c)
+static inline uint32_t flat_tick_back(struct interp_cursor *c)
 {
 	for (uint32_t i = c->npairs; i-- > 0; ) {
 		struct interp_pair *p = &c->pair[i];
@@ -69,9 +69,20 @@ static uint32_t flat_back(struct interp_cursor *c)
 	return flat_main(c, -1);
 }
 
+static uint32_t flat_forward(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret)
+{
+	return walk_ticks(c, flat_tick, ticks, ret);
+}
+
+static uint32_t flat_back(struct interp_cursor *c, uint32_t ticks,
+			  uint16_t *ret)
+{
+	return walk_ticks(c, flat_tick_back, ticks, ret);
+}
+
 const struct interp_walk walk_flat = {
 	.enter = flat_enter,
 	.forward = flat_forward,
 	.back = flat_back,
-	.last = walk_last_tick,
 };

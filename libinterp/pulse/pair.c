@@ -8,6 +8,8 @@
 #include "pulse/pair.h"
 #include "pulse/walk.h"
 
+#include <string.h>
+
 /* Bit by bit: no division, the same time always. */
 int64_t pair_isqrt(uint64_t n, uint64_t m)
 {
@@ -161,6 +163,137 @@ void pair_set_bursts(struct interp_pair *p, int64_t n,
 	burst_look(p);
 	burst_skip_empty(p);
 	p->done = burst_at(p, burst_before(p, p->burst));
+}
+
+/* -- Many pulses ----------------------------------------------------------- */
+
+static int64_t least(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}
+
+/* At least one pulse: a run comes to its end, whatever a pair holds. */
+static int64_t row_of(int64_t n, int64_t row)
+{
+	return row > 1 ? least(n, row) : 1;
+}
+
+static void pair_add(struct interp_pair *p, int64_t m, int64_t s)
+{
+	p->m += m;
+	p->s += s;
+	p->dev += p->b * m - p->a * s;
+}
+
+/* By bursts the pulses of an input come many in a row. */
+static void bursts_run(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const bool due = p->m >= p->due;
+		const int64_t row = row_of(n, due ? p->to - p->s :
+						    p->due - p->m);
+
+		memset(second, due, (size_t)row);
+		second += row;
+		n -= row;
+		pair_add(p, due ? 0 : row, due ? row - 1 : 0);
+		if (due)
+			pair_second(p, 1);
+	}
+}
+
+static void bursts_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const bool due = pair_was_due(p);
+		const int64_t left = p->s > p->from ? p->s - p->from : 1;
+		const int64_t row = row_of(n, due ? left : p->m - p->done);
+
+		memset(second, due, (size_t)row);
+		second += row;
+		n -= row;
+		if (due)
+			pair_second(p, -1);
+		pair_add(p, due ? 0 : -row, due ? 1 - row : 0);
+	}
+}
+
+/*
+ * By a limit they change all the time, and which is next is hard to foretell:
+ * no branch on it.  @over is how far below the limit e is, forward, or how far
+ * above what tells the last pulse, back; either way it falls by b with the
+ * main's pulses and rises by a with the secondary's, of which the number is
+ * returned.
+ */
+static int64_t limit_run(const struct interp_pair *p, int64_t over, int64_t n,
+			 uint8_t *second)
+{
+	const int64_t a = p->a, b = p->b;
+	int64_t given = 0;
+
+	for (int64_t k = 0; k < n; k++) {
+		const int64_t due = over >> 63;
+
+		over += ((a + b) & due) - b;
+		second[k] = due & 1;
+		given -= due;
+	}
+	return given;
+}
+
+/* Until the main input is home, the limit alone tells; then it is over. */
+static void limits_run(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const int64_t some = least(n, p->a - p->m);
+		int64_t given;
+
+		if (some == 0) {
+			memset(second, 1, (size_t)n);
+			pair_add(p, 0, n);
+			return;
+		}
+		given = limit_run(p, p->limit - p->dev, some, second);
+		pair_add(p, some - given, given);
+		second += some;
+		n -= some;
+	}
+}
+
+/* The same until the secondary is back at its start. */
+static void limits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const int64_t some = least(n, p->s);
+		int64_t given;
+
+		if (some == 0) {
+			memset(second, 0, (size_t)n);
+			pair_add(p, -n, 0);
+			return;
+		}
+		given = limit_run(p, p->dev - p->limit - p->b + p->a - 1,
+				  some, second);
+		pair_add(p, given - some, -given);
+		second += some;
+		n -= some;
+	}
+}
+
+void pair_run(struct interp_pair *p, uint32_t n, uint8_t *second)
+{
+	if (p->bursts)
+		bursts_run(p, n, second);
+	else
+		limits_run(p, n, second);
+}
+
+void pair_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
+{
+	if (p->bursts)
+		bursts_run_back(p, n, second);
+	else
+		limits_run_back(p, n, second);
 }
 
 /* -- By name --------------------------------------------------------------- */

@@ -161,4 +161,11 @@ static inline bool pair_back(struct interp_pair *p)
 	return true;
 }
 
+/**
+ * pair_run() - @n pulses on, pair_run_back() undoes the last @n: of each, in
+ * the order walked, 1 if it was the secondary's.  There are as many.
+ */
+void pair_run(struct interp_pair *p, uint32_t n, uint8_t *second);
+void pair_run_back(struct interp_pair *p, uint32_t n, uint8_t *second);
+
 #endif /* PULSE_PAIR_H */

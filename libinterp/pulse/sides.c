@@ -187,11 +187,11 @@ static uint32_t pair_move(struct interp_cursor *c, int i, const int8_t d[2])
 
 	c->pos[arc->axis_a] += d[0];
 	c->pos[arc->axis_b] += d[1];
-	return (uint32_t)(d[0] != 0) << arc->axis_a |
-	       (uint32_t)(d[1] != 0) << arc->axis_b;
+	return (d[0] ? walk_pulse(arc->axis_a, d[0] < 0) : 0) |
+	       (d[1] ? walk_pulse(arc->axis_b, d[1] < 0) : 0);
 }
 
-static uint32_t pair_forward(struct interp_cursor *c)
+static uint32_t pair_tick(struct interp_cursor *c)
 {
 	int8_t d[2];
 	int i;
@@ -206,7 +206,7 @@ static uint32_t pair_forward(struct interp_cursor *c)
 	return pair_move(c, i, d);
 }
 
-static uint32_t pair_back(struct interp_cursor *c)
+static uint32_t pair_tick_back(struct interp_cursor *c)
 {
 	int8_t d[2];
 	int64_t last;
@@ -223,6 +223,18 @@ static uint32_t pair_back(struct interp_cursor *c)
 	c->tick--;
 	c->measure -= last;
 	return pair_move(c, i, d);
+}
+
+static uint32_t pair_forward(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret)
+{
+	return walk_ticks(c, pair_tick, ticks, ret);
+}
+
+static uint32_t pair_back(struct interp_cursor *c, uint32_t ticks,
+			  uint16_t *ret)
+{
+	return walk_ticks(c, pair_tick_back, ticks, ret);
 }
 
 static int64_t pair_last(const struct interp_cursor *c)

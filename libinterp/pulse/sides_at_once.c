@@ -76,7 +76,7 @@ static bool axis_settle(struct interp_cursor *c, uint32_t axis, double at_mm,
 	if (by > 1 || by < -1)
 		return false;
 	c->pos[axis] = (int32_t)to;
-	*moved |= (uint32_t)(by != 0) << axis;
+	*moved |= by ? walk_pulse(axis, by < 0) : 0;
 	return true;
 }
 
@@ -110,19 +110,30 @@ static uint32_t at_once_settle(struct interp_cursor *c, uint32_t moved)
 	return moved;
 }
 
-static uint32_t at_once_forward(struct interp_cursor *c)
+static uint32_t at_once_tick(struct interp_cursor *c)
 {
-	return at_once_settle(c, walk_dda_forward(c));
+	return at_once_settle(c, walk_dda_tick(c));
 }
 
-static uint32_t at_once_back(struct interp_cursor *c)
+static uint32_t at_once_tick_back(struct interp_cursor *c)
 {
-	return at_once_settle(c, walk_dda_back(c));
+	return at_once_settle(c, walk_dda_tick_back(c));
+}
+
+static uint32_t at_once_forward(struct interp_cursor *c, uint32_t ticks,
+				uint16_t *ret)
+{
+	return walk_ticks(c, at_once_tick, ticks, ret);
+}
+
+static uint32_t at_once_back(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret)
+{
+	return walk_ticks(c, at_once_tick_back, ticks, ret);
 }
 
 const struct interp_walk walk_pair_at_once = {
 	.enter = at_once_enter,
 	.forward = at_once_forward,
 	.back = at_once_back,
-	.last = walk_last_tick,
 };

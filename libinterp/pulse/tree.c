@@ -30,6 +30,8 @@ uint32_t walk_inputs(struct interp_cursor *c, uint32_t except,
 		if (d == 0 || except & 1u << axis)
 			continue;
 		c->sign[axis] = d > 0 ? 1 : -1;
+		c->pulse[axis] = (uint16_t)walk_pulse(axis, d < 0);
+		c->pulse_back[axis] = (uint16_t)walk_pulse(axis, d > 0);
 		in[n++] = (struct couple_input) { (int8_t)axis, llabs(d) };
 	}
 	return n;
@@ -73,7 +75,7 @@ static bool tree_enter(struct interp_cursor *c, bool at_end)
 	return walk_stand(c, at_end) && tree_set(c, 0, at_end) == c->seg.ticks;
 }
 
-static uint32_t tree_forward(struct interp_cursor *c)
+static inline uint32_t tree_tick(struct interp_cursor *c)
 {
 	int8_t code = c->root;
 
@@ -85,10 +87,10 @@ static uint32_t tree_forward(struct interp_cursor *c)
 	c->tick++;
 	c->measure++;
 	c->pos[code] += c->sign[code];
-	return 1u << code;
+	return c->pulse[code];
 }
 
-static uint32_t tree_back(struct interp_cursor *c)
+static inline uint32_t tree_tick_back(struct interp_cursor *c)
 {
 	int8_t code = c->root;
 
@@ -100,14 +102,111 @@ static uint32_t tree_back(struct interp_cursor *c)
 	c->tick--;
 	c->measure--;
 	c->pos[code] -= c->sign[code];
-	return 1u << code;
+	return c->pulse_back[code];
+}
+
+/*
+ * Many ticks at once go level by level: a pair says of each which input gives
+ * it, then each input its own, and they are put in order.  Three levels hold
+ * eight axes.
+ */
+#define RUN_MAX	64
+
+static void leaf_run(struct interp_cursor *c, int8_t axis, int ticks,
+		     uint16_t *ret)
+{
+	const uint16_t pulse = c->backward ? c->pulse_back[axis] :
+					     c->pulse[axis];
+
+	for (int k = 0; k < ticks; k++)
+		ret[k] = pulse;
+	c->pos[axis] += (c->backward ? -ticks : ticks) * c->sign[axis];
+}
+
+/* Both inputs are axes: no order to be put in. */
+static void leaves_run(struct interp_cursor *c, const struct interp_pair *p,
+		       const uint8_t *second, uint32_t ticks, uint16_t *ret)
+{
+	const uint16_t *pulse = c->backward ? c->pulse_back : c->pulse;
+	const uint32_t a = pulse[p->in_a], turn = a ^ pulse[p->in_b];
+
+	for (uint32_t k = 0; k < ticks; k++)
+		ret[k] = (uint16_t)(a ^ (turn & -(uint32_t)second[k]));
+}
+
+static void pair_ticks(struct interp_cursor *c, struct interp_pair *p,
+		       uint32_t ticks, uint8_t *second)
+{
+	if (c->backward)
+		pair_run_back(p, ticks, second);
+	else
+		pair_run(p, ticks, second);
+}
+
+static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
+		     uint16_t *ret)
+{
+	struct interp_pair *p = &c->pair[~code];
+	uint16_t pulse[2][RUN_MAX];
+	uint8_t second[RUN_MAX];
+	uint32_t n = 0;
+	const int64_t m = p->m, s = p->s;
+
+	if (code >= 0) {
+		leaf_run(c, code, (int)ticks, ret);
+		return;
+	}
+	pair_ticks(c, p, ticks, second);
+	if (p->in_a >= 0 && p->in_b >= 0) {
+		c->pos[p->in_a] += (int32_t)(p->m - m) * c->sign[p->in_a];
+		c->pos[p->in_b] += (int32_t)(p->s - s) * c->sign[p->in_b];
+		leaves_run(c, p, second, ticks, ret);
+		return;
+	}
+	for (uint32_t k = 0; k < ticks; k++)
+		n += second[k];
+	tree_run(c, p->in_a, ticks - n, pulse[0]);
+	tree_run(c, p->in_b, n, pulse[1]);
+	n = 0;
+	for (uint32_t k = 0; k < ticks; k++) {
+		ret[k] = *(second[k] ? &pulse[1][n] : &pulse[0][k - n]);
+		n += second[k];
+	}
+}
+
+/* Of every tick a pulse. */
+static uint32_t tree_ticks(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret)
+{
+	const int dir = c->backward ? -1 : 1;
+
+	for (uint32_t done = 0, n; done < ticks; done += n) {
+		n = ticks - done < RUN_MAX ? ticks - done : RUN_MAX;
+		tree_run(c, c->root, n, ret + done);
+	}
+	c->tick += (uint32_t)dir * ticks;
+	c->measure += dir * (int64_t)ticks;
+	return ticks;
+}
+
+static uint32_t tree_forward(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret)
+{
+	return ticks == 1 ? walk_ticks(c, tree_tick, 1, ret) :
+			    tree_ticks(c, ticks, ret);
+}
+
+static uint32_t tree_back(struct interp_cursor *c, uint32_t ticks,
+			  uint16_t *ret)
+{
+	return ticks == 1 ? walk_ticks(c, tree_tick_back, 1, ret) :
+			    tree_ticks(c, ticks, ret);
 }
 
 const struct interp_walk walk_tree = {
 	.enter = tree_enter,
 	.forward = tree_forward,
 	.back = tree_back,
-	.last = walk_last_tick,
 };
 
 /* -- Helices ---------------------------------------------------------------- */
@@ -142,12 +241,12 @@ static int64_t helix_sent(const struct interp_cursor *c)
 	return c->measure - c->circle_at;
 }
 
-static uint32_t helix_forward(struct interp_cursor *c)
+static uint32_t helix_tick(struct interp_cursor *c)
 {
 	uint32_t moved;
 
 	if (helix_sent(c) < helix_due(c, c->circle_at))
-		return tree_forward(c);
+		return tree_tick(c);
 	if (c->circle.tick >= c->circle.ticks)
 		return WALK_BAD;
 	moved = walk_circle_pulse(c, 1);
@@ -165,19 +264,31 @@ static bool helix_last_tree(const struct interp_cursor *c)
 	       helix_due(c, c->circle_at - circle_last(&c->circle));
 }
 
-static uint32_t helix_back(struct interp_cursor *c)
+static uint32_t helix_tick_back(struct interp_cursor *c)
 {
 	int64_t last;
 
 	if (c->tick == 0)
 		return WALK_BAD;
 	if (helix_last_tree(c))
-		return tree_back(c);
+		return tree_tick_back(c);
 	last = circle_last(&c->circle);
 	c->tick--;
 	c->circle_at -= last;
 	c->measure -= last;
 	return walk_circle_pulse(c, -1);
+}
+
+static uint32_t helix_forward(struct interp_cursor *c, uint32_t ticks,
+			      uint16_t *ret)
+{
+	return walk_ticks(c, helix_tick, ticks, ret);
+}
+
+static uint32_t helix_back(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret)
+{
+	return walk_ticks(c, helix_tick_back, ticks, ret);
 }
 
 static int64_t helix_last(const struct interp_cursor *c)

@@ -18,15 +18,18 @@
 __extension__ typedef __int128 walk_wide;
 __extension__ typedef unsigned __int128 walk_uwide;
 
-#define WALK_BAD	UINT32_MAX	/* instead of a mask of axes moved */
+#define WALK_BAD	UINT32_MAX	/* instead of pulses, or of points */
+
+typedef uint32_t walk_run_fn(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret);
 
 struct interp_walk {
 	/* Stand at the segment's start or end; set whole and measure. */
 	bool (*enter)(struct interp_cursor *c, bool at_end);
-	/* One tick; update pos, tick and measure; the mask of axes moved. */
-	uint32_t (*forward)(struct interp_cursor *c);
-	uint32_t (*back)(struct interp_cursor *c);
-	/* What the last tick added to the measure. */
+	/* @ticks of them; update pos, tick and measure; the points met, their
+	 * pulses in @ret. */
+	walk_run_fn *forward, *back;
+	/* What the last tick added to the measure; NULL: always one. */
 	int64_t (*last)(const struct interp_cursor *c);
 };
 
@@ -50,6 +53,45 @@ extern const struct interp_walk walk_pair;
 extern const struct interp_walk walk_pair_at_once;
 /* Actions: no points at all: cursor.c. */
 
+/**
+ * walk_ticks() - @ticks times @tick, which returns the pulses it made.
+ *
+ * Inline, so that every walk has a loop of its own and no call in it.  A tick
+ * without a pulse is no point.
+ */
+static inline __attribute__((always_inline)) uint32_t
+walk_ticks(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
+	   uint32_t ticks, uint16_t *ret)
+{
+	uint32_t points = 0;
+
+	while (ticks-- > 0) {
+		const uint32_t pulses = tick(c);
+
+		if (pulses == WALK_BAD)
+			return WALK_BAD;
+		ret[points] = (uint16_t)pulses;
+		points += pulses != 0;
+	}
+	return points;
+}
+
+/** walk_pulse() - the pulse of one axis, as struct interp_cursor has it. */
+static inline uint32_t walk_pulse(uint32_t axis, bool down)
+{
+	return (down ? 0x101u : 1u) << axis;
+}
+
+/** walk_plane_pulse() - the same of an arc's plane; each -1, 0 or +1. */
+static inline uint32_t walk_plane_pulse(const struct interp_cursor *c,
+					int32_t da, int32_t db)
+{
+	return (((uint32_t)da & 1) | ((uint32_t)da >> 31) << 8)
+		       << c->arc.axis_a |
+	       (((uint32_t)db & 1) | ((uint32_t)db >> 31) << 8)
+		       << c->arc.axis_b;
+}
+
 /** walk_node() - node column @j at the start or end of c->seg, subpulses. */
 static inline int64_t walk_node(const struct interp_cursor *c, uint32_t j,
 				bool at_end)
@@ -72,9 +114,10 @@ bool walk_stand(struct interp_cursor *c, bool at_end);
 bool walk_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except);
 /** walk_longest() - pulses of the longest axis, rounded up. */
 int64_t walk_longest(const struct interp_cursor *c, uint32_t except);
-uint32_t walk_dda_forward(struct interp_cursor *c);
-uint32_t walk_dda_back(struct interp_cursor *c);
-int64_t walk_last_tick(const struct interp_cursor *c);
+walk_run_fn walk_dda_forward, walk_dda_back;
+/* One tick of it. */
+uint32_t walk_dda_tick(struct interp_cursor *c);
+uint32_t walk_dda_tick_back(struct interp_cursor *c);
 
 struct couple_input;
 struct couple_rule;
@@ -160,7 +203,7 @@ void walk_circle_node(const struct interp_cursor *c, bool at_end,
 /** walk_circle_set() - aim c->circle at c->arc; false if it is unsound. */
 bool walk_circle_set(struct interp_cursor *c, bool at_end);
 
-/** walk_circle_pulse() - one pulse of c->circle, @dir +1 or -1. */
+/** walk_circle_pulse() - one pulse of c->circle, @dir +1 or -1; its bits. */
 uint32_t walk_circle_pulse(struct interp_cursor *c, int dir);
 
 #endif /* PULSE_WALK_H */

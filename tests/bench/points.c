@@ -11,22 +11,47 @@
 #include <string.h>
 
 #define REACH_MM	100.0
+#define TOLERANCE_MILLI	2000
+#define RUN		64		/* points at once */
 
 struct path {
 	const char *name;
 	enum interp_strategy strategy;
 	int axes;			/* 0: a circle in X and Y */
+	enum interp_coupling coupling;
 };
 
 static const struct path paths[] = {
-	{ "simultaneous-2",	INTERP_SIMULTANEOUS,	2 },
-	{ "simultaneous-3",	INTERP_SIMULTANEOUS,	3 },
-	{ "simultaneous-8",	INTERP_SIMULTANEOUS,	8 },
-	{ "simultaneous-arc",	INTERP_SIMULTANEOUS,	0 },
-	{ "point-by-point-2",	INTERP_POINT_BY_POINT,	2 },
-	{ "point-by-point-3",	INTERP_POINT_BY_POINT,	3 },
-	{ "point-by-point-8",	INTERP_POINT_BY_POINT,	8 },
-	{ "point-by-point-arc",	INTERP_POINT_BY_POINT,	0 },
+	{ "simultaneous-2",	INTERP_SIMULTANEOUS,	2, 0 },
+	{ "simultaneous-3",	INTERP_SIMULTANEOUS,	3, 0 },
+	{ "simultaneous-8",	INTERP_SIMULTANEOUS,	8, 0 },
+	{ "simultaneous-arc",	INTERP_SIMULTANEOUS,	0, 0 },
+	{ "dda-2",		INTERP_DDA,		2, 0 },
+	{ "dda-3",		INTERP_DDA,		3, 0 },
+	{ "dda-8",		INTERP_DDA,		8, 0 },
+	{ "dda-arc",		INTERP_DDA,		0, 0 },
+	{ "point-by-point-2",	INTERP_POINT_BY_POINT,	2, 0 },
+	{ "point-by-point-3-tree", INTERP_POINT_BY_POINT, 3, INTERP_TREE },
+	{ "point-by-point-8-tree", INTERP_POINT_BY_POINT, 8, INTERP_TREE },
+	{ "point-by-point-arc",	INTERP_POINT_BY_POINT,	0, 0 },
+	{ "centred-2",		INTERP_CENTRED,		2, 0 },
+	{ "centred-3-star",	INTERP_CENTRED,		3, INTERP_STAR },
+	{ "centred-3-tree",	INTERP_CENTRED,		3, INTERP_TREE },
+	{ "centred-8-star",	INTERP_CENTRED,		8, INTERP_STAR },
+	{ "centred-8-tree",	INTERP_CENTRED,		8, INTERP_TREE },
+	{ "main-direction-2",	INTERP_MAIN_DIRECTION,	2, 0 },
+	{ "main-direction-3-star", INTERP_MAIN_DIRECTION, 3, INTERP_STAR },
+	{ "main-direction-3-tree", INTERP_MAIN_DIRECTION, 3, INTERP_TREE },
+	{ "main-direction-8-star", INTERP_MAIN_DIRECTION, 8, INTERP_STAR },
+	{ "main-direction-8-tree", INTERP_MAIN_DIRECTION, 8, INTERP_TREE },
+	{ "min-switch-2",	INTERP_MIN_SWITCH,	2, 0 },
+	{ "min-switch-3-star",	INTERP_MIN_SWITCH,	3, INTERP_STAR },
+	{ "min-switch-3-tree",	INTERP_MIN_SWITCH,	3, INTERP_TREE },
+	{ "min-switch-3-tube",	INTERP_MIN_SWITCH,	3, INTERP_TUBE },
+	{ "min-switch-8-star",	INTERP_MIN_SWITCH,	8, INTERP_STAR },
+	{ "min-switch-8-tree",	INTERP_MIN_SWITCH,	8, INTERP_TREE },
+	{ "min-switch-8-tube",	INTERP_MIN_SWITCH,	8, INTERP_TUBE },
+	{ "min-switch-arc",	INTERP_MIN_SWITCH,	0, 0 },
 };
 
 #define NPATHS	(sizeof(paths) / sizeof(paths[0]))
@@ -63,6 +88,7 @@ static struct interp_program program_of(const struct path *p)
 {
 	const struct interp_build_options o = {
 		.machine = &machine, .strategy = p->strategy,
+		.tolerance_milli = TOLERANCE_MILLI, .coupling = p->coupling,
 	};
 	const struct interp_build_about about = { .lines = 1 };
 	struct interp_build *b = interp_build_create(&o);
@@ -80,15 +106,18 @@ static struct interp_program program_of(const struct path *p)
 	return ret;
 }
 
-/* To the other end; how long a point took. */
+/* To the other end, as a cycle does it; how long a point took. */
 static double walk_ns(struct interp_cursor *c, double ds_mm)
 {
 	const double from_s = bench_now_s();
+	uint16_t pulses[RUN];
 	uint64_t n = 0;
 
 	interp_cursor_aim(c, ds_mm);
-	while (interp_cursor_step(c) == INTERP_MOVED)
-		n++;
+	do
+		for (uint32_t some; (some = interp_cursor_run(c, pulses, RUN)); )
+			n += some;
+	while (interp_cursor_step(c) == INTERP_MOVED && ++n);
 	return (bench_now_s() - from_s) * 1e9 / (double)n;
 }
 

@@ -35,10 +35,12 @@ enum interp_step {
 
 /* One axis of a straight walk: see pulse/line.c. */
 struct interp_dda {
-	int64_t sub;			/* place, subpulses */
-	int64_t quot;			/* subpulses per tick, floor */
-	int64_t rem, err;		/* remainder per tick; its sum, < ticks */
+	int64_t err;			/* to the next pulse: -full ... -1 */
+	int64_t step;			/* of it in a tick, 0 < step <= full */
 	uint32_t axis;
+	int32_t dir;			/* +1 or -1 */
+	int32_t given;			/* pulses in a run of ticks */
+	uint32_t pulse, pulse_back;	/* INTERP_PULSE bits of one */
 };
 
 /* Two inputs and the rule between them: see pulse/pair.h. */
@@ -115,11 +117,14 @@ struct interp_cursor {
 	int64_t measure, want, whole;	/* place, aim and end of the segment in
 					 * the strategy's own measure */
 	struct interp_dda dda[INTERP_NAXES];
+	int64_t dda_full;		/* ticks of a segment, subpulses */
 	uint32_t ndda;
 	struct interp_pair pair[INTERP_NAXES];
 	uint32_t npairs;
 	int8_t root;			/* of a tree; main axis of a star */
 	int8_t sign[INTERP_NAXES];
+	uint16_t pulse[INTERP_NAXES];	/* of a tree or star, going forward */
+	uint16_t pulse_back[INTERP_NAXES];
 	struct interp_circle circle;
 	struct interp_side side[2];
 	struct interp_rotor rotor;
@@ -165,6 +170,19 @@ void interp_cursor_aim(struct interp_cursor *c, double ds_mm);
 enum interp_step interp_cursor_step(struct interp_cursor *c);
 
 #define INTERP_CROSS_MAX	64
+
+/* A point's pulses: a bit per axis moved, and whether it went down. */
+#define INTERP_PULSE_MOVED(pulse)	((pulse) & 0xffu)
+#define INTERP_PULSE_DOWN(pulse)	((uint32_t)(pulse) >> 8)
+
+/**
+ * interp_cursor_run() - up to @max lattice points at once, as steps would.
+ *
+ * Never leaves the segment.  @ret gets the pulses of each point.
+ * Return: how many; 0: interp_cursor_step() goes on, or says why not.
+ */
+uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
+			   uint32_t max);
 
 /** interp_cursor_pass() - step over the action in front, forward. */
 enum interp_step interp_cursor_pass(struct interp_cursor *c);
