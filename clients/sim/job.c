@@ -105,7 +105,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 		.machine = &c->axes,
 		.strategy = (enum interp_strategy)c->strategy,
 		.tolerance_milli =
-			(uint32_t)(c->tolerance_pulses * 1000 + 0.5),
+			(uint32_t)(c->tolerance_pulses * 1000 + 1e-6),
 		.perpendicular = c->perpendicular,
 		.coupling = (enum interp_coupling)c->coupling,
 	};

@@ -105,12 +105,16 @@ int report_write(const struct sim_run *r, const char *path)
 	FILE *f = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
 	int e = 0;
 
-	if (!f || json_dumpf(o, f, JSON_INDENT(2)) < 0 || fputc('\n', f) < 0) {
-		fprintf(stderr, "edmsim: %s: %s\n", path, strerror(errno));
+	if (!f) {
 		e = EX_CANTCREAT;
+	} else {
+		const bool bad = json_dumpf(o, f, JSON_INDENT(2)) < 0 ||
+				 fputc('\n', f) < 0 || fflush(f) != 0;
+
+		e = (f != stdout && fclose(f) != 0) || bad ? EX_IOERR : 0;
 	}
-	if (f && f != stdout)
-		fclose(f);
+	if (e)
+		fprintf(stderr, "edmsim: %s: %s\n", path, strerror(errno));
 	json_decref(o);
 	return e;
 }

@@ -31,7 +31,7 @@ static int compile_text(struct compile *c)
 		.machine = &m->axes,
 		.strategy = (enum interp_strategy)m->strategy,
 		.tolerance_milli =
-			(uint32_t)(m->tolerance_pulses * 1000 + 0.5),
+			(uint32_t)(m->tolerance_pulses * 1000 + 1e-6),
 		.perpendicular = m->perpendicular,
 		.coupling = (enum interp_coupling)m->coupling,
 	};

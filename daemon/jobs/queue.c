@@ -38,6 +38,20 @@ void queue_go(struct jobs *j)
 	set_waiting(j, false);
 }
 
+/* Asked of edmd itself: the last look may be older than the fault. */
+bool queue_is_faulted(const struct jobs *j)
+{
+	struct shm_snapshot s;
+
+	return j->link.status && shm_snapshot(j->link.status, &s) &&
+	       s.state == SHM_FAULT;
+}
+
+void queue_wait(struct jobs *j)
+{
+	set_waiting(j, true);
+}
+
 static void set_state(struct jobs *j, enum job_state state)
 {
 	struct queue *q = &j->queue;
@@ -201,6 +215,8 @@ static void follow_ended(struct jobs *j, uint32_t outcome)
 		queue_end(j, JOB_DONE, "");
 	else if (outcome == SHM_OUTCOME_STOPPED)
 		queue_end(j, JOB_STOPPED, "by command");
+	else if (outcome == SHM_OUTCOME_FAULT)
+		queue_end(j, JOB_STOPPED, "after a fault");
 }
 
 static void follow_leaving(struct jobs *j, int64_t now_us)

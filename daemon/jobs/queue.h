@@ -64,6 +64,10 @@ void queue_recount(struct jobs *j);
 
 /** queue_go() - "start": the queue waits no more. */
 void queue_go(struct jobs *j);
+/** queue_wait() - nothing starts until queue_go(). */
+void queue_wait(struct jobs *j);
+/** queue_is_faulted() - is edmd in fault at this moment? */
+bool queue_is_faulted(const struct jobs *j);
 
 /** queue_is_leaving() - ended, still to be unloaded. */
 bool queue_is_leaving(const struct queue *q);

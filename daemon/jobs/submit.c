@@ -101,7 +101,9 @@ static void accept_text(struct jobs *j, struct upload *up, uint32_t lines)
 
 	hash_hex(hex, up->sha256);
 	/* What a queue waited for is over when there is no queue. */
-	if (q->behind == 0 && (q->job.n == 0 || queue_is_leaving(q)))
+	if (queue_is_faulted(j))
+		queue_wait(j);
+	else if (q->behind == 0 && (q->job.n == 0 || queue_is_leaving(q)))
 		queue_go(j);
 	if (store_add(j->store, &n, &number) < 0) {
 		answer_end(j, up, EX_IOERR, "the store failed; see the "

@@ -112,9 +112,20 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 		       "of mm above 0, at most 10000");
 }
 
+/* A refused start must not set the queue going. */
+static bool refused_by_fault(struct jobs *j, const struct wire_command *c)
+{
+	if (!queue_is_faulted(j))
+		return false;
+	answer(j, c, REFUSED, "a fault is latched; reset first");
+	return true;
+}
+
 static void verb_resume(struct jobs *j, const struct verb *v,
 			const struct wire_command *c)
 {
+	if (refused_by_fault(j, c))
+		return;
 	queue_go(j);
 	verb_machine(j, v, c);
 }
@@ -139,6 +150,8 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	bool here = q->job.n && !queue_is_leaving(q);
 	struct store_job job;
 
+	if (refused_by_fault(j, c))
+		return;
 	if (*c->job && store_find(j->store, c->job, &job) < 0) {
 		answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
 		       "them");

@@ -161,7 +161,7 @@ static enum cycle_answer do_stop(struct cycle *c, double arg_mm)
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
 	if (c->state == STATE_FAULT) {
-		end_job(c, OUTCOME_FAULT);
+		end_job(c, OUTCOME_STOPPED);
 		c->state = STATE_FAULT;
 		return ANSWER_DONE;
 	}
@@ -319,14 +319,17 @@ static enum cycle_event look(struct cycle *c)
 	}
 }
 
-/* A short while positioning is a collision, unless it was there before. */
+/*
+ * A short while positioning is a collision, once the gap has been open: on the
+ * way out of a cut, debris may still bridge it.
+ */
 static void watch_contact(struct cycle *c)
 {
 	if (c->state != STATE_TRAVEL || c->config.dry_run)
 		return;
 	if (c->gap_short && c->free_seen)
 		cycle_fail(c, FAULT_CONTACT);
-	c->free_seen = c->free_seen || !c->gap_short;
+	c->free_seen = c->free_seen || c->gap_open;
 }
 
 static void stand(struct cycle *c)

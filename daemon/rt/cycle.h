@@ -142,7 +142,7 @@ struct cycle {
 	bool power_off;			/* the program switched it off (M5) */
 	bool gap_short, gap_open;	/* this cycle's gap */
 	bool short_before;		/* it was short the cycle before */
-	bool free_seen;			/* not short since positioning began */
+	bool free_seen;			/* open since positioning began */
 	bool at_start;			/* the walk met the program's start */
 	struct io_outputs out;		/* as last given */
 

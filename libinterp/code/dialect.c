@@ -4,6 +4,7 @@
  */
 #include "code/dialect.h"
 
+#include <errno.h>
 #include <string.h>
 #include <strings.h>
 
@@ -92,7 +93,15 @@ int interp_compile(const struct interp_text *text,
 		   struct interp_build *b, uint32_t *ret_lines,
 		   struct interp_diag *diag)
 {
-	if (text->dialect && !text->dialect->nc)
-		return compile_records(text, o, b, ret_lines, diag);
-	return compile_nc(text, &o->nc, b, ret_lines, diag);
+	const bool records = text->dialect && !text->dialect->nc;
+	const int rc = records ?
+		       compile_records(text, o, b, ret_lines, diag) :
+		       compile_nc(text, &o->nc, b, ret_lines, diag);
+
+	/* The whole line is at its first column, the whole input at 1:1. */
+	if (rc == -EINVAL && diag->line == 0)
+		diag->line = 1;
+	if (rc == -EINVAL && diag->column == 0)
+		diag->column = 1;
+	return rc;
 }

@@ -178,14 +178,15 @@ int build_refuse_travel(const struct interp_machine *m, int axis,
 	return -EINVAL;
 }
 
+/* In pulses, as the cycle guards them: the last ones inside the limits. */
 static bool axis_ok(const struct interp_machine *m, int axis, double at_mm)
 {
 	const struct interp_axis_limits *l = &m->axis[axis];
+	const double at = floor(at_mm / l->pulse_mm + 0.5);
 
-	/* Half a pulse: the end of travel itself must stay reachable. */
 	return m->present & 1u << axis &&
-	       at_mm >= l->travel_min_mm - l->pulse_mm / 2 &&
-	       at_mm <= l->travel_max_mm + l->pulse_mm / 2;
+	       at >= ceil(l->travel_min_mm / l->pulse_mm - 1e-6) &&
+	       at <= floor(l->travel_max_mm / l->pulse_mm + 1e-6);
 }
 
 /* -- Segments ------------------------------------------------------------ */

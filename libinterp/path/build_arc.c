@@ -16,6 +16,7 @@
 /* Start and end radius may differ by a rounding of the last digit, or this. */
 #define RADIUS_PULSES	2.0
 #define RADIUS_SHARE	0.001
+#define RADIUS_MOST	5.0
 
 static const struct interp_axis_limits *limits(const struct build_arc *p,
 					       uint32_t a)
@@ -29,8 +30,8 @@ static int refuse_radius(double r0, double r1, struct interp_diag *diag)
 		 "the arc starts %.4f mm from its centre and ends %.4f mm from it",
 		 r0, r1);
 	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "radii that agree within %g pulses or %g %%", RADIUS_PULSES,
-		 RADIUS_SHARE * 100);
+		 "radii that agree within %g pulses, or %g %% but %g pulses",
+		 RADIUS_PULSES, RADIUS_SHARE * 100, RADIUS_MOST);
 	return -EINVAL;
 }
 
@@ -64,7 +65,8 @@ static int arc_geometry(struct build_arc *p, struct interp_diag *diag)
 				  limits(p, w->axis_b)->pulse_mm);
 
 	if (!(fabs(r1 - r0) <= fmax(RADIUS_PULSES * pulse,
-				    RADIUS_SHARE * fmin(r0, r1))))
+				    fmin(RADIUS_SHARE * fmin(r0, r1),
+					 RADIUS_MOST * pulse))))
 		return refuse_radius(r0, r1, diag);
 	if (r0 < pulse / 2) {
 		snprintf(diag->found, sizeof(diag->found),
@@ -208,13 +210,19 @@ void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 	circle_plan_runs(arc, &p->runs, runs, arc->nruns);
 }
 
+/* Round one pulse only comparison finds a way, whatever the strategy. */
+static bool is_tiny(const int64_t start[2])
+{
+	return start[0] * start[0] + start[1] * start[1] == 1;
+}
+
 static bool measure(struct build_arc *p, const int64_t start[2],
 		    const int64_t end[2])
 {
 	const int64_t others = (p->way.longest_sub + INTERP_SUB - 1) >>
 			       INTERP_SUB_BITS;
 
-	return p->o->strategy == INTERP_DDA ?
+	return p->o->strategy == INTERP_DDA && !is_tiny(start) ?
 	       dda_measure(&p->arc, start, end, others) :
 	       circle_measure(&p->arc, start, end);
 }
@@ -255,8 +263,13 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	if (fabs(arc->sweep) * arc->r_mm / pulse > INTERP_PULSES_MAX / 2.0)
 		return refuse_ticks(diag);
 	arc_ends(p, start, end);
-	/* A circle of one pulse would pass through its own centre. */
-	if (start[0] * start[0] + start[1] * start[1] <= 1) {
+	/* Nowhere to go round, or for a dda's helix no way to. */
+	if (start[0] == 0 && start[1] == 0) {
+		p->straight = true;
+		return 0;
+	}
+	if (is_tiny(start) && p->o->strategy == INTERP_DDA &&
+	    p->way.longest_sub > 0) {
 		p->straight = true;
 		return 0;
 	}
@@ -265,7 +278,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
 		return p->straight ? 0 : refuse_ticks(diag);
 	}
-	if (p->o->strategy == INTERP_MIN_SWITCH) {
+	if (p->o->strategy == INTERP_MIN_SWITCH && !is_tiny(start)) {
 		memcpy(p->runs.start, start, sizeof(start));
 		memcpy(p->runs.end, end, sizeof(end));
 		r = measure_runs(p, diag);

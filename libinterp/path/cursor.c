@@ -64,7 +64,7 @@ static const struct interp_walk *walk_of(const struct interp_cursor *c)
 		return walk_of_line(c);
 	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
 		return &walk_arc;
-	if (c->p.head->strategy == INTERP_DDA)
+	if (c->p.head->strategy == INTERP_DDA && c->arc.shift > 0)
 		return &walk_dda_arc;
 	return c->seg.ticks == c->arc.circle_ticks ? &walk_circle :
 						     &walk_helix;

@@ -7,13 +7,12 @@
 
 #include <math.h>
 
-/* The axes a program's length is counted in: X Y Z, else U V, else A B C. */
+/* All linear axes, or if none of them moves, all. */
 static uint32_t length_axes(const struct interp_cursor *c)
 {
-	static const uint32_t sets[] = {
-		1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_Z,
-		1u << INTERP_U | 1u << INTERP_V,
-	};
+	const uint32_t linear = 1u << INTERP_X | 1u << INTERP_Y |
+				1u << INTERP_Z | 1u << INTERP_U |
+				1u << INTERP_V;
 	uint32_t moved = 0;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
@@ -22,11 +21,7 @@ static uint32_t length_axes(const struct interp_cursor *c)
 	}
 	if (c->seg.kind == INTERP_ARC)
 		moved |= 1u << c->arc.axis_a | 1u << c->arc.axis_b;
-	for (int i = 0; i < 2; i++) {
-		if (moved & sets[i])
-			return sets[i];
-	}
-	return ~0u;
+	return moved & linear ? linear : ~0u;
 }
 
 static double node_mm(const struct interp_cursor *c, uint32_t j, bool at_end)
@@ -35,10 +30,10 @@ static double node_mm(const struct interp_cursor *c, uint32_t j, bool at_end)
 	       c->p.head->pulse_mm[c->p.head->column[j]];
 }
 
-/* Square to the line from node to node. */
-static double line_deviation(const struct interp_cursor *c, uint32_t axes)
+/* Where the point's foot on the line is, as a share of it. */
+static double line_foot(const struct interp_cursor *c, uint32_t axes)
 {
-	double d2 = 0, r2 = 0, dr = 0;
+	double d2 = 0, dr = 0;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const uint32_t axis = c->p.head->column[j];
@@ -50,15 +45,29 @@ static double line_deviation(const struct interp_cursor *c, uint32_t axes)
 		if (!(axes & 1u << axis))
 			continue;
 		d2 += d * d;
-		r2 += r * r;
 		dr += d * r;
 	}
-	if (d2 > 0) {
-		const double t = dr <= 0 ? 0 : dr >= d2 ? 1 : dr / d2;
+	return !(d2 > 0) || dr <= 0 ? 0 : dr >= d2 ? 1 : dr / d2;
+}
 
-		r2 += t * t * d2 - 2 * t * dr;
+/* Square to the line from node to node, axis by axis from the foot: no large
+ * squares are subtracted. */
+static double line_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	const double t = line_foot(c, axes);
+	double r2 = 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+		const double from = node_mm(c, j, false);
+		const double d = node_mm(c, j, true) - from;
+		const double r = c->pos[axis] * c->p.head->pulse_mm[axis] -
+				 from - t * d;
+
+		if (axes & 1u << axis)
+			r2 += r * r;
 	}
-	return r2 > 0 ? sqrt(r2) : 0;
+	return sqrt(r2);
 }
 
 /* Squared distance from the point at share @t of the arc. */
@@ -108,16 +117,25 @@ static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
 	return sqrt(arc_gap2(c, axes, (lo + hi) / 2));
 }
 
-/* Off the circle, in its plane. */
+/*
+ * Off the circle, in its plane.  Where the two ends are off one circle by a
+ * rounding, `simultaneous` walks the spiral between them; the other strategies
+ * keep to the start's circle, and what lies between the two radii is on the
+ * arc.
+ */
 static double circle_deviation(const struct interp_cursor *c,
 			       const struct interp_arc *arc)
 {
 	const double *pulse = c->p.head->pulse_mm;
 	const double at = c->whole ? (double)c->measure / (double)c->whole : 0;
+	const double r = hypot(c->pos[arc->axis_a] * pulse[arc->axis_a] -
+			       arc->a_mm,
+			       c->pos[arc->axis_b] * pulse[arc->axis_b] -
+			       arc->b_mm) - arc->r_mm;
 
-	return fabs(hypot(c->pos[arc->axis_a] * pulse[arc->axis_a] - arc->a_mm,
-			  c->pos[arc->axis_b] * pulse[arc->axis_b] -
-			  arc->b_mm) - arc->r_mm - arc->dr_mm * at);
+	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
+		return fabs(r - arc->dr_mm * at);
+	return fmax(fmax(r - fmax(arc->dr_mm, 0), fmin(arc->dr_mm, 0) - r), 0);
 }
 
 static double arc_deviation(const struct interp_cursor *c, uint32_t axes)

@@ -273,10 +273,19 @@ static int64_t circle_meet(int64_t r2)
 	return n;
 }
 
+/* A circle of one pulse as if its radius were a little more: else its first
+ * pulse would lead to its centre. */
+static int64_t circle_r2(const int64_t start[2])
+{
+	const int64_t r2 = start[0] * start[0] + start[1] * start[1];
+
+	return r2 == 1 ? 2 : r2;
+}
+
 bool circle_enter(struct interp_circle *k, const struct interp_arc *arc,
 		  const int64_t start[2], const int64_t end[2], bool at_end)
 {
-	const int64_t r2 = start[0] * start[0] + start[1] * start[1];
+	const int64_t r2 = circle_r2(start);
 	const int64_t *at = at_end ? end : start;
 
 	if (r2 >= CIRCLE_R_MAX * CIRCLE_R_MAX ||

@@ -388,13 +388,15 @@ static int check_radius(const struct contour *k, const struct curve *c,
 {
 	const double r1 = vec_distance(c->centre, c->to);
 
-	if (fabs(r1 - c->r) <= fmax(2 * k->guides.pulse_mm, 0.001 * c->r))
+	if (fabs(r1 - c->r) <= fmax(2 * k->guides.pulse_mm,
+				    fmin(0.001 * c->r,
+					 5 * k->guides.pulse_mm)))
 		return 0;
 	snprintf(diag->found, sizeof(diag->found),
 		 "the arc starts %.4f mm from its centre and ends %.4f mm "
 		 "from it", c->r, r1);
 	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "radii that agree within 2 pulses or 0.1 %%");
+		 "radii that agree within 2 pulses, or 0.1 %% but 5 pulses");
 	return -EINVAL;
 }
 

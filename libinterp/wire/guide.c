@@ -202,7 +202,7 @@ static int cut_arcs(const struct cut *k)
 
 		/* Of a pulse or less the builder makes no circle. */
 		two[i] = (struct interp_build_contour) {
-			.arc = cabs(r) > 2 * k->g->pulse_mm,
+			.arc = cabs(r) > 1.5 * k->g->pulse_mm,
 			.clockwise = sweep < 0,
 			.centre_mm = { at.x, at.y },
 		};

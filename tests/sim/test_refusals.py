@@ -55,7 +55,7 @@ def nest(depth):
     ("G21\nG1 X1\n", "2:1", "no feed"),
     ("X5\n", "1:1", "no motion mode"),
     ("G21 F60 G33.1\n", "1:9", "G33.1"),
-    ("G21 F60\nH12\n", "2:1", "H12"),
+    ("G21 F60\nW12\n", "2:1", "W12"),
     ("G21 F60\nG1 X1 X2\n", "2:7", "second word X2"),
     ("G0 G1 X1 F60\n", "1:4", "G1 on a line with G0"),
     ("G21 F60\nG1 X1 (open\n", "2:7", "comment"),

@@ -240,11 +240,11 @@ static void simultaneous_points_are_within_half_a_pulse_of_the_path(void **st)
 
 		print_on_failure("seed", seed);
 		assert_int_equal(interp_cursor_init(&c, &m.p), 0);
-			interp_cursor_aim(&c, 1e9);
-		/* Three axes, half a pulse each. */
+		interp_cursor_aim(&c, 1e9);
+		/* Five linear axes, half a pulse each. */
 		while (interp_cursor_step(&c) == INTERP_MOVED)
 			assert_true(interp_cursor_deviation_mm(&c) <
-				    0.0005 * 1.7321 + 1e-9);
+				    0.0005 * sqrt(5) + 1e-9);
 		unmake(&m);
 	}
 }
