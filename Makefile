@@ -51,6 +51,7 @@ CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
+PEER	:= $(wildcard tests/peer/*.c)
 EXPERIMENTS := lines axes machining
 
 # What a part may include.  A header not on its list does not resolve.
@@ -68,6 +69,7 @@ INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)
 INC_unit	= -Itests/unit -Ilibinterp $(INC_edmd) $(INC_jobs)
 INC_bench	= $(INC_edmd)
 INC_fuzz	= -Ilibinterp/include
+INC_peer	= -Ilibinterp/include
 INC_experiments	= -Itests/experiments $(INC_libinterp)
 part = $(word $(if $(filter libinterp,$(firstword $(subst /, ,$1))),1,2),$(subst /, ,$1))
 
@@ -84,6 +86,7 @@ DDS_O	 := $(B)/messages/edm.o
 PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet
 UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
+PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
 
 all: $(PROGRAMS)
 
@@ -154,6 +157,9 @@ $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O)
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
 	$(call link,-linih -lpthread -lm)
 
+$(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_O)
+	$(call link,-lm)
+
 $(B)/experiments/%: $(B)/tests/experiments/%.o $(INTERP_O)
 	$(call link,-lm)
 
@@ -177,9 +183,9 @@ check:
 	@$(MAKE) --no-print-directory clang
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system
 
-units: $(UNIT_X)
+units: $(UNIT_X) $(PEER_X)
 
-run-units: $(UNIT_X)
+run-units: $(UNIT_X) $(PEER_X)
 	$(Q)for t in $^; do $$t >$$t.log 2>&1 || \
 		{ cat $$t.log; echo "FAILED: $$t"; exit 1; }; \
 		printf '  UNIT    %s: ' $$t; \

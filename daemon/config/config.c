@@ -47,19 +47,22 @@ static bool has(const struct machine_config *c, enum interp_axis a)
 }
 
 /* The weakest of the axes present; rotary ones only if there are no others. */
-static double travel_a_mm_s2(const struct machine_config *c)
+static void travel_of(const struct machine_config *c, struct cycle_config *ret)
 {
 	double a[2] = { INFINITY, INFINITY };	/* linear, rotary */
+	double j[2] = { INFINITY, INFINITY };
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		enum interp_axis x = (enum interp_axis)i;
 		int rotary = interp_axis_is_rotary(x);
 
-		if (has(c, x))
-			a[rotary] = fmin(a[rotary],
-					 c->axes.axis[i].a_max_mm_s2);
+		if (!has(c, x))
+			continue;
+		a[rotary] = fmin(a[rotary], c->axes.axis[i].a_max_mm_s2);
+		j[rotary] = fmin(j[rotary], c->axes.axis[i].j_max_mm_s3);
 	}
-	return isfinite(a[0]) ? a[0] : a[1];
+	ret->travel_a_mm_s2 = isfinite(a[0]) ? a[0] : a[1];
+	ret->travel_j_mm_s3 = isfinite(j[0]) ? j[0] : j[1];
 }
 
 static uint64_t cycles_of(double s, int64_t period_ns)
@@ -93,6 +96,7 @@ static void jump_of(const struct config_jump *j, int64_t period_ns,
 		.every_cycles = cycles ? cycles : 1,
 		.v_max_mm_s = j->v_max_mm_s,
 		.a_max_mm_s2 = j->a_max_mm_s2,
+		.j_max_mm_s3 = j->j_max_mm_s3,
 		.short_of_mm = j->short_of_mm,
 	};
 }
@@ -101,11 +105,11 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 {
 	*ret = (struct cycle_config) {
 		.period_ns = config_period_ns(c),
-		.travel_a_mm_s2 = travel_a_mm_s2(c),
 		.overrun_limit = (uint32_t)c->overrun_limit,
 		.points_max = POINTS_MAX,
 		.optional_stop = c->optional_stop,
 	};
+	travel_of(c, ret);
 	gap_of(&c->gap, ret->period_ns, &ret->gap);
 	jump_of(&c->jump, ret->period_ns, &ret->jump);
 

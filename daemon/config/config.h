@@ -30,7 +30,8 @@ struct config_gap {
 
 /* [jump] */
 struct config_jump {
-	double height_mm, every_s, v_max_mm_s, a_max_mm_s2, short_of_mm;
+	double height_mm, every_s, v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
+	double short_of_mm;
 };
 
 /* [sim]: the simulated gap process; io/sim.c says what each does. */

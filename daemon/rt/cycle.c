@@ -68,6 +68,7 @@ static void enter(struct cycle *c, enum cycle_state s)
 	switch (s) {
 	case STATE_TRAVEL:
 		c->free_seen = false;
+		c->ahead = (struct cycle_ahead) { 0 };
 		break;
 	case STATE_RETRACT:
 		c->totals.retracts++;
@@ -88,7 +89,7 @@ static void enter(struct cycle *c, enum cycle_state s)
 		break;
 	case STATE_IDLE:
 	case STATE_FAULT:
-		c->mover.v_mm_s = 0;
+		mover_set(&c->mover, 0);
 		break;
 	default:
 		break;
@@ -345,14 +346,14 @@ static void stand(struct cycle *c)
 static void stand_held(struct cycle *c)
 {
 	happen(c, EVENT_HOLD);
-	c->mover.v_mm_s = 0;
+	mover_set(&c->mover, 0);
 }
 
 /* What is held does nothing more: it stands in front of the action. */
 static void meet_action(struct cycle *c)
 {
 	if (c->state == STATE_HOLD) {
-		c->mover.v_mm_s = 0;
+		mover_set(&c->mover, 0);
 		return;
 	}
 	switch (walk_action(c)) {

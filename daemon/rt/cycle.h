@@ -59,7 +59,7 @@ struct cycle_gap_config {
 struct cycle_jump_config {
 	double height_mm;		/* 0: never */
 	uint64_t every_cycles;		/* of erosion between two jumps */
-	double v_max_mm_s, a_max_mm_s2;
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	double short_of_mm;		/* come back to this far above the cut */
 };
 
@@ -68,6 +68,7 @@ struct cycle_config {
 	struct cycle_gap_config gap;
 	struct cycle_jump_config jump;
 	double travel_a_mm_s2;		/* to start and stop positioning */
+	double travel_j_mm_s3;
 	int32_t travel_min[INTERP_NAXES];	/* soft limits, pulses */
 	int32_t travel_max[INTERP_NAXES];
 	uint32_t overrun_limit;		/* missed periods in a row; 0: no fault */
@@ -112,6 +113,15 @@ struct cycle_totals {
 	double retract_mm_max;
 };
 
+/* What positioning saw ahead. */
+struct cycle_ahead {
+	uint32_t slow_for;		/* a slower segment; 0: none */
+	double slow_mm_s;		/* its speed */
+	double v_mm_s, a_mm_s2;		/* the two below are for these; */
+	double need_mm;			/* look so far; 0: not known */
+	struct interp_scurve_state next;	/* a cycle on, at most */
+};
+
 struct cycle {
 	struct cycle_config config;
 	struct interp_cursor cursor;
@@ -130,6 +140,7 @@ struct cycle {
 	double retract_from_mm;		/* place the retract began */
 	uint64_t retract_waited;	/* cycles stood at its limit */
 	struct mover mover;		/* speed along the path */
+	struct cycle_ahead ahead;	/* while positioning */
 	bool lifting;			/* a jump on its way up */
 	bool moving;			/* held, but walking back by command */
 	enum cycle_state after_stand;	/* held: where to, once it stands */

@@ -1,74 +1,101 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * mover.c - a trapezoidal move along the path, cycle by cycle
+ * mover.c - an S-curve along the path, sampled cycle by cycle
  *
- * A walk that brakes to a stand in n cycles T, by a*T in each, goes
- *
- *	d = v*T + (v - a*T)*T + ... + (v - (n - 1)*a*T)*T
- *
- * with 0 <= v - (n - 1)*a*T <= a*T.  So d alone tells n, the least whole
- * number with n*(n + 1)/2 * a*T*T >= d, and the fastest v that still stops
- * there,
- *
- *	v = d/(n*T) + (n - 1)/2 * a*T
- *
- * Walked for a cycle and asked again, it says v - a*T: the way is met exactly.
+ * A plan to a place is good as long as what is left to go is what the plan says
+ * is left; the distance of a cycle leads onto the plan, so a rounding does not
+ * add up.
  */
 #include "mover.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* Nearer than this is there. */
 #define THERE_MM	1e-9
 
-static double braking_speed(const struct mover_limits *l, double left_mm)
+struct interp_scurve_limits mover_curve(const struct mover_limits *l)
 {
-	const double at = l->a_max_mm_s2 * l->period_s;
-	const double steps = left_mm / (at * l->period_s);
-	const double n = floor((sqrt(1 + 8 * steps) + 1) / 2);
-
-	return left_mm / (n * l->period_s) + (n - 1) / 2 * at;
+	return (struct interp_scurve_limits) {
+		l->v_max_mm_s, l->a_max_mm_s2, l->a_max_mm_s2, l->j_max_mm_s3
+	};
 }
 
-/*
- * Far off the answer is v_max, and no root need be drawn: braking from v goes
- * less than v*v/(2*a) + v*T + a*T*T.
- */
-static bool far_off(const struct mover_limits *l, double left_mm)
+void mover_set(struct mover *m, double v_mm_s)
 {
-	const double at = l->a_max_mm_s2 * l->period_s;
-	const double v = l->v_max_mm_s;
-
-	return 2 * l->a_max_mm_s2 * left_mm > v * v + 2 * (v + at) * at;
+	m->v_mm_s = v_mm_s;
+	m->a_mm_s2 = 0;
+	m->kind = MOVER_NO_PLAN;
 }
 
-static double limit(double v, double max)
+static bool same(const struct mover_limits *p, const struct mover_limits *q)
 {
-	return v > max ? max : v < -max ? -max : v;
+	return p->v_max_mm_s == q->v_max_mm_s &&
+	       p->a_max_mm_s2 == q->a_max_mm_s2 &&
+	       p->j_max_mm_s3 == q->j_max_mm_s3;
+}
+
+static bool is_planned(const struct mover *m, const struct mover_limits *l,
+		       enum mover_plan kind)
+{
+	return m->kind == kind && same(&m->l, l);
+}
+
+static void plan(struct mover *m, const struct mover_limits *l,
+		 enum mover_plan kind, double goal)
+{
+	const struct interp_scurve_limits c = mover_curve(l);
+
+	if (kind == MOVER_TO_PLACE)
+		interp_scurve_to_place(&m->plan, &c, m->v_mm_s, m->a_mm_s2,
+				       goal);
+	else
+		interp_scurve_to_speed(&m->plan, &c, m->v_mm_s, m->a_mm_s2,
+				       goal);
+	m->kind = kind;
+	m->goal = goal;
+	m->l = *l;
+	m->t_s = 0;
+	m->gone_mm = 0;
+}
+
+/* The next sample of the plan; the distance to it from the last one. */
+static double sample(struct mover *m, double period_s)
+{
+	struct interp_scurve_state s;
+	double ds;
+
+	m->t_s += period_s;
+	s = interp_scurve_at(&m->plan, m->t_s);
+	ds = s.x_mm - m->gone_mm;
+	m->gone_mm = s.x_mm;
+	m->v_mm_s = s.v_mm_s;
+	m->a_mm_s2 = s.a_mm_s2;
+	return ds;
 }
 
 double mover_step(struct mover *m, const struct mover_limits *l,
 		  double left_mm)
 {
-	const double at = l->a_max_mm_s2 * l->period_s;
-	const double far = fabs(left_mm);
-	double want;
-
-	if (far < THERE_MM && fabs(m->v_mm_s) <= at) {
-		m->v_mm_s = 0;
+	if (fabs(left_mm) < THERE_MM && m->v_mm_s == 0 && m->a_mm_s2 == 0)
 		return left_mm;
-	}
-	want = far_off(l, far) ? l->v_max_mm_s :
-				 fmin(l->v_max_mm_s, braking_speed(l, far));
-	want = copysign(want, left_mm);
-	m->v_mm_s += limit(want - m->v_mm_s, at);
-	return m->v_mm_s * l->period_s;
+	if (!is_planned(m, l, MOVER_TO_PLACE) ||
+	    fabs(m->goal - m->gone_mm - left_mm) > THERE_MM)
+		plan(m, l, MOVER_TO_PLACE, left_mm);
+	sample(m, l->period_s);
+	return left_mm - (m->goal - m->gone_mm);
+}
+
+double mover_run(struct mover *m, const struct mover_limits *l, double v_mm_s)
+{
+	if (m->v_mm_s == v_mm_s && m->a_mm_s2 == 0)
+		return v_mm_s * l->period_s;
+	if (!is_planned(m, l, MOVER_TO_SPEED) || m->goal != v_mm_s)
+		plan(m, l, MOVER_TO_SPEED, v_mm_s);
+	return sample(m, l->period_s);
 }
 
 double mover_stop(struct mover *m, const struct mover_limits *l)
 {
-	const double at = l->a_max_mm_s2 * l->period_s;
-
-	m->v_mm_s -= limit(m->v_mm_s, at);
-	return m->v_mm_s * l->period_s;
+	return mover_run(m, l, 0);
 }

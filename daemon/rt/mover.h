@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * mover.h - go to another place on the path, within speed and acceleration
+ * mover.h - go to another place on the path, within speed and jerk
  *
- * A trapezoidal move along the path, in either direction.  Jumps, retracts by
- * command and positioning use this one.
+ * An S-curve along the path, in either direction: speed and acceleration never
+ * step.  Jumps, retracts by command and positioning use this one.  It plans
+ * when something changed and samples its plan otherwise; a new place, a new
+ * limit or a hold goes on from the speed and acceleration it has.
  *
  * Units: mm along the path, + toward the program's end.
  * Threads: RT-safe.
@@ -11,16 +13,30 @@
 #ifndef RT_MOVER_H
 #define RT_MOVER_H
 
-#include <stdbool.h>
+#include "interp/scurve.h"
 
-struct mover {
-	double v_mm_s;			/* signed */
+enum mover_plan {
+	MOVER_NO_PLAN,
+	MOVER_TO_PLACE,
+	MOVER_TO_SPEED,
 };
 
 struct mover_limits {
-	double v_max_mm_s, a_max_mm_s2;
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	double period_s;
 };
+
+struct mover {
+	double v_mm_s, a_mm_s2;		/* signed */
+	enum mover_plan kind;
+	double goal;			/* mm left when planned, or mm/s */
+	double t_s, gone_mm;		/* of the plan */
+	struct mover_limits l;		/* it was planned with */
+	struct interp_scurve plan;
+};
+
+/** mover_set() - somebody else sets the speed; what was planned is void. */
+void mover_set(struct mover *m, double v_mm_s);
 
 /**
  * mover_step() - the distance to walk this cycle to come nearer to a place
@@ -28,12 +44,18 @@ struct mover_limits {
  *
  * The place is met exactly and never passed, unless the speed is too high to
  * brake before it: then it is passed, and come back to.  The speed is 0 from
- * the cycle after the one that met it.
+ * the cycle that met it.
  */
 double mover_step(struct mover *m, const struct mover_limits *l,
 		  double left_mm);
 
+/** mover_run() - the distance this cycle to come to a speed and keep it. */
+double mover_run(struct mover *m, const struct mover_limits *l, double v_mm_s);
+
 /** mover_stop() - the distance this cycle while braking to a stand. */
 double mover_stop(struct mover *m, const struct mover_limits *l);
+
+/** mover_curve() - the same limits, as a plan takes them. */
+struct interp_scurve_limits mover_curve(const struct mover_limits *l);
 
 #endif /* RT_MOVER_H */

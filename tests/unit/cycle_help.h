@@ -44,9 +44,11 @@ static inline struct cycle_config usual_config(void)
 		},
 		.jump = {
 			.every_cycles = 100, .v_max_mm_s = 50,
-			.a_max_mm_s2 = 1000, .short_of_mm = 0.02,
+			.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000,
+			.short_of_mm = 0.02,
 		},
 		.travel_a_mm_s2 = 1000,
+		.travel_j_mm_s3 = 20000,
 		.overrun_limit = 10,
 		.points_max = 4096,
 	};
@@ -56,6 +58,15 @@ static inline struct cycle_config usual_config(void)
 		k.travel_max[i] = 200000;
 	}
 	return k;
+}
+
+/* The way from any acceleration at a speed to a stand, and a cycle more. */
+static inline double braking_mm(const struct cycle_config *k, double v)
+{
+	const double a = k->travel_a_mm_s2, j = k->travel_j_mm_s3;
+	const double top = v + a * PERIOD_S + a * a / (2 * j);
+
+	return top * a / j + top / 2 * (top / a + a / j) + top * PERIOD_S;
 }
 
 /* -- Programs ------------------------------------------------------------ */

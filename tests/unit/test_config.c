@@ -566,14 +566,17 @@ static void positioning_is_as_weak_as_the_weakest_linear_axis(void **state)
 	struct cycle_config cycle;
 
 	(void)state;
-	read_good("[axis.X]\na_max_mm_s2 = 900\n[axis.B]\na_max_mm_s2 = 5\n"
+	read_good("[axis.X]\na_max_mm_s2 = 900\nj_max_mm_s3 = 700\n"
+		  "[axis.B]\na_max_mm_s2 = 5\nj_max_mm_s3 = 3\n"
 		  "[axis.U]\na_max_mm_s2 = 7\npresent = no\n", &c);
 	config_cycle(&c, &cycle);
 	assert_true(cycle.travel_a_mm_s2 == 900);
+	assert_true(cycle.travel_j_mm_s3 == 700);
 
 	c.axes.present = 1u << INTERP_B;
 	config_cycle(&c, &cycle);
 	assert_true(cycle.travel_a_mm_s2 == 5);
+	assert_true(cycle.travel_j_mm_s3 == 3);
 }
 
 int main(void)

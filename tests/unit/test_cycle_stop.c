@@ -148,20 +148,23 @@ static void a_hold_brakes_within_the_braking_distance(void **st)
 	(void)st;
 	for (int n = 1; n < 60; n++) {
 		const struct cycle_config k = usual_config();
-		double v, from;
+		struct interp_scurve_limits l = { 1, k.travel_a_mm_s2,
+						  k.travel_a_mm_s2,
+						  k.travel_j_mm_s3 };
+		double way, from;
 		struct rig r;
 
 		begin_job(&r, &k);
 		steps(&r, OPEN_V, n);
-		v = r.c.feed_mm_s;
+		way = interp_scurve_way_mm(&l, r.c.mover.v_mm_s,
+					   r.c.mover.a_mm_s2, 0);
 		from = place(&r);
 		assert_int_equal(tell(&r, CYCLE_HOLD), ANSWER_DONE);
 		steps(&r, OPEN_V, 200);
 		assert_int_equal(r.c.state, STATE_HOLD);
 		assert_true(r.c.feed_mm_s == 0);
 		assert_true(place(&r) >= from - 1e-9);
-		assert_true(place(&r) - from <= v * v /
-			    (2 * k.travel_a_mm_s2) + v * PERIOD_S + 1e-9);
+		assert_near(place(&r) - from, way, 1e-8);
 		rig_free(&r);
 	}
 }
@@ -331,8 +334,7 @@ static void a_short_while_positioning_is_a_contact(void **st)
 	step(&r, SHORTED_V);
 	assert_int_equal(r.c.fault, FAULT_CONTACT);
 	until(&r, STATE_FAULT, SHORTED_V, 100);
-	assert_true(place(&r) - from <= v * v / (2 * k.travel_a_mm_s2) +
-		    v * PERIOD_S + 1e-9);
+	assert_true(place(&r) - from <= braking_mm(&k, v));
 	assert_int_equal(r.c.outcome, OUTCOME_FAULT);
 	rig_free(&r);
 }

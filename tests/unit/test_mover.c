@@ -23,10 +23,12 @@ static struct mover_limits random_limits(uint64_t *s)
 	static const double periods_s[] = { 50e-6, 250e-6, 1e-3, 4e-3 };
 	const double t = periods_s[rnd(s) % 4];
 	const double v = pow(10, uniform(s, -2, 2));
+	const double a = v / t / pow(10, uniform(s, -0.5, 2.5));
 
 	return (struct mover_limits) {
 		.v_max_mm_s = v,
-		.a_max_mm_s2 = v / t / pow(10, uniform(s, -0.5, 2.5)),
+		.a_max_mm_s2 = a,
+		.j_max_mm_s3 = a / t / pow(10, uniform(s, -0.5, 1.5)),
 		.period_s = t,
 	};
 }
@@ -40,17 +42,20 @@ static double random_left(uint64_t *s, const struct mover_limits *l)
 	return rnd(s) % 2 ? far : -far;
 }
 
-/* The way from speed @v to a stand, as mover.c counts it. */
+/* The way from speed @v to a stand: half the speed, for the time it takes. */
 static double braking_mm(const struct mover_limits *l, double v)
 {
-	return v * v / (2 * l->a_max_mm_s2) + fabs(v) * l->period_s / 2;
+	const double a = l->a_max_mm_s2, j = l->j_max_mm_s3, u = fabs(v);
+
+	return u / 2 * (u * j > a * a ? u / a + a / j : 2 * sqrt(u / j));
 }
 
 static uint64_t enough(const struct mover_limits *l, double v0, double left)
 {
-	const double way = fabs(left) + 2 * v0 * v0 / l->a_max_mm_s2;
+	const double way = fabs(left) + 2 * braking_mm(l, v0);
 	const double s = way / l->v_max_mm_s +
-			 4 * (fabs(v0) + l->v_max_mm_s) / l->a_max_mm_s2;
+			 8 * (fabs(v0) + l->v_max_mm_s) / l->a_max_mm_s2 +
+			 16 * l->a_max_mm_s2 / l->j_max_mm_s3;
 
 	return (uint64_t)(2 * s / l->period_s) + 100;
 }
@@ -63,25 +68,29 @@ struct course {
 	bool landed;
 };
 
-/* Walk until it stands there; speed and acceleration as they come out. */
+/* Walk until it stands there; all of it as it comes out in the distances. */
 static void walk_course(struct course *k)
 {
 	const double at = k->l.a_max_mm_s2 * k->l.period_s;
-	struct mover m = { k->v0 };
-	double v = k->v0;
+	const double jt = k->l.j_max_mm_s3 * k->l.period_s * k->l.period_s;
+	const double eps = ROUNDING / k->l.period_s;
+	struct mover m = { .v_mm_s = k->v0 };
+	double v = k->v0, dv = 0;
 
 	for (uint64_t n = enough(&k->l, k->v0, k->left); n && !k->landed; n--) {
 		const double ds = mover_step(&m, &k->l, k->left - k->way);
 		const double now = ds / k->l.period_s;
-		const double top = fmax(k->l.v_max_mm_s, fabs(v) - at);
+		const double top = fmax(k->l.v_max_mm_s, fabs(k->v0));
 
-		assert_true(fabs(now) <= top * (1 + ROUNDING) + ROUNDING);
-		assert_true(fabs(now - v) <= at * (1 + ROUNDING) + ROUNDING);
+		assert_true(fabs(now) <= top + eps);
+		assert_true(fabs(now - v) <= at * (1 + ROUNDING) + eps);
+		assert_true(fabs(now - v - dv) <= jt * (1 + ROUNDING) + eps);
+		dv = now - v;
 		v = now;
 		k->way += ds;
 		k->over = fmax(k->over, k->left > 0 ? k->way - k->left :
 						       k->left - k->way);
-		k->landed = m.v_mm_s == 0 &&
+		k->landed = m.v_mm_s == 0 && m.a_mm_s2 == 0 &&
 			    fabs(k->left - k->way) <= ROUNDING;
 	}
 }
@@ -132,7 +141,7 @@ static void too_fast_to_stop_in_time_it_passes_and_comes_back(void **st)
 	for (int i = 0; i < ROUNDS / 10; i++) {
 		const struct mover_limits l = random_limits(&s);
 		const double left = random_left(&s, &l) * 0.01;
-		struct mover m = { copysign(l.v_max_mm_s, left) };
+		struct mover m = { .v_mm_s = copysign(l.v_max_mm_s, left) };
 		double way = 0;
 
 		for (uint64_t n = enough(&l, m.v_mm_s, left); n; n--) {
@@ -155,27 +164,64 @@ static void a_stop_takes_no_more_than_the_braking_distance(void **st)
 		const struct mover_limits l = random_limits(&s);
 		const double v0 = uniform(&s, -2, 2) * l.v_max_mm_s;
 		const double at = l.a_max_mm_s2 * l.period_s;
-		struct mover m = { v0 };
+		struct mover m = { .v_mm_s = v0 };
 		double way = 0, v = v0;
-		uint64_t n = (uint64_t)(fabs(v0) / at) + 2;
+		uint64_t n = enough(&l, v0, 0);
 
 		for (; n; n--) {
 			const double ds = mover_stop(&m, &l);
 
-			assert_true(ds * v0 >= 0);
+			assert_true(ds * v0 >= -ROUNDING);
 			assert_true(fabs(v - m.v_mm_s) <= at * (1 + ROUNDING));
 			v = m.v_mm_s;
 			way += ds;
 		}
 		assert_true(m.v_mm_s == 0);
-		assert_true(fabs(way) <= v0 * v0 / (2 * l.a_max_mm_s2) +
-			    ROUNDING);
+		assert_true(fabs(fabs(way) - braking_mm(&l, v0)) <= ROUNDING);
+	}
+}
+
+/* A hold, a new place, new limits: any of them at any instant. */
+static void a_change_of_mind_is_no_step_of_acceleration(void **st)
+{
+	uint64_t s = seed + 4;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS / 20; i++) {
+		struct mover_limits l = random_limits(&s);
+		const double v_max = l.v_max_mm_s;
+		double goal = random_left(&s, &l), way = 0;
+		struct mover m = { 0 };
+
+		for (int n = 0; n < 500; n++) {
+			const double v = m.v_mm_s, a = m.a_mm_s2;
+			const uint64_t what = rnd(&s) % 60;
+			double ds;
+
+			if (what == 0)
+				goal = way + random_left(&s, &l);
+			if (what == 1)
+				l.v_max_mm_s = uniform(&s, 0.1, 1) * v_max;
+			ds = n / 30 % 3 ? mover_step(&m, &l, goal - way) :
+			     rnd(&s) % 9 ? mover_stop(&m, &l) :
+					   mover_run(&m, &l, v_max / 3);
+			way += ds;
+			assert_true(fabs(m.a_mm_s2 - a) <= l.j_max_mm_s3 *
+				    l.period_s * (1 + ROUNDING));
+			assert_true(fabs(m.v_mm_s - v) <= l.a_max_mm_s2 *
+				    l.period_s * (1 + ROUNDING) + ROUNDING);
+			assert_true(fabs(m.a_mm_s2) <= l.a_max_mm_s2 *
+				    (1 + ROUNDING));
+			assert_true(fabs(ds) <= fmax(fabs(v), fabs(m.v_mm_s)) *
+				    l.period_s + l.a_max_mm_s2 * l.period_s *
+				    l.period_s + ROUNDING);
+		}
 	}
 }
 
 static void standing_there_it_stays(void **st)
 {
-	const struct mover_limits l = { 10, 1000, 1e-3 };
+	const struct mover_limits l = { 10, 1000, 20000, 1e-3 };
 	struct mover m = { 0 };
 
 	(void)st;
@@ -190,6 +236,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(it_never_passes_its_place_if_it_can_still_brake),
 		cmocka_unit_test(too_fast_to_stop_in_time_it_passes_and_comes_back),
 		cmocka_unit_test(a_stop_takes_no_more_than_the_braking_distance),
+		cmocka_unit_test(a_change_of_mind_is_no_step_of_acceleration),
 		cmocka_unit_test(standing_there_it_stays),
 	};
 

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * scurve.c - plans of constant jerk, phase by phase
+ *
+ * To a speed v1.  Letting go of the acceleration a at full jerk leads to the
+ * speed vz = v + a*|a|/(2*j).  If v1 is above it, the acceleration goes up to a
+ * peak p and down to 0, else the mirror of it, and by the areas under it
+ *
+ *	p*p = j*(v1 - v) + a*a/2
+ *
+ * A peak above the limit is cut off, and the limit held for
+ * (p*p - limit*limit)/(j*limit).
+ *
+ * To a place.  Stopping at once leads to some place; the other one lies beyond
+ * it, or short of it.  Toward it goes the ramp to full speed.  Left at a time
+ * tau, to stop at once from there, it leads to
+ *
+ *	D(tau) = x(tau) + way from v(tau), a(tau) to a stand
+ *
+ * which only grows with tau, because more acceleration at the same speed is
+ * more way.  So one root of one equation is the plan, whatever it begins with;
+ * beyond the ramp it is a cruise.  Braking, turning back and easing off a brake
+ * are no cases of their own.
+ */
+#include "interp/scurve.h"
+
+#include <math.h>
+
+/* Of a root between two ends; three in a row at least halve what is left. */
+#define TRIES	150
+
+struct ramp {
+	double dt[INTERP_SCURVE_RAMP], j[INTERP_SCURVE_RAMP];
+};
+
+static struct interp_scurve_state go(struct interp_scurve_state s, double j,
+				     double t)
+{
+	return (struct interp_scurve_state) {
+		s.x_mm + t * (s.v_mm_s + t * (s.a_mm_s2 / 2 + t * j / 6)),
+		s.v_mm_s + t * (s.a_mm_s2 + t * j / 2),
+		s.a_mm_s2 + t * j,
+	};
+}
+
+/* Phase 0: an acceleration beyond its limit comes down to it. */
+static struct interp_scurve_state ease(struct ramp *r,
+				       const struct interp_scurve_limits *l,
+				       struct interp_scurve_state s)
+{
+	const double j = l->j_max_mm_s3;
+	const double over = s.a_mm_s2 - l->a_up_mm_s2;
+	const double under = -l->a_down_mm_s2 - s.a_mm_s2;
+
+	r->dt[0] = fmax(0, fmax(over, under)) / j;
+	r->j[0] = over > 0 ? -j : j;
+	return r->dt[0] > 0 ? go(s, r->j[0], r->dt[0]) : s;
+}
+
+static struct ramp ramp_to(const struct interp_scurve_limits *l,
+			   struct interp_scurve_state s, double v1)
+{
+	const double j = l->j_max_mm_s3;
+	double dv, a, sign, limit, p, pp;
+	struct ramp r;
+
+	s = ease(&r, l, s);
+	dv = v1 - s.v_mm_s;
+	a = s.a_mm_s2;
+	sign = dv * 2 * j >= a * fabs(a) ? 1 : -1;
+	limit = sign > 0 ? l->a_up_mm_s2 : l->a_down_mm_s2;
+	pp = fmax(0, sign * j * dv + a * a / 2);
+	p = fmin(sqrt(pp), limit);
+	r.dt[1] = fmax(0, (p - sign * a) / j);
+	r.j[1] = sign * j;
+	r.dt[2] = fmax(0, pp - limit * limit) / (j * limit);
+	r.j[2] = 0;
+	r.dt[3] = p / j;
+	r.j[3] = -sign * j;
+	return r;
+}
+
+/* The last phase ends with the speed it was made for, to the last bit. */
+static struct interp_scurve_state after(const struct ramp *r,
+					struct interp_scurve_state s, double v1)
+{
+	for (int i = 0; i < INTERP_SCURVE_RAMP; i++)
+		s = go(s, r->j[i], r->dt[i]);
+	s.v_mm_s = v1;
+	s.a_mm_s2 = 0;
+	return s;
+}
+
+static double place_at(const struct interp_scurve_limits *l,
+		       struct interp_scurve_state s, double v1)
+{
+	const struct ramp r = ramp_to(l, s, v1);
+
+	return after(&r, s, v1).x_mm;
+}
+
+double interp_scurve_way_mm(const struct interp_scurve_limits *l,
+			    double v_mm_s, double a_mm_s2, double to_mm_s)
+{
+	const struct interp_scurve_state s = { 0, v_mm_s, a_mm_s2 };
+
+	return place_at(l, s, to_mm_s);
+}
+
+/* -- A plan, phase by phase --------------------------------------------------- */
+
+static void begin(struct interp_scurve *c, double v, double a)
+{
+	c->n = 0;
+	c->end_s = 0;
+	c->end = (struct interp_scurve_state) { 0, v, a };
+}
+
+static void add(struct interp_scurve *c, double j, double dt)
+{
+	if (!(dt > 0))
+		return;
+	c->t_s[c->n] = c->end_s;
+	c->j_mm_s3[c->n] = j;
+	c->from[c->n] = c->end;
+	c->n++;
+	c->end = go(c->end, j, dt);
+	c->end_s += dt;
+}
+
+static void add_ramp(struct interp_scurve *c,
+		     const struct interp_scurve_limits *l, double v1)
+{
+	const struct ramp r = ramp_to(l, c->end, v1);
+
+	for (int i = 0; i < INTERP_SCURVE_RAMP; i++)
+		add(c, r.j[i], r.dt[i]);
+	c->end.v_mm_s = v1;
+	c->end.a_mm_s2 = 0;
+}
+
+void interp_scurve_to_speed(struct interp_scurve *c,
+			    const struct interp_scurve_limits *l,
+			    double v_mm_s, double a_mm_s2, double to_mm_s)
+{
+	begin(c, v_mm_s, a_mm_s2);
+	add_ramp(c, l, to_mm_s);
+}
+
+struct interp_scurve_state interp_scurve_at(const struct interp_scurve *c,
+					    double t_s)
+{
+	int i = c->n - 1;
+
+	if (t_s >= c->end_s)
+		return go(c->end, 0, t_s - c->end_s);
+	while (i > 0 && t_s < c->t_s[i])
+		i--;
+	return go(c->from[i], c->j_mm_s3[i], t_s - c->t_s[i]);
+}
+
+/* -- To a place --------------------------------------------------------------- */
+
+struct leave {
+	const struct interp_scurve_limits *l;
+	struct interp_scurve_state from;
+	double j;			/* of the phase it is left in */
+	double way, toward;		/* the place; +1 or -1 */
+};
+
+/* Left at @t and stopped: how far beyond the place, in its direction. */
+static double beyond(const struct leave *k, double t)
+{
+	return k->toward * (place_at(k->l, go(k->from, k->j, t), 0) - k->way);
+}
+
+/*
+ * The root between two ends of different sign: regula falsi, where the end
+ * that is kept has its value halved, and every third try is in the middle.
+ */
+static double leave_at(const struct leave *k, double hi, double f_hi)
+{
+	double lo = 0, f_lo = beyond(k, 0);
+	const double enough = 1e-15 * (fabs(f_lo) + fabs(f_hi));
+
+	for (int i = 0; i < TRIES && f_lo < 0; i++) {
+		double t = lo + (hi - lo) * f_lo / (f_lo - f_hi), f;
+
+		if (i % 3 == 2 || !(t > lo && t < hi))
+			t = lo + (hi - lo) / 2;
+		if (!(t > lo && t < hi))
+			break;
+		f = beyond(k, t);
+		if (fabs(f) <= enough)
+			return t;
+		if (f < 0) {
+			lo = t;
+			f_lo = f;
+			f_hi /= 2;
+		} else {
+			hi = t;
+			f_hi = f;
+			f_lo /= 2;
+		}
+	}
+	return f_lo < 0 ? hi : lo;
+}
+
+/* The ramp, as far as it goes before it must stop. */
+static void go_toward(struct interp_scurve *c,
+		      const struct interp_scurve_limits *l, double way,
+		      double toward)
+{
+	const double full = toward * l->v_max_mm_s;
+	const struct ramp r = ramp_to(l, c->end, full);
+	struct leave k = { .l = l, .way = way, .toward = toward };
+	double left;
+
+	for (int i = 0; i < INTERP_SCURVE_RAMP; i++) {
+		double f;
+
+		k.from = c->end;
+		k.j = r.j[i];
+		f = beyond(&k, r.dt[i]);
+		if (f >= 0) {
+			add(c, r.j[i], leave_at(&k, r.dt[i], f));
+			return;
+		}
+		add(c, r.j[i], r.dt[i]);
+	}
+	c->end.v_mm_s = full;
+	c->end.a_mm_s2 = 0;
+	left = way - place_at(l, c->end, 0);
+	add(c, 0, left / full);
+}
+
+void interp_scurve_to_place(struct interp_scurve *c,
+			    const struct interp_scurve_limits *l,
+			    double v_mm_s, double a_mm_s2, double way_mm)
+{
+	const double at_once = interp_scurve_way_mm(l, v_mm_s, a_mm_s2, 0);
+
+	begin(c, v_mm_s, a_mm_s2);
+	if (way_mm != at_once)
+		go_toward(c, l, way_mm, way_mm > at_once ? 1 : -1);
+	add_ramp(c, l, 0);
+	c->end.x_mm = way_mm;
+}

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_travel.c - promises of positioning over segments of many speeds
+ *
+ * Random programs; the seed is printed.
+ */
+#include "cycle_help.h"
+
+#include <time.h>
+
+#define ROUNDS	150
+#define SEGS	40
+
+static uint64_t seed;
+
+static void random_line(struct interp_build *b, uint64_t *s)
+{
+	const struct interp_build_word w = {
+		.line = 1, .feed_mm_s = pow(10, uniform(s, -0.5, 1.8)),
+		.rapid = rnd(s) % 6 == 0,
+	};
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, interp_build_here(b), sizeof(end));
+	end[INTERP_X] += uniform(s, 0.001, 1) * (rnd(s) % 3 ? 0.1 : 3);
+	if (rnd(s) % 2)
+		end[INTERP_Y] += uniform(s, 0, 0.1);
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+}
+
+static void load_random(struct rig *r, uint64_t *s, bool stops)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct cycle_config k = usual_config();
+
+	k.dry_run = true;
+	k.travel_a_mm_s2 = pow(10, uniform(s, 2, 3.5));
+	k.travel_j_mm_s3 = k.travel_a_mm_s2 * pow(10, uniform(s, 0.5, 2.5));
+	for (int i = 0; i < SEGS; i++) {
+		random_line(b, s);
+		if (stops && rnd(s) % 5 == 0)
+			action(b, INTERP_DWELL, 3);
+	}
+	rig_load(r, b, &k);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
+/* One cycle; neither speed nor acceleration steps. */
+static void step_smoothly(struct rig *r)
+{
+	const struct cycle_config *k = &r->c.config;
+	const double v = r->c.mover.v_mm_s, a = r->c.mover.a_mm_s2;
+
+	step(r, OPEN_V);
+	assert_true(fabs(r->c.mover.v_mm_s - v) <=
+		    k->travel_a_mm_s2 * PERIOD_S * (1 + 1e-9));
+	/* A stop less than 1e-9 mm ahead is met: the last bit of time is cut. */
+	assert_true(fabs(r->c.mover.a_mm_s2 - a) <=
+		    k->travel_j_mm_s3 * PERIOD_S * (1 + 1e-9) +
+		    (r->c.mover.v_mm_s != 0 ? 0 :
+		     cbrt(6e-9 * k->travel_j_mm_s3 * k->travel_j_mm_s3)));
+	assert_true(r->c.mover.v_mm_s >= -1e-9);
+}
+
+static void it_keeps_to_each_segments_speed_without_a_step(void **st)
+{
+	uint64_t s = seed;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS; i++) {
+		struct rig r;
+
+		load_random(&r, &s, true);
+		for (int n = 0; n < 400000 && r.c.state == STATE_TRAVEL; n++) {
+			const struct interp_seg *g = &r.c.cursor.seg;
+
+			step_smoothly(&r);
+			if (g->kind < INTERP_BEGIN)
+				assert_true(r.c.mover.v_mm_s <=
+					    fmin(g->feed_mm_s,
+						 g->feed_max_mm_s) *
+					    (1 + 1e-9));
+		}
+		assert_int_equal(r.c.outcome, OUTCOME_DONE);
+		rig_free(&r);
+	}
+}
+
+static void a_hold_at_any_instant_stops_where_it_says(void **st)
+{
+	uint64_t s = seed + 1;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS; i++) {
+		double from, way;
+		struct rig r;
+
+		load_random(&r, &s, false);
+		for (uint64_t n = rnd(&s) % 400; n > 0; n--)
+			step_smoothly(&r);
+		while (r.c.state == STATE_TRAVEL) {
+			const struct interp_scurve_limits l = {
+				1, r.c.config.travel_a_mm_s2,
+				r.c.config.travel_a_mm_s2,
+				r.c.config.travel_j_mm_s3,
+			};
+
+			from = place(&r);
+			way = interp_scurve_way_mm(&l, r.c.mover.v_mm_s,
+						   r.c.mover.a_mm_s2, 0);
+			tell(&r, CYCLE_HOLD);
+			for (int n = 0; n < 5000 && (n == 0 ||
+			     r.c.mover.v_mm_s != 0); n++)
+				step_smoothly(&r);
+			assert_int_equal(r.c.state, STATE_HOLD);
+			assert_near(place(&r) - from, way, 1e-7);
+			tell(&r, CYCLE_RESUME);
+			for (uint64_t n = 1 + rnd(&s) % 300; n > 0 &&
+			     r.c.state == STATE_TRAVEL; n--)
+				step_smoothly(&r);
+		}
+		assert_int_equal(r.c.outcome, OUTCOME_DONE);
+		rig_free(&r);
+	}
+}
+
+/* A line in one piece, or in hundreds: the same time, a cycle or two. */
+static uint64_t cycles_of_pieces(int pieces)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct cycle_config k = usual_config();
+	struct rig r;
+	uint64_t n;
+
+	for (int i = 1; i <= pieces; i++)
+		rapid_to(b, -20.0 * i / pieces);
+	rig_load(&r, b, &k);
+	tell(&r, CYCLE_START);
+	until(&r, STATE_IDLE, OPEN_V, 100000);
+	n = r.c.totals.cycles;
+	rig_free(&r);
+	return n;
+}
+
+static void nodes_on_a_line_cost_no_time(void **st)
+{
+	const uint64_t one = cycles_of_pieces(1);
+
+	(void)st;
+	for (int n = 5; n <= 500; n *= 10)
+		assert_in_range(cycles_of_pieces(n), one - 2, one + 2);
+}
+
+int main(int argc, char **argv)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(it_keeps_to_each_segments_speed_without_a_step),
+		cmocka_unit_test(a_hold_at_any_instant_stops_where_it_says),
+		cmocka_unit_test(nodes_on_a_line_cost_no_time),
+	};
+
+	seed = argc > 1 ? strtoull(argv[1], NULL, 0) : (uint64_t)time(NULL);
+	print_message("seed %llu; test_travel SEED repeats it\n",
+		      (unsigned long long)seed);
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
