@@ -138,7 +138,7 @@ static const struct bad {
 	{ "robofil", "G17\nM02", 1, 1, "unknown word G17" },
 	{ "robofil", "G90 G54\nM02", 1, 5, "unknown word G54" },
 	{ "robofil", "G1 X1.0\nM30", 2, 1, "unknown word M30" },
-	{ "robofil", "G1 X1.0\n", 1, 0, "the end of the text without M02" },
+	{ "robofil", "G1 X1.0\n", 1, 1, "the end of the text without M02" },
 	{ "robofil", "G1 X10\nM02", 1, 4, "X10 without a decimal point" },
 	{ "robofil", "G41 D0\nM02", 1, 1,
 	  "an offset by register 0, which is not defined" },

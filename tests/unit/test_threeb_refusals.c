@@ -40,9 +40,9 @@ static const struct bad {
 	{ "BBB5GXL1 and BBB5GXL1", 1, 10, "and where a B should be" },
 	{ "+BBB5GXL1", 1, 1, "+BBB5GXL1 where a B should be" },
 	{ "BBB5GXL1\r\nBBB250000GXL1", 2, 1, "X 250.0050 is beyond" },
-	{ "", 0, 0, "empty program" },
-	{ "DD\n", 0, 0, "empty program" },
-	{ "; nothing\n", 0, 0, "empty program" },
+	{ "", 1, 1, "empty program" },
+	{ "DD\n", 1, 1, "empty program" },
+	{ "; nothing\n", 1, 1, "empty program" },
 };
 
 static const struct bad bads_4b[] = {
