@@ -34,9 +34,9 @@ def nest(depth):
 
 
 @pytest.mark.parametrize("text, where, found", [
-    ("", "0:0", "empty"),
-    ("%\n%\n", "0:0", "empty"),
-    ("(nothing here)\n", "0:0", "empty"),
+    ("", "1:1", "empty"),
+    ("%\n%\n", "1:1", "empty"),
+    ("(nothing here)\n", "1:1", "empty"),
     ("G21 F60\nG1 X1e999\n", "2:6", "an E right behind"),
     ("G21 F60\nG1 X--5\n", "2:4", "X--5"),
     ("G21 F60\nG1 Xnan\n", "2:4", "Xnan"),
