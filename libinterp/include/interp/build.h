@@ -63,7 +63,8 @@ int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      struct interp_diag *diag);
 
 /** interp_build_arc() - an arc to @end_mm, helical if other axes move.
- *  The radii at start and end may differ by 2 pulses or 0.1 %, no more. */
+ *  The radii at start and end may differ by 2 pulses, or 0.1 % but 5
+ *  pulses, no more. */
 int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_arc *arc,
 		     const struct interp_build_word *w,
