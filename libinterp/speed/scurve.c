@@ -20,7 +20,8 @@
  * which only grows with tau, because more acceleration at the same speed is
  * more way.  So one root of one equation is the plan, whatever it begins with;
  * beyond the ramp it is a cruise.  Braking, turning back and easing off a brake
- * are no cases of their own.
+ * are no cases of their own.  To pass a place at a speed is the same with that
+ * speed for a stand, if the place can still be met so.
  */
 #include "interp/scurve.h"
 
@@ -159,6 +160,37 @@ struct interp_scurve_state interp_scurve_at(const struct interp_scurve *c,
 	return go(c->from[i], c->j_mm_s3[i], t_s - c->t_s[i]);
 }
 
+/*
+ * From @s at constant jerk, the later time at which the speed is v1: what falls
+ * is past its peak, if it has one.
+ */
+static double falls_s(const struct interp_scurve_state *s, double j, double v1)
+{
+	const double a = s->a_mm_s2, dv = s->v_mm_s - v1;
+	const double root = sqrt(fmax(0, a * a - 2 * j * dv));
+
+	if (a > 0)
+		return (a + root) / -j;
+	return root > a ? 2 * dv / (root - a) : 0;
+}
+
+double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s)
+{
+	double after = c->end.v_mm_s;
+
+	for (int i = c->n - 1; i >= 0; i--) {
+		const struct interp_scurve_state *s = &c->from[i];
+		const double j = c->j_mm_s3[i], a = s->a_mm_s2;
+		const double top = a > 0 && j < 0 ? s->v_mm_s - a * a / (2 * j) :
+						    s->v_mm_s;
+
+		if (after <= v_mm_s && top >= v_mm_s)
+			return go(*s, j, falls_s(s, j, v_mm_s)).x_mm;
+		after = s->v_mm_s;
+	}
+	return 0;
+}
+
 /* -- To a place --------------------------------------------------------------- */
 
 struct leave {
@@ -166,12 +198,14 @@ struct leave {
 	struct interp_scurve_state from;
 	double j;			/* of the phase it is left in */
 	double way, toward;		/* the place; +1 or -1 */
+	double v1;			/* the speed there */
 };
 
-/* Left at @t and stopped: how far beyond the place, in its direction. */
+/* Left at @t and slowed: how far beyond the place, in its direction. */
 static double beyond(const struct leave *k, double t)
 {
-	return k->toward * (place_at(k->l, go(k->from, k->j, t), 0) - k->way);
+	return k->toward * (place_at(k->l, go(k->from, k->j, t), k->v1) -
+			    k->way);
 }
 
 /*
@@ -206,43 +240,52 @@ static double leave_at(const struct leave *k, double hi, double f_hi)
 	return f_lo < 0 ? hi : lo;
 }
 
-/* The ramp, as far as it goes before it must stop. */
+/* The ramp, as far as it goes before it must slow down. */
 static void go_toward(struct interp_scurve *c,
-		      const struct interp_scurve_limits *l, double way,
-		      double toward)
+		      const struct interp_scurve_limits *l, struct leave *k)
 {
-	const double full = toward * l->v_max_mm_s;
+	const double full = k->toward * l->v_max_mm_s;
 	const struct ramp r = ramp_to(l, c->end, full);
-	struct leave k = { .l = l, .way = way, .toward = toward };
-	double left;
 
 	for (int i = 0; i < INTERP_SCURVE_RAMP; i++) {
 		double f;
 
-		k.from = c->end;
-		k.j = r.j[i];
-		f = beyond(&k, r.dt[i]);
+		k->from = c->end;
+		k->j = r.j[i];
+		f = beyond(k, r.dt[i]);
 		if (f >= 0) {
-			add(c, r.j[i], leave_at(&k, r.dt[i], f));
+			add(c, r.j[i], leave_at(k, r.dt[i], f));
 			return;
 		}
 		add(c, r.j[i], r.dt[i]);
 	}
 	c->end.v_mm_s = full;
 	c->end.a_mm_s2 = 0;
-	left = way - place_at(l, c->end, 0);
-	add(c, 0, left / full);
+	add(c, 0, (k->way - place_at(l, c->end, k->v1)) / full);
+}
+
+void interp_scurve_to_pass(struct interp_scurve *c,
+			   const struct interp_scurve_limits *l,
+			   const struct interp_scurve_state *from,
+			   double way_mm, double pass_mm_s)
+{
+	const double at_once = interp_scurve_way_mm(l, from->v_mm_s,
+						    from->a_mm_s2, pass_mm_s);
+	struct leave k = { .l = l, .way = way_mm, .v1 = pass_mm_s,
+			   .toward = way_mm > at_once ? 1 : -1 };
+
+	begin(c, from->v_mm_s, from->a_mm_s2);
+	if (way_mm != at_once)
+		go_toward(c, l, &k);
+	add_ramp(c, l, pass_mm_s);
+	c->end.x_mm = way_mm;
 }
 
 void interp_scurve_to_place(struct interp_scurve *c,
 			    const struct interp_scurve_limits *l,
 			    double v_mm_s, double a_mm_s2, double way_mm)
 {
-	const double at_once = interp_scurve_way_mm(l, v_mm_s, a_mm_s2, 0);
+	const struct interp_scurve_state from = { 0, v_mm_s, a_mm_s2 };
 
-	begin(c, v_mm_s, a_mm_s2);
-	if (way_mm != at_once)
-		go_toward(c, l, way_mm, way_mm > at_once ? 1 : -1);
-	add_ramp(c, l, 0);
-	c->end.x_mm = way_mm;
+	interp_scurve_to_pass(c, l, &from, way_mm, 0);
 }
