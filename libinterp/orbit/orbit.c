@@ -1,0 +1,453 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * orbit.c - planetary cycles of a sinker, as a path
+ *
+ * A round shape is a profile: radius and depth over the way u along it.  A
+ * turn goes once round while u goes on by a step.
+ */
+#include "interp/orbit.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TURN		(2 * 3.14159265358979323846)
+#define CHORD_PULSES	0.4		/* a polyline's distance from its curve */
+#define NEAR_MM		1e-9
+
+struct walk {
+	const struct interp_orbit *o;
+	const struct interp_machine *m;
+	const struct interp_orbit_to *to;
+	double depth_mm, side;		/* 0 and more; + 1: sinks toward + */
+	double length_mm;		/* of the profile */
+	double step_mm;			/* of it, each turn */
+	uint32_t steps;
+	double r_mm, h_mm;		/* where it has come to */
+};
+
+/* -- The profile -------------------------------------------------------------- */
+
+static double height_of(const struct interp_orbit *o)
+{
+	return fabs(o->end_mm - o->start_mm[o->sink]);
+}
+
+static double cone_radius(const struct interp_orbit *o, double h_mm)
+{
+	const double depth = height_of(o);
+	const double r = o->angle_given ?
+			 o->radius_mm + h_mm * tan(o->angle_deg * TURN / 360) :
+			 o->radius_mm * (depth - h_mm) / depth;
+
+	return r >= 0 ? r : NAN;
+}
+
+double interp_orbit_radius_mm(const struct interp_orbit *o, double h_mm)
+{
+	const double b = o->bottom_mm;
+
+	if (o->shape == INTERP_ORBIT_CONE)
+		return cone_radius(o, h_mm);
+	if (o->shape == INTERP_ORBIT_SPHERE && h_mm < b)
+		return o->radius_mm - b + sqrt(h_mm * (2 * b - h_mm));
+	return o->radius_mm;
+}
+
+/* The way down a sphere's wall, then along its quarter. */
+static double sphere_length(const struct walk *w)
+{
+	const double b = w->o->bottom_mm, h = w->depth_mm;
+
+	return h > b ? h - b + b * TURN / 4 : b * acos(1 - h / b);
+}
+
+static void sphere_at(struct walk *w, double u_mm)
+{
+	const double b = w->o->bottom_mm, left = w->length_mm - u_mm;
+
+	w->h_mm = left > b * TURN / 4 ? left - b * TURN / 4 + b :
+		  b * (1 - cos(left / b));
+	w->r_mm = left > b * TURN / 4 ? w->o->radius_mm :
+		  w->o->radius_mm - b + b * sin(left / b);
+}
+
+static void profile_at(struct walk *w, double u_mm)
+{
+	const bool end = u_mm >= w->length_mm - NEAR_MM;
+
+	switch (w->o->shape) {
+	case INTERP_ORBIT_EXPAND:
+		w->h_mm = 0;
+		w->r_mm = end ? w->o->radius_mm : u_mm;
+		break;
+	case INTERP_ORBIT_SPHERE:
+		sphere_at(w, end ? w->length_mm : u_mm);
+		break;
+	default:
+		w->h_mm = end ? 0 : w->depth_mm - u_mm;
+		w->r_mm = interp_orbit_radius_mm(w->o, w->h_mm);
+	}
+}
+
+static void plan_steps(struct walk *w)
+{
+	const struct interp_orbit *o = w->o;
+
+	w->length_mm = o->shape == INTERP_ORBIT_EXPAND ? o->radius_mm :
+		       o->shape == INTERP_ORBIT_SPHERE ? sphere_length(w) :
+		       w->depth_mm;
+	w->steps = 0;
+	if (!(o->step_mm > 0) || w->length_mm < NEAR_MM)
+		return;
+	w->steps = (uint32_t)ceil(w->length_mm / o->step_mm - 1e-6);
+	w->step_mm = w->length_mm / w->steps;
+}
+
+/* -- Places --------------------------------------------------------------------- */
+
+/* @x and @y from the centre, at height w->h_mm. */
+static void place(const struct walk *w, double x_mm, double y_mm,
+		  double ret_mm[INTERP_NAXES])
+{
+	const struct interp_orbit *o = w->o;
+	const double c_deg = o->start_mm[INTERP_C];
+
+	memcpy(ret_mm, o->start_mm, sizeof(o->start_mm));
+	ret_mm[o->a] += x_mm;
+	ret_mm[o->b] += y_mm;
+	if (w->h_mm == w->depth_mm)
+		return;
+	ret_mm[o->sink] = o->end_mm - w->side * w->h_mm;
+	ret_mm[INTERP_C] = w->h_mm == 0 ? o->c_end_deg :
+			   c_deg + (o->c_end_deg - c_deg) *
+			   (1 - w->h_mm / w->depth_mm);
+}
+
+static int line_to(const struct walk *w, double x_mm, double y_mm, bool rapid)
+{
+	double end_mm[INTERP_NAXES];
+
+	place(w, x_mm, y_mm, end_mm);
+	return w->to->line(w->to->arg, end_mm, rapid);
+}
+
+static double pulse_mm(const struct walk *w)
+{
+	return fmin(w->m->axis[w->o->a].pulse_mm, w->m->axis[w->o->b].pulse_mm);
+}
+
+/* -- Ways out --------------------------------------------------------------------- */
+
+/* C turns back as it rises. */
+static void lead_out(const struct walk *w, struct interp_escape *e)
+{
+	const struct interp_orbit *o = w->o;
+	const double by_deg = fabs(o->c_end_deg - o->start_mm[INTERP_C]);
+
+	e->out = 1u << o->sink;
+	e->out_mm[o->sink] = o->top_mm;
+	if (by_deg == 0)
+		return;
+	e->out |= 1u << INTERP_C;
+	e->out_mm[INTERP_C] = o->start_mm[INTERP_C];
+	e->out_mm[o->sink] = o->start_mm[o->sink];
+	e->v_max_mm_s = w->m->axis[INTERP_C].v_max_mm_s * w->depth_mm / by_deg;
+}
+
+static int no_escape(const struct walk *w)
+{
+	return w->to->escape(w->to->arg, NULL);
+}
+
+/* In the centre: straight up, by the way it came. */
+static int escape_up(const struct walk *w)
+{
+	struct interp_escape e = { .out = 0 };
+
+	if (w->o->escape == INTERP_ESCAPE_PATH)
+		return 0;
+	lead_out(w, &e);
+	return w->to->escape(w->to->arg, &e);
+}
+
+/* Up by @rise_mm, the axes @home to the centre, out. */
+static int escape_home(const struct walk *w, uint32_t home, double rise_mm)
+{
+	const struct interp_orbit *o = w->o;
+	struct interp_escape e = { .home = home, .rise_mm = rise_mm };
+
+	if (o->escape != INTERP_ESCAPE_CENTRE &&
+	    o->escape != INTERP_ESCAPE_NORMAL)
+		return no_escape(w);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		e.home_mm[i] = home & 1u << i ? o->start_mm[i] : 0;
+	lead_out(w, &e);
+	return w->to->escape(w->to->arg, &e);
+}
+
+static uint32_t both(const struct walk *w)
+{
+	return 1u << w->o->a | 1u << w->o->b;
+}
+
+/* Does the electrode meet too much in the gate of a turn @by_mm smaller? */
+static bool gate_ok(const struct walk *w, double by_mm)
+{
+	return by_mm * by_mm / (8 * w->o->radius_mm) <= pulse_mm(w);
+}
+
+struct round {
+	double from_mm, to_mm;		/* of the profile */
+	uint32_t home;			/* axes of its way out; 0: none */
+	double rise_mm;
+	bool level;			/* of one radius */
+};
+
+/*
+ * Is the turn before round this one, at its depth or a step above it?  A
+ * cone that grows with depth has smaller ones above it.
+ */
+static void way_out(const struct walk *w, uint32_t nth, double r0, double r1,
+		    struct round *q)
+{
+	const bool expand = w->o->shape == INTERP_ORBIT_EXPAND;
+	const bool smaller = r1 > r0 + NEAR_MM;
+
+	q->level = r0 == r1;
+	q->home = 0;
+	if (nth == 0 || (smaller && !expand) ||
+	    !gate_ok(w, fmax(fabs(r1 - r0), expand ? w->step_mm : 0)))
+		return;
+	q->home = both(w);
+	q->rise_mm = expand ? 0 : w->step_mm;
+}
+
+/* -- Once round --------------------------------------------------------------------- */
+
+static int turn_arc(struct walk *w, const struct round *q)
+{
+	const struct interp_build_arc arc = {
+		.axis_a = w->o->a, .axis_b = w->o->b,
+		.centre_a_mm = w->o->start_mm[w->o->a],
+		.centre_b_mm = w->o->start_mm[w->o->b],
+	};
+	double end_mm[INTERP_NAXES];
+
+	profile_at(w, q->to_mm);
+	place(w, w->r_mm, 0, end_mm);
+	return w->to->arc(w->to->arg, end_mm, &arc);
+}
+
+/* Lines enough to keep within CHORD_PULSES: sagitta r dt^2 / 8. */
+static uint32_t chords(struct walk *w, const struct round *q)
+{
+	const double e = CHORD_PULSES * pulse_mm(w);
+	double r0, r1, r, n;
+
+	profile_at(w, q->from_mm);
+	r0 = w->r_mm;
+	profile_at(w, q->to_mm);
+	r1 = w->r_mm;
+	/* A spiral is more curved than a circle, most of all inside. */
+	r = fmax(r0, r1) + 2 * fabs(r1 - r0) / TURN;
+	n = ceil(TURN / sqrt(8 * e / r));
+	return n > 8 ? (uint32_t)n : 8;
+}
+
+static int turn_polyline(struct walk *w, const struct round *q)
+{
+	const uint32_t n = chords(w, q);
+	int rc = 0;
+
+	for (uint32_t j = 1; j <= n && !rc; j++) {
+		const double t = (double)j / n;
+		const double angle = j == n ? 0 : TURN * t;
+
+		profile_at(w, q->from_mm + t * (q->to_mm - q->from_mm));
+		rc = line_to(w, w->r_mm * cos(angle), w->r_mm * sin(angle),
+			     false);
+	}
+	return rc;
+}
+
+/* From the middle of a side; square to it is one axis alone. */
+static int turn_square(struct walk *w, const struct round *q)
+{
+	static const struct { double t; int x, y, along_b; } corner[] = {
+		{ 0.125, 1, 1, 1 }, { 0.375, -1, 1, 0 }, { 0.625, -1, -1, 1 },
+		{ 0.875, 1, -1, 0 }, { 1, 1, 0, 1 },
+	};
+	const bool normal = w->o->escape == INTERP_ESCAPE_NORMAL;
+	int rc = 0;
+
+	for (int j = 0; j < 5 && !rc; j++) {
+		if (q->home && normal)
+			rc = escape_home(w, 1u << (corner[j].along_b ?
+						   w->o->a : w->o->b),
+					 q->rise_mm);
+		profile_at(w, q->from_mm + corner[j].t *
+				       (q->to_mm - q->from_mm));
+		if (!rc)
+			rc = line_to(w, corner[j].x * w->r_mm,
+				     corner[j].y * w->r_mm, false);
+	}
+	return rc;
+}
+
+static int turn(struct walk *w, const struct round *q)
+{
+	const struct interp_orbit *o = w->o;
+	int rc = q->home ? escape_home(w, q->home, q->rise_mm) : no_escape(w);
+
+	if (rc)
+		return rc;
+	if (o->shape == INTERP_ORBIT_SQUARE)
+		return turn_square(w, q);
+	return q->level ? turn_arc(w, q) : turn_polyline(w, q);
+}
+
+/* -- The stages --------------------------------------------------------------------- */
+
+static int go_round(struct walk *w)
+{
+	int rc = 0;
+
+	for (uint32_t k = 0; k < w->steps && !rc; k++) {
+		struct round q = {
+			.from_mm = k * w->step_mm,
+			.to_mm = k + 1 == w->steps ? w->length_mm :
+						     (k + 1) * w->step_mm,
+		};
+		double r0;
+
+		profile_at(w, q.from_mm);
+		r0 = w->r_mm;
+		profile_at(w, q.to_mm);
+		way_out(w, k, r0, w->r_mm, &q);
+		rc = turn(w, &q);
+	}
+	return rc;
+}
+
+/* The first after a helix has its last turn a step above it. */
+static int finish(struct walk *w)
+{
+	double r0;
+	int rc = 0;
+
+	profile_at(w, fmax(0, w->length_mm - w->step_mm));
+	r0 = w->r_mm;
+	profile_at(w, w->length_mm);
+	if (w->r_mm < pulse_mm(w))
+		return 0;
+	for (uint32_t k = 0; k < w->o->turns && !rc; k++) {
+		struct round q = {
+			.from_mm = w->length_mm, .to_mm = w->length_mm,
+		};
+
+		way_out(w, w->steps, r0, w->r_mm, &q);
+		if (k > 0)
+			q = (struct round) { w->length_mm, w->length_mm,
+					     both(w), 0, true };
+		q.level = true;
+		rc = turn(w, &q);
+	}
+	return rc;
+}
+
+/* Straight down in the centre to @h_mm over the bottom. */
+static int sink(struct walk *w, double h_mm)
+{
+	int rc = escape_up(w);
+
+	w->h_mm = h_mm;
+	return rc ? rc : line_to(w, 0, 0, false);
+}
+
+static int step_aside(struct walk *w)
+{
+	const int rc = escape_home(w, both(w), 0);
+
+	return rc ? rc : line_to(w, w->r_mm, 0, false);
+}
+
+static int vectors(struct walk *w)
+{
+	const struct interp_orbit *o = w->o;
+	int rc = escape_home(w, both(w), 0);
+
+	for (uint32_t i = 0; i < o->directions && !rc; i++) {
+		const double angle = (o->angle_deg + 360.0 * i / o->directions) *
+				     TURN / 360;
+
+		rc = line_to(w, o->radius_mm * cos(angle),
+			     o->radius_mm * sin(angle), false);
+		if (!rc)
+			rc = line_to(w, 0, 0, true);
+	}
+	return rc;
+}
+
+static int walk_vectors(struct walk *w)
+{
+	const uint32_t levels = w->steps > 0 ? w->steps : 1;
+	int rc = 0;
+
+	for (uint32_t k = 1; k <= levels && !rc; k++) {
+		rc = sink(w, k == levels ? 0 : w->depth_mm - k * w->step_mm);
+		for (uint32_t n = k == levels ? w->o->turns : 1; n > 0 && !rc;
+		     n--)
+			rc = vectors(w);
+	}
+	return rc;
+}
+
+static int walk_round(struct walk *w)
+{
+	const bool first = w->o->shape == INTERP_ORBIT_EXPAND || !w->steps;
+	int rc = 0;
+
+	if (first)
+		rc = sink(w, 0);
+	if (w->o->shape != INTERP_ORBIT_EXPAND && !rc) {
+		profile_at(w, first ? w->length_mm : 0);
+		rc = step_aside(w);
+	}
+	if (!rc)
+		rc = go_round(w);
+	return rc ? rc : finish(w);
+}
+
+/*
+ * To the centre over a floor that is flat, else cutting; then out by the way
+ * that is free.
+ */
+static int go_home(struct walk *w)
+{
+	const bool cut = w->o->turns == 0 && w->o->shape != INTERP_ORBIT_VECTOR;
+	int rc = no_escape(w);
+
+	w->h_mm = 0;
+	if (!rc)
+		rc = line_to(w, 0, 0, !cut);
+	w->h_mm = w->depth_mm;
+	return rc ? rc : line_to(w, 0, 0, true);
+}
+
+int interp_orbit_walk(const struct interp_orbit *o,
+		      const struct interp_machine *m,
+		      const struct interp_orbit_to *to)
+{
+	struct walk w = { .o = o, .m = m, .to = to };
+	int rc;
+
+	w.depth_mm = height_of(o);
+	w.side = o->end_mm < o->start_mm[o->sink] ? -1 : 1;
+	w.h_mm = w.depth_mm;
+	plan_steps(&w);
+	rc = o->shape == INTERP_ORBIT_VECTOR ? walk_vectors(&w) :
+					       walk_round(&w);
+	if (!rc)
+		rc = go_home(&w);
+	return rc ? rc : no_escape(&w);
+}
