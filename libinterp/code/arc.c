@@ -10,19 +10,16 @@
 /* Shorter than this is no radius and no chord. */
 #define NOTHING_MM	1e-6
 
-/* a toward b is counter-clockwise; ca, cb are the centre words, other takes
- * no part. */
-static const struct plane {
-	enum interp_axis a, b;
-	enum nc_slot ca, cb, other;
-	const char *name, *centre;
-} planes[] = {
-	{ INTERP_X, INTERP_Y, NC_I, NC_J, NC_K, "G17 (XY)", "I and J, or R" },
-	{ INTERP_Z, INTERP_X, NC_K, NC_I, NC_J, "G18 (ZX)", "I and K, or R" },
-	{ INTERP_Y, INTERP_Z, NC_J, NC_K, NC_I, "G19 (YZ)", "J and K, or R" },
+const struct nc_plane nc_planes[3] = {
+	{ INTERP_X, INTERP_Y, INTERP_Z, NC_I, NC_J, NC_K,
+	  "G17 (XY)", "I and J, or R" },
+	{ INTERP_Z, INTERP_X, INTERP_Y, NC_K, NC_I, NC_J,
+	  "G18 (ZX)", "I and K, or R" },
+	{ INTERP_Y, INTERP_Z, INTERP_X, NC_J, NC_K, NC_I,
+	  "G19 (YZ)", "J and K, or R" },
 };
 
-static int by_centre(struct nc_reader *r, const struct plane *p,
+static int by_centre(struct nc_reader *r, const struct nc_plane *p,
 		     struct interp_build_arc *arc)
 {
 	const struct nc_block *b = &r->block;
@@ -70,7 +67,7 @@ static int refuse_radius(struct nc_reader *r, double radius, double half)
  * counter-clockwise arc of less than half a turn.  Each of clockwise and
  * longer than half a turn swaps the side.
  */
-static int by_radius(struct nc_reader *r, const struct plane *p,
+static int by_radius(struct nc_reader *r, const struct nc_plane *p,
 		     const double end_mm[INTERP_NAXES],
 		     struct interp_build_arc *arc)
 {
@@ -102,7 +99,7 @@ static int by_radius(struct nc_reader *r, const struct plane *p,
 	return 0;
 }
 
-static int centre(struct nc_reader *r, const struct plane *p,
+static int centre(struct nc_reader *r, const struct nc_plane *p,
 		  const double end_mm[INTERP_NAXES],
 		  struct interp_build_arc *arc)
 {
@@ -189,7 +186,7 @@ int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 
 int nc_arc(struct nc_reader *r, bool clockwise)
 {
-	const struct plane *p = &planes[r->plane];
+	const struct nc_plane *p = &nc_planes[r->plane];
 	struct interp_build_arc arc = {
 		.axis_a = p->a, .axis_b = p->b, .clockwise = clockwise,
 	};

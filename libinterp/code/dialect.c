@@ -94,10 +94,11 @@ int interp_compile(const struct interp_text *text,
 		   struct interp_diag *diag)
 {
 	const bool records = text->dialect && !text->dialect->nc;
-	const int rc = records ?
-		       compile_records(text, o, b, ret_lines, diag) :
-		       compile_nc(text, &o->nc, b, ret_lines, diag);
+	int rc = records ? compile_records(text, o, b, ret_lines, diag) :
+			   compile_nc(text, &o->nc, b, ret_lines, diag);
 
+	if (rc == 0)
+		rc = interp_build_flush(b, diag);
 	/* The whole line is at its first column, the whole input at 1:1. */
 	if (rc == -EINVAL && diag->line == 0)
 		diag->line = 1;

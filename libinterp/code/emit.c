@@ -66,11 +66,15 @@ const char *emit_kind_name(uint8_t kind)
 		[INTERP_LINE]		= "a line",
 		[INTERP_ARC]		= "an arc",
 		[INTERP_PAIR]		= "two contours at once",
+		[INTERP_CURVE]		= "a curve",
 		[INTERP_BEGIN]		= "the beginning",
 		[INTERP_DWELL]		= "a dwell",
 		[INTERP_STOP]		= "a stop",
 		[INTERP_OPTIONAL_STOP]	= "an optional stop",
 		[INTERP_AUX]		= "a switched output",
+		[INTERP_MCODE]		= "an M code for the PLC",
+		[INTERP_TIMED]		= "a cycle with a time (S)",
+		[INTERP_TIMED_END]	= "the end of a cycle with a time",
 		[INTERP_END]		= "the end",
 	};
 

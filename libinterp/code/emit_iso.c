@@ -177,6 +177,9 @@ static int words_of(struct iso_writer *o, struct words *w, uint32_t i)
 		return 0;
 	case INTERP_AUX:
 		return aux(o, w, seg);
+	case INTERP_MCODE:
+		word(w, "M%u", interp_mcode_number(seg->arg));
+		return 0;
 	case INTERP_END:
 		word(w, "M2");
 		return 0;

@@ -188,7 +188,7 @@ static int call(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
 	const double p = nc_has(r, NC_P) ? b->value[NC_P] : 0;
-	uint32_t number = (uint32_t)p, repeats = 1;
+	uint32_t number = p > 0 ? (uint32_t)p : 0, repeats = 1;
 
 	if (!nc_has(r, NC_P))
 		return nc_refuse(r, b->code_at[NC_STOP], A_CALL,
@@ -274,6 +274,12 @@ int nc_end_of_text(struct nc_reader *r)
 	if (r->d->m2_ends && r->over != NC_FINISHED)
 		return nc_refuse_at(r, r->line, "M02 at the end",
 				    "the end of the text without M02");
+	if (r->curve.open && r->over != NC_FINISHED)
+		return nc_refuse_at(r, r->curve.line,
+				    r->curve.open == NC_NURBS ?
+				    "all its knots, in blocks of their own" :
+				    "G5.3 behind its last control point",
+				    "a curve that does not end");
 	if (r->segs == 0)
 		return nc_refuse_at(r, 0, "at least one motion or action",
 				    "empty program");

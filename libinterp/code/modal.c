@@ -46,6 +46,7 @@ static int run_units(struct nc_reader *r)
 static int run_plane(struct nc_reader *r)
 {
 	r->plane = r->block.code[NC_PLANE]->value;
+	nc_set_lift(r);
 	return 0;
 }
 
@@ -77,9 +78,9 @@ static int run_feed(struct nc_reader *r)
 
 static int run_condition(struct nc_reader *r)
 {
-	r->word.cond_letter = r->block.cond_letter;
-	r->word.cond_number = r->block.cond_number;
-	return 0;
+	return nc_call_condition(r, r->block.cond_letter,
+				 r->block.cond_number,
+				 r->block.code_at[NC_CONDITION]);
 }
 
 /* Feed per minute is the only mode there is; corners and transitions belong to
@@ -88,6 +89,16 @@ static int run_nothing(struct nc_reader *r)
 {
 	(void)r;
 	return 0;
+}
+
+static int run_mcode(struct nc_reader *r)
+{
+	return nc_run_mcode(r, NC_MCODE);
+}
+
+static int run_mcode_after(struct nc_reader *r)
+{
+	return nc_run_mcode(r, NC_MCODE_AFTER);
 }
 
 static int run_power(struct nc_reader *r)
@@ -108,6 +119,9 @@ static int run_machine(struct nc_reader *r)
 	const struct nc_code *motion = nc_has_group(r, NC_MOTION) ?
 				       r->block.code[NC_MOTION] : NULL;
 
+	if (r->tool.on)
+		return nc_refuse(r, r->block.code_at[NC_MACHINE],
+				 "G49 before it", "G53 under G43.4");
 	if (motion && motion->value <= 1 && (r->block.words & NC_AXES))
 		return 0;
 	return nc_refuse(r, r->block.code_at[NC_MACHINE],
@@ -133,11 +147,17 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_CORNER]		= run_nothing,
 	[NC_TRANSITION]		= run_nothing,
 	[NC_SUPPLY]		= run_nothing,
+	[NC_MCODE]		= run_mcode,
 	[NC_POWER]		= run_power,
 	[NC_PUMP]		= run_pump,
+	[NC_ESCAPE]		= nc_run_escape,
+	[NC_TOOL_POINT]		= nc_run_tool_point,
 	[NC_MACHINE]		= run_machine,
+	[NC_CYCLE]		= nc_run_cycle,
+	[NC_TOUCH]		= nc_run_touch,
 	[NC_ONE_SHOT]		= nc_run_one_shot,
 	[NC_MOTION]		= nc_run_motion,
+	[NC_MCODE_AFTER]	= run_mcode_after,
 	[NC_STOP]		= nc_run_stop,
 };
 
@@ -197,15 +217,34 @@ static int add_motion(struct nc_reader *r)
 	return 0;
 }
 
+/* Cycles and touches. */
+static int check_alone(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+	const uint32_t mine = NC_BIT(NC_CYCLE) | NC_BIT(NC_TOUCH);
+	const uint32_t others = NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE) |
+				NC_BIT(NC_ONE_SHOT);
+	const uint8_t *at = b->code_at[nc_has_group(r, NC_CYCLE) ? NC_CYCLE :
+								   NC_TOUCH];
+
+	if (!(b->groups & others) && (b->groups & mine) != mine)
+		return 0;
+	return nc_refuse(r, at, "a cycle on a line of its own",
+			 "%s on a line with another G word",
+			 nc_quote_word(r, at).s);
+}
+
 static int complete(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
 
+	if (nc_has_group(r, NC_CYCLE) || nc_has_group(r, NC_TOUCH))
+		return check_alone(r);
 	if (nc_has_group(r, NC_ONE_SHOT)) {
 		if (b->groups & (NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE)))
 			return nc_refuse(r, b->code_at[NC_ONE_SHOT],
-					 "G4 G28 G92 and G92.1 on lines of "
-					 "their own, without G0 G1 G2 G3 G53",
+					 "G4 G28 G92 G92.1 and G120 on lines "
+					 "of their own, without G0 G1 G2 G3 G53",
 					 "%s on a line with a motion word",
 					 nc_quote_word(r,
 					 b->code_at[NC_ONE_SHOT]).s);
@@ -222,14 +261,25 @@ int nc_run_line(struct nc_reader *r)
 	struct nc_block *b = &r->block;
 	int rc = nc_take_angle(r);
 
+	nc_take_cycle(r);
 	if (!rc)
 		rc = complete(r);
 	if (rc)
 		return rc;
+	if (r->curve.open && (b->words | b->groups)) {
+		rc = nc_curve_goes_on(r);
+		if (rc)
+			return rc;
+	}
 	if (b->words & ~b->takes)
 		return refuse_leftover(r, b->words & ~b->takes);
 	if (b->words & r->absent)
 		return refuse_absent(r, b->words & r->absent);
+	if (b->toward | r->loose) {
+		rc = nc_check_touched(r);
+		if (rc)
+			return rc;
+	}
 
 	if (b->groups & first) {
 		rc = run_groups(r, b->groups & first);

@@ -71,7 +71,12 @@ int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid)
 	r->word.feed_mm_s = feed_for(r, end_mm);
 	if (r->word.feed_mm_s > 0)
 		return 0;
-	return nc_refuse(r, r->block.code_at[NC_MOTION],
+	return nc_refuse(r, r->block.code_at[nc_has_group(r, NC_CYCLE) ?
+					     NC_CYCLE :
+					     nc_has_group(r, NC_TOUCH) ?
+					     NC_TOUCH :
+					     nc_has_group(r, NC_ONE_SHOT) ?
+					     NC_ONE_SHOT : NC_MOTION],
 			 "an F word, such as F5, in this line or before it",
 			 "a motion at a feed, and no feed given yet");
 }
@@ -108,7 +113,8 @@ static const uint8_t *blame(const struct nc_reader *r,
 	}
 	if (at)
 		return at;
-	return b->code_at[nc_has_group(r, NC_ONE_SHOT) ? NC_ONE_SHOT :
+	return b->code_at[nc_has_group(r, NC_TOUCH) ? NC_TOUCH :
+			  nc_has_group(r, NC_ONE_SHOT) ? NC_ONE_SHOT :
 							 NC_MOTION];
 }
 
@@ -136,15 +142,18 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 	return rc;
 }
 
-static int line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
-		   bool rapid)
+int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+	       bool rapid)
 {
 	int rc = nc_word(r, end_mm, rapid);
 
+	r->curve.smooth = false;
 	if (!rc)
 		rc = nc_room(r);
 	if (rc)
 		return rc;
+	if (r->tool.on)
+		return nc_tip_line(r, end_mm, rapid);
 	rc = contour_line(&r->contour, end_mm, &r->word, r->diag);
 	return nc_placed(r, rc, end_mm);
 }
@@ -155,14 +164,21 @@ int nc_run_motion(struct nc_reader *r)
 	double end_mm[INTERP_NAXES];
 
 	r->motion = motion;
+	if (motion->value >= NC_SPLINE)
+		return nc_curve(r);
+	r->curve.smooth = false;
 	if (!(r->block.words & NC_MOVES))
 		return 0;
+	if (motion->value >= 2 && r->tool.on)
+		return nc_refuse(r, r->block.code_at[NC_MOTION],
+				 "G0 or G1, or G49 before it",
+				 "an arc under G43.4");
 	if (motion->value >= 2)
 		return nc_arc(r, motion->value == 2);
 	nc_target(r, end_mm);
 	if (r->block.colon)
 		return nc_line_two(r, end_mm);
-	return line_to(r, end_mm, motion->value == 0);
+	return nc_line_to(r, end_mm, motion->value == 0);
 }
 
 static int dwell(struct nc_reader *r)
@@ -191,9 +207,12 @@ static int home(struct nc_reader *r)
 	double end_mm[INTERP_NAXES];
 	int rc;
 
+	if (r->tool.on)
+		return nc_refuse(r, r->block.code_at[NC_ONE_SHOT],
+				 "G49 before it", "G28 under G43.4");
 	nc_target(r, end_mm);
 	if (axes) {
-		rc = line_to(r, end_mm, true);
+		rc = nc_line_to(r, end_mm, true);
 		if (rc)
 			return rc;
 	} else {
@@ -207,7 +226,7 @@ static int home(struct nc_reader *r)
 	for EACH_AXIS(axes, i)
 		end_mm[i] = 0;
 	follow(r, axes, end_mm);
-	return line_to(r, end_mm, true);
+	return nc_line_to(r, end_mm, true);
 }
 
 static int set_here(struct nc_reader *r)
@@ -215,6 +234,9 @@ static int set_here(struct nc_reader *r)
 	const struct nc_block *b = &r->block;
 	const double *here = nc_here(r);
 
+	if (r->tool.on)
+		return nc_refuse(r, b->code_at[NC_ONE_SHOT], "G49 before it",
+				 "G92 under G43.4");
 	if (!(b->words & NC_AXES))
 		return nc_refuse(r, b->code_at[NC_ONE_SHOT],
 				 "the place to call this one, as in G92 X0 Y0; "
@@ -226,12 +248,14 @@ static int set_here(struct nc_reader *r)
 		r->shift_mm[i] = here[i] - b->value[i] * r->scale[i] -
 				 r->o->work_offset_mm[r->work][i];
 	nc_set_offset(r);
+	r->unnamed &= ~b->words;
 	return 0;
 }
 
 static int set_cancel(struct nc_reader *r)
 {
 	memset(r->shift_mm, 0, sizeof(r->shift_mm));
+	r->unnamed |= r->loose;
 	nc_set_offset(r);
 	return 0;
 }
@@ -243,6 +267,7 @@ int nc_run_one_shot(struct nc_reader *r)
 		[NC_HOME]	= home,
 		[NC_SET]	= set_here,
 		[NC_SET_CANCEL]	= set_cancel,
+		[NC_SINK]	= nc_sink,
 	};
 
 	return shots[r->block.code[NC_ONE_SHOT]->value](r);

@@ -47,6 +47,8 @@ static void reset_modes(struct nc_reader *r)
 	r->segs_max = o->segs_max ? o->segs_max : INTERP_NC_SEGS_MAX;
 	r->executed_max = o->executed_max ? o->executed_max :
 					    INTERP_NC_EXECUTED_MAX;
+	r->escape = o->escape;
+	nc_set_lift(r);
 	nc_set_units(r, false);
 	nc_set_offset(r);
 }
@@ -110,5 +112,7 @@ int interp_nc_compile(const char *text, size_t bytes,
 		ret->executed = r.executed;
 	}
 	free(r.labels);
+	nc_curve_free(&r.curve);
+	nc_forget_conditions(&r);
 	return rc;
 }

@@ -60,14 +60,24 @@ static int side_of(const struct nc_code *code)
 	return code->value == 0 ? 0 : code->value == 1 ? 1 : -1;
 }
 
+static int refuse_tip(struct nc_reader *r, enum nc_group group)
+{
+	return nc_refuse(r, r->block.code_at[group], "G49 before it",
+			 "a wire's offset or taper under G43.4");
+}
+
 int nc_run_offset(struct nc_reader *r)
 {
+	if (r->tool.on && r->block.code[NC_OFFSET]->value)
+		return refuse_tip(r, NC_OFFSET);
 	r->offset_side = side_of(r->block.code[NC_OFFSET]);
 	return set_side(r, r->block.code_at[NC_OFFSET]);
 }
 
 int nc_run_taper(struct nc_reader *r)
 {
+	if (r->tool.on && r->block.code[NC_TAPER]->value)
+		return refuse_tip(r, NC_TAPER);
 	r->taper_side = side_of(r->block.code[NC_TAPER]);
 	return set_side(r, r->block.code_at[NC_TAPER]);
 }

@@ -4,9 +4,15 @@
  *
  *	scan.c		one line of text into a block of words
  *	modal.c		carry a block out, group by group
+ *	mcode.c		M codes of the machine
  *	motion.c	lines, machine zero, dwell, offsets: what axis words do
  *	arc.c		G2 and G3
+ *	cycles.c	G130 ... G135, and the way out: G140 ... G143
+ *	touch.c		touches: G38.2, G80 ... G82, G160 ... G162
+ *	tool_point.c	G43.4: places of the tool's tip
+ *	nurbs.c		G5 ... G5.3, G6.2: curves
  *	offset.c	offset and taper: G40 ... G42, G50 ... G52, D and H
+ *	tech.c		conditions: called, defined, in a sequence
  *	flow.c		subprograms and the end
  *	nc.c		line after line
  *	refuse.c	say what was found and what would be accepted
@@ -21,6 +27,14 @@
 #include "interp/nc.h"
 #include "wire/contour.h"
 
+/* Tool-centre-point programming. */
+struct nc_tool_point {
+	bool on;
+	struct interp_kinematics k;	/* with the tool's length */
+	double here_mm[INTERP_NAXES];	/* X Y Z of the tip, seen from the work;
+					 * the others as the axes stand */
+};
+
 /* Why no further line is read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
 
@@ -31,11 +45,15 @@ struct nc_block {
 	uint32_t takes;			/* slots its codes use */
 	uint32_t cond_number;
 	char cond_letter;
+	uint32_t angles;		/* A and B of a cycle: they are no axes */
+	uint32_t toward;		/* slots without a number: only a sign,
+					 * +1 -1 or 0, is their value */
 	double value[NC_NSLOTS];
 	const uint8_t *at[NC_NSLOTS];	/* the letter */
 	const struct nc_code *code[NC_NGROUPS];
 	const uint8_t *code_at[NC_NGROUPS];
 	const struct nc_code *upper;	/* G word behind a :, or NULL */
+	struct nc_code mcode[2];	/* of the PLC: before and after */
 	bool colon;			/* the top has words of its own */
 };
 
@@ -55,10 +73,36 @@ struct nc_register {
 
 #define NC_NREGISTERS	1000
 
+/* A condition that the program defines, as E001= 60 10 25 does. */
+struct nc_defined {
+	struct nc_defined *next;	/* the one defined before it */
+	char letter;
+	uint32_t number;
+	struct interp_tech tech;
+};
+
+#define NC_NDEFINED_MAX	256
+
 /* Where O words stand; line 0: nowhere. */
 struct nc_label {
 	const uint8_t *at;
 	uint32_t line, second;		/* second: where it stands again */
+};
+
+/* A curve being put together, block by block. */
+struct nc_curve {
+	uint8_t open;			/* NC_NURBS, NC_NURBS_BLOCK; 0: none */
+	uint32_t order;			/* degree + 1 */
+	uint32_t line;			/* where it began */
+	uint32_t npoints, points_room;
+	uint32_t nknots, knots_room;
+	double *points;			/* rows of all axes times the weight,
+					 * and the weight */
+	double *knots;
+	struct interp_build_mark *marks;	/* of each point */
+	double last_mm[INTERP_NAXES];	/* the last point */
+	bool smooth;			/* a G5 right before this line ... */
+	double leave_mm[2];		/* ... and its last handle, mirrored */
 };
 
 struct nc_reader {
@@ -87,11 +131,21 @@ struct nc_reader {
 	struct interp_build_word word;	/* its condition is modal too */
 	struct nc_register registers[NC_NREGISTERS];	/* D and H */
 	uint32_t selected;		/* the one D or H named last */
+	struct nc_defined *defined;	/* the last one; NULL: none */
+	uint32_t ndefined;
 
 	/* The wire. */
 	struct contour contour;
 	int offset_side, taper_side;	/* +1 left, -1 right, 0 off */
 	double slope;			/* tangent of the taper */
+
+	enum interp_escape_mode escape;
+	struct nc_tool_point tool;
+
+	/* Touches. */
+	uint32_t loose;			/* axes that count from a contact */
+	uint32_t unnamed;		/* ... and what they read is not said */
+	uint32_t once, twice;		/* axes with so many contacts */
 
 	/* Flow. */
 	struct nc_frame frame[INTERP_NC_DEPTH_MAX + 1];
@@ -101,6 +155,7 @@ struct nc_reader {
 	bool tape;			/* the first % is read */
 	enum nc_over over;
 
+	struct nc_curve curve;
 	uint32_t moved;			/* axes the program has moved */
 	uint32_t absent;		/* axes the machine has not */
 	uint32_t segs, segs_max;
@@ -121,6 +176,16 @@ static inline bool nc_has_group(const struct nc_reader *r, enum nc_group group)
 	return r->block.groups & NC_BIT(group);
 }
 
+/* a toward b is counter-clockwise; ca, cb are the centre words, other takes
+ * no part; `normal` is square to both. */
+struct nc_plane {
+	enum interp_axis a, b, normal;
+	enum nc_slot ca, cb, other;
+	const char *name, *centre;
+};
+
+extern const struct nc_plane nc_planes[3];
+
 /** nc_scan_line() - the line at r->at into r->block; r->at is the next. */
 int nc_scan_line(struct nc_reader *r);
 
@@ -137,6 +202,26 @@ int nc_run_one_shot(struct nc_reader *r);
 int nc_run_stop(struct nc_reader *r);
 int nc_run_label(struct nc_reader *r);
 
+/* cycles.c */
+int nc_run_cycle(struct nc_reader *r);
+int nc_run_escape(struct nc_reader *r);
+
+/** nc_take_cycle() - A and B of a cycle are no axes. */
+void nc_take_cycle(struct nc_reader *r);
+
+/** nc_set_lift() - after a change of plane or of the way out. */
+void nc_set_lift(struct nc_reader *r);
+/* The same, and a straight line under G43.4. */
+int nc_run_tool_point(struct nc_reader *r);
+int nc_tip_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		bool rapid);
+
+/* touch.c */
+int nc_run_touch(struct nc_reader *r);
+
+/** nc_check_touched() - does the line name places that nobody knows? */
+int nc_check_touched(struct nc_reader *r);
+
 /* The same for wires. */
 int nc_run_register(struct nc_reader *r);
 int nc_run_offset(struct nc_reader *r);
@@ -145,10 +230,10 @@ int nc_run_taper(struct nc_reader *r);
 /** nc_take_angle() - the A of a G51 or G52 is no axis. */
 int nc_take_angle(struct nc_reader *r);
 
-/** nc_here() - where the program has come to, machine mm. */
+/** nc_here() - where the program has come to, in the frame it is written in. */
 static inline const double *nc_here(const struct nc_reader *r)
 {
-	return r->contour.here_mm;
+	return r->tool.on ? r->tool.here_mm : r->contour.here_mm;
 }
 
 /** nc_has_guides() - are U V the contour on the second plane? */
@@ -156,6 +241,25 @@ static inline bool nc_has_guides(const struct nc_reader *r)
 {
 	return guides_on(&r->contour.guides);
 }
+
+/** nc_call_condition() - from here on; the word is at @at. */
+int nc_call_condition(struct nc_reader *r, char letter, uint32_t number,
+		      const uint8_t *at);
+
+/** nc_define_condition() - by the numbers at @p; the word is at @at.
+ *  Return: behind them, or NULL. */
+const uint8_t *nc_define_condition(struct nc_reader *r, const uint8_t *at,
+				   const uint8_t *p, uint32_t number);
+
+/** nc_forget_conditions() - those the program has defined. */
+void nc_forget_conditions(struct nc_reader *r);
+
+/** nc_sink() - G120: a straight motion by a sequence of conditions. */
+int nc_sink(struct nc_reader *r);
+
+/** nc_line_to() - a straight motion to @end_mm. */
+int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+	       bool rapid);
 
 /** nc_define_register() - D or H @n is @value; the word is at @at. */
 int nc_define_register(struct nc_reader *r, const uint8_t *at, uint32_t n,
@@ -166,6 +270,15 @@ int nc_refuse_wire(struct nc_reader *r, const uint8_t *at);
 
 /** nc_arc() - G2 or G3. */
 int nc_arc(struct nc_reader *r, bool clockwise);
+
+/** nc_curve() - G5 ... G5.3 and G6.2. */
+int nc_curve(struct nc_reader *r);
+
+/** nc_curve_goes_on() - may the line stand inside the curve that is open? */
+int nc_curve_goes_on(struct nc_reader *r);
+
+/** nc_curve_free() */
+void nc_curve_free(struct nc_curve *c);
 
 /** nc_line_two() - G1 with a : for the top. */
 int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
@@ -181,6 +294,16 @@ int nc_room(struct nc_reader *r);
 
 /** nc_placed() - what the builder said to a move, with its place. */
 int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES]);
+
+/**
+ * nc_mcode() - the machine's own M@n; NULL if it has none such.
+ *
+ * One of the reader's own numbers is never the machine's.
+ */
+const struct nc_code *nc_mcode(struct nc_reader *r, uint64_t n);
+
+/** nc_run_mcode() - that of the line. */
+int nc_run_mcode(struct nc_reader *r, enum nc_group group);
 
 /** nc_action() - an action of the line at hand. */
 int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,

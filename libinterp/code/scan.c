@@ -69,6 +69,30 @@ static bool pointed_length(struct nc_reader *r, const uint8_t *at,
 	return false;
 }
 
+/*
+ * X- and X: a way to go, without a place.  Which lines it may stand on is seen
+ * when all of its words are known.  Return: behind it, or NULL if it is none.
+ */
+static const uint8_t *scan_toward(struct nc_reader *r, const uint8_t *at,
+				  unsigned int slot)
+{
+	struct nc_block *b = &r->block;
+	const uint8_t *p = at + 1;
+	const uint8_t sign = p < r->stop && (*p == '+' || *p == '-') ? *p++ : 0;
+
+	if (!r->d->touches || slot > NC_Z)
+		return NULL;
+	if (p < r->stop && nc_classes[*p] != NC_BLANK &&
+	    nc_classes[*p] != NC_EOL && *p != '(' && *p != ';')
+		return NULL;
+	b->words |= NC_BIT(slot);
+	b->toward |= NC_BIT(slot);
+	b->value[slot] = sign ? (sign == '+' ? 1 : -1) : 0;
+	b->at[slot] = at;
+	r->word_at = at;
+	return p;
+}
+
 /* A word with a value. */
 static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 					unsigned int slot)
@@ -82,7 +106,11 @@ static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 		return refuse_twice(r, at);
 	p = nc_number(at + 1, r->stop, &v);
 	if (!p)
+		p = scan_toward(r, at, slot);
+	if (!p)
 		return refuse_number(r, at);
+	if (b->toward & NC_BIT(slot))
+		return p;
 	if ((r->lengths & NC_BIT(slot)) && !pointed_length(r, at, p, &v))
 		return NULL;
 	if (!(v >= w->min && v <= w->max))
@@ -141,7 +169,8 @@ static const uint8_t *refuse_group(struct nc_reader *r, const uint8_t *at,
 static bool scan_upper_code(struct nc_reader *r, const uint8_t *at,
 			    const struct nc_code *code)
 {
-	if (code->group != NC_MOTION || code->value == 0 || r->block.upper) {
+	if (code->group != NC_MOTION || code->value == 0 || code->value > 3 ||
+	    r->block.upper) {
 		nc_refuse(r, at, "one of G1 G2 G3 behind a :", "%s behind a :",
 			  nc_quote_word(r, at).s);
 		return false;
@@ -167,12 +196,14 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 	if (l->scale > 1 && p < r->stop && *p == '.' && ++p < r->stop &&
 	    *p >= '0' && *p <= '9')
 		n += (uint64_t)(*p++ - '0');
-	if (n >= l->ncodes || l->codes[n].group == NC_UNKNOWN) {
+	code = n < l->ncodes && l->codes[n].group != NC_UNKNOWN ?
+	       &l->codes[n] : nc_classes[*at] == NC_LETTER_M ?
+	       nc_mcode(r, n) : NULL;
+	if (!code) {
 		nc_refuse(r, at, l->known, "unknown word %s",
 			  nc_quote_word(r, at).s);
 		return NULL;
 	}
-	code = &l->codes[n];
 	if (b->colon)
 		return scan_upper_code(r, at, code) ? p : NULL;
 	if (b->groups & NC_BIT(code->group))
@@ -193,26 +224,6 @@ static const uint8_t *behind_equals(const struct nc_reader *r,
 	return allowed && p < r->stop && *p == '=' ? p + 1 : NULL;
 }
 
-/* The numbers of E001= 60 10 25: the technology is the machine's, so they are
- * checked and no more. */
-static const uint8_t *scan_definition(struct nc_reader *r, const uint8_t *at,
-				      const uint8_t *p)
-{
-	const uint8_t *next;
-	int n = 0;
-	double v;
-
-	for (; (next = nc_number(p, r->stop, &v)); n++)
-		p = next;
-	if (n == 0) {
-		nc_refuse(r, at, "numbers behind the =, as in E001= 60 10 25",
-			  "a definition without a number");
-		return NULL;
-	}
-	r->word_at = at;
-	return p;
-}
-
 static const uint8_t *scan_condition(struct nc_reader *r, const uint8_t *at)
 {
 	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p, *value;
@@ -227,7 +238,7 @@ static const uint8_t *scan_condition(struct nc_reader *r, const uint8_t *at)
 	}
 	value = behind_equals(r, p, r->d->defines);
 	if (value)
-		return scan_definition(r, at, value);
+		return nc_define_condition(r, at, value, (uint32_t)n);
 	if (b->groups & NC_BIT(NC_CONDITION)) {
 		nc_refuse(r, at, "one condition on a line",
 			  "a second condition %s", nc_quote_word(r, at).s);
@@ -256,15 +267,16 @@ static const uint8_t *scan_c(struct nc_reader *r, const uint8_t *at)
 /* S100 calls a condition, SC0100= defines one. */
 static const uint8_t *scan_s(struct nc_reader *r, const uint8_t *at)
 {
-	const uint8_t *p = at + 1, *value;
+	const uint8_t *p = at + 1, *first, *value;
 	uint64_t n = 0;
 
 	if (p == r->stop || (*p | 0x20) != 'c')
 		return scan_condition(r, at);
-	value = behind_equals(r, nc_digits(p + 1, r->stop, &n),
-			      r->d->defines);
-	if (value)
-		return scan_definition(r, at, value);
+	first = nc_skip_blanks(p + 1, r->stop);
+	p = nc_digits(first, r->stop, &n);
+	value = behind_equals(r, p, r->d->defines);
+	if (value && p > first && p - first <= 9)
+		return nc_define_condition(r, at, value, (uint32_t)n);
 	nc_refuse(r, at, "SC0100= and its numbers", "SC without a =");
 	return NULL;
 }
@@ -485,6 +497,7 @@ int nc_scan_line(struct nc_reader *r)
 	b->takes = NC_ANYWHERE;
 	b->upper = NULL;
 	b->colon = false;
+	b->toward = 0;
 
 	p = scan_words(r, p);
 	if (!p)

@@ -326,6 +326,7 @@ static int segment(struct threeb_writer *w,
 		w->left->waits++;
 		return 0;
 	case INTERP_AUX:
+	case INTERP_MCODE:
 		w->left->outputs++;
 		return 0;
 	case INTERP_STOP:

@@ -90,7 +90,7 @@ const struct nc_dialect nc_robofil = {
 	.letter = {
 		{ robofil_g, NC_NG, 10, "one of G0 G1 G2 G3 G38 G39 G40 G41 "
 		  "G42 G60 G61 G90 G91 G92" },
-		{ robofil_m, NC_NM, 1, "M00, M01, or M02 to end" },
+		{ robofil_m, NC_NM, 1, "M00, M01, or M02 to end" MACHINE_M },
 	},
 	.any_word = "one of G M F N X Y I J D",
 	.label = 'O', .arc_places = true, .point = true, .m2_ends = true,
@@ -113,7 +113,7 @@ const struct nc_dialect nc_skd2 = {
 	.letter = {
 		{ skd2_g, NC_NG, 10, "one of G0 G1 G2 G3 G40 G41 G42 G50 G51 "
 		  "G52 G90 G91 G92" },
-		{ skd2_m, NC_NM, 1, "one of M00 M01 M02 M98 M99" },
+		{ skd2_m, NC_NM, 1, "one of M00 M01 M02 M98 M99" MACHINE_M },
 	},
 	.any_word = "one of G M F N X Y I J A P L E H",
 	.label = 'N', .decimals = 3, .no_feed = true, .defines = true,
@@ -133,6 +133,9 @@ static const struct nc_code sodick_g[NC_NG] = {
 	[170] = { NC_PLANE, 0, 0 },
 	[200] = { NC_UNITS, true, 0 },
 	[210] = { NC_UNITS, false, 0 },
+	[800] = { NC_TOUCH, NC_TOUCH_ONE, XY_ },
+	[810] = { NC_TOUCH, NC_TOUCH_LIMIT, XY_ },
+	[820] = { NC_TOUCH, NC_TOUCH_HALF, XY_ },
 };
 
 static const struct nc_code sodick_m[NC_NM] = { STOP_M, SUBPROGRAM_M };
@@ -149,12 +152,14 @@ const struct nc_dialect nc_sodick = {
 	.classes = sodick_classes,
 	.letter = {
 		{ sodick_g, NC_NG, 10, "one of G0 G1 G2 G3 G17 G20 G21 G40 "
-		  "G41 G42 G50 G51 G52 G54 ... G59 G90 G91 G92" },
-		{ sodick_m, NC_NM, 1, "one of M00 M01 M02 M98 M99" },
+		  "G41 G42 G50 G51 G52 G54 ... G59 G80 G81 G82 G90 G91 "
+		  "G92" },
+		{ sodick_m, NC_NM, 1, "one of M00 M01 M02 M98 M99" MACHINE_M },
 		{ sodick_t, NC_NM, 1, "one of T80 ... T87" },
 	},
 	.any_word = "one of G M T F N X Y I J A P L C D H",
 	.label = 'N', .point = true, .no_feed = true, .defines = true,
+	.touches = true,
 };
 
 /* -- chmer ----------------------------------------------------------------- */
@@ -180,7 +185,7 @@ const struct nc_dialect nc_chmer = {
 	.letter = {
 		{ chmer_g, NC_NG, 10, "one of G0 G1 G2 G3 G20 G21 G40 G41 G42 "
 		  "G50 G51 G52 G54 ... G59 G90 G91 G92" },
-		{ chmer_m, NC_NM, 1, "one of M00 M01 M02 M30 M98 M99" },
+		{ chmer_m, NC_NM, 1, "one of M00 M01 M02 M30 M98 M99" MACHINE_M },
 	},
 	.any_word = "one of G M F N O X Y I J A P L S H",
 	.label = 'O', .point = true, .no_feed = true, .defines = true,

@@ -6,13 +6,13 @@
  */
 #include "code/words.h"
 
-#include "interp/program.h"
+#include "interp/orbit.h"
 #include "interp/wire.h"
 
 #define ANY_PLACE	-999999999, 999999999, "-999999999 to 999999999"
-#define AXIS_LINES	"an axis word goes with G0 G1 G2 G3 G28 G92, and X " \
-			"with G4"
-#define CENTRE_LINES	"goes with G2 or G3"
+#define AXIS_LINES	"an axis word goes with G0 G1 G2 G3 G28 G92 G120 or a " \
+			"curve, and X with G4"
+#define CENTRE_LINES	"goes with G2 or G3, or a curve"
 
 /* clang-format off */
 const struct nc_word nc_words[NC_NSLOTS] = {
@@ -32,10 +32,10 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 		   "a feed of 0.0001 to 1000000 per minute", "" },
 	[NC_N] = { 'N', true, 0, 999999999, "0 to 999999999", "" },
 	[NC_S] = { 'S', false, 0, 999999999, "0 to 999999999", "" },
-	[NC_P] = { 'P', false, 0, 99999999, "0 to 99999999",
-		   "P goes with G4 or M98" },
+	[NC_P] = { 'P', false, -99999999, 99999999, "-99999999 to 99999999",
+		   "P goes with G5 G5.2 G6.2, G4 or M98, and with G120" },
 	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats",
-		   "L goes with M98" },
+		   "L goes with M98, G5.2, G160 and G161" },
 	[NC_O] = { 'O', true, 1, 9999, "a program number of 1 to 9999", "" },
 	[NC_D] = { 'D', true, 0, 999, "a register of 0 to 999", "" },
 	[NC_H] = { 'H', true, 0, 999, "a register of 0 to 999", "" },
@@ -43,6 +43,8 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 		   "A goes with G51 or G52" },
 	[NC_UI] = { 'I', false, ANY_PLACE, "I " CENTRE_LINES },
 	[NC_UJ] = { 'J', false, ANY_PLACE, "J " CENTRE_LINES },
+	[NC_Q] = { 'Q', false, ANY_PLACE,
+		   "Q goes with G130 ... G135, G160 ... G162, or G5" },
 };
 
 #define LETTER(upper, lower, class)	[upper] = (class), [lower] = (class)
@@ -56,7 +58,7 @@ const uint8_t nc_classes[256] = {
 	SLOT('I', 'i', NC_I), SLOT('J', 'j', NC_J), SLOT('K', 'k', NC_K),
 	SLOT('R', 'r', NC_R), SLOT('F', 'f', NC_F), SLOT('N', 'n', NC_N),
 	SLOT('S', 's', NC_S), SLOT('P', 'p', NC_P), SLOT('L', 'l', NC_L),
-	SLOT('O', 'o', NC_O),
+	SLOT('O', 'o', NC_O), SLOT('Q', 'q', NC_Q),
 	LETTER('C', 'c', NC_LETTER_C), LETTER('E', 'e', NC_LETTER_E),
 	LETTER('G', 'g', NC_LETTER_G), LETTER('M', 'm', NC_LETTER_M),
 	LETTER('T', 't', NC_LETTER_T),
@@ -73,6 +75,12 @@ const uint8_t nc_classes[256] = {
 };
 
 #define P_	NC_BIT(NC_P)
+#define XY_	(NC_BIT(NC_X) | NC_BIT(NC_Y))
+#define IJ_	(NC_BIT(NC_I) | NC_BIT(NC_J))
+#define SINK_	(NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z) | NC_BIT(NC_C))
+#define ORBIT_	(SINK_ | NC_CENTRE | NC_BIT(NC_R) | NC_BIT(NC_Q) | P_)
+#define XYZ_	(NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z))
+#define LQ_	(NC_BIT(NC_L) | NC_BIT(NC_Q))
 #define ARC_	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
 
 static const struct nc_code g[NC_NG] = {
@@ -81,15 +89,24 @@ static const struct nc_code g[NC_NG] = {
 	[20]  = { NC_MOTION, 2, ARC_ },
 	[30]  = { NC_MOTION, 3, ARC_ },
 	[40]  = { NC_ONE_SHOT, NC_DWELL, P_ | NC_BIT(NC_X) },
+	[50]  = { NC_MOTION, NC_SPLINE, XY_ | IJ_ | P_ | NC_BIT(NC_Q) },
+	[51]  = { NC_MOTION, NC_PARABOLA, XY_ | IJ_ },
+	[52]  = { NC_MOTION, NC_NURBS_BLOCK, XY_ | P_ | NC_BIT(NC_L) },
+	[53]  = { NC_MOTION, NC_NURBS_END, 0 },
+	[62]  = { NC_MOTION, NC_NURBS,
+		  NC_AXES | P_ | NC_BIT(NC_K) | NC_BIT(NC_R) },
 	[170] = { NC_PLANE, 0, 0 },
 	[180] = { NC_PLANE, 1, 0 },
 	[190] = { NC_PLANE, 2, 0 },
 	[200] = { NC_UNITS, true, 0 },
 	[210] = { NC_UNITS, false, 0 },
 	[280] = { NC_ONE_SHOT, NC_HOME, NC_AXES },
+	[382] = { NC_TOUCH, NC_TOUCH_FEED, XYZ_ },
 	[400] = { NC_OFFSET, 0, 0 },
 	[410] = { NC_OFFSET, 1, 0 },
 	[420] = { NC_OFFSET, 2, 0 },
+	[434] = { NC_TOOL_POINT, true, 0 },
+	[490] = { NC_TOOL_POINT, false, 0 },
 	[500] = { NC_TAPER, 0, 0 },
 	[510] = { NC_TAPER, 1, NC_BIT(NC_A) },
 	[520] = { NC_TAPER, 2, NC_BIT(NC_A) },
@@ -100,6 +117,10 @@ static const struct nc_code g[NC_NG] = {
 	[570] = { NC_WORK, 3, 0 },
 	[580] = { NC_WORK, 4, 0 },
 	[590] = { NC_WORK, 5, 0 },
+	[800] = { NC_TOUCH, NC_TOUCH_ONE, XYZ_ },
+	[810] = { NC_TOUCH, NC_TOUCH_LIMIT, XYZ_ },
+	[820] = { NC_TOUCH, NC_TOUCH_HALF, XYZ_ },
+	[860] = { NC_CYCLE, INTERP_NORBITS, SINK_ | P_ },
 	[900] = { NC_DISTANCE, false, 0 },
 	[910] = { NC_DISTANCE, true, 0 },
 	[901] = { NC_ARC_DISTANCE, false, 0 },
@@ -107,6 +128,21 @@ static const struct nc_code g[NC_NG] = {
 	[920] = { NC_ONE_SHOT, NC_SET, NC_AXES },
 	[921] = { NC_ONE_SHOT, NC_SET_CANCEL, 0 },
 	[940] = { NC_FEED_MODE, 0, 0 },
+	[1200] = { NC_ONE_SHOT, NC_SINK, NC_AXES | P_ },
+	[1300] = { NC_CYCLE, INTERP_ORBIT_CIRCLE, ORBIT_ },
+	[1310] = { NC_CYCLE, INTERP_ORBIT_SQUARE, ORBIT_ },
+	[1320] = { NC_CYCLE, INTERP_ORBIT_SPHERE, ORBIT_ },
+	[1330] = { NC_CYCLE, INTERP_ORBIT_CONE, ORBIT_ },
+	[1340] = { NC_CYCLE, INTERP_ORBIT_VECTOR, ORBIT_ | NC_BIT(NC_L) },
+	[1350] = { NC_CYCLE, INTERP_ORBIT_EXPAND, ORBIT_ },
+	[1400] = { NC_ESCAPE, INTERP_ESCAPE_PATH, 0 },
+	[1410] = { NC_ESCAPE, INTERP_ESCAPE_CENTRE, 0 },
+	[1420] = { NC_ESCAPE, INTERP_ESCAPE_AXIS, 0 },
+	[1430] = { NC_ESCAPE, INTERP_ESCAPE_NORMAL, 0 },
+	[1600] = { NC_TOUCH, NC_TOUCH_HOLE, NC_BIT(NC_R) | LQ_ },
+	[1610] = { NC_TOUCH, NC_TOUCH_PILLAR, NC_CENTRE | LQ_ },
+	[1620] = { NC_TOUCH, NC_TOUCH_CORNER, NC_BIT(NC_X) | NC_BIT(NC_Y) |
+		   NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_R) | NC_BIT(NC_Q) },
 };
 
 static const struct nc_code m[NC_NM] = {
@@ -130,13 +166,16 @@ const struct nc_dialect nc_generic = {
 	.classes = nc_classes,
 	.letter = {
 		{ g, NC_NG, 10,
-		  "one of G0 G1 G2 G3 G4 G17 G18 G19 G20 G21 G28 G40 G41 "
-		  "G42 G50 G51 G52 G53 G54 ... G59 G90 G90.1 G91 G91.1 G92 G92.1 G94" },
-		{ m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" },
+		  "one of G0 ... G4 G5 G5.1 G5.2 G5.3 G6.2 G17 ... G21 G28 G38.2 "
+		  "G40 G41 G42 G43.4 G49 ... G59 G80 G81 G82 G86 G90 G90.1 "
+		  "G91 G91.1 G92 G92.1 G94 G120 G130 ... G135 G140 ... G143 "
+		  "G160 G161 G162" },
+		{ m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" MACHINE_M },
 		{ t, NC_NM, 1, "T84 (pump on) or T85 (pump off)" },
 	},
-	.any_word = "one of G M F N S T X Y Z A B C U V I J K R P L O D H E",
+	.any_word = "one of G M F N S T X Y Z A B C U V I J K R P L Q O D H E",
 	.registers = true,
+	.touches = true,
 	.label = 'O',
 };
 /* clang-format on */

@@ -22,6 +22,7 @@ enum nc_slot {
 	NC_P, NC_L, NC_O,
 	NC_D, NC_H, NC_ANGLE,		/* offset registers; A of a taper */
 	NC_UI, NC_UJ,			/* I J behind a : */
+	NC_Q,
 	NC_NSLOTS
 };
 
@@ -93,17 +94,39 @@ enum nc_group {
 	NC_CORNER,			/* G60 G61 */
 	NC_TRANSITION,			/* G38 G39 */
 	NC_SUPPLY,			/* T80 ... T83 T86 T87 */
+	NC_MCODE,			/* the PLC's, before the motion */
 	NC_POWER,			/* M3 M4 M5 */
 	NC_PUMP,			/* T84 T85 */
+	NC_ESCAPE,			/* G140 ... G143 */
+	NC_TOOL_POINT,			/* G43.4 G49 */
 	NC_MACHINE,			/* G53 */
-	NC_ONE_SHOT,			/* G4 G28 G92 G92.1 */
-	NC_MOTION,			/* G0 G1 G2 G3 */
+	NC_CYCLE,			/* G130 ... G135 */
+	NC_TOUCH,			/* G38.2 G80 G81 G82 G160 ... G162 */
+	NC_ONE_SHOT,			/* G4 G28 G92 G92.1 G120 */
+	NC_MOTION,			/* G0 ... G3, G5 ... G5.3, G6.2 */
+	NC_MCODE_AFTER,			/* the PLC's, after it */
 	NC_STOP,			/* M0 M1 M2 M30 M98 M99 */
 	NC_NGROUPS
 };
 
+/* What a member of NC_MOTION does; G0 ... G3 are their numbers. */
+enum nc_motion {
+	NC_SPLINE = 5,			/* G5: a cubic */
+	NC_PARABOLA,			/* G5.1 */
+	NC_NURBS_BLOCK,			/* G5.2: a control point */
+	NC_NURBS_END,			/* G5.3 */
+	NC_NURBS,			/* G6.2: a control point or a knot */
+};
+
 /* What a member of NC_ONE_SHOT or NC_STOP does. */
-enum nc_one_shot { NC_DWELL, NC_HOME, NC_SET, NC_SET_CANCEL };
+enum nc_one_shot { NC_DWELL, NC_HOME, NC_SET, NC_SET_CANCEL, NC_SINK };
+/* What a member of NC_TOUCH does. */
+enum nc_touch {
+	NC_TOUCH_FEED,			/* at the programmed feed at the most */
+	NC_TOUCH_ONE, NC_TOUCH_LIMIT, NC_TOUCH_HALF,
+	NC_TOUCH_HOLE, NC_TOUCH_PILLAR, NC_TOUCH_CORNER,
+	NC_NTOUCHES
+};
 enum nc_stop { NC_HALT, NC_OPTIONAL_HALT, NC_FINISH, NC_CALL, NC_RETURN };
 
 /* One G, M or T word. */
@@ -114,8 +137,12 @@ struct nc_code {
 };
 
 /* Index: ten times the number for G, the number itself for M and T. */
-#define NC_NG	1000
+#define NC_NG	2000
 #define NC_NM	100
+
+/* Behind the M words that are known. */
+#define MACHINE_M	", or one of the machine's own, [plc] m_before " \
+			"m_after m_free"
 
 /* The codes of a letter. */
 struct nc_letter {
@@ -137,6 +164,7 @@ struct nc_dialect {
 	bool no_feed;			/* F is optional: the gap says */
 	bool defines;			/* E001= and H001= lines */
 	bool registers;			/* H001=0.11 alone */
+	bool touches;			/* X- and X, without a number */
 };
 
 extern const struct nc_dialect nc_generic, nc_robofil, nc_skd2, nc_sodick,

@@ -4,7 +4,7 @@
  *
  * Tables grow by doubling; a node gets a column when its axis first moves.
  */
-#include "interp/build.h"
+#include "path/builder.h"
 #include "path/build_arc.h"
 #include "path/build_pair.h"
 #include "path/build_rule.h"
@@ -16,29 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct table {
-	void *at;
-	size_t n, room, size;
-};
-
-struct interp_build {
-	struct interp_build_options o;
-	double here_mm[INTERP_NAXES];
-	int64_t here[INTERP_NAXES];	/* the same in subpulses */
-	int64_t first[INTERP_NAXES];
-	double sub_mm[INTERP_NAXES];	/* subpulses per mm */
-	uint8_t column[INTERP_NAXES];
-	uint32_t naxes, columns;	/* columns: mask of axes */
-	double length_mm;
-	struct table segs, nodes, arcs, conds, runs;	/* nodes: n counts
-							 * columns */
-	struct table couples, bits;
-	char cond_letter;
-	uint32_t cond_number;
-	uint16_t cond;
-};
-
-static void *table_add(struct table *t)
+void *build_table_add(struct table *t)
 {
 	if (t->n == t->room) {
 		const size_t room = t->room ? 2 * t->room : 64;
@@ -59,14 +37,14 @@ static int64_t *nodes_of(const struct interp_build *b)
 
 static struct interp_seg *seg_add(struct interp_build *b)
 {
-	return table_add(&b->segs);
+	return build_table_add(&b->segs);
 }
 
 /* Append where the path stands as a node. */
 static int node_add(struct interp_build *b)
 {
 	for (uint32_t j = 0; j < b->naxes; j++) {
-		int64_t *n = table_add(&b->nodes);
+		int64_t *n = build_table_add(&b->nodes);
 
 		if (!n)
 			return -ENOMEM;
@@ -108,6 +86,7 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	struct interp_build *b = calloc(1, sizeof(*b));
 	struct interp_seg *begin;
 	struct interp_cond *none;
+	struct interp_escape *path;
 
 	if (!b)
 		return NULL;
@@ -116,8 +95,13 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	b->nodes.size = sizeof(int64_t);
 	b->arcs.size = sizeof(struct interp_arc);
 	b->conds.size = sizeof(struct interp_cond);
+	b->escapes.size = sizeof(struct interp_escape);
 	b->couples.size = sizeof(struct interp_couple);
 	b->bits.size = sizeof(uint64_t);
+	b->curves.size = sizeof(struct interp_curve);
+	b->pieces.size = sizeof(struct interp_piece);
+	b->stops.size = sizeof(struct interp_nurbs_stop);
+	b->numbers.size = sizeof(double);
 	b->runs.size = sizeof(int32_t);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		b->sub_mm[i] = INTERP_SUB / o->machine->axis[i].pulse_mm;
@@ -125,14 +109,19 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 		b->here[i] = b->first[i] =
 			llround(o->start_mm[i] * b->sub_mm[i]);
 	}
+	b->lift_axis = -1;
+	b->descent.axis = -1;
 	begin = seg_add(b);
-	none = table_add(&b->conds);
-	if (!begin || !none) {
+	none = build_table_add(&b->conds);
+	path = build_table_add(&b->escapes);
+	if (!begin || !none || !path) {
 		interp_build_destroy(b);
 		return NULL;
 	}
 	*begin = (struct interp_seg) { .kind = INTERP_BEGIN };
 	*none = (struct interp_cond) { .letter = 0 };
+	interp_tech_clear(&none->tech);
+	*path = (struct interp_escape) { 0 };
 	return b;
 }
 
@@ -144,15 +133,23 @@ void interp_build_destroy(struct interp_build *b)
 	free(b->nodes.at);
 	free(b->arcs.at);
 	free(b->conds.at);
+	free(b->escapes.at);
 	free(b->couples.at);
 	free(b->bits.at);
+	free(b->curves.at);
+	free(b->pieces.at);
+	free(b->stops.at);
+	free(b->numbers.at);
+	free(b->fit.end_mm);
+	free(b->fit.lines);
 	free(b->runs.at);
 	free(b);
 }
 
 const double *interp_build_here(const struct interp_build *b)
 {
-	return b->here_mm;
+	return b->fit.n ? b->fit.end_mm + (b->fit.n - 1) * INTERP_NAXES :
+			  b->here_mm;
 }
 
 /* -- Checks ------------------------------------------------------------- */
@@ -179,11 +176,14 @@ int build_refuse_travel(const struct interp_machine *m, int axis,
 }
 
 /* In pulses, as the cycle guards them: the last ones inside the limits. */
-static bool axis_ok(const struct interp_machine *m, int axis, double at_mm)
+bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
 {
+	const struct interp_machine *m = b->o.machine;
 	const struct interp_axis_limits *l = &m->axis[axis];
 	const double at = floor(at_mm / l->pulse_mm + 0.5);
 
+	if (m->present & b->loose & 1u << axis)
+		return fabs(at) < INTERP_PULSES_MAX;
 	return m->present & 1u << axis &&
 	       at >= ceil(l->travel_min_mm / l->pulse_mm - 1e-6) &&
 	       at <= floor(l->travel_max_mm / l->pulse_mm + 1e-6);
@@ -195,22 +195,28 @@ static bool axis_ok(const struct interp_machine *m, int axis, double at_mm)
 static int cond_of(struct interp_build *b, const struct interp_build_word *w)
 {
 	struct interp_cond *c = b->conds.at;
+	struct interp_tech tech;
 
 	if (w->cond_letter == b->cond_letter &&
-	    w->cond_number == b->cond_number)
+	    w->cond_number == b->cond_number && w->tech == b->tech)
 		return b->cond;
+	interp_tech_clear(&tech);
+	if (w->tech)
+		tech = *w->tech;
 	for (size_t i = 0; i < b->conds.n; i++) {
 		if (c[i].letter == w->cond_letter &&
-		    c[i].number == w->cond_number)
+		    c[i].number == w->cond_number &&
+		    memcmp(&c[i].tech, &tech, sizeof(tech)) == 0)
 			return (int)i;
 	}
 	if (b->conds.n > UINT16_MAX)
 		return -ENOSPC;
-	c = table_add(&b->conds);
+	c = build_table_add(&b->conds);
 	if (!c)
 		return -ENOMEM;
 	*c = (struct interp_cond) { .letter = w->cond_letter,
-				    .number = w->cond_number };
+				    .number = w->cond_number,
+				    .tech = tech };
 	return (int)b->conds.n - 1;
 }
 
@@ -233,9 +239,11 @@ static int seg_finish(struct interp_build *b, struct interp_seg *seg,
 	b->cond = (uint16_t)cond;
 	b->cond_letter = w->cond_letter;
 	b->cond_number = w->cond_number;
+	b->tech = w->tech;
 	seg->cond = b->cond;
 	seg->line = w->line;
 	seg->s_mm = b->length_mm;
+	seg->escape = b->stand_escape;
 	if (node_add(b) < 0)
 		return -ENOMEM;
 	s = seg_add(b);
@@ -261,7 +269,7 @@ static int columns_for(struct interp_build *b, uint32_t moved)
 static void seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
 		     double feed_max_mm_s)
 {
-	seg->flags = w->rapid ? INTERP_SEG_RAPID : 0;
+	seg->flags = (w->rapid ? INTERP_SEG_RAPID : 0) | w->ends;
 	seg->feed_max_mm_s = (float)feed_max_mm_s;
 	seg->feed_mm_s = w->rapid ? seg->feed_max_mm_s : (float)w->feed_mm_s;
 }
@@ -306,7 +314,7 @@ static int measure(const struct interp_build *b,
 		to[i] = b->here[i];
 		if (end_mm[i] == b->here_mm[i])
 			continue;
-		if (!axis_ok(m, i, end_mm[i]))
+		if (!build_axis_ok(b, i, end_mm[i]))
 			return -1 - i;
 		to[i] = (int64_t)(s < 0 ? s - 0.5 : s + 0.5);
 		len = to[i] - b->here[i];
@@ -352,14 +360,40 @@ static struct build_way way_to(const struct interp_build *b,
 	return w;
 }
 
-int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
-		      const struct interp_build_word *w,
-		      struct interp_diag *diag)
+/* Where a line that ends elsewhere leads to is no place to be held to. */
+static int measure_line(struct interp_build *b,
+			const double end_mm[INTERP_NAXES],
+			const struct interp_build_word *w,
+			int64_t to[INTERP_NAXES], struct measure *ret)
+{
+	for (int i = 0; i < INTERP_NAXES && w->ends; i++) {
+		if (end_mm[i] != b->here_mm[i])
+			b->loose |= 1u << i;
+	}
+	return measure(b, end_mm, to, ret);
+}
+
+/* A stop, so that nothing enters it at speed. */
+static int sensed_begin(struct interp_build *b, uint32_t moved,
+			const struct interp_build_word *w,
+			struct interp_diag *diag)
+{
+	if (moved & (moved - 1)) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "a touch, half or limit along several axes");
+		snprintf(diag->wanted, sizeof(diag->wanted), "one axis");
+		return -EINVAL;
+	}
+	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
+}
+
+int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
+	       const struct interp_build_word *w, struct interp_diag *diag)
 {
 	struct interp_seg seg = { .kind = INTERP_LINE };
 	int64_t to[INTERP_NAXES];
 	struct measure m;
-	const int bad = measure(b, end_mm, to, &m);
+	const int bad = measure_line(b, end_mm, w, to, &m);
 	struct build_way way;
 	uint64_t ticks;
 	int r;
@@ -383,7 +417,33 @@ int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	seg_feed(&seg, w, m.length_mm / m.seconds);
 	if (m.moved & ~b->columns && columns_for(b, m.moved) < 0)
 		return -ENOMEM;
+	if (w->ends)
+		r = sensed_begin(b, m.moved, w, diag);
+	if (r < 0)
+		return r;
+	build_descend(b, m.moved, end_mm);
+	b->stand_escape = w->ends ? 0 : build_escape_of(b, m.moved, end_mm);
 	stand_at(b, end_mm, to);
+	/* Nor is it known how far it came. */
+	if (w->ends)
+		b->descent.axis = -1;
+	return seg_finish(b, &seg, w, diag);
+}
+
+int build_step(struct interp_build *b, const struct build_step *s,
+	       const struct interp_build_word *w, struct interp_diag *diag)
+{
+	struct interp_seg seg = s->seg;
+	int64_t to[INTERP_NAXES];
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		to[i] = llround(s->end_mm[i] * b->sub_mm[i]);
+	seg_feed(&seg, w, s->feed_max_mm_s);
+	if (columns_for(b, s->moved) < 0)
+		return -ENOMEM;
+	build_descend(b, s->moved, s->end_mm);
+	b->stand_escape = b->escape;
+	stand_at(b, s->end_mm, to);
 	return seg_finish(b, &seg, w, diag);
 }
 
@@ -392,8 +452,46 @@ int interp_build_action(struct interp_build *b, enum interp_kind kind,
 			struct interp_diag *diag)
 {
 	struct interp_seg seg = { .kind = (uint8_t)kind, .arg = arg };
+	const int r = interp_build_flush(b, diag);
 
-	return seg_finish(b, &seg, w, diag);
+	return r ? r : seg_finish(b, &seg, w, diag);
+}
+
+int interp_build_timed(struct interp_build *b,
+		       const struct interp_build_word *w,
+		       struct interp_diag *diag)
+{
+	const int r = interp_build_flush(b, diag);
+
+	if (r < 0)
+		return r;
+	b->timed = b->segs.n;
+	memcpy(b->timed_at, b->here, sizeof(b->timed_at));
+	return interp_build_action(b, INTERP_TIMED, 0, w, diag);
+}
+
+int interp_build_timed_end(struct interp_build *b, uint32_t ms,
+			   const struct interp_build_word *w,
+			   struct interp_diag *diag)
+{
+	const int r = interp_build_flush(b, diag);
+	struct interp_seg *begin = b->segs.at;
+
+	if (r < 0)
+		return r;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (interp_round_sub(b->here[i]) ==
+		    interp_round_sub(b->timed_at[i]))
+			continue;
+		snprintf(diag->found, sizeof(diag->found),
+			 "a time for motions that end elsewhere along %c",
+			 INTERP_AXIS_LETTERS[i]);
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "motions that end where they begin");
+		return -EINVAL;
+	}
+	begin[b->timed].arg = (uint32_t)b->segs.n;
+	return interp_build_action(b, INTERP_TIMED_END, ms, w, diag);
 }
 
 /* -- Arcs ------------------------------------------------------------------ */
@@ -432,9 +530,11 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	int64_t to[INTERP_NAXES];
 	struct interp_arc *arc;
 	struct measure m;
-	const int bad = measure(b, end_mm, to, &m);
-	int r;
+	int r = interp_build_flush(b, diag), bad;
 
+	if (r < 0)
+		return r;
+	bad = measure(b, end_mm, to, &m);
 	if (bad < 0)
 		return build_refuse_travel(b->o.machine, -bad - 1,
 					   end_mm[-bad - 1], diag);
@@ -455,12 +555,14 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	if (columns_for(b, m.moved | plane) < 0)
 		return -ENOMEM;
 	seg.arg = (uint32_t)b->arcs.n;
-	arc = table_add(&b->arcs);
+	arc = build_table_add(&b->arcs);
 	if (!arc)
 		return -ENOMEM;
 	*arc = plan.arc;
 	if (runs_add(b, &plan, arc) < 0)
 		return -ENOMEM;
+	build_descend(b, m.moved | plane, end_mm);
+	b->stand_escape = b->escape;
 	stand_at(b, end_mm, to);
 	return seg_finish(b, &seg, w, diag);
 }
@@ -471,14 +573,14 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 static int couple_add(struct interp_build *b, struct build_pair *p)
 {
 	const size_t words = p->bits ? ((size_t)p->ticks + 63) / 64 : 0;
-	struct interp_couple *c = table_add(&b->couples);
+	struct interp_couple *c = build_table_add(&b->couples);
 
 	if (!c)
 		return -ENOMEM;
 	*c = p->couple;
 	c->bits_at = b->bits.n;
 	for (size_t i = 0; i < words; i++) {
-		uint64_t *w = table_add(&b->bits);
+		uint64_t *w = build_table_add(&b->bits);
 
 		if (!w)
 			return -ENOMEM;
@@ -496,6 +598,8 @@ static int pair_finish(struct interp_build *b, struct build_pair *p,
 				  .arg = (uint32_t)b->couples.n };
 
 	seg_feed(&seg, w, p->feed_max_mm_s);
+	b->descent.axis = -1;
+	b->stand_escape = 0;
 	if (columns_for(b, 1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_U |
 			   1u << INTERP_V) < 0 || couple_add(b, p) < 0)
 		return -ENOMEM;
@@ -543,9 +647,11 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 				   .strategy = b->o.strategy };
 	int64_t to[INTERP_NAXES];
 	struct measure m;
-	const int bad = measure(b, end_mm, to, &m);
-	int r;
+	int r = interp_build_flush(b, diag), bad;
 
+	if (r < 0)
+		return r;
+	bad = measure(b, end_mm, to, &m);
 	if (bad < 0)
 		return build_refuse_travel(b->o.machine, -bad - 1,
 					   end_mm[-bad - 1], diag);
@@ -570,103 +676,4 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	}
 	free(plan.bits);
 	return r;
-}
-
-/* -- The block ------------------------------------------------------------- */
-
-static bool ends(const struct interp_build *b)
-{
-	const struct interp_seg *s = b->segs.at;
-
-	return s[b->segs.n - 1].kind == INTERP_END;
-}
-
-static struct interp_program_head layout(const struct interp_build *b)
-{
-	const size_t nsegs = b->segs.n + !ends(b);
-	struct interp_program_head h = {
-		.magic = INTERP_PROGRAM_MAGIC,
-		.version = INTERP_PROGRAM_VERSION,
-		.head_bytes = sizeof(h),
-		.nsegs = (uint32_t)nsegs,
-		.narcs = (uint32_t)b->arcs.n,
-		.nconds = (uint32_t)b->conds.n,
-		.ncouples = b->couples.n,
-		.nbits = b->bits.n,
-		.naxes = b->naxes,
-		.strategy = b->o.strategy,
-		.tolerance_milli = b->o.tolerance_milli,
-		.perpendicular = b->o.perpendicular,
-		.coupling = b->o.coupling,
-		.nruns = (uint32_t)b->runs.n,
-		.length_mm = b->length_mm,
-	};
-
-	h.segs_at = (sizeof(h) + 7) & ~7ull;
-	h.nodes_at = h.segs_at + nsegs * b->segs.size;
-	h.arcs_at = h.nodes_at + (nsegs + 1) * b->naxes * b->nodes.size;
-	h.conds_at = h.arcs_at + b->arcs.n * b->arcs.size;
-	h.couples_at = h.conds_at + b->conds.n * b->conds.size;
-	h.bits_at = h.couples_at + b->couples.n * b->couples.size;
-	h.runs_at = h.bits_at + b->bits.n * b->bits.size;
-	h.bytes = h.runs_at + b->runs.n * b->runs.size;
-	return h;
-}
-
-size_t interp_build_bytes(const struct interp_build *b)
-{
-	return layout(b).bytes;
-}
-
-static void write_table(char *to, const struct table *t)
-{
-	if (t->n > 0)
-		memcpy(to, t->at, t->n * t->size);
-}
-
-static void write_head(const struct interp_build *b,
-		       struct interp_program_head *h,
-		       const struct interp_build_about *about)
-{
-	memcpy(h->column, b->column, sizeof(h->column));
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		h->pulse_mm[i] = b->o.machine->axis[i].pulse_mm;
-		h->start_pulses[i] = interp_round_sub(b->first[i]);
-	}
-	h->lines = about->lines;
-	memcpy(h->hash, about->hash, sizeof(h->hash));
-	snprintf(h->name, sizeof(h->name), "%s",
-		 about->name ? about->name : "");
-}
-
-void interp_build_write(struct interp_build *b,
-			const struct interp_build_about *about, void *block)
-{
-	struct interp_program_head h = layout(b);
-	char *base = block;
-	struct interp_seg *segs = (void *)(base + h.segs_at);
-	int64_t *nodes = (void *)(base + h.nodes_at);
-	const size_t rows = b->segs.n + 1;
-
-	write_head(b, &h, about);
-	memcpy(base, &h, sizeof(h));
-	write_table((char *)segs, &b->segs);
-	write_table((char *)nodes, &b->nodes);
-	/* Node 0 comes with the first column; the END has one of its own. */
-	for (size_t i = rows; i <= h.nsegs; i++) {
-		for (uint32_t j = 0; j < b->naxes; j++)
-			nodes[i * b->naxes + j] = b->here[b->column[j]];
-	}
-	if (!ends(b)) {
-		segs[b->segs.n] = (struct interp_seg) {
-			.kind = INTERP_END, .s_mm = b->length_mm,
-			.line = segs[b->segs.n - 1].line,
-			.cond = b->cond,
-		};
-	}
-	write_table(base + h.arcs_at, &b->arcs);
-	write_table(base + h.conds_at, &b->conds);
-	write_table(base + h.couples_at, &b->couples);
-	write_table(base + h.bits_at, &b->bits);
-	write_table(base + h.runs_at, &b->runs);
 }

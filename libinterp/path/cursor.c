@@ -60,6 +60,8 @@ static const struct interp_walk *walk_of(const struct interp_cursor *c)
 	if (c->seg.kind == INTERP_PAIR)
 		return c->p.head->strategy == INTERP_SIMULTANEOUS ?
 		       &walk_pair_at_once : &walk_pair;
+	if (c->seg.kind == INTERP_CURVE)
+		return &walk_curve;
 	if (c->seg.kind != INTERP_ARC)
 		return walk_of_line(c);
 	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
@@ -139,6 +141,16 @@ int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick)
 	return 0;
 }
 
+int interp_cursor_seek_end(struct interp_cursor *c, uint32_t index)
+{
+	if (index >= c->p.head->nsegs)
+		return -ERANGE;
+	if (!cursor_enter(c, index, true))
+		return -EBADMSG;
+	interp_cursor_stop(c);
+	return 0;
+}
+
 void interp_cursor_aim(struct interp_cursor *c, double ds_mm)
 {
 	c->want_mm = c->s_mm + ds_mm;
@@ -153,6 +165,27 @@ void interp_cursor_stop(struct interp_cursor *c)
 			  (double)c->whole;
 	c->want_mm = c->s_mm;
 	c->want = c->measure;
+}
+
+/* Short of half a tick a place still belongs to its tick. */
+#define SLIDE_TICKS	0.499
+
+bool interp_cursor_slide(struct interp_cursor *c)
+{
+	const double want_mm = c->want_mm;
+	const double tick_mm = c->whole > 0 ?
+			       c->seg.length_mm / (double)c->whole : 0;
+	const double at_mm = tick_mm * (double)c->measure;
+	const double low = fmax(0, at_mm - SLIDE_TICKS * tick_mm);
+	const double high = fmin(c->seg.length_mm,
+				 at_mm + SLIDE_TICKS * tick_mm);
+
+	/* Never past the place aimed at, and never the other way. */
+	c->s_mm = c->backward ? fmax(c->want_mm, fmin(low, c->s_mm)) :
+				fmin(c->want_mm, fmax(high, c->s_mm));
+	c->want_mm = c->s_mm;
+	c->want = c->measure;
+	return c->s_mm == want_mm;
 }
 
 /* -- Crossing from one segment into the next ------------------------------- */

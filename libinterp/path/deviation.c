@@ -21,6 +21,9 @@ static uint32_t length_axes(const struct interp_cursor *c)
 	}
 	if (c->seg.kind == INTERP_ARC)
 		moved |= 1u << c->arc.axis_a | 1u << c->arc.axis_b;
+	for (uint32_t j = 0; c->seg.kind == INTERP_CURVE &&
+	     j < c->curve.eval.c.naxes; j++)
+		moved |= 1u << c->curve.axis[j];
 	return moved & linear ? linear : ~0u;
 }
 
@@ -166,12 +169,34 @@ static double pair_deviation(const struct interp_cursor *c, uint32_t axes)
 						 1u << arc->axis_b);
 }
 
+/* The nearest place lies a few pulses from the point's own. */
+static double curve_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	struct interp_curve_walk k = c->curve;
+	const double at = k.place_mm * c->tick / k.turns;
+	double lo = fmax(at - 8 * k.place_mm, 0);
+	double hi = fmin(at + 8 * k.place_mm, c->seg.length_mm);
+
+	for (int i = 0; i < 32; i++) {
+		const double third = (hi - lo) / 3;
+
+		if (walk_curve_gap2(c, &k, axes, lo + third) <
+		    walk_curve_gap2(c, &k, axes, hi - third))
+			hi -= third;
+		else
+			lo += third;
+	}
+	return sqrt(walk_curve_gap2(c, &k, axes, (lo + hi) / 2));
+}
+
 double interp_cursor_deviation_mm(const struct interp_cursor *c)
 {
 	const uint32_t axes = length_axes(c);
 
 	if (c->seg.kind == INTERP_PAIR)
 		return pair_deviation(c, axes);
+	if (c->seg.kind == INTERP_CURVE)
+		return curve_deviation(c, axes);
 	return c->seg.kind == INTERP_ARC ? arc_deviation(c, axes) :
 					   line_deviation(c, axes);
 }

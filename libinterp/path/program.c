@@ -43,7 +43,7 @@ static bool head_ok(const struct interp_program_head *h, size_t bytes)
 	    h->version != INTERP_PROGRAM_VERSION ||
 	    h->head_bytes != sizeof(*h) || h->bytes > bytes)
 		return false;
-	if (h->nsegs < 2 || h->nconds < 1 || h->naxes > INTERP_NAXES ||
+	if (h->nsegs < 2 || h->nconds < 1 || h->nescapes < 1 || h->naxes > INTERP_NAXES ||
 	    h->strategy >= INTERP_NSTRATEGIES || !isfinite(h->length_mm))
 		return false;
 	if (h->tolerance_milli > INTERP_TOLERANCE_MAX ||
@@ -65,9 +65,14 @@ int interp_program_map(struct interp_program *p, const void *block,
 		      sizeof(*p->nodes)) ||
 	    !table_ok(h, h->arcs_at, h->narcs, sizeof(*p->arcs)) ||
 	    !table_ok(h, h->conds_at, h->nconds, sizeof(*p->conds)) ||
+	    !table_ok(h, h->escapes_at, h->nescapes, sizeof(*p->escapes)) ||
 	    !table_ok(h, h->runs_at, h->nruns, sizeof(*p->runs)) ||
 	    !table_ok(h, h->couples_at, h->ncouples, sizeof(*p->couples)) ||
-	    !table_ok(h, h->bits_at, h->nbits, sizeof(*p->bits)))
+	    !table_ok(h, h->bits_at, h->nbits, sizeof(*p->bits)) ||
+	    !table_ok(h, h->curves_at, h->ncurves, sizeof(*p->curves)) ||
+	    !table_ok(h, h->pieces_at, h->npieces, sizeof(*p->pieces)) ||
+	    !table_ok(h, h->stops_at, h->nstops, sizeof(*p->stops)) ||
+	    !table_ok(h, h->numbers_at, h->nnumbers, sizeof(*p->numbers)))
 		return -EBADMSG;
 
 	p->head = h;
@@ -75,9 +80,18 @@ int interp_program_map(struct interp_program *p, const void *block,
 	p->nodes = (const void *)(base + h->nodes_at);
 	p->arcs = (const void *)(base + h->arcs_at);
 	p->conds = (const void *)(base + h->conds_at);
+	p->escapes = (const void *)(base + h->escapes_at);
 	p->runs = (const void *)(base + h->runs_at);
 	p->couples = (const void *)(base + h->couples_at);
 	p->bits = (const void *)(base + h->bits_at);
+	p->curves = (const void *)(base + h->curves_at);
+	p->pieces = (const void *)(base + h->pieces_at);
+	p->stops = (const void *)(base + h->stops_at);
+	p->numbers = (const void *)(base + h->numbers_at);
+	for (uint32_t i = 0; i < h->nconds; i++) {
+		if (!interp_tech_ok(&p->conds[i].tech))
+			return -EBADMSG;
+	}
 	if (p->segs[0].kind != INTERP_BEGIN ||
 	    p->segs[h->nsegs - 1].kind != INTERP_END)
 		return -EBADMSG;
@@ -90,20 +104,57 @@ bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 	const uint32_t n = p->head->nsegs;
 
 	if (i >= n || seg->kind >= INTERP_NKINDS ||
-	    seg->cond >= p->head->nconds)
+	    seg->cond >= p->head->nconds || seg->escape >= p->head->nescapes ||
+	    !(seg->node_mm_s > 0))
 		return false;
 	if ((seg->kind == INTERP_BEGIN) != (i == 0) ||
 	    (seg->kind == INTERP_END) != (i == n - 1))
 		return false;
+	if (seg->kind == INTERP_TIMED && (seg->arg <= i || seg->arg >= n))
+		return false;
 	if (seg->kind >= INTERP_BEGIN)
 		return seg->length_mm == 0 && seg->ticks == 0 &&
-		       isfinite(seg->s_mm);
+		       isfinite(seg->s_mm) &&
+		       (seg->kind != INTERP_MCODE || interp_mcode_ok(seg->arg));
+	if (seg->flags & INTERP_SEG_SENSED && seg->kind != INTERP_LINE)
+		return false;
 	return isfinite(seg->s_mm) && isfinite(seg->length_mm) &&
 	       seg->length_mm > 0 && isfinite(seg->feed_mm_s) &&
 	       seg->feed_mm_s > 0 && isfinite(seg->feed_max_mm_s) &&
 	       seg->feed_max_mm_s > 0 &&
 	       (seg->kind != INTERP_ARC || seg->arg < p->head->narcs) &&
-	       (seg->kind != INTERP_PAIR || seg->arg < p->head->ncouples);
+	       (seg->kind != INTERP_PAIR || seg->arg < p->head->ncouples) &&
+	       (seg->kind != INTERP_CURVE || seg->arg < p->head->npieces);
+}
+
+/* Are @n numbers from @at among those of the program? */
+static bool numbers_ok(const struct interp_program *p, uint64_t at, uint64_t n)
+{
+	return at <= p->head->nnumbers && n <= p->head->nnumbers - at;
+}
+
+bool interp_program_curve(const struct interp_program *p, uint32_t i,
+			  struct interp_nurbs *ret)
+{
+	struct interp_curve c;
+
+	if (i >= p->head->ncurves)
+		return false;
+	c = p->curves[i];
+	if (c.degree < 1 || c.degree > INTERP_NURBS_DEGREE_MAX ||
+	    c.naxes < 1 || c.naxes > INTERP_NAXES || c.counted < 1 ||
+	    c.counted > c.naxes || c.npoints < c.degree + 1 ||
+	    c.npoints > INTERP_NURBS_POINTS_MAX ||
+	    !numbers_ok(p, c.knots_at, c.npoints + c.degree + 1) ||
+	    !numbers_ok(p, c.points_at, (uint64_t)c.npoints * (c.naxes + 1)))
+		return false;
+	*ret = (struct interp_nurbs) {
+		.degree = c.degree, .naxes = c.naxes, .npoints = c.npoints,
+		.counted = c.counted, .others = c.others,
+		.knots = p->numbers + c.knots_at,
+		.points = p->numbers + c.points_at,
+	};
+	return true;
 }
 
 static const char *const strategies[INTERP_NSTRATEGIES] = {
@@ -119,6 +170,13 @@ static const char *const couplings[INTERP_NCOUPLINGS] = {
 	[INTERP_STAR]	= "star",
 	[INTERP_TREE]	= "tree",
 	[INTERP_TUBE]	= "tube",
+};
+
+static const char *const escape_modes[INTERP_NESCAPE_MODES] = {
+	[INTERP_ESCAPE_PATH]	= "path",
+	[INTERP_ESCAPE_NORMAL]	= "normal",
+	[INTERP_ESCAPE_CENTRE]	= "centre",
+	[INTERP_ESCAPE_AXIS]	= "axis",
 };
 
 static int parse(const char *const *names, int n, const char *name)
@@ -148,4 +206,9 @@ const char *interp_coupling_name(enum interp_coupling k)
 int interp_coupling_parse(const char *name)
 {
 	return parse(couplings, INTERP_NCOUPLINGS, name);
+}
+
+const char *interp_escape_mode_name(enum interp_escape_mode m)
+{
+	return m < INTERP_NESCAPE_MODES ? escape_modes[m] : NULL;
 }

@@ -239,8 +239,12 @@ static uint32_t pair_back(struct interp_cursor *c, uint32_t ticks,
 
 static int64_t pair_last(const struct interp_cursor *c)
 {
-	const int i = bit_at(c, c->tick - 1);
+	int i;
 
+	/* A damaged pair may want to go back from its start. */
+	if (c->tick == 0)
+		return 1;
+	i = bit_at(c, c->tick - 1);
 	return c->side[i].tick == 0 ? 1 : tick_measure(c, i);
 }
 

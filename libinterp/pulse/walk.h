@@ -51,6 +51,8 @@ extern const struct interp_walk walk_circle;
  * sides_at_once.c. */
 extern const struct interp_walk walk_pair;
 extern const struct interp_walk walk_pair_at_once;
+/* Parts of NURBS: curve.c. */
+extern const struct interp_walk walk_curve;
 /* Actions: no points at all: cursor.c. */
 
 /**
@@ -205,5 +207,21 @@ bool walk_circle_set(struct interp_cursor *c, bool at_end);
 
 /** walk_circle_pulse() - one pulse of c->circle, @dir +1 or -1; its bits. */
 uint32_t walk_circle_pulse(struct interp_cursor *c, int dir);
+
+/** walk_curve_aim() - a part of the curve k->eval is open for, in places. */
+void walk_curve_aim(struct interp_curve_walk *k,
+		    const struct interp_nurbs_stop *stops, uint32_t nstops,
+		    uint32_t places, double length_mm);
+
+/** walk_curve_place() - k->pos of a place between the ends; of a curve, for
+ *  the walk and the builder. */
+void walk_curve_place(struct interp_curve_walk *k, const double *pulses_mm,
+		      uint32_t place);
+
+/** walk_curve_gap2() - square of the distance of c->pos from its curve, over
+ *  the axes of @axes, at the place @s_mm. */
+double walk_curve_gap2(const struct interp_cursor *c,
+		       struct interp_curve_walk *k, uint32_t axes,
+		       double s_mm);
 
 #endif /* PULSE_WALK_H */

@@ -230,7 +230,9 @@ static int release(struct contour *k, const struct contour_motion *next,
 
 int contour_flush(struct contour *k, struct interp_diag *diag)
 {
-	return k->held ? release(k, NULL, diag) : 0;
+	const int r = k->held ? release(k, NULL, diag) : 0;
+
+	return r ? r : interp_build_flush(k->guides.build, diag);
 }
 
 /* -- In -------------------------------------------------------------------- */
@@ -459,6 +461,28 @@ int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
 		}
 	}
 	return take(k, &m, diag);
+}
+
+int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
+		  const struct interp_build_curve *c,
+		  const struct interp_build_word *w, struct interp_diag *diag)
+{
+	int r;
+
+	if (!is_idle(k)) {
+		diag->line = w->line;
+		snprintf(diag->found, sizeof(diag->found),
+			 "a curve under an offset, a taper, guides or corner "
+			 "control");
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "a curve without them, or arcs and lines");
+		return -EINVAL;
+	}
+	r = interp_build_curve(k->guides.build, c, w, diag);
+	if (r == -EINVAL)
+		diag->line = w->line;
+	stand(k, end_mm);
+	return r;
 }
 
 int contour_action(struct contour *k, enum interp_kind kind, uint32_t arg,

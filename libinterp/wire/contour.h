@@ -68,6 +68,10 @@ int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 int contour_arc(struct contour *k, const double end_mm[INTERP_NAXES],
 		const struct interp_build_arc *arc,
 		const struct interp_build_word *w, struct interp_diag *diag);
+/* Refused with an offset, a taper, guides or corner control in force. */
+int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
+		  const struct interp_build_curve *c,
+		  const struct interp_build_word *w, struct interp_diag *diag);
 int contour_action(struct contour *k, enum interp_kind kind, uint32_t arg,
 		   const struct interp_build_word *w, struct interp_diag *diag);
 

@@ -96,6 +96,21 @@ struct interp_side {
 	bool arc;
 };
 
+/* Part of a curve: see pulse/curve.c. */
+struct interp_curve_walk {
+	struct interp_nurbs_eval eval;
+	struct interp_nurbs_between between;
+	const struct interp_nurbs_stop *stops;
+	uint32_t nstops;
+	uint32_t places;		/* from the first to the last */
+	double place_mm;		/* from one to the next */
+	uint32_t turns;			/* ticks of a place: 1, or one for each
+					 * axis */
+	uint32_t at;			/* the place that pos[] is of */
+	int32_t pos[INTERP_NAXES];	/* pulses, by column */
+	uint8_t axis[INTERP_NAXES];
+};
+
 struct interp_walk;
 
 /* Placed by the caller, filled by interp_cursor_init(); read, do not write. */
@@ -128,6 +143,7 @@ struct interp_cursor {
 	struct interp_circle circle;
 	struct interp_side side[2];
 	struct interp_rotor rotor;
+	struct interp_curve_walk curve;
 	int64_t others, circle_at;	/* a helix's other pulses; measure of
 					 * its circle alone */
 	double pulses_mm[INTERP_NAXES];	/* pulses per mm */
@@ -150,6 +166,13 @@ int interp_cursor_init(struct interp_cursor *c, const struct interp_program *p);
  * Return: 0, -ERANGE if there is no such place, -EBADMSG.
  */
 int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick);
+
+/**
+ * interp_cursor_seek_end() - stand at the end of segment @index, at once.
+ *
+ * Return: 0, -ERANGE if there is no such place, -EBADMSG.
+ */
+int interp_cursor_seek_end(struct interp_cursor *c, uint32_t index);
 
 /** interp_cursor_place_mm() - where it stands on the path. */
 static inline double interp_cursor_place_mm(const struct interp_cursor *c)
@@ -186,6 +209,15 @@ uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
 
 /** interp_cursor_pass() - step over the action in front, forward. */
 enum interp_step interp_cursor_pass(struct interp_cursor *c);
+
+/**
+ * interp_cursor_slide() - as far toward the place aimed at as goes without
+ * another lattice point; the rest is forgotten.
+ *
+ * A walk slower than a point a call, some of whose calls slide, loses nothing.
+ * Return: true if that was all the way, false if some is lost.
+ */
+bool interp_cursor_slide(struct interp_cursor *c);
 
 /** interp_cursor_stop() - forget the rest of the distance aimed at. */
 void interp_cursor_stop(struct interp_cursor *c);

@@ -16,6 +16,9 @@
 #define INTERP_NC_H
 
 #include "interp/build.h"
+#include "interp/kinematics.h"
+#include "interp/mcode.h"
+#include "interp/tech_table.h"
 #include "interp/wire.h"
 
 #define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */
@@ -32,9 +35,19 @@ struct interp_nc_options {
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
 	const struct interp_wire *wire;	/* lent; NULL: no guides, no corners */
 	double offset_mm[INTERP_NOFFSETS];	/* D and H; 0: not filled */
+	const struct interp_kinematics *kinematics;	/* lent; NULL: no G43.4 */
+	double tip_tolerance_mm;	/* of the tip's way under G43.4, > 0 */
 	double feed_mm_s;	/* until the first F; 0: an F is demanded, or,
 				 * where programs have none, the fastest X and
 				 * Y both go */
+	enum interp_escape_mode escape;	/* until the first G140 ... G143 */
+	const struct interp_tech_table *tech;	/* lent; NULL: conditions are
+				 * taken as they come, without values */
+	const struct interp_tech *machine_tech;	/* lent: the machine's own
+				 * values, which conditions go over; NULL: not
+				 * looked at */
+	const struct interp_mcode *mcode;	/* lent, INTERP_NMCODES of
+				 * them by number: the PLC's; NULL: none */
 	uint32_t segs_max;	/* 0: INTERP_NC_SEGS_MAX */
 	uint32_t executed_max;	/* 0: INTERP_NC_EXECUTED_MAX */
 };

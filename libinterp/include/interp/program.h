@@ -9,7 +9,9 @@
  * real-time process maps it read-only.
  *
  *	head | segments[nsegs] | nodes[nsegs + 1][naxes] | arcs[narcs]
- *	     | conditions[nconds] | couples[ncouples] | bits[nbits] | runs[nruns]
+ *	     | conditions[nconds] | escapes[nescapes] | couples[ncouples]
+ *	     | bits[nbits] | curves[ncurves] | pieces[npieces]
+ *	     | stops[nstops] | numbers[nnumbers] | runs[nruns]
  *
  * Nodes are fixed-point: 1 pulse = INTERP_SUB subpulses, so a programmed
  * point finer than a pulse is kept, and there and back is exact.  A node has
@@ -23,6 +25,9 @@
 #define INTERP_PROGRAM_H
 
 #include "interp/axis.h"
+#include "interp/mcode.h"
+#include "interp/nurbs_length.h"
+#include "interp/tech.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -31,7 +36,7 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	3
+#define INTERP_PROGRAM_VERSION	5
 
 /* How a path becomes pulses. */
 enum interp_strategy {
@@ -65,12 +70,17 @@ enum interp_kind {
 	INTERP_ARC,			/* circular or helical; arg: arc index */
 	INTERP_PAIR,			/* X Y and U V, each a line or an arc;
 					 * arg: couple index */
+	INTERP_CURVE,			/* part of a NURBS; arg: piece index */
 	/* From here on: actions, of no length. */
 	INTERP_BEGIN,			/* always the first, does nothing */
 	INTERP_DWELL,			/* arg: milliseconds */
 	INTERP_STOP,			/* M0: hold until resumed */
 	INTERP_OPTIONAL_STOP,		/* M1 */
 	INTERP_AUX,			/* arg: enum interp_aux */
+	INTERP_MCODE,			/* the PLC's; arg: interp/mcode.h */
+	INTERP_TIMED,			/* what is up to segment arg, which ends
+					 * where it begins, has a time ... */
+	INTERP_TIMED_END,		/* ... of arg milliseconds */
 	INTERP_END,			/* always the last: M2, M30, end of text */
 	INTERP_NKINDS
 };
@@ -87,6 +97,14 @@ enum interp_aux {
 
 #define INTERP_SEG_RAPID	0x01	/* G0: positioned, not eroded */
 
+/* Straight lines that end where the machine says, not where they lead to: what
+ * is left of them is not walked, and moves all that follows.  Without power. */
+#define INTERP_SEG_TOUCH	0x02	/* at contact */
+#define INTERP_SEG_HALF		0x04	/* between the last two contacts along
+					 * its axis */
+#define INTERP_SEG_LIMIT	0x08	/* at the end of its axis's travel */
+#define INTERP_SEG_SENSED	0x0e	/* any of them */
+
 struct interp_seg {
 	double s_mm;			/* place of its first node on the path */
 	double length_mm;		/* 0 for an action */
@@ -98,6 +116,15 @@ struct interp_seg {
 	uint16_t cond;			/* conditions[cond]; 0 is "none called" */
 	uint8_t kind;			/* enum interp_kind */
 	uint8_t flags;			/* INTERP_SEG_* */
+	/* Written by libinterp/speed when the program is whole: limits.h */
+	float node_mm_s;		/* the fastest over its last node */
+	uint16_t slower_ahead;		/* so many segments on is one that is
+					 * entered slower than this one */
+	uint16_t slower_behind;		/* the same, going back; 0: none */
+	uint16_t slower_feed;		/* so many on has a smaller F; 0: none */
+	uint16_t escape;		/* escapes[escape]; 0 is "along the
+					 * path" */
+	uint32_t pad;
 };
 
 /*
@@ -137,11 +164,56 @@ struct interp_couple {
 	uint64_t bits_at;		/* first word; ticks bits from there */
 };
 
+/*
+ * A NURBS that a program goes along, whole or in pieces.  Its knots and control
+ * points stand in numbers[], as interp/nurbs.h has them.
+ */
+struct interp_curve {
+	uint32_t degree, npoints;
+	uint32_t naxes, counted;
+	double others;
+	uint64_t knots_at, points_at;
+	uint8_t axis[INTERP_NAXES];	/* of each column */
+};
+
+/* What one segment goes along: from its first stop to its last. */
+struct interp_piece {
+	uint32_t curve;
+	uint32_t nstops;
+	uint64_t stops_at;
+};
+
 /* A technology condition called by the program, such as C120 or E001. */
 struct interp_cond {
 	uint32_t number;
 	char letter;			/* 'C', 'E' or 'S'; 0: none yet */
 	char pad[3];
+	struct interp_tech tech;	/* from a technology table, if it has
+					 * the condition; else nothing given */
+};
+
+/*
+ * A way out that is not the path's, in up to three straight legs: rise_mm
+ * toward out_mm; the axes in `home` to home_mm; those in `out` to out_mm.
+ * Each is free of material for as long as the segment is cut.
+ */
+struct interp_escape {
+	uint32_t home, out;		/* bit per axis; 0 and 0: along the
+					 * path */
+	double home_mm[INTERP_NAXES];	/* machine coordinates */
+	double out_mm[INTERP_NAXES];
+	double rise_mm;
+	double v_max_mm_s;		/* the fastest its axes allow */
+};
+
+/* Which way out is asked for, where it is known to be free. */
+enum interp_escape_mode {
+	INTERP_ESCAPE_PATH,		/* back along the path */
+	INTERP_ESCAPE_NORMAL,		/* square off the wall of an orbit, out */
+	INTERP_ESCAPE_CENTRE,		/* to the centre of an orbit, then out */
+	INTERP_ESCAPE_AXIS,		/* straight up where it came straight
+					 * down */
+	INTERP_NESCAPE_MODES
 };
 
 struct interp_program_head {
@@ -163,6 +235,9 @@ struct interp_program_head {
 	double length_mm;
 	uint64_t ncouples, couples_at;
 	uint64_t nbits, bits_at;		/* words of 64 bits */
+	uint64_t nescapes, escapes_at;	/* at least one: along the path */
+	uint64_t ncurves, curves_at, npieces, pieces_at;
+	uint64_t nstops, stops_at, nnumbers, numbers_at;
 	double pulse_mm[INTERP_NAXES];
 	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
 	uint8_t hash[32];		/* SHA-256 of the source text, or zeros */
@@ -176,16 +251,22 @@ struct interp_program {
 	const int64_t *nodes;
 	const struct interp_arc *arcs;
 	const struct interp_cond *conds;
+	const struct interp_escape *escapes;
 	const int32_t *runs;		/* pulses in a row, signed */
 	const struct interp_couple *couples;
 	const uint64_t *bits;
+	const struct interp_curve *curves;
+	const struct interp_piece *pieces;
+	const struct interp_nurbs_stop *stops;
+	const double *numbers;
 };
 
 /**
  * interp_program_map() - look at @bytes bytes at @block as a program.
  *
- * Checks the head and that every table lies inside the block; the segments
- * are checked one by one when a cursor enters them.
+ * Checks the head, that every table lies inside the block, and the values of
+ * the conditions; the segments are checked one by one when a cursor enters
+ * them.
  *
  * Return: 0, or -EBADMSG.  Any thread.
  */
@@ -200,6 +281,25 @@ int interp_program_map(struct interp_program *p, const void *block,
 bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 			   const struct interp_seg *seg);
 
+/**
+ * interp_program_curve() - curve @i as interp/nurbs.h has it; false if it is
+ * none that can be gone along.  Its knots and points are the program's.
+ * RT-safe.
+ */
+bool interp_program_curve(const struct interp_program *p, uint32_t i,
+			  struct interp_nurbs *ret);
+
+/**
+ * interp_program_curve_rate() - which way a segment of kind INTERP_CURVE sets
+ * out or arrives: @ret[j] is the way of node column j per mm of path.
+ *
+ * At a cusp it is the way on this segment's side of it.  Any thread; not for
+ * the cycle.  Return: false if the segment is not sound.
+ */
+bool interp_program_curve_rate(const struct interp_program *p,
+			       const struct interp_seg *seg, bool at_end,
+			       double ret[INTERP_NAXES]);
+
 /** interp_strategy_name() - "simultaneous", ...; NULL if unknown. Any thread. */
 const char *interp_strategy_name(enum interp_strategy s);
 
@@ -211,6 +311,9 @@ const char *interp_coupling_name(enum interp_coupling k);
 
 /** interp_coupling_parse() - the reverse; -EINVAL if unknown. Any thread. */
 int interp_coupling_parse(const char *name);
+
+/** interp_escape_mode_name() - "path", ...; NULL if unknown. Any thread. */
+const char *interp_escape_mode_name(enum interp_escape_mode m);
 
 /** interp_round_sub() - subpulses to the nearest pulse. RT-safe. */
 static inline int32_t interp_round_sub(int64_t sub)

@@ -49,9 +49,27 @@ void interp_scurve_to_place(struct interp_scurve *c,
 			    const struct interp_scurve_limits *l,
 			    double v_mm_s, double a_mm_s2, double way_mm);
 
+/**
+ * interp_scurve_to_pass() - plan to be @way_mm (signed) on at the speed
+ * @pass_mm_s, toward that place, and with no acceleration.
+ *
+ * @from: its place is not read.  The place must be no nearer than
+ * interp_scurve_way_mm() to that speed, but for a speed of 0.
+ */
+void interp_scurve_to_pass(struct interp_scurve *c,
+			   const struct interp_scurve_limits *l,
+			   const struct interp_scurve_state *from,
+			   double way_mm, double pass_mm_s);
+
 /** interp_scurve_way_mm() - how far it is to a speed; 0 is to a stand. */
 double interp_scurve_way_mm(const struct interp_scurve_limits *l,
 			    double v_mm_s, double a_mm_s2, double to_mm_s);
+
+/**
+ * interp_scurve_falls_mm() - where a plan that ends with less speed last falls
+ * to @v_mm_s; 0 if it is never so fast.
+ */
+double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s);
 
 /** interp_scurve_at() - where it is then; after the end at the end's speed. */
 struct interp_scurve_state interp_scurve_at(const struct interp_scurve *c,

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * shadow.h - the twin beside a machine that runs: predicted against measured
+ * contour error
+ *
+ * Fed with what a trace holds, target and measured place of every axis in every
+ * period, it lets the axis models follow the same targets and measures how far
+ * machine and models are from the path the targets took.  The path is the row
+ * of the last INTERP_SHADOW_POINTS targets; where they turn back, so does it.
+ *
+ * Targets are lattice points, so the path has steps of a pulse, and no error is
+ * known better than that.
+ *
+ * Units: mm, s.
+ * Threads: one object, one thread; bounded work a period.
+ */
+#ifndef INTERP_SHADOW_H
+#define INTERP_SHADOW_H
+
+#include "interp/axis_model.h"
+#include "interp/contour.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define INTERP_SHADOW_POINTS	512	/* a power of two */
+
+/* Placed by the caller; fields are private. */
+struct interp_shadow {
+	int naxes;
+	double period_s;
+	struct interp_axis_loop loop[INTERP_NAXES];
+	struct interp_axis_model model[INTERP_NAXES];
+	double before_mm[INTERP_NAXES];
+	double mm[INTERP_SHADOW_POINTS][INTERP_NAXES];
+	uint64_t n;			/* points so far */
+	struct interp_contour_path path;
+	struct interp_contour measured, predicted;
+	bool begun;
+};
+
+/* Contour errors of one period. */
+struct interp_shadow_error {
+	double measured_mm, predicted_mm;
+	double missed_mm;		/* machine to model */
+};
+
+/**
+ * interp_shadow_init() - for @naxes axes.
+ * Return: 0 or as interp_axis_model_init().
+ */
+int interp_shadow_init(struct interp_shadow *s,
+		       const struct interp_axis_loop *loop, int naxes,
+		       double period_s);
+
+/** interp_shadow_forget() - periods were lost: begin anew with the next. */
+void interp_shadow_forget(struct interp_shadow *s);
+
+/**
+ * interp_shadow_step() - one period.
+ *
+ * @target_mm: set in this period; @actual_mm: measured before that.
+ */
+void interp_shadow_step(struct interp_shadow *s, const double *target_mm,
+			const double *actual_mm,
+			struct interp_shadow_error *ret);
+
+#endif /* INTERP_SHADOW_H */

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * tune.h - find the gains of a compensation on the models of the axes
+ *
+ * The cost of a set of gains is the largest contour error of a trial plus
+ * INTERP_TUNE_MEAN times the mean one, in um.
+ *
+ * Threads: any thread, not in the cycle.
+ */
+#ifndef INTERP_TUNE_H
+#define INTERP_TUNE_H
+
+#include "interp/minimise.h"
+#include "interp/trial.h"
+
+#define INTERP_TUNE_MEAN	10
+
+enum interp_tune_method { INTERP_TUNE_SIMPLEX, INTERP_TUNE_SWARM };
+
+struct interp_tune {
+	struct interp_trial trial;	/* its compensate is begun with */
+	enum interp_tune_method method;
+	unsigned int budget;		/* trials */
+	uint64_t seed;
+};
+
+/**
+ * interp_tune_run() - the gains of the methods in the trial's configuration.
+ *
+ * @ret_cost: the least cost.
+ * Return: 0; -EINVAL if no method has a gain to find, or as
+ * interp_compensate_begin() for the gains begun with.
+ */
+int interp_tune_run(const struct interp_tune *t,
+		    struct interp_compensate_gains *ret, double *ret_cost);
+
+#endif /* INTERP_TUNE_H */

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_block.c - lay a finished program out as one flat block
+ */
+#include "interp/limits.h"
+#include "path/builder.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool ends(const struct interp_build *b)
+{
+	const struct interp_seg *s = b->segs.at;
+
+	return s[b->segs.n - 1].kind == INTERP_END;
+}
+
+static struct interp_program_head layout(const struct interp_build *b)
+{
+	const size_t nsegs = b->segs.n + !ends(b);
+	struct interp_program_head h = {
+		.magic = INTERP_PROGRAM_MAGIC,
+		.version = INTERP_PROGRAM_VERSION,
+		.head_bytes = sizeof(h),
+		.nsegs = (uint32_t)nsegs,
+		.narcs = (uint32_t)b->arcs.n,
+		.nconds = (uint32_t)b->conds.n,
+		.nescapes = b->escapes.n,
+		.ncouples = b->couples.n,
+		.nbits = b->bits.n,
+		.ncurves = b->curves.n,
+		.npieces = b->pieces.n,
+		.nstops = b->stops.n,
+		.nnumbers = b->numbers.n,
+		.naxes = b->naxes,
+		.strategy = b->o.strategy,
+		.tolerance_milli = b->o.tolerance_milli,
+		.perpendicular = b->o.perpendicular,
+		.coupling = b->o.coupling,
+		.nruns = (uint32_t)b->runs.n,
+		.length_mm = b->length_mm,
+	};
+
+	h.segs_at = (sizeof(h) + 7) & ~7ull;
+	h.nodes_at = h.segs_at + nsegs * b->segs.size;
+	h.arcs_at = h.nodes_at + (nsegs + 1) * b->naxes * b->nodes.size;
+	h.conds_at = h.arcs_at + b->arcs.n * b->arcs.size;
+	h.escapes_at = h.conds_at + b->conds.n * b->conds.size;
+	h.couples_at = h.escapes_at + b->escapes.n * b->escapes.size;
+	h.bits_at = h.couples_at + b->couples.n * b->couples.size;
+	h.curves_at = h.bits_at + b->bits.n * b->bits.size;
+	h.pieces_at = h.curves_at + b->curves.n * b->curves.size;
+	h.stops_at = h.pieces_at + b->pieces.n * b->pieces.size;
+	h.numbers_at = h.stops_at + b->stops.n * b->stops.size;
+	h.runs_at = h.numbers_at + b->numbers.n * b->numbers.size;
+	h.bytes = h.runs_at + b->runs.n * b->runs.size;
+	return h;
+}
+
+size_t interp_build_bytes(const struct interp_build *b)
+{
+	return layout(b).bytes;
+}
+
+/* Its memory is given back at once: a large program is in memory once. */
+static void move_table(char *to, struct table *t)
+{
+	if (t->n > 0)
+		memcpy(to, t->at, t->n * t->size);
+	free(t->at);
+	t->at = NULL;
+	t->n = t->room = 0;
+}
+
+static void write_head(const struct interp_build *b,
+		       struct interp_program_head *h,
+		       const struct interp_build_about *about)
+{
+	memcpy(h->column, b->column, sizeof(h->column));
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		h->pulse_mm[i] = b->o.machine->axis[i].pulse_mm;
+		h->start_pulses[i] = interp_round_sub(b->first[i]);
+	}
+	h->lines = about->lines;
+	memcpy(h->hash, about->hash, sizeof(h->hash));
+	snprintf(h->name, sizeof(h->name), "%s",
+		 about->name ? about->name : "");
+}
+
+static void write_limits(const struct interp_build *b, void *block,
+			 size_t bytes, struct interp_seg *segs)
+{
+	const struct interp_limits l = {
+		.machine = b->o.machine,
+		.corner_mm = b->o.corner_mm > 0 ? b->o.corner_mm :
+						  INTERP_CORNER_MM,
+	};
+	struct interp_program p;
+
+	if (interp_program_map(&p, block, bytes) == 0)
+		interp_limits_write(&l, &p, segs);
+}
+
+/* Node 0 comes with the first column; the END has one of its own. */
+static void write_nodes(struct interp_build *b, size_t rows,
+			const struct interp_program_head *h, int64_t *nodes)
+{
+	move_table((char *)nodes, &b->nodes);
+	for (size_t i = rows; i <= h->nsegs; i++) {
+		for (uint32_t j = 0; j < b->naxes; j++)
+			nodes[i * b->naxes + j] = b->here[b->column[j]];
+	}
+}
+
+void interp_build_write(struct interp_build *b,
+			const struct interp_build_about *about, void *block)
+{
+	struct interp_program_head h = layout(b);
+	char *base = block;
+	struct interp_seg *segs = (void *)(base + h.segs_at);
+	const size_t n = b->segs.n;
+	const bool ended = ends(b);
+
+	write_head(b, &h, about);
+	memcpy(base, &h, sizeof(h));
+	move_table((char *)segs, &b->segs);
+	write_nodes(b, n + 1, &h, (void *)(base + h.nodes_at));
+	if (!ended) {
+		segs[n] = (struct interp_seg) {
+			.kind = INTERP_END, .s_mm = b->length_mm,
+			.line = segs[n - 1].line, .cond = b->cond,
+		};
+	}
+	move_table(base + h.arcs_at, &b->arcs);
+	move_table(base + h.conds_at, &b->conds);
+	move_table(base + h.escapes_at, &b->escapes);
+	move_table(base + h.couples_at, &b->couples);
+	move_table(base + h.bits_at, &b->bits);
+	move_table(base + h.curves_at, &b->curves);
+	move_table(base + h.pieces_at, &b->pieces);
+	move_table(base + h.stops_at, &b->stops);
+	move_table(base + h.numbers_at, &b->numbers);
+	move_table(base + h.runs_at, &b->runs);
+	write_limits(b, block, h.bytes, segs);
+}

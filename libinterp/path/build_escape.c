@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_escape.c - ways out that leave the path
+ *
+ * Straight up is free where the electrode came straight down: along one axis
+ * alone, without a motion of another in between.  How far it came is kept
+ * while the path is built, so that no search is needed.
+ */
+#include "path/builder.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+void build_descend(struct interp_build *b, uint32_t moved,
+		   const double end_mm[INTERP_NAXES])
+{
+	struct build_descent *d = &b->descent;
+	const int axis = moved & (moved - 1) ? -1 : __builtin_ctz(moved);
+
+	if (axis < 0 || interp_axis_is_rotary((enum interp_axis)axis)) {
+		d->axis = -1;
+		return;
+	}
+	if (d->axis != axis) {
+		d->axis = axis;
+		d->first_mm = d->low_mm = d->high_mm = b->here_mm[axis];
+	}
+	d->low_mm = fmin(d->low_mm, end_mm[axis]);
+	d->high_mm = fmax(d->high_mm, end_mm[axis]);
+}
+
+double interp_build_came_mm(const struct interp_build *b, int axis, int side)
+{
+	const struct build_descent *d = &b->descent;
+
+	if (d->axis != axis)
+		return b->here_mm[axis];
+	return side < 0 ? d->low_mm : d->high_mm;
+}
+
+void interp_build_lift(struct interp_build *b, int axis)
+{
+	b->lift_axis = axis;
+}
+
+/* As fast as the slowest of its linear axes. */
+static double v_max(const struct interp_build *b, const struct interp_escape *e)
+{
+	double v = e->v_max_mm_s > 0 ? e->v_max_mm_s : INFINITY;
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if ((e->home | e->out) & 1u << i &&
+		    !interp_axis_is_rotary((enum interp_axis)i))
+			v = fmin(v, b->o.machine->axis[i].v_max_mm_s);
+	}
+	return v;
+}
+
+/* So many of the last are looked through for an equal one. */
+#define LOOK_BACK	8
+
+static int escape_add(struct interp_build *b, const struct interp_escape *e)
+{
+	struct interp_escape *at = b->escapes.at;
+	const size_t n = b->escapes.n;
+
+	for (size_t i = n; i-- > 0 && i + LOOK_BACK >= n; ) {
+		if (memcmp(&at[i], e, sizeof(*e)) == 0)
+			return (int)i;
+	}
+	if (b->escapes.n > UINT16_MAX)
+		return 0;
+	at = build_table_add(&b->escapes);
+	if (!at)
+		return -ENOMEM;
+	*at = *e;
+	return (int)b->escapes.n - 1;
+}
+
+int interp_build_escape(struct interp_build *b, const struct interp_escape *e)
+{
+	struct interp_escape bounded;
+	int i;
+
+	b->escape = 0;
+	if (!e)
+		return 0;
+	bounded = *e;
+	bounded.v_max_mm_s = v_max(b, e);
+	i = escape_add(b, &bounded);
+	if (i < 0)
+		return i;
+	b->escape = (uint16_t)i;
+	return 0;
+}
+
+/*
+ * Which side is out is told by where the electrode came to this line, if the
+ * whole motion lies on the other side of it; else by new ground, which is in.
+ */
+uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
+			 const double end_mm[INTERP_NAXES])
+{
+	const struct build_descent *d = &b->descent;
+	const int axis = b->lift_axis;
+	struct interp_escape e = { .out = axis < 0 ? 0 : 1u << axis };
+	int i;
+
+	if (b->escape || axis < 0 || moved != e.out)
+		return b->escape;
+	if (d->first_mm >= fmax(b->here_mm[axis], end_mm[axis]))
+		e.out_mm[axis] = d->high_mm;
+	else if (d->first_mm <= fmin(b->here_mm[axis], end_mm[axis]))
+		e.out_mm[axis] = d->low_mm;
+	else if (end_mm[axis] <= d->low_mm)
+		e.out_mm[axis] = d->high_mm;
+	else if (end_mm[axis] >= d->high_mm)
+		e.out_mm[axis] = d->low_mm;
+	else
+		return 0;
+	e.v_max_mm_s = b->o.machine->axis[axis].v_max_mm_s;
+	i = escape_add(b, &e);
+	return i < 0 ? 0 : (uint16_t)i;
+}
