@@ -4,7 +4,7 @@
  *
  * The real-time thread calls cycle_step() once a period with the hardware's
  * inputs; edmsim calls the same object code with a simulated machine's.  The
- * order within: guard, gap, state, mover, walk along the path, outputs.
+ * order within: gap, guard, state, mover, walk along the path, outputs.
  *
  * States and what leads from one to the next are tables in state.c.  Spark
  * power is on in approach and erode only.
@@ -18,21 +18,54 @@
 #define RT_CYCLE_H
 
 #include "interp/cursor.h"
+#include "arc.h"
+#include "axes.h"
+#include "comp.h"
+#include "escape.h"
+#include "flush.h"
+#include "gap.h"
+#include "hand.h"
+#include "interlock.h"
 #include "io.h"
+#include "limit.h"
+#include "mcode.h"
 #include "mover.h"
+#include "process.h"
+#include "retract.h"
+#include "servo.h"
 #include "state.h"
+#include "touch.h"
 
 /* Why a fault is latched. */
 enum cycle_fault {
 	FAULT_NONE,
 	FAULT_ESTOP,			/* the e-stop input, or the command */
 	FAULT_SHORT_NOT_CLEARED,	/* retracted the whole limit, still short */
-	FAULT_GAP_LOST,			/* the gap voltage is not valid */
+	FAULT_GAP_LOST,			/* the gap cannot be read */
 	FAULT_IO_LOST,			/* the machine does not answer */
 	FAULT_CONTACT,			/* a short while positioning */
 	FAULT_SOFT_LIMIT,		/* the path leaves the travel */
 	FAULT_PROGRAM,			/* a segment failed its check */
 	FAULT_OVERRUN,			/* too many periods missed in a row */
+	FAULT_RETRACT_AT_START,		/* still short where the way back ends */
+	FAULT_RETRACT_TIME,		/* a retract that takes too long */
+	FAULT_RETRACT_COUNT,		/* retracts, and no erosion between */
+	FAULT_ARCING,			/* arcs that nothing ended */
+	FAULT_WIRE_BROKEN,
+	FAULT_GAP_STUCK,		/* the gap signal stands still, or is noise */
+	FAULT_LIMIT_SWITCH,		/* an axis ran onto its switch */
+	FAULT_DOOR,			/* it is open */
+	FAULT_DIELECTRIC,		/* its level is too low to spark */
+	FAULT_HOME,			/* no switch, or no index mark */
+	FAULT_NO_CONTACT,		/* a touch that met nothing */
+	FAULT_DRIVE,			/* a drive has a fault or is gone */
+	FAULT_FOLLOWING,		/* an axis is not where it was sent */
+	FAULT_BUS,			/* the way to the drives is cut */
+	FAULT_PLC_LOST,			/* its toggle does not turn any more */
+	FAULT_PERMIT,			/* the PLC has taken it */
+	FAULT_TEMPERATURE,		/* of the dielectric, out of range */
+	FAULT_FIRE,
+	FAULT_MCODE,			/* the PLC does not answer an M code */
 	CYCLE_NFAULTS
 };
 
@@ -44,22 +77,68 @@ enum cycle_outcome {
 	OUTCOME_STOPPED,		/* by command */
 };
 
+/* Where the sparks are: in a cavity, or along a wire. */
+enum cycle_process {
+	PROCESS_SINK,
+	PROCESS_WIRE,
+	CYCLE_NPROCESSES
+};
+
 struct cycle_gap_config {
+	enum cycle_process process;
+	enum gap_source source;
+	enum gap_filter filter;
+	uint32_t filter_cycles;		/* 0, 1: none */
+	uint32_t short_cycles;		/* in a row make a short; 0 as 1 */
 	double servo_v;			/* hold this mean gap voltage */
 	double short_v;			/* below: short circuit */
 	double open_v;			/* above: nothing to cut yet */
-	double gain_mm_s_v;		/* feed per volt above servo_v */
+	double window_low_v;		/* stand from here; 0: derived */
+	double window_high_v;		/* ... to here; 0: servo_v */
+	double ignition_v;		/* open circuit; 0: not known */
+	double gain_mm_s_v;		/* feed per volt outside the window */
+	double integral_s;		/* reset time; 0: proportional alone */
 	double feed_max_mm_s;		/* fastest feed while eroding */
+	double creep_mm_s;		/* fastest back, while eroding */
+	double feed_a_mm_s2;		/* of the servo; 0: at once */
 	double approach_mm_s;		/* feed until the first spark */
+	double share_v;			/* worth of a share of 1 */
+	double share_set;		/* weighted share to hold */
+	double share_weight;		/* of shorts and arcs, against opens */
+	double share_short;		/* this share of shorts is a short */
+	double share_open;		/* this share of opens is open */
 	double retract_mm_s;		/* back along the path on a short */
+	enum retract_to retract_to;
 	double retract_limit_mm;	/* then stand, and wait ... */
 	uint64_t retract_wait_cycles;	/* ... then fault short-not-cleared */
+	uint64_t retract_max_cycles;	/* then fault retract-time; 0: never */
+	bool retract_escape;		/* out of a short by the escape */
+	uint32_t abort_count;		/* retracts without erosion; 0: any */
+	double progress_mm;		/* cut so much deeper is erosion */
+	double arc_share;		/* more is arcing; 0: not looked at */
+	uint32_t arc_cycles;		/* ... in a mean over so many */
+	double arc_sigma_v;		/* steadier in a plateau: an arc; 0: not
+					 * judged by voltage */
+	double off_us;			/* the generator's own; 0: not known */
+	double arc_off_max;		/* times the off time, against arcs */
+	uint64_t arc_recover_cycles;	/* to a step down */
+	double arc_retract_mm;		/* at least, out of an arc */
+	uint64_t stuck_cycles;		/* no change, then a fault; 0: never */
+	double noise_limit_v;		/* mean change of a cycle; 0: any */
+	double wire_retract_mm;		/* limit of a retract, if wire */
+	double wire_retreat_mm;		/* from a break; 0: to the motion's start */
 };
 
 struct cycle_jump_config {
 	double height_mm;		/* 0: never */
 	uint64_t every_cycles;		/* of erosion between two jumps */
+	double every_mm;		/* ... or of depth; 0: by time alone */
+	bool adaptive;			/* flush.h */
+	uint64_t every_min_cycles, every_max_cycles;
+	double height_min_mm, height_max_mm;
+	double bad_share;		/* of the time between two jumps */
 	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
+	double a_down_mm_s2;		/* toward the cut; 0: a_max_mm_s2 */
 	double short_of_mm;		/* come back to this far above the cut */
 };
 
@@ -67,15 +146,23 @@ struct cycle_config {
 	int64_t period_ns;
 	struct cycle_gap_config gap;
 	struct cycle_jump_config jump;
+	struct touch_config touch;
 	double travel_a_mm_s2;		/* to start and stop positioning */
 	double travel_j_mm_s3;
+	bool stop_at_nodes;		/* in a jump; for comparison */
 	int32_t travel_min[INTERP_NAXES];	/* soft limits, pulses */
 	int32_t travel_max[INTERP_NAXES];
+	int32_t start[INTERP_NAXES];	/* where it stands at first, pulses */
+	uint64_t axes_wait_cycles;	/* for power on the axes, then a fault */
 	uint32_t overrun_limit;		/* missed periods in a row; 0: no fault */
 	uint32_t points_max;		/* lattice points in one cycle */
 	bool dry_run;			/* no gap: walk at the programmed feed */
 	bool optional_stop;		/* M1 holds */
+	uint64_t mcode_cycles;		/* longest wait for the PLC; 0: any */
 	bool hold_at_end;		/* stand held at the end; no job's end */
+	bool require_home;		/* no start before all are homed */
+	struct hand_axis axis[INTERP_NAXES];
+	struct comp_config comp[INTERP_NAXES];
 };
 
 enum cycle_verb {
@@ -86,13 +173,21 @@ enum cycle_verb {
 	CYCLE_RETRACT,			/* hold, arg_mm back along the path */
 	CYCLE_ESTOP,			/* the software e-stop */
 	CYCLE_RESET,			/* leave fault: held, or idle */
+	CYCLE_SET,			/* field `arg` to arg_mm; NAN: as it was */
+	CYCLE_OVERRIDE,			/* of positioning: 0 ... 2 times, arg_mm */
+	CYCLE_STEP,			/* held: arg_mm nodes on, - back */
+	CYCLE_JOG,			/* idle: axis `arg` by arg_mm */
+	CYCLE_HOME,			/* idle: axis `arg`, or HAND_ALL_AXES */
 	CYCLE_NVERBS
 };
 
 struct cycle_command {
 	uint32_t id;			/* the sender's; answered with it */
 	uint32_t verb;			/* enum cycle_verb */
-	double arg_mm;
+	uint32_t arg;			/* set: enum interp_tech_id; jog, home:
+					 * enum interp_axis */
+	double arg_mm;			/* set: the field's own unit; override:
+					 * a factor; step: a number */
 };
 
 /* What a command came to. */
@@ -101,6 +196,14 @@ enum cycle_answer {
 	ANSWER_NO_PROGRAM,		/* nothing is loaded */
 	ANSWER_WRONG_STATE,		/* not in this state */
 	ANSWER_BAD_ARGUMENT,		/* out of range, or not finite */
+	ANSWER_NOT_HOMED,		/* start, and [machine] require_home */
+	ANSWER_AT_LIMIT,		/* an axis is on its limit switch */
+	ANSWER_BEYOND,			/* a jog out of the travel */
+	ANSWER_NO_NODE,			/* fewer on the path, that way */
+	ANSWER_NOT_PASSED,		/* a step over ground not cut yet */
+	ANSWER_ELSEWHERE,		/* a program begins where it is not */
+	ANSWER_NOT_UP,			/* the drives are not up yet */
+	ANSWER_LOCKED,			/* the PLC does not permit it */
 	CYCLE_NANSWERS
 };
 
@@ -109,21 +212,28 @@ struct cycle_totals {
 	uint64_t cycles;		/* since start */
 	uint64_t erode_cycles, jump_cycles;
 	uint64_t pulses[INTERP_NAXES];
-	uint32_t retracts, jumps, shorts, overruns;
+	uint32_t retracts, jumps, shorts, arcs, overruns;
 	double retract_mm_max;
 };
 
-/* What positioning saw ahead. */
+/* A move along the path, while it lasts; ahead.c. */
 struct cycle_ahead {
-	uint32_t slow_for;		/* a slower segment; 0: none */
-	double slow_mm_s;		/* its speed */
-	double v_mm_s, a_mm_s2;		/* the two below are for these; */
-	double need_mm;			/* look so far; 0: not known */
-	struct interp_scurve_state next;	/* a cycle on, at most */
+	enum cycle_state state;		/* it belongs to */
+	int toward;			/* +1 or -1 */
+	double goal_mm, override;
+	struct mover_limits l;		/* as they were when it began */
+	double entered_mm_s;		/* the fastest it has from before */
+	double room_mm;			/* nothing to see, so far, at no
+					 * acceleration */
+	bool to_place;			/* the plan is for a place: */
+	double place_mm, v_max_mm_s;
 };
 
 struct cycle {
 	struct cycle_config config;
+	struct cycle_gap_config gap;	/* in force: config's, and what the */
+	struct cycle_jump_config jump;	/* condition and `set` made of it */
+	struct process process;		/* what made gap, jump and out.pulse */
 	struct interp_cursor cursor;
 	bool loaded;			/* cursor stands on a program */
 	enum cycle_state state;
@@ -132,35 +242,89 @@ struct cycle {
 	uint64_t count;			/* cycles since cycle_init() */
 	struct cycle_totals totals;
 	double feed_mm_s;		/* of this cycle, as walked */
-	double gap_v;			/* as read */
+	double gap_v;			/* as read; sensed.v */
+	struct gap_reading sensed;	/* this cycle's gap */
+	struct gap_memory gap_past;
 	double far_mm;			/* farthest place eroded or passed */
 	double jump_from_mm;		/* place the jump began */
 	double jump_to_mm;		/* place the lift or the return leads to */
 	double move_to_mm;		/* place a retract by command leads to */
-	double retract_from_mm;		/* place the retract began */
-	uint64_t retract_waited;	/* cycles stood at its limit */
-	struct mover mover;		/* speed along the path */
-	struct cycle_ahead ahead;	/* while positioning */
+	struct retract retract;		/* the one under way, or the last */
+	struct servo servo;
+	struct arc arc;
+	struct flush flush;
+	struct touch touch;
+	struct mover mover;		/* speed along the path, or along ... */
+	struct escape escape;		/* ... the way out beside it */
+	struct axes axes;		/* under power, or not yet */
+	struct cycle_ahead ahead;
+	struct hand hand;		/* without a program */
+	struct limit limit;
+	struct comp comp;		/* from places to pulses */
+	double override;		/* of positioning; 1: as programmed */
 	bool lifting;			/* a jump on its way up */
+	bool leaving;			/* the time is up: a jump that does not
+					 * come back */
+	uint32_t timed_end;		/* segment where a time ends; 0: none */
+	uint64_t timed_left;		/* cycles */
+	double timed_from_mm;		/* place where it began */
+	struct io_plc plc;		/* as read */
+	struct mcode mcode;
+	double back_mm;			/* no way back beyond this place */
 	bool moving;			/* held, but walking back by command */
+	bool braked;			/* held, and has stood since */
 	enum cycle_state after_stand;	/* held: where to, once it stands */
-	uint64_t since_jump;		/* cycles of erosion */
 	uint64_t dwell_left;		/* cycles */
 	uint32_t overruns_in_row;
 	bool overran;			/* since the last step */
 	uint32_t action_done;		/* actions up to this index are done */
 	bool dwelling;
 	bool power_off;			/* the program switched it off (M5) */
-	bool gap_short, gap_open;	/* this cycle's gap */
-	bool short_before;		/* it was short the cycle before */
 	bool free_seen;			/* open since positioning began */
 	bool at_start;			/* the walk met the program's start */
-	struct io_outputs out;		/* as last given */
+	bool busy;			/* the machine takes no point now */
+	bool cut_short;			/* the last walk fell short of its way */
+	struct io_outputs out;		/* its target: places on the path */
+	struct io_outputs given;	/* its target: pulses of the drives */
 
 	/* Called after every lattice point with the cursor on it; may be NULL. */
 	void (*on_point)(void *arg, const struct cycle *c);
 	void *on_point_arg;
 };
+
+/**
+ * cycle_place_mm() - where it is on its path; beside it, less the way back.
+ */
+static inline double cycle_place_mm(const struct cycle *c)
+{
+	return interp_cursor_place_mm(&c->cursor) - c->escape.way_mm;
+}
+
+/** cycle_outer_mm() - the farthest back it may go, counted the same way. */
+static inline double cycle_outer_mm(const struct cycle *c)
+{
+	return c->escape.nlegs > 0 ? interp_cursor_place_mm(&c->cursor) -
+				     c->escape.length_mm : c->back_mm;
+}
+
+/** cycle_pos() - the lattice point it stands on, as programmed; the axes are
+ *  at touch.shift from it. */
+static inline const int32_t *cycle_pos(const struct cycle *c)
+{
+	return escape_is_out(&c->escape) ? c->escape.pos : c->cursor.pos;
+}
+
+/** cycle_axis() - where axis @i is then, pulses. */
+static inline int32_t cycle_axis(const struct cycle *c, int i)
+{
+	return cycle_pos(c)[i] + c->touch.shift[i];
+}
+
+/** cycle_moved() - bit per axis that moved to it. */
+static inline uint32_t cycle_moved(const struct cycle *c)
+{
+	return escape_is_out(&c->escape) ? c->escape.moved : c->cursor.moved;
+}
 
 /** cycle_init() - idle, nothing loaded.  Startup only. */
 void cycle_init(struct cycle *c, const struct cycle_config *config);

@@ -24,12 +24,15 @@ enum mover_plan {
 struct mover_limits {
 	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	double period_s;
+	double a_back_mm_s2;		/* acceleration toward -; 0: a_max */
 };
 
 struct mover {
 	double v_mm_s, a_mm_s2;		/* signed */
 	enum mover_plan kind;
 	double goal;			/* mm left when planned, or mm/s */
+	double pass_mm_s;		/* speed at the place; 0: stand there */
+	double left_mm;			/* to the place, this cycle */
 	double t_s, gone_mm;		/* of the plan */
 	struct mover_limits l;		/* it was planned with */
 	struct interp_scurve plan;
@@ -54,6 +57,30 @@ double mover_run(struct mover *m, const struct mover_limits *l, double v_mm_s);
 
 /** mover_stop() - the distance this cycle while braking to a stand. */
 double mover_stop(struct mover *m, const struct mover_limits *l);
+
+/*
+ * The same in three steps, for who looks ahead: aim, peek at what the next
+ * cycle would be, aim elsewhere if that is no good, go.
+ */
+
+/** mover_aim_speed() - at a speed. */
+void mover_aim_speed(struct mover *m, const struct mover_limits *l,
+		     double v_mm_s);
+
+/**
+ * mover_aim_place() - at a place @left_mm away (signed), to pass it at
+ * @pass_mm_s toward it, or to stand there (0).
+ *
+ * Which can still be met, if it is not a stand: interp_scurve_to_pass().
+ */
+void mover_aim_place(struct mover *m, const struct mover_limits *l,
+		     double left_mm, double pass_mm_s);
+
+/** mover_peek() - after the next cycle; its place from here. */
+struct interp_scurve_state mover_peek(const struct mover *m, double period_s);
+
+/** mover_go() - take that cycle. Return: the distance. */
+double mover_go(struct mover *m, double period_s);
 
 /** mover_curve() - the same limits, as a plan takes them. */
 struct interp_scurve_limits mover_curve(const struct mover_limits *l);

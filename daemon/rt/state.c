@@ -17,6 +17,9 @@ const struct state_duty state_duty[CYCLE_NSTATES] = {
 	[STATE_JUMP]	 = { "jump",		false,	true },
 	[STATE_HOLD]	 = { "hold",		false,	false },
 	[STATE_FAULT]	 = { "fault",		false,	false },
+	[STATE_JOG]	 = { "jog",		false,	false },
+	[STATE_HOME]	 = { "home",		false,	false },
+	[STATE_TOUCH]	 = { "touch",		false,	true },
 };
 
 /*
@@ -27,17 +30,22 @@ const struct state_duty state_duty[CYCLE_NSTATES] = {
 static const uint8_t next[CYCLE_NSTATES][CYCLE_NEVENTS] = {
 	[STATE_TRAVEL] = {
 		[EVENT_CUT]		= STATE_APPROACH,
+		[EVENT_TOUCH]		= STATE_TOUCH,
 		[EVENT_END]		= STATE_IDLE,
 	},
 	[STATE_APPROACH] = {
 		[EVENT_SPARK]		= STATE_ERODE,
 		[EVENT_SHORT]		= STATE_RETRACT,
+		[EVENT_ARC]		= STATE_RETRACT,
+		[EVENT_TIME_UP]		= STATE_JUMP,
 		[EVENT_FREE]		= STATE_TRAVEL,
 		[EVENT_END]		= STATE_IDLE,
 	},
 	[STATE_ERODE] = {
 		[EVENT_SHORT]		= STATE_RETRACT,
+		[EVENT_ARC]		= STATE_RETRACT,
 		[EVENT_JUMP_DUE]	= STATE_JUMP,
+		[EVENT_TIME_UP]		= STATE_JUMP,
 		[EVENT_FREE]		= STATE_TRAVEL,
 		[EVENT_END]		= STATE_IDLE,
 	},
@@ -50,9 +58,13 @@ static const uint8_t next[CYCLE_NSTATES][CYCLE_NEVENTS] = {
 	},
 	[STATE_HOLD] = {
 		[EVENT_START]		= STATE_TRAVEL,
+		[EVENT_RETURN]		= STATE_JUMP,
 	},
 	[STATE_FAULT] = {
 		[EVENT_RESET]		= STATE_HOLD,
+	},
+	[STATE_TOUCH] = {
+		[EVENT_MOVE_DONE]	= STATE_TRAVEL,
 	},
 };
 

@@ -17,25 +17,32 @@ enum cycle_state {
 	STATE_APPROACH,		/* power on, feeding until it sparks */
 	STATE_ERODE,		/* gap servo */
 	STATE_RETRACT,		/* back along the path, out of a short */
-	STATE_JUMP,		/* timed lift and return along the path */
-	STATE_HOLD,		/* stands on the path, or walks back by command */
+	STATE_JUMP,		/* timed lift and return */
+	STATE_HOLD,		/* stands, or walks back by command */
 	STATE_FAULT,		/* latched; power off, no motion */
+	STATE_JOG,		/* no job: an axis moves by command */
+	STATE_HOME,		/* no job: axes look for their switches */
+	STATE_TOUCH,		/* feeling for the work, power off */
 	CYCLE_NSTATES
 };
 
 enum cycle_event {
 	EVENT_NONE,
 	EVENT_START,		/* start or resume */
+	EVENT_RETURN,		/* the same, held beside the path */
 	EVENT_HOLD,
 	EVENT_STOP,
 	EVENT_RESET,
 	EVENT_FREE,		/* the segment ahead is positioned, not cut */
 	EVENT_CUT,		/* the segment ahead is cut */
+	EVENT_TOUCH,		/* the segment ahead ends at contact */
 	EVENT_SPARK,		/* gap voltage in the sparking range */
 	EVENT_OPEN,		/* gap voltage above open_v */
 	EVENT_SHORT,		/* below short_v */
+	EVENT_ARC,		/* arcs that a jump did not end */
 	EVENT_CLEAR,		/* a retract's short is gone */
 	EVENT_JUMP_DUE,
+	EVENT_TIME_UP,		/* of a cycle that has one */
 	EVENT_MOVE_DONE,	/* the mover is where it was sent */
 	EVENT_END,		/* end of the program */
 	CYCLE_NEVENTS

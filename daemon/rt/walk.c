@@ -6,6 +6,7 @@
  * forward again does not do it twice.
  */
 #include "walk.h"
+#include "timed.h"
 
 #include <string.h>
 
@@ -14,7 +15,13 @@
 bool walk_is_cut(const struct cycle *c, const struct interp_seg *s)
 {
 	return !c->config.dry_run && !c->power_off &&
-	       !(s->flags & INTERP_SEG_RAPID);
+	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+}
+
+bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s)
+{
+	return i > c->action_done ||
+	       (s->kind == INTERP_MCODE && mcode_again(c, i, s->arg));
 }
 
 enum walk_ahead walk_ahead(const struct cycle *c)
@@ -27,6 +34,8 @@ enum walk_ahead walk_ahead(const struct cycle *c)
 		s = &at->p.segs[next];
 	if (s->kind >= INTERP_BEGIN)
 		return AHEAD_ACTION;
+	if (s->flags & INTERP_SEG_SENSED)
+		return AHEAD_TOUCH;
 	return walk_is_cut(c, s) ? AHEAD_CUT : AHEAD_FREE;
 }
 
@@ -37,8 +46,7 @@ static bool beyond(const struct cycle *c)
 	for (uint32_t m = at->moved; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
 
-		if (at->pos[i] < c->config.travel_min[i] ||
-		    at->pos[i] > c->config.travel_max[i])
+		if (!touch_in_travel(c, i, at->pos[i]))
 			return true;
 	}
 	return false;
@@ -69,10 +77,8 @@ static bool well_inside(const struct cycle *c)
 
 	for (uint32_t j = 0; j < at->p.head->naxes; j++) {
 		const uint8_t i = at->p.head->column[j];
-		const int64_t pos = at->pos[i];
-
-		if (pos - RUN < c->config.travel_min[i] ||
-		    pos + RUN > c->config.travel_max[i])
+		if (!touch_in_travel(c, i, at->pos[i] - RUN) ||
+		    !touch_in_travel(c, i, at->pos[i] + RUN))
 			return false;
 	}
 	return true;
@@ -115,7 +121,8 @@ static uint32_t run(struct cycle *c, uint32_t max)
 
 static enum walk_result points(struct cycle *c)
 {
-	for (uint32_t n = 0; n < c->config.points_max; n++) {
+	for (uint32_t n = c->busy ? c->config.points_max : 0;
+	     n < c->config.points_max; n++) {
 		const uint32_t ran = run(c, c->config.points_max - n);
 
 		if (ran > 0) {
@@ -143,9 +150,20 @@ static enum walk_result points(struct cycle *c)
 			return WALK_BROKEN;
 		}
 	}
-	/* More points than a cycle may have: the rest of the way is left. */
-	interp_cursor_stop(&c->cursor);
+	/* No more points in this cycle: on as far as goes without one. */
+	if (!interp_cursor_slide(&c->cursor))
+		c->cut_short = true;
 	return WALK_ON;
+}
+
+/* What is done already is no reason to stop: the walk goes on behind it. */
+static bool pass_done(struct cycle *c)
+{
+	const uint32_t next = c->cursor.index + 1;
+	const struct interp_seg s = c->cursor.p.segs[next];
+
+	return !walk_is_due(c, next, &s) && s.kind != INTERP_END &&
+	       interp_cursor_pass(&c->cursor) != INTERP_BAD_SEGMENT;
 }
 
 enum walk_result walk_by(struct cycle *c, double ds_mm)
@@ -156,11 +174,17 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 
 	interp_cursor_aim(&c->cursor, ds_mm);
 	r = points(c);
+	for (int n = 0; n < INTERP_CROSS_MAX && r == WALK_ACTION &&
+	     pass_done(c); n++) {
+		interp_cursor_aim(&c->cursor, from + ds_mm -
+					      interp_cursor_place_mm(&c->cursor));
+		r = points(c);
+	}
 	if (r == WALK_BROKEN) {
 		c->feed_mm_s = 0;
 		return r;
 	}
-	memcpy(c->out.target, c->cursor.pos, sizeof(c->out.target));
+	touch_target(c, c->cursor.pos);
 	to = interp_cursor_place_mm(&c->cursor);
 	c->feed_mm_s = (to - from) * 1e9 / (double)c->config.period_ns;
 	if (to > c->far_mm)
@@ -194,7 +218,7 @@ static void switch_aux(struct cycle *c, uint32_t what)
 	case INTERP_AUX_POWER_POSITIVE:
 	case INTERP_AUX_POWER_NEGATIVE:
 		c->power_off = false;
-		c->out.negative = what == INTERP_AUX_POWER_NEGATIVE;
+		process_say(c, what == INTERP_AUX_POWER_NEGATIVE);
 		break;
 	case INTERP_AUX_PUMP_ON:
 	case INTERP_AUX_PUMP_OFF:
@@ -215,13 +239,19 @@ enum walk_deed walk_action(struct cycle *c)
 		return ACTION_END;
 	if (first && s.kind == INTERP_DWELL && !dwell_over(c, &s))
 		return ACTION_PASSED;
+	if (s.kind == INTERP_MCODE && !mcode_meet(c, next, s.arg))
+		return ACTION_WAIT;
 	if (first && s.kind == INTERP_AUX)
 		switch_aux(c, s.arg);
+	if (first && s.kind == INTERP_TIMED_END)
+		timed_over(c, next);
 	c->action_done = first ? next : c->action_done;
 	if (interp_cursor_pass(&c->cursor) == INTERP_BAD_SEGMENT) {
 		cycle_fail(c, FAULT_PROGRAM);
 		return ACTION_PASSED;
 	}
+	if (first && s.kind == INTERP_TIMED)
+		timed_begin(c, s.arg);
 	if (first && (s.kind == INTERP_STOP ||
 		      (s.kind == INTERP_OPTIONAL_STOP &&
 		       c->config.optional_stop)))

@@ -14,6 +14,7 @@ enum walk_ahead {
 	AHEAD_ACTION,			/* neither: something done on the spot */
 	AHEAD_FREE,			/* positioned */
 	AHEAD_CUT,			/* eroded */
+	AHEAD_TOUCH,			/* it ends where the machine says */
 };
 
 enum walk_result {
@@ -26,11 +27,15 @@ enum walk_result {
 
 enum walk_deed {
 	ACTION_PASSED,			/* done, or being done */
+	ACTION_WAIT,			/* the PLC has to do something */
 	ACTION_HOLD,			/* a programmed stop */
 	ACTION_END,			/* the program is over */
 };
 
 bool walk_is_cut(const struct cycle *c, const struct interp_seg *s);
+
+/** walk_is_due() - is action @i still, or again, to be done? */
+bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s);
 enum walk_ahead walk_ahead(const struct cycle *c);
 
 /** walk_by() - @ds_mm along the path; updates out.target, feed and sums. */

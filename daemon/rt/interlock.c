@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * interlock.c - a PLC's permit, interlocks and requests
+ */
+#include "interlock.h"
+#include "walk.h"
+
+#include <stddef.h>
+
+/* In this order: the first that is not well is the fault. */
+static const struct {
+	size_t at;			/* of its bool in struct io_plc */
+	enum cycle_fault fault;
+	bool always;			/* while nothing moves, too */
+} rows[] = {
+	{ offsetof(struct io_plc, no_fire), FAULT_FIRE, true },
+	{ offsetof(struct io_plc, door_closed), FAULT_DOOR, false },
+	{ offsetof(struct io_plc, level_ok), FAULT_DIELECTRIC, false },
+	{ offsetof(struct io_plc, temperature_ok), FAULT_TEMPERATURE, false },
+	{ offsetof(struct io_plc, permit), FAULT_PERMIT, false },
+};
+
+#define NROWS	(sizeof(rows) / sizeof(rows[0]))
+
+static bool is_well(const struct io_plc *p, size_t row)
+{
+	return *(const bool *)((const char *)p + rows[row].at);
+}
+
+bool interlock_forbids(const struct cycle *c)
+{
+	const struct io_plc *p = &c->plc;
+
+	if (!p->present)
+		return false;
+	for (size_t i = 0; i < NROWS; i++) {
+		if (!is_well(p, i))
+			return true;
+	}
+	return !p->alive || p->hold;
+}
+
+static void watch(struct cycle *c)
+{
+	const struct io_plc *p = &c->plc;
+	const bool moves = state_duty[c->state].running || c->moving ||
+			   c->axes.awaited || c->state == STATE_JOG ||
+			   c->state == STATE_HOME;
+
+	if (!p->alive) {
+		if (moves)
+			cycle_fail(c, FAULT_PLC_LOST);
+		return;
+	}
+	for (size_t i = 0; i < NROWS; i++) {
+		if (!is_well(p, i) && (moves || rows[i].always)) {
+			cycle_fail(c, rows[i].fault);
+			return;
+		}
+	}
+}
+
+static void command(struct cycle *c, enum cycle_verb verb, double arg)
+{
+	const struct cycle_command m = { .verb = verb, .arg_mm = arg };
+
+	cycle_command(c, &m);
+}
+
+void interlock_guard(struct cycle *c, const struct io_inputs *in)
+{
+	const struct io_plc was = c->plc;
+
+	c->plc = in->plc;
+	if (!c->plc.present)
+		return;
+	watch(c);
+	if (!c->plc.alive)
+		return;
+	if (c->plc.reset)
+		command(c, CYCLE_RESET, 0);
+	if (c->plc.hold && (!was.hold || state_duty[c->state].running))
+		command(c, CYCLE_HOLD, 0);
+	/* Another client may set it too: the last one to change it has it. */
+	if (c->plc.override != was.override || !was.alive)
+		command(c, CYCLE_OVERRIDE, c->plc.override);
+	/* A start that comes with the reset was not meant for what comes now. */
+	if (c->plc.start && !c->plc.reset)
+		command(c, CYCLE_START, 0);
+}

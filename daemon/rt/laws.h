@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * laws.h - the feed laws, each in the file of its kind, and what they share
+ *
+ * Every law leaves the speed it asked for in the mover, so that the next state
+ * takes over from there.  Private to the files of daemon/rt.
+ *
+ * Threads: RT-safe.
+ */
+#ifndef RT_LAWS_H
+#define RT_LAWS_H
+
+#include "cycle.h"
+
+/* A stop is met, not missed by a rounding. */
+#define LAW_ONTO_MM	1e-9
+
+static inline double law_period_s(const struct cycle *c)
+{
+	return (double)c->config.period_ns * 1e-9;
+}
+
+static inline double law_place(const struct cycle *c)
+{
+	return cycle_place_mm(c);
+}
+
+/* A speed set at once, without a ramp. */
+static inline double law_go_at(struct cycle *c, double v_mm_s)
+{
+	mover_set(&c->mover, v_mm_s);
+	return v_mm_s * law_period_s(c);
+}
+
+static inline double law_seg_speed(const struct interp_seg *s)
+{
+	return s->feed_mm_s < s->feed_max_mm_s ? s->feed_mm_s :
+						 s->feed_max_mm_s;
+}
+
+/* To brake, position and move by command. */
+static inline struct mover_limits law_travel_limits(const struct cycle *c,
+						    double v_max_mm_s)
+{
+	return (struct mover_limits) {
+		.v_max_mm_s = v_max_mm_s,
+		.a_max_mm_s2 = c->config.travel_a_mm_s2,
+		.j_max_mm_s3 = c->config.travel_j_mm_s3,
+		.period_s = law_period_s(c),
+	};
+}
+
+/* servo.c: the gap. */
+double law_approach(struct cycle *c);
+double law_erode(struct cycle *c);
+double law_retract(struct cycle *c);
+
+#endif /* RT_LAWS_H */

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * limit.h - hard limit switches
+ *
+ * A switch that comes on while anything moves stops it at once and latches
+ * fault limit-switch.  An axis that stands on its switch moves only away from
+ * it: the way it did not come.  On since the start nobody knows that way; then
+ * both are open, slowly, to a jog.
+ *
+ * Threads: RT-safe.
+ */
+#ifndef RT_LIMIT_H
+#define RT_LIMIT_H
+
+#include "interp/axis.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct limit {
+	uint32_t on;			/* bit per axis */
+	int8_t side[INTERP_NAXES];	/* the switch lies toward; 0: not
+					 * known */
+};
+
+struct cycle;
+struct io_inputs;
+
+/** limit_guard() - look at the switches, before anything moves. */
+void limit_guard(struct cycle *c, const struct io_inputs *in);
+
+/** limit_watch() - nothing went farther onto one, after it moved. */
+void limit_watch(struct cycle *c);
+
+/** limit_bars() - may @axis not move @toward +1 or -1? */
+bool limit_bars(const struct limit *l, uint32_t axis, int toward);
+
+#endif /* RT_LIMIT_H */

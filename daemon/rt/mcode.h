@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * mcode.h - M codes that the PLC carries out
+ *
+ * One at a time is told, until the PLC says that it is done: it answers with
+ * the same number, the number is taken away, it takes its answer away; then
+ * there may be the next.  Who has to wait stands in front of the code without
+ * sparks.  interp/mcode.h has when each is told and what waits.
+ *
+ * Walked back over, each is passed.  On the way forward again one of "skip" is
+ * passed too; one of "redo" is told again, if it was not a lift that led over
+ * it.  The way back ends at one of "stop" that was done.
+ *
+ * Without a PLC all of them are passed.
+ *
+ * Threads: RT-safe.
+ */
+#ifndef RT_MCODE_H
+#define RT_MCODE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct cycle;
+
+/* Private to mcode.c, but for `number`. */
+struct mcode {
+	uint8_t number;			/* told to the PLC; 0: none */
+	bool done;			/* the one of segment `at` is */
+	bool busy;			/* the PLC's last answer is still there */
+	uint32_t at;			/* segment in front of which it waits */
+	uint32_t back_to;		/* lowest segment walked back to, or
+					 * that of the last code */
+	uint64_t waited;		/* cycles */
+};
+
+/** mcode_begin() - a program is loaded, the cursor stands on segment @index. */
+void mcode_begin(struct cycle *c, uint32_t index);
+
+/** mcode_hear() - once a period, before the walk: what the PLC has done. */
+void mcode_hear(struct cycle *c);
+
+/** mcode_follow() - once a period, after the walk. */
+void mcode_follow(struct cycle *c);
+
+/** mcode_again() - is the one of segment @i told again on the way forward? */
+bool mcode_again(const struct cycle *c, uint32_t i, uint32_t arg);
+
+/** mcode_over() - that of segment @i is done: what the way back makes of it. */
+void mcode_over(struct cycle *c, uint32_t i);
+
+/** mcode_meet() - the walk is in front of segment @next, the M code of @arg.
+ *  Return: true to pass it, false to wait. */
+bool mcode_meet(struct cycle *c, uint32_t next, uint32_t arg);
+
+#endif /* RT_MCODE_H */

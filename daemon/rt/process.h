@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * process.h - the values in force: machine file, condition, `set`
+ *
+ * A condition belongs to a place on the path: where the cursor stands, its
+ * condition goes over the machine file's values, on the way back too.  What
+ * is set while a condition is in force belongs to that condition, for the rest
+ * of the job, and goes over both.
+ *
+ * Polarity: a `set` is strongest, then what the program said last by M3 or M4,
+ * then the condition; without all of them the electrode is positive.
+ *
+ * Threads: RT-safe.
+ */
+#ifndef RT_PROCESS_H
+#define RT_PROCESS_H
+
+#include "interp/tech.h"
+
+#include <stdint.h>
+
+/* Values set in one job; one more is refused. */
+#define PROCESS_SETS_MAX	64
+
+struct cycle;
+
+struct process_set {
+	double value;
+	uint16_t cond;			/* index, as in struct interp_seg */
+	uint8_t field;			/* enum interp_tech_id */
+};
+
+/* Private to process.c. */
+struct process {
+	uint16_t cond;			/* whose values are in force */
+	bool said, said_negative;	/* by M3 or M4 */
+	uint32_t nsets;
+	struct process_set set[PROCESS_SETS_MAX];
+};
+
+enum process_result {
+	PROCESS_DONE,
+	PROCESS_BAD,			/* no such field, or out of range, or
+					 * upside down with the others */
+	PROCESS_FULL,			/* a value too many */
+};
+
+/** process_begin() - a program is loaded: nothing set, nothing said.
+ *  Return: false if its condition is not fit to be used. */
+bool process_begin(struct cycle *c);
+
+/** process_follow() - the cursor may have come to another condition.
+ *  Return: as process_begin(). */
+bool process_follow(struct cycle *c);
+
+/** process_set() - @value NAN takes a set back. */
+enum process_result process_set(struct cycle *c, uint32_t field, double value);
+
+/** process_value() - in force; NAN: the generator's own, or not a field that
+ *  the cycle goes by. */
+double process_value(const struct cycle *c, uint32_t field);
+
+/** process_say() - M3 or M4. */
+void process_say(struct cycle *c, bool negative);
+
+#endif /* RT_PROCESS_H */

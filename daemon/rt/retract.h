@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * retract.h - how far, how long and how often back along the path
+ *
+ * Each bound has an alarm of its own: the distance short-not-cleared, the end
+ * of the way back retract-at-start, the time retract-time, and retracts in a
+ * row without progress_mm of depth between them retract-count.
+ *
+ * Threads: RT-safe.
+ */
+#ifndef RT_RETRACT_H
+#define RT_RETRACT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* How far a retract may go. */
+enum retract_to {
+	RETRACT_LIMIT,			/* retract_limit_mm */
+	RETRACT_START,			/* the start of the program */
+	RETRACT_MOTION,			/* the start of the motion it is in */
+	RETRACT_NPLACES
+};
+
+struct retract {
+	double from_mm;			/* place it began */
+	double floor_mm;		/* never farther back */
+	double least_mm;		/* at least so far, out of an arc */
+	uint64_t waited;		/* cycles stood at the limit */
+	uint64_t cycles;		/* of it, in all */
+	uint32_t in_row;		/* without erosion between */
+	double far_mm;			/* the farthest place, at the first */
+};
+
+struct cycle;
+
+/** retract_begin() - where the state is entered. */
+void retract_begin(struct cycle *c);
+
+/** retract_is_clear() - the gap is wide again, and the way far enough. */
+bool retract_is_clear(const struct cycle *c);
+
+/** retract_watch() - after the walk: as far back as it may? */
+void retract_watch(struct cycle *c);
+
+/** retract_limit_mm() - distance a retract may go, by the process. */
+double retract_limit_mm(const struct cycle *c);
+
+/** retract_motion_mm() - place where the motion it is in begins. */
+double retract_motion_mm(const struct cycle *c);
+
+#endif /* RT_RETRACT_H */
