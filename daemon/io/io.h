@@ -3,8 +3,8 @@
  * io.h - a machine, as the cycle sees it: read, then write, once a period
  *
  * A backend is a struct of functions and its own state behind `self`.  null.c
- * is the smallest one and the template for the next; sim.c is a sinker with a
- * gap process and a seed.
+ * is the smallest one and the template for the next; sim.c is a sinker or a
+ * wire machine with a gap process and a seed.
  *
  * Threads: open and close are startup only; read and write are RT-safe: they
  * do not allocate or block, beyond the hardware's own read and write.
@@ -13,30 +13,91 @@
 #define IO_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define IO_NAXES	8		/* as enum interp_axis */
+
+/* How the pulses of the last period came out, as parts of 1. */
+struct io_shares {
+	float open;			/* did not ignite, or not in time */
+	float spark;			/* ignited after a delay: good */
+	float arc;			/* burned on at once, in the same place */
+	float shorted;			/* no voltage at all */
+};
+
+/* What is wrong with a machine's axes. */
+enum io_trouble {
+	IO_WELL,
+	IO_DRIVE,			/* a drive has a fault or is gone */
+	IO_FOLLOWING,			/* an axis is not where it was sent */
+	IO_BUS,				/* the way to the drives is cut */
+	IO_NTROUBLES
+};
+
+/* What a PLC says beside the machine; docs/plc.md. */
+struct io_plc {
+	bool present;			/* the machine file has one */
+	bool alive;			/* it is there */
+	bool permit;
+	bool door_closed, level_ok, temperature_ok, no_fire, wire_whole;
+	bool hold;			/* as long as it is true */
+	bool start, reset;		/* asked for, in this period only */
+	uint8_t mcode_done;		/* the M code it has carried out; 0 */
+	uint16_t program;		/* to be loaded; 0: none */
+	double override;		/* 1: as programmed */
+};
 
 /* What the machine says, once a period. */
 struct io_inputs {
 	double gap_v;			/* mean voltage over the last period */
 	bool gap_valid;			/* false: no gap sensor, or it is ill */
+	struct io_shares shares;	/* from a generator that counts */
+	bool shares_valid;
+	bool wire_broken;
+	bool touch;			/* contact, by an input of its own */
 	bool estop;			/* true: stop everything */
 	bool lost;			/* true: the machine does not answer */
+	bool busy;			/* pulses are still on their way out: no
+					 * lattice point this period */
+	bool door_open;
+	bool dielectric_low;
+	uint32_t limit, home;		/* switches, a bit per axis: on */
+	uint32_t index;			/* index mark passed in this period */
+	enum io_trouble trouble;	/* until a reset */
+	bool starting;			/* not up yet: nothing can begin */
+	bool axes_off;			/* not under power, or not yet on their
+					 * places: no motion can begin */
+	struct io_plc plc;
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */
+};
+
+/* What the generator is asked for; NAN: its own setting. */
+struct io_pulse {
+	double peak_a, on_us, off_us, ignition_v;
+	bool iso;			/* timed from the ignition; counts
+					 * where on_us is given */
 };
 
 /* What the cycle wants, once a period. */
 struct io_outputs {
 	int32_t target[IO_NAXES];	/* pulses, absolute */
 	double place_mm;		/* on the path; for a simulated gap */
-	uint32_t path;			/* counts the programs loaded */
+	uint32_t path;			/* counts the programs loaded, and the
+					 * parts skipped on them: place_mm
+					 * begins anew */
 	bool rapid;			/* positioning through free space */
+	bool enable;			/* axes under power */
+	bool reset;			/* for a period: an operator's reset */
 	bool power;			/* sparks allowed */
+	bool sense;			/* the voltage to feel contact by */
 	bool negative;			/* electrode polarity */
 	bool pump;			/* dielectric */
 	char cond_letter;		/* technology condition called; 0: none */
 	uint32_t cond_number;
+	struct io_pulse pulse;
+	double off_path_mm;		/* way along an escape, away from the
+					 * path; 0 on it */
 };
 
 struct io_machine {
@@ -45,14 +106,18 @@ struct io_machine {
 	void (*read)(void *self, struct io_inputs *in);
 	void (*write)(void *self, const struct io_outputs *out);
 	void (*close)(void *self);
+	/* The next thing worth a line in the log, into @buf; false: nothing.
+	 * NULL if it never has any.  Another thread's than read and write. */
+	bool (*note)(void *self, char *buf, size_t size);
 	uint32_t edges_per_cycle;	/* most pulses an axis may make in one
-					 * period; 0: targets, no such limit */
+					 * period, where it is not busy; 0:
+					 * targets, no such limit */
 };
 
 struct machine_config;
 
 /**
- * io_sim_open() - a simulated sinker, see sim.c; @seed as `[sim] seed`.
+ * io_sim_open() - a simulated machine, see sim.c; @seed as `[sim] seed`.
  * Return: 0 or -ENOMEM.  Startup only.
  */
 int io_sim_open(struct io_machine *m, const struct machine_config *c,
@@ -63,6 +128,12 @@ struct io_sim_result {
 	double removed_mm3;
 	double wear_mm;			/* electrode length lost */
 	double debris;			/* 0 clean ... 1 choked */
+	double gap_mm;			/* electrode to front, now */
+	double area_mm2;		/* frontal, now */
+	double depth_mm;		/* of the cavity */
+	double hot;			/* part of the ignitions that stay in
+					 * one place */
+	uint32_t burns;			/* times that arcs stayed */
 };
 
 /** io_sim_result() - of a machine opened by io_sim_open(). Any time. */
@@ -70,5 +141,26 @@ void io_sim_result(const struct io_machine *m, struct io_sim_result *ret);
 
 /** io_null_open() - nothing, correctly: no gap, axes follow at once. */
 int io_null_open(struct io_machine *m);
+
+struct interp_diag;
+
+/**
+ * io_gpio_open() - step and direction lines, switches; docs/gpio.md.
+ *
+ * Sparks and pump are off from the request of the lines on.
+ * Return: 0 or -errno with found and wanted of @diag filled: -EACCES and
+ * -EPERM rights, -EBUSY a line in use, else a chip or line that is not there.
+ */
+int io_gpio_open(struct io_machine *m, const struct machine_config *c,
+		 struct interp_diag *diag);
+
+/**
+ * io_can402_open() - CiA 402 drives on a CAN bus; can402.h, docs/can402.md.
+ *
+ * The drives are brought up by the first periods, see io_inputs.starting.
+ * Return: 0 or -errno with found and wanted of @diag filled.  Startup only.
+ */
+int io_can402_open(struct io_machine *m, const struct machine_config *c,
+		   struct interp_diag *diag);
 
 #endif /* IO_H */

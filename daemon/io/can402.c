@@ -1,0 +1,312 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * can402.c - the master of CiA 402 drives
+ *
+ * A drive in trouble, a bus that is off or an interface that is down stops all
+ * drives, by quick stop where they still listen and by their own watch on our
+ * heartbeat where they do not.  Nothing moves again before a reset.
+ */
+#include "can402_bus.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define RX_MAX		512		/* frames taken in a period: more than a bus
+					 * carries in the longest one */
+
+/* -- The bus -------------------------------------------------------------------- */
+
+/* The first trouble stops everything; the end of it is only noted. */
+static void bus_is(struct can402 *s, enum can_got state)
+{
+	if (state == s->bus)
+		return;
+	s->bus = state;
+	s->stopped = s->stopped || state != CAN_NOTHING;
+	can402_tell(s, &(struct can402_note) {
+		.kind = state == CAN_NOTHING ? NOTE_BACK :
+			state == CAN_BUS_OFF ? NOTE_BUS_OFF : NOTE_DOWN
+	});
+}
+
+static void send(struct can402 *s, const struct can_msg *m)
+{
+	const int err = can_socket_send(s->fd, m);
+
+	if (err == -ENOBUFS)
+		can402_count(s, NOTE_FULL, ++s->lost);
+	else if (err < 0)
+		bus_is(s, CAN_DOWN);
+	else if (s->bus == CAN_DOWN)
+		bus_is(s, CAN_NOTHING);
+}
+
+/* What comes over the bus shows that there is one. */
+static void bus_is_back(struct can402 *s)
+{
+	if (s->bus == CAN_BUS_OFF)
+		bus_is(s, CAN_NOTHING);
+}
+
+static void hear_gap(struct can402 *s, const struct can_msg *m)
+{
+	if (m->len != 2 && m->len != 6) {
+		can402_count(s, NOTE_MALFORMED, ++s->malformed);
+		return;
+	}
+	s->gap_v = can_get(m->data, 2) * 0.01;
+	s->has_shares = m->len == 6;
+	s->shares = (struct io_shares) {
+		(float)m->data[2] / 255, (float)m->data[3] / 255,
+		(float)m->data[4] / 255, (float)m->data[5] / 255,
+	};
+	s->gap_age = 0;
+}
+
+/* NMT, SYNC, targets and one heartbeat are the master's to send: ours. */
+static bool is_foreign(const struct can402 *s, const struct can_msg *m)
+{
+	if (m->id == CAN_NMT || m->id == CAN_SYNC ||
+	    m->id == CAN_HEARTBEAT + (int)s->c.master_node)
+		return true;
+	for (uint32_t i = 0; i < s->n; i++) {
+		if (m->id == CAN_RPDO1 + s->drive[i].c.node)
+			return true;
+	}
+	return false;
+}
+
+static void hear(struct can402 *s, const struct can_msg *m)
+{
+	if (s->c.gap_id > 0 && m->id == (uint16_t)s->c.gap_id) {
+		hear_gap(s, m);
+		return;
+	}
+	if (is_foreign(s, m)) {
+		can402_count(s, NOTE_FOREIGN, ++s->foreign);
+		s->stopped = true;
+		return;
+	}
+	for (uint32_t i = 0; i < s->n; i++) {
+		const uint32_t before = s->drive[i].malformed;
+
+		if (!drive_receive(&s->drive[i], m))
+			continue;
+		if (s->drive[i].malformed != before)
+			can402_count(s, NOTE_MALFORMED, ++s->malformed);
+		/* Now: of several emergencies each has its code. */
+		can402_watch(s, i);
+		return;
+	}
+}
+
+static void drain(struct can402 *s)
+{
+	struct can_msg m;
+
+	for (int i = 0; i < RX_MAX; i++) {
+		const enum can_got got = can_socket_receive(s->fd, &m);
+
+		if (got == CAN_NOTHING)
+			return;
+		if (got == CAN_FRAME || got == CAN_RESTARTED)
+			bus_is_back(s);
+		if (got == CAN_FRAME)
+			hear(s, &m);
+		else if (got == CAN_ODD)
+			can402_count(s, NOTE_MALFORMED, ++s->malformed);
+		else if (got != CAN_RESTARTED)
+			bus_is(s, got);
+		if (got == CAN_DOWN)
+			return;
+	}
+}
+
+/* -- The drives ----------------------------------------------------------------- */
+
+static bool all_up(const struct can402 *s)
+{
+	for (uint32_t i = 0; i < s->n; i++) {
+		if (s->drive[i].phase != DRIVE_RUNNING || !s->drive[i].heard)
+			return false;
+	}
+	return true;
+}
+
+static bool all_arrived(const struct can402 *s)
+{
+	for (uint32_t i = 0; i < s->n; i++) {
+		if (s->drive[i].state != DRIVE_ENABLED || !s->drive[i].arrived)
+			return false;
+	}
+	return true;
+}
+
+static enum io_trouble trouble(const struct can402 *s)
+{
+	if (s->stopped)
+		return IO_BUS;
+	for (uint32_t i = 0; i < s->n; i++) {
+		if (s->drive[i].trouble == DRIVE_FOLLOWING)
+			return IO_FOLLOWING;
+		if (s->drive[i].trouble != DRIVE_WELL)
+			return IO_DRIVE;
+	}
+	return IO_WELL;
+}
+
+/* The first time they are all heard, they stand where the machine begins. */
+static void place(struct can402 *s)
+{
+	if (s->placed || !all_up(s))
+		return;
+	for (uint32_t i = 0; i < s->n; i++)
+		drive_set_zero(&s->drive[i], s->out.target[s->axis[i]]);
+	s->placed = true;
+}
+
+static void beat(struct can402 *s)
+{
+	const struct can_msg m = {
+		.id = (uint16_t)(CAN_HEARTBEAT + (int)s->c.master_node),
+		.len = 1, .data = { 0x05 }
+	};
+
+	if (s->beat_in-- > 0)
+		return;
+	s->beat_in = s->beat_every - 1;
+	send(s, &m);
+}
+
+static void fill(struct can402 *s, struct io_inputs *in)
+{
+	*in = (struct io_inputs) {
+		.gap_v = s->gap_v,
+		.gap_valid = s->c.gap_id > 0 && s->gap_age < CAN402_STALE,
+		.shares = s->shares,
+		.trouble = trouble(s),
+		.starting = !all_up(s),
+		.axes_off = !all_arrived(s),
+	};
+	in->shares_valid = in->gap_valid && s->has_shares;
+	memcpy(in->actual, s->out.target, sizeof(in->actual));
+	for (uint32_t i = 0; i < s->n; i++)
+		in->actual[s->axis[i]] = drive_place(&s->drive[i]);
+}
+
+static const struct can_msg sync_frame = { .id = CAN_SYNC };
+
+void can402_read(void *self, struct io_inputs *in)
+{
+	struct can402 *s = self;
+
+	send(s, &sync_frame);
+	if (s->gap_age < CAN402_STALE)
+		s->gap_age++;
+	drain(s);
+	for (uint32_t i = 0; i < s->n; i++) {
+		drive_sync(&s->drive[i]);
+		can402_watch(s, i);
+	}
+	place(s);
+	beat(s);
+	fill(s, in);
+}
+
+/* -- What the cycle wants --------------------------------------------------------- */
+
+static void reset(struct can402 *s)
+{
+	s->stopped = s->bus != CAN_NOTHING;
+	for (uint32_t i = 0; i < s->n; i++) {
+		drive_reset(&s->drive[i]);
+		s->told[i].emergencies = 0;
+	}
+}
+
+/* One that was moved by hand is not driven back over any distance. */
+static void watch_place(struct can402 *s, struct drive *d, uint8_t axis,
+			int32_t target)
+{
+	const int64_t off = llabs((int64_t)drive_place(d) - target);
+
+	if (!d->arrived && d->heard && s->placed &&
+	    off > s->resync_max[axis] && d->trouble == DRIVE_WELL)
+		d->trouble = DRIVE_FOLLOWING;
+}
+
+static uint32_t tenths(double x)
+{
+	return x >= 0 && x < 6553.4 ? (uint32_t)(x * 10 + 0.5) : 0xffff;
+}
+
+static void tell_generator(struct can402 *s, bool safe)
+{
+	const struct io_outputs *o = &s->out;
+	struct can_msg m = { .id = (uint16_t)s->c.generator_id, .len = 8 };
+
+	if (s->c.generator_id == 0)
+		return;
+	m.data[0] = (uint8_t)((o->power && safe) | (o->pump && safe) << 1 |
+			      o->negative << 2);
+	m.data[1] = s->count++;
+	can_put(m.data + 2, tenths(o->pulse.peak_a), 2);
+	can_put(m.data + 4, tenths(o->pulse.on_us), 2);
+	can_put(m.data + 6, tenths(o->pulse.off_us), 2);
+	send(s, &m);
+}
+
+void can402_write(void *self, const struct io_outputs *out)
+{
+	struct can402 *s = self;
+	const bool other = out->path != s->out.path;
+	bool well;
+
+	s->out = *out;
+	if (out->reset)
+		reset(s);
+	well = trouble(s) == IO_WELL;
+	tell_generator(s, well);
+	for (uint32_t i = 0; i < s->n; i++) {
+		struct drive *d = &s->drive[i];
+		const int32_t target = out->target[s->axis[i]];
+		struct can_msg m;
+
+		if (other)
+			drive_depart(d);
+		if (out->enable)
+			watch_place(s, d, s->axis[i], target);
+		drive_aim(d, out->enable && well ? DRIVE_GO_ON :
+			     DRIVE_GO_STOP);
+		if (drive_emit(d, target, &m) > 0)
+			send(s, &m);
+	}
+}
+
+/* A quick stop, and nothing they would miss when we are gone. */
+static void leave(struct can402 *s)
+{
+	struct can_msg m[DRIVE_ENDS];
+
+	s->out.enable = false;
+	s->out.power = s->out.pump = false;
+	can402_write(s, &s->out);
+	send(s, &sync_frame);
+	for (uint32_t i = 0; i < s->n; i++) {
+		const size_t n = drive_setup_end(&s->drive[i], m);
+
+		for (size_t j = 0; j < n; j++)
+			send(s, &m[j]);
+	}
+}
+
+void can402_close(void *self)
+{
+	struct can402 *s = self;
+
+	leave(s);
+	close(s->fd);
+	free(s);
+}

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * can402_open.c - the master as the machine file wants it, or why not
+ */
+#include "can402_bus.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define SDO_WAIT_US	200000
+#define BEATS_MISSED	2.5
+
+static int refuse(struct interp_diag *diag, int err, const char *interface)
+{
+	snprintf(diag->found, sizeof(diag->found), "can402.interface %s: %s",
+		 interface, strerror(-err));
+	if (err == -ENODEV)
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "a CAN interface of this host: ip -br link show "
+			 "type can");
+	else if (err == -ENETDOWN)
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "it up: ip link set %s up type can bitrate 1000000",
+			 interface);
+	else if (err == -EAFNOSUPPORT)
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "a kernel with CAN: modprobe can-raw");
+	else
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "an interface that may be opened");
+	return err;
+}
+
+static int check_load(const struct machine_config *c, struct interp_diag *diag)
+{
+	struct can402_bus b = {
+		.bitrate = (uint32_t)(c->can402.bitrate_kbit * 1000),
+		.heartbeat_ms = (uint32_t)c->can402.heartbeat_ms,
+		.gap = c->can402.gap_id > 0,
+		.generator = c->can402.generator_id > 0,
+	};
+	const double us = (double)config_period_ns(c) * 1e-3;
+	double load;
+
+	for (int i = 0; i < IO_NAXES; i++)
+		b.axes += c->can402.node[i] > 0;
+	load = can402_load(&b, us);
+	if (load <= CAN402_LOAD_MAX)
+		return 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "%u drives every %.0f us take %.0f %% of %.0f kbit/s",
+		 b.axes, us, 100 * load, c->can402.bitrate_kbit);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "at most %.0f %%: machine.period_us %.0f or more",
+		 100 * CAN402_LOAD_MAX, can402_period_us(&b));
+	return -EINVAL;
+}
+
+static struct drive_config drive_of(const struct machine_config *c, int axis)
+{
+	const struct config_can402 *k = &c->can402;
+	const struct config_drive *d = &c->drive[axis];
+	const double pulse_mm = c->axes.axis[axis].pulse_mm;
+	const double period_us = (double)config_period_ns(c) * 1e-3;
+	const double increments_mm = fabs(d->increments / d->pulses) /
+				     pulse_mm;
+
+	return (struct drive_config) {
+		.node = (uint8_t)k->node[axis],
+		.master = (uint8_t)k->master_node,
+		.increments = (int32_t)d->increments,
+		.pulses = (int32_t)d->pulses,
+		.period_us = (uint32_t)period_us,
+		.heartbeat_ms = (uint32_t)k->heartbeat_ms,
+		.beat_cycles = (uint32_t)(BEATS_MISSED * k->heartbeat_ms *
+					  1e3 / period_us),
+		.answer_cycles = (uint32_t)(SDO_WAIT_US / period_us),
+		.missing_max = (uint32_t)k->missing_max,
+		.following_max = (int32_t)(k->following_mm / pulse_mm),
+		.slew_increments = (int32_t)fmax(1, k->resync_mm_s *
+			increments_mm * period_us * 1e-6),
+	};
+}
+
+static void add_drives(struct can402 *s, const struct machine_config *c)
+{
+	for (int i = 0; i < IO_NAXES; i++) {
+		struct drive_config d;
+
+		if (c->can402.node[i] == 0)
+			continue;
+		d = drive_of(c, i);
+		s->axis[s->n] = (uint8_t)i;
+		s->resync_max[i] = (int32_t)(c->can402.resync_mm /
+					     c->axes.axis[i].pulse_mm);
+		drive_init(&s->drive[s->n++], &d);
+	}
+}
+
+/* All there is to hear on one bus: four kinds of each drive, and the rest. */
+static int open_bus(const struct config_can402 *k)
+{
+	static const uint16_t kinds[] = {
+		CAN_TPDO1, CAN_EMCY, CAN_HEARTBEAT, CAN_SDO_ANSWER
+	};
+	struct can_hear hear[4 + 3] = {
+		{ CAN_NMT, 0x7ff }, { CAN_RPDO1, 0x780 },
+		{ k->gap_id > 0 ? (uint16_t)k->gap_id : CAN_NMT, 0x7ff },
+	};
+
+	/* By function code: the node is told from the frame. */
+	for (size_t i = 0; i < 4; i++)
+		hear[3 + i] = (struct can_hear) { kinds[i], 0x780 };
+	return can_socket_open(k->interface, hear, 7);
+}
+
+int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
+{
+	struct can402 *s = calloc(1, sizeof(*s));
+
+	if (!s)
+		return -ENOMEM;
+	s->fd = fd;
+	s->c = c->can402;
+	s->gap_age = CAN402_STALE;
+	add_drives(s, c);
+	s->beat_every = (uint32_t)fmax(1, s->c.heartbeat_ms * 1e6 /
+				       (double)config_period_ns(c));
+	*m = (struct io_machine) {
+		.name = "can402", .self = s, .read = can402_read,
+		.write = can402_write, .close = can402_close,
+		.note = can402_note,
+	};
+	return 0;
+}
+
+int io_can402_open(struct io_machine *m, const struct machine_config *c,
+		   struct interp_diag *diag)
+{
+	const struct config_can402 *k = &c->can402;
+	int err = check_load(c, diag), fd;
+
+	if (err < 0)
+		return err;
+	fd = open_bus(k);
+	if (fd < 0)
+		return refuse(diag, fd, k->interface);
+	err = can402_attach(m, c, fd);
+	if (err < 0) {
+		close(fd);
+		refuse(diag, err, k->interface);
+	}
+	return err;
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * can_socket.h - frames to and from a CAN interface of the kernel
+ *
+ * Raw SocketCAN, without waiting.  What the interface itself has to say (bus
+ * off, down) comes as a state, not as a frame.
+ *
+ * Threads: open and close are startup only; send and receive are RT-safe, one
+ * system call each.
+ */
+#ifndef CAN_SOCKET_H
+#define CAN_SOCKET_H
+
+#include "can_msg.h"
+
+#include <stddef.h>
+
+enum can_got {
+	CAN_NOTHING,
+	CAN_FRAME,
+	CAN_ODD,			/* a frame that is no classic 11-bit one */
+	CAN_BUS_OFF,			/* the controller left the bus, */
+	CAN_RESTARTED,			/* ... and has come back to it */
+	CAN_DOWN,			/* the interface is down or gone */
+};
+
+/* Identifiers to hear: those with id & mask == value & mask. */
+struct can_hear {
+	uint16_t value, mask;
+};
+
+/**
+ * can_socket_open() - hear @n kinds of identifiers on @interface.
+ *
+ * Return: a descriptor; -ENODEV no such interface, -ENETDOWN it is down,
+ * -EAFNOSUPPORT the kernel has no CAN, -EPERM, else -errno.
+ */
+int can_socket_open(const char *interface, const struct can_hear *hear,
+		    size_t n);
+
+/** can_socket_receive() - the next frame, if one has come. */
+enum can_got can_socket_receive(int fd, struct can_msg *ret);
+
+/**
+ * can_socket_send() - Return: 0; -ENOBUFS the queue is full and the frame is
+ * lost; -ENETDOWN.
+ */
+int can_socket_send(int fd, const struct can_msg *m);
+
+#endif /* CAN_SOCKET_H */

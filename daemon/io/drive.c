@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * drive.c - one drive: what it says, and what it is told
+ *
+ * A target sent before a SYNC is taken with it; the answer to that SYNC shows
+ * where the target before it has led.  So a measured place lies between the
+ * last few targets if the drive is well, and the following error is how far it
+ * is outside of them.
+ */
+#include "drive.h"
+
+#include <stdlib.h>
+
+#define FAULT_RESET	0x80
+#define RESET_CYCLES	500		/* to leave a fault; edges all the way */
+
+void drive_init(struct drive *d, const struct drive_config *c)
+{
+	*d = (struct drive) { .c = *c, .goal = DRIVE_GO_OFF };
+}
+
+static void trouble(struct drive *d, enum drive_trouble t)
+{
+	if (d->trouble == DRIVE_WELL)
+		d->trouble = t;
+}
+
+/* -- Places ------------------------------------------------------------------- */
+
+/* Rounded down, so that pulses and increments go up and down together. */
+static int64_t floor_div(int64_t a, int64_t b)
+{
+	const int64_t q = a / b;
+
+	return a % b != 0 && (a < 0) != (b < 0) ? q - 1 : q;
+}
+
+int32_t drive_to_increments(const struct drive_config *c, int32_t pulses)
+{
+	return (int32_t)floor_div((int64_t)pulses * c->increments, c->pulses);
+}
+
+/* Increments count round at 2^32, as the drive's own number does. */
+static int32_t wrapped(int64_t x)
+{
+	return (int32_t)(uint32_t)(uint64_t)x;
+}
+
+int32_t drive_place(const struct drive *d)
+{
+	const int64_t from = wrapped((int64_t)d->actual - d->zero);
+	const int64_t twice = 2 * from * d->c.pulses + d->c.increments;
+
+	return (int32_t)floor_div(twice, 2 * (int64_t)d->c.increments);
+}
+
+static int64_t in_pulses(const struct drive *d, int64_t increments)
+{
+	return llabs(increments) * llabs(d->c.pulses) /
+	       llabs(d->c.increments);
+}
+
+void drive_set_zero(struct drive *d, int32_t pulses)
+{
+	d->zero = wrapped((int64_t)d->actual -
+			  drive_to_increments(&d->c, pulses));
+	d->homed = true;
+}
+
+/* -- What it says ------------------------------------------------------------- */
+
+static void hear_state(struct drive *d, const struct can_msg *m)
+{
+	d->status = (uint16_t)can_get(m->data, 2);
+	d->actual = (int32_t)can_get(m->data + 2, 4);
+	d->state = drive_state_of(d->status);
+	d->heard = true;
+	d->answered = true;
+	if (d->state == DRIVE_FAULT || d->state == DRIVE_FAULT_REACTION) {
+		if (d->resetting == 0)
+			trouble(d, DRIVE_EMERGENCY);
+		else
+			d->resetting--;
+	} else {
+		d->resetting = 0;
+	}
+}
+
+static void hear_emergency(struct drive *d, const struct can_msg *m)
+{
+	d->emergency = (uint16_t)can_get(m->data, 2);
+	if (d->emergency == 0)
+		return;
+	d->emergencies++;
+	trouble(d, DRIVE_EMERGENCY);
+}
+
+/* State 0 is the boot-up message: what was configured is gone. */
+static void hear_heartbeat(struct drive *d, const struct can_msg *m)
+{
+	d->silent = 0;
+	if ((m->data[0] & 0x7f) != 0 || d->phase < DRIVE_RUNNING)
+		return;
+	trouble(d, DRIVE_REBOOTED);
+	d->state = DRIVE_NOT_READY;
+	d->heard = false;
+}
+
+bool drive_receive(struct drive *d, const struct can_msg *m)
+{
+	static const struct {
+		uint16_t id;
+		uint8_t len;
+		void (*hear)(struct drive *, const struct can_msg *);
+	} kinds[] = {
+		{ CAN_TPDO1, 6, hear_state },
+		{ CAN_EMCY, 8, hear_emergency },
+		{ CAN_HEARTBEAT, 1, hear_heartbeat },
+		{ CAN_SDO_ANSWER, 8, drive_setup_receive },
+	};
+
+	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
+		if (m->id != kinds[i].id + d->c.node)
+			continue;
+		if (m->len != kinds[i].len)
+			d->malformed++;
+		else if (m->id != CAN_TPDO1 + d->c.node ||
+			 d->phase == DRIVE_RUNNING)
+			kinds[i].hear(d, m);
+		return true;
+	}
+	return false;
+}
+
+/* -- What did not come ---------------------------------------------------------- */
+
+static void watch_following(struct drive *d)
+{
+	int64_t low = INT32_MAX, high = INT32_MIN;
+
+	/* Each as seen from the place: it counts round. */
+	for (int i = 0; i < DRIVE_SENT; i++) {
+		const int64_t off = wrapped((int64_t)d->sent[i] - d->actual);
+
+		low = off < low ? off : low;
+		high = off > high ? off : high;
+	}
+	low = low > 0 ? low : high < 0 ? -high : 0;
+	if (d->c.following_max > 0 && d->enabled_for > DRIVE_SENT &&
+	    in_pulses(d, low) > d->c.following_max)
+		trouble(d, DRIVE_FOLLOWING);
+}
+
+static void watch_state(struct drive *d)
+{
+	if (d->state == DRIVE_ENABLED) {
+		d->enabled_for++;
+		return;
+	}
+	if (d->enabled_for > 0 && d->goal == DRIVE_GO_ON)
+		trouble(d, DRIVE_FELL_OFF);
+	d->enabled_for = 0;
+}
+
+void drive_sync(struct drive *d)
+{
+	if (d->phase != DRIVE_RUNNING)
+		return;
+	if (++d->silent > d->c.beat_cycles)
+		trouble(d, DRIVE_MUTE);
+	if (d->answered) {
+		d->missing = 0;
+		watch_state(d);
+		watch_following(d);
+	} else if (++d->missing > (d->heard ? d->c.missing_max :
+				   d->c.answer_cycles)) {
+		/* Its state as last heard: it may still take a quick stop. */
+		trouble(d, DRIVE_NO_ANSWER);
+	}
+	d->answered = false;
+	for (int i = DRIVE_SENT - 1; i > 0; i--)
+		d->sent[i] = d->sent[i - 1];
+	d->sent[0] = d->target;
+}
+
+/* -- What it is told ------------------------------------------------------------ */
+
+static uint16_t control_word(struct drive *d)
+{
+	if (d->state != DRIVE_FAULT)
+		return drive_control(d->trouble == DRIVE_WELL ||
+				     d->goal != DRIVE_GO_ON ? d->goal :
+				     DRIVE_GO_STOP, d->state);
+	/* A rising edge of bit 7; only after a reset was asked for. */
+	d->edge = d->resetting > 0 && !d->edge;
+	return d->edge ? FAULT_RESET : 0;
+}
+
+/* From where it stands when it is enabled, slowly, to where it is wanted. */
+static void approach(struct drive *d, int32_t want)
+{
+	const int64_t left = wrapped((int64_t)want - d->target);
+	const int64_t most = d->c.slew_increments;
+
+	d->target = wrapped((int64_t)d->target +
+			    (left > most ? most : left < -most ? -most : left));
+	d->arrived = d->target == want;
+}
+
+static void aim_at(struct drive *d, int32_t target)
+{
+	const int32_t want = wrapped((int64_t)d->zero +
+				     drive_to_increments(&d->c, target));
+
+	if (d->state != DRIVE_ENABLED || d->goal != DRIVE_GO_ON || !d->homed) {
+		d->target = d->actual;
+		d->arrived = false;
+		return;
+	}
+	if (d->arrived)
+		d->target = want;
+	else
+		approach(d, want);
+}
+
+size_t drive_emit(struct drive *d, int32_t target, struct can_msg *ret)
+{
+	if (d->phase != DRIVE_RUNNING)
+		return drive_setup_emit(d, ret);
+	if (!d->heard)
+		return 0;
+	aim_at(d, target);
+	*ret = (struct can_msg) { .id = (uint16_t)(CAN_RPDO1 + d->c.node),
+				  .len = 6 };
+	can_put(ret->data, control_word(d), 2);
+	can_put(ret->data + 2, (uint32_t)d->target, 4);
+	return 1;
+}
+
+void drive_aim(struct drive *d, enum drive_goal goal)
+{
+	d->goal = goal;
+}
+
+void drive_reset(struct drive *d)
+{
+	const bool anew = d->trouble == DRIVE_REBOOTED ||
+			  d->trouble == DRIVE_MISCONFIGURED ||
+			  d->trouble == DRIVE_MUTE ||
+			  d->trouble == DRIVE_NO_ANSWER;
+
+	d->trouble = DRIVE_WELL;
+	d->emergency = 0;
+	d->emergencies = 0;
+	d->enabled_for = 0;
+	d->missing = 0;
+	d->silent = 0;
+	d->resetting = anew || d->state == DRIVE_FAULT ||
+		       d->state == DRIVE_FAULT_REACTION ? RESET_CYCLES : 0;
+	d->edge = false;
+	if (!anew)
+		return;
+	drive_setup_again(d);
+	d->state = DRIVE_NOT_READY;
+	d->heard = false;
+}
+
+void drive_depart(struct drive *d)
+{
+	d->arrived = false;
+}

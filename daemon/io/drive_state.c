@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * drive_state.c - the state machine of CiA 402, as tables
+ */
+#include "drive.h"
+
+/* A state is told by these bits of the statusword. */
+static const struct {
+	uint16_t mask, value;
+	enum drive_state state;
+} states[] = {
+	{ 0x4f, 0x00, DRIVE_NOT_READY },
+	{ 0x4f, 0x40, DRIVE_DISABLED },
+	{ 0x6f, 0x21, DRIVE_READY },
+	{ 0x6f, 0x23, DRIVE_SWITCHED_ON },
+	{ 0x6f, 0x27, DRIVE_ENABLED },
+	{ 0x6f, 0x07, DRIVE_QUICK_STOP },
+	{ 0x4f, 0x0f, DRIVE_FAULT_REACTION },
+	{ 0x4f, 0x08, DRIVE_FAULT },
+};
+
+#define DISABLE		0x00		/* disable voltage */
+#define QUICK_STOP	0x02
+#define SHUTDOWN	0x06
+#define SWITCH_ON	0x07
+#define ENABLE		0x0f
+
+/* Read a row as "wanted there, and found in this state, command...". */
+static const uint16_t control[DRIVE_NGOALS][DRIVE_NSTATES] = {
+	[DRIVE_GO_OFF] = {
+		[DRIVE_READY]		= SHUTDOWN,
+		[DRIVE_SWITCHED_ON]	= SHUTDOWN,
+		[DRIVE_ENABLED]		= SHUTDOWN,
+	},
+	[DRIVE_GO_STOP] = {
+		[DRIVE_READY]		= SHUTDOWN,
+		[DRIVE_SWITCHED_ON]	= SHUTDOWN,
+		[DRIVE_ENABLED]		= QUICK_STOP,
+		[DRIVE_QUICK_STOP]	= QUICK_STOP,
+	},
+	[DRIVE_GO_ON] = {
+		[DRIVE_DISABLED]	= SHUTDOWN,
+		[DRIVE_READY]		= SWITCH_ON,
+		[DRIVE_SWITCHED_ON]	= ENABLE,
+		[DRIVE_ENABLED]		= ENABLE,
+	},
+};
+
+enum drive_state drive_state_of(uint16_t status)
+{
+	for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) {
+		if ((status & states[i].mask) == states[i].value)
+			return states[i].state;
+	}
+	return DRIVE_NOT_READY;
+}
+
+uint16_t drive_control(enum drive_goal goal, enum drive_state s)
+{
+	return control[goal][s];
+}
+
+const char *drive_state_name(enum drive_state s)
+{
+	static const char *const names[DRIVE_NSTATES] = {
+		[DRIVE_NOT_READY]	= "not ready to switch on",
+		[DRIVE_DISABLED]	= "switch on disabled",
+		[DRIVE_READY]		= "ready to switch on",
+		[DRIVE_SWITCHED_ON]	= "switched on",
+		[DRIVE_ENABLED]		= "operation enabled",
+		[DRIVE_QUICK_STOP]	= "quick stop active",
+		[DRIVE_FAULT_REACTION]	= "fault reaction active",
+		[DRIVE_FAULT]		= "fault",
+	};
+
+	return s < DRIVE_NSTATES ? names[s] : "?";
+}
+
+const char *drive_trouble_name(enum drive_trouble t)
+{
+	static const char *const names[DRIVE_NTROUBLES] = {
+		[DRIVE_WELL]		= "well",
+		[DRIVE_EMERGENCY]	= "reports a fault",
+		[DRIVE_FELL_OFF]	= "left operation enabled by itself",
+		[DRIVE_FOLLOWING]	= "is too far from its target",
+		[DRIVE_MUTE]		= "sends no heartbeat",
+		[DRIVE_NO_ANSWER]	= "does not answer to SYNC",
+		[DRIVE_REBOOTED]	= "has restarted",
+		[DRIVE_MISCONFIGURED]	= "refuses its configuration",
+	};
+
+	return t < DRIVE_NTROUBLES ? names[t] : "?";
+}

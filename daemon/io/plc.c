@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * plc.c - the frames between edmd and a PLC
+ *
+ * A frame whose values are not all in range is dropped whole: half a request
+ * is none.
+ */
+#include "plc.h"
+
+#define NTPDO		4
+#define STATE_OPERATES	0x05
+#define STATE_READY	0x7f		/* pre-operational */
+
+static const uint16_t tpdo_id[NTPDO + 1] = { 0, 0x180, 0x280, 0x380, 0x480 };
+
+void plc_init(struct plc *p, uint8_t node)
+{
+	*p = (struct plc) { .node = node, .beat_cycles = 1, .send_cycles = 1,
+			    .alive_cycles = 1 };
+}
+
+/* -- From the PLC ----------------------------------------------------------------- */
+
+static void hear_request(struct plc *p, const struct can_msg *m)
+{
+	const uint8_t before = p->ask.command;
+	struct plc whole = { .ask = p->ask };
+
+	if (!p->operational)
+		return;
+	for (size_t i = 0; i < plc_nsignals; i++) {
+		const struct plc_signal *s = &plc_signal[i];
+
+		if (!s->asked || s->pdo != 1)
+			continue;
+		if (!plc_take(&whole, s, can_get(m->data + s->byte,
+						 (int)plc_bytes(s->type)))) {
+			p->refused++;
+			return;
+		}
+	}
+	p->ask = whole.ask;
+	if ((p->ask.command ^ before) & PLC_ALIVE) {
+		p->since_turn = 0;
+		p->alive = true;
+	}
+}
+
+static void hear_nmt(struct plc *p, const struct can_msg *m)
+{
+	if (m->data[1] != 0 && m->data[1] != p->node)
+		return;
+	switch (m->data[0]) {
+	case 0x01:
+		p->operational = true;
+		break;
+	case 0x02:
+	case 0x80:
+		p->operational = false;
+		break;
+	case 0x81:
+	case 0x82:
+		p->operational = false;
+		p->booted = false;
+		p->ask = (struct plc_ask) { 0 };
+		break;
+	default:
+		p->refused++;
+		break;
+	}
+}
+
+/* Another device has our node: nothing of what it says is ours. */
+static void hear_twin(struct plc *p, const struct can_msg *m)
+{
+	(void)m;
+	p->twins++;
+}
+
+bool plc_receive(struct plc *p, const struct can_msg *m)
+{
+	static const struct {
+		uint16_t id;
+		uint8_t len, plus_node;
+		void (*hear)(struct plc *, const struct can_msg *);
+	} kinds[] = {
+		{ CAN_NMT, 2, 0, hear_nmt },
+		{ CAN_RPDO1, 8, 1, hear_request },
+		{ CAN_SDO_ASK, 8, 1, plc_sdo },
+		{ CAN_TPDO1, 8, 1, hear_twin },
+		{ CAN_HEARTBEAT, 1, 1, hear_twin },
+	};
+
+	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
+		if (m->id != kinds[i].id + kinds[i].plus_node * p->node)
+			continue;
+		if (m->len == kinds[i].len)
+			kinds[i].hear(p, m);
+		else
+			p->malformed++;
+		return true;
+	}
+	return false;
+}
+
+/* Dead until its toggle turns again; what it asked last is void. */
+void plc_period(struct plc *p)
+{
+	if (p->since_turn < p->alive_cycles) {
+		p->since_turn++;
+		return;
+	}
+	p->alive = false;
+	p->ask.command &= PLC_ALIVE;
+}
+
+/* -- To the PLC ------------------------------------------------------------------- */
+
+static struct can_msg tpdo(struct plc *p, int n)
+{
+	struct can_msg m = { .id = (uint16_t)(tpdo_id[n] + p->node),
+			     .len = 8 };
+
+	if (n == 1) {
+		p->toggle = !p->toggle;
+		p->tell.flags = (uint8_t)((p->tell.flags & ~PLC_TOGGLE) |
+					  (p->toggle ? PLC_TOGGLE : 0));
+	}
+	for (size_t i = 0; i < plc_nsignals; i++) {
+		const struct plc_signal *s = &plc_signal[i];
+
+		if (!s->asked && s->pdo == n)
+			can_put(m.data + s->byte, plc_value(p, s),
+				(int)plc_bytes(s->type));
+	}
+	return m;
+}
+
+static struct can_msg beat(const struct plc *p, uint8_t state)
+{
+	return (struct can_msg) { .id = (uint16_t)(CAN_HEARTBEAT + p->node),
+				  .len = 1, .data = { state } };
+}
+
+/* One TPDO a period, so that the bus is not flooded at once. */
+static bool send_next(struct plc *p)
+{
+	if (p->send_in-- == 0) {
+		p->send_in = p->send_cycles - 1;
+		p->next = p->next == 0 ? 1 : p->next;
+	}
+	if (!p->operational)
+		p->next = 0;
+	return p->next > 0;
+}
+
+size_t plc_emit(struct plc *p, struct can_msg *ret)
+{
+	size_t n = 0;
+
+	if (!p->booted) {
+		p->booted = true;
+		p->beat_in = p->beat_cycles;
+		ret[n++] = beat(p, 0);
+	} else if (p->beat_in-- == 0) {
+		p->beat_in = p->beat_cycles - 1;
+		ret[n++] = beat(p, p->operational ? STATE_OPERATES :
+						    STATE_READY);
+	}
+	if (p->answers)
+		ret[n++] = p->answer;
+	p->answers = false;
+	if (send_next(p)) {
+		ret[n++] = tpdo(p, p->next);
+		p->next = p->next == NTPDO ? 0 : (uint8_t)(p->next + 1);
+	}
+	return n;
+}

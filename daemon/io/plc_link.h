@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * plc_link.h - the PLC of a machine: plc.h over a CAN interface
+ *
+ * Runs beside any backend, on an interface of its own or on that of the
+ * drives.  Once a period: read what the PLC asks, later tell it how the
+ * machine is.  What comes is bounded: PLC_LINK_FRAMES a period, the rest waits
+ * in the socket.
+ *
+ * A start and a reset are the rising edges of their bits, seen as 0 since the
+ * PLC came: one that comes back with the bit set starts nothing.
+ *
+ * Threads: open and close are startup only; read and write are RT-safe, a
+ * system call for each frame; plc_link_note() any one other thread.
+ */
+#ifndef PLC_LINK_H
+#define PLC_LINK_H
+
+#include "io.h"
+#include "plc.h"
+
+#define PLC_LINK_FRAMES	16
+
+struct machine_config;
+struct interp_diag;
+
+/* What went by, counted; the thread that logs reads them. */
+enum plc_count {
+	PLC_CAME,			/* times its toggle began to turn */
+	PLC_WENT,			/* times it stopped */
+	PLC_MALFORMED,			/* frames of a wrong length or kind */
+	PLC_REFUSED,			/* values and objects */
+	PLC_TWINS,			/* frames of another device of our node */
+	PLC_UNSENT,			/* frames, the queue was full */
+	PLC_BUS_OFF,
+	PLC_DOWN,			/* times the interface went down */
+	PLC_NCOUNTS
+};
+
+struct plc_link {
+	struct plc plc;
+	int fd;				/* -1: there is no PLC */
+	char interface[16];
+	uint8_t before;			/* its commands, a period ago */
+	bool was_alive, is_down;
+	uint32_t count[PLC_NCOUNTS];	/* atomic */
+	uint32_t told[PLC_NCOUNTS];	/* the other thread's */
+};
+
+/**
+ * plc_link_open() - as [plc] says.
+ *
+ * Return: 0, also if there is no PLC; -errno with found and wanted of @diag
+ * filled.  Startup only.
+ */
+int plc_link_open(struct plc_link *l, const struct machine_config *c,
+		  struct interp_diag *diag);
+
+/** plc_link_read() - once a period: what it asks; time goes by. */
+void plc_link_read(struct plc_link *l, struct io_plc *ret);
+
+/** plc_link_write() - once a period: the frames that are due. */
+void plc_link_write(struct plc_link *l, const struct plc_tell *tell);
+
+/**
+ * plc_link_note() - the next thing worth a line in the log, into @buf.
+ *
+ * What comes again and again is said the first, second, fourth, ... time.
+ * Return: false: nothing.
+ */
+bool plc_link_note(struct plc_link *l, char *buf, size_t size);
+
+/** plc_link_close() - also of one without a PLC. */
+void plc_link_close(struct plc_link *l);
+
+#endif /* PLC_LINK_H */

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * plc_sdo.c - the SDO server: expedited transfers of CiA 301
+ */
+#include "plc.h"
+
+#include <string.h>
+
+enum abort_code {
+	ABORT_COMMAND	= 0x05040001,	/* command not known */
+	ABORT_NO_OBJECT	= 0x06020000,
+	ABORT_READ_ONLY	= 0x06010002,
+	ABORT_NO_SUB	= 0x06090011,
+	ABORT_LENGTH	= 0x06070010,
+	ABORT_RANGE	= 0x06090030,
+	ABORT_STATE	= 0x08000022,	/* PDOs write it now */
+};
+
+#define DOWNLOAD	1		/* command specifiers, bits 7 ... 5 */
+#define UPLOAD		2
+#define ABORT		4
+
+size_t plc_bytes(enum plc_type t)
+{
+	static const uint8_t bytes[] = {
+		[PLC_U8] = 1, [PLC_U16] = 2, [PLC_U32] = 4, [PLC_I16] = 2,
+		[PLC_I32] = 4,
+	};
+
+	return bytes[t];
+}
+
+uint32_t plc_value(const struct plc *p, const struct plc_signal *s)
+{
+	const uint8_t *base = s->asked ? (const uint8_t *)&p->ask :
+					 (const uint8_t *)&p->tell;
+	uint32_t x = 0;
+	uint16_t half;
+
+	if (plc_bytes(s->type) == 1) {
+		x = base[s->offset];
+	} else if (plc_bytes(s->type) == 2) {
+		memcpy(&half, base + s->offset, sizeof(half));
+		x = half;
+	} else {
+		memcpy(&x, base + s->offset, sizeof(x));
+	}
+	return x;
+}
+
+static int64_t as_number(enum plc_type t, uint32_t raw)
+{
+	return t == PLC_I16 ? (int16_t)(uint16_t)raw :
+	       t == PLC_I32 ? (int32_t)raw : (int64_t)raw;
+}
+
+bool plc_take(struct plc *p, const struct plc_signal *s, uint32_t raw)
+{
+	const int64_t x = as_number(s->type, raw);
+	uint8_t *to = (uint8_t *)&p->ask + s->offset;
+	const uint16_t half = (uint16_t)raw;
+
+	if (x < s->min || x > s->max)
+		return false;
+	if (plc_bytes(s->type) == 1)
+		*to = (uint8_t)raw;
+	else if (plc_bytes(s->type) == 2)
+		memcpy(to, &half, sizeof(half));
+	else
+		memcpy(to, &raw, sizeof(raw));
+	return true;
+}
+
+static const struct plc_signal *signal_at(uint16_t index, uint8_t sub)
+{
+	for (size_t i = 0; i < plc_nsignals; i++) {
+		if (plc_signal[i].index == index && plc_signal[i].sub == sub)
+			return &plc_signal[i];
+	}
+	return NULL;
+}
+
+static const struct plc_constant *constant_at(uint16_t index, uint8_t sub)
+{
+	for (size_t i = 0; i < plc_nconstants; i++) {
+		if (plc_constant[i].index == index &&
+		    plc_constant[i].sub == sub)
+			return &plc_constant[i];
+	}
+	return NULL;
+}
+
+static void say_abort(struct plc *p, uint32_t code)
+{
+	p->answer.data[0] = ABORT << 5;
+	can_put(p->answer.data + 4, code, 4);
+}
+
+/* Sub-index 0 is there wherever the object is. */
+static void say_missing(struct plc *p, uint16_t index)
+{
+	say_abort(p, constant_at(index, 0) ? ABORT_NO_SUB : ABORT_NO_OBJECT);
+}
+
+static void upload(struct plc *p, uint16_t index, uint8_t sub)
+{
+	const struct plc_signal *s = signal_at(index, sub);
+	const struct plc_constant *c = constant_at(index, sub);
+	size_t bytes;
+
+	if (!s && !c) {
+		say_missing(p, index);
+		return;
+	}
+	bytes = plc_bytes(s ? s->type : c->type);
+	p->answer.data[0] = (uint8_t)(0x43 | (4 - bytes) << 2);
+	can_put(p->answer.data + 4, s ? plc_value(p, s) :
+		c->value + (c->plus_node ? p->node : 0u), 4);
+}
+
+static void download(struct plc *p, const struct can_msg *m, uint16_t index,
+		     uint8_t sub)
+{
+	const struct plc_signal *s = signal_at(index, sub);
+	const bool sized = m->data[0] & 1, expedited = m->data[0] & 2;
+	const size_t bytes = 4 - (m->data[0] >> 2 & 3u);
+
+	if (!s && !constant_at(index, sub))
+		say_missing(p, index);
+	else if (!s || !s->asked)
+		say_abort(p, ABORT_READ_ONLY);
+	else if (!expedited || (sized && bytes != plc_bytes(s->type)))
+		say_abort(p, ABORT_LENGTH);
+	else if (p->operational)
+		say_abort(p, ABORT_STATE);
+	else if (!plc_take(p, s, can_get(m->data + 4,
+					 (int)plc_bytes(s->type))))
+		say_abort(p, ABORT_RANGE);
+	else
+		p->answer.data[0] = 3 << 5;
+}
+
+void plc_sdo(struct plc *p, const struct can_msg *m)
+{
+	const uint16_t index = (uint16_t)can_get(m->data + 1, 2);
+	const uint8_t what = m->data[0] >> 5;
+
+	if (what == ABORT)
+		return;
+	p->answer = (struct can_msg) {
+		.id = (uint16_t)(CAN_SDO_ANSWER + p->node), .len = 8
+	};
+	memcpy(p->answer.data + 1, m->data + 1, 3);
+	p->answers = true;
+	if (what == UPLOAD)
+		upload(p, index, m->data[3]);
+	else if (what == DOWNLOAD)
+		download(p, m, index, m->data[3]);
+	else
+		say_abort(p, ABORT_COMMAND);
+	if (p->answer.data[0] == ABORT << 5)
+		p->refused++;
+}

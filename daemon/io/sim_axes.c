@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * sim_axes.c - where the electrode really is
+ *
+ * At once where it was sent, unless the machine file says otherwise: a lag of
+ * first order ([sim] lag_s), a dead time whenever another axis takes over or
+ * one turns back (start_s), noise of the scales (measure_pulses).
+ */
+#include "sim_process.h"
+
+#include <math.h>
+#include <string.h>
+
+void sim_axes_place(struct sim *s)
+{
+	s->at_mm = s->out.place_mm;
+	for (int i = 0; i < IO_NAXES; i++) {
+		s->axis[i] = s->out.target[i];
+		s->step[i] = 0;
+	}
+	s->wait_s = 0;
+}
+
+static bool exact(const struct sim *s)
+{
+	return s->p.lag_s == 0 && s->p.start_s == 0 &&
+	       s->p.measure_pulses == 0;
+}
+
+/*
+ * Does an axis start?  One does when nothing that moved last goes on, and
+ * when one that moved last turns back.
+ */
+static bool starts(struct sim *s, const int32_t step[IO_NAXES])
+{
+	bool moves = false, goes_on = false, turns = false;
+
+	for (int i = 0; i < IO_NAXES; i++) {
+		const int64_t same = (int64_t)step[i] * s->step[i];
+
+		moves = moves || step[i] != 0;
+		goes_on = goes_on || same > 0;
+		turns = turns || same < 0;
+	}
+	if (moves)
+		memcpy(s->step, step, sizeof(s->step));
+	return moves && (turns || !goes_on);
+}
+
+static double follow(const struct sim *s, double at, double to)
+{
+	return s->wait_s > 0 ? at :
+	       at + (to - at) * s->period_s / (s->p.lag_s + s->period_s);
+}
+
+static void follow_slowly(struct sim *s, const int32_t was[IO_NAXES])
+{
+	int32_t step[IO_NAXES];
+
+	for (int i = 0; i < IO_NAXES; i++)
+		step[i] = (int32_t)((uint32_t)s->out.target[i] -
+				    (uint32_t)was[i]);
+	if (starts(s, step) && s->wait_s <= 0)
+		s->wait_s = s->p.start_s;
+	s->at_mm = follow(s, s->at_mm, s->out.place_mm);
+	for (int i = 0; i < IO_NAXES; i++)
+		s->axis[i] = follow(s, s->axis[i], s->out.target[i]);
+	s->wait_s -= s->period_s;
+}
+
+void sim_axes_follow(struct sim *s, const struct io_outputs *was)
+{
+	const double at = s->at_mm;
+
+	if (exact(s))
+		s->at_mm = s->out.place_mm;
+	else
+		follow_slowly(s, was->target);
+	s->stroke_mm = fabs(s->at_mm - at) +
+		       fabs(s->out.off_path_mm - was->off_path_mm);
+}
+
+double sim_axis(const struct sim *s, int i)
+{
+	return exact(s) ? s->out.target[i] : s->axis[i];
+}
+
+void sim_axes_measure(struct sim *s, struct io_inputs *in)
+{
+	const bool as_sent = exact(s);
+
+	memcpy(in->actual, s->out.target, sizeof(in->actual));
+	for (int i = 0; i < IO_NAXES && !as_sent; i++)
+		in->actual[i] = (int32_t)lround(s->axis[i] +
+				s->p.measure_pulses * rng_normal(&s->rng));
+}

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * sim_process.h - the simulated machine's inside; private to sim*.c
+ *
+ * What a touch meets is in sim_touch.c.  A period goes through four files, in this order:
+ *
+ *	sim_axes.c	where the electrode really is
+ *	sim_pulses.c	what a train of pulses does in this gap
+ *	sim_erosion.c	what the sparks take away, from work and electrode
+ *	sim_debris.c	where that goes; bridges, arcs that stay in one place
+ *
+ * The model is described, with sources and pictures, in
+ * docs/process-model.md.
+ *
+ * Units: in every name; debris is 0 (clean) to 1 (choked).
+ * Threads: RT-safe; one object belongs to one thread.
+ */
+#ifndef IO_SIM_PROCESS_H
+#define IO_SIM_PROCESS_H
+
+#include "config.h"
+#include "io.h"
+#include "rng.h"
+
+/* The pulses in force, and what follows from them alone. */
+struct pulse_set {
+	double on_us, off_us, open_v;
+	bool iso;
+	double short_mm;		/* contact: narrower than this */
+	double peaks_mm;		/* height of the peaks above that */
+	double reach_mm;		/* contact to where nothing ignites */
+	double crater_mm3;		/* of one spark */
+	double crater_j;		/* its energy */
+};
+
+/* What a train of pulses does in a gap: expected values. */
+struct pulse_train {
+	double spark, arc, shorted;	/* parts of 1; the rest stays open */
+	double late;			/* counted as open, in time or not */
+	double volts;			/* mean of the gap */
+	double waiting;			/* part of the time without a spark */
+	double wait_volts;		/* what that adds to the volts */
+	double waits;			/* pulses of chance in a wait, a period */
+	double per_s;			/* pulses a second */
+	double burnt;			/* part of the on time that burns */
+};
+
+/* Of one axis, in pulses of its drive. */
+struct sim_switches {
+	bool wired;
+	int toward;			/* the home switch is on from there on */
+	double home, min, max, index;
+	int32_t was;			/* a period ago */
+};
+
+struct sim {
+	struct config_sim p;
+	double period_s;
+	double z_pulse_mm;		/* 0: no Z, the depth stays */
+	double pulse_mm[3];		/* of X Y Z */
+	double delay_us;		/* mean ignition delay at the best gap */
+	double late_us;			/* a longer wait is counted as open */
+	double best_u;			/* the best gap's place in the reach */
+	double reference_mm3;		/* crater of the reference pulse */
+	struct rng rng;
+	struct io_outputs out;		/* as last written */
+	struct pulse_set pulse;
+	struct pulse_train train;	/* of the last period */
+
+	/* Axes. */
+	double at_mm;			/* on the path, as the axes stand */
+	double axis[IO_NAXES];		/* pulses, as the axes stand */
+	int32_t step[IO_NAXES];		/* of the last period that moved any */
+	double wait_s;			/* until an axis that starts moves */
+	double stroke_mm;		/* of this period */
+	struct sim_switches switches[IO_NAXES];
+
+	/* Work and electrode. */
+	double begin_mm;		/* on the path: the surface */
+	double front_mm;		/* on the path: solid from here on */
+	double wear_mm;			/* electrode length lost */
+	double removed_mm3;
+	double surface_z_mm;		/* where the first spark was */
+	double depth_mm;		/* of the cavity */
+	bool sparked;
+
+	/* Between them. */
+	double debris;
+	double bridge_mm;		/* a bridge of debris; 0: none */
+	double hot;			/* part of the pulses that burn on
+					 * where the last one did */
+	double powered_s;		/* power on for so long; 0: off */
+
+	/* Counted. */
+	uint32_t burns;
+	bool burning;
+	bool broken;			/* the wire */
+	double unpowered_s;
+};
+
+/* sim_axes.c */
+void sim_axes_place(struct sim *s);	/* at once where they are sent */
+void sim_axes_follow(struct sim *s, const struct io_outputs *was);
+/** sim_axis() - where axis @i really is, pulses. */
+double sim_axis(const struct sim *s, int i);
+void sim_axes_measure(struct sim *s, struct io_inputs *in);
+
+/* sim_switches.c */
+void sim_switches_init(struct sim *s, const struct machine_config *c);
+void sim_switches_read(struct sim *s, struct io_inputs *in);
+
+/* sim_touch.c */
+/** sim_touch() - is the electrode against the block? */
+bool sim_touch(const struct sim *s);
+
+/* sim_pulses.c */
+void sim_pulses_init(struct sim *s);
+/** sim_pulses_set() - the pulses that out.pulse asks for. */
+void sim_pulses_set(struct sim *s);
+/** sim_pulses_train() - in a gap of so much, debris taken off. */
+void sim_pulses_train(struct sim *s, double gap_mm);
+/** sim_pulses_shares() - as a generator counts them; may use chance. */
+struct io_shares sim_pulses_shares(struct sim *s);
+/** sim_pulses_volts() - as a sensor reads them, @sparks or a steady supply. */
+double sim_pulses_volts(struct sim *s, bool sparks);
+
+/* sim_erosion.c */
+double sim_area_mm2(const struct sim *s);
+void sim_erode(struct sim *s);
+void sim_wire(struct sim *s);
+
+/* sim_debris.c */
+double sim_gap_mm(const struct sim *s);	/* electrode to front */
+double sim_side_mm(const struct sim *s);
+void sim_wash(struct sim *s);
+void sim_bridge(struct sim *s);
+void sim_heat(struct sim *s);
+
+#endif /* IO_SIM_PROCESS_H */
