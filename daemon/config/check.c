@@ -4,11 +4,16 @@
  */
 #include "keys.h"
 
+#include "gap.h"
+
+#include "interp/compensate.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
 
 #define PERIOD_MIN_US	20		/* a shorter one is a slip of units */
+#define COUNT(a)	(sizeof(a) / sizeof((a)[0]))
 
 /* @low is below @high in every instance of the section. */
 struct order {
@@ -25,9 +30,21 @@ static const struct order orders[] = {
 	{ SECTION_WIRE, "z_program_mm", "z_second_mm", false },
 	{ SECTION_GAP, "short_v", "servo_v", false },
 	{ SECTION_GAP, "servo_v", "open_v", false },
+	{ SECTION_JUMP, "every_min_s", "every_max_s", true },
+	{ SECTION_JUMP, "height_min_mm", "height_max_mm", true },
 	{ SECTION_SIM, "spark_v", "open_v", false },
 	{ SECTION_SIM, "short_gap_mm", "best_gap_mm", false },
 	{ SECTION_SIM, "best_gap_mm", "open_gap_mm", false },
+};
+
+/* The same of keys whose 0 is "as the machine has it". */
+static const struct order orders_if_set[] = {
+	{ SECTION_GAP, "window_low_v", "window_high_v", true },
+	{ SECTION_GAP, "short_v", "window_low_v", false },
+	{ SECTION_GAP, "window_low_v", "servo_v", true },
+	{ SECTION_GAP, "servo_v", "window_high_v", true },
+	{ SECTION_GAP, "window_high_v", "open_v", false },
+	{ SECTION_GAP, "open_v", "ignition_v", false },
 };
 
 struct check {
@@ -77,6 +94,25 @@ static int check_order(struct check *q, const struct order *o, int instance)
 	snprintf(q->diag->wanted, sizeof(q->diag->wanted), "%s %s %s",
 		 o->low, how, o->high);
 	return -EINVAL;
+}
+
+static bool is_set(const struct check *q, enum config_section_id s,
+		   const char *name)
+{
+	return *(const double *)config_key_in(&config_key[key_of(s, name)], 0,
+					      q->c) != 0;
+}
+
+static int check_orders_if_set(struct check *q)
+{
+	for (size_t i = 0; i < COUNT(orders_if_set); i++) {
+		const struct order *o = &orders_if_set[i];
+
+		if (is_set(q, o->section, o->low) &&
+		    is_set(q, o->section, o->high) && check_order(q, o, 0))
+			return -EINVAL;
+	}
+	return 0;
 }
 
 static int check_extent(struct check *q, const char *name, int instance)
@@ -132,6 +168,57 @@ static int check_present(struct check *q)
 	return -EINVAL;
 }
 
+static int check_compensation(struct check *q)
+{
+	const int k = key_of(SECTION_CONTOUR, "method");
+	const int methods = interp_compensate_parse(q->c->contour.method);
+	const int both = INTERP_COMPENSATE_FEEDFORWARD |
+			 INTERP_COMPENSATE_ZPETC;
+
+	if (methods >= 0 && (methods & both) != both)
+		return 0;
+	blame(q, k, k, 0);
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "contour.method %.40s", q->c->contour.method);
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "none, or of feedforward, cross-coupled, predictive, zpetc "
+		 "joined by +, feedforward and zpetc not together");
+	return -EINVAL;
+}
+
+/* A jump goes along the path, and the path is within the travel. */
+static int check_jump(struct check *q, const char *name)
+{
+	int k = key_of(SECTION_JUMP, name);
+	double mm = *(const double *)config_key_in(&config_key[k], 0, q->c);
+	double most = 0;
+	uint32_t at = q->lines->at[k][0], travel_at;
+	int axis = INTERP_Z;
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const struct interp_axis_limits *l = &q->c->axes.axis[i];
+		double travel = l->travel_max_mm - l->travel_min_mm;
+
+		if (interp_axis_is_rotary((enum interp_axis)i) ||
+		    !(q->c->axes.present & 1u << i) || travel <= most)
+			continue;
+		most = travel;
+		axis = i;
+	}
+	if (mm <= most || most == 0)
+		return 0;
+
+	travel_at = q->lines->at[key_of(SECTION_AXIS, "travel_max_mm")][axis];
+	q->diag->line = at > travel_at ? at : travel_at;
+	q->diag->column = 0;
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "jump.%s %g mm is higher than any axis travels", name, mm);
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "at most %g mm, the travel of axis.%s", most,
+		 config_section[SECTION_AXIS].instance[axis]);
+	return -EINVAL;
+}
+
 /* Guides are X Y below and U V above. */
 static int check_guides(struct check *q)
 {
@@ -154,13 +241,54 @@ static int check_guides(struct check *q)
 	return 0;
 }
 
+/* The simulated generator counts pulses; a line is one of three, or none. */
+static int check_lines(struct check *q)
+{
+	const int k = key_of(SECTION_GAP, "source");
+
+	if (q->c->gap.source != GAP_LINES || q->c->backend != BACKEND_SIM)
+		return 0;
+	blame(q, k, key_of(SECTION_MACHINE, "backend"), 0);
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "gap.source lines on backend sim, which has no comparators");
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "source = sim or shares; or backend = gpio");
+	return -EINVAL;
+}
+
+/* The chain's joints are axes that the machine has. */
+static int check_chain(struct check *q)
+{
+	const int k = key_of(SECTION_KINEMATICS, "chain");
+	struct interp_kinematics kin;
+	char why[sizeof(q->diag->found)];
+	const int r = config_kinematics(q->c, &kin, q->diag);
+
+	blame(q, k, k, 0);
+	if (r == -EINVAL) {
+		snprintf(why, sizeof(why), "%s", q->diag->found);
+		snprintf(q->diag->found, sizeof(q->diag->found),
+			 "kinematics.chain: %.130s", why);
+	}
+	for (uint32_t i = 0; r == 0 && i < kin.njoints; i++) {
+		if (q->c->axes.present & 1u << kin.joint[i].axis)
+			continue;
+		snprintf(q->diag->found, sizeof(q->diag->found),
+			 "kinematics.chain has an axis %c, the machine has not",
+			 INTERP_AXIS_LETTERS[kin.joint[i].axis]);
+		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+			 "axes with present = yes");
+		return -EINVAL;
+	}
+	return r == -EINVAL ? r : 0;
+}
+
 int config_check(const struct machine_config *c,
 		 const struct config_lines *lines, struct interp_diag *diag)
 {
 	struct check q = { c, lines, diag };
-	size_t norders = sizeof(orders) / sizeof(orders[0]);
 
-	for (size_t i = 0; i < norders; i++)
+	for (size_t i = 0; i < COUNT(orders); i++)
 		for (int j = 0;
 		     j < config_section[orders[i].section].ninstances; j++)
 			if (check_order(&q, &orders[i], j))
@@ -171,6 +299,12 @@ int config_check(const struct machine_config *c,
 		    check_extent(&q, "travel_max_mm", j))
 			return -EINVAL;
 
-	return check_period(&q) || check_present(&q) || check_guides(&q) ?
-	       -EINVAL : 0;
+	return check_period(&q) || check_present(&q) || check_lines(&q) || check_guides(&q) ||
+	       check_chain(&q) || config_check_can402(c, lines, diag) ||
+	       config_check_plc(c, lines, diag) ||
+	       config_check_sim(c, lines, diag) ||
+	       check_orders_if_set(&q) || check_jump(&q, "height_mm") ||
+	       (c->jump.adaptive && check_jump(&q, "height_max_mm")) ||
+	       check_compensation(&q) ||
+	       config_check_gpio(c, lines, diag) ? -EINVAL : 0;
 }

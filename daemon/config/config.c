@@ -8,10 +8,13 @@
 #include "keys.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <math.h>
 #include <string.h>
 
-#define PERIOD_NS	1000000		/* of both backends there are */
+#define PERIOD_NS	1000000
+#define PERIOD_CAN402_NS	2000000		/* six drives fit */
+#define PERIOD_GPIO_NS	50000		/* a pulse is made of periods */
 #define POINTS_MAX	4096		/* lattice points in one cycle */
 
 /* Pulses a limit may be off by the division alone, far below one. */
@@ -38,7 +41,20 @@ void config_defaults(struct machine_config *c)
 
 int64_t config_period_ns(const struct machine_config *c)
 {
-	return c->period_us > 0 ? llround(c->period_us * 1e3) : PERIOD_NS;
+	if (c->period_us > 0)
+		return llround(c->period_us * 1e3);
+	return c->backend == BACKEND_GPIO ? PERIOD_GPIO_NS :
+	       c->backend == BACKEND_CAN402 ? PERIOD_CAN402_NS : PERIOD_NS;
+}
+
+int config_kinematics(const struct machine_config *c,
+		      struct interp_kinematics *ret, struct interp_diag *diag)
+{
+	if (strcmp(c->kinematics.chain, "none") == 0)
+		return -ENOENT;
+	interp_kin_clear(ret);
+	memcpy(ret->tip_mm, c->kinematics.tip_mm, sizeof(ret->tip_mm));
+	return interp_kin_parse(ret, c->kinematics.chain, diag);
 }
 
 static bool has(const struct machine_config *c, enum interp_axis a)
@@ -70,19 +86,63 @@ static uint64_t cycles_of(double s, int64_t period_ns)
 	return (uint64_t)round(s * 1e9 / (double)period_ns);
 }
 
-static void gap_of(const struct config_gap *g, int64_t period_ns,
+/* 0 in the file is "as the machine has it". */
+static double or_own(double x, double own)
+{
+	return x > 0 ? x : own;
+}
+
+static void gap_of(const struct machine_config *m, struct cycle_config *c,
 		   struct cycle_gap_config *ret)
 {
+	const struct config_gap *g = &m->gap;
+	const bool sim = m->backend == BACKEND_SIM;
+
 	*ret = (struct cycle_gap_config) {
+		.process = (enum cycle_process)g->process,
+		.source = (enum gap_source)g->source,
+		.filter = (enum gap_filter)g->filter,
+		.filter_cycles = (uint32_t)g->filter_cycles,
+		.short_cycles = (uint32_t)g->short_cycles,
 		.servo_v = g->servo_v,
 		.short_v = g->short_v,
 		.open_v = g->open_v,
+		.window_low_v = g->window_low_v,
+		.window_high_v = g->window_high_v,
+		.ignition_v = or_own(g->ignition_v, sim ? m->sim.open_v : 0),
 		.gain_mm_s_v = g->feed_gain_mm_s_v,
+		.integral_s = g->integral_s,
 		.feed_max_mm_s = g->feed_max_mm_s,
+		.creep_mm_s = g->creep_mm_s,
+		.feed_a_mm_s2 = or_own(g->feed_a_mm_s2, c->travel_a_mm_s2),
 		.approach_mm_s = g->approach_mm_s,
+		.share_v = g->share_v,
+		.share_set = g->share_set,
+		.share_weight = g->share_weight,
+		.share_short = g->share_short,
+		.share_open = g->share_open,
 		.retract_mm_s = g->retract_mm_s,
+		.retract_to = (enum retract_to)g->retract_to,
 		.retract_limit_mm = g->retract_limit_mm,
-		.retract_wait_cycles = cycles_of(g->retract_wait_s, period_ns),
+		.retract_wait_cycles = cycles_of(g->retract_wait_s,
+						 c->period_ns),
+		.retract_max_cycles = cycles_of(g->retract_max_s,
+						c->period_ns),
+		.retract_escape = g->retract == 1,
+		.abort_count = (uint32_t)g->abort_count,
+		.progress_mm = g->progress_mm,
+		.arc_share = g->arc_share,
+		.arc_cycles = (uint32_t)g->arc_cycles,
+		.arc_sigma_v = g->arc_sigma_v,
+		.off_us = or_own(g->off_us, sim ? m->sim.off_us : 0),
+		.arc_off_max = g->arc_off_max,
+		.arc_recover_cycles = cycles_of(g->arc_recover_s,
+						c->period_ns),
+		.arc_retract_mm = g->arc_retract_mm,
+		.stuck_cycles = cycles_of(g->stuck_s, c->period_ns),
+		.noise_limit_v = g->noise_limit_v,
+		.wire_retract_mm = g->wire_retract_mm,
+		.wire_retreat_mm = g->wire_retreat_mm,
 	};
 }
 
@@ -94,11 +154,74 @@ static void jump_of(const struct config_jump *j, int64_t period_ns,
 	*ret = (struct cycle_jump_config) {
 		.height_mm = j->height_mm,
 		.every_cycles = cycles ? cycles : 1,
+		.every_mm = j->every_mm,
+		.adaptive = j->adaptive,
+		.every_min_cycles = cycles_of(j->every_min_s, period_ns),
+		.every_max_cycles = cycles_of(j->every_max_s, period_ns),
+		.height_min_mm = j->height_min_mm,
+		.height_max_mm = j->height_max_mm,
+		.bad_share = j->bad_share,
 		.v_max_mm_s = j->v_max_mm_s,
 		.a_max_mm_s2 = j->a_max_mm_s2,
 		.j_max_mm_s3 = j->j_max_mm_s3,
+		.a_down_mm_s2 = j->a_down_mm_s2,
 		.short_of_mm = j->short_of_mm,
 	};
+}
+
+static void hand_of(const struct machine_config *c, int axis,
+		    struct hand_axis *ret)
+{
+	const struct interp_axis_limits *l = &c->axes.axis[axis];
+	const struct config_hand *h = &c->hand[axis];
+
+	*ret = (struct hand_axis) {
+		.present = has(c, (enum interp_axis)axis),
+		.pulse_mm = l->pulse_mm,
+		.v_max_mm_s = l->v_max_mm_s,
+		.a_max_mm_s2 = l->a_max_mm_s2,
+		.j_max_mm_s3 = l->j_max_mm_s3,
+		.jog_mm_s = h->jog_mm_s,
+		.method = (enum home_method)h->home_method,
+		.home_toward = h->home_dir ? 1 : -1,
+		.home_fast_mm_s = h->home_fast_mm_s,
+		.home_slow_mm_s = h->home_slow_mm_s,
+		.home_at_mm = h->home_at_mm,
+		.home_back_mm = h->home_back_mm,
+		.home_order = (uint32_t)h->home_order,
+	};
+}
+
+bool config_has_switch(const struct machine_config *c, int axis)
+{
+	return has(c, (enum interp_axis)axis) &&
+	       (c->hand[axis].home_method == HOME_SWITCH ||
+		c->hand[axis].home_method == HOME_SWITCH_INDEX);
+}
+
+_Static_assert(CONFIG_PITCH_POINTS == COMP_POINTS, "every point has room");
+
+/* Points that fall on one pulse are one: the cycle divides by their distance. */
+static void comp_of(const struct machine_config *c, int axis,
+		    struct comp_config *ret)
+{
+	const struct config_hand *h = &c->hand[axis];
+	const struct config_pitch *p = &c->pitch[axis];
+	const double pulse_mm = c->axes.axis[axis].pulse_mm;
+
+	*ret = (struct comp_config) {
+		.backlash = (int32_t)lround(h->backlash_um * 1e-3 / pulse_mm),
+		.take_up = h->backlash_mm_s / pulse_mm *
+			   (double)config_period_ns(c) * 1e-9,
+	};
+	for (uint32_t i = 0; i < p->n; i++) {
+		const int32_t at = (int32_t)lround(p->at_mm[i] / pulse_mm);
+
+		if (ret->n && at <= ret->at[ret->n - 1])
+			continue;
+		ret->at[ret->n] = at;
+		ret->add[ret->n++] = -p->error_um[i] * 1e-3 / pulse_mm;
+	}
 }
 
 void config_cycle(const struct machine_config *c, struct cycle_config *ret)
@@ -106,20 +229,35 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 	*ret = (struct cycle_config) {
 		.period_ns = config_period_ns(c),
 		.overrun_limit = (uint32_t)c->overrun_limit,
+		.axes_wait_cycles = cycles_of(c->can402.enable_s,
+					      config_period_ns(c)),
 		.points_max = POINTS_MAX,
 		.optional_stop = c->optional_stop,
+		.stop_at_nodes = c->nodes == 1,
+		.require_home = c->require_home,
+		.touch = {
+			.feed_mm_s = c->touch.feed_mm_s,
+			.fine_mm_s = c->touch.fine_mm_s,
+			.back_mm = c->touch.back_mm,
+			.settle_cycles = cycles_of(c->touch.settle_s,
+						   config_period_ns(c)),
+		},
 	};
+	ret->mcode_cycles = cycles_of(c->plc.m_timeout_s, ret->period_ns);
 	travel_of(c, ret);
-	gap_of(&c->gap, ret->period_ns, &ret->gap);
+	gap_of(c, ret, &ret->gap);
 	jump_of(&c->jump, ret->period_ns, &ret->jump);
 
 	/* Inward: the last pulse inside the limit, never the first outside. */
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const struct interp_axis_limits *l = &c->axes.axis[i];
 
+		ret->start[i] = (int32_t)lround(c->start_mm[i] / l->pulse_mm);
 		ret->travel_min[i] = (int32_t)ceil(
 			l->travel_min_mm / l->pulse_mm - ROUNDING);
 		ret->travel_max[i] = (int32_t)floor(
 			l->travel_max_mm / l->pulse_mm + ROUNDING);
+		hand_of(c, i, &ret->axis[i]);
+		comp_of(c, i, &ret->comp[i]);
 	}
 }

@@ -13,45 +13,227 @@
 #define CONFIG_H
 
 #include "interp/axis.h"
+#include "interp/axis_model.h"
 #include "interp/diag.h"
+#include "interp/kinematics.h"
+#include "interp/mcode.h"
 #include "interp/nc.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 
-enum config_backend { BACKEND_SIM, BACKEND_NULL };
+enum config_backend {
+	BACKEND_SIM, BACKEND_NULL, BACKEND_GPIO, BACKEND_CAN402,
+	CONFIG_NBACKENDS
+};
 
 /* [gap] */
 struct config_gap {
-	int source;			/* 0 sim; more with their backends */
+	int process;			/* enum cycle_process */
+	int source;			/* enum gap_source */
+	int filter;			/* enum gap_filter */
+	double filter_cycles, short_cycles;	/* whole numbers */
 	double servo_v, short_v, open_v;
-	double feed_gain_mm_s_v, feed_max_mm_s, approach_mm_s;
-	double retract_mm_s, retract_limit_mm, retract_wait_s;
+	double window_low_v, window_high_v, ignition_v;
+	double feed_gain_mm_s_v, integral_s;
+	double feed_max_mm_s, creep_mm_s, feed_a_mm_s2, approach_mm_s;
+	double share_v, share_set, share_weight, share_short, share_open;
+	double retract_mm_s, retract_limit_mm, retract_wait_s, retract_max_s;
+	int retract_to;			/* enum retract_to */
+	double abort_count;		/* whole number */
+	double progress_mm;
+	double arc_share, arc_cycles, arc_sigma_v;
+	double off_us, arc_off_max, arc_recover_s, arc_retract_mm;
+	double stuck_s, noise_limit_v;
+	double wire_retract_mm, wire_retreat_mm;
+	int retract;			/* 0 along the path, 1 by the escape */
+};
+
+/* [can402]: drives on a CAN bus; docs/can402.md. */
+struct config_can402 {
+	char interface[16];
+	double bitrate_kbit;
+	double node[INTERP_NAXES];	/* 0: the axis has no drive */
+	double master_node;
+	double heartbeat_ms;
+	double missing_max;		/* answers missing in a row */
+	double following_mm;		/* 0: not supervised */
+	double resync_mm, resync_mm_s;	/* back to its place when enabled */
+	double enable_s;		/* at most, from a start to motion */
+	double gap_id, generator_id;	/* of their frames; 0: none */
+};
+
+/* [plc]; docs/plc.md. */
+struct config_plc {
+	char interface[16];		/* "none": there is no PLC */
+	double node;
+	double alive_ms;		/* no turn of its toggle: lost */
+	double cycle_ms;		/* of the frames to it */
+	char m_before[96], m_after[96], m_free[96];	/* lists of M codes */
+	char m_redo[96], m_stop[96];
+	double m_timeout_s;		/* 0: never */
+};
+
+/* [axis.*]: so many increments of a drive are so many pulses. */
+struct config_drive {
+	double increments, pulses;
 };
 
 /* [jump] */
 struct config_jump {
-	double height_mm, every_s, v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
-	double short_of_mm;
+	double height_mm, every_s, every_mm;
+	uint32_t adaptive;		/* 1: yes */
+	double every_min_s, every_max_s, height_min_mm, height_max_mm;
+	double bad_share;
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
+	double a_down_mm_s2, short_of_mm;
+	int escape;			/* enum interp_escape_mode */
 };
 
-/* [sim]: the simulated gap process; io/sim.c says what each does. */
+/* [contour]: compensation of the contour error, tried by edmsim. */
+struct config_contour {
+	char method[64];
+	double speed, acceleration, lead_periods;
+	double cross_1_s, predicted_1_s, measured_1_s, horizon_s;
+	double noise_mm, model_error;	/* of the machine it is tried on */
+};
+
+enum sim_process { SIM_SINK, SIM_WIRE };
+enum sim_electrode { ELECTRODE_FLAT, ELECTRODE_BALL, ELECTRODE_CONE };
+
+/* [touch] */
+struct config_touch {
+	double feed_mm_s, fine_mm_s, back_mm, settle_s;
+};
+
+/* [sim]: the simulated machine; docs/process-model.md says what each does. */
 struct config_sim {
 	double seed;			/* whole number */
 	double speed;			/* periods run for each period of time */
+	int process;			/* enum sim_process */
+
+	/* The generator. */
 	double on_us, off_us, peak_a, open_v, spark_v;
+	uint32_t iso;			/* 1: on time begins at the ignition */
+	double wait_us;			/* for it, at most */
+	double open_us;			/* ... and longer counts as open */
+	double respond_s;		/* power asked for to sparks */
+
+	/* The gap, for these pulses and clean. */
 	double short_gap_mm, best_gap_mm, open_gap_mm;
 	double standoff_mm;		/* air before the workpiece */
-	double area_mm2;		/* frontal area of the electrode */
+
+	/* The electrode. */
+	int electrode;			/* enum sim_electrode */
+	double area_mm2;		/* frontal area, of the whole */
+	double tip_mm;			/* length of the ball or cone */
+	double perimeter_mm;		/* 0: round */
+	double depth_mm;		/* of the cavity, to begin with */
+	double side_gap_mm;		/* beside the electrode */
+	double wire_mm, height_mm;	/* diameter, work; wire only */
+
+	/* Removal. */
 	double removal_mm3_min;		/* at the best gap, clean */
+	double crater_peak_power, crater_on_power;
 	double wear_ratio;		/* electrode length lost per depth */
+	double negative_removal, negative_wear;	/* times as much */
+
+	/* Debris, bridges, arcs. */
 	double debris_per_mm;		/* debris made per mm eroded, 0..1 scale */
 	double debris_settle_s;		/* time constant, undisturbed */
 	double debris_gap_mm;		/* gap lost at debris 1 */
-	double flush_mm;		/* jump stroke that halves the debris */
+	double secondary;		/* sparks lost on it at debris 1 */
+	double flush_mm;		/* fast clean stroke that halves it */
+	double flush_mm_s;		/* stroke speed that carries half */
+	double flush_per_s;		/* driven out by the pump, at depth 0 */
 	double bridge_per_s;		/* debris bridges per second at debris 1 */
 	double bridge_mm;		/* mean length of a bridge */
 	double bridge_settle_s;		/* it shrinks with this time constant */
+	double deion_us;		/* recovery of a channel */
+	double arc_gain;		/* above 1 at debris 1: arcs may stay */
+	double arc_s;			/* time constant of a hot place */
+	double break_per_j, rethread_s;	/* of the wire */
+
+	/* Sensors and axes. */
 	double noise_v;			/* sigma of the gap voltage */
+	uint32_t counted;		/* 1: pulses vary as single ones do */
+	double lag_s, start_s;		/* of the axes */
+	double home_off_mm, index_mm;	/* switches; sim_switches.c */
+	double measure_pulses;		/* sigma of the scales */
+
+	/* What a touch meets: sim_touch.c. */
+	uint32_t block;			/* 1: there is a block */
+	double block_min_mm[2], block_max_mm[2];	/* X, Y; machine */
+	double block_top_mm;		/* Z; it has no bottom */
+	double bore_at_mm[2], bore_mm;	/* centre, diameter; 0: none */
+	double feeler_mm;		/* diameter of the electrode */
+};
+
+/* [kinematics]: the joints from work to tool; interp/kinematics.h. */
+struct config_kinematics {
+	char chain[160];		/* "none": no G43.4 */
+	double tip_mm[3];
+	double tolerance_um;
+};
+
+/* [axis.X] home_*, jog_mm_s, backlash_*. */
+struct config_hand {
+	double jog_mm_s;
+	int home_method;		/* enum home_method */
+	int home_dir;			/* 0 toward -, 1 toward + */
+	double home_fast_mm_s, home_slow_mm_s, home_at_mm, home_back_mm;
+	double home_order;		/* whole number */
+	double backlash_um, backlash_mm_s;
+};
+
+#define CONFIG_PITCH_POINTS	128	/* COMP_POINTS */
+
+/* A pitch map, as read. */
+struct config_pitch {
+	uint32_t n;
+	double at_mm[CONFIG_PITCH_POINTS];	/* rising */
+	double error_um[CONFIG_PITCH_POINTS];	/* came farther than sent */
+};
+
+/* [gpio] lines, in the order of their keys; those of an axis are 8 in a row. */
+enum config_line {
+	LINE_STEP,
+	LINE_DIR = LINE_STEP + INTERP_NAXES,
+	LINE_SPARK = LINE_DIR + INTERP_NAXES,
+	LINE_PUMP,
+	LINE_WATCHDOG,
+	CONFIG_NOUTPUTS,
+	LINE_LIMIT = CONFIG_NOUTPUTS,
+	LINE_HOME = LINE_LIMIT + INTERP_NAXES,
+	LINE_GAP_OPEN = LINE_HOME + INTERP_NAXES,
+	LINE_GAP_SPARK,
+	LINE_GAP_SHORT,
+	LINE_ESTOP,
+	LINE_WIRE,
+	LINE_DOOR,
+	LINE_DIELECTRIC,
+	CONFIG_NLINES
+};
+
+#define CONFIG_LINE_MAX	32		/* of a line's text, with its NUL */
+
+/* A line's text, read. */
+struct config_line_at {
+	bool wired;			/* false: none */
+	bool inverted;			/* low is on */
+	char chip[CONFIG_LINE_MAX];	/* empty: [gpio] chip */
+	unsigned int offset;
+};
+
+/* [gpio]: docs/gpio.md */
+struct config_gpio {
+	char chip[64];			/* name, label or device file */
+	int signal;			/* 0 step and direction, 1 quadrature */
+	int pull;			/* of inputs: 0 as is, 1 up, 2 down, 3 no */
+	double high_cycles, low_cycles;	/* of a step */
+	double dir_setup_cycles, dir_hold_cycles;
+	double watchdog_us;		/* between two edges */
+	char line[CONFIG_NLINES][CONFIG_LINE_MAX];
 };
 
 struct machine_config {
@@ -63,6 +245,8 @@ struct machine_config {
 	double tolerance_pulses;	/* mu */
 	uint32_t perpendicular;		/* 1: mu is square to the path */
 	int coupling;			/* enum interp_coupling */
+	double chord_error_um;		/* of curves; 0: no limit */
+	double fit_um;			/* lines joined into curves; 0: not */
 	double feed_default_mm_min;	/* before the first F; 0: F demanded */
 	uint32_t optional_stop;		/* 1: M1 holds */
 	double threeb_unit_um;		/* of lengths in 3B and 4B programs */
@@ -70,17 +254,34 @@ struct machine_config {
 	double cpu;			/* core the cycle is pinned to; -1: none */
 	double priority;		/* SCHED_FIFO */
 	double overrun_limit;		/* missed periods in a row; 0: no fault */
+	uint32_t require_home;		/* 1: no start before */
 
 	struct interp_machine axes;	/* [axis.X] ... [axis.V] */
+	struct config_hand hand[INTERP_NAXES];
+	char pitch_map[INTERP_NAXES][128];	/* a file; "none" */
+	struct config_pitch pitch[INTERP_NAXES];
+	struct interp_axis_loop loop[INTERP_NAXES];	/* gain 0: not known */
 	double start_mm[INTERP_NAXES];	/* where a simulated machine begins */
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* [work] */
 
 	struct interp_wire wire;	/* [wire] */
 	double offset_mm[INTERP_NOFFSETS];	/* [wire] offset_*_mm */
 
+	struct config_kinematics kinematics;
+	struct config_can402 can402;
+	struct config_plc plc;
+	struct config_drive drive[INTERP_NAXES];
 	struct config_gap gap;
 	struct config_jump jump;
+	struct config_contour contour;
+	struct config_touch touch;
+	double corner_um;		/* [speed] corner_um */
+	int nodes;			/* [speed] nodes: 0 pass, 1 stop */
 	struct config_sim sim;
+	struct config_gpio gpio;
+
+	char tech_table[256];		/* [tech] table; "none": there is none */
+	char folder[256];		/* of the machine file; "": here */
 
 	char lcm_url[128];		/* [lcm] url */
 	double dds_domain;		/* [dds] domain */
@@ -99,8 +300,49 @@ void config_defaults(struct machine_config *c);
 int config_read(struct machine_config *c, const char *path,
 		struct interp_diag *diag);
 
+struct interp_tech;
+struct interp_tech_table;
+
+/* What config_tech_load() came to. */
+struct config_tech {
+	struct interp_tech_table *table;	/* NULL: there is none */
+	char path[512];
+	char *text;			/* as read; NULL without a table */
+	size_t bytes;
+	struct interp_diag diag;	/* filled with -EINVAL */
+};
+
+/**
+ * config_tech_load() - read a technology table, and check that it may go over
+ * the machine's values.
+ *
+ * @path: NULL is [tech] table, beside the machine file; an .enc file is read
+ * as one, any other as .tech.
+ * Return: 0; -errno of the file; -EINVAL with ret->diag filled; -ENOMEM.
+ * ret->path says which file, and ret is to be handed to config_tech_free() in
+ * any case.  Any thread.
+ */
+int config_tech_load(struct config_tech *ret, const struct machine_config *c,
+		     const char *path);
+void config_tech_free(struct config_tech *t);
+
+/** config_tech_base() - the machine's own values of the fields. */
+void config_tech_base(const struct machine_config *c, struct interp_tech *ret);
+
 /** config_period_ns() - the period in force. */
 int64_t config_period_ns(const struct machine_config *c);
+
+/**
+ * config_line_read() - `none`, or [!][CHIP:]NUMBER.
+ * Return: NULL, or what is wrong with @text.
+ */
+const char *config_line_read(const char *text, struct config_line_at *ret);
+
+/** config_line_name() - its key: "step_X", "spark", ... */
+const char *config_line_name(int line);
+
+/** config_gpio_has_gap() - are there lines of a gap comparator? */
+bool config_gpio_has_gap(const struct machine_config *c);
 
 /** config_print() - every key with its value, as a machine file. */
 void config_print(const struct machine_config *c, FILE *f);
@@ -108,7 +350,24 @@ void config_print(const struct machine_config *c, FILE *f);
 /** config_document() - docs/config.md. */
 void config_document(FILE *f);
 
+/**
+ * config_kinematics() - the machine's joints.
+ * Return: 0; -ENOENT if [kinematics] names none; -EINVAL with @diag filled.
+ */
+int config_kinematics(const struct machine_config *c,
+		      struct interp_kinematics *ret, struct interp_diag *diag);
+
+/** config_has_plc() - is there one to be heard? */
+bool config_has_plc(const struct machine_config *c);
+
+/** config_mcodes() - the M codes that the PLC carries out. */
+void config_mcodes(const struct machine_config *c,
+		   struct interp_mcode table[INTERP_NMCODES]);
+
 struct cycle_config;
+
+/** config_has_switch() - is axis @axis homed by a switch? */
+bool config_has_switch(const struct machine_config *c, int axis);
 
 /** config_cycle() - what the cycle needs of it, in pulses and cycles. */
 void config_cycle(const struct machine_config *c, struct cycle_config *ret);

@@ -4,19 +4,76 @@
  */
 #include "keys.h"
 
+#include "cycle.h"
+
 static const char *backend_word(int i)
 {
 	static const char *const words[] = {
 		[BACKEND_SIM] = "sim",
 		[BACKEND_NULL] = "null",
+		[BACKEND_GPIO] = "gpio",
+		[BACKEND_CAN402] = "can402",
 	};
 
-	return i >= 0 && i <= BACKEND_NULL ? words[i] : NULL;
+	return i >= 0 && i < CONFIG_NBACKENDS ? words[i] : NULL;
+}
+
+static const char *process_word(int i)
+{
+	static const char *const words[CYCLE_NPROCESSES] = {
+		[PROCESS_SINK] = "sink",
+		[PROCESS_WIRE] = "wire",
+	};
+
+	return i >= 0 && i < CYCLE_NPROCESSES ? words[i] : NULL;
 }
 
 static const char *source_word(int i)
 {
-	return i == 0 ? "sim" : NULL;
+	static const char *const words[GAP_NSOURCES] = {
+		[GAP_SIM] = "sim",
+		[GAP_VOLTAGE] = "voltage",
+		[GAP_SHARES] = "shares",
+		[GAP_LINES] = "lines",
+		[GAP_CAN] = "can",
+	};
+
+	return i >= 0 && i < GAP_NSOURCES ? words[i] : NULL;
+}
+
+static const char *filter_word(int i)
+{
+	static const char *const words[GAP_NFILTERS] = {
+		[GAP_MEDIAN] = "median",
+		[GAP_FIRST_ORDER] = "first-order",
+	};
+
+	return i >= 0 && i < GAP_NFILTERS ? words[i] : NULL;
+}
+
+static const char *retract_to_word(int i)
+{
+	static const char *const words[RETRACT_NPLACES] = {
+		[RETRACT_LIMIT] = "limit",
+		[RETRACT_START] = "start",
+		[RETRACT_MOTION] = "motion",
+	};
+
+	return i >= 0 && i < RETRACT_NPLACES ? words[i] : NULL;
+}
+
+static const char *signal_word(int i)
+{
+	static const char *const words[] = { "step", "quadrature" };
+
+	return i >= 0 && i < 2 ? words[i] : NULL;
+}
+
+static const char *pull_word(int i)
+{
+	static const char *const words[] = { "as-is", "up", "down", "none" };
+
+	return i >= 0 && i < 4 ? words[i] : NULL;
 }
 
 static const char *strategy_word(int i)
@@ -24,6 +81,17 @@ static const char *strategy_word(int i)
 	if (i < 0 || i >= INTERP_NSTRATEGIES)
 		return NULL;
 	return interp_strategy_name((enum interp_strategy)i);
+}
+
+static const char *retract_word(int i)
+{
+	return i == 0 ? "path" : i == 1 ? "escape" : NULL;
+}
+
+static const char *escape_word(int i)
+{
+	return i < 0 ? NULL :
+	       interp_escape_mode_name((enum interp_escape_mode)i);
 }
 
 static const char *guides_word(int i)
@@ -37,11 +105,49 @@ static const char *guides_word(int i)
 	return i >= 0 && i < INTERP_NGUIDES ? words[i] : NULL;
 }
 
+static const char *nodes_word(int i)
+{
+	return i == 0 ? "pass" : i == 1 ? "stop" : NULL;
+}
+
 static const char *coupling_word(int i)
 {
 	if (i < 0 || i >= INTERP_NCOUPLINGS)
 		return NULL;
 	return interp_coupling_name((enum interp_coupling)i);
+}
+
+static const char *method_word(int i)
+{
+	static const char *const words[HOME_NMETHODS] = {
+		[HOME_NONE] = "none",
+		[HOME_SWITCH] = "switch",
+		[HOME_SWITCH_INDEX] = "switch-index",
+		[HOME_ABSOLUTE] = "absolute",
+	};
+
+	return i >= 0 && i < HOME_NMETHODS ? words[i] : NULL;
+}
+
+static const char *direction_word(int i)
+{
+	return i == 0 ? "-" : i == 1 ? "+" : NULL;
+}
+
+static const char *sim_process_word(int i)
+{
+	return i == SIM_SINK ? "sink" : i == SIM_WIRE ? "wire" : NULL;
+}
+
+static const char *electrode_word(int i)
+{
+	static const char *const words[] = {
+		[ELECTRODE_FLAT] = "flat",
+		[ELECTRODE_BALL] = "ball",
+		[ELECTRODE_CONE] = "cone",
+	};
+
+	return i >= 0 && i <= ELECTRODE_CONE ? words[i] : NULL;
 }
 
 static const char *const axes[INTERP_NAXES] = {
@@ -61,12 +167,29 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"origin of a work coordinate system, in machine coordinates" },
 	[SECTION_WIRE] = { "wire", NULL, 1,
 		"a wire machine's guides, planes and corners; docs/taper.md" },
+	[SECTION_KINEMATICS] = { "kinematics", NULL, 1,
+		"the joints from work to tool, for G43.4; docs/kinematics.md" },
 	[SECTION_GAP] = { "gap", NULL, 1,
-		"the gap servo: feed from the mean gap voltage" },
+		"the gap servo: feed from the gap; docs/gap-servo.md" },
 	[SECTION_JUMP] = { "jump", NULL, 1,
-		"the timed lift that flushes the gap" },
+		"the lift that flushes the gap" },
+	[SECTION_CONTOUR] = { "contour", NULL, 1,
+		"compensation of the contour error, as edmsim --tune-contour "
+		"tries it; the cycle does not apply it; docs/contour.md" },
+	[SECTION_TOUCH] = { "touch", NULL, 1,
+		"feeling for the work; docs/touch.md" },
+	[SECTION_SPEED] = { "speed", NULL, 1,
+		"how fast the nodes of a program are passed" },
+	[SECTION_CAN402] = { "can402", NULL, 1,
+		"drives of CiA 402 on a CAN bus, for backend can402" },
+	[SECTION_PLC] = { "plc", NULL, 1,
+		"a PLC on a CAN bus, edmd is its CANopen slave; docs/plc.md" },
+	[SECTION_TECH] = { "tech", NULL, 1,
+		"technology conditions; docs/technology.md" },
 	[SECTION_SIM] = { "sim", NULL, 1,
 		"the simulated machine of backend sim" },
+	[SECTION_GPIO] = { "gpio", NULL, 1,
+		"lines of a GPIO chip, for backend gpio; docs/gpio.md" },
 	[SECTION_LCM] = { "lcm", NULL, 1,
 		"messages on this machine" },
 	[SECTION_DDS] = { "dds", NULL, 1,
@@ -79,8 +202,21 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 #define ROOM(field)	.bytes = sizeof(((struct machine_config *)0)->field)
 #define AXIS(field)	AT(axes.axis[0].field), \
 			sizeof(struct interp_axis_limits)
+#define HAND(field)	AT(hand[0].field), sizeof(struct config_hand)
+#define LOOP(field)	AT(loop[0].field), sizeof(struct interp_axis_loop)
 #define WORK(axis)	AT(work_offset_mm[0][axis]), \
 			sizeof(double[INTERP_NAXES])
+
+#define LINE(key, i, what)	\
+	{ SECTION_GPIO, key, KEY_LINE, "", "none", 0, 0, \
+	  AT(gpio.line[i]), ROOM(gpio.line[0]), .help = what }
+#define AXIS_LINES(letter, a)	\
+	LINE("step_" letter, LINE_STEP + (a), "output: step, or A"), \
+	LINE("dir_" letter, LINE_DIR + (a), \
+	     "output: direction, on for +; or B"), \
+	LINE("limit_" letter, LINE_LIMIT + (a), \
+	     "input: an end of the travel, either; fault limit-switch"), \
+	LINE("home_" letter, LINE_HOME + (a), "input: home switch")
 
 /* clang-format off */
 const struct config_key config_key[] = {
@@ -91,7 +227,7 @@ const struct config_key config_key[] = {
 	  .help = "of the machine, in shared memory and channel names" },
 	{ SECTION_MACHINE, "period_us", KEY_NUMBER, "us", "0",
 	  0, 20000, AT(period_us),
-	  .help = "cycle period, 20 or more; 0: by backend, 1000" },
+	  .help = "cycle period, 20 or more; 0: by backend, 1000, gpio 50, can402 2000" },
 	{ SECTION_MACHINE, "backend", KEY_ENUM, "", "sim",
 	  0, 0, AT(backend), .word = backend_word,
 	  .help = "what the cycle reads and writes" },
@@ -107,6 +243,13 @@ const struct config_key config_key[] = {
 	{ SECTION_MACHINE, "coupling", KEY_ENUM, "", "star",
 	  0, 0, AT(coupling), .word = coupling_word,
 	  .help = "how three and more axes pulse one at a time" },
+	{ SECTION_MACHINE, "chord_error_um", KEY_NUMBER, "um", "1",
+	  0, 1000, AT(chord_error_um),
+	  .help = "of curves: a cycle's way is no farther off; 0: no limit" },
+	{ SECTION_MACHINE, "fit_um", KEY_NUMBER, "um", "0",
+	  0, 1000, AT(fit_um),
+	  .help = "cut lines in a row are joined into curves this near to "
+		  "them; 0: not" },
 	{ SECTION_MACHINE, "feed_default_mm_min", KEY_NUMBER, "mm/min", "0",
 	  0, 60000, AT(feed_default_mm_min),
 	  .help = "feed before the first F; 0: a program must give F" },
@@ -128,6 +271,9 @@ const struct config_key config_key[] = {
 	{ SECTION_MACHINE, "overrun_limit", KEY_WHOLE, "periods", "100",
 	  0, 1e6, AT(overrun_limit),
 	  .help = "missed in a row before a fault; 0: no fault" },
+	{ SECTION_MACHINE, "require_home", KEY_BIT, "", "no",
+	  0, 0, AT(require_home),
+	  .help = "no start before each axis with a home_method is homed" },
 
 	{ SECTION_AXIS, "present", KEY_BIT, "", "yes",
 	  0, 0, AT(axes.present),
@@ -150,9 +296,74 @@ const struct config_key config_key[] = {
 	{ SECTION_AXIS, "j_max_mm_s3", KEY_NUMBER, "mm/s3", "20000",
 	  1, 1e9, AXIS(j_max_mm_s3),
 	  .help = "largest jerk" },
+	{ SECTION_AXIS, "jog_mm_s", KEY_NUMBER, "mm/s", "5",
+	  1e-3, 1e5, HAND(jog_mm_s),
+	  .help = "speed of a jog" },
+	{ SECTION_AXIS, "home_method", KEY_ENUM, "", "none",
+	  0, 0, HAND(home_method), .word = method_word,
+	  .help = "how its place is found; docs/homing.md" },
+	{ SECTION_AXIS, "home_dir", KEY_ENUM, "", "-",
+	  0, 0, HAND(home_dir), .word = direction_word,
+	  .help = "the home switch lies that way" },
+	{ SECTION_AXIS, "home_fast_mm_s", KEY_NUMBER, "mm/s", "10",
+	  1e-3, 1e5, HAND(home_fast_mm_s),
+	  .help = "speed toward the switch" },
+	{ SECTION_AXIS, "home_slow_mm_s", KEY_NUMBER, "mm/s", "0.5",
+	  1e-3, 1e5, HAND(home_slow_mm_s),
+	  .help = "speed off it and on it again, and of jogs before" },
+	{ SECTION_AXIS, "home_at_mm", KEY_NUMBER, "mm", "0",
+	  -1e6, 1e6, HAND(home_at_mm),
+	  .help = "the place of the switch, or of the index mark; absolute: "
+		  "where the drive says 0" },
+	{ SECTION_AXIS, "home_back_mm", KEY_NUMBER, "mm", "1",
+	  1e-3, 1e4, HAND(home_back_mm),
+	  .help = "so far off the switch before it is met slowly" },
+	{ SECTION_AXIS, "home_order", KEY_WHOLE, "", "0",
+	  0, 99, HAND(home_order),
+	  .help = "axes are homed one by one, the lowest first" },
+	{ SECTION_AXIS, "backlash_um", KEY_NUMBER, "um", "0",
+	  0, 10000, HAND(backlash_um),
+	  .help = "lost motion where the axis turns back" },
+	{ SECTION_AXIS, "backlash_mm_s", KEY_NUMBER, "mm/s", "1",
+	  1e-3, 1e5, HAND(backlash_mm_s),
+	  .help = "backlash and pitch error are taken up so fast" },
+	{ SECTION_AXIS, "pitch_map", KEY_STRING, "", "none",
+	  0, 0, AT(pitch_map[0]), sizeof(char[128]), 128,
+	  .help = "file of its pitch errors; docs/homing.md" },
 	{ SECTION_AXIS, "start_mm", KEY_NUMBER, "mm", "0",
 	  -1e7, 1e7, AT(start_mm), sizeof(double),
-	  .help = "where a simulated machine begins" },
+	  .help = "where the machine begins: a simulated one, or one whose "
+		  "drives cannot tell" },
+	{ SECTION_AXIS, "drive_increments", KEY_WHOLE, "", "1",
+	  -1e9, 1e9, AT(drive[0].increments), sizeof(struct config_drive),
+	  .help = "of a CiA 402 drive: so many, negative to turn it round, ..." },
+	{ SECTION_AXIS, "drive_pulses", KEY_WHOLE, "pulses", "1",
+	  1, 1e9, AT(drive[0].pulses), sizeof(struct config_drive),
+	  .help = "... are so many pulses" },
+	{ SECTION_AXIS, "loop_gain_1_s", KEY_NUMBER, "1/s", "0",
+	  0, 1000, LOOP(gain_1_s),
+	  .help = "position loop, by edmctl identify; 0: not known" },
+	{ SECTION_AXIS, "loop_hz", KEY_NUMBER, "Hz", "60",
+	  1, 1000, LOOP(velocity_hz),
+	  .help = "natural frequency of the velocity loop" },
+	{ SECTION_AXIS, "loop_damping", KEY_NUMBER, "", "0.7",
+	  0.1, 3, LOOP(damping),
+	  .help = "of the velocity loop" },
+	{ SECTION_AXIS, "loop_delay_s", KEY_NUMBER, "s", "0",
+	  0, 0.012, LOOP(delay_s),
+	  .help = "from the set value to the velocity loop" },
+	{ SECTION_AXIS, "loop_feedforward", KEY_NUMBER, "", "0",
+	  -0.5, 1.5, LOOP(feedforward),
+	  .help = "of the set speed, by the drive itself; 1: all" },
+	{ SECTION_AXIS, "friction_mm_s", KEY_NUMBER, "mm/s", "0",
+	  -10, 10, LOOP(kick_mm_s),
+	  .help = "the axis lags by so much at a reversal" },
+	{ SECTION_AXIS, "friction_s", KEY_NUMBER, "s", "0.02",
+	  0.002, 0.2, LOOP(kick_s),
+	  .help = "which decays with this time constant" },
+	{ SECTION_AXIS, "backlash_mm", KEY_NUMBER, "mm", "0",
+	  0, 1, LOOP(backlash_mm),
+	  .help = "lost motion at a reversal" },
 
 	{ SECTION_WORK, "x", KEY_NUMBER, "mm", "0",
 	  -1e7, 1e7, WORK(INTERP_X), .help = "origin on X" },
@@ -208,9 +419,26 @@ const struct config_key config_key[] = {
 	  -50, 50, AT(offset_mm[1]),
 	  .help = "register D1, H1 until a program fills it; 0: unfilled" },
 
+	{ SECTION_KINEMATICS, "chain", KEY_STRING, "", "none",
+	  0, 0, AT(kinematics.chain), ROOM(kinematics.chain),
+	  .help = "joints from work to tool, as C(0 0 -120) A(0 15 -80) X Y "
+		  "Z" },
+	{ SECTION_KINEMATICS, "tip_x_mm", KEY_NUMBER, "mm", "0",
+	  -10000, 10000, AT(kinematics.tip_mm[0]),
+	  .help = "tip of the tool with all axes at 0, X" },
+	{ SECTION_KINEMATICS, "tip_y_mm", KEY_NUMBER, "mm", "0",
+	  -10000, 10000, AT(kinematics.tip_mm[1]),
+	  .help = "the same, Y" },
+	{ SECTION_KINEMATICS, "tip_z_mm", KEY_NUMBER, "mm", "0",
+	  -10000, 10000, AT(kinematics.tip_mm[2]),
+	  .help = "the same, Z" },
+	{ SECTION_KINEMATICS, "tolerance_um", KEY_NUMBER, "um", "1",
+	  0.001, 1000, AT(kinematics.tolerance_um),
+	  .help = "the tip keeps so near to its line under G43.4" },
+
 	{ SECTION_GAP, "source", KEY_ENUM, "", "sim",
 	  0, 0, AT(gap.source), .word = source_word,
-	  .help = "where the gap voltage comes from" },
+	  .help = "where the gap signal comes from" },
 	{ SECTION_GAP, "servo_v", KEY_NUMBER, "V", "15",
 	  0.1, 500, AT(gap.servo_v),
 	  .help = "mean gap voltage to hold" },
@@ -220,15 +448,60 @@ const struct config_key config_key[] = {
 	{ SECTION_GAP, "open_v", KEY_NUMBER, "V", "60",
 	  0.1, 500, AT(gap.open_v),
 	  .help = "above: nothing to cut yet, approach" },
+	{ SECTION_GAP, "window_low_v", KEY_NUMBER, "V", "0",
+	  0, 500, AT(gap.window_low_v),
+	  .help = "servo creeps back below it; 0: halfway from short_v to servo_v" },
+	{ SECTION_GAP, "window_high_v", KEY_NUMBER, "V", "0",
+	  0, 500, AT(gap.window_high_v),
+	  .help = "servo feeds above it, stands between; 0: servo_v" },
+	{ SECTION_GAP, "ignition_v", KEY_NUMBER, "V", "0",
+	  0, 1000, AT(gap.ignition_v),
+	  .help = "open-circuit voltage; 1.5 times as much is no reading; 0: any is" },
+	{ SECTION_GAP, "process", KEY_ENUM, "", "sink",
+	  0, 0, AT(gap.process), .word = process_word,
+	  .help = "where the sparks are: in a cavity, or along a wire" },
+	{ SECTION_GAP, "filter", KEY_ENUM, "", "median",
+	  0, 0, AT(gap.filter), .word = filter_word,
+	  .help = "how the gap signal is smoothed" },
+	{ SECTION_GAP, "filter_cycles", KEY_WHOLE, "cycles", "1",
+	  1, GAP_FILTER_MAX, AT(gap.filter_cycles),
+	  .help = "... over so many; 1: not at all" },
+	{ SECTION_GAP, "short_cycles", KEY_WHOLE, "cycles", "1",
+	  1, 1000, AT(gap.short_cycles),
+	  .help = "shorted in a row are a short; feed ends at the first" },
 	{ SECTION_GAP, "feed_gain_mm_s_v", KEY_NUMBER, "mm/s/V", "0.02",
 	  1e-6, 10, AT(gap.feed_gain_mm_s_v),
-	  .help = "feed for each volt above servo_v" },
+	  .help = "feed for each volt outside the window" },
+	{ SECTION_GAP, "integral_s", KEY_NUMBER, "s", "0",
+	  0, 1000, AT(gap.integral_s),
+	  .help = "reset time of the integral of the feed; 0: none" },
 	{ SECTION_GAP, "feed_max_mm_s", KEY_NUMBER, "mm/s", "0.5",
 	  1e-6, 100, AT(gap.feed_max_mm_s),
 	  .help = "fastest feed while eroding" },
+	{ SECTION_GAP, "creep_mm_s", KEY_NUMBER, "mm/s", "0.05",
+	  0, 100, AT(gap.creep_mm_s),
+	  .help = "fastest back while eroding; 0: stand" },
+	{ SECTION_GAP, "feed_a_mm_s2", KEY_NUMBER, "mm/s2", "0",
+	  0, 1e6, AT(gap.feed_a_mm_s2),
+	  .help = "acceleration of the servo; 0: the axes' own" },
 	{ SECTION_GAP, "approach_mm_s", KEY_NUMBER, "mm/s", "0.5",
 	  1e-4, 100, AT(gap.approach_mm_s),
 	  .help = "feed until the first spark" },
+	{ SECTION_GAP, "share_v", KEY_NUMBER, "V", "60",
+	  0.1, 500, AT(gap.share_v),
+	  .help = "shares: worth of 1, as volts of the signal" },
+	{ SECTION_GAP, "share_set", KEY_NUMBER, "", "0.2",
+	  -1, 1, AT(gap.share_set),
+	  .help = "shares: open, less weighted shorts and arcs, to hold" },
+	{ SECTION_GAP, "share_weight", KEY_NUMBER, "", "1",
+	  0, 100, AT(gap.share_weight),
+	  .help = "shares: of shorts and arcs, against opens" },
+	{ SECTION_GAP, "share_short", KEY_NUMBER, "", "0.5",
+	  0.01, 1, AT(gap.share_short),
+	  .help = "shares: so many shorts are a short circuit" },
+	{ SECTION_GAP, "share_open", KEY_NUMBER, "", "0.95",
+	  0.01, 1, AT(gap.share_open),
+	  .help = "shares: so many opens are nothing to cut yet" },
 	{ SECTION_GAP, "retract_mm_s", KEY_NUMBER, "mm/s", "5",
 	  1e-3, 1000, AT(gap.retract_mm_s),
 	  .help = "back along the path on a short" },
@@ -238,13 +511,82 @@ const struct config_key config_key[] = {
 	{ SECTION_GAP, "retract_wait_s", KEY_NUMBER, "s", "0.5",
 	  0, 60, AT(gap.retract_wait_s),
 	  .help = "still short so long after: fault short-not-cleared" },
+	{ SECTION_GAP, "retract_max_s", KEY_NUMBER, "s", "60",
+	  0, 86400, AT(gap.retract_max_s),
+	  .help = "a retract lasts longer: fault retract-time; 0: any" },
+	{ SECTION_GAP, "retract_to", KEY_ENUM, "", "limit",
+	  0, 0, AT(gap.retract_to), .word = retract_to_word,
+	  .help = "how far back: retract_limit_mm, the start of the program or of the motion" },
+	{ SECTION_GAP, "abort_count", KEY_WHOLE, "", "0",
+	  0, 1e9, AT(gap.abort_count),
+	  .help = "retracts without erosion between: fault retract-count; 0: any" },
+	{ SECTION_GAP, "progress_mm", KEY_NUMBER, "mm", "0.001",
+	  0, 10, AT(gap.progress_mm),
+	  .help = "cut deeper by more than this is erosion" },
+	{ SECTION_GAP, "arc_share", KEY_NUMBER, "", "0.3",
+	  0, 1, AT(gap.arc_share),
+	  .help = "more of the pulses are arcing; 0: not looked at" },
+	{ SECTION_GAP, "arc_cycles", KEY_WHOLE, "cycles", "200",
+	  1, 1e6, AT(gap.arc_cycles),
+	  .help = "... in a mean over so many, with power" },
+	{ SECTION_GAP, "arc_sigma_v", KEY_NUMBER, "V", "0",
+	  0, 100, AT(gap.arc_sigma_v),
+	  .help = "steadier near a short is an arc, where none are counted; 0: no" },
+	{ SECTION_GAP, "off_us", KEY_NUMBER, "us", "0",
+	  0, 1e5, AT(gap.off_us),
+	  .help = "the generator's own off time; 0: [sim] off_us, or not known" },
+	{ SECTION_GAP, "arc_off_max", KEY_NUMBER, "", "4",
+	  1, 100, AT(gap.arc_off_max),
+	  .help = "off time against arcs, so many times at the most" },
+	{ SECTION_GAP, "arc_recover_s", KEY_NUMBER, "s", "2",
+	  0, 3600, AT(gap.arc_recover_s),
+	  .help = "without arcs, to a step down" },
+	{ SECTION_GAP, "arc_retract_mm", KEY_NUMBER, "mm", "0.5",
+	  0, 1000, AT(gap.arc_retract_mm),
+	  .help = "retract out of an arc, at least" },
+	{ SECTION_GAP, "stuck_s", KEY_NUMBER, "s", "5",
+	  0, 3600, AT(gap.stuck_s),
+	  .help = "signal the very same while moving: fault gap-stuck; 0: any" },
+	{ SECTION_GAP, "noise_limit_v", KEY_NUMBER, "V", "100",
+	  0, 1000, AT(gap.noise_limit_v),
+	  .help = "mean change in a cycle: fault gap-stuck; 0: any" },
+	{ SECTION_GAP, "wire_retract_mm", KEY_NUMBER, "mm", "0.02",
+	  0.001, 1000, AT(gap.wire_retract_mm),
+	  .help = "wire: limit of a retract" },
+	{ SECTION_GAP, "wire_retreat_mm", KEY_NUMBER, "mm", "1",
+	  0, 1000, AT(gap.wire_retreat_mm),
+	  .help = "wire: back from a break; 0: to the motion's start" },
+	{ SECTION_GAP, "retract", KEY_ENUM, "", "path",
+	  0, 0, AT(gap.retract), .word = retract_word,
+	  .help = "out of a short: back along the path, or by the escape" },
 
 	{ SECTION_JUMP, "height_mm", KEY_NUMBER, "mm", "2",
 	  0, 500, AT(jump.height_mm),
-	  .help = "lift, back along the path; 0: no jumps" },
+	  .help = "lift, along the way out; 0: no jumps" },
 	{ SECTION_JUMP, "every_s", KEY_NUMBER, "s", "2",
 	  0.01, 86400, AT(jump.every_s),
 	  .help = "of erosion between two jumps" },
+	{ SECTION_JUMP, "every_mm", KEY_NUMBER, "mm", "0",
+	  0, 1000, AT(jump.every_mm),
+	  .help = "of depth between two jumps; 0: by time alone" },
+	{ SECTION_JUMP, "adaptive", KEY_BIT, "", "no",
+	  0, 0, AT(jump.adaptive),
+	  .help = "period and height follow the state of the gap" },
+	{ SECTION_JUMP, "every_min_s", KEY_NUMBER, "s", "0.5",
+	  0.01, 86400, AT(jump.every_min_s),
+	  .help = "adaptive: no oftener" },
+	{ SECTION_JUMP, "every_max_s", KEY_NUMBER, "s", "10",
+	  0.01, 86400, AT(jump.every_max_s),
+	  .help = "adaptive: no more seldom" },
+	{ SECTION_JUMP, "height_min_mm", KEY_NUMBER, "mm", "0.5",
+	  0.001, 500, AT(jump.height_min_mm),
+	  .help = "adaptive: no lower" },
+	{ SECTION_JUMP, "height_max_mm", KEY_NUMBER, "mm", "5",
+	  0.001, 500, AT(jump.height_max_mm),
+	  .help = "adaptive: no higher" },
+	{ SECTION_JUMP, "bad_share", KEY_NUMBER, "", "0.02",
+	  0.0001, 1, AT(jump.bad_share),
+	  .help = "adaptive: of shorts, retracts and arcs in the time" },
 	{ SECTION_JUMP, "v_max_mm_s", KEY_NUMBER, "mm/s", "80",
 	  1e-3, 1e4, AT(jump.v_max_mm_s),
 	  .help = "fastest speed of the lift" },
@@ -254,9 +596,159 @@ const struct config_key config_key[] = {
 	{ SECTION_JUMP, "j_max_mm_s3", KEY_NUMBER, "mm/s3", "20000",
 	  1, 1e9, AT(jump.j_max_mm_s3),
 	  .help = "jerk of the lift" },
+	{ SECTION_JUMP, "a_down_mm_s2", KEY_NUMBER, "mm/s2", "0",
+	  0, 1e6, AT(jump.a_down_mm_s2),
+	  .help = "acceleration toward the cut; 0: a_max_mm_s2" },
 	{ SECTION_JUMP, "short_of_mm", KEY_NUMBER, "mm", "0.05",
 	  0, 10, AT(jump.short_of_mm),
 	  .help = "comes back to so far above the cut" },
+	{ SECTION_JUMP, "escape", KEY_ENUM, "", "path",
+	  0, 0, AT(jump.escape), .word = escape_word,
+	  .help = "the lift's way out, where it is free; until G140 ... G143" },
+
+	{ SECTION_TOUCH, "feed_mm_s", KEY_NUMBER, "mm/s", "0.5",
+	  0.001, 20, AT(touch.feed_mm_s),
+	  .help = "to the first contact" },
+	{ SECTION_TOUCH, "fine_mm_s", KEY_NUMBER, "mm/s", "0.02",
+	  0.0001, 5, AT(touch.fine_mm_s),
+	  .help = "to the second one, which counts" },
+	{ SECTION_TOUCH, "back_mm", KEY_NUMBER, "mm", "0.1",
+	  0, 10, AT(touch.back_mm),
+	  .help = "back between the two; 0: the first one counts" },
+	{ SECTION_TOUCH, "settle_s", KEY_NUMBER, "s", "0.05",
+	  0.002, 10, AT(touch.settle_s),
+	  .help = "for the sensing voltage, before it begins" },
+
+	{ SECTION_SPEED, "corner_um", KEY_NUMBER, "um", "5",
+	  0.01, 1000, AT(corner_um),
+	  .help = "a node's speed is that of an arc so near its corner" },
+	{ SECTION_SPEED, "nodes", KEY_ENUM, "", "pass",
+	  0, 0, AT(nodes), .word = nodes_word,
+	  .help = "stop: at every node of a jump, for comparison only" },
+
+	{ SECTION_CAN402, "interface", KEY_NAME, "", "can0",
+	  0, 0, AT(can402.interface), ROOM(can402.interface),
+	  .help = "network interface of the bus" },
+	{ SECTION_CAN402, "bitrate_kbit", KEY_NUMBER, "kbit/s", "1000",
+	  10, 1000, AT(can402.bitrate_kbit),
+	  .help = "of the bus, to know how full it is" },
+	{ SECTION_CAN402, "node_X", KEY_WHOLE, "", "0",
+	  0, 126, AT(can402.node[INTERP_X]),
+	  .help = "node of X's drive; 0: it has none" },
+	{ SECTION_CAN402, "node_Y", KEY_WHOLE, "", "0",
+	  0, 126, AT(can402.node[INTERP_Y]),
+	  .help = "node of Y's drive; 0: it has none" },
+	{ SECTION_CAN402, "node_Z", KEY_WHOLE, "", "0",
+	  0, 126, AT(can402.node[INTERP_Z]),
+	  .help = "node of Z's drive; 0: it has none" },
+	{ SECTION_CAN402, "node_A", KEY_WHOLE, "", "0",
+	  0, 126, AT(can402.node[INTERP_A]),
+	  .help = "node of A's drive; 0: it has none" },
+	{ SECTION_CAN402, "node_B", KEY_WHOLE, "", "0",
+	  0, 126, AT(can402.node[INTERP_B]),
+	  .help = "node of B's drive; 0: it has none" },
+	{ SECTION_CAN402, "node_C", KEY_WHOLE, "", "0",
+	  0, 126, AT(can402.node[INTERP_C]),
+	  .help = "node of C's drive; 0: it has none" },
+	{ SECTION_CAN402, "node_U", KEY_WHOLE, "", "0",
+	  0, 126, AT(can402.node[INTERP_U]),
+	  .help = "node of U's drive; 0: it has none" },
+	{ SECTION_CAN402, "node_V", KEY_WHOLE, "", "0",
+	  0, 126, AT(can402.node[INTERP_V]),
+	  .help = "node of V's drive; 0: it has none" },
+	{ SECTION_CAN402, "master_node", KEY_WHOLE, "", "127",
+	  1, 127, AT(can402.master_node),
+	  .help = "our own node, whose heartbeat the drives watch" },
+	{ SECTION_CAN402, "heartbeat_ms", KEY_WHOLE, "ms", "100",
+	  10, 10000, AT(can402.heartbeat_ms),
+	  .help = "of us and of each drive; 2.5 times of it is silence" },
+	{ SECTION_CAN402, "missing_max", KEY_WHOLE, "", "2",
+	  0, 100, AT(can402.missing_max),
+	  .help = "SYNCs in a row a drive may leave unanswered" },
+	{ SECTION_CAN402, "following_mm", KEY_NUMBER, "mm", "1",
+	  0, 1000, AT(can402.following_mm),
+	  .help = "an axis farther from its target is a fault; 0: never" },
+	{ SECTION_CAN402, "resync_mm", KEY_NUMBER, "mm", "0.5",
+	  0, 100, AT(can402.resync_mm),
+	  .help = "farther from its place an axis is not enabled" },
+	{ SECTION_CAN402, "resync_mm_s", KEY_NUMBER, "mm/s", "1",
+	  0.001, 100, AT(can402.resync_mm_s),
+	  .help = "back to its place after it was enabled" },
+	{ SECTION_CAN402, "enable_s", KEY_NUMBER, "s", "5",
+	  0.01, 1000, AT(can402.enable_s),
+	  .help = "for the axes to be enabled and on their places" },
+	{ SECTION_CAN402, "gap_id", KEY_WHOLE, "", "0",
+	  0, 2047, AT(can402.gap_id),
+	  .help = "identifier of the gap's frames; 0: no gap, no sparks" },
+	{ SECTION_CAN402, "generator_id", KEY_WHOLE, "", "0",
+	  0, 2047, AT(can402.generator_id),
+	  .help = "identifier of the frames to the generator; 0: none" },
+	{ SECTION_PLC, "interface", KEY_NAME, "", "none",
+	  0, 0, AT(plc.interface), ROOM(plc.interface),
+	  .help = "network interface of its bus; none: there is no PLC" },
+	{ SECTION_PLC, "node", KEY_WHOLE, "", "32",
+	  1, 127, AT(plc.node),
+	  .help = "our node on it" },
+	{ SECTION_PLC, "alive_ms", KEY_WHOLE, "ms", "200",
+	  10, 10000, AT(plc.alive_ms),
+	  .help = "without a turn of its toggle for so long: fault plc-lost" },
+	{ SECTION_PLC, "cycle_ms", KEY_WHOLE, "ms", "20",
+	  5, 10000, AT(plc.cycle_ms),
+	  .help = "from one set of frames to it to the next" },
+	{ SECTION_PLC, "m_before", KEY_STRING, "", "none",
+	  0, 0, AT(plc.m_before), ROOM(plc.m_before),
+	  .help = "M codes for it, done before the motion of their line" },
+	{ SECTION_PLC, "m_after", KEY_STRING, "", "none",
+	  0, 0, AT(plc.m_after), ROOM(plc.m_after),
+	  .help = "M codes for it, done after the motion of their line" },
+	{ SECTION_PLC, "m_free", KEY_STRING, "", "none",
+	  0, 0, AT(plc.m_free), ROOM(plc.m_free),
+	  .help = "M codes for it, which no motion waits for" },
+	{ SECTION_PLC, "m_redo", KEY_STRING, "", "none",
+	  0, 0, AT(plc.m_redo), ROOM(plc.m_redo),
+	  .help = "those done again after a way back over them" },
+	{ SECTION_PLC, "m_stop", KEY_STRING, "", "none",
+	  0, 0, AT(plc.m_stop), ROOM(plc.m_stop),
+	  .help = "those that end a way back" },
+	{ SECTION_PLC, "m_timeout_s", KEY_NUMBER, "s", "30",
+	  0, 86400, AT(plc.m_timeout_s),
+	  .help = "longer waits are fault m-code; 0: none is" },
+
+	{ SECTION_CONTOUR, "method", KEY_STRING, "", "none",
+	  0, 0, AT(contour.method), ROOM(contour.method),
+	  .help = "none, or of feedforward, cross-coupled, predictive, zpetc, "
+		  "joined by +" },
+	{ SECTION_CONTOUR, "speed", KEY_NUMBER, "", "1",
+	  0, 2, AT(contour.speed),
+	  .help = "feedforward: of the set speed" },
+	{ SECTION_CONTOUR, "acceleration", KEY_NUMBER, "", "1",
+	  0, 3, AT(contour.acceleration),
+	  .help = "feedforward: of what the velocity loop lags" },
+	{ SECTION_CONTOUR, "lead_periods", KEY_NUMBER, "periods", "0.5",
+	  0, 1, AT(contour.lead_periods),
+	  .help = "feedforward: so far ahead" },
+	{ SECTION_CONTOUR, "cross_1_s", KEY_NUMBER, "1/s", "0",
+	  0, 1000, AT(contour.cross_1_s),
+	  .help = "cross-coupled: speed for each mm of contour error" },
+	{ SECTION_CONTOUR, "predicted_1_s", KEY_NUMBER, "1/s", "0",
+	  0, 1000, AT(contour.predicted_1_s),
+	  .help = "predictive: Kff, for the error to come" },
+	{ SECTION_CONTOUR, "measured_1_s", KEY_NUMBER, "1/s", "0",
+	  0, 1000, AT(contour.measured_1_s),
+	  .help = "predictive: Kfb, for the present one" },
+	{ SECTION_CONTOUR, "horizon_s", KEY_NUMBER, "s", "0.02",
+	  0, 0.064, AT(contour.horizon_s),
+	  .help = "predictive: how far it looks ahead" },
+	{ SECTION_CONTOUR, "noise_mm", KEY_NUMBER, "mm", "0.0005",
+	  0, 0.1, AT(contour.noise_mm),
+	  .help = "sigma of the encoders, for trials" },
+	{ SECTION_CONTOUR, "model_error", KEY_NUMBER, "", "0.1",
+	  0, 0.5, AT(contour.model_error),
+	  .help = "velocity loops are off by this part, for trials" },
+
+	{ SECTION_TECH, "table", KEY_STRING, "", "none",
+	  0, 0, AT(tech_table), ROOM(tech_table),
+	  .help = "file of conditions, beside this one; none: there is none" },
 
 	{ SECTION_SIM, "seed", KEY_WHOLE, "", "1",
 	  0, 9007199254740992.0, AT(sim.seed),
@@ -264,6 +756,9 @@ const struct config_key config_key[] = {
 	{ SECTION_SIM, "speed", KEY_WHOLE, "", "1",
 	  1, 10000, AT(sim.speed),
 	  .help = "periods run for each period of time" },
+	{ SECTION_SIM, "process", KEY_ENUM, "", "sink",
+	  0, 0, AT(sim.process), .word = sim_process_word,
+	  .help = "a sinker's electrode, or a wire through the work" },
 	{ SECTION_SIM, "on_us", KEY_NUMBER, "us", "8",
 	  0.1, 10000, AT(sim.on_us),
 	  .help = "on time of the generator's pulses" },
@@ -279,6 +774,18 @@ const struct config_key config_key[] = {
 	{ SECTION_SIM, "spark_v", KEY_NUMBER, "V", "25",
 	  5, 100, AT(sim.spark_v),
 	  .help = "across a burning spark" },
+	{ SECTION_SIM, "iso", KEY_BIT, "", "yes",
+	  0, 0, AT(sim.iso),
+	  .help = "on time begins at the ignition: sparks of equal energy" },
+	{ SECTION_SIM, "wait_us", KEY_NUMBER, "us", "500",
+	  1, 1e5, AT(sim.wait_us),
+	  .help = "for an ignition, at most, with iso" },
+	{ SECTION_SIM, "open_us", KEY_NUMBER, "us", "0",
+	  0, 1e5, AT(sim.open_us),
+	  .help = "a longer wait is counted as open; 0: a fifth at the best gap" },
+	{ SECTION_SIM, "respond_s", KEY_NUMBER, "s", "0",
+	  0, 10, AT(sim.respond_s),
+	  .help = "from power on to the first pulse" },
 	{ SECTION_SIM, "short_gap_mm", KEY_NUMBER, "mm", "0.005",
 	  1e-4, 1, AT(sim.short_gap_mm),
 	  .help = "narrower: pulses short" },
@@ -291,15 +798,48 @@ const struct config_key config_key[] = {
 	{ SECTION_SIM, "standoff_mm", KEY_NUMBER, "mm", "0.05",
 	  0, 100, AT(sim.standoff_mm),
 	  .help = "air before the workpiece" },
+	{ SECTION_SIM, "electrode", KEY_ENUM, "", "flat",
+	  0, 0, AT(sim.electrode), .word = electrode_word,
+	  .help = "form of its tip" },
 	{ SECTION_SIM, "area_mm2", KEY_NUMBER, "mm2", "19.635",
 	  1e-3, 1e6, AT(sim.area_mm2),
-	  .help = "frontal area of the electrode; 19.635 is 5 mm round" },
+	  .help = "whole frontal area of the electrode; 19.635 is 5 mm round" },
+	{ SECTION_SIM, "tip_mm", KEY_NUMBER, "mm", "2.5",
+	  1e-3, 1000, AT(sim.tip_mm),
+	  .help = "length of the ball's or cone's tip" },
+	{ SECTION_SIM, "perimeter_mm", KEY_NUMBER, "mm", "0",
+	  0, 1e5, AT(sim.perimeter_mm),
+	  .help = "around the electrode; 0: as if round" },
+	{ SECTION_SIM, "depth_mm", KEY_NUMBER, "mm", "0",
+	  0, 1000, AT(sim.depth_mm),
+	  .help = "of the cavity, before the first spark" },
+	{ SECTION_SIM, "side_gap_mm", KEY_NUMBER, "mm", "0.05",
+	  1e-3, 10, AT(sim.side_gap_mm),
+	  .help = "between the electrode's side and the cavity" },
+	{ SECTION_SIM, "wire_mm", KEY_NUMBER, "mm", "0.25",
+	  0.01, 5, AT(sim.wire_mm),
+	  .help = "diameter of the wire; process wire" },
+	{ SECTION_SIM, "height_mm", KEY_NUMBER, "mm", "40",
+	  0.1, 1000, AT(sim.height_mm),
+	  .help = "of the work along the wire; process wire" },
 	{ SECTION_SIM, "removal_mm3_min", KEY_NUMBER, "mm3/min", "12.75",
 	  1e-3, 1e5, AT(sim.removal_mm3_min),
-	  .help = "at the best gap, clean" },
+	  .help = "at its best gap, clean, of a pulse of 6 A, 8 us, 20 us" },
+	{ SECTION_SIM, "crater_peak_power", KEY_NUMBER, "", "1",
+	  0, 3, AT(sim.crater_peak_power),
+	  .help = "a spark's volume grows with peak_a to this power" },
+	{ SECTION_SIM, "crater_on_power", KEY_NUMBER, "", "1",
+	  0, 3, AT(sim.crater_on_power),
+	  .help = "a spark's volume grows with on_us to this power" },
 	{ SECTION_SIM, "wear_ratio", KEY_NUMBER, "", "0.01",
 	  0, 10, AT(sim.wear_ratio),
 	  .help = "electrode length lost per depth" },
+	{ SECTION_SIM, "negative_removal", KEY_NUMBER, "", "1.2",
+	  0.01, 100, AT(sim.negative_removal),
+	  .help = "times the removal, with the electrode negative" },
+	{ SECTION_SIM, "negative_wear", KEY_NUMBER, "", "5",
+	  0, 1000, AT(sim.negative_wear),
+	  .help = "times the wear, with the electrode negative" },
 	{ SECTION_SIM, "debris_per_mm", KEY_NUMBER, "1/mm", "20",
 	  0, 1e4, AT(sim.debris_per_mm),
 	  .help = "debris made per depth eroded, on a scale of 0 to 1" },
@@ -309,9 +849,18 @@ const struct config_key config_key[] = {
 	{ SECTION_SIM, "debris_gap_mm", KEY_NUMBER, "mm", "0.012",
 	  0, 1, AT(sim.debris_gap_mm),
 	  .help = "gap lost at debris 1" },
+	{ SECTION_SIM, "secondary", KEY_NUMBER, "", "0.5",
+	  0, 1, AT(sim.secondary),
+	  .help = "part of the sparks that strike debris, at debris 1" },
 	{ SECTION_SIM, "flush_mm", KEY_NUMBER, "mm", "0.5",
 	  1e-3, 100, AT(sim.flush_mm),
-	  .help = "jump stroke that halves the debris" },
+	  .help = "clean, fast stroke that halves the debris" },
+	{ SECTION_SIM, "flush_mm_s", KEY_NUMBER, "mm/s", "5",
+	  0, 1000, AT(sim.flush_mm_s),
+	  .help = "a stroke this fast carries half of what it could" },
+	{ SECTION_SIM, "flush_per_s", KEY_NUMBER, "1/s", "0.05",
+	  0, 1000, AT(sim.flush_per_s),
+	  .help = "debris the pump drives out, in a shallow cavity" },
 	{ SECTION_SIM, "bridge_per_s", KEY_NUMBER, "1/s", "0.2",
 	  0, 1000, AT(sim.bridge_per_s),
 	  .help = "debris bridges at debris 1" },
@@ -321,9 +870,114 @@ const struct config_key config_key[] = {
 	{ SECTION_SIM, "bridge_settle_s", KEY_NUMBER, "s", "0.3",
 	  1e-3, 3600, AT(sim.bridge_settle_s),
 	  .help = "time constant a bridge dissolves with" },
+	{ SECTION_SIM, "deion_us", KEY_NUMBER, "us", "5",
+	  0.01, 1000, AT(sim.deion_us),
+	  .help = "time constant a spark's channel recovers with" },
+	{ SECTION_SIM, "arc_gain", KEY_NUMBER, "", "2",
+	  0, 1000, AT(sim.arc_gain),
+	  .help = "arcs stay if this times crowding squared is above 1" },
+	{ SECTION_SIM, "arc_s", KEY_NUMBER, "s", "1",
+	  1e-3, 1000, AT(sim.arc_s),
+	  .help = "time constant of a place heated by arcs" },
+	{ SECTION_SIM, "break_per_j", KEY_NUMBER, "1/J", "0.0002",
+	  0, 1, AT(sim.break_per_j),
+	  .help = "chance of the wire to break; process wire" },
+	{ SECTION_SIM, "rethread_s", KEY_NUMBER, "s", "30",
+	  0, 3600, AT(sim.rethread_s),
+	  .help = "power off, until a broken wire is threaded" },
 	{ SECTION_SIM, "noise_v", KEY_NUMBER, "V", "1",
 	  0, 100, AT(sim.noise_v),
 	  .help = "standard deviation of the gap voltage" },
+	{ SECTION_SIM, "counted", KEY_BIT, "", "no",
+	  0, 0, AT(sim.counted),
+	  .help = "voltage and shares vary as so many single pulses do" },
+	{ SECTION_SIM, "lag_s", KEY_NUMBER, "s", "0",
+	  0, 10, AT(sim.lag_s),
+	  .help = "the axes follow with this time constant" },
+	{ SECTION_SIM, "start_s", KEY_NUMBER, "s", "0",
+	  0, 10, AT(sim.start_s),
+	  .help = "an axis that starts or turns waits so long" },
+	{ SECTION_SIM, "home_off_mm", KEY_NUMBER, "mm", "0",
+	  -1e6, 1e6, AT(sim.home_off_mm),
+	  .help = "home and limit switches lie so far from where the machine "
+		  "file says" },
+	{ SECTION_SIM, "index_mm", KEY_NUMBER, "mm", "2",
+	  1e-3, 1e4, AT(sim.index_mm),
+	  .help = "from one index mark to the next" },
+	{ SECTION_SIM, "measure_pulses", KEY_NUMBER, "pulses", "0",
+	  0, 1000, AT(sim.measure_pulses),
+	  .help = "standard deviation of the measured places" },
+	{ SECTION_SIM, "block", KEY_BIT, "", "no",
+	  0, 0, AT(sim.block),
+	  .help = "there is a block to touch" },
+	{ SECTION_SIM, "block_x_min_mm", KEY_NUMBER, "mm", "-10",
+	  -1e5, 1e5, AT(sim.block_min_mm[0]),
+	  .help = "the block, in machine coordinates" },
+	{ SECTION_SIM, "block_x_max_mm", KEY_NUMBER, "mm", "10",
+	  -1e5, 1e5, AT(sim.block_max_mm[0]),
+	  .help = "the block, in machine coordinates" },
+	{ SECTION_SIM, "block_y_min_mm", KEY_NUMBER, "mm", "-10",
+	  -1e5, 1e5, AT(sim.block_min_mm[1]),
+	  .help = "the block, in machine coordinates" },
+	{ SECTION_SIM, "block_y_max_mm", KEY_NUMBER, "mm", "10",
+	  -1e5, 1e5, AT(sim.block_max_mm[1]),
+	  .help = "the block, in machine coordinates" },
+	{ SECTION_SIM, "block_top_mm", KEY_NUMBER, "mm", "0",
+	  -1e5, 1e5, AT(sim.block_top_mm),
+	  .help = "its upper face on Z; it has no lower one" },
+	{ SECTION_SIM, "bore_x_mm", KEY_NUMBER, "mm", "0",
+	  -1e5, 1e5, AT(sim.bore_at_mm[0]),
+	  .help = "centre of a bore through the block" },
+	{ SECTION_SIM, "bore_y_mm", KEY_NUMBER, "mm", "0",
+	  -1e5, 1e5, AT(sim.bore_at_mm[1]),
+	  .help = "centre of a bore through the block" },
+	{ SECTION_SIM, "bore_mm", KEY_NUMBER, "mm", "0",
+	  0, 1e5, AT(sim.bore_mm),
+	  .help = "diameter of the bore; 0: none" },
+	{ SECTION_SIM, "feeler_mm", KEY_NUMBER, "mm", "1",
+	  0, 1000, AT(sim.feeler_mm),
+	  .help = "diameter of what touches the block, a cylinder along Z" },
+
+	{ SECTION_GPIO, "chip", KEY_STRING, "", "gpiochip0",
+	  0, 0, AT(gpio.chip), ROOM(gpio.chip),
+	  .help = "of lines that name none: name, label or device file" },
+	{ SECTION_GPIO, "signal", KEY_ENUM, "", "step",
+	  0, 0, AT(gpio.signal), .word = signal_word,
+	  .help = "what step_ and dir_ are: step and direction, or A and B" },
+	{ SECTION_GPIO, "high_cycles", KEY_WHOLE, "periods", "1",
+	  1, 1000, AT(gpio.high_cycles),
+	  .help = "a step stays on; in quadrature, between two edges" },
+	{ SECTION_GPIO, "low_cycles", KEY_WHOLE, "periods", "1",
+	  1, 1000, AT(gpio.low_cycles),
+	  .help = "it stays off before the next" },
+	{ SECTION_GPIO, "dir_setup_cycles", KEY_WHOLE, "periods", "1",
+	  1, 1000, AT(gpio.dir_setup_cycles),
+	  .help = "from a change of direction to the step" },
+	{ SECTION_GPIO, "dir_hold_cycles", KEY_WHOLE, "periods", "1",
+	  1, 1000, AT(gpio.dir_hold_cycles),
+	  .help = "from a step's end to a change of direction" },
+	{ SECTION_GPIO, "watchdog_us", KEY_NUMBER, "us", "1000",
+	  20, 1e6, AT(gpio.watchdog_us),
+	  .help = "between two edges of the watchdog's wave" },
+	{ SECTION_GPIO, "pull", KEY_ENUM, "", "as-is",
+	  0, 0, AT(gpio.pull), .word = pull_word,
+	  .help = "resistors of all inputs" },
+	AXIS_LINES("X", INTERP_X), AXIS_LINES("Y", INTERP_Y),
+	AXIS_LINES("Z", INTERP_Z), AXIS_LINES("A", INTERP_A),
+	AXIS_LINES("B", INTERP_B), AXIS_LINES("C", INTERP_C),
+	AXIS_LINES("U", INTERP_U), AXIS_LINES("V", INTERP_V),
+	LINE("spark", LINE_SPARK, "output: sparks allowed"),
+	LINE("pump", LINE_PUMP, "output: dielectric pump"),
+	LINE("watchdog", LINE_WATCHDOG,
+	     "output: a square wave that ends with the cycle"),
+	LINE("gap_open", LINE_GAP_OPEN, "input: gap comparator, no spark"),
+	LINE("gap_spark", LINE_GAP_SPARK, "input: gap comparator, a spark"),
+	LINE("gap_short", LINE_GAP_SHORT, "input: gap comparator, a short"),
+	LINE("estop", LINE_ESTOP, "input: fault e-stop"),
+	LINE("wire", LINE_WIRE, "input: the wire is broken"),
+	LINE("door", LINE_DOOR, "input: the door is open; fault door"),
+	LINE("dielectric", LINE_DIELECTRIC,
+	     "input: the level is too low; fault dielectric"),
 
 	{ SECTION_LCM, "url", KEY_STRING, "",
 	  "udpm://239.255.76.67:7667?ttl=0",

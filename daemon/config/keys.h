@@ -22,9 +22,17 @@ enum config_section_id {
 	SECTION_AXIS,
 	SECTION_WORK,
 	SECTION_WIRE,
+	SECTION_KINEMATICS,
 	SECTION_GAP,
 	SECTION_JUMP,
+	SECTION_CONTOUR,
+	SECTION_TOUCH,
+	SECTION_SPEED,
+	SECTION_CAN402,
+	SECTION_PLC,
+	SECTION_TECH,
 	SECTION_SIM,
+	SECTION_GPIO,
 	SECTION_LCM,
 	SECTION_DDS,
 	SECTION_JOBS,
@@ -38,6 +46,7 @@ enum config_kind {
 	KEY_BIT,			/* yes or no: a bit of a uint32_t */
 	KEY_NAME,			/* char[]: letters, digits, - and _ */
 	KEY_STRING,			/* char[]: any text without controls */
+	KEY_LINE,			/* char[]: as config_line_read() */
 };
 
 struct config_section {
@@ -62,7 +71,7 @@ struct config_key {
 	const char *help;
 };
 
-#define CONFIG_NKEYS_MAX	96	/* rows the table may have */
+#define CONFIG_NKEYS_MAX	320	/* rows the table may have */
 #define CONFIG_NINSTANCES_MAX	8
 #define CONFIG_TEXT_MAX		256	/* of a value, with its NUL */
 
@@ -127,5 +136,34 @@ const char *config_number(double x, char *buf, size_t size);
  */
 int config_check(const struct machine_config *c,
 		 const struct config_lines *lines, struct interp_diag *diag);
+
+/**
+ * config_pitch_read() - the files that `pitch_map` names.
+ * Return: 0, or -EINVAL with @diag filled: the machine file's line, and in its
+ * text the map's.
+ */
+int config_pitch_read(struct machine_config *c,
+		      const struct config_lines *lines,
+		      struct interp_diag *diag);
+
+/** config_check_gpio() - the same for [gpio], if it is the backend. */
+int config_check_gpio(const struct machine_config *c,
+		      const struct config_lines *lines,
+		      struct interp_diag *diag);
+
+/** config_check_sim() - the same for [sim] alone, and for what it senses. */
+int config_check_sim(const struct machine_config *c,
+		     const struct config_lines *lines,
+		     struct interp_diag *diag);
+
+/** config_check_can402() - the same for [can402] and its drives. */
+int config_check_can402(const struct machine_config *c,
+			const struct config_lines *lines,
+			struct interp_diag *diag);
+
+/** config_check_plc() - the same for [plc]. */
+int config_check_plc(const struct machine_config *c,
+		     const struct config_lines *lines,
+		     struct interp_diag *diag);
 
 #endif /* CONFIG_KEYS_H */

@@ -85,10 +85,25 @@ static const char orders[] =
 	"\n"
 	"- `travel_min_mm` < `travel_max_mm`, and `start_mm` between them;\n"
 	"  both within 1073741824 pulses of 0.\n"
-	"- [gap] `short_v` < `servo_v` < `open_v`.\n"
+	"- [gap] `short_v` < `servo_v` < `open_v`; those of the window and\n"
+	"  `ignition_v` that are not 0: `short_v` < `window_low_v` <=\n"
+	"  `servo_v` <= `window_high_v` < `open_v` < `ignition_v`.\n"
+	"- [jump] `every_min_s` <= `every_max_s`, `height_min_mm` <=\n"
+	"  `height_max_mm`; heights within the longest travel.\n"
 	"- [sim] `spark_v` < `open_v`, and `short_gap_mm` < `best_gap_mm` <\n"
-	"  `open_gap_mm`.\n"
-	"- At least one axis is present.\n";
+	"  `open_gap_mm`; `perimeter_mm` is 0 or at least that of a round\n"
+	"  `area_mm2`; with `iso`, `wait_us` is at least a quarter of `on_us`\n"
+	"  and `off_us`.  [gap] `servo_v` is below the simulated gap's mean\n"
+	"  voltage when it is open.\n"
+	"- At least one axis is present.\n"
+	"- [gpio], with backend gpio: `step_` and `dir_` for each axis present; a\n"
+	"  line of its own for each output; `gap_open` and `gap_short`, with\n"
+	"  [gap] `source` lines, or no gap lines; `v_max_mm_s` of axes and jumps no\n"
+	"  faster than the lines pulse.\n"
+	"- [can402], with backend can402: nodes are different, also from\n"
+	"  `master_node`, and of axes that are present; `gap_id` and\n"
+	"  `generator_id` are nobody else's; an axis travels within 2147483647\n"
+	"  increments of its drive from 0.\n";
 
 void config_document(FILE *f)
 {

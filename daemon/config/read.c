@@ -268,7 +268,19 @@ static int read_all(struct reading *r)
 			      "key = value, [section], or ; and a comment");
 		return r->err;
 	}
-	return config_check(&r->config, &r->lines, r->diag);
+	r->err = config_check(&r->config, &r->lines, r->diag);
+	return r->err ? r->err :
+	       config_pitch_read(&r->config, &r->lines, r->diag);
+}
+
+/* With its /; what does not fit is looked for here. */
+static void set_folder(struct machine_config *c, const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	const size_t n = slash ? (size_t)(slash - path) + 1 : 0;
+
+	if (n < sizeof(c->folder))
+		snprintf(c->folder, sizeof(c->folder), "%.*s", (int)n, path);
 }
 
 int config_read(struct machine_config *c, const char *path,
@@ -282,6 +294,7 @@ int config_read(struct machine_config *c, const char *path,
 	r.f = fopen(path, "re");
 	if (!r.f)
 		return -errno;
+	set_folder(&r.config, path);
 
 	err = read_all(&r);
 	fclose(r.f);

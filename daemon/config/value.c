@@ -131,6 +131,9 @@ const char *config_key_range(const struct config_key *k, int instance,
 	case KEY_STRING:
 		snprintf(buf, size, "text of 1 to %zu bytes", k->bytes - 1);
 		break;
+	case KEY_LINE:
+		snprintf(buf, size, "none, or [!][CHIP:]NUMBER");
+		break;
 	}
 	return buf;
 }
@@ -214,6 +217,15 @@ static const char *parse_text(const struct config_key *k, const char *text,
 	return NULL;
 }
 
+static const char *parse_line(const struct config_key *k, const char *text,
+			      char *ret)
+{
+	struct config_line_at at;
+	const char *wrong = config_line_read(text, &at);
+
+	return wrong ? wrong : parse_text(k, text, ret);
+}
+
 int config_key_parse(const struct config_key *k, int instance,
 		     const char *text, struct machine_config *c,
 		     struct interp_diag *diag)
@@ -236,6 +248,9 @@ int config_key_parse(const struct config_key *k, int instance,
 	case KEY_NAME:
 	case KEY_STRING:
 		wrong = parse_text(k, text, at);
+		break;
+	case KEY_LINE:
+		wrong = parse_line(k, text, at);
 		break;
 	}
 	if (!wrong)
@@ -267,6 +282,7 @@ const char *config_key_format(const struct config_key *k, int instance,
 		break;
 	case KEY_NAME:
 	case KEY_STRING:
+	case KEY_LINE:
 		snprintf(buf, size, "%s", (const char *)in);
 		break;
 	}

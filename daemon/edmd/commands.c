@@ -71,12 +71,22 @@ static void unload_finish(struct loop *l)
 static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 {
 	struct cycle_command m = {
-		.id = c->id, .verb = c->verb, .arg_mm = c->arg_mm,
+		.id = c->id, .verb = c->verb, .arg = c->arg,
+		.arg_mm = c->arg_mm,
 	};
+	const double was = process_value(&l->cycle, c->arg);
+	enum cycle_answer answer;
 
 	if (c->verb >= CYCLE_NVERBS)
 		return ANSWER_BAD_ARGUMENT;
-	return cycle_command(&l->cycle, &m);
+	/* A program on its way in begins where the axes stand. */
+	if ((c->verb == CYCLE_JOG || c->verb == CYCLE_HOME) && l->opening)
+		return ANSWER_WRONG_STATE;
+	answer = cycle_command(&l->cycle, &m);
+	if (c->verb == CYCLE_SET && answer == ANSWER_DONE)
+		loop_event_set(l, c->arg, was,
+			       process_value(&l->cycle, c->arg));
+	return answer;
 }
 
 /* 0 is no command's id; without one there is nothing to answer. */

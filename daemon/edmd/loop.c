@@ -57,9 +57,10 @@ static void step(struct loop *l)
 	struct shm_trace t;
 
 	l->io.read(l->io.self, &in);
+	loop_plc_input(l, &in);
 	cycle_step(&l->cycle, &in, &out);
 	l->io.write(l->io.self, &out);
-	loop_trace(l, &t);
+	loop_trace(l, &in, &t);
 	shm_trace_put(l->status, &t);
 	loop_notice(l);
 }
@@ -99,7 +100,9 @@ static void period(struct loop *l, const struct setup_wake *w)
 	end_if_asked(l);
 	loop_commands(l);
 	loop_replies(l);
+	loop_plc_read(l);
 	steps(l, w->woke_ns);
+	loop_plc_write(l);
 
 	l->timing.took_ns = setup_now_ns() - w->woke_ns;
 	if (l->timing.took_ns > l->timing.took_max_ns)
@@ -110,13 +113,17 @@ static void period(struct loop *l, const struct setup_wake *w)
 	__atomic_store_n(&x->beats, x->beats + 1, __ATOMIC_RELAXED);
 }
 
-/* Power and pump off, axes where they are. */
+/* Power and pump off, axes where they are and not under power. */
 static void outputs_safe(struct loop *l)
 {
-	struct io_outputs out = l->cycle.out;
+	struct io_outputs out = l->cycle.given;
 
+	/* Before the first period nothing was given. */
+	if (l->cycle.count == 0)
+		return;
 	out.power = false;
 	out.pump = false;
+	out.enable = false;
 	l->io.write(l->io.self, &out);
 }
 
@@ -159,8 +166,10 @@ int loop_start(struct loop *l, struct setup_report *report)
 	int err;
 
 	l->report = report;
-	l->told = (struct loop_told) { l->cycle.state, l->cycle.fault,
-				       l->cycle.outcome };
+	l->told = (struct loop_told) {
+		.state = l->cycle.state, .fault = l->cycle.fault,
+		.outcome = l->cycle.outcome,
+	};
 	sem_init(&l->ready, 0, 0);
 	err = thread_start(l);
 	while (err == 0 && sem_wait(&l->ready) < 0 && errno == EINTR)

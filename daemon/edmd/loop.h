@@ -10,6 +10,7 @@
 
 #include "clock.h"
 #include "crossing.h"
+#include "plc_link.h"
 #include "rt.h"
 #include "shm.h"
 
@@ -21,6 +22,8 @@ struct loop_told {
 	enum cycle_state state;
 	enum cycle_fault fault;
 	enum cycle_outcome outcome;
+	uint32_t program, number;	/* the condition called last, and in */
+	char letter;			/* which program; 0: none */
 };
 
 struct loop_timing {
@@ -32,6 +35,7 @@ struct loop {
 	/* Filled by the main thread. */
 	struct cycle cycle;
 	struct io_machine io;
+	struct plc_link plc;
 	struct setup_wanted wanted;
 	struct shm_status *status;
 	struct shm_command_ring *commands;
@@ -47,6 +51,7 @@ struct loop {
 	struct loop_told told;
 	struct loop_timing timing;
 	int64_t time_ns;		/* CLOCK_REALTIME of this period */
+	struct io_plc plc_in;		/* what the PLC asks, this period */
 	bool opening;			/* a program was asked for */
 	uint32_t unloading;		/* command that waits for a stop */
 	bool ending;			/* no more commands: shutting down */
@@ -82,11 +87,24 @@ void loop_answer(struct loop *l, uint32_t id, enum cycle_answer answer);
 /** loop_event() - an event of @kind, here and now. */
 void loop_event(struct loop *l, uint32_t kind, uint32_t id, int32_t code);
 
+/** loop_event_set() - field @field is @now, was @was. */
+void loop_event_set(struct loop *l, uint32_t field, double was, double now);
+
 /** loop_snapshot() - the cycle's state as others see it. */
 void loop_snapshot(const struct loop *l, struct shm_snapshot *ret);
 
 /** loop_trace() - the same for one record of the trace. */
-void loop_trace(const struct loop *l, struct shm_trace *ret);
+void loop_trace(const struct loop *l, const struct io_inputs *in,
+		struct shm_trace *ret);
+
+/** loop_plc_read() - once a period of time: what the PLC asks. */
+void loop_plc_read(struct loop *l);
+
+/** loop_plc_input() - the same, for a cycle. */
+void loop_plc_input(struct loop *l, struct io_inputs *in);
+
+/** loop_plc_write() - once a period of time: how the machine is. */
+void loop_plc_write(struct loop *l);
 
 /** loop_stands() - no motion, and none to come by itself. */
 bool loop_stands(const struct loop *l);

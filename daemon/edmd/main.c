@@ -4,6 +4,8 @@
  */
 #include "log.h"
 #include "options.h"
+#include "plc.h"
+#include "plc_values.h"
 #include "programs.h"
 #include "resume.h"
 #include "serve.h"
@@ -25,17 +27,46 @@ static void signals_block(void)
 	sigprocmask(SIG_BLOCK, &set, NULL);
 }
 
+static int machine_refuse(const struct machine_config *c, int err,
+			  const struct interp_diag *d)
+{
+	if (c->backend != BACKEND_GPIO && c->backend != BACKEND_CAN402) {
+		log_line(LOG_ERROR, "edmd: machine: %s", strerror(-err));
+		return EX_UNAVAILABLE;
+	}
+	log_line(LOG_ERROR, "edmd: error: %s; %s", d->found, d->wanted);
+	if (err == -EACCES || err == -EPERM)
+		return EX_NOPERM;
+	return err == -EBUSY || err == -ENODEV || err == -ENETDOWN ?
+	       EX_UNAVAILABLE : EX_CONFIG;
+}
+
+/* EX_OK, or the exit code. */
 static int machine_open(struct loop *l, const struct machine_config *c)
 {
+	struct interp_diag diag;
 	int err;
 
 	if (c->backend == BACKEND_NULL)
 		err = io_null_open(&l->io);
+	else if (c->backend == BACKEND_GPIO)
+		err = io_gpio_open(&l->io, c, &diag);
+	else if (c->backend == BACKEND_CAN402)
+		err = io_can402_open(&l->io, c, &diag);
 	else
 		err = io_sim_open(&l->io, c, (uint64_t)c->sim.seed);
 	if (err < 0)
-		log_line(LOG_ERROR, "edmd: machine: %s", strerror(-err));
-	return err;
+		return machine_refuse(c, err, &diag);
+	if (l->io.edges_per_cycle)
+		l->cycle.config.points_max = l->io.edges_per_cycle;
+	return EX_OK;
+}
+
+static bool has_gap(const struct machine_config *c)
+{
+	return c->backend == BACKEND_SIM ||
+	       (c->backend == BACKEND_GPIO && config_gpio_has_gap(c)) ||
+	       (c->backend == BACKEND_CAN402 && c->can402.gap_id > 0);
 }
 
 static void loop_configure(struct loop *l, const struct machine_config *c)
@@ -43,8 +74,7 @@ static void loop_configure(struct loop *l, const struct machine_config *c)
 	struct cycle_config cycle;
 
 	config_cycle(c, &cycle);
-	/* No machine has no gap either. */
-	cycle.dry_run = c->backend == BACKEND_NULL;
+	cycle.dry_run = !has_gap(c);
 	cycle_init(&l->cycle, &cycle);
 	crossing_init(&l->crossing);
 	for (int a = 0; a < SHM_NAXES; a++)
@@ -85,6 +115,9 @@ static int run(struct loop *l, const struct machine_config *c,
 		 "%u, %s", c->name, l->io.name,
 		 (double)config_period_ns(c) / 1000, l->speed,
 		 l->program ? "a program held" : "no program");
+	if (l->cycle.config.dry_run)
+		log_line(LOG_INFO, "edmd: no gap: no sparks, jobs walk at "
+			 "their programmed feed");
 	report_ready();
 	err = serve(&s);
 	loop_stop(l);
@@ -126,18 +159,41 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 static int run_owner(struct loop *l, const struct machine_config *c)
 {
 	struct shm_snapshot before;
+	struct interp_diag diag;
 	int err = shm_status_create(&l->status, c->name, &before);
 	int code;
 
 	if (err < 0)
 		return status_refuse(c->name, err);
-	if (machine_open(l, c) < 0)
-		return EX_UNAVAILABLE;
+	code = machine_open(l, c);
+	if (code != EX_OK)
+		return code;
+	if (plc_link_open(&l->plc, c, &diag) < 0) {
+		log_line(LOG_ERROR, "edmd: error: %s; %s", diag.found,
+			 diag.wanted);
+		l->io.close(l->io.self);
+		return EX_CONFIG;
+	}
+	l->cycle.plc.present = config_has_plc(c);
 	code = run_with_machine(l, c, &before);
+	plc_link_close(&l->plc);
 	l->io.close(l->io.self);
 	if (code == EX_OK && !l->cycle.loaded)
 		shm_status_destroy(l->status, c->name);
 	return code;
+}
+
+static bool plc_print(const struct options *o, uint8_t node)
+{
+	if (o->print_eds)
+		plc_eds(stdout);
+	if (o->print_dbc) {
+		plc_dbc(stdout, node);
+		plc_values(stdout, node);
+	}
+	if (o->document_plc)
+		plc_document(stdout);
+	return o->print_eds || o->print_dbc || o->document_plc;
 }
 
 int main(int argc, char **argv)
@@ -155,6 +211,8 @@ int main(int argc, char **argv)
 		config_print(&config, stdout);
 		return EX_OK;
 	}
+	if (plc_print(&o, (uint8_t)config.plc.node))
+		return EX_OK;
 	if (o.check) {
 		printf("%s: good\n", o.config ? o.config : "built-in machine");
 		return EX_OK;

@@ -19,19 +19,26 @@ static const char help[] =
 "  --name NAME      in place of [machine] name\n"
 "  --check          read the machine file, say whether it is good, end\n"
 "  --print-config   every key with its value, as a machine file, end\n"
+"  --print-eds      what a PLC tool imports of a CANopen slave, end\n"
+"  --print-dbc      the same frames for tools without CANopen, end\n"
+"  --document-plc   the same as a page to read, docs/plc-signals.md, end\n"
 "  --help           this\n"
 "  --version        version\n"
 "\n"
 "SIGTERM and SIGINT bring the machine to a stand, then end edmd; a second\n"
 "one ends it at once.  Exit codes are those of sysexits.h.\n";
 
-enum { OPT_CONFIG = 1, OPT_NAME, OPT_CHECK, OPT_PRINT, OPT_HELP, OPT_VERSION };
+enum { OPT_CONFIG = 1, OPT_NAME, OPT_CHECK, OPT_PRINT, OPT_EDS,
+       OPT_DBC, OPT_DOCUMENT_PLC, OPT_HELP, OPT_VERSION };
 
 static const struct option longs[] = {
 	{ "config", required_argument, NULL, OPT_CONFIG },
 	{ "name", required_argument, NULL, OPT_NAME },
 	{ "check", no_argument, NULL, OPT_CHECK },
 	{ "print-config", no_argument, NULL, OPT_PRINT },
+	{ "print-eds", no_argument, NULL, OPT_EDS },
+	{ "print-dbc", no_argument, NULL, OPT_DBC },
+	{ "document-plc", no_argument, NULL, OPT_DOCUMENT_PLC },
 	{ "help", no_argument, NULL, OPT_HELP },
 	{ "version", no_argument, NULL, OPT_VERSION },
 	{ NULL, 0, NULL, 0 }
@@ -51,6 +58,15 @@ static int option_take(struct options *o, int opt)
 		return -1;
 	case OPT_PRINT:
 		o->print_config = true;
+		return -1;
+	case OPT_EDS:
+		o->print_eds = true;
+		return -1;
+	case OPT_DBC:
+		o->print_dbc = true;
+		return -1;
+	case OPT_DOCUMENT_PLC:
+		o->document_plc = true;
 		return -1;
 	case OPT_HELP:
 		fputs(help, stdout);

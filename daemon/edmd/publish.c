@@ -19,7 +19,10 @@ SAME(SHM_RETRACT, STATE_RETRACT);
 SAME(SHM_JUMP, STATE_JUMP);
 SAME(SHM_HOLD, STATE_HOLD);
 SAME(SHM_FAULT, STATE_FAULT);
-SAME(SHM_FAULT + 1, CYCLE_NSTATES);
+SAME(SHM_JOG, STATE_JOG);
+SAME(SHM_HOME, STATE_HOME);
+SAME(SHM_TOUCH, STATE_TOUCH);
+SAME(SHM_TOUCH + 1, CYCLE_NSTATES);
 SAME(SHM_NAXES, INTERP_NAXES);
 SAME(SHM_NAXES, IO_NAXES);
 SAME(SHM_DO_START, CYCLE_START);
@@ -29,11 +32,25 @@ SAME(SHM_DO_STOP, CYCLE_STOP);
 SAME(SHM_DO_RETRACT, CYCLE_RETRACT);
 SAME(SHM_DO_ESTOP, CYCLE_ESTOP);
 SAME(SHM_DO_RESET, CYCLE_RESET);
-SAME(SHM_DO_RESET + 1, CYCLE_NVERBS);
+SAME(SHM_DO_SET, CYCLE_SET);
+SAME(SHM_DO_OVERRIDE, CYCLE_OVERRIDE);
+SAME(SHM_DO_STEP, CYCLE_STEP);
+SAME(SHM_DO_JOG, CYCLE_JOG);
+SAME(SHM_DO_HOME, CYCLE_HOME);
+SAME(SHM_DO_HOME + 1, CYCLE_NVERBS);
 SAME(SHM_DONE, ANSWER_DONE);
 SAME(SHM_NO_PROGRAM, ANSWER_NO_PROGRAM);
 SAME(SHM_WRONG_STATE, ANSWER_WRONG_STATE);
 SAME(SHM_BAD_ARGUMENT, ANSWER_BAD_ARGUMENT);
+SAME(SHM_NOT_HOMED, ANSWER_NOT_HOMED);
+SAME(SHM_AT_LIMIT, ANSWER_AT_LIMIT);
+SAME(SHM_BEYOND, ANSWER_BEYOND);
+SAME(SHM_NO_NODE, ANSWER_NO_NODE);
+SAME(SHM_NOT_PASSED, ANSWER_NOT_PASSED);
+SAME(SHM_ELSEWHERE, ANSWER_ELSEWHERE);
+SAME(SHM_NOT_UP, ANSWER_NOT_UP);
+SAME(SHM_LOCKED, ANSWER_LOCKED);
+SAME(SHM_LOCKED + 1, CYCLE_NANSWERS);
 SAME(SHM_OUTCOME_NONE, OUTCOME_NONE);
 SAME(SHM_OUTCOME_DONE, OUTCOME_DONE);
 SAME(SHM_OUTCOME_FAULT, OUTCOME_FAULT);
@@ -46,18 +63,33 @@ static double place_mm(const struct loop *l)
 	return l->program ? interp_cursor_place_mm(&l->cycle.cursor) : 0;
 }
 
-void loop_event(struct loop *l, uint32_t kind, uint32_t id, int32_t code)
+static struct shm_event event_of(const struct loop *l, uint32_t kind)
 {
-	struct shm_event e = {
+	return (struct shm_event) {
 		.cycle = l->cycle.count,
 		.time_ns = l->time_ns,
 		.kind = kind,
-		.id = id,
-		.code = code,
 		.program = l->program ? l->program->n : 0,
 		.place_mm = place_mm(l),
 	};
+}
 
+void loop_event(struct loop *l, uint32_t kind, uint32_t id, int32_t code)
+{
+	struct shm_event e = event_of(l, kind);
+
+	e.id = id;
+	e.code = code;
+	shm_event(l->status, &e);
+}
+
+void loop_event_set(struct loop *l, uint32_t field, double was, double now)
+{
+	struct shm_event e = event_of(l, SHM_EV_SET);
+
+	e.id = field;
+	e.was = was;
+	e.now = now;
 	shm_event(l->status, &e);
 }
 
@@ -66,19 +98,48 @@ void loop_answer(struct loop *l, uint32_t id, enum cycle_answer answer)
 	loop_event(l, SHM_EV_ANSWER, id, (int32_t)answer);
 }
 
+/*
+ * A condition is called when the walk first comes to it.  On the way back one
+ * that was told before is in force again; that is no call.
+ */
+static void notice_condition(struct loop *l)
+{
+	const struct cycle *c = &l->cycle;
+	struct loop_told *t = &l->told;
+	const uint32_t program = l->program ? l->program->n : 0;
+
+	if (t->program != program) {
+		t->program = program;
+		t->letter = 0;
+		t->number = 0;
+	}
+	if (!c->loaded || !c->out.cond_letter ||
+	    (c->out.cond_letter == t->letter &&
+	     c->out.cond_number == t->number) ||
+	    place_mm(l) < c->far_mm)
+		return;
+	t->letter = c->out.cond_letter;
+	t->number = c->out.cond_number;
+	loop_event(l, SHM_EV_CONDITION, (uint32_t)t->letter,
+		   (int32_t)t->number);
+}
+
 /* Fault first, so that who reads "state: fault" already knows which. */
 void loop_notice(struct loop *l)
 {
 	const struct cycle *c = &l->cycle;
 	struct loop_told was = l->told;
 
-	l->told = (struct loop_told) { c->state, c->fault, c->outcome };
+	l->told.state = c->state;
+	l->told.fault = c->fault;
+	l->told.outcome = c->outcome;
 	if (c->fault != was.fault && c->fault != FAULT_NONE)
 		loop_event(l, SHM_EV_FAULT, 0, (int32_t)c->fault);
 	if (c->state != was.state)
 		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
 	if (c->outcome != was.outcome && c->outcome != OUTCOME_NONE)
 		loop_event(l, SHM_EV_ENDED, 0, (int32_t)c->outcome);
+	notice_condition(l);
 }
 
 static void snapshot_place(const struct cycle *c, struct shm_snapshot *s)
@@ -94,6 +155,17 @@ static void snapshot_place(const struct cycle *c, struct shm_snapshot *s)
 	s->length_mm = h->length_mm;
 	s->depth_mm = ((double)h->start_pulses[INTERP_Z] - s->pos[INTERP_Z]) *
 		      s->pulse_mm[INTERP_Z];
+}
+
+static void snapshot_touch(const struct cycle *c, struct shm_snapshot *s)
+{
+	const struct touch *t = &c->touch;
+
+	memcpy(s->shift, t->shift, sizeof(s->shift));
+	memcpy(s->found, t->found, sizeof(s->found));
+	s->found_once = t->once;
+	s->found_twice = t->twice;
+	s->back_mm = c->back_mm;
 }
 
 static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
@@ -138,6 +210,8 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 		.pump = c->out.pump,
 		.negative = c->out.negative,
 		.loaded = c->loaded,
+		.unhomed = (uint8_t)hand_unhomed(c),
+		.limit = (uint8_t)c->limit.on,
 		.feed_mm_s = c->feed_mm_s,
 		.gap_v = c->gap_v,
 	};
@@ -145,21 +219,24 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 	memcpy(ret->pulse_mm, l->pulse_mm, sizeof(ret->pulse_mm));
 	if (l->program)
 		snapshot_place(c, ret);
+	snapshot_touch(c, ret);
 	snapshot_sums(c, ret);
 	snapshot_timing(l, ret);
 }
 
-void loop_trace(const struct loop *l, struct shm_trace *ret)
+void loop_trace(const struct loop *l, const struct io_inputs *in,
+		struct shm_trace *ret)
 {
 	const struct cycle *c = &l->cycle;
 
 	*ret = (struct shm_trace) {
 		.cycle = c->count,
-		.place_mm = place_mm(l),
+		.place_mm = l->program ? cycle_place_mm(c) : 0,
 		.feed_mm_s = c->feed_mm_s,
 		.gap_v = c->gap_v,
 		.line = l->program ? c->cursor.seg.line : 0,
 		.state = c->state,
 	};
 	memcpy(ret->pos, c->out.target, sizeof(ret->pos));
+	memcpy(ret->actual, in->actual, sizeof(ret->actual));
 }

@@ -15,6 +15,8 @@
 /* Gap states come and go many times a second in a bad gap. */
 #define GAP_LINES_A_SECOND	10
 
+#define NOTES_A_LOOK	32
+
 void report_init(struct report *r, const struct shm_status *s)
 {
 	*r = (struct report) { .window_ns = setup_now_ns() };
@@ -110,6 +112,17 @@ static void tell(struct report *r, const struct shm_event *e)
 			log_line(LOG_WARNING, "command: %u refused: %s", e->id,
 				 cycle_answer_text((enum cycle_answer)e->code));
 		break;
+	}
+}
+
+void report_notes(const struct io_machine *m)
+{
+	char text[160];
+
+	for (int i = 0; m->note && i < NOTES_A_LOOK; i++) {
+		if (!m->note(m->self, text, sizeof(text)))
+			return;
+		log_line(LOG_WARNING, "%s: %s", m->name, text);
 	}
 }
 

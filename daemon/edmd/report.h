@@ -8,6 +8,7 @@
 #ifndef EDMD_REPORT_H
 #define EDMD_REPORT_H
 
+#include "io.h"
 #include "rt.h"
 #include "shm.h"
 
@@ -34,6 +35,9 @@ void report_ready(void);
 
 /** report_stopping() - tell systemd that it is being ended. */
 void report_stopping(void);
+
+/** report_notes() - a line for each note of the machine since the last call. */
+void report_notes(const struct io_machine *m);
 
 /** report_events() - a line for each event since the last call. */
 void report_events(struct report *r, const struct shm_status *s);

@@ -39,10 +39,14 @@ static bool end_is_due(const struct server *s)
 static int on_look(sd_event_source *src, uint64_t usec, void *arg)
 {
 	struct server *s = arg;
+	char note[160];
 
 	(void)usec;
 	programs_serve(&s->loop->crossing, s->config);
+	report_notes(&s->loop->io);
 	report_events(&s->report, s->loop->status);
+	while (plc_link_note(&s->loop->plc, note, sizeof(note)))
+		log_line(LOG_WARNING, "%s", note);
 	report_watchdog(&s->report, beats(s->loop));
 	if (end_is_due(s))
 		return sd_event_exit(sd_event_source_get_event(src), 0);
@@ -90,6 +94,7 @@ int serve(struct server *s)
 		err = sd_event_loop(e);
 	if (err < 0)
 		log_line(LOG_ERROR, "edmd: event loop: %s", strerror(-err));
+	report_notes(&s->loop->io);
 	report_events(&s->report, s->loop->status);
 	sd_event_unref(e);
 	return err;

@@ -126,6 +126,7 @@ void shm_publish(struct shm_status *s, const struct shm_snapshot *snap)
 	};
 
 	memcpy(t.pos, snap->pos, sizeof(t.pos));
+	memcpy(t.actual, snap->pos, sizeof(t.actual));
 	shm_snapshot_put(s, snap);
 	shm_trace_put(s, &t);
 }

@@ -39,7 +39,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	1
+#define SHM_LAYOUT	3
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 
@@ -60,7 +60,7 @@ struct shm_head {
 /* Mirrors enum cycle_state; fixed here because others rely on it. */
 enum shm_state {
 	SHM_IDLE = 1, SHM_TRAVEL, SHM_APPROACH, SHM_ERODE, SHM_RETRACT,
-	SHM_JUMP, SHM_HOLD, SHM_FAULT
+	SHM_JUMP, SHM_HOLD, SHM_FAULT, SHM_JOG, SHM_HOME, SHM_TOUCH
 };
 
 struct shm_snapshot {
@@ -76,7 +76,9 @@ struct shm_snapshot {
 	char cond_letter;
 	bool power, pump, negative;
 	bool loaded;			/* the job has not ended: held counts */
-	uint8_t pad[3];
+	uint8_t unhomed;		/* bit per axis that has a home_method */
+	uint8_t limit;			/* ... that is on its limit switch */
+	uint8_t pad;
 	int32_t pos[SHM_NAXES];		/* pulses */
 	double pulse_mm[SHM_NAXES];
 	double place_mm, far_mm, length_mm;	/* along the path */
@@ -90,6 +92,12 @@ struct shm_snapshot {
 	int64_t period_ns;
 	int64_t wake_late_ns, wake_late_max_ns;
 	int64_t took_ns, took_max_ns;
+	/* Of touches: pos less the program's own place, pulses; where the last
+	 * two contacts along each axis were, and which of them there are; no
+	 * way back beyond that place on the path. */
+	int32_t shift[SHM_NAXES], found[2][SHM_NAXES];
+	uint32_t found_once, found_twice;
+	double back_mm;
 };
 
 struct shm_trace {
@@ -97,7 +105,8 @@ struct shm_trace {
 	double place_mm, feed_mm_s, gap_v;
 	uint32_t line;
 	uint32_t state;			/* enum shm_state */
-	int32_t pos[SHM_NAXES];
+	int32_t pos[SHM_NAXES];		/* as commanded, pulses */
+	int32_t actual[SHM_NAXES];	/* measured before that, pulses */
 };
 
 enum shm_event_kind {
@@ -106,6 +115,9 @@ enum shm_event_kind {
 	SHM_EV_FAULT,			/* code: cycle_fault */
 	SHM_EV_LOADED,			/* code: program n */
 	SHM_EV_ENDED,			/* code: cycle_outcome */
+	SHM_EV_CONDITION,		/* called; id: its letter; code: number */
+	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
+	SHM_EV_SELECT,			/* by the PLC; code: job n */
 };
 
 struct shm_event {
@@ -115,6 +127,7 @@ struct shm_event {
 	int32_t code;
 	uint32_t program;
 	double place_mm;
+	double was, now;		/* set: values, NAN the generator's own */
 };
 
 /*
@@ -161,6 +174,11 @@ enum shm_verb {
 	SHM_DO_RETRACT,			/* arg_mm back along the path, then hold */
 	SHM_DO_ESTOP,			/* the software e-stop */
 	SHM_DO_RESET,			/* leave fault, to hold */
+	SHM_DO_SET,			/* field arg to arg_mm; NAN: as it was */
+	SHM_DO_OVERRIDE,		/* of positioning: 0 ... 2 times, arg_mm */
+	SHM_DO_STEP,			/* held: arg_mm nodes on, - back */
+	SHM_DO_JOG,			/* idle: axis arg by arg_mm */
+	SHM_DO_HOME,			/* idle: axis arg; 8: all */
 	SHM_LOAD = 100,			/* arg: program n; when idle */
 	SHM_UNLOAD,			/* forget program n and unmap it; a
 					 * held one is stopped first */
@@ -168,7 +186,9 @@ enum shm_verb {
 
 /* Mirrors enum cycle_answer: the code of an SHM_EV_ANSWER. */
 enum shm_answer {
-	SHM_DONE, SHM_NO_PROGRAM, SHM_WRONG_STATE, SHM_BAD_ARGUMENT
+	SHM_DONE, SHM_NO_PROGRAM, SHM_WRONG_STATE, SHM_BAD_ARGUMENT,
+	SHM_NOT_HOMED, SHM_AT_LIMIT, SHM_BEYOND, SHM_NO_NODE, SHM_NOT_PASSED,
+	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED
 };
 
 /* Mirrors enum cycle_outcome. */
@@ -276,7 +296,19 @@ bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
 		    struct shm_event *ret);
 
 /**
- * shm_command_open() - map the ring to write it. One process only.
+ * shm_writer_claim() - be the one that commands the machine and loads it.
+ *
+ * Return: a descriptor that holds the claim until shm_writer_leave(), or the
+ * process ends; -EBUSY if another living process has it; else -errno.
+ * Startup only.
+ */
+int shm_writer_claim(const char *machine);
+
+/** shm_writer_leave() - give it up; -1 is fine. */
+void shm_writer_leave(int fd, const char *machine);
+
+/**
+ * shm_command_open() - map the ring to write it, having claimed it.
  * Return: as shm_status_open().
  */
 int shm_command_open(struct shm_command_ring **ret, const char *machine);

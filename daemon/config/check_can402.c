@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * check_can402.c - what cannot be on a CAN bus of drives
+ */
+#include "keys.h"
+
+#include <errno.h>
+#include <math.h>
+
+/* Either way from 0: a drive counts round at 2^32. */
+#define INCREMENTS_MAX	2147483647.0
+
+struct check {
+	const struct machine_config *c;
+	const struct config_lines *lines;
+	struct interp_diag *diag;
+};
+
+static uint32_t line_of(const struct check *q, enum config_section_id s,
+			const char *key, int instance)
+{
+	return q->lines->at[config_key_find(s, key)][instance];
+}
+
+/* Found and wanted are there: the line is where @key is, or the backend. */
+static int refuse(struct check *q, enum config_section_id s, const char *key,
+		  int instance)
+{
+	const uint32_t line = line_of(q, s, key, instance);
+
+	q->diag->line = line ? line :
+			line_of(q, SECTION_MACHINE, "backend", 0);
+	q->diag->column = 0;
+	return -EINVAL;
+}
+
+static uint32_t node_of(const struct check *q, int axis)
+{
+	return (uint32_t)q->c->can402.node[axis];
+}
+
+/* Nodes of their own, each for an axis that is there. */
+static int check_node(struct check *q, int axis)
+{
+	const uint32_t node = node_of(q, axis);
+	const bool present = q->c->axes.present >> axis & 1;
+	bool twice = node == (uint32_t)q->c->can402.master_node;
+	char name[16];
+
+	for (int i = 0; i < axis; i++)
+		twice = twice || node == node_of(q, i);
+	if (node == 0 || (present && !twice))
+		return 0;
+	snprintf(name, sizeof(name), "node_%c", INTERP_AXIS_LETTERS[axis]);
+	snprintf(q->diag->found, sizeof(q->diag->found), "can402.%s %u %s",
+		 name, node, present ? "a second time" :
+		 "for an axis that is not present");
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "a node of its own for each axis that is present, and not "
+		 "master_node");
+	return refuse(q, SECTION_CAN402, name, 0);
+}
+
+/* The farthest place, as a drive counts it. */
+static int check_increments(struct check *q, int axis)
+{
+	const struct interp_axis_limits *l = &q->c->axes.axis[axis];
+	const struct config_drive *d = &q->c->drive[axis];
+	const double mm = fmax(fabs(l->travel_min_mm),
+			       fabs(l->travel_max_mm));
+	const double increments = fabs(d->increments / d->pulses) * mm /
+				  l->pulse_mm;
+
+	if (node_of(q, axis) == 0 ||
+	    (d->increments != 0 && increments < INCREMENTS_MAX))
+		return 0;
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "axis.%c.drive_increments %.0f: its travel reaches to %.0f",
+		 INTERP_AXIS_LETTERS[axis], d->increments, increments);
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "not 0, and a travel within %.0f increments of 0",
+		 INCREMENTS_MAX);
+	return refuse(q, SECTION_AXIS, "drive_increments", axis);
+}
+
+/* The identifiers of CiA 301 belong to NMT, SYNC and the drives. */
+static int check_id(struct check *q, const char *key, double id, double other)
+{
+	const uint32_t node = (uint32_t)id & 0x7f;
+	bool taken = id < 0x180 || id >= 0x580 || id == other;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		taken = taken || (node_of(q, i) > 0 && node_of(q, i) == node);
+	if (id == 0 || !taken)
+		return 0;
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "can402.%s %.0f, which is in use", key, id);
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "one from 384 to 1407 whose rest by 128 is no drive's "
+		 "node");
+	return refuse(q, SECTION_CAN402, key, 0);
+}
+
+int config_check_can402(const struct machine_config *c,
+			const struct config_lines *lines,
+			struct interp_diag *diag)
+{
+	struct check q = { c, lines, diag };
+	const struct config_can402 *k = &c->can402;
+	bool any = false;
+
+	if (c->backend != BACKEND_CAN402)
+		return 0;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (check_node(&q, i) || check_increments(&q, i))
+			return -EINVAL;
+		any = any || node_of(&q, i) > 0;
+	}
+	if (check_id(&q, "gap_id", k->gap_id, k->generator_id) ||
+	    check_id(&q, "generator_id", k->generator_id, k->gap_id))
+		return -EINVAL;
+	if (any)
+		return 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "backend can402 without a drive");
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "[can402] with node_X or another axis's");
+	return refuse(&q, SECTION_MACHINE, "backend", 0);
+}

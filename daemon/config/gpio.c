@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * gpio.c - [gpio]: a line as text, and what its keys must agree on
+ */
+#include "keys.h"
+
+#include "cycle.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define OFFSET_MAX	4095		/* the kernel has no larger chip */
+
+const char *config_line_read(const char *text, struct config_line_at *ret)
+{
+	const char *colon;
+	char *end;
+	unsigned long n;
+
+	*ret = (struct config_line_at) { .wired = false };
+	if (strcmp(text, "none") == 0)
+		return NULL;
+	if (strlen(text) >= CONFIG_LINE_MAX)
+		return "is too long";
+	ret->inverted = *text == '!';
+	text += ret->inverted;
+	colon = strrchr(text, ':');
+	if (colon) {
+		memcpy(ret->chip, text, (size_t)(colon - text));
+		if (colon == text)
+			return "has no chip before its colon";
+		text = colon + 1;
+	}
+	if (*text < '0' || *text > '9')
+		return "has no line number";
+	n = strtoul(text, &end, 10);
+	if (*end || n > OFFSET_MAX)
+		return "has no line number of 0 to 4095";
+	ret->offset = (unsigned int)n;
+	ret->wired = true;
+	return NULL;
+}
+
+static const struct config_key *key_of_line(int line)
+{
+	const size_t at = offsetof(struct machine_config, gpio.line) +
+			  (size_t)line * CONFIG_LINE_MAX;
+	const struct config_key *k = config_key;
+
+	while (k->section != SECTION_GPIO || k->offset != at)
+		k++;
+	return k;
+}
+
+const char *config_line_name(int line)
+{
+	return key_of_line(line)->name;
+}
+
+/* -- What the keys must agree on ---------------------------------------------- */
+
+struct check {
+	const struct machine_config *c;
+	const struct config_lines *lines;
+	struct interp_diag *diag;
+	struct config_line_at at[CONFIG_NLINES];
+};
+
+static void blame(struct check *q, const struct config_key *k, int instance)
+{
+	q->diag->line = q->lines->at[k - config_key][instance];
+	q->diag->column = 0;
+}
+
+static int check_axis(struct check *q, int axis)
+{
+	static const int needs[] = { LINE_STEP, LINE_DIR };
+
+	for (int i = 0; i < 2; i++) {
+		const int line = needs[i] + axis;
+
+		if (!(q->c->axes.present >> axis & 1) || q->at[line].wired)
+			continue;
+		blame(q, key_of_line(line), 0);
+		snprintf(q->diag->found, sizeof(q->diag->found),
+			 "axis.%c is present and gpio.%s is none",
+			 INTERP_AXIS_LETTERS[axis], config_line_name(line));
+		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+			 "gpio.%s = the number of a line, or [axis.%c] "
+			 "present = no", config_line_name(line),
+			 INTERP_AXIS_LETTERS[axis]);
+		return -EINVAL;
+	}
+	return 0;
+}
+
+static bool is_same(const struct check *q, int a, int b)
+{
+	const struct config_line_at *x = &q->at[a], *y = &q->at[b];
+	const char *chip = q->c->gpio.chip;
+
+	return x->wired && y->wired && x->offset == y->offset &&
+	       strcmp(*x->chip ? x->chip : chip,
+		      *y->chip ? y->chip : chip) == 0;
+}
+
+/* Inputs may share a line: limit switches in a row. */
+static int check_shared(struct check *q, int output)
+{
+	for (int i = output + 1; i < CONFIG_NLINES; i++) {
+		const struct config_key *k = key_of_line(i);
+
+		if (!is_same(q, output, i))
+			continue;
+		blame(q, k, 0);
+		snprintf(q->diag->found, sizeof(q->diag->found),
+			 "gpio.%s and gpio.%s are both line %u",
+			 config_line_name(output), k->name, q->at[i].offset);
+		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+			 "a line of its own for each output");
+		return -EINVAL;
+	}
+	return 0;
+}
+
+static int check_source(struct check *q)
+{
+	const struct config_key *k =
+		&config_key[config_key_find(SECTION_GAP, "source")];
+
+	if (q->c->gap.source == GAP_LINES)
+		return 0;
+	blame(q, k, 0);
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "gap.source is %s and there are gap lines",
+		 k->word(q->c->gap.source));
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "[gap] source = lines; or no gap_open, gap_spark, gap_short");
+	return -EINVAL;
+}
+
+static int check_gap(struct check *q)
+{
+	static const int needs[] = { LINE_GAP_OPEN, LINE_GAP_SHORT };
+
+	if (!config_gpio_has_gap(q->c))
+		return 0;
+	for (int i = 0; i < 2; i++) {
+		if (q->at[needs[i]].wired)
+			continue;
+		blame(q, key_of_line(needs[i]), 0);
+		snprintf(q->diag->found, sizeof(q->diag->found),
+			 "the gap's comparators are without gpio.%s",
+			 config_line_name(needs[i]));
+		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+			 "gap_open and gap_short, and gap_spark if there is "
+			 "one; or none of them");
+		return -EINVAL;
+	}
+	return 0;
+}
+
+/* Pulses a second that the lines can make. */
+static double pulses_s(const struct machine_config *c)
+{
+	const double periods = c->gpio.high_cycles +
+			       (c->gpio.signal ? 0 : c->gpio.low_cycles);
+
+	return 1e9 / (double)config_period_ns(c) / periods;
+}
+
+static int check_speed(struct check *q, const struct config_key *k,
+		       int instance, double most)
+{
+	const double v = *(const double *)config_key_in(k, instance, q->c);
+	char section[32], unit[16];
+
+	if (v <= most)
+		return 0;
+	blame(q, k, instance);
+	config_section_name(k->section, instance, section, sizeof(section));
+	config_key_unit(k, instance, unit, sizeof(unit));
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "%s.%s %g%s is faster than the lines of [gpio], %g pulses/s",
+		 section, k->name, v, unit, pulses_s(q->c));
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "at most %g%s; or a larger pulse_mm, a shorter period_us, "
+		 "signal = quadrature", most, unit);
+	return -EINVAL;
+}
+
+/* A jump may go along any linear axis. */
+static int check_speeds(struct check *q)
+{
+	const struct config_key *axis =
+		&config_key[config_key_find(SECTION_AXIS, "v_max_mm_s")];
+	const struct config_key *jump =
+		&config_key[config_key_find(SECTION_JUMP, "v_max_mm_s")];
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const double most = pulses_s(q->c) *
+				    q->c->axes.axis[i].pulse_mm;
+
+		if (!(q->c->axes.present >> i & 1))
+			continue;
+		if (check_speed(q, axis, i, most))
+			return -EINVAL;
+		if (!interp_axis_is_rotary((enum interp_axis)i) &&
+		    q->c->jump.height_mm > 0 && check_speed(q, jump, 0, most))
+			return -EINVAL;
+	}
+	return 0;
+}
+
+int config_check_gpio(const struct machine_config *c,
+		      const struct config_lines *lines,
+		      struct interp_diag *diag)
+{
+	struct check q = { .c = c, .lines = lines, .diag = diag };
+
+	if (c->backend != BACKEND_GPIO)
+		return 0;
+	for (int i = 0; i < CONFIG_NLINES; i++)
+		config_line_read(c->gpio.line[i], &q.at[i]);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (check_axis(&q, i))
+			return -EINVAL;
+	for (int i = 0; i < CONFIG_NOUTPUTS; i++)
+		if (check_shared(&q, i))
+			return -EINVAL;
+	if (check_gap(&q) || check_speeds(&q))
+		return -EINVAL;
+	return config_gpio_has_gap(c) ? check_source(&q) : 0;
+}
+
+bool config_gpio_has_gap(const struct machine_config *c)
+{
+	struct config_line_at at;
+
+	for (int i = LINE_GAP_OPEN; i <= LINE_GAP_SHORT; i++) {
+		config_line_read(c->gpio.line[i], &at);
+		if (at.wired)
+			return true;
+	}
+	return false;
+}
