@@ -9,6 +9,8 @@
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
+#include <sodium.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
@@ -24,8 +26,33 @@ struct compile {
 	void *arg;
 };
 
-static int compile_text(struct compile *c)
+/* The table is read for each job: one that was mended counts from the next
+ * job on. */
+static int read_tech(struct compile *c, struct config_tech *t)
 {
+	struct compile_result *r = &c->result;
+	uint8_t hash[crypto_hash_sha256_BYTES];
+	const int err = config_tech_load(t, c->request.config, NULL);
+
+	if (err == -EINVAL)
+		snprintf(r->tech_refusal, sizeof(r->tech_refusal),
+			 "%s:%u:%u: error: %s; %s", t->path, t->diag.line,
+			 t->diag.column, t->diag.found, t->diag.wanted);
+	else if (err < 0)
+		snprintf(r->tech_refusal, sizeof(r->tech_refusal),
+			 "[tech] table %s: %s", t->path, strerror(-err));
+	if (err < 0 || !t->table)
+		return err;
+	crypto_hash_sha256(hash, (const uint8_t *)t->text, t->bytes);
+	sodium_bin2hex(r->tech_sha256, sizeof(r->tech_sha256), hash,
+		       sizeof(hash));
+	return 0;
+}
+
+static int compile_text(struct compile *c, const struct config_tech *tech)
+{
+	struct interp_mcode mcodes[INTERP_NMCODES];
+	struct interp_tech machine_tech;
 	const struct machine_config *m = c->request.config;
 	struct interp_build_options b = {
 		.machine = &m->axes,
@@ -34,6 +61,10 @@ static int compile_text(struct compile *c)
 			(uint32_t)(m->tolerance_pulses * 1000 + 1e-6),
 		.perpendicular = m->perpendicular,
 		.coupling = (enum interp_coupling)m->coupling,
+		.corner_mm = m->corner_um * 1e-3,
+		.chord_error_mm = m->chord_error_um / 1000,
+		.period_s = (double)config_period_ns(m) / 1e9,
+		.fit_mm = m->fit_um / 1000,
 	};
 	const struct interp_text text = {
 		.at = c->request.text, .bytes = c->request.bytes,
@@ -41,14 +72,25 @@ static int compile_text(struct compile *c)
 	};
 	struct interp_compile_options o = {
 		.nc = { .machine = &m->axes, .wire = &m->wire,
-			.feed_mm_s = m->feed_default_mm_min / 60 },
+			.feed_mm_s = m->feed_default_mm_min / 60,
+			.escape = (enum interp_escape_mode)m->jump.escape,
+			.tip_tolerance_mm =
+				m->kinematics.tolerance_um / 1000,
+			.tech = tech->table, .machine_tech = &machine_tech,
+			.mcode = mcodes },
 		.threeb = { .unit_um = m->threeb_unit_um,
 			    .offset_um = m->fourb_offset_um },
 	};
+	struct interp_kinematics kin;
+	struct interp_diag none;
 
+	config_tech_base(m, &machine_tech);
+	config_mcodes(m, mcodes);
 	memcpy(b.start_mm, c->request.start_mm, sizeof(b.start_mm));
 	memcpy(o.nc.work_offset_mm, m->work_offset_mm,
 	       sizeof(o.nc.work_offset_mm));
+	if (config_kinematics(m, &kin, &none) == 0)
+		o.nc.kinematics = &kin;
 	memcpy(o.nc.offset_mm, m->offset_mm, sizeof(o.nc.offset_mm));
 	c->result.build = interp_build_create(&b);
 	if (!c->result.build)
@@ -60,9 +102,13 @@ static int compile_text(struct compile *c)
 static void *compile_main(void *arg)
 {
 	struct compile *c = arg;
+	struct config_tech tech;
 	uint64_t one = 1;
 
-	c->result.err = compile_text(c);
+	c->result.err = read_tech(c, &tech);
+	if (c->result.err == 0)
+		c->result.err = compile_text(c, &tech);
+	config_tech_free(&tech);
 	/* An eventfd at 0 takes a 1 without fail. */
 	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
 		abort();

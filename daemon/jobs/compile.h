@@ -30,6 +30,8 @@ struct compile_result {
 	int err;
 	struct interp_diag diag;
 	uint32_t lines;
+	char tech_sha256[65];		/* of the table, hex; "": none */
+	char tech_refusal[896];		/* the table's own; "": none */
 	struct interp_build *build;
 };
 

@@ -13,6 +13,7 @@
 #include "queue.h"
 #include "reply.h"
 #include "store.h"
+#include "twin.h"
 #include "upload.h"
 #include "wire.h"
 
@@ -25,6 +26,7 @@ struct jobs {
 	struct wire *wire;
 	struct store *store;
 	struct link link;
+	struct twin twin;
 	struct uploads uploads;
 	struct replies replies;
 	struct queue queue;
@@ -32,6 +34,7 @@ struct jobs {
 	int64_t status_us;		/* when the last was sent, monotonic */
 	uint64_t status_key;		/* what a change of is sent at once */
 	int64_t begun_us;		/* of this service */
+	int claim;			/* shm_writer_claim(); -1: none */
 };
 
 /** jobs_now_us() - monotonic; jobs_utime() - since 1970. */

@@ -58,7 +58,7 @@ struct link {
 struct link_command {
 	uint32_t verb;			/* enum shm_verb */
 	uint32_t arg;
-	double arg_mm;
+	double arg_mm;			/* or in the unit of the field set */
 	link_answer_fn answer;		/* once, never from link_send() */
 	void *answer_arg;
 };

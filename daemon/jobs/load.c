@@ -29,6 +29,16 @@ static const char *answer_text(int code)
 		return "not in its present state";
 	case SHM_BAD_ARGUMENT:
 		return "a segment failed its check";
+	case SHM_NOT_HOMED:
+		return "an axis is not homed; home it, when the job is stopped";
+	case SHM_AT_LIMIT:
+		return "an axis is on its limit switch";
+	case SHM_ELSEWHERE:
+		return "the axes moved since it was compiled";
+	case SHM_NOT_UP:
+		return "its drives are not up yet";
+	case SHM_LOCKED:
+		return "the PLC does not permit it; start goes on once it does";
 	case -ETIMEDOUT:
 		return "no answer";
 	default:
@@ -43,6 +53,8 @@ static void on_asked(void *arg, int code)
 	j->queue.asked = false;
 	if (code == SHM_DONE)
 		j->queue.again_us = 0;
+	if (code == SHM_LOCKED)
+		queue_wait(j);
 	if (code != SHM_DONE && code != -ENOTCONN) {
 		j->queue.again_us = jobs_now_us() + AGAIN_US;
 		log_warning("load: edmd refused to start or unload program "
@@ -83,7 +95,8 @@ static void on_loaded(void *arg, int code)
 	snprintf(reason, sizeof(reason), "edmd did not load it: %s",
 		 answer_text(code));
 	log_warning("load: job %s: %s", j->queue.job.id, reason);
-	if (code < 0 || code == SHM_WRONG_STATE) {
+	if (code < 0 || code == SHM_WRONG_STATE ||
+	    code == SHM_ELSEWHERE) {
 		j->queue.again_us = jobs_now_us() + AGAIN_US;
 		queue_drop(j, true);
 	} else {
@@ -141,7 +154,7 @@ static void on_compiled(void *arg, const struct compile_result *r)
 	struct jobs *j = arg;
 	struct queue *q = &j->queue;
 	struct store_job job = q->next, found;
-	char reason[512];
+	char reason[640];
 
 	q->compile = NULL;
 	free(q->next_text);
@@ -152,13 +165,15 @@ static void on_compiled(void *arg, const struct compile_result *r)
 		return;
 	if (r->err == 0) {
 		q->job = found;
+		store_set_tech(j->store, found.n, r->tech_sha256);
 		load_ask(j, r);
 		queue_recount(j);
 		return;
 	}
 	snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s", job.name,
 		 r->diag.line, r->diag.column, r->diag.found, r->diag.wanted);
-	load_refuse(j, job, r->err == -EINVAL ? reason : strerror(-r->err));
+	load_refuse(j, job, r->tech_refusal[0] ? r->tech_refusal :
+		    r->err == -EINVAL ? reason : strerror(-r->err));
 }
 
 void load_begin(struct jobs *j, int64_t now_us)

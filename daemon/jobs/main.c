@@ -114,6 +114,8 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 
 	(void)usec;
 	link_poll(&j->link, now_us);
+	twin_poll(&j->twin, j->link.state == LINK_OK ? j->link.status : NULL,
+		  &j->link.snap);
 	if (j->link.state == LINK_OK)
 		queue_step(j, now_us);
 	dropped = upload_expire(&j->uploads, now_us);
@@ -217,6 +219,23 @@ static int open_store(struct jobs *j, const char *dir)
 	return EX_CANTCREAT;
 }
 
+/* Two of them would give one machine two orders of jobs. */
+static int claim(struct jobs *j)
+{
+	j->claim = shm_writer_claim(j->machine);
+	if (j->claim >= 0)
+		return 0;
+	if (j->claim == -EBUSY) {
+		log_error("machine %s: another edmd-jobs commands it; one "
+			  "edmd-jobs for a machine", j->machine);
+		return EX_TEMPFAIL;
+	}
+	log_error("machine %s: /dev/shm/edmd.%s.writer: %s; remove it, or run "
+		  "as the user who made it", j->machine, j->machine,
+		  strerror(-j->claim));
+	return EX_CANTCREAT;
+}
+
 static int open_wire(struct jobs *j)
 {
 	struct wire_handlers h = {
@@ -270,6 +289,7 @@ static int run(struct jobs *j)
 
 	j->begun_us = jobs_now_us();
 	link_init(&j->link, j->machine, &h);
+	twin_init(&j->twin, j->config);
 	if (err >= 0)
 		err = queue_init(j);
 	if (err >= 0)
@@ -304,12 +324,16 @@ int main(int argc, char **argv)
 	if (rc)
 		return rc;
 	rc = open_store(&jobs, o.store ? o.store : config.store_dir);
+	jobs.claim = -1;
+	if (rc == 0)
+		rc = claim(&jobs);
 	if (rc == 0)
 		rc = open_wire(&jobs);
 	if (rc == 0)
 		rc = run(&jobs);
 	reply_fini(&jobs.replies);
 	wire_close(jobs.wire);
+	shm_writer_leave(jobs.claim, jobs.machine);
 	store_close(jobs.store);
 	return rc;
 }

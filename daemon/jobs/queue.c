@@ -4,6 +4,7 @@
  */
 #include "jobs.h"
 
+#include "interp/tech_table.h"
 #include "log.h"
 
 #include <errno.h>
@@ -152,10 +153,48 @@ void queue_attach(struct jobs *j)
 	}
 }
 
+/* What edmd tells of conditions and sets, into the job's history. */
+static void follow_change(struct jobs *j, const struct shm_event *e)
+{
+	struct store_change c = {
+		.was = e->was, .now = e->now, .place_mm = e->place_mm,
+		.time_ns = e->time_ns,
+	};
+	char name[16];
+
+	if (!j->queue.job.n || e->program != j->queue.job.n)
+		return;
+	if (e->kind == SHM_EV_CONDITION)
+		c.condition = interp_tech_name((char)e->id, (uint32_t)e->code,
+					       name, sizeof(name));
+	else if (e->kind == SHM_EV_SET && e->id < INTERP_NTECH)
+		c.field = interp_tech_field[e->id].name;
+	else
+		return;
+	store_change(j->store, j->queue.job.n, &c);
+}
+
+/* By the PLC.  One that has begun stays; one that has not makes room. */
+static void follow_select(struct jobs *j, uint32_t n)
+{
+	struct queue *q = &j->queue;
+
+	store_set_number(j->store, "selected", n);
+	log_notice("queue: job %u is selected to be next", n);
+	if (!q->job.n || q->job.n == n || q->job.begun_us || q->loading ||
+	    q->snap.job_cycles)
+		return;
+	load_send(j, SHM_UNLOAD, q->job.n, jobs_now_us());
+	queue_drop(j, true);
+}
+
 void queue_event(struct jobs *j, const struct shm_event *e)
 {
 	struct queue *q = &j->queue;
 
+	follow_change(j, e);
+	if (e->kind == SHM_EV_SELECT)
+		follow_select(j, (uint32_t)e->code);
 	/* May be an old one, of an earlier loading: only used if it is gone. */
 	if (e->kind != SHM_EV_ENDED || !q->job.n || e->program != q->job.n)
 		return;
@@ -287,11 +326,36 @@ static void unload_stranger(struct jobs *j, int64_t now_us)
 	}
 }
 
+/* In a jog, in homing, or one that was idle. */
+static void fault_without_job(struct jobs *j)
+{
+	struct queue *q = &j->queue;
+	const char *fault = shm_fault_name(j->link.snap.fault);
+
+	/* A reset alone must set nothing in motion. */
+	set_waiting(j, q->waiting || q->behind > 0);
+	if (q->fault_told == j->link.snap.fault)
+		return;
+	q->fault_told = j->link.snap.fault;
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "alarm", .outcome = fault,
+	}, "fault %s without a job; reset leaves it", fault);
+}
+
+/* An axis under way has no place to begin at; nor one not homed, if it must. */
+static bool may_load(const struct jobs *j)
+{
+	return j->link.snap.state == SHM_IDLE &&
+	       !(j->config->require_home && j->link.snap.unhomed);
+}
+
 void queue_step(struct jobs *j, int64_t now_us)
 {
 	struct queue *q = &j->queue;
 	const struct shm_snapshot *s = &j->link.snap;
 
+	if (s->state != SHM_FAULT)
+		q->fault_told = 0;
 	if (q->job.n && s->program == q->job.n) {
 		q->missing_us = 0;
 		q->snap = *s;
@@ -305,9 +369,8 @@ void queue_step(struct jobs *j, int64_t now_us)
 	} else if (s->program) {
 		unload_stranger(j, now_us);
 	} else if (s->state == SHM_FAULT) {
-		/* A reset alone must set nothing in motion. */
-		set_waiting(j, q->waiting || q->behind > 0);
-	} else if (!q->compile && now_us >= q->again_us) {
+		fault_without_job(j);
+	} else if (!q->compile && now_us >= q->again_us && may_load(j)) {
 		load_begin(j, now_us);
 	}
 }

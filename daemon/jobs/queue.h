@@ -38,6 +38,7 @@ struct queue {
 	bool loading;			/* LOAD is under way */
 	bool asked;			/* START or UNLOAD is under way */
 	int64_t missing_us;		/* since when edmd has not got it */
+	uint32_t fault_told;		/* without a job: the one told of */
 	int64_t again_us;		/* not before: what was refused */
 	struct compile *compile;	/* of `next`, to be loaded */
 	struct store_job next;

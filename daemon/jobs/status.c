@@ -4,6 +4,8 @@
  */
 #include "jobs.h"
 
+#include "interp/tech_table.h"
+
 #include <string.h>
 
 #define STATUS_US	100000
@@ -18,6 +20,13 @@ static uint64_t key_of(const struct jobs *j)
 	       (uint64_t)(s->fault & 255) << 48 |
 	       (uint64_t)j->queue.job.state << 44 |
 	       (uint64_t)(j->queue.behind & 0xfff) << 32 | j->queue.job.n;
+}
+
+static void name_condition(char to[16], const struct shm_snapshot *s)
+{
+	to[0] = '\0';
+	if (s->cond_letter)
+		interp_tech_name(s->cond_letter, s->cond_number, to, 16);
 }
 
 /* By the farthest place reached and the time it took. */
@@ -71,6 +80,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 {
 	uint64_t key = key_of(j);
 	struct wire_status w = { .line = 0 };
+	char condition[16];
 
 	if (key == j->status_key && now_us - j->status_us < STATUS_US)
 		return;
@@ -80,6 +90,10 @@ void status_tick(struct jobs *j, int64_t now_us)
 	j->status_key = key;
 	j->status_us = now_us;
 	fill_machine(&w, &j->link);
+	w.contour_mm = j->twin.last.measured_mm;
+	w.contour_predicted_mm = j->twin.last.predicted_mm;
 	fill_job(&w, &j->queue);
+	name_condition(condition, &j->queue.snap);
+	w.condition = condition;
 	wire_status(j->wire, &w);
 }

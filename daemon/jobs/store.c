@@ -17,8 +17,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define STORE_VERSION	1
+#define STORE_VERSION	2
 #define HISTORY_MAX	200
+#define ALARMS_MAX	20
 
 struct store {
 	sqlite3 *db;
@@ -37,13 +38,21 @@ static const char schema[] =
 	" ended_us INTEGER NOT NULL DEFAULT 0,"
 	" reason TEXT NOT NULL DEFAULT '',"
 	" place_mm REAL, length_mm REAL, depth_mm REAL, job_s REAL,"
-	" jumps INTEGER, retracts INTEGER, shorts INTEGER);"
+	" jumps INTEGER, retracts INTEGER, shorts INTEGER,"
+	" tech_sha256 TEXT NOT NULL DEFAULT '');"
+	"CREATE TABLE IF NOT EXISTS change("
+	" n INTEGER NOT NULL, time_ns INTEGER NOT NULL, what TEXT NOT NULL,"
+	" was, now, place_mm REAL, PRIMARY KEY(n, time_ns, what));"
 	"CREATE INDEX IF NOT EXISTS job_by_state ON job(state, loaded);"
 	"CREATE TABLE IF NOT EXISTS event("
 	" utime INTEGER NOT NULL, kind TEXT NOT NULL, job TEXT NOT NULL,"
 	" outcome TEXT NOT NULL, place_mm REAL, text TEXT NOT NULL);"
 	"CREATE TABLE IF NOT EXISTS number("
 	" key TEXT PRIMARY KEY, value INTEGER NOT NULL);";
+
+/* What a store of version 1 has not got. */
+static const char upgrade[] =
+	"ALTER TABLE job ADD COLUMN tech_sha256 TEXT NOT NULL DEFAULT '';";
 
 static const char *const state_names[JOB_NSTATES] = {
 	[JOB_QUEUED]	= "queued",
@@ -168,8 +177,10 @@ static int db_open(struct store *s, const char *dir, const char *machine)
 	version = ask(s, "PRAGMA user_version", NULL, 0);
 	if (version > STORE_VERSION)
 		return -EPROTO;
-	if (sqlite3_exec(s->db, schema, NULL, NULL, NULL) != SQLITE_OK ||
-	    sqlite3_exec(s->db, "PRAGMA user_version=1", NULL, NULL, NULL) !=
+	if ((version == 1 && sqlite3_exec(s->db, upgrade, NULL, NULL, NULL) !=
+	     SQLITE_OK) ||
+	    sqlite3_exec(s->db, schema, NULL, NULL, NULL) != SQLITE_OK ||
+	    sqlite3_exec(s->db, "PRAGMA user_version=2", NULL, NULL, NULL) !=
 	    SQLITE_OK)
 		return complain(s);
 	return 0;
@@ -207,15 +218,15 @@ void store_close(struct store *s)
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 {
 	sqlite3_stmt *q = query(s, "INSERT INTO job(id, name, sha256, lines, "
-				"hold, submitted_us, text) VALUES"
-				"(?, ?, ?, ?, ?, ?, ?)", "sssiii", j->id,
+				"hold, submitted_us, tech_sha256, text) VALUES"
+				"(?, ?, ?, ?, ?, ?, ?, ?)", "sssiiis", j->id,
 				j->name, j->sha256, (int64_t)j->lines,
-				(int64_t)j->hold, j->now_us);
+				(int64_t)j->hold, j->now_us, j->tech_sha256);
 	int rc;
 
 	if (!q)
 		return -EIO;
-	sqlite3_bind_blob64(q, 7, j->text, j->bytes, SQLITE_STATIC);
+	sqlite3_bind_blob64(q, 8, j->text, j->bytes, SQLITE_STATIC);
 	rc = sqlite3_step(q);
 	sqlite3_finalize(q);
 	if (rc != SQLITE_DONE)
@@ -269,8 +280,9 @@ int store_loaded(struct store *s, struct store_job *ret)
 int store_head(struct store *s, struct store_job *ret)
 {
 	return job_get(query(s, "SELECT " JOB_COLUMNS " FROM job WHERE "
-			     "state='queued' AND loaded=0 ORDER BY n LIMIT 1",
-			     ""), ret);
+			     "state='queued' AND loaded=0 ORDER BY n=? DESC, n "
+			     "LIMIT 1", "i",
+			     store_number(s, "selected", 0)), ret);
 }
 
 int store_text(struct store *s, uint32_t n, char **ret, size_t *ret_bytes)
@@ -330,6 +342,27 @@ int store_end(struct store *s, uint32_t n, const struct store_end *e)
 		   (int64_t)e->retracts, (int64_t)e->shorts, (int64_t)n);
 }
 
+int store_set_tech(struct store *s, uint32_t n, const char *sha256)
+{
+	return run(s, "UPDATE job SET tech_sha256=? WHERE n=?", "si", sha256,
+		   (int64_t)n);
+}
+
+/* edmd's events come again when either side was restarted; their time tells
+ * them.  NAN becomes NULL. */
+int store_change(struct store *s, uint32_t n, const struct store_change *c)
+{
+	if (c->condition)
+		return run(s, "INSERT OR IGNORE INTO change VALUES(?1, ?2, "
+			   "'condition', (SELECT now FROM change WHERE n=?1 "
+			   "AND what='condition' AND time_ns<?2 ORDER BY "
+			   "time_ns DESC LIMIT 1), ?3, ?4)", "iisd",
+			   (int64_t)n, c->time_ns, c->condition, c->place_mm);
+	return run(s, "INSERT OR IGNORE INTO change VALUES(?, ?, ?, ?, ?, ?)",
+		   "iisddd", (int64_t)n, c->time_ns, c->field, c->was, c->now,
+		   c->place_mm);
+}
+
 int store_note(struct store *s, const struct store_note *e)
 {
 	return run(s, "INSERT INTO event VALUES(?, ?, ?, ?, ?, ?)", "isssds",
@@ -354,30 +387,46 @@ int store_set_number(struct store *s, const char *key, int64_t value)
 		   value);
 }
 
-#define JOB_JSON	"json_object('n', n, 'job', id, 'name', name, " \
+#define JOB_JSON(MORE)	"json_object('n', n, 'job', id, 'name', name, " \
 			"'state', state, 'hold', json(iif(hold, 'true', " \
 			"'false')), 'lines', lines, 'sha256', sha256, " \
 			"'submitted_us', submitted_us, 'begun_us', begun_us, " \
 			"'ended_us', ended_us, 'reason', reason, 'path_mm', " \
 			"place_mm, 'length_mm', length_mm, 'depth_mm', " \
 			"depth_mm, 'job_s', job_s, 'jumps', jumps, " \
-			"'retracts', retracts, 'shorts', shorts)"
+			"'retracts', retracts, 'shorts', shorts, " \
+			"'tech_sha256', tech_sha256" MORE ")"
+
+/* Of one job alone: what was called and set, in the order of time. */
+#define CHANGES_JSON	", 'changes', (SELECT json_group_array(json(c)) FROM " \
+			"(SELECT json_object('utime', time_ns / 1000, " \
+			"'place_mm', place_mm, 'what', what, 'was', was, " \
+			"'now', now) AS c FROM change WHERE change.n=job.n " \
+			"ORDER BY time_ns))"
 
 static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				const char *id, int rows)
 {
 	if (what == STORE_SHOW)
-		return query(s, "SELECT " JOB_JSON " FROM job WHERE id=?",
+		return query(s, "SELECT " JOB_JSON(CHANGES_JSON) " FROM job "
+			     "WHERE id=?",
 			     "s", id);
 	if (what == STORE_QUEUE)
 		return query(s, "SELECT json_group_array(json(j)) FROM "
-			     "(SELECT " JOB_JSON " AS j FROM job WHERE "
+			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
 			     "state='queued' OR (loaded=1 AND state NOT IN "
 			     "('done', 'stopped')) ORDER BY n)", "");
+	if (what == STORE_ALARMS)
+		return query(s, "SELECT json_group_array(json(a)) FROM (SELECT "
+			     "json_object('utime', utime, 'kind', kind, 'job', "
+			     "job, 'fault', outcome, 'place_mm', place_mm, "
+			     "'text', text) AS a FROM event WHERE kind IN "
+			     "('alarm', 'lost', 'back') ORDER BY utime DESC, "
+			     "rowid DESC LIMIT ?)", "i", (int64_t)ALARMS_MAX);
 	if (rows <= 0 || rows > HISTORY_MAX)
 		rows = HISTORY_MAX;
 	return query(s, "SELECT json_group_array(json(j)) FROM (SELECT "
-		     JOB_JSON " AS j FROM job WHERE state IN ('done', "
+		     JOB_JSON("") " AS j FROM job WHERE state IN ('done', "
 		     "'stopped', 'fault') ORDER BY ended_us DESC, n DESC "
 		     "LIMIT ?)", "i", (int64_t)rows);
 }

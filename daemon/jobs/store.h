@@ -41,6 +41,7 @@ struct store_job {
 
 struct store_new {
 	const char *id, *name, *sha256;
+	const char *tech_sha256;	/* of the technology table; "": none */
 	const char *text;
 	size_t bytes;
 	uint32_t lines;
@@ -63,7 +64,16 @@ struct store_note {
 	int64_t now_us;
 };
 
-enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY };
+/* A condition called, or a value set while a job ran. */
+struct store_change {
+	const char *condition;		/* called: its name; else NULL */
+	const char *field;		/* set: its name */
+	double was, now;		/* set; NAN: the generator's own */
+	double place_mm;
+	int64_t time_ns;
+};
+
+enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY, STORE_ALARMS };
 
 /** job_state_name() - "queued", ... */
 const char *job_state_name(enum job_state s);
@@ -84,6 +94,8 @@ int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n);
 /* Find one: 0, or -ENOENT. */
 int store_find(struct store *s, const char *id, struct store_job *ret);
 int store_loaded(struct store *s, struct store_job *ret);
+/** ... the job to be loaded next: number "selected", if it waits, else the
+ *  oldest. */
 int store_head(struct store *s, struct store_job *ret);
 
 /** store_text() - the text of job @n; to be freed. */
@@ -94,6 +106,9 @@ int store_set_hold(struct store *s, uint32_t n, bool hold);
 int store_set_loaded(struct store *s, uint32_t n, bool loaded);
 int store_begin(struct store *s, uint32_t n, int64_t now_us);
 int store_end(struct store *s, uint32_t n, const struct store_end *e);
+int store_set_tech(struct store *s, uint32_t n, const char *sha256);
+/** store_change() - of job @n; the same one twice is kept once. */
+int store_change(struct store *s, uint32_t n, const struct store_change *c);
 int store_note(struct store *s, const struct store_note *e);
 
 /** store_waiting() - jobs that are queued and not loaded. */

@@ -88,13 +88,16 @@ static const char *what_next(const struct jobs *j, bool hold)
 	       "it starts when those before it are done" : "it starts now";
 }
 
-static void accept_text(struct jobs *j, struct upload *up, uint32_t lines)
+static void accept_text(struct jobs *j, struct upload *up,
+			const struct compile_result *r)
 {
+	const uint32_t lines = r->lines;
 	struct queue *q = &j->queue;
 	char hex[65], reason[160], *body;
 	struct store_new n = {
 		.id = up->id, .name = up->name, .sha256 = hex,
 		.text = up->text, .bytes = up->bytes, .lines = lines,
+		.tech_sha256 = r->tech_sha256,
 		.hold = up->hold, .now_us = jobs_utime(),
 	};
 	uint32_t number;
@@ -152,7 +155,9 @@ static void on_checked(void *arg, const struct compile_result *r)
 
 	free(c);
 	j->check[up - j->uploads.slot] = NULL;
-	if (r->err == -EINVAL)
+	if (r->tech_refusal[0])
+		answer_end(j, up, EX_CONFIG, r->tech_refusal, NULL);
+	else if (r->err == -EINVAL)
 		refuse_text(j, up, &r->diag);
 	else if (r->err < 0)
 		answer_end(j, up, EX_SOFTWARE, strerror(-r->err), NULL);
@@ -160,7 +165,7 @@ static void on_checked(void *arg, const struct compile_result *r)
 		answer_end(j, up, EX_TEMPFAIL, "another client sends this job "
 			   "id too; try again", NULL);
 	else
-		accept_text(j, up, r->lines);
+		accept_text(j, up, r);
 }
 
 /* From where the machine stands, or will when there is none yet. */

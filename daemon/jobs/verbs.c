@@ -7,7 +7,9 @@
  */
 #include "jobs.h"
 
+#include "interp/tech_table.h"
 #include "log.h"
+#include "nearest.h"
 
 #include <errno.h>
 #include <math.h>
@@ -17,6 +19,8 @@
 #include <sysexits.h>
 
 #define RETRACT_MAX_MM	10000.0
+#define STEP_MAX	100
+#define OVERRIDE_MAX	2.0
 #define REFUSED		1		/* understood, and the answer is no */
 
 struct verb {
@@ -44,6 +48,27 @@ static void answer(struct jobs *j, const struct wire_command *c, int code,
 	});
 }
 
+/* What the cycle says no to in any state; NULL: it is the state. */
+static const char *refusal(int code)
+{
+	static const char *const why[] = {
+		[SHM_NOT_HOMED] = "an axis is not homed; home first",
+		[SHM_AT_LIMIT] = "an axis is on its limit switch; jog it away "
+				 "from the switch",
+		[SHM_BEYOND] = "that is outside the axis's travel; a shorter "
+			       "way",
+		[SHM_NO_NODE] = "the path has not so many nodes that way; "
+				"fewer",
+		[SHM_NOT_PASSED] = "the path up to that node was not passed "
+				   "yet; start cuts on",
+		[SHM_ELSEWHERE] = "the axes are not where the program begins; "
+				  "submit it again",
+	};
+
+	return code >= 0 && code < (int)(sizeof(why) / sizeof(why[0])) ?
+	       why[code] : NULL;
+}
+
 static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
@@ -59,9 +84,21 @@ static void on_answer(void *arg, int code)
 		answer(j, &c, EX_UNAVAILABLE, "edmd went away");
 	else if (code == SHM_NO_PROGRAM)
 		answer(j, &c, REFUSED, "no job is loaded; submit one");
+	else if (code == SHM_NOT_UP)
+		answer(j, &c, REFUSED, "the drives are not up yet; edmd's "
+		       "journal tells which; again when they are");
+	else if (code == SHM_LOCKED)
+		answer(j, &c, REFUSED, "the PLC does not permit it: it is not "
+		       "there, holds, has no permit, or an interlock is open");
 	else if (code == SHM_BAD_ARGUMENT)
-		answer(j, &c, EX_DATAERR, "edmd refused the value; it must "
-		       "be finite and in range");
+		answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
+		       "edmd refused the value: with the others in force, "
+		       "short_v < window_low_v <= servo_v <= window_high_v < "
+		       "open_v < ignition_v must hold" :
+		       "edmd refused the value; it must be finite and in "
+		       "range");
+	else if (refusal(code))
+		answer(j, &c, REFUSED, refusal(code));
 	else {
 		snprintf(reason, sizeof(reason), "not in state %s; %s wants %s",
 			 shm_state_name(j->link.snap.state), a->verb->name,
@@ -71,12 +108,12 @@ static void on_answer(void *arg, int code)
 	free(a);
 }
 
-static void verb_machine(struct jobs *j, const struct verb *v,
-			 const struct wire_command *c)
+static void ask_machine(struct jobs *j, const struct verb *v,
+			const struct wire_command *c, uint32_t arg)
 {
 	struct asked *a = calloc(1, sizeof(*a));
 	struct link_command m = {
-		.verb = v->machine, .arg_mm = c->arg,
+		.verb = v->machine, .arg = arg, .arg_mm = c->arg,
 		.answer = on_answer, .answer_arg = a,
 	};
 	int err;
@@ -102,6 +139,56 @@ static void verb_machine(struct jobs *j, const struct verb *v,
 		       "edmd is lost; systemctl status edmd");
 }
 
+static void verb_machine(struct jobs *j, const struct verb *v,
+			 const struct wire_command *c)
+{
+	ask_machine(j, v, c, 0);
+}
+
+static void refuse_field(struct jobs *j, const struct wire_command *c)
+{
+	char reason[640];
+	struct nearest near;
+	size_t n;
+
+	nearest_init(&near, c->text);
+	for (int i = 0; i < INTERP_NTECH; i++)
+		if (interp_tech_is_live((enum interp_tech_id)i))
+			nearest_offer(&near, interp_tech_field[i].name);
+	n = (size_t)snprintf(reason, sizeof(reason), "no such field '%.40s'; "
+			     "%s%s%sone of", c->text,
+			     near.word[0] ? "did you mean " : "", near.word,
+			     near.word[0] ? "? " : "");
+	for (int i = 0; i < INTERP_NTECH && n < sizeof(reason); i++)
+		if (interp_tech_is_live((enum interp_tech_id)i))
+			n += (size_t)snprintf(reason + n, sizeof(reason) - n,
+					      " %s",
+					      interp_tech_field[i].name);
+	answer(j, c, EX_DATAERR, reason);
+}
+
+/* NaN gives the field back to the condition. */
+static void verb_set(struct jobs *j, const struct verb *v,
+		     const struct wire_command *c)
+{
+	const int id = interp_tech_find(c->text);
+	char reason[192], range[96];
+
+	if (id < 0 || !interp_tech_is_live((enum interp_tech_id)id)) {
+		refuse_field(j, c);
+		return;
+	}
+	if (isnan(c->arg) ||
+	    interp_tech_value_ok((enum interp_tech_id)id, c->arg)) {
+		ask_machine(j, v, c, (uint32_t)id);
+		return;
+	}
+	interp_tech_range((enum interp_tech_id)id, range, sizeof(range));
+	snprintf(reason, sizeof(reason), "%s %g is out of range; %s",
+		 c->text, c->arg, range);
+	answer(j, c, EX_DATAERR, reason);
+}
+
 static void verb_retract(struct jobs *j, const struct verb *v,
 			 const struct wire_command *c)
 {
@@ -110,6 +197,86 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 	else
 		answer(j, c, EX_DATAERR, "retract by no such length; a number "
 		       "of mm above 0, at most 10000");
+}
+
+static void verb_step(struct jobs *j, const struct verb *v,
+		      const struct wire_command *c)
+{
+	if (c->arg == floor(c->arg) && fabs(c->arg) >= 1 &&
+	    fabs(c->arg) <= STEP_MAX)
+		verb_machine(j, v, c);
+	else
+		answer(j, c, EX_DATAERR, "no such number of nodes; 1 to 100 "
+		       "ahead, -1 to -100 back");
+}
+
+static void verb_override(struct jobs *j, const struct verb *v,
+			  const struct wire_command *c)
+{
+	if (c->arg >= 0 && c->arg <= OVERRIDE_MAX)
+		verb_machine(j, v, c);
+	else
+		answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
+}
+
+/* One letter of an axis the machine has; -1: it was refused. */
+static int axis_of(struct jobs *j, const struct wire_command *c)
+{
+	const char *at = c->text[0] ? strchr(INTERP_AXIS_LETTERS, c->text[0]) :
+				      NULL;
+	char reason[96], has[INTERP_NAXES + 1] = "";
+	size_t n = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (j->config->axes.present >> i & 1)
+			has[n++] = INTERP_AXIS_LETTERS[i];
+	if (at && c->text[1] == '\0' && strchr(has, *at))
+		return (int)(at - INTERP_AXIS_LETTERS);
+	snprintf(reason, sizeof(reason), "no axis '%.20s' here; one of %s",
+		 c->text, has);
+	answer(j, c, EX_DATAERR, reason);
+	return -1;
+}
+
+static void verb_jog(struct jobs *j, const struct verb *v,
+		     const struct wire_command *c)
+{
+	int axis;
+
+	if (!isfinite(c->arg) || c->arg == 0) {
+		answer(j, c, EX_DATAERR, "jog by no such length; a number of "
+		       "mm or degrees, + or -");
+		return;
+	}
+	axis = axis_of(j, c);
+	if (axis >= 0)
+		ask_machine(j, v, c, (uint32_t)axis);
+}
+
+static bool is_homed_by(const struct jobs *j, int axis)
+{
+	return j->config->axes.present >> axis & 1 &&
+	       j->config->hand[axis].home_method != 0;
+}
+
+static void verb_home(struct jobs *j, const struct verb *v,
+		      const struct wire_command *c)
+{
+	int axis = c->text[0] ? axis_of(j, c) : INTERP_NAXES;
+	bool any = false;
+
+	if (axis < 0)
+		return;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		any = any || (is_homed_by(j, i) &&
+			      (axis == i || axis == INTERP_NAXES));
+	if (any)
+		ask_machine(j, v, c, (uint32_t)axis);
+	else
+		answer(j, c, REFUSED, axis == INTERP_NAXES ?
+		       "no axis has a home_method; the places they start at "
+		       "are good" : "this axis has no home_method; the place "
+		       "it starts at is good");
 }
 
 /* A refused start must not set the queue going. */
@@ -231,6 +398,13 @@ static void verb_show(struct jobs *j, const struct verb *v,
 	answer_list(j, c, STORE_SHOW);
 }
 
+static void verb_alarms(struct jobs *j, const struct verb *v,
+			const struct wire_command *c)
+{
+	(void)v;
+	answer_list(j, c, STORE_ALARMS);
+}
+
 static void verb_history(struct jobs *j, const struct verb *v,
 			 const struct wire_command *c)
 {
@@ -252,8 +426,17 @@ static const struct verb verbs[] = {
 						   "first" },
 	{ "retract", verb_retract, SHM_DO_RETRACT, "a job, and no fault; reset "
 						   "first" },
+	{ "set",     verb_set,     SHM_DO_SET,     "fewer than 64 values set "
+						   "in a job" },
 	{ "estop",   verb_machine, SHM_DO_ESTOP,   "nothing" },
 	{ "reset",   verb_machine, SHM_DO_RESET,   "a fault" },
+	{ "step",    verb_step,    SHM_DO_STEP,    "a job held on its path" },
+	{ "jog",     verb_jog,     SHM_DO_JOG,     "idle: no job loaded, no "
+						   "fault" },
+	{ "home",    verb_home,    SHM_DO_HOME,    "idle: no job loaded, no "
+						   "fault" },
+	{ "override", verb_override, SHM_DO_OVERRIDE, "nothing" },
+	{ "alarms",  verb_alarms,  0, "" },
 	{ "remove",  verb_remove,  0, "" },
 	{ "queue",   verb_queue,   0, "" },
 	{ "show",    verb_show,    0, "" },

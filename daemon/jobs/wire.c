@@ -116,7 +116,7 @@ static void on_command(const lcm_recv_buf_t *buf, const char *channel,
 	}
 	c = (struct wire_command) {
 		.client = m.client, .seq = m.seq, .verb = m.verb,
-		.job = m.job, .arg = m.arg,
+		.job = m.job, .text = m.text, .arg = m.arg,
 	};
 	w->handlers.command(w->handlers.arg, &c);
 	edm_command_t_decode_cleanup(&m);
@@ -299,6 +299,8 @@ void wire_status(struct wire *w, const struct wire_status *s)
 		.gap_v = s->gap_v,
 		.feed_mm_s = s->feed_mm_s,
 		.depth_mm = s->depth_mm,
+		.contour_mm = s->contour_mm,
+		.contour_predicted_mm = s->contour_predicted_mm,
 		.jumps = (int32_t)s->jumps,
 		.retracts = (int32_t)s->retracts,
 		.shorts = (int32_t)s->shorts,
@@ -307,6 +309,7 @@ void wire_status(struct wire *w, const struct wire_status *s)
 		.queue_len = (int32_t)s->queue_len,
 		.overruns = (int32_t)s->overruns,
 		.wake_late_max_us = (int32_t)s->wake_late_max_us,
+		.condition = lent(s->condition),
 	};
 
 	memcpy(m.pos_mm, s->pos_mm, sizeof(m.pos_mm));

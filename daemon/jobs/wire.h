@@ -25,7 +25,7 @@ struct wire;
 struct wire_command {
 	const char *client;
 	int64_t seq;
-	const char *verb, *job;
+	const char *verb, *job, *text;
 	double arg;
 };
 
@@ -56,11 +56,12 @@ struct wire_event {
 
 struct wire_status {
 	const char *daemon, *state, *fault;
-	const char *job, *job_name, *job_state;
+	const char *job, *job_name, *job_state, *condition;
 	uint32_t line, lines;
 	double place_mm, length_mm, progress;
 	double pos_mm[WIRE_NAXES];
 	double gap_v, feed_mm_s, depth_mm;
+	double contour_mm, contour_predicted_mm;
 	uint32_t jumps, retracts, shorts;
 	double job_s, left_s;
 	uint32_t queue_len, overruns, wake_late_max_us;
