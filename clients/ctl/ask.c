@@ -5,6 +5,7 @@
 #include "ctl.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,6 +90,76 @@ int ctl_retract(struct ctl *c)
 	});
 }
 
+int ctl_set(struct ctl *c)
+{
+	char *end;
+	double value = NAN;
+
+	if (strcmp(c->value, "default") != 0) {
+		value = strtod(c->value, &end);
+		if (end == c->value || *end || !isfinite(value)) {
+			fprintf(stderr, "edmctl: set %s %s: not a number; a "
+				"number, or default to take it back\n",
+				c->arg, c->value);
+			return EX_USAGE;
+		}
+	}
+	return command(c, &(struct talk_question) {
+		.verb = "set", .text = c->arg, .arg = value,
+	});
+}
+
+/* A number and nothing behind it; else it is said what is wrong. */
+static int number(const struct ctl *c, const char *text, const char *wanted,
+		  double *ret)
+{
+	char *end;
+
+	*ret = strtod(text, &end);
+	if (end != text && *end == '\0' && isfinite(*ret))
+		return 0;
+	fprintf(stderr, "edmctl: %s: '%s' is no number; %s\n", c->verb, text,
+		wanted);
+	return EX_USAGE;
+}
+
+int ctl_step(struct ctl *c)
+{
+	double n;
+	int rc = number(c, c->arg, "nodes, as +1 or -2", &n);
+
+	return rc ? rc : command(c, &(struct talk_question) {
+		.verb = "step", .arg = n,
+	});
+}
+
+int ctl_override(struct ctl *c)
+{
+	double percent;
+	int rc = number(c, c->arg, "percent, 0 to 200", &percent);
+
+	return rc ? rc : command(c, &(struct talk_question) {
+		.verb = "override", .arg = percent / 100,
+	});
+}
+
+int ctl_jog(struct ctl *c)
+{
+	double mm;
+	int rc = number(c, c->value, "mm, or degrees of A B C, + or -", &mm);
+
+	return rc ? rc : command(c, &(struct talk_question) {
+		.verb = "jog", .text = c->arg, .arg = mm,
+	});
+}
+
+int ctl_home(struct ctl *c)
+{
+	return command(c, &(struct talk_question) {
+		.verb = "home", .text = c->arg,
+	});
+}
+
 /* -- Lists ---------------------------------------------------------------- */
 
 static const char *text_of(json_t *job, const char *key)
@@ -103,7 +174,7 @@ static double number_of(json_t *job, const char *key)
 	return json_number_value(json_object_get(job, key));
 }
 
-static void when(char to[32], json_t *job, const char *key)
+void ctl_when(char to[32], json_t *job, const char *key)
 {
 	int64_t us = json_integer_value(json_object_get(job, key));
 	time_t t = us / 1000000;
@@ -118,7 +189,7 @@ static void print_queued(json_t *job)
 {
 	char at[32];
 
-	when(at, job, "submitted_us");
+	ctl_when(at, job, "submitted_us");
 	printf("%-14s %-24s %-8s %9.0f  %s%s\n", text_of(job, "job"),
 	       text_of(job, "name"), text_of(job, "state"),
 	       number_of(job, "lines"), at,
@@ -130,12 +201,40 @@ static void print_ended(json_t *job)
 {
 	char at[32], took[32];
 
-	when(at, job, "ended_us");
+	ctl_when(at, job, "ended_us");
 	ctl_duration(took, sizeof(took), number_of(job, "job_s"));
 	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n", text_of(job, "job"),
 	       text_of(job, "name"), text_of(job, "state"), at,
 	       number_of(job, "depth_mm"), took,
 	       *text_of(job, "reason") ? "  " : "", text_of(job, "reason"));
+}
+
+/* A condition's name, a number, or the generator's own setting. */
+static void print_value(json_t *v)
+{
+	if (json_is_string(v))
+		printf("%s", json_string_value(v));
+	else if (json_is_number(v))
+		printf("%g", json_number_value(v));
+	else
+		printf("-");
+}
+
+static void print_changes(json_t *rows)
+{
+	json_t *row;
+	size_t i;
+	char at[32];
+
+	json_array_foreach(rows, i, row) {
+		ctl_when(at, row, "utime");
+		printf("%-10s %s %10.3f mm  %s ", i ? "" : "changes", at,
+		       number_of(row, "place_mm"), text_of(row, "what"));
+		print_value(json_object_get(row, "was"));
+		printf(" -> ");
+		print_value(json_object_get(row, "now"));
+		putchar('\n');
+	}
 }
 
 static void print_one(json_t *job)
@@ -155,7 +254,7 @@ static void print_one(json_t *job)
 		printf("reason     %s\n", text_of(job, "reason"));
 	printf("lines      %.0f\n", number_of(job, "lines"));
 	for (size_t i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
-		when(text, job, times[i].key);
+		ctl_when(text, job, times[i].key);
 		printf("%-10s %s\n", times[i].label, text);
 	}
 	ctl_duration(text, sizeof(text), number_of(job, "job_s"));
@@ -165,6 +264,9 @@ static void print_one(json_t *job)
 	       number_of(job, "length_mm"), number_of(job, "depth_mm"), text,
 	       number_of(job, "jumps"), number_of(job, "retracts"),
 	       number_of(job, "shorts"), text_of(job, "sha256"));
+	if (*text_of(job, "tech_sha256"))
+		printf("table      %s\n", text_of(job, "tech_sha256"));
+	print_changes(json_object_get(job, "changes"));
 }
 
 static int list(struct ctl *c, const struct talk_question *q,

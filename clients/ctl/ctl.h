@@ -25,6 +25,7 @@ struct ctl {
 	/* The verb, and what follows it. */
 	const char *verb;
 	const char *arg;		/* NULL if there is none */
+	const char *value;		/* the second one; NULL too */
 	struct talk *talk;
 };
 
@@ -33,12 +34,27 @@ int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);
 int ctl_retract(struct ctl *c);
 int ctl_remove(struct ctl *c);
+int ctl_set(struct ctl *c);
+int ctl_step(struct ctl *c);
+int ctl_override(struct ctl *c);
+int ctl_jog(struct ctl *c);
+int ctl_home(struct ctl *c);
+int ctl_alarms(struct ctl *c);
+int ctl_doctor(struct ctl *c);
 int ctl_queue(struct ctl *c);
 int ctl_show(struct ctl *c);
 int ctl_history(struct ctl *c);
+int ctl_identify(struct ctl *c);
 int ctl_status(struct ctl *c);
 int ctl_watch(struct ctl *c);
 int ctl_record(struct ctl *c);
+int ctl_latency(struct ctl *c);
+
+struct shm_status;
+
+/** ctl_shm_open() - edmd's own status, on its host; a refusal is printed.
+ *  Return: what to exit with; 0: @ret is open. */
+int ctl_shm_open(const struct ctl *c, const struct shm_status **ret);
 
 /** ctl_ask() - ask; what went wrong is printed, nothing else.
  *  Return: what to exit with; 0: @ret is filled and to be freed. */
@@ -47,6 +63,12 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 
 /** ctl_unanswered() - print that there is no service. Return: EX_*. */
 int ctl_unanswered(const struct ctl *c, int err);
+
+/** ctl_first_status() - the first from now on; NULL: none in time. */
+const struct talk_status *ctl_first_status(struct ctl *c);
+
+/** ctl_when() - a JSON time in us as local time, "-" if there is none. */
+void ctl_when(char to[32], json_t *row, const char *key);
 
 /** ctl_wait() - follow job @id to its end. */
 int ctl_wait(struct ctl *c, const char *id);

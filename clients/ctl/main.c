@@ -17,43 +17,62 @@
 struct verb {
 	const char *name, *args;
 	int (*run)(struct ctl *c);
-	bool takes, needs;		/* an argument */
+	int takes, needs;		/* arguments */
+	bool offline;			/* asks no machine */
 	const char *options;		/* letters of its own options */
 	const char *help;
 };
 
 /* clang-format off */
 static const struct verb verbs[] = {
-	{ "submit", "FILE", ctl_submit, true, true, "nihw",
+	{ "submit", "FILE", ctl_submit, 1, 1, false, "nihw",
 	  "send a job of NC code; - is standard input" },
-	{ "queue", "", ctl_queue, false, false, "",
+	{ "queue", "", ctl_queue, 0, 0, false, "",
 	  "the job loaded and those that wait" },
-	{ "show", "JOB", ctl_show, true, true, "",
+	{ "show", "JOB", ctl_show, 1, 1, false, "",
 	  "all about one job" },
-	{ "start", "[JOB]", ctl_start, true, false, "",
+	{ "start", "[JOB]", ctl_start, 1, 0, false, "",
 	  "start the job that is ready or held, and the queue" },
-	{ "hold", "", ctl_command, false, false, "",
+	{ "hold", "", ctl_command, 0, 0, false, "",
 	  "power off, stop on the path" },
-	{ "resume", "", ctl_command, false, false, "",
+	{ "resume", "", ctl_command, 0, 0, false, "",
 	  "go on after a hold" },
-	{ "stop", "", ctl_command, false, false, "",
+	{ "stop", "", ctl_command, 0, 0, false, "",
 	  "end the job where it stands" },
-	{ "retract", "MM", ctl_retract, true, true, "",
+	{ "retract", "MM", ctl_retract, 1, 1, false, "",
 	  "back along the path, then held" },
-	{ "reset", "", ctl_command, false, false, "",
+	{ "step", "+N|-N", ctl_step, 1, 1, false, "",
+	  "held: to the Nth node of the path, ahead or back" },
+	{ "jog", "AXIS MM", ctl_jog, 2, 2, false, "",
+	  "idle: move one axis so far" },
+	{ "home", "[AXIS]", ctl_home, 1, 0, false, "",
+	  "idle: find the place of one axis, or of all" },
+	{ "override", "PERCENT", ctl_override, 1, 1, false, "",
+	  "speed of positioning, of what is programmed" },
+	{ "set", "KEY VALUE", ctl_set, 2, 2, false, "",
+	  "a value of the condition in force; VALUE default: back" },
+	{ "reset", "", ctl_command, 0, 0, false, "",
 	  "leave the fault, to held" },
-	{ "estop", "", ctl_command, false, false, "",
+	{ "estop", "", ctl_command, 0, 0, false, "",
 	  "power off, no motion, until reset" },
-	{ "remove", "JOB", ctl_remove, true, true, "",
+	{ "remove", "JOB", ctl_remove, 1, 1, false, "",
 	  "take a job that has not begun out of the queue" },
-	{ "status", "", ctl_status, false, false, "",
+	{ "status", "", ctl_status, 0, 0, false, "",
 	  "the machine now; exits with 69 if edmd is not there" },
-	{ "watch", "", ctl_watch, false, false, "o",
+	{ "alarms", "", ctl_alarms, 0, 0, false, "",
+	  "the fault, why and what clears it; and the last ones" },
+	{ "doctor", "", ctl_doctor, 0, 0, false, "",
+	  "what this host lacks for cutting, and the command that mends it" },
+	{ "watch", "", ctl_watch, 0, 0, false, "o",
 	  "the machine as it goes, until Ctrl-C" },
-	{ "record", "CSV", ctl_record, true, true, "epU",
+	{ "record", "CSV", ctl_record, 1, 1, false, "epU",
 	  "every cycle to a trace file, until Ctrl-C" },
-	{ "history", "", ctl_history, false, false, "",
+	{ "latency", "[S]", ctl_latency, 1, 0, false, "",
+	  "how late edmd woke, of S seconds from now or since its start" },
+	{ "history", "", ctl_history, 0, 0, false, "",
 	  "jobs that have ended, newest first" },
+	{ "identify", "CSV", ctl_identify, true, true, true, "p",
+	  "the loops of the axes, from what record wrote" },
 };
 
 static const struct option longs[] = {
@@ -78,12 +97,22 @@ static const struct option longs[] = {
 #define NVERBS		(sizeof(verbs) / sizeof(verbs[0]))
 #define COMMON_OPTIONS	"mujt"
 
+/* No option is short, so -1 is a word: a number below 0.  Words in order. */
+#define DIGITS		"0123456789."
+#define SHORTS		"-0::1::2::3::4::5::6::7::8::9::.::"
+
+/* The verb, its arguments, and one that is too much. */
+struct words {
+	char *at[4];
+	int n;
+};
+
 static void print_usage(FILE *f)
 {
 	fputs("Usage: edmctl [--machine NAME] [--url URL] [--json] "
 	      "[--timeout S] VERB ...\n\nVerbs:\n", f);
 	for (size_t i = 0; i < NVERBS; i++)
-		fprintf(f, "  %-8s %-6s %s\n", verbs[i].name, verbs[i].args,
+		fprintf(f, "  %-8s %-9s %s\n", verbs[i].name, verbs[i].args,
 			verbs[i].help);
 	fputs("\nOptions:\n"
 	      "  --machine NAME  of the machine; default: edm\n"
@@ -97,7 +126,8 @@ static void print_usage(FILE *f)
 	      "  --wait          submit: follow it; exit 0 if done, 1 if not\n"
 	      "  --once          watch: one line\n"
 	      "  --every N       record: one cycle of N; default: 1\n"
-	      "  --plot FILE     record: then draw it, .png or .svg\n"
+	      "  --plot FILE     record, identify: then draw it, .png or "
+	      ".svg\n"
 	      "  --until-end     record: until the job that runs, or the "
 	      "next, ends\n"
 	      "  --help          this\n"
@@ -187,20 +217,41 @@ static int options_check(const struct verb *v, const char *given)
 static int arguments_take(struct ctl *c, const struct verb *v, int argc,
 			  char **argv)
 {
-	if (argc > 0 && v->takes)
+	if (argc > 0 && v->takes > 0)
 		c->arg = argv[0];
-	if (argc > (v->takes ? 1 : 0)) {
+	if (argc > 1 && v->takes > 1)
+		c->value = argv[1];
+	if (argc > v->takes) {
 		fprintf(stderr, "edmctl: %s: '%s' is too much; edmctl %s%s%s\n",
-			v->name, argv[v->takes ? 1 : 0], v->name,
-			*v->args ? " " : "", v->args);
+			v->name, argv[v->takes], v->name, *v->args ? " " : "",
+			v->args);
 		return EX_USAGE;
 	}
-	if (v->needs && !c->arg) {
+	if (argc < v->needs) {
 		fprintf(stderr, "edmctl: %s: what? edmctl %s %s\n", v->name,
 			v->name, v->args);
 		return EX_USAGE;
 	}
 	return 0;
+}
+
+/*
+ * A number below zero is no option.  With a blank in front getopt passes it by
+ * and strtod() reads it the same.
+ */
+static void negatives_keep(int argc, char **argv)
+{
+	static char room[2][64];
+	size_t n = 0;
+
+	for (int i = 1; i < argc && n < 2; i++) {
+		if (argv[i][0] != '-' || !argv[i][1] ||
+		    !strchr("0123456789.", argv[i][1]) ||
+		    strlen(argv[i]) > sizeof(room[0]) - 2)
+			continue;
+		snprintf(room[n], sizeof(room[n]), " %s", argv[i]);
+		argv[i] = room[n++];
+	}
 }
 
 static const struct verb *verb_find(const char *name)
@@ -223,15 +274,26 @@ static int machine_check(const char *name)
 	return EX_USAGE;
 }
 
+static void word_take(struct words *w, char *word)
+{
+	if (w->n < (int)(sizeof(w->at) / sizeof(w->at[0])))
+		w->at[w->n++] = word;
+}
+
 /* 0: @ret_verb is to be run; < 0: done; else what to exit with. */
 static int parse(struct ctl *c, int argc, char **argv,
 		 const struct verb **ret_verb)
 {
+	struct words w = { .n = 0 };
 	char given[64] = "";
 	size_t n = 0;
 	int opt, rc;
 
-	while ((opt = getopt_long(argc, argv, "", longs, NULL)) != -1) {
+	while ((opt = getopt_long(argc, argv, SHORTS, longs, NULL)) != -1) {
+		if (opt == 1 || strchr(DIGITS, opt)) {
+			word_take(&w, argv[optind - 1]);
+			continue;
+		}
 		if (opt == 'H')
 			print_usage(stdout);
 		if (opt == 'V')
@@ -244,21 +306,22 @@ static int parse(struct ctl *c, int argc, char **argv,
 		if (n < sizeof(given) - 1 && !strchr(given, opt))
 			given[n++] = (char)opt;
 	}
-	if (optind == argc) {
+	while (optind < argc)
+		word_take(&w, argv[optind++]);
+	if (w.n == 0) {
 		print_usage(stderr);
 		return EX_USAGE;
 	}
-	*ret_verb = verb_find(argv[optind]);
+	*ret_verb = verb_find(w.at[0]);
 	if (!*ret_verb) {
 		fprintf(stderr, "edmctl: no verb '%s'; --help lists them\n",
-			argv[optind]);
+			w.at[0]);
 		return EX_USAGE;
 	}
 	c->verb = (*ret_verb)->name;
 	rc = options_check(*ret_verb, given);
 	if (rc == 0)
-		rc = arguments_take(c, *ret_verb, argc - optind - 1,
-				    argv + optind + 1);
+		rc = arguments_take(c, *ret_verb, w.n - 1, w.at + 1);
 	return rc ? rc : machine_check(c->machine);
 }
 
@@ -268,13 +331,17 @@ int main(int argc, char **argv)
 		.machine = "edm", .url = URL_DEFAULT, .timeout_s = 3,
 	};
 	const struct verb *v = NULL;
-	int rc = parse(&c, argc, argv, &v);
+	int rc;
 
+	negatives_keep(argc, argv);
+	rc = parse(&c, argc, argv, &v);
 	if (rc)
 		return rc < 0 ? EX_OK : rc;
+	if (v->offline)
+		return v->run(&c);
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;
-	if (talk_open(&c.talk, c.url, c.machine) < 0) {
+	if (talk_open(&c.talk, c.url, c.machine) < 0 && v->run != ctl_doctor) {
 		fprintf(stderr, "edmctl: cannot open %s; does the host have a "
 			"multicast route? ip link set lo multicast on; "
 			"ip route add 224.0.0.0/4 dev lo\n", c.url);

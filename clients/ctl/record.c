@@ -42,9 +42,9 @@ static int refuse(const struct ctl *c, const char *what, const char *why,
 	return code;
 }
 
-static int open_status(const struct ctl *c, struct recording *r)
+int ctl_shm_open(const struct ctl *c, const struct shm_status **ret)
 {
-	int err = shm_status_open(&r->status, c->machine);
+	int err = shm_status_open(ret, c->machine);
 
 	if (err == -EPROTO)
 		return refuse(c, c->machine, "its edmd is of another release; "
@@ -52,10 +52,21 @@ static int open_status(const struct ctl *c, struct recording *r)
 	if (err == -EACCES)
 		return refuse(c, c->machine, "its shared memory is not yours "
 			      "to read; the group edm is wanted", EX_NOPERM);
-	if (err < 0 || !shm_alive(r->status) ||
-	    !shm_snapshot(r->status, &r->about))
+	if (err < 0 || !shm_alive(*ret))
 		return refuse(c, c->machine, "no edmd runs on this host; "
 			      "systemctl start edmd", EX_UNAVAILABLE);
+	return 0;
+}
+
+static int open_status(const struct ctl *c, struct recording *r)
+{
+	int err = ctl_shm_open(c, &r->status);
+
+	if (err)
+		return err;
+	if (!shm_snapshot(r->status, &r->about))
+		return refuse(c, c->machine, "no whole status",
+			      EX_UNAVAILABLE);
 
 	/* Only what is new from here on. */
 	r->trace.next = __atomic_load_n(&r->status->trace_next,
@@ -70,7 +81,9 @@ static int open_csv(const struct ctl *c, struct recording *r)
 	r->f = fopen(c->arg, "we");
 	if (!r->f)
 		return refuse(c, c->arg, strerror(errno), EX_CANTCREAT);
-	fputs("t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V\n", r->f);
+	fputs("t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V,"
+	      "X_actual,Y_actual,Z_actual,A_actual,B_actual,C_actual,"
+	      "U_actual,V_actual\n", r->f);
 	return 0;
 }
 
@@ -83,6 +96,8 @@ static void write_row(struct recording *r, const struct shm_trace *t)
 		t->feed_mm_s, t->gap_v, shm_state_name(t->state));
 	for (int i = 0; i < SHM_NAXES; i++)
 		fprintf(r->f, ",%.10g", t->pos[i] * r->about.pulse_mm[i]);
+	for (int i = 0; i < SHM_NAXES; i++)
+		fprintf(r->f, ",%.10g", t->actual[i] * r->about.pulse_mm[i]);
 	fputc('\n', r->f);
 	r->written++;
 }

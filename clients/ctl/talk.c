@@ -94,6 +94,7 @@ static void on_status(const lcm_recv_buf_t *buf, const char *channel,
 	copy_word(s->job, m->job);
 	copy_word(s->job_name, m->job_name);
 	copy_word(s->job_state, m->job_state);
+	copy_word(s->condition, m->condition);
 	memcpy(s->pos_mm, m->pos_mm, sizeof(s->pos_mm));
 	s->utime = m->utime;
 	s->line = m->line;
@@ -104,6 +105,8 @@ static void on_status(const lcm_recv_buf_t *buf, const char *channel,
 	s->gap_v = m->gap_v;
 	s->feed_mm_s = m->feed_mm_s;
 	s->depth_mm = m->depth_mm;
+	s->contour_mm = m->contour_mm;
+	s->contour_predicted_mm = m->contour_predicted_mm;
 	s->jumps = m->jumps;
 	s->retracts = m->retracts;
 	s->shorts = m->shorts;
@@ -231,7 +234,8 @@ static void ask_once(struct talk *t, const struct talk_question *q)
 		.utime = utime(), .client = t->client, .seq = t->asked,
 		.verb = (char *)(uintptr_t)q->verb,
 		.job = (char *)(uintptr_t)(q->job ? q->job : ""),
-		.arg = q->arg, .text = (char *)(uintptr_t)"",
+		.arg = q->arg,
+		.text = (char *)(uintptr_t)(q->text ? q->text : ""),
 	};
 
 	channel_name(t, "COMMAND", channel);

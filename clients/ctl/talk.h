@@ -31,9 +31,11 @@ struct talk_status {
 	double place_mm, length_mm, progress;
 	double pos_mm[TALK_NAXES];
 	double gap_v, feed_mm_s, depth_mm;
+	double contour_mm, contour_predicted_mm;	/* -1: not known */
 	int jumps, retracts, shorts;
 	double job_s, left_s;
 	int queue_len, overruns, wake_late_max_us;
+	char condition[TALK_WORD_MAX];
 };
 
 struct talk_ack {
@@ -55,7 +57,7 @@ struct talk_chunk {
 };
 
 struct talk_question {
-	const char *verb, *job;		/* job NULL is "" */
+	const char *verb, *job, *text;	/* job, text: NULL is "" */
 	double arg;
 };
 

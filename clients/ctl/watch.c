@@ -20,7 +20,7 @@ static void print_json(const struct talk_status *s)
 	for (int i = 0; i < TALK_NAXES; i++)
 		json_array_append_new(pos, json_real(s->pos_mm[i]));
 	j = json_pack("{s:I,s:s,s:s,s:s,s:s,s:s,s:s,s:s,s:i,s:i,s:f,s:f,s:f,"
-		      "s:o,s:f,s:f,s:f,s:i,s:i,s:i,s:f,s:f,s:i,s:i,s:i}",
+		      "s:o,s:f,s:f,s:f,s:i,s:i,s:i,s:f,s:f,s:i,s:i,s:i,s:s}",
 		      "utime", (json_int_t)s->utime, "machine", s->machine,
 		      "daemon", s->daemon, "state", s->state,
 		      "fault", s->fault, "job", s->job,
@@ -33,7 +33,14 @@ static void print_json(const struct talk_status *s)
 		      "retracts", s->retracts, "shorts", s->shorts,
 		      "job_s", s->job_s, "left_s", s->left_s,
 		      "queue_len", s->queue_len, "overruns", s->overruns,
-		      "wake_late_max_us", s->wake_late_max_us);
+		      "wake_late_max_us", s->wake_late_max_us,
+		      "condition", s->condition);
+	if (j && s->contour_mm >= 0) {
+		json_object_set_new(j, "contour_um",
+				    json_real(s->contour_mm * 1e3));
+		json_object_set_new(j, "contour_predicted_um",
+				    json_real(s->contour_predicted_mm * 1e3));
+	}
 	text = j ? json_dumps(j, JSON_COMPACT) : NULL;
 	if (text)
 		printf("%s\n", text);
@@ -66,13 +73,17 @@ static void print_text(const struct talk_status *s)
 	       s->gap_v, s->feed_mm_s * 60);
 	for (int i = 0; i < TALK_NAXES; i++)
 		printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
-	printf(" (mm, degrees)\nqueue      %d\n"
-	       "timing     woken late by %d us at most, %d overruns\n",
-	       s->queue_len, s->wake_late_max_us, s->overruns);
+	printf(" (mm, degrees)\n");
+	if (s->contour_mm >= 0)
+		printf("contour    off by %.1f um at most, predicted %.1f um\n",
+		       s->contour_mm * 1e3, s->contour_predicted_mm * 1e3);
+	printf("queue      %d\n"
+	       "condition  %s\ntiming     woken late by %d us at most, %d overruns\n",
+	       s->queue_len, *s->condition ? s->condition : "none",
+	       s->wake_late_max_us, s->overruns);
 }
 
-/* The first status from now on; NULL: none within the timeout. */
-static const struct talk_status *first_status(struct ctl *c)
+const struct talk_status *ctl_first_status(struct ctl *c)
 {
 	double until_s = talk_now_s() + c->timeout_s;
 	uint64_t before, count;
@@ -91,7 +102,7 @@ static const struct talk_status *first_status(struct ctl *c)
 
 int ctl_status(struct ctl *c)
 {
-	const struct talk_status *s = first_status(c);
+	const struct talk_status *s = ctl_first_status(c);
 
 	if (!s)
 		return ctl_unanswered(c, talk_interrupted() ? -EINTR :
@@ -146,7 +157,7 @@ static int watch_on(struct ctl *c, struct line *l)
 
 int ctl_watch(struct ctl *c)
 {
-	const struct talk_status *s = first_status(c);
+	const struct talk_status *s = ctl_first_status(c);
 	struct line l;
 	uint64_t count;
 	int err;

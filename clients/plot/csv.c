@@ -11,11 +11,13 @@
 #include <unistd.h>
 
 #define HEADING	"t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V"
+#define ACTUAL	",X_actual,Y_actual,Z_actual,A_actual,B_actual,C_actual," \
+		"U_actual,V_actual"
 #define SLOW_BYTES	(16 << 20)	/* from here on progress is told */
 
 const char *const csv_state_word[CSV_NSTATES] = {
 	"idle", "travel", "approach", "erode", "retract", "jump", "hold",
-	"fault",
+	"fault", "jog", "home", "touch",
 };
 
 static int refuse(const struct csv *c, size_t column, const char *found,
@@ -47,6 +49,7 @@ static int check_heading(struct csv *c)
 	if (strncmp(c->text, HEADING, n) != 0 ||
 	    !strchr(",\r\n", c->text[n]))
 		return refuse(c, 0, "not the heading of a trace", HEADING);
+	c->has_actual = strncmp(c->text + n, ACTUAL, strlen(ACTUAL)) == 0;
 	return 0;
 }
 
@@ -134,7 +137,7 @@ static bool word(char **at, enum csv_state *ret)
 	return false;
 }
 
-static bool parse(char **at, struct csv_row *r)
+static bool parse(const struct csv *c, char **at, struct csv_row *r)
 {
 	double line;
 
@@ -144,6 +147,9 @@ static bool parse(char **at, struct csv_row *r)
 		return false;
 	for (int i = 0; i < CSV_NAXES; i++)
 		if (!place_number(at, &r->axis_mm[i]))
+			return false;
+	for (int i = 0; c->has_actual && i < CSV_NAXES; i++)
+		if (!place_number(at, &r->actual_mm[i]))
 			return false;
 	return true;
 }
@@ -157,14 +163,15 @@ int csv_next(struct csv *c, struct csv_row *ret)
 		return 0;
 	tell(c);
 	at = c->text;
-	if (parse(&at, ret))
+	if (parse(c, &at, ret))
 		return 1;
 	/* Whoever wrote the last line was stopped in its middle. */
 	if (c->text[n - 1] != '\n')
 		return 0;
 	at[strcspn(at, ",\r\n")] = '\0';
 	return refuse(c, (size_t)(at - c->text), *at ? at : "nothing",
-		      "a row of " HEADING);
+		      c->has_actual ? "a row of " HEADING ACTUAL :
+				      "a row of " HEADING);
 }
 
 void csv_close(struct csv *c)

@@ -12,7 +12,7 @@
 
 enum csv_state {
 	CSV_IDLE, CSV_TRAVEL, CSV_APPROACH, CSV_ERODE, CSV_RETRACT, CSV_JUMP,
-	CSV_HOLD, CSV_FAULT, CSV_NSTATES
+	CSV_HOLD, CSV_FAULT, CSV_JOG, CSV_HOME, CSV_TOUCH, CSV_NSTATES
 };
 
 extern const char *const csv_state_word[CSV_NSTATES];
@@ -20,6 +20,7 @@ extern const char *const csv_state_word[CSV_NSTATES];
 struct csv_row {
 	double t_s, s_mm, feed_mm_s, gap_v;	/* gap_v may be NAN */
 	double axis_mm[CSV_NAXES];
+	double actual_mm[CSV_NAXES];	/* with has_actual */
 	enum csv_state state;
 };
 
@@ -32,6 +33,7 @@ struct csv {
 	unsigned long line;
 	long long read_bytes, all_bytes;
 	int percent;			/* last told */
+	bool has_actual;		/* to be read */
 };
 
 /** csv_open() - open and check the heading. Return: 0 or -errno, told. */

@@ -72,7 +72,7 @@ int plot_check(const char *program, const char *output)
 }
 
 /* The script in memory, ready to be read.  Return: descriptor or -errno. */
-static int script_fd(const struct thin *t, const struct plot_options *o)
+static int script_fd(const struct plot_script *s)
 {
 	int fd = memfd_create("edm-plot", MFD_CLOEXEC);
 	FILE *f = fd < 0 ? NULL : fdopen(dup(fd), "w");
@@ -84,7 +84,7 @@ static int script_fd(const struct thin *t, const struct plot_options *o)
 			close(fd);
 		return err;
 	}
-	script_write(f, t, o, ends_with(o->output, ".svg"));
+	s->write(f, s->arg, ends_with(s->output, ".svg"));
 	err = ferror(f) ? -EIO : 0;
 	if (fclose(f) != 0 && err == 0)
 		err = -errno;
@@ -96,10 +96,10 @@ static int script_fd(const struct thin *t, const struct plot_options *o)
 	return fd;
 }
 
-static int draw(const struct thin *t, const struct plot_options *o, int out)
+static int draw(const struct plot_script *s, int out)
 {
 	char *argv[] = { "gnuplot", "-d", "-", NULL };
-	int in = script_fd(t, o);
+	int in = script_fd(s);
 	int r;
 
 	if (in < 0)
@@ -108,30 +108,43 @@ static int draw(const struct thin *t, const struct plot_options *o, int out)
 	close(in);
 	if (r > 0)
 		fprintf(stderr, "%s: error: plot: gnuplot ended with %d\n",
-			o->program, r);
+			s->program, r);
 	return r > 0 ? -EIO : r;
 }
 
-static int draw_to_file(const struct thin *t, const struct plot_options *o)
+int plot_script(const struct plot_script *s)
 {
-	int out = open(o->output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC,
+	int out = open(s->output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC,
 		       0666);
 	int err;
 
 	if (out < 0) {
 		err = -errno;
 		fprintf(stderr, "%s: error: plot: %s: %s; a folder that may "
-			"be written is wanted\n", o->program, o->output,
+			"be written is wanted\n", s->program, s->output,
 			strerror(-err));
 		return err;
 	}
-	err = draw(t, o, out);
+	err = draw(s, out);
 	if (close(out) < 0 && err == 0)
 		err = -errno;
 	/* Half a picture is none. */
 	if (err < 0)
-		unlink(o->output);
+		unlink(s->output);
 	return err;
+}
+
+/* A thinned trace and how it is to be drawn. */
+struct sheet {
+	const struct thin *t;
+	const struct plot_options *o;
+};
+
+static void write_sheet(FILE *f, const void *arg, bool svg)
+{
+	const struct sheet *s = arg;
+
+	script_write(f, s->t, s->o, svg);
 }
 
 int plot_trace(const struct plot_options *o)
@@ -147,7 +160,9 @@ int plot_trace(const struct plot_options *o)
 		err = thin_create(&t, &csv);
 	csv_close(&csv);
 	if (err == 0)
-		err = draw_to_file(t, o);
+		err = plot_script(&(struct plot_script) {
+			o->program, o->output, write_sheet,
+			&(struct sheet) { t, o } });
 	thin_destroy(t);
 	return err;
 }

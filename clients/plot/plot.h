@@ -7,6 +7,8 @@
  *
  *	t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V
  *
+ * and may have X_actual ... V_actual behind them.
+ *
  * A trace of any length is read in little memory: it is thinned to the
  * smallest and largest value of each strip of time, so that a short spike
  * stays in the picture.
@@ -15,6 +17,9 @@
  */
 #ifndef PLOT_H
 #define PLOT_H
+
+#include <stdbool.h>
+#include <stdio.h>
 
 struct plot_options {
 	const char *program;	/* for messages: "edmsim" */
@@ -42,5 +47,17 @@ int plot_check(const char *program, const char *output);
  * -EIO if gnuplot failed, or that of the file that could not be opened.
  */
 int plot_trace(const struct plot_options *o);
+
+/* A picture by a script of the caller's own. */
+struct plot_script {
+	const char *program;	/* for messages */
+	const char *output;	/* .png or .svg */
+	void (*write)(FILE *f, const void *arg, bool svg);	/* the script,
+				 * which draws to its standard output */
+	const void *arg;
+};
+
+/** plot_script() - after plot_check(). Return: 0, -EIO or -errno, told. */
+int plot_script(const struct plot_script *s);
 
 #endif /* PLOT_H */

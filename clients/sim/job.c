@@ -99,8 +99,11 @@ static double now_s(void)
 }
 
 static int compile(struct sim_job *job, const struct sim_options *o,
-		   const struct machine_config *c, struct text *t)
+		   const struct machine_config *c, struct text *t,
+		   const struct config_tech *tech)
 {
+	struct interp_mcode mcodes[INTERP_NMCODES];
+	struct interp_tech machine_tech;
 	struct interp_build_options bo = {
 		.machine = &c->axes,
 		.strategy = (enum interp_strategy)c->strategy,
@@ -108,6 +111,10 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 			(uint32_t)(c->tolerance_pulses * 1000 + 1e-6),
 		.perpendicular = c->perpendicular,
 		.coupling = (enum interp_coupling)c->coupling,
+		.corner_mm = c->corner_um * 1e-3,
+		.chord_error_mm = c->chord_error_um / 1000,
+		.period_s = (double)config_period_ns(c) / 1e9,
+		.fit_mm = c->fit_um / 1000,
 	};
 	const struct interp_text text = {
 		.at = t->at, .bytes = t->n,
@@ -116,18 +123,28 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	};
 	struct interp_compile_options co = {
 		.nc = { .machine = &c->axes, .wire = &c->wire,
-			.feed_mm_s = c->feed_default_mm_min / 60 },
+			.feed_mm_s = c->feed_default_mm_min / 60,
+			.escape = (enum interp_escape_mode)c->jump.escape,
+			.tip_tolerance_mm =
+				c->kinematics.tolerance_um / 1000,
+			.tech = tech->table, .machine_tech = &machine_tech,
+			.mcode = mcodes },
 		.threeb = { .unit_um = c->threeb_unit_um,
 			    .offset_um = c->fourb_offset_um },
 	};
-	struct interp_diag diag = { 0 };
+	struct interp_diag diag = { 0 }, none;
+	struct interp_kinematics kin;
 	const double from_s = now_s();
 	struct interp_build *b;
 	int r;
 
+	config_tech_base(c, &machine_tech);
+	config_mcodes(c, mcodes);
 	memcpy(bo.start_mm, c->start_mm, sizeof(bo.start_mm));
 	memcpy(co.nc.work_offset_mm, c->work_offset_mm,
 	       sizeof(co.nc.work_offset_mm));
+	if (config_kinematics(c, &kin, &none) == 0)
+		co.nc.kinematics = &kin;
 	memcpy(co.nc.offset_mm, c->offset_mm, sizeof(co.nc.offset_mm));
 	b = interp_build_create(&bo);
 	if (!b)
@@ -149,10 +166,14 @@ int job_load(struct sim_job *job, const struct sim_options *o,
 	     const struct machine_config *c)
 {
 	struct text t = { 0 };
-	int r = text_load(o->job, &t);
+	struct config_tech tech;
+	int r = tech_load(&tech, o, c);
 
 	if (r == 0)
-		r = compile(job, o, c, &t);
+		r = text_load(o->job, &t);
+	if (r == 0)
+		r = compile(job, o, c, &t, &tech);
+	config_tech_free(&tech);
 	if (r == EX_OSERR)
 		fprintf(stderr, "edmsim: %s: out of memory\n", o->job);
 	free(t.at);
@@ -162,6 +183,47 @@ int job_load(struct sim_job *job, const struct sim_options *o,
 void job_unload(struct sim_job *job)
 {
 	free(job->block);
+}
+
+/* Cuts that leave beside the path, and those that cannot. */
+static void describe_escapes(const struct sim_job *job, FILE *f)
+{
+	const struct interp_program *p = &job->program;
+	uint32_t cuts = 0, beside = 0;
+
+	for (uint32_t i = 0; i < p->head->nsegs; i++) {
+		const struct interp_seg *s = &p->segs[i];
+
+		if (s->kind >= INTERP_BEGIN || s->flags & INTERP_SEG_RAPID)
+			continue;
+		cuts++;
+		beside += s->escape != 0;
+	}
+	if (p->head->nescapes > 1)
+		fprintf(f, "escapes    %u of %u cut segments; the others, %u, "
+			"lift along the path\n", beside, cuts, cuts - beside);
+}
+
+/* Where a curve bends so much that its feed has to fall, that is said. */
+static void describe_curves(const struct sim_job *job, FILE *f)
+{
+	const struct interp_seg *s = job->program.segs, *slowest = NULL;
+	uint32_t pieces = 0;
+
+	for (uint32_t i = 0; i < job->program.head->nsegs; i++) {
+		if (s[i].kind != INTERP_CURVE)
+			continue;
+		pieces++;
+		if (!slowest || s[i].feed_max_mm_s < slowest->feed_max_mm_s)
+			slowest = &s[i];
+	}
+	if (!slowest)
+		return;
+	fprintf(f, "curves     %u in %u pieces, %.4g mm/s at most from line %u "
+		"on", (unsigned int)job->program.head->ncurves, pieces,
+		(double)slowest->feed_max_mm_s, slowest->line);
+	fprintf(f, slowest->feed_max_mm_s < slowest->feed_mm_s ?
+		": slower than F, it bends too much\n" : "\n");
 }
 
 void job_describe(const struct sim_job *job, FILE *f)
@@ -191,4 +253,6 @@ void job_describe(const struct sim_job *job, FILE *f)
 			(enum interp_coupling)h->coupling));
 	fprintf(f, "path       %.3f mm: %.3f mm cut, %.3f mm positioned in "
 		"%.1f s\n", h->length_mm, cut_mm, free_mm, free_s);
+	describe_curves(job, f);
+	describe_escapes(job, f);
 }

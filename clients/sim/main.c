@@ -4,9 +4,11 @@
  */
 #include "plot.h"
 #include "sim.h"
+#include "tune_servo.h"
 
 #include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
@@ -20,6 +22,9 @@ static const char usage[] =
 "  --machine FILE       machine file; without: eight axes, +-200 mm\n"
 "  --dialect NAME       generic, robofil, skd2, sodick, chmer, 3b, 4b\n"
 "                       (by the file's name: .3b, .4b, else generic)\n"
+"  --tech FILE          technology table, .tech or .enc (machine file's)\n"
+"  --print-tech         that table as a .tech text, and exit\n"
+"  --document-tech      the fields of a condition as Markdown, and exit\n"
 "  --unit-um N          unit of a 3B or 4B program (machine file's, 1)\n"
 "  --offset-um N        of the wire, for 4B (machine file's, 0)\n"
 "  --emit FORMAT        3b or iso: write the job as that to stdout, no run\n"
@@ -30,6 +35,8 @@ static const char usage[] =
 "  --perpendicular      the tolerance is square to the path instead\n"
 "  --coupling NAME      of three and more axes: star, tree, tube (machine\n"
 "                       file's, star)\n"
+"  --fit UM             join cut lines in a row into curves this near to\n"
+"                       them (machine file's, 0: not)\n"
 "  --dry-run            no gap: walk at the programmed feed\n"
 "  --there-and-back     with --dry-run: to the end, back, to the end again\n"
 "  --period-us N        cycle period (machine file's, 1000)\n"
@@ -40,7 +47,13 @@ static const char usage[] =
 "  --trace FILE         CSV of every cycle\n"
 "  --report FILE        JSON report; - for stdout\n"
 "  --plot FILE          picture, PNG or SVG by the name\n"
+"  --tune-contour       find the gains of [contour] method on models of the\n"
+"                       axes along this job, and print them\n"
 "  --check              read and compile only; print what it would do\n"
+"  --tune               look for the best servo and jump values of the machine\n"
+"                       file, print them as lines of it; --seed, --limit-s (60)\n"
+"  --budget N           trials of --tune (200)\n"
+"  --json               what --tune came to as JSON\n"
 "  --quiet              no progress, no summary\n"
 "  --print-config       the machine file in force, and exit\n"
 "  --document-config    every key of a machine file as Markdown, and exit\n"
@@ -51,9 +64,11 @@ static const char usage[] =
 
 enum {
 	OPT_MACHINE = 256, OPT_DIALECT, OPT_STRATEGY, OPT_TOLERANCE,
-	OPT_PERPENDICULAR, OPT_COUPLING, OPT_DRY_RUN, OPT_THERE, OPT_PERIOD,
+	OPT_PERPENDICULAR, OPT_FIT, OPT_COUPLING, OPT_DRY_RUN, OPT_THERE, OPT_PERIOD,
 	OPT_SEED, OPT_SPEED, OPT_LIMIT, OPT_PULSES, OPT_TRACE, OPT_REPORT,
-	OPT_PLOT, OPT_CHECK, OPT_EMIT, OPT_UNIT, OPT_OFFSET, OPT_QUIET,
+	OPT_PLOT, OPT_TUNE, OPT_CHECK, OPT_EMIT, OPT_UNIT, OPT_OFFSET, OPT_QUIET,
+	OPT_TECH, OPT_PRINT_TECH, OPT_DOCUMENT_TECH,
+	OPT_TUNE_SERVO, OPT_BUDGET, OPT_JSON,
 	OPT_PRINT, OPT_DOCUMENT, OPT_HELP, OPT_VERSION,
 };
 
@@ -63,6 +78,7 @@ static const struct option options[] = {
 	{ "strategy", required_argument, NULL, OPT_STRATEGY },
 	{ "tolerance", required_argument, NULL, OPT_TOLERANCE },
 	{ "perpendicular", no_argument, NULL, OPT_PERPENDICULAR },
+	{ "fit", required_argument, NULL, OPT_FIT },
 	{ "coupling", required_argument, NULL, OPT_COUPLING },
 	{ "dry-run", no_argument, NULL, OPT_DRY_RUN },
 	{ "there-and-back", no_argument, NULL, OPT_THERE },
@@ -74,10 +90,17 @@ static const struct option options[] = {
 	{ "trace", required_argument, NULL, OPT_TRACE },
 	{ "report", required_argument, NULL, OPT_REPORT },
 	{ "plot", required_argument, NULL, OPT_PLOT },
+	{ "tune-contour", no_argument, NULL, OPT_TUNE },
 	{ "check", no_argument, NULL, OPT_CHECK },
 	{ "emit", required_argument, NULL, OPT_EMIT },
+	{ "tech", required_argument, NULL, OPT_TECH },
+	{ "print-tech", no_argument, NULL, OPT_PRINT_TECH },
+	{ "document-tech", no_argument, NULL, OPT_DOCUMENT_TECH },
 	{ "unit-um", required_argument, NULL, OPT_UNIT },
 	{ "offset-um", required_argument, NULL, OPT_OFFSET },
+	{ "tune", no_argument, NULL, OPT_TUNE_SERVO },
+	{ "budget", required_argument, NULL, OPT_BUDGET },
+	{ "json", no_argument, NULL, OPT_JSON },
 	{ "quiet", no_argument, NULL, OPT_QUIET },
 	{ "print-config", no_argument, NULL, OPT_PRINT },
 	{ "document-config", no_argument, NULL, OPT_DOCUMENT },
@@ -124,6 +147,9 @@ static bool take_word(struct sim_options *o, int opt)
 	switch (opt) {
 	case OPT_MACHINE:
 		o->machine_file = optarg;
+		return true;
+	case OPT_TECH:
+		o->tech = optarg;
 		return true;
 	case OPT_STRATEGY:
 		o->strategy = optarg;
@@ -173,8 +199,20 @@ static bool take_flag(struct sim_options *o, int opt)
 	case OPT_CHECK:
 		o->check = true;
 		return true;
+	case OPT_TUNE:
+		o->tune = o->dry_run = true;
+		return true;
 	case OPT_QUIET:
 		o->quiet = true;
+		return true;
+	case OPT_PRINT_TECH:
+		o->print_tech = true;
+		return true;
+	case OPT_TUNE_SERVO:
+		o->tune_servo = true;
+		return true;
+	case OPT_JSON:
+		o->json = true;
 		return true;
 	default:
 		return false;
@@ -192,6 +230,10 @@ static bool take_number(struct sim_options *o, int opt)
 					     INTERP_TOLERANCE_MAX / 1000);
 		o->tolerance_given = true;
 		return true;
+	case OPT_FIT:
+		o->fit_um = number("--fit", optarg, 0, 1000);
+		o->fit_given = true;
+		return true;
 	case OPT_SEED:
 		o->seed = whole("--seed", optarg);
 		o->seed_given = true;
@@ -204,6 +246,9 @@ static bool take_number(struct sim_options *o, int opt)
 		return true;
 	case OPT_OFFSET:
 		o->offset_um = number("--offset-um", optarg, 0, 10000);
+		return true;
+	case OPT_BUDGET:
+		o->budget = floor(number("--budget", optarg, 1, 1e6));
 		return true;
 	case OPT_LIMIT:
 		o->limit_s = number("--limit-s", optarg, 1e-6, 1e9);
@@ -223,6 +268,9 @@ static bool take_print(const struct sim_options *o, int opt, bool *print)
 		return true;
 	case OPT_DOCUMENT:
 		config_document(stdout);
+		exit(0);
+	case OPT_DOCUMENT_TECH:
+		tech_document();
 		exit(0);
 	case OPT_HELP:
 		fputs(usage, stdout);
@@ -244,7 +292,7 @@ static void parse(struct sim_options *o, int argc, char **argv, bool *print)
 		    !take_flag(o, opt) && !take_number(o, opt))
 			exit(EX_USAGE);
 	}
-	if (*print)
+	if (*print || o->print_tech)
 		return;
 	if (optind + 1 != argc) {
 		fputs(usage, stderr);
@@ -253,6 +301,13 @@ static void parse(struct sim_options *o, int argc, char **argv, bool *print)
 	o->job = argv[optind];
 	if (o->there_and_back && !o->dry_run)
 		refuse("--there-and-back", "alone", "--dry-run beside it");
+	if ((o->budget > 0 || o->json) && !o->tune_servo)
+		refuse(o->json ? "--json" : "--budget", "alone",
+		       "--tune beside it");
+	if (o->tune_servo && (o->trace || o->pulses || o->plot || o->report))
+		refuse("--tune", "with a file of one run",
+		       "--json, or one of --trace --pulses --plot --report "
+		       "without --tune");
 }
 
 /* What the command line says of pulses goes before the machine file. */
@@ -273,6 +328,8 @@ static void configure_pulses(struct machine_config *c,
 	}
 	if (o->tolerance_given)
 		c->tolerance_pulses = o->tolerance_pulses;
+	if (o->fit_given)
+		c->fit_um = o->fit_um;
 	if (o->perpendicular)
 		c->perpendicular = 1;
 }
@@ -337,10 +394,32 @@ static int finish(const struct sim_run *r)
 	return e ? e : strcmp(r->result.outcome, "done") != 0;
 }
 
+static int print_tech(const struct sim_options *o,
+		      const struct machine_config *c)
+{
+	struct config_tech t;
+	int e = tech_load(&t, o, c);
+
+	if (e == 0)
+		e = tech_print(&t);
+	config_tech_free(&t);
+	return e;
+}
+
+static void check(const struct sim_run *r)
+{
+	job_describe(&r->job, stdout);
+	plan_print(&r->job, r->config, stdout);
+}
+
 static int run_whole(struct sim_run *r)
 {
-	const int e = run_job(r);
+	int e;
 
+	if (r->o->report && r->o->dry_run)
+		contour_watch(r);
+	e = run_job(r);
+	contour_measure(r);
 	return e ? e : finish(r);
 }
 
@@ -360,17 +439,24 @@ int main(int argc, char **argv)
 		config_print(&config, stdout);
 		return 0;
 	}
+	if (o.print_tech)
+		return print_tech(&o, &config);
 	if (o.plot && plot_check("edmsim", o.plot) < 0)
 		return EX_CANTCREAT;
 	run.o = &o;
 	run.config = &config;
 	e = job_load(&run.job, &o, &config);
 	if (e == 0 && o.check)
-		job_describe(&run.job, stdout);
+		check(&run);
+	else if (e == 0 && o.tune)
+		e = tune_contour(&run);
 	else if (e == 0 && o.emit)
 		e = job_emit(&run.job, &o, &config);
+	else if (e == 0 && o.tune_servo)
+		e = tune_servo(&o, &config, &run.job);
 	else if (e == 0)
 		e = run_whole(&run);
+	free(run.spent);
 	job_unload(&run.job);
 	return e;
 }

@@ -46,7 +46,7 @@ static void put_point(FILE *f, const struct cycle *c)
 	p = put_int(p, c->cursor.seg.line);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		*p++ = ',';
-		p = put_int(p, c->cursor.pos[i]);
+		p = put_int(p, cycle_axis(c, i));
 	}
 	*p++ = '\n';
 	fwrite(row, 1, (size_t)(p - row), f);
@@ -79,7 +79,7 @@ int record_open(struct sim_run *r)
 	}
 	if (r->trace)
 		fprintf(r->trace, "t_s,line,s_mm,feed_mm_s,gap_v,state,"
-			"X,Y,Z,A,B,C,U,V\n");
+			"X,Y,Z,A,B,C,U,V,open,spark,arc,short,debris\n");
 	return 0;
 }
 
@@ -90,9 +90,9 @@ void record_point(void *arg, const struct cycle *c)
 
 	w->points++;
 	/* A change of axis: nothing that moved goes on. */
-	w->switches += w->last_moved && !(c->cursor.moved & w->last_moved);
-	w->last_moved = c->cursor.moved;
-	if (r->deviation) {
+	w->switches += w->last_moved && !(cycle_moved(c) & w->last_moved);
+	w->last_moved = cycle_moved(c);
+	if (r->deviation && !escape_is_out(&c->escape)) {
 		const double d = interp_cursor_deviation_mm(&c->cursor);
 
 		w->deviation_mm_sum += d;
@@ -101,6 +101,25 @@ void record_point(void *arg, const struct cycle *c)
 	}
 	if (r->pulses)
 		put_point(r->pulses, c);
+}
+
+/* What the simulated gap was; nothing where there is none. */
+static void put_gap(const struct sim_run *r)
+{
+	const struct io_shares *s = &r->in.shares;
+	struct io_sim_result g;
+
+	if (r->in.shares_valid)
+		fprintf(r->trace, ",%.4f,%.4f,%.4f,%.4f", (double)s->open,
+			(double)s->spark, (double)s->arc, (double)s->shorted);
+	else
+		fputs(",,,,", r->trace);
+	if (r->cycle.config.dry_run) {
+		fputc(',', r->trace);
+		return;
+	}
+	io_sim_result(&r->machine, &g);
+	fprintf(r->trace, ",%.4f", g.debris);
 }
 
 void record_cycle(struct sim_run *r)
@@ -112,10 +131,11 @@ void record_cycle(struct sim_run *r)
 		return;
 	fprintf(r->trace, "%.6f,%u,%.6f,%.6f,%.2f,%s",
 		(double)c->totals.cycles * (double)c->config.period_ns * 1e-9,
-		c->cursor.seg.line, interp_cursor_place_mm(&c->cursor),
+		c->cursor.seg.line, cycle_place_mm(c),
 		c->feed_mm_s, c->gap_v, state_duty[c->state].name);
 	for (int i = 0; i < INTERP_NAXES; i++)
-		fprintf(r->trace, ",%.10g", c->cursor.pos[i] * pulse[i]);
+		fprintf(r->trace, ",%.10g", cycle_axis(c, i) * pulse[i]);
+	put_gap(r);
 	fputc('\n', r->trace);
 }
 

@@ -73,10 +73,36 @@ static void add_cut(json_t *o, const struct sim_run *r)
 	add_real(o, "jump_s", seconds(&r->cycle, t->jump_cycles));
 	add_real(o, "erosion_s", seconds(&r->cycle, t->erode_cycles));
 	add_int(o, "shorts", t->shorts);
+	add_int(o, "arcs", t->arcs);
 	add_real(o, "removed_mm3", r->result.cut.removed_mm3);
 	add_real(o, "removal_mm3_min",
 		 s > 0 ? r->result.cut.removed_mm3 / s * 60 : NAN);
 	add_real(o, "wear_mm", r->result.cut.wear_mm);
+	add_int(o, "burns", r->result.cut.burns);
+}
+
+/* What each condition took; only of a program that calls some. */
+static void add_conditions(json_t *o, const struct sim_run *r)
+{
+	const struct interp_program *p = &r->job.program;
+	json_t *rows = json_array();
+
+	for (uint32_t i = 1; i < p->head->nconds; i++) {
+		json_t *row = json_object();
+		char name[16];
+
+		interp_tech_name(p->conds[i].letter, p->conds[i].number, name,
+				 sizeof(name));
+		json_object_set_new(row, "condition", json_string(name));
+		add_real(row, "virtual_s",
+			 seconds(&r->cycle, r->spent[i].cycles));
+		add_real(row, "erosion_s",
+			 seconds(&r->cycle, r->spent[i].eroding));
+		json_array_append_new(rows, row);
+	}
+	if (json_array_size(rows))
+		json_object_set(o, "conditions", rows);
+	json_decref(rows);
 }
 
 static json_t *report(const struct sim_run *r)
@@ -94,6 +120,11 @@ static json_t *report(const struct sim_run *r)
 	add_path(o, r);
 	if (!c->config.dry_run)
 		add_cut(o, r);
+	if (r->result.contour_known) {
+		add_real(o, "contour_um_max", r->result.contour_mm_max * 1e3);
+		add_real(o, "contour_um_mean", r->result.contour_mm_mean * 1e3);
+	}
+	add_conditions(o, r);
 	add_real(o, "compile_lines_s", r->job.compile_lines_s);
 	add_real(o, "cycles_s", (double)c->totals.cycles / r->result.wall_s);
 	return o;
@@ -136,9 +167,10 @@ void report_print(const struct sim_run *r, FILE *f)
 		s, r->result.wall_s, (double)t->cycles / r->result.wall_s);
 	if (c->config.dry_run)
 		return;
-	fprintf(f, "erosion    %.1f s; removed %.3f mm3, wear %.4f mm\n",
+	fprintf(f, "erosion    %.1f s; removed %.3f mm3, wear %.4f mm, "
+		"%u burns\n",
 		seconds(c, t->erode_cycles), r->result.cut.removed_mm3,
-		r->result.cut.wear_mm);
+		r->result.cut.wear_mm, r->result.cut.burns);
 	fprintf(f, "jumps      %u in %.1f s\n", t->jumps,
 		seconds(c, t->jump_cycles));
 	fprintf(f, "retracts   %u, the longest %.3f mm, from %u shorts\n",

@@ -21,6 +21,11 @@ static void on_signal(int sig)
 	interrupted = 1;
 }
 
+bool run_interrupted(void)
+{
+	return interrupted;
+}
+
 static double now_s(void)
 {
 	struct timespec t;
@@ -73,6 +78,9 @@ static int set_up(struct sim_run *r)
 	cycle_init(&r->cycle, &cc);
 	if (cycle_load(&r->cycle, &r->job.program) != ANSWER_DONE)
 		return EX_SOFTWARE;
+	r->spent = calloc(r->job.program.head->nconds, sizeof(*r->spent));
+	if (!r->spent)
+		return EX_OSERR;
 	e = record_open(r);
 	r->deviation = r->o->report != NULL;
 	r->cycle.on_point = record_point;
@@ -142,21 +150,31 @@ static bool over(struct sim_run *r)
 	return false;
 }
 
+static void spend(struct sim_run *r)
+{
+	struct sim_spent *s = &r->spent[r->cycle.cursor.seg.cond];
+
+	s->cycles += state_duty[r->cycle.state].running;
+	s->eroding += r->cycle.state == STATE_ERODE;
+}
+
 static void cycles(struct sim_run *r)
 {
 	const double from_s = now_s();
 	struct cycle *c = &r->cycle;
 	struct io_outputs out;
-	struct io_inputs in;
 
 	r->machine.write(r->machine.self, &c->out);
 	for (uint64_t n = 1; !over(r); n++) {
 		if (c->state == STATE_HOLD)
 			go_on(r);
-		r->machine.read(r->machine.self, &in);
-		cycle_step(c, &in, &out);
+		r->machine.read(r->machine.self, &r->in);
+		cycle_step(c, &r->in, &out);
 		r->machine.write(r->machine.self, &out);
 		record_cycle(r);
+		spend(r);
+		if (r->on_cycle)
+			r->on_cycle(r);
 		if (n % LOOK_CYCLES == 0)
 			progress(r, false);
 		if (r->o->speed > 0 && n % 16 == 0)

@@ -18,14 +18,20 @@ struct sim_options {
 	const char *strategy, *coupling;	/* NULL: the machine file's */
 	double tolerance_pulses;	/* with tolerance_given */
 	bool tolerance_given, perpendicular;
+	double fit_um;			/* with fit_given */
+	bool fit_given;
 	const struct interp_dialect *dialect;	/* NULL: by the job's name */
 	const char *emit;		/* "3b" or "iso": write that, no run */
 	double unit_um, offset_um;	/* 0, -1: the machine file's */
+	const char *tech;		/* table; NULL: the machine file's */
 	const char *pulses, *trace, *report, *plot;
 	double period_us;		/* 0: the machine file's */
 	double speed, limit_s;		/* 0: as fast as possible; no limit */
 	uint64_t seed;
-	bool seed_given, dry_run, there_and_back, check, quiet;
+	double budget;			/* of tuning, in trials */
+	bool tune_servo, json;
+	bool print_tech;
+	bool seed_given, dry_run, there_and_back, check, quiet, tune;
 };
 
 /* A compiled job. */
@@ -44,7 +50,14 @@ struct sim_result {
 	uint32_t last_moved;
 	double deviation_mm_max, deviation_mm_sum;
 	int32_t end_error_pulses;
+	bool contour_known;
+	double contour_mm_max, contour_mm_mean;	/* of models of the axes */
 	struct io_sim_result cut;
+};
+
+/* Cycles spent in one condition of the program. */
+struct sim_spent {
+	uint64_t cycles, eroding;
 };
 
 struct sim_run {
@@ -53,12 +66,24 @@ struct sim_run {
 	struct sim_job job;
 	struct cycle cycle;
 	struct io_machine machine;
+	struct io_inputs in;		/* of this cycle */
 	struct sim_result result;
+	struct sim_spent *spent;	/* by index of the condition */
 	FILE *pulses, *trace;
 	char *trace_path;		/* a temporary one, if only for a plot */
 	bool deviation;			/* worth its time: a report is wanted */
+	void (*on_cycle)(struct sim_run *r);	/* NULL: nobody looks */
+	void *on_cycle_arg;
 	int leg;			/* of there and back: 0, 1, 2 */
 };
+
+/** tech_load() - the technology table in force. Return: 0 or an exit code,
+ *  said why; @ret is to be freed by config_tech_free() in any case. */
+int tech_load(struct config_tech *ret, const struct sim_options *o,
+	      const struct machine_config *c);
+/** tech_print() - as a .tech text to stdout; tech_document() - its fields. */
+int tech_print(const struct config_tech *t);
+void tech_document(void);
 
 /** job_load() - read and compile. Return: 0 or an exit code, said why. */
 int job_load(struct sim_job *job, const struct sim_options *o,
@@ -66,6 +91,9 @@ int job_load(struct sim_job *job, const struct sim_options *o,
 void job_unload(struct sim_job *job);
 /** job_describe() - what --check prints. */
 void job_describe(const struct sim_job *job, FILE *f);
+/** plan_print() - what each call of a condition will cut: plan.c. */
+void plan_print(const struct sim_job *job, const struct machine_config *c,
+		FILE *f);
 
 /** job_emit() - the program as text to stdout. Return: 0 or an exit code. */
 int job_emit(const struct sim_job *job, const struct sim_options *o,
@@ -73,6 +101,18 @@ int job_emit(const struct sim_job *job, const struct sim_options *o,
 
 /** run_job() - the whole run. Return: 0 or an exit code, said why. */
 int run_job(struct sim_run *r);
+/** run_interrupted() - has a signal ended a run?  Any thread. */
+bool run_interrupted(void);
+
+/** tune_contour() - run it dry, find gains, print them. Return: exit code. */
+int tune_contour(struct sim_run *r);
+
+/**
+ * contour_watch() - before a dry run, contour_measure() after it: the contour
+ * error that models of the axes would have, if the machine file has their loops.
+ */
+void contour_watch(struct sim_run *r);
+void contour_measure(struct sim_run *r);
 
 /** record_*() - the files of lattice points and cycles: record.c. */
 int record_open(struct sim_run *r);

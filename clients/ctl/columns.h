@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* columns.h - a trace in memory, and the contour error in it */
+#ifndef CTL_COLUMNS_H
+#define CTL_COLUMNS_H
+
+#include "csv.h"
+
+#include "interp/axis.h"
+#include "interp/axis_model.h"
+
+/* A row for each cycle; grown by identify.c. */
+struct columns {
+	double *target[CSV_NAXES], *actual[CSV_NAXES];	/* mm */
+	double first_s, last_s, longest_s;
+	size_t n, room;
+};
+
+static inline double columns_period_s(const struct columns *t)
+{
+	return (t->last_s - t->first_s) / (double)(t->n - 1);
+}
+
+/* Contour errors of one cycle. */
+struct contour_row {
+	float measured_mm, predicted_mm, missed_mm;
+};
+
+struct contour {
+	struct contour_row *row;
+	size_t n;
+	double period_s;
+};
+
+/**
+ * contour_make() - linear axes of @loop with a gain beside the trace.
+ * Return: 0; -ENOENT if there are not two of them; -ENOMEM.
+ */
+int contour_make(struct contour *k, const struct columns *t,
+		 const struct interp_axis_loop *loop);
+void contour_free(struct contour *k);
+
+/** contour_print() - the largest and the mean, for a person. */
+void contour_print(const struct contour *k);
+
+/** contour_draw() - over time, to a .png or .svg. Return: 0 or < 0, told. */
+int contour_draw(const struct contour *k, const char *output);
+
+#endif /* CTL_COLUMNS_H */

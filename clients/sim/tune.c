@@ -1,0 +1,490 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * tune.c - gains of the contour compensation, found along a job
+ *
+ * The job is run dry for the place the cycle is at in every period; the
+ * programmed path at those places is what the axes are set to.  The models of
+ * [axis.*] follow it, off by [contour] model_error and with encoders of a pulse,
+ * and the gains with the least contour error are printed as lines of a machine
+ * file.
+ */
+#include "sim.h"
+
+#include "interp/nurbs_length.h"
+#include "interp/tune.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+
+#define TRIALS	200
+#define LOOK_MM	0.02
+#define MOST	2000000			/* periods of a job to be tuned on */
+
+/* Set values of the axes that the job moves. */
+struct rows {
+	double *u, *mm[INTERP_NAXES];
+	size_t n, room;
+	bool full;
+};
+
+struct tuning {
+	struct sim_run *run;
+	struct rows rows;
+	struct interp_contour_path path;
+	struct interp_compensate_config config;
+	struct interp_trial trial;
+	int axis[INTERP_NAXES];		/* of each model */
+};
+
+/* -- The programmed path ------------------------------------------------------ */
+
+static double node_mm(const struct interp_program *p, uint32_t node,
+		      uint32_t column)
+{
+	const struct interp_program_head *h = p->head;
+
+	return (double)p->nodes[(uint64_t)node * h->naxes + column] /
+	       INTERP_SUB * h->pulse_mm[h->column[column]];
+}
+
+/* The last segment with a length that begins at @u or before it. */
+static uint32_t seg_at(const struct interp_program *p, double u)
+{
+	uint32_t low = 0, high = p->head->nsegs;
+
+	while (high - low > 1) {
+		const uint32_t mid = low + (high - low) / 2;
+
+		if (p->segs[mid].s_mm <= u)
+			low = mid;
+		else
+			high = mid;
+	}
+	while (low > 0 && !(p->segs[low].length_mm > 0))
+		low--;
+	while (low + 1 < p->head->nsegs && !(p->segs[low].length_mm > 0))
+		low++;
+	return low;
+}
+
+static void along_arc(const struct interp_arc *a, double part, double length_mm,
+		      double mm[2], double per_u[2])
+{
+	const double angle = a->theta + a->sweep * part;
+	const double r = a->r_mm + a->dr_mm * part;
+
+	mm[0] = a->a_mm + r * cos(angle);
+	mm[1] = a->b_mm + r * sin(angle);
+	per_u[0] = (a->dr_mm * cos(angle) - r * a->sweep * sin(angle)) /
+		   length_mm;
+	per_u[1] = (a->dr_mm * sin(angle) + r * a->sweep * cos(angle)) /
+		   length_mm;
+}
+
+static uint32_t column_of(const struct interp_program *p, int axis)
+{
+	uint32_t j = 0;
+
+	while (j + 1 < p->head->naxes && p->head->column[j] != axis)
+		j++;
+	return j;
+}
+
+static void along_curve(const struct interp_program *p,
+			const struct interp_seg *s, double part,
+			struct interp_contour_point *ret)
+{
+	const struct interp_piece *piece = &p->pieces[s->arg];
+	const struct interp_nurbs_stop *stops = p->stops + piece->stops_at;
+	const double s_mm = stops[piece->nstops - 1].s_mm * part;
+	struct interp_nurbs_between between;
+	struct interp_nurbs_eval e;
+	struct interp_nurbs_point at;
+	struct interp_nurbs c;
+	double speed;
+
+	if (!interp_program_curve(p, piece->curve, &c))
+		return;
+	stops += interp_nurbs_stop_of(stops, piece->nstops, s_mm);
+	interp_nurbs_between(stops, &between);
+	interp_nurbs_open(&e, &c);
+	interp_nurbs_at(&e, interp_nurbs_between_at(&between, s_mm), 1, &at);
+	speed = sqrt(interp_nurbs_dot(&c, at.d[1], at.d[1]));
+	for (uint32_t k = 0; k < c.naxes; k++) {
+		const uint32_t j = column_of(p,
+				p->curves[piece->curve].axis[k]);
+
+		ret->mm[j] = at.d[0][k];
+		/* A cusp has no direction: there the chord's is kept. */
+		if (speed > 0)
+			ret->per_u[j] = at.d[1][k] / speed;
+	}
+}
+
+static void path_at(const void *arg, double u, struct interp_contour_point *ret)
+{
+	const struct interp_program *p = arg;
+	const uint32_t i = seg_at(p, u);
+	const struct interp_seg *s = &p->segs[i];
+	const double part = fmin(fmax((u - s->s_mm) / s->length_mm, 0), 1);
+
+	*ret = (struct interp_contour_point) { 0 };
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		const double from = node_mm(p, i, j);
+		const double way = node_mm(p, i + 1, j) - from;
+
+		ret->mm[j] = from + way * part;
+		ret->per_u[j] = way / s->length_mm;
+	}
+	if (s->kind == INTERP_ARC) {
+		const struct interp_arc *a = &p->arcs[s->arg];
+		double mm[2], per_u[2];
+
+		along_arc(a, part, s->length_mm, mm, per_u);
+		for (uint32_t j = 0; j < p->head->naxes; j++) {
+			const int axis = p->head->column[j];
+
+			if (axis != a->axis_a && axis != a->axis_b)
+				continue;
+			ret->mm[j] = mm[axis == a->axis_b];
+			ret->per_u[j] = per_u[axis == a->axis_b];
+		}
+	}
+	if (s->kind == INTERP_CURVE)
+		along_curve(p, s, part, ret);
+}
+
+/* -- Set values --------------------------------------------------------------- */
+
+static bool grow(struct rows *w)
+{
+	const size_t room = w->room ? 2 * w->room : 65536;
+	double *more = realloc(w->u, room * sizeof(*more));
+
+	if (!more)
+		return false;
+	w->u = more;
+	w->room = room;
+	return true;
+}
+
+/* Standing teaches nothing, and would only make the mean error small. */
+static void sample(struct sim_run *r)
+{
+	struct tuning *t = r->on_cycle_arg;
+	struct rows *w = &t->rows;
+	const double u = interp_cursor_place_mm(&r->cycle.cursor);
+
+	if (w->n > 0 && u <= w->u[w->n - 1])
+		return;
+	if (w->n == MOST || (w->n == w->room && !grow(w))) {
+		w->full = true;
+		return;
+	}
+	w->u[w->n++] = u;
+}
+
+/* The machine stands before the first place and after the last. */
+static bool fill(struct tuning *t)
+{
+	struct rows *w = &t->rows;
+	const size_t before = INTERP_COMPENSATE_BEHIND;
+	const size_t room = before + w->n + INTERP_COMPENSATE_AHEAD + 1;
+	double *u = w->n ? calloc(room, sizeof(*u)) : NULL;
+
+	if (!u)
+		return false;
+	for (size_t i = 0; i < room; i++) {
+		const size_t k = i < before ? 0 : i - before;
+
+		u[i] = w->u[k < w->n ? k : w->n - 1];
+	}
+	free(w->u);
+	w->u = u;
+	for (int j = 0; j < t->path.naxes; j++) {
+		w->mm[j] = calloc(room, sizeof(*u));
+		if (!w->mm[j])
+			return false;
+	}
+	for (size_t i = 0; i < room; i++) {
+		struct interp_contour_point p;
+
+		path_at(t->path.arg, u[i], &p);
+		for (int j = 0; j < t->path.naxes; j++)
+			w->mm[j][i] = p.mm[j];
+	}
+	for (int j = 0; j < t->path.naxes; j++)
+		t->trial.set.at[j] = w->mm[j] + before;
+	t->trial.set.u = u + before;
+	t->trial.n = w->n;
+	return true;
+}
+
+/* -- The trial ---------------------------------------------------------------- */
+
+static int refuse(const char *found, const char *wanted)
+{
+	fprintf(stderr, "edmsim: --tune-contour: %s; %s\n", found, wanted);
+	return EX_DATAERR;
+}
+
+/* The first axis whose loops the machine file does not give; -1: none. */
+static int axis_unknown(const struct sim_run *r)
+{
+	const struct interp_program_head *h = r->job.program.head;
+
+	for (uint32_t j = 0; j < h->naxes; j++)
+		if (!(r->config->loop[h->column[j]].gain_1_s > 0))
+			return h->column[j];
+	return -1;
+}
+
+/* Neighbours are off the other way: that is what makes a contour error. */
+static void loops_of(struct tuning *t)
+{
+	const struct interp_program_head *h = t->run->job.program.head;
+	const struct machine_config *c = t->run->config;
+	const double off = c->contour.model_error;
+
+	for (uint32_t j = 0; j < h->naxes; j++) {
+		const int axis = h->column[j];
+
+		t->axis[j] = axis;
+		t->config.loop[j] = t->trial.truth[j] = c->loop[axis];
+		t->config.loop[j].kick_mm_s = t->config.loop[j].backlash_mm = 0;
+		t->trial.truth[j].velocity_hz *= j % 2 ? 1 - off : 1 + off;
+	}
+}
+
+static void config_of(struct tuning *t)
+{
+	const struct config_contour *k = &t->run->config->contour;
+	const double pulse_mm =
+		t->run->job.program.head->pulse_mm[t->axis[0]];
+
+	t->config.methods = (uint32_t)interp_compensate_parse(k->method);
+	t->config.gains = (struct interp_compensate_gains) {
+		.velocity = k->speed, .acceleration = k->acceleration,
+		.lead_periods = k->lead_periods, .cross_1_s = k->cross_1_s,
+		.predicted_1_s = k->predicted_1_s,
+		.measured_1_s = k->measured_1_s, .horizon_s = k->horizon_s,
+	};
+	t->config.naxes = t->path.naxes;
+	t->config.period_s = (double)config_period_ns(t->run->config) * 1e-9;
+	t->config.look_mm = LOOK_MM;
+	t->config.noise = (struct interp_kalman_noise) {
+		5, k->noise_mm + 0.3 * pulse_mm
+	};
+	t->trial.compensate = &t->config;
+	t->trial.path = &t->path;
+	t->trial.encoder_mm = pulse_mm;
+	t->trial.noise_mm = k->noise_mm;
+	t->trial.seed = t->run->o->seed_given ? t->run->o->seed : 1;
+}
+
+static bool has_pairs(const struct interp_program *p)
+{
+	for (uint32_t i = 0; i < p->head->nsegs; i++)
+		if (p->segs[i].kind == INTERP_PAIR)
+			return true;
+	return false;
+}
+
+static int check_job(const struct sim_run *r)
+{
+	const int axis = axis_unknown(r);
+	char found[48];
+
+	if (has_pairs(&r->job.program))
+		return refuse("the job has two contours at once",
+			      "one of lines and arcs");
+	if (!(r->job.program.head->length_mm > 0))
+		return refuse("the job does not move", "one that does");
+	if (axis < 0)
+		return 0;
+	snprintf(found, sizeof(found), "[axis.%c] has no loop_gain_1_s",
+		 INTERP_AXIS_LETTERS[axis]);
+	return refuse(found, "edmctl identify finds it from a trace");
+}
+
+static void watch(struct tuning *t)
+{
+	const struct interp_program *p = &t->run->job.program;
+
+	t->path = (struct interp_contour_path) {
+		p, path_at, 0, p->head->length_mm, (int)p->head->naxes
+	};
+	loops_of(t);
+	config_of(t);
+	t->run->on_cycle = sample;
+	t->run->on_cycle_arg = t;
+}
+
+/* The first model whose position loop swings of itself, and the gain at which
+ * it begins to; -1: none. */
+static int swings(const struct tuning *t, double *ret_max_1_s)
+{
+	for (int j = 0; j < t->path.naxes; j++) {
+		const struct interp_axis_loop *l = &t->trial.truth[j];
+		struct interp_axis_model m;
+
+		if (interp_axis_model_init(&m, l, t->config.period_s, 0) < 0)
+			continue;
+		*ret_max_1_s = interp_axis_model_gain_max_1_s(&m);
+		if (l->gain_1_s >= *ret_max_1_s)
+			return j;
+	}
+	return -1;
+}
+
+static int check_loops(const struct tuning *t)
+{
+	char found[80], wanted[80];
+	double max_1_s;
+	const int j = swings(t, &max_1_s);
+
+	if (j < 0)
+		return 0;
+	snprintf(found, sizeof(found), "[axis.%c] loop_gain_1_s = %g swings of "
+		 "itself", INTERP_AXIS_LETTERS[t->axis[j]],
+		 t->trial.truth[j].gain_1_s);
+	snprintf(wanted, sizeof(wanted), "below %.0f with its loop_hz, "
+		 "loop_damping and loop_delay_s", max_1_s);
+	return refuse(found, wanted);
+}
+
+static int prepare(struct tuning *t)
+{
+	int e = check_job(t->run);
+
+	if (e)
+		return e;
+	watch(t);
+	e = check_loops(t);
+	if (e)
+		return e;
+	if (t->config.methods == 0)
+		return refuse("[contour] method = none", "feedforward, "
+			      "cross-coupled or predictive, joined by +");
+	e = run_job(t->run);
+	if (e == 0 && t->rows.full)
+		return refuse("the job takes too long", "a piece of it, of at "
+			      "most 2000000 periods");
+	return e == 0 && !fill(t) ? EX_OSERR : e;
+}
+
+static void print_gains(const struct tuning *t,
+			const struct interp_compensate_gains *g)
+{
+	const uint32_t m = t->config.methods;
+
+	printf("[contour]\nmethod = %s\n", t->run->config->contour.method);
+	if (m & INTERP_COMPENSATE_FEEDFORWARD)
+		printf("speed = %.4g\nacceleration = %.4g\nlead_periods = %.4g\n",
+		       g->velocity, g->acceleration, g->lead_periods);
+	if (m & INTERP_COMPENSATE_CROSS)
+		printf("cross_1_s = %.4g\n", g->cross_1_s);
+	if (m & INTERP_COMPENSATE_PREDICTIVE)
+		printf("predicted_1_s = %.4g\nmeasured_1_s = %.4g\n"
+		       "horizon_s = %.4g\n", g->predicted_1_s, g->measured_1_s,
+		       g->horizon_s);
+}
+
+static int try_out(struct tuning *t, const char *what, uint32_t methods,
+		   const struct interp_compensate_gains *g)
+{
+	struct interp_compensate_config c = t->config;
+	struct interp_trial_result r;
+
+	c.methods = methods;
+	c.gains = *g;
+	t->trial.compensate = &c;
+	if (interp_trial_run(&t->trial, &r) < 0)
+		return refuse("the gains of [contour] are out of range",
+			      "a horizon_s of at most 64 periods");
+	t->trial.compensate = &t->config;
+	printf("# %s: %.2f um largest, %.3f um mean\n", what, r.max_mm * 1e3,
+	       r.mean_mm * 1e3);
+	return 0;
+}
+
+static int tune(struct tuning *t)
+{
+	const struct interp_tune how = {
+		.trial = t->trial, .budget = TRIALS,
+		.method = INTERP_TUNE_SIMPLEX,
+	};
+	struct interp_compensate_gains g = t->config.gains;
+	double cost;
+	int e = try_out(t, "position loops alone", 0, &g);
+
+	if (e == 0)
+		e = try_out(t, "the gains it has", t->config.methods, &g);
+	if (e)
+		return e;
+	if (interp_tune_run(&how, &g, &cost) < 0)
+		return refuse("its method has no gains",
+			      "feedforward, cross-coupled or predictive");
+	e = try_out(t, "these gains", t->config.methods, &g);
+	print_gains(t, &g);
+	return e;
+}
+
+static void forget(struct tuning *t)
+{
+	free(t->rows.u);
+	for (int j = 0; j < INTERP_NAXES; j++)
+		free(t->rows.mm[j]);
+}
+
+int tune_contour(struct sim_run *r)
+{
+	struct tuning t = { .run = r };
+	int e = prepare(&t);
+
+	if (e == 0)
+		e = tune(&t);
+	forget(&t);
+	return e;
+}
+
+void contour_watch(struct sim_run *r)
+{
+	struct tuning *t;
+	double max_1_s;
+
+	if (axis_unknown(r) >= 0 || has_pairs(&r->job.program) ||
+	    !(r->job.program.head->length_mm > 0))
+		return;
+	t = calloc(1, sizeof(*t));
+	if (!t)
+		return;
+	t->run = r;
+	watch(t);
+	if (swings(t, &max_1_s) < 0)
+		return;
+	r->on_cycle = NULL;
+	r->on_cycle_arg = NULL;
+	free(t);
+}
+
+void contour_measure(struct sim_run *r)
+{
+	struct tuning *t = r->on_cycle_arg;
+	struct interp_trial_result found;
+
+	if (!t)
+		return;
+	if (!t->rows.full && fill(t) &&
+	    interp_trial_run(&t->trial, &found) == 0) {
+		r->result.contour_known = true;
+		r->result.contour_mm_max = found.max_mm;
+		r->result.contour_mm_mean = found.mean_mm;
+	}
+	forget(t);
+	free(t);
+	r->on_cycle_arg = NULL;
+}
