@@ -3,8 +3,12 @@
 #   make            build everything into build/
 #   make demo       set up, build, run the main job on the simulated machine
 #   make check      set up, build, all tests; ends with the runner's own lines
+#   make check-vm   of these, those on a PREEMPT_RT kernel in a virtual machine
 #   make bench      speed, as medians side by side
-#   make experiments  count the pulse rules, into docs/experiments-pulse.md
+#   make experiments  count the pulse rules and the ways along curves, time the
+#                   jumps, try the contour compensations, compare servo
+#                   values, into docs/experiments-*.md
+#   make invariants what holds in every cycle, over ten million random ones
 #   make pictures   draw what docs/ shows, into docs/pictures/
 #   make fuzz       the readers of jobs under libFuzzer, a bounded time each
 #   make lint       what the cycle may call, headers alone, who may include whom
@@ -40,7 +44,13 @@ LDFLAGS	= $(SANFLAGS)
 # The parts, in the order data flows.
 INTERP	:= $(wildcard libinterp/*/*.c)
 RT	:= $(wildcard daemon/rt/*.c)
-IO	:= $(wildcard daemon/io/*.c)
+# Of two files for libgpiod, the one for the version that pkg-config finds.
+PKG_CONFIG ?= pkg-config
+GPIOD	:= $(firstword $(subst ., ,$(shell $(PKG_CONFIG) --modversion libgpiod 2>/dev/null)))
+IO	:= $(filter-out daemon/io/gpiod$(if $(filter 1,$(GPIOD)),2,1).c,\
+	   $(wildcard daemon/io/*.c))
+GPIOD_INC := $(shell $(PKG_CONFIG) --cflags libgpiod 2>/dev/null)
+LIBGPIOD := $(shell $(PKG_CONFIG) --libs libgpiod 2>/dev/null || echo -lgpiod)
 CONFIG	:= $(wildcard daemon/config/*.c)
 SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
@@ -53,30 +63,33 @@ UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
 EXPERIMENTS := lines axes machining
+CURVE_EXPERIMENTS := curves curve_programs
+EXPERIMENTS_JUMP := jump
 
 # What a part may include.  A header not on its list does not resolve.
 INC_libinterp	= -Ilibinterp/include -Ilibinterp
 INC_rt		= -Idaemon/rt -Idaemon/io -Ilibinterp/include
-INC_io		= -Idaemon/io -Idaemon/config -Ilibinterp/include
+INC_io		= -Idaemon/io -Idaemon/config -Ilibinterp/include $(GPIOD_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io -Ilibinterp/include
 INC_shm		= -Idaemon/shm
 INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
 INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
 INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -I$(B)/messages
+INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -Ilibinterp/include -I$(B)/messages
 INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
-INC_unit	= -Itests/unit -Ilibinterp $(INC_edmd) $(INC_jobs)
-INC_bench	= $(INC_edmd)
+INC_unit	= -Itests/unit -Itests/data -Ilibinterp $(INC_edmd) $(INC_jobs)
+INC_bench	= -Itests/data $(INC_edmd)
 INC_fuzz	= -Ilibinterp/include
-INC_peer	= -Ilibinterp/include
-INC_experiments	= -Itests/experiments $(INC_libinterp)
+INC_peer	= -Itests/data -Ilibinterp/include
+INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config)
 part = $(word $(if $(filter libinterp,$(firstword $(subst /, ,$1))),1,2),$(subst /, ,$1))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
 INTERP_O := $(call obj,$(INTERP))
 RT_O	 := $(call obj,$(RT))
 IO_O	 := $(call obj,$(IO))
+SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 SHM_O	 := $(call obj,$(SHM))
 SETUP_O	 := $(call obj,$(SETUP))
@@ -133,35 +146,38 @@ $(call say,LD,$@)
 $(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $1
 endef
 
-$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
-	$(call link,-linih -ljansson -lm)
+$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_O)
+	$(call link,-linih -ljansson -lpthread -lm)
 
 $(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
-	$(call link,-linih -lsystemd -lpthread -lm)
+	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
 $(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(PLOT)) $(SHM_O) $(LCM_O)
+$(B)/edmctl: $(call obj,$(CTL) $(PLOT) $(wildcard libinterp/contour/*.c)) $(SHM_O) $(LCM_O)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(SHM_O) $(CONFIG_O) $(B)/libinterp/path/program.o $(DDS_O)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(DDS_O)
 	$(call link,-lddsc -linih -lm)
 
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c)) $(DDS_O)
 	$(call link,-lddsc -ljansson -lm)
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
-	$(call link,-lcmocka -linih -lpthread -lm)
+	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lm)
 
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
-	$(call link,-linih -lpthread -lm)
+	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)
 
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_O)
-	$(call link,-lm)
+	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
 
-$(B)/experiments/%: $(B)/tests/experiments/%.o $(INTERP_O)
-	$(call link,-lm)
+$(B)/experiments/%: $(B)/tests/experiments/%.o $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_O)
+	$(call link,-linih -lm)
+
+$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(INTERP_O)
+	$(call link,-ljansson -lm)
 
 # -- The commands -------------------------------------------------------------
 
@@ -179,9 +195,25 @@ check:
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
 	@$(MAKE) --no-print-directory SAN=1 run-units
 	@$(MAKE) --no-print-directory TSAN=1 run-crossings
-	@$(MAKE) --no-print-directory fuzz FUZZ_S=20
+	@$(MAKE) --no-print-directory fuzz FUZZ_S=20 FUZZ_SEED=1
 	@$(MAKE) --no-print-directory clang
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system
+	@$(MAKE) --no-print-directory vm
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system tests/vm
+
+# What the virtual machine of tests/vm boots from, and edmd on libgpiod 2.x.
+PC2	= $(abspath build-vm/libgpiod2)
+
+vm: all
+	@tests/setup vm
+	@$(MAKE) --no-print-directory -C tests/vm B=$(abspath build-vm)
+	@$(MAKE) --no-print-directory B=build-gpiod2 build-gpiod2/edmd \
+		PKG_CONFIG="env PKG_CONFIG_SYSROOT_DIR=$(PC2) PKG_CONFIG_LIBDIR=$$(\
+		echo $(PC2)/usr/lib/*/pkgconfig) pkg-config"
+
+check-vm:
+	@tests/setup check
+	@$(MAKE) --no-print-directory vm
+	@EDM_BUILD=$(B) .venv/bin/pytest -q tests/vm
 
 units: $(UNIT_X) $(PEER_X)
 
@@ -190,6 +222,10 @@ run-units: $(UNIT_X) $(PEER_X)
 		{ cat $$t.log; echo "FAILED: $$t"; exit 1; }; \
 		printf '  UNIT    %s: ' $$t; \
 		sed -n 's/^\[==========\] \([0-9]* test(s) run\).*/\1/p' $$t.log; done
+
+# What holds in every cycle, over ten million random ones; SEED=n repeats one.
+invariants: $(B)/unit/test_cycle_random
+	$(Q)$< $(SEED)
 
 # The shared-memory crossings between threads, under the thread sanitizer.
 run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
@@ -205,35 +241,77 @@ clang:
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
 			$(INC_dds) $(INC_libinterp)) $$f || exit 1; done
 
-bench: all
+bench: vm
 	@tests/setup check
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
 
 # Counted, not timed: the same on every machine.
-experiments: $(EXPERIMENTS:%=$(B)/experiments/%)
+experiments: experiments-pulse experiments-jump experiments-contour \
+	experiments-curve experiments-servo
+
+experiments-pulse: $(EXPERIMENTS:%=$(B)/experiments/%)
 	$(call say,WALK,docs/experiments-pulse.md)
 	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-pulse.md
 	$(Q)cp $(B)/experiments-pulse.md docs/experiments-pulse.md
 	$(Q)cat docs/experiments-pulse.md
 
-# Each from a run of edmsim; needs gnuplot and python3.
-pictures: $(B)/edmsim
+experiments-jump: $(EXPERIMENTS_JUMP:%=$(B)/experiments/%)
+	$(call say,WALK,docs/experiments-jump.md)
+	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-jump.md
+	$(Q)$(B)/experiments/jump profile > $(B)/jump.dat
+	$(Q)gnuplot -e "data='$(B)/jump.dat'; out='docs/pictures/jump.svg'" \
+		tests/experiments/jump.gp
+	$(Q)cp $(B)/experiments-jump.md docs/experiments-jump.md
+	$(Q)cat docs/experiments-jump.md
+
+# Some minutes: each kind of work is tuned before it is compared.
+experiments-servo: $(B)/edmsim
+	$(call say,TUNE,docs/experiments-servo.md)
+	$(Q)EDM_BUILD=$(B) tests/experiments/servo $(B)/servo \
+		> $(B)/experiments-servo.md
+	$(Q)gnuplot -e "data='$(B)/servo/servo.dat'; out='docs/pictures/servo.svg'" \
+		tests/experiments/servo.gp
+	$(Q)cp $(B)/experiments-servo.md docs/experiments-servo.md
+	$(Q)cat docs/experiments-servo.md
+
+experiments-curve: $(CURVE_EXPERIMENTS:%=$(B)/experiments/%) $(B)/edmsim
+	$(call say,WALK,docs/experiments-curve.md)
+	$(Q)cat tests/experiments/curve.md > $(B)/experiments-curve.md
+	$(Q)for x in $(filter %/curves %/curve_programs,$^); do $$x || exit 1; \
+		done >> $(B)/experiments-curve.md
+	$(Q)tests/experiments/blade $(B) >> $(B)/experiments-curve.md
+	$(Q)cp $(B)/experiments-curve.md docs/experiments-curve.md
+
+experiments-contour: $(B)/experiments/contour
+	$(call say,TRY,docs/experiments-contour.md)
+	$(Q)$< > $(B)/experiments-contour.md
+	$(Q)cp $(B)/experiments-contour.md docs/experiments-contour.md
+	$(Q)cat docs/experiments-contour.md
+	$(Q)$< docs/pictures
+
+# Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
+pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(call say,DRAW,docs/pictures)
 	$(Q)docs/pictures/staircases $(B)
+	$(Q)docs/pictures/orbits $(B)
+	$(Q)docs/pictures/process $(B)
+	$(Q)docs/pictures/curves $(B)
 	$(Q)$(B)/edmsim --machine examples/machine.ini --quiet \
 		--plot docs/pictures/demo.png examples/cavity.ngc
 
 FUZZ_S	?= 60
+FUZZ_SEED ?= 0
 FUZZ	:= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 SEEDS_fuzz_nc	  = examples/*.ngc
 SEEDS_fuzz_threeb = tests/fuzz/corpus_threeb/*
+SEEDS_fuzz_tech	  = examples/*.tech examples/*.enc
 
 fuzz: $(FUZZ:%=run-%)
 
 run-fuzz_%: $(B)/fuzz_%
 	$(Q)mkdir -p $(B)/corpus_$* && cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/
-	$(Q)$< -max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
+	$(Q)$< -seed=$(FUZZ_SEED) -max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
 		-print_final_stats=1 $(B)/corpus_$* 2>$<.log || \
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
@@ -248,7 +326,9 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c $(INTERP)
 # -- Lint ---------------------------------------------------------------------
 
 # What the cycle can reach, linked alone: nothing but tests/rt-symbols.
-RT_ENTRY = cycle_step cycle_command cycle_load cycle_load_at cycle_overrun
+RT_ENTRY = cycle_step cycle_command cycle_load cycle_load_at cycle_overrun \
+	   interp_compensate_step interp_errormap_apply interp_ridge_eval \
+	   interp_ridge_features
 HEADERS	 = $(wildcard libinterp/include/interp/*.h daemon/*/*.h clients/*/*.h)
 
 lint: $(INTERP_O) $(RT_O)
@@ -289,15 +369,18 @@ install: all
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
 		examples/machine.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
+		messages/edmd.eds messages/edmd.dbc \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
 
 clean:
-	rm -rf build build-san build-tsan
+	rm -rf build build-san build-tsan build-gpiod2 build-vm
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check units run-units run-crossings clang bench experiments \
+.PHONY: all demo check vm check-vm units run-units run-crossings clang bench \
+	experiments experiments-pulse experiments-contour experiments-jump \
+	experiments-curve experiments-servo invariants \
 	pictures fuzz lint install clean
 .SECONDARY:

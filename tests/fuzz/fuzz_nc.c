@@ -20,6 +20,21 @@ static const struct interp_axis_limits limits = {
 	.v_max_mm_s = 50, .a_max_mm_s2 = 500, .j_max_mm_s3 = 5000,
 };
 
+/* A small table, for conditions, sequences and definitions. */
+static const struct interp_tech_table *tech(void)
+{
+	static const char text[] =
+		"condition, servo_v, on_us, allowance_mm\n"
+		"C001,20,8,0\nC120,15,40,0.1\nE001,15,-,-\n"
+		"sequence Q1 = C120 C001\ninline E = - on_us servo_v\n";
+	static struct interp_tech_table *t;
+	struct interp_diag d;
+
+	if (!t)
+		assert(interp_tech_read(&t, text, sizeof(text) - 1, &d) == 0);
+	return t;
+}
+
 static void check_program(struct interp_build *b, uint32_t lines)
 {
 	const struct interp_build_about about = { .lines = lines };
@@ -57,12 +72,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	};
 	const struct interp_nc_options o = {
 		.wire = size % 3 ? &wire : NULL, .offset_mm = { [1] = 0.11 },
+		.tech = size % 7 ? tech() : NULL,
 		.machine = &m, .segs_max = 1000, .executed_max = 10000,
 	};
 	const struct interp_build_options bo = {
 		.machine = &m,
 		.strategy = (enum interp_strategy)(size % INTERP_NSTRATEGIES),
-		.tolerance_milli = 1500,
+		.tolerance_milli = 1500, .fit_mm = size % 4 ? 0 : 0.01,
 		.coupling = (enum interp_coupling)(size / INTERP_NSTRATEGIES %
 						   INTERP_NCOUPLINGS),
 	};

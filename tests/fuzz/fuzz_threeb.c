@@ -65,6 +65,21 @@ static void *lay_out(struct interp_build *b, uint32_t lines,
 	return block;
 }
 
+/* A small table, for conditions, sequences and definitions. */
+static const struct interp_tech_table *tech(void)
+{
+	static const char text[] =
+		"condition, servo_v, on_us, allowance_mm\n"
+		"C001,20,8,0\nC120,15,40,0.1\nE001,15,-,-\n"
+		"sequence Q1 = C120 C001\ninline E = - on_us servo_v\n";
+	static struct interp_tech_table *t;
+	struct interp_diag d;
+
+	if (!t)
+		assert(interp_tech_read(&t, text, sizeof(text) - 1, &d) == 0);
+	return t;
+}
+
 /* Compile @text; NULL if it was refused, which @must_take forbids. */
 static void *compile(const struct interp_text *text,
 		     const struct interp_machine *m, bool must_take,
@@ -72,7 +87,7 @@ static void *compile(const struct interp_text *text,
 {
 	const struct interp_build_options bo = { .machine = m };
 	const struct interp_compile_options o = {
-		.nc = { .machine = m, .segs_max = 1000,
+		.nc = { .machine = m, .tech = text->bytes % 3 ? tech() : NULL, .segs_max = 1000,
 			.executed_max = 10000, .feed_mm_s = 1 },
 		.threeb.offset_um = 100,
 	};

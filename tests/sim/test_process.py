@@ -4,7 +4,7 @@ import json
 import subprocess
 
 import pytest
-from edmsim import PROGRAM, done, places, report, run
+from edmsim import PROGRAM, ROOT, done, places, report, run
 
 SINK = "G21 G90 F20\nM3\nG1 Z-0.6\nG0 Z1\nM2\n"
 
@@ -35,10 +35,10 @@ ALWAYS = {
 }
 OF_A_CUT = {
     "retracts", "retract_mm_max", "jumps", "jump_s", "erosion_s", "shorts",
-    "removed_mm3", "removal_mm3_min", "wear_mm",
+    "arcs", "removed_mm3", "removal_mm3_min", "wear_mm", "burns",
 }
 COUNTS = {"lines", "segments", "cycles", "switches", "end_error_pulses",
-          "retracts", "jumps", "shorts"}
+          "retracts", "jumps", "shorts", "arcs", "burns"}
 
 
 def check_kinds(r):
@@ -99,13 +99,58 @@ def test_the_trace_has_a_row_for_each_cycle(tmp_path):
     r = report("--trace", name, text=SINK)
     rows = name.read_text().splitlines()
     assert rows[0] == ("t_s,line,s_mm,feed_mm_s,gap_v,state,"
-                       "X,Y,Z,A,B,C,U,V")
+                       "X,Y,Z,A,B,C,U,V,open,spark,arc,short,debris")
     assert len(rows) - 1 == r["cycles"]
     states = {row.split(",")[5] for row in rows[1:]}
     assert {"travel", "approach", "erode", "jump"} <= states
     for row in rows[1:]:
-        t, line, s, feed, gap, state, *axes = row.split(",")
+        t, line, s, feed, gap, state, *more = row.split(",")
+        axes, shares, debris = more[:8], more[8:12], more[12]
         assert abs(float(axes[2])) < 3 and float(gap) >= 0
+        assert 0 <= float(debris) <= 1
+        if any(shares):
+            assert sum(map(float, shares)) == pytest.approx(1, abs=3e-4)
+    # Shares are of pulses: with the power on only.
+    by_state = {r.split(",")[5]: bool(r.split(",")[14]) for r in rows[1:]}
+    assert by_state["erode"] and not by_state["jump"]
+
+
+def test_a_dry_run_has_no_shares_and_no_debris(tmp_path):
+    name = tmp_path / "t.csv"
+    done("--dry-run", "--trace", name, text="G21 F60\nG1 X0.1\n")
+    rows = name.read_text().splitlines()
+    assert all(row.endswith(",,,,,") for row in rows[1:])
+
+
+@pytest.mark.parametrize("condition", sorted(
+    p.name for p in (ROOT / "tests/experiments/conditions").glob("*.ini")))
+def test_each_work_condition_can_be_cut(condition):
+    r = report("--machine", ROOT / "tests/experiments/conditions" / condition,
+               "--limit-s", 3600,
+               text="G21 G90 F20\nT84\nM3\nG0 Z1\nG1 Z-0.05\nG0 Z1\nM2\n")
+    assert r["outcome"] == "done" and r["removed_mm3"] > 0
+
+
+def test_a_wire_with_the_pump_on_cuts_without_a_break_and_without_wear():
+    text = "G21 G90 F60\nT84\nG1 X2\nG1 Y1\nM2\n"
+    r = report("--machine", ROOT / "examples/wire.ini", text=text)
+    assert r["outcome"] == "done" and r["wear_mm"] == 0
+    # 3 mm of a kerf of 0.2 mm and two gaps, 40 mm high.
+    assert r["removed_mm3"] == pytest.approx(3 * 0.23 * 40, rel=0.03)
+
+
+def test_without_jumps_a_deep_rib_cuts_slower_and_burns(tmp_path):
+    condition = ROOT / "tests/experiments/conditions/deep-poor-flushing.ini"
+    text = "G21 G90 F20\nT84\nM3\nG0 Z10\nG1 Z-0.3\nG0 Z1\nM2\n"
+
+    def cut(jump):
+        machine = tmp_path / "m.ini"
+        machine.write_text(f"{condition.read_text()}\n[jump]\n{jump}\n")
+        return report("--machine", machine, text=text)
+
+    none, high = cut("height_mm = 0"), cut("height_mm = 8\nevery_s = 1")
+    assert high["virtual_s"] < none["virtual_s"]
+    assert high["burns"] < none["burns"]
 
 
 # -- What a cut does -----------------------------------------------------------
@@ -115,7 +160,8 @@ def test_a_cut_that_only_shorts_is_a_fault(tmp_path):
     machine.write_text("[sim]\nbridge_per_s = 100\nbridge_mm = 10\n"
                        "bridge_settle_s = 100\ndebris_per_mm = 1000\n"
                        "[gap]\nretract_limit_mm = 0.1\n")
-    r = run("--machine", machine, "--report", "-", text=SINK)
+    r = run("--machine", machine, "--report", "-",
+            text="G21 G90 F20\nM3\nG0 Z1\nZ0\nG1 Z-0.6\nM2\n")
     assert r.returncode == 1
     r = json.loads(r.stdout)
     assert r["outcome"] == "fault" and r["fault"] == "short-not-cleared"

@@ -2,6 +2,7 @@
 """The whole way with a gap: a cavity eroded on the simulated sinker."""
 
 import pathlib
+import re
 
 import pytest
 import rig
@@ -41,3 +42,38 @@ def test_a_cavity_is_eroded_to_depth(sinker):
     assert j["depth_mm"] == pytest.approx(0.5, abs=2e-3)
     assert j["path_mm"] == pytest.approx(0.5, abs=1e-3)
     assert j["jumps"] > 0
+
+
+LIFTING = b"G21 G90\nM3\nG141\nG0 Z2\nG0 Z0.1\nG1 Z-0.5 F5\nM30\n"
+
+
+def held_beside_the_path(sinker):
+    """Hold it in a jump: how far beside, from the log of the next edmd."""
+    c = sinker.client
+    c.status_where(lambda s: s.state == "jump", timeout=30)
+    assert c.ask("hold").code == 0
+    c.hear(0.5)
+    before = c.status()
+    assert before.state == "hold"
+    sinker.kill("edmd")
+    sinker.start_edmd()
+    after = c.status_where(
+        lambda s: s.daemon == "ok" and s.job_state == "held"
+    )
+    assert after.pos_mm == before.pos_mm, "it moved by itself"
+    said = (sinker.folder / "edmd.log").read_text()
+    return float(re.findall(r"([\d.]+) mm beside the path", said)[-1])
+
+
+def test_edmd_killed_beside_the_path_is_held_there_and_start_comes_back(sinker):
+    c = sinker.client
+    assert c.submit(LIFTING, "job").code == 0
+    for _ in range(5):
+        beside = held_beside_the_path(sinker)
+        assert c.ask("start").code == 0
+        if beside > 0:
+            break
+    assert beside > 0
+    c.status_where(lambda s: s.state == "erode", timeout=10)
+    assert c.ask("stop").code == 0
+    c.job_where("job", "stopped")

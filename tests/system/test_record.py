@@ -32,9 +32,15 @@ def test_a_job_is_recorded_to_its_end_and_drawn(machine):
     assert " 0 cycles lost; the job is done" in out
 
     got = rows(trace)
+    axes = "X Y Z A B C U V".split()
     assert list(got[0]) == (
-        "t_s line s_mm feed_mm_s gap_v state X Y Z A B C U V".split()
+        "t_s line s_mm feed_mm_s gap_v state".split()
+        + axes
+        + [a + "_actual" for a in axes]
     )
+    # What is measured was commanded the cycle before.
+    for before, r in zip(got, got[1:]):
+        assert r["X_actual"] == before["X"]
     t = [float(r["t_s"]) for r in got]
     assert t[0] == 0
     # Every cycle, none twice.

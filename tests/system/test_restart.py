@@ -174,6 +174,19 @@ def test_a_second_edmd_jobs_of_one_machine_is_refused(machine):
     assert machine.jobs.poll() is None
 
 
+def test_a_second_edmd_jobs_with_a_store_of_its_own_is_refused(machine):
+    p = subprocess.run(
+        [str(BUILD / "edmd-jobs"), "--config", str(machine.config),
+         "--store", str(machine.folder / "other")],
+        capture_output=True, text=True, timeout=20,
+    )
+    assert p.returncode == 75
+    assert "one edmd-jobs for a machine" in p.stderr
+    c = machine.client
+    assert c.submit(QUICK_JOB, "a").code == 0
+    c.job_where("a", "done")
+
+
 def test_nothing_is_left_in_shared_memory(machine):
     c = machine.client
     assert c.submit(QUICK_JOB, "a").code == 0

@@ -39,6 +39,7 @@ static inline struct cycle_config usual_config(void)
 		.gap = {
 			.servo_v = 40, .short_v = 15, .open_v = 70,
 			.gain_mm_s_v = 0.1, .feed_max_mm_s = 4,
+			.creep_mm_s = 0.5,
 			.approach_mm_s = 2, .retract_mm_s = 5,
 			.retract_limit_mm = 0.5, .retract_wait_cycles = 50,
 		},
@@ -105,16 +106,22 @@ static inline void action(struct interp_build *b, enum interp_kind kind,
 
 /* -- The cycle ----------------------------------------------------------- */
 
-static inline void rig_load(struct rig *r, struct interp_build *b,
+static inline void rig_take(struct rig *r, struct made m,
 			    const struct cycle_config *k)
 {
 	memset(r, 0, sizeof(*r));
-	r->m = finish(b);
+	r->m = m;
 	r->in.gap_valid = true;
 	r->in.gap_v = OPEN_V;
 	cycle_init(&r->c, k);
 	assert_int_equal(cycle_load(&r->c, &r->m.p), ANSWER_DONE);
 	r->out = r->c.out;
+}
+
+static inline void rig_load(struct rig *r, struct interp_build *b,
+			    const struct cycle_config *k)
+{
+	rig_take(r, finish(b), k);
 }
 
 static inline void rig_free(struct rig *r)
@@ -146,7 +153,8 @@ static inline void check_always(const struct rig *r)
 	const struct cycle_config *k = &r->c.config;
 
 	assert_true(r->c.state > STATE_STAY && r->c.state < CYCLE_NSTATES);
-	assert_int_equal(r->out.power, sparking_state(r->c.state));
+	assert_int_equal(r->out.power,
+			 sparking_state(r->c.state) && !r->c.power_off);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const int64_t step = (int64_t)r->out.target[i] -
 				     r->before.target[i];
@@ -198,6 +206,40 @@ static inline void cut_until(struct rig *r, double place_mm)
 	for (int i = 0; i < 100000 && place(r) < place_mm; i++)
 		step(r, SPARKING_V);
 	assert_true(place(r) >= place_mm);
+}
+
+/* A millimetre of air, then a cut of four; begun. */
+static inline void begin_cut(struct rig *r, const struct cycle_config *k)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	rapid_to(b, -1);
+	cut_to(b, -5);
+	rig_load(r, b, k);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
+static inline void cut_at(struct rig *r, const struct cycle_config *k, double mm)
+{
+	begin_cut(r, k);
+	until(r, STATE_APPROACH, OPEN_V, 1000);
+	cut_until(r, mm);
+	assert_int_equal(r->c.state, STATE_ERODE);
+}
+
+/* A step with the inputs as they are. */
+static inline void step_on(struct rig *r)
+{
+	step(r, r->in.gap_v);
+}
+
+static inline void shares(struct rig *r, double open, double spark, double arc,
+			  double shorted)
+{
+	r->in.shares = (struct io_shares) {
+		(float)open, (float)spark, (float)arc, (float)shorted
+	};
+	r->in.shares_valid = true;
 }
 
 static inline double z_mm(const struct rig *r)

@@ -346,12 +346,77 @@ static const struct refusal refusals[] = {
 	  "short_v below servo_v" },
 	{ "[gap]\nopen_v = 15\n", 2, 0, "gap.servo_v 15 V is not below",
 	  "servo_v below open_v" },
+	{ "[gap]\nservo_v = 20\nwindow_high_v = 30\nwindow_low_v = 31\n", 4, 0,
+	  "gap.window_low_v 31 V is not at most window_high_v 30 V",
+	  "window_low_v at most window_high_v" },
+	{ "[gap]\nwindow_low_v = 7.5\n", 2, 0,
+	  "gap.short_v 8 V is not below window_low_v 7.5 V",
+	  "short_v below window_low_v" },
+	{ "[gap]\nwindow_low_v = 16\n", 2, 0,
+	  "gap.window_low_v 16 V is not at most servo_v 15 V",
+	  "window_low_v at most servo_v" },
+	{ "[gap]\nwindow_high_v = 14\n", 2, 0,
+	  "gap.servo_v 15 V is not at most window_high_v 14 V",
+	  "servo_v at most window_high_v" },
+	{ "[gap]\nwindow_high_v = 61\n", 2, 0,
+	  "gap.window_high_v 61 V is not below open_v 60 V",
+	  "window_high_v below open_v" },
+	{ "[gap]\nignition_v = 60\n", 2, 0,
+	  "gap.open_v 60 V is not below ignition_v 60 V",
+	  "open_v below ignition_v" },
+	{ "[gap]\nsource = guess\n", 2, 10, "gap.source 'guess'",
+	  "sim, voltage, shares, lines, can" },
+	{ "[gap]\nretract_to = home\n", 2, 14, "'home'",
+	  "limit, start, motion" },
+	{ "[jump]\nheight_mm = 401\n", 2, 0,
+	  "jump.height_mm 401 mm is higher than any axis travels",
+	  "at most 400 mm, the travel of axis.X" },
+	{ "[jump]\nadaptive = yes\nheight_max_mm = 450\n", 3, 0,
+	  "jump.height_max_mm 450 mm", "at most 400 mm" },
+	{ "[jump]\nheight_min_mm = 6\n", 2, 0,
+	  "jump.height_min_mm 6 mm is not at most height_max_mm 5 mm",
+	  "height_min_mm at most height_max_mm" },
+	{ "[jump]\nevery_max_s = 0.4\n", 2, 0,
+	  "jump.every_min_s 0.5 s is not at most every_max_s 0.4 s",
+	  "every_min_s at most every_max_s" },
 	{ "[sim]\nspark_v = 100\nopen_v = 90\n", 3, 0, "sim.spark_v 100 V",
 	  "spark_v below open_v" },
 	{ "[sim]\nshort_gap_mm = 0.02\n", 2, 0, "sim.short_gap_mm 0.02 mm",
 	  "short_gap_mm below best_gap_mm" },
 	{ "[sim]\nbest_gap_mm = 0.07\n", 2, 0, "sim.best_gap_mm 0.07 mm",
 	  "best_gap_mm below open_gap_mm" },
+	{ "[sim]\narea_mm2 = 100\nperimeter_mm = 30\n", 3, 0,
+	  "sim.perimeter_mm 30 mm is too short for area_mm2 100 mm2",
+	  "more than its 35.45 mm" },
+	{ "[sim]\non_us = 1500\noff_us = 1000\n", 3, 0,
+	  "sim.wait_us 500 us is short for on_us 1500 us", "625 us, or more" },
+	{ "[sim]\nopen_v = 30\niso = no\n", 2, 0,
+	  "gap.servo_v 15 V is not below the simulated gap's 8.571 V",
+	  "a shorter [sim] off_us 20 us" },
+	{ "[machine]\nbackend = can402\n", 2, 0,
+	  "backend can402 without a drive", "node_X" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\nnode_Z = 5\n",
+	  5, 0, "can402.node_Z 5 a second time", "a node of its own" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 9\n"
+	  "master_node = 9\n", 4, 0, "can402.node_X 9 a second time",
+	  "not master_node" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_B = 5\n[axis.B]\n"
+	  "present = no\n", 4, 0, "for an axis that is not present",
+	  "that is present" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n"
+	  "gap_id = 389\n", 5, 0, "can402.gap_id 389, which is in use",
+	  "384 to 1407" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n"
+	  "generator_id = 1500\n", 5, 0, "can402.generator_id 1500",
+	  "384 to 1407" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
+	  "drive_increments = 0\n", 6, 0, "axis.X.drive_increments 0",
+	  "not 0" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
+	  "drive_increments = 1000000\n", 6, 0,
+	  "its travel reaches to 200000000000", "within 2147483647" },
+	{ "[gap]\nsource = lines\n", 2, 0,
+	  "gap.source lines on backend sim", "source = sim or shares" },
 	{ "[machine]\nperiod_us = 0.5\n", 2, 0,
 	  "machine.period_us 0.5 us is too short", "20 us and more" },
 	{ "[axis.X]\npresent=no\n[axis.Y]\npresent=no\n[axis.Z]\npresent=no\n"
@@ -410,8 +475,9 @@ static void every_misspelt_key_is_met_with_the_right_one(void **state)
 		if (strlen(k->name) < 4)
 			continue;
 		config_section_name(k->section, 0, section, sizeof(section));
-		snprintf(text, sizeof(text), "[%s]\n%sx = 1\n", section,
-			 k->name);
+		/* Not at its end: there stands an axis, for some. */
+		snprintf(text, sizeof(text), "[%s]\n%c%s = 1\n", section,
+			 k->name[0], k->name);
 		snprintf(meant, sizeof(meant), "did you mean %s?", k->name);
 		assert_int_equal(read_text(text, &c, &d), -EINVAL);
 		assert_non_null(strstr(d.wanted, meant));
@@ -498,7 +564,7 @@ static void a_damaged_file_is_read_or_refused_with_its_line(void **state)
 	const char *given = getenv("SEED");
 	unsigned seed = given ? (unsigned)strtoul(given, NULL, 10) :
 				(unsigned)time(NULL);
-	char *whole, text[32768];
+	char *whole, text[65536];
 	int refused = 0;
 
 	(void)state;
@@ -579,6 +645,36 @@ static void positioning_is_as_weak_as_the_weakest_linear_axis(void **state)
 	assert_true(cycle.travel_j_mm_s3 == 3);
 }
 
+/* 0 in the file is what the machine has of its own. */
+static void the_servo_takes_from_the_machine_what_is_not_given(void **state)
+{
+	struct machine_config c;
+	struct cycle_config cycle;
+
+	(void)state;
+	read_good("[axis.Y]\na_max_mm_s2 = 300\n"
+		  "[sim]\nopen_v = 120\noff_us = 33\n", &c);
+	config_cycle(&c, &cycle);
+	assert_true(cycle.gap.feed_a_mm_s2 == 300);
+	assert_true(cycle.gap.ignition_v == 120);
+	assert_true(cycle.gap.off_us == 33);
+	c.backend = BACKEND_NULL;
+	config_cycle(&c, &cycle);
+	assert_true(cycle.gap.ignition_v == 0 && cycle.gap.off_us == 0);
+	read_good("[machine]\nbackend = null\n[gap]\nfeed_a_mm_s2 = 5\nignition_v = 90\noff_us = 7\n"
+		  "stuck_s = 2\nretract_to = motion\nprocess = wire\n"
+		  "source = lines\n[jump]\nevery_mm = 0.5\nadaptive = yes\n",
+		  &c);
+	config_cycle(&c, &cycle);
+	assert_true(cycle.gap.feed_a_mm_s2 == 5);
+	assert_true(cycle.gap.ignition_v == 90 && cycle.gap.off_us == 7);
+	assert_int_equal(cycle.gap.stuck_cycles, 2000);
+	assert_int_equal(cycle.gap.retract_to, RETRACT_MOTION);
+	assert_int_equal(cycle.gap.process, PROCESS_WIRE);
+	assert_int_equal(cycle.gap.source, GAP_LINES);
+	assert_true(cycle.jump.every_mm == 0.5 && cycle.jump.adaptive);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -605,6 +701,8 @@ int main(void)
 			the_cycle_gets_seconds_as_cycles_of_its_period),
 		cmocka_unit_test(
 			positioning_is_as_weak_as_the_weakest_linear_axis),
+		cmocka_unit_test(
+			the_servo_takes_from_the_machine_what_is_not_given),
 	};
 
 	return cmocka_run_group_tests_name("config", tests, make_file,

@@ -333,15 +333,16 @@ static void punch_errors(enum interp_strategy s, double ret[2])
 						 .strategy = s };
 	const struct interp_build_about about = { .lines = 13 };
 	struct interp_cursor c;
+	size_t bytes;
 
 	n.o.machine = &n.machine;
 	n.build = interp_build_create(&bo);
 	assert_int_equal(interp_nc_compile(punch, sizeof(punch) - 1, &n.o,
 					   n.build, &n.result, &n.diag), 0);
-	n.block = malloc(interp_build_bytes(n.build));
+	bytes = interp_build_bytes(n.build);
+	n.block = malloc(bytes);
 	interp_build_write(n.build, &about, n.block);
-	assert_int_equal(interp_program_map(&n.p, n.block,
-					    interp_build_bytes(n.build)), 0);
+	assert_int_equal(interp_program_map(&n.p, n.block, bytes), 0);
 	assert_int_equal(interp_cursor_init(&c, &n.p), 0);
 	interp_cursor_aim(&c, 1e9);
 	ret[0] = ret[1] = 0;

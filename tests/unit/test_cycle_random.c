@@ -2,17 +2,22 @@
 /*
  * test_cycle_random.c - what holds in every cycle, whatever happens
  *
- * A million cycles of random programs, gap voltages, commands, losses of the
- * gap and e-stops.  The seed is printed; test_cycle_random SEED repeats it.
+ * Ten million cycles of random programs with ways out, planetary cycles,
+ * sensors, gaps that wander, stick, scatter or are no number, conditions,
+ * values in force, commands, broken wires, losses and e-stops; a million where
+ * a sanitizer watches.  `make invariants` runs it alone.
+ * The seed is printed; test_cycle_random SEED repeats it.
  */
-#include "cycle_help.h"
+#include "random_world.h"
 
 #include <time.h>
 
+#ifdef __SANITIZE_ADDRESS__
 #define CYCLES		1000000
+#else
+#define CYCLES		10000000
+#endif
 #define CYCLES_PER_JOB	10000
-#define SEGMENTS	30
-#define POINTS_MAX	150
 
 static uint64_t seed;
 
@@ -45,163 +50,241 @@ static struct points points_of(const struct made *m)
 	return p;
 }
 
+static bool on_path(const struct points *set, const int32_t *pos)
+{
+	struct point here = { 0 };
+
+	memcpy(here.pos, pos, sizeof(here.pos));
+	return bsearch(&here, set->at, set->n, sizeof(here), by_place) != NULL;
+}
+
+/* -- The way out that a segment allows ----------------------------------------- */
+
+/*
+ * On the straight line between two places, in pulses: its ends, its points and
+ * where along it they are counted are each rounded by half a pulse at most.
+ */
+static bool on_leg(const double *from, const double *to, const int32_t *pos)
+{
+	int longest = 0;
+	double t;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (fabs(to[i] - from[i]) > fabs(to[longest] - from[longest]))
+			longest = i;
+	t = (pos[longest] - from[longest]) / (to[longest] - from[longest]);
+	/* A leg of no length: the point. */
+	t = isfinite(t) ? fmin(fmax(t, 0), 1) : 0;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (fabs(from[i] + t * (to[i] - from[i]) - pos[i]) > 1.51)
+			return false;
+	return true;
+}
+
+static void aim(double *to, const double *from, uint32_t axes,
+		const double *mm, double share)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		to[i] = axes & 1u << i ?
+			from[i] + share * (mm[i] / PULSE_MM - from[i]) :
+			from[i];
+}
+
+/* Told from the program alone, not from what the cycle made of it. */
+static bool on_way_out(const struct cycle *c, const int32_t *pos)
+{
+	const struct interp_escape *e =
+		&c->cursor.p.escapes[c->cursor.seg.escape];
+	const uint32_t rotary = 1u << INTERP_A | 1u << INTERP_B | 1u << INTERP_C;
+	double at[4][INTERP_NAXES], sum = 0, share = 1;
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		at[0][i] = c->cursor.pos[i];
+		if (e->out & ~rotary & 1u << i)
+			sum += pow(e->out_mm[i] - at[0][i] * PULSE_MM, 2);
+	}
+	if (e->rise_mm < sqrt(sum))
+		share = e->rise_mm / sqrt(sum);
+	aim(at[1], at[0], e->rise_mm > 0 ? e->out : 0, e->out_mm, share);
+	aim(at[2], at[1], e->home, e->home_mm, 1);
+	aim(at[3], at[2], e->out, e->out_mm, 1);
+	return on_leg(at[0], at[1], pos) || on_leg(at[1], at[2], pos) ||
+	       on_leg(at[2], at[3], pos);
+}
+
+/* On the path, or beside it where the segment says. */
+static void check_place(const struct cycle *c, const struct points *set,
+			const int32_t *pos)
+{
+	assert_true(on_path(set, c->cursor.pos));
+	if (escape_is_out(&c->escape))
+		assert_true(on_way_out(c, pos));
+	else
+		assert_true(on_path(set, pos));
+}
+
 static void check_point(void *arg, const struct cycle *c)
 {
-	const struct points *set = arg;
-	struct point here = { 0 };
-
-	memcpy(here.pos, c->cursor.pos, sizeof(here.pos));
-	assert_non_null(bsearch(&here, set->at, set->n, sizeof(here),
-				by_place));
-}
-
-static void check_target(const struct rig *r, const struct points *set)
-{
-	struct point here = { 0 };
-
-	memcpy(here.pos, r->out.target, sizeof(here.pos));
-	assert_non_null(bsearch(&here, set->at, set->n, sizeof(here),
-				by_place));
-}
-
-/* -- A random world ------------------------------------------------------ */
-
-static void random_action(struct interp_build *b, uint64_t *s)
-{
-	static const enum interp_kind kinds[] = {
-		INTERP_DWELL, INTERP_STOP, INTERP_OPTIONAL_STOP, INTERP_AUX,
-	};
-	const enum interp_kind k = kinds[rnd(s) % 4];
-
-	action(b, k, k == INTERP_AUX ? (uint32_t)(rnd(s) % INTERP_NAUX) :
-				       (uint32_t)(rnd(s) % 20));
-}
-
-static void random_rapid(struct interp_build *b, uint64_t *s)
-{
-	rapid_to(b, uniform(s, -0.5, 0.5));
-}
-
-static struct interp_build *random_program(uint64_t *s)
-{
-	const enum interp_strategy how = rnd(s) % 2 ? INTERP_POINT_BY_POINT :
-						      INTERP_SIMULTANEOUS;
-	struct interp_build *b = begin(how);
-
-	random_segment(b, s, how);
-	for (int i = 0; i < SEGMENTS; i++) {
-		if (rnd(s) % 5 == 0)
-			random_action(b, s);
-		else if (rnd(s) % 4 == 0)
-			random_rapid(b, s);
-		else
-			random_segment(b, s, how);
-	}
-	return b;
-}
-
-static struct cycle_config random_config(uint64_t *s)
-{
-	struct cycle_config k = usual_config();
-
-	k.points_max = POINTS_MAX;
-	k.optional_stop = rnd(s) % 2;
-	k.dry_run = rnd(s) % 8 == 0;
-	k.jump.height_mm = rnd(s) % 3 ? uniform(s, 0, 1) : 0;
-	k.gap.retract_limit_mm = uniform(s, 0.05, 1);
-	k.gap.gain_mm_s_v = uniform(s, 0.01, 1);
-	for (int i = 0; i < INTERP_NAXES && rnd(s) % 4 == 0; i++) {
-		k.travel_min[i] = -(int32_t)(rnd(s) % 500);
-		k.travel_max[i] = (int32_t)(rnd(s) % 500);
-	}
-	return k;
-}
-
-/* Wanders through the zones, with sudden shorts and odd readings. */
-static double random_gap(double v, uint64_t *s)
-{
-	const uint64_t pick = rnd(s) % 200;
-
-	if (pick == 0)
-		return 0;
-	if (pick == 1)
-		return OPEN_V;
-	if (pick == 2)
-		return rnd(s) % 2 ? NAN : -INFINITY;
-	if (!isfinite(v))
-		v = SPARKING_V;
-	return fmin(120, fmax(0, v + uniform(s, -4, 4.2)));
-}
-
-static void random_command(struct rig *r, uint64_t *s)
-{
-	const struct cycle_command m = {
-		.verb = (uint32_t)(rnd(s) % (CYCLE_NVERBS + 1)),
-		.arg_mm = rnd(s) % 10 ? uniform(s, -0.1, 2) : NAN,
-	};
-
-	/* A stop ends the job: rarely. */
-	if (m.verb != CYCLE_STOP || rnd(s) % 8 == 0)
-		assert_true(cycle_command(&r->c, &m) < CYCLE_NANSWERS);
-}
-
-static void random_world(struct rig *r, uint64_t *s)
-{
-	r->in.estop = rnd(s) % 3000 == 0;
-	r->in.lost = rnd(s) % 5000 == 0;
-	r->in.gap_valid = rnd(s) % 2000 != 0;
-	if (rnd(s) % 1000 == 0)
-		cycle_overrun(&r->c, (uint32_t)(rnd(s) % 12));
-	if (rnd(s) % 100 == 0)
-		random_command(r, s);
-	/* An operator who goes on. */
-	if (r->c.state == STATE_FAULT && rnd(s) % 20 == 0)
-		tell(r, CYCLE_RESET);
-	if (r->c.state == STATE_HOLD && rnd(s) % 20 == 0)
-		tell(r, CYCLE_START);
+	check_place(c, arg, cycle_pos(c));
 }
 
 /* -- What must hold ------------------------------------------------------ */
 
 static uint64_t seen[CYCLE_NSTATES];	/* cycles in each state */
 static uint64_t faults[CYCLE_NFAULTS];
+static uint64_t powered, beside, beside_retract;	/* cycles */
 static enum cycle_state last;
+
+static double v_before;			/* speed asked for, a cycle ago */
+static uint16_t cond_before;
+
+/*
+ * Asked for no more than @limit, or slowing down as fast as it can.  What is
+ * walked may differ where a cycle has not points enough for the way.
+ */
+static bool at_most(const struct cycle *c, double limit)
+{
+	return c->mover.v_mm_s <= limit + 1e-6 ||
+	       c->mover.v_mm_s <= v_before - servo_dv_mm_s(c) + 1e-6;
+}
+
+static bool at_least(const struct cycle *c, double limit)
+{
+	return c->mover.v_mm_s >= limit - 1e-6 ||
+	       c->mover.v_mm_s >= v_before + servo_dv_mm_s(c) - 1e-6;
+}
+
+static void check_erode(const struct cycle *c)
+{
+	assert_true(at_most(c, c->gap.feed_max_mm_s));
+	assert_true(at_least(c, -c->gap.creep_mm_s));
+	if (c->sensed.touch || c->sensed.signal_v <= gap_window_high_v(c))
+		assert_true(at_most(c, 0));
+	if (!c->sensed.touch && c->sensed.signal_v >= gap_window_low_v(c))
+		assert_true(at_least(c, 0));
+}
+
+/* The servo goes the way the gap asks for, and no faster than it may. */
+static void check_feed(const struct rig *r)
+{
+	const struct cycle *c = &r->c;
+
+	/* The speed was chosen by the values in force where it stood before. */
+	if (c->state != r->was || c->process.cond != cond_before)
+		return;
+	if (c->state == STATE_APPROACH) {
+		assert_true(at_least(c, 0));
+		assert_true(at_most(c, c->sensed.touch ? 0 :
+						c->gap.approach_mm_s));
+	}
+	if (c->state == STATE_RETRACT) {
+		assert_true(at_most(c, 0));
+		assert_true(at_least(c, -c->gap.retract_mm_s));
+		assert_true(cycle_place_mm(c) >= c->retract.floor_mm - 1e-8);
+	}
+	if (c->state == STATE_ERODE)
+		check_erode(c);
+}
+
+/* Nothing sparks, begins or goes too far back against the PLC. */
+static void check_plc(const struct rig *r)
+{
+	assert_true(interp_cursor_place_mm(&r->c.cursor) >=
+		    r->c.back_mm - 1e-6);
+	if (!interlock_forbids(&r->c))
+		return;
+	assert_false(r->out.power);
+	assert_false(state_duty[r->c.state].running);
+}
+
+/* No sparks but in a cut, and none that somebody or something forbids. */
+static void check_power(const struct rig *r)
+{
+	const struct cycle *c = &r->c;
+
+	if (!r->out.power)
+		return;
+	assert_true(c->state == STATE_APPROACH || c->state == STATE_ERODE);
+	assert_false(c->moving);
+	assert_false(r->in.estop || r->in.lost || c->config.dry_run);
+	assert_false(c->power_off);
+	assert_int_equal(c->fault, FAULT_NONE);
+	powered++;
+}
+
+/* No motion in a fault; a cycle that says stop, or is not answered, has none
+ * either.  Other faults may be found where the cycle's way has led to. */
+static void check_stand(const struct rig *r)
+{
+	if (r->c.state != STATE_FAULT)
+		return;
+	assert_int_not_equal(r->c.fault, FAULT_NONE);
+	if (r->was != STATE_FAULT && !r->in.estop && !r->in.lost)
+		return;
+	assert_memory_equal(r->out.target, r->before.target,
+			    sizeof(r->out.target));
+	assert_true(r->c.feed_mm_s == 0);
+}
+
+static void count_states(const struct cycle *c)
+{
+	seen[c->state]++;
+	beside += escape_is_out(&c->escape);
+	beside_retract += escape_is_out(&c->escape) &&
+			  c->state == STATE_RETRACT;
+	if (c->state == STATE_FAULT && last != STATE_FAULT)
+		faults[c->fault]++;
+	last = c->state;
+}
 
 static void check_cycle(const struct rig *r, const struct points *set)
 {
-	check_target(r, set);
+	check_feed(r);
+	check_plc(r);
+	v_before = r->c.mover.v_mm_s;
+	cond_before = r->c.process.cond;
+	/* Stopped beside the path the job is over, and it stands there. */
+	if (r->c.loaded || memcmp(r->out.target, r->before.target,
+				  sizeof(r->out.target)))
+		check_place(&r->c, set, r->out.target);
+	check_power(r);
+	check_stand(r);
 	assert_true(isfinite(r->c.feed_mm_s) && isfinite(place(r)));
 	assert_true(place(r) >= 0);
 	assert_true(place(r) <= r->m.p.head->length_mm + 1e-6);
 	assert_true(r->c.far_mm <= r->m.p.head->length_mm + 1e-6);
-	if (r->c.state == STATE_FAULT)
-		assert_int_not_equal(r->c.fault, FAULT_NONE);
 	if (r->c.state == STATE_IDLE)
 		assert_int_equal(r->c.fault, FAULT_NONE);
 	if (r->c.config.dry_run)
 		assert_false(r->out.power);
-	seen[r->c.state]++;
-	if (r->c.state == STATE_FAULT && last != STATE_FAULT)
-		faults[r->c.fault]++;
-	last = r->c.state;
+	if (r->in.axes_off) {
+		assert_false(r->out.power);
+		assert_memory_equal(r->out.target, r->before.target,
+				    sizeof(r->out.target));
+	}
+	count_states(&r->c);
 }
 
 static int run_job(uint64_t *s)
 {
 	const struct cycle_config k = random_config(s);
-	double v = OPEN_V;
+	struct gap_world gap = { .v = OPEN_V };
 	struct points set;
 	struct rig r;
 	int n = 0;
 
-	rig_load(&r, random_program(s), &k);
+	rig_take(&r, rnd(s) % 4 ? random_segments(s) : random_orbits(s), &k);
 	set = points_of(&r.m);
 	r.c.on_point = check_point;
 	r.c.on_point_arg = &set;
+	r.in.plc.present = rnd(s) % 2;
 	tell(&r, CYCLE_START);
 	for (; n < CYCLES_PER_JOB; n++) {
+		double v;
+
 		random_world(&r, s);
-		v = random_gap(v, s);
+		v = random_gap(&gap, s);
+		random_shares(&r, v, s);
 		step(&r, v);
 		check_cycle(&r, &set);
 		if (r.c.state == STATE_IDLE)
@@ -212,30 +295,43 @@ static int run_job(uint64_t *s)
 	return n + 1;
 }
 
-static void a_million_random_cycles_keep_every_promise(void **st)
+static void millions_of_random_cycles_keep_every_promise(void **st)
 {
 	uint64_t s = seed;
-	int jobs = 0;
+	int jobs = 0, cycles = 0;
 
 	(void)st;
-	for (int n = 0; n < CYCLES; jobs++)
-		n += run_job(&s);
-	print_message("    %d jobs\n", jobs);
-	for (int i = STATE_IDLE; i < CYCLE_NSTATES; i++) {
+	while (cycles < CYCLES) {
+		cycles += run_job(&s);
+		jobs++;
+	}
+	print_message("    %d jobs, %d cycles, %llu with power, %llu beside "
+		      "the path, %llu of these in a retract\n", jobs, cycles,
+		      (unsigned long long)powered, (unsigned long long)beside,
+		      (unsigned long long)beside_retract);
+	assert_true(powered > 0 && beside > 0 && beside_retract > 0);
+	/* test_hand.c has those of a machine without a job. */
+	for (int i = STATE_IDLE; i < STATE_JOG; i++) {
 		print_message("    %-10s %8llu cycles\n", state_duty[i].name,
 			      (unsigned long long)seen[i]);
 		assert_true(seen[i] > 0);
 	}
-	for (int i = FAULT_NONE + 1; i < CYCLE_NFAULTS; i++)
+	for (int i = FAULT_NONE + 1; i < CYCLE_NFAULTS; i++) {
 		print_message("    %-18s %llu\n",
 			      cycle_fault_name((enum cycle_fault)i),
 			      (unsigned long long)faults[i]);
+		/* test_cycle_damage.c, test_hand.c and test_touch.c have
+		 * those of damage, homing and touches. */
+		if (CYCLES >= 10000000 && i != FAULT_PROGRAM &&
+		    i != FAULT_HOME && i != FAULT_NO_CONTACT)
+			assert_true(faults[i] > 0);
+	}
 }
 
 int main(int argc, char **argv)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_million_random_cycles_keep_every_promise),
+		cmocka_unit_test(millions_of_random_cycles_keep_every_promise),
 	};
 
 	seed = argc > 1 ? strtoull(argv[1], NULL, 0) : (uint64_t)time(NULL);

@@ -221,7 +221,7 @@ static void a_change_of_mind_is_no_step_of_acceleration(void **st)
 
 static void standing_there_it_stays(void **st)
 {
-	const struct mover_limits l = { 10, 1000, 20000, 1e-3 };
+	const struct mover_limits l = { 10, 1000, 20000, 1e-3, 0 };
 	struct mover m = { 0 };
 
 	(void)st;

@@ -37,8 +37,8 @@ static const struct refusal numbers[] = {
 };
 
 static const struct refusal words[] = {
-	{ "G0 X1\n  Q12",	2, 3,	"unknown word Q12",
-	  "one of G M F N S T X Y Z A B C U V I J K R P L O D H E" },
+	{ "G0 X1\n  W12",	2, 3,	"unknown word W12",
+	  "one of G M F N S T X Y Z A B C U V I J K R P L Q O D H E" },
 	{ "G33.1 X1",		1, 1,	"unknown word G33.1", "G91.1" },
 	{ "M8",			1, 1,	"unknown word M8", "M30" },
 	{ "T1",			1, 1,	"unknown word T1", "T84" },

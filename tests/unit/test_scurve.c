@@ -227,6 +227,65 @@ static void a_jump_of_3_mm_takes_a_third_of_a_second(void **st)
 	assert_true(fabs(up.end_s + down.end_s - 0.337) <= 0.00337);
 }
 
+/* From any state that can still meet it. */
+static void it_passes_its_place_at_the_speed_asked_for(void **st)
+{
+	uint64_t s = seed + 7;
+
+	(void)st;
+	for (int i = 0; i < 2000; i++) {
+		const struct interp_scurve_limits l = random_limits(&s);
+		const double pass = uniform(&s, 0, 1) * l.v_max_mm_s;
+		struct interp_scurve_state from = { 0, 0, 0 };
+		struct interp_scurve c;
+		double way;
+
+		random_state(&s, &l, &from.v_mm_s, &from.a_mm_s2);
+		way = interp_scurve_way_mm(&l, from.v_mm_s, from.a_mm_s2, pass);
+		way = fabs(way) * (1 + uniform(&s, 0, 3)) + 1e-6;
+		interp_scurve_to_pass(&c, &l, &from, way, pass);
+		assert_true(c.end.v_mm_s == pass && c.end.a_mm_s2 == 0);
+		assert_true(c.end.x_mm == way);
+		check_plan(&c, &l);
+	}
+}
+
+/* By walking along it. */
+static void braking_it_falls_to_a_speed_where_it_says(void **st)
+{
+	uint64_t s = seed + 8;
+
+	(void)st;
+	for (int i = 0; i < 2000; i++) {
+		const struct interp_scurve_limits l = random_limits(&s);
+		const double top = uniform(&s, 0.1, 1) * l.v_max_mm_s;
+		const double v = uniform(&s, 0.01, 0.99) * top;
+		const double a = uniform(&s, -1, 1) *
+				 fmin(l.a_up_mm_s2, l.a_down_mm_s2);
+		double lo = 0, hi, x;
+		struct interp_scurve c;
+
+		/* Not so that it would first turn back. */
+		if (let_go(&l, top, a) < 0)
+			continue;
+		interp_scurve_to_speed(&c, &l, top, a, 0);
+		hi = c.end_s;
+		/* The last time it is as fast. */
+		for (int n = 0; n <= 1000; n++) {
+			const double t = c.end_s * n / 1000;
+
+			if (interp_scurve_at(&c, t).v_mm_s >= v)
+				lo = t;
+		}
+		hi = lo + c.end_s / 1000;
+		x = interp_scurve_falls_mm(&c, v);
+		assert_true(x >= interp_scurve_at(&c, lo).x_mm -
+			    1e-9 * fabs(c.end.x_mm) - 1e-12);
+		assert_true(x <= interp_scurve_at(&c, hi).x_mm +
+			    1e-9 * fabs(c.end.x_mm) + 1e-12);
+	}
+}
+
 static void standing_at_its_place_it_plans_nothing(void **st)
 {
 	const struct interp_scurve_limits l = { 80, 1000, 1000, 20000 };
@@ -248,6 +307,8 @@ int main(int argc, char **argv)
 		cmocka_unit_test(planned_again_on_its_way_it_takes_no_longer),
 		cmocka_unit_test(what_can_stop_before_its_place_does_not_pass_it),
 		cmocka_unit_test(a_jump_of_3_mm_takes_a_third_of_a_second),
+		cmocka_unit_test(it_passes_its_place_at_the_speed_asked_for),
+		cmocka_unit_test(braking_it_falls_to_a_speed_where_it_says),
 		cmocka_unit_test(standing_at_its_place_it_plans_nothing),
 	};
 

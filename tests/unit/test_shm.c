@@ -117,16 +117,16 @@ static void shared_structs_keep_their_size(void **state)
 {
 	(void)state;
 	assert_int_equal(sizeof(struct shm_head), 56);
-	assert_int_equal(sizeof(struct shm_snapshot), 288);
-	assert_int_equal(sizeof(struct shm_trace), 72);
-	assert_int_equal(sizeof(struct shm_trace_slot), 80);
-	assert_int_equal(sizeof(struct shm_event), 40);
-	assert_int_equal(sizeof(struct shm_event_slot), 48);
-	assert_int_equal(sizeof(struct shm_snap), 296);
+	assert_int_equal(sizeof(struct shm_snapshot), 400);
+	assert_int_equal(sizeof(struct shm_trace), 104);
+	assert_int_equal(sizeof(struct shm_trace_slot), 112);
+	assert_int_equal(sizeof(struct shm_event), 56);
+	assert_int_equal(sizeof(struct shm_event_slot), 64);
+	assert_int_equal(sizeof(struct shm_snap), 408);
 	assert_int_equal(sizeof(struct shm_command), 24);
-	assert_int_equal(offsetof(struct shm_status, trace), 1696);
+	assert_int_equal(offsetof(struct shm_status, trace), 1920);
 	assert_int_equal(sizeof(struct shm_status),
-			 1696 + 16384 * 80 + 1024 * 48);
+			 1920 + 16384 * 112 + 1024 * 64);
 	assert_int_equal(offsetof(struct shm_command_ring, slot),
 			 56 + 8 + 2 * CK_MD_CACHELINE);
 }

@@ -33,7 +33,7 @@ static void every_running_state_gives_way_to_hold_and_stop(void **st)
 		assert_int_equal(next_of(s, EVENT_HOLD), STATE_HOLD);
 		assert_int_equal(next_of(s, EVENT_STOP), STATE_HOLD);
 	}
-	assert_int_equal(running, 5);
+	assert_int_equal(running, 6);
 }
 
 static void a_fault_is_left_by_reset_alone_and_then_it_is_held(void **st)
@@ -52,20 +52,22 @@ static void power_is_on_in_approach_and_erode_only(void **st)
 				 s == STATE_APPROACH || s == STATE_ERODE);
 }
 
-static void idle_hold_and_fault_do_not_run(void **st)
+static void idle_hold_fault_and_hands_do_not_run(void **st)
 {
 	(void)st;
 	EACH_STATE(s)
 		assert_int_equal(state_duty[s].running, s != STATE_IDLE &&
-				 s != STATE_HOLD && s != STATE_FAULT);
+				 s != STATE_HOLD && s != STATE_FAULT &&
+				 s != STATE_JOG && s != STATE_HOME);
 }
 
 static void a_hold_is_left_by_start_alone(void **st)
 {
 	(void)st;
 	EACH_EVENT(e)
-		assert_int_equal(next_of(STATE_HOLD, e), e == EVENT_START ?
-				 STATE_TRAVEL : STATE_HOLD);
+		assert_int_equal(next_of(STATE_HOLD, e),
+				 e == EVENT_START ? STATE_TRAVEL :
+				 e == EVENT_RETURN ? STATE_JUMP : STATE_HOLD);
 }
 
 static void nothing_that_happens_starts_an_idle_machine(void **st)
@@ -75,13 +77,14 @@ static void nothing_that_happens_starts_an_idle_machine(void **st)
 		assert_int_equal(next_of(STATE_IDLE, e), STATE_IDLE);
 }
 
-static void a_short_under_power_leads_back_along_the_path(void **st)
+static void shorts_and_arcs_under_power_lead_back_along_the_path(void **st)
 {
 	(void)st;
 	EACH_STATE(s) {
-		if (state_duty[s].power)
-			assert_int_equal(next_of(s, EVENT_SHORT),
-					 STATE_RETRACT);
+		if (!state_duty[s].power)
+			continue;
+		assert_int_equal(next_of(s, EVENT_SHORT), STATE_RETRACT);
+		assert_int_equal(next_of(s, EVENT_ARC), STATE_RETRACT);
 	}
 	assert_int_equal(next_of(STATE_JUMP, EVENT_SHORT), STATE_RETRACT);
 }
@@ -126,10 +129,10 @@ int main(void)
 		cmocka_unit_test(every_running_state_gives_way_to_hold_and_stop),
 		cmocka_unit_test(a_fault_is_left_by_reset_alone_and_then_it_is_held),
 		cmocka_unit_test(power_is_on_in_approach_and_erode_only),
-		cmocka_unit_test(idle_hold_and_fault_do_not_run),
+		cmocka_unit_test(idle_hold_fault_and_hands_do_not_run),
 		cmocka_unit_test(a_hold_is_left_by_start_alone),
 		cmocka_unit_test(nothing_that_happens_starts_an_idle_machine),
-		cmocka_unit_test(a_short_under_power_leads_back_along_the_path),
+		cmocka_unit_test(shorts_and_arcs_under_power_lead_back_along_the_path),
 		cmocka_unit_test(no_event_turns_the_power_on_but_from_a_running_state),
 		cmocka_unit_test(every_entry_is_a_state_and_the_nothing_event_stays),
 		cmocka_unit_test(every_state_has_a_name_of_its_own),

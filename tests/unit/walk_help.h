@@ -39,6 +39,10 @@ struct points {
 
 static struct interp_machine help_machine;
 
+/* What the lines and arcs below carry. */
+#define HELP_WORD ((struct interp_build_word) { .line = 1, .feed_mm_s = 1 })
+static struct interp_build_word help_word = { .line = 1, .feed_mm_s = 1 };
+
 static inline struct interp_build *begin(enum interp_strategy s)
 {
 	struct interp_build_options o = {
@@ -55,24 +59,22 @@ static inline struct interp_build *begin(enum interp_strategy s)
 
 static inline void line(struct interp_build *b, const double *end)
 {
-	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
 	struct interp_diag d = { 0 };
 
-	if (interp_build_line(b, end, &w, &d) != 0)
+	if (interp_build_line(b, end, &help_word, &d) != 0)
 		fail_msg("%s; %s", d.found, d.wanted);
 }
 
 static inline void arc(struct interp_build *b, const double *end, double ca,
 		       double cb, bool clockwise)
 {
-	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
 	const struct interp_build_arc a = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = ca, .centre_b_mm = cb, .clockwise = clockwise,
 	};
 	struct interp_diag d = { 0 };
 
-	if (interp_build_arc(b, end, &a, &w, &d) != 0)
+	if (interp_build_arc(b, end, &a, &help_word, &d) != 0)
 		fail_msg("%s; %s", d.found, d.wanted);
 }
 

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Axes moved by hand: jog, home, step; alarms and doctor."""
+
+import json
+
+import pytest
+import rig
+
+# A simulated machine whose switches lie 7.5 mm from where its pulses say.
+HOME_MACHINE = """
+[machine]
+name = {name}
+backend = sim
+overrun_limit = 0
+cpu = -1
+require_home = yes
+
+[sim]
+home_off_mm = 7.5
+speed = 4
+
+[axis.X]
+home_method = switch
+home_at_mm = -20
+home_fast_mm_s = 20
+home_slow_mm_s = 2
+backlash_um = 30
+
+[axis.Z]
+home_method = switch-index
+home_dir = +
+home_at_mm = 20
+home_fast_mm_s = 20
+home_slow_mm_s = 2
+home_order = 1
+
+[jobs]
+store = {store}
+"""
+
+
+@pytest.fixture
+def homing(tmp_path):
+    m = rig.Machine(tmp_path, HOME_MACHINE)
+    yield m
+    m.close()
+    assert m.sweep() == []
+
+
+def idle_at(m, axis, mm, eps=2e-3):
+    return m.client.status_where(
+        lambda s: s.state == "idle" and abs(s.pos_mm[axis] - mm) <= eps
+    )
+
+
+def test_a_jog_moves_one_axis_and_a_job_begins_there(machine):
+    assert machine.ctl("jog", "Y", "-1.5").returncode == 0
+    s = idle_at(machine, 1, -1.5)
+    assert s.pos_mm[0] == 0
+    assert machine.client.submit(rig.QUICK_JOB, "job").code == 0
+    machine.client.job_where("job", "done")
+    idle_at(machine, 1, -1.5)
+
+
+@pytest.mark.parametrize(
+    "args, code, text",
+    [
+        (("X", "300"), 1, "travel"),
+        (("Q", "1"), 65, "one of XYZABCUV"),
+        (("XY", "1"), 65, "one of XYZABCUV"),
+        (("X", "0"), 65, "+ or -"),
+        (("X", "far"), 64, "no number"),
+    ],
+)
+def test_a_jog_that_cannot_be_is_refused_in_words(machine, args, code, text):
+    r = machine.ctl("jog", *args)
+    assert r.returncode == code
+    assert text in r.stderr
+    assert machine.client.status().pos_mm[0] == 0
+
+
+def test_nothing_jogs_with_a_job_loaded(machine):
+    assert machine.client.submit(rig.SLOW_JOB, "job").code == 0
+    machine.client.status_where(lambda s: s.place_mm > 0.1)
+    r = machine.ctl("jog", "X", "1")
+    assert r.returncode == 1
+    assert "idle" in r.stderr
+
+
+def test_an_axis_without_a_method_is_not_homed(machine):
+    r = machine.ctl("home")
+    assert r.returncode == 1
+    assert "home_method" in r.stderr
+
+
+def test_steps_and_override(machine):
+    text = b"G21 G90 F600\nG1 X1\nG1 X2\nG1 X3\nM0\nG1 X4\nM30\n"
+    c = machine.client
+    assert c.submit(text, "job").code == 0
+    c.status_where(lambda s: s.state == "hold" and abs(s.pos_mm[0] - 3) < 1e-3)
+    assert machine.ctl("step", "-2").returncode == 0
+    c.status_where(lambda s: abs(s.pos_mm[0] - 1) < 1e-3 and not s.feed_mm_s)
+    assert machine.ctl("step", "+1").returncode == 0
+    c.status_where(lambda s: abs(s.pos_mm[0] - 2) < 1e-3 and not s.feed_mm_s)
+    r = machine.ctl("step", "-50")
+    assert r.returncode == 1
+    assert "nodes" in r.stderr
+    assert machine.ctl("override", "50").returncode == 0
+    r = machine.ctl("override", "201")
+    assert r.returncode == 65
+    assert "0 to 200" in r.stderr
+    assert machine.ctl("start").returncode == 0
+    c.job_where("job", "done")
+
+
+def test_a_job_waits_until_all_axes_are_homed(homing):
+    homing.start()
+    c = homing.client
+    text = b"G21 G90 F600\nG0 Z19\nG0 X-19\nM30\n"
+    assert c.submit(text, "job").code == 0
+    c.hear(0.6)
+    assert c.status().job == ""
+    assert homing.ctl("home").returncode == 0
+    j = c.job_where("job", "done", timeout=30)
+    assert j["state"] == "done"
+    s = c.status_where(lambda s: s.state == "idle")
+    assert s.pos_mm[0] == -19
+    assert s.pos_mm[2] == 19
+
+
+def test_alarms_tell_what_why_and_how(machine):
+    r = machine.ctl("alarms")
+    assert r.returncode == 0
+    assert "fault      none" in r.stdout
+    assert machine.ctl("estop").returncode == 0
+    machine.client.status_where(lambda s: s.state == "fault")
+    r = machine.ctl("alarms")
+    assert r.returncode == 1
+    for word in ("e-stop", "why", "clear", "edmctl reset", "without a job"):
+        assert word in r.stdout
+    a = json.loads(machine.ctl("--json", "alarms").stdout)
+    assert a["fault"] == "e-stop"
+    assert a["alarms"][0]["fault"] == "e-stop"
+    assert a["clear"]
+    assert machine.ctl("reset").returncode == 0
+    machine.client.status_where(lambda s: s.state == "idle")
+    assert machine.ctl("alarms").returncode == 0
+
+
+def test_doctor_finds_the_living_and_mends_the_missing(machine, tmp_path):
+    rows = json.loads(machine.ctl("--json", "doctor").stdout)
+    by = {r["what"]: r for r in rows}
+    assert by["edmd"]["verdict"] == "good"
+    assert str(machine.edmd.pid) in by["edmd"]["found"]
+    assert by["edmd-jobs"]["verdict"] == "good"
+    assert by["shared memory"]["verdict"] == "good"
+    assert by["multicast route"]["verdict"] == "good"
+    for r in rows:
+        assert bool(r["mend"]) == (r["verdict"] == "lacking")
+    r = machine.ctl("--timeout", "0.3", "--machine", "nobody", "doctor")
+    assert r.returncode == 1
+    assert "systemctl start edmd-jobs" in r.stdout
+
+
+def test_a_pitch_map_is_refused_with_its_line(idle):
+    (idle.folder / "x.pitch").write_text("0 0\n10 5\n10 6\n")
+    text = idle.config.read_text() + "\n[axis.X]\npitch_map = x.pitch\n"
+    idle.config.write_text(text)
+    r = rig.subprocess.run(
+        [str(rig.BUILD / "edmd"), "--config", str(idle.config), "--check"],
+        capture_output=True, text=True,
+    )
+    assert r.returncode == 78
+    line = text.splitlines().index("pitch_map = x.pitch") + 1
+    assert f":{line}:" in r.stderr
+    assert "x.pitch:3" in r.stderr
+    assert "rise" in r.stderr

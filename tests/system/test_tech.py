@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Technology: tables, values set while a job runs, and their history."""
+
+import hashlib
+import math
+
+import pytest
+import rig
+from rig import SLOW_JOB
+
+TABLE = """
+condition, servo_v [V], on_us [us]
+C100, 20, 8
+C120, 15, 40
+"""
+
+# Two conditions, 2 s each at 60 mm/min.
+JOB = b"G21 G90\nC120 G1 X2 F60\nC100\nX4\nM30\n"
+
+MACHINE = rig.NULL_MACHINE + "\n[tech]\ntable = shop.tech\n"
+
+
+@pytest.fixture
+def shop(tmp_path):
+    """A machine with a table."""
+    m = rig.Machine(tmp_path, MACHINE)
+    (tmp_path / "shop.tech").write_text(TABLE)
+    m.start()
+    yield m
+    m.close()
+    assert m.sweep() == [], "left in /dev/shm"
+
+
+def running(machine, text=JOB, job="job"):
+    c = machine.client
+    assert c.submit(text, job).code == 0
+    c.status_where(lambda s: s.job == job and s.place_mm > 0.3)
+    return c
+
+
+def changes(c, job="job"):
+    return [(x["what"], x["was"], x["now"]) for x in c.job(job)["changes"]]
+
+
+def test_status_tells_the_condition_in_force(shop):
+    c = running(shop)
+    assert c.status().condition == "C120"
+    c.status_where(lambda s: s.condition == "C100" and s.place_mm > 2)
+
+
+def test_a_set_and_its_taking_back_are_in_the_jobs_history(shop):
+    c = running(shop)
+    assert shop.ctl("set", "servo_v", "17").returncode == 0
+    assert shop.ctl("set", "on_us", "50").returncode == 0
+    assert shop.ctl("set", "servo_v", "default").returncode == 0
+    c.job_where("job", "done")
+    assert changes(c) == [
+        ("condition", None, "C120"),
+        ("servo_v", 15, 17),
+        ("on_us", 40, 50),
+        ("servo_v", 17, 15),
+        ("condition", "C120", "C100"),
+    ]
+    places = [x["place_mm"] for x in c.job("job")["changes"]]
+    assert places == sorted(places)
+    assert places[-1] == pytest.approx(2, abs=0.01)
+    shown = shop.ctl("show", "job").stdout
+    assert "servo_v 15 -> 17" in shown
+    assert "condition C120 -> C100" in shown
+
+
+def test_a_set_belongs_to_its_condition(shop):
+    c = running(shop)
+    assert shop.ctl("set", "servo_v", "17").returncode == 0
+    c.status_where(lambda s: s.condition == "C100")
+    assert shop.ctl("set", "servo_v", "25").returncode == 0
+    assert ("servo_v", 20, 25) in changes(c)
+
+
+def test_a_set_out_of_range_is_refused_with_the_range(shop):
+    c = running(shop)
+    for key, value, words in (
+        ("servo_v", "2000", "from 0 to 1000 V"),
+        ("polarity", "0", "1 or -1"),
+        ("servo_v", "5", "<= servo_v <="),
+        ("servo_x", "20", "did you mean servo_v"),
+        ("roughness_um", "2", "no such field"),
+    ):
+        p = shop.ctl("set", key, value)
+        assert p.returncode == 65, (key, value)
+        assert words in p.stderr, p.stderr
+    assert shop.ctl("set", "servo_v", "much").returncode == 64
+    assert shop.ctl("set", "servo_v").returncode == 64
+    assert changes(c) == [("condition", None, "C120")]
+
+
+def test_a_value_below_0_is_a_value_and_no_option(shop):
+    c = running(shop)
+    assert shop.ctl("set", "polarity", "-1").returncode == 0
+    assert ("polarity", 1, -1) in changes(c)
+    p = shop.ctl("set", "servo_v", "-.5")
+    assert p.returncode == 65
+    assert "from 0 to 1000 V" in p.stderr
+
+
+def test_nothing_is_set_without_a_job(shop):
+    p = shop.ctl("set", "servo_v", "20")
+    assert p.returncode == 1
+    assert "no job" in p.stderr
+
+
+def test_not_a_number_takes_a_set_back_only(shop):
+    c = running(shop)
+    a = c.ask("set", arg=math.nan)
+    assert a.code == 65
+    assert "no such field" in a.reason
+
+
+def test_a_condition_that_is_not_in_the_table_is_refused(shop):
+    a = shop.client.submit(b"G21 G90\nC121 G1 X1 F60\nM30\n", "job")
+    assert a.code == 65
+    assert "job.ngc:2:1: error: C121" in a.reason
+    assert "C100, C120" in a.reason
+
+
+def test_the_next_job_goes_by_the_table_as_it_is_then(shop):
+    c = shop.client
+    table = shop.folder / "shop.tech"
+
+    def job(name):
+        assert c.submit(b"G21 G90\nC100 G1 X0.1 F600\nM30\n", name).code == 0
+        return c.job_where(name, "done")["tech_sha256"]
+
+    assert job("one") == hashlib.sha256(TABLE.encode()).hexdigest()
+    other = TABLE.replace("20, 8", "21, 8")
+    table.write_text(other)
+    assert job("two") == hashlib.sha256(other.encode()).hexdigest()
+    table.write_text(TABLE.replace("20, 8", "20"))
+    a = c.submit(b"G21 G90\nC100 G1 X0.1 F600\nM30\n", "three")
+    assert a.code == 78
+    assert "shop.tech:3:9: error: " in a.reason
+    table.unlink()
+    assert "No such file" in c.submit(SLOW_JOB, "four").reason
+
+
+def test_history_is_kept_once_when_the_service_is_restarted(shop):
+    c = running(shop)
+    assert shop.ctl("set", "servo_v", "17").returncode == 0
+    shop.kill("jobs")
+    shop.start_jobs()
+    c.job_where("job", "done")
+    assert changes(c) == [
+        ("condition", None, "C120"),
+        ("servo_v", 15, 17),
+        ("condition", "C120", "C100"),
+    ]
+
+
+def test_edmd_comes_back_in_the_condition_of_its_place(shop):
+    c = running(shop)
+    assert shop.ctl("set", "servo_v", "17").returncode == 0
+    c.status_where(lambda s: s.condition == "C100" and s.place_mm > 2.3)
+    shop.kill("edmd")
+    shop.start_edmd()
+    s = c.status_where(lambda s: s.daemon == "ok" and s.state == "hold")
+    assert s.condition == "C100"
+    assert shop.ctl("set", "servo_v", "22").returncode == 0
+    assert shop.ctl("start").returncode == 0
+    c.job_where("job", "done")
+    assert ("servo_v", 20, 22) in changes(c)
+
+
+def test_a_store_of_the_version_before_is_taken_over(idle):
+    import sqlite3
+
+    idle.store.mkdir()
+    db = sqlite3.connect(idle.store / f"{idle.name}.db")
+    db.executescript(
+        "CREATE TABLE job(n INTEGER PRIMARY KEY AUTOINCREMENT,"
+        " id TEXT NOT NULL UNIQUE, name TEXT NOT NULL, sha256 TEXT NOT NULL,"
+        " text BLOB NOT NULL, lines INTEGER NOT NULL,"
+        " state TEXT NOT NULL DEFAULT 'queued', hold INTEGER NOT NULL,"
+        " loaded INTEGER NOT NULL DEFAULT 0, submitted_us INTEGER NOT NULL,"
+        " begun_us INTEGER NOT NULL DEFAULT 0,"
+        " ended_us INTEGER NOT NULL DEFAULT 0,"
+        " reason TEXT NOT NULL DEFAULT '', place_mm REAL, length_mm REAL,"
+        " depth_mm REAL, job_s REAL, jumps INTEGER, retracts INTEGER,"
+        " shorts INTEGER);"
+        "INSERT INTO job(id, name, sha256, text, lines, state, hold,"
+        " submitted_us) VALUES('old', 'old', '', '', 1, 'done', 0, 1);"
+        "PRAGMA user_version=1;"
+    )
+    db.close()
+    idle.start()
+    old = idle.client.job("old")
+    assert (old["state"], old["tech_sha256"], old["changes"]) == (
+        "done", "", [])

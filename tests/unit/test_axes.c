@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_axes.c - promises of axes under power: a start that awaits them, faults
+ * that take it away, and who may give it back
+ */
+#include "cycle_help.h"
+
+#define WAIT_CYCLES	40
+
+/* A job, and drives that are up but not enabled. */
+static void make(struct rig *r)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct cycle_config k = usual_config();
+
+	k.axes_wait_cycles = WAIT_CYCLES;
+	rapid_to(b, -2);
+	cut_to(b, -5);
+	rig_load(r, b, &k);
+	r->in.axes_off = true;
+	step(r, OPEN_V);
+}
+
+/* As a drive would: on its place some cycles after it was told. */
+static void enable(struct rig *r)
+{
+	steps(r, OPEN_V, 10);
+	assert_true(r->out.enable);
+	r->in.axes_off = false;
+}
+
+static void start(struct rig *r)
+{
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+	enable(r);
+	until(r, STATE_TRAVEL, OPEN_V, 2);
+}
+
+static void a_start_waits_for_the_axes_and_goes_on_by_itself(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	assert_false(r.out.enable);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	for (int i = 0; i < 10; i++) {
+		step(&r, OPEN_V);
+		assert_true(r.out.enable);
+		assert_int_equal(r.c.state, STATE_HOLD);
+		assert_int_equal(r.out.target[INTERP_Z], 0);
+	}
+	r.in.axes_off = false;
+	until(&r, STATE_ERODE, SPARKING_V, 2000);
+	rig_free(&r);
+}
+
+static void a_second_start_does_not_begin_the_wait_anew(void **st)
+{
+	struct rig r;
+	int i = 0;
+
+	(void)st;
+	make(&r);
+	while (r.c.state != STATE_FAULT && i++ < 10 * WAIT_CYCLES) {
+		tell(&r, CYCLE_START);
+		step(&r, OPEN_V);
+	}
+	assert_int_equal(r.c.fault, FAULT_DRIVE);
+	assert_in_range(i, WAIT_CYCLES, WAIT_CYCLES + 2);
+	assert_false(r.out.enable);
+	rig_free(&r);
+}
+
+static void drives_that_are_not_up_refuse_start_and_retract(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	r.in.starting = true;
+	step(&r, OPEN_V);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_NOT_UP);
+	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 1), ANSWER_NOT_UP);
+	steps(&r, OPEN_V, 10);
+	assert_false(r.out.enable);
+	r.in.starting = false;
+	step(&r, OPEN_V);
+	start(&r);
+	rig_free(&r);
+}
+
+static void a_hold_or_stop_ends_the_wait(void **st)
+{
+	const enum cycle_verb verbs[] = { CYCLE_HOLD, CYCLE_STOP };
+
+	(void)st;
+	for (int i = 0; i < 2; i++) {
+		struct rig r;
+
+		make(&r);
+		tell(&r, CYCLE_START);
+		steps(&r, OPEN_V, 3);
+		assert_int_equal(tell(&r, verbs[i]), ANSWER_DONE);
+		r.in.axes_off = false;
+		steps(&r, OPEN_V, 2 * WAIT_CYCLES);
+		assert_int_equal(r.c.state, i ? STATE_IDLE : STATE_HOLD);
+		assert_int_equal(r.c.fault, FAULT_NONE);
+		rig_free(&r);
+	}
+}
+
+static void troubles_are_faults_without_sparks_motion_or_power(void **st)
+{
+	const enum cycle_fault faults[IO_NTROUBLES] = {
+		[IO_DRIVE] = FAULT_DRIVE, [IO_FOLLOWING] = FAULT_FOLLOWING,
+		[IO_BUS] = FAULT_BUS,
+	};
+
+	(void)st;
+	for (int t = IO_DRIVE; t < IO_NTROUBLES; t++) {
+		struct rig r;
+
+		make(&r);
+		start(&r);
+		until(&r, STATE_ERODE, SPARKING_V, 2000);
+		r.in.trouble = (enum io_trouble)t;
+		step(&r, SPARKING_V);
+		assert_int_equal(r.c.state, STATE_FAULT);
+		assert_int_equal(r.c.fault, faults[t]);
+		assert_false(r.out.power);
+		assert_false(r.out.enable);
+		assert_memory_equal(r.out.target, r.before.target,
+				    sizeof(r.out.target));
+		rig_free(&r);
+	}
+}
+
+static void a_reset_reaches_the_machine_and_starts_nothing(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	start(&r);
+	r.in.trouble = IO_DRIVE;
+	r.in.axes_off = true;
+	step(&r, OPEN_V);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_WRONG_STATE);
+	assert_int_equal(tell(&r, CYCLE_RESET), ANSWER_DONE);
+	step(&r, OPEN_V);
+	assert_true(r.out.reset);
+	assert_int_equal(r.c.state, STATE_HOLD);
+	r.in.trouble = IO_WELL;
+	for (int i = 0; i < 3 * WAIT_CYCLES; i++) {
+		step(&r, OPEN_V);
+		assert_false(r.out.reset);
+		assert_false(r.out.enable);
+		assert_int_equal(r.c.state, STATE_HOLD);
+	}
+	start(&r);
+	rig_free(&r);
+}
+
+static void a_trouble_that_stays_is_a_fault_again_after_reset(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	start(&r);
+	r.in.trouble = IO_BUS;
+	step(&r, OPEN_V);
+	tell(&r, CYCLE_RESET);
+	steps(&r, OPEN_V, 2);
+	assert_int_equal(r.c.state, STATE_FAULT);
+	assert_int_equal(r.c.fault, FAULT_BUS);
+	rig_free(&r);
+}
+
+static void axes_that_lose_power_in_motion_are_a_fault(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	start(&r);
+	steps(&r, OPEN_V, 20);
+	r.in.axes_off = true;
+	step(&r, OPEN_V);
+	assert_int_equal(r.c.fault, FAULT_DRIVE);
+	assert_memory_equal(r.out.target, r.before.target,
+			    sizeof(r.out.target));
+	rig_free(&r);
+}
+
+static void a_retract_waits_for_the_axes_too(void **st)
+{
+	struct rig r;
+	double at;
+
+	(void)st;
+	make(&r);
+	start(&r);
+	until(&r, STATE_ERODE, SPARKING_V, 2000);
+	r.in.estop = r.in.axes_off = true;
+	step(&r, SPARKING_V);
+	assert_false(r.out.enable);
+	r.in.estop = false;
+	tell(&r, CYCLE_RESET);
+	step(&r, OPEN_V);
+	at = place(&r);
+	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 0.5), ANSWER_DONE);
+	enable(&r);
+	assert_near(place(&r), at, 1e-12);
+	steps(&r, OPEN_V, 1000);
+	assert_near(place(&r), at - 0.5, 2e-3);
+	assert_int_equal(r.c.state, STATE_HOLD);
+	rig_free(&r);
+}
+
+static void faults_of_the_gap_leave_the_axes_under_power(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	start(&r);
+	until(&r, STATE_ERODE, SPARKING_V, 2000);
+	r.in.gap_valid = false;
+	until(&r, STATE_FAULT, SPARKING_V, 100);
+	assert_true(r.out.enable);
+	rig_free(&r);
+}
+
+static void a_machine_begins_where_its_file_says(void **st)
+{
+	struct cycle_config k = usual_config();
+	const struct io_inputs in = { .gap_valid = true };
+	struct io_outputs out;
+	struct cycle c;
+
+	(void)st;
+	k.start[INTERP_Y] = -1234;
+	cycle_init(&c, &k);
+	cycle_step(&c, &in, &out);
+	assert_int_equal(out.target[INTERP_Y], -1234);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_start_waits_for_the_axes_and_goes_on_by_itself),
+		cmocka_unit_test(a_second_start_does_not_begin_the_wait_anew),
+		cmocka_unit_test(drives_that_are_not_up_refuse_start_and_retract),
+		cmocka_unit_test(a_hold_or_stop_ends_the_wait),
+		cmocka_unit_test(troubles_are_faults_without_sparks_motion_or_power),
+		cmocka_unit_test(a_reset_reaches_the_machine_and_starts_nothing),
+		cmocka_unit_test(a_trouble_that_stays_is_a_fault_again_after_reset),
+		cmocka_unit_test(axes_that_lose_power_in_motion_are_a_fault),
+		cmocka_unit_test(a_retract_waits_for_the_axes_too),
+		cmocka_unit_test(faults_of_the_gap_leave_the_axes_under_power),
+		cmocka_unit_test(a_machine_begins_where_its_file_says),
+	};
+
+	return cmocka_run_group_tests_name("rt/axes", tests, NULL, NULL);
+}

@@ -1,0 +1,652 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_can402.c - promises of the master, on a bus that is a pair of sockets:
+ * the other end is drives, a gap, and whoever else talks
+ */
+#include "can402_bus.h"
+
+#include <errno.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define GAP		1008
+#define GENERATOR	1009
+#define NDRIVES		2
+
+struct peer {
+	uint16_t status;
+	int32_t actual, target;
+	uint16_t control;
+	bool running, mute;
+};
+
+struct rig {
+	struct machine_config c;
+	struct io_machine m;
+	struct io_inputs in;
+	struct io_outputs out;
+	int fd;				/* the other end; -1: cut */
+	struct peer p[NDRIVES];		/* nodes 1, 2: axes X, Y */
+	struct can_frame generator;	/* its last frame */
+	uint32_t syncs, sdos;
+	bool beats;			/* they send heartbeats */
+	bool alone;			/* the master is gone */
+};
+
+static void put(struct rig *r, uint32_t id, const void *data, size_t len)
+{
+	struct can_frame f = { .can_id = id, .can_dlc = (uint8_t)len };
+
+	if (r->alone)
+		return;
+	if (len > 0)
+		memcpy(f.data, data, len);
+	assert_int_equal(write(r->fd, &f, sizeof(f)), sizeof(f));
+}
+
+static void make(struct rig *r)
+{
+	int fd[2];
+
+	memset(r, 0, sizeof(*r));
+	config_defaults(&r->c);
+	r->c.backend = BACKEND_CAN402;
+	r->c.can402.node[INTERP_X] = 1;
+	r->c.can402.node[INTERP_Y] = 2;
+	r->c.drive[INTERP_X].increments = 10;
+	r->c.can402.gap_id = GAP;
+	r->c.can402.generator_id = GENERATOR;
+	assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0,
+				    fd), 0);
+	assert_int_equal(can402_attach(&r->m, &r->c, fd[0]), 0);
+	r->fd = fd[1];
+	r->beats = true;
+	for (int i = 0; i < NDRIVES; i++)
+		r->p[i] = (struct peer) { .status = 0x40, .actual = 777 };
+}
+
+static void unmake(struct rig *r)
+{
+	r->m.close(r->m.self);
+	if (r->fd >= 0)
+		close(r->fd);
+}
+
+static void obey(struct peer *p)
+{
+	static const struct {
+		uint16_t from, control, to;
+	} moves[] = {
+		{ 0x40, 0x06, 0x21 }, { 0x21, 0x07, 0x23 },
+		{ 0x23, 0x0f, 0x27 }, { 0x27, 0x02, 0x40 },
+		{ 0x23, 0x06, 0x21 }, { 0x08, 0x80, 0x40 },
+	};
+
+	for (size_t i = 0; i < sizeof(moves) / sizeof(moves[0]); i++) {
+		if (p->status == moves[i].from &&
+		    p->control == moves[i].control) {
+			p->status = moves[i].to;
+			return;
+		}
+	}
+}
+
+static void on_sync(struct rig *r)
+{
+	r->syncs++;
+	for (uint32_t i = 0; i < NDRIVES; i++) {
+		struct peer *p = &r->p[i];
+		uint8_t d[6];
+
+		if (!p->running)
+			continue;
+		can_put(d, p->status, 2);
+		can_put(d + 2, (uint32_t)p->actual, 4);
+		if (!p->mute)
+			put(r, CAN_TPDO1 + 1 + i, d, 6);
+		if (!p->mute && r->beats && r->syncs % 20 == 0)
+			put(r, CAN_HEARTBEAT + 1 + i, "\x05", 1);
+		obey(p);
+		if (p->status == 0x27)
+			p->actual = p->target;
+	}
+}
+
+static void on_sdo(struct rig *r, const struct can_frame *f)
+{
+	uint8_t d[8] = { 0x60 };
+
+	memcpy(d + 1, f->data + 1, 3);
+	if (f->data[0] == 0x40) {
+		d[0] = 0x43;
+		can_put(d + 4, 0x20192, 4);
+	}
+	r->sdos++;
+	put(r, f->can_id - CAN_SDO_ASK + CAN_SDO_ANSWER, d, 8);
+}
+
+static void on_frame(struct rig *r, const struct can_frame *f)
+{
+	if (f->can_id == CAN_SYNC)
+		on_sync(r);
+	else if (f->can_id == CAN_NMT)
+		r->p[f->data[1] - 1].running = f->data[0] == 1;
+	else if (f->can_id == GENERATOR)
+		r->generator = *f;
+	else if (f->can_id > CAN_SDO_ASK && f->can_id < CAN_HEARTBEAT)
+		on_sdo(r, f);
+	else if (f->can_id > CAN_RPDO1 && f->can_id <= CAN_RPDO1 + NDRIVES) {
+		struct peer *p = &r->p[f->can_id - CAN_RPDO1 - 1];
+
+		p->control = (uint16_t)can_get(f->data, 2);
+		p->target = (int32_t)can_get(f->data + 2, 4);
+	}
+}
+
+static void period(struct rig *r)
+{
+	struct can_frame f;
+
+	r->m.read(r->m.self, &r->in);
+	r->m.write(r->m.self, &r->out);
+	r->out.reset = false;
+	while (r->fd >= 0 && read(r->fd, &f, sizeof(f)) == sizeof(f))
+		on_frame(r, &f);
+}
+
+static void run(struct rig *r, int cycles)
+{
+	while (cycles-- > 0) {
+		if (r->fd >= 0)
+			put(r, GAP, "\xc4\x09", 2);
+		period(r);
+	}
+}
+
+/* Up and enabled. */
+static void begin(struct rig *r)
+{
+	make(r);
+	run(r, 100);
+	assert_false(r->in.starting);
+	assert_true(r->in.axes_off);
+	r->out.enable = true;
+	run(r, 20);
+	assert_false(r->in.axes_off);
+	assert_int_equal(r->in.trouble, IO_WELL);
+	r->out.power = true;
+	run(r, 2);
+	assert_int_equal(r->generator.data[0] & 1, 1);
+}
+
+/* Sparks go off in the period it is heard, whatever the cycle says. */
+static void ends_with(struct rig *r, enum io_trouble t)
+{
+	assert_int_equal(r->in.trouble, t);
+	assert_int_equal(r->generator.data[0] & 3, 0);
+	run(r, 3);
+	for (int i = 0; i < NDRIVES; i++)
+		assert_int_not_equal(r->p[i].status, 0x27);
+}
+
+static bool said(struct rig *r, const char *what)
+{
+	char line[160];
+	bool found = false;
+
+	while (r->m.note(r->m.self, line, sizeof(line)))
+		found = found || strstr(line, what);
+	return found;
+}
+
+static void resets(struct rig *r)
+{
+	r->out.enable = r->out.power = false;
+	r->out.reset = true;
+	run(r, 100);
+	assert_int_equal(r->in.trouble, IO_WELL);
+	for (int i = 0; i < NDRIVES; i++)
+		assert_int_not_equal(r->p[i].status, 0x27);
+	r->out.enable = true;
+	run(r, 20);
+	assert_false(r->in.axes_off);
+}
+
+static void it_brings_up_all_drives_and_enables_by_command_only(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	run(&r, 1);
+	assert_true(r.in.starting && r.in.axes_off);
+	run(&r, 200);
+	assert_false(r.in.starting);
+	assert_int_equal(r.p[0].status, 0x40);
+	assert_true(said(&r, "is up at 777 increments"));
+	unmake(&r);
+	begin(&r);
+	unmake(&r);
+}
+
+static void targets_reach_the_drives_as_increments_from_where_they_stood(
+	void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	for (int i = 1; i <= 50; i++) {
+		r.out.target[INTERP_X] = i;
+		r.out.target[INTERP_Y] = -i;
+		run(&r, 1);
+	}
+	run(&r, 4);
+	assert_int_equal(r.p[0].actual, 777 + 500);
+	assert_int_equal(r.p[1].actual, 777 - 50);
+	assert_int_equal(r.in.actual[INTERP_X], 50);
+	assert_int_equal(r.in.actual[INTERP_Y], -50);
+	unmake(&r);
+}
+
+static void drives_stand_where_the_targets_begin(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	r.out.target[INTERP_X] = 5000;
+	run(&r, 100);
+	r.out.enable = true;
+	run(&r, 20);
+	assert_false(r.in.axes_off);
+	assert_int_equal(r.p[0].actual, 777);
+	assert_int_equal(r.in.actual[INTERP_X], 5000);
+	unmake(&r);
+}
+
+static void another_program_far_away_is_not_jumped_to(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	r.out.path++;
+	r.out.target[INTERP_X] = 400;
+	for (int i = 0; i < 50; i++) {
+		const int32_t was = r.p[0].actual;
+
+		run(&r, 1);
+		assert_in_range(r.p[0].actual - was, 0, 20);
+	}
+	assert_true(r.in.axes_off);
+	run(&r, 300);
+	assert_false(r.in.axes_off);
+	assert_int_equal(r.p[0].actual, 777 + 4000);
+	r.out.path++;
+	r.out.target[INTERP_X] = 40000;
+	run(&r, 2);
+	assert_int_equal(r.in.trouble, IO_FOLLOWING);
+	run(&r, 50);
+	assert_in_range(r.p[0].actual, 777 + 4000, 777 + 4100);
+	unmake(&r);
+}
+
+static void the_gap_is_what_its_frames_say_until_they_stop(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	assert_true(r.in.gap_valid);
+	assert_false(r.in.shares_valid);
+	assert_float_equal(r.in.gap_v, 25, 1e-9);
+	put(&r, GAP, "\x10\x27\x00\xff\x33\x00", 6);
+	period(&r);
+	assert_true(r.in.shares_valid);
+	assert_float_equal(r.in.gap_v, 100, 1e-9);
+	assert_float_equal(r.in.shares.spark, 1, 1e-6);
+	assert_float_equal(r.in.shares.arc, 0.2, 1e-6);
+	for (int i = 0; i < CAN402_STALE; i++)
+		period(&r);
+	assert_false(r.in.gap_valid);
+	assert_false(r.in.shares_valid);
+	unmake(&r);
+}
+
+static void the_generator_is_told_each_period(void **st)
+{
+	struct rig r;
+	uint8_t count;
+
+	(void)st;
+	begin(&r);
+	r.out.negative = true;
+	r.out.pulse = (struct io_pulse) { 6.4, 12.5, -1, -1, false };
+	run(&r, 1);
+	assert_int_equal(r.generator.data[0], 5);
+	assert_int_equal(can_get(r.generator.data + 2, 2), 64);
+	assert_int_equal(can_get(r.generator.data + 4, 2), 125);
+	assert_int_equal(can_get(r.generator.data + 6, 2), 0xffff);
+	count = r.generator.data[1];
+	run(&r, 3);
+	assert_int_equal(r.generator.data[1], (uint8_t)(count + 3));
+	unmake(&r);
+}
+
+static void an_emergency_stops_all_drives_and_is_told_with_its_code(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	put(&r, CAN_EMCY + 2, "\x10\x23\x01\0\0\0\0\0", 8);
+	r.p[1].status = 0x08;
+	run(&r, 1);
+	ends_with(&r, IO_DRIVE);
+	assert_true(said(&r, "drive Y (node 2): emergency 2310"));
+	resets(&r);
+	/* Two in a period: the first is the cause. */
+	for (int i = 0; i < 3; i++) {
+		put(&r, CAN_EMCY + 2, "\x00\x87\x01\0\0\0\0\0", 8);
+		put(&r, CAN_EMCY + 2, "\x30\x81\x11\0\0\0\0\0", 8);
+		run(&r, 1);
+		assert_true(said(&r, "drive Y (node 2): emergency 8700"));
+		resets(&r);
+	}
+	unmake(&r);
+}
+
+static void a_flood_of_emergencies_is_told_a_few_times(void **st)
+{
+	struct rig r;
+	char line[160];
+	int lines = 0;
+
+	(void)st;
+	begin(&r);
+	said(&r, "");
+	for (int i = 0; i < 1000; i++) {
+		put(&r, CAN_EMCY + 1, "\x10\x23\x01\0\0\0\0\0", 8);
+		run(&r, 1);
+		while (r.m.note(r.m.self, line, sizeof(line)))
+			lines++;
+	}
+	assert_in_range(lines, 2, 12);
+	unmake(&r);
+}
+
+static void a_bus_that_is_off_or_gone_is_told_and_comes_back_by_reset(
+	void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	put(&r, CAN_ERR_FLAG | CAN_ERR_BUSOFF, "\0\0\0\0\0\0\0\0", 8);
+	r.m.read(r.m.self, &r.in);
+	assert_int_equal(r.in.trouble, IO_BUS);
+	period(&r);
+	ends_with(&r, IO_BUS);
+	assert_true(said(&r, "bus off"));
+	resets(&r);
+	unmake(&r);
+
+	begin(&r);
+	close(r.fd);
+	r.fd = -1;
+	run(&r, 1);
+	assert_int_equal(r.in.trouble, IO_BUS);
+	r.out.reset = true;
+	run(&r, 2);
+	assert_int_equal(r.in.trouble, IO_BUS);
+	assert_true(said(&r, "is down"));
+	unmake(&r);
+}
+
+static void another_master_is_a_fault(void **st)
+{
+	const struct {
+		uint32_t id;
+		const char *data;
+		size_t len;
+	} foreign[] = {
+		{ CAN_NMT, "\x02\x05", 2 }, { CAN_SYNC, "", 0 },
+		{ CAN_RPDO1 + 1, "\x0f\0\0\0\0\0", 6 },
+		{ CAN_HEARTBEAT + 127, "\x05", 1 },
+	};
+
+	(void)st;
+	for (int i = 0; i < 4; i++) {
+		struct rig r;
+
+		begin(&r);
+		put(&r, foreign[i].id, foreign[i].data, foreign[i].len);
+		run(&r, 1);
+		ends_with(&r, IO_BUS);
+		assert_true(said(&r, "another master"));
+		resets(&r);
+		unmake(&r);
+	}
+}
+
+/* Each length of each kind, other nodes', other formats, unasked answers. */
+static void what_is_malformed_or_strange_is_told_and_changes_nothing(void **st)
+{
+	static const struct {
+		uint32_t base;
+		size_t len;
+	} kinds[] = {
+		{ CAN_TPDO1, 6 }, { CAN_EMCY, 8 }, { CAN_HEARTBEAT, 1 },
+		{ CAN_SDO_ANSWER, 9 },
+	};
+	static const uint8_t ones[8] = { 255, 255, 255, 255,
+					 255, 255, 255, 255 };
+	char line[160];
+	int lines = 0;
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	said(&r, "");
+	for (int i = 0; i < 4; i++) {
+		for (size_t len = 0; len <= 8; len++) {
+			if (len != kinds[i].len)
+				put(&r, kinds[i].base + 1, ones, len);
+			put(&r, kinds[i].base + 77, ones, len);
+			put(&r, (kinds[i].base + 1) | CAN_EFF_FLAG, ones, len);
+			put(&r, (kinds[i].base + 1) | CAN_RTR_FLAG, ones, len);
+			run(&r, 1);
+		}
+	}
+	for (size_t len = 0; len <= 8; len++) {
+		if (len != 2 && len != 6)
+			put(&r, GAP, ones, len);
+		period(&r);
+		assert_float_equal(r.in.gap_v, 25, 1e-9);
+	}
+	put(&r, CAN_SDO_ANSWER + 1, "\x80\x40\x60\0\0\0\x02\x06", 8);
+	run(&r, 5);
+	assert_int_equal(r.in.trouble, IO_WELL);
+	assert_false(r.in.axes_off);
+	assert_int_equal(r.p[0].actual, 777);
+	while (r.m.note(r.m.self, line, sizeof(line)))
+		lines++;
+	assert_in_range(lines, 1, 9);
+	unmake(&r);
+}
+
+/* Any identifier, any length, any data, and a reset now and then. */
+static void random_frames_never_move_what_has_no_power(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	srand(1);
+	make(&r);
+	for (int n = 0; n < 40000; n++) {
+		uint8_t data[8];
+		const uint32_t node = (uint32_t)rand() % 4;
+		const uint32_t id = rand() % 2 ? (uint32_t)rand() % 0x800 :
+			(uint32_t)(rand() % 16) << 7 | node;
+
+		for (int i = 0; i < 8; i++)
+			data[i] = (uint8_t)rand();
+		put(&r, id, data, (size_t)rand() % 9);
+		r.out.reset = rand() % 50 == 0;
+		r.out.power = r.out.pump = true;
+		period(&r);
+		assert_true(r.in.trouble < IO_NTROUBLES);
+		assert_int_equal(r.p[0].actual, 777);
+		assert_int_equal(r.p[1].actual, 777);
+	}
+	unmake(&r);
+}
+
+static void silence_of_one_stops_both(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	r.p[0].mute = true;
+	run(&r, 2);
+	r.p[0].mute = false;
+	run(&r, 5);
+	assert_int_equal(r.in.trouble, IO_WELL);
+	r.p[0].mute = true;
+	run(&r, 5);
+	ends_with(&r, IO_DRIVE);
+	assert_true(said(&r, "drive X (node 1)"));
+	r.p[0].mute = false;
+	resets(&r);
+	r.beats = false;
+	run(&r, 200);
+	ends_with(&r, IO_DRIVE);
+	r.beats = true;
+	resets(&r);
+	unmake(&r);
+}
+
+static void a_drive_that_never_answers_is_named(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	close(r.fd);
+	r.fd = -1;
+	run(&r, 1000);
+	assert_true(r.in.starting);
+	assert_true(said(&r, "drive X (node 1) does not answer"));
+	unmake(&r);
+}
+
+static void it_leaves_the_drives_stopped_and_quiet(void **st)
+{
+	struct can_frame f;
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	r.alone = true;
+	r.m.close(r.m.self);
+	/* The first read tells that what was sent to it was not read. */
+	assert_int_equal(read(r.fd, &f, sizeof(f)), -1);
+	while (read(r.fd, &f, sizeof(f)) == sizeof(f)) {
+		if (f.can_id == CAN_NMT)
+			assert_int_equal(f.data[0], 0x80);
+		if (f.can_id == CAN_SYNC)
+			assert_int_equal(r.p[0].control, 0x02);
+		on_frame(&r, &f);
+	}
+	for (int i = 0; i < NDRIVES; i++) {
+		assert_false(r.p[i].running);
+		assert_int_not_equal(r.p[i].status, 0x27);
+		assert_int_equal(r.p[i].actual, 777);
+	}
+	assert_int_equal(r.generator.data[0], 0);
+	close(r.fd);
+}
+
+static void a_bus_too_full_is_refused_with_the_period_that_fits(void **st)
+{
+	struct machine_config c;
+	struct interp_diag d;
+	struct io_machine m;
+
+	(void)st;
+	config_defaults(&c);
+	c.backend = BACKEND_CAN402;
+	for (int i = 0; i < IO_NAXES; i++)
+		c.can402.node[i] = 10 + i;
+	c.period_us = 1000;
+	assert_int_equal(io_can402_open(&m, &c, &d), -EINVAL);
+	assert_non_null(strstr(d.found, "8 drives every 1000 us take 19"));
+	assert_non_null(strstr(d.wanted, "period_us 2400 or more"));
+	c.period_us = 2400;
+	strcpy(c.can402.interface, "none");
+	assert_int_not_equal(io_can402_open(&m, &c, &d), 0);
+	assert_non_null(strstr(d.found, "can402.interface none"));
+}
+
+/* Axes, period, percent; worked out by hand from frames of 55, 111 and 65. */
+static void the_load_is_that_of_longest_frames(void **st)
+{
+	static const struct {
+		uint32_t axes;
+		double us, percent;
+	} rows[] = {
+		{ 2, 1000, 52 }, { 4, 1000, 98 }, { 6, 1000, 143 },
+		{ 2, 2000, 26 }, { 4, 2000, 49 }, { 6, 2000, 72 },
+		{ 8, 4000, 48 },
+	};
+
+	(void)st;
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		const struct can402_bus b = { 1000000, rows[i].axes, 100,
+					      false, false };
+		const double load = can402_load(&b, rows[i].us);
+
+		assert_true(fabs(100 * load - rows[i].percent) < 1);
+		assert_true(can402_load(&b, can402_period_us(&b)) <=
+			    CAN402_LOAD_MAX);
+		assert_true(can402_load(&b, can402_period_us(&b) - 100) >
+			    CAN402_LOAD_MAX);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(it_brings_up_all_drives_and_enables_by_command_only),
+		cmocka_unit_test(targets_reach_the_drives_as_increments_from_where_they_stood),
+		cmocka_unit_test(drives_stand_where_the_targets_begin),
+		cmocka_unit_test(another_program_far_away_is_not_jumped_to),
+		cmocka_unit_test(the_gap_is_what_its_frames_say_until_they_stop),
+		cmocka_unit_test(the_generator_is_told_each_period),
+		cmocka_unit_test(an_emergency_stops_all_drives_and_is_told_with_its_code),
+		cmocka_unit_test(a_flood_of_emergencies_is_told_a_few_times),
+		cmocka_unit_test(a_bus_that_is_off_or_gone_is_told_and_comes_back_by_reset),
+		cmocka_unit_test(another_master_is_a_fault),
+		cmocka_unit_test(what_is_malformed_or_strange_is_told_and_changes_nothing),
+		cmocka_unit_test(random_frames_never_move_what_has_no_power),
+		cmocka_unit_test(silence_of_one_stops_both),
+		cmocka_unit_test(a_drive_that_never_answers_is_named),
+		cmocka_unit_test(it_leaves_the_drives_stopped_and_quiet),
+		cmocka_unit_test(a_bus_too_full_is_refused_with_the_period_that_fits),
+		cmocka_unit_test(the_load_is_that_of_longest_frames),
+	};
+
+	return cmocka_run_group_tests_name("io/can402", tests, NULL, NULL);
+}

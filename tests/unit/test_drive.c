@@ -1,0 +1,494 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * What io/drive.h promises, against a drive that follows CiA 402.
+ */
+#include "drive.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define NODE	5
+
+/* The other end: a drive with an object dictionary as it comes from a box. */
+struct peer {
+	uint16_t status;
+	bool operational, mapped, fault, mute, deaf;
+	uint32_t refuses;		/* index << 8 | sub: aborted */
+	int32_t actual, target, latched;
+	uint16_t control;
+	uint8_t mode;
+	uint32_t profile, modes, abort_option;
+	uint32_t rpdo[2], tpdo[2], beat_ms, master_beat;
+	uint8_t time_value;
+	int8_t time_index;
+};
+
+static struct drive_config config(void)
+{
+	return (struct drive_config) {
+		.node = NODE, .master = 127, .increments = 10, .pulses = 1,
+		.period_us = 2000, .heartbeat_ms = 100, .beat_cycles = 125,
+		.answer_cycles = 50, .missing_max = 2, .following_max = 50,
+		.slew_increments = 40,
+	};
+}
+
+static void peer_state(struct peer *p)
+{
+	static const struct {
+		uint16_t from, control, to;
+	} moves[] = {
+		{ 0x40, 0x06, 0x21 }, { 0x21, 0x07, 0x23 },
+		{ 0x23, 0x0f, 0x27 }, { 0x27, 0x02, 0x07 },
+		{ 0x27, 0x06, 0x21 }, { 0x23, 0x06, 0x21 },
+		{ 0x07, 0x00, 0x40 }, { 0x27, 0x00, 0x40 },
+		{ 0x23, 0x00, 0x40 }, { 0x21, 0x00, 0x40 },
+	};
+
+	if (p->fault) {
+		p->status = 0x08;
+		if (p->control & 0x80)
+			p->fault = false, p->status = 0x40;
+		return;
+	}
+	for (size_t i = 0; i < sizeof(moves) / sizeof(moves[0]); i++) {
+		if ((p->status & 0x6f) == moves[i].from &&
+		    (p->control & 0x8f) == moves[i].control) {
+			p->status = moves[i].to;
+			return;
+		}
+	}
+}
+
+static void peer_write(struct peer *p, const uint8_t *d)
+{
+	const uint32_t at = can_get(d + 1, 2) << 8 | d[3];
+	const uint32_t x = can_get(d + 4, 4);
+
+	switch (at) {
+	case 0x101700: p->beat_ms = x; break;
+	case 0x101601: p->master_beat = x; break;
+	case 0x160001: p->rpdo[0] = x; break;
+	case 0x160002: p->rpdo[1] = x; break;
+	case 0x1a0001: p->tpdo[0] = x; break;
+	case 0x1a0002: p->tpdo[1] = x; break;
+	case 0x180001: p->mapped = !(x & 0x80000000u); break;
+	case 0x600700: p->abort_option = x; break;
+	case 0x606000: p->mode = (uint8_t)x; break;
+	case 0x60c201: p->time_value = (uint8_t)x; break;
+	case 0x60c202: p->time_index = (int8_t)x; break;
+	default: break;
+	}
+}
+
+static void sdo(struct peer *p, struct drive *d, const struct can_msg *m)
+{
+	struct can_msg a = { .id = CAN_SDO_ANSWER + NODE, .len = 8 };
+	const uint32_t at = can_get(m->data + 1, 2) << 8 | m->data[3];
+
+	memcpy(a.data + 1, m->data + 1, 3);
+	if (at == p->refuses) {
+		a.data[0] = 0x80;
+		can_put(a.data + 4, 0x06020000, 4);
+	} else if (m->data[0] == 0x40) {
+		a.data[0] = 0x43;
+		can_put(a.data + 4, at == 0x650200 ? p->modes : p->profile, 4);
+	} else {
+		a.data[0] = 0x60;
+		peer_write(p, m->data);
+	}
+	drive_receive(d, &a);
+}
+
+/* One period: what the master sends reaches the drive, and the other way. */
+static void period(struct drive *d, struct peer *p, int32_t target)
+{
+	struct can_msg m, a = { .id = CAN_TPDO1 + NODE, .len = 6 };
+
+	if (p->operational && p->mapped && !p->mute) {
+		can_put(a.data, p->status, 2);
+		can_put(a.data + 2, (uint32_t)p->actual, 4);
+		drive_receive(d, &a);
+	}
+	drive_sync(d);
+	if ((p->status & 0x6f) == 0x27)
+		p->actual = p->latched;
+	p->latched = p->target;
+	if (!drive_emit(d, target, &m) || p->deaf)
+		return;
+	if (m.id == CAN_SDO_ASK + NODE)
+		sdo(p, d, &m);
+	else if (m.id == CAN_NMT)
+		p->operational = m.data[0] == 1;
+	else if (m.id == CAN_RPDO1 + NODE) {
+		p->control = (uint16_t)can_get(m.data, 2);
+		p->target = (int32_t)can_get(m.data + 2, 4);
+		peer_state(p);
+	}
+}
+
+static void beat(struct drive *d)
+{
+	const struct can_msg m = { .id = CAN_HEARTBEAT + NODE, .len = 1,
+				   .data = { 0x05 } };
+
+	drive_receive(d, &m);
+}
+
+struct rig {
+	struct drive d;
+	struct peer p;
+};
+
+static void make(struct rig *r)
+{
+	const struct drive_config c = config();
+
+	memset(r, 0, sizeof(*r));
+	drive_init(&r->d, &c);
+	r->p = (struct peer) { .status = 0x40, .profile = 0x20192, .modes = 0x3ff,
+			       .actual = 123456, .target = 123456,
+			       .latched = 123456 };
+}
+
+static void run(struct rig *r, int cycles, int32_t target)
+{
+	for (int i = 0; i < cycles; i++) {
+		if (i % 20 == 0)
+			beat(&r->d);
+		period(&r->d, &r->p, target);
+	}
+}
+
+/* Up, enabled, and at pulse 0. */
+static void enable(struct rig *r)
+{
+	make(r);
+	run(r, 60, 0);
+	drive_set_zero(&r->d, 0);
+	drive_aim(&r->d, DRIVE_GO_ON);
+	run(r, 20, 0);
+	assert_int_equal(r->d.state, DRIVE_ENABLED);
+	assert_true(r->d.arrived);
+}
+
+static void a_drive_is_brought_up_as_cia_402_wants(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	run(&r, 60, 0);
+	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+	assert_true(r.p.operational);
+	assert_int_equal(r.p.rpdo[0], 0x60400010);
+	assert_int_equal(r.p.rpdo[1], 0x607a0020);
+	assert_int_equal(r.p.tpdo[0], 0x60410010);
+	assert_int_equal(r.p.tpdo[1], 0x60640020);
+	assert_int_equal(r.p.mode, 8);
+	assert_int_equal(r.p.abort_option, 3);
+	assert_int_equal(r.p.beat_ms, 100);
+	assert_int_equal(r.p.master_beat, 127 << 16 | 250);
+	assert_int_equal(r.p.time_value, 2);
+	assert_int_equal(r.p.time_index, -3);
+	assert_int_equal(r.d.actual, 123456);
+	assert_int_equal(r.d.state, DRIVE_DISABLED);
+}
+
+static void enabling_moves_nothing(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	run(&r, 60, 0);
+	drive_set_zero(&r.d, 0);
+	drive_aim(&r.d, DRIVE_GO_ON);
+	for (int i = 0; i < 40; i++) {
+		run(&r, 1, 0);
+		assert_int_equal(r.p.actual, 123456);
+	}
+	assert_int_equal(r.d.state, DRIVE_ENABLED);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+}
+
+static void it_follows_to_the_increment(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	for (int32_t at = 0; at <= 5000; at += 7) {
+		beat(&r.d);
+		period(&r.d, &r.p, at);
+	}
+	run(&r, 4, 4998);
+	assert_int_equal(r.p.actual, 123456 + 49980);
+	assert_int_equal(drive_place(&r.d), 4998);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+}
+
+static void one_that_was_pushed_goes_back_slowly(void **state)
+{
+	struct rig r;
+	int32_t before;
+
+	(void)state;
+	enable(&r);
+	drive_aim(&r.d, DRIVE_GO_OFF);
+	run(&r, 10, 0);
+	r.p.actual = r.p.target = r.p.latched += 400;
+	run(&r, 5, 0);
+	drive_aim(&r.d, DRIVE_GO_ON);
+	before = r.p.actual;
+	for (int i = 0; i < 40; i++) {
+		run(&r, 1, 0);
+		assert_true(abs(r.p.actual - before) <= 40);
+		before = r.p.actual;
+	}
+	assert_true(r.d.arrived);
+	assert_int_equal(r.p.actual, 123456);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+}
+
+static void troubles_are_seen_latched_and_end_by_reset(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.fault = true;
+	r.p.status = 0x08;
+	run(&r, 5, 0);
+	assert_int_equal(r.d.trouble, DRIVE_EMERGENCY);
+	run(&r, 200, 0);
+	assert_true(r.p.fault);
+	drive_aim(&r.d, DRIVE_GO_OFF);
+	drive_reset(&r.d);
+	run(&r, 20, 0);
+	assert_false(r.p.fault);
+	drive_aim(&r.d, DRIVE_GO_ON);
+	run(&r, 20, 0);
+	assert_int_equal(r.d.state, DRIVE_ENABLED);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+}
+
+static void one_that_leaves_its_state_is_not_enabled_again(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.status = 0x40;
+	run(&r, 100, 0);
+	assert_int_equal(r.d.trouble, DRIVE_FELL_OFF);
+	assert_int_not_equal(r.d.state, DRIVE_ENABLED);
+}
+
+static void silence_is_trouble(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.mute = true;
+	run(&r, 1, 0);
+	r.p.mute = false;
+	run(&r, 5, 0);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	r.p.mute = true;
+	run(&r, 3, 0);
+	assert_int_equal(r.d.trouble, DRIVE_NO_ANSWER);
+
+	enable(&r);
+	for (int i = 0; i < 130; i++)
+		period(&r.d, &r.p, 0);
+	assert_int_equal(r.d.trouble, DRIVE_MUTE);
+}
+
+static void a_drive_that_lags_is_stopped(void **state)
+{
+	struct rig r;
+	int32_t at = 0;
+
+	(void)state;
+	enable(&r);
+	/* Jammed: it does not move though it is told to. */
+	for (int i = 0; i < 30 && r.d.trouble == DRIVE_WELL; i++) {
+		r.p.latched = 123456;
+		beat(&r.d);
+		period(&r.d, &r.p, at += 10);
+	}
+	assert_int_equal(r.d.trouble, DRIVE_FOLLOWING);
+	assert_true(at <= 50 + 10 * (DRIVE_SENT + 3));
+	run(&r, 2, at);
+	assert_int_equal(r.p.control, 0x02);
+}
+
+static void one_that_reboots_is_brought_up_again_after_reset(void **state)
+{
+	const struct can_msg boot = { .id = CAN_HEARTBEAT + NODE, .len = 1 };
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.operational = r.p.mapped = false;
+	r.p.mode = 0;
+	r.p.status = 0x40;
+	drive_receive(&r.d, &boot);
+	run(&r, 100, 0);
+	assert_int_equal(r.d.trouble, DRIVE_REBOOTED);
+	assert_int_equal(r.p.mode, 0);
+	drive_aim(&r.d, DRIVE_GO_OFF);
+	drive_reset(&r.d);
+	run(&r, 100, 0);
+	assert_int_equal(r.p.mode, 8);
+	drive_aim(&r.d, DRIVE_GO_ON);
+	run(&r, 20, 0);
+	assert_int_equal(r.d.state, DRIVE_ENABLED);
+}
+
+static void what_a_drive_may_not_have_is_no_trouble(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	r.p.refuses = 0x60c201;
+	run(&r, 60, 0);
+	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+	make(&r);
+	r.p.refuses = 0x606000;
+	run(&r, 60, 0);
+	assert_int_equal(r.d.phase, DRIVE_REFUSED);
+	assert_int_equal(r.d.trouble, DRIVE_MISCONFIGURED);
+	assert_int_equal(r.d.abort_index, 0x6060);
+	assert_int_equal(r.d.abort, 0x06020000);
+	make(&r);
+	r.p.profile = 0x191;
+	run(&r, 60, 0);
+	assert_int_equal(r.d.abort_index, 0x1000);
+	make(&r);
+	r.p.modes = 0x7f;
+	run(&r, 60, 0);
+	assert_int_equal(r.d.abort_index, 0x6502);
+}
+
+static void one_that_takes_its_time_to_begin_is_no_trouble(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	r.p.mute = true;
+	run(&r, 60, 0);
+	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	run(&r, 60, 0);
+	assert_int_equal(r.d.trouble, DRIVE_NO_ANSWER);
+}
+
+static void one_switched_on_late_is_found(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	r.p.deaf = true;
+	run(&r, 1000, 0);
+	assert_int_equal(r.d.phase, DRIVE_SILENT);
+	r.p.deaf = false;
+	run(&r, 200, 0);
+	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+}
+
+static void frames_of_a_wrong_length_are_counted_not_believed(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	for (uint8_t len = 0; len <= 8; len++) {
+		struct can_msg m = { .id = CAN_TPDO1 + NODE, .len = len };
+
+		if (len != 6)
+			assert_true(drive_receive(&r.d, &m));
+	}
+	assert_int_equal(r.d.malformed, 8);
+	assert_int_equal(r.d.actual, 123456);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	assert_false(drive_receive(&r.d, &(struct can_msg) {
+		.id = CAN_TPDO1 + NODE + 1, .len = 6 }));
+}
+
+static void a_billion_pulses_do_not_drift(void **state)
+{
+	const struct drive_config c = { .increments = 524288, .pulses = 5000 };
+	const struct drive_config back = { .increments = -3, .pulses = 7 };
+	struct drive d = { .c = c };
+
+	(void)state;
+	for (int32_t p = -1000000000; p <= 1000000000; p += 999983) {
+		const int32_t i = drive_to_increments(&back, p);
+		const int64_t whole = (int64_t)-3 * p;
+
+		assert_true((int64_t)i * 7 <= whole);
+		assert_true(((int64_t)i + 1) * 7 > whole);
+	}
+	for (int32_t p = -20000000; p <= 20000000; p += 9973) {
+		d.zero = 1 << 30;
+		d.actual = (int32_t)(uint32_t)((1u << 30) +
+			   (uint32_t)drive_to_increments(&c, p));
+		assert_int_equal(drive_place(&d), p);
+	}
+}
+
+static void bits_are_those_of_the_standard(void **state)
+{
+	(void)state;
+	assert_int_equal(can_bits(8), 135);
+	assert_int_equal(can_bits(0), 55);
+}
+
+static void every_statusword_is_a_state_and_every_state_has_a_way_on(
+	void **state)
+{
+	(void)state;
+	for (uint32_t w = 0; w < 0x10000; w++)
+		assert_true(drive_state_of((uint16_t)w) < DRIVE_NSTATES);
+	assert_int_equal(drive_state_of(0x0637), DRIVE_ENABLED);
+	assert_int_equal(drive_state_of(0x0250), DRIVE_DISABLED);
+	assert_int_equal(drive_state_of(0x0218), DRIVE_FAULT);
+	for (int s = 0; s < DRIVE_NSTATES; s++)
+		assert_true(drive_control(DRIVE_GO_STOP,
+					  (enum drive_state)s) != 0x0f);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_drive_is_brought_up_as_cia_402_wants),
+		cmocka_unit_test(enabling_moves_nothing),
+		cmocka_unit_test(it_follows_to_the_increment),
+		cmocka_unit_test(one_that_was_pushed_goes_back_slowly),
+		cmocka_unit_test(troubles_are_seen_latched_and_end_by_reset),
+		cmocka_unit_test(one_that_leaves_its_state_is_not_enabled_again),
+		cmocka_unit_test(silence_is_trouble),
+		cmocka_unit_test(a_drive_that_lags_is_stopped),
+		cmocka_unit_test(one_that_reboots_is_brought_up_again_after_reset),
+		cmocka_unit_test(what_a_drive_may_not_have_is_no_trouble),
+		cmocka_unit_test(one_that_takes_its_time_to_begin_is_no_trouble),
+		cmocka_unit_test(one_switched_on_late_is_found),
+		cmocka_unit_test(frames_of_a_wrong_length_are_counted_not_believed),
+		cmocka_unit_test(a_billion_pulses_do_not_drift),
+		cmocka_unit_test(bits_are_those_of_the_standard),
+		cmocka_unit_test(every_statusword_is_a_state_and_every_state_has_a_way_on),
+	};
+
+	return cmocka_run_group_tests_name("io/drive", tests, NULL, NULL);
+}

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The virtual machine: one boot a mode, its tests read what the guest wrote.
+
+Each mode has a script in guest/, which runs as root in a folder that guest and
+host share and leaves one file a result there.  The folders stay in
+build-vm/runs, with the kernel's log in .vm/console.
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+BUILD = (ROOT / os.environ.get("EDM_BUILD", "build")).resolve()
+BUILD_VM = ROOT / "build-vm"
+BUILD2 = ROOT / "build-gpiod2"
+
+ABSENT = "".join(f"[axis.{a}]\npresent = no\n" for a in "ABCUV")
+
+HEAD = """
+[machine]
+name = vm
+backend = {backend}
+period_us = {period_us}
+overrun_limit = 0
+cpu = {cpu}
+[jump]
+height_mm = 0
+"""
+
+# 1 um a pulse, a pulse in two periods: so fast and no faster.
+AXES = "".join(
+    f"[axis.{a}]\nv_max_mm_s = {{v}}\n" for a in "XYZ") + ABSENT
+
+LINES = """
+[gpio]
+chip = sim0
+step_X = 0
+dir_X = 1
+step_Y = 2
+dir_Y = 3
+step_Z = 4
+dir_Z = !5
+"""
+
+GAP = LINES + """
+spark = sim1:0
+watchdog = sim1:1
+pump = 7
+estop = 16
+limit_X = 17
+limit_Y = 17
+door = 18
+dielectric = 19
+gap_open = 20
+gap_spark = 21
+gap_short = 22
+[gap]
+source = lines
+retract_wait_s = 60
+"""
+
+QUICK_JOB = "G21 G90\nG1 X0.02 F6\nG1 X0\nM30\n"
+SLOW_JOB = "G21 G90\nG1 X1 F2\nG1 X0\nM30\n"
+
+# Every octant, both directions of each axis, an arc each way, three axes.
+PULSES_JOB = """G21 G90 G17
+G1 X0.3 Y0.1 F240
+G1 X0.35 Y0.4
+G3 X0.15 Y0.6 I-0.2 J0
+G1 X-0.1 Y0.5 Z-0.2
+G1 X-0.3 Y0.05 Z0.1
+G2 X-0.1 Y-0.15 I0.2 J0
+G1 X0.05 Y-0.3
+G0 Z0.2
+G0 X0 Y0
+G1 Z0
+M30
+"""
+
+# 50000 pulses at half a pulse a period: 100000 periods.
+LINE_JOB = "G21 G90\nG1 X50 F300\nM30\n"
+
+
+# Under emulation 5 ms leave time for the rest.
+def machine(backend="gpio", period_us=5000, cpu=-1, v=0.1, tail=LINES):
+    return (HEAD.format(backend=backend, period_us=period_us, cpu=cpu) +
+            AXES.format(v=v) + tail)
+
+
+class Run:
+    """What one boot left."""
+
+    def __init__(self, mode, files, *options, limit=600, copies=()):
+        self.folder = BUILD_VM / "runs" / mode
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir(parents=True)
+        lib2 = next((BUILD_VM / "libgpiod2").glob("usr/lib/*/libgpiod.so.3"))
+        files = files | {
+            "env": f"BUILD={BUILD}\nBUILD2={BUILD2}\nLIB2={lib2.parent}\n"
+                   f"PYTHON={ROOT / '.venv/bin/python3'}\n",
+            "lib.sh": (HERE / "guest/lib.sh").read_text(),
+        }
+        for name, text in files.items():
+            (self.folder / name).write_text(text)
+        for path in copies:
+            to = self.folder / path.name
+            (shutil.copytree if path.is_dir() else shutil.copy)(path, to)
+        units = self.folder / "root/usr/lib/systemd/system"
+        if units.is_dir():
+            shutil.copytree(units, self.folder / "units")
+        p = subprocess.run(
+            [HERE / "vm-run", *options, "-t", str(limit), self.folder,
+             HERE / f"guest/{mode}.sh"],
+            env=os.environ | {"VM_BUILD": str(BUILD_VM)},
+            capture_output=True, text=True)
+        self.status, self.output = p.returncode, p.stdout + p.stderr
+
+    def text(self, name):
+        return (self.folder / name).read_text()
+
+    def words(self, name):
+        """Lines of "KEY VALUE" as a dict."""
+        return dict(line.split(" ", 1)
+                    for line in self.text(name).splitlines() if " " in line)
+
+
+VIRTUAL = {
+    "step.ini": machine(period_us=100, v=5),
+    "slow.ini": machine(period_us=100, v=1,
+                        tail=LINES + "high_cycles = 3\nlow_cycles = 2\n"
+                        "dir_setup_cycles = 4\ndir_hold_cycles = 5\n"),
+    "quadrature.ini": machine(period_us=100, v=5,
+                              tail=LINES + "signal = quadrature\n"),
+    "line.ini": machine(period_us=100, v=5),
+    "pulses.ngc": PULSES_JOB,
+    "line.ngc": LINE_JOB,
+}
+
+
+# Increments and pulses of each drive: a fine encoder, turned round, coarse ...
+DRIVES = {"X": (1, 524288, 5000), "Y": (2, -65536, 10000), "Z": (3, 10, 1),
+          "A": (4, 3, 7), "B": (5, -1, 1), "C": (6, 1000, 360)}
+
+
+def drives(axes, tail=""):
+    """A machine of drives, as many as there are letters."""
+    nodes = "".join(f"node_{a} = {DRIVES[a][0]}\n" for a in axes)
+    ratios = "".join(f"[axis.{a}]\ndrive_increments = {DRIVES[a][1]}\n"
+                     f"drive_pulses = {DRIVES[a][2]}\n"
+                     "travel_min_mm = -100\ntravel_max_mm = 100\n"
+                     for a in axes)
+    absent = "".join(f"[axis.{a}]\npresent = no\n"
+                     for a in "XYZABCUV" if a not in axes)
+    return ("[machine]\nname = vm\nbackend = can402\nperiod_us = 10000\n"
+            "overrun_limit = 5\n[jump]\nheight_mm = 0\n"
+            f"[can402]\ninterface = vcan0\n{nodes}{tail}{ratios}{absent}")
+
+
+GAP_FRAMES = """gap_id = 1008
+generator_id = 1009
+following_mm = 0.05
+[gap]
+feed_gain_mm_s_v = 0.1
+feed_max_mm_s = 5
+approach_mm_s = 1
+"""
+
+
+def checked(run):
+    assert run.status == 0, run.output
+    return run

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A boot for each mode, and its tests read what it left."""
+
+import shutil
+import subprocess
+
+import pytest
+from boot import (BUILD, BUILD_VM, GAP, GAP_FRAMES, HERE, LINES, QUICK_JOB, ROOT, Run,
+                  SLOW_JOB, VIRTUAL, checked, drives, machine)
+
+
+@pytest.fixture(scope="session")
+def plain():
+    """Two CPUs in real time."""
+    return checked(Run("plain", {
+        "null.ini": machine("null"),
+        "sim.ini": machine("sim", tail="[sim]\nspeed = 5\n"),
+        "gap.ini": machine(tail=GAP),
+        "no-chip.ini": machine(tail=LINES.replace("sim0", "sim7")),
+        "no-line.ini": machine(tail=LINES + "spark = 32\n"),
+        "busy.ini": machine(tail=LINES + "spark = 6\n"),
+        "rights.ini": machine(),
+        "quick.ngc": QUICK_JOB,
+        "slow.ngc": SLOW_JOB,
+    }))
+
+
+@pytest.fixture(scope="session")
+def virtual():
+    """One CPU in virtual time."""
+    return checked(Run("virtual", VIRTUAL, "-d"))
+
+
+@pytest.fixture(scope="session")
+def can402():
+    """Drives on vcan0, one CPU in virtual time."""
+    guest = HERE / "guest"
+    return checked(Run("can402", {
+        "two.ini": drives("XY"),
+        "two.ngc": "G21 G90\nG1 X2 Y1 F120\nG3 X1 Y2 I-1 J0\nG0 X0.5 Y0.25\n"
+                   "M30\n",
+        "six.ini": drives("XYZABC"),
+        "six.ngc": "G21 G90\nG1 X1 Y-0.5 Z0.3 A2 B-1 C0.7 F60\n"
+                   "G1 X0.2 Y0.1 Z-0.1 A-0.4 B0.5 C0.1\nM30\n",
+        "faults.ini": drives("XY", GAP_FRAMES),
+        "faults.ngc": "G21 G90\nG1 X10 Y3 F60\nM30\n",
+    }, "-d", copies=(guest / "drives.py", guest / "can402.py")))
+
+
+@pytest.fixture(scope="session")
+def systemd():
+    """systemd as PID 1, with what `make install` installs."""
+    root = BUILD_VM / "root"
+    shutil.rmtree(root, ignore_errors=True)
+    subprocess.run(["make", "-s", "-C", ROOT, "install", f"B={BUILD}",
+                    f"DESTDIR={root}", "PREFIX=/usr/local"],
+                   check=True, capture_output=True)
+    stop = BUILD_VM / "stop-thread"
+    subprocess.run(["cc", "-O1", "-o", stop, HERE / "stop-thread.c"],
+                   check=True)
+    return checked(Run("systemd", {"service.ini": machine(cpu=1, tail=GAP),
+                                   "slow.ngc": SLOW_JOB},
+                       "-m", "systemd", copies=(root, stop)))

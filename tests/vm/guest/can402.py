@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is done to drives in the guest: a job, and each fault in turn.
+
+Leaves NAME.json, what the drives saw and when what was done, and NAME.log.
+"""
+import json
+import os
+import pathlib
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import time
+
+R = pathlib.Path(sys.argv[1])
+FIFO = R / "drives.fifo"
+
+
+def frame(can_id, data):
+    """Raw, onto the bus, as someone else's."""
+    with socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as s:
+        s.bind(("vcan0",))
+        s.send(struct.pack("=IB3x8s", can_id, len(data), data.ljust(8, b"\0")))
+
+
+class Scene:
+    """Drives, daemons and a client."""
+
+    def __init__(self, name, nodes):
+        self.name, self.nodes, self.marks = name, nodes, []
+        self.log = open(R / "log", "w+")
+        if not FIFO.exists():
+            os.mkfifo(FIFO)
+        self.fifo = os.open(FIFO, os.O_RDWR)
+        self.drives = subprocess.Popen(
+            [sys.executable, R / "drives.py", "vcan0", FIFO,
+             *map(str, nodes)])
+        self.report("first")        # they are up when they answer
+        self.edmd = subprocess.Popen(
+            [R / "edmd", "--config", R / f"{name}.ini"], stderr=self.log)
+        self.jobs = subprocess.Popen(
+            [R / "edmd-jobs", "--config", R / f"{name}.ini", "--store",
+             R / f"store-{name}"], stderr=self.log)
+
+    def mark(self, what):
+        self.marks.append((time.monotonic(), what))
+
+    def tell(self, *words):
+        os.write(self.fifo, (" ".join(map(str, words)) + "\n").encode())
+
+    def report(self, name):
+        to = R / f"{name}.report"
+        to.unlink(missing_ok=True)
+        self.tell("report", to)
+        while not to.exists():
+            time.sleep(0.02)
+        return json.loads(to.read_text())
+
+    def ctl(self, *args):
+        p = subprocess.run([R / "edmctl", "--machine", "vm", *args],
+                           capture_output=True, text=True)
+        return p.returncode, p.stdout + p.stderr
+
+    def status(self):
+        code, text = self.ctl("--json", "status")
+        return json.loads(text) if code == 0 else {"state": text}
+
+    def until(self, what, seconds, **wanted):
+        """Wait for a status; what it is then."""
+        end = time.monotonic() + seconds
+        while True:
+            s = self.status()
+            if all(s.get(k) in (v if isinstance(v, tuple) else (v,))
+                   for k, v in wanted.items()):
+                break
+            if time.monotonic() > end:
+                self.mark(f"{what}: waited in vain for {wanted}: {s}")
+                break
+            time.sleep(0.05)
+        self.mark(what)
+        return s
+
+    def end(self, **more):
+        self.edmd.send_signal(signal.SIGTERM)
+        self.edmd.wait()
+        time.sleep(0.1)
+        seen = self.report("last")
+        self.jobs.terminate()
+        self.jobs.wait()
+        self.tell("quit")
+        self.drives.wait()
+        self.log.seek(0)
+        pathlib.Path(f"{self.name}.log").write_text(self.log.read())
+        pathlib.Path(f"{self.name}.json").write_text(json.dumps(
+            seen | {"marks": self.marks, "edmd": self.edmd.returncode} | more))
+
+
+RUNNING = ("travel", "approach", "erode", "retract")
+CUTTING = ("approach", "erode")
+
+
+def whole_job(name, nodes):
+    """Boot, enable, a job from end to end without a gap."""
+    s = Scene(name, nodes)
+    answers = [s.ctl("submit", "--name", "first", str(R / f"{name}.ngc"))]
+    s.until("running", 10, state=RUNNING)
+    s.until("idle", 60, state="idle")
+    s.end(answers=answers, status=s.status())
+
+
+def faults(name, nodes):
+    """Each fault in turn while it cuts, and back from it by reset."""
+    s = Scene(name, nodes)
+    out = {}
+    s.tell("gap", 25)
+    s.ctl("submit", str(R / f"{name}.ngc"))
+
+    def mend_link():
+        subprocess.run(["ip", "link", "set", "vcan0", "up"], check=True)
+
+    def stop_edmd():
+        s.edmd.send_signal(signal.SIGSTOP)
+        time.sleep(0.2)
+        s.edmd.send_signal(signal.SIGCONT)
+
+    plan = [
+        ("emcy", lambda: s.tell("emcy", 1, "2310"), None),
+        ("leave", lambda: s.tell("leave", 2), None),
+        ("mute", lambda: s.tell("mute", 1), lambda: s.tell("unmute", 1)),
+        ("sync", stop_edmd, None),
+        ("skip", lambda: s.tell("skip", 2, 5), None),
+        ("jam", lambda: s.tell("jam", 1), lambda: s.tell("unjam", 1)),
+        ("reboot", lambda: s.tell("reboot", 2), None),
+        ("bus-off", lambda: frame(0x20000040, bytes(8)),
+         lambda: frame(0x20000100, bytes(8))),
+        ("down", lambda: subprocess.run(
+            ["ip", "link", "set", "vcan0", "down"], check=True), mend_link),
+        ("master", lambda: frame(0x000, b"\x80\x01"), None),
+    ]
+    for what, harm, mend in plan:
+        s.until(f"{what}: cutting", 10, state=CUTTING)
+        time.sleep(0.3)
+        s.mark(f"{what}: harm")
+        harm()
+        got = s.until(f"{what}: fault", 5, state="fault")
+        time.sleep(0.3)
+        if mend:
+            mend()
+            s.mark(f"{what}: mended")
+        early = s.ctl("start")
+        time.sleep(0.2)
+        reset = s.ctl("reset")
+        s.until(f"{what}: reset", 2, state=("hold", "fault"))
+        time.sleep(0.5)
+        held = s.status()
+        for _ in range(40):             # the drives may still come up
+            start = s.ctl("start")
+            if start[0] == 0:
+                break
+            time.sleep(0.05)
+        s.mark(f"{what}: start")
+        out[what] = {"fault": got.get("fault"), "early": early,
+                     "reset": reset, "held": held.get("state"),
+                     "start": start}
+    s.until("cutting again", 10, state=CUTTING)
+    out |= harmless(s)
+    s.tell("gap", 45)
+    s.until("idle", 60, state="idle")
+    s.end(faults=out, status=s.status())
+
+
+def harmless(s):
+    """What is on a bus and must change nothing."""
+    s.mark("harmless: begin")
+    s.tell("drop", 1, 1)
+    s.tell("skip", 2, 1)
+    for size in range(9):
+        for base in (0x180, 0x080, 0x700, 0x580):
+            # Heartbeats of a wrong length, EMCY without a code in them, ...
+            if (base, size) not in ((0x180, 6), (0x080, 8), (0x700, 1)):
+                frame(base + 1, bytes(size))
+        if size not in (2, 6):
+            frame(0x3f0, bytes(size))
+    for base, size in (0x180, 6), (0x080, 8), (0x700, 1), (0x580, 8):
+        frame(base + 99, b"\xff" * size)
+    frame(0x581, bytes.fromhex("8040600000000206"))
+    frame(0x80000181, bytes(6))         # extended
+    frame(0x40000181, b"")              # remote
+    for _ in range(300):
+        frame(0x181, b"\x37")
+    time.sleep(0.5)
+    got = s.status()
+    s.mark("harmless: end")
+    return {"harmless": got}
+
+
+if __name__ == "__main__":
+    whole_job("two", [1, 2])
+    whole_job("six", [1, 2, 3, 4, 5, 6])
+    faults("faults", [1, 2])

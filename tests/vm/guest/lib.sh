@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# Sourced by the scripts that run in the guest, in the job's folder.  `env`
+# there names where the programs are: BUILD, BUILD2 and LIB2 on libgpiod 2.x.
+# They run from memory: while the guest waits for a file, virtual time runs away.
+. ./env
+T=/sys/kernel/tracing
+R=/run/edmd-test
+mkdir -p $R
+cp $BUILD/edmd $BUILD/edmd-jobs $BUILD/edmctl *.ini *.ngc $R/
+cp $BUILD2/edmd $R/edmd2
+cp $LIB2/libgpiod.so.3* $R/
+export LD_LIBRARY_PATH=$R
+chmod 755 $R $R/*
+[ -e $T/trace ] || mount -t tracefs tracefs $T
+
+# pull CHIP LINE up|down - what a switch does to an input
+pull() { echo pull-$3 > $(chip_dir $1)/sim_gpio$2/pull; }
+
+# level CHIP LINE - what a program drives
+level() { cat $(chip_dir $1)/sim_gpio$2/value; }
+
+chip_dir() {
+	c=/sys/kernel/config/gpio-sim/$1
+	echo /sys/devices/platform/$(cat $c/dev_name)/$(cat $c/bank0/chip_name)
+}
+
+# Trace events number lines from the chip's base.
+base() {
+	for g in /sys/class/gpio/gpiochip*; do
+		[ "$(cat $g/label)" = $1 ] && cat $g/base && return
+	done
+}
+
+trace_start() {	# [FILTER]
+	echo mono > $T/trace_clock
+	echo ${TRACE_KB:-40000} > $T/buffer_size_kb
+	echo "${1:-0}" > $T/events/gpio/gpio_value/filter
+	: > $T/trace
+	echo 1 > $T/events/gpio/gpio_value/enable
+}
+
+# "TIME LINE LEVEL" of each write, lines counted from the chip's first
+trace_end() {	# CHIP FILE
+	echo 0 > $T/events/gpio/gpio_value/enable
+	cat $T/per_cpu/cpu*/stats | grep overrun > $R/overrun
+	awk -v base=$(base $1) 'NF > 4 && $(NF - 3) == "gpio_value:" {
+		sub(":", "", $(NF - 4))
+		print $(NF - 4), $(NF - 2) - base, $NF }' $T/trace > $R/trace
+	cp $R/trace $2
+	awk '$NF != 0 { print "trace lost", $0 }' $R/overrun
+}
+
+edmd_start() {	# PROGRAM CONFIG
+	$1 --config $2 2>$R/edmd.log &
+	edmd=$!
+	n=0
+	until grep -q 'edmd: machine' $R/edmd.log || [ $n -ge 100 ]; do
+		kill -0 $edmd 2>/dev/null || break
+		n=$((n + 1)); sleep 0.05
+	done
+}
+
+jobs_start() {	# CONFIG
+	rm -rf $R/store; mkdir -p $R/store
+	$R/edmd-jobs --config $1 --store $R/store 2>$R/jobs.log &
+	jobs=$!
+	n=0
+	until ctl --timeout 1 status >/dev/null 2>&1 || [ $n -ge 20 ]; do
+		n=$((n + 1)); sleep 0.05
+	done
+}
+
+daemons_end() {	# NAME
+	kill $jobs; wait $jobs
+	kill $edmd; wait $edmd
+	echo $? > $1.edmd-rc
+	cat $R/edmd.log $R/jobs.log > $1.log
+}
+
+ctl() { $R/edmctl --machine vm "$@"; }
+
+# status_is PATTERN - wait for it; says what it is if it does not come
+status_is() {
+	n=0
+	until ctl status > $R/status 2>&1 && grep -q "$1" $R/status; do
+		n=$((n + 1))
+		[ $n -lt 40 ] || { echo "no '$1'"; cat $R/status; return 1; }
+		sleep 0.05
+	done
+}

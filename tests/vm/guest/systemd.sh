@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# systemd as PID 1, the units as `make install` puts them.
+. ./lib.sh
+unit() { systemctl show -P $1 edmd.service; }
+{
+echo "pid1 $(cat /proc/1/comm)"
+cp -r root/. /
+cp service.ini /etc/edmd/machine.ini
+systemd-sysusers edmd.conf
+# There is no udev here; this is what 60-edmd.rules does.
+chgrp gpio /dev/gpiochip*; chmod 660 /dev/gpiochip*
+
+systemctl start edmd.service
+echo "start $?"
+echo "active $(unit ActiveState)/$(unit SubState)"
+echo "type $(unit Type)"
+pid=$(unit MainPID)
+echo "user $(ps -o user= -p $pid)"
+echo "fifo $(chrt -a -p $pid | grep -c SCHED_FIFO)"
+systemctl start edmd-jobs.service
+pull sim0 20 up
+} > start 2>&1
+
+{
+status_is 'edmd *ok' && ctl submit slow.ngc
+status_is 'state *approach'
+echo "spark $(level sim1 0)"
+trace_start
+tid=$(chrt -a -p $pid | sed -n "s/.*pid \([0-9]*\)'s.*SCHED_FIFO/\1/p")
+read -r up _ < /proc/uptime
+echo "stopped-at $up"
+./stop-thread $tid &
+n=0
+until [ "$(unit NRestarts)" != 0 ] || [ $n -ge 100 ]; do
+	n=$((n + 1)); sleep 0.1
+done
+read -r up _ < /proc/uptime
+echo "restart-seen-at $up"
+wait
+echo "restarts $(unit NRestarts)"
+echo "spark-after-kill $(level sim1 0)"
+status_is 'state *hold'
+echo "spark-held $(level sim1 0)"
+trace_end sim1 watchdog.trace
+echo "active-again $(unit ActiveState)/$(unit SubState)"
+ctl start; status_is 'state *approach'
+echo "spark-again $(level sim1 0)"
+ctl stop; status_is 'state *idle'
+echo "spark-idle $(level sim1 0)"
+systemctl stop edmd.service
+echo "stop $? $(unit Result)"
+} > watchdog 2>&1
+journalctl -u edmd -u edmd-jobs --no-pager -o short-monotonic > journal
+true

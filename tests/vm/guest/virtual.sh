@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# One CPU in virtual time: pulses and their timing.
+. ./lib.sh
+J=$PWD
+cp "$(command -v cyclictest)" $R/
+cd $R
+uname -v > uname
+
+job_traced() {	# NAME PROGRAM CONFIG JOB
+	edmd_start $2 $3
+	jobs_start $3
+	trace_start ${5:-}
+	ctl submit --wait $4 > $1.job 2>&1
+	echo $? > $1.rc
+	# To end a trace the kernel patches itself, and delays everyone.
+	ctl status > $1.status 2>&1
+	trace_end sim0 $1.trace
+	daemons_end $1
+}
+
+job_traced step1 ./edmd step.ini pulses.ngc
+job_traced step2 ./edmd2 step.ini pulses.ngc
+job_traced slow ./edmd slow.ini pulses.ngc
+job_traced quadrature ./edmd quadrature.ini pulses.ngc
+
+# A long straight line at the fastest pulses there are: only its step line.
+job_traced line ./edmd line.ini line.ngc gpio==$(base sim0)
+
+# How late edmd wakes, and cyclictest at the same priority and interval.
+edmd_start ./edmd line.ini
+sleep 1
+ctl --json latency 5 > latency
+kill $edmd; wait $edmd
+./cyclictest -m -q -t1 -p80 -i100 -D5 -h200 > cyclictest.txt
+chmod a+r *; cp *.trace *.job *.rc *.log *.edmd-rc *.status latency cyclictest.txt uname $J/
+true

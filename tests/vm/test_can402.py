@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""CiA 402 drives played by canopen on vcan0, in virtual time.
+
+What the drives saw is judged here; guest/can402.py did it to them.
+"""
+import json
+import math
+
+import pytest
+from boot import DRIVES
+
+MOVING = ("enabled", "stopping", "reacting")
+PERIOD_S = 0.01
+
+
+class Seen:
+    def __init__(self, run, name):
+        d = json.loads(run.text(f"{name}.json"))
+        self.rows = [(t, flags & 1, [state for state, _ in drives],
+                      [place for _, place in drives])
+                     for t, flags, drives in d["rows"]]
+        self.at = {what: t for t, what in d["marks"]}
+        self.marks = [what for _, what in d["marks"]]
+        self.d, self.log = d, run.text(f"{name}.log")
+
+    def between(self, a, b):
+        return [r for r in self.rows if self.at[a] <= r[0] <= self.at[b]]
+
+    def went_as_planned(self):
+        assert not [m for m in self.marks if "in vain" in m], self.log
+        assert self.d["edmd"] == 0
+
+
+@pytest.fixture(scope="module")
+def faults(can402):
+    return Seen(can402, "faults")
+
+
+def increments(axis, mm):
+    _, per, pulses = DRIVES[axis]
+    return math.floor(round(mm * 1000) * per / pulses)
+
+
+def stands_at(seen, axes):
+    """Each drive is where the machine's last pulse says, to the increment."""
+    pos = seen.d["status"]["pos_mm"]
+    at = [1000 * DRIVES[a][0] + increments(a, pos["XYZABCUV".index(a)])
+          for a in axes]
+    print(f"{axes}: pulses {[round(p * 1000) for p in pos]}, increments {at}")
+    assert seen.rows[-1][3] == at
+
+
+def test_the_kernel_has_nothing_to_complain_of(can402):
+    assert "PREEMPT_RT" in can402.text("uname")
+    assert can402.text("kernel") == ""
+
+
+@pytest.mark.parametrize("name, axes, end", [
+    ("two", "XY", [0.5, 0.25]),
+    ("six", "XYZABC", [0.2, 0.1, -0.1, -0.4, 0.5, 0.1]),
+])
+def test_a_job_from_boot_to_end_leaves_drives_where_the_pulses_do(
+        can402, name, axes, end):
+    seen = Seen(can402, name)
+    seen.went_as_planned()
+    assert "program 1 ended: done" in seen.log
+    assert seen.d["status"]["pos_mm"][:len(axes)] == end
+    stands_at(seen, axes)
+
+
+@pytest.mark.parametrize("name", ["two", "six", "faults"])
+def test_nothing_moves_that_is_not_enabled(can402, name):
+    rows = Seen(can402, name).rows
+    enabled = 0
+    for (_, _, states, was), (_, _, _, now) in zip(rows, rows[1:]):
+        for state, a, b in zip(states, was, now):
+            assert state in MOVING or a == b
+            enabled += state == "enabled"
+    assert enabled > 100
+
+
+@pytest.mark.parametrize("name", ["two", "six", "faults"])
+def test_enabling_moves_nothing_far(can402, name):
+    """resync_mm_s is 1 mm/s: 10 pulses in a period, at the most."""
+    rows = Seen(can402, name).rows
+    nodes = {DRIVES[a][0]: a for a in DRIVES}
+    seen = 0
+    for (_, _, states, was), (_, _, after, now) in zip(rows, rows[1:]):
+        for i, (before, state) in enumerate(zip(states, after)):
+            if before == "enabled" or state != "enabled":
+                continue
+            _, per, pulses = DRIVES[nodes[i + 1]]
+            assert abs(now[i] - was[i]) <= abs(11 * per / pulses) + 1
+            seen += 1
+    assert seen >= len(rows[0][2])
+
+
+# What is done, its fault, in the log, and SYNCs until sparks are off; 0: SYNC
+# itself is what is missing.
+FAULTS = [
+    ("emcy", "drive", "drive X (node 1): emergency 2310", 4),
+    ("leave", "drive", "drive Y (node 2) left operation enabled", 4),
+    ("mute", "drive", "drive X (node 1) sends no heartbeat", 30),
+    ("sync", "overrun", "emergency 8700", 0),
+    ("skip", "drive", "drive Y (node 2) does not answer to SYNC", 7),
+    ("jam", "following", "drive X (node 1) is too far from its target", 25),
+    ("reboot", "drive", "drive Y (node 2) has restarted", 4),
+    ("bus-off", "bus", "vcan0: bus off", 4),
+    ("down", "bus", "vcan0 is down", 0),
+    ("master", "bus", "another master on the bus", 4),
+]
+
+
+def test_every_step_of_the_plan_was_done(faults):
+    faults.went_as_planned()
+    assert set(faults.d["faults"]) == {f[0] for f in FAULTS} | {"harmless"}
+
+
+@pytest.mark.parametrize("what, fault, text, syncs", FAULTS)
+def test_a_fault_has_its_name_and_its_words(faults, what, fault, text, syncs):
+    assert faults.d["faults"][what]["fault"] == fault
+    assert text in faults.log
+
+
+@pytest.mark.parametrize("what, fault, text, syncs", FAULTS)
+def test_a_fault_ends_sparks_and_motion(faults, what, fault, text, syncs):
+    before = faults.between(f"{what}: cutting", f"{what}: harm")
+    after = [r for r in faults.rows if r[0] > faults.at[f"{what}: harm"]]
+    assert before[-1][1] == 1, "no sparks to end"
+    # A row is older than the generator's frame of its period.
+    if syncs == 0:
+        gap = next(i for i, (a, b) in
+                   enumerate(zip(before[-1:] + after, after))
+                   if b[0] - a[0] > 5 * PERIOD_S)
+        after, syncs = after[gap:], 3
+    off = next(i for i, r in enumerate(after) if not r[1])
+    print(f"{what}: sparks off after {off} SYNCs, "
+          f"{(after[off][0] - faults.at[f'{what}: harm']) * 1e3:.0f} ms")
+    assert off <= syncs
+    still = [r for r in faults.between(f"{what}: fault", f"{what}: start")
+             if r[0] > after[off][0] + 0.1]
+    held = [r for r in still if "enabled" not in r[2]]
+    assert len(held) > 20
+    assert all(r[1] == 0 and r[3] == held[0][3] for r in held)
+    # Only what the start itself does comes after them.
+    assert still[:len(held)] == held
+
+
+@pytest.mark.parametrize("what, fault, text, syncs", FAULTS)
+def test_after_a_fault_an_operator_resets_and_starts(
+        faults, what, fault, text, syncs):
+    got = faults.d["faults"][what]
+    assert got["early"][0] != 0, "a start without a reset was taken"
+    assert got["reset"][0] == 0 and got["start"][0] == 0
+    assert got["held"] == "hold", "a reset alone started"
+
+
+def test_what_is_malformed_is_told_a_few_times_and_changes_nothing(faults):
+    assert faults.d["faults"]["harmless"]["fault"] == "none"
+    rows = faults.between("harmless: begin", "harmless: end")
+    assert len(rows) > 40
+    assert all(r[1] == 1 and r[2] == ["enabled"] * 2 for r in rows)
+    told = [line for line in faults.log.splitlines() if "wrong length" in line]
+    assert 1 <= len(told) <= 10
+
+
+def test_after_all_that_the_job_ends_where_its_pulses_do(faults):
+    assert "program 1 ended: done" in faults.log
+    assert faults.d["status"]["pos_mm"][:2] == [10, 3]
+    stands_at(faults, "XY")

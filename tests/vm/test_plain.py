@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""On a PREEMPT_RT kernel with two CPUs: what depends on no timing."""
+import pytest
+
+
+def test_the_kernel_is_preempt_rt(plain):
+    assert "PREEMPT_RT" in plain.text("uname")
+    assert plain.text("realtime").strip() == "1"
+
+
+def test_the_kernel_has_nothing_to_complain_of(plain):
+    assert plain.text("kernel") == ""
+
+
+@pytest.mark.parametrize("machine", ["null", "sim"])
+def test_a_job_sent_by_a_client_is_done(plain, machine):
+    assert plain.text(f"smoke-{machine}.rc") == "0\n", \
+        plain.text(f"smoke-{machine}") + plain.text(f"smoke-{machine}.log")
+    assert plain.text(f"smoke-{machine}.edmd-rc") == "0\n"
+
+
+@pytest.mark.parametrize("library", ["", "2"])
+@pytest.mark.parametrize("what, code, found, mend", [
+    ("no-chip", 78, "gpio.step_X: chip sim7: No such file", "gpiodetect"),
+    ("no-line", 78, "gpio.spark: line 32 of sim0, which has 32", "0 to 31"),
+    ("busy", 69, "gpio.spark: line 6 of sim0 is in use by gpioset",
+     "gpioinfo"),
+    ("rights", 77, "gpio.step_X: chip sim0: Permission denied",
+     "usermod -aG gpio"),
+])
+def test_what_it_cannot_have_is_refused_with_line_and_remedy(
+        plain, library, what, code, found, mend):
+    text = plain.text(f"{what}.txt{library}")
+    assert found in text and mend in text
+    assert plain.text(f"{what}.rc{library}") == f"{code}\n"
+
+
+@pytest.mark.parametrize("when, spark", [
+    ("approach", 1), ("erode", 1), ("retract", 0), ("e-stop", 0),
+    ("limit-switch", 0), ("door", 0), ("dielectric", 0)])
+def test_sparks_are_on_where_they_may_be(plain, when, spark):
+    assert f"{when}: spark {spark}\n" in plain.text("switches"), \
+        plain.text("switches") + plain.text("lost.log")
+
+
+def test_a_lost_chip_ends_sparks_pulses_and_the_watchdog(plain):
+    text = plain.text("lost")
+    assert "before: spark 1\n" in text, text + plain.text("switches")
+    assert "io-lost: spark 0\n" in text, text
+    assert "watchdog moved 0\n" in text, text
+    assert "io-lost" in plain.text("lost.log")

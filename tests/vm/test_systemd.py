@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""systemd as PID 1, and the unit as `make install` puts it."""
+
+
+def test_the_service_says_itself_when_it_is_ready(systemd):
+    said = systemd.words("start")
+    assert said["pid1"] == "systemd"
+    assert said["type"] == "notify"
+    assert said["start"] == "0", systemd.text("journal")
+    assert said["active"] == "active/running"
+
+
+def test_it_runs_as_a_user_with_one_thread_in_real_time(systemd):
+    said = systemd.words("start")
+    assert said["user"] == "edmd"
+    assert said["fifo"] == "1"
+
+
+def test_the_unit_lets_it_have_its_chips(systemd):
+    assert "backend gpio" in systemd.text("journal")
+    assert systemd.words("watchdog")["spark"] == "1", \
+        systemd.text("watchdog") + systemd.text("journal")
+
+
+def watchdog_edges(systemd):
+    """Times of the edges of the watchdog's wave: line 1 of chip sim1."""
+    was, edges = None, []
+    for row in systemd.text("watchdog.trace").splitlines():
+        t, line, level = row.split()
+        if line == "1":
+            if was not in (None, level):
+                edges.append(float(t))
+            was = level
+    return edges
+
+
+def test_the_watchdogs_wave_ends_with_the_cycle(systemd):
+    """What stops the generator while nobody can switch it off."""
+    said = systemd.words("watchdog")
+    stopped = float(said["stopped-at"])
+    edges = watchdog_edges(systemd)
+    gap, begun = max((b - a, a) for a, b in zip(edges, edges[1:]))
+    print(f"no edge for {gap:.2f} s, from {begun - stopped:.2f} s after the "
+          "stop was asked for")
+    assert gap > 1.5
+    assert -0.5 < begun - stopped < 5
+
+
+def test_systemd_restarts_a_cycle_that_stands(systemd):
+    said = systemd.words("watchdog")
+    took = float(said["restart-seen-at"]) - float(said["stopped-at"])
+    print(f"restart seen {took:.1f} s after the stop was asked for")
+    assert said["restarts"] == "1", systemd.text("journal")
+    assert said["active-again"] == "active/running"
+    assert "Watchdog timeout" in systemd.text("journal")
+    assert took < 10
+
+
+def test_no_spark_comes_back_before_a_start(systemd):
+    said = systemd.words("watchdog")
+    assert said["spark-after-kill"] == "0"
+    assert said["spark-held"] == "0"
+    assert said["spark-again"] == "1"
+    assert said["spark-idle"] == "0"
+    assert said["stop"] == "0 success"
