@@ -195,7 +195,8 @@ check:
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
 	@$(MAKE) --no-print-directory SAN=1 run-units
 	@$(MAKE) --no-print-directory TSAN=1 run-crossings
-	@$(MAKE) --no-print-directory fuzz FUZZ_S=20 FUZZ_SEED=1
+	@$(MAKE) --no-print-directory fuzz FUZZ_SEED=1 \
+		FUZZ_RUNS=500000 FUZZ_S=120
 	@$(MAKE) --no-print-directory clang
 	@$(MAKE) --no-print-directory vm
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system tests/vm
@@ -300,7 +301,10 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(Q)$(B)/edmsim --machine examples/machine.ini --quiet \
 		--plot docs/pictures/demo.png examples/cavity.ngc
 
+# A seed and a number of runs start from the examples alone, and try the same
+# inputs on every machine; without, what earlier runs found is built upon.
 FUZZ_S	?= 60
+FUZZ_RUNS ?= -1
 FUZZ_SEED ?= 0
 FUZZ	:= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 SEEDS_fuzz_nc	  = examples/*.ngc
@@ -310,8 +314,10 @@ SEEDS_fuzz_tech	  = examples/*.tech examples/*.enc
 fuzz: $(FUZZ:%=run-%)
 
 run-fuzz_%: $(B)/fuzz_%
+	$(Q)$(if $(filter-out 0,$(FUZZ_SEED)),rm -rf $(B)/corpus_$*)
 	$(Q)mkdir -p $(B)/corpus_$* && cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/
-	$(Q)$< -seed=$(FUZZ_SEED) -max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
+	$(Q)$< -seed=$(FUZZ_SEED) -runs=$(FUZZ_RUNS) \
+		-max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
 		-print_final_stats=1 $(B)/corpus_$* 2>$<.log || \
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log

@@ -8,7 +8,7 @@
  * rounded centre.  If it falls a unit beside, the centre is sought among the
  * units around the nearest place that is as far from both ends.  Where none
  * fits, or more than half a circle would take the centre far, the arc is cut
- * in two.
+ * in two, until what is left is as straight as a line.
  */
 #include "code/emit.h"
 #include "code/threeb.h"
@@ -21,6 +21,9 @@
 
 /* Shorter than this an arc is as well a line. */
 #define ARC_MIN_UNITS	4.0
+
+/* One that no record says, bent less than this, is as well a line. */
+#define BEND_MAX_UNITS	0.5
 
 /* Farther beside its end no arc is written. */
 #define MISS_MAX_UNITS	2
@@ -198,6 +201,7 @@ static int put_arc(struct threeb_writer *w, const struct wanted *want)
 {
 	const double radius = hypot((double)w->at.x - want->cx,
 				    (double)w->at.y - want->cy);
+	const double bend = radius * (1 - cos(want->sweep / 2));
 	struct attempt t;
 
 	if (fabs(want->sweep) * radius < ARC_MIN_UNITS)
@@ -205,11 +209,13 @@ static int put_arc(struct threeb_writer *w, const struct wanted *want)
 	t = try_centre(w, want, llround(want->cx), llround(want->cy));
 	if (t.miss > 0 && !want->full)
 		t = try_bisector(w, want, t);
+	if (t.miss > 0 && !want->full && bend < BEND_MAX_UNITS)
+		return put_line(w, want->end);
 	if (t.miss > 0 && fabs(want->sweep) * radius > 4 * ARC_MIN_UNITS)
 		return put_halves(w, want);
 	if (t.miss <= MISS_MAX_UNITS)
 		return put_attempt(w, &t);
-	if (radius * (1 - cos(want->sweep / 2)) < 1)
+	if (bend < 1)
 		return put_line(w, want->end);
 	return emit_refuse(w->diag, w->line, "an arc with a radius up to "
 			   "249999999 units", "an arc that no record says");

@@ -80,15 +80,20 @@ static const struct interp_tech_table *tech(void)
 	return t;
 }
 
-/* Compile @text; NULL if it was refused, which @must_take forbids. */
+/*
+ * Compile @text; NULL if it was refused, which @must_take forbids.  What was
+ * written may have more records than its source: an arc that none says is cut.
+ */
 static void *compile(const struct interp_text *text,
 		     const struct interp_machine *m, bool must_take,
 		     struct interp_program *p)
 {
 	const struct interp_build_options bo = { .machine = m };
 	const struct interp_compile_options o = {
-		.nc = { .machine = m, .tech = text->bytes % 3 ? tech() : NULL, .segs_max = 1000,
-			.executed_max = 10000, .feed_mm_s = 1 },
+		.nc = { .machine = m, .tech = text->bytes % 3 ? tech() : NULL,
+			.segs_max = must_take ? UINT32_MAX : 1000,
+			.executed_max = must_take ? UINT32_MAX : 10000,
+			.feed_mm_s = 1 },
 		.threeb.offset_um = 100,
 	};
 	struct interp_build *b = interp_build_create(&bo);

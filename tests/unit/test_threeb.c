@@ -106,6 +106,21 @@ static void the_published_records_are_written(void **state)
 	compile_done(&c);
 }
 
+/* Its centre is beyond any record; cut until short it was 4,096 lines. */
+static void an_arc_too_flat_for_a_record_is_one_line(void **state)
+{
+	struct compiled c = compile_ready("3b");
+	struct emitted e = { 0 };
+
+	(void)state;
+	compile(&c, "B990909900 B0 B39600 GY NR1\nDD\n");
+	emit_threeb(&e, &c);
+	assert_int_equal(e.rc, 0);
+	assert_string_equal(e.text, "B1 B39600 B39600 GY L2\nDD\n");
+	emit_done(&e);
+	compile_done(&c);
+}
+
 /* -- How records are written ----------------------------------------------- */
 
 static void each_form_of_a_record_is_the_same_record(void **state)
@@ -422,6 +437,7 @@ int main(void)
 		cmocka_unit_test(
 			the_published_records_end_where_their_iso_code_does),
 		cmocka_unit_test(the_published_records_are_written),
+		cmocka_unit_test(an_arc_too_flat_for_a_record_is_one_line),
 		cmocka_unit_test(each_form_of_a_record_is_the_same_record),
 		cmocka_unit_test(a_line_on_an_axis_needs_no_x_and_y),
 		cmocka_unit_test(a_record_of_no_length_is_no_segment),
