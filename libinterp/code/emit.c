@@ -60,6 +60,18 @@ int emit_refuse(struct interp_diag *diag, uint32_t line, const char *wanted,
 	return -EINVAL;
 }
 
+int emit_refuse_sensed(struct interp_diag *diag, const struct interp_seg *seg)
+{
+	if (!(seg->flags & INTERP_SEG_SENSED))
+		return 0;
+	return emit_refuse(diag, seg->line, "moves with an end of their own",
+			   "a move until %s",
+			   seg->flags & INTERP_SEG_TOUCH ? "contact" :
+			   seg->flags & INTERP_SEG_HALF ?
+			   "half between two contacts" :
+			   "the end of the travel");
+}
+
 const char *emit_kind_name(uint8_t kind)
 {
 	static const char *const names[INTERP_NKINDS] = {

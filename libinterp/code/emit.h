@@ -32,6 +32,12 @@ int emit_refuse(struct interp_diag *diag, uint32_t line, const char *wanted,
 		const char *found, ...)
 	__attribute__((cold, format(printf, 4, 5)));
 
+/**
+ * emit_refuse_sensed() - refuse a move that ends where the machine says: as a
+ * plain move it would cut to where it may at most lead.  Return: 0 or -EINVAL.
+ */
+int emit_refuse_sensed(struct interp_diag *diag, const struct interp_seg *seg);
+
 /** emit_kind_name() - of a segment, for a refusal. */
 const char *emit_kind_name(uint8_t kind);
 

@@ -155,7 +155,10 @@ static void condition(struct iso_writer *o, struct words *w,
 static int words_of(struct iso_writer *o, struct words *w, uint32_t i)
 {
 	const struct interp_seg *seg = &o->p->segs[i];
+	const int rc = emit_refuse_sensed(o->diag, seg);
 
+	if (rc)
+		return rc;
 	condition(o, w, seg);
 	switch (seg->kind) {
 	case INTERP_LINE:

@@ -290,7 +290,10 @@ static int motion(struct threeb_writer *w, uint32_t i)
 	const struct interp_seg *seg = &w->p->segs[i];
 	const uint32_t beside = emit_moved(w->p, i) &
 				~(1u << INTERP_X | 1u << INTERP_Y);
+	const int rc = emit_refuse_sensed(w->diag, seg);
 
+	if (rc)
+		return rc;
 	if (beside)
 		return emit_refuse(w->diag, w->line, "lines and arcs in XY",
 				   "%s with a move of %c",

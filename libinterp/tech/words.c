@@ -96,6 +96,8 @@ static void measure(const struct interp_tech_table *t, struct columns *c)
 				c->width[i] = (int)strlen(cell);
 		}
 	}
+	if (!c->given)			/* a head has at least one field */
+		c->given = 1;
 }
 
 /* @r NULL: the head. */

@@ -211,6 +211,20 @@ static void a_table_written_and_read_is_the_same_table(void **state)
 	interp_tech_table_destroy(b);
 }
 
+static void a_table_that_gives_nothing_is_taken_again(void **state)
+{
+	struct interp_tech_table *a = taken("condition, servo_v\nE2,\n"), *b;
+	struct text text;
+
+	(void)state;
+	write_out(a, &text);
+	b = taken(text.at);
+	assert_int_equal(b->nrows, 1);
+	assert_int_equal(b->row[0].number, 2);
+	interp_tech_table_destroy(a);
+	interp_tech_table_destroy(b);
+}
+
 static void every_value_of_every_field_comes_back(void **state)
 {
 	struct interp_tech_table *t, *u;
@@ -358,6 +372,7 @@ int main(void)
 		cmocka_unit_test(sequences_and_inline_columns_are_kept_in_order),
 		cmocka_unit_test(what_is_wrong_is_refused_at_its_place),
 		cmocka_unit_test(a_table_written_and_read_is_the_same_table),
+		cmocka_unit_test(a_table_that_gives_nothing_is_taken_again),
 		cmocka_unit_test(every_value_of_every_field_comes_back),
 		cmocka_unit_test(an_enc_row_becomes_a_condition),
 		cmocka_unit_test(an_enc_row_that_is_none_is_refused),

@@ -333,6 +333,26 @@ static void iso_code_is_the_same_program_again(void **state)
 	compile_done(&b);
 }
 
+/* What may lead 400 mm but ends at contact must not become a cut of 400 mm. */
+static void a_move_until_contact_is_not_written(void **state)
+{
+	struct compiled c = compile_ready("generic");
+	struct emitted e = { 0 };
+
+	(void)state;
+	compile(&c, "G1 X1 F60\nG80 X-\n");
+	emit_threeb(&e, &c);
+	assert_int_equal(e.rc, -EINVAL);
+	assert_int_equal(e.diag.line, 2);
+	assert_non_null(strstr(e.diag.found, "contact"));
+	emit_done(&e);
+	emit_iso(&e, &c);
+	assert_int_equal(e.rc, -EINVAL);
+	assert_non_null(strstr(e.diag.found, "contact"));
+	emit_done(&e);
+	compile_done(&c);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -343,6 +363,7 @@ int main(void)
 		cmocka_unit_test(what_is_left_out_is_counted),
 		cmocka_unit_test(at_45_degrees_the_direction_is_fixed),
 		cmocka_unit_test(iso_code_is_the_same_program_again),
+		cmocka_unit_test(a_move_until_contact_is_not_written),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
