@@ -27,8 +27,11 @@
 
 #include <math.h>
 
-/* Of a root between two ends; three in a row at least halve what is left. */
-#define TRIES	150
+/* Of a root between two ends; bisection alone would need some 50. */
+#define TRIES	100
+
+/* Left so near to a root, of what the ends miss it by. */
+#define ENOUGH	1e-14
 
 struct ramp {
 	double dt[INTERP_SCURVE_RAMP], j[INTERP_SCURVE_RAMP];
@@ -208,36 +211,57 @@ static double beyond(const struct leave *k, double t)
 			    k->way);
 }
 
+/* A place tried, and what became of it. */
+struct tried {
+	double t, f;
+};
+
 /*
- * The root between two ends of different sign: regula falsi, where the end
- * that is kept has its value halved, and every third try is in the middle.
+ * Where between @a and @b to look next, as a share of the way: inverse
+ * quadratic through all three where that is sure to fall between, else the
+ * middle.
+ */
+static double share(const struct tried *a, const struct tried *b,
+		    const struct tried *c)
+{
+	const double xi = (a->t - b->t) / (c->t - b->t);
+	const double phi = (a->f - b->f) / (c->f - b->f);
+
+	if (!(phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi))
+		return 0.5;
+	return a->f / (b->f - a->f) * c->f / (b->f - c->f) +
+	       (c->t - a->t) / (b->t - a->t) * a->f / (c->f - a->f) *
+	       b->f / (c->f - b->f);
+}
+
+/*
+ * The root between 0 and @hi, by Chandrupatla's method ("A new hybrid
+ * quadratic/bisection algorithm for finding the zero of a nonlinear function",
+ * 1997): some eight tries, and never more than bisection would need by much.
  */
 static double leave_at(const struct leave *k, double hi, double f_hi)
 {
-	double lo = 0, f_lo = beyond(k, 0);
-	const double enough = 1e-15 * (fabs(f_lo) + fabs(f_hi));
+	struct tried a = { 0, beyond(k, 0) }, b = { hi, f_hi }, c, x;
+	const double enough = ENOUGH * (fabs(a.f) + fabs(b.f));
+	double part = a.f / (a.f - b.f);
 
-	for (int i = 0; i < TRIES && f_lo < 0; i++) {
-		double t = lo + (hi - lo) * f_lo / (f_lo - f_hi), f;
-
-		if (i % 3 == 2 || !(t > lo && t < hi))
-			t = lo + (hi - lo) / 2;
-		if (!(t > lo && t < hi))
-			break;
-		f = beyond(k, t);
-		if (fabs(f) <= enough)
-			return t;
-		if (f < 0) {
-			lo = t;
-			f_lo = f;
-			f_hi /= 2;
+	if (a.f >= 0)
+		return 0;
+	for (int i = 0; i < TRIES; i++) {
+		x.t = a.t + part * (b.t - a.t);
+		x.f = beyond(k, x.t);
+		if (fabs(x.f) <= enough || x.t == a.t || x.t == b.t)
+			return x.t;
+		if ((x.f < 0) == (a.f < 0)) {
+			c = a;
 		} else {
-			hi = t;
-			f_hi = f;
-			f_lo /= 2;
+			c = b;
+			b = a;
 		}
+		a = x;
+		part = share(&a, &b, &c);
 	}
-	return f_lo < 0 ? hi : lo;
+	return a.f < 0 ? a.t : b.t;
 }
 
 /* The ramp, as far as it goes before it must slow down. */
