@@ -70,7 +70,7 @@ int threeb_arc_end(const struct threeb_arc *a, int64_t j,
 		   struct threeb_end *ret);
 
 /**
- * threeb_arc_j() - the counting length to @e, rounded.
+ * threeb_arc_j() - the counting length to @e, which is not the centre, rounded.
  * @far: more than half a turn.
  */
 int64_t threeb_arc_j(const struct threeb_arc *a, const struct threeb_end *e,

@@ -25,7 +25,7 @@
 /* One that no record says, bent less than this, is as well a line. */
 #define BEND_MAX_UNITS	0.5
 
-/* Farther beside its end no arc is written. */
+/* Farther beside its end no arc is written, a short one; a long one must fit. */
 #define MISS_MAX_UNITS	2
 
 struct place {
@@ -101,8 +101,9 @@ static struct attempt try_centre(const struct threeb_writer *w,
 	struct threeb_end back;
 	int64_t dx, dy;
 
-	if ((t.arc.x == 0 && t.arc.y == 0) || llabs(t.arc.x) + llabs(t.arc.y) >
-	    INTERP_THREEB_MAX / 4)
+	if ((t.arc.x == 0 && t.arc.y == 0) ||
+	    (t.end.x == 0 && t.end.y == 0) ||
+	    llabs(t.arc.x) + llabs(t.arc.y) > INTERP_THREEB_MAX / 4)
 		return t;
 	t.arc.count_y = threeb_count_y(t.end.x, t.end.y);
 	t.j = threeb_arc_j(&t.arc, &t.end, far);
@@ -211,14 +212,10 @@ static int put_arc(struct threeb_writer *w, const struct wanted *want)
 		t = try_bisector(w, want, t);
 	if (t.miss > 0 && !want->full && bend < BEND_MAX_UNITS)
 		return put_line(w, want->end);
-	if (t.miss > 0 && fabs(want->sweep) * radius > 4 * ARC_MIN_UNITS)
+	if (t.miss > (fabs(want->sweep) * radius > 4 * ARC_MIN_UNITS ? 0 :
+		      MISS_MAX_UNITS))
 		return put_halves(w, want);
-	if (t.miss <= MISS_MAX_UNITS)
-		return put_attempt(w, &t);
-	if (bend < 1)
-		return put_line(w, want->end);
-	return emit_refuse(w->diag, w->line, "an arc with a radius up to "
-			   "249999999 units", "an arc that no record says");
+	return put_attempt(w, &t);
 }
 
 /* Halves go up, as a pulse between two does, noise of a double aside. */

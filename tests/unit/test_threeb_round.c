@@ -333,6 +333,34 @@ static void iso_code_is_the_same_program_again(void **state)
 	compile_done(&b);
 }
 
+/* Ends and centres on each unit around: where a centre is tried, an end may be. */
+static void arcs_of_some_units_are_written(void **state)
+{
+	struct compiled c = compile_ready("generic");
+	struct emitted e = { 0 };
+	uint32_t written = 0;
+
+	(void)state;
+	for (int k = 0; k < 2 * 5 * 5 * 7 * 7; k++) {
+		const int i = k / 2 % 5 - 2, j = k / 10 % 5 - 2;
+		const int dx = k / 50 % 7 - 3, dy = k / 350 - 3;
+		char text[200];
+
+		snprintf(text, sizeof(text), "G17 F60\nG%d X%.3f Y%.3f I%.3f "
+			 "J%.3f\n", 2 + k % 2, dx * .001, dy * .001, i * .001,
+			 j * .001);
+		compile_bytes(&c, text, strlen(text));
+		if (c.rc == 0) {
+			emit_threeb(&e, &c);
+			assert_int_equal(e.rc, 0);
+			written++;
+		}
+		emit_done(&e);
+		compile_done(&c);
+	}
+	assert_true(written > 500);
+}
+
 /* What may lead 400 mm but ends at contact must not become a cut of 400 mm. */
 static void a_move_until_contact_is_not_written(void **state)
 {
@@ -363,6 +391,7 @@ int main(void)
 		cmocka_unit_test(what_is_left_out_is_counted),
 		cmocka_unit_test(at_45_degrees_the_direction_is_fixed),
 		cmocka_unit_test(iso_code_is_the_same_program_again),
+		cmocka_unit_test(arcs_of_some_units_are_written),
 		cmocka_unit_test(a_move_until_contact_is_not_written),
 	};
 
