@@ -198,22 +198,30 @@ static int put_halves(struct threeb_writer *w, const struct wanted *want)
 	return rc ? rc : put_arc(w, &half);
 }
 
+static struct attempt best_attempt(const struct threeb_writer *w,
+				   const struct wanted *want)
+{
+	const struct attempt t = try_centre(w, want, llround(want->cx),
+					    llround(want->cy));
+
+	return t.miss > 0 && !want->full ? try_bisector(w, want, t) : t;
+}
+
 static int put_arc(struct threeb_writer *w, const struct wanted *want)
 {
 	const double radius = hypot((double)w->at.x - want->cx,
 				    (double)w->at.y - want->cy);
-	const double bend = radius * (1 - cos(want->sweep / 2));
-	struct attempt t;
+	const double length = fabs(want->sweep) * radius;
+	struct attempt t = { .miss = INT64_MAX };
 
-	if (fabs(want->sweep) * radius < ARC_MIN_UNITS)
+	if (length < ARC_MIN_UNITS)
 		return put_line(w, want->end);
-	t = try_centre(w, want, llround(want->cx), llround(want->cy));
-	if (t.miss > 0 && !want->full)
-		t = try_bisector(w, want, t);
-	if (t.miss > 0 && !want->full && bend < BEND_MAX_UNITS)
+	if (radius < INTERP_THREEB_MAX)
+		t = best_attempt(w, want);
+	if (t.miss > 0 && !want->full &&
+	    radius * (1 - cos(want->sweep / 2)) < BEND_MAX_UNITS)
 		return put_line(w, want->end);
-	if (t.miss > (fabs(want->sweep) * radius > 4 * ARC_MIN_UNITS ? 0 :
-		      MISS_MAX_UNITS))
+	if (t.miss > (length > 4 * ARC_MIN_UNITS ? 0 : MISS_MAX_UNITS))
 		return put_halves(w, want);
 	return put_attempt(w, &t);
 }
