@@ -57,7 +57,7 @@ double tune_score(const struct trial_sum *s, const struct trial_sum *ref)
 
 double tune_value(const struct tune_key *k, const struct machine_config *c)
 {
-	return *(const double *)config_key_in(&config_key[k->row], 0, c);
+	return *(const double *)config_key_in(config_key(k->row), 0, c);
 }
 
 static double as_written(const struct tune_key *k, double v)
@@ -74,7 +74,7 @@ static void put_values(const struct tune *t, const double *x,
 {
 	for (uint32_t i = 0; i < t->nkeys; i++) {
 		const struct tune_key *k = &t->key[i];
-		double *v = config_key_at(&config_key[k->row], 0, c);
+		double *v = config_key_at(config_key(k->row), 0, c);
 
 		*v = as_written(k, k->min * pow(k->max / k->min, x[i]));
 	}

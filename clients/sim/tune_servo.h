@@ -42,7 +42,7 @@ int trial_run(const struct trial *t, const struct machine_config *c,
 
 /* A key that is tuned, over a range of ratios. */
 struct tune_key {
-	int row;			/* in config_key[] */
+	int row;			/* for config_key() */
 	double min, max;
 	double none_above;		/* written as 0 from here on; 0: never */
 };

@@ -32,7 +32,7 @@ static void print_keys(const struct tune *t, FILE *f)
 	int section = -1;
 
 	for (uint32_t i = 0; i < t->nkeys; i++) {
-		const struct config_key *k = &config_key[t->key[i].row];
+		const struct config_key *k = config_key(t->key[i].row);
 		char now[32], was[32];
 
 		if ((int)k->section != section)
@@ -80,7 +80,7 @@ static json_t *keys_json(const struct tune *t)
 	json_t *rows = json_array();
 
 	for (uint32_t i = 0; i < t->nkeys; i++) {
-		const struct config_key *k = &config_key[t->key[i].row];
+		const struct config_key *k = config_key(t->key[i].row);
 
 		json_array_append_new(rows, json_pack(
 			"{s:s,s:s,s:f,s:f}",

@@ -74,7 +74,7 @@ static void blame(struct check *q, int key_a, int key_b, int instance)
 static int check_order(struct check *q, const struct order *o, int instance)
 {
 	int a = key_of(o->section, o->low), b = key_of(o->section, o->high);
-	const struct config_key *low = &config_key[a], *high = &config_key[b];
+	const struct config_key *low = config_key(a), *high = config_key(b);
 	double x = *(const double *)config_key_in(low, instance, q->c);
 	double y = *(const double *)config_key_in(high, instance, q->c);
 	const char *how = o->or_equal ? "at most" : "below";
@@ -99,7 +99,7 @@ static int check_order(struct check *q, const struct order *o, int instance)
 static bool is_set(const struct check *q, enum config_section_id s,
 		   const char *name)
 {
-	return *(const double *)config_key_in(&config_key[key_of(s, name)], 0,
+	return *(const double *)config_key_in(config_key(key_of(s, name)), 0,
 					      q->c) != 0;
 }
 
@@ -118,7 +118,7 @@ static int check_orders_if_set(struct check *q)
 static int check_extent(struct check *q, const char *name, int instance)
 {
 	int k = key_of(SECTION_AXIS, name);
-	double x = *(const double *)config_key_in(&config_key[k], instance,
+	double x = *(const double *)config_key_in(config_key(k), instance,
 						  q->c);
 	double pulse_mm = q->c->axes.axis[instance].pulse_mm;
 	char unit[16], xs[32];
@@ -127,7 +127,7 @@ static int check_extent(struct check *q, const char *name, int instance)
 		return 0;
 
 	blame(q, k, key_of(SECTION_AXIS, "pulse_mm"), instance);
-	config_key_unit(&config_key[k], instance, unit, sizeof(unit));
+	config_key_unit(config_key(k), instance, unit, sizeof(unit));
 	config_number(x, xs, sizeof(xs));
 	snprintf(q->diag->found, sizeof(q->diag->found),
 		 "axis.%s.%s %s%s is %.0f pulses",
@@ -190,7 +190,7 @@ static int check_compensation(struct check *q)
 static int check_jump(struct check *q, const char *name)
 {
 	int k = key_of(SECTION_JUMP, name);
-	double mm = *(const double *)config_key_in(&config_key[k], 0, q->c);
+	double mm = *(const double *)config_key_in(config_key(k), 0, q->c);
 	double most = 0;
 	uint32_t at = q->lines->at[k][0], travel_at;
 	int axis = INTERP_Z;

@@ -25,8 +25,8 @@ void config_defaults(struct machine_config *c)
 	struct interp_diag diag;
 
 	memset(c, 0, sizeof(*c));
-	for (int i = 0; i < config_nkeys; i++) {
-		const struct config_key *k = &config_key[i];
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
 		int n = config_section[k->section].ninstances;
 
 		for (int j = 0; j < n; j++) {

@@ -3,7 +3,7 @@
  * config.h - the machine file: one table of keys
  *
  * Each key has a section, name, unit, default, smallest and largest value and
- * a line of help, in keys.c.  Parser, range check, --print-config and
+ * a line of help, in keys_*.c.  Parser, range check, --print-config and
  * docs/config.md come from that table.  A misspelt key, a value out of range
  * or of the wrong kind is refused with its line.
  *

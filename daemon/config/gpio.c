@@ -46,10 +46,12 @@ static const struct config_key *key_of_line(int line)
 {
 	const size_t at = offsetof(struct machine_config, gpio.line) +
 			  (size_t)line * CONFIG_LINE_MAX;
-	const struct config_key *k = config_key;
+	const struct config_key *k;
+	int row = 0;
 
-	while (k->section != SECTION_GPIO || k->offset != at)
-		k++;
+	while ((k = config_key(row))->section != SECTION_GPIO ||
+	       k->offset != at)
+		row++;
 	return k;
 }
 
@@ -69,7 +71,8 @@ struct check {
 
 static void blame(struct check *q, const struct config_key *k, int instance)
 {
-	q->diag->line = q->lines->at[k - config_key][instance];
+	q->diag->line = q->lines->at[config_key_find(k->section, k->name)]
+					 [instance];
 	q->diag->column = 0;
 }
 
@@ -127,7 +130,7 @@ static int check_shared(struct check *q, int output)
 static int check_source(struct check *q)
 {
 	const struct config_key *k =
-		&config_key[config_key_find(SECTION_GAP, "source")];
+		config_key(config_key_find(SECTION_GAP, "source"));
 
 	if (q->c->gap.source == GAP_LINES)
 		return 0;
@@ -194,9 +197,9 @@ static int check_speed(struct check *q, const struct config_key *k,
 static int check_speeds(struct check *q)
 {
 	const struct config_key *axis =
-		&config_key[config_key_find(SECTION_AXIS, "v_max_mm_s")];
+		config_key(config_key_find(SECTION_AXIS, "v_max_mm_s"));
 	const struct config_key *jump =
-		&config_key[config_key_find(SECTION_JUMP, "v_max_mm_s")];
+		config_key(config_key_find(SECTION_JUMP, "v_max_mm_s"));
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const double most = pulses_s(q->c) *

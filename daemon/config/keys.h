@@ -71,13 +71,14 @@ struct config_key {
 	const char *help;
 };
 
-#define CONFIG_NKEYS_MAX	320	/* rows the table may have */
+#define CONFIG_NKEYS_MAX	320	/* rows the table may have; asserted */
 #define CONFIG_NINSTANCES_MAX	8
 #define CONFIG_TEXT_MAX		256	/* of a value, with its NUL */
 
 extern const struct config_section config_section[CONFIG_NSECTIONS];
-extern const struct config_key config_key[];
-extern const int config_nkeys;
+
+/** config_key() - row 0, 1, ... of the table; NULL past the last. */
+const struct config_key *config_key(int row);
 
 /* Where each key was set: config_lines.at[row][instance]; 0: not at all. */
 struct config_lines {
@@ -94,7 +95,7 @@ const char *config_section_name(enum config_section_id s, int instance,
  */
 int config_section_find(const char *name, int *ret_instance);
 
-/** config_key_find() - its row in config_key[], or -ENOENT. */
+/** config_key_find() - its row, for config_key(), or -ENOENT. */
 int config_key_find(enum config_section_id s, const char *name);
 
 /** config_key_default() - the text for @instance. */

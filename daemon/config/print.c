@@ -19,6 +19,7 @@ static void print_key(const struct config_key *k, int instance,
 
 void config_print(const struct machine_config *c, FILE *f)
 {
+	const struct config_key *k;
 	char name[32];
 
 	for (int s = 0; s < CONFIG_NSECTIONS; s++) {
@@ -28,9 +29,9 @@ void config_print(const struct machine_config *c, FILE *f)
 			config_section_name((enum config_section_id)s, j,
 					    name, sizeof(name));
 			fprintf(f, "%s[%s]\n", s + j ? "\n" : "", name);
-			for (int i = 0; i < config_nkeys; i++)
-				if ((int)config_key[i].section == s)
-					print_key(&config_key[i], j, c, f);
+			for (int i = 0; (k = config_key(i)); i++)
+				if ((int)k->section == s)
+					print_key(k, j, c, f);
 		}
 	}
 }
@@ -49,6 +50,7 @@ static void document_key(const struct config_key *k, FILE *f)
 static void document_section(int s, FILE *f)
 {
 	const struct config_section *sec = &config_section[s];
+	const struct config_key *k;
 
 	if (sec->instance)
 		fprintf(f, "## [%s.%s] ... [%s.%s]\n\n", sec->name,
@@ -59,9 +61,9 @@ static void document_section(int s, FILE *f)
 	fprintf(f, "%c%s.\n\n", sec->help[0] - 'a' + 'A', sec->help + 1);
 	fprintf(f, "| key | unit | default | accepted | meaning |\n"
 		   "|---|---|---|---|---|\n");
-	for (int i = 0; i < config_nkeys; i++)
-		if ((int)config_key[i].section == s)
-			document_key(&config_key[i], f);
+	for (int i = 0; (k = config_key(i)); i++)
+		if ((int)k->section == s)
+			document_key(k, f);
 	fprintf(f, "\n");
 }
 

@@ -97,14 +97,15 @@ static void refuse_key(struct reading *r, const char *section,
 		       enum config_section_id s, const char *name)
 {
 	struct list list = { "", false };
+	const struct config_key *k;
 	struct nearest near;
 
 	nearest_init(&near, name);
-	for (int i = 0; i < config_nkeys; i++) {
-		if (config_key[i].section != s)
+	for (int i = 0; (k = config_key(i)); i++) {
+		if (k->section != s)
 			continue;
-		nearest_offer(&near, config_key[i].name);
-		append_word(&list, config_key[i].name);
+		nearest_offer(&near, k->name);
+		append_word(&list, k->name);
 	}
 	snprintf(r->diag->found, sizeof(r->diag->found),
 		 "unknown key %s.%.60s", section, name);
@@ -200,7 +201,7 @@ static void set_key(struct reading *r, int row, int instance,
 		    const char *value)
 {
 	uint32_t *at = &r->lines.at[row][instance];
-	const struct config_key *k = &config_key[row];
+	const struct config_key *k = config_key(row);
 	char section[NEAREST_MAX], found[128];
 
 	if (*at) {

@@ -41,12 +41,11 @@ int config_section_find(const char *name, int *ret_instance)
 
 int config_key_find(enum config_section_id s, const char *name)
 {
-	for (int i = 0; i < config_nkeys; i++) {
-		const struct config_key *k = &config_key[i];
+	const struct config_key *k;
 
+	for (int i = 0; (k = config_key(i)); i++)
 		if (k->section == s && strcmp(k->name, name) == 0)
 			return i;
-	}
 	return -ENOENT;
 }
 

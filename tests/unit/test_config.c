@@ -69,8 +69,8 @@ static void assert_same(const struct machine_config *a,
 {
 	char x[CONFIG_TEXT_MAX], y[CONFIG_TEXT_MAX];
 
-	for (int i = 0; i < config_nkeys; i++) {
-		const struct config_key *k = &config_key[i];
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
 		int n = config_section[k->section].ninstances;
 
 		for (int j = 0; j < n; j++)
@@ -215,8 +215,8 @@ static void every_key_reads_back_at_its_smallest_and_largest(void **state)
 
 	(void)state;
 	config_defaults(&c);
-	for (int i = 0; i < config_nkeys; i++) {
-		const struct config_key *k = &config_key[i];
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
 		const double ends[] = { k->min, k->max };
 
 		if (k->kind != KEY_NUMBER && k->kind != KEY_WHOLE)
@@ -242,18 +242,18 @@ static void the_document_names_every_key_once(void **state)
 	assert_non_null(f);
 	config_document(f);
 	assert_int_equal(fclose(f), 0);
-	for (int i = 0; i < config_nkeys; i++) {
+	for (int i = 0; config_key(i); i++) {
 		char *at = text;
 		int rows = 0, same = 0;
 
-		snprintf(cell, sizeof(cell), "\n| `%s` |", config_key[i].name);
+		snprintf(cell, sizeof(cell), "\n| `%s` |", config_key(i)->name);
 		while ((at = strstr(at, cell))) {
 			rows++;
 			at++;
 		}
-		for (int j = 0; j < config_nkeys; j++)
-			same += strcmp(config_key[j].name,
-				       config_key[i].name) == 0;
+		for (int j = 0; config_key(j); j++)
+			same += strcmp(config_key(j)->name,
+				       config_key(i)->name) == 0;
 		assert_int_equal(rows, same);
 	}
 	free(text);
@@ -450,8 +450,8 @@ static void every_number_is_refused_outside_its_range(void **state)
 
 	(void)state;
 	config_defaults(&c);
-	for (int i = 0; i < config_nkeys; i++) {
-		const struct config_key *k = &config_key[i];
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
 
 		if (k->kind != KEY_NUMBER && k->kind != KEY_WHOLE)
 			continue;
@@ -469,8 +469,8 @@ static void every_misspelt_key_is_met_with_the_right_one(void **state)
 	char text[128], section[32], meant[64];
 
 	(void)state;
-	for (int i = 0; i < config_nkeys; i++) {
-		const struct config_key *k = &config_key[i];
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
 
 		if (strlen(k->name) < 4)
 			continue;

@@ -92,8 +92,8 @@ static void each_line_has_a_key_of_its_own(void **state)
 					      config_line_name(i));
 
 		assert_true(k >= 0);
-		assert_int_equal(config_key[k].kind, KEY_LINE);
-		assert_int_equal(config_key[k].offset,
+		assert_int_equal(config_key(k)->kind, KEY_LINE);
+		assert_int_equal(config_key(k)->offset,
 				 offsetof(struct machine_config, gpio.line) +
 				 (size_t)i * CONFIG_LINE_MAX);
 	}

@@ -562,8 +562,8 @@ static double random_in(struct rng *r, double min, double max)
 
 static void set_any(struct machine_config *k, struct rng *r)
 {
-	for (int i = 0; i < config_nkeys; i++) {
-		const struct config_key *key = &config_key[i];
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *key = config_key(i);
 		double *at = config_key_at(key, 0, k);
 
 		if (key->section == SECTION_SIM && key->kind == KEY_NUMBER)

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * keys_axis.c - keys of the axes, and of how they keep to a contour
+ */
+#include "keys_rows.h"
+
+#include "cycle.h"
+
+static const char *method_word(int i)
+{
+	static const char *const words[HOME_NMETHODS] = {
+		[HOME_NONE] = "none",
+		[HOME_SWITCH] = "switch",
+		[HOME_SWITCH_INDEX] = "switch-index",
+		[HOME_ABSOLUTE] = "absolute",
+	};
+
+	return WORD_OF(words, i);
+}
+
+static const char *direction_word(int i)
+{
+	return i == 0 ? "-" : i == 1 ? "+" : NULL;
+}
+
+#define AXIS(field)	EACH(axes.axis[0].field, struct interp_axis_limits)
+#define HAND(field)	EACH(hand[0].field, struct config_hand)
+#define LOOP(field)	EACH(loop[0].field, struct interp_axis_loop)
+
+/* clang-format off */
+static const struct config_key row[] = {
+	BIT(AXIS, "present", "yes", AT(axes.present),
+	    "the machine has this axis"),
+	NUMBER(AXIS, "pulse_mm", "mm", "0.001", 1e-6, 1, AXIS(pulse_mm),
+	       "worth of one pulse"),
+	ROTARY(AXIS, "travel_min_mm", "mm", "-200", "-1000000", -1e7, 1e7,
+	       AXIS(travel_min_mm), "lower soft limit, machine coordinates"),
+	ROTARY(AXIS, "travel_max_mm", "mm", "200", "1000000", -1e7, 1e7,
+	       AXIS(travel_max_mm), "upper soft limit, machine coordinates"),
+	ROTARY(AXIS, "v_max_mm_s", "mm/s", "80", "60", 1e-3, 1e5,
+	       AXIS(v_max_mm_s), "fastest speed"),
+	NUMBER(AXIS, "a_max_mm_s2", "mm/s2", "1000", 1e-2, 1e6,
+	       AXIS(a_max_mm_s2), "largest acceleration"),
+	NUMBER(AXIS, "j_max_mm_s3", "mm/s3", "20000", 1, 1e9, AXIS(j_max_mm_s3),
+	       "largest jerk"),
+	NUMBER(AXIS, "jog_mm_s", "mm/s", "5", 1e-3, 1e5, HAND(jog_mm_s),
+	       "speed of a jog"),
+	WORDS(AXIS, "home_method", "none", HAND(home_method), method_word,
+	      "how its place is found; docs/homing.md"),
+	WORDS(AXIS, "home_dir", "-", HAND(home_dir), direction_word,
+	      "the home switch lies that way"),
+	NUMBER(AXIS, "home_fast_mm_s", "mm/s", "10", 1e-3, 1e5,
+	       HAND(home_fast_mm_s), "speed toward the switch"),
+	NUMBER(AXIS, "home_slow_mm_s", "mm/s", "0.5", 1e-3, 1e5,
+	       HAND(home_slow_mm_s),
+	       "speed off it and on it again, and of jogs before"),
+	NUMBER(AXIS, "home_at_mm", "mm", "0", -1e6, 1e6, HAND(home_at_mm),
+	       "the place of the switch, or of the index mark; absolute: "
+	       "where the drive says 0"),
+	NUMBER(AXIS, "home_back_mm", "mm", "1", 1e-3, 1e4, HAND(home_back_mm),
+	       "so far off the switch before it is met slowly"),
+	WHOLE(AXIS, "home_order", "", "0", 0, 99, HAND(home_order),
+	      "axes are homed one by one, the lowest first"),
+	NUMBER(AXIS, "backlash_um", "um", "0", 0, 10000, HAND(backlash_um),
+	       "lost motion where the axis turns back"),
+	NUMBER(AXIS, "backlash_mm_s", "mm/s", "1", 1e-3, 1e5,
+	       HAND(backlash_mm_s),
+	       "backlash and pitch error are taken up so fast"),
+	{ SECTION_AXIS, "pitch_map", KEY_STRING, "", "none", 0, 0,
+	  EACH(pitch_map[0], char[128]), 128,
+	  .help = "file of its pitch errors; docs/homing.md" },
+	NUMBER(AXIS, "start_mm", "mm", "0", -1e7, 1e7, EACH(start_mm, double),
+	       "where the machine begins: a simulated one, or one whose "
+	       "drives cannot tell"),
+	WHOLE(AXIS, "drive_increments", "", "1", -1e9, 1e9,
+	      EACH(drive[0].increments, struct config_drive),
+	      "of a CiA 402 drive: so many, negative to turn it round, ..."),
+	WHOLE(AXIS, "drive_pulses", "pulses", "1", 1, 1e9,
+	      EACH(drive[0].pulses, struct config_drive),
+	      "... are so many pulses"),
+	NUMBER(AXIS, "loop_gain_1_s", "1/s", "0", 0, 1000, LOOP(gain_1_s),
+	       "position loop, by edmctl identify; 0: not known"),
+	NUMBER(AXIS, "loop_hz", "Hz", "60", 1, 1000, LOOP(velocity_hz),
+	       "natural frequency of the velocity loop"),
+	NUMBER(AXIS, "loop_damping", "", "0.7", 0.1, 3, LOOP(damping),
+	       "of the velocity loop"),
+	NUMBER(AXIS, "loop_delay_s", "s", "0", 0, 0.012, LOOP(delay_s),
+	       "from the set value to the velocity loop"),
+	NUMBER(AXIS, "loop_feedforward", "", "0", -0.5, 1.5, LOOP(feedforward),
+	       "of the set speed, by the drive itself; 1: all"),
+	NUMBER(AXIS, "friction_mm_s", "mm/s", "0", -10, 10, LOOP(kick_mm_s),
+	       "the axis lags by so much at a reversal"),
+	NUMBER(AXIS, "friction_s", "s", "0.02", 0.002, 0.2, LOOP(kick_s),
+	       "which decays with this time constant"),
+	NUMBER(AXIS, "backlash_mm", "mm", "0", 0, 1, LOOP(backlash_mm),
+	       "lost motion at a reversal"),
+
+	STRING(CONTOUR, "method", "none", contour.method,
+	       "none, or of feedforward, cross-coupled, predictive, zpetc, "
+	       "joined by +"),
+	NUMBER(CONTOUR, "speed", "", "1", 0, 2, AT(contour.speed),
+	       "feedforward: of the set speed"),
+	NUMBER(CONTOUR, "acceleration", "", "1", 0, 3, AT(contour.acceleration),
+	       "feedforward: of what the velocity loop lags"),
+	NUMBER(CONTOUR, "lead_periods", "periods", "0.5", 0, 1,
+	       AT(contour.lead_periods), "feedforward: so far ahead"),
+	NUMBER(CONTOUR, "cross_1_s", "1/s", "0", 0, 1000, AT(contour.cross_1_s),
+	       "cross-coupled: speed for each mm of contour error"),
+	NUMBER(CONTOUR, "predicted_1_s", "1/s", "0", 0, 1000,
+	       AT(contour.predicted_1_s),
+	       "predictive: Kff, for the error to come"),
+	NUMBER(CONTOUR, "measured_1_s", "1/s", "0", 0, 1000,
+	       AT(contour.measured_1_s),
+	       "predictive: Kfb, for the present one"),
+	NUMBER(CONTOUR, "horizon_s", "s", "0.02", 0, 0.064,
+	       AT(contour.horizon_s), "predictive: how far it looks ahead"),
+	NUMBER(CONTOUR, "noise_mm", "mm", "0.0005", 0, 0.1,
+	       AT(contour.noise_mm), "sigma of the encoders, for trials"),
+	NUMBER(CONTOUR, "model_error", "", "0.1", 0, 0.5,
+	       AT(contour.model_error),
+	       "velocity loops are off by this part, for trials"),
+};
+/* clang-format on */
+
+const struct config_keys config_keys_axis = { row, COUNT(row) };

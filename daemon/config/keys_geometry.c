@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * keys_geometry.c - keys of origins, a wire machine's guides, joints
+ */
+#include "keys_rows.h"
+
+static const char *guides_word(int i)
+{
+	static const char *const words[INTERP_NGUIDES] = {
+		[INTERP_GUIDES_OFF] = "off",
+		[INTERP_GUIDES_ABSOLUTE] = "absolute",
+		[INTERP_GUIDES_RELATIVE] = "relative",
+	};
+
+	return WORD_OF(words, i);
+}
+
+#define ORIGIN(key, axis, unit) \
+	NUMBER(WORK, key, unit, "0", -1e7, 1e7, \
+	       EACH(work_offset_mm[0][INTERP_##axis], double[INTERP_NAXES]), \
+	       "origin on " #axis)
+
+/* clang-format off */
+static const struct config_key row[] = {
+	ORIGIN("x", X, "mm"),
+	ORIGIN("y", Y, "mm"),
+	ORIGIN("z", Z, "mm"),
+	ORIGIN("a", A, "deg"),
+	ORIGIN("b", B, "deg"),
+	ORIGIN("c", C, "deg"),
+	ORIGIN("u", U, "mm"),
+	ORIGIN("v", V, "mm"),
+
+	WORDS(WIRE, "guides", "off", AT(wire.guides), guides_word,
+	      "what U V are: off: axes as any other; the upper guide"),
+	NUMBER(WIRE, "z_lower_mm", "mm", "-20", -2000, 2000,
+	       AT(wire.z_lower_mm), "height of the lower guide"),
+	NUMBER(WIRE, "z_upper_mm", "mm", "80", -2000, 2000, AT(wire.z_upper_mm),
+	       "height of the upper guide"),
+	NUMBER(WIRE, "z_program_mm", "mm", "0", -2000, 2000,
+	       AT(wire.z_program_mm),
+	       "height of the plane X Y are programmed on"),
+	NUMBER(WIRE, "z_second_mm", "mm", "40", -2000, 2000,
+	       AT(wire.z_second_mm),
+	       "height of the plane U V are programmed on"),
+	NUMBER(WIRE, "angle_max_deg", "deg", "30", 0, 80,
+	       AT(wire.angle_max_deg), "the wire may lean so far from upright"),
+	NUMBER(WIRE, "corner_angle_deg", "deg", "180", 1, 180,
+	       AT(wire.corner_angle_deg),
+	       "a turn by so much is a corner; 180: no corner control"),
+	NUMBER(WIRE, "corner_feed_percent", "%", "50", 1, 100,
+	       AT(wire.corner_feed_percent),
+	       "of the feed, at most, in front of a corner"),
+	NUMBER(WIRE, "corner_before_mm", "mm", "0.2", 0, 100,
+	       AT(wire.corner_before_mm), "so far in front of it"),
+	NUMBER(WIRE, "corner_dwell_s", "s", "0", 0, 3600,
+	       AT(wire.corner_dwell_s),
+	       "wait on a corner, for the wire to straighten"),
+	NUMBER(WIRE, "offset_0_mm", "mm", "0", -50, 50, AT(offset_mm[0]),
+	       "register D0, H0 until a program fills it; 0: unfilled"),
+	NUMBER(WIRE, "offset_1_mm", "mm", "0", -50, 50, AT(offset_mm[1]),
+	       "register D1, H1 until a program fills it; 0: unfilled"),
+
+	STRING(KINEMATICS, "chain", "none", kinematics.chain,
+	       "joints from work to tool, as C(0 0 -120) A(0 15 -80) X Y Z"),
+	NUMBER(KINEMATICS, "tip_x_mm", "mm", "0", -10000, 10000,
+	       AT(kinematics.tip_mm[0]),
+	       "tip of the tool with all axes at 0, X"),
+	NUMBER(KINEMATICS, "tip_y_mm", "mm", "0", -10000, 10000,
+	       AT(kinematics.tip_mm[1]), "the same, Y"),
+	NUMBER(KINEMATICS, "tip_z_mm", "mm", "0", -10000, 10000,
+	       AT(kinematics.tip_mm[2]), "the same, Z"),
+	NUMBER(KINEMATICS, "tolerance_um", "um", "1", 0.001, 1000,
+	       AT(kinematics.tolerance_um),
+	       "the tip keeps so near to its line under G43.4"),
+};
+/* clang-format on */
+
+const struct config_keys config_keys_geometry = { row, COUNT(row) };

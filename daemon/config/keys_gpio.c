@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * keys_gpio.c - keys of lines of a GPIO chip
+ */
+#include "keys_rows.h"
+
+static const char *signal_word(int i)
+{
+	static const char *const words[] = { "step", "quadrature" };
+
+	return WORD_OF(words, i);
+}
+
+static const char *pull_word(int i)
+{
+	static const char *const words[] = { "as-is", "up", "down", "none" };
+
+	return WORD_OF(words, i);
+}
+
+#define LINE(key, i, what) \
+	{ SECTION_GPIO, key, KEY_LINE, "", "none", 0, 0, AT(gpio.line[i]), \
+	  ROOM(gpio.line[0]), .help = what }
+#define AXIS_LINES(axis) \
+	LINE("step_" #axis, LINE_STEP + INTERP_##axis, \
+	     "output: step, or A"), \
+	LINE("dir_" #axis, LINE_DIR + INTERP_##axis, \
+	     "output: direction, on for +; or B"), \
+	LINE("limit_" #axis, LINE_LIMIT + INTERP_##axis, \
+	     "input: an end of the travel, either; fault limit-switch"), \
+	LINE("home_" #axis, LINE_HOME + INTERP_##axis, "input: home switch")
+
+/* clang-format off */
+static const struct config_key row[] = {
+	STRING(GPIO, "chip", "gpiochip0", gpio.chip,
+	       "of lines that name none: name, label or device file"),
+	WORDS(GPIO, "signal", "step", AT(gpio.signal), signal_word,
+	      "what step_ and dir_ are: step and direction, or A and B"),
+	WHOLE(GPIO, "high_cycles", "periods", "1", 1, 1000,
+	      AT(gpio.high_cycles),
+	      "a step stays on; in quadrature, between two edges"),
+	WHOLE(GPIO, "low_cycles", "periods", "1", 1, 1000, AT(gpio.low_cycles),
+	      "it stays off before the next"),
+	WHOLE(GPIO, "dir_setup_cycles", "periods", "1", 1, 1000,
+	      AT(gpio.dir_setup_cycles),
+	      "from a change of direction to the step"),
+	WHOLE(GPIO, "dir_hold_cycles", "periods", "1", 1, 1000,
+	      AT(gpio.dir_hold_cycles),
+	      "from a step's end to a change of direction"),
+	NUMBER(GPIO, "watchdog_us", "us", "1000", 20, 1e6, AT(gpio.watchdog_us),
+	       "between two edges of the watchdog's wave"),
+	WORDS(GPIO, "pull", "as-is", AT(gpio.pull), pull_word,
+	      "resistors of all inputs"),
+	AXIS_LINES(X), AXIS_LINES(Y), AXIS_LINES(Z), AXIS_LINES(A),
+	AXIS_LINES(B), AXIS_LINES(C), AXIS_LINES(U), AXIS_LINES(V),
+	LINE("spark", LINE_SPARK, "output: sparks allowed"),
+	LINE("pump", LINE_PUMP, "output: dielectric pump"),
+	LINE("watchdog", LINE_WATCHDOG,
+	     "output: a square wave that ends with the cycle"),
+	LINE("gap_open", LINE_GAP_OPEN, "input: gap comparator, no spark"),
+	LINE("gap_spark", LINE_GAP_SPARK, "input: gap comparator, a spark"),
+	LINE("gap_short", LINE_GAP_SHORT, "input: gap comparator, a short"),
+	LINE("estop", LINE_ESTOP, "input: fault e-stop"),
+	LINE("wire", LINE_WIRE, "input: the wire is broken"),
+	LINE("door", LINE_DOOR, "input: the door is open; fault door"),
+	LINE("dielectric", LINE_DIELECTRIC,
+	     "input: the level is too low; fault dielectric"),
+};
+/* clang-format on */
+
+const struct config_keys config_keys_gpio = { row, COUNT(row) };
