@@ -24,7 +24,7 @@ const struct state_duty state_duty[CYCLE_NSTATES] = {
 
 /*
  * Read a row as "while in this state, this event leads to...".  A fault, a
- * stop and a hold lead the same way from every running state; cycle.c has
+ * stop and a hold lead the same way from every running state; enter.c has
  * them, so no row has to remember them.
  */
 static const uint8_t next[CYCLE_NSTATES][CYCLE_NEVENTS] = {

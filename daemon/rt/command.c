@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * command.c - what a command asks for, and the loading of programs
+ */
+#include "cycle.h"
+#include "enter.h"
+#include "step.h"
+#include "walk.h"
+
+#include <math.h>
+#include <string.h>
+
+static enum cycle_answer do_start(struct cycle *c, double arg_mm)
+{
+	(void)arg_mm;
+	if (!c->loaded)
+		return ANSWER_NO_PROGRAM;
+	if (c->state != STATE_HOLD || c->after_stand != STATE_HOLD || c->moving)
+		return ANSWER_WRONG_STATE;
+	if (c->limit.on)
+		return ANSWER_AT_LIMIT;
+	if (c->config.require_home && hand_unhomed(c))
+		return ANSWER_NOT_HOMED;
+	if (c->axes.starting)
+		return ANSWER_NOT_UP;
+	if (interlock_forbids(c))
+		return ANSWER_LOCKED;
+	c->outcome = OUTCOME_NONE;
+	c->retract.in_row = 0;
+	c->arc = (struct arc) { .rung = ARC_NONE };
+	gap_forget(c);
+	if (axes_want(c, true))
+		cycle_set_off(c);
+	return ANSWER_DONE;
+}
+
+static enum cycle_answer do_hold(struct cycle *c, double arg_mm)
+{
+	(void)arg_mm;
+	if (cycle_by_hand(c)) {
+		c->hand.halt = true;
+		return ANSWER_DONE;
+	}
+	if (!c->loaded)
+		return ANSWER_NO_PROGRAM;
+	if (c->state == STATE_FAULT)
+		return ANSWER_WRONG_STATE;
+	c->moving = false;
+	axes_forget(c);
+	cycle_happen(c, EVENT_HOLD);
+	return ANSWER_DONE;
+}
+
+static enum cycle_answer do_stop(struct cycle *c, double arg_mm)
+{
+	if (cycle_by_hand(c))
+		return do_hold(c, arg_mm);
+	if (!c->loaded)
+		return ANSWER_NO_PROGRAM;
+	if (c->state == STATE_FAULT) {
+		cycle_end_job(c, OUTCOME_STOPPED);
+		c->state = STATE_FAULT;
+		return ANSWER_DONE;
+	}
+	cycle_happen(c, EVENT_STOP);
+	axes_forget(c);
+	c->moving = false;
+	if (c->after_stand == STATE_HOLD)
+		c->after_stand = STATE_IDLE;
+	return ANSWER_DONE;
+}
+
+static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
+{
+	if (!c->loaded)
+		return ANSWER_NO_PROGRAM;
+	if (c->state == STATE_FAULT || c->after_stand != STATE_HOLD)
+		return ANSWER_WRONG_STATE;
+	if (!(arg_mm > 0 && isfinite(arg_mm)))
+		return ANSWER_BAD_ARGUMENT;
+	if (c->axes.starting)
+		return ANSWER_NOT_UP;
+	if (interlock_forbids(c))
+		return ANSWER_LOCKED;
+	cycle_happen(c, EVENT_HOLD);
+	axes_want(c, false);
+	c->moving = true;
+	c->move_to_mm = fmax(cycle_outer_mm(c), cycle_place_mm(c) - arg_mm);
+	return ANSWER_DONE;
+}
+
+static enum cycle_answer do_step(struct cycle *c, double arg_mm)
+{
+	enum cycle_answer answer;
+	double to_mm;
+
+	if (!c->loaded)
+		return ANSWER_NO_PROGRAM;
+	if (c->state != STATE_HOLD || c->after_stand != STATE_HOLD ||
+	    c->moving || escape_is_out(&c->escape))
+		return ANSWER_WRONG_STATE;
+	answer = (enum cycle_answer)step_to(c, arg_mm, &to_mm);
+	if (answer != ANSWER_DONE)
+		return answer;
+	if (c->axes.starting)
+		return ANSWER_NOT_UP;
+	if (interlock_forbids(c))
+		return ANSWER_LOCKED;
+	axes_want(c, false);
+	c->moving = true;
+	c->move_to_mm = to_mm;
+	return ANSWER_DONE;
+}
+
+static enum cycle_answer do_estop(struct cycle *c, double arg_mm)
+{
+	(void)arg_mm;
+	cycle_fail(c, FAULT_ESTOP);
+	return ANSWER_DONE;
+}
+
+static enum cycle_answer do_reset(struct cycle *c, double arg_mm)
+{
+	(void)arg_mm;
+	if (c->state != STATE_FAULT)
+		return ANSWER_WRONG_STATE;
+	c->fault = FAULT_NONE;
+	c->out.reset = true;
+	c->overruns_in_row = 0;
+	cycle_happen(c, EVENT_RESET);
+	if (!c->loaded)
+		cycle_enter(c, STATE_IDLE);
+	return ANSWER_DONE;
+}
+
+#define OVERRIDE_MAX	2.0
+
+static enum cycle_answer do_override(struct cycle *c, double arg_mm)
+{
+	if (!(arg_mm >= 0 && arg_mm <= OVERRIDE_MAX))
+		return ANSWER_BAD_ARGUMENT;
+	c->override = arg_mm;
+	return ANSWER_DONE;
+}
+
+static enum cycle_answer (*const verbs[CYCLE_NVERBS])(struct cycle *,
+						       double) = {
+	[CYCLE_START]	= do_start,
+	[CYCLE_HOLD]	= do_hold,
+	[CYCLE_RESUME]	= do_start,
+	[CYCLE_STOP]	= do_stop,
+	[CYCLE_RETRACT]	= do_retract,
+	[CYCLE_ESTOP]	= do_estop,
+	[CYCLE_RESET]	= do_reset,
+	[CYCLE_OVERRIDE] = do_override,
+	[CYCLE_STEP]	= do_step,
+};
+
+static enum cycle_answer do_set(struct cycle *c, const struct cycle_command *m)
+{
+	static const enum cycle_answer answer[] = {
+		[PROCESS_DONE]	= ANSWER_DONE,
+		[PROCESS_BAD]	= ANSWER_BAD_ARGUMENT,
+		[PROCESS_FULL]	= ANSWER_WRONG_STATE,
+	};
+
+	if (!c->loaded)
+		return ANSWER_NO_PROGRAM;
+	return answer[process_set(c, m->arg, m->arg_mm)];
+}
+
+static enum cycle_answer do_by_hand(struct cycle *c,
+				    const struct cycle_command *m)
+{
+	const bool jog = m->verb == CYCLE_JOG;
+	enum cycle_answer answer;
+
+	if (c->axes.starting)
+		return ANSWER_NOT_UP;
+	if (interlock_forbids(c))
+		return ANSWER_LOCKED;
+	answer = (enum cycle_answer)(jog ?
+		hand_jog(c, m->arg, m->arg_mm) : hand_home(c, m->arg));
+	if (answer != ANSWER_DONE)
+		return answer;
+	cycle_enter(c, jog ? STATE_JOG : STATE_HOME);
+	axes_want(c, false);
+	return ANSWER_DONE;
+}
+
+enum cycle_answer cycle_command(struct cycle *c, const struct cycle_command *m)
+{
+	if (m->verb >= CYCLE_NVERBS)
+		return ANSWER_BAD_ARGUMENT;
+	if (m->verb == CYCLE_SET)
+		return do_set(c, m);
+	if (m->verb == CYCLE_JOG || m->verb == CYCLE_HOME)
+		return do_by_hand(c, m);
+	return verbs[m->verb](c, m->arg_mm);
+}
+
+enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
+				double far_mm)
+{
+	if (c->state != STATE_IDLE)
+		return ANSWER_WRONG_STATE;
+	if (c->hand.used && memcmp(at->pos, c->out.target,
+				   sizeof(at->pos)) != 0)
+		return ANSWER_ELSEWHERE;
+	c->cursor = *at;
+	c->escape = (struct escape) { .nlegs = 0 };
+	if (!process_begin(c))
+		return ANSWER_BAD_ARGUMENT;
+	c->out.path++;
+	c->loaded = true;
+	c->outcome = OUTCOME_NONE;
+	c->totals = (struct cycle_totals) { 0 };
+	c->far_mm = far_mm;
+	c->action_done = at->index;
+	c->flush = (struct flush) { .far_mm = far_mm };
+	c->dwelling = false;
+	c->timed_end = 0;
+	c->back_mm = 0;
+	mcode_begin(c, at->index);
+	c->power_off = false;
+	c->touch = (struct touch) { .phase = TOUCH_SETTLE };
+	for (int i = 0; i < INTERP_NAXES; i++)
+		c->out.target[i] = at->pos[i];
+	cycle_enter(c, STATE_HOLD);
+	return ANSWER_DONE;
+}
+
+enum cycle_answer cycle_load(struct cycle *c, const struct interp_program *p)
+{
+	struct interp_cursor at;
+
+	if (c->state != STATE_IDLE)
+		return ANSWER_WRONG_STATE;
+	if (interp_cursor_init(&at, p) < 0)
+		return ANSWER_BAD_ARGUMENT;
+	return cycle_load_at(c, &at, 0);
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * enter.h - from one state to another, for the cycle and its commands
+ *
+ * Private to the files of daemon/rt.  How it fails is cycle_fail(), walk.h.
+ *
+ * Threads: RT-safe.
+ */
+#ifndef RT_ENTER_H
+#define RT_ENTER_H
+
+#include "cycle.h"
+
+/** cycle_enter() - the state is @s; what is done once there, is done. */
+void cycle_enter(struct cycle *c, enum cycle_state s);
+
+/** cycle_end_job() - the program is out, the state idle. */
+void cycle_end_job(struct cycle *c, enum cycle_outcome o);
+
+/** cycle_happen() - enter the state that @ev leads to, if it is another. */
+static inline void cycle_happen(struct cycle *c, enum cycle_event ev)
+{
+	const enum cycle_state to = state_next(c->state, ev);
+
+	if (to != c->state)
+		cycle_enter(c, to);
+}
+
+/** cycle_set_off() - from held: on along the path, or back to it first. */
+static inline void cycle_set_off(struct cycle *c)
+{
+	cycle_happen(c, escape_is_out(&c->escape) ? EVENT_RETURN :
+						    EVENT_START);
+}
+
+/** cycle_by_hand() - it moves, and not by a program. */
+static inline bool cycle_by_hand(const struct cycle *c)
+{
+	return c->state == STATE_JOG || c->state == STATE_HOME;
+}
+
+#endif /* RT_ENTER_H */
