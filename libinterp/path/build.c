@@ -220,10 +220,9 @@ static int cond_of(struct interp_build *b, const struct interp_build_word *w)
 	return (int)b->conds.n - 1;
 }
 
-/* What is the same for every segment: line, condition, place, end node. */
-static int seg_finish(struct interp_build *b, struct interp_seg *seg,
-		      const struct interp_build_word *w,
-		      struct interp_diag *diag)
+int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
+		     const struct interp_build_word *w,
+		     struct interp_diag *diag)
 {
 	const int cond = cond_of(b, w);
 	struct interp_seg *s;
@@ -254,8 +253,7 @@ static int seg_finish(struct interp_build *b, struct interp_seg *seg,
 	return 0;
 }
 
-/* First node, and a column for each axis in @moved. */
-static int columns_for(struct interp_build *b, uint32_t moved)
+int build_columns(struct interp_build *b, uint32_t moved)
 {
 	moved &= ~b->columns;
 	for (uint32_t i = 0; moved; i++, moved >>= 1) {
@@ -265,21 +263,13 @@ static int columns_for(struct interp_build *b, uint32_t moved)
 	return 0;
 }
 
-/* Feed words: as programmed, and the fastest its axes allow. */
-static void seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
-		     double feed_max_mm_s)
+void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
+		    double feed_max_mm_s)
 {
 	seg->flags = (w->rapid ? INTERP_SEG_RAPID : 0) | w->ends;
 	seg->feed_max_mm_s = (float)feed_max_mm_s;
 	seg->feed_mm_s = w->rapid ? seg->feed_max_mm_s : (float)w->feed_mm_s;
 }
-
-struct measure {
-	uint32_t moved;			/* mask of axes */
-	double length_mm;
-	double seconds;			/* at every axis's own v_max */
-	int64_t longest;		/* subpulses */
-};
 
 static double length_of(const double d[INTERP_NAXES], uint32_t moved)
 {
@@ -294,18 +284,14 @@ static double length_of(const double d[INTERP_NAXES], uint32_t moved)
 		    d[INTERP_C] * d[INTERP_C]);
 }
 
-/*
- * How far every axis goes to @end_mm; -1 and @ret_axis if one leaves the
- * travel.  @to gets the end in subpulses.
- */
-static int measure(const struct interp_build *b,
-		   const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
-		   struct measure *ret)
+int build_measure(const struct interp_build *b,
+		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
+		  struct build_measure *ret, struct interp_diag *diag)
 {
 	const struct interp_machine *m = b->o.machine;
 	double d[INTERP_NAXES] = { 0 };
 
-	*ret = (struct measure) { 0 };
+	*ret = (struct build_measure) { 0 };
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const double s = end_mm[i] * b->sub_mm[i];
 		int64_t len;
@@ -315,7 +301,7 @@ static int measure(const struct interp_build *b,
 		if (end_mm[i] == b->here_mm[i])
 			continue;
 		if (!build_axis_ok(b, i, end_mm[i]))
-			return -1 - i;
+			return build_refuse_travel(m, i, end_mm[i], diag);
 		to[i] = (int64_t)(s < 0 ? s - 0.5 : s + 0.5);
 		len = to[i] - b->here[i];
 		if (len == 0)
@@ -331,8 +317,8 @@ static int measure(const struct interp_build *b,
 	return 0;
 }
 
-static void stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],
-		     const int64_t to[INTERP_NAXES])
+void build_stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		    const int64_t to[INTERP_NAXES])
 {
 	memcpy(b->here_mm, end_mm, sizeof(b->here_mm));
 	memcpy(b->here, to, sizeof(b->here));
@@ -346,10 +332,9 @@ static int refuse_long(struct interp_diag *diag, double length_mm)
 	return -EINVAL;
 }
 
-/* From here to @to, as the strategies see it. */
-static struct build_way way_to(const struct interp_build *b,
-			       const int64_t to[INTERP_NAXES],
-			       const struct measure *m)
+struct build_way build_way_to(const struct interp_build *b,
+			      const int64_t to[INTERP_NAXES],
+			      const struct build_measure *m)
 {
 	struct build_way w = { .longest_sub = m->longest };
 
@@ -361,16 +346,12 @@ static struct build_way way_to(const struct interp_build *b,
 }
 
 /* Where a line that ends elsewhere leads to is no place to be held to. */
-static int measure_line(struct interp_build *b,
-			const double end_mm[INTERP_NAXES],
-			const struct interp_build_word *w,
-			int64_t to[INTERP_NAXES], struct measure *ret)
+static void loosen(struct interp_build *b, const double end_mm[INTERP_NAXES])
 {
-	for (int i = 0; i < INTERP_NAXES && w->ends; i++) {
+	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (end_mm[i] != b->here_mm[i])
 			b->loose |= 1u << i;
 	}
-	return measure(b, end_mm, to, ret);
 }
 
 /* A stop, so that nothing enters it at speed. */
@@ -392,20 +373,21 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 {
 	struct interp_seg seg = { .kind = INTERP_LINE };
 	int64_t to[INTERP_NAXES];
-	struct measure m;
-	const int bad = measure_line(b, end_mm, w, to, &m);
+	struct build_measure m;
 	struct build_way way;
 	uint64_t ticks;
 	int r;
 
-	if (bad < 0)
-		return build_refuse_travel(b->o.machine, -bad - 1,
-					   end_mm[-bad - 1], diag);
+	if (w->ends)
+		loosen(b, end_mm);
+	r = build_measure(b, end_mm, to, &m, diag);
+	if (r < 0)
+		return r;
 	if (!m.moved) {
-		stand_at(b, end_mm, to);
+		build_stand_at(b, end_mm, to);
 		return 0;
 	}
-	way = way_to(b, to, &m);
+	way = build_way_to(b, to, &m);
 	ticks = build_rule_ticks(b->o.strategy, &way);
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_long(diag, m.length_mm);
@@ -414,8 +396,8 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		return r;
 	seg.ticks = (uint32_t)ticks;
 	seg.length_mm = m.length_mm;
-	seg_feed(&seg, w, m.length_mm / m.seconds);
-	if (m.moved & ~b->columns && columns_for(b, m.moved) < 0)
+	build_seg_feed(&seg, w, m.length_mm / m.seconds);
+	if (m.moved & ~b->columns && build_columns(b, m.moved) < 0)
 		return -ENOMEM;
 	if (w->ends)
 		r = sensed_begin(b, m.moved, w, diag);
@@ -423,11 +405,11 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		return r;
 	build_descend(b, m.moved, end_mm);
 	b->stand_escape = w->ends ? 0 : build_escape_of(b, m.moved, end_mm);
-	stand_at(b, end_mm, to);
+	build_stand_at(b, end_mm, to);
 	/* Nor is it known how far it came. */
 	if (w->ends)
 		b->descent.axis = -1;
-	return seg_finish(b, &seg, w, diag);
+	return build_seg_finish(b, &seg, w, diag);
 }
 
 int build_step(struct interp_build *b, const struct build_step *s,
@@ -438,242 +420,11 @@ int build_step(struct interp_build *b, const struct build_step *s,
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		to[i] = llround(s->end_mm[i] * b->sub_mm[i]);
-	seg_feed(&seg, w, s->feed_max_mm_s);
-	if (columns_for(b, s->moved) < 0)
+	build_seg_feed(&seg, w, s->feed_max_mm_s);
+	if (build_columns(b, s->moved) < 0)
 		return -ENOMEM;
 	build_descend(b, s->moved, s->end_mm);
 	b->stand_escape = b->escape;
-	stand_at(b, s->end_mm, to);
-	return seg_finish(b, &seg, w, diag);
-}
-
-int interp_build_action(struct interp_build *b, enum interp_kind kind,
-			uint32_t arg, const struct interp_build_word *w,
-			struct interp_diag *diag)
-{
-	struct interp_seg seg = { .kind = (uint8_t)kind, .arg = arg };
-	const int r = interp_build_flush(b, diag);
-
-	return r ? r : seg_finish(b, &seg, w, diag);
-}
-
-int interp_build_timed(struct interp_build *b,
-		       const struct interp_build_word *w,
-		       struct interp_diag *diag)
-{
-	const int r = interp_build_flush(b, diag);
-
-	if (r < 0)
-		return r;
-	b->timed = b->segs.n;
-	memcpy(b->timed_at, b->here, sizeof(b->timed_at));
-	return interp_build_action(b, INTERP_TIMED, 0, w, diag);
-}
-
-int interp_build_timed_end(struct interp_build *b, uint32_t ms,
-			   const struct interp_build_word *w,
-			   struct interp_diag *diag)
-{
-	const int r = interp_build_flush(b, diag);
-	struct interp_seg *begin = b->segs.at;
-
-	if (r < 0)
-		return r;
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		if (interp_round_sub(b->here[i]) ==
-		    interp_round_sub(b->timed_at[i]))
-			continue;
-		snprintf(diag->found, sizeof(diag->found),
-			 "a time for motions that end elsewhere along %c",
-			 INTERP_AXIS_LETTERS[i]);
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "motions that end where they begin");
-		return -EINVAL;
-	}
-	begin[b->timed].arg = (uint32_t)b->segs.n;
-	return interp_build_action(b, INTERP_TIMED_END, ms, w, diag);
-}
-
-/* -- Arcs ------------------------------------------------------------------ */
-
-/* The runs of an arc that keeps them. */
-static int runs_add(struct interp_build *b, const struct build_arc *plan,
-		    struct interp_arc *arc)
-{
-	struct table *t = &b->runs;
-
-	arc->run_at = (uint32_t)t->n;
-	if (arc->nruns == 0)
-		return 0;
-	if (t->n + arc->nruns > t->room) {
-		const size_t room = 2 * t->room + arc->nruns;
-		void *at = realloc(t->at, room * t->size);
-
-		if (!at)
-			return -ENOMEM;
-		t->at = at;
-		t->room = room;
-	}
-	build_arc_runs(plan, arc, (int32_t *)t->at + t->n);
-	t->n += arc->nruns;
-	return t->n > UINT32_MAX ? -ENOMEM : 0;
-}
-
-int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
-		     const struct interp_build_arc *a,
-		     const struct interp_build_word *w,
-		     struct interp_diag *diag)
-{
-	struct interp_seg seg = { .kind = INTERP_ARC };
-	struct build_arc plan = { .o = &b->o, .word = a };
-	const uint32_t plane = 1u << a->axis_a | 1u << a->axis_b;
-	int64_t to[INTERP_NAXES];
-	struct interp_arc *arc;
-	struct measure m;
-	int r = interp_build_flush(b, diag), bad;
-
-	if (r < 0)
-		return r;
-	bad = measure(b, end_mm, to, &m);
-	if (bad < 0)
-		return build_refuse_travel(b->o.machine, -bad - 1,
-					   end_mm[-bad - 1], diag);
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		plan.from_mm[i] = (double)b->here[i] / b->sub_mm[i];
-		plan.to_mm[i] = (double)to[i] / b->sub_mm[i];
-	}
-	plan.way = way_to(b, to, &m);
-	plan.way.except = plane;
-	r = build_arc_plan(&plan, diag);
-	if (r < 0)
-		return r;
-	if (plan.straight)
-		return interp_build_line(b, end_mm, w, diag);
-	seg.ticks = plan.ticks;
-	seg.length_mm = plan.length_mm;
-	seg_feed(&seg, w, plan.feed_max_mm_s);
-	if (columns_for(b, m.moved | plane) < 0)
-		return -ENOMEM;
-	seg.arg = (uint32_t)b->arcs.n;
-	arc = build_table_add(&b->arcs);
-	if (!arc)
-		return -ENOMEM;
-	*arc = plan.arc;
-	if (runs_add(b, &plan, arc) < 0)
-		return -ENOMEM;
-	build_descend(b, m.moved | plane, end_mm);
-	b->stand_escape = b->escape;
-	stand_at(b, end_mm, to);
-	return seg_finish(b, &seg, w, diag);
-}
-
-/* -- Pairs ----------------------------------------------------------------- */
-
-/* The couple and its bits, into the tables. */
-static int couple_add(struct interp_build *b, struct build_pair *p)
-{
-	const size_t words = p->bits ? ((size_t)p->ticks + 63) / 64 : 0;
-	struct interp_couple *c = build_table_add(&b->couples);
-
-	if (!c)
-		return -ENOMEM;
-	*c = p->couple;
-	c->bits_at = b->bits.n;
-	for (size_t i = 0; i < words; i++) {
-		uint64_t *w = build_table_add(&b->bits);
-
-		if (!w)
-			return -ENOMEM;
-		*w = p->bits[i];
-	}
-	return 0;
-}
-
-static int pair_finish(struct interp_build *b, struct build_pair *p,
-		       const struct interp_build_word *w,
-		       struct interp_diag *diag)
-{
-	struct interp_seg seg = { .kind = INTERP_PAIR, .ticks = p->ticks,
-				  .length_mm = p->length_mm,
-				  .arg = (uint32_t)b->couples.n };
-
-	seg_feed(&seg, w, p->feed_max_mm_s);
-	b->descent.axis = -1;
-	b->stand_escape = 0;
-	if (columns_for(b, 1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_U |
-			   1u << INTERP_V) < 0 || couple_add(b, p) < 0)
-		return -ENOMEM;
-	return seg_finish(b, &seg, w, diag);
-}
-
-static int refuse_others(struct interp_diag *diag)
-{
-	snprintf(diag->found, sizeof(diag->found),
-		 "another axis beside two contours");
-	snprintf(diag->wanted, sizeof(diag->wanted), "X Y U V alone");
-	return -EINVAL;
-}
-
-/* One contour alone, the other stands: -ENOENT if both have a way to go. */
-static int pair_alone(struct interp_build *b, const struct build_pair *p,
-		      const double end_mm[INTERP_NAXES],
-		      const struct interp_build_word *w,
-		      struct interp_diag *diag)
-{
-	const uint32_t xy = 1u << INTERP_X | 1u << INTERP_Y;
-	const struct interp_build_contour *c = p->contour;
-	const int i = p->moved & xy || c[0].arc ? 0 : 1;
-	const struct interp_build_arc arc = {
-		.axis_a = i ? INTERP_U : INTERP_X,
-		.axis_b = i ? INTERP_V : INTERP_Y,
-		.centre_a_mm = c[i].centre_mm[0],
-		.centre_b_mm = c[i].centre_mm[1], .clockwise = c[i].clockwise,
-	};
-	const bool other = i == 0 && (p->moved & ~xy || c[1].arc);
-
-	if (other && (c[0].arc || c[1].arc ||
-		      b->o.strategy != INTERP_SIMULTANEOUS))
-		return -ENOENT;
-	return c[i].arc ? interp_build_arc(b, end_mm, &arc, w, diag) :
-			  interp_build_line(b, end_mm, w, diag);
-}
-
-int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
-		      const struct interp_build_contour contour[2],
-		      const struct interp_build_word *w,
-		      struct interp_diag *diag)
-{
-	struct build_pair plan = { .machine = b->o.machine, .contour = contour,
-				   .strategy = b->o.strategy };
-	int64_t to[INTERP_NAXES];
-	struct measure m;
-	int r = interp_build_flush(b, diag), bad;
-
-	if (r < 0)
-		return r;
-	bad = measure(b, end_mm, to, &m);
-	if (bad < 0)
-		return build_refuse_travel(b->o.machine, -bad - 1,
-					   end_mm[-bad - 1], diag);
-	if (m.moved & ~(1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_U |
-			1u << INTERP_V))
-		return refuse_others(diag);
-	plan.moved = m.moved;
-	r = pair_alone(b, &plan, end_mm, w, diag);
-	if (r != -ENOENT)
-		return r;
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		plan.from_mm[i] = (double)b->here[i] / b->sub_mm[i];
-		plan.to_mm[i] = (double)to[i] / b->sub_mm[i];
-		plan.from[i] = interp_round_sub(b->here[i]);
-		plan.to[i] = interp_round_sub(to[i]);
-	}
-	plan.longest_sub = m.longest;
-	r = build_pair_plan(&plan, diag);
-	if (r == 0) {
-		stand_at(b, end_mm, to);
-		r = pair_finish(b, &plan, w, diag);
-	}
-	free(plan.bits);
-	return r;
+	build_stand_at(b, s->end_mm, to);
+	return build_seg_finish(b, &seg, w, diag);
 }

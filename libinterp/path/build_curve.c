@@ -7,15 +7,13 @@
  * and where the feed it allows has changed by more than a half since the piece
  * began.  A piece gets its table of stops and so many places that no axis
  * leaps; every place is then tried, against the travel too, and the number
- * raised until it is so.  Where it is cut depends on the axes' limits alone, not
- * on the period, so the lattice points do not either.
+ * raised until it is so.  Where it is cut depends on the axes' limits alone,
+ * not on the period, so the lattice points do not either.
  */
 #include "curve/span.h"
-#include "interp/nurbs_feed.h"
 #include "path/build_arc.h"
 #include "path/build_curve.h"
 #include "path/builder.h"
-#include "pulse/walk.h"
 
 #include <errno.h>
 #include <math.h>
@@ -24,61 +22,17 @@
 #include <string.h>
 
 #define LOOKS		64		/* in a span */
-
-/* Places of a span that are looked at before any work is put into it. */
-#define FIRST_LOOKS	64
 #define FEED_RATIO	1.5		/* of fastest to slowest in a piece */
 #define CUSP_HALVINGS	60
 #define STOP_PULSES	0.02		/* error of a stop's place */
 #define MARGIN		1.02		/* more places than the looks ask for */
 #define TRIES		24
-#define START_PULSES	2.0
 #define TRIED_MAX	200000000.0	/* places of a curve, all tries: some
 					 * twenty seconds */
 
-struct plan {
-	struct interp_build *b;
-	const struct interp_build_curve *c;
-	struct interp_build_word word;
-	struct interp_diag *diag;
-	struct interp_curve curve;	/* as stored */
-	struct interp_nurbs_limits limits;	/* of the axes */
-	double chord_mm_s;		/* the fastest round a radius of 1 mm
-					 * within the chord error */
-	double pulses_mm[INTERP_NAXES], pulse_mm;	/* the finest */
-	double slowest_mm_s;
-	uint32_t moved, turns;
-	struct interp_curve_walk walk;
-	size_t mark;
-	double tried;			/* places so far */
-	/* The piece in hand: */
-	double from, least_mm_s, most_mm_s, bend, rate;
-};
-
-static int refuse(struct plan *p, const char *found, const char *wanted)
-{
-	snprintf(p->diag->found, sizeof(p->diag->found), "%s", found);
-	snprintf(p->diag->wanted, sizeof(p->diag->wanted), "%s", wanted);
-	return -EINVAL;
-}
-
-static int refuse_flaw(struct plan *p, enum interp_nurbs_flaw f, uint32_t at)
-{
-	char found[sizeof(p->diag->found)];
-
-	snprintf(found, sizeof(found), "%s, number %u of the curve's",
-		 interp_nurbs_flaw_text(f), at + 1);
-	return refuse(p, f == INTERP_NURBS_BAD_WEIGHT ||
-			 f == INTERP_NURBS_NOT_FINITE ||
-			 f == INTERP_NURBS_KNOT_FALLS ||
-			 f == INTERP_NURBS_KNOT_REPEATS ? found :
-			 interp_nurbs_flaw_text(f),
-		      interp_nurbs_flaw_wanted(f));
-}
-
 /* -- What limits it ------------------------------------------------------------ */
 
-static void set_limits(struct plan *p)
+static void set_limits(struct curve_plan *p)
 {
 	const struct interp_build_options *o = &p->b->o;
 	struct interp_nurbs_limits *l = &p->limits;
@@ -111,7 +65,7 @@ static void set_limits(struct plan *p)
 
 /* A look at @u: the feed its axes can do.  The piece in hand learns how sharp
  * it bends and how many pulses a mm of it has. */
-static double look(struct plan *p, double u)
+static double look(struct curve_plan *p, double u)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;
 	struct interp_nurbs_point at;
@@ -127,7 +81,7 @@ static double look(struct plan *p, double u)
 }
 
 /* Of the piece in hand. */
-static double feed_of(const struct plan *p)
+static double feed_of(const struct curve_plan *p)
 {
 	const double chord = p->chord_mm_s / sqrt(p->bend);
 
@@ -136,7 +90,7 @@ static double feed_of(const struct plan *p)
 
 /* -- Pieces -------------------------------------------------------------------- */
 
-static const struct interp_nurbs_stop *stops_of(const struct plan *p,
+static const struct interp_nurbs_stop *stops_of(const struct curve_plan *p,
 						const struct interp_piece *q)
 {
 	const struct interp_nurbs_stop *s = p->b->stops.at;
@@ -144,7 +98,8 @@ static const struct interp_nurbs_stop *stops_of(const struct plan *p,
 	return s + q->stops_at;
 }
 
-static int add_stops(struct plan *p, double to, struct interp_piece *piece)
+static int add_stops(struct curve_plan *p, double to,
+		     struct interp_piece *piece)
 {
 	const struct interp_nurbs_range r = { p->from, to,
 					      STOP_PULSES * p->pulse_mm };
@@ -170,7 +125,8 @@ static int add_stops(struct plan *p, double to, struct interp_piece *piece)
 }
 
 /* Axis @k at @pulses, coming from @was: 1 if it leaps; or refused. */
-static int try_axis(struct plan *p, uint32_t k, int32_t pulses, int32_t was)
+static int try_axis(struct curve_plan *p, uint32_t k, int32_t pulses,
+		    int32_t was)
 {
 	const int axis = p->curve.axis[k];
 	const double at_mm = pulses / p->pulses_mm[axis];
@@ -182,7 +138,7 @@ static int try_axis(struct plan *p, uint32_t k, int32_t pulses, int32_t was)
 }
 
 /* Does no axis leap, and none leave its travel?  1 if one leaps. */
-static int try_places(struct plan *p, const double end_mm[INTERP_NAXES])
+static int try_places(struct curve_plan *p, const double end_mm[INTERP_NAXES])
 {
 	struct interp_curve_walk *w = &p->walk;
 	int32_t was[INTERP_NAXES];
@@ -207,7 +163,7 @@ static int try_places(struct plan *p, const double end_mm[INTERP_NAXES])
 }
 
 /* Places enough: 0, or what refuses. */
-static int find_places(struct plan *p, const struct interp_piece *piece,
+static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 		       const double end_mm[INTERP_NAXES])
 {
 	const struct interp_nurbs_stop *stops = stops_of(p, piece);
@@ -229,11 +185,11 @@ static int find_places(struct plan *p, const struct interp_piece *piece,
 			return r;
 		places = ceil(places * 1.2);
 	}
-	return refuse(p, "a curve with too many pulses for one segment",
-		      "a shorter curve");
+	return build_curve_refuse(p, "a curve with too many pulses for one "
+				  "segment", "a shorter curve");
 }
 
-static uint32_t line_at(struct plan *p, double u)
+static uint32_t line_at(struct curve_plan *p, double u)
 {
 	const struct interp_build_curve *c = p->c;
 
@@ -245,7 +201,8 @@ static uint32_t line_at(struct plan *p, double u)
 }
 
 /* The end of the curve is its last control point, without a rounding. */
-static void end_of(struct plan *p, double to, double end_mm[INTERP_NAXES])
+static void end_of(struct curve_plan *p, double to,
+		   double end_mm[INTERP_NAXES])
 {
 	const struct interp_nurbs *n = &p->walk.eval.c;
 	struct interp_nurbs_point at;
@@ -256,7 +213,7 @@ static void end_of(struct plan *p, double to, double end_mm[INTERP_NAXES])
 		end_mm[p->curve.axis[k]] = at.d[0][k];
 }
 
-static int piece_add(struct plan *p, double to)
+static int piece_add(struct curve_plan *p, double to)
 {
 	double end_mm[INTERP_NAXES];
 	struct build_step step = { .seg = { .kind = INTERP_CURVE },
@@ -285,7 +242,7 @@ static int piece_add(struct plan *p, double to)
 	return build_step(p->b, &step, &p->word, p->diag);
 }
 
-static void piece_begin(struct plan *p, double u)
+static void piece_begin(struct curve_plan *p, double u)
 {
 	p->from = u;
 	p->rate = p->bend = 0;
@@ -294,7 +251,7 @@ static void piece_begin(struct plan *p, double u)
 
 /* The piece goes on to @u, if its feeds stay near enough; else it ends where
  * the last look was. */
-static int piece_extend(struct plan *p, double last, double u)
+static int piece_extend(struct curve_plan *p, double last, double u)
 {
 	const double bend = p->bend, rate = p->rate, feed = look(p, u);
 	int r = 0;
@@ -312,7 +269,7 @@ static int piece_extend(struct plan *p, double last, double u)
 	return r;
 }
 
-static int piece_end(struct plan *p, double u)
+static int piece_end(struct curve_plan *p, double u)
 {
 	const int r = u > p->from ? piece_add(p, u) : 0;
 
@@ -341,7 +298,7 @@ static double cusp_of(const struct interp_nurbs_eval *e, double from,
 	return to;
 }
 
-static int along_look(struct plan *p, double last, double u)
+static int along_look(struct curve_plan *p, double last, double u)
 {
 	const struct interp_nurbs_eval *e = &p->walk.eval;
 	struct interp_nurbs_point a, b;
@@ -374,7 +331,7 @@ static bool corner_at(const struct interp_nurbs *c, double u)
 	return n >= c->degree;
 }
 
-static int along(struct plan *p)
+static int along(struct curve_plan *p)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;
 	double last = interp_nurbs_first(&e->c);
@@ -401,91 +358,17 @@ static int along(struct plan *p)
 	return r;
 }
 
-static int check_start(struct plan *p)
-{
-	struct interp_nurbs_point at;
-
-	interp_nurbs_at(&p->walk.eval, interp_nurbs_first(&p->walk.eval.c), 0,
-			&at);
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		const int axis = p->curve.axis[k];
-		const double off = at.d[0][k] - p->b->here_mm[axis];
-		char found[sizeof(p->diag->found)];
-
-		if (fabs(off) * p->pulses_mm[axis] <= START_PULSES)
-			continue;
-		snprintf(found, sizeof(found), "a curve that begins at %c %.4f,"
-			 " not where the program stands: %.4f",
-			 INTERP_AXIS_LETTERS[axis], at.d[0][k],
-			 p->b->here_mm[axis]);
-		return refuse(p, found, "a first point where the last motion "
-			      "ended");
-	}
-	return 0;
-}
-
-static int check_place(struct plan *p, double u)
-{
-	struct interp_nurbs_point at;
-
-	interp_nurbs_at(&p->walk.eval, u, 0, &at);
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		const int axis = p->curve.axis[k];
-
-		if (!build_axis_ok(p->b, axis, at.d[0][k]))
-			return build_refuse_travel(p->b->o.machine, axis,
-						   at.d[0][k], p->diag);
-	}
-	return 0;
-}
-
-/* A first look all along: what leads far away is not cut up on the way. */
-static int check_travel(struct plan *p)
-{
-	struct interp_nurbs_eval *e = &p->walk.eval;
-	const double end = interp_nurbs_last(&e->c);
-	double from = interp_nurbs_first(&e->c), to;
-	int r = 0;
-
-	for (; r == 0 && from < end; from = to) {
-		r = check_place(p, from);
-		to = e->to;
-		for (int i = 1; r == 0 && i <= FIRST_LOOKS; i++)
-			r = check_place(p, i < FIRST_LOOKS ?
-				from + (to - from) * i / FIRST_LOOKS : to);
-	}
-	return r;
-}
-
-static int check_curve(struct plan *p)
-{
-	uint32_t at;
-	const enum interp_nurbs_flaw f = interp_nurbs_check(&p->c->nurbs, &at);
-
-	return f != INTERP_NURBS_SOUND ? refuse_flaw(p, f, at) : 0;
-}
-
-static int check_axes(struct plan *p)
-{
-	const struct interp_machine *m = p->b->o.machine;
-
-	if ((p->moved & ~m->present) == 0)
-		return 0;
-	return build_refuse_travel(m, __builtin_ctz(p->moved & ~m->present), 0,
-				   p->diag);
-}
-
 int interp_build_curve(struct interp_build *b,
 		       const struct interp_build_curve *c,
 		       const struct interp_build_word *w,
 		       struct interp_diag *diag)
 {
-	struct plan p = { .b = b, .c = c, .word = *w, .diag = diag };
+	struct curve_plan p = { .b = b, .c = c, .word = *w, .diag = diag };
 	struct interp_nurbs n;
 	int r = interp_build_flush(b, diag);
 
 	if (r == 0)
-		r = check_curve(&p);
+		r = build_curve_check(&p);
 	if (r == 0)
 		r = build_curve_store(b, c, &p.curve, &p.moved);
 	if (r < 0 || p.curve.naxes == 0)
@@ -502,10 +385,6 @@ int interp_build_curve(struct interp_build *b,
 	p.turns = b->o.strategy == INTERP_SIMULTANEOUS ||
 		  b->o.strategy == INTERP_DDA ? 1 : n.naxes;
 	set_limits(&p);
-	r = check_axes(&p);
-	if (r == 0)
-		r = check_start(&p);
-	if (r == 0)
-		r = check_travel(&p);
+	r = build_curve_check_way(&p);
 	return r == 0 ? along(&p) : r;
 }

@@ -8,6 +8,7 @@
 #define PATH_BUILDER_H
 
 #include "interp/build.h"
+#include "path/build_rule.h"
 
 struct table {
 	void *at;
@@ -56,6 +57,49 @@ struct interp_build {
 
 /** build_table_add() - room for one more; NULL: out of memory. */
 void *build_table_add(struct table *t);
+
+/* How far a motion goes. */
+struct build_measure {
+	uint32_t moved;			/* mask of axes */
+	double length_mm;
+	double seconds;			/* at every axis's own v_max */
+	int64_t longest;		/* subpulses */
+};
+
+/**
+ * build_measure() - how far every axis goes to @end_mm; @to gets it in
+ * subpulses.
+ * Return: 0, or -EINVAL with @diag filled if one would leave its travel.
+ */
+int build_measure(const struct interp_build *b,
+		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
+		  struct build_measure *ret, struct interp_diag *diag);
+
+/** build_way_to() - from here to @to, as the strategies see it. */
+struct build_way build_way_to(const struct interp_build *b,
+			      const int64_t to[INTERP_NAXES],
+			      const struct build_measure *m);
+
+/** build_seg_feed() - feed words: as programmed, and the fastest its axes
+ *  allow. */
+void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
+		    double feed_max_mm_s);
+
+/** build_columns() - a column for each axis in @moved.  0 or -ENOMEM. */
+int build_columns(struct interp_build *b, uint32_t moved);
+
+/** build_stand_at() - the path ends at @end_mm, which is @to in subpulses. */
+void build_stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		    const int64_t to[INTERP_NAXES]);
+
+/**
+ * build_seg_finish() - add @seg with what is the same for every segment: line,
+ * condition, place, end node.
+ * Return: 0, -ENOMEM, or -EINVAL with @diag filled.
+ */
+int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
+		     const struct interp_build_word *w,
+		     struct interp_diag *diag);
 
 /* A segment whose way is known. */
 struct build_step {

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_action.c - what is done where the path stands, and parts with a time
+ */
+#include "path/builder.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+int interp_build_action(struct interp_build *b, enum interp_kind kind,
+			uint32_t arg, const struct interp_build_word *w,
+			struct interp_diag *diag)
+{
+	struct interp_seg seg = { .kind = (uint8_t)kind, .arg = arg };
+	const int r = interp_build_flush(b, diag);
+
+	return r ? r : build_seg_finish(b, &seg, w, diag);
+}
+
+int interp_build_timed(struct interp_build *b,
+		       const struct interp_build_word *w,
+		       struct interp_diag *diag)
+{
+	const int r = interp_build_flush(b, diag);
+
+	if (r < 0)
+		return r;
+	b->timed = b->segs.n;
+	memcpy(b->timed_at, b->here, sizeof(b->timed_at));
+	return interp_build_action(b, INTERP_TIMED, 0, w, diag);
+}
+
+int interp_build_timed_end(struct interp_build *b, uint32_t ms,
+			   const struct interp_build_word *w,
+			   struct interp_diag *diag)
+{
+	const int r = interp_build_flush(b, diag);
+	struct interp_seg *begin = b->segs.at;
+
+	if (r < 0)
+		return r;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (interp_round_sub(b->here[i]) ==
+		    interp_round_sub(b->timed_at[i]))
+			continue;
+		snprintf(diag->found, sizeof(diag->found),
+			 "a time for motions that end elsewhere along %c",
+			 INTERP_AXIS_LETTERS[i]);
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "motions that end where they begin");
+		return -EINVAL;
+	}
+	begin[b->timed].arg = (uint32_t)b->segs.n;
+	return interp_build_action(b, INTERP_TIMED_END, ms, w, diag);
+}

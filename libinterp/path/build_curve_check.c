@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_curve_check.c - what a NURBS is refused for before it is cut up
+ */
+#include "path/build_arc.h"
+#include "path/build_curve.h"
+#include "path/builder.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+
+/* Places of a span that are looked at before any work is put into it. */
+#define FIRST_LOOKS	64
+
+#define START_PULSES	2.0
+
+int build_curve_refuse(struct curve_plan *p, const char *found,
+		       const char *wanted)
+{
+	snprintf(p->diag->found, sizeof(p->diag->found), "%s", found);
+	snprintf(p->diag->wanted, sizeof(p->diag->wanted), "%s", wanted);
+	return -EINVAL;
+}
+
+static int refuse_flaw(struct curve_plan *p, enum interp_nurbs_flaw f,
+		       uint32_t at)
+{
+	char found[sizeof(p->diag->found)];
+
+	snprintf(found, sizeof(found), "%s, number %u of the curve's",
+		 interp_nurbs_flaw_text(f), at + 1);
+	return build_curve_refuse(p, f == INTERP_NURBS_BAD_WEIGHT ||
+				     f == INTERP_NURBS_NOT_FINITE ||
+				     f == INTERP_NURBS_KNOT_FALLS ||
+				     f == INTERP_NURBS_KNOT_REPEATS ? found :
+				     interp_nurbs_flaw_text(f),
+				  interp_nurbs_flaw_wanted(f));
+}
+
+static int check_start(struct curve_plan *p)
+{
+	struct interp_nurbs_point at;
+
+	interp_nurbs_at(&p->walk.eval, interp_nurbs_first(&p->walk.eval.c), 0,
+			&at);
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const int axis = p->curve.axis[k];
+		const double off = at.d[0][k] - p->b->here_mm[axis];
+		char found[sizeof(p->diag->found)];
+
+		if (fabs(off) * p->pulses_mm[axis] <= START_PULSES)
+			continue;
+		snprintf(found, sizeof(found), "a curve that begins at %c %.4f,"
+			 " not where the program stands: %.4f",
+			 INTERP_AXIS_LETTERS[axis], at.d[0][k],
+			 p->b->here_mm[axis]);
+		return build_curve_refuse(p, found, "a first point where the "
+					  "last motion ended");
+	}
+	return 0;
+}
+
+static int check_place(struct curve_plan *p, double u)
+{
+	struct interp_nurbs_point at;
+
+	interp_nurbs_at(&p->walk.eval, u, 0, &at);
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const int axis = p->curve.axis[k];
+
+		if (!build_axis_ok(p->b, axis, at.d[0][k]))
+			return build_refuse_travel(p->b->o.machine, axis,
+						   at.d[0][k], p->diag);
+	}
+	return 0;
+}
+
+/* A first look all along: what leads far away is not cut up on the way. */
+static int check_travel(struct curve_plan *p)
+{
+	struct interp_nurbs_eval *e = &p->walk.eval;
+	const double end = interp_nurbs_last(&e->c);
+	double from = interp_nurbs_first(&e->c), to;
+	int r = 0;
+
+	for (; r == 0 && from < end; from = to) {
+		r = check_place(p, from);
+		to = e->to;
+		for (int i = 1; r == 0 && i <= FIRST_LOOKS; i++)
+			r = check_place(p, i < FIRST_LOOKS ?
+				from + (to - from) * i / FIRST_LOOKS : to);
+	}
+	return r;
+}
+
+int build_curve_check(struct curve_plan *p)
+{
+	uint32_t at;
+	const enum interp_nurbs_flaw f = interp_nurbs_check(&p->c->nurbs, &at);
+
+	return f != INTERP_NURBS_SOUND ? refuse_flaw(p, f, at) : 0;
+}
+
+static int check_axes(struct curve_plan *p)
+{
+	const struct interp_machine *m = p->b->o.machine;
+
+	if ((p->moved & ~m->present) == 0)
+		return 0;
+	return build_refuse_travel(m, __builtin_ctz(p->moved & ~m->present), 0,
+				   p->diag);
+}
+
+int build_curve_check_way(struct curve_plan *p)
+{
+	int r = check_axes(p);
+
+	if (r == 0)
+		r = check_start(p);
+	return r == 0 ? check_travel(p) : r;
+}

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_pair_add.c - two contours as a segment, their plan into the tables
+ */
+#include "path/build_pair.h"
+#include "path/builder.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define XY	(1u << INTERP_X | 1u << INTERP_Y)
+#define UV	(1u << INTERP_U | 1u << INTERP_V)
+
+/* The couple and its bits, into the tables. */
+static int couple_add(struct interp_build *b, struct build_pair *p)
+{
+	const size_t words = p->bits ? ((size_t)p->ticks + 63) / 64 : 0;
+	struct interp_couple *c = build_table_add(&b->couples);
+
+	if (!c)
+		return -ENOMEM;
+	*c = p->couple;
+	c->bits_at = b->bits.n;
+	for (size_t i = 0; i < words; i++) {
+		uint64_t *w = build_table_add(&b->bits);
+
+		if (!w)
+			return -ENOMEM;
+		*w = p->bits[i];
+	}
+	return 0;
+}
+
+static int pair_finish(struct interp_build *b, struct build_pair *p,
+		       const struct interp_build_word *w,
+		       struct interp_diag *diag)
+{
+	struct interp_seg seg = { .kind = INTERP_PAIR, .ticks = p->ticks,
+				  .length_mm = p->length_mm,
+				  .arg = (uint32_t)b->couples.n };
+
+	build_seg_feed(&seg, w, p->feed_max_mm_s);
+	b->descent.axis = -1;
+	b->stand_escape = 0;
+	if (build_columns(b, XY | UV) < 0 || couple_add(b, p) < 0)
+		return -ENOMEM;
+	return build_seg_finish(b, &seg, w, diag);
+}
+
+static int refuse_others(struct interp_diag *diag)
+{
+	snprintf(diag->found, sizeof(diag->found),
+		 "another axis beside two contours");
+	snprintf(diag->wanted, sizeof(diag->wanted), "X Y U V alone");
+	return -EINVAL;
+}
+
+/* One contour alone, the other stands: -ENOENT if both have a way to go. */
+static int pair_alone(struct interp_build *b, const struct build_pair *p,
+		      const double end_mm[INTERP_NAXES],
+		      const struct interp_build_word *w,
+		      struct interp_diag *diag)
+{
+	const struct interp_build_contour *c = p->contour;
+	const int i = p->moved & XY || c[0].arc ? 0 : 1;
+	const struct interp_build_arc arc = {
+		.axis_a = i ? INTERP_U : INTERP_X,
+		.axis_b = i ? INTERP_V : INTERP_Y,
+		.centre_a_mm = c[i].centre_mm[0],
+		.centre_b_mm = c[i].centre_mm[1], .clockwise = c[i].clockwise,
+	};
+	const bool other = i == 0 && (p->moved & ~XY || c[1].arc);
+
+	if (other && (c[0].arc || c[1].arc ||
+		      b->o.strategy != INTERP_SIMULTANEOUS))
+		return -ENOENT;
+	return c[i].arc ? interp_build_arc(b, end_mm, &arc, w, diag) :
+			  interp_build_line(b, end_mm, w, diag);
+}
+
+int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		      const struct interp_build_contour contour[2],
+		      const struct interp_build_word *w,
+		      struct interp_diag *diag)
+{
+	struct build_pair plan = { .machine = b->o.machine, .contour = contour,
+				   .strategy = b->o.strategy };
+	int64_t to[INTERP_NAXES];
+	struct build_measure m;
+	int r = interp_build_flush(b, diag);
+
+	if (r == 0)
+		r = build_measure(b, end_mm, to, &m, diag);
+	if (r < 0)
+		return r;
+	if (m.moved & ~(XY | UV))
+		return refuse_others(diag);
+	plan.moved = m.moved;
+	r = pair_alone(b, &plan, end_mm, w, diag);
+	if (r != -ENOENT)
+		return r;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		plan.from_mm[i] = (double)b->here[i] / b->sub_mm[i];
+		plan.to_mm[i] = (double)to[i] / b->sub_mm[i];
+		plan.from[i] = interp_round_sub(b->here[i]);
+		plan.to[i] = interp_round_sub(to[i]);
+	}
+	plan.longest_sub = m.longest;
+	r = build_pair_plan(&plan, diag);
+	if (r == 0) {
+		build_stand_at(b, end_mm, to);
+		r = pair_finish(b, &plan, w, diag);
+	}
+	free(plan.bits);
+	return r;
+}
