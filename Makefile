@@ -322,12 +322,12 @@ run-fuzz_%: $(B)/fuzz_%
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
 
-$(B)/fuzz_%: tests/fuzz/fuzz_%.c $(INTERP)
+$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
 	$(call say,CLANG,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
 		-fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
-		$(INC_libinterp) -o $@ $^ -lm
+		$(INC_libinterp) -o $@ $(filter %.c,$^) -lm
 
 # -- Lint ---------------------------------------------------------------------
 
