@@ -6,7 +6,11 @@
 
 #define TELL(field)	offsetof(struct plc_tell, field)
 #define ASK(field)	offsetof(struct plc_ask, field)
-#define POS(axis)	(TELL(pos) + 4 * (axis))
+
+/* Of pdo 0 are those that no frame has room for. */
+#define POSITION(sub, axis, pdo, byte, what) \
+	{ 0x2001, sub, PLC_I32, false, pdo, byte, TELL(pos[(sub) - 1]), \
+	  INT32_MIN, INT32_MAX, "Position" axis, "pulses", 1, what }
 
 /* clang-format off */
 const struct plc_signal plc_signal[] = {
@@ -35,30 +39,14 @@ const struct plc_signal plc_signal[] = {
 	{ 0x2000, 8, PLC_U32, false, 2, 4, TELL(line), 0, UINT32_MAX,
 	  "Line", "", 1,
 	  "of its source text" },
-	{ 0x2001, 1, PLC_I32, false, 3, 0, POS(0), INT32_MIN, INT32_MAX,
-	  "PositionX", "pulses", 1,
-	  "target" },
-	{ 0x2001, 2, PLC_I32, false, 3, 4, POS(1), INT32_MIN, INT32_MAX,
-	  "PositionY", "pulses", 1,
-	  "target" },
-	{ 0x2001, 3, PLC_I32, false, 4, 0, POS(2), INT32_MIN, INT32_MAX,
-	  "PositionZ", "pulses", 1,
-	  "target" },
-	{ 0x2001, 4, PLC_I32, false, 0, 0, POS(3), INT32_MIN, INT32_MAX,
-	  "PositionA", "pulses", 1,
-	  "target; by SDO" },
-	{ 0x2001, 5, PLC_I32, false, 0, 0, POS(4), INT32_MIN, INT32_MAX,
-	  "PositionB", "pulses", 1,
-	  "target; by SDO" },
-	{ 0x2001, 6, PLC_I32, false, 4, 4, POS(5), INT32_MIN, INT32_MAX,
-	  "PositionC", "pulses", 1,
-	  "target" },
-	{ 0x2001, 7, PLC_I32, false, 0, 0, POS(6), INT32_MIN, INT32_MAX,
-	  "PositionU", "pulses", 1,
-	  "target; by SDO" },
-	{ 0x2001, 8, PLC_I32, false, 0, 0, POS(7), INT32_MIN, INT32_MAX,
-	  "PositionV", "pulses", 1,
-	  "target; by SDO" },
+	POSITION(1, "X", 3, 0, "target"),
+	POSITION(2, "Y", 3, 4, "target"),
+	POSITION(3, "Z", 4, 0, "target"),
+	POSITION(4, "A", 0, 0, "target; by SDO"),
+	POSITION(5, "B", 0, 0, "target; by SDO"),
+	POSITION(6, "C", 4, 4, "target"),
+	POSITION(7, "U", 0, 0, "target; by SDO"),
+	POSITION(8, "V", 0, 0, "target; by SDO"),
 	{ 0x2100, 1, PLC_U8,  true,  1, 0, ASK(command), 0, 255,
 	  "Command", "", 1,
 	  "bits" },
@@ -81,8 +69,16 @@ const struct plc_signal plc_signal[] = {
 
 const size_t plc_nsignals = sizeof(plc_signal) / sizeof(plc_signal[0]);
 
-#define PDO(index, sub, bits)	((uint32_t)(index) << 16 | (sub) << 8 | (bits))
-#define NO_RTR			0x40000000u
+#define NO_RTR	0x40000000u
+
+/* How a frame is sent, and what object stands in it. */
+#define TPDO(n, at, id) \
+	{ at, 0, PLC_U8, 2, false, "TPDO" #n ", highest sub-index" }, \
+	{ at, 1, PLC_U32, NO_RTR | (id), true, "TPDO" #n " COB-ID" }, \
+	{ at, 2, PLC_U8, 254, false, "TPDO" #n " transmission type" }
+#define MAPPED(frame, at, i, index, sub, bits) \
+	{ at, i, PLC_U32, (uint32_t)(index) << 16 | (sub) << 8 | (bits), \
+	  false, #frame " object " #i }
 
 const struct plc_constant plc_constant[] = {
 	{ 0x1000, 0, PLC_U32, 0, false, "Device type" },
@@ -98,40 +94,32 @@ const struct plc_constant plc_constant[] = {
 	{ 0x1400, 1, PLC_U32, CAN_RPDO1, true, "RPDO1 COB-ID" },
 	{ 0x1400, 2, PLC_U8, 255, false, "RPDO1 transmission type" },
 	{ 0x1600, 0, PLC_U8, 6, false, "RPDO1 mapping, objects" },
-	{ 0x1600, 1, PLC_U32, PDO(0x2100, 1, 8), false, "RPDO1 object 1" },
-	{ 0x1600, 2, PLC_U32, PDO(0x2100, 2, 8), false, "RPDO1 object 2" },
-	{ 0x1600, 3, PLC_U32, PDO(0x2100, 3, 16), false, "RPDO1 object 3" },
-	{ 0x1600, 4, PLC_U32, PDO(0x2100, 4, 16), false, "RPDO1 object 4" },
-	{ 0x1600, 5, PLC_U32, PDO(0x2100, 5, 8), false, "RPDO1 object 5" },
-	{ 0x1600, 6, PLC_U32, PDO(0x2100, 6, 8), false, "RPDO1 object 6" },
-	{ 0x1800, 0, PLC_U8, 2, false, "TPDO1, highest sub-index" },
-	{ 0x1800, 1, PLC_U32, NO_RTR | 0x180, true, "TPDO1 COB-ID" },
-	{ 0x1800, 2, PLC_U8, 254, false, "TPDO1 transmission type" },
-	{ 0x1801, 0, PLC_U8, 2, false, "TPDO2, highest sub-index" },
-	{ 0x1801, 1, PLC_U32, NO_RTR | 0x280, true, "TPDO2 COB-ID" },
-	{ 0x1801, 2, PLC_U8, 254, false, "TPDO2 transmission type" },
-	{ 0x1802, 0, PLC_U8, 2, false, "TPDO3, highest sub-index" },
-	{ 0x1802, 1, PLC_U32, NO_RTR | 0x380, true, "TPDO3 COB-ID" },
-	{ 0x1802, 2, PLC_U8, 254, false, "TPDO3 transmission type" },
-	{ 0x1803, 0, PLC_U8, 2, false, "TPDO4, highest sub-index" },
-	{ 0x1803, 1, PLC_U32, NO_RTR | 0x480, true, "TPDO4 COB-ID" },
-	{ 0x1803, 2, PLC_U8, 254, false, "TPDO4 transmission type" },
+	MAPPED(RPDO1, 0x1600, 1, 0x2100, 1, 8),
+	MAPPED(RPDO1, 0x1600, 2, 0x2100, 2, 8),
+	MAPPED(RPDO1, 0x1600, 3, 0x2100, 3, 16),
+	MAPPED(RPDO1, 0x1600, 4, 0x2100, 4, 16),
+	MAPPED(RPDO1, 0x1600, 5, 0x2100, 5, 8),
+	MAPPED(RPDO1, 0x1600, 6, 0x2100, 6, 8),
+	TPDO(1, 0x1800, 0x180),
+	TPDO(2, 0x1801, 0x280),
+	TPDO(3, 0x1802, 0x380),
+	TPDO(4, 0x1803, 0x480),
 	{ 0x1a00, 0, PLC_U8, 6, false, "TPDO1 mapping, objects" },
-	{ 0x1a00, 1, PLC_U32, PDO(0x2000, 1, 8), false, "TPDO1 object 1" },
-	{ 0x1a00, 2, PLC_U32, PDO(0x2000, 2, 8), false, "TPDO1 object 2" },
-	{ 0x1a00, 3, PLC_U32, PDO(0x2000, 3, 8), false, "TPDO1 object 3" },
-	{ 0x1a00, 4, PLC_U32, PDO(0x2000, 4, 8), false, "TPDO1 object 4" },
-	{ 0x1a00, 5, PLC_U32, PDO(0x2000, 5, 16), false, "TPDO1 object 5" },
-	{ 0x1a00, 6, PLC_U32, PDO(0x2000, 6, 16), false, "TPDO1 object 6" },
+	MAPPED(TPDO1, 0x1a00, 1, 0x2000, 1, 8),
+	MAPPED(TPDO1, 0x1a00, 2, 0x2000, 2, 8),
+	MAPPED(TPDO1, 0x1a00, 3, 0x2000, 3, 8),
+	MAPPED(TPDO1, 0x1a00, 4, 0x2000, 4, 8),
+	MAPPED(TPDO1, 0x1a00, 5, 0x2000, 5, 16),
+	MAPPED(TPDO1, 0x1a00, 6, 0x2000, 6, 16),
 	{ 0x1a01, 0, PLC_U8, 2, false, "TPDO2 mapping, objects" },
-	{ 0x1a01, 1, PLC_U32, PDO(0x2000, 7, 32), false, "TPDO2 object 1" },
-	{ 0x1a01, 2, PLC_U32, PDO(0x2000, 8, 32), false, "TPDO2 object 2" },
+	MAPPED(TPDO2, 0x1a01, 1, 0x2000, 7, 32),
+	MAPPED(TPDO2, 0x1a01, 2, 0x2000, 8, 32),
 	{ 0x1a02, 0, PLC_U8, 2, false, "TPDO3 mapping, objects" },
-	{ 0x1a02, 1, PLC_U32, PDO(0x2001, 1, 32), false, "TPDO3 object 1" },
-	{ 0x1a02, 2, PLC_U32, PDO(0x2001, 2, 32), false, "TPDO3 object 2" },
+	MAPPED(TPDO3, 0x1a02, 1, 0x2001, 1, 32),
+	MAPPED(TPDO3, 0x1a02, 2, 0x2001, 2, 32),
 	{ 0x1a03, 0, PLC_U8, 2, false, "TPDO4 mapping, objects" },
-	{ 0x1a03, 1, PLC_U32, PDO(0x2001, 3, 32), false, "TPDO4 object 1" },
-	{ 0x1a03, 2, PLC_U32, PDO(0x2001, 6, 32), false, "TPDO4 object 2" },
+	MAPPED(TPDO4, 0x1a03, 1, 0x2001, 3, 32),
+	MAPPED(TPDO4, 0x1a03, 2, 0x2001, 6, 32),
 	{ 0x2000, 0, PLC_U8, 8, false, "Machine, highest sub-index" },
 	{ 0x2001, 0, PLC_U8, 8, false, "Positions, highest sub-index" },
 	{ 0x2100, 0, PLC_U8, 6, false, "PLC, highest sub-index" },
