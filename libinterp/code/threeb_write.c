@@ -154,13 +154,13 @@ static struct attempt try_bisector(const struct threeb_writer *w,
 	const double chord = hypot(x1 - x0, y1 - y0);
 	const double shift = (hypot(x1, y1) - hypot(x0, y0)) *
 			     (hypot(x1, y1) + hypot(x0, y0)) / (2 * chord);
-	const int64_t centre[2] = {
-		llround(want->cx + shift * (x1 - x0) / chord),
-		llround(want->cy + shift * (y1 - y0) / chord),
-	};
+	int64_t centre[2];
 
-	if (fabs(want->sweep) > TURN / 2 && fabs(shift) > 1)
+	if ((fabs(want->sweep) > TURN / 2 && fabs(shift) > 1) ||
+	    !(fabs(shift) < INTERP_THREEB_MAX))	/* nor from end to same end */
 		return best;
+	centre[0] = llround(want->cx + shift * (x1 - x0) / chord);
+	centre[1] = llround(want->cy + shift * (y1 - y0) / chord);
 	return try_around(w, want, centre, best);
 }
 

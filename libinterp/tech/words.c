@@ -4,6 +4,7 @@
  */
 #include "tech/text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@
 const char *interp_tech_number(double x, char *buf, size_t size)
 {
 	double back = 0;
+	char *p;
 
 	for (int decimals = 0; decimals <= DECIMALS_MAX; decimals++) {
 		struct tech_cell c;
@@ -22,10 +24,15 @@ const char *interp_tech_number(double x, char *buf, size_t size)
 		if (tech_number(&c, &back) && back == x)
 			return buf;
 	}
-	/* Too small for any of them. */
-	if (back == 0)
-		snprintf(buf, size, "0");
-	return buf;
+	/* Fifteen digits, which are read and written as they are. */
+	snprintf(buf, size, "%.*f", x < 1 && x > -1 ? 15 :
+		 14 - (int)fmin(14, log10(fabs(x))), x);
+	if (!strchr(buf, '.'))
+		return buf;
+	for (p = buf + strlen(buf); p[-1] == '0'; p--)
+		;
+	p[p[-1] == '.' ? -1 : 0] = '\0';
+	return strcmp(buf, "-0") == 0 ? buf + 1 : buf;
 }
 
 const char *interp_tech_name(char letter, uint32_t number, char *buf,
