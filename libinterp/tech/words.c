@@ -32,7 +32,9 @@ const char *interp_tech_number(double x, char *buf, size_t size)
 	for (p = buf + strlen(buf); p[-1] == '0'; p--)
 		;
 	p[p[-1] == '.' ? -1 : 0] = '\0';
-	return strcmp(buf, "-0") == 0 ? buf + 1 : buf;
+	if (strcmp(buf, "-0") == 0)
+		memmove(buf, "0", 2);
+	return buf;
 }
 
 const char *interp_tech_name(char letter, uint32_t number, char *buf,
