@@ -277,11 +277,14 @@ experiments-servo: $(B)/edmsim
 	$(Q)cat docs/experiments-servo.md
 
 experiments-curve: $(CURVE_EXPERIMENTS:%=$(B)/experiments/%) $(B)/edmsim
+	@tests/setup check
 	$(call say,WALK,docs/experiments-curve.md)
 	$(Q)cat tests/experiments/curve.md > $(B)/experiments-curve.md
 	$(Q)for x in $(filter %/curves %/curve_programs,$^); do $$x || exit 1; \
 		done >> $(B)/experiments-curve.md
 	$(Q)tests/experiments/blade $(B) >> $(B)/experiments-curve.md
+	$(Q)EDM_BUILD=$(B) .venv/bin/python tests/experiments/g52 \
+		>> $(B)/experiments-curve.md
 	$(Q)cp $(B)/experiments-curve.md docs/experiments-curve.md
 
 experiments-contour: $(B)/experiments/contour
