@@ -104,7 +104,11 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	b->numbers.size = sizeof(double);
 	b->runs.size = sizeof(int32_t);
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		b->sub_mm[i] = INTERP_SUB / o->machine->axis[i].pulse_mm;
+		const struct interp_axis_limits *l = &o->machine->axis[i];
+
+		b->sub_mm[i] = INTERP_SUB / l->pulse_mm;
+		b->inside_mm[i][0] = l->travel_min_mm + l->pulse_mm;
+		b->inside_mm[i][1] = l->travel_max_mm - l->pulse_mm;
 		b->here_mm[i] = o->start_mm[i];
 		b->here[i] = b->first[i] =
 			llround(o->start_mm[i] * b->sub_mm[i]);
@@ -180,8 +184,12 @@ bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
 {
 	const struct interp_machine *m = b->o.machine;
 	const struct interp_axis_limits *l = &m->axis[axis];
-	const double at = floor(at_mm / l->pulse_mm + 0.5);
+	double at;
 
+	if (m->present & 1u << axis && at_mm > b->inside_mm[axis][0] &&
+	    at_mm < b->inside_mm[axis][1])
+		return true;
+	at = floor(at_mm / l->pulse_mm + 0.5);
 	if (m->present & b->loose & 1u << axis)
 		return fabs(at) < INTERP_PULSES_MAX;
 	return m->present & 1u << axis &&

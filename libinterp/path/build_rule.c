@@ -83,10 +83,12 @@ int build_rule_check(const struct interp_build_options *o,
 		.tube = { o->tolerance_milli, o->perpendicular },
 	};
 	struct couple_input in[INTERP_NAXES];
-	const uint32_t n = inputs_of(w, in);
-	uint32_t smallest;
+	uint32_t n, smallest;
 
-	if (o->strategy < INTERP_CENTRED || o->strategy == INTERP_DDA || n < 2)
+	if (o->strategy < INTERP_CENTRED || o->strategy == INTERP_DDA)
+		return 0;
+	n = inputs_of(w, in);
+	if (n < 2)
 		return 0;
 	if (n > 2 && rule.coupling == INTERP_TUBE &&
 	    o->strategy != INTERP_MIN_SWITCH)

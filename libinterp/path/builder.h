@@ -35,6 +35,8 @@ struct interp_build {
 	int64_t here[INTERP_NAXES];	/* the same in subpulses */
 	int64_t first[INTERP_NAXES];
 	double sub_mm[INTERP_NAXES];	/* subpulses per mm */
+	double inside_mm[INTERP_NAXES][2];	/* travel less a pulse: good
+					 * without a closer look */
 	uint8_t column[INTERP_NAXES];
 	uint32_t naxes, columns;	/* columns: mask of axes */
 	uint32_t loose;			/* axes moved by what the machine says */
