@@ -281,7 +281,7 @@ static int arc(struct threeb_writer *w, uint32_t i)
 			return rc;
 	}
 	if (fabs(rest) * a->r_mm < 1e-3 * w->unit_mm)
-		return 0;
+		return put_line(w, want.end);	/* the radius may have grown */
 	want.sweep = sweep_of(w, &want, rest);
 	if (want.sweep * rest <= 0)
 		return put_line(w, want.end);

@@ -361,6 +361,24 @@ static void arcs_of_some_units_are_written(void **state)
 	assert_true(written > 500);
 }
 
+/* The radius may be off by some pulses; the end is still the end. */
+static void a_turn_of_two_radii_ends_where_it_should(void **state)
+{
+	struct compiled c = compile_ready("generic"), again;
+	struct emitted e = { 0 };
+
+	(void)state;
+	compile(&c, "G17 F60\nG3 X0.003 Y0 I-4 J0\n");
+	emit_threeb(&e, &c);
+	again = compile_ready("3b");
+	compile(&again, e.text);
+	assert_same_end(&c, compiled_count(&c) - 1, &again,
+			compiled_count(&again) - 1, 0);
+	emit_done(&e);
+	compile_done(&c);
+	compile_done(&again);
+}
+
 /* What may lead 400 mm but ends at contact must not become a cut of 400 mm. */
 static void a_move_until_contact_is_not_written(void **state)
 {
@@ -392,6 +410,7 @@ int main(void)
 		cmocka_unit_test(at_45_degrees_the_direction_is_fixed),
 		cmocka_unit_test(iso_code_is_the_same_program_again),
 		cmocka_unit_test(arcs_of_some_units_are_written),
+		cmocka_unit_test(a_turn_of_two_radii_ends_where_it_should),
 		cmocka_unit_test(a_move_until_contact_is_not_written),
 	};
 
