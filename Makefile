@@ -164,6 +164,9 @@ $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c)) $(DDS_O)
 	$(call link,-lddsc -ljansson -lm)
 
+# Of edmd itself, without its main().
+$(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c crossing.c log.c))
+
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
 	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lm)
 

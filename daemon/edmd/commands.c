@@ -83,9 +83,11 @@ static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 	if ((c->verb == CYCLE_JOG || c->verb == CYCLE_HOME) && l->opening)
 		return ANSWER_WRONG_STATE;
 	answer = cycle_command(&l->cycle, &m);
-	if (c->verb == CYCLE_SET && answer == ANSWER_DONE)
+	if (c->verb == CYCLE_SET && answer == ANSWER_DONE) {
+		loop_sets(l);
 		loop_event_set(l, c->arg, was,
 			       process_value(&l->cycle, c->arg));
+	}
 	return answer;
 }
 
@@ -141,6 +143,7 @@ static enum cycle_answer load(struct loop *l, struct program *p)
 		return answer;
 	program_retire(l, l->program);
 	l->program = p;
+	loop_sets(l);
 	return ANSWER_DONE;
 }
 

@@ -20,6 +20,7 @@
 /* A program in memory, ready to walk.  Made and freed by the main thread. */
 struct program {
 	uint32_t n;			/* of program.<n> */
+	uint64_t key;			/* of all its bytes; never 0 */
 	const void *block;
 	size_t bytes;
 	struct interp_cursor cursor;

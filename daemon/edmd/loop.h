@@ -90,6 +90,9 @@ void loop_event(struct loop *l, uint32_t kind, uint32_t id, int32_t code);
 /** loop_event_set() - field @field is @now, was @was. */
 void loop_event_set(struct loop *l, uint32_t field, double was, double now);
 
+/** loop_sets() - what is set in the job, for the next edmd. */
+void loop_sets(struct loop *l);
+
 /** loop_snapshot() - the cycle's state as others see it. */
 void loop_snapshot(const struct loop *l, struct shm_snapshot *ret);
 

@@ -49,6 +49,21 @@ static int program_check(const struct machine_config *c, struct program *p)
 	return pulses_check(c, view.head, p->n);
 }
 
+/* FNV-1a, by words: another program has another key. */
+static uint64_t key_of(const void *block, size_t bytes)
+{
+	uint64_t key = UINT64_C(0xcbf29ce484222325), word = 0;
+
+	for (size_t i = 0; i < bytes; i += sizeof(word)) {
+		const size_t left = bytes - i;
+
+		memcpy(&word, (const char *)block + i,
+		       left < sizeof(word) ? left : sizeof(word));
+		key = (key ^ word) * UINT64_C(0x100000001b3);
+	}
+	return key ? key : 1;
+}
+
 /* A page fault in the cycle costs more than a period. */
 static void program_keep(const struct program *p)
 {
@@ -82,6 +97,7 @@ struct program *program_open(const struct machine_config *c, uint32_t n)
 		return NULL;
 	}
 	program_keep(p);
+	p->key = key_of(p->block, p->bytes);
 	return p;
 }
 

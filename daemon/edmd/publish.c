@@ -7,6 +7,8 @@
  */
 #include "loop.h"
 
+#include "stand.h"
+
 #include <string.h>
 
 #define SAME(a, b)	_Static_assert((int)(a) == (int)(b), #a " is " #b)
@@ -25,6 +27,7 @@ SAME(SHM_TOUCH, STATE_TOUCH);
 SAME(SHM_TOUCH + 1, CYCLE_NSTATES);
 SAME(SHM_NAXES, INTERP_NAXES);
 SAME(SHM_NAXES, IO_NAXES);
+SAME(SHM_SETS_MAX, PROCESS_SETS_MAX);
 SAME(SHM_DO_START, CYCLE_START);
 SAME(SHM_DO_HOLD, CYCLE_HOLD);
 SAME(SHM_DO_RESUME, CYCLE_RESUME);
@@ -91,6 +94,22 @@ void loop_event_set(struct loop *l, uint32_t field, double was, double now)
 	e.was = was;
 	e.now = now;
 	shm_event(l->status, &e);
+}
+
+void loop_sets(struct loop *l)
+{
+	const struct process *p = &l->cycle.process;
+	struct shm_sets s = {
+		.program_key = l->program ? l->program->key : 0,
+		.n = p->nsets,
+	};
+
+	for (uint32_t i = 0; i < p->nsets; i++)
+		s.set[i] = (struct shm_set) {
+			.value = p->set[i].value, .cond = p->set[i].cond,
+			.field = p->set[i].field,
+		};
+	shm_sets_put(l->status, &s);
 }
 
 void loop_answer(struct loop *l, uint32_t id, enum cycle_answer answer)
@@ -168,6 +187,24 @@ static void snapshot_touch(const struct cycle *c, struct shm_snapshot *s)
 	s->back_mm = c->back_mm;
 }
 
+/* What the next edmd needs, if this one is killed. */
+static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
+{
+	struct stand at;
+
+	stand_get(&l->cycle, &at);
+	memcpy(s->drive, at.drive, sizeof(s->drive));
+	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));
+	memcpy(s->toward, at.toward, sizeof(s->toward));
+	s->homed = (uint8_t)at.homed;
+	s->has_origin = l->io.origin &&
+			l->io.origin(l->io.self, s->origin);
+	s->program_key = l->program ? l->program->key : 0;
+	s->override = l->cycle.override;
+	s->mcode = l->cycle.mcode.number;
+	s->mcode_at = l->cycle.mcode.at;
+}
+
 static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
 {
 	const struct cycle_totals *t = &c->totals;
@@ -220,6 +257,7 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 	if (l->program)
 		snapshot_place(c, ret);
 	snapshot_touch(c, ret);
+	snapshot_stand(l, ret);
 	snapshot_sums(c, ret);
 	snapshot_timing(l, ret);
 }

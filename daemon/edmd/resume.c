@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * resume.c - from the last snapshot of a predecessor to a held cycle
+ *
+ * First the axes: where they stand and what that rests on.  Then the job, whole
+ * or not at all: one that went on in another place, or with other values, would
+ * be worse than one that is lost.
  */
 #include "resume.h"
 
 #include "log.h"
 #include "programs.h"
+#include "stand.h"
 #include "timed.h"
 
 #include <errno.h>
@@ -16,6 +21,56 @@ static bool job_was_under_way(const struct shm_snapshot *s)
 {
 	return s->cycle != 0 && s->program != 0 && s->loaded;
 }
+
+/* -- The axes ----------------------------------------------------------------- */
+
+static bool same_pulses(const struct loop *l, const struct shm_snapshot *s)
+{
+	if (memcmp(l->pulse_mm, s->pulse_mm, sizeof(l->pulse_mm)) == 0)
+		return true;
+	log_line(LOG_ERROR, "resume: pulse_mm of the machine file is not what "
+		 "it was; the places of the edmd before mean nothing: the axes "
+		 "are taken to stand at start_mm; move or home them");
+	return false;
+}
+
+/* Pulses that nothing measures are a guess once the drives were alone. */
+static bool is_sure(const struct loop *l, const struct shm_snapshot *s)
+{
+	return l->io.stays || (l->io.originate && s->has_origin);
+}
+
+static void axes_restore(struct loop *l, const struct shm_snapshot *s)
+{
+	const bool sure = is_sure(l, s);
+	struct stand at = { .homed = sure ? s->homed : 0 };
+
+	memcpy(at.place, s->pos, sizeof(at.place));
+	memcpy(at.drive, s->drive, sizeof(at.drive));
+	memcpy(at.shift, s->home_shift, sizeof(at.shift));
+	memcpy(at.toward, s->toward, sizeof(at.toward));
+	stand_set(&l->cycle, &at);
+	if (l->io.originate && s->has_origin)
+		l->io.originate(l->io.self, s->origin);
+	log_line(LOG_WARNING, "resume: the axes are taken to stand where the "
+		 "edmd before sent them, X %d Y %d Z %d pulses%s",
+		 s->pos[INTERP_X], s->pos[INTERP_Y], s->pos[INTERP_Z],
+		 sure ? "" : "; nothing measures that: look before start");
+}
+
+/* Latched until an operator's reset, whoever latched it. */
+static void fault_restore(struct cycle *c, uint32_t fault)
+{
+	if (fault == FAULT_NONE || fault >= CYCLE_NFAULTS)
+		return;
+	c->fault = (enum cycle_fault)fault;
+	c->outcome = c->loaded ? OUTCOME_FAULT : c->outcome;
+	c->state = STATE_FAULT;
+	log_line(LOG_WARNING, "resume: the fault was %s; it stays until a "
+		 "reset", shm_fault_name(fault));
+}
+
+/* -- The job ------------------------------------------------------------------ */
 
 /* Actions behind the farthest place are done, wherever the walk stands. */
 static uint32_t last_done(const struct cycle *c)
@@ -60,6 +115,13 @@ static void switches_restore(struct cycle *c, const struct shm_snapshot *s)
 			 p->segs[i].arg == INTERP_AUX_POWER_NEGATIVE)
 			power_on(c, p->segs[i].arg);
 	}
+}
+
+/* One that the PLC was told, and has not answered, it is told still. */
+static void mcode_restore(struct cycle *c, const struct shm_snapshot *s)
+{
+	c->mcode.number = s->mcode;
+	c->mcode.at = s->mcode_at;
 }
 
 /* The sums of the job go on. */
@@ -112,6 +174,38 @@ static int pos_restore(struct cycle *c, const struct shm_snapshot *s)
 	return -ESTALE;
 }
 
+/* All of them, or it would be another cut. */
+static int sets_restore(struct cycle *c, const struct shm_status *status,
+			uint64_t key)
+{
+	struct process_set set[PROCESS_SETS_MAX];
+	struct shm_sets s;
+
+	if (!shm_sets(status, &s) || s.program_key != key ||
+	    s.n > PROCESS_SETS_MAX) {
+		log_line(LOG_ERROR, "resume: what was set in the job is lost");
+		return -ESTALE;
+	}
+	for (uint64_t i = 0; i < s.n; i++)
+		set[i] = (struct process_set) {
+			s.set[i].value, (uint16_t)s.set[i].cond,
+			(uint8_t)s.set[i].field
+		};
+	if (process_restore(c, set, (uint32_t)s.n))
+		return 0;
+	log_line(LOG_ERROR, "resume: what was set in the job does not go with "
+		 "this machine file");
+	return -EINVAL;
+}
+
+static int program_same(const struct program *p, const struct shm_snapshot *s)
+{
+	if (p->key == s->program_key)
+		return 0;
+	log_line(LOG_ERROR, "resume: program %u is not the one that ran", p->n);
+	return -ESTALE;
+}
+
 static int place_restore(struct loop *l, struct program *p,
 			 const struct shm_snapshot *s)
 {
@@ -120,6 +214,8 @@ static int place_restore(struct loop *l, struct program *p,
 	struct cycle held = l->cycle;
 	enum cycle_answer answer;
 
+	/* Where a touch was, axes and program differ; pos_restore() compares. */
+	held.hand.used = false;
 	if (err < 0) {
 		log_line(LOG_ERROR, "resume: segment %u, tick %u: %s; this is "
 			 "not the program that ran", s->seg, s->tick,
@@ -129,7 +225,10 @@ static int place_restore(struct loop *l, struct program *p,
 	answer = cycle_load_at(&held, &p->cursor, far_mm);
 	if (answer == ANSWER_DONE) {
 		touch_restore(&held, s);
+		held.hand.used = true;
 		err = pos_restore(&held, s);
+		if (err == 0)
+			err = sets_restore(&held, l->status, s->program_key);
 		if (err == 0)
 			l->cycle = held;
 		return err;
@@ -147,21 +246,15 @@ static void tell(const struct loop *l, const struct shm_snapshot *s)
 		 s->program, interp_cursor_place_mm(&l->cycle.cursor),
 		 l->cycle.cursor.p.head->length_mm, l->cycle.cursor.seg.line,
 		 l->cycle.escape.way_mm, shm_state_name(s->state));
-	if (s->state == SHM_FAULT)
-		log_line(LOG_WARNING, "resume: the fault was %s; see that its "
-			 "cause is gone before start",
-			 shm_fault_name(s->fault));
 }
 
-void resume(struct loop *l, const struct machine_config *c,
-	    const struct shm_snapshot *before)
+static void job_restore(struct loop *l, const struct machine_config *c,
+			const struct shm_snapshot *before)
 {
-	struct program *p;
+	struct program *p = program_open(c, before->program);
 
-	if (!job_was_under_way(before))
-		return;
-	p = program_open(c, before->program);
-	if (!p || place_restore(l, p, before) < 0) {
+	if (!p || program_same(p, before) < 0 ||
+	    place_restore(l, p, before) < 0) {
 		log_line(LOG_ERROR, "resume: job of program %u not restored; "
 			 "it was at %.3f mm, line %u", before->program,
 			 before->place_mm, before->line);
@@ -170,8 +263,22 @@ void resume(struct loop *l, const struct machine_config *c,
 	}
 	l->program = p;
 	switches_restore(&l->cycle, before);
+	mcode_restore(&l->cycle, before);
 	if (isfinite(before->back_mm))
 		l->cycle.back_mm = fmax(l->cycle.back_mm, before->back_mm);
 	sums_restore(&l->cycle, before);
 	tell(l, before);
+}
+
+void resume(struct loop *l, const struct machine_config *c,
+	    const struct shm_snapshot *before)
+{
+	if (before->cycle == 0 || !same_pulses(l, before))
+		return;
+	axes_restore(l, before);
+	if (before->override >= 0 && before->override <= 2)
+		l->cycle.override = before->override;
+	if (job_was_under_way(before))
+		job_restore(l, c, before);
+	fault_restore(&l->cycle, before->fault);
 }

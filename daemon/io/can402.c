@@ -167,6 +167,24 @@ static void place(struct can402 *s)
 	s->placed = true;
 }
 
+bool can402_origin(void *self, int32_t ret[IO_NAXES])
+{
+	const struct can402 *s = self;
+
+	for (uint32_t i = 0; s->placed && i < s->n; i++)
+		ret[s->axis[i]] = s->drive[i].zero;
+	return s->placed;
+}
+
+void can402_originate(void *self, const int32_t zero[IO_NAXES])
+{
+	struct can402 *s = self;
+
+	for (uint32_t i = 0; i < s->n; i++)
+		drive_keep_zero(&s->drive[i], zero[s->axis[i]]);
+	s->placed = true;
+}
+
 static void beat(struct can402 *s)
 {
 	const struct can_msg m = {

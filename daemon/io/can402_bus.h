@@ -82,6 +82,8 @@ bool can402_note(void *self, char *buf, size_t size);
 void can402_read(void *self, struct io_inputs *in);
 void can402_write(void *self, const struct io_outputs *out);
 void can402_close(void *self);
+bool can402_origin(void *self, int32_t ret[IO_NAXES]);
+void can402_originate(void *self, const int32_t zero[IO_NAXES]);
 
 /* -- can402_open.c ------------------------------------------------------------ */
 

@@ -133,7 +133,8 @@ int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
 	*m = (struct io_machine) {
 		.name = "can402", .self = s, .read = can402_read,
 		.write = can402_write, .close = can402_close,
-		.note = can402_note,
+		.note = can402_note, .origin = can402_origin,
+		.originate = can402_originate,
 	};
 	return 0;
 }

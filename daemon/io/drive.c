@@ -67,6 +67,12 @@ void drive_set_zero(struct drive *d, int32_t pulses)
 	d->homed = true;
 }
 
+void drive_keep_zero(struct drive *d, int32_t zero)
+{
+	d->zero = zero;
+	d->homed = true;
+}
+
 /* -- What it says ------------------------------------------------------------- */
 
 static void hear_state(struct drive *d, const struct can_msg *m)

@@ -148,6 +148,9 @@ void drive_depart(struct drive *d);
 /** drive_set_zero() - what it measures now is place @pulses. */
 void drive_set_zero(struct drive *d, int32_t pulses);
 
+/** drive_keep_zero() - place 0 is at @zero increments, as it was before. */
+void drive_keep_zero(struct drive *d, int32_t zero);
+
 /** drive_place() - its actual position in pulses, toward the nearest. */
 int32_t drive_place(const struct drive *d);
 

@@ -109,6 +109,14 @@ struct io_machine {
 	/* The next thing worth a line in the log, into @buf; false: nothing.
 	 * NULL if it never has any.  Another thread's than read and write. */
 	bool (*note)(void *self, char *buf, size_t size);
+	/* The drives' own counts at pulse 0, for the next edmd; false: not known
+	 * yet.  NULL if nothing counts but edmd.  RT-safe. */
+	bool (*origin)(void *self, int32_t ret[IO_NAXES]);
+	/* The same, of the edmd before: places go on from there.  Startup
+	 * only; NULL as origin. */
+	void (*originate)(void *self, const int32_t zero[IO_NAXES]);
+	bool stays;			/* nothing moves it while edmd is away:
+					 * it is simulated */
 	uint32_t edges_per_cycle;	/* most pulses an axis may make in one
 					 * period, where it is not busy; 0:
 					 * targets, no such limit */

@@ -47,6 +47,7 @@ int io_null_open(struct io_machine *m)
 		.read = null_read,
 		.write = null_write,
 		.close = null_close,
+		.stays = true,
 	};
 	return 0;
 }

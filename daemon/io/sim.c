@@ -146,7 +146,7 @@ int io_sim_open(struct io_machine *m, const struct machine_config *c,
 	rng_seed(&s->rng, seed);
 	*m = (struct io_machine) {
 		.name = "sim", .self = s, .read = sim_read,
-		.write = sim_write, .close = sim_close,
+		.write = sim_write, .close = sim_close, .stays = true,
 	};
 	return 0;
 }

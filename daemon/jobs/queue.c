@@ -302,7 +302,8 @@ static void follow_missing(struct jobs *j, int64_t now_us)
 	} else if (now_us - q->missing_us > MISSING_US && !q->loading) {
 		if (q->job.begun_us)
 			queue_end(j, JOB_STOPPED,
-				  "edmd restarted without its program");
+				  "edmd restarted without its program; its "
+				  "log says why");
 		else
 			set_waiting(j, true);
 		queue_drop(j, !q->job.begun_us);

@@ -52,7 +52,8 @@ static void answer(struct jobs *j, const struct wire_command *c, int code,
 static const char *refusal(int code)
 {
 	static const char *const why[] = {
-		[SHM_NOT_HOMED] = "an axis is not homed; home first",
+		[SHM_NOT_HOMED] = "an axis is not homed; home first, a job that is "
+				  "held must be stopped for it",
 		[SHM_AT_LIMIT] = "an axis is on its limit switch; jog it away "
 				 "from the switch",
 		[SHM_BEYOND] = "that is outside the axis's travel; a shorter "

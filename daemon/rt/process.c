@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #define AT(field)	offsetof(struct cycle, field)
 
@@ -216,6 +217,33 @@ enum process_result process_set(struct cycle *c, uint32_t field, double value)
 		return PROCESS_DONE;
 	c->process = was;
 	return PROCESS_BAD;
+}
+
+static bool restores(struct cycle *c, const struct process_set *s)
+{
+	struct interp_tech t;
+
+	if (s->cond >= c->cursor.p.head->nconds || !is_used(s->field) ||
+	    !interp_tech_value_ok((enum interp_tech_id)s->field, s->value))
+		return false;
+	t = wanted(c, s->cond);
+	return fits(c, &t);
+}
+
+bool process_restore(struct cycle *c, const struct process_set *sets,
+		     uint32_t n)
+{
+	struct process *p = &c->process;
+	bool good = n <= PROCESS_SETS_MAX;
+
+	p->nsets = good ? n : 0;
+	if (p->nsets > 0)
+		memcpy(p->set, sets, n * sizeof(*sets));
+	for (uint32_t i = 0; i < p->nsets && good; i++)
+		good = restores(c, &sets[i]);
+	if (!good)
+		p->nsets = 0;
+	return apply(c, p->cond) && good;
 }
 
 double process_value(const struct cycle *c, uint32_t field)

@@ -56,6 +56,13 @@ bool process_follow(struct cycle *c);
 /** process_set() - @value NAN takes a set back. */
 enum process_result process_set(struct cycle *c, uint32_t field, double value);
 
+/**
+ * process_restore() - all that was set in the job that is loaded, before a
+ * crash.  Return: false, and nothing is set, if it cannot be in force here.
+ */
+bool process_restore(struct cycle *c, const struct process_set *sets,
+		     uint32_t n);
+
 /** process_value() - in force; NAN: the generator's own, or not a field that
  *  the cycle goes by. */
 double process_value(const struct cycle *c, uint32_t field);

@@ -44,6 +44,17 @@ static struct ring ring_of_events(const struct shm_status *s)
 	};
 }
 
+/* Of two, so that a writer killed in the middle of one leaves the other. */
+static struct ring ring_of_sets(const struct shm_status *s)
+{
+	return (struct ring) {
+		.slots = (void *)(uintptr_t)s->sets,
+		.next = (uint64_t *)(uintptr_t)&s->sets_next,
+		.count = 2,
+		.slot_bytes = sizeof(s->sets[0]),
+	};
+}
+
 static uint64_t *ring_stamp(const struct ring *r, uint64_t n)
 {
 	return (uint64_t *)(void *)((char *)r->slots +
@@ -136,6 +147,21 @@ void shm_event(struct shm_status *s, const struct shm_event *e)
 	struct ring r = ring_of_events(s);
 
 	ring_put(&r, e);
+}
+
+void shm_sets_put(struct shm_status *s, const struct shm_sets *sets)
+{
+	struct ring r = ring_of_sets(s);
+
+	ring_put(&r, sets);
+}
+
+bool shm_sets(const struct shm_status *s, struct shm_sets *ret)
+{
+	struct ring r = ring_of_sets(s);
+	uint64_t n = __atomic_load_n(r.next, __ATOMIC_ACQUIRE);
+
+	return n > 0 && ring_get(&r, n - 1, ret);
 }
 
 /*

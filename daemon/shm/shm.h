@@ -39,7 +39,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	3
+#define SHM_LAYOUT	4
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 
@@ -98,6 +98,33 @@ struct shm_snapshot {
 	int32_t shift[SHM_NAXES], found[2][SHM_NAXES];
 	uint32_t found_once, found_twice;
 	double back_mm;
+	/* For the next edmd, after a crash: pulses the drives were sent to and
+	 * those of them that homing found; the way each axis came; the drives'
+	 * own counts at pulse 0, where they are known. */
+	int32_t drive[SHM_NAXES], home_shift[SHM_NAXES], origin[SHM_NAXES];
+	int8_t toward[SHM_NAXES];
+	uint64_t program_key;		/* of all bytes of the program; or 0 */
+	double override;		/* of positioning; 1: as programmed */
+	uint32_t mcode_at;		/* segment of ... */
+	uint8_t mcode;			/* ... the M code told, not answered */
+	uint8_t homed;			/* bit per axis */
+	bool has_origin;
+	uint8_t pad2;
+};
+
+/* What SHM_DO_SET has set in a job; written when it changes. */
+#define SHM_SETS_MAX	64
+
+struct shm_set {
+	double value;
+	uint32_t cond;			/* index of the program's condition */
+	uint32_t field;			/* enum interp_tech_id */
+};
+
+struct shm_sets {
+	uint64_t program_key;		/* as in the snapshot */
+	uint64_t n;
+	struct shm_set set[SHM_SETS_MAX];
 };
 
 struct shm_trace {
@@ -145,6 +172,11 @@ struct shm_event_slot {
 	struct shm_event record;
 };
 
+struct shm_sets_slot {
+	uint64_t stamp;
+	struct shm_sets record;
+};
+
 /*
  * Snapshot n goes to snap[n & 1] and snap_next becomes n + 1 when it is whole,
  * so that a writer killed in the middle of one leaves the other.
@@ -161,6 +193,8 @@ struct shm_status {
 	uint64_t snap_next;		/* snapshots written so far */
 	uint64_t trace_next;		/* records written so far */
 	uint64_t event_next;
+	uint64_t sets_next;
+	struct shm_sets_slot sets[2];
 	struct shm_trace_slot trace[SHM_TRACE_SLOTS];
 	struct shm_event_slot event[SHM_EVENT_SLOTS];
 };
@@ -240,6 +274,12 @@ void shm_trace_put(struct shm_status *s, const struct shm_trace *t);
 
 /** shm_event() - append to the event ring. RT-safe; one writer. */
 void shm_event(struct shm_status *s, const struct shm_event *e);
+
+/** shm_sets_put() - all that is set now. RT-safe; one writer. */
+void shm_sets_put(struct shm_status *s, const struct shm_sets *sets);
+
+/** shm_sets() - what was put last; false: nothing yet. Any thread. */
+bool shm_sets(const struct shm_status *s, struct shm_sets *ret);
 
 /** shm_command_create() - make edmd.<machine>.command anew. Startup only. */
 int shm_command_create(struct shm_command_ring **ret, const char *machine,

@@ -6,46 +6,6 @@ import json
 import pytest
 import rig
 
-# A simulated machine whose switches lie 7.5 mm from where its pulses say.
-HOME_MACHINE = """
-[machine]
-name = {name}
-backend = sim
-overrun_limit = 0
-cpu = -1
-require_home = yes
-
-[sim]
-home_off_mm = 7.5
-speed = 4
-
-[axis.X]
-home_method = switch
-home_at_mm = -20
-home_fast_mm_s = 20
-home_slow_mm_s = 2
-backlash_um = 30
-
-[axis.Z]
-home_method = switch-index
-home_dir = +
-home_at_mm = 20
-home_fast_mm_s = 20
-home_slow_mm_s = 2
-home_order = 1
-
-[jobs]
-store = {store}
-"""
-
-
-@pytest.fixture
-def homing(tmp_path):
-    m = rig.Machine(tmp_path, HOME_MACHINE)
-    yield m
-    m.close()
-    assert m.sweep() == []
-
 
 def idle_at(m, axis, mm, eps=2e-3):
     return m.client.status_where(

@@ -275,6 +275,54 @@ static void drives_stand_where_the_targets_begin(void **st)
 	unmake(&r);
 }
 
+/* The master is killed at X 5000; the drives come to a stand @off further. */
+static void begin_after_a_crash(struct rig *r, int32_t off)
+{
+	int32_t zero[IO_NAXES];
+
+	begin(r);
+	for (int i = 0; i < 5000; i += 10) {
+		r->out.target[INTERP_X] += 10;
+		run(r, 1);
+	}
+	run(r, 4);
+	assert_true(r->m.origin(r->m.self, zero));
+	unmake(r);
+	make(r);
+	r->m.originate(r->m.self, zero);
+	r->p[0].actual = 777 + 50000 + off;
+	r->out.target[INTERP_X] = 5000;
+	run(r, 100);
+	assert_int_equal(r->in.trouble, IO_WELL);
+	r->out.enable = true;
+}
+
+static void after_a_crash_an_axis_goes_back_to_its_place(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin_after_a_crash(&r, 300);
+	assert_int_equal(r.in.actual[INTERP_X], 5030);
+	run(&r, 200);
+	assert_false(r.in.axes_off);
+	assert_int_equal(r.p[0].actual, 777 + 50000);
+	assert_int_equal(r.in.actual[INTERP_X], 5000);
+	unmake(&r);
+}
+
+static void after_a_crash_an_axis_moved_far_is_not_enabled(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin_after_a_crash(&r, 100000);
+	run(&r, 20);
+	assert_int_equal(r.in.trouble, IO_FOLLOWING);
+	assert_int_equal(r.p[0].actual, 777 + 150000);
+	unmake(&r);
+}
+
 static void another_program_far_away_is_not_jumped_to(void **st)
 {
 	struct rig r;
@@ -632,6 +680,9 @@ int main(void)
 		cmocka_unit_test(it_brings_up_all_drives_and_enables_by_command_only),
 		cmocka_unit_test(targets_reach_the_drives_as_increments_from_where_they_stood),
 		cmocka_unit_test(drives_stand_where_the_targets_begin),
+		cmocka_unit_test(after_a_crash_an_axis_goes_back_to_its_place),
+		cmocka_unit_test(
+			after_a_crash_an_axis_moved_far_is_not_enabled),
 		cmocka_unit_test(another_program_far_away_is_not_jumped_to),
 		cmocka_unit_test(the_gap_is_what_its_frames_say_until_they_stop),
 		cmocka_unit_test(the_generator_is_told_each_period),

@@ -117,16 +117,17 @@ static void shared_structs_keep_their_size(void **state)
 {
 	(void)state;
 	assert_int_equal(sizeof(struct shm_head), 56);
-	assert_int_equal(sizeof(struct shm_snapshot), 400);
+	assert_int_equal(sizeof(struct shm_snapshot), 528);
 	assert_int_equal(sizeof(struct shm_trace), 104);
 	assert_int_equal(sizeof(struct shm_trace_slot), 112);
 	assert_int_equal(sizeof(struct shm_event), 56);
 	assert_int_equal(sizeof(struct shm_event_slot), 64);
-	assert_int_equal(sizeof(struct shm_snap), 408);
+	assert_int_equal(sizeof(struct shm_snap), 536);
+	assert_int_equal(sizeof(struct shm_sets_slot), 1048);
 	assert_int_equal(sizeof(struct shm_command), 24);
-	assert_int_equal(offsetof(struct shm_status, trace), 1920);
+	assert_int_equal(offsetof(struct shm_status, trace), 4280);
 	assert_int_equal(sizeof(struct shm_status),
-			 1920 + 16384 * 112 + 1024 * 64);
+			 4280 + 16384 * 112 + 1024 * 64);
 	assert_int_equal(offsetof(struct shm_command_ring, slot),
 			 56 + 8 + 2 * CK_MD_CACHELINE);
 }
@@ -286,6 +287,45 @@ static void a_half_written_snapshot_is_never_returned(void **state)
 	shm_status_destroy(s, machine);
 }
 
+static void put_sets(struct shm_status *s, uint64_t n)
+{
+	const struct shm_sets sets = {
+		.program_key = 99, .n = n, .set[0] = { 1.5, 2, 3 },
+	};
+
+	shm_sets_put(s, &sets);
+}
+
+/* Killed in the middle of the third. */
+static void put_two_sets_and_a_half(struct shm_status *s)
+{
+	put_sets(s, 1);
+	put_sets(s, 2);
+	put_sets(s, 3);
+	s->sets_next = 2;
+	s->sets[0].stamp = 5;
+}
+
+static void half_written_sets_leave_those_before(void **state)
+{
+	pid_t pid = owner_start(put_two_sets_and_a_half);
+	struct shm_snapshot before;
+	struct shm_status *s;
+	struct shm_sets got;
+
+	(void)state;
+	owner_kill(pid);
+	assert_int_equal(shm_status_create(&s, machine, &before), 0);
+	assert_true(shm_sets(s, &got));
+	assert_int_equal(got.n, 2);
+	assert_int_equal(got.program_key, 99);
+	assert_int_equal(got.set[0].field, 3);
+	put_sets(s, 4);
+	assert_true(shm_sets(s, &got));
+	assert_int_equal(got.n, 4);
+	shm_status_destroy(s, machine);
+}
+
 static void alive_means_the_writer_of_this_object(void **state)
 {
 	pid_t pid = owner_start(publish_seven);
@@ -414,6 +454,7 @@ int main(void)
 		cmocka_unit_test(a_living_owner_is_not_displaced),
 		cmocka_unit_test(a_killed_owner_leaves_its_last_snapshot),
 		cmocka_unit_test(a_half_written_snapshot_is_never_returned),
+		cmocka_unit_test(half_written_sets_leave_those_before),
 		cmocka_unit_test(alive_means_the_writer_of_this_object),
 		cmocka_unit_test(another_layout_size_or_magic_is_refused),
 		cmocka_unit_test(an_object_of_another_layout_is_replaced),

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * stand.c - where the axes stand, and what that rests on
+ */
+#include "stand.h"
+
+#include "cycle.h"
+
+#include <string.h>
+
+void stand_get(const struct cycle *c, struct stand *ret)
+{
+	memcpy(ret->place, c->out.target, sizeof(ret->place));
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		ret->drive[i] = comp_pulses(&c->comp.axis[i]);
+		ret->shift[i] = c->comp.axis[i].shift;
+		ret->toward[i] = c->comp.axis[i].toward;
+	}
+	ret->homed = c->hand.homed;
+}
+
+/* What is between place and drive, and no shift, is compensation. */
+static int32_t added(const struct stand *s, int i)
+{
+	return (int32_t)((uint32_t)s->drive[i] - (uint32_t)s->place[i] -
+			 (uint32_t)s->shift[i]);
+}
+
+/* comp stays as not begun: its first period then is no way. */
+void stand_set(struct cycle *c, const struct stand *s)
+{
+	memcpy(c->out.target, s->place, sizeof(c->out.target));
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		struct comp_axis *a = &c->comp.axis[i];
+
+		a->place = s->place[i];
+		a->shift = s->shift[i];
+		a->added = added(s, i);
+		a->toward = s->toward[i];
+	}
+	c->hand.homed = s->homed;
+	c->hand.used = true;
+	c->out.path++;
+}

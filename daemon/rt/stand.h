@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * stand.h - where the axes stand, and what that rests on
+ *
+ * Enough for a cycle to go on where another was killed: places, the pulses the
+ * drives were sent to for them, which way each axis came, what homing found.
+ * Without it the next one would take pitch error and backlash up anew, on top
+ * of what the drives have already.
+ *
+ * Units: pulses.  Threads: stand_get() is RT-safe, stand_set() startup only.
+ */
+#ifndef RT_STAND_H
+#define RT_STAND_H
+
+#include "interp/axis.h"
+
+#include <stdint.h>
+
+struct cycle;
+
+struct stand {
+	int32_t place[INTERP_NAXES];
+	int32_t drive[INTERP_NAXES];	/* where the drives were sent */
+	int32_t shift[INTERP_NAXES];	/* what homing found; comp.h */
+	int8_t toward[INTERP_NAXES];	/* of the last move; 0: none */
+	uint32_t homed;			/* bit per axis */
+};
+
+/** stand_get() - after a period. */
+void stand_get(const struct cycle *c, struct stand *ret);
+
+/**
+ * stand_set() - a cycle that never ran stands there, idle.
+ *
+ * A program that begins elsewhere is refused from then on, as after a jog.
+ */
+void stand_set(struct cycle *c, const struct stand *s);
+
+#endif /* RT_STAND_H */

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a killed edmd leaves to the next: axes, home, values set, a fault."""
+
+import pytest
+import rig
+
+CUT = b"G21 G90\nM3\nG1 X-15 F5\nM30\n"
+
+
+@pytest.fixture
+def screws(homing):
+    """Homed, in a machine with play."""
+    homing.start()
+    assert homing.ctl("home").returncode == 0
+    homing.client.status_where(
+        lambda s: s.state == "idle" and s.pos_mm[0] < -19, timeout=20
+    )
+    return homing
+
+
+def come_back(machine, what):
+    machine.kill("edmd")
+    machine.start_edmd()
+    return machine.client.status_where(lambda s: s.daemon == "ok" and what(s))
+
+
+def test_idle_axes_stand_where_they_stood_and_are_homed(screws):
+    c = screws.client
+    assert screws.ctl("jog", "X", "3").returncode == 0
+    before = c.status_where(
+        lambda s: s.state == "idle" and abs(s.pos_mm[0] + 17) < 0.1
+    )
+    after = come_back(screws, lambda s: s.state == "idle")
+    assert after.pos_mm == before.pos_mm
+    assert c.submit(CUT, "job", hold=True).code == 0
+    c.job_where("job", "ready")
+    assert c.status().pos_mm == before.pos_mm
+
+
+def test_a_job_goes_on_with_what_was_set_and_without_a_new_home(screws):
+    c = screws.client
+    assert c.submit(CUT, "job").code == 0
+    c.status_where(lambda s: s.state == "erode", timeout=20)
+    assert screws.ctl("set", "servo_v", "41").returncode == 0
+    held = come_back(screws, lambda s: s.job_state == "held")
+    c.hear(0.5)
+    assert c.status().pos_mm == held.pos_mm, "it moved by itself"
+    # What is asked for again shows what it was.
+    assert screws.ctl("set", "servo_v", "42").returncode == 0
+    assert screws.ctl("start").returncode == 0
+    c.status_where(lambda s: s.state == "erode", timeout=20)
+    changes = c.job("job")["changes"]
+    sets = [x for x in changes if x["what"] == "servo_v"]
+    assert [(x["was"], x["now"]) for x in sets][-1] == (41, 42)
+
+
+def test_an_e_stop_stays_latched(screws):
+    c = screws.client
+    assert c.submit(CUT, "job").code == 0
+    c.status_where(lambda s: s.state == "erode", timeout=20)
+    assert screws.ctl("estop").returncode == 0
+    c.status_where(lambda s: s.state == "fault")
+    s = come_back(screws, lambda s: s.state == "fault")
+    assert s.fault == "e-stop"
+    r = screws.ctl("start")
+    assert r.returncode == 1
+    assert "reset first" in r.stderr
+    assert screws.ctl("reset").returncode == 0
+    assert screws.ctl("start").returncode == 0
+    c.status_where(lambda s: s.state == "erode", timeout=20)
+
+
+def test_a_program_that_was_swapped_is_not_gone_on_with(screws):
+    c = screws.client
+    assert c.submit(CUT, "job").code == 0
+    c.status_where(lambda s: s.state == "erode", timeout=20)
+    screws.kill("edmd")
+    (name,) = screws.shm("program")
+    path = rig.pathlib.Path("/dev/shm", name)
+    block = bytearray(path.read_bytes())
+    block[-1] ^= 1
+    path.write_bytes(block)
+    screws.start_edmd()
+    j = c.job_where("job", "stopped")
+    assert "its log says why" in j["reason"]
+    assert "is not the one that ran" in (
+        screws.folder / "edmd.log").read_text()

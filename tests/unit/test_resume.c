@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_resume.c - a killed edmd, and the one that comes after it
+ */
+#include "resume_help.h"
+
+static void begin_cavity(struct world *w)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	cut_to(b, -3);
+	load(w, b);
+	go_on(w);
+}
+
+/* -- The axes ------------------------------------------------------------------ */
+
+static void wear_z(struct world *w)
+{
+	struct comp_config *z = &w->k.comp[INTERP_Z];
+
+	z->backlash = 12;
+	z->take_up = 0.5;
+	z->n = 2;
+	z->at[0] = -4000;
+	z->add[0] = 25;
+	z->at[1] = 0;
+	z->add[1] = -5;
+}
+
+static void stands_there(struct world *w, const struct io_outputs *was)
+{
+	for (int i = 0; i < 300; i++) {
+		period(w, OPEN_V);
+		for (int a = 0; a < INTERP_NAXES; a++)
+			assert_int_equal(w->out.target[a], was->target[a]);
+		assert_false(w->out.power);
+	}
+}
+
+/* Neither backlash nor pitch error is taken up again. */
+static void no_drive_moves_after_a_crash_wherever_it_was(void **st)
+{
+	(void)st;
+	for (int at = 10; at < 2500; at += 130) {
+		struct world w;
+		struct io_outputs was;
+
+		world_init(&w);
+		wear_z(&w);
+		loop_make(&w);
+		begin_cavity(&w);
+		periods(&w, SPARKING_V, at);
+		/* Back and forth, until what it was taking up is. */
+		assert_int_equal(ask(&w, CYCLE_RETRACT, 0, 0.1), ANSWER_DONE);
+		periods(&w, OPEN_V, 300);
+		was = w.out;
+		crash(&w);
+		assert_true(w.l.cycle.loaded);
+		assert_int_equal(w.l.cycle.state, STATE_HOLD);
+		stands_there(&w, &was);
+		world_free(&w);
+	}
+}
+
+static void idle_axes_stand_where_they_were_sent(void **st)
+{
+	struct world w;
+	struct io_outputs was;
+	struct made other;
+	struct interp_build *b;
+
+	(void)st;
+	world_init(&w);
+	wear_z(&w);
+	w.k.axis[INTERP_Z] = (struct hand_axis) {
+		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
+		.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
+	};
+	loop_make(&w);
+	assert_int_equal(ask(&w, CYCLE_JOG, INTERP_Z, -2.5), ANSWER_DONE);
+	periods(&w, OPEN_V, 2000);
+	was = w.out;
+	crash(&w);
+	assert_int_equal(w.l.cycle.state, STATE_IDLE);
+	assert_int_equal(w.l.cycle.out.target[INTERP_Z], -2500);
+	stands_there(&w, &was);
+	/* Compiled for another place, as from before the crash. */
+	b = begin(INTERP_SIMULTANEOUS);
+	cut_to(b, -3);
+	other = finish(b);
+	assert_int_equal(cycle_load(&w.l.cycle, &other.p), ANSWER_ELSEWHERE);
+	unmake(&other);
+	world_free(&w);
+}
+
+static void homed_axes(struct world *w, bool stays)
+{
+	world_init(w);
+	w->k.require_home = true;
+	w->k.axis[INTERP_X] = (struct hand_axis) {
+		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
+		.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
+		.method = HOME_ABSOLUTE, .home_at_mm = 10,
+	};
+	loop_make(w);
+	w->in.actual[INTERP_X] = 1234;
+	assert_int_equal(ask(w, CYCLE_HOME, INTERP_X, 0), ANSWER_DONE);
+	periods(w, OPEN_V, 10);
+	assert_int_equal(hand_unhomed(&w->l.cycle), 0);
+	w->l.io.stays = stays;
+}
+
+static void crash_as(struct world *w, bool stays)
+{
+	struct shm_snapshot before;
+
+	assert_true(shm_snapshot(w->l.status, &before));
+	loop_make(w);
+	w->l.io.stays = stays;
+	resume(&w->l, &w->config, &before);
+}
+
+static void axes_that_cannot_have_moved_stay_homed(void **st)
+{
+	struct world w;
+
+	(void)st;
+	homed_axes(&w, true);
+	crash_as(&w, true);
+	assert_int_equal(hand_unhomed(&w.l.cycle), 0);
+	assert_int_equal(w.l.cycle.out.target[INTERP_X], 11234);
+	period(&w, OPEN_V);
+	assert_int_equal(w.out.target[INTERP_X], 1234);
+	world_free(&w);
+}
+
+static void axes_that_nothing_measures_are_to_be_homed_again(void **st)
+{
+	struct world w;
+
+	(void)st;
+	homed_axes(&w, false);
+	crash_as(&w, false);
+	assert_int_equal(hand_unhomed(&w.l.cycle), 1u << INTERP_X);
+	assert_int_equal(w.l.cycle.out.target[INTERP_X], 11234);
+	world_free(&w);
+}
+
+static int32_t originated[IO_NAXES];
+
+static bool origin(void *self, int32_t ret[IO_NAXES])
+{
+	(void)self;
+	for (int i = 0; i < IO_NAXES; i++)
+		ret[i] = 1000 * i - 7;
+	return true;
+}
+
+static void originate(void *self, const int32_t zero[IO_NAXES])
+{
+	(void)self;
+	memcpy(originated, zero, sizeof(originated));
+}
+
+static void drives_that_count_are_told_where_their_zero_was(void **st)
+{
+	struct world w;
+	struct shm_snapshot before;
+
+	(void)st;
+	homed_axes(&w, false);
+	w.l.io.origin = origin;
+	period(&w, OPEN_V);
+	assert_true(shm_snapshot(w.l.status, &before));
+	loop_make(&w);
+	w.l.io.stays = false;
+	w.l.io.originate = originate;
+	resume(&w.l, &w.config, &before);
+	for (int i = 0; i < IO_NAXES; i++)
+		assert_int_equal(originated[i], 1000 * i - 7);
+	assert_int_equal(hand_unhomed(&w.l.cycle), 0);
+	world_free(&w);
+}
+
+static void places_in_other_pulses_are_not_believed(void **st)
+{
+	struct world w;
+	struct shm_snapshot before;
+
+	(void)st;
+	world_init(&w);
+	begin_cavity(&w);
+	cut(&w, 1);
+	assert_true(shm_snapshot(w.l.status, &before));
+	program_close(w.l.program);
+	loop_make(&w);
+	w.l.pulse_mm[INTERP_Z] = 0.0005;
+	resume(&w.l, &w.config, &before);
+	assert_false(w.l.cycle.loaded);
+	assert_int_equal(w.l.cycle.out.target[INTERP_Z], 0);
+	world_free(&w);
+}
+
+/* -- The job ------------------------------------------------------------------ */
+
+static void what_was_set_is_in_force_again(void **st)
+{
+	struct world w;
+
+	(void)st;
+	world_init(&w);
+	begin_cavity(&w);
+	cut(&w, 1);
+	assert_int_equal(ask(&w, CYCLE_SET, INTERP_TECH_SERVO_V, 47),
+			 ANSWER_DONE);
+	assert_int_equal(ask(&w, CYCLE_SET, INTERP_TECH_JUMP_MM, 0.25),
+			 ANSWER_DONE);
+	assert_int_equal(ask(&w, CYCLE_SET, INTERP_TECH_POLARITY, -1),
+			 ANSWER_DONE);
+	assert_int_equal(ask(&w, CYCLE_OVERRIDE, 0, 0.25), ANSWER_DONE);
+	period(&w, SPARKING_V);
+	crash(&w);
+	assert_true(w.l.cycle.loaded);
+	assert_near(w.l.cycle.gap.servo_v, 47, 0);
+	assert_near(w.l.cycle.jump.height_mm, 0.25, 0);
+	assert_near(w.l.cycle.override, 0.25, 0);
+	assert_true(w.l.cycle.out.negative);
+	assert_int_equal(w.l.cycle.process.nsets, 3);
+	/* And a second time, with nothing set in between. */
+	period(&w, OPEN_V);
+	crash(&w);
+	assert_near(w.l.cycle.gap.servo_v, 47, 0);
+	world_free(&w);
+}
+
+/* As after a change of the machine file: below its short_v now. */
+static void a_job_whose_sets_do_not_fit_is_not_taken_up(void **st)
+{
+	struct world w;
+
+	(void)st;
+	world_init(&w);
+	begin_cavity(&w);
+	cut(&w, 1);
+	assert_int_equal(ask(&w, CYCLE_SET, INTERP_TECH_SERVO_V, 20),
+			 ANSWER_DONE);
+	period(&w, SPARKING_V);
+	w.k.gap.short_v = 30;
+	crash(&w);
+	assert_false(w.l.cycle.loaded);
+	assert_int_equal(w.l.cycle.state, STATE_IDLE);
+	world_free(&w);
+}
+
+/* The same way, so that each place is one of both. */
+static void another_program_under_its_number_is_not_taken_up(void **st)
+{
+	struct world w;
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct made other;
+
+	(void)st;
+	world_init(&w);
+	begin_cavity(&w);
+	cut(&w, 1);
+	cut_to(b, -4);
+	other = finish(b);
+	program_put(&w, &other);
+	crash(&w);
+	assert_false(w.l.cycle.loaded);
+	assert_null(w.l.program);
+	assert_int_equal(w.l.cycle.state, STATE_IDLE);
+	assert_in_range(-w.l.cycle.out.target[INTERP_Z], 1000, 1010);
+	unmake(&other);
+	world_free(&w);
+}
+
+static void a_latched_fault_stays_until_the_reset(void **st)
+{
+	struct world w;
+
+	(void)st;
+	world_init(&w);
+	begin_cavity(&w);
+	cut(&w, 1);
+	assert_int_equal(ask(&w, CYCLE_ESTOP, 0, 0), ANSWER_DONE);
+	periods(&w, OPEN_V, 3);
+	crash(&w);
+	assert_true(w.l.cycle.loaded);
+	periods(&w, OPEN_V, 3);
+	assert_int_equal(w.l.cycle.state, STATE_FAULT);
+	assert_int_equal(w.l.cycle.fault, FAULT_ESTOP);
+	assert_int_equal(ask(&w, CYCLE_START, 0, 0), ANSWER_WRONG_STATE);
+	assert_int_equal(ask(&w, CYCLE_RESET, 0, 0), ANSWER_DONE);
+	go_on(&w);
+	cut(&w, 2);
+	world_free(&w);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(no_drive_moves_after_a_crash_wherever_it_was),
+		cmocka_unit_test(idle_axes_stand_where_they_were_sent),
+		cmocka_unit_test(axes_that_cannot_have_moved_stay_homed),
+		cmocka_unit_test(
+			axes_that_nothing_measures_are_to_be_homed_again),
+		cmocka_unit_test(
+			drives_that_count_are_told_where_their_zero_was),
+		cmocka_unit_test(places_in_other_pulses_are_not_believed),
+		cmocka_unit_test(what_was_set_is_in_force_again),
+		cmocka_unit_test(a_job_whose_sets_do_not_fit_is_not_taken_up),
+		cmocka_unit_test(
+			another_program_under_its_number_is_not_taken_up),
+		cmocka_unit_test(a_latched_fault_stays_until_the_reset),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
