@@ -276,8 +276,9 @@ static int machine_check(const char *name)
 
 static void word_take(struct words *w, char *word)
 {
+	/* Of negatives_keep(). */
 	if (w->n < (int)(sizeof(w->at) / sizeof(w->at[0])))
-		w->at[w->n++] = word;
+		w->at[w->n++] = word + (word[0] == ' ' && word[1] == '-');
 }
 
 /* 0: @ret_verb is to be run; < 0: done; else what to exit with. */
@@ -341,6 +342,12 @@ int main(int argc, char **argv)
 		return v->run(&c);
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;
+	if (strncmp(c.url, "udpm://", 7) != 0 &&
+	    strncmp(c.url, "memq://", 7) != 0) {
+		fprintf(stderr, "edmctl: --url %s; one of LCM, such as "
+			URL_DEFAULT "\n", c.url);
+		return EX_USAGE;
+	}
 	if (talk_open(&c.talk, c.url, c.machine) < 0 && v->run != ctl_doctor) {
 		fprintf(stderr, "edmctl: cannot open %s; does the host have a "
 			"multicast route? ip link set lo multicast on; "

@@ -28,8 +28,7 @@ struct csv_row {
 struct csv {
 	const char *program, *path;
 	FILE *f;
-	char *text;
-	size_t cap;
+	char text[4096];		/* a row, with its end */
 	unsigned long line;
 	long long read_bytes, all_bytes;
 	int percent;			/* last told */

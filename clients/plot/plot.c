@@ -61,14 +61,38 @@ static int check_gnuplot(const char *program)
 	return -ENOPKG;
 }
 
+/* Where it would go: an old file to overwrite, or a folder for a new one. */
+static int check_output(const char *program, const char *output)
+{
+	const char *slash = strrchr(output, '/');
+	char *folder = slash ? strndup(output, (size_t)(slash - output) + 1) :
+			       strdup(".");
+	int err = 0;
+
+	if (!folder)
+		err = ENOMEM;
+	else if (access(output, F_OK) == 0 ? access(output, W_OK) < 0 :
+					     access(folder, W_OK | X_OK) < 0)
+		err = errno;
+	free(folder);
+	if (err)
+		fprintf(stderr, "%s: error: plot: %s: %s; a folder that may "
+			"be written is wanted\n", program, output,
+			strerror(err));
+	return -err;
+}
+
 int plot_check(const char *program, const char *output)
 {
+	int err;
+
 	if (!ends_with(output, ".png") && !ends_with(output, ".svg")) {
 		fprintf(stderr, "%s: error: plot: %s; a name ending in .png "
 			"or .svg is wanted\n", program, output);
 		return -EINVAL;
 	}
-	return check_gnuplot(program);
+	err = check_output(program, output);
+	return err < 0 ? err : check_gnuplot(program);
 }
 
 /* The script in memory, ready to be read.  Return: descriptor or -errno. */

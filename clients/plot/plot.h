@@ -34,8 +34,10 @@ struct plot_options {
 /**
  * plot_check() - can @output be drawn at all?
  *
- * To be asked before a long job: is the ending known, is gnuplot there.
- * Return: 0, -EINVAL (ending) or -ENOPKG (gnuplot); the reason is on stderr.
+ * To be asked before a long job: is the ending known, may the file be written,
+ * is gnuplot there.
+ * Return: 0, -EINVAL (ending), -ENOPKG (gnuplot) or that of the file; the
+ * reason is on stderr.
  */
 int plot_check(const char *program, const char *output);
 

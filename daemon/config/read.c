@@ -261,7 +261,7 @@ static int read_all(struct reading *r)
 	if (r->err)
 		return r->err;
 	if (ferror(r->f))
-		return -EIO;
+		return errno == EISDIR ? -EISDIR : -EIO;
 	if (n < 0)
 		return -ENOMEM;
 	if (n > 0) {

@@ -93,8 +93,8 @@ static int status_refuse(const char *name, int err)
 		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status belongs to "
 			 "another user; run as that one, or remove it", name);
 	else
-		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status: %s", name,
-			 strerror(-err));
+		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status: %s; remove "
+			 "it, or make room in /dev/shm", name, strerror(-err));
 	return err == -EBUSY ? EX_UNAVAILABLE : EX_CANTCREAT;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * log.h - lines for the journal, on stderr, with sd-daemon's level prefixes
+ * log.h - lines on stderr; for the journal with sd-daemon's level prefixes
  *
  * "module: what, with numbers and units".  Threads: any.
  */
@@ -8,11 +8,13 @@
 #define JOBS_LOG_H
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <systemd/sd-daemon.h>
 
 #define log_at(level, ...) \
 	do { \
-		fputs(level "edmd-jobs: ", stderr); \
+		fputs(getenv("JOURNAL_STREAM") ? level "edmd-jobs: " : \
+						 "edmd-jobs: ", stderr); \
 		fprintf(stderr, __VA_ARGS__); \
 		fputc('\n', stderr); \
 	} while (0)

@@ -175,8 +175,8 @@ static int configure(struct jobs *j, struct machine_config *config,
 		return EX_CONFIG;
 	}
 	if (err < 0) {
-		fprintf(stderr, "edmd-jobs: %s: %s\n", o->config,
-			strerror(-err));
+		fprintf(stderr, "edmd-jobs: %s: %s; a machine file that can be "
+			"read\n", o->config, strerror(-err));
 		return EX_NOINPUT;
 	}
 	wrong = wire_url_check(config->lcm_url);
@@ -214,8 +214,12 @@ static int open_store(struct jobs *j, const char *dir)
 			  j->machine);
 		return EX_CONFIG;
 	}
-	log_error("store: %s: %s; a folder that can be written", dir,
-		  strerror(-err));
+	if (err == -EILSEQ)
+		log_error("store: %s/%s.db is no database of jobs; move it "
+			  "away, a new one is made", dir, j->machine);
+	else
+		log_error("store: %s: %s; a folder that can be written", dir,
+			  strerror(-err));
 	return EX_CANTCREAT;
 }
 

@@ -79,8 +79,10 @@ static enum job_state state_of(const unsigned char *name)
 
 static int complain(struct store *s)
 {
+	const int code = sqlite3_errcode(s->db);
+
 	log_error("store: %s", sqlite3_errmsg(s->db));
-	return -EIO;
+	return code == SQLITE_NOTADB || code == SQLITE_CORRUPT ? -EILSEQ : -EIO;
 }
 
 /* @kinds: a letter per ?: i int64_t, d double, s string. */

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bad input is refused with file, line, column, what was found and what
 would be accepted; never by a crash, never slowly."""
+import pathlib
 import random
 import re
+import subprocess
 import time
 
 import pytest
@@ -127,3 +129,72 @@ def test_random_words_end_in_an_answer(tmp_path):
         assert r.returncode in (0, 1, 65), (r.returncode, text)
         codes.add(r.returncode)
     assert codes >= {0, 65}, PROGRAM
+
+
+def told_in_time(*args, **more):
+    return subprocess.run(list(map(str, args)), capture_output=True, text=True,
+                          timeout=20, **more)
+
+
+def test_a_picture_that_has_no_place_is_refused_before_the_job_runs(tmp_path):
+    job = tmp_path / "job.ngc"
+    job.write_text("G21 F60\nG1 X1\n")
+    r = run("--dry-run", "--pulses", tmp_path / "pulses.csv", "--plot",
+            tmp_path / "none" / "x.png", job)
+    assert r.returncode == 73
+    assert b"No such file" in r.stderr
+    assert not (tmp_path / "pulses.csv").exists(), "it ran"
+
+
+@pytest.mark.parametrize("program, args", [
+    ("edmsim", ("--check", "-", "--machine")),
+    ("edmd", ("--check", "--config")),
+    ("edmd-jobs", ("--config",)),
+])
+def test_a_folder_is_no_machine_file(tmp_path, program, args):
+    r = told_in_time(pathlib.Path(PROGRAM).with_name(program), *args, tmp_path,
+                     input="")
+    assert r.returncode in (66, 74)
+    assert "Is a directory; a machine file" in r.stderr
+
+
+def test_what_has_no_lines_is_no_trace():
+    edmctl = pathlib.Path(PROGRAM).with_name("edmctl")
+    r = told_in_time(edmctl, "identify", "/dev/zero")
+    assert r.returncode != 0
+    assert "error" in r.stderr
+
+
+def test_a_row_without_an_end_is_refused_where_it_begins(tmp_path):
+    trace = tmp_path / "t.csv"
+    trace.write_text("t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V\n"
+                     + "1" * 9000 + "\n")
+    edmctl = pathlib.Path(PROGRAM).with_name("edmctl")
+    r = told_in_time(edmctl, "identify", trace)
+    assert r.returncode != 0
+    assert f"{trace}:" in r.stderr
+
+
+def test_a_negative_number_is_told_as_it_was_written():
+    edmctl = pathlib.Path(PROGRAM).with_name("edmctl")
+    r = told_in_time(edmctl, "retract", "-1")
+    assert r.returncode == 64
+    assert r.stderr.startswith("edmctl: retract -1: ")
+
+
+def test_a_url_of_another_kind_is_refused_as_one():
+    edmctl = pathlib.Path(PROGRAM).with_name("edmctl")
+    r = told_in_time(edmctl, "--url", "http://x", "status")
+    assert r.returncode == 64
+    assert "--url http://x; " in r.stderr
+
+
+def test_a_file_that_is_no_database_is_told_by_its_name(tmp_path):
+    jobs = pathlib.Path(PROGRAM).with_name("edmd-jobs")
+    config = tmp_path / "m.ini"
+    config.write_text("[machine]\nname = garbage\n")
+    (tmp_path / "garbage.db").write_text("not a database, whatever it is\n")
+    r = told_in_time(jobs, "--config", config, "--store", tmp_path)
+    assert r.returncode == 73
+    assert f"{tmp_path}/garbage.db is no database of jobs; move it" in r.stderr
+    assert "<3>" not in r.stderr
