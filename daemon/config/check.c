@@ -186,25 +186,32 @@ static int check_compensation(struct check *q)
 	return -EINVAL;
 }
 
-/* A jump goes along the path, and the path is within the travel. */
-static int check_jump(struct check *q, const char *name)
+double config_longest_mm(const struct machine_config *c, int *ret_axis)
 {
-	int k = key_of(SECTION_JUMP, name);
-	double mm = *(const double *)config_key_in(config_key(k), 0, q->c);
 	double most = 0;
-	uint32_t at = q->lines->at[k][0], travel_at;
-	int axis = INTERP_Z;
 
+	*ret_axis = INTERP_Z;
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		const struct interp_axis_limits *l = &q->c->axes.axis[i];
+		const struct interp_axis_limits *l = &c->axes.axis[i];
 		double travel = l->travel_max_mm - l->travel_min_mm;
 
 		if (interp_axis_is_rotary((enum interp_axis)i) ||
-		    !(q->c->axes.present & 1u << i) || travel <= most)
+		    !(c->axes.present & 1u << i) || travel <= most)
 			continue;
 		most = travel;
-		axis = i;
+		*ret_axis = i;
 	}
+	return most;
+}
+
+/* A jump goes along the path, and the path is within the travel. */
+static int check_jump(struct check *q, const char *name)
+{
+	int k = key_of(SECTION_JUMP, name), axis;
+	double mm = *(const double *)config_key_in(config_key(k), 0, q->c);
+	double most = config_longest_mm(q->c, &axis);
+	uint32_t at = q->lines->at[k][0], travel_at;
+
 	if (mm <= most || most == 0)
 		return 0;
 

@@ -326,6 +326,19 @@ int config_tech_load(struct config_tech *ret, const struct machine_config *c,
 		     const char *path);
 void config_tech_free(struct config_tech *t);
 
+/**
+ * config_longest_mm() - the longest travel of any linear axis; 0: there is none.
+ * @ret_axis: which.
+ */
+double config_longest_mm(const struct machine_config *c, int *ret_axis);
+
+/**
+ * config_jump_fits() - is no axis's travel too short for a jump of @mm?
+ * @wanted: what would be accepted, if not.
+ */
+bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
+		      size_t size);
+
 /** config_tech_base() - the machine's own values of the fields. */
 void config_tech_base(const struct machine_config *c, struct interp_tech *ret);
 

@@ -19,6 +19,8 @@ void config_tech_base(const struct machine_config *c, struct interp_tech *ret)
 	ret->v[INTERP_TECH_SERVO_V] = c->gap.servo_v;
 	ret->v[INTERP_TECH_SHORT_V] = c->gap.short_v;
 	ret->v[INTERP_TECH_OPEN_V] = c->gap.open_v;
+	ret->v[INTERP_TECH_WINDOW_LOW_V] = c->gap.window_low_v;
+	ret->v[INTERP_TECH_WINDOW_HIGH_V] = c->gap.window_high_v;
 	ret->v[INTERP_TECH_GAIN_MM_S_V] = c->gap.feed_gain_mm_s_v;
 	ret->v[INTERP_TECH_FEED_MAX_MM_S] = c->gap.feed_max_mm_s;
 	ret->v[INTERP_TECH_RETRACT_MM_S] = c->gap.retract_mm_s;
@@ -65,6 +67,42 @@ static bool is_enc(const char *path)
 	return n >= 4 && strcasecmp(path + n - 4, ".enc") == 0;
 }
 
+bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
+		      size_t size)
+{
+	int axis;
+	const double most = config_longest_mm(c, &axis);
+
+	if (!(mm > most) || most == 0)
+		return true;
+	snprintf(wanted, size, "at most %g mm, the travel of axis.%c", most,
+		 INTERP_AXIS_LETTERS[axis]);
+	return false;
+}
+
+/* As check.c has it of [jump]. */
+static int check_jumps(struct config_tech *t, const struct machine_config *c)
+{
+	char name[16];
+
+	for (uint32_t i = 0; i < t->table->nrows; i++) {
+		const struct interp_tech_row *r = &t->table->row[i];
+		const double mm = r->tech.v[INTERP_TECH_JUMP_MM];
+
+		if (config_jump_fits(c, mm, t->diag.wanted,
+				     sizeof(t->diag.wanted)))
+			continue;
+		interp_tech_name(r->letter, r->number, name, sizeof(name));
+		t->diag.line = r->line;
+		t->diag.column = 1;
+		snprintf(t->diag.found, sizeof(t->diag.found),
+			 "%s: jump_mm %g mm is higher than any axis travels",
+			 name, mm);
+		return -EINVAL;
+	}
+	return 0;
+}
+
 int config_tech_load(struct config_tech *ret, const struct machine_config *c,
 		     const char *path)
 {
@@ -83,7 +121,8 @@ int config_tech_load(struct config_tech *ret, const struct machine_config *c,
 	if (err)
 		return err;
 	config_tech_base(c, &base);
-	return interp_tech_table_fits(ret->table, &base, &ret->diag);
+	err = interp_tech_table_fits(ret->table, &base, &ret->diag);
+	return err ? err : check_jumps(ret, c);
 }
 
 void config_tech_free(struct config_tech *t)

@@ -174,17 +174,21 @@ static void verb_set(struct jobs *j, const struct verb *v,
 {
 	const int id = interp_tech_find(c->text);
 	char reason[192], range[96];
+	bool fits = true;
 
 	if (id < 0 || !interp_tech_is_live((enum interp_tech_id)id)) {
 		refuse_field(j, c);
 		return;
 	}
-	if (isnan(c->arg) ||
-	    interp_tech_value_ok((enum interp_tech_id)id, c->arg)) {
+	interp_tech_range((enum interp_tech_id)id, range, sizeof(range));
+	if (id == INTERP_TECH_JUMP_MM)
+		fits = config_jump_fits(j->config, c->arg, range,
+					sizeof(range));
+	if (isnan(c->arg) || (fits &&
+	    interp_tech_value_ok((enum interp_tech_id)id, c->arg))) {
 		ask_machine(j, v, c, (uint32_t)id);
 		return;
 	}
-	interp_tech_range((enum interp_tech_id)id, range, sizeof(range));
 	snprintf(reason, sizeof(reason), "%s %g is out of range; %s",
 		 c->text, c->arg, range);
 	answer(j, c, EX_DATAERR, reason);

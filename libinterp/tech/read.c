@@ -259,7 +259,8 @@ static int take_head(struct reading *r)
 	tech_cell(&r->text, &at, &cell);
 	if (!tech_is(&cell, "condition"))
 		return tech_refuse(&r->text, cell.at, "a head before the rows: "
-				   "condition, then fields; or a key and =",
+				   "condition, servo_v, ..., with commas; or a "
+				   "key and =",
 				   "'%s'", tech_quote(&cell).s);
 	r->head_line = r->text.line;
 	while (!rc && tech_cell(&r->text, &at, &cell))

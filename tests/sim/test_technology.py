@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Technology tables: what conditions change, and what is refused."""
 
+import re
 
 import edmsim
 import pytest
@@ -115,3 +116,59 @@ def test_a_bad_table_is_refused_with_its_place(tmp_path):
 def test_the_documentation_has_the_fields_there_are():
     fields = edmsim.done("--document-tech").stdout.decode()
     assert fields in (ROOT / "docs/technology.md").read_text()
+
+
+# Fields that the machine file has too, by the names it has them.
+SAME = {
+    "servo_v": "servo_v", "window_low_v": "window_low_v",
+    "window_high_v": "window_high_v", "short_v": "short_v",
+    "gain_mm_s_v": "feed_gain_mm_s_v", "integral_s": "integral_s",
+    "feed_max_mm_s": "feed_max_mm_s", "retract_mm_s": "retract_mm_s",
+    "abort_count": "abort_count", "jump_mm": "height_mm",
+    "jump_every_s": "every_s", "jump_depth_mm": "every_mm",
+    "jump_short_of_mm": "short_of_mm",
+}
+
+
+def spans(text, column):
+    """Least and most of each row of a table, the first of a name."""
+    ret = {}
+    for line in text.splitlines():
+        cells = [x.strip() for x in line.split("|")]
+        if not line.startswith("| `") or len(cells) < column + 2:
+            continue
+        found = re.search(r"from (\S+) to (\S+)", cells[column])
+        if found:
+            ret.setdefault(cells[1].strip("`"), tuple(map(float,
+                                                          found.groups())))
+    return ret
+
+
+def test_a_field_takes_what_the_machine_file_takes():
+    fields = spans(edmsim.done("--document-tech").stdout.decode(), 3)
+    config = edmsim.done("--document-config").stdout.decode()
+    keys = spans(config[config.index("[gap]"):], 4)
+    for field, key in SAME.items():
+        assert fields[field] == keys[key], field
+
+
+def test_a_window_of_the_machine_file_binds_a_table_before_the_job(tmp_path):
+    machine = tmp_path / "m.ini"
+    machine.write_text("[gap]\nwindow_high_v = 50\n")
+    bad = table(tmp_path, "condition,servo_v\nC120,55\n")
+    r = edmsim.run("--machine", machine, "--tech", bad, text=JOB)
+    assert r.returncode == 78
+    assert b"servo_v 55 V is not at most window_high_v 50 V of the machine" \
+        in r.stderr
+
+
+def test_a_jump_higher_than_the_travel_is_refused_in_a_table_too(tmp_path):
+    machine = tmp_path / "m.ini"
+    machine.write_text("".join(
+        f"[axis.{a}]\ntravel_min_mm = -10\ntravel_max_mm = 20\n"
+        for a in "XYZUV"))
+    bad = table(tmp_path, "condition,jump_mm\nC120,31\n")
+    r = edmsim.run("--machine", machine, "--tech", bad, text=JOB)
+    assert r.returncode == 78
+    assert f"{bad}:2:1: error: C120: jump_mm 31 mm is higher than any axis " \
+        "travels; at most 30 mm, the travel of axis.X\n" == r.stderr.decode()

@@ -80,8 +80,9 @@ def test_a_set_belongs_to_its_condition(shop):
 def test_a_set_out_of_range_is_refused_with_the_range(shop):
     c = running(shop)
     for key, value, words in (
-        ("servo_v", "2000", "from 0 to 1000 V"),
+        ("servo_v", "2000", "from 0.1 to 500 V"),
         ("polarity", "0", "1 or -1"),
+        ("jump_mm", "450", "at most 400 mm, the travel of axis.X"),
         ("servo_v", "5", "<= servo_v <="),
         ("servo_x", "20", "did you mean servo_v"),
         ("roughness_um", "2", "no such field"),
@@ -100,7 +101,7 @@ def test_a_value_below_0_is_a_value_and_no_option(shop):
     assert ("polarity", 1, -1) in changes(c)
     p = shop.ctl("set", "servo_v", "-.5")
     assert p.returncode == 65
-    assert "from 0 to 1000 V" in p.stderr
+    assert "from 0.1 to 500 V" in p.stderr
 
 
 def test_nothing_is_set_without_a_job(shop):

@@ -114,7 +114,7 @@ static const struct {
 } refused[] = {
 	{ "", 1, 1, "without conditions", "C120" },
 	{ HEAD, 1, 1, "without conditions", "C120" },
-	{ "C120, 15\n", 1, 1, "'C120'", "condition, then fields" },
+	{ "C120, 15\n", 1, 1, "'C120'", "condition, servo_v, ..." },
 	{ "condition\n", 1, 1, "without fields", "at least one" },
 	{ "condition, servo_x\n", 1, 12, "unknown column 'servo_x'", "servo_v" },
 	{ "condition, on_us [ns]\n", 1, 18, "on_us in the unit [ns]",
@@ -132,7 +132,7 @@ static const struct {
 	{ "condition,gain_mm_s_v\nC1,0\n", 2, 4,
 	  "gain_mm_s_v '0' is out of range", "from 0.000001" },
 	{ HEAD "C1,1500,40,0\n", 2, 4, "servo_v '1500' is out of range",
-	  "from 0 to 1000 V" },
+	  "from 0.1 to 500 V" },
 	{ HEAD "C1,15, -3,0\n", 2, 8, "on_us '-3'", "0.1 to 100000 us" },
 	{ HEAD "C1,nan,40,0\n", 2, 4, "not a decimal", "from 0" },
 	{ HEAD "C1,1e2,40,0\n", 2, 4, "'1e2' is not a decimal", "from 0" },
