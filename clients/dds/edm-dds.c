@@ -82,8 +82,7 @@ static int set_config(struct options *o, const char *path)
 	const int r = config_read(&config, path, &d);
 
 	if (r == -EINVAL)
-		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", path, d.line,
-			d.column, d.found, d.wanted);
+		config_say(path, &d);
 	else if (r < 0)
 		fprintf(stderr, "edm-dds: error: %s: %s; a machine file\n",
 			path, strerror(-r));

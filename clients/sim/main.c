@@ -343,8 +343,7 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	if (o->machine_file)
 		r = config_read(c, o->machine_file, &d);
 	if (r == -EINVAL) {
-		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", o->machine_file,
-			d.line, d.column, d.found, d.wanted);
+		config_say(o->machine_file, &d);
 		return EX_CONFIG;
 	}
 	if (r < 0) {

@@ -342,6 +342,12 @@ bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
 /** config_tech_base() - the machine's own values of the fields. */
 void config_tech_base(const struct machine_config *c, struct interp_tech *ret);
 
+/**
+ * config_say() - what config_read() refused, on stderr: PATH:LINE:COLUMN, or
+ * PATH alone where only defaults are against each other.  Any thread.
+ */
+void config_say(const char *path, const struct interp_diag *d);
+
 /** config_period_ns() - the period in force. */
 int64_t config_period_ns(const struct machine_config *c);
 

@@ -34,7 +34,7 @@ static int machine_refuse(const struct machine_config *c, int err,
 		log_line(LOG_ERROR, "edmd: machine: %s", strerror(-err));
 		return EX_UNAVAILABLE;
 	}
-	log_line(LOG_ERROR, "edmd: error: %s; %s", d->found, d->wanted);
+	log_line(LOG_ERROR, "edmd: %s; %s", d->found, d->wanted);
 	if (err == -EACCES || err == -EPERM)
 		return EX_NOPERM;
 	return err == -EBUSY || err == -ENODEV || err == -ENETDOWN ?
@@ -151,6 +151,27 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 	return code;
 }
 
+static int run_on(struct loop *l, const struct machine_config *c,
+		  const struct shm_snapshot *before)
+{
+	struct interp_diag diag;
+	int code = machine_open(l, c);
+
+	if (code != EX_OK)
+		return code;
+	if (plc_link_open(&l->plc, c, &diag) < 0) {
+		log_line(LOG_ERROR, "edmd: %s; %s", diag.found,
+			 diag.wanted);
+		l->io.close(l->io.self);
+		return EX_CONFIG;
+	}
+	l->cycle.plc.present = config_has_plc(c);
+	code = run_with_machine(l, c, before);
+	plc_link_close(&l->plc);
+	l->io.close(l->io.self);
+	return code;
+}
+
 /*
  * The status comes first: who does not own it must not touch the machine.
  * After a failure, or with a job not ended, it stays: it is where the next
@@ -159,26 +180,15 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 static int run_owner(struct loop *l, const struct machine_config *c)
 {
 	struct shm_snapshot before;
-	struct interp_diag diag;
 	int err = shm_status_create(&l->status, c->name, &before);
+	bool empty;
 	int code;
 
 	if (err < 0)
 		return status_refuse(c->name, err);
-	code = machine_open(l, c);
-	if (code != EX_OK)
-		return code;
-	if (plc_link_open(&l->plc, c, &diag) < 0) {
-		log_line(LOG_ERROR, "edmd: error: %s; %s", diag.found,
-			 diag.wanted);
-		l->io.close(l->io.self);
-		return EX_CONFIG;
-	}
-	l->cycle.plc.present = config_has_plc(c);
-	code = run_with_machine(l, c, &before);
-	plc_link_close(&l->plc);
-	l->io.close(l->io.self);
-	if (code == EX_OK && !l->cycle.loaded)
+	code = run_on(l, c, &before);
+	empty = before.cycle == 0 && l->cycle.count == 0;
+	if ((code == EX_OK || empty) && !l->cycle.loaded)
 		shm_status_destroy(l->status, c->name);
 	return code;
 }

@@ -120,8 +120,7 @@ static int config_refuse(const char *path, int err,
 			"be read\n", path, strerror(-err));
 		return err == -ENOENT ? EX_NOINPUT : EX_IOERR;
 	}
-	fprintf(stderr, "%s:%u:%u: error: %s; %s\n", path, d->line, d->column,
-		d->found, d->wanted);
+	config_say(path, d);
 	return EX_CONFIG;
 }
 

@@ -13,6 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#define GAP_NONE	0xffff
 #define RX_MAX		512		/* frames taken in a period: more than a bus
 					 * carries in the longest one */
 
@@ -54,6 +55,11 @@ static void hear_gap(struct can402 *s, const struct can_msg *m)
 {
 	if (m->len != 2 && m->len != 6) {
 		can402_count(s, NOTE_MALFORMED, ++s->malformed);
+		return;
+	}
+	/* A sensor that has no reading says so, and is as one that is gone. */
+	if (can_get(m->data, 2) == GAP_NONE) {
+		s->gap_age = CAN402_STALE;
 		return;
 	}
 	s->gap_v = can_get(m->data, 2) * 0.01;

@@ -170,8 +170,7 @@ static int configure(struct jobs *j, struct machine_config *config,
 	const char *wrong;
 
 	if (err == -EINVAL) {
-		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", o->config, d.line,
-			d.column, d.found, d.wanted);
+		config_say(o->config, &d);
 		return EX_CONFIG;
 	}
 	if (err < 0) {

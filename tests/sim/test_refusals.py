@@ -198,3 +198,27 @@ def test_a_file_that_is_no_database_is_told_by_its_name(tmp_path):
     assert r.returncode == 73
     assert f"{tmp_path}/garbage.db is no database of jobs; move it" in r.stderr
     assert "<3>" not in r.stderr
+
+
+def edmd_on_gpio(tmp_path, text):
+    config = tmp_path / "m.ini"
+    config.write_text(
+        "[machine]\nbackend = gpio\nname = refused\n[jump]\nv_max_mm_s = 5\n"
+        + "".join(f"[axis.{a}]\npresent = no\n" for a in "YZABCUV") + text)
+    edmd = pathlib.Path(PROGRAM).with_name("edmd")
+    return told_in_time(edmd, "--config", config)
+
+
+def test_a_chip_there_is_not_leaves_nothing_in_shared_memory(tmp_path):
+    r = edmd_on_gpio(tmp_path, "[axis.X]\nv_max_mm_s = 5\n"
+                     "[gpio]\nchip = nochip\nstep_X = 1\ndir_X = 2\n")
+    assert r.returncode == 78
+    assert r.stderr.startswith("error: edmd: gpio.step_X: chip nochip: ")
+    assert "gpiodetect" in r.stderr
+    assert not list(pathlib.Path("/dev/shm").glob("edmd.refused.*"))
+
+
+def test_defaults_against_each_other_have_no_line(tmp_path):
+    r = edmd_on_gpio(tmp_path, "[gpio]\nstep_X = 1\ndir_X = 2\n")
+    assert r.returncode == 78
+    assert "/m.ini: error: axis.X.v_max_mm_s 80 mm/s is faster" in r.stderr

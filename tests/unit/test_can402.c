@@ -372,6 +372,21 @@ static void the_gap_is_what_its_frames_say_until_they_stop(void **st)
 	unmake(&r);
 }
 
+static void a_gap_sensor_without_a_reading_is_a_lost_gap_at_once(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	assert_true(r.in.gap_valid);
+	put(&r, GAP, "\xff\xff", 2);
+	period(&r);
+	assert_false(r.in.gap_valid);
+	run(&r, 1);
+	assert_true(r.in.gap_valid);
+	unmake(&r);
+}
+
 static void the_generator_is_told_each_period(void **st)
 {
 	struct rig r;
@@ -685,6 +700,8 @@ int main(void)
 			after_a_crash_an_axis_moved_far_is_not_enabled),
 		cmocka_unit_test(another_program_far_away_is_not_jumped_to),
 		cmocka_unit_test(the_gap_is_what_its_frames_say_until_they_stop),
+		cmocka_unit_test(
+			a_gap_sensor_without_a_reading_is_a_lost_gap_at_once),
 		cmocka_unit_test(the_generator_is_told_each_period),
 		cmocka_unit_test(an_emergency_stops_all_drives_and_is_told_with_its_code),
 		cmocka_unit_test(a_flood_of_emergencies_is_told_a_few_times),
