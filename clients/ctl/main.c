@@ -134,6 +134,17 @@ static void print_usage(FILE *f)
 	      "  --version       its version\n", f);
 }
 
+/* Cut short, two jobs would be one. */
+static int id_take(struct ctl *c, const char *id)
+{
+	c->id = id;
+	if (*id && strlen(id) < TALK_WORD_MAX)
+		return 0;
+	fprintf(stderr, "edmctl: --id of %zu bytes; 1 to %d of A-Z a-z 0-9 . _ "
+		"-\n", strlen(id), TALK_WORD_MAX - 1);
+	return EX_USAGE;
+}
+
 static int every_take(struct ctl *c, const char *word)
 {
 	char *end;
@@ -174,8 +185,7 @@ static int option_take(struct ctl *c, int opt)
 		c->name = optarg;
 		break;
 	case 'i':
-		c->id = optarg;
-		break;
+		return id_take(c, optarg);
 	case 'h':
 		c->hold = true;
 		break;

@@ -200,8 +200,8 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 	if (isfinite(c->arg) && c->arg > 0 && c->arg <= RETRACT_MAX_MM)
 		verb_machine(j, v, c);
 	else
-		answer(j, c, EX_DATAERR, "retract by no such length; a number "
-		       "of mm above 0, at most 10000");
+		answer(j, c, EX_DATAERR, "no such length; a number of mm above "
+		       "0, at most 10000");
 }
 
 static void verb_step(struct jobs *j, const struct verb *v,
@@ -249,8 +249,8 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 	int axis;
 
 	if (!isfinite(c->arg) || c->arg == 0) {
-		answer(j, c, EX_DATAERR, "jog by no such length; a number of "
-		       "mm or degrees, + or -");
+		answer(j, c, EX_DATAERR, "no such length; a number of mm or "
+		       "degrees, + or -");
 		return;
 	}
 	axis = axis_of(j, c);

@@ -182,6 +182,14 @@ def test_a_negative_number_is_told_as_it_was_written():
     assert r.stderr.startswith("edmctl: retract -1: ")
 
 
+@pytest.mark.parametrize("name", ["", "x" * 64])
+def test_an_id_is_refused_not_cut_short(tmp_path, name):
+    edmctl = pathlib.Path(PROGRAM).with_name("edmctl")
+    r = told_in_time(edmctl, "submit", "x.ngc", "--id", name)
+    assert r.returncode == 64
+    assert f"--id of {len(name)} bytes; 1 to 63 of" in r.stderr
+
+
 def test_a_url_of_another_kind_is_refused_as_one():
     edmctl = pathlib.Path(PROGRAM).with_name("edmctl")
     r = told_in_time(edmctl, "--url", "http://x", "status")
