@@ -151,6 +151,21 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 	return code;
 }
 
+/* It will be made anew: what is lost with it is told. */
+static void tell_foreign(const char *name)
+{
+	const struct shm_status *s;
+	const int err = shm_status_open(&s, name);
+
+	if (err == 0)
+		shm_close(s, sizeof(*s));
+	if (err == -EPROTO)
+		log_line(LOG_WARNING, "edmd: /dev/shm/edmd.%s.status is of "
+			 "another version; where its axes stood, and its job, "
+			 "are lost: they are taken to stand at start_mm; move "
+			 "or home them", name);
+}
+
 static int run_on(struct loop *l, const struct machine_config *c,
 		  const struct shm_snapshot *before)
 {
@@ -180,10 +195,11 @@ static int run_on(struct loop *l, const struct machine_config *c,
 static int run_owner(struct loop *l, const struct machine_config *c)
 {
 	struct shm_snapshot before;
-	int err = shm_status_create(&l->status, c->name, &before);
 	bool empty;
-	int code;
+	int err, code;
 
+	tell_foreign(c->name);
+	err = shm_status_create(&l->status, c->name, &before);
 	if (err < 0)
 		return status_refuse(c->name, err);
 	code = run_on(l, c, &before);

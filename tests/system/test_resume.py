@@ -70,6 +70,16 @@ def test_an_e_stop_stays_latched(screws):
     c.status_where(lambda s: s.state == "erode", timeout=20)
 
 
+def test_what_another_version_left_is_told_to_be_lost(idle):
+    path = rig.pathlib.Path("/dev/shm", f"edmd.{idle.name}.status")
+    path.write_bytes(bytes(4096))
+    idle.start_edmd()
+    log = idle.folder / "edmd.log"
+    rig.until(lambda: "no program" in log.read_text())
+    assert "is of another version" in log.read_text()
+    assert "start_mm" in log.read_text()
+
+
 def test_a_program_that_was_swapped_is_not_gone_on_with(screws):
     c = screws.client
     assert c.submit(CUT, "job").code == 0
