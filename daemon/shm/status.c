@@ -64,12 +64,16 @@ static void status_adopt(struct shm_status *s)
 		s->snap[i].seq.sequence += s->snap[i].seq.sequence & 1;
 }
 
-static int status_make(void **ret, int fd)
+/* What cannot be made whole is not left half. */
+static int status_make(void **ret, int fd, const char *path)
 {
 	int err = object_grow(fd, sizeof(struct shm_status), 0640);
 
-	return err < 0 ? err :
-	       object_map(ret, fd, sizeof(struct shm_status), true);
+	if (err == 0)
+		err = object_map(ret, fd, sizeof(struct shm_status), true);
+	if (err < 0)
+		shm_unlink(path);
+	return err;
 }
 
 /* -EAGAIN: of another layout, now removed; try again. */
@@ -101,7 +105,7 @@ static int status_try(void **ret, const char *path, const char *machine,
 
 	err = status_own(fd);
 	if (err == 0 && object_size(fd) == 0)
-		err = status_make(ret, fd);
+		err = status_make(ret, fd, path);
 	else if (err == 0)
 		err = status_take_over(ret, fd, path, machine);
 	if (err < 0) {

@@ -17,6 +17,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -287,6 +288,24 @@ static void a_half_written_snapshot_is_never_returned(void **state)
 	shm_status_destroy(s, machine);
 }
 
+static void a_status_that_finds_no_room_leaves_nothing(void **state)
+{
+	const struct rlimit none = { 0, RLIM_INFINITY };
+	struct rlimit was;
+	struct shm_snapshot before;
+	struct shm_status *s;
+	char name[64];
+
+	(void)state;
+	assert_int_equal(getrlimit(RLIMIT_FSIZE, &was), 0);
+	signal(SIGXFSZ, SIG_IGN);
+	assert_int_equal(setrlimit(RLIMIT_FSIZE, &none), 0);
+	assert_int_equal(shm_status_create(&s, machine, &before), -EFBIG);
+	assert_int_equal(setrlimit(RLIMIT_FSIZE, &was), 0);
+	snprintf(name, sizeof(name), "/dev/shm/edmd.%s.status", machine);
+	assert_int_equal(access(name, F_OK), -1);
+}
+
 static void put_sets(struct shm_status *s, uint64_t n)
 {
 	const struct shm_sets sets = {
@@ -455,6 +474,7 @@ int main(void)
 		cmocka_unit_test(a_killed_owner_leaves_its_last_snapshot),
 		cmocka_unit_test(a_half_written_snapshot_is_never_returned),
 		cmocka_unit_test(half_written_sets_leave_those_before),
+		cmocka_unit_test(a_status_that_finds_no_room_leaves_nothing),
 		cmocka_unit_test(alive_means_the_writer_of_this_object),
 		cmocka_unit_test(another_layout_size_or_magic_is_refused),
 		cmocka_unit_test(an_object_of_another_layout_is_replaced),
