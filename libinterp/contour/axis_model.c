@@ -147,15 +147,35 @@ int interp_axis_model_init(struct interp_axis_model *m,
 }
 
 /* A turn of the motion kicks; slower than STANDS_MM_S it has not turned. */
-static void rub(struct interp_axis_model *m)
+static int turns(const struct interp_axis_model *m)
 {
 	const double v = m->x[1];
-	const int direction = v > 0 ? 1 : -1;
 
-	if (fabs(v) < STANDS_MM_S || direction == m->direction)
+	return fabs(v) < STANDS_MM_S ? m->direction : v > 0 ? 1 : -1;
+}
+
+/* The part of this period in which it moved the other way, @before mm/s. */
+static double part_of(const struct interp_axis_model *m, int direction,
+		      double before)
+{
+	const double part = (direction * m->x[1] - STANDS_MM_S) /
+			    (direction * (m->x[1] - before));
+
+	return part > 0 ? fmin(part, 1) : 0;
+}
+
+static void rub(struct interp_axis_model *m, int direction, double before)
+{
+	double part;
+
+	if (direction == m->direction)
 		return;
-	if (m->direction != 0)
+	if (m->direction != 0) {
+		part = part_of(m, direction, before);
 		m->kick_mm_s = -direction * m->loop.kick_mm_s;
+		m->x[0] += part * m->kick_mm_s * m->kick_way_s;
+		m->kick_mm_s *= 1 - part * (1 - m->kick_keeps);
+	}
 	m->direction = direction;
 }
 
@@ -166,7 +186,7 @@ static void give_play(struct interp_axis_model *m)
 	m->actual_mm = fmin(fmax(m->actual_mm, m->x[0] - half), m->x[0] + half);
 }
 
-void interp_axis_model_step(struct interp_axis_model *m, double u_mm_s)
+static void advance_period(struct interp_axis_model *m, double u_mm_s)
 {
 	double x[N], fresh, old;
 
@@ -183,8 +203,21 @@ void interp_axis_model_step(struct interp_axis_model *m, double u_mm_s)
 	x[0] += m->kick_mm_s * m->kick_way_s;
 	m->kick_mm_s *= m->kick_keeps;
 	memcpy(m->x, x, sizeof(x));
-	rub(m);
+}
+
+void interp_axis_model_step_beside(struct interp_axis_model *m, double u_mm_s,
+				   const struct interp_axis_model *leader)
+{
+	const double before = m->x[1];
+
+	advance_period(m, u_mm_s);
+	rub(m, leader == m ? turns(m) : leader->direction, before);
 	give_play(m);
+}
+
+void interp_axis_model_step(struct interp_axis_model *m, double u_mm_s)
+{
+	interp_axis_model_step_beside(m, u_mm_s, m);
 }
 
 double interp_axis_model_follow(struct interp_axis_model *m, double target_mm,

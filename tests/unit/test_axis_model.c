@@ -209,6 +209,29 @@ static void filter_finds_a_place_it_was_not_told(void **state)
 	assert_near(interp_kalman_place_mm(&k), m.actual_mm, 1e-4);
 }
 
+static void kick_begins_with_the_turn_and_not_with_the_period(void **state)
+{
+	const struct interp_axis_loop l = {
+		.gain_1_s = 30, .velocity_hz = 50, .damping = 0.7,
+		.kick_mm_s = 0.3, .kick_s = 0.02,
+	};
+	struct interp_axis_model coarse, fine;
+
+	(void)state;
+	interp_axis_model_init(&coarse, &l, PERIOD_S, 0);
+	interp_axis_model_init(&fine, &l, PERIOD_S / 50, 0);
+	for (int k = 0; k < 4000; k++) {
+		/* A period of its own for each turn. */
+		const double u = 5 * sin(0.0173 * k) + sin(0.031 * k);
+
+		interp_axis_model_step(&coarse, u);
+		for (int i = 0; i < 50; i++)
+			interp_axis_model_step(&fine, u);
+		/* A whole period late would be 0.3 um each. */
+		assert_near(coarse.actual_mm, fine.actual_mm, 3e-5);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -220,6 +243,8 @@ int main(void)
 		cmocka_unit_test(nonsense_is_refused),
 		cmocka_unit_test(filter_is_nearer_than_the_encoder),
 		cmocka_unit_test(filter_finds_a_place_it_was_not_told),
+		cmocka_unit_test(
+			kick_begins_with_the_turn_and_not_with_the_period),
 	};
 
 	return cmocka_run_group_tests_name("interp/axis_model", tests, NULL,

@@ -68,6 +68,15 @@ int interp_axis_model_init(struct interp_axis_model *m,
 void interp_axis_model_step(struct interp_axis_model *m, double u_mm_s);
 
 /**
+ * interp_axis_model_step_beside() - the same, but it turns when @leader has.
+ *
+ * For the difference that a number makes: a kick a period sooner is a step in
+ * it.  @leader was stepped first; it may be @m.
+ */
+void interp_axis_model_step_beside(struct interp_axis_model *m, double u_mm_s,
+				   const struct interp_axis_model *leader);
+
+/**
  * interp_axis_model_follow() - one period of the closed loop.
  *
  * @target_mm: the set value; @before_mm: the one of the period before, for the
@@ -76,6 +85,14 @@ void interp_axis_model_step(struct interp_axis_model *m, double u_mm_s);
  */
 double interp_axis_model_follow(struct interp_axis_model *m, double target_mm,
 				double before_mm);
+
+/** interp_axis_model_shift() - it is @by_mm further, for what moved it. */
+static inline void interp_axis_model_shift(struct interp_axis_model *m,
+					   double by_mm)
+{
+	m->x[0] += by_mm;
+	m->actual_mm += by_mm;
+}
 
 /** interp_axis_model_actual_mm() - where the axis is. */
 static inline double
