@@ -50,7 +50,8 @@ static void to_and_fro(void)
 }
 
 static const struct interp_identify_trace trace = {
-	target, actual, ROWS, PERIOD_S
+	.target_mm = target, .actual_mm = actual, .n = ROWS,
+	.period_s = PERIOD_S,
 };
 
 static void check_within(double found, double truth, double part)
@@ -59,29 +60,121 @@ static void check_within(double found, double truth, double part)
 		fail_msg("found %g, truth %g", found, truth);
 }
 
+/* A drive whose loop sees its own place, and pushed by @push_mm_s of noise. */
+static void record_own(const struct interp_axis_loop *l, double push_mm_s)
+{
+	struct interp_axis_model m;
+	uint64_t seed = 5;
+	double push = 0;
+
+	assert_int_equal(interp_axis_model_init(&m, l, PERIOD_S, target[0]), 0);
+	for (int k = 0; k < ROWS; k++) {
+		actual[k] = floor((m.actual_mm + 0.0005 * noise(&seed)) / 0.001 +
+				  0.5) * 0.001;
+		push = 0.99 * push + push_mm_s * noise(&seed);
+		interp_axis_model_step(&m, l->gain_1_s *
+				       (target[k] - m.actual_mm) + push);
+	}
+}
+
 static void noisy_trace_tells_the_loops_within_5_percent(void **state)
 {
 	(void)state;
 	to_and_fro();
-	for (uint64_t seed = 1; seed <= 2; seed++) {
+	for (uint64_t seed = 1; seed <= 20; seed++) {
 		const struct interp_axis_loop l = {
-			.gain_1_s = 15 + 7 * (double)seed,
-			.velocity_hz = 40 + 12 * (double)seed, .damping = 0.7,
+			.gain_1_s = 15 + (double)seed,
+			.velocity_hz = 40 + 2 * (double)seed, .damping = 0.7,
 			.kick_mm_s = 0.3, .kick_s = 0.02,
 		};
 		struct interp_identified d;
 
 		record(&l, seed);
 		assert_int_equal(interp_identify(&trace, &d), 0);
-		check_within(d.loop.gain_1_s, l.gain_1_s, 0.01);
+		check_within(d.loop.gain_1_s, l.gain_1_s, 0.001);
 		check_within(d.loop.velocity_hz, l.velocity_hz, 0.05);
 		check_within(d.loop.damping, l.damping, 0.05);
-		check_within(d.loop.kick_mm_s, l.kick_mm_s, 0.1);
-		assert_true(d.left_mm < 0.0007);
+		check_within(d.loop.kick_mm_s, l.kick_mm_s, 0.05);
+		check_within(d.loop.kick_s, l.kick_s, 0.05);
+		/* There is none, and it does not blur the rest. */
+		assert_false(d.told[INTERP_IDENTIFY_BACKLASH]);
+		assert_true(d.loop.backlash_mm == 0);
+		assert_true(d.left_mm < 0.0006);
 		/* And it knows how well it knows. */
 		assert_true(fabs(d.loop.velocity_hz - l.velocity_hz) <
 			    5 * d.sigma[INTERP_IDENTIFY_VELOCITY]);
+		assert_true(fabs(d.loop.kick_mm_s - l.kick_mm_s) <
+			    4 * d.sigma[INTERP_IDENTIFY_KICK]);
 	}
+}
+
+static void loop_over_another_encoder_is_told_too(void **state)
+{
+	const struct interp_axis_loop l = {
+		.gain_1_s = 30, .velocity_hz = 66, .damping = 0.7,
+		.kick_mm_s = 0.3, .kick_s = 0.02,
+	};
+	struct interp_identified d;
+
+	(void)state;
+	to_and_fro();
+	for (int pushed = 0; pushed < 2; pushed++) {
+		record_own(&l, 0.003 * pushed);
+		assert_int_equal(interp_identify(&trace, &d), 0);
+		check_within(d.loop.gain_1_s, l.gain_1_s, 0.01);
+		check_within(d.loop.velocity_hz, l.velocity_hz, 0.1);
+		check_within(d.loop.damping, l.damping, 0.1);
+		check_within(d.loop.kick_mm_s, l.kick_mm_s, 0.1);
+		assert_false(d.sought[INTERP_IDENTIFY_FEEDFORWARD]);
+	}
+}
+
+static void no_friction_is_found_where_there_is_none(void **state)
+{
+	const struct interp_axis_loop l = {
+		.gain_1_s = 25, .velocity_hz = 50, .damping = 0.8,
+	};
+	struct interp_identified d;
+
+	(void)state;
+	to_and_fro();
+	record(&l, 4);
+	assert_int_equal(interp_identify(&trace, &d), 0);
+	assert_false(d.told[INTERP_IDENTIFY_KICK]);
+	assert_true(d.loop.kick_mm_s == 0 && d.loop.backlash_mm == 0);
+	check_within(d.loop.velocity_hz, l.velocity_hz, 0.05);
+}
+
+/* Rings as of examples/identify.ngc: ever smaller, as fast as 500 mm/s^2 is. */
+static void in_rings(void)
+{
+	static const double mm[] = { 2, 0.5, 0.1, 0.05, 0.02, 0.01 };
+	double angle = 0;
+
+	for (int k = 0; k < ROWS; k++) {
+		const double r = mm[k * 6 / ROWS];
+
+		angle += PERIOD_S * sqrt(500 / r);
+		target[k] = r * sin(angle);
+	}
+}
+
+static void rings_tell_a_delay_from_a_slow_loop(void **state)
+{
+	const struct interp_axis_loop l = {
+		.gain_1_s = 30, .velocity_hz = 66, .damping = 0.7,
+		.delay_s = 0.002, .kick_mm_s = 0.3, .kick_s = 0.02,
+	};
+	struct interp_identified d;
+
+	(void)state;
+	in_rings();
+	record(&l, 3);
+	assert_int_equal(interp_identify(&trace, &d), 0);
+	assert_true(d.sought[INTERP_IDENTIFY_DELAY]);
+	check_within(d.loop.delay_s, l.delay_s, 0.1);
+	check_within(d.loop.velocity_hz, l.velocity_hz, 0.1);
+	check_within(d.loop.kick_mm_s, l.kick_mm_s, 0.05);
 }
 
 static void backlash_and_feedforward_are_found(void **state)
@@ -122,7 +215,8 @@ static void trace_without_excitation_is_refused(void **state)
 	to_and_fro();
 	record(&l, 1);
 	assert_int_equal(interp_identify(&(struct interp_identify_trace) {
-		target, actual, 100, PERIOD_S }, &d), -ENODATA);
+		.target_mm = target, .actual_mm = actual, .n = 100,
+		.period_s = PERIOD_S }, &d), -ENODATA);
 	actual[50] = NAN;
 	assert_int_equal(interp_identify(&trace, &d), -EINVAL);
 }
@@ -198,6 +292,9 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(noisy_trace_tells_the_loops_within_5_percent),
+		cmocka_unit_test(loop_over_another_encoder_is_told_too),
+		cmocka_unit_test(no_friction_is_found_where_there_is_none),
+		cmocka_unit_test(rings_tell_a_delay_from_a_slow_loop),
 		cmocka_unit_test(backlash_and_feedforward_are_found),
 		cmocka_unit_test(trace_without_excitation_is_refused),
 		cmocka_unit_test(ridge_finds_the_weights_behind_noise),

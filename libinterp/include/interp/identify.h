@@ -3,15 +3,26 @@
  * identify.h - the numbers of an axis model from a recorded trace
  *
  * Least squares of the actual places: the model is run beside the trace, and
- * its numbers are changed, by Levenberg and Marquardt's rule, until what is
- * left is least.  Noise of the encoder therefore biases nothing, as it would
- * in a regression of the recorded places on each other.  The confidence of a
- * number is its standard deviation by the curvature at the least.
+ * its numbers are changed, by Levenberg and Marquardt's rule, until what it
+ * misses of the next place is least.  Noise of the encoder therefore biases
+ * nothing, as it would in a regression of the recorded places on each other.
+ *
+ * Where the drive closes its loop over the recorded encoder, the speed it
+ * demanded is known from the trace, noise and all; so is each turn that noise
+ * makes where the axis nearly stands.  Where it measures otherwise, the model
+ * closes its own loop.  Which of the two, and by what part the model is drawn
+ * to the encoder in a period (an axis that is pushed asks for it), is found
+ * with the rest.
  *
  * Delay and feedforward look like a slower loop and are sought only if the
- * trace is not explained without them.  A trace that does not excite a number cannot tell it: one at constant speed
- * tells the lag and nothing else, one without a reversal no friction and no
- * backlash.
+ * trace is not explained without them.  A number that the trace does not tell
+ * is left out and the others are found anew.  A trace that does not excite a
+ * number cannot tell it: one at constant speed tells the lag and nothing else,
+ * one without a reversal no friction and no backlash.
+ * examples/identify.ngc excites all of them.
+ *
+ * The confidence of a number is its standard deviation by the curvature at the
+ * least.  It counts noise alone, and not what the model cannot be.
  *
  * Units: in every name.
  * Threads: any thread, not in the cycle.
@@ -44,6 +55,8 @@ struct interp_identify_trace {
 	const double *target_mm, *actual_mm;
 	size_t n;
 	double period_s;
+	void (*on_pass)(void *arg);	/* one pass over it begins, or NULL */
+	void *on_pass_arg;
 };
 
 struct interp_identified {
