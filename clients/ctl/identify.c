@@ -17,12 +17,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sysexits.h>
+#include <unistd.h>
 
-#define ROWS_MAX	20000000
+#define ROWS_MAX	(1 << 20)	/* 128 MiB; 17 minutes of milliseconds */
+#define SLOW_ROWS	30000		/* from here on progress is told */
 
 static int refuse(const char *path, const char *found, const char *wanted)
 {
 	fprintf(stderr, "edmctl: identify: %s: %s; %s\n", path, found, wanted);
+	return EX_DATAERR;
+}
+
+static int refuse_row(const struct csv *f, const char *found)
+{
+	fprintf(stderr, "%s:%lu: error: %s; a trace that edmctl record wrote, "
+		"or a piece of it\n", f->path, f->line, found);
 	return EX_DATAERR;
 }
 
@@ -45,7 +54,7 @@ static bool grow(struct columns *t)
 
 static bool keep(struct columns *t, const struct csv_row *r)
 {
-	if (t->n == ROWS_MAX || (t->n == t->room && !grow(t)))
+	if (t->n == t->room && !grow(t))
 		return false;
 	if (t->n == 0)
 		t->first_s = r->t_s;
@@ -68,10 +77,17 @@ static int read_rows(struct csv *f, const char *path, struct columns *t)
 	if (!f->has_actual)
 		return refuse(path, "it has no X_actual ... V_actual",
 			      "a trace that edmctl record wrote");
-	while ((got = csv_next(f, &r)) > 0)
+	while ((got = csv_next(f, &r)) > 0) {
+		if (t->n == ROWS_MAX) {
+			fprintf(stderr, "edmctl: identify: %s: only the first "
+				"%d rows are used\n", path, ROWS_MAX);
+			break;
+		}
+		if (t->n > 0 && !(r.t_s > t->last_s))
+			return refuse_row(f, "its time does not rise");
 		if (!keep(t, &r))
-			return refuse(path, "more rows than there is room for",
-				      "a piece of it");
+			return refuse_row(f, "no memory for so many rows");
+	}
 	if (got < 0)
 		return EX_DATAERR;
 	if (t->n < 2)
@@ -137,8 +153,42 @@ static const char *why_not(int err)
 {
 	return err == -EDOM ?
 	       "its motion does not excite the loops; a trace with turns and "
-	       "changes of speed, as a job with arcs and corners has" :
+	       "changes of speed, as of examples/identify.ngc" :
 	       "too short; some seconds of motion";
+}
+
+/* A line rewritten on a terminal, while it takes its time. */
+struct progress {
+	int axis, passes;
+	bool shown;
+};
+
+static void tell_pass(void *arg)
+{
+	struct progress *p = arg;
+
+	p->passes++;
+	if (!p->shown)
+		return;
+	fprintf(stderr, "\redmctl: identify: %c: pass %d over the trace ",
+		INTERP_AXIS_LETTERS[p->axis], p->passes);
+}
+
+static int identify_axis(const struct columns *t, int axis,
+			 struct interp_identified *d)
+{
+	struct progress p = {
+		axis, 0, t->n >= SLOW_ROWS && isatty(STDERR_FILENO)
+	};
+	const int err = interp_identify(&(struct interp_identify_trace) {
+		.target_mm = t->target[axis], .actual_mm = t->actual[axis],
+		.n = t->n, .period_s = columns_period_s(t),
+		.on_pass = tell_pass, .on_pass_arg = &p,
+	}, d);
+
+	if (p.shown)
+		fputs("\r\033[K", stderr);
+	return err;
 }
 
 static bool moves(const struct columns *t, int axis)
@@ -161,9 +211,7 @@ static int identify_all(const struct ctl *c, const struct columns *t,
 
 		if (!moves(t, i))
 			continue;
-		err = interp_identify(&(struct interp_identify_trace) {
-			t->target[i], t->actual[i], t->n, columns_period_s(t)
-		}, &d);
+		err = identify_axis(t, i, &d);
 		if (err) {
 			fprintf(stderr, "edmctl: identify: %s: %c: %s\n",
 				c->arg, INTERP_AXIS_LETTERS[i], why_not(err));
@@ -221,7 +269,7 @@ int ctl_identify(struct ctl *c)
 
 	if (c->plot && plot_check("edmctl", c->plot) < 0)
 		return EX_USAGE;
-	err = csv_open(&f, "edmctl", c->arg);
+	err = csv_open(&f, "edmctl", c->arg, 1);
 	rc = err == -EINVAL ? EX_DATAERR : err ? EX_NOINPUT : 0;
 	if (rc == 0)
 		rc = read_rows(&f, c->arg, &t);

@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/types.h>
 #include <unistd.h>
 
 #define HEADING	"t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V"
 #define ACTUAL	",X_actual,Y_actual,Z_actual,A_actual,B_actual,C_actual," \
 		"U_actual,V_actual"
+#define MOST	1e10			/* a machine has no farther place */
 #define SLOW_BYTES	(16 << 20)	/* from here on progress is told */
 
 const char *const csv_state_word[CSV_NSTATES] = {
@@ -28,28 +28,42 @@ static int refuse(const struct csv *c, size_t column, const char *found,
 	return -EINVAL;
 }
 
-static ssize_t read_line(struct csv *c)
+/*
+ * A line, with its end, into c->text.  Return: its length; 0 at the end of the
+ * file; -EINVAL for what no line of a trace is, told.
+ */
+static int read_line(struct csv *c)
 {
 	size_t n = 0;
-	int b = 0;
+	int ch = 0;
 
-	/* What is no trace may have no lines at all. */
-	while (n < sizeof(c->text) - 1 && b != '\n' &&
-	       (b = getc_unlocked(c->f)) != EOF)
-		c->text[n++] = (char)b;
-	c->text[n] = '\0';
-	if (n > 0) {
-		c->read_bytes += (long long)n;
-		c->line++;
+	while (ch != '\n' && (ch = getc_unlocked(c->f)) != EOF) {
+		if (n == 0)
+			c->line++;
+		if (ch == '\0')
+			return refuse(c, n, "a NUL byte",
+				      "the text of a trace");
+		if (n + 1 >= sizeof(c->text))
+			return refuse(c, n, "a line that does not end",
+				      "at most 4095 bytes in a line");
+		c->text[n++] = (char)ch;
 	}
-	return (ssize_t)n;
+	if (ferror(c->f))
+		return refuse(c, n, strerror(errno), "a file that can be read");
+	c->text[n] = '\0';
+	c->read_bytes += (long long)n;
+	return (int)n;
 }
 
 static int check_heading(struct csv *c)
 {
-	size_t n = strlen(HEADING);
+	const size_t n = strlen(HEADING);
+	const int got = read_line(c);
 
-	if (read_line(c) <= 0)
+	if (got < 0)
+		return got;
+	c->line = 1;
+	if (got == 0)
 		return refuse(c, 0, "an empty file", "a trace begins with "
 			      HEADING);
 	if (strncmp(c->text, HEADING, n) != 0 ||
@@ -59,20 +73,20 @@ static int check_heading(struct csv *c)
 	return 0;
 }
 
-int csv_open(struct csv *c, const char *program, const char *path)
+int csv_open(struct csv *c, const char *program, const char *path, int times)
 {
-	struct stat st;
+	struct stat st = { 0 };
 
 	*c = (struct csv) { .program = program, .path = path };
 	c->f = fopen(path, "re");
-	if (!c->f || fstat(fileno(c->f), &st) < 0) {
-		int err = errno;
+	if (!c->f || fstat(fileno(c->f), &st) < 0 || S_ISDIR(st.st_mode)) {
+		int err = S_ISDIR(st.st_mode) ? EISDIR : errno;
 
 		fprintf(stderr, "%s: error: %s: %s; a trace CSV is wanted\n",
 			program, path, strerror(err));
 		return -err;
 	}
-	c->all_bytes = 2 * (long long)st.st_size;	/* read twice */
+	c->all_bytes = times * (long long)st.st_size;
 	return check_heading(c);
 }
 
@@ -93,7 +107,7 @@ static void tell(struct csv *c)
 	if (percent == c->percent)
 		return;
 	c->percent = percent;
-	fprintf(stderr, "\r%s: plot: reading %s, %d %% ", c->program, c->path,
+	fprintf(stderr, "\r%s: reading %s, %d %% ", c->program, c->path,
 		percent);
 }
 
@@ -115,7 +129,12 @@ static bool number(char **at, double *ret)
 
 static bool place_number(char **at, double *ret)
 {
-	return number(at, ret) && isfinite(*ret);
+	char *const from = *at;
+
+	if (number(at, ret) && fabs(*ret) < MOST)
+		return true;
+	*at = from;			/* that is what the place told is of */
+	return false;
 }
 
 /* A trace without a gap sensor leaves the voltage empty. */
@@ -163,10 +182,10 @@ static bool parse(const struct csv *c, char **at, struct csv_row *r)
 int csv_next(struct csv *c, struct csv_row *ret)
 {
 	char *at;
-	ssize_t n = read_line(c);
+	const int n = read_line(c);
 
 	if (n <= 0)
-		return 0;
+		return n;
 	tell(c);
 	at = c->text;
 	if (parse(c, &at, ret))
@@ -175,6 +194,9 @@ int csv_next(struct csv *c, struct csv_row *ret)
 	if (c->text[n - 1] != '\n' && feof(c->f))
 		return 0;
 	at[strcspn(at, ",\r\n")] = '\0';
+	for (char *b = at; *b; b++)
+		if (*b < ' ' || *b > '~')
+			*b = '?';
 	return refuse(c, (size_t)(at - c->text), *at ? at : "nothing",
 		      c->has_actual ? "a row of " HEADING ACTUAL :
 				      "a row of " HEADING);

@@ -28,15 +28,18 @@ struct csv_row {
 struct csv {
 	const char *program, *path;
 	FILE *f;
-	char text[4096];		/* a row, with its end */
+	char text[4096];		/* a line */
 	unsigned long line;
 	long long read_bytes, all_bytes;
 	int percent;			/* last told */
 	bool has_actual;		/* to be read */
 };
 
-/** csv_open() - open and check the heading. Return: 0 or -errno, told. */
-int csv_open(struct csv *c, const char *program, const char *path);
+/**
+ * csv_open() - open and check the heading, to read it so many @times.
+ * Return: 0 or -errno, told.
+ */
+int csv_open(struct csv *c, const char *program, const char *path, int times);
 
 /** csv_rewind() - to the first row again. */
 void csv_rewind(struct csv *c);

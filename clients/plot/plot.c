@@ -179,7 +179,7 @@ int plot_trace(const struct plot_options *o)
 
 	if (err < 0)
 		return err;
-	err = csv_open(&csv, o->program, o->trace);
+	err = csv_open(&csv, o->program, o->trace, 2);
 	if (err == 0)
 		err = thin_create(&t, &csv);
 	csv_close(&csv);

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import pathlib
 import random
 import re
 import subprocess
@@ -33,9 +34,9 @@ friction_mm_s = 0.3
 """
 
 
-def follow(target, gain, hz, damping=0.7, steps=20):
+def follow(target, gain, hz, damping=0.7, steps=20, seed=1):
     """An axis of its own making, in small steps: not the library's model."""
-    rnd = random.Random(1)
+    rnd = random.Random(seed)
     w, dt = 2 * math.pi * hz, 0.001 / steps
     p = v = a = kick = 0.0
     direction, keeps, said = 0, math.exp(-dt / 0.02), []
@@ -54,8 +55,8 @@ def follow(target, gain, hz, damping=0.7, steps=20):
     return said
 
 
-def trace(path, x, y, measured=True):
-    columns = [x, y, follow(x, 30, 66), follow(y, 21.5, 54)]
+def trace(path, x, y, measured=True, **more):
+    columns = [x, y, follow(x, 30, 66, **more), follow(y, 21.5, 54, **more)]
     with open(path, "w") as f:
         f.write((HEADING if measured else HEADING[:HEADING.index("V,") + 1])
                 + "\n")
@@ -90,6 +91,29 @@ def test_a_noisy_trace_tells_the_loops(tmp_path):
         assert abs(d["loop_damping"]["value"] / 0.7 - 1) < 0.05
         assert abs(d["friction_mm_s"]["value"] / 0.3 - 1) < 0.15
         assert "backlash_mm" not in d
+
+
+def the_loops_are_told(stdout):
+    for d, gain, hz in zip(json.loads(stdout), (30, 21.5), (66, 54)):
+        truth = {"loop_gain_1_s": gain, "loop_hz": hz, "loop_damping": 0.7,
+                 "friction_mm_s": 0.3, "friction_s": 0.02}
+        assert set(truth) == {k for k in d if isinstance(d[k], dict)}
+        for key, value in truth.items():
+            assert abs(d[key]["value"] / value - 1) < 0.05, (d["axis"], key)
+
+
+def test_the_program_for_it_tells_every_number_within_5_percent(tmp_path):
+    job = pathlib.Path(PROGRAM).parents[1] / "examples" / "identify.ngc"
+    assert run("--machine", job.with_name("machine.ini"), "--dry-run",
+               "--trace", tmp_path / "set.csv", job).returncode == 0
+    with open(tmp_path / "set.csv") as f:
+        rows = [r.split(",") for r in f.readlines()[1:]]
+    x, y = ([float(r[i]) for r in rows] for i in (6, 7))
+    for seed in (1, 2):
+        trace(tmp_path / "t.csv", x, y, seed=seed, steps=100)
+        r = identify("--json", tmp_path / "t.csv")
+        assert r.returncode == 0, r.stderr
+        the_loops_are_told(r.stdout)
 
 
 def test_what_identify_prints_is_a_machine_file(tmp_path):
@@ -140,6 +164,57 @@ def test_a_trace_that_tells_nothing_is_refused(tmp_path, what, told):
     assert r.returncode == 65
     assert told in r.stderr
     assert r.stdout == ""
+
+
+HEAD = HEADING + "\n"
+ROW = "0.001,1,0,0,0,travel" + ",0" * 16 + "\n"
+BAD = {
+    "nul": ("\0" * 10, ":1:1: error: a NUL byte"),
+    "text": ("a job\n", ":1:1: error: not the heading of a trace"),
+    "endless": (HEAD + "1" * 5000, ":2:4096: error: a line that does not end"),
+    "short": (HEADING.replace(",V,", ",") + "\n", ":1:1: error: not the head"),
+    "columns": (HEAD + ROW.replace(",0,0,0\n", "\n"), ":2:47: error: nothing"),
+    "nan": (HEAD + ROW.replace("travel,0", "travel,nan"),
+            ":2:22: error: nan"),
+    "huge": (HEAD + ROW.replace("travel,0", "travel,1e300"),
+             ":2:22: error: 1e300"),
+    "binary": (HEAD + "\x7fELF\x01\n", ":2:1: error: ?ELF?"),
+    "state": (HEAD + ROW.replace("travel", "asleep"), ":2:15: error: asleep"),
+    "time": (HEAD + 2 * ROW, ":3: error: its time does not rise"),
+    "empty": ("", ":1:1: error: an empty file"),
+    "rows": (HEAD, "no two rows"),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_what_is_no_trace_is_refused_with_its_place(tmp_path, what):
+    text, told = BAD[what]
+    (tmp_path / "t.csv").write_text(text)
+    r = identify(tmp_path / "t.csv")
+    assert (r.returncode, r.stdout) == (65, "")
+    assert told in r.stderr and len(r.stderr) < 600, r.stderr
+
+
+def test_a_file_without_end_is_refused_at_once(tmp_path):
+    for path, code in ("/dev/zero", 65), ("/dev/urandom", 65), (tmp_path, 66):
+        r = identify(path)
+        assert (r.returncode, r.stdout) == (code, ""), r.stderr
+
+
+def test_of_a_trace_without_end_the_first_rows_are_used(tmp_path):
+    # An axis that jumps to and fro: refused as such, but with an end.
+    script = ('BEGIN { print h; for (k = 1; k < 1e9; k++) '
+              'printf "%.3f,1,0,0,0,travel,%d,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\\n",'
+              ' k / 1000, 0 }')
+    awk = subprocess.Popen(["awk", "-v", "h=" + HEADING, script],
+                           stdout=subprocess.PIPE)
+    r = subprocess.run([EDMCTL, "identify", "/dev/stdin"], stdin=awk.stdout,
+                       capture_output=True, text=True, timeout=100)
+    awk.kill()
+    awk.wait()
+    assert r.returncode == 65
+    assert "only the first 1048576 rows are used" in r.stderr
+    assert "no axis could be identified" in r.stderr
 
 
 def tune(tmp_path, machine, *args):
