@@ -52,7 +52,7 @@ static const char usage[] =
 "  --check              read and compile only; print what it would do\n"
 "  --tune               look for the best servo and jump values of the machine\n"
 "                       file, print them as lines of it; --seed, --limit-s (60)\n"
-"  --budget N           trials of --tune (200)\n"
+"  --budget N           trials of --tune or --tune-contour (200)\n"
 "  --json               what --tune came to as JSON\n"
 "  --quiet              no progress, no summary\n"
 "  --print-config       the machine file in force, and exit\n"
@@ -301,9 +301,10 @@ static void parse(struct sim_options *o, int argc, char **argv, bool *print)
 	o->job = argv[optind];
 	if (o->there_and_back && !o->dry_run)
 		refuse("--there-and-back", "alone", "--dry-run beside it");
-	if ((o->budget > 0 || o->json) && !o->tune_servo)
-		refuse(o->json ? "--json" : "--budget", "alone",
-		       "--tune beside it");
+	if (o->budget > 0 && !o->tune_servo && !o->tune)
+		refuse("--budget", "alone", "--tune or --tune-contour beside it");
+	if (o->json && !o->tune_servo)
+		refuse("--json", "alone", "--tune beside it");
 	if (o->tune_servo && (o->trace || o->pulses || o->plot || o->report))
 		refuse("--tune", "with a file of one run",
 		       "--json, or one of --trace --pulses --plot --report "

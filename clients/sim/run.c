@@ -3,6 +3,7 @@
  * run.c - the cycle, as fast as the processor goes or at a pace
  */
 #include "sim.h"
+#include "trials.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -24,14 +25,6 @@ static void on_signal(int sig)
 bool run_interrupted(void)
 {
 	return interrupted;
-}
-
-static double now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
 static double virtual_s(const struct cycle *c)

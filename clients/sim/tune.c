@@ -9,8 +9,9 @@
  * file.
  */
 #include "sim.h"
+#include "trials.h"
+#include "way.h"
 
-#include "interp/nurbs_length.h"
 #include "interp/tune.h"
 
 #include <errno.h>
@@ -19,7 +20,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-#define TRIALS	200
+#define BUDGET	200			/* trials */
 #define LOOK_MM	0.02
 #define MOST	2000000			/* periods of a job to be tuned on */
 
@@ -33,129 +34,14 @@ struct rows {
 struct tuning {
 	struct sim_run *run;
 	struct rows rows;
+	struct way way;
+	struct way_curve last;
 	struct interp_contour_path path;
 	struct interp_compensate_config config;
 	struct interp_trial trial;
 	int axis[INTERP_NAXES];		/* of each model */
+	struct trials trials;
 };
-
-/* -- The programmed path ------------------------------------------------------ */
-
-static double node_mm(const struct interp_program *p, uint32_t node,
-		      uint32_t column)
-{
-	const struct interp_program_head *h = p->head;
-
-	return (double)p->nodes[(uint64_t)node * h->naxes + column] /
-	       INTERP_SUB * h->pulse_mm[h->column[column]];
-}
-
-/* The last segment with a length that begins at @u or before it. */
-static uint32_t seg_at(const struct interp_program *p, double u)
-{
-	uint32_t low = 0, high = p->head->nsegs;
-
-	while (high - low > 1) {
-		const uint32_t mid = low + (high - low) / 2;
-
-		if (p->segs[mid].s_mm <= u)
-			low = mid;
-		else
-			high = mid;
-	}
-	while (low > 0 && !(p->segs[low].length_mm > 0))
-		low--;
-	while (low + 1 < p->head->nsegs && !(p->segs[low].length_mm > 0))
-		low++;
-	return low;
-}
-
-static void along_arc(const struct interp_arc *a, double part, double length_mm,
-		      double mm[2], double per_u[2])
-{
-	const double angle = a->theta + a->sweep * part;
-	const double r = a->r_mm + a->dr_mm * part;
-
-	mm[0] = a->a_mm + r * cos(angle);
-	mm[1] = a->b_mm + r * sin(angle);
-	per_u[0] = (a->dr_mm * cos(angle) - r * a->sweep * sin(angle)) /
-		   length_mm;
-	per_u[1] = (a->dr_mm * sin(angle) + r * a->sweep * cos(angle)) /
-		   length_mm;
-}
-
-static uint32_t column_of(const struct interp_program *p, int axis)
-{
-	uint32_t j = 0;
-
-	while (j + 1 < p->head->naxes && p->head->column[j] != axis)
-		j++;
-	return j;
-}
-
-static void along_curve(const struct interp_program *p,
-			const struct interp_seg *s, double part,
-			struct interp_contour_point *ret)
-{
-	const struct interp_piece *piece = &p->pieces[s->arg];
-	const struct interp_nurbs_stop *stops = p->stops + piece->stops_at;
-	const double s_mm = stops[piece->nstops - 1].s_mm * part;
-	struct interp_nurbs_between between;
-	struct interp_nurbs_eval e;
-	struct interp_nurbs_point at;
-	struct interp_nurbs c;
-	double speed;
-
-	if (!interp_program_curve(p, piece->curve, &c))
-		return;
-	stops += interp_nurbs_stop_of(stops, piece->nstops, s_mm);
-	interp_nurbs_between(stops, &between);
-	interp_nurbs_open(&e, &c);
-	interp_nurbs_at(&e, interp_nurbs_between_at(&between, s_mm), 1, &at);
-	speed = sqrt(interp_nurbs_dot(&c, at.d[1], at.d[1]));
-	for (uint32_t k = 0; k < c.naxes; k++) {
-		const uint32_t j = column_of(p,
-				p->curves[piece->curve].axis[k]);
-
-		ret->mm[j] = at.d[0][k];
-		/* A cusp has no direction: there the chord's is kept. */
-		if (speed > 0)
-			ret->per_u[j] = at.d[1][k] / speed;
-	}
-}
-
-static void path_at(const void *arg, double u, struct interp_contour_point *ret)
-{
-	const struct interp_program *p = arg;
-	const uint32_t i = seg_at(p, u);
-	const struct interp_seg *s = &p->segs[i];
-	const double part = fmin(fmax((u - s->s_mm) / s->length_mm, 0), 1);
-
-	*ret = (struct interp_contour_point) { 0 };
-	for (uint32_t j = 0; j < p->head->naxes; j++) {
-		const double from = node_mm(p, i, j);
-		const double way = node_mm(p, i + 1, j) - from;
-
-		ret->mm[j] = from + way * part;
-		ret->per_u[j] = way / s->length_mm;
-	}
-	if (s->kind == INTERP_ARC) {
-		const struct interp_arc *a = &p->arcs[s->arg];
-		double mm[2], per_u[2];
-
-		along_arc(a, part, s->length_mm, mm, per_u);
-		for (uint32_t j = 0; j < p->head->naxes; j++) {
-			const int axis = p->head->column[j];
-
-			if (axis != a->axis_a && axis != a->axis_b)
-				continue;
-			ret->mm[j] = mm[axis == a->axis_b];
-			ret->per_u[j] = per_u[axis == a->axis_b];
-		}
-	}
-	if (s->kind == INTERP_CURVE)
-		along_curve(p, s, part, ret);
-}
 
 /* -- Set values --------------------------------------------------------------- */
 
@@ -212,7 +98,7 @@ static bool fill(struct tuning *t)
 	for (size_t i = 0; i < room; i++) {
 		struct interp_contour_point p;
 
-		path_at(t->path.arg, u[i], &p);
+		way_at(&t->way, u[i], &p);
 		for (int j = 0; j < t->path.naxes; j++)
 			w->mm[j][i] = p.mm[j];
 	}
@@ -314,8 +200,9 @@ static void watch(struct tuning *t)
 {
 	const struct interp_program *p = &t->run->job.program;
 
+	t->way = (struct way) { p, &t->last };
 	t->path = (struct interp_contour_path) {
-		p, path_at, 0, p->head->length_mm, (int)p->head->naxes
+		&t->way, way_at, 0, p->head->length_mm, (int)p->head->naxes
 	};
 	loops_of(t);
 	config_of(t);
@@ -356,6 +243,23 @@ static int check_loops(const struct tuning *t)
 	return refuse(found, wanted);
 }
 
+static int check_method(const struct tuning *t)
+{
+	const uint32_t tuned = INTERP_COMPENSATE_FEEDFORWARD |
+			       INTERP_COMPENSATE_CROSS |
+			       INTERP_COMPENSATE_PREDICTIVE;
+	const uint32_t methods = t->config.methods;
+	char found[100];
+
+	if ((methods & tuned) && !(methods & INTERP_COMPENSATE_TWIN))
+		return 0;
+	snprintf(found, sizeof(found), "[contour] method = %.40s has no gains "
+		 "to find%s", t->run->config->contour.method,
+		 methods & INTERP_COMPENSATE_TWIN ? " in its twin" : "");
+	return refuse(found, "feedforward, cross-coupled or predictive, "
+		      "joined by +; zpetc beside the last two");
+}
+
 static int prepare(struct tuning *t)
 {
 	int e = check_job(t->run);
@@ -366,9 +270,9 @@ static int prepare(struct tuning *t)
 	e = check_loops(t);
 	if (e)
 		return e;
-	if (t->config.methods == 0)
-		return refuse("[contour] method = none", "feedforward, "
-			      "cross-coupled or predictive, joined by +");
+	e = check_method(t);
+	if (e)
+		return e;
 	e = run_job(t->run);
 	if (e == 0 && t->rows.full)
 		return refuse("the job takes too long", "a piece of it, of at "
@@ -411,21 +315,44 @@ static int try_out(struct tuning *t, const char *what, uint32_t methods,
 	return 0;
 }
 
+static void tell(void *arg, unsigned int used, double best_um)
+{
+	const struct tuning *t = arg;
+	char best[32];
+
+	snprintf(best, sizeof(best), "cost %.2f um", best_um);
+	trials_tell(&t->trials, used, best);
+}
+
+/* The least of the largest and ten times the mean contour error. */
+static int find(struct tuning *t, struct interp_compensate_gains *ret)
+{
+	const struct sim_options *o = t->run->o;
+	const struct interp_tune how = {
+		.trial = t->trial,
+		.budget = o->budget > 0 ? (unsigned int)o->budget : BUDGET,
+		.method = INTERP_TUNE_SIMPLEX,
+		.on_trial = tell, .on_trial_arg = t,
+	};
+	double cost;
+	int err;
+
+	t->trials = trials_begin(o->quiet, how.budget);
+	err = interp_tune_run(&how, ret, &cost);
+	trials_end(&t->trials);
+	return err;
+}
+
 static int tune(struct tuning *t)
 {
-	const struct interp_tune how = {
-		.trial = t->trial, .budget = TRIALS,
-		.method = INTERP_TUNE_SIMPLEX,
-	};
 	struct interp_compensate_gains g = t->config.gains;
-	double cost;
 	int e = try_out(t, "position loops alone", 0, &g);
 
 	if (e == 0)
 		e = try_out(t, "the gains it has", t->config.methods, &g);
 	if (e)
 		return e;
-	if (interp_tune_run(&how, &g, &cost) < 0)
+	if (find(t, &g) < 0)
 		return refuse("its method has no gains",
 			      "feedforward, cross-coupled or predictive");
 	e = try_out(t, "these gains", t->config.methods, &g);

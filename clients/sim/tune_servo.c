@@ -16,8 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
-#include <time.h>
-#include <unistd.h>
 
 #define TRAIN_SEEDS	4
 #define TEST_SEEDS	8
@@ -165,27 +163,13 @@ static void choose_keys(struct tune *t)
 
 /* -- The search -------------------------------------------------------------------- */
 
-static double now_s(void)
+static void progress(const struct tune *t)
 {
-	struct timespec t;
+	char best[80];
 
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
-/* A line rewritten on a terminal; elsewhere one in twenty, to keep. */
-static void progress(struct tune *t)
-{
-	const bool terminal = isatty(STDERR_FILENO);
-	const double spent_s = now_s() - t->from_s;
-	const double left_s = spent_s / t->used * (t->budget - t->used);
-
-	if (t->train.o->quiet || (!terminal && t->used % 20 != 0))
-		return;
-	fprintf(stderr, "%s%4u of %u trials, best %+.3f: %.4g mm3/min, "
-		"%.3g shorts/min; %.0f s left%s", terminal ? "\r" : "",
-		t->used, t->budget, t->score, t->after.removal_mm3_min,
-		t->after.shorts_min, left_s, terminal ? "   " : "\n");
+	snprintf(best, sizeof(best), "%+.3f: %.4g mm3/min, %.3g shorts/min",
+		 t->score, t->after.removal_mm3_min, t->after.shorts_min);
+	trials_tell(&t->trials, t->used, best);
 }
 
 static bool can_be(const struct machine_config *c)
@@ -264,8 +248,7 @@ static void look(struct tune *t)
 	}
 	m.budget = t->budget - t->used;
 	interp_minimise_simplex(&m, x);
-	if (!t->train.o->quiet && isatty(STDERR_FILENO))
-		fputc('\n', stderr);
+	trials_end(&t->trials);
 }
 
 static int test(struct tune *t)
@@ -331,7 +314,7 @@ int tune_servo(const struct sim_options *o, const struct machine_config *c,
 		return refuse("the job's conditions give every key",
 			      "a job, or a table, that leaves some to the "
 			      "machine file");
-	t.from_s = now_s();
+	t.trials = trials_begin(o->quiet, t.budget);
 	e = search_and_test(&t);
 	if (e)
 		return e;

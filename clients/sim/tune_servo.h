@@ -9,6 +9,7 @@
 #define SIM_TUNE_SERVO_H
 
 #include "sim.h"
+#include "trials.h"
 
 #define TRIAL_SEEDS_MAX	16
 
@@ -57,7 +58,7 @@ struct tune {
 	struct trial_sum test_before, test_after;	/* on others */
 	double score, test_score;	/* docs/gap-servo.md; as it was: 0 */
 	uint32_t used, budget;
-	double from_s;
+	struct trials trials;
 	bool better, tested, interrupted;
 	int e;				/* of a trial that could not be run */
 };

@@ -32,6 +32,8 @@ struct search {
 	struct interp_compensate_config config;
 	const struct gain *gain[NGAINS];
 	int n;
+	unsigned int used;
+	double best;
 };
 
 static double *field(struct interp_compensate_gains *g, size_t at)
@@ -48,9 +50,8 @@ static double high_of(const struct search *s, const struct gain *g)
 	       fmin(g->high, horizon) : g->high;
 }
 
-static double cost_of(void *arg, const double *x)
+static double try_gains(struct search *s, const double *x)
 {
-	struct search *s = arg;
 	struct interp_trial trial = s->tune->trial;
 	struct interp_trial_result r;
 
@@ -62,10 +63,24 @@ static double cost_of(void *arg, const double *x)
 	return 1e3 * (r.max_mm + INTERP_TUNE_MEAN * r.mean_mm);
 }
 
+static double cost_of(void *arg, const double *x)
+{
+	struct search *s = arg;
+	const double cost = try_gains(s, x);
+
+	s->best = fmin(s->best, cost);
+	s->used++;
+	if (s->tune->on_trial)
+		s->tune->on_trial(s->tune->on_trial_arg, s->used, s->best);
+	return cost;
+}
+
 int interp_tune_run(const struct interp_tune *t,
 		    struct interp_compensate_gains *ret, double *ret_cost)
 {
-	struct search s = { .tune = t, .config = *t->trial.compensate };
+	struct search s = {
+		.tune = t, .config = *t->trial.compensate, .best = INFINITY,
+	};
 	struct interp_minimise m = {
 		.cost = cost_of, .arg = &s, .budget = t->budget,
 		.seed = t->seed,

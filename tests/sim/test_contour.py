@@ -228,6 +228,27 @@ def largest_um(text, what):
     return float(re.search(what + r": ([\d.]+) um largest", text)[1])
 
 
+def test_tuning_tells_how_far_it_is(tmp_path):
+    (tmp_path / "m.ini").write_text(LOOPS + "[contour]\nmethod = feedforward\n")
+    (tmp_path / "j.ngc").write_text(JOB)
+    r = subprocess.run([PROGRAM, "--machine", tmp_path / "m.ini",
+                        "--tune-contour", "--budget", "40",
+                        tmp_path / "j.ngc"], capture_output=True, text=True)
+    assert r.returncode == 0, r.stderr
+    told = [s.split(",")[0].strip() for s in r.stderr.splitlines()]
+    assert told == ["20 of 40 trials", "40 of 40 trials"]
+    assert run("--budget", "40", text=JOB).returncode == 64
+
+
+@pytest.mark.parametrize("method", ["none", "twin", "twin+feedforward",
+                                    "zpetc"])
+def test_a_method_without_gains_is_refused(tmp_path, method):
+    r = tune(tmp_path, LOOPS + f"[contour]\nmethod = {method}\n")
+    assert (r.returncode, r.stdout) == (65, b"")
+    assert f"[contour] method = {method} has no gains".encode() in r.stderr
+    assert b"feedforward, cross-coupled or predictive, joined by +" in r.stderr
+
+
 ARC = "G21 G90 G17 F1000\nG1 X10\nG3 X0 Y10 I-10\nM2\n"
 SAME = """G21 G90 G17 F1000
 G1 X10

@@ -22,6 +22,9 @@ struct interp_tune {
 	enum interp_tune_method method;
 	unsigned int budget;		/* trials */
 	uint64_t seed;
+	/* After each trial, or NULL: trials so far, the least cost. */
+	void (*on_trial)(void *arg, unsigned int used, double best);
+	void *on_trial_arg;
 };
 
 /**

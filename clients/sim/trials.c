@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* trials.c - how far a search is */
+#include "trials.h"
+
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+double now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+struct trials trials_begin(bool quiet, unsigned int budget)
+{
+	return (struct trials) { quiet, isatty(STDERR_FILENO) == 1, budget,
+				 now_s() };
+}
+
+void trials_tell(const struct trials *t, unsigned int used, const char *best)
+{
+	const double left_s = (now_s() - t->from_s) / used *
+			      (t->budget - used);
+
+	if (t->quiet || (!t->terminal && used % 20 != 0))
+		return;
+	fprintf(stderr, "%s%4u of %u trials, best %s; %.0f s left%s",
+		t->terminal ? "\r" : "", used, t->budget, best, left_s,
+		t->terminal ? "   " : "\n");
+}
+
+void trials_end(const struct trials *t)
+{
+	if (!t->quiet && t->terminal)
+		fputc('\n', stderr);
+}
