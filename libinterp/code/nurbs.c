@@ -19,6 +19,7 @@
 #define LINUXCNC_ORDER	3
 #define POINTS_MAX	1000000u
 #define END_PULSES	2.0
+#define WEIGHT_MIN	1e-9
 
 /* -- Points and knots ------------------------------------------------------------ */
 
@@ -191,6 +192,27 @@ static int build(struct nc_reader *r)
 	return nc_placed(r, rc, c->last_mm);
 }
 
+static int refuse_weight(struct nc_reader *r, enum nc_slot slot)
+{
+	const uint8_t *at = r->block.at[slot];
+
+	return nc_refuse(r, at, "a weight above 0: 0.000000001 or more, within "
+			 "a factor of 10000 of the others", "%s, a weight of %g",
+			 nc_quote_word(r, at).s, r->block.value[slot]);
+}
+
+/* Of the word @at, which ended the curve. */
+static int check_points(struct nc_reader *r, const uint8_t *at)
+{
+	const struct nc_curve *c = &r->curve;
+
+	if (c->npoints >= c->order)
+		return 0;
+	return nc_refuse(r, at, "as many as the order, or more",
+			 "%u control points for a curve of order %u",
+			 c->npoints, c->order);
+}
+
 /* -- G6.2 ------------------------------------------------------------------------ */
 
 static int fanuc_open(struct nc_reader *r)
@@ -222,9 +244,11 @@ static int fanuc_knot(struct nc_reader *r)
 	while (same <= c->nknots && c->knots[c->nknots - same] == u)
 		same++;
 	if (same > c->order)
-		return nc_refuse(r, at, "a knot at most as often as the order",
-				 "knot %g a %uth time in a curve of order %u",
-				 u, same, c->order);
+		return nc_refuse(r, at, "a knot at most as often as the order, "
+				 "the next 1e-9 of the whole above it or more",
+				 "%s: knot %g a %uth time in a curve of order "
+				 "%u", nc_quote_word(r, at).s, u, same,
+				 c->order);
 	return add_knot(r, u);
 }
 
@@ -237,9 +261,8 @@ static int fanuc_point(struct nc_reader *r)
 		return nc_refuse(r, r->block.at[NC_K], "the rest of the knots, "
 				 "alone in their blocks",
 				 "a control point behind knots of their own");
-	if (!(weight > 0))
-		return nc_refuse(r, r->block.at[NC_R], "a weight above 0",
-				 "a weight of %g", weight);
+	if (!(weight >= WEIGHT_MIN))
+		return refuse_weight(r, NC_R);
 	target(r, at_mm);
 	return add_point(r, at_mm, weight);
 }
@@ -267,9 +290,10 @@ static int fanuc(struct nc_reader *r)
 		rc = fanuc_knot(r);
 	if (!rc && (first || b->words & (NC_AXES | NC_BIT(NC_R))))
 		rc = fanuc_point(r);
-	if (!rc && c->nknots == c->npoints + c->order)
-		rc = build(r);
-	return rc;
+	if (rc || c->nknots != c->npoints + c->order)
+		return rc;
+	rc = check_points(r, b->at[NC_K]);
+	return rc ? rc : build(r);
 }
 
 /* -- G5.2 and G5.3 ------------------------------------------------------------------ */
@@ -277,10 +301,7 @@ static int fanuc(struct nc_reader *r)
 static int linuxcnc_weight(struct nc_reader *r, double *ret)
 {
 	*ret = nc_has(r, NC_P) ? r->block.value[NC_P] : 1;
-	if (*ret > 0)
-		return 0;
-	return nc_refuse(r, r->block.at[NC_P], "a weight above 0",
-			 "a weight of %g", *ret);
+	return *ret >= WEIGHT_MIN ? 0 : refuse_weight(r, NC_P);
 }
 
 static int refuse_plane(struct nc_reader *r)
@@ -334,11 +355,7 @@ static int linuxcnc_end(struct nc_reader *r)
 		return nc_refuse(r, r->block.code_at[NC_MOTION],
 				 "G5.2 and control points before it",
 				 "G5.3 without G5.2");
-	if (c->npoints < c->order)
-		return nc_refuse(r, r->block.code_at[NC_MOTION],
-				 "as many as the order (L), or more",
-				 "%u control points for a curve of order %u",
-				 c->npoints, c->order);
+	rc = check_points(r, r->block.code_at[NC_MOTION]);
 	/* Even knots, the ends as often as the order. */
 	for (uint32_t i = 0; !rc && i < c->npoints + c->order; i++)
 		rc = add_knot(r, i < c->order ? 0 : i < c->npoints ?
@@ -485,7 +502,8 @@ int nc_curve(struct nc_reader *r)
 
 	if (r->tool.on)
 		return nc_refuse(r, r->block.code_at[NC_MOTION],
-				 "G0 or G1, or G49 before it",
+				 "G49 before it and the curve of the axes, or "
+				 "the tip's way as G1 lines",
 				 "a curve under G43.4");
 	if (motion <= NC_PARABOLA && !(r->block.words & NC_MOVES))
 		return 0;

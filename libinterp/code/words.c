@@ -10,8 +10,8 @@
 #include "interp/wire.h"
 
 #define ANY_PLACE	-999999999, 999999999, "-999999999 to 999999999"
-#define AXIS_LINES	"an axis word goes with G0 G1 G2 G3 G28 G92 G120 or a " \
-			"curve, and X with G4"
+#define AXIS_LINES	"an axis word goes with G0 G1 G2 G3 G28 G92 G120 G6.2, X " \
+			"and Y with G5 G5.1 G5.2 too, X with G4"
 #define CENTRE_LINES	"goes with G2 or G3, or a curve"
 
 /* clang-format off */
@@ -34,7 +34,7 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_S] = { 'S', false, 0, 999999999, "0 to 999999999", "" },
 	[NC_P] = { 'P', false, -99999999, 99999999, "-99999999 to 99999999",
 		   "P goes with G5 G5.2 G6.2, G4 or M98, and with G120" },
-	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats",
+	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats; with G5.2 an order of 2 to 10",
 		   "L goes with M98, G5.2, G160 and G161" },
 	[NC_O] = { 'O', true, 1, 9999, "a program number of 1 to 9999", "" },
 	[NC_D] = { 'D', true, 0, 999, "a register of 0 to 999", "" },

@@ -17,6 +17,10 @@
 
 #include <math.h>
 
+#define WEIGHT_MOST	1e9
+#define WEIGHTS_PART	1e4		/* largest over smallest */
+#define KNOTS_NEAR	1e-9		/* of the way from the first to the last */
+
 /* -- Check ------------------------------------------------------------------- */
 
 static const char *const flaw_text[INTERP_NURBS_NFLAWS] = {
@@ -27,6 +31,10 @@ static const char *const flaw_text[INTERP_NURBS_NFLAWS] = {
 	[INTERP_NURBS_MANY_POINTS]	= "too many control points",
 	[INTERP_NURBS_NOT_FINITE]	= "a control point that is no number",
 	[INTERP_NURBS_BAD_WEIGHT]	= "a weight of zero or less",
+	[INTERP_NURBS_WEIGHTS_PART]	=
+		"a weight more than 10000 times another",
+	[INTERP_NURBS_KNOTS_NEAR]	=
+		"a knot too near to the one before it",
 	[INTERP_NURBS_KNOT_FALLS]	= "a knot below the one before it",
 	[INTERP_NURBS_KNOT_REPEATS]	= "a knot repeated too often",
 	[INTERP_NURBS_NO_DOMAIN]	= "knots that span nothing",
@@ -39,7 +47,12 @@ static const char *const flaw_wanted[INTERP_NURBS_NFLAWS] = {
 	[INTERP_NURBS_FEW_POINTS]	= "degree + 1 control points or more",
 	[INTERP_NURBS_MANY_POINTS]	= "up to 16777216 control points",
 	[INTERP_NURBS_NOT_FINITE]	= "finite places",
-	[INTERP_NURBS_BAD_WEIGHT]	= "weights above 0",
+	[INTERP_NURBS_BAD_WEIGHT]	= "weights from 1e-9 to 1e9",
+	[INTERP_NURBS_WEIGHTS_PART]	=
+		"weights within a factor of 10000 of each other",
+	[INTERP_NURBS_KNOTS_NEAR]	=
+		("equal knots, or 1e-9 of the way from the first to the last and "
+		 "more between them"),
 	[INTERP_NURBS_KNOT_FALLS]	= "knots that do not fall",
 	[INTERP_NURBS_KNOT_REPEATS]	=
 		("a knot at most as often as the order at an end, one time less "
@@ -73,18 +86,33 @@ static enum interp_nurbs_flaw check_size(const struct interp_nurbs *c)
 static enum interp_nurbs_flaw check_points(const struct interp_nurbs *c,
 					   uint32_t *ret_at)
 {
+	double least = WEIGHT_MOST, most = 0;
+
 	for (uint32_t i = 0; i < c->npoints; i++) {
 		const double *row = c->points + (size_t)i * (c->naxes + 1);
 
 		*ret_at = i;
-		if (!(row[c->naxes] > 0 && isfinite(row[c->naxes])))
+		if (!(row[c->naxes] >= 1 / WEIGHT_MOST &&
+		      row[c->naxes] <= WEIGHT_MOST))
 			return INTERP_NURBS_BAD_WEIGHT;
+		least = fmin(least, row[c->naxes]);
+		most = fmax(most, row[c->naxes]);
+		if (most > WEIGHTS_PART * least * (1 + 1e-9))
+			return INTERP_NURBS_WEIGHTS_PART;
 		for (uint32_t j = 0; j < c->naxes; j++) {
 			if (!isfinite(row[j]))
 				return INTERP_NURBS_NOT_FINITE;
 		}
 	}
 	return INTERP_NURBS_SOUND;
+}
+
+static bool too_near(const struct interp_nurbs *c, uint32_t i)
+{
+	const double all = c->knots[c->npoints + c->degree] - c->knots[0];
+	const double gap = c->knots[i] - c->knots[i - 1];
+
+	return gap > 0 && gap <= KNOTS_NEAR * all;
 }
 
 /* Inside, degree + 1 equal knots would tear the curve. */
@@ -106,6 +134,11 @@ static enum interp_nurbs_flaw check_knots(const struct interp_nurbs *c,
 		    (same > c->degree && c->knots[i] != c->knots[0] &&
 		     c->knots[i] != c->knots[n - 1]))
 			return INTERP_NURBS_KNOT_REPEATS;
+	}
+	for (uint32_t i = 1; i < n; i++) {
+		*ret_at = i;
+		if (too_near(c, i))
+			return INTERP_NURBS_KNOTS_NEAR;
 	}
 	return interp_nurbs_first(c) < interp_nurbs_last(c) ?
 	       INTERP_NURBS_SOUND : INTERP_NURBS_NO_DOMAIN;

@@ -44,6 +44,9 @@ struct curve_plan {
 int build_curve_refuse(struct curve_plan *p, const char *found,
 		       const char *wanted);
 
+/** build_curve_blame() - the line of diag is that of the curve at @u. */
+void build_curve_blame(struct curve_plan *p, double u);
+
 /** build_curve_check() - is it sound?  0, or -EINVAL with diag filled. */
 int build_curve_check(struct curve_plan *p);
 

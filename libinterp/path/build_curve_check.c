@@ -23,27 +23,46 @@ int build_curve_refuse(struct curve_plan *p, const char *found,
 	return -EINVAL;
 }
 
+void build_curve_blame(struct curve_plan *p, double u)
+{
+	const struct interp_build_curve *c = p->c;
+	size_t i = 0;
+
+	while (i + 1 < c->nmarks && c->marks[i + 1].u <= u)
+		i++;
+	if (c->nmarks > 0)
+		p->diag->line = c->marks[i].line;
+}
+
 static int refuse_flaw(struct curve_plan *p, enum interp_nurbs_flaw f,
 		       uint32_t at)
 {
+	const struct interp_build_curve *c = p->c;
+	const bool numbered = f == INTERP_NURBS_BAD_WEIGHT ||
+			      f == INTERP_NURBS_WEIGHTS_PART ||
+			      f == INTERP_NURBS_NOT_FINITE ||
+			      f == INTERP_NURBS_KNOT_FALLS ||
+			      f == INTERP_NURBS_KNOTS_NEAR ||
+			      f == INTERP_NURBS_KNOT_REPEATS;
 	char found[sizeof(p->diag->found)];
 
 	snprintf(found, sizeof(found), "%s, number %u of the curve's",
 		 interp_nurbs_flaw_text(f), at + 1);
-	return build_curve_refuse(p, f == INTERP_NURBS_BAD_WEIGHT ||
-				     f == INTERP_NURBS_NOT_FINITE ||
-				     f == INTERP_NURBS_KNOT_FALLS ||
-				     f == INTERP_NURBS_KNOT_REPEATS ? found :
+	/* Point and knot of a number stand in one block, while points last. */
+	if (numbered && c->nmarks == c->nurbs.npoints && at < c->nmarks)
+		p->diag->line = c->marks[at].line;
+	return build_curve_refuse(p, numbered ? found :
 				     interp_nurbs_flaw_text(f),
 				  interp_nurbs_flaw_wanted(f));
 }
 
 static int check_start(struct curve_plan *p)
 {
+	const struct interp_nurbs *c = &p->walk.eval.c;
+	const bool loose = c->knots[0] != c->knots[c->degree];
 	struct interp_nurbs_point at;
 
-	interp_nurbs_at(&p->walk.eval, interp_nurbs_first(&p->walk.eval.c), 0,
-			&at);
+	interp_nurbs_at(&p->walk.eval, interp_nurbs_first(c), 0, &at);
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
 		const int axis = p->curve.axis[k];
 		const double off = at.d[0][k] - p->b->here_mm[axis];
@@ -55,8 +74,11 @@ static int check_start(struct curve_plan *p)
 			 " not where the program stands: %.4f",
 			 INTERP_AXIS_LETTERS[axis], at.d[0][k],
 			 p->b->here_mm[axis]);
-		return build_curve_refuse(p, found, "a first point where the "
-					  "last motion ended");
+		build_curve_blame(p, interp_nurbs_first(c));
+		return build_curve_refuse(p, found, loose ?
+			"a first knot that stands as often as the order, or "
+			"the program there" :
+			"a first point where the last motion ended");
 	}
 	return 0;
 }
@@ -69,9 +91,11 @@ static int check_place(struct curve_plan *p, double u)
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
 		const int axis = p->curve.axis[k];
 
-		if (!build_axis_ok(p->b, axis, at.d[0][k]))
-			return build_refuse_travel(p->b->o.machine, axis,
-						   at.d[0][k], p->diag);
+		if (build_axis_ok(p->b, axis, at.d[0][k]))
+			continue;
+		build_curve_blame(p, u);
+		return build_refuse_travel(p->b->o.machine, axis, at.d[0][k],
+					   p->diag);
 	}
 	return 0;
 }

@@ -181,8 +181,10 @@ static int lay_curve(struct part *p, uint32_t from, uint32_t to)
 		set_marks(p, from, n, marks);
 		r = interp_build_curve(p->b, &c, &p->b->fit.word, p->diag);
 	}
-	if (r < 0 && r != -ENOMEM)
+	if (r < 0 && r != -ENOMEM) {
 		undo(p->b, &was);
+		p->diag->line = 0;
+	}
 	free(own.knots);
 	free(own.points);
 	free(marks);

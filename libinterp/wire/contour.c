@@ -475,11 +475,11 @@ int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 			 "a curve under an offset, a taper, guides or corner "
 			 "control");
 		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "a curve without them, or arcs and lines");
+			 "G40 and G50 before it, or the curve as G1 lines");
 		return -EINVAL;
 	}
 	r = interp_build_curve(k->guides.build, c, w, diag);
-	if (r == -EINVAL)
+	if (r == -EINVAL && !diag->line)
 		diag->line = w->line;
 	stand(k, end_mm);
 	return r;

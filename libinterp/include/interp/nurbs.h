@@ -59,6 +59,11 @@ enum interp_nurbs_flaw {
 	INTERP_NURBS_KNOT_FALLS,	/* below the one before, or no number */
 	INTERP_NURBS_KNOT_REPEATS,	/* more than degree + 1 times at an end,
 					 * or degree times inside */
+	INTERP_NURBS_WEIGHTS_PART,	/* by more than a factor of 10000:
+					 * where they do the curve bends between
+					 * any two looks at it */
+	INTERP_NURBS_KNOTS_NEAR,	/* 1e-9 of the domain or less apart, and
+					 * not equal */
 	INTERP_NURBS_NO_DOMAIN,		/* its first and last u are the same */
 	INTERP_NURBS_NFLAWS
 };
