@@ -120,7 +120,19 @@ def test_a_curve_slower_than_its_feed_is_noted():
         "F6000", "F6")).stdout.decode()
 
 
+@pytest.mark.parametrize("words, wanted", [
+    (b"G41 D1 H1=0.1\nG1 X5\n", b"G40 and G50 before it, or the curve as G1"),
+    (b"G43.4\n", b"G49 before it"),
+])
+def test_where_no_curve_can_be_the_way_out_is_told(words, wanted):
+    machine = ["--machine", ROOT / "examples/five-axis.ini"]
+    r = run("--check", *machine[:2 * (words == b"G43.4\n")],
+            text=b"F600\n" + words + b"G5.1 X10 Y0 I5 J5\n")
+    assert r.returncode == 65
+    assert wanted in r.stderr, r.stderr
+
+
 def test_a_mistake_in_a_curve_is_told_with_its_place():
     r = run(text="F1\nG6.2 P3 K0 X0\nK0 X9 R-1\nK0 X3\nK1\nK1\nK1\n")
     assert r.returncode == 65
-    assert b"3:7: error: a weight of -1; a weight above 0" in r.stderr
+    assert b"3:7: error: R-1, a weight of -1; a weight above 0" in r.stderr
