@@ -19,6 +19,8 @@
 #define WORTH	30			/* an unknown more, in variances */
 #define WORTH_PART	0.01		/* and in what is left: never white */
 #define ROUGH	1e-5			/* gained by a round of the search */
+#define SHAKES	4
+#define SHAKEN	1			/* variances gained: once more */
 #define FINE	1e-9			/* and of the last one */
 
 const struct interp_identify_field interp_identify_field[INTERP_NIDENTIFY] = {
@@ -177,24 +179,33 @@ static bool stand_off(struct identify_fit *f, const struct identify_normal *r,
  * turn that the model has and the axis has not is a hill in the squares.  So
  * the least is sought anew from beside it.
  */
-static int shake(struct identify_fit *f, struct identify_normal *r)
+static bool shake_once(struct identify_fit *f, struct identify_normal *r)
 {
 	static const int ids[] = {
 		INTERP_IDENTIFY_VELOCITY, INTERP_IDENTIFY_KICK_TIME,
 		INTERP_IDENTIFY_DELAY,
 	};
-	static const double sigmas[] = { 1, -1, 2, -2 };
+	static const double sigmas[] = { 1, -1, 2, -2, 3, -3 };
+	bool better = false;
 
-	for (int i = 0; i < 3 * 4; i++) {
+	for (int i = 0; i < 3 * 6; i++) {
 		struct identify_fit g = *f;
 		struct identify_normal s;
 
-		if (!stand_off(&g, r, ids[i / 4], sigmas[i % 4]) ||
+		if (!stand_off(&g, r, ids[i / 6], sigmas[i % 6]) ||
 		    identify_refine(&g, &s, ROUGH) < 0 || s.ee >= r->ee)
 			continue;
+		better |= r->ee - s.ee > SHAKEN * r->ee / (double)r->rows;
 		*f = g;
 		*r = s;
 	}
+	return better;
+}
+
+static int shake(struct identify_fit *f, struct identify_normal *r)
+{
+	for (int i = 0; i < SHAKES && shake_once(f, r); i++)
+		;
 	return identify_refine(f, r, FINE);
 }
 
@@ -294,6 +305,19 @@ static void report(const struct identify_fit *f,
 	}
 }
 
+/* Delay and feedforward, against the best there is without them. */
+static int fit_more(struct identify_fit *f, struct identify_normal *r)
+{
+	const int n = f->n;
+	int err = shake(f, r);
+
+	if (err)
+		return err;
+	try_delay(f, r);
+	try_feedforward(f, r);
+	return f->n == n ? 0 : shake(f, r);
+}
+
 /* All unknowns; then without those that the trace does not tell. */
 static int fit_all(struct identify_fit *f, struct identify_normal *r,
 		   struct interp_identified *ret)
@@ -303,11 +327,8 @@ static int fit_all(struct identify_fit *f, struct identify_normal *r,
 
 	if (err == 0)
 		err = fit_noise(f, r);
-	if (err)
-		return err;
-	try_delay(f, r);
-	try_feedforward(f, r);
-	err = shake(f, r);
+	if (err == 0)
+		err = fit_more(f, r);
 	if (err || ret->reversals == 0)
 		return err;
 	for (int i = INTERP_IDENTIFY_KICK; i < INTERP_NIDENTIFY; i++)

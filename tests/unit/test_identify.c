@@ -81,10 +81,10 @@ static void noisy_trace_tells_the_loops_within_5_percent(void **state)
 {
 	(void)state;
 	to_and_fro();
-	for (uint64_t seed = 1; seed <= 20; seed++) {
+	for (uint64_t seed = 1; seed <= 10; seed++) {
 		const struct interp_axis_loop l = {
-			.gain_1_s = 15 + (double)seed,
-			.velocity_hz = 40 + 2 * (double)seed, .damping = 0.7,
+			.gain_1_s = 15 + 2 * (double)seed,
+			.velocity_hz = 40 + 4 * (double)seed, .damping = 0.7,
 			.kick_mm_s = 0.3, .kick_s = 0.02,
 		};
 		struct interp_identified d;

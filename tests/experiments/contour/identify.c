@@ -249,7 +249,9 @@ static void table_worst(struct speeds *s)
 	worst_row("rings", &rings, 0, 0);
 	worst_row("rings, backlash 5 um", &rings, 0, 0.005);
 	worst_row("rings, delay 2 ms", &rings, 0.002, 0);
-	printf("\n");
+	printf("\nThe slow butterfly hardly excites the velocity loop, and where "
+	       "an axis nearly stands the\nsquares have more than one least: "
+	       "there it may be off by several of its sigma.\n\n");
 	made_free(&rings);
 }
 
@@ -273,11 +275,11 @@ void table_identify(struct speeds *s)
 	identify_made("rings, delay 2 ms", &s->feed[1], in_rings, 0.002);
 	identify_made("a line at one speed", &s->feed[1], at_one_speed, 0);
 	printf("\nThe rings are those of examples/identify.ngc, of 2 mm down to "
-	       "0.01 mm: as many turns as\nthere are, and so fast that the velocity loop is "
-	       "told from a delay.\nDelay and feedforward are sought only where "
-	       "the trace is not explained without them.\nOn the butterfly a "
-	       "delay of 2 ms is: it looks like a slower velocity loop.  On the "
-	       "ramp\nthe axis never turns: nothing is told of friction and "
+	       "0.01 mm: many turns, and fast\nenough to tell the velocity loop "
+	       "from a delay.  Delay and feedforward are sought only where\nthe "
+	       "trace is not explained without them.  On the butterfly a delay "
+	       "of 2 ms is: it looks like a\nslower velocity loop.  On the ramp "
+	       "the axis never turns: nothing is told of friction and\n"
 	       "backlash.\n\n");
 	table_worst(s);
 }
