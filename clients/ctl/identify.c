@@ -20,7 +20,7 @@
 #include <unistd.h>
 
 #define ROWS_MAX	(1 << 20)	/* 128 MiB; 17 minutes of milliseconds */
-#define SLOW_ROWS	30000		/* from here on progress is told */
+#define SLOW_ROWS	10000		/* from here on progress is told */
 
 static int refuse(const char *path, const char *found, const char *wanted)
 {
