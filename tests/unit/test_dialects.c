@@ -185,6 +185,8 @@ static void what_a_dialect_has_not_is_refused_at_its_place(void **state)
 			fail_msg("%s '%s': %d %u:%u: %s; %s", b->dialect,
 				 b->text, c.rc, c.diag.line, c.diag.column,
 				 c.diag.found, c.diag.wanted);
+		if (strlen(c.diag.wanted) + 1 == sizeof(c.diag.wanted))
+			fail_msg("cut off: %s", c.diag.wanted);
 		compile_done(&c);
 	}
 }

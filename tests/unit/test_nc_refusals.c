@@ -39,7 +39,7 @@ static const struct refusal numbers[] = {
 static const struct refusal words[] = {
 	{ "G0 X1\n  W12",	2, 3,	"unknown word W12",
 	  "one of G M F N S T X Y Z A B C U V I J K R P L Q O D H E" },
-	{ "G33.1 X1",		1, 1,	"unknown word G33.1", "G91.1" },
+	{ "G33.1 X1",		1, 1,	"unknown word G33.1", "G160 ... G162" },
 	{ "M8",			1, 1,	"unknown word M8", "M30" },
 	{ "T1",			1, 1,	"unknown word T1", "T84" },
 	{ "G0 X1 $",		1, 7,	"'$'", "one of G" },
@@ -119,6 +119,8 @@ static void assert_refused(const struct refusal *want, size_t n)
 		    !strstr(r.diag.wanted, want->wanted))
 			fail_msg("%s\n%u:%u: %s; %s", want->text, r.diag.line,
 				 r.diag.column, r.diag.found, r.diag.wanted);
+		if (strlen(r.diag.wanted) + 1 == sizeof(r.diag.wanted))
+			fail_msg("cut off: %s", r.diag.wanted);
 		nc_done(&r);
 	}
 }
