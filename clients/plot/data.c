@@ -93,6 +93,19 @@ static void write_quantity(FILE *f, const struct thin *t, const char *name,
 	fputs("EOD\n", f);
 }
 
+/*
+ * A period's feed is whole pulses or none, so extremes fill the panel whatever
+ * the gap does: the mean of each strip, and that from jump to jump.
+ */
+static void write_feed(FILE *f, const struct thin *t, double unit_s)
+{
+	fputs("$feed << EOD\n", f);
+	write_means(f, t, t->feed, 1, unit_s);
+	fputs("EOD\n$feedmean << EOD\n", f);
+	write_means(f, t, t->feed, group_of(t), unit_s);
+	fputs("EOD\n", f);
+}
+
 static void write_far(FILE *f, const struct thin *t, double unit_s)
 {
 	fputs("$far << EOD\n", f);
@@ -196,7 +209,7 @@ void data_write(FILE *f, const struct thin *t, double unit_s)
 	write_bands(f, t, t->place, group_of(t), unit_s);
 	fputs("EOD\n", f);
 	write_quantity(f, t, "gap", t->gap, unit_s);
-	write_quantity(f, t, "feed", t->feed, unit_s);
+	write_feed(f, t, unit_s);
 	write_far(f, t, unit_s);
 	write_events(f, t, "jumps", &t->survey.jumps, unit_s);
 	write_events(f, t, "retracts", &t->survey.retracts, unit_s);

@@ -266,10 +266,13 @@ static void panel_feed(FILE *f, const struct thin *t, struct time_unit u)
 	write_panel(f, &(struct panel) { RIGHT, 0.235, 0.385, 0.410, name });
 	time_axis(f, t, u, false);
 	write_range(f, v.low * 60, v.high * 60);
-	fputs("set ylabel 'mm/min'\n"
-	      "plot $feed using 1:(60*$2):(60*$3) with filledcurves "
-	      "fc rgb '#cfe3f1' title 'least to most', \\\n"
-	      "  $feedmean using 1:(60*$2) with lines lw 1.6 lc rgb '#0072b2' "
+	fputs("set ylabel 'mm/min'\nplot ", f);
+	if (t->survey.jumps.n > SCRIPT_FEW)
+		fprintf(f, "$feed using 1:(60*$2) with lines lw 1 "
+			"lc rgb '#9ec5e3' title 'mean of %.2g s', \\\n  ",
+			(t->survey.t_max - t->survey.t_min) /
+			(double)t->nbins);
+	fputs("$feedmean using 1:(60*$2) with lines lw 1.6 lc rgb '#0072b2' "
 	      "title 'mean', \\\n"
 	      "  0 with lines lw 0.8 lc rgb '#606060' notitle\n", f);
 	write_reset(f);
