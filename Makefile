@@ -359,6 +359,8 @@ lint: $(INTERP_O) $(RT_O)
 	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80
+	$(call say,LINT,what documents name is there)
+	$(Q)tests/doc-links
 
 # -- Install ------------------------------------------------------------------
 
