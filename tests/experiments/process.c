@@ -22,6 +22,7 @@ struct rig {
 };
 
 static struct machine_config base;	/* the machine file, without chance */
+static double bridge_per_s;		/* of the machine file */
 
 static void rig_open(struct rig *r)
 {
@@ -221,7 +222,7 @@ static void jump(void)
 	static const double depths[] = { 0, 5, 20, 50 };
 
 	printf("height_mm d0 d5 d20 d50\n");
-	for (double h = 0; h <= 6; h += 0.25) {
+	for (double h = 0; h <= 6; h += 0.0625) {
 		printf("%g", h);
 		for (size_t i = 0; i < COUNT(depths); i++) {
 			struct rig r = plain();
@@ -240,7 +241,7 @@ static void speed(void)
 	static const double depths[] = { 0, 5, 20, 50 };
 
 	printf("mm_s d0 d5 d20 d50\n");
-	for (double v = 1; v <= 129; v *= 1.25) {
+	for (double v = 1; v <= 129; v *= sqrt(sqrt(2))) {
 		printf("%g", v);
 		for (size_t i = 0; i < COUNT(depths); i++) {
 			struct rig r = plain();
@@ -302,13 +303,13 @@ static void arcs(void)
 	}
 }
 
-/* After a second of erosion in debris: what an off time does to arcs. */
+/* At so much debris, made by erosion: what an off time does to arcs. */
 static void off(void)
 {
 	static const double debris[] = { 0.2, 0.5, 0.8 };
 
 	printf("off_us d02 d05 d08\n");
-	for (double us = 1; us <= 60; us *= 1.1) {
+	for (double us = 1; us <= 65; us *= pow(2, 0.125)) {
 		printf("%.3f", us);
 		for (size_t i = 0; i < COUNT(debris); i++) {
 			struct rig r = plain();
@@ -327,6 +328,129 @@ static void off(void)
 	}
 }
 
+/* Choked, then left alone: the debris that settles, and what the pump takes. */
+static void settle(void)
+{
+	static const double depths[] = { 0, 0, 5, 20 };
+	struct rig r[COUNT(depths)];
+
+	printf("t_s still pump0 pump5 pump20\n");
+	for (size_t i = 0; i < COUNT(depths); i++) {
+		r[i] = plain();
+		r[i].k.sim.debris_per_mm = 1e4;
+		r[i].k.sim.depth_mm = depths[i];
+		rig_open(&r[i]);
+		follow(&r[i], r[i].k.sim.best_gap_mm, WARM);
+		r[i].out.power = false;
+		r[i].out.pump = i > 0;
+	}
+	for (int t = 0; t <= 60; t++) {
+		printf("%d", t);
+		for (size_t i = 0; i < COUNT(depths); i++) {
+			printf(" %.5f", result(&r[i]).debris);
+			for (int n = 0; n < 1000; n++)
+				period(&r[i]);
+		}
+		printf("\n");
+	}
+}
+
+/* Erode at the best gap until there is so much debris; it does not settle. */
+static void fill(struct rig *r, double debris)
+{
+	while (result(r).debris < debris)
+		follow(r, r->k.sim.best_gap_mm, 1);
+}
+
+/* Sparks that strike debris, without arcs: removal at the best gap. */
+static void secondary(void)
+{
+	static const double parts[] = { 0, 0.5, 0.9 };
+
+	printf("debris s0 s05 s09\n");
+	for (double d = 0; d < 0.96; d += 0.05) {
+		printf("%.2f", d);
+		for (size_t i = 0; i < COUNT(parts); i++) {
+			struct rig r = plain();
+			double before;
+
+			r.k.sim.secondary = parts[i];
+			r.k.sim.deion_us = 0.1;
+			r.k.sim.debris_settle_s = 1e9;
+			rig_open(&r);
+			fill(&r, d);
+			follow(&r, r.k.sim.best_gap_mm, 1);
+			before = result(&r).removed_mm3;
+			follow(&r, r.k.sim.best_gap_mm, 1);
+			printf(" %.4f", (result(&r).removed_mm3 - before) *
+			       60e3);
+			rig_close(&r);
+		}
+		printf("\n");
+	}
+}
+
+/* Shorts of an electrode held in the open, each a minute without one. */
+static void bridge(void)
+{
+	printf("debris counted formula\n");
+	for (double full = 0.1; full < 1; full += 0.1) {
+		struct rig r = plain();
+		int born = 0, clear = 0;
+		double d;
+		bool was = false;
+
+		r.k.sim.bridge_per_s = bridge_per_s;
+		r.k.sim.debris_settle_s = 1e9;
+		r.k.sim.deion_us = 0.1;
+		rig_open(&r);
+		fill(&r, full);
+		r.out.place_mm -= 2 * r.k.sim.open_gap_mm;
+		for (int i = 0; i < 3000000; i++) {
+			const bool is = (period(&r), r.in.shares.shorted > 0.5f);
+
+			born += is && !was;
+			clear += !is;
+			was = is;
+		}
+		d = result(&r).debris;
+		printf("%.3f %.4f %.4f\n", d, born / (clear / 60e3),
+		       bridge_per_s * d * d * 60);
+		rig_close(&r);
+	}
+}
+
+/* Breaks in an hour of cutting; the chance is raised, and counted so. */
+static void wire(void)
+{
+	static const double offs[] = { 10, 20, 50 };
+	const double raised = 1000;
+
+	printf("gap_um off10 off20 off50\n");
+	for (double um = 5; um <= 30; um += 1) {
+		printf("%g", um);
+		for (size_t i = 0; i < COUNT(offs); i++) {
+			struct rig r = plain();
+			int breaks = 0;
+
+			r.k.sim.process = SIM_WIRE;
+			r.k.sim.off_us = offs[i];
+			r.k.sim.debris_per_mm = 0;
+			r.k.sim.rethread_s = 0;
+			r.k.sim.break_per_j *= raised;
+			rig_open(&r);
+			for (int n = 0; n < 100000; n++) {
+				follow(&r, um * 1e-3, 1);
+				breaks += r.in.wire_broken;
+				r.out.power = !r.in.wire_broken;
+			}
+			printf(" %.4f", breaks / raised / (100. / 3600));
+			rig_close(&r);
+		}
+		printf("\n");
+	}
+}
+
 /* -- The command --------------------------------------------------------------------- */
 
 static const struct relation {
@@ -336,6 +460,8 @@ static const struct relation {
 	{ "gap", gap }, { "dirty", dirty }, { "timing", timing },
 	{ "pulse", pulse }, { "peak", peak }, { "jump", jump },
 	{ "speed", speed }, { "area", area }, { "arcs", arcs }, { "off", off },
+	{ "settle", settle }, { "secondary", secondary }, { "bridge", bridge },
+	{ "wire", wire },
 };
 
 int main(int argc, char **argv)
@@ -350,6 +476,7 @@ int main(int argc, char **argv)
 	}
 	base.sim.noise_v = 0;
 	base.sim.counted = 0;
+	bridge_per_s = base.sim.bridge_per_s;
 	base.sim.bridge_per_s = 0;
 	for (size_t i = 0; argc > 1 && i < COUNT(relations); i++) {
 		if (strcmp(argv[1], relations[i].name) != 0)

@@ -11,12 +11,14 @@ set tics nomirror
 set xrange [-0.6:4.6]
 set key outside top center horizontal
 set multiplot layout 2,1
-set ylabel "removal, of the tuned one's"
+set lmargin 10
+set xtics scale 0
+set ylabel "removal, share of the tuned one's"
 set yrange [0:*]
 plot data using 2:xtic(1) lc rgb "#8a97a5" title "fixed", \
      "" using 3 lc rgb "#1f5f9e" title "tuned", \
      "" using 4 lc rgb "#e0a02a" title "adaptive"
-set ylabel "shorts a minute, and 1"
+set ylabel "1 + shorts a minute"
 set yrange [1:*]
 set logscale y
 plot data using 5:xtic(1) lc rgb "#8a97a5" notitle, \
