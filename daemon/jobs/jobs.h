@@ -9,6 +9,7 @@
 #define JOBS_JOBS_H
 
 #include "config.h"
+#include "left.h"
 #include "link.h"
 #include "queue.h"
 #include "reply.h"
@@ -30,6 +31,7 @@ struct jobs {
 	struct uploads uploads;
 	struct replies replies;
 	struct queue queue;
+	struct left left;
 	struct compile *check[UPLOAD_SLOTS];	/* of uploads.slot[i] */
 	int64_t status_us;		/* when the last was sent, monotonic */
 	uint64_t status_key;		/* what a change of is sent at once */

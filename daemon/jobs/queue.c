@@ -381,6 +381,7 @@ void queue_fini(struct jobs *j)
 	struct queue *q = &j->queue;
 
 	load_fini(j);
+	left_fini(&j->left);
 	if (!q->job.n || (q->job.begun_us && !queue_is_leaving(q)))
 		return;
 	load_send(j, SHM_UNLOAD, q->job.n, jobs_now_us());

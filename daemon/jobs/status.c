@@ -29,16 +29,9 @@ static void name_condition(char to[16], const struct shm_snapshot *s)
 		interp_tech_name(s->cond_letter, s->cond_number, to, 16);
 }
 
-/* By the farthest place reached and the time it took. */
-static double left_s(const struct wire_status *w, double far_mm)
+static void fill_job(struct wire_status *w, const struct jobs *j)
 {
-	if (far_mm <= 0 || w->job_s <= 0)
-		return -1;
-	return w->job_s * (w->length_mm - far_mm) / far_mm;
-}
-
-static void fill_job(struct wire_status *w, const struct queue *q)
-{
+	const struct queue *q = &j->queue;
 	const struct shm_snapshot *s = &q->snap;
 
 	w->job = q->job.id;
@@ -54,7 +47,7 @@ static void fill_job(struct wire_status *w, const struct queue *q)
 	w->retracts = s->retracts;
 	w->shorts = s->shorts;
 	w->job_s = (double)s->job_cycles * (double)s->period_ns / 1e9;
-	w->left_s = left_s(w, s->far_mm);
+	w->left_s = left_s(&j->left, s->far_mm, w->job_s);
 	w->queue_len = q->behind;
 }
 
@@ -92,7 +85,8 @@ void status_tick(struct jobs *j, int64_t now_us)
 	fill_machine(&w, &j->link);
 	w.contour_mm = j->twin.last.measured_mm;
 	w.contour_predicted_mm = j->twin.last.predicted_mm;
-	fill_job(&w, &j->queue);
+	left_take(&j->left, j->machine, j->queue.job.n);
+	fill_job(&w, j);
 	name_condition(condition, &j->queue.snap);
 	w.condition = condition;
 	wire_status(j->wire, &w);
