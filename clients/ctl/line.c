@@ -102,9 +102,9 @@ static void describe(char *to, size_t size, const struct talk_status *s)
 	else
 		snprintf(left, sizeof(left), "?");
 	snprintf(rest, sizeof(rest), "%5.1f %% %-8s left %s, depth %.3f mm, "
-		 "gap %.0f V, feed %.2f mm/min, jumps %d, retracts %d",
+		 "gap %.0f V, jumps %d, retracts %d, feed %.2f mm/min",
 		 s->progress * 100, s->state, left, s->depth_mm, s->gap_v,
-		 s->feed_mm_s * 60, s->jumps, s->retracts);
+		 s->jumps, s->retracts, s->feed_mm_s * 60);
 	bar(b, s->progress, columns() - 3 - (int)strlen(rest));
 	snprintf(to, size, "%s %s", b, rest);
 }
