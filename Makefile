@@ -9,7 +9,8 @@
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
 #   make invariants what holds in every cycle, over ten million random ones
-#   make pictures   draw what docs/ shows, into docs/pictures/
+#   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
+#                   the README prints
 #   make fuzz       the readers of jobs under libFuzzer, a bounded time each
 #   make lint       what the cycle may call, headers alone, who may include whom
 #   make install    DESTDIR and PREFIX are honoured
@@ -277,6 +278,10 @@ experiments-servo: $(B)/edmsim
 	$(Q)gnuplot -e "data='$(B)/servo/servo.dat'; out='docs/pictures/servo.svg'" \
 		tests/experiments/servo.gp
 	$(Q)cp $(B)/experiments-servo.md docs/experiments-servo.md
+	$(Q)EDM_BUILD=$(B) docs/tuning > $(B)/tuning.md
+	$(Q)docs/put-table $(B)/tuning.md docs/gap-servo.md
+	$(Q)EDM_BUILD=$(B) tests/experiments/strategies > $(B)/strategies.md
+	$(Q)docs/put-table $(B)/strategies.md docs/process-model.md
 	$(Q)cat docs/experiments-servo.md
 
 experiments-curve: $(CURVE_EXPERIMENTS:%=$(B)/experiments/%) $(B)/edmsim
@@ -304,8 +309,7 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(Q)docs/pictures/orbits $(B)
 	$(Q)docs/pictures/process $(B)
 	$(Q)docs/pictures/curves $(B)
-	$(Q)$(B)/edmsim --machine examples/machine.ini --quiet \
-		--plot docs/pictures/demo.png examples/cavity.ngc
+	$(Q)docs/pictures/demo $(B)
 
 # A seed and a number of runs start from the examples alone, and try the same
 # inputs on every machine; without, what earlier runs found is built upon.
