@@ -408,7 +408,8 @@ static void a_hold_at_every_cycle_of_a_thousand_lines_stops_where_it_says(void *
 
 	(void)st;
 	load_random(&r, &s, 1000);
-	for (int n = 0; n < 1000000 && r.c.state == STATE_TRAVEL; n++) {
+	/* A thousand lines at a slow F take above a million cycles. */
+	for (int n = 0; n < 4000000 && r.c.state == STATE_TRAVEL; n++) {
 		const struct interp_scurve_limits l = { 1, A_MAX, A_MAX,
 							J_MAX };
 		struct rig fork = r;
