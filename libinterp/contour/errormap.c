@@ -5,23 +5,26 @@
 #include <errno.h>
 #include <math.h>
 
-/*
- * x = place - error(x), begun at x = place.  A slope of s leaves s^n of the
- * error after n rounds: 1e-8 of it at the steepest allowed.
- */
-#define ROUNDS	4
+/* Nearer than that the place to command is found. */
+#define FOUND_MM	1e-8
+
+static bool point_ok(const struct interp_errormap_row *r, int i)
+{
+	if (!isfinite(r->at_mm[i]) || !isfinite(r->error_mm[i]))
+		return false;
+	return i == 0 || (r->at_mm[i] > r->at_mm[i - 1] &&
+			  fabs(r->error_mm[i] - r->error_mm[i - 1]) <=
+				  INTERP_ERRORMAP_SLOPE_MAX *
+				  (r->at_mm[i] - r->at_mm[i - 1]));
+}
 
 static bool row_ok(const struct interp_errormap_row *r)
 {
 	if (r->along >= INTERP_NAXES || r->across >= INTERP_NAXES ||
-	    r->n < 2 || r->n > INTERP_ERRORMAP_POINTS ||
-	    !isfinite(r->from_mm) || !(r->spacing_mm > 0) ||
-	    !isfinite(r->spacing_mm))
+	    r->n < 2 || r->n > INTERP_ERRORMAP_POINTS)
 		return false;
 	for (int i = 0; i < r->n; i++)
-		if (!isfinite(r->error_mm[i]) ||
-		    (i && fabs(r->error_mm[i] - r->error_mm[i - 1]) >
-				  INTERP_ERRORMAP_SLOPE_MAX * r->spacing_mm))
+		if (!point_ok(r, i))
 			return false;
 	return true;
 }
@@ -56,14 +59,38 @@ int interp_errormap_check(const struct interp_errormap *m)
 	return 0;
 }
 
+bool interp_errormap_is_empty(const struct interp_errormap *m)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (m->growth[i].per_k != 0)
+			return false;
+	return m->nrows == 0 && m->nleans == 0;
+}
+
+/* The last point at or before the place, but not the last of all. */
+static int point_before(const struct interp_errormap_row *r, double place_mm)
+{
+	int low = 0, high = r->n - 1;
+
+	while (high - low > 1) {
+		const int middle = low + (high - low) / 2;
+
+		if (r->at_mm[middle] <= place_mm)
+			low = middle;
+		else
+			high = middle;
+	}
+	return low;
+}
+
 static double row_at(const struct interp_errormap_row *r, double place_mm)
 {
-	const double at = fmin(fmax((place_mm - r->from_mm) / r->spacing_mm, 0),
-			       r->n - 1);
-	const int i = at < r->n - 1 ? (int)at : r->n - 2;
+	const int i = point_before(r, place_mm);
+	const double share = (place_mm - r->at_mm[i]) /
+			     (r->at_mm[i + 1] - r->at_mm[i]);
 
-	return r->error_mm[i] +
-	       (at - i) * (r->error_mm[i + 1] - r->error_mm[i]);
+	return r->error_mm[i] + fmin(fmax(share, 0), 1) *
+			      (r->error_mm[i + 1] - r->error_mm[i]);
 }
 
 void interp_errormap_error(const struct interp_errormap *m,
@@ -82,17 +109,24 @@ void interp_errormap_error(const struct interp_errormap *m,
 					     place_mm[m->lean[i].along];
 }
 
+/* x = place - error(x), begun at x = place. */
 void interp_errormap_apply(const struct interp_errormap *m,
 			   const double *place_mm, double *ret_mm)
 {
 	double error[INTERP_NAXES], told[INTERP_NAXES];
+	double off = INFINITY;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		told[i] = place_mm[i];
-	for (int n = 0; n < ROUNDS; n++) {
+	for (int n = 0; n < INTERP_ERRORMAP_ROUNDS && off > FOUND_MM; n++) {
 		interp_errormap_error(m, told, error);
-		for (int i = 0; i < INTERP_NAXES; i++)
-			told[i] = place_mm[i] - error[i];
+		off = 0;
+		for (int i = 0; i < INTERP_NAXES; i++) {
+			const double next = place_mm[i] - error[i];
+
+			off = fmax(off, fabs(next - told[i]));
+			told[i] = next;
+		}
 	}
 	for (int i = 0; i < INTERP_NAXES; i++)
 		ret_mm[i] = -error[i];

@@ -15,10 +15,11 @@ static int setup(void **state)
 	for (int r = 0; r < 2; r++) {
 		map.row[r] = (struct interp_errormap_row) {
 			.along = 0, .across = (uint8_t)r, .n = 21,
-			.from_mm = -100, .spacing_mm = 10,
 		};
-		for (int i = 0; i < 21; i++)
+		for (int i = 0; i < 21; i++) {
+			map.row[r].at_mm[i] = -100 + i * 10;
 			map.row[r].error_mm[i] = 0.02 * sin(i * (1 + r));
+		}
 	}
 	map.lean[0] = (struct interp_errormap_lean) { 2, 0, 300e-6 };
 	map.growth[1] = (struct interp_errormap_growth) { 11.5e-6, 50, 4 };

@@ -7,7 +7,8 @@
  *
  *	rows		a table along an axis of the error of the same axis
  *			(pitch) or of another (straightness), straight between
- *			its points and constant beyond its ends
+ *			its points, which may be any distance apart, and
+ *			constant beyond its ends
  *	squareness	an axis leans toward another by an angle
  *	growth		an axis grows from a fixed point with its temperature
  *
@@ -16,24 +17,31 @@
  * so walking back undoes exactly what walking there did.
  *
  * Units: mm; rotary axes degrees.
- * Threads: interp_errormap_apply() and _error() are RT-safe.
+ * Threads: interp_errormap_apply() and _error() are RT-safe: a binary search in
+ * each row, at most INTERP_ERRORMAP_ROUNDS times.
  */
 #ifndef INTERP_ERRORMAP_H
 #define INTERP_ERRORMAP_H
 
 #include "interp/axis.h"
 
+#include <stdbool.h>
+#include <stdint.h>
+
 #define INTERP_ERRORMAP_ROWS	16
-#define INTERP_ERRORMAP_POINTS	101
+#define INTERP_ERRORMAP_POINTS	128
 #define INTERP_ERRORMAP_LEANS	8
 
 /* Steeper than that is no machine, and could not be undone. */
 #define INTERP_ERRORMAP_SLOPE_MAX	0.01
 
+/* What is left after so many is at most 1e-8 of an error that steep. */
+#define INTERP_ERRORMAP_ROUNDS	4
+
 struct interp_errormap_row {
 	uint8_t along, across;		/* axes; equal: pitch */
 	uint16_t n;			/* points, 2 and more */
-	double from_mm, spacing_mm;	/* of the first; between them, > 0 */
+	double at_mm[INTERP_ERRORMAP_POINTS];	/* rising */
 	double error_mm[INTERP_ERRORMAP_POINTS];
 };
 
@@ -55,6 +63,9 @@ struct interp_errormap {
 	int nleans;
 	struct interp_errormap_growth growth[INTERP_NAXES];
 };
+
+/** interp_errormap_is_empty() - no error anywhere, at any temperature. */
+bool interp_errormap_is_empty(const struct interp_errormap *m);
 
 /** interp_errormap_check() - Return: 0, or -EINVAL if it is no such map. */
 int interp_errormap_check(const struct interp_errormap *m);

@@ -18,12 +18,13 @@ static void worn(struct interp_errormap *m, double part)
 	for (int r = 0; r < 3; r++) {
 		m->row[r] = (struct interp_errormap_row) {
 			.along = r == 1, .across = r > 0, .n = 41,
-			.from_mm = -100, .spacing_mm = 5,
 		};
 		m->row[r].across = r == 2 ? 1 : r == 1;
-		for (int i = 0; i < 41; i++)
+		for (int i = 0; i < 41; i++) {
+			m->row[r].at_mm[i] = -100 + i * 5;
 			m->row[r].error_mm[i] = part * (r == 2 ? 0.004 : 0.012) *
 				sin(i * (r == 2 ? 0.15 : 0.35) + r);
+		}
 	}
 	m->lean[0] = (struct interp_errormap_lean) { 0, 1, part * 500e-6 };
 	for (int i = 0; i < 2; i++)
