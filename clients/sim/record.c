@@ -79,7 +79,9 @@ int record_open(struct sim_run *r)
 	}
 	if (r->trace)
 		fprintf(r->trace, "t_s,line,s_mm,feed_mm_s,gap_v,state,"
-			"X,Y,Z,A,B,C,U,V,open,spark,arc,short,debris\n");
+			"X,Y,Z,A,B,C,U,V,open,spark,arc,short,debris,"
+			"X_sent,Y_sent,Z_sent,A_sent,B_sent,C_sent,U_sent,"
+			"V_sent\n");
 	return 0;
 }
 
@@ -136,6 +138,8 @@ void record_cycle(struct sim_run *r)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		fprintf(r->trace, ",%.10g", cycle_axis(c, i) * pulse[i]);
 	put_gap(r);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		fprintf(r->trace, ",%.10g", c->given.target[i] * pulse[i]);
 	fputc('\n', r->trace);
 }
 

@@ -199,29 +199,20 @@ bool config_has_switch(const struct machine_config *c, int axis)
 		c->hand[axis].home_method == HOME_SWITCH_INDEX);
 }
 
-_Static_assert(CONFIG_PITCH_POINTS == COMP_POINTS, "every point has room");
-
-/* Points that fall on one pulse are one: the cycle divides by their distance. */
-static void comp_of(const struct machine_config *c, int axis,
-		    struct comp_config *ret)
+static void comp_of(const struct machine_config *c, struct comp_config *ret)
 {
-	const struct config_hand *h = &c->hand[axis];
-	const struct config_pitch *p = &c->pitch[axis];
-	const double pulse_mm = c->axes.axis[axis].pulse_mm;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const struct config_hand *h = &c->hand[i];
+		const double pulse_mm = c->axes.axis[i].pulse_mm;
 
-	*ret = (struct comp_config) {
-		.backlash = (int32_t)lround(h->backlash_um * 1e-3 / pulse_mm),
-		.take_up = h->backlash_mm_s / pulse_mm *
-			   (double)config_period_ns(c) * 1e-9,
-	};
-	for (uint32_t i = 0; i < p->n; i++) {
-		const int32_t at = (int32_t)lround(p->at_mm[i] / pulse_mm);
-
-		if (ret->n && at <= ret->at[ret->n - 1])
-			continue;
-		ret->at[ret->n] = at;
-		ret->add[ret->n++] = -p->error_um[i] * 1e-3 / pulse_mm;
+		ret->axis[i].backlash =
+			(int32_t)lround(h->backlash_um * 1e-3 / pulse_mm);
+		ret->axis[i].take_up = h->backlash_mm_s / pulse_mm *
+				       (double)config_period_ns(c) * 1e-9;
+		ret->axis[i].pulse_mm = pulse_mm;
 	}
+	ret->maps = c->geometry;
+	ret->mapped = !interp_errormap_is_empty(&c->geometry);
 }
 
 void config_cycle(const struct machine_config *c, struct cycle_config *ret)
@@ -258,6 +249,6 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 		ret->travel_max[i] = (int32_t)floor(
 			l->travel_max_mm / l->pulse_mm + ROUNDING);
 		hand_of(c, i, &ret->axis[i]);
-		comp_of(c, i, &ret->comp[i]);
 	}
+	comp_of(c, &ret->comp);
 }

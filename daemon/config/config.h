@@ -15,6 +15,7 @@
 #include "interp/axis.h"
 #include "interp/axis_model.h"
 #include "interp/diag.h"
+#include "interp/errormap.h"
 #include "interp/kinematics.h"
 #include "interp/mcode.h"
 #include "interp/nc.h"
@@ -186,15 +187,6 @@ struct config_hand {
 	double backlash_um, backlash_mm_s;
 };
 
-#define CONFIG_PITCH_POINTS	128	/* COMP_POINTS */
-
-/* A pitch map, as read. */
-struct config_pitch {
-	uint32_t n;
-	double at_mm[CONFIG_PITCH_POINTS];	/* rising */
-	double error_um[CONFIG_PITCH_POINTS];	/* came farther than sent */
-};
-
 /* [gpio] lines, in the order of their keys; those of an axis are 8 in a row. */
 enum config_line {
 	LINE_STEP,
@@ -259,8 +251,10 @@ struct machine_config {
 	struct interp_machine axes;	/* [axis.X] ... [axis.V] */
 	struct config_hand hand[INTERP_NAXES];
 	char pitch_map[INTERP_NAXES][128];	/* a file; "none" */
-	struct config_pitch pitch[INTERP_NAXES];
 	struct interp_axis_loop loop[INTERP_NAXES];	/* gain 0: not known */
+	char maps[128];			/* [geometry] maps: a file; "none" */
+	double over_k;			/* temperature over that of the maps */
+	struct interp_errormap geometry;	/* of pitch_map and maps, read */
 	double start_mm[INTERP_NAXES];	/* where a simulated machine begins */
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* [work] */
 

@@ -29,6 +29,9 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"the gap servo: feed from the gap; docs/gap-servo.md" },
 	[SECTION_JUMP] = { "jump", NULL, 1,
 		"the lift that flushes the gap" },
+	[SECTION_GEOMETRY] = { "geometry", NULL, 1,
+		"errors of the machine that its encoders do not see; "
+		"docs/homing.md" },
 	[SECTION_CONTOUR] = { "contour", NULL, 1,
 		"compensation of the contour error, as edmsim --tune-contour "
 		"tries it; the cycle does not apply it; docs/contour.md" },

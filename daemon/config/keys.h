@@ -25,6 +25,7 @@ enum config_section_id {
 	SECTION_KINEMATICS,
 	SECTION_GAP,
 	SECTION_JUMP,
+	SECTION_GEOMETRY,
 	SECTION_CONTOUR,
 	SECTION_TOUCH,
 	SECTION_SPEED,
@@ -139,13 +140,13 @@ int config_check(const struct machine_config *c,
 		 const struct config_lines *lines, struct interp_diag *diag);
 
 /**
- * config_pitch_read() - the files that `pitch_map` names.
+ * config_maps_read() - the files that `pitch_map` and `[geometry] maps` name.
  * Return: 0, or -EINVAL with @diag filled: the machine file's line, and in its
- * text the map's.
+ * text the map's line and column.
  */
-int config_pitch_read(struct machine_config *c,
-		      const struct config_lines *lines,
-		      struct interp_diag *diag);
+int config_maps_read(struct machine_config *c,
+		     const struct config_lines *lines,
+		     struct interp_diag *diag);
 
 /** config_check_gpio() - the same for [gpio], if it is the backend. */
 int config_check_gpio(const struct machine_config *c,

@@ -65,7 +65,7 @@ static const struct config_key row[] = {
 	       "lost motion where the axis turns back"),
 	NUMBER(AXIS, "backlash_mm_s", "mm/s", "1", 1e-3, 1e5,
 	       HAND(backlash_mm_s),
-	       "backlash and pitch error are taken up so fast"),
+	       "backlash and geometric errors are taken up so fast"),
 	{ SECTION_AXIS, "pitch_map", KEY_STRING, "", "none", 0, 0,
 	  EACH(pitch_map[0], char[128]), 128,
 	  .help = "file of its pitch errors; docs/homing.md" },
@@ -94,6 +94,11 @@ static const struct config_key row[] = {
 	       "which decays with this time constant"),
 	NUMBER(AXIS, "backlash_mm", "mm", "0", 0, 1, LOOP(backlash_mm),
 	       "lost motion at a reversal"),
+
+	STRING(GEOMETRY, "maps", "none", maps,
+	       "file of pitch, straightness, squareness and growth"),
+	NUMBER(GEOMETRY, "over_k", "K", "0", -50, 50, AT(over_k),
+	       "temperature of the axes over that of the maps"),
 
 	STRING(CONTOUR, "method", "none", contour.method,
 	       "none, or of feedforward, cross-coupled, predictive, zpetc, "

@@ -271,7 +271,7 @@ static int read_all(struct reading *r)
 	}
 	r->err = config_check(&r->config, &r->lines, r->diag);
 	return r->err ? r->err :
-	       config_pitch_read(&r->config, &r->lines, r->diag);
+	       config_maps_read(&r->config, &r->lines, r->diag);
 }
 
 /* With its /; what does not fit is looked for here. */

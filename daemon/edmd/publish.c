@@ -276,5 +276,7 @@ void loop_trace(const struct loop *l, const struct io_inputs *in,
 		.state = c->state,
 	};
 	memcpy(ret->pos, c->out.target, sizeof(ret->pos));
-	memcpy(ret->actual, in->actual, sizeof(ret->actual));
+	/* On the path's side of shift and compensation, as pos is. */
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret->actual[i] = comp_place(&c->comp.axis[i], in->actual[i]);
 }

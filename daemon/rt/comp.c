@@ -1,47 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * comp.c - backlash and pitch error, taken up at a pace
+ * comp.c - backlash and geometric errors, taken up at a pace
  */
 #include "comp.h"
 
 #include <math.h>
 
-/* The last point at or before @place; there is one. */
-static uint32_t point_before(const struct comp_config *k, int32_t place)
+void comp_map(const struct comp_config *k, const int32_t place[INTERP_NAXES],
+	      int32_t ret[INTERP_NAXES])
 {
-	uint32_t low = 0, high = k->n;
+	double mm[INTERP_NAXES], add[INTERP_NAXES];
 
-	while (high - low > 1) {
-		const uint32_t middle = low + (high - low) / 2;
-
-		if (k->at[middle] <= place)
-			low = middle;
-		else
-			high = middle;
-	}
-	return low;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		mm[i] = place[i] * k->axis[i].pulse_mm;
+	interp_errormap_apply(&k->maps, mm, add);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret[i] = (int32_t)llround(add[i] / k->axis[i].pulse_mm);
 }
 
-static double pitch(const struct comp_config *k, int32_t place)
+static int32_t wanted(const struct comp_config *k, const struct comp_axis *a,
+		      int axis)
 {
-	uint32_t i;
-	double share;
-
-	if (k->n == 0)
-		return 0;
-	if (place <= k->at[0])
-		return k->add[0];
-	i = point_before(k, place);
-	if (i + 1 == k->n)
-		return k->add[i];
-	share = ((double)place - k->at[i]) / ((double)k->at[i + 1] - k->at[i]);
-	return k->add[i] + (k->add[i + 1] - k->add[i]) * share;
-}
-
-int32_t comp_wanted(const struct comp_config *k, int32_t place, int toward)
-{
-	return (int32_t)llround(pitch(k, place)) -
-	       (toward < 0 ? k->backlash : 0);
+	return a->map - (a->toward < 0 ? k->axis[axis].backlash : 0);
 }
 
 static int32_t within(int64_t x, int64_t low, int64_t high)
@@ -49,62 +29,92 @@ static int32_t within(int64_t x, int64_t low, int64_t high)
 	return (int32_t)(x < low ? low : x > high ? high : x);
 }
 
-/* What may be added in this period, of what is wanted. */
-static int32_t part(struct comp_axis *a, const struct comp_config *k,
-		    int32_t path, uint32_t edges)
+/* What may be added in this period, of @want. */
+static int32_t part(const struct comp_axis *a, int32_t want, int32_t path,
+		    uint32_t edges)
 {
-	const int32_t wanted = comp_wanted(k, a->place, a->toward) - a->added;
-	int64_t low, high;
+	int64_t high = (int64_t)a->room;
+	int64_t low = -high;
 
-	a->room = fmin(a->room + k->take_up, fmax(k->take_up, 1));
-	if (wanted == 0)
-		return 0;
-	high = (int64_t)a->room;
-	low = -high;
 	if (edges > 0) {
 		low = low > -(int64_t)edges - path ? low :
 						     -(int64_t)edges - path;
 		high = high < (int64_t)edges - path ? high :
 						      (int64_t)edges - path;
 	}
-	return within(wanted, low < 0 ? low : 0, high > 0 ? high : 0);
+	return within(want, low < 0 ? low : 0, high > 0 ? high : 0);
 }
 
-static void take_up(struct comp_axis *a, const struct comp_config *k,
-		   int32_t path, uint32_t edges)
+static void take_up(struct comp_axis *a, const struct comp_config *k, int axis,
+		    int32_t path, uint32_t edges)
 {
+	const double pace = k->axis[axis].take_up;
+	const int32_t want = wanted(k, a, axis) - a->added;
 	int32_t more;
 
-	if (k->n == 0 && k->backlash == 0)
+	a->room = fmin(a->room + pace, fmax(pace, 1));
+	if (want == 0)
 		return;
-	more = part(a, k, path, edges);
+	more = part(a, want, path, edges);
 	a->added += more;
 	a->room -= more < 0 ? -more : more;
 }
 
-void comp_apply(struct comp *c, const struct comp_config k[INTERP_NAXES],
-		const int32_t place[INTERP_NAXES], bool frozen, uint32_t edges,
-		int32_t ret[INTERP_NAXES])
+/* Standing costs nothing. */
+static void look_up(struct comp *c, const struct comp_config *k,
+		    const int32_t *place)
 {
+	bool same = c->begun && !c->stale;
+	int32_t map[INTERP_NAXES];
+
+	for (int i = 0; i < INTERP_NAXES && same; i++)
+		same = place[i] == c->axis[i].place;
+	if (same)
+		return;
+	comp_map(k, place, map);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		c->axis[i].map = map[i];
+	c->stale = false;
+}
+
+void comp_apply(struct comp *c, const struct comp_config *k,
+		const struct comp_period *p, int32_t ret[INTERP_NAXES])
+{
+	if (k->mapped)
+		look_up(c, k, p->place);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		struct comp_axis *a = &c->axis[i];
-		const int32_t path = c->begun ? place[i] - a->place : 0;
+		const int32_t path = c->begun ? p->place[i] - a->place : 0;
 
-		a->place = place[i];
+		a->place = p->place[i];
 		if (path != 0)
 			a->toward = path < 0 ? -1 : 1;
-		if (!frozen)
-			take_up(a, &k[i], path, edges);
+		if (!p->frozen && (k->mapped || k->axis[i].backlash != 0))
+			take_up(a, k, i, path, p->edges);
 		ret[i] = comp_pulses(a);
 	}
 	c->begun = true;
 }
 
-void comp_settle(struct comp_axis *a, const struct comp_config *k,
-		 int32_t place, int32_t pulses)
+void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
+		 const int32_t place[INTERP_NAXES], int32_t pulses)
 {
-	a->place = place;
-	a->added = comp_wanted(k, place, a->toward);
-	a->shift = (int32_t)((uint32_t)pulses - (uint32_t)place -
+	struct comp_axis *a = &c->axis[axis];
+	int32_t map[INTERP_NAXES] = { 0 };
+
+	if (k->mapped)
+		comp_map(k, place, map);
+	c->stale = true;
+	a->place = place[axis];
+	a->map = map[axis];
+	a->added = wanted(k, a, (int)axis);
+	a->shift = (int32_t)((uint32_t)pulses - (uint32_t)a->place -
 			     (uint32_t)a->added);
+}
+
+void comp_warm(struct comp *c, struct comp_config *k, double over_k)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		k->maps.growth[i].over_k = over_k;
+	c->stale = true;
 }

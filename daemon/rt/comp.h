@@ -2,75 +2,95 @@
 /*
  * comp.h - from a place on the path to pulses of the drives
  *
- *	pulses = place + shift + compensation(place, direction)
+ *	pulses = place + shift + map(places) + backlash(direction)
  *
- * shift is what homing found (home.h).  The compensation is, per axis, a pitch
- * map (a function of the place alone, linear between its points, level beyond
- * them) and a backlash (all of it after a move toward -, none after one toward
- * +).  There and back the pulses are therefore the same ones.
+ * shift is what homing found (home.h).  The map is the cure of the machine's
+ * geometric errors (interp/errormap.h): pitch, straightness, squareness and
+ * growth, a function of the places of all axes alone.  The backlash is nothing
+ * after a move toward + and all of it, downward, after one toward -.  There and
+ * back the pulses are therefore the same ones.
  *
  * A change is taken up a few pulses a period, while the path goes on or stands;
  * never more than the machine can put out in one, the path's own included.
  *
  * Units: pulses.  Sign: + as the axis.
- * Threads: RT-safe; a binary search of at most COMP_POINTS.
+ * Threads: RT-safe; the work of interp_errormap_apply(), where a place changed.
  */
 #ifndef RT_COMP_H
 #define RT_COMP_H
 
-#include "interp/axis.h"
+#include "interp/errormap.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define COMP_POINTS	128		/* of an axis's map */
-
 struct comp_config {
-	int32_t backlash;		/* >= 0 */
-	double take_up;			/* pulses a period, > 0 where used */
-	uint32_t n;			/* points of the map; 0: none */
-	int32_t at[COMP_POINTS];	/* places, rising */
-	double add[COMP_POINTS];	/* what to add there */
+	struct {
+		int32_t backlash;	/* >= 0 */
+		double take_up;		/* pulses a period, > 0 where used */
+		double pulse_mm;	/* > 0 where there are maps */
+	} axis[INTERP_NAXES];
+	bool mapped;			/* the maps are not empty */
+	struct interp_errormap maps;
 };
 
 struct comp_axis {
 	int32_t place;			/* of the last period */
 	int32_t shift, added;
+	int32_t map;			/* at that place */
 	int8_t toward;			/* of the last move; 0: none yet */
 	double room;			/* pulses that may be taken up */
 };
 
 struct comp {
 	bool begun;
+	bool stale;			/* the maps changed */
 	struct comp_axis axis[INTERP_NAXES];
 };
 
-/** comp_wanted() - the whole compensation at @place. */
-int32_t comp_wanted(const struct comp_config *k, int32_t place, int toward);
+/* One period, as it comes from the cycle. */
+struct comp_period {
+	const int32_t *place;		/* of INTERP_NAXES axes */
+	bool frozen;			/* nothing is taken up */
+	uint32_t edges;			/* most pulses of an axis; 0: any */
+};
+
+/** comp_map() - what the maps add at @place, each axis to the nearest pulse. */
+void comp_map(const struct comp_config *k, const int32_t place[INTERP_NAXES],
+	      int32_t ret[INTERP_NAXES]);
+
+/** comp_apply() - one period; @ret: pulses of the drives. */
+void comp_apply(struct comp *c, const struct comp_config *k,
+		const struct comp_period *p, int32_t ret[INTERP_NAXES]);
 
 /**
- * comp_apply() - one period.
+ * comp_settle() - call the place where the drive of @axis is at @pulses its
+ * @place.
  *
- * @frozen: nothing is taken up.
- * @edges: most pulses an axis may make in a period; 0: any.
- * @ret: pulses of the drives.
+ * Whole: of that axis nothing is left to be taken up there.  It stands.  Errors
+ * of other axes along it are taken up as those of any move.
  */
-void comp_apply(struct comp *c, const struct comp_config k[INTERP_NAXES],
-		const int32_t place[INTERP_NAXES], bool frozen, uint32_t edges,
-		int32_t ret[INTERP_NAXES]);
+void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
+		 const int32_t place[INTERP_NAXES], int32_t pulses);
 
 /**
- * comp_settle() - call the place where the drive is at @pulses @place.
+ * comp_warm() - another temperature over that of the maps, for all axes.
  *
- * Whole: nothing is left to be taken up there.  The axis stands.
+ * What the machine grew is taken up as any other change.
  */
-void comp_settle(struct comp_axis *a, const struct comp_config *k,
-		 int32_t place, int32_t pulses);
+void comp_warm(struct comp *c, struct comp_config *k, double over_k);
 
 /** comp_pulses() - where the drive was sent last. */
 static inline int32_t comp_pulses(const struct comp_axis *a)
 {
 	return a->place + a->shift + a->added;
+}
+
+/** comp_place() - the place of a drive that is at @pulses. */
+static inline int32_t comp_place(const struct comp_axis *a, int32_t pulses)
+{
+	return (int32_t)((uint32_t)pulses - (uint32_t)a->shift -
+			 (uint32_t)a->added);
 }
 
 #endif /* RT_COMP_H */

@@ -251,9 +251,11 @@ static void give(struct cycle *c, struct io_outputs *out)
 		c->out.cond_number = cond->number;
 	}
 	c->given = c->out;
-	comp_apply(&c->comp, c->config.comp, c->out.target,
-		   c->state == STATE_FAULT || c->busy, c->config.points_max,
-		   c->given.target);
+	comp_apply(&c->comp, &c->config.comp, &(struct comp_period) {
+		.place = c->out.target,
+		.frozen = c->state == STATE_FAULT || c->busy,
+		.edges = c->config.points_max,
+	}, c->given.target);
 	c->given.pulse.off_us = arc_off_us(c);
 	*out = c->given;
 	c->out.reset = false;

@@ -162,7 +162,7 @@ struct cycle_config {
 	bool hold_at_end;		/* stand held at the end; no job's end */
 	bool require_home;		/* no start before all are homed */
 	struct hand_axis axis[INTERP_NAXES];
-	struct comp_config comp[INTERP_NAXES];
+	struct comp_config comp;
 };
 
 enum cycle_verb {

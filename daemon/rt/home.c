@@ -73,8 +73,7 @@ static void call(struct cycle *c, int32_t beyond, int32_t drive)
 					(uint32_t)beyond);
 
 	c->out.target[h->axis] = place;
-	comp_settle(&c->comp.axis[h->axis], &c->config.comp[h->axis], place,
-		    drive);
+	comp_settle(&c->comp, &c->config.comp, h->axis, c->out.target, drive);
 	h->homed |= 1u << h->axis;
 	h->todo &= ~(1u << h->axis);
 }

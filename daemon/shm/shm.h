@@ -133,7 +133,8 @@ struct shm_trace {
 	uint32_t line;
 	uint32_t state;			/* enum shm_state */
 	int32_t pos[SHM_NAXES];		/* as commanded, pulses */
-	int32_t actual[SHM_NAXES];	/* measured before that, pulses */
+	int32_t actual[SHM_NAXES];	/* measured before that, pulses, less
+					 * what homing and compensation add */
 };
 
 enum shm_event_kind {

@@ -144,8 +144,8 @@ static void a_jog_waits_for_a_slow_machine(void **state)
 
 	(void)state;
 	k.points_max = 1;
-	k.comp[INTERP_X].backlash = 9;
-	k.comp[INTERP_X].take_up = 5;
+	k.comp.axis[INTERP_X].backlash = 9;
+	k.comp.axis[INTERP_X].take_up = 5;
 	bench_init(&b, &k);
 	jog(&b, INTERP_X, -1);
 	for (int i = 0; i < 5000; i++) {
@@ -355,8 +355,8 @@ static void backlash_does_not_move_home(void **state)
 	struct bench b;
 
 	(void)state;
-	k.comp[INTERP_X].backlash = 30;
-	k.comp[INTERP_X].take_up = 1;
+	k.comp.axis[INTERP_X].backlash = 30;
+	k.comp.axis[INTERP_X].take_up = 1;
 	for (int i = 0; i < 2; i++) {
 		bench_init(&b, &k);
 		jog(&b, INTERP_X, i ? 1 : -1);
