@@ -6,7 +6,7 @@
  * Fed with what a trace holds, target and measured place of every axis in every
  * period, it lets the axis models follow the same targets and measures how far
  * machine and models are from the path the targets took.  The path is the row
- * of the last INTERP_SHADOW_POINTS targets; where they turn back, so does it.
+ * of the last targets, interp/row.h.
  *
  * Targets are lattice points, so the path has steps of a pulse, and no error is
  * known better than that.
@@ -18,12 +18,10 @@
 #define INTERP_SHADOW_H
 
 #include "interp/axis_model.h"
-#include "interp/contour.h"
+#include "interp/row.h"
 
 #include <stdbool.h>
 #include <stdint.h>
-
-#define INTERP_SHADOW_POINTS	512	/* a power of two */
 
 /* Placed by the caller; fields are private. */
 struct interp_shadow {
@@ -32,9 +30,7 @@ struct interp_shadow {
 	struct interp_axis_loop loop[INTERP_NAXES];
 	struct interp_axis_model model[INTERP_NAXES];
 	double before_mm[INTERP_NAXES];
-	double mm[INTERP_SHADOW_POINTS][INTERP_NAXES];
-	uint64_t n;			/* points so far */
-	struct interp_contour_path path;
+	struct interp_row row;
 	struct interp_contour measured, predicted;
 	bool begun;
 };

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* at.c - the programmed point at a place: lines, arcs and curves */
+#include "interp/at.h"
+
+#include <math.h>
+
+static double node_mm(const struct interp_program *p, uint32_t node,
+		      uint32_t column)
+{
+	const struct interp_program_head *h = p->head;
+
+	return (double)p->nodes[(uint64_t)node * h->naxes + column] /
+	       INTERP_SUB * h->pulse_mm[h->column[column]];
+}
+
+static void along_line(const struct interp_program *p, uint32_t i,
+		       const struct interp_seg *s, double part,
+		       struct interp_contour_point *ret)
+{
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		const double from = node_mm(p, i, j);
+		const double way = node_mm(p, i + 1, j) - from;
+
+		ret->mm[j] = from + way * part;
+		ret->per_u[j] = way / s->length_mm;
+	}
+}
+
+static void along_arc(const struct interp_program *p,
+		      const struct interp_seg *s, double part,
+		      struct interp_contour_point *ret)
+{
+	const struct interp_arc a = p->arcs[s->arg];
+	const double angle = a.theta + a.sweep * part;
+	const double r = a.r_mm + a.dr_mm * part;
+	const double x = cos(angle), y = sin(angle);
+
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		const uint8_t axis = p->head->column[j];
+
+		if (axis == a.axis_a) {
+			ret->mm[j] = a.a_mm + r * x;
+			ret->per_u[j] = (a.dr_mm * x - r * a.sweep * y) /
+					s->length_mm;
+		} else if (axis == a.axis_b) {
+			ret->mm[j] = a.b_mm + r * y;
+			ret->per_u[j] = (a.dr_mm * y + r * a.sweep * x) /
+					s->length_mm;
+		}
+	}
+}
+
+static bool piece_ok(const struct interp_program *p,
+		     const struct interp_piece *piece)
+{
+	return piece->nstops >= 2 && piece->stops_at <= p->head->nstops &&
+	       piece->nstops <= p->head->nstops - piece->stops_at;
+}
+
+/* At a cusp the direction is kept that the chord has. */
+static bool along_curve(const struct interp_program *p,
+			const struct interp_seg *s, double part,
+			struct interp_contour_point *ret)
+{
+	const struct interp_piece piece = p->pieces[s->arg];
+	const struct interp_nurbs_stop *stops = p->stops + piece.stops_at;
+	struct interp_nurbs_between between;
+	struct interp_nurbs_eval e;
+	struct interp_nurbs_point at;
+	struct interp_nurbs c;
+	double s_mm, speed;
+
+	if (!piece_ok(p, &piece) || !interp_program_curve(p, piece.curve, &c))
+		return false;
+	s_mm = stops[piece.nstops - 1].s_mm * part;
+	stops += interp_nurbs_stop_of(stops, piece.nstops, s_mm);
+	interp_nurbs_between(stops, &between);
+	interp_nurbs_open(&e, &c);
+	interp_nurbs_at(&e, interp_nurbs_between_at(&between, s_mm), 1, &at);
+	speed = sqrt(interp_nurbs_dot(&c, at.d[1], at.d[1]));
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		for (uint32_t k = 0; k < c.naxes; k++) {
+			if (p->curves[piece.curve].axis[k] !=
+			    p->head->column[j])
+				continue;
+			ret->mm[j] = at.d[0][k];
+			if (speed > 0)
+				ret->per_u[j] = at.d[1][k] / speed;
+		}
+	}
+	return true;
+}
+
+bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
+		       struct interp_contour_point *ret)
+{
+	const struct interp_seg s = i < p->head->nsegs ? p->segs[i] :
+					(struct interp_seg) { .kind = INTERP_END };
+	double part;
+
+	*ret = (struct interp_contour_point) { { 0 }, { 0 } };
+	if (s.kind >= INTERP_BEGIN || s.kind == INTERP_PAIR ||
+	    !interp_program_seg_ok(p, i, &s))
+		return false;
+	part = fmin(fmax(s_mm / s.length_mm, 0), 1);
+	along_line(p, i, &s, part, ret);
+	if (s.kind == INTERP_ARC)
+		along_arc(p, &s, part, ret);
+	return s.kind != INTERP_CURVE || along_curve(p, &s, part, ret);
+}
