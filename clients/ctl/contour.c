@@ -45,7 +45,7 @@ static struct contour_row follow(struct twin *w, const struct columns *t,
 		target[i] = t->target[w->axis[i]][k];
 		actual[i] = t->actual[w->axis[i]][k];
 	}
-	interp_shadow_step(&w->shadow, target, actual, &e);
+	interp_shadow_step(&w->shadow, target, target, actual, &e);
 	return (struct contour_row) {
 		(float)e.measured_mm, (float)e.predicted_mm, (float)e.missed_mm
 	};

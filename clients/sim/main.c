@@ -343,6 +343,9 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	config_defaults(c);
 	if (o->machine_file)
 		r = config_read(c, o->machine_file, &d);
+	/* Axes that are led by the cycle have what the cycle has. */
+	if (r == 0 && c->sim.loops && !o->tune)
+		r = config_check_contouring(c, &d);
 	if (r == -EINVAL) {
 		config_say(o->machine_file, &d);
 		return EX_CONFIG;
@@ -414,12 +417,17 @@ static void check(const struct sim_run *r)
 
 static int run_whole(struct sim_run *r)
 {
+	const bool wanted = r->o->report && r->o->dry_run;
+	const bool looks = wanted && contour_look(r);
 	int e;
 
-	if (r->o->report && r->o->dry_run)
+	if (wanted && !looks)
 		contour_watch(r);
 	e = run_job(r);
-	contour_measure(r);
+	if (looks)
+		contour_looked(r);
+	else
+		contour_measure(r);
 	return e ? e : finish(r);
 }
 

@@ -39,13 +39,20 @@ static void command(struct sim_run *r, enum cycle_verb v, double arg_mm)
 	cycle_command(&r->cycle, &m);
 }
 
+/* Without a gap and with axes that do not lag there is no machine. */
+static bool at_once(const struct sim_run *r)
+{
+	return r->config->backend == BACKEND_NULL ||
+	       (r->o->dry_run && !r->config->sim.loops);
+}
+
 static int open_machine(struct sim_run *r)
 {
 	const uint64_t seed = r->o->seed_given ? r->o->seed :
 						 (uint64_t)r->config->sim.seed;
 	int e;
 
-	if (r->o->dry_run || r->config->backend == BACKEND_NULL)
+	if (at_once(r))
 		e = io_null_open(&r->machine);
 	else
 		e = io_sim_open(&r->machine, r->config, seed);
@@ -62,6 +69,8 @@ static int set_up(struct sim_run *r)
 	config_cycle(r->config, &cc);
 	cc.dry_run = r->o->dry_run || r->config->backend == BACKEND_NULL;
 	cc.overrun_limit = 0;
+	if (at_once(r))
+		cc.contouring.methods = 0;
 	if (r->machine.edges_per_cycle)
 		cc.points_max = r->machine.edges_per_cycle;
 	if (r->o->there_and_back) {

@@ -114,6 +114,13 @@ int tune_contour(struct sim_run *r);
 void contour_watch(struct sim_run *r);
 void contour_measure(struct sim_run *r);
 
+/**
+ * contour_look() - the same, before a dry run of [sim] loops: of the simulated
+ * axes, by their scales.  Return: false if there are none.
+ */
+bool contour_look(struct sim_run *r);
+void contour_looked(struct sim_run *r);
+
 /** record_*() - the files of lattice points and cycles: record.c. */
 int record_open(struct sim_run *r);
 void record_point(void *arg, const struct cycle *c);

@@ -152,12 +152,7 @@ static void config_of(struct tuning *t)
 		t->run->job.program.head->pulse_mm[t->axis[0]];
 
 	t->config.methods = (uint32_t)interp_compensate_parse(k->method);
-	t->config.gains = (struct interp_compensate_gains) {
-		.velocity = k->speed, .acceleration = k->acceleration,
-		.lead_periods = k->lead_periods, .cross_1_s = k->cross_1_s,
-		.predicted_1_s = k->predicted_1_s,
-		.measured_1_s = k->measured_1_s, .horizon_s = k->horizon_s,
-	};
+	config_gains(t->run->config, &t->config.gains);
 	t->config.naxes = t->path.naxes;
 	t->config.period_s = (double)config_period_ns(t->run->config) * 1e-9;
 	t->config.look_mm = LOOK_MM;

@@ -181,8 +181,8 @@ static int check_compensation(struct check *q)
 	snprintf(q->diag->found, sizeof(q->diag->found),
 		 "contour.method %.40s", q->c->contour.method);
 	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "none, or of feedforward, cross-coupled, predictive, zpetc "
-		 "joined by +, feedforward and zpetc not together");
+		 "none, or of feedforward, cross-coupled, predictive, zpetc, "
+		 "twin joined by +, feedforward and zpetc not together");
 	return -EINVAL;
 }
 

@@ -251,4 +251,5 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 		hand_of(c, i, &ret->axis[i]);
 	}
 	comp_of(c, &ret->comp);
+	config_contouring(c, &ret->contouring);
 }

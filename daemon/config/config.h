@@ -91,9 +91,10 @@ struct config_jump {
 	int escape;			/* enum interp_escape_mode */
 };
 
-/* [contour]: compensation of the contour error, tried by edmsim. */
+/* [contour]: compensation of the contour error. */
 struct config_contour {
 	char method[64];
+	uint32_t line;			/* of method, in the file; 0: none */
 	double speed, acceleration, lead_periods;
 	double cross_1_s, predicted_1_s, measured_1_s, horizon_s;
 	double noise_mm, model_error;	/* of the machine it is tried on */
@@ -159,6 +160,7 @@ struct config_sim {
 	double noise_v;			/* sigma of the gap voltage */
 	uint32_t counted;		/* 1: pulses vary as single ones do */
 	double lag_s, start_s;		/* of the axes */
+	uint32_t loops;			/* 1: they are the models of loop_* */
 	double home_off_mm, index_mm;	/* switches; sim_switches.c */
 	double measure_pulses;		/* sigma of the scales */
 
@@ -376,6 +378,26 @@ bool config_has_plc(const struct machine_config *c);
 /** config_mcodes() - the M codes that the PLC carries out. */
 void config_mcodes(const struct machine_config *c,
 		   struct interp_mcode table[INTERP_NMCODES]);
+
+struct interp_compensate_gains;
+struct contouring_config;
+
+/**
+ * config_check_contouring() - can the cycle do what [contour] asks for?
+ *
+ * The daemon's question: edmsim may try methods that the cycle has not.
+ * Return: 0, or -EINVAL with @diag filled.
+ */
+int config_check_contouring(const struct machine_config *c,
+			    struct interp_diag *diag);
+
+/** config_contouring() - for the cycle; none if the check refuses it. */
+void config_contouring(const struct machine_config *c,
+		       struct contouring_config *ret);
+
+/** config_gains() - of [contour]. */
+void config_gains(const struct machine_config *c,
+		  struct interp_compensate_gains *ret);
 
 struct cycle_config;
 

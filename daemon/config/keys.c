@@ -33,8 +33,7 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"errors of the machine that its encoders do not see; "
 		"docs/homing.md" },
 	[SECTION_CONTOUR] = { "contour", NULL, 1,
-		"compensation of the contour error, as edmsim --tune-contour "
-		"tries it; the cycle does not apply it; docs/contour.md" },
+		"compensation of the contour error; docs/contour.md" },
 	[SECTION_TOUCH] = { "touch", NULL, 1,
 		"feeling for the work; docs/touch.md" },
 	[SECTION_SPEED] = { "speed", NULL, 1,

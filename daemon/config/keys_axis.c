@@ -101,8 +101,8 @@ static const struct config_key row[] = {
 	       "temperature of the axes over that of the maps"),
 
 	STRING(CONTOUR, "method", "none", contour.method,
-	       "none, or of feedforward, cross-coupled, predictive, zpetc, "
-	       "joined by +"),
+	       "none, or of feedforward, cross-coupled, joined by +; in "
+	       "edmsim --tune-contour and reports predictive and zpetc too"),
 	NUMBER(CONTOUR, "speed", "", "1", 0, 2, AT(contour.speed),
 	       "feedforward: of the set speed"),
 	NUMBER(CONTOUR, "acceleration", "", "1", 0, 3, AT(contour.acceleration),

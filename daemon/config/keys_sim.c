@@ -124,6 +124,9 @@ static const struct config_key row[] = {
 	    "voltage and shares vary as so many single pulses do"),
 	NUMBER(SIM, "lag_s", "s", "0", 0, 10, AT(sim.lag_s),
 	       "the axes follow with this time constant"),
+	BIT(SIM, "loops", "no", AT(sim.loops),
+	    "the axes are the models of [axis.*] loop_*, off by "
+	    "[contour] model_error"),
 	NUMBER(SIM, "start_s", "s", "0", 0, 10, AT(sim.start_s),
 	       "an axis that starts or turns waits so long"),
 	NUMBER(SIM, "home_off_mm", "mm", "0", -1e6, 1e6, AT(sim.home_off_mm),

@@ -269,6 +269,8 @@ static int read_all(struct reading *r)
 			      "key = value, [section], or ; and a comment");
 		return r->err;
 	}
+	r->config.contour.line = r->lines.at[
+		config_key_find(SECTION_CONTOUR, "method")][0];
 	r->err = config_check(&r->config, &r->lines, r->diag);
 	return r->err ? r->err :
 	       config_maps_read(&r->config, &r->lines, r->diag);

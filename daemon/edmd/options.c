@@ -135,5 +135,7 @@ int options_config(const struct options *o, struct machine_config *c)
 		if (err < 0)
 			return config_refuse(o->config, err, &diag);
 	}
+	if (config_check_contouring(c, &diag) < 0)
+		return config_refuse(o->config, -EINVAL, &diag);
 	return o->name ? name_override(o->name, c) : -1;
 }

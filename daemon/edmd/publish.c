@@ -277,6 +277,8 @@ void loop_trace(const struct loop *l, const struct io_inputs *in,
 	};
 	memcpy(ret->pos, c->out.target, sizeof(ret->pos));
 	/* On the path's side of shift and compensation, as pos is. */
-	for (int i = 0; i < INTERP_NAXES; i++)
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		ret->sent[i] = c->out.target[i] + c->contouring.added[i];
 		ret->actual[i] = comp_place(&c->comp.axis[i], in->actual[i]);
+	}
 }

@@ -143,6 +143,7 @@ int io_sim_open(struct io_machine *m, const struct machine_config *c,
 	s->depth_mm = s->p.depth_mm;
 	sim_pulses_init(s);
 	sim_switches_init(s, c);
+	sim_axes_init(s, c);
 	rng_seed(&s->rng, seed);
 	*m = (struct io_machine) {
 		.name = "sim", .self = s, .read = sim_read,

@@ -3,7 +3,7 @@
  * sim_axes.c - where the electrode really is
  *
  * At once where it was sent, unless the machine file says otherwise: a lag of
- * first order ([sim] lag_s), a dead time whenever another axis takes over or
+ * first order ([sim] lag_s), or the drive's whole loop ([sim] loops), a dead time whenever another axis takes over or
  * one turns back (start_s), noise of the scales (measure_pulses).
  */
 #include "sim_process.h"
@@ -11,12 +11,35 @@
 #include <math.h>
 #include <string.h>
 
+/*
+ * Neighbours are off what is believed of them the other way: what all axes do
+ * alike is no contour error.
+ */
+void sim_axes_init(struct sim *s, const struct machine_config *c)
+{
+	for (int i = 0; i < IO_NAXES; i++) {
+		struct interp_axis_loop l = c->loop[i];
+
+		s->drive_mm[i] = c->axes.axis[i].pulse_mm;
+		if (!c->sim.loops || !(l.gain_1_s > 0))
+			continue;
+		l.velocity_hz *= i % 2 ? 1 - c->contour.model_error :
+					 1 + c->contour.model_error;
+		if (interp_axis_model_init(&s->model[i], &l, s->period_s, 0) ==
+		    0)
+			s->modelled |= 1u << i;
+	}
+}
+
 void sim_axes_place(struct sim *s)
 {
 	s->at_mm = s->out.place_mm;
 	for (int i = 0; i < IO_NAXES; i++) {
 		s->axis[i] = s->out.target[i];
 		s->step[i] = 0;
+		if (s->modelled >> i & 1)
+			interp_axis_model_stand(&s->model[i],
+						s->axis[i] * s->drive_mm[i]);
 	}
 	s->wait_s = 0;
 }
@@ -24,7 +47,7 @@ void sim_axes_place(struct sim *s)
 static bool exact(const struct sim *s)
 {
 	return s->p.lag_s == 0 && s->p.start_s == 0 &&
-	       s->p.measure_pulses == 0;
+	       s->p.measure_pulses == 0 && s->modelled == 0;
 }
 
 /*
@@ -53,6 +76,16 @@ static double follow(const struct sim *s, double at, double to)
 	       at + (to - at) * s->period_s / (s->p.lag_s + s->period_s);
 }
 
+/* By its loop, with the drive's own feedforward. */
+static double follow_model(struct sim *s, int i, int32_t was)
+{
+	struct interp_axis_model *m = &s->model[i];
+
+	interp_axis_model_follow(m, s->out.target[i] * s->drive_mm[i],
+				 was * s->drive_mm[i]);
+	return interp_axis_model_actual_mm(m) / s->drive_mm[i];
+}
+
 static void follow_slowly(struct sim *s, const int32_t was[IO_NAXES])
 {
 	int32_t step[IO_NAXES];
@@ -64,7 +97,9 @@ static void follow_slowly(struct sim *s, const int32_t was[IO_NAXES])
 		s->wait_s = s->p.start_s;
 	s->at_mm = follow(s, s->at_mm, s->out.place_mm);
 	for (int i = 0; i < IO_NAXES; i++)
-		s->axis[i] = follow(s, s->axis[i], s->out.target[i]);
+		s->axis[i] = s->modelled >> i & 1 ?
+			     follow_model(s, i, was[i]) :
+			     follow(s, s->axis[i], s->out.target[i]);
 	s->wait_s -= s->period_s;
 }
 

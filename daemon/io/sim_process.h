@@ -70,6 +70,9 @@ struct sim {
 	/* Axes. */
 	double at_mm;			/* on the path, as the axes stand */
 	double axis[IO_NAXES];		/* pulses, as the axes stand */
+	uint32_t modelled;		/* bit per axis that is a model */
+	double drive_mm[IO_NAXES];	/* pulse of each */
+	struct interp_axis_model model[IO_NAXES];
 	int32_t step[IO_NAXES];		/* of the last period that moved any */
 	double wait_s;			/* until an axis that starts moves */
 	double stroke_mm;		/* of this period */
@@ -99,6 +102,7 @@ struct sim {
 };
 
 /* sim_axes.c */
+void sim_axes_init(struct sim *s, const struct machine_config *c);
 void sim_axes_place(struct sim *s);	/* at once where they are sent */
 void sim_axes_follow(struct sim *s, const struct io_outputs *was);
 /** sim_axis() - where axis @i really is, pulses. */

@@ -48,16 +48,18 @@ static bool begin(struct twin *t, const struct shm_status *s,
 static void take(struct twin *t, const struct shm_snapshot *snap,
 		 const struct shm_trace *r)
 {
-	double target[INTERP_NAXES], actual[INTERP_NAXES];
+	double target[INTERP_NAXES], sent[INTERP_NAXES];
+	double actual[INTERP_NAXES];
 	struct interp_shadow_error e;
 
 	for (int i = 0; i < t->naxes; i++) {
 		const int axis = t->axis[i];
 
 		target[i] = r->pos[axis] * snap->pulse_mm[axis];
+		sent[i] = r->sent[axis] * snap->pulse_mm[axis];
 		actual[i] = r->actual[axis] * snap->pulse_mm[axis];
 	}
-	interp_shadow_step(&t->shadow, target, actual, &e);
+	interp_shadow_step(&t->shadow, target, sent, actual, &e);
 	t->now.measured_mm = fmax(t->now.measured_mm, e.measured_mm);
 	t->now.predicted_mm = fmax(t->now.predicted_mm, e.predicted_mm);
 }

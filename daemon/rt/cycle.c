@@ -256,6 +256,8 @@ static void give(struct cycle *c, struct io_outputs *out)
 		.frozen = c->state == STATE_FAULT || c->busy,
 		.edges = c->config.points_max,
 	}, c->given.target);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		c->given.target[i] += c->contouring.added[i];
 	c->given.pulse.off_us = arc_off_us(c);
 	*out = c->given;
 	c->out.reset = false;
@@ -306,6 +308,7 @@ void cycle_step(struct cycle *c, const struct io_inputs *in,
 		c->feed_mm_s = 0;
 	}
 	limit_watch(c);
+	contouring_step(c, in);
 	if (!c->overran)
 		c->overruns_in_row = 0;
 	c->overran = false;

@@ -21,6 +21,7 @@
 #include "arc.h"
 #include "axes.h"
 #include "comp.h"
+#include "contouring.h"
 #include "escape.h"
 #include "flush.h"
 #include "gap.h"
@@ -163,6 +164,7 @@ struct cycle_config {
 	bool require_home;		/* no start before all are homed */
 	struct hand_axis axis[INTERP_NAXES];
 	struct comp_config comp;
+	struct contouring_config contouring;
 };
 
 enum cycle_verb {
@@ -261,6 +263,7 @@ struct cycle {
 	struct hand hand;		/* without a program */
 	struct limit limit;
 	struct comp comp;		/* from places to pulses */
+	struct contouring contouring;	/* for axes that lag */
 	double override;		/* of positioning; 1: as programmed */
 	bool lifting;			/* a jump on its way up */
 	bool leaving;			/* the time is up: a jump that does not

@@ -133,6 +133,7 @@ struct shm_trace {
 	uint32_t line;
 	uint32_t state;			/* enum shm_state */
 	int32_t pos[SHM_NAXES];		/* as commanded, pulses */
+	int32_t sent[SHM_NAXES];	/* pos and what [contour] adds to it */
 	int32_t actual[SHM_NAXES];	/* measured before that, pulses, less
 					 * what homing and compensation add */
 };

@@ -146,6 +146,15 @@ int interp_axis_model_init(struct interp_axis_model *m,
 	return 0;
 }
 
+void interp_axis_model_stand(struct interp_axis_model *m, double place_mm)
+{
+	memset(m->x, 0, sizeof(m->x));
+	memset(m->past, 0, sizeof(m->past));
+	m->x[0] = m->actual_mm = place_mm;
+	m->kick_mm_s = 0;
+	m->direction = 0;
+}
+
 /* A turn of the motion kicks; slower than STANDS_MM_S it has not turned. */
 static int turns(const struct interp_axis_model *m)
 {

@@ -97,12 +97,11 @@ int interp_compensate_begin(struct interp_compensate *c,
  * Speed and acceleration of the cubic through four set values, a part @f of a
  * period after the second.
  */
-static double feedforward(const struct interp_compensate *c, int axis,
-			  const double *set)
+double interp_compensate_feedforward(const struct interp_compensate_gains *g,
+				     const struct interp_axis_loop *l,
+				     double period_s, const double *set)
 {
-	const struct interp_compensate_gains *g = &c->config.gains;
-	const struct interp_axis_loop *l = &c->config.loop[axis];
-	const double t = c->config.period_s;
+	const double t = period_s;
 	const double ahead = g->lead_periods + l->delay_s / t;
 	const double *s = set + (int)floor(ahead), f = ahead - floor(ahead);
 	const double d1 = s[1] - s[0], d2 = s[1] - 2 * s[0] + s[-1];
@@ -113,6 +112,14 @@ static double feedforward(const struct interp_compensate *c, int axis,
 
 	return (g->velocity * v +
 		g->acceleration * g->velocity * lags_s * a / t) / t;
+}
+
+static double feedforward(const struct interp_compensate *c, int axis,
+			  const double *set)
+{
+	return interp_compensate_feedforward(&c->config.gains,
+					     &c->config.loop[axis],
+					     c->config.period_s, set);
 }
 
 /* What is added without a look at where the axis is. */

@@ -26,12 +26,12 @@ void interp_shadow_forget(struct interp_shadow *s)
 
 /* The models stand where the machine is; their loops were checked. */
 static void begin(struct interp_shadow *s, const double *target,
-		  const double *actual)
+		  const double *sent, const double *actual)
 {
 	for (int i = 0; i < s->naxes; i++)
 		interp_axis_model_init(&s->model[i], &s->loop[i], s->period_s,
 				       actual[i]);
-	memcpy(s->before_mm, target, (size_t)s->naxes * sizeof(*target));
+	memcpy(s->before_mm, sent, (size_t)s->naxes * sizeof(*sent));
 	interp_row_begin(&s->row, s->naxes, target);
 	interp_row_foot(&s->row, &s->measured);
 	s->predicted = s->measured;
@@ -39,7 +39,7 @@ static void begin(struct interp_shadow *s, const double *target,
 }
 
 void interp_shadow_step(struct interp_shadow *s, const double *target_mm,
-			const double *actual_mm,
+			const double *sent_mm, const double *actual_mm,
 			struct interp_shadow_error *ret)
 {
 	double model[INTERP_NAXES], square = 0;
@@ -47,13 +47,13 @@ void interp_shadow_step(struct interp_shadow *s, const double *target_mm,
 
 	*ret = (struct interp_shadow_error) { 0 };
 	if (!s->begun)
-		begin(s, target_mm, actual_mm);
+		begin(s, target_mm, sent_mm, actual_mm);
 	for (int i = 0; i < s->naxes; i++) {
 		model[i] = interp_axis_model_actual_mm(&s->model[i]);
 		square += (actual_mm[i] - model[i]) * (actual_mm[i] - model[i]);
-		interp_axis_model_follow(&s->model[i], target_mm[i],
+		interp_axis_model_follow(&s->model[i], sent_mm[i],
 					 s->before_mm[i]);
-		s->before_mm[i] = target_mm[i];
+		s->before_mm[i] = sent_mm[i];
 	}
 	ret->missed_mm = sqrt(square);
 	interp_row_take(&s->row, target_mm);

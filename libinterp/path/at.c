@@ -108,3 +108,43 @@ bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
 		along_arc(p, &s, part, ret);
 	return s.kind != INTERP_CURVE || along_curve(p, &s, part, ret);
 }
+
+/* The last segment with a length that begins at @u or before it. */
+static uint32_t seg_at(const struct interp_program *p, double u)
+{
+	uint32_t low = 0, high = p->head->nsegs;
+
+	while (high - low > 1) {
+		const uint32_t mid = low + (high - low) / 2;
+
+		if (p->segs[mid].s_mm <= u)
+			low = mid;
+		else
+			high = mid;
+	}
+	while (low > 0 && !(p->segs[low].length_mm > 0))
+		low--;
+	while (low + 1 < p->head->nsegs && !(p->segs[low].length_mm > 0))
+		low++;
+	return low;
+}
+
+static void path_at(const void *arg, double u, struct interp_contour_point *ret)
+{
+	const struct interp_program *p = arg;
+	const uint32_t i = seg_at(p, u);
+
+	interp_program_at(p, i, u - p->segs[i].s_mm, ret);
+}
+
+bool interp_program_path(const struct interp_program *p,
+			 struct interp_contour_path *ret)
+{
+	for (uint32_t i = 0; i < p->head->nsegs; i++)
+		if (p->segs[i].kind == INTERP_PAIR)
+			return false;
+	*ret = (struct interp_contour_path) {
+		p, path_at, 0, p->head->length_mm, (int)p->head->naxes
+	};
+	return p->head->length_mm > 0;
+}

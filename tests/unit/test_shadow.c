@@ -37,7 +37,7 @@ static struct interp_shadow_error pair_step(struct pair *p, const double *at)
 		target[k] = floor(at[k] / pulse_mm + 0.5) * pulse_mm;
 		actual[k] = p->machine[k].actual_mm;
 	}
-	interp_shadow_step(&p->shadow, target, actual, &e);
+	interp_shadow_step(&p->shadow, target, target, actual, &e);
 	for (int k = 0; k < 2; k++) {
 		interp_axis_model_follow(&p->machine[k], target[k],
 					 p->before[k]);

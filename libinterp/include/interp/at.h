@@ -27,4 +27,13 @@
 bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
 		       struct interp_contour_point *ret);
 
+/**
+ * interp_program_path() - the whole of it as a path; u is the place in mm.
+ *
+ * @p stays the caller's.  Startup only; then a binary search for each look.
+ * Return: false if the program does not move, or has two contours at once.
+ */
+bool interp_program_path(const struct interp_program *p,
+			 struct interp_contour_path *ret);
+
 #endif /* INTERP_AT_H */

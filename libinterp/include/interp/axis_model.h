@@ -64,6 +64,9 @@ int interp_axis_model_init(struct interp_axis_model *m,
 			   const struct interp_axis_loop *loop,
 			   double period_s, double place_mm);
 
+/** interp_axis_model_stand() - at rest at @place_mm, nothing on its way. */
+void interp_axis_model_stand(struct interp_axis_model *m, double place_mm);
+
 /** interp_axis_model_step() - one period with the speed @u_mm_s demanded. */
 void interp_axis_model_step(struct interp_axis_model *m, double u_mm_s);
 

@@ -113,6 +113,16 @@ void interp_compensate_step(struct interp_compensate *c,
 			    const double *measured_mm, double *ret_mm_s);
 
 /**
+ * interp_compensate_feedforward() - the feedforward of one axis, mm/s.
+ *
+ * @set: its set values, the present one; with m whole periods of lead and delay
+ * together, set[m - 1] ... set[m + 2] are read.  RT-safe.
+ */
+double interp_compensate_feedforward(const struct interp_compensate_gains *g,
+				     const struct interp_axis_loop *l,
+				     double period_s, const double *set);
+
+/**
  * interp_compensate_parse() - "cross-coupled+feedforward", "none".
  * Return: the methods, or -EINVAL.  Any thread.
  */

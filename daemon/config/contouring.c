@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * contouring.c - [contour] as the cycle has it, and what the cycle cannot have
+ */
+#include "config.h"
+#include "cycle.h"
+#include "keys.h"
+
+#include <errno.h>
+#include <math.h>
+
+/* Between a place that is measured and the target that heeds it. */
+#define CAN402_PERIODS	2
+
+static int refuse(const struct machine_config *c, struct interp_diag *diag,
+		  const char *wanted)
+{
+	diag->line = c->contour.line;
+	diag->column = 0;
+	snprintf(diag->wanted, sizeof(diag->wanted), "%s", wanted);
+	return -EINVAL;
+}
+
+static double period_s(const struct machine_config *c)
+{
+	return (double)config_period_ns(c) * 1e-9;
+}
+
+static int check_methods(const struct machine_config *c, int methods,
+			 struct interp_diag *diag)
+{
+	const int had = INTERP_COMPENSATE_FEEDFORWARD | INTERP_COMPENSATE_CROSS;
+
+	if ((methods & ~had) == 0)
+		return 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "contour.method %.40s asks for more than the cycle knows of "
+		 "what comes", c->contour.method);
+	return refuse(c, diag, "none, feedforward, cross-coupled or "
+		      "feedforward+cross-coupled; predictive, zpetc and twin "
+		      "are for edmsim --tune-contour and --dry-run");
+}
+
+/* Its axes lag, and take places. */
+static int check_backend(const struct machine_config *c,
+			 struct interp_diag *diag)
+{
+	if (c->backend == BACKEND_CAN402 ||
+	    (c->backend == BACKEND_SIM && (c->sim.loops || c->sim.lag_s > 0)))
+		return 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "contour.method %.40s on axes that do not lag",
+		 c->contour.method);
+	return refuse(c, diag, "none; or backend = can402, or sim with [sim] "
+		      "loops = yes");
+}
+
+static int check_lead(const struct machine_config *c, int axis,
+		      struct interp_diag *diag)
+{
+	const double lead = c->contour.lead_periods +
+			    c->loop[axis].delay_s / period_s(c);
+
+	if (floor(lead) <= CONTOURING_LEAD_MAX)
+		return 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "contour.lead_periods and axis.%c.loop_delay_s are %.3g "
+		 "periods together", INTERP_AXIS_LETTERS[axis], lead);
+	return refuse(c, diag, "below 7 periods; or contour.method = none");
+}
+
+/* Half of what makes the loop swing is left as its margin. */
+static int check_margin(const struct machine_config *c, int axis,
+			struct interp_diag *diag)
+{
+	const double gain = c->loop[axis].gain_1_s + c->contour.cross_1_s;
+	struct interp_axis_loop l = c->loop[axis];
+	struct interp_axis_model m;
+	double most;
+	char wanted[96];
+
+	if (c->backend == BACKEND_CAN402)
+		l.delay_s += CAN402_PERIODS * period_s(c);
+	if (interp_axis_model_init(&m, &l, period_s(c), 0) < 0) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "axis.%c.loop_* are no loop", INTERP_AXIS_LETTERS[axis]);
+		return refuse(c, diag, "what edmctl identify prints");
+	}
+	most = interp_axis_model_gain_max_1_s(&m) / 2;
+	if (gain <= most)
+		return 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "contour.cross_1_s %g and axis.%c.loop_gain_1_s %g leave less "
+		 "than 6 dB before they swing", c->contour.cross_1_s,
+		 INTERP_AXIS_LETTERS[axis], c->loop[axis].gain_1_s);
+	snprintf(wanted, sizeof(wanted), "at most %.0f 1/s together: cross_1_s "
+		 "%.0f and less", most, fmax(most - c->loop[axis].gain_1_s, 0));
+	return refuse(c, diag, wanted);
+}
+
+static int check_axis(const struct machine_config *c, int methods, int axis,
+		      struct interp_diag *diag)
+{
+	if (c->loop[axis].gain_1_s > 0)
+		return check_lead(c, axis, diag) ||
+		       (methods & INTERP_COMPENSATE_CROSS &&
+			check_margin(c, axis, diag)) ? -EINVAL : 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "contour.method %.40s, and axis.%c has no loop_gain_1_s",
+		 c->contour.method, INTERP_AXIS_LETTERS[axis]);
+	return refuse(c, diag, "the loop of each axis that is present, by "
+		      "edmctl identify; or method = none");
+}
+
+int config_check_contouring(const struct machine_config *c,
+			    struct interp_diag *diag)
+{
+	const int methods = interp_compensate_parse(c->contour.method);
+
+	if (methods <= 0)
+		return 0;
+	if (check_methods(c, methods, diag) || check_backend(c, diag))
+		return -EINVAL;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (c->axes.present >> i & 1 &&
+		    check_axis(c, methods, i, diag))
+			return -EINVAL;
+	return 0;
+}
+
+void config_gains(const struct machine_config *c,
+		  struct interp_compensate_gains *ret)
+{
+	const struct config_contour *k = &c->contour;
+
+	*ret = (struct interp_compensate_gains) {
+		.velocity = k->speed, .acceleration = k->acceleration,
+		.lead_periods = k->lead_periods, .cross_1_s = k->cross_1_s,
+		.predicted_1_s = k->predicted_1_s,
+		.measured_1_s = k->measured_1_s, .horizon_s = k->horizon_s,
+	};
+}
+
+void config_contouring(const struct machine_config *c,
+		       struct contouring_config *ret)
+{
+	struct interp_diag diag;
+
+	*ret = (struct contouring_config) { .axes = c->axes.present };
+	if (config_check_contouring(c, &diag) < 0)
+		return;
+	ret->methods = (uint32_t)interp_compensate_parse(c->contour.method);
+	config_gains(c, &ret->gains);
+	for (uint32_t m = ret->axes; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+		const struct interp_axis_limits *l = &c->axes.axis[i];
+
+		ret->loop[i] = c->loop[i];
+		ret->most_mm[i] = l->v_max_mm_s / fmax(c->loop[i].gain_1_s, 1e-3);
+	}
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret->pulse_mm[i] = c->axes.axis[i].pulse_mm;
+}

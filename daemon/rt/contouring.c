@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * contouring.c - feedforward and cross-coupling, as places
+ */
+#include "contouring.h"
+#include "laws.h"
+
+#include "interp/at.h"
+
+#include <math.h>
+
+#define TAKEN_UP	(1.0 / 16)	/* a period */
+#define SEGMENTS_MAX	64		/* looked at for one point */
+
+/* -- Set values ------------------------------------------------------------------ */
+
+/* By axis: [0] is the period before, [1] the present one. */
+struct row_ahead {
+	double mm[INTERP_NAXES][CONTOURING_AHEAD + 2];
+};
+
+/* The segment that has @s_mm, from segment @i on; an action has no point. */
+static uint32_t seg_near(const struct interp_program *p, uint32_t i,
+			 double s_mm)
+{
+	const uint32_t last = p->head->nsegs - 1;
+	int n = SEGMENTS_MAX;
+
+	while (n-- > 0 && i > 0 && (s_mm < p->segs[i].s_mm || i == last))
+		i--;
+	while (n-- > 0 && i < last &&
+	       s_mm > p->segs[i].s_mm + p->segs[i].length_mm)
+		i++;
+	while (n-- > 0 && i < last && p->segs[i].kind >= INTERP_BEGIN)
+		i++;
+	while (n-- > 0 && i > 0 && p->segs[i].kind >= INTERP_BEGIN)
+		i--;
+	return i;
+}
+
+static bool point_set(const struct cycle *c, struct row_ahead *r, int k,
+		      double s_mm)
+{
+	const struct interp_program *p = &c->cursor.p;
+	const uint32_t i = seg_near(p, c->cursor.index, s_mm);
+	struct interp_contour_point at;
+
+	if (!interp_program_at(p, i, s_mm - p->segs[i].s_mm, &at))
+		return false;
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		const uint8_t axis = p->head->column[j];
+
+		r->mm[axis][k] = at.mm[j] + c->touch.shift[axis] *
+					    c->config.contouring.pulse_mm[axis];
+	}
+	return true;
+}
+
+/* Axes that the program does not move stand. */
+static void stand_all(const struct cycle *c, struct row_ahead *r)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		for (int k = 0; k < CONTOURING_AHEAD + 2; k++)
+			r->mm[i][k] = c->out.target[i] *
+				      c->config.contouring.pulse_mm[i];
+}
+
+/*
+ * The speed along the path goes on changing as it does, but does not turn: a
+ * path that comes to a stand stays there.
+ */
+static bool look_ahead(const struct cycle *c, double way_mm,
+		       struct row_ahead *r)
+{
+	const struct contouring *w = &c->contouring;
+	const double more_mm = way_mm - w->way_mm;
+	const int toward = way_mm < 0 ? -1 : 1;
+	double s_mm = interp_cursor_place_mm(&c->cursor), go_mm = way_mm;
+
+	stand_all(c, r);
+	if (!point_set(c, r, 0, s_mm - way_mm) || !point_set(c, r, 1, s_mm))
+		return false;
+	for (int k = 2; k < CONTOURING_AHEAD + 2; k++) {
+		go_mm = way_mm == 0 ? 0 :
+			toward * fmax(toward * (go_mm + more_mm), 0);
+		s_mm += go_mm;
+		if (!point_set(c, r, k, s_mm))
+			return false;
+	}
+	return true;
+}
+
+/* -- Cross-coupling -------------------------------------------------------------- */
+
+static bool is_coupled(const struct contouring_config *k, int axis)
+{
+	return k->axes >> axis & 1 &&
+	       !interp_axis_is_rotary((enum interp_axis)axis);
+}
+
+/* The linear axes with a loop, one after the other; how many. */
+static int pick(const struct contouring_config *k,
+		const double mm[INTERP_NAXES], double *ret)
+{
+	int n = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (is_coupled(k, i))
+			ret[n++] = mm[i];
+	return n;
+}
+
+static void measured(const struct cycle *c, const struct io_inputs *in,
+		     double ret[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret[i] = comp_place(&c->comp.axis[i], in->actual[i]) *
+			 c->config.contouring.pulse_mm[i];
+}
+
+static void couple(struct cycle *c, const struct io_inputs *in,
+		   const struct row_ahead *set, double v[INTERP_NAXES])
+{
+	const struct contouring_config *k = &c->config.contouring;
+	struct contouring *w = &c->contouring;
+	double now[INTERP_NAXES], is[INTERP_NAXES], mm[INTERP_NAXES];
+	struct interp_contour_error e;
+	int n = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		now[i] = set->mm[i][1];
+	pick(k, now, mm);
+	interp_row_take(&w->row, mm);
+	measured(c, in, is);
+	pick(k, is, mm);
+	interp_row_error(&w->row, &w->foot, mm, &e);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (is_coupled(k, i))
+			v[i] += w->coupled * k->gains.cross_1_s *
+				e.vector_mm[n++];
+}
+
+/* -- As places ------------------------------------------------------------------- */
+
+/* A drive's own feedforward makes a speed of what the addition changes too. */
+static double as_place(const struct cycle *c, int axis, double v_mm_s)
+{
+	const struct interp_axis_loop *l = &c->config.contouring.loop[axis];
+	const double own = fmax(l->feedforward, 0) /
+			   (l->gain_1_s * law_period_s(c));
+
+	return (v_mm_s / l->gain_1_s + own * c->contouring.added_mm[axis]) /
+	       (1 + own);
+}
+
+static void add(struct cycle *c, const double v[INTERP_NAXES])
+{
+	const struct contouring_config *k = &c->config.contouring;
+	struct contouring *w = &c->contouring;
+
+	for (uint32_t m = k->axes; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+		double mm = as_place(c, i, v[i]);
+
+		/* What is no number is nothing. */
+		if (!(fabs(mm) <= k->most_mm[i]))
+			mm = mm > 0 ? k->most_mm[i] :
+			     mm < 0 ? -k->most_mm[i] : 0;
+		w->added_mm[i] = mm;
+		w->added[i] = (int32_t)llround(mm / k->pulse_mm[i]);
+	}
+}
+
+/* -- One period ------------------------------------------------------------------ */
+
+static bool applies(const struct cycle *c)
+{
+	return c->loaded && (c->state == STATE_TRAVEL ||
+			     c->state == STATE_HOLD) &&
+	       c->out.enable && !c->axes.off && !escape_is_out(&c->escape);
+}
+
+static void leave(struct contouring *w)
+{
+	if (!w->on)
+		return;
+	w->on = false;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		w->added_mm[i] = 0;
+		w->added[i] = 0;
+	}
+}
+
+/* From here on, slowly: it may be moving. */
+static void begin(struct cycle *c)
+{
+	struct contouring *w = &c->contouring;
+	double now[INTERP_NAXES], mm[INTERP_NAXES];
+	int n;
+
+	leave(w);
+	w->on = true;
+	w->path = c->out.path;
+	w->place_mm = interp_cursor_place_mm(&c->cursor);
+	w->way_mm = 0;
+	w->share = 0;
+	w->coupled = 0;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		now[i] = c->out.target[i] * c->config.contouring.pulse_mm[i];
+	n = pick(&c->config.contouring, now, mm);
+	interp_row_begin(&w->row, n, mm);
+	interp_row_foot(&w->row, &w->foot);
+}
+
+static void lead(struct cycle *c, const struct row_ahead *set,
+		 double v[INTERP_NAXES])
+{
+	const struct contouring_config *k = &c->config.contouring;
+
+	for (uint32_t m = k->axes; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+
+		v[i] = c->contouring.share *
+		       interp_compensate_feedforward(&k->gains, &k->loop[i],
+						     law_period_s(c),
+						     &set->mm[i][1]);
+	}
+}
+
+static void go_on(struct cycle *c, const struct io_inputs *in)
+{
+	struct contouring *w = &c->contouring;
+	const double place_mm = interp_cursor_place_mm(&c->cursor);
+	const double way_mm = place_mm - w->place_mm;
+	const double toward = way_mm == 0 ? -TAKEN_UP : TAKEN_UP;
+	double v[INTERP_NAXES] = { 0 };
+	struct row_ahead set;
+
+	w->share = fmin(w->share + TAKEN_UP, 1);
+	w->coupled = fmin(fmax(w->coupled + toward, 0), 1);
+	if (!look_ahead(c, way_mm, &set)) {
+		leave(w);
+		return;
+	}
+	if (c->config.contouring.methods & INTERP_COMPENSATE_FEEDFORWARD)
+		lead(c, &set, v);
+	if (c->config.contouring.methods & INTERP_COMPENSATE_CROSS)
+		couple(c, in, &set, v);
+	add(c, v);
+	w->place_mm = place_mm;
+	w->way_mm = way_mm;
+}
+
+void contouring_step(struct cycle *c, const struct io_inputs *in)
+{
+	struct contouring *w = &c->contouring;
+
+	if (c->config.contouring.methods == 0)
+		return;
+	if (!applies(c))
+		leave(w);
+	else if (!w->on || w->path != c->out.path)
+		begin(c);
+	else
+		go_on(c, in);
+}
