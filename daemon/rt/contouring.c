@@ -153,6 +153,12 @@ static double as_place(const struct cycle *c, int axis, double v_mm_s)
 	       (1 + own);
 }
 
+/* A damaged program may make what is no number: that is nothing. */
+static double within(double x, double low, double high)
+{
+	return isnan(x) ? fmin(fmax(0, low), high) : fmin(fmax(x, low), high);
+}
+
 static void add(struct cycle *c, const double v[INTERP_NAXES])
 {
 	const struct contouring_config *k = &c->config.contouring;
@@ -160,14 +166,15 @@ static void add(struct cycle *c, const double v[INTERP_NAXES])
 
 	for (uint32_t m = k->axes; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
-		double mm = as_place(c, i, v[i]);
+		const double most = k->most_mm[i], was = w->added_mm[i];
+		/* What goes at v_max in a period. */
+		const double leap = most * k->loop[i].gain_1_s *
+				    law_period_s(c);
+		const double mm = within(as_place(c, i, v[i]), -most, most);
 
-		/* What is no number is nothing. */
-		if (!(fabs(mm) <= k->most_mm[i]))
-			mm = mm > 0 ? k->most_mm[i] :
-			     mm < 0 ? -k->most_mm[i] : 0;
-		w->added_mm[i] = mm;
-		w->added[i] = (int32_t)llround(mm / k->pulse_mm[i]);
+		w->added_mm[i] = within(mm, was - leap, was + leap);
+		w->added[i] = (int32_t)llround(w->added_mm[i] /
+					       k->pulse_mm[i]);
 	}
 }
 

@@ -22,7 +22,8 @@
  * and while axes are not under power; a fault takes it off at once.  At rest it
  * is zero: the axes stand on their pulses.
  *
- * Never more than an axis lags at its v_max.
+ * Never more than an axis lags at its v_max, and in a period never more of it
+ * than the way at v_max; but all of it is taken off at once.
  *
  * Units: mm, s; pulses.
  * Threads: RT-safe.  At most CONTOURING_AHEAD + 2 points of the path and the

@@ -1,0 +1,467 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_contouring.c - the cycle leads axes that lag: nearer to the path, never
+ * far, nothing at rest
+ */
+#include "cycle_help.h"
+
+#include "config.h"
+#include "contouring.h"
+
+#include "interp/axis_model.h"
+
+#include <errno.h>
+
+#define RADIUS_MM	5.0
+
+static const struct interp_axis_loop loops[2] = {
+	{ .gain_1_s = 30, .velocity_hz = 60, .damping = 0.7 },
+	{ .gain_1_s = 21.5, .velocity_hz = 60, .damping = 0.7 },
+};
+
+/* A cycle, and a machine whose axes lag. */
+struct lagging {
+	struct rig r;
+	struct interp_axis_model axis[2];
+	double worst_mm;		/* off the circle */
+	int32_t most;			/* added, pulses */
+	int32_t leap;			/* its largest change in a period */
+	int32_t was[INTERP_NAXES];	/* added in the period before */
+};
+
+static struct cycle_config config_of(uint32_t methods)
+{
+	struct cycle_config k = usual_config();
+
+	k.dry_run = true;
+	k.travel_a_mm_s2 = 500;
+	k.contouring = (struct contouring_config) {
+		.methods = methods, .axes = 3,
+		.gains = { .velocity = 1, .acceleration = 1,
+			   .lead_periods = 0.5, .cross_1_s = 100 },
+	};
+	for (int i = 0; i < INTERP_NAXES; i++)
+		k.contouring.pulse_mm[i] = PULSE_MM;
+	for (int i = 0; i < 2; i++) {
+		k.contouring.loop[i] = loops[i];
+		k.contouring.most_mm[i] = 80 / loops[i].gain_1_s;
+	}
+	return k;
+}
+
+/* Round the centre at -RADIUS, twice half, from a stand. */
+static struct interp_build *circle(void)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	help_word.feed_mm_s = 16.7;
+	arc(b, (double[INTERP_NAXES]) { -2 * RADIUS_MM }, -RADIUS_MM, 0, false);
+	arc(b, (double[INTERP_NAXES]) { 0 }, -RADIUS_MM, 0, false);
+	return b;
+}
+
+static void begin_circle(struct lagging *l, const struct cycle_config *k)
+{
+	*l = (struct lagging) { .worst_mm = 0 };
+	rig_load(&l->r, circle(), k);
+	for (int i = 0; i < 2; i++)
+		assert_int_equal(interp_axis_model_init(&l->axis[i], &loops[i],
+							PERIOD_S, 0), 0);
+	assert_int_equal(tell(&l->r, CYCLE_START), ANSWER_DONE);
+}
+
+static int32_t added(const struct lagging *l, int i)
+{
+	return l->r.out.target[i] - l->r.c.out.target[i];
+}
+
+static void look(struct lagging *l)
+{
+	const double off = hypot(l->axis[0].actual_mm + RADIUS_MM,
+				 l->axis[1].actual_mm) - RADIUS_MM;
+
+	l->worst_mm = fmax(l->worst_mm, fabs(off));
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		l->most = abs(added(l, i)) > l->most ? abs(added(l, i)) :
+						      l->most;
+		l->leap = abs(added(l, i) - l->was[i]) > l->leap ?
+			  abs(added(l, i) - l->was[i]) : l->leap;
+		l->was[i] = added(l, i);
+	}
+}
+
+/* The scales, then the cycle, then the axes go on. */
+static void period(struct lagging *l)
+{
+	for (int i = 0; i < 2; i++)
+		l->r.in.actual[i] = (int32_t)lround(l->axis[i].actual_mm /
+						    PULSE_MM);
+	step_on(&l->r);
+	for (int i = 0; i < 2; i++)
+		interp_axis_model_follow(&l->axis[i],
+			l->r.out.target[i] * PULSE_MM,
+			l->r.before.target[i] * PULSE_MM);
+	look(l);
+}
+
+static void periods(struct lagging *l, int n)
+{
+	while (n-- > 0)
+		period(l);
+}
+
+/* To the end of the job, and until the axes stand. */
+static void whole(struct lagging *l)
+{
+	for (int i = 0; i < 20000 && l->r.c.loaded; i++)
+		period(l);
+	assert_false(l->r.c.loaded);
+	periods(l, 500);
+}
+
+static double worst_of(const struct cycle_config *k)
+{
+	struct lagging l;
+
+	begin_circle(&l, k);
+	whole(&l);
+	rig_free(&l.r);
+	return l.worst_mm;
+}
+
+/* -- What it is worth ------------------------------------------------------------ */
+
+#define FORWARD	INTERP_COMPENSATE_FEEDFORWARD
+#define CROSS	INTERP_COMPENSATE_CROSS
+
+static void axes_that_lag_keep_to_the_path(void **state)
+{
+	const struct cycle_config none = config_of(0), cross = config_of(CROSS);
+	const struct cycle_config forward = config_of(FORWARD);
+	const struct cycle_config both = config_of(FORWARD | CROSS);
+	const double alone = worst_of(&none);
+
+	(void)state;
+	assert_true(alone > 0.05);
+	assert_true(worst_of(&cross) < alone / 2);
+	assert_true(worst_of(&forward) < 0.004);
+	assert_true(worst_of(&both) < 0.003);
+}
+
+static void a_delay_that_is_known_is_led_too(void **state)
+{
+	struct cycle_config k = config_of(FORWARD);
+	struct lagging l;
+
+	(void)state;
+	for (int i = 0; i < 2; i++)
+		k.contouring.loop[i].delay_s = 0.0025;
+	begin_circle(&l, &k);
+	for (int i = 0; i < 2; i++)
+		interp_axis_model_init(&l.axis[i], &k.contouring.loop[i],
+				       PERIOD_S, 0);
+	whole(&l);
+	assert_true(l.worst_mm < 0.005);
+	rig_free(&l.r);
+}
+
+static void what_the_drive_leads_itself_is_counted(void **state)
+{
+	struct cycle_config k = config_of(FORWARD);
+	struct lagging l;
+
+	(void)state;
+	k.contouring.gains.velocity = 0.4;
+	k.contouring.gains.acceleration = 2.5;
+	begin_circle(&l, &k);
+	for (int i = 0; i < 2; i++) {
+		struct interp_axis_loop own = loops[i];
+
+		own.feedforward = 0.6;
+		l.r.c.config.contouring.loop[i] = own;
+		interp_axis_model_init(&l.axis[i], &own, PERIOD_S, 0);
+	}
+	whole(&l);
+	assert_true(l.worst_mm < 0.02);
+	rig_free(&l.r);
+}
+
+static void the_path_is_the_same_one(void **state)
+{
+	const struct cycle_config none = config_of(0);
+	const struct cycle_config both = config_of(FORWARD | CROSS);
+	struct lagging l, m;
+
+	(void)state;
+	begin_circle(&l, &none);
+	begin_circle(&m, &both);
+	while (l.r.c.loaded) {
+		period(&l);
+		period(&m);
+		assert_memory_equal(l.r.c.out.target, m.r.c.out.target,
+				    sizeof(l.r.c.out.target));
+		assert_int_equal(l.r.c.state, m.r.c.state);
+	}
+	assert_false(m.r.c.loaded);
+	rig_free(&l.r);
+	rig_free(&m.r);
+}
+
+/* -- What it never does ---------------------------------------------------------- */
+
+static void at_rest_it_adds_nothing(void **state)
+{
+	const struct cycle_config k = config_of(FORWARD | CROSS);
+	struct lagging l;
+
+	(void)state;
+	begin_circle(&l, &k);
+	for (int n = 0; n < 4; n++) {
+		periods(&l, 300);
+		assert_true(l.most > 300);
+		assert_int_equal(tell(&l.r, CYCLE_HOLD), ANSWER_DONE);
+		periods(&l, 400);
+		for (int i = 0; i < INTERP_NAXES; i++)
+			assert_int_equal(added(&l, i), 0);
+		for (int i = 0; i < 2; i++)
+			assert_near(l.axis[i].actual_mm / PULSE_MM,
+				    l.r.c.out.target[i], 0.02);
+		assert_int_equal(tell(&l.r, CYCLE_START), ANSWER_DONE);
+	}
+	whole(&l);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		assert_int_equal(added(&l, i), 0);
+	rig_free(&l.r);
+}
+
+static void it_comes_and_goes_without_a_leap(void **state)
+{
+	const struct cycle_config k = config_of(FORWARD | CROSS);
+	const double lags_s = 2 * 0.7 / (6.283185307179586 * 60);
+	/* The speed's change in a period, the acceleration's, and what jerk
+	 * makes of the lead. */
+	const double most = (k.travel_a_mm_s2 + k.travel_j_mm_s3 *
+			     (lags_s + 4 * PERIOD_S)) * PERIOD_S /
+			    loops[1].gain_1_s;
+	struct lagging l;
+
+	(void)state;
+	begin_circle(&l, &k);
+	for (int n = 0; n < 3; n++) {
+		periods(&l, 200 + 37 * n);
+		tell(&l.r, CYCLE_HOLD);
+		periods(&l, 300);
+		if (n == 1) {
+			tell_mm(&l.r, CYCLE_RETRACT, 1.5);
+			periods(&l, 800);
+		}
+		tell(&l.r, CYCLE_START);
+	}
+	whole(&l);
+	assert_true(l.leap * PULSE_MM < most + 2 * PULSE_MM);
+	rig_free(&l.r);
+}
+
+static void it_never_adds_more_than_the_lag_at_full_speed(void **state)
+{
+	struct cycle_config k = config_of(FORWARD | CROSS);
+	struct lagging l;
+
+	(void)state;
+	k.contouring.most_mm[0] = 0.1;
+	k.contouring.most_mm[1] = 0.05;
+	begin_circle(&l, &k);
+	for (int n = 0; n < 2000 && l.r.c.loaded; n++) {
+		period(&l);
+		assert_true(abs(added(&l, 0)) <= 100);
+		assert_true(abs(added(&l, 1)) <= 50);
+	}
+	rig_free(&l.r);
+}
+
+/* Scales that say anything at all. */
+static void scales_that_lie_are_bounded(void **state)
+{
+	const struct cycle_config k = config_of(FORWARD | CROSS);
+	uint64_t seed = 3;
+	struct lagging l;
+
+	(void)state;
+	begin_circle(&l, &k);
+	for (int n = 0; n < 3000 && l.r.c.loaded; n++) {
+		for (int i = 0; i < 2; i++) {
+			seed = seed * 6364136223846793005u + 1442695040888963407u;
+			l.r.in.actual[i] = (int32_t)(seed >> 32);
+		}
+		step_on(&l.r);
+		for (int i = 0; i < 2; i++)
+			assert_true(abs(added(&l, i)) * PULSE_MM <=
+				    k.contouring.most_mm[i] + PULSE_MM);
+		assert_true(l.leap * PULSE_MM <= 80 * PERIOD_S + PULSE_MM);
+		look(&l);
+	}
+	rig_free(&l.r);
+}
+
+static void a_fault_takes_it_off_at_once(void **state)
+{
+	const struct cycle_config k = config_of(FORWARD | CROSS);
+	struct lagging l;
+
+	(void)state;
+	begin_circle(&l, &k);
+	periods(&l, 300);
+	assert_true(abs(added(&l, 0)) + abs(added(&l, 1)) > 300);
+	l.r.in.estop = true;
+	period(&l);
+	assert_int_equal(l.r.c.state, STATE_FAULT);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		assert_int_equal(added(&l, i), 0);
+	rig_free(&l.r);
+}
+
+static void axes_without_power_get_nothing(void **state)
+{
+	const struct cycle_config k = config_of(FORWARD);
+	struct lagging l;
+
+	(void)state;
+	begin_circle(&l, &k);
+	periods(&l, 300);
+	l.r.in.axes_off = true;
+	period(&l);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		assert_int_equal(added(&l, i), 0);
+	rig_free(&l.r);
+}
+
+static void a_jog_and_a_cut_get_nothing(void **state)
+{
+	struct cycle_config k = config_of(FORWARD | CROSS);
+	const struct cycle_command jog = {
+		.verb = CYCLE_JOG, .arg = INTERP_X, .arg_mm = 3
+	};
+	struct rig r;
+
+	(void)state;
+	k.axis[INTERP_X] = (struct hand_axis) {
+		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
+		.a_max_mm_s2 = 500, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
+	};
+	k.contouring.axes = 7;
+	k.contouring.loop[INTERP_Z] = loops[0];
+	k.contouring.most_mm[INTERP_Z] = 2;
+	k.dry_run = false;
+	begin_cut(&r, &k);
+	until(&r, STATE_APPROACH, OPEN_V, 1000);
+	for (int n = 0; n < 800; n++) {
+		step(&r, n % 100 < 90 ? SPARKING_V : SHORTED_V);
+		if (r.c.state != STATE_HOLD && r.c.state != STATE_TRAVEL)
+			assert_memory_equal(r.out.target, r.c.out.target,
+					    sizeof(r.out.target));
+	}
+	tell(&r, CYCLE_STOP);
+	steps(&r, OPEN_V, 300);
+	assert_int_equal(r.c.state, STATE_IDLE);
+	assert_int_equal(cycle_command(&r.c, &jog), ANSWER_DONE);
+	for (int n = 0; n < 400; n++) {
+		step(&r, OPEN_V);
+		assert_memory_equal(r.out.target, r.c.out.target,
+				    sizeof(r.out.target));
+	}
+	rig_free(&r);
+}
+
+/* -- What a machine file may ask the cycle for ----------------------------------- */
+
+static void a_machine(struct machine_config *c, const char *method)
+{
+	config_defaults(c);
+	c->backend = BACKEND_CAN402;
+	c->axes.present = 3;
+	c->loop[0].gain_1_s = c->loop[1].gain_1_s = 30;
+	c->contour.cross_1_s = 20;
+	snprintf(c->contour.method, sizeof(c->contour.method), "%s", method);
+}
+
+static void what_the_cycle_has_is_taken(void **state)
+{
+	static const char *const good[] = {
+		"none", "feedforward", "cross-coupled",
+		"cross-coupled+feedforward",
+	};
+	struct machine_config c;
+	struct cycle_config k;
+	struct interp_diag d;
+
+	(void)state;
+	for (int i = 0; i < 4; i++) {
+		a_machine(&c, good[i]);
+		assert_int_equal(config_check_contouring(&c, &d), 0);
+		config_cycle(&c, &k);
+		assert_int_equal(k.contouring.methods,
+				 interp_compensate_parse(good[i]));
+	}
+	assert_near(k.contouring.most_mm[0], c.axes.axis[0].v_max_mm_s / 30,
+		    1e-9);
+}
+
+static void refused(struct machine_config *c, const char *found,
+		    const char *wanted)
+{
+	struct cycle_config k;
+	struct interp_diag d;
+
+	assert_int_equal(config_check_contouring(c, &d), -EINVAL);
+	if (!strstr(d.found, found) || !strstr(d.wanted, wanted))
+		fail_msg("%s; %s", d.found, d.wanted);
+	config_cycle(c, &k);
+	assert_int_equal(k.contouring.methods, 0);
+}
+
+static void what_the_cycle_has_not_is_refused_with_what_it_has(void **state)
+{
+	struct machine_config c;
+
+	(void)state;
+	for (int i = 2; interp_compensate_name(i); i++) {
+		a_machine(&c, interp_compensate_name(i));
+		refused(&c, interp_compensate_name(i), "feedforward+cross-coupled");
+	}
+	a_machine(&c, "feedforward");
+	c.backend = BACKEND_GPIO;
+	refused(&c, "axes that do not lag", "can402");
+	a_machine(&c, "feedforward");
+	c.backend = BACKEND_SIM;
+	refused(&c, "axes that do not lag", "loops = yes");
+	a_machine(&c, "feedforward");
+	c.axes.present = 7;
+	refused(&c, "axis.Z has no loop_gain_1_s", "edmctl identify");
+	a_machine(&c, "feedforward");
+	c.loop[1].delay_s = 0.0131;
+	refused(&c, "axis.Y.loop_delay_s", "below 7 periods");
+	a_machine(&c, "cross-coupled");
+	c.contour.cross_1_s = 200;
+	refused(&c, "less than 6 dB", "cross_1_s ");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(axes_that_lag_keep_to_the_path),
+		cmocka_unit_test(a_delay_that_is_known_is_led_too),
+		cmocka_unit_test(what_the_drive_leads_itself_is_counted),
+		cmocka_unit_test(the_path_is_the_same_one),
+		cmocka_unit_test(at_rest_it_adds_nothing),
+		cmocka_unit_test(it_comes_and_goes_without_a_leap),
+		cmocka_unit_test(it_never_adds_more_than_the_lag_at_full_speed),
+		cmocka_unit_test(scales_that_lie_are_bounded),
+		cmocka_unit_test(a_fault_takes_it_off_at_once),
+		cmocka_unit_test(axes_without_power_get_nothing),
+		cmocka_unit_test(a_jog_and_a_cut_get_nothing),
+		cmocka_unit_test(what_the_cycle_has_is_taken),
+		cmocka_unit_test(what_the_cycle_has_not_is_refused_with_what_it_has),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
