@@ -159,6 +159,17 @@ static double within(double x, double low, double high)
 	return isnan(x) ? fmin(fmax(0, low), high) : fmin(fmax(x, low), high);
 }
 
+/* The travel is that of the target too: a drive may watch it by itself. */
+static int32_t inside(const struct cycle *c, int axis, double pulses)
+{
+	const double low = (double)c->config.travel_min[axis] -
+			   c->out.target[axis];
+	const double high = (double)c->config.travel_max[axis] -
+			    c->out.target[axis];
+
+	return (int32_t)llround(within(pulses, fmin(low, 0), fmax(high, 0)));
+}
+
 static void add(struct cycle *c, const double v[INTERP_NAXES])
 {
 	const struct contouring_config *k = &c->config.contouring;
@@ -173,8 +184,7 @@ static void add(struct cycle *c, const double v[INTERP_NAXES])
 		const double mm = within(as_place(c, i, v[i]), -most, most);
 
 		w->added_mm[i] = within(mm, was - leap, was + leap);
-		w->added[i] = (int32_t)llround(w->added_mm[i] /
-					       k->pulse_mm[i]);
+		w->added[i] = inside(c, i, w->added_mm[i] / k->pulse_mm[i]);
 	}
 }
 

@@ -23,7 +23,8 @@
  * is zero: the axes stand on their pulses.
  *
  * Never more than an axis lags at its v_max, and in a period never more of it
- * than the way at v_max; but all of it is taken off at once.
+ * than the way at v_max; but all of it is taken off at once.  A target inside
+ * the travel stays inside.
  *
  * Units: mm, s; pulses.
  * Threads: RT-safe.  At most CONTOURING_AHEAD + 2 points of the path and the

@@ -279,6 +279,22 @@ static void it_never_adds_more_than_the_lag_at_full_speed(void **state)
 	rig_free(&l.r);
 }
 
+static void it_never_sends_an_axis_out_of_its_travel(void **state)
+{
+	struct cycle_config k = config_of(FORWARD | CROSS);
+	struct lagging l;
+
+	(void)state;
+	k.travel_min[0] = -10001;
+	k.travel_max[0] = 1;
+	k.travel_min[1] = -5001;
+	k.travel_max[1] = 5001;
+	begin_circle(&l, &k);
+	whole(&l);
+	assert_true(l.most > 300);
+	rig_free(&l.r);
+}
+
 /* Scales that say anything at all. */
 static void scales_that_lie_are_bounded(void **state)
 {
@@ -455,6 +471,7 @@ int main(void)
 		cmocka_unit_test(at_rest_it_adds_nothing),
 		cmocka_unit_test(it_comes_and_goes_without_a_leap),
 		cmocka_unit_test(it_never_adds_more_than_the_lag_at_full_speed),
+		cmocka_unit_test(it_never_sends_an_axis_out_of_its_travel),
 		cmocka_unit_test(scales_that_lie_are_bounded),
 		cmocka_unit_test(a_fault_takes_it_off_at_once),
 		cmocka_unit_test(axes_without_power_get_nothing),

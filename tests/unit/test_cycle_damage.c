@@ -34,6 +34,23 @@ static void spoil(struct interp_seg *s, int how)
 	}
 }
 
+/* What looks ahead on the path meets the damage before the walk does. */
+static void lead(struct cycle_config *k)
+{
+	k->contouring = (struct contouring_config) {
+		.methods = INTERP_COMPENSATE_FEEDFORWARD |
+			   INTERP_COMPENSATE_CROSS,
+		.axes = 1u << INTERP_Z,
+		.gains = { .velocity = 1, .lead_periods = 0.5,
+			   .cross_1_s = 50 },
+		.loop[INTERP_Z] = { .gain_1_s = 1000, .velocity_hz = 60,
+				    .damping = 0.7 },
+		.most_mm[INTERP_Z] = 0.05,
+	};
+	for (int i = 0; i < INTERP_NAXES; i++)
+		k->contouring.pulse_mm[i] = PULSE_MM;
+}
+
 static void check_damaged(bool dry, int how)
 {
 	struct cycle_config k = usual_config();
@@ -42,6 +59,7 @@ static void check_damaged(bool dry, int how)
 	struct rig r;
 
 	k.dry_run = dry;
+	lead(&k);
 	for (int i = 1; i <= 5; i++)
 		cut_to(b, -0.5 * i);
 	rig_load(&r, b, &k);
