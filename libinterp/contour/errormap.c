@@ -5,8 +5,8 @@
 #include <errno.h>
 #include <math.h>
 
-/* Nearer than that the place to command is found. */
-#define FOUND_MM	1e-8
+/* Moved by less, the place to command is found: 1 % of that is left. */
+#define FOUND_MM	5e-7
 
 static bool point_ok(const struct interp_errormap_row *r, int i)
 {
@@ -83,30 +83,63 @@ static int point_before(const struct interp_errormap_row *r, double place_mm)
 	return low;
 }
 
-static double row_at(const struct interp_errormap_row *r, double place_mm)
+/* The same from near it on. */
+static int point_near(const struct interp_errormap_row *r, int i,
+		      double place_mm)
 {
-	const int i = point_before(r, place_mm);
-	const double share = (place_mm - r->at_mm[i]) /
-			     (r->at_mm[i + 1] - r->at_mm[i]);
-
-	return r->error_mm[i] + fmin(fmax(share, 0), 1) *
-			      (r->error_mm[i + 1] - r->error_mm[i]);
+	while (i < r->n - 2 && r->at_mm[i + 1] <= place_mm)
+		i++;
+	while (i > 0 && r->at_mm[i] > place_mm)
+		i--;
+	return i;
 }
 
-void interp_errormap_error(const struct interp_errormap *m,
-			   const double *place_mm, double *ret_mm)
+static double row_at(const struct interp_errormap_row *r, int i,
+		     double place_mm)
+{
+	const double from = r->at_mm[i], to = r->at_mm[i + 1];
+	const double at = place_mm < from ? from :
+			  place_mm > to ? to : place_mm;
+
+	return r->error_mm[i] + (at - from) / (to - from) *
+				(r->error_mm[i + 1] - r->error_mm[i]);
+}
+
+/* @point: of each row, the one before the place; near it before. */
+static void error_at(const struct interp_errormap *m, const double *place_mm,
+		     int *point, double *ret_mm)
 {
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const struct interp_errormap_growth *g = &m->growth[i];
 
 		ret_mm[i] = g->per_k * g->over_k * (place_mm[i] - g->fixed_mm);
 	}
-	for (int i = 0; i < m->nrows; i++)
-		ret_mm[m->row[i].across] += row_at(&m->row[i],
-						   place_mm[m->row[i].along]);
+	for (int i = 0; i < m->nrows; i++) {
+		const struct interp_errormap_row *r = &m->row[i];
+		const double at = place_mm[r->along];
+
+		point[i] = point_near(r, point[i], at);
+		ret_mm[r->across] += row_at(r, point[i], at);
+	}
 	for (int i = 0; i < m->nleans; i++)
 		ret_mm[m->lean[i].across] += m->lean[i].rad *
 					     place_mm[m->lean[i].along];
+}
+
+static void points_find(const struct interp_errormap *m,
+			const double *place_mm, int *ret)
+{
+	for (int i = 0; i < m->nrows; i++)
+		ret[i] = point_before(&m->row[i], place_mm[m->row[i].along]);
+}
+
+void interp_errormap_error(const struct interp_errormap *m,
+			   const double *place_mm, double *ret_mm)
+{
+	int point[INTERP_ERRORMAP_ROWS];
+
+	points_find(m, place_mm, point);
+	error_at(m, place_mm, point, ret_mm);
 }
 
 /* x = place - error(x), begun at x = place. */
@@ -114,12 +147,14 @@ void interp_errormap_apply(const struct interp_errormap *m,
 			   const double *place_mm, double *ret_mm)
 {
 	double error[INTERP_NAXES], told[INTERP_NAXES];
+	int point[INTERP_ERRORMAP_ROWS];
 	double off = INFINITY;
 
+	points_find(m, place_mm, point);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		told[i] = place_mm[i];
 	for (int n = 0; n < INTERP_ERRORMAP_ROUNDS && off > FOUND_MM; n++) {
-		interp_errormap_error(m, told, error);
+		error_at(m, told, point, error);
 		off = 0;
 		for (int i = 0; i < INTERP_NAXES; i++) {
 			const double next = place_mm[i] - error[i];

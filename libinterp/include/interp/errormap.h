@@ -18,7 +18,7 @@
  *
  * Units: mm; rotary axes degrees.
  * Threads: interp_errormap_apply() and _error() are RT-safe: a binary search in
- * each row, at most INTERP_ERRORMAP_ROUNDS times.
+ * each row, and at most INTERP_ERRORMAP_ROUNDS looks from there.
  */
 #ifndef INTERP_ERRORMAP_H
 #define INTERP_ERRORMAP_H
