@@ -212,6 +212,7 @@ static void comp_of(const struct machine_config *c, struct comp_config *ret)
 		ret->axis[i].pulse_mm = pulse_mm;
 	}
 	ret->maps = c->geometry;
+	ret->maps_c = c->maps_c;
 	ret->mapped = !interp_errormap_is_empty(&c->geometry);
 }
 

@@ -256,6 +256,7 @@ struct machine_config {
 	struct interp_axis_loop loop[INTERP_NAXES];	/* gain 0: not known */
 	char maps[128];			/* [geometry] maps: a file; "none" */
 	double over_k;			/* temperature over that of the maps */
+	double maps_c;			/* that of the maps */
 	struct interp_errormap geometry;	/* of pitch_map and maps, read */
 	double start_mm[INTERP_NAXES];	/* where a simulated machine begins */
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* [work] */

@@ -98,7 +98,10 @@ static const struct config_key row[] = {
 	STRING(GEOMETRY, "maps", "none", maps,
 	       "file of pitch, straightness, squareness and growth"),
 	NUMBER(GEOMETRY, "over_k", "K", "0", -50, 50, AT(over_k),
-	       "temperature of the axes over that of the maps"),
+	       "temperature of the axes over that of the maps, until a PLC "
+	       "tells it"),
+	NUMBER(GEOMETRY, "maps_c", "degC", "20", -20, 60, AT(maps_c),
+	       "temperature the maps were measured at"),
 
 	STRING(CONTOUR, "method", "none", contour.method,
 	       "none, or of feedforward, cross-coupled, joined by +; in "

@@ -46,6 +46,7 @@ struct io_plc {
 	uint8_t mcode_done;		/* the M code it has carried out; 0 */
 	uint16_t program;		/* to be loaded; 0: none */
 	double override;		/* 1: as programmed */
+	double axes_c;			/* temperature of the axes; 0: not told */
 };
 
 /* What the machine says, once a period. */

@@ -46,7 +46,8 @@ struct plc_ask {
 	uint16_t override;		/* 0.1 % */
 	uint16_t program;		/* to be selected; 0: none */
 	uint8_t mcode_done;		/* the M code it has carried out */
-	uint8_t spare;
+	uint8_t axes_c;			/* their temperature, 0.25 degC; 0: not
+					 * told */
 };
 
 enum plc_flag {

@@ -167,6 +167,7 @@ void plc_link_read(struct plc_link *l, struct io_plc *ret)
 	ret->mcode_done = a->mcode_done;
 	ret->program = a->program;
 	ret->override = a->override * 0.001;
+	ret->axes_c = a->axes_c * 0.25;
 }
 
 void plc_link_write(struct plc_link *l, const struct plc_tell *tell)

@@ -63,9 +63,9 @@ const struct plc_signal plc_signal[] = {
 	{ 0x2100, 5, PLC_U8,  true,  1, 6, ASK(mcode_done), 0, 255,
 	  "McodeDone", "", 1,
 	  "M code that has been carried out; 0: none" },
-	{ 0x2100, 6, PLC_U8,  true,  1, 7, ASK(spare), 0, 255,
-	  "Spare", "", 1,
-	  "0" },
+	{ 0x2100, 6, PLC_U8,  true,  1, 7, ASK(axes_c), 0, 255,
+	  "AxisTemperature", "degC", 0.25,
+	  "of the axes, for [geometry] maps; 0: not told" },
 };
 
 const size_t plc_nsignals = sizeof(plc_signal) / sizeof(plc_signal[0]);

@@ -114,7 +114,10 @@ void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
 
 void comp_warm(struct comp *c, struct comp_config *k, double over_k)
 {
+	const double k_now = fmin(fmax(over_k, -COMP_OVER_K_MAX),
+				  COMP_OVER_K_MAX);
+
 	for (int i = 0; i < INTERP_NAXES; i++)
-		k->maps.growth[i].over_k = over_k;
+		k->maps.growth[i].over_k = k_now;
 	c->stale = true;
 }

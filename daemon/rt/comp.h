@@ -24,12 +24,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define COMP_OVER_K_MAX	50.0
+
 struct comp_config {
 	struct {
 		int32_t backlash;	/* >= 0 */
 		double take_up;		/* pulses a period, > 0 where used */
 		double pulse_mm;	/* > 0 where there are maps */
 	} axis[INTERP_NAXES];
+	double maps_c;			/* temperature they were measured at */
 	bool mapped;			/* the maps are not empty */
 	struct interp_errormap maps;
 };
@@ -76,7 +79,8 @@ void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
 /**
  * comp_warm() - another temperature over that of the maps, for all axes.
  *
- * What the machine grew is taken up as any other change.
+ * At most COMP_OVER_K_MAX of it.  What the machine grew is taken up as any other
+ * change.
  */
 void comp_warm(struct comp *c, struct comp_config *k, double over_k);
 

@@ -67,6 +67,16 @@ static void command(struct cycle *c, enum cycle_verb verb, double arg)
 	cycle_command(c, &m);
 }
 
+/* Untold, or with the PLC gone, they stay as warm as they were last. */
+static void warm(struct cycle *c, double was_c)
+{
+	const double c_now = c->plc.axes_c;
+
+	if (c_now > 0 && c_now != was_c)
+		comp_warm(&c->comp, &c->config.comp,
+			  c_now - c->config.comp.maps_c);
+}
+
 void interlock_guard(struct cycle *c, const struct io_inputs *in)
 {
 	const struct io_plc was = c->plc;
@@ -84,6 +94,7 @@ void interlock_guard(struct cycle *c, const struct io_inputs *in)
 	/* Another client may set it too: the last one to change it has it. */
 	if (c->plc.override != was.override || !was.alive)
 		command(c, CYCLE_OVERRIDE, c->plc.override);
+	warm(c, was.axes_c);
 	/* A start that comes with the reset was not meant for what comes now. */
 	if (c->plc.start && !c->plc.reset)
 		command(c, CYCLE_START, 0);

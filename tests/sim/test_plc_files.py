@@ -81,8 +81,8 @@ def test_numbers_have_the_units_of_the_table():
         "Permit": 1, "Start": 0, "Hold": 0, "Reset": 0, "Alive": 1,
         "DoorClosed": 1, "LevelOk": 1, "TemperatureOk": 1, "NoFire": 1,
         "WireWhole": 1, "FeedOverride": 70, "ProgramSelect": 12,
-        "McodeDone": 60, "Spare": 0})
-    assert asked == bytes([0x81, 0x1f, 0xbc, 2, 12, 0, 60, 0])
+        "McodeDone": 60, "AxisTemperature": 21.5})
+    assert asked == bytes([0x81, 0x1f, 0xbc, 2, 12, 0, 60, 86])
 
 
 def test_the_node_of_the_machine_file_is_that_of_the_dbc(tmp_path):

@@ -290,6 +290,47 @@ static void an_override_of_a_client_stays_until_the_plc_changes_its_own(
 	rig_free(&r);
 }
 
+/* What Z is sent more than its place, in pulses. */
+static int32_t grown(const struct rig *r)
+{
+	return r->out.target[INTERP_Z] - r->c.out.target[INTERP_Z];
+}
+
+static void its_temperature_is_that_of_the_axes(void **st)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		k.comp.axis[i].pulse_mm = PULSE_MM;
+		k.comp.axis[i].take_up = 1;
+	}
+	k.comp.mapped = true;
+	k.comp.maps_c = 20;
+	k.comp.maps.growth[INTERP_Z] = (struct interp_errormap_growth) {
+		10e-6, -100, 0
+	};
+	cut_to(b, -50);
+	rig_load(&r, b, &k);
+	r.in.plc = well();
+	steps(&r, OPEN_V, 50);
+	assert_int_equal(grown(&r), 0);
+	r.in.plc.axes_c = 30;
+	step(&r, OPEN_V);
+	assert_int_equal(grown(&r), -1);
+	steps(&r, OPEN_V, 50);
+	assert_int_equal(grown(&r), -10);
+	r.in.plc.axes_c = 0;		/* not told any more */
+	steps(&r, OPEN_V, 50);
+	assert_int_equal(grown(&r), -10);
+	r.in.plc.axes_c = 15;
+	steps(&r, OPEN_V, 50);
+	assert_int_equal(grown(&r), 5);
+	rig_free(&r);
+}
+
 static void what_a_dead_plc_says_last_is_void(void **st)
 {
 	struct rig r;
@@ -351,6 +392,7 @@ int main(void)
 		cmocka_unit_test(hold_is_held_as_long_as_it_is_said),
 		cmocka_unit_test(an_edge_of_reset_leaves_a_fault),
 		cmocka_unit_test(its_override_scales_positioning),
+		cmocka_unit_test(its_temperature_is_that_of_the_axes),
 		cmocka_unit_test(
 			an_override_of_a_client_stays_until_the_plc_changes_its_own),
 		cmocka_unit_test(what_a_dead_plc_says_last_is_void),

@@ -147,7 +147,7 @@ class DbcPlc(Plc):
                    for name, bit in BITS.items()}
         signals |= {name: ask["locks"] >> i & 1
                     for i, name in enumerate(locks)}
-        signals |= {"FeedOverride": ask["override"], "Spare": 0,
+        signals |= {"FeedOverride": ask["override"], "AxisTemperature": 0,
                     "ProgramSelect": ask["program"], "McodeDone": ask["done"]}
         self.bus.send(can.Message(arbitration_id=message.frame_id,
                                   data=message.encode(signals),
