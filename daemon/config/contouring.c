@@ -55,11 +55,15 @@ static int check_backend(const struct machine_config *c,
 		      "loops = yes");
 }
 
+static double lead_periods(const struct machine_config *c, int axis)
+{
+	return c->contour.lead_periods + c->loop[axis].delay_s / period_s(c);
+}
+
 static int check_lead(const struct machine_config *c, int axis,
 		      struct interp_diag *diag)
 {
-	const double lead = c->contour.lead_periods +
-			    c->loop[axis].delay_s / period_s(c);
+	const double lead = lead_periods(c, axis);
 
 	if (floor(lead) <= CONTOURING_LEAD_MAX)
 		return 0;
@@ -154,7 +158,9 @@ void config_contouring(const struct machine_config *c,
 	for (uint32_t m = ret->axes; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
 		const struct interp_axis_limits *l = &c->axes.axis[i];
+		const int ahead = (int)floor(lead_periods(c, i)) + 2;
 
+		ret->ahead = ahead > ret->ahead ? ahead : ret->ahead;
 		ret->loop[i] = c->loop[i];
 		ret->most_mm[i] = l->v_max_mm_s / fmax(c->loop[i].gain_1_s, 1e-3);
 	}

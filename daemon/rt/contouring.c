@@ -80,7 +80,7 @@ static bool look_ahead(const struct cycle *c, double way_mm,
 	stand_all(c, r);
 	if (!point_set(c, r, 0, s_mm - way_mm) || !point_set(c, r, 1, s_mm))
 		return false;
-	for (int k = 2; k < CONTOURING_AHEAD + 2; k++) {
+	for (int k = 2; k < c->config.contouring.ahead + 2; k++) {
 		go_mm = way_mm == 0 ? 0 :
 			toward * fmax(toward * (go_mm + more_mm), 0);
 		s_mm += go_mm;

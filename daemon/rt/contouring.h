@@ -40,8 +40,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Set values after the present one: the whole periods of lead and delay, and
- * two. */
+/* The whole periods of lead and delay, and two. */
 #define CONTOURING_AHEAD	8
 #define CONTOURING_LEAD_MAX	(CONTOURING_AHEAD - 2)
 
@@ -49,6 +48,9 @@ struct contouring_config {
 	uint32_t methods;		/* of INTERP_COMPENSATE_FEEDFORWARD and
 					 * _CROSS; 0: none */
 	uint32_t axes;			/* bit per axis with a known loop */
+	int ahead;			/* set values after the present one that
+					 * are looked at: CONTOURING_AHEAD at
+					 * most */
 	struct interp_compensate_gains gains;
 	struct interp_axis_loop loop[INTERP_NAXES];
 	double pulse_mm[INTERP_NAXES];

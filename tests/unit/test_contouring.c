@@ -36,7 +36,7 @@ static struct cycle_config config_of(uint32_t methods)
 	k.dry_run = true;
 	k.travel_a_mm_s2 = 500;
 	k.contouring = (struct contouring_config) {
-		.methods = methods, .axes = 3,
+		.methods = methods, .axes = 3, .ahead = 2,
 		.gains = { .velocity = 1, .acceleration = 1,
 			   .lead_periods = 0.5, .cross_1_s = 100 },
 	};
@@ -156,6 +156,7 @@ static void a_delay_that_is_known_is_led_too(void **state)
 	(void)state;
 	for (int i = 0; i < 2; i++)
 		k.contouring.loop[i].delay_s = 0.0025;
+	k.contouring.ahead = 5;
 	begin_circle(&l, &k);
 	for (int i = 0; i < 2; i++)
 		interp_axis_model_init(&l.axis[i], &k.contouring.loop[i],

@@ -40,7 +40,7 @@ static void lead(struct cycle_config *k)
 	k->contouring = (struct contouring_config) {
 		.methods = INTERP_COMPENSATE_FEEDFORWARD |
 			   INTERP_COMPENSATE_CROSS,
-		.axes = 1u << INTERP_Z,
+		.axes = 1u << INTERP_Z, .ahead = CONTOURING_AHEAD,
 		.gains = { .velocity = 1, .lead_periods = 0.5,
 			   .cross_1_s = 50 },
 		.loop[INTERP_Z] = { .gain_1_s = 1000, .velocity_hz = 60,
