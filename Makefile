@@ -295,9 +295,10 @@ experiments-curve: $(CURVE_EXPERIMENTS:%=$(B)/experiments/%) $(B)/edmsim
 		>> $(B)/experiments-curve.md
 	$(Q)cp $(B)/experiments-curve.md docs/experiments-curve.md
 
-experiments-contour: $(B)/experiments/contour
+experiments-contour: $(B)/experiments/contour $(B)/edmsim
 	$(call say,TRY,docs/experiments-contour.md)
 	$(Q)$< > $(B)/experiments-contour.md
+	$(Q)tests/experiments/contouring $(B) >> $(B)/experiments-contour.md
 	$(Q)cp $(B)/experiments-contour.md docs/experiments-contour.md
 	$(Q)cat docs/experiments-contour.md
 	$(Q)$< docs/pictures

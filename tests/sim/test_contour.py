@@ -327,3 +327,71 @@ def test_what_cannot_be_tuned_is_refused(tmp_path, machine, code, told):
     assert r.returncode == code
     assert told in r.stderr.decode()
     assert b"speed =" not in r.stdout
+
+
+SIMULATED = "[sim]\nloops = yes\nmeasure_pulses = 0.5\n" + "".join(
+    f"[axis.{a}]\npresent = no\n" for a in "ZABCUV") + LOOPS
+SQUARE = """G21 G90 G17 F1000
+G1 X8
+G3 X10 Y2 J2
+G1 Y8
+G3 X8 Y10 I-2
+G1 X0
+G3 X-2 Y8 J-2
+G1 Y2
+G3 X0 Y0 I2
+M2
+"""
+
+
+def in_the_cycle(tmp_path, method, *args):
+    (tmp_path / "m.ini").write_text(
+        SIMULATED + f"[contour]\nmethod = {method}\ncross_1_s = 90\n")
+    return report("--machine", tmp_path / "m.ini", "--dry-run", *args,
+                  text=SQUARE)
+
+
+def test_the_cycle_leads_axes_that_lag(tmp_path):
+    found = {m: in_the_cycle(tmp_path, m)["contour_um_max"] for m in
+             ("none", "feedforward", "cross-coupled",
+              "feedforward+cross-coupled")}
+    assert found["none"] > 100
+    assert found["cross-coupled"] < found["none"] / 3
+    assert found["feedforward"] < found["none"] / 20
+    assert found["feedforward+cross-coupled"] < found["feedforward"]
+
+
+def test_what_it_sends_ends_on_the_path(tmp_path):
+    trace = tmp_path / "t.csv"
+    in_the_cycle(tmp_path, "feedforward+cross-coupled", "--trace", trace)
+    rows = [r.split(",") for r in trace.read_text().splitlines()]
+    x, sent = rows[0].index("X"), rows[0].index("X_sent")
+    led = [abs(float(r[sent]) - float(r[x])) for r in rows[1:]]
+    assert 0.3 < max(led) < 80 / 30
+    assert led[-1] < 0.05          # it brakes to the end of the job
+    assert rows[-1][x] == "0"
+
+
+def test_a_drawn_trace_may_have_what_was_sent(tmp_path):
+    in_the_cycle(tmp_path, "feedforward", "--plot", tmp_path / "t.png")
+    assert (tmp_path / "t.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("method, told", [
+    ("predictive", "the cycle knows"), ("zpetc", "feedforward+cross-coupled"),
+    ("twin", "--tune-contour"), ("feedforward+predictive", "the cycle knows"),
+])
+def test_what_the_cycle_has_not_is_refused_where_it_leads(tmp_path, method,
+                                                         told):
+    (tmp_path / "m.ini").write_text(
+        SIMULATED + f"[contour]\nmethod = {method}\n")
+    r = run("--machine", tmp_path / "m.ini", "--dry-run", text=SQUARE)
+    assert r.returncode == 78
+    assert told in r.stderr.decode()
+    edmd = os.path.join(os.path.dirname(PROGRAM), "edmd")
+    r = subprocess.run([edmd, "--config", str(tmp_path / "m.ini"), "--check"],
+                       capture_output=True, text=True, timeout=20)
+    assert r.returncode == 78
+    line = 1 + (tmp_path / "m.ini").read_text().splitlines().index(
+        f"method = {method}")
+    assert f"m.ini:{line}:" in r.stderr and told in r.stderr
