@@ -99,13 +99,15 @@ def test_the_trace_has_a_row_for_each_cycle(tmp_path):
     r = report("--trace", name, text=SINK)
     rows = name.read_text().splitlines()
     assert rows[0] == ("t_s,line,s_mm,feed_mm_s,gap_v,state,"
-                       "X,Y,Z,A,B,C,U,V,open,spark,arc,short,debris")
+                       "X,Y,Z,A,B,C,U,V,open,spark,arc,short,debris,"
+                       + ",".join(f"{a}_sent" for a in "XYZABCUV"))
     assert len(rows) - 1 == r["cycles"]
     states = {row.split(",")[5] for row in rows[1:]}
     assert {"travel", "approach", "erode", "jump"} <= states
     for row in rows[1:]:
         t, line, s, feed, gap, state, *more = row.split(",")
         axes, shares, debris = more[:8], more[8:12], more[12]
+        assert more[13:] == axes   # nothing is added in this machine
         assert abs(float(axes[2])) < 3 and float(gap) >= 0
         assert 0 <= float(debris) <= 1
         if any(shares):
@@ -119,7 +121,7 @@ def test_a_dry_run_has_no_shares_and_no_debris(tmp_path):
     name = tmp_path / "t.csv"
     done("--dry-run", "--trace", name, text="G21 F60\nG1 X0.1\n")
     rows = name.read_text().splitlines()
-    assert all(row.endswith(",,,,,") for row in rows[1:])
+    assert all(row.split(",")[14:19] == [""] * 5 for row in rows[1:])
 
 
 @pytest.mark.parametrize("condition", sorted(

@@ -9,6 +9,7 @@
 #include "contouring.h"
 
 #include "interp/axis_model.h"
+#include "interp/identify.h"
 
 #include <errno.h>
 
@@ -206,6 +207,87 @@ static void the_path_is_the_same_one(void **state)
 	assert_false(m.r.c.loaded);
 	rig_free(&l.r);
 	rig_free(&m.r);
+}
+
+/* -- As late as on a bus ---------------------------------------------------------- */
+
+#define LATE_PERIODS	8000
+
+/* What edmctl record would have. */
+struct record {
+	double target[2][LATE_PERIODS], actual[2][LATE_PERIODS];
+};
+
+/* With can402 a target is reached two SYNCs later, and a place is one old. */
+static void late_job(struct lagging *l, const struct cycle_config *k,
+		     struct record *ret)
+{
+	int32_t sent[2][2] = { { 0 } };
+	double was[2] = { 0 };
+
+	begin_circle(l, k);
+	for (int n = 0; n < LATE_PERIODS; n++) {
+		for (int i = 0; i < 2; i++) {
+			l->r.in.actual[i] = (int32_t)lround(was[i] / PULSE_MM);
+			was[i] = l->axis[i].actual_mm;
+		}
+		step_on(&l->r);
+		for (int i = 0; i < 2; i++) {
+			ret->target[i][n] = l->r.c.out.target[i] * PULSE_MM;
+			ret->actual[i][n] = l->r.in.actual[i] * PULSE_MM;
+			interp_axis_model_follow(&l->axis[i],
+						 sent[n % 2][i] * PULSE_MM, 0);
+			sent[n % 2][i] = l->r.out.target[i];
+		}
+		look(l);
+	}
+	assert_false(l->r.c.loaded);
+	rig_free(&l->r);
+}
+
+/* Loops as they are seen from the cycle, all the bus in them. */
+static void take_loops(struct cycle_config *k, const struct record *seen)
+{
+	for (int i = 0; i < 2; i++) {
+		const struct interp_identify_trace t = {
+			seen->target[i], seen->actual[i], LATE_PERIODS,
+			PERIOD_S
+		};
+		struct interp_identified d;
+
+		assert_int_equal(interp_identify(&t, &d), 0);
+		k->contouring.loop[i] = d.loop;
+		k->contouring.loop[i].kick_mm_s = 0;
+		k->contouring.loop[i].backlash_mm = 0;
+	}
+	k->contouring.ahead = CONTOURING_AHEAD;
+}
+
+static double late_worst(const struct record *seen, uint32_t methods)
+{
+	static struct record unused;
+	struct cycle_config k = config_of(methods);
+	struct lagging l;
+
+	k.contouring.gains.cross_1_s = 50;
+	take_loops(&k, seen);
+	late_job(&l, &k, &unused);
+	for (int i = 0; i < 2; i++)
+		assert_near(l.axis[i].actual_mm, 0, PULSE_MM / 2);
+	return l.worst_mm;
+}
+
+static void axes_behind_a_bus_are_led_by_what_was_identified(void **state)
+{
+	const struct cycle_config none = config_of(0);
+	static struct record seen;
+	struct lagging l;
+
+	(void)state;
+	late_job(&l, &none, &seen);
+	assert_true(late_worst(&seen, CROSS) < l.worst_mm / 1.5);
+	assert_true(late_worst(&seen, FORWARD) < l.worst_mm / 10);
+	assert_true(late_worst(&seen, FORWARD | CROSS) < l.worst_mm / 10);
 }
 
 /* -- What it never does ---------------------------------------------------------- */
@@ -468,6 +550,7 @@ int main(void)
 		cmocka_unit_test(axes_that_lag_keep_to_the_path),
 		cmocka_unit_test(a_delay_that_is_known_is_led_too),
 		cmocka_unit_test(what_the_drive_leads_itself_is_counted),
+		cmocka_unit_test(axes_behind_a_bus_are_led_by_what_was_identified),
 		cmocka_unit_test(the_path_is_the_same_one),
 		cmocka_unit_test(at_rest_it_adds_nothing),
 		cmocka_unit_test(it_comes_and_goes_without_a_leap),
