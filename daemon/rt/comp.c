@@ -80,16 +80,19 @@ static void look_up(struct comp *c, const struct comp_config *k,
 void comp_apply(struct comp *c, const struct comp_config *k,
 		const struct comp_period *p, int32_t ret[INTERP_NAXES])
 {
-	if (k->mapped)
-		look_up(c, k, p->place);
+	const int32_t *place = p->place;
+	const bool begun = c->begun, mapped = k->mapped, frozen = p->frozen;
+
+	if (mapped)
+		look_up(c, k, place);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		struct comp_axis *a = &c->axis[i];
-		const int32_t path = c->begun ? p->place[i] - a->place : 0;
+		const int32_t path = begun ? place[i] - a->place : 0;
 
-		a->place = p->place[i];
+		a->place = place[i];
 		if (path != 0)
 			a->toward = path < 0 ? -1 : 1;
-		if (!p->frozen && (k->mapped || k->axis[i].backlash != 0))
+		if (!frozen && (mapped || k->axis[i].backlash != 0))
 			take_up(a, k, i, path, p->edges);
 		ret[i] = comp_pulses(a);
 	}

@@ -256,7 +256,7 @@ static void give(struct cycle *c, struct io_outputs *out)
 		.frozen = c->state == STATE_FAULT || c->busy,
 		.edges = c->config.points_max,
 	}, c->given.target);
-	for (int i = 0; i < INTERP_NAXES; i++)
+	for (int i = 0; i < INTERP_NAXES && c->contouring.on; i++)
 		c->given.target[i] += c->contouring.added[i];
 	c->given.pulse.off_us = arc_off_us(c);
 	*out = c->given;
