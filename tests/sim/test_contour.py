@@ -319,6 +319,7 @@ def test_of_loops_that_swing_no_contour_error_is_told(tmp_path):
     (SWINGS + "[contour]\nmethod = feedforward\n", 65,
      "[axis.Y] loop_gain_1_s = 900 swings of itself; below"),
     (LOOPS + "[contour]\nmethod = zpetc\n", 65, "no gains"),
+    (LOOPS + "[contour]\nmethod = twin\n", 65, "no gains"),
     (LOOPS + "[contour]\nmethod = feedforward+zpetc\n", 78, "not together"),
     (LOOPS + "[contour]\nmethod = magic\n", 78, "cross-coupled"),
 ])
