@@ -97,8 +97,10 @@ static int check_margin(const struct machine_config *c, int axis,
 		 "contour.cross_1_s %g and axis.%c.loop_gain_1_s %g leave less "
 		 "than 6 dB before they swing", c->contour.cross_1_s,
 		 INTERP_AXIS_LETTERS[axis], c->loop[axis].gain_1_s);
-	snprintf(wanted, sizeof(wanted), "at most %.0f 1/s together: cross_1_s "
-		 "%.0f and less", most, fmax(most - c->loop[axis].gain_1_s, 0));
+	/* Rounded down: what is told is taken. */
+	snprintf(wanted, sizeof(wanted), "at most %.4g 1/s together: cross_1_s "
+		 "%.4g and less", floor(most * 10) / 10,
+		 floor(fmax(most - c->loop[axis].gain_1_s, 0) * 10) / 10);
 	return refuse(c, diag, wanted);
 }
 

@@ -521,6 +521,7 @@ static void refused(struct machine_config *c, const char *found,
 static void what_the_cycle_has_not_is_refused_with_what_it_has(void **state)
 {
 	struct machine_config c;
+	struct interp_diag d;
 
 	(void)state;
 	for (int i = 2; interp_compensate_name(i); i++) {
@@ -541,6 +542,12 @@ static void what_the_cycle_has_not_is_refused_with_what_it_has(void **state)
 	refused(&c, "axis.Y.loop_delay_s", "below 7 periods");
 	a_machine(&c, "cross-coupled");
 	c.contour.cross_1_s = 200;
+	refused(&c, "less than 6 dB", "cross_1_s ");
+	assert_int_equal(config_check_contouring(&c, &d), -EINVAL);
+	c.contour.cross_1_s = atof(strstr(d.wanted, "cross_1_s ") + 10);
+	assert_true(c.contour.cross_1_s > 10);
+	assert_int_equal(config_check_contouring(&c, &d), 0);
+	c.contour.cross_1_s += 0.2;
 	refused(&c, "less than 6 dB", "cross_1_s ");
 }
 
