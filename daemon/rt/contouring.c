@@ -208,8 +208,8 @@ static void leave(struct contouring *w)
 	}
 }
 
-/* From here on, slowly: it may be moving. */
-static void begin(struct cycle *c)
+/* From here on; slowly, if it is moving. */
+static void begin(struct cycle *c, bool stood)
 {
 	struct contouring *w = &c->contouring;
 	double now[INTERP_NAXES], mm[INTERP_NAXES];
@@ -219,8 +219,8 @@ static void begin(struct cycle *c)
 	w->on = true;
 	w->path = c->out.path;
 	w->place_mm = interp_cursor_place_mm(&c->cursor);
-	w->way_mm = 0;
-	w->share = 0;
+	w->way_mm = c->feed_mm_s * law_period_s(c);
+	w->share = stood ? 1 : 0;
 	w->coupled = 0;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		now[i] = c->out.target[i] * c->config.contouring.pulse_mm[i];
@@ -271,13 +271,15 @@ static void go_on(struct cycle *c, const struct io_inputs *in)
 void contouring_step(struct cycle *c, const struct io_inputs *in)
 {
 	struct contouring *w = &c->contouring;
+	const bool stood = w->stood;
 
 	if (c->config.contouring.methods == 0)
 		return;
+	w->stood = c->feed_mm_s == 0;
 	if (!applies(c))
 		leave(w);
 	else if (!w->on || w->path != c->out.path)
-		begin(c);
+		begin(c, stood);
 	else
 		go_on(c, in);
 }

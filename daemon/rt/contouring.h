@@ -59,9 +59,11 @@ struct contouring_config {
 
 struct contouring {
 	bool on;			/* in the last period too */
+	bool stood;			/* it did, before this period */
 	uint32_t path;			/* io_outputs.path then */
 	double place_mm, way_mm;	/* on it, and gone in the last period */
-	double share;			/* of feedforward, taken up from 0 */
+	double share;			/* of feedforward; from 0 where it is
+					 * moving already */
 	double coupled;			/* of cross-coupling; 0 at rest */
 	double added_mm[INTERP_NAXES];
 	int32_t added[INTERP_NAXES];	/* the same in pulses */

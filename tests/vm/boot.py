@@ -169,6 +169,18 @@ approach_mm_s = 1
 """
 
 
+def lagging(method):
+    """Two drives that follow by gains of 30 and 21.5 1/s: what those come to
+    where a target is held for 10 ms is what identification would find."""
+    return drives("XY", "following_mm = 2\n"
+                  f"[contour]\nmethod = {method}\ncross_1_s = 4\n"
+                  "[axis.X]\nloop_gain_1_s = 25.9\nloop_hz = 1000\n"
+                  "[axis.Y]\nloop_gain_1_s = 19.3\nloop_hz = 1000\n")
+
+
+CIRCLE = "G21 G90 G17\nG3 X0 Y0 I-2 J0 F600\nM30\n"
+
+
 def checked(run):
     assert run.status == 0, run.output
     return run

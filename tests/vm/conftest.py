@@ -5,8 +5,9 @@ import shutil
 import subprocess
 
 import pytest
-from boot import (BUILD, BUILD_VM, GAP, GAP_FRAMES, HERE, LINES, QUICK_JOB, ROOT, Run,
-                  SLOW_JOB, VIRTUAL, checked, drives, machine)
+from boot import (BUILD, BUILD_VM, CIRCLE, GAP, GAP_FRAMES, HERE, LINES,
+                  QUICK_JOB, ROOT, Run, SLOW_JOB, VIRTUAL, checked, drives,
+                  lagging, machine)
 
 
 @pytest.fixture(scope="session")
@@ -42,6 +43,9 @@ def can402():
         "six.ini": drives("XYZABC"),
         "six.ngc": "G21 G90\nG1 X1 Y-0.5 Z0.3 A2 B-1 C0.7 F60\n"
                    "G1 X0.2 Y0.1 Z-0.1 A-0.4 B0.5 C0.1\nM30\n",
+        "lagging.ini": lagging("none"), "lagging.ngc": CIRCLE,
+        "led.ini": lagging("feedforward"), "led.ngc": CIRCLE,
+        "coupled.ini": lagging("feedforward+cross-coupled"), "coupled.ngc": CIRCLE,
         "faults.ini": drives("XY", GAP_FRAMES),
         "faults.ngc": "G21 G90\nG1 X10 Y3 F60\nM30\n",
     }, "-d", copies=(guest / "drives.py", guest / "can402.py")))

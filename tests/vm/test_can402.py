@@ -95,6 +95,30 @@ def test_enabling_moves_nothing_far(can402, name):
     assert seen >= len(rows[0][2])
 
 
+def off_the_circle(run, name):
+    """How far the drives were from it, at most, in mm."""
+    seen = Seen(run, name)
+    seen.went_as_planned()
+    assert "program 1 ended: done" in seen.log
+    mm = [[(p - 1000 * node) * pulses / per / 1000 for p, (node, per, pulses)
+           in zip(r[3], (DRIVES["X"], DRIVES["Y"]))] for r in seen.rows]
+    assert min(x for x, _ in mm) < -3.9
+    for x in mm[-1]:
+        assert abs(x) < 0.001
+    return max(abs(math.hypot(x + 2, y) - 2) for x, y in mm)
+
+
+def test_drives_that_lag_are_led_along_the_path(can402):
+    lagging, led, coupled = (off_the_circle(can402, n)
+                             for n in ("lagging", "led", "coupled"))
+    print(f"off a circle of 2 mm at 600 mm/min: {lagging * 1e3:.1f} um, "
+          f"feedforward {led * 1e3:.1f} um, cross-coupled too "
+          f"{coupled * 1e3:.1f} um")
+    assert lagging > 0.05
+    assert led < 0.01
+    assert coupled < 0.01
+
+
 # What is done, its fault, in the log, and SYNCs until sparks are off; 0: SYNC
 # itself is what is missing.
 FAULTS = [

@@ -100,9 +100,11 @@ RUNNING = ("travel", "approach", "erode", "retract")
 CUTTING = ("approach", "erode")
 
 
-def whole_job(name, nodes):
+def whole_job(name, nodes, lags=()):
     """Boot, enable, a job from end to end without a gap."""
     s = Scene(name, nodes)
+    for node, gain in zip(nodes, lags):
+        s.tell("lag", node, gain)
     answers = [s.ctl("submit", "--name", "first", str(R / f"{name}.ngc"))]
     s.until("running", 10, state=RUNNING)
     s.until("idle", 60, state="idle")
@@ -198,4 +200,6 @@ def harmless(s):
 if __name__ == "__main__":
     whole_job("two", [1, 2])
     whole_job("six", [1, 2, 3, 4, 5, 6])
+    for name in "lagging", "led", "coupled":
+        whole_job(name, [1, 2], lags=(30, 21.5))
     faults("faults", [1, 2])

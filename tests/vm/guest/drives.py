@@ -9,12 +9,13 @@ of CiA 402, a motor, and the watch on SYNC and on the master's heartbeat.
 
 COMMANDS is a FIFO with a line for each thing to do or to go wrong:
     emcy N CODE | clear N | leave N | mute N | unmute N | skip N K | drop N K |
-    jam N | unjam N | reboot N | gap V | report FILE | quit
+    jam N | unjam N | lag N GAIN | reboot N | gap V | report FILE | quit
 A report has a row for each SYNC: its time, the generator's flags, and of each
 drive its state and its place.
 """
 import errno
 import json
+import math
 import os
 import select
 import socket
@@ -171,6 +172,7 @@ class Drive:
         self.id = node
         self.muted = False
         self.place = 1000 * node            # increments
+        self.lag_1_s = 0                    # its position gain; 0: at once
         self.node.add_write_callback(self.on_write)
         net.subscribe(0, self.on_nmt)
         self.boot()
@@ -268,6 +270,9 @@ class Drive:
     def move(self):
         if self.state == ENABLED and not self.jammed:
             self.step = self.target - self.place
+            if self.lag_1_s:
+                self.step = round(self.step * -math.expm1(
+                    -self.lag_1_s * self.period))
         elif self.state in (STOPPING, REACTING):
             self.step = int(self.step / 2)
             if self.step == 0:
@@ -336,6 +341,8 @@ class Stage:
             setattr(d, what, int(args[1]))
         elif what in ("jam", "unjam"):
             d.jammed = what == "jam"
+        elif what == "lag":
+            d.lag_1_s = float(args[1])
         elif what == "reboot":
             d.boot()
         elif what == "gap":
