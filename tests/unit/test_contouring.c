@@ -251,7 +251,7 @@ static void take_loops(struct cycle_config *k, const struct record *seen)
 	for (int i = 0; i < 2; i++) {
 		const struct interp_identify_trace t = {
 			seen->target[i], seen->actual[i], LATE_PERIODS,
-			PERIOD_S
+			PERIOD_S, NULL, NULL
 		};
 		struct interp_identified d;
 

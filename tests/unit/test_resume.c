@@ -17,15 +17,20 @@ static void begin_cavity(struct world *w)
 
 static void wear_z(struct world *w)
 {
-	struct comp_config *z = &w->k.comp[INTERP_Z];
+	struct comp_config *k = &w->k.comp;
+	struct interp_errormap_row *z = &k->maps.row[0];
 
-	z->backlash = 12;
-	z->take_up = 0.5;
-	z->n = 2;
-	z->at[0] = -4000;
-	z->add[0] = 25;
-	z->at[1] = 0;
-	z->add[1] = -5;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		k->axis[i].pulse_mm = PULSE_MM;
+		k->axis[i].take_up = 0.5;
+	}
+	k->axis[INTERP_Z].backlash = 12;
+	*z = (struct interp_errormap_row) {
+		.along = INTERP_Z, .across = INTERP_Z, .n = 2,
+		.at_mm = { -4, 0 }, .error_mm = { -0.025, 0.005 },
+	};
+	k->maps.nrows = 1;
+	k->mapped = true;
 }
 
 static void stands_there(struct world *w, const struct io_outputs *was)
