@@ -13,6 +13,8 @@
 #define LOOK_MM	0.02
 
 struct watch {
+	struct interp_at_path way;
+	struct interp_at_curve last;
 	struct interp_contour_path path;
 	struct interp_contour foot;
 	double place_mm, sum_mm, max_mm;
@@ -53,7 +55,8 @@ bool contour_look(struct sim_run *r)
 	w = calloc(1, sizeof(*w));
 	if (!w)
 		return false;
-	if (!interp_program_path(&r->job.program, &w->path)) {
+	w->way = (struct interp_at_path) { &r->job.program, &w->last };
+	if (!interp_program_path(&w->way, &w->path)) {
 		free(w);
 		return false;
 	}

@@ -10,8 +10,8 @@
  */
 #include "sim.h"
 #include "trials.h"
-#include "way.h"
 
+#include "interp/at.h"
 #include "interp/tune.h"
 
 #include <errno.h>
@@ -34,8 +34,8 @@ struct rows {
 struct tuning {
 	struct sim_run *run;
 	struct rows rows;
-	struct way way;
-	struct way_curve last;
+	struct interp_at_path way;
+	struct interp_at_curve last;
 	struct interp_contour_path path;
 	struct interp_compensate_config config;
 	struct interp_trial trial;
@@ -98,7 +98,7 @@ static bool fill(struct tuning *t)
 	for (size_t i = 0; i < room; i++) {
 		struct interp_contour_point p;
 
-		way_at(&t->way, u[i], &p);
+		t->path.at(t->path.arg, u[i], &p);
 		for (int j = 0; j < t->path.naxes; j++)
 			w->mm[j][i] = p.mm[j];
 	}
@@ -193,12 +193,8 @@ static int check_job(const struct sim_run *r)
 
 static void watch(struct tuning *t)
 {
-	const struct interp_program *p = &t->run->job.program;
-
-	t->way = (struct way) { p, &t->last };
-	t->path = (struct interp_contour_path) {
-		&t->way, way_at, 0, p->head->length_mm, (int)p->head->naxes
-	};
+	t->way = (struct interp_at_path) { &t->run->job.program, &t->last };
+	interp_program_path(&t->way, &t->path);
 	loops_of(t);
 	config_of(t);
 	t->run->on_cycle = sample;

@@ -5,8 +5,6 @@
 #include "contouring.h"
 #include "laws.h"
 
-#include "interp/at.h"
-
 #include <math.h>
 
 #define TAKEN_UP	(1.0 / 16)	/* a period */
@@ -38,14 +36,15 @@ static uint32_t seg_near(const struct interp_program *p, uint32_t i,
 	return i;
 }
 
-static bool point_set(const struct cycle *c, struct row_ahead *r, int k,
+static bool point_set(struct cycle *c, struct row_ahead *r, int k,
 		      double s_mm)
 {
 	const struct interp_program *p = &c->cursor.p;
 	const uint32_t i = seg_near(p, c->cursor.index, s_mm);
 	struct interp_contour_point at;
 
-	if (!interp_program_at(p, i, s_mm - p->segs[i].s_mm, &at))
+	if (!interp_program_at(p, i, s_mm - p->segs[i].s_mm,
+			       &c->contouring.curve, &at))
 		return false;
 	for (uint32_t j = 0; j < p->head->naxes; j++) {
 		const uint8_t axis = p->head->column[j];
@@ -69,7 +68,7 @@ static void stand_all(const struct cycle *c, struct row_ahead *r)
  * The speed along the path goes on changing as it does, but does not turn: a
  * path that comes to a stand stays there.
  */
-static bool look_ahead(const struct cycle *c, double way_mm,
+static bool look_ahead(struct cycle *c, double way_mm,
 		       struct row_ahead *r)
 {
 	const struct contouring *w = &c->contouring;
@@ -218,6 +217,7 @@ static void begin(struct cycle *c, bool stood)
 	leave(w);
 	w->on = true;
 	w->path = c->out.path;
+	w->curve.open = false;
 	w->place_mm = interp_cursor_place_mm(&c->cursor);
 	w->way_mm = c->feed_mm_s * law_period_s(c);
 	w->share = stood ? 1 : 0;

@@ -33,6 +33,7 @@
 #ifndef RT_CONTOURING_H
 #define RT_CONTOURING_H
 
+#include "interp/at.h"
 #include "interp/axis.h"
 #include "interp/compensate.h"
 #include "interp/row.h"
@@ -67,6 +68,7 @@ struct contouring {
 	double coupled;			/* of cross-coupling; 0 at rest */
 	double added_mm[INTERP_NAXES];
 	int32_t added[INTERP_NAXES];	/* the same in pulses */
+	struct interp_at_curve curve;	/* looked at last */
 	struct interp_row row;		/* of linear axes */
 	struct interp_contour foot;
 };

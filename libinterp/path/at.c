@@ -57,29 +57,43 @@ static bool piece_ok(const struct interp_program *p,
 	       piece->nstops <= p->head->nstops - piece->stops_at;
 }
 
+/* With the span last looked at. */
+static bool open_curve(const struct interp_program *p, uint32_t curve,
+		       struct interp_at_curve *k)
+{
+	struct interp_nurbs c;
+
+	if (k->open && k->curve == curve)
+		return true;
+	k->open = interp_program_curve(p, curve, &c);
+	k->curve = curve;
+	if (k->open)
+		interp_nurbs_open(&k->eval, &c);
+	return k->open;
+}
+
 /* At a cusp the direction is kept that the chord has. */
 static bool along_curve(const struct interp_program *p,
 			const struct interp_seg *s, double part,
+			struct interp_at_curve *last,
 			struct interp_contour_point *ret)
 {
 	const struct interp_piece piece = p->pieces[s->arg];
 	const struct interp_nurbs_stop *stops = p->stops + piece.stops_at;
 	struct interp_nurbs_between between;
-	struct interp_nurbs_eval e;
 	struct interp_nurbs_point at;
-	struct interp_nurbs c;
 	double s_mm, speed;
 
-	if (!piece_ok(p, &piece) || !interp_program_curve(p, piece.curve, &c))
+	if (!piece_ok(p, &piece) || !open_curve(p, piece.curve, last))
 		return false;
 	s_mm = stops[piece.nstops - 1].s_mm * part;
 	stops += interp_nurbs_stop_of(stops, piece.nstops, s_mm);
 	interp_nurbs_between(stops, &between);
-	interp_nurbs_open(&e, &c);
-	interp_nurbs_at(&e, interp_nurbs_between_at(&between, s_mm), 1, &at);
-	speed = sqrt(interp_nurbs_dot(&c, at.d[1], at.d[1]));
+	interp_nurbs_at(&last->eval, interp_nurbs_between_at(&between, s_mm), 1,
+			&at);
+	speed = sqrt(interp_nurbs_dot(&last->eval.c, at.d[1], at.d[1]));
 	for (uint32_t j = 0; j < p->head->naxes; j++) {
-		for (uint32_t k = 0; k < c.naxes; k++) {
+		for (uint32_t k = 0; k < last->eval.c.naxes; k++) {
 			if (p->curves[piece.curve].axis[k] !=
 			    p->head->column[j])
 				continue;
@@ -92,6 +106,7 @@ static bool along_curve(const struct interp_program *p,
 }
 
 bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
+		       struct interp_at_curve *last,
 		       struct interp_contour_point *ret)
 {
 	const struct interp_seg s = i < p->head->nsegs ? p->segs[i] :
@@ -106,7 +121,7 @@ bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
 	along_line(p, i, &s, part, ret);
 	if (s.kind == INTERP_ARC)
 		along_arc(p, &s, part, ret);
-	return s.kind != INTERP_CURVE || along_curve(p, &s, part, ret);
+	return s.kind != INTERP_CURVE || along_curve(p, &s, part, last, ret);
 }
 
 /* The last segment with a length that begins at @u or before it. */
@@ -131,20 +146,23 @@ static uint32_t seg_at(const struct interp_program *p, double u)
 
 static void path_at(const void *arg, double u, struct interp_contour_point *ret)
 {
-	const struct interp_program *p = arg;
-	const uint32_t i = seg_at(p, u);
+	const struct interp_at_path *w = arg;
+	const uint32_t i = seg_at(w->program, u);
 
-	interp_program_at(p, i, u - p->segs[i].s_mm, ret);
+	interp_program_at(w->program, i, u - w->program->segs[i].s_mm, w->last,
+			  ret);
 }
 
-bool interp_program_path(const struct interp_program *p,
+bool interp_program_path(const struct interp_at_path *w,
 			 struct interp_contour_path *ret)
 {
+	const struct interp_program *p = w->program;
+
 	for (uint32_t i = 0; i < p->head->nsegs; i++)
 		if (p->segs[i].kind == INTERP_PAIR)
 			return false;
 	*ret = (struct interp_contour_path) {
-		p, path_at, 0, p->head->length_mm, (int)p->head->naxes
+		w, path_at, 0, p->head->length_mm, (int)p->head->naxes
 	};
 	return p->head->length_mm > 0;
 }

@@ -28,19 +28,20 @@ static void must_be_near(double a, double b, double eps)
 }
 
 /* Half a pulse on each axis is what the walk keeps to. */
-static void look(const struct interp_cursor *c)
+static void look(const struct interp_cursor *c, struct interp_at_curve *last)
 {
 	const struct interp_program_head *h = c->p.head;
 	const double d_mm = 1e-6;
 	struct interp_contour_point at, before, after;
 
-	if (!interp_program_at(&c->p, c->index, c->s_mm, &at)) {
+	if (!interp_program_at(&c->p, c->index, c->s_mm, last, &at)) {
 		assert_true(c->seg.kind >= INTERP_BEGIN);
 		return;
 	}
-	assert_true(interp_program_at(&c->p, c->index, c->s_mm - d_mm,
+	assert_true(interp_program_at(&c->p, c->index, c->s_mm - d_mm, last,
 				      &before));
-	assert_true(interp_program_at(&c->p, c->index, c->s_mm + d_mm, &after));
+	assert_true(interp_program_at(&c->p, c->index, c->s_mm + d_mm, last,
+				      &after));
 	for (uint32_t j = 0; j < h->naxes; j++) {
 		must_be_near(at.mm[j] / 0.001, c->pos[h->column[j]], 1.01);
 		if (c->s_mm < 2 * d_mm ||
@@ -53,6 +54,7 @@ static void look(const struct interp_cursor *c)
 
 static void it_is_where_the_walk_is_and_leads_where_it_goes(void **state)
 {
+	static struct interp_at_curve last;
 	struct nc_read n = nc_ready();
 	struct interp_cursor c;
 	enum interp_step s = INTERP_MOVED;
@@ -65,7 +67,7 @@ static void it_is_where_the_walk_is_and_leads_where_it_goes(void **state)
 		interp_cursor_aim(&c, 0.0137);
 		while ((s = interp_cursor_step(&c)) == INTERP_MOVED)
 			;
-		look(&c);
+		look(&c, &last);
 		kinds |= 1 << c.seg.kind;
 		if (s == INTERP_AT_ACTION)
 			interp_cursor_pass(&c);
@@ -78,13 +80,15 @@ static void it_is_where_the_walk_is_and_leads_where_it_goes(void **state)
 /* From anywhere, by the place alone. */
 static void the_whole_path_is_one_path(void **state)
 {
+	static struct interp_at_curve last;
 	struct nc_read n = nc_ready();
+	const struct interp_at_path w = { &n.p, &last };
 	struct interp_contour_path path;
 	struct interp_contour_point a, b;
 
 	(void)state;
 	nc_read(&n, JOB);
-	assert_true(interp_program_path(&n.p, &path));
+	assert_true(interp_program_path(&w, &path));
 	assert_int_equal(path.naxes, n.p.head->naxes);
 	for (int i = 0; i < 5000; i++) {
 		const double u = path.u_max * i / 5000, d = path.u_max / 5000;
@@ -102,15 +106,17 @@ static void the_whole_path_is_one_path(void **state)
 
 static void what_does_not_move_has_no_point(void **state)
 {
+	static struct interp_at_curve last;
 	struct nc_read n = nc_ready();
+	const struct interp_at_path w = { &n.p, &last };
 	struct interp_contour_path path;
 	struct interp_contour_point at;
 
 	(void)state;
 	nc_read(&n, "G21\nG4 P1\nM2\n");
-	assert_false(interp_program_path(&n.p, &path));
+	assert_false(interp_program_path(&w, &path));
 	for (uint32_t i = 0; i < n.p.head->nsegs + 2; i++)
-		assert_false(interp_program_at(&n.p, i, 0, &at));
+		assert_false(interp_program_at(&n.p, i, 0, &last, &at));
 	nc_done(&n);
 }
 

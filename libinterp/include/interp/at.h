@@ -14,7 +14,16 @@
 #define INTERP_AT_H
 
 #include "interp/contour.h"
+#include "interp/nurbs.h"
 #include "interp/program.h"
+
+/* The curve last looked at: opening its span is most of a look.  Of one program;
+ * zeroed by the caller. */
+struct interp_at_curve {
+	bool open;
+	uint32_t curve;
+	struct interp_nurbs_eval eval;
+};
 
 /**
  * interp_program_at() - the point @s_mm behind the start of segment @i, and the
@@ -25,15 +34,22 @@
  * sound.
  */
 bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
+		       struct interp_at_curve *last,
 		       struct interp_contour_point *ret);
+
+/* Both stay the caller's. */
+struct interp_at_path {
+	const struct interp_program *program;
+	struct interp_at_curve *last;
+};
 
 /**
  * interp_program_path() - the whole of it as a path; u is the place in mm.
  *
- * @p stays the caller's.  Startup only; then a binary search for each look.
+ * @w stays the caller's, too.  Startup only; then a binary search for each look.
  * Return: false if the program does not move, or has two contours at once.
  */
-bool interp_program_path(const struct interp_program *p,
+bool interp_program_path(const struct interp_at_path *w,
 			 struct interp_contour_path *ret);
 
 #endif /* INTERP_AT_H */
