@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * nurbs.c - curves: G5 G5.1 and G5.2 G5.3 as LinuxCNC has them, G6.2 as Fanuc
+ * nurbs.c - curves of control points and knots; G6.2 as Fanuc has it
  *
- * G5 and G5.1 are Bezier curves, whole on their line.  A NURBS is put together
- * block by block and built when it is whole: of G5.2 at G5.3, of G6.2 when it
- * has as many knots as its control points and its order ask for.  Until then
- * no other word may stand on a line.
+ * A NURBS is put together block by block and built when it is whole: of G5.2
+ * at G5.3, of G6.2 when it has as many knots as its control points and its
+ * order ask for.  Until then no other word may stand on a line.
  */
-#include "code/reader.h"
+#include "code/nurbs.h"
 
 #include <errno.h>
 #include <math.h>
@@ -16,10 +15,8 @@
 
 #define ROW		(INTERP_NAXES + 1)
 #define FANUC_ORDER	4
-#define LINUXCNC_ORDER	3
 #define POINTS_MAX	1000000u
 #define END_PULSES	2.0
-#define WEIGHT_MIN	1e-9
 
 /* -- Points and knots ------------------------------------------------------------ */
 
@@ -50,8 +47,8 @@ static int refuse_many(struct nc_reader *r)
 			    POINTS_MAX);
 }
 
-static int add_point(struct nc_reader *r, const double at_mm[INTERP_NAXES],
-		     double weight)
+int nc_curve_point(struct nc_reader *r, const double at_mm[INTERP_NAXES],
+		   double weight)
 {
 	struct nc_curve *c = &r->curve;
 	void *points = c->points, *marks = c->marks;
@@ -76,7 +73,7 @@ static int add_point(struct nc_reader *r, const double at_mm[INTERP_NAXES],
 	return 0;
 }
 
-static int add_knot(struct nc_reader *r, double u)
+int nc_curve_knot(struct nc_reader *r, double u)
 {
 	struct nc_curve *c = &r->curve;
 	void *knots = c->knots;
@@ -92,7 +89,7 @@ static int add_knot(struct nc_reader *r, double u)
 	return 0;
 }
 
-static void open_curve(struct nc_reader *r, uint8_t kind, uint32_t order)
+void nc_curve_open(struct nc_reader *r, uint8_t kind, uint32_t order)
 {
 	struct nc_curve *c = &r->curve;
 
@@ -103,8 +100,7 @@ static void open_curve(struct nc_reader *r, uint8_t kind, uint32_t order)
 	memcpy(c->last_mm, nc_here(r), sizeof(c->last_mm));
 }
 
-/* As nc_target(), from the last control point. */
-static void target(const struct nc_reader *r, double ret_mm[INTERP_NAXES])
+void nc_curve_target(const struct nc_reader *r, double ret_mm[INTERP_NAXES])
 {
 	const struct nc_block *b = &r->block;
 	const double *last = r->curve.last_mm;
@@ -166,7 +162,7 @@ static int check_end(struct nc_reader *r)
 	return 0;
 }
 
-static int build(struct nc_reader *r)
+int nc_curve_build(struct nc_reader *r)
 {
 	struct nc_curve *c = &r->curve;
 	struct interp_build_curve bc = {
@@ -192,7 +188,7 @@ static int build(struct nc_reader *r)
 	return nc_placed(r, rc, c->last_mm);
 }
 
-static int refuse_weight(struct nc_reader *r, enum nc_slot slot)
+int nc_curve_refuse_weight(struct nc_reader *r, enum nc_slot slot)
 {
 	const uint8_t *at = r->block.at[slot];
 
@@ -201,8 +197,7 @@ static int refuse_weight(struct nc_reader *r, enum nc_slot slot)
 			 nc_quote_word(r, at).s, r->block.value[slot]);
 }
 
-/* Of the word @at, which ended the curve. */
-static int check_points(struct nc_reader *r, const uint8_t *at)
+int nc_curve_check_points(struct nc_reader *r, const uint8_t *at)
 {
 	const struct nc_curve *c = &r->curve;
 
@@ -226,7 +221,7 @@ static int fanuc_open(struct nc_reader *r)
 		return nc_refuse(r, r->block.at[NC_P], "an order of 2 to 10, "
 				 "the degree + 1", "a curve of order %g",
 				 order);
-	open_curve(r, NC_NURBS, (uint32_t)order);
+	nc_curve_open(r, NC_NURBS, (uint32_t)order);
 	return 0;
 }
 
@@ -249,7 +244,7 @@ static int fanuc_knot(struct nc_reader *r)
 				 "%s: knot %g a %uth time in a curve of order "
 				 "%u", nc_quote_word(r, at).s, u, same,
 				 c->order);
-	return add_knot(r, u);
+	return nc_curve_knot(r, u);
 }
 
 static int fanuc_point(struct nc_reader *r)
@@ -261,10 +256,10 @@ static int fanuc_point(struct nc_reader *r)
 		return nc_refuse(r, r->block.at[NC_K], "the rest of the knots, "
 				 "alone in their blocks",
 				 "a control point behind knots of their own");
-	if (!(weight >= WEIGHT_MIN))
-		return refuse_weight(r, NC_R);
-	target(r, at_mm);
-	return add_point(r, at_mm, weight);
+	if (!(weight >= NC_WEIGHT_MIN))
+		return nc_curve_refuse_weight(r, NC_R);
+	nc_curve_target(r, at_mm);
+	return nc_curve_point(r, at_mm, weight);
 }
 
 static int fanuc(struct nc_reader *r)
@@ -292,168 +287,15 @@ static int fanuc(struct nc_reader *r)
 		rc = fanuc_point(r);
 	if (rc || c->nknots != c->npoints + c->order)
 		return rc;
-	rc = check_points(r, b->at[NC_K]);
-	return rc ? rc : build(r);
+	rc = nc_curve_check_points(r, b->at[NC_K]);
+	return rc ? rc : nc_curve_build(r);
 }
 
-/* -- G5.2 and G5.3 ------------------------------------------------------------------ */
-
-static int linuxcnc_weight(struct nc_reader *r, double *ret)
-{
-	*ret = nc_has(r, NC_P) ? r->block.value[NC_P] : 1;
-	return *ret >= WEIGHT_MIN ? 0 : refuse_weight(r, NC_P);
-}
-
-static int refuse_plane(struct nc_reader *r)
+int nc_curve_refuse_plane(struct nc_reader *r)
 {
 	return nc_refuse(r, r->block.code_at[NC_MOTION], "G17 before it",
 			 "%s outside the plane XY", nc_quote_word(r,
 			 r->block.code_at[NC_MOTION]).s);
-}
-
-/* The point it begins at is the first control point; its weight is that of a
- * block without X and Y. */
-static int linuxcnc_point(struct nc_reader *r)
-{
-	const struct nc_block *b = &r->block;
-	const bool named = b->words & (NC_BIT(NC_X) | NC_BIT(NC_Y));
-	struct nc_curve *c = &r->curve;
-	double weight, at_mm[INTERP_NAXES];
-	int rc = linuxcnc_weight(r, &weight);
-
-	if (rc)
-		return rc;
-	if (r->plane != 0)
-		return refuse_plane(r);
-	if (!c->open) {
-		open_curve(r, NC_NURBS_BLOCK, LINUXCNC_ORDER);
-		rc = add_point(r, nc_here(r), named ? 1 : weight);
-	} else if (!named && nc_has(r, NC_P)) {
-		return nc_refuse(r, b->at[NC_P], "X and Y with it, but in the "
-				 "first block", "a weight without a point");
-	}
-	if (nc_has(r, NC_L)) {
-		if (!(b->value[NC_L] >= 2 &&
-		      b->value[NC_L] <= INTERP_NURBS_ORDER_MAX))
-			return nc_refuse(r, b->at[NC_L], "an order of 2 to 10, "
-					 "the degree + 1", "a curve of order "
-					 "%g", b->value[NC_L]);
-		c->order = (uint32_t)b->value[NC_L];
-	}
-	if (rc || !named)
-		return rc;
-	target(r, at_mm);
-	return add_point(r, at_mm, weight);
-}
-
-static int linuxcnc_end(struct nc_reader *r)
-{
-	struct nc_curve *c = &r->curve;
-	int rc = 0;
-
-	if (c->open != NC_NURBS_BLOCK)
-		return nc_refuse(r, r->block.code_at[NC_MOTION],
-				 "G5.2 and control points before it",
-				 "G5.3 without G5.2");
-	rc = check_points(r, r->block.code_at[NC_MOTION]);
-	/* Even knots, the ends as often as the order. */
-	for (uint32_t i = 0; !rc && i < c->npoints + c->order; i++)
-		rc = add_knot(r, i < c->order ? 0 : i < c->npoints ?
-				 i - c->order + 1 : c->npoints - c->order + 1);
-	return rc ? rc : build(r);
-}
-
-/* -- G5 and G5.1 ---------------------------------------------------------------------- */
-
-/* Control points @p, rows of X and Y, behind where it stands; the last is the
- * curve's end. */
-static int bezier(struct nc_reader *r, const double *p, uint32_t n)
-{
-	double at_mm[INTERP_NAXES];
-	int rc;
-
-	open_curve(r, NC_NURBS, n + 1);
-	memcpy(at_mm, nc_here(r), sizeof(at_mm));
-	rc = add_point(r, at_mm, 1);
-	for (uint32_t i = 0; !rc && i < n; i++) {
-		at_mm[INTERP_X] = p[2 * i];
-		at_mm[INTERP_Y] = p[2 * i + 1];
-		rc = add_point(r, at_mm, 1);
-	}
-	for (uint32_t i = 0; !rc && i < 2 * (n + 1); i++)
-		rc = add_knot(r, i <= n ? 0 : 1);
-	r->curve.open = 0;
-	return rc ? rc : build(r);
-}
-
-/* I and J of the line, or on from the last G5. */
-static int handle(struct nc_reader *r, double ret_mm[2])
-{
-	const struct nc_block *b = &r->block;
-
-	if (nc_has(r, NC_I) && nc_has(r, NC_J)) {
-		ret_mm[0] = b->value[NC_I] * r->unit_mm;
-		ret_mm[1] = b->value[NC_J] * r->unit_mm;
-		return 0;
-	}
-	if (nc_has(r, NC_I) || nc_has(r, NC_J) || !r->curve.smooth)
-		return nc_refuse(r, b->code_at[NC_MOTION],
-				 "I and J, or none of them right behind "
-				 "another G5", "G5 with%s",
-				 nc_has(r, NC_I) ? " I and no J" :
-				 nc_has(r, NC_J) ? " J and no I" :
-				 "out I and J");
-	memcpy(ret_mm, r->curve.leave_mm, sizeof(r->curve.leave_mm));
-	return 0;
-}
-
-static int spline(struct nc_reader *r)
-{
-	const struct nc_block *b = &r->block;
-	const double *here = nc_here(r);
-	double end_mm[INTERP_NAXES], p[6] = { 0 };
-	int rc;
-
-	if (!nc_has(r, NC_P) || !nc_has(r, NC_Q))
-		return nc_refuse(r, b->code_at[NC_MOTION],
-				 "P and Q, from the end to the second control "
-				 "point", "G5 without P and Q");
-	rc = handle(r, p);
-	if (rc)
-		return rc;
-	nc_target(r, end_mm);
-	for (int i = 0; i < 2; i++) {
-		const double back_mm = b->value[i ? NC_Q : NC_P] * r->unit_mm;
-
-		p[i] += here[i];
-		p[2 + i] = end_mm[i] + back_mm;
-		p[4 + i] = end_mm[i];
-		r->curve.leave_mm[i] = -back_mm;
-	}
-	rc = bezier(r, p, 3);
-	r->curve.smooth = !rc;
-	return rc;
-}
-
-static int parabola(struct nc_reader *r)
-{
-	const struct nc_block *b = &r->block;
-	const double *here = nc_here(r);
-	double end_mm[INTERP_NAXES], p[4];
-
-	if (!nc_has(r, NC_I) && !nc_has(r, NC_J))
-		return nc_refuse(r, b->code_at[NC_MOTION],
-				 "I or J, from the start to the control point",
-				 "G5.1 without I and J");
-	nc_target(r, end_mm);
-	for (int i = 0; i < 2; i++) {
-		const enum nc_slot slot = i ? NC_J : NC_I;
-
-		p[i] = here[i] +
-		       (nc_has(r, slot) ? b->value[slot] * r->unit_mm : 0);
-		p[2 + i] = end_mm[i];
-	}
-	return bezier(r, p, 2);
 }
 
 /* -- Lines ----------------------------------------------------------------------------- */
@@ -492,10 +334,10 @@ int nc_curve_goes_on(struct nc_reader *r)
 int nc_curve(struct nc_reader *r)
 {
 	static int (*const curves[])(struct nc_reader *) = {
-		[NC_SPLINE]		= spline,
-		[NC_PARABOLA]		= parabola,
-		[NC_NURBS_BLOCK]	= linuxcnc_point,
-		[NC_NURBS_END]		= linuxcnc_end,
+		[NC_SPLINE]		= nc_curve_spline,
+		[NC_PARABOLA]		= nc_curve_parabola,
+		[NC_NURBS_BLOCK]	= nc_curve_block,
+		[NC_NURBS_END]		= nc_curve_end,
 		[NC_NURBS]		= fanuc,
 	};
 	const int motion = r->block.code[NC_MOTION]->value;
@@ -508,7 +350,7 @@ int nc_curve(struct nc_reader *r)
 	if (motion <= NC_PARABOLA && !(r->block.words & NC_MOVES))
 		return 0;
 	if (motion <= NC_PARABOLA && r->plane != 0)
-		return refuse_plane(r);
+		return nc_curve_refuse_plane(r);
 	if (motion != NC_SPLINE)
 		r->curve.smooth = false;
 	return curves[motion](r);

@@ -10,7 +10,8 @@
  *	cycles.c	G130 ... G135, and the way out: G140 ... G143
  *	touch.c		touches: G38.2, G80 ... G82, G160 ... G162
  *	tool_point.c	G43.4: places of the tool's tip
- *	nurbs.c		G5 ... G5.3, G6.2: curves
+ *	nurbs.c		curves of control points and knots, G6.2
+ *	spline.c	G5 ... G5.3: curves as LinuxCNC has them
  *	offset.c	offset and taper: G40 ... G42, G50 ... G52, D and H
  *	tech.c		conditions: called, defined, in a sequence
  *	flow.c		subprograms and the end

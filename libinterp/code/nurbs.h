@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * nurbs.h - a curve being put together: control points, knots, built
+ */
+#ifndef CODE_NURBS_H
+#define CODE_NURBS_H
+
+#include "code/reader.h"
+
+#define NC_WEIGHT_MIN	1e-9
+
+/** nc_curve_open() - begin one of @kind, NC_NURBS or NC_NURBS_BLOCK. */
+void nc_curve_open(struct nc_reader *r, uint8_t kind, uint32_t order);
+
+/** nc_curve_point(), nc_curve_knot() - one more.
+ *  Return: 0, -ENOMEM, or -EINVAL if they are too many. */
+int nc_curve_point(struct nc_reader *r, const double at_mm[INTERP_NAXES],
+		   double weight);
+int nc_curve_knot(struct nc_reader *r, double u);
+
+/** nc_curve_target() - as nc_target(), from the last control point. */
+void nc_curve_target(const struct nc_reader *r, double ret_mm[INTERP_NAXES]);
+
+/** nc_curve_check_points() - are they enough?  The word @at ended the curve. */
+int nc_curve_check_points(struct nc_reader *r, const uint8_t *at);
+
+/** nc_curve_build() - the curve is whole: move along it. */
+int nc_curve_build(struct nc_reader *r);
+
+int nc_curve_refuse_weight(struct nc_reader *r, enum nc_slot slot);
+int nc_curve_refuse_plane(struct nc_reader *r);
+
+/* The blocks of G5.2 and G5.3, G5 and G5.1. */
+int nc_curve_block(struct nc_reader *r);
+int nc_curve_end(struct nc_reader *r);
+int nc_curve_spline(struct nc_reader *r);
+int nc_curve_parabola(struct nc_reader *r);
+
+#endif /* CODE_NURBS_H */
