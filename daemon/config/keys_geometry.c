@@ -72,7 +72,7 @@ static const struct config_key row[] = {
 	       AT(kinematics.tip_mm[2]), "the same, Z"),
 	NUMBER(KINEMATICS, "tolerance_um", "um", "1", 0.001, 1000,
 	       AT(kinematics.tolerance_um),
-	       "the tip keeps so near to its line under G43.4"),
+	       "the tip keeps so near to its way under G43.4"),
 };
 /* clang-format on */
 

@@ -205,7 +205,9 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 		rc = nc_room(r);
 	if (rc)
 		return rc;
-	rc = go_round(r, end_mm, &arc);
 	r->moved |= NC_BIT(p->a) | NC_BIT(p->b);
+	if (r->tool.on)
+		return nc_tip_arc(r, end_mm, &arc);
+	rc = go_round(r, end_mm, &arc);
 	return nc_placed(r, rc, end_mm);
 }

@@ -169,10 +169,6 @@ int nc_run_motion(struct nc_reader *r)
 	r->curve.smooth = false;
 	if (!(r->block.words & NC_MOVES))
 		return 0;
-	if (motion->value >= 2 && r->tool.on)
-		return nc_refuse(r, r->block.code_at[NC_MOTION],
-				 "G0 or G1, or G49 before it",
-				 "an arc under G43.4");
 	if (motion->value >= 2)
 		return nc_arc(r, motion->value == 2);
 	nc_target(r, end_mm);

@@ -144,9 +144,8 @@ static void set_marks(struct nc_curve *c)
 
 /* Ends that are loose end elsewhere; what follows would begin in a place where
  * the machine does not stand. */
-static int check_end(struct nc_reader *r)
+int nc_curve_check_end(struct nc_reader *r, const double here[INTERP_NAXES])
 {
-	const double *here = interp_build_here(r->contour.guides.build);
 	const double *last = r->curve.last_mm;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
@@ -182,9 +181,12 @@ int nc_curve_build(struct nc_reader *r)
 		bc.axis[i] = i;
 	set_feed(r);
 	set_marks(c);
+	if (r->tool.on)
+		return nc_tip_curve(r, &bc);
 	rc = contour_nurbs(&r->contour, c->last_mm, &bc, &r->word, r->diag);
 	if (!rc)
-		rc = check_end(r);
+		rc = nc_curve_check_end(r,
+				interp_build_here(r->contour.guides.build));
 	return nc_placed(r, rc, c->last_mm);
 }
 
@@ -342,11 +344,6 @@ int nc_curve(struct nc_reader *r)
 	};
 	const int motion = r->block.code[NC_MOTION]->value;
 
-	if (r->tool.on)
-		return nc_refuse(r, r->block.code_at[NC_MOTION],
-				 "G49 before it and the curve of the axes, or "
-				 "the tip's way as G1 lines",
-				 "a curve under G43.4");
 	if (motion <= NC_PARABOLA && !(r->block.words & NC_MOVES))
 		return 0;
 	if (motion <= NC_PARABOLA && r->plane != 0)

@@ -24,6 +24,9 @@ void nc_curve_target(const struct nc_reader *r, double ret_mm[INTERP_NAXES]);
 /** nc_curve_check_points() - are they enough?  The word @at ended the curve. */
 int nc_curve_check_points(struct nc_reader *r, const uint8_t *at);
 
+/** nc_curve_check_end() - the curve ends @here: at its last control point? */
+int nc_curve_check_end(struct nc_reader *r, const double here[INTERP_NAXES]);
+
 /** nc_curve_build() - the curve is whole: move along it. */
 int nc_curve_build(struct nc_reader *r);
 

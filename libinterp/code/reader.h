@@ -10,6 +10,8 @@
  *	cycles.c	G130 ... G135, and the way out: G140 ... G143
  *	touch.c		touches: G38.2, G80 ... G82, G160 ... G162
  *	tool_point.c	G43.4: places of the tool's tip
+ *	tip_curve.c	... its lines, arcs and curves
+ *	tip_way.c	... cut into lines of the axes
  *	nurbs.c		curves of control points and knots, G6.2
  *	spline.c	G5 ... G5.3: curves as LinuxCNC has them
  *	offset.c	offset and taper: G40 ... G42, G50 ... G52, D and H
@@ -212,10 +214,15 @@ void nc_take_cycle(struct nc_reader *r);
 
 /** nc_set_lift() - after a change of plane or of the way out. */
 void nc_set_lift(struct nc_reader *r);
-/* The same, and a straight line under G43.4. */
 int nc_run_tool_point(struct nc_reader *r);
+
+/* Under G43.4: as contour_line(), contour_arc() and contour_nurbs(), for the
+ * tip; r->word is filled.  A curve ends at r->curve.last_mm. */
 int nc_tip_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		bool rapid);
+int nc_tip_arc(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+	       const struct interp_build_arc *arc);
+int nc_tip_curve(struct nc_reader *r, const struct interp_build_curve *c);
 
 /* touch.c */
 int nc_run_touch(struct nc_reader *r);

@@ -53,7 +53,7 @@ static double sweep_of(const struct build_arc *p, double theta0, double theta1)
 	return sweep + TURN * p->word->turns;
 }
 
-static int arc_geometry(struct build_arc *p, struct interp_diag *diag)
+int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
 {
 	const struct interp_build_arc *w = p->word;
 	const double a0 = p->from_mm[w->axis_a] - w->centre_a_mm;
@@ -288,7 +288,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 {
-	int r = arc_geometry(p, diag);
+	int r = build_arc_shape(p, diag);
 
 	if (r < 0)
 		return r;

@@ -23,6 +23,14 @@ struct build_arc {
 	struct circle_plan runs;	/* if arc.nruns > 0 */
 };
 
+/**
+ * build_arc_shape() - from @p's word and ends: centre, radii, angles into arc.
+ *
+ * Of o only the machine counts.  Return: 0, or -EINVAL with @diag's found and
+ * wanted: radii that differ, or none.
+ */
+int build_arc_shape(struct build_arc *p, struct interp_diag *diag);
+
 /** build_arc_plan() - 0, or -EINVAL with @diag's found and wanted. */
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag);
 

@@ -191,7 +191,7 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 				  "segment", "a shorter curve");
 }
 
-static uint32_t line_at(struct curve_plan *p, double u)
+uint32_t build_curve_line(struct curve_plan *p, double u)
 {
 	const struct interp_build_curve *c = p->c;
 
@@ -240,7 +240,7 @@ static int piece_add(struct curve_plan *p, double to)
 		return -ENOMEM;
 	*stored = piece;
 	step.feed_max_mm_s = feed_of(p);
-	p->word.line = line_at(p, p->from);
+	p->word.line = build_curve_line(p, p->from);
 	return build_step(p->b, &step, &p->word, p->diag);
 }
 
@@ -365,7 +365,8 @@ int interp_build_curve(struct interp_build *b,
 		       const struct interp_build_word *w,
 		       struct interp_diag *diag)
 {
-	struct curve_plan p = { .b = b, .c = c, .word = *w, .diag = diag };
+	struct curve_plan p = { .b = b, .c = c, .word = *w, .diag = diag,
+				.here_mm = b->here_mm };
 	struct interp_nurbs n;
 	int r = interp_build_flush(b, diag);
 

@@ -27,6 +27,7 @@ struct curve_plan {
 	struct interp_build_word word;
 	struct interp_diag *diag;
 	struct interp_curve curve;	/* as stored */
+	const double *here_mm;		/* where the program stands */
 	struct interp_nurbs_limits limits;	/* of the axes */
 	double chord_mm_s;		/* the fastest round a radius of 1 mm
 					 * within the chord error */
@@ -47,8 +48,15 @@ int build_curve_refuse(struct curve_plan *p, const char *found,
 /** build_curve_blame() - the line of diag is that of the curve at @u. */
 void build_curve_blame(struct curve_plan *p, double u);
 
+/** build_curve_line() - the line of the curve at @u, which never falls. */
+uint32_t build_curve_line(struct curve_plan *p, double u);
+
 /** build_curve_check() - is it sound?  0, or -EINVAL with diag filled. */
 int build_curve_check(struct curve_plan *p);
+
+/** build_curve_check_start() - does it begin where the program stands?  Of an
+ *  opened curve; 0, or -EINVAL with diag filled. */
+int build_curve_check_start(struct curve_plan *p);
 
 /**
  * build_curve_check_way() - has the machine its axes, does it begin where the

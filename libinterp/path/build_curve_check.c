@@ -56,7 +56,7 @@ static int refuse_flaw(struct curve_plan *p, enum interp_nurbs_flaw f,
 				  interp_nurbs_flaw_wanted(f));
 }
 
-static int check_start(struct curve_plan *p)
+int build_curve_check_start(struct curve_plan *p)
 {
 	const struct interp_nurbs *c = &p->walk.eval.c;
 	const bool loose = c->knots[0] != c->knots[c->degree];
@@ -65,7 +65,7 @@ static int check_start(struct curve_plan *p)
 	interp_nurbs_at(&p->walk.eval, interp_nurbs_first(c), 0, &at);
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
 		const int axis = p->curve.axis[k];
-		const double off = at.d[0][k] - p->b->here_mm[axis];
+		const double off = at.d[0][k] - p->here_mm[axis];
 		char found[sizeof(p->diag->found)];
 
 		if (fabs(off) * p->pulses_mm[axis] <= START_PULSES)
@@ -73,7 +73,7 @@ static int check_start(struct curve_plan *p)
 		snprintf(found, sizeof(found), "a curve that begins at %c %.4f,"
 			 " not where the program stands: %.4f",
 			 INTERP_AXIS_LETTERS[axis], at.d[0][k],
-			 p->b->here_mm[axis]);
+			 p->here_mm[axis]);
 		build_curve_blame(p, interp_nurbs_first(c));
 		return build_curve_refuse(p, found, loose ?
 			"a first knot that stands as often as the order, or "
@@ -141,6 +141,6 @@ int build_curve_check_way(struct curve_plan *p)
 	int r = check_axes(p);
 
 	if (r == 0)
-		r = check_start(p);
+		r = build_curve_check_start(p);
 	return r == 0 ? check_travel(p) : r;
 }

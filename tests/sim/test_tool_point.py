@@ -159,7 +159,6 @@ def test_an_axis_of_no_joint_goes_at_f(tmp_path):
 REFUSED = [
     ("G43.4", "", "kinematics.chain in the machine file"),
     ("G43.4 H7", INI, "not defined"),
-    ("G43.4\nG2 X1 Y1 I1 F1", INI, "an arc under G43.4"),
     ("G43.4\nG28 Z0", INI, "G28 under G43.4"),
     ("G43.4\nG92 X0", INI, "G92 under G43.4"),
     ("G43.4\nG53 G0 X0", INI, "G53 under G43.4"),

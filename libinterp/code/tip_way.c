@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * tip_way.c - cut a way of the tool's tip into straight lines of the axes
+ *
+ * A line of the tip is a curve of the axes as soon as a rotary turns, a curve
+ * of the tip always.  Each piece is so short that the tip stays within the
+ * tolerance of its way: tried by putting the axes on the piece and looking
+ * where the tip is.
+ */
+#include "code/tip_way.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Places of a piece that are looked at; between them the tip's way is smooth,
+ * as long as a piece turns by no more than this: of whole turns every look may
+ * meet the same place. */
+#define LOOKS		15
+#define TURN_MAX_DEG	180.0
+
+/* One way makes no more pieces than this. */
+#define PIECES_MAX	100000
+
+#define STANDS_MM	1e-7
+#define STILL_MM	1e-9		/* of a whole way: a rounding */
+
+/* How far a part of a way leads. */
+struct extent {
+	double tip_mm;
+	double turn_deg;		/* the farthest of the rotaries */
+	double other_mm;		/* of U and V, which no joint has */
+};
+
+static double lerp(double a, double b, double t)
+{
+	return a + (b - a) * t;
+}
+
+static void place_at(const struct nc_tip_way *w, double t,
+		     double ret_mm[INTERP_NAXES])
+{
+	w->at(w->of, t, ret_mm);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret_mm[i] += lerp(w->off_mm[0][i], w->off_mm[1][i], t);
+}
+
+/* The axes at @t: those that no joint has are as named. */
+static int axes_at(const struct nc_reader *r, const struct nc_tip_way *w,
+		   double t, double q[INTERP_NAXES])
+{
+	double tip[3];
+
+	place_at(w, t, q);
+	memcpy(tip, q, sizeof(tip));
+	return interp_kin_place(&r->tool.k, tip, q);
+}
+
+/* Length from @a to @b along @n axes, @first and on. */
+static double span(const double *a, const double *b, int first, int n)
+{
+	double sum = 0;
+
+	for (int i = first; i < first + n; i++)
+		sum += (b[i] - a[i]) * (b[i] - a[i]);
+	return sqrt(sum);
+}
+
+/* Of axes at @q and the tip where they put it, from where it should be. */
+static double off_mm(const struct interp_kinematics *k,
+		     const double q[INTERP_NAXES],
+		     const double want_mm[INTERP_NAXES])
+{
+	struct interp_kin_pose p;
+	double off;
+
+	interp_kin_forward(k, q, &p);
+	off = span(p.tip_mm, want_mm, 0, 3);
+	for (int i = 3; i < INTERP_NAXES; i++)
+		off = fmax(off, fabs(q[i] - want_mm[i]));
+	return off;
+}
+
+/* A piece: part of a way, and where the axes are at its ends. */
+struct piece {
+	double t0, t1;
+	double q0[INTERP_NAXES], q1[INTERP_NAXES];
+};
+
+/* How far the tip strays from its way while the axes go straight. */
+static double stray_mm(const struct nc_reader *r, const struct nc_tip_way *w,
+		       const struct piece *p)
+{
+	double most = 0;
+
+	for (int n = 1; n <= LOOKS; n++) {
+		const double u = n / (LOOKS + 1.0);
+		double q[INTERP_NAXES], want[INTERP_NAXES];
+
+		place_at(w, lerp(p->t0, p->t1, u), want);
+		for (int i = 0; i < INTERP_NAXES; i++)
+			q[i] = lerp(p->q0[i], p->q1[i], u);
+		most = fmax(most, off_mm(&r->tool.k, q, want));
+	}
+	return most;
+}
+
+/* Linear axes that stand but for a rounding: they stand. */
+static void settle(const double q0[INTERP_NAXES], double q1[INTERP_NAXES])
+{
+	for (int i = 0; i < 3; i++) {
+		if (fabs(q1[i] - q0[i]) > STANDS_MM)
+			return;
+	}
+	memcpy(q1, q0, 3 * sizeof(*q1));
+}
+
+static struct extent measure(const struct nc_tip_way *w, double t0, double t1)
+{
+	double a[INTERP_NAXES], b[INTERP_NAXES], turn[3] = { 0 };
+	struct extent e = { 0 };
+
+	place_at(w, t0, a);
+	for (int n = 1; n <= LOOKS + 1; n++) {
+		place_at(w, lerp(t0, t1, n / (LOOKS + 1.0)), b);
+		e.tip_mm += span(a, b, INTERP_X, 3);
+		e.other_mm += span(a, b, INTERP_U, 2);
+		for (int i = 0; i < 3; i++)
+			turn[i] += fabs(b[INTERP_A + i] - a[INTERP_A + i]);
+		memcpy(a, b, sizeof(a));
+	}
+	e.turn_deg = fmax(turn[0], fmax(turn[1], turn[2]));
+	return e;
+}
+
+/* F is that of the tip; where it stands on the whole way, of what moves. */
+static double seconds(const struct nc_reader *r, const struct extent *whole,
+		      const struct extent *part)
+{
+	if (whole->tip_mm > STILL_MM)
+		return part->tip_mm / r->feed_mm_s;
+	if (whole->turn_deg > STILL_MM)
+		return part->turn_deg / r->feed_deg_s;
+	return part->other_mm / r->feed_mm_s;
+}
+
+/* The path's length is counted on the linear axes. */
+static double path_mm(const struct piece *p)
+{
+	double path = span(p->q0, p->q1, INTERP_X, 3);
+
+	if (!(path > 0))
+		path = span(p->q0, p->q1, INTERP_U, 2);
+	if (!(path > 0))
+		path = span(p->q0, p->q1, INTERP_A, 3);
+	return path;
+}
+
+/* The way may have begun in a line before this one. */
+static int blame_way(struct nc_reader *r, int rc)
+{
+	if (r->word.line != r->line) {
+		r->diag->line = r->word.line;
+		r->diag->column = 0;
+	}
+	return rc;
+}
+
+static int refuse_pieces(struct nc_reader *r)
+{
+	return blame_way(r, nc_refuse(r, r->line_at, "a shorter way or turn, "
+				      "or a larger kinematics.tolerance_um",
+				      "more than %d pieces in one line",
+				      PIECES_MAX));
+}
+
+static int refuse_place(struct nc_reader *r)
+{
+	return blame_way(r, nc_refuse(r, r->line_at, "rotaries at which the "
+				      "linear axes span space", "a pose that "
+				      "the linear axes cannot reach"));
+}
+
+/* @p as long as it may be, up to the t1 it has: its end, and axes in q1. */
+static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
+		     struct piece *p)
+{
+	for (;;) {
+		if (axes_at(r, w, p->t1, p->q1))
+			return refuse_place(r);
+		if (stray_mm(r, w, p) <= r->o->tip_tolerance_mm)
+			break;
+		if (p->t1 - p->t0 < 1.0 / PIECES_MAX)
+			return refuse_pieces(r);
+		p->t1 = (p->t0 + p->t1) / 2;
+	}
+	settle(p->q0, p->q1);
+	return 0;
+}
+
+static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
+		      const struct extent *whole, const struct piece *p)
+{
+	int rc = nc_room(r);
+
+	if (rc)
+		return rc;
+	if (!r->word.rapid) {
+		const struct extent part = measure(w, p->t0, p->t1);
+		const double s = seconds(r, whole, &part), path = path_mm(p);
+
+		if (s > 0)
+			r->word.feed_mm_s = path / s;
+	}
+	rc = contour_line(&r->contour, p->q1, &r->word, r->diag);
+	return nc_placed(r, rc, p->q1);
+}
+
+int nc_tip_way(struct nc_reader *r, const struct nc_tip_way *w)
+{
+	const struct extent whole = measure(w, 0, 1);
+	const double most = fmin(1, TURN_MAX_DEG / w->turn_deg);
+	struct piece p = { .t0 = 0 };
+	double step = most;
+	int rc = most < 1.0 / PIECES_MAX ? refuse_pieces(r) : 0;
+
+	memcpy(p.q0, r->contour.here_mm, sizeof(p.q0));
+	while (!rc && p.t0 < 1) {
+		p.t1 = fmin(1, p.t0 + step);
+		rc = cut_piece(r, w, &p);
+		if (!rc)
+			rc = emit_piece(r, w, &whole, &p);
+		/* What was long enough here may do, or more. */
+		step = fmin(2 * (p.t1 - p.t0), most);
+		p.t0 = p.t1;
+		memcpy(p.q0, p.q1, sizeof(p.q0));
+	}
+	return rc;
+}
