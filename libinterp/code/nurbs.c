@@ -311,16 +311,18 @@ int nc_curve_goes_on(struct nc_reader *r)
 			   b->code[NC_MOTION]->value : -1;
 	/* Groups whose words have a value have no code. */
 	const uint32_t words = NC_BIT(NC_LABEL) | NC_BIT(NC_REGISTER);
+	const bool same = motion == c->open || motion < 0 ||
+			  (motion == NC_NURBS_END &&
+			   c->open == NC_NURBS_BLOCK);
 	const uint8_t *at = nc_has(r, NC_D) ? b->at[NC_D] :
 			    nc_has(r, NC_H) ? b->at[NC_H] :
 			    nc_has(r, NC_O) ? b->at[NC_O] : r->line_at;
 
-	if ((b->groups & ~may) == 0 &&
-	    (motion == c->open || motion < 0 ||
-	     (motion == NC_NURBS_END && c->open == NC_NURBS_BLOCK)))
+	if ((b->groups & ~may) == 0 && same)
 		return 0;
 	for (int g = 0; g < NC_NGROUPS; g++) {
-		if (b->groups & ~(NC_BIT(NC_FEED) | words) & NC_BIT(g))
+		if (b->groups & ~((same ? may : NC_BIT(NC_FEED)) | words) &
+		    NC_BIT(g))
 			at = b->code_at[g];
 	}
 	if (c->open == NC_NURBS)

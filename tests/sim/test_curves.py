@@ -131,3 +131,10 @@ def test_a_mistake_in_a_curve_is_told_with_its_place():
     r = run(text="F1\nG6.2 P3 K0 X0\nK0 X9 R-1\nK0 X3\nK1\nK1\nK1\n")
     assert r.returncode == 65
     assert b"3:7: error: R-1, a weight of -1; a weight above 0" in r.stderr
+
+
+def test_a_word_that_cuts_a_curve_short_is_told_with_its_place():
+    for text, place in (("K0 X3 C100", b"3:7:"), ("K0 X3 G21", b"3:7:"),
+                        ("G1 X3", b"3:1:"), ("X3 K0 G54", b"3:7:")):
+        r = run(text=f"F1\nG6.2 P3 K0 X0\n{text}\n")
+        assert place + b" error: " in r.stderr, (text, r.stderr)
