@@ -18,8 +18,10 @@
 #define LOOKS		15
 #define TURN_MAX_DEG	180.0
 
-/* One way makes no more pieces than this. */
+/* One way makes no more pieces than this, and none shorter: a curve may bend
+ * within a millionth of its length, a rounding is no bend. */
 #define PIECES_MAX	100000
+#define PIECE_MIN	1e-10
 
 #define STANDS_MM	1e-7
 #define STILL_MM	1e-9		/* of a whole way: a rounding */
@@ -189,7 +191,7 @@ static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
 			return refuse_place(r);
 		if (stray_mm(r, w, p) <= r->o->tip_tolerance_mm)
 			break;
-		if (p->t1 - p->t0 < 1.0 / PIECES_MAX)
+		if (p->t1 - p->t0 < PIECE_MIN)
 			return refuse_pieces(r);
 		p->t1 = (p->t0 + p->t1) / 2;
 	}
@@ -221,12 +223,14 @@ int nc_tip_way(struct nc_reader *r, const struct nc_tip_way *w)
 	const double most = fmin(1, TURN_MAX_DEG / w->turn_deg);
 	struct piece p = { .t0 = 0 };
 	double step = most;
+	uint32_t pieces = 0;
 	int rc = most < 1.0 / PIECES_MAX ? refuse_pieces(r) : 0;
 
 	memcpy(p.q0, r->contour.here_mm, sizeof(p.q0));
 	while (!rc && p.t0 < 1) {
 		p.t1 = fmin(1, p.t0 + step);
-		rc = cut_piece(r, w, &p);
+		rc = pieces++ == PIECES_MAX ? refuse_pieces(r) :
+					      cut_piece(r, w, &p);
 		if (!rc)
 			rc = emit_piece(r, w, &whole, &p);
 		/* What was long enough here may do, or more. */

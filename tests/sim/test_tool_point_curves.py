@@ -206,6 +206,22 @@ def test_a_corner_at_a_knot_is_met(machine):
     assert near * 1e3 < PULSES_UM
 
 
+def test_a_turn_of_a_micrometre_in_a_long_curve_is_no_reason_to_refuse(
+        machine):
+    """Its two last points are one, and the one before them weighs little."""
+    text = BEGIN + "G6.2 P8 K0\n" + "".join(f"K0 {p}\n" for p in (
+        "X-1.3019 A-53.9419 R1.41727", "X17.0478 Y24.8621 Z14.0876 A-77.5243",
+        "Y-10.2921 Z-77.2719 A-13.7342",
+        "X-26.7545 Y32. Z-7.2691 A-59.7653 R2.90228",
+        "X19.1473 Y-11.6875 A49.4735 C102.0607",
+        "X15.3057 Y17.0542 Z1.5564 C-333.8073 R0.02637",
+        "Z-77.3391 A31.266 C-177.3512",
+    )) + "K0.446872 R1\n" + "K1\n" * 8
+    r = report("--dry-run", "--machine", machine(0.01),
+               text=text + END)
+    assert r["outcome"] == "done"
+
+
 @pytest.mark.parametrize("curve, end", [
     ("G5 X20. Y10. I5. J5. P-5. Q5.\nG5 X0 Y20. P0 Q-5.", (0, 20)),
     ("G5.1 X10. Y10. I5. J15.", (10, 10)),
