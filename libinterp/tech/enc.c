@@ -78,6 +78,22 @@ static int take_cell(struct tech_text *t, const struct tech_cell *c, size_t i,
 	return tech_value(t, c, (enum interp_tech_id)id, &row->tech.v[id]);
 }
 
+/* Midway in the window. */
+static int find_servo_v(struct tech_text *t, struct interp_tech *tech)
+{
+	const double v = (tech->v[INTERP_TECH_WINDOW_LOW_V] +
+			  tech->v[INTERP_TECH_WINDOW_HIGH_V]) / 2;
+	char wanted[80];
+
+	tech->v[INTERP_TECH_SERVO_V] = v;
+	if (interp_tech_value_ok(INTERP_TECH_SERVO_V, v))
+		return 0;
+	interp_tech_range(INTERP_TECH_SERVO_V, wanted, sizeof(wanted));
+	return tech_refuse(t, t->line_at, wanted,
+			   "a servo voltage, midway from GVLO to GVHI, of %g V",
+			   v);
+}
+
 /* A row, unless the line names the columns. */
 static int take_line(struct tech_text *t, struct interp_tech_table *table)
 {
@@ -106,12 +122,8 @@ static int take_line(struct tech_text *t, struct interp_tech_table *table)
 	}
 	if (rc)
 		return rc;
-	if (n >= COLUMNS_MIN) {
-		row->tech.v[INTERP_TECH_SERVO_V] =
-			(row->tech.v[INTERP_TECH_WINDOW_LOW_V] +
-			 row->tech.v[INTERP_TECH_WINDOW_HIGH_V]) / 2;
-		return 0;
-	}
+	if (n >= COLUMNS_MIN)
+		return find_servo_v(t, &row->tech);
 	return tech_refuse(t, t->line_end, "14 to 17 numbers",
 			   "a row of %zu numbers, %s is missing", n,
 			   columns[n].name);

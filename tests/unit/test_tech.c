@@ -301,6 +301,9 @@ static void an_enc_row_that_is_none_is_refused(void **state)
 	assert_non_null(strstr(d.found, "10 numbers, ET is missing"));
 	assert_null(enc("25 80 0 0 30 40 440 212 0 2 3 10 0.5 0\n", &d));
 	assert_non_null(strstr(d.found, "window_low_v 40"));
+	assert_null(enc("25 80 0 0 0 0 440 212 0 2 3 10 0.5 0\n", &d));
+	assert_non_null(strstr(d.found, "midway from GVLO to GVHI"));
+	assert_non_null(strstr(d.wanted, "from 0.1"));
 	assert_null(enc("25 80 0 0 40 30 -1 212 0 2 3 10 0.5 0\n", &d));
 	assert_true(d.line == 1 && d.column == 17);
 	assert_null(enc("25.5 8 0 0 40 30 4 212 0 2 3 10 0.5 0\n", &d));
