@@ -80,8 +80,7 @@ void mover_aim_place(struct mover *m, const struct mover_limits *l,
 static bool stands_there(const struct mover *m)
 {
 	return m->kind == MOVER_TO_PLACE && m->pass_mm_s == 0 &&
-	       fabs(m->left_mm) < THERE_MM && m->v_mm_s == 0 &&
-	       m->a_mm_s2 == 0;
+	       fabs(m->left_mm) < THERE_MM && mover_is_standing(m);
 }
 
 struct interp_scurve_state mover_peek(const struct mover *m, double period_s)

@@ -15,6 +15,8 @@
 
 #include "interp/scurve.h"
 
+#include <stdbool.h>
+
 enum mover_plan {
 	MOVER_NO_PLAN,
 	MOVER_TO_PLACE,
@@ -37,6 +39,11 @@ struct mover {
 	struct mover_limits l;		/* it was planned with */
 	struct interp_scurve plan;
 };
+
+static inline bool mover_is_standing(const struct mover *m)
+{
+	return m->v_mm_s == 0 && m->a_mm_s2 == 0;
+}
 
 /** mover_set() - somebody else sets the speed; what was planned is void. */
 void mover_set(struct mover *m, double v_mm_s);
