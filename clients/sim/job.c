@@ -2,6 +2,7 @@
 /*
  * job.c - read and compile the job's text
  */
+#include "compiling.h"
 #include "sim.h"
 
 #include <errno.h>
@@ -102,54 +103,22 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 		   const struct machine_config *c, struct text *t,
 		   const struct config_tech *tech)
 {
-	struct interp_mcode mcodes[INTERP_NMCODES];
-	struct interp_tech machine_tech;
-	struct interp_build_options bo = {
-		.machine = &c->axes,
-		.strategy = (enum interp_strategy)c->strategy,
-		.tolerance_milli =
-			(uint32_t)(c->tolerance_pulses * 1000 + 1e-6),
-		.perpendicular = c->perpendicular,
-		.coupling = (enum interp_coupling)c->coupling,
-		.corner_mm = c->corner_um * 1e-3,
-		.chord_error_mm = c->chord_error_um / 1000,
-		.period_s = (double)config_period_ns(c) / 1e9,
-		.fit_mm = c->fit_um / 1000,
-	};
 	const struct interp_text text = {
 		.at = t->at, .bytes = t->n,
 		.dialect = o->dialect ? o->dialect :
 					interp_dialect_by_file(o->job),
 	};
-	struct interp_compile_options co = {
-		.nc = { .machine = &c->axes, .wire = &c->wire,
-			.feed_mm_s = c->feed_default_mm_min / 60,
-			.escape = (enum interp_escape_mode)c->jump.escape,
-			.tip_tolerance_mm =
-				c->kinematics.tolerance_um / 1000,
-			.tech = tech->table, .machine_tech = &machine_tech,
-			.mcode = mcodes },
-		.threeb = { .unit_um = c->threeb_unit_um,
-			    .offset_um = c->fourb_offset_um },
-	};
-	struct interp_diag diag = { 0 }, none;
-	struct interp_kinematics kin;
+	struct config_compiling of;
+	struct interp_diag diag = { 0 };
 	const double from_s = now_s();
 	struct interp_build *b;
 	int r;
 
-	config_tech_base(c, &machine_tech);
-	config_mcodes(c, mcodes);
-	memcpy(bo.start_mm, c->start_mm, sizeof(bo.start_mm));
-	memcpy(co.nc.work_offset_mm, c->work_offset_mm,
-	       sizeof(co.nc.work_offset_mm));
-	if (config_kinematics(c, &kin, &none) == 0)
-		co.nc.kinematics = &kin;
-	memcpy(co.nc.offset_mm, c->offset_mm, sizeof(co.nc.offset_mm));
-	b = interp_build_create(&bo);
+	config_compiling(c, tech, &of);
+	b = interp_build_create(&of.build);
 	if (!b)
 		return EX_OSERR;
-	r = interp_compile(&text, &co, b, &job->lines, &diag);
+	r = interp_compile(&text, &of.text, b, &job->lines, &diag);
 	job->compile_lines_s = job->lines / (now_s() - from_s);
 	/* A million lines are as large as half their program. */
 	free(t->at);

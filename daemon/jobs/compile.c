@@ -3,8 +3,7 @@
  * compile.c - NC code to a program, in a thread of its own
  */
 #include "compile.h"
-
-#include "interp/compile.h"
+#include "compiling.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -51,51 +50,19 @@ static int read_tech(struct compile *c, struct config_tech *t)
 
 static int compile_text(struct compile *c, const struct config_tech *tech)
 {
-	struct interp_mcode mcodes[INTERP_NMCODES];
-	struct interp_tech machine_tech;
-	const struct machine_config *m = c->request.config;
-	struct interp_build_options b = {
-		.machine = &m->axes,
-		.strategy = (enum interp_strategy)m->strategy,
-		.tolerance_milli =
-			(uint32_t)(m->tolerance_pulses * 1000 + 1e-6),
-		.perpendicular = m->perpendicular,
-		.coupling = (enum interp_coupling)m->coupling,
-		.corner_mm = m->corner_um * 1e-3,
-		.chord_error_mm = m->chord_error_um / 1000,
-		.period_s = (double)config_period_ns(m) / 1e9,
-		.fit_mm = m->fit_um / 1000,
-	};
 	const struct interp_text text = {
 		.at = c->request.text, .bytes = c->request.bytes,
 		.dialect = interp_dialect_by_file(c->request.name),
 	};
-	struct interp_compile_options o = {
-		.nc = { .machine = &m->axes, .wire = &m->wire,
-			.feed_mm_s = m->feed_default_mm_min / 60,
-			.escape = (enum interp_escape_mode)m->jump.escape,
-			.tip_tolerance_mm =
-				m->kinematics.tolerance_um / 1000,
-			.tech = tech->table, .machine_tech = &machine_tech,
-			.mcode = mcodes },
-		.threeb = { .unit_um = m->threeb_unit_um,
-			    .offset_um = m->fourb_offset_um },
-	};
-	struct interp_kinematics kin;
-	struct interp_diag none;
+	struct config_compiling of;
 
-	config_tech_base(m, &machine_tech);
-	config_mcodes(m, mcodes);
-	memcpy(b.start_mm, c->request.start_mm, sizeof(b.start_mm));
-	memcpy(o.nc.work_offset_mm, m->work_offset_mm,
-	       sizeof(o.nc.work_offset_mm));
-	if (config_kinematics(m, &kin, &none) == 0)
-		o.nc.kinematics = &kin;
-	memcpy(o.nc.offset_mm, m->offset_mm, sizeof(o.nc.offset_mm));
-	c->result.build = interp_build_create(&b);
+	config_compiling(c->request.config, tech, &of);
+	memcpy(of.build.start_mm, c->request.start_mm,
+	       sizeof(of.build.start_mm));
+	c->result.build = interp_build_create(&of.build);
 	if (!c->result.build)
 		return -ENOMEM;
-	return interp_compile(&text, &o, c->result.build, &c->result.lines,
+	return interp_compile(&text, &of.text, c->result.build, &c->result.lines,
 			      &c->result.diag);
 }
 

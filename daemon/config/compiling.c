@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * compiling.c - a machine file as the options a job's text is compiled with
+ */
+#include "compiling.h"
+
+#include <string.h>
+
+static struct interp_build_options build_of(const struct machine_config *c)
+{
+	struct interp_build_options b = {
+		.machine = &c->axes,
+		.strategy = (enum interp_strategy)c->strategy,
+		.tolerance_milli =
+			(uint32_t)(c->tolerance_pulses * 1000 + 1e-6),
+		.perpendicular = c->perpendicular,
+		.coupling = (enum interp_coupling)c->coupling,
+		.corner_mm = c->corner_um * 1e-3,
+		.chord_error_mm = c->chord_error_um / 1000,
+		.period_s = (double)config_period_ns(c) / 1e9,
+		.fit_mm = c->fit_um / 1000,
+	};
+
+	memcpy(b.start_mm, c->start_mm, sizeof(b.start_mm));
+	return b;
+}
+
+void config_compiling(const struct machine_config *c,
+		      const struct config_tech *tech,
+		      struct config_compiling *ret)
+{
+	struct interp_compile_options *o = &ret->text;
+	struct interp_diag none;
+
+	ret->build = build_of(c);
+	*o = (struct interp_compile_options) {
+		.nc = { .machine = &c->axes, .wire = &c->wire,
+			.feed_mm_s = c->feed_default_mm_min / 60,
+			.escape = (enum interp_escape_mode)c->jump.escape,
+			.tip_tolerance_mm =
+				c->kinematics.tolerance_um / 1000,
+			.tech = tech->table, .machine_tech = &ret->tech,
+			.mcode = ret->mcodes },
+		.threeb = { .unit_um = c->threeb_unit_um,
+			    .offset_um = c->fourb_offset_um },
+	};
+	config_tech_base(c, &ret->tech);
+	config_mcodes(c, ret->mcodes);
+	memcpy(o->nc.work_offset_mm, c->work_offset_mm,
+	       sizeof(o->nc.work_offset_mm));
+	memcpy(o->nc.offset_mm, c->offset_mm, sizeof(o->nc.offset_mm));
+	if (config_kinematics(c, &ret->kinematics, &none) == 0)
+		o->nc.kinematics = &ret->kinematics;
+}
