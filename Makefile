@@ -159,10 +159,10 @@ $(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
 $(B)/edmctl: $(call obj,$(CTL) $(PLOT) $(wildcard libinterp/contour/*.c)) $(SHM_O) $(LCM_O)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(DDS_O)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(DDS_O)
 	$(call link,-lddsc -linih -lm)
 
-$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c)) $(DDS_O)
+$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
 	$(call link,-lddsc -ljansson -lm)
 
 # Of edmd itself, without its main().

@@ -6,14 +6,12 @@
  * rate.  It only reads; nothing that comes over DDS reaches the machine.
  */
 #include "config.h"
+#include "tool.h"
 #include "topic.h"
 #include "watch.h"
 
 #include <errno.h>
-#include <getopt.h>
-#include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
 #include <time.h>
@@ -40,28 +38,25 @@ struct bridge {
 	char said[sizeof(((edm_MachineState *)0)->state)];
 };
 
-static void usage(FILE *f)
-{
-	fputs("usage: edm-dds [options]\n"
-	      "Publish a machine's state to the fleet over DDS.\n"
-	      "\n"
-	      "  --config FILE   machine file: its name, [dds] domain and hz;\n"
-	      "                  options after it win\n"
-	      "  --machine NAME  which edmd to read (edm)\n"
-	      "  --domain N      DDS domain, 0 to 230 (0)\n"
-	      "  --hz N          samples a second, 2 to 100 (10)\n"
-	      "  --once          publish one sample to whoever listens within\n"
-	      "                  2 s, then leave; 1 if nobody does\n"
-	      "  --help, --version\n"
-	      "\n"
-	      "CYCLONEDDS_URI chooses the network interface and peers;\n"
-	      "see docs/fleet.md.\n", f);
-}
+static const char usage[] =
+	"usage: edm-dds [options]\n"
+	"Publish a machine's state to the fleet over DDS.\n"
+	"\n"
+	"  --config FILE   machine file: its name, [dds] domain and hz;\n"
+	"                  options after it win\n"
+	"  --machine NAME  which edmd to read (edm)\n"
+	"  --domain N      DDS domain, 0 to 230 (0)\n"
+	"  --hz N          samples a second, 2 to 100 (10)\n"
+	"  --once          publish one sample to whoever listens within\n"
+	"                  2 s, then leave; 1 if nobody does\n"
+	"  --help, --version\n"
+	"\n"
+	"CYCLONEDDS_URI chooses the network interface and peers;\n"
+	"see docs/fleet.md.\n";
 
 static int refuse(const char *option, const char *found, const char *wanted)
 {
-	fprintf(stderr, "edm-dds: error: %s %s; %s\n", option, found, wanted);
-	return EX_USAGE;
+	return tool_refuse("edm-dds", option, found, wanted);
 }
 
 static int set_machine(struct options *o, const char *name)
@@ -94,68 +89,35 @@ static int set_config(struct options *o, const char *path)
 	return 0;
 }
 
-static int set_option(struct options *o, int c)
+static int set_option(void *arg, int c)
 {
+	struct options *o = arg;
+
 	switch (c) {
 	case 'c':
 		return set_config(o, optarg);
 	case 'm':
 		return set_machine(o, optarg);
-	case 'd':
-		if (topic_domain_parse(optarg, &o->domain) < 0)
-			return refuse("--domain", optarg,
-				      "a whole number from 0 to 230");
-		return 0;
 	case 'r':
 		if (topic_number_parse(optarg, TOPIC_HZ_MIN, 100, &o->hz) < 0)
 			return refuse("--hz", optarg, "a number, 2 to 100");
 		return 0;
-	case '1':
+	default:
 		o->once = true;
 		return 0;
-	case 'h':
-		usage(stdout);
-		exit(EX_OK);
-	case 'V':
-		puts("edm-dds " EDM_VERSION);
-		exit(EX_OK);
-	default:
-		return EX_USAGE;
 	}
 }
 
-static int parse(struct options *o, int argc, char **argv)
-{
-	static const struct option longs[] = {
-		{ "config", required_argument, NULL, 'c' },
-		{ "machine", required_argument, NULL, 'm' },
-		{ "domain", required_argument, NULL, 'd' },
-		{ "hz", required_argument, NULL, 'r' },
-		{ "once", no_argument, NULL, '1' },
-		{ "help", no_argument, NULL, 'h' },
-		{ "version", no_argument, NULL, 'V' },
-		{ NULL, 0, NULL, 0 }
-	};
-	int c, r;
-
-	while ((c = getopt_long(argc, argv, "", longs, NULL)) != -1) {
-		r = set_option(o, c);
-		if (r)
-			return r;
-	}
-	if (optind < argc)
-		return refuse("argument", argv[optind], "options only");
-	return 0;
-}
-
-/* Blocked in every thread, so that the wait between samples takes them. */
-static void block_stops(sigset_t *stops)
-{
-	sigemptyset(stops);
-	sigaddset(stops, SIGINT);
-	sigaddset(stops, SIGTERM);
-	sigprocmask(SIG_BLOCK, stops, NULL);
-}
+static const struct option longs[] = {
+	{ "config", required_argument, NULL, 'c' },
+	{ "machine", required_argument, NULL, 'm' },
+	{ "domain", required_argument, NULL, 'd' },
+	{ "hz", required_argument, NULL, 'r' },
+	{ "once", no_argument, NULL, '1' },
+	{ "help", no_argument, NULL, 'h' },
+	{ "version", no_argument, NULL, 'V' },
+	{ NULL, 0, NULL, 0 }
+};
 
 static int bridge_open(struct bridge *b, const struct options *o)
 {
@@ -163,7 +125,7 @@ static int bridge_open(struct bridge *b, const struct options *o)
 
 	watch_init(&b->watch, o->machine);
 	gethostname(b->host, sizeof(b->host) - 1);
-	block_stops(&b->stops);
+	tool_block_stops(&b->stops);
 
 	b->participant = dds_create_participant(o->domain, NULL, NULL);
 	if (b->participant < 0)
@@ -229,14 +191,9 @@ static int publish(struct bridge *b)
 /* Wait until @until_ns; true if told to stop meanwhile. */
 static bool wait_until(const struct bridge *b, int64_t until_ns)
 {
-	int64_t left = until_ns - now_ns();
-	struct timespec t = { 0 };
+	const int64_t left = until_ns - now_ns();
 
-	if (left > 0) {
-		t.tv_sec = left / NS;
-		t.tv_nsec = left % NS;
-	}
-	return sigtimedwait(&b->stops, NULL, &t) > 0;
+	return tool_wait(&b->stops, left > 0 ? left : 0);
 }
 
 static int run(struct bridge *b, double hz)
@@ -286,7 +243,11 @@ int main(int argc, char **argv)
 {
 	struct options o = { .machine = "edm", .hz = 10 };
 	struct bridge b = { 0 };
-	int r = parse(&o, argc, argv);
+	const struct tool t = {
+		"edm-dds", "edm-dds " EDM_VERSION, usage, longs, set_option,
+		&o, &o.domain,
+	};
+	int r = tool_parse(&t, argc, argv);
 
 	if (r)
 		return r;
@@ -295,11 +256,5 @@ int main(int argc, char **argv)
 	if (r == 0)
 		r = o.once ? run_once(&b) : run(&b, o.hz);
 	bridge_close(&b);
-	if (r < 0) {
-		fprintf(stderr, "edm-dds: error: DDS, domain %u: %s; "
-			"a free domain and a network interface are wanted "
-			"(CYCLONEDDS_URI)\n", o.domain, dds_strretcode(r));
-		return EX_UNAVAILABLE;
-	}
-	return r;
+	return r < 0 ? tool_fail(t.name, o.domain, r) : r;
 }

@@ -6,19 +6,17 @@
  * writer is still there; each picture is that cache, read anew.
  */
 #include "table.h"
+#include "tool.h"
 #include "topic.h"
 
-#include <getopt.h>
-#include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <sysexits.h>
-#include <time.h>
 #include <unistd.h>
 
 #define MACHINES_MAX	256
-#define LOOK_MS		200		/* between two pictures on a terminal */
-#define LINE_MS		1000		/* between two where they pile up */
+#define MS		1000000LL
+#define LOOK_NS		(200 * MS)	/* between two pictures on a terminal */
+#define LINE_NS		(1000 * MS)	/* between two where they pile up */
 
 enum mode { MODE_AUTO, MODE_ONCE, MODE_WATCH };
 
@@ -37,42 +35,30 @@ struct fleet {
 	size_t nrows;
 };
 
-static void usage(FILE *f)
-{
-	fputs("usage: edm-fleet [options]\n"
-	      "List the machines heard over DDS.\n"
-	      "\n"
-	      "  --domain N      DDS domain, 0 to 230 (0)\n"
-	      "  --once          listen for a while, print a table, leave\n"
-	      "  --watch         go on until Ctrl-C (default on a terminal)\n"
-	      "  --wait S        how long --once listens, 0.1 to 3600 s (2)\n"
-	      "  --json          one object a picture, on one line\n"
-	      "  --help, --version\n"
-	      "\n"
-	      "Exit code 0 if any machine was heard, 1 if none.\n"
-	      "CYCLONEDDS_URI chooses the network interface and peers;\n"
-	      "see docs/fleet.md.\n", f);
-}
+static const char usage[] =
+	"usage: edm-fleet [options]\n"
+	"List the machines heard over DDS.\n"
+	"\n"
+	"  --domain N      DDS domain, 0 to 230 (0)\n"
+	"  --once          listen for a while, print a table, leave\n"
+	"  --watch         go on until Ctrl-C (default on a terminal)\n"
+	"  --wait S        how long --once listens, 0.1 to 3600 s (2)\n"
+	"  --json          one object a picture, on one line\n"
+	"  --help, --version\n"
+	"\n"
+	"Exit code 0 if any machine was heard, 1 if none.\n"
+	"CYCLONEDDS_URI chooses the network interface and peers;\n"
+	"see docs/fleet.md.\n";
 
-static int refuse(const char *option, const char *found, const char *wanted)
+static int set_option(void *arg, int c)
 {
-	fprintf(stderr, "edm-fleet: error: %s %s; %s\n", option, found,
-		wanted);
-	return EX_USAGE;
-}
+	struct options *o = arg;
 
-static int set_option(struct options *o, int c)
-{
 	switch (c) {
-	case 'd':
-		if (topic_domain_parse(optarg, &o->domain) < 0)
-			return refuse("--domain", optarg,
-				      "a whole number from 0 to 230");
-		return 0;
 	case 's':
 		if (topic_number_parse(optarg, 0.1, 3600, &o->wait_s) < 0)
-			return refuse("--wait", optarg,
-				      "seconds, 0.1 to 3600");
+			return tool_refuse("edm-fleet", "--wait", optarg,
+					   "seconds, 0.1 to 3600");
 		return 0;
 	case '1':
 		o->mode = MODE_ONCE;
@@ -80,55 +66,29 @@ static int set_option(struct options *o, int c)
 	case 'w':
 		o->mode = MODE_WATCH;
 		return 0;
-	case 'j':
+	default:
 		o->json = true;
 		return 0;
-	case 'h':
-		usage(stdout);
-		exit(EX_OK);
-	case 'V':
-		puts("edm-fleet " EDM_VERSION);
-		exit(EX_OK);
-	default:
-		return EX_USAGE;
 	}
 }
 
-static int parse(struct options *o, int argc, char **argv)
-{
-	static const struct option longs[] = {
-		{ "domain", required_argument, NULL, 'd' },
-		{ "once", no_argument, NULL, '1' },
-		{ "watch", no_argument, NULL, 'w' },
-		{ "wait", required_argument, NULL, 's' },
-		{ "json", no_argument, NULL, 'j' },
-		{ "help", no_argument, NULL, 'h' },
-		{ "version", no_argument, NULL, 'V' },
-		{ NULL, 0, NULL, 0 }
-	};
-	int c, r;
-
-	while ((c = getopt_long(argc, argv, "", longs, NULL)) != -1) {
-		r = set_option(o, c);
-		if (r)
-			return r;
-	}
-	if (optind < argc)
-		return refuse("argument", argv[optind], "options only");
-	if (o->mode == MODE_AUTO)
-		o->mode = isatty(STDOUT_FILENO) ? MODE_WATCH : MODE_ONCE;
-	return 0;
-}
+static const struct option longs[] = {
+	{ "domain", required_argument, NULL, 'd' },
+	{ "once", no_argument, NULL, '1' },
+	{ "watch", no_argument, NULL, 'w' },
+	{ "wait", required_argument, NULL, 's' },
+	{ "json", no_argument, NULL, 'j' },
+	{ "help", no_argument, NULL, 'h' },
+	{ "version", no_argument, NULL, 'V' },
+	{ NULL, 0, NULL, 0 }
+};
 
 static int fleet_open(struct fleet *f, dds_domainid_t domain)
 {
 	dds_entity_t topic;
 
-	/* Taken by the wait between two pictures, see pause_ms(). */
-	sigemptyset(&f->stops);
-	sigaddset(&f->stops, SIGINT);
-	sigaddset(&f->stops, SIGTERM);
-	sigprocmask(SIG_BLOCK, &f->stops, NULL);
+	/* Taken by the wait between two pictures. */
+	tool_block_stops(&f->stops);
 
 	f->participant = dds_create_participant(domain, NULL, NULL);
 	if (f->participant < 0)
@@ -164,14 +124,6 @@ static int fleet_look(struct fleet *f)
 	return n < 0 ? n : 0;
 }
 
-/* Return: true if told to stop meanwhile. */
-static bool pause_ms(const struct fleet *f, long ms)
-{
-	struct timespec t = { ms / 1000, ms % 1000 * 1000000L };
-
-	return sigtimedwait(&f->stops, NULL, &t) > 0;
-}
-
 static void print(const struct fleet *f, bool json)
 {
 	if (json)
@@ -193,7 +145,7 @@ static int run_once(struct fleet *f, const struct options *o)
 			fprintf(stderr, "\redm-fleet: domain %u, listened "
 				"%.1f of %.1f s, machines: %zu ", o->domain,
 				s, o->wait_s, f->nrows);
-		stop = pause_ms(f, 100);
+		stop = tool_wait(&f->stops, 100 * MS);
 		r = fleet_look(f);
 	}
 	if (tty)
@@ -218,7 +170,7 @@ static int run_watch(struct fleet *f, const struct options *o)
 			       "machines: %zu (Ctrl-C ends)\n\n", o->domain,
 			       f->nrows);
 		print(f, o->json);
-	} while (!pause_ms(f, redraw ? LOOK_MS : LINE_MS));
+	} while (!tool_wait(&f->stops, redraw ? LOOK_NS : LINE_NS));
 	return 0;
 }
 
@@ -226,22 +178,24 @@ int main(int argc, char **argv)
 {
 	struct options o = { .wait_s = 2 };
 	static struct fleet f;
-	int r = parse(&o, argc, argv);
+	const struct tool t = {
+		"edm-fleet", "edm-fleet " EDM_VERSION, usage, longs,
+		set_option, &o, &o.domain,
+	};
+	int r = tool_parse(&t, argc, argv);
 
 	if (r)
 		return r;
+	if (o.mode == MODE_AUTO)
+		o.mode = isatty(STDOUT_FILENO) ? MODE_WATCH : MODE_ONCE;
 
 	r = fleet_open(&f, o.domain);
 	if (r == 0)
 		r = o.mode == MODE_ONCE ? run_once(&f, &o) : run_watch(&f, &o);
 	if (f.participant > 0)
 		dds_delete(f.participant);
-	if (r < 0) {
-		fprintf(stderr, "edm-fleet: error: DDS, domain %u: %s; "
-			"a free domain and a network interface are wanted "
-			"(CYCLONEDDS_URI)\n", o.domain, dds_strretcode(r));
-		return EX_UNAVAILABLE;
-	}
+	if (r < 0)
+		return tool_fail(t.name, o.domain, r);
 	if (f.nrows == 0)
 		fprintf(stderr, "edm-fleet: no machine heard in domain %u; "
 			"edm-dds runs beside each machine's edmd\n", o.domain);
