@@ -43,53 +43,55 @@ static struct thin_bin join(const struct thin_bin *bin, size_t n)
 	return b;
 }
 
-/* time min max, of @group strips each; a blank line where there is nothing. */
-static void write_bands(FILE *f, const struct thin *t,
-			const struct thin_bin *bin, size_t group, double unit_s)
+/* A row of strips, @group of them to a line. */
+struct strips {
+	const struct thin *t;
+	const struct thin_bin *bin;
+	size_t group;
+	double unit_s;
+};
+
+/* A line each, by @put; a blank line where there is nothing. */
+static void write_strips(FILE *f, const struct strips *s,
+			 void (*put)(FILE *f, double time,
+				     const struct thin_bin *b))
 {
+	const size_t nbins = s->t->nbins;
 	bool open = false;
 
-	for (size_t i = 0; i < t->nbins; i += group) {
-		size_t n = group < t->nbins - i ? group : t->nbins - i;
-		struct thin_bin b = join(bin + i, n);
+	for (size_t i = 0; i < nbins; i += s->group) {
+		const size_t n = s->group < nbins - i ? s->group : nbins - i;
+		const struct thin_bin b = join(s->bin + i, n);
 
 		if (b.n)
-			fprintf(f, "%.9g %.9g %.9g\n",
-				bin_time(t, i + n / 2) / unit_s, b.min, b.max);
+			put(f, bin_time(s->t, i + n / 2) / s->unit_s, &b);
 		else if (open)
 			fputc('\n', f);
 		open = b.n > 0;
 	}
 }
 
-/* time mean */
-static void write_means(FILE *f, const struct thin *t,
-			const struct thin_bin *bin, size_t group, double unit_s)
+static void put_band(FILE *f, double time, const struct thin_bin *b)
 {
-	bool open = false;
+	fprintf(f, "%.9g %.9g %.9g\n", time, b->min, b->max);
+}
 
-	for (size_t i = 0; i < t->nbins; i += group) {
-		size_t n = group < t->nbins - i ? group : t->nbins - i;
-		struct thin_bin b = join(bin + i, n);
-
-		if (b.n)
-			fprintf(f, "%.9g %.9g\n",
-				bin_time(t, i + n / 2) / unit_s,
-				b.sum / (double)b.n);
-		else if (open)
-			fputc('\n', f);
-		open = b.n > 0;
-	}
+static void put_mean(FILE *f, double time, const struct thin_bin *b)
+{
+	fprintf(f, "%.9g %.9g\n", time, b->sum / (double)b->n);
 }
 
 /* A quantity of the cut: its extremes strip by strip, its mean smoother. */
 static void write_quantity(FILE *f, const struct thin *t, const char *name,
 			   const struct thin_bin *bin, double unit_s)
 {
+	struct strips s = { t, bin, 1, unit_s };
+
 	fprintf(f, "$%s << EOD\n", name);
-	write_bands(f, t, bin, 1, unit_s);
+	write_strips(f, &s, put_band);
 	fprintf(f, "EOD\n$%smean << EOD\n", name);
-	write_means(f, t, bin, group_of(t), unit_s);
+	s.group = group_of(t);
+	write_strips(f, &s, put_mean);
 	fputs("EOD\n", f);
 }
 
@@ -99,10 +101,13 @@ static void write_quantity(FILE *f, const struct thin *t, const char *name,
  */
 static void write_feed(FILE *f, const struct thin *t, double unit_s)
 {
+	struct strips s = { t, t->feed, 1, unit_s };
+
 	fputs("$feed << EOD\n", f);
-	write_means(f, t, t->feed, 1, unit_s);
+	write_strips(f, &s, put_mean);
 	fputs("EOD\n$feedmean << EOD\n", f);
-	write_means(f, t, t->feed, group_of(t), unit_s);
+	s.group = group_of(t);
+	write_strips(f, &s, put_mean);
 	fputs("EOD\n", f);
 }
 
@@ -206,7 +211,8 @@ static void write_zoom(FILE *f, const struct thin *t, enum csv_state state)
 void data_write(FILE *f, const struct thin *t, double unit_s)
 {
 	fputs("$place << EOD\n", f);
-	write_bands(f, t, t->place, group_of(t), unit_s);
+	write_strips(f, &(struct strips) { t, t->place, group_of(t), unit_s },
+		     put_band);
 	fputs("EOD\n", f);
 	write_quantity(f, t, "gap", t->gap, unit_s);
 	write_feed(f, t, unit_s);

@@ -325,6 +325,23 @@ int build_measure(const struct interp_build *b,
 	return 0;
 }
 
+int build_measure_next(struct interp_build *b,
+		       const double end_mm[INTERP_NAXES],
+		       int64_t to[INTERP_NAXES], struct build_measure *ret,
+		       struct interp_diag *diag)
+{
+	const int r = interp_build_flush(b, diag);
+
+	return r < 0 ? r : build_measure(b, end_mm, to, ret, diag);
+}
+
+void build_mm(const struct interp_build *b, const int64_t at[INTERP_NAXES],
+	      double ret_mm[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret_mm[i] = (double)at[i] / b->sub_mm[i];
+}
+
 void build_stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		    const int64_t to[INTERP_NAXES])
 {

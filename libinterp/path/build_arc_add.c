@@ -42,16 +42,12 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	int64_t to[INTERP_NAXES];
 	struct interp_arc *arc;
 	struct build_measure m;
-	int r = interp_build_flush(b, diag);
+	int r = build_measure_next(b, end_mm, to, &m, diag);
 
-	if (r == 0)
-		r = build_measure(b, end_mm, to, &m, diag);
 	if (r < 0)
 		return r;
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		plan.from_mm[i] = (double)b->here[i] / b->sub_mm[i];
-		plan.to_mm[i] = (double)to[i] / b->sub_mm[i];
-	}
+	build_mm(b, b->here, plan.from_mm);
+	build_mm(b, to, plan.to_mm);
 	plan.way = build_way_to(b, to, &m);
 	plan.way.except = plane;
 	r = build_arc_plan(&plan, diag);

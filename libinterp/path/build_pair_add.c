@@ -88,10 +88,8 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 				   .strategy = b->o.strategy };
 	int64_t to[INTERP_NAXES];
 	struct build_measure m;
-	int r = interp_build_flush(b, diag);
+	int r = build_measure_next(b, end_mm, to, &m, diag);
 
-	if (r == 0)
-		r = build_measure(b, end_mm, to, &m, diag);
 	if (r < 0)
 		return r;
 	if (m.moved & ~(XY | UV))
@@ -100,9 +98,9 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	r = pair_alone(b, &plan, end_mm, w, diag);
 	if (r != -ENOENT)
 		return r;
+	build_mm(b, b->here, plan.from_mm);
+	build_mm(b, to, plan.to_mm);
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		plan.from_mm[i] = (double)b->here[i] / b->sub_mm[i];
-		plan.to_mm[i] = (double)to[i] / b->sub_mm[i];
 		plan.from[i] = interp_round_sub(b->here[i]);
 		plan.to[i] = interp_round_sub(to[i]);
 	}

@@ -77,6 +77,17 @@ int build_measure(const struct interp_build *b,
 		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
 		  struct build_measure *ret, struct interp_diag *diag);
 
+/** build_measure_next() - the same, of a motion that lines held back end at:
+ *  they are added first. */
+int build_measure_next(struct interp_build *b,
+		       const double end_mm[INTERP_NAXES],
+		       int64_t to[INTERP_NAXES], struct build_measure *ret,
+		       struct interp_diag *diag);
+
+/** build_mm() - subpulses as mm. */
+void build_mm(const struct interp_build *b, const int64_t at[INTERP_NAXES],
+	      double ret_mm[INTERP_NAXES]);
+
 /** build_way_to() - from here to @to, as the strategies see it. */
 struct build_way build_way_to(const struct interp_build *b,
 			      const int64_t to[INTERP_NAXES],
