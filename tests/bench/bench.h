@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * bench.h - a clock, a median, and a line the script tests/bench/run reads
+ * bench.h - a clock, a median, a program laid out, and a line the script
+ * tests/bench/run reads
  */
 #ifndef BENCH_H
 #define BENCH_H
 
+#include "interp/build.h"
+
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,6 +35,27 @@ static inline double bench_median(double *v, int n)
 {
 	qsort(v, (size_t)n, sizeof(*v), bench_order);
 	return v[n / 2];
+}
+
+static inline void bench_must(bool good)
+{
+	if (!good)
+		exit(70);
+}
+
+/** bench_program() - what was built, laid out; @b is no more. */
+static inline struct interp_program bench_program(struct interp_build *b)
+{
+	const struct interp_build_about about = { .lines = 1 };
+	const size_t bytes = interp_build_bytes(b);
+	void *block = malloc(bytes);
+	struct interp_program p;
+
+	bench_must(block != NULL);
+	interp_build_write(b, &about, block);
+	interp_build_destroy(b);
+	bench_must(interp_program_map(&p, block, bytes) == 0);
+	return p;
 }
 
 /** bench_say() - one result; @name is one word. */

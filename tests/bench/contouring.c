@@ -21,12 +21,6 @@
 
 static struct machine_config machine;
 
-static void must(bool good)
-{
-	if (!good)
-		exit(70);
-}
-
 static void turn(struct interp_build *b, bool arcs)
 {
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 20 };
@@ -40,8 +34,8 @@ static void turn(struct interp_build *b, bool arcs)
 		const double end[INTERP_NAXES] = { RADIUS_MM * cos(at),
 						   RADIUS_MM * sin(at) };
 
-		must((arcs ? interp_build_arc(b, end, &a, &w, &d) :
-			     interp_build_line(b, end, &w, &d)) == 0);
+		bench_must((arcs ? interp_build_arc(b, end, &a, &w, &d) :
+				   interp_build_line(b, end, &w, &d)) == 0);
 	}
 }
 
@@ -50,22 +44,12 @@ static struct interp_program build(bool arcs)
 	const struct interp_build_options o = {
 		.machine = &machine.axes, .start_mm = { RADIUS_MM },
 	};
-	const struct interp_build_about about = { .lines = 1 };
 	struct interp_build *b = interp_build_create(&o);
-	struct interp_program p;
-	void *block;
-	size_t bytes;
 
-	must(b != NULL);
+	bench_must(b != NULL);
 	for (int i = 0; i < TURNS; i++)
 		turn(b, arcs);
-	bytes = interp_build_bytes(b);
-	block = malloc(bytes);
-	must(block != NULL);
-	interp_build_write(b, &about, block);
-	interp_build_destroy(b);
-	must(interp_program_map(&p, block, bytes) == 0);
-	return p;
+	return bench_program(b);
 }
 
 /* Three pitches, six straightnesses, three angles, three growths. */
@@ -88,7 +72,7 @@ static void maps(struct interp_errormap *m)
 			11.5e-6, 0, 3 };
 	}
 	m->nleans = 3;
-	must(interp_errormap_check(m) == 0);
+	bench_must(interp_errormap_check(m) == 0);
 }
 
 static double run(const struct interp_program *p, const char *method)
@@ -106,14 +90,14 @@ static double run(const struct interp_program *p, const char *method)
 	k.dry_run = true;
 	k.start[0] = (int32_t)(RADIUS_MM / machine.axes.axis[0].pulse_mm);
 	cycle_init(&c, &k);
-	must(cycle_load(&c, p) == ANSWER_DONE);
+	bench_must(cycle_load(&c, p) == ANSWER_DONE);
 	cycle_command(&c, &start);
 	from_s = bench_now_s();
 	for (int n = 0; n < CYCLES; n++) {
 		cycle_step(&c, &in, &out);
 		memcpy(in.actual, out.target, sizeof(in.actual));
 	}
-	must(c.loaded && c.fault == FAULT_NONE);
+	bench_must(c.loaded && c.fault == FAULT_NONE);
 	return (bench_now_s() - from_s) / CYCLES * 1e9;
 }
 

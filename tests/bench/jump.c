@@ -32,12 +32,6 @@
 static struct machine_config machine;
 static const struct io_inputs sparking = { .gap_valid = true, .gap_v = 50 };
 
-static void must(bool good)
-{
-	if (!good)
-		exit(70);
-}
-
 /* A circle of lines, round and round. */
 static struct interp_program build(uint32_t n)
 {
@@ -45,28 +39,18 @@ static struct interp_program build(uint32_t n)
 		.machine = &machine.axes, .start_mm = { RADIUS_MM },
 	};
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 50 };
-	const struct interp_build_about about = { .lines = 1 };
 	struct interp_build *b = interp_build_create(&o);
-	struct interp_program p;
 	struct interp_diag d;
-	void *block;
-	size_t bytes;
 
-	must(b != NULL);
+	bench_must(b != NULL);
 	for (uint32_t i = 1; i <= n; i++) {
 		const double at = i * LINE_MM / RADIUS_MM;
 		const double end[INTERP_NAXES] = { RADIUS_MM * cos(at),
 						   RADIUS_MM * sin(at) };
 
-		must(interp_build_line(b, end, &w, &d) == 0);
+		bench_must(interp_build_line(b, end, &w, &d) == 0);
 	}
-	bytes = interp_build_bytes(b);
-	block = malloc(bytes);
-	must(block != NULL);
-	interp_build_write(b, &about, block);
-	interp_build_destroy(b);
-	must(interp_program_map(&p, block, bytes) == 0);
-	return p;
+	return bench_program(b);
 }
 
 static void begin(struct cycle *c, const struct interp_program *p)
@@ -81,9 +65,9 @@ static void begin(struct cycle *c, const struct interp_program *p)
 	k.jump.short_of_mm = 0;
 	k.hold_at_end = true;
 	cycle_init(c, &k);
-	must(interp_cursor_init(&at, p) == 0);
-	must(interp_cursor_seek(&at, p->head->nsegs * 9 / 10, 0) == 0);
-	must(cycle_load_at(c, &at, 0) == ANSWER_DONE);
+	bench_must(interp_cursor_init(&at, p) == 0);
+	bench_must(interp_cursor_seek(&at, p->head->nsegs * 9 / 10, 0) == 0);
+	bench_must(cycle_load_at(c, &at, 0) == ANSWER_DONE);
 	cycle_command(c, &start);
 }
 
@@ -110,7 +94,7 @@ static void say_means(const struct interp_program *p)
 			from_s = now_s;
 		}
 		mean[i] = (bench_now_s() - begun_s) / CYCLES;
-		must(c.fault == FAULT_NONE && c.totals.jumps > 100);
+		bench_must(c.fault == FAULT_NONE && c.totals.jumps > 100);
 	}
 	bench_say("mean_ns", bench_median(mean, BENCH_RUNS) * 1e9);
 	bench_say("worst_ns", bench_median(worst, BENCH_RUNS) * 1e9);
@@ -157,7 +141,7 @@ static void time_each(const struct interp_program *p, uint16_t *least)
 			least[n] = (uint16_t)took;
 		from = at;
 	}
-	must(c.fault == FAULT_NONE && c.totals.jumps > 100);
+	bench_must(c.fault == FAULT_NONE && c.totals.jumps > 100);
 }
 
 static void say_worst(const struct interp_program *p)
@@ -166,7 +150,7 @@ static void say_worst(const struct interp_program *p)
 	uint16_t *least = malloc(WORST_CYCLES * sizeof(*least));
 	uint32_t worst = 0, over = 0;
 
-	must(least != NULL);
+	bench_must(least != NULL);
 	memset(least, 0xff, WORST_CYCLES * sizeof(*least));
 	for (int i = 0; i < WORST_PASSES; i++)
 		time_each(p, least);
