@@ -100,6 +100,26 @@ static inline void nc_done(struct nc_read *n)
 }
 
 /* Segments between INTERP_BEGIN and INTERP_END. */
+/* A text that is refused there, with these words in what is said. */
+struct nc_refusal {
+	const char *text;
+	uint32_t line, column;
+	const char *found, *wanted;
+};
+
+static inline void nc_check_refusal(const struct nc_refusal *r)
+{
+	struct nc_read n = nc_ready();
+
+	nc_read_bytes(&n, r->text, strlen(r->text));
+	if (n.rc != -EINVAL || n.diag.line != r->line ||
+	    n.diag.column != r->column || !strstr(n.diag.found, r->found) ||
+	    !strstr(n.diag.wanted, r->wanted))
+		fail_msg("%s\n%d, %u:%u: %s; %s", r->text, n.rc, n.diag.line,
+			 n.diag.column, n.diag.found, n.diag.wanted);
+	nc_done(&n);
+}
+
 static inline uint32_t nc_count(const struct nc_read *n)
 {
 	return n->p.head->nsegs - 2;

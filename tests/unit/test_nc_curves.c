@@ -143,11 +143,7 @@ static void fanucs_curve_may_have_any_axes(void **state)
 
 /* -- Refusals ---------------------------------------------------------------- */
 
-static const struct refusal {
-	const char *text;
-	uint32_t line, column;
-	const char *found, *wanted;
-} refusals[] = {
+static const struct nc_refusal refusals[] = {
 	{ "F1\nG6.2 P11 K0 X1",	2, 6,	"order 11", "2 to 10" },
 	{ "F1\nG6.2 P2.5 K0 X1", 2, 6,	"order 2.5", "2 to 10" },
 	{ "F1\nG6.2 X0 Y0",	2, 1,	"without a knot", "K and" },
@@ -218,20 +214,8 @@ static const struct refusal {
 static void what_is_wrong_is_refused_where_it_stands(void **state)
 {
 	(void)state;
-	for (size_t i = 0; i < sizeof(refusals) / sizeof(refusals[0]); i++) {
-		const struct refusal *want = &refusals[i];
-		struct nc_read n = nc_ready();
-		const struct interp_diag *d = &n.diag;
-
-		nc_read_bytes(&n, want->text, strlen(want->text));
-		if (n.rc != -EINVAL || d->line != want->line ||
-		    d->column != want->column ||
-		    !strstr(d->found, want->found) ||
-		    !strstr(d->wanted, want->wanted))
-			fail_msg("%s\n%d: %u:%u: %s; %s", want->text, n.rc,
-				 d->line, d->column, d->found, d->wanted);
-		nc_done(&n);
-	}
+	for (size_t i = 0; i < sizeof(refusals) / sizeof(refusals[0]); i++)
+		nc_check_refusal(&refusals[i]);
 }
 
 int main(void)

@@ -131,11 +131,7 @@ static void a_pillar_is_gone_round_over_its_top(void **state)
 
 /* -- Refusals ------------------------------------------------------------------ */
 
-static const struct {
-	const char *text;
-	uint32_t line, column;
-	const char *found, *wanted;
-} refusals[] = {
+static const struct nc_refusal refusals[] = {
 	{ "G80",		1, 1, "G80 without an axis", "G80 X-" },
 	{ "G80 X- Y-",		1, 1, "G80 along several axes", "one of X" },
 	{ "G80 X",		1, 5, "X without a sign", "G80 X-" },
@@ -176,19 +172,8 @@ static const struct {
 static void what_is_no_touch_is_refused_at_its_place(void **state)
 {
 	(void)state;
-	for (size_t i = 0; i < sizeof(refusals) / sizeof(refusals[0]); i++) {
-		struct nc_read n = nc_ready();
-
-		nc_read_bytes(&n, refusals[i].text, strlen(refusals[i].text));
-		if (n.rc != -EINVAL || n.diag.line != refusals[i].line ||
-		    n.diag.column != refusals[i].column ||
-		    !strstr(n.diag.found, refusals[i].found) ||
-		    !strstr(n.diag.wanted, refusals[i].wanted))
-			fail_msg("%s\n%d %u:%u: %s; %s", refusals[i].text,
-				 n.rc, n.diag.line, n.diag.column,
-				 n.diag.found, n.diag.wanted);
-		interp_build_destroy(n.build);
-	}
+	for (size_t i = 0; i < sizeof(refusals) / sizeof(refusals[0]); i++)
+		nc_check_refusal(&refusals[i]);
 }
 
 static void other_places_go_on_after_a_touch(void **state)

@@ -491,11 +491,7 @@ static void a_time_goes_round_the_whole_cycle(void **st)
 
 /* -- Refusals ---------------------------------------------------------------------- */
 
-static const struct {
-	const char *text;
-	uint32_t line, column;
-	const char *found, *wanted;
-} refusals[] = {
+static const struct nc_refusal refusals[] = {
 	{ "G130 Z-1 R0 F5",	1, 10,	"radius 0", "a pulse" },
 	{ "G130 Z-1 R-.2 F5",	1, 10,	"radius -0.2", "a pulse" },
 	{ "G130 Z-1 I.1 J.2 F5", 1, 10,	"leaves a radius of -0.1", "a pulse" },
@@ -536,19 +532,8 @@ static const struct {
 static void what_is_wrong_is_said_at_its_word(void **st)
 {
 	(void)st;
-	for (size_t i = 0; i < sizeof(refusals) / sizeof(refusals[0]); i++) {
-		struct nc_read n = nc_ready();
-
-		nc_read_bytes(&n, refusals[i].text, strlen(refusals[i].text));
-		if (n.rc != -EINVAL || n.diag.line != refusals[i].line ||
-		    n.diag.column != refusals[i].column ||
-		    !strstr(n.diag.found, refusals[i].found) ||
-		    !strstr(n.diag.wanted, refusals[i].wanted))
-			fail_msg("%s: %d, %u:%u: %s; %s", refusals[i].text, n.rc,
-				 n.diag.line, n.diag.column, n.diag.found,
-				 n.diag.wanted);
-		nc_done(&n);
-	}
+	for (size_t i = 0; i < sizeof(refusals) / sizeof(refusals[0]); i++)
+		nc_check_refusal(&refusals[i]);
 }
 
 static void an_orbit_is_made_for_every_strategy(void **st)
