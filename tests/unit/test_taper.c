@@ -454,14 +454,9 @@ static void damaged_pairs_never_make_an_axis_jump(void **st)
 		const struct pair p = cone(40, 25, uniform(&s, -3, 3),
 					   uniform(&s, 1, 6), 0);
 		struct made m = make_pair(seed % 2, &p);
-		struct interp_cursor c;
 
 		damage(&m, &s);
-		if (interp_program_map(&m.p, m.block, m.bytes) == 0 &&
-		    interp_cursor_init(&c, &m.p) == 0) {
-			walk_some(&c, 1e9);
-			walk_some(&c, -1e9);
-		}
+		walk_damaged(&m);
 		unmake(&m);
 	}
 }

@@ -251,6 +251,18 @@ static inline void walk_some(struct interp_cursor *c, double ds_mm)
 	}
 }
 
+/* A damaged block is not mapped, or walked to an end either way. */
+static inline void walk_damaged(struct made *m)
+{
+	struct interp_cursor c;
+
+	if (interp_program_map(&m->p, m->block, m->bytes) != 0 ||
+	    interp_cursor_init(&c, &m->p) != 0)
+		return;
+	walk_some(&c, 1e9);
+	walk_some(&c, -1e9);
+}
+
 static inline bool i32_odd(int i)
 {
 	return i & 1;
