@@ -2,20 +2,11 @@
 /*
  * test_contour.c - wire offset, taper, guides and corners, by hand
  */
-#include "nc_read.h"
+#include "wire_help.h"
 
 #include "interp/cursor.h"
 
 #define TENTH_DEG	"5.710593137499643"	/* its tangent is 0.1 */
-
-static const struct interp_wire no_guides = { .corner_angle_deg = 180 };
-
-/* Planes at 0 and 40, guides 20 below and 40 above: k is -0.5 and 2. */
-static const struct interp_wire guides = {
-	.guides = INTERP_GUIDES_ABSOLUTE, .z_lower_mm = -20, .z_upper_mm = 80,
-	.z_program_mm = 0, .z_second_mm = 40, .angle_max_deg = 30,
-	.corner_angle_deg = 180,
-};
 
 static struct nc_read ready(const struct interp_wire *w)
 {

@@ -5,22 +5,13 @@
  * Seeds are printed.  Where the wire's axis crosses a plane is computed back
  * from the guides by similar triangles.
  */
-#include "nc_read.h"
+#include "wire_help.h"
 
 #include "interp/cursor.h"
 
 #include <float.h>
 
 #define PI	3.14159265358979323846
-
-static const struct interp_wire no_guides = { .corner_angle_deg = 180 };
-
-/* k is -0.5 and 2: the planes at 0.2 and 0.6 of the way between the guides. */
-static const struct interp_wire guides = {
-	.guides = INTERP_GUIDES_ABSOLUTE, .z_lower_mm = -20, .z_upper_mm = 80,
-	.z_program_mm = 0, .z_second_mm = 40, .angle_max_deg = 30,
-	.corner_angle_deg = 180,
-};
 
 static struct nc_read ready(const struct interp_wire *w)
 {
