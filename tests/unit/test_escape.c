@@ -318,81 +318,77 @@ static void come_home(struct beside *t)
 	assert_true(t->r.out.off_path_mm == 0);
 }
 
-static void a_hold_in_any_cycle_stays_on_the_legs_and_start_comes_back(void **st)
+/* @what comes in each cycle of a jump, of a machine of its own each time. */
+static void in_any_cycle(void (*what)(struct beside *t))
 {
 	const struct cycle_config k = jumping();
 	struct beside at_ring;
 	int n;
 
-	(void)st;
 	jump_on_ring(&at_ring, &k);
 	n = jump_cycles(&at_ring);
 	for (int i = 0; i <= n; i++) {
 		struct beside t;
 
 		again(&t, &at_ring, i);
-		assert_int_equal(tell(&t.r, CYCLE_HOLD), ANSWER_DONE);
-		stand_still(&t);
-		steps(&t.r, OPEN_V, 3);
-		assert_int_equal(t.r.c.state, STATE_HOLD);
-		check_ground(&t);
-		come_home(&t);
+		what(&t);
 		free(t.w.at);
 	}
 	end(&at_ring);
+}
+
+static void hold(struct beside *t)
+{
+	assert_int_equal(tell(&t->r, CYCLE_HOLD), ANSWER_DONE);
+	stand_still(t);
+	steps(&t->r, OPEN_V, 3);
+	assert_int_equal(t->r.c.state, STATE_HOLD);
+	check_ground(t);
+	come_home(t);
+}
+
+static void a_hold_in_any_cycle_stays_on_the_legs_and_start_comes_back(void **st)
+{
+	(void)st;
+	in_any_cycle(hold);
+}
+
+static void stop_at_once(struct beside *t)
+{
+	double way;
+
+	t->r.in.estop = true;
+	step(&t->r, OPEN_V);
+	way = t->r.c.escape.way_mm;
+	steps(&t->r, OPEN_V, 3);
+	t->r.in.estop = false;
+	assert_int_equal(t->r.c.state, STATE_FAULT);
+	assert_true(t->r.c.escape.way_mm == way);
+	assert_int_equal(tell(&t->r, CYCLE_RESET), ANSWER_DONE);
+	assert_int_equal(t->r.c.state, STATE_HOLD);
+	check_ground(t);
+	come_home(t);
 }
 
 static void an_e_stop_in_any_cycle_ends_motion_and_start_comes_back(void **st)
 {
-	const struct cycle_config k = jumping();
-	struct beside at_ring;
-	int n;
-
 	(void)st;
-	jump_on_ring(&at_ring, &k);
-	n = jump_cycles(&at_ring);
-	for (int i = 0; i <= n; i++) {
-		struct beside t;
-		double way;
+	in_any_cycle(stop_at_once);
+}
 
-		again(&t, &at_ring, i);
-		t.r.in.estop = true;
-		step(&t.r, OPEN_V);
-		way = t.r.c.escape.way_mm;
-		steps(&t.r, OPEN_V, 3);
-		t.r.in.estop = false;
-		assert_int_equal(t.r.c.state, STATE_FAULT);
-		assert_true(t.r.c.escape.way_mm == way);
-		assert_int_equal(tell(&t.r, CYCLE_RESET), ANSWER_DONE);
-		assert_int_equal(t.r.c.state, STATE_HOLD);
-		check_ground(&t);
-		come_home(&t);
-		free(t.w.at);
-	}
-	end(&at_ring);
+static void short_it(struct beside *t)
+{
+	steps(&t->r, SHORTED_V, 5);
+	check_ground(t);
+	for (int j = 0; j < 5000 && escape_is_out(&t->r.c.escape); j++)
+		step(&t->r, OPEN_V);
+	assert_false(escape_is_out(&t->r.c.escape));
 }
 
 static void a_short_in_any_cycle_keeps_to_the_legs_and_is_retracted_from(void **st)
 {
-	const struct cycle_config k = jumping();
-	struct beside at_ring;
-	int n;
-
 	(void)st;
-	jump_on_ring(&at_ring, &k);
-	n = jump_cycles(&at_ring);
-	for (int i = 0; i <= n; i++) {
-		struct beside t;
-
-		again(&t, &at_ring, i);
-		steps(&t.r, SHORTED_V, 5);
-		check_ground(&t);
-		for (int j = 0; j < 5000 && escape_is_out(&t.r.c.escape); j++)
-			step(&t.r, OPEN_V);
-		assert_false(escape_is_out(&t.r.c.escape));
-		free(t.w.at);
-	}
-	end(&at_ring);
+	in_any_cycle(short_it);
 }
 
 static void a_retract_by_command_goes_on_out_and_a_stop_ends_the_job(void **st)

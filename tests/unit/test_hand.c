@@ -494,6 +494,18 @@ static void begin_nodes(struct rig *r, const struct cycle_config *k)
 	tell(r, CYCLE_START);
 }
 
+/* Cut to 4.2 mm, and held there. */
+static void hold_between_nodes(struct rig *r)
+{
+	const struct cycle_config k = hand_config();
+
+	begin_nodes(r, &k);
+	until(r, STATE_APPROACH, OPEN_V, 1000);
+	cut_until(r, 4.2);
+	tell(r, CYCLE_HOLD);
+	step(r, OPEN_V);
+}
+
 static void step_and_rest(struct rig *r, double n, enum cycle_answer a)
 {
 	assert_int_equal(tell_mm(r, CYCLE_STEP, n), a);
@@ -505,15 +517,10 @@ static void step_and_rest(struct rig *r, double n, enum cycle_answer a)
 
 static void steps_lead_from_node_to_node(void **state)
 {
-	const struct cycle_config k = hand_config();
 	struct rig r;
 
 	(void)state;
-	begin_nodes(&r, &k);
-	until(&r, STATE_APPROACH, OPEN_V, 1000);
-	cut_until(&r, 4.2);
-	tell(&r, CYCLE_HOLD);
-	step(&r, OPEN_V);
+	hold_between_nodes(&r);
 	step_and_rest(&r, -1, ANSWER_DONE);
 	assert_near(place(&r), 3, 1e-6);
 	step_and_rest(&r, -2, ANSWER_DONE);
@@ -532,15 +539,10 @@ static void steps_lead_from_node_to_node(void **state)
 
 static void a_short_ends_a_step_forward(void **state)
 {
-	const struct cycle_config k = hand_config();
 	struct rig r;
 
 	(void)state;
-	begin_nodes(&r, &k);
-	until(&r, STATE_APPROACH, OPEN_V, 1000);
-	cut_until(&r, 4.2);
-	tell(&r, CYCLE_HOLD);
-	step(&r, OPEN_V);
+	hold_between_nodes(&r);
 	step_and_rest(&r, -2, ANSWER_DONE);
 	assert_int_equal(tell_mm(&r, CYCLE_STEP, 1), ANSWER_DONE);
 	steps(&r, OPEN_V, 100);
