@@ -320,7 +320,7 @@ static void millions_of_random_cycles_keep_every_promise(void **st)
 		print_message("    %-18s %llu\n",
 			      cycle_fault_name((enum cycle_fault)i),
 			      (unsigned long long)faults[i]);
-		/* test_cycle_damage.c, test_hand.c and test_touch.c have
+		/* test_cycle_damage.c, test_home.c and test_touch.c have
 		 * those of damage, homing and touches. */
 		if (CYCLES >= 10000000 && i != FAULT_PROGRAM &&
 		    i != FAULT_HOME && i != FAULT_NO_CONTACT)
