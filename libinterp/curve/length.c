@@ -52,24 +52,34 @@ static double gauss(const struct interp_nurbs_eval *e, double from, double to)
 	return sum * half;
 }
 
-static double refine(const struct interp_nurbs_eval *e, double from, double to,
-		     double whole, double error_mm, int halvings)
-{
-	const double middle = (from + to) / 2;
-	const double a = gauss(e, from, middle), b = gauss(e, middle, to);
+/* A part of a span, and what it came to in one piece. */
+struct part {
+	double from, to, whole, error_mm;
+};
 
-	if (fabs(a + b - whole) <= fmax(error_mm, ROUNDING * whole) ||
-	    halvings == 0 || !(middle > from && middle < to))
-		return a + b;
-	return refine(e, from, middle, a, error_mm / 2, halvings - 1) +
-	       refine(e, middle, to, b, error_mm / 2, halvings - 1);
+static double refine(const struct interp_nurbs_eval *e, const struct part *p,
+		     int halvings)
+{
+	const double middle = (p->from + p->to) / 2;
+	const struct part a = { p->from, middle, gauss(e, p->from, middle),
+				p->error_mm / 2 };
+	const struct part b = { middle, p->to, gauss(e, middle, p->to),
+				p->error_mm / 2 };
+
+	if (fabs(a.whole + b.whole - p->whole) <=
+	    fmax(p->error_mm, ROUNDING * p->whole) ||
+	    halvings == 0 || !(middle > p->from && middle < p->to))
+		return a.whole + b.whole;
+	return refine(e, &a, halvings - 1) + refine(e, &b, halvings - 1);
 }
 
 /* In the span entered. */
 static double span_length(const struct interp_nurbs_eval *e, double from,
 			  double to, double error_mm)
 {
-	return refine(e, from, to, gauss(e, from, to), error_mm, HALVINGS);
+	const struct part p = { from, to, gauss(e, from, to), error_mm };
+
+	return refine(e, &p, HALVINGS);
 }
 
 double interp_nurbs_length(struct interp_nurbs_eval *e, double from, double to,
