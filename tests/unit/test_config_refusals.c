@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_config_refusals.c - the machine file: what it refuses and where
+ */
+#include "config_help.h"
+
+struct refusal {
+	const char *text;
+	uint32_t line, column;
+	const char *found, *wanted;
+};
+
+static const struct refusal refusals[] = {
+	/* Names. */
+	{ "[gap]\nservo_volt = 15\n", 2, 1,
+	  "unknown key gap.servo_volt", "did you mean servo_v? one of source" },
+	{ "[gap]\nqqqqqqqqqqqqqqqqqqqqqqq = 15\n", 2, 1,
+	  "unknown key gap.qqq", "one of source, servo_v, " },
+	{ "\n[gapp]\nservo_v = 15\n", 2, 2,
+	  "unknown section [gapp]", "did you mean gap? one of machine" },
+	{ "[axis.W]\n", 1, 2,
+	  "unknown section [axis.W]", "axis.X to axis.V" },
+	{ "[AXIS.Z]\n", 1, 2, "[AXIS.Z]", "did you mean axis.Z?" },
+	{ "\n\nname = x\n", 3, 1, "a key before any section", "[section]" },
+	{ "[dds]\nhz = 5\n\n[dds]\n  hz = 6\n", 5, 3,
+	  "dds.hz again, first in line 2", "each key once" },
+	{ "[axis.X]\nv_max_mm_s = 1\n[axis.X]\nv_max_mm_s = 1\n", 4, 1,
+	  "axis.X.v_max_mm_s again, first in line 2", "each key once" },
+	{ "[gap]\n= 4\n", 2, 1, "unknown key gap.", "one of source" },
+	/* Syntax. */
+	{ "[gap\n", 1, 1, "a section without its ]", "[section]" },
+	{ "[gap] servo_v = 20\n", 1, 1, "text behind a section",
+	  "from the next line" },
+	{ "[gap]\nservo_v\n", 2, 1, "neither a key nor a section",
+	  "key = value" },
+	/* Kinds. */
+	{ "[gap]\nservo_v =  fifteen\n", 2, 12,
+	  "gap.servo_v 'fifteen' is not a number",
+	  "number from 0.1 to 500 V" },
+	{ "[gap]\nservo_v = \n", 2, 11, "'' is not a number", "to 500 V" },
+	{ "[gap]\nservo_v = nan\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = inf\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = 0x10\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = 15 V\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = 1e\n", 2, 11, "is not a number", "500 V" },
+	{ "[gap]\nservo_v = 1e999\n", 2, 11, "is too large", "500 V" },
+	{ "[gap]\nservo_v = -1e999\n", 2, 11, "is too small", "500 V" },
+	{ "[machine]\npriority = 1.5\n", 2, 12,
+	  "is not a whole number", "whole number from 1 to 99" },
+	{ "[machine]\npriority = 100\n", 2, 12, "is too large", "to 99" },
+	{ "[machine]\nbackend = simulator\n", 2, 11,
+	  "machine.backend 'simulator' is not known", "one of sim, null" },
+	{ "[machine]\nstrategy = zigzag\n", 2, 12, "is not known",
+	  "one of simultaneous, point-by-point" },
+	{ "[axis.U]\npresent = 1\n", 2, 11, "is neither yes nor no",
+	  "yes or no" },
+	{ "[machine]\nname = a/b\n", 2, 8, "does not go into a file's name",
+	  "1 to 31 letters, digits, - and _" },
+	{ "[machine]\nname = \n", 2, 8, "is empty", "1 to 31" },
+	{ "[machine]\nname = abcdefghijklmnopqrstuvwxyz012345\n", 2, 8,
+	  "is too long", "1 to 31" },
+	{ "[jobs]\nstore = /a\001b\n", 2, 9, "has a control character",
+	  "text of 1 to 255 bytes" },
+	/* Units of rotary axes. */
+	{ "[axis.C]\nv_max_mm_s = -1\n", 2, 14, "is too small", "deg/s" },
+	/* Between keys. */
+	{ "[axis.Z]\ntravel_min_mm = 5\ntravel_max_mm = 5\n", 3, 0,
+	  "axis.Z.travel_min_mm 5 mm is not below travel_max_mm 5 mm",
+	  "travel_min_mm below travel_max_mm" },
+	{ "[axis.A]\n\nstart_mm = 1000000.5\n", 3, 0,
+	  "axis.A.start_mm 1000000.5 deg is not at most travel_max_mm",
+	  "start_mm at most travel_max_mm" },
+	{ "[axis.Y]\nstart_mm = -200.5\n", 2, 0,
+	  "axis.Y.travel_min_mm -200 mm is not at most start_mm -200.5 mm",
+	  "travel_min_mm at most start_mm" },
+	{ "[axis.X]\ntravel_max_mm = 200\npulse_mm = 1e-7\n", 3, 12,
+	  "is too small", "number from 1e-06 to 1 mm" },
+	{ "[axis.X]\ntravel_max_mm = 2000\npulse_mm = 1e-6\n", 3, 0,
+	  "axis.X.travel_max_mm 2000 mm is 2000000000 pulses",
+	  "at most 1073741824 pulses either way: 1073.74 mm" },
+	{ "[axis.X]\ntravel_min_mm = -1073742\n", 2, 0,
+	  "travel_min_mm -1073742 mm is -1073742000 pulses", "1.07374e+06" },
+	{ "[wire]\nz_upper_mm = -20\n", 2, 0,
+	  "wire.z_lower_mm -20 mm is not below z_upper_mm -20 mm",
+	  "z_lower_mm below z_upper_mm" },
+	{ "[axis.V]\npresent = no\n[wire]\nguides = absolute\n", 4, 0,
+	  "wire.guides without an axis V", "X Y U V present" },
+	{ "[gap]\nshort_v = 15\n", 2, 0, "gap.short_v 15 V is not below",
+	  "short_v below servo_v" },
+	{ "[gap]\nopen_v = 15\n", 2, 0, "gap.servo_v 15 V is not below",
+	  "servo_v below open_v" },
+	{ "[gap]\nservo_v = 20\nwindow_high_v = 30\nwindow_low_v = 31\n", 4, 0,
+	  "gap.window_low_v 31 V is not at most window_high_v 30 V",
+	  "window_low_v at most window_high_v" },
+	{ "[gap]\nwindow_low_v = 7.5\n", 2, 0,
+	  "gap.short_v 8 V is not below window_low_v 7.5 V",
+	  "short_v below window_low_v" },
+	{ "[gap]\nwindow_low_v = 16\n", 2, 0,
+	  "gap.window_low_v 16 V is not at most servo_v 15 V",
+	  "window_low_v at most servo_v" },
+	{ "[gap]\nwindow_high_v = 14\n", 2, 0,
+	  "gap.servo_v 15 V is not at most window_high_v 14 V",
+	  "servo_v at most window_high_v" },
+	{ "[gap]\nwindow_high_v = 61\n", 2, 0,
+	  "gap.window_high_v 61 V is not below open_v 60 V",
+	  "window_high_v below open_v" },
+	{ "[gap]\nignition_v = 60\n", 2, 0,
+	  "gap.open_v 60 V is not below ignition_v 60 V",
+	  "open_v below ignition_v" },
+	{ "[gap]\nsource = guess\n", 2, 10, "gap.source 'guess'",
+	  "sim, voltage, shares, lines, can" },
+	{ "[gap]\nretract_to = home\n", 2, 14, "'home'",
+	  "limit, start, motion" },
+	{ "[jump]\nheight_mm = 401\n", 2, 0,
+	  "jump.height_mm 401 mm is higher than any axis travels",
+	  "at most 400 mm, the travel of axis.X" },
+	{ "[jump]\nadaptive = yes\nheight_max_mm = 450\n", 3, 0,
+	  "jump.height_max_mm 450 mm", "at most 400 mm" },
+	{ "[jump]\nheight_min_mm = 6\n", 2, 0,
+	  "jump.height_min_mm 6 mm is not at most height_max_mm 5 mm",
+	  "height_min_mm at most height_max_mm" },
+	{ "[jump]\nevery_max_s = 0.4\n", 2, 0,
+	  "jump.every_min_s 0.5 s is not at most every_max_s 0.4 s",
+	  "every_min_s at most every_max_s" },
+	{ "[sim]\nspark_v = 100\nopen_v = 90\n", 3, 0, "sim.spark_v 100 V",
+	  "spark_v below open_v" },
+	{ "[sim]\nshort_gap_mm = 0.02\n", 2, 0, "sim.short_gap_mm 0.02 mm",
+	  "short_gap_mm below best_gap_mm" },
+	{ "[sim]\nbest_gap_mm = 0.07\n", 2, 0, "sim.best_gap_mm 0.07 mm",
+	  "best_gap_mm below open_gap_mm" },
+	{ "[sim]\narea_mm2 = 100\nperimeter_mm = 30\n", 3, 0,
+	  "sim.perimeter_mm 30 mm is too short for area_mm2 100 mm2",
+	  "more than its 35.45 mm" },
+	{ "[sim]\non_us = 1500\noff_us = 1000\n", 3, 0,
+	  "sim.wait_us 500 us is short for on_us 1500 us", "625 us, or more" },
+	{ "[sim]\nopen_v = 30\niso = no\n", 2, 0,
+	  "gap.servo_v 15 V is not below the simulated gap's 8.571 V",
+	  "a shorter [sim] off_us 20 us" },
+	{ "[machine]\nbackend = can402\n", 2, 0,
+	  "backend can402 without a drive", "node_X" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\nnode_Z = 5\n",
+	  5, 0, "can402.node_Z 5 a second time", "a node of its own" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 9\n"
+	  "master_node = 9\n", 4, 0, "can402.node_X 9 a second time",
+	  "not master_node" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_B = 5\n[axis.B]\n"
+	  "present = no\n", 4, 0, "for an axis that is not present",
+	  "that is present" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n"
+	  "gap_id = 389\n", 5, 0, "can402.gap_id 389, which is in use",
+	  "384 to 1407" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n"
+	  "generator_id = 1500\n", 5, 0, "can402.generator_id 1500",
+	  "384 to 1407" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
+	  "drive_increments = 0\n", 6, 0, "axis.X.drive_increments 0",
+	  "not 0" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
+	  "drive_increments = 1000000\n", 6, 0,
+	  "its travel reaches to 200000000000", "within 2147483647" },
+	{ "[gap]\nsource = lines\n", 2, 0,
+	  "gap.source lines on backend sim", "source = sim or shares" },
+	{ "[machine]\nperiod_us = 0.5\n", 2, 0,
+	  "machine.period_us 0.5 us is too short", "20 us and more" },
+	{ "[axis.X]\npresent=no\n[axis.Y]\npresent=no\n[axis.Z]\npresent=no\n"
+	  "[axis.A]\npresent=no\n[axis.B]\npresent=no\n[axis.C]\npresent=no\n"
+	  "[axis.U]\npresent=no\n[axis.V]\npresent=no\n", 16, 0,
+	  "no axis is present", "at least one" },
+};
+
+static void a_refusal_says_where_what_and_what_is_accepted(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+
+	(void)state;
+	for (size_t i = 0; i < COUNT(refusals); i++) {
+		const struct refusal *r = &refusals[i];
+
+		assert_int_equal(read_text(r->text, &c, &d), -EINVAL);
+		if (d.line != r->line || d.column != r->column ||
+		    !strstr(d.found, r->found) || !strstr(d.wanted, r->wanted))
+			fail_msg("%s\ngave %u:%u: %s; %s", r->text, d.line,
+				 d.column, d.found, d.wanted);
+	}
+}
+
+static void every_number_is_refused_outside_its_range(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+	char num[40];
+
+	(void)state;
+	config_defaults(&c);
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
+
+		if (k->kind != KEY_NUMBER && k->kind != KEY_WHOLE)
+			continue;
+		config_number(nextafter(k->min, -1e300), num, sizeof(num));
+		assert_int_equal(config_key_parse(k, 0, num, &c, &d), -EINVAL);
+		config_number(nextafter(k->max, 1e300), num, sizeof(num));
+		assert_int_equal(config_key_parse(k, 0, num, &c, &d), -EINVAL);
+	}
+}
+
+static void every_misspelt_key_is_met_with_the_right_one(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+	char text[128], section[32], meant[64];
+
+	(void)state;
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
+
+		if (strlen(k->name) < 4)
+			continue;
+		config_section_name(k->section, 0, section, sizeof(section));
+		/* Not at its end: there stands an axis, for some. */
+		snprintf(text, sizeof(text), "[%s]\n%c%s = 1\n", section,
+			 k->name[0], k->name);
+		snprintf(meant, sizeof(meant), "did you mean %s?", k->name);
+		assert_int_equal(read_text(text, &c, &d), -EINVAL);
+		assert_non_null(strstr(d.wanted, meant));
+	}
+}
+
+static void a_nul_byte_or_an_endless_line_is_refused(void **state)
+{
+	static const char nul[] = "[gap]\nservo_v = 1\0" "5\n";
+	struct machine_config c;
+	struct interp_diag d;
+	char text[3000];
+
+	(void)state;
+	assert_int_equal(read_bytes(nul, sizeof(nul) - 1, &c, &d), -EINVAL);
+	assert_int_equal(d.line, 2);
+	assert_string_equal(d.found, "a NUL byte");
+
+	memset(text, 'x', sizeof(text));
+	memcpy(text, "[gap]\n", 6);
+	assert_int_equal(read_bytes(text, sizeof(text), &c, &d), -EINVAL);
+	assert_int_equal(d.line, 2);
+	assert_string_equal(d.found, "a line too long");
+}
+
+static void a_refused_file_leaves_the_machine_alone(void **state)
+{
+	struct machine_config c, before;
+	struct interp_diag d;
+
+	(void)state;
+	memset(&c, 0x5a, sizeof(c));
+	before = c;
+	assert_int_equal(read_text("[gap]\nservo_v = 20\nx = 1\n", &c, &d),
+			 -EINVAL);
+	assert_memory_equal(&c, &before, sizeof(c));
+}
+
+static void a_missing_file_is_told_from_a_bad_one(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+
+	(void)state;
+	assert_int_equal(config_read(&c, "/nonexistent/machine.ini", &d),
+			 -ENOENT);
+	assert_int_equal(config_read(&c, "/", &d), -EISDIR);
+}
+
+/* Bytes flipped, dropped and doubled anywhere in a good file. */
+static size_t damage(char *text, size_t n, size_t room)
+{
+	int hits = 1 + rand() % 4;
+
+	while (hits-- && n > 1) {
+		size_t at = (size_t)rand() % n;
+		size_t run = 1 + (size_t)rand() % 40;
+
+		if (run > n - at)
+			run = n - at;
+		switch (rand() % 3) {
+		case 0:
+			text[at] = (char)rand();
+			break;
+		case 1:
+			memmove(text + at, text + at + run, n - at - run);
+			n -= run;
+			break;
+		case 2:
+			if (n + run > room)
+				break;
+			memmove(text + at + run, text + at, n - at);
+			n += run;
+			break;
+		}
+	}
+	return n;
+}
+
+static void a_damaged_file_is_read_or_refused_with_its_line(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+	const char *given = getenv("SEED");
+	unsigned seed = given ? (unsigned)strtoul(given, NULL, 10) :
+				(unsigned)time(NULL);
+	char *whole, text[65536];
+	int refused = 0;
+
+	(void)state;
+	print_message("SEED=%u\n", seed);
+	srand(seed);
+	config_defaults(&c);
+	whole = print_text(&c);
+	for (int i = 0; i < 2000; i++) {
+		size_t n = strlen(whole);
+		int err;
+
+		assert_true(n < sizeof(text));
+		memcpy(text, whole, n);
+		n = damage(text, n, sizeof(text));
+		err = read_bytes(text, n, &c, &d);
+		if (!err)
+			continue;
+		refused++;
+		assert_int_equal(err, -EINVAL);
+		assert_true(d.line > 0 && d.found[0] && d.wanted[0]);
+	}
+	free(whole);
+	assert_true(refused > 100);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(
+			a_refusal_says_where_what_and_what_is_accepted),
+		cmocka_unit_test(every_number_is_refused_outside_its_range),
+		cmocka_unit_test(every_misspelt_key_is_met_with_the_right_one),
+		cmocka_unit_test(a_nul_byte_or_an_endless_line_is_refused),
+		cmocka_unit_test(a_refused_file_leaves_the_machine_alone),
+		cmocka_unit_test(a_missing_file_is_told_from_a_bad_one),
+		cmocka_unit_test(
+			a_damaged_file_is_read_or_refused_with_its_line),
+	};
+
+	return cmocka_run_group_tests_name("config", tests, make_file,
+					   remove_file);
+}
