@@ -7,6 +7,7 @@ import pty
 import signal
 import subprocess
 import time
+from contextlib import contextmanager
 
 from rig import BUILD, QUICK_JOB, SLOW_JOB, until
 
@@ -57,13 +58,20 @@ def test_input_that_is_not_there(machine):
     assert "empty" in p.stderr
 
 
-def test_a_job_that_is_stopped_exits_1(machine):
+@contextmanager
+def slow_job_waited_for(machine):
+    """edmctl submit --wait, with its job under way."""
     path = write(machine, "slow.ngc", SLOW_JOB)
     with subprocess.Popen(
         [str(BUILD / "edmctl"), "--machine", machine.name, "submit", path,
-         "--wait"], stdout=subprocess.PIPE, text=True,
+         "--wait"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     ) as p:
         machine.client.status_where(lambda s: s.place_mm > 0.3)
+        yield p
+
+
+def test_a_job_that_is_stopped_exits_1(machine):
+    with slow_job_waited_for(machine) as p:
         assert machine.ctl("hold").returncode == 0
         machine.client.status_where(lambda s: s.state == "hold")
         assert machine.ctl("stop").returncode == 0
@@ -73,12 +81,7 @@ def test_a_job_that_is_stopped_exits_1(machine):
 
 
 def test_a_job_that_faults_exits_1(machine):
-    path = write(machine, "slow.ngc", SLOW_JOB)
-    with subprocess.Popen(
-        [str(BUILD / "edmctl"), "--machine", machine.name, "submit", path,
-         "--wait"], stdout=subprocess.PIPE, text=True,
-    ) as p:
-        machine.client.status_where(lambda s: s.place_mm > 0.3)
+    with slow_job_waited_for(machine) as p:
         assert machine.ctl("estop").returncode == 0
         out, _ = p.communicate(timeout=10)
     assert p.returncode == 1
@@ -86,12 +89,7 @@ def test_a_job_that_faults_exits_1(machine):
 
 
 def test_ctrl_c_leaves_the_job_running(machine):
-    path = write(machine, "slow.ngc", SLOW_JOB)
-    with subprocess.Popen(
-        [str(BUILD / "edmctl"), "--machine", machine.name, "submit", path,
-         "--wait"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    ) as p:
-        machine.client.status_where(lambda s: s.place_mm > 0.3)
+    with slow_job_waited_for(machine) as p:
         p.send_signal(signal.SIGINT)
         _, err = p.communicate(timeout=5)
     assert p.returncode == 75
