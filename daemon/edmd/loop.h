@@ -41,6 +41,7 @@ struct loop {
 	struct shm_command_ring *commands;
 	struct program *program;	/* loaded; or NULL */
 	double pulse_mm[SHM_NAXES];
+	uint64_t axes_key, home_key;	/* key.h */
 	uint32_t speed;			/* periods for each one of time */
 
 	struct crossing crossing;

@@ -2,6 +2,7 @@
 /*
  * main.c - edmd: start, run, end in the reverse order
  */
+#include "key.h"
 #include "log.h"
 #include "options.h"
 #include "plc.h"
@@ -79,6 +80,8 @@ static void loop_configure(struct loop *l, const struct machine_config *c)
 	crossing_init(&l->crossing);
 	for (int a = 0; a < SHM_NAXES; a++)
 		l->pulse_mm[a] = c->axes.axis[a].pulse_mm;
+	l->axes_key = key_axes(c);
+	l->home_key = key_home(c);
 	l->wanted.cpu = (int)c->cpu;
 	l->wanted.priority = (int)c->priority;
 	l->speed = c->backend == BACKEND_SIM ? (uint32_t)c->sim.speed : 1;

@@ -4,6 +4,7 @@
  */
 #include "programs.h"
 
+#include "key.h"
 #include "log.h"
 #include "shm.h"
 
@@ -47,21 +48,6 @@ static int program_check(const struct machine_config *c, struct program *p)
 		return err;
 	}
 	return pulses_check(c, view.head, p->n);
-}
-
-/* FNV-1a, by words: another program has another key. */
-static uint64_t key_of(const void *block, size_t bytes)
-{
-	uint64_t key = UINT64_C(0xcbf29ce484222325), word = 0;
-
-	for (size_t i = 0; i < bytes; i += sizeof(word)) {
-		const size_t left = bytes - i;
-
-		memcpy(&word, (const char *)block + i,
-		       left < sizeof(word) ? left : sizeof(word));
-		key = (key ^ word) * UINT64_C(0x100000001b3);
-	}
-	return key ? key : 1;
 }
 
 /* A page fault in the cycle costs more than a period. */

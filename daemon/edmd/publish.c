@@ -197,6 +197,9 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));
 	memcpy(s->toward, at.toward, sizeof(s->toward));
 	s->homed = (uint8_t)at.homed;
+	s->axes_c = at.told_c;
+	s->axes_key = l->axes_key;
+	s->home_key = l->home_key;
 	s->has_origin = l->io.origin &&
 			l->io.origin(l->io.self, s->origin);
 	s->program_key = l->program ? l->program->key : 0;

@@ -15,6 +15,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static bool job_was_under_way(const struct shm_snapshot *s)
@@ -24,13 +25,19 @@ static bool job_was_under_way(const struct shm_snapshot *s)
 
 /* -- The axes ----------------------------------------------------------------- */
 
-static bool same_pulses(const struct loop *l, const struct shm_snapshot *s)
+/* Else a pulse is another way, or of another drive. */
+static bool same_axes(const struct loop *l, const struct shm_snapshot *s)
 {
-	if (memcmp(l->pulse_mm, s->pulse_mm, sizeof(l->pulse_mm)) == 0)
+	const bool pulses = memcmp(l->pulse_mm, s->pulse_mm,
+				   sizeof(l->pulse_mm)) == 0;
+
+	if (pulses && l->axes_key == s->axes_key)
 		return true;
-	log_line(LOG_ERROR, "resume: pulse_mm of the machine file is not what "
-		 "it was; the places of the edmd before mean nothing: the axes "
-		 "are taken to stand at start_mm; move or home them");
+	log_line(LOG_ERROR, "resume: %s of the machine file is not what it was; "
+		 "the places of the edmd before mean nothing: the axes are "
+		 "taken to stand at start_mm; move or home them",
+		 pulses ? "the backend, or a drive's node or increments," :
+			  "pulse_mm");
 	return false;
 }
 
@@ -40,10 +47,41 @@ static bool is_sure(const struct loop *l, const struct shm_snapshot *s)
 	return l->io.stays || (l->io.originate && s->has_origin);
 }
 
+/* Homed to other places is not homed. */
+static uint32_t homed(const struct loop *l, const struct shm_snapshot *s)
+{
+	if (!is_sure(l, s))
+		return 0;
+	if (l->home_key == s->home_key || s->homed == 0)
+		return s->homed;
+	log_line(LOG_WARNING, "resume: home_method or home_at_mm of the machine "
+		 "file is not what it was; the axes keep their places, but "
+		 "count as not homed: home them");
+	return 0;
+}
+
+/* Where the machine file, or the crash, left it: it does not move by itself. */
+static void tell_left(const struct cycle *c)
+{
+	static const char names[] = INTERP_AXIS_LETTERS;
+	char text[INTERP_NAXES * 16] = "";
+	int32_t left[INTERP_NAXES];
+	size_t n = 0;
+
+	comp_left(&c->comp, &c->config.comp, left);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (left[i] != 0)
+			n += (size_t)snprintf(text + n, sizeof(text) - n,
+					      " %c %d", names[i], left[i]);
+	if (n > 0)
+		log_line(LOG_WARNING, "resume: backlash and maps ask for other "
+			 "pulses than the drives have, by%s; taken up when "
+			 "a command moves an axis", text);
+}
+
 static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 {
-	const bool sure = is_sure(l, s);
-	struct stand at = { .homed = sure ? s->homed : 0 };
+	struct stand at = { .homed = homed(l, s), .told_c = s->axes_c };
 
 	memcpy(at.place, s->pos, sizeof(at.place));
 	memcpy(at.drive, s->drive, sizeof(at.drive));
@@ -55,7 +93,9 @@ static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 	log_line(LOG_WARNING, "resume: the axes are taken to stand where the "
 		 "edmd before sent them, X %d Y %d Z %d pulses%s",
 		 s->pos[INTERP_X], s->pos[INTERP_Y], s->pos[INTERP_Z],
-		 sure ? "" : "; nothing measures that: look before start");
+		 is_sure(l, s) ? "" :
+				 "; nothing measures that: look before start");
+	tell_left(&l->cycle);
 }
 
 /* Latched until an operator's reset, whoever latched it. */
@@ -273,7 +313,7 @@ static void job_restore(struct loop *l, const struct machine_config *c,
 void resume(struct loop *l, const struct machine_config *c,
 	    const struct shm_snapshot *before)
 {
-	if (before->cycle == 0 || !same_pulses(l, before))
+	if (before->cycle == 0 || !same_axes(l, before))
 		return;
 	axes_restore(l, before);
 	if (before->override >= 0 && before->override <= 2)

@@ -81,7 +81,8 @@ void comp_apply(struct comp *c, const struct comp_config *k,
 		const struct comp_period *p, int32_t ret[INTERP_NAXES])
 {
 	const int32_t *place = p->place;
-	const bool begun = c->begun, mapped = k->mapped, frozen = p->frozen;
+	const bool begun = c->begun, mapped = k->mapped;
+	const bool frozen = p->frozen || c->resting;
 
 	if (mapped)
 		look_up(c, k, place);
@@ -92,7 +93,9 @@ void comp_apply(struct comp *c, const struct comp_config *k,
 		a->place = place[i];
 		if (path != 0)
 			a->toward = path < 0 ? -1 : 1;
-		if (!frozen && (mapped || k->axis[i].backlash != 0))
+		/* Of an edmd before, something may be there to be taken off. */
+		if (!frozen && (mapped || k->axis[i].backlash != 0 ||
+				a->added != 0))
 			take_up(a, k, i, path, p->edges);
 		ret[i] = comp_pulses(a);
 	}
@@ -115,12 +118,30 @@ void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
 			     (uint32_t)a->added);
 }
 
-void comp_warm(struct comp *c, struct comp_config *k, double over_k)
+void comp_warm(struct comp *c, struct comp_config *k, double told_c)
 {
-	const double k_now = fmin(fmax(over_k, -COMP_OVER_K_MAX),
+	const double k_now = fmin(fmax(told_c - k->maps_c, -COMP_OVER_K_MAX),
 				  COMP_OVER_K_MAX);
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		k->maps.growth[i].over_k = k_now;
+	c->told_c = told_c;
 	c->stale = true;
+}
+
+void comp_left(const struct comp *c, const struct comp_config *k,
+	       int32_t ret[INTERP_NAXES])
+{
+	int32_t place[INTERP_NAXES], map[INTERP_NAXES] = { 0 };
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		place[i] = c->axis[i].place;
+	if (k->mapped)
+		comp_map(k, place, map);
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		struct comp_axis a = c->axis[i];
+
+		a.map = map[i];
+		ret[i] = wanted(k, &a, i) - a.added;
+	}
 }

@@ -48,6 +48,9 @@ struct comp_axis {
 struct comp {
 	bool begun;
 	bool stale;			/* the maps changed */
+	bool resting;			/* nothing is taken up, until an axis is
+					 * to move */
+	double told_c;			/* temperature of the axes; 0: not told */
 	struct comp_axis axis[INTERP_NAXES];
 };
 
@@ -77,12 +80,16 @@ void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
 		 const int32_t place[INTERP_NAXES], int32_t pulses);
 
 /**
- * comp_warm() - another temperature over that of the maps, for all axes.
+ * comp_warm() - all axes are at @told_c, in degC.
  *
- * At most COMP_OVER_K_MAX of it.  What the machine grew is taken up as any other
- * change.
+ * At most COMP_OVER_K_MAX off the maps' temperature.  What the machine grew is
+ * taken up as any other change.
  */
-void comp_warm(struct comp *c, struct comp_config *k, double over_k);
+void comp_warm(struct comp *c, struct comp_config *k, double told_c);
+
+/** comp_left() - what is to be taken up yet, of each axis. */
+void comp_left(const struct comp *c, const struct comp_config *k,
+	       int32_t ret[INTERP_NAXES]);
 
 /** comp_pulses() - where the drive was sent last. */
 static inline int32_t comp_pulses(const struct comp_axis *a)

@@ -234,6 +234,13 @@ static void sum_up(struct cycle *c, bool running)
 	flush_watch(c);
 }
 
+/* By a command, and under power: what the axes lack goes with it. */
+static bool moves_by_will(const struct cycle *c)
+{
+	return !c->axes.awaited && (state_duty[c->state].running || c->moving ||
+				    cycle_by_hand(c));
+}
+
 static void give(struct cycle *c, struct io_outputs *out)
 {
 	/* M5 is heeded in its own cycle, and in a way back that it met. */
@@ -250,6 +257,8 @@ static void give(struct cycle *c, struct io_outputs *out)
 		c->out.cond_letter = cond->letter;
 		c->out.cond_number = cond->number;
 	}
+	if (moves_by_will(c))
+		c->comp.resting = false;
 	c->given = c->out;
 	comp_apply(&c->comp, &c->config.comp, &(struct comp_period) {
 		.place = c->out.target,

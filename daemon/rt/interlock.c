@@ -73,8 +73,7 @@ static void warm(struct cycle *c, double was_c)
 	const double c_now = c->plc.axes_c;
 
 	if (c_now > 0 && c_now != was_c)
-		comp_warm(&c->comp, &c->config.comp,
-			  c_now - c->config.comp.maps_c);
+		comp_warm(&c->comp, &c->config.comp, c_now);
 }
 
 void interlock_guard(struct cycle *c, const struct io_inputs *in)

@@ -17,6 +17,7 @@ void stand_get(const struct cycle *c, struct stand *ret)
 		ret->toward[i] = c->comp.axis[i].toward;
 	}
 	ret->homed = c->hand.homed;
+	ret->told_c = c->comp.told_c;
 }
 
 /* What is between place and drive, and no shift, is compensation. */
@@ -38,6 +39,10 @@ void stand_set(struct cycle *c, const struct stand *s)
 		a->added = added(s, i);
 		a->toward = s->toward[i];
 	}
+	c->comp.resting = true;
+	/* Without a PLC nobody would ever tell another one. */
+	if (c->plc.present && s->told_c > 0)
+		comp_warm(&c->comp, &c->config.comp, s->told_c);
 	c->hand.homed = s->homed;
 	c->hand.used = true;
 	c->out.path++;

@@ -24,6 +24,8 @@ struct stand {
 	int32_t shift[INTERP_NAXES];	/* what homing found; comp.h */
 	int8_t toward[INTERP_NAXES];	/* of the last move; 0: none */
 	uint32_t homed;			/* bit per axis */
+	double told_c;			/* temperature of the axes, as a PLC told
+					 * it; 0: not told */
 };
 
 /** stand_get() - after a period. */
@@ -33,6 +35,8 @@ void stand_get(const struct cycle *c, struct stand *ret);
  * stand_set() - a cycle that never ran stands there, idle.
  *
  * A program that begins elsewhere is refused from then on, as after a jog.
+ * Nothing is taken up, whatever the machine file says now, until a command
+ * moves an axis; comp_left() says how much that is.
  */
 void stand_set(struct cycle *c, const struct stand *s);
 

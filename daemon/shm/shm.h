@@ -39,7 +39,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	4
+#define SHM_LAYOUT	5
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 
@@ -103,6 +103,9 @@ struct shm_snapshot {
 	 * own counts at pulse 0, where they are known. */
 	int32_t drive[SHM_NAXES], home_shift[SHM_NAXES], origin[SHM_NAXES];
 	int8_t toward[SHM_NAXES];
+	double axes_c;			/* as a PLC told it; 0: not told */
+	/* Of the machine file: what drives the axes, and how they are homed. */
+	uint64_t axes_key, home_key;
 	uint64_t program_key;		/* of all bytes of the program; or 0 */
 	double override;		/* of positioning; 1: as programmed */
 	uint32_t mcode_at;		/* segment of ... */

@@ -4,6 +4,10 @@
  */
 #include "resume_help.h"
 
+#include "key.h"
+
+#include <stdlib.h>
+
 static void begin_cavity(struct world *w)
 {
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
@@ -66,6 +70,157 @@ static void no_drive_moves_after_a_crash_wherever_it_was(void **st)
 		stands_there(&w, &was);
 		world_free(&w);
 	}
+}
+
+static int32_t most_off(const struct world *w, const struct io_outputs *was)
+{
+	int32_t most = 0;
+
+	for (int a = 0; a < INTERP_NAXES; a++)
+		most = abs(w->out.target[a] - was->target[a]) > most ?
+		       abs(w->out.target[a] - was->target[a]) : most;
+	return most;
+}
+
+/* Z grows up to 10 um for each K, from what the machine file says on. */
+static void warm_z(struct world *w)
+{
+	struct comp_config *k = &w->k.comp;
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		k->axis[i].pulse_mm = PULSE_MM;
+		k->axis[i].take_up = 0.5;
+	}
+	k->mapped = true;
+	k->maps_c = 20;
+	k->maps.growth[INTERP_Z] = (struct interp_errormap_growth) {
+		10e-6, -1000, 0
+	};
+	w->in.plc = well();
+}
+
+static void what_a_plc_told_of_the_axes_is_in_force_again(void **st)
+{
+	struct world w;
+	struct io_outputs was;
+
+	(void)st;
+	world_init(&w);
+	warm_z(&w);
+	loop_make(&w);
+	begin_cavity(&w);
+	w.in.plc.axes_c = 27.5;
+	cut(&w, 1);
+	assert_int_equal(ask(&w, CYCLE_HOLD, 0, 0), ANSWER_DONE);
+	periods(&w, OPEN_V, 300);
+	was = w.out;
+	/* Its link comes up, and it says nothing of them yet. */
+	w.in.plc.axes_c = 0;
+	crash(&w);
+	assert_true(w.l.cycle.loaded);
+	stands_there(&w, &was);
+	/* Nor does the way back after a start take up what never was. */
+	assert_int_equal(ask(&w, CYCLE_RETRACT, 0, 0.001), ANSWER_DONE);
+	periods(&w, OPEN_V, 300);
+	assert_in_range(most_off(&w, &was), 1, 2);
+	/* And once more. */
+	was = w.out;
+	crash(&w);
+	stands_there(&w, &was);
+	assert_near(w.l.cycle.comp.told_c, 27.5, 0);
+	world_free(&w);
+}
+
+/* Wherever in it: half of a turn, half of a warming. */
+static void what_was_being_taken_up_waits_for_a_command(void **st)
+{
+	(void)st;
+	for (int at = 1; at < 60; at += 7) {
+		struct world w;
+		struct io_outputs was;
+
+		world_init(&w);
+		wear_z(&w);
+		warm_z(&w);
+		loop_make(&w);
+		begin_cavity(&w);
+		cut(&w, 1);
+		assert_int_equal(ask(&w, CYCLE_HOLD, 0, 0), ANSWER_DONE);
+		w.in.plc.axes_c = 25;
+		periods(&w, OPEN_V, at);
+		was = w.out;
+		crash(&w);
+		stands_there(&w, &was);
+		/* Another temperature than before moves nothing, too. */
+		w.in.plc.axes_c = 30;
+		stands_there(&w, &was);
+		assert_int_equal(ask(&w, CYCLE_RETRACT, 0, 0.001),
+				 ANSWER_DONE);
+		periods(&w, OPEN_V, 500);
+		assert_true(most_off(&w, &was) > 40);
+		world_free(&w);
+	}
+}
+
+static int32_t z_added(const struct world *w)
+{
+	return w->out.target[INTERP_Z] - w->l.cycle.out.target[INTERP_Z];
+}
+
+/* None, or others: it stands, and goes with the next motion. */
+static void another_machine_file_moves_no_axis_by_itself(void **st)
+{
+	(void)st;
+	for (int left = 0; left < 4; left++) {
+		struct world w;
+		struct io_outputs was;
+
+		world_init(&w);
+		wear_z(&w);
+		loop_make(&w);
+		begin_cavity(&w);
+		cut(&w, 1);
+		assert_int_equal(ask(&w, CYCLE_HOLD, 0, 0), ANSWER_DONE);
+		periods(&w, OPEN_V, 300);
+		was = w.out;
+		w.k.comp.mapped = left & 1;
+		w.k.comp.axis[INTERP_Z].backlash = left & 2 ? 30 : 0;
+		crash(&w);
+		assert_true(w.l.cycle.loaded);
+		stands_there(&w, &was);
+		assert_int_equal(ask(&w, CYCLE_RETRACT, 0, 0.1), ANSWER_DONE);
+		periods(&w, OPEN_V, 300);
+		/* Up again: no backlash; about 7 um of the maps. */
+		if (left & 1)
+			assert_true(z_added(&w) != 0);
+		else
+			assert_int_equal(z_added(&w), 0);
+		world_free(&w);
+	}
+}
+
+static void a_fault_and_its_reset_move_no_axis_either(void **st)
+{
+	struct world w;
+	struct io_outputs was;
+
+	(void)st;
+	world_init(&w);
+	wear_z(&w);
+	loop_make(&w);
+	begin_cavity(&w);
+	cut(&w, 1);
+	assert_int_equal(ask(&w, CYCLE_ESTOP, 0, 0), ANSWER_DONE);
+	period(&w, OPEN_V);
+	was = w.out;
+	w.k.comp.axis[INTERP_Z].backlash = 30;
+	crash(&w);
+	stands_there(&w, &was);
+	assert_int_equal(ask(&w, CYCLE_RESET, 0, 0), ANSWER_DONE);
+	stands_there(&w, &was);
+	assert_int_equal(ask(&w, CYCLE_STOP, 0, 0), ANSWER_DONE);
+	stands_there(&w, &was);
+	world_free(&w);
 }
 
 static void idle_axes_stand_where_they_were_sent(void **st)
@@ -152,6 +307,25 @@ static void axes_that_nothing_measures_are_to_be_homed_again(void **st)
 	world_free(&w);
 }
 
+static void axes_that_are_homed_otherwise_now_are_to_be_homed_again(void **st)
+{
+	struct world w;
+	struct shm_snapshot before;
+
+	(void)st;
+	homed_axes(&w, true);
+	assert_true(shm_snapshot(w.l.status, &before));
+	loop_make(&w);
+	w.config.hand[INTERP_X].home_at_mm += 1;
+	w.l.home_key = key_home(&w.config);
+	resume(&w.l, &w.config, &before);
+	assert_int_equal(hand_unhomed(&w.l.cycle), 1u << INTERP_X);
+	assert_int_equal(w.l.cycle.out.target[INTERP_X], 11234);
+	period(&w, OPEN_V);
+	assert_int_equal(w.out.target[INTERP_X], 1234);
+	world_free(&w);
+}
+
 static int32_t originated[IO_NAXES];
 
 static bool origin(void *self, int32_t ret[IO_NAXES])
@@ -205,6 +379,41 @@ static void places_in_other_pulses_are_not_believed(void **st)
 	assert_false(w.l.cycle.loaded);
 	assert_int_equal(w.l.cycle.out.target[INTERP_Z], 0);
 	world_free(&w);
+}
+
+/* As if a gear or a node were mended in the machine file. */
+static void places_of_other_drives_are_not_believed(void **st)
+{
+	struct machine_config other[4];
+
+	(void)st;
+	for (int i = 0; i < 4; i++) {
+		struct world w;
+		struct shm_snapshot before;
+
+		world_init(&w);
+		w.config.backend = BACKEND_CAN402;
+		loop_make(&w);
+		w.l.axes_key = key_axes(&w.config);
+		begin_cavity(&w);
+		cut(&w, 1);
+		assert_true(shm_snapshot(w.l.status, &before));
+		program_close(w.l.program);
+		loop_make(&w);
+		other[i] = w.config;
+		if (i == 1)
+			other[i].drive[INTERP_Z].increments *= -1;
+		if (i == 2)
+			other[i].can402.node[INTERP_Z] += 1;
+		if (i == 3)
+			other[i].backend = BACKEND_SIM;
+		w.l.axes_key = key_axes(&other[i]);
+		resume(&w.l, &w.config, &before);
+		assert_int_equal(w.l.cycle.loaded, i == 0);
+		if (i > 0)
+			assert_int_equal(w.l.cycle.out.target[INTERP_Z], 0);
+		world_free(&w);
+	}
 }
 
 /* -- The job ------------------------------------------------------------------ */
@@ -307,10 +516,17 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_drive_moves_after_a_crash_wherever_it_was),
+		cmocka_unit_test(what_a_plc_told_of_the_axes_is_in_force_again),
+		cmocka_unit_test(what_was_being_taken_up_waits_for_a_command),
+		cmocka_unit_test(another_machine_file_moves_no_axis_by_itself),
+		cmocka_unit_test(a_fault_and_its_reset_move_no_axis_either),
 		cmocka_unit_test(idle_axes_stand_where_they_were_sent),
 		cmocka_unit_test(axes_that_cannot_have_moved_stay_homed),
 		cmocka_unit_test(
 			axes_that_nothing_measures_are_to_be_homed_again),
+		cmocka_unit_test(
+		axes_that_are_homed_otherwise_now_are_to_be_homed_again),
+		cmocka_unit_test(places_of_other_drives_are_not_believed),
 		cmocka_unit_test(
 			drives_that_count_are_told_where_their_zero_was),
 		cmocka_unit_test(places_in_other_pulses_are_not_believed),
