@@ -196,6 +196,7 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 	memcpy(s->drive, at.drive, sizeof(s->drive));
 	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));
 	memcpy(s->toward, at.toward, sizeof(s->toward));
+	memcpy(s->limit_side, at.limit.side, sizeof(s->limit_side));
 	s->homed = (uint8_t)at.homed;
 	s->axes_c = at.told_c;
 	s->axes_key = l->axes_key;

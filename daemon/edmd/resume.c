@@ -81,12 +81,16 @@ static void tell_left(const struct cycle *c)
 
 static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 {
-	struct stand at = { .homed = homed(l, s), .told_c = s->axes_c };
+	struct stand at = {
+		.homed = homed(l, s), .limit.on = s->limit,
+		.told_c = s->axes_c,
+	};
 
 	memcpy(at.place, s->pos, sizeof(at.place));
 	memcpy(at.drive, s->drive, sizeof(at.drive));
 	memcpy(at.shift, s->home_shift, sizeof(at.shift));
 	memcpy(at.toward, s->toward, sizeof(at.toward));
+	memcpy(at.limit.side, s->limit_side, sizeof(at.limit.side));
 	stand_set(&l->cycle, &at);
 	if (l->io.originate && s->has_origin)
 		l->io.originate(l->io.self, s->origin);
@@ -162,6 +166,8 @@ static void mcode_restore(struct cycle *c, const struct shm_snapshot *s)
 {
 	c->mcode.number = s->mcode;
 	c->mcode.at = s->mcode_at;
+	/* It was answered while the job stood. */
+	c->mcode.done = s->mcode == 0 && s->mcode_at != 0;
 }
 
 /* The sums of the job go on. */

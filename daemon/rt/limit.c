@@ -21,11 +21,14 @@ void limit_guard(struct cycle *c, const struct io_inputs *in)
 {
 	const uint32_t came = in->limit & ~c->limit.on;
 
-	/* Which side it is on, by the last pulses out. */
+	/*
+	 * Which side it is on, by the last pulses out.  Of pulses before the
+	 * first period nobody knows what came after them.
+	 */
 	for (uint32_t m = came; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
 
-		c->limit.side[i] = c->comp.axis[i].toward;
+		c->limit.side[i] = c->comp.begun ? c->comp.axis[i].toward : 0;
 	}
 	c->limit.on = in->limit;
 	if ((came && moves(c)) || (in->limit && state_duty[c->state].running))

@@ -17,6 +17,7 @@ void stand_get(const struct cycle *c, struct stand *ret)
 		ret->toward[i] = c->comp.axis[i].toward;
 	}
 	ret->homed = c->hand.homed;
+	ret->limit = c->limit;
 	ret->told_c = c->comp.told_c;
 }
 
@@ -39,6 +40,7 @@ void stand_set(struct cycle *c, const struct stand *s)
 		a->added = added(s, i);
 		a->toward = s->toward[i];
 	}
+	c->limit = s->limit;
 	c->comp.resting = true;
 	/* Without a PLC nobody would ever tell another one. */
 	if (c->plc.present && s->told_c > 0)

@@ -13,6 +13,7 @@
 #define RT_STAND_H
 
 #include "interp/axis.h"
+#include "limit.h"
 
 #include <stdint.h>
 
@@ -24,6 +25,7 @@ struct stand {
 	int32_t shift[INTERP_NAXES];	/* what homing found; comp.h */
 	int8_t toward[INTERP_NAXES];	/* of the last move; 0: none */
 	uint32_t homed;			/* bit per axis */
+	struct limit limit;		/* switches they are on, and their sides */
 	double told_c;			/* temperature of the axes, as a PLC told
 					 * it; 0: not told */
 };

@@ -103,6 +103,7 @@ struct shm_snapshot {
 	 * own counts at pulse 0, where they are known. */
 	int32_t drive[SHM_NAXES], home_shift[SHM_NAXES], origin[SHM_NAXES];
 	int8_t toward[SHM_NAXES];
+	int8_t limit_side[SHM_NAXES];	/* of the switches in `limit` */
 	double axes_c;			/* as a PLC told it; 0: not told */
 	/* Of the machine file: what drives the axes, and how they are homed. */
 	uint64_t axes_key, home_key;

@@ -254,6 +254,60 @@ static void idle_axes_stand_where_they_were_sent(void **st)
 	world_free(&w);
 }
 
+static void begin_idle_x(struct world *w)
+{
+	world_init(w);
+	w->k.axis[INTERP_X] = (struct hand_axis) {
+		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
+		.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
+		.home_slow_mm_s = 5,
+	};
+	loop_make(w);
+}
+
+/* Run onto it toward +, and come back a bit, not off it. */
+static void a_limit_switch_is_on_the_side_it_was(void **st)
+{
+	struct world w;
+
+	(void)st;
+	begin_idle_x(&w);
+	assert_int_equal(ask(&w, CYCLE_JOG, INTERP_X, 5), ANSWER_DONE);
+	periods(&w, OPEN_V, 100);
+	w.in.limit = 1u << INTERP_X;
+	periods(&w, OPEN_V, 2);
+	assert_int_equal(w.l.cycle.fault, FAULT_LIMIT_SWITCH);
+	assert_int_equal(ask(&w, CYCLE_RESET, 0, 0), ANSWER_DONE);
+	assert_int_equal(ask(&w, CYCLE_JOG, INTERP_X, -0.1), ANSWER_DONE);
+	periods(&w, OPEN_V, 300);
+	assert_int_equal(w.l.cycle.state, STATE_IDLE);
+	for (int times = 0; times < 2; times++) {
+		crash(&w);
+		period(&w, OPEN_V);
+		assert_int_equal(ask(&w, CYCLE_JOG, INTERP_X, 0.1),
+				 ANSWER_AT_LIMIT);
+	}
+	assert_int_equal(ask(&w, CYCLE_JOG, INTERP_X, -0.1), ANSWER_DONE);
+	world_free(&w);
+}
+
+static void a_limit_switch_met_meanwhile_has_no_known_side(void **st)
+{
+	struct world w;
+
+	(void)st;
+	begin_idle_x(&w);
+	assert_int_equal(ask(&w, CYCLE_JOG, INTERP_X, 1), ANSWER_DONE);
+	periods(&w, OPEN_V, 500);
+	crash(&w);
+	w.in.limit = 1u << INTERP_X;
+	period(&w, OPEN_V);
+	assert_int_equal(ask(&w, CYCLE_JOG, INTERP_X, 0.1), ANSWER_DONE);
+	assert_int_equal(ask(&w, CYCLE_STOP, 0, 0), ANSWER_DONE);
+	periods(&w, OPEN_V, 100);
+	world_free(&w);
+}
+
 static void homed_axes(struct world *w, bool stays)
 {
 	world_init(w);
@@ -521,6 +575,9 @@ int main(void)
 		cmocka_unit_test(another_machine_file_moves_no_axis_by_itself),
 		cmocka_unit_test(a_fault_and_its_reset_move_no_axis_either),
 		cmocka_unit_test(idle_axes_stand_where_they_were_sent),
+		cmocka_unit_test(a_limit_switch_is_on_the_side_it_was),
+		cmocka_unit_test(
+			a_limit_switch_met_meanwhile_has_no_known_side),
 		cmocka_unit_test(axes_that_cannot_have_moved_stay_homed),
 		cmocka_unit_test(
 			axes_that_nothing_measures_are_to_be_homed_again),

@@ -87,6 +87,24 @@ static void an_m_code_that_waits_is_told_still_and_done_once(void **st)
 	world_free(&w);
 }
 
+/* The job was held, or in a fault, when the answer came. */
+static void one_answered_while_held_is_not_waited_for_again(void **st)
+{
+	struct world w;
+
+	(void)st;
+	begin_code(&w, INTERP_MCODE_BEFORE, INTERP_MCODE_SKIP);
+	meet(&w);
+	assert_int_equal(ask(&w, CYCLE_HOLD, 0, 0), ANSWER_DONE);
+	do_it(&w);
+	periods(&w, OPEN_V, 5);
+	crash(&w);
+	periods(&w, OPEN_V, 5);
+	go_on(&w);
+	assert_false(told_on_the_way(&w, 1.9));
+	world_free(&w);
+}
+
 static void one_not_waited_for_is_told_until_it_is_done(void **st)
 {
 	struct world w;
@@ -143,6 +161,8 @@ int main(void)
 		cmocka_unit_test(an_m_code_that_was_done_is_not_told_again),
 		cmocka_unit_test(
 			an_m_code_that_waits_is_told_still_and_done_once),
+		cmocka_unit_test(
+			one_answered_while_held_is_not_waited_for_again),
 		cmocka_unit_test(one_not_waited_for_is_told_until_it_is_done),
 		cmocka_unit_test(no_way_leads_back_over_a_stop_after_a_crash),
 		cmocka_unit_test(
