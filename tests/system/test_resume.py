@@ -54,6 +54,58 @@ def test_a_job_goes_on_with_what_was_set_and_without_a_new_home(screws):
     assert [(x["was"], x["now"]) for x in sets][-1] == (41, 42)
 
 
+def change(machine, was, now):
+    """Another machine file for the next edmd."""
+    text = machine.config.read_text()
+    assert was in text
+    machine.config.write_text(text.replace(was, now))
+
+
+def edmd_log(machine):
+    return (machine.folder / "edmd.log").read_text()
+
+
+def test_other_backlash_moves_nothing_and_is_told(screws):
+    c = screws.client
+    assert screws.ctl("jog", "X", "3").returncode == 0
+    c.status_where(lambda s: s.state == "idle" and s.pos_mm[0] > -17.1)
+    assert screws.ctl("jog", "X", "-1").returncode == 0
+    before = c.status_where(
+        lambda s: s.state == "idle" and abs(s.pos_mm[0] + 18) < 0.1
+    )
+    c.hear(0.3)
+    change(screws, "backlash_um = 30", "backlash_um = 45")
+    after = come_back(screws, lambda s: s.state == "idle")
+    assert after.pos_mm == before.pos_mm
+    assert "by X -15; taken up when a command" in edmd_log(screws)
+
+
+def test_axes_are_not_homed_to_a_place_that_is_another_now(screws):
+    c = screws.client
+    change(screws, "home_at_mm = -20", "home_at_mm = -21")
+    come_back(screws, lambda s: s.state == "idle")
+    assert "home_at_mm of the machine file is not what" in edmd_log(screws)
+    assert c.submit(CUT, "job", hold=True).code == 0
+    c.hear(0.5)
+    assert c.job("job")["state"] == "queued"
+    assert screws.ctl("home").returncode == 0
+    c.job_where("job", "ready")
+
+
+def test_places_of_another_backend_are_not_believed(idle):
+    c = idle.client
+    idle.start()
+    assert c.submit(rig.SLOW_JOB, "job").code == 0
+    c.status_where(lambda s: s.pos_mm[0] > 0.3)
+    idle.kill("edmd")
+    change(idle, "backend = null", "backend = sim")
+    idle.start_edmd()
+    j = c.job_where("job", "stopped")
+    assert "its log says why" in j["reason"]
+    assert "the backend, or a drive's node" in edmd_log(idle)
+    assert c.status_where(lambda s: s.daemon == "ok").pos_mm[0] == 0
+
+
 def test_an_e_stop_stays_latched(screws):
     c = screws.client
     assert c.submit(CUT, "job").code == 0

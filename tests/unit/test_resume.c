@@ -254,6 +254,58 @@ static void idle_axes_stand_where_they_were_sent(void **st)
 	world_free(&w);
 }
 
+/* X leads; what is added is part of no place, and gone at rest. */
+static void lead_x(struct world *w)
+{
+	struct contouring_config *k = &w->k.contouring;
+
+	wear_z(w);
+	w->k.comp.axis[INTERP_X].backlash = 20;
+	w->k.dry_run = true;
+	w->k.travel_a_mm_s2 = 500;
+	*k = (struct contouring_config) {
+		.methods = INTERP_COMPENSATE_FEEDFORWARD |
+			   INTERP_COMPENSATE_CROSS,
+		.axes = 1u << INTERP_X, .ahead = 2,
+		.gains = { .velocity = 1, .acceleration = 1,
+			   .lead_periods = 0.5, .cross_1_s = 100 },
+	};
+	for (int i = 0; i < INTERP_NAXES; i++)
+		k->pulse_mm[i] = PULSE_MM;
+	k->loop[INTERP_X] = (struct interp_axis_loop) {
+		.gain_1_s = 30, .velocity_hz = 60, .damping = 0.7,
+	};
+	k->most_mm[INTERP_X] = 2;
+}
+
+static void a_lead_is_gone_after_a_crash_in_motion(void **st)
+{
+	(void)st;
+	for (int at = 30; at < 900; at += 29) {
+		struct world w;
+		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+		struct io_outputs was;
+
+		world_init(&w);
+		lead_x(&w);
+		loop_make(&w);
+		help_word.feed_mm_s = 15;
+		line(b, (double[INTERP_NAXES]) { -5 });
+		load(&w, b);
+		go_on(&w);
+		for (int i = 0; i < at; i++) {
+			memcpy(w.in.actual, w.out.target, sizeof(w.in.actual));
+			period(&w, OPEN_V);
+		}
+		was = w.out;
+		was.target[INTERP_X] -= w.l.cycle.contouring.on ?
+			w.l.cycle.contouring.added[INTERP_X] : 0;
+		crash(&w);
+		stands_there(&w, &was);
+		world_free(&w);
+	}
+}
+
 static void begin_idle_x(struct world *w)
 {
 	world_init(w);
@@ -575,6 +627,7 @@ int main(void)
 		cmocka_unit_test(another_machine_file_moves_no_axis_by_itself),
 		cmocka_unit_test(a_fault_and_its_reset_move_no_axis_either),
 		cmocka_unit_test(idle_axes_stand_where_they_were_sent),
+		cmocka_unit_test(a_lead_is_gone_after_a_crash_in_motion),
 		cmocka_unit_test(a_limit_switch_is_on_the_side_it_was),
 		cmocka_unit_test(
 			a_limit_switch_met_meanwhile_has_no_known_side),
