@@ -205,6 +205,7 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 			l->io.origin(l->io.self, s->origin);
 	s->program_key = l->program ? l->program->key : 0;
 	s->override = l->cycle.override;
+	s->plc_override = l->cycle.plc_override;
 	s->mcode = l->cycle.mcode.number;
 	s->mcode_at = l->cycle.mcode.at;
 }

@@ -324,6 +324,8 @@ void resume(struct loop *l, const struct machine_config *c,
 	axes_restore(l, before);
 	if (before->override >= 0 && before->override <= 2)
 		l->cycle.override = before->override;
+	/* Said once more, it is no change. */
+	l->cycle.plc_override = before->plc_override;
 	if (job_was_under_way(before))
 		job_restore(l, c, before);
 	fault_restore(&l->cycle, before->fault);

@@ -22,6 +22,7 @@ void cycle_init(struct cycle *c, const struct cycle_config *config)
 		.state = STATE_IDLE,
 		.after_stand = STATE_HOLD,
 		.override = 1,
+		.plc_override = NAN,
 		.out.pulse = { NAN, NAN, NAN, NAN, false },
 	};
 	memcpy(c->out.target, config->start, sizeof(c->out.target));

@@ -272,6 +272,7 @@ struct cycle {
 	uint64_t timed_left;		/* cycles */
 	double timed_from_mm;		/* place where it began */
 	struct io_plc plc;		/* as read */
+	double plc_override;		/* it said last; NAN: nothing yet */
 	struct mcode mcode;
 	double back_mm;			/* no way back beyond this place */
 	bool moving;			/* held, but walking back by command */

@@ -91,8 +91,9 @@ void interlock_guard(struct cycle *c, const struct io_inputs *in)
 	if (c->plc.hold && (!was.hold || state_duty[c->state].running))
 		command(c, CYCLE_HOLD, 0);
 	/* Another client may set it too: the last one to change it has it. */
-	if (c->plc.override != was.override || !was.alive)
+	if (c->plc.override != c->plc_override)
 		command(c, CYCLE_OVERRIDE, c->plc.override);
+	c->plc_override = c->plc.override;
 	warm(c, was.axes_c);
 	/* A start that comes with the reset was not meant for what comes now. */
 	if (c->plc.start && !c->plc.reset)

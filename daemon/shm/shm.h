@@ -109,6 +109,7 @@ struct shm_snapshot {
 	uint64_t axes_key, home_key;
 	uint64_t program_key;		/* of all bytes of the program; or 0 */
 	double override;		/* of positioning; 1: as programmed */
+	double plc_override;		/* a PLC said last; NAN: nothing yet */
 	uint32_t mcode_at;		/* segment of ... */
 	uint8_t mcode;			/* ... the M code told, not answered */
 	uint8_t homed;			/* bit per axis */

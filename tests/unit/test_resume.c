@@ -554,6 +554,32 @@ static void what_was_set_is_in_force_again(void **st)
 	world_free(&w);
 }
 
+/* Whoever changed it last has it; a PLC that says the same has not. */
+static void an_override_of_a_client_stays_beside_a_plc(void **st)
+{
+	struct world w;
+
+	(void)st;
+	world_init(&w);
+	w.in.plc = well();
+	loop_make(&w);
+	begin_cavity(&w);
+	assert_near(w.l.cycle.override, 1, 0);
+	assert_int_equal(ask(&w, CYCLE_OVERRIDE, 0, 0.25), ANSWER_DONE);
+	period(&w, SPARKING_V);
+	crash(&w);
+	/* Its link comes up. */
+	w.in.plc = (struct io_plc) { .present = true };
+	periods(&w, OPEN_V, 3);
+	w.in.plc = well();
+	periods(&w, OPEN_V, 3);
+	assert_near(w.l.cycle.override, 0.25, 0);
+	w.in.plc.override = 0.5;
+	period(&w, OPEN_V);
+	assert_near(w.l.cycle.override, 0.5, 0);
+	world_free(&w);
+}
+
 /* As after a change of the machine file: below its short_v now. */
 static void a_job_whose_sets_do_not_fit_is_not_taken_up(void **st)
 {
@@ -641,6 +667,7 @@ int main(void)
 			drives_that_count_are_told_where_their_zero_was),
 		cmocka_unit_test(places_in_other_pulses_are_not_believed),
 		cmocka_unit_test(what_was_set_is_in_force_again),
+		cmocka_unit_test(an_override_of_a_client_stays_beside_a_plc),
 		cmocka_unit_test(a_job_whose_sets_do_not_fit_is_not_taken_up),
 		cmocka_unit_test(
 			another_program_under_its_number_is_not_taken_up),

@@ -118,17 +118,17 @@ static void shared_structs_keep_their_size(void **state)
 {
 	(void)state;
 	assert_int_equal(sizeof(struct shm_head), 56);
-	assert_int_equal(sizeof(struct shm_snapshot), 560);
+	assert_int_equal(sizeof(struct shm_snapshot), 568);
 	assert_int_equal(sizeof(struct shm_trace), 136);
 	assert_int_equal(sizeof(struct shm_trace_slot), 144);
 	assert_int_equal(sizeof(struct shm_event), 56);
 	assert_int_equal(sizeof(struct shm_event_slot), 64);
-	assert_int_equal(sizeof(struct shm_snap), 568);
+	assert_int_equal(sizeof(struct shm_snap), 576);
 	assert_int_equal(sizeof(struct shm_sets_slot), 1048);
 	assert_int_equal(sizeof(struct shm_command), 24);
-	assert_int_equal(offsetof(struct shm_status, trace), 4344);
+	assert_int_equal(offsetof(struct shm_status, trace), 4360);
 	assert_int_equal(sizeof(struct shm_status),
-			 4344 + 16384 * 144 + 1024 * 64);
+			 4360 + 16384 * 144 + 1024 * 64);
 	assert_int_equal(offsetof(struct shm_command_ring, slot),
 			 56 + 8 + 2 * CK_MD_CACHELINE);
 }
