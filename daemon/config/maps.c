@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define BOM		"\xef\xbb\xbf"	/* some editors begin UTF-8 so */
 #define ERROR_MAX_UM	10000.0
 #define LEAN_MAX_UM_M	(INTERP_ERRORMAP_SLOPE_MAX * 1e6)
 #define GROWTH_MAX_UM_M_K	100.0
@@ -28,6 +29,7 @@ struct map {
 	struct interp_errormap *to;
 	struct interp_errormap_row *row;	/* being filled; NULL: none */
 	bool heads;			/* rows have them */
+	bool any;			/* a head was read */
 };
 
 static int refuse_at(const struct map *m, uint32_t line, const char *found,
@@ -79,6 +81,20 @@ static bool word_take(struct map *m, const char *word)
 	return true;
 }
 
+static int refuse_axis(const struct map *m)
+{
+	char letters[2 * INTERP_NAXES + 1] = "", wanted[64];
+	int n = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (m->c->axes.present >> i & 1)
+			n += snprintf(letters + n, sizeof(letters) - (size_t)n,
+				      " %c", INTERP_AXIS_LETTERS[i]);
+	snprintf(wanted, sizeof(wanted), "a letter of those it has:%s",
+		 letters);
+	return refuse(m, "not an axis of this machine", wanted);
+}
+
 static int axis_take(struct map *m, uint8_t *ret)
 {
 	for (uint8_t i = 0; i < INTERP_NAXES; i++) {
@@ -93,8 +109,7 @@ static int axis_take(struct map *m, uint8_t *ret)
 		m->at = was;
 		break;
 	}
-	return refuse(m, "not an axis of this machine",
-		      "a letter of X Y Z A B C U V, present = yes");
+	return refuse_axis(m);
 }
 
 /* -- Rows ------------------------------------------------------------------------ */
@@ -227,6 +242,14 @@ static int value_take(struct map *m, double most, double *ret,
 	return refuse(m, "not a number in its range", wanted);
 }
 
+/* An angle is between two axes: given both ways it would be cured twice. */
+static bool same_axes(const struct interp_errormap_lean *a,
+		      const struct interp_errormap_lean *b)
+{
+	return (a->along == b->along && a->across == b->across) ||
+	       (a->along == b->across && a->across == b->along);
+}
+
 static int squareness_take(struct map *m)
 {
 	struct interp_errormap_lean l = { 0 };
@@ -238,10 +261,10 @@ static int squareness_take(struct map *m)
 		return -EINVAL;
 	m->at = m->text;
 	for (int i = 0; i < m->to->nleans; i++)
-		if (m->to->lean[i].along == l.along &&
-		    m->to->lean[i].across == l.across)
+		if (same_axes(&m->to->lean[i], &l))
 			return refuse(m, "this angle was given before",
-				      "one angle for each two axes");
+				      "one angle for each two axes, whichever "
+				      "of them leans");
 	if (m->to->nleans == INTERP_ERRORMAP_LEANS)
 		return refuse(m, "too many angles", "at most 8");
 	l.rad = um_m * 1e-6;
@@ -293,6 +316,7 @@ static int head_take(struct map *m)
 		if (row_end(m))
 			return -EINVAL;
 		m->row = NULL;
+		m->any = true;
 		return heads[i].take(m);
 	}
 	return refuse(m, "neither a point nor a row's head",
@@ -304,13 +328,23 @@ static int head_take(struct map *m)
 
 static int line_take(struct map *m, char *text)
 {
-	text[strcspn(text, "#\r\n")] = '\0';
+	text[strcspn(text, "#\n")] = '\0';
+	if (m->line == 1 && strncmp(text, BOM, strlen(BOM)) == 0)
+		text += strlen(BOM);
 	m->text = m->at = text;
 	blanks_skip(m);
 	if (*m->at == '\0')
 		return 0;
 	return m->heads && strchr("+-.0123456789", *m->at) == NULL ?
 	       head_take(m) : point_take(m);
+}
+
+/* A file that was named is there to cure something. */
+static int file_end(const struct map *m)
+{
+	return m->heads && !m->any ?
+	       refuse(m, "no error in it", "a row, squareness or growth; or "
+		      "maps = none") : 0;
 }
 
 static int lines_take(struct map *m, FILE *f)
@@ -328,7 +362,7 @@ static int lines_take(struct map *m, FILE *f)
 	m->at = NULL;
 	if (!err && ferror(f))
 		err = refuse(m, "cannot be read", "a file of points");
-	return err ? err : row_end(m);
+	return err ? err : row_end(m) || file_end(m) ? -EINVAL : 0;
 }
 
 static int file_take(struct map *m)

@@ -193,6 +193,12 @@ static void what_is_no_geometry_is_refused_with_line_and_column(void **state)
 		{ "growth X 1 0\ngrowth X 1 0\n", "m.maps:2:1: this growth" },
 		{ "squareness Y along X 1\nsquareness Y along X 1\n",
 		  "m.maps:2:1: this angle" },
+		{ "squareness Y along X 1\nsquareness X along Y 1\n",
+		  "m.maps:2:1: this angle" },
+		{ "", "m.maps:0: no error in it" },
+		{ "# to be measured\n\n", "m.maps:2: no error in it" },
+		{ "squareness Y along X 1\rgrowth X 1 0\r",
+		  "m.maps:1:24: more than belongs" },
 		{ "skew X\n", "m.maps:1:1: neither a point" },
 		{ "pitch X\n0 0\n1 10.1\n", "m.maps:3:1: too steep" },
 		{ "pitch X\n0 0\n0 1\n", "m.maps:3:1: a place not above" },
@@ -211,6 +217,32 @@ static void what_is_no_geometry_is_refused_with_line_and_column(void **state)
 		assert_non_null(strstr(d.found, "geometry.maps"));
 		assert_true(strlen(d.wanted) > 5);
 	}
+}
+
+static void a_letter_that_is_no_axis_is_told_the_axes_there_are(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+
+	(void)state;
+	assert_int_equal(read_maps("[axis.C]\npresent = no\n", "pitch C\n", &c,
+				   &d), -EINVAL);
+	assert_string_equal(d.wanted, "a letter of those it has: X Y Z B U V");
+}
+
+static void a_map_may_come_from_any_editor(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+
+	(void)state;
+	assert_int_equal(read_maps("", "\xef\xbb\xbfpitch X\r\n"
+				   "\t0\t0\r\n10 \t 5 # um\r\n\r\n", &c, &d), 0);
+	assert_int_equal(c.geometry.row[0].n, 2);
+	assert_int_equal(read_with("\xef\xbb\xbf" "0 0\r\n10 5", &c, &d), 0);
+	assert_int_equal(read_maps("", "\xef\xbb\xbfskew X\n", &c, &d),
+			 -EINVAL);
+	assert_non_null(strstr(d.found, "m.maps:1:1: neither"));
 }
 
 static void a_pitch_is_given_once(void **state)
@@ -288,6 +320,8 @@ int main(void)
 		cmocka_unit_test(each_kind_of_error_is_read_and_cured),
 		cmocka_unit_test(the_temperature_is_that_of_the_machine_file),
 		cmocka_unit_test(what_is_no_geometry_is_refused_with_line_and_column),
+		cmocka_unit_test(a_letter_that_is_no_axis_is_told_the_axes_there_are),
+		cmocka_unit_test(a_map_may_come_from_any_editor),
 		cmocka_unit_test(a_pitch_is_given_once),
 		cmocka_unit_test(more_rows_than_there_is_room_for_are_refused),
 		cmocka_unit_test(a_map_that_is_not_there_is_refused),
