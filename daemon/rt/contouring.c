@@ -196,6 +196,15 @@ static bool applies(const struct cycle *c)
 	       c->out.enable && !c->axes.off && !escape_is_out(&c->escape);
 }
 
+bool contouring_rests(const struct contouring *w)
+{
+	int32_t any = 0;
+
+	for (int i = 0; i < INTERP_NAXES && w->on; i++)
+		any |= w->added[i];
+	return any == 0;
+}
+
 static void leave(struct contouring *w)
 {
 	if (!w->on)

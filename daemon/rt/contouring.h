@@ -20,7 +20,8 @@
  * servo speeds are small and noisy, and a lead of v / gain into a gap of some
  * um is no service.  Nothing while it homes, jogs or touches, beside the path,
  * and while axes are not under power; a fault takes it off at once.  At rest it
- * is zero: the axes stand on their pulses.
+ * is zero: the axes stand on their pulses.  A cut and a touch are begun, and a
+ * job that is stopped ended, no sooner than that.
  *
  * Never more than an axis lags at its v_max, and in a period never more of it
  * than the way at v_max; but all of it is taken off at once.  A target inside
@@ -72,6 +73,9 @@ struct contouring {
 	struct interp_row row;		/* of linear axes */
 	struct interp_contour foot;
 };
+
+/** contouring_rests() - nothing is added. */
+bool contouring_rests(const struct contouring *w);
 
 struct cycle;
 struct io_inputs;

@@ -98,6 +98,15 @@ static enum cycle_event look_in(const struct cycle *c)
 	return c->sensed.is_open ? EVENT_OPEN : EVENT_SPARK;
 }
 
+/* The axes are on their pulses before anything near the work begins. */
+static enum cycle_event look_arrive(const struct cycle *c)
+{
+	if (!contouring_rests(&c->contouring))
+		return EVENT_NONE;
+	return walk_ahead(c) == AHEAD_CUT ? EVENT_CUT :
+	       walk_ahead(c) == AHEAD_TOUCH ? EVENT_TOUCH : EVENT_NONE;
+}
+
 /* What this cycle's gap and place mean to the state; at most one thing. */
 static enum cycle_event look(struct cycle *c)
 {
@@ -118,8 +127,7 @@ static enum cycle_event look(struct cycle *c)
 	case STATE_ERODE:
 		return flush_due(c) ? EVENT_JUMP_DUE : EVENT_NONE;
 	case STATE_TRAVEL:
-		return walk_ahead(c) == AHEAD_CUT ? EVENT_CUT :
-		       walk_ahead(c) == AHEAD_TOUCH ? EVENT_TOUCH : EVENT_NONE;
+		return look_arrive(c);
 	case STATE_RETRACT:
 		return retract_is_clear(c) ? EVENT_CLEAR : EVENT_NONE;
 	case STATE_JUMP:
@@ -149,7 +157,8 @@ static void stand(struct cycle *c)
 		return;
 	if (c->after_stand == STATE_FAULT)
 		cycle_enter(c, STATE_FAULT);
-	else if (c->after_stand == STATE_IDLE)
+	else if (c->after_stand == STATE_IDLE &&
+		 contouring_rests(&c->contouring))
 		cycle_end_job(c, OUTCOME_STOPPED);
 }
 

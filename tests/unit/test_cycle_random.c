@@ -4,11 +4,13 @@
  *
  * Ten million cycles of random programs with ways out, planetary cycles,
  * sensors, gaps that wander, stick, scatter or are no number, conditions,
- * values in force, commands, broken wires, losses and e-stops; a million where
- * a sanitizer watches.  `make invariants` runs it alone.
+ * values in force, commands, broken wires, losses and e-stops, maps, backlash,
+ * leads and drives that lag; a million where a sanitizer watches.
+ * `make invariants` runs it alone.
  * The seed is printed; test_cycle_random SEED repeats it.
  */
 #include "random_world.h"
+#include "random_drives.h"
 
 #include <time.h>
 
@@ -133,6 +135,7 @@ static void check_point(void *arg, const struct cycle *c)
 static uint64_t seen[CYCLE_NSTATES];	/* cycles in each state */
 static uint64_t faults[CYCLE_NFAULTS];
 static uint64_t powered, beside, beside_retract;	/* cycles */
+static uint64_t led, settled;
 static enum cycle_state last;
 
 static double v_before;			/* speed asked for, a cycle ago */
@@ -221,8 +224,8 @@ static void check_stand(const struct rig *r)
 	assert_int_not_equal(r->c.fault, FAULT_NONE);
 	if (r->was != STATE_FAULT && !r->in.estop && !r->in.lost)
 		return;
-	assert_memory_equal(r->out.target, r->before.target,
-			    sizeof(r->out.target));
+	assert_memory_equal(r->c.out.target, r->path_before,
+			    sizeof(r->path_before));
 	assert_true(r->c.feed_mm_s == 0);
 }
 
@@ -244,9 +247,9 @@ static void check_cycle(const struct rig *r, const struct points *set)
 	v_before = r->c.mover.v_mm_s;
 	cond_before = r->c.process.cond;
 	/* Stopped beside the path the job is over, and it stands there. */
-	if (r->c.loaded || memcmp(r->out.target, r->before.target,
-				  sizeof(r->out.target)))
-		check_place(&r->c, set, r->out.target);
+	if (r->c.loaded || memcmp(r->c.out.target, r->path_before,
+				  sizeof(r->path_before)))
+		check_place(&r->c, set, r->c.out.target);
 	check_power(r);
 	check_stand(r);
 	assert_true(isfinite(r->c.feed_mm_s) && isfinite(place(r)));
@@ -259,20 +262,24 @@ static void check_cycle(const struct rig *r, const struct points *set)
 		assert_false(r->out.power);
 	if (r->in.axes_off) {
 		assert_false(r->out.power);
-		assert_memory_equal(r->out.target, r->before.target,
-				    sizeof(r->out.target));
+		assert_memory_equal(r->c.out.target, r->path_before,
+				    sizeof(r->path_before));
 	}
 	count_states(&r->c);
 }
 
 static int run_job(uint64_t *s)
 {
-	const struct cycle_config k = random_config(s);
+	static const int32_t none[INTERP_NAXES];
+	struct cycle_config k = random_config(s);
+	struct random_drives drives = { .begun = false };
 	struct gap_world gap = { .v = OPEN_V };
 	struct points set;
 	struct rig r;
 	int n = 0;
 
+	random_comp(&k.comp, s);
+	random_contouring(&k.contouring, s);
 	rig_take(&r, rnd(s) % 4 ? random_segments(s) : random_orbits(s), &k);
 	set = points_of(&r.m);
 	r.c.on_point = check_point;
@@ -283,10 +290,13 @@ static int run_job(uint64_t *s)
 		double v;
 
 		random_world(&r, s);
+		random_actual(&drives, &r, s);
 		v = random_gap(&gap, s);
 		random_shares(&r, v, s);
 		step(&r, v);
 		check_cycle(&r, &set);
+		settled += check_drives(&drives, &r);
+		led += memcmp(drives.added, none, sizeof(none)) != 0;
 		if (r.c.state == STATE_IDLE)
 			break;
 	}
@@ -309,6 +319,9 @@ static void millions_of_random_cycles_keep_every_promise(void **st)
 		      "the path, %llu of these in a retract\n", jobs, cycles,
 		      (unsigned long long)powered, (unsigned long long)beside,
 		      (unsigned long long)beside_retract);
+	print_message("    %llu led, %llu settled on their maps\n",
+		      (unsigned long long)led, (unsigned long long)settled);
+	assert_true(led > 0 && settled > 0);
 	assert_true(powered > 0 && beside > 0 && beside_retract > 0);
 	/* test_hand.c has those of a machine without a job. */
 	for (int i = STATE_IDLE; i < STATE_JOG; i++) {
