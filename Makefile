@@ -298,8 +298,11 @@ experiments-curve: $(CURVE_EXPERIMENTS:%=$(B)/experiments/%) $(B)/edmsim
 experiments-contour: $(B)/experiments/contour $(B)/edmsim
 	$(call say,TRY,docs/experiments-contour.md)
 	$(Q)$< > $(B)/experiments-contour.md
-	$(Q)tests/experiments/contouring $(B) >> $(B)/experiments-contour.md
+	$(Q)tests/experiments/contouring $(B) > $(B)/contouring.md
+	$(Q)cat $(B)/contouring.md >> $(B)/experiments-contour.md
 	$(Q)cp $(B)/experiments-contour.md docs/experiments-contour.md
+	$(Q)grep '^|' $(B)/contouring.md > $(B)/contouring-table.md
+	$(Q)docs/put-table $(B)/contouring-table.md docs/contour.md
 	$(Q)cat docs/experiments-contour.md
 	$(Q)$< docs/pictures
 
