@@ -169,21 +169,25 @@ static int32_t inside(const struct cycle *c, int axis, double pulses)
 	return (int32_t)llround(within(pulses, fmin(low, 0), fmax(high, 0)));
 }
 
-static void add(struct cycle *c, const double v[INTERP_NAXES])
+/* No farther in a period than what goes at v_max. */
+static void put(struct cycle *c, int axis, double mm)
 {
 	const struct contouring_config *k = &c->config.contouring;
 	struct contouring *w = &c->contouring;
+	const double most = k->most_mm[axis], was = w->added_mm[axis];
+	const double leap = most * k->loop[axis].gain_1_s * law_period_s(c);
 
-	for (uint32_t m = k->axes; m; m &= m - 1) {
+	w->added_mm[axis] = within(within(mm, -most, most), was - leap,
+				   was + leap);
+	w->added[axis] = inside(c, axis, w->added_mm[axis] / k->pulse_mm[axis]);
+}
+
+static void add(struct cycle *c, const double v[INTERP_NAXES])
+{
+	for (uint32_t m = c->config.contouring.axes; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
-		const double most = k->most_mm[i], was = w->added_mm[i];
-		/* What goes at v_max in a period. */
-		const double leap = most * k->loop[i].gain_1_s *
-				    law_period_s(c);
-		const double mm = within(as_place(c, i, v[i]), -most, most);
 
-		w->added_mm[i] = within(mm, was - leap, was + leap);
-		w->added[i] = inside(c, i, w->added_mm[i] / k->pulse_mm[i]);
+		put(c, i, as_place(c, i, v[i]));
 	}
 }
 
@@ -210,10 +214,26 @@ static void leave(struct contouring *w)
 	if (!w->on)
 		return;
 	w->on = false;
+	w->eases = false;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		w->added_mm[i] = 0;
 		w->added[i] = 0;
 	}
+}
+
+/* At full speed, onto a path whose points are not known here. */
+static void ease_off(struct cycle *c)
+{
+	struct contouring *w = &c->contouring;
+
+	for (uint32_t m = c->config.contouring.axes; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+
+		put(c, i, w->added_mm[i] * (1 - TAKEN_UP));
+	}
+	w->eases = !contouring_rests(w);
+	if (!w->eases)
+		leave(w);
 }
 
 /* From here on; slowly, if it is moving. */
@@ -264,8 +284,8 @@ static void go_on(struct cycle *c, const struct io_inputs *in)
 
 	w->share = fmin(w->share + TAKEN_UP, 1);
 	w->coupled = fmin(fmax(w->coupled + toward, 0), 1);
-	if (!look_ahead(c, way_mm, &set)) {
-		leave(w);
+	if (w->eases || !look_ahead(c, way_mm, &set)) {
+		ease_off(c);
 		return;
 	}
 	if (c->config.contouring.methods & INTERP_COMPENSATE_FEEDFORWARD)

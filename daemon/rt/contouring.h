@@ -23,9 +23,11 @@
  * is zero: the axes stand on their pulses.  A cut and a touch are begun, and a
  * job that is stopped ended, no sooner than that.
  *
+ * Two contours at once are not led; it eases off where they begin.
+ *
  * Never more than an axis lags at its v_max, and in a period never more of it
- * than the way at v_max; but all of it is taken off at once.  A target inside
- * the travel stays inside.
+ * than the way at v_max; but a fault takes all of it off at once.  A target
+ * inside the travel stays inside.
  *
  * Units: mm, s; pulses.
  * Threads: RT-safe.  At most CONTOURING_AHEAD + 2 points of the path and the
@@ -62,6 +64,7 @@ struct contouring_config {
 struct contouring {
 	bool on;			/* in the last period too */
 	bool stood;			/* it did, before this period */
+	bool eases;			/* off, until nothing is added */
 	uint32_t path;			/* io_outputs.path then */
 	double place_mm, way_mm;	/* on it, and gone in the last period */
 	double share;			/* of feedforward; from 0 where it is

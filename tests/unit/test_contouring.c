@@ -378,6 +378,46 @@ static void it_never_sends_an_axis_out_of_its_travel(void **state)
 	rig_free(&l.r);
 }
 
+/* Along X at speed, onto two contours at once, and on along X. */
+static struct interp_build *onto_a_pair(void)
+{
+	const struct interp_build_contour c[2] = {
+		{ .arc = false }, { .arc = true, .centre_mm = { 0.05, 0 } }
+	};
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct interp_diag d;
+
+	help_word.feed_mm_s = 50;
+	line(b, (double[INTERP_NAXES]) { 20 });
+	assert_int_equal(interp_build_pair(b, (double[INTERP_NAXES]) {
+		[INTERP_X] = 40 }, c, &help_word, &d), 0);
+	line(b, (double[INTERP_NAXES]) { 60 });
+	return b;
+}
+
+static void where_no_path_is_known_it_comes_off_by_and_by(void **state)
+{
+	const struct cycle_config k = config_of(FORWARD | CROSS);
+	bool passed = false;
+	struct lagging l = { .worst_mm = 0 };
+
+	(void)state;
+	rig_load(&l.r, onto_a_pair(), &k);
+	for (int i = 0; i < 2; i++)
+		assert_int_equal(interp_axis_model_init(&l.axis[i], &loops[i],
+							PERIOD_S, 0), 0);
+	tell(&l.r, CYCLE_START);
+	for (int n = 0; n < 20000 && l.r.c.loaded; n++) {
+		period(&l);
+		passed = passed || (l.r.c.cursor.seg.kind == INTERP_PAIR &&
+				    l.r.c.feed_mm_s > 20 && added(&l, 0) == 0);
+	}
+	assert_true(passed);
+	assert_true(l.most > 500);
+	assert_true(l.leap * PULSE_MM <= 80 * PERIOD_S + 2 * PULSE_MM);
+	rig_free(&l.r);
+}
+
 /* Scales that say anything at all. */
 static void scales_that_lie_are_bounded(void **state)
 {
@@ -563,6 +603,7 @@ int main(void)
 		cmocka_unit_test(it_comes_and_goes_without_a_leap),
 		cmocka_unit_test(it_never_adds_more_than_the_lag_at_full_speed),
 		cmocka_unit_test(it_never_sends_an_axis_out_of_its_travel),
+		cmocka_unit_test(where_no_path_is_known_it_comes_off_by_and_by),
 		cmocka_unit_test(scales_that_lie_are_bounded),
 		cmocka_unit_test(a_fault_takes_it_off_at_once),
 		cmocka_unit_test(axes_without_power_get_nothing),
