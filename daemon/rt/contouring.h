@@ -21,7 +21,7 @@
  * um is no service.  Nothing while it homes, jogs or touches, beside the path,
  * and while axes are not under power; a fault takes it off at once.  At rest it
  * is zero: the axes stand on their pulses.  A cut and a touch are begun, and a
- * job that is stopped ended, no sooner than that.
+ * job ended, no sooner than that.
  *
  * Two contours at once are not led; it eases off where they begin.
  *

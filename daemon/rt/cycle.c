@@ -187,8 +187,10 @@ static void meet_action(struct cycle *c)
 	case ACTION_END:
 		if (c->config.hold_at_end)
 			stand_held(c);
-		else
+		else if (contouring_rests(&c->contouring))
 			cycle_end_job(c, OUTCOME_DONE);
+		else
+			mover_set(&c->mover, 0);
 		break;
 	default:
 		break;
