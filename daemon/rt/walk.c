@@ -119,16 +119,15 @@ static uint32_t run(struct cycle *c, uint32_t max)
 
 /* -- One by one -------------------------------------------------------------- */
 
-static enum walk_result points(struct cycle *c)
+/* @left: points that this cycle may still go. */
+static enum walk_result points(struct cycle *c, uint32_t *left)
 {
-	for (uint32_t n = c->busy ? c->config.points_max : 0;
-	     n < c->config.points_max; n++) {
-		const uint32_t ran = run(c, c->config.points_max - n);
+	while (*left > 0) {
+		const uint32_t ran = run(c, *left);
 
-		if (ran > 0) {
-			n += ran - 1;
+		*left -= ran > 0 ? ran : 1;
+		if (ran > 0)
 			continue;
-		}
 		switch (interp_cursor_step(&c->cursor)) {
 		case INTERP_MOVED:
 			if (beyond(c)) {
@@ -169,16 +168,17 @@ static bool pass_done(struct cycle *c)
 enum walk_result walk_by(struct cycle *c, double ds_mm)
 {
 	const double from = interp_cursor_place_mm(&c->cursor);
+	uint32_t left = c->busy ? 0 : c->config.points_max;
 	enum walk_result r;
 	double to;
 
 	interp_cursor_aim(&c->cursor, ds_mm);
-	r = points(c);
+	r = points(c, &left);
 	for (int n = 0; n < INTERP_CROSS_MAX && r == WALK_ACTION &&
 	     pass_done(c); n++) {
 		interp_cursor_aim(&c->cursor, from + ds_mm -
 					      interp_cursor_place_mm(&c->cursor));
-		r = points(c);
+		r = points(c, &left);
 	}
 	if (r == WALK_BROKEN) {
 		c->feed_mm_s = 0;

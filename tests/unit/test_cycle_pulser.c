@@ -93,6 +93,34 @@ static void no_faster_than_pulses_can_follow(void **state)
 	assert_memory_equal(end, free_end, sizeof(end));
 }
 
+/* What is done already is passed in the same period, on both ways. */
+static void an_action_passed_again_gives_no_more_points(void **state)
+{
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct rig r;
+
+	(void)state;
+	k.dry_run = true;
+	k.points_max = 3;
+	for (int i = 1; i <= 50; i++) {
+		cut_to(b, -0.01 * i);
+		action(b, INTERP_AUX, INTERP_AUX_PUMP_ON);
+	}
+	rig_load(&r, b, &k);
+	tell(&r, CYCLE_START);
+	while (r.c.out.target[INTERP_Z] > -450)
+		step(&r, OPEN_V);
+	tell(&r, CYCLE_HOLD);
+	steps(&r, OPEN_V, 100);
+	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 0.4), ANSWER_DONE);
+	steps(&r, OPEN_V, 1000);	/* none is farther than points_max */
+	assert_true(r.c.out.target[INTERP_Z] > -100);
+	tell(&r, CYCLE_START);
+	until(&r, STATE_IDLE, OPEN_V, 10000);
+	rig_free(&r);
+}
+
 static void erode_a_while(struct rig *r)
 {
 	struct cycle_config k = usual_config();
@@ -173,6 +201,7 @@ int main(void)
 		cmocka_unit_test(waiting_for_pulses_costs_no_feed),
 		cmocka_unit_test(it_takes_no_point_while_the_machine_is_busy),
 		cmocka_unit_test(no_faster_than_pulses_can_follow),
+		cmocka_unit_test(an_action_passed_again_gives_no_more_points),
 		cmocka_unit_test(a_switch_ends_sparks_at_once_with_its_own_fault),
 		cmocka_unit_test(it_may_go_back_off_a_limit_switch),
 		cmocka_unit_test(without_sparks_the_level_may_be_low),
