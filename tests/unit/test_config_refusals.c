@@ -3,6 +3,7 @@
  * test_config_refusals.c - the machine file: what it refuses and where
  */
 #include "config_help.h"
+#include "seed.h"
 
 struct refusal {
 	const char *text;
@@ -304,15 +305,11 @@ static void a_damaged_file_is_read_or_refused_with_its_line(void **state)
 {
 	struct machine_config c;
 	struct interp_diag d;
-	const char *given = getenv("SEED");
-	unsigned seed = given ? (unsigned)strtoul(given, NULL, 10) :
-				(unsigned)time(NULL);
 	char *whole, text[65536];
 	int refused = 0;
 
 	(void)state;
-	print_message("SEED=%u\n", seed);
-	srand(seed);
+	srand((unsigned)seed_take());
 	config_defaults(&c);
 	whole = print_text(&c);
 	for (int i = 0; i < 2000; i++) {

@@ -8,9 +8,9 @@
 
 #include "curves.h"
 #include "random_curve.h"
+#include "seed.h"
 
 #include <errno.h>
-#include <time.h>
 
 #define ROUNDS	32
 
@@ -396,7 +396,6 @@ int main(void)
 		cmocka_unit_test(damage_never_makes_an_axis_leap),
 	};
 
-	seed = (uint64_t)time(NULL);
-	print_message("seed %llu\n", (unsigned long long)seed);
+	seed = seed_take();
 	return cmocka_run_group_tests_name("interp/curve", tests, NULL, NULL);
 }

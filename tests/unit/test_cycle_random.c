@@ -6,13 +6,11 @@
  * sensors, gaps that wander, stick, scatter or are no number, conditions,
  * values in force, commands, broken wires, losses and e-stops, maps, backlash,
  * leads and drives that lag; a million where a sanitizer watches.
- * `make invariants` runs it alone.
- * The seed is printed; test_cycle_random SEED repeats it.
+ * `make invariants` runs it alone; the seed is printed.
  */
 #include "random_world.h"
 #include "random_drives.h"
-
-#include <time.h>
+#include "seed.h"
 
 #ifdef __SANITIZE_ADDRESS__
 #define CYCLES		1000000
@@ -341,14 +339,12 @@ static void millions_of_random_cycles_keep_every_promise(void **st)
 	}
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(millions_of_random_cycles_keep_every_promise),
 	};
 
-	seed = argc > 1 ? strtoull(argv[1], NULL, 0) : (uint64_t)time(NULL);
-	print_message("seed %llu; test_cycle_random SEED repeats it\n",
-		      (unsigned long long)seed);
+	seed = seed_take();
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,7 @@
 #include "cycle_help.h"
 
 #include "interp/limits.h"
-
-#include <time.h>
+#include "seed.h"
 
 #define ROUNDS	60
 #define SEGS	60
@@ -544,7 +543,7 @@ static void a_chain_that_lies_is_slow_or_a_fault_and_never_a_step(void **st)
 	}
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_node_is_passed_as_the_arc_that_cuts_its_corner),
@@ -561,8 +560,6 @@ int main(int argc, char **argv)
 		cmocka_unit_test(a_chain_that_lies_is_slow_or_a_fault_and_never_a_step),
 	};
 
-	seed = argc > 1 ? strtoull(argv[1], NULL, 0) : (uint64_t)time(NULL);
-	print_message("seed %llu; test_limits SEED repeats it\n",
-		      (unsigned long long)seed);
+	seed = seed_take();
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,8 +7,7 @@
 #include "walk_help.h"
 
 #include "mover.h"
-
-#include <time.h>
+#include "seed.h"
 
 #define ROUNDS	20000
 
@@ -229,7 +228,7 @@ static void standing_there_it_stays(void **st)
 		assert_true(mover_step(&m, &l, 0) == 0 && m.v_mm_s == 0);
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(it_keeps_within_speed_and_acceleration_and_lands_exactly),
@@ -240,8 +239,6 @@ int main(int argc, char **argv)
 		cmocka_unit_test(standing_there_it_stays),
 	};
 
-	seed = argc > 1 ? strtoull(argv[1], NULL, 0) : (uint64_t)time(NULL);
-	print_message("seed %llu; test_mover SEED repeats it\n",
-		      (unsigned long long)seed);
+	seed = seed_take();
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,9 +11,9 @@
 #include "interp/nurbs_feed.h"
 #include "interp/nurbs_length.h"
 #include "random_curve.h"
+#include "seed.h"
 
 #include <errno.h>
-#include <time.h>
 
 #define ROUNDS	2000
 #define ROOM	64
@@ -393,7 +393,6 @@ int main(void)
 		cmocka_unit_test(a_torn_curve_is_refused),
 	};
 
-	seed = (uint64_t)time(NULL);
-	print_message("seed %llu\n", (unsigned long long)seed);
+	seed = seed_take();
 	return cmocka_run_group_tests_name("interp/nurbs", tests, NULL, NULL);
 }

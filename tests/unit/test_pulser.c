@@ -3,6 +3,7 @@
  * test_pulser.c - levels on step and direction lines, read back as a drive does
  */
 #include "pulser.h"
+#include "seed.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <cmocka.h>
 
@@ -92,11 +92,8 @@ static unsigned int seed;
 
 static int set_seed(void **state)
 {
-	const char *text = getenv("EDM_SEED");
-
 	(void)state;
-	seed = text ? (unsigned int)atoi(text) : (unsigned int)time(NULL);
-	printf("EDM_SEED=%u\n", seed);
+	seed = (unsigned int)seed_take();
 	return 0;
 }
 

@@ -7,8 +7,7 @@
 #include "walk_help.h"
 
 #include "interp/scurve.h"
-
-#include <time.h>
+#include "seed.h"
 
 #define ROUNDS	20000
 #define SAMPLES	200
@@ -298,7 +297,7 @@ static void standing_at_its_place_it_plans_nothing(void **st)
 	assert_true(c.n == 0 && interp_scurve_at(&c, 2).x_mm == 10);
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(it_stands_at_its_place_within_all_limits),
@@ -312,8 +311,6 @@ int main(int argc, char **argv)
 		cmocka_unit_test(standing_at_its_place_it_plans_nothing),
 	};
 
-	seed = argc > 1 ? strtoull(argv[1], NULL, 0) : (uint64_t)time(NULL);
-	print_message("seed %llu; test_scurve SEED repeats it\n",
-		      (unsigned long long)seed);
+	seed = seed_take();
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

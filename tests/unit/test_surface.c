@@ -7,9 +7,9 @@
 #include "interp/pose.h"
 #include "interp/surface.h"
 #include "random_curve.h"
+#include "seed.h"
 
 #include <errno.h>
-#include <time.h>
 
 #define ROUNDS	500
 #define ROOT	0.70710678118654752440
@@ -201,7 +201,6 @@ int main(void)
 		cmocka_unit_test(curves_that_make_no_pair_are_refused),
 	};
 
-	seed = (uint64_t)time(NULL);
-	print_message("seed %llu\n", (unsigned long long)seed);
+	seed = seed_take();
 	return cmocka_run_group_tests_name("interp/surface", tests, NULL, NULL);
 }

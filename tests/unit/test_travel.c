@@ -5,8 +5,7 @@
  * Random programs; the seed is printed.
  */
 #include "cycle_help.h"
-
-#include <time.h>
+#include "seed.h"
 
 #define ROUNDS	150
 #define SEGS	40
@@ -152,7 +151,7 @@ static void nodes_on_a_line_cost_no_time(void **st)
 		assert_in_range(cycles_of_pieces(n), one - 2, one + 2);
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(it_keeps_to_each_segments_speed_without_a_step),
@@ -160,8 +159,6 @@ int main(int argc, char **argv)
 		cmocka_unit_test(nodes_on_a_line_cost_no_time),
 	};
 
-	seed = argc > 1 ? strtoull(argv[1], NULL, 0) : (uint64_t)time(NULL);
-	print_message("seed %llu; test_travel SEED repeats it\n",
-		      (unsigned long long)seed);
+	seed = seed_take();
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

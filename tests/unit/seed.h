@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * seed.h - what a random test begins with: told, so that it can be repeated
+ */
+#ifndef SEED_H
+#define SEED_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <time.h>
+
+/** seed_take() - that of the environment, EDM_SEED; else the clock's. */
+static inline uint64_t seed_take(void)
+{
+	const char *given = getenv("EDM_SEED");
+	const uint64_t seed = given ? strtoull(given, NULL, 0) :
+				      (uint64_t)time(NULL);
+
+	print_message("EDM_SEED=%llu\n", (unsigned long long)seed);
+	return seed;
+}
+
+#endif /* SEED_H */
