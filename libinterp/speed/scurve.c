@@ -30,8 +30,9 @@
 /* Of a root between two ends; bisection alone would need some 50. */
 #define TRIES	100
 
-/* Left so near to a root, of what the ends miss it by. */
-#define ENOUGH	1e-14
+/* Left so near to a root, of the way and what the ends miss it by.  Rounding is
+ * 1e-13 of it: where all leads there but for that, no try would be nearer. */
+#define ENOUGH	1e-12
 
 struct ramp {
 	double dt[INTERP_SCURVE_RAMP], j[INTERP_SCURVE_RAMP];
@@ -242,10 +243,10 @@ static double share(const struct tried *a, const struct tried *b,
 static double leave_at(const struct leave *k, double hi, double f_hi)
 {
 	struct tried a = { 0, beyond(k, 0) }, b = { hi, f_hi }, c, x;
-	const double enough = ENOUGH * (fabs(a.f) + fabs(b.f));
+	const double enough = ENOUGH * (fabs(a.f) + fabs(b.f) + fabs(k->way));
 	double part = a.f / (a.f - b.f);
 
-	if (a.f >= 0)
+	if (a.f >= -enough)
 		return 0;
 	for (int i = 0; i < TRIES; i++) {
 		x.t = a.t + part * (b.t - a.t);
