@@ -343,6 +343,8 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	config_defaults(c);
 	if (o->machine_file)
 		r = config_read(c, o->machine_file, &d);
+	if (r == 0)
+		r = config_check_kinematics(c, &d);
 	/* Axes that are led by the cycle have what the cycle has. */
 	if (r == 0 && c->sim.loops && !o->tune)
 		r = config_check_contouring(c, &d);

@@ -5,7 +5,7 @@
 #ifndef SIM_SIM_H
 #define SIM_SIM_H
 
-#include "config.h"
+#include "compiling.h"
 #include "cycle.h"
 #include "interp/compile.h"
 #include "io.h"

@@ -9,14 +9,14 @@
 #define JOBS_JOBS_H
 
 #include "config.h"
-#include "left.h"
+#include "eta.h"
 #include "link.h"
 #include "queue.h"
 #include "reply.h"
 #include "store.h"
 #include "twin.h"
 #include "upload.h"
-#include "wire.h"
+#include "lcm.h"
 
 #include <systemd/sd-event.h>
 

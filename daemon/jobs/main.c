@@ -4,7 +4,8 @@
  */
 #include "jobs.h"
 
-#include "log.h"
+#include "compiling.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -169,6 +170,8 @@ static int configure(struct jobs *j, struct machine_config *config,
 	int err = config_read(config, o->config, &d);
 	const char *wrong;
 
+	if (err == 0)
+		err = config_check_kinematics(config, &d);
 	if (err == -EINVAL) {
 		config_say(o->config, &d);
 		return EX_CONFIG;

@@ -5,7 +5,7 @@
 #include "jobs.h"
 
 #include "interp/tech_table.h"
-#include "log.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <math.h>

@@ -9,7 +9,7 @@
 #ifndef JOBS_REPLY_H
 #define JOBS_REPLY_H
 
-#include "wire.h"
+#include "lcm.h"
 
 #define REPLY_SLOTS	128
 

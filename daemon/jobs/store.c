@@ -4,7 +4,7 @@
  */
 #include "store.h"
 
-#include "log.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <fcntl.h>

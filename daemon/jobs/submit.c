@@ -8,8 +8,8 @@
  */
 #include "jobs.h"
 
-#include "compile.h"
-#include "log.h"
+#include "compiler.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <sodium.h>

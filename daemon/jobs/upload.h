@@ -12,7 +12,7 @@
 #ifndef JOBS_UPLOAD_H
 #define JOBS_UPLOAD_H
 
-#include "wire.h"
+#include "lcm.h"
 
 #define UPLOAD_SLOTS		8
 #define UPLOAD_BYTES_MAX	(64 << 20)

@@ -8,7 +8,7 @@
 #include "jobs.h"
 
 #include "interp/tech_table.h"
-#include "log.h"
+#include "jobs_log.h"
 #include "nearest.h"
 
 #include <errno.h>

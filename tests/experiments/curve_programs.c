@@ -7,7 +7,7 @@
  */
 #include "interp/nc.h"
 #include "interp/nurbs_step.h"
-#include "program.h"
+#include "make_program.h"
 
 #include <stdint.h>
 

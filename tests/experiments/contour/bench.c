@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* bench.c - the machine of the experiment: believed, and as it is */
-#include "contour.h"
+#include "contour_try.h"
 #include "interp/twin.h"
 
 #include <math.h>

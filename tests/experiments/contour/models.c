@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* models.c - gains found, what history teaches */
-#include "contour.h"
+#include "contour_try.h"
 #include "interp/ridge.h"
 #include "interp/tune.h"
 
