@@ -48,7 +48,7 @@ CORE	:= $(wildcard libinterp/core/*/*.c)
 COMPILE	:= $(wildcard libinterp/compile/*/*.c)
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
-RT	:= $(wildcard daemon/rt/*.c)
+RT	:= $(wildcard daemon/rt/*.c daemon/rt/*/*.c)
 # Of two files for libgpiod, the one for the version that pkg-config finds.
 PKG_CONFIG ?= pkg-config
 GPIOD	:= $(firstword $(subst ., ,$(shell $(PKG_CONFIG) --modversion libgpiod 2>/dev/null)))
