@@ -70,6 +70,8 @@ UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
 EXPERIMENTS := lines axes machining
+# Methods that were compared and lost: no program uses them.
+TRIED	:= $(wildcard tests/experiments/tried/*.c)
 CURVE_EXPERIMENTS := curves curve_programs
 EXPERIMENTS_JUMP := jump
 
@@ -92,8 +94,8 @@ INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H
 INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) -I$(B)/messages
 INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_libinterp	= $(INC_compile) $(INC_model)
-INC_unit	= -Itests/unit -Itests/data $(INC_edmd) $(INC_jobs) $(INC_libinterp)
-INC_bench	= -Itests/data $(INC_edmd) $(INC_compiling) $(MODEL_H)
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
+INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config) $(INC_compiling)
 part = $(word 2,$(subst /, ,$1))
@@ -102,6 +104,7 @@ obj	= $(patsubst %.c,$(B)/%.o,$1)
 CORE_A	 := $(B)/libinterp-core.a
 COMPILE_A := $(B)/libinterp-compile.a
 MODEL_A	 := $(B)/libinterp-model.a
+TRIED_A	 := $(B)/tests-tried.a
 INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A)
 RT_O	 := $(call obj,$(RT))
 IO_O	 := $(call obj,$(IO))
@@ -176,6 +179,8 @@ $(COMPILE_A): $(call obj,$(COMPILE))
 	$(archive)
 $(MODEL_A): $(call obj,$(MODEL))
 	$(archive)
+$(TRIED_A): $(call obj,$(TRIED))
+	$(archive)
 
 $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
 	$(call link,-linih -ljansson -lpthread -lm)
@@ -198,19 +203,19 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
 
-$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_A)
+$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lm)
 
-$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_A)
+$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)
 
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
 
-$(B)/experiments/%: $(B)/tests/experiments/%.o $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
+$(B)/experiments/%: $(B)/tests/experiments/%.o $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih -lm)
 
-$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(INTERP_A)
+$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(TRIED_A) $(INTERP_A)
 	$(call link,-ljansson -lm)
 
 # -- The commands -------------------------------------------------------------
@@ -410,7 +415,7 @@ HEADERS	 = $(wildcard libinterp/*/include/interp/*.h daemon/*/*.h clients/*/*.h)
 # What an edmd must not have: a reader, messages, a database, another floor.
 NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
 
-lint: $(B)/edmd $(CORE_A) $(RT_O)
+lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,what the cycle may call)
 	$(Q)$(LD) -r -o $(B)/rt.o $(RT_O) --whole-archive $(CORE_A)
 	$(Q)nm -u $(B)/rt.o | awk '{print $$2}' | sort -u > $(B)/rt.undefined
@@ -421,6 +426,8 @@ lint: $(B)/edmd $(CORE_A) $(RT_O)
 	$(Q)! grep -E '^($(NOT_IN_EDMD))' $(B)/edmd.symbols
 	$(Q)! nm $(COMPILE_A) $(MODEL_A) | awk 'NF == 3 && $$2 ~ /[TDRB]/ \
 		{print $$3}' | grep -xFf $(B)/edmd.symbols
+	$(call say,LINT,each symbol has the prefix of its module)
+	$(Q)tests/symbol-prefixes $(B)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \

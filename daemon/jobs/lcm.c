@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * wire.c - generated LCM messages to our structs and back
+ * lcm.c - generated LCM messages to our structs and back
  */
 #include "lcm.h"
 
@@ -18,10 +18,10 @@
 #define CHANNEL_MAX	64
 #define QUEUE_MESSAGES	256		/* LCM's default, 30, is one window */
 
-struct wire {
+struct jobs_lcm {
 	lcm_t *lcm;
 	char machine[32];
-	struct wire_handlers handlers;
+	struct jobs_lcm_handlers handlers;
 	uint64_t refused;
 };
 
@@ -103,9 +103,9 @@ static bool shape_fits(const lcm_recv_buf_t *buf, const char *shape,
 static void on_command(const lcm_recv_buf_t *buf, const char *channel,
 		       void *arg)
 {
-	struct wire *w = arg;
+	struct jobs_lcm *w = arg;
 	edm_command_t m;
-	struct wire_command c;
+	struct jobs_lcm_command c;
 	uint32_t count = 0;
 
 	(void)channel;
@@ -114,7 +114,7 @@ static void on_command(const lcm_recv_buf_t *buf, const char *channel,
 		w->refused++;
 		return;
 	}
-	c = (struct wire_command) {
+	c = (struct jobs_lcm_command) {
 		.client = m.client, .seq = m.seq, .verb = m.verb,
 		.job = m.job, .text = m.text, .arg = m.arg,
 	};
@@ -150,9 +150,9 @@ static int chunk_decode(const lcm_recv_buf_t *buf, uint32_t size,
 
 static void on_chunk(const lcm_recv_buf_t *buf, const char *channel, void *arg)
 {
-	struct wire *w = arg;
+	struct jobs_lcm *w = arg;
 	edm_job_chunk_t m;
-	struct wire_chunk c;
+	struct jobs_lcm_chunk c;
 	uint32_t size = 0;
 
 	(void)channel;
@@ -161,7 +161,7 @@ static void on_chunk(const lcm_recv_buf_t *buf, const char *channel, void *arg)
 		w->refused++;
 		return;
 	}
-	c = (struct wire_chunk) {
+	c = (struct jobs_lcm_chunk) {
 		.client = m.client, .seq = m.seq, .job = m.job, .name = m.name,
 		.bytes = m.bytes, .sha256 = m.sha256, .chunk = m.chunk,
 		.chunks = m.chunks, .offset = m.offset, .hold = m.hold != 0,
@@ -171,7 +171,7 @@ static void on_chunk(const lcm_recv_buf_t *buf, const char *channel, void *arg)
 	edm_job_chunk_t_decode_cleanup(&m);
 }
 
-const char *wire_url_check(const char *url)
+const char *jobs_lcm_url_check(const char *url)
 {
 	const char *at = url;
 
@@ -187,14 +187,14 @@ const char *wire_url_check(const char *url)
 	return NULL;
 }
 
-static void channel_name(const struct wire *w, const char *name,
+static void channel_name(const struct jobs_lcm *w, const char *name,
 			 char ret[CHANNEL_MAX])
 {
 	snprintf(ret, CHANNEL_MAX, "EDM.%s.%s", w->machine, name);
 }
 
 /* A channel to subscribe to is a pattern to LCM: the dots are meant. */
-static int subscribe(struct wire *w, const char *name,
+static int subscribe(struct jobs_lcm *w, const char *name,
 		     lcm_msg_handler_t handler)
 {
 	char pattern[CHANNEL_MAX + 4];
@@ -208,10 +208,10 @@ static int subscribe(struct wire *w, const char *name,
 	return 0;
 }
 
-int wire_open(struct wire **ret, const char *url, const char *machine,
-	      const struct wire_handlers *h)
+int jobs_lcm_open(struct jobs_lcm **ret, const char *url, const char *machine,
+		  const struct jobs_lcm_handlers *h)
 {
-	struct wire *w = calloc(1, sizeof(*w));
+	struct jobs_lcm *w = calloc(1, sizeof(*w));
 
 	if (!w)
 		return -ENOMEM;
@@ -220,14 +220,14 @@ int wire_open(struct wire **ret, const char *url, const char *machine,
 	w->lcm = lcm_create(url);
 	if (!w->lcm || subscribe(w, "COMMAND", on_command) < 0 ||
 	    subscribe(w, "JOB", on_chunk) < 0) {
-		wire_close(w);
+		jobs_lcm_close(w);
 		return -ENETUNREACH;
 	}
 	*ret = w;
 	return 0;
 }
 
-void wire_close(struct wire *w)
+void jobs_lcm_close(struct jobs_lcm *w)
 {
 	if (!w)
 		return;
@@ -236,17 +236,17 @@ void wire_close(struct wire *w)
 	free(w);
 }
 
-int wire_fd(const struct wire *w)
+int jobs_lcm_fd(const struct jobs_lcm *w)
 {
 	return lcm_get_fileno(w->lcm);
 }
 
-int wire_handle(struct wire *w)
+int jobs_lcm_handle(struct jobs_lcm *w)
 {
 	return lcm_handle(w->lcm) < 0 ? -EIO : 0;
 }
 
-void wire_ack(struct wire *w, const struct wire_ack *a)
+void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a)
 {
 	char channel[CHANNEL_MAX];
 	edm_ack_t m = {
@@ -262,7 +262,7 @@ void wire_ack(struct wire *w, const struct wire_ack *a)
 	edm_ack_t_publish(w->lcm, channel, &m);
 }
 
-void wire_event(struct wire *w, const struct wire_event *e)
+void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
 {
 	char channel[CHANNEL_MAX];
 	edm_event_t m = {
@@ -279,7 +279,7 @@ void wire_event(struct wire *w, const struct wire_event *e)
 	edm_event_t_publish(w->lcm, channel, &m);
 }
 
-void wire_status(struct wire *w, const struct wire_status *s)
+void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 {
 	char channel[CHANNEL_MAX];
 	edm_status_t m = {
@@ -305,7 +305,7 @@ void wire_status(struct wire *w, const struct wire_status *s)
 		.retracts = (int32_t)s->retracts,
 		.shorts = (int32_t)s->shorts,
 		.job_s = s->job_s,
-		.left_s = s->left_s,
+		.eta_s = s->eta_s,
 		.queue_len = (int32_t)s->queue_len,
 		.overruns = (int32_t)s->overruns,
 		.wake_late_max_us = (int32_t)s->wake_late_max_us,
@@ -317,7 +317,7 @@ void wire_status(struct wire *w, const struct wire_status *s)
 	edm_status_t_publish(w->lcm, channel, &m);
 }
 
-uint64_t wire_refused(const struct wire *w)
+uint64_t jobs_lcm_refused(const struct jobs_lcm *w)
 {
 	return w->refused;
 }

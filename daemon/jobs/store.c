@@ -64,7 +64,7 @@ static const char *const state_names[JOB_NSTATES] = {
 	[JOB_STOPPED]	= "stopped",
 };
 
-const char *job_state_name(enum job_state s)
+const char *store_state_name(enum job_state s)
 {
 	return state_names[s];
 }
