@@ -280,6 +280,7 @@ int config_check(const struct machine_config *c,
 		 const struct config_lines *lines, struct interp_diag *diag)
 {
 	struct check q = { c, lines, diag };
+	const struct config_backend *backend = config_backend(c);
 
 	for (size_t i = 0; i < COUNT(orders); i++)
 		for (int j = 0;
@@ -292,12 +293,13 @@ int config_check(const struct machine_config *c,
 		    check_extent(&q, "travel_max_mm", j))
 			return -EINVAL;
 
-	return check_period(&q) || check_present(&q) || check_lines(&q) || check_guides(&q) ||
-	       config_check_can402(c, lines, diag) ||
+	if (backend->check && backend->check(c, lines, diag))
+		return -EINVAL;
+	return check_period(&q) || check_present(&q) || check_lines(&q) ||
+	       check_guides(&q) ||
 	       config_check_plc(c, lines, diag) ||
 	       config_check_sim(c, lines, diag) ||
 	       check_orders_if_set(&q) || check_jump(&q, "height_mm") ||
 	       (c->jump.adaptive && check_jump(&q, "height_max_mm")) ||
-	       check_compensation(&q) ||
-	       config_check_gpio(c, lines, diag) ? -EINVAL : 0;
+	       check_compensation(&q) ? -EINVAL : 0;
 }

@@ -109,8 +109,6 @@ int config_check_can402(const struct machine_config *c,
 	const struct config_can402 *k = &c->can402;
 	bool any = false;
 
-	if (c->backend != BACKEND_CAN402)
-		return 0;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (check_node(&q, i) || check_increments(&q, i))
 			return -EINVAL;

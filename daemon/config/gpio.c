@@ -222,8 +222,6 @@ int config_check_gpio(const struct machine_config *c,
 {
 	struct check q = { .c = c, .lines = lines, .diag = diag };
 
-	if (c->backend != BACKEND_GPIO)
-		return 0;
 	for (int i = 0; i < CONFIG_NLINES; i++)
 		config_line_read(c->gpio.line[i], &q.at[i]);
 	for (int i = 0; i < INTERP_NAXES; i++)

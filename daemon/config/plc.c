@@ -158,7 +158,7 @@ static int check_node(const struct machine_config *c, struct interp_diag *d)
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		taken = taken || c->plc.node == c->can402.node[i];
-	if (!taken || c->backend != BACKEND_CAN402 ||
+	if (!taken || !config_backend(c)->drives ||
 	    strcmp(c->plc.interface, c->can402.interface) != 0)
 		return 0;
 	snprintf(d->found, sizeof(d->found),
@@ -183,7 +183,7 @@ int config_check_plc(const struct machine_config *c,
 	}
 	diag->line = line_of(lines, "interface");
 	if (!config_has_plc(c) && has_mcodes(table) &&
-	    c->backend != BACKEND_SIM && c->backend != BACKEND_NULL)
+	    !config_backend(c)->simulated)
 		return refuse(diag, &lists[0], "M codes and no PLC",
 			      "plc.interface, as in can1, or no M codes");
 	diag->line = line_of(lines, "node");

@@ -3,7 +3,7 @@
  * build_arc.c - from the words of a G2 or G3 to an arc segment
  */
 #include "path/build_arc.h"
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <math.h>
@@ -216,13 +216,18 @@ static bool is_tiny(const int64_t start[2])
 	return start[0] * start[0] + start[1] * start[1] == 1;
 }
 
+static const struct pulse_strategy *strategy(const struct build_arc *p)
+{
+	return pulse_strategy(p->o->strategy);
+}
+
 static bool measure(struct build_arc *p, const int64_t start[2],
 		    const int64_t end[2])
 {
 	const int64_t others = (p->way.longest_sub + INTERP_SUB - 1) >>
 			       INTERP_SUB_BITS;
 
-	return p->o->strategy == INTERP_DDA && !is_tiny(start) ?
+	return strategy(p)->accumulates && !is_tiny(start) ?
 	       dda_measure(&p->arc, start, end, others) :
 	       circle_measure(&p->arc, start, end);
 }
@@ -233,7 +238,7 @@ static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 	uint64_t ticks = p->arc.circle_ticks;
 	int r;
 
-	if (p->o->strategy != INTERP_DDA) {
+	if (!strategy(p)->accumulates) {
 		r = build_rule_check(p->o, &p->way, diag);
 		if (r < 0)
 			return r;
@@ -268,7 +273,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 		p->straight = true;
 		return 0;
 	}
-	if (is_tiny(start) && p->o->strategy == INTERP_DDA &&
+	if (is_tiny(start) && strategy(p)->accumulates &&
 	    p->way.longest_sub > 0) {
 		p->straight = true;
 		return 0;
@@ -278,7 +283,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
 		return p->straight ? 0 : refuse_ticks(diag);
 	}
-	if (p->o->strategy == INTERP_MIN_SWITCH && !is_tiny(start)) {
+	if (strategy(p)->runs && !is_tiny(start)) {
 		memcpy(p->runs.start, start, sizeof(start));
 		memcpy(p->runs.end, end, sizeof(end));
 		r = measure_runs(p, diag);
@@ -296,6 +301,6 @@ int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 	if (r < 0)
 		return r;
 	arc_length(p);
-	return p->o->strategy == INTERP_SIMULTANEOUS ?
-	       ticks_simultaneous(p, diag) : ticks_of_pulses(p, diag);
+	return strategy(p)->at_once ? ticks_simultaneous(p, diag) :
+				      ticks_of_pulses(p, diag);
 }

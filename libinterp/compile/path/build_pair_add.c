@@ -4,6 +4,7 @@
  */
 #include "path/build_pair.h"
 #include "path/builder.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -73,7 +74,7 @@ static int pair_alone(struct interp_build *b, const struct build_pair *p,
 	const bool other = i == 0 && (p->moved & ~XY || c[1].arc);
 
 	if (other && (c[0].arc || c[1].arc ||
-		      b->o.strategy != INTERP_SIMULTANEOUS))
+		      !pulse_strategy(b->o.strategy)->at_once))
 		return -ENOENT;
 	return c[i].arc ? interp_build_arc(b, end_mm, &arc, w, diag) :
 			  interp_build_line(b, end_mm, w, diag);
