@@ -26,13 +26,11 @@ static const struct interp_axis_limits *limits(const struct build_arc *p,
 
 static int refuse_radius(double r0, double r1, struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "the arc starts %.4f mm from its centre and ends %.4f mm from it",
-		 r0, r1);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "radii that agree within %g pulses, or %g %% but %g pulses",
-		 RADIUS_PULSES, RADIUS_SHARE * 100, RADIUS_MOST);
-	return -EINVAL;
+	return interp_diag_say(diag, "the arc starts %.4f mm from its centre "
+			       "and ends %.4f mm from it; radii that agree "
+			       "within %g pulses, or %g %% but %g pulses", r0,
+			       r1, RADIUS_PULSES, RADIUS_SHARE * 100,
+			       RADIUS_MOST);
 }
 
 /* Angle from theta0 on to theta1 in the arc's direction, whole turns added. */
@@ -69,11 +67,8 @@ int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
 					 RADIUS_MOST * pulse))))
 		return refuse_radius(r0, r1, diag);
 	if (r0 < pulse / 2) {
-		snprintf(diag->found, sizeof(diag->found),
-			 "an arc of radius %.6f mm", r0);
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "a radius of half a pulse or more");
-		return -EINVAL;
+		return interp_diag_say(diag, "an arc of radius %.6f mm; a "
+				       "radius of half a pulse or more", r0);
 	}
 	p->arc = (struct interp_arc) {
 		.a_mm = w->centre_a_mm, .b_mm = w->centre_b_mm,
@@ -137,11 +132,8 @@ static void arc_length(struct build_arc *p)
 
 static int refuse_ticks(struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "the arc has too many pulses for one segment");
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "a smaller radius, or fewer turns");
-	return -EINVAL;
+	return interp_diag_say(diag, "the arc has too many pulses for one "
+			       "segment; a smaller radius, or fewer turns");
 }
 
 /* Ticks closer than a pulse, by a margin no rounding can use up. */
@@ -258,12 +250,10 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	int r = 0;
 
 	if (limits(p, arc->axis_b)->pulse_mm != pulse) {
-		snprintf(diag->found, sizeof(diag->found),
-			 "a %s arc over axes of unequal pulses",
-			 interp_strategy_name(p->o->strategy));
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "strategy simultaneous, or equal pulses");
-		return -EINVAL;
+		return interp_diag_say(diag, "a %s arc over axes of unequal "
+				       "pulses; strategy simultaneous, or "
+				       "equal pulses",
+				       interp_strategy_name(p->o->strategy));
 	}
 	if (fabs(arc->sweep) * arc->r_mm / pulse > INTERP_PULSES_MAX / 2.0)
 		return refuse_ticks(diag);

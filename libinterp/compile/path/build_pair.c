@@ -51,10 +51,8 @@ static const enum interp_axis plane[2][2] = {
 
 static int refuse_long(struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "two contours of too many pulses for one segment");
-	snprintf(diag->wanted, sizeof(diag->wanted), "shorter segments");
-	return -EINVAL;
+	return interp_diag_say(diag, "two contours of too many pulses for one "
+			       "segment; shorter segments");
 }
 
 static int side_line(const struct build_pair *p, int i, struct interp_arc *ret,

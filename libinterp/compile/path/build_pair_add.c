@@ -51,10 +51,8 @@ static int pair_finish(struct interp_build *b, struct build_pair *p,
 
 static int refuse_others(struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "another axis beside two contours");
-	snprintf(diag->wanted, sizeof(diag->wanted), "X Y U V alone");
-	return -EINVAL;
+	return interp_diag_say(diag, "another axis beside two contours; X Y U "
+			       "V alone");
 }
 
 /* One contour alone, the other stands: -ENOENT if both have a way to go. */

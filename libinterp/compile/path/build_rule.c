@@ -38,26 +38,21 @@ int build_refuse_tolerance(const struct interp_build_options *o,
 			   const char *what, uint32_t smallest,
 			   struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "a tolerance of %g pulses%s is too narrow for %s under %s",
-		 o->tolerance_milli / 1000.0,
-		 o->perpendicular ? ", square to the path," : "", what,
-		 interp_strategy_name(o->strategy));
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "%g pulses or more, or strategy centred or simultaneous",
-		 smallest / 1000.0);
-	return -EINVAL;
+	return interp_diag_say(diag, "a tolerance of %g pulses%s is too "
+			       "narrow for %s under %s; %g pulses or more, or "
+			       "strategy centred or simultaneous",
+			       o->tolerance_milli / 1000.0,
+			       o->perpendicular ? ", square to the path," : "",
+			       what, interp_strategy_name(o->strategy),
+			       smallest / 1000.0);
 }
 
 static int refuse_tube(const struct interp_build_options *o,
 		       struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "coupling tube with strategy %s",
-		 interp_strategy_name(o->strategy));
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "strategy min-switch, or coupling star or tree");
-	return -EINVAL;
+	return interp_diag_say(diag, "coupling tube with strategy %s; "
+			       "strategy min-switch, or coupling star or tree",
+			       interp_strategy_name(o->strategy));
 }
 
 static uint32_t inputs_of(const struct build_way *w, struct couple_input *in)
