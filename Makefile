@@ -3,6 +3,7 @@
 #   make            build everything into build/
 #   make demo       set up, build, run the main job on the simulated machine
 #   make check      set up, build, all tests; ends with the runner's own lines
+#   make quick      of these, most of what goes wrong, in 90 s
 #   make check-vm   of these, those on a PREEMPT_RT kernel in a virtual machine
 #   make bench      speed, as medians side by side
 #   make experiments  count the pulse rules and the ways along curves, time the
@@ -194,18 +195,45 @@ demo:
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
 # the tests run alone go on to look with others.
 check:
+	@tests/stage check setup
 	@tests/setup check
+	@tests/stage check build
 	@$(MAKE) --no-print-directory -j2 all units WERROR=1
+	@tests/stage check lint
 	@$(MAKE) --no-print-directory lint
+	@tests/stage check units
 	@EDM_SEED=1 $(MAKE) --no-print-directory run-units
+	@tests/stage check san
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
+	@tests/stage check run-san
 	@EDM_SEED=2 $(MAKE) --no-print-directory SAN=1 run-units
+	@tests/stage check tsan
 	@$(MAKE) --no-print-directory TSAN=1 run-crossings
+	@tests/stage check fuzz
 	@$(MAKE) --no-print-directory fuzz FUZZ_SEED=1 \
 		FUZZ_RUNS=500000 FUZZ_S=120
+	@tests/stage check clang
 	@$(MAKE) --no-print-directory clang
+	@tests/stage check vm
 	@$(MAKE) --no-print-directory vm
+	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system tests/vm
+
+# For somebody who changes code: most of what goes wrong, in 90 s.
+SLOW_UNITS = arcs cycle_random limits identify contouring taper \
+	     contour_random curve scurve
+
+quick:
+	@tests/stage quick build
+	@tests/setup check
+	@$(MAKE) --no-print-directory -j2 all units WERROR=1
+	@tests/stage quick lint
+	@$(MAKE) --no-print-directory lint
+	@tests/stage quick units
+	@EDM_SEED=1 $(MAKE) --no-print-directory run-units \
+		UNIT_X="$(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(UNIT_X))"
+	@tests/stage quick tests
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/system/test_erode.py
 
 # What the virtual machine of tests/vm boots from, and edmd on libgpiod 2.x.
 PC2	= $(abspath build-vm/libgpiod2)
@@ -404,7 +432,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check vm check-vm units run-units run-crossings clang bench \
+.PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants \
 	pictures fuzz lint install clean
