@@ -58,6 +58,8 @@ SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
 JOBS	:= $(wildcard daemon/jobs/*.c)
+SIGN	:= $(wildcard messages/sign/*.c)
+CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
@@ -76,9 +78,11 @@ INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io -Ilibinterp/include
 INC_shm		= -Idaemon/shm
 INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
+INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -Imessages/sign -I$(B)/messages
+INC_sign	= -Imessages/sign
+INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -Ilibinterp/include -I$(B)/messages
+INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -Ilibinterp/include $(INC_client)
 INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
 INC_unit	= -Itests/unit -Itests/data -Ilibinterp $(INC_edmd) $(INC_jobs)
 INC_bench	= -Itests/data $(INC_edmd)
@@ -94,6 +98,7 @@ IO_O	 := $(call obj,$(IO))
 SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 SHM_O	 := $(call obj,$(SHM))
+SIGN_O	 := $(call obj,$(SIGN))
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
@@ -137,7 +142,7 @@ $(B)/messages/edm.o: $(B)/messages/edm.c
 	$(call say,CC,$(@F))
 	$(Q)$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) -c -o $@ $<
 
-$(call obj,$(JOBS) $(CTL)): | $(B)/messages/lcm.stamp
+$(call obj,$(JOBS) $(CTL) $(CLIENT)): | $(B)/messages/lcm.stamp
 $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 
 # -- Link ---------------------------------------------------------------------
@@ -154,10 +159,10 @@ $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP
 $(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
+$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(PLOT) $(wildcard libinterp/contour/*.c)) $(SHM_O) $(LCM_O)
+$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT) $(wildcard libinterp/contour/*.c)) $(SHM_O) $(LCM_O)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
 $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(DDS_O)
@@ -271,7 +276,7 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 clang:
 	$(call say,CLANG,all sources)
 	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(SHM) $(SETUP) $(EDMD) \
-		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
+		$(JOBS) $(SIM) $(CTL) $(CLIENT) $(SIGN) $(PLOT) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
 			$(INC_dds) $(INC_libinterp)) $$f || exit 1; done
@@ -380,7 +385,7 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
 RT_ENTRY = cycle_step cycle_command cycle_load cycle_load_at cycle_overrun \
 	   interp_compensate_step interp_errormap_apply interp_ridge_eval \
 	   interp_ridge_features
-HEADERS	 = $(wildcard libinterp/include/interp/*.h daemon/*/*.h clients/*/*.h)
+HEADERS	 = $(wildcard libinterp/include/interp/*.h daemon/*/*.h clients/*/*.h messages/sign/*.h)
 
 lint: $(INTERP_O) $(RT_O)
 	$(call say,LINT,what the cycle may call)
@@ -394,7 +399,7 @@ lint: $(INTERP_O) $(RT_O)
 		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
-		grep -vE 'daemon/jobs/wire.c|clients/ctl/talk.c'
+		grep -vE 'daemon/jobs/(wire|lcm).c|clients/client/packet.c'
 	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80

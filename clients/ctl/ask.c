@@ -18,6 +18,10 @@ int ctl_unanswered(const struct ctl *c, int err)
 		fprintf(stderr, "edmctl: interrupted before an answer came\n");
 		return EX_TEMPFAIL;
 	}
+	if (c->talk && *talk_why(c->talk)) {
+		fprintf(stderr, "edmctl: %s\n", talk_why(c->talk));
+		return EX_NOPERM;
+	}
 	fprintf(stderr, "edmctl: no answer from edmd-jobs of machine %s; is it "
 		"running? systemctl start edmd-jobs\n", c->machine);
 	return EX_UNAVAILABLE;

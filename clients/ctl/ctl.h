@@ -14,7 +14,7 @@
 
 struct ctl {
 	/* Options. */
-	const char *machine, *url;
+	const char *machine, *url, *key;
 	bool json;
 	double timeout_s;
 	const char *name, *id;

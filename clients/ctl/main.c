@@ -4,6 +4,7 @@
  */
 #include "ctl.h"
 
+#include <errno.h>
 #include <getopt.h>
 #include <math.h>
 #include <sodium.h>
@@ -12,7 +13,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-#define URL_DEFAULT	"udpm://239.255.76.67:7667?ttl=0"
+#define URL_DEFAULT	TALK_URL
 
 struct verb {
 	const char *name, *args;
@@ -78,6 +79,7 @@ static const struct verb verbs[] = {
 static const struct option longs[] = {
 	{ "machine", required_argument, NULL, 'm' },
 	{ "url",     required_argument, NULL, 'u' },
+	{ "key",     required_argument, NULL, 'k' },
 	{ "json",    no_argument,       NULL, 'j' },
 	{ "timeout", required_argument, NULL, 't' },
 	{ "name",    required_argument, NULL, 'n' },
@@ -95,7 +97,7 @@ static const struct option longs[] = {
 /* clang-format on */
 
 #define NVERBS		(sizeof(verbs) / sizeof(verbs[0]))
-#define COMMON_OPTIONS	"mujt"
+#define COMMON_OPTIONS	"mujtk"
 
 /* No option is short, so -1 is a word: a number below 0.  Words in order. */
 #define DIGITS		"0123456789."
@@ -117,6 +119,7 @@ static void print_usage(FILE *f)
 	fputs("\nOptions:\n"
 	      "  --machine NAME  of the machine; default: edm\n"
 	      "  --url URL       of LCM; default: " URL_DEFAULT "\n"
+	      "  --key FILE      to sign with; default: EDM_KEY, or the host's\n"
 	      "  --json          print results as JSON\n"
 	      "  --timeout S     wait for an answer so long; default: 3\n"
 	      "  --name NAME     submit: of the job; default: the file's\n"
@@ -169,6 +172,9 @@ static int option_take(struct ctl *c, int opt)
 		break;
 	case 'u':
 		c->url = optarg;
+		break;
+	case 'k':
+		c->key = optarg;
 		break;
 	case 'j':
 		c->json = true;
@@ -342,6 +348,7 @@ int main(int argc, char **argv)
 		.machine = "edm", .url = URL_DEFAULT, .timeout_s = 3,
 	};
 	const struct verb *v = NULL;
+	char said[TALK_SAID_MAX];
 	int rc;
 
 	negatives_keep(argc, argv);
@@ -358,11 +365,13 @@ int main(int argc, char **argv)
 			URL_DEFAULT "\n", c.url);
 		return EX_USAGE;
 	}
-	if (talk_open(&c.talk, c.url, c.machine) < 0 && v->run != ctl_doctor) {
-		fprintf(stderr, "edmctl: cannot open %s; does the host have a "
-			"multicast route? ip link set lo multicast on; "
-			"ip route add 224.0.0.0/4 dev lo\n", c.url);
-		return EX_UNAVAILABLE;
+	rc = talk_open(&c.talk, &(struct talk_options) {
+		.machine = c.machine, .url = c.url, .key = c.key,
+		.program = "edmctl",
+	}, said);
+	if (rc < 0 && v->run != ctl_doctor) {
+		fprintf(stderr, "edmctl: %s\n", said);
+		return rc == -ENETUNREACH ? EX_UNAVAILABLE : EX_NOPERM;
 	}
 	talk_catch_signals();
 	rc = v->run(&c);

@@ -56,8 +56,11 @@ static const char *group_read(struct sockaddr_in *ret, const char *at,
 	};
 	if (inet_pton(AF_INET, host, &ret->sin_addr) != 1 ||
 	    !IN_MULTICAST(ntohl(ret->sin_addr.s_addr)))
-		return "its group is no multicast address, 224.0.0.0 to "
+		return "its group is no multicast address, 224.0.1.0 to "
 		       "239.255.255.255";
+	if (ntohl(ret->sin_addr.s_addr) >> 8 == 0xe00000)
+		return "its group is one of those that belong to routers; "
+		       "224.0.1.0 to 239.255.255.255";
 	return NULL;
 }
 
@@ -173,12 +176,17 @@ static bool address_is_known(const struct udpm *u, in_addr_t address)
 	return false;
 }
 
-/* Interfaces come and go; a flood from outside makes no work of that. */
+/*
+ * What goes out by an interface without an address of its own, such as a
+ * loopback, bears none.  From outside, the kernel takes such a packet for the
+ * groups 224.0.0.x alone, which udpm_url_read() refuses.  Interfaces come and
+ * go; a flood from outside makes no work of that.
+ */
 static bool is_here(struct udpm *u, in_addr_t address)
 {
 	struct timespec now;
 
-	if (ntohl(address) >> 24 == IN_LOOPBACKNET ||
+	if (address == INADDR_ANY || ntohl(address) >> 24 == IN_LOOPBACKNET ||
 	    address_is_known(u, address))
 		return true;
 	clock_gettime(CLOCK_MONOTONIC, &now);

@@ -217,7 +217,7 @@ int keyfile_read(struct keyfile *k, const char *path,
 		 char said[KEYFILE_SAID_MAX])
 {
 	struct keyfile got = { .machine = "" };
-	int fd, err;
+	int fd = -1, err;
 
 	said[0] = '\0';
 	err = open_check(&fd, path, said);
