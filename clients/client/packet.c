@@ -128,7 +128,7 @@ static void status_numbers(struct talk_status *s, const edm_status_t *m)
 	s->retracts = m->retracts;
 	s->shorts = m->shorts;
 	s->job_s = m->job_s;
-	s->left_s = m->left_s;
+	s->eta_s = m->eta_s;
 	s->queue_len = m->queue_len;
 	s->overruns = m->overruns;
 	s->wake_late_max_us = m->wake_late_max_us;

@@ -4,7 +4,7 @@
  */
 #include "keys.h"
 
-#include "log.h"
+#include "jobs_log.h"
 #include "store_trust.h"
 #include "verb.h"
 
@@ -156,17 +156,17 @@ void keys_close(struct jobs *j)
 
 /* -- Verbs ------------------------------------------------------------------ */
 
-static void answer_body(struct jobs *j, const struct wire_command *c,
+static void answer_body(struct jobs *j, const struct jobs_lcm_command *c,
 			const char *body)
 {
-	jobs_answer(j, &(struct wire_ack) {
+	jobs_answer(j, &(struct jobs_lcm_ack) {
 		.key = c->key, .client = c->client, .seq = c->seq, .body = body,
 		.reason = "done",
 	});
 }
 
 void keys_hello(struct jobs *j, const struct verb *v,
-		const struct wire_command *c)
+		const struct jobs_lcm_command *c)
 {
 	char body[256];
 
@@ -178,7 +178,7 @@ void keys_hello(struct jobs *j, const struct verb *v,
 }
 
 void keys_list(struct jobs *j, const struct verb *v,
-	       const struct wire_command *c)
+	       const struct jobs_lcm_command *c)
 {
 	char body[TRUST_KEYS * 192], hex[KEYFILE_HEX];
 	size_t n = 0;
@@ -200,7 +200,7 @@ void keys_list(struct jobs *j, const struct verb *v,
 }
 
 void keys_add(struct jobs *j, const struct verb *v,
-	      const struct wire_command *c)
+	      const struct jobs_lcm_command *c)
 {
 	struct trust_key k = { .role = ROLE_NONE };
 	char name[64], role[16], hex[80], rest;
@@ -237,7 +237,7 @@ void keys_add(struct jobs *j, const struct verb *v,
 }
 
 void keys_remove(struct jobs *j, const struct verb *v,
-		 const struct wire_command *c)
+		 const struct jobs_lcm_command *c)
 {
 	/* The row of who asks may be the one that goes. */
 	const struct trust_key by = *c->by;

@@ -15,7 +15,7 @@
 
 struct jobs;
 struct verb;
-struct wire_command;
+struct jobs_lcm_command;
 
 /** keys_open() - read or make them.  Return: 0, or what to exit with; what is
  *  wrong and what mends it is in the log. */
@@ -26,14 +26,14 @@ void keys_close(struct jobs *j);
 
 /* Verbs: "keys", "keys-add" with text NAME ROLE HEX, "keys-remove" NAME. */
 void keys_list(struct jobs *j, const struct verb *v,
-	       const struct wire_command *c);
+	       const struct jobs_lcm_command *c);
 void keys_add(struct jobs *j, const struct verb *v,
-	      const struct wire_command *c);
+	      const struct jobs_lcm_command *c);
 void keys_remove(struct jobs *j, const struct verb *v,
-		 const struct wire_command *c);
+		 const struct jobs_lcm_command *c);
 
 /** keys_hello() - verb "hello": who am I to this service? */
 void keys_hello(struct jobs *j, const struct verb *v,
-		const struct wire_command *c);
+		const struct jobs_lcm_command *c);
 
 #endif /* JOBS_KEYS_H */

@@ -5,7 +5,7 @@
 #include "jobs.h"
 
 #include "keys.h"
-#include "log.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -69,16 +69,16 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 		.outcome = n->outcome ? n->outcome : "", .text = words,
 		.place_mm = n->place_mm, .now_us = jobs_utime(),
 	});
-	wire_event(j->wire, &(struct wire_event) {
+	jobs_lcm_event(j->lcm, &(struct jobs_lcm_event) {
 		.kind = n->kind, .job = n->job, .outcome = n->outcome,
 		.text = words, .place_mm = n->place_mm,
 	});
 }
 
-void jobs_answer(struct jobs *j, const struct wire_ack *a)
+void jobs_answer(struct jobs *j, const struct jobs_lcm_ack *a)
 {
 	reply_keep(&j->replies, a);
-	wire_ack(j->wire, a);
+	jobs_lcm_ack(j->lcm, a);
 }
 
 static void on_link_event(void *arg, const struct shm_event *e)
@@ -99,12 +99,12 @@ static void on_link_changed(void *arg)
 		queue_attach(j);
 }
 
-static int on_wire(sd_event_source *s, int fd, uint32_t events, void *arg)
+static int on_lcm(sd_event_source *s, int fd, uint32_t events, void *arg)
 {
 	struct jobs *j = arg;
 
 	(void)s, (void)fd, (void)events;
-	wire_handle(j->wire);
+	jobs_lcm_handle(j->lcm);
 	return 0;
 }
 
@@ -240,10 +240,10 @@ static int claim(struct jobs *j)
 	return EX_CANTCREAT;
 }
 
-static int open_wire(struct jobs *j)
+static int open_lcm(struct jobs *j)
 {
-	struct wire_handlers h = {
-		.command = verb_take, .chunk = submit_take,
+	struct jobs_lcm_handlers h = {
+		.command = verbs_take, .chunk = submit_take,
 		.trust = &j->trust, .arg = j,
 	};
 	int err;
@@ -254,7 +254,7 @@ static int open_wire(struct jobs *j)
 			  "makes one; then set the ttl", j->config->lcm_url);
 		return EX_CONFIG;
 	}
-	err = wire_open(&j->wire, &j->url, j->machine, &h);
+	err = jobs_lcm_open(&j->lcm, &j->url, j->machine, &h);
 	if (err < 0)
 		log_error("lcm: cannot open %s: %s; does the host have a "
 			  "multicast route? ip link set lo multicast on; "
@@ -281,8 +281,8 @@ static int add_sources(struct jobs *j)
 		if (err < 0)
 			return err;
 	}
-	err = sd_event_add_io(j->event, NULL, wire_fd(j->wire), EPOLLIN,
-			      on_wire, j);
+	err = sd_event_add_io(j->event, NULL, jobs_lcm_fd(j->lcm), EPOLLIN,
+			      on_lcm, j);
 	if (err < 0)
 		return err;
 	err = sd_event_add_time_relative(j->event, NULL, CLOCK_MONOTONIC, 0,
@@ -342,11 +342,11 @@ int main(int argc, char **argv)
 	if (rc == 0)
 		rc = keys_open(&jobs, o.store ? o.store : config.store_dir);
 	if (rc == 0)
-		rc = open_wire(&jobs);
+		rc = open_lcm(&jobs);
 	if (rc == 0)
 		rc = run(&jobs);
 	reply_fini(&jobs.replies);
-	wire_close(jobs.wire);
+	jobs_lcm_close(jobs.lcm);
 	keys_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
 	store_close(jobs.store);

@@ -26,7 +26,7 @@ static void reply_clear(struct reply *one)
 	*one = (struct reply) { .seq = 0 };
 }
 
-void reply_expect(struct replies *r, const struct wire_command *c)
+void reply_expect(struct replies *r, const struct jobs_lcm_command *c)
 {
 	struct reply *one = &r->slot[r->next];
 
@@ -37,7 +37,7 @@ void reply_expect(struct replies *r, const struct wire_command *c)
 	one->seq = c->seq;
 }
 
-void reply_keep(struct replies *r, const struct wire_ack *a)
+void reply_keep(struct replies *r, const struct jobs_lcm_ack *a)
 {
 	const struct reply *found = reply_find(r, a->key, a->client,
 						a->seq);

@@ -9,13 +9,13 @@
 #ifndef JOBS_REPLY_H
 #define JOBS_REPLY_H
 
-#include "wire.h"
+#include "lcm.h"
 
 #define REPLY_SLOTS	128
 
 struct reply {
 	uint8_t key[SEAL_KEY_BYTES];
-	char client[WIRE_CLIENT_MAX];	/* "": free */
+	char client[JOBS_LCM_CLIENT_MAX];	/* "": free */
 	int64_t seq;
 	bool done;
 	int code;
@@ -32,10 +32,10 @@ const struct reply *reply_find(const struct replies *r, const uint8_t *key,
 			       const char *client, int64_t seq);
 
 /** reply_expect() - this command is under way. */
-void reply_expect(struct replies *r, const struct wire_command *c);
+void reply_expect(struct replies *r, const struct jobs_lcm_command *c);
 
 /** reply_keep() - it is answered. */
-void reply_keep(struct replies *r, const struct wire_ack *a);
+void reply_keep(struct replies *r, const struct jobs_lcm_ack *a);
 
 /** reply_fini() - free everything. */
 void reply_fini(struct replies *r);

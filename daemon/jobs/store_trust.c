@@ -4,7 +4,7 @@
  */
 #include "store_trust.h"
 
-#include "log.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <sqlite3.h>

@@ -4,7 +4,7 @@
  */
 #include "trust.h"
 
-#include "log.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -15,13 +15,13 @@ struct verb {
 	const char *name;
 	enum trust_role role;		/* the least that may ask for it */
 	void (*run)(struct jobs *j, const struct verb *v,
-		    const struct wire_command *c);
+		    const struct jobs_lcm_command *c);
 	uint32_t machine;		/* enum shm_verb, for verb_machine() */
 	const char *wants;		/* the state it wants */
 };
 
 /** verb_answer() - @code and @reason, to who asked. */
-void verb_answer(struct jobs *j, const struct wire_command *c, int code,
+void verb_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason);
 
 #endif /* JOBS_VERB_H */

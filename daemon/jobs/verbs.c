@@ -9,7 +9,7 @@
 #include "verb.h"
 
 #include "interp/tech_table.h"
-#include "log.h"
+#include "jobs_log.h"
 #include "nearest.h"
 
 #include <errno.h>
@@ -27,15 +27,15 @@
 struct asked {
 	struct jobs *jobs;
 	uint8_t key[SEAL_KEY_BYTES];
-	char client[WIRE_CLIENT_MAX];
+	char client[JOBS_LCM_CLIENT_MAX];
 	int64_t seq;
 	const struct verb *verb;
 };
 
-void verb_answer(struct jobs *j, const struct wire_command *c, int code,
+void verb_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason)
 {
-	jobs_answer(j, &(struct wire_ack) {
+	jobs_answer(j, &(struct jobs_lcm_ack) {
 		.key = c->key, .client = c->client, .seq = c->seq, .code = code,
 		.reason = reason,
 	});
@@ -67,7 +67,7 @@ static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
 	struct jobs *j = a->jobs;
-	struct wire_command c = {
+	struct jobs_lcm_command c = {
 		.key = a->key, .client = a->client, .seq = a->seq,
 	};
 	char reason[160];
@@ -105,7 +105,7 @@ static void on_answer(void *arg, int code)
 }
 
 static void ask_machine(struct jobs *j, const struct verb *v,
-			const struct wire_command *c, uint32_t arg)
+			const struct jobs_lcm_command *c, uint32_t arg)
 {
 	struct asked *a = calloc(1, sizeof(*a));
 	struct link_command m = {
@@ -137,12 +137,12 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 }
 
 static void verb_machine(struct jobs *j, const struct verb *v,
-			 const struct wire_command *c)
+			 const struct jobs_lcm_command *c)
 {
 	ask_machine(j, v, c, 0);
 }
 
-static void refuse_field(struct jobs *j, const struct wire_command *c)
+static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	char reason[640];
 	struct nearest near;
@@ -166,7 +166,7 @@ static void refuse_field(struct jobs *j, const struct wire_command *c)
 
 /* NaN gives the field back to the condition. */
 static void verb_set(struct jobs *j, const struct verb *v,
-		     const struct wire_command *c)
+		     const struct jobs_lcm_command *c)
 {
 	const int id = interp_tech_find(c->text);
 	char reason[192], range[96];
@@ -191,7 +191,7 @@ static void verb_set(struct jobs *j, const struct verb *v,
 }
 
 static void verb_retract(struct jobs *j, const struct verb *v,
-			 const struct wire_command *c)
+			 const struct jobs_lcm_command *c)
 {
 	if (isfinite(c->arg) && c->arg > 0 && c->arg <= RETRACT_MAX_MM)
 		verb_machine(j, v, c);
@@ -201,7 +201,7 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 }
 
 static void verb_step(struct jobs *j, const struct verb *v,
-		      const struct wire_command *c)
+		      const struct jobs_lcm_command *c)
 {
 	if (c->arg == floor(c->arg) && fabs(c->arg) >= 1 &&
 	    fabs(c->arg) <= STEP_MAX)
@@ -212,7 +212,7 @@ static void verb_step(struct jobs *j, const struct verb *v,
 }
 
 static void verb_override(struct jobs *j, const struct verb *v,
-			  const struct wire_command *c)
+			  const struct jobs_lcm_command *c)
 {
 	if (c->arg >= 0 && c->arg <= OVERRIDE_MAX)
 		verb_machine(j, v, c);
@@ -221,7 +221,7 @@ static void verb_override(struct jobs *j, const struct verb *v,
 }
 
 /* One letter of an axis the machine has; -1: it was refused. */
-static int axis_of(struct jobs *j, const struct wire_command *c)
+static int axis_of(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	const char *at = c->text[0] ? strchr(INTERP_AXIS_LETTERS, c->text[0]) :
 				      NULL;
@@ -240,7 +240,7 @@ static int axis_of(struct jobs *j, const struct wire_command *c)
 }
 
 static void verb_jog(struct jobs *j, const struct verb *v,
-		     const struct wire_command *c)
+		     const struct jobs_lcm_command *c)
 {
 	int axis;
 
@@ -261,7 +261,7 @@ static bool is_homed_by(const struct jobs *j, int axis)
 }
 
 static void verb_home(struct jobs *j, const struct verb *v,
-		      const struct wire_command *c)
+		      const struct jobs_lcm_command *c)
 {
 	int axis = c->text[0] ? axis_of(j, c) : INTERP_NAXES;
 	bool any = false;
@@ -281,7 +281,7 @@ static void verb_home(struct jobs *j, const struct verb *v,
 }
 
 /* A refused start must not set the queue going. */
-static bool refused_by_fault(struct jobs *j, const struct wire_command *c)
+static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	if (!queue_is_faulted(j))
 		return false;
@@ -290,7 +290,7 @@ static bool refused_by_fault(struct jobs *j, const struct wire_command *c)
 }
 
 static void verb_resume(struct jobs *j, const struct verb *v,
-			const struct wire_command *c)
+			const struct jobs_lcm_command *c)
 {
 	if (refused_by_fault(j, c))
 		return;
@@ -299,7 +299,7 @@ static void verb_resume(struct jobs *j, const struct verb *v,
 }
 
 /* A job that waits: it is started when its turn comes. */
-static void start_behind(struct jobs *j, const struct wire_command *c,
+static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 			 const struct store_job *job)
 {
 	if (job->state != JOB_QUEUED) {
@@ -312,7 +312,7 @@ static void start_behind(struct jobs *j, const struct wire_command *c,
 }
 
 static void verb_start(struct jobs *j, const struct verb *v,
-		       const struct wire_command *c)
+		       const struct jobs_lcm_command *c)
 {
 	struct queue *q = &j->queue;
 	bool here = q->job.n && !queue_is_leaving(q);
@@ -338,7 +338,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 }
 
 static void verb_remove(struct jobs *j, const struct verb *v,
-			const struct wire_command *c)
+			const struct jobs_lcm_command *c)
 {
 	struct store_end e = {
 		.state = JOB_STOPPED, .reason = "removed from the queue",
@@ -366,11 +366,11 @@ static void verb_remove(struct jobs *j, const struct verb *v,
 	}
 }
 
-static void answer_list(struct jobs *j, const struct wire_command *c,
+static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 			enum store_list what)
 {
 	char *body = store_json(j->store, what, c->job, (int)c->arg);
-	struct wire_ack a = {
+	struct jobs_lcm_ack a = {
 		.key = c->key, .client = c->client, .seq = c->seq, .body = body,
 		.reason = "done",
 	};
@@ -386,28 +386,28 @@ static void answer_list(struct jobs *j, const struct wire_command *c,
 }
 
 static void verb_queue(struct jobs *j, const struct verb *v,
-		       const struct wire_command *c)
+		       const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_QUEUE);
 }
 
 static void verb_show(struct jobs *j, const struct verb *v,
-		      const struct wire_command *c)
+		      const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_SHOW);
 }
 
 static void verb_alarms(struct jobs *j, const struct verb *v,
-			const struct wire_command *c)
+			const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_ALARMS);
 }
 
 static void verb_history(struct jobs *j, const struct verb *v,
-			 const struct wire_command *c)
+			 const struct jobs_lcm_command *c)
 {
 	(void)v;
 	if (c->arg >= 0 && c->arg <= 1000)
@@ -451,7 +451,7 @@ static const struct verb verbs[] = {
 
 #define NVERBS	(sizeof(verbs) / sizeof(verbs[0]))
 
-static void refuse_verb(struct jobs *j, const struct wire_command *c)
+static void refuse_verb(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	char reason[256];
 	size_t n = (size_t)snprintf(reason, sizeof(reason),
@@ -471,7 +471,7 @@ static const struct verb *verb_find(const char *name)
 	return NULL;
 }
 
-static void refuse_role(struct jobs *j, const struct wire_command *c,
+static void refuse_role(struct jobs *j, const struct jobs_lcm_command *c,
 			const struct verb *v)
 {
 	char reason[160];
@@ -485,13 +485,13 @@ static void refuse_role(struct jobs *j, const struct wire_command *c,
 }
 
 /* Answered before, or under way: not done again. */
-static bool is_repeat(struct jobs *j, const struct wire_command *c)
+static bool is_repeat(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	const struct reply *r = reply_find(&j->replies, c->key, c->client,
 					   c->seq);
 
 	if (r && r->done)
-		wire_ack(j->wire, &(struct wire_ack) {
+		jobs_lcm_ack(j->lcm, &(struct jobs_lcm_ack) {
 			.key = c->key, .client = c->client, .seq = c->seq,
 			.code = r->code,
 			.reason = r->reason, .body = r->body,
@@ -499,7 +499,7 @@ static bool is_repeat(struct jobs *j, const struct wire_command *c)
 	return r != NULL;
 }
 
-void verb_take(void *arg, const struct wire_command *c)
+void verbs_take(void *arg, const struct jobs_lcm_command *c)
 {
 	struct jobs *j = arg;
 	const struct verb *v = verb_find(c->verb);

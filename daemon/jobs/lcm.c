@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * wire.c - generated LCM messages to our structs and back
+ * lcm.c - generated LCM messages to our structs and back
  */
-#include "wire.h"
+#include "lcm.h"
 
-#include "log.h"
+#include "jobs_log.h"
 #include "udpm.h"
 
 #include "edm_ack_t.h"
@@ -22,12 +22,12 @@
 
 #define CHANNEL_MAX	64
 
-struct wire {
+struct jobs_lcm {
 	lcm_t *lcm;			/* to send by; it hears nothing */
 	struct udpm *in;
 	char machine[32];
 	char command[CHANNEL_MAX], job[CHANNEL_MAX];
-	struct wire_handlers handlers;
+	struct jobs_lcm_handlers handlers;
 	struct trust *trust;
 	uint64_t strange;		/* packets told of */
 };
@@ -122,7 +122,7 @@ static bool shape_fits(const struct seal *m, const char *shape,
 #define SHAPE_CHUNK	"qqsqssqHiiqbia"
 
 /* Why a packet of a key is not taken, to who sent it. */
-static void tell_refused(struct wire *w, const struct wire_ack *to,
+static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
 			 enum trust_cause cause)
 {
 	const bool again = cause == TRUST_BOOT || cause == TRUST_TIME;
@@ -132,19 +132,19 @@ static void tell_refused(struct wire *w, const struct wire_ack *to,
 		 again ? "; sign it again, with boot and count of this answer" :
 		 cause == TRUST_KEY ? "; edmctl keys add makes one" :
 		 "; try again in 30 s");
-	wire_ack(w, &(struct wire_ack) {
+	jobs_lcm_ack(w, &(struct jobs_lcm_ack) {
 		.key = to->key, .client = to->client, .seq = to->seq,
 		.reason = reason,
-		.code = again ? WIRE_AGAIN : cause == TRUST_KEY ? EX_NOPERM :
+		.code = again ? JOBS_LCM_AGAIN : cause == TRUST_KEY ? EX_NOPERM :
 			EX_TEMPFAIL,
 	});
 }
 
 /* Is it from a key, for now, and not heard before?  Else it is told. */
-static bool is_taken(struct wire *w, const struct origin *o,
+static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 		     const char *client, int64_t seq)
 {
-	struct wire_ack to = {
+	struct jobs_lcm_ack to = {
 		.key = o->packet->seal.key, .client = client, .seq = seq,
 		.code = EX_PROTOCOL,
 		.reason = "client name of no or too many bytes; 1 to 63",
@@ -155,7 +155,7 @@ static bool is_taken(struct wire *w, const struct origin *o,
 	char who[KEYFILE_NAME_MAX];
 
 	if (cause == TRUST_FINE && (n == 0 || n >= TRUST_CLIENT_MAX)) {
-		wire_ack(w, &to);
+		jobs_lcm_ack(w, &to);
 		return false;
 	}
 	if (cause == TRUST_FINE)
@@ -170,17 +170,17 @@ static bool is_taken(struct wire *w, const struct origin *o,
 }
 
 /* Return: false if it has not the shape of the type. */
-static bool on_command(struct wire *w, const struct origin *o)
+static bool on_command(struct jobs_lcm *w, const struct origin *o)
 {
 	const struct seal *s = &o->packet->seal;
-	struct wire_command c;
+	struct jobs_lcm_command c;
 	uint32_t count = 0;
 	edm_command_t m;
 
 	if (!shape_fits(s, SHAPE_COMMAND, &count) ||
 	    edm_command_t_decode(s->data, 0, (int)s->size, &m) < 0)
 		return false;
-	c = (struct wire_command) {
+	c = (struct jobs_lcm_command) {
 		.key = s->key, .client = m.client, .seq = m.seq, .verb = m.verb,
 		.job = m.job, .text = m.text, .arg = m.arg,
 		.by = o->packet->key, .from = o->packet->from,
@@ -217,16 +217,16 @@ static int chunk_decode(const struct seal *s, uint32_t size,
 	return got;
 }
 
-static bool on_chunk(struct wire *w, const struct origin *o)
+static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 {
 	const struct seal *s = &o->packet->seal;
-	struct wire_chunk c;
+	struct jobs_lcm_chunk c;
 	uint32_t size = 0;
 	edm_job_chunk_t m;
 
 	if (!shape_fits(s, SHAPE_CHUNK, &size) || chunk_decode(s, size, &m) < 0)
 		return false;
-	c = (struct wire_chunk) {
+	c = (struct jobs_lcm_chunk) {
 		.key = s->key, .client = m.client, .seq = m.seq, .job = m.job, .name = m.name,
 		.bytes = m.bytes, .sha256 = m.sha256, .chunk = m.chunk,
 		.chunks = m.chunks, .offset = m.offset, .hold = m.hold != 0,
@@ -239,7 +239,7 @@ static bool on_chunk(struct wire *w, const struct origin *o)
 	return true;
 }
 
-static void on_packet(struct wire *w, const struct udpm_packet *u)
+static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u)
 {
 	const bool command = strcmp(u->channel, w->command) == 0;
 	const int64_t now = now_us();
@@ -263,16 +263,16 @@ static void on_packet(struct wire *w, const struct udpm_packet *u)
 	trust_refuse(w->trust, o.cause, who, u->from, now);
 }
 
-static void channel_name(const struct wire *w, const char *name,
+static void channel_name(const struct jobs_lcm *w, const char *name,
 			 char ret[CHANNEL_MAX])
 {
 	snprintf(ret, CHANNEL_MAX, "EDM.%s.%s", w->machine, name);
 }
 
-int wire_open(struct wire **ret, const struct udpm_url *url,
-	      const char *machine, const struct wire_handlers *h)
+int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
+	      const char *machine, const struct jobs_lcm_handlers *h)
 {
-	struct wire *w = calloc(1, sizeof(*w));
+	struct jobs_lcm *w = calloc(1, sizeof(*w));
 	char address[INET_ADDRSTRLEN], text[64];
 	int err;
 
@@ -289,14 +289,14 @@ int wire_open(struct wire **ret, const struct udpm_url *url,
 	w->lcm = lcm_create(text);
 	err = w->lcm ? udpm_open(&w->in, url) : -ENETUNREACH;
 	if (err < 0) {
-		wire_close(w);
+		jobs_lcm_close(w);
 		return err;
 	}
 	*ret = w;
 	return 0;
 }
 
-void wire_close(struct wire *w)
+void jobs_lcm_close(struct jobs_lcm *w)
 {
 	if (!w)
 		return;
@@ -306,12 +306,12 @@ void wire_close(struct wire *w)
 	free(w);
 }
 
-int wire_fd(const struct wire *w)
+int jobs_lcm_fd(const struct jobs_lcm *w)
 {
 	return udpm_fd(w->in);
 }
 
-void wire_handle(struct wire *w)
+void jobs_lcm_handle(struct jobs_lcm *w)
 {
 	struct udpm_packet packet;
 	const char *from;
@@ -326,7 +326,7 @@ void wire_handle(struct wire *w)
 }
 
 /* Sign what LCM has laid out in @bytes, and send it. */
-static void publish(struct wire *w, const char *name, const void *data,
+static void publish(struct jobs_lcm *w, const char *name, const void *data,
 		    int bytes)
 {
 	char channel[CHANNEL_MAX];
@@ -358,7 +358,7 @@ static void publish(struct wire *w, const char *name, const void *data,
 		free(data); \
 	} while (0)
 
-void wire_ack(struct wire *w, const struct wire_ack *a)
+void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a)
 {
 	edm_ack_t m = {
 		.utime = utime(),
@@ -373,7 +373,7 @@ void wire_ack(struct wire *w, const struct wire_ack *a)
 	PUBLISH(w, "ACK", edm_ack_t, &m);
 }
 
-void wire_event(struct wire *w, const struct wire_event *e)
+void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
 {
 	edm_event_t m = {
 		.utime = utime(),
@@ -388,7 +388,7 @@ void wire_event(struct wire *w, const struct wire_event *e)
 	PUBLISH(w, "EVENT", edm_event_t, &m);
 }
 
-void wire_status(struct wire *w, const struct wire_status *s)
+void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 {
 	edm_status_t m = {
 		.utime = utime(),
@@ -413,7 +413,7 @@ void wire_status(struct wire *w, const struct wire_status *s)
 		.retracts = (int32_t)s->retracts,
 		.shorts = (int32_t)s->shorts,
 		.job_s = s->job_s,
-		.left_s = s->left_s,
+		.eta_s = s->eta_s,
 		.queue_len = (int32_t)s->queue_len,
 		.overruns = (int32_t)s->overruns,
 		.wake_late_max_us = (int32_t)s->wake_late_max_us,

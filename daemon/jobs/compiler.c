@@ -2,7 +2,7 @@
 /*
  * compile.c - NC code to a program, in a thread of its own
  */
-#include "compile.h"
+#include "compiler.h"
 #include "compiling.h"
 
 #include <errno.h>
@@ -15,21 +15,21 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-struct compile {
+struct compiler {
 	pthread_t thread;
 	int fd;				/* readable when it is done */
 	sd_event_source *source;
-	struct compile_request request;
-	struct compile_result result;
-	compile_done_fn done;
+	struct compiler_request request;
+	struct compiler_result result;
+	compiler_done_fn done;
 	void *arg;
 };
 
 /* The table is read for each job: one that was mended counts from the next
  * job on. */
-static int read_tech(struct compile *c, struct config_tech *t)
+static int read_tech(struct compiler *c, struct config_tech *t)
 {
-	struct compile_result *r = &c->result;
+	struct compiler_result *r = &c->result;
 	uint8_t hash[crypto_hash_sha256_BYTES];
 	const int err = config_tech_load(t, c->request.config, NULL);
 
@@ -48,7 +48,7 @@ static int read_tech(struct compile *c, struct config_tech *t)
 	return 0;
 }
 
-static int compile_text(struct compile *c, const struct config_tech *tech)
+static int compile_text(struct compiler *c, const struct config_tech *tech)
 {
 	const struct interp_text text = {
 		.at = c->request.text, .bytes = c->request.bytes,
@@ -68,7 +68,7 @@ static int compile_text(struct compile *c, const struct config_tech *tech)
 
 static void *compile_main(void *arg)
 {
-	struct compile *c = arg;
+	struct compiler *c = arg;
 	struct config_tech tech;
 	uint64_t one = 1;
 
@@ -82,7 +82,7 @@ static void *compile_main(void *arg)
 	return NULL;
 }
 
-static void compile_free(struct compile *c)
+static void compile_free(struct compiler *c)
 {
 	sd_event_source_unref(c->source);
 	if (c->fd >= 0)
@@ -93,7 +93,7 @@ static void compile_free(struct compile *c)
 
 static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
 {
-	struct compile *c = arg;
+	struct compiler *c = arg;
 
 	(void)source, (void)fd, (void)events;
 	pthread_join(c->thread, NULL);
@@ -103,7 +103,7 @@ static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
 }
 
 /* Signals are the event loop's: the thread blocks them all. */
-static int thread_start(struct compile *c)
+static int thread_start(struct compiler *c)
 {
 	sigset_t all, old;
 	int err;
@@ -115,11 +115,11 @@ static int thread_start(struct compile *c)
 	return -err;
 }
 
-int compile_start(struct compile **ret, sd_event *event,
-		  const struct compile_request *request,
-		  compile_done_fn done, void *arg)
+int compiler_start(struct compiler **ret, sd_event *event,
+		  const struct compiler_request *request,
+		  compiler_done_fn done, void *arg)
 {
-	struct compile *c = calloc(1, sizeof(*c));
+	struct compiler *c = calloc(1, sizeof(*c));
 	int err;
 
 	if (!c)
@@ -140,7 +140,7 @@ int compile_start(struct compile **ret, sd_event *event,
 	return 0;
 }
 
-void *compile_destroy(struct compile *c)
+void *compiler_destroy(struct compiler *c)
 {
 	void *arg;
 
