@@ -41,10 +41,14 @@ OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
 	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
-LDFLAGS	= $(SANFLAGS)
+LDFLAGS	= -Wl,--gc-sections $(SANFLAGS)
 
 # The parts, in the order data flows.
-INTERP	:= $(wildcard libinterp/*/*.c)
+# libinterp has a floor for each use: see docs/architecture.md.
+CORE	:= $(wildcard libinterp/core/*/*.c)
+COMPILE	:= $(wildcard libinterp/compile/*/*.c)
+MODEL	:= $(wildcard libinterp/model/*.c)
+INTERP	:= $(CORE) $(COMPILE) $(MODEL)
 RT	:= $(wildcard daemon/rt/*.c daemon/rt/*/*.c)
 # Of two files for libgpiod, the one for the version that pkg-config finds.
 PKG_CONFIG ?= pkg-config
@@ -54,6 +58,7 @@ IO	:= $(filter-out daemon/io/gpiod$(if $(filter 1,$(GPIOD)),2,1).c,\
 GPIOD_INC := $(shell $(PKG_CONFIG) --cflags libgpiod 2>/dev/null)
 LIBGPIOD := $(shell $(PKG_CONFIG) --libs libgpiod 2>/dev/null || echo -lgpiod)
 CONFIG	:= $(wildcard daemon/config/*.c)
+COMPILING := $(wildcard daemon/compiling/*.c)
 SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
@@ -67,36 +72,49 @@ UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
 EXPERIMENTS := lines axes machining
+# Methods that were compared and lost: no program uses them.
+TRIED	:= $(wildcard tests/experiments/tried/*.c)
 CURVE_EXPERIMENTS := curves curve_programs
 EXPERIMENTS_JUMP := jump
 
 # What a part may include.  A header not on its list does not resolve.
-INC_libinterp	= -Ilibinterp/include -Ilibinterp
-INC_rt		= -Idaemon/rt -Idaemon/io -Ilibinterp/include
-INC_io		= -Idaemon/io -Idaemon/config -Ilibinterp/include $(GPIOD_INC)
-INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io -Ilibinterp/include
+CORE_H		= -Ilibinterp/core/include
+COMPILE_H	= -Ilibinterp/compile/include
+MODEL_H		= -Ilibinterp/model/include
+INC_core	= $(CORE_H) -Ilibinterp/core
+INC_compile	= $(COMPILE_H) -Ilibinterp/compile $(INC_core)
+INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
+INC_rt		= -Idaemon/rt -Idaemon/io $(CORE_H)
+INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
+INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(CORE_H)
+INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm
 INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -Imessages/sign -I$(B)/messages
+INC_jobs	= -Idaemon/jobs -Idaemon/shm $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign
 INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
-INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -Ilibinterp/include $(INC_client)
-INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
-INC_unit	= -Itests/unit -Itests/data -Ilibinterp $(INC_edmd) $(INC_jobs)
-INC_bench	= -Itests/data $(INC_edmd)
-INC_fuzz	= -Ilibinterp/include
-INC_peer	= -Itests/data -Ilibinterp/include
-INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config)
-part = $(word $(if $(filter libinterp,$(firstword $(subst /, ,$1))),1,2),$(subst /, ,$1))
+INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
+INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) $(INC_client)
+INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_libinterp	= $(INC_compile) $(INC_model)
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
+INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
+INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
+INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config) $(INC_compiling)
+part = $(word 2,$(subst /, ,$1))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
-INTERP_O := $(call obj,$(INTERP))
+CORE_A	 := $(B)/libinterp-core.a
+COMPILE_A := $(B)/libinterp-compile.a
+MODEL_A	 := $(B)/libinterp-model.a
+TRIED_A	 := $(B)/tests-tried.a
+INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A)
 RT_O	 := $(call obj,$(RT))
 IO_O	 := $(call obj,$(IO))
 SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
+COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM))
 SIGN_O	 := $(call obj,$(SIGN))
 SETUP_O	 := $(call obj,$(SETUP))
@@ -150,22 +168,38 @@ $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 define link
 $(call say,LD,$@)
 @mkdir -p $(@D)
-$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $1
+$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $1
 endef
 
-$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_O)
+# An archive for each floor of libinterp: what links one can reach no other.
+define archive
+$(call say,AR,$@)
+@rm -f $@
+$(Q)$(AR) rcs $@ $^
+endef
+
+$(CORE_A): $(call obj,$(CORE))
+	$(archive)
+$(COMPILE_A): $(call obj,$(COMPILE))
+	$(archive)
+$(MODEL_A): $(call obj,$(MODEL))
+	$(archive)
+$(TRIED_A): $(call obj,$(TRIED))
+	$(archive)
+
+$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
 	$(call link,-linih -ljansson -lpthread -lm)
 
-$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
+$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT) $(wildcard libinterp/contour/*.c)) $(SHM_O) $(LCM_O)
+$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(DDS_O)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A)
 	$(call link,-lddsc -linih -lm)
 
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
@@ -174,19 +208,19 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
 
-$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lm)
 
-$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)
 
-$(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_O)
+$(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
 
-$(B)/experiments/%: $(B)/tests/experiments/%.o $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_O)
+$(B)/experiments/%: $(B)/tests/experiments/%.o $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih -lm)
 
-$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(INTERP_O)
+$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(TRIED_A) $(INTERP_A)
 	$(call link,-ljansson -lm)
 
 # -- The commands -------------------------------------------------------------
@@ -275,8 +309,8 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 # Another compiler's opinion: warnings are errors, nothing is linked.
 clang:
 	$(call say,CLANG,all sources)
-	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(SHM) $(SETUP) $(EDMD) \
-		$(JOBS) $(SIM) $(CTL) $(CLIENT) $(SIGN) $(PLOT) $(wildcard clients/dds/*.c); do \
+	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
+		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
 			$(INC_dds) $(INC_libinterp)) $$f || exit 1; done
@@ -381,25 +415,31 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
 
 # -- Lint ---------------------------------------------------------------------
 
-# What the cycle can reach, linked alone: nothing but tests/rt-symbols.
-RT_ENTRY = cycle_step cycle_command cycle_load cycle_load_at cycle_overrun \
-	   interp_compensate_step interp_errormap_apply interp_ridge_eval \
-	   interp_ridge_features
-HEADERS	 = $(wildcard libinterp/include/interp/*.h daemon/*/*.h clients/*/*.h messages/sign/*.h)
+HEADERS	 = $(wildcard libinterp/*/include/interp/*.h daemon/*/*.h clients/*/*.h)
 
-lint: $(INTERP_O) $(RT_O)
+# What an edmd must not have: a reader, messages, a database, another floor.
+NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
+
+lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,what the cycle may call)
-	$(Q)$(LD) --gc-sections --unresolved-symbols=ignore-all -e cycle_step \
-		$(RT_ENTRY:%=-u %) -o $(B)/rt.elf $^
-	$(Q)nm -u $(B)/rt.elf | awk '{print $$2}' | sort -u > $(B)/rt.undefined
+	$(Q)$(LD) -r -o $(B)/rt.o $(RT_O) --whole-archive $(CORE_A)
+	$(Q)nm -u $(B)/rt.o | awk '{print $$2}' | sort -u > $(B)/rt.undefined
 	$(Q)! grep -vxFf tests/rt-symbols $(B)/rt.undefined
+	$(call say,LINT,what edmd must not have)
+	$(Q)nm $(B)/edmd | awk '{print $$NF}' > $(B)/edmd.symbols
+	$(Q)grep -qx 'interp_cursor_step' $(B)/edmd.symbols
+	$(Q)! grep -E '^($(NOT_IN_EDMD))' $(B)/edmd.symbols
+	$(Q)! nm $(COMPILE_A) $(MODEL_A) | awk 'NF == 3 && $$2 ~ /[TDRB]/ \
+		{print $$3}' | grep -xFf $(B)/edmd.symbols
+	$(call say,LINT,each symbol has the prefix of its module)
+	$(Q)tests/symbol-prefixes $(B)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
 		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
-		grep -vE 'daemon/jobs/(wire|lcm).c|clients/client/packet.c'
+		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
 	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80

@@ -48,7 +48,7 @@ static int read_tech(struct compiler *c, struct config_tech *t)
 	return 0;
 }
 
-static int compile_text(struct compiler *c, const struct config_tech *tech)
+static int compiler_text(struct compiler *c, const struct config_tech *tech)
 {
 	const struct interp_text text = {
 		.at = c->request.text, .bytes = c->request.bytes,
@@ -66,7 +66,7 @@ static int compile_text(struct compiler *c, const struct config_tech *tech)
 			      &c->result.diag);
 }
 
-static void *compile_main(void *arg)
+static void *compiler_main(void *arg)
 {
 	struct compiler *c = arg;
 	struct config_tech tech;
@@ -74,7 +74,7 @@ static void *compile_main(void *arg)
 
 	c->result.err = read_tech(c, &tech);
 	if (c->result.err == 0)
-		c->result.err = compile_text(c, &tech);
+		c->result.err = compiler_text(c, &tech);
 	config_tech_free(&tech);
 	/* An eventfd at 0 takes a 1 without fail. */
 	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
@@ -82,7 +82,7 @@ static void *compile_main(void *arg)
 	return NULL;
 }
 
-static void compile_free(struct compiler *c)
+static void compiler_free(struct compiler *c)
 {
 	sd_event_source_unref(c->source);
 	if (c->fd >= 0)
@@ -98,7 +98,7 @@ static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
 	(void)source, (void)fd, (void)events;
 	pthread_join(c->thread, NULL);
 	c->done(c->arg, &c->result);
-	compile_free(c);
+	compiler_free(c);
 	return 0;
 }
 
@@ -110,14 +110,14 @@ static int thread_start(struct compiler *c)
 
 	sigfillset(&all);
 	pthread_sigmask(SIG_SETMASK, &all, &old);
-	err = pthread_create(&c->thread, NULL, compile_main, c);
+	err = pthread_create(&c->thread, NULL, compiler_main, c);
 	pthread_sigmask(SIG_SETMASK, &old, NULL);
 	return -err;
 }
 
 int compiler_start(struct compiler **ret, sd_event *event,
-		  const struct compiler_request *request,
-		  compiler_done_fn done, void *arg)
+		   const struct compiler_request *request,
+		   compiler_done_fn done, void *arg)
 {
 	struct compiler *c = calloc(1, sizeof(*c));
 	int err;
@@ -133,7 +133,7 @@ int compiler_start(struct compiler **ret, sd_event *event,
 	if (err >= 0)
 		err = thread_start(c);
 	if (err < 0) {
-		compile_free(c);
+		compiler_free(c);
 		return err;
 	}
 	*ret = c;
@@ -148,6 +148,6 @@ void *compiler_destroy(struct compiler *c)
 		return NULL;
 	arg = c->arg;
 	pthread_join(c->thread, NULL);
-	compile_free(c);
+	compiler_free(c);
 	return arg;
 }

@@ -42,8 +42,8 @@ typedef void (*compiler_done_fn)(void *arg, const struct compiler_result *r);
  * Return: 0 or a negative errno.
  */
 int compiler_start(struct compiler **ret, sd_event *event,
-		  const struct compiler_request *request,
-		  compiler_done_fn done, void *arg);
+		   const struct compiler_request *request,
+		   compiler_done_fn done, void *arg);
 
 /**
  * compiler_destroy() - give up: waits for the thread, never calls @done.

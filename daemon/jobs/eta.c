@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* left.c - how long the job that runs will take yet */
+/* eta.c - how long the job that runs will take yet */
 #include "eta.h"
 
 #include "shm.h"

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * left.h - how long the job that runs will take yet
+ * eta.h - how long the job that runs will take yet
  *
  * What is cut takes the time, and positioning next to none of it, however long
  * its way is: so what has been cut is told from what has been positioned.
  *
  * Threads: one, that of the event loop.
  */
-#ifndef JOBS_LEFT_H
-#define JOBS_LEFT_H
+#ifndef JOBS_ETA_H
+#define JOBS_ETA_H
 
 #include "interp/program.h"
 
@@ -44,4 +44,4 @@ double eta_s(const struct eta *l, double far_mm, double job_s);
 /** eta_fini() - forget all. */
 void eta_fini(struct eta *l);
 
-#endif /* JOBS_LEFT_H */
+#endif /* JOBS_ETA_H */

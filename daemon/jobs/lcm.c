@@ -163,7 +163,9 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 	if (cause == TRUST_FINE)
 		return true;
 	trust_who(o->packet, who);
-	trust_refuse(w->trust, cause, who, o->packet->from, now);
+	/* Who asks for the first time cannot know the boot number. */
+	if (cause != TRUST_BOOT || o->packet->seal.boot != 0)
+		trust_refuse(w->trust, cause, who, o->packet->from, now);
 	if (cause != TRUST_REPLAY)
 		tell_refused(w, &to, cause);
 	return false;

@@ -192,7 +192,7 @@ void load_begin(struct jobs *j, int64_t now_us)
 		for (int i = 0; i < INTERP_NAXES; i++)
 			request.start_mm[i] = s->pos[i] * s->pulse_mm[i];
 		err = compiler_start(&q->compile, j->event, &request,
-				    on_compiled, j);
+				     on_compiled, j);
 	}
 	if (err < 0) {
 		q->again_us = now_us + AGAIN_US;

@@ -4,6 +4,7 @@
  */
 #include "jobs.h"
 
+#include "compiling.h"
 #include "keys.h"
 #include "jobs_log.h"
 
@@ -171,6 +172,8 @@ static int configure(struct jobs *j, struct machine_config *config,
 	int err = config_read(config, o->config, &d);
 	const char *wrong;
 
+	if (err == 0)
+		err = config_check_kinematics(config, &d);
 	if (err == -EINVAL) {
 		config_say(o->config, &d);
 		return EX_CONFIG;

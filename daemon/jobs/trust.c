@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define TELL_US		10000000	/* between two lines of one cause */
-#define ANSWERS_A_S	20		/* to packets that are not taken */
+#define ANSWERS_A_S	200		/* to packets that are not taken */
 
 static const char *const roles[] = {
 	[ROLE_NONE]	= "none",
