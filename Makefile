@@ -208,8 +208,13 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
 
+# Of what stands in front of edmd-jobs.
+$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(B)/daemon/jobs/trust.o
+$(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
+$(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
+
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lm)
+	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lm)
 
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)

@@ -4,7 +4,6 @@
  */
 #include "ctl.h"
 
-#include <errno.h>
 #include <getopt.h>
 #include <math.h>
 #include <sodium.h>
@@ -72,6 +71,8 @@ static const struct verb verbs[] = {
 	  "how late edmd woke, of S seconds from now or since its start" },
 	{ "history", "", ctl_history, 0, 0, false, "",
 	  "jobs that have ended, newest first" },
+	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
+	  "who may command: viewer, operator, service" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "p",
 	  "the loops of the axes, from what record wrote" },
 };
@@ -105,7 +106,7 @@ static const struct option longs[] = {
 
 /* The verb, its arguments, and one that is too much. */
 struct words {
-	char *at[4];
+	char *at[5];
 	int n;
 };
 
@@ -237,6 +238,8 @@ static int arguments_take(struct ctl *c, const struct verb *v, int argc,
 		c->arg = argv[0];
 	if (argc > 1 && v->takes > 1)
 		c->value = argv[1];
+	if (argc > 2 && v->takes > 2)
+		c->third = argv[2];
 	if (argc > v->takes) {
 		fprintf(stderr, "edmctl: %s: '%s' is too much; edmctl %s%s%s\n",
 			v->name, argv[v->takes], v->name, *v->args ? " " : "",
@@ -348,7 +351,6 @@ int main(int argc, char **argv)
 		.machine = "edm", .url = URL_DEFAULT, .timeout_s = 3,
 	};
 	const struct verb *v = NULL;
-	char said[TALK_SAID_MAX];
 	int rc;
 
 	negatives_keep(argc, argv);
@@ -365,14 +367,11 @@ int main(int argc, char **argv)
 			URL_DEFAULT "\n", c.url);
 		return EX_USAGE;
 	}
-	rc = talk_open(&c.talk, &(struct talk_options) {
+	/* What is wrong with the words of the verb is said first. */
+	c.talk_err = talk_open(&c.talk, &(struct talk_options) {
 		.machine = c.machine, .url = c.url, .key = c.key,
 		.program = "edmctl",
-	}, said);
-	if (rc < 0 && v->run != ctl_doctor) {
-		fprintf(stderr, "edmctl: %s\n", said);
-		return rc == -ENETUNREACH ? EX_UNAVAILABLE : EX_NOPERM;
-	}
+	}, c.said);
 	talk_catch_signals();
 	rc = v->run(&c);
 	talk_close(c.talk);

@@ -165,7 +165,11 @@ static int send_text(struct ctl *c, const struct text *t,
 		.bytes = t->size, .hold = c->hold, .silent_s = c->timeout_s,
 	};
 	struct job *j;
-	int err = job_begin(&j, c->talk, &x), rc;
+	int err, rc;
+
+	if (!c->talk)
+		return ctl_unanswered(c, -ETIMEDOUT);
+	err = job_begin(&j, c->talk, &x);
 
 	if (err < 0) {
 		fprintf(stderr, "edmctl: %s: %s\n", c->arg, strerror(-err));

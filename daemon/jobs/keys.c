@@ -209,13 +209,13 @@ void keys_add(struct jobs *j, const struct verb *v,
 	(void)v;
 	if (sscanf(c->text, "%63s %15s %79s %c", name, role, hex, &rest) != 3 ||
 	    !keyfile_name_fits(name) || !keyfile_unhex(k.key, hex)) {
-		verb_answer(j, c, EX_DATAERR, "a name of 1 to 31 of A-Z a-z "
+		verbs_answer(j, c, EX_DATAERR, "a name of 1 to 31 of A-Z a-z "
 			    "0-9 . _ -, a role, and 64 hex digits");
 		return;
 	}
 	k.role = trust_role_of(role);
 	if (k.role == ROLE_NONE) {
-		verb_answer(j, c, EX_DATAERR, "no such role; viewer, operator "
+		verbs_answer(j, c, EX_DATAERR, "no such role; viewer, operator "
 			    "or service");
 		return;
 	}
@@ -223,14 +223,14 @@ void keys_add(struct jobs *j, const struct verb *v,
 	err = trust_add(&j->trust, &k);
 	if (err == 0 && store_key_add(j->store, &k, jobs_utime()) < 0) {
 		trust_remove(&j->trust, k.name);
-		verb_answer(j, c, EX_IOERR, "the store failed; see the "
+		verbs_answer(j, c, EX_IOERR, "the store failed; see the "
 			    "journal of edmd-jobs");
 		return;
 	}
 	if (err == 0)
 		log_notice("keys: %s added %s, a %s, from %s", c->by->name,
 			   k.name, role, c->from);
-	verb_answer(j, c, err ? REFUSED : 0, err == -EEXIST ?
+	verbs_answer(j, c, err ? REFUSED : 0, err == -EEXIST ?
 		    "this key, or one of this name, is there already; edmctl "
 		    "keys list" : err ? "64 keys are there; remove one" :
 		    "added");
@@ -244,21 +244,21 @@ void keys_remove(struct jobs *j, const struct verb *v,
 
 	(void)v;
 	if (strcmp(c->text, HOST) == 0) {
-		verb_answer(j, c, REFUSED, "the host's own key is renewed by "
+		verbs_answer(j, c, REFUSED, "the host's own key is renewed by "
 			    "removing its file and starting edmd-jobs again");
 		return;
 	}
 	if (trust_remove(&j->trust, c->text) < 0) {
-		verb_answer(j, c, EX_NOINPUT, "no key of this name; edmctl "
+		verbs_answer(j, c, EX_NOINPUT, "no key of this name; edmctl "
 			    "keys list");
 		return;
 	}
 	if (store_key_remove(j->store, c->text) < 0) {
-		verb_answer(j, c, EX_IOERR, "it is not taken any more, but the "
+		verbs_answer(j, c, EX_IOERR, "it is not taken any more, but the "
 			    "store failed: it comes back when edmd-jobs is "
 			    "started again; see its journal");
 		return;
 	}
 	log_notice("keys: %s removed %s, from %s", by.name, c->text, c->from);
-	verb_answer(j, c, 0, "removed");
+	verbs_answer(j, c, 0, "removed");
 }

@@ -20,8 +20,8 @@ struct verb {
 	const char *wants;		/* the state it wants */
 };
 
-/** verb_answer() - @code and @reason, to who asked. */
-void verb_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
+/** verbs_answer() - @code and @reason, to who asked. */
+void verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason);
 
 #endif /* JOBS_VERB_H */

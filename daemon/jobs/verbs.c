@@ -32,7 +32,7 @@ struct asked {
 	const struct verb *verb;
 };
 
-void verb_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
+void verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason)
 {
 	jobs_answer(j, &(struct jobs_lcm_ack) {
@@ -73,33 +73,33 @@ static void on_answer(void *arg, int code)
 	char reason[160];
 
 	if (code == SHM_DONE)
-		verb_answer(j, &c, 0, "done");
+		verbs_answer(j, &c, 0, "done");
 	else if (code == -ETIMEDOUT)
-		verb_answer(j, &c, EX_UNAVAILABLE, "edmd did not answer in 2 s");
+		verbs_answer(j, &c, EX_UNAVAILABLE, "edmd did not answer in 2 s");
 	else if (code < 0)
-		verb_answer(j, &c, EX_UNAVAILABLE, "edmd went away");
+		verbs_answer(j, &c, EX_UNAVAILABLE, "edmd went away");
 	else if (code == SHM_NO_PROGRAM)
-		verb_answer(j, &c, REFUSED, "no job is loaded; submit one");
+		verbs_answer(j, &c, REFUSED, "no job is loaded; submit one");
 	else if (code == SHM_NOT_UP)
-		verb_answer(j, &c, REFUSED, "the drives are not up yet; edmd's "
+		verbs_answer(j, &c, REFUSED, "the drives are not up yet; edmd's "
 		       "journal tells which; again when they are");
 	else if (code == SHM_LOCKED)
-		verb_answer(j, &c, REFUSED, "the PLC does not permit it: it is not "
+		verbs_answer(j, &c, REFUSED, "the PLC does not permit it: it is not "
 		       "there, holds, has no permit, or an interlock is open");
 	else if (code == SHM_BAD_ARGUMENT)
-		verb_answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
+		verbs_answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
 		       "edmd refused the value: with the others in force, "
 		       "short_v < window_low_v <= servo_v <= window_high_v < "
 		       "open_v < ignition_v must hold" :
 		       "edmd refused the value; it must be finite and in "
 		       "range");
 	else if (refusal(code))
-		verb_answer(j, &c, REFUSED, refusal(code));
+		verbs_answer(j, &c, REFUSED, refusal(code));
 	else {
 		snprintf(reason, sizeof(reason), "not in state %s; %s wants %s",
 			 shm_state_name(j->link.snap.state), a->verb->name,
 			 a->verb->wants);
-		verb_answer(j, &c, REFUSED, reason);
+		verbs_answer(j, &c, REFUSED, reason);
 	}
 	free(a);
 }
@@ -115,7 +115,7 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 	int err;
 
 	if (!a) {
-		verb_answer(j, c, EX_SOFTWARE, "no memory");
+		verbs_answer(j, c, EX_SOFTWARE, "no memory");
 		return;
 	}
 	a->jobs = j;
@@ -128,10 +128,10 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 		return;
 	free(a);
 	if (err == -EAGAIN)
-		verb_answer(j, c, EX_TEMPFAIL, "too many commands under way; try "
+		verbs_answer(j, c, EX_TEMPFAIL, "too many commands under way; try "
 		       "again");
 	else
-		verb_answer(j, c, EX_UNAVAILABLE, j->link.state == LINK_ABSENT ?
+		verbs_answer(j, c, EX_UNAVAILABLE, j->link.state == LINK_ABSENT ?
 		       "edmd is not there; systemctl start edmd" :
 		       "edmd is lost; systemctl status edmd");
 }
@@ -161,7 +161,7 @@ static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
 			n += (size_t)snprintf(reason + n, sizeof(reason) - n,
 					      " %s",
 					      interp_tech_field[i].name);
-	verb_answer(j, c, EX_DATAERR, reason);
+	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
 /* NaN gives the field back to the condition. */
@@ -187,7 +187,7 @@ static void verb_set(struct jobs *j, const struct verb *v,
 	}
 	snprintf(reason, sizeof(reason), "%s %g is out of range; %s",
 		 c->text, c->arg, range);
-	verb_answer(j, c, EX_DATAERR, reason);
+	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
 static void verb_retract(struct jobs *j, const struct verb *v,
@@ -196,7 +196,7 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 	if (isfinite(c->arg) && c->arg > 0 && c->arg <= RETRACT_MAX_MM)
 		verb_machine(j, v, c);
 	else
-		verb_answer(j, c, EX_DATAERR, "no such length; a number of mm above "
+		verbs_answer(j, c, EX_DATAERR, "no such length; a number of mm above "
 		       "0, at most 10000");
 }
 
@@ -207,7 +207,7 @@ static void verb_step(struct jobs *j, const struct verb *v,
 	    fabs(c->arg) <= STEP_MAX)
 		verb_machine(j, v, c);
 	else
-		verb_answer(j, c, EX_DATAERR, "no such number of nodes; 1 to 100 "
+		verbs_answer(j, c, EX_DATAERR, "no such number of nodes; 1 to 100 "
 		       "ahead, -1 to -100 back");
 }
 
@@ -217,7 +217,7 @@ static void verb_override(struct jobs *j, const struct verb *v,
 	if (c->arg >= 0 && c->arg <= OVERRIDE_MAX)
 		verb_machine(j, v, c);
 	else
-		verb_answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
+		verbs_answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
 }
 
 /* One letter of an axis the machine has; -1: it was refused. */
@@ -235,7 +235,7 @@ static int axis_of(struct jobs *j, const struct jobs_lcm_command *c)
 		return (int)(at - INTERP_AXIS_LETTERS);
 	snprintf(reason, sizeof(reason), "no axis '%.20s' here; one of %s",
 		 c->text, has);
-	verb_answer(j, c, EX_DATAERR, reason);
+	verbs_answer(j, c, EX_DATAERR, reason);
 	return -1;
 }
 
@@ -245,7 +245,7 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 	int axis;
 
 	if (!isfinite(c->arg) || c->arg == 0) {
-		verb_answer(j, c, EX_DATAERR, "no such length; a number of mm or "
+		verbs_answer(j, c, EX_DATAERR, "no such length; a number of mm or "
 		       "degrees, + or -");
 		return;
 	}
@@ -274,7 +274,7 @@ static void verb_home(struct jobs *j, const struct verb *v,
 	if (any)
 		ask_machine(j, v, c, (uint32_t)axis);
 	else
-		verb_answer(j, c, REFUSED, axis == INTERP_NAXES ?
+		verbs_answer(j, c, REFUSED, axis == INTERP_NAXES ?
 		       "no axis has a home_method; the places they start at "
 		       "are good" : "this axis has no home_method; the place "
 		       "it starts at is good");
@@ -285,7 +285,7 @@ static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	if (!queue_is_faulted(j))
 		return false;
-	verb_answer(j, c, REFUSED, "a fault is latched; reset first");
+	verbs_answer(j, c, REFUSED, "a fault is latched; reset first");
 	return true;
 }
 
@@ -303,12 +303,12 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 			 const struct store_job *job)
 {
 	if (job->state != JOB_QUEUED) {
-		verb_answer(j, c, REFUSED, "this job has ended; submit it again");
+		verbs_answer(j, c, REFUSED, "this job has ended; submit it again");
 		return;
 	}
 	queue_go(j);
 	store_set_hold(j->store, job->n, false);
-	verb_answer(j, c, 0, "starts when its turn comes");
+	verbs_answer(j, c, 0, "starts when its turn comes");
 }
 
 static void verb_start(struct jobs *j, const struct verb *v,
@@ -321,7 +321,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	if (refused_by_fault(j, c))
 		return;
 	if (*c->job && store_find(j->store, c->job, &job) < 0) {
-		verb_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
+		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
 		       "them");
 	} else if (*c->job && (!here || job.n != q->job.n)) {
 		start_behind(j, c, &job);
@@ -333,7 +333,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	} else if (store_head(j->store, &job) == 0) {
 		start_behind(j, c, &job);
 	} else {
-		verb_answer(j, c, REFUSED, "no job in the queue; submit one");
+		verbs_answer(j, c, REFUSED, "no job in the queue; submit one");
 	}
 }
 
@@ -349,20 +349,20 @@ static void verb_remove(struct jobs *j, const struct verb *v,
 
 	(void)v;
 	if (store_find(j->store, c->job, &job) < 0) {
-		verb_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
+		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
 		       "them");
 	} else if (job.n == j->queue.job.n && job.state == JOB_READY) {
 		queue_end(j, JOB_STOPPED, e.reason);
 		if (!waiting)
 			queue_go(j);
-		verb_answer(j, c, 0, "removed");
+		verbs_answer(j, c, 0, "removed");
 	} else if (job.state != JOB_QUEUED || job.loaded) {
-		verb_answer(j, c, REFUSED, "it has begun or ended; stop ends a job "
+		verbs_answer(j, c, REFUSED, "it has begun or ended; stop ends a job "
 		       "that runs");
 	} else {
 		store_end(j->store, job.n, &e);
 		queue_recount(j);
-		verb_answer(j, c, 0, "removed");
+		verbs_answer(j, c, 0, "removed");
 	}
 }
 
@@ -413,7 +413,7 @@ static void verb_history(struct jobs *j, const struct verb *v,
 	if (c->arg >= 0 && c->arg <= 1000)
 		answer_list(j, c, STORE_HISTORY);
 	else
-		verb_answer(j, c, EX_DATAERR, "no such number of rows; 0 to 1000, "
+		verbs_answer(j, c, EX_DATAERR, "no such number of rows; 0 to 1000, "
 		       "0 is all that are kept");
 }
 
@@ -460,7 +460,7 @@ static void refuse_verb(struct jobs *j, const struct jobs_lcm_command *c)
 	for (size_t i = 0; i < NVERBS; i++)
 		n += (size_t)snprintf(reason + n, sizeof(reason) - n, " %s",
 				      verbs[i].name);
-	verb_answer(j, c, EX_USAGE, reason);
+	verbs_answer(j, c, EX_USAGE, reason);
 }
 
 static const struct verb *verb_find(const char *name)
@@ -481,7 +481,7 @@ static void refuse_role(struct jobs *j, const struct jobs_lcm_command *c,
 		 v->name, trust_role_name(v->role));
 	trust_refuse(&j->trust, TRUST_ROLE, c->by->name, c->from,
 		     jobs_now_us());
-	verb_answer(j, c, EX_NOPERM, reason);
+	verbs_answer(j, c, EX_NOPERM, reason);
 }
 
 /* Answered before, or under way: not done again. */
