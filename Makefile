@@ -66,6 +66,7 @@ JOBS	:= $(wildcard daemon/jobs/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
+SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
@@ -121,7 +122,12 @@ UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
 PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
 
-all: $(PROGRAMS)
+all: $(PROGRAMS) $(SHEETS:clients/plot/%=$(B)/share/edmd/%)
+
+# Read by the programs when they draw, so it stands beside them.
+$(B)/share/edmd/%: clients/plot/%
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
 
 # -- Compile ------------------------------------------------------------------
 
@@ -462,7 +468,7 @@ install: all
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
 		examples/machine.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
-		messages/edmd.eds messages/edmd.dbc \
+		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
