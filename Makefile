@@ -44,7 +44,7 @@ LDFLAGS	= $(SANFLAGS)
 
 # The parts, in the order data flows.
 INTERP	:= $(wildcard libinterp/*/*.c)
-RT	:= $(wildcard daemon/rt/*.c)
+RT	:= $(wildcard daemon/rt/*.c daemon/rt/*/*.c)
 # Of two files for libgpiod, the one for the version that pkg-config finds.
 PKG_CONFIG ?= pkg-config
 GPIOD	:= $(firstword $(subst ., ,$(shell $(PKG_CONFIG) --modversion libgpiod 2>/dev/null)))

@@ -37,7 +37,7 @@ static void look(struct sim_run *r)
 		const uint8_t i = h->column[j];
 
 		mm[j] = (comp_place(&c->comp.axis[i], r->in.actual[i]) -
-			 c->touch.shift[i]) * h->pulse_mm[i];
+			 c->probe.shift[i]) * h->pulse_mm[i];
 	}
 	interp_contour_step(&w->foot, mm, place_mm, &e);
 	w->place_mm = place_mm;

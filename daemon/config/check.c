@@ -4,7 +4,7 @@
  */
 #include "keys.h"
 
-#include "gap.h"
+#include "gap/gap.h"
 
 #include "interp/compensate.h"
 

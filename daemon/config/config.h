@@ -43,8 +43,8 @@ struct config_gap {
 	int retract_to;			/* enum retract_to */
 	double abort_count;		/* whole number */
 	double progress_mm;
-	double arc_share, arc_cycles, arc_sigma_v;
-	double off_us, arc_off_max, arc_recover_s, arc_retract_mm;
+	double arcing_share, arcing_cycles, arcing_sigma_v;
+	double off_us, arcing_off_max, arcing_recover_s, arcing_retract_mm;
 	double stuck_s, noise_limit_v;
 	double wire_retract_mm, wire_retreat_mm;
 	int retract;			/* 0 along the path, 1 by the escape */
@@ -103,8 +103,8 @@ struct config_contour {
 enum sim_process { SIM_SINK, SIM_WIRE };
 enum sim_electrode { ELECTRODE_FLAT, ELECTRODE_BALL, ELECTRODE_CONE };
 
-/* [touch] */
-struct config_touch {
+/* [probe] */
+struct config_probe {
 	double feed_mm_s, fine_mm_s, back_mm, settle_s;
 };
 
@@ -152,8 +152,8 @@ struct config_sim {
 	double bridge_mm;		/* mean length of a bridge */
 	double bridge_settle_s;		/* it shrinks with this time constant */
 	double deion_us;		/* recovery of a channel */
-	double arc_gain;		/* above 1 at debris 1: arcs may stay */
-	double arc_s;			/* time constant of a hot place */
+	double arcing_gain;		/* above 1 at debris 1: arcs may stay */
+	double arcing_s;			/* time constant of a hot place */
 	double break_per_j, rethread_s;	/* of the wire */
 
 	/* Sensors and axes. */
@@ -164,7 +164,7 @@ struct config_sim {
 	double home_off_mm, index_mm;	/* switches; sim_switches.c */
 	double measure_pulses;		/* sigma of the scales */
 
-	/* What a touch meets: sim_touch.c. */
+	/* What a touch meets: sim_probe.c. */
 	uint32_t block;			/* 1: there is a block */
 	double block_min_mm[2], block_max_mm[2];	/* X, Y; machine */
 	double block_top_mm;		/* Z; it has no bottom */
@@ -271,7 +271,7 @@ struct machine_config {
 	struct config_gap gap;
 	struct config_jump jump;
 	struct config_contour contour;
-	struct config_touch touch;
+	struct config_probe probe;
 	double corner_um;		/* [speed] corner_um */
 	int nodes;			/* [speed] nodes: 0 pass, 1 stop */
 	struct config_sim sim;
