@@ -47,16 +47,6 @@ int64_t config_period_ns(const struct machine_config *c)
 	       c->backend == BACKEND_CAN402 ? PERIOD_CAN402_NS : PERIOD_NS;
 }
 
-int config_kinematics(const struct machine_config *c,
-		      struct interp_kinematics *ret, struct interp_diag *diag)
-{
-	if (strcmp(c->kinematics.chain, "none") == 0)
-		return -ENOENT;
-	interp_kin_clear(ret);
-	memcpy(ret->tip_mm, c->kinematics.tip_mm, sizeof(ret->tip_mm));
-	return interp_kin_parse(ret, c->kinematics.chain, diag);
-}
-
 static bool has(const struct machine_config *c, enum interp_axis a)
 {
 	return c->axes.present >> a & 1;

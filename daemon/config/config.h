@@ -16,9 +16,9 @@
 #include "interp/axis_model.h"
 #include "interp/diag.h"
 #include "interp/errormap.h"
-#include "interp/kinematics.h"
-#include "interp/mcode.h"
-#include "interp/nc.h"
+#include "interp/mcode_arg.h"
+#include "interp/program.h"
+#include "interp/wire.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -177,6 +177,7 @@ struct config_kinematics {
 	char chain[160];		/* "none": no G43.4 */
 	double tip_mm[3];
 	double tolerance_um;
+	uint32_t line;			/* of chain in the file; 0: not set */
 };
 
 /* [axis.X] home_*, jog_mm_s, backlash_*. */
@@ -297,32 +298,6 @@ void config_defaults(struct machine_config *c);
 int config_read(struct machine_config *c, const char *path,
 		struct interp_diag *diag);
 
-struct interp_tech;
-struct interp_tech_table;
-
-/* What config_tech_load() came to. */
-struct config_tech {
-	struct interp_tech_table *table;	/* NULL: there is none */
-	char path[512];
-	char *text;			/* as read; NULL without a table */
-	size_t bytes;
-	struct interp_diag diag;	/* filled with -EINVAL */
-};
-
-/**
- * config_tech_load() - read a technology table, and check that it may go over
- * the machine's values.
- *
- * @path: NULL is [tech] table, beside the machine file; an .enc file is read
- * as one, any other as .tech.
- * Return: 0; -errno of the file; -EINVAL with ret->diag filled; -ENOMEM.
- * ret->path says which file, and ret is to be handed to config_tech_free() in
- * any case.  Any thread.
- */
-int config_tech_load(struct config_tech *ret, const struct machine_config *c,
-		     const char *path);
-void config_tech_free(struct config_tech *t);
-
 /**
  * config_longest_mm() - the longest travel of any linear axis; 0: there is none.
  * @ret_axis: which.
@@ -335,9 +310,6 @@ double config_longest_mm(const struct machine_config *c, int *ret_axis);
  */
 bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
 		      size_t size);
-
-/** config_tech_base() - the machine's own values of the fields. */
-void config_tech_base(const struct machine_config *c, struct interp_tech *ret);
 
 /**
  * config_say() - what config_read() refused, on stderr: PATH:LINE:COLUMN, or
@@ -365,13 +337,6 @@ void config_print(const struct machine_config *c, FILE *f);
 
 /** config_document() - docs/config.md. */
 void config_document(FILE *f);
-
-/**
- * config_kinematics() - the machine's joints.
- * Return: 0; -ENOENT if [kinematics] names none; -EINVAL with @diag filled.
- */
-int config_kinematics(const struct machine_config *c,
-		      struct interp_kinematics *ret, struct interp_diag *diag);
 
 /** config_has_plc() - is there one to be heard? */
 bool config_has_plc(const struct machine_config *c);

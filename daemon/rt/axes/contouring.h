@@ -38,7 +38,7 @@
 
 #include "interp/at.h"
 #include "interp/axis.h"
-#include "interp/compensate.h"
+#include "interp/feedforward.h"
 #include "interp/row.h"
 
 #include <stdbool.h>
