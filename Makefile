@@ -9,6 +9,7 @@
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
+#   make walkable   random programs of every dialect are walked, there and back
 #   make invariants what holds in every cycle, over ten million random ones
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
@@ -302,6 +303,12 @@ run-units: $(UNIT_X) $(PEER_X)
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
 
+# What is accepted is walked, there and back: so many random programs of every
+# dialect, by every strategy.
+RUNS	?= 100000
+walkable: $(B)/unit/test_walkable
+	$(Q)EDM_RUNS=$(RUNS) $(if $(SEED),EDM_SEED=$(SEED)) $<
+
 # The shared-memory crossings between threads, under the thread sanitizer.
 run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 	$(Q)for t in $^; do $$t >$$t.log 2>&1 || { cat $$t.log; exit 1; }; \
@@ -480,6 +487,6 @@ clean:
 
 .PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo invariants \
+	experiments-curve experiments-servo invariants walkable \
 	pictures fuzz lint install clean
 .SECONDARY:
