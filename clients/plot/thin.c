@@ -8,12 +8,15 @@
 #define ZOOM_JUMPS	3ul
 #define ZOOM_S		3.0		/* of a retract, where nothing jumps */
 
-static void range_add(struct thin_range *r, double v)
+/* Called twenty times a row; fmin() and fmax() would be calls of libm. */
+static inline void range_add(struct thin_range *r, double v)
 {
 	if (r->n++ == 0)
 		r->min = r->max = v;
-	r->min = fmin(r->min, v);
-	r->max = fmax(r->max, v);
+	else if (v < r->min)
+		r->min = v;
+	else if (v > r->max)
+		r->max = v;
 	r->sum += v;
 }
 
@@ -122,7 +125,7 @@ static void take_strip(struct thin *t, const struct plot_row *r)
 		range_add(&s->feed, r->feed_mm_s);
 	for (int i = 0; i < PLOT_NAXES; i++)
 		range_add(&s->axis[i], r->axis_mm[i]);
-	s->far_mm = fmax(t->place.max, r->s_mm);
+	s->far_mm = r->s_mm > t->place.max ? r->s_mm : t->place.max;
 	s->share[r->state]++;
 }
 
@@ -253,7 +256,7 @@ static void take(struct thin *t, const struct plot_row *r)
 	if (is_power(t, r->state)) {
 		if (!t->cuts)
 			begin_cut(t, r);
-		t->cut_min = fmin(t->cut_min, r->s_mm);
+		t->cut_min = r->s_mm < t->cut_min ? r->s_mm : t->cut_min;
 	}
 	take_strip(t, r);
 	take_path(t, r);
