@@ -9,6 +9,7 @@
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
+#   make walkable   random programs of every dialect are walked, there and back
 #   make invariants what holds in every cycle, over ten million random ones
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
@@ -68,14 +69,12 @@ CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
+SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
-EXPERIMENTS := lines axes machining
 # Methods that were compared and lost: no program uses them.
 TRIED	:= $(wildcard tests/experiments/tried/*.c)
-CURVE_EXPERIMENTS := curves curve_programs
-EXPERIMENTS_JUMP := jump
 
 # What a part may include.  A header not on its list does not resolve.
 CORE_H		= -Ilibinterp/core/include
@@ -101,7 +100,6 @@ INC_libinterp	= $(INC_compile) $(INC_model)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
-INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config) $(INC_compiling)
 part = $(word 2,$(subst /, ,$1))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
@@ -126,7 +124,12 @@ UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
 PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
 
-all: $(PROGRAMS)
+all: $(PROGRAMS) $(SHEETS:clients/plot/%=$(B)/share/edmd/%)
+
+# Read by the programs when they draw, so it stands beside them.
+$(B)/share/edmd/%: clients/plot/%
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
 
 # -- Compile ------------------------------------------------------------------
 
@@ -222,12 +225,6 @@ $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
 
-$(B)/experiments/%: $(B)/tests/experiments/%.o $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-linih -lm)
-
-$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(TRIED_A) $(INTERP_A)
-	$(call link,-ljansson -lm)
-
 # -- The commands -------------------------------------------------------------
 
 demo:
@@ -306,6 +303,12 @@ run-units: $(UNIT_X) $(PEER_X)
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
 
+# What is accepted is walked, there and back: so many random programs of every
+# dialect, by every strategy.
+RUNS	?= 100000
+walkable: $(B)/unit/test_walkable
+	$(Q)EDM_RUNS=$(RUNS) $(if $(SEED),EDM_SEED=$(SEED)) $<
+
 # The shared-memory crossings between threads, under the thread sanitizer.
 run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 	$(Q)for t in $^; do $$t >$$t.log 2>&1 || { cat $$t.log; exit 1; }; \
@@ -325,60 +328,7 @@ bench: vm
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
 
-# Counted, not timed: the same on every machine.
-experiments: experiments-pulse experiments-jump experiments-contour \
-	experiments-curve experiments-servo
-
-experiments-pulse: $(EXPERIMENTS:%=$(B)/experiments/%)
-	$(call say,WALK,docs/experiments-pulse.md)
-	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-pulse.md
-	$(Q)cp $(B)/experiments-pulse.md docs/experiments-pulse.md
-	$(Q)cat docs/experiments-pulse.md
-
-experiments-jump: $(EXPERIMENTS_JUMP:%=$(B)/experiments/%)
-	$(call say,WALK,docs/experiments-jump.md)
-	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-jump.md
-	$(Q)$(B)/experiments/jump profile > $(B)/jump.dat
-	$(Q)gnuplot -e "data='$(B)/jump.dat'; out='docs/pictures/jump.svg'" \
-		tests/experiments/jump.gp
-	$(Q)cp $(B)/experiments-jump.md docs/experiments-jump.md
-	$(Q)cat docs/experiments-jump.md
-
-# Some minutes: each kind of work is tuned before it is compared.
-experiments-servo: $(B)/edmsim
-	$(call say,TUNE,docs/experiments-servo.md)
-	$(Q)EDM_BUILD=$(B) tests/experiments/servo $(B)/servo \
-		> $(B)/experiments-servo.md
-	$(Q)gnuplot -e "data='$(B)/servo/servo.dat'; out='docs/pictures/servo.svg'" \
-		tests/experiments/servo.gp
-	$(Q)cp $(B)/experiments-servo.md docs/experiments-servo.md
-	$(Q)EDM_BUILD=$(B) docs/tuning > $(B)/tuning.md
-	$(Q)docs/put-table $(B)/tuning.md docs/gap-servo.md
-	$(Q)EDM_BUILD=$(B) tests/experiments/strategies > $(B)/strategies.md
-	$(Q)docs/put-table $(B)/strategies.md docs/process-model.md
-	$(Q)cat docs/experiments-servo.md
-
-experiments-curve: $(CURVE_EXPERIMENTS:%=$(B)/experiments/%) $(B)/edmsim
-	@tests/setup check
-	$(call say,WALK,docs/experiments-curve.md)
-	$(Q)cat tests/experiments/curve.md > $(B)/experiments-curve.md
-	$(Q)for x in $(filter %/curves %/curve_programs,$^); do $$x || exit 1; \
-		done >> $(B)/experiments-curve.md
-	$(Q)tests/experiments/blade $(B) >> $(B)/experiments-curve.md
-	$(Q)EDM_BUILD=$(B) .venv/bin/python tests/experiments/g52 \
-		>> $(B)/experiments-curve.md
-	$(Q)cp $(B)/experiments-curve.md docs/experiments-curve.md
-
-experiments-contour: $(B)/experiments/contour $(B)/edmsim
-	$(call say,TRY,docs/experiments-contour.md)
-	$(Q)$< > $(B)/experiments-contour.md
-	$(Q)tests/experiments/contouring $(B) > $(B)/contouring.md
-	$(Q)cat $(B)/contouring.md >> $(B)/experiments-contour.md
-	$(Q)cp $(B)/experiments-contour.md docs/experiments-contour.md
-	$(Q)grep '^|' $(B)/contouring.md > $(B)/contouring-table.md
-	$(Q)docs/put-table $(B)/contouring-table.md docs/contour.md
-	$(Q)cat docs/experiments-contour.md
-	$(Q)$< docs/pictures
+include tests/experiments/Makefile
 
 # Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
 pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
@@ -472,7 +422,7 @@ install: all
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
 		examples/machine.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
-		messages/edmd.eds messages/edmd.dbc \
+		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
@@ -484,6 +434,6 @@ clean:
 
 .PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo invariants \
+	experiments-curve experiments-servo invariants walkable \
 	pictures fuzz lint install clean
 .SECONDARY:
