@@ -90,7 +90,7 @@ INC_rt		= -Idaemon/rt -Idaemon/io $(CORE_H)
 INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
-INC_shm		= -Idaemon/shm
+INC_shm		= -Idaemon/shm -Icommon
 INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
 INC_jobs	= -Idaemon/jobs -Icommon -Idaemon/shm $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
@@ -211,7 +211,7 @@ $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MO
 $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -lm)
 
-$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
+$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
 	$(call link,-lddsc -ljansson -lm)
 
 # Of edmd itself, without its main().
