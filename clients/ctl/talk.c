@@ -91,6 +91,7 @@ static void on_status(const lcm_recv_buf_t *buf, const char *channel,
 	copy_word(s->daemon, m->daemon);
 	copy_word(s->state, m->state);
 	copy_word(s->fault, m->fault);
+	snprintf(s->faults, sizeof(s->faults), "%s", m->faults);
 	copy_word(s->job, m->job);
 	copy_word(s->job_name, m->job_name);
 	copy_word(s->job_state, m->job_state);

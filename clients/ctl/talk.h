@@ -17,6 +17,7 @@
 #define TALK_NAXES	8
 #define TALK_CHUNK_MAX	32768
 #define TALK_WORD_MAX	64
+#define TALK_FAULTS_MAX	512		/* all of them at once */
 
 struct talk;
 
@@ -25,6 +26,7 @@ struct talk_status {
 	int64_t utime;
 	char machine[TALK_WORD_MAX], daemon[TALK_WORD_MAX];
 	char state[TALK_WORD_MAX], fault[TALK_WORD_MAX];
+	char faults[TALK_FAULTS_MAX];	/* all that are latched */
 	char job[TALK_WORD_MAX], job_name[TALK_WORD_MAX];
 	char job_state[TALK_WORD_MAX];
 	int line, lines;

@@ -288,6 +288,7 @@ void wire_status(struct wire *w, const struct wire_status *s)
 		.daemon = lent(s->daemon),
 		.state = lent(s->state),
 		.fault = lent(s->fault),
+		.faults = lent(s->faults),
 		.job = lent(s->job),
 		.job_name = lent(s->job_name),
 		.job_state = lent(s->job_state),

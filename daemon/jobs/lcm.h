@@ -55,7 +55,7 @@ struct wire_event {
 };
 
 struct wire_status {
-	const char *daemon, *state, *fault;
+	const char *daemon, *state, *fault, *faults;
 	const char *job, *job_name, *job_state, *condition;
 	uint32_t line, lines;
 	double place_mm, length_mm, progress;

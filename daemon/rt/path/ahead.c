@@ -159,25 +159,25 @@ static bool is_lie(const struct cycle *c, const struct lookahead *k)
 		brake.end.x_mm) > k->worst.left_mm + LIE_MM;
 }
 
-static void choose(struct cycle *c, struct lookahead *k, double v_mm_s)
+/* Return: false if the program lies: then there is no good plan. */
+static bool choose(struct cycle *c, struct lookahead *k, double v_mm_s)
 {
 	if (!plan_holds(c, v_mm_s))
 		plan_speed(c, v_mm_s);
 	for (int n = 0; n < PLANS_MAX; n++) {
 		look_after_plan(c, k);
 		if (k->missed_mm <= 0)
-			return;
-		if (n == 0 && is_lie(c, k)) {
-			cycle_fail(c, FAULT_PROGRAM);
-			return;
-		}
+			return true;
+		if (n == 0 && is_lie(c, k))
+			return false;
 		plan_place(c, k, v_mm_s);
 		if (is_braking(c))
-			return;
+			return true;
 	}
 	look_after_plan(c, k);
 	if (k->missed_mm > 0)
 		plan_speed(c, 0);
+	return true;
 }
 
 static struct lookahead look_of(const struct cycle *c, const struct ahead_move *w)
@@ -225,11 +225,14 @@ double ahead_distance(struct cycle *c, const struct ahead_move *w)
 	}
 	if (w->toward * c->mover.v_mm_s >
 	    fmax(most, c->ahead.entered_mm_s) * (1 + 1e-6) + 1e-9) {
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 		return 0;
 	}
 	k = look_of(c, w);
-	choose(c, &k, v);
+	if (!choose(c, &k, v)) {
+		fault_latch(&c->fault, FAULT_PROGRAM);
+		return 0;
+	}
 	c->ahead.room_mm = k.missed_mm > 0 ? 0 : k.room_mm;
-	return c->fault == FAULT_PROGRAM ? 0 : go(c, w);
+	return go(c, w);
 }
