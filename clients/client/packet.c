@@ -98,41 +98,18 @@ static void word(char to[TALK_WORD_MAX], const char *from)
 	plain_copy(to, TALK_WORD_MAX, from);
 }
 
-static void status_words(struct talk_status *s, const edm_status_t *m)
-{
-	word(s->machine, m->machine);
-	word(s->daemon, m->daemon);
-	word(s->state, m->state);
-	word(s->fault, m->fault);
-	plain_copy(s->faults, sizeof(s->faults), m->faults);
-	word(s->job, m->job);
-	word(s->job_name, m->job_name);
-	word(s->job_state, m->job_state);
-	word(s->condition, m->condition);
-}
+#define TAKE_WORD(name)		word(s->name, m->name);
+#define TAKE_NUMBER(name)	s->name = m->name;
 
-static void status_numbers(struct talk_status *s, const edm_status_t *m)
+static void status_take(struct talk_status *s, const edm_status_t *m)
 {
+	STATUS_FIELDS(TAKE_WORD, TAKE_NUMBER, TAKE_NUMBER)
+	word(s->machine, m->machine);
+	plain_copy(s->faults, sizeof(s->faults), m->faults);
 	memcpy(s->pos_mm, m->pos_mm, sizeof(s->pos_mm));
 	s->utime = m->utime;
-	s->line = m->line;
-	s->lines = m->lines;
-	s->place_mm = m->place_mm;
-	s->length_mm = m->length_mm;
-	s->progress = m->progress;
-	s->gap_v = m->gap_v;
-	s->feed_mm_s = m->feed_mm_s;
-	s->depth_mm = m->depth_mm;
 	s->contour_mm = m->contour_mm;
 	s->contour_predicted_mm = m->contour_predicted_mm;
-	s->jumps = m->jumps;
-	s->retracts = m->retracts;
-	s->shorts = m->shorts;
-	s->job_s = m->job_s;
-	s->eta_s = m->eta_s;
-	s->queue_len = m->queue_len;
-	s->overruns = m->overruns;
-	s->wake_late_max_us = m->wake_late_max_us;
 }
 
 bool packet_status(const struct seal *s, struct talk_status *ret)
@@ -141,8 +118,7 @@ bool packet_status(const struct seal *s, struct talk_status *ret)
 
 	if (edm_status_t_decode(s->data, 0, (int)s->size, &m) < 0)
 		return false;
-	status_words(ret, &m);
-	status_numbers(ret, &m);
+	status_take(ret, &m);
 	edm_status_t_decode_cleanup(&m);
 	return true;
 }

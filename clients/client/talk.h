@@ -24,6 +24,7 @@
 #define CLIENT_TALK_H
 
 #include "keyfile.h"
+#include "status_fields.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -46,23 +47,18 @@ struct talk_options {
 	const char *program;		/* our name; NULL: "client" */
 };
 
-/* The last STATUS; fields as in edm.status_t. */
+#define TALK_WORD(name)		char name[TALK_WORD_MAX];
+#define TALK_COUNT(name)	int name;
+#define TALK_NUMBER(name)	double name;
+
+/* The last STATUS; fields as in edm.status_t: words/status_fields.h. */
 struct talk_status {
 	int64_t utime;
-	char machine[TALK_WORD_MAX], daemon[TALK_WORD_MAX];
-	char state[TALK_WORD_MAX], fault[TALK_WORD_MAX];
+	char machine[TALK_WORD_MAX];
+	STATUS_FIELDS(TALK_WORD, TALK_COUNT, TALK_NUMBER)
 	char faults[TALK_FAULTS_MAX];	/* all that are latched */
-	char job[TALK_WORD_MAX], job_name[TALK_WORD_MAX];
-	char job_state[TALK_WORD_MAX];
-	int line, lines;
-	double place_mm, length_mm, progress;
 	double pos_mm[TALK_NAXES];
-	double gap_v, feed_mm_s, depth_mm;
 	double contour_mm, contour_predicted_mm;	/* -1: not known */
-	int jumps, retracts, shorts;
-	double job_s, eta_s;
-	int queue_len, overruns, wake_late_max_us;
-	char condition[TALK_WORD_MAX];
 };
 
 /* An EVENT; lent to who hears it. */

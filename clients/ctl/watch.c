@@ -12,6 +12,11 @@
 #define ASK_S		1.0
 #define GIVE_UP_S	60.0		/* a restarted service is back */
 
+#define PRINT(name, value)	json_object_set_new(j, #name, value);
+#define PRINT_WORD(name)	PRINT(name, json_string(s->name))
+#define PRINT_COUNT(name)	PRINT(name, json_integer(s->name))
+#define PRINT_NUMBER(name)	PRINT(name, json_real(s->name))
+
 static void print_json(const struct talk_status *s)
 {
 	json_t *pos = json_array(), *j;
@@ -19,22 +24,9 @@ static void print_json(const struct talk_status *s)
 
 	for (int i = 0; i < TALK_NAXES; i++)
 		json_array_append_new(pos, json_real(s->pos_mm[i]));
-	j = json_pack("{s:I,s:s,s:s,s:s,s:s,s:s,s:s,s:s,s:i,s:i,s:f,s:f,s:f,"
-		      "s:o,s:f,s:f,s:f,s:i,s:i,s:i,s:f,s:f,s:i,s:i,s:i,s:s}",
-		      "utime", (json_int_t)s->utime, "machine", s->machine,
-		      "daemon", s->daemon, "state", s->state,
-		      "fault", s->fault, "job", s->job,
-		      "job_name", s->job_name, "job_state", s->job_state,
-		      "line", s->line, "lines", s->lines,
-		      "place_mm", s->place_mm, "length_mm", s->length_mm,
-		      "progress", s->progress, "pos_mm", pos,
-		      "gap_v", s->gap_v, "feed_mm_s", s->feed_mm_s,
-		      "depth_mm", s->depth_mm, "jumps", s->jumps,
-		      "retracts", s->retracts, "shorts", s->shorts,
-		      "job_s", s->job_s, "eta_s", s->eta_s,
-		      "queue_len", s->queue_len, "overruns", s->overruns,
-		      "wake_late_max_us", s->wake_late_max_us,
-		      "condition", s->condition);
+	j = json_pack("{s:I,s:s,s:o}", "utime", (json_int_t)s->utime,
+		      "machine", s->machine, "pos_mm", pos);
+	STATUS_FIELDS(PRINT_WORD, PRINT_COUNT, PRINT_NUMBER)
 	if (j && s->contour_mm >= 0) {
 		json_object_set_new(j, "contour_um",
 				    json_real(s->contour_mm * 1e3));

@@ -390,37 +390,19 @@ void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
 	PUBLISH(w, "EVENT", edm_event_t, &m);
 }
 
+#define SEND_WORD(name)		.name = lent(s->name),
+#define SEND_COUNT(name)	.name = (int32_t)s->name,
+#define SEND_NUMBER(name)	.name = s->name,
+
 void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 {
 	edm_status_t m = {
+		STATUS_FIELDS(SEND_WORD, SEND_COUNT, SEND_NUMBER)
 		.utime = utime(),
 		.machine = w->machine,
-		.daemon = lent(s->daemon),
-		.state = lent(s->state),
-		.fault = lent(s->fault),
 		.faults = lent(s->faults),
-		.job = lent(s->job),
-		.job_name = lent(s->job_name),
-		.job_state = lent(s->job_state),
-		.line = (int32_t)s->line,
-		.lines = (int32_t)s->lines,
-		.place_mm = s->place_mm,
-		.length_mm = s->length_mm,
-		.progress = s->progress,
-		.gap_v = s->gap_v,
-		.feed_mm_s = s->feed_mm_s,
-		.depth_mm = s->depth_mm,
 		.contour_mm = s->contour_mm,
 		.contour_predicted_mm = s->contour_predicted_mm,
-		.jumps = (int32_t)s->jumps,
-		.retracts = (int32_t)s->retracts,
-		.shorts = (int32_t)s->shorts,
-		.job_s = s->job_s,
-		.eta_s = s->eta_s,
-		.queue_len = (int32_t)s->queue_len,
-		.overruns = (int32_t)s->overruns,
-		.wake_late_max_us = (int32_t)s->wake_late_max_us,
-		.condition = lent(s->condition),
 	};
 
 	memcpy(m.pos_mm, s->pos_mm, sizeof(m.pos_mm));

@@ -15,6 +15,8 @@
 #include "trust.h"
 #include "udpm.h"
 
+#include "status_fields.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -66,17 +68,16 @@ struct jobs_lcm_event {
 	double place_mm;
 };
 
+#define JOBS_LCM_WORD(name)	const char *name;
+#define JOBS_LCM_COUNT(name)	uint32_t name;
+#define JOBS_LCM_NUMBER(name)	double name;
+
+/* The fields of words/status_fields.h; a word of NULL is "". */
 struct jobs_lcm_status {
-	const char *daemon, *state, *fault, *faults;
-	const char *job, *job_name, *job_state, *condition;
-	uint32_t line, lines;
-	double place_mm, length_mm, progress;
+	STATUS_FIELDS(JOBS_LCM_WORD, JOBS_LCM_COUNT, JOBS_LCM_NUMBER)
+	const char *faults;
 	double pos_mm[JOBS_LCM_NAXES];
-	double gap_v, feed_mm_s, depth_mm;
 	double contour_mm, contour_predicted_mm;
-	uint32_t jumps, retracts, shorts;
-	double job_s, eta_s;
-	uint32_t queue_len, overruns, wake_late_max_us;
 };
 
 /* What lent pointers hold is gone when the function returns. */

@@ -39,6 +39,7 @@
 #include "state.h"
 #include "path/probe.h"
 #include "path/progress.h"
+#include "verbs.h"
 
 /* How the last job ended. */
 enum cycle_outcome {
@@ -137,19 +138,10 @@ struct cycle_config {
 	struct contouring_config contouring;
 };
 
+/* The verbs of words/verbs.h: CYCLE_START and so on. */
+#define CYCLE_VERB(verb)	CYCLE_##verb,
 enum cycle_verb {
-	CYCLE_START,			/* from held: begin or go on */
-	CYCLE_HOLD,			/* power off, stop on the path */
-	CYCLE_RESUME,			/* the same as start, after a hold */
-	CYCLE_STOP,			/* end the job here */
-	CYCLE_RETRACT,			/* hold, arg_mm back along the path */
-	CYCLE_ESTOP,			/* the software e-stop */
-	CYCLE_RESET,			/* leave fault: held, or idle */
-	CYCLE_SET,			/* field `arg` to arg_mm; NAN: as it was */
-	CYCLE_OVERRIDE,			/* of positioning: 0 ... 2 times, arg_mm */
-	CYCLE_STEP,			/* held: arg_mm nodes on, - back */
-	CYCLE_JOG,			/* idle: axis `arg` by arg_mm */
-	CYCLE_HOME,			/* idle: axis `arg`, or MANUAL_ALL_AXES */
+	VERB_ROWS(CYCLE_VERB)
 	CYCLE_NVERBS
 };
 

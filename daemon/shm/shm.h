@@ -31,6 +31,8 @@
 #ifndef EDM_SHM_H
 #define EDM_SHM_H
 
+#include "verbs.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -207,20 +209,10 @@ struct shm_status {
 	struct shm_event_slot event[SHM_EVENT_SLOTS];
 };
 
-/* Below 100: mirrors enum cycle_verb; fixed here because others rely on it. */
+/* Below 100: the verbs of words/verbs.h, SHM_DO_START and so on. */
+#define SHM_VERB(verb)	SHM_DO_##verb,
 enum shm_verb {
-	SHM_DO_START,			/* from held: begin or go on */
-	SHM_DO_HOLD,			/* power off, stop on the path */
-	SHM_DO_RESUME,			/* the same as start, after a hold */
-	SHM_DO_STOP,			/* end the job here */
-	SHM_DO_RETRACT,			/* arg_mm back along the path, then hold */
-	SHM_DO_ESTOP,			/* the software e-stop */
-	SHM_DO_RESET,			/* leave fault, to hold */
-	SHM_DO_SET,			/* field arg to arg_mm; NAN: as it was */
-	SHM_DO_OVERRIDE,		/* of positioning: 0 ... 2 times, arg_mm */
-	SHM_DO_STEP,			/* held: arg_mm nodes on, - back */
-	SHM_DO_JOG,			/* idle: axis arg by arg_mm */
-	SHM_DO_HOME,			/* idle: axis arg; 8: all */
+	VERB_ROWS(SHM_VERB)
 	SHM_LOAD = 100,			/* arg: program n; when idle */
 	SHM_UNLOAD,			/* forget program n and unmap it; a
 					 * held one is stopped first */

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * status_fields.h - the fields of STATUS, as edm.status_t of messages/edm.lcm
+ * has them
+ *
+ * What fills, sends, receives and prints them is made of this table.  A new
+ * field is a row here and in messages/edm.lcm, a line in jobs/status.c, and in
+ * shm.h and edmd/publish.c where the snapshot does not have it yet.
+ *
+ * Not in the table: when and from whom, and what is no single number or word
+ * (pos_mm, faults, contour_mm and contour_predicted_mm).
+ *
+ * Units: in every name; messages/edm.lcm says what each means.
+ */
+#ifndef WORDS_STATUS_FIELDS_H
+#define WORDS_STATUS_FIELDS_H
+
+#define STATUS_FIELDS(WORD, COUNT, NUMBER) \
+	WORD(daemon) \
+	WORD(state) \
+	WORD(fault) \
+	WORD(job) \
+	WORD(job_name) \
+	WORD(job_state) \
+	COUNT(line) \
+	COUNT(lines) \
+	NUMBER(place_mm) \
+	NUMBER(length_mm) \
+	NUMBER(progress) \
+	NUMBER(gap_v) \
+	NUMBER(feed_mm_s) \
+	NUMBER(depth_mm) \
+	COUNT(jumps) \
+	COUNT(retracts) \
+	COUNT(shorts) \
+	NUMBER(job_s) \
+	NUMBER(eta_s) \
+	COUNT(queue_len) \
+	COUNT(overruns) \
+	COUNT(wake_late_max_us) \
+	WORD(condition)
+
+#endif /* WORDS_STATUS_FIELDS_H */
