@@ -40,4 +40,8 @@
 	COUNT(wake_late_max_us) \
 	WORD(condition)
 
+#define STATUS_ONE(name)	+ 1
+
+enum { STATUS_NFIELDS = STATUS_FIELDS(STATUS_ONE, STATUS_ONE, STATUS_ONE) };
+
 #endif /* WORDS_STATUS_FIELDS_H */

@@ -25,4 +25,8 @@
 	V(JOG)		/* idle: axis arg by arg_mm */ \
 	V(HOME)		/* idle: axis arg; 8: all axes */
 
+#define VERB_ONE(verb)	+ 1
+
+enum { VERB_COUNT = VERB_ROWS(VERB_ONE) };
+
 #endif /* WORDS_VERBS_H */
