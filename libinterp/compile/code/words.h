@@ -140,22 +140,16 @@ struct nc_code {
 #define NC_NG	2000
 #define NC_NM	100
 
-/* Behind the M words that are known. */
-#define MACHINE_M	", or one of the machine's own, [plc] m_before " \
-			"m_after m_free"
-
 /* The codes of a letter. */
 struct nc_letter {
 	const struct nc_code *codes;	/* NULL: none of that letter */
 	uint32_t ncodes;
 	uint32_t scale;			/* 10: one decimal may follow */
-	const char *known;
 };
 
 struct nc_dialect {
 	const uint8_t *classes;		/* of bytes */
 	struct nc_letter letter[3];	/* G M T */
-	const char *any_word;		/* the letters there are */
 	char label;			/* of subprograms: O or N */
 	uint8_t decimals;		/* of a length without a point */
 	bool point;			/* but 0, a length has a point */
