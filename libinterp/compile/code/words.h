@@ -118,8 +118,20 @@ enum nc_motion {
 	NC_NURBS,			/* G6.2: a control point or a knot */
 };
 
-/* What a member of NC_ONE_SHOT or NC_STOP does. */
-enum nc_one_shot { NC_DWELL, NC_HOME, NC_SET, NC_SET_CANCEL, NC_SINK };
+/*
+ * Words done once: ten times the number of the G, what it is called, the
+ * function of motion.c, the slots it uses.  A new one is a row and a function.
+ */
+#define NC_ONE_SHOTS(W) \
+	W(40, DWELL, dwell, NC_BIT(NC_P) | NC_BIT(NC_X)) \
+	W(280, HOME, home, NC_AXES) \
+	W(920, SET, set_here, NC_AXES) \
+	W(921, SET_CANCEL, set_cancel, 0) \
+	W(1200, SINK, nc_sink, NC_AXES | NC_BIT(NC_P))
+
+#define NC_ONE_SHOT_ID(number, id, run, takes)	NC_##id,
+enum nc_one_shot { NC_ONE_SHOTS(NC_ONE_SHOT_ID) };
+
 /* What a member of NC_TOUCH does. */
 enum nc_touch {
 	NC_TOUCH_FEED,			/* at the programmed feed at the most */
@@ -127,6 +139,7 @@ enum nc_touch {
 	NC_TOUCH_HOLE, NC_TOUCH_PILLAR, NC_TOUCH_CORNER,
 	NC_NTOUCHES
 };
+/* What a member of NC_STOP does. */
 enum nc_stop { NC_HALT, NC_OPTIONAL_HALT, NC_FINISH, NC_CALL, NC_RETURN };
 
 /* One G, M or T word. */
