@@ -256,14 +256,12 @@ static int set_cancel(struct nc_reader *r)
 	return 0;
 }
 
+#define RUN(number, id, run, takes)	[NC_##id] = run,
+
 int nc_run_one_shot(struct nc_reader *r)
 {
 	static int (*const shots[])(struct nc_reader *) = {
-		[NC_DWELL]	= dwell,
-		[NC_HOME]	= home,
-		[NC_SET]	= set_here,
-		[NC_SET_CANCEL]	= set_cancel,
-		[NC_SINK]	= nc_sink,
+		NC_ONE_SHOTS(RUN)
 	};
 
 	return shots[r->block.code[NC_ONE_SHOT]->value](r);

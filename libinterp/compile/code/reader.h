@@ -352,4 +352,14 @@ struct nc_quote nc_quote_word(const struct nc_reader *r, const uint8_t *at);
 /** nc_quote_run() - everything up to a blank. */
 struct nc_quote nc_quote_run(const struct nc_reader *r, const uint8_t *at);
 
+/** nc_letters_known() - the letters that a word may begin with, into @buf;
+ *  returns it. */
+const char *nc_letters_known(const struct nc_dialect *d, char *buf,
+			     size_t size);
+
+/** nc_codes_known() - the numbers that @letter may have, in words into @buf;
+ *  returns it. */
+const char *nc_codes_known(const struct nc_letter *l, char letter, char *buf,
+			   size_t size);
+
 #endif /* CODE_READER_H */

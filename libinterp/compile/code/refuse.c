@@ -72,3 +72,62 @@ struct nc_quote nc_quote_run(const struct nc_reader *r, const uint8_t *at)
 {
 	return quote(r, at, is_visible);
 }
+
+/* -- What a letter may be followed by --------------------------------------- */
+
+static uint32_t next_code(const struct nc_letter *l, uint32_t i)
+{
+	while (i < l->ncodes && l->codes[i].group == NC_UNKNOWN)
+		i++;
+	return i;
+}
+
+static int put_code(char *buf, size_t size, char letter, uint32_t scale,
+		    uint32_t i)
+{
+	return i % scale ? snprintf(buf, size, "%c%u.%u", letter, i / scale,
+				    i % scale) :
+			   snprintf(buf, size, "%c%u", letter, i / scale);
+}
+
+const char *nc_codes_known(const struct nc_letter *l, char letter, char *buf,
+			   size_t size)
+{
+	size_t n = (size_t)snprintf(buf, size, "one of");
+	uint32_t i = next_code(l, 0);
+
+	/* Numbers that follow each other, G5 and G5.1 too, are one range. */
+	while (i < l->ncodes && n < size) {
+		uint32_t last = i, next = next_code(l, i + 1), many = 1;
+
+		for (; next < l->ncodes && next - last <= l->scale;
+		     next = next_code(l, next + 1), many++)
+			last = next;
+		n += (size_t)snprintf(buf + n, size - n, " ");
+		if (n < size)
+			n += (size_t)put_code(buf + n, size - n, letter,
+					      l->scale, i);
+		if (many > 1 && n < size)
+			n += (size_t)snprintf(buf + n, size - n,
+					      many > 2 ? " ... " : " ");
+		if (many > 1 && n < size)
+			n += (size_t)put_code(buf + n, size - n, letter,
+					      l->scale, last);
+		i = next;
+	}
+	if (letter == 'M' && n < size)
+		snprintf(buf + n, size - n, ", or one of the machine's own, "
+			 "[plc] m_before m_after m_free");
+	return buf;
+}
+
+const char *nc_letters_known(const struct nc_dialect *d, char *buf, size_t size)
+{
+	size_t n = (size_t)snprintf(buf, size, "one of");
+
+	for (char c = 'A'; c <= 'Z' && n < size; c++) {
+		if (d->classes[(uint8_t)c] != NC_BAD)
+			n += (size_t)snprintf(buf + n, size - n, " %c", c);
+	}
+	return buf;
+}

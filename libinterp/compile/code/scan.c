@@ -7,9 +7,12 @@
 #include "code/number.h"
 #include "code/reader.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+
+#define KNOWN_MAX	160
 
 #define A_NUMBER	"a sign, digits and one decimal point, as in " \
 			"X-12.345; no exponent"
@@ -200,8 +203,11 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 	       &l->codes[n] : nc_classes[*at] == NC_LETTER_M ?
 	       nc_mcode(r, n) : NULL;
 	if (!code) {
-		nc_refuse(r, at, l->known, "unknown word %s",
-			  nc_quote_word(r, at).s);
+		char known[KNOWN_MAX];
+
+		nc_refuse(r, at, nc_codes_known(l, (char)toupper(*at), known,
+						sizeof(known)),
+			  "unknown word %s", nc_quote_word(r, at).s);
 		return NULL;
 	}
 	if (b->colon)
@@ -329,10 +335,10 @@ static const uint8_t *scan_e(struct nc_reader *r, const uint8_t *at)
 
 static void refuse_stray(struct nc_reader *r, const uint8_t *at)
 {
-	char wanted[160];
+	char wanted[160], letters[KNOWN_MAX];
 
 	snprintf(wanted, sizeof(wanted), "%s before a number; no blank inside "
-		 "a number", r->d->any_word);
+		 "a number", nc_letters_known(r->d, letters, sizeof(letters)));
 	nc_refuse(r, at, wanted, "the number %s without a letter",
 		  nc_quote_word(r, at).s);
 }
@@ -350,13 +356,16 @@ static const uint8_t *scan_stray(struct nc_reader *r, const uint8_t *at)
 
 static const uint8_t *scan_bad(struct nc_reader *r, const uint8_t *at)
 {
+	char known[KNOWN_MAX];
+
+	nc_letters_known(r->d, known, sizeof(known));
 	const uint8_t upper = *at & 0xdf;
 
 	if (upper >= 'A' && upper <= 'Z')
-		nc_refuse(r, at, r->d->any_word, "unknown word %s",
+		nc_refuse(r, at, known, "unknown word %s",
 			  nc_quote_word(r, at).s);
 	else if (*at > ' ' && *at < 0x7f)
-		nc_refuse(r, at, r->d->any_word, "'%c', which begins no word", *at);
+		nc_refuse(r, at, known, "'%c', which begins no word", *at);
 	else
 		nc_refuse(r, at, "ASCII text; other characters in comments "
 			  "only, and no NUL", "byte 0x%02x", *at);

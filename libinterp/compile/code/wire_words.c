@@ -88,11 +88,9 @@ static const struct nc_code robofil_m[NC_NM] = { STOP_M };
 const struct nc_dialect nc_robofil = {
 	.classes = robofil_classes,
 	.letter = {
-		{ robofil_g, NC_NG, 10, "one of G0 G1 G2 G3 G38 G39 G40 G41 "
-		  "G42 G60 G61 G90 G91 G92" },
-		{ robofil_m, NC_NM, 1, "M00, M01, or M02 to end" MACHINE_M },
+		{ robofil_g, NC_NG, 10 },
+		{ robofil_m, NC_NM, 1 },
 	},
-	.any_word = "one of G M F N X Y I J D",
 	.label = 'O', .arc_places = true, .point = true, .m2_ends = true,
 	.no_feed = true,
 };
@@ -111,11 +109,9 @@ static const struct nc_code skd2_m[NC_NM] = { STOP_M, SUBPROGRAM_M };
 const struct nc_dialect nc_skd2 = {
 	.classes = skd2_classes,
 	.letter = {
-		{ skd2_g, NC_NG, 10, "one of G0 G1 G2 G3 G40 G41 G42 G50 G51 "
-		  "G52 G90 G91 G92" },
-		{ skd2_m, NC_NM, 1, "one of M00 M01 M02 M98 M99" MACHINE_M },
+		{ skd2_g, NC_NG, 10 },
+		{ skd2_m, NC_NM, 1 },
 	},
-	.any_word = "one of G M F N X Y I J A P L E H",
 	.label = 'N', .decimals = 3, .no_feed = true, .defines = true,
 };
 
@@ -151,13 +147,10 @@ static const struct nc_code sodick_t[NC_NM] = {
 const struct nc_dialect nc_sodick = {
 	.classes = sodick_classes,
 	.letter = {
-		{ sodick_g, NC_NG, 10, "one of G0 G1 G2 G3 G17 G20 G21 G40 "
-		  "G41 G42 G50 G51 G52 G54 ... G59 G80 G81 G82 G90 G91 "
-		  "G92" },
-		{ sodick_m, NC_NM, 1, "one of M00 M01 M02 M98 M99" MACHINE_M },
-		{ sodick_t, NC_NM, 1, "one of T80 ... T87" },
+		{ sodick_g, NC_NG, 10 },
+		{ sodick_m, NC_NM, 1 },
+		{ sodick_t, NC_NM, 1 },
 	},
-	.any_word = "one of G M T F N X Y I J A P L C D H",
 	.label = 'N', .point = true, .no_feed = true, .defines = true,
 	.touches = true,
 };
@@ -183,11 +176,9 @@ static const struct nc_code chmer_m[NC_NM] = {
 const struct nc_dialect nc_chmer = {
 	.classes = chmer_classes,
 	.letter = {
-		{ chmer_g, NC_NG, 10, "one of G0 G1 G2 G3 G20 G21 G40 G41 G42 "
-		  "G50 G51 G52 G54 ... G59 G90 G91 G92" },
-		{ chmer_m, NC_NM, 1, "one of M00 M01 M02 M30 M98 M99" MACHINE_M },
+		{ chmer_g, NC_NG, 10 },
+		{ chmer_m, NC_NM, 1 },
 	},
-	.any_word = "one of G M F N O X Y I J A P L S H",
 	.label = 'O', .point = true, .no_feed = true, .defines = true,
 };
 /* clang-format on */

@@ -83,12 +83,15 @@ const uint8_t nc_classes[256] = {
 #define LQ_	(NC_BIT(NC_L) | NC_BIT(NC_Q))
 #define ARC_	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
 
+#define ONE_SHOT(number, id, run, takes) \
+	[number] = { NC_ONE_SHOT, NC_##id, takes },
+
 static const struct nc_code g[NC_NG] = {
+	NC_ONE_SHOTS(ONE_SHOT)
 	[0]   = { NC_MOTION, 0, NC_AXES },
 	[10]  = { NC_MOTION, 1, NC_AXES },
 	[20]  = { NC_MOTION, 2, ARC_ },
 	[30]  = { NC_MOTION, 3, ARC_ },
-	[40]  = { NC_ONE_SHOT, NC_DWELL, P_ | NC_BIT(NC_X) },
 	[50]  = { NC_MOTION, NC_SPLINE, XY_ | IJ_ | P_ | NC_BIT(NC_Q) },
 	[51]  = { NC_MOTION, NC_PARABOLA, XY_ | IJ_ },
 	[52]  = { NC_MOTION, NC_NURBS_BLOCK, XY_ | P_ | NC_BIT(NC_L) },
@@ -100,7 +103,6 @@ static const struct nc_code g[NC_NG] = {
 	[190] = { NC_PLANE, 2, 0 },
 	[200] = { NC_UNITS, true, 0 },
 	[210] = { NC_UNITS, false, 0 },
-	[280] = { NC_ONE_SHOT, NC_HOME, NC_AXES },
 	[382] = { NC_TOUCH, NC_TOUCH_FEED, XYZ_ },
 	[400] = { NC_OFFSET, 0, 0 },
 	[410] = { NC_OFFSET, 1, 0 },
@@ -125,10 +127,7 @@ static const struct nc_code g[NC_NG] = {
 	[910] = { NC_DISTANCE, true, 0 },
 	[901] = { NC_ARC_DISTANCE, false, 0 },
 	[911] = { NC_ARC_DISTANCE, true, 0 },
-	[920] = { NC_ONE_SHOT, NC_SET, NC_AXES },
-	[921] = { NC_ONE_SHOT, NC_SET_CANCEL, 0 },
 	[940] = { NC_FEED_MODE, 0, 0 },
-	[1200] = { NC_ONE_SHOT, NC_SINK, NC_AXES | P_ },
 	[1300] = { NC_CYCLE, INTERP_ORBIT_CIRCLE, ORBIT_ },
 	[1310] = { NC_CYCLE, INTERP_ORBIT_SQUARE, ORBIT_ },
 	[1320] = { NC_CYCLE, INTERP_ORBIT_SPHERE, ORBIT_ },
@@ -165,14 +164,10 @@ static const struct nc_code t[NC_NM] = {
 const struct nc_dialect nc_generic = {
 	.classes = nc_classes,
 	.letter = {
-		{ g, NC_NG, 10,
-		  "one of G0 ... G5.3 G6.2 G17 ... G21 G28 G38.2 G40 ... G42 "
-		  "G43.4 G49 ... G59 G80 ... G82 G86 G90 ... G92.1 G94 G120 "
-		  "G130 ... G135 G140 ... G143 G160 ... G162" },
-		{ m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" MACHINE_M },
-		{ t, NC_NM, 1, "T84 (pump on) or T85 (pump off)" },
+		{ g, NC_NG, 10 },
+		{ m, NC_NM, 1 },
+		{ t, NC_NM, 1 },
 	},
-	.any_word = "one of G M F N S T X Y Z A B C U V I J K R P L Q O D H E",
 	.registers = true,
 	.touches = true,
 	.label = 'O',

@@ -118,8 +118,20 @@ enum nc_motion {
 	NC_NURBS,			/* G6.2: a control point or a knot */
 };
 
-/* What a member of NC_ONE_SHOT or NC_STOP does. */
-enum nc_one_shot { NC_DWELL, NC_HOME, NC_SET, NC_SET_CANCEL, NC_SINK };
+/*
+ * Words done once: ten times the number of the G, what it is called, the
+ * function of motion.c, the slots it uses.  A new one is a row and a function.
+ */
+#define NC_ONE_SHOTS(W) \
+	W(40, DWELL, dwell, NC_BIT(NC_P) | NC_BIT(NC_X)) \
+	W(280, HOME, home, NC_AXES) \
+	W(920, SET, set_here, NC_AXES) \
+	W(921, SET_CANCEL, set_cancel, 0) \
+	W(1200, SINK, nc_sink, NC_AXES | NC_BIT(NC_P))
+
+#define NC_ONE_SHOT_ID(number, id, run, takes)	NC_##id,
+enum nc_one_shot { NC_ONE_SHOTS(NC_ONE_SHOT_ID) };
+
 /* What a member of NC_TOUCH does. */
 enum nc_touch {
 	NC_TOUCH_FEED,			/* at the programmed feed at the most */
@@ -127,6 +139,7 @@ enum nc_touch {
 	NC_TOUCH_HOLE, NC_TOUCH_PILLAR, NC_TOUCH_CORNER,
 	NC_NTOUCHES
 };
+/* What a member of NC_STOP does. */
 enum nc_stop { NC_HALT, NC_OPTIONAL_HALT, NC_FINISH, NC_CALL, NC_RETURN };
 
 /* One G, M or T word. */
@@ -140,22 +153,16 @@ struct nc_code {
 #define NC_NG	2000
 #define NC_NM	100
 
-/* Behind the M words that are known. */
-#define MACHINE_M	", or one of the machine's own, [plc] m_before " \
-			"m_after m_free"
-
 /* The codes of a letter. */
 struct nc_letter {
 	const struct nc_code *codes;	/* NULL: none of that letter */
 	uint32_t ncodes;
 	uint32_t scale;			/* 10: one decimal may follow */
-	const char *known;
 };
 
 struct nc_dialect {
 	const uint8_t *classes;		/* of bytes */
 	struct nc_letter letter[3];	/* G M T */
-	const char *any_word;		/* the letters there are */
 	char label;			/* of subprograms: O or N */
 	uint8_t decimals;		/* of a length without a point */
 	bool point;			/* but 0, a length has a point */
