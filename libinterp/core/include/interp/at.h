@@ -2,9 +2,9 @@
 /*
  * at.h - the programmed point at a place on a program's path
  *
- * Exact: no lattice, no strategy.  What lies between two lattice points is
- * seen by whoever needs speeds and accelerations of the axes, which steps of
- * whole pulses do not tell.
+ * The point is exact: it does not depend on lattice points or on a strategy.
+ * It is for those who need the speeds and accelerations of the axes, because
+ * steps of whole pulses do not show them.
  *
  * Units: mm along the path and of the axes; rotary axes degrees.  Node column j
  * of the program is axis head->column[j].
@@ -17,8 +17,9 @@
 #include "interp/nurbs.h"
 #include "interp/program.h"
 
-/* The curve last looked at: opening its span is most of a look.  Of one program;
- * zeroed by the caller. */
+/* The curve that was looked at last.  To open a span of a curve costs most of a
+ * look, so it is kept.  It belongs to one program.  The caller fills it with
+ * zeros at first. */
 struct interp_at_curve {
 	bool open;
 	uint32_t curve;
@@ -26,10 +27,11 @@ struct interp_at_curve {
 };
 
 /**
- * interp_program_at() - the point @s_mm behind the start of segment @i, and the
- * way of each axis per mm of path there.
+ * interp_program_at() - the point that is @s_mm after the start of segment @i,
+ * and how far each axis goes there per mm of path.
  *
- * @ret: by node column.  Beyond the segment's ends it is the end's.
+ * @ret: by column of the nodes.  Outside the segment it is the point at the
+ * nearer end.
  * Return: false for an action, two contours at once, or a segment that is not
  * sound.
  */
@@ -37,16 +39,17 @@ bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
 		       struct interp_at_curve *last,
 		       struct interp_contour_point *ret);
 
-/* Both stay the caller's. */
+/* Both belong to the caller. */
 struct interp_at_path {
 	const struct interp_program *program;
 	struct interp_at_curve *last;
 };
 
 /**
- * interp_program_path() - the whole of it as a path; u is the place in mm.
+ * interp_program_path() - the whole program as a path; u is the place in mm.
  *
- * @w stays the caller's, too.  Startup only; then a binary search for each look.
+ * @w belongs to the caller, and must stay as long as the path is used.  Startup
+ * only.  Each look at the path is a binary search.
  * Return: false if the program does not move, or has two contours at once.
  */
 bool interp_program_path(const struct interp_at_path *w,

@@ -9,13 +9,14 @@
  *	a' = w^2 (u(t - delay) - v) - 2 damping w a,	w = 2 pi velocity_hz
  *	u  = gain (target - actual) + feedforward target' + correction
  *
- * in periods of T with u held, discretised exactly.  The kick stands for
- * friction: at a reversal the axis lags by kick_mm_s, which decays within
- * kick_s.  Backlash is lost motion between p and the actual place.
+ * It is stepped in periods of T, during which u is held, and discretised
+ * exactly.  The kick stands for friction: when the axis turns back it lags by
+ * kick_mm_s, which decays with the time constant kick_s.  Backlash is motion
+ * that is lost between p and the actual place.
  *
- * This is the state-space model of the contour error literature (x' = A x +
- * B u, y = C x) with the structure filled in, so that few numbers are to be
- * identified (interp/identify.h).
+ * The literature on contour errors uses the same state-space model (x' = A x +
+ * B u, y = C x).  Here its structure is given, so that only a few numbers must
+ * be identified (interp/identify.h).
  *
  * Units: mm, s; rotary axes degrees.  Sign: + as the axis.
  * Threads: one object, one thread; all but _init() RT-safe.
@@ -64,17 +65,20 @@ int interp_axis_model_init(struct interp_axis_model *m,
 			   const struct interp_axis_loop *loop,
 			   double period_s, double place_mm);
 
-/** interp_axis_model_stand() - at rest at @place_mm, nothing on its way. */
+/** interp_axis_model_stand() - put it at rest at @place_mm; no earlier demand
+ *  is still to come. */
 void interp_axis_model_stand(struct interp_axis_model *m, double place_mm);
 
 /** interp_axis_model_step() - one period with the speed @u_mm_s demanded. */
 void interp_axis_model_step(struct interp_axis_model *m, double u_mm_s);
 
 /**
- * interp_axis_model_step_beside() - the same, but it turns when @leader has.
+ * interp_axis_model_step_beside() - the same, but it turns back when @leader
+ * has turned back.
  *
- * For the difference that a number makes: a kick a period sooner is a step in
- * it.  @leader was stepped first; it may be @m.
+ * This is for finding out how much a changed number changes the result.  If one
+ * model turned back a period sooner than the other, its kick would make a step
+ * in the difference.  @leader must have been stepped first; it may be @m itself.
  */
 void interp_axis_model_step_beside(struct interp_axis_model *m, double u_mm_s,
 				   const struct interp_axis_model *leader);
@@ -89,7 +93,7 @@ void interp_axis_model_step_beside(struct interp_axis_model *m, double u_mm_s,
 double interp_axis_model_follow(struct interp_axis_model *m, double target_mm,
 				double before_mm);
 
-/** interp_axis_model_shift() - it is @by_mm further, for what moved it. */
+/** interp_axis_model_shift() - something else moved the axis by @by_mm. */
 static inline void interp_axis_model_shift(struct interp_axis_model *m,
 					   double by_mm)
 {

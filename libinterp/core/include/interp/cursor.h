@@ -174,21 +174,21 @@ int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick);
  */
 int interp_cursor_seek_end(struct interp_cursor *c, uint32_t index);
 
-/** interp_cursor_place_mm() - where it stands on the path. */
+/** interp_cursor_place_mm() - where the cursor stands on the path. */
 static inline double interp_cursor_place_mm(const struct interp_cursor *c)
 {
 	return c->seg.s_mm + c->s_mm;
 }
 
-/** interp_cursor_aim() - set out to walk @ds_mm from here. */
+/** interp_cursor_aim() - aim at the place that is @ds_mm from here. */
 void interp_cursor_aim(struct interp_cursor *c, double ds_mm);
 
 /**
  * interp_cursor_step() - one lattice point toward the place aimed at.
  *
- * Crosses at most INTERP_CROSS_MAX segment ends without meeting a new lattice
- * point; beyond that it says INTERP_ARRIVED early and the distance not walked
- * is lost.
+ * It crosses at most INTERP_CROSS_MAX ends of segments without meeting a new
+ * lattice point.  After that it returns INTERP_ARRIVED too early, and the rest
+ * of the distance is lost.
  */
 enum interp_step interp_cursor_step(struct interp_cursor *c);
 
@@ -201,8 +201,9 @@ enum interp_step interp_cursor_step(struct interp_cursor *c);
 /**
  * interp_cursor_run() - up to @max lattice points at once, as steps would.
  *
- * Never leaves the segment.  @ret gets the pulses of each point.
- * Return: how many; 0: interp_cursor_step() goes on, or says why not.
+ * It never leaves the segment.  @ret gets the pulses of each point.
+ * Return: how many points; 0 if there was none to take: then
+ * interp_cursor_step() goes on, or says why it cannot.
  */
 uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
 			   uint32_t max);
@@ -211,11 +212,12 @@ uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
 enum interp_step interp_cursor_pass(struct interp_cursor *c);
 
 /**
- * interp_cursor_slide() - as far toward the place aimed at as goes without
- * another lattice point; the rest is forgotten.
+ * interp_cursor_slide() - go toward the place aimed at, but stop before the
+ * next lattice point.  The rest of the distance is forgotten.
  *
- * A walk slower than a point a call, some of whose calls slide, loses nothing.
- * Return: true if that was all the way, false if some is lost.
+ * A slow walk, with less than one lattice point in each call, loses nothing by
+ * sliding in some of its calls.
+ * Return: true if it went the whole way; false if a part of it is lost.
  */
 bool interp_cursor_slide(struct interp_cursor *c);
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * errormap.h - geometric errors and thermal growth of a machine, and their cure
+ * errormap.h - geometric errors and thermal growth of a machine, and how they
+ * are corrected
  *
- * Told to stand at x, the machine truly stands at x + error(x).  The error is
- * the sum of
+ * A machine that is sent to x really stands at x + error(x).  The error is the
+ * sum of
  *
  *	rows		a table along an axis of the error of the same axis
  *			(pitch) or of another (straightness), straight between
@@ -12,9 +13,9 @@
  *	squareness	an axis leans toward another by an angle
  *	growth		an axis grows from a fixed point with its temperature
  *
- * Servo compensation sees none of it: the encoders are inside.  The correction
- * is a function of the place alone (and of temperatures, which change slowly),
- * so walking back undoes exactly what walking there did.
+ * The drives cannot see these errors, because their encoders have the same
+ * errors.  The correction depends on the place alone (and on temperatures, which
+ * change slowly).  So a walk back undoes exactly what the walk there did.
  *
  * Units: mm; rotary axes degrees.
  * Threads: interp_errormap_apply() and _error() are RT-safe: a binary search in
@@ -32,10 +33,10 @@
 #define INTERP_ERRORMAP_POINTS	128
 #define INTERP_ERRORMAP_LEANS	8
 
-/* Steeper than that is no machine, and could not be undone. */
+/* No machine has a steeper error, and a steeper one could not be corrected. */
 #define INTERP_ERRORMAP_SLOPE_MAX	0.01
 
-/* What is left after so many is at most 1e-8 of an error that steep. */
+/* After so many rounds at most 1e-8 of an error of that slope is left. */
 #define INTERP_ERRORMAP_ROUNDS	4
 
 struct interp_errormap_row {
@@ -64,19 +65,19 @@ struct interp_errormap {
 	struct interp_errormap_growth growth[INTERP_NAXES];
 };
 
-/** interp_errormap_is_empty() - no error anywhere, at any temperature. */
+/** interp_errormap_is_empty() - is there no error, at any temperature? */
 bool interp_errormap_is_empty(const struct interp_errormap *m);
 
-/** interp_errormap_check() - Return: 0, or -EINVAL if it is no such map. */
+/** interp_errormap_check() - Return: 0, or -EINVAL if a number is impossible. */
 int interp_errormap_check(const struct interp_errormap *m);
 
-/** interp_errormap_error() - of a machine told to stand at @place_mm. */
+/** interp_errormap_error() - the error of a machine that is sent to @place_mm. */
 void interp_errormap_error(const struct interp_errormap *m,
 			   const double *place_mm, double *ret_mm);
 
 /**
- * interp_errormap_apply() - what to add to @place_mm so that the machine truly
- * stands there.
+ * interp_errormap_apply() - what must be added to @place_mm so that the machine
+ * really stands there.
  */
 void interp_errormap_apply(const struct interp_errormap *m,
 			   const double *place_mm, double *ret_mm);

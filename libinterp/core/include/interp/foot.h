@@ -2,16 +2,17 @@
 /*
  * foot.h - contour error: how far a place is from the path, exactly
  *
- * The foot is the point of the path that the actual place stands square to.
- * It is followed from where it was, and never goes back against the direction
- * of travel: where two branches of a path come close, at an acute tip, the
- * nearest point of all may lie on the branch already left, and a controller
- * that pulls toward it never gets round.  It leaps forward only to a nearer
- * point that the set values have come past, when the tip is cut off.
+ * The foot is the point of the path where a line to the actual place is square
+ * to the path.  It is followed from its last place, and it never goes back
+ * against the direction of travel.  At a sharp tip two branches of the path come
+ * close to each other.  The nearest point of all may then lie on the branch that
+ * was left already, and a controller that pulls toward it would never get round
+ * the tip.  The foot jumps forward in one case only: the axes cut the tip off,
+ * and a point that the set values have passed is nearer.
  *
- * The path is whatever can say where it is and where it goes at a parameter u:
- * a spline, an arc, a table of points.  per_u must not be all 0 inside the
- * path; the speed along u may vary.
+ * A path is anything that can say where it is and in which direction it goes at
+ * a parameter u: a spline, an arc, a table of points.  Inside the path per_u
+ * must not be 0 in all axes.  The speed along u may vary.
  *
  * Units: mm; u is the path's own.  Sign: the error vector points from the
  * actual place to the path.
@@ -42,7 +43,7 @@ struct interp_contour_path {
 struct interp_contour {
 	const struct interp_contour_path *path;
 	double look_mm;			/* longest look along the path */
-	double back_mm;			/* the foot may give way so far */
+	double back_mm;			/* so far the foot may go back */
 	double u, far_u, set_u;
 	int way;			/* of travel, +1 or -1 */
 };
@@ -54,21 +55,22 @@ struct interp_contour_error {
 };
 
 /**
- * interp_contour_begin() - the foot is at @u.
+ * interp_contour_begin() - begin with the foot at @u.
  *
- * @look_mm: the longest look along the path, about the radius of the sharpest
- * tip; 0.02.
+ * @look_mm: how far to look along the path at a time.  About the radius of the
+ * sharpest tip is right, for example 0.02.
  */
 void interp_contour_begin(struct interp_contour *c,
 			  const struct interp_contour_path *path, double u,
 			  double look_mm);
 
 /**
- * interp_contour_step() - the foot of @actual_mm, from the last one on.
+ * interp_contour_step() - find the foot of @actual_mm, from the last foot on.
  *
- * @set_u: where on the path the set values are; whether it grows or falls is
- * the direction of travel.  The foot covers at most INTERP_CONTOUR_LOOKS looks
- * in a step; a place farther on is caught up with in the next.
+ * @set_u: where on the path the set values are.  If it grows, the travel is
+ * forward; if it falls, backward.  In one step the foot moves at most
+ * INTERP_CONTOUR_LOOKS looks.  If the place is farther away, the foot comes to
+ * it in the next steps.
  */
 void interp_contour_step(struct interp_contour *c, const double *actual_mm,
 			 double set_u, struct interp_contour_error *ret);

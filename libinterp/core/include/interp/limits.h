@@ -1,31 +1,34 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * limits.h - how fast a finished program may be run through, place by place
+ * limits.h - how fast each place of a finished program may be passed
  *
- * Written beside the segments once, when the program is laid out; a look
- * ahead then follows only what is slower than what it saw before, so its work
- * does not grow with the number of segments.
+ * These speeds are written beside the segments once, when the program is laid
+ * out.  With each one stands where the next slower one is.  Whoever looks ahead
+ * follows these alone, so his work does not grow with the number of segments.
  *
- * A node that turns by the angle phi is taken as the arc of radius R that
- * leaves the corner by corner_mm (junction deviation), no smaller than
- * corner_mm:
+ * A node that turns by the angle phi is treated as an arc of radius R that
+ * passes the corner at a distance of corner_mm (junction deviation).  R is not
+ * taken smaller than corner_mm:
  *
  *	R = corner * cos(phi/2) / (1 - cos(phi/2))
  *	v <= sqrt(a*R), v <= cbrt(j*R*R)
  *
- * with a and j what the axes can do in the directions they have there.  A
- * programmed arc is limited in the same way by its own radius.  An axis that
- * does not count in the path's length (a rotary one beside X Y Z) steps its
- * speed at a node; by the same corner_mm, in its own unit,
+ * where a and j are the acceleration and the jerk that the axes can give in the
+ * directions they have there.  A programmed arc is limited in the same way by
+ * its own radius.  An axis that does not count in the length of the path (a
+ * rotary axis beside X Y Z) changes its speed in a step at a node.  The step is
+ * limited by the same corner_mm, in the axis's own unit:
  *
  *	step <= sqrt(8*a*corner), step <= cbrt(j*(6*corner)^2)
  *
- * Nodes on a line are slowed by nothing.  Lines shorter than 100 corner_mm have
- * besides the radius of the curve they follow, from the chords of 20 corner_mm
- * to both sides of a node, no smaller than corner_mm.
- * Ceilings are rounded down to levels at most 1/32 apart (the speeds of the
- * axes are levels too), so no more than a few hundred can follow each other,
- * each slower than the one before.
+ * A node on a straight line slows nothing down.  Lines shorter than 100
+ * corner_mm are also limited by the radius of the curve that they follow.  That
+ * radius is found from the chords of 20 corner_mm on both sides of a node, and is
+ * not taken smaller than corner_mm.
+ *
+ * The speeds are rounded down to levels that are at most 1/32 apart (the top
+ * speeds of the axes are levels too).  So at most a few hundred of them can
+ * follow each other with each slower than the one before.
  *
  * Units: in every name.
  */
@@ -42,17 +45,17 @@ struct interp_limits {
 };
 
 /**
- * interp_limits_write() - node_mm_s, feed_max_mm_s and slower_* of @segs.
+ * interp_limits_write() - fill node_mm_s, feed_max_mm_s and slower_* of @segs.
  *
- * @segs are those of @p, to be written.  Any thread; of no use in the cycle.
+ * @segs: the segments of @p, writable.  Any thread, but not for the cycle.
  */
 void interp_limits_write(const struct interp_limits *l,
 			 const struct interp_program *p,
 			 struct interp_seg *segs);
 
 /**
- * interp_limits_into() - the fastest into segment @i > 0 of no action, going
- * forward: over the node before it and on it.  RT-safe.
+ * interp_limits_into() - how fast segment @i may be entered, going forward:
+ * over the node before it, and on it.  @i > 0 and is no action.  RT-safe.
  */
 static inline double interp_limits_into(const struct interp_program *p,
 					uint32_t i)

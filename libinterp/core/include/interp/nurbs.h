@@ -8,13 +8,13 @@
  * npoints + p + 1 knots that do not fall.  Its domain is
  * knots[p] <= u <= knots[npoints].
  *
- * A curve owns nothing: knots and points are lent by the caller.  To evaluate
- * it, open it: the evaluator keeps what one knot span needs, so that a point
- * costs the Cox-de Boor triangle and a sum, and entering another span a fixed
+ * The knots and points of a curve belong to the caller.  To evaluate a curve,
+ * open it.  The evaluator keeps what one span of knots needs, so that a point
+ * costs the Cox-de Boor triangle and a sum.  To enter another span costs a fixed
  * amount of work more.
  *
- * Units: points in mm (rotary axes in degrees) in the columns the caller
- * chooses; the parameter u has none.
+ * Units: points in mm (rotary axes in degrees), in the columns that the caller
+ * chooses.  The parameter u has no unit.
  * Threads: RT-safe unless marked.  No call allocates, blocks or touches a
  * global.  One evaluator belongs to one thread.
  * Source: Cox-de Boor recursion; L. Piegl and W. Tiller, The NURBS Book,
@@ -59,9 +59,9 @@ enum interp_nurbs_flaw {
 	INTERP_NURBS_KNOT_FALLS,	/* below the one before, or no number */
 	INTERP_NURBS_KNOT_REPEATS,	/* more than degree + 1 times at an end,
 					 * or degree times inside */
-	INTERP_NURBS_WEIGHTS_PART,	/* by more than a factor of 10000:
-					 * where they do the curve bends between
-					 * any two looks at it */
+	INTERP_NURBS_WEIGHTS_PART,	/* two weights differ by more than a
+					 * factor of 10000: such a curve may
+					 * bend where nobody looks at it */
 	INTERP_NURBS_KNOTS_NEAR,	/* 1e-9 of the domain or less apart, and
 					 * not equal */
 	INTERP_NURBS_NO_DOMAIN,		/* its first and last u are the same */
@@ -69,8 +69,10 @@ enum interp_nurbs_flaw {
 };
 
 /**
- * interp_nurbs_check() - is @c a curve?  @ret_at gets the number, from 0, of
- * the point or knot to blame.  As long as the curve: not for the cycle.
+ * interp_nurbs_check() - is @c a valid curve?
+ *
+ * @ret_at: the number, from 0, of the point or knot that is wrong.  The work
+ * grows with the curve: not for the cycle.
  */
 enum interp_nurbs_flaw interp_nurbs_check(const struct interp_nurbs *c,
 					  uint32_t *ret_at);
@@ -110,27 +112,28 @@ struct interp_nurbs_point {
 	double d[INTERP_NURBS_DERIVS + 1][INTERP_NAXES];
 };
 
-/** interp_nurbs_open() - @c has passed its check; knots and points are lent. */
+/** interp_nurbs_open() - open @c, which has passed its check.  Its knots and
+ *  points must stay. */
 void interp_nurbs_open(struct interp_nurbs_eval *e,
 		       const struct interp_nurbs *c);
 
 /**
  * interp_nurbs_at() - the point at @u and its first @derivs derivatives.
  *
- * A @u outside the domain counts as its nearer end.  At a knot the span that
- * begins there is meant; at the end of the domain the last one.
+ * If @u is outside the domain, the nearer end of the domain is taken.  At a knot
+ * the span that begins there is taken; at the end of the domain, the last span.
  */
 void interp_nurbs_at(struct interp_nurbs_eval *e, double u, int derivs,
 		     struct interp_nurbs_point *ret);
 
 /**
- * interp_nurbs_span() - the non-empty span that holds @u, of any curve: the
- * largest i of degree ... npoints - 1 with knots[i] <= u, knots[i] <
- * knots[i + 1].
+ * interp_nurbs_span() - the span that @u is in: the largest i of degree ...
+ * npoints - 1 with knots[i] <= u and knots[i] < knots[i + 1].
  */
 uint32_t interp_nurbs_span(const struct interp_nurbs *c, double u);
 
-/** interp_nurbs_dot() - of two places or derivatives, as length counts. */
+/** interp_nurbs_dot() - dot product of two places or derivatives, with the
+ *  weights that the axes have in the length. */
 static inline double interp_nurbs_dot(const struct interp_nurbs *c,
 				      const double *a, const double *b)
 {

@@ -2,15 +2,15 @@
 /*
  * nurbs_length.h - a curve by its length instead of its parameter
  *
- * A table of stops leads from the place s on a curve to its parameter u, and
- * grows with it: between two stops u is a cubic of s that never falls, by
- * Hermite with slopes within the bounds of Fritsch and Carlson.  So a walk by
- * length goes neither back nor past anything, whatever the curve does; even
- * over a cusp, where du/ds has no bound.
+ * A table of stops gives the parameter u for a place s on a curve.  Between two
+ * stops u is a cubic of s (Hermite) that never falls, because its slopes are
+ * within the bounds of Fritsch and Carlson.  So a walk by length never goes back
+ * and never skips a part, whatever the shape of the curve; not even over a cusp,
+ * where du/ds has no bound.
  *
  * Units: mm, in the axes the curve counts.
- * Threads: making a table takes as long as it is long: startup only.  Reading
- * it is RT-safe.
+ * Threads: the time to make a table grows with its length: startup only.  To
+ * read it is RT-safe.
  * Source: F. N. Fritsch and R. E. Carlson, Monotone Piecewise Cubic
  * Interpolation, 1980.
  */
@@ -39,8 +39,8 @@ struct interp_nurbs_range {
 /**
  * interp_nurbs_stops() - make a table for a part of a curve.
  *
- * Return: how many stops it has, two or more; those beyond @room are counted
- * and not written.
+ * Return: how many stops it has, two or more.  Stops for which @room is too small
+ * are counted, but not written.
  */
 size_t interp_nurbs_stops(struct interp_nurbs_eval *e,
 			  const struct interp_nurbs_range *r,
@@ -57,8 +57,8 @@ struct interp_nurbs_between {
 void interp_nurbs_between(const struct interp_nurbs_stop *stop,
 			  struct interp_nurbs_between *ret);
 
-/** interp_nurbs_stop_of() - the last of @n stops, but the very last, that is
- *  not beyond @s_mm. RT-safe. */
+/** interp_nurbs_stop_of() - the number of the stop before @s_mm.  It is never the
+ *  last of the @n stops, so that one follows it.  RT-safe. */
 size_t interp_nurbs_stop_of(const struct interp_nurbs_stop *stop, size_t n,
 			    double s_mm);
 

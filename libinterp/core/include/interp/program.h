@@ -2,23 +2,24 @@
 /*
  * program.h - a compiled program: one flat block of segments, nodes and arcs
  *
- * A program is a path.  Segment i leads from node i to node i+1; a segment of
- * no length (dwell, stop, switched output) has two equal nodes and is an
- * *action*, done when the walk first comes to it.  The block holds offsets
- * only, no pointers: the job service writes it into shared memory once, the
- * real-time process maps it read-only.
+ * A program is a path.  Segment i leads from node i to node i+1.  A segment
+ * without length (a dwell, a stop, a switched output) has two equal nodes.  It
+ * is called an *action*, and is done when the walk comes to it for the first
+ * time.  The block holds offsets and no pointers: the job service writes it into
+ * shared memory once, and the real-time process maps it read-only.
  *
  *	head | segments[nsegs] | nodes[nsegs + 1][naxes] | arcs[narcs]
  *	     | conditions[nconds] | escapes[nescapes] | couples[ncouples]
  *	     | bits[nbits] | curves[ncurves] | pieces[npieces]
  *	     | stops[nstops] | numbers[nnumbers] | runs[nruns]
  *
- * Nodes are fixed-point: 1 pulse = INTERP_SUB subpulses, so a programmed
- * point finer than a pulse is kept, and there and back is exact.  A node has
- * one column for every axis that the program moves; the others stand.
+ * Nodes are in fixed-point numbers: 1 pulse = INTERP_SUB subpulses.  So a
+ * programmed point between two pulses is kept, and the way there and back is
+ * exact.  A node has one column for each axis that the program moves.  The other
+ * axes stand.
  *
- * Units: mm, mm/s along the path; rotary axes in degrees.  Path length is
- * that of X Y Z; if none of them moves, that of U V; else of A B C (degrees).
+ * Units: mm, mm/s along the path; rotary axes in degrees.  The length of a path
+ * is the length in X Y Z; if none of these moves, in U V; else in A B C (degrees).
  * Threads: a mapped program is never written; any thread may read it.
  */
 #ifndef INTERP_PROGRAM_H
@@ -98,8 +99,9 @@ enum interp_aux {
 
 #define INTERP_SEG_RAPID	0x01	/* G0: positioned, not eroded */
 
-/* Straight lines that end where the machine says, not where they lead to: what
- * is left of them is not walked, and moves all that follows.  Without power. */
+/* Straight lines that end where the machine says, and not at their end node.  The
+ * rest of such a line is not walked, and everything after it is shifted by that
+ * rest.  The power is off. */
 #define INTERP_SEG_TOUCH	0x02	/* at contact */
 #define INTERP_SEG_HALF		0x04	/* between the last two contacts along
 					 * its axis */
@@ -119,19 +121,19 @@ struct interp_seg {
 	uint8_t flags;			/* INTERP_SEG_* */
 	/* Written by compile/speed when the program is whole: limits.h */
 	float node_mm_s;		/* the fastest over its last node */
-	uint16_t slower_ahead;		/* so many segments on is one that is
-					 * entered slower than this one */
+	uint16_t slower_ahead;		/* how many segments ahead is the next
+					 * one that is entered slower */
 	uint16_t slower_behind;		/* the same, going back; 0: none */
-	uint16_t slower_feed;		/* so many on has a smaller F; 0: none */
+	uint16_t slower_feed;		/* how many ahead has a smaller F; 0: none */
 	uint16_t escape;		/* escapes[escape]; 0 is "along the
 					 * path" */
 	uint32_t pad;
 };
 
 /*
- * A circular arc in the plane (a, b), every other axis linear beside it.  The
- * radius goes linearly from r_mm to r_mm + dr_mm, so that an end which is off
- * the circle by a rounding is still met.
+ * A circular arc in the plane (a, b).  Every other axis moves linearly at the
+ * same time.  The radius changes linearly from r_mm to r_mm + dr_mm, so that the
+ * end is met exactly even if rounding put it beside the circle.
  */
 struct interp_arc {
 	double a_mm, b_mm;		/* centre */
@@ -154,11 +156,12 @@ struct interp_arc {
 };
 
 /*
- * Two contours walked together, as a tapered wire needs: side[0] on X Y,
- * side[1] on U V.  A side of radius 0 is a straight line.  One axis at a time,
- * bit k of the string at bits[bits_at] says whose tick k + 1 is: 0 for
- * side[0], 1 for side[1].  The builder makes the string; the walk reads it
- * both ways, so it needs no memory of its own.
+ * Two contours that are walked together, as a tapered wire needs it: side[0] in
+ * X Y, side[1] in U V.  A side of radius 0 is a straight line.  Where the axes
+ * move one at a time, bit k of the string at bits[bits_at] says to which side
+ * tick k + 1 belongs: 0 for side[0], 1 for side[1].  The builder makes the
+ * string.  The walk reads it in both directions, so it needs no memory of its
+ * own.
  */
 struct interp_couple {
 	struct interp_arc side[2];
@@ -166,8 +169,8 @@ struct interp_couple {
 };
 
 /*
- * A NURBS that a program goes along, whole or in pieces.  Its knots and control
- * points stand in numbers[], as interp/nurbs.h has them.
+ * A NURBS that a program follows, as a whole or in pieces.  Its knots and control
+ * points are in numbers[], in the form of interp/nurbs.h.
  */
 struct interp_curve {
 	uint32_t degree, npoints;
@@ -177,7 +180,8 @@ struct interp_curve {
 	uint8_t axis[INTERP_NAXES];	/* of each column */
 };
 
-/* What one segment goes along: from its first stop to its last. */
+/* The part of a curve that one segment follows: from its first stop to its
+ * last. */
 struct interp_piece {
 	uint32_t curve;
 	uint32_t nstops;
@@ -194,9 +198,10 @@ struct interp_cond {
 };
 
 /*
- * A way out that is not the path's, in up to three straight legs: rise_mm
- * toward out_mm; the axes in `home` to home_mm; those in `out` to out_mm.
- * Each is free of material for as long as the segment is cut.
+ * A way out of the cut that does not follow the path.  It has up to three
+ * straight legs: rise_mm toward out_mm; then the axes in `home` to home_mm; then
+ * those in `out` to out_mm.  While the segment is cut, no material is in the way
+ * of any leg.
  */
 struct interp_escape {
 	uint32_t home, out;		/* bit per axis; 0 and 0: along the
@@ -207,10 +212,10 @@ struct interp_escape {
 	double v_max_mm_s;		/* the fastest its axes allow */
 };
 
-/* Which way out is asked for, where it is known to be free. */
+/* Which way out is wanted.  It is taken only where it is known to be free. */
 enum interp_escape_mode {
 	INTERP_ESCAPE_PATH,		/* back along the path */
-	INTERP_ESCAPE_NORMAL,		/* square off the wall of an orbit, out */
+	INTERP_ESCAPE_NORMAL,		/* square to the wall of an orbit, then out */
 	INTERP_ESCAPE_CENTRE,		/* to the centre of an orbit, then out */
 	INTERP_ESCAPE_AXIS,		/* straight up where it came straight
 					 * down */
@@ -245,7 +250,7 @@ struct interp_program_head {
 	char name[64];			/* of the job; NUL-terminated */
 };
 
-/** A view of a block; nothing in it is owned. */
+/** A view of a block.  The memory belongs to the caller. */
 struct interp_program {
 	const struct interp_program_head *head;
 	const struct interp_seg *segs;
@@ -263,11 +268,10 @@ struct interp_program {
 };
 
 /**
- * interp_program_map() - look at @bytes bytes at @block as a program.
+ * interp_program_map() - use @bytes bytes at @block as a program.
  *
- * Checks the head, that every table lies inside the block, and the values of
- * the conditions; the segments are checked one by one when a cursor enters
- * them.
+ * It checks the head, that every table lies inside the block, and the values of
+ * the conditions.  Each segment is checked later, when a cursor enters it.
  *
  * Return: 0, or -EBADMSG.  Any thread.
  */
@@ -275,27 +279,30 @@ int interp_program_map(struct interp_program *p, const void *block,
 		       size_t bytes);
 
 /**
- * interp_program_seg_ok() - is segment @i, copied to @seg, safe to walk?
+ * interp_program_seg_ok() - is segment @i safe to walk?  @seg is a copy of it.
  *
- * Finite numbers, known kind, arc index in range, nodes in range.  RT-safe.
+ * Its numbers must be finite, its kind known, its index of an arc and its nodes
+ * in range.  RT-safe.
  */
 bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 			   const struct interp_seg *seg);
 
 /**
- * interp_program_curve() - curve @i as interp/nurbs.h has it; false if it is
- * none that can be gone along.  Its knots and points are the program's.
- * RT-safe.
+ * interp_program_curve() - curve @i in the form of interp/nurbs.h.
+ *
+ * Its knots and points stay in the program.  Return: false if the curve cannot
+ * be followed.  RT-safe.
  */
 bool interp_program_curve(const struct interp_program *p, uint32_t i,
 			  struct interp_nurbs *ret);
 
 /**
- * interp_program_curve_rate() - which way a segment of kind INTERP_CURVE sets
- * out or arrives: @ret[j] is the way of node column j per mm of path.
+ * interp_program_curve_rate() - the direction in which a segment of kind
+ * INTERP_CURVE begins, or with @at_end ends: @ret[j] is how far node column j
+ * goes per mm of path.
  *
- * At a cusp it is the way on this segment's side of it.  Any thread; not for
- * the cycle.  Return: false if the segment is not sound.
+ * At a cusp it is the direction on this segment's side.  Any thread, but not for
+ * the cycle.  Return: false if the segment is damaged.
  */
 bool interp_program_curve_rate(const struct interp_program *p,
 			       const struct interp_seg *seg, bool at_end,

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * row.h - the row of the last set values as a path to stand square to
+ * row.h - the last set values in a row, as a path to measure a contour error by
  *
- * Where the set values turn back, so does the row.  Its chords are at least
- * INTERP_ROW_SPACING_MM long, so that steps of a pulse are not its corners.
+ * Where the set values turn back, the row turns back too.  Its chords are at
+ * least INTERP_ROW_SPACING_MM long, so that a step of one pulse does not make a
+ * corner.
  *
  * Units: mm; u counts the points.
  * Threads: one object, one thread; RT-safe.
@@ -25,20 +26,20 @@ struct interp_row {
 	struct interp_contour_path path;
 };
 
-/** interp_row_begin() - anew, with @mm. */
+/** interp_row_begin() - begin a new row, with @mm as its only point. */
 void interp_row_begin(struct interp_row *r, int naxes, const double *mm);
 
-/** interp_row_foot() - a foot at its end. */
+/** interp_row_foot() - put a foot at the end of the row. */
 void interp_row_foot(const struct interp_row *r, struct interp_contour *foot);
 
-/** interp_row_take() - the next set value. */
+/** interp_row_take() - add the next set value to the row. */
 void interp_row_take(struct interp_row *r, const double *mm);
 
 /**
  * interp_row_error() - how far @mm is from the row, by a @foot on it.
  *
- * Nothing before the row has a length.  A foot that fell out of the row is
- * taken up at its end.
+ * The row has no length before its first point.  A foot whose place has been
+ * dropped from the row begins again at the end of the row.
  */
 void interp_row_error(const struct interp_row *r, struct interp_contour *foot,
 		      const double *mm, struct interp_contour_error *ret);

@@ -2,10 +2,11 @@
 /*
  * scurve.h - jerk-limited motion along one coordinate, in the least time
  *
- * A plan is a row of phases of constant jerk: from any speed and acceleration
- * to a speed, or to a stand at a place.  It keeps within v_max, a_up, a_down
- * and j_max; what begins beyond one of them comes within it first, at full
- * jerk.  Too fast to stop before its place it passes it and comes back.
+ * A plan is a row of phases of constant jerk.  It leads from any speed and
+ * acceleration to a given speed, or to a stand at a given place.  It stays within
+ * v_max, a_up, a_down and j_max.  A motion that begins outside one of these
+ * limits comes back inside first, with full jerk.  A motion that is too fast to
+ * stop before its place goes past it and comes back.
  *
  * Units: in every name; time in seconds from the beginning of the plan, places
  * from where the plan begins.
@@ -44,34 +45,36 @@ void interp_scurve_to_speed(struct interp_scurve *c,
 			    const struct interp_scurve_limits *l,
 			    double v_mm_s, double a_mm_s2, double to_mm_s);
 
-/** interp_scurve_to_place() - plan to a stand @way_mm (signed) from here. */
+/** interp_scurve_to_place() - plan to stand at @way_mm (signed) from here. */
 void interp_scurve_to_place(struct interp_scurve *c,
 			    const struct interp_scurve_limits *l,
 			    double v_mm_s, double a_mm_s2, double way_mm);
 
 /**
- * interp_scurve_to_pass() - plan to be @way_mm (signed) on at the speed
- * @pass_mm_s, toward that place, and with no acceleration.
+ * interp_scurve_to_pass() - plan to pass the place that is @way_mm (signed) from
+ * here at the speed @pass_mm_s, without acceleration.
  *
- * @from: its place is not read.  The place must be no nearer than
- * interp_scurve_way_mm() to that speed, but for a speed of 0.
+ * @from: its speed and acceleration are read, its place is not.  Unless the speed
+ * is 0, @way_mm must be at least interp_scurve_way_mm() to that speed.
  */
 void interp_scurve_to_pass(struct interp_scurve *c,
 			   const struct interp_scurve_limits *l,
 			   const struct interp_scurve_state *from,
 			   double way_mm, double pass_mm_s);
 
-/** interp_scurve_way_mm() - how far it is to a speed; 0 is to a stand. */
+/** interp_scurve_way_mm() - the distance until a speed is reached; a speed of 0
+ *  is a stand. */
 double interp_scurve_way_mm(const struct interp_scurve_limits *l,
 			    double v_mm_s, double a_mm_s2, double to_mm_s);
 
 /**
- * interp_scurve_falls_mm() - where a plan that ends with less speed last falls
- * to @v_mm_s; 0 if it is never so fast.
+ * interp_scurve_falls_mm() - for a plan that ends slower than @v_mm_s: the place
+ * where its speed falls to @v_mm_s for the last time; 0 if it is never so fast.
  */
 double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s);
 
-/** interp_scurve_at() - where it is then; after the end at the end's speed. */
+/** interp_scurve_at() - the state at the time @t_s; after the end of the plan it
+ *  goes on at the last speed. */
 struct interp_scurve_state interp_scurve_at(const struct interp_scurve *c,
 					    double t_s);
 
