@@ -8,6 +8,7 @@
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
+#   make wire-random  ten thousand contours of a wire against another geometry
 #   make invariants what holds in every cycle, over ten million random ones
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
@@ -233,6 +234,14 @@ run-units: $(UNIT_X) $(PEER_X)
 # What holds in every cycle, over ten million random ones; SEED=n repeats one.
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
+
+# Ten thousand random contours of a wire against shapely's geometry: some
+# minutes.
+wire-random: $(B)/edmsim
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(if $(RUNS),$(RUNS),10000) \
+		$(if $(SEED),EDM_SEED=$(SEED)) .venv/bin/pytest -q -s \
+		tests/sim/test_wire_random.py
 
 # The shared-memory crossings between threads, under the thread sanitizer.
 run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))

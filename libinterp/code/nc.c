@@ -114,5 +114,6 @@ int interp_nc_compile(const char *text, size_t bytes,
 	free(r.labels);
 	nc_curve_free(&r.curve);
 	nc_forget_conditions(&r);
+	contour_free(&r.contour);
 	return rc;
 }

@@ -46,6 +46,9 @@ struct interp_wire {
 	double corner_feed_percent;	/* of the programmed feed, before it */
 	double corner_before_mm;	/* so far */
 	double corner_dwell_s;		/* and wait on it; 0: no wait */
+
+	int gouge_skip;			/* what is too narrow for the wire is
+					 * left out; 0: it is refused */
 };
 
 #define INTERP_NOFFSETS	100		/* registers D0 ... D99, also called H */
