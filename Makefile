@@ -3,12 +3,14 @@
 #   make            build everything into build/
 #   make demo       set up, build, run the main job on the simulated machine
 #   make check      set up, build, all tests; ends with the runner's own lines
+#   make quick      of these, most of what goes wrong, in 90 s
 #   make check-vm   of these, those on a PREEMPT_RT kernel in a virtual machine
 #   make bench      speed, as medians side by side
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
 #   make wire-random  ten thousand contours of a wire against another geometry
+#   make walkable   random programs of every dialect are walked, there and back
 #   make invariants what holds in every cycle, over ten million random ones
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
@@ -41,11 +43,15 @@ OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
 	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
-LDFLAGS	= $(SANFLAGS)
+LDFLAGS	= -Wl,--gc-sections $(SANFLAGS)
 
 # The parts, in the order data flows.
-INTERP	:= $(wildcard libinterp/*/*.c)
-RT	:= $(wildcard daemon/rt/*.c)
+# libinterp has a floor for each use: see docs/architecture.md.
+CORE	:= $(wildcard libinterp/core/*/*.c)
+COMPILE	:= $(wildcard libinterp/compile/*/*.c)
+MODEL	:= $(wildcard libinterp/model/*.c)
+INTERP	:= $(CORE) $(COMPILE) $(MODEL)
+RT	:= $(wildcard daemon/rt/*.c daemon/rt/*/*.c)
 # Of two files for libgpiod, the one for the version that pkg-config finds.
 PKG_CONFIG ?= pkg-config
 GPIOD	:= $(firstword $(subst ., ,$(shell $(PKG_CONFIG) --modversion libgpiod 2>/dev/null)))
@@ -54,46 +60,62 @@ IO	:= $(filter-out daemon/io/gpiod$(if $(filter 1,$(GPIOD)),2,1).c,\
 GPIOD_INC := $(shell $(PKG_CONFIG) --cflags libgpiod 2>/dev/null)
 LIBGPIOD := $(shell $(PKG_CONFIG) --libs libgpiod 2>/dev/null || echo -lgpiod)
 CONFIG	:= $(wildcard daemon/config/*.c)
+COMPILING := $(wildcard daemon/compiling/*.c)
 SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
 JOBS	:= $(wildcard daemon/jobs/*.c)
+SIGN	:= $(wildcard messages/sign/*.c)
+CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
+SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
-EXPERIMENTS := lines axes machining
-CURVE_EXPERIMENTS := curves curve_programs
-EXPERIMENTS_JUMP := jump
+# Methods that were compared and lost: no program uses them.
+TRIED	:= $(wildcard tests/experiments/tried/*.c)
 
 # What a part may include.  A header not on its list does not resolve.
-INC_libinterp	= -Ilibinterp/include -Ilibinterp
-INC_rt		= -Idaemon/rt -Idaemon/io -Ilibinterp/include
-INC_io		= -Idaemon/io -Idaemon/config -Ilibinterp/include $(GPIOD_INC)
-INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io -Ilibinterp/include
+CORE_H		= -Ilibinterp/core/include
+COMPILE_H	= -Ilibinterp/compile/include
+MODEL_H		= -Ilibinterp/model/include
+INC_core	= $(CORE_H) -Ilibinterp/core
+INC_compile	= $(COMPILE_H) -Ilibinterp/compile $(INC_core)
+INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
+INC_rt		= -Idaemon/rt -Idaemon/io $(CORE_H)
+INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
+INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(CORE_H)
+INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm
 INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
-INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -Ilibinterp/include -I$(B)/messages
-INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
-INC_unit	= -Itests/unit -Itests/data -Ilibinterp $(INC_edmd) $(INC_jobs)
-INC_bench	= -Itests/data $(INC_edmd)
-INC_fuzz	= -Ilibinterp/include
-INC_peer	= -Itests/data -Ilibinterp/include
-INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config)
-part = $(word $(if $(filter libinterp,$(firstword $(subst /, ,$1))),1,2),$(subst /, ,$1))
+INC_jobs	= -Idaemon/jobs -Idaemon/shm $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_sign	= -Imessages/sign
+INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
+INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
+INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) $(INC_client)
+INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_libinterp	= $(INC_compile) $(INC_model)
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
+INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
+INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
+part = $(word 2,$(subst /, ,$1))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
-INTERP_O := $(call obj,$(INTERP))
+CORE_A	 := $(B)/libinterp-core.a
+COMPILE_A := $(B)/libinterp-compile.a
+MODEL_A	 := $(B)/libinterp-model.a
+TRIED_A	 := $(B)/tests-tried.a
+INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A)
 RT_O	 := $(call obj,$(RT))
 IO_O	 := $(call obj,$(IO))
 SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
+COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM))
+SIGN_O	 := $(call obj,$(SIGN))
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
@@ -103,7 +125,12 @@ UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
 PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
 
-all: $(PROGRAMS)
+all: $(PROGRAMS) $(SHEETS:clients/plot/%=$(B)/share/edmd/%)
+
+# Read by the programs when they draw, so it stands beside them.
+$(B)/share/edmd/%: clients/plot/%
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
 
 # -- Compile ------------------------------------------------------------------
 
@@ -137,7 +164,7 @@ $(B)/messages/edm.o: $(B)/messages/edm.c
 	$(call say,CC,$(@F))
 	$(Q)$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) -c -o $@ $<
 
-$(call obj,$(JOBS) $(CTL)): | $(B)/messages/lcm.stamp
+$(call obj,$(JOBS) $(CTL) $(CLIENT)): | $(B)/messages/lcm.stamp
 $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 
 # -- Link ---------------------------------------------------------------------
@@ -145,22 +172,38 @@ $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 define link
 $(call say,LD,$@)
 @mkdir -p $(@D)
-$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $1
+$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $1
 endef
 
-$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_O)
+# An archive for each floor of libinterp: what links one can reach no other.
+define archive
+$(call say,AR,$@)
+@rm -f $@
+$(Q)$(AR) rcs $@ $^
+endef
+
+$(CORE_A): $(call obj,$(CORE))
+	$(archive)
+$(COMPILE_A): $(call obj,$(COMPILE))
+	$(archive)
+$(MODEL_A): $(call obj,$(MODEL))
+	$(archive)
+$(TRIED_A): $(call obj,$(TRIED))
+	$(archive)
+
+$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
 	$(call link,-linih -ljansson -lpthread -lm)
 
-$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
+$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(PLOT) $(wildcard libinterp/contour/*.c)) $(SHM_O) $(LCM_O)
+$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(DDS_O)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A)
 	$(call link,-lddsc -linih -lm)
 
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
@@ -169,20 +212,19 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
 
-$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
-	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lm)
+# Of what stands in front of edmd-jobs.
+$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(B)/daemon/jobs/trust.o
+$(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
+$(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 
-$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
+	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lm)
+
+$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)
 
-$(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_O)
+$(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
-
-$(B)/experiments/%: $(B)/tests/experiments/%.o $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_O)
-	$(call link,-linih -lm)
-
-$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(INTERP_O)
-	$(call link,-ljansson -lm)
 
 # -- The commands -------------------------------------------------------------
 
@@ -195,18 +237,45 @@ demo:
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
 # the tests run alone go on to look with others.
 check:
+	@tests/stage check setup
 	@tests/setup check
+	@tests/stage check build
 	@$(MAKE) --no-print-directory -j2 all units WERROR=1
+	@tests/stage check lint
 	@$(MAKE) --no-print-directory lint
+	@tests/stage check units
 	@EDM_SEED=1 $(MAKE) --no-print-directory run-units
+	@tests/stage check san
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
+	@tests/stage check run-san
 	@EDM_SEED=2 $(MAKE) --no-print-directory SAN=1 run-units
+	@tests/stage check tsan
 	@$(MAKE) --no-print-directory TSAN=1 run-crossings
+	@tests/stage check fuzz
 	@$(MAKE) --no-print-directory fuzz FUZZ_SEED=1 \
 		FUZZ_RUNS=500000 FUZZ_S=120
+	@tests/stage check clang
 	@$(MAKE) --no-print-directory clang
+	@tests/stage check vm
 	@$(MAKE) --no-print-directory vm
+	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system tests/vm
+
+# For somebody who changes code: most of what goes wrong, in 90 s.
+SLOW_UNITS = arcs cycle_random limits identify contouring taper \
+	     contour_random curve scurve
+
+quick:
+	@tests/stage quick build
+	@tests/setup check
+	@$(MAKE) --no-print-directory -j2 all units WERROR=1
+	@tests/stage quick lint
+	@$(MAKE) --no-print-directory lint
+	@tests/stage quick units
+	@EDM_SEED=1 $(MAKE) --no-print-directory run-units \
+		UNIT_X="$(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(UNIT_X))"
+	@tests/stage quick tests
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/system/test_erode.py
 
 # What the virtual machine of tests/vm boots from, and edmd on libgpiod 2.x.
 PC2	= $(abspath build-vm/libgpiod2)
@@ -237,11 +306,17 @@ invariants: $(B)/unit/test_cycle_random
 
 # Ten thousand random contours of a wire against shapely's geometry: some
 # minutes.
+WIRE_RUNS ?= 10000
 wire-random: $(B)/edmsim
 	@tests/setup check
-	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(if $(RUNS),$(RUNS),10000) \
+	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(WIRE_RUNS) \
 		$(if $(SEED),EDM_SEED=$(SEED)) .venv/bin/pytest -q -s \
 		tests/sim/test_wire_random.py
+# What is accepted is walked, there and back: so many random programs of every
+# dialect, by every strategy.
+RUNS	?= 100000
+walkable: $(B)/unit/test_walkable
+	$(Q)EDM_RUNS=$(RUNS) $(if $(SEED),EDM_SEED=$(SEED)) $<
 
 # The shared-memory crossings between threads, under the thread sanitizer.
 run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
@@ -251,7 +326,7 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 # Another compiler's opinion: warnings are errors, nothing is linked.
 clang:
 	$(call say,CLANG,all sources)
-	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(SHM) $(SETUP) $(EDMD) \
+	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
 		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
@@ -262,60 +337,7 @@ bench: vm
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
 
-# Counted, not timed: the same on every machine.
-experiments: experiments-pulse experiments-jump experiments-contour \
-	experiments-curve experiments-servo
-
-experiments-pulse: $(EXPERIMENTS:%=$(B)/experiments/%)
-	$(call say,WALK,docs/experiments-pulse.md)
-	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-pulse.md
-	$(Q)cp $(B)/experiments-pulse.md docs/experiments-pulse.md
-	$(Q)cat docs/experiments-pulse.md
-
-experiments-jump: $(EXPERIMENTS_JUMP:%=$(B)/experiments/%)
-	$(call say,WALK,docs/experiments-jump.md)
-	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-jump.md
-	$(Q)$(B)/experiments/jump profile > $(B)/jump.dat
-	$(Q)gnuplot -e "data='$(B)/jump.dat'; out='docs/pictures/jump.svg'" \
-		tests/experiments/jump.gp
-	$(Q)cp $(B)/experiments-jump.md docs/experiments-jump.md
-	$(Q)cat docs/experiments-jump.md
-
-# Some minutes: each kind of work is tuned before it is compared.
-experiments-servo: $(B)/edmsim
-	$(call say,TUNE,docs/experiments-servo.md)
-	$(Q)EDM_BUILD=$(B) tests/experiments/servo $(B)/servo \
-		> $(B)/experiments-servo.md
-	$(Q)gnuplot -e "data='$(B)/servo/servo.dat'; out='docs/pictures/servo.svg'" \
-		tests/experiments/servo.gp
-	$(Q)cp $(B)/experiments-servo.md docs/experiments-servo.md
-	$(Q)EDM_BUILD=$(B) docs/tuning > $(B)/tuning.md
-	$(Q)docs/put-table $(B)/tuning.md docs/gap-servo.md
-	$(Q)EDM_BUILD=$(B) tests/experiments/strategies > $(B)/strategies.md
-	$(Q)docs/put-table $(B)/strategies.md docs/process-model.md
-	$(Q)cat docs/experiments-servo.md
-
-experiments-curve: $(CURVE_EXPERIMENTS:%=$(B)/experiments/%) $(B)/edmsim
-	@tests/setup check
-	$(call say,WALK,docs/experiments-curve.md)
-	$(Q)cat tests/experiments/curve.md > $(B)/experiments-curve.md
-	$(Q)for x in $(filter %/curves %/curve_programs,$^); do $$x || exit 1; \
-		done >> $(B)/experiments-curve.md
-	$(Q)tests/experiments/blade $(B) >> $(B)/experiments-curve.md
-	$(Q)EDM_BUILD=$(B) .venv/bin/python tests/experiments/g52 \
-		>> $(B)/experiments-curve.md
-	$(Q)cp $(B)/experiments-curve.md docs/experiments-curve.md
-
-experiments-contour: $(B)/experiments/contour $(B)/edmsim
-	$(call say,TRY,docs/experiments-contour.md)
-	$(Q)$< > $(B)/experiments-contour.md
-	$(Q)tests/experiments/contouring $(B) > $(B)/contouring.md
-	$(Q)cat $(B)/contouring.md >> $(B)/experiments-contour.md
-	$(Q)cp $(B)/experiments-contour.md docs/experiments-contour.md
-	$(Q)grep '^|' $(B)/contouring.md > $(B)/contouring-table.md
-	$(Q)docs/put-table $(B)/contouring-table.md docs/contour.md
-	$(Q)cat docs/experiments-contour.md
-	$(Q)$< docs/pictures
+include tests/experiments/Makefile
 
 # Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
 pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
@@ -357,25 +379,31 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
 
 # -- Lint ---------------------------------------------------------------------
 
-# What the cycle can reach, linked alone: nothing but tests/rt-symbols.
-RT_ENTRY = cycle_step cycle_command cycle_load cycle_load_at cycle_overrun \
-	   interp_compensate_step interp_errormap_apply interp_ridge_eval \
-	   interp_ridge_features
-HEADERS	 = $(wildcard libinterp/include/interp/*.h daemon/*/*.h clients/*/*.h)
+HEADERS	 = $(wildcard libinterp/*/include/interp/*.h daemon/*/*.h clients/*/*.h)
 
-lint: $(INTERP_O) $(RT_O)
+# What an edmd must not have: a reader, messages, a database, another floor.
+NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
+
+lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,what the cycle may call)
-	$(Q)$(LD) --gc-sections --unresolved-symbols=ignore-all -e cycle_step \
-		$(RT_ENTRY:%=-u %) -o $(B)/rt.elf $^
-	$(Q)nm -u $(B)/rt.elf | awk '{print $$2}' | sort -u > $(B)/rt.undefined
+	$(Q)$(LD) -r -o $(B)/rt.o $(RT_O) --whole-archive $(CORE_A)
+	$(Q)nm -u $(B)/rt.o | awk '{print $$2}' | sort -u > $(B)/rt.undefined
 	$(Q)! grep -vxFf tests/rt-symbols $(B)/rt.undefined
+	$(call say,LINT,what edmd must not have)
+	$(Q)nm $(B)/edmd | awk '{print $$NF}' > $(B)/edmd.symbols
+	$(Q)grep -qx 'interp_cursor_step' $(B)/edmd.symbols
+	$(Q)! grep -E '^($(NOT_IN_EDMD))' $(B)/edmd.symbols
+	$(Q)! nm $(COMPILE_A) $(MODEL_A) | awk 'NF == 3 && $$2 ~ /[TDRB]/ \
+		{print $$3}' | grep -xFf $(B)/edmd.symbols
+	$(call say,LINT,each symbol has the prefix of its module)
+	$(Q)tests/symbol-prefixes $(B)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
 		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
-		grep -vE 'daemon/jobs/wire.c|clients/ctl/talk.c'
+		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
 	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80
@@ -403,7 +431,7 @@ install: all
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
 		examples/machine.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
-		messages/edmd.eds messages/edmd.dbc \
+		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
@@ -413,8 +441,8 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check vm check-vm units run-units run-crossings clang bench \
+.PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo invariants \
+	experiments-curve experiments-servo invariants walkable \
 	pictures fuzz lint install clean
 .SECONDARY:

@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * contour.c - between a reader and the builder: what is collected
+ */
+#include "wire/contour.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEGREE		(3.14159265358979323846 / 180)
+#define SAME_MM		1e-9		/* two places that are one */
+
+void contour_init(struct contour *k, const struct interp_wire *w,
+		  const struct interp_machine *m, struct interp_build *b)
+{
+	*k = (struct contour) { .n = 0 };
+	guides_init(&k->guides, w, m, b);
+	memcpy(k->here_mm, interp_build_here(b), sizeof(k->here_mm));
+	guides_planes(&k->guides, k->here_mm, k->at);
+	if (!guides_on(&k->guides))
+		return;
+	k->here_mm[INTERP_X] = k->at[0].x;
+	k->here_mm[INTERP_Y] = k->at[0].y;
+	k->here_mm[INTERP_U] = k->at[1].x;
+	k->here_mm[INTERP_V] = k->at[1].y;
+}
+
+void contour_free(struct contour *k)
+{
+	free(k->m);
+	free(k->todo);
+	k->m = NULL;
+	k->todo = NULL;
+}
+
+void contour_side(struct contour *k, double offset_mm, double slope)
+{
+	k->offset_mm = offset_mm;
+	k->slope = slope;
+}
+
+double contour_tangent(const struct contour *k, double deg)
+{
+	if (!(fabs(deg) <= k->guides.wire->angle_max_deg))
+		return NAN;
+	return tan(deg * DEGREE);
+}
+
+/* -- Collected ---------------------------------------------------------------- */
+
+static bool is_on(double offset_mm, double slope)
+{
+	return offset_mm != 0 || slope != 0;
+}
+
+/* Nothing in force, nothing held: no business of this stage. */
+static bool is_idle(const struct contour *k)
+{
+	return !k->n && !guides_on(&k->guides) &&
+	       !is_on(k->offset_mm, k->slope) &&
+	       !is_on(k->last_offset_mm, k->last_slope) &&
+	       !(k->guides.wire->corner_angle_deg < 180);
+}
+
+int contour_flush(struct contour *k, struct interp_diag *diag)
+{
+	const int r = contour_release(k, NULL, diag);
+
+	return r ? r : interp_build_flush(k->guides.build, diag);
+}
+
+static void stand(struct contour *k, const double end_mm[INTERP_NAXES])
+{
+	memcpy(k->here_mm, end_mm, sizeof(k->here_mm));
+	k->at[0] = k->at[1] = (struct vec) { end_mm[INTERP_X],
+					     end_mm[INTERP_Y] };
+}
+
+/* The offset is reached or left over it, or a taper without offset. */
+static bool is_lead(const struct contour *k)
+{
+	const double was = k->last_offset_mm, is = k->offset_mm;
+
+	if (was != 0 || is != 0)
+		return (was > 0) != (is > 0) || (was < 0) != (is < 0);
+	return (k->last_slope != 0) != (k->slope != 0);
+}
+
+static int check_lead(const struct contour *k, const struct contour_motion *m,
+		      struct interp_diag *diag)
+{
+	const double by = fabs(k->offset_mm - k->last_offset_mm);
+
+	return m->lead && curve_length(&m->c[0]) <= by ?
+	       contour_refuse_lead(m, by, diag) : 0;
+}
+
+static int keep(struct contour *k, const struct contour_motion *m,
+		struct interp_diag *diag)
+{
+	if (k->n == CONTOUR_MOTIONS_MAX)
+		return contour_refuse_length(&m->word, diag);
+	if (k->n == k->room) {
+		const uint32_t room = k->room ? k->room * 2 : 64;
+		struct contour_motion *p = realloc(k->m, room * sizeof(*p));
+
+		if (!p)
+			return -ENOMEM;
+		k->m = p;
+		k->room = room;
+	}
+	k->m[k->n++] = *m;
+	return 0;
+}
+
+static int take(struct contour *k, struct contour_motion *m,
+		struct interp_diag *diag)
+{
+	int r;
+
+	m->offset_mm = k->offset_mm;
+	m->slope = k->slope;
+	m->corner = k->corner;
+	m->lead = is_lead(k);
+	for (int p = 0; p < 2; p++)
+		m->c[p] = curve_evened(&m->c[p]);
+	r = check_lead(k, m, diag);
+	if (!r && !is_on(k->last_offset_mm, k->last_slope))
+		r = contour_release(k, m, diag);
+	m->todo = k->ntodo;
+	if (!r)
+		r = keep(k, m, diag);
+	k->last_offset_mm = k->offset_mm;
+	k->last_slope = k->slope;
+	memcpy(k->here_mm, m->end_mm, sizeof(k->here_mm));
+	return r;
+}
+
+/* -- In -------------------------------------------------------------------- */
+
+static struct vec place(const double at_mm[INTERP_NAXES], bool top)
+{
+	return (struct vec) { at_mm[top ? INTERP_U : INTERP_X],
+			      at_mm[top ? INTERP_V : INTERP_Y] };
+}
+
+static void motion_init(const struct contour *k, struct contour_motion *m,
+			const double end_mm[INTERP_NAXES],
+			const struct interp_build_word *w)
+{
+	*m = (struct contour_motion) { .word = *w };
+	memcpy(m->from_mm, k->here_mm, sizeof(m->from_mm));
+	memcpy(m->end_mm, end_mm, sizeof(m->end_mm));
+	m->c[0] = curve_line(place(k->here_mm, false), place(end_mm, false));
+	m->c[1] = guides_on(&k->guides) ?
+		  curve_line(place(k->here_mm, true), place(end_mm, true)) :
+		  m->c[0];
+}
+
+static bool moves(const struct contour *k, const double end_mm[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (fabs(end_mm[i] - k->here_mm[i]) > SAME_MM)
+			return true;
+	}
+	return false;
+}
+
+/* A line on which neither contour moves: only other axes do, or none. */
+static int stay(struct contour *k, const double end_mm[INTERP_NAXES],
+		const struct interp_build_word *w, struct interp_diag *diag)
+{
+	double to_mm[INTERP_NAXES];
+	int r;
+
+	if (!moves(k, end_mm))
+		return 0;
+	if (is_on(k->last_offset_mm, k->last_slope))
+		return contour_refuse_alone(w, diag);
+	r = contour_flush(k, diag);
+	if (r)
+		return r;
+	memcpy(to_mm, end_mm, sizeof(to_mm));
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (i <= INTERP_Y || (i >= INTERP_U && guides_on(&k->guides)))
+			to_mm[i] = interp_build_here(k->guides.build)[i];
+	}
+	memcpy(k->here_mm, end_mm, sizeof(k->here_mm));
+	r = interp_build_line(k->guides.build, to_mm, w, diag);
+	if (r == -EINVAL)
+		diag->line = w->line;
+	return r;
+}
+
+int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
+		 const struct interp_build_word *w, struct interp_diag *diag)
+{
+	struct contour_motion m;
+	int r;
+
+	if (is_idle(k)) {
+		r = interp_build_line(k->guides.build, end_mm, w, diag);
+		if (r == -EINVAL)
+			diag->line = w->line;
+		stand(k, end_mm);
+		return r;
+	}
+	motion_init(k, &m, end_mm, w);
+	if (curve_length(&m.c[0]) < SAME_MM && curve_length(&m.c[1]) < SAME_MM)
+		return stay(k, end_mm, w, diag);
+	return take(k, &m, diag);
+}
+
+/* Start and end at one distance from the centre, as the builder wants it. */
+static int check_radius(const struct contour *k, const struct curve *c,
+			struct interp_diag *diag)
+{
+	const double r1 = curve_distance(c->centre, c->to);
+
+	if (fabs(r1 - c->r) <= fmax(2 * k->guides.pulse_mm,
+				    fmin(0.001 * c->r,
+					 5 * k->guides.pulse_mm)))
+		return 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "the arc starts %.4f mm from its centre and ends %.4f mm "
+		 "from it", c->r, r1);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "radii that agree within 2 pulses, or 0.1 %% but 5 pulses");
+	return -EINVAL;
+}
+
+/* The wire keeps its lean: the top goes round as the bottom does. */
+static int take_arc(struct contour *k, struct contour_motion *m,
+		    const struct interp_build_arc *arc,
+		    struct interp_diag *diag)
+{
+	const struct vec centre = { arc->centre_a_mm, arc->centre_b_mm };
+	const struct vec lean = { m->c[1].from.x - m->c[0].from.x,
+				  m->c[1].from.y - m->c[0].from.y };
+
+	m->c[0] = curve_arc(m->c[0].from, m->c[0].to, centre, arc->clockwise);
+	m->c[1] = curve_arc(m->c[1].from, m->c[1].to, vec_add(centre, 1, lean),
+			    arc->clockwise);
+	if (check_radius(k, &m->c[0], diag) < 0) {
+		diag->line = m->word.line;
+		return -EINVAL;
+	}
+	return take(k, m, diag);
+}
+
+int contour_arc(struct contour *k, const double end_mm[INTERP_NAXES],
+		const struct interp_build_arc *arc,
+		const struct interp_build_word *w, struct interp_diag *diag)
+{
+	struct contour_motion m;
+	int r;
+
+	if (is_idle(k)) {
+		r = interp_build_arc(k->guides.build, end_mm, arc, w, diag);
+		if (r == -EINVAL)
+			diag->line = w->line;
+		stand(k, end_mm);
+		return r;
+	}
+	if (arc->axis_a != INTERP_X || arc->turns)
+		return contour_refuse_plane(w, diag);
+	motion_init(k, &m, end_mm, w);
+	return take_arc(k, &m, arc, diag);
+}
+
+int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
+		const struct interp_build_contour c[2],
+		const struct interp_build_word *w, struct interp_diag *diag)
+{
+	struct contour_motion m;
+
+	motion_init(k, &m, end_mm, w);
+	for (int p = 0; p < 2; p++) {
+		const struct vec centre = { c[p].centre_mm[0],
+					    c[p].centre_mm[1] };
+
+		if (c[p].arc)
+			m.c[p] = curve_arc(m.c[p].from, m.c[p].to, centre,
+					   c[p].clockwise);
+		if (c[p].arc && check_radius(k, &m.c[p], diag) < 0) {
+			diag->line = w->line;
+			return -EINVAL;
+		}
+	}
+	return take(k, &m, diag);
+}
+
+int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
+		  const struct interp_build_curve *c,
+		  const struct interp_build_word *w, struct interp_diag *diag)
+{
+	int r;
+
+	if (!is_idle(k)) {
+		diag->line = w->line;
+		snprintf(diag->found, sizeof(diag->found),
+			 "a curve under an offset, a taper, guides or corner "
+			 "control");
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "G40 and G50 before it, or the curve as G1 lines");
+		return -EINVAL;
+	}
+	r = interp_build_curve(k->guides.build, c, w, diag);
+	if (r == -EINVAL && !diag->line)
+		diag->line = w->line;
+	stand(k, end_mm);
+	return r;
+}
+
+static int put_off(struct contour *k, const struct contour_action *a)
+{
+	if (k->ntodo == k->todo_room) {
+		const uint32_t room = k->todo_room ? k->todo_room * 2 : 16;
+		struct contour_action *p = realloc(k->todo, room * sizeof(*p));
+
+		if (!p)
+			return -ENOMEM;
+		k->todo = p;
+		k->todo_room = room;
+	}
+	k->todo[k->ntodo++] = *a;
+	k->m[k->n - 1].ntodo++;
+	return 0;
+}
+
+int contour_action(struct contour *k, enum interp_kind kind, uint32_t arg,
+		   const struct interp_build_word *w, struct interp_diag *diag)
+{
+	int r;
+
+	if (k->n && kind != INTERP_END)
+		return put_off(k, &(struct contour_action) { kind, arg, *w });
+	r = contour_flush(k, diag);
+	if (!r)
+		r = interp_build_action(k->guides.build, kind, arg, w, diag);
+	if (r == -EINVAL && !diag->line)
+		diag->line = w->line;
+	return r;
+}

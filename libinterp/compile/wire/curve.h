@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * curve.h - one line or arc of a contour in a plane, and its parallels
+ *
+ * Units: mm, radian.  Left and right as seen along the curve.
+ * Threads: any thread; nothing here has state.
+ */
+#ifndef WIRE_CURVE_H
+#define WIRE_CURVE_H
+
+#include <stdbool.h>
+
+struct vec {
+	double x, y;
+};
+
+struct curve {
+	bool arc;
+	struct vec from, to;
+	struct vec centre;		/* arcs only, as all below */
+	double r;			/* > 0; 0: an arc shrunk to a point */
+	double theta;			/* of `from`, seen from the centre */
+	double sweep;			/* + counter-clockwise */
+};
+
+static inline struct vec vec_add(struct vec a, double k, struct vec b)
+{
+	return (struct vec) { a.x + k * b.x, a.y + k * b.y };
+}
+
+double curve_distance(struct vec a, struct vec b);
+
+/** curve_line() - a straight one. */
+struct curve curve_line(struct vec from, struct vec to);
+
+/** curve_arc() - a circular one; equal ends make a full circle. */
+struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
+		       bool clockwise);
+
+/** curve_evened() - an arc with both ends on its circle; a line as it is. */
+struct curve curve_evened(const struct curve *c);
+
+double curve_length(const struct curve *c);
+
+/** curve_way() - the unit vector along it, at its start or end. */
+struct vec curve_way(const struct curve *c, bool at_end);
+
+/** curve_at() - the place at share @t of its length. */
+struct vec curve_at(const struct curve *c, double t);
+
+/** curve_part() - from share @t0 to share @t1 of it. */
+struct curve curve_part(const struct curve *c, double t0, double t1);
+
+/**
+ * curve_parallel() - @c moved @d mm to the left (right if below 0).
+ * Return: false if an inside radius is smaller than @d.
+ */
+bool curve_parallel(const struct curve *c, double d, struct curve *ret);
+
+/** curve_meets() - where the two, prolonged, meet: up to two places.
+ *  Return: how many.  Near misses count, up to 1.5 um. */
+int curve_meets(const struct curve *a, const struct curve *b,
+		struct vec ret[2]);
+
+/** curve_meet() - where the two, prolonged, meet nearest to @near. */
+bool curve_meet(const struct curve *a, const struct curve *b, struct vec near,
+		struct vec *ret);
+
+/**
+ * curve_trim() - let @c run from @from to @to, both on it or its prolongation.
+ * Return: false if nothing is left of it, or it would run backwards.
+ */
+bool curve_trim(struct curve *c, struct vec from, struct vec to);
+
+/** curve_reversed() - the same way back. */
+struct curve curve_reversed(const struct curve *c);
+
+/** curve_turn() - from the end of @a to the start of @b: radian, + to the
+ *  left, in (-pi, pi]. */
+double curve_turn(const struct curve *a, const struct curve *b);
+
+/** curve_share() - the share of @c's length at which @at, a place on it,
+ *  lies; below 0 and above 1 on its prolongation. */
+double curve_share(const struct curve *c, struct vec at);
+
+/* -- gap.c: two curves ----------------------------------------------------- */
+
+struct curve_box {
+	struct vec lo, hi;
+};
+
+/** curve_bounds() - the smallest box with sides along X and Y around @c. */
+struct curve_box curve_bounds(const struct curve *c);
+
+/* Where two curves cross: the shares of their lengths. */
+struct curve_hit {
+	double t[2];
+	struct vec at;
+};
+
+/** curve_cross() - where @a and @b cross or touch with a point of both.
+ *  Return: how many there are; those that lie upon each other do not. */
+int curve_cross(const struct curve *a, const struct curve *b,
+		struct curve_hit ret[2]);
+
+/** curve_from() - the distance of @at from @c. */
+double curve_from(const struct curve *c, struct vec at);
+
+/** curve_gap() - the distance of the two; 0 if they cross. */
+double curve_gap(const struct curve *a, const struct curve *b);
+
+#endif /* WIRE_CURVE_H */
