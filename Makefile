@@ -443,6 +443,6 @@ clean:
 
 .PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo invariants walkable \
+	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures fuzz lint install clean
 .SECONDARY:

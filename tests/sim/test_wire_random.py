@@ -11,7 +11,7 @@ from edmsim import run, seeded
 from wire_contours import Contour
 from wire_oracle import UM, path_of, read_iso
 
-RUNS = int(os.environ.get("EDM_RUNS", 150))
+RUNS = int(os.environ.get("EDM_RUNS", 120))
 BOUND_MM = 3 * UM       # docs/taper.md: nearer than the offset by this
 
 

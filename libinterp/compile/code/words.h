@@ -91,6 +91,7 @@ enum nc_group {
 	NC_REGISTER,			/* D H */
 	NC_OFFSET,			/* G40 G41 G42 */
 	NC_TAPER,			/* G50 G51 G52 */
+	NC_TAPER_CORNER,		/* G60 G61 G62 */
 	NC_CORNER,			/* G60 G61 */
 	NC_TRANSITION,			/* G38 G39 */
 	NC_SUPPLY,			/* T80 ... T83 T86 T87 */

@@ -17,6 +17,7 @@ void contour_init(struct contour *k, const struct interp_wire *w,
 		  const struct interp_machine *m, struct interp_build *b)
 {
 	*k = (struct contour) { .n = 0 };
+	k->corner = (enum interp_taper_corner)w->corner;
 	guides_init(&k->guides, w, m, b);
 	memcpy(k->here_mm, interp_build_here(b), sizeof(k->here_mm));
 	guides_planes(&k->guides, k->here_mm, k->at);

@@ -34,13 +34,14 @@ struct contour {
 	struct guides guides;
 	double here_mm[INTERP_NAXES];	/* as programmed: U V on the top */
 	double offset_mm, slope;	/* in force for the next motion ... */
-	enum contour_corner corner;
+	enum interp_taper_corner corner;
 	double last_offset_mm, last_slope;	/* ... and for the last one */
 	struct contour_motion *m;	/* collected */
 	uint32_t n, room;
 	struct contour_action *todo;	/* behind them */
 	uint32_t ntodo, todo_room;
 	struct vec at[2];		/* where the wire crosses the planes */
+	const struct interp_notes *notes;	/* lent; NULL: nobody listens */
 };
 
 void contour_init(struct contour *k, const struct interp_wire *w,
@@ -92,6 +93,10 @@ int contour_release(struct contour *k, const struct contour_motion *next,
 
 struct track_fault;
 
+/* Said of what is cut otherwise than it is written. */
+void contour_note_skip(const struct contour *k, const struct track_fault *f,
+		       int plane);
+void contour_note_constant(const struct contour *k, const struct face *f);
 int contour_refuse_track(const struct contour *k, const struct track_fault *f,
 			 int plane, struct interp_diag *diag);
 int contour_refuse_faces(const struct contour *k, const struct face_fault *f,

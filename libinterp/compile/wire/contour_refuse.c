@@ -2,6 +2,7 @@
 /*
  * contour_refuse.c - what a wire's contour is refused for
  */
+#include "interp/nc.h"
 #include "wire/contour.h"
 #include "wire/track.h"
 
@@ -67,6 +68,32 @@ int contour_refuse_track(const struct contour *k, const struct track_fault *f,
 	if (f->kind == TRACK_CROWDED)
 		return refuse_crowded(k, f, diag);
 	return refuse_stuck(k, f, plane, diag);
+}
+
+void contour_note_skip(const struct contour *k, const struct track_fault *f,
+		       int plane)
+{
+	char text[160];
+
+	if (!k->notes)
+		return;
+	snprintf(text, sizeof(text), "what lies between lines %u and %u is too "
+		 "narrow for the wire%s and is left out (gouge = skip)",
+		 k->m[f->a].word.line, k->m[f->b].word.line, plane_name(plane));
+	k->notes->say(k->notes->arg, k->m[f->a].word.line, text);
+}
+
+void contour_note_constant(const struct contour *k, const struct face *f)
+{
+	const uint32_t line = k->m[f->first_constant].word.line;
+	char text[160];
+
+	if (!k->notes)
+		return;
+	snprintf(text, sizeof(text), "%u fillets, the first on line %u, would "
+		 "turn inside out on the second plane and keep their radius "
+		 "there", f->nconstant, line);
+	k->notes->say(k->notes->arg, line, text);
 }
 
 int contour_refuse_faces(const struct contour *k, const struct face_fault *f,

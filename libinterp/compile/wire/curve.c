@@ -272,7 +272,7 @@ double curve_share(const struct curve *c, struct vec at)
 	const struct vec to = { at.x - c->from.x, at.y - c->from.y };
 
 	if (!c->arc)
-		return dot(to, way) / vec_distance(c->from, c->to);
+		return dot(to, way) / curve_distance(c->from, c->to);
 	if (c->sweep == 0)
 		return 0;
 	return 0.5 + past(c, c->theta + c->sweep / 2, at) / fabs(c->sweep);

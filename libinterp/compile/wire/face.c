@@ -65,7 +65,7 @@ static struct face_piece *add(struct face *f)
 
 static bool stands(const struct curve *c)
 {
-	return !c->arc && vec_distance(c->from, c->to) < 1e-9;
+	return !c->arc && curve_distance(c->from, c->to) < 1e-9;
 }
 
 /* A contour that stands is an arc of radius 0 that turns as the other does. */
@@ -126,7 +126,7 @@ static double wire_of(const struct face_from *from, uint32_t i)
 /* The foot of @at on @c or its prolongation. */
 static struct vec foot_on(const struct curve *c, struct vec at)
 {
-	const double far = vec_distance(c->centre, at);
+	const double far = curve_distance(c->centre, at);
 
 	if (!c->arc)
 		return vec_add(c->from, curve_share(c, at), (struct vec) {
@@ -172,9 +172,9 @@ static bool move(struct maker *k, uint32_t i, struct open *ret)
 	*ret = (struct open) { .owner = i, .sigma = sigma_of(k->from, i) };
 	inside_out = !curve_parallel(&c, ret->sigma, &ret->whole);
 	if (c.arc && ret->sigma != 0 &&
-	    (inside_out || m->corner == CONTOUR_CONSTANT))
+	    (inside_out || m->corner == INTERP_CORNER_CONSTANT))
 		ret->fitted = fit(k->from, i, &ret->whole);
-	if (inside_out && ret->fitted && m->corner != CONTOUR_CONSTANT &&
+	if (inside_out && ret->fitted && m->corner != INTERP_CORNER_CONSTANT &&
 	    !k->f->nconstant++)
 		k->f->first_constant = i;
 	ret->from = ret->whole.from;
@@ -206,9 +206,9 @@ static void go_round(const struct open *a, const struct open *b, struct vec v,
 	j->end = a->whole.to;
 	j->start = b->whole.from;
 	j->nfill = 0;
-	if (vec_distance(j->end, at) > 1e-6)
+	if (curve_distance(j->end, at) > 1e-6)
 		j->fill[j->nfill++] = curve_arc(j->end, at, v, a->sigma > 0);
-	if (vec_distance(at, j->start) > 1e-6)
+	if (curve_distance(at, j->start) > 1e-6)
 		j->fill[j->nfill++] = curve_line(at, j->start);
 }
 
@@ -224,12 +224,12 @@ static bool join_corner(const struct maker *k, const struct open *a,
 	const double reach = reach_of(a->sigma, b->sigma, turn);
 	const bool same = fabs(a->sigma - b->sigma) < 1e-9;
 	const bool outer = turn * (a->sigma + b->sigma) < 0;
-	const bool edge = same ? !outer || m->corner == CONTOUR_SHARP ||
+	const bool edge = same ? !outer || m->corner == INTERP_CORNER_SHARP ||
 			  fabs(turn) <= RIGHT_ANGLE + ANGLE_SLACK :
 			  reach <= 3 * most;
 
 	if (edge && curve_meet(&a->whole, &b->whole, p.to, &j->end) &&
-	    (!outer || vec_distance(j->end, p.to) < 1.5 * reach)) {
+	    (!outer || curve_distance(j->end, p.to) < 1.5 * reach)) {
 		j->start = j->end;
 		return true;
 	}
@@ -249,7 +249,7 @@ static bool join(const struct maker *k, const struct open *a,
 		j->end = j->start = a->fitted ? a->to : b->from;
 		return true;
 	}
-	if (vec_distance(j->end, j->start) < 1.5 * k->from->pulse_mm) {
+	if (curve_distance(j->end, j->start) < 1.5 * k->from->pulse_mm) {
 		j->start = j->end;
 		return true;
 	}
@@ -267,8 +267,8 @@ static bool cut(const struct open *o, struct vec to, struct curve *ret)
 	*ret = o->whole;
 	if (o->whole.arc && (o->whole.r == 0 || o->fitted))
 		return true;
-	if (vec_distance(o->from, o->whole.from) < 1e-12 &&
-	    vec_distance(to, o->whole.to) < 1e-12)
+	if (curve_distance(o->from, o->whole.from) < 1e-12 &&
+	    curve_distance(to, o->whole.to) < 1e-12)
 		return true;
 	return curve_trim(ret, o->from, to);
 }
@@ -289,7 +289,7 @@ static int lay(struct maker *k, const struct open *o, const struct curve *c,
 		const struct vec at = k->from->m[o->owner].c[0].centre;
 
 		p->wire_mm = wire_at(k->from->m[o->owner].offset_mm,
-				     vec_distance(c->centre, at) /
+				     curve_distance(c->centre, at) /
 				     k->from->height_mm);
 	}
 	for (uint32_t i = 0; j && i < j->nfill; i++) {
@@ -400,7 +400,7 @@ static void find_closure(struct face *f, double pulse_mm)
 			const uint32_t b = sum - a;
 
 			if (b > most || a + b + 2 > f->n ||
-			    vec_distance(f->piece[a].c.from,
+			    curve_distance(f->piece[a].c.from,
 					 f->piece[f->n - 1 - b].c.to) >
 			    CLOSED_PULSES * pulse_mm)
 				continue;
@@ -413,7 +413,7 @@ static void find_closure(struct face *f, double pulse_mm)
 		}
 	}
 	f->closed = f->n == 1 && f->piece[0].c.arc &&
-		    vec_distance(f->piece[0].c.from, f->piece[0].c.to) <
+		    curve_distance(f->piece[0].c.from, f->piece[0].c.to) <
 		    CLOSED_PULSES * pulse_mm;
 }
 

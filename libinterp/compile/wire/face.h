@@ -13,15 +13,8 @@
 #define WIRE_FACE_H
 
 #include "interp/build.h"
+#include "interp/wire.h"
 #include "wire/curve.h"
-
-/* What becomes of corners and fillets on the second plane under a taper. */
-enum contour_corner {
-	CONTOUR_CONICAL,		/* fillets change their radius */
-	CONTOUR_CONSTANT,		/* fillets keep their radius */
-	CONTOUR_SHARP,			/* as conical, and sharp outer corners
-					 * beyond a right angle stay sharp */
-};
 
 /* A motion as programmed, on both planes. */
 struct contour_motion {
@@ -30,7 +23,7 @@ struct contour_motion {
 	struct interp_build_word word;
 	double offset_mm;		/* of the wire; + to the left */
 	double slope;			/* tangent of the taper; + to the left */
-	enum contour_corner corner;
+	enum interp_taper_corner corner;
 	bool lead;			/* the offset is reached or left here */
 	uint32_t todo, ntodo;		/* actions behind it */
 };

@@ -51,7 +51,7 @@ static bool boxes_touch(const struct curve *a, const struct curve *b)
 static bool is_dot(const struct curve *c)
 {
 	return c->arc ? c->r == 0 || c->sweep == 0 :
-			vec_distance(c->from, c->to) < SAME_MM;
+			curve_distance(c->from, c->to) < SAME_MM;
 }
 
 /* Is share @t on the curve, but for the rounding of its ends? */
@@ -109,9 +109,9 @@ double curve_from(const struct curve *c, struct vec at)
 
 	if (!c->arc)
 		return from_line(c, at);
-	ends = fmin(vec_distance(c->from, at), vec_distance(c->to, at));
+	ends = fmin(curve_distance(c->from, at), curve_distance(c->to, at));
 	if (c->r > 0 && arc_faces(c, at))
-		return fmin(ends, fabs(vec_distance(c->centre, at) - c->r));
+		return fmin(ends, fabs(curve_distance(c->centre, at) - c->r));
 	return ends;
 }
 
@@ -123,13 +123,13 @@ static double line_to_arc(const struct curve *l, const struct curve *c)
 
 	if (!(t > 0 && t < 1) || !arc_faces(c, foot))
 		return INFINITY;
-	return fabs(vec_distance(foot, c->centre) - c->r);
+	return fabs(curve_distance(foot, c->centre) - c->r);
 }
 
 /* The ends of the diameters that lie on one line. */
 static double arc_to_arc(const struct curve *a, const struct curve *b)
 {
-	const double d = vec_distance(a->centre, b->centre);
+	const double d = curve_distance(a->centre, b->centre);
 	const struct vec way = { (b->centre.x - a->centre.x) / d,
 				 (b->centre.y - a->centre.y) / d };
 	double best = INFINITY;
@@ -143,7 +143,7 @@ static double arc_to_arc(const struct curve *a, const struct curve *b)
 					     way);
 
 		if (arc_faces(a, p) && arc_faces(b, q))
-			best = fmin(best, vec_distance(p, q));
+			best = fmin(best, curve_distance(p, q));
 	}
 	return best;
 }

@@ -110,6 +110,7 @@ static int do_corner(const struct step *s, bool corner)
 struct stretch {
 	uint32_t first, end;		/* with the leads */
 	bool in, out;			/* they are there */
+	bool one;			/* no guides: the planes are the same */
 	struct track t[2];
 	uint32_t next[2];		/* of each track's curves */
 };
@@ -163,7 +164,7 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 	struct track_job job = {
 		.side = k->m[a].offset_mm > 0 ? 1 : k->m[a].offset_mm < 0 ? -1 : 0,
 		.pulse_mm = k->guides.pulse_mm,
-		.skip = k->guides.wire->gouge_skip,
+		.skip = k->guides.wire->gouge == INTERP_GOUGE_SKIP,
 	};
 	struct face_fault bad;
 	struct track_fault fault;
@@ -184,6 +185,10 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 		if (rc == -EINVAL)
 			contour_refuse_track(k, &fault, p, diag);
 	}
+	if (!rc && s->t[p].skipped)
+		contour_note_skip(k, &fault, p);
+	if (!rc && f.nconstant)
+		contour_note_constant(k, &f);
 	face_free(&f);
 	return rc;
 }
@@ -192,7 +197,7 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 static bool take_curve(struct stretch *s, int p, uint32_t owner, bool fill,
 		       struct curve *ret)
 {
-	const struct track *t = &s->t[p];
+	const struct track *t = &s->t[s->one ? 0 : p];
 	const uint32_t i = s->next[p];
 
 	if (i >= t->n || t->owner[i] != owner || t->fill[i] != fill)
@@ -244,7 +249,8 @@ static int cut_stretch(struct contour *k, struct stretch *s,
 {
 	int r = make_track(k, s, 0, next, diag);
 
-	if (!r)
+	s->one = !guides_on(&k->guides);
+	if (!r && !s->one)
 		r = make_track(k, s, 1, next, diag);
 	for (uint32_t i = s->first; !r && i < s->end; i++)
 		r = cut_owner(k, s, i, next, diag);

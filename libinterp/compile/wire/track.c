@@ -82,7 +82,7 @@ static int lay_fill(struct track_work *w, const struct corner *k,
 	const struct track_elem before = w->elem[k->a];
 	struct track_elem *e;
 
-	if (vec_distance(c->from, c->to) < SAME_MM)
+	if (curve_distance(c->from, c->to) < SAME_MM)
 		return 0;
 	e = add(w);
 	if (!e)
@@ -119,8 +119,8 @@ static bool meet_inside(struct track_elem *a, struct track_elem *b,
 
 	if (n == 0)
 		return false;
-	if (n == 2 && vec_distance(hit[1].at, near) <
-		      vec_distance(hit[0].at, near))
+	if (n == 2 && curve_distance(hit[1].at, near) <
+		      curve_distance(hit[0].at, near))
 		best = 1;
 	if (!curve_trim(&p, a->c.from, hit[best].at) ||
 	    !curve_trim(&q, hit[best].at, b->c.to))
@@ -142,7 +142,7 @@ static bool meet_outside(const struct track_work *w, const struct corner *k,
 	    b->dead || (p.arc && p.r == 0) || (q.arc && q.r == 0))
 		return false;
 	if (!curve_meet(&p, &q, k->at, &at) ||
-	    vec_distance(at, k->at) > 1.5 * most / cos(k->turn / 2) ||
+	    curve_distance(at, k->at) > 1.5 * most / cos(k->turn / 2) ||
 	    !curve_trim(&p, a->c.from, at) || !curve_trim(&q, at, b->c.to))
 		return false;
 	a->c = p;
@@ -282,7 +282,7 @@ static void close_gaps(struct track *t, double pulse_mm)
 
 		if (tiny && n > 0 && i + 1 < t->n)
 			continue;
-		if (n > 0 && vec_distance(t->c[n - 1].to, t->c[i].from) <
+		if (n > 0 && curve_distance(t->c[n - 1].to, t->c[i].from) <
 			     3 * TINY_PULSES * pulse_mm) {
 			const struct vec at = {
 				(t->c[n - 1].to.x + t->c[i].from.x) / 2,

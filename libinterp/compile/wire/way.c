@@ -97,8 +97,8 @@ static double reach_of(const struct track_work *w, const struct jump *j)
 				    fabs(sin(turn)));
 	if ((p->c.arc || q->c.arc) &&
 	    curve_meet(&p->c, &q->c, j->at, &corner) &&
-	    vec_distance(j->at, corner) < 3 * reach)
-		reach = fmax(reach, vec_distance(j->at, corner));
+	    curve_distance(j->at, corner) < 3 * reach)
+		reach = fmax(reach, curve_distance(j->at, corner));
 	return reach;
 }
 
@@ -108,7 +108,7 @@ static bool is_hidden(const struct track_work *w, const struct jump *j,
 	const double most = j->reach + HIDDEN_MM + w->slack_mm;
 	struct curve part;
 
-	if (vec_distance(at, j->at) <= most)
+	if (curve_distance(at, j->at) <= most)
 		return true;
 	part = curve_part(&w->elem[j->e].c, j->e_from, j->te);
 	if (curve_from(&part, at) <= most)
