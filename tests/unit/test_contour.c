@@ -4,6 +4,7 @@
  */
 #include "wire_help.h"
 
+#include "interp/compile.h"
 #include "interp/cursor.h"
 
 #define TENTH_DEG	"5.710593137499643"	/* its tangent is 0.1 */
@@ -241,6 +242,50 @@ static void actions_stay_at_their_corner(void **st)
 	assert_int_equal(nc_seg(&r, 3)->kind, INTERP_STOP);
 	assert_int_equal(nc_seg(&r, 4)->kind, INTERP_ARC);
 	assert_int_equal(nc_seg(&r, 5)->kind, INTERP_LINE);
+	nc_done(&r);
+}
+
+/* -- Four axes in the dialects of wire machines -------------------------------- */
+
+static void assert_lean(const char *dialect, const char *text, double u,
+			double v)
+{
+	struct nc_read r = ready(&guides);
+
+	r.o.dialect = interp_dialect_by_name(dialect);
+	nc_read(&r, text);
+	/* The guides are 20 below and 40 above: twice the lean above the top. */
+	assert_near(nc_end(&r, nc_count(&r) - 1, INTERP_U), u);
+	assert_near(nc_end(&r, nc_count(&r) - 1, INTERP_V), v);
+	nc_done(&r);
+}
+
+static void u_and_v_are_the_lean_in_the_dialects(void **st)
+{
+	(void)st;
+	assert_lean("fanuc", "G90\nG01 X10. Y0. U1. V2.\nX20.\nM30\n", 22, 4);
+	assert_lean("chmer", "G90\nG01 X10. Y0. U1.\nU-1.\nM30\n", 8, 0);
+	assert_lean("robofil", "G91\nG01 X10. Y0. U1.\nX1. U1.\nM02\n", 15, 0);
+	assert_lean("skd2", "G90\nG01 X10.0 U1.0\nM02\n", 12, 0);
+	assert_lean("sodick", "G90\nG01 X10. Y0.:G01 X11. Y0.\nM02\n", 12, 0);
+	/* A half circle over another, one mm to the side. */
+	assert_lean("fanuc", "G90\nG01 X10. U1.\nG02 X20. I5. U1. K5.\nM30\n",
+		    22, 0);
+	assert_lean("robofil", "G90\nG01 X10. Y0. U1.\n"
+		    "G02 X20. Y0. I15. J0. U1. K16. L0.\nM02\n", 22, 0);
+}
+
+static void a_leaning_arc_without_its_centre_is_refused(void **st)
+{
+	struct nc_read r = ready(&guides);
+	const char *text = "G90\nG01 X10. Y0.\nG02 X20. I5. U1.\nM30\n";
+
+	(void)st;
+	r.o.dialect = interp_dialect_by_name("fanuc");
+	nc_read_bytes(&r, text, strlen(text));
+	assert_int_equal(r.rc, -EINVAL);
+	assert_int_equal(r.diag.line, 3);
+	assert_non_null(strstr(r.diag.found, "no centre of its top"));
 	nc_done(&r);
 }
 
@@ -602,6 +647,8 @@ int main(void)
 		what_the_wire_cannot_reach_is_refused_with_its_line),
 		cmocka_unit_test(
 			an_inside_radius_equal_to_the_offset_is_a_point),
+		cmocka_unit_test(u_and_v_are_the_lean_in_the_dialects),
+		cmocka_unit_test(a_leaning_arc_without_its_centre_is_refused),
 		cmocka_unit_test(actions_stay_at_their_corner),
 		cmocka_unit_test(the_guides_of_a_tapered_square),
 		cmocka_unit_test(relative_upper_guides_move_by_the_difference),

@@ -14,6 +14,7 @@ static const struct interp_dialect dialects[] = {
 	{ .name = "skd2", .nc = &nc_skd2 },
 	{ .name = "sodick", .nc = &nc_sodick },
 	{ .name = "chmer", .nc = &nc_chmer },
+	{ .name = "fanuc", .nc = &nc_fanuc },
 	{ .name = "3b", .suffix = ".3b" },
 	{ .name = "4b", .suffix = ".4b", .fourb = true },
 };
@@ -50,7 +51,7 @@ const char *interp_dialect_name(const struct interp_dialect *d)
 
 const char *interp_dialect_names(void)
 {
-	return "generic, robofil, skd2, sodick, chmer, 3b or 4b";
+	return "generic, robofil, skd2, sodick, chmer, fanuc, 3b or 4b";
 }
 
 static int compile_nc(const struct interp_text *text,
