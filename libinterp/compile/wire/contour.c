@@ -225,12 +225,10 @@ static int check_radius(const struct contour *k, const struct curve *c,
 				    fmin(0.001 * c->r,
 					 5 * k->guides.pulse_mm)))
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "the arc starts %.4f mm from its centre and ends %.4f mm "
-		 "from it", c->r, r1);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "radii that agree within 2 pulses, or 0.1 %% but 5 pulses");
-	return -EINVAL;
+	return interp_diag_say(diag, "the arc starts %.4f mm from its centre "
+			       "and ends %.4f mm from it; radii that agree "
+			       "within 2 pulses, or 0.1 %% but 5 pulses", c->r,
+			       r1);
 }
 
 /* The wire keeps its lean: the top goes round as the bottom does. */
@@ -302,12 +300,10 @@ int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 
 	if (!is_idle(k)) {
 		diag->line = w->line;
-		snprintf(diag->found, sizeof(diag->found),
-			 "a curve under an offset, a taper, guides or corner "
-			 "control");
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "G40 and G50 before it, or the curve as G1 lines");
-		return -EINVAL;
+		return interp_diag_say(diag, "a curve under an offset, a "
+				       "taper, guides or corner control; G40 "
+				       "and G50 before it, or the curve as G1 "
+				       "lines");
 	}
 	r = interp_build_curve(k->guides.build, c, w, diag);
 	if (r == -EINVAL && !diag->line)
