@@ -20,9 +20,11 @@ def scene(name, traits):
 def submit(s, name):
     """Again until edmd-jobs is there to take it."""
     for _ in range(100):
-        if s.ctl("submit", str(R / f"{name}.ngc"))[0] == 0:
+        answer = s.ctl("submit", str(R / f"{name}.ngc"))
+        if answer[0] == 0:
             break
         time.sleep(0.05)
+    return answer
 
 
 def job(s, name):
@@ -163,7 +165,7 @@ def lost(s, what, node):
         time.sleep(0.1)
     s.mark(f"{what}: homed")
     s.until(f"{what}: idle again", 5, state="idle")
-    again = job(s, "strict-faults")
+    again = submit(s, "strict-faults")      # it begins by itself
     return {"fault": got.get("fault"), "starts": starts, "steps": steps,
             "home": homed, "again": again}
 
