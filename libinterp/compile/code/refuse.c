@@ -129,5 +129,7 @@ const char *nc_letters_known(const struct nc_dialect *d, char *buf, size_t size)
 		if (d->classes[(uint8_t)c] != NC_BAD)
 			n += (size_t)snprintf(buf + n, size - n, " %c", c);
 	}
+	if (d->classes[':'] == NC_COLON && n < size)
+		snprintf(buf + n, size - n, " :");
 	return buf;
 }
