@@ -38,7 +38,7 @@ static const char *answer_text(int code)
 	case SHM_NOT_UP:
 		return "its drives are not up yet";
 	case SHM_LOCKED:
-		return "the PLC does not permit it";
+		return "a guard or the PLC does not permit it";
 	case -ETIMEDOUT:
 	case SHM_LATE:
 		return "it did not take it in time";
