@@ -66,7 +66,7 @@ SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
 JOBS	:= $(wildcard daemon/jobs/*.c)
 SIGN	:= $(wildcard messages/sign/*.c)
-LINE	:= $(wildcard daemon/lines/*.c)
+LOGGER	:= $(wildcard daemon/logger/*.c)
 CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
@@ -93,9 +93,9 @@ INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm $(WORDS_H)
 INC_setup	= -Idaemon/setup
-INC_lines	= -Idaemon/lines -Imessages/sign
-INC_edmd	= -Idaemon/edmd $(INC_lines) -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs $(INC_lines) -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_logger	= -Idaemon/logger -Imessages/sign
+INC_edmd	= -Idaemon/edmd $(INC_logger) -Idaemon/shm -Idaemon/setup $(INC_config)
+INC_jobs	= -Idaemon/jobs $(INC_logger) -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign
 INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
@@ -121,7 +121,7 @@ CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM)) $(WORDS_O)
 SIGN_O	 := $(call obj,$(SIGN))
-LINE_O	 := $(call obj,$(LINE)) $(B)/messages/sign/plain.o
+LOGGER_O	 := $(call obj,$(LOGGER)) $(B)/messages/sign/plain.o
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
@@ -200,10 +200,10 @@ $(TRIED_A): $(call obj,$(TRIED))
 $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
 	$(call link,-linih -ljansson -lpthread -lm)
 
-$(B)/edmd: $(call obj,$(EDMD)) $(LINE_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A)
+$(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS) $(LINE)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
+$(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A)
@@ -216,10 +216,10 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 	$(call link,-lddsc -ljansson -lm)
 
 # Of edmd itself, without its main().
-$(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LINE_O)
+$(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
 
 # Of what stands in front of edmd-jobs.
-$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LINE_O) $(call obj,$(addprefix daemon/jobs/,trust.c jobs_log.c))
+$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call obj,$(addprefix daemon/jobs/,trust.c jobs_log.c))
 $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 

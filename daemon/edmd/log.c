@@ -4,7 +4,7 @@
  */
 #include "log.h"
 
-#include "lines.h"
+#include "logger.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -31,6 +31,6 @@ void log_line(enum log_level level, const char *format, ...)
 	va_list args;
 
 	va_start(args, format);
-	lines_say(prefix(level), format, args);
+	logger_say(prefix(level), format, args);
 	va_end(args);
 }

@@ -3,7 +3,7 @@
  * main.c - edmd: start, run, end in the reverse order
  */
 #include "key.h"
-#include "lines.h"
+#include "logger.h"
 #include "log.h"
 #include "options.h"
 #include "plc.h"
@@ -249,8 +249,8 @@ int main(int argc, char **argv)
 	}
 	signals_block();
 	loop_configure(&loop, &config);
-	lines_start();
+	logger_start();
 	code = run_owner(&loop, &config);
-	lines_stop();
+	logger_stop();
 	return code;
 }

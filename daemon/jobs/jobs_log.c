@@ -4,7 +4,7 @@
  */
 #include "jobs_log.h"
 
-#include "lines.h"
+#include "logger.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -18,6 +18,6 @@ void jobs_log(const char *level, const char *format, ...)
 	snprintf(prefix, sizeof(prefix), "%sedmd-jobs: ",
 		 getenv("JOURNAL_STREAM") ? level : "");
 	va_start(args, format);
-	lines_say(prefix, format, args);
+	logger_say(prefix, format, args);
 	va_end(args);
 }

@@ -3,7 +3,7 @@
  * jobs_log.h - lines on stderr; for the journal with sd-daemon's level prefixes
  *
  * "module: what, with numbers and units".  A reader that stands still holds
- * nothing up (lines.h).  Threads: any.
+ * nothing up (logger.h).  Threads: any.
  */
 #ifndef JOBS_LOG_H
 #define JOBS_LOG_H

@@ -7,7 +7,7 @@
 #include "compiling.h"
 #include "keys.h"
 #include "jobs_log.h"
-#include "lines.h"
+#include "logger.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -339,7 +339,7 @@ int main(int argc, char **argv)
 	rc = configure(&jobs, &config, &o);
 	if (rc)
 		return rc;
-	lines_start();
+	logger_start();
 	rc = open_store(&jobs, o.store ? o.store : config.store_dir);
 	jobs.claim = -1;
 	if (rc == 0)
@@ -355,6 +355,6 @@ int main(int argc, char **argv)
 	keys_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
 	store_close(jobs.store);
-	lines_stop();
+	logger_stop();
 	return rc;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * lines.c - lines on stderr that never hold their writer up
+ * logger.c - lines on stderr that never hold their writer up
  */
-#include "lines.h"
+#include "logger.h"
 
 #include "plain.h"
 
@@ -20,7 +20,7 @@
 
 struct slot {
 	size_t bytes;
-	char text[LINES_MAX_BYTES];
+	char text[LOGGER_BYTES_MAX];
 };
 
 /* How often a cause was told in this second, and how often not. */
@@ -35,7 +35,7 @@ static struct {
 	pthread_cond_t changed;
 	pthread_t thread;
 	bool started, ending;
-	struct slot slot[LINES_SLOTS];
+	struct slot slot[LOGGER_SLOTS];
 	unsigned int first, count;	/* the one being written is the first */
 	unsigned long dropped;
 	struct cause cause[CAUSES];
@@ -68,9 +68,9 @@ static bool put(const char *text)
 		write_all(text, bytes);
 		return true;
 	}
-	if (line.count == LINES_SLOTS)
+	if (line.count == LOGGER_SLOTS)
 		return false;
-	s = &line.slot[(line.first + line.count) % LINES_SLOTS];
+	s = &line.slot[(line.first + line.count) % LOGGER_SLOTS];
 	memcpy(s->text, text, bytes);
 	s->bytes = bytes;
 	line.count++;
@@ -92,7 +92,7 @@ static void tell_dropped(void)
 
 static void tell_more(struct cause *c)
 {
-	char text[LINES_MAX_BYTES];
+	char text[LOGGER_BYTES_MAX];
 
 	if (c->more == 0)
 		return;
@@ -133,15 +133,15 @@ static bool may_say(const char *format)
 		c->second = now.tv_sec;
 		c->told = 0;
 	}
-	if (c->told++ < LINES_A_SECOND)
+	if (c->told++ < LOGGER_A_SECOND)
 		return true;
 	c->more++;
 	return false;
 }
 
-void lines_say(const char *prefix, const char *format, va_list args)
+void logger_say(const char *prefix, const char *format, va_list args)
 {
-	char text[LINES_MAX_BYTES];
+	char text[LOGGER_BYTES_MAX];
 	/* The prefix may be the journal's own, "<3>". */
 	size_t n = (size_t)snprintf(text, sizeof(text) - 1, "%.64s", prefix);
 
@@ -171,7 +171,7 @@ static void *run(void *arg)
 		write_all(line.slot[line.first].text,
 			  line.slot[line.first].bytes);
 		pthread_mutex_lock(&line.lock);
-		line.first = (line.first + 1) % LINES_SLOTS;
+		line.first = (line.first + 1) % LOGGER_SLOTS;
 		line.count--;
 		tell_dropped();
 		pthread_cond_broadcast(&line.changed);
@@ -181,7 +181,7 @@ static void *run(void *arg)
 }
 
 /* No signal is ever delivered to it. */
-int lines_start(void)
+int logger_start(void)
 {
 	sigset_t all, before;
 	int err;
@@ -197,7 +197,7 @@ int lines_start(void)
 }
 
 /* A thread that hangs in a write() is left to the end of the process. */
-void lines_stop(void)
+void logger_stop(void)
 {
 	struct timespec until;
 
