@@ -306,6 +306,13 @@ run-units: $(UNIT_X) $(PEER_X)
 		printf '  UNIT    %s: ' $$t; \
 		sed -n 's/^\[==========\] \([0-9]* test(s) run\).*/\1/p' $$t.log; done
 
+# 500 kills of edmd, edmd-jobs and both around every verb: half an hour.
+KILLS ?= 500
+kills: all
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
+		tests/system/test_kills.py
+
 # What holds in every cycle, over ten million random ones; SEED=n repeats one.
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
@@ -444,7 +451,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: kills all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable \
 	pictures fuzz lint install clean

@@ -174,6 +174,7 @@ class Client:
     def acks_to(self, seq):
         return [
             a for a in self.acks if a.client == self.name and a.seq == seq
+            and bytes(a.key) == self.public
         ]
 
     def heard(self, what, timeout=5.0):
