@@ -50,6 +50,9 @@ CORE	:= $(wildcard libinterp/core/*/*.c)
 COMPILE	:= $(wildcard libinterp/compile/*/*.c)
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
+# What every program has in common.
+COMMON	:= $(wildcard common/*.c)
+WORDS	:= $(wildcard daemon/words/*.c)
 RT	:= $(wildcard daemon/rt/*.c daemon/rt/*/*.c)
 # Of two files for libgpiod, the one for the version that pkg-config finds.
 PKG_CONFIG ?= pkg-config
@@ -64,6 +67,8 @@ SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
 JOBS	:= $(wildcard daemon/jobs/*.c)
+SIGN	:= $(wildcard messages/sign/*.c)
+CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
@@ -78,38 +83,46 @@ TRIED	:= $(wildcard tests/experiments/tried/*.c)
 CORE_H		= -Ilibinterp/core/include
 COMPILE_H	= -Ilibinterp/compile/include
 MODEL_H		= -Ilibinterp/model/include
+INC_common	= -Icommon $(CORE_H)
 INC_core	= $(CORE_H) -Ilibinterp/core
 INC_compile	= $(COMPILE_H) -Ilibinterp/compile $(INC_core)
 INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
-INC_rt		= -Idaemon/rt -Idaemon/io $(CORE_H)
+WORDS_H		= -Idaemon/words
+INC_words	= $(WORDS_H)
+INC_rt		= -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
-INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(CORE_H)
+INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
-INC_shm		= -Idaemon/shm
+INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
 INC_setup	= -Idaemon/setup
-INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Idaemon/shm $(INC_compiling) $(MODEL_H) -I$(B)/messages
-INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) -I$(B)/messages
-INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_edmd	= -Idaemon/edmd -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
+INC_jobs	= -Idaemon/jobs -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_sign	= -Imessages/sign
+INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
+INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
+INC_ctl		= -Iclients/ctl -Icommon -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
+INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
-part = $(word 2,$(subst /, ,$1))
+part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
 CORE_A	 := $(B)/libinterp-core.a
 COMPILE_A := $(B)/libinterp-compile.a
 MODEL_A	 := $(B)/libinterp-model.a
 TRIED_A	 := $(B)/tests-tried.a
-INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A)
-RT_O	 := $(call obj,$(RT))
+COMMON_A := $(B)/common.a
+INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
+WORDS_O	 := $(call obj,$(WORDS))
+RT_O	 := $(call obj,$(RT)) $(WORDS_O)
 IO_O	 := $(call obj,$(IO))
 SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
-SHM_O	 := $(call obj,$(SHM))
+SHM_O	 := $(call obj,$(SHM)) $(WORDS_O)
+SIGN_O	 := $(call obj,$(SIGN))
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
@@ -158,7 +171,7 @@ $(B)/messages/edm.o: $(B)/messages/edm.c
 	$(call say,CC,$(@F))
 	$(Q)$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) -c -o $@ $<
 
-$(call obj,$(JOBS) $(CTL)): | $(B)/messages/lcm.stamp
+$(call obj,$(JOBS) $(CTL) $(CLIENT)): | $(B)/messages/lcm.stamp
 $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 
 # -- Link ---------------------------------------------------------------------
@@ -176,6 +189,8 @@ $(call say,AR,$@)
 $(Q)$(AR) rcs $@ $^
 endef
 
+$(COMMON_A): $(call obj,$(COMMON))
+	$(archive)
 $(CORE_A): $(call obj,$(CORE))
 	$(archive)
 $(COMPILE_A): $(call obj,$(COMPILE))
@@ -188,26 +203,31 @@ $(TRIED_A): $(call obj,$(TRIED))
 $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
 	$(call link,-linih -ljansson -lpthread -lnlopt -lm)
 
-$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A)
+$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
+$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A)
+$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -lm)
 
-$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
+$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
 	$(call link,-lddsc -ljansson -lm)
 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
 
+# Of what stands in front of edmd-jobs.
+$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(B)/daemon/jobs/trust.o
+$(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
+$(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
+
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lnlopt -lm)
+	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
 
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lnlopt -lm)
@@ -307,7 +327,7 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 # Another compiler's opinion: warnings are errors, nothing is linked.
 clang:
 	$(call say,CLANG,all sources)
-	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
+	$(Q)for f in $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
 		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
@@ -319,6 +339,11 @@ bench: vm
 	@EDM_BUILD=$(B) tests/bench/run
 
 include tests/experiments/Makefile
+
+# The table of faults in the documents, from the table in the code.
+faults: $(B)/edmctl
+	$(Q)docs/faults $(B)/edmctl > $(B)/faults.md
+	$(Q)docs/put-table $(B)/faults.md docs/architecture.md
 
 # Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
 pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
@@ -351,7 +376,7 @@ run-fuzz_%: $(B)/fuzz_%
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
 
-$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
+$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON)
 	$(call say,CLANG,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
@@ -360,7 +385,7 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
 
 # -- Lint ---------------------------------------------------------------------
 
-HEADERS	 = $(wildcard libinterp/*/include/interp/*.h daemon/*/*.h clients/*/*.h)
+HEADERS	 = $(wildcard common/*.h libinterp/*/include/interp/*.h daemon/*/*.h daemon/rt/*/*.h clients/*/*.h)
 
 # What an edmd must not have: a reader, messages, a database, another floor.
 NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
@@ -384,8 +409,8 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
-		grep -vE 'daemon/jobs/lcm.c|clients/ctl/talk.c'
-	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
+		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
+	$(Q)! grep -n '#include "\.\./' -r common daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80
 	$(call say,LINT,what documents name is there)

@@ -4,11 +4,13 @@
  */
 #include "jobs.h"
 
+#include "cmdline.h"
 #include "compiling.h"
+#include "keys.h"
 #include "jobs_log.h"
+#include "names.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <signal.h>
 #include <sodium.h>
 #include <stdarg.h>
@@ -24,17 +26,29 @@ struct options {
 	const char *config, *name, *store;
 };
 
-static const char usage[] =
+#define AT(field)	.at = offsetof(struct options, field)
+
+/* clang-format off */
+static const struct cmdline_row rows[] = {
+	{ "config", "FILE", CMDLINE_WORD, AT(config), .help =
+	  "the machine file, the same as edmd's" },
+	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
+	  "of the machine; default: the file's [machine] name" },
+	{ "store", "DIR", CMDLINE_WORD, AT(store), .help =
+	  "for the database; default: the file's [jobs] store" },
+};
+/* clang-format on */
+
+static const struct cmdline table = {
+	.program = "edmd-jobs",
+	.row = rows, .nrows = sizeof(rows) / sizeof(*rows), .column = 17,
+	.head =
 	"Usage: edmd-jobs --config FILE [options]\n"
 	"\n"
 	"Takes jobs over LCM, keeps them in a queue, loads them into edmd and\n"
 	"tells how they go.  A job that runs goes on without it.\n"
-	"\n"
-	"  --config FILE  the machine file, the same as edmd's\n"
-	"  --name NAME    of the machine; default: the file's [machine] name\n"
-	"  --store DIR    for the database; default: the file's [jobs] store\n"
-	"  --help         this\n"
-	"  --version      its version\n";
+	"\n",
+};
 
 static int64_t clock_us(clockid_t clock)
 {
@@ -104,7 +118,8 @@ static int on_lcm(sd_event_source *s, int fd, uint32_t events, void *arg)
 	struct jobs *j = arg;
 
 	(void)s, (void)fd, (void)events;
-	return jobs_lcm_handle(j->lcm);
+	jobs_lcm_handle(j->lcm);
+	return 0;
 }
 
 static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
@@ -128,39 +143,16 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 	return sd_event_source_set_time_relative(s, TICK_US);
 }
 
-/* 0, or what to exit with. */
+/* -1 to go on, or what to exit with. */
 static int parse(int argc, char **argv, struct options *o)
 {
-	static const struct option longs[] = {
-		{ "config", required_argument, NULL, 'c' },
-		{ "name", required_argument, NULL, 'n' },
-		{ "store", required_argument, NULL, 's' },
-		{ "help", no_argument, NULL, 'h' },
-		{ "version", no_argument, NULL, 'v' },
-		{ NULL, 0, NULL, 0 },
-	};
-	int opt;
+	struct cmdline_given given;
+	const int code = cmdline_take(&table, o, argc, argv, &given);
 
-	while ((opt = getopt_long(argc, argv, "", longs, NULL)) != -1) {
-		if (opt == 'h' || opt == 'v') {
-			fputs(opt == 'h' ? usage :
-			      "edmd-jobs " EDM_VERSION "\n", stdout);
-			exit(EX_OK);
-		}
-		if (opt == 'c')
-			o->config = optarg;
-		else if (opt == 'n')
-			o->name = optarg;
-		else if (opt == 's')
-			o->store = optarg;
-		else
-			return EX_USAGE;
-	}
-	if (optind == argc && o->config)
-		return 0;
-	fprintf(stderr, "edmd-jobs: %s; --help tells more\n", o->config ?
-		"arguments that are no options" : "--config FILE is missing");
-	return EX_USAGE;
+	if (code >= 0 || o->config)
+		return code;
+	return cmdline_refuse("edmd-jobs", "no", "--config",
+			      "--config FILE, the machine file");
 }
 
 static int configure(struct jobs *j, struct machine_config *config,
@@ -181,22 +173,17 @@ static int configure(struct jobs *j, struct machine_config *config,
 			"read\n", o->config, strerror(-err));
 		return EX_NOINPUT;
 	}
-	wrong = jobs_lcm_url_check(config->lcm_url);
+	wrong = udpm_url_read(&j->url, config->lcm_url);
 	if (wrong) {
-		fprintf(stderr, "%s: error: [lcm] url %s: %s; commands are "
-			"not signed, so only udpm://...?ttl=0, which stays on "
-			"this host\n", o->config, config->lcm_url, wrong);
+		fprintf(stderr, "%s: error: [lcm] url %s: %s\n", o->config,
+			config->lcm_url, wrong);
 		return EX_CONFIG;
 	}
 	j->config = config;
 	j->machine = o->name ? o->name : config->name;
-	if (strlen(j->machine) - 1 >= SHM_NAME_MAX - 1 ||
-	    j->machine[strspn(j->machine, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefgh"
-			      "ijklmnopqrstuvwxyz0123456789_-")]) {
-		fprintf(stderr, "edmd-jobs: machine name %s; 1 to 31 of A-Z "
-			"a-z 0-9 _ -\n", j->machine);
-		return EX_USAGE;
-	}
+	if (!names_machine_ok(j->machine))
+		return cmdline_refuse("edmd-jobs", "machine name", j->machine,
+				      NAMES_MACHINE_WANTED);
 	return 0;
 }
 
@@ -245,15 +232,23 @@ static int claim(struct jobs *j)
 static int open_lcm(struct jobs *j)
 {
 	struct jobs_lcm_handlers h = {
-		.command = verbs_take, .chunk = submit_take, .arg = j,
+		.command = verbs_take, .chunk = submit_take,
+		.trust = &j->trust, .arg = j,
 	};
-	int err = jobs_lcm_open(&j->lcm, j->config->lcm_url, j->machine, &h);
+	int err;
 
+	if (j->url.ttl > 0 && j->trust.nkeys < 2) {
+		log_error("lcm: %s leaves this host, and no other host has a "
+			  "key; with ttl=0, edmctl keys add NAME operator "
+			  "makes one; then set the ttl", j->config->lcm_url);
+		return EX_CONFIG;
+	}
+	err = jobs_lcm_open(&j->lcm, &j->url, j->machine, &h);
 	if (err < 0)
-		log_error("lcm: cannot open %s; does the host have a "
+		log_error("lcm: cannot open %s: %s; does the host have a "
 			  "multicast route? ip link set lo multicast on; "
 			  "ip route add 224.0.0.0/4 dev lo",
-			  j->config->lcm_url);
+			  j->config->lcm_url, strerror(-err));
 	return err < 0 ? EX_UNAVAILABLE : 0;
 }
 
@@ -322,7 +317,7 @@ int main(int argc, char **argv)
 	struct options o = { .config = NULL };
 	int rc = parse(argc, argv, &o);
 
-	if (rc)
+	if (rc >= 0)
 		return rc;
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;
@@ -334,11 +329,14 @@ int main(int argc, char **argv)
 	if (rc == 0)
 		rc = claim(&jobs);
 	if (rc == 0)
+		rc = keys_open(&jobs, o.store ? o.store : config.store_dir);
+	if (rc == 0)
 		rc = open_lcm(&jobs);
 	if (rc == 0)
 		rc = run(&jobs);
 	reply_fini(&jobs.replies);
 	jobs_lcm_close(jobs.lcm);
+	keys_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
 	store_close(jobs.store);
 	return rc;
