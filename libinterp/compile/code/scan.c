@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define KNOWN_MAX	160
+#define KNOWN_MAX	240
 
 #define A_NUMBER	"a sign, digits and one decimal point, as in " \
 			"X-12.345; no exponent"
@@ -335,7 +335,7 @@ static const uint8_t *scan_e(struct nc_reader *r, const uint8_t *at)
 
 static void refuse_stray(struct nc_reader *r, const uint8_t *at)
 {
-	char wanted[160], letters[KNOWN_MAX];
+	char wanted[240], letters[KNOWN_MAX];
 
 	snprintf(wanted, sizeof(wanted), "%s before a number; no blank inside "
 		 "a number", nc_letters_known(r->d, letters, sizeof(letters)));

@@ -121,14 +121,18 @@ enum nc_motion {
 
 /*
  * Words done once: ten times the number of the G, what it is called, the
- * function of motion.c, the slots it uses.  A new one is a row and a function.
+ * function that does it, the slots it uses.  A new one is a row and a function.
  */
 #define NC_ONE_SHOTS(W) \
 	W(40, DWELL, dwell, NC_BIT(NC_P) | NC_BIT(NC_X)) \
 	W(280, HOME, home, NC_AXES) \
 	W(920, SET, set_here, NC_AXES) \
 	W(921, SET_CANCEL, set_cancel, 0) \
-	W(1200, SINK, nc_sink, NC_AXES | NC_BIT(NC_P))
+	W(1200, SINK, nc_sink, NC_AXES | NC_BIT(NC_P)) \
+	W(1500, PASS, nc_pass, 0) \
+	W(1510, CAVITY, nc_cavity, \
+	  NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_P)) \
+	W(1520, CUT, nc_cut, NC_BIT(NC_R) | NC_BIT(NC_L))
 
 #define NC_ONE_SHOT_ID(number, id, run, takes)	NC_##id,
 enum nc_one_shot { NC_ONE_SHOTS(NC_ONE_SHOT_ID) };
