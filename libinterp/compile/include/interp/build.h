@@ -2,11 +2,10 @@
 /*
  * build.h - put a program together, segment by segment
  *
- * What a reader of NC code calls.  Coordinates are absolute machine
- * coordinates of all eight axes.  Every call that adds a segment returns 0, or
- * -EINVAL with @diag's found and wanted filled (line and column are the
- * reader's to fill), or -ENOMEM.  After an error the builder can only be
- * destroyed.
+ * The readers of NC code call this.  Coordinates are absolute machine
+ * coordinates of all eight axes.  Each call that adds a segment returns 0;
+ * -EINVAL with found and wanted of @diag filled (the reader fills line and
+ * column); or -ENOMEM.  After an error the builder can only be destroyed.
  *
  * Threads: allocates; one object belongs to one thread.  Never in the cycle.
  */
@@ -22,16 +21,17 @@ struct interp_build_options {
 	const struct interp_machine *machine;	/* read at every call; lent */
 	enum interp_strategy strategy;
 	uint32_t tolerance_milli;	/* mu, 1/1000 pulse; main-direction and
-					 * min-switch refuse a line whose mu no
-					 * path can keep to */
+					 * min-switch refuse a line that no walk
+					 * can follow within mu */
 	bool perpendicular;		/* mu is measured square to the line */
 	enum interp_coupling coupling;	/* of three and more axes */
 	double corner_mm;		/* of limits.h; 0: its default */
 	double start_mm[INTERP_NAXES];	/* where the machine stands */
-	double chord_error_mm;		/* of curves: between two cycles no */
-	double period_s;		/* farther off; either 0: no limit */
-	double fit_mm;			/* cut lines in a row are joined into
-					 * curves this near to them; 0: not */
+	double chord_error_mm;		/* of curves: the straight way of one */
+	double period_s;		/* period is no farther off than this;
+					 * if either is 0 there is no limit */
+	double fit_mm;			/* cut lines in a row become curves that
+					 * are this near to them; 0: they stay */
 };
 
 /* What a segment carries beside its geometry. */
@@ -66,27 +66,28 @@ void interp_build_destroy(struct interp_build *b);
 const double *interp_build_here(const struct interp_build *b);
 
 /**
- * interp_build_line() - a straight line to @end_mm; one of no length is
+ * interp_build_line() - a straight line to @end_mm.  A line without length is
  * dropped.
  *
- * One that ends elsewhere (@w's ends) has a stop in front of it.  Its axes are
- * no longer held to their travel here: where they will be is not known.
+ * If the machine decides where the line ends (@w's ends), a stop is put before
+ * it.  From then on the travel of its axes is not checked here, because nobody
+ * knows yet where they will be.
  */
 int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag);
 
 /**
- * interp_build_flush() - lay down what is held back to be joined (fit_mm).
+ * interp_build_flush() - add the lines that were held back to be joined (fit_mm).
  *
- * Calls that add a segment do so first; before interp_build_escape() and
- * interp_build_lift(), and after the last call, it must be called.
+ * Each call that adds another kind of segment does this first.  The caller must
+ * do it before interp_build_escape() and interp_build_lift(), and at the end.
  */
 int interp_build_flush(struct interp_build *b, struct interp_diag *diag);
 
-/** interp_build_arc() - an arc to @end_mm, helical if other axes move.
- *  The radii at start and end may differ by 2 pulses, or 0.1 % but 5
- *  pulses, no more. */
+/** interp_build_arc() - an arc to @end_mm; a helix if other axes move too.
+ *  The radii at the start and at the end may differ by 2 pulses, or by 0.1 % if
+ *  that is more, but never by more than 5 pulses. */
 int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_arc *arc,
 		     const struct interp_build_word *w,
@@ -103,10 +104,10 @@ struct interp_build_contour {
 /**
  * interp_build_pair() - two contours at once: @contour[0] on X Y, [1] on U V.
  *
- * Each goes from where its axes stand to their places in @end_mm; no other
- * axis may move.  They are walked together: arcs of one sense, phase and sweep
- * by angle, all others by their shares of length.  If but one of them moves,
- * a plain line or arc is made of it.
+ * Each goes from where its axes stand to their places in @end_mm.  No other axis
+ * may move.  They are walked together: two arcs of the same sense, phase and
+ * sweep by their angle, all others by their shares of the length.  If only one
+ * of them moves, it becomes a simple line or arc.
  */
 int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_contour contour[2],
@@ -127,19 +128,19 @@ struct interp_build_curve {
 };
 
 /**
- * interp_build_curve() - along a NURBS from its first point, within two pulses
- * of here, to its last.
+ * interp_build_curve() - follow a NURBS from its first point, which must be within
+ * two pulses of here, to its last point.
  *
- * It becomes one segment or several: one ends at a cusp or a corner, and where
- * the curve asks for a feed of another order.  Each has the fastest feed that
- * keeps chord error and the limits of the axes.
+ * It becomes one or several segments.  A segment ends at a cusp or a corner, and
+ * where the curve needs a much slower or faster feed.  Each segment gets the
+ * fastest feed that keeps the chord error and the limits of the axes.
  */
 int interp_build_curve(struct interp_build *b,
 		       const struct interp_build_curve *c,
 		       const struct interp_build_word *w,
 		       struct interp_diag *diag);
 
-/** interp_build_action() - something done on the spot.
+/** interp_build_action() - something that is done without motion.
  *  @kind INTERP_DWELL or later, @arg as struct interp_seg says. */
 int interp_build_action(struct interp_build *b, enum interp_kind kind,
 			uint32_t arg, const struct interp_build_word *w,
@@ -149,9 +150,9 @@ int interp_build_action(struct interp_build *b, enum interp_kind kind,
  * interp_build_timed() - from here to interp_build_timed_end() the program
  * cuts for @ms milliseconds at most.
  *
- * When they are over it goes back along the path and on behind that end, which
- * must be the same lattice point: else the end is refused with -EINVAL.  Not
- * one inside another.
+ * When the time is over, the machine goes back along the path to this place and
+ * goes on after that end.  Both must be the same lattice point, else the end is
+ * refused with -EINVAL.  A timed part cannot contain another one.
  */
 int interp_build_timed(struct interp_build *b,
 		       const struct interp_build_word *w,
@@ -161,28 +162,31 @@ int interp_build_timed_end(struct interp_build *b, uint32_t ms,
 			   struct interp_diag *diag);
 
 /**
- * interp_build_escape() - the way out of the motions that follow; NULL: along
+ * interp_build_escape() - set the way out for the motions that follow; NULL: along
  * the path again.
  *
- * @e is free of material wherever they cut: the caller's promise.  Its speed
- * is bounded by its linear axes here.  Return: 0 or -ENOMEM; a program with
- * more than 65535 of them gives the rest none.
+ * The caller promises that no material is in the way of @e wherever these motions
+ * cut.  Its speed is limited here by its linear axes.  A program can have 65535
+ * different ways out; motions after that go out along the path.
+ * Return: 0 or -ENOMEM.
  */
 int interp_build_escape(struct interp_build *b, const struct interp_escape *e);
 
 /**
- * interp_build_lift() - straight cuts along @axis alone, from here on, leave
- * along it as far as the electrode came; -1: along the path again.
+ * interp_build_lift() - from here on, straight cuts along @axis alone are left
+ * along that axis, as far as the electrode came along it; -1: along the path
+ * again.
  */
 void interp_build_lift(struct interp_build *b, int axis);
 
 /**
- * interp_build_came_mm() - from where the electrode came straight here along
- * @axis, on the side @side (+1 or -1) of it; here, if it did not.
+ * interp_build_came_mm() - the place on @axis where the electrode began its
+ * straight way to here, from the side @side (+1 or -1).  If it did not come that
+ * way, the place where it is.
  */
 double interp_build_came_mm(const struct interp_build *b, int axis, int side);
 
-/* What only the whole text tells. */
+/* What is known only after the whole text has been read. */
 struct interp_build_about {
 	uint32_t lines;
 	uint8_t hash[32];
@@ -195,12 +199,11 @@ struct interp_build_about {
 size_t interp_build_bytes(const struct interp_build *b);
 
 /**
- * interp_build_write() - lay the finished program out at @block.
+ * interp_build_write() - write the finished program to @block.
  *
- * An INTERP_END is added if the last segment is none.  @block has room for
- * interp_build_bytes() bytes and is 8-aligned.
- *
- * What was built has moved there: the builder can only be destroyed.
+ * An INTERP_END is added if the last segment is not one.  @block must have room
+ * for interp_build_bytes() bytes and be aligned to 8 bytes.  After this call the
+ * builder can only be destroyed.
  */
 void interp_build_write(struct interp_build *b,
 			const struct interp_build_about *about, void *block);

@@ -2,8 +2,8 @@
 /*
  * compile.h - a job's text into a program, in the dialect it is written in
  *
- * The one way in: whoever has a job to compile picks its dialect by name or
- * by the file's name and calls interp_compile().
+ * This is the one entry.  Whoever has a job to compile finds its dialect by name,
+ * or by the name of the file, and calls interp_compile().
  *
  *	generic				NC code, docs/nc-code.md
  *	robofil skd2 sodick chmer	NC code of wire machines, there too
@@ -19,10 +19,11 @@
 
 struct interp_dialect;
 
-/** interp_dialect_by_name() - NULL if there is none of that name. */
+/** interp_dialect_by_name() - the dialect called @name; NULL if there is none. */
 const struct interp_dialect *interp_dialect_by_name(const char *name);
 
-/** interp_dialect_by_file() - by .3b or .4b, in either case; else generic. */
+/** interp_dialect_by_file() - by the end of the file's name (.3b, .4b, in upper
+ *  or lower case); else generic. */
 const struct interp_dialect *interp_dialect_by_file(const char *path);
 
 /** interp_dialect_name() - as interp_dialect_by_name() knows it. */

@@ -12,8 +12,8 @@
 #include "interp/diag.h"
 #include "interp/program.h"
 
-/* Where text goes.  @put gets whole lines with their LF; what it returns but
- * 0 ends the writing and is handed on. */
+/* Where text goes.  @put gets whole lines, each with its LF.  If it returns
+ * anything but 0, the writing ends and that number is returned. */
 struct interp_sink {
 	int (*put)(void *arg, const char *text, size_t bytes);
 	void *arg;
@@ -25,8 +25,8 @@ struct interp_sink {
  * G90 places with six decimals of a millimetre or degree, centres as I J K
  * from the start, F where it changes.
  *
- * Return: 0; -EINVAL with @diag filled for what the dialect has no word for;
- * what the sink said.
+ * Return: 0; -EINVAL with @diag filled if the dialect has no word for a part of
+ * the program; or what the sink returned.
  */
 int interp_iso_write(const struct interp_program *p,
 		     const struct interp_sink *to, struct interp_diag *diag);

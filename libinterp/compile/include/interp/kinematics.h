@@ -2,19 +2,20 @@
 /*
  * kinematics.h - from axes to the tool's tip and direction, and back
  *
- * A machine is one chain of joints from the work to the tool, whatever of it
- * is table and whatever head: only the order counts.  Every joint moves the
- * tool relative to the work, positive as ISO 841 has it, so a table that goes
- * left when X counts up is a joint that moves the tool right.
+ * A machine is one chain of joints from the work to the tool.  It does not matter
+ * which joints are in the table and which in the head: only their order counts.
+ * Each joint moves the tool relative to the work, with the signs of ISO 841.  So a
+ * table that goes left when X counts up is a joint that moves the tool right.
  *
  *	C A X Y Z	trunnion table: C on A, under a head on X Y Z
  *	X Y Z C A	both rotaries in the head
  *	C X Y Z B	one in the table, one in the head
  *
- * A joint is a homogeneous transform: a linear one a translation along its
- * direction, a rotary one a rotation about a line.  At all axes 0 the work
- * frame and the machine frame are one; a rotary's line and the tool are given
- * there, so their offset constants are the points at_mm and tip_mm.
+ * A joint is a homogeneous transform: a linear joint is a translation along its
+ * direction, a rotary joint a rotation about a line.  When all axes are at 0, the
+ * frame of the work is the frame of the machine.  The lines of the rotary joints
+ * and the tool are given for that place, so their offsets are simply the points
+ * at_mm and tip_mm.
  *
  * Units: mm and degrees on axes; directions are unit vectors.
  * Sources: offset constants and transforms as in equations (5) to (8) of the
@@ -61,9 +62,9 @@ void interp_kin_clear(struct interp_kinematics *k);
  *	chain = C(0 0 -120) A(0 15 -80) X Y Z
  *	chain = X Y Z C B(0 0 0 / 0 0.70710678 0.70710678)
  *
- * From work to tool; in brackets a point on a rotary's axis and, behind a
- * slash, its direction if it is not that of X, Y or Z.  The tool stays as
- * it is in @k: interp_kin_clear() first.
+ * The order is from the work to the tool.  The brackets hold a point on the axis of
+ * a rotary joint and, after a slash, its direction if that is not X, Y or Z.  The
+ * tool in @k is not changed, so call interp_kin_clear() first.
  *
  * Return: 0, or -EINVAL with @diag's found and wanted filled.
  */
@@ -71,10 +72,11 @@ int interp_kin_parse(struct interp_kinematics *k, const char *chain,
 		     struct interp_diag *diag);
 
 /**
- * interp_kin_prepare() - check a chain filled by hand and index it.
+ * interp_kin_prepare() - check a chain that was filled by the caller, and index it.
  *
- * Wanted: each axis once, three linear joints that span space, at most two
- * rotaries that turn the tool's axis.  Return: as interp_kin_parse().
+ * Each axis may stand in it once.  It needs three linear joints that span space,
+ * and at most two rotary joints that turn the tool's axis.
+ * Return: as interp_kin_parse().
  */
 int interp_kin_prepare(struct interp_kinematics *k, struct interp_diag *diag);
 
@@ -86,7 +88,7 @@ void interp_kin_forward(const struct interp_kinematics *k,
 /**
  * interp_kin_place() - set the linear axes of @q so that the tip is at @tip_mm.
  *
- * The rotaries of @q stay: what tool-centre-point programming needs.
+ * The rotary axes of @q stay.  Programs of the tool's tip need this.
  * Return: 0, or -EDOM if the linear joints do not span space there.
  */
 int interp_kin_place(const struct interp_kinematics *k,
@@ -95,11 +97,11 @@ int interp_kin_place(const struct interp_kinematics *k,
 /**
  * interp_kin_inverse() - the axes of a pose, the solution nearest to @q.
  *
- * @q holds the last axes, and gets the new ones; axes beyond the chain stay.
- * Of two solutions the one is taken whose rotaries turn least; angles go on
- * across +-180.
+ * @q: the last places of the axes; it gets the new ones.  Axes outside the chain
+ * stay.  Of two solutions the one with the smaller turns is taken.  Angles go on
+ * beyond +-180 degrees.
  * Return: 0; -EDOM if the tool cannot point that way; -ESRCH if the pose is
- * singular: a rotary could have any angle, and keeps its own.
+ * singular: a rotary axis could have any angle there, and keeps the one it has.
  */
 int interp_kin_inverse(const struct interp_kinematics *k,
 		       const struct interp_kin_pose *pose,
@@ -108,8 +110,9 @@ int interp_kin_inverse(const struct interp_kinematics *k,
 /**
  * interp_kin_margin() - how far from singular: 1 best, 0 singular.
  *
- * The smallest turn of the tool, per turn of the rotaries together: near 0
- * they race for a small turn of the tool.  1 with fewer than two of them.
+ * It is the smallest turn of the tool for a turn of the rotary axes.  Near 0 they
+ * must turn very fast for a small turn of the tool.  With fewer than two rotary
+ * axes it is 1.
  */
 double interp_kin_margin(const struct interp_kinematics *k,
 			 const double q[INTERP_NAXES]);

@@ -2,13 +2,15 @@
 /*
  * nc.h - read NC code, one pass, into a program
  *
- * Dialect `generic` has the RS-274 words most sinkers and wire machines share;
- * the others are those of wire machines; docs/nc-code.md has their tables.  The reader keeps modal state, checks
- * every word and hands absolute machine coordinates to the builder.  A word it
- * does not know is refused with line and column; nothing is skipped silently.
+ * The dialect `generic` has the RS-274 words that most sinkers and wire machines
+ * share.  The other dialects are those of wire machines.  docs/nc-code.md has the
+ * tables of all.  The reader keeps the modal state, checks every word, and gives
+ * absolute machine coordinates to the builder.  A word that it does not know is
+ * refused with its line and column.  Nothing is skipped silently.
  *
- * Memory is bounded by the program: no recursion on the input, subprograms by
- * a stack of fixed depth, total lines executed bounded.
+ * The memory it needs is bounded by the size of the program: the reader does not
+ * call itself, subprograms use a stack of fixed depth, and the number of lines
+ * executed has a limit.
  *
  * Threads: allocates.  Never in the cycle.
  */

@@ -2,10 +2,11 @@
 /*
  * nurbs_fit.h - one curve for many points, within a tolerance
  *
- * A cubic of weights 1 through the first and the last point, by least squares
- * over the length of the polygon; knots are added where it is too far off.
- * Within the tolerance means: every point is that near to the curve, and the
- * curve between two neighbours, in eighths, that near to the line between them.
+ * The curve is a cubic with all weights 1 through the first and the last point,
+ * found by least squares over the length of the polygon.  Knots are added where it
+ * is too far away.  "Within the tolerance" means two things: every point is that
+ * near to the curve; and the curve between two neighbours, looked at in eighths, is
+ * that near to the line between them.
  *
  * Units: mm, rotary axes in degrees, all counted alike.
  * Threads: allocates; not for the cycle.
@@ -36,8 +37,10 @@ struct interp_fit {
 };
 
 /**
- * interp_nurbs_fit() - @ret lends room for npoints control points; its
- * parameter runs from 0 to the length of the polygon.
+ * interp_nurbs_fit() - find the curve of @f.
+ *
+ * @ret: has room for npoints control points.  The curve's parameter runs from 0 to
+ * the length of the polygon.
  *
  * Return: 0, -ERANGE if no such curve was found, -ENOMEM.
  */

@@ -2,11 +2,11 @@
 /*
  * orbit.h - planetary cycles of a sinker, as a path
  *
- * The electrode does not turn: all of it is moved round in the plane (a, b)
- * beside its way along the sink axis.  A place on a machine's path is one
- * number, so the orbit is not superimposed while it runs; it is the path:
- * lines, arcs and helices, and polylines within 0.4 pulse of the curve where
- * there is no such segment.  A cycle ends where it began, to the pulse.
+ * The electrode does not turn.  It is moved round as a whole in the plane (a, b),
+ * while it moves along the sink axis.  A place on a machine's path is one number, so
+ * the orbit is not added to a motion while it runs: the orbit is the path.  It is
+ * made of lines, arcs and helices; where none of them fits, of short lines within
+ * 0.4 pulse of the curve.  A cycle ends exactly where it began.
  *
  *	shape	radius at height h over the bottom, of H in all
  *	circle	R
@@ -16,21 +16,22 @@
  *	vector	out to R and back, in each direction in turn
  *	expand	at the bottom, from 0 to R by a step each turn
  *
- * With a step, circle, square, sphere and cone sink as they go round: a step
- * of depth each turn, on a sphere a step along its profile.  Circle, square
- * and vector without one sink in the centre first.  Steps are shortened to be
- * equal.
+ * With a step, the shapes circle, square, sphere and cone sink while they go round:
+ * one step of depth in each turn, on a sphere one step along its profile.  Without a
+ * step, circle, square and vector sink in the centre first.  The steps are made a
+ * little shorter so that all of them are equal.
  *
- * Ways out (struct interp_escape) are given where the path has cut them:
+ * Ways out (struct interp_escape) are given where the path has already cut them:
  *
- *	- back to the centre of the line that leads out, and of a vector;
- *	- anywhere on a turn whose last turn lies round it at the same depth, or
- *	  a step above it: then up by that step first.  A last turn that is
- *	  smaller leaves a gate, through which an electrode as wide as the orbit
- *	  meets no more than step^2 / 8R: if that is over a pulse, none.
+ *	- back to the centre, from the line that leads out, and from a vector;
+ *	- anywhere on a turn, if the turn before it lies around it at the same
+ *	  depth, or one step above it: then first up by that step.  If the turn
+ *	  before is smaller, the way is a narrow gate.  An electrode as wide as the
+ *	  orbit meets at most step^2 / 8R of material there.  If that is more than
+ *	  a pulse, no way out is given.
  *
- * It takes an electrode that is nowhere thinner than the orbit is wide, 2R,
- * and has no undercut: without a core left standing in the middle.
+ * The electrode must nowhere be thinner than the orbit is wide (2R), and must have
+ * no undercut.  Otherwise a core would be left standing in the middle.
  *
  * Units: mm, degrees.  Threads: any thread; no state.  Never in the cycle.
  */
@@ -69,7 +70,7 @@ struct interp_orbit {
 					 * the start */
 };
 
-/* Where it goes.  Each returns 0 or what ends the cycle. */
+/* Where the path goes.  If one of these returns anything but 0, the cycle ends. */
 struct interp_orbit_to {
 	void *arg;
 	int (*line)(void *arg, const double end_mm[INTERP_NAXES], bool rapid);
@@ -79,16 +80,16 @@ struct interp_orbit_to {
 };
 
 /**
- * interp_orbit_radius_mm() - of the orbit at @h_mm over the bottom.
+ * interp_orbit_radius_mm() - the radius of the orbit at @h_mm above the bottom.
  *
- * NAN where the shape has none, as above a cone's tip.
+ * It is NAN where the shape has no radius, for example above the tip of a cone.
  */
 double interp_orbit_radius_mm(const struct interp_orbit *o, double h_mm);
 
 /**
- * interp_orbit_walk() - the whole cycle, from start_mm back to it.
+ * interp_orbit_walk() - make the whole cycle, from start_mm back to start_mm.
  *
- * Return: 0, or the first return of @to that is not.
+ * Return: 0, or the first number that @to returned and that is not 0.
  */
 int interp_orbit_walk(const struct interp_orbit *o,
 		      const struct interp_machine *m,

@@ -2,9 +2,9 @@
 /*
  * pose.h - a rigid body along a pair of NURBS with one parameter
  *
- * One curve leads the body's origin (X Y Z), the other its rotation: a
- * quaternion w x y z, made a unit one at every point.  Both are evaluated at
- * the same u, so place and direction belong together wherever the walk stands.
+ * One curve leads the body's origin (X Y Z).  The other leads its rotation: a
+ * quaternion w x y z, which is brought to length 1 at every point.  Both are
+ * evaluated at the same u, so place and direction always belong together.
  *
  * Units: mm; rotations by unit quaternions, speeds per parameter, spin in
  * radian per parameter, right-handed.
@@ -26,13 +26,14 @@ struct interp_pose {
 };
 
 /**
- * interp_pose_open() - two sound curves, lent, of three and of four axes.
+ * interp_pose_open() - open two valid curves of three and of four axes.  They must
+ * stay.
  * Return: 0, or -EINVAL if their axes or the ends of their domains differ.
  */
 int interp_pose_open(struct interp_pose_path *p, const struct interp_nurbs *move,
 		     const struct interp_nurbs *turn);
 
-/** interp_pose_at() - 0, or -EDOM where the quaternion is none (zero). */
+/** interp_pose_at() - Return: 0, or -EDOM if the quaternion is 0 there. */
 int interp_pose_at(struct interp_pose_path *p, double u,
 		   struct interp_pose *ret);
 

@@ -3,9 +3,9 @@
  * tech_table.h - a technology table: conditions, sequences, and what the
  * inline definitions of wire dialects mean
  *
- * Two texts are read: the project's own .tech (docs/technology.md), and the
- * .enc of SEDM's erosion tables.  A refusal has line, column, what was found
- * and what would be accepted.
+ * Two kinds of text are read: the project's own .tech (docs/technology.md), and
+ * the .enc of SEDM's erosion tables.  A refusal says the line, the column, what was
+ * found and what would be accepted.
  *
  * Units: as interp/tech.h.
  * Threads: reading and writing allocate; a table that is read may be looked at
@@ -48,7 +48,7 @@ struct interp_tech_sequence {
 	struct interp_tech_step step[INTERP_TECH_STEPS_MAX];
 };
 
-/* What the columns of E001= 60 6 20 ... are, by their place. */
+/* What each column of a line such as E001= 60 6 20 ... means. */
 struct interp_tech_inline {
 	uint32_t ncolumns;		/* 0: not known */
 	struct {
