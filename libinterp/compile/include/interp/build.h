@@ -78,7 +78,8 @@ int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      struct interp_diag *diag);
 
 /**
- * interp_build_flush() - add the lines that were held back to be joined (fit_mm).
+ * interp_build_flush() - add the lines that were held back to be joined
+ * (fit_mm).
  *
  * Each call that adds another kind of segment does this first.  The caller must
  * do it before interp_build_escape() and interp_build_lift(), and at the end.
@@ -104,10 +105,10 @@ struct interp_build_contour {
 /**
  * interp_build_pair() - two contours at once: @contour[0] on X Y, [1] on U V.
  *
- * Each goes from where its axes stand to their places in @end_mm.  No other axis
- * may move.  They are walked together: two arcs of the same sense, phase and
- * sweep by their angle, all others by their shares of the length.  If only one
- * of them moves, it becomes a simple line or arc.
+ * Each goes from where its axes stand to their places in @end_mm.  No other
+ * axis may move.  They are walked together: two arcs of the same sense, phase
+ * and sweep by their angle, all others by their shares of the length.  If only
+ * one of them moves, it becomes a simple line or arc.
  */
 int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_contour contour[2],
@@ -128,12 +129,12 @@ struct interp_build_curve {
 };
 
 /**
- * interp_build_curve() - follow a NURBS from its first point, which must be within
- * two pulses of here, to its last point.
+ * interp_build_curve() - follow a NURBS from its first point, which must be
+ * within two pulses of here, to its last point.
  *
- * It becomes one or several segments.  A segment ends at a cusp or a corner, and
- * where the curve needs a much slower or faster feed.  Each segment gets the
- * fastest feed that keeps the chord error and the limits of the axes.
+ * It becomes one or several segments.  A segment ends at a cusp or a corner,
+ * and where the curve needs a much slower or faster feed.  Each segment gets
+ * the fastest feed that keeps the chord error and the limits of the axes.
  */
 int interp_build_curve(struct interp_build *b,
 		       const struct interp_build_curve *c,
@@ -162,12 +163,12 @@ int interp_build_timed_end(struct interp_build *b, uint32_t ms,
 			   struct interp_diag *diag);
 
 /**
- * interp_build_escape() - set the way out for the motions that follow; NULL: along
- * the path again.
+ * interp_build_escape() - set the way out for the motions that follow; NULL:
+ * along the path again.
  *
- * The caller promises that no material is in the way of @e wherever these motions
- * cut.  Its speed is limited here by its linear axes.  A program can have 65535
- * different ways out; motions after that go out along the path.
+ * The caller promises that no material is in the way of @e wherever these
+ * motions cut.  Its speed is limited here by its linear axes.  A program can
+ * have 65535 different ways out; motions after that go out along the path.
  * Return: 0 or -ENOMEM.
  */
 int interp_build_escape(struct interp_build *b, const struct interp_escape *e);
@@ -181,8 +182,8 @@ void interp_build_lift(struct interp_build *b, int axis);
 
 /**
  * interp_build_came_mm() - the place on @axis where the electrode began its
- * straight way to here, from the side @side (+1 or -1).  If it did not come that
- * way, the place where it is.
+ * straight way to here, from the side @side (+1 or -1).  If it did not come
+ * that way, the place where it is.
  */
 double interp_build_came_mm(const struct interp_build *b, int axis, int side);
 
@@ -202,8 +203,8 @@ size_t interp_build_bytes(const struct interp_build *b);
  * interp_build_write() - write the finished program to @block.
  *
  * An INTERP_END is added if the last segment is not one.  @block must have room
- * for interp_build_bytes() bytes and be aligned to 8 bytes.  After this call the
- * builder can only be destroyed.
+ * for interp_build_bytes() bytes and be aligned to 8 bytes.  After this call
+ * the builder can only be destroyed.
  */
 void interp_build_write(struct interp_build *b,
 			const struct interp_build_about *about, void *block);

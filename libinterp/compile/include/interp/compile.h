@@ -2,8 +2,8 @@
 /*
  * compile.h - a job's text into a program, in the dialect it is written in
  *
- * This is the one entry.  Whoever has a job to compile finds its dialect by name,
- * or by the name of the file, and calls interp_compile().
+ * This is the one entry.  Whoever has a job to compile finds its dialect by
+ * name, or by the name of the file, and calls interp_compile().
  *
  *	generic				NC code, docs/nc-code.md
  *	robofil skd2 sodick chmer	NC code of wire machines, there too

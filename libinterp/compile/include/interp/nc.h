@@ -2,15 +2,16 @@
 /*
  * nc.h - read NC code, one pass, into a program
  *
- * The dialect `generic` has the RS-274 words that most sinkers and wire machines
- * share.  The other dialects are those of wire machines.  docs/nc-code.md has the
- * tables of all.  The reader keeps the modal state, checks every word, and gives
- * absolute machine coordinates to the builder.  A word that it does not know is
- * refused with its line and column.  Nothing is skipped silently.
+ * The dialect `generic` has the RS-274 words that most sinkers and wire
+ * machines share.  The other dialects are those of wire machines.
+ * docs/nc-code.md has the tables of all.  The reader keeps the modal state,
+ * checks every word, and gives absolute machine coordinates to the builder.  A
+ * word that it does not know is refused with its line and column.  Nothing is
+ * skipped silently.
  *
- * The memory it needs is bounded by the size of the program: the reader does not
- * call itself, subprograms use a stack of fixed depth, and the number of lines
- * executed has a limit.
+ * The memory it needs is bounded by the size of the program: the reader does
+ * not call itself, subprograms use a stack of fixed depth, and the number of
+ * lines executed has a limit.
  *
  * Threads: allocates.  Never in the cycle.
  */

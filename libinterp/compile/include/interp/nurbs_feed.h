@@ -3,10 +3,10 @@
  * nurbs_feed.h - how fast a curve may be followed at a point
  *
  * At a constant feed v along the path, an axis at x(s) has the speed v x_s, the
- * acceleration v^2 x_ss and the jerk v^3 x_sss.  On a curve of curvature k there is
- * an acceleration of v^2 k across the path, and the straight way of one period T is
- * v^2 T^2 k / 8 away from the curve.  Each of these has a limit, and the limit that
- * allows the lowest feed counts.
+ * acceleration v^2 x_ss and the jerk v^3 x_sss.  On a curve of curvature k
+ * there is an acceleration of v^2 k across the path, and the straight way of
+ * one period T is v^2 T^2 k / 8 away from the curve.  Each of these has a
+ * limit, and the limit that allows the lowest feed counts.
  *
  * Units: mm, s.
  * Threads: any thread; nothing is allocated.

@@ -3,10 +3,10 @@
  * nurbs_fit.h - one curve for many points, within a tolerance
  *
  * The curve is a cubic with all weights 1 through the first and the last point,
- * found by least squares over the length of the polygon.  Knots are added where it
- * is too far away.  "Within the tolerance" means two things: every point is that
- * near to the curve; and the curve between two neighbours, looked at in eighths, is
- * that near to the line between them.
+ * found by least squares over the length of the polygon.  Knots are added where
+ * it is too far away.  "Within the tolerance" means two things: every point is
+ * that near to the curve; and the curve between two neighbours, looked at in
+ * eighths, is that near to the line between them.
  *
  * Units: mm, rotary axes in degrees, all counted alike.
  * Threads: allocates; not for the cycle.
@@ -39,8 +39,8 @@ struct interp_fit {
 /**
  * interp_nurbs_fit() - find the curve of @f.
  *
- * @ret: has room for npoints control points.  The curve's parameter runs from 0 to
- * the length of the polygon.
+ * @ret: has room for npoints control points.  The curve's parameter runs from 0
+ * to the length of the polygon.
  *
  * Return: 0, -ERANGE if no such curve was found, -ENOMEM.
  */

@@ -2,11 +2,12 @@
 /*
  * orbit.h - planetary cycles of a sinker, as a path
  *
- * The electrode does not turn.  It is moved round as a whole in the plane (a, b),
- * while it moves along the sink axis.  A place on a machine's path is one number, so
- * the orbit is not added to a motion while it runs: the orbit is the path.  It is
- * made of lines, arcs and helices; where none of them fits, of short lines within
- * 0.4 pulse of the curve.  A cycle ends exactly where it began.
+ * The electrode does not turn.  It is moved round as a whole in the plane (a,
+ * b), while it moves along the sink axis.  A place on a machine's path is one
+ * number, so the orbit is not added to a motion while it runs: the orbit is the
+ * path.  It is made of lines, arcs and helices; where none of them fits, of
+ * short lines within 0.4 pulse of the curve.  A cycle ends exactly where it
+ * began.
  *
  *	shape	radius at height h over the bottom, of H in all
  *	circle	R
@@ -16,12 +17,13 @@
  *	vector	out to R and back, in each direction in turn
  *	expand	at the bottom, from 0 to R by a step each turn
  *
- * With a step, the shapes circle, square, sphere and cone sink while they go round:
- * one step of depth in each turn, on a sphere one step along its profile.  Without a
- * step, circle, square and vector sink in the centre first.  The steps are made a
- * little shorter so that all of them are equal.
+ * With a step, the shapes circle, square, sphere and cone sink while they go
+ * round: one step of depth in each turn, on a sphere one step along its
+ * profile.  Without a step, circle, square and vector sink in the centre first.
+ * The steps are made a little shorter so that all of them are equal.
  *
- * Ways out (struct interp_escape) are given where the path has already cut them:
+ * Ways out (struct interp_escape) are given where the path has already cut
+ * them:
  *
  *	- back to the centre, from the line that leads out, and from a vector;
  *	- anywhere on a turn, if the turn before it lies around it at the same
@@ -30,8 +32,8 @@
  *	  orbit meets at most step^2 / 8R of material there.  If that is more than
  *	  a pulse, no way out is given.
  *
- * The electrode must nowhere be thinner than the orbit is wide (2R), and must have
- * no undercut.  Otherwise a core would be left standing in the middle.
+ * The electrode must nowhere be thinner than the orbit is wide (2R), and must
+ * have no undercut.  Otherwise a core would be left standing in the middle.
  *
  * Units: mm, degrees.  Threads: any thread; no state.  Never in the cycle.
  */

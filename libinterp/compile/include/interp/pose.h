@@ -26,8 +26,8 @@ struct interp_pose {
 };
 
 /**
- * interp_pose_open() - open two valid curves of three and of four axes.  They must
- * stay.
+ * interp_pose_open() - open two valid curves of three and of four axes.  They
+ * must stay.
  * Return: 0, or -EINVAL if their axes or the ends of their domains differ.
  */
 int interp_pose_open(struct interp_pose_path *p, const struct interp_nurbs *move,

@@ -4,8 +4,8 @@
  * inline definitions of wire dialects mean
  *
  * Two kinds of text are read: the project's own .tech (docs/technology.md), and
- * the .enc of SEDM's erosion tables.  A refusal says the line, the column, what was
- * found and what would be accepted.
+ * the .enc of SEDM's erosion tables.  A refusal says the line, the column, what
+ * was found and what would be accepted.
  *
  * Units: as interp/tech.h.
  * Threads: reading and writing allocate; a table that is read may be looked at

@@ -78,7 +78,8 @@ void interp_axis_model_step(struct interp_axis_model *m, double u_mm_s);
  *
  * This is for finding out how much a changed number changes the result.  If one
  * model turned back a period sooner than the other, its kick would make a step
- * in the difference.  @leader must have been stepped first; it may be @m itself.
+ * in the difference.  @leader must have been stepped first; it may be @m
+ * itself.
  */
 void interp_axis_model_step_beside(struct interp_axis_model *m, double u_mm_s,
 				   const struct interp_axis_model *leader);

@@ -14,8 +14,8 @@
  *	growth		an axis grows from a fixed point with its temperature
  *
  * The drives cannot see these errors, because their encoders have the same
- * errors.  The correction depends on the place alone (and on temperatures, which
- * change slowly).  So a walk back undoes exactly what the walk there did.
+ * errors.  The correction depends on the place alone (and on temperatures,
+ * which change slowly).  So a walk back undoes exactly what the walk there did.
  *
  * Units: mm; rotary axes degrees.
  * Threads: interp_errormap_apply() and _error() are RT-safe: a binary search in

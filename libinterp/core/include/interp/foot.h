@@ -4,11 +4,11 @@
  *
  * The foot is the point of the path where a line to the actual place is square
  * to the path.  It is followed from its last place, and it never goes back
- * against the direction of travel.  At a sharp tip two branches of the path come
- * close to each other.  The nearest point of all may then lie on the branch that
- * was left already, and a controller that pulls toward it would never get round
- * the tip.  The foot jumps forward in one case only: the axes cut the tip off,
- * and a point that the set values have passed is nearer.
+ * against the direction of travel.  At a sharp tip two branches of the path
+ * come close to each other.  The nearest point of all may then lie on the
+ * branch that was left already, and a controller that pulls toward it would
+ * never get round the tip.  The foot jumps forward in one case only: the axes
+ * cut the tip off, and a point that the set values have passed is nearer.
  *
  * A path is anything that can say where it is and in which direction it goes at
  * a parameter u: a spline, an arc, a table of points.  Inside the path per_u

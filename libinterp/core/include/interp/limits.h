@@ -23,8 +23,8 @@
  *
  * A node on a straight line slows nothing down.  Lines shorter than 100
  * corner_mm are also limited by the radius of the curve that they follow.  That
- * radius is found from the chords of 20 corner_mm on both sides of a node, and is
- * not taken smaller than corner_mm.
+ * radius is found from the chords of 20 corner_mm on both sides of a node, and
+ * is not taken smaller than corner_mm.
  *
  * The speeds are rounded down to levels that are at most 1/32 apart (the top
  * speeds of the axes are levels too).  So at most a few hundred of them can

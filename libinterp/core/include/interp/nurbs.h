@@ -10,8 +10,8 @@
  *
  * The knots and points of a curve belong to the caller.  To evaluate a curve,
  * open it.  The evaluator keeps what one span of knots needs, so that a point
- * costs the Cox-de Boor triangle and a sum.  To enter another span costs a fixed
- * amount of work more.
+ * costs the Cox-de Boor triangle and a sum.  To enter another span costs a
+ * fixed amount of work more.
  *
  * Units: points in mm (rotary axes in degrees), in the columns that the caller
  * chooses.  The parameter u has no unit.
@@ -120,8 +120,9 @@ void interp_nurbs_open(struct interp_nurbs_eval *e,
 /**
  * interp_nurbs_at() - the point at @u and its first @derivs derivatives.
  *
- * If @u is outside the domain, the nearer end of the domain is taken.  At a knot
- * the span that begins there is taken; at the end of the domain, the last span.
+ * If @u is outside the domain, the nearer end of the domain is taken.  At a
+ * knot the span that begins there is taken; at the end of the domain, the last
+ * span.
  */
 void interp_nurbs_at(struct interp_nurbs_eval *e, double u, int derivs,
 		     struct interp_nurbs_point *ret);

@@ -4,9 +4,9 @@
  *
  * A table of stops gives the parameter u for a place s on a curve.  Between two
  * stops u is a cubic of s (Hermite) that never falls, because its slopes are
- * within the bounds of Fritsch and Carlson.  So a walk by length never goes back
- * and never skips a part, whatever the shape of the curve; not even over a cusp,
- * where du/ds has no bound.
+ * within the bounds of Fritsch and Carlson.  So a walk by length never goes
+ * back and never skips a part, whatever the shape of the curve; not even over a
+ * cusp, where du/ds has no bound.
  *
  * Units: mm, in the axes the curve counts.
  * Threads: the time to make a table grows with its length: startup only.  To
@@ -39,8 +39,8 @@ struct interp_nurbs_range {
 /**
  * interp_nurbs_stops() - make a table for a part of a curve.
  *
- * Return: how many stops it has, two or more.  Stops for which @room is too small
- * are counted, but not written.
+ * Return: how many stops it has, two or more.  Stops for which @room is too
+ * small are counted, but not written.
  */
 size_t interp_nurbs_stops(struct interp_nurbs_eval *e,
 			  const struct interp_nurbs_range *r,

@@ -5,8 +5,8 @@
  * A program is a path.  Segment i leads from node i to node i+1.  A segment
  * without length (a dwell, a stop, a switched output) has two equal nodes.  It
  * is called an *action*, and is done when the walk comes to it for the first
- * time.  The block holds offsets and no pointers: the job service writes it into
- * shared memory once, and the real-time process maps it read-only.
+ * time.  The block holds offsets and no pointers: the job service writes it
+ * into shared memory once, and the real-time process maps it read-only.
  *
  *	head | segments[nsegs] | nodes[nsegs + 1][naxes] | arcs[narcs]
  *	     | conditions[nconds] | escapes[nescapes] | couples[ncouples]
@@ -15,11 +15,12 @@
  *
  * Nodes are in fixed-point numbers: 1 pulse = INTERP_SUB subpulses.  So a
  * programmed point between two pulses is kept, and the way there and back is
- * exact.  A node has one column for each axis that the program moves.  The other
- * axes stand.
+ * exact.  A node has one column for each axis that the program moves.  The
+ * other axes stand.
  *
  * Units: mm, mm/s along the path; rotary axes in degrees.  The length of a path
- * is the length in X Y Z; if none of these moves, in U V; else in A B C (degrees).
+ * is the length in X Y Z; if none of these moves, in U V; else in A B C
+ * (degrees).
  * Threads: a mapped program is never written; any thread may read it.
  */
 #ifndef INTERP_PROGRAM_H
@@ -132,8 +133,8 @@ struct interp_seg {
 
 /*
  * A circular arc in the plane (a, b).  Every other axis moves linearly at the
- * same time.  The radius changes linearly from r_mm to r_mm + dr_mm, so that the
- * end is met exactly even if rounding put it beside the circle.
+ * same time.  The radius changes linearly from r_mm to r_mm + dr_mm, so that
+ * the end is met exactly even if rounding put it beside the circle.
  */
 struct interp_arc {
 	double a_mm, b_mm;		/* centre */
@@ -169,8 +170,8 @@ struct interp_couple {
 };
 
 /*
- * A NURBS that a program follows, as a whole or in pieces.  Its knots and control
- * points are in numbers[], in the form of interp/nurbs.h.
+ * A NURBS that a program follows, as a whole or in pieces.  Its knots and
+ * control points are in numbers[], in the form of interp/nurbs.h.
  */
 struct interp_curve {
 	uint32_t degree, npoints;
@@ -199,9 +200,9 @@ struct interp_cond {
 
 /*
  * A way out of the cut that does not follow the path.  It has up to three
- * straight legs: rise_mm toward out_mm; then the axes in `home` to home_mm; then
- * those in `out` to out_mm.  While the segment is cut, no material is in the way
- * of any leg.
+ * straight legs: rise_mm toward out_mm; then the axes in `home` to home_mm;
+ * then those in `out` to out_mm.  While the segment is cut, no material is in
+ * the way of any leg.
  */
 struct interp_escape {
 	uint32_t home, out;		/* bit per axis; 0 and 0: along the
@@ -301,8 +302,8 @@ bool interp_program_curve(const struct interp_program *p, uint32_t i,
  * INTERP_CURVE begins, or with @at_end ends: @ret[j] is how far node column j
  * goes per mm of path.
  *
- * At a cusp it is the direction on this segment's side.  Any thread, but not for
- * the cycle.  Return: false if the segment is damaged.
+ * At a cusp it is the direction on this segment's side.  Any thread, but not
+ * for the cycle.  Return: false if the segment is damaged.
  */
 bool interp_program_curve_rate(const struct interp_program *p,
 			       const struct interp_seg *seg, bool at_end,

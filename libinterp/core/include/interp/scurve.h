@@ -3,10 +3,10 @@
  * scurve.h - jerk-limited motion along one coordinate, in the least time
  *
  * A plan is a row of phases of constant jerk.  It leads from any speed and
- * acceleration to a given speed, or to a stand at a given place.  It stays within
- * v_max, a_up, a_down and j_max.  A motion that begins outside one of these
- * limits comes back inside first, with full jerk.  A motion that is too fast to
- * stop before its place goes past it and comes back.
+ * acceleration to a given speed, or to a stand at a given place.  It stays
+ * within v_max, a_up, a_down and j_max.  A motion that begins outside one of
+ * these limits comes back inside first, with full jerk.  A motion that is too
+ * fast to stop before its place goes past it and comes back.
  *
  * Units: in every name; time in seconds from the beginning of the plan, places
  * from where the plan begins.
@@ -51,11 +51,11 @@ void interp_scurve_to_place(struct interp_scurve *c,
 			    double v_mm_s, double a_mm_s2, double way_mm);
 
 /**
- * interp_scurve_to_pass() - plan to pass the place that is @way_mm (signed) from
- * here at the speed @pass_mm_s, without acceleration.
+ * interp_scurve_to_pass() - plan to pass the place that is @way_mm (signed)
+ * from here at the speed @pass_mm_s, without acceleration.
  *
- * @from: its speed and acceleration are read, its place is not.  Unless the speed
- * is 0, @way_mm must be at least interp_scurve_way_mm() to that speed.
+ * @from: its speed and acceleration are read, its place is not.  Unless the
+ * speed is 0, @way_mm must be at least interp_scurve_way_mm() to that speed.
  */
 void interp_scurve_to_pass(struct interp_scurve *c,
 			   const struct interp_scurve_limits *l,
@@ -68,8 +68,9 @@ double interp_scurve_way_mm(const struct interp_scurve_limits *l,
 			    double v_mm_s, double a_mm_s2, double to_mm_s);
 
 /**
- * interp_scurve_falls_mm() - for a plan that ends slower than @v_mm_s: the place
- * where its speed falls to @v_mm_s for the last time; 0 if it is never so fast.
+ * interp_scurve_falls_mm() - for a plan that ends slower than @v_mm_s: the
+ * place where its speed falls to @v_mm_s for the last time; 0 if it is never so
+ * fast.
  */
 double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s);
 

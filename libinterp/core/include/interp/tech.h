@@ -94,9 +94,9 @@ struct interp_tech_order {
 /**
  * interp_tech_order() - the first order that @t breaks, or NULL.
  *
- * short_v < window_low_v <= servo_v <= window_high_v < open_v < ignition_v,
- * and short_v < servo_v < open_v; a field that is not given, and a window limit of 0, break none.
- * RT-safe.
+ * short_v < window_low_v <= servo_v <= window_high_v < open_v < ignition_v, and
+ * short_v < servo_v < open_v; a field that is not given, and a window limit of
+ * 0, break none.  RT-safe.
  */
 const struct interp_tech_order *interp_tech_order(const struct interp_tech *t);
 

@@ -56,8 +56,8 @@ void interp_shadow_forget(struct interp_shadow *s);
  * interp_shadow_step() - one period.
  *
  * @target_mm: set in this period, a place of the path; @sent_mm: what the axes
- * were sent, the same and what a compensation added; @actual_mm: measured before
- * that.
+ * were sent, the same and what a compensation added; @actual_mm: measured
+ * before that.
  */
 void interp_shadow_step(struct interp_shadow *s, const double *target_mm,
 			const double *sent_mm, const double *actual_mm,
