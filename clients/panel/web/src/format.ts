@@ -11,7 +11,7 @@ function formatOf(decimals: number, sign: boolean): Intl.NumberFormat {
 	if (!f) {
 		f = new Intl.NumberFormat(settings.language, {
 			minimumFractionDigits: decimals, maximumFractionDigits: decimals,
-			signDisplay: sign ? "exceptZero" : "negative", useGrouping: false,
+			signDisplay: sign ? "exceptZero" : "auto", useGrouping: false,
 		});
 		made.set(key, f);
 	}
@@ -20,7 +20,8 @@ function formatOf(decimals: number, sign: boolean): Intl.NumberFormat {
 
 /** Fixed decimals; a true minus, which is as wide as a plus. */
 export function number(x: number, decimals: number, sign = false): string {
-	return formatOf(decimals, sign).format(x).replace("-", "\u2212");
+	const rounded = Number(x.toFixed(decimals)) === 0 ? 0 : x;
+	return formatOf(decimals, sign).format(rounded).replace("-", "\u2212");
 }
 
 /** As few decimals as it needs, for values of a table. */
