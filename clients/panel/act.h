@@ -2,9 +2,9 @@
 /*
  * act.h - ask edmd-jobs, and send it jobs, without waiting
  *
- * The only place of the panel that knows the messages.  LCM may lose what is
- * sent, so a question is asked again, with the same number, until it is
- * answered or its time is over.
+ * Over the client library, signed with the host's own key.  A panel that is
+ * started before edmd-jobs has made that key, or may not read it, says so to
+ * whoever asks, and tries again by itself.
  *
  * Units: in every name.  Threads: one, that of the event loop.
  */
@@ -26,7 +26,7 @@ struct act_status {
 	char job[ACT_WORD_MAX], job_name[ACT_WORD_MAX];
 	char job_state[ACT_WORD_MAX];
 	int lines, queue_len;
-	double left_s;			/* -1: there is no estimate */
+	double eta_s;			/* -1: there is no estimate */
 };
 
 struct act_question {
@@ -52,10 +52,10 @@ struct act_job {
 typedef void (*act_done_fn)(void *arg, const struct act_answer *a);
 typedef void (*act_event_fn)(void *arg, const char *kind, const char *text);
 
-/** act_open() - join the channels. Return: 0, -ENETUNREACH, -ENOMEM. */
-int act_open(struct act **ret, const char *url, const char *machine);
-/** act_close() - NULL is fine; what is under way is never answered. */
-void act_close(struct act *a);
+/** act_create() - NULL: no memory.  @url, @machine stay the caller's. */
+struct act *act_create(const char *url, const char *machine);
+/** act_destroy() - NULL is fine; what is under way is never answered. */
+void act_destroy(struct act *a);
 
 /** act_on_event() - who hears EVENTs. */
 void act_on_event(struct act *a, act_event_fn fn, void *arg);
@@ -64,16 +64,19 @@ void act_on_event(struct act *a, act_event_fn fn, void *arg);
 void act_look(struct act *a);
 
 /** act_ask() - @done is called once, from act_look(), unless forgotten.
- *  Return: 0; -EBUSY: too many are under way. */
+ *  Return: 0; -EAGAIN: too many are under way; -ENOTCONN: act_why(). */
 int act_ask(struct act *a, const struct act_question *q, act_done_fn done,
 	    void *arg);
 
-/** act_send() - the same for a job. Return: 0, -EBUSY, -ENOMEM, -EIO. */
+/** act_send() - the same for a job.  Return: also -ENOMEM. */
 int act_send(struct act *a, const struct act_job *j, act_done_fn done,
 	     void *arg);
 
 /** act_forget() - never call back for @arg. */
 void act_forget(struct act *a, void *arg);
+
+/** act_why() - why nothing can be asked, and what mends it; "" if it can. */
+const char *act_why(const struct act *a);
 
 /** act_status() - never NULL. */
 const struct act_status *act_status(const struct act *a);

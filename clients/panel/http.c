@@ -359,6 +359,7 @@ static int post_job(struct request *r)
 		.fd = r->body_fd, .id = r->id, .name = r->name,
 		.hold = r->hold,
 	};
+	int err;
 
 	if (fstat(r->body_fd, &st) < 0)
 		return reply_refusal(r, 500, "no text", "a text");
@@ -366,7 +367,11 @@ static int post_job(struct request *r)
 	reply_draw_id(r);
 	/* Twelve letters are enough, and can be read out. */
 	r->id[12] = '\0';
-	if (act_send(r->panel->act, &j, on_sent, r))
+	err = act_send(r->panel->act, &j, on_sent, r);
+	if (err == -ENOTCONN)
+		return reply_refusal(r, 503, act_why(r->panel->act),
+				     "then try again");
+	if (err)
 		return reply_refusal(r, 503, "two jobs are being sent already",
 				     "try again when one of them is there");
 	return reply_wait(r, 180);

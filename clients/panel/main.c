@@ -211,12 +211,9 @@ static int open_parts(struct panel *p)
 	p->children = children_create();
 	if (!p->sessions || !p->children || live_create(&p->live, c) < 0)
 		return fail(EX_OSERR, "out of memory", "some MB");
-	err = act_open(&p->act, c->lcm_url, c->name);
-	if (err) {
-		snprintf(what, sizeof(what), "no way to %s", c->lcm_url);
-		return fail(EX_UNAVAILABLE, what, "ip link set lo multicast "
-			    "on; ip route add 224.0.0.0/4 dev lo");
-	}
+	p->act = act_create(c->lcm_url, c->name);
+	if (!p->act)
+		return fail(EX_OSERR, "out of memory", "some MB");
 	act_on_event(p->act, on_event, p);
 	if (open_server(p) == 0)
 		return 0;
@@ -230,7 +227,7 @@ static void close_parts(struct panel *p)
 {
 	if (p->lws)
 		lws_context_destroy(p->lws);
-	act_close(p->act);
+	act_destroy(p->act);
 	children_destroy(p->children);
 	live_destroy(p->live);
 	sessions_destroy(p->sessions);

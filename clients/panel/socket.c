@@ -193,7 +193,7 @@ static json_t *state_of(struct panel *p)
 	json_object_set_new(o, "jobState", json_string(s->job_state));
 	json_object_set_new(o, "lines", json_integer(s->lines));
 	json_object_set_new(o, "queue", json_integer(s->queue_len));
-	json_object_set_new(o, "left", json_real(s->left_s));
+	json_object_set_new(o, "left", json_real(s->eta_s));
 	return o;
 }
 

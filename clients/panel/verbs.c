@@ -135,7 +135,9 @@ static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 		return;
 	if (p)
 		unpend(p);
-	refuse(b, n, EX_TEMPFAIL, "too many requests are under way; try again");
+	refuse(b, n, EX_TEMPFAIL, *act_why(socket_panel(b)->act) ?
+	       act_why(socket_panel(b)->act) :
+	       "too many requests are under way; try again");
 }
 
 /* -- Of the panel itself --------------------------------------------------------- */

@@ -46,7 +46,7 @@ static void look(struct sim_run *r)
 	w->n++;
 }
 
-bool contour_look(struct sim_run *r)
+bool edmsim_contour_look(struct sim_run *r)
 {
 	struct watch *w;
 
@@ -66,7 +66,7 @@ bool contour_look(struct sim_run *r)
 	return true;
 }
 
-void contour_looked(struct sim_run *r)
+void edmsim_contour_looked(struct sim_run *r)
 {
 	struct watch *w = r->on_cycle_arg;
 

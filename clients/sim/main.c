@@ -270,7 +270,7 @@ static bool take_print(const struct sim_options *o, int opt, bool *print)
 		config_document(stdout);
 		exit(0);
 	case OPT_DOCUMENT_TECH:
-		tech_document();
+		edmsim_tech_document();
 		exit(0);
 	case OPT_HELP:
 		fputs(usage, stdout);
@@ -367,25 +367,7 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	return 0;
 }
 
-static int draw(const struct sim_run *r)
-{
-	const struct plot_options p = {
-		.program = "edmsim",
-		.trace = r->o->trace ? r->o->trace : r->trace_path,
-		.output = r->o->plot,
-		.title = r->o->job,
-		.servo_v = r->config->gap.servo_v,
-		.short_v = r->config->gap.short_v,
-		.open_v = r->config->gap.open_v,
-	};
-	const int e = plot_trace(&p) < 0 ? EX_CANTCREAT : 0;
-
-	if (r->trace_path)
-		unlink(r->trace_path);
-	return e;
-}
-
-static int finish(const struct sim_run *r)
+static int finish(struct sim_run *r)
 {
 	const bool to_stdout = r->o->report && strcmp(r->o->report, "-") == 0;
 	int e = 0;
@@ -395,7 +377,7 @@ static int finish(const struct sim_run *r)
 	if (r->o->report)
 		e = report_write(r, r->o->report);
 	if (e == 0 && r->o->plot)
-		e = draw(r);
+		e = plot_finish(r->plot) < 0 ? EX_CANTCREAT : 0;
 	return e ? e : strcmp(r->result.outcome, "done") != 0;
 }
 
@@ -403,10 +385,10 @@ static int print_tech(const struct sim_options *o,
 		      const struct machine_config *c)
 {
 	struct config_tech t;
-	int e = tech_load(&t, o, c);
+	int e = edmsim_tech_load(&t, o, c);
 
 	if (e == 0)
-		e = tech_print(&t);
+		e = edmsim_tech_print(&t);
 	config_tech_free(&t);
 	return e;
 }
@@ -420,16 +402,16 @@ static void check(const struct sim_run *r)
 static int run_whole(struct sim_run *r)
 {
 	const bool wanted = r->o->report && r->o->dry_run;
-	const bool looks = wanted && contour_look(r);
+	const bool looks = wanted && edmsim_contour_look(r);
 	int e;
 
 	if (wanted && !looks)
-		contour_watch(r);
+		tune_contour_watch(r);
 	e = run_job(r);
 	if (looks)
-		contour_looked(r);
+		edmsim_contour_looked(r);
 	else
-		contour_measure(r);
+		tune_contour_measure(r);
 	return e ? e : finish(r);
 }
 

@@ -15,21 +15,21 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-struct compile {
+struct compiler {
 	pthread_t thread;
 	int fd;				/* readable when it is done */
 	sd_event_source *source;
-	struct compile_request request;
-	struct compile_result result;
-	compile_done_fn done;
+	struct compiler_request request;
+	struct compiler_result result;
+	compiler_done_fn done;
 	void *arg;
 };
 
 /* The table is read for each job: one that was mended counts from the next
  * job on. */
-static int read_tech(struct compile *c, struct config_tech *t)
+static int read_tech(struct compiler *c, struct config_tech *t)
 {
-	struct compile_result *r = &c->result;
+	struct compiler_result *r = &c->result;
 	uint8_t hash[crypto_hash_sha256_BYTES];
 	const int err = config_tech_load(t, c->request.config, NULL);
 
@@ -48,7 +48,7 @@ static int read_tech(struct compile *c, struct config_tech *t)
 	return 0;
 }
 
-static int compile_text(struct compile *c, const struct config_tech *tech)
+static int compiler_text(struct compiler *c, const struct config_tech *tech)
 {
 	const struct interp_text text = {
 		.at = c->request.text, .bytes = c->request.bytes,
@@ -66,15 +66,15 @@ static int compile_text(struct compile *c, const struct config_tech *tech)
 			      &c->result.diag);
 }
 
-static void *compile_main(void *arg)
+static void *compiler_main(void *arg)
 {
-	struct compile *c = arg;
+	struct compiler *c = arg;
 	struct config_tech tech;
 	uint64_t one = 1;
 
 	c->result.err = read_tech(c, &tech);
 	if (c->result.err == 0)
-		c->result.err = compile_text(c, &tech);
+		c->result.err = compiler_text(c, &tech);
 	config_tech_free(&tech);
 	/* An eventfd at 0 takes a 1 without fail. */
 	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
@@ -82,7 +82,7 @@ static void *compile_main(void *arg)
 	return NULL;
 }
 
-static void compile_free(struct compile *c)
+static void compiler_free(struct compiler *c)
 {
 	sd_event_source_unref(c->source);
 	if (c->fd >= 0)
@@ -93,33 +93,33 @@ static void compile_free(struct compile *c)
 
 static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
 {
-	struct compile *c = arg;
+	struct compiler *c = arg;
 
 	(void)source, (void)fd, (void)events;
 	pthread_join(c->thread, NULL);
 	c->done(c->arg, &c->result);
-	compile_free(c);
+	compiler_free(c);
 	return 0;
 }
 
 /* Signals are the event loop's: the thread blocks them all. */
-static int thread_start(struct compile *c)
+static int thread_start(struct compiler *c)
 {
 	sigset_t all, old;
 	int err;
 
 	sigfillset(&all);
 	pthread_sigmask(SIG_SETMASK, &all, &old);
-	err = pthread_create(&c->thread, NULL, compile_main, c);
+	err = pthread_create(&c->thread, NULL, compiler_main, c);
 	pthread_sigmask(SIG_SETMASK, &old, NULL);
 	return -err;
 }
 
-int compile_start(struct compile **ret, sd_event *event,
-		  const struct compile_request *request,
-		  compile_done_fn done, void *arg)
+int compiler_start(struct compiler **ret, sd_event *event,
+		   const struct compiler_request *request,
+		   compiler_done_fn done, void *arg)
 {
-	struct compile *c = calloc(1, sizeof(*c));
+	struct compiler *c = calloc(1, sizeof(*c));
 	int err;
 
 	if (!c)
@@ -133,14 +133,14 @@ int compile_start(struct compile **ret, sd_event *event,
 	if (err >= 0)
 		err = thread_start(c);
 	if (err < 0) {
-		compile_free(c);
+		compiler_free(c);
 		return err;
 	}
 	*ret = c;
 	return 0;
 }
 
-void *compile_destroy(struct compile *c)
+void *compiler_destroy(struct compiler *c)
 {
 	void *arg;
 
@@ -148,6 +148,6 @@ void *compile_destroy(struct compile *c)
 		return NULL;
 	arg = c->arg;
 	pthread_join(c->thread, NULL);
-	compile_free(c);
+	compiler_free(c);
 	return arg;
 }

@@ -15,9 +15,9 @@
 
 #include <systemd/sd-event.h>
 
-struct compile;
+struct compiler;
 
-struct compile_request {
+struct compiler_request {
 	const struct machine_config *config;	/* lent, until the end */
 	double start_mm[INTERP_NAXES];
 	const char *name;			/* of its file: the dialect */
@@ -26,7 +26,7 @@ struct compile_request {
 };
 
 /* @build is lent; diag is filled if err is -EINVAL. */
-struct compile_result {
+struct compiler_result {
 	int err;
 	struct interp_diag diag;
 	uint32_t lines;
@@ -35,22 +35,22 @@ struct compile_result {
 	struct interp_build *build;
 };
 
-typedef void (*compile_done_fn)(void *arg, const struct compile_result *r);
+typedef void (*compiler_done_fn)(void *arg, const struct compiler_result *r);
 
 /**
- * compile_start() - begin; @done is called from the event loop, once.
+ * compiler_start() - begin; @done is called from the event loop, once.
  * Return: 0 or a negative errno.
  */
-int compile_start(struct compile **ret, sd_event *event,
-		  const struct compile_request *request,
-		  compile_done_fn done, void *arg);
+int compiler_start(struct compiler **ret, sd_event *event,
+		   const struct compiler_request *request,
+		   compiler_done_fn done, void *arg);
 
 /**
- * compile_destroy() - give up: waits for the thread, never calls @done.
+ * compiler_destroy() - give up: waits for the thread, never calls @done.
  *
  * Not for one whose @done was called: that frees itself.  NULL is fine.
- * Return: the @arg of compile_start().
+ * Return: the @arg of compiler_start().
  */
-void *compile_destroy(struct compile *c);
+void *compiler_destroy(struct compiler *c);
 
 #endif /* JOBS_COMPILE_H */

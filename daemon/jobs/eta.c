@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* left.c - how long the job that runs will take yet */
+/* eta.c - how long the job that runs will take yet */
 #include "eta.h"
 
 #include "shm.h"
@@ -8,10 +8,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-void left_fini(struct left *l)
+void eta_fini(struct eta *l)
 {
 	free(l->part);
-	*l = (struct left) { .n = 0 };
+	*l = (struct eta) { .n = 0 };
 }
 
 static bool is_cut(const struct interp_seg *s)
@@ -20,9 +20,9 @@ static bool is_cut(const struct interp_seg *s)
 }
 
 /* Where it changes between the two, of the segments that have a length. */
-static size_t parts(const struct interp_program *p, struct left_part *to)
+static size_t parts(const struct interp_program *p, struct eta_part *to)
 {
-	struct left_part at = { .s_mm = 0 };
+	struct eta_part at = { .s_mm = 0 };
 	size_t n = 0;
 
 	for (uint32_t i = 0; i < p->head->nsegs; i++) {
@@ -40,15 +40,15 @@ static size_t parts(const struct interp_program *p, struct left_part *to)
 		at.cut_mm += at.cut ? s->length_mm : 0;
 	}
 	if (to)
-		to[n] = (struct left_part) { INFINITY, at.cut_mm, false };
+		to[n] = (struct eta_part) { INFINITY, at.cut_mm, false };
 	return n;
 }
 
-int left_measure(struct left *l, const struct interp_program *p)
+int eta_measure(struct eta *l, const struct interp_program *p)
 {
 	const size_t n = parts(p, NULL);
 
-	left_fini(l);
+	eta_fini(l);
 	l->part = calloc(n + 1, sizeof(*l->part));
 	if (!l->part)
 		return -ENOMEM;
@@ -57,7 +57,7 @@ int left_measure(struct left *l, const struct interp_program *p)
 	return 0;
 }
 
-void left_take(struct left *l, const char *machine, uint32_t n)
+void eta_take(struct eta *l, const char *machine, uint32_t n)
 {
 	struct interp_program p;
 	const void *block;
@@ -65,17 +65,17 @@ void left_take(struct left *l, const char *machine, uint32_t n)
 
 	if (l->n == n)
 		return;
-	left_fini(l);
+	eta_fini(l);
 	if (n && shm_program_open(&block, &bytes, machine, n) == 0) {
 		if (interp_program_map(&p, block, bytes) == 0)
-			left_measure(l, &p);
+			eta_measure(l, &p);
 		shm_program_unmap(block, bytes);
 	}
 	l->n = n;
 }
 
 /* What is cut of the first @far_mm. */
-static double cut_to(const struct left *l, double far_mm)
+static double cut_to(const struct eta *l, double far_mm)
 {
 	size_t low = 0, high = l->nparts;
 
@@ -93,7 +93,7 @@ static double cut_to(const struct left *l, double far_mm)
 		    l->part[low + 1].cut_mm);
 }
 
-double left_s(const struct left *l, double far_mm, double job_s)
+double eta_s(const struct eta *l, double far_mm, double job_s)
 {
 	const double done = l->nparts ? cut_to(l, far_mm) : 0;
 

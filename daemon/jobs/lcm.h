@@ -1,35 +1,44 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * wire.h - the LCM side of edmd-jobs: our structs in and out
+ * lcm.h - the LCM side of edmd-jobs: our structs in and out
  *
- * The only place that knows the generated messages.  What comes in is checked
- * for its shape before it is decoded: lengths inside the packet, strings
- * ended.  What the fields mean is checked by who takes them.
+ * The only place that knows the generated messages.  What comes in must be
+ * signed (trust.h), and is checked for its shape before it is decoded: lengths
+ * inside the packet, strings ended.  What the fields mean is checked by who
+ * takes them.  What goes out is signed with the machine's key.
  *
  * Units: in every name.  Threads: one, that of the event loop.
  */
-#ifndef JOBS_WIRE_H
-#define JOBS_WIRE_H
+#ifndef JOBS_LCM_H
+#define JOBS_LCM_H
+
+#include "trust.h"
+#include "udpm.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#define WIRE_NAXES	8
-#define WIRE_CLIENT_MAX	64		/* with its NUL */
-#define WIRE_ID_MAX	64		/* with its NUL */
-#define WIRE_CHUNK_MAX	32768
+#define JOBS_LCM_NAXES	8
+#define JOBS_LCM_CLIENT_MAX	64		/* with its NUL */
+#define JOBS_LCM_ID_MAX	64		/* with its NUL */
+#define JOBS_LCM_CHUNK_MAX	32768
+#define JOBS_LCM_AGAIN	100		/* ack code: sign it again */
 
-struct wire;
+struct jobs_lcm;
 
-struct wire_command {
+struct jobs_lcm_command {
+	const uint8_t *key;		/* who signed it */
 	const char *client;
 	int64_t seq;
 	const char *verb, *job, *text;
 	double arg;
+	const struct trust_key *by;	/* the same key, in the table */
+	const char *from;		/* address and port */
 };
 
-struct wire_chunk {
+struct jobs_lcm_chunk {
+	const uint8_t *key;
 	const char *client;
 	int64_t seq;
 	const char *job, *name;
@@ -40,67 +49,63 @@ struct wire_chunk {
 	bool hold;
 	uint32_t size;
 	const uint8_t *data;
+	const struct trust_key *by;
+	const char *from;
 };
 
-struct wire_ack {
+struct jobs_lcm_ack {
+	const uint8_t *key;		/* of who is answered */
 	const char *client;
 	int64_t seq;
 	int code;
 	const char *reason, *body;	/* NULL is "" */
 };
 
-struct wire_event {
+struct jobs_lcm_event {
 	const char *kind, *job, *outcome, *text;	/* NULL is "" */
 	double place_mm;
 };
 
-struct wire_status {
+struct jobs_lcm_status {
 	const char *daemon, *state, *fault;
 	const char *job, *job_name, *job_state, *condition;
 	uint32_t line, lines;
 	double place_mm, length_mm, progress;
-	double pos_mm[WIRE_NAXES];
+	double pos_mm[JOBS_LCM_NAXES];
 	double gap_v, feed_mm_s, depth_mm;
 	double contour_mm, contour_predicted_mm;
 	uint32_t jumps, retracts, shorts;
-	double job_s, left_s;
+	double job_s, eta_s;
 	uint32_t queue_len, overruns, wake_late_max_us;
 };
 
 /* What lent pointers hold is gone when the function returns. */
-struct wire_handlers {
-	void (*command)(void *arg, const struct wire_command *c);
-	void (*chunk)(void *arg, const struct wire_chunk *c);
+struct jobs_lcm_handlers {
+	void (*command)(void *arg, const struct jobs_lcm_command *c);
+	void (*chunk)(void *arg, const struct jobs_lcm_chunk *c);
+	struct trust *trust;		/* lent */
 	void *arg;
 };
 
 /**
- * wire_url_check() - does what is sent to @url stay on this host?
- * Return: NULL if so, else what is wrong with it, in words.
+ * jobs_lcm_open() - join the channels of @machine.
+ * Return: 0; -ENOMEM; -ENETUNREACH or another -errno if the group cannot be
+ * joined.
  */
-const char *wire_url_check(const char *url);
+int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
+	      const char *machine, const struct jobs_lcm_handlers *h);
 
-/**
- * wire_open() - join the channels of @machine.
- * Return: 0; -ENETUNREACH if LCM cannot open @url; -ENOMEM.
- */
-int wire_open(struct wire **ret, const char *url, const char *machine,
-	      const struct wire_handlers *h);
+/** jobs_lcm_close() - NULL is fine. */
+void jobs_lcm_close(struct jobs_lcm *w);
 
-/** wire_close() - NULL is fine. */
-void wire_close(struct wire *w);
+/** jobs_lcm_fd() - readable when jobs_lcm_handle() has something to do. */
+int jobs_lcm_fd(const struct jobs_lcm *w);
 
-/** wire_fd() - readable when wire_handle() has something to do. */
-int wire_fd(const struct wire *w);
+/** jobs_lcm_handle() - take one message, if it is to be taken. */
+void jobs_lcm_handle(struct jobs_lcm *w);
 
-/** wire_handle() - take one message. Return: 0 or -EIO. */
-int wire_handle(struct wire *w);
+void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a);
+void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e);
+void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s);
 
-void wire_ack(struct wire *w, const struct wire_ack *a);
-void wire_event(struct wire *w, const struct wire_event *e);
-void wire_status(struct wire *w, const struct wire_status *s);
-
-/** wire_refused() - packets dropped for their shape, so far. */
-uint64_t wire_refused(const struct wire *w);
-
-#endif /* JOBS_WIRE_H */
+#endif /* JOBS_LCM_H */

@@ -64,7 +64,7 @@ static const char *const state_names[JOB_NSTATES] = {
 	[JOB_STOPPED]	= "stopped",
 };
 
-const char *job_state_name(enum job_state s)
+const char *store_state_name(enum job_state s)
 {
 	return state_names[s];
 }
@@ -215,6 +215,11 @@ void store_close(struct store *s)
 	if (s->lock >= 0)
 		close(s->lock);
 	free(s);
+}
+
+struct sqlite3 *store_db(struct store *s)
+{
+	return s->db;
 }
 
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)

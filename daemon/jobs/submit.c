@@ -32,12 +32,13 @@ static void hash_hex(char ret[65], const uint8_t hash[32])
 static void answer_end(struct jobs *j, struct upload *up, int code,
 		       const char *reason, const char *body)
 {
-	struct wire_ack a = {
-		.client = up->client, .seq = up->seq, .code = code,
+	struct jobs_lcm_ack a = {
+		.key = up->key, .client = up->client, .seq = up->seq,
+		.code = code,
 		.reason = reason, .body = body,
 	};
 
-	wire_ack(j->wire, &a);
+	jobs_lcm_ack(j->lcm, &a);
 	upload_forget(&j->uploads, up, code, reason, body);
 }
 
@@ -89,7 +90,7 @@ static const char *what_next(const struct jobs *j, bool hold)
 }
 
 static void accept_text(struct jobs *j, struct upload *up,
-			const struct compile_result *r)
+			const struct compiler_result *r)
 {
 	const uint32_t lines = r->lines;
 	struct queue *q = &j->queue;
@@ -125,9 +126,11 @@ static void accept_text(struct jobs *j, struct upload *up,
 }
 
 /* Already there: 0 if it is the same text, else refused. */
-static bool answer_known(struct jobs *j, const struct wire_chunk *c)
+static bool answer_known(struct jobs *j, const struct jobs_lcm_chunk *c)
 {
-	struct wire_ack a = { .client = c->client, .seq = c->seq };
+	struct jobs_lcm_ack a = {
+		.key = c->key, .client = c->client, .seq = c->seq,
+	};
 	struct store_job job;
 	char hex[65], *body = NULL;
 
@@ -141,12 +144,12 @@ static bool answer_known(struct jobs *j, const struct wire_chunk *c)
 		a.code = EX_DATAERR;
 		a.reason = "another text has this job id; draw a new id";
 	}
-	wire_ack(j->wire, &a);
+	jobs_lcm_ack(j->lcm, &a);
 	free(body);
 	return true;
 }
 
-static void on_checked(void *arg, const struct compile_result *r)
+static void on_checked(void *arg, const struct compiler_result *r)
 {
 	struct check *c = arg;
 	struct jobs *j = c->jobs;
@@ -180,7 +183,7 @@ static void start_place(const struct jobs *j, double ret_mm[INTERP_NAXES])
 
 static void check_begin(struct jobs *j, struct upload *up)
 {
-	struct compile_request request = {
+	struct compiler_request request = {
 		.config = j->config, .name = up->name,
 		.text = up->text, .bytes = up->bytes,
 	};
@@ -190,7 +193,7 @@ static void check_begin(struct jobs *j, struct upload *up)
 	start_place(j, request.start_mm);
 	if (c) {
 		*c = (struct check) { .jobs = j, .upload = up };
-		err = compile_start(&j->check[up - j->uploads.slot], j->event,
+		err = compiler_start(&j->check[up - j->uploads.slot], j->event,
 				    &request, on_checked, c);
 	}
 	if (err < 0) {
@@ -199,14 +202,23 @@ static void check_begin(struct jobs *j, struct upload *up)
 	}
 }
 
-void submit_take(void *arg, const struct wire_chunk *c)
+void submit_take(void *arg, const struct jobs_lcm_chunk *c)
 {
 	struct jobs *j = arg;
 	struct upload_answer answer;
 	struct upload *whole = NULL;
-	struct wire_ack a = { .client = c->client, .seq = c->seq };
+	struct jobs_lcm_ack a = {
+		.key = c->key, .client = c->client, .seq = c->seq,
+	};
 
-	if (upload_check(c, &answer)) {
+	if (c->by->role < ROLE_OPERATOR) {
+		trust_refuse(&j->trust, TRUST_ROLE, c->by->name, c->from,
+			     jobs_now_us());
+		answer = (struct upload_answer) {
+			.code = EX_NOPERM,
+			.reason = "a job wants a key of role operator",
+		};
+	} else if (upload_check(c, &answer)) {
 		if (answer_known(j, c))
 			return;
 		upload_take(&j->uploads, c, jobs_now_us(), &whole, &answer);
@@ -214,7 +226,7 @@ void submit_take(void *arg, const struct wire_chunk *c)
 	}
 	a.code = answer.code;
 	a.reason = answer.reason;
-	wire_ack(j->wire, &a);
+	jobs_lcm_ack(j->lcm, &a);
 	if (whole)
 		check_begin(j, whole);
 }
@@ -222,7 +234,7 @@ void submit_take(void *arg, const struct wire_chunk *c)
 void submit_fini(struct jobs *j)
 {
 	for (int i = 0; i < UPLOAD_SLOTS; i++) {
-		free(compile_destroy(j->check[i]));
+		free(compiler_destroy(j->check[i]));
 		j->check[i] = NULL;
 	}
 	upload_fini(&j->uploads);

@@ -26,7 +26,7 @@ def test_a_job_goes_from_chunks_to_done_and_status_tells(machine):
     assert abs(running.length_mm - 2) < 1e-6
     half = c.status_where(lambda s: s.progress > 0.5)
     assert 1 < half.pos_mm[0] <= 2
-    assert half.left_s < 1.5
+    assert half.eta_s < 1.5
     j = c.job_where("one", "done")
     assert abs(j["path_mm"] - 2) < 1e-3
     assert abs(j["job_s"] - 2) < 0.3
@@ -181,7 +181,7 @@ def test_packets_of_no_shape_harm_nothing(machine):
             bad[draw.randrange(8, len(bad))] = draw.randrange(256)
         bad = bad[:draw.randrange(len(bad))] if i % 2 else bad
         channel = ("JOB", "COMMAND")[i % 3 == 0]
-        c.lcm.publish(f"EDM.{machine.name}.{channel}", bytes(bad))
+        c.publish(channel, bytes(bad))
         c.hear(0.001)
     assert machine.jobs.poll() is None
     # Some were fit to be answered, to a seq that nobody used.

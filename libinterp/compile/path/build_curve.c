@@ -150,7 +150,7 @@ static int try_places(struct curve_plan *p, const double end_mm[INTERP_NAXES])
 		was[k] = interp_round_sub(p->b->here[p->curve.axis[k]]);
 	for (uint32_t i = 1; r == 0 && i <= w->places; i++) {
 		if (i < w->places)
-			walk_curve_place(w, p->pulses_mm, i);
+			pulse_curve_place(w, p->pulses_mm, i);
 		for (uint32_t k = 0; r == 0 && k < p->curve.naxes; k++) {
 			const int axis = p->curve.axis[k];
 
@@ -180,8 +180,8 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 		if (places * p->turns > INTERP_PULSES_MAX ||
 		    p->tried > TRIED_MAX)
 			break;
-		walk_curve_aim(&p->walk, stops, piece->nstops,
-			       (uint32_t)places, length_mm);
+		pulse_curve_aim(&p->walk, stops, piece->nstops,
+				(uint32_t)places, length_mm);
 		r = try_places(p, end_mm);
 		if (r <= 0)
 			return r;

@@ -143,7 +143,7 @@ struct follow {
 	struct interp_side side[2];
 	int64_t sign;			/* sigma; 0: by length */
 	int64_t angle;			/* F by angle */
-	walk_wide length;		/* F by length */
+	pulse_wide length;		/* F by length */
 	int64_t total[2];		/* measures */
 };
 
@@ -213,8 +213,8 @@ static int follow_next(struct follow *f)
 		f->angle += (i ? -f->sign : f->sign) *
 			    (d[0] * across - d[1] * along);
 	else
-		f->length += (i ? (walk_wide)f->total[0] :
-				  -(walk_wide)f->total[1]) * side_last(&s[i]);
+		f->length += (i ? (pulse_wide)f->total[0] :
+				  -(pulse_wide)f->total[1]) * side_last(&s[i]);
 	return i;
 }
 

@@ -31,7 +31,7 @@ uint64_t build_rule_ticks(enum interp_strategy s, const struct build_way *w)
 	if (s != INTERP_DDA)
 		return pulses_of(w);
 	return longest > INTERP_PULSES_MAX ? UINT64_MAX :
-					     (uint64_t)walk_dda_ticks(longest);
+					     (uint64_t)pulse_dda_ticks(longest);
 }
 
 int build_refuse_tolerance(const struct interp_build_options *o,

@@ -16,7 +16,7 @@ static uint32_t length_axes(const struct interp_cursor *c)
 	uint32_t moved = 0;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		if (walk_node(c, j, false) != walk_node(c, j, true))
+		if (pulse_node(c, j, false) != pulse_node(c, j, true))
 			moved |= 1u << c->p.head->column[j];
 	}
 	if (c->seg.kind == INTERP_ARC)
@@ -29,7 +29,7 @@ static uint32_t length_axes(const struct interp_cursor *c)
 
 static double node_mm(const struct interp_cursor *c, uint32_t j, bool at_end)
 {
-	return (double)walk_node(c, j, at_end) / INTERP_SUB *
+	return (double)pulse_node(c, j, at_end) / INTERP_SUB *
 	       c->p.head->pulse_mm[c->p.head->column[j]];
 }
 
@@ -150,7 +150,7 @@ static double arc_deviation(const struct interp_cursor *c, uint32_t axes)
 
 		if (axis != arc->axis_a && axis != arc->axis_b &&
 		    axes & 1u << axis && c->whole &&
-		    walk_node(c, j, false) != walk_node(c, j, true))
+		    pulse_node(c, j, false) != pulse_node(c, j, true))
 			return helix_deviation(c, axes);
 	}
 	return circle_deviation(c, arc);
@@ -180,13 +180,13 @@ static double curve_deviation(const struct interp_cursor *c, uint32_t axes)
 	for (int i = 0; i < 32; i++) {
 		const double third = (hi - lo) / 3;
 
-		if (walk_curve_gap2(c, &k, axes, lo + third) <
-		    walk_curve_gap2(c, &k, axes, hi - third))
+		if (pulse_curve_gap2(c, &k, axes, lo + third) <
+		    pulse_curve_gap2(c, &k, axes, hi - third))
 			hi -= third;
 		else
 			lo += third;
 	}
-	return sqrt(walk_curve_gap2(c, &k, axes, (lo + hi) / 2));
+	return sqrt(pulse_curve_gap2(c, &k, axes, (lo + hi) / 2));
 }
 
 double interp_cursor_deviation_mm(const struct interp_cursor *c)

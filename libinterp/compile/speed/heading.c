@@ -15,7 +15,7 @@ static uint32_t columns_of(const struct interp_program *p, uint32_t axes)
 	return columns;
 }
 
-void ways_init(struct ways *w, const struct interp_program *p)
+void heading_ways_init(struct ways *w, const struct interp_program *p)
 {
 	*w = (struct ways) {
 		.p = p,
@@ -115,7 +115,7 @@ static void round_curve(const struct ways *w, const struct interp_seg *s,
 	interp_program_curve_rate(p, s, true, h->last.rate);
 }
 
-void headings_of(const struct ways *w, uint32_t i, struct headings *ret)
+void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
 {
 	const struct interp_program *p = w->p;
 	const struct interp_seg *s = &p->segs[i];

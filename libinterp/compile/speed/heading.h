@@ -27,9 +27,9 @@ struct ways {
 	double sub_mm[INTERP_NAXES];	/* mm per subpulse of each column */
 };
 
-void ways_init(struct ways *w, const struct interp_program *p);
+void heading_ways_init(struct ways *w, const struct interp_program *p);
 
-/** headings_of() - of segment @i, which is none that stands. */
-void headings_of(const struct ways *w, uint32_t i, struct headings *ret);
+/** heading_find() - of segment @i, which is none that stands. */
+void heading_find(const struct ways *w, uint32_t i, struct headings *ret);
 
 #endif /* SPEED_HEADING_H */

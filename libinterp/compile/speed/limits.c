@@ -39,7 +39,7 @@ static void begin(struct pass *w, const struct interp_limits *l,
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
 			     .n = p->head->naxes };
-	ways_init(&w->ways, p);
+	heading_ways_init(&w->ways, p);
 	for (uint32_t j = 0; j < w->n; j++) {
 		const struct interp_axis_limits *m =
 			&l->machine->axis[p->head->column[j]];
@@ -234,7 +234,7 @@ static void walk_nodes(struct pass *w)
 		w->segs[i].node_mm_s = INFINITY;
 		if (w->segs[i].kind >= INTERP_BEGIN)
 			continue;
-		headings_of(&w->ways, i, &h[now]);
+		heading_find(&w->ways, i, &h[now]);
 		limit_seg(w, &w->segs[i], &h[now]);
 		if (last > 0) {
 			const float v = node(w, last, i, &h[!now].last,

@@ -388,7 +388,7 @@ static int refuse_plane(const struct interp_build_word *w,
 static int check_radius(const struct contour *k, const struct curve *c,
 			struct interp_diag *diag)
 {
-	const double r1 = vec_distance(c->centre, c->to);
+	const double r1 = curve_distance(c->centre, c->to);
 
 	if (fabs(r1 - c->r) <= fmax(2 * k->guides.pulse_mm,
 				    fmin(0.001 * c->r,

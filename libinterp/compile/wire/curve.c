@@ -14,7 +14,7 @@
 /* Two that nearly touch and are written to a micrometre may miss so far. */
 #define MISS_MM		0.0015
 
-double vec_distance(struct vec a, struct vec b)
+double curve_distance(struct vec a, struct vec b)
 {
 	return hypot(b.x - a.x, b.y - a.y);
 }
@@ -40,13 +40,13 @@ struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 {
 	struct curve c = {
 		.arc = true, .from = from, .to = to, .centre = centre,
-		.r = vec_distance(centre, from),
+		.r = curve_distance(centre, from),
 		.theta = atan2(from.y - centre.y, from.x - centre.x),
 	};
 	const double end = atan2(to.y - centre.y, to.x - centre.x);
 	const double sweep = clockwise ? ahead(c.theta - end) :
 					 ahead(end - c.theta);
-	const bool whole = vec_distance(from, to) < NOTHING_MM ||
+	const bool whole = curve_distance(from, to) < NOTHING_MM ||
 			   sweep * c.r < NOTHING_MM;
 
 	c.sweep = whole ? TURN : sweep;
@@ -57,14 +57,14 @@ struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 
 double curve_length(const struct curve *c)
 {
-	return c->arc ? fabs(c->sweep) * c->r : vec_distance(c->from, c->to);
+	return c->arc ? fabs(c->sweep) * c->r : curve_distance(c->from, c->to);
 }
 
 struct vec curve_way(const struct curve *c, bool at_end)
 {
 	const double theta = c->theta + (at_end ? c->sweep : 0);
 	const double turn = c->sweep < 0 ? -1 : 1;
-	const double len = vec_distance(c->from, c->to);
+	const double len = curve_distance(c->from, c->to);
 
 	if (c->arc)
 		return (struct vec) { -turn * sin(theta), turn * cos(theta) };
@@ -110,7 +110,7 @@ bool curve_parallel(const struct curve *c, double d, struct curve *ret)
 	ret->to = vec_add(c->to, d, left_of(curve_way(c, true)));
 	if (!c->arc)
 		return true;
-	if (vec_distance(c->from, c->to) < NOTHING_MM)
+	if (curve_distance(c->from, c->to) < NOTHING_MM)
 		ret->to = ret->from;	/* a full circle stays one */
 	/* The centre is on the left of a counter-clockwise arc. */
 	ret->r = c->sweep > 0 ? c->r - d : c->r + d;
@@ -153,7 +153,7 @@ static int line_circle(const struct curve *l, const struct curve *c,
 static int circle_circle(const struct curve *a, const struct curve *b,
 			 struct vec ret[2])
 {
-	const double d = vec_distance(a->centre, b->centre);
+	const double d = curve_distance(a->centre, b->centre);
 	const struct vec way = { (b->centre.x - a->centre.x) / d,
 				 (b->centre.y - a->centre.y) / d };
 	double x, h2, h;
@@ -182,8 +182,8 @@ bool curve_meet(const struct curve *a, const struct curve *b, struct vec near,
 
 	if (n == 0)
 		return false;
-	*ret = n == 2 && vec_distance(at[1], near) < vec_distance(at[0], near) ?
-	       at[1] : at[0];
+	*ret = n == 2 && curve_distance(at[1], near) <
+			 curve_distance(at[0], near) ? at[1] : at[0];
 	return true;
 }
 

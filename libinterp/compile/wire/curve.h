@@ -28,7 +28,7 @@ static inline struct vec vec_add(struct vec a, double k, struct vec b)
 	return (struct vec) { a.x + k * b.x, a.y + k * b.y };
 }
 
-double vec_distance(struct vec a, struct vec b);
+double curve_distance(struct vec a, struct vec b);
 
 /** curve_line() - a straight one. */
 struct curve curve_line(struct vec from, struct vec to);

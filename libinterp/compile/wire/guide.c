@@ -92,8 +92,8 @@ static int check_tilt(const struct guides *g, const struct curve c[2],
 
 	for (int i = 0; i <= n; i++) {
 		const double t = (double)i / n;
-		const double slope = vec_distance(curve_at(&c[0], t),
-						  curve_at(&c[1], t)) /
+		const double slope = curve_distance(curve_at(&c[0], t),
+						    curve_at(&c[1], t)) /
 				     g->height_mm;
 
 		if (slope > g->slope_max + 1e-9)
@@ -164,7 +164,7 @@ static int cut_lines(const struct cut *k)
 /* A contour that stands, or has shrunk to a point, goes with any arc. */
 static bool is_point(const struct curve *c)
 {
-	return c->arc ? c->r == 0 : vec_distance(c->from, c->to) < 1e-9;
+	return c->arc ? c->r == 0 : curve_distance(c->from, c->to) < 1e-9;
 }
 
 static double complex radius_of(const struct curve *c)

@@ -65,7 +65,7 @@ int contour_parallels(struct contour_motion *m)
 static void fill_corner(const struct contour_motion *a, int p, bool round,
 			struct contour_join *j)
 {
-	j->filled = vec_distance(j->end, j->start) > 1e-6;
+	j->filled = curve_distance(j->end, j->start) > 1e-6;
 	j->fill = round ? curve_arc(j->end, j->start, a->c[p].to, a->d[p] > 0) :
 			  curve_line(j->end, j->start);
 }
@@ -85,7 +85,7 @@ static bool join_corner(const struct contour_motion *a,
 			      &at);
 
 	if (mitre && met)
-		met = vec_distance(at, a->c[p].to) < 1.5 * reach;
+		met = curve_distance(at, a->c[p].to) < 1.5 * reach;
 	if (met)
 		j->end = j->start = at;
 	else if (!inner)

@@ -19,11 +19,11 @@ static uint32_t none_run(struct interp_cursor *c, uint32_t ticks,
 	(void)c;
 	(void)ticks;
 	(void)ret;
-	return WALK_BAD;
+	return PULSE_BAD;
 }
 
-static const struct interp_walk walk_action = {
-	.enter = walk_stand,
+static const struct interp_walk pulse_action = {
+	.enter = pulse_stand,
 	.forward = none_run,
 	.back = none_run,
 };
@@ -33,43 +33,43 @@ static uint32_t axes_moving(const struct interp_cursor *c)
 	uint32_t n = 0;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++)
-		n += interp_round_sub(walk_node(c, j, false)) !=
-		     interp_round_sub(walk_node(c, j, true));
+		n += interp_round_sub(pulse_node(c, j, false)) !=
+		     interp_round_sub(pulse_node(c, j, true));
 	return n;
 }
 
 /* Up to two axes a tree is all there is. */
-static const struct interp_walk *walk_of_line(const struct interp_cursor *c)
+static const struct interp_walk *pulse_of_line(const struct interp_cursor *c)
 {
 	const struct interp_program_head *h = c->p.head;
 
 	if (h->strategy == INTERP_SIMULTANEOUS)
-		return &walk_line;
+		return &pulse_line;
 	if (h->strategy == INTERP_DDA)
-		return &walk_dda_line;
+		return &pulse_dda_line;
 	if (h->strategy == INTERP_POINT_BY_POINT ||
 	    h->coupling == INTERP_TREE || axes_moving(c) < 3)
-		return &walk_tree;
-	return &walk_flat;
+		return &pulse_tree;
+	return &pulse_flat;
 }
 
-static const struct interp_walk *walk_of(const struct interp_cursor *c)
+static const struct interp_walk *pulse_of(const struct interp_cursor *c)
 {
 	if (c->seg.kind >= INTERP_BEGIN)
-		return &walk_action;
+		return &pulse_action;
 	if (c->seg.kind == INTERP_PAIR)
 		return c->p.head->strategy == INTERP_SIMULTANEOUS ?
-		       &walk_pair_at_once : &walk_pair;
+		       &pulse_pair_at_once : &pulse_pair;
 	if (c->seg.kind == INTERP_CURVE)
-		return &walk_curve;
+		return &pulse_curve;
 	if (c->seg.kind != INTERP_ARC)
-		return walk_of_line(c);
+		return pulse_of_line(c);
 	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
-		return &walk_arc;
+		return &pulse_arc;
 	if (c->p.head->strategy == INTERP_DDA && c->arc.shift > 0)
-		return &walk_dda_arc;
-	return c->seg.ticks == c->arc.circle_ticks ? &walk_circle :
-						     &walk_helix;
+		return &pulse_dda_arc;
+	return c->seg.ticks == c->arc.circle_ticks ? &pulse_circle :
+						     &pulse_helix;
 }
 
 /*
@@ -90,7 +90,7 @@ static bool cursor_enter(struct interp_cursor *c, uint32_t i, bool at_end)
 		c->arc = c->p.arcs[c->seg.arg];
 	if (c->seg.kind == INTERP_PAIR)
 		c->couple = c->p.couples[c->seg.arg];
-	walk = walk_of(c);
+	walk = pulse_of(c);
 	if (!walk->enter(c, at_end))
 		return false;
 	c->walk = walk;
@@ -132,7 +132,7 @@ int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick)
 	while (c->tick < tick) {
 		uint16_t pulses;
 
-		if (c->walk->forward(c, 1, &pulses) == WALK_BAD) {
+		if (c->walk->forward(c, 1, &pulses) == PULSE_BAD) {
 			c->walk = NULL;
 			return -EBADMSG;
 		}
@@ -265,8 +265,8 @@ static uint32_t run_uneven(struct interp_cursor *c, uint16_t *ret,
 	while (points < max && may_go_on(c)) {
 		const uint32_t n = cursor_ticks(c, 1, ret + points);
 
-		if (n == WALK_BAD)
-			return WALK_BAD;
+		if (n == PULSE_BAD)
+			return PULSE_BAD;
 		points += n;
 	}
 	return points;
@@ -291,7 +291,7 @@ uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
 	if (!c->walk)
 		return 0;
 	n = c->walk->last ? run_uneven(c, ret, max) : run_even(c, ret, max);
-	if (n == WALK_BAD) {
+	if (n == PULSE_BAD) {
 		c->walk = NULL;
 		return 0;
 	}
@@ -311,7 +311,7 @@ enum interp_step interp_cursor_step(struct interp_cursor *c)
 			uint16_t pulses;
 			const uint32_t n = cursor_ticks(c, 1, &pulses);
 
-			if (n == WALK_BAD)
+			if (n == PULSE_BAD)
 				return cursor_bad(c);
 			if (n > 0) {
 				c->moved = INTERP_PULSE_MOVED(pulses);

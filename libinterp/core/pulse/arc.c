@@ -96,7 +96,7 @@ static struct plane arc_node(const struct interp_cursor *c, bool at_end)
 	struct plane p = { 0, 0 };
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		const int32_t at = interp_round_sub(walk_node(c, j, at_end));
+		const int32_t at = interp_round_sub(pulse_node(c, j, at_end));
 
 		if (c->p.head->column[j] == c->arc.axis_a)
 			p.a = at;
@@ -115,10 +115,10 @@ static uint32_t arc_settle(struct interp_cursor *c)
 	const int64_t da = p.a - *a, db = p.b - *b;
 
 	if (da > 1 || da < -1 || db > 1 || db < -1)
-		return WALK_BAD;
+		return PULSE_BAD;
 	*a = (int32_t)p.a;
 	*b = (int32_t)p.b;
-	return walk_plane_pulse(c, (int32_t)da, (int32_t)db);
+	return pulse_plane_move(c, (int32_t)da, (int32_t)db);
 }
 
 static bool near(double mm, double pulses_mm)
@@ -126,7 +126,7 @@ static bool near(double mm, double pulses_mm)
 	return fabs(mm) * pulses_mm < INTERP_PULSES_MAX;
 }
 
-bool walk_plane_ok(const struct interp_cursor *c)
+bool pulse_plane_ok(const struct interp_cursor *c)
 {
 	const struct interp_arc *arc = &c->arc;
 
@@ -148,7 +148,7 @@ static bool ticks_ok(const struct interp_cursor *c, uint32_t plane)
 				      c->pulses_mm[arc->axis_b]);
 	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
 	const double n = fmax((fabs(arc->sweep) * r + fabs(arc->dr_mm)) *
-			      pulses_mm, (double)walk_longest(c, plane));
+			      pulses_mm, (double)pulse_longest(c, plane));
 
 	return c->seg.ticks > 0 && c->seg.ticks <= n * 1.00001 + 3;
 }
@@ -157,10 +157,10 @@ static bool arc_enter(struct interp_cursor *c, bool at_end)
 {
 	uint32_t plane;
 
-	if (!walk_plane_ok(c))
+	if (!pulse_plane_ok(c))
 		return false;
 	plane = 1u << c->arc.axis_a | 1u << c->arc.axis_b;
-	if (!walk_dda_enter(c, at_end, plane) || !ticks_ok(c, plane))
+	if (!pulse_dda_enter(c, at_end, plane) || !ticks_ok(c, plane))
 		return false;
 	c->arc_turn = c->arc.sweep / c->seg.ticks;
 	c->arc_grow_mm = c->arc.dr_mm / c->seg.ticks;
@@ -170,33 +170,33 @@ static bool arc_enter(struct interp_cursor *c, bool at_end)
 
 static uint32_t arc_tick(struct interp_cursor *c)
 {
-	const uint32_t others = walk_dda_tick(c);
+	const uint32_t others = pulse_dda_tick(c);
 	const uint32_t plane = arc_settle(c);
 
-	return plane == WALK_BAD ? WALK_BAD : others | plane;
+	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
 }
 
 static uint32_t arc_tick_back(struct interp_cursor *c)
 {
-	const uint32_t others = walk_dda_tick_back(c);
+	const uint32_t others = pulse_dda_tick_back(c);
 	const uint32_t plane = arc_settle(c);
 
-	return plane == WALK_BAD ? WALK_BAD : others | plane;
+	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
 }
 
 static uint32_t arc_forward(struct interp_cursor *c, uint32_t ticks,
 			    uint16_t *ret)
 {
-	return walk_ticks(c, arc_tick, ticks, ret);
+	return pulse_ticks(c, arc_tick, ticks, ret);
 }
 
 static uint32_t arc_back(struct interp_cursor *c, uint32_t ticks,
 			 uint16_t *ret)
 {
-	return walk_ticks(c, arc_tick_back, ticks, ret);
+	return pulse_ticks(c, arc_tick_back, ticks, ret);
 }
 
-const struct interp_walk walk_arc = {
+const struct interp_walk pulse_arc = {
 	.enter = arc_enter,
 	.forward = arc_forward,
 	.back = arc_back,

@@ -382,14 +382,14 @@ bool circle_measure(struct interp_arc *arc, const int64_t start[2],
  * Node @at_end of the plane's two axes, from the centre, pulses.  The centre
  * is rounded as the builder did, tie for tie: mm / pulse_mm.
  */
-void walk_circle_node(const struct interp_cursor *c, bool at_end,
-		      int64_t ret[2])
+void pulse_circle_node(const struct interp_cursor *c, bool at_end,
+		       int64_t ret[2])
 {
 	const struct interp_arc *arc = &c->arc;
 	const double *pulse_mm = c->p.head->pulse_mm;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		const int64_t at = interp_round_sub(walk_node(c, j, at_end));
+		const int64_t at = interp_round_sub(pulse_node(c, j, at_end));
 
 		if (c->p.head->column[j] == arc->axis_a)
 			ret[0] = at - llround(arc->a_mm /
@@ -418,22 +418,22 @@ static bool circle_runs_set(struct interp_cursor *c, bool at_end)
 	return k->runs[k->run] != 0;
 }
 
-bool walk_circle_set(struct interp_cursor *c, bool at_end)
+bool pulse_circle_set(struct interp_cursor *c, bool at_end)
 {
 	const struct interp_arc *arc = &c->arc;
 	int64_t start[2] = { 0, 0 }, end[2] = { 0, 0 };
 
-	if (!walk_plane_ok(c))
+	if (!pulse_plane_ok(c))
 		return false;
-	walk_circle_node(c, false, start);
-	walk_circle_node(c, true, end);
+	pulse_circle_node(c, false, start);
+	pulse_circle_node(c, true, end);
 	return circle_enter(&c->circle, arc, start, end, at_end) &&
 	       (arc->nruns == 0 || circle_runs_set(c, at_end));
 }
 
-static bool walk_circle_enter(struct interp_cursor *c, bool at_end)
+static bool pulse_circle_enter(struct interp_cursor *c, bool at_end)
 {
-	if (!walk_stand(c, at_end) || !walk_circle_set(c, at_end) ||
+	if (!pulse_stand(c, at_end) || !pulse_circle_set(c, at_end) ||
 	    c->seg.ticks != c->arc.circle_ticks)
 		return false;
 	c->whole = c->arc.measure;
@@ -441,7 +441,7 @@ static bool walk_circle_enter(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
-uint32_t walk_circle_pulse(struct interp_cursor *c, int dir)
+uint32_t pulse_circle_move(struct interp_cursor *c, int dir)
 {
 	int8_t was[2];
 
@@ -450,58 +450,58 @@ uint32_t walk_circle_pulse(struct interp_cursor *c, int dir)
 	else
 		circle_back(&c->circle, was);
 	if (was[0] == 0 && was[1] == 0)
-		return WALK_BAD;
+		return PULSE_BAD;
 	c->pos[c->arc.axis_a] += was[0];
 	c->pos[c->arc.axis_b] += was[1];
-	return walk_plane_pulse(c, was[0], was[1]);
+	return pulse_plane_move(c, was[0], was[1]);
 }
 
-static uint32_t walk_circle_tick(struct interp_cursor *c)
+static uint32_t pulse_circle_tick(struct interp_cursor *c)
 {
 	uint32_t moved;
 
 	if (c->circle.tick >= c->circle.ticks)
-		return WALK_BAD;
-	moved = walk_circle_pulse(c, 1);
-	if (moved == WALK_BAD)
-		return WALK_BAD;
+		return PULSE_BAD;
+	moved = pulse_circle_move(c, 1);
+	if (moved == PULSE_BAD)
+		return PULSE_BAD;
 	c->measure += circle_last(&c->circle);
 	c->tick = c->circle.tick;
 	return moved;
 }
 
-static uint32_t walk_circle_tick_back(struct interp_cursor *c)
+static uint32_t pulse_circle_tick_back(struct interp_cursor *c)
 {
 	uint32_t moved;
 
 	if (c->circle.tick == 0)
-		return WALK_BAD;
+		return PULSE_BAD;
 	c->measure -= circle_last(&c->circle);
-	moved = walk_circle_pulse(c, -1);
+	moved = pulse_circle_move(c, -1);
 	c->tick = c->circle.tick;
 	return moved;
 }
 
-static uint32_t walk_circle_forward(struct interp_cursor *c, uint32_t ticks,
-				    uint16_t *ret)
+static uint32_t pulse_circle_forward(struct interp_cursor *c, uint32_t ticks,
+				     uint16_t *ret)
 {
-	return walk_ticks(c, walk_circle_tick, ticks, ret);
+	return pulse_ticks(c, pulse_circle_tick, ticks, ret);
 }
 
-static uint32_t walk_circle_back(struct interp_cursor *c, uint32_t ticks,
-				 uint16_t *ret)
+static uint32_t pulse_circle_back(struct interp_cursor *c, uint32_t ticks,
+				  uint16_t *ret)
 {
-	return walk_ticks(c, walk_circle_tick_back, ticks, ret);
+	return pulse_ticks(c, pulse_circle_tick_back, ticks, ret);
 }
 
-static int64_t walk_circle_last(const struct interp_cursor *c)
+static int64_t pulse_circle_last(const struct interp_cursor *c)
 {
 	return circle_last(&c->circle);
 }
 
-const struct interp_walk walk_circle = {
-	.enter = walk_circle_enter,
-	.forward = walk_circle_forward,
-	.back = walk_circle_back,
-	.last = walk_circle_last,
+const struct interp_walk pulse_circle = {
+	.enter = pulse_circle_enter,
+	.forward = pulse_circle_forward,
+	.back = pulse_circle_back,
+	.last = pulse_circle_last,
 };

@@ -106,7 +106,7 @@ static int64_t shared_bursts(const struct interp_pair *p,
 
 	if (room <= 0)
 		return 0;
-	every = (int64_t)((walk_wide)room * n / (p->a * p->b)) + 1;
+	every = (int64_t)((pulse_wide)room * n / (p->a * p->b)) + 1;
 	every = every < n ? every : n;
 	for (int tries = 0; tries < 4 && every > 1; tries++, every--) {
 		const int64_t count = (n + every - 1) / every;

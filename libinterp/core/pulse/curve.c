@@ -64,8 +64,8 @@ static void node_pos(struct interp_cursor *c, bool at_end,
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		for (uint32_t i = 0; i < c->curve.eval.c.naxes; i++) {
 			if (c->curve.axis[i] == c->p.head->column[j])
-				pos[i] = interp_round_sub(walk_node(c, j,
-								    at_end));
+				pos[i] = interp_round_sub(pulse_node(c, j,
+								     at_end));
 		}
 	}
 }
@@ -90,8 +90,8 @@ static int32_t nearest(double x)
 	return i - ((double)i > x + 0.5);
 }
 
-void walk_curve_place(struct interp_curve_walk *k, const double *pulses_mm,
-		      uint32_t place)
+void pulse_curve_place(struct interp_curve_walk *k, const double *pulses_mm,
+		       uint32_t place)
 {
 	struct interp_nurbs_point p;
 
@@ -100,9 +100,9 @@ void walk_curve_place(struct interp_curve_walk *k, const double *pulses_mm,
 		k->pos[i] = nearest(p.d[0][i] * pulses_mm[k->axis[i]]);
 }
 
-void walk_curve_aim(struct interp_curve_walk *k,
-		    const struct interp_nurbs_stop *stops, uint32_t nstops,
-		    uint32_t places, double length_mm)
+void pulse_curve_aim(struct interp_curve_walk *k,
+		     const struct interp_nurbs_stop *stops, uint32_t nstops,
+		     uint32_t places, double length_mm)
 {
 	k->stops = stops;
 	k->nstops = nstops;
@@ -126,24 +126,24 @@ static bool curve_enter(struct interp_cursor *c, bool at_end)
 	k->turns = c->p.head->strategy == INTERP_SIMULTANEOUS ||
 		   c->p.head->strategy == INTERP_DDA ? 1 : nurbs.naxes;
 	if (!axes_ok(c, k->axis, nurbs.naxes) || !ticks_ok(c, k->turns) ||
-	    !walk_stand(c, at_end))
+	    !pulse_stand(c, at_end))
 		return false;
 	interp_nurbs_open(&k->eval, &nurbs);
-	walk_curve_aim(k, c->p.stops + piece.stops_at, piece.nstops,
-		       c->seg.ticks / k->turns, c->seg.length_mm);
+	pulse_curve_aim(k, c->p.stops + piece.stops_at, piece.nstops,
+			c->seg.ticks / k->turns, c->seg.length_mm);
 	return true;
 }
 
-/* Column @i goes to @to; WALK_BAD if that is a leap. */
+/* Column @i goes to @to; PULSE_BAD if that is a leap. */
 static uint32_t go(struct interp_cursor *c, uint32_t i, int32_t to)
 {
 	const uint32_t axis = c->curve.axis[i];
 	const int64_t d = (int64_t)to - c->pos[axis];
 
 	if (d > 1 || d < -1)
-		return WALK_BAD;
+		return PULSE_BAD;
 	c->pos[axis] = to;
-	return d == 0 ? 0 : walk_pulse(axis, d < 0);
+	return d == 0 ? 0 : pulse_move(axis, d < 0);
 }
 
 /* Tick @tick, counted from 0, to place @place. */
@@ -156,7 +156,7 @@ static uint32_t go_to(struct interp_cursor *c, uint32_t tick, uint32_t place)
 		if (place == 0 || place == k->places)
 			node_pos(c, place > 0, k->pos);
 		else
-			walk_curve_place(k, c->pulses_mm, place);
+			pulse_curve_place(k, c->pulses_mm, place);
 		k->at = place;
 	}
 	if (k->turns > 1)
@@ -164,8 +164,8 @@ static uint32_t go_to(struct interp_cursor *c, uint32_t tick, uint32_t place)
 	for (uint32_t i = 0; i < k->eval.c.naxes; i++) {
 		const uint32_t one = go(c, i, k->pos[i]);
 
-		if (one == WALK_BAD)
-			return WALK_BAD;
+		if (one == PULSE_BAD)
+			return PULSE_BAD;
 		pulses |= one;
 	}
 	return pulses;
@@ -190,24 +190,24 @@ static uint32_t curve_tick_back(struct interp_cursor *c)
 static uint32_t curve_forward(struct interp_cursor *c, uint32_t ticks,
 			      uint16_t *ret)
 {
-	return walk_ticks(c, curve_tick, ticks, ret);
+	return pulse_ticks(c, curve_tick, ticks, ret);
 }
 
 static uint32_t curve_back(struct interp_cursor *c, uint32_t ticks,
 			   uint16_t *ret)
 {
-	return walk_ticks(c, curve_tick_back, ticks, ret);
+	return pulse_ticks(c, curve_tick_back, ticks, ret);
 }
 
-const struct interp_walk walk_curve = {
+const struct interp_walk pulse_curve = {
 	.enter = curve_enter,
 	.forward = curve_forward,
 	.back = curve_back,
 };
 
-double walk_curve_gap2(const struct interp_cursor *c,
-		       struct interp_curve_walk *k, uint32_t axes,
-		       double s_mm)
+double pulse_curve_gap2(const struct interp_cursor *c,
+			struct interp_curve_walk *k, uint32_t axes,
+			double s_mm)
 {
 	const double end_mm = k->stops[k->nstops - 1].s_mm;
 	struct interp_nurbs_point p;

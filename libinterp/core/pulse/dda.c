@@ -32,7 +32,7 @@
 
 /* -- Lines ------------------------------------------------------------------ */
 
-int64_t walk_dda_ticks(int64_t longest)
+int64_t pulse_dda_ticks(int64_t longest)
 {
 	int64_t ticks = 1;
 
@@ -43,14 +43,14 @@ int64_t walk_dda_ticks(int64_t longest)
 
 static bool dda_line_enter(struct interp_cursor *c, bool at_end)
 {
-	return c->seg.ticks > 0 && walk_dda_enter(c, at_end, 0) &&
-	       c->seg.ticks == walk_dda_ticks(walk_longest(c, 0));
+	return c->seg.ticks > 0 && pulse_dda_enter(c, at_end, 0) &&
+	       c->seg.ticks == pulse_dda_ticks(pulse_longest(c, 0));
 }
 
-const struct interp_walk walk_dda_line = {
+const struct interp_walk pulse_dda_line = {
 	.enter = dda_line_enter,
-	.forward = walk_dda_forward,
-	.back = walk_dda_back,
+	.forward = pulse_dda_forward,
+	.back = pulse_dda_back,
 };
 
 /* -- Arcs ------------------------------------------------------------------- */
@@ -153,10 +153,10 @@ static bool dda_arc_enter(struct interp_cursor *c, bool at_end)
 	struct interp_rotor *k = &c->rotor;
 	int64_t at[2] = { 0, 0 };
 
-	if (!walk_plane_ok(c) || !arc_ok(c) ||
-	    !walk_dda_enter(c, at_end, 1u << arc->axis_a | 1u << arc->axis_b))
+	if (!pulse_plane_ok(c) || !arc_ok(c) ||
+	    !pulse_dda_enter(c, at_end, 1u << arc->axis_a | 1u << arc->axis_b))
 		return false;
-	walk_circle_node(c, at_end, at);
+	pulse_circle_node(c, at_end, at);
 	rotor_set(k, arc, at);
 	if (at_end) {
 		/* As the tail left it; walking back begins with the tail. */
@@ -176,7 +176,7 @@ static uint32_t arc_tail(struct interp_cursor *c, int64_t u, int dir)
 
 	c->pos[c->arc.axis_a] += (int32_t)dx;
 	c->pos[c->arc.axis_b] += (int32_t)dy;
-	return walk_plane_pulse(c, (int32_t)dx, (int32_t)dy);
+	return pulse_plane_move(c, (int32_t)dx, (int32_t)dy);
 }
 
 static uint32_t arc_turn(struct interp_cursor *c, int dir)
@@ -189,44 +189,44 @@ static uint32_t arc_turn(struct interp_cursor *c, int dir)
 	else
 		rotor_back(k);
 	if (!rotor_in_range(k))
-		return WALK_BAD;
+		return PULSE_BAD;
 	c->pos[c->arc.axis_a] += (int32_t)(k->x - x);
 	c->pos[c->arc.axis_b] += (int32_t)(k->y - y);
-	return walk_plane_pulse(c, (int32_t)(k->x - x), (int32_t)(k->y - y));
+	return pulse_plane_move(c, (int32_t)(k->x - x), (int32_t)(k->y - y));
 }
 
 static uint32_t dda_arc_tick(struct interp_cursor *c)
 {
-	const uint32_t others = walk_dda_tick(c);
+	const uint32_t others = pulse_dda_tick(c);
 	const uint32_t plane = c->tick <= c->arc.tail ? arc_turn(c, 1) :
 			       arc_tail(c, (int64_t)c->tick - c->arc.tail, 1);
 
-	return plane == WALK_BAD ? WALK_BAD : others | plane;
+	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
 }
 
 static uint32_t dda_arc_tick_back(struct interp_cursor *c)
 {
 	const uint32_t tick = c->tick;
-	const uint32_t others = walk_dda_tick_back(c);
+	const uint32_t others = pulse_dda_tick_back(c);
 	const uint32_t plane = tick <= c->arc.tail ? arc_turn(c, -1) :
 			       arc_tail(c, (int64_t)tick - c->arc.tail, -1);
 
-	return plane == WALK_BAD ? WALK_BAD : others | plane;
+	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
 }
 
 static uint32_t dda_arc_forward(struct interp_cursor *c, uint32_t ticks,
 				uint16_t *ret)
 {
-	return walk_ticks(c, dda_arc_tick, ticks, ret);
+	return pulse_ticks(c, dda_arc_tick, ticks, ret);
 }
 
 static uint32_t dda_arc_back(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return walk_ticks(c, dda_arc_tick_back, ticks, ret);
+	return pulse_ticks(c, dda_arc_tick_back, ticks, ret);
 }
 
-const struct interp_walk walk_dda_arc = {
+const struct interp_walk pulse_dda_arc = {
 	.enter = dda_arc_enter,
 	.forward = dda_arc_forward,
 	.back = dda_arc_back,

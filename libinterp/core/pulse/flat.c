@@ -13,9 +13,9 @@
 
 static bool flat_enter(struct interp_cursor *c, bool at_end)
 {
-	const struct couple_rule rule = walk_rule(c);
+	const struct couple_rule rule = pulse_rule(c);
 	struct couple_input in[INTERP_NAXES];
-	const uint32_t n = walk_stand(c, at_end) ? walk_inputs(c, 0, in) : 0;
+	const uint32_t n = pulse_stand(c, at_end) ? pulse_inputs(c, 0, in) : 0;
 	int64_t sum = 0;
 
 	for (uint32_t i = 0; i < n; i++)
@@ -72,16 +72,16 @@ static inline uint32_t flat_tick_back(struct interp_cursor *c)
 static uint32_t flat_forward(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return walk_ticks(c, flat_tick, ticks, ret);
+	return pulse_ticks(c, flat_tick, ticks, ret);
 }
 
 static uint32_t flat_back(struct interp_cursor *c, uint32_t ticks,
 			  uint16_t *ret)
 {
-	return walk_ticks(c, flat_tick_back, ticks, ret);
+	return pulse_ticks(c, flat_tick_back, ticks, ret);
 }
 
-const struct interp_walk walk_flat = {
+const struct interp_walk pulse_flat = {
 	.enter = flat_enter,
 	.forward = flat_forward,
 	.back = flat_back,

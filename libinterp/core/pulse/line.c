@@ -31,13 +31,13 @@ static void dda_set(struct interp_dda *d, int64_t node, int64_t len,
 	d->err = len > 0 ? up - full : -1 - up;
 }
 
-bool walk_stand(struct interp_cursor *c, bool at_end)
+bool pulse_stand(struct interp_cursor *c, bool at_end)
 {
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		const int64_t at = walk_node(c, j, at_end);
+		const int64_t at = pulse_node(c, j, at_end);
 
-		if (!walk_in_range(at) ||
-		    !walk_in_range(walk_node(c, j, !at_end)))
+		if (!pulse_in_range(at) ||
+		    !pulse_in_range(pulse_node(c, j, !at_end)))
 			return false;
 		c->pos[c->p.head->column[j]] = interp_round_sub(at);
 	}
@@ -47,18 +47,18 @@ bool walk_stand(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
-bool walk_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except)
+bool pulse_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except)
 {
 	const int64_t ticks = c->seg.ticks;
 
-	if (!walk_stand(c, at_end))
+	if (!pulse_stand(c, at_end))
 		return false;
 	c->ndda = 0;
 	c->dda_full = ticks << INTERP_SUB_BITS;
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const uint32_t axis = c->p.head->column[j];
-		const int64_t from = walk_node(c, j, false);
-		const int64_t to = walk_node(c, j, true);
+		const int64_t from = pulse_node(c, j, false);
+		const int64_t to = pulse_node(c, j, true);
 		struct interp_dda *d = &c->dda[c->ndda];
 
 		if (from == to || except & 1u << axis)
@@ -67,8 +67,8 @@ bool walk_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except)
 			return false;
 		dda_set(d, at_end ? to : from, to - from, ticks);
 		d->axis = axis;
-		d->pulse = walk_pulse(axis, d->dir < 0);
-		d->pulse_back = walk_pulse(axis, d->dir > 0);
+		d->pulse = pulse_move(axis, d->dir < 0);
+		d->pulse_back = pulse_move(axis, d->dir > 0);
 		d->given = 0;
 		c->ndda++;
 	}
@@ -144,8 +144,8 @@ static uint32_t points_of(uint16_t *ret, uint32_t ticks)
 	return points;
 }
 
-uint32_t walk_dda_forward(struct interp_cursor *c, uint32_t ticks,
-			  uint16_t *ret)
+uint32_t pulse_dda_forward(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret)
 {
 	two_run(c, 0, dda_forward, ticks, ret);
 	for (uint32_t i = 2; i < c->ndda; i += 2)
@@ -155,7 +155,7 @@ uint32_t walk_dda_forward(struct interp_cursor *c, uint32_t ticks,
 	return points_of(ret, ticks);
 }
 
-uint32_t walk_dda_back(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
+uint32_t pulse_dda_back(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
 {
 	two_run(c, 0, dda_back, ticks, ret);
 	for (uint32_t i = 2; i < c->ndda; i += 2)
@@ -165,7 +165,7 @@ uint32_t walk_dda_back(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
 	return points_of(ret, ticks);
 }
 
-uint32_t walk_dda_tick(struct interp_cursor *c)
+uint32_t pulse_dda_tick(struct interp_cursor *c)
 {
 	uint32_t pulses = 0;
 
@@ -180,7 +180,7 @@ uint32_t walk_dda_tick(struct interp_cursor *c)
 	return pulses;
 }
 
-uint32_t walk_dda_tick_back(struct interp_cursor *c)
+uint32_t pulse_dda_tick_back(struct interp_cursor *c)
 {
 	uint32_t pulses = 0;
 
@@ -195,13 +195,13 @@ uint32_t walk_dda_tick_back(struct interp_cursor *c)
 	return pulses;
 }
 
-int64_t walk_longest(const struct interp_cursor *c, uint32_t except)
+int64_t pulse_longest(const struct interp_cursor *c, uint32_t except)
 {
 	int64_t longest = 0;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		const int64_t d = llabs(walk_node(c, j, true) -
-					walk_node(c, j, false));
+		const int64_t d = llabs(pulse_node(c, j, true) -
+					pulse_node(c, j, false));
 
 		if (!(except & 1u << c->p.head->column[j]) && d > longest)
 			longest = d;
@@ -212,12 +212,12 @@ int64_t walk_longest(const struct interp_cursor *c, uint32_t except)
 /* More ticks than pulses would be a walk on the spot. */
 static bool line_enter(struct interp_cursor *c, bool at_end)
 {
-	return walk_dda_enter(c, at_end, 0) &&
-	       c->seg.ticks == walk_longest(c, 0);
+	return pulse_dda_enter(c, at_end, 0) &&
+	       c->seg.ticks == pulse_longest(c, 0);
 }
 
-const struct interp_walk walk_line = {
+const struct interp_walk pulse_line = {
 	.enter = line_enter,
-	.forward = walk_dda_forward,
-	.back = walk_dda_back,
+	.forward = pulse_dda_forward,
+	.back = pulse_dda_back,
 };

@@ -13,13 +13,13 @@
 /* Bit by bit: no division, the same time always. */
 int64_t pair_isqrt(uint64_t n, uint64_t m)
 {
-	const walk_uwide x = (walk_uwide)n * n * m;
+	const pulse_uwide x = (pulse_uwide)n * n * m;
 	uint64_t root = 0;
 
 	for (int bit = 62; bit >= 0; bit--) {
 		const uint64_t try = root | UINT64_C(1) << bit;
 
-		if ((walk_uwide)try * try <= x)
+		if ((pulse_uwide)try * try <= x)
 			root = try;
 	}
 	return (int64_t)root;

@@ -9,83 +9,83 @@
  *
  * Threads: RT-safe.
  */
-#ifndef PULSE_WALK_H
-#define PULSE_WALK_H
+#ifndef PULSE_PULSE_H
+#define PULSE_PULSE_H
 
 #include "interp/cursor.h"
 
 /* For products of two measures. */
-__extension__ typedef __int128 walk_wide;
-__extension__ typedef unsigned __int128 walk_uwide;
+__extension__ typedef __int128 pulse_wide;
+__extension__ typedef unsigned __int128 pulse_uwide;
 
-#define WALK_BAD	UINT32_MAX	/* instead of pulses, or of points */
+#define PULSE_BAD	UINT32_MAX	/* instead of pulses, or of points */
 
-typedef uint32_t walk_run_fn(struct interp_cursor *c, uint32_t ticks,
-			     uint16_t *ret);
+typedef uint32_t pulse_run_fn(struct interp_cursor *c, uint32_t ticks,
+			      uint16_t *ret);
 
 struct interp_walk {
 	/* Stand at the segment's start or end; set whole and measure. */
 	bool (*enter)(struct interp_cursor *c, bool at_end);
 	/* @ticks of them; update pos, tick and measure; the points met, their
 	 * pulses in @ret. */
-	walk_run_fn *forward, *back;
+	pulse_run_fn *forward, *back;
 	/* What the last tick added to the measure; NULL: always one. */
 	int64_t (*last)(const struct interp_cursor *c);
 };
 
 /* Lines, every axis at once: line.c. */
-extern const struct interp_walk walk_line;
+extern const struct interp_walk pulse_line;
 /* Arcs, every axis at once: arc.c. */
-extern const struct interp_walk walk_arc;
+extern const struct interp_walk pulse_arc;
 /* Lines by accumulators, arcs by two that feed each other: dda.c. */
-extern const struct interp_walk walk_dda_line;
-extern const struct interp_walk walk_dda_arc;
+extern const struct interp_walk pulse_dda_line;
+extern const struct interp_walk pulse_dda_arc;
 /* Lines of three and more axes by star or tube: flat.c. */
-extern const struct interp_walk walk_flat;
+extern const struct interp_walk pulse_flat;
 /* Lines and helices, one axis at a time: tree.c. */
-extern const struct interp_walk walk_tree;
-extern const struct interp_walk walk_helix;
+extern const struct interp_walk pulse_tree;
+extern const struct interp_walk pulse_helix;
 /* Circles, one axis at a time: circle.c. */
-extern const struct interp_walk walk_circle;
+extern const struct interp_walk pulse_circle;
 /* Two contours together: sides.c, one axis at a time; all at once:
  * sides_at_once.c. */
-extern const struct interp_walk walk_pair;
-extern const struct interp_walk walk_pair_at_once;
+extern const struct interp_walk pulse_pair;
+extern const struct interp_walk pulse_pair_at_once;
 /* Parts of NURBS: curve.c. */
-extern const struct interp_walk walk_curve;
+extern const struct interp_walk pulse_curve;
 /* Actions: no points at all: cursor.c. */
 
 /**
- * walk_ticks() - @ticks times @tick, which returns the pulses it made.
+ * pulse_ticks() - @ticks times @tick, which returns the pulses it made.
  *
  * Inline, so that every walk has a loop of its own and no call in it.  A tick
  * without a pulse is no point.
  */
 static inline __attribute__((always_inline)) uint32_t
-walk_ticks(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
-	   uint32_t ticks, uint16_t *ret)
+pulse_ticks(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
+	    uint32_t ticks, uint16_t *ret)
 {
 	uint32_t points = 0;
 
 	while (ticks-- > 0) {
 		const uint32_t pulses = tick(c);
 
-		if (pulses == WALK_BAD)
-			return WALK_BAD;
+		if (pulses == PULSE_BAD)
+			return PULSE_BAD;
 		ret[points] = (uint16_t)pulses;
 		points += pulses != 0;
 	}
 	return points;
 }
 
-/** walk_pulse() - the pulse of one axis, as struct interp_cursor has it. */
-static inline uint32_t walk_pulse(uint32_t axis, bool down)
+/** pulse_move() - the pulse of one axis, as struct interp_cursor has it. */
+static inline uint32_t pulse_move(uint32_t axis, bool down)
 {
 	return (down ? 0x101u : 1u) << axis;
 }
 
-/** walk_plane_pulse() - the same of an arc's plane; each -1, 0 or +1. */
-static inline uint32_t walk_plane_pulse(const struct interp_cursor *c,
+/** pulse_plane_move() - the same of an arc's plane; each -1, 0 or +1. */
+static inline uint32_t pulse_plane_move(const struct interp_cursor *c,
 					int32_t da, int32_t db)
 {
 	return (((uint32_t)da & 1) | ((uint32_t)da >> 31) << 8)
@@ -94,49 +94,49 @@ static inline uint32_t walk_plane_pulse(const struct interp_cursor *c,
 		       << c->arc.axis_b;
 }
 
-/** walk_node() - node column @j at the start or end of c->seg, subpulses. */
-static inline int64_t walk_node(const struct interp_cursor *c, uint32_t j,
-				bool at_end)
+/** pulse_node() - node column @j at the start or end of c->seg, subpulses. */
+static inline int64_t pulse_node(const struct interp_cursor *c, uint32_t j,
+				 bool at_end)
 {
 	return c->p.nodes[((uint64_t)c->index + at_end) * c->p.head->naxes + j];
 }
 
-/** walk_in_range() - a node no honest builder would exceed? */
-static inline bool walk_in_range(int64_t sub)
+/** pulse_in_range() - a node no honest builder would exceed? */
+static inline bool pulse_in_range(int64_t sub)
 {
 	const int64_t max = (int64_t)INTERP_PULSES_MAX << INTERP_SUB_BITS;
 
 	return sub >= -max && sub <= max;
 }
 
-/** walk_stand() - take the node's place on every axis; false if it has none. */
-bool walk_stand(struct interp_cursor *c, bool at_end);
+/** pulse_stand() - take the node's place on every axis; false: it has none. */
+bool pulse_stand(struct interp_cursor *c, bool at_end);
 
 /* The dda of every axis but those in @except (a mask): line.c. */
-bool walk_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except);
-/** walk_longest() - pulses of the longest axis, rounded up. */
-int64_t walk_longest(const struct interp_cursor *c, uint32_t except);
-walk_run_fn walk_dda_forward, walk_dda_back;
+bool pulse_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except);
+/** pulse_longest() - pulses of the longest axis, rounded up. */
+int64_t pulse_longest(const struct interp_cursor *c, uint32_t except);
+pulse_run_fn pulse_dda_forward, pulse_dda_back;
 /* One tick of it. */
-uint32_t walk_dda_tick(struct interp_cursor *c);
-uint32_t walk_dda_tick_back(struct interp_cursor *c);
+uint32_t pulse_dda_tick(struct interp_cursor *c);
+uint32_t pulse_dda_tick_back(struct interp_cursor *c);
 
 struct couple_input;
 struct couple_rule;
 
-/** walk_inputs() - every axis but @except with a pulse to give; signs set. */
-uint32_t walk_inputs(struct interp_cursor *c, uint32_t except,
-		     struct couple_input *in);
-/** walk_rule() - strategy, coupling and tolerance of the program. */
-struct couple_rule walk_rule(const struct interp_cursor *c);
+/** pulse_inputs() - every axis but @except with a pulse to give; signs set. */
+uint32_t pulse_inputs(struct interp_cursor *c, uint32_t except,
+		      struct couple_input *in);
+/** pulse_rule() - strategy, coupling and tolerance of the program. */
+struct couple_rule pulse_rule(const struct interp_cursor *c);
 
-/** walk_dda_ticks() - of a line of @longest pulses: a power of two, or 0. */
-int64_t walk_dda_ticks(int64_t longest);
+/** pulse_dda_ticks() - of a line of @longest pulses: a power of two, or 0. */
+int64_t pulse_dda_ticks(int64_t longest);
 
-/** walk_plane_ok() - are an arc's axes and centre in range? */
-bool walk_plane_ok(const struct interp_cursor *c);
+/** pulse_plane_ok() - are an arc's axes and centre in range? */
+bool pulse_plane_ok(const struct interp_cursor *c);
 
-/* The circle alone, used by walk_circle, by trees and by the builder. */
+/* The circle alone, used by pulse_circle, by trees and by the builder. */
 bool circle_enter(struct interp_circle *k, const struct interp_arc *arc,
 		  const int64_t start[2], const int64_t end[2], bool at_end);
 /** One pulse; ret[0], ret[1] in -1, 0, +1. */
@@ -198,30 +198,30 @@ uint32_t circle_smallest_milli(int64_t r2, uint32_t milli);
 bool dda_measure(struct interp_arc *arc, const int64_t start[2],
 		 const int64_t end[2], int64_t others);
 
-/** walk_circle_node() - start or end of c->arc's plane from its centre. */
-void walk_circle_node(const struct interp_cursor *c, bool at_end,
-		      int64_t ret[2]);
+/** pulse_circle_node() - start or end of c->arc's plane from its centre. */
+void pulse_circle_node(const struct interp_cursor *c, bool at_end,
+		       int64_t ret[2]);
 
-/** walk_circle_set() - aim c->circle at c->arc; false if it is unsound. */
-bool walk_circle_set(struct interp_cursor *c, bool at_end);
+/** pulse_circle_set() - aim c->circle at c->arc; false if it is unsound. */
+bool pulse_circle_set(struct interp_cursor *c, bool at_end);
 
-/** walk_circle_pulse() - one pulse of c->circle, @dir +1 or -1; its bits. */
-uint32_t walk_circle_pulse(struct interp_cursor *c, int dir);
+/** pulse_circle_move() - one pulse of c->circle, @dir +1 or -1; its bits. */
+uint32_t pulse_circle_move(struct interp_cursor *c, int dir);
 
-/** walk_curve_aim() - a part of the curve k->eval is open for, in places. */
-void walk_curve_aim(struct interp_curve_walk *k,
-		    const struct interp_nurbs_stop *stops, uint32_t nstops,
-		    uint32_t places, double length_mm);
+/** pulse_curve_aim() - a part of the curve k->eval is open for, in places. */
+void pulse_curve_aim(struct interp_curve_walk *k,
+		     const struct interp_nurbs_stop *stops, uint32_t nstops,
+		     uint32_t places, double length_mm);
 
-/** walk_curve_place() - k->pos of a place between the ends; of a curve, for
+/** pulse_curve_place() - k->pos of a place between the ends; of a curve, for
  *  the walk and the builder. */
-void walk_curve_place(struct interp_curve_walk *k, const double *pulses_mm,
-		      uint32_t place);
+void pulse_curve_place(struct interp_curve_walk *k, const double *pulses_mm,
+		       uint32_t place);
 
-/** walk_curve_gap2() - square of the distance of c->pos from its curve, over
+/** pulse_curve_gap2() - square of the distance of c->pos from its curve, over
  *  the axes of @axes, at the place @s_mm. */
-double walk_curve_gap2(const struct interp_cursor *c,
-		       struct interp_curve_walk *k, uint32_t axes,
-		       double s_mm);
+double pulse_curve_gap2(const struct interp_cursor *c,
+			struct interp_curve_walk *k, uint32_t axes,
+			double s_mm);
 
-#endif /* PULSE_WALK_H */
+#endif /* PULSE_PULSE_H */

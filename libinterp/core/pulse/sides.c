@@ -125,7 +125,7 @@ static bool others_stand(const struct interp_cursor *c)
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		if (!(four & 1u << c->p.head->column[j]) &&
-		    walk_node(c, j, false) != walk_node(c, j, true))
+		    pulse_node(c, j, false) != pulse_node(c, j, true))
 			return false;
 	}
 	return true;
@@ -140,7 +140,7 @@ static bool couple_ok(struct interp_cursor *c)
 
 	for (int i = 0; i < 2; i++) {
 		c->arc = p->side[i];
-		if (!walk_plane_ok(c) || p->side[i].measure < 0 ||
+		if (!pulse_plane_ok(c) || p->side[i].measure < 0 ||
 		    p->side[i].measure > INT64_MAX / 2)
 			return false;
 	}
@@ -152,15 +152,15 @@ static bool couple_ok(struct interp_cursor *c)
 
 static bool pair_enter(struct interp_cursor *c, bool at_end)
 {
-	if (!walk_stand(c, at_end) || !couple_ok(c) || !others_stand(c))
+	if (!pulse_stand(c, at_end) || !couple_ok(c) || !others_stand(c))
 		return false;
 	for (int i = 0; i < 2; i++) {
 		const struct interp_arc *arc = &c->couple.side[i];
 		int64_t start[2] = { 0, 0 }, end[2] = { 0, 0 };
 
 		c->arc = *arc;
-		walk_circle_node(c, false, start);
-		walk_circle_node(c, true, end);
+		pulse_circle_node(c, false, start);
+		pulse_circle_node(c, true, end);
 		if (!side_enter(&c->side[i], arc, start, end, at_end))
 			return false;
 	}
@@ -187,8 +187,8 @@ static uint32_t pair_move(struct interp_cursor *c, int i, const int8_t d[2])
 
 	c->pos[arc->axis_a] += d[0];
 	c->pos[arc->axis_b] += d[1];
-	return (d[0] ? walk_pulse(arc->axis_a, d[0] < 0) : 0) |
-	       (d[1] ? walk_pulse(arc->axis_b, d[1] < 0) : 0);
+	return (d[0] ? pulse_move(arc->axis_a, d[0] < 0) : 0) |
+	       (d[1] ? pulse_move(arc->axis_b, d[1] < 0) : 0);
 }
 
 static uint32_t pair_tick(struct interp_cursor *c)
@@ -197,10 +197,10 @@ static uint32_t pair_tick(struct interp_cursor *c)
 	int i;
 
 	if (c->tick >= c->seg.ticks)
-		return WALK_BAD;
+		return PULSE_BAD;
 	i = bit_at(c, c->tick);
 	if (!side_forward(&c->side[i], d))
-		return WALK_BAD;
+		return PULSE_BAD;
 	c->tick++;
 	c->measure += tick_measure(c, i);
 	return pair_move(c, i, d);
@@ -213,13 +213,13 @@ static uint32_t pair_tick_back(struct interp_cursor *c)
 	int i;
 
 	if (c->tick == 0)
-		return WALK_BAD;
+		return PULSE_BAD;
 	i = bit_at(c, c->tick - 1);
 	if (c->side[i].tick == 0)
-		return WALK_BAD;
+		return PULSE_BAD;
 	last = tick_measure(c, i);
 	if (!side_back(&c->side[i], d))
-		return WALK_BAD;
+		return PULSE_BAD;
 	c->tick--;
 	c->measure -= last;
 	return pair_move(c, i, d);
@@ -228,13 +228,13 @@ static uint32_t pair_tick_back(struct interp_cursor *c)
 static uint32_t pair_forward(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return walk_ticks(c, pair_tick, ticks, ret);
+	return pulse_ticks(c, pair_tick, ticks, ret);
 }
 
 static uint32_t pair_back(struct interp_cursor *c, uint32_t ticks,
 			  uint16_t *ret)
 {
-	return walk_ticks(c, pair_tick_back, ticks, ret);
+	return pulse_ticks(c, pair_tick_back, ticks, ret);
 }
 
 static int64_t pair_last(const struct interp_cursor *c)
@@ -248,7 +248,7 @@ static int64_t pair_last(const struct interp_cursor *c)
 	return c->side[i].tick == 0 ? 1 : tick_measure(c, i);
 }
 
-const struct interp_walk walk_pair = {
+const struct interp_walk pulse_pair = {
 	.enter = pair_enter,
 	.forward = pair_forward,
 	.back = pair_back,

@@ -30,7 +30,7 @@ static double arc_pulses(const struct interp_cursor *c,
 /* As many ticks as the builder gives, no more: no walk on the spot. */
 static bool ticks_ok(const struct interp_cursor *c, uint32_t curved)
 {
-	double n = (double)walk_longest(c, curved);
+	double n = (double)pulse_longest(c, curved);
 
 	for (int i = 0; i < 2; i++) {
 		const struct interp_arc *arc = &c->couple.side[i];
@@ -49,12 +49,12 @@ static bool at_once_enter(struct interp_cursor *c, bool at_end)
 		const struct interp_arc *arc = &c->couple.side[i];
 
 		c->arc = *arc;
-		if (!walk_plane_ok(c) || curved & plane_of(arc))
+		if (!pulse_plane_ok(c) || curved & plane_of(arc))
 			return false;
 		if (arc->r_mm > 0)
 			curved |= plane_of(arc);
 	}
-	return walk_dda_enter(c, at_end, curved) && ticks_ok(c, curved);
+	return pulse_dda_enter(c, at_end, curved) && ticks_ok(c, curved);
 }
 
 /* One axis of an arc to where it stands at c->tick; at the ends to the node,
@@ -68,7 +68,7 @@ static bool axis_settle(struct interp_cursor *c, uint32_t axis, double at_mm,
 	if (c->tick == 0 || c->tick == c->seg.ticks) {
 		for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 			if (c->p.head->column[j] == axis)
-				to = interp_round_sub(walk_node(c, j,
+				to = interp_round_sub(pulse_node(c, j,
 							c->tick != 0));
 		}
 	}
@@ -76,7 +76,7 @@ static bool axis_settle(struct interp_cursor *c, uint32_t axis, double at_mm,
 	if (by > 1 || by < -1)
 		return false;
 	c->pos[axis] = (int32_t)to;
-	*moved |= by ? walk_pulse(axis, by < 0) : 0;
+	*moved |= by ? pulse_move(axis, by < 0) : 0;
 	return true;
 }
 
@@ -91,7 +91,7 @@ static uint32_t arc_settle(struct interp_cursor *c,
 	return axis_settle(c, arc->axis_a, arc->a_mm + r * cos(theta),
 			   &moved) &&
 	       axis_settle(c, arc->axis_b, arc->b_mm + r * sin(theta),
-			   &moved) ? moved : WALK_BAD;
+			   &moved) ? moved : PULSE_BAD;
 }
 
 static uint32_t at_once_settle(struct interp_cursor *c, uint32_t moved)
@@ -103,8 +103,8 @@ static uint32_t at_once_settle(struct interp_cursor *c, uint32_t moved)
 		if (!(arc->r_mm > 0))
 			continue;
 		plane = arc_settle(c, arc);
-		if (plane == WALK_BAD)
-			return WALK_BAD;
+		if (plane == PULSE_BAD)
+			return PULSE_BAD;
 		moved |= plane;
 	}
 	return moved;
@@ -112,27 +112,27 @@ static uint32_t at_once_settle(struct interp_cursor *c, uint32_t moved)
 
 static uint32_t at_once_tick(struct interp_cursor *c)
 {
-	return at_once_settle(c, walk_dda_tick(c));
+	return at_once_settle(c, pulse_dda_tick(c));
 }
 
 static uint32_t at_once_tick_back(struct interp_cursor *c)
 {
-	return at_once_settle(c, walk_dda_tick_back(c));
+	return at_once_settle(c, pulse_dda_tick_back(c));
 }
 
 static uint32_t at_once_forward(struct interp_cursor *c, uint32_t ticks,
 				uint16_t *ret)
 {
-	return walk_ticks(c, at_once_tick, ticks, ret);
+	return pulse_ticks(c, at_once_tick, ticks, ret);
 }
 
 static uint32_t at_once_back(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return walk_ticks(c, at_once_tick_back, ticks, ret);
+	return pulse_ticks(c, at_once_tick_back, ticks, ret);
 }
 
-const struct interp_walk walk_pair_at_once = {
+const struct interp_walk pulse_pair_at_once = {
 	.enter = at_once_enter,
 	.forward = at_once_forward,
 	.back = at_once_back,

@@ -17,27 +17,27 @@
 
 #include <stdlib.h>
 
-uint32_t walk_inputs(struct interp_cursor *c, uint32_t except,
-		     struct couple_input *in)
+uint32_t pulse_inputs(struct interp_cursor *c, uint32_t except,
+		      struct couple_input *in)
 {
 	uint32_t n = 0;
 
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const uint32_t axis = c->p.head->column[j];
-		const int64_t d = interp_round_sub(walk_node(c, j, true)) -
-				  interp_round_sub(walk_node(c, j, false));
+		const int64_t d = interp_round_sub(pulse_node(c, j, true)) -
+				  interp_round_sub(pulse_node(c, j, false));
 
 		if (d == 0 || except & 1u << axis)
 			continue;
 		c->sign[axis] = d > 0 ? 1 : -1;
-		c->pulse[axis] = (uint16_t)walk_pulse(axis, d < 0);
-		c->pulse_back[axis] = (uint16_t)walk_pulse(axis, d > 0);
+		c->pulse[axis] = (uint16_t)pulse_move(axis, d < 0);
+		c->pulse_back[axis] = (uint16_t)pulse_move(axis, d > 0);
 		in[n++] = (struct couple_input) { (int8_t)axis, llabs(d) };
 	}
 	return n;
 }
 
-struct couple_rule walk_rule(const struct interp_cursor *c)
+struct couple_rule pulse_rule(const struct interp_cursor *c)
 {
 	const struct interp_program_head *h = c->p.head;
 
@@ -51,9 +51,9 @@ struct couple_rule walk_rule(const struct interp_cursor *c)
 /* Aim the tree at all axes but @except; the sum of their pulses. */
 static int64_t tree_set(struct interp_cursor *c, uint32_t except, bool at_end)
 {
-	const struct couple_rule rule = walk_rule(c);
+	const struct couple_rule rule = pulse_rule(c);
 	struct couple_input in[INTERP_NAXES], root;
-	const uint32_t n = walk_inputs(c, except, in);
+	const uint32_t n = pulse_inputs(c, except, in);
 
 	if (n == 0)
 		return 0;
@@ -72,7 +72,7 @@ static int64_t tree_set(struct interp_cursor *c, uint32_t except, bool at_end)
 
 static bool tree_enter(struct interp_cursor *c, bool at_end)
 {
-	return walk_stand(c, at_end) && tree_set(c, 0, at_end) == c->seg.ticks;
+	return pulse_stand(c, at_end) && tree_set(c, 0, at_end) == c->seg.ticks;
 }
 
 static inline uint32_t tree_tick(struct interp_cursor *c)
@@ -192,18 +192,18 @@ static uint32_t tree_ticks(struct interp_cursor *c, uint32_t ticks,
 static uint32_t tree_forward(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return ticks == 1 ? walk_ticks(c, tree_tick, 1, ret) :
+	return ticks == 1 ? pulse_ticks(c, tree_tick, 1, ret) :
 			    tree_ticks(c, ticks, ret);
 }
 
 static uint32_t tree_back(struct interp_cursor *c, uint32_t ticks,
 			  uint16_t *ret)
 {
-	return ticks == 1 ? walk_ticks(c, tree_tick_back, 1, ret) :
+	return ticks == 1 ? pulse_ticks(c, tree_tick_back, 1, ret) :
 			    tree_ticks(c, ticks, ret);
 }
 
-const struct interp_walk walk_tree = {
+const struct interp_walk pulse_tree = {
 	.enter = tree_enter,
 	.forward = tree_forward,
 	.back = tree_back,
@@ -213,7 +213,7 @@ const struct interp_walk walk_tree = {
 
 static bool helix_enter(struct interp_cursor *c, bool at_end)
 {
-	if (!walk_stand(c, at_end) || !walk_circle_set(c, at_end))
+	if (!pulse_stand(c, at_end) || !pulse_circle_set(c, at_end))
 		return false;
 	c->others = tree_set(c, 1u << c->arc.axis_a | 1u << c->arc.axis_b,
 			     at_end);
@@ -229,11 +229,11 @@ static bool helix_enter(struct interp_cursor *c, bool at_end)
 /* The tree's pulses due when the circle is at measure @m. */
 static int64_t helix_due(const struct interp_cursor *c, int64_t m)
 {
-	const walk_wide whole = c->arc.measure;
+	const pulse_wide whole = c->arc.measure;
 
 	if (whole == 0)
 		return c->others;
-	return (int64_t)((2 * (walk_wide)m * c->others + whole) / (2 * whole));
+	return (int64_t)((2 * (pulse_wide)m * c->others + whole) / (2 * whole));
 }
 
 static int64_t helix_sent(const struct interp_cursor *c)
@@ -248,8 +248,8 @@ static uint32_t helix_tick(struct interp_cursor *c)
 	if (helix_sent(c) < helix_due(c, c->circle_at))
 		return tree_tick(c);
 	if (c->circle.tick >= c->circle.ticks)
-		return WALK_BAD;
-	moved = walk_circle_pulse(c, 1);
+		return PULSE_BAD;
+	moved = pulse_circle_move(c, 1);
 	c->tick++;
 	c->circle_at += circle_last(&c->circle);
 	c->measure += circle_last(&c->circle);
@@ -269,26 +269,26 @@ static uint32_t helix_tick_back(struct interp_cursor *c)
 	int64_t last;
 
 	if (c->tick == 0)
-		return WALK_BAD;
+		return PULSE_BAD;
 	if (helix_last_tree(c))
 		return tree_tick_back(c);
 	last = circle_last(&c->circle);
 	c->tick--;
 	c->circle_at -= last;
 	c->measure -= last;
-	return walk_circle_pulse(c, -1);
+	return pulse_circle_move(c, -1);
 }
 
 static uint32_t helix_forward(struct interp_cursor *c, uint32_t ticks,
 			      uint16_t *ret)
 {
-	return walk_ticks(c, helix_tick, ticks, ret);
+	return pulse_ticks(c, helix_tick, ticks, ret);
 }
 
 static uint32_t helix_back(struct interp_cursor *c, uint32_t ticks,
 			   uint16_t *ret)
 {
-	return walk_ticks(c, helix_tick_back, ticks, ret);
+	return pulse_ticks(c, helix_tick_back, ticks, ret);
 }
 
 static int64_t helix_last(const struct interp_cursor *c)
@@ -296,7 +296,7 @@ static int64_t helix_last(const struct interp_cursor *c)
 	return helix_last_tree(c) ? 1 : circle_last(&c->circle);
 }
 
-const struct interp_walk walk_helix = {
+const struct interp_walk pulse_helix = {
 	.enter = helix_enter,
 	.forward = helix_forward,
 	.back = helix_back,

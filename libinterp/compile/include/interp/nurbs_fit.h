@@ -14,10 +14,18 @@
 #ifndef INTERP_NURBS_FIT_H
 #define INTERP_NURBS_FIT_H
 
-#include "interp/nurbs_edit.h"
+#include "interp/nurbs.h"
 
 #define INTERP_FIT_POINTS_MAX	4096	/* in one curve */
 #define INTERP_FIT_POINTS_MIN	6
+
+/* A curve with its own numbers. */
+struct interp_nurbs_own {
+	struct interp_nurbs c;		/* c.knots, c.points: these two */
+	double *knots, *points;		/* lent by the caller, with room */
+	uint32_t room;			/* of control points; of knots it is
+					 * room + degree + 1 */
+};
 
 struct interp_fit {
 	const double *points;		/* rows of naxes; no two neighbours

@@ -13,7 +13,7 @@
  *			(u + Kff dy_pred + Kfb dy_meas)
  *	zpetc		the axis models inverted with zero phase (Tomizuka)
  *	twin		the set values were corrected beforehand; see
- *			interp/twin.h
+ *			tests/experiments/tried/set_twin.h
  *
  * Any of them together, but feedforward and zpetc, which are the same cure.
  * A drive that takes places is given the result divided by its gain.

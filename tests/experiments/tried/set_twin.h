@@ -9,8 +9,8 @@
  * Units: mm.
  * Threads: any thread, not in the cycle: the work grows with the path.
  */
-#ifndef INTERP_TWIN_H
-#define INTERP_TWIN_H
+#ifndef TRIED_SET_TWIN_H
+#define TRIED_SET_TWIN_H
 
 #include "interp/foot.h"
 
@@ -38,4 +38,4 @@ void interp_twin_correct(const struct interp_twin_set *set,
 			 const struct interp_twin_run *run, double gain,
 			 int naxes);
 
-#endif /* INTERP_TWIN_H */
+#endif /* TRIED_SET_TWIN_H */

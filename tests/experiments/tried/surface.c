@@ -2,7 +2,7 @@
 /*
  * surface.c - NURBS surfaces
  */
-#include "interp/surface.h"
+#include "tried/surface.h"
 
 #include "curve/span.h"
 

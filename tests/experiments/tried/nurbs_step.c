@@ -17,7 +17,7 @@
  * that is too far or too curved, and halves from there.  Its steps are counted,
  * so is each correction.
  */
-#include "interp/nurbs_step.h"
+#include "tried/nurbs_step.h"
 
 #include <errno.h>
 #include <math.h>

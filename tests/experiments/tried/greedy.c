@@ -2,7 +2,7 @@
 /*
  * greedy.c - the fewest changes of axis a line in a tube can have
  */
-#include "pulse/greedy.h"
+#include "tried/greedy.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* twin.c - errors of a run of the model, put where their feet were */
-#include "interp/twin.h"
+#include "tried/set_twin.h"
 
 void interp_twin_correct(const struct interp_twin_set *set,
 			 const struct interp_twin_run *run, double gain,

@@ -11,7 +11,7 @@
 #ifndef INTERP_SURFACE_H
 #define INTERP_SURFACE_H
 
-#include "interp/nurbs_edit.h"
+#include "tried/nurbs_edit.h"
 
 struct interp_surface {
 	uint32_t degree[2];		/* along u, along v */

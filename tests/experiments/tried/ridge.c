@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* ridge.c - ridge regression by normal equations, and features of motion */
-#include "interp/ridge.h"
+#include "tried/ridge.h"
 
 #include <errno.h>
 #include <math.h>

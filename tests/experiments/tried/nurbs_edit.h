@@ -14,15 +14,7 @@
 #ifndef INTERP_NURBS_EDIT_H
 #define INTERP_NURBS_EDIT_H
 
-#include "interp/nurbs.h"
-
-/* A curve with its own numbers. */
-struct interp_nurbs_own {
-	struct interp_nurbs c;		/* c.knots, c.points: these two */
-	double *knots, *points;		/* lent by the caller, with room */
-	uint32_t room;			/* of control points; of knots it is
-					 * room + degree + 1 */
-};
+#include "interp/nurbs_fit.h"
 
 /** interp_nurbs_copy() */
 int interp_nurbs_copy(const struct interp_nurbs *c,

@@ -13,7 +13,7 @@
  *
  * and so its control points.
  */
-#include "interp/nurbs_edit.h"
+#include "tried/nurbs_edit.h"
 
 #include <errno.h>
 #include <string.h>
