@@ -70,7 +70,7 @@ CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
-PANEL	:= $(wildcard clients/panel/*.c)
+PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
@@ -212,7 +212,7 @@ $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
 	$(call link,-lddsc -ljansson -lm)
 
-$(B)/edm-panel: $(call obj,$(PANEL) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A)
+$(B)/edm-panel: $(call obj,$(PANEL_C) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A)
 	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
 # Of edmd itself, without its main().
@@ -261,10 +261,15 @@ $(B)/panel.stamp: $(B)/web/node_modules.stamp $(WEB_SRC)
 
 # -- The commands -------------------------------------------------------------
 
+# PANEL=1: with the operator's page, for a browser of this host; PORT=7680.
+PANEL	?= 0
+PORT	?= 7680
+
 demo:
 	@tests/setup build
-	@$(MAKE) --no-print-directory all
-	@EDM_BUILD=$(B) tests/netns examples/demo
+	@$(MAKE) --no-print-directory all $(if $(filter 1,$(PANEL)),panel)
+	@EDM_BUILD=$(B) PORT=$(PORT) \
+		$(if $(filter 1,$(PANEL)),examples/demo-panel,tests/netns examples/demo)
 
 # Everything: ends with the test runner's own lines.  Random tests have a seed
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
@@ -354,7 +359,7 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 clang:
 	$(call say,CLANG,all sources)
 	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
-		$(JOBS) $(SIM) $(CTL) $(PLOT) $(PANEL) $(wildcard clients/dds/*.c); do \
+		$(JOBS) $(SIM) $(CTL) $(PLOT) $(PANEL_C) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
 			$(INC_dds) $(INC_panel) $(INC_libinterp)) $$f || exit 1; done
@@ -439,7 +444,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 
 # -- Install ------------------------------------------------------------------
 
-install: all
+install: all panel
 	$(call say,INSTALL,$(DESTDIR)$(PREFIX))
 	$(Q)install -d $(BINDIR) $(UNITDIR) $(DESTDIR)/usr/lib/sysusers.d \
 		$(DESTDIR)/usr/lib/udev/rules.d $(DESTDIR)/etc/edmd \
@@ -447,6 +452,10 @@ install: all
 		$(DESTDIR)$(PREFIX)/share/man/man8 \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -m 755 $(PROGRAMS) $(BINDIR)
+	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/panel/assets
+	$(Q)install -m 644 $(B)/panel/*.gz $(DESTDIR)$(PREFIX)/share/edmd/panel
+	$(Q)install -m 644 $(B)/panel/assets/*.gz \
+		$(DESTDIR)$(PREFIX)/share/edmd/panel/assets
 	$(Q)for u in systemd/*.service.in; do \
 		sed 's,@BINDIR@,$(PREFIX)/bin,g' $$u \
 			> $(UNITDIR)/$$(basename $$u .in) && \

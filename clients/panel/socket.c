@@ -30,7 +30,7 @@ struct browser {
 	struct lws *wsi;
 	char session[SESSION_ID_BYTES];
 	uint64_t heard;			/* telling; 0: none */
-	bool greeted;
+	bool closing;			/* the browser has said so */
 	struct answer *first, **last;
 	size_t waiting;
 	char *in;			/* a request in pieces */
@@ -390,7 +390,12 @@ int socket_callback(struct lws *wsi, enum lws_callback_reasons reason,
 		if (b && b->panel)
 			end(b);
 		return 0;
+	case LWS_CALLBACK_WS_PEER_INITIATED_CLOSE:
+		b->closing = true;
+		return 0;
 	case LWS_CALLBACK_SERVER_WRITEABLE:
+		if (b->closing)
+			return 0;
 		return b->panel ? on_writable(b) : -1;
 	case LWS_CALLBACK_RECEIVE:
 		return b->panel ? on_receive(b, in, len) : -1;

@@ -4,7 +4,7 @@
 import { link } from "./link";
 import { t, type Word } from "./words";
 
-const RUNS = new Set(["travel", "approach", "erode", "retract", "jump", "touch", "probe"]);
+const RUNS = new Set(["travel", "approach", "erode", "retract", "jump", "probe"]);
 const BY_HAND = new Set(["jog", "home"]);
 
 export type Act = "start" | "hold" | "retract" | "estop" | "reset" | "end" | "jog" | "home" | "set" | "send";

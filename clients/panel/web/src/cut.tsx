@@ -111,7 +111,7 @@ function chips(): Chip[] {
 		{ id: "condition", label: t("cut.condition"), text: s.condition || "\u2013", open: "*" },
 		{ id: "peak_a", label: t("cut.peak"), text: f("peak_a", "A"), open: "peak_a" },
 		{ id: "on_us", label: t("cut.onoff"), text: v.on_us === undefined ? "\u2013" : `${short(v.on_us)} / ${short(v.off_us ?? 0)} \u00b5s`, open: "on_us off_us" },
-		{ id: "servo_v", label: t("cut.servo"), text: f("servo_v", "V"), open: "servo_v" },
+		{ id: "servo_v", label: t("cut.servochip"), text: f("servo_v", "V"), open: "servo_v" },
 		{ id: "jump_mm", label: t("cut.jump"), text: v.jump_mm === undefined ? "\u2013" : `${short(v.jump_mm)} mm / ${short(v.jump_every_s ?? 0)} s`, open: "jump_mm jump_every_s" },
 		{ id: "override", label: t("cut.override"), text: `${number(s.override * 100, 0)} %`, open: "%" },
 	];
@@ -127,7 +127,7 @@ function Foot(p: { open: (what: string) => void }): JSX.Element {
 			<Key id="retract" onPress={() => p.open("retract")}>{t("retract")}</Key>
 			{fault ? <Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key> :
 				<Key id="hold" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}
-			<PressKey id="start" class={isRunning() ? "" : "primary"} why={whyNot("start")} note={whyNot("start") ? " " : undefined}
+			<PressKey id="start" class={isRunning() ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
 				onPress={() => void act("start")}>{t(held ? "resume" : "start")}</PressKey>
 		</div>
 	</footer>;

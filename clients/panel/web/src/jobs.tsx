@@ -158,7 +158,7 @@ function Details(p: { id: string; name: string; onClose: () => void }): JSX.Elem
 
 function Queue(p: { open: (j: Job) => void }): JSX.Element {
 	const s = link.state;
-	const [rows, refused, again] = useAsk<Job[]>("queue", { n: `${s.job}${s.jobState}${s.queue}` }, 3000);
+	const [rows, refused, again] = useAsk<Job[]>("queue", { turn: `${s.job}${s.jobState}${s.queue}` }, 3000);
 	return <Card title={t("jobs.queue")}>{refused && <p class="note">{refused}</p>}
 		{rows && rows.length === 0 && <p class="calm">{t("jobs.empty")}</p>}
 		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b><span>{jobWord(j.state)}{j.hold && j.state !== "running" ? `, ${t("jobs.waits")}` : ""}</span></button>
@@ -167,7 +167,7 @@ function Queue(p: { open: (j: Job) => void }): JSX.Element {
 }
 
 function History(p: { open: (j: Job) => void }): JSX.Element {
-	const [rows, refused] = useAsk<Job[]>("past", { arg: 50, text: "", n: link.state.job + link.state.jobState }, 5000);
+	const [rows, refused] = useAsk<Job[]>("past", { arg: 50, text: "", turn: link.state.job + link.state.jobState }, 5000);
 	return <Card title={t("jobs.history")}>{refused && <p class="note">{refused}</p>}
 		{rows && rows.length === 0 && <p class="calm">{t("jobs.nohistory")}</p>}
 		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b>

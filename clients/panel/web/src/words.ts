@@ -26,7 +26,7 @@ export const en = {
 	"state.idle": "Idle", "state.travel": "Positioning", "state.approach": "Approach",
 	"state.erode": "Cutting", "state.retract": "Retract", "state.jump": "Jump",
 	"state.hold": "Held", "state.fault": "Fault", "state.jog": "Jog",
-	"state.home": "Homing", "state.touch": "Probing", "state.unknown": "No contact",
+	"state.home": "Homing", "state.probe": "Probing", "state.unknown": "No contact",
 	"state.ready": "Ready",
 
 	"why.idle": "No job is loaded. Drop a program anywhere to begin.",
@@ -41,7 +41,7 @@ export const en = {
 	"why.hold": "Stands on the path, sparks off. Go on, retract, or end the job.",
 	"why.jog": "Moves by hand.",
 	"why.home": "Looks for the home of an axis.",
-	"why.touch": "Moves until the electrode meets the work.",
+	"why.probe": "Moves until the electrode meets the work.",
 	"why.absent": "edmd does not run on this host. Start it: systemctl start edmd.",
 	"why.lost": "The cycle stands still, or edmd is dead. The last known values are shown.",
 	"why.connection": "The page has lost the panel. What runs goes on; it tries again by itself.",
@@ -59,7 +59,7 @@ export const en = {
 	"no.moving": "The machine moves. Wait until it stands.",
 
 	"cut.gap": "Gap voltage", "cut.feed": "Feed along the path", "cut.short": "short",
-	"cut.servo": "servo", "cut.open": "open", "cut.sparks": "sparks on",
+	"cut.servo": "servo", "cut.servochip": "Servo", "cut.runs": "runs already", "cut.open": "open", "cut.sparks": "sparks on",
 	"cut.nosparks": "sparks off", "cut.back": "back", "cut.forward": "forward",
 	"cut.still": "still", "cut.togo": "to go", "cut.depth": "Depth", "cut.done": "Done",
 	"cut.left": "Left", "cut.jumps": "Jumps", "cut.retracts": "Retracts",

@@ -20,7 +20,7 @@ export const zh: Record<Word, string> = {
 
 	"state.idle": "空闲", "state.travel": "定位", "state.approach": "趋近", "state.erode": "加工",
 	"state.retract": "回退", "state.jump": "抬刀", "state.hold": "保持", "state.fault": "故障",
-	"state.jog": "点动", "state.home": "回零", "state.touch": "测量", "state.unknown": "无联系",
+	"state.jog": "点动", "state.home": "回零", "state.probe": "测量", "state.unknown": "无联系",
 	"state.ready": "就绪",
 
 	"why.idle": "没有载入任务。把程序拖到页面任意处即可开始。",
@@ -35,7 +35,7 @@ export const zh: Record<Word, string> = {
 	"why.hold": "停在路径上,不放电。可继续、回退或结束任务。",
 	"why.jog": "手动移动。",
 	"why.home": "正在寻找轴的零点。",
-	"why.touch": "移动,直到电极碰到工件。",
+	"why.probe": "移动,直到电极碰到工件。",
 	"why.absent": "本机没有运行 edmd。启动:systemctl start edmd。",
 	"why.lost": "控制循环停住或 edmd 已退出。显示的是最后的数值。",
 	"why.connection": "页面与面板失去连接。正在进行的加工不受影响;页面会自动重连。",
@@ -52,7 +52,7 @@ export const zh: Record<Word, string> = {
 	"no.loaded": "已载入任务。请先结束它。",
 	"no.moving": "机床在移动。请等它停住。",
 
-	"cut.gap": "间隙电压", "cut.feed": "沿路径进给", "cut.short": "短路", "cut.servo": "伺服",
+	"cut.gap": "间隙电压", "cut.feed": "沿路径进给", "cut.short": "短路", "cut.servo": "伺服", "cut.servochip": "伺服", "cut.runs": "正在运行",
 	"cut.open": "开路", "cut.sparks": "放电中", "cut.nosparks": "不放电", "cut.back": "后退",
 	"cut.forward": "前进", "cut.still": "静止", "cut.togo": "剩余", "cut.depth": "深度",
 	"cut.done": "进度", "cut.left": "剩余时间", "cut.jumps": "抬刀", "cut.retracts": "回退",
