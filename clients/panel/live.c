@@ -6,6 +6,7 @@
 #include "values.h"
 
 #include "config.h"
+#include "faults.h"
 
 #include <errno.h>
 #include <math.h>
@@ -239,7 +240,7 @@ void live_fill(struct live *l, json_t *to)
 	json_object_set_new(to, "daemon", json_string(daemon));
 	json_object_set_new(to, "state", json_string(ok ?
 			    shm_state_name(s->state) : "unknown"));
-	json_object_set_new(to, "fault", json_string(shm_fault_name(s->fault)));
+	json_object_set_new(to, "fault", json_string(fault_name(s->fault)));
 	json_object_set_new(to, "outcome",
 			    json_string(shm_outcome_name(s->outcome)));
 	json_object_set_new(to, "loaded", json_boolean(s->loaded));

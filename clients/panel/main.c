@@ -4,6 +4,7 @@
  */
 #include "panel.h"
 #include "reply.h"
+#include "words.h"
 #include "work.h"
 
 #include <errno.h>
@@ -36,6 +37,7 @@ static const char usage[] =
 "  --add-user NAME ROLE   add or change a user: viewer, operator or service;\n"
 "                         the password is read from the terminal or from\n"
 "                         standard input\n"
+"  --print-words          the machine's own words as JSON, for the page\n"
 "  --help, --version\n"
 "\n"
 "Exit: 0 ended in order, 64 usage, 66 no such file, 69 a port or the channels\n"
@@ -50,7 +52,7 @@ struct options {
 enum {
 	OPT_CONFIG = 256, OPT_MACHINE, OPT_PORT, OPT_ASSETS, OPT_ADD_USER,
 	OPT_WORK, OPT_FILE_NAME, OPT_START, OPT_PROGRAM, OPT_TOLERANCE,
-	OPT_HELP, OPT_VERSION,
+	OPT_PRINT_WORDS, OPT_HELP, OPT_VERSION,
 };
 
 static const struct option longs[] = {
@@ -65,6 +67,7 @@ static const struct option longs[] = {
 	{ "start", required_argument, NULL, OPT_START },
 	{ "program", required_argument, NULL, OPT_PROGRAM },
 	{ "tolerance", required_argument, NULL, OPT_TOLERANCE },
+	{ "print-words", no_argument, NULL, OPT_PRINT_WORDS },
 	{ "help", no_argument, NULL, OPT_HELP },
 	{ "version", no_argument, NULL, OPT_VERSION },
 	{ 0 },
@@ -347,6 +350,7 @@ static int set_option(struct options *o, int c)
 		o->work.program = (uint32_t)strtoul(optarg, NULL, 10);
 		break;
 	case OPT_TOLERANCE: o->work.tolerance_mm = strtod(optarg, NULL); break;
+	case OPT_PRINT_WORDS: exit(words_print());
 	case OPT_HELP: fputs(usage, stdout); exit(0);
 	case OPT_VERSION: puts("edm-panel " EDM_VERSION); exit(0);
 	default: return EX_USAGE;

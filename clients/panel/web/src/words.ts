@@ -159,6 +159,13 @@ export const en = {
 	"drop.here": "Drop to check the program", "event.alarm": "Alarm",
 } as const;
 
+// Every state and outcome of the machine has a word above.
+type States = `state.${keyof typeof machine.states}`;
+type Outcomes = `job.${Exclude<keyof typeof machine.outcomes, "none">}`;
+type Missing = Exclude<States | Outcomes, keyof typeof en>;
+const missing: [Missing] extends [never] ? true : Missing = true;
+void missing;
+
 export type Word = keyof typeof en;
 export type Fault = keyof typeof machine.faults;
 export interface FaultWords { what: string; why: string; clear: string }
