@@ -57,7 +57,7 @@ static void put_head(const struct flat *f, const struct interp_program *p)
 		(int)f->has_upper, "origin", three(f->origin_mm), "min",
 		three(f->min_mm), "max", three(f->max_mm), "name",
 		p->head->name);
-	char *text = json_dumps(o, JSON_COMPACT);
+	char *text = json_dumps(o, JSON_COMPACT | JSON_REAL_PRECISION(12));
 	const size_t n = text ? strlen(text) : 0;
 
 	fwrite(text, 1, n, stdout);
