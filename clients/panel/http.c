@@ -107,8 +107,13 @@ static bool has_token(struct request *r, const struct session *s)
 
 static void peer_of(struct request *r, char to[SESSION_ADDRESS_MAX])
 {
+	static const char mapped[] = "::ffff:";
+
 	to[0] = '\0';
 	lws_get_peer_simple(r->wsi, to, SESSION_ADDRESS_MAX);
+	if (strncmp(to, mapped, sizeof(mapped) - 1) == 0)
+		memmove(to, to + sizeof(mapped) - 1,
+			strlen(to) - sizeof(mapped) + 2);
 }
 
 /* What follows "KEY=" of the address; as it is if it is not there. */

@@ -12,6 +12,7 @@ import pathlib
 import signal
 import socket
 import ssl
+import struct
 import subprocess
 
 import rig
@@ -205,6 +206,28 @@ class Session:
             url, subprotocols=["edm-panel"], open_timeout=20,
             origin=origin or self.panel.url, max_size=None,
             additional_headers={"Cookie": cookie or self.cookie}, **more))
+
+
+    def raw_live(self):
+        """A web socket as a bare socket, shaken hands with."""
+        s = socket.create_connection(("127.0.0.1", self.panel.port), 10)
+        s.sendall((f"GET /api/live HTTP/1.1\r\n"
+                   f"Host: 127.0.0.1:{self.panel.port}\r\n"
+                   "Upgrade: websocket\r\nConnection: Upgrade\r\n"
+                   "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                   "Sec-WebSocket-Version: 13\r\n"
+                   "Sec-WebSocket-Protocol: edm-panel\r\n"
+                   f"Origin: {self.panel.url}\r\n"
+                   f"Cookie: {self.cookie}\r\n\r\n").encode())
+        assert b" 101 " in s.recv(200)
+        return s
+
+    def frame(self, n, do, **more):
+        """A request as a frame, masked with zeros."""
+        text = json.dumps({"n": n, "token": self.token, "do": do,
+                           **more}).encode()
+        return (struct.pack("!BBH", 0x81, 0x80 | 126, len(text)) + bytes(4)
+                + text)
 
 
 class Live:
