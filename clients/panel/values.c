@@ -17,9 +17,9 @@ struct values {
 	struct interp_tech base;
 	/* Of the program that is loaded. */
 	uint32_t n;			/* 0: none */
-	const void *block;
-	size_t bytes;
-	struct interp_program program;
+	uint16_t *cond_of_seg;		/* NULL: its block could not be read */
+	uint32_t nsegs, nconds;
+	struct interp_tech *cond;
 };
 
 struct values *values_create(const struct machine_config *config)
@@ -35,9 +35,10 @@ struct values *values_create(const struct machine_config *config)
 
 static void leave_program(struct values *v)
 {
-	if (v->block)
-		shm_program_unmap(v->block, v->bytes);
-	v->block = NULL;
+	free(v->cond_of_seg);
+	free(v->cond);
+	v->cond_of_seg = NULL;
+	v->cond = NULL;
 	v->n = 0;
 }
 
@@ -49,30 +50,49 @@ void values_destroy(struct values *v)
 	free(v);
 }
 
-static void take_program(struct values *v, uint32_t n)
+/* Of a program of a million segments two megabytes are kept, not the whole. */
+static void copy_program(struct values *v, const struct interp_program *p)
 {
-	if (n == v->n && (v->block || n == 0))
-		return;
-	leave_program(v);
-	if (n == 0 || shm_program_open(&v->block, &v->bytes, v->machine, n) < 0) {
-		v->block = NULL;
+	v->nsegs = p->head->nsegs;
+	v->nconds = p->head->nconds;
+	v->cond_of_seg = calloc(v->nsegs, sizeof(*v->cond_of_seg));
+	v->cond = calloc(v->nconds, sizeof(*v->cond));
+	if (!v->cond_of_seg || !v->cond) {
+		leave_program(v);
 		return;
 	}
-	if (interp_program_map(&v->program, v->block, v->bytes) < 0)
-		leave_program(v);
+	for (uint32_t i = 0; i < v->nsegs; i++)
+		v->cond_of_seg[i] = p->segs[i].cond;
+	for (uint32_t i = 0; i < v->nconds; i++)
+		v->cond[i] = p->conds[i].tech;
+}
+
+static void take_program(struct values *v, uint32_t n)
+{
+	struct interp_program p;
+	const void *block;
+	size_t bytes;
+
+	if (n == v->n)
+		return;
+	leave_program(v);
+	if (n == 0 || shm_program_open(&block, &bytes, v->machine, n) < 0)
+		return;
+	if (interp_program_map(&p, block, bytes) == 0)
+		copy_program(v, &p);
+	shm_program_unmap(block, bytes);
 	v->n = n;
 }
 
 /* The number of the program's condition in force; 0: none was called. */
 static uint32_t cond_of(const struct values *v, const struct shm_snapshot *s)
 {
-	const struct interp_program *p = &v->program;
 	uint32_t cond;
 
-	if (!v->block || s->seg >= p->head->nsegs)
+	if (!v->cond_of_seg || s->seg >= v->nsegs)
 		return 0;
-	cond = p->segs[s->seg].cond;
-	return cond < p->head->nconds ? cond : 0;
+	cond = v->cond_of_seg[s->seg];
+	return cond < v->nconds ? cond : 0;
 }
 
 static void apply_sets(struct interp_tech *t, const struct shm_sets *sets,
@@ -122,8 +142,8 @@ void values_fill(struct values *v, const struct shm_status *status,
 
 	take_program(v, s->loaded ? s->program : 0);
 	cond = cond_of(v, s);
-	if (v->block)
-		interp_tech_over(&t, &v->program.conds[cond].tech);
+	if (v->cond)
+		interp_tech_over(&t, &v->cond[cond]);
 	if (status && s->loaded && shm_sets(status, &sets) &&
 	    sets.program_key == s->program_key)
 		apply_sets(&t, &sets, cond, own);

@@ -2,7 +2,7 @@
 //
 // The first page: the path, the gap, the feed, and the keys of a cut.
 import type { JSX } from "preact";
-import { useEffect, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { isRunning, whyNot } from "./can";
 import { Strip } from "./chart";
 import { duration, number, parse, short } from "./format";
@@ -133,29 +133,12 @@ function Foot(p: { open: (what: string) => void }): JSX.Element {
 	</footer>;
 }
 
-function useText(): Map<number, string> {
-	// The text of the program that is loaded, line by line, where it is known.
-	const [lines, set] = useState(new Map<number, string>());
-	const job = link.state.job, line = link.state.line;
-	useEffect(() => {
-		if (!job || !line || lines.has(line)) return;
-		let live = true;
-		void link.ask<{ from: number; lines: string[] }>("lines", { job, arg: Math.max(1, line - 20) }).then((a) => {
-			if (!live || a.code !== 0 || !a.body?.lines) return;
-			set(new Map(a.body.lines.map((l, i) => [a.body.from + i, l])));
-		});
-		return () => { live = false; };
-	}, [job, line]);
-	useEffect(() => set(new Map()), [job]);
-	return lines;
-}
-
 export function Cut(): JSX.Element {
 	const [open, set] = useState("");
-	const s = link.state, lines = useText();
+	const s = link.state;
 	const shown = s.program > 0 && s.loaded;
 	const back = Math.max(0, s.far - s.place), whole = s.length || 1;
-	const foot = shown ? <div class="progress"><p><code>{lines.get(s.line) ?? ""}</code><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
+	const foot = shown ? <div class="progress"><p><span /><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
 		<div class="bar"><i class="done" style={{ width: `${Math.min(100, s.far / whole * 100)}%` }} />
 			{back > 0.0005 && <i class="back" style={{ left: `${s.place / whole * 100}%`, width: `${back / whole * 100}%` }} />}</div></div> : null;
 	return <>

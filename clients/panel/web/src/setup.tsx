@@ -2,59 +2,21 @@
 //
 // Before the cut: home, jog, probe, offsets.
 import type { JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { whyNot } from "./can";
 import { number, short } from "./format";
 import { sendText } from "./jobs";
 import { link, type Axis } from "./link";
 import { Card, Choice, Key, NumberField, PressKey, act } from "./parts";
 import { PROBES, isWhole, type Probe, type ProbeId } from "./probes";
-import { say } from "./use";
 import { t } from "./words";
 
-const STEPS = ["0.001", "0.01", "0.1", "1", "10", "hold"] as const;
-const FEEL_MS = 60;
-
-// While the finger is felt the panel is told so; what it does not hear of for
-// 0.2 s edmd ends by itself.
-function useHold(axis: Axis, way: number): { begin: (e: PointerEvent | KeyboardEvent) => void; end: () => void } {
-	const timer = useRef(0);
-	const end = () => {
-		if (!timer.current) return;
-		clearInterval(timer.current);
-		timer.current = 0;
-		void link.ask("jog-end");
-	};
-	const begin = () => {
-		const why = whyNot("jog");
-		if (why) { say(why, true); return; }
-		if (timer.current) return;
-		const at = link.state.pos[axis.index] ?? 0;
-		const unhomed = link.state.unhomed >> axis.index & 1;
-		const room = unhomed ? axis.max - axis.min : way > 0 ? axis.max - at : at - axis.min;
-		if (!(room > axis.pulse)) { say(t("setup.limit"), true); return; }
-		void act("jog-while", { text: axis.name, arg: way * Math.floor(room / axis.pulse) * axis.pulse }).then((ok) => { if (!ok) end(); });
-		timer.current = window.setInterval(() => void link.ask("jog-on", { text: axis.name }), FEEL_MS);
-	};
-	useEffect(() => {
-		addEventListener("blur", end);
-		document.addEventListener("visibilitychange", end);
-		return () => { removeEventListener("blur", end); document.removeEventListener("visibilitychange", end); end(); };
-	}, []);
-	return { begin, end };
-}
+const STEPS = ["0.001", "0.01", "0.1", "1", "10"] as const;
 
 function JogKey(p: { axis: Axis; way: number; step: string }): JSX.Element {
-	const hold = useHold(p.axis, p.way), why = whyNot("jog"), sign = p.way > 0 ? "+" : "\u2212";
-	const name = `${p.axis.name}${sign}`;
-	if (p.step !== "hold") return <Key class="jogkey" why={why} label={`${name} ${p.step}`} id={`jog-${p.axis.name}-${p.way > 0 ? "plus" : "minus"}`}
+	const why = whyNot("jog"), name = `${p.axis.name}${p.way > 0 ? "+" : "\u2212"}`;
+	return <Key class="jogkey" why={why} label={`${name} ${p.step}`} id={`jog-${p.axis.name}-${p.way > 0 ? "plus" : "minus"}`}
 		onPress={() => void act("jog", { text: p.axis.name, arg: p.way * Number(p.step) })}>{name}</Key>;
-	return <button type="button" class={`key jogkey hold ${why ? "off" : ""}`} aria-disabled={!!why} id={`jog-${p.axis.name}-${p.way > 0 ? "plus" : "minus"}`}
-		aria-label={`${name} ${t("setup.hold")}`}
-		onPointerDown={(e) => { if (e.button === 0) { e.currentTarget.setPointerCapture(e.pointerId); hold.begin(e); } }}
-		onPointerUp={hold.end} onPointerCancel={hold.end} onLostPointerCapture={hold.end} onContextMenu={(e) => e.preventDefault()}
-		onKeyDown={(e) => { if ((e.key === "Enter" || e.key === " ")) { e.preventDefault(); if (!e.repeat) hold.begin(e); } }}
-		onKeyUp={hold.end} onBlur={hold.end}><span>{name}</span></button>;
 }
 
 function AxisState(p: { axis: Axis }): JSX.Element {
@@ -67,12 +29,12 @@ function JogCard(): JSX.Element {
 	const [step, set] = useState<string>("0.1");
 	const axes = link.hello?.axes ?? [];
 	return <Card title={t("setup.jog")} class="jog" right={<Key class="small" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}>
-		<Choice label={t("setup.faster")} value={step} onChange={set} of={STEPS.map((v) => ({ value: v as string, text: v === "hold" ? t("setup.hold") : `${short(Number(v))}` }))} />
+		<Choice label={t("setup.faster")} value={step} onChange={set} of={STEPS.map((v) => ({ value: v as string, text: short(Number(v)) }))} />
 		<table class="axes"><tbody>{axes.map((a) => <tr key={a.name}><th scope="row">{a.name}</th>
 			<td><JogKey axis={a} way={-1} step={step} /></td>
 			<td class="n">{number(link.state.pos[a.index] ?? 0, 3, true)}<u>{a.rotary ? "deg" : "mm"}</u><AxisState axis={a} /></td>
 			<td><JogKey axis={a} way={1} step={step} /></td></tr>)}</tbody></table>
-		<p class="note">{whyNot("jog") || (step === "hold" ? t("setup.jognote") : t("cut.machine"))}</p>
+		<p class="note">{whyNot("jog") || t("cut.machine")}</p>
 	</Card>;
 }
 

@@ -103,10 +103,9 @@ export const en = {
 	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",
 	"job.done": "done", "job.fault": "fault", "job.stopped": "ended",
 
-	"setup.jog": "Jog", "setup.step": "Step", "setup.hold": "while held",
+	"setup.jog": "Jog", "setup.step": "Step",
 	"setup.home": "Home", "setup.homeall": "Home all axes", "setup.probe": "Probing",
 	"setup.offsets": "Work offsets", "setup.position": "Position",
-	"setup.jognote": "The axis stops when you let go, and 0.2 s after the last sign of your finger or of the connection.",
 	"setup.homed": "homed", "setup.unhomed": "not homed", "setup.limit": "on its limit switch",
 	"setup.nohome": "needs no homing", "setup.run": "Send and start", "setup.make": "G code it runs",
 	"setup.offsetnote": "As the machine file gives them; a program can shift them by G92.",

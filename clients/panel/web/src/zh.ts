@@ -87,9 +87,8 @@ export const zh: Record<Word, string> = {
 	"job.queued": "排队", "job.ready": "就绪", "job.running": "运行", "job.held": "保持",
 	"job.done": "完成", "job.fault": "故障", "job.stopped": "已结束",
 
-	"setup.jog": "点动", "setup.step": "步进", "setup.hold": "按住移动", "setup.home": "回零",
+	"setup.jog": "点动", "setup.step": "步进", "setup.home": "回零",
 	"setup.homeall": "所有轴回零", "setup.probe": "测量", "setup.offsets": "工件偏置", "setup.position": "位置",
-	"setup.jognote": "松手时轴停止;失去手指或连接的信号后 0.2 秒也停止。",
 	"setup.homed": "已回零", "setup.unhomed": "未回零", "setup.limit": "在限位开关上", "setup.nohome": "不需回零",
 	"setup.run": "发送并启动", "setup.make": "将运行的 G 代码", "setup.offsetnote": "由机床文件给出;程序可用 G92 移动。",
 	"setup.nooffsets": "所有工件偏置为 0。", "setup.faster": "步长",
