@@ -61,7 +61,7 @@ static void json_put(char *to, size_t size, const char *from)
 static void refuse_text(struct jobs *j, struct upload *up,
 			const struct interp_diag *d)
 {
-	char reason[480], body[2100];
+	char reason[480], body[2600];
 	char found[6 * sizeof(d->found)], wanted[6 * sizeof(d->wanted)];
 
 	snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s", up->name,
