@@ -62,6 +62,16 @@ source = lines
 retract_wait_s = 60
 """
 
+ADC = LINES + """
+spark = sim1:0
+watchdog = sim1:1
+estop = 16
+adc = adc-sim
+adc_ratio = 80
+[gap]
+source = voltage
+"""
+
 QUICK_JOB = "G21 G90\nG1 X0.02 F6\nG1 X0\nM30\n"
 SLOW_JOB = "G21 G90\nG1 X1 F2\nG1 X0\nM30\n"
 

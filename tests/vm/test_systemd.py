@@ -64,8 +64,8 @@ def test_one_that_is_stopped_is_replaced_within_its_watchdogs_time(systemd):
           f"{said['spark-frozen']}, then {said['spark-replaced']}")
     assert said["spark-frozen"] == "1"
     assert said["spark-replaced"] == "0"
-    # TimeoutStopSec alone is 10 s.
-    assert took < 9
+    # What heeds SIGKILL alone is not waited for, 10 s, after another signal.
+    assert "timed out. Killing" not in systemd.text("journal")
 
 
 def test_no_spark_comes_back_before_a_start(systemd):

@@ -50,7 +50,6 @@ pid=$(unit MainPID)
 read -r up _ < /proc/uptime
 echo "frozen-at $up"
 kill -STOP $pid
-sleep 1
 echo "spark-frozen $(level sim1 0)"
 n=0
 until [ "$(unit NRestarts)" != 1 ] || [ $n -ge 200 ]; do
