@@ -12,7 +12,8 @@
 
 #define REFRESH_S	1e-3
 #define DEAD_S		0.02		/* the edge thread plays nothing */
-#define QUIET_S		0.1		/* no comparator on, with the power on */
+#define QUIET_S		0.1		/* no comparator on, with the power on; or
+					 * no sample of the converter */
 
 static int refuse(struct interp_diag *d, int err, const char *line,
 		  const char *found, const char *wanted)
@@ -276,7 +277,7 @@ static void configure(struct gpio *g, const struct machine_config *c)
 	g->watchdog_periods = periods(c, k->watchdog_us * 1e-6);
 	g->refresh_periods = periods(c, REFRESH_S);
 	g->dead_max = 1 + periods(c, DEAD_S);
-	g->adc_max = 1 + periods(c, DEAD_S);
+	g->adc_max = 1 + periods(c, QUIET_S);
 	g->quiet_max = periods(c, QUIET_S);
 	g->has_gap = config_gpio_has_lines(c);
 }

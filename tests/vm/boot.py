@@ -138,6 +138,8 @@ class Run:
 
 
 VIRTUAL = {
+    "adc.ini": machine(period_us=1000, v=0.5, tail=ADC),
+    "adc.ngc": SLOW_JOB,
     "step.ini": machine(period_us=100, v=5),
     "slow.ini": machine(period_us=100, v=1,
                         tail=LINES + "high_cycles = 3\nlow_cycles = 2\n"

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 
 import pytest
-from boot import (ADC, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES,
+from boot import (BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES,
                   QUICK_JOB, ROOT, Run, SLOW_JOB, STRICT_REFUSED, STRICT_UP,
                   VIRTUAL, checked, drives, lagging, machine)
 
@@ -18,7 +18,6 @@ def plain():
         "null.ini": machine("null"),
         "sim.ini": machine("sim", tail="[sim]\nspeed = 5\n"),
         "gap.ini": machine(tail=GAP),
-        "adc.ini": machine(tail=ADC),
         "no-chip.ini": machine(tail=LINES.replace("sim0", "sim7")),
         "no-line.ini": machine(tail=LINES + "pump = 32\n"),
         "busy.ini": machine(tail=LINES + "pump = 6\n"),

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """On a PREEMPT_RT kernel with two CPUs: what depends on no timing."""
-import json
-
 import pytest
 
 
@@ -51,13 +49,3 @@ def test_a_lost_chip_ends_sparks_pulses_and_the_watchdog(plain):
     assert "io-lost: spark 0\n" in text, text
     assert "watchdog moved 0\n" in text, text
     assert "io-lost" in plain.text("lost.log")
-
-
-def test_the_gap_is_read_by_a_converter(plain):
-    """A simulated one of the kernel's industrial I/O, adc-sim."""
-    said = plain.text("adc") + plain.text("adc.log")
-    for line in ("open: spark 1", "spark: spark 1", "short: spark"):
-        assert line in said, said
-    gap_v = json.loads(plain.text("adc.json"))["gap_v"]
-    print(f"400 counts of 0.04 V: {gap_v} V")
-    assert abs(gap_v - 16) < 0.5

@@ -201,3 +201,13 @@ def test_its_own_latency_histogram_is_that_of_cyclictest(virtual):
     assert ours["wakes"] > 40000 and sum(theirs["bins"]) > 40000
     assert mean(ours["bins_us"]) == pytest.approx(mean(theirs["bins"]),
                                                   rel=0.2)
+
+
+def test_the_gap_is_read_by_a_converter(virtual):
+    """A simulated one of the kernel's industrial I/O, adc-sim."""
+    said = virtual.text("adc") + virtual.text("adc.log")
+    for line in ("open: spark 1", "spark: spark 1", "short: spark"):
+        assert line in said, said
+    gap_v = json.loads(virtual.text("adc.json"))["gap_v"]
+    print(f"400 counts of 0.04 V: {gap_v} V")
+    assert abs(gap_v - 16) < 0.5

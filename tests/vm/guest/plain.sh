@@ -37,24 +37,6 @@ refused rights nobody
 
 cutting='state *\(approach\|erode\)'
 
-# The gap by a converter: 0.04 V a count.
-raw() { echo $1 > /sys/module/adc_sim/parameters/raw; }
-raw 2000
-edmd_start $R/edmd adc.ini
-jobs_start adc.ini
-{
-ctl submit slow.ngc
-status_is 'state *approach' && echo "open: spark $(level sim1 0)"
-raw 400
-status_is 'state *erode' && sleep 0.2 && ctl --json status > adc.json &&
-	echo "spark: spark $(level sim1 0)"
-raw 0
-status_is 'state *retract' && echo "short: spark $(level sim1 0)"
-raw 2000
-} > adc 2>&1
-daemons_end adc
-rm -f /dev/shm/edmd.vm.*
-
 # Switches: each is its fault; sparks and pump are off by then.
 pull sim0 20 up
 edmd_start $R/edmd gap.ini
