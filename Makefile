@@ -17,6 +17,7 @@
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
 #   make fuzz       the readers of jobs under libFuzzer, a bounded time each
+#   make panel      the operator's page, into build/panel
 #   make lint       what the cycle may call, headers alone, who may include whom
 #   make install    DESTDIR and PREFIX are honoured
 #
@@ -45,7 +46,7 @@ OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
 	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
-LDFLAGS	= -Wl,--gc-sections $(SANFLAGS)
+LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
 
 # The parts, in the order data flows.
 # libinterp has a floor for each use: see docs/architecture.md.
@@ -71,10 +72,12 @@ SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
 JOBS	:= $(wildcard daemon/jobs/*.c)
 SIGN	:= $(wildcard messages/sign/*.c)
+LOGGER	:= $(wildcard daemon/logger/*.c)
 CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
+PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
@@ -98,13 +101,15 @@ INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
 INC_setup	= -Idaemon/setup
-INC_edmd	= -Idaemon/edmd -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_logger	= -Idaemon/logger -Imessages/sign
+INC_edmd	= -Idaemon/edmd $(INC_logger) -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
+INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign
 INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
 INC_ctl		= -Iclients/ctl -Icommon -Idaemon/io -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
 INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_panel	= -Iclients/panel -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
@@ -127,11 +132,13 @@ CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM)) $(WORDS_O)
 SIGN_O	 := $(call obj,$(SIGN))
+LOGGER_O	 := $(call obj,$(LOGGER)) $(B)/messages/sign/plain.o
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
 
-PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet
+PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet \
+	    $(B)/edm-panel
 UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
 PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
@@ -205,12 +212,12 @@ $(TRIED_A): $(call obj,$(TRIED))
 	$(archive)
 
 $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
-	$(call link,-linih -ljansson -lpthread -lm)
+	$(call link,-linih -ljansson -lpthread -lnlopt -lm)
 
-$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
+$(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
+$(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
@@ -222,29 +229,65 @@ $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
 	$(call link,-lddsc -ljansson -lm)
 
+$(B)/edm-panel: $(call obj,$(PANEL_C) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
+	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
+
 # Of edmd itself, without its main().
-$(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
+$(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
 
 # Of what stands in front of edmd-jobs.
-$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(B)/daemon/jobs/trust.o
+$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call obj,$(addprefix daemon/jobs/,trust.c jobs_log.c))
 $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lm)
+	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
 
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)
+	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lnlopt -lm)
 
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
-	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
+	$(call link,$(if $(findstring sisl,$@),-lsisl) -lnlopt -lm)
+
+# -- The panel's page ----------------------------------------------------------
+
+# Built by npm in a folder of its own, from a lock file that names no address.
+WEB	:= clients/panel/web
+WEB_SRC	:= $(wildcard $(WEB)/src/* $(WEB)/public/* $(WEB)/*.json $(WEB)/*.js \
+	   $(WEB)/*.mjs $(WEB)/index.html $(WEB)/.npmrc)
+
+panel: $(B)/panel.stamp
+
+$(B)/web/node_modules.stamp: $(WEB)/package.json $(WEB)/package-lock.json
+	@tests/setup panel
+	$(call say,NPM,$(WEB))
+	$(Q)mkdir -p $(B)/web
+	$(Q)cp $(WEB)/package.json $(WEB)/package-lock.json $(WEB)/.npmrc $(B)/web
+	$(Q)cd $(B)/web && npm ci --silent
+	$(Q)touch $@
+
+$(B)/panel.stamp: $(B)/web/node_modules.stamp $(WEB_SRC) $(B)/edm-panel
+	$(call say,VITE,$(B)/panel)
+	$(Q)rm -rf $(B)/web/src $(B)/web/public
+	$(Q)cp -r $(WEB)/src $(WEB)/public $(WEB)/index.html $(WEB)/*.js \
+		$(WEB)/*.mjs $(WEB)/tsconfig.json $(B)/web
+	$(Q)$(B)/edm-panel --print-words > $(B)/web/src/machine.json
+	$(Q)cd $(B)/web && npm run --silent check && \
+		EDM_PANEL_OUT=$(abspath $(B)/panel) npm run --silent build -- \
+			--logLevel warn && node finish.mjs $(abspath $(B)/panel)
+	@touch $@
 
 # -- The commands -------------------------------------------------------------
 
+# PANEL=1: with the operator's page, for a browser of this host; PORT=7680.
+PANEL	?= 0
+PORT	?= 7680
+
 demo:
 	@tests/setup build
-	@$(MAKE) --no-print-directory all
-	@EDM_BUILD=$(B) tests/netns examples/demo
+	@$(MAKE) --no-print-directory all $(if $(filter 1,$(PANEL)),panel)
+	@EDM_BUILD=$(B) PORT=$(PORT) \
+		$(if $(filter 1,$(PANEL)),examples/demo-panel,tests/netns examples/demo)
 
 # Everything: ends with the test runner's own lines.  Random tests have a seed
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
@@ -271,6 +314,8 @@ check:
 	@$(MAKE) --no-print-directory clang
 	@tests/stage check vm
 	@$(MAKE) --no-print-directory vm
+	@tests/stage check panel
+	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system tests/vm
 
@@ -313,6 +358,13 @@ run-units: $(UNIT_X) $(PEER_X)
 		printf '  UNIT    %s: ' $$t; \
 		sed -n 's/^\[==========\] \([0-9]* test(s) run\).*/\1/p' $$t.log; done
 
+# 500 kills of edmd, edmd-jobs and both around every verb: half an hour.
+KILLS ?= 500
+kills: all
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
+		tests/system/test_kills.py
+
 # What holds in every cycle, over ten million random ones; SEED=n repeats one.
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
@@ -340,10 +392,10 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 clang:
 	$(call say,CLANG,all sources)
 	$(Q)for f in $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
-		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
+		$(JOBS) $(SIM) $(CTL) $(PLOT) $(PANEL_C) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
-			$(INC_dds) $(INC_libinterp)) $$f || exit 1; done
+			$(INC_dds) $(INC_panel) $(INC_libinterp)) $$f || exit 1; done
 
 bench: vm
 	@tests/setup check
@@ -368,6 +420,7 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(call say,DRAW,docs/pictures)
 	$(Q)docs/pictures/staircases $(B)
 	$(Q)docs/pictures/orbits $(B)
+	$(Q)docs/pictures/wire $(B)
 	$(Q)docs/pictures/process $(B)
 	$(Q)docs/pictures/curves $(B)
 	$(Q)docs/pictures/demo $(B)
@@ -429,7 +482,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
-		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
+		$(INC_ctl) $(INC_dds) $(INC_panel) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
 		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
@@ -441,7 +494,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 
 # -- Install ------------------------------------------------------------------
 
-install: all
+install: all panel
 	$(call say,INSTALL,$(DESTDIR)$(PREFIX))
 	$(Q)install -d $(BINDIR) $(UNITDIR) $(DESTDIR)/usr/lib/sysusers.d \
 		$(DESTDIR)/usr/lib/udev/rules.d $(DESTDIR)/etc/edmd \
@@ -449,6 +502,10 @@ install: all
 		$(DESTDIR)$(PREFIX)/share/man/man8 \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -m 755 $(PROGRAMS) $(BINDIR)
+	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/panel/assets
+	$(Q)install -m 644 $(B)/panel/*.gz $(DESTDIR)$(PREFIX)/share/edmd/panel
+	$(Q)install -m 644 $(B)/panel/assets/*.gz \
+		$(DESTDIR)$(PREFIX)/share/edmd/panel/assets
 	$(Q)for u in systemd/*.service.in; do \
 		sed 's,@BINDIR@,$(PREFIX)/bin,g' $$u \
 			> $(UNITDIR)/$$(basename $$u .in) && \
@@ -470,7 +527,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: kills all panel demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults fuzz lint install clean
