@@ -3,6 +3,7 @@
 #   make            build everything into build/
 #   make demo       set up, build, run the main job on the simulated machine
 #   make check      set up, build, all tests; ends with the runner's own lines
+#   make quick      of these, most of what goes wrong, in 90 s
 #   make check-vm   of these, those on a PREEMPT_RT kernel in a virtual machine
 #   make bench      speed, as medians side by side
 #   make experiments  count the pulse rules and the ways along curves, time the
@@ -40,11 +41,15 @@ OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
 	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
-LDFLAGS	= $(SANFLAGS)
+LDFLAGS	= -Wl,--gc-sections $(SANFLAGS)
 
 # The parts, in the order data flows.
-INTERP	:= $(wildcard libinterp/*/*.c)
-RT	:= $(wildcard daemon/rt/*.c)
+# libinterp has a floor for each use: see docs/architecture.md.
+CORE	:= $(wildcard libinterp/core/*/*.c)
+COMPILE	:= $(wildcard libinterp/compile/*/*.c)
+MODEL	:= $(wildcard libinterp/model/*.c)
+INTERP	:= $(CORE) $(COMPILE) $(MODEL)
+RT	:= $(wildcard daemon/rt/*.c daemon/rt/*/*.c)
 # Of two files for libgpiod, the one for the version that pkg-config finds.
 PKG_CONFIG ?= pkg-config
 GPIOD	:= $(firstword $(subst ., ,$(shell $(PKG_CONFIG) --modversion libgpiod 2>/dev/null)))
@@ -53,6 +58,7 @@ IO	:= $(filter-out daemon/io/gpiod$(if $(filter 1,$(GPIOD)),2,1).c,\
 GPIOD_INC := $(shell $(PKG_CONFIG) --cflags libgpiod 2>/dev/null)
 LIBGPIOD := $(shell $(PKG_CONFIG) --libs libgpiod 2>/dev/null || echo -lgpiod)
 CONFIG	:= $(wildcard daemon/config/*.c)
+COMPILING := $(wildcard daemon/compiling/*.c)
 SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
@@ -64,34 +70,47 @@ UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
 EXPERIMENTS := lines axes machining
+# Methods that were compared and lost: no program uses them.
+TRIED	:= $(wildcard tests/experiments/tried/*.c)
 CURVE_EXPERIMENTS := curves curve_programs
 EXPERIMENTS_JUMP := jump
 
 # What a part may include.  A header not on its list does not resolve.
-INC_libinterp	= -Ilibinterp/include -Ilibinterp
-INC_rt		= -Idaemon/rt -Idaemon/io -Ilibinterp/include
-INC_io		= -Idaemon/io -Idaemon/config -Ilibinterp/include $(GPIOD_INC)
-INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io -Ilibinterp/include
+CORE_H		= -Ilibinterp/core/include
+COMPILE_H	= -Ilibinterp/compile/include
+MODEL_H		= -Ilibinterp/model/include
+INC_core	= $(CORE_H) -Ilibinterp/core
+INC_compile	= $(COMPILE_H) -Ilibinterp/compile $(INC_core)
+INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
+INC_rt		= -Idaemon/rt -Idaemon/io $(CORE_H)
+INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
+INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(CORE_H)
+INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm
 INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
-INC_sim		= -Iclients/sim -Iclients/plot $(INC_config)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm -Ilibinterp/include -I$(B)/messages
-INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config -Ilibinterp/include -I$(B)/messages
-INC_unit	= -Itests/unit -Itests/data -Ilibinterp $(INC_edmd) $(INC_jobs)
-INC_bench	= -Itests/data $(INC_edmd)
-INC_fuzz	= -Ilibinterp/include
-INC_peer	= -Itests/data -Ilibinterp/include
-INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config)
-part = $(word $(if $(filter libinterp,$(firstword $(subst /, ,$1))),1,2),$(subst /, ,$1))
+INC_jobs	= -Idaemon/jobs -Idaemon/shm $(INC_compiling) $(MODEL_H) -I$(B)/messages
+INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
+INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) -I$(B)/messages
+INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_libinterp	= $(INC_compile) $(INC_model)
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
+INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
+INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
+INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config) $(INC_compiling)
+part = $(word 2,$(subst /, ,$1))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
-INTERP_O := $(call obj,$(INTERP))
+CORE_A	 := $(B)/libinterp-core.a
+COMPILE_A := $(B)/libinterp-compile.a
+MODEL_A	 := $(B)/libinterp-model.a
+TRIED_A	 := $(B)/tests-tried.a
+INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A)
 RT_O	 := $(call obj,$(RT))
 IO_O	 := $(call obj,$(IO))
 SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
+COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM))
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
@@ -144,22 +163,38 @@ $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 define link
 $(call say,LD,$@)
 @mkdir -p $(@D)
-$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $1
+$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $1
 endef
 
-$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_O)
+# An archive for each floor of libinterp: what links one can reach no other.
+define archive
+$(call say,AR,$@)
+@rm -f $@
+$(Q)$(AR) rcs $@ $^
+endef
+
+$(CORE_A): $(call obj,$(CORE))
+	$(archive)
+$(COMPILE_A): $(call obj,$(COMPILE))
+	$(archive)
+$(MODEL_A): $(call obj,$(MODEL))
+	$(archive)
+$(TRIED_A): $(call obj,$(TRIED))
+	$(archive)
+
+$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
 	$(call link,-linih -ljansson -lpthread -lm)
 
-$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(LCM_O)
+$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(PLOT) $(wildcard libinterp/contour/*.c)) $(SHM_O) $(LCM_O)
+$(B)/edmctl: $(call obj,$(CTL) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(INTERP_O) $(DDS_O)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A)
 	$(call link,-lddsc -linih -lm)
 
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
@@ -168,19 +203,19 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
 
-$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lm)
 
-$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(INTERP_O)
+$(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)
 
-$(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_O)
+$(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
 
-$(B)/experiments/%: $(B)/tests/experiments/%.o $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_O)
+$(B)/experiments/%: $(B)/tests/experiments/%.o $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih -lm)
 
-$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(INTERP_O)
+$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(TRIED_A) $(INTERP_A)
 	$(call link,-ljansson -lm)
 
 # -- The commands -------------------------------------------------------------
@@ -194,18 +229,45 @@ demo:
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
 # the tests run alone go on to look with others.
 check:
+	@tests/stage check setup
 	@tests/setup check
+	@tests/stage check build
 	@$(MAKE) --no-print-directory -j2 all units WERROR=1
+	@tests/stage check lint
 	@$(MAKE) --no-print-directory lint
+	@tests/stage check units
 	@EDM_SEED=1 $(MAKE) --no-print-directory run-units
+	@tests/stage check san
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
+	@tests/stage check run-san
 	@EDM_SEED=2 $(MAKE) --no-print-directory SAN=1 run-units
+	@tests/stage check tsan
 	@$(MAKE) --no-print-directory TSAN=1 run-crossings
+	@tests/stage check fuzz
 	@$(MAKE) --no-print-directory fuzz FUZZ_SEED=1 \
 		FUZZ_RUNS=500000 FUZZ_S=120
+	@tests/stage check clang
 	@$(MAKE) --no-print-directory clang
+	@tests/stage check vm
 	@$(MAKE) --no-print-directory vm
+	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system tests/vm
+
+# For somebody who changes code: most of what goes wrong, in 90 s.
+SLOW_UNITS = arcs cycle_random limits identify contouring taper \
+	     contour_random curve scurve
+
+quick:
+	@tests/stage quick build
+	@tests/setup check
+	@$(MAKE) --no-print-directory -j2 all units WERROR=1
+	@tests/stage quick lint
+	@$(MAKE) --no-print-directory lint
+	@tests/stage quick units
+	@EDM_SEED=1 $(MAKE) --no-print-directory run-units \
+		UNIT_X="$(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(UNIT_X))"
+	@tests/stage quick tests
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/system/test_erode.py
 
 # What the virtual machine of tests/vm boots from, and edmd on libgpiod 2.x.
 PC2	= $(abspath build-vm/libgpiod2)
@@ -242,7 +304,7 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 # Another compiler's opinion: warnings are errors, nothing is linked.
 clang:
 	$(call say,CLANG,all sources)
-	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(SHM) $(SETUP) $(EDMD) \
+	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
 		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
@@ -348,25 +410,31 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
 
 # -- Lint ---------------------------------------------------------------------
 
-# What the cycle can reach, linked alone: nothing but tests/rt-symbols.
-RT_ENTRY = cycle_step cycle_command cycle_load cycle_load_at cycle_overrun \
-	   interp_compensate_step interp_errormap_apply interp_ridge_eval \
-	   interp_ridge_features
-HEADERS	 = $(wildcard libinterp/include/interp/*.h daemon/*/*.h clients/*/*.h)
+HEADERS	 = $(wildcard libinterp/*/include/interp/*.h daemon/*/*.h clients/*/*.h)
 
-lint: $(INTERP_O) $(RT_O)
+# What an edmd must not have: a reader, messages, a database, another floor.
+NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
+
+lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,what the cycle may call)
-	$(Q)$(LD) --gc-sections --unresolved-symbols=ignore-all -e cycle_step \
-		$(RT_ENTRY:%=-u %) -o $(B)/rt.elf $^
-	$(Q)nm -u $(B)/rt.elf | awk '{print $$2}' | sort -u > $(B)/rt.undefined
+	$(Q)$(LD) -r -o $(B)/rt.o $(RT_O) --whole-archive $(CORE_A)
+	$(Q)nm -u $(B)/rt.o | awk '{print $$2}' | sort -u > $(B)/rt.undefined
 	$(Q)! grep -vxFf tests/rt-symbols $(B)/rt.undefined
+	$(call say,LINT,what edmd must not have)
+	$(Q)nm $(B)/edmd | awk '{print $$NF}' > $(B)/edmd.symbols
+	$(Q)grep -qx 'interp_cursor_step' $(B)/edmd.symbols
+	$(Q)! grep -E '^($(NOT_IN_EDMD))' $(B)/edmd.symbols
+	$(Q)! nm $(COMPILE_A) $(MODEL_A) | awk 'NF == 3 && $$2 ~ /[TDRB]/ \
+		{print $$3}' | grep -xFf $(B)/edmd.symbols
+	$(call say,LINT,each symbol has the prefix of its module)
+	$(Q)tests/symbol-prefixes $(B)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
 		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
-		grep -vE 'daemon/jobs/wire.c|clients/ctl/talk.c'
+		grep -vE 'daemon/jobs/lcm.c|clients/ctl/talk.c'
 	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80
@@ -404,7 +472,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check vm check-vm units run-units run-crossings clang bench \
+.PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants \
 	pictures fuzz lint install clean

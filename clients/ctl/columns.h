@@ -32,17 +32,17 @@ struct contour {
 };
 
 /**
- * contour_make() - linear axes of @loop with a gain beside the trace.
+ * ctl_contour_make() - linear axes of @loop with a gain beside the trace.
  * Return: 0; -ENOENT if there are not two of them; -ENOMEM.
  */
-int contour_make(struct contour *k, const struct columns *t,
-		 const struct interp_axis_loop *loop);
-void contour_free(struct contour *k);
+int ctl_contour_make(struct contour *k, const struct columns *t,
+		     const struct interp_axis_loop *loop);
+void ctl_contour_free(struct contour *k);
 
-/** contour_print() - the largest and the mean, for a person. */
-void contour_print(const struct contour *k);
+/** ctl_contour_print() - the largest and the mean, for a person. */
+void ctl_contour_print(const struct contour *k);
 
-/** contour_draw() - over time, to a .png or .svg. Return: 0 or < 0, told. */
-int contour_draw(const struct contour *k, const char *output);
+/** ctl_contour_draw() - over time, to a .png or .svg. Return: 0; < 0, told. */
+int ctl_contour_draw(const struct contour *k, const char *output);
 
 #endif /* CTL_COLUMNS_H */

@@ -51,8 +51,8 @@ static struct contour_row follow(struct twin *w, const struct columns *t,
 	};
 }
 
-int contour_make(struct contour *k, const struct columns *t,
-		 const struct interp_axis_loop *loop)
+int ctl_contour_make(struct contour *k, const struct columns *t,
+		     const struct interp_axis_loop *loop)
 {
 	struct twin w;
 	int err;
@@ -69,12 +69,12 @@ int contour_make(struct contour *k, const struct columns *t,
 	return 0;
 }
 
-void contour_free(struct contour *k)
+void ctl_contour_free(struct contour *k)
 {
 	free(k->row);
 }
 
-void contour_print(const struct contour *k)
+void ctl_contour_print(const struct contour *k)
 {
 	double most[3] = { 0 }, sum[3] = { 0 };
 
@@ -133,7 +133,7 @@ static void write_script(FILE *f, const void *arg, bool svg)
 	      "'#009e73' title 'machine off the model'\n", f);
 }
 
-int contour_draw(const struct contour *k, const char *output)
+int ctl_contour_draw(const struct contour *k, const char *output)
 {
 	return plot_script(&(struct plot_script) {
 		"edmctl", output, write_script, k });

@@ -234,13 +234,13 @@ static int contour(const struct ctl *c, const struct columns *t,
 	struct contour k;
 	int rc = 0;
 
-	if (contour_make(&k, t, loop) < 0)
+	if (ctl_contour_make(&k, t, loop) < 0)
 		return 0;
 	if (!c->json)
-		contour_print(&k);
-	if (c->plot && contour_draw(&k, c->plot) < 0)
+		ctl_contour_print(&k);
+	if (c->plot && ctl_contour_draw(&k, c->plot) < 0)
 		rc = EX_CANTCREAT;
-	contour_free(&k);
+	ctl_contour_free(&k);
 	return rc;
 }
 

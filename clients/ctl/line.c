@@ -97,8 +97,8 @@ static void describe(char *to, size_t size, const struct talk_status *s)
 			 s->queue_len, s->fault);
 		return;
 	}
-	if (s->left_s >= 0)
-		ctl_duration(left, sizeof(left), s->left_s);
+	if (s->eta_s >= 0)
+		ctl_duration(left, sizeof(left), s->eta_s);
 	else
 		snprintf(left, sizeof(left), "?");
 	snprintf(rest, sizeof(rest), "%5.1f %% %-8s left %s, depth %.3f mm, "

@@ -111,7 +111,7 @@ static void on_status(const lcm_recv_buf_t *buf, const char *channel,
 	s->retracts = m->retracts;
 	s->shorts = m->shorts;
 	s->job_s = m->job_s;
-	s->left_s = m->left_s;
+	s->eta_s = m->eta_s;
 	s->queue_len = m->queue_len;
 	s->overruns = m->overruns;
 	s->wake_late_max_us = m->wake_late_max_us;

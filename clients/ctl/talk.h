@@ -33,7 +33,7 @@ struct talk_status {
 	double gap_v, feed_mm_s, depth_mm;
 	double contour_mm, contour_predicted_mm;	/* -1: not known */
 	int jumps, retracts, shorts;
-	double job_s, left_s;
+	double job_s, eta_s;
 	int queue_len, overruns, wake_late_max_us;
 	char condition[TALK_WORD_MAX];
 };

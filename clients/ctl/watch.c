@@ -31,7 +31,7 @@ static void print_json(const struct talk_status *s)
 		      "gap_v", s->gap_v, "feed_mm_s", s->feed_mm_s,
 		      "depth_mm", s->depth_mm, "jumps", s->jumps,
 		      "retracts", s->retracts, "shorts", s->shorts,
-		      "job_s", s->job_s, "left_s", s->left_s,
+		      "job_s", s->job_s, "eta_s", s->eta_s,
 		      "queue_len", s->queue_len, "overruns", s->overruns,
 		      "wake_late_max_us", s->wake_late_max_us,
 		      "condition", s->condition);
@@ -54,8 +54,8 @@ static void print_text(const struct talk_status *s)
 	char took[32], left[32] = "?";
 
 	ctl_duration(took, sizeof(took), s->job_s);
-	if (s->left_s >= 0)
-		ctl_duration(left, sizeof(left), s->left_s);
+	if (s->eta_s >= 0)
+		ctl_duration(left, sizeof(left), s->eta_s);
 	printf("machine    %s\nedmd       %s\nstate      %s\nfault      %s\n",
 	       s->machine, s->daemon, s->state, s->fault);
 	if (*s->job)

@@ -17,7 +17,7 @@
 
 const char *const csv_state_word[CSV_NSTATES] = {
 	"idle", "travel", "approach", "erode", "retract", "jump", "hold",
-	"fault", "jog", "home", "touch",
+	"fault", "jog", "home", "probe",
 };
 
 static int refuse(const struct csv *c, size_t column, const char *found,

@@ -24,7 +24,7 @@ const char *const script_colour[CSV_NSTATES] = {
 	[CSV_FAULT]	= "#000000",
 	[CSV_JOG]	= "#56b4e9",
 	[CSV_HOME]	= "#f0e442",
-	[CSV_TOUCH]	= "#8c564b",
+	[CSV_PROBE]	= "#8c564b",
 };
 
 double script_mark_size(size_t n)

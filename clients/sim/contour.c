@@ -37,7 +37,7 @@ static void look(struct sim_run *r)
 		const uint8_t i = h->column[j];
 
 		mm[j] = (comp_place(&c->comp.axis[i], r->in.actual[i]) -
-			 c->touch.shift[i]) * h->pulse_mm[i];
+			 c->probe.shift[i]) * h->pulse_mm[i];
 	}
 	interp_contour_step(&w->foot, mm, place_mm, &e);
 	w->place_mm = place_mm;
@@ -46,7 +46,7 @@ static void look(struct sim_run *r)
 	w->n++;
 }
 
-bool contour_look(struct sim_run *r)
+bool edmsim_contour_look(struct sim_run *r)
 {
 	struct watch *w;
 
@@ -66,7 +66,7 @@ bool contour_look(struct sim_run *r)
 	return true;
 }
 
-void contour_looked(struct sim_run *r)
+void edmsim_contour_looked(struct sim_run *r)
 {
 	struct watch *w = r->on_cycle_arg;
 

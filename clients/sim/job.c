@@ -91,7 +91,7 @@ static int lay_out(struct sim_job *job, struct interp_build *b,
 	       EX_SOFTWARE : 0;
 }
 
-static double now_s(void)
+static double trials_now_s(void)
 {
 	struct timespec t;
 
@@ -110,7 +110,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	};
 	struct config_compiling of;
 	struct interp_diag diag = { 0 };
-	const double from_s = now_s();
+	const double from_s = trials_now_s();
 	struct interp_build *b;
 	int r;
 
@@ -119,7 +119,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	if (!b)
 		return EX_OSERR;
 	r = interp_compile(&text, &of.text, b, &job->lines, &diag);
-	job->compile_lines_s = job->lines / (now_s() - from_s);
+	job->compile_lines_s = job->lines / (trials_now_s() - from_s);
 	/* A million lines are as large as half their program. */
 	free(t->at);
 	t->at = NULL;
@@ -136,7 +136,7 @@ int job_load(struct sim_job *job, const struct sim_options *o,
 {
 	struct text t = { 0 };
 	struct config_tech tech;
-	int r = tech_load(&tech, o, c);
+	int r = edmsim_tech_load(&tech, o, c);
 
 	if (r == 0)
 		r = text_load(o->job, &t);

@@ -270,7 +270,7 @@ static bool take_print(const struct sim_options *o, int opt, bool *print)
 		config_document(stdout);
 		exit(0);
 	case OPT_DOCUMENT_TECH:
-		tech_document();
+		edmsim_tech_document();
 		exit(0);
 	case OPT_HELP:
 		fputs(usage, stdout);
@@ -343,6 +343,8 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	config_defaults(c);
 	if (o->machine_file)
 		r = config_read(c, o->machine_file, &d);
+	if (r == 0)
+		r = config_check_kinematics(c, &d);
 	/* Axes that are led by the cycle have what the cycle has. */
 	if (r == 0 && c->sim.loops && !o->tune)
 		r = config_check_contouring(c, &d);
@@ -401,10 +403,10 @@ static int print_tech(const struct sim_options *o,
 		      const struct machine_config *c)
 {
 	struct config_tech t;
-	int e = tech_load(&t, o, c);
+	int e = edmsim_tech_load(&t, o, c);
 
 	if (e == 0)
-		e = tech_print(&t);
+		e = edmsim_tech_print(&t);
 	config_tech_free(&t);
 	return e;
 }
@@ -418,16 +420,16 @@ static void check(const struct sim_run *r)
 static int run_whole(struct sim_run *r)
 {
 	const bool wanted = r->o->report && r->o->dry_run;
-	const bool looks = wanted && contour_look(r);
+	const bool looks = wanted && edmsim_contour_look(r);
 	int e;
 
 	if (wanted && !looks)
-		contour_watch(r);
+		tune_contour_watch(r);
 	e = run_job(r);
 	if (looks)
-		contour_looked(r);
+		edmsim_contour_looked(r);
 	else
-		contour_measure(r);
+		tune_contour_measure(r);
 	return e ? e : finish(r);
 }
 

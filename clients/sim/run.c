@@ -106,7 +106,7 @@ static void progress(const struct sim_run *r, bool last)
 static void pace(const struct sim_run *r, double from_s)
 {
 	const double due_s = from_s + virtual_s(&r->cycle) / r->o->speed;
-	const double wait_s = due_s - now_s();
+	const double wait_s = due_s - trials_now_s();
 	const struct timespec t = {
 		.tv_sec = (time_t)wait_s,
 		.tv_nsec = (long)((wait_s - (double)(time_t)wait_s) * 1e9),
@@ -162,7 +162,7 @@ static void spend(struct sim_run *r)
 
 static void cycles(struct sim_run *r)
 {
-	const double from_s = now_s();
+	const double from_s = trials_now_s();
 	struct cycle *c = &r->cycle;
 	struct io_outputs out;
 
@@ -182,7 +182,7 @@ static void cycles(struct sim_run *r)
 		if (r->o->speed > 0 && n % 16 == 0)
 			pace(r, from_s);
 	}
-	r->result.wall_s = now_s() - from_s;
+	r->result.wall_s = trials_now_s() - from_s;
 	progress(r, true);
 }
 

@@ -5,7 +5,7 @@
 #ifndef SIM_SIM_H
 #define SIM_SIM_H
 
-#include "config.h"
+#include "compiling.h"
 #include "cycle.h"
 #include "interp/compile.h"
 #include "io.h"
@@ -77,13 +77,16 @@ struct sim_run {
 	int leg;			/* of there and back: 0, 1, 2 */
 };
 
-/** tech_load() - the technology table in force. Return: 0 or an exit code,
+/** edmsim_tech_load() - the technology table in force. Return: 0 or an exit code,
  *  said why; @ret is to be freed by config_tech_free() in any case. */
-int tech_load(struct config_tech *ret, const struct sim_options *o,
-	      const struct machine_config *c);
-/** tech_print() - as a .tech text to stdout; tech_document() - its fields. */
-int tech_print(const struct config_tech *t);
-void tech_document(void);
+int edmsim_tech_load(struct config_tech *ret, const struct sim_options *o,
+		  const struct machine_config *c);
+/**
+ * edmsim_tech_print() - as a .tech text to stdout; edmsim_tech_document() - its
+ * fields.
+ */
+int edmsim_tech_print(const struct config_tech *t);
+void edmsim_tech_document(void);
 
 /** job_load() - read and compile. Return: 0 or an exit code, said why. */
 int job_load(struct sim_job *job, const struct sim_options *o,
@@ -108,18 +111,19 @@ bool run_interrupted(void);
 int tune_contour(struct sim_run *r);
 
 /**
- * contour_watch() - before a dry run, contour_measure() after it: the contour
- * error that models of the axes would have, if the machine file has their loops.
+ * tune_contour_watch() - before a dry run, tune_contour_measure() after it: the
+ * contour error that models of the axes would have, if the machine file has
+ * their loops.
  */
-void contour_watch(struct sim_run *r);
-void contour_measure(struct sim_run *r);
+void tune_contour_watch(struct sim_run *r);
+void tune_contour_measure(struct sim_run *r);
 
 /**
- * contour_look() - the same, before a dry run of [sim] loops: of the simulated
- * axes, by their scales.  Return: false if there are none.
+ * edmsim_contour_look() - the same, before a dry run of [sim] loops: of the
+ * simulated axes, by their scales.  Return: false if there are none.
  */
-bool contour_look(struct sim_run *r);
-void contour_looked(struct sim_run *r);
+bool edmsim_contour_look(struct sim_run *r);
+void edmsim_contour_looked(struct sim_run *r);
 
 /** record_*() - the files of lattice points and cycles: record.c. */
 int record_open(struct sim_run *r);

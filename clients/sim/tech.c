@@ -10,8 +10,8 @@
 #include <string.h>
 #include <sysexits.h>
 
-int tech_load(struct config_tech *ret, const struct sim_options *o,
-	      const struct machine_config *c)
+int edmsim_tech_load(struct config_tech *ret, const struct sim_options *o,
+		  const struct machine_config *c)
 {
 	const int err = config_tech_load(ret, c, o->tech);
 
@@ -33,7 +33,7 @@ static int put(void *arg, const char *text, size_t bytes)
 	return fwrite(text, 1, bytes, arg) == bytes ? 0 : -EIO;
 }
 
-int tech_print(const struct config_tech *t)
+int edmsim_tech_print(const struct config_tech *t)
 {
 	const struct interp_sink to = { put, stdout };
 
@@ -48,7 +48,7 @@ int tech_print(const struct config_tech *t)
 	return EX_IOERR;
 }
 
-void tech_document(void)
+void edmsim_tech_document(void)
 {
 	const struct interp_sink to = { put, stdout };
 

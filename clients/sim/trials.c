@@ -6,7 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
-double now_s(void)
+double trials_now_s(void)
 {
 	struct timespec t;
 
@@ -17,12 +17,12 @@ double now_s(void)
 struct trials trials_begin(bool quiet, unsigned int budget)
 {
 	return (struct trials) { quiet, isatty(STDERR_FILENO) == 1, budget,
-				 now_s() };
+				 trials_now_s() };
 }
 
 void trials_tell(const struct trials *t, unsigned int used, const char *best)
 {
-	const double left_s = (now_s() - t->from_s) / used *
+	const double left_s = (trials_now_s() - t->from_s) / used *
 			      (t->budget - used);
 
 	if (t->quiet || (!t->terminal && used % 20 != 0))

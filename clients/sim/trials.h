@@ -14,8 +14,8 @@ struct trials {
 	double from_s;
 };
 
-/** now_s() - of a clock that never goes back. */
-double now_s(void);
+/** trials_now_s() - of a clock that never goes back. */
+double trials_now_s(void);
 
 /** trials_begin() - the search begins now. */
 struct trials trials_begin(bool quiet, unsigned int budget);

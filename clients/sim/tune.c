@@ -369,7 +369,7 @@ int tune_contour(struct sim_run *r)
 	return e;
 }
 
-void contour_watch(struct sim_run *r)
+void tune_contour_watch(struct sim_run *r)
 {
 	struct tuning *t;
 	double max_1_s;
@@ -389,7 +389,7 @@ void contour_watch(struct sim_run *r)
 	free(t);
 }
 
-void contour_measure(struct sim_run *r)
+void tune_contour_measure(struct sim_run *r)
 {
 	struct tuning *t = r->on_cycle_arg;
 	struct interp_trial_result found;

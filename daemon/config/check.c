@@ -4,9 +4,9 @@
  */
 #include "keys.h"
 
-#include "gap.h"
+#include "gap/gap.h"
 
-#include "interp/compensate.h"
+#include "interp/feedforward.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -263,31 +263,17 @@ static int check_lines(struct check *q)
 	return -EINVAL;
 }
 
-/* The chain's joints are axes that the machine has. */
-static int check_chain(struct check *q)
+bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
+		      size_t size)
 {
-	const int k = key_of(SECTION_KINEMATICS, "chain");
-	struct interp_kinematics kin;
-	char why[sizeof(q->diag->found)];
-	const int r = config_kinematics(q->c, &kin, q->diag);
+	int axis;
+	const double most = config_longest_mm(c, &axis);
 
-	blame(q, k, k, 0);
-	if (r == -EINVAL) {
-		snprintf(why, sizeof(why), "%s", q->diag->found);
-		snprintf(q->diag->found, sizeof(q->diag->found),
-			 "kinematics.chain: %.130s", why);
-	}
-	for (uint32_t i = 0; r == 0 && i < kin.njoints; i++) {
-		if (q->c->axes.present & 1u << kin.joint[i].axis)
-			continue;
-		snprintf(q->diag->found, sizeof(q->diag->found),
-			 "kinematics.chain has an axis %c, the machine has not",
-			 INTERP_AXIS_LETTERS[kin.joint[i].axis]);
-		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-			 "axes with present = yes");
-		return -EINVAL;
-	}
-	return r == -EINVAL ? r : 0;
+	if (!(mm > most) || most == 0)
+		return true;
+	snprintf(wanted, size, "at most %g mm, the travel of axis.%c", most,
+		 INTERP_AXIS_LETTERS[axis]);
+	return false;
 }
 
 int config_check(const struct machine_config *c,
@@ -307,7 +293,7 @@ int config_check(const struct machine_config *c,
 			return -EINVAL;
 
 	return check_period(&q) || check_present(&q) || check_lines(&q) || check_guides(&q) ||
-	       check_chain(&q) || config_check_can402(c, lines, diag) ||
+	       config_check_can402(c, lines, diag) ||
 	       config_check_plc(c, lines, diag) ||
 	       config_check_sim(c, lines, diag) ||
 	       check_orders_if_set(&q) || check_jump(&q, "height_mm") ||

@@ -47,16 +47,6 @@ int64_t config_period_ns(const struct machine_config *c)
 	       c->backend == BACKEND_CAN402 ? PERIOD_CAN402_NS : PERIOD_NS;
 }
 
-int config_kinematics(const struct machine_config *c,
-		      struct interp_kinematics *ret, struct interp_diag *diag)
-{
-	if (strcmp(c->kinematics.chain, "none") == 0)
-		return -ENOENT;
-	interp_kin_clear(ret);
-	memcpy(ret->tip_mm, c->kinematics.tip_mm, sizeof(ret->tip_mm));
-	return interp_kin_parse(ret, c->kinematics.chain, diag);
-}
-
 static bool has(const struct machine_config *c, enum interp_axis a)
 {
 	return c->axes.present >> a & 1;
@@ -131,14 +121,14 @@ static void gap_of(const struct machine_config *m, struct cycle_config *c,
 		.retract_escape = g->retract == 1,
 		.abort_count = (uint32_t)g->abort_count,
 		.progress_mm = g->progress_mm,
-		.arc_share = g->arc_share,
-		.arc_cycles = (uint32_t)g->arc_cycles,
-		.arc_sigma_v = g->arc_sigma_v,
+		.arcing_share = g->arcing_share,
+		.arcing_cycles = (uint32_t)g->arcing_cycles,
+		.arcing_sigma_v = g->arcing_sigma_v,
 		.off_us = or_own(g->off_us, sim ? m->sim.off_us : 0),
-		.arc_off_max = g->arc_off_max,
-		.arc_recover_cycles = cycles_of(g->arc_recover_s,
+		.arcing_off_max = g->arcing_off_max,
+		.arcing_recover_cycles = cycles_of(g->arcing_recover_s,
 						c->period_ns),
-		.arc_retract_mm = g->arc_retract_mm,
+		.arcing_retract_mm = g->arcing_retract_mm,
 		.stuck_cycles = cycles_of(g->stuck_s, c->period_ns),
 		.noise_limit_v = g->noise_limit_v,
 		.wire_retract_mm = g->wire_retract_mm,
@@ -170,12 +160,12 @@ static void jump_of(const struct config_jump *j, int64_t period_ns,
 }
 
 static void hand_of(const struct machine_config *c, int axis,
-		    struct hand_axis *ret)
+		    struct manual_axis *ret)
 {
 	const struct interp_axis_limits *l = &c->axes.axis[axis];
 	const struct config_hand *h = &c->hand[axis];
 
-	*ret = (struct hand_axis) {
+	*ret = (struct manual_axis) {
 		.present = has(c, (enum interp_axis)axis),
 		.pulse_mm = l->pulse_mm,
 		.v_max_mm_s = l->v_max_mm_s,
@@ -227,11 +217,11 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 		.optional_stop = c->optional_stop,
 		.stop_at_nodes = c->nodes == 1,
 		.require_home = c->require_home,
-		.touch = {
-			.feed_mm_s = c->touch.feed_mm_s,
-			.fine_mm_s = c->touch.fine_mm_s,
-			.back_mm = c->touch.back_mm,
-			.settle_cycles = cycles_of(c->touch.settle_s,
+		.probe = {
+			.feed_mm_s = c->probe.feed_mm_s,
+			.fine_mm_s = c->probe.fine_mm_s,
+			.back_mm = c->probe.back_mm,
+			.settle_cycles = cycles_of(c->probe.settle_s,
 						   config_period_ns(c)),
 		},
 	};

@@ -16,9 +16,9 @@
 #include "interp/axis_model.h"
 #include "interp/diag.h"
 #include "interp/errormap.h"
-#include "interp/kinematics.h"
-#include "interp/mcode.h"
-#include "interp/nc.h"
+#include "interp/mcode_arg.h"
+#include "interp/program.h"
+#include "interp/wire.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -43,8 +43,8 @@ struct config_gap {
 	int retract_to;			/* enum retract_to */
 	double abort_count;		/* whole number */
 	double progress_mm;
-	double arc_share, arc_cycles, arc_sigma_v;
-	double off_us, arc_off_max, arc_recover_s, arc_retract_mm;
+	double arcing_share, arcing_cycles, arcing_sigma_v;
+	double off_us, arcing_off_max, arcing_recover_s, arcing_retract_mm;
 	double stuck_s, noise_limit_v;
 	double wire_retract_mm, wire_retreat_mm;
 	int retract;			/* 0 along the path, 1 by the escape */
@@ -103,8 +103,8 @@ struct config_contour {
 enum sim_process { SIM_SINK, SIM_WIRE };
 enum sim_electrode { ELECTRODE_FLAT, ELECTRODE_BALL, ELECTRODE_CONE };
 
-/* [touch] */
-struct config_touch {
+/* [probe] */
+struct config_probe {
 	double feed_mm_s, fine_mm_s, back_mm, settle_s;
 };
 
@@ -152,8 +152,8 @@ struct config_sim {
 	double bridge_mm;		/* mean length of a bridge */
 	double bridge_settle_s;		/* it shrinks with this time constant */
 	double deion_us;		/* recovery of a channel */
-	double arc_gain;		/* above 1 at debris 1: arcs may stay */
-	double arc_s;			/* time constant of a hot place */
+	double arcing_gain;		/* above 1 at debris 1: arcs may stay */
+	double arcing_s;			/* time constant of a hot place */
 	double break_per_j, rethread_s;	/* of the wire */
 
 	/* Sensors and axes. */
@@ -164,7 +164,7 @@ struct config_sim {
 	double home_off_mm, index_mm;	/* switches; sim_switches.c */
 	double measure_pulses;		/* sigma of the scales */
 
-	/* What a touch meets: sim_touch.c. */
+	/* What a touch meets: sim_probe.c. */
 	uint32_t block;			/* 1: there is a block */
 	double block_min_mm[2], block_max_mm[2];	/* X, Y; machine */
 	double block_top_mm;		/* Z; it has no bottom */
@@ -177,6 +177,7 @@ struct config_kinematics {
 	char chain[160];		/* "none": no G43.4 */
 	double tip_mm[3];
 	double tolerance_um;
+	uint32_t line;			/* of chain in the file; 0: not set */
 };
 
 /* [axis.X] home_*, jog_mm_s, backlash_*. */
@@ -271,7 +272,7 @@ struct machine_config {
 	struct config_gap gap;
 	struct config_jump jump;
 	struct config_contour contour;
-	struct config_touch touch;
+	struct config_probe probe;
 	double corner_um;		/* [speed] corner_um */
 	int nodes;			/* [speed] nodes: 0 pass, 1 stop */
 	struct config_sim sim;
@@ -297,32 +298,6 @@ void config_defaults(struct machine_config *c);
 int config_read(struct machine_config *c, const char *path,
 		struct interp_diag *diag);
 
-struct interp_tech;
-struct interp_tech_table;
-
-/* What config_tech_load() came to. */
-struct config_tech {
-	struct interp_tech_table *table;	/* NULL: there is none */
-	char path[512];
-	char *text;			/* as read; NULL without a table */
-	size_t bytes;
-	struct interp_diag diag;	/* filled with -EINVAL */
-};
-
-/**
- * config_tech_load() - read a technology table, and check that it may go over
- * the machine's values.
- *
- * @path: NULL is [tech] table, beside the machine file; an .enc file is read
- * as one, any other as .tech.
- * Return: 0; -errno of the file; -EINVAL with ret->diag filled; -ENOMEM.
- * ret->path says which file, and ret is to be handed to config_tech_free() in
- * any case.  Any thread.
- */
-int config_tech_load(struct config_tech *ret, const struct machine_config *c,
-		     const char *path);
-void config_tech_free(struct config_tech *t);
-
 /**
  * config_longest_mm() - the longest travel of any linear axis; 0: there is none.
  * @ret_axis: which.
@@ -335,9 +310,6 @@ double config_longest_mm(const struct machine_config *c, int *ret_axis);
  */
 bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
 		      size_t size);
-
-/** config_tech_base() - the machine's own values of the fields. */
-void config_tech_base(const struct machine_config *c, struct interp_tech *ret);
 
 /**
  * config_say() - what config_read() refused, on stderr: PATH:LINE:COLUMN, or
@@ -365,13 +337,6 @@ void config_print(const struct machine_config *c, FILE *f);
 
 /** config_document() - docs/config.md. */
 void config_document(FILE *f);
-
-/**
- * config_kinematics() - the machine's joints.
- * Return: 0; -ENOENT if [kinematics] names none; -EINVAL with @diag filled.
- */
-int config_kinematics(const struct machine_config *c,
-		      struct interp_kinematics *ret, struct interp_diag *diag);
 
 /** config_has_plc() - is there one to be heard? */
 bool config_has_plc(const struct machine_config *c);

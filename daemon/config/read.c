@@ -271,6 +271,8 @@ static int read_all(struct reading *r)
 	}
 	r->config.contour.line = r->lines.at[
 		config_key_find(SECTION_CONTOUR, "method")][0];
+	r->config.kinematics.line = r->lines.at[
+		config_key_find(SECTION_KINEMATICS, "chain")][0];
 	r->err = config_check(&r->config, &r->lines, r->diag);
 	return r->err ? r->err :
 	       config_maps_read(&r->config, &r->lines, r->diag);

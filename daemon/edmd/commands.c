@@ -74,7 +74,7 @@ static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 		.id = c->id, .verb = c->verb, .arg = c->arg,
 		.arg_mm = c->arg_mm,
 	};
-	const double was = process_value(&l->cycle, c->arg);
+	const double was = conditions_value(&l->cycle, c->arg);
 	enum cycle_answer answer;
 
 	if (c->verb >= CYCLE_NVERBS)
@@ -86,7 +86,7 @@ static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 	if (c->verb == CYCLE_SET && answer == ANSWER_DONE) {
 		loop_sets(l);
 		loop_event_set(l, c->arg, was,
-			       process_value(&l->cycle, c->arg));
+			       conditions_value(&l->cycle, c->arg));
 	}
 	return answer;
 }

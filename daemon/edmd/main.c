@@ -218,7 +218,7 @@ static bool plc_print(const struct options *o, uint8_t node)
 		plc_eds(stdout);
 	if (o->print_dbc) {
 		plc_dbc(stdout, node);
-		plc_values(stdout, node);
+		loop_plc_values(stdout, node);
 	}
 	if (o->document_plc)
 		plc_document(stdout);

@@ -7,7 +7,7 @@
 #include "can_msg.h"
 #include "cycle.h"
 
-void plc_values(FILE *f, uint8_t node)
+void loop_plc_values(FILE *f, uint8_t node)
 {
 	const int id = CAN_TPDO1 + node;
 

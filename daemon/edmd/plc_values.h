@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/** plc_values() - value tables of the status frame of @node. Any thread. */
-void plc_values(FILE *f, uint8_t node);
+/** loop_plc_values() - value tables of the status frame of @node. Any thread. */
+void loop_plc_values(FILE *f, uint8_t node);
 
 #endif /* EDMD_PLC_VALUES_H */

@@ -7,7 +7,7 @@
  */
 #include "loop.h"
 
-#include "stand.h"
+#include "axes/axis_state.h"
 
 #include <string.h>
 
@@ -23,11 +23,11 @@ SAME(SHM_HOLD, STATE_HOLD);
 SAME(SHM_FAULT, STATE_FAULT);
 SAME(SHM_JOG, STATE_JOG);
 SAME(SHM_HOME, STATE_HOME);
-SAME(SHM_TOUCH, STATE_TOUCH);
-SAME(SHM_TOUCH + 1, CYCLE_NSTATES);
+SAME(SHM_PROBE, STATE_PROBE);
+SAME(SHM_PROBE + 1, CYCLE_NSTATES);
 SAME(SHM_NAXES, INTERP_NAXES);
 SAME(SHM_NAXES, IO_NAXES);
-SAME(SHM_SETS_MAX, PROCESS_SETS_MAX);
+SAME(SHM_SETS_MAX, CONDITIONS_SETS_MAX);
 SAME(SHM_DO_START, CYCLE_START);
 SAME(SHM_DO_HOLD, CYCLE_HOLD);
 SAME(SHM_DO_RESUME, CYCLE_RESUME);
@@ -98,7 +98,7 @@ void loop_event_set(struct loop *l, uint32_t field, double was, double now)
 
 void loop_sets(struct loop *l)
 {
-	const struct process *p = &l->cycle.process;
+	const struct conditions *p = &l->cycle.conditions;
 	struct shm_sets s = {
 		.program_key = l->program ? l->program->key : 0,
 		.n = p->nsets,
@@ -176,9 +176,9 @@ static void snapshot_place(const struct cycle *c, struct shm_snapshot *s)
 		      s->pulse_mm[INTERP_Z];
 }
 
-static void snapshot_touch(const struct cycle *c, struct shm_snapshot *s)
+static void snapshot_probe(const struct cycle *c, struct shm_snapshot *s)
 {
-	const struct touch *t = &c->touch;
+	const struct probe *t = &c->probe;
 
 	memcpy(s->shift, t->shift, sizeof(s->shift));
 	memcpy(s->found, t->found, sizeof(s->found));
@@ -190,9 +190,9 @@ static void snapshot_touch(const struct cycle *c, struct shm_snapshot *s)
 /* What the next edmd needs, if this one is killed. */
 static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 {
-	struct stand at;
+	struct axis_state at;
 
-	stand_get(&l->cycle, &at);
+	axis_state_get(&l->cycle, &at);
 	memcpy(s->drive, at.drive, sizeof(s->drive));
 	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));
 	memcpy(s->toward, at.toward, sizeof(s->toward));
@@ -252,7 +252,7 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 		.pump = c->out.pump,
 		.negative = c->out.negative,
 		.loaded = c->loaded,
-		.unhomed = (uint8_t)hand_unhomed(c),
+		.unhomed = (uint8_t)manual_unhomed(c),
 		.limit = (uint8_t)c->limit.on,
 		.feed_mm_s = c->feed_mm_s,
 		.gap_v = c->gap_v,
@@ -261,7 +261,7 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 	memcpy(ret->pulse_mm, l->pulse_mm, sizeof(ret->pulse_mm));
 	if (l->program)
 		snapshot_place(c, ret);
-	snapshot_touch(c, ret);
+	snapshot_probe(c, ret);
 	snapshot_stand(l, ret);
 	snapshot_sums(c, ret);
 	snapshot_timing(l, ret);

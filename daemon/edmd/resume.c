@@ -10,8 +10,8 @@
 
 #include "log.h"
 #include "programs.h"
-#include "stand.h"
-#include "timed.h"
+#include "axes/axis_state.h"
+#include "path/timed.h"
 
 #include <errno.h>
 #include <math.h>
@@ -81,7 +81,7 @@ static void tell_left(const struct cycle *c)
 
 static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 {
-	struct stand at = {
+	struct axis_state at = {
 		.homed = homed(l, s), .limit.on = s->limit,
 		.told_c = s->axes_c,
 	};
@@ -91,7 +91,7 @@ static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 	memcpy(at.shift, s->home_shift, sizeof(at.shift));
 	memcpy(at.toward, s->toward, sizeof(at.toward));
 	memcpy(at.limit.side, s->limit_side, sizeof(at.limit.side));
-	stand_set(&l->cycle, &at);
+	axis_state_set(&l->cycle, &at);
 	if (l->io.originate && s->has_origin)
 		l->io.originate(l->io.self, s->origin);
 	log_line(LOG_WARNING, "resume: the axes are taken to stand where the "
@@ -130,7 +130,7 @@ static uint32_t last_done(const struct cycle *c)
 static void power_on(struct cycle *c, uint32_t arg)
 {
 	c->power_off = false;
-	process_say(c, arg == INTERP_AUX_POWER_NEGATIVE);
+	conditions_say(c, arg == INTERP_AUX_POWER_NEGATIVE);
 }
 
 /* What the program has switched on its way there. */
@@ -184,15 +184,15 @@ static void sums_restore(struct cycle *c, const struct shm_snapshot *s)
 }
 
 /* Before anything is sent to the axes: it says where they stand. */
-static void touch_restore(struct cycle *c, const struct shm_snapshot *s)
+static void probe_restore(struct cycle *c, const struct shm_snapshot *s)
 {
-	struct touch *t = &c->touch;
+	struct probe *t = &c->probe;
 
 	memcpy(t->shift, s->shift, sizeof(t->shift));
 	memcpy(t->found, s->found, sizeof(t->found));
 	t->once = s->found_once;
 	t->twice = s->found_twice;
-	touch_target(c, c->cursor.pos);
+	probe_target(c, c->cursor.pos);
 }
 
 static bool stands_at(const struct cycle *c, const int32_t pos[SHM_NAXES])
@@ -224,20 +224,20 @@ static int pos_restore(struct cycle *c, const struct shm_snapshot *s)
 static int sets_restore(struct cycle *c, const struct shm_status *status,
 			uint64_t key)
 {
-	struct process_set set[PROCESS_SETS_MAX];
+	struct conditions_set set[CONDITIONS_SETS_MAX];
 	struct shm_sets s;
 
 	if (!shm_sets(status, &s) || s.program_key != key ||
-	    s.n > PROCESS_SETS_MAX) {
+	    s.n > CONDITIONS_SETS_MAX) {
 		log_line(LOG_ERROR, "resume: what was set in the job is lost");
 		return -ESTALE;
 	}
 	for (uint64_t i = 0; i < s.n; i++)
-		set[i] = (struct process_set) {
+		set[i] = (struct conditions_set) {
 			s.set[i].value, (uint16_t)s.set[i].cond,
 			(uint8_t)s.set[i].field
 		};
-	if (process_restore(c, set, (uint32_t)s.n))
+	if (conditions_restore(c, set, (uint32_t)s.n))
 		return 0;
 	log_line(LOG_ERROR, "resume: what was set in the job does not go with "
 		 "this machine file");
@@ -261,7 +261,7 @@ static int place_restore(struct loop *l, struct program *p,
 	enum cycle_answer answer;
 
 	/* Where a touch was, axes and program differ; pos_restore() compares. */
-	held.hand.used = false;
+	held.manual.used = false;
 	if (err < 0) {
 		log_line(LOG_ERROR, "resume: segment %u, tick %u: %s; this is "
 			 "not the program that ran", s->seg, s->tick,
@@ -270,8 +270,8 @@ static int place_restore(struct loop *l, struct program *p,
 	}
 	answer = cycle_load_at(&held, &p->cursor, far_mm);
 	if (answer == ANSWER_DONE) {
-		touch_restore(&held, s);
-		held.hand.used = true;
+		probe_restore(&held, s);
+		held.manual.used = true;
 		err = pos_restore(&held, s);
 		if (err == 0)
 			err = sets_restore(&held, l->status, s->program_key);

@@ -56,7 +56,7 @@ struct io_inputs {
 	struct io_shares shares;	/* from a generator that counts */
 	bool shares_valid;
 	bool wire_broken;
-	bool touch;			/* contact, by an input of its own */
+	bool contact;			/* contact, by an input of its own */
 	bool estop;			/* true: stop everything */
 	bool lost;			/* true: the machine does not answer */
 	bool busy;			/* pulses are still on their way out: no

@@ -18,7 +18,7 @@ const struct plc_signal plc_signal[] = {
 	{ 0x2000, 1, PLC_U8,  false, 1, 0, TELL(state), 0, 255,
 	  "State", "", 1,
 	  "1 idle, 2 travel, 3 approach, 4 erode, 5 retract, 6 jump, 7 hold, 8 fault, "
-	  "9 jog, 10 home, 11 touch" },
+	  "9 jog, 10 home, 11 probe" },
 	{ 0x2000, 2, PLC_U8,  false, 1, 1, TELL(flags), 0, 255,
 	  "Flags", "", 1,
 	  "bits" },

@@ -80,7 +80,7 @@ static void train(struct sim *s)
 	if (s->broken)
 		sim_pulses_train(s, INFINITY);
 	else if (s->out.sense)
-		sim_pulses_train(s, sim_touch(s) ? 0 : INFINITY);
+		sim_pulses_train(s, sim_probe(s) ? 0 : INFINITY);
 	else
 		sim_pulses_train(s, is_short(s, gap) ? 0 : gap);
 }

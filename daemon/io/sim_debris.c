@@ -97,11 +97,11 @@ static void count_burns(struct sim *s)
 
 /*
  * Arcs heat the place they burn at, and a hot place draws more of them.  It
- * runs away if arc_gain (debris + what is left of the channel)^2 > 1.
+ * runs away if arcing_gain (debris + what is left of the channel)^2 > 1.
  */
 void sim_heat(struct sim *s)
 {
-	const double step = s->period_s / s->p.arc_s;
+	const double step = s->period_s / s->p.arcing_s;
 	const bool lifted = sim_gap_mm(s) > s->p.open_gap_mm;
 	double cool = 1;
 
@@ -109,7 +109,7 @@ void sim_heat(struct sim *s)
 		const double crowd = s->debris +
 				     exp(-s->pulse.off_us / s->p.deion_us);
 
-		s->hot += step * s->p.arc_gain * crowd * crowd *
+		s->hot += step * s->p.arcing_gain * crowd * crowd *
 			  s->train.arc * (1 - s->hot);
 		s->debris = fmin(1, s->debris + s->train.arc * ARC_DEBRIS_S *
 						s->period_s);

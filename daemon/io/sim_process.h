@@ -2,7 +2,7 @@
 /*
  * sim_process.h - the simulated machine's inside; private to sim*.c
  *
- * What a touch meets is in sim_touch.c.  A period goes through four files, in this order:
+ * What a touch meets is in sim_probe.c.  A period goes through four files, in this order:
  *
  *	sim_axes.c	where the electrode really is
  *	sim_pulses.c	what a train of pulses does in this gap
@@ -113,9 +113,9 @@ void sim_axes_measure(struct sim *s, struct io_inputs *in);
 void sim_switches_init(struct sim *s, const struct machine_config *c);
 void sim_switches_read(struct sim *s, struct io_inputs *in);
 
-/* sim_touch.c */
-/** sim_touch() - is the electrode against the block? */
-bool sim_touch(const struct sim *s);
+/* sim_probe.c */
+/** sim_probe() - is the electrode against the block? */
+bool sim_probe(const struct sim *s);
 
 /* sim_pulses.c */
 void sim_pulses_init(struct sim *s);

@@ -9,14 +9,14 @@
 #define JOBS_JOBS_H
 
 #include "config.h"
-#include "left.h"
+#include "eta.h"
 #include "link.h"
 #include "queue.h"
 #include "reply.h"
 #include "store.h"
 #include "twin.h"
 #include "upload.h"
-#include "wire.h"
+#include "lcm.h"
 
 #include <systemd/sd-event.h>
 
@@ -24,15 +24,15 @@ struct jobs {
 	const struct machine_config *config;
 	const char *machine;
 	sd_event *event;
-	struct wire *wire;
+	struct jobs_lcm *lcm;
 	struct store *store;
 	struct link link;
 	struct twin twin;
 	struct uploads uploads;
 	struct replies replies;
 	struct queue queue;
-	struct left left;
-	struct compile *check[UPLOAD_SLOTS];	/* of uploads.slot[i] */
+	struct eta eta;
+	struct compiler *check[UPLOAD_SLOTS];	/* of uploads.slot[i] */
 	int64_t status_us;		/* when the last was sent, monotonic */
 	uint64_t status_key;		/* what a change of is sent at once */
 	int64_t begun_us;		/* of this service */
@@ -55,16 +55,16 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 	__attribute__((format(printf, 3, 4)));
 
 /** jobs_answer() - to a command; remembered for its repeats. */
-void jobs_answer(struct jobs *j, const struct wire_ack *a);
+void jobs_answer(struct jobs *j, const struct jobs_lcm_ack *a);
 
 /** status_tick() - publish STATUS if it is due or has changed. */
 void status_tick(struct jobs *j, int64_t now_us);
 
-/** verb_take() - a COMMAND, from wire.c. */
-void verb_take(void *jobs, const struct wire_command *c);
+/** verbs_take() - a COMMAND, from lcm.c. */
+void verbs_take(void *jobs, const struct jobs_lcm_command *c);
 
-/** submit_take() - a JOB chunk, from wire.c. */
-void submit_take(void *jobs, const struct wire_chunk *c);
+/** submit_take() - a JOB chunk, from lcm.c. */
+void submit_take(void *jobs, const struct jobs_lcm_chunk *c);
 
 /** submit_fini() - forget what is being checked. */
 void submit_fini(struct jobs *j);

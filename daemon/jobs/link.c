@@ -4,7 +4,7 @@
  */
 #include "link.h"
 
-#include "log.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <sodium.h>

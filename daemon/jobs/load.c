@@ -7,8 +7,8 @@
  */
 #include "jobs.h"
 
-#include "compile.h"
-#include "log.h"
+#include "compiler.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <sodium.h>
@@ -104,7 +104,7 @@ static void on_loaded(void *arg, int code)
 	}
 }
 
-static int load_write(struct jobs *j, const struct compile_result *r)
+static int load_write(struct jobs *j, const struct compiler_result *r)
 {
 	struct queue *q = &j->queue;
 	struct interp_build_about about = {
@@ -127,7 +127,7 @@ static int load_write(struct jobs *j, const struct compile_result *r)
 	return 0;
 }
 
-static void load_ask(struct jobs *j, const struct compile_result *r)
+static void load_ask(struct jobs *j, const struct compiler_result *r)
 {
 	struct link_command c = {
 		.verb = SHM_LOAD, .arg = j->queue.job.n,
@@ -149,7 +149,7 @@ static void load_ask(struct jobs *j, const struct compile_result *r)
 	}
 }
 
-static void on_compiled(void *arg, const struct compile_result *r)
+static void on_compiled(void *arg, const struct compiler_result *r)
 {
 	struct jobs *j = arg;
 	struct queue *q = &j->queue;
@@ -180,7 +180,7 @@ void load_begin(struct jobs *j, int64_t now_us)
 {
 	const struct shm_snapshot *s = &j->link.snap;
 	struct queue *q = &j->queue;
-	struct compile_request request = { .config = j->config };
+	struct compiler_request request = { .config = j->config };
 	int err;
 
 	if (!q->behind || store_head(j->store, &q->next) < 0)
@@ -191,8 +191,8 @@ void load_begin(struct jobs *j, int64_t now_us)
 		request.text = q->next_text;
 		for (int i = 0; i < INTERP_NAXES; i++)
 			request.start_mm[i] = s->pos[i] * s->pulse_mm[i];
-		err = compile_start(&q->compile, j->event, &request,
-				    on_compiled, j);
+		err = compiler_start(&q->compile, j->event, &request,
+				     on_compiled, j);
 	}
 	if (err < 0) {
 		q->again_us = now_us + AGAIN_US;
@@ -204,7 +204,7 @@ void load_begin(struct jobs *j, int64_t now_us)
 
 void load_fini(struct jobs *j)
 {
-	compile_destroy(j->queue.compile);
+	compiler_destroy(j->queue.compile);
 	j->queue.compile = NULL;
 	free(j->queue.next_text);
 	j->queue.next_text = NULL;

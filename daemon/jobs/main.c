@@ -4,7 +4,8 @@
  */
 #include "jobs.h"
 
-#include "log.h"
+#include "compiling.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -68,16 +69,16 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 		.outcome = n->outcome ? n->outcome : "", .text = words,
 		.place_mm = n->place_mm, .now_us = jobs_utime(),
 	});
-	wire_event(j->wire, &(struct wire_event) {
+	jobs_lcm_event(j->lcm, &(struct jobs_lcm_event) {
 		.kind = n->kind, .job = n->job, .outcome = n->outcome,
 		.text = words, .place_mm = n->place_mm,
 	});
 }
 
-void jobs_answer(struct jobs *j, const struct wire_ack *a)
+void jobs_answer(struct jobs *j, const struct jobs_lcm_ack *a)
 {
 	reply_keep(&j->replies, a);
-	wire_ack(j->wire, a);
+	jobs_lcm_ack(j->lcm, a);
 }
 
 static void on_link_event(void *arg, const struct shm_event *e)
@@ -98,12 +99,12 @@ static void on_link_changed(void *arg)
 		queue_attach(j);
 }
 
-static int on_wire(sd_event_source *s, int fd, uint32_t events, void *arg)
+static int on_lcm(sd_event_source *s, int fd, uint32_t events, void *arg)
 {
 	struct jobs *j = arg;
 
 	(void)s, (void)fd, (void)events;
-	return wire_handle(j->wire);
+	return jobs_lcm_handle(j->lcm);
 }
 
 static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
@@ -169,6 +170,8 @@ static int configure(struct jobs *j, struct machine_config *config,
 	int err = config_read(config, o->config, &d);
 	const char *wrong;
 
+	if (err == 0)
+		err = config_check_kinematics(config, &d);
 	if (err == -EINVAL) {
 		config_say(o->config, &d);
 		return EX_CONFIG;
@@ -178,7 +181,7 @@ static int configure(struct jobs *j, struct machine_config *config,
 			"read\n", o->config, strerror(-err));
 		return EX_NOINPUT;
 	}
-	wrong = wire_url_check(config->lcm_url);
+	wrong = jobs_lcm_url_check(config->lcm_url);
 	if (wrong) {
 		fprintf(stderr, "%s: error: [lcm] url %s: %s; commands are "
 			"not signed, so only udpm://...?ttl=0, which stays on "
@@ -239,15 +242,15 @@ static int claim(struct jobs *j)
 	return EX_CANTCREAT;
 }
 
-static int open_wire(struct jobs *j)
+static int open_lcm(struct jobs *j)
 {
-	struct wire_handlers h = {
-		.command = verb_take, .chunk = submit_take, .arg = j,
+	struct jobs_lcm_handlers h = {
+		.command = verbs_take, .chunk = submit_take, .arg = j,
 	};
-	int err = wire_open(&j->wire, j->config->lcm_url, j->machine, &h);
+	int err = jobs_lcm_open(&j->lcm, j->config->lcm_url, j->machine, &h);
 
 	if (err < 0)
-		log_error("wire: cannot open %s; does the host have a "
+		log_error("lcm: cannot open %s; does the host have a "
 			  "multicast route? ip link set lo multicast on; "
 			  "ip route add 224.0.0.0/4 dev lo",
 			  j->config->lcm_url);
@@ -272,8 +275,8 @@ static int add_sources(struct jobs *j)
 		if (err < 0)
 			return err;
 	}
-	err = sd_event_add_io(j->event, NULL, wire_fd(j->wire), EPOLLIN,
-			      on_wire, j);
+	err = sd_event_add_io(j->event, NULL, jobs_lcm_fd(j->lcm), EPOLLIN,
+			      on_lcm, j);
 	if (err < 0)
 		return err;
 	err = sd_event_add_time_relative(j->event, NULL, CLOCK_MONOTONIC, 0,
@@ -331,11 +334,11 @@ int main(int argc, char **argv)
 	if (rc == 0)
 		rc = claim(&jobs);
 	if (rc == 0)
-		rc = open_wire(&jobs);
+		rc = open_lcm(&jobs);
 	if (rc == 0)
 		rc = run(&jobs);
 	reply_fini(&jobs.replies);
-	wire_close(jobs.wire);
+	jobs_lcm_close(jobs.lcm);
 	shm_writer_leave(jobs.claim, jobs.machine);
 	store_close(jobs.store);
 	return rc;

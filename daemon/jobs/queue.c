@@ -5,7 +5,7 @@
 #include "jobs.h"
 
 #include "interp/tech_table.h"
-#include "log.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <math.h>
@@ -60,7 +60,7 @@ static void set_state(struct jobs *j, enum job_state state)
 	if (q->job.state == state)
 		return;
 	log_info("queue: job %s %s, was %s, at %.3f mm", q->job.id,
-		 job_state_name(state), job_state_name(q->job.state),
+		 store_state_name(state), store_state_name(q->job.state),
 		 q->snap.place_mm);
 	q->job.state = state;
 	store_set_state(j->store, q->job.n, state);
@@ -77,7 +77,7 @@ int queue_init(struct jobs *j)
 	queue_recount(j);
 	if (q->job.n)
 		log_notice("queue: job %s was %s when last seen", q->job.id,
-			   job_state_name(q->job.state));
+			   store_state_name(q->job.state));
 	return 0;
 }
 
@@ -112,9 +112,9 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 	q->ended = SHM_OUTCOME_NONE;
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "ended", .job = q->job.id,
-		.outcome = job_state_name(state),
+		.outcome = store_state_name(state),
 		.place_mm = q->snap.place_mm,
-	}, "job %s %s%s%s", q->job.name, job_state_name(state),
+	}, "job %s %s%s%s", q->job.name, store_state_name(state),
 		  *reason ? ": " : "", reason);
 	if (state != JOB_DONE)
 		set_waiting(j, q->behind > 0);
@@ -381,7 +381,7 @@ void queue_fini(struct jobs *j)
 	struct queue *q = &j->queue;
 
 	load_fini(j);
-	left_fini(&j->left);
+	eta_fini(&j->eta);
 	if (!q->job.n || (q->job.begun_us && !queue_is_leaving(q)))
 		return;
 	load_send(j, SHM_UNLOAD, q->job.n, jobs_now_us());

@@ -22,8 +22,8 @@
 #include "shm.h"
 #include "store.h"
 
-struct compile;
-struct compile_result;
+struct compiler;
+struct compiler_result;
 struct jobs;
 
 /* Read, do not write. */
@@ -40,7 +40,7 @@ struct queue {
 	int64_t missing_us;		/* since when edmd has not got it */
 	uint32_t fault_told;		/* without a job: the one told of */
 	int64_t again_us;		/* not before: what was refused */
-	struct compile *compile;	/* of `next`, to be loaded */
+	struct compiler *compile;	/* of `next`, to be loaded */
 	struct store_job next;
 	char *next_text;
 };

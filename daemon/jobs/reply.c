@@ -35,7 +35,7 @@ void reply_expect(struct replies *r, const char *client, int64_t seq)
 	one->seq = seq;
 }
 
-void reply_keep(struct replies *r, const struct wire_ack *a)
+void reply_keep(struct replies *r, const struct jobs_lcm_ack *a)
 {
 	const struct reply *found = reply_find(r, a->client, a->seq);
 	struct reply *one;

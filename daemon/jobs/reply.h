@@ -9,12 +9,12 @@
 #ifndef JOBS_REPLY_H
 #define JOBS_REPLY_H
 
-#include "wire.h"
+#include "lcm.h"
 
 #define REPLY_SLOTS	128
 
 struct reply {
-	char client[WIRE_CLIENT_MAX];	/* "": free */
+	char client[JOBS_LCM_CLIENT_MAX];	/* "": free */
 	int64_t seq;
 	bool done;
 	int code;
@@ -34,7 +34,7 @@ const struct reply *reply_find(const struct replies *r, const char *client,
 void reply_expect(struct replies *r, const char *client, int64_t seq);
 
 /** reply_keep() - it is answered. */
-void reply_keep(struct replies *r, const struct wire_ack *a);
+void reply_keep(struct replies *r, const struct jobs_lcm_ack *a);
 
 /** reply_fini() - free everything. */
 void reply_fini(struct replies *r);

@@ -29,14 +29,14 @@ static void name_condition(char to[16], const struct shm_snapshot *s)
 		interp_tech_name(s->cond_letter, s->cond_number, to, 16);
 }
 
-static void fill_job(struct wire_status *w, const struct jobs *j)
+static void fill_job(struct jobs_lcm_status *w, const struct jobs *j)
 {
 	const struct queue *q = &j->queue;
 	const struct shm_snapshot *s = &q->snap;
 
 	w->job = q->job.id;
 	w->job_name = q->job.name;
-	w->job_state = q->job.n ? job_state_name(q->job.state) : "";
+	w->job_state = q->job.n ? store_state_name(q->job.state) : "";
 	w->lines = q->job.lines;
 	w->line = s->line;
 	w->place_mm = s->place_mm;
@@ -47,11 +47,11 @@ static void fill_job(struct wire_status *w, const struct jobs *j)
 	w->retracts = s->retracts;
 	w->shorts = s->shorts;
 	w->job_s = (double)s->job_cycles * (double)s->period_ns / 1e9;
-	w->left_s = left_s(&j->left, s->far_mm, w->job_s);
+	w->eta_s = eta_s(&j->eta, s->far_mm, w->job_s);
 	w->queue_len = q->behind;
 }
 
-static void fill_machine(struct wire_status *w, const struct link *l)
+static void fill_machine(struct jobs_lcm_status *w, const struct link *l)
 {
 	const struct shm_snapshot *s = &l->snap;
 	bool there = l->state == LINK_OK;
@@ -59,7 +59,7 @@ static void fill_machine(struct wire_status *w, const struct link *l)
 	w->daemon = link_state_name(l->state);
 	w->state = there ? shm_state_name(s->state) : "unknown";
 	w->fault = shm_fault_name(s->fault);
-	for (int i = 0; i < WIRE_NAXES; i++)
+	for (int i = 0; i < JOBS_LCM_NAXES; i++)
 		w->pos_mm[i] = s->pos[i] * s->pulse_mm[i];
 	if (there) {
 		w->gap_v = s->gap_v;
@@ -72,7 +72,7 @@ static void fill_machine(struct wire_status *w, const struct link *l)
 void status_tick(struct jobs *j, int64_t now_us)
 {
 	uint64_t key = key_of(j);
-	struct wire_status w = { .line = 0 };
+	struct jobs_lcm_status w = { .line = 0 };
 	char condition[16];
 
 	if (key == j->status_key && now_us - j->status_us < STATUS_US)
@@ -85,9 +85,9 @@ void status_tick(struct jobs *j, int64_t now_us)
 	fill_machine(&w, &j->link);
 	w.contour_mm = j->twin.last.measured_mm;
 	w.contour_predicted_mm = j->twin.last.predicted_mm;
-	left_take(&j->left, j->machine, j->queue.job.n);
+	eta_take(&j->eta, j->machine, j->queue.job.n);
 	fill_job(&w, j);
 	name_condition(condition, &j->queue.snap);
 	w.condition = condition;
-	wire_status(j->wire, &w);
+	jobs_lcm_status(j->lcm, &w);
 }

@@ -4,7 +4,7 @@
  */
 #include "store.h"
 
-#include "log.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -64,7 +64,7 @@ static const char *const state_names[JOB_NSTATES] = {
 	[JOB_STOPPED]	= "stopped",
 };
 
-const char *job_state_name(enum job_state s)
+const char *store_state_name(enum job_state s)
 {
 	return state_names[s];
 }

@@ -75,8 +75,8 @@ struct store_change {
 
 enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY, STORE_ALARMS };
 
-/** job_state_name() - "queued", ... */
-const char *job_state_name(enum job_state s);
+/** store_state_name() - "queued", ... */
+const char *store_state_name(enum job_state s);
 
 /**
  * store_open() - open or make the database.

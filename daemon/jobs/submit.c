@@ -8,8 +8,8 @@
  */
 #include "jobs.h"
 
-#include "compile.h"
-#include "log.h"
+#include "compiler.h"
+#include "jobs_log.h"
 
 #include <errno.h>
 #include <sodium.h>
@@ -32,12 +32,12 @@ static void hash_hex(char ret[65], const uint8_t hash[32])
 static void answer_end(struct jobs *j, struct upload *up, int code,
 		       const char *reason, const char *body)
 {
-	struct wire_ack a = {
+	struct jobs_lcm_ack a = {
 		.client = up->client, .seq = up->seq, .code = code,
 		.reason = reason, .body = body,
 	};
 
-	wire_ack(j->wire, &a);
+	jobs_lcm_ack(j->lcm, &a);
 	upload_forget(&j->uploads, up, code, reason, body);
 }
 
@@ -89,7 +89,7 @@ static const char *what_next(const struct jobs *j, bool hold)
 }
 
 static void accept_text(struct jobs *j, struct upload *up,
-			const struct compile_result *r)
+			const struct compiler_result *r)
 {
 	const uint32_t lines = r->lines;
 	struct queue *q = &j->queue;
@@ -125,9 +125,9 @@ static void accept_text(struct jobs *j, struct upload *up,
 }
 
 /* Already there: 0 if it is the same text, else refused. */
-static bool answer_known(struct jobs *j, const struct wire_chunk *c)
+static bool answer_known(struct jobs *j, const struct jobs_lcm_chunk *c)
 {
-	struct wire_ack a = { .client = c->client, .seq = c->seq };
+	struct jobs_lcm_ack a = { .client = c->client, .seq = c->seq };
 	struct store_job job;
 	char hex[65], *body = NULL;
 
@@ -141,12 +141,12 @@ static bool answer_known(struct jobs *j, const struct wire_chunk *c)
 		a.code = EX_DATAERR;
 		a.reason = "another text has this job id; draw a new id";
 	}
-	wire_ack(j->wire, &a);
+	jobs_lcm_ack(j->lcm, &a);
 	free(body);
 	return true;
 }
 
-static void on_checked(void *arg, const struct compile_result *r)
+static void on_checked(void *arg, const struct compiler_result *r)
 {
 	struct check *c = arg;
 	struct jobs *j = c->jobs;
@@ -180,7 +180,7 @@ static void start_place(const struct jobs *j, double ret_mm[INTERP_NAXES])
 
 static void check_begin(struct jobs *j, struct upload *up)
 {
-	struct compile_request request = {
+	struct compiler_request request = {
 		.config = j->config, .name = up->name,
 		.text = up->text, .bytes = up->bytes,
 	};
@@ -190,8 +190,8 @@ static void check_begin(struct jobs *j, struct upload *up)
 	start_place(j, request.start_mm);
 	if (c) {
 		*c = (struct check) { .jobs = j, .upload = up };
-		err = compile_start(&j->check[up - j->uploads.slot], j->event,
-				    &request, on_checked, c);
+		err = compiler_start(&j->check[up - j->uploads.slot], j->event,
+				     &request, on_checked, c);
 	}
 	if (err < 0) {
 		free(c);
@@ -199,12 +199,12 @@ static void check_begin(struct jobs *j, struct upload *up)
 	}
 }
 
-void submit_take(void *arg, const struct wire_chunk *c)
+void submit_take(void *arg, const struct jobs_lcm_chunk *c)
 {
 	struct jobs *j = arg;
 	struct upload_answer answer;
 	struct upload *whole = NULL;
-	struct wire_ack a = { .client = c->client, .seq = c->seq };
+	struct jobs_lcm_ack a = { .client = c->client, .seq = c->seq };
 
 	if (upload_check(c, &answer)) {
 		if (answer_known(j, c))
@@ -214,7 +214,7 @@ void submit_take(void *arg, const struct wire_chunk *c)
 	}
 	a.code = answer.code;
 	a.reason = answer.reason;
-	wire_ack(j->wire, &a);
+	jobs_lcm_ack(j->lcm, &a);
 	if (whole)
 		check_begin(j, whole);
 }
@@ -222,7 +222,7 @@ void submit_take(void *arg, const struct wire_chunk *c)
 void submit_fini(struct jobs *j)
 {
 	for (int i = 0; i < UPLOAD_SLOTS; i++) {
-		free(compile_destroy(j->check[i]));
+		free(compiler_destroy(j->check[i]));
 		j->check[i] = NULL;
 	}
 	upload_fini(&j->uploads);

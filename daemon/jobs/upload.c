@@ -41,26 +41,27 @@ static bool name_is_plain(const char *name)
 
 	for (; *s && step; s += step)
 		step = utf8_bytes(s);
-	return n > 0 && n < WIRE_ID_MAX && step;
+	return n > 0 && n < JOBS_LCM_ID_MAX && step;
 }
 
-static bool place_is_inside(const struct wire_chunk *c)
+static bool place_is_inside(const struct jobs_lcm_chunk *c)
 {
 	return c->chunks >= 1 && c->chunks <= UPLOAD_CHUNKS_MAX &&
 	       c->chunk >= 0 && c->chunk < c->chunks &&
-	       c->size <= WIRE_CHUNK_MAX && c->offset >= 0 &&
+	       c->size <= JOBS_LCM_CHUNK_MAX && c->offset >= 0 &&
 	       c->offset <= c->bytes &&
 	       (int64_t)c->size <= c->bytes - c->offset;
 }
 
-bool upload_check(const struct wire_chunk *c, struct upload_answer *a)
+bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 {
 	size_t client = strlen(c->client), id = strlen(c->job);
 
-	if (client == 0 || client >= WIRE_CLIENT_MAX)
+	if (client == 0 || client >= JOBS_LCM_CLIENT_MAX)
 		refuse(a, EX_PROTOCOL, "client name of no or too many bytes; "
 		       "1 to 63");
-	else if (id == 0 || id >= WIRE_ID_MAX || strspn(c->job, ID_CHARS) != id)
+	else if (id == 0 || id >= JOBS_LCM_ID_MAX ||
+		 strspn(c->job, ID_CHARS) != id)
 		refuse(a, EX_DATAERR, "job id not fit; 1 to 63 of A-Z a-z "
 		       "0-9 . _ -");
 	else if (!name_is_plain(c->name))
@@ -76,13 +77,14 @@ bool upload_check(const struct wire_chunk *c, struct upload_answer *a)
 	return false;
 }
 
-static bool upload_is(const struct upload *up, const struct wire_chunk *c)
+static bool upload_is(const struct upload *up, const struct jobs_lcm_chunk *c)
 {
 	return up->state != UPLOAD_FREE && strcmp(up->client, c->client) == 0 &&
 	       strcmp(up->id, c->job) == 0;
 }
 
-static struct upload *upload_find(struct uploads *u, const struct wire_chunk *c)
+static struct upload *upload_find(struct uploads *u,
+				  const struct jobs_lcm_chunk *c)
 {
 	for (int i = 0; i < UPLOAD_SLOTS; i++)
 		if (upload_is(&u->slot[i], c))
@@ -91,7 +93,7 @@ static struct upload *upload_find(struct uploads *u, const struct wire_chunk *c)
 }
 
 static const struct upload_verdict *verdict_find(const struct uploads *u,
-						 const struct wire_chunk *c)
+						 const struct jobs_lcm_chunk *c)
 {
 	for (int i = 0; i < UPLOAD_VERDICTS; i++) {
 		const struct upload_verdict *v = &u->verdict[i];
@@ -112,7 +114,7 @@ static void upload_clear(struct upload *up)
 }
 
 static struct upload *upload_begin(struct uploads *u,
-				   const struct wire_chunk *c,
+				   const struct jobs_lcm_chunk *c,
 				   struct upload_answer *a)
 {
 	struct upload *up = NULL;
@@ -144,14 +146,15 @@ static struct upload *upload_begin(struct uploads *u,
 	return up;
 }
 
-static bool upload_agrees(const struct upload *up, const struct wire_chunk *c)
+static bool upload_agrees(const struct upload *up,
+			  const struct jobs_lcm_chunk *c)
 {
 	return up->bytes == (size_t)c->bytes &&
 	       up->chunks == (uint32_t)c->chunks &&
 	       memcmp(up->sha256, c->sha256, sizeof(up->sha256)) == 0;
 }
 
-static void upload_put(struct upload *up, const struct wire_chunk *c,
+static void upload_put(struct upload *up, const struct jobs_lcm_chunk *c,
 		       int64_t now_us)
 {
 	uint8_t bit = (uint8_t)(1 << (c->chunk & 7));
@@ -192,7 +195,7 @@ static void upload_finish(struct uploads *u, struct upload *up,
 	upload_forget(u, up, a->code, a->reason, NULL);
 }
 
-void upload_take(struct uploads *u, const struct wire_chunk *c,
+void upload_take(struct uploads *u, const struct jobs_lcm_chunk *c,
 		 int64_t now_us, struct upload **ret, struct upload_answer *a)
 {
 	const struct upload_verdict *v = verdict_find(u, c);

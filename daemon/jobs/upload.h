@@ -12,7 +12,7 @@
 #ifndef JOBS_UPLOAD_H
 #define JOBS_UPLOAD_H
 
-#include "wire.h"
+#include "lcm.h"
 
 #define UPLOAD_SLOTS		8
 #define UPLOAD_BYTES_MAX	(64 << 20)
@@ -24,9 +24,9 @@ enum upload_state { UPLOAD_FREE, UPLOAD_FILLING, UPLOAD_WHOLE };
 
 struct upload {
 	enum upload_state state;
-	char client[WIRE_CLIENT_MAX];
-	char id[WIRE_ID_MAX];
-	char name[WIRE_ID_MAX];
+	char client[JOBS_LCM_CLIENT_MAX];
+	char id[JOBS_LCM_ID_MAX];
+	char name[JOBS_LCM_ID_MAX];
 	uint8_t sha256[32];
 	size_t bytes;
 	uint32_t chunks, have;
@@ -40,8 +40,8 @@ struct upload {
 
 /* What was said about an upload that is gone. */
 struct upload_verdict {
-	char client[WIRE_CLIENT_MAX];
-	char id[WIRE_ID_MAX];
+	char client[JOBS_LCM_CLIENT_MAX];
+	char id[JOBS_LCM_ID_MAX];
 	int64_t seq_min, seq_max;
 	int code;
 	char *reason, *body;
@@ -65,13 +65,13 @@ struct upload_answer {
  *
  * @ret is set to the upload if this chunk made it whole, else to NULL.
  */
-void upload_take(struct uploads *u, const struct wire_chunk *c,
+void upload_take(struct uploads *u, const struct jobs_lcm_chunk *c,
 		 int64_t now_us, struct upload **ret,
 		 struct upload_answer *answer);
 
 /** upload_check() - are the chunk's fields fit to be looked at?
  *  Return: true, or false with @answer filled. */
-bool upload_check(const struct wire_chunk *c, struct upload_answer *answer);
+bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *answer);
 
 /** upload_forget() - done with it: remember the verdict, free the text. */
 void upload_forget(struct uploads *u, struct upload *up, int code,

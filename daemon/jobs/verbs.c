@@ -8,7 +8,7 @@
 #include "jobs.h"
 
 #include "interp/tech_table.h"
-#include "log.h"
+#include "jobs_log.h"
 #include "nearest.h"
 
 #include <errno.h>
@@ -26,7 +26,7 @@
 struct verb {
 	const char *name;
 	void (*run)(struct jobs *j, const struct verb *v,
-		    const struct wire_command *c);
+		    const struct jobs_lcm_command *c);
 	uint32_t machine;		/* enum shm_verb, for verb_machine() */
 	const char *wants;		/* the state it wants */
 };
@@ -34,15 +34,15 @@ struct verb {
 /* A command on its way to edmd. */
 struct asked {
 	struct jobs *jobs;
-	char client[WIRE_CLIENT_MAX];
+	char client[JOBS_LCM_CLIENT_MAX];
 	int64_t seq;
 	const struct verb *verb;
 };
 
-static void answer(struct jobs *j, const struct wire_command *c, int code,
+static void answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		   const char *reason)
 {
-	jobs_answer(j, &(struct wire_ack) {
+	jobs_answer(j, &(struct jobs_lcm_ack) {
 		.client = c->client, .seq = c->seq, .code = code,
 		.reason = reason,
 	});
@@ -74,7 +74,7 @@ static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
 	struct jobs *j = a->jobs;
-	struct wire_command c = { .client = a->client, .seq = a->seq };
+	struct jobs_lcm_command c = { .client = a->client, .seq = a->seq };
 	char reason[160];
 
 	if (code == SHM_DONE)
@@ -110,7 +110,7 @@ static void on_answer(void *arg, int code)
 }
 
 static void ask_machine(struct jobs *j, const struct verb *v,
-			const struct wire_command *c, uint32_t arg)
+			const struct jobs_lcm_command *c, uint32_t arg)
 {
 	struct asked *a = calloc(1, sizeof(*a));
 	struct link_command m = {
@@ -141,12 +141,12 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 }
 
 static void verb_machine(struct jobs *j, const struct verb *v,
-			 const struct wire_command *c)
+			 const struct jobs_lcm_command *c)
 {
 	ask_machine(j, v, c, 0);
 }
 
-static void refuse_field(struct jobs *j, const struct wire_command *c)
+static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	char reason[640];
 	struct nearest near;
@@ -170,7 +170,7 @@ static void refuse_field(struct jobs *j, const struct wire_command *c)
 
 /* NaN gives the field back to the condition. */
 static void verb_set(struct jobs *j, const struct verb *v,
-		     const struct wire_command *c)
+		     const struct jobs_lcm_command *c)
 {
 	const int id = interp_tech_find(c->text);
 	char reason[192], range[96];
@@ -195,7 +195,7 @@ static void verb_set(struct jobs *j, const struct verb *v,
 }
 
 static void verb_retract(struct jobs *j, const struct verb *v,
-			 const struct wire_command *c)
+			 const struct jobs_lcm_command *c)
 {
 	if (isfinite(c->arg) && c->arg > 0 && c->arg <= RETRACT_MAX_MM)
 		verb_machine(j, v, c);
@@ -205,7 +205,7 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 }
 
 static void verb_step(struct jobs *j, const struct verb *v,
-		      const struct wire_command *c)
+		      const struct jobs_lcm_command *c)
 {
 	if (c->arg == floor(c->arg) && fabs(c->arg) >= 1 &&
 	    fabs(c->arg) <= STEP_MAX)
@@ -216,7 +216,7 @@ static void verb_step(struct jobs *j, const struct verb *v,
 }
 
 static void verb_override(struct jobs *j, const struct verb *v,
-			  const struct wire_command *c)
+			  const struct jobs_lcm_command *c)
 {
 	if (c->arg >= 0 && c->arg <= OVERRIDE_MAX)
 		verb_machine(j, v, c);
@@ -225,7 +225,7 @@ static void verb_override(struct jobs *j, const struct verb *v,
 }
 
 /* One letter of an axis the machine has; -1: it was refused. */
-static int axis_of(struct jobs *j, const struct wire_command *c)
+static int axis_of(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	const char *at = c->text[0] ? strchr(INTERP_AXIS_LETTERS, c->text[0]) :
 				      NULL;
@@ -244,7 +244,7 @@ static int axis_of(struct jobs *j, const struct wire_command *c)
 }
 
 static void verb_jog(struct jobs *j, const struct verb *v,
-		     const struct wire_command *c)
+		     const struct jobs_lcm_command *c)
 {
 	int axis;
 
@@ -265,7 +265,7 @@ static bool is_homed_by(const struct jobs *j, int axis)
 }
 
 static void verb_home(struct jobs *j, const struct verb *v,
-		      const struct wire_command *c)
+		      const struct jobs_lcm_command *c)
 {
 	int axis = c->text[0] ? axis_of(j, c) : INTERP_NAXES;
 	bool any = false;
@@ -285,7 +285,7 @@ static void verb_home(struct jobs *j, const struct verb *v,
 }
 
 /* A refused start must not set the queue going. */
-static bool refused_by_fault(struct jobs *j, const struct wire_command *c)
+static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	if (!queue_is_faulted(j))
 		return false;
@@ -294,7 +294,7 @@ static bool refused_by_fault(struct jobs *j, const struct wire_command *c)
 }
 
 static void verb_resume(struct jobs *j, const struct verb *v,
-			const struct wire_command *c)
+			const struct jobs_lcm_command *c)
 {
 	if (refused_by_fault(j, c))
 		return;
@@ -303,7 +303,7 @@ static void verb_resume(struct jobs *j, const struct verb *v,
 }
 
 /* A job that waits: it is started when its turn comes. */
-static void start_behind(struct jobs *j, const struct wire_command *c,
+static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 			 const struct store_job *job)
 {
 	if (job->state != JOB_QUEUED) {
@@ -316,7 +316,7 @@ static void start_behind(struct jobs *j, const struct wire_command *c,
 }
 
 static void verb_start(struct jobs *j, const struct verb *v,
-		       const struct wire_command *c)
+		       const struct jobs_lcm_command *c)
 {
 	struct queue *q = &j->queue;
 	bool here = q->job.n && !queue_is_leaving(q);
@@ -342,7 +342,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 }
 
 static void verb_remove(struct jobs *j, const struct verb *v,
-			const struct wire_command *c)
+			const struct jobs_lcm_command *c)
 {
 	struct store_end e = {
 		.state = JOB_STOPPED, .reason = "removed from the queue",
@@ -370,11 +370,11 @@ static void verb_remove(struct jobs *j, const struct verb *v,
 	}
 }
 
-static void answer_list(struct jobs *j, const struct wire_command *c,
+static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 			enum store_list what)
 {
 	char *body = store_json(j->store, what, c->job, (int)c->arg);
-	struct wire_ack a = {
+	struct jobs_lcm_ack a = {
 		.client = c->client, .seq = c->seq, .body = body,
 		.reason = "done",
 	};
@@ -390,28 +390,28 @@ static void answer_list(struct jobs *j, const struct wire_command *c,
 }
 
 static void verb_queue(struct jobs *j, const struct verb *v,
-		       const struct wire_command *c)
+		       const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_QUEUE);
 }
 
 static void verb_show(struct jobs *j, const struct verb *v,
-		      const struct wire_command *c)
+		      const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_SHOW);
 }
 
 static void verb_alarms(struct jobs *j, const struct verb *v,
-			const struct wire_command *c)
+			const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_ALARMS);
 }
 
 static void verb_history(struct jobs *j, const struct verb *v,
-			 const struct wire_command *c)
+			 const struct jobs_lcm_command *c)
 {
 	(void)v;
 	if (c->arg >= 0 && c->arg <= 1000)
@@ -451,7 +451,7 @@ static const struct verb verbs[] = {
 
 #define NVERBS	(sizeof(verbs) / sizeof(verbs[0]))
 
-static void refuse_verb(struct jobs *j, const struct wire_command *c)
+static void refuse_verb(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	char reason[256];
 	size_t n = (size_t)snprintf(reason, sizeof(reason),
@@ -464,25 +464,25 @@ static void refuse_verb(struct jobs *j, const struct wire_command *c)
 }
 
 /* Answered before, or under way: not done again. */
-static bool is_repeat(struct jobs *j, const struct wire_command *c)
+static bool is_repeat(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	const struct reply *r = reply_find(&j->replies, c->client, c->seq);
 
 	if (r && r->done)
-		wire_ack(j->wire, &(struct wire_ack) {
+		jobs_lcm_ack(j->lcm, &(struct jobs_lcm_ack) {
 			.client = c->client, .seq = c->seq, .code = r->code,
 			.reason = r->reason, .body = r->body,
 		});
 	return r != NULL;
 }
 
-void verb_take(void *arg, const struct wire_command *c)
+void verbs_take(void *arg, const struct jobs_lcm_command *c)
 {
 	struct jobs *j = arg;
 	size_t n = strlen(c->client);
 
 	/* A client without a name could not be told from another. */
-	if (n == 0 || n >= WIRE_CLIENT_MAX) {
+	if (n == 0 || n >= JOBS_LCM_CLIENT_MAX) {
 		answer(j, c, EX_PROTOCOL, "client name of no or too many "
 		       "bytes; 1 to 63");
 		return;

@@ -4,8 +4,8 @@
  */
 #include "cycle.h"
 #include "enter.h"
-#include "step.h"
-#include "walk.h"
+#include "path/step.h"
+#include "path/walk.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 		return ANSWER_WRONG_STATE;
 	if (c->limit.on)
 		return ANSWER_AT_LIMIT;
-	if (c->config.require_home && hand_unhomed(c))
+	if (c->config.require_home && manual_unhomed(c))
 		return ANSWER_NOT_HOMED;
 	if (c->axes.starting)
 		return ANSWER_NOT_UP;
@@ -27,7 +27,7 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 		return ANSWER_LOCKED;
 	c->outcome = OUTCOME_NONE;
 	c->retract.in_row = 0;
-	c->arc = (struct arc) { .rung = ARC_NONE };
+	c->arcing = (struct arcing) { .rung = ARCING_NONE };
 	gap_forget(c);
 	if (axes_want(c, true))
 		cycle_set_off(c);
@@ -37,8 +37,8 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 static enum cycle_answer do_hold(struct cycle *c, double arg_mm)
 {
 	(void)arg_mm;
-	if (cycle_by_hand(c)) {
-		c->hand.halt = true;
+	if (cycle_is_manual(c)) {
+		c->manual.halt = true;
 		return ANSWER_DONE;
 	}
 	if (!c->loaded)
@@ -53,7 +53,7 @@ static enum cycle_answer do_hold(struct cycle *c, double arg_mm)
 
 static enum cycle_answer do_stop(struct cycle *c, double arg_mm)
 {
-	if (cycle_by_hand(c))
+	if (cycle_is_manual(c))
 		return do_hold(c, arg_mm);
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
@@ -159,17 +159,17 @@ static enum cycle_answer (*const verbs[CYCLE_NVERBS])(struct cycle *,
 static enum cycle_answer do_set(struct cycle *c, const struct cycle_command *m)
 {
 	static const enum cycle_answer answer[] = {
-		[PROCESS_DONE]	= ANSWER_DONE,
-		[PROCESS_BAD]	= ANSWER_BAD_ARGUMENT,
-		[PROCESS_FULL]	= ANSWER_WRONG_STATE,
+		[CONDITIONS_DONE]	= ANSWER_DONE,
+		[CONDITIONS_BAD]	= ANSWER_BAD_ARGUMENT,
+		[CONDITIONS_FULL]	= ANSWER_WRONG_STATE,
 	};
 
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
-	return answer[process_set(c, m->arg, m->arg_mm)];
+	return answer[conditions_set(c, m->arg, m->arg_mm)];
 }
 
-static enum cycle_answer do_by_hand(struct cycle *c,
+static enum cycle_answer do_manual(struct cycle *c,
 				    const struct cycle_command *m)
 {
 	const bool jog = m->verb == CYCLE_JOG;
@@ -180,7 +180,7 @@ static enum cycle_answer do_by_hand(struct cycle *c,
 	if (interlock_forbids(c))
 		return ANSWER_LOCKED;
 	answer = (enum cycle_answer)(jog ?
-		hand_jog(c, m->arg, m->arg_mm) : hand_home(c, m->arg));
+		manual_jog(c, m->arg, m->arg_mm) : manual_home(c, m->arg));
 	if (answer != ANSWER_DONE)
 		return answer;
 	cycle_enter(c, jog ? STATE_JOG : STATE_HOME);
@@ -195,7 +195,7 @@ enum cycle_answer cycle_command(struct cycle *c, const struct cycle_command *m)
 	if (m->verb == CYCLE_SET)
 		return do_set(c, m);
 	if (m->verb == CYCLE_JOG || m->verb == CYCLE_HOME)
-		return do_by_hand(c, m);
+		return do_manual(c, m);
 	return verbs[m->verb](c, m->arg_mm);
 }
 
@@ -204,12 +204,12 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 {
 	if (c->state != STATE_IDLE)
 		return ANSWER_WRONG_STATE;
-	if (c->hand.used && memcmp(at->pos, c->out.target,
+	if (c->manual.used && memcmp(at->pos, c->out.target,
 				   sizeof(at->pos)) != 0)
 		return ANSWER_ELSEWHERE;
 	c->cursor = *at;
 	c->escape = (struct escape) { .nlegs = 0 };
-	if (!process_begin(c))
+	if (!conditions_begin(c))
 		return ANSWER_BAD_ARGUMENT;
 	c->out.path++;
 	c->loaded = true;
@@ -223,7 +223,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->back_mm = 0;
 	mcode_begin(c, at->index);
 	c->power_off = false;
-	c->touch = (struct touch) { .phase = TOUCH_SETTLE };
+	c->probe = (struct probe) { .phase = PROBE_SETTLE };
 	for (int i = 0; i < INTERP_NAXES; i++)
 		c->out.target[i] = at->pos[i];
 	cycle_enter(c, STATE_HOLD);

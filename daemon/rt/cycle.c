@@ -5,10 +5,10 @@
 #include "cycle.h"
 #include "enter.h"
 #include "feed.h"
-#include "laws.h"
-#include "step.h"
-#include "timed.h"
-#include "walk.h"
+#include "path/laws.h"
+#include "path/step.h"
+#include "path/timed.h"
+#include "path/walk.h"
 
 #include <math.h>
 #include <string.h>
@@ -78,12 +78,12 @@ static void guard(struct cycle *c, const struct io_inputs *in)
 	mcode_hear(c);
 	if (in->wire_broken || (in->plc.alive && !in->plc.wire_whole))
 		watch_wire(c);
-	if ((!c->sensed.valid && power) || touch_is_blind(c, in))
+	if ((!c->sensed.valid && power) || probe_is_blind(c, in))
 		cycle_fail(c, FAULT_GAP_LOST);
 	if (c->sensed.suspect && power)
 		cycle_fail(c, FAULT_GAP_STUCK);
 	if (state_duty[c->state].power)
-		arc_watch(c);
+		arcing_watch(c);
 	guard_switches(c, in);
 	c->busy = in->busy;
 }
@@ -104,7 +104,7 @@ static enum cycle_event look_arrive(const struct cycle *c)
 	if (!contouring_rests(&c->contouring))
 		return EVENT_NONE;
 	return walk_ahead(c) == AHEAD_CUT ? EVENT_CUT :
-	       walk_ahead(c) == AHEAD_TOUCH ? EVENT_TOUCH : EVENT_NONE;
+	       walk_ahead(c) == AHEAD_PROBE ? EVENT_PROBE : EVENT_NONE;
 }
 
 /* What this cycle's gap and place mean to the state; at most one thing. */
@@ -115,10 +115,10 @@ static enum cycle_event look(struct cycle *c)
 	if (powered && c->sensed.is_short)
 		return EVENT_SHORT;
 	if (powered && !escape_is_out(&c->escape) &&
-	    (walk_ahead(c) == AHEAD_FREE || walk_ahead(c) == AHEAD_TOUCH))
+	    (walk_ahead(c) == AHEAD_FREE || walk_ahead(c) == AHEAD_PROBE))
 		return EVENT_FREE;
-	if (powered && arc_retract_due(c))
-		return EVENT_ARC;
+	if (powered && arcing_retract_due(c))
+		return EVENT_ARCING;
 	if (powered && !escape_is_out(&c->escape) && timed_is_up(c))
 		return EVENT_TIME_UP;
 	switch (c->state) {
@@ -131,7 +131,7 @@ static enum cycle_event look(struct cycle *c)
 	case STATE_RETRACT:
 		return retract_is_clear(c) ? EVENT_CLEAR : EVENT_NONE;
 	case STATE_JUMP:
-		return !c->lifting && c->sensed.touch ? EVENT_SHORT :
+		return !c->lifting && c->sensed.contact ? EVENT_SHORT :
 							EVENT_NONE;
 	default:
 		return EVENT_NONE;
@@ -146,7 +146,7 @@ static void watch_contact(struct cycle *c)
 {
 	if (c->state != STATE_TRAVEL || c->config.dry_run)
 		return;
-	if (c->sensed.touch && c->free_seen)
+	if (c->sensed.contact && c->free_seen)
 		cycle_fail(c, FAULT_CONTACT);
 	c->free_seen = c->free_seen || c->sensed.is_open;
 }
@@ -219,12 +219,12 @@ static void go(struct cycle *c)
 	if (r == WALK_BROKEN)
 		cycle_fail(c, FAULT_PROGRAM);
 	else if (r == WALK_BEYOND)
-		cycle_fail(c, c->state == STATE_TOUCH ? FAULT_NO_CONTACT :
+		cycle_fail(c, c->state == STATE_PROBE ? FAULT_NO_CONTACT :
 							FAULT_SOFT_LIMIT);
 	else if (r == WALK_ACTION)
 		meet_action(c);
 	mcode_follow(c);
-	if (c->loaded && !process_follow(c))
+	if (c->loaded && !conditions_follow(c))
 		cycle_fail(c, FAULT_PROGRAM);
 	if (feed_done(c)) {
 		if (c->leaving)
@@ -250,14 +250,14 @@ static void sum_up(struct cycle *c, bool running)
 static bool moves_by_will(const struct cycle *c)
 {
 	return !c->axes.awaited && (state_duty[c->state].running || c->moving ||
-				    cycle_by_hand(c));
+				    cycle_is_manual(c));
 }
 
 static void give(struct cycle *c, struct io_outputs *out)
 {
 	/* M5 is heeded in its own cycle, and in a way back that it met. */
 	c->out.power = state_duty[c->state].power && !c->power_off;
-	c->out.sense = c->state == STATE_TOUCH;
+	c->out.sense = c->state == STATE_PROBE;
 	if (c->loaded) {
 		const struct interp_cond *cond =
 			&c->cursor.p.conds[c->cursor.seg.cond];
@@ -265,7 +265,7 @@ static void give(struct cycle *c, struct io_outputs *out)
 		c->out.place_mm = interp_cursor_place_mm(&c->cursor);
 		c->out.off_path_mm = c->escape.way_mm;
 		c->out.rapid = c->state == STATE_TRAVEL ||
-			       c->state == STATE_TOUCH;
+			       c->state == STATE_PROBE;
 		c->out.cond_letter = cond->letter;
 		c->out.cond_number = cond->number;
 	}
@@ -279,16 +279,16 @@ static void give(struct cycle *c, struct io_outputs *out)
 	}, c->given.target);
 	for (int i = 0; i < INTERP_NAXES && c->contouring.on; i++)
 		c->given.target[i] += c->contouring.added[i];
-	c->given.pulse.off_us = arc_off_us(c);
+	c->given.pulse.off_us = arcing_off_us(c);
 	*out = c->given;
 	c->out.reset = false;
 }
 
 /* Without a program. */
-static void go_by_hand(struct cycle *c, const struct io_inputs *in)
+static void go_manually(struct cycle *c, const struct io_inputs *in)
 {
 	c->feed_mm_s = 0;
-	if (cycle_by_hand(c) && hand_go(c, in))
+	if (cycle_is_manual(c) && manual_go(c, in))
 		cycle_enter(c, STATE_IDLE);
 }
 
@@ -312,7 +312,7 @@ void cycle_step(struct cycle *c, const struct io_inputs *in,
 
 	c->count++;
 	gap_sense(c, in);
-	touch_sense(c, in);
+	probe_sense(c, in);
 	guard(c, in);
 	moves = c->state != STATE_FAULT && may_move(c);
 	if (c->loaded && moves) {
@@ -324,7 +324,7 @@ void cycle_step(struct cycle *c, const struct io_inputs *in,
 		stand(c);
 		sum_up(c, running);
 	} else if (moves) {
-		go_by_hand(c, in);
+		go_manually(c, in);
 	} else {
 		c->feed_mm_s = 0;
 	}

@@ -18,24 +18,24 @@
 #define RT_CYCLE_H
 
 #include "interp/cursor.h"
-#include "arc.h"
-#include "axes.h"
-#include "comp.h"
-#include "contouring.h"
-#include "escape.h"
-#include "flush.h"
-#include "gap.h"
-#include "hand.h"
+#include "gap/arcing.h"
+#include "axes/axes.h"
+#include "axes/comp.h"
+#include "axes/contouring.h"
+#include "path/escape.h"
+#include "gap/flush.h"
+#include "gap/gap.h"
+#include "axes/manual.h"
 #include "interlock.h"
 #include "io.h"
-#include "limit.h"
-#include "mcode.h"
-#include "mover.h"
-#include "process.h"
-#include "retract.h"
-#include "servo.h"
+#include "axes/limit.h"
+#include "path/mcode.h"
+#include "path/mover.h"
+#include "gap/conditions.h"
+#include "gap/retract.h"
+#include "gap/servo.h"
 #include "state.h"
-#include "touch.h"
+#include "path/probe.h"
 
 /* Why a fault is latched. */
 enum cycle_fault {
@@ -116,14 +116,14 @@ struct cycle_gap_config {
 	bool retract_escape;		/* out of a short by the escape */
 	uint32_t abort_count;		/* retracts without erosion; 0: any */
 	double progress_mm;		/* cut so much deeper is erosion */
-	double arc_share;		/* more is arcing; 0: not looked at */
-	uint32_t arc_cycles;		/* ... in a mean over so many */
-	double arc_sigma_v;		/* steadier in a plateau: an arc; 0: not
+	double arcing_share;		/* more is arcing; 0: not looked at */
+	uint32_t arcing_cycles;		/* ... in a mean over so many */
+	double arcing_sigma_v;		/* steadier in a plateau: an arc; 0: not
 					 * judged by voltage */
 	double off_us;			/* the generator's own; 0: not known */
-	double arc_off_max;		/* times the off time, against arcs */
-	uint64_t arc_recover_cycles;	/* to a step down */
-	double arc_retract_mm;		/* at least, out of an arc */
+	double arcing_off_max;		/* times the off time, against arcs */
+	uint64_t arcing_recover_cycles;	/* to a step down */
+	double arcing_retract_mm;		/* at least, out of an arc */
 	uint64_t stuck_cycles;		/* no change, then a fault; 0: never */
 	double noise_limit_v;		/* mean change of a cycle; 0: any */
 	double wire_retract_mm;		/* limit of a retract, if wire */
@@ -147,7 +147,7 @@ struct cycle_config {
 	int64_t period_ns;
 	struct cycle_gap_config gap;
 	struct cycle_jump_config jump;
-	struct touch_config touch;
+	struct probe_config probe;
 	double travel_a_mm_s2;		/* to start and stop positioning */
 	double travel_j_mm_s3;
 	bool stop_at_nodes;		/* in a jump; for comparison */
@@ -162,7 +162,7 @@ struct cycle_config {
 	uint64_t mcode_cycles;		/* longest wait for the PLC; 0: any */
 	bool hold_at_end;		/* stand held at the end; no job's end */
 	bool require_home;		/* no start before all are homed */
-	struct hand_axis axis[INTERP_NAXES];
+	struct manual_axis axis[INTERP_NAXES];
 	struct comp_config comp;
 	struct contouring_config contouring;
 };
@@ -179,7 +179,7 @@ enum cycle_verb {
 	CYCLE_OVERRIDE,			/* of positioning: 0 ... 2 times, arg_mm */
 	CYCLE_STEP,			/* held: arg_mm nodes on, - back */
 	CYCLE_JOG,			/* idle: axis `arg` by arg_mm */
-	CYCLE_HOME,			/* idle: axis `arg`, or HAND_ALL_AXES */
+	CYCLE_HOME,			/* idle: axis `arg`, or MANUAL_ALL_AXES */
 	CYCLE_NVERBS
 };
 
@@ -235,7 +235,7 @@ struct cycle {
 	struct cycle_config config;
 	struct cycle_gap_config gap;	/* in force: config's, and what the */
 	struct cycle_jump_config jump;	/* condition and `set` made of it */
-	struct process process;		/* what made gap, jump and out.pulse */
+	struct conditions conditions;		/* what made gap, jump and out.pulse */
 	struct interp_cursor cursor;
 	bool loaded;			/* cursor stands on a program */
 	enum cycle_state state;
@@ -253,14 +253,14 @@ struct cycle {
 	double move_to_mm;		/* place a retract by command leads to */
 	struct retract retract;		/* the one under way, or the last */
 	struct servo servo;
-	struct arc arc;
+	struct arcing arcing;
 	struct flush flush;
-	struct touch touch;
+	struct probe probe;
 	struct mover mover;		/* speed along the path, or along ... */
 	struct escape escape;		/* ... the way out beside it */
 	struct axes axes;		/* under power, or not yet */
 	struct cycle_ahead ahead;
-	struct hand hand;		/* without a program */
+	struct manual manual;		/* without a program */
 	struct limit limit;
 	struct comp comp;		/* from places to pulses */
 	struct contouring contouring;	/* for axes that lag */
@@ -312,7 +312,7 @@ static inline double cycle_outer_mm(const struct cycle *c)
 }
 
 /** cycle_pos() - the lattice point it stands on, as programmed; the axes are
- *  at touch.shift from it. */
+ *  at probe.shift from it. */
 static inline const int32_t *cycle_pos(const struct cycle *c)
 {
 	return escape_is_out(&c->escape) ? c->escape.pos : c->cursor.pos;
@@ -321,7 +321,7 @@ static inline const int32_t *cycle_pos(const struct cycle *c)
 /** cycle_axis() - where axis @i is then, pulses. */
 static inline int32_t cycle_axis(const struct cycle *c, int i)
 {
-	return cycle_pos(c)[i] + c->touch.shift[i];
+	return cycle_pos(c)[i] + c->probe.shift[i];
 }
 
 /** cycle_moved() - bit per axis that moved to it. */

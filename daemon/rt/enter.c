@@ -3,8 +3,8 @@
  * enter.c - what is done where a state is entered; how a job ends or fails
  */
 #include "enter.h"
-#include "timed.h"
-#include "walk.h"
+#include "path/timed.h"
+#include "path/walk.h"
 
 #include <math.h>
 
@@ -49,7 +49,7 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 	const enum cycle_state from = c->state;
 
 	/* The gap is narrower than a brake's way: what can, stops at once. */
-	if ((state_duty[from].power || from == STATE_TOUCH) &&
+	if ((state_duty[from].power || from == STATE_PROBE) &&
 	    (s == STATE_HOLD || s == STATE_JUMP) &&
 	    c->mover.v_mm_s <= servo_dv_mm_s(c))
 		mover_set(&c->mover, 0);
@@ -60,18 +60,18 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		servo_reset(c);
 		c->free_seen = false;
 		break;
-	case STATE_TOUCH:
-		touch_begin(c);
+	case STATE_PROBE:
+		probe_begin(c);
 		break;
 	case STATE_RETRACT:
 		servo_reset(c);
 		if (c->gap.retract_escape)
 			leave_path(c);
 		retract_begin(c);
-		arc_met(c);
+		arcing_met(c);
 		break;
 	case STATE_JUMP:
-		arc_met(c);
+		arcing_met(c);
 		if (from == STATE_HOLD)
 			come_back(c);
 		else
@@ -87,7 +87,7 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 	case STATE_FAULT:
 		axes_forget(c);
 		mover_set(&c->mover, 0);
-		mover_set(&c->hand.mover, 0);
+		mover_set(&c->manual.mover, 0);
 		break;
 	default:
 		break;

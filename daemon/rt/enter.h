@@ -33,8 +33,8 @@ static inline void cycle_set_off(struct cycle *c)
 						    EVENT_START);
 }
 
-/** cycle_by_hand() - it moves, and not by a program. */
-static inline bool cycle_by_hand(const struct cycle *c)
+/** cycle_is_manual() - it moves, and not by a program. */
+static inline bool cycle_is_manual(const struct cycle *c)
 {
 	return c->state == STATE_JOG || c->state == STATE_HOME;
 }

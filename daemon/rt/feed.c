@@ -2,9 +2,9 @@
 /*
  * feed.c - feed laws: a table of one per state; lifts and holds
  */
-#include "ahead.h"
+#include "path/ahead.h"
 #include "feed.h"
-#include "laws.h"
+#include "path/laws.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -113,7 +113,7 @@ static double (*const laws[CYCLE_NSTATES])(struct cycle *) = {
 	[STATE_FAULT]	 = none,
 	[STATE_JOG]	 = none,
 	[STATE_HOME]	 = none,
-	[STATE_TOUCH]	 = touch_distance,
+	[STATE_PROBE]	 = probe_distance,
 };
 
 double feed_distance(struct cycle *c)
@@ -143,8 +143,8 @@ bool feed_done(struct cycle *c)
 {
 	if (c->state == STATE_JUMP)
 		return jump_done(c);
-	if (c->state == STATE_TOUCH)
-		return c->touch.phase == TOUCH_DONE;
+	if (c->state == STATE_PROBE)
+		return c->probe.phase == PROBE_DONE;
 	if (c->state == STATE_HOLD && c->moving && there(c, c->move_to_mm))
 		c->moving = false;
 	return false;

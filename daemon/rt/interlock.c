@@ -3,7 +3,7 @@
  * interlock.c - a PLC's permit, interlocks and requests
  */
 #include "interlock.h"
-#include "walk.h"
+#include "path/walk.h"
 
 #include <stddef.h>
 

@@ -19,7 +19,7 @@ const struct state_duty state_duty[CYCLE_NSTATES] = {
 	[STATE_FAULT]	 = { "fault",		false,	false },
 	[STATE_JOG]	 = { "jog",		false,	false },
 	[STATE_HOME]	 = { "home",		false,	false },
-	[STATE_TOUCH]	 = { "touch",		false,	true },
+	[STATE_PROBE]	 = { "probe",		false,	true },
 };
 
 /*
@@ -30,20 +30,20 @@ const struct state_duty state_duty[CYCLE_NSTATES] = {
 static const uint8_t next[CYCLE_NSTATES][CYCLE_NEVENTS] = {
 	[STATE_TRAVEL] = {
 		[EVENT_CUT]		= STATE_APPROACH,
-		[EVENT_TOUCH]		= STATE_TOUCH,
+		[EVENT_PROBE]		= STATE_PROBE,
 		[EVENT_END]		= STATE_IDLE,
 	},
 	[STATE_APPROACH] = {
 		[EVENT_SPARK]		= STATE_ERODE,
 		[EVENT_SHORT]		= STATE_RETRACT,
-		[EVENT_ARC]		= STATE_RETRACT,
+		[EVENT_ARCING]		= STATE_RETRACT,
 		[EVENT_TIME_UP]		= STATE_JUMP,
 		[EVENT_FREE]		= STATE_TRAVEL,
 		[EVENT_END]		= STATE_IDLE,
 	},
 	[STATE_ERODE] = {
 		[EVENT_SHORT]		= STATE_RETRACT,
-		[EVENT_ARC]		= STATE_RETRACT,
+		[EVENT_ARCING]		= STATE_RETRACT,
 		[EVENT_JUMP_DUE]	= STATE_JUMP,
 		[EVENT_TIME_UP]		= STATE_JUMP,
 		[EVENT_FREE]		= STATE_TRAVEL,
@@ -63,7 +63,7 @@ static const uint8_t next[CYCLE_NSTATES][CYCLE_NEVENTS] = {
 	[STATE_FAULT] = {
 		[EVENT_RESET]		= STATE_HOLD,
 	},
-	[STATE_TOUCH] = {
+	[STATE_PROBE] = {
 		[EVENT_MOVE_DONE]	= STATE_TRAVEL,
 	},
 };

@@ -22,7 +22,7 @@ enum cycle_state {
 	STATE_FAULT,		/* latched; power off, no motion */
 	STATE_JOG,		/* no job: an axis moves by command */
 	STATE_HOME,		/* no job: axes look for their switches */
-	STATE_TOUCH,		/* feeling for the work, power off */
+	STATE_PROBE,		/* feeling for the work, power off */
 	CYCLE_NSTATES
 };
 
@@ -35,11 +35,11 @@ enum cycle_event {
 	EVENT_RESET,
 	EVENT_FREE,		/* the segment ahead is positioned, not cut */
 	EVENT_CUT,		/* the segment ahead is cut */
-	EVENT_TOUCH,		/* the segment ahead ends at contact */
+	EVENT_PROBE,		/* the segment ahead ends at contact */
 	EVENT_SPARK,		/* gap voltage in the sparking range */
 	EVENT_OPEN,		/* gap voltage above open_v */
 	EVENT_SHORT,		/* below short_v */
-	EVENT_ARC,		/* arcs that a jump did not end */
+	EVENT_ARCING,		/* arcs that a jump did not end */
 	EVENT_CLEAR,		/* a retract's short is gone */
 	EVENT_JUMP_DUE,
 	EVENT_TIME_UP,		/* of a cycle that has one */

@@ -26,7 +26,7 @@ const char *shm_state_name(uint32_t state)
 		[SHM_FAULT]	= "fault",
 		[SHM_JOG]	= "jog",
 		[SHM_HOME]	= "home",
-		[SHM_TOUCH]	= "touch",
+		[SHM_PROBE]	= "probe",
 	};
 
 	return name_of(names, sizeof(names) / sizeof(names[0]), state);

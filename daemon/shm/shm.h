@@ -60,7 +60,7 @@ struct shm_head {
 /* Mirrors enum cycle_state; fixed here because others rely on it. */
 enum shm_state {
 	SHM_IDLE = 1, SHM_TRAVEL, SHM_APPROACH, SHM_ERODE, SHM_RETRACT,
-	SHM_JUMP, SHM_HOLD, SHM_FAULT, SHM_JOG, SHM_HOME, SHM_TOUCH
+	SHM_JUMP, SHM_HOLD, SHM_FAULT, SHM_JOG, SHM_HOME, SHM_PROBE
 };
 
 struct shm_snapshot {

@@ -6,7 +6,7 @@
  */
 #include "bench.h"
 
-#include "interp/nurbs_step.h"
+#include "tried/nurbs_step.h"
 #include "random_curve.h"
 
 #include <sisl.h>

@@ -2,7 +2,7 @@
 /*
  * axes.c - three and more axes by each coupling, and circles by each rule
  */
-#include "program.h"
+#include "make_program.h"
 
 /* -- Lines in several axes ------------------------------------------------------ */
 
@@ -170,7 +170,7 @@ int main(void)
 	};
 
 	printf("\n## Three and more axes\n\n"
-	       "Couplings are those of `libinterp/pulse/couple.h`.  Share is "
+	       "Couplings are those of `libinterp/core/pulse/couple.h`.  Share is "
 	       "how far an axis is from\nits part of the pulses given so far, "
 	       "which a tree promises; against the longest axis\nis what star "
 	       "and tube promise.  A change of axis is counted when nothing "

@@ -6,8 +6,8 @@
  *	curve_programs lines examples/blade.ngc 0.001	its curve as G1 lines
  */
 #include "interp/nc.h"
-#include "interp/nurbs_step.h"
-#include "program.h"
+#include "tried/nurbs_step.h"
+#include "make_program.h"
 
 #include <stdint.h>
 

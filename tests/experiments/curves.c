@@ -10,7 +10,7 @@
 #include "curves.h"
 #include "interp/nurbs_feed.h"
 #include "interp/nurbs_length.h"
-#include "interp/nurbs_step.h"
+#include "tried/nurbs_step.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -10,7 +10,7 @@
  */
 #include "cycle.h"
 #include "interp/nc.h"
-#include "program.h"
+#include "make_program.h"
 
 #include <stdarg.h>
 

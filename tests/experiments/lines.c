@@ -3,7 +3,7 @@
  * lines.c - two axes, one at a time: changes of axis and deviation of each
  * rule, counted on whole lines of 10000 main pulses
  */
-#include "pulse/greedy.h"
+#include "tried/greedy.h"
 #include "pulse/pair.h"
 
 #include <stdio.h>
@@ -241,8 +241,8 @@ int main(void)
 	       "Printed by `make experiments`; every figure is counted on "
 	       "whole walks.\n\n"
 	       "## Two axes, lines of 10000 main pulses\n\n"
-	       "The rules are those of `libinterp/pulse/pair.h`; the fewest "
-	       "there can be is\n`libinterp/pulse/greedy.h`, planned with a "
+	       "The rules are those of `libinterp/core/pulse/pair.h`; the fewest "
+	       "there can be is\n`tests/experiments/tried/greedy.h`, planned with a "
 	       "list of runs.  *Main direction as printed*\nis the paper's "
 	       "rule judged at the present point, each axis stopped at its "
 	       "total;\n`main-direction` judges the point after the next "

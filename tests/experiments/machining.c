@@ -5,7 +5,7 @@
  * The measured figures are those of tables 2 to 5 of the paper on the
  * main-direction perturbation algorithm (2025).
  */
-#include "program.h"
+#include "make_program.h"
 
 static void change_point(const struct interp_cursor *c, void *arg)
 {

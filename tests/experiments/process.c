@@ -9,7 +9,7 @@
  */
 #include "config.h"
 #include "io.h"
-#include "program.h"
+#include "make_program.h"
 
 #define WARM	200		/* cycles before a reading */
 #define READ	400

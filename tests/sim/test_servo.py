@@ -51,7 +51,7 @@ def test_the_window_is_where_the_gap_works(cut, tmp_path):
 
 
 def test_jumps_come_by_depth(cut):
-    never = "[gap]\narc_share = 0\n[jump]\nevery_s = 86400\n"
+    never = "[gap]\narcing_share = 0\n[jump]\nevery_s = 86400\n"
     by_time = cut(never)
     by_depth = cut(never + "every_mm = 0.05\n")
     assert by_time["jumps"] == 0
@@ -67,7 +67,7 @@ def test_adaptive_jumps_keep_within_their_bounds(cut):
 
 def test_arcs_are_answered_and_burn_less(cut):
     job = SINK.replace("G0 Z1\nZ0\n", "")  # no room to flush
-    r = [cut(f"[gap]\narc_share = {share}\n", job=job) for share in (0, 0.3)]
+    r = [cut(f"[gap]\narcing_share = {share}\n", job=job) for share in (0, 0.3)]
     assert r[0]["arcs"] == 0 and r[1]["arcs"] > 0
     assert r[1]["burns"] < r[0]["burns"]
 

@@ -27,7 +27,7 @@ def test_a_job_is_recorded_to_its_end_and_drawn(machine):
     trace, picture = machine.folder / "t.csv", machine.folder / "t.png"
     p = recorder(machine, str(trace), "--until-end", "--plot", str(picture))
     assert machine.client.submit(SLOW_JOB, "job").code == 0
-    out, err = p.communicate(timeout=30)
+    out, err = p.communicate(timeout=120)
     assert p.returncode == 0, err
     assert " 0 cycles lost; the job is done" in out
 
@@ -55,7 +55,7 @@ def test_one_cycle_of_ten_keeps_each_change_of_state(machine):
     trace = machine.folder / "t.csv"
     p = recorder(machine, str(trace), "--until-end", "--every", "10")
     assert machine.client.submit(QUICK_JOB, "job").code == 0
-    out, err = p.communicate(timeout=30)
+    out, err = p.communicate(timeout=120)
     assert p.returncode == 0, err
     got = rows(trace)
     t = [float(r["t_s"]) for r in got]
@@ -72,7 +72,7 @@ def test_a_stopped_job_exits_1(machine):
     assert machine.client.submit(SLOW_JOB, "job").code == 0
     machine.client.status_where(lambda s: s.place_mm > 0.2)
     assert machine.client.ask("stop").code == 0
-    out, _ = p.communicate(timeout=30)
+    out, _ = p.communicate(timeout=120)
     assert p.returncode == 1
     assert "the job was stopped" in out
 

@@ -26,7 +26,7 @@ def test_a_job_goes_from_chunks_to_done_and_status_tells(machine):
     assert abs(running.length_mm - 2) < 1e-6
     half = c.status_where(lambda s: s.progress > 0.5)
     assert 1 < half.pos_mm[0] <= 2
-    assert half.left_s < 1.5
+    assert half.eta_s < 1.5
     j = c.job_where("one", "done")
     assert abs(j["path_mm"] - 2) < 1e-3
     assert abs(j["job_s"] - 2) < 0.3

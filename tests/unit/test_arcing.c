@@ -8,12 +8,12 @@ static struct cycle_config arcing(void)
 {
 	struct cycle_config k = usual_config();
 
-	k.gap.arc_share = 0.3;
-	k.gap.arc_cycles = 20;
+	k.gap.arcing_share = 0.3;
+	k.gap.arcing_cycles = 20;
 	k.gap.off_us = 10;
-	k.gap.arc_off_max = 5;
-	k.gap.arc_recover_cycles = 100;
-	k.gap.arc_retract_mm = 0.2;
+	k.gap.arcing_off_max = 5;
+	k.gap.arcing_recover_cycles = 100;
+	k.gap.arcing_retract_mm = 0.2;
 	k.jump.height_mm = 0.5;
 	k.jump.every_cycles = 1000000;
 	return k;
@@ -30,9 +30,9 @@ static int climb_to(struct rig *r, uint32_t rung)
 {
 	int n = 0;
 
-	while (r->c.arc.rung != rung && n++ < 10000)
+	while (r->c.arcing.rung != rung && n++ < 10000)
 		step(r, SPARKING_V);
-	assert_int_equal(r->c.arc.rung, rung);
+	assert_int_equal(r->c.arcing.rung, rung);
 	return n;
 }
 
@@ -78,12 +78,12 @@ static void then_a_jump_then_a_retract_then_a_fault(void **st)
 	(void)st;
 	cut_arcing(&r, &k);
 	until(&r, STATE_JUMP, SPARKING_V, 200);
-	assert_int_equal(r.c.arc.rung, ARC_JUMP);
+	assert_int_equal(r.c.arcing.rung, ARCING_JUMP);
 	until(&r, STATE_RETRACT, SPARKING_V, 1000);
 	from = r.c.retract.from_mm;
 	while (r.c.state == STATE_RETRACT)
 		step(&r, SPARKING_V);
-	assert_near(from - place(&r), k.gap.arc_retract_mm, 0.006);
+	assert_near(from - place(&r), k.gap.arcing_retract_mm, 0.006);
 	for (int i = 0; i < 1000 && r.c.fault == FAULT_NONE; i++)
 		step(&r, SPARKING_V);
 	assert_int_equal(r.c.fault, FAULT_ARCING);
@@ -113,7 +113,7 @@ static void arcs_that_a_jump_ends_are_ended_by_the_next_one_too(void **st)
 		shares(&r, 0.2, 0.6, 0.2, 0);
 		until(&r, STATE_ERODE, SPARKING_V, 2000);
 		steps(&r, SPARKING_V, 40);
-		assert_int_equal(r.c.arc.rung, ARC_OFF_LAST);
+		assert_int_equal(r.c.arcing.rung, ARCING_OFF_LAST);
 		assert_int_equal(r.c.totals.jumps, i);
 	}
 	assert_int_equal(r.c.totals.retracts, 0);
@@ -145,17 +145,17 @@ static void without_arcs_a_rung_is_given_back_slowly(void **st)
 	climb_to(&r, 3);
 	shares(&r, 0.2, 0.7, 0.1, 0);
 	steps(&r, SPARKING_V, 95);
-	assert_int_equal(r.c.arc.rung, 3);
+	assert_int_equal(r.c.arcing.rung, 3);
 	for (uint32_t i = 2; i > 0; i--)
 		assert_in_range(climb_to(&r, i), 1, 100);
-	climb_to(&r, ARC_NONE);
+	climb_to(&r, ARCING_NONE);
 	assert_true(isnan(r.out.pulse.off_us));
 	/* Between the two shares it stays where it is. */
 	shares(&r, 0.2, 0.4, 0.4, 0);
 	climb_to(&r, 1);
 	shares(&r, 0.2, 0.6, 0.2, 0);
 	steps(&r, SPARKING_V, 1000);
-	assert_int_equal(r.c.arc.rung, 1);
+	assert_int_equal(r.c.arcing.rung, 1);
 	rig_free(&r);
 }
 
@@ -180,7 +180,7 @@ static uint32_t arcs_of(double v, double sigma)
 	uint32_t arcs;
 	struct rig r;
 
-	k.gap.arc_sigma_v = 1;
+	k.gap.arcing_sigma_v = 1;
 	cut_at(&r, &k, 2);
 	for (int i = 0; i < 200 && r.c.fault == FAULT_NONE; i++)
 		step(&r, v + uniform(&s, -1.7, 1.7) * sigma);

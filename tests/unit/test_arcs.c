@@ -7,7 +7,7 @@
  */
 #include "walk_help.h"
 
-#include "pulse/walk.h"
+#include "pulse/pulse.h"
 
 #include <errno.h>
 

@@ -4,7 +4,7 @@
  */
 #include "cycle_help.h"
 
-#include "comp.h"
+#include "axes/comp.h"
 
 /* One axis, the others without. */
 struct bench {

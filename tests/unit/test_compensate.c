@@ -3,7 +3,7 @@
 #include "contour_help.h"
 
 #include "interp/tune.h"
-#include "interp/twin.h"
+#include "tried/set_twin.h"
 
 #include <errno.h>
 

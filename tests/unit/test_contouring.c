@@ -6,7 +6,7 @@
 #include "cycle_help.h"
 
 #include "config.h"
-#include "contouring.h"
+#include "axes/contouring.h"
 
 #include "interp/axis_model.h"
 #include "interp/identify.h"
@@ -487,7 +487,7 @@ static void a_jog_and_a_cut_get_nothing(void **state)
 	struct rig r;
 
 	(void)state;
-	k.axis[INTERP_X] = (struct hand_axis) {
+	k.axis[INTERP_X] = (struct manual_axis) {
 		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
 		.a_max_mm_s2 = 500, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
 	};

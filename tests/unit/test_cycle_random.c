@@ -159,9 +159,9 @@ static void check_erode(const struct cycle *c)
 {
 	assert_true(at_most(c, c->gap.feed_max_mm_s));
 	assert_true(at_least(c, -c->gap.creep_mm_s));
-	if (c->sensed.touch || c->sensed.signal_v <= gap_window_high_v(c))
+	if (c->sensed.contact || c->sensed.signal_v <= gap_window_high_v(c))
 		assert_true(at_most(c, 0));
-	if (!c->sensed.touch && c->sensed.signal_v >= gap_window_low_v(c))
+	if (!c->sensed.contact && c->sensed.signal_v >= gap_window_low_v(c))
 		assert_true(at_least(c, 0));
 }
 
@@ -171,11 +171,11 @@ static void check_feed(const struct rig *r)
 	const struct cycle *c = &r->c;
 
 	/* The speed was chosen by the values in force where it stood before. */
-	if (c->state != r->was || c->process.cond != cond_before)
+	if (c->state != r->was || c->conditions.cond != cond_before)
 		return;
 	if (c->state == STATE_APPROACH) {
 		assert_true(at_least(c, 0));
-		assert_true(at_most(c, c->sensed.touch ? 0 :
+		assert_true(at_most(c, c->sensed.contact ? 0 :
 						c->gap.approach_mm_s));
 	}
 	if (c->state == STATE_RETRACT) {
@@ -243,7 +243,7 @@ static void check_cycle(const struct rig *r, const struct points *set)
 	check_feed(r);
 	check_plc(r);
 	v_before = r->c.mover.v_mm_s;
-	cond_before = r->c.process.cond;
+	cond_before = r->c.conditions.cond;
 	/* Stopped beside the path the job is over, and it stands there. */
 	if (r->c.loaded || memcmp(r->c.out.target, r->path_before,
 				  sizeof(r->path_before)))

@@ -2,11 +2,11 @@
 /*
  * test_home.c - homing, and what an unhomed machine does not do
  */
-#include "hand_help.h"
+#include "manual_help.h"
 
 static struct cycle_config home_config(enum home_method method)
 {
-	struct cycle_config k = hand_config();
+	struct cycle_config k = manual_config();
 
 	k.axis[INTERP_X].method = method;
 	return k;
@@ -17,7 +17,7 @@ static void check_homed(const struct bench *b, int axis, int32_t at)
 {
 	const int32_t off = b->c.out.target[axis] - b->out.target[axis];
 
-	assert_int_equal(b->c.hand.homed >> axis & 1, 1);
+	assert_int_equal(b->c.manual.homed >> axis & 1, 1);
 	assert_in_range(at + off + 10000 + 2, 0, 4);
 }
 
@@ -32,7 +32,7 @@ static void a_switch_is_home(void **state)
 
 		bench_init(&b, &k);
 		b.home[INTERP_X] = places[i];
-		assert_int_equal(hand_unhomed(&b.c), X_BIT);
+		assert_int_equal(manual_unhomed(&b.c), X_BIT);
 		assert_int_equal(ask(&b, CYCLE_HOME, INTERP_X, 0), ANSWER_DONE);
 		assert_int_equal(b.c.state, STATE_HOME);
 		run_out(&b, STATE_IDLE);
@@ -67,11 +67,11 @@ static void an_absolute_drive_says_where_it_is(void **state)
 	bench_init(&b, &k);
 	jog(&b, INTERP_X, 3);
 	run_out(&b, STATE_IDLE);
-	assert_int_equal(ask(&b, CYCLE_HOME, HAND_ALL_AXES, 0), ANSWER_DONE);
+	assert_int_equal(ask(&b, CYCLE_HOME, MANUAL_ALL_AXES, 0), ANSWER_DONE);
 	run_out(&b, STATE_IDLE);
 	assert_int_equal(b.c.out.target[INTERP_X], 3000 - 10000);
 	assert_int_equal(b.out.target[INTERP_X], 3000);
-	assert_int_equal(hand_unhomed(&b.c), 0);
+	assert_int_equal(manual_unhomed(&b.c), 0);
 }
 
 /* With lost motion too the same place is found from either side. */
@@ -109,7 +109,7 @@ static void axes_are_homed_in_their_order(void **state)
 	bench_init(&b, &k);
 	b.home[INTERP_Z] = INT32_MIN;
 	b.home[INTERP_X] = -2000;
-	ask(&b, CYCLE_HOME, HAND_ALL_AXES, 0);
+	ask(&b, CYCLE_HOME, MANUAL_ALL_AXES, 0);
 	for (int i = 0; i < 300; i++)
 		period(&b);
 	assert_true(b.out.target[INTERP_Z] > 1000);
@@ -122,7 +122,7 @@ static void axes_are_homed_in_their_order(void **state)
 		period(&b);
 	b.home[INTERP_Z] = INT32_MAX;
 	run_out(&b, STATE_IDLE);
-	assert_int_equal(hand_unhomed(&b.c), 0);
+	assert_int_equal(manual_unhomed(&b.c), 0);
 	check_homed(&b, INTERP_X, -2000);
 }
 
@@ -139,7 +139,7 @@ static void no_switch_is_a_fault(void **state)
 	run_out(&b, STATE_FAULT);
 	assert_string_equal(cycle_fault_name(b.c.fault), "home-not-found");
 	assert_in_range(-b.out.target[INTERP_X], 6000, 6020);
-	assert_int_equal(hand_unhomed(&b.c), X_BIT);
+	assert_int_equal(manual_unhomed(&b.c), X_BIT);
 }
 
 static void a_stop_leaves_it_unhomed(void **state)
@@ -154,7 +154,7 @@ static void a_stop_leaves_it_unhomed(void **state)
 		period(&b);
 	assert_int_equal(ask(&b, CYCLE_STOP, 0, 0), ANSWER_DONE);
 	run_out(&b, STATE_IDLE);
-	assert_int_equal(hand_unhomed(&b.c), X_BIT);
+	assert_int_equal(manual_unhomed(&b.c), X_BIT);
 }
 
 static void only_axes_with_a_method_are_homed(void **state)
@@ -179,14 +179,14 @@ static void unhomed_nothing_is_cut_if_so_configured(void **state)
 	cut_to(b, -5);
 	rig_load(&r, b, &k);
 	assert_int_equal(tell(&r, CYCLE_START), ANSWER_NOT_HOMED);
-	r.c.hand.homed = X_BIT;
+	r.c.manual.homed = X_BIT;
 	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
 	rig_free(&r);
 }
 
 static void a_program_from_elsewhere_is_refused(void **state)
 {
-	const struct cycle_config k = hand_config();
+	const struct cycle_config k = manual_config();
 	struct interp_build *p = begin(INTERP_SIMULTANEOUS);
 	struct bench b;
 	struct made m;

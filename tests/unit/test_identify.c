@@ -3,7 +3,7 @@
 #include "contour_help.h"
 
 #include "interp/identify.h"
-#include "interp/ridge.h"
+#include "tried/ridge.h"
 
 #include <errno.h>
 

@@ -6,7 +6,7 @@
  */
 #include "walk_help.h"
 
-#include "mover.h"
+#include "path/mover.h"
 #include "seed.h"
 
 #define ROUNDS	20000

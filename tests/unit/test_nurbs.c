@@ -7,7 +7,7 @@
 #include "walk_help.h"
 
 #include "curves.h"
-#include "interp/nurbs_edit.h"
+#include "tried/nurbs_edit.h"
 #include "interp/nurbs_feed.h"
 #include "interp/nurbs_length.h"
 #include "random_curve.h"

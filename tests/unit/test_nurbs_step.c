@@ -5,7 +5,7 @@
 #include "walk_help.h"
 
 #include "curves.h"
-#include "interp/nurbs_step.h"
+#include "tried/nurbs_step.h"
 
 #define LIMIT_MM	0.001
 #define STEPS_MAX	100000

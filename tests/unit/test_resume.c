@@ -233,7 +233,7 @@ static void idle_axes_stand_where_they_were_sent(void **st)
 	(void)st;
 	world_init(&w);
 	wear_z(&w);
-	w.k.axis[INTERP_Z] = (struct hand_axis) {
+	w.k.axis[INTERP_Z] = (struct manual_axis) {
 		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
 		.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
 	};
@@ -309,7 +309,7 @@ static void a_lead_is_gone_after_a_crash_in_motion(void **st)
 static void begin_idle_x(struct world *w)
 {
 	world_init(w);
-	w->k.axis[INTERP_X] = (struct hand_axis) {
+	w->k.axis[INTERP_X] = (struct manual_axis) {
 		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
 		.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
 		.home_slow_mm_s = 5,
@@ -364,7 +364,7 @@ static void homed_axes(struct world *w, bool stays)
 {
 	world_init(w);
 	w->k.require_home = true;
-	w->k.axis[INTERP_X] = (struct hand_axis) {
+	w->k.axis[INTERP_X] = (struct manual_axis) {
 		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
 		.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
 		.method = HOME_ABSOLUTE, .home_at_mm = 10,
@@ -373,7 +373,7 @@ static void homed_axes(struct world *w, bool stays)
 	w->in.actual[INTERP_X] = 1234;
 	assert_int_equal(ask(w, CYCLE_HOME, INTERP_X, 0), ANSWER_DONE);
 	periods(w, OPEN_V, 10);
-	assert_int_equal(hand_unhomed(&w->l.cycle), 0);
+	assert_int_equal(manual_unhomed(&w->l.cycle), 0);
 	w->l.io.stays = stays;
 }
 
@@ -394,7 +394,7 @@ static void axes_that_cannot_have_moved_stay_homed(void **st)
 	(void)st;
 	homed_axes(&w, true);
 	crash_as(&w, true);
-	assert_int_equal(hand_unhomed(&w.l.cycle), 0);
+	assert_int_equal(manual_unhomed(&w.l.cycle), 0);
 	assert_int_equal(w.l.cycle.out.target[INTERP_X], 11234);
 	period(&w, OPEN_V);
 	assert_int_equal(w.out.target[INTERP_X], 1234);
@@ -408,7 +408,7 @@ static void axes_that_nothing_measures_are_to_be_homed_again(void **st)
 	(void)st;
 	homed_axes(&w, false);
 	crash_as(&w, false);
-	assert_int_equal(hand_unhomed(&w.l.cycle), 1u << INTERP_X);
+	assert_int_equal(manual_unhomed(&w.l.cycle), 1u << INTERP_X);
 	assert_int_equal(w.l.cycle.out.target[INTERP_X], 11234);
 	world_free(&w);
 }
@@ -425,7 +425,7 @@ static void axes_that_are_homed_otherwise_now_are_to_be_homed_again(void **st)
 	w.config.hand[INTERP_X].home_at_mm += 1;
 	w.l.home_key = key_home(&w.config);
 	resume(&w.l, &w.config, &before);
-	assert_int_equal(hand_unhomed(&w.l.cycle), 1u << INTERP_X);
+	assert_int_equal(manual_unhomed(&w.l.cycle), 1u << INTERP_X);
 	assert_int_equal(w.l.cycle.out.target[INTERP_X], 11234);
 	period(&w, OPEN_V);
 	assert_int_equal(w.out.target[INTERP_X], 1234);
@@ -464,7 +464,7 @@ static void drives_that_count_are_told_where_their_zero_was(void **st)
 	resume(&w.l, &w.config, &before);
 	for (int i = 0; i < IO_NAXES; i++)
 		assert_int_equal(originated[i], 1000 * i - 7);
-	assert_int_equal(hand_unhomed(&w.l.cycle), 0);
+	assert_int_equal(manual_unhomed(&w.l.cycle), 0);
 	world_free(&w);
 }
 
@@ -546,7 +546,7 @@ static void what_was_set_is_in_force_again(void **st)
 	assert_near(w.l.cycle.jump.height_mm, 0.25, 0);
 	assert_near(w.l.cycle.override, 0.25, 0);
 	assert_true(w.l.cycle.out.negative);
-	assert_int_equal(w.l.cycle.process.nsets, 3);
+	assert_int_equal(w.l.cycle.conditions.nsets, 3);
 	/* And a second time, with nothing set in between. */
 	period(&w, OPEN_V);
 	crash(&w);

@@ -15,12 +15,18 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
-#define RUN_S		0.5
+/*
+ * Counts, not times: on a busy machine the writer may get no processor for
+ * longer than any time that a test would like to wait.
+ */
+#define SNAPSHOTS	200000u		/* written, while some are read */
+#define READS		20000u		/* of snapshots, at least */
+#define BEHIND_EVERY	5000u		/* records read, then fall behind */
+#define BEHIND_TIMES	3u
 #define COMMANDS	200000u
 
 static char machine[SHM_NAME_MAX];
@@ -31,14 +37,6 @@ struct stress {
 	bool end;
 	uint64_t written;
 };
-
-static double now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
 
 /* Every word tells of @n, so a torn one shows. */
 static struct shm_snapshot snapshot_of(uint64_t n)
@@ -112,12 +110,11 @@ static void no_snapshot_is_ever_torn_or_older_than_the_last(void **state)
 {
 	pthread_t t;
 	struct stress st = stress_status();
-	double until = now_s() + RUN_S;
 	uint64_t got = 0, none = 0, last = 0;
 
 	(void)state;
 	stress_start(&st, &t);
-	while (now_s() < until) {
+	while (got < READS || last < SNAPSHOTS) {
 		struct shm_snapshot s, want;
 
 		if (!shm_snapshot(st.status, &s)) {
@@ -134,7 +131,6 @@ static void no_snapshot_is_ever_torn_or_older_than_the_last(void **state)
 	print_message("snapshots: %llu written, %llu read, %llu not there\n",
 		      (unsigned long long)st.written, (unsigned long long)got,
 		      (unsigned long long)none);
-	assert_true(got > 1000);
 	assert_int_equal(none, 0);
 	shm_status_destroy(st.status, machine);
 }
@@ -143,16 +139,15 @@ static void no_trace_record_is_torn_and_none_lost_uncounted(void **state)
 {
 	pthread_t t;
 	struct stress st = stress_status();
-	double until = now_s() + RUN_S;
 	struct shm_follow f = { 0 };
 	struct shm_trace r;
-	uint64_t got = 0, last = 0;
+	uint64_t got = 0, last = 0, behind = 0;
 	bool more = true;
 
 	(void)state;
 	stress_start(&st, &t);
 	while (more || !st.end) {
-		if (!st.end && now_s() >= until)
+		if (!st.end && behind == BEHIND_TIMES)
 			stress_end(&st, t);
 		more = shm_trace_next(st.status, &f, &r);
 		if (!more)
@@ -163,8 +158,10 @@ static void no_trace_record_is_torn_and_none_lost_uncounted(void **state)
 		assert_int_equal(r.line, (uint32_t)r.cycle);
 		assert_int_equal(r.pos[7], (int32_t)(r.cycle + 7));
 		last = r.cycle;
-		if (++got % 5000 == 0 && !st.end)
+		if (++got % BEHIND_EVERY == 0 && !st.end) {
 			fall_behind(&st, &f);
+			behind++;
+		}
 	}
 	print_message("trace: %llu written, %llu read, %llu lost\n",
 		      (unsigned long long)st.written, (unsigned long long)got,
@@ -194,7 +191,6 @@ static void *write_commands(void *arg)
 static void every_command_comes_once_in_order_and_whole(void **state)
 {
 	struct stress st = { .status = NULL };
-	double begin = now_s();
 	uint64_t empty = 0;
 	pthread_t t;
 
@@ -214,9 +210,24 @@ static void every_command_comes_once_in_order_and_whole(void **state)
 		assert_true(c.arg_mm == (double)id);
 	}
 	pthread_join(t, NULL);
-	print_message("commands: %u in %.2f s, found none %llu times\n",
-		      COMMANDS, now_s() - begin, (unsigned long long)empty);
+	print_message("commands: %u, found none %llu times\n",
+		      COMMANDS, (unsigned long long)empty);
 	shm_command_destroy(st.ring, machine);
+}
+
+/* A test that fails leaves its objects: nobody else knows their names. */
+static int remove_objects(void **state)
+{
+	static const char *const what[] = { "status", "command" };
+	char path[sizeof("/dev/shm/edmd..command") + SHM_NAME_MAX];
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(what) / sizeof(what[0]); i++) {
+		snprintf(path, sizeof(path), "/dev/shm/edmd.%s.%s", machine,
+			 what[i]);
+		unlink(path);
+	}
+	return 0;
 }
 
 int main(void)
@@ -230,5 +241,6 @@ int main(void)
 	};
 
 	snprintf(machine, sizeof(machine), "stress-%d", (int)getpid());
-	return cmocka_run_group_tests_name("shm_stress", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("shm_stress", tests, NULL,
+					   remove_objects);
 }

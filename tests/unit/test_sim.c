@@ -195,7 +195,7 @@ static void debris_rises_with_erosion_and_falls_by_a_jump(void **st)
 	b.k.sim.debris_settle_s = 1e5;
 	b.k.sim.debris_per_mm = 5;
 	b.k.sim.flush_mm_s = 0;
-	b.k.sim.arc_gain = 0;
+	b.k.sim.arcing_gain = 0;
 	open_sim(&b, 1);
 	assert_true(result(&b).debris == 0);
 	for (int i = 0; i < 5; i++) {

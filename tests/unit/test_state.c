@@ -84,7 +84,7 @@ static void shorts_and_arcs_under_power_lead_back_along_the_path(void **st)
 		if (!state_duty[s].power)
 			continue;
 		assert_int_equal(next_of(s, EVENT_SHORT), STATE_RETRACT);
-		assert_int_equal(next_of(s, EVENT_ARC), STATE_RETRACT);
+		assert_int_equal(next_of(s, EVENT_ARCING), STATE_RETRACT);
 	}
 	assert_int_equal(next_of(STATE_JUMP, EVENT_SHORT), STATE_RETRACT);
 }

@@ -5,7 +5,7 @@
 #include "walk_help.h"
 
 #include "interp/pose.h"
-#include "interp/surface.h"
+#include "tried/surface.h"
 #include "random_curve.h"
 #include "seed.h"
 

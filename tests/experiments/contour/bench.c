@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* bench.c - the machine of the experiment: believed, and as it is */
-#include "contour.h"
-#include "interp/twin.h"
+#include "contour_try.h"
+#include "tried/set_twin.h"
 
 #include <math.h>
 #include <stdlib.h>

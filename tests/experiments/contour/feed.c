@@ -5,7 +5,7 @@
  * The speed is that programmed, less at the start and where v^2 / radius would
  * be more than the limit.  The place advances by the midpoint rule in many small steps.
  */
-#include "contour.h"
+#include "contour_try.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* geometry.c - error maps, estimates of the contour error, and the pictures */
-#include "contour.h"
+#include "contour_try.h"
 #include "interp/errormap.h"
 
 #include <math.h>

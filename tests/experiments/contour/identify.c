@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* identify.c - loops identified from traces, and the worst of many */
-#include "contour.h"
+#include "contour_try.h"
 #include "interp/identify.h"
 
 #include <math.h>

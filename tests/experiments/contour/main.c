@@ -5,7 +5,7 @@
  * Prints docs/experiments-contour.md; with a folder, draws its pictures there
  * instead.
  */
-#include "contour.h"
+#include "contour_try.h"
 
 static const char head[] =
 "# Contour error, measured on models\n"
@@ -14,7 +14,7 @@ static const char head[] =
 "`tests/experiments/curves.json`, normal acceleration at most 100 mm/s^2, set\n"
 "values every millisecond.  Machine: position loops of 30 and 21.5 1/s, velocity\n"
 "loops of 60 Hz with damping 0.7 (`interp/axis_model.h`).  The error is the\n"
-"distance of the true place from the path (`interp/contour.h`).\n"
+"distance of the true place from the path (`interp/foot.h`).\n"
 "\n";
 
 static const char pictures[] =

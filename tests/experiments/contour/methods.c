@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* methods.c - the baseline, and every compensation at three speeds */
-#include "contour.h"
+#include "contour_try.h"
 
 #include <math.h>
 

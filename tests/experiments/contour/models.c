@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* models.c - gains found, what history teaches */
-#include "contour.h"
-#include "interp/ridge.h"
+#include "contour_try.h"
+#include "tried/ridge.h"
 #include "interp/tune.h"
 
 #include <math.h>

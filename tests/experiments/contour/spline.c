@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* spline.c - read a rational B-spline and evaluate it (de Boor) */
-#include "contour.h"
+#include "contour_try.h"
 
 #include <jansson.h>
 #include <math.h>

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * compiling.h - a machine file as the options a job's text is compiled with
+ *
+ * Threads: any, each with a struct of its own.
+ */
+#ifndef CONFIG_COMPILING_H
+#define CONFIG_COMPILING_H
+
+#include "config.h"
+
+#include "interp/compile.h"
+
+/* What config_tech_load() came to. */
+struct config_tech {
+	struct interp_tech_table *table;	/* NULL: there is none */
+	char path[512];
+	char *text;			/* as read; NULL without a table */
+	size_t bytes;
+	struct interp_diag diag;	/* filled with -EINVAL */
+};
+
+/**
+ * config_tech_load() - read a technology table, and check that it may go over
+ * the machine's values.
+ *
+ * @path: NULL is [tech] table, beside the machine file; an .enc file is read
+ * as one, any other as .tech.
+ * Return: 0; -errno of the file; -EINVAL with ret->diag filled; -ENOMEM.
+ * ret->path says which file, and ret is to be handed to config_tech_free() in
+ * any case.  Any thread.
+ */
+int config_tech_load(struct config_tech *ret, const struct machine_config *c,
+		     const char *path);
+void config_tech_free(struct config_tech *t);
+
+/** config_tech_base() - the machine's own values of the fields. */
+void config_tech_base(const struct machine_config *c, struct interp_tech *ret);
+
+/**
+ * config_kinematics() - the machine's joints.
+ * Return: 0; -ENOENT if [kinematics] names none; -EINVAL with @diag filled.
+ */
+int config_kinematics(const struct machine_config *c,
+		      struct interp_kinematics *ret, struct interp_diag *diag);
+
+/**
+ * config_check_kinematics() - is [kinematics] a chain of this machine's axes?
+ *
+ * For the programs that compile; edmd has no use for it, and does not ask.
+ * Return: 0, or -EINVAL with @diag filled.
+ */
+int config_check_kinematics(const struct machine_config *c,
+			    struct interp_diag *diag);
+
+/* The options point into the rest, into the machine file and into the table:
+ * it must stay where it was filled, and not outlive them. */
+struct config_compiling {
+	struct interp_build_options build;
+	struct interp_compile_options text;
+	struct interp_mcode mcodes[INTERP_NMCODES];
+	struct interp_tech tech;
+	struct interp_kinematics kinematics;
+};
+
+/**
+ * config_compiling() - fill @ret.
+ *
+ * The path begins at start_mm of the axes; who knows better where the machine
+ * stands sets build.start_mm after it.
+ */
+void config_compiling(const struct machine_config *c,
+		      const struct config_tech *tech,
+		      struct config_compiling *ret);
+
+#endif /* CONFIG_COMPILING_H */

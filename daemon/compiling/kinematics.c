@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * kinematics.c - [kinematics] of a machine file as joints, and its check
+ */
+#include "compiling.h"
+
+#include <errno.h>
+#include <string.h>
+
+int config_kinematics(const struct machine_config *c,
+		      struct interp_kinematics *ret, struct interp_diag *diag)
+{
+	if (strcmp(c->kinematics.chain, "none") == 0)
+		return -ENOENT;
+	interp_kin_clear(ret);
+	memcpy(ret->tip_mm, c->kinematics.tip_mm, sizeof(ret->tip_mm));
+	return interp_kin_parse(ret, c->kinematics.chain, diag);
+}
+
+/* The chain's joints are axes that the machine has. */
+int config_check_kinematics(const struct machine_config *c,
+			    struct interp_diag *diag)
+{
+	struct interp_kinematics kin;
+	char why[sizeof(diag->found)];
+	const int r = config_kinematics(c, &kin, diag);
+
+	diag->line = c->kinematics.line;
+	diag->column = 0;
+	if (r == -EINVAL) {
+		snprintf(why, sizeof(why), "%s", diag->found);
+		snprintf(diag->found, sizeof(diag->found),
+			 "kinematics.chain: %.130s", why);
+	}
+	for (uint32_t i = 0; r == 0 && i < kin.njoints; i++) {
+		if (c->axes.present & 1u << kin.joint[i].axis)
+			continue;
+		snprintf(diag->found, sizeof(diag->found),
+			 "kinematics.chain has an axis %c, the machine has not",
+			 INTERP_AXIS_LETTERS[kin.joint[i].axis]);
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "axes with present = yes");
+		return -EINVAL;
+	}
+	return r == -EINVAL ? r : 0;
+}

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * compile.c - NC code to a program, in a thread of its own
+ */
+#include "compiler.h"
+#include "compiling.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+struct compiler {
+	pthread_t thread;
+	int fd;				/* readable when it is done */
+	sd_event_source *source;
+	struct compiler_request request;
+	struct compiler_result result;
+	compiler_done_fn done;
+	void *arg;
+};
+
+/* The table is read for each job: one that was mended counts from the next
+ * job on. */
+static int read_tech(struct compiler *c, struct config_tech *t)
+{
+	struct compiler_result *r = &c->result;
+	uint8_t hash[crypto_hash_sha256_BYTES];
+	const int err = config_tech_load(t, c->request.config, NULL);
+
+	if (err == -EINVAL)
+		snprintf(r->tech_refusal, sizeof(r->tech_refusal),
+			 "%s:%u:%u: error: %s; %s", t->path, t->diag.line,
+			 t->diag.column, t->diag.found, t->diag.wanted);
+	else if (err < 0)
+		snprintf(r->tech_refusal, sizeof(r->tech_refusal),
+			 "[tech] table %s: %s", t->path, strerror(-err));
+	if (err < 0 || !t->table)
+		return err;
+	crypto_hash_sha256(hash, (const uint8_t *)t->text, t->bytes);
+	sodium_bin2hex(r->tech_sha256, sizeof(r->tech_sha256), hash,
+		       sizeof(hash));
+	return 0;
+}
+
+static int compiler_text(struct compiler *c, const struct config_tech *tech)
+{
+	const struct interp_text text = {
+		.at = c->request.text, .bytes = c->request.bytes,
+		.dialect = interp_dialect_by_file(c->request.name),
+	};
+	struct config_compiling of;
+
+	config_compiling(c->request.config, tech, &of);
+	memcpy(of.build.start_mm, c->request.start_mm,
+	       sizeof(of.build.start_mm));
+	c->result.build = interp_build_create(&of.build);
+	if (!c->result.build)
+		return -ENOMEM;
+	return interp_compile(&text, &of.text, c->result.build, &c->result.lines,
+			      &c->result.diag);
+}
+
+static void *compiler_main(void *arg)
+{
+	struct compiler *c = arg;
+	struct config_tech tech;
+	uint64_t one = 1;
+
+	c->result.err = read_tech(c, &tech);
+	if (c->result.err == 0)
+		c->result.err = compiler_text(c, &tech);
+	config_tech_free(&tech);
+	/* An eventfd at 0 takes a 1 without fail. */
+	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
+		abort();
+	return NULL;
+}
+
+static void compiler_free(struct compiler *c)
+{
+	sd_event_source_unref(c->source);
+	if (c->fd >= 0)
+		close(c->fd);
+	interp_build_destroy(c->result.build);
+	free(c);
+}
+
+static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
+{
+	struct compiler *c = arg;
+
+	(void)source, (void)fd, (void)events;
+	pthread_join(c->thread, NULL);
+	c->done(c->arg, &c->result);
+	compiler_free(c);
+	return 0;
+}
+
+/* Signals are the event loop's: the thread blocks them all. */
+static int thread_start(struct compiler *c)
+{
+	sigset_t all, old;
+	int err;
+
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &old);
+	err = pthread_create(&c->thread, NULL, compiler_main, c);
+	pthread_sigmask(SIG_SETMASK, &old, NULL);
+	return -err;
+}
+
+int compiler_start(struct compiler **ret, sd_event *event,
+		   const struct compiler_request *request,
+		   compiler_done_fn done, void *arg)
+{
+	struct compiler *c = calloc(1, sizeof(*c));
+	int err;
+
+	if (!c)
+		return -ENOMEM;
+	c->request = *request;
+	c->done = done;
+	c->arg = arg;
+	c->fd = eventfd(0, EFD_CLOEXEC);
+	err = c->fd < 0 ? -errno :
+	      sd_event_add_io(event, &c->source, c->fd, EPOLLIN, on_done, c);
+	if (err >= 0)
+		err = thread_start(c);
+	if (err < 0) {
+		compiler_free(c);
+		return err;
+	}
+	*ret = c;
+	return 0;
+}
+
+void *compiler_destroy(struct compiler *c)
+{
+	void *arg;
+
+	if (!c)
+		return NULL;
+	arg = c->arg;
+	pthread_join(c->thread, NULL);
+	compiler_free(c);
+	return arg;
+}

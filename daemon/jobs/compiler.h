@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * compile.h - NC code to a program, in a thread of its own
+ *
+ * A text of millions of lines takes seconds; commands and status go on
+ * meanwhile.
+ *
+ * Threads: the event loop's, which also gets the result.
+ */
+#ifndef JOBS_COMPILE_H
+#define JOBS_COMPILE_H
+
+#include "config.h"
+#include "interp/build.h"
+
+#include <systemd/sd-event.h>
+
+struct compiler;
+
+struct compiler_request {
+	const struct machine_config *config;	/* lent, until the end */
+	double start_mm[INTERP_NAXES];
+	const char *name;			/* of its file: the dialect */
+	const char *text;			/* lent, until the end */
+	size_t bytes;
+};
+
+/* @build is lent; diag is filled if err is -EINVAL. */
+struct compiler_result {
+	int err;
+	struct interp_diag diag;
+	uint32_t lines;
+	char tech_sha256[65];		/* of the table, hex; "": none */
+	char tech_refusal[896];		/* the table's own; "": none */
+	struct interp_build *build;
+};
+
+typedef void (*compiler_done_fn)(void *arg, const struct compiler_result *r);
+
+/**
+ * compiler_start() - begin; @done is called from the event loop, once.
+ * Return: 0 or a negative errno.
+ */
+int compiler_start(struct compiler **ret, sd_event *event,
+		   const struct compiler_request *request,
+		   compiler_done_fn done, void *arg);
+
+/**
+ * compiler_destroy() - give up: waits for the thread, never calls @done.
+ *
+ * Not for one whose @done was called: that frees itself.  NULL is fine.
+ * Return: the @arg of compiler_start().
+ */
+void *compiler_destroy(struct compiler *c);
+
+#endif /* JOBS_COMPILE_H */

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * home.c - homing: a table of one function per phase
+ *
+ * Each takes a period and says which phase the next one is in; each is bound
+ * by a way, after which the fault is home-not-found.
+ */
+#include "axes/manual.h"
+#include "io.h"
+#include "path/laws.h"
+#include "path/walk.h"
+
+#include <math.h>
+
+/* Of the drive, as the inputs of this period saw it. */
+static int32_t pulses(const struct cycle *c)
+{
+	return comp_pulses(&c->comp.axis[c->manual.axis]);
+}
+
+static bool is_on(const struct cycle *c, uint32_t bits)
+{
+	return bits >> c->manual.axis & 1;
+}
+
+static void run(struct cycle *c, int toward, double v_mm_s)
+{
+	const struct mover_limits l = manual_limits(c, v_mm_s);
+
+	manual_move(c, mover_run(&c->manual.mover, &l, toward * l.v_max_mm_s));
+}
+
+static bool stop(struct cycle *c)
+{
+	const struct mover_limits l = manual_limits(c, INFINITY);
+
+	manual_move(c, mover_stop(&c->manual.mover, &l));
+	return c->manual.mover.v_mm_s == 0;
+}
+
+/* Farther than the whole travel there is no switch. */
+static void watch_way(struct cycle *c)
+{
+	const struct manual *h = &c->manual;
+	const double travel = (double)c->config.travel_max[h->axis] -
+			      c->config.travel_min[h->axis];
+
+	if (fabs(h->gone_mm - h->phase_mm) / manual_axis(c)->pulse_mm > travel)
+		cycle_fail(c, FAULT_HOME);
+}
+
+/* The first in order; of equals the first in name. */
+static uint32_t next_axis(const struct cycle *c)
+{
+	uint32_t best = INTERP_NAXES;
+
+	for (uint32_t m = c->manual.todo; m; m &= m - 1) {
+		const uint32_t i = (uint32_t)__builtin_ctz(m);
+
+		if (best == INTERP_NAXES || c->config.axis[i].home_order <
+					    c->config.axis[best].home_order)
+			best = i;
+	}
+	return best;
+}
+
+/* The place that lies @beyond pulses beyond home_at_mm. */
+static void call(struct cycle *c, int32_t beyond, int32_t drive)
+{
+	struct manual *h = &c->manual;
+	const double at = manual_axis(c)->home_at_mm / manual_axis(c)->pulse_mm;
+	const int32_t place = (int32_t)((uint32_t)llround(at) +
+					(uint32_t)beyond);
+
+	c->out.target[h->axis] = place;
+	comp_settle(&c->comp, &c->config.comp, h->axis, c->out.target, drive);
+	h->homed |= 1u << h->axis;
+	h->todo &= ~(1u << h->axis);
+}
+
+static enum home_phase begin(struct cycle *c, const struct io_inputs *in)
+{
+	struct manual *h = &c->manual;
+
+	manual_begin(c, next_axis(c));
+	if (manual_axis(c)->method == HOME_ABSOLUTE) {
+		call(c, in->actual[h->axis], in->actual[h->axis]);
+		return HOME_BEGIN;
+	}
+	return is_on(c, in->home) ? HOME_LEAVE : HOME_SEEK;
+}
+
+static enum home_phase seek(struct cycle *c, const struct io_inputs *in)
+{
+	const struct manual_axis *a = manual_axis(c);
+
+	run(c, a->home_toward, a->home_fast_mm_s);
+	return is_on(c, in->home) ? HOME_BRAKE : HOME_SEEK;
+}
+
+static enum home_phase brake(struct cycle *c, const struct io_inputs *in)
+{
+	(void)in;
+	return stop(c) ? HOME_LEAVE : HOME_BRAKE;
+}
+
+static enum home_phase leave(struct cycle *c, const struct io_inputs *in)
+{
+	const struct manual_axis *a = manual_axis(c);
+
+	run(c, -a->home_toward, a->home_slow_mm_s);
+	return is_on(c, in->home) ? HOME_LEAVE : HOME_CLEAR;
+}
+
+/* A switch that bounces begins it anew. */
+static enum home_phase clear(struct cycle *c, const struct io_inputs *in)
+{
+	struct manual *h = &c->manual;
+	const struct manual_axis *a = manual_axis(c);
+	const struct mover_limits l = manual_limits(c, a->home_slow_mm_s);
+	const double goal = h->phase_mm - a->home_toward * a->home_back_mm;
+
+	if (is_on(c, in->home))
+		return HOME_LEAVE;
+	manual_move(c, mover_step(&h->mover, &l, goal - h->gone_mm));
+	return h->mover.v_mm_s == 0 &&
+	       fabs(goal - h->gone_mm) < 2 * LAW_ONTO_MM ? HOME_ONTO :
+							    HOME_CLEAR;
+}
+
+static enum home_phase go_onto(struct cycle *c, const struct io_inputs *in)
+{
+	const struct manual_axis *a = manual_axis(c);
+
+	if (is_on(c, in->home)) {
+		c->manual.met = pulses(c);
+		return a->method == HOME_SWITCH_INDEX ? HOME_INDEX :
+							 HOME_STAND;
+	}
+	run(c, a->home_toward, a->home_slow_mm_s);
+	return HOME_ONTO;
+}
+
+static enum home_phase seek_index(struct cycle *c, const struct io_inputs *in)
+{
+	const struct manual_axis *a = manual_axis(c);
+
+	if (is_on(c, in->index)) {
+		c->manual.met = pulses(c);
+		return HOME_STAND;
+	}
+	run(c, a->home_toward, a->home_slow_mm_s);
+	return HOME_INDEX;
+}
+
+static enum home_phase stand(struct cycle *c, const struct io_inputs *in)
+{
+	(void)in;
+	if (!stop(c))
+		return HOME_STAND;
+	call(c, pulses(c) - c->manual.met, pulses(c));
+	return HOME_BEGIN;
+}
+
+static enum home_phase (*const phases[HOME_NPHASES])(struct cycle *,
+						      const struct io_inputs *) = {
+	[HOME_BEGIN]	= begin,
+	[HOME_SEEK]	= seek,
+	[HOME_BRAKE]	= brake,
+	[HOME_LEAVE]	= leave,
+	[HOME_CLEAR]	= clear,
+	[HOME_ONTO]	= go_onto,
+	[HOME_INDEX]	= seek_index,
+	[HOME_STAND]	= stand,
+};
+
+bool home_go(struct cycle *c, const struct io_inputs *in)
+{
+	struct manual *h = &c->manual;
+	const enum home_phase was = h->phase;
+
+	if (was == HOME_BEGIN && h->todo == 0)
+		return true;
+	h->phase = phases[was](c, in);
+	if (h->phase != was)
+		h->phase_mm = h->gone_mm;
+	else
+		watch_way(c);
+	return false;
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * limit.c - hard limit switches
+ */
+#include "axes/limit.h"
+#include "path/walk.h"
+
+bool limit_bars(const struct limit *l, uint32_t axis, int toward)
+{
+	return l->on >> axis & 1 && l->side[axis] == toward;
+}
+
+static bool moves(const struct cycle *c)
+{
+	return state_duty[c->state].running || c->moving ||
+	       c->state == STATE_JOG || c->state == STATE_HOME ||
+	       c->mover.v_mm_s != 0;
+}
+
+void limit_guard(struct cycle *c, const struct io_inputs *in)
+{
+	const uint32_t came = in->limit & ~c->limit.on;
+
+	/*
+	 * Which side it is on, by the last pulses out.  Of pulses before the
+	 * first period nobody knows what came after them.
+	 */
+	for (uint32_t m = came; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+
+		c->limit.side[i] = c->comp.begun ? c->comp.axis[i].toward : 0;
+	}
+	c->limit.on = in->limit;
+	if ((came && moves(c)) || (in->limit && state_duty[c->state].running))
+		cycle_fail(c, FAULT_LIMIT_SWITCH);
+}
+
+void limit_watch(struct cycle *c)
+{
+	for (uint32_t m = c->limit.on; m; m &= m - 1) {
+		const uint32_t i = (uint32_t)__builtin_ctz(m);
+		const int32_t was = c->comp.axis[i].place;
+		const int32_t is = c->out.target[i];
+
+		if (is != was && limit_bars(&c->limit, i, is < was ? -1 : 1))
+			cycle_fail(c, FAULT_LIMIT_SWITCH);
+	}
+}

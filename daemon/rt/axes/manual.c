@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * manual.c - jogs, and what jogs and homing share
+ */
+#include "axes/manual.h"
+#include "path/laws.h"
+#include "path/walk.h"
+
+#include <math.h>
+
+/* So far from 0 a place keeps inside the lattice. */
+static bool in_lattice(double pulses)
+{
+	return fabs(pulses) <= INTERP_PULSES_MAX;
+}
+
+uint32_t manual_unhomed(const struct cycle *c)
+{
+	uint32_t axes = 0;
+
+	for (uint32_t i = 0; i < INTERP_NAXES; i++)
+		if (c->config.axis[i].present &&
+		    c->config.axis[i].method != HOME_NONE)
+			axes |= 1u << i;
+	return axes & ~c->manual.homed;
+}
+
+const struct manual_axis *manual_axis(const struct cycle *c)
+{
+	return &c->config.axis[c->manual.axis];
+}
+
+void manual_begin(struct cycle *c, uint32_t axis)
+{
+	struct manual *h = &c->manual;
+
+	h->axis = axis;
+	h->from = c->out.target[axis];
+	h->gone_mm = 0;
+	h->halt = false;
+	h->free_seen = false;
+	h->used = true;
+	mover_set(&h->mover, 0);
+}
+
+/* Behind the move, where the machine could not put them out yet. */
+static int64_t left_pulses(const struct cycle *c)
+{
+	const struct manual *h = &c->manual;
+
+	return h->from + llround(h->gone_mm / manual_axis(c)->pulse_mm) -
+	       c->out.target[h->axis];
+}
+
+void manual_move(struct cycle *c, double ds_mm)
+{
+	struct manual *h = &c->manual;
+	const int64_t most = c->busy ? 0 : c->config.points_max;
+	int64_t left;
+
+	h->gone_mm += ds_mm;
+	left = left_pulses(c);
+	left = left > most ? most : left < -most ? -most : left;
+	c->out.target[h->axis] += (int32_t)left;
+	c->feed_mm_s = h->mover.v_mm_s;
+}
+
+struct mover_limits manual_limits(const struct cycle *c, double v_mm_s)
+{
+	const struct manual_axis *a = manual_axis(c);
+
+	return (struct mover_limits) {
+		.v_max_mm_s = fmin(v_mm_s, a->v_max_mm_s),
+		.a_max_mm_s2 = a->a_max_mm_s2,
+		.j_max_mm_s3 = a->j_max_mm_s3,
+		.period_s = law_period_s(c),
+	};
+}
+
+/* An axis whose places mean nothing yet goes no farther than its travel. */
+static bool reaches(const struct cycle *c, uint32_t axis, double mm)
+{
+	const double pulses = mm / c->config.axis[axis].pulse_mm;
+	const double to = c->out.target[axis] + pulses;
+	const double min = c->config.travel_min[axis];
+	const double max = c->config.travel_max[axis];
+
+	if (manual_unhomed(c) >> axis & 1)
+		return fabs(pulses) <= max - min && in_lattice(to);
+	return to >= min && to <= max;
+}
+
+int manual_jog(struct cycle *c, uint32_t axis, double mm)
+{
+	if (c->state != STATE_IDLE || c->loaded)
+		return ANSWER_WRONG_STATE;
+	if (axis >= INTERP_NAXES || !c->config.axis[axis].present ||
+	    !isfinite(mm) || mm == 0)
+		return ANSWER_BAD_ARGUMENT;
+	if (limit_bars(&c->limit, axis, mm < 0 ? -1 : 1))
+		return ANSWER_AT_LIMIT;
+	if (!reaches(c, axis, mm))
+		return ANSWER_BEYOND;
+	manual_begin(c, axis);
+	c->manual.goal_mm = mm;
+	return ANSWER_DONE;
+}
+
+int manual_home(struct cycle *c, uint32_t axis)
+{
+	uint32_t todo = 0;
+
+	if (c->state != STATE_IDLE || c->loaded)
+		return ANSWER_WRONG_STATE;
+	for (uint32_t i = 0; i < INTERP_NAXES; i++)
+		if ((axis == i || axis == MANUAL_ALL_AXES) &&
+		    c->config.axis[i].present &&
+		    c->config.axis[i].method != HOME_NONE)
+			todo |= 1u << i;
+	if (todo == 0)
+		return ANSWER_BAD_ARGUMENT;
+	if (c->limit.on & todo)
+		return ANSWER_AT_LIMIT;
+	c->manual.todo = todo;
+	c->manual.homed &= ~todo;
+	c->manual.halt = false;
+	c->manual.phase = HOME_BEGIN;
+	mover_set(&c->manual.mover, 0);
+	return ANSWER_DONE;
+}
+
+/* A place nobody knows is looked for at the pace of homing. */
+static double jog_mm_s(const struct cycle *c)
+{
+	const struct manual_axis *a = manual_axis(c);
+
+	if ((manual_unhomed(c) | c->limit.on) >> c->manual.axis & 1)
+		return fmin(a->jog_mm_s, a->home_slow_mm_s);
+	return a->jog_mm_s;
+}
+
+static bool jog_go(struct cycle *c)
+{
+	struct manual *h = &c->manual;
+	const struct mover_limits l = manual_limits(c, jog_mm_s(c));
+
+	if (c->sensed.contact && h->free_seen && !c->config.dry_run) {
+		cycle_fail(c, FAULT_CONTACT);
+		return false;
+	}
+	h->free_seen = h->free_seen || c->sensed.is_open;
+	manual_move(c, mover_step(&h->mover, &l, h->goal_mm - h->gone_mm));
+	return h->mover.v_mm_s == 0 && left_pulses(c) == 0 &&
+	       fabs(h->goal_mm - h->gone_mm) < LAW_ONTO_MM * 2;
+}
+
+bool manual_go(struct cycle *c, const struct io_inputs *in)
+{
+	struct manual *h = &c->manual;
+	struct mover_limits l;
+
+	if (!h->halt)
+		return c->state == STATE_HOME ? home_go(c, in) : jog_go(c);
+	if (h->mover.v_mm_s == 0)
+		return true;
+	l = manual_limits(c, INFINITY);
+	manual_move(c, mover_stop(&h->mover, &l));
+	return h->mover.v_mm_s == 0;
+}

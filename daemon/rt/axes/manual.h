@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * manual.h - one axis moved by an operator, without a program: jogged or homed
+ *
+ * Only from idle.  The move is an S-curve with the axis's own limits; a hold
+ * or a stop brakes it, a fault ends it at once.
+ *
+ * Homing, an axis at a time, by method (docs/homing.md):
+ *
+ *	switch		fast toward the switch, off it and home_back_mm
+ *			further, slowly on it again: that edge is home_at_mm
+ *	switch-index	the same, and slowly on to the index mark: that mark is
+ *	absolute	no motion: the drive says where it stands
+ *	none		the place it starts at is good
+ *
+ * What home found is a shift between places and pulses (comp.h); no pulse is
+ * made by calling a place another.
+ *
+ * Units: mm of the axis, deg if rotary; pulses.  Sign: + as the axis.
+ * Threads: RT-safe.
+ */
+#ifndef RT_MANUAL_H
+#define RT_MANUAL_H
+
+#include "interp/axis.h"
+#include "path/mover.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define MANUAL_ALL_AXES	INTERP_NAXES	/* home: each that has a method */
+
+enum home_method {
+	HOME_NONE,
+	HOME_SWITCH,
+	HOME_SWITCH_INDEX,
+	HOME_ABSOLUTE,
+	HOME_NMETHODS
+};
+
+enum home_phase {
+	HOME_BEGIN,
+	HOME_SEEK,			/* fast, toward the switch */
+	HOME_BRAKE,			/* on it */
+	HOME_LEAVE,			/* back, until it is off */
+	HOME_CLEAR,			/* ... and home_back_mm further */
+	HOME_ONTO,			/* slowly, on it again */
+	HOME_INDEX,			/* slowly, on to the index mark */
+	HOME_STAND,			/* brake, and call the place */
+	HOME_NPHASES
+};
+
+struct manual_axis {
+	bool present;
+	double pulse_mm;
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
+	double jog_mm_s;
+	enum home_method method;
+	int home_toward;		/* +1, -1 */
+	double home_fast_mm_s, home_slow_mm_s;
+	double home_at_mm;		/* the place of the switch */
+	double home_back_mm;
+	uint32_t home_order;		/* lowest first */
+};
+
+struct manual {
+	uint32_t axis;
+	int32_t from;			/* its place when the move began */
+	double gone_mm;			/* since */
+	double goal_mm;			/* jog: to go, from there */
+	bool halt;			/* brake, then idle */
+	bool free_seen;			/* jog: the gap has been open */
+	struct mover mover;
+	uint32_t todo;			/* home: bit per axis still to do */
+	enum home_phase phase;
+	double phase_mm;		/* gone_mm where the phase began */
+	int32_t met;			/* pulses at the switch or mark */
+	uint32_t homed;			/* bit per axis */
+	bool used;			/* places and programs may disagree */
+};
+
+struct cycle;
+struct io_inputs;
+
+/** manual_unhomed() - bits of the axes that have a method and were not homed. */
+uint32_t manual_unhomed(const struct cycle *c);
+
+/**
+ * manual_jog() - begin to move axis @axis by @mm.
+ * Return: enum cycle_answer; the state is the caller's.
+ */
+int manual_jog(struct cycle *c, uint32_t axis, double mm);
+
+/** manual_home() - begin to home @axis, or MANUAL_ALL_AXES. */
+int manual_home(struct cycle *c, uint32_t axis);
+
+/** manual_go() - one period of what was begun. Return: true once it is over. */
+bool manual_go(struct cycle *c, const struct io_inputs *in);
+
+/* home.c, for manual.c: one period of homing. */
+bool home_go(struct cycle *c, const struct io_inputs *in);
+
+/* manual.c, for home.c. */
+void manual_begin(struct cycle *c, uint32_t axis);
+const struct manual_axis *manual_axis(const struct cycle *c);
+void manual_move(struct cycle *c, double ds_mm);
+struct mover_limits manual_limits(const struct cycle *c, double v_mm_s);
+
+#endif /* RT_MANUAL_H */

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * arcing.c - the ladder against arcs
+ */
+#include "gap/arcing.h"
+#include "path/walk.h"
+
+#include <math.h>
+
+#define LASTING_MEANS	5		/* in a row after a retract: a fault */
+
+static double own_off_us(const struct cycle *c)
+{
+	return c->out.pulse.off_us > 0 ? c->out.pulse.off_us : c->gap.off_us;
+}
+
+/* Is there anything on it, on this machine? */
+static bool has(const struct cycle *c, uint32_t rung)
+{
+	if (rung <= ARCING_OFF_LAST)
+		return own_off_us(c) > 0 && c->gap.arcing_off_max > 1;
+	if (rung == ARCING_JUMP)
+		return flush_jumps(c);
+	return true;
+}
+
+static void climb(struct cycle *c)
+{
+	struct arcing *a = &c->arcing;
+
+	c->totals.arcs++;
+	a->calm = 0;
+	if (a->rung == ARCING_RETRACT && ++a->lasting < LASTING_MEANS)
+		return;
+	a->lasting = 0;
+	do {
+		a->rung++;
+	} while (a->rung < ARCING_FAULT && !has(c, a->rung));
+	a->due = a->rung == ARCING_JUMP || a->rung == ARCING_RETRACT;
+	if (a->rung < ARCING_FAULT)
+		return;
+	a->rung = ARCING_NONE;
+	cycle_fail(c, FAULT_ARCING);
+}
+
+/* What a jump or a retract ended: should arcs come again, so will they. */
+static void end_deeds(struct cycle *c)
+{
+	struct arcing *a = &c->arcing;
+
+	a->lasting = 0;
+	a->due = false;
+	if (a->rung > ARCING_OFF_LAST)
+		a->rung = has(c, ARCING_OFF_LAST) ? ARCING_OFF_LAST : ARCING_NONE;
+}
+
+/* Slowly: arcs come back to the place they burned. */
+static void descend(struct cycle *c)
+{
+	struct arcing *a = &c->arcing;
+
+	a->calm += c->gap.arcing_cycles;
+	if (a->rung == ARCING_NONE || a->calm < c->gap.arcing_recover_cycles)
+		return;
+	a->calm = 0;
+	a->rung--;
+}
+
+void arcing_watch(struct cycle *c)
+{
+	struct arcing *a = &c->arcing;
+	double mean;
+
+	if (c->gap.arcing_share <= 0)
+		return;
+	a->sum += c->sensed.arc;
+	if (++a->cycles < c->gap.arcing_cycles)
+		return;
+	mean = a->sum / a->cycles;
+	a->sum = 0;
+	a->cycles = 0;
+	if (mean > c->gap.arcing_share) {
+		climb(c);
+		return;
+	}
+	end_deeds(c);
+	if (mean < c->gap.arcing_share / 2)
+		descend(c);
+	else
+		a->calm = 0;
+}
+
+bool arcing_jump_due(const struct cycle *c)
+{
+	return c->arcing.due && c->arcing.rung == ARCING_JUMP;
+}
+
+bool arcing_retract_due(const struct cycle *c)
+{
+	return c->arcing.due && c->arcing.rung == ARCING_RETRACT;
+}
+
+double arcing_retract_mm(const struct cycle *c)
+{
+	return arcing_retract_due(c) ? c->gap.arcing_retract_mm : 0;
+}
+
+/* The mean begins anew: power was off. */
+void arcing_met(struct cycle *c)
+{
+	c->arcing.due = false;
+	c->arcing.sum = 0;
+	c->arcing.cycles = 0;
+}
+
+double arcing_off_us(const struct cycle *c)
+{
+	const uint32_t step = c->arcing.rung < ARCING_OFF_LAST ? c->arcing.rung :
+							   ARCING_OFF_LAST;
+
+	if (step == ARCING_NONE || !has(c, ARCING_OFF_FIRST))
+		return c->out.pulse.off_us;
+	return own_off_us(c) *
+	       (1 + step * (c->gap.arcing_off_max - 1) / ARCING_OFF_LAST);
+}

@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * gap.c - sensing: from whatever the machine says to one reading
+ */
+#include "gap/gap.h"
+#include "path/laws.h"
+
+#include <math.h>
+#include <string.h>
+
+#define BELOW_MAX_V	5.0		/* an amplifier's offset, no more */
+#define ABOVE_MAX	1.5		/* of the ignition voltage */
+#define SHARES_SLACK	0.01		/* rounding of who counts */
+#define CHANGE_CYCLES	1000.0		/* mean of the noise, in cycles */
+#define MOVED_MM	0.001		/* less is not a gap that changed */
+
+double gap_window_high_v(const struct cycle *c)
+{
+	return c->gap.window_high_v > 0 ? c->gap.window_high_v :
+					  c->gap.servo_v;
+}
+
+/* Derived, it is halfway down to the short. */
+double gap_window_low_v(const struct cycle *c)
+{
+	const double high = gap_window_high_v(c);
+	const double low = c->gap.window_low_v > 0 ? c->gap.window_low_v :
+			   (c->gap.short_v + c->gap.servo_v) / 2;
+
+	return fmin(low, high);
+}
+
+/* -- Can it be true? --------------------------------------------------------- */
+
+static double ignition_v(const struct cycle *c)
+{
+	const double asked = c->out.pulse.ignition_v;
+
+	return asked > 0 ? asked : c->gap.ignition_v;
+}
+
+static bool voltage_ok(const struct cycle *c, const struct io_inputs *in)
+{
+	const double most = ABOVE_MAX * ignition_v(c);
+
+	return in->gap_valid && isfinite(in->gap_v) &&
+	       in->gap_v >= -BELOW_MAX_V && (most <= 0 || in->gap_v <= most);
+}
+
+static bool share_ok(double x)
+{
+	return x >= 0 && x <= 1 + SHARES_SLACK;
+}
+
+static bool shares_ok(const struct io_inputs *in)
+{
+	const struct io_shares *s = &in->shares;
+
+	return in->shares_valid && share_ok((double)s->open) &&
+	       share_ok((double)s->spark) && share_ok((double)s->arc) &&
+	       share_ok((double)s->shorted) &&
+	       (double)s->open + (double)s->spark + (double)s->arc +
+	       (double)s->shorted <= 1 + SHARES_SLACK;
+}
+
+/* -- The signal, by source --------------------------------------------------- */
+
+static void from_voltage(const struct cycle *c, const struct io_inputs *in,
+			 struct gap_reading *r)
+{
+	r->valid = voltage_ok(c, in);
+	r->v = r->valid ? fmax(in->gap_v, 0) : 0;
+	r->now_v = r->v;
+	r->contact = r->valid && r->v < c->gap.short_v;
+	r->is_open = r->valid && r->v > c->gap.open_v;
+}
+
+/* Where there were no pulses to count, a sensing voltage it is. */
+static void from_shares(const struct cycle *c, const struct io_inputs *in,
+			struct gap_reading *r)
+{
+	const struct cycle_gap_config *g = &c->gap;
+	const double open = (double)in->shares.open;
+	const double bad = (double)in->shares.shorted + (double)in->shares.arc;
+
+	from_voltage(c, in, r);
+	if (c->gap_past.powered < 2 && in->gap_valid)
+		return;
+	r->valid = shares_ok(in);
+	if (!r->valid)
+		return;
+	r->now_v = g->servo_v + g->share_v *
+		   (open - g->share_weight * bad - g->share_set);
+	r->contact = (double)in->shares.shorted >= g->share_short;
+	r->is_open = open >= g->share_open;
+}
+
+/* Three comparators: each a line that is 0 or 1. */
+static void from_lines(const struct cycle *c, const struct io_inputs *in,
+		       struct gap_reading *r)
+{
+	const struct io_shares *s = &in->shares;
+
+	r->contact = s->shorted > 0;
+	r->is_open = s->open > 0 && !r->contact && !(s->spark > 0);
+	r->now_v = r->contact ? 0 :
+		   r->is_open ? 2 * c->gap.open_v :
+		   (gap_window_low_v(c) + gap_window_high_v(c)) / 2;
+	/* Out of a retract, where nothing sparks, not shorted is clear. */
+	if (!c->out.power && !r->contact)
+		r->now_v = 2 * c->gap.open_v;
+	r->valid = in->shares_valid &&
+		   (s->open > 0 || s->spark > 0 || s->shorted > 0);
+	r->contact = r->contact && r->valid;
+	if (!in->shares_valid)
+		r->now_v = 0;
+	r->v = in->gap_valid && isfinite(in->gap_v) ? in->gap_v : r->now_v;
+}
+
+static void from_can(const struct cycle *c, const struct io_inputs *in,
+		     struct gap_reading *r)
+{
+	if (in->shares_valid)
+		from_shares(c, in, r);
+	else
+		from_voltage(c, in, r);
+}
+
+static void (*const sources[GAP_NSOURCES])(const struct cycle *,
+					   const struct io_inputs *,
+					   struct gap_reading *) = {
+	[GAP_SIM]	= from_voltage,
+	[GAP_VOLTAGE]	= from_voltage,
+	[GAP_SHARES]	= from_shares,
+	[GAP_LINES]	= from_lines,
+	[GAP_CAN]	= from_can,
+};
+
+/* -- Filters ----------------------------------------------------------------- */
+
+/* By insertion: it is 15 at the most. */
+static double median(const double *v, uint32_t n)
+{
+	double sorted[GAP_FILTER_MAX];
+
+	for (uint32_t i = 0; i < n; i++) {
+		uint32_t k = i;
+
+		for (; k > 0 && sorted[k - 1] > v[i]; k--)
+			sorted[k] = sorted[k - 1];
+		sorted[k] = v[i];
+	}
+	return n % 2 ? sorted[n / 2] :
+		       (sorted[n / 2 - 1] + sorted[n / 2]) / 2;
+}
+
+static double filtered(struct gap_memory *m, const struct cycle_gap_config *g,
+		       double v)
+{
+	const uint32_t n = g->filter_cycles < GAP_FILTER_MAX ?
+			   g->filter_cycles : GAP_FILTER_MAX;
+
+	if (n < 2)
+		return v;
+	m->low_v += m->npast ? (v - m->low_v) / n : v - m->low_v;
+	m->past_v[m->next % n] = v;
+	m->next = (m->next + 1) % n;
+	m->npast = m->npast < n ? m->npast + 1 : n;
+	return g->filter == GAP_FIRST_ORDER ? m->low_v :
+					      median(m->past_v, m->npast);
+}
+
+/* Power makes another signal of the same gap: what was before says nothing. */
+static void forget(struct gap_memory *m, bool power)
+{
+	const bool same = (m->powered > 0) == power;
+
+	m->powered = power ? m->powered + 1 : 0;
+	if (same)
+		return;
+	m->npast = m->next = 0;
+	m->arcing_cycles = 0;
+	m->same_cycles = 0;
+}
+
+/* -- Arcs -------------------------------------------------------------------- */
+
+/*
+ * A spark's voltage scatters with its ignition delay; an arc has none and
+ * stands in the plateau.  Only for a machine that counts no pulses.
+ */
+static double arcing_by_voltage(const struct cycle *c, struct gap_memory *m,
+			     double v)
+{
+	const double n = fmax(1, c->gap.arcing_cycles);
+	const double d = v - m->arcing_mean_v;
+
+	if (!c->out.power || c->gap.arcing_sigma_v <= 0)
+		return 0;
+	if (m->arcing_cycles++ == 0) {
+		m->arcing_mean_v = v;
+		m->arcing_var_v2 = 0;
+		return 0;
+	}
+	m->arcing_mean_v += d / n;
+	m->arcing_var_v2 += (d * d - m->arcing_var_v2) / n;
+	return (double)m->arcing_cycles > n && m->arcing_mean_v >= c->gap.short_v &&
+	       m->arcing_mean_v <= gap_window_high_v(c) &&
+	       m->arcing_var_v2 < c->gap.arcing_sigma_v * c->gap.arcing_sigma_v ? 1 : 0;
+}
+
+/* -- Is it alive? ------------------------------------------------------------ */
+
+/* Lines stand still by nature, and so do the shares of an open gap. */
+static bool may_stand(const struct cycle *c, const struct gap_reading *r)
+{
+	return c->gap.source == GAP_LINES ||
+	       (r->is_open && (c->gap.source == GAP_SHARES ||
+			       c->gap.source == GAP_CAN));
+}
+
+static bool suspect(const struct cycle *c, struct gap_memory *m,
+		    const struct gap_reading *r)
+{
+	const double place = law_place(c);
+
+	m->change_v += (fabs(r->now_v - m->before_v) - m->change_v) /
+		       CHANGE_CYCLES;
+	if (r->now_v != m->before_v || !c->out.power || may_stand(c, r)) {
+		m->same_cycles = 0;
+		m->same_mm = place;
+	}
+	m->before_v = r->now_v;
+	m->same_cycles++;
+	if (c->gap.noise_limit_v > 0 && m->change_v > c->gap.noise_limit_v)
+		return true;
+	return c->gap.stuck_cycles && m->same_cycles > c->gap.stuck_cycles &&
+	       fabs(place - m->same_mm) >= MOVED_MM;
+}
+
+void gap_forget(struct cycle *c)
+{
+	c->gap_past = (struct gap_memory) { .powered = 0 };
+}
+
+void gap_sense(struct cycle *c, const struct io_inputs *in)
+{
+	struct gap_memory *m = &c->gap_past;
+	const bool before = c->sensed.contact;
+	struct gap_reading r = { .valid = false };
+
+	forget(m, c->out.power);
+	sources[c->gap.source](c, in, &r);
+	r.arc = shares_ok(in) ? (double)in->shares.arc :
+				arcing_by_voltage(c, m, r.now_v);
+	m->contacts = r.contact ? m->contacts + 1 : 0;
+	r.is_short = r.contact && m->contacts >= c->gap.short_cycles;
+	r.signal_v = filtered(m, &c->gap, r.now_v);
+	r.suspect = c->loaded && suspect(c, m, &r);
+	if (r.contact && !before && state_duty[c->state].power)
+		c->totals.shorts++;
+	c->sensed = r;
+	c->gap_v = r.v;
+}

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * retract.c - the bounds of a retract
+ */
+#include "gap/retract.h"
+#include "path/laws.h"
+#include "path/walk.h"
+
+#include <math.h>
+
+double retract_limit_mm(const struct cycle *c)
+{
+	return c->gap.process == PROCESS_WIRE ? c->gap.wire_retract_mm :
+						c->gap.retract_limit_mm;
+}
+
+double retract_motion_mm(const struct cycle *c)
+{
+	/* Beside the path nothing has begun but the way out. */
+	return escape_is_out(&c->escape) ? cycle_outer_mm(c) :
+	       fmax(c->back_mm, c->cursor.seg.s_mm);
+}
+
+static double floor_of(const struct cycle *c)
+{
+	const double outer = cycle_outer_mm(c);
+
+	switch (c->gap.retract_to) {
+	case RETRACT_START:
+		return outer;
+	case RETRACT_MOTION:
+		return fmax(outer, retract_motion_mm(c));
+	default:
+		return fmax(outer, law_place(c) - retract_limit_mm(c));
+	}
+}
+
+/* In a row are those between which the cut got no deeper. */
+static void count(struct cycle *c)
+{
+	struct retract *r = &c->retract;
+
+	if (r->in_row == 0 || c->far_mm > r->far_mm + c->gap.progress_mm) {
+		r->in_row = 0;
+		r->far_mm = c->far_mm;
+	}
+	r->in_row++;
+}
+
+void retract_begin(struct cycle *c)
+{
+	struct retract *r = &c->retract;
+
+	c->totals.retracts++;
+	r->from_mm = law_place(c);
+	r->floor_mm = floor_of(c);
+	r->least_mm = arcing_retract_mm(c);
+	r->waited = 0;
+	r->cycles = 0;
+	count(c);
+}
+
+static double back_mm(const struct cycle *c)
+{
+	return c->retract.from_mm - law_place(c);
+}
+
+static bool at_floor(const struct cycle *c)
+{
+	return c->at_start ||
+	       law_place(c) <= c->retract.floor_mm + LAW_ONTO_MM;
+}
+
+bool retract_is_clear(const struct cycle *c)
+{
+	return c->sensed.signal_v >= c->gap.servo_v &&
+	       (back_mm(c) >= c->retract.least_mm || at_floor(c));
+}
+
+/* The distance was used up, or there is no way left to go? */
+static enum cycle_fault blame(const struct cycle *c)
+{
+	return c->at_start || c->gap.retract_to != RETRACT_LIMIT ||
+	       law_place(c) <= cycle_outer_mm(c) + LAW_ONTO_MM ?
+	       FAULT_RETRACT_AT_START : FAULT_SHORT_NOT_CLEARED;
+}
+
+void retract_watch(struct cycle *c)
+{
+	const struct cycle_gap_config *g = &c->gap;
+	struct retract *r = &c->retract;
+
+	if (c->state != STATE_RETRACT)
+		return;
+	c->totals.retract_mm_max = fmax(c->totals.retract_mm_max, back_mm(c));
+	if (g->abort_count && r->in_row >= g->abort_count) {
+		cycle_fail(c, FAULT_RETRACT_COUNT);
+		return;
+	}
+	if (g->retract_max_cycles && ++r->cycles > g->retract_max_cycles) {
+		cycle_fail(c, FAULT_RETRACT_TIME);
+		return;
+	}
+	if (!r->waited && !at_floor(c))
+		return;
+	/* As far back as it may: stand, and give the short a little time. */
+	if (r->waited++ >= g->retract_wait_cycles)
+		cycle_fail(c, blame(c));
+}

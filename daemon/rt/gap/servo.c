@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * servo.c - the gap servo: feed from the state of the gap
+ */
+#include "gap/servo.h"
+#include "path/laws.h"
+
+#include <math.h>
+
+#define FADE_S		0.1		/* of a change of gains */
+
+double servo_dv_mm_s(const struct cycle *c)
+{
+	return c->gap.feed_a_mm_s2 > 0 ?
+	       c->gap.feed_a_mm_s2 * law_period_s(c) : INFINITY;
+}
+
+static double seg_limit(const struct cycle *c, double v_mm_s)
+{
+	return fmin(v_mm_s, law_seg_speed(&c->cursor.seg));
+}
+
+/* At a BEGIN or an action there is no segment's own speed yet. */
+static double cut_limit(const struct cycle *c, double v_mm_s)
+{
+	return c->cursor.seg.kind < INTERP_BEGIN ? seg_limit(c, v_mm_s) :
+						   v_mm_s;
+}
+
+/* As fast as the axes can change their speed; what is usual, in a cycle. */
+static double go_toward(struct cycle *c, double v_mm_s)
+{
+	const double dv = servo_dv_mm_s(c), was = c->mover.v_mm_s;
+
+	return law_go_at(c, fmin(fmax(v_mm_s, was - dv), was + dv));
+}
+
+/* The speed that, after a cycle of it, can be braked in what is left. */
+static double stop_within(const struct cycle *c, double left_mm)
+{
+	const double dv = servo_dv_mm_s(c);
+
+	return isinf(dv) ? INFINITY :
+	       sqrt(dv * dv + 2 * c->gap.feed_a_mm_s2 * left_mm) - dv;
+}
+
+/* Back, onto a place and not beyond. */
+static double go_back(struct cycle *c, double v_mm_s, double floor_mm)
+{
+	const double left = law_place(c) - floor_mm;
+
+	if (left <= LAW_ONTO_MM)
+		return fmax(go_toward(c, 0), 0);
+	return fmax(go_toward(c, -fmin(v_mm_s, stop_within(c, left))),
+		    -left - LAW_ONTO_MM);
+}
+
+/* -- Approach ---------------------------------------------------------------- */
+
+/*
+ * Open, at the approach speed; with signs of sparks no faster than the servo
+ * would feed; at the window it stands.  A sign is taken as read, not filtered.
+ */
+double law_approach(struct cycle *c)
+{
+	const struct cycle_gap_config *g = &c->gap;
+	const double v = fmin(c->sensed.now_v, c->sensed.signal_v);
+	const double feed = g->gain_mm_s_v * (v - gap_window_high_v(c));
+
+	if (c->sensed.contact || feed < 0)
+		return go_toward(c, 0);
+	return go_toward(c, cut_limit(c, c->sensed.is_open ? g->approach_mm_s :
+					 fmin(feed, g->approach_mm_s)));
+}
+
+/* -- Erode ------------------------------------------------------------------- */
+
+void servo_reset(struct cycle *c)
+{
+	c->servo = (struct servo) { .integral_mm_s = 0 };
+}
+
+static double forward(const struct servo_law *l, double v)
+{
+	return l->gain_mm_s_v * (v - l->high_v);
+}
+
+/* A condition or `set` changed the values: the feed goes on from where it is. */
+static void adopt(struct cycle *c, const struct servo_law *now, double v)
+{
+	struct servo *s = &c->servo;
+	const struct servo_law *was = &s->law;
+
+	if (was->gain_mm_s_v == now->gain_mm_s_v && was->low_v == now->low_v &&
+	    was->high_v == now->high_v)
+		return;
+	if (was->gain_mm_s_v > 0)
+		s->fade_mm_s += fmax(0, forward(was, v)) -
+				fmax(0, forward(now, v));
+	s->law = *now;
+}
+
+static void integrate(struct cycle *c, double error_mm_s, double limit_mm_s)
+{
+	struct servo *s = &c->servo;
+	const double reset = c->gap.integral_s;
+
+	if (reset <= 0) {
+		s->fade_mm_s += s->integral_mm_s;
+		s->integral_mm_s = 0;
+		return;
+	}
+	/* Asked and not walked: an action in front, or the path's end. */
+	if (s->asked_mm_s > 0 && c->feed_mm_s <= 0 && error_mm_s > 0)
+		error_mm_s = 0;
+	/* At its limit already. */
+	if (error_mm_s > 0 && error_mm_s + s->integral_mm_s > limit_mm_s)
+		error_mm_s = 0;
+	s->integral_mm_s += error_mm_s * law_period_s(c) / reset;
+	s->integral_mm_s = fmin(fmax(s->integral_mm_s, 0), limit_mm_s);
+}
+
+static double erode_forward(struct cycle *c, double error_mm_s)
+{
+	struct servo *s = &c->servo;
+	const double limit = cut_limit(c, c->gap.feed_max_mm_s);
+
+	integrate(c, error_mm_s, limit);
+	s->asked_mm_s = fmin(fmax(error_mm_s + s->integral_mm_s + s->fade_mm_s,
+				  0), limit);
+	if (c->sensed.contact)
+		s->asked_mm_s = 0;
+	return go_toward(c, s->asked_mm_s);
+}
+
+static double erode_back(struct cycle *c, double error_mm_s)
+{
+	c->servo.asked_mm_s = 0;
+	integrate(c, error_mm_s, cut_limit(c, c->gap.feed_max_mm_s));
+	return go_back(c, fmin(-error_mm_s, c->gap.creep_mm_s),
+		       c->far_mm - retract_limit_mm(c));
+}
+
+double law_erode(struct cycle *c)
+{
+	const struct servo_law l = {
+		c->gap.gain_mm_s_v, gap_window_low_v(c), gap_window_high_v(c)
+	};
+	const double v = c->sensed.signal_v;
+
+	c->servo.fade_mm_s *= fmax(0, 1 - law_period_s(c) / FADE_S);
+	adopt(c, &l, v);
+	if (v > l.high_v)
+		return erode_forward(c, forward(&l, v));
+	if (v < l.low_v)
+		return erode_back(c, l.gain_mm_s_v * (v - l.low_v));
+	c->servo.asked_mm_s = 0;
+	return go_toward(c, 0);
+}
+
+/* -- Retract ----------------------------------------------------------------- */
+
+double law_retract(struct cycle *c)
+{
+	return go_back(c, c->gap.retract_mm_s, c->retract.floor_mm);
+}

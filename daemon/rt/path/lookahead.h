@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * lookahead.h - can what lies ahead still be met?
+ *
+ * From where a plan leads to within the cycle: what comes on the path, forward
+ * or back, as far as the braking distance, and the one place missed by most.
+ *
+ * "Way" and "left" are in the direction of the move, and so is the sign of
+ * every speed.  Private to ahead.c and lookahead.c.  Threads: RT-safe.
+ */
+#ifndef RT_LOOKAHEAD_H
+#define RT_LOOKAHEAD_H
+
+#include "path/ahead.h"
+
+/* A slow place is planned for so much before it, and met so much before it;
+ * a stand is met but for a rounding. */
+#define LOOKAHEAD_EARLY_MM	2e-9
+#define LOOKAHEAD_MARGIN_MM	1e-9
+
+/* A place ahead, and how fast it may be come to. */
+struct lookahead_place {
+	double left_mm, v_mm_s;
+	bool guessed;			/* it may be faster; nobody looked */
+};
+
+struct lookahead {
+	const struct cycle *c;
+	const struct ahead_move *w;
+	struct interp_scurve_limits l;	/* in the direction of the move */
+	struct interp_scurve_state s;	/* after the cycle */
+	double let_go_mm_s;		/* without acceleration, after that */
+	double plan_mm_s;		/* of the plan's place; INFINITY: none */
+	struct interp_scurve brake;	/* to a stand at once, if there is one */
+	double need_mm;			/* nothing beyond can be missed */
+	double scale;			/* of ceilings: the override, up to 1 */
+	bool guessing;			/* what follows was not looked at */
+	/* Found: */
+	double room_mm;			/* what is met is met by so much */
+	double missed_mm;		/* what is missed by most, if > 0: */
+	struct lookahead_place worst;
+};
+
+/* What the operator's override makes of this move's speeds. */
+static inline double lookahead_override(const struct cycle *c,
+				   const struct ahead_move *w)
+{
+	return w->positions ? c->override : 1;
+}
+
+/**
+ * lookahead_toward() - the segment it is on or, from its very end, about to be on.
+ * NULL: none.
+ */
+const struct interp_seg *lookahead_toward(const struct cycle *c, int toward);
+
+/** lookahead_from() - fill in what is found, from @s, where the plan leads to. */
+void lookahead_from(struct lookahead *k, struct interp_scurve_state s);
+
+#endif /* RT_LOOKAHEAD_H */

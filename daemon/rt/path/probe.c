@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * probe.c - feel for the work; end segments where the machine says
+ */
+#include "path/probe.h"
+#include "path/laws.h"
+#include "path/walk.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Kept before a segment's end: its last point is met, what follows is not. */
+#define SHY_MM		(2 * LAW_ONTO_MM)
+
+/* -- Sensing ----------------------------------------------------------------- */
+
+void probe_sense(struct cycle *c, const struct io_inputs *in)
+{
+	c->probe.contact = c->sensed.contact || in->contact;
+}
+
+/* Lines say nothing where nothing sparks, but must be read. */
+bool probe_is_blind(const struct cycle *c, const struct io_inputs *in)
+{
+	if (c->state != STATE_PROBE || c->config.dry_run || in->contact)
+		return false;
+	return c->gap.source == GAP_LINES ? !in->shares_valid :
+					    !c->sensed.valid;
+}
+
+/* -- Places ------------------------------------------------------------------- */
+
+/* The one it is on or, from the stop in front of it, about to be on. */
+static uint32_t index_of(const struct cycle *c)
+{
+	const struct interp_cursor *at = &c->cursor;
+
+	return at->seg.flags & INTERP_SEG_SENSED &&
+	       at->s_mm < at->seg.length_mm - LAW_ONTO_MM ? at->index :
+							    at->index + 1;
+}
+
+static const struct interp_seg *segment(const struct cycle *c)
+{
+	return &c->cursor.p.segs[index_of(c)];
+}
+
+static double left_mm(const struct cycle *c)
+{
+	const struct interp_seg *s = segment(c);
+
+	return s->s_mm + s->length_mm - SHY_MM - law_place(c);
+}
+
+bool probe_in_travel(const struct cycle *c, int axis, int64_t pos)
+{
+	pos += c->probe.shift[axis];
+	return pos >= c->config.travel_min[axis] &&
+	       pos <= c->config.travel_max[axis];
+}
+
+void probe_target(struct cycle *c, const int32_t pos[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		c->out.target[i] = pos[i] + c->probe.shift[i];
+}
+
+/* Along which axis, and which way: 0 if along none. */
+static int axis_of(const struct cycle *c, int *ret_sign)
+{
+	const struct interp_program_head *h = c->cursor.p.head;
+	const int64_t *from = c->cursor.p.nodes +
+			      (uint64_t)index_of(c) * h->naxes;
+
+	*ret_sign = 0;
+	for (uint32_t j = 0; j < h->naxes; j++) {
+		if (from[j] == from[j + h->naxes])
+			continue;
+		*ret_sign = from[j] < from[j + h->naxes] ? 1 : -1;
+		return h->column[j];
+	}
+	return 0;
+}
+
+/* -- The end ------------------------------------------------------------------- */
+
+static void remember(struct cycle *c, int axis, int32_t pos)
+{
+	struct probe *t = &c->probe;
+
+	t->found[1][axis] = t->found[0][axis];
+	t->found[0][axis] = pos;
+	t->twice |= t->once & 1u << axis;
+	t->once |= 1u << axis;
+}
+
+/* What is left of the segment goes into the shift. */
+static void finish(struct cycle *c)
+{
+	struct probe *t = &c->probe;
+	int32_t was[INTERP_NAXES];
+	int sign;
+	const int axis = axis_of(c, &sign);
+
+	memcpy(was, c->cursor.pos, sizeof(was));
+	mover_set(&c->mover, 0);
+	if (segment(c)->flags & INTERP_SEG_TOUCH && !c->config.dry_run)
+		remember(c, axis, was[axis] + t->shift[axis]);
+	if (interp_cursor_seek_end(&c->cursor, index_of(c)) < 0) {
+		cycle_fail(c, FAULT_PROGRAM);
+		return;
+	}
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const int64_t shift = (int64_t)t->shift[i] + was[i] -
+				      c->cursor.pos[i];
+
+		if (llabs(shift) > INTERP_PULSES_MAX) {
+			cycle_fail(c, FAULT_PROGRAM);
+			return;
+		}
+		t->shift[i] = (int32_t)shift;
+	}
+	c->far_mm = c->back_mm = law_place(c);
+	c->out.path++;
+	t->phase = PROBE_DONE;
+}
+
+/* -- To a place known beforehand ------------------------------------------------- */
+
+/* The way to it, mm; below 0 if it lies behind. */
+static double way_mm(const struct cycle *c)
+{
+	const struct probe *t = &c->probe;
+	int sign;
+	const int axis = axis_of(c, &sign);
+	const int64_t at = (int64_t)c->cursor.pos[axis] + t->shift[axis];
+	int64_t to;
+
+	if (segment(c)->flags & INTERP_SEG_LIMIT)
+		to = sign > 0 ? c->config.travel_max[axis] - 1 :
+				c->config.travel_min[axis] + 1;
+	else if (t->twice & 1u << axis)
+		to = ((int64_t)t->found[0][axis] + t->found[1][axis]) / 2;
+	else
+		return NAN;
+	return (double)(sign * (to - at)) * c->cursor.p.head->pulse_mm[axis];
+}
+
+static void begin_going(struct cycle *c)
+{
+	const double way = way_mm(c);
+
+	if (!(way <= left_mm(c))) {
+		cycle_fail(c, FAULT_PROGRAM);
+		return;
+	}
+	c->probe.phase = PROBE_GO;
+	c->probe.to_mm = law_place(c) + fmax(way, 0);
+}
+
+static bool is_there(const struct cycle *c)
+{
+	return c->mover.v_mm_s == 0 &&
+	       fabs(c->probe.to_mm - law_place(c)) < 2 * LAW_ONTO_MM;
+}
+
+static double go_to(struct cycle *c, double v_max_mm_s)
+{
+	const struct mover_limits l = law_travel_limits(c, v_max_mm_s);
+
+	return mover_step(&c->mover, &l, c->probe.to_mm - law_place(c));
+}
+
+static double go(struct cycle *c)
+{
+	const double by = fmin(c->override, 1);
+	const struct mover_limits l = law_travel_limits(c, 1);
+
+	if (is_there(c)) {
+		finish(c);
+		return 0;
+	}
+	if (c->probe.contact && c->probe.open_seen) {
+		cycle_fail(c, FAULT_CONTACT);
+		return 0;
+	}
+	c->probe.open_seen = c->probe.open_seen || !c->probe.contact;
+	return by > 0 ? go_to(c, by * law_seg_speed(segment(c))) :
+			mover_stop(&c->mover, &l);
+}
+
+/* -- Feeling --------------------------------------------------------------------- */
+
+void probe_begin(struct cycle *c)
+{
+	struct probe *t = &c->probe;
+
+	mover_set(&c->mover, 0);
+	t->phase = PROBE_SETTLE;
+	t->settled = 0;
+	t->open_seen = false;
+}
+
+static double feed_mm_s(const struct cycle *c)
+{
+	return fmin(c->config.probe.feed_mm_s, law_seg_speed(segment(c)));
+}
+
+static double forward(struct cycle *c, double v_mm_s)
+{
+	const double v = fmin(v_mm_s, c->mover.v_mm_s + servo_dv_mm_s(c));
+	const double left = left_mm(c);
+
+	if (left > 0)
+		return law_go_at(c, fmin(v, left / law_period_s(c)));
+	cycle_fail(c, FAULT_NO_CONTACT);
+	return 0;
+}
+
+static void begin_back(struct cycle *c)
+{
+	c->probe.to_mm = fmax(segment(c)->s_mm,
+			      law_place(c) - c->config.probe.back_mm);
+	c->probe.phase = PROBE_BACK;
+}
+
+/* Contact to begin with is none that was felt for; but a hold may end there. */
+static double settle(struct cycle *c)
+{
+	const struct interp_seg *s = segment(c);
+
+	mover_set(&c->mover, 0);
+	if (c->probe.settled++ < c->config.probe.settle_cycles)
+		return 0;
+	if (!(s->flags & INTERP_SEG_TOUCH)) {
+		begin_going(c);
+		return 0;
+	}
+	if (!c->probe.contact) {
+		c->probe.phase = PROBE_FAST;
+		return 0;
+	}
+	c->probe.met_mm = law_place(c);
+	if (law_place(c) - s->s_mm < s->length_mm / s->ticks)
+		cycle_fail(c, FAULT_CONTACT);
+	else
+		begin_back(c);
+	return 0;
+}
+
+static double stop(struct cycle *c)
+{
+	const double v = fmax(0, c->mover.v_mm_s - servo_dv_mm_s(c));
+
+	if (v > 0 && left_mm(c) > 0)
+		return law_go_at(c, fmin(v, left_mm(c) / law_period_s(c)));
+	mover_set(&c->mover, 0);
+	begin_back(c);
+	if (c->config.probe.back_mm <= 0)
+		finish(c);
+	return 0;
+}
+
+static double fast(struct cycle *c)
+{
+	if (!c->probe.contact)
+		return forward(c, feed_mm_s(c));
+	c->probe.met_mm = law_place(c);
+	c->probe.phase = PROBE_STOP;
+	return stop(c);
+}
+
+/* What does not open is no contact with the work. */
+static double back(struct cycle *c)
+{
+	if (!is_there(c))
+		return go_to(c, feed_mm_s(c));
+	if (c->probe.contact)
+		cycle_fail(c, FAULT_CONTACT);
+	else
+		c->probe.phase = PROBE_FINE;
+	return 0;
+}
+
+/* Well beyond the first contact that one was none. */
+static double fine(struct cycle *c)
+{
+	if (c->probe.contact) {
+		finish(c);
+		return 0;
+	}
+	if (law_place(c) > c->probe.met_mm + c->config.probe.back_mm)
+		c->probe.phase = PROBE_FAST;
+	return forward(c, fmin(c->config.probe.fine_mm_s, feed_mm_s(c)));
+}
+
+static double none(struct cycle *c)
+{
+	return law_go_at(c, 0);
+}
+
+double probe_distance(struct cycle *c)
+{
+	static double (*const laws[PROBE_NPHASES])(struct cycle *) = {
+		[PROBE_SETTLE]	= settle,
+		[PROBE_FAST]	= fast,
+		[PROBE_STOP]	= stop,
+		[PROBE_BACK]	= back,
+		[PROBE_FINE]	= fine,
+		[PROBE_GO]	= go,
+		[PROBE_DONE]	= none,
+	};
+
+	if (c->config.dry_run) {
+		finish(c);
+		return 0;
+	}
+	return laws[c->probe.phase](c);
+}

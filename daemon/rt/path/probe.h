@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * probe.h - segments that end where the machine says
+ *
+ * A touch feels for the work with the power off: fast to the first contact,
+ * a little back, slowly to the contact that counts.  A half ends in the middle
+ * between the last two contacts along its axis, a limit short of the travel's
+ * end.
+ *
+ * What is left of such a segment is not walked.  The cursor goes to its end,
+ * the axes stay, and `shift` is what lies between the two from then on:
+ *
+ *	out.target = cursor.pos + shift
+ *
+ * So a place in the program counts from the contact, whatever the machine
+ * knew of it before.  No way back leads over it.  In a dry run, where there
+ * is nothing to feel, they end where they begin.
+ *
+ * Units: pulses where not in the name.
+ * Threads: RT-safe.
+ */
+#ifndef RT_PROBE_H
+#define RT_PROBE_H
+
+#include "interp/cursor.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct probe_config {
+	double feed_mm_s;		/* to the first contact */
+	double fine_mm_s;		/* to the one that counts */
+	double back_mm;			/* between them; 0: the first counts */
+	uint64_t settle_cycles;		/* of the sensing voltage, at first */
+};
+
+enum probe_phase {
+	PROBE_SETTLE,
+	PROBE_FAST,
+	PROBE_STOP,			/* in contact, not standing yet */
+	PROBE_BACK,
+	PROBE_FINE,
+	PROBE_GO,			/* to a place known beforehand */
+	PROBE_DONE,
+	PROBE_NPHASES
+};
+
+struct probe {
+	enum probe_phase phase;
+	bool contact;			/* in this cycle */
+	bool open_seen;			/* no contact, since it began to go */
+	uint64_t settled;		/* cycles */
+	double met_mm, to_mm;		/* places on the path */
+	/* Of the whole job: */
+	int32_t shift[INTERP_NAXES];
+	int32_t found[2][INTERP_NAXES];	/* contacts along each axis, where the
+					 * axis stood; the last one first */
+	uint32_t once, twice;		/* bit per axis: so many are filled */
+};
+
+struct cycle;
+struct io_inputs;
+
+/** probe_sense() - is there contact? */
+void probe_sense(struct cycle *c, const struct io_inputs *in);
+
+/** probe_is_blind() - feeling for the work, with nothing to feel by? */
+bool probe_is_blind(const struct cycle *c, const struct io_inputs *in);
+
+/** probe_begin() - the segment in front, or what is left of it. */
+void probe_begin(struct cycle *c);
+
+/** probe_distance() - the law of this state; ends the segment, too. */
+double probe_distance(struct cycle *c);
+
+/** probe_in_travel() - may the axis be where the program's @pos is? */
+bool probe_in_travel(const struct cycle *c, int axis, int64_t pos);
+
+/** probe_target() - send the axes to where the program's @pos is. */
+void probe_target(struct cycle *c, const int32_t pos[INTERP_NAXES]);
+
+#endif /* RT_PROBE_H */

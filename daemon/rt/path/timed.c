@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * timed.c - a part of the program that ends by time as well as by depth
+ */
+#include "path/timed.h"
+#include "path/walk.h"
+
+#include <string.h>
+
+void timed_begin(struct cycle *c, uint32_t end)
+{
+	const uint64_t ms = c->cursor.p.segs[end].arg;
+
+	if (c->cursor.p.segs[end].kind != INTERP_TIMED_END) {
+		cycle_fail(c, FAULT_PROGRAM);
+		return;
+	}
+	c->timed_end = end;
+	c->timed_left = ms * 1000000 / (uint64_t)c->config.period_ns;
+	c->timed_from_mm = interp_cursor_place_mm(&c->cursor);
+}
+
+void timed_count(struct cycle *c)
+{
+	if (c->timed_left > 0)
+		c->timed_left--;
+}
+
+void timed_over(struct cycle *c, uint32_t end)
+{
+	if (!c->config.dry_run)
+		c->back_mm = c->cursor.p.segs[end].s_mm;
+	if (end == c->timed_end)
+		c->timed_end = 0;
+}
+
+/* At tick 0 a seek takes no steps. */
+void timed_skip(struct cycle *c)
+{
+	struct interp_cursor end = c->cursor;
+
+	if (interp_cursor_seek(&end, c->timed_end, 0) < 0 ||
+	    memcmp(end.pos, c->cursor.pos, sizeof(end.pos)) != 0) {
+		cycle_fail(c, FAULT_PROGRAM);
+		return;
+	}
+	c->cursor = end;
+	c->action_done = c->timed_end > c->action_done ? c->timed_end :
+							 c->action_done;
+	c->far_mm = interp_cursor_place_mm(&end);
+	c->out.path++;
+	timed_over(c, c->timed_end);
+	c->dwelling = false;
+	c->leaving = false;
+}

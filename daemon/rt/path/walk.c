@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * walk.c - walk the cursor, count the pulses, meet the actions
+ *
+ * An action is done when the walk first comes to it; going back over it and
+ * forward again does not do it twice.
+ */
+#include "path/walk.h"
+#include "path/timed.h"
+
+#include <string.h>
+
+#define AT_END_MM	1e-9
+
+bool walk_is_cut(const struct cycle *c, const struct interp_seg *s)
+{
+	return !c->config.dry_run && !c->power_off &&
+	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+}
+
+bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s)
+{
+	return i > c->action_done ||
+	       (s->kind == INTERP_MCODE && mcode_again(c, i, s->arg));
+}
+
+enum walk_ahead walk_ahead(const struct cycle *c)
+{
+	const struct interp_cursor *at = &c->cursor;
+	const struct interp_seg *s = &at->seg;
+	const uint32_t next = at->index + 1;
+
+	if (at->s_mm >= s->length_mm - AT_END_MM && next < at->p.head->nsegs)
+		s = &at->p.segs[next];
+	if (s->kind >= INTERP_BEGIN)
+		return AHEAD_ACTION;
+	if (s->flags & INTERP_SEG_SENSED)
+		return AHEAD_PROBE;
+	return walk_is_cut(c, s) ? AHEAD_CUT : AHEAD_FREE;
+}
+
+static bool beyond(const struct cycle *c)
+{
+	const struct interp_cursor *at = &c->cursor;
+
+	for (uint32_t m = at->moved; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+
+		if (!probe_in_travel(c, i, at->pos[i]))
+			return true;
+	}
+	return false;
+}
+
+static void count_pulses(struct cycle *c)
+{
+	for (uint32_t m = c->cursor.moved; m; m &= m - 1)
+		c->totals.pulses[__builtin_ctz(m)]++;
+}
+
+/* The last point was one too far: back to the one before. */
+static void undo_point(struct cycle *c)
+{
+	interp_cursor_aim(&c->cursor, c->cursor.backward ? 1e9 : -1e9);
+	interp_cursor_step(&c->cursor);
+	interp_cursor_stop(&c->cursor);
+}
+
+/* -- Many points at once ----------------------------------------------------- */
+
+#define RUN	64
+
+/* So far inside its travel that no point of a run can be beyond it? */
+static bool well_inside(const struct cycle *c)
+{
+	const struct interp_cursor *at = &c->cursor;
+
+	for (uint32_t j = 0; j < at->p.head->naxes; j++) {
+		const uint8_t i = at->p.head->column[j];
+		if (!probe_in_travel(c, i, at->pos[i] - RUN) ||
+		    !probe_in_travel(c, i, at->pos[i] + RUN))
+			return false;
+	}
+	return true;
+}
+
+/* Bit i of @mask as a 1 in byte i. */
+static uint64_t spread(uint64_t mask)
+{
+	const uint64_t ones = UINT64_C(0x0101010101010101);
+	const uint64_t bits = mask * ones & UINT64_C(0x8040201008040201);
+
+	return (bits + 0x7f * ones) >> 7 & ones;
+}
+
+/* The pulses of at most 255 points: a byte for each axis holds its sum. */
+static void count_run(struct cycle *c, const uint16_t *pulses, uint32_t n)
+{
+	uint64_t sums = 0;
+
+	for (uint32_t k = 0; k < n; k++)
+		sums += spread(INTERP_PULSE_MOVED(pulses[k]));
+	for (int i = 0; i < INTERP_NAXES; i++, sums >>= 8)
+		c->totals.pulses[i] += sums & 0xff;
+}
+
+/* If nobody looks at each point; 0: go by a step. */
+static uint32_t run(struct cycle *c, uint32_t max)
+{
+	uint16_t pulses[RUN];
+	uint32_t n;
+
+	if (c->on_point || !well_inside(c))
+		return 0;
+	n = interp_cursor_run(&c->cursor, pulses, max < RUN ? max : RUN);
+	count_run(c, pulses, n);
+	return n;
+}
+
+/* -- One by one -------------------------------------------------------------- */
+
+/* @left: points that this cycle may still go. */
+static enum walk_result points(struct cycle *c, uint32_t *left)
+{
+	while (*left > 0) {
+		const uint32_t ran = run(c, *left);
+
+		*left -= ran > 0 ? ran : 1;
+		if (ran > 0)
+			continue;
+		switch (interp_cursor_step(&c->cursor)) {
+		case INTERP_MOVED:
+			if (beyond(c)) {
+				undo_point(c);
+				return WALK_BEYOND;
+			}
+			count_pulses(c);
+			if (c->on_point)
+				c->on_point(c->on_point_arg, c);
+			break;
+		case INTERP_ARRIVED:
+			return WALK_ON;
+		case INTERP_AT_ACTION:
+		case INTERP_AT_END:
+			return WALK_ACTION;
+		case INTERP_AT_START:
+			return WALK_START;
+		default:
+			return WALK_BROKEN;
+		}
+	}
+	/* No more points in this cycle: on as far as goes without one. */
+	if (!interp_cursor_slide(&c->cursor))
+		c->cut_short = true;
+	return WALK_ON;
+}
+
+/* What is done already is no reason to stop: the walk goes on behind it. */
+static bool pass_done(struct cycle *c)
+{
+	const uint32_t next = c->cursor.index + 1;
+	const struct interp_seg s = c->cursor.p.segs[next];
+
+	return !walk_is_due(c, next, &s) && s.kind != INTERP_END &&
+	       interp_cursor_pass(&c->cursor) != INTERP_BAD_SEGMENT;
+}
+
+enum walk_result walk_by(struct cycle *c, double ds_mm)
+{
+	const double from = interp_cursor_place_mm(&c->cursor);
+	uint32_t left = c->busy ? 0 : c->config.points_max;
+	enum walk_result r;
+	double to;
+
+	interp_cursor_aim(&c->cursor, ds_mm);
+	r = points(c, &left);
+	for (int n = 0; n < INTERP_CROSS_MAX && r == WALK_ACTION &&
+	     pass_done(c); n++) {
+		interp_cursor_aim(&c->cursor, from + ds_mm -
+					      interp_cursor_place_mm(&c->cursor));
+		r = points(c, &left);
+	}
+	if (r == WALK_BROKEN) {
+		c->feed_mm_s = 0;
+		return r;
+	}
+	probe_target(c, c->cursor.pos);
+	to = interp_cursor_place_mm(&c->cursor);
+	c->feed_mm_s = (to - from) * 1e9 / (double)c->config.period_ns;
+	if (to > c->far_mm)
+		c->far_mm = to;
+	return r;
+}
+
+/* -- Actions ------------------------------------------------------------------ */
+
+static bool dwell_over(struct cycle *c, const struct interp_seg *s)
+{
+	if (!c->dwelling) {
+		c->dwelling = true;
+		c->dwell_left = (uint64_t)s->arg * 1000000 /
+				(uint64_t)c->config.period_ns;
+	}
+	if (c->dwell_left > 0) {
+		c->dwell_left--;
+		return false;
+	}
+	c->dwelling = false;
+	return true;
+}
+
+static void switch_aux(struct cycle *c, uint32_t what)
+{
+	switch (what) {
+	case INTERP_AUX_POWER_OFF:
+		c->power_off = true;
+		break;
+	case INTERP_AUX_POWER_POSITIVE:
+	case INTERP_AUX_POWER_NEGATIVE:
+		c->power_off = false;
+		conditions_say(c, what == INTERP_AUX_POWER_NEGATIVE);
+		break;
+	case INTERP_AUX_PUMP_ON:
+	case INTERP_AUX_PUMP_OFF:
+		c->out.pump = what == INTERP_AUX_PUMP_ON;
+		break;
+	default:
+		break;
+	}
+}
+
+enum walk_deed walk_action(struct cycle *c)
+{
+	const uint32_t next = c->cursor.index + 1;
+	const struct interp_seg s = c->cursor.p.segs[next];
+	const bool first = next > c->action_done;
+
+	if (s.kind == INTERP_END)
+		return ACTION_END;
+	if (first && s.kind == INTERP_DWELL && !dwell_over(c, &s))
+		return ACTION_PASSED;
+	if (s.kind == INTERP_MCODE && !mcode_meet(c, next, s.arg))
+		return ACTION_WAIT;
+	if (first && s.kind == INTERP_AUX)
+		switch_aux(c, s.arg);
+	if (first && s.kind == INTERP_TIMED_END)
+		timed_over(c, next);
+	c->action_done = first ? next : c->action_done;
+	if (interp_cursor_pass(&c->cursor) == INTERP_BAD_SEGMENT) {
+		cycle_fail(c, FAULT_PROGRAM);
+		return ACTION_PASSED;
+	}
+	if (first && s.kind == INTERP_TIMED)
+		timed_begin(c, s.arg);
+	if (first && (s.kind == INTERP_STOP ||
+		      (s.kind == INTERP_OPTIONAL_STOP &&
+		       c->config.optional_stop)))
+		return ACTION_HOLD;
+	return ACTION_PASSED;
+}

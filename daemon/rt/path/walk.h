@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * walk.h - walk the cursor, count the pulses, meet the actions
+ *
+ * Threads: RT-safe.
+ */
+#ifndef RT_WALK_H
+#define RT_WALK_H
+
+#include "cycle.h"
+
+/* What the segment ahead is to the machine. */
+enum walk_ahead {
+	AHEAD_ACTION,			/* neither: something done on the spot */
+	AHEAD_FREE,			/* positioned */
+	AHEAD_CUT,			/* eroded */
+	AHEAD_PROBE,			/* it ends where the machine says */
+};
+
+enum walk_result {
+	WALK_ON,
+	WALK_ACTION,			/* in front of an action */
+	WALK_START,			/* at the start of the program */
+	WALK_BEYOND,			/* the next point is outside the travel */
+	WALK_BROKEN,			/* a segment failed its check */
+};
+
+enum walk_deed {
+	ACTION_PASSED,			/* done, or being done */
+	ACTION_WAIT,			/* the PLC has to do something */
+	ACTION_HOLD,			/* a programmed stop */
+	ACTION_END,			/* the program is over */
+};
+
+bool walk_is_cut(const struct cycle *c, const struct interp_seg *s);
+
+/** walk_is_due() - is action @i still, or again, to be done? */
+bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s);
+enum walk_ahead walk_ahead(const struct cycle *c);
+
+/** walk_by() - @ds_mm along the path; updates out.target, feed and sums. */
+enum walk_result walk_by(struct cycle *c, double ds_mm);
+
+/** walk_action() - do the action in front, once. */
+enum walk_deed walk_action(struct cycle *c);
+
+/** cycle_fail() - latch a fault. */
+void cycle_fail(struct cycle *c, enum cycle_fault f);
+
+#endif /* RT_WALK_H */

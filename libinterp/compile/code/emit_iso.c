@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * emit_iso.c - a program as NC code of dialect `generic`
+ */
+#include "code/emitter.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#define TURN	(2 * 3.14159265358979323846)
+
+/* What stands in the text so far. */
+struct iso_writer {
+	const struct interp_program *p;
+	const struct interp_sink *to;
+	struct interp_diag *diag;
+	double feed_mm_s;
+	uint16_t cond;
+	uint8_t plane;
+};
+
+/* One line being put together. */
+struct words {
+	char s[400];
+	size_t n;
+};
+
+__attribute__((format(printf, 2, 3)))
+static void word(struct words *w, const char *format, ...)
+{
+	const size_t room = sizeof(w->s) - w->n;
+	va_list ap;
+	int n;
+
+	va_start(ap, format);
+	n = vsnprintf(w->s + w->n, room, format, ap);
+	va_end(ap);
+	w->n += n < 0 ? 0 : (size_t)n < room ? (size_t)n : room - 1;
+}
+
+/* A letter and up to six decimals, without those that are 0. */
+static void number(struct words *w, char letter, double v)
+{
+	char s[40];
+	int n = snprintf(s, sizeof(s), "%.6f", v);
+
+	while (s[n - 1] == '0')
+		n--;
+	if (s[n - 1] == '.')
+		n--;
+	word(w, " %c%.*s", letter, n, n == 2 && s[0] == '-' && s[1] == '0' ?
+	     "0 " : s);
+}
+
+static void places(const struct iso_writer *o, struct words *w, uint32_t i,
+		   uint32_t axes)
+{
+	for (uint32_t a = 0; a < INTERP_NAXES; a++) {
+		if (axes & 1u << a)
+			number(w, INTERP_AXIS_LETTERS[a], emit_mm(o->p, a,
+			       emit_node_sub(o->p, (size_t)i + 1, a)));
+	}
+}
+
+static void feed(struct iso_writer *o, struct words *w,
+		 const struct interp_seg *seg)
+{
+	if ((double)seg->feed_mm_s == o->feed_mm_s)
+		return;
+	o->feed_mm_s = (double)seg->feed_mm_s;
+	word(w, " F%.9g", o->feed_mm_s * 60);
+}
+
+/* G17 G18 G19: the axes of the plane and the letters of its centre. */
+static const struct {
+	uint8_t a, b;
+	char i, j;
+} planes[] = {
+	{ INTERP_X, INTERP_Y, 'I', 'J' },
+	{ INTERP_Z, INTERP_X, 'K', 'I' },
+	{ INTERP_Y, INTERP_Z, 'J', 'K' },
+};
+
+static void centre(const struct iso_writer *o, struct words *w, uint32_t i,
+		   const struct interp_arc *a)
+{
+	const double a0 = emit_mm(o->p, a->axis_a,
+				  emit_node_sub(o->p, i, a->axis_a));
+	const double b0 = emit_mm(o->p, a->axis_b,
+				  emit_node_sub(o->p, i, a->axis_b));
+
+	number(w, planes[o->plane].i, a->a_mm - a0);
+	number(w, planes[o->plane].j, a->b_mm - b0);
+}
+
+static int arc(struct iso_writer *o, struct words *w, uint32_t i)
+{
+	const struct interp_seg *seg = &o->p->segs[i];
+	const struct interp_arc *a = &o->p->arcs[seg->arg];
+	uint8_t plane = 0;
+
+	while (plane < 3 && (planes[plane].a != a->axis_a ||
+			     planes[plane].b != a->axis_b))
+		plane++;
+	if (plane == 3)
+		return emit_refuse(o->diag, seg->line, "arcs in XY, ZX or YZ",
+				   "an arc in another plane");
+	if (fabs(a->sweep) > TURN * (1 + 1e-9))
+		return emit_refuse(o->diag, seg->line, "arcs of up to a turn",
+				   "an arc of %.2f turns",
+				   fabs(a->sweep) / TURN);
+	if (plane != o->plane)
+		word(w, "G%u ", 17u + plane);
+	o->plane = plane;
+	word(w, a->sweep < 0 ? "G2" : "G3");
+	places(o, w, i, emit_moved(o->p, i) | 1u << a->axis_a |
+	       1u << a->axis_b);
+	centre(o, w, i, a);
+	feed(o, w, seg);
+	return 0;
+}
+
+static int aux(struct iso_writer *o, struct words *w,
+	       const struct interp_seg *seg)
+{
+	static const char *const names[INTERP_NAUX] = {
+		[INTERP_AUX_POWER_OFF]		= "M5",
+		[INTERP_AUX_POWER_POSITIVE]	= "M3",
+		[INTERP_AUX_POWER_NEGATIVE]	= "M4",
+		[INTERP_AUX_PUMP_ON]		= "T84",
+		[INTERP_AUX_PUMP_OFF]		= "T85",
+	};
+
+	if (seg->arg >= INTERP_NAUX)
+		return emit_refuse(o->diag, seg->line, "M3 M4 M5 T84 T85",
+				   "switched output %u", seg->arg);
+	word(w, "%s", names[seg->arg]);
+	return 0;
+}
+
+static void condition(struct iso_writer *o, struct words *w,
+		      const struct interp_seg *seg)
+{
+	const struct interp_cond *c = &o->p->conds[seg->cond];
+
+	if (seg->cond == o->cond)
+		return;
+	o->cond = seg->cond;
+	if (c->letter)
+		word(w, "%c%03u ", c->letter, c->number);
+}
+
+static int words_of(struct iso_writer *o, struct words *w, uint32_t i)
+{
+	const struct interp_seg *seg = &o->p->segs[i];
+	const int rc = emit_refuse_sensed(o->diag, seg);
+
+	if (rc)
+		return rc;
+	condition(o, w, seg);
+	switch (seg->kind) {
+	case INTERP_LINE:
+		word(w, seg->flags & INTERP_SEG_RAPID ? "G0" : "G1");
+		places(o, w, i, emit_moved(o->p, i));
+		if (!(seg->flags & INTERP_SEG_RAPID))
+			feed(o, w, seg);
+		return 0;
+	case INTERP_ARC:
+		return arc(o, w, i);
+	case INTERP_DWELL:
+		word(w, "G4 P%g", seg->arg / 1000.0);
+		return 0;
+	case INTERP_STOP:
+		word(w, "M0");
+		return 0;
+	case INTERP_OPTIONAL_STOP:
+		word(w, "M1");
+		return 0;
+	case INTERP_AUX:
+		return aux(o, w, seg);
+	case INTERP_MCODE:
+		word(w, "M%u", interp_mcode_number(seg->arg));
+		return 0;
+	case INTERP_END:
+		word(w, "M2");
+		return 0;
+	default:
+		return emit_refuse(o->diag, seg->line, "lines and arcs", "%s",
+				   emit_kind_name(seg->kind));
+	}
+}
+
+int interp_iso_write(const struct interp_program *p,
+		     const struct interp_sink *to, struct interp_diag *diag)
+{
+	struct iso_writer o = { .p = p, .to = to, .diag = diag };
+	int rc = emit_line(to, "G21 G17 G90 G91.1\n");
+
+	for (uint32_t i = 1; !rc && i < p->head->nsegs; i++) {
+		struct words w = { .n = 0 };
+
+		if (!interp_program_seg_ok(p, i, &p->segs[i]))
+			return -EBADMSG;
+		rc = words_of(&o, &w, i);
+		if (!rc)
+			rc = emit_line(to, "%s\n", w.s);
+	}
+	return rc;
+}

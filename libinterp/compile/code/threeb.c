@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * threeb.c - records to the builder
+ *
+ * A line goes J along the counted axis and by the ratio X:Y along the other.
+ * An arc's end comes from J, see threeb_arc.c.  Both ends are snapped to whole
+ * units, so what was rounded when the records were written closes again, and
+ * places are sums of whole numbers, which a double holds exactly.
+ *
+ * 4B: the machine offsets the wire, and every corner has an arc.  Then lines
+ * keep their length and an arc of radius R its angles: the record is carried
+ * out with R + offset or R - offset.
+ */
+#include "code/threeb_reader.h"
+#include "interp/nc.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* The machine's axes; places in units from where the program starts. */
+struct threeb_reader {
+	struct threeb_text text;
+	const struct interp_threeb_read *o;
+	struct interp_build *build;
+	struct interp_build_word word;
+	double start_mm[INTERP_NAXES];
+	double unit_mm, offset;		/* mm in a unit; units */
+	double x, y;			/* units */
+	uint32_t records, segs_max;
+};
+
+static int refuse_end(struct threeb_reader *r, const struct threeb_record *c,
+		      const char *wanted)
+{
+	return threeb_refuse(&r->text, c->j_at, wanted, "J %lld, which no end "
+			     "point fits", (long long)c->j);
+}
+
+static void place_mm(const struct threeb_reader *r, double x, double y,
+		     double ret_mm[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret_mm[i] = r->start_mm[i];
+	ret_mm[INTERP_X] += x * r->unit_mm;
+	ret_mm[INTERP_Y] += y * r->unit_mm;
+}
+
+/* What the builder said, with the record's place. */
+static int placed(struct threeb_reader *r, const struct threeb_record *c,
+		  int rc)
+{
+	if (rc == -EINVAL) {
+		r->text.diag->line = r->text.line;
+		r->text.diag->column =
+			(uint32_t)(c->at - r->text.line_at) + 1;
+	}
+	return rc;
+}
+
+/* -- Lines ----------------------------------------------------------------- */
+
+/* 4B fields that only an arc has. */
+static int no_radius(struct threeb_reader *r, const struct threeb_record *c)
+{
+	if (c->r == 0 && c->shape == 0)
+		return 0;
+	return threeb_refuse(&r->text, c->r_at, "B0 or B for R, and no D or "
+			     "DD, on a line", "a radius on a line");
+}
+
+/* The way along both axes, without sign. */
+static int line_way(struct threeb_reader *r, const struct threeb_record *c,
+		    int64_t *ret_counted, int64_t *ret_other)
+{
+	int64_t counted = c->count_y ? c->y : c->x;
+	const int64_t other = c->count_y ? c->x : c->y;
+
+	if (counted == 0 && other == 0)
+		counted = 1;		/* blank both: along G's axis */
+	if (counted == 0)
+		return refuse_end(r, c, c->count_y ?
+				  "GX, for the line runs along X" :
+				  "GY, for the line runs along Y");
+	if (c->j == 0 && (c->x || c->y))
+		return refuse_end(r, c, "the length along the axis of G; 0 "
+				  "where X and Y are 0");
+	*ret_counted = c->j;
+	*ret_other = (c->j * other + counted / 2) / counted;
+	return 0;
+}
+
+static int line(struct threeb_reader *r, const struct threeb_record *c)
+{
+	const double sx = c->quadrant == 1 || c->quadrant == 4 ? 1 : -1;
+	const double sy = c->quadrant <= 2 ? 1 : -1;
+	double end_mm[INTERP_NAXES];
+	int64_t counted = 0, other = 0;
+	int rc = no_radius(r, c);
+
+	if (!rc)
+		rc = line_way(r, c, &counted, &other);
+	if (rc)
+		return rc;
+	r->x += sx * (double)(c->count_y ? other : counted);
+	r->y += sy * (double)(c->count_y ? counted : other);
+	place_mm(r, r->x, r->y, end_mm);
+	rc = interp_build_line(r->build, end_mm, &r->word, r->text.diag);
+	return placed(r, c, rc);
+}
+
+/* -- Arcs ------------------------------------------------------------------ */
+
+/* How much larger than its record an arc is carried out. */
+static int scale_of(struct threeb_reader *r, const struct threeb_record *c,
+		    double radius, double *ret)
+{
+	const bool grows = (c->shape == 1) != c->minus;
+
+	*ret = 1;
+	if (!r->text.o->fourb)
+		return 0;
+	if (fabs((double)c->r - radius) > 1)
+		return threeb_refuse(&r->text, c->r_at, "R within a unit of "
+				     "the length of (X, Y)", "R %lld, where X "
+				     "and Y are %.1f from the centre",
+				     (long long)c->r, radius);
+	if (c->shape == 0)
+		return threeb_refuse(&r->text, c->r_at, "D for convex, DD for "
+				     "concave, behind R", "an arc that is "
+				     "neither convex nor concave");
+	*ret = (radius + (grows ? r->offset : -r->offset)) / radius;
+	if (*ret * radius < 0.5)
+		return threeb_refuse(&r->text, c->r_at, "a radius above the "
+				     "offset", "an offset of %g units inside "
+				     "a radius of %lld", r->offset,
+				     (long long)c->r);
+	return 0;
+}
+
+/*
+ * Start and end are whole units, so their radii may differ by a unit.  That
+ * is no matter to the builder where a pulse is as coarse.  Where pulses are
+ * finer, the centre goes along the chord until both radii agree; but if that
+ * took it far, as on a circle all but closed, the end goes onto the circle.
+ */
+static void even_radii(const struct threeb_reader *r,
+		       struct interp_build_arc *arc, bool far,
+		       double end_mm[INTERP_NAXES])
+{
+	const double *here = interp_build_here(r->build);
+	const double x0 = here[INTERP_X] - arc->centre_a_mm;
+	const double y0 = here[INTERP_Y] - arc->centre_b_mm;
+	const double x1 = end_mm[INTERP_X] - arc->centre_a_mm;
+	const double y1 = end_mm[INTERP_Y] - arc->centre_b_mm;
+	const double r0 = hypot(x0, y0), r1 = hypot(x1, y1);
+	const double chord = hypot(x1 - x0, y1 - y0);
+	const double shift = (r1 - r0) * (r1 + r0) / (2 * chord);
+	const struct interp_axis_limits *l = r->o->machine->axis;
+
+	if (fabs(r1 - r0) <= fmin(l[INTERP_X].pulse_mm, l[INTERP_Y].pulse_mm))
+		return;
+	if (!far || fabs(shift) <= r->unit_mm) {
+		arc->centre_a_mm += shift * (x1 - x0) / chord;
+		arc->centre_b_mm += shift * (y1 - y0) / chord;
+	} else {
+		end_mm[INTERP_X] = arc->centre_a_mm + x1 * r0 / r1;
+		end_mm[INTERP_Y] = arc->centre_b_mm + y1 * r0 / r1;
+	}
+}
+
+static int build_arc(struct threeb_reader *r, const struct threeb_record *c,
+		     const struct threeb_arc *a, const struct threeb_end *e,
+		     double scale)
+{
+	const double cx = r->x - scale * (double)a->x;
+	const double cy = r->y - scale * (double)a->y;
+	struct interp_build_arc arc = {
+		.axis_a = INTERP_X, .axis_b = INTERP_Y,
+		.centre_a_mm = r->start_mm[INTERP_X] + cx * r->unit_mm,
+		.centre_b_mm = r->start_mm[INTERP_Y] + cy * r->unit_mm,
+		.clockwise = a->clockwise,
+	};
+	const double turn = (double)a->x * (double)e->y -
+			    (double)a->y * (double)e->x;
+	double end_mm[INTERP_NAXES];
+	int rc;
+
+	if (!e->full) {
+		r->x = cx + scale * (double)e->x;
+		r->y = cy + scale * (double)e->y;
+	}
+	place_mm(r, r->x, r->y, end_mm);
+	if (!e->full)
+		even_radii(r, &arc, (turn < 0) != a->clockwise, end_mm);
+	rc = interp_build_arc(r->build, end_mm, &arc, &r->word, r->text.diag);
+	return placed(r, c, rc);
+}
+
+static int arc(struct threeb_reader *r, const struct threeb_record *c)
+{
+	const bool left = c->quadrant == 2 || c->quadrant == 3;
+	const struct threeb_arc a = {
+		.x = left ? -c->x : c->x,
+		.y = c->quadrant <= 2 ? c->y : -c->y,
+		.clockwise = c->kind == THREEB_CW, .count_y = c->count_y,
+	};
+	struct threeb_end e;
+	double scale;
+	int rc;
+
+	if (a.x == 0 && a.y == 0)
+		return threeb_refuse(&r->text, c->at, "X and Y from the centre "
+				     "to the start", "an arc of radius 0");
+	if (c->j == 0)
+		return refuse_end(r, c, "more than 0; four times the radius "
+				  "for a full circle");
+	if (threeb_arc_end(&a, c->j, &e))
+		return refuse_end(r, c, "at most four times the radius, "
+				  "which is a full circle");
+	rc = scale_of(r, c, hypot((double)a.x, (double)a.y), &scale);
+	/* An end that rounds to the start would be taken for a full turn. */
+	if (rc || (!e.full && e.x == a.x && e.y == a.y))
+		return rc;
+	return build_arc(r, c, &a, &e, scale);
+}
+
+/* -- The program ----------------------------------------------------------- */
+
+static int run(struct threeb_reader *r, int what,
+	       const struct threeb_record *c)
+{
+	r->word.line = r->text.line;
+	r->records += what != THREEB_END;
+	if (r->records > r->segs_max)
+		return threeb_refuse(&r->text, c->at, "fewer records",
+				     "more than %u records", r->segs_max);
+	switch (what) {
+	case THREEB_LINE:
+		return line(r, c);
+	case THREEB_PAUSE:
+		return interp_build_action(r->build, INTERP_STOP, 0, &r->word,
+					   r->text.diag);
+	case THREEB_END:
+		return interp_build_action(r->build, INTERP_END, 0, &r->word,
+					   r->text.diag);
+	default:
+		return arc(r, c);
+	}
+}
+
+static int read_records(struct threeb_reader *r)
+{
+	struct threeb_record c;
+	int rc, what;
+	bool ended = false;
+
+	while ((what = threeb_next(&r->text, &c)) != THREEB_OVER) {
+		if (what < 0)
+			return what;
+		if (what == THREEB_END && ended)
+			continue;
+		ended = what == THREEB_END;
+		rc = run(r, what, &c);
+		if (rc)
+			return rc;
+	}
+	return 0;
+}
+
+static double feed_of(const struct interp_threeb_read *o)
+{
+	const struct interp_axis_limits *l = o->machine->axis;
+
+	return o->feed_mm_s > 0 ? o->feed_mm_s :
+	       fmin(l[INTERP_X].v_max_mm_s, l[INTERP_Y].v_max_mm_s);
+}
+
+static void set_up(struct threeb_reader *r)
+{
+	const struct interp_threeb_options *o = r->o->options;
+	const double unit_um = o->unit_um > 0 ? o->unit_um : 1;
+	const double *here = interp_build_here(r->build);
+
+	r->unit_mm = unit_um / 1000;
+	r->offset = o->offset_um / unit_um;
+	r->word.feed_mm_s = feed_of(r->o);
+	r->segs_max = r->o->segs_max ? r->o->segs_max : INTERP_NC_SEGS_MAX;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->start_mm[i] = here[i];
+}
+
+int interp_threeb_compile(const char *text, size_t bytes,
+			  const struct interp_threeb_read *o,
+			  struct interp_build *b,
+			  struct interp_threeb_result *ret,
+			  struct interp_diag *diag)
+{
+	struct threeb_reader r = {
+		.text = { .o = o->options, .diag = diag }, .o = o, .build = b,
+	};
+	int rc;
+
+	set_up(&r);
+	rc = threeb_open(&r.text, bytes ? text : "", bytes);
+	if (!rc)
+		rc = read_records(&r);
+	if (!rc && r.records == 0) {
+		rc = threeb_refuse(&r.text, r.text.line_at, "at least one "
+				   "record", "empty program");
+		diag->line = diag->column = 0;
+	}
+	if (rc)
+		return rc;
+	ret->lines = r.text.line - (r.text.line_at == r.text.end);
+	ret->records = r.records;
+	return 0;
+}

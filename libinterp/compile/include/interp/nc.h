@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * nc.h - read NC code, one pass, into a program
+ *
+ * Dialect `generic` has the RS-274 words most sinkers and wire machines share;
+ * the others are those of wire machines; docs/nc-code.md has their tables.  The reader keeps modal state, checks
+ * every word and hands absolute machine coordinates to the builder.  A word it
+ * does not know is refused with line and column; nothing is skipped silently.
+ *
+ * Memory is bounded by the program: no recursion on the input, subprograms by
+ * a stack of fixed depth, total lines executed bounded.
+ *
+ * Threads: allocates.  Never in the cycle.
+ */
+#ifndef INTERP_NC_H
+#define INTERP_NC_H
+
+#include "interp/build.h"
+#include "interp/kinematics.h"
+#include "interp/mcode_arg.h"
+#include "interp/tech_table.h"
+#include "interp/wire.h"
+
+#define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */
+#define INTERP_NC_LINE_MAX	4096		/* bytes in a line */
+#define INTERP_NC_SEGS_MAX	50000000u	/* segments a program may have */
+#define INTERP_NC_EXECUTED_MAX	100000000u	/* lines, repeats counted */
+
+struct interp_dialect;
+
+struct interp_nc_options {
+	const struct interp_dialect *dialect;	/* NULL: generic */
+	const struct interp_machine *machine;
+	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
+	const struct interp_wire *wire;	/* lent; NULL: no guides, no corners */
+	double offset_mm[INTERP_NOFFSETS];	/* D and H; 0: not filled */
+	const struct interp_kinematics *kinematics;	/* lent; NULL: no G43.4 */
+	double tip_tolerance_mm;	/* of the tip's way under G43.4, > 0 */
+	double feed_mm_s;	/* until the first F; 0: an F is demanded, or,
+				 * where programs have none, the fastest X and
+				 * Y both go */
+	enum interp_escape_mode escape;	/* until the first G140 ... G143 */
+	const struct interp_tech_table *tech;	/* lent; NULL: conditions are
+				 * taken as they come, without values */
+	const struct interp_tech *machine_tech;	/* lent: the machine's own
+				 * values, which conditions go over; NULL: not
+				 * looked at */
+	const struct interp_mcode *mcode;	/* lent, INTERP_NMCODES of
+				 * them by number: the PLC's; NULL: none */
+	uint32_t segs_max;	/* 0: INTERP_NC_SEGS_MAX */
+	uint32_t executed_max;	/* 0: INTERP_NC_EXECUTED_MAX */
+};
+
+struct interp_nc_result {
+	uint32_t lines;			/* lines in the text */
+	uint32_t executed;		/* lines executed, subprograms unrolled */
+};
+
+/**
+ * interp_nc_compile() - read @bytes bytes at @text into @b.
+ *
+ * @text need not be NUL-terminated.  LF, CRLF and CR end a line.
+ *
+ * Return: 0, -EINVAL with all of @diag filled, or -ENOMEM.  @ret is filled only
+ * with 0.
+ */
+int interp_nc_compile(const char *text, size_t bytes,
+		      const struct interp_nc_options *o,
+		      struct interp_build *b, struct interp_nc_result *ret,
+		      struct interp_diag *diag);
+
+#endif /* INTERP_NC_H */

@@ -1,0 +1,455 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build.c - put a program together
+ *
+ * Tables grow by doubling; a node gets a column when its axis first moves.
+ */
+#include "path/builder.h"
+#include "path/build_arc.h"
+#include "path/build_pair.h"
+#include "path/build_rule.h"
+#include "pulse/pulse.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *build_table_add(struct table *t)
+{
+	if (t->n == t->room) {
+		const size_t room = t->room ? 2 * t->room : 64;
+		void *at = realloc(t->at, room * t->size);
+
+		if (!at)
+			return NULL;
+		t->at = at;
+		t->room = room;
+	}
+	return (char *)t->at + t->size * t->n++;
+}
+
+static int64_t *nodes_of(const struct interp_build *b)
+{
+	return b->nodes.at;
+}
+
+static struct interp_seg *seg_add(struct interp_build *b)
+{
+	return build_table_add(&b->segs);
+}
+
+/* Append where the path stands as a node. */
+static int node_add(struct interp_build *b)
+{
+	for (uint32_t j = 0; j < b->naxes; j++) {
+		int64_t *n = build_table_add(&b->nodes);
+
+		if (!n)
+			return -ENOMEM;
+		*n = b->here[b->column[j]];
+	}
+	return 0;
+}
+
+/* Give axis @axis a column: every node so far has it where it started. */
+static int column_add(struct interp_build *b, uint32_t axis)
+{
+	const size_t rows = b->segs.n + 1;
+	const uint32_t from = b->naxes, to = b->naxes + 1;
+	int64_t *at;
+
+	while (b->nodes.room < rows * to + 64) {
+		const size_t room = b->nodes.room ? 2 * b->nodes.room : 64;
+
+		at = realloc(b->nodes.at, room * b->nodes.size);
+		if (!at)
+			return -ENOMEM;
+		b->nodes.at = at;
+		b->nodes.room = room;
+	}
+	at = nodes_of(b);
+	for (size_t i = rows; i-- > 0; ) {
+		memmove(at + i * to, at + i * from, from * sizeof(*at));
+		at[i * to + from] = b->first[axis];
+	}
+	b->nodes.n = rows * to;
+	b->column[from] = (uint8_t)axis;
+	b->naxes = to;
+	b->columns |= 1u << axis;
+	return 0;
+}
+
+struct interp_build *interp_build_create(const struct interp_build_options *o)
+{
+	struct interp_build *b = calloc(1, sizeof(*b));
+	struct interp_seg *begin;
+	struct interp_cond *none;
+	struct interp_escape *path;
+
+	if (!b)
+		return NULL;
+	b->o = *o;
+	b->segs.size = sizeof(struct interp_seg);
+	b->nodes.size = sizeof(int64_t);
+	b->arcs.size = sizeof(struct interp_arc);
+	b->conds.size = sizeof(struct interp_cond);
+	b->escapes.size = sizeof(struct interp_escape);
+	b->couples.size = sizeof(struct interp_couple);
+	b->bits.size = sizeof(uint64_t);
+	b->curves.size = sizeof(struct interp_curve);
+	b->pieces.size = sizeof(struct interp_piece);
+	b->stops.size = sizeof(struct interp_nurbs_stop);
+	b->numbers.size = sizeof(double);
+	b->runs.size = sizeof(int32_t);
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const struct interp_axis_limits *l = &o->machine->axis[i];
+
+		b->sub_mm[i] = INTERP_SUB / l->pulse_mm;
+		b->inside_mm[i][0] = l->travel_min_mm + l->pulse_mm;
+		b->inside_mm[i][1] = l->travel_max_mm - l->pulse_mm;
+		b->here_mm[i] = o->start_mm[i];
+		b->here[i] = b->first[i] =
+			llround(o->start_mm[i] * b->sub_mm[i]);
+	}
+	b->lift_axis = -1;
+	b->descent.axis = -1;
+	begin = seg_add(b);
+	none = build_table_add(&b->conds);
+	path = build_table_add(&b->escapes);
+	if (!begin || !none || !path) {
+		interp_build_destroy(b);
+		return NULL;
+	}
+	*begin = (struct interp_seg) { .kind = INTERP_BEGIN };
+	*none = (struct interp_cond) { .letter = 0 };
+	interp_tech_clear(&none->tech);
+	*path = (struct interp_escape) { 0 };
+	return b;
+}
+
+void interp_build_destroy(struct interp_build *b)
+{
+	if (!b)
+		return;
+	free(b->segs.at);
+	free(b->nodes.at);
+	free(b->arcs.at);
+	free(b->conds.at);
+	free(b->escapes.at);
+	free(b->couples.at);
+	free(b->bits.at);
+	free(b->curves.at);
+	free(b->pieces.at);
+	free(b->stops.at);
+	free(b->numbers.at);
+	free(b->fit.end_mm);
+	free(b->fit.lines);
+	free(b->runs.at);
+	free(b);
+}
+
+const double *interp_build_here(const struct interp_build *b)
+{
+	return b->fit.n ? b->fit.end_mm + (b->fit.n - 1) * INTERP_NAXES :
+			  b->here_mm;
+}
+
+/* -- Checks ------------------------------------------------------------- */
+
+int build_refuse_travel(const struct interp_machine *m, int axis,
+			double at_mm, struct interp_diag *diag)
+{
+	const struct interp_axis_limits *l = &m->axis[axis];
+	const char letter = INTERP_AXIS_LETTERS[axis];
+
+	if (!(m->present & 1u << axis)) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "the machine has no axis %c", letter);
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "a program for the axes it has");
+		return -EINVAL;
+	}
+	snprintf(diag->found, sizeof(diag->found),
+		 "%c %.4f is beyond the travel", letter, at_mm);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "%c from %g to %g in machine coordinates", letter,
+		 l->travel_min_mm, l->travel_max_mm);
+	return -EINVAL;
+}
+
+/* In pulses, as the cycle guards them: the last ones inside the limits. */
+bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
+{
+	const struct interp_machine *m = b->o.machine;
+	const struct interp_axis_limits *l = &m->axis[axis];
+	double at;
+
+	if (m->present & 1u << axis && at_mm > b->inside_mm[axis][0] &&
+	    at_mm < b->inside_mm[axis][1])
+		return true;
+	at = floor(at_mm / l->pulse_mm + 0.5);
+	if (m->present & b->loose & 1u << axis)
+		return fabs(at) < INTERP_PULSES_MAX;
+	return m->present & 1u << axis &&
+	       at >= ceil(l->travel_min_mm / l->pulse_mm - 1e-6) &&
+	       at <= floor(l->travel_max_mm / l->pulse_mm + 1e-6);
+}
+
+/* -- Segments ------------------------------------------------------------ */
+
+/* The number of the condition in force, added if it is new. */
+static int cond_of(struct interp_build *b, const struct interp_build_word *w)
+{
+	struct interp_cond *c = b->conds.at;
+	struct interp_tech tech;
+
+	if (w->cond_letter == b->cond_letter &&
+	    w->cond_number == b->cond_number && w->tech == b->tech)
+		return b->cond;
+	interp_tech_clear(&tech);
+	if (w->tech)
+		tech = *w->tech;
+	for (size_t i = 0; i < b->conds.n; i++) {
+		if (c[i].letter == w->cond_letter &&
+		    c[i].number == w->cond_number &&
+		    memcmp(&c[i].tech, &tech, sizeof(tech)) == 0)
+			return (int)i;
+	}
+	if (b->conds.n > UINT16_MAX)
+		return -ENOSPC;
+	c = build_table_add(&b->conds);
+	if (!c)
+		return -ENOMEM;
+	*c = (struct interp_cond) { .letter = w->cond_letter,
+				    .number = w->cond_number,
+				    .tech = tech };
+	return (int)b->conds.n - 1;
+}
+
+int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
+		     const struct interp_build_word *w,
+		     struct interp_diag *diag)
+{
+	const int cond = cond_of(b, w);
+	struct interp_seg *s;
+
+	if (cond == -ENOSPC) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "more than %d different conditions", UINT16_MAX);
+		snprintf(diag->wanted, sizeof(diag->wanted), "fewer of them");
+		return -EINVAL;
+	}
+	if (cond < 0)
+		return cond;
+	b->cond = (uint16_t)cond;
+	b->cond_letter = w->cond_letter;
+	b->cond_number = w->cond_number;
+	b->tech = w->tech;
+	seg->cond = b->cond;
+	seg->line = w->line;
+	seg->s_mm = b->length_mm;
+	seg->escape = b->stand_escape;
+	if (node_add(b) < 0)
+		return -ENOMEM;
+	s = seg_add(b);
+	if (!s)
+		return -ENOMEM;
+	*s = *seg;
+	b->length_mm += seg->length_mm;
+	return 0;
+}
+
+int build_columns(struct interp_build *b, uint32_t moved)
+{
+	moved &= ~b->columns;
+	for (uint32_t i = 0; moved; i++, moved >>= 1) {
+		if (moved & 1 && column_add(b, i) < 0)
+			return -ENOMEM;
+	}
+	return 0;
+}
+
+void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
+		    double feed_max_mm_s)
+{
+	seg->flags = (w->rapid ? INTERP_SEG_RAPID : 0) | w->ends;
+	seg->feed_max_mm_s = (float)feed_max_mm_s;
+	seg->feed_mm_s = w->rapid ? seg->feed_max_mm_s : (float)w->feed_mm_s;
+}
+
+static double length_of(const double d[INTERP_NAXES], uint32_t moved)
+{
+	const uint32_t xyz = 1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_Z;
+
+	if (moved & xyz)
+		return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+	if (moved & (1u << INTERP_U | 1u << INTERP_V))
+		return sqrt(d[INTERP_U] * d[INTERP_U] +
+			    d[INTERP_V] * d[INTERP_V]);
+	return sqrt(d[INTERP_A] * d[INTERP_A] + d[INTERP_B] * d[INTERP_B] +
+		    d[INTERP_C] * d[INTERP_C]);
+}
+
+int build_measure(const struct interp_build *b,
+		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
+		  struct build_measure *ret, struct interp_diag *diag)
+{
+	const struct interp_machine *m = b->o.machine;
+	double d[INTERP_NAXES] = { 0 };
+
+	*ret = (struct build_measure) { 0 };
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const double s = end_mm[i] * b->sub_mm[i];
+		int64_t len;
+		double t;
+
+		to[i] = b->here[i];
+		if (end_mm[i] == b->here_mm[i])
+			continue;
+		if (!build_axis_ok(b, i, end_mm[i]))
+			return build_refuse_travel(m, i, end_mm[i], diag);
+		to[i] = (int64_t)(s < 0 ? s - 0.5 : s + 0.5);
+		len = to[i] - b->here[i];
+		if (len == 0)
+			continue;
+		d[i] = (double)len / b->sub_mm[i];
+		ret->moved |= 1u << i;
+		t = fabs(d[i]) / m->axis[i].v_max_mm_s;
+		ret->seconds = t > ret->seconds ? t : ret->seconds;
+		len = len < 0 ? -len : len;
+		ret->longest = len > ret->longest ? len : ret->longest;
+	}
+	ret->length_mm = length_of(d, ret->moved);
+	return 0;
+}
+
+int build_measure_next(struct interp_build *b,
+		       const double end_mm[INTERP_NAXES],
+		       int64_t to[INTERP_NAXES], struct build_measure *ret,
+		       struct interp_diag *diag)
+{
+	const int r = interp_build_flush(b, diag);
+
+	return r < 0 ? r : build_measure(b, end_mm, to, ret, diag);
+}
+
+void build_mm(const struct interp_build *b, const int64_t at[INTERP_NAXES],
+	      double ret_mm[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret_mm[i] = (double)at[i] / b->sub_mm[i];
+}
+
+void build_stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		    const int64_t to[INTERP_NAXES])
+{
+	memcpy(b->here_mm, end_mm, sizeof(b->here_mm));
+	memcpy(b->here, to, sizeof(b->here));
+}
+
+static int refuse_long(struct interp_diag *diag, double length_mm)
+{
+	snprintf(diag->found, sizeof(diag->found),
+		 "%.3g mm are too many pulses for one segment", length_mm);
+	snprintf(diag->wanted, sizeof(diag->wanted), "a shorter segment");
+	return -EINVAL;
+}
+
+struct build_way build_way_to(const struct interp_build *b,
+			      const int64_t to[INTERP_NAXES],
+			      const struct build_measure *m)
+{
+	struct build_way w = { .longest_sub = m->longest };
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		w.from[i] = interp_round_sub(b->here[i]);
+		w.to[i] = interp_round_sub(to[i]);
+	}
+	return w;
+}
+
+/* Where a line that ends elsewhere leads to is no place to be held to. */
+static void loosen(struct interp_build *b, const double end_mm[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (end_mm[i] != b->here_mm[i])
+			b->loose |= 1u << i;
+	}
+}
+
+/* A stop, so that nothing enters it at speed. */
+static int sensed_begin(struct interp_build *b, uint32_t moved,
+			const struct interp_build_word *w,
+			struct interp_diag *diag)
+{
+	if (moved & (moved - 1)) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "a touch, half or limit along several axes");
+		snprintf(diag->wanted, sizeof(diag->wanted), "one axis");
+		return -EINVAL;
+	}
+	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
+}
+
+int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
+	       const struct interp_build_word *w, struct interp_diag *diag)
+{
+	struct interp_seg seg = { .kind = INTERP_LINE };
+	int64_t to[INTERP_NAXES];
+	struct build_measure m;
+	struct build_way way;
+	uint64_t ticks;
+	int r;
+
+	if (w->ends)
+		loosen(b, end_mm);
+	r = build_measure(b, end_mm, to, &m, diag);
+	if (r < 0)
+		return r;
+	if (!m.moved) {
+		build_stand_at(b, end_mm, to);
+		return 0;
+	}
+	way = build_way_to(b, to, &m);
+	ticks = build_rule_ticks(b->o.strategy, &way);
+	if (ticks > INTERP_PULSES_MAX)
+		return refuse_long(diag, m.length_mm);
+	r = build_rule_check(&b->o, &way, diag);
+	if (r < 0)
+		return r;
+	seg.ticks = (uint32_t)ticks;
+	seg.length_mm = m.length_mm;
+	build_seg_feed(&seg, w, m.length_mm / m.seconds);
+	if (m.moved & ~b->columns && build_columns(b, m.moved) < 0)
+		return -ENOMEM;
+	if (w->ends)
+		r = sensed_begin(b, m.moved, w, diag);
+	if (r < 0)
+		return r;
+	build_descend(b, m.moved, end_mm);
+	b->stand_escape = w->ends ? 0 : build_escape_of(b, m.moved, end_mm);
+	build_stand_at(b, end_mm, to);
+	/* Nor is it known how far it came. */
+	if (w->ends)
+		b->descent.axis = -1;
+	return build_seg_finish(b, &seg, w, diag);
+}
+
+int build_step(struct interp_build *b, const struct build_step *s,
+	       const struct interp_build_word *w, struct interp_diag *diag)
+{
+	struct interp_seg seg = s->seg;
+	int64_t to[INTERP_NAXES];
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		to[i] = llround(s->end_mm[i] * b->sub_mm[i]);
+	build_seg_feed(&seg, w, s->feed_max_mm_s);
+	if (build_columns(b, s->moved) < 0)
+		return -ENOMEM;
+	build_descend(b, s->moved, s->end_mm);
+	b->stand_escape = b->escape;
+	build_stand_at(b, s->end_mm, to);
+	return build_seg_finish(b, &seg, w, diag);
+}

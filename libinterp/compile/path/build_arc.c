@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_arc.c - from the words of a G2 or G3 to an arc segment
+ */
+#include "path/build_arc.h"
+#include "pulse/pulse.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TURN	(2 * 3.14159265358979323846)
+
+/* Start and end radius may differ by a rounding of the last digit, or this. */
+#define RADIUS_PULSES	2.0
+#define RADIUS_SHARE	0.001
+#define RADIUS_MOST	5.0
+
+static const struct interp_axis_limits *limits(const struct build_arc *p,
+					       uint32_t a)
+{
+	return &p->o->machine->axis[a];
+}
+
+static int refuse_radius(double r0, double r1, struct interp_diag *diag)
+{
+	snprintf(diag->found, sizeof(diag->found),
+		 "the arc starts %.4f mm from its centre and ends %.4f mm from it",
+		 r0, r1);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "radii that agree within %g pulses, or %g %% but %g pulses",
+		 RADIUS_PULSES, RADIUS_SHARE * 100, RADIUS_MOST);
+	return -EINVAL;
+}
+
+/* Angle from theta0 on to theta1 in the arc's direction, whole turns added. */
+static double sweep_of(const struct build_arc *p, double theta0, double theta1)
+{
+	const enum interp_axis a = p->word->axis_a, b = p->word->axis_b;
+	double sweep = theta1 - theta0;
+
+	if (p->from_mm[a] == p->to_mm[a] && p->from_mm[b] == p->to_mm[b])
+		sweep = 0;
+	if (p->word->clockwise) {
+		while (sweep >= 0)
+			sweep -= TURN;
+		return sweep - TURN * p->word->turns;
+	}
+	while (sweep <= 0)
+		sweep += TURN;
+	return sweep + TURN * p->word->turns;
+}
+
+int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
+{
+	const struct interp_build_arc *w = p->word;
+	const double a0 = p->from_mm[w->axis_a] - w->centre_a_mm;
+	const double b0 = p->from_mm[w->axis_b] - w->centre_b_mm;
+	const double a1 = p->to_mm[w->axis_a] - w->centre_a_mm;
+	const double b1 = p->to_mm[w->axis_b] - w->centre_b_mm;
+	const double r0 = hypot(a0, b0), r1 = hypot(a1, b1);
+	const double pulse = fmax(limits(p, w->axis_a)->pulse_mm,
+				  limits(p, w->axis_b)->pulse_mm);
+
+	if (!(fabs(r1 - r0) <= fmax(RADIUS_PULSES * pulse,
+				    fmin(RADIUS_SHARE * fmin(r0, r1),
+					 RADIUS_MOST * pulse))))
+		return refuse_radius(r0, r1, diag);
+	if (r0 < pulse / 2) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "an arc of radius %.6f mm", r0);
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "a radius of half a pulse or more");
+		return -EINVAL;
+	}
+	p->arc = (struct interp_arc) {
+		.a_mm = w->centre_a_mm, .b_mm = w->centre_b_mm,
+		.r_mm = r0, .dr_mm = r1 - r0, .theta = atan2(b0, a0),
+		.axis_a = (uint8_t)w->axis_a, .axis_b = (uint8_t)w->axis_b,
+	};
+	p->arc.sweep = sweep_of(p, p->arc.theta, atan2(b1, a1));
+	return 0;
+}
+
+/* Does the arc pass the angle @quarter * 90 degrees? */
+static bool passes(const struct interp_arc *arc, int quarter)
+{
+	double ahead = quarter * (TURN / 4) - arc->theta;
+
+	ahead -= TURN * floor(ahead / TURN);
+	return arc->sweep > 0 ? ahead < arc->sweep :
+				ahead - TURN > arc->sweep || ahead == 0;
+}
+
+/* The four places farthest out lie between the ends, where no node is. */
+static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
+
+	for (int q = 0; q < 4; q++) {
+		const enum interp_axis axis = q % 2 ? arc->axis_b : arc->axis_a;
+		const struct interp_axis_limits *l = limits(p, axis);
+		const double at = (q % 2 ? arc->b_mm : arc->a_mm) +
+				  (q < 2 ? r : -r);
+
+		if (passes(arc, q) && (at > l->travel_max_mm + l->pulse_mm ||
+				       at < l->travel_min_mm - l->pulse_mm))
+			return build_refuse_travel(p->o->machine, (int)axis, at,
+						   diag);
+	}
+	return 0;
+}
+
+static void arc_length(struct build_arc *p)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double plane = fabs(arc->sweep) * (arc->r_mm + arc->dr_mm / 2);
+	double l2 = plane * plane;
+	double seconds = plane / fmin(limits(p, arc->axis_a)->v_max_mm_s,
+				      limits(p, arc->axis_b)->v_max_mm_s);
+
+	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
+		const double d = p->to_mm[i] - p->from_mm[i];
+
+		if (i == arc->axis_a || i == arc->axis_b || d == 0)
+			continue;
+		seconds = fmax(seconds, fabs(d) / limits(p, i)->v_max_mm_s);
+		if (i <= INTERP_Z)
+			l2 += d * d;
+	}
+	p->length_mm = sqrt(l2);
+	p->feed_max_mm_s = p->length_mm / seconds;
+}
+
+static int refuse_ticks(struct interp_diag *diag)
+{
+	snprintf(diag->found, sizeof(diag->found),
+		 "the arc has too many pulses for one segment");
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "a smaller radius, or fewer turns");
+	return -EINVAL;
+}
+
+/* Ticks closer than a pulse, by a margin no rounding can use up. */
+static int ticks_simultaneous(struct build_arc *p, struct interp_diag *diag)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double pulse = fmin(limits(p, arc->axis_a)->pulse_mm,
+				  limits(p, arc->axis_b)->pulse_mm);
+	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double plane = (fabs(arc->sweep) * r + fabs(arc->dr_mm)) / pulse;
+	const double other = (double)p->way.longest_sub / INTERP_SUB;
+	const double ticks = ceil(fmax(plane, other) * (1 + 1e-6)) + 1;
+
+	if (ticks > INTERP_PULSES_MAX)
+		return refuse_ticks(diag);
+	p->ticks = (uint32_t)ticks;
+	return 0;
+}
+
+/* The plane's ends from the centre, on the lattice. */
+static void arc_ends(const struct build_arc *p, int64_t start[2],
+		     int64_t end[2])
+{
+	const struct interp_arc *arc = &p->arc;
+	const double pulse = limits(p, arc->axis_a)->pulse_mm;
+	const int64_t a = llround(arc->a_mm / pulse);
+	const int64_t b = llround(arc->b_mm / pulse);
+
+	start[0] = p->way.from[arc->axis_a] - a;
+	start[1] = p->way.from[arc->axis_b] - b;
+	end[0] = p->way.to[arc->axis_a] - a;
+	end[1] = p->way.to[arc->axis_b] - b;
+}
+
+/* With fewer changes of axis, if the tolerance and the radius let it. */
+static int measure_runs(struct build_arc *p, struct interp_diag *diag)
+{
+	const int64_t *s = p->runs.start;
+	const int64_t r2 = s[0] * s[0] + s[1] * s[1];
+	const uint32_t milli = p->o->tolerance_milli;
+	const uint32_t least = circle_smallest_milli(r2, milli);
+	struct interp_arc arc = p->arc, other = p->arc;
+
+	p->runs.milli = milli;
+	/* A circle of a few pulses: comparison is within one of it. */
+	if (milli >= 1000 && least > milli)
+		return 0;
+	if (least > milli)
+		return build_refuse_tolerance(p->o, "this arc",
+					      least < 1000 ? least : 1000,
+					      diag);
+	p->runs.first = 1;
+	if (!circle_plan_runs(&other, &p->runs, NULL, 0))
+		return 0;
+	p->runs.first = 0;
+	if (!circle_plan_runs(&arc, &p->runs, NULL, 0))
+		return 0;
+	p->runs.first = other.nruns < arc.nruns;
+	p->arc = other.nruns < arc.nruns ? other : arc;
+	return 0;
+}
+
+void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
+		    int32_t *runs)
+{
+	circle_plan_runs(arc, &p->runs, runs, arc->nruns);
+}
+
+/* Round one pulse only comparison finds a way, whatever the strategy. */
+static bool is_tiny(const int64_t start[2])
+{
+	return start[0] * start[0] + start[1] * start[1] == 1;
+}
+
+static bool measure(struct build_arc *p, const int64_t start[2],
+		    const int64_t end[2])
+{
+	const int64_t others = (p->way.longest_sub + INTERP_SUB - 1) >>
+			       INTERP_SUB_BITS;
+
+	return p->o->strategy == INTERP_DDA && !is_tiny(start) ?
+	       dda_measure(&p->arc, start, end, others) :
+	       circle_measure(&p->arc, start, end);
+}
+
+/* Pulses of the other axes come one at a time, but for the dda's. */
+static int count_ticks(struct build_arc *p, struct interp_diag *diag)
+{
+	uint64_t ticks = p->arc.circle_ticks;
+	int r;
+
+	if (p->o->strategy != INTERP_DDA) {
+		r = build_rule_check(p->o, &p->way, diag);
+		if (r < 0)
+			return r;
+		ticks += build_rule_ticks(INTERP_POINT_BY_POINT, &p->way);
+	}
+	if (ticks > INTERP_PULSES_MAX)
+		return refuse_ticks(diag);
+	p->ticks = (uint32_t)ticks;
+	return 0;
+}
+
+static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
+{
+	struct interp_arc *arc = &p->arc;
+	const double pulse = limits(p, arc->axis_a)->pulse_mm;
+	int64_t start[2], end[2];
+	int r = 0;
+
+	if (limits(p, arc->axis_b)->pulse_mm != pulse) {
+		snprintf(diag->found, sizeof(diag->found),
+			 "a %s arc over axes of unequal pulses",
+			 interp_strategy_name(p->o->strategy));
+		snprintf(diag->wanted, sizeof(diag->wanted),
+			 "strategy simultaneous, or equal pulses");
+		return -EINVAL;
+	}
+	if (fabs(arc->sweep) * arc->r_mm / pulse > INTERP_PULSES_MAX / 2.0)
+		return refuse_ticks(diag);
+	arc_ends(p, start, end);
+	/* Nowhere to go round, or for a dda's helix no way to. */
+	if (start[0] == 0 && start[1] == 0) {
+		p->straight = true;
+		return 0;
+	}
+	if (is_tiny(start) && p->o->strategy == INTERP_DDA &&
+	    p->way.longest_sub > 0) {
+		p->straight = true;
+		return 0;
+	}
+	if (!measure(p, start, end)) {
+		/* Under a pulse or two an arc may have no way round. */
+		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
+		return p->straight ? 0 : refuse_ticks(diag);
+	}
+	if (p->o->strategy == INTERP_MIN_SWITCH && !is_tiny(start)) {
+		memcpy(p->runs.start, start, sizeof(start));
+		memcpy(p->runs.end, end, sizeof(end));
+		r = measure_runs(p, diag);
+	}
+	return r < 0 ? r : count_ticks(p, diag);
+}
+
+int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
+{
+	int r = build_arc_shape(p, diag);
+
+	if (r < 0)
+		return r;
+	r = arc_travel(p, diag);
+	if (r < 0)
+		return r;
+	arc_length(p);
+	return p->o->strategy == INTERP_SIMULTANEOUS ?
+	       ticks_simultaneous(p, diag) : ticks_of_pulses(p, diag);
+}

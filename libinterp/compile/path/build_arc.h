@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_arc.h - from the words of a G2 or G3 to an arc segment
+ */
+#ifndef PATH_BUILD_ARC_H
+#define PATH_BUILD_ARC_H
+
+#include "interp/build.h"
+#include "path/build_rule.h"
+#include "pulse/pulse.h"
+
+struct build_arc {
+	/* In. */
+	const struct interp_build_options *o;
+	const struct interp_build_arc *word;
+	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
+	struct build_way way;	/* all but the plane's axes */
+	/* Out. */
+	bool straight;		/* too short to be an arc: make it a line */
+	struct interp_arc arc;
+	uint32_t ticks;
+	double length_mm, feed_max_mm_s;
+	struct circle_plan runs;	/* if arc.nruns > 0 */
+};
+
+/**
+ * build_arc_shape() - from @p's word and ends: centre, radii, angles into arc.
+ *
+ * Of o only the machine counts.  Return: 0, or -EINVAL with @diag's found and
+ * wanted: radii that differ, or none.
+ */
+int build_arc_shape(struct build_arc *p, struct interp_diag *diag);
+
+/** build_arc_plan() - 0, or -EINVAL with @diag's found and wanted. */
+int build_arc_plan(struct build_arc *p, struct interp_diag *diag);
+
+/** build_arc_runs() - the arc.nruns runs of a planned arc. */
+void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
+		    int32_t *runs);
+
+/** build_refuse_travel() - say that an axis leaves its travel; -EINVAL. */
+int build_refuse_travel(const struct interp_machine *m, int axis,
+			double at_mm, struct interp_diag *diag);
+
+#endif /* PATH_BUILD_ARC_H */

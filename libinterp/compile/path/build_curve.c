@@ -1,0 +1,393 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_curve.c - from a NURBS to segments
+ *
+ * The curve is looked at in many places, span by span, and cut into pieces:
+ * at a cusp, where the direction turns back; at a knot that may be a corner;
+ * and where the feed it allows has changed by more than a half since the piece
+ * began.  A piece gets its table of stops and so many places that no axis
+ * leaps; every place is then tried, against the travel too, and the number
+ * raised until it is so.  Where it is cut depends on the axes' limits alone,
+ * not on the period, so the lattice points do not either.
+ */
+#include "curve/span.h"
+#include "path/build_arc.h"
+#include "path/build_curve.h"
+#include "path/builder.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LOOKS		64		/* in a span */
+#define FEED_RATIO	1.5		/* of fastest to slowest in a piece */
+#define CUSP_HALVINGS	60
+#define STOP_PULSES	0.02		/* error of a stop's place */
+#define MARGIN		1.02		/* more places than the looks ask for */
+#define TRIES		24
+#define TRIED_MAX	200000000.0	/* places of a curve, all tries: some
+					 * twenty seconds */
+
+/* -- What limits it ------------------------------------------------------------ */
+
+static void set_limits(struct curve_plan *p)
+{
+	const struct interp_build_options *o = &p->b->o;
+	struct interp_nurbs_limits *l = &p->limits;
+	double jerk = HUGE_VAL;
+
+	*l = (struct interp_nurbs_limits) {
+		.chord_error_mm = HUGE_VAL, .period_s = 1,
+		.centripetal_mm_s2 = HUGE_VAL,
+	};
+	p->chord_mm_s = o->chord_error_mm > 0 && o->period_s > 0 ?
+			sqrt(8 * o->chord_error_mm) / o->period_s : HUGE_VAL;
+	p->pulse_mm = HUGE_VAL;
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const struct interp_axis_limits *m =
+			&o->machine->axis[p->curve.axis[k]];
+
+		l->v_mm_s[k] = m->v_max_mm_s;
+		l->a_mm_s2[k] = m->a_max_mm_s2;
+		l->j_mm_s3[k] = m->j_max_mm_s3;
+		p->pulses_mm[p->curve.axis[k]] = 1 / m->pulse_mm;
+		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
+		jerk = fmin(jerk, m->j_max_mm_s3);
+		if (k < p->curve.counted)
+			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
+						    m->a_max_mm_s2);
+	}
+	/* A bend of less than a pulse's radius is none that the axes see. */
+	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);
+}
+
+/* A look at @u: the feed its axes can do.  The piece in hand learns how sharp
+ * it bends and how many pulses a mm of it has. */
+static double look(struct curve_plan *p, double u)
+{
+	struct interp_nurbs_eval *e = &p->walk.eval;
+	struct interp_nurbs_point at;
+	double speed;
+
+	p->bend = fmax(p->bend, interp_nurbs_curvature(e, u));
+	interp_nurbs_at(e, u, 1, &at);
+	speed = sqrt(interp_nurbs_dot(&e->c, at.d[1], at.d[1]));
+	for (uint32_t k = 0; speed > 0 && k < e->c.naxes; k++)
+		p->rate = fmax(p->rate, fabs(at.d[1][k]) / speed *
+					p->pulses_mm[p->curve.axis[k]]);
+	return fmax(interp_nurbs_feed_mm_s(e, u, &p->limits), p->slowest_mm_s);
+}
+
+/* Of the piece in hand. */
+static double feed_of(const struct curve_plan *p)
+{
+	const double chord = p->chord_mm_s / sqrt(p->bend);
+
+	return fmax(fmin(p->least_mm_s, chord), p->slowest_mm_s);
+}
+
+/* -- Pieces -------------------------------------------------------------------- */
+
+static const struct interp_nurbs_stop *stops_of(const struct curve_plan *p,
+						const struct interp_piece *q)
+{
+	const struct interp_nurbs_stop *s = p->b->stops.at;
+
+	return s + q->stops_at;
+}
+
+static int add_stops(struct curve_plan *p, double to,
+		     struct interp_piece *piece)
+{
+	const struct interp_nurbs_range r = { p->from, to,
+					      STOP_PULSES * p->pulse_mm };
+	struct interp_nurbs_eval *e = &p->walk.eval;
+	const size_t n = interp_nurbs_stops(e, &r, NULL, 0);
+	struct interp_nurbs_stop *s = malloc(n * sizeof(*s));
+	bool ok = s != NULL;
+
+	piece->curve = (uint32_t)p->b->curves.n - 1;
+	piece->nstops = (uint32_t)n;
+	piece->stops_at = p->b->stops.n;
+	if (ok)
+		interp_nurbs_stops(e, &r, s, n);
+	for (size_t i = 0; ok && i < n; i++) {
+		struct interp_nurbs_stop *at = build_table_add(&p->b->stops);
+
+		ok = at != NULL;
+		if (ok)
+			*at = s[i];
+	}
+	free(s);
+	return ok ? 0 : -ENOMEM;
+}
+
+/* Axis @k at @pulses, coming from @was: 1 if it leaps; or refused. */
+static int try_axis(struct curve_plan *p, uint32_t k, int32_t pulses,
+		    int32_t was)
+{
+	const int axis = p->curve.axis[k];
+	const double at_mm = pulses / p->pulses_mm[axis];
+
+	if (!build_axis_ok(p->b, axis, at_mm)) {
+		build_curve_blame(p, p->from);
+		return build_refuse_travel(p->b->o.machine, axis, at_mm,
+					   p->diag);
+	}
+	return pulses - was > 1 || pulses - was < -1;
+}
+
+/* Does no axis leap, and none leave its travel?  1 if one leaps. */
+static int try_places(struct curve_plan *p, const double end_mm[INTERP_NAXES])
+{
+	struct interp_curve_walk *w = &p->walk;
+	int32_t was[INTERP_NAXES];
+	int r = 0;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++)
+		was[k] = interp_round_sub(p->b->here[p->curve.axis[k]]);
+	for (uint32_t i = 1; r == 0 && i <= w->places; i++) {
+		if (i < w->places)
+			pulse_curve_place(w, p->pulses_mm, i);
+		for (uint32_t k = 0; r == 0 && k < p->curve.naxes; k++) {
+			const int axis = p->curve.axis[k];
+
+			if (i == w->places)
+				w->pos[k] = interp_round_sub(llround(
+					end_mm[axis] * p->b->sub_mm[axis]));
+			r = try_axis(p, k, w->pos[k], was[k]);
+			was[k] = w->pos[k];
+		}
+	}
+	return r;
+}
+
+/* Places enough: 0, or what refuses. */
+static int find_places(struct curve_plan *p, const struct interp_piece *piece,
+		       const double end_mm[INTERP_NAXES])
+{
+	const struct interp_nurbs_stop *stops = stops_of(p, piece);
+	const double length_mm = stops[piece->nstops - 1].s_mm;
+	double places = ceil(length_mm * p->rate * MARGIN *
+			     (p->turns > 1 ? 2 : 1)) + 1;
+
+	for (int i = 0; i < TRIES; i++) {
+		int r;
+
+		p->tried += places;
+		if (places * p->turns > INTERP_PULSES_MAX ||
+		    p->tried > TRIED_MAX)
+			break;
+		pulse_curve_aim(&p->walk, stops, piece->nstops,
+				(uint32_t)places, length_mm);
+		r = try_places(p, end_mm);
+		if (r <= 0)
+			return r;
+		places = ceil(places * 1.2);
+	}
+	return build_curve_refuse(p, "a curve with too many pulses for one "
+				  "segment", "a shorter curve");
+}
+
+uint32_t build_curve_line(struct curve_plan *p, double u)
+{
+	const struct interp_build_curve *c = p->c;
+
+	if (c->nmarks == 0)
+		return p->word.line;
+	while (p->mark + 1 < c->nmarks && c->marks[p->mark + 1].u <= u)
+		p->mark++;
+	return c->marks[p->mark].line;
+}
+
+/* The end of the curve is its last control point, without a rounding. */
+static void end_of(struct curve_plan *p, double to,
+		   double end_mm[INTERP_NAXES])
+{
+	const struct interp_nurbs *n = &p->walk.eval.c;
+	struct interp_nurbs_point at;
+
+	memcpy(end_mm, p->b->here_mm, sizeof(p->b->here_mm));
+	interp_nurbs_at(&p->walk.eval, to, 0, &at);
+	for (uint32_t k = 0; k < n->naxes; k++)
+		end_mm[p->curve.axis[k]] = at.d[0][k];
+}
+
+static int piece_add(struct curve_plan *p, double to)
+{
+	double end_mm[INTERP_NAXES];
+	struct build_step step = { .seg = { .kind = INTERP_CURVE },
+				   .moved = p->moved, .end_mm = end_mm };
+	struct interp_piece piece, *stored;
+	int r = add_stops(p, to, &piece);
+
+	if (r < 0)
+		return r;
+	end_of(p, to, end_mm);
+	step.seg.length_mm = stops_of(p, &piece)[piece.nstops - 1].s_mm;
+	/* The curve stands still here. */
+	if (!(step.seg.length_mm > 0))
+		return 0;
+	r = find_places(p, &piece, end_mm);
+	if (r < 0)
+		return r;
+	step.seg.ticks = p->walk.places * p->turns;
+	step.seg.arg = (uint32_t)p->b->pieces.n;
+	stored = build_table_add(&p->b->pieces);
+	if (!stored)
+		return -ENOMEM;
+	*stored = piece;
+	step.feed_max_mm_s = feed_of(p);
+	p->word.line = build_curve_line(p, p->from);
+	return build_step(p->b, &step, &p->word, p->diag);
+}
+
+static void piece_begin(struct curve_plan *p, double u)
+{
+	p->from = u;
+	p->rate = p->bend = 0;
+	p->least_mm_s = p->most_mm_s = look(p, u);
+}
+
+/* The piece goes on to @u, if its feeds stay near enough; else it ends where
+ * the last look was. */
+static int piece_extend(struct curve_plan *p, double last, double u)
+{
+	const double bend = p->bend, rate = p->rate, feed = look(p, u);
+	int r = 0;
+
+	if (last > p->from && fmax(p->most_mm_s, feed) >
+			      FEED_RATIO * fmin(p->least_mm_s, feed)) {
+		p->bend = bend;
+		p->rate = rate;
+		r = piece_add(p, last);
+		piece_begin(p, last);
+		look(p, u);
+	}
+	p->least_mm_s = fmin(p->least_mm_s, feed);
+	p->most_mm_s = fmax(p->most_mm_s, feed);
+	return r;
+}
+
+static int piece_end(struct curve_plan *p, double u)
+{
+	const int r = u > p->from ? piece_add(p, u) : 0;
+
+	piece_begin(p, u);
+	return r;
+}
+
+/* -- Along the curve ------------------------------------------------------------ */
+
+/* Between two looks of a span the direction has turned back: where? */
+static double cusp_of(const struct interp_nurbs_eval *e, double from,
+		      double to)
+{
+	struct interp_nurbs_point a, b;
+
+	nurbs_span_at(e, from, 1, &a);
+	for (int i = 0; i < CUSP_HALVINGS; i++) {
+		const double middle = (from + to) / 2;
+
+		nurbs_span_at(e, middle, 1, &b);
+		if (interp_nurbs_dot(&e->c, a.d[1], b.d[1]) > 0)
+			from = middle;
+		else
+			to = middle;
+	}
+	return to;
+}
+
+static int along_look(struct curve_plan *p, double last, double u)
+{
+	const struct interp_nurbs_eval *e = &p->walk.eval;
+	struct interp_nurbs_point a, b;
+	int r = 0;
+
+	interp_nurbs_at(&p->walk.eval, last, 1, &a);
+	nurbs_span_at(e, u, 1, &b);
+	if (interp_nurbs_dot(&e->c, a.d[1], b.d[1]) < 0) {
+		const double cusp = cusp_of(e, last, u);
+
+		if (cusp > last && cusp < u) {
+			r = piece_extend(p, last, cusp);
+			r = r == 0 ? piece_end(p, cusp) : r;
+			last = cusp;
+		}
+	}
+	return r == 0 ? piece_extend(p, last, u) : r;
+}
+
+/* May the curve have a corner at @u? */
+static bool corner_at(const struct interp_nurbs *c, double u)
+{
+	uint32_t n = 0;
+
+	for (uint32_t i = interp_nurbs_span(c, u); c->knots[i] == u; i--) {
+		n++;
+		if (i == 0)
+			break;
+	}
+	return n >= c->degree;
+}
+
+static int along(struct curve_plan *p)
+{
+	struct interp_nurbs_eval *e = &p->walk.eval;
+	double last = interp_nurbs_first(&e->c);
+	const double end = interp_nurbs_last(&e->c);
+	struct interp_nurbs_point at;
+	int r = 0;
+
+	piece_begin(p, last);
+	while (r == 0 && last < end) {
+		double to, from = last;
+
+		interp_nurbs_at(e, last, 0, &at);
+		to = e->to;
+		for (int i = 1; r == 0 && i <= LOOKS; i++) {
+			const double u = i < LOOKS ? from + (to - from) * i /
+						     LOOKS : to;
+
+			r = along_look(p, last, u);
+			last = u;
+		}
+		if (r == 0 && (last >= end || corner_at(&e->c, last)))
+			r = piece_end(p, last);
+	}
+	return r;
+}
+
+int interp_build_curve(struct interp_build *b,
+		       const struct interp_build_curve *c,
+		       const struct interp_build_word *w,
+		       struct interp_diag *diag)
+{
+	struct curve_plan p = { .b = b, .c = c, .word = *w, .diag = diag,
+				.here_mm = b->here_mm };
+	struct interp_nurbs n;
+	int r = interp_build_flush(b, diag);
+
+	if (r == 0)
+		r = build_curve_check(&p);
+	if (r == 0)
+		r = build_curve_store(b, c, &p.curve, &p.moved);
+	if (r < 0 || p.curve.naxes == 0)
+		return r;
+	n = (struct interp_nurbs) {
+		.degree = p.curve.degree, .naxes = p.curve.naxes,
+		.npoints = p.curve.npoints, .counted = p.curve.counted,
+		.others = p.curve.others,
+		.knots = (double *)b->numbers.at + p.curve.knots_at,
+		.points = (double *)b->numbers.at + p.curve.points_at,
+	};
+	interp_nurbs_open(&p.walk.eval, &n);
+	memcpy(p.walk.axis, p.curve.axis, sizeof(p.walk.axis));
+	p.turns = b->o.strategy == INTERP_SIMULTANEOUS ||
+		  b->o.strategy == INTERP_DDA ? 1 : n.naxes;
+	set_limits(&p);
+	r = build_curve_check_way(&p);
+	return r == 0 ? along(&p) : r;
+}

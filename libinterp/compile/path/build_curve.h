@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_curve.h - a NURBS among those of the program
+ *
+ * Private to libinterp/compile/path.
+ */
+#ifndef PATH_BUILD_CURVE_H
+#define PATH_BUILD_CURVE_H
+
+#include "interp/build.h"
+#include "interp/nurbs_feed.h"
+#include "pulse/pulse.h"
+
+/**
+ * build_curve_store() - add the axes of a sound curve that move, and its knots.
+ *
+ * @ret gets it as stored, of no axes if none moves; @ret_moved a bit for each
+ * axis.  Return: 0 or -ENOMEM.
+ */
+int build_curve_store(struct interp_build *b, const struct interp_build_curve *c,
+		      struct interp_curve *ret, uint32_t *ret_moved);
+
+/* A NURBS while it is cut into segments. */
+struct curve_plan {
+	struct interp_build *b;
+	const struct interp_build_curve *c;
+	struct interp_build_word word;
+	struct interp_diag *diag;
+	struct interp_curve curve;	/* as stored */
+	const double *here_mm;		/* where the program stands */
+	struct interp_nurbs_limits limits;	/* of the axes */
+	double chord_mm_s;		/* the fastest round a radius of 1 mm
+					 * within the chord error */
+	double pulses_mm[INTERP_NAXES], pulse_mm;	/* the finest */
+	double slowest_mm_s;
+	uint32_t moved, turns;
+	struct interp_curve_walk walk;
+	size_t mark;
+	double tried;			/* places so far */
+	/* The piece in hand: */
+	double from, least_mm_s, most_mm_s, bend, rate;
+};
+
+/** build_curve_refuse() - fill diag; -EINVAL. */
+int build_curve_refuse(struct curve_plan *p, const char *found,
+		       const char *wanted);
+
+/** build_curve_blame() - the line of diag is that of the curve at @u. */
+void build_curve_blame(struct curve_plan *p, double u);
+
+/** build_curve_line() - the line of the curve at @u, which never falls. */
+uint32_t build_curve_line(struct curve_plan *p, double u);
+
+/** build_curve_check() - is it sound?  0, or -EINVAL with diag filled. */
+int build_curve_check(struct curve_plan *p);
+
+/** build_curve_check_start() - does it begin where the program stands?  Of an
+ *  opened curve; 0, or -EINVAL with diag filled. */
+int build_curve_check_start(struct curve_plan *p);
+
+/**
+ * build_curve_check_way() - has the machine its axes, does it begin where the
+ * program stands, does it keep to the travel?  Of a stored curve.
+ * Return: 0, or -EINVAL with diag filled.
+ */
+int build_curve_check_way(struct curve_plan *p);
+
+#endif /* PATH_BUILD_CURVE_H */

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * builder.h - what a program is while it is put together
+ *
+ * Private to libinterp/compile/path.
+ */
+#ifndef PATH_BUILDER_H
+#define PATH_BUILDER_H
+
+#include "interp/build.h"
+#include "path/build_rule.h"
+
+struct table {
+	void *at;
+	size_t n, room, size;
+};
+
+/* Lines held back: see build_fit.c. */
+struct build_fit {
+	double *end_mm;			/* rows of all axes; the start first */
+	uint32_t *lines;		/* of the source */
+	uint32_t n;			/* points; 0: nothing held */
+	struct interp_build_word word;
+};
+
+/* Motions in a row along one linear axis alone, up to here. */
+struct build_descent {
+	int axis;			/* -1: none */
+	double first_mm, low_mm, high_mm;	/* where it began; its extent */
+};
+
+struct interp_build {
+	struct interp_build_options o;
+	double here_mm[INTERP_NAXES];
+	int64_t here[INTERP_NAXES];	/* the same in subpulses */
+	int64_t first[INTERP_NAXES];
+	double sub_mm[INTERP_NAXES];	/* subpulses per mm */
+	double inside_mm[INTERP_NAXES][2];	/* travel less a pulse: good
+					 * without a closer look */
+	uint8_t column[INTERP_NAXES];
+	uint32_t naxes, columns;	/* columns: mask of axes */
+	uint32_t loose;			/* axes moved by what the machine says */
+	double length_mm;
+	struct table segs, nodes, arcs;	/* nodes: n counts columns */
+	struct table conds, escapes, runs, couples, bits;
+	struct table curves, pieces, stops, numbers;
+	struct build_fit fit;
+	char cond_letter;
+	uint32_t cond_number;
+	uint16_t cond;
+	struct build_descent descent;
+	uint16_t escape;		/* set by interp_build_escape() */
+	uint16_t stand_escape;		/* of the last motion */
+	int lift_axis;			/* -1: none */
+	size_t timed;			/* the INTERP_TIMED last begun */
+	int64_t timed_at[INTERP_NAXES];	/* where, subpulses */
+	const struct interp_tech *tech;	/* what cond was made of */
+};
+
+/** build_table_add() - room for one more; NULL: out of memory. */
+void *build_table_add(struct table *t);
+
+/* How far a motion goes. */
+struct build_measure {
+	uint32_t moved;			/* mask of axes */
+	double length_mm;
+	double seconds;			/* at every axis's own v_max */
+	int64_t longest;		/* subpulses */
+};
+
+/**
+ * build_measure() - how far every axis goes to @end_mm; @to gets it in
+ * subpulses.
+ * Return: 0, or -EINVAL with @diag filled if one would leave its travel.
+ */
+int build_measure(const struct interp_build *b,
+		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
+		  struct build_measure *ret, struct interp_diag *diag);
+
+/** build_measure_next() - the same, of a motion that lines held back end at:
+ *  they are added first. */
+int build_measure_next(struct interp_build *b,
+		       const double end_mm[INTERP_NAXES],
+		       int64_t to[INTERP_NAXES], struct build_measure *ret,
+		       struct interp_diag *diag);
+
+/** build_mm() - subpulses as mm. */
+void build_mm(const struct interp_build *b, const int64_t at[INTERP_NAXES],
+	      double ret_mm[INTERP_NAXES]);
+
+/** build_way_to() - from here to @to, as the strategies see it. */
+struct build_way build_way_to(const struct interp_build *b,
+			      const int64_t to[INTERP_NAXES],
+			      const struct build_measure *m);
+
+/** build_seg_feed() - feed words: as programmed, and the fastest its axes
+ *  allow. */
+void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
+		    double feed_max_mm_s);
+
+/** build_columns() - a column for each axis in @moved.  0 or -ENOMEM. */
+int build_columns(struct interp_build *b, uint32_t moved);
+
+/** build_stand_at() - the path ends at @end_mm, which is @to in subpulses. */
+void build_stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		    const int64_t to[INTERP_NAXES]);
+
+/**
+ * build_seg_finish() - add @seg with what is the same for every segment: line,
+ * condition, place, end node.
+ * Return: 0, -ENOMEM, or -EINVAL with @diag filled.
+ */
+int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
+		     const struct interp_build_word *w,
+		     struct interp_diag *diag);
+
+/* A segment whose way is known. */
+struct build_step {
+	struct interp_seg seg;
+	double feed_max_mm_s;
+	uint32_t moved;			/* bit per axis that moves on the way */
+	const double *end_mm;		/* of all axes */
+};
+
+/** build_step() - add it; the path stands at its end. */
+int build_step(struct interp_build *b, const struct build_step *s,
+	       const struct interp_build_word *w, struct interp_diag *diag);
+
+/** build_line() - interp_build_line(), at once. */
+int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
+	       const struct interp_build_word *w, struct interp_diag *diag);
+
+/** build_fit_add() - hold a line back. */
+int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		  const struct interp_build_word *w, struct interp_diag *diag);
+
+/** build_axis_ok() - may axis @axis stand at @at_mm? */
+bool build_axis_ok(const struct interp_build *b, int axis, double at_mm);
+
+/** build_descend() - a motion of the axes in @moved to @end_mm is next. */
+void build_descend(struct interp_build *b, uint32_t moved,
+		   const double end_mm[INTERP_NAXES]);
+
+/** build_escape_of() - the escape of that motion: its index. */
+uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
+			 const double end_mm[INTERP_NAXES]);
+
+#endif /* PATH_BUILDER_H */

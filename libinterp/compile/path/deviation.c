@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * deviation.c - how far a lattice point lies from the programmed path
+ */
+#include "interp/cursor.h"
+#include "pulse/pulse.h"
+
+#include <math.h>
+
+/* All linear axes, or if none of them moves, all. */
+static uint32_t length_axes(const struct interp_cursor *c)
+{
+	const uint32_t linear = 1u << INTERP_X | 1u << INTERP_Y |
+				1u << INTERP_Z | 1u << INTERP_U |
+				1u << INTERP_V;
+	uint32_t moved = 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		if (pulse_node(c, j, false) != pulse_node(c, j, true))
+			moved |= 1u << c->p.head->column[j];
+	}
+	if (c->seg.kind == INTERP_ARC)
+		moved |= 1u << c->arc.axis_a | 1u << c->arc.axis_b;
+	for (uint32_t j = 0; c->seg.kind == INTERP_CURVE &&
+	     j < c->curve.eval.c.naxes; j++)
+		moved |= 1u << c->curve.axis[j];
+	return moved & linear ? linear : ~0u;
+}
+
+static double node_mm(const struct interp_cursor *c, uint32_t j, bool at_end)
+{
+	return (double)pulse_node(c, j, at_end) / INTERP_SUB *
+	       c->p.head->pulse_mm[c->p.head->column[j]];
+}
+
+/* Where the point's foot on the line is, as a share of it. */
+static double line_foot(const struct interp_cursor *c, uint32_t axes)
+{
+	double d2 = 0, dr = 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+		const double from = node_mm(c, j, false);
+		const double d = node_mm(c, j, true) - from;
+		const double r = c->pos[axis] * c->p.head->pulse_mm[axis] -
+				 from;
+
+		if (!(axes & 1u << axis))
+			continue;
+		d2 += d * d;
+		dr += d * r;
+	}
+	return !(d2 > 0) || dr <= 0 ? 0 : dr >= d2 ? 1 : dr / d2;
+}
+
+/* Square to the line from node to node, axis by axis from the foot: no large
+ * squares are subtracted. */
+static double line_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	const double t = line_foot(c, axes);
+	double r2 = 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+		const double from = node_mm(c, j, false);
+		const double d = node_mm(c, j, true) - from;
+		const double r = c->pos[axis] * c->p.head->pulse_mm[axis] -
+				 from - t * d;
+
+		if (axes & 1u << axis)
+			r2 += r * r;
+	}
+	return sqrt(r2);
+}
+
+/* Squared distance from the point at share @t of the arc. */
+static double arc_gap2(const struct interp_cursor *c, uint32_t axes, double t)
+{
+	const struct interp_arc *arc = &c->arc;
+	const double *pulse = c->p.head->pulse_mm;
+	const double theta = arc->theta + arc->sweep * t;
+	const double r = arc->r_mm + arc->dr_mm * t;
+	const double a = c->pos[arc->axis_a] * pulse[arc->axis_a] -
+			 arc->a_mm - r * cos(theta);
+	const double b = c->pos[arc->axis_b] * pulse[arc->axis_b] -
+			 arc->b_mm - r * sin(theta);
+	double d2 = a * a + b * b;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+		const double from = node_mm(c, j, false);
+		const double off = c->pos[axis] * pulse[axis] - from -
+				   (node_mm(c, j, true) - from) * t;
+
+		if (axis != arc->axis_a && axis != arc->axis_b &&
+		    axes & 1u << axis)
+			d2 += off * off;
+	}
+	return d2;
+}
+
+/* A helix's nearest place lies near the point's own: a few ticks, or, where
+ * it is steep, less than a quarter of a radian. */
+static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	const double at = (double)c->measure / (double)c->whole;
+	const double near = fmax(16.0 / c->seg.ticks,
+				 fmin(0.25 / fabs(c->arc.sweep), 1));
+	double lo = fmax(at - near, 0), hi = fmin(at + near, 1);
+
+	for (int i = 0; i < 40; i++) {
+		const double third = (hi - lo) / 3;
+
+		if (arc_gap2(c, axes, lo + third) <
+		    arc_gap2(c, axes, hi - third))
+			hi -= third;
+		else
+			lo += third;
+	}
+	return sqrt(arc_gap2(c, axes, (lo + hi) / 2));
+}
+
+/*
+ * Off the circle, in its plane.  Where the two ends are off one circle by a
+ * rounding, `simultaneous` walks the spiral between them; the other strategies
+ * keep to the start's circle, and what lies between the two radii is on the
+ * arc.
+ */
+static double circle_deviation(const struct interp_cursor *c,
+			       const struct interp_arc *arc)
+{
+	const double *pulse = c->p.head->pulse_mm;
+	const double at = c->whole ? (double)c->measure / (double)c->whole : 0;
+	const double r = hypot(c->pos[arc->axis_a] * pulse[arc->axis_a] -
+			       arc->a_mm,
+			       c->pos[arc->axis_b] * pulse[arc->axis_b] -
+			       arc->b_mm) - arc->r_mm;
+
+	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
+		return fabs(r - arc->dr_mm * at);
+	return fmax(fmax(r - fmax(arc->dr_mm, 0), fmin(arc->dr_mm, 0) - r), 0);
+}
+
+static double arc_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	const struct interp_arc *arc = &c->arc;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+
+		if (axis != arc->axis_a && axis != arc->axis_b &&
+		    axes & 1u << axis && c->whole &&
+		    pulse_node(c, j, false) != pulse_node(c, j, true))
+			return helix_deviation(c, axes);
+	}
+	return circle_deviation(c, arc);
+}
+
+/* Off the contour the length is counted on. */
+static double pair_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	const uint32_t xy = 1u << INTERP_X | 1u << INTERP_Y;
+	const struct interp_arc *xy_arc = &c->couple.side[0];
+	const struct interp_arc *arc = xy_arc->r_mm > 0 || axes & xy ? xy_arc :
+				       &c->couple.side[1];
+
+	return arc->r_mm > 0 ? circle_deviation(c, arc) :
+			       line_deviation(c, 1u << arc->axis_a |
+						 1u << arc->axis_b);
+}
+
+/* The nearest place lies a few pulses from the point's own. */
+static double curve_deviation(const struct interp_cursor *c, uint32_t axes)
+{
+	struct interp_curve_walk k = c->curve;
+	const double at = k.place_mm * c->tick / k.turns;
+	double lo = fmax(at - 8 * k.place_mm, 0);
+	double hi = fmin(at + 8 * k.place_mm, c->seg.length_mm);
+
+	for (int i = 0; i < 32; i++) {
+		const double third = (hi - lo) / 3;
+
+		if (pulse_curve_gap2(c, &k, axes, lo + third) <
+		    pulse_curve_gap2(c, &k, axes, hi - third))
+			hi -= third;
+		else
+			lo += third;
+	}
+	return sqrt(pulse_curve_gap2(c, &k, axes, (lo + hi) / 2));
+}
+
+double interp_cursor_deviation_mm(const struct interp_cursor *c)
+{
+	const uint32_t axes = length_axes(c);
+
+	if (c->seg.kind == INTERP_PAIR)
+		return pair_deviation(c, axes);
+	if (c->seg.kind == INTERP_CURVE)
+		return curve_deviation(c, axes);
+	return c->seg.kind == INTERP_ARC ? arc_deviation(c, axes) :
+					   line_deviation(c, axes);
+}

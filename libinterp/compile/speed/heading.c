@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * heading.c - which way a segment sets out, and which way it arrives
+ */
+#include "speed/heading.h"
+
+#include <math.h>
+
+static uint32_t columns_of(const struct interp_program *p, uint32_t axes)
+{
+	uint32_t columns = 0;
+
+	for (uint32_t j = 0; j < p->head->naxes; j++)
+		columns |= (axes >> p->head->column[j] & 1) << j;
+	return columns;
+}
+
+void heading_ways_init(struct ways *w, const struct interp_program *p)
+{
+	*w = (struct ways) {
+		.p = p,
+		.xyz = columns_of(p, 1u << INTERP_X | 1u << INTERP_Y |
+				     1u << INTERP_Z),
+		.uv = columns_of(p, 1u << INTERP_U | 1u << INTERP_V),
+	};
+	for (uint32_t j = 0; j < p->head->naxes; j++)
+		w->sub_mm[j] = p->head->pulse_mm[p->head->column[j]] /
+			       INTERP_SUB;
+}
+
+/* Those that the length of a path is made of, as program.h says. */
+static uint32_t along_of(const struct ways *w, uint32_t moving)
+{
+	return moving & w->xyz ? w->xyz :
+	       moving & w->uv ? w->uv : ~(w->xyz | w->uv);
+}
+
+/* From node to node; @ret_moving: columns that do. */
+static void straight(const struct ways *w, uint32_t i, struct heading *h,
+		     uint32_t *ret_moving)
+{
+	const uint32_t n = w->p->head->naxes;
+	const int64_t *from = w->p->nodes + (uint64_t)i * n, *to = from + n;
+	const double per_mm = 1 / w->p->segs[i].length_mm;
+
+	*ret_moving = 0;
+	for (uint32_t j = 0; j < n; j++) {
+		const int64_t d = to[j] - from[j];
+
+		h->rate[j] = (double)d * per_mm * w->sub_mm[j];
+		*ret_moving |= (uint32_t)(d != 0) << j;
+	}
+}
+
+static uint32_t column(const struct interp_program *p, uint32_t axis)
+{
+	uint32_t j = 0;
+
+	while (j + 1 < p->head->naxes && p->head->column[j] != axis)
+		j++;
+	return j;
+}
+
+/* At the angle @turned on: along the circle, and outward as it grows. */
+static void tangent(const struct interp_program *p, const struct interp_arc *arc,
+		    double turned, double length_mm, struct heading *h)
+{
+	const double r = arc->r_mm + arc->dr_mm * turned / arc->sweep;
+	const double angle = arc->theta + turned;
+	const double round = arc->sweep * r / length_mm;
+	const double out = arc->dr_mm / length_mm;
+
+	h->rate[column(p, arc->axis_a)] = out * cos(angle) - round * sin(angle);
+	h->rate[column(p, arc->axis_b)] = out * sin(angle) + round * cos(angle);
+}
+
+static void bend(struct headings *h, const struct interp_arc *arc,
+		 double length_mm)
+{
+	const double r = fmin(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double share = fabs(arc->sweep) *
+			     fmax(arc->r_mm, arc->r_mm + arc->dr_mm) /
+			     length_mm;
+
+	/* Of two, the one that is the sooner too fast: v*v*share^2/r. */
+	if (h->bend_mm > 0 && h->share * h->share * r > share * share * h->bend_mm)
+		return;
+	h->bend_mm = r;
+	h->share = share;
+}
+
+static void round_arc(const struct interp_program *p,
+		      const struct interp_arc *arc, double length_mm,
+		      struct headings *h)
+{
+	if (!(arc->r_mm > 0) || arc->sweep == 0)
+		return;
+	tangent(p, arc, 0, length_mm, &h->first);
+	tangent(p, arc, arc->sweep, length_mm, &h->last);
+	bend(h, arc, length_mm);
+}
+
+/* Its own ways at both ends; its feed knows how it bends. */
+static void round_curve(const struct ways *w, const struct interp_seg *s,
+			struct headings *h)
+{
+	const struct interp_program *p = w->p;
+	const struct interp_curve *c = &p->curves[p->pieces[s->arg].curve];
+	uint32_t axes = 0;
+
+	for (uint32_t k = 0; k < c->naxes && k < INTERP_NAXES; k++)
+		axes |= 1u << (c->axis[k] % INTERP_NAXES);
+	h->first.along = h->last.along = along_of(w, columns_of(p, axes));
+	interp_program_curve_rate(p, s, false, h->first.rate);
+	interp_program_curve_rate(p, s, true, h->last.rate);
+}
+
+void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
+{
+	const struct interp_program *p = w->p;
+	const struct interp_seg *s = &p->segs[i];
+	uint32_t moving;
+
+	straight(w, i, &ret->first, &moving);
+	ret->bend_mm = 0;
+	if (s->kind == INTERP_ARC)
+		moving |= columns_of(p, 1u << p->arcs[s->arg].axis_a |
+					1u << p->arcs[s->arg].axis_b);
+	if (s->kind == INTERP_PAIR && p->couples[s->arg].side[0].r_mm > 0)
+		moving |= columns_of(p, 1u << INTERP_X);
+	ret->first.along = along_of(w, moving);
+	ret->last = ret->first;
+	if (s->kind == INTERP_ARC)
+		round_arc(p, &p->arcs[s->arg], s->length_mm, ret);
+	if (s->kind == INTERP_CURVE)
+		round_curve(w, s, ret);
+	if (s->kind != INTERP_PAIR)
+		return;
+	for (int k = 0; k < 2; k++)
+		round_arc(p, &p->couples[s->arg].side[k], s->length_mm, ret);
+}

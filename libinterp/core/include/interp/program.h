@@ -1,0 +1,324 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * program.h - a compiled program: one flat block of segments, nodes and arcs
+ *
+ * A program is a path.  Segment i leads from node i to node i+1; a segment of
+ * no length (dwell, stop, switched output) has two equal nodes and is an
+ * *action*, done when the walk first comes to it.  The block holds offsets
+ * only, no pointers: the job service writes it into shared memory once, the
+ * real-time process maps it read-only.
+ *
+ *	head | segments[nsegs] | nodes[nsegs + 1][naxes] | arcs[narcs]
+ *	     | conditions[nconds] | escapes[nescapes] | couples[ncouples]
+ *	     | bits[nbits] | curves[ncurves] | pieces[npieces]
+ *	     | stops[nstops] | numbers[nnumbers] | runs[nruns]
+ *
+ * Nodes are fixed-point: 1 pulse = INTERP_SUB subpulses, so a programmed
+ * point finer than a pulse is kept, and there and back is exact.  A node has
+ * one column for every axis that the program moves; the others stand.
+ *
+ * Units: mm, mm/s along the path; rotary axes in degrees.  Path length is
+ * that of X Y Z; if none of them moves, that of U V; else of A B C (degrees).
+ * Threads: a mapped program is never written; any thread may read it.
+ */
+#ifndef INTERP_PROGRAM_H
+#define INTERP_PROGRAM_H
+
+#include "interp/axis.h"
+#include "interp/mcode_arg.h"
+#include "interp/nurbs_length.h"
+#include "interp/tech.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define INTERP_SUB_BITS		16
+#define INTERP_SUB		(1 << INTERP_SUB_BITS)
+
+#define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
+#define INTERP_PROGRAM_VERSION	5
+
+/* How a path becomes pulses. */
+enum interp_strategy {
+	INTERP_SIMULTANEOUS,		/* every axis may pulse at once */
+	/* One axis, one pulse at a time, but for the dda; see pulse/pair.h: */
+	INTERP_POINT_BY_POINT,		/* toward the line, within a pulse */
+	INTERP_CENTRED,			/* as near as one axis at a time can */
+	INTERP_DDA,			/* an accumulator for each axis */
+	INTERP_MAIN_DIRECTION,		/* the main axis as far as mu allows */
+	INTERP_MIN_SWITCH,		/* few changes of axis, within mu */
+	INTERP_NSTRATEGIES
+};
+
+/*
+ * How three and more axes make a line, one at a time.  Point-by-point is a
+ * tree always; two axes are the same in each; simultaneous and dda need none.
+ */
+enum interp_coupling {
+	INTERP_STAR,			/* each axis against the longest one */
+	INTERP_TREE,			/* pairs of pairs, (((X,Y),(Z,A)),(B,C)) */
+	INTERP_TUBE,			/* a star whose axes share their stops:
+					 * min-switch only */
+	INTERP_NCOUPLINGS
+};
+
+/* The widest tolerance: keeps every product of a line inside int64_t. */
+#define INTERP_TOLERANCE_MAX	1000000		/* 1/1000 pulse */
+
+enum interp_kind {
+	INTERP_LINE,
+	INTERP_ARC,			/* circular or helical; arg: arc index */
+	INTERP_PAIR,			/* X Y and U V, each a line or an arc;
+					 * arg: couple index */
+	INTERP_CURVE,			/* part of a NURBS; arg: piece index */
+	/* From here on: actions, of no length. */
+	INTERP_BEGIN,			/* always the first, does nothing */
+	INTERP_DWELL,			/* arg: milliseconds */
+	INTERP_STOP,			/* M0: hold until resumed */
+	INTERP_OPTIONAL_STOP,		/* M1 */
+	INTERP_AUX,			/* arg: enum interp_aux */
+	INTERP_MCODE,			/* the PLC's; arg: interp/mcode_arg.h */
+	INTERP_TIMED,			/* what is up to segment arg, which ends
+					 * where it begins, has a time ... */
+	INTERP_TIMED_END,		/* ... of arg milliseconds */
+	INTERP_END,			/* always the last: M2, M30, end of text */
+	INTERP_NKINDS
+};
+
+/* Outputs a program may switch. */
+enum interp_aux {
+	INTERP_AUX_POWER_OFF,		/* M5: cut without power from here on */
+	INTERP_AUX_POWER_POSITIVE,	/* M3: electrode positive */
+	INTERP_AUX_POWER_NEGATIVE,	/* M4: electrode negative */
+	INTERP_AUX_PUMP_ON,		/* T84: dielectric on */
+	INTERP_AUX_PUMP_OFF,		/* T85 */
+	INTERP_NAUX
+};
+
+#define INTERP_SEG_RAPID	0x01	/* G0: positioned, not eroded */
+
+/* Straight lines that end where the machine says, not where they lead to: what
+ * is left of them is not walked, and moves all that follows.  Without power. */
+#define INTERP_SEG_TOUCH	0x02	/* at contact */
+#define INTERP_SEG_HALF		0x04	/* between the last two contacts along
+					 * its axis */
+#define INTERP_SEG_LIMIT	0x08	/* at the end of its axis's travel */
+#define INTERP_SEG_SENSED	0x0e	/* any of them */
+
+struct interp_seg {
+	double s_mm;			/* place of its first node on the path */
+	double length_mm;		/* 0 for an action */
+	float feed_mm_s;		/* as programmed; for a rapid, the ceiling */
+	float feed_max_mm_s;		/* the fastest any of its axes allows */
+	uint32_t line;			/* of the source text, from 1 */
+	uint32_t ticks;			/* lattice points after the first */
+	uint32_t arg;			/* by kind */
+	uint16_t cond;			/* conditions[cond]; 0 is "none called" */
+	uint8_t kind;			/* enum interp_kind */
+	uint8_t flags;			/* INTERP_SEG_* */
+	/* Written by compile/speed when the program is whole: limits.h */
+	float node_mm_s;		/* the fastest over its last node */
+	uint16_t slower_ahead;		/* so many segments on is one that is
+					 * entered slower than this one */
+	uint16_t slower_behind;		/* the same, going back; 0: none */
+	uint16_t slower_feed;		/* so many on has a smaller F; 0: none */
+	uint16_t escape;		/* escapes[escape]; 0 is "along the
+					 * path" */
+	uint32_t pad;
+};
+
+/*
+ * A circular arc in the plane (a, b), every other axis linear beside it.  The
+ * radius goes linearly from r_mm to r_mm + dr_mm, so that an end which is off
+ * the circle by a rounding is still met.
+ */
+struct interp_arc {
+	double a_mm, b_mm;		/* centre */
+	double r_mm, dr_mm;
+	double theta;			/* radian, from a toward b, at the start */
+	double sweep;			/* radian, signed; + is counter-clockwise */
+	/* But for simultaneous, see pulse/circle.c and pulse/dda.c: */
+	int64_t measure;		/* of the whole circle: area and ticks */
+	uint32_t circle_ticks;		/* pulses in the plane */
+	uint32_t tail;			/* ticks before the first forced pulse */
+	int32_t tail_a, tail_b;		/* forced pulses from there to the end */
+	uint32_t crossings;		/* of the axes through the centre */
+	uint32_t run_at, nruns;		/* runs[run_at ...], min-switch only */
+	int64_t rest_a, rest_b;		/* dda: accumulators before the tail */
+	uint32_t shift;			/* dda: their modulus is 2^shift */
+	uint8_t axis_a, axis_b;		/* enum interp_axis */
+	uint8_t run_first;		/* axis of the first run: 0 a, 1 b */
+	uint8_t pad;
+	uint32_t pad2;
+};
+
+/*
+ * Two contours walked together, as a tapered wire needs: side[0] on X Y,
+ * side[1] on U V.  A side of radius 0 is a straight line.  One axis at a time,
+ * bit k of the string at bits[bits_at] says whose tick k + 1 is: 0 for
+ * side[0], 1 for side[1].  The builder makes the string; the walk reads it
+ * both ways, so it needs no memory of its own.
+ */
+struct interp_couple {
+	struct interp_arc side[2];
+	uint64_t bits_at;		/* first word; ticks bits from there */
+};
+
+/*
+ * A NURBS that a program goes along, whole or in pieces.  Its knots and control
+ * points stand in numbers[], as interp/nurbs.h has them.
+ */
+struct interp_curve {
+	uint32_t degree, npoints;
+	uint32_t naxes, counted;
+	double others;
+	uint64_t knots_at, points_at;
+	uint8_t axis[INTERP_NAXES];	/* of each column */
+};
+
+/* What one segment goes along: from its first stop to its last. */
+struct interp_piece {
+	uint32_t curve;
+	uint32_t nstops;
+	uint64_t stops_at;
+};
+
+/* A technology condition called by the program, such as C120 or E001. */
+struct interp_cond {
+	uint32_t number;
+	char letter;			/* 'C', 'E' or 'S'; 0: none yet */
+	char pad[3];
+	struct interp_tech tech;	/* from a technology table, if it has
+					 * the condition; else nothing given */
+};
+
+/*
+ * A way out that is not the path's, in up to three straight legs: rise_mm
+ * toward out_mm; the axes in `home` to home_mm; those in `out` to out_mm.
+ * Each is free of material for as long as the segment is cut.
+ */
+struct interp_escape {
+	uint32_t home, out;		/* bit per axis; 0 and 0: along the
+					 * path */
+	double home_mm[INTERP_NAXES];	/* machine coordinates */
+	double out_mm[INTERP_NAXES];
+	double rise_mm;
+	double v_max_mm_s;		/* the fastest its axes allow */
+};
+
+/* Which way out is asked for, where it is known to be free. */
+enum interp_escape_mode {
+	INTERP_ESCAPE_PATH,		/* back along the path */
+	INTERP_ESCAPE_NORMAL,		/* square off the wall of an orbit, out */
+	INTERP_ESCAPE_CENTRE,		/* to the centre of an orbit, then out */
+	INTERP_ESCAPE_AXIS,		/* straight up where it came straight
+					 * down */
+	INTERP_NESCAPE_MODES
+};
+
+struct interp_program_head {
+	char magic[8];
+	uint32_t version;
+	uint32_t head_bytes;
+	uint64_t bytes;			/* of the whole block */
+	uint32_t nsegs, narcs, nconds, naxes;
+	uint64_t segs_at, nodes_at, arcs_at, conds_at;	/* bytes from the head */
+	uint8_t column[INTERP_NAXES];	/* axis of node column j, j < naxes */
+	uint32_t strategy;		/* enum interp_strategy */
+	uint32_t lines;			/* of the source text */
+	uint32_t tolerance_milli;	/* mu, 1/1000 pulse */
+	uint32_t perpendicular;		/* 1: mu is square to the line; 0: along
+					 * the secondary axis */
+	uint32_t coupling;		/* enum interp_coupling */
+	uint32_t nruns;			/* of arcs by min-switch */
+	uint64_t runs_at;		/* bytes from the head */
+	double length_mm;
+	uint64_t ncouples, couples_at;
+	uint64_t nbits, bits_at;		/* words of 64 bits */
+	uint64_t nescapes, escapes_at;	/* at least one: along the path */
+	uint64_t ncurves, curves_at, npieces, pieces_at;
+	uint64_t nstops, stops_at, nnumbers, numbers_at;
+	double pulse_mm[INTERP_NAXES];
+	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
+	uint8_t hash[32];		/* SHA-256 of the source text, or zeros */
+	char name[64];			/* of the job; NUL-terminated */
+};
+
+/** A view of a block; nothing in it is owned. */
+struct interp_program {
+	const struct interp_program_head *head;
+	const struct interp_seg *segs;
+	const int64_t *nodes;
+	const struct interp_arc *arcs;
+	const struct interp_cond *conds;
+	const struct interp_escape *escapes;
+	const int32_t *runs;		/* pulses in a row, signed */
+	const struct interp_couple *couples;
+	const uint64_t *bits;
+	const struct interp_curve *curves;
+	const struct interp_piece *pieces;
+	const struct interp_nurbs_stop *stops;
+	const double *numbers;
+};
+
+/**
+ * interp_program_map() - look at @bytes bytes at @block as a program.
+ *
+ * Checks the head, that every table lies inside the block, and the values of
+ * the conditions; the segments are checked one by one when a cursor enters
+ * them.
+ *
+ * Return: 0, or -EBADMSG.  Any thread.
+ */
+int interp_program_map(struct interp_program *p, const void *block,
+		       size_t bytes);
+
+/**
+ * interp_program_seg_ok() - is segment @i, copied to @seg, safe to walk?
+ *
+ * Finite numbers, known kind, arc index in range, nodes in range.  RT-safe.
+ */
+bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
+			   const struct interp_seg *seg);
+
+/**
+ * interp_program_curve() - curve @i as interp/nurbs.h has it; false if it is
+ * none that can be gone along.  Its knots and points are the program's.
+ * RT-safe.
+ */
+bool interp_program_curve(const struct interp_program *p, uint32_t i,
+			  struct interp_nurbs *ret);
+
+/**
+ * interp_program_curve_rate() - which way a segment of kind INTERP_CURVE sets
+ * out or arrives: @ret[j] is the way of node column j per mm of path.
+ *
+ * At a cusp it is the way on this segment's side of it.  Any thread; not for
+ * the cycle.  Return: false if the segment is not sound.
+ */
+bool interp_program_curve_rate(const struct interp_program *p,
+			       const struct interp_seg *seg, bool at_end,
+			       double ret[INTERP_NAXES]);
+
+/** interp_strategy_name() - "simultaneous", ...; NULL if unknown. Any thread. */
+const char *interp_strategy_name(enum interp_strategy s);
+
+/** interp_strategy_parse() - the reverse; -EINVAL if unknown. Any thread. */
+int interp_strategy_parse(const char *name);
+
+/** interp_coupling_name() - "star", ...; NULL if unknown. Any thread. */
+const char *interp_coupling_name(enum interp_coupling k);
+
+/** interp_coupling_parse() - the reverse; -EINVAL if unknown. Any thread. */
+int interp_coupling_parse(const char *name);
+
+/** interp_escape_mode_name() - "path", ...; NULL if unknown. Any thread. */
+const char *interp_escape_mode_name(enum interp_escape_mode m);
+
+/** interp_round_sub() - subpulses to the nearest pulse. RT-safe. */
+static inline int32_t interp_round_sub(int64_t sub)
+{
+	return (int32_t)((sub + INTERP_SUB / 2) >> INTERP_SUB_BITS);
+}
+
+#endif /* INTERP_PROGRAM_H */

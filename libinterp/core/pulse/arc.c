@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * arc.c - circular and helical arcs, every axis at once
+ *
+ * Tick k of N stands at the angle theta + sweep*k/N; the lattice point is the
+ * nearest one to the true point there, so each axis is within half a pulse.
+ * N is the arc's length in pulses and a little more: two ticks are less than
+ * a pulse apart, and no axis moves more than one.  A point is a function of k
+ * alone, so there is nothing to undo.  The axes beside the plane run as a
+ * line's do.
+ */
+#include "pulse/pulse.h"
+
+#include <math.h>
+
+struct plane {
+	int64_t a, b;			/* pulses */
+};
+
+/*
+ * Ticks go in blocks.  The middle of a block is placed by sin and cos, once,
+ * and its ticks are turned from there by a series: a few products instead of
+ * a call of libm.  16 ticks are less than 16 pulses along the arc, so with a
+ * radius of 160 pulses the angle is below 0.1 and the first term left out is
+ * below 3e-15.  The middle depends on the tick alone, so a point still does.
+ */
+#define BLOCK_BITS	5
+#define BLOCK_HALF	(1 << (BLOCK_BITS - 1))
+#define BLOCK_ANGLE	0.1
+
+static void block_enter(struct interp_cursor *c, uint32_t block)
+{
+	const double middle = (double)(block << BLOCK_BITS) + BLOCK_HALF;
+	const double theta = c->arc.theta + c->arc_turn * middle;
+
+	c->arc_block = block;
+	c->arc_cos = cos(theta);
+	c->arc_sin = sin(theta);
+}
+
+struct turn {
+	double cosine, sine;
+};
+
+static struct turn arc_turned(struct interp_cursor *c)
+{
+	const uint32_t block = c->tick >> BLOCK_BITS;
+	const double x = c->arc_turn *
+			 ((int)(c->tick & (2 * BLOCK_HALF - 1)) - BLOCK_HALF);
+	const double x2 = x * x;
+	const double s = x - x * x2 * (1.0 / 6 - x2 * (1.0 / 120 -
+						       x2 * (1.0 / 5040)));
+	const double k = 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 -
+				   x2 * (1.0 / 720 - x2 * (1.0 / 40320))));
+
+	if (block != c->arc_block)
+		block_enter(c, block);
+	return (struct turn) { c->arc_cos * k - c->arc_sin * s,
+			       c->arc_sin * k + c->arc_cos * s };
+}
+
+static struct turn arc_direct(const struct interp_cursor *c)
+{
+	const double theta = c->arc.theta + c->arc_turn * c->tick;
+
+	return (struct turn) { cos(theta), sin(theta) };
+}
+
+/* floor(x + 0.5), without a call. */
+static int64_t nearest(double x)
+{
+	const int64_t i = (int64_t)(x + 0.5);
+
+	return i - ((double)i > x + 0.5);
+}
+
+/* Where the plane's axes stand at tick c->tick. */
+static struct plane arc_at(struct interp_cursor *c)
+{
+	const struct interp_arc *arc = &c->arc;
+	const bool small = fabs(c->arc_turn) * BLOCK_HALF > BLOCK_ANGLE;
+	const struct turn at = small ? arc_direct(c) : arc_turned(c);
+	const double r = arc->r_mm + c->arc_grow_mm * c->tick;
+
+	return (struct plane) {
+		nearest((arc->a_mm + r * at.cosine) *
+			c->pulses_mm[arc->axis_a]),
+		nearest((arc->b_mm + r * at.sine) *
+			c->pulses_mm[arc->axis_b]),
+	};
+}
+
+/* The node's own pulses at either end: exact, whatever sin and cos say. */
+static struct plane arc_node(const struct interp_cursor *c, bool at_end)
+{
+	struct plane p = { 0, 0 };
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const int32_t at = interp_round_sub(pulse_node(c, j, at_end));
+
+		if (c->p.head->column[j] == c->arc.axis_a)
+			p.a = at;
+		if (c->p.head->column[j] == c->arc.axis_b)
+			p.b = at;
+	}
+	return p;
+}
+
+static uint32_t arc_settle(struct interp_cursor *c)
+{
+	const struct plane p = c->tick == 0 ? arc_node(c, false) :
+			       c->tick == c->seg.ticks ? arc_node(c, true) :
+			       arc_at(c);
+	int32_t *a = &c->pos[c->arc.axis_a], *b = &c->pos[c->arc.axis_b];
+	const int64_t da = p.a - *a, db = p.b - *b;
+
+	if (da > 1 || da < -1 || db > 1 || db < -1)
+		return PULSE_BAD;
+	*a = (int32_t)p.a;
+	*b = (int32_t)p.b;
+	return pulse_plane_move(c, (int32_t)da, (int32_t)db);
+}
+
+static bool near(double mm, double pulses_mm)
+{
+	return fabs(mm) * pulses_mm < INTERP_PULSES_MAX;
+}
+
+bool pulse_plane_ok(const struct interp_cursor *c)
+{
+	const struct interp_arc *arc = &c->arc;
+
+	return arc->axis_a < INTERP_NAXES && arc->axis_b < INTERP_NAXES &&
+	       arc->axis_a != arc->axis_b &&
+	       near(arc->a_mm, c->pulses_mm[arc->axis_a]) &&
+	       near(arc->b_mm, c->pulses_mm[arc->axis_b]) &&
+	       near(arc->r_mm, c->pulses_mm[arc->axis_a]) &&
+	       near(arc->r_mm, c->pulses_mm[arc->axis_b]) &&
+	       fabs(arc->dr_mm) <= fabs(arc->r_mm) && isfinite(arc->theta) &&
+	       isfinite(arc->sweep);
+}
+
+/* As many ticks as the builder gives, no more: no walk on the spot. */
+static bool ticks_ok(const struct interp_cursor *c, uint32_t plane)
+{
+	const struct interp_arc *arc = &c->arc;
+	const double pulses_mm = fmax(c->pulses_mm[arc->axis_a],
+				      c->pulses_mm[arc->axis_b]);
+	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double n = fmax((fabs(arc->sweep) * r + fabs(arc->dr_mm)) *
+			      pulses_mm, (double)pulse_longest(c, plane));
+
+	return c->seg.ticks > 0 && c->seg.ticks <= n * 1.00001 + 3;
+}
+
+static bool arc_enter(struct interp_cursor *c, bool at_end)
+{
+	uint32_t plane;
+
+	if (!pulse_plane_ok(c))
+		return false;
+	plane = 1u << c->arc.axis_a | 1u << c->arc.axis_b;
+	if (!pulse_dda_enter(c, at_end, plane) || !ticks_ok(c, plane))
+		return false;
+	c->arc_turn = c->arc.sweep / c->seg.ticks;
+	c->arc_grow_mm = c->arc.dr_mm / c->seg.ticks;
+	c->arc_block = UINT32_MAX;
+	return true;
+}
+
+static uint32_t arc_tick(struct interp_cursor *c)
+{
+	const uint32_t others = pulse_dda_tick(c);
+	const uint32_t plane = arc_settle(c);
+
+	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
+}
+
+static uint32_t arc_tick_back(struct interp_cursor *c)
+{
+	const uint32_t others = pulse_dda_tick_back(c);
+	const uint32_t plane = arc_settle(c);
+
+	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
+}
+
+static uint32_t arc_forward(struct interp_cursor *c, uint32_t ticks,
+			    uint16_t *ret)
+{
+	return pulse_ticks(c, arc_tick, ticks, ret);
+}
+
+static uint32_t arc_back(struct interp_cursor *c, uint32_t ticks,
+			 uint16_t *ret)
+{
+	return pulse_ticks(c, arc_tick_back, ticks, ret);
+}
+
+const struct interp_walk pulse_arc = {
+	.enter = arc_enter,
+	.forward = arc_forward,
+	.back = arc_back,
+};

@@ -1,0 +1,324 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * pair.c - set-up of a pair, and its bursts
+ *
+ * Totals are at most 2^30 and mu at most 1000 pulses, so e, M and the
+ * products of a burst stay within 2^62; only the square of M needs 128 bits.
+ */
+#include "pulse/pair.h"
+#include "pulse/pulse.h"
+
+#include <string.h>
+
+/* Bit by bit: no division, the same time always. */
+int64_t pair_isqrt(uint64_t n, uint64_t m)
+{
+	const pulse_uwide x = (pulse_uwide)n * n * m;
+	uint64_t root = 0;
+
+	for (int bit = 62; bit >= 0; bit--) {
+		const uint64_t try = root | UINT64_C(1) << bit;
+
+		if ((pulse_uwide)try * try <= x)
+			root = try;
+	}
+	return (int64_t)root;
+}
+
+int64_t pair_half_width(int64_t a, int64_t b, struct pair_tube t)
+{
+	const int64_t most = a * b;
+	const int64_t m = t.perpendicular ?
+		pair_isqrt(t.milli, (uint64_t)(a * a + b * b)) / 1000 :
+		t.milli * a / 1000;
+
+	return m < most ? m : most;
+}
+
+static int64_t gcd(int64_t a, int64_t b)
+{
+	while (b > 0) {
+		const int64_t rest = a % b;
+
+		a = b;
+		b = rest;
+	}
+	return a;
+}
+
+bool pair_tube_ok(int64_t a, int64_t b, struct pair_tube t)
+{
+	int64_t g;
+
+	if (b == 0)
+		return true;
+	g = gcd(a, b);
+	return 2 * (pair_half_width(a, b, t) / g) + 1 >= (a + b) / g;
+}
+
+int64_t pair_burst(int64_t a, int64_t b, int64_t half_width)
+{
+	const int64_t g = gcd(a, b);
+	const int64_t burst = (2 * (half_width / g) + 1 - b / g) / (a / g);
+
+	return burst > 1 ? burst : 1;
+}
+
+static void pair_stand(struct interp_pair *p, bool at_end)
+{
+	p->m = at_end ? p->a : 0;
+	p->s = at_end ? p->b : 0;
+	p->dev = 0;
+	p->bursts = 0;
+}
+
+void pair_set_limit(struct interp_pair *p, int64_t limit, bool at_end)
+{
+	pair_stand(p, at_end);
+	p->limit = limit;
+}
+
+/* -- Bursts ---------------------------------------------------------------- */
+
+int64_t pair_stop(int64_t a, int64_t b, int64_t n, int64_t j)
+{
+	return ((j * b / n + (j + 1) * b / n) * a + b) / (2 * b);
+}
+
+/* X(j); before the first and after the last there is none. */
+static int64_t burst_at(const struct interp_pair *p, int64_t j)
+{
+	if (j < 0)
+		return -1;
+	if (j >= p->bursts)
+		return PAIR_NEVER;
+	if (!p->stops)
+		return pair_stop(p->a, p->b, p->bursts, j);
+	return pair_stop(p->a, p->lead, p->stops,
+			 pair_stop_shared(p->stops, p->bursts, j));
+}
+
+/* Y(j).  Where another pair sets the stops: half way between two of them. */
+static int64_t burst_from(const struct interp_pair *p, int64_t j)
+{
+	if (j <= 0)
+		return 0;
+	if (j >= p->bursts)
+		return p->b;
+	if (!p->stops)
+		return j * p->b / p->bursts;
+	return (p->b * (burst_at(p, j - 1) + burst_at(p, j)) + p->a) /
+	       (2 * p->a);
+}
+
+/* Look at burst j from its beginning. */
+static void burst_look(struct interp_pair *p)
+{
+	p->from = burst_from(p, p->burst);
+	p->to = burst_from(p, p->burst + 1);
+	p->due = burst_at(p, p->burst);
+}
+
+/* Two stops may be so near each other that nothing is due at the second. */
+static void burst_skip_empty(struct interp_pair *p)
+{
+	while (p->burst < p->bursts && p->to == p->from) {
+		p->burst++;
+		burst_look(p);
+	}
+}
+
+void pair_burst_next(struct interp_pair *p)
+{
+	p->done = p->due;
+	p->burst++;
+	burst_look(p);
+	burst_skip_empty(p);
+}
+
+/* The last burst that is not empty before @j, or -1. */
+static int64_t burst_before(const struct interp_pair *p, int64_t j)
+{
+	do
+		j--;
+	while (j >= 0 && burst_from(p, j) == burst_from(p, j + 1));
+	return j;
+}
+
+void pair_burst_back(struct interp_pair *p)
+{
+	p->burst = burst_before(p, p->burst);
+	burst_look(p);
+	p->done = burst_at(p, burst_before(p, p->burst));
+}
+
+void pair_set_bursts(struct interp_pair *p, int64_t n,
+		     const struct interp_pair *lead, bool at_end)
+{
+	pair_stand(p, at_end);
+	p->bursts = n;
+	p->lead = lead ? lead->b : 0;
+	p->stops = lead ? lead->bursts : 0;
+	p->burst = at_end ? n : 0;
+	burst_look(p);
+	burst_skip_empty(p);
+	p->done = burst_at(p, burst_before(p, p->burst));
+}
+
+/* -- Many pulses ----------------------------------------------------------- */
+
+static int64_t least(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}
+
+/* At least one pulse: a run comes to its end, whatever a pair holds. */
+static int64_t row_of(int64_t n, int64_t row)
+{
+	return row > 1 ? least(n, row) : 1;
+}
+
+static void pair_add(struct interp_pair *p, int64_t m, int64_t s)
+{
+	p->m += m;
+	p->s += s;
+	p->dev += p->b * m - p->a * s;
+}
+
+/* By bursts the pulses of an input come many in a row. */
+static void bursts_run(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const bool due = p->m >= p->due;
+		const int64_t row = row_of(n, due ? p->to - p->s :
+						    p->due - p->m);
+
+		memset(second, due, (size_t)row);
+		second += row;
+		n -= row;
+		pair_add(p, due ? 0 : row, due ? row - 1 : 0);
+		if (due)
+			pair_second(p, 1);
+	}
+}
+
+static void bursts_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const bool due = pair_was_due(p);
+		const int64_t left = p->s > p->from ? p->s - p->from : 1;
+		const int64_t row = row_of(n, due ? left : p->m - p->done);
+
+		memset(second, due, (size_t)row);
+		second += row;
+		n -= row;
+		if (due)
+			pair_second(p, -1);
+		pair_add(p, due ? 0 : -row, due ? 1 - row : 0);
+	}
+}
+
+/*
+ * By a limit they change all the time, and which is next is hard to foretell:
+ * no branch on it.  @over is how far below the limit e is, forward, or how far
+ * above what tells the last pulse, back; either way it falls by b with the
+ * main's pulses and rises by a with the secondary's, of which the number is
+ * returned.
+ */
+static int64_t limit_run(const struct interp_pair *p, int64_t over, int64_t n,
+			 uint8_t *second)
+{
+	const int64_t a = p->a, b = p->b;
+	int64_t given = 0;
+
+	for (int64_t k = 0; k < n; k++) {
+		const int64_t due = over >> 63;
+
+		over += ((a + b) & due) - b;
+		second[k] = due & 1;
+		given -= due;
+	}
+	return given;
+}
+
+/* Until the main input is home, the limit alone tells; then it is over. */
+static void limits_run(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const int64_t some = least(n, p->a - p->m);
+		int64_t given;
+
+		if (some == 0) {
+			memset(second, 1, (size_t)n);
+			pair_add(p, 0, n);
+			return;
+		}
+		given = limit_run(p, p->limit - p->dev, some, second);
+		pair_add(p, some - given, given);
+		second += some;
+		n -= some;
+	}
+}
+
+/* The same until the secondary is back at its start. */
+static void limits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const int64_t some = least(n, p->s);
+		int64_t given;
+
+		if (some == 0) {
+			memset(second, 0, (size_t)n);
+			pair_add(p, -n, 0);
+			return;
+		}
+		given = limit_run(p, p->dev - p->limit - p->b + p->a - 1,
+				  some, second);
+		pair_add(p, given - some, -given);
+		second += some;
+		n -= some;
+	}
+}
+
+void pair_run(struct interp_pair *p, uint32_t n, uint8_t *second)
+{
+	if (p->bursts)
+		bursts_run(p, n, second);
+	else
+		limits_run(p, n, second);
+}
+
+void pair_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
+{
+	if (p->bursts)
+		bursts_run_back(p, n, second);
+	else
+		limits_run_back(p, n, second);
+}
+
+/* -- By name --------------------------------------------------------------- */
+
+void pair_set(struct interp_pair *p, enum interp_strategy rule,
+	      struct pair_tube t, bool at_end)
+{
+	const int64_t half = pair_half_width(p->a, p->b, t);
+	int64_t burst;
+
+	pair_set_limit(p, 0, at_end);
+	switch (rule) {
+	case INTERP_CENTRED:
+		pair_set_limit(p, (p->a - p->b) / 2, at_end);
+		break;
+	case INTERP_MAIN_DIRECTION:
+		pair_set_limit(p, half - p->b, at_end);
+		break;
+	case INTERP_MIN_SWITCH:
+		if (p->b == 0)
+			break;
+		burst = pair_burst(p->a, p->b, half);
+		pair_set_bursts(p, (p->b + burst - 1) / burst, NULL, at_end);
+		break;
+	default:
+		break;
+	}
+}

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * walk.h - a way of turning one segment into lattice points
+ *
+ * The cursor owns the place; a walk owns the points.  It counts how far it is
+ * in a measure of its own, 0 at the segment's start and c->whole at its end,
+ * that grows with every tick: ticks for most, swept area for a circle by
+ * point-by-point comparison, so that its place follows the arc's length.
+ *
+ * Threads: RT-safe.
+ */
+#ifndef PULSE_PULSE_H
+#define PULSE_PULSE_H
+
+#include "interp/cursor.h"
+
+/* For products of two measures. */
+__extension__ typedef __int128 pulse_wide;
+__extension__ typedef unsigned __int128 pulse_uwide;
+
+#define PULSE_BAD	UINT32_MAX	/* instead of pulses, or of points */
+
+typedef uint32_t pulse_run_fn(struct interp_cursor *c, uint32_t ticks,
+			      uint16_t *ret);
+
+struct interp_walk {
+	/* Stand at the segment's start or end; set whole and measure. */
+	bool (*enter)(struct interp_cursor *c, bool at_end);
+	/* @ticks of them; update pos, tick and measure; the points met, their
+	 * pulses in @ret. */
+	pulse_run_fn *forward, *back;
+	/* What the last tick added to the measure; NULL: always one. */
+	int64_t (*last)(const struct interp_cursor *c);
+};
+
+/* Lines, every axis at once: line.c. */
+extern const struct interp_walk pulse_line;
+/* Arcs, every axis at once: arc.c. */
+extern const struct interp_walk pulse_arc;
+/* Lines by accumulators, arcs by two that feed each other: dda.c. */
+extern const struct interp_walk pulse_dda_line;
+extern const struct interp_walk pulse_dda_arc;
+/* Lines of three and more axes by star or tube: flat.c. */
+extern const struct interp_walk pulse_flat;
+/* Lines and helices, one axis at a time: tree.c. */
+extern const struct interp_walk pulse_tree;
+extern const struct interp_walk pulse_helix;
+/* Circles, one axis at a time: circle.c. */
+extern const struct interp_walk pulse_circle;
+/* Two contours together: sides.c, one axis at a time; all at once:
+ * sides_at_once.c. */
+extern const struct interp_walk pulse_pair;
+extern const struct interp_walk pulse_pair_at_once;
+/* Parts of NURBS: curve.c. */
+extern const struct interp_walk pulse_curve;
+/* Actions: no points at all: cursor.c. */
+
+/**
+ * pulse_ticks() - @ticks times @tick, which returns the pulses it made.
+ *
+ * Inline, so that every walk has a loop of its own and no call in it.  A tick
+ * without a pulse is no point.
+ */
+static inline __attribute__((always_inline)) uint32_t
+pulse_ticks(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
+	    uint32_t ticks, uint16_t *ret)
+{
+	uint32_t points = 0;
+
+	while (ticks-- > 0) {
+		const uint32_t pulses = tick(c);
+
+		if (pulses == PULSE_BAD)
+			return PULSE_BAD;
+		ret[points] = (uint16_t)pulses;
+		points += pulses != 0;
+	}
+	return points;
+}
+
+/** pulse_move() - the pulse of one axis, as struct interp_cursor has it. */
+static inline uint32_t pulse_move(uint32_t axis, bool down)
+{
+	return (down ? 0x101u : 1u) << axis;
+}
+
+/** pulse_plane_move() - the same of an arc's plane; each -1, 0 or +1. */
+static inline uint32_t pulse_plane_move(const struct interp_cursor *c,
+					int32_t da, int32_t db)
+{
+	return (((uint32_t)da & 1) | ((uint32_t)da >> 31) << 8)
+		       << c->arc.axis_a |
+	       (((uint32_t)db & 1) | ((uint32_t)db >> 31) << 8)
+		       << c->arc.axis_b;
+}
+
+/** pulse_node() - node column @j at the start or end of c->seg, subpulses. */
+static inline int64_t pulse_node(const struct interp_cursor *c, uint32_t j,
+				 bool at_end)
+{
+	return c->p.nodes[((uint64_t)c->index + at_end) * c->p.head->naxes + j];
+}
+
+/** pulse_in_range() - a node no honest builder would exceed? */
+static inline bool pulse_in_range(int64_t sub)
+{
+	const int64_t max = (int64_t)INTERP_PULSES_MAX << INTERP_SUB_BITS;
+
+	return sub >= -max && sub <= max;
+}
+
+/** pulse_stand() - take the node's place on every axis; false: it has none. */
+bool pulse_stand(struct interp_cursor *c, bool at_end);
+
+/* The dda of every axis but those in @except (a mask): line.c. */
+bool pulse_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except);
+/** pulse_longest() - pulses of the longest axis, rounded up. */
+int64_t pulse_longest(const struct interp_cursor *c, uint32_t except);
+pulse_run_fn pulse_dda_forward, pulse_dda_back;
+/* One tick of it. */
+uint32_t pulse_dda_tick(struct interp_cursor *c);
+uint32_t pulse_dda_tick_back(struct interp_cursor *c);
+
+struct couple_input;
+struct couple_rule;
+
+/** pulse_inputs() - every axis but @except with a pulse to give; signs set. */
+uint32_t pulse_inputs(struct interp_cursor *c, uint32_t except,
+		      struct couple_input *in);
+/** pulse_rule() - strategy, coupling and tolerance of the program. */
+struct couple_rule pulse_rule(const struct interp_cursor *c);
+
+/** pulse_dda_ticks() - of a line of @longest pulses: a power of two, or 0. */
+int64_t pulse_dda_ticks(int64_t longest);
+
+/** pulse_plane_ok() - are an arc's axes and centre in range? */
+bool pulse_plane_ok(const struct interp_cursor *c);
+
+/* The circle alone, used by pulse_circle, by trees and by the builder. */
+bool circle_enter(struct interp_circle *k, const struct interp_arc *arc,
+		  const int64_t start[2], const int64_t end[2], bool at_end);
+/** One pulse; ret[0], ret[1] in -1, 0, +1. */
+void circle_forward(struct interp_circle *k, int8_t ret[2]);
+void circle_back(struct interp_circle *k, int8_t ret[2]);
+/** What the last pulse added to the measure: > 0. */
+int64_t circle_last(const struct interp_circle *k);
+/**
+ * circle_measure() - walk the whole arc once and fill @arc's measure, ticks
+ * and tail.  Not for the cycle: as long as the arc.
+ * Return: false if the end cannot be reached.
+ */
+bool circle_measure(struct interp_arc *arc, const int64_t start[2],
+		    const int64_t end[2]);
+
+/* One contour of a pair, used by the walk and by the builder: sides.c. */
+bool side_enter(struct interp_side *s, const struct interp_arc *arc,
+		const int64_t start[2], const int64_t end[2], bool at_end);
+/** One pulse; ret[0], ret[1] in -1, 0, +1; false: the contour is broken. */
+bool side_forward(struct interp_side *s, int8_t ret[2]);
+bool side_back(struct interp_side *s, int8_t ret[2]);
+/** What the last pulse added to the side's measure: > 0. */
+int64_t side_last(const struct interp_side *s);
+/* One pulse of it, for planning: circle_runs.c. */
+int64_t circle_in(const struct interp_circle *k);	/* shrinking, >= 0 */
+int64_t circle_out(const struct interp_circle *k);	/* growing, >= 0 */
+int8_t circle_inward_axis(const struct interp_circle *k);	/* 0: a, 1: b */
+/** circle_toward() - the pulse that goes inward, or outward. */
+void circle_toward(const struct interp_circle *k, bool inward, int8_t ret[2]);
+void circle_move(struct interp_circle *k, const int8_t pulse[2]);
+/** circle_cross() - into the next quadrant, if it is there. */
+void circle_cross(struct interp_circle *k);
+/** circle_home() - in the last quadrant: is an axis home, or past it? */
+bool circle_home(const struct interp_circle *k);
+/** circle_measure_of() - what a pulse that ended here adds to the measure. */
+int64_t circle_measure_of(const struct interp_circle *k, const int8_t was[2]);
+
+/* A path in a tube of +-mu, by runs: circle_runs.c.  For the builder. */
+struct circle_plan {
+	int64_t start[2], end[2];	/* from the centre, pulses */
+	uint32_t milli;			/* mu, 1/1000 pulse */
+	int8_t first;			/* the axis to begin with, 0: a, 1: b */
+};
+/**
+ * circle_plan_runs() - fill @arc's measure, ticks and number of runs, and
+ * @runs as far as there is room.  arc->crossings is known.
+ * Return: false if no path keeps to the tube.
+ */
+bool circle_plan_runs(struct interp_arc *arc, const struct circle_plan *p,
+		      int32_t *runs, uint32_t room);
+/** circle_smallest_milli() - @milli, or more if the circle needs more. */
+uint32_t circle_smallest_milli(int64_t r2, uint32_t milli);
+
+/**
+ * dda_measure() - the same for a pair of accumulators: ticks, tail and rests;
+ * at least @others ticks.
+ * Return: false if it has too many ticks.  dda.c.
+ */
+bool dda_measure(struct interp_arc *arc, const int64_t start[2],
+		 const int64_t end[2], int64_t others);
+
+/** pulse_circle_node() - start or end of c->arc's plane from its centre. */
+void pulse_circle_node(const struct interp_cursor *c, bool at_end,
+		       int64_t ret[2]);
+
+/** pulse_circle_set() - aim c->circle at c->arc; false if it is unsound. */
+bool pulse_circle_set(struct interp_cursor *c, bool at_end);
+
+/** pulse_circle_move() - one pulse of c->circle, @dir +1 or -1; its bits. */
+uint32_t pulse_circle_move(struct interp_cursor *c, int dir);
+
+/** pulse_curve_aim() - a part of the curve k->eval is open for, in places. */
+void pulse_curve_aim(struct interp_curve_walk *k,
+		     const struct interp_nurbs_stop *stops, uint32_t nstops,
+		     uint32_t places, double length_mm);
+
+/** pulse_curve_place() - k->pos of a place between the ends; of a curve, for
+ *  the walk and the builder. */
+void pulse_curve_place(struct interp_curve_walk *k, const double *pulses_mm,
+		       uint32_t place);
+
+/** pulse_curve_gap2() - square of the distance of c->pos from its curve, over
+ *  the axes of @axes, at the place @s_mm. */
+double pulse_curve_gap2(const struct interp_cursor *c,
+			struct interp_curve_walk *k, uint32_t axes,
+			double s_mm);
+
+#endif /* PULSE_PULSE_H */

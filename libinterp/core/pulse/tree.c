@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * tree.c - any number of axes, one at a time, by pairs of pairs
+ *
+ * Every tick goes from the root of the tree to one leaf, each pair on the way
+ * choosing by its rule; back, each pair tells which of its inputs came last.
+ * Two axes are one pair, one axis is a leaf alone.
+ *
+ * A helix is led by its circle: the other axes are one such tree, and one of
+ * their pulses is due whenever their share of the way falls half a pulse
+ * behind the circle's, measured by swept area so that it follows the arc's
+ * length.  What is due depends on the circle's place alone, so the last pulse
+ * was the tree's if more have been sent than were due one circle pulse ago.
+ */
+#include "pulse/couple.h"
+#include "pulse/pulse.h"
+
+#include <stdlib.h>
+
+uint32_t pulse_inputs(struct interp_cursor *c, uint32_t except,
+		      struct couple_input *in)
+{
+	uint32_t n = 0;
+
+	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
+		const uint32_t axis = c->p.head->column[j];
+		const int64_t d = interp_round_sub(pulse_node(c, j, true)) -
+				  interp_round_sub(pulse_node(c, j, false));
+
+		if (d == 0 || except & 1u << axis)
+			continue;
+		c->sign[axis] = d > 0 ? 1 : -1;
+		c->pulse[axis] = (uint16_t)pulse_move(axis, d < 0);
+		c->pulse_back[axis] = (uint16_t)pulse_move(axis, d > 0);
+		in[n++] = (struct couple_input) { (int8_t)axis, llabs(d) };
+	}
+	return n;
+}
+
+struct couple_rule pulse_rule(const struct interp_cursor *c)
+{
+	const struct interp_program_head *h = c->p.head;
+
+	return (struct couple_rule) {
+		.strategy = (enum interp_strategy)h->strategy,
+		.coupling = (enum interp_coupling)h->coupling,
+		.tube = { h->tolerance_milli, h->perpendicular },
+	};
+}
+
+/* Aim the tree at all axes but @except; the sum of their pulses. */
+static int64_t tree_set(struct interp_cursor *c, uint32_t except, bool at_end)
+{
+	const struct couple_rule rule = pulse_rule(c);
+	struct couple_input in[INTERP_NAXES], root;
+	const uint32_t n = pulse_inputs(c, except, in);
+
+	if (n == 0)
+		return 0;
+	for (uint32_t i = 0; i < n; i++) {
+		/* Of a damaged block: what no builder makes. */
+		if (in[i].pulses > INTERP_PULSES_MAX)
+			return -1;
+	}
+	root = couple_tree(c->pair, in, n);
+	if (root.pulses > INTERP_PULSES_MAX)
+		return -1;
+	couple_set(c->pair, n - 1, &rule, at_end);
+	c->root = root.code;
+	return root.pulses;
+}
+
+static bool tree_enter(struct interp_cursor *c, bool at_end)
+{
+	return pulse_stand(c, at_end) && tree_set(c, 0, at_end) == c->seg.ticks;
+}
+
+static inline uint32_t tree_tick(struct interp_cursor *c)
+{
+	int8_t code = c->root;
+
+	while (code < 0) {
+		struct interp_pair *p = &c->pair[~code];
+
+		code = pair_forward(p) ? p->in_a : p->in_b;
+	}
+	c->tick++;
+	c->measure++;
+	c->pos[code] += c->sign[code];
+	return c->pulse[code];
+}
+
+static inline uint32_t tree_tick_back(struct interp_cursor *c)
+{
+	int8_t code = c->root;
+
+	while (code < 0) {
+		struct interp_pair *p = &c->pair[~code];
+
+		code = pair_back(p) ? p->in_a : p->in_b;
+	}
+	c->tick--;
+	c->measure--;
+	c->pos[code] -= c->sign[code];
+	return c->pulse_back[code];
+}
+
+/*
+ * Many ticks at once go level by level: a pair says of each which input gives
+ * it, then each input its own, and they are put in order.  Three levels hold
+ * eight axes.
+ */
+#define RUN_MAX	64
+
+static void leaf_run(struct interp_cursor *c, int8_t axis, int ticks,
+		     uint16_t *ret)
+{
+	const uint16_t pulse = c->backward ? c->pulse_back[axis] :
+					     c->pulse[axis];
+
+	for (int k = 0; k < ticks; k++)
+		ret[k] = pulse;
+	c->pos[axis] += (c->backward ? -ticks : ticks) * c->sign[axis];
+}
+
+/* Both inputs are axes: no order to be put in. */
+static void leaves_run(struct interp_cursor *c, const struct interp_pair *p,
+		       const uint8_t *second, uint32_t ticks, uint16_t *ret)
+{
+	const uint16_t *pulse = c->backward ? c->pulse_back : c->pulse;
+	const uint32_t a = pulse[p->in_a], turn = a ^ pulse[p->in_b];
+
+	for (uint32_t k = 0; k < ticks; k++)
+		ret[k] = (uint16_t)(a ^ (turn & -(uint32_t)second[k]));
+}
+
+static void pair_ticks(struct interp_cursor *c, struct interp_pair *p,
+		       uint32_t ticks, uint8_t *second)
+{
+	if (c->backward)
+		pair_run_back(p, ticks, second);
+	else
+		pair_run(p, ticks, second);
+}
+
+static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
+		     uint16_t *ret)
+{
+	struct interp_pair *p = &c->pair[~code];
+	uint16_t pulse[2][RUN_MAX];
+	uint8_t second[RUN_MAX];
+	uint32_t n = 0;
+	const int64_t m = p->m, s = p->s;
+
+	if (code >= 0) {
+		leaf_run(c, code, (int)ticks, ret);
+		return;
+	}
+	pair_ticks(c, p, ticks, second);
+	if (p->in_a >= 0 && p->in_b >= 0) {
+		c->pos[p->in_a] += (int32_t)(p->m - m) * c->sign[p->in_a];
+		c->pos[p->in_b] += (int32_t)(p->s - s) * c->sign[p->in_b];
+		leaves_run(c, p, second, ticks, ret);
+		return;
+	}
+	for (uint32_t k = 0; k < ticks; k++)
+		n += second[k];
+	tree_run(c, p->in_a, ticks - n, pulse[0]);
+	tree_run(c, p->in_b, n, pulse[1]);
+	n = 0;
+	for (uint32_t k = 0; k < ticks; k++) {
+		ret[k] = *(second[k] ? &pulse[1][n] : &pulse[0][k - n]);
+		n += second[k];
+	}
+}
+
+/* Of every tick a pulse. */
+static uint32_t tree_ticks(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret)
+{
+	const int dir = c->backward ? -1 : 1;
+
+	for (uint32_t done = 0, n; done < ticks; done += n) {
+		n = ticks - done < RUN_MAX ? ticks - done : RUN_MAX;
+		tree_run(c, c->root, n, ret + done);
+	}
+	c->tick += (uint32_t)dir * ticks;
+	c->measure += dir * (int64_t)ticks;
+	return ticks;
+}
+
+static uint32_t tree_forward(struct interp_cursor *c, uint32_t ticks,
+			     uint16_t *ret)
+{
+	return ticks == 1 ? pulse_ticks(c, tree_tick, 1, ret) :
+			    tree_ticks(c, ticks, ret);
+}
+
+static uint32_t tree_back(struct interp_cursor *c, uint32_t ticks,
+			  uint16_t *ret)
+{
+	return ticks == 1 ? pulse_ticks(c, tree_tick_back, 1, ret) :
+			    tree_ticks(c, ticks, ret);
+}
+
+const struct interp_walk pulse_tree = {
+	.enter = tree_enter,
+	.forward = tree_forward,
+	.back = tree_back,
+};
+
+/* -- Helices ---------------------------------------------------------------- */
+
+static bool helix_enter(struct interp_cursor *c, bool at_end)
+{
+	if (!pulse_stand(c, at_end) || !pulse_circle_set(c, at_end))
+		return false;
+	c->others = tree_set(c, 1u << c->arc.axis_a | 1u << c->arc.axis_b,
+			     at_end);
+	if (c->others < 0)
+		return false;
+	c->circle_at = at_end ? c->arc.measure : 0;
+	c->whole = c->arc.measure + c->others;
+	c->measure = at_end ? c->whole : 0;
+	return c->seg.ticks == c->circle.ticks + c->others &&
+	       (c->circle.ticks == 0) == (c->arc.measure == 0);
+}
+
+/* The tree's pulses due when the circle is at measure @m. */
+static int64_t helix_due(const struct interp_cursor *c, int64_t m)
+{
+	const pulse_wide whole = c->arc.measure;
+
+	if (whole == 0)
+		return c->others;
+	return (int64_t)((2 * (pulse_wide)m * c->others + whole) / (2 * whole));
+}
+
+static int64_t helix_sent(const struct interp_cursor *c)
+{
+	return c->measure - c->circle_at;
+}
+
+static uint32_t helix_tick(struct interp_cursor *c)
+{
+	uint32_t moved;
+
+	if (helix_sent(c) < helix_due(c, c->circle_at))
+		return tree_tick(c);
+	if (c->circle.tick >= c->circle.ticks)
+		return PULSE_BAD;
+	moved = pulse_circle_move(c, 1);
+	c->tick++;
+	c->circle_at += circle_last(&c->circle);
+	c->measure += circle_last(&c->circle);
+	return moved;
+}
+
+/* Was the last pulse the tree's? */
+static bool helix_last_tree(const struct interp_cursor *c)
+{
+	return c->circle.tick == 0 ||
+	       helix_sent(c) >
+	       helix_due(c, c->circle_at - circle_last(&c->circle));
+}
+
+static uint32_t helix_tick_back(struct interp_cursor *c)
+{
+	int64_t last;
+
+	if (c->tick == 0)
+		return PULSE_BAD;
+	if (helix_last_tree(c))
+		return tree_tick_back(c);
+	last = circle_last(&c->circle);
+	c->tick--;
+	c->circle_at -= last;
+	c->measure -= last;
+	return pulse_circle_move(c, -1);
+}
+
+static uint32_t helix_forward(struct interp_cursor *c, uint32_t ticks,
+			      uint16_t *ret)
+{
+	return pulse_ticks(c, helix_tick, ticks, ret);
+}
+
+static uint32_t helix_back(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret)
+{
+	return pulse_ticks(c, helix_tick_back, ticks, ret);
+}
+
+static int64_t helix_last(const struct interp_cursor *c)
+{
+	return helix_last_tree(c) ? 1 : circle_last(&c->circle);
+}
+
+const struct interp_walk pulse_helix = {
+	.enter = helix_enter,
+	.forward = helix_forward,
+	.back = helix_back,
+	.last = helix_last,
+};

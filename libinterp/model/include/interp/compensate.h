@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * compensate.h - contour compensation: what is added to the speeds demanded
+ *
+ *	none		nothing
+ *	feedforward	the set speed, the set acceleration times what the
+ *			velocity loop lags, both half a period and the drive's
+ *			delay ahead: the held output lags by as much
+ *	cross-coupled	cross_1_s times the contour error vector (Koren)
+ *	predictive	predicted_1_s times the contour error to come within
+ *			the horizon, by the axis models from the Kalman
+ *			estimate, and measured_1_s times the present one
+ *			(u + Kff dy_pred + Kfb dy_meas)
+ *	zpetc		the axis models inverted with zero phase (Tomizuka)
+ *	twin		the set values were corrected beforehand; see
+ *			tests/experiments/tried/set_twin.h
+ *
+ * Any of them together, but feedforward and zpetc, which are the same cure.
+ * A drive that takes places is given the result divided by its gain.
+ *
+ * Units: mm, s.  Sign: + as the axis.
+ * Threads: one object, one thread; _step() is RT-safe as far as the path's
+ * at() is, with a bounded work: the horizon times the axes, and two feet.
+ */
+#ifndef INTERP_COMPENSATE_H
+#define INTERP_COMPENSATE_H
+
+#include "interp/axis_model.h"
+#include "interp/feedforward.h"
+#include "interp/foot.h"
+#include "interp/kalman.h"
+#include "interp/zpetc.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define INTERP_COMPENSATE_HORIZON_MAX	64	/* periods */
+
+/* Set values a step may read before and after the present one. */
+#define INTERP_COMPENSATE_BEHIND	INTERP_ZPETC_BEHIND
+#define INTERP_COMPENSATE_AHEAD \
+	(INTERP_COMPENSATE_HORIZON_MAX + INTERP_AXIS_DELAY_MAX + 4)
+
+struct interp_compensate_config {
+	uint32_t methods;		/* INTERP_COMPENSATE_*, 0: none */
+	struct interp_compensate_gains gains;
+	int naxes;
+	double period_s;
+	struct interp_axis_loop loop[INTERP_NAXES];	/* as believed */
+	bool filtered;			/* feet of the Kalman estimate */
+	struct interp_kalman_noise noise;
+	double look_mm;			/* see interp_contour_begin() */
+};
+
+/* Placed by the caller; fields are private. */
+struct interp_compensate {
+	struct interp_compensate_config config;
+	bool estimates;
+	int horizon;			/* periods */
+	struct interp_contour foot, foot_ahead;
+	struct interp_kalman kalman[INTERP_NAXES];
+	struct interp_zpetc zpetc[INTERP_NAXES];
+	struct interp_contour_error error;	/* the last one, measured */
+	struct interp_contour_error ahead;	/* predicted */
+};
+
+/*
+ * Set values of each axis, at[i][0] the present one; readable from
+ * -INTERP_COMPENSATE_BEHIND to INTERP_COMPENSATE_AHEAD.  And where on the path
+ * they are, u[0] the present one; readable up to the horizon.
+ */
+struct interp_compensate_preview {
+	const double *at[INTERP_NAXES];
+	const double *u;
+};
+
+/**
+ * interp_compensate_begin() - at rest at @place_mm, the path's point @u.
+ *
+ * Return: 0; -EINVAL for numbers out of range or methods that exclude each
+ * other; -ERANGE for a horizon or delay that is too long.  Startup only.
+ */
+int interp_compensate_begin(struct interp_compensate *c,
+			    const struct interp_compensate_config *config,
+			    const struct interp_contour_path *path, double u,
+			    const double *place_mm);
+
+/**
+ * interp_compensate_step() - one period: what to add to each speed demanded.
+ *
+ * @measured_mm: the encoders.
+ */
+void interp_compensate_step(struct interp_compensate *c,
+			    const struct interp_compensate_preview *set,
+			    const double *measured_mm, double *ret_mm_s);
+
+#endif /* INTERP_COMPENSATE_H */

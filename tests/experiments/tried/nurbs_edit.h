@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * nurbs_edit.h - the same curve with other knots, in pieces, or of a higher
+ * degree
+ *
+ * Each makes a new curve in room the caller lends; the old one stays as it is.
+ * Return: 0, -ENOSPC if the room is too small, -EINVAL if it cannot be done.
+ *
+ * Units: as in nurbs.h.
+ * Threads: as long as the curve; no allocation; not for the cycle.
+ * Source: W. Boehm, Inserting new knots into B-spline curves, 1980; L.
+ * Ramshaw, Blossoming, 1987 (degree elevation).
+ */
+#ifndef INTERP_NURBS_EDIT_H
+#define INTERP_NURBS_EDIT_H
+
+#include "interp/nurbs_fit.h"
+
+/** interp_nurbs_copy() */
+int interp_nurbs_copy(const struct interp_nurbs *c,
+		      struct interp_nurbs_own *ret);
+
+/** interp_nurbs_insert() - knot @u another @times; never more than degree
+ *  times inside in all: -EINVAL. */
+int interp_nurbs_insert(const struct interp_nurbs *c, double u, uint32_t times,
+			struct interp_nurbs_own *ret);
+
+/** interp_nurbs_split() - at @u inside the domain; @left and @right go through
+ *  the same point there. */
+int interp_nurbs_split(const struct interp_nurbs *c, double u,
+		       struct interp_nurbs_own *left,
+		       struct interp_nurbs_own *right);
+
+/** interp_nurbs_elevate() - one degree higher; the end knots of @c stand
+ *  degree + 1 times.  Every knot then stands once more. */
+int interp_nurbs_elevate(const struct interp_nurbs *c,
+			 struct interp_nurbs_own *ret);
+
+#endif /* INTERP_NURBS_EDIT_H */

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a touch found survives a crash of edmd."""
+
+import pytest
+import rig
+
+# A block whose upper face is at Z -1.5, and an electrode 0.5 mm over it.
+BLOCK_MACHINE = """
+[machine]
+name = {name}
+period_us = 1000
+overrun_limit = 0
+cpu = -1
+
+[axis.Z]
+start_mm = -1
+
+[probe]
+feed_mm_s = 1
+fine_mm_s = 0.2
+
+[sim]
+block = yes
+block_top_mm = -1.5
+
+[jobs]
+store = {store}
+"""
+
+JOB = b"G80 Z-\nG92 Z0\nG90 G0 Z0.4\nG4 P3\nG0 Z0.7\nM2\n"
+
+
+@pytest.fixture
+def block(tmp_path):
+    m = rig.Machine(tmp_path, BLOCK_MACHINE)
+    m.start()
+    yield m
+    m.close()
+    assert m.sweep() == [], "left in /dev/shm"
+
+
+def come_back(machine):
+    c = machine.client
+    machine.kill("edmd")
+    machine.start_edmd()
+    return c.status_where(
+        lambda s: s.daemon == "ok" and s.job_state == "held"
+    )
+
+
+def ends_over_the_face(machine):
+    c = machine.client
+    assert c.ask("start").code == 0
+    c.job_where("job", "done")
+    assert c.status().pos_mm[2] == pytest.approx(-0.8, abs=0.0015)
+
+
+def test_places_still_count_from_the_contact(block):
+    c = block.client
+    assert c.submit(JOB, "job").code == 0
+    c.status_where(lambda s: abs(s.pos_mm[2] + 1.1) < 0.0015)
+    held = come_back(block)
+    assert held.pos_mm[2] == pytest.approx(-1.1, abs=0.0015)
+    c.hear(0.5)
+    assert c.status().pos_mm == held.pos_mm, "it moved by itself"
+    ends_over_the_face(block)
+
+
+def test_a_touch_that_was_under_way_is_made_again(block):
+    c = block.client
+    assert c.submit(JOB, "job").code == 0
+    c.status_where(lambda s: s.state == "probe" and s.pos_mm[2] < -1.1)
+    come_back(block)
+    ends_over_the_face(block)
