@@ -66,6 +66,7 @@ JOBS	:= $(wildcard daemon/jobs/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
+PLAN	:= $(wildcard clients/plan/*.c)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
@@ -94,7 +95,8 @@ INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H
 INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) -I$(B)/messages
 INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_libinterp	= $(INC_compile) $(INC_model)
-INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
+INC_plan	= -Iclients/plan $(INC_config) $(INC_compiling)
+INC_unit	= -Iclients/plan -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config) $(INC_compiling)
@@ -116,7 +118,7 @@ SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
 
-PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet
+PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet $(B)/edm-plan
 UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
 PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
@@ -199,6 +201,14 @@ $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool
 
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
 	$(call link,-lddsc -ljansson -lm)
+
+$(B)/edm-plan: $(call obj,$(PLAN)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
+	$(call link,-ladmesh -lglpk -linih -ljansson -lpthread -lm)
+
+# Of edm-plan, without its main().
+PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c near.c motion.c prove.c))
+
+$(B)/unit/test_plan_core: $(PLAN_CORE)
 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
@@ -305,10 +315,10 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 clang:
 	$(call say,CLANG,all sources)
 	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
-		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
+		$(JOBS) $(SIM) $(CTL) $(PLOT) $(PLAN) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
-			$(INC_dds) $(INC_libinterp)) $$f || exit 1; done
+			$(INC_dds) $(INC_plan) $(INC_libinterp)) $$f || exit 1; done
 
 bench: vm
 	@tests/setup check
@@ -431,7 +441,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
-		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
+		$(INC_ctl) $(INC_dds) $(INC_plan) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
 		grep -vE 'daemon/jobs/lcm.c|clients/ctl/talk.c'

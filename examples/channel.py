@@ -27,6 +27,7 @@ import random
 import struct
 
 LIFT = 60.0                     # of the electrode with all axes at 0
+CORNER = 2.0                    # radius in the corners of a section
 TABLE = (0.0, 0.0, -60.0)       # a point on the axes of A and B
 
 
@@ -40,6 +41,7 @@ class Channel:
         self.wide, self.high = args.wide / 2, args.high / 2
         self.widen = args.widen / 2
         self.lean = math.radians(args.lean)
+        self.twist = math.radians(args.twist)
         self.undersize = args.undersize
         # The arc: its chord has the length `along` in the unrolled plane.
         self.bend = self.along / 2 / math.sin(self.turn / 2)
@@ -68,14 +70,15 @@ class Channel:
         share = min(max(s / self.length, 0), 1)
         a = self.wide + self.widen * (share - 0.5) + grow
         b = self.high + grow
-        lean = self.lean * (share - 0.5)
+        lean = self.lean + self.twist * (share - 0.5)
         place, (across, out, _) = self.frame(s)
         points = []
+        r = CORNER + grow
         for k in range(n):
-            t = 2 * math.pi * (k + 0.5) / n
-            c, d = math.cos(t), math.sin(t)
-            r = (abs(c) ** 6 + abs(d) ** 6) ** (-1 / 6)
-            x, y = a * r * c, b * r * d
+            corner, step = divmod(k, n // 4)
+            t = math.pi / 2 * (corner + step / (n // 4 - 1))
+            x = (a - r) * (1, -1, -1, 1)[corner] + r * math.cos(t)
+            y = (b - r) * (1, 1, -1, -1)[corner] + r * math.sin(t)
             x, y = (x * math.cos(lean) - y * math.sin(lean),
                     x * math.sin(lean) + y * math.cos(lean))
             points.append(tuple(place[i] + x * across[i] + y * out[i]
@@ -154,9 +157,13 @@ def times_back(m, v):
 
 
 def pose(ch, back):
-    """Rotation and shift of the electrode, `back` mm before its end place."""
-    here, cols = ch.frame(-back)
-    end, end_cols = ch.frame(0)
+    """Rotation and shift of the electrode, `back` mm before its end place.
+
+    The middle of what is inside follows the centre line, along its tangent.
+    """
+    s = (min(back, ch.length) + ch.length) / 2
+    here, cols = ch.frame(s - back)
+    end, end_cols = ch.frame(s)
     r = rotation_from(end_cols, cols)
     moved = times(r, end)
     return r, [here[i] - moved[i] for i in range(3)]
@@ -255,11 +262,13 @@ def arguments():
     p.add_argument("dir")
     p.add_argument("--seed", type=int, help="draw a channel")
     p.add_argument("--rings", type=int, default=40)
-    p.add_argument("--around", type=int, default=48)
+    p.add_argument("--around", type=int, default=48,
+                   help="points of a section, a multiple of 4")
     p.add_argument("--nodes", type=int, default=63)
     for name, value in (("radius", 90), ("turn", 65), ("along", 40),
-                        ("wide", 8), ("widen", 0.4), ("high", 14),
-                        ("lean", 4), ("undersize", 0.95)):
+                        ("wide", 8), ("widen", -0.2), ("high", 14),
+                        ("lean", 3), ("twist", 0),
+                        ("undersize", 0.95)):
         p.add_argument("--" + name, type=float, default=value)
     args = p.parse_args()
     if args.seed is not None:
@@ -267,7 +276,7 @@ def arguments():
         args.turn = draw(60, 70)
         args.lean = draw(-4, 4)
         args.wide = draw(7.5, 8.4)
-        args.widen = draw(-0.6, 0.6)
+        args.widen = draw(-0.4, 0.2)
         args.radius = draw(85, 95)
         args.undersize = draw(0.85, 1.0)
     return args

@@ -4,6 +4,8 @@
  */
 #include "job.h"
 
+#include "compiling.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

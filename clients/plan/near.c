@@ -191,12 +191,41 @@ static double tri_time(const struct walk *w, const struct triangle *tool,
 	return root(x->mm - w->keep, s + v_dot(n, w->rate->v), w->rate->accel);
 }
 
+/*
+ * Is the gap over the plane of the part's triangle alone enough to leave the
+ * pair out?  Along a wall that faces another it mostly is.
+ */
+static bool is_clear(const struct walk *w, uint32_t part,
+		     const struct triangle *tool)
+{
+	const double *plane = w->b->part->plane[part];
+	double h[3], n[3], m[3], side, gap, s = -DBL_MAX;
+
+	for (int k = 0; k < 3; k++)
+		h[k] = v_dot(plane, tool->at[k]) - plane[3];
+	side = h[0] > 0 ? 1 : -1;
+	gap = fmin(side * h[0], fmin(side * h[1], side * h[2])) - 1e-9;
+	if (!w->rate)
+		return gap >= w->best;
+	if (gap <= w->refuse)
+		return false;
+	for (int k = 0; k < 3; k++)
+		n[k] = -side * plane[k];
+	v_cross(n, w->rate->w, m);
+	for (int k = 0; k < 3; k++)
+		s = fmax(s, v_dot(m, tool->at[k]));
+	return root(gap - w->keep, s + v_dot(n, w->rate->v),
+		    w->rate->accel) >= w->best;
+}
+
 static void tri_offer(struct walk *w, uint32_t part, uint32_t tool,
 		      const struct triangle *at)
 {
 	struct near_pair x = { .part = part, .tool = tool };
 	double key;
 
+	if (is_clear(w, part, at))
+		return;
 	x.mm = tri_distance(&w->b->part->tri[part], at, x.p, x.q);
 	if (w->take) {
 		if (x.mm < w->best)

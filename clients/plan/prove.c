@@ -186,7 +186,9 @@ static double see(struct march *m, double t)
  * every point of the slope. */
 static void descend(struct march *m, double t)
 {
-	for (double h = 1.0 / 32; h > 1e-7; h /= 2) {
+	double h = 1.0 / 32;
+
+	while (h > 1e-7 && m->p->least_mm > 0) {
 		const double at = t;
 
 		for (int side = -1; side <= 1; side += 2) {
@@ -196,6 +198,8 @@ static void descend(struct march *m, double t)
 			if (to != at && see(m, to) < was)
 				t = to;
 		}
+		if (t == at)
+			h /= 2;
 	}
 }
 

@@ -35,8 +35,12 @@ static int fill(stl_file *s, const struct stl_raw *raw)
 		return EX_OSERR;
 	for (uint32_t i = 0; i < raw->n; i++) {
 		stl_facet f = { 0 };
+		float normal[3];
 
 		memcpy(f.vertex, raw->corner[i], sizeof(f.vertex));
+		stl_calculate_normal(normal, &f);
+		stl_normalize_vector(normal);
+		memcpy(&f.normal, normal, sizeof(f.normal));
 		s->facet_start[i] = f;
 		stl_facet_stats(s, f, i == 0);
 	}
@@ -67,11 +71,6 @@ static void mend(stl_file *s, struct mesh_findings *f)
 	}
 	stl_fix_normal_directions(s);
 	f->turned = (uint32_t)s->stats.facets_reversed;
-	stl_calculate_volume(s);
-	f->inverted = s->stats.volume < 0;
-	if (f->inverted)
-		stl_reverse_all_facets(s);
-	f->volume_mm3 = fabs((double)s->stats.volume);
 	stl_generate_shared_vertices(s);
 }
 
@@ -95,6 +94,36 @@ static int take(struct mesh *m, const stl_file *s, const double shift[3])
 	return 0;
 }
 
+/* Of the mesh about a corner of its own; less than 0 if it is inside out. */
+static double volume(const struct mesh *m)
+{
+	double sum = 0;
+
+	for (uint32_t i = 0; i < m->ntris; i++) {
+		double a[3], b[3], c[3], x[3];
+
+		v_sub(mesh_corner(m, i, 0), m->min, a);
+		v_sub(mesh_corner(m, i, 1), m->min, b);
+		v_sub(mesh_corner(m, i, 2), m->min, c);
+		v_cross(b, c, x);
+		sum += v_dot(a, x) / 6;
+	}
+	return sum;
+}
+
+/* A body whose inside is outside is turned as a whole. */
+static void turn_out(struct mesh *m, struct mesh_findings *f)
+{
+	f->volume_mm3 = volume(m);
+	for (uint32_t i = 0; i < m->ntris && f->inverted; i++) {
+		const uint32_t keep = m->tri[i][1];
+
+		m->tri[i][1] = m->tri[i][2];
+		m->tri[i][2] = keep;
+	}
+	f->volume_mm3 = fabs(f->volume_mm3);
+}
+
 static void normal_of(const struct mesh *m, uint32_t i, double ret[3])
 {
 	double u[3], v[3];
@@ -109,7 +138,8 @@ static void normal_of(const struct mesh *m, uint32_t i, double ret[3])
  * that bulges out of it by h tan(angle / 4) / 2.  Where the surface is hollow
  * it bulges into the body and takes nothing from the clearance.
  */
-static double bulge(const struct mesh *m, uint32_t i, uint32_t j, uint32_t k)
+static double bulge(const struct mesh *m, uint32_t i, uint32_t k, uint32_t j,
+		    int outward)
 {
 	const double *a = mesh_corner(m, i, k), *b = mesh_corner(m, i,
 								 (k + 1) % 3);
@@ -124,6 +154,7 @@ static double bulge(const struct mesh *m, uint32_t i, uint32_t j, uint32_t k)
 	v_sub(b, a, edge);
 	v_cross(n, o, x);
 	angle = atan2(v_dot(x, edge) / v_length(edge), v_dot(n, o));
+	angle *= outward;
 	if (angle <= 0 || angle > SMOOTH)
 		return 0;
 	h = fmin(area, other) / v_length(edge);
@@ -142,7 +173,8 @@ static void judge_edges(const struct mesh *m, const stl_file *s,
 				continue;
 			}
 			f->chord_mm = fmax(f->chord_mm,
-					   bulge(m, i, (uint32_t)j, k));
+					   bulge(m, i, k, (uint32_t)j,
+						 f->inverted ? -1 : 1));
 		}
 	}
 }
@@ -168,8 +200,11 @@ static int mended(struct mesh *m, const struct mesh_load *from,
 	}
 	if (r == 0)
 		r = take(m, &s, from->shift_mm);
-	if (r == 0)
+	if (r == 0) {
+		f->inverted = volume(m) < 0;
 		judge_edges(m, &s, f);
+		turn_out(m, f);
+	}
 	stl_close(&s);
 	return r;
 }

@@ -208,6 +208,25 @@ static void split(struct build *b, uint32_t node, uint32_t from, uint32_t n)
 	split(b, x->first + 1, from + below, n - below);
 }
 
+static void lay_planes(struct tree *t)
+{
+	for (uint32_t i = 0; i < t->ntris; i++) {
+		const struct triangle *x = &t->tri[i];
+		double u[3], v[3], n[3], size;
+
+		v_sub(x->at[1], x->at[0], u);
+		v_sub(x->at[2], x->at[0], v);
+		v_cross(u, v, n);
+		size = v_length(n);
+		memset(t->plane[i], 0, sizeof(t->plane[i]));
+		if (!(size > 1e-9 * v_length(u) * v_length(v)))
+			continue;
+		for (int k = 0; k < 3; k++)
+			t->plane[i][k] = n[k] / size;
+		t->plane[i][3] = v_dot(t->plane[i], x->at[0]);
+	}
+}
+
 static void copy_tris(struct build *b)
 {
 	const struct mesh *m = b->t->mesh;
@@ -234,8 +253,9 @@ int tree_build(struct tree *t, const struct mesh *m)
 	t->node = malloc(2 * n * sizeof(*t->node));
 	t->tri = malloc(n * sizeof(*t->tri));
 	t->id = malloc(n * sizeof(*t->id));
+	t->plane = malloc(n * sizeof(*t->plane));
 	b.centre = malloc(n * sizeof(*b.centre));
-	if (!t->node || !t->tri || !t->id || !b.centre) {
+	if (!t->node || !t->tri || !t->plane || !t->id || !b.centre) {
 		free(b.centre);
 		tree_free(t);
 		return -ENOMEM;
@@ -243,6 +263,7 @@ int tree_build(struct tree *t, const struct mesh *m)
 	copy_tris(&b);
 	split(&b, 0, 0, m->ntris);
 	free(b.centre);
+	lay_planes(t);
 	return 0;
 }
 
@@ -250,6 +271,7 @@ void tree_free(struct tree *t)
 {
 	free(t->node);
 	free(t->tri);
+	free(t->plane);
 	free(t->id);
 	*t = (struct tree) { 0 };
 }

@@ -34,6 +34,8 @@ struct tree {
 	struct tree_node *node;		/* node[0] is the root */
 	uint32_t nnodes, ntris;
 	struct triangle *tri;
+	double (*plane)[4];		/* of each, its unit normal and its
+					 * height; zeros: it has no area */
 	uint32_t *id;			/* of each, its number in the mesh */
 };
 

@@ -2,157 +2,138 @@
 /*
  * way_curve.c - cut a NURBS until its control points lie on a chord
  *
- * A curve is an average of its control points, with weights that are positive
- * and sum to one.  If point k is chord(t_k) + e_k, whatever t_k was chosen, the
- * curve is chord(t) + e with t and e the same averages: no e is larger than
- * the largest e_k.  So axis by axis that is how far the curve strays.
+ * Between two parameters of one knot span a curve is an average of its Bezier
+ * points there, with weights that are positive and sum to one.  If point k is
+ * chord(t_k) + e_k, whatever t_k was chosen, the curve is chord(t) + e with t
+ * and e the same averages: no e is larger than the largest e_k.  So that is
+ * how far each axis strays.
+ *
+ * A Bezier point is the blossom of the span at so many times the one parameter
+ * and so many times the other (L. Ramshaw, 1987).
  */
 #include "way_curve.h"
 
-#include "interp/nurbs_edit.h"
-
 #include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define DEPTH_MAX	30
+#define DEPTH_MAX	40
 
-static int own(const struct interp_nurbs *like, uint32_t more,
-	       struct interp_nurbs_own *ret)
+struct piece {
+	uint32_t n, naxes;
+	double at[INTERP_NURBS_ORDER_MAX][INTERP_NAXES];
+};
+
+/* The blossom of span @span at @u[0 ... degree - 1]. */
+static void blossom(const struct interp_nurbs *c, uint32_t span,
+		    const double *u, double ret[INTERP_NAXES])
 {
-	const uint32_t room = like->npoints + more;
+	const uint32_t p = c->degree, row = c->naxes + 1;
+	double d[INTERP_NURBS_ORDER_MAX][INTERP_NAXES + 1];
 
-	*ret = (struct interp_nurbs_own) { .room = room };
-	ret->knots = malloc((room + like->degree + 1) * sizeof(double));
-	ret->points = malloc((size_t)room * (like->naxes + 1) * sizeof(double));
-	return ret->knots && ret->points ? 0 : -ENOMEM;
+	for (uint32_t k = 0; k <= p; k++)
+		memcpy(d[k], c->points + (size_t)(span - p + k) * row,
+		       row * sizeof(double));
+	for (uint32_t r = 1; r <= p; r++) {
+		for (uint32_t k = p; k >= r; k--) {
+			const uint32_t i = span - p + k;
+			const double low = c->knots[i];
+			const double high = c->knots[i + p - r + 1];
+			const double a = (u[r - 1] - low) / (high - low);
+
+			for (uint32_t j = 0; j < row; j++)
+				d[k][j] = (1 - a) * d[k - 1][j] + a * d[k][j];
+		}
+	}
+	for (uint32_t j = 0; j < c->naxes; j++)
+		ret[j] = d[p][j] / d[p][c->naxes];
 }
 
-static void disown(struct interp_nurbs_own *o)
+static void bezier(const struct interp_nurbs *c, uint32_t span, double from,
+		   double to, struct piece *ret)
 {
-	free(o->knots);
-	free(o->points);
-}
+	double u[INTERP_NURBS_DEGREE_MAX];
 
-static double place(const struct interp_nurbs *c, uint32_t k, uint32_t axis)
-{
-	const double *p = c->points + (size_t)k * (c->naxes + 1);
-
-	return p[axis] / p[c->naxes];
+	ret->n = c->degree + 1;
+	ret->naxes = c->naxes;
+	for (uint32_t k = 0; k <= c->degree; k++) {
+		for (uint32_t i = 0; i < c->degree; i++)
+			u[i] = i < k ? to : from;
+		blossom(c, span, u, ret->at[k]);
+	}
 }
 
 /* Where along the chord point @k is nearest to it. */
-static double along(const struct interp_nurbs *c, uint32_t k)
+static double along(const struct piece *x, uint32_t k)
 {
 	double up = 0, square = 0;
 
-	for (uint32_t j = 0; j < c->naxes; j++) {
-		const double a = place(c, 0, j);
-		const double d = place(c, c->npoints - 1, j) - a;
+	for (uint32_t j = 0; j < x->naxes; j++) {
+		const double d = x->at[x->n - 1][j] - x->at[0][j];
 
-		up += d * (place(c, k, j) - a);
+		up += d * (x->at[k][j] - x->at[0][j]);
 		square += d * d;
 	}
 	return square > 0 ? fmin(fmax(up / square, 0), 1) : 0;
 }
 
-static double strays(const struct interp_nurbs *c)
+static double strays(const struct piece *x)
 {
 	double most = 0;
 
-	for (uint32_t k = 0; k < c->npoints; k++) {
-		const double t = along(c, k);
+	for (uint32_t k = 0; k < x->n; k++) {
+		const double t = along(x, k);
 
-		for (uint32_t j = 0; j < c->naxes; j++) {
-			const double a = place(c, 0, j);
-			const double b = place(c, c->npoints - 1, j);
-
-			most = fmax(most, fabs(place(c, k, j) -
-					       (a + t * (b - a))));
-		}
+		for (uint32_t j = 0; j < x->naxes; j++)
+			most = fmax(most, fabs((1 - t) * x->at[0][j] +
+					       t * x->at[x->n - 1][j] -
+					       x->at[k][j]));
 	}
 	return most;
 }
 
 static int add_chord(struct way *w, const struct way_curve *k,
-		     const struct interp_nurbs *c, double off)
+		     const struct piece *x, double off)
 {
 	struct way_node n = w->node[w->n - 1];
 
 	n.line = k->at.line;
 	n.rapid = k->at.rapid;
 	n.strays = (float)(off * (1 + 1e-6));
-	for (uint32_t j = 0; j < c->naxes; j++)
-		n.q[k->axis[j]] = place(c, c->npoints - 1, j);
+	for (uint32_t j = 0; j < x->naxes; j++)
+		n.q[k->axis[j]] = x->at[x->n - 1][j];
 	return way_add(w, &n);
 }
 
-static int cut(struct way *w, const struct way_curve *k,
-	       const struct interp_nurbs *c, int depth)
+static int cut(struct way *w, const struct way_curve *k, double from,
+	       double to, int depth)
 {
-	const double off = strays(c);
-	struct interp_nurbs_own left, right;
+	const double mid = from + (to - from) / 2;
+	struct piece x;
+	double off;
 	int r;
 
+	bezier(&k->curve, interp_nurbs_span(&k->curve, mid), from, to, &x);
+	off = strays(&x);
 	if (off <= WAY_CURVE_STRAYS)
-		return add_chord(w, k, c, off);
-	if (depth == DEPTH_MAX)
+		return add_chord(w, k, &x, off);
+	if (depth == DEPTH_MAX || !isfinite(off))
 		return -EINVAL;
-	r = own(c, c->degree + 1, &left);
-	if (own(c, c->degree + 1, &right) || r)
-		r = -ENOMEM;
-	if (r == 0)
-		r = interp_nurbs_split(c, (interp_nurbs_first(c) +
-					   interp_nurbs_last(c)) / 2, &left,
-				       &right) ? -EINVAL : 0;
-	if (r == 0)
-		r = cut(w, k, &left.c, depth + 1);
-	if (r == 0)
-		r = cut(w, k, &right.c, depth + 1);
-	disown(&left);
-	disown(&right);
-	return r;
-}
-
-/* @c from @u on, or up to @u. */
-static int part(const struct interp_nurbs *c, double u, bool first,
-		struct interp_nurbs_own *ret)
-{
-	struct interp_nurbs_own rest;
-	int r = own(c, c->degree + 1, &rest);
-
-	if (r == 0)
-		r = interp_nurbs_split(c, u, first ? ret : &rest,
-				       first ? &rest : ret) ? -EINVAL : 0;
-	disown(&rest);
-	return r;
+	r = cut(w, k, from, mid, depth + 1);
+	return r ? r : cut(w, k, mid, to, depth + 1);
 }
 
 int way_curve(struct way *w, const struct way_curve *k)
 {
-	struct interp_nurbs_own a = { .c = k->curve }, b = { .c = k->curve };
-	const double first = interp_nurbs_first(&k->curve);
-	const double last = interp_nurbs_last(&k->curve);
-	const double least = 1e-9 * (last - first);
+	const struct interp_nurbs *c = &k->curve;
 	int r = 0;
 
-	if (k->from > first + least) {
-		r = own(&k->curve, k->curve.degree + 1, &a);
-		if (r == 0)
-			r = part(&k->curve, k->from, false, &a);
+	for (uint32_t i = c->degree; i < c->npoints && r == 0; i++) {
+		const double from = fmax(c->knots[i], k->from);
+		const double to = fmin(c->knots[i + 1], k->to);
+
+		if (from < to)
+			r = cut(w, k, from, to, 0);
 	}
-	b.c = a.c;
-	if (r == 0 && k->to < last - least) {
-		r = own(&a.c, a.c.degree + 1, &b);
-		if (r == 0)
-			r = part(&a.c, k->to, true, &b);
-	}
-	if (r == 0)
-		r = cut(w, k, &b.c, 0);
-	if (a.knots)
-		disown(&a);
-	if (b.knots)
-		disown(&b);
 	return r;
 }
