@@ -167,27 +167,40 @@ static void what_begins_beyond_its_limits_comes_within_them(void **st)
 }
 
 /* From any instant of a plan the rest of it is still the quickest. */
+static void plan_again(uint64_t *s, double to_end)
+{
+	const struct interp_scurve_limits l = random_limits(s);
+	const double way = random_way(s, &l);
+	struct interp_scurve c, again;
+	struct interp_scurve_state at;
+	double v, a, t;
+
+	random_state(s, &l, &v, &a);
+	interp_scurve_to_place(&c, &l, v, a, way);
+	t = (1 - to_end) * c.end_s;
+	at = interp_scurve_at(&c, t);
+	interp_scurve_to_place(&again, &l, at.v_mm_s, at.a_mm_s2,
+			       way - at.x_mm);
+	check_plan(&again, &l);
+	assert_true(fabs(again.end_s + t - c.end_s) <= 1e-3 * c.end_s);
+}
+
 static void planned_again_on_its_way_it_takes_no_longer(void **st)
 {
 	uint64_t s = seed + 3;
 
 	(void)st;
-	for (int i = 0; i < ROUNDS; i++) {
-		const struct interp_scurve_limits l = random_limits(&s);
-		const double way = random_way(&s, &l);
-		struct interp_scurve c, again;
-		double v, a, t;
-		struct interp_scurve_state at;
+	for (int i = 0; i < ROUNDS; i++)
+		plan_again(&s, uniform(&s, 0, 1));
+}
 
-		random_state(&s, &l, &v, &a);
-		interp_scurve_to_place(&c, &l, v, a, way);
-		t = uniform(&s, 0, 1) * c.end_s;
-		at = interp_scurve_at(&c, t);
-		interp_scurve_to_place(&again, &l, at.v_mm_s, at.a_mm_s2,
-				       way - at.x_mm);
-		check_plan(&again, &l);
-		assert_true(fabs(again.end_s + t - c.end_s) <= 1e-3 * c.end_s);
-	}
+static void planned_again_just_before_its_end_too(void **st)
+{
+	uint64_t s = seed + 9;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS; i++)
+		plan_again(&s, decades(&s, -3, 0));
 }
 
 static void what_can_stop_before_its_place_does_not_pass_it(void **st)
@@ -304,6 +317,7 @@ int main(void)
 		cmocka_unit_test(it_comes_to_its_speed_within_all_limits),
 		cmocka_unit_test(what_begins_beyond_its_limits_comes_within_them),
 		cmocka_unit_test(planned_again_on_its_way_it_takes_no_longer),
+		cmocka_unit_test(planned_again_just_before_its_end_too),
 		cmocka_unit_test(what_can_stop_before_its_place_does_not_pass_it),
 		cmocka_unit_test(a_jump_of_3_mm_takes_a_third_of_a_second),
 		cmocka_unit_test(it_passes_its_place_at_the_speed_asked_for),

@@ -159,24 +159,61 @@ static bool is_lie(const struct cycle *c, const struct lookahead *k)
 		brake.end.x_mm) > k->worst.left_mm + LIE_MM;
 }
 
-static void choose(struct cycle *c, struct lookahead *k, double v_mm_s)
+/* Onward at @v_mm_s, or as the places ahead let it; false: it has to brake. */
+static bool try_plans(struct cycle *c, struct lookahead *k, double v_mm_s)
 {
-	if (!plan_holds(c, v_mm_s))
-		plan_speed(c, v_mm_s);
 	for (int n = 0; n < PLANS_MAX; n++) {
 		look_after_plan(c, k);
 		if (k->missed_mm <= 0)
-			return;
+			return true;
 		if (n == 0 && is_lie(c, k)) {
 			cycle_fail(c, FAULT_PROGRAM);
-			return;
+			return true;
 		}
 		plan_place(c, k, v_mm_s);
 		if (is_braking(c))
-			return;
+			return false;
 	}
 	look_after_plan(c, k);
-	if (k->missed_mm > 0)
+	return k->missed_mm <= 0;
+}
+
+/* To a stand at the next place: nothing lies between. */
+static void plan_next(struct cycle *c, const struct lookahead *k, double v_mm_s)
+{
+	struct mover_limits l = c->ahead.l;
+
+	l.v_max_mm_s = v_mm_s;
+	mover_aim_place(&c->mover, &l, c->ahead.toward * k->next_mm, 0);
+	c->ahead.to_place = true;
+	c->ahead.place_mm = law_place(c) + c->ahead.toward * k->next_mm;
+	c->ahead.v_max_mm_s = v_mm_s;
+}
+
+/*
+ * Braking meets everything, but who stands already would stand for ever.  At
+ * the lowest of all ceilings seen only a stop can be missed, and one plan meets
+ * that.  If even so something is missed, from a stand the next place is gone to:
+ * every move comes on by a place at least.
+ */
+static void choose(struct cycle *c, struct lookahead *k, double v_mm_s)
+{
+	double low;
+
+	if (!plan_holds(c, v_mm_s))
+		plan_speed(c, v_mm_s);
+	if (try_plans(c, k, v_mm_s))
+		return;
+	low = fmin(v_mm_s, k->lowest_mm_s);
+	if (low > 0) {
+		plan_speed(c, low);
+		if (try_plans(c, k, low))
+			return;
+	}
+	low = fmin(low, k->lowest_mm_s);
+	if (low > 0 && mover_is_standing(&c->mover) && isfinite(k->next_mm))
+		plan_next(c, k, low);
+	else
 		plan_speed(c, 0);
 }
 
@@ -184,7 +221,8 @@ static struct lookahead look_of(const struct cycle *c, const struct ahead_move *
 {
 	const struct interp_scurve_limits l = mover_curve(&c->ahead.l);
 	const double by = lookahead_override(c, w);
-	struct lookahead k = { .c = c, .w = w, .l = l, .scale = by < 1 ? by : 1 };
+	struct lookahead k = { .c = c, .w = w, .l = l, .scale = by < 1 ? by : 1,
+			  .lowest_mm_s = INFINITY, .next_mm = INFINITY };
 
 	if (w->toward < 0) {
 		k.l.a_up_mm_s2 = l.a_down_mm_s2;

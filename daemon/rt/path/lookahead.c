@@ -70,6 +70,10 @@ static void consider(struct lookahead *k, double left_mm, double v_mm_s)
 	const double top = v_mm_s * (1 + ROUNDING);
 	double room;
 
+	if (v_mm_s > 0 && v_mm_s < k->lowest_mm_s)
+		k->lowest_mm_s = v_mm_s;
+	if (left_mm > LAW_ONTO_MM && left_mm < k->next_mm)
+		k->next_mm = left_mm;
 	if (top >= k->let_go_mm_s && top >= k->s.v_mm_s)
 		return;
 	room = room_mm(k, left_mm, v_mm_s);

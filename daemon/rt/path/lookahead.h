@@ -39,6 +39,9 @@ struct lookahead {
 	double room_mm;			/* what is met is met by so much */
 	double missed_mm;		/* what is missed by most, if > 0: */
 	struct lookahead_place worst;
+	/* Of every look in this cycle: */
+	double lowest_mm_s;		/* ceiling ahead, but for stops */
+	double next_mm;			/* to the nearest place ahead */
 };
 
 /* What the operator's override makes of this move's speeds. */

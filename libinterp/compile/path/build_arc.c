@@ -17,6 +17,11 @@
 #define RADIUS_PULSES	2.0
 #define RADIUS_SHARE	0.001
 #define RADIUS_MOST	5.0
+/* Nor by more than this of the smaller. */
+#define RADIUS_SPIRAL	0.5
+
+/* Ends so near to each other's angle are at the same: of a pulse. */
+#define SAME_ANGLE	1e-5
 
 static const struct interp_axis_limits *limits(const struct build_arc *p,
 					       uint32_t a)
@@ -39,16 +44,18 @@ static int refuse_radius(double r0, double r1, struct interp_diag *diag)
 static double sweep_of(const struct build_arc *p, double theta0, double theta1)
 {
 	const enum interp_axis a = p->word->axis_a, b = p->word->axis_b;
+	const double pulse = limits(p, a)->pulse_mm;
+	const double same = SAME_ANGLE * pulse / p->arc.r_mm;
 	double sweep = theta1 - theta0;
 
 	if (p->from_mm[a] == p->to_mm[a] && p->from_mm[b] == p->to_mm[b])
 		sweep = 0;
 	if (p->word->clockwise) {
-		while (sweep >= 0)
+		while (sweep > -same)
 			sweep -= TURN;
 		return sweep - TURN * p->word->turns;
 	}
-	while (sweep <= 0)
+	while (sweep < same)
 		sweep += TURN;
 	return sweep + TURN * p->word->turns;
 }
@@ -286,6 +293,40 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	return r < 0 ? r : count_ticks(p, diag);
 }
 
+/* How far its chord is from it, at most. */
+static double chord_off_mm(const struct interp_arc *arc)
+{
+	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double half = fmin(fabs(arc->sweep), TURN) / 2;
+
+	return r * (1 - cos(half));
+}
+
+/*
+ * Of few pulses a rounding may make a circle a spiral into its centre, or a way
+ * outward with hardly a turn: neither has a speed round it.  It is a line
+ * where a line is as near to it as its radii may differ, else no arc is meant.
+ */
+static int settle_spiral(struct build_arc *p, struct interp_diag *diag)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double pulse = fmax(limits(p, arc->axis_a)->pulse_mm,
+				  limits(p, arc->axis_b)->pulse_mm);
+	const double r0 = arc->r_mm, r1 = arc->r_mm + arc->dr_mm;
+	const double least = fmin(r0, r1), off = fabs(arc->dr_mm);
+
+	if (off <= RADIUS_SPIRAL * least && off <= fabs(arc->sweep) * least)
+		return 0;
+	p->straight = chord_off_mm(arc) <= RADIUS_PULSES * pulse;
+	if (p->straight)
+		return 0;
+	snprintf(diag->found, sizeof(diag->found),
+		 "a spiral from %.4f mm to %.4f mm from its centre", r0, r1);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "radii that differ by half of the smaller at most");
+	return -EINVAL;
+}
+
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 {
 	int r = build_arc_shape(p, diag);
@@ -294,6 +335,9 @@ int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 		return r;
 	r = arc_travel(p, diag);
 	if (r < 0)
+		return r;
+	r = settle_spiral(p, diag);
+	if (r < 0 || p->straight)
 		return r;
 	arc_length(p);
 	return p->o->strategy == INTERP_SIMULTANEOUS ?

@@ -30,8 +30,12 @@
 /* Of a root between two ends; bisection alone would need some 50. */
 #define TRIES	100
 
-/* Left so near to a root, of the way and what the ends miss it by.  Rounding is
- * 1e-13 of it: where all leads there but for that, no try would be nearer. */
+/*
+ * Left so near to a root, of the way and of what leaving at once misses it by.
+ * Rounding is 1e-13 of these: where all leads there but for that, no try would
+ * be nearer.  What leaving last would miss it by does not count: it may be a
+ * thousand times the whole plan.
+ */
 #define ENOUGH	1e-12
 
 struct ramp {
@@ -243,7 +247,7 @@ static double share(const struct tried *a, const struct tried *b,
 static double leave_at(const struct leave *k, double hi, double f_hi)
 {
 	struct tried a = { 0, beyond(k, 0) }, b = { hi, f_hi }, c, x;
-	const double enough = ENOUGH * (fabs(a.f) + fabs(b.f) + fabs(k->way));
+	const double enough = ENOUGH * (fabs(a.f) + fabs(k->way));
 	double part = a.f / (a.f - b.f);
 
 	if (a.f >= -enough)

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_walkable.c - what is accepted is walked to its end, there and back
+ *
+ * Random texts of every dialect, by every strategy, in periods of 50 us to 20
+ * ms, with jerks of 1e4 to 1e8 mm/s3.  The seed is printed; EDM_RUNS is how
+ * many texts are tried.
+ */
+#include "cycle_help.h"
+#include "random_program.h"
+#include "seed.h"
+
+#include "interp/compile.h"
+
+#include <errno.h>
+
+#define RUNS		120
+
+/* As many cycles may pass without a way while it should move. */
+#define STILL_MAX	2000
+#define CYCLES_MAX	4000000
+
+static uint64_t seed;
+
+struct job {
+	struct script text;
+	const char *dialect;
+	enum interp_strategy how;
+	double period_us, a_mm_s2, j_mm_s3;
+};
+
+static void say(const struct job *j, const struct rig *r, const char *what)
+{
+	fail_msg("%s, at %g mm of %g, state %s %s: --dialect %s --strategy %s "
+		 "--period-us %g, a %g, j %g\n%s", what,
+		 place(r), r->m.p.head->length_mm,
+		 state_duty[r->c.state].name,
+		 cycle_fault_name(r->c.fault), j->dialect,
+		 interp_strategy_name(j->how), j->period_us, j->a_mm_s2,
+		 j->j_mm_s3, j->text.at);
+}
+
+/* -- The machine ----------------------------------------------------------- */
+
+static void machine(struct interp_machine *m, const struct job *j)
+{
+	*m = (struct interp_machine) { .present = 0xff };
+	for (int i = 0; i < INTERP_NAXES; i++)
+		m->axis[i] = (struct interp_axis_limits) {
+			0.001, -200, 200, 100, j->a_mm_s2, j->j_mm_s3
+		};
+}
+
+static const struct interp_tech_table *table(void)
+{
+	static const char text[] =
+		"condition, servo_v, on_us, allowance_mm\n"
+		"C001,40,8,0\nC120,35,40,0.01\nE001,45,-,-\n"
+		"sequence Q1 = C120 C001\ninline E = - on_us servo_v\n";
+	static struct interp_tech_table *t;
+	struct interp_diag d;
+
+	if (!t)
+		assert_int_equal(interp_tech_read(&t, text, sizeof(text) - 1,
+						  &d), 0);
+	return t;
+}
+
+/* Return: was it taken? */
+static bool compile(struct job *j, const struct interp_machine *m,
+		    struct made *ret)
+{
+	static const struct interp_wire wire = {
+		.guides = INTERP_GUIDES_ABSOLUTE, .z_lower_mm = -20,
+		.z_upper_mm = 80, .z_second_mm = 40, .angle_max_deg = 45,
+		.corner_angle_deg = 30, .corner_feed_percent = 50,
+		.corner_before_mm = 0.2,
+	};
+	const bool generic = strcmp(j->dialect, "generic") == 0;
+	const struct interp_compile_options o = {
+		.nc = {
+			.machine = m, .wire = generic ? NULL : &wire,
+			.tech = table(), .feed_mm_s = 20,
+			.offset_mm = { [1] = 0.05 }, .executed_max = 100000,
+		},
+		.threeb.offset_um = 5,
+	};
+	const struct interp_build_options bo = {
+		.machine = m, .strategy = j->how, .tolerance_milli = 2000,
+		.fit_mm = rnd(j->text.seed) % 4 ? 0 : 0.01,
+		.chord_error_mm = 0.001, .period_s = j->period_us * 1e-6,
+	};
+	const struct interp_text t = {
+		j->text.at, (size_t)j->text.n,
+		interp_dialect_by_name(j->dialect),
+	};
+	struct interp_build *b = interp_build_create(&bo);
+	struct interp_diag d = { 0 };
+	uint32_t lines;
+
+	assert_non_null(b);
+	if (interp_compile(&t, &o, b, &lines, &d) != 0) {
+		interp_build_destroy(b);
+		return false;
+	}
+	*ret = finish(b);
+	return true;
+}
+
+/* -- The walk -------------------------------------------------------------- */
+
+static bool stands(const struct rig *r)
+{
+	return !r->c.moving && r->c.mover.v_mm_s == 0 &&
+	       r->c.after_stand == STATE_HOLD;
+}
+
+/* A cycle; it comes on, or it waits for what it should. */
+static void watch(const struct job *j, struct rig *r, int *still)
+{
+	const double was = place(r);
+	const uint32_t done = r->c.action_done;
+
+	step(r, OPEN_V);
+	if (r->c.state == STATE_FAULT)
+		say(j, r, "a fault");
+	*still = place(r) != was || r->c.action_done != done || r->c.dwelling ?
+		 0 : *still + 1;
+	if (*still > STILL_MAX)
+		say(j, r, "it stands");
+	if (r->c.count > CYCLES_MAX)
+		say(j, r, "it creeps");
+}
+
+static void check_end(const struct job *j, const struct rig *r)
+{
+	const struct interp_program *p = &r->m.p;
+
+	for (uint32_t k = 0; k < p->head->naxes; k++) {
+		const int64_t end = p->nodes[(uint64_t)p->head->nsegs *
+					     p->head->naxes + k];
+
+		if (r->c.cursor.pos[p->head->column[k]] !=
+		    interp_round_sub(end))
+			say(j, r, "not at its end");
+	}
+}
+
+static void to_the_end(const struct job *j, struct rig *r)
+{
+	const double end = r->m.p.head->length_mm;
+	int still = 0;
+
+	tell(r, CYCLE_START);
+	while (r->c.state != STATE_IDLE) {
+		if (r->c.state == STATE_HOLD && stands(r)) {
+			if (r->c.config.hold_at_end && place(r) >= end - 1e-9)
+				return;
+			tell(r, CYCLE_START);
+		}
+		watch(j, r, &still);
+	}
+}
+
+static void there_and_back(const struct job *j, struct rig *r)
+{
+	int still = 0;
+
+	r->c.config.hold_at_end = true;
+	to_the_end(j, r);
+	check_end(j, r);
+	tell_mm(r, CYCLE_RETRACT, 1e9);
+	while (!(r->c.state == STATE_HOLD && stands(r)))
+		watch(j, r, &still);
+	if (place(r) > 1e-6 + r->c.back_mm)
+		say(j, r, "not back at its start");
+	r->c.config.hold_at_end = false;
+	to_the_end(j, r);
+	check_end(j, r);
+}
+
+/* Not so short a period that it takes minutes. */
+static void set_times(struct job *j, uint64_t *s)
+{
+	j->period_us = 50 * pow(400, uniform(s, 0, 1));
+	j->a_mm_s2 = pow(10, uniform(s, 2, 4));
+	j->j_mm_s3 = pow(10, uniform(s, 4, 8));
+}
+
+static void walk(const struct job *j, struct made m)
+{
+	struct cycle_config k = usual_config();
+	struct rig r;
+
+	k.dry_run = true;
+	k.period_ns = (int64_t)(j->period_us * 1e3);
+	k.travel_a_mm_s2 = j->a_mm_s2;
+	k.travel_j_mm_s3 = j->j_mm_s3;
+	k.gap.retract_mm_s = 1e3;
+	k.points_max = 20000;
+	rig_take(&r, m, &k);
+	there_and_back(j, &r);
+	rig_free(&r);
+}
+
+/* By every strategy.  Return: how many took it. */
+static int try_all(struct job *j)
+{
+	struct interp_machine m;
+	struct made made;
+	int taken = 0;
+
+	machine(&m, j);
+	for (int how = 0; how < INTERP_NSTRATEGIES; how++) {
+		j->how = (enum interp_strategy)how;
+		if (!compile(j, &m, &made))
+			continue;
+		walk(j, made);
+		taken++;
+	}
+	return taken;
+}
+
+static int try_text(uint64_t *s)
+{
+	static struct job j;
+
+	j.dialect = random_text(&j.text, s);
+	set_times(&j, s);
+	return try_all(&j);
+}
+
+/* They stood for ever, or ended in a fault. */
+static void these_are_walked_or_refused(void **st)
+{
+	static const char *const texts[] = {
+		"G91 F6000\nG1 X-2.084 Y3.542\nG1 X0.003 Y0.001\n"
+		"G1 X0.009 Y0.012\nG1 X-2.132 Y1.480\nG1 X-0.264 Y0.363\n"
+		"G1 X-1.520 Y-1.520\nM2\n",
+		"G91 F6000\nG1 X0.05\nG2 X0.001 Y0.001 I0.001 J0.001\nM2\n",
+		"G90 F6000\nG1 X1.726\nG3 X1.727 Y-0.001 I-0.001 J0.001\n"
+		"M2\n",
+	};
+	uint64_t s = seed;
+
+	(void)st;
+	for (int i = 0; i < 3; i++) {
+		static struct job j;
+
+		j = (struct job) { .dialect = "generic", .a_mm_s2 = 500,
+				   .j_mm_s3 = 10000, .text.seed = &s };
+		put(&j.text, "%s", texts[i]);
+		for (j.period_us = 50; j.period_us < 30000; j.period_us *= 20)
+			assert_int_equal(try_all(&j), i < 2 ?
+					 INTERP_NSTRATEGIES : 0);
+	}
+}
+
+static void what_is_accepted_is_walked(void **st)
+{
+	const char *given = getenv("EDM_RUNS");
+	const int runs = given ? atoi(given) : RUNS;
+	const uint64_t from = seed;
+	int taken = 0;
+
+	(void)st;
+	for (int i = 0; i < runs; i++) {
+		uint64_t s = from + (uint64_t)i * 1000003;
+
+		taken += try_text(&s);
+	}
+	print_message("    %d of %d programs were taken\n", taken,
+		      runs * INTERP_NSTRATEGIES);
+	assert_true(taken > runs);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(these_are_walked_or_refused),
+		cmocka_unit_test(what_is_accepted_is_walked),
+	};
+
+	seed = seed_take();
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
