@@ -84,5 +84,6 @@ void progress_end(const struct job *j);
 /** interrupted() - was Ctrl-C pressed? */
 bool interrupted(void);
 void interrupt_catch(void);
+void interrupt_forget(void);
 
 #endif /* PLAN_JOB_H */

@@ -30,6 +30,11 @@ void interrupt_catch(void)
 	sigaction(SIGTERM, &a, NULL);
 }
 
+void interrupt_forget(void)
+{
+	asked = 0;
+}
+
 bool interrupted(void)
 {
 	return asked != 0;

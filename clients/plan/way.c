@@ -133,6 +133,7 @@ static int follow_seg(struct way *w, const struct interp_program *p,
 {
 	const struct interp_seg *s = &p->segs[i];
 	struct way_node end = { .line = s->line,
+				.feed_mm_s = s->feed_mm_s,
 				.rapid = s->flags & INTERP_SEG_RAPID };
 	int r;
 

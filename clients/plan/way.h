@@ -19,6 +19,7 @@
 struct way_node {
 	double q[INTERP_NAXES];
 	uint32_t line;			/* of the block that leads here */
+	float feed_mm_s;		/* F on it, as the path's length counts */
 	float strays;			/* mm, and degrees: of any axis on it */
 	bool rapid;			/* it is positioned, not eroded */
 };
