@@ -144,8 +144,8 @@ int check_way(const struct job *j, const struct way *w,
 	for (uint32_t i = 0; i + 1 < w->n && ret->ok; i++) {
 		char text[100];
 
-		if (interrupted()) {
-			progress_end(j);
+		if (bar_interrupted()) {
+			bar_end(j);
 			return -EINTR;
 		}
 		check_next(&k, i);
@@ -153,9 +153,9 @@ int check_way(const struct job *j, const struct way *w,
 			continue;
 		snprintf(text, sizeof(text), "block %u of %u, least seen %.3f "
 			 "mm", i + 1, w->n - 1, ret->least_mm);
-		progress(j, (double)i / w->n, text);
+		bar_show(j, (double)i / w->n, text);
 	}
-	progress_end(j);
+	bar_end(j);
 	return 0;
 }
 

@@ -79,7 +79,7 @@ static void show(const struct fewest *f, const char *what, uint32_t blocks,
 
 	snprintf(text, sizeof(text), "%s: %u blocks so far, %llu tried", what,
 		 blocks, (unsigned long long)f->blocks);
-	progress(f->j, share, text);
+	bar_show(f->j, share, text);
 }
 
 uint32_t fewest_greedy(struct fewest *f, double mm, uint32_t *ret)
@@ -93,7 +93,7 @@ uint32_t fewest_greedy(struct fewest *f, double mm, uint32_t *ret)
 		while (k > at && !fewest_keeps(f, at, k, mm)) {
 			show(f, "greedy", n, (double)at / f->n);
 			k--;
-			if (interrupted())
+			if (bar_interrupted())
 				return UINT32_MAX;
 		}
 		if (k == at)
@@ -144,7 +144,7 @@ static bool level(struct fewest *f, struct search *s, double mm, uint32_t from,
 	}
 	for (uint32_t i = from; i < to && !last; i++) {
 		for (uint32_t k = end - 1; k > s->reached[i]; k--) {
-			if (interrupted())
+			if (bar_interrupted())
 				return false;
 			show(f, "fewest", 0, (double)i / to);
 			if (s->before[k] == UINT32_MAX &&
@@ -167,7 +167,7 @@ uint32_t fewest_search(struct fewest *f, double mm, uint32_t most,
 	if (s.before && s.reached) {
 		memset(s.before, 0xff, f->n * sizeof(*s.before));
 		reach(&s, 0, 0);
-		for (uint32_t i = 0; i < most && !n && !interrupted(); i++) {
+		for (uint32_t i = 0; i < most && !n && !bar_interrupted(); i++) {
 			const uint32_t to = s.nreached;
 
 			if (level(f, &s, mm, from, i + 1 == most))
@@ -188,7 +188,7 @@ double fewest_widest(struct fewest *f, double mm, uint32_t blocks,
 	double low = mm, high = mm + 0.32;
 	uint32_t *way = malloc((f->n + 1) * sizeof(*way));
 
-	while (way && high - low > WIDEST_MM && !interrupted()) {
+	while (way && high - low > WIDEST_MM && !bar_interrupted()) {
 		const double mid = (low + high) / 2;
 		const uint32_t n = fewest_search(f, mid, blocks, way);
 

@@ -18,8 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define POSES		14		/* of a block */
-#define BAND_MM		0.5		/* over the least distance */
+#define POSES		10		/* of a block */
+#define BAND_MM		0.2		/* over the least distance */
 #define ROOM_FIRST_MM	1.5		/* of a step, at first */
 #define ROOM_LEAST_MM	0.01
 #define GONE_MM		0.002		/* a node so near to the line is on it */
@@ -200,7 +200,6 @@ static bool solve(struct lp *l)
 	how.msg_lev = GLP_MSG_OFF;
 	how.tm_lim = 20000;
 	how.presolve = GLP_ON;
-	l->p = l->p;
 	return glp_simplex(l->p, &how) == 0 &&
 	       (glp_get_status(l->p) == GLP_OPT ||
 		glp_get_status(l->p) == GLP_FEAS);
@@ -233,14 +232,14 @@ void free_widen(struct free_way *w, int rounds)
 
 	w->least_mm = try_way(w, 0);
 	for (int i = 0; i < rounds && room > ROOM_LEAST_MM && w->n > 2 &&
-	     !interrupted(); i++) {
+	     !bar_interrupted(); i++) {
 		struct free_way next = *w;
 		char text[100];
 		struct lp l;
 
 		snprintf(text, sizeof(text), "free nodes: %u blocks, %.3f mm",
 			 w->n - 1, w->least_mm);
-		progress(w->j, (double)i / rounds, text);
+		bar_show(w->j, (double)i / rounds, text);
 		begin(&l, w, room);
 		glp_set_obj_dir(l.p, GLP_MAX);
 		glp_set_obj_coef(l.p, l.least, 1);
@@ -369,14 +368,14 @@ bool free_drop(struct free_way *w, uint32_t k, double mm)
 	int slow = 0;
 
 	for (int i = 0; i < 24 && room > ROOM_LEAST_MM && slow < 4 &&
-	     !interrupted(); i++) {
+	     !bar_interrupted(); i++) {
 		const double left = straighten(&now, k, mm, room);
 		char text[100];
 
 		snprintf(text, sizeof(text), "free nodes: %u blocks, node %u "
 			 "%.2f mm off the line", w->n - 1, k,
 			 last < DBL_MAX ? last : 0.0);
-		progress(w->j, i / 24.0, text);
+		bar_show(w->j, i / 24.0, text);
 		w->queries = now.queries;
 		w->programs = now.programs;
 		if (left < 0) {

@@ -77,13 +77,13 @@ void job_block(const struct job *j, const struct way *w, uint32_t i,
 bool job_moves_known(const struct job *j, const struct way *w,
 		     const char *path);
 
-/** progress() - one line on stderr, rewritten; nothing with --quiet. */
-void progress(const struct job *j, double share, const char *text);
-void progress_end(const struct job *j);
+/** bar_show() - one line on stderr, rewritten; nothing with --quiet. */
+void bar_show(const struct job *j, double share, const char *text);
+void bar_end(const struct job *j);
 
-/** interrupted() - was Ctrl-C pressed? */
-bool interrupted(void);
-void interrupt_catch(void);
-void interrupt_forget(void);
+/** bar_bar_interrupted() - was Ctrl-C pressed? */
+bool bar_interrupted(void);
+void bar_catch(void);
+void bar_forget(void);
 
 #endif /* PLAN_JOB_H */

@@ -269,7 +269,7 @@ int main(int argc, char **argv)
 	int r;
 
 	parse(&o, argc, argv);
-	interrupt_catch();
+	bar_catch();
 	r = job_load(&job, &o);
 	if (r == 0)
 		r = o.mode == JOB_CHECK ? check_program(&job) :

@@ -6,7 +6,7 @@
 
 #include "vec.h"
 
-#define CELL_MM		4.0
+#define CELL_MM		5.0
 
 static bool same_cell(const struct near_pair *a, const struct near_pair *b)
 {

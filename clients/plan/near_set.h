@@ -13,7 +13,7 @@
 
 #include "near.h"
 
-#define NEAR_SET_MAX	64
+#define NEAR_SET_MAX	14
 
 struct near_set {
 	uint32_t n;

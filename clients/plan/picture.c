@@ -188,7 +188,7 @@ int picture_put(const struct plan *p)
 		p->best.least_mm);
 	put_curve(f, p);
 	fputs("</svg>\n", f);
-	r = fclose(f) ? EX_OSERR : put_file(p->j->o->picture, text);
+	r = fclose(f) ? EX_OSERR : text_put(p->j->o->picture, text);
 	free(text);
 	return r;
 }

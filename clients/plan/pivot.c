@@ -258,7 +258,7 @@ static int try_all(struct plan *p, struct nodes *n)
 	}
 	if (find_columns(p->j, n))
 		return 0;
-	for (uint32_t blocks = 1; blocks <= 2 && !interrupted(); blocks++) {
+	for (uint32_t blocks = 1; blocks <= 2 && !bar_interrupted(); blocks++) {
 		double s[SHIFTS];
 
 		best_shift(n, blocks, s);

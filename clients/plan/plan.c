@@ -18,7 +18,7 @@
 #include <sysexits.h>
 #include <time.h>
 
-#define WIDEN_ROUNDS	14
+#define WIDEN_ROUNDS	10
 
 static double now_s(void)
 {
@@ -200,7 +200,7 @@ static void plan_free(struct plan *p, const struct job *j)
 	if (p->j->o->end_zone_mm > 0 ||
 	    free_init(&f, j, p->best.q, p->best.n))
 		return;
-	while (gone && f.n > 2 && !interrupted()) {
+	while (gone && f.n > 2 && !bar_interrupted()) {
 		free_widen(&f, WIDEN_ROUNDS);
 		gone = false;
 		for (uint32_t k = 1; k + 1 < f.n && !gone; k++)
@@ -229,7 +229,7 @@ int plan_over(struct plan *p, const struct job *j,
 		plan_prove(j, &p->greedy, &p->queries);
 		p->best = p->greedy;
 	}
-	blocks = interrupted() ? 0 :
+	blocks = bar_interrupted() ? 0 :
 		 fewest_search(&f, j->clear_mm, n - 1, at);
 	if (blocks) {
 		if (!(p->c.zone_mm > 0))
@@ -321,17 +321,17 @@ static int prove_text(struct plan *p, const char *text)
 
 static int write_all(struct plan *p)
 {
-	char *text = nc_write(p, &p->best);
+	char *text = text_write(p, &p->best);
 	int r;
 
 	if (!text)
 		return EX_OSERR;
-	interrupt_forget();
+	bar_forget();
 	r = prove_text(p, text);
 	if (r == 0 && p->j->o->times)
 		r = times_ask(p);
 	if (r == 0)
-		r = put_file(p->j->o->output, text);
+		r = text_put(p->j->o->output, text);
 	free(text);
 	if (r == 0)
 		r = report_put(p);
@@ -357,10 +357,10 @@ static int plan_nodes(struct plan *p)
 	if (r) {
 		fprintf(stderr, "edm-plan: no way over the nodes of the program "
 			"keeps %.3f mm%s\n", p->j->clear_mm,
-			interrupted() ? ": interrupted" : "");
+			bar_interrupted() ? ": interrupted" : "");
 		return 1;
 	}
-	if (!p->j->o->no_pivot && !interrupted())
+	if (!p->j->o->no_pivot && !bar_interrupted())
 		r = plan_pivot(p) == -ENOMEM ? EX_OSERR : 0;
 	return r;
 }
@@ -399,9 +399,9 @@ int plan_program(struct job *j)
 		r = check_dense(&p);
 	if (r == 0)
 		r = plan_nodes(&p);
-	p.stopped = interrupted();
+	p.stopped = bar_interrupted();
 	p.planned_s = now_s() - p.seconds;
-	progress_end(j);
+	bar_end(j);
 	if (r == 0)
 		r = write_all(&p);
 	if (r == EX_OSERR)

@@ -62,12 +62,12 @@ int plan_pivot(struct plan *p);
 
 /* -- What is written ------------------------------------------------------------ */
 
-/** nc_write() - the way in as NC code, @text allocated; NULL if out of memory. */
-char *nc_write(const struct plan *p, const struct plan_way *w);
+/** text_write() - the way in as NC code, @text allocated; NULL if out of memory. */
+char *text_write(const struct plan *p, const struct plan_way *w);
 
-/** put_file() - write @text to @path, - is standard output. Return: 0 or a
+/** text_put() - write @text to @path, - is standard output. Return: 0 or a
  *  sysexits code, and the reason is on stderr. */
-int put_file(const char *path, const char *text);
+int text_put(const char *path, const char *text);
 
 /** report_put(), picture_put(), view_put() - the files asked for. */
 int report_put(const struct plan *p);

@@ -127,7 +127,7 @@ int report_put(const struct plan *p)
 	json_decref(o);
 	if (!text)
 		return EX_OSERR;
-	r = put_file(j->o->report, text);
+	r = text_put(j->o->report, text);
 	free(text);
 	return r;
 }

@@ -126,8 +126,8 @@ static int ask_way(const struct plan *p, const struct room *r,
 
 	if (!w->how)
 		return 0;
-	text = nc_write(p, w);
-	e = text ? put_file(r->ngc, text) : EX_OSERR;
+	text = text_write(p, w);
+	e = text ? text_put(r->ngc, text) : EX_OSERR;
 	free(text);
 	if (e == 0)
 		e = ask(r, &p->j->config, r->ngc, s);
@@ -147,18 +147,18 @@ int times_ask(struct plan *p)
 			strerror(errno));
 		return e;
 	}
-	progress(p->j, 0.1, "edmsim runs the dense way");
+	bar_show(p->j, 0.1, "edmsim runs the dense way");
 	if (p->j->o->program)
 		e = ask(&r, &p->j->config, p->j->o->program, s);
 	p->dense_pass_s = s[0];
 	p->dense_stop_s = s[1];
-	progress(p->j, 0.4, "edmsim runs the greedy way");
+	bar_show(p->j, 0.4, "edmsim runs the greedy way");
 	if (e == 0)
 		e = ask_way(p, &r, &p->greedy);
-	progress(p->j, 0.7, "edmsim runs the way to be written");
+	bar_show(p->j, 0.7, "edmsim runs the way to be written");
 	if (e == 0)
 		e = ask_way(p, &r, &p->best);
-	progress_end(p->j);
+	bar_end(p->j);
 	clear_room(&r);
 	return e;
 }

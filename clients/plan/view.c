@@ -77,7 +77,7 @@ int view_put(const struct plan *p)
 			put_pose(f, p, i, k, &pair);
 	fputs("];\n", f);
 	fputs(view_page_tail, f);
-	r = fclose(f) ? EX_OSERR : put_file(p->j->o->view, text);
+	r = fclose(f) ? EX_OSERR : text_put(p->j->o->view, text);
 	free(text);
 	return r;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * nc.c - a way in as NC code
+ * text.c - a way in as NC code
  */
 #include "plan.h"
 
@@ -55,7 +55,7 @@ static void put_way_in(FILE *f, const struct plan *p, const struct plan_way *w)
 	}
 }
 
-char *nc_write(const struct plan *p, const struct plan_way *w)
+char *text_write(const struct plan *p, const struct plan_way *w)
 {
 	const double *at = p->dense.node[0].q;
 	char *text = NULL;
@@ -86,7 +86,7 @@ char *nc_write(const struct plan *p, const struct plan_way *w)
 	return text;
 }
 
-int put_file(const char *path, const char *text)
+int text_put(const char *path, const char *text)
 {
 	const bool standard = strcmp(path, "-") == 0;
 	FILE *f = standard ? stdout : fopen(path, "w");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * progress.c - a bar while a person waits, and what Ctrl-C asks for
+ * bar.c - a bar while a person waits, and what Ctrl-C asks for
  */
 #include "job.h"
 
@@ -20,7 +20,7 @@ static void on_signal(int sig)
 	asked = 1;
 }
 
-void interrupt_catch(void)
+void bar_catch(void)
 {
 	struct sigaction a = { .sa_handler = on_signal,
 			       .sa_flags = SA_RESTART };
@@ -30,12 +30,12 @@ void interrupt_catch(void)
 	sigaction(SIGTERM, &a, NULL);
 }
 
-void interrupt_forget(void)
+void bar_forget(void)
 {
 	asked = 0;
 }
 
-bool interrupted(void)
+bool bar_interrupted(void)
 {
 	return asked != 0;
 }
@@ -48,7 +48,7 @@ static double now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-void progress(const struct job *j, double share, const char *text)
+void bar_show(const struct job *j, double share, const char *text)
 {
 	static double last;
 	const double now = now_s();
@@ -65,7 +65,7 @@ void progress(const struct job *j, double share, const char *text)
 	fprintf(stderr, "\r[%s] %3.0f %% %.100s\033[K", bar, share * 100, text);
 }
 
-void progress_end(const struct job *j)
+void bar_end(const struct job *j)
 {
 	if (!j->o->quiet && isatty(STDERR_FILENO))
 		fprintf(stderr, "\r\033[K");
