@@ -10,14 +10,8 @@
 #include "prove.h"
 #include "way.h"
 
-enum job_mode {
-	JOB_PLAN,			/* fewest blocks */
-	JOB_CHECK,			/* --check */
-	JOB_MEASURE,			/* --measure */
-};
-
 struct job_options {
-	enum job_mode mode;
+	bool check, measure;
 	const char *part, *electrode, *machine_file;
 	const char *program;		/* NC code; of --measure, the poses */
 	const char *dialect;		/* NULL: by the file's name */

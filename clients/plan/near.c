@@ -70,8 +70,10 @@ static double box_reach(const struct box *b, const double n[3])
 	       b->half[2] * fabs(v_dot(b->axis.m[2], n));
 }
 
-static void box_gaps(const struct box *part, const struct box *tool,
-		     struct gaps *g)
+/* @enough: a gap like that ends the search; false then, for the others are not
+ * filled. */
+static bool box_gaps(const struct box *part, const struct box *tool,
+		     double enough, struct gaps *g)
 {
 	double r[3][3];
 
@@ -93,7 +95,10 @@ static void box_gaps(const struct box *part, const struct box *tool,
 		g->along[k] = fabs(at) - reach;
 		if (g->along[k] > g->along[g->widest])
 			g->widest = k;
+		if (g->along[k] >= enough)
+			return false;
 	}
+	return true;
 }
 
 /* The time the gap @g on the way @n, from the tool to the part, holds. */
@@ -146,7 +151,8 @@ static double box_bound(const struct walk *w, const struct box *part,
 	struct gaps g;
 	double most;
 
-	box_gaps(part, tool, &g);
+	if (!box_gaps(part, tool, w->rate ? DBL_MAX : w->best, &g))
+		return w->best;
 	if (!w->rate)
 		return g.along[g.widest] > 0 ? g.along[g.widest] : 0;
 	most = box_time_along(w, part, tool, &g, g.widest);

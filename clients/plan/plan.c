@@ -87,9 +87,8 @@ static void say_contact(const struct plan *p, const struct check_result *r)
 }
 
 /* An end pose that is too near is a mistake in electrode or program. */
-static int check_end(struct plan *p)
+int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
 {
-	const double *end = p->dense.node[p->last].q;
 	const double wanted = p->j->clear_mm + p->j->chord_mm;
 	struct near_pair pair = { 0 };
 	struct pose pose;
@@ -394,7 +393,7 @@ int plan_program(struct job *j)
 	if (r == 0)
 		r = check_clearance(j, p.dense.node[p.last].q, &p.c);
 	if (r == 0)
-		r = check_end(&p);
+		r = plan_check_end(&p, p.dense.node[p.last].q);
 	if (r == 0)
 		r = check_dense(&p);
 	if (r == 0)

@@ -49,6 +49,10 @@ struct plan {
 /** plan_program() - plan, prove, write. Return: 0, 1 no way; else sysexits. */
 int plan_program(struct job *j);
 
+/** plan_check_end() - is @end a pose to be reached?  It fills end_mm. Return: 0;
+ *  1, and the reason is on stderr. */
+int plan_check_end(struct plan *p, const double end[INTERP_NAXES]);
+
 /** plan_over() - the fewest blocks over the nodes @q; then, if @free, with
  *  inner nodes off them. Return: 0, 1 none, -ENOMEM. */
 int plan_over(struct plan *p, const struct job *j,
