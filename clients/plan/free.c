@@ -19,6 +19,7 @@
 #include <string.h>
 
 #define POSES		10		/* of a block */
+#define PAIRS		14		/* of triangles at each */
 #define BAND_MM		0.2		/* over the least distance */
 #define ROOM_FIRST_MM	1.5		/* of a step, at first */
 #define ROOM_LEAST_MM	0.01
@@ -168,7 +169,7 @@ static void add_pair(struct lp *l, uint32_t i, double t,
 
 static void add_pairs(struct lp *l, struct free_way *w)
 {
-	static struct near_set set;
+	static struct near_set set = { .max = PAIRS };
 
 	for (uint32_t i = 0; i + 1 < w->n; i++) {
 		struct near_pair last = { 0 };

@@ -35,7 +35,7 @@ static bool take(void *arg, const struct near_pair *pair)
 		if (s->pair[i].mm > s->pair[far].mm)
 			far = i;
 	}
-	if (s->n < NEAR_SET_MAX)
+	if (s->n < s->max)
 		s->pair[s->n++] = *pair;
 	else if (pair->mm < s->pair[far].mm)
 		s->pair[far] = *pair;

@@ -13,9 +13,10 @@
 
 #include "near.h"
 
-#define NEAR_SET_MAX	14
+#define NEAR_SET_MAX	128
 
 struct near_set {
+	uint32_t max;			/* the caller's, up to NEAR_SET_MAX */
 	uint32_t n;
 	struct near_pair pair[NEAR_SET_MAX];
 };

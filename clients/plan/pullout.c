@@ -119,7 +119,7 @@ static void add_pairs(const struct pull *p, glp_prob *lp,
 static bool step_to(const struct pull *p, double room_mm,
 		    const double lead[INTERP_NAXES], double to[INTERP_NAXES])
 {
-	static struct near_set set;
+	static struct near_set set = { .max = NEAR_SET_MAX };
 	glp_prob *lp = glp_create_prob();
 	struct near_pair pair = p->nearest;
 	struct pose pose;
