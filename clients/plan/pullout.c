@@ -175,7 +175,7 @@ static bool is_free(struct pull *p, const double from[INTERP_NAXES],
 
 static int add_node(struct pull *p, bool rapid)
 {
-	struct way_node n = { .rapid = rapid };
+	struct way_node n = { .rapid = rapid, .feed_mm_s = 0.5 };
 
 	memcpy(n.q, p->q, sizeof(n.q));
 	return way_add(&p->out, &n);
