@@ -2,9 +2,11 @@
 #
 #   make            build everything into build/
 #   make demo       set up, build, run the main job on the simulated machine
+#   make demo-plan  plan a way into a closed channel, prove it, cut along it
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make quick      of these, most of what goes wrong, in 90 s
 #   make check-vm   of these, those on a PREEMPT_RT kernel in a virtual machine
+#   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
@@ -252,6 +254,11 @@ demo:
 	@$(MAKE) --no-print-directory all
 	@EDM_BUILD=$(B) tests/netns examples/demo
 
+demo-plan:
+	@tests/setup build
+	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/edmsim
+	@EDM_BUILD=$(B) examples/demo-plan
+
 # Everything: ends with the test runner's own lines.  Random tests have a seed
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
 # the tests run alone go on to look with others.
@@ -457,7 +464,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: all demo demo-plan bench-plan check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable \
 	pictures fuzz lint install clean
