@@ -73,11 +73,14 @@ static int check_body(const struct job *j, const struct tree *t,
 		      struct mesh_findings *f)
 {
 	const struct mesh *m = t->mesh;
+	const double size = mesh_size_mm(m);
 	char what[80];
 
 	f->crossings = mesh_crossings(t, f->cross_tri);
 	if (j->o->accept_flaws)
 		return 0;
+	if (!(f->volume_mm3 > 1e-9 * size * size * size))
+		return refuse_flaw(m, "no volume", 0, "a closed body");
 	if (f->open) {
 		snprintf(what, sizeof(what), "%u open edges", f->open);
 		return refuse_flaw(m, what, f->open_tri, "a closed body: an "

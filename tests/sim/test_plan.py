@@ -105,7 +105,7 @@ def test_an_arc_is_followed_where_its_chord_is_free(tmp_path):
 
 
 def test_a_curve_is_followed(tmp_path):
-    text = ("G21 G90\nF60\nG6.2 P3 K0 X0 Y0\nK0 X5 Y%g\nK0 X15 Y%g\n"
+    text = ("G21 G90\nF60\nG6.2 P4 K0 X0 Y0\nK0 X5 Y%g\nK0 X15 Y%g\n"
             "K1 X20 Y0\nK1\nK1\nK1\n")
     post = box((9.9, 5, -5), (10.1, 14, 5))
     low = check_boxes(tmp_path, post, TOOL, text % (3, 3))
@@ -121,7 +121,7 @@ def test_a_hundred_thousand_blocks_are_proved(tmp_path):
     r = check_boxes(tmp_path, BESIDE, TOOL, "\n".join(lines) + "\nM2\n",
                     "--quiet")
     assert r.returncode == 0, r.stderr
-    assert "20000 blocks" in r.stdout       # shorter than a pulse: none
+    assert "100000 blocks" in r.stdout
 
 
 @pytest.mark.parametrize("start, say", [
@@ -172,7 +172,7 @@ def test_triangles_doubled_or_without_area_do_no_harm(tmp_path):
     ([((1e30, 2, -5),) + t[1:] if i == 0 else t
       for i, t in enumerate(BESIDE)], "triangle 1 has a corner at 1e+30"),
     ([], "fewer than 4 triangles"),
-    ([((0, 0, 0), (1, 1, 1), (2, 2, 2))] * 8, "have no area"),
+    ([((0, 0, 0), (1, 1, 1), (2, 2, 2))] * 8, "no volume"),
 ])
 def test_a_bad_body_is_refused(tmp_path, part, say):
     r = check_boxes(tmp_path, part, TOOL)
