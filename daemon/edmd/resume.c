@@ -82,7 +82,7 @@ static void tell_left(const struct cycle *c)
 static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 {
 	struct axis_state at = {
-		.homed = homed(l, s), .limit.on = s->limit,
+		.homed = homed(l, s), .unplaced = s->unplaced, .limit.on = s->limit,
 		.told_c = s->axes_c,
 	};
 

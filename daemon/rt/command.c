@@ -37,7 +37,8 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 		return ANSWER_WRONG_STATE;
 	if (c->limit.on)
 		return ANSWER_AT_LIMIT;
-	if (c->config.require_home && manual_unhomed(c))
+	if (c->manual.unplaced ||
+	    (c->config.require_home && manual_unhomed(c)))
 		return ANSWER_NOT_HOMED;
 	answer = may_begin(c);
 	if (answer != ANSWER_DONE)
@@ -97,6 +98,8 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 		return ANSWER_WRONG_STATE;
 	if (!(arg_mm > 0 && isfinite(arg_mm)))
 		return ANSWER_BAD_ARGUMENT;
+	if (c->manual.unplaced)
+		return ANSWER_NOT_HOMED;
 	answer = may_begin(c);
 	if (answer != ANSWER_DONE)
 		return answer;
@@ -121,6 +124,8 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 		answer = may_begin(c);
 	if (answer != ANSWER_DONE)
 		return answer;
+	if (c->manual.unplaced)
+		return ANSWER_NOT_HOMED;
 	axes_want(c, false);
 	c->moving = true;
 	c->move_to_mm = to_mm;
