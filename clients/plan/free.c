@@ -4,9 +4,8 @@
  *
  * At a pose of block k at time t each axis is off by (1 - t) d_k + t d_k+1, if
  * node k is moved by d_k.  A pair of triangles at distance g, with n from the
- * part to the electrode, then is at g + n . J d to the first order.  Either the
- * least of all those is made as large as it goes, or it is kept above a bound
- * while a node is drawn to the line between its neighbours.
+ * part to the electrode, then is at g + n . J d to the first order.  The least
+ * of all those is made as large as it goes.
  */
 #include "free.h"
 
@@ -23,8 +22,6 @@
 #define BAND_MM		0.2		/* over the least distance */
 #define ROOM_FIRST_MM	1.5		/* of a step, at first */
 #define ROOM_LEAST_MM	0.01
-#define GONE_MM		0.002		/* a node so near to the line is on it */
-#define INNER_COLS	(FREE_NODES_MAX * INTERP_NAXES)
 
 struct lp {
 	glp_prob *p;
@@ -260,139 +257,4 @@ void free_widen(struct free_way *w, int rounds)
 			room /= 3;
 		}
 	}
-}
-
-/* -- One block less ----------------------------------------------------------- */
-
-/* Where between its neighbours node @k is, 0..1. */
-static double between(const struct lp *l, uint32_t k)
-{
-	const struct free_way *w = l->w;
-	double up = 0, square = 0;
-
-	for (uint32_t a = 0; a < l->naxes; a++) {
-		const uint32_t x = l->axes[a];
-		const double d = (w->q[k + 1][x] - w->q[k - 1][x]) *
-				 l->reach_mm[x];
-
-		up += d * (w->q[k][x] - w->q[k - 1][x]) * l->reach_mm[x];
-		square += d * d;
-	}
-	return square > 0 ? fmin(fmax(up / square, 0.02), 0.98) : 0.5;
-}
-
-/* How far, in mm of reach, summed over the axes. */
-static double bend(const struct lp *l, const struct free_way *w, uint32_t k,
-		   double s)
-{
-	double sum = 0;
-
-	for (uint32_t a = 0; a < l->naxes; a++) {
-		const uint32_t x = l->axes[a];
-
-		sum += l->reach_mm[x] * fabs(w->q[k][x] - (1 - s) *
-					     w->q[k - 1][x] - s *
-					     w->q[k + 1][x]);
-	}
-	return sum;
-}
-
-/* A column for each axis that is at least the node's bend in it, either way. */
-static void add_bend(struct lp *l, uint32_t k, double s)
-{
-	const struct free_way *w = l->w;
-	const int first = glp_add_cols(l->p, (int)l->naxes);
-
-	for (uint32_t a = 0; a < l->naxes; a++) {
-		const uint32_t x = l->axes[a];
-		const double off = w->q[k][x] - (1 - s) * w->q[k - 1][x] -
-				   s * w->q[k + 1][x];
-		const int size = first + (int)a;
-
-		glp_set_col_bnds(l->p, size, GLP_LO, 0, 0);
-		glp_set_obj_coef(l->p, size, l->reach_mm[x]);
-		for (int side = -1; side <= 1; side += 2) {
-			const int at = glp_add_rows(l->p, 1);
-			struct row r = { 0 };
-
-			row_add(&r, size, 1);
-			row_add(&r, col(l, k, a), -side);
-			if (k > 1)
-				row_add(&r, col(l, k - 1, a), side * (1 - s));
-			if (k + 2 < w->n)
-				row_add(&r, col(l, k + 1, a), side * s);
-			glp_set_row_bnds(l->p, at, GLP_LO, side * off, 0);
-			glp_set_mat_row(l->p, at, r.n, r.index, r.value);
-		}
-	}
-}
-
-static void take_out(struct free_way *w, uint32_t k)
-{
-	memmove(w->q[k], w->q[k + 1], (w->n - k - 1) * sizeof(*w->q));
-	w->n--;
-}
-
-/* One step. Return: the bend that is left, or < 0 if the step is no good. */
-static double straighten(struct free_way *w, uint32_t k, double mm,
-			 double room)
-{
-	struct free_way next;
-	double was, left = -1, s;
-	struct lp l;
-
-	begin(&l, w, room);
-	s = between(&l, k);
-	was = bend(&l, w, k, s);
-	glp_set_obj_dir(l.p, GLP_MIN);
-	glp_set_col_bnds(l.p, l.least, GLP_LO, mm, 0);
-	add_bend(&l, k, s);
-	next = *w;
-	if (solve(&l)) {
-		move_nodes(&l, w, &next);
-		next.least_mm = try_way(&next, mm - 0.003);
-		left = bend(&l, &next, k, s);
-		if (next.least_mm < mm - 0.003 || left > was - GONE_MM / 4)
-			left = -1;
-	}
-	glp_delete_prob(l.p);
-	w->queries = next.queries;
-	if (left >= 0)
-		*w = next;
-	return left;
-}
-
-bool free_drop(struct free_way *w, uint32_t k, double mm)
-{
-	struct free_way now = *w;
-	double room = ROOM_FIRST_MM, last = DBL_MAX;
-	int slow = 0;
-
-	for (int i = 0; i < 24 && room > ROOM_LEAST_MM && slow < 4 &&
-	     !bar_interrupted(); i++) {
-		const double left = straighten(&now, k, mm, room);
-		char text[100];
-
-		snprintf(text, sizeof(text), "free nodes: %u blocks, node %u "
-			 "%.2f mm off the line", w->n - 1, k,
-			 last < DBL_MAX ? last : 0.0);
-		bar_show(w->j, i / 24.0, text);
-		w->queries = now.queries;
-		w->programs = now.programs;
-		if (left < 0) {
-			room /= 3;
-			continue;
-		}
-		slow = left > 0.9 * last ? slow + 1 : 0;
-		last = left;
-		if (left > GONE_MM)
-			continue;
-		take_out(&now, k);
-		now.least_mm = try_way(&now, 0);
-		if (now.least_mm < mm - 0.02)
-			return false;
-		*w = now;
-		return true;
-	}
-	return false;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * free.h - inner nodes off the path: more clearance, or one block less
+ * free.h - inner nodes off the path, for more clearance
  *
  * All axes of the inner nodes are moved at once, by linear programs on the
  * gradients of many small distances, each step no longer than distances can be
@@ -29,12 +29,6 @@ int free_init(struct free_way *w, const struct job *j,
 
 /** free_widen() - as much clearance as goes, in at most @rounds. */
 void free_widen(struct free_way *w, int rounds);
-
-/**
- * free_drop() - straighten the way at node @k, keeping @mm everywhere, until it
- * is not needed.  Return: true if it is gone; else @w is as it was.
- */
-bool free_drop(struct free_way *w, uint32_t k, double mm);
 
 /** free_round() - to whole pulses. */
 void free_round(const struct machine_config *c, double q[INTERP_NAXES]);

@@ -18,7 +18,8 @@
 #include <sysexits.h>
 #include <time.h>
 
-#define WIDEN_ROUNDS	10
+#define WIDEN_ROUNDS	12
+#define TOUCH_MM	0.01		/* less than that is as good as contact */
 
 static double now_s(void)
 {
@@ -188,28 +189,49 @@ static bool is_better(const struct plan_way *a, const struct plan_way *b,
 	return a->least_mm > b->least_mm;
 }
 
-/* More clearance for as many blocks, then as many blocks fewer as go. */
-static void plan_free(struct plan *p, const struct job *j)
+/* Along the nodes @at, then off them. Return: is it to be written? */
+static bool try_free(struct plan *p, const struct fewest *f,
+		     const uint32_t *at)
 {
-	const double need = p->j->clear_mm + j->chord_mm + 0.015;
-	struct plan_way way = { 0 };
-	struct free_way f;
-	bool gone = true;
+	static struct plan_way way;
+	struct free_way w;
+	uint32_t n = 0;
 
-	if (p->j->o->end_zone_mm > 0 ||
-	    free_init(&f, j, p->best.q, p->best.n))
-		return;
-	while (gone && f.n > 2 && !bar_interrupted()) {
-		free_widen(&f, WIDEN_ROUNDS);
-		gone = false;
-		for (uint32_t k = 1; k + 1 < f.n && !gone; k++)
-			gone = free_drop(&f, k, fmin(need, f.least_mm));
+	while (at[n] != f->n - 1)
+		n++;
+	take_way(&way, NULL, f, at, n);
+	if (free_init(&w, f->j, way.q, way.n))
+		return false;
+	free_widen(&w, WIDEN_ROUNDS);
+	p->queries += w.queries;
+	from_free(&way, &w, f->j);
+	plan_prove(f->j, &way, &p->queries);
+	if (!is_better(&way, &p->best, f->j->clear_mm))
+		return false;
+	p->best = way;
+	return true;
+}
+
+/*
+ * A way of fewer blocks that only just does not touch is where nodes off the
+ * path begin; linear programs then find it room.  Where that does not come to
+ * the clearance, the way that has it gets more.
+ */
+static void plan_free(struct plan *p, struct fewest *f, const uint32_t *best)
+{
+	const double touch_mm = TOUCH_MM - f->j->chord_mm;
+	const uint32_t most = p->best.n - 1;
+	uint32_t at[FEWEST_NODES_MAX];
+	uint32_t n = p->c.zone_mm > 0 || most < 2 ? 0 :
+		     fewest_search(f, touch_mm, most - 1, at);
+
+	for (; n && n < most && !bar_interrupted(); n++) {
+		fewest_widest(f, touch_mm, n, at);
+		if (try_free(p, f, at))
+			return;
 	}
-	p->queries += f.queries;
-	from_free(&way, &f, j);
-	plan_prove(j, &way, &p->queries);
-	if (is_better(&way, &p->best, p->j->clear_mm))
-		p->best = way;
+	if (!(p->c.zone_mm > 0) && !bar_interrupted())
+		try_free(p, f, best);
 }
 
 int plan_over(struct plan *p, const struct job *j,
@@ -217,7 +239,6 @@ int plan_over(struct plan *p, const struct job *j,
 {
 	uint32_t at[FEWEST_NODES_MAX], blocks;
 	struct fewest f;
-	int r = 1;
 
 	if (fewest_init(&f, j, q, n))
 		return -ENOMEM;
@@ -239,13 +260,11 @@ int plan_over(struct plan *p, const struct job *j,
 		    is_better(&p->fewest, &p->best, j->clear_mm))
 			p->best = p->fewest;
 	}
+	if (blocks && !j->o->on_path)
+		plan_free(p, &f, at);
 	p->queries += f.queries;
-	if (p->best.how)
-		r = 0;
 	fewest_free(&f);
-	if (r == 0 && !j->o->on_path)
-		plan_free(p, j);
-	return r;
+	return p->best.how ? 0 : 1;
 }
 
 /* -- Words -------------------------------------------------------------------- */
