@@ -20,7 +20,7 @@
 
 struct checking {
 	const struct job *j;
-	const struct way *w;
+	const struct route *w;
 	const struct clearance *c;
 	struct check_result *ret;
 	struct near_pair pair;		/* nearest at the node last looked at */
@@ -128,7 +128,7 @@ static int check_start(struct checking *k)
 	return 0;
 }
 
-int check_way(const struct job *j, const struct way *w,
+int check_way(const struct job *j, const struct route *w,
 	      const struct clearance *c, struct check_result *ret)
 {
 	struct checking k = { .j = j, .w = w, .c = c, .ret = ret };
@@ -189,10 +189,10 @@ static void say_axes(const struct job *j, const double q[INTERP_NAXES], FILE *f)
 			fprintf(f, " %c%.4f", INTERP_AXIS_LETTERS[k], q[k]);
 }
 
-static void say_contact(const struct job *j, const struct way *w,
+static void say_contact(const struct job *j, const struct route *w,
 			const struct check_result *r)
 {
-	const struct way_node *n = &w->node[r->block + 1];
+	const struct route_node *n = &w->node[r->block + 1];
 
 	if (r->inside) {
 		printf("%s: not free: %s at the start, at", j->o->program,
@@ -211,7 +211,7 @@ static void say_contact(const struct job *j, const struct way *w,
 		job_say_pair(j, &r->pair, stdout);
 }
 
-static int say_result(const struct job *j, const struct way *w,
+static int say_result(const struct job *j, const struct route *w,
 		      const struct check_result *r)
 {
 	if (!r->ok) {
@@ -236,12 +236,12 @@ static int say_result(const struct job *j, const struct way *w,
 
 int check_program(struct job *j)
 {
-	const struct way_text from = { .path = j->o->program,
+	const struct route_text from = { .path = j->o->program,
 				       .dialect = j->o->dialect };
 	struct check_result result;
 	struct clearance c;
-	struct way w;
-	int r = way_read(&w, &j->config, &from);
+	struct route w;
+	int r = route_read(&w, &j->config, &from);
 
 	if (r)
 		return r;
@@ -257,6 +257,6 @@ int check_program(struct job *j)
 				"proved\n");
 		r = r == -ENOMEM ? EX_OSERR : r ? 1 : say_result(j, &w, &result);
 	}
-	way_free(&w);
+	route_free(&w);
 	return r;
 }

@@ -29,7 +29,7 @@ struct check_result {
  *
  * Return: 0, or -ENOMEM, or -EINTR.
  */
-int check_way(const struct job *j, const struct way *w,
+int check_way(const struct job *j, const struct route *w,
 	      const struct clearance *c, struct check_result *ret);
 
 /** check_clearance() - the clearance of a way that ends where @w does. */

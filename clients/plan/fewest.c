@@ -18,7 +18,7 @@ int fewest_init(struct fewest *f, const struct job *j,
 	const size_t edges = (size_t)n * n;
 
 	*f = (struct fewest) { .j = j, .n = n };
-	way_lattice(&j->config, f->lattice);
+	route_lattice(&j->config, f->lattice);
 	f->q = malloc(n * sizeof(*f->q));
 	f->proved = malloc(edges * sizeof(*f->proved));
 	f->refuted = malloc(edges * sizeof(*f->refuted));

@@ -293,13 +293,13 @@ int job_inside(const struct job *j, const struct pose *pose, char *say,
 
 /* -- Blocks of a way ------------------------------------------------------------ */
 
-void job_block(const struct job *j, const struct way *w, uint32_t i,
+void job_block(const struct job *j, const struct route *w, uint32_t i,
 	       struct block *ret)
 {
 	block_init(ret, &j->motion, w->node[i].q, w->node[i + 1].q);
 }
 
-double job_strays_mm(const struct way *w, uint32_t i, const struct block *b)
+double job_strays_mm(const struct route *w, uint32_t i, const struct block *b)
 {
 	double off[INTERP_NAXES];
 
@@ -308,7 +308,7 @@ double job_strays_mm(const struct way *w, uint32_t i, const struct block *b)
 	return motion_strays_mm(b, off);
 }
 
-bool job_moves_known(const struct job *j, const struct way *w,
+bool job_moves_known(const struct job *j, const struct route *w,
 		     const char *path)
 {
 	const uint32_t known = motion_moves(&j->motion);

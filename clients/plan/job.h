@@ -8,7 +8,7 @@
 #define PLAN_JOB_H
 
 #include "prove.h"
-#include "way.h"
+#include "route.h"
 
 struct job_options {
 	bool check, measure;
@@ -60,15 +60,15 @@ int job_inside(const struct job *j, const struct pose *pose, char *say,
 	       size_t size);
 
 /** job_strays_mm() - what block @i of @w may be off, on any point. */
-double job_strays_mm(const struct way *w, uint32_t i, const struct block *b);
+double job_strays_mm(const struct route *w, uint32_t i, const struct block *b);
 
 /** job_block() - block @i of @w. */
-void job_block(const struct job *j, const struct way *w, uint32_t i,
+void job_block(const struct job *j, const struct route *w, uint32_t i,
 	       struct block *ret);
 
 /** job_moves_known() - does @w move only axes that the chain has?  Else it is
  *  said on stderr. */
-bool job_moves_known(const struct job *j, const struct way *w,
+bool job_moves_known(const struct job *j, const struct route *w,
 		     const char *path);
 
 /** bar_show() - one line on stderr, rewritten; nothing with --quiet. */

@@ -34,7 +34,7 @@ static double now_s(void)
 /* From the last rapid before the first cut to the last cut. */
 static int find_way_in(struct plan *p)
 {
-	const struct way *w = &p->dense;
+	const struct route *w = &p->dense;
 
 	p->first = p->last = 0;
 	for (uint32_t i = 1; i < w->n; i++) {
@@ -78,7 +78,7 @@ static void take_nodes(const struct plan *p, double (*q)[INTERP_NAXES],
 
 static void say_contact(const struct plan *p, const struct check_result *r)
 {
-	const struct way_node *n = &p->dense.node[r->block + 1];
+	const struct route_node *n = &p->dense.node[r->block + 1];
 
 	fprintf(stderr, "%s:%u: the program is not free itself: %.4f mm are "
 		"left of %.4f, %.1f %% along the block\n", p->j->o->program ?
@@ -143,7 +143,7 @@ void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries)
 {
 	double lattice[INTERP_NAXES];
 
-	way_lattice(&j->config, lattice);
+	route_lattice(&j->config, lattice);
 	w->least_mm = DBL_MAX;
 	for (uint32_t i = 0; i + 1 < w->n; i++) {
 		struct proof p = { 0 };
@@ -317,16 +317,16 @@ static void describe(const struct plan *p, FILE *out)
 /* What stands in the text is read back and proved, not what was computed. */
 static int prove_text(struct plan *p, const char *text)
 {
-	const struct way_text from = { .path = "planned program",
+	const struct route_text from = { .path = "planned program",
 				       .text = text };
 	struct check_result r;
-	struct way w;
-	int rc = way_read(&w, &p->j->config, &from);
+	struct route w;
+	int rc = route_read(&w, &p->j->config, &from);
 
 	if (rc)
 		return EX_SOFTWARE;
 	rc = check_way(p->j, &w, &p->c, &r);
-	way_free(&w);
+	route_free(&w);
 	p->queries += r.queries;
 	if (rc == 0 && r.ok)
 		return 0;
@@ -385,14 +385,14 @@ static int plan_nodes(struct plan *p)
 
 static int load_way(struct plan *p)
 {
-	const struct way_text from = { .path = p->j->o->program,
+	const struct route_text from = { .path = p->j->o->program,
 				       .dialect = p->j->o->dialect };
 	int r;
 
 	if (p->j->o->end_given)
 		r = pullout_way(p);
 	else
-		r = way_read(&p->dense, &p->j->config, &from);
+		r = route_read(&p->dense, &p->j->config, &from);
 	if (r)
 		return r;
 	if (!p->j->o->end_given &&
@@ -424,6 +424,6 @@ int plan_program(struct job *j)
 		r = write_all(&p);
 	if (r == EX_OSERR)
 		fprintf(stderr, "edm-plan: out of memory\n");
-	way_free(&p.dense);
+	route_free(&p.dense);
 	return r;
 }

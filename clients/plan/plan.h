@@ -33,7 +33,7 @@ struct plan_pivot {
 
 struct plan {
 	struct job *j;
-	struct way dense;		/* as given, with what leads to it */
+	struct route dense;		/* as given, with what leads to it */
 	uint32_t first, last;		/* its nodes of the way in */
 	struct clearance c;
 	double end_mm;			/* distance at the end pose */

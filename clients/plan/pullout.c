@@ -37,7 +37,7 @@ struct pull {
 	double left_mm;			/* to the open, mean of the points */
 	double reach_mm[INTERP_NAXES];
 	uint32_t axes[INTERP_NAXES], naxes;
-	struct way out;			/* nodes, from the end outward */
+	struct route out;			/* nodes, from the end outward */
 	struct near_pair nearest;
 };
 
@@ -164,7 +164,7 @@ static bool is_free(struct pull *p, const double from[INTERP_NAXES],
 
 	/* Inward, as it will be gone. */
 	block_init(&b, &p->j->motion, to, from);
-	way_lattice(&p->j->config, lattice);
+	route_lattice(&p->j->config, lattice);
 	more = motion_strays_mm(&b, lattice) + p->j->chord_mm;
 	with.mm += more;
 	with.end_mm += more;
@@ -175,10 +175,10 @@ static bool is_free(struct pull *p, const double from[INTERP_NAXES],
 
 static int add_node(struct pull *p, bool rapid)
 {
-	struct way_node n = { .rapid = rapid, .feed_mm_s = 0.5 };
+	struct route_node n = { .rapid = rapid, .feed_mm_s = 0.5 };
 
 	memcpy(n.q, p->q, sizeof(n.q));
-	return way_add(&p->out, &n);
+	return route_add(&p->out, &n);
 }
 
 /* No point of it is in the part's box, or it is far from the part. */
@@ -277,11 +277,11 @@ static void say_stuck(const struct pull *p)
 static int lead_in(struct plan *p, struct pull *u, const struct clearance *c)
 {
 	const double *start = p->j->config.start_mm;
-	const struct way_node *mouth = &u->out.node[u->out.n - 1];
-	struct way_node n = { .rapid = true };
+	const struct route_node *mouth = &u->out.node[u->out.n - 1];
+	struct route_node n = { .rapid = true };
 
 	memcpy(n.q, start, sizeof(n.q));
-	if (way_add(&p->dense, &n))
+	if (route_add(&p->dense, &n))
 		return EX_OSERR;
 	memcpy(n.q, mouth->q, sizeof(n.q));
 	if (!is_free(u, mouth->q, start, c)) {
@@ -294,11 +294,11 @@ static int lead_in(struct plan *p, struct pull *u, const struct clearance *c)
 				"elsewhere\n");
 			return 1;
 		}
-		if (way_add(&p->dense, &n))
+		if (route_add(&p->dense, &n))
 			return EX_OSERR;
 		n.q[INTERP_Z] = mouth->q[INTERP_Z];
 	}
-	return way_add(&p->dense, &n) ? EX_OSERR : 0;
+	return route_add(&p->dense, &n) ? EX_OSERR : 0;
 }
 
 static int turn_round(struct plan *p, struct pull *u, const struct clearance *c)
@@ -306,9 +306,9 @@ static int turn_round(struct plan *p, struct pull *u, const struct clearance *c)
 	int r = lead_in(p, u, c);
 
 	for (uint32_t i = u->out.n - 1; i-- > 0 && r == 0;)
-		r = way_add(&p->dense, &u->out.node[i]) ? EX_OSERR : 0;
+		r = route_add(&p->dense, &u->out.node[i]) ? EX_OSERR : 0;
 	p->dense.lines = p->dense.n;
-	way_lattice(&p->j->config, p->dense.lattice);
+	route_lattice(&p->j->config, p->dense.lattice);
 	return r;
 }
 
@@ -369,6 +369,6 @@ int pullout_way(struct plan *p)
 	else
 		r = r ? EX_OSERR : turn_round(p, &u, &c);
 	air_free(&u.air);
-	way_free(&u.out);
+	route_free(&u.out);
 	return r;
 }

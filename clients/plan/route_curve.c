@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * way_curve.c - cut a NURBS until its control points lie on a chord
+ * route_curve.c - cut a NURBS until its control points lie on a chord
  *
  * Between two parameters of one knot span a curve is an average of its Bezier
  * points there, with weights that are positive and sum to one.  If point k is
@@ -11,7 +11,7 @@
  * A Bezier point is the blossom of the span at so many times the one parameter
  * and so many times the other (L. Ramshaw, 1987).
  */
-#include "way_curve.h"
+#include "route_curve.h"
 
 #include <errno.h>
 #include <math.h>
@@ -92,20 +92,20 @@ static double strays(const struct piece *x)
 	return most;
 }
 
-static int add_chord(struct way *w, const struct way_curve *k,
+static int add_chord(struct route *w, const struct route_curve *k,
 		     const struct piece *x, double off)
 {
-	struct way_node n = w->node[w->n - 1];
+	struct route_node n = w->node[w->n - 1];
 
 	n.line = k->at.line;
 	n.rapid = k->at.rapid;
 	n.strays = (float)(off * (1 + 1e-6));
 	for (uint32_t j = 0; j < x->naxes; j++)
 		n.q[k->axis[j]] = x->at[x->n - 1][j];
-	return way_add(w, &n);
+	return route_add(w, &n);
 }
 
-static int cut(struct way *w, const struct way_curve *k, double from,
+static int cut(struct route *w, const struct route_curve *k, double from,
 	       double to, int depth)
 {
 	const double mid = from + (to - from) / 2;
@@ -115,7 +115,7 @@ static int cut(struct way *w, const struct way_curve *k, double from,
 
 	bezier(&k->curve, interp_nurbs_span(&k->curve, mid), from, to, &x);
 	off = strays(&x);
-	if (off <= WAY_CURVE_STRAYS)
+	if (off <= ROUTE_CURVE_STRAYS)
 		return add_chord(w, k, &x, off);
 	if (depth == DEPTH_MAX || !isfinite(off))
 		return -EINVAL;
@@ -123,7 +123,7 @@ static int cut(struct way *w, const struct way_curve *k, double from,
 	return r ? r : cut(w, k, mid, to, depth + 1);
 }
 
-int way_curve(struct way *w, const struct way_curve *k)
+int route_curve(struct route *w, const struct route_curve *k)
 {
 	const struct interp_nurbs *c = &k->curve;
 	int r = 0;

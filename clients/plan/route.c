@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * way.c - compile a program and follow it
+ * route.c - compile a program and follow it
  */
-#include "way.h"
+#include "route.h"
 
 #include "compiling.h"
-#include "way_curve.h"
+#include "route_curve.h"
 
 #include <errno.h>
 #include <math.h>
@@ -19,13 +19,13 @@
 /* How far an arc's axes stray from its chords. */
 #define ARC_STRAYS	0.001
 
-void way_free(struct way *w)
+void route_free(struct route *w)
 {
 	free(w->node);
-	*w = (struct way) { 0 };
+	*w = (struct route) { 0 };
 }
 
-int way_add(struct way *w, const struct way_node *node)
+int route_add(struct route *w, const struct route_node *node)
 {
 	if (w->n == w->room) {
 		const uint32_t room = w->room ? 2 * w->room : 256;
@@ -40,7 +40,7 @@ int way_add(struct way *w, const struct way_node *node)
 	return 0;
 }
 
-void way_lattice(const struct machine_config *c, double ret[INTERP_NAXES])
+void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES])
 {
 	double pulses = 0.5;
 
@@ -72,16 +72,16 @@ static void node_of(const struct interp_program *p, uint32_t node,
  * Between two places dp apart, of a motion whose second derivative is at most
  * d2, the motion strays by dp^2 d2 / 8 from the chord.
  */
-static int follow_arc(struct way *w, const struct interp_arc *a,
-		      const struct way_node *end)
+static int follow_arc(struct route *w, const struct interp_arc *a,
+		      const struct route_node *end)
 {
-	const struct way_node from = w->node[w->n - 1];
+	const struct route_node from = w->node[w->n - 1];
 	const double r = fabs(a->r_mm) + fabs(a->dr_mm);
 	const double bend = r * a->sweep * a->sweep +
 			    2 * fabs(a->dr_mm * a->sweep);
 	const double pieces = ceil(sqrt(bend / 8 / ARC_STRAYS));
 	const uint32_t n = pieces < 1 ? 1 : (uint32_t)fmin(pieces, 1e6);
-	struct way_node at = *end;
+	struct route_node at = *end;
 	int rc = 0;
 
 	at.strays = (float)(bend / 8 / n / n * (1 + 1e-6));
@@ -97,17 +97,17 @@ static int follow_arc(struct way *w, const struct interp_arc *a,
 			at.q[a->axis_b] = a->b_mm + (a->r_mm + a->dr_mm * p) *
 						    sin(angle);
 		}
-		rc = way_add(w, &at);
+		rc = route_add(w, &at);
 	}
 	return rc;
 }
 
-static int follow_curve(struct way *w, const struct interp_program *p,
-			const struct interp_seg *s, const struct way_node *end)
+static int follow_curve(struct route *w, const struct interp_program *p,
+			const struct interp_seg *s, const struct route_node *end)
 {
 	const struct interp_piece *piece = &p->pieces[s->arg];
 	const struct interp_nurbs_stop *stop = p->stops + piece->stops_at;
-	struct way_curve k = {
+	struct route_curve k = {
 		.axis = p->curves[piece->curve].axis, .at = *end,
 		.from = stop[0].u, .to = stop[piece->nstops - 1].u,
 	};
@@ -115,12 +115,12 @@ static int follow_curve(struct way *w, const struct interp_program *p,
 
 	if (!interp_program_curve(p, piece->curve, &k.curve))
 		return -EINVAL;
-	r = way_curve(w, &k);
+	r = route_curve(w, &k);
 	/* The node is rounded, the curve is not. */
-	return r ? r : way_add(w, end);
+	return r ? r : route_add(w, end);
 }
 
-static int refuse_seg(const struct way_text *from, uint32_t line,
+static int refuse_seg(const struct route_text *from, uint32_t line,
 		      const char *found, const char *wanted)
 {
 	fprintf(stderr, "%s:%u: error: %s; %s\n", from->path, line, found,
@@ -128,11 +128,11 @@ static int refuse_seg(const struct way_text *from, uint32_t line,
 	return EX_DATAERR;
 }
 
-static int follow_seg(struct way *w, const struct interp_program *p,
-		      uint32_t i, const struct way_text *from)
+static int follow_seg(struct route *w, const struct interp_program *p,
+		      uint32_t i, const struct route_text *from)
 {
 	const struct interp_seg *s = &p->segs[i];
-	struct way_node end = { .line = s->line,
+	struct route_node end = { .line = s->line,
 				.feed_mm_s = s->feed_mm_s,
 				.rapid = s->flags & INTERP_SEG_RAPID };
 	int r;
@@ -152,7 +152,7 @@ static int follow_seg(struct way *w, const struct interp_program *p,
 		w->beside_line = s->line;
 	node_of(p, i + 1, end.q);
 	if (s->kind == INTERP_LINE)
-		r = way_add(w, &end);
+		r = route_add(w, &end);
 	else if (s->kind == INTERP_ARC)
 		r = follow_arc(w, &p->arcs[s->arg], &end);
 	else if (s->kind == INTERP_CURVE)
@@ -165,14 +165,14 @@ static int follow_seg(struct way *w, const struct interp_program *p,
 	return r ? EX_OSERR : 0;
 }
 
-static int follow(struct way *w, const struct interp_program *p,
-		  const struct way_text *from)
+static int follow(struct route *w, const struct interp_program *p,
+		  const struct route_text *from)
 {
-	struct way_node start = { .line = 0 };
+	struct route_node start = { .line = 0 };
 	int r = 0;
 
 	node_of(p, 0, start.q);
-	if (way_add(w, &start))
+	if (route_add(w, &start))
 		return EX_OSERR;
 	for (uint32_t i = 0; i < p->head->nsegs && r == 0; i++)
 		r = follow_seg(w, p, i, from);
@@ -217,8 +217,8 @@ static int read_file(const char *path, char **text, size_t *bytes)
 	return r;
 }
 
-static int lay_out(struct interp_build *b, const struct way_text *from,
-		   struct way *w)
+static int lay_out(struct interp_build *b, const struct route_text *from,
+		   struct route *w)
 {
 	const struct interp_build_about about = { .lines = w->lines,
 						  .name = from->path };
@@ -236,8 +236,8 @@ static int lay_out(struct interp_build *b, const struct way_text *from,
 	return r;
 }
 
-static int compile(struct way *w, const struct machine_config *c,
-		   const struct way_text *from, const struct interp_text *text)
+static int compile(struct route *w, const struct machine_config *c,
+		   const struct route_text *from, const struct interp_text *text)
 {
 	struct config_compiling of;
 	struct interp_diag diag = { 0 };
@@ -269,8 +269,8 @@ static int compile(struct way *w, const struct machine_config *c,
 	return r;
 }
 
-int way_read(struct way *w, const struct machine_config *c,
-	     const struct way_text *from)
+int route_read(struct route *w, const struct machine_config *c,
+	     const struct route_text *from)
 {
 	struct interp_text text = {
 		.at = from->text,
@@ -281,8 +281,8 @@ int way_read(struct way *w, const struct machine_config *c,
 	char *mine = NULL;
 	int r = 0;
 
-	*w = (struct way) { 0 };
-	way_lattice(c, w->lattice);
+	*w = (struct route) { 0 };
+	route_lattice(c, w->lattice);
 	if (from->text) {
 		text.bytes = strlen(from->text);
 	} else {
@@ -295,6 +295,6 @@ int way_read(struct way *w, const struct machine_config *c,
 		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
 	free(mine);
 	if (r)
-		way_free(w);
+		route_free(w);
 	return r;
 }
