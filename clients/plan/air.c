@@ -165,9 +165,12 @@ void air_fill(struct air *a)
 		    y == a->n[1] - 1 || z == a->n[2] - 1)
 			a->way[i] = 0;
 	}
-	for (int i = 0; i < SWEEPS; i++)
-		if (!sweep(a, 1) & !sweep(a, -1))
+	for (int i = 0; i < SWEEPS; i++) {
+		const bool forward = sweep(a, 1);
+
+		if (!sweep(a, -1) && !forward)
 			break;
+	}
 	for (size_t i = 0; i < a->cells; i++)
 		if (a->way[i] >= FLT_MAX / 4)
 			a->way[i] = -1;
