@@ -16,7 +16,7 @@
 #include <sysexits.h>
 
 #define SIDE		460.0		/* of either picture */
-#define EDGES_MAX	6000		/* drawn of a body */
+#define TRIS_MAX	60000		/* drawn of a body */
 #define POSES		24		/* of a block, in the curve */
 
 struct view {
@@ -61,30 +61,36 @@ static void choose_view(const struct plan *p, struct view *w)
 	w->scale = (SIDE - 20) / fmax(hi[!away] - lo[!away], hi[2] - lo[2]);
 }
 
-static void put_point(FILE *f, const struct view *w, const double p[3])
+/* Places on the paper of the corners of a triangle. Return: does it face us? */
+static bool project(const struct view *w, const struct mesh *m, uint32_t i,
+		    const struct pose *pose, double ret[3][2])
 {
-	fprintf(f, "%.1f %.1f", SIDE / 2 +
-		(v_dot(w->u, p) - w->mid[0]) * w->scale,
-		SIDE / 2 - (v_dot(w->v, p) - w->mid[1]) * w->scale);
+	for (uint32_t k = 0; k < 3; k++) {
+		double p[3];
+
+		rot_apply(&pose->r, mesh_corner(m, i, k), p);
+		v_add(p, pose->t, p);
+		ret[k][0] = SIDE / 2 + (v_dot(w->u, p) - w->mid[0]) * w->scale;
+		ret[k][1] = SIDE / 2 - (v_dot(w->v, p) - w->mid[1]) * w->scale;
+	}
+	return (ret[1][0] - ret[0][0]) * (ret[2][1] - ret[0][1]) >
+	       (ret[1][1] - ret[0][1]) * (ret[2][0] - ret[0][0]);
 }
 
-/* All triangles as one path without an outline: their shadow. */
+/* The triangles on one side as one path: their shadow. */
 static void put_shadow(FILE *f, const struct view *w, const struct mesh *m,
 		       const struct pose *pose, const char *style)
 {
-	const uint32_t step = m->ntris / EDGES_MAX + 1;
+	const uint32_t step = m->ntris / TRIS_MAX + 1;
 
 	fprintf(f, "<path %s d=\"", style);
 	for (uint32_t i = 0; i < m->ntris; i += step) {
-		for (uint32_t k = 0; k < 3; k++) {
-			double p[3];
+		double at[3][2];
 
-			rot_apply(&pose->r, mesh_corner(m, i, k), p);
-			v_add(p, pose->t, p);
-			fputc(k ? 'L' : 'M', f);
-			put_point(f, w, p);
-		}
-		fputs("Z", f);
+		if (project(w, m, i, pose, at))
+			fprintf(f, "M%.1f %.1fL%.1f %.1fL%.1f %.1fZ", at[0][0],
+				at[0][1], at[1][0], at[1][1], at[2][0],
+				at[2][1]);
 	}
 	fputs("\"/>\n", f);
 }
@@ -96,15 +102,15 @@ static void put_way(FILE *f, const struct plan *p)
 	struct view w;
 
 	choose_view(p, &w);
-	put_shadow(f, &w, &p->j->part, &still, "fill=\"none\" stroke=\"#889\" "
-		   "stroke-width=\"0.15\"");
+	put_shadow(f, &w, &p->j->part, &still, "fill=\"#99a\" fill-opacity="
+		   "\"0.3\"");
 	for (uint32_t i = 0; i < p->best.n; i++) {
 		char style[160];
 		struct pose pose;
 
 		motion_pose(&p->j->motion, p->best.q[i], &pose);
 		snprintf(style, sizeof(style), "fill=\"%s\" fill-opacity="
-			 "\"0.16\" stroke=\"none\"", i == 0 ? "#c60" :
+			 "\"0.3\"", i == 0 ? "#c60" :
 			 i + 1 == p->best.n ? "#063" : "#06c");
 		put_shadow(f, &w, &p->j->tool, &pose, style);
 	}
