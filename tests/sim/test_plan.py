@@ -106,7 +106,7 @@ def test_an_arc_is_followed_where_its_chord_is_free(tmp_path):
 
 def test_a_curve_is_followed(tmp_path):
     text = ("G21 G90\nF60\nG6.2 P4 K0 X0 Y0\nK0 X5 Y%g\nK0 X15 Y%g\n"
-            "K1 X20 Y0\nK1\nK1\nK1\n")
+            "K0 X20 Y0\nK1\nK1\nK1\nK1\n")
     post = box((9.9, 5, -5), (10.1, 14, 5))
     low = check_boxes(tmp_path, post, TOOL, text % (3, 3))
     high = check_boxes(tmp_path, post, TOOL, text % (8, 8))
