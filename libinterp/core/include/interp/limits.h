@@ -35,10 +35,14 @@
 #include "interp/program.h"
 
 #define INTERP_CORNER_MM	0.005	/* where none is given */
+#define INTERP_TOLERANCE_MM	0.001
+#define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
 
 struct interp_limits {
 	const struct interp_machine *machine;
 	double corner_mm;		/* > 0 */
+	double tolerance_mm;		/* >= 0: what is less is a rounding */
+	double rotary_radius_mm;	/* > 0: where it is a rotary axis's, too */
 };
 
 /**
