@@ -64,17 +64,17 @@ SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
 JOBS	:= $(wildcard daemon/jobs/*.c)
+SIGN	:= $(wildcard messages/sign/*.c)
+CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
+SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
 PEER	:= $(wildcard tests/peer/*.c)
-EXPERIMENTS := lines axes machining
 # Methods that were compared and lost: no program uses them.
 TRIED	:= $(wildcard tests/experiments/tried/*.c)
-CURVE_EXPERIMENTS := curves curve_programs
-EXPERIMENTS_JUMP := jump
 
 # What a part may include.  A header not on its list does not resolve.
 CORE_H		= -Ilibinterp/core/include
@@ -90,15 +90,16 @@ INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm
 INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Idaemon/shm $(INC_compiling) $(MODEL_H) -I$(B)/messages
+INC_jobs	= -Idaemon/jobs -Idaemon/shm $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_sign	= -Imessages/sign
+INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) -I$(B)/messages
+INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) $(INC_client)
 INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
-INC_experiments	= -Itests/experiments -Itests/experiments/contour -Itests/data $(INC_libinterp) $(INC_config) $(INC_compiling)
 part = $(word 2,$(subst /, ,$1))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
@@ -113,6 +114,7 @@ SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM))
+SIGN_O	 := $(call obj,$(SIGN))
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
@@ -122,7 +124,12 @@ UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
 PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
 
-all: $(PROGRAMS)
+all: $(PROGRAMS) $(SHEETS:clients/plot/%=$(B)/share/edmd/%)
+
+# Read by the programs when they draw, so it stands beside them.
+$(B)/share/edmd/%: clients/plot/%
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
 
 # -- Compile ------------------------------------------------------------------
 
@@ -156,7 +163,7 @@ $(B)/messages/edm.o: $(B)/messages/edm.c
 	$(call say,CC,$(@F))
 	$(Q)$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) -c -o $@ $<
 
-$(call obj,$(JOBS) $(CTL)): | $(B)/messages/lcm.stamp
+$(call obj,$(JOBS) $(CTL) $(CLIENT)): | $(B)/messages/lcm.stamp
 $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 
 # -- Link ---------------------------------------------------------------------
@@ -189,10 +196,10 @@ $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $
 $(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
+$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A)
+$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
 $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A)
@@ -204,20 +211,19 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
 
+# Of what stands in front of edmd-jobs.
+$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(B)/daemon/jobs/trust.o
+$(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
+$(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
+
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-lcmocka -linih $(LIBGPIOD) -lpthread -lm)
+	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lm)
 
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)
 
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
-
-$(B)/experiments/%: $(B)/tests/experiments/%.o $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-linih -lm)
-
-$(B)/experiments/contour: $(call obj,$(wildcard tests/experiments/contour/*.c)) $(TRIED_A) $(INTERP_A)
-	$(call link,-ljansson -lm)
 
 # -- The commands -------------------------------------------------------------
 
@@ -322,60 +328,7 @@ bench: vm
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
 
-# Counted, not timed: the same on every machine.
-experiments: experiments-pulse experiments-jump experiments-contour \
-	experiments-curve experiments-servo
-
-experiments-pulse: $(EXPERIMENTS:%=$(B)/experiments/%)
-	$(call say,WALK,docs/experiments-pulse.md)
-	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-pulse.md
-	$(Q)cp $(B)/experiments-pulse.md docs/experiments-pulse.md
-	$(Q)cat docs/experiments-pulse.md
-
-experiments-jump: $(EXPERIMENTS_JUMP:%=$(B)/experiments/%)
-	$(call say,WALK,docs/experiments-jump.md)
-	$(Q)for x in $^; do $$x || exit 1; done > $(B)/experiments-jump.md
-	$(Q)$(B)/experiments/jump profile > $(B)/jump.dat
-	$(Q)gnuplot -e "data='$(B)/jump.dat'; out='docs/pictures/jump.svg'" \
-		tests/experiments/jump.gp
-	$(Q)cp $(B)/experiments-jump.md docs/experiments-jump.md
-	$(Q)cat docs/experiments-jump.md
-
-# Some minutes: each kind of work is tuned before it is compared.
-experiments-servo: $(B)/edmsim
-	$(call say,TUNE,docs/experiments-servo.md)
-	$(Q)EDM_BUILD=$(B) tests/experiments/servo $(B)/servo \
-		> $(B)/experiments-servo.md
-	$(Q)gnuplot -e "data='$(B)/servo/servo.dat'; out='docs/pictures/servo.svg'" \
-		tests/experiments/servo.gp
-	$(Q)cp $(B)/experiments-servo.md docs/experiments-servo.md
-	$(Q)EDM_BUILD=$(B) docs/tuning > $(B)/tuning.md
-	$(Q)docs/put-table $(B)/tuning.md docs/gap-servo.md
-	$(Q)EDM_BUILD=$(B) tests/experiments/strategies > $(B)/strategies.md
-	$(Q)docs/put-table $(B)/strategies.md docs/process-model.md
-	$(Q)cat docs/experiments-servo.md
-
-experiments-curve: $(CURVE_EXPERIMENTS:%=$(B)/experiments/%) $(B)/edmsim
-	@tests/setup check
-	$(call say,WALK,docs/experiments-curve.md)
-	$(Q)cat tests/experiments/curve.md > $(B)/experiments-curve.md
-	$(Q)for x in $(filter %/curves %/curve_programs,$^); do $$x || exit 1; \
-		done >> $(B)/experiments-curve.md
-	$(Q)tests/experiments/blade $(B) >> $(B)/experiments-curve.md
-	$(Q)EDM_BUILD=$(B) .venv/bin/python tests/experiments/g52 \
-		>> $(B)/experiments-curve.md
-	$(Q)cp $(B)/experiments-curve.md docs/experiments-curve.md
-
-experiments-contour: $(B)/experiments/contour $(B)/edmsim
-	$(call say,TRY,docs/experiments-contour.md)
-	$(Q)$< > $(B)/experiments-contour.md
-	$(Q)tests/experiments/contouring $(B) > $(B)/contouring.md
-	$(Q)cat $(B)/contouring.md >> $(B)/experiments-contour.md
-	$(Q)cp $(B)/experiments-contour.md docs/experiments-contour.md
-	$(Q)grep '^|' $(B)/contouring.md > $(B)/contouring-table.md
-	$(Q)docs/put-table $(B)/contouring-table.md docs/contour.md
-	$(Q)cat docs/experiments-contour.md
-	$(Q)$< docs/pictures
+include tests/experiments/Makefile
 
 # Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
 pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
@@ -441,7 +394,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
-		grep -vE 'daemon/jobs/lcm.c|clients/ctl/talk.c'
+		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
 	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80
@@ -469,7 +422,7 @@ install: all
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
 		examples/machine.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
-		messages/edmd.eds messages/edmd.dbc \
+		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8

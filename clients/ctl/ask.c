@@ -18,15 +18,27 @@ int ctl_unanswered(const struct ctl *c, int err)
 		fprintf(stderr, "edmctl: interrupted before an answer came\n");
 		return EX_TEMPFAIL;
 	}
+	if (!c->talk && c->talk_err != -ENOENT) {
+		fprintf(stderr, "edmctl: %s\n", c->said);
+		return c->talk_err == -ENETUNREACH ? EX_UNAVAILABLE :
+						     EX_NOPERM;
+	}
+	if (c->talk && *talk_why(c->talk)) {
+		fprintf(stderr, "edmctl: %s\n", talk_why(c->talk));
+		return EX_NOPERM;
+	}
 	fprintf(stderr, "edmctl: no answer from edmd-jobs of machine %s; is it "
 		"running? systemctl start edmd-jobs\n", c->machine);
+	if (!c->talk)
+		fprintf(stderr, "edmctl: %s\n", c->said);
 	return EX_UNAVAILABLE;
 }
 
 int ctl_ask(struct ctl *c, const struct talk_question *q,
 	    struct talk_answer *ret)
 {
-	int err = talk_ask(c->talk, q, c->timeout_s, ret);
+	int err = c->talk ? talk_ask(c->talk, q, c->timeout_s, ret) :
+			    -ETIMEDOUT;
 	int code;
 
 	if (err < 0)

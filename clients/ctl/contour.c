@@ -96,8 +96,9 @@ void ctl_contour_print(const struct contour *k)
 }
 
 /* The largest of each strip of time, so that a tip stays in the picture. */
-static void write_strips(FILE *f, const struct contour *k)
+static void write_strips(FILE *f, const void *arg)
 {
+	const struct contour *k = arg;
 	const size_t wide = k->n / STRIPS + 1;
 
 	fputs("$error << EOD\n", f);
@@ -120,21 +121,10 @@ static void write_strips(FILE *f, const struct contour *k)
 	fputs("EOD\n", f);
 }
 
-static void write_script(FILE *f, const void *arg, bool svg)
-{
-	fprintf(f, "set terminal %s size 1000,500 font 'sans,12' "
-		"background 'white'\n", svg ? "svg" : "pngcairo");
-	write_strips(f, arg);
-	fputs("set grid lc '#dddddd'\nset key above\nset yrange [0:*]\n"
-	      "set xlabel 'time, s'\nset ylabel 'um'\n"
-	      "plot $error using 1:2 with lines lw 2 lc '#d55e00' title "
-	      "'contour error, measured', '' using 1:3 with lines lc "
-	      "'#0072b2' title 'predicted', '' using 1:4 with lines lc "
-	      "'#009e73' title 'machine off the model'\n", f);
-}
-
 int ctl_contour_draw(const struct contour *k, const char *output)
 {
-	return plot_script(&(struct plot_script) {
-		"edmctl", output, write_script, k });
+	return plot_draw(&(struct plot_sheet) {
+		.program = "edmctl", .output = output,
+		.script = "contour.gp", .write = write_strips, .arg = k,
+	});
 }

@@ -14,7 +14,7 @@
 
 struct ctl {
 	/* Options. */
-	const char *machine, *url;
+	const char *machine, *url, *key;
 	bool json;
 	double timeout_s;
 	const char *name, *id;
@@ -26,10 +26,14 @@ struct ctl {
 	const char *verb;
 	const char *arg;		/* NULL if there is none */
 	const char *value;		/* the second one; NULL too */
-	struct talk *talk;
+	const char *third;
+	struct talk *talk;		/* NULL: it cannot be had, ... */
+	int talk_err;			/* ... as talk_open() */
+	char said[TALK_SAID_MAX];
 };
 
 int ctl_submit(struct ctl *c);
+int ctl_keys(struct ctl *c);
 int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);
 int ctl_retract(struct ctl *c);

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-#define URL_DEFAULT	"udpm://239.255.76.67:7667?ttl=0"
+#define URL_DEFAULT	TALK_URL
 
 struct verb {
 	const char *name, *args;
@@ -71,6 +71,8 @@ static const struct verb verbs[] = {
 	  "how late edmd woke, of S seconds from now or since its start" },
 	{ "history", "", ctl_history, 0, 0, false, "",
 	  "jobs that have ended, newest first" },
+	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
+	  "who may command: viewer, operator, service" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "p",
 	  "the loops of the axes, from what record wrote" },
 };
@@ -78,6 +80,7 @@ static const struct verb verbs[] = {
 static const struct option longs[] = {
 	{ "machine", required_argument, NULL, 'm' },
 	{ "url",     required_argument, NULL, 'u' },
+	{ "key",     required_argument, NULL, 'k' },
 	{ "json",    no_argument,       NULL, 'j' },
 	{ "timeout", required_argument, NULL, 't' },
 	{ "name",    required_argument, NULL, 'n' },
@@ -95,7 +98,7 @@ static const struct option longs[] = {
 /* clang-format on */
 
 #define NVERBS		(sizeof(verbs) / sizeof(verbs[0]))
-#define COMMON_OPTIONS	"mujt"
+#define COMMON_OPTIONS	"mujtk"
 
 /* No option is short, so -1 is a word: a number below 0.  Words in order. */
 #define DIGITS		"0123456789."
@@ -103,7 +106,7 @@ static const struct option longs[] = {
 
 /* The verb, its arguments, and one that is too much. */
 struct words {
-	char *at[4];
+	char *at[5];
 	int n;
 };
 
@@ -117,6 +120,7 @@ static void print_usage(FILE *f)
 	fputs("\nOptions:\n"
 	      "  --machine NAME  of the machine; default: edm\n"
 	      "  --url URL       of LCM; default: " URL_DEFAULT "\n"
+	      "  --key FILE      to sign with; default: EDM_KEY, or the host's\n"
 	      "  --json          print results as JSON\n"
 	      "  --timeout S     wait for an answer so long; default: 3\n"
 	      "  --name NAME     submit: of the job; default: the file's\n"
@@ -169,6 +173,9 @@ static int option_take(struct ctl *c, int opt)
 		break;
 	case 'u':
 		c->url = optarg;
+		break;
+	case 'k':
+		c->key = optarg;
 		break;
 	case 'j':
 		c->json = true;
@@ -231,6 +238,8 @@ static int arguments_take(struct ctl *c, const struct verb *v, int argc,
 		c->arg = argv[0];
 	if (argc > 1 && v->takes > 1)
 		c->value = argv[1];
+	if (argc > 2 && v->takes > 2)
+		c->third = argv[2];
 	if (argc > v->takes) {
 		fprintf(stderr, "edmctl: %s: '%s' is too much; edmctl %s%s%s\n",
 			v->name, argv[v->takes], v->name, *v->args ? " " : "",
@@ -358,12 +367,11 @@ int main(int argc, char **argv)
 			URL_DEFAULT "\n", c.url);
 		return EX_USAGE;
 	}
-	if (talk_open(&c.talk, c.url, c.machine) < 0 && v->run != ctl_doctor) {
-		fprintf(stderr, "edmctl: cannot open %s; does the host have a "
-			"multicast route? ip link set lo multicast on; "
-			"ip route add 224.0.0.0/4 dev lo\n", c.url);
-		return EX_UNAVAILABLE;
-	}
+	/* What is wrong with the words of the verb is said first. */
+	c.talk_err = talk_open(&c.talk, &(struct talk_options) {
+		.machine = c.machine, .url = c.url, .key = c.key,
+		.program = "edmctl",
+	}, c.said);
 	talk_catch_signals();
 	rc = v->run(&c);
 	talk_close(c.talk);

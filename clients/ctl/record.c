@@ -12,6 +12,7 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
 #include <unistd.h>
@@ -22,6 +23,7 @@
 struct recording {
 	const struct shm_status *status;
 	FILE *f;
+	struct plot *plot;		/* NULL: none is wanted */
 	struct shm_follow trace, events;
 	struct shm_snapshot about;	/* period and worth of a pulse */
 	uint64_t first_cycle, written;
@@ -87,6 +89,19 @@ static int open_csv(const struct ctl *c, struct recording *r)
 	return 0;
 }
 
+static void plot_row(struct recording *r, const struct shm_trace *t, double t_s)
+{
+	struct plot_row row = {
+		.t_s = t_s, .s_mm = t->place_mm, .feed_mm_s = t->feed_mm_s,
+		.gap_v = t->gap_v, .state = (int)t->state,
+		.cut = t->state == SHM_APPROACH || t->state == SHM_ERODE,
+	};
+
+	for (int i = 0; i < SHM_NAXES; i++)
+		row.axis_mm[i] = t->pos[i] * r->about.pulse_mm[i];
+	plot_add(r->plot, &row);
+}
+
 static void write_row(struct recording *r, const struct shm_trace *t)
 {
 	double t_s = (double)(t->cycle - r->first_cycle) *
@@ -100,6 +115,8 @@ static void write_row(struct recording *r, const struct shm_trace *t)
 		fprintf(r->f, ",%.10g", t->actual[i] * r->about.pulse_mm[i]);
 	fputc('\n', r->f);
 	r->written++;
+	if (r->plot)
+		plot_row(r, t, t_s);
 }
 
 /* Every n-th cycle, and each in which the state changes. */
@@ -211,28 +228,43 @@ static void report(const struct ctl *c, const struct recording *r)
 	fflush(stdout);
 }
 
-static int draw(const struct ctl *c)
+static const char *state_name(int state)
 {
-	const struct plot_options o = {
-		.program = "edmctl", .trace = c->arg, .output = c->plot,
-	};
+	return state <= SHM_PROBE ? shm_state_name((uint32_t)state) : NULL;
+}
 
-	return plot_trace(&o) < 0 ? EX_CANTCREAT : 0;
+/* A picture that nothing was recorded for is not drawn. */
+static int draw(struct recording *r)
+{
+	struct plot *p = r->plot;
+
+	r->plot = NULL;
+	if (r->written == 0) {
+		free(p);
+		return 0;
+	}
+	return plot_finish(p) < 0 ? EX_CANTCREAT : 0;
 }
 
 static int record(const struct ctl *c, struct recording *r)
 {
+	const struct plot_options o = {
+		.program = "edmctl", .output = c->plot, .title = c->arg,
+		.state_name = state_name,
+	};
 	int rc = open_csv(c, r);
 
 	if (rc)
 		return rc;
+	r->plot = c->plot ? plot_begin(&o) : NULL;
+	if (c->plot && !r->plot)
+		return refuse(c, c->plot, "no memory", EX_OSERR);
 	follow(c, r);
 	rc = close_csv(c, r);
 	if (rc)
 		return rc;
 	report(c, r);
-	if (c->plot && r->written)
-		rc = draw(c);
+	rc = draw(r);
 	if (rc == 0 && r->dead)
 		return EX_UNAVAILABLE;
 	return rc ? rc : r->ended && r->outcome != SHM_OUTCOME_DONE;
@@ -250,6 +282,7 @@ int ctl_record(struct ctl *c)
 	rc = open_status(c, &r);
 	if (rc == 0)
 		rc = record(c, &r);
+	free(r.plot);
 	shm_close(r.status, sizeof(*r.status));
 	return rc;
 }

@@ -88,6 +88,8 @@ const struct talk_status *ctl_first_status(struct ctl *c)
 	double until_s = talk_now_s() + c->timeout_s;
 	uint64_t before, count;
 
+	if (!c->talk)
+		return NULL;
 	talk_status(c->talk, &before);
 	do {
 		const struct talk_status *s;

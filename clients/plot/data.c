@@ -1,225 +1,314 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* data.c - data blocks of the panels over time */
-#include "script.h"
+/* data.c - a thinned run as gnuplot's variables and data blocks */
+#include "data.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-/* Marks closer than this share of the time are one mark. */
-#define MARK_SPACE	(1.0 / 300)
+/* Marks closer than this share of the time, or of the path, are one mark. */
+#define MARK_TIME	(1.0 / 300)
+#define MARK_PATH	(1.0 / 150)
+#define FEW_JUMPS	60u		/* each can be seen */
+#define COLUMNS		240		/* of the states' shares */
 
-static double bin_time(const struct thin *t, size_t i)
+/* In single quotes gnuplot knows one escape: the quote, doubled. */
+static void write_text(FILE *f, const char *name, const char *s)
 {
-	const struct thin_survey *s = &t->survey;
+	fprintf(f, "%s = '", name);
+	for (; *s; s++) {
+		if (*s == '\'')
+			fputc('\'', f);
+		fputc((unsigned char)*s < ' ' ? ' ' : *s, f);
+	}
+	fputs("'\n", f);
+}
 
-	return s->t_min + (s->t_max - s->t_min) * ((double)i + 0.5) /
-	       (double)t->nbins;
+static int by_value(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* What to show, so that a rare spike does not flatten all the rest: all but
+ * one mean in a hundred on either side, and as much again. */
+static void write_span(FILE *f, const struct thin *t, const char *name,
+		       size_t member)
+{
+	struct thin_range all = { 0 };
+	double mean[THIN_STRIPS], low = 0, high = 0;
+	size_t n = 0;
+
+	for (size_t i = 0; i < t->nstrips; i++) {
+		const struct thin_range *r = (const void *)
+			((const char *)&t->strip[i] + member);
+
+		thin_range_join(&all, r);
+		if (r->n)
+			mean[n++] = r->sum / (double)r->n;
+	}
+	if (n) {
+		qsort(mean, n, sizeof(mean[0]), by_value);
+		low = fmax(all.min, fmin(0, 2 * mean[n / 100]));
+		high = fmin(all.max, fmax(0, 2 * mean[n - 1 - n / 100]));
+	}
+	fprintf(f, "%s_min = %.9g\n%s_max = %.9g\n%s_low = %.9g\n"
+		"%s_high = %.9g\n%s_n = %lu\n", name, all.min, name, all.max,
+		name, low, name, high, name, all.n);
+}
+
+static bool has_pieces(const struct thin *t, bool cut)
+{
+	for (size_t i = 1; i < t->npath; i++)
+		if (t->path[i].cut == cut)
+			return true;
+	return false;
+}
+
+static void write_states(FILE *f, const struct data *d)
+{
+	const struct thin_zoom *z = &d->t->zoom;
+	unsigned long zoomed = 0;
+	int n = 0;
+
+	while (n < PLOT_NSTATES && d->o->state_name(n))
+		n++;
+	for (size_t i = 0; i < z->n; i++)
+		if (z->at[i].place.n)
+			zoomed |= 1ul << z->at[i].state;
+	fprintf(f, "nstates = %d\narray in_state[%d]\narray in_zoom[%d]\n"
+		"states = ''\n", n, n, n);
+	for (int i = 0; i < n; i++)
+		fprintf(f, "states = states.'%s '\nin_state[%d] = %lu\n"
+			"in_zoom[%d] = %lu\n", d->o->state_name(i), i + 1,
+			d->t->in_state[i], i + 1, zoomed >> i & 1);
+}
+
+static void write_variables(FILE *f, const struct data *d)
+{
+	const struct thin *t = d->t;
+
+	write_text(f, "title_text", d->o->title);
+	fprintf(f, "rows = %lu.0\nt_min = %.9g\nt_max = %.9g\ns_min = %.9g\n"
+		"s_max = %.9g\ncuts = %d\ncut_min = %.9g\njumps = %lu\n"
+		"retracts = %lu\nfew = %d\n", t->rows, t->time.min,
+		t->time.max, t->place.min, t->place.max, t->cuts,
+		t->cuts ? t->cut_min : t->place.min, t->jumps.seen,
+		t->retracts.seen, t->jumps.seen <= FEW_JUMPS);
+	fprintf(f, "has_cut = %d\nhas_positioned = %d\nservo_v = %.9g\n"
+		"short_v = %.9g\nopen_v = %.9g\n", has_pieces(t, true),
+		has_pieces(t, false), d->o->servo_v, d->o->short_v,
+		d->o->open_v);
+	fprintf(f, "strip_s = %.9g\nzoom_n = %zu\nzoom_jumps = %lu\n"
+		"zoom_from = %.9g\nzoom_to = %.9g\n", t->width_s, t->zoom.n,
+		t->zoom.jumps, t->zoom.from_s,
+		t->zoom.from_s + (double)t->zoom.n * t->zoom.width_s);
+	fputs("array axis_min[8]\narray axis_max[8]\n", f);
+	for (int i = 0; i < PLOT_NAXES; i++)
+		fprintf(f, "axis_min[%d] = %.9g\naxis_max[%d] = %.9g\n", i + 1,
+			t->axis[i].min, i + 1, t->axis[i].max);
+	write_states(f, d);
+	write_span(f, t, "gap", offsetof(struct thin_strip, gap));
+	write_span(f, t, "feed", offsetof(struct thin_strip, feed));
+}
+
+static double strip_time(const struct thin *t, double i)
+{
+	return fmin(t->time.min + (i + 0.5) * t->width_s, t->time.max);
 }
 
 /*
- * Strips to take together: where jumps are many, a little more than from one
- * to the next, or strips with and without one would alternate.
+ * Strips to take together for a smooth mean: where jumps are many, a little
+ * more than from one to the next, or strips with and without one would
+ * alternate.
  */
 static size_t group_of(const struct thin *t)
 {
-	const struct thin_survey *s = &t->survey;
-
-	if (s->jumps.n <= SCRIPT_FEW)
+	if (t->jumps.seen <= FEW_JUMPS)
 		return 1;
-	return 2 + (size_t)(1.2 * (double)t->nbins / (double)s->jumps.n);
+	return 2 + (size_t)(1.2 * (double)t->nstrips / (double)t->jumps.seen);
 }
 
-static struct thin_bin join(const struct thin_bin *bin, size_t n)
+/* Time, least, greatest and mean of a quantity; a blank line where there is
+ * nothing. */
+static void write_strips(FILE *f, const struct thin *t, size_t member,
+			 size_t group)
 {
-	struct thin_bin b = { 0 };
-
-	for (size_t i = 0; i < n; i++) {
-		if (bin[i].n == 0)
-			continue;
-		b.min = b.n ? fmin(b.min, bin[i].min) : bin[i].min;
-		b.max = b.n ? fmax(b.max, bin[i].max) : bin[i].max;
-		b.sum += bin[i].sum;
-		b.n += bin[i].n;
-	}
-	return b;
-}
-
-/* A row of strips, @group of them to a line. */
-struct strips {
-	const struct thin *t;
-	const struct thin_bin *bin;
-	size_t group;
-	double unit_s;
-};
-
-/* A line each, by @put; a blank line where there is nothing. */
-static void write_strips(FILE *f, const struct strips *s,
-			 void (*put)(FILE *f, double time,
-				     const struct thin_bin *b))
-{
-	const size_t nbins = s->t->nbins;
 	bool open = false;
 
-	for (size_t i = 0; i < nbins; i += s->group) {
-		const size_t n = s->group < nbins - i ? s->group : nbins - i;
-		const struct thin_bin b = join(s->bin + i, n);
+	for (size_t i = 0; i < t->nstrips; i += group) {
+		struct thin_range r = { 0 };
 
-		if (b.n)
-			put(f, bin_time(s->t, i + n / 2) / s->unit_s, &b);
+		for (size_t j = i; j < i + group && j < t->nstrips; j++)
+			thin_range_join(&r, (const void *)
+					((const char *)&t->strip[j] + member));
+		if (r.n)
+			fprintf(f, "%.9g %.9g %.9g %.9g\n", strip_time(t,
+				(double)i + ((double)group - 1) / 2), r.min,
+				r.max, r.sum / (double)r.n);
 		else if (open)
 			fputc('\n', f);
-		open = b.n > 0;
+		open = r.n > 0;
 	}
 }
 
-static void put_band(FILE *f, double time, const struct thin_bin *b)
-{
-	fprintf(f, "%.9g %.9g %.9g\n", time, b->min, b->max);
-}
-
-static void put_mean(FILE *f, double time, const struct thin_bin *b)
-{
-	fprintf(f, "%.9g %.9g\n", time, b->sum / (double)b->n);
-}
-
-/* A quantity of the cut: its extremes strip by strip, its mean smoother. */
 static void write_quantity(FILE *f, const struct thin *t, const char *name,
-			   const struct thin_bin *bin, double unit_s)
+			   size_t member)
 {
-	struct strips s = { t, bin, 1, unit_s };
+	fprintf(f, "$%s << EOD\n", name);
+	write_strips(f, t, member, 1);
+	fprintf(f, "EOD\n$%smean << EOD\n", name);
+	write_strips(f, t, member, group_of(t));
+	fputs("EOD\n", f);
+}
+
+/* Time, farthest place, and the mean of each axis. */
+static void write_axes(FILE *f, const struct thin *t)
+{
+	fputs("$axes << EOD\n", f);
+	for (size_t i = 0; i < t->nstrips; i++) {
+		const struct thin_strip *s = &t->strip[i];
+
+		if (s->place.n == 0)
+			continue;
+		fprintf(f, "%.9g %.9g", strip_time(t, (double)i), s->far_mm);
+		for (int a = 0; a < PLOT_NAXES; a++)
+			fprintf(f, " %.7g", s->axis[a].sum /
+				(double)s->axis[a].n);
+		fputc('\n', f);
+	}
+	fputs("EOD\n", f);
+}
+
+static void write_place(FILE *f, const double axis_mm[PLOT_NAXES])
+{
+	for (int i = 0; i < PLOT_NAXES; i++)
+		fprintf(f, "%.7g ", axis_mm[i]);
+	fputc('\n', f);
+}
+
+/* Over time, and on the path. */
+static void write_events(FILE *f, const struct thin *t, const char *name,
+			 const struct thin_events *e)
+{
+	const double time_s = (t->time.max - t->time.min) * MARK_TIME;
+	const double way_mm = (t->place.max - t->place.min) * MARK_PATH;
+	const struct thin_event *last = NULL;
 
 	fprintf(f, "$%s << EOD\n", name);
-	write_strips(f, &s, put_band);
-	fprintf(f, "EOD\n$%smean << EOD\n", name);
-	s.group = group_of(t);
-	write_strips(f, &s, put_mean);
+	for (size_t i = 0; i < e->n; i++) {
+		if (last && e->at[i].t_s - last->t_s < time_s)
+			continue;
+		last = &e->at[i];
+		fprintf(f, "%.9g %.9g\n", last->t_s, last->s_mm);
+	}
+	fprintf(f, "EOD\n$%sat << EOD\n", name);
+	last = NULL;
+	for (size_t i = 0; i < e->n; i++) {
+		if (last && fabs(e->at[i].s_mm - last->s_mm) < way_mm)
+			continue;
+		last = &e->at[i];
+		write_place(f, last->axis_mm);
+	}
+	fputs("EOD\n", f);
+}
+
+/* Pieces of one kind, each begun where the piece before it ended. */
+static void write_pieces(FILE *f, const struct thin *t, bool cut)
+{
+	bool open = false;
+
+	fprintf(f, "$path%d << EOD\n", cut);
+	for (size_t i = 1; i < t->npath; i++) {
+		if (t->path[i].cut == cut) {
+			if (!open)
+				write_place(f, t->path[i - 1].axis_mm);
+			write_place(f, t->path[i].axis_mm);
+		} else if (open) {
+			fputs("\n\n", f);
+		}
+		open = t->path[i].cut == cut;
+	}
+	fputs("EOD\n", f);
+}
+
+static void write_ends(FILE *f, const struct thin *t)
+{
+	fputs("$begin << EOD\n", f);
+	write_place(f, t->path[0].axis_mm);
+	fputs("EOD\n$end << EOD\n", f);
+	write_place(f, t->path[t->npath - 1].axis_mm);
+	fputs("EOD\n", f);
+}
+
+/* Stacked: time, then the tops of all states, at a column's two edges. */
+static void write_column(FILE *f, const struct data *d, size_t from, size_t to)
+{
+	double all = 0, top[PLOT_NSTATES] = { 0 };
+
+	for (int s = 0; s < PLOT_NSTATES; s++) {
+		for (size_t i = from; i < to; i++)
+			all += (double)d->t->strip[i].share[s];
+		top[s] = all;
+	}
+	for (int edge = 0; edge < 2 && all > 0; edge++) {
+		fprintf(f, "%.9g 0", d->t->time.min + d->t->width_s *
+			(double)(edge ? to : from));
+		for (int s = 0; s < PLOT_NSTATES; s++)
+			fprintf(f, " %.4f", 100 * top[s] / all);
+		fputc('\n', f);
+	}
+}
+
+static void write_shares(FILE *f, const struct data *d)
+{
+	const size_t n = d->t->nstrips, wide = n / COLUMNS + 1;
+
+	fputs("$share << EOD\n", f);
+	for (size_t i = 0; i < n; i += wide)
+		write_column(f, d, i, i + wide < n ? i + wide : n);
 	fputs("EOD\n", f);
 }
 
 /*
- * A period's feed is whole pulses or none, so extremes fill the panel whatever
- * the gap does: the mean of each strip, and that from jump to jump.
+ * A strip is two points, the one nearer to where the line stands first.  The
+ * third column is the state; gnuplot parts the lines by it.
  */
-static void write_feed(FILE *f, const struct thin *t, double unit_s)
+static void write_zoom(FILE *f, const struct thin_zoom *z)
 {
-	struct strips s = { t, t->feed, 1, unit_s };
+	double at = z->n ? z->at[0].place.min : 0;
 
-	fputs("$feed << EOD\n", f);
-	write_strips(f, &s, put_mean);
-	fputs("EOD\n$feedmean << EOD\n", f);
-	s.group = group_of(t);
-	write_strips(f, &s, put_mean);
-	fputs("EOD\n", f);
-}
+	fputs("$zoom << EOD\n", f);
+	for (size_t i = 0; i < z->n; i++) {
+		const struct thin_range *r = &z->at[i].place;
+		const double t_s = z->from_s + ((double)i + 0.5) * z->width_s;
+		const bool up = at - r->min < r->max - at;
 
-static void write_far(FILE *f, const struct thin *t, double unit_s)
-{
-	fputs("$far << EOD\n", f);
-	for (size_t i = 0; i < t->nbins; i++)
-		if (t->place[i].n)
-			fprintf(f, "%.9g %.9g\n", bin_time(t, i) / unit_s,
-				t->far_mm[i]);
-	fputs("EOD\n", f);
-}
-
-static void write_events(FILE *f, const struct thin *t, const char *name,
-			 const struct thin_events *e, double unit_s)
-{
-	double space = (t->survey.t_max - t->survey.t_min) * MARK_SPACE;
-	double last = -1e300;
-
-	fprintf(f, "$%s << EOD\n", name);
-	for (size_t i = 0; i < e->n; i++) {
-		if (e->at[i].t_s - last < space)
+		if (r->n == 0)
 			continue;
-		last = e->at[i].t_s;
-		fprintf(f, "%.9g %.9g\n", last / unit_s, e->at[i].s_mm);
+		at = up ? r->max : r->min;
+		fprintf(f, "%.9g %.9g %d\n%.9g %.9g %d\n", t_s,
+			up ? r->min : r->max, z->at[i].state, t_s, at,
+			z->at[i].state);
 	}
 	fputs("EOD\n", f);
 }
 
-static void write_share(FILE *f, const struct thin *t, size_t c, double time)
+void data_write(FILE *f, const void *arg)
 {
-	unsigned long all = 0, sum = 0;
+	const struct data *d = arg;
+	const struct thin *t = d->t;
 
-	for (int i = 0; i < CSV_NSTATES; i++)
-		all += t->share[c][i];
-	if (all == 0)
-		return;
-	fprintf(f, "%.9g 0", time);
-	for (int i = 0; i < CSV_NSTATES; i++) {
-		sum += t->share[c][i];
-		fprintf(f, " %.4f", 100 * (double)sum / (double)all);
-	}
-	fputc('\n', f);
-}
-
-/* Stacked: time, then the tops of all states, at each column's two edges. */
-static void write_shares(FILE *f, const struct thin *t, double unit_s)
-{
-	const struct thin_survey *s = &t->survey;
-	double width = (s->t_max - s->t_min) / THIN_COLUMNS;
-
-	fputs("$share << EOD\n", f);
-	for (size_t c = 0; c < THIN_COLUMNS; c++) {
-		double from = s->t_min + (double)c * width;
-
-		write_share(f, t, c, from / unit_s);
-		write_share(f, t, c, (from + width) / unit_s);
-	}
-	fputs("EOD\n", f);
-}
-
-/* A strip as two points, the one nearer to where the line stands first. */
-static double write_swept(FILE *f, double time_s, const struct thin_bin *b,
-			  double at)
-{
-	bool up = at - b->min < b->max - at;
-	double first = up ? b->min : b->max, last = up ? b->max : b->min;
-
-	fprintf(f, "%.9g %.9g\n%.9g %.9g\n", time_s, first, time_s, last);
-	return last;
-}
-
-/* The pieces of one state, each begun where the piece before it ended. */
-static void write_zoom(FILE *f, const struct thin *t, enum csv_state state)
-{
-	const struct thin_survey *s = &t->survey;
-	double width = (s->zoom_to_s - s->zoom_from_s) / (double)t->nzoom;
-	double at = t->zoom[0].place.min, before_s = s->zoom_from_s;
-	bool open = false;
-
-	fprintf(f, "$zoom%d << EOD\n", (int)state);
-	for (size_t i = 0; i < t->nzoom; i++) {
-		const struct thin_zoom *z = &t->zoom[i];
-		double time_s = s->zoom_from_s + ((double)i + 0.5) * width;
-		bool mine = z->state == state;
-
-		if (z->place.n == 0)
-			continue;
-		if (mine && !open && i)
-			fprintf(f, "\n%.9g %.9g\n", before_s, at);
-		if (mine)
-			at = write_swept(f, time_s, &z->place, at);
-		else
-			at = z->place.sum / (double)z->place.n;
-		open = mine;
-		before_s = time_s;
-	}
-	fputs("EOD\n", f);
-}
-
-void data_write(FILE *f, const struct thin *t, double unit_s)
-{
-	fputs("$place << EOD\n", f);
-	write_strips(f, &(struct strips) { t, t->place, group_of(t), unit_s },
-		     put_band);
-	fputs("EOD\n", f);
-	write_quantity(f, t, "gap", t->gap, unit_s);
-	write_feed(f, t, unit_s);
-	write_far(f, t, unit_s);
-	write_events(f, t, "jumps", &t->survey.jumps, unit_s);
-	write_events(f, t, "retracts", &t->survey.retracts, unit_s);
-	write_shares(f, t, unit_s);
-	for (int i = 0; t->nzoom && i < CSV_NSTATES; i++)
-		write_zoom(f, t, (enum csv_state)i);
+	write_variables(f, d);
+	write_quantity(f, t, "place", offsetof(struct thin_strip, place));
+	write_quantity(f, t, "gap", offsetof(struct thin_strip, gap));
+	write_quantity(f, t, "feed", offsetof(struct thin_strip, feed));
+	write_axes(f, t);
+	write_events(f, t, "jump", &t->jumps);
+	write_events(f, t, "retract", &t->retracts);
+	write_pieces(f, t, false);
+	write_pieces(f, t, true);
+	write_ends(f, t);
+	write_shares(f, d);
+	write_zoom(f, &t->zoom);
 }

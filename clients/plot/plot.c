@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* plot.c - a picture of a job: read, thin, let gnuplot draw */
+/* plot.c - a picture of a job: thin its rows, let gnuplot draw them */
 #include "plot.h"
-#include "script.h"
+#include "data.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,8 +96,53 @@ int plot_check(const char *program, const char *output)
 	return err < 0 ? err : check_gnuplot(program);
 }
 
-/* The script in memory, ready to be read.  Return: descriptor or -errno. */
-static int script_fd(const struct plot_script *s)
+/*
+ * Where @name of share/edmd is: below EDM_SHARE, beside the programs as they are
+ * installed, or beside them as they are built.
+ */
+static int find_script(char path[PATH_MAX], const char *name)
+{
+	const char *own = getenv("EDM_SHARE");
+	char exe[PATH_MAX / 2] = "";
+	ssize_t n = readlink("/proc/self/exe", exe, sizeof(exe) - 1);
+	char *slash = n > 0 ? strrchr(exe, '/') : NULL;
+
+	if (own) {
+		snprintf(path, PATH_MAX, "%s/%s", own, name);
+		return access(path, R_OK) < 0 ? -errno : 0;
+	}
+	if (slash)
+		*slash = '\0';
+	snprintf(path, PATH_MAX, "%s/../share/edmd/%s", exe, name);
+	if (access(path, R_OK) < 0)
+		snprintf(path, PATH_MAX, "%s/share/edmd/%s", exe, name);
+	return access(path, R_OK) < 0 ? -errno : 0;
+}
+
+/* Variables, data and script in memory, ready to be read. */
+static int write_all(FILE *f, const struct plot_sheet *s)
+{
+	char path[PATH_MAX];
+	int err = find_script(path, s->script);
+
+	if (err < 0) {
+		fprintf(stderr, "%s: error: plot: %s: %s; it comes with the "
+			"programs, and EDM_SHARE may name its folder\n",
+			s->program, path, strerror(-err));
+		return err;
+	}
+	fprintf(f, "svg = %d\n", ends_with(s->output, ".svg"));
+	s->write(f, s->arg);
+	/* gnuplot knows one escape in single quotes: the quote, doubled. */
+	fputs("load '", f);
+	for (const char *p = path; *p; p++)
+		fputs(*p == '\'' ? "''" : (char[]) { *p, '\0' }, f);
+	fputs("'\n", f);
+	return ferror(f) ? -EIO : 0;
+}
+
+/* Return: descriptor or -errno. */
+static int script_fd(const struct plot_sheet *s)
 {
 	int fd = memfd_create("edm-plot", MFD_CLOEXEC);
 	FILE *f = fd < 0 ? NULL : fdopen(dup(fd), "w");
@@ -108,8 +154,7 @@ static int script_fd(const struct plot_script *s)
 			close(fd);
 		return err;
 	}
-	s->write(f, s->arg, ends_with(s->output, ".svg"));
-	err = ferror(f) ? -EIO : 0;
+	err = write_all(f, s);
 	if (fclose(f) != 0 && err == 0)
 		err = -errno;
 	if (err < 0) {
@@ -120,7 +165,7 @@ static int script_fd(const struct plot_script *s)
 	return fd;
 }
 
-static int draw(const struct plot_script *s, int out)
+static int draw(const struct plot_sheet *s, int out)
 {
 	char *argv[] = { "gnuplot", "-d", "-", NULL };
 	int in = script_fd(s);
@@ -136,7 +181,7 @@ static int draw(const struct plot_script *s, int out)
 	return r > 0 ? -EIO : r;
 }
 
-int plot_script(const struct plot_script *s)
+int plot_draw(const struct plot_sheet *s)
 {
 	int out = open(s->output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC,
 		       0666);
@@ -158,35 +203,46 @@ int plot_script(const struct plot_script *s)
 	return err;
 }
 
-/* A thinned trace and how it is to be drawn. */
-struct sheet {
-	const struct thin *t;
-	const struct plot_options *o;
+struct plot {
+	struct plot_options o;
+	struct thin thin;
 };
 
-static void write_sheet(FILE *f, const void *arg, bool svg)
+struct plot *plot_begin(const struct plot_options *o)
 {
-	const struct sheet *s = arg;
+	struct plot *p = malloc(sizeof(*p));
 
-	script_write(f, s->t, s->o, svg);
+	if (!p)
+		return NULL;
+	p->o = *o;
+	thin_init(&p->thin, o->state_name);
+	return p;
 }
 
-int plot_trace(const struct plot_options *o)
+void plot_add(struct plot *p, const struct plot_row *r)
 {
-	struct csv csv = { 0 };
-	struct thin *t = NULL;
-	int err = plot_check(o->program, o->output);
+	thin_add(&p->thin, r);
+}
 
-	if (err < 0)
-		return err;
-	err = csv_open(&csv, o->program, o->trace, 2);
-	if (err == 0)
-		err = thin_create(&t, &csv);
-	csv_close(&csv);
-	if (err == 0)
-		err = plot_script(&(struct plot_script) {
-			o->program, o->output, write_sheet,
-			&(struct sheet) { t, o } });
-	thin_destroy(t);
+static int finish(struct plot *p)
+{
+	if (p->thin.rows == 0) {
+		fprintf(stderr, "%s: error: plot: nothing was recorded\n",
+			p->o.program);
+		return -ENODATA;
+	}
+	thin_end(&p->thin);
+	return plot_draw(&(struct plot_sheet) {
+		.program = p->o.program, .output = p->o.output,
+		.script = "trace.gp", .write = data_write,
+		.arg = &(struct data) { &p->thin, &p->o },
+	});
+}
+
+int plot_finish(struct plot *p)
+{
+	int err = p ? finish(p) : 0;
+
+	free(p);
 	return err;
 }

@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * plot.h - a picture of a job from its trace
+ * plot.h - a picture of a job, thinned while it runs, drawn by gnuplot
  *
- * Draws path, place, gap voltage, feed and states of a trace CSV on one
- * sheet, with gnuplot.  The CSV has a heading and these columns first:
+ * One sheet has the path, the place along it, gap voltage, feed, the axes that
+ * are no X Y Z, and the share of each state.  A run of any length takes the
+ * same little memory: rows fall into strips of time that keep the least and the
+ * greatest value, so a short spike stays in the picture.  How the sheet looks is
+ * in trace.gp, which anybody may change; it stands in the folder share/edmd
+ * beside the programs, or in the one that EDM_SHARE names.
  *
- *	t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V
- *
- * and may have X_actual ... V_actual behind them.
- *
- * A trace of any length is read in little memory: it is thinned to the
- * smallest and largest value of each strip of time, so that a short spike
- * stays in the picture.
- *
- * Threads: any one thread, not in the cycle; it waits for gnuplot.
+ * Threads: any one thread, not in the cycle; plot_finish() waits for gnuplot.
  */
 #ifndef PLOT_H
 #define PLOT_H
@@ -21,15 +17,31 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#define PLOT_NAXES	8		/* X Y Z A B C U V */
+#define PLOT_NSTATES	16
+
 struct plot_options {
 	const char *program;	/* for messages: "edmsim" */
-	const char *trace;	/* the CSV, a regular file */
 	const char *output;	/* .png or .svg */
-	const char *title;	/* of the sheet; NULL: the trace's name */
+	const char *title;	/* of the sheet */
+	const char *(*state_name)(int state);	/* NULL behind the last */
 	double servo_v;		/* levels drawn over the gap voltage; */
 	double short_v;		/* 0: not drawn */
 	double open_v;
 };
+
+/* One cycle. */
+struct plot_row {
+	double t_s;			/* never falls */
+	double s_mm;			/* place along the path */
+	double feed_mm_s;
+	double gap_v;			/* NAN: not known */
+	double axis_mm[PLOT_NAXES];	/* degrees for A B C */
+	int state;			/* for state_name() */
+	bool cut;			/* this ground is cut, not positioned */
+};
+
+struct plot;
 
 /**
  * plot_check() - can @output be drawn at all?
@@ -41,25 +53,32 @@ struct plot_options {
  */
 int plot_check(const char *program, const char *output);
 
-/**
- * plot_trace() - read the trace and draw it.
- *
- * Return: 0, or a negative errno with the reason on stderr: as plot_check(),
- * -EINVAL also for a line that is no trace, -ENODATA for an empty trace,
- * -EIO if gnuplot failed, or that of the file that could not be opened.
- */
-int plot_trace(const struct plot_options *o);
+/** plot_begin() - @o is lent until plot_finish().  Return: NULL: no memory. */
+struct plot *plot_begin(const struct plot_options *o);
 
-/* A picture by a script of the caller's own. */
-struct plot_script {
+/** plot_add() - the next row. */
+void plot_add(struct plot *p, const struct plot_row *r);
+
+/**
+ * plot_finish() - draw what was added, and free @p; NULL is fine.
+ *
+ * Return: 0, or a negative errno with the reason on stderr: -ENODATA without
+ * any row, otherwise as plot_draw().
+ */
+int plot_finish(struct plot *p);
+
+/* A picture by a script of share/edmd, from data of the caller's own. */
+struct plot_sheet {
 	const char *program;	/* for messages */
 	const char *output;	/* .png or .svg */
-	void (*write)(FILE *f, const void *arg, bool svg);	/* the script,
-				 * which draws to its standard output */
+	const char *script;	/* file name in share/edmd */
+	void (*write)(FILE *f, const void *arg);	/* variables and data
+				 * blocks, as gnuplot reads them */
 	const void *arg;
 };
 
-/** plot_script() - after plot_check(). Return: 0, -EIO or -errno, told. */
-int plot_script(const struct plot_script *s);
+/** plot_draw() - after plot_check().  Return: 0, -EIO, -ENOENT (no script) or
+ *  that of the file, told on stderr. */
+int plot_draw(const struct plot_sheet *s);
 
 #endif /* PLOT_H */

@@ -1,208 +1,281 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* thin.c - the second reading of a trace: strips of time, points of the path */
+/* thin.c - strips of time, points of the path, marks, and a zoom */
 #include "thin.h"
-#include "survey.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* The walk of the second reading. */
-struct walk {
-	double far_mm;			/* farthest place so far */
-	double kept_mm;			/* place of the last point kept */
-	bool cut;
-	bool begun;
-};
+#define ZOOM_JUMPS	3ul
+#define ZOOM_S		3.0		/* of a retract, where nothing jumps */
 
-static void add(struct thin_bin *b, double v)
+/* Called twenty times a row; fmin() and fmax() would be calls of libm. */
+static inline void range_add(struct thin_range *r, double v)
 {
-	if (b->n++ == 0)
-		b->min = b->max = v;
-	b->min = fmin(b->min, v);
-	b->max = fmax(b->max, v);
-	b->sum += v;
+	if (r->n++ == 0)
+		r->min = r->max = v;
+	else if (v < r->min)
+		r->min = v;
+	else if (v > r->max)
+		r->max = v;
+	r->sum += v;
 }
 
-/* Strip of @t_s among @n from @from to @to; the end belongs to the last. */
-static size_t strip(double t_s, double from, double to, size_t n)
+void thin_range_join(struct thin_range *a, const struct thin_range *b)
 {
-	double u = to > from ? (t_s - from) / (to - from) : 0;
-	double i = floor(u * (double)n);
-
-	if (!(i > 0))
-		return 0;
-	return i < (double)n ? (size_t)i : n - 1;
+	if (b->n == 0)
+		return;
+	a->min = a->n ? fmin(a->min, b->min) : b->min;
+	a->max = a->n ? fmax(a->max, b->max) : b->max;
+	a->sum += b->sum;
+	a->n += b->n;
 }
 
-static bool is_cut(enum csv_state s)
+static int state_of(const char *(*name)(int state), const char *wanted)
 {
-	return s == CSV_APPROACH || s == CSV_ERODE;
+	for (int i = 0; i < PLOT_NSTATES && name(i); i++)
+		if (strcmp(name(i), wanted) == 0)
+			return i;
+	return -1;
+}
+
+void thin_init(struct thin *t, const char *(*name)(int state))
+{
+	memset(t, 0, sizeof(*t));
+	t->is = (struct thin_states) {
+		.approach = state_of(name, "approach"),
+		.erode = state_of(name, "erode"),
+		.retract = state_of(name, "retract"),
+		.jump = state_of(name, "jump"),
+	};
+	t->state = -1;
+	t->jumps.every = t->retracts.every = 1;
+	t->try_at = 1;
+}
+
+static void strip_join(struct thin_strip *a, const struct thin_strip *b)
+{
+	thin_range_join(&a->place, &b->place);
+	thin_range_join(&a->gap, &b->gap);
+	thin_range_join(&a->feed, &b->feed);
+	for (int i = 0; i < PLOT_NAXES; i++)
+		thin_range_join(&a->axis[i], &b->axis[i]);
+	a->far_mm = b->far_mm;
+	for (int i = 0; i < PLOT_NSTATES; i++)
+		a->share[i] += b->share[i];
+}
+
+static void strips_join(struct thin *t)
+{
+	for (size_t i = 0; i < THIN_STRIPS / 2; i++) {
+		struct thin_strip s = t->strip[2 * i];
+
+		strip_join(&s, &t->strip[2 * i + 1]);
+		t->strip[i] = s;
+	}
+	memset(&t->strip[THIN_STRIPS / 2], 0, sizeof(t->strip) / 2);
+	t->nstrips = THIN_STRIPS / 2;
+	t->width_s *= 2;
+}
+
+/* The strip of a row.  The first two rows say how wide a strip is. */
+static struct thin_strip *strip_of(struct thin *t, double t_s)
+{
+	const double after_s = t_s - t->time.min;
+	size_t i;
+
+	if (t->width_s == 0 && after_s > 0)
+		t->width_s = 2 * after_s;
+	while (t->width_s > 0 && after_s / t->width_s >= THIN_STRIPS)
+		strips_join(t);
+	i = t->width_s > 0 ? (size_t)(after_s / t->width_s) : 0;
+	/* Strips that were passed over hold what was known before them. */
+	for (; t->nstrips <= i; t->nstrips++)
+		t->strip[t->nstrips].far_mm = t->place.max;
+	return &t->strip[i];
+}
+
+static bool is_power(const struct thin *t, int state)
+{
+	return state == t->is.approach || state == t->is.erode;
 }
 
 /*
  * Voltage and feed are shown of the cut alone: jumps are a hundred times as
- * fast and without power, and would hide what the servo does.  A trace with
- * no cut in it shows everything.
+ * fast and without power, and would hide what the servo does.  A run that cuts
+ * nothing shows everything.
  */
-static void take_strips(struct thin *t, const struct csv_row *r)
+static void begin_cut(struct thin *t, const struct plot_row *r)
 {
-	const struct thin_survey *s = &t->survey;
-	size_t i = strip(r->t_s, s->t_min, s->t_max, t->nbins);
-
-	add(&t->place[i], r->s_mm);
-	if (!isnan(r->gap_v) && (!s->cuts || r->state == CSV_ERODE ||
-				 r->state == CSV_RETRACT))
-		add(&t->gap[i], r->gap_v);
-	if (!s->cuts || r->state == CSV_ERODE)
-		add(&t->feed[i], r->feed_mm_s);
-	t->share[strip(r->t_s, s->t_min, s->t_max, THIN_COLUMNS)][r->state]++;
+	t->cuts = true;
+	t->cut_min = r->s_mm;
+	for (size_t i = 0; i < t->nstrips; i++)
+		t->strip[i].gap = t->strip[i].feed = (struct thin_range) { 0 };
 }
 
-static void keep(struct thin *t, struct walk *w, const struct csv_row *r)
+static void take_strip(struct thin *t, const struct plot_row *r)
 {
-	struct thin_point *p = &t->path[t->npath];
+	struct thin_strip *s = strip_of(t, r->t_s);
+	const bool erodes = r->state == t->is.erode;
 
-	if (t->npath == sizeof(t->path) / sizeof(t->path[0]))
+	range_add(&s->place, r->s_mm);
+	if (!isnan(r->gap_v) &&
+	    (!t->cuts || erodes || r->state == t->is.retract))
+		range_add(&s->gap, r->gap_v);
+	if (!t->cuts || erodes)
+		range_add(&s->feed, r->feed_mm_s);
+	for (int i = 0; i < PLOT_NAXES; i++)
+		range_add(&s->axis[i], r->axis_mm[i]);
+	s->far_mm = r->s_mm > t->place.max ? r->s_mm : t->place.max;
+	s->share[r->state]++;
+}
+
+static void take_event(struct thin_events *e, const struct plot_row *r)
+{
+	if (e->seen++ % e->every)
 		return;
-	memcpy(p->axis_mm, r->axis_mm, sizeof(p->axis_mm));
-	p->cut = w->cut;
-	t->npath++;
-	w->kept_mm = r->s_mm;
-	w->begun = true;
+	if (e->n == THIN_EVENTS) {
+		for (size_t i = 0; i < THIN_EVENTS / 2; i++)
+			e->at[i] = e->at[2 * i];
+		e->n = THIN_EVENTS / 2;
+		e->every *= 2;
+	}
+	e->at[e->n] = (struct thin_event) { r->t_s, r->s_mm, { 0 } };
+	memcpy(e->at[e->n++].axis_mm, r->axis_mm, sizeof(r->axis_mm));
+}
+
+static void path_halve(struct thin *t)
+{
+	for (size_t i = 0; i < THIN_PATH / 2; i++)
+		t->path[i] = t->path[2 * i];
+	t->npath = THIN_PATH / 2;
+	t->least_mm = t->least_mm > 0 ? 2 * t->least_mm :
+		      (t->place.max - t->place.min) / THIN_PATH;
 }
 
 /*
  * The path is drawn where new ground is gained, so each place of it is drawn
  * once however often jumps and retracts pass.
  */
-static void take_path(struct thin *t, struct walk *w, const struct csv_row *r)
+static void take_path(struct thin *t, const struct plot_row *r)
 {
-	const struct thin_survey *s = &t->survey;
-	double least_mm = (s->s_max - s->s_min) / THIN_PATH;
-	bool fresh = r->s_mm > w->far_mm;
-	bool cut = is_cut(r->state);
+	struct thin_point *p;
 
-	if (fresh)
-		w->far_mm = r->s_mm;
-	if (!w->begun || (fresh && r->s_mm - w->kept_mm >= least_mm)) {
-		w->cut = cut;
-		keep(t, w, r);
-	}
+	if (t->npath && (r->s_mm <= t->place.max ||
+			 r->s_mm - t->kept_mm < t->least_mm))
+		return;
+	if (t->npath == THIN_PATH)
+		path_halve(t);
+	p = &t->path[t->npath++];
+	memcpy(p->axis_mm, r->axis_mm, sizeof(p->axis_mm));
+	p->cut = r->cut;
+	t->kept_mm = r->s_mm;
 }
 
-static void take_zoom(struct thin *t, const struct csv_row *r)
+static void zoom_begin(struct thin *t, const struct plot_row *r, bool jump)
 {
-	const struct thin_survey *s = &t->survey;
+	t->trying = (struct thin_zoom) { .from_s = r->t_s, .jumps = jump };
+	t->trying.retract = !jump;
+	t->trying.n = 1;
+	t->try_at = t->jumps.seen + 1 + t->jumps.seen / 2;
+}
+
+/* The later one is more of the job; one with a retract shows more. */
+static void zoom_end(struct thin *t)
+{
+	t->trying.whole = true;
+	if (t->zoom.n == 0 || t->trying.retract >= t->zoom.retract)
+		t->zoom = t->trying;
+	t->trying.n = 0;
+}
+
+static void zoom_halve(struct thin_zoom *z)
+{
+	for (size_t i = 0; i < THIN_ZOOM / 2; i++) {
+		struct thin_detail d = z->at[2 * i];
+
+		thin_range_join(&d.place, &z->at[2 * i + 1].place);
+		if (z->at[2 * i + 1].place.n)
+			d.state = z->at[2 * i + 1].state;
+		z->at[i] = d;
+	}
+	memset(&z->at[THIN_ZOOM / 2], 0, sizeof(z->at) / 2);
+	z->n = THIN_ZOOM / 2;
+	z->width_s *= 2;
+}
+
+static void zoom_add(struct thin_zoom *z, const struct plot_row *r)
+{
+	const double after_s = r->t_s - z->from_s;
 	size_t i;
 
-	if (r->t_s < s->zoom_from_s || r->t_s > s->zoom_to_s || !t->nzoom)
-		return;
-	i = strip(r->t_s, s->zoom_from_s, s->zoom_to_s, t->nzoom);
-	add(&t->zoom[i].place, r->s_mm);
-	t->zoom[i].state = r->state;
+	if (z->width_s == 0 && after_s > 0)
+		z->width_s = 2 * after_s;
+	while (z->width_s > 0 && after_s / z->width_s >= THIN_ZOOM)
+		zoom_halve(z);
+	i = z->width_s > 0 ? (size_t)(after_s / z->width_s) : 0;
+	range_add(&z->at[i].place, r->s_mm);
+	z->at[i].state = r->state;
+	z->n = i + 1 > z->n ? i + 1 : z->n;
 }
 
-/* As many strips as there are rows for, so that none stays empty by chance. */
-static size_t strips_for(const struct thin_survey *s, double span_s, size_t max)
+static void take_zoom(struct thin *t, const struct plot_row *r, bool jump,
+		      bool retract)
 {
-	double all_s = s->t_max - s->t_min;
-	double rows = all_s > 0 ? (double)s->rows * span_s / all_s : 1;
+	struct thin_zoom *z = &t->trying;
 
-	if (rows / 2 > (double)max)
-		return max;
-	return rows > 2 ? (size_t)(rows / 2) : 1;
+	if (z->n && ((jump && z->jumps == ZOOM_JUMPS) ||
+		     (z->jumps == 0 && r->t_s - z->from_s > ZOOM_S)))
+		zoom_end(t);
+	else if (z->n && jump && z->jumps)
+		z->jumps++;
+	if (z->n)
+		z->retract |= retract;
+	else if ((jump && t->jumps.seen >= t->try_at) ||
+		 (retract && t->jumps.seen == 0 && t->zoom.n == 0))
+		zoom_begin(t, r, jump);
+	if (z->n)
+		zoom_add(z, r);
 }
 
-static int fill(struct thin *t, struct csv *c)
+void thin_end(struct thin *t)
 {
-	struct walk w = { .far_mm = -INFINITY };
-	struct csv_row r;
-	size_t done = 0;
-	int err;
+	if (t->zoom.n == 0 && t->trying.n > 0)
+		t->zoom = t->trying;
+}
 
-	while ((err = csv_next(c, &r)) > 0) {
-		size_t i = strip(r.t_s, t->survey.t_min, t->survey.t_max,
-				 t->nbins);
+/* Before the row: t->place, t->time and t->state are those of the rows so far. */
+static void take(struct thin *t, const struct plot_row *r)
+{
+	const bool jump = r->state == t->is.jump && r->state != t->state;
+	const bool retract = r->state == t->is.retract && r->state != t->state;
 
-		take_strips(t, &r);
-		take_path(t, &w, &r);
-		take_zoom(t, &r);
-		/* Strips passed over hold what was known before them. */
-		for (; done < i; done++)
-			t->far_mm[done + 1] = t->far_mm[done];
-		t->far_mm[i] = w.far_mm;
+	if (jump)
+		take_event(&t->jumps, r);
+	if (retract)
+		take_event(&t->retracts, r);
+	if (is_power(t, r->state)) {
+		if (!t->cuts)
+			begin_cut(t, r);
+		t->cut_min = r->s_mm < t->cut_min ? r->s_mm : t->cut_min;
 	}
-	return err;
+	take_strip(t, r);
+	take_path(t, r);
+	take_zoom(t, r, jump, retract);
 }
 
-static int thin_read(struct thin *t, struct csv *c)
+void thin_add(struct thin *t, const struct plot_row *r)
 {
-	struct thin_survey *s = &t->survey;
-	int err = survey_read(s, c);
-
-	if (err < 0)
-		return err;
-	t->nbins = strips_for(s, s->t_max - s->t_min, THIN_BINS);
-	if (s->zoom_to_s > s->zoom_from_s)
-		t->nzoom = strips_for(s, s->zoom_to_s - s->zoom_from_s,
-				      THIN_ZOOM);
-	csv_rewind(c);
-	return fill(t, c);
-}
-
-int thin_create(struct thin **ret, struct csv *c)
-{
-	struct thin *t = calloc(1, sizeof(*t));
-	int err = t ? thin_read(t, c) : -ENOMEM;
-
-	if (err == 0) {
-		*ret = t;
-		return 0;
-	}
-	thin_destroy(t);
-	if (err != -EINVAL)
-		fprintf(stderr, "%s: error: %s: %s\n", c->program, c->path,
-			err == -ENODATA ?
-			"no row behind the heading; some are wanted" :
-			strerror(-err));
-	return err;
-}
-
-static int by_value(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
-/* All but one mean in a hundred on either side, and as much again. */
-void thin_span_of(struct thin_span *ret, const struct thin_bin *bin, size_t n)
-{
-	double mean[THIN_BINS];
-	size_t m = 0;
-
-	*ret = (struct thin_span) { 0 };
-	for (size_t i = 0; i < n; i++) {
-		if (bin[i].n == 0)
-			continue;
-		ret->min = m ? fmin(ret->min, bin[i].min) : bin[i].min;
-		ret->max = m ? fmax(ret->max, bin[i].max) : bin[i].max;
-		mean[m++] = bin[i].sum / (double)bin[i].n;
-	}
-	if (m == 0)
+	if (r->state < 0 || r->state >= PLOT_NSTATES)
 		return;
-	qsort(mean, m, sizeof(mean[0]), by_value);
-	ret->low = fmax(ret->min, fmin(0, 2 * mean[m / 100]));
-	ret->high = fmin(ret->max, fmax(0, 2 * mean[m - 1 - m / 100]));
-}
-
-void thin_destroy(struct thin *t)
-{
-	if (!t)
-		return;
-	free(t->survey.jumps.at);
-	free(t->survey.retracts.at);
-	free(t);
+	if (t->rows++ == 0) {
+		range_add(&t->time, r->t_s);
+		range_add(&t->place, r->s_mm);
+	}
+	take(t, r);
+	range_add(&t->time, r->t_s);
+	range_add(&t->place, r->s_mm);
+	for (int i = 0; i < PLOT_NAXES; i++)
+		range_add(&t->axis[i], r->axis_mm[i]);
+	t->in_state[r->state]++;
+	t->state = r->state;
 }

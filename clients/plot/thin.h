@@ -1,88 +1,102 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * thin.h - a trace of any length, thinned to what a sheet can show
+ * thin.h - a run of any length, thinned to what a sheet can show, in one pass
  *
- * Two readings: the survey finds how long, how far and where the events are;
- * the thinning then fills strips of time.  Each strip keeps the smallest and
- * the largest value, so nothing short disappears.
+ * Rows fall into strips of time.  When the strips are used up, two and two
+ * become one, which is then twice as wide; so no length has to be known before.
  */
 #ifndef PLOT_THIN_H
 #define PLOT_THIN_H
 
-#include "csv.h"
+#include "plot.h"
 
-#define THIN_BINS	1200		/* strips of time; three points each */
-#define THIN_COLUMNS	240		/* of the states' shares */
-#define THIN_PATH	4000		/* points of the path */
-#define THIN_ZOOM	1300		/* strips of the zoom */
+#include <stddef.h>
+
+#define THIN_STRIPS	2400		/* before two and two are joined */
+#define THIN_ZOOM	2600
+#define THIN_PATH	8000		/* points */
+#define THIN_EVENTS	2048
+
+/* Least, greatest and sum of what fell into a strip. */
+struct thin_range {
+	double min, max, sum;
+	unsigned long n;		/* 0: nothing did */
+};
+
+struct thin_strip {
+	struct thin_range place, gap, feed;
+	struct thin_range axis[PLOT_NAXES];
+	double far_mm;			/* farthest place so far */
+	unsigned long share[PLOT_NSTATES];	/* rows */
+};
+
+/* A few jumps, or a retract, in more detail. */
+struct thin_detail {
+	struct thin_range place;
+	int state;			/* the last one in it */
+};
+
+struct thin_zoom {
+	struct thin_detail at[THIN_ZOOM];
+	size_t n;
+	double from_s, width_s;
+	unsigned long jumps;		/* that begin in it */
+	bool retract;			/* one is in it */
+	bool whole;			/* it holds all it should */
+};
 
 /* A place on the path where something began. */
 struct thin_event {
 	double t_s, s_mm;
-	double axis_mm[CSV_NAXES];
+	double axis_mm[PLOT_NAXES];
 };
 
 struct thin_events {
-	struct thin_event *at;
-	size_t n, cap;
-};
-
-struct thin_survey {
-	unsigned long rows;
-	double t_min, t_max, s_min, s_max;	/* s, mm */
-	double axis_min[CSV_NAXES], axis_max[CSV_NAXES];
-	struct thin_events jumps, retracts;
-	unsigned long in_state[CSV_NSTATES];	/* rows */
-	bool gap;			/* some row has a gap voltage */
-	bool cuts;			/* some row is cut, not positioned */
-	double cut_min;			/* smallest place, mm, of those */
-	double zoom_from_s, zoom_to_s;	/* equal: nothing to zoom at */
-};
-
-struct thin_bin {
-	double min, max, sum;
-	unsigned long n;
+	struct thin_event at[THIN_EVENTS];
+	size_t n;
+	unsigned long seen, every;	/* only each so many is kept */
 };
 
 struct thin_point {
-	double axis_mm[CSV_NAXES];
-	bool cut;			/* eroded on the way here */
+	double axis_mm[PLOT_NAXES];
+	bool cut;
 };
 
-struct thin_zoom {
-	struct thin_bin place;
-	enum csv_state state;
+/* What the states' names mean for a picture; -1: there is none such. */
+struct thin_states {
+	int approach, erode, retract, jump;
 };
 
 struct thin {
-	struct thin_survey survey;
-	size_t nbins;
-	struct thin_bin place[THIN_BINS], gap[THIN_BINS], feed[THIN_BINS];
-	double far_mm[THIN_BINS];	/* farthest place so far */
-	unsigned long share[THIN_COLUMNS][CSV_NSTATES];
-	struct thin_point path[2 * THIN_PATH];
+	struct thin_states is;
+	unsigned long rows;
+	struct thin_range time, place, axis[PLOT_NAXES];
+	unsigned long in_state[PLOT_NSTATES];
+	int state;			/* of the row before */
+	bool cuts;			/* some row was under power */
+	double cut_min;			/* the least place of those */
+	struct thin_strip strip[THIN_STRIPS];
+	size_t nstrips;
+	double width_s;			/* 0: not known yet */
+	struct thin_events jumps, retracts;
+	struct thin_point path[THIN_PATH];
 	size_t npath;
-	size_t nzoom;
-	struct thin_zoom zoom[THIN_ZOOM];
+	double least_mm, kept_mm;	/* between two points; the last one */
+	struct thin_zoom zoom, trying;	/* the best; the one being filled */
+	unsigned long try_at;		/* the next begins at this jump */
 };
 
-/* What a panel shows of a row of strips, and what there is. */
-struct thin_span {
-	double low, high;		/* to show: twice what means reach */
-	double min, max;		/* of all strips */
-};
+/** thin_init() - @name is a state's name; NULL behind the last. */
+void thin_init(struct thin *t, const char *(*name)(int state));
 
-/** thin_span_of() - a rare spike shall not flatten all the rest. */
-void thin_span_of(struct thin_span *ret, const struct thin_bin *bin, size_t n);
+/** thin_add() - Threads: one. */
+void thin_add(struct thin *t, const struct plot_row *r);
 
-/**
- * thin_create() - read @c twice.
- *
- * Return: 0, -ENODATA, -ENOMEM, -EINVAL; told on stderr.
- */
-int thin_create(struct thin **ret, struct csv *c);
+/** thin_end() - no more rows: keep the zoom that is not whole, if it is all
+ *  there is. */
+void thin_end(struct thin *t);
 
-/** thin_destroy() - NULL is fine. */
-void thin_destroy(struct thin *t);
+/** thin_range_join() - @b into @a. */
+void thin_range_join(struct thin_range *a, const struct thin_range *b);
 
 #endif /* PLOT_THIN_H */

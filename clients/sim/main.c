@@ -367,25 +367,7 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	return 0;
 }
 
-static int draw(const struct sim_run *r)
-{
-	const struct plot_options p = {
-		.program = "edmsim",
-		.trace = r->o->trace ? r->o->trace : r->trace_path,
-		.output = r->o->plot,
-		.title = r->o->job,
-		.servo_v = r->config->gap.servo_v,
-		.short_v = r->config->gap.short_v,
-		.open_v = r->config->gap.open_v,
-	};
-	const int e = plot_trace(&p) < 0 ? EX_CANTCREAT : 0;
-
-	if (r->trace_path)
-		unlink(r->trace_path);
-	return e;
-}
-
-static int finish(const struct sim_run *r)
+static int finish(struct sim_run *r)
 {
 	const bool to_stdout = r->o->report && strcmp(r->o->report, "-") == 0;
 	int e = 0;
@@ -395,7 +377,7 @@ static int finish(const struct sim_run *r)
 	if (r->o->report)
 		e = report_write(r, r->o->report);
 	if (e == 0 && r->o->plot)
-		e = draw(r);
+		e = plot_finish(r->plot) < 0 ? EX_CANTCREAT : 0;
 	return e ? e : strcmp(r->result.outcome, "done") != 0;
 }
 

@@ -2,9 +2,11 @@
 /*
  * record.c - the files of lattice points and of cycles
  */
+#include "plot.h"
 #include "sim.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
@@ -52,27 +54,37 @@ static void put_point(FILE *f, const struct cycle *c)
 	fwrite(row, 1, (size_t)(p - row), f);
 }
 
+static const char *state_name(int state)
+{
+	return state < CYCLE_NSTATES ? state_duty[state].name : NULL;
+}
+
+static struct plot *begin_plot(const struct sim_run *r)
+{
+	const struct cycle_gap_config *g = &r->cycle.config.gap;
+
+	return plot_begin(&(struct plot_options) {
+		.program = "edmsim", .output = r->o->plot, .title = r->o->job,
+		.state_name = state_name, .servo_v = g->servo_v,
+		.short_v = g->short_v, .open_v = g->open_v,
+	});
+}
+
 int record_open(struct sim_run *r)
 {
 	const struct sim_options *o = r->o;
-	static char temporary[] = "/tmp/edmsim-XXXXXX";
 	int e = 0;
 
 	if (o->pulses)
 		e = open_out(&r->pulses, o->pulses);
 	if (e)
 		return e;
-	if (o->trace) {
+	if (o->trace)
 		e = open_out(&r->trace, o->trace);
-	} else if (o->plot) {
-		const int fd = mkstemp(temporary);
-
-		r->trace = fd < 0 ? NULL : fdopen(fd, "w");
-		r->trace_path = temporary;
-		e = r->trace ? 0 : EX_CANTCREAT;
-	}
 	if (e)
 		return e;
+	if (o->plot && !(r->plot = begin_plot(r)))
+		return EX_OSERR;
 	if (r->pulses) {
 		fprintf(r->pulses, "cycle,line,X,Y,Z,A,B,C,U,V\n");
 		put_point(r->pulses, &r->cycle);
@@ -105,6 +117,11 @@ void record_point(void *arg, const struct cycle *c)
 		put_point(r->pulses, c);
 }
 
+static double time_s(const struct cycle *c)
+{
+	return (double)c->totals.cycles * (double)c->config.period_ns * 1e-9;
+}
+
 /* What the simulated gap was; nothing where there is none. */
 static void put_gap(const struct sim_run *r)
 {
@@ -124,16 +141,37 @@ static void put_gap(const struct sim_run *r)
 	fprintf(r->trace, ",%.4f", g.debris);
 }
 
-void record_cycle(struct sim_run *r)
+/* What a dry run walks at a feed would be cut. */
+static bool cuts(const struct cycle *c)
+{
+	return c->state == STATE_APPROACH || c->state == STATE_ERODE ||
+	       (c->config.dry_run && c->state == STATE_TRAVEL &&
+		!(c->cursor.seg.flags & INTERP_SEG_RAPID));
+}
+
+static void plot_cycle(const struct sim_run *r)
+{
+	const struct cycle *c = &r->cycle;
+	const double *pulse = c->cursor.p.head->pulse_mm;
+	struct plot_row row = {
+		.t_s = time_s(c), .s_mm = cycle_place_mm(c),
+		.feed_mm_s = c->feed_mm_s,
+		.gap_v = c->config.dry_run ? NAN : c->gap_v,
+		.state = (int)c->state, .cut = cuts(c),
+	};
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		row.axis_mm[i] = cycle_axis(c, i) * pulse[i];
+	plot_add(r->plot, &row);
+}
+
+static void trace_cycle(const struct sim_run *r)
 {
 	const struct cycle *c = &r->cycle;
 	const double *pulse = c->cursor.p.head->pulse_mm;
 
-	if (!r->trace)
-		return;
 	fprintf(r->trace, "%.6f,%u,%.6f,%.6f,%.2f,%s",
-		(double)c->totals.cycles * (double)c->config.period_ns * 1e-9,
-		c->cursor.seg.line, cycle_place_mm(c),
+		time_s(c), c->cursor.seg.line, cycle_place_mm(c),
 		c->feed_mm_s, c->gap_v, state_duty[c->state].name);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		fprintf(r->trace, ",%.10g", cycle_axis(c, i) * pulse[i]);
@@ -141,6 +179,14 @@ void record_cycle(struct sim_run *r)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		fprintf(r->trace, ",%.10g", c->given.target[i] * pulse[i]);
 	fputc('\n', r->trace);
+}
+
+void record_cycle(struct sim_run *r)
+{
+	if (r->trace)
+		trace_cycle(r);
+	if (r->plot)
+		plot_cycle(r);
 }
 
 static int close_out(FILE *f, const char *path)

@@ -70,7 +70,7 @@ struct sim_run {
 	struct sim_result result;
 	struct sim_spent *spent;	/* by index of the condition */
 	FILE *pulses, *trace;
-	char *trace_path;		/* a temporary one, if only for a plot */
+	struct plot *plot;		/* NULL: no picture is wanted */
 	bool deviation;			/* worth its time: a report is wanted */
 	void (*on_cycle)(struct sim_run *r);	/* NULL: nobody looks */
 	void *on_cycle_arg;

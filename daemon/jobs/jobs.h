@@ -14,6 +14,7 @@
 #include "queue.h"
 #include "reply.h"
 #include "store.h"
+#include "trust.h"
 #include "twin.h"
 #include "upload.h"
 #include "lcm.h"
@@ -23,6 +24,7 @@
 struct jobs {
 	const struct machine_config *config;
 	const char *machine;
+	struct udpm_url url;
 	sd_event *event;
 	struct jobs_lcm *lcm;
 	struct store *store;
@@ -32,6 +34,9 @@ struct jobs {
 	struct replies replies;
 	struct queue queue;
 	struct eta eta;
+	struct trust trust;
+	struct keyfile host_key;
+	bool key_shared;		/* a copy of it is in /dev/shm */
 	struct compiler *check[UPLOAD_SLOTS];	/* of uploads.slot[i] */
 	int64_t status_us;		/* when the last was sent, monotonic */
 	uint64_t status_key;		/* what a change of is sent at once */

@@ -4,28 +4,49 @@
  */
 #include "lcm.h"
 
+#include "jobs_log.h"
+#include "udpm.h"
+
 #include "edm_ack_t.h"
 #include "edm_command_t.h"
 #include "edm_event_t.h"
 #include "edm_job_chunk_t.h"
 #include "edm_status_t.h"
 
+#include <arpa/inet.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sysexits.h>
 #include <time.h>
 
 #define CHANNEL_MAX	64
-#define QUEUE_MESSAGES	256		/* LCM's default, 30, is one window */
 
 struct jobs_lcm {
-	lcm_t *lcm;
+	lcm_t *lcm;			/* to send by; it hears nothing */
+	struct udpm *in;
 	char machine[32];
+	char command[CHANNEL_MAX], job[CHANNEL_MAX];
 	struct jobs_lcm_handlers handlers;
-	uint64_t refused;
+	struct trust *trust;
+	uint64_t strange;		/* packets told of */
+};
+
+/* What stands in front of every message: whose it is. */
+struct origin {
+	enum trust_cause cause;
+	const struct trust_packet *packet;
 };
 
 static int64_t now_us(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
+}
+
+static int64_t utime(void)
 {
 	struct timespec t;
 
@@ -84,11 +105,11 @@ static bool shape_step(char what, const uint8_t **at, size_t *left,
 }
 
 /* @ret_count: what the last i or s said. */
-static bool shape_fits(const lcm_recv_buf_t *buf, const char *shape,
+static bool shape_fits(const struct seal *m, const char *shape,
 		       uint32_t *ret_count)
 {
-	const uint8_t *at = buf->data;
-	size_t left = buf->data_size;
+	const uint8_t *at = m->data;
+	size_t left = m->size;
 
 	for (; *shape; shape++)
 		if (!shape_step(*shape, &at, &left, ret_count))
@@ -100,46 +121,96 @@ static bool shape_fits(const lcm_recv_buf_t *buf, const char *shape,
 #define SHAPE_COMMAND	"qqsqssqs"
 #define SHAPE_CHUNK	"qqsqssqHiiqbia"
 
-static void on_command(const lcm_recv_buf_t *buf, const char *channel,
-		       void *arg)
+/* Why a packet of a key is not taken, to who sent it. */
+static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
+			 enum trust_cause cause)
 {
-	struct jobs_lcm *w = arg;
-	edm_command_t m;
+	const bool again = cause == TRUST_BOOT || cause == TRUST_TIME;
+	char reason[192];
+
+	snprintf(reason, sizeof(reason), "%s%s", trust_cause_text(cause),
+		 again ? "; sign it again, with boot and count of this answer" :
+		 cause == TRUST_KEY ? "; edmctl keys add makes one" :
+		 "; try again in 30 s");
+	jobs_lcm_ack(w, &(struct jobs_lcm_ack) {
+		.key = to->key, .client = to->client, .seq = to->seq,
+		.reason = reason,
+		.code = again ? JOBS_LCM_AGAIN : cause == TRUST_KEY ? EX_NOPERM :
+			EX_TEMPFAIL,
+	});
+}
+
+/* Is it from a key, for now, and not heard before?  Else it is told. */
+static bool is_taken(struct jobs_lcm *w, const struct origin *o,
+		     const char *client, int64_t seq)
+{
+	struct jobs_lcm_ack to = {
+		.key = o->packet->seal.key, .client = client, .seq = seq,
+		.code = EX_PROTOCOL,
+		.reason = "client name of no or too many bytes; 1 to 63",
+	};
+	const int64_t now = now_us();
+	enum trust_cause cause = o->cause;
+	const size_t n = strlen(client);
+	char who[KEYFILE_NAME_MAX];
+
+	if (cause == TRUST_FINE && (n == 0 || n >= TRUST_CLIENT_MAX)) {
+		jobs_lcm_ack(w, &to);
+		return false;
+	}
+	if (cause == TRUST_FINE)
+		cause = trust_fresh(w->trust, o->packet, client, now);
+	if (cause == TRUST_FINE)
+		return true;
+	trust_who(o->packet, who);
+	/* Who asks for the first time cannot know the boot number. */
+	if (cause != TRUST_BOOT || o->packet->seal.boot != 0)
+		trust_refuse(w->trust, cause, who, o->packet->from, now);
+	if (cause != TRUST_REPLAY)
+		tell_refused(w, &to, cause);
+	return false;
+}
+
+/* Return: false if it has not the shape of the type. */
+static bool on_command(struct jobs_lcm *w, const struct origin *o)
+{
+	const struct seal *s = &o->packet->seal;
 	struct jobs_lcm_command c;
 	uint32_t count = 0;
+	edm_command_t m;
 
-	(void)channel;
-	if (!shape_fits(buf, SHAPE_COMMAND, &count) ||
-	    edm_command_t_decode(buf->data, 0, (int)buf->data_size, &m) < 0) {
-		w->refused++;
-		return;
-	}
+	if (!shape_fits(s, SHAPE_COMMAND, &count) ||
+	    edm_command_t_decode(s->data, 0, (int)s->size, &m) < 0)
+		return false;
 	c = (struct jobs_lcm_command) {
-		.client = m.client, .seq = m.seq, .verb = m.verb,
+		.key = s->key, .client = m.client, .seq = m.seq, .verb = m.verb,
 		.job = m.job, .text = m.text, .arg = m.arg,
+		.by = o->packet->key, .from = o->packet->from,
 	};
-	w->handlers.command(w->handlers.arg, &c);
+	if (is_taken(w, o, m.client, m.seq))
+		w->handlers.command(w->handlers.arg, &c);
 	edm_command_t_decode_cleanup(&m);
+	return true;
 }
 
 /*
  * The generated decoder copies no bytes to NULL, which C does not allow: a
  * chunk without data, as of an empty file, is decoded as one with a byte.
  */
-static int chunk_decode(const lcm_recv_buf_t *buf, uint32_t size,
+static int chunk_decode(const struct seal *s, uint32_t size,
 			edm_job_chunk_t *ret)
 {
-	uint32_t n = buf->data_size;
+	const size_t n = s->size;
 	uint8_t *padded;
 	int got;
 
 	if (size > 0)
-		return edm_job_chunk_t_decode(buf->data, 0, (int)n, ret);
+		return edm_job_chunk_t_decode(s->data, 0, (int)n, ret);
 	padded = calloc(n + 1, 1);
 	if (!padded)
 		return -1;
 	/* size is what the packet ends with, big-endian. */
-	memcpy(padded, buf->data, n);
+	memcpy(padded, s->data, n);
 	padded[n - 1] = 1;
 	got = edm_job_chunk_t_decode(padded, 0, (int)n + 1, ret);
 	free(padded);
@@ -148,43 +219,50 @@ static int chunk_decode(const lcm_recv_buf_t *buf, uint32_t size,
 	return got;
 }
 
-static void on_chunk(const lcm_recv_buf_t *buf, const char *channel, void *arg)
+static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 {
-	struct jobs_lcm *w = arg;
-	edm_job_chunk_t m;
+	const struct seal *s = &o->packet->seal;
 	struct jobs_lcm_chunk c;
 	uint32_t size = 0;
+	edm_job_chunk_t m;
 
-	(void)channel;
-	if (!shape_fits(buf, SHAPE_CHUNK, &size) ||
-	    chunk_decode(buf, size, &m) < 0) {
-		w->refused++;
-		return;
-	}
+	if (!shape_fits(s, SHAPE_CHUNK, &size) || chunk_decode(s, size, &m) < 0)
+		return false;
 	c = (struct jobs_lcm_chunk) {
-		.client = m.client, .seq = m.seq, .job = m.job, .name = m.name,
+		.key = s->key, .client = m.client, .seq = m.seq, .job = m.job, .name = m.name,
 		.bytes = m.bytes, .sha256 = m.sha256, .chunk = m.chunk,
 		.chunks = m.chunks, .offset = m.offset, .hold = m.hold != 0,
 		.size = (uint32_t)m.size, .data = m.data,
+		.by = o->packet->key, .from = o->packet->from,
 	};
-	w->handlers.chunk(w->handlers.arg, &c);
+	if (is_taken(w, o, m.client, m.seq))
+		w->handlers.chunk(w->handlers.arg, &c);
 	edm_job_chunk_t_decode_cleanup(&m);
+	return true;
 }
 
-const char *jobs_lcm_url_check(const char *url)
+static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u)
 {
-	const char *at = url;
+	const bool command = strcmp(u->channel, w->command) == 0;
+	const int64_t now = now_us();
+	struct trust_packet packet = { .channel = u->channel, .from = u->from };
+	struct origin o = { .packet = &packet };
+	char who[KEYFILE_NAME_MAX] = "no key";
+	bool answer;
 
-	if (strncmp(url, "memq://", 7) == 0)
-		return NULL;
-	if (strncmp(url, "udpm://", 7) != 0)
-		return "not a udpm:// URL";
-	while ((at = strstr(at, "ttl")) != NULL) {
-		at += 3;
-		if (at[0] != '=' || at[1] != '0' || !strchr("&,", at[2]))
-			return "its ttl is not 0";
+	/* Of another machine, or what services send. */
+	if (!command && strcmp(u->channel, w->job) != 0)
+		return;
+	o.cause = trust_look(w->trust, &packet, u->data, u->size, now,
+			     &answer);
+	if (o.cause == TRUST_FINE || answer) {
+		if (command ? on_command(w, &o) : on_chunk(w, &o))
+			return;
+		o.cause = TRUST_SHAPE;
 	}
-	return NULL;
+	if (packet.seal.key)
+		trust_who(&packet, who);
+	trust_refuse(w->trust, o.cause, who, u->from, now);
 }
 
 static void channel_name(const struct jobs_lcm *w, const char *name,
@@ -193,35 +271,28 @@ static void channel_name(const struct jobs_lcm *w, const char *name,
 	snprintf(ret, CHANNEL_MAX, "EDM.%s.%s", w->machine, name);
 }
 
-/* A channel to subscribe to is a pattern to LCM: the dots are meant. */
-static int subscribe(struct jobs_lcm *w, const char *name,
-		     lcm_msg_handler_t handler)
-{
-	char pattern[CHANNEL_MAX + 4];
-	lcm_subscription_t *s;
-
-	snprintf(pattern, sizeof(pattern), "EDM\\.%s\\.%s", w->machine, name);
-	s = lcm_subscribe(w->lcm, pattern, handler, w);
-	if (!s)
-		return -ENETUNREACH;
-	lcm_subscription_set_queue_capacity(s, QUEUE_MESSAGES);
-	return 0;
-}
-
-int jobs_lcm_open(struct jobs_lcm **ret, const char *url, const char *machine,
-		  const struct jobs_lcm_handlers *h)
+int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
+	      const char *machine, const struct jobs_lcm_handlers *h)
 {
 	struct jobs_lcm *w = calloc(1, sizeof(*w));
+	char address[INET_ADDRSTRLEN], text[64];
+	int err;
 
 	if (!w)
 		return -ENOMEM;
 	snprintf(w->machine, sizeof(w->machine), "%s", machine);
 	w->handlers = *h;
-	w->lcm = lcm_create(url);
-	if (!w->lcm || subscribe(w, "COMMAND", on_command) < 0 ||
-	    subscribe(w, "JOB", on_chunk) < 0) {
+	w->trust = h->trust;
+	channel_name(w, "COMMAND", w->command);
+	channel_name(w, "JOB", w->job);
+	inet_ntop(AF_INET, &url->group.sin_addr, address, sizeof(address));
+	snprintf(text, sizeof(text), "udpm://%s:%u?ttl=%u", address,
+		 ntohs(url->group.sin_port), url->ttl);
+	w->lcm = lcm_create(text);
+	err = w->lcm ? udpm_open(&w->in, url) : -ENETUNREACH;
+	if (err < 0) {
 		jobs_lcm_close(w);
-		return -ENETUNREACH;
+		return err;
 	}
 	*ret = w;
 	return 0;
@@ -233,24 +304,66 @@ void jobs_lcm_close(struct jobs_lcm *w)
 		return;
 	if (w->lcm)
 		lcm_destroy(w->lcm);
+	udpm_close(w->in);
 	free(w);
 }
 
 int jobs_lcm_fd(const struct jobs_lcm *w)
 {
-	return lcm_get_fileno(w->lcm);
+	return udpm_fd(w->in);
 }
 
-int jobs_lcm_handle(struct jobs_lcm *w)
+void jobs_lcm_handle(struct jobs_lcm *w)
 {
-	return lcm_handle(w->lcm) < 0 ? -EIO : 0;
+	struct udpm_packet packet;
+	const char *from;
+	uint64_t strange;
+
+	if (udpm_take(w->in, &packet))
+		on_packet(w, &packet);
+	strange = udpm_strange(w->in, &from);
+	for (; w->strange < strange; w->strange++)
+		trust_refuse(w->trust, TRUST_STRANGE, "nobody", from,
+			     now_us());
 }
+
+/* Sign what LCM has laid out in @bytes, and send it. */
+static void publish(struct jobs_lcm *w, const char *name, const void *data,
+		    int bytes)
+{
+	char channel[CHANNEL_MAX];
+	const struct seal s = {
+		.key = w->trust->machine.public, .boot = w->trust->boot,
+		.count = trust_count(w->trust, now_us()), .data = data,
+		.size = bytes < 0 ? 0 : (size_t)bytes,
+	};
+	uint8_t *packet = bytes < 0 ? NULL : malloc(SEAL_BYTES + s.size);
+	size_t n = 0;
+
+	channel_name(w, name, channel);
+	if (packet)
+		n = seal_make(packet, &s, channel, w->trust->machine.secret);
+	if (n)
+		lcm_publish(w->lcm, channel, packet, (unsigned int)n);
+	else
+		log_error("lcm: out of memory; a message is lost");
+	free(packet);
+}
+
+/* Encode message @m of @type and send it on channel @name. */
+#define PUBLISH(w, name, type, m) \
+	do { \
+		const int room = type ## _encoded_size(m); \
+		uint8_t *data = malloc((size_t)room); \
+		publish(w, name, data, data ? \
+			type ## _encode(data, 0, room, m) : -1); \
+		free(data); \
+	} while (0)
 
 void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a)
 {
-	char channel[CHANNEL_MAX];
 	edm_ack_t m = {
-		.utime = now_us(),
+		.utime = utime(),
 		.client = lent(a->client),
 		.seq = a->seq,
 		.code = a->code,
@@ -258,15 +371,14 @@ void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a)
 		.body = lent(a->body),
 	};
 
-	channel_name(w, "ACK", channel);
-	edm_ack_t_publish(w->lcm, channel, &m);
+	memcpy(m.key, a->key, sizeof(m.key));
+	PUBLISH(w, "ACK", edm_ack_t, &m);
 }
 
 void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
 {
-	char channel[CHANNEL_MAX];
 	edm_event_t m = {
-		.utime = now_us(),
+		.utime = utime(),
 		.machine = w->machine,
 		.kind = lent(e->kind),
 		.job = lent(e->job),
@@ -275,15 +387,13 @@ void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
 		.text = lent(e->text),
 	};
 
-	channel_name(w, "EVENT", channel);
-	edm_event_t_publish(w->lcm, channel, &m);
+	PUBLISH(w, "EVENT", edm_event_t, &m);
 }
 
 void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 {
-	char channel[CHANNEL_MAX];
 	edm_status_t m = {
-		.utime = now_us(),
+		.utime = utime(),
 		.machine = w->machine,
 		.daemon = lent(s->daemon),
 		.state = lent(s->state),
@@ -313,11 +423,5 @@ void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 	};
 
 	memcpy(m.pos_mm, s->pos_mm, sizeof(m.pos_mm));
-	channel_name(w, "STATUS", channel);
-	edm_status_t_publish(w->lcm, channel, &m);
-}
-
-uint64_t jobs_lcm_refused(const struct jobs_lcm *w)
-{
-	return w->refused;
+	PUBLISH(w, "STATUS", edm_status_t, &m);
 }

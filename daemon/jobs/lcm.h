@@ -2,14 +2,18 @@
 /*
  * lcm.h - the LCM side of edmd-jobs: our structs in and out
  *
- * The only place that knows the generated messages.  What comes in is checked
- * for its shape before it is decoded: lengths inside the packet, strings
- * ended.  What the fields mean is checked by who takes them.
+ * The only place that knows the generated messages.  What comes in must be
+ * signed (trust.h), and is checked for its shape before it is decoded: lengths
+ * inside the packet, strings ended.  What the fields mean is checked by who
+ * takes them.  What goes out is signed with the machine's key.
  *
  * Units: in every name.  Threads: one, that of the event loop.
  */
 #ifndef JOBS_LCM_H
 #define JOBS_LCM_H
+
+#include "trust.h"
+#include "udpm.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,17 +23,22 @@
 #define JOBS_LCM_CLIENT_MAX	64		/* with its NUL */
 #define JOBS_LCM_ID_MAX	64		/* with its NUL */
 #define JOBS_LCM_CHUNK_MAX	32768
+#define JOBS_LCM_AGAIN	100		/* ack code: sign it again */
 
 struct jobs_lcm;
 
 struct jobs_lcm_command {
+	const uint8_t *key;		/* who signed it */
 	const char *client;
 	int64_t seq;
 	const char *verb, *job, *text;
 	double arg;
+	const struct trust_key *by;	/* the same key, in the table */
+	const char *from;		/* address and port */
 };
 
 struct jobs_lcm_chunk {
+	const uint8_t *key;
 	const char *client;
 	int64_t seq;
 	const char *job, *name;
@@ -40,9 +49,12 @@ struct jobs_lcm_chunk {
 	bool hold;
 	uint32_t size;
 	const uint8_t *data;
+	const struct trust_key *by;
+	const char *from;
 };
 
 struct jobs_lcm_ack {
+	const uint8_t *key;		/* of who is answered */
 	const char *client;
 	int64_t seq;
 	int code;
@@ -71,21 +83,17 @@ struct jobs_lcm_status {
 struct jobs_lcm_handlers {
 	void (*command)(void *arg, const struct jobs_lcm_command *c);
 	void (*chunk)(void *arg, const struct jobs_lcm_chunk *c);
+	struct trust *trust;		/* lent */
 	void *arg;
 };
 
 /**
- * jobs_lcm_url_check() - does what is sent to @url stay on this host?
- * Return: NULL if so, else what is wrong with it, in words.
- */
-const char *jobs_lcm_url_check(const char *url);
-
-/**
  * jobs_lcm_open() - join the channels of @machine.
- * Return: 0; -ENETUNREACH if LCM cannot open @url; -ENOMEM.
+ * Return: 0; -ENOMEM; -ENETUNREACH or another -errno if the group cannot be
+ * joined.
  */
-int jobs_lcm_open(struct jobs_lcm **ret, const char *url, const char *machine,
-		  const struct jobs_lcm_handlers *h);
+int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
+	      const char *machine, const struct jobs_lcm_handlers *h);
 
 /** jobs_lcm_close() - NULL is fine. */
 void jobs_lcm_close(struct jobs_lcm *w);
@@ -93,14 +101,11 @@ void jobs_lcm_close(struct jobs_lcm *w);
 /** jobs_lcm_fd() - readable when jobs_lcm_handle() has something to do. */
 int jobs_lcm_fd(const struct jobs_lcm *w);
 
-/** jobs_lcm_handle() - take one message. Return: 0 or -EIO. */
-int jobs_lcm_handle(struct jobs_lcm *w);
+/** jobs_lcm_handle() - take one message, if it is to be taken. */
+void jobs_lcm_handle(struct jobs_lcm *w);
 
 void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a);
 void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e);
 void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s);
-
-/** jobs_lcm_refused() - packets dropped for their shape, so far. */
-uint64_t jobs_lcm_refused(const struct jobs_lcm *w);
 
 #endif /* JOBS_LCM_H */

@@ -5,6 +5,7 @@
 #include "jobs.h"
 
 #include "compiling.h"
+#include "keys.h"
 #include "jobs_log.h"
 
 #include <errno.h>
@@ -104,7 +105,8 @@ static int on_lcm(sd_event_source *s, int fd, uint32_t events, void *arg)
 	struct jobs *j = arg;
 
 	(void)s, (void)fd, (void)events;
-	return jobs_lcm_handle(j->lcm);
+	jobs_lcm_handle(j->lcm);
+	return 0;
 }
 
 static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
@@ -181,11 +183,10 @@ static int configure(struct jobs *j, struct machine_config *config,
 			"read\n", o->config, strerror(-err));
 		return EX_NOINPUT;
 	}
-	wrong = jobs_lcm_url_check(config->lcm_url);
+	wrong = udpm_url_read(&j->url, config->lcm_url);
 	if (wrong) {
-		fprintf(stderr, "%s: error: [lcm] url %s: %s; commands are "
-			"not signed, so only udpm://...?ttl=0, which stays on "
-			"this host\n", o->config, config->lcm_url, wrong);
+		fprintf(stderr, "%s: error: [lcm] url %s: %s\n", o->config,
+			config->lcm_url, wrong);
 		return EX_CONFIG;
 	}
 	j->config = config;
@@ -245,15 +246,23 @@ static int claim(struct jobs *j)
 static int open_lcm(struct jobs *j)
 {
 	struct jobs_lcm_handlers h = {
-		.command = verbs_take, .chunk = submit_take, .arg = j,
+		.command = verbs_take, .chunk = submit_take,
+		.trust = &j->trust, .arg = j,
 	};
-	int err = jobs_lcm_open(&j->lcm, j->config->lcm_url, j->machine, &h);
+	int err;
 
+	if (j->url.ttl > 0 && j->trust.nkeys < 2) {
+		log_error("lcm: %s leaves this host, and no other host has a "
+			  "key; with ttl=0, edmctl keys add NAME operator "
+			  "makes one; then set the ttl", j->config->lcm_url);
+		return EX_CONFIG;
+	}
+	err = jobs_lcm_open(&j->lcm, &j->url, j->machine, &h);
 	if (err < 0)
-		log_error("lcm: cannot open %s; does the host have a "
+		log_error("lcm: cannot open %s: %s; does the host have a "
 			  "multicast route? ip link set lo multicast on; "
 			  "ip route add 224.0.0.0/4 dev lo",
-			  j->config->lcm_url);
+			  j->config->lcm_url, strerror(-err));
 	return err < 0 ? EX_UNAVAILABLE : 0;
 }
 
@@ -334,11 +343,14 @@ int main(int argc, char **argv)
 	if (rc == 0)
 		rc = claim(&jobs);
 	if (rc == 0)
+		rc = keys_open(&jobs, o.store ? o.store : config.store_dir);
+	if (rc == 0)
 		rc = open_lcm(&jobs);
 	if (rc == 0)
 		rc = run(&jobs);
 	reply_fini(&jobs.replies);
 	jobs_lcm_close(jobs.lcm);
+	keys_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
 	store_close(jobs.store);
 	return rc;

@@ -8,12 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct reply *reply_find(const struct replies *r, const char *client,
-			       int64_t seq)
+const struct reply *reply_find(const struct replies *r, const uint8_t *key,
+			       const char *client, int64_t seq)
 {
 	for (int i = 0; i < REPLY_SLOTS; i++)
 		if (r->slot[i].seq == seq && r->slot[i].client[0] &&
-		    strcmp(r->slot[i].client, client) == 0)
+		    strcmp(r->slot[i].client, client) == 0 &&
+		    memcmp(r->slot[i].key, key, SEAL_KEY_BYTES) == 0)
 			return &r->slot[i];
 	return NULL;
 }
@@ -25,19 +26,21 @@ static void reply_clear(struct reply *one)
 	*one = (struct reply) { .seq = 0 };
 }
 
-void reply_expect(struct replies *r, const char *client, int64_t seq)
+void reply_expect(struct replies *r, const struct jobs_lcm_command *c)
 {
 	struct reply *one = &r->slot[r->next];
 
 	r->next = (r->next + 1) % REPLY_SLOTS;
 	reply_clear(one);
-	snprintf(one->client, sizeof(one->client), "%s", client);
-	one->seq = seq;
+	snprintf(one->client, sizeof(one->client), "%s", c->client);
+	memcpy(one->key, c->key, sizeof(one->key));
+	one->seq = c->seq;
 }
 
 void reply_keep(struct replies *r, const struct jobs_lcm_ack *a)
 {
-	const struct reply *found = reply_find(r, a->client, a->seq);
+	const struct reply *found = reply_find(r, a->key, a->client,
+						a->seq);
 	struct reply *one;
 
 	if (!found)

@@ -2,7 +2,7 @@
 /*
  * reply.h - a command repeated is answered again, not done again
  *
- * Remembers the last commands by client and seq, with what was answered.
+ * Remembers the last commands by key, client and seq, with what was answered.
  *
  * Threads: one object belongs to one thread.
  */
@@ -14,6 +14,7 @@
 #define REPLY_SLOTS	128
 
 struct reply {
+	uint8_t key[SEAL_KEY_BYTES];
 	char client[JOBS_LCM_CLIENT_MAX];	/* "": free */
 	int64_t seq;
 	bool done;
@@ -27,11 +28,11 @@ struct replies {
 };
 
 /** reply_find() - the one to this command; NULL if it is new. */
-const struct reply *reply_find(const struct replies *r, const char *client,
-			       int64_t seq);
+const struct reply *reply_find(const struct replies *r, const uint8_t *key,
+			       const char *client, int64_t seq);
 
 /** reply_expect() - this command is under way. */
-void reply_expect(struct replies *r, const char *client, int64_t seq);
+void reply_expect(struct replies *r, const struct jobs_lcm_command *c);
 
 /** reply_keep() - it is answered. */
 void reply_keep(struct replies *r, const struct jobs_lcm_ack *a);

@@ -217,6 +217,11 @@ void store_close(struct store *s)
 	free(s);
 }
 
+struct sqlite3 *store_db(struct store *s)
+{
+	return s->db;
+}
+
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 {
 	sqlite3_stmt *q = query(s, "INSERT INTO job(id, name, sha256, lines, "

@@ -87,6 +87,8 @@ const char *store_state_name(enum job_state s);
 int store_open(struct store **ret, const char *dir, const char *machine);
 /** store_close() - NULL is fine. */
 void store_close(struct store *s);
+/** store_db() - the database, for store_trust.c. */
+struct sqlite3 *store_db(struct store *s);
 
 /** store_add() - a new job, queued.  @ret_n its number. */
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n);

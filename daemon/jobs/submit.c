@@ -33,7 +33,8 @@ static void answer_end(struct jobs *j, struct upload *up, int code,
 		       const char *reason, const char *body)
 {
 	struct jobs_lcm_ack a = {
-		.client = up->client, .seq = up->seq, .code = code,
+		.key = up->key, .client = up->client, .seq = up->seq,
+		.code = code,
 		.reason = reason, .body = body,
 	};
 
@@ -127,7 +128,9 @@ static void accept_text(struct jobs *j, struct upload *up,
 /* Already there: 0 if it is the same text, else refused. */
 static bool answer_known(struct jobs *j, const struct jobs_lcm_chunk *c)
 {
-	struct jobs_lcm_ack a = { .client = c->client, .seq = c->seq };
+	struct jobs_lcm_ack a = {
+		.key = c->key, .client = c->client, .seq = c->seq,
+	};
 	struct store_job job;
 	char hex[65], *body = NULL;
 
@@ -191,7 +194,7 @@ static void check_begin(struct jobs *j, struct upload *up)
 	if (c) {
 		*c = (struct check) { .jobs = j, .upload = up };
 		err = compiler_start(&j->check[up - j->uploads.slot], j->event,
-				     &request, on_checked, c);
+				    &request, on_checked, c);
 	}
 	if (err < 0) {
 		free(c);
@@ -204,9 +207,18 @@ void submit_take(void *arg, const struct jobs_lcm_chunk *c)
 	struct jobs *j = arg;
 	struct upload_answer answer;
 	struct upload *whole = NULL;
-	struct jobs_lcm_ack a = { .client = c->client, .seq = c->seq };
+	struct jobs_lcm_ack a = {
+		.key = c->key, .client = c->client, .seq = c->seq,
+	};
 
-	if (upload_check(c, &answer)) {
+	if (c->by->role < ROLE_OPERATOR) {
+		trust_refuse(&j->trust, TRUST_ROLE, c->by->name, c->from,
+			     jobs_now_us());
+		answer = (struct upload_answer) {
+			.code = EX_NOPERM,
+			.reason = "a job wants a key of role operator",
+		};
+	} else if (upload_check(c, &answer)) {
 		if (answer_known(j, c))
 			return;
 		upload_take(&j->uploads, c, jobs_now_us(), &whole, &answer);

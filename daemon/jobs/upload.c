@@ -60,8 +60,7 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 	if (client == 0 || client >= JOBS_LCM_CLIENT_MAX)
 		refuse(a, EX_PROTOCOL, "client name of no or too many bytes; "
 		       "1 to 63");
-	else if (id == 0 || id >= JOBS_LCM_ID_MAX ||
-		 strspn(c->job, ID_CHARS) != id)
+	else if (id == 0 || id >= JOBS_LCM_ID_MAX || strspn(c->job, ID_CHARS) != id)
 		refuse(a, EX_DATAERR, "job id not fit; 1 to 63 of A-Z a-z "
 		       "0-9 . _ -");
 	else if (!name_is_plain(c->name))
@@ -80,11 +79,11 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 static bool upload_is(const struct upload *up, const struct jobs_lcm_chunk *c)
 {
 	return up->state != UPLOAD_FREE && strcmp(up->client, c->client) == 0 &&
+	       memcmp(up->key, c->key, sizeof(up->key)) == 0 &&
 	       strcmp(up->id, c->job) == 0;
 }
 
-static struct upload *upload_find(struct uploads *u,
-				  const struct jobs_lcm_chunk *c)
+static struct upload *upload_find(struct uploads *u, const struct jobs_lcm_chunk *c)
 {
 	for (int i = 0; i < UPLOAD_SLOTS; i++)
 		if (upload_is(&u->slot[i], c))
@@ -99,6 +98,7 @@ static const struct upload_verdict *verdict_find(const struct uploads *u,
 		const struct upload_verdict *v = &u->verdict[i];
 
 		if (v->reason && strcmp(v->client, c->client) == 0 &&
+		    memcmp(v->key, c->key, sizeof(v->key)) == 0 &&
 		    strcmp(v->id, c->job) == 0 && c->seq >= v->seq_min &&
 		    c->seq <= v->seq_max)
 			return v;
@@ -135,6 +135,7 @@ static struct upload *upload_begin(struct uploads *u,
 		return NULL;
 	}
 	up->state = UPLOAD_FILLING;
+	memcpy(up->key, c->key, sizeof(up->key));
 	snprintf(up->client, sizeof(up->client), "%s", c->client);
 	snprintf(up->id, sizeof(up->id), "%s", c->job);
 	snprintf(up->name, sizeof(up->name), "%s", c->name);
@@ -146,8 +147,7 @@ static struct upload *upload_begin(struct uploads *u,
 	return up;
 }
 
-static bool upload_agrees(const struct upload *up,
-			  const struct jobs_lcm_chunk *c)
+static bool upload_agrees(const struct upload *up, const struct jobs_lcm_chunk *c)
 {
 	return up->bytes == (size_t)c->bytes &&
 	       up->chunks == (uint32_t)c->chunks &&
@@ -232,6 +232,7 @@ void upload_forget(struct uploads *u, struct upload *up, int code,
 	u->next_verdict = (u->next_verdict + 1) % UPLOAD_VERDICTS;
 	free(v->reason);
 	free(v->body);
+	memcpy(v->key, up->key, sizeof(v->key));
 	memcpy(v->client, up->client, sizeof(v->client));
 	memcpy(v->id, up->id, sizeof(v->id));
 	v->seq_min = up->seq_min;

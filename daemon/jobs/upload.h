@@ -24,6 +24,7 @@ enum upload_state { UPLOAD_FREE, UPLOAD_FILLING, UPLOAD_WHOLE };
 
 struct upload {
 	enum upload_state state;
+	uint8_t key[SEAL_KEY_BYTES];
 	char client[JOBS_LCM_CLIENT_MAX];
 	char id[JOBS_LCM_ID_MAX];
 	char name[JOBS_LCM_ID_MAX];
@@ -40,6 +41,7 @@ struct upload {
 
 /* What was said about an upload that is gone. */
 struct upload_verdict {
+	uint8_t key[SEAL_KEY_BYTES];
 	char client[JOBS_LCM_CLIENT_MAX];
 	char id[JOBS_LCM_ID_MAX];
 	int64_t seq_min, seq_max;

@@ -5,7 +5,8 @@
  * A verb of the machine goes to edmd and is answered when edmd has answered;
  * the others are answered at once.
  */
-#include "jobs.h"
+#include "keys.h"
+#include "verb.h"
 
 #include "interp/tech_table.h"
 #include "jobs_log.h"
@@ -21,29 +22,21 @@
 #define RETRACT_MAX_MM	10000.0
 #define STEP_MAX	100
 #define OVERRIDE_MAX	2.0
-#define REFUSED		1		/* understood, and the answer is no */
-
-struct verb {
-	const char *name;
-	void (*run)(struct jobs *j, const struct verb *v,
-		    const struct jobs_lcm_command *c);
-	uint32_t machine;		/* enum shm_verb, for verb_machine() */
-	const char *wants;		/* the state it wants */
-};
 
 /* A command on its way to edmd. */
 struct asked {
 	struct jobs *jobs;
+	uint8_t key[SEAL_KEY_BYTES];
 	char client[JOBS_LCM_CLIENT_MAX];
 	int64_t seq;
 	const struct verb *verb;
 };
 
-static void answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
-		   const char *reason)
+void verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
+		 const char *reason)
 {
 	jobs_answer(j, &(struct jobs_lcm_ack) {
-		.client = c->client, .seq = c->seq, .code = code,
+		.key = c->key, .client = c->client, .seq = c->seq, .code = code,
 		.reason = reason,
 	});
 }
@@ -74,37 +67,39 @@ static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
 	struct jobs *j = a->jobs;
-	struct jobs_lcm_command c = { .client = a->client, .seq = a->seq };
+	struct jobs_lcm_command c = {
+		.key = a->key, .client = a->client, .seq = a->seq,
+	};
 	char reason[160];
 
 	if (code == SHM_DONE)
-		answer(j, &c, 0, "done");
+		verbs_answer(j, &c, 0, "done");
 	else if (code == -ETIMEDOUT)
-		answer(j, &c, EX_UNAVAILABLE, "edmd did not answer in 2 s");
+		verbs_answer(j, &c, EX_UNAVAILABLE, "edmd did not answer in 2 s");
 	else if (code < 0)
-		answer(j, &c, EX_UNAVAILABLE, "edmd went away");
+		verbs_answer(j, &c, EX_UNAVAILABLE, "edmd went away");
 	else if (code == SHM_NO_PROGRAM)
-		answer(j, &c, REFUSED, "no job is loaded; submit one");
+		verbs_answer(j, &c, REFUSED, "no job is loaded; submit one");
 	else if (code == SHM_NOT_UP)
-		answer(j, &c, REFUSED, "the drives are not up yet; edmd's "
+		verbs_answer(j, &c, REFUSED, "the drives are not up yet; edmd's "
 		       "journal tells which; again when they are");
 	else if (code == SHM_LOCKED)
-		answer(j, &c, REFUSED, "the PLC does not permit it: it is not "
+		verbs_answer(j, &c, REFUSED, "the PLC does not permit it: it is not "
 		       "there, holds, has no permit, or an interlock is open");
 	else if (code == SHM_BAD_ARGUMENT)
-		answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
+		verbs_answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
 		       "edmd refused the value: with the others in force, "
 		       "short_v < window_low_v <= servo_v <= window_high_v < "
 		       "open_v < ignition_v must hold" :
 		       "edmd refused the value; it must be finite and in "
 		       "range");
 	else if (refusal(code))
-		answer(j, &c, REFUSED, refusal(code));
+		verbs_answer(j, &c, REFUSED, refusal(code));
 	else {
 		snprintf(reason, sizeof(reason), "not in state %s; %s wants %s",
 			 shm_state_name(j->link.snap.state), a->verb->name,
 			 a->verb->wants);
-		answer(j, &c, REFUSED, reason);
+		verbs_answer(j, &c, REFUSED, reason);
 	}
 	free(a);
 }
@@ -120,11 +115,12 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 	int err;
 
 	if (!a) {
-		answer(j, c, EX_SOFTWARE, "no memory");
+		verbs_answer(j, c, EX_SOFTWARE, "no memory");
 		return;
 	}
 	a->jobs = j;
 	a->seq = c->seq;
+	memcpy(a->key, c->key, sizeof(a->key));
 	a->verb = v;
 	snprintf(a->client, sizeof(a->client), "%s", c->client);
 	err = link_send(&j->link, &m, jobs_now_us());
@@ -132,10 +128,10 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 		return;
 	free(a);
 	if (err == -EAGAIN)
-		answer(j, c, EX_TEMPFAIL, "too many commands under way; try "
+		verbs_answer(j, c, EX_TEMPFAIL, "too many commands under way; try "
 		       "again");
 	else
-		answer(j, c, EX_UNAVAILABLE, j->link.state == LINK_ABSENT ?
+		verbs_answer(j, c, EX_UNAVAILABLE, j->link.state == LINK_ABSENT ?
 		       "edmd is not there; systemctl start edmd" :
 		       "edmd is lost; systemctl status edmd");
 }
@@ -165,7 +161,7 @@ static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
 			n += (size_t)snprintf(reason + n, sizeof(reason) - n,
 					      " %s",
 					      interp_tech_field[i].name);
-	answer(j, c, EX_DATAERR, reason);
+	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
 /* NaN gives the field back to the condition. */
@@ -191,7 +187,7 @@ static void verb_set(struct jobs *j, const struct verb *v,
 	}
 	snprintf(reason, sizeof(reason), "%s %g is out of range; %s",
 		 c->text, c->arg, range);
-	answer(j, c, EX_DATAERR, reason);
+	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
 static void verb_retract(struct jobs *j, const struct verb *v,
@@ -200,7 +196,7 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 	if (isfinite(c->arg) && c->arg > 0 && c->arg <= RETRACT_MAX_MM)
 		verb_machine(j, v, c);
 	else
-		answer(j, c, EX_DATAERR, "no such length; a number of mm above "
+		verbs_answer(j, c, EX_DATAERR, "no such length; a number of mm above "
 		       "0, at most 10000");
 }
 
@@ -211,7 +207,7 @@ static void verb_step(struct jobs *j, const struct verb *v,
 	    fabs(c->arg) <= STEP_MAX)
 		verb_machine(j, v, c);
 	else
-		answer(j, c, EX_DATAERR, "no such number of nodes; 1 to 100 "
+		verbs_answer(j, c, EX_DATAERR, "no such number of nodes; 1 to 100 "
 		       "ahead, -1 to -100 back");
 }
 
@@ -221,7 +217,7 @@ static void verb_override(struct jobs *j, const struct verb *v,
 	if (c->arg >= 0 && c->arg <= OVERRIDE_MAX)
 		verb_machine(j, v, c);
 	else
-		answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
+		verbs_answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
 }
 
 /* One letter of an axis the machine has; -1: it was refused. */
@@ -239,7 +235,7 @@ static int axis_of(struct jobs *j, const struct jobs_lcm_command *c)
 		return (int)(at - INTERP_AXIS_LETTERS);
 	snprintf(reason, sizeof(reason), "no axis '%.20s' here; one of %s",
 		 c->text, has);
-	answer(j, c, EX_DATAERR, reason);
+	verbs_answer(j, c, EX_DATAERR, reason);
 	return -1;
 }
 
@@ -249,7 +245,7 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 	int axis;
 
 	if (!isfinite(c->arg) || c->arg == 0) {
-		answer(j, c, EX_DATAERR, "no such length; a number of mm or "
+		verbs_answer(j, c, EX_DATAERR, "no such length; a number of mm or "
 		       "degrees, + or -");
 		return;
 	}
@@ -278,7 +274,7 @@ static void verb_home(struct jobs *j, const struct verb *v,
 	if (any)
 		ask_machine(j, v, c, (uint32_t)axis);
 	else
-		answer(j, c, REFUSED, axis == INTERP_NAXES ?
+		verbs_answer(j, c, REFUSED, axis == INTERP_NAXES ?
 		       "no axis has a home_method; the places they start at "
 		       "are good" : "this axis has no home_method; the place "
 		       "it starts at is good");
@@ -289,7 +285,7 @@ static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	if (!queue_is_faulted(j))
 		return false;
-	answer(j, c, REFUSED, "a fault is latched; reset first");
+	verbs_answer(j, c, REFUSED, "a fault is latched; reset first");
 	return true;
 }
 
@@ -307,12 +303,12 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 			 const struct store_job *job)
 {
 	if (job->state != JOB_QUEUED) {
-		answer(j, c, REFUSED, "this job has ended; submit it again");
+		verbs_answer(j, c, REFUSED, "this job has ended; submit it again");
 		return;
 	}
 	queue_go(j);
 	store_set_hold(j->store, job->n, false);
-	answer(j, c, 0, "starts when its turn comes");
+	verbs_answer(j, c, 0, "starts when its turn comes");
 }
 
 static void verb_start(struct jobs *j, const struct verb *v,
@@ -325,7 +321,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	if (refused_by_fault(j, c))
 		return;
 	if (*c->job && store_find(j->store, c->job, &job) < 0) {
-		answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
+		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
 		       "them");
 	} else if (*c->job && (!here || job.n != q->job.n)) {
 		start_behind(j, c, &job);
@@ -337,7 +333,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	} else if (store_head(j->store, &job) == 0) {
 		start_behind(j, c, &job);
 	} else {
-		answer(j, c, REFUSED, "no job in the queue; submit one");
+		verbs_answer(j, c, REFUSED, "no job in the queue; submit one");
 	}
 }
 
@@ -353,20 +349,20 @@ static void verb_remove(struct jobs *j, const struct verb *v,
 
 	(void)v;
 	if (store_find(j->store, c->job, &job) < 0) {
-		answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
+		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
 		       "them");
 	} else if (job.n == j->queue.job.n && job.state == JOB_READY) {
 		queue_end(j, JOB_STOPPED, e.reason);
 		if (!waiting)
 			queue_go(j);
-		answer(j, c, 0, "removed");
+		verbs_answer(j, c, 0, "removed");
 	} else if (job.state != JOB_QUEUED || job.loaded) {
-		answer(j, c, REFUSED, "it has begun or ended; stop ends a job "
+		verbs_answer(j, c, REFUSED, "it has begun or ended; stop ends a job "
 		       "that runs");
 	} else {
 		store_end(j->store, job.n, &e);
 		queue_recount(j);
-		answer(j, c, 0, "removed");
+		verbs_answer(j, c, 0, "removed");
 	}
 }
 
@@ -375,7 +371,7 @@ static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 {
 	char *body = store_json(j->store, what, c->job, (int)c->arg);
 	struct jobs_lcm_ack a = {
-		.client = c->client, .seq = c->seq, .body = body,
+		.key = c->key, .client = c->client, .seq = c->seq, .body = body,
 		.reason = "done",
 	};
 
@@ -417,35 +413,39 @@ static void verb_history(struct jobs *j, const struct verb *v,
 	if (c->arg >= 0 && c->arg <= 1000)
 		answer_list(j, c, STORE_HISTORY);
 	else
-		answer(j, c, EX_DATAERR, "no such number of rows; 0 to 1000, "
+		verbs_answer(j, c, EX_DATAERR, "no such number of rows; 0 to 1000, "
 		       "0 is all that are kept");
 }
 
 /* clang-format off */
 static const struct verb verbs[] = {
-	{ "start",   verb_start,   SHM_DO_START,   "a job that is ready or "
+	{ "start", ROLE_OPERATOR, verb_start,   SHM_DO_START,   "a job that is ready or "
 						   "held" },
-	{ "hold",    verb_machine, SHM_DO_HOLD,    "a job that runs" },
-	{ "resume",  verb_resume,  SHM_DO_RESUME,  "a job that is held" },
-	{ "stop",    verb_machine, SHM_DO_STOP,    "a job, and no fault; reset "
+	{ "hold", ROLE_OPERATOR, verb_machine, SHM_DO_HOLD,    "a job that runs" },
+	{ "resume", ROLE_OPERATOR, verb_resume,  SHM_DO_RESUME,  "a job that is held" },
+	{ "stop", ROLE_OPERATOR, verb_machine, SHM_DO_STOP,    "a job, and no fault; reset "
 						   "first" },
-	{ "retract", verb_retract, SHM_DO_RETRACT, "a job, and no fault; reset "
+	{ "retract", ROLE_OPERATOR, verb_retract, SHM_DO_RETRACT, "a job, and no fault; reset "
 						   "first" },
-	{ "set",     verb_set,     SHM_DO_SET,     "fewer than 64 values set "
+	{ "set", ROLE_OPERATOR, verb_set,     SHM_DO_SET,     "fewer than 64 values set "
 						   "in a job" },
-	{ "estop",   verb_machine, SHM_DO_ESTOP,   "nothing" },
-	{ "reset",   verb_machine, SHM_DO_RESET,   "a fault" },
-	{ "step",    verb_step,    SHM_DO_STEP,    "a job held on its path" },
-	{ "jog",     verb_jog,     SHM_DO_JOG,     "idle: no job loaded, no "
+	{ "estop", ROLE_OPERATOR, verb_machine, SHM_DO_ESTOP,   "nothing" },
+	{ "reset", ROLE_OPERATOR, verb_machine, SHM_DO_RESET,   "a fault" },
+	{ "step", ROLE_OPERATOR, verb_step,    SHM_DO_STEP,    "a job held on its path" },
+	{ "jog", ROLE_OPERATOR, verb_jog,     SHM_DO_JOG,     "idle: no job loaded, no "
 						   "fault" },
-	{ "home",    verb_home,    SHM_DO_HOME,    "idle: no job loaded, no "
+	{ "home", ROLE_OPERATOR, verb_home,    SHM_DO_HOME,    "idle: no job loaded, no "
 						   "fault" },
-	{ "override", verb_override, SHM_DO_OVERRIDE, "nothing" },
-	{ "alarms",  verb_alarms,  0, "" },
-	{ "remove",  verb_remove,  0, "" },
-	{ "queue",   verb_queue,   0, "" },
-	{ "show",    verb_show,    0, "" },
-	{ "history", verb_history, 0, "" },
+	{ "override", ROLE_OPERATOR, verb_override, SHM_DO_OVERRIDE, "nothing" },
+	{ "alarms", ROLE_VIEWER, verb_alarms,  0, "" },
+	{ "remove", ROLE_OPERATOR, verb_remove,  0, "" },
+	{ "queue", ROLE_VIEWER, verb_queue,   0, "" },
+	{ "show", ROLE_VIEWER, verb_show,    0, "" },
+	{ "history", ROLE_VIEWER, verb_history, 0, "" },
+	{ "hello", ROLE_VIEWER, keys_hello, 0, "" },
+	{ "keys", ROLE_SERVICE, keys_list, 0, "" },
+	{ "keys-add", ROLE_SERVICE, keys_add, 0, "" },
+	{ "keys-remove", ROLE_SERVICE, keys_remove, 0, "" },
 };
 /* clang-format on */
 
@@ -460,17 +460,40 @@ static void refuse_verb(struct jobs *j, const struct jobs_lcm_command *c)
 	for (size_t i = 0; i < NVERBS; i++)
 		n += (size_t)snprintf(reason + n, sizeof(reason) - n, " %s",
 				      verbs[i].name);
-	answer(j, c, EX_USAGE, reason);
+	verbs_answer(j, c, EX_USAGE, reason);
+}
+
+static const struct verb *verb_find(const char *name)
+{
+	for (size_t i = 0; i < NVERBS; i++)
+		if (strcmp(verbs[i].name, name) == 0)
+			return &verbs[i];
+	return NULL;
+}
+
+static void refuse_role(struct jobs *j, const struct jobs_lcm_command *c,
+			const struct verb *v)
+{
+	char reason[160];
+
+	snprintf(reason, sizeof(reason), "%s is a %s, and %s wants a key of "
+		 "role %s", c->by->name, trust_role_name(c->by->role),
+		 v->name, trust_role_name(v->role));
+	trust_refuse(&j->trust, TRUST_ROLE, c->by->name, c->from,
+		     jobs_now_us());
+	verbs_answer(j, c, EX_NOPERM, reason);
 }
 
 /* Answered before, or under way: not done again. */
 static bool is_repeat(struct jobs *j, const struct jobs_lcm_command *c)
 {
-	const struct reply *r = reply_find(&j->replies, c->client, c->seq);
+	const struct reply *r = reply_find(&j->replies, c->key, c->client,
+					   c->seq);
 
 	if (r && r->done)
 		jobs_lcm_ack(j->lcm, &(struct jobs_lcm_ack) {
-			.client = c->client, .seq = c->seq, .code = r->code,
+			.key = c->key, .client = c->client, .seq = c->seq,
+			.code = r->code,
 			.reason = r->reason, .body = r->body,
 		});
 	return r != NULL;
@@ -479,22 +502,15 @@ static bool is_repeat(struct jobs *j, const struct jobs_lcm_command *c)
 void verbs_take(void *arg, const struct jobs_lcm_command *c)
 {
 	struct jobs *j = arg;
-	size_t n = strlen(c->client);
+	const struct verb *v = verb_find(c->verb);
 
-	/* A client without a name could not be told from another. */
-	if (n == 0 || n >= JOBS_LCM_CLIENT_MAX) {
-		answer(j, c, EX_PROTOCOL, "client name of no or too many "
-		       "bytes; 1 to 63");
-		return;
-	}
 	if (is_repeat(j, c))
 		return;
-	reply_expect(&j->replies, c->client, c->seq);
-	for (size_t i = 0; i < NVERBS; i++) {
-		if (strcmp(verbs[i].name, c->verb) == 0) {
-			verbs[i].run(j, &verbs[i], c);
-			return;
-		}
-	}
-	refuse_verb(j, c);
+	reply_expect(&j->replies, c);
+	if (!v)
+		refuse_verb(j, c);
+	else if (c->by->role < v->role)
+		refuse_role(j, c, v);
+	else
+		v->run(j, v, c);
 }

@@ -11,15 +11,23 @@ import os
 import pathlib
 import random
 import signal
+import struct
 import subprocess
 import sys
 import time
+
+from cryptography.exceptions import InvalidSignature
+from cryptography.hazmat.primitives.asymmetric.ed25519 import (
+    Ed25519PrivateKey, Ed25519PublicKey,
+)
 
 BUILD = pathlib.Path(os.environ.get("EDM_BUILD", "build")).resolve()
 sys.path.insert(0, str(BUILD / "python"))
 
 import lcm  # noqa: E402
-from edm import ack_t, command_t, event_t, job_chunk_t, status_t  # noqa: E402
+from edm import (  # noqa: E402
+    ack_t, command_t, event_t, job_chunk_t, signed_t, status_t,
+)
 
 URL = "udpm://239.255.76.67:7667?ttl=0"
 CHUNK = 32768
@@ -59,11 +67,32 @@ def until(what, timeout=5.0, step=0.01):
         time.sleep(step)
 
 
-class Client:
-    """Speaks LCM; keeps what it hears."""
+def key_file(path):
+    """The words of a key file."""
+    words = {}
+    for line in pathlib.Path(path).read_text().splitlines():
+        if line and not line.startswith("#"):
+            word, value = line.split()
+            words[word] = value
+    return words
 
-    def __init__(self, machine):
+
+def signed_bytes(channel, boot, count, data):
+    """What a signature is over, as messages/README.md says."""
+    return (b"edmd 1\n" + channel.encode() + b"\n"
+            + struct.pack(">qq", boot, count) + data)
+
+
+class Client:
+    """Speaks LCM; keeps what it hears.  Signs with a key file, and checks what
+    is signed, by another library than edmd's."""
+
+    def __init__(self, machine, key=None):
         self.machine = machine
+        self.key = key or f"/dev/shm/edmd.{machine}.key"
+        self.secret = None
+        self.boot, self.base, self.count = 0, 0, 0
+        self.forged = 0
         self.lcm = lcm.LCM(URL)
         self.name = f"test-{os.getpid()}-{random.getrandbits(32):08x}"
         self.seq = 0
@@ -75,11 +104,63 @@ class Client:
         ):
             subscription = self.lcm.subscribe(
                 f"EDM\\.{machine}\\.{channel}",
-                lambda _, data, kind=kind, where=where: where.append(
-                    kind.decode(data)
+                lambda channel, data, kind=kind, where=where: self._take(
+                    channel, data, kind, where
                 ),
             )
             subscription.set_queue_capacity(1000)
+
+    # -- Signing and checking
+
+    def load_key(self):
+        """When it is there: the service makes it at its first start."""
+        if self.secret is None and os.path.exists(self.key):
+            words = key_file(self.key)
+            self.secret = Ed25519PrivateKey.from_private_bytes(
+                bytes.fromhex(words["secret"]))
+            self.public = bytes.fromhex(words["public"])
+            self.machine_key = bytes.fromhex(words["machine-key"])
+        return self.secret is not None
+
+    def _take(self, channel, data, kind, where):
+        if not self.load_key():
+            return
+        s = signed_t.decode(data)
+        try:
+            assert bytes(s.key) == self.machine_key
+            Ed25519PublicKey.from_public_bytes(bytes(s.key)).verify(
+                bytes(s.signature),
+                signed_bytes(channel, s.boot, s.count, bytes(s.data)))
+        except (AssertionError, InvalidSignature):
+            self.forged += 1
+            return
+        # A test that is told by an old status would only be slow.
+        self.boot = s.boot
+        self.base = s.count - time.monotonic_ns() // 1000
+        where.append(kind.decode(bytes(s.data)))
+
+    def seal(self, channel, data, boot=None, count=None):
+        """@data signed for a channel of this machine."""
+        if self.boot == 0:
+            until(lambda: self.hear(0.02) or self.boot)
+        self.count = max(self.count + 1,
+                         time.monotonic_ns() // 1000 + self.base)
+        s = signed_t()
+        s.key = self.public
+        s.boot = self.boot if boot is None else boot
+        s.count = self.count if count is None else count
+        name = f"EDM.{self.machine}.{channel}"
+        s.signature = self.secret.sign(
+            signed_bytes(name, s.boot, s.count, data))
+        s.size, s.data = len(data), data
+        return s
+
+    def publish(self, channel, data, **more):
+        """@data, signed, on a channel of this machine."""
+        self.publish_raw(channel, self.seal(channel, data, **more).encode())
+
+    def publish_raw(self, channel, data):
+        self.lcm.publish(f"EDM.{self.machine}.{channel}", data)
 
     def hear(self, seconds=0.02):
         end = time.monotonic() + seconds
@@ -115,7 +196,7 @@ class Client:
         m.client = self.name
         m.seq = self.number() if seq is None else seq
         m.verb, m.job, m.arg, m.text = verb, job, float(arg), ""
-        self.lcm.publish(f"EDM.{self.machine}.COMMAND", m.encode())
+        self.publish("COMMAND", m.encode())
         return m.seq
 
     def ask(self, verb, job="", arg=0.0, timeout=6.0):
@@ -150,7 +231,7 @@ class Client:
 
     def send(self, chunks):
         for m in chunks:
-            self.lcm.publish(f"EDM.{self.machine}.JOB", m.encode())
+            self.publish("JOB", m.encode())
 
     def verdict(self, chunks):
         """The ack that says what became of the job, if it is there."""

@@ -148,8 +148,8 @@ def test_without_edmd_jobs_are_taken_and_wait(idle):
     c.job_where("early", "done")
 
 
-def test_edmd_jobs_takes_no_url_that_leaves_the_host(tmp_path):
-    for ttl in ("ttl=1", "ttl=0&ttl=1", "ttl=01", "ttl=-1"):
+def test_edmd_jobs_takes_no_url_that_leaves_the_host_without_a_key(tmp_path):
+    for ttl in ("ttl=1", "ttl=0&ttl=1", "ttl=01", "ttl=-1", "ttl=0&x=1"):
         config = tmp_path / "machine.ini"
         config.write_text(
             NULL_MACHINE.format(name="x", store=tmp_path / "store")

@@ -181,7 +181,7 @@ def test_packets_of_no_shape_harm_nothing(machine):
             bad[draw.randrange(8, len(bad))] = draw.randrange(256)
         bad = bad[:draw.randrange(len(bad))] if i % 2 else bad
         channel = ("JOB", "COMMAND")[i % 3 == 0]
-        c.lcm.publish(f"EDM.{machine.name}.{channel}", bytes(bad))
+        c.publish(channel, bytes(bad))
         c.hear(0.001)
     assert machine.jobs.poll() is None
     # Some were fit to be answered, to a seq that nobody used.

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * job.h - send a job: a few chunks at a time, repeated until answered
+ *
+ * Call job_step() whenever talk_step() or talk_wait() was called.
+ *
+ * Threads: that of its struct talk.
+ */
+#ifndef CLIENT_JOB_H
+#define CLIENT_JOB_H
+
+#include "talk.h"
+
+#include <stddef.h>
+
+#define JOB_BYTES_MAX	(64 << 20)
+#define JOB_ID_MAX	64		/* with its NUL */
+
+struct job;
+
+struct job_text {
+	const char *id;			/* NULL: drawn */
+	const char *name;		/* for people; its end is the dialect */
+	const char *text;		/* lent until job_end() */
+	size_t bytes;			/* at most JOB_BYTES_MAX */
+	bool hold;			/* load it, but wait for "start" */
+	double silent_s;		/* give up without an ack; 0: 10 s */
+};
+
+/** job_begin() - Return: 0; -ENOMEM; -EFBIG; -EAGAIN too many at once. */
+int job_begin(struct job **ret, struct talk *t, const struct job_text *x);
+
+/**
+ * job_step() - send what is due.
+ * Return: 1 it is answered: job_verdict(); 0 it goes on; -ETIMEDOUT nothing
+ * was heard for so long that the service must be gone.
+ */
+int job_step(struct job *j);
+
+/** job_verdict() - code 0: it is in the queue, body is it as JSON. */
+const struct talk_ack *job_verdict(const struct job *j);
+
+/** job_id() - its id, drawn or given. */
+const char *job_id(const struct job *j);
+/** job_name() - its name as sent, cut to what a name may be. */
+const char *job_name(const struct job *j);
+
+/** job_progress() - chunks that arrived.  Return: of how many. */
+int job_progress(const struct job *j, int *ret_arrived);
+
+/** job_end() - NULL is fine.  Not sent whole, it is forgotten. */
+void job_end(struct job *j);
+
+#endif /* CLIENT_JOB_H */

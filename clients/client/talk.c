@@ -1,0 +1,624 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * talk.c - speak with edmd-jobs over LCM
+ *
+ * The service's boot number and its clock are learnt from an ack that bears
+ * our client's name, which was drawn a moment ago: nobody can have recorded
+ * such an ack before.  A status or an event counts if it is of that boot, and
+ * later than the one before.  Until the boot is known, and whenever a status
+ * is of another one, "hello" is asked.
+ */
+#include "talk.h"
+
+#include "packet.h"
+#include "seal.h"
+
+#include <errno.h>
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <signal.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+#include <time.h>
+#include <unistd.h>
+
+#define CHANNEL_MAX	64
+#define QUEUE_MESSAGES	256
+#define REPEAT_S	0.3
+#define HELLO_S		0.2
+#define LISTENERS	8
+#define CODE_AGAIN	100		/* sign it again; messages/README.md */
+
+/* A question under way. */
+struct question {
+	int64_t seq;			/* 0: free */
+	char *verb, *job, *text;
+	double arg, until_s, sent_s;
+	talk_answer_fn fn;
+	void *arg_fn;
+};
+
+struct listener {
+	int64_t first;			/* 0: free */
+	int n;
+	void (*fn)(void *arg, const struct talk_ack *a);
+	void *arg;
+};
+
+struct talk {
+	lcm_t *lcm;
+	lcm_subscription_t *subscribed[3];
+	struct keyfile key;
+	char machine[32];
+	char client[TALK_WORD_MAX];
+	char why[TALK_SAID_MAX];
+	int64_t seq;
+	/* The service: known is its start and how its clock goes. */
+	bool known;
+	int64_t boot, ahead_us;		/* its clock less ours */
+	int64_t count;			/* the last we signed with */
+	int64_t heard;			/* of its last status or event */
+	int64_t hello;			/* seq; 0: none under way */
+	double hello_s;
+	struct question question[TALK_QUESTIONS];
+	struct listener listener[LISTENERS];
+	struct talk_status status;
+	uint64_t nstatus, nevents;
+	void (*on_event)(void *arg, const struct talk_event *e);
+	void *on_event_arg;
+};
+
+/* What talk_ask() waits for. */
+struct asking {
+	struct talk_answer *ret;
+	bool over;
+	int err;
+};
+
+static volatile sig_atomic_t interrupted;
+
+static void on_signal(int number)
+{
+	(void)number;
+	interrupted = 1;
+}
+
+void talk_catch_signals(void)
+{
+	struct sigaction sa = { .sa_handler = on_signal };
+
+	sigaction(SIGINT, &sa, NULL);
+	sigaction(SIGTERM, &sa, NULL);
+}
+
+bool talk_interrupted(void)
+{
+	return interrupted;
+}
+
+static int64_t now_us(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
+}
+
+double talk_now_s(void)
+{
+	return (double)now_us() * 1e-6;
+}
+
+/* -- Sending ---------------------------------------------------------------- */
+
+static void channel_name(const struct talk *t, const char *name,
+			 char ret[CHANNEL_MAX])
+{
+	snprintf(ret, CHANNEL_MAX, "EDM.%s.%s", t->machine, name);
+}
+
+/* Our count is the service's clock, as far as we know it; and it grows. */
+static int64_t next_count(struct talk *t)
+{
+	const int64_t now = t->known ? now_us() + t->ahead_us : 0;
+
+	t->count = now > t->count ? now : t->count + 1;
+	return t->count;
+}
+
+/* @data is freed. */
+static void sign_and_send(struct talk *t, const char *name, uint8_t *data,
+			  size_t bytes)
+{
+	struct seal s = {
+		.key = t->key.public, .boot = t->known ? t->boot : 0,
+		.count = next_count(t), .data = data, .size = bytes,
+	};
+	uint8_t *packet = data ? malloc(SEAL_BYTES + bytes) : NULL;
+	char channel[CHANNEL_MAX];
+	size_t n = 0;
+
+	channel_name(t, name, channel);
+	if (packet)
+		n = seal_make(packet, &s, channel, t->key.secret);
+	if (n)
+		lcm_publish(t->lcm, channel, packet, (unsigned int)n);
+	free(packet);
+	free(data);
+}
+
+static void send_question(struct talk *t, struct question *q)
+{
+	const struct packet_from f = { .client = t->client, .seq = q->seq };
+	const struct talk_question what = {
+		.verb = q->verb, .job = q->job, .text = q->text, .arg = q->arg,
+	};
+	size_t bytes;
+	uint8_t *data = packet_command(&f, &what, &bytes);
+
+	q->sent_s = talk_now_s();
+	sign_and_send(t, "COMMAND", data, bytes);
+}
+
+static void send_hello(struct talk *t)
+{
+	const struct talk_question what = { .verb = "hello" };
+	struct packet_from f;
+	size_t bytes;
+	uint8_t *data;
+
+	if (talk_now_s() - t->hello_s < HELLO_S)
+		return;
+	t->hello_s = talk_now_s();
+	if (!t->hello)
+		t->hello = ++t->seq;
+	f = (struct packet_from) { .client = t->client, .seq = t->hello };
+	data = packet_command(&f, &what, &bytes);
+	sign_and_send(t, "COMMAND", data, bytes);
+}
+
+bool talk_send_chunk(struct talk *t, const struct talk_chunk *c)
+{
+	const struct packet_from f = { .client = t->client, .seq = c->seq };
+	size_t bytes;
+	uint8_t *data;
+
+	if (!t->known)
+		return false;
+	data = packet_chunk(&f, c, &bytes);
+	sign_and_send(t, "JOB", data, bytes);
+	return true;
+}
+
+/* -- Hearing ---------------------------------------------------------------- */
+
+static void question_end(struct question *q, int err,
+			 const struct talk_ack *a)
+{
+	const struct question was = *q;
+
+	free(q->verb);
+	free(q->job);
+	free(q->text);
+	*q = (struct question) { .seq = 0 };
+	if (was.fn)
+		was.fn(was.arg_fn, err, a);
+}
+
+static struct question *question_find(struct talk *t, int64_t seq)
+{
+	for (int i = 0; i < TALK_QUESTIONS; i++)
+		if (t->question[i].seq == seq)
+			return &t->question[i];
+	return NULL;
+}
+
+/* The service as it is now: an ack to us was made in this minute. */
+static void learn(struct talk *t, const struct seal *s)
+{
+	if (!t->known || t->boot != s->boot) {
+		t->boot = s->boot;
+		t->heard = 0;
+		t->count = 0;
+	}
+	t->ahead_us = s->count - now_us();
+	t->known = true;
+	t->hello = 0;
+	t->why[0] = '\0';
+}
+
+static void send_waiting(struct talk *t)
+{
+	for (int i = 0; i < TALK_QUESTIONS; i++)
+		if (t->question[i].seq)
+			send_question(t, &t->question[i]);
+}
+
+static void hear_listeners(struct talk *t, const struct talk_ack *a)
+{
+	for (int i = 0; i < LISTENERS; i++) {
+		struct listener *l = &t->listener[i];
+
+		if (l->first && a->seq >= l->first &&
+		    a->seq - l->first < l->n) {
+			l->fn(l->arg, a);
+			return;
+		}
+	}
+}
+
+static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
+		     const char *client, const struct talk_ack *a)
+{
+	struct talk *t = arg;
+	struct question *q;
+
+	if (strcmp(client, t->client) != 0 ||
+	    memcmp(key, t->key.public, SEAL_KEY_BYTES) != 0)
+		return;
+	q = a->seq > 0 ? question_find(t, a->seq) : NULL;
+	if (a->code == CODE_AGAIN) {
+		/* Of an ack made long ago, the count would lead us astray. */
+		if (!q && a->seq != t->hello)
+			return;
+		learn(t, s);
+		send_waiting(t);
+	} else if (a->seq == t->hello && a->seq) {
+		if (a->code == 0)
+			learn(t, s);
+		else
+			snprintf(t->why, sizeof(t->why), "%s", a->reason);
+	} else if (q) {
+		question_end(q, 0, a);
+	} else {
+		hear_listeners(t, a);
+	}
+}
+
+/* Signed by the machine of our key file, for this channel? */
+static bool is_machine(struct talk *t, struct seal *ret,
+		       const lcm_recv_buf_t *buf, const char *channel)
+{
+	if (!seal_read(ret, buf->data, buf->data_size))
+		return false;
+	if (memcmp(ret->key, t->key.machine_key, SEAL_KEY_BYTES) != 0) {
+		if (!t->known && !t->why[0] && seal_holds(ret, channel))
+			snprintf(t->why, sizeof(t->why), "somebody signs as "
+				 "machine %s with another key than that of our "
+				 "key file; if the machine's keys were made "
+				 "anew, get a new key file: edmctl keys add",
+				 t->machine);
+		return false;
+	}
+	return seal_holds(ret, channel);
+}
+
+/* Of this start of the service, and later than the one before. */
+static bool is_news(struct talk *t, const struct seal *s)
+{
+	if (!t->known || s->boot != t->boot) {
+		send_hello(t);
+		return false;
+	}
+	if (s->count <= t->heard)
+		return false;
+	t->heard = s->count;
+	return true;
+}
+
+static void on_ack(const lcm_recv_buf_t *buf, const char *channel, void *arg)
+{
+	struct talk *t = arg;
+	struct seal s;
+
+	if (is_machine(t, &s, buf, channel))
+		packet_ack(&s, hear_ack, t);
+}
+
+static void on_status(const lcm_recv_buf_t *buf, const char *channel,
+		      void *arg)
+{
+	struct talk *t = arg;
+	struct seal s;
+
+	if (is_machine(t, &s, buf, channel) && is_news(t, &s) &&
+	    packet_status(&s, &t->status))
+		t->nstatus++;
+}
+
+static void on_event(const lcm_recv_buf_t *buf, const char *channel, void *arg)
+{
+	struct talk *t = arg;
+	struct seal s;
+
+	if (is_machine(t, &s, buf, channel) && is_news(t, &s) &&
+	    packet_event(&s, t->on_event, t->on_event_arg))
+		t->nevents++;
+}
+
+/* -- Opening ---------------------------------------------------------------- */
+
+/* A channel to subscribe to is a pattern to LCM: the dots are meant. */
+static int subscribe(struct talk *t)
+{
+	static const struct {
+		const char *name;
+		lcm_msg_handler_t handler;
+	} channel[] = {
+		{ "ACK", on_ack }, { "STATUS", on_status },
+		{ "EVENT", on_event },
+	};
+	char pattern[CHANNEL_MAX + 4];
+
+	for (int i = 0; i < 3; i++) {
+		snprintf(pattern, sizeof(pattern), "EDM\\.%s\\.%s", t->machine,
+			 channel[i].name);
+		t->subscribed[i] = lcm_subscribe(t->lcm, pattern,
+						 channel[i].handler, t);
+		if (!t->subscribed[i])
+			return -ENETUNREACH;
+		lcm_subscription_set_queue_capacity(t->subscribed[i],
+						    QUEUE_MESSAGES);
+	}
+	return 0;
+}
+
+static int key_take(struct talk *t, const char *path, char *said)
+{
+	int err;
+
+	if (!path)
+		path = getenv("EDM_KEY");
+	err = path && *path ? keyfile_read(&t->key, path, said) :
+			      keyfile_find(&t->key, t->machine, said);
+	if (err < 0)
+		return err;
+	if (strcmp(t->key.machine, t->machine) == 0)
+		return 0;
+	snprintf(said, TALK_SAID_MAX, "the key is of machine %s, and machine "
+		 "%s is asked for; --key FILE names another, --machine %s the "
+		 "other", t->key.machine, t->machine, t->key.machine);
+	return -EINVAL;
+}
+
+static int join(struct talk *t, const struct talk_options *o, char *said)
+{
+	const char *url = o->url ? o->url : TALK_URL;
+
+	snprintf(t->client, sizeof(t->client), "%.20s-%d-%08x%08x",
+		 o->program ? o->program : "client", (int)getpid(),
+		 randombytes_random(), randombytes_random());
+	t->lcm = lcm_create(url);
+	if (t->lcm && subscribe(t) == 0)
+		return 0;
+	snprintf(said, TALK_SAID_MAX, "cannot open %s; does the host have a "
+		 "multicast route? ip link set lo multicast on; ip route add "
+		 "224.0.0.0/4 dev lo", url);
+	return -ENETUNREACH;
+}
+
+int talk_open(struct talk **ret, const struct talk_options *o,
+	      char said[TALK_SAID_MAX])
+{
+	struct talk *t = calloc(1, sizeof(*t));
+	int err = t && sodium_init() >= 0 ? 0 : -ENOMEM;
+
+	snprintf(said, TALK_SAID_MAX, "out of memory");
+	if (err == 0) {
+		snprintf(t->machine, sizeof(t->machine), "%s",
+			 o->machine ? o->machine : "edm");
+		err = key_take(t, o->key, said);
+	}
+	if (err == 0)
+		err = join(t, o, said);
+	if (err < 0) {
+		talk_close(t);
+		return err;
+	}
+	t->hello_s = -1;
+	send_hello(t);
+	*ret = t;
+	return 0;
+}
+
+void talk_close(struct talk *t)
+{
+	if (!t)
+		return;
+	for (int i = 0; i < TALK_QUESTIONS; i++) {
+		t->question[i].fn = NULL;
+		question_end(&t->question[i], -ECANCELED, NULL);
+	}
+	for (int i = 0; i < 3; i++)
+		if (t->subscribed[i])
+			lcm_unsubscribe(t->lcm, t->subscribed[i]);
+	if (t->lcm)
+		lcm_destroy(t->lcm);
+	sodium_memzero(&t->key, sizeof(t->key));
+	free(t);
+}
+
+const struct keyfile *talk_key(const struct talk *t)
+{
+	return &t->key;
+}
+
+const char *talk_why(const struct talk *t)
+{
+	return t->why;
+}
+
+/* -- Questions -------------------------------------------------------------- */
+
+/* What is due again, and what has waited long enough. */
+static void questions_turn(struct talk *t)
+{
+	const double now_s = talk_now_s();
+
+	if (!t->known)
+		send_hello(t);
+	for (int i = 0; i < TALK_QUESTIONS; i++) {
+		struct question *q = &t->question[i];
+
+		if (!q->seq)
+			continue;
+		if (now_s > q->until_s)
+			question_end(q, -ETIMEDOUT, NULL);
+		else if (t->known && now_s - q->sent_s > REPEAT_S)
+			send_question(t, q);
+	}
+}
+
+int talk_fd(const struct talk *t)
+{
+	return lcm_get_fileno(t->lcm);
+}
+
+void talk_step(struct talk *t)
+{
+	struct pollfd p = { .fd = talk_fd(t), .events = POLLIN };
+
+	for (int i = 0; i < QUEUE_MESSAGES && poll(&p, 1, 0) > 0; i++)
+		if (lcm_handle(t->lcm) < 0)
+			break;
+	questions_turn(t);
+}
+
+void talk_wait(struct talk *t, int ms)
+{
+	struct pollfd p = { .fd = talk_fd(t), .events = POLLIN };
+
+	if (!interrupted && poll(&p, 1, ms) >= 0)
+		talk_step(t);
+}
+
+int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
+	      talk_answer_fn fn, void *arg)
+{
+	struct question *room = question_find(t, 0);
+
+	if (!room)
+		return -EAGAIN;
+	*room = (struct question) {
+		.seq = ++t->seq, .arg = q->arg, .fn = fn, .arg_fn = arg,
+		.verb = strdup(q->verb), .job = strdup(q->job ? q->job : ""),
+		.text = strdup(q->text ? q->text : ""),
+		.until_s = talk_now_s() + timeout_s,
+	};
+	if (!room->verb || !room->job || !room->text) {
+		room->fn = NULL;
+		question_end(room, -ENOMEM, NULL);
+		return -ENOMEM;
+	}
+	if (t->known)
+		send_question(t, room);
+	return 0;
+}
+
+static void on_asked(void *arg, int err, const struct talk_ack *a)
+{
+	struct asking *asking = arg;
+
+	asking->over = true;
+	asking->err = err;
+	if (err < 0)
+		return;
+	asking->ret->code = a->code;
+	asking->ret->reason = strdup(a->reason);
+	asking->ret->body = strdup(a->body);
+}
+
+/* The service will not have us: that is an answer too. */
+static bool is_turned_away(const struct talk *t, struct asking *asking)
+{
+	if (t->known || !t->why[0])
+		return false;
+	*asking->ret = (struct talk_answer) {
+		.code = EX_NOPERM, .reason = strdup(t->why),
+		.body = strdup(""),
+	};
+	asking->err = 0;
+	return true;
+}
+
+int talk_ask(struct talk *t, const struct talk_question *q, double timeout_s,
+	     struct talk_answer *ret)
+{
+	struct asking asking = { .ret = ret };
+	int64_t seq = t->seq + 1;
+	int err = talk_send(t, q, timeout_s, on_asked, &asking);
+
+	while (err == 0 && !asking.over && !interrupted &&
+	       !is_turned_away(t, &asking))
+		talk_wait(t, 50);
+	if (err == 0 && !asking.over) {
+		struct question *left = question_find(t, seq);
+
+		left->fn = NULL;
+		question_end(left, -EINTR, NULL);
+		if (interrupted)
+			return -EINTR;
+	}
+	return err ? err : asking.err;
+}
+
+void talk_answer_free(struct talk_answer *a)
+{
+	free(a->reason);
+	free(a->body);
+	*a = (struct talk_answer) { .code = 0 };
+}
+
+void talk_on_event(struct talk *t,
+		   void (*fn)(void *arg, const struct talk_event *e),
+		   void *arg)
+{
+	t->on_event = fn;
+	t->on_event_arg = arg;
+}
+
+const struct talk_status *talk_status(const struct talk *t,
+				      uint64_t *ret_count)
+{
+	*ret_count = t->nstatus;
+	return t->nstatus ? &t->status : NULL;
+}
+
+uint64_t talk_events(const struct talk *t)
+{
+	return t->nevents;
+}
+
+/* -- For job.c -------------------------------------------------------------- */
+
+int64_t talk_numbers(struct talk *t, int n)
+{
+	int64_t first = t->seq + 1;
+
+	t->seq += n;
+	return first;
+}
+
+int talk_on_acks(struct talk *t, int64_t first, int n,
+		 void (*fn)(void *arg, const struct talk_ack *a), void *arg)
+{
+	for (int i = 0; i < LISTENERS; i++) {
+		if (t->listener[i].first)
+			continue;
+		t->listener[i] = (struct listener) {
+			.first = first, .n = n, .fn = fn, .arg = arg,
+		};
+		return 0;
+	}
+	return -EAGAIN;
+}
+
+void talk_off_acks(struct talk *t, int64_t first)
+{
+	for (int i = 0; i < LISTENERS; i++)
+		if (t->listener[i].first == first)
+			t->listener[i].first = 0;
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * keys.h - the service's own keys, and the verbs that manage those of others
+ *
+ * Beside the store lie two files: <machine>.machine-key, with which the
+ * service signs, for its user alone, and <machine>.key, the host's, which
+ * group edm may read.  Both are made at the first start.  A service with
+ * another store than the usual one leaves a copy of the host's key in
+ * /dev/shm, where clients look too.
+ *
+ * Threads: one, that of the event loop.
+ */
+#ifndef JOBS_KEYS_H
+#define JOBS_KEYS_H
+
+struct jobs;
+struct verb;
+struct jobs_lcm_command;
+
+/** keys_open() - read or make them.  Return: 0, or what to exit with; what is
+ *  wrong and what mends it is in the log. */
+int keys_open(struct jobs *j, const char *dir);
+
+/** keys_close() - take the copy away. */
+void keys_close(struct jobs *j);
+
+/* Verbs: "keys", "keys-add" with text NAME ROLE HEX, "keys-remove" NAME. */
+void keys_list(struct jobs *j, const struct verb *v,
+	       const struct jobs_lcm_command *c);
+void keys_add(struct jobs *j, const struct verb *v,
+	      const struct jobs_lcm_command *c);
+void keys_remove(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c);
+
+/** keys_hello() - verb "hello": who am I to this service? */
+void keys_hello(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c);
+
+#endif /* JOBS_KEYS_H */

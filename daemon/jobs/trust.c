@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * trust.c - whose packet it is, and whether it is a new one
+ */
+#include "trust.h"
+
+#include "jobs_log.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <string.h>
+
+#define TELL_US		10000000	/* between two lines of one cause */
+#define ANSWERS_A_S	200		/* to packets that are not taken */
+
+static const char *const roles[] = {
+	[ROLE_NONE]	= "none",
+	[ROLE_VIEWER]	= "viewer",
+	[ROLE_OPERATOR]	= "operator",
+	[ROLE_SERVICE]	= "service",
+};
+
+static const char *const causes[TRUST_NCAUSES] = {
+	[TRUST_FINE]	= "nothing is wrong",
+	[TRUST_SHAPE]	= "not the shape of a signed message",
+	[TRUST_KEY]	= "signed by a key that is not known here",
+	[TRUST_SIGNATURE] = "the signature does not hold for this machine and "
+			    "channel",
+	[TRUST_BOOT]	= "signed for another start of the service",
+	[TRUST_TIME]	= "signed too long ago, or ahead of time",
+	[TRUST_REPLAY]	= "sent before, or overtaken by a later one",
+	[TRUST_CROWD]	= "too many clients at once",
+	[TRUST_ROLE]	= "the role of its key does not allow it",
+	[TRUST_STRANGE]	= "from another host, or in LCM's pieces",
+};
+
+const char *trust_cause_text(enum trust_cause c)
+{
+	return causes[c];
+}
+
+const char *trust_role_name(enum trust_role role)
+{
+	return roles[role];
+}
+
+enum trust_role trust_role_of(const char *name)
+{
+	for (int i = ROLE_VIEWER; i <= ROLE_SERVICE; i++)
+		if (strcmp(name, roles[i]) == 0)
+			return (enum trust_role)i;
+	return ROLE_NONE;
+}
+
+void trust_init(struct trust *t, int64_t now_us)
+{
+	uint64_t drawn;
+
+	randombytes_buf(&drawn, sizeof(drawn));
+	t->boot = (int64_t)(drawn >> 1) | 1;
+	t->begun_us = now_us;
+	t->sent = 0;
+}
+
+static int64_t clock_of(const struct trust *t, int64_t now_us)
+{
+	return now_us - t->begun_us;
+}
+
+int64_t trust_count(struct trust *t, int64_t now_us)
+{
+	int64_t now = clock_of(t, now_us);
+
+	t->sent = now > t->sent ? now : t->sent + 1;
+	return t->sent;
+}
+
+/* -- Keys ------------------------------------------------------------------- */
+
+const struct trust_key *trust_find(const struct trust *t,
+				   const uint8_t key[SEAL_KEY_BYTES])
+{
+	for (int i = 0; i < TRUST_KEYS; i++)
+		if (t->key[i].role != ROLE_NONE &&
+		    memcmp(t->key[i].key, key, SEAL_KEY_BYTES) == 0)
+			return &t->key[i];
+	return NULL;
+}
+
+int trust_add(struct trust *t, const struct trust_key *k)
+{
+	struct trust_key *room = NULL;
+
+	for (int i = TRUST_KEYS - 1; i >= 0; i--) {
+		struct trust_key *one = &t->key[i];
+
+		if (one->role == ROLE_NONE)
+			room = one;
+		else if (strcmp(one->name, k->name) == 0 ||
+			 memcmp(one->key, k->key, SEAL_KEY_BYTES) == 0)
+			return -EEXIST;
+	}
+	if (!room)
+		return -ENOSPC;
+	*room = *k;
+	t->nkeys++;
+	return 0;
+}
+
+int trust_remove(struct trust *t, const char *name)
+{
+	for (int i = 0; i < TRUST_KEYS; i++) {
+		struct trust_key *one = &t->key[i];
+
+		if (one->role == ROLE_NONE || strcmp(one->name, name) != 0)
+			continue;
+		for (int s = 0; s < TRUST_SESSIONS; s++)
+			if (t->session[s].key == one)
+				t->session[s].key = NULL;
+		one->role = ROLE_NONE;
+		t->nkeys--;
+		return 0;
+	}
+	return -ENOENT;
+}
+
+/* -- Refusals --------------------------------------------------------------- */
+
+void trust_refuse(struct trust *t, enum trust_cause cause, const char *who,
+		  const char *from, int64_t now_us)
+{
+	struct trust_refusals *r = &t->refused[cause];
+
+	r->count++;
+	if (r->told_us && now_us - r->told_us < TELL_US)
+		return;
+	log_warning("trust: refused %" PRIu64 " packets: %s; the last of %s "
+		    "from %s", r->count - r->told, causes[cause], who, from);
+	r->told = r->count;
+	r->told_us = now_us;
+}
+
+void trust_who(const struct trust_packet *p, char to[KEYFILE_NAME_MAX])
+{
+	char hex[KEYFILE_HEX];
+
+	if (p->key) {
+		snprintf(to, KEYFILE_NAME_MAX, "%s", p->key->name);
+		return;
+	}
+	keyfile_hex(hex, p->seal.key);
+	snprintf(to, KEYFILE_NAME_MAX, "key %.8s...", hex);
+}
+
+/* A flood is not answered packet by packet. */
+static bool may_answer(struct trust *t, int64_t now_us)
+{
+	if (now_us - t->answer_us > 1000000) {
+		t->answer_us = now_us;
+		t->answers = 0;
+	}
+	return t->answers < ANSWERS_A_S;
+}
+
+/* What can be told without a signature being computed. */
+static enum trust_cause look_quickly(const struct trust *t,
+				     const struct trust_packet *p,
+				     int64_t now_us)
+{
+	int64_t now = clock_of(t, now_us), count = p->seal.count;
+
+	if (!p->key)
+		return TRUST_KEY;
+	if (p->seal.boot != t->boot)
+		return TRUST_BOOT;
+	/* Not by a difference, which a packet could make overflow. */
+	if (count < now - TRUST_OLD_US || count > now + TRUST_AHEAD_US)
+		return TRUST_TIME;
+	return TRUST_FINE;
+}
+
+enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
+			    const void *packet, size_t bytes, int64_t now_us,
+			    bool *ret_answer)
+{
+	enum trust_cause cause;
+
+	*ret_answer = false;
+	if (!seal_read(&p->seal, packet, bytes))
+		return TRUST_SHAPE;
+	p->key = trust_find(t, p->seal.key);
+	cause = look_quickly(t, p, now_us);
+	if (cause != TRUST_FINE && !may_answer(t, now_us))
+		return cause;
+	if (!seal_holds(&p->seal, p->channel))
+		return TRUST_SIGNATURE;
+	*ret_answer = cause != TRUST_FINE;
+	t->answers += *ret_answer;
+	return cause;
+}
+
+/* -- Sessions --------------------------------------------------------------- */
+
+static bool session_is_over(const struct trust_session *s, int64_t now)
+{
+	return !s->key || s->count < now - TRUST_OLD_US;
+}
+
+enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
+			     const char *client, int64_t now_us)
+{
+	int64_t now = clock_of(t, now_us);
+	struct trust_session *room = NULL;
+
+	for (int i = 0; i < TRUST_SESSIONS; i++) {
+		struct trust_session *s = &t->session[i];
+
+		if (s->key == p->key && strcmp(s->client, client) == 0) {
+			if (p->seal.count <= s->count)
+				return TRUST_REPLAY;
+			s->count = p->seal.count;
+			return TRUST_FINE;
+		}
+		if (!room && session_is_over(s, now))
+			room = s;
+	}
+	if (!room)
+		return TRUST_CROWD;
+	room->key = p->key;
+	room->count = p->seal.count;
+	snprintf(room->client, sizeof(room->client), "%s", client);
+	return TRUST_FINE;
+}

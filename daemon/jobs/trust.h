@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * trust.h - whose packet it is, and whether it is a new one
+ *
+ * A packet is taken when its signature holds for a key in the table, it is
+ * signed for this start of the service (`boot`), its count is near the
+ * service's clock, and greater than that of the last packet of the same
+ * client.  So none is taken twice, whoever sends it again, and what has to be
+ * remembered is bounded: a client that was silent for TRUST_OLD_US can be
+ * forgotten, because its old packets are too old by then.
+ *
+ * What is refused is counted by cause and told in the log, at most once in
+ * ten seconds for each cause.
+ *
+ * Units: in every name.  Threads: one, that of the event loop.
+ */
+#ifndef JOBS_TRUST_H
+#define JOBS_TRUST_H
+
+#include "keyfile.h"
+#include "seal.h"
+
+#define TRUST_KEYS		64
+#define TRUST_SESSIONS		1024
+#define TRUST_CLIENT_MAX	64	/* with its NUL */
+#define TRUST_OLD_US		30000000
+#define TRUST_AHEAD_US		10000000
+
+/* What a key's owner may do; each may do what those before it may. */
+enum trust_role { ROLE_NONE, ROLE_VIEWER, ROLE_OPERATOR, ROLE_SERVICE };
+
+struct trust_key {
+	uint8_t key[SEAL_KEY_BYTES];
+	char name[KEYFILE_NAME_MAX];
+	enum trust_role role;
+};
+
+/* Why a packet is not taken. */
+enum trust_cause {
+	TRUST_FINE, TRUST_SHAPE, TRUST_KEY, TRUST_SIGNATURE, TRUST_BOOT,
+	TRUST_TIME, TRUST_REPLAY, TRUST_CROWD, TRUST_ROLE, TRUST_STRANGE,
+	TRUST_NCAUSES
+};
+
+struct trust_session {
+	const struct trust_key *key;	/* NULL: free */
+	char client[TRUST_CLIENT_MAX];
+	int64_t count;			/* of its last packet */
+};
+
+struct trust_refusals {
+	uint64_t count, told;
+	int64_t told_us;
+};
+
+/* Placed by the caller. */
+struct trust {
+	struct keyfile machine;		/* its own pair; signs what it sends */
+	struct trust_key key[TRUST_KEYS];
+	int nkeys;
+	int64_t boot;
+	/* Private. */
+	int64_t begun_us, sent;
+	struct trust_session session[TRUST_SESSIONS];
+	struct trust_refusals refused[TRUST_NCAUSES];
+	int64_t answer_us, answers;	/* answered to those not taken */
+};
+
+/* One packet. */
+struct trust_packet {
+	const char *channel, *from;
+	struct seal seal;
+	const struct trust_key *key;	/* NULL: not in the table */
+};
+
+/** trust_init() - a new boot number; @machine and the keys are there. */
+void trust_init(struct trust *t, int64_t now_us);
+
+/** trust_count() - the service's clock, for a packet to be sent; grows. */
+int64_t trust_count(struct trust *t, int64_t now_us);
+
+/**
+ * trust_look() - is the packet signed by a key of the table, for us, now?
+ *
+ * @p->channel and @p->from are the caller's; the rest is filled.
+ * Return: TRUST_FINE; TRUST_KEY, TRUST_BOOT or TRUST_TIME with a signature
+ * that holds and leave to answer why; else what is to be dropped silently.
+ */
+enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
+			    const void *packet, size_t bytes, int64_t now_us,
+			    bool *ret_answer);
+
+/** trust_fresh() - is it @client's next packet?  TRUST_FINE, else why not. */
+enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
+			     const char *client, int64_t now_us);
+
+/** trust_refuse() - count it, and tell it if that is due. */
+void trust_refuse(struct trust *t, enum trust_cause cause, const char *who,
+		  const char *from, int64_t now_us);
+
+/** trust_who() - the name of a packet's key, or the key's first digits. */
+void trust_who(const struct trust_packet *p, char to[KEYFILE_NAME_MAX]);
+
+/** trust_cause_text() - "its signature does not hold", ... */
+const char *trust_cause_text(enum trust_cause c);
+
+/** trust_role_name() and back; ROLE_NONE for no such name. */
+const char *trust_role_name(enum trust_role role);
+enum trust_role trust_role_of(const char *name);
+
+/** trust_find() - the key in the table; NULL if it is not there. */
+const struct trust_key *trust_find(const struct trust *t,
+				   const uint8_t key[SEAL_KEY_BYTES]);
+
+/** trust_add() - Return: 0; -EEXIST the key or its name is there; -ENOSPC. */
+int trust_add(struct trust *t, const struct trust_key *k);
+
+/** trust_remove() - by name.  Its sessions end.  Return: 0 or -ENOENT. */
+int trust_remove(struct trust *t, const char *name);
+
+#endif /* JOBS_TRUST_H */

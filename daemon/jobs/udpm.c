@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * udpm.c - LCM's packets from a socket of our own
+ */
+#include "udpm.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <ifaddrs.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#define SHORT_MAGIC	0x4c433032u	/* "LC02" */
+#define HEAD_BYTES	8		/* magic, sequence number */
+#define PACKET_MAX	65507
+#define BUFFER_BYTES	(4 << 20)	/* the kernel gives what it allows */
+#define ADDRESSES_MAX	64
+#define LOOK_S		1		/* between looks at the interfaces */
+
+struct udpm {
+	int fd;
+	bool only_here;			/* packets of this host alone */
+	in_addr_t here[ADDRESSES_MAX];
+	int nhere;
+	time_t looked_s;
+	uint64_t strange;
+	char strange_from[UDPM_FROM_MAX];
+	uint8_t packet[PACKET_MAX + 1];
+};
+
+/* -- The URL ---------------------------------------------------------------- */
+
+static const char *group_read(struct sockaddr_in *ret, const char *at,
+			      size_t bytes)
+{
+	char host[64], *colon, *end;
+	unsigned long port;
+
+	if (bytes >= sizeof(host))
+		return "its group is too long";
+	memcpy(host, at, bytes);
+	host[bytes] = '\0';
+	colon = strchr(host, ':');
+	if (!colon)
+		return "it names no port; udpm://GROUP:PORT?ttl=0";
+	*colon = '\0';
+	port = strtoul(colon + 1, &end, 10);
+	if (*end || end == colon + 1 || port < 1 || port > 65535)
+		return "its port is not a number from 1 to 65535";
+	*ret = (struct sockaddr_in) {
+		.sin_family = AF_INET, .sin_port = htons((uint16_t)port),
+	};
+	if (inet_pton(AF_INET, host, &ret->sin_addr) != 1 ||
+	    !IN_MULTICAST(ntohl(ret->sin_addr.s_addr)))
+		return "its group is no multicast address, 224.0.1.0 to "
+		       "239.255.255.255";
+	if (ntohl(ret->sin_addr.s_addr) >> 8 == 0xe00000)
+		return "its group is one of those that belong to routers; "
+		       "224.0.1.0 to 239.255.255.255";
+	return NULL;
+}
+
+/* LCM takes the last of several; here one is enough, and said. */
+static const char *ttl_read(unsigned int *ret, const char *at)
+{
+	unsigned long ttl;
+	char *end;
+
+	if (strncmp(at, "ttl=", 4) != 0 || at[4] < '0' || at[4] > '9' ||
+	    (at[4] == '0' && at[5] >= '0' && at[5] <= '9'))
+		return "one ?ttl=N is wanted behind the port, and nothing "
+		       "else; 0 stays on this host";
+	ttl = strtoul(at + 4, &end, 10);
+	if (*end || ttl > 255)
+		return "its ttl is not one number from 0 to 255; 0 stays on "
+		       "this host";
+	*ret = (unsigned int)ttl;
+	return NULL;
+}
+
+const char *udpm_url_read(struct udpm_url *ret, const char *url)
+{
+	const char *at, *query, *wrong;
+
+	if (strncmp(url, "udpm://", 7) != 0)
+		return "not a udpm:// URL";
+	at = url + 7;
+	query = strchr(at, '?');
+	if (!query)
+		return "it has no ?ttl=N; ttl=0 stays on this host";
+	wrong = group_read(&ret->group, at, (size_t)(query - at));
+	return wrong ? wrong : ttl_read(&ret->ttl, query + 1);
+}
+
+/* -- The socket ------------------------------------------------------------- */
+
+static int set(int fd, int level, int option, int value)
+{
+	return setsockopt(fd, level, option, &value, sizeof(value));
+}
+
+static int join(int fd, const struct udpm_url *url)
+{
+	struct ip_mreq group = { .imr_multiaddr = url->group.sin_addr };
+
+	if (set(fd, SOL_SOCKET, SO_REUSEADDR, 1) < 0 ||
+	    set(fd, IPPROTO_IP, IP_MULTICAST_ALL, 0) < 0)
+		return -errno;
+	set(fd, SOL_SOCKET, SO_RCVBUF, BUFFER_BYTES);
+	/* Bound to the group, the socket gets nothing sent to one host. */
+	if (bind(fd, (const struct sockaddr *)&url->group,
+		 sizeof(url->group)) < 0 ||
+	    setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group,
+		       sizeof(group)) < 0)
+		return -errno;
+	return 0;
+}
+
+int udpm_open(struct udpm **ret, const struct udpm_url *url)
+{
+	struct udpm *u = calloc(1, sizeof(*u));
+	int err;
+
+	if (!u)
+		return -ENOMEM;
+	u->only_here = url->ttl == 0;
+	u->fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	err = u->fd < 0 ? -errno : join(u->fd, url);
+	if (err < 0) {
+		udpm_close(u);
+		return err;
+	}
+	*ret = u;
+	return 0;
+}
+
+void udpm_close(struct udpm *u)
+{
+	if (!u)
+		return;
+	if (u->fd >= 0)
+		close(u->fd);
+	free(u);
+}
+
+int udpm_fd(const struct udpm *u)
+{
+	return u->fd;
+}
+
+/* -- Whose packet it is ----------------------------------------------------- */
+
+static void addresses_look(struct udpm *u)
+{
+	struct ifaddrs *all, *one;
+
+	if (getifaddrs(&all) < 0)
+		return;
+	u->nhere = 0;
+	for (one = all; one && u->nhere < ADDRESSES_MAX; one = one->ifa_next)
+		if (one->ifa_addr && one->ifa_addr->sa_family == AF_INET)
+			u->here[u->nhere++] = ((const struct sockaddr_in *)
+				(const void *)one->ifa_addr)->sin_addr.s_addr;
+	freeifaddrs(all);
+}
+
+static bool address_is_known(const struct udpm *u, in_addr_t address)
+{
+	for (int i = 0; i < u->nhere; i++)
+		if (u->here[i] == address)
+			return true;
+	return false;
+}
+
+/*
+ * What goes out by an interface without an address of its own, such as a
+ * loopback, bears none.  From outside, the kernel takes such a packet for the
+ * groups 224.0.0.x alone, which udpm_url_read() refuses.  Interfaces come and
+ * go; a flood from outside makes no work of that.
+ */
+static bool is_here(struct udpm *u, in_addr_t address)
+{
+	struct timespec now;
+
+	if (address == INADDR_ANY || ntohl(address) >> 24 == IN_LOOPBACKNET ||
+	    address_is_known(u, address))
+		return true;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	if (u->looked_s && now.tv_sec - u->looked_s <= LOOK_S)
+		return false;
+	u->looked_s = now.tv_sec;
+	addresses_look(u);
+	return address_is_known(u, address);
+}
+
+static void name_sender(char to[UDPM_FROM_MAX], const struct sockaddr_in *from)
+{
+	char text[INET_ADDRSTRLEN];
+
+	inet_ntop(AF_INET, &from->sin_addr, text, sizeof(text));
+	snprintf(to, UDPM_FROM_MAX, "%s:%u", text, ntohs(from->sin_port));
+}
+
+static bool short_read(const uint8_t *packet, size_t bytes,
+		       struct udpm_packet *ret)
+{
+	const uint8_t *end;
+	uint32_t magic;
+
+	if (bytes <= HEAD_BYTES)
+		return false;
+	memcpy(&magic, packet, sizeof(magic));
+	end = memchr(packet + HEAD_BYTES, '\0', bytes - HEAD_BYTES);
+	if (ntohl(magic) != SHORT_MAGIC || !end)
+		return false;
+	ret->channel = (const char *)packet + HEAD_BYTES;
+	ret->data = end + 1;
+	ret->size = (size_t)(packet + bytes - ret->data);
+	return true;
+}
+
+bool udpm_take(struct udpm *u, struct udpm_packet *ret)
+{
+	struct sockaddr_in from = { .sin_family = AF_INET };
+	socklen_t size = sizeof(from);
+	ssize_t n = recvfrom(u->fd, u->packet, PACKET_MAX, 0,
+			     (struct sockaddr *)&from, &size);
+
+	if (n < 0)
+		return false;
+	if ((!u->only_here || is_here(u, from.sin_addr.s_addr)) &&
+	    short_read(u->packet, (size_t)n, ret)) {
+		name_sender(ret->from, &from);
+		return true;
+	}
+	u->strange++;
+	name_sender(u->strange_from, &from);
+	return false;
+}
+
+uint64_t udpm_strange(const struct udpm *u, const char **ret_from)
+{
+	*ret_from = u->strange_from;
+	return u->strange;
+}

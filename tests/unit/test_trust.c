@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_trust.c - whose packet is taken, and that none is taken twice
+ */
+#include "trust.h"
+
+#include <errno.h>
+#include <setjmp.h>
+#include <sodium.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define CHANNEL	"EDM.edm.COMMAND"
+#define S	INT64_C(1000000)
+
+struct world {
+	struct trust t;
+	struct keyfile host, other;
+	int64_t now_us;
+};
+
+static int setup(void **state)
+{
+	struct world *w = calloc(1, sizeof(*w));
+	struct trust_key row = { .name = "host", .role = ROLE_SERVICE };
+
+	if (!w)
+		return -1;
+	keyfile_draw(&w->host);
+	keyfile_draw(&w->other);
+	memcpy(row.key, w->host.public, sizeof(row.key));
+	w->now_us = 100 * S;
+	if (trust_add(&w->t, &row) < 0)
+		return -1;
+	trust_init(&w->t, w->now_us);
+	*state = w;
+	return 0;
+}
+
+static int teardown(void **state)
+{
+	free(*state);
+	return 0;
+}
+
+struct sent {
+	const struct keyfile *by;
+	const char *channel, *client;
+	int64_t boot, count;
+};
+
+/* What becomes of a packet that is @s. */
+static enum trust_cause send(struct world *w, const struct sent *s)
+{
+	const struct seal seal = { .key = s->by->public, .boot = s->boot,
+				   .count = s->count, .data = "x", .size = 1 };
+	struct trust_packet p = { .channel = CHANNEL, .from = "test" };
+	uint8_t packet[SEAL_BYTES + 1];
+	enum trust_cause cause;
+	bool answer;
+
+	seal_make(packet, &seal, s->channel, s->by->secret);
+	cause = trust_look(&w->t, &p, packet, sizeof(packet), w->now_us,
+			   &answer);
+	if (cause == TRUST_FINE)
+		cause = trust_fresh(&w->t, &p, s->client, w->now_us);
+	return cause;
+}
+
+static struct sent good(const struct world *w, int64_t count)
+{
+	return (struct sent) {
+		.by = &w->host, .channel = CHANNEL, .client = "a",
+		.boot = w->t.boot, .count = count,
+	};
+}
+
+static void a_packet_is_taken_once(void **state)
+{
+	struct world *w = *state;
+	struct sent s = good(w, 5);
+
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	assert_int_equal(send(w, &s), TRUST_REPLAY);
+	s.count = 4;
+	assert_int_equal(send(w, &s), TRUST_REPLAY);
+	s.client = "b";
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	s.client = "a";
+	s.count = 6;
+	assert_int_equal(send(w, &s), TRUST_FINE);
+}
+
+static void what_is_not_ours_is_not_taken(void **state)
+{
+	struct world *w = *state;
+	struct sent s = good(w, 5);
+
+	s.by = &w->other;
+	assert_int_equal(send(w, &s), TRUST_KEY);
+	s = good(w, 5);
+	s.channel = "EDM.other.COMMAND";
+	assert_int_equal(send(w, &s), TRUST_SIGNATURE);
+	s = good(w, 5);
+	s.boot++;
+	assert_int_equal(send(w, &s), TRUST_BOOT);
+	s = good(w, 11 * S);
+	assert_int_equal(send(w, &s), TRUST_TIME);
+	s = good(w, INT64_MAX);
+	assert_int_equal(send(w, &s), TRUST_TIME);
+	s = good(w, INT64_MIN);
+	assert_int_equal(send(w, &s), TRUST_TIME);
+	assert_int_equal(send(w, &(struct sent) {
+		.by = &w->host, .channel = CHANNEL, .client = "a",
+		.boot = w->t.boot, .count = 0 }), TRUST_FINE);
+}
+
+/* More clients than there is room for: none that counts is forgotten. */
+static void a_crowd_lets_no_replay_through(void **state)
+{
+	struct world *w = *state;
+	struct sent s;
+	char name[32];
+
+	for (int i = 0; i < TRUST_SESSIONS; i++) {
+		s = good(w, 1);
+		snprintf(name, sizeof(name), "c%d", i);
+		s.client = name;
+		assert_int_equal(send(w, &s), TRUST_FINE);
+	}
+	s.client = "late";
+	assert_int_equal(send(w, &s), TRUST_CROWD);
+	w->now_us += TRUST_OLD_US + 2;
+	s.client = "c7";
+	assert_int_equal(send(w, &s), TRUST_TIME);
+	s = good(w, TRUST_OLD_US);
+	s.client = "late";
+	assert_int_equal(send(w, &s), TRUST_FINE);
+}
+
+static void a_removed_key_is_out_at_once(void **state)
+{
+	struct world *w = *state;
+	struct trust_key row = { .name = "guest", .role = ROLE_VIEWER };
+	struct sent s = good(w, 5);
+
+	memcpy(row.key, w->other.public, sizeof(row.key));
+	assert_int_equal(trust_add(&w->t, &row), 0);
+	assert_int_equal(trust_add(&w->t, &row), -EEXIST);
+	s.by = &w->other;
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	assert_int_equal(trust_remove(&w->t, "guest"), 0);
+	assert_int_equal(trust_remove(&w->t, "guest"), -ENOENT);
+	s.count++;
+	assert_int_equal(send(w, &s), TRUST_KEY);
+}
+
+static void no_two_starts_have_one_number(void **state)
+{
+	struct world *w = *state;
+	const int64_t boot = w->t.boot;
+
+	trust_init(&w->t, w->now_us);
+	assert_true(w->t.boot > 0);
+	assert_true(w->t.boot != boot);
+	assert_true(trust_count(&w->t, w->now_us) > 0);
+	assert_int_equal(trust_count(&w->t, w->now_us), 2);
+}
+
+int main(void)
+{
+#define T(f)	cmocka_unit_test_setup_teardown(f, setup, teardown)
+	const struct CMUnitTest tests[] = {
+		T(a_packet_is_taken_once),
+		T(what_is_not_ours_is_not_taken),
+		T(a_crowd_lets_no_replay_through),
+		T(a_removed_key_is_out_at_once),
+		T(no_two_starts_have_one_number),
+	};
+
+	if (sodium_init() < 0)
+		return 1;
+	return cmocka_run_group_tests_name("trust", tests, NULL, NULL);
+}
