@@ -22,7 +22,14 @@
  *
  * Nodes on a line are slowed by nothing.  Lines shorter than 100 corner_mm have
  * besides the radius of the curve they follow, from the chords of 20 corner_mm
- * to both sides of a node, no smaller than corner_mm.
+ * to both sides of a node, no smaller than corner_mm; an axis beside the path
+ * has the acceleration and jerk that its share changes by over those chords.
+ *
+ * What a rounding of nodes by tolerance_mm, or a pulse, can do is no change:
+ * turns and steps of lines shorter than 20 tolerances are those of chords as
+ * long, and what could be a rounding is taken off.  What that takes off a curve
+ * is looked for over chords up to 32 times as long.
+ *
  * Ceilings are rounded down to levels at most 1/32 apart (the speeds of the
  * axes are levels too), so no more than a few hundred can follow each other,
  * each slower than the one before.
