@@ -58,14 +58,21 @@ struct change {
 	double d[INTERP_NAXES];		/* of each column's rate; >= 0 */
 };
 
-/* What is twice as much as a rounding is a change, all of it. */
+/* Of a corner: what is twice as much as a rounding is a change, all of it. */
 static double heard(double d, double noise)
 {
 	return d >= 2 * noise ? d : 2 * larger(d - noise, 0);
 }
 
+/* Of a curve: what is sure.  A wider window is surer. */
+static double sure(double d, double noise)
+{
+	return larger(d - noise, 0);
+}
+
 /* @per_mm: 1 by the length before, and 1 by the one behind. */
-static void change_of(const struct pass *w, double per_mm, struct change *c)
+static void change_of(const struct pass *w, double per_mm,
+		      double (*of)(double, double), struct change *c)
 {
 	const uint32_t both = c->a->along & c->b->along;
 	double along = 0;
@@ -78,7 +85,7 @@ static void change_of(const struct pass *w, double per_mm, struct change *c)
 		const double by = both >> j & 1 ? 0 :
 				  along * larger(fabs(a), fabs(b));
 
-		c->d[j] = heard(fabs(b - a), (w->tol[j] + by) * per_mm);
+		c->d[j] = of(fabs(b - a), (w->tol[j] + by) * per_mm);
 	}
 }
 
@@ -246,7 +253,7 @@ static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 			return smaller(v, fast);
 		c.a = &k.a;
 		c.b = &k.b;
-		change_of(w, k.per_mm, &c);
+		change_of(w, k.per_mm, sure, &c);
 		if (is_clear(w, &c, all))
 			return smaller(v, fast);
 		v = smaller(v, bow_mm_s(w, &k, c.d));
@@ -283,7 +290,7 @@ static double turn(struct pass *w, uint32_t last, uint32_t i,
 
 		if (change->a->along == change->b->along &&
 		    bow_of(w, i, &near, change->a->along, &k)) {
-			change_of(w, k.per_mm, &c);
+			change_of(w, k.per_mm, heard, &c);
 			return smaller(corner(w, &c), step(w, &c));
 		}
 	}
@@ -298,7 +305,7 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 	struct change c = { .a = a, .b = b };
 	double v;
 
-	change_of(w, 1 / s[last].length_mm + 1 / s[i].length_mm, &c);
+	change_of(w, 1 / s[last].length_mm + 1 / s[i].length_mm, heard, &c);
 	v = turn(w, last, i, &c);
 	if (pass_is_short(w, last) || pass_is_short(w, i))
 		v = smaller(v, curve(w, i, a->along & b->along,
@@ -322,7 +329,7 @@ double pass_line_mm_s(struct pass *w, uint32_t i, const struct heading *h)
 	look_around(w, i, k);
 	if (!(chord(w, k->behind, k->ahead, &around) > 0))
 		around = *h;
-	change_of(w, per_mm, &c);
+	change_of(w, per_mm, heard, &c);
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double rate = fabs(c.d[j] > 0 ? h->rate[j] :
 						      around.rate[j]);
