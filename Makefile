@@ -50,6 +50,7 @@ CORE	:= $(wildcard libinterp/core/*/*.c)
 COMPILE	:= $(wildcard libinterp/compile/*/*.c)
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
+WORDS	:= $(wildcard daemon/words/*.c)
 RT	:= $(wildcard daemon/rt/*.c daemon/rt/*/*.c)
 # Of two files for libgpiod, the one for the version that pkg-config finds.
 PKG_CONFIG ?= pkg-config
@@ -83,19 +84,21 @@ MODEL_H		= -Ilibinterp/model/include
 INC_core	= $(CORE_H) -Ilibinterp/core
 INC_compile	= $(COMPILE_H) -Ilibinterp/compile $(INC_core)
 INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
-INC_rt		= -Idaemon/rt -Idaemon/io $(CORE_H)
+WORDS_H		= -Idaemon/words
+INC_words	= $(WORDS_H)
+INC_rt		= -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
-INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(CORE_H)
+INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
-INC_shm		= -Idaemon/shm
+INC_shm		= -Idaemon/shm $(WORDS_H)
 INC_setup	= -Idaemon/setup
 INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Idaemon/shm $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_jobs	= -Idaemon/jobs -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign
 INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(CORE_H) $(MODEL_H) $(INC_client)
-INC_dds		= -Iclients/dds -Idaemon/shm -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
+INC_dds		= -Iclients/dds -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
@@ -108,12 +111,13 @@ COMPILE_A := $(B)/libinterp-compile.a
 MODEL_A	 := $(B)/libinterp-model.a
 TRIED_A	 := $(B)/tests-tried.a
 INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A)
-RT_O	 := $(call obj,$(RT))
+WORDS_O	 := $(call obj,$(WORDS))
+RT_O	 := $(call obj,$(RT)) $(WORDS_O)
 IO_O	 := $(call obj,$(IO))
 SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
-SHM_O	 := $(call obj,$(SHM))
+SHM_O	 := $(call obj,$(SHM)) $(WORDS_O)
 SIGN_O	 := $(call obj,$(SIGN))
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
@@ -330,6 +334,11 @@ bench: vm
 
 include tests/experiments/Makefile
 
+# The table of faults in the documents, from the table in the code.
+faults: $(B)/edmctl
+	$(Q)docs/faults $(B)/edmctl > $(B)/faults.md
+	$(Q)docs/put-table $(B)/faults.md docs/architecture.md
+
 # Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
 pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(call say,DRAW,docs/pictures)
@@ -370,7 +379,7 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
 
 # -- Lint ---------------------------------------------------------------------
 
-HEADERS	 = $(wildcard libinterp/*/include/interp/*.h daemon/*/*.h clients/*/*.h)
+HEADERS	 = $(wildcard libinterp/*/include/interp/*.h daemon/*/*.h daemon/rt/*/*.h clients/*/*.h)
 
 # What an edmd must not have: a reader, messages, a database, another floor.
 NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_

@@ -104,6 +104,7 @@ static void status_words(struct talk_status *s, const edm_status_t *m)
 	word(s->daemon, m->daemon);
 	word(s->state, m->state);
 	word(s->fault, m->fault);
+	plain_copy(s->faults, sizeof(s->faults), m->faults);
 	word(s->job, m->job);
 	word(s->job_name, m->job_name);
 	word(s->job_state, m->job_state);

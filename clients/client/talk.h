@@ -32,6 +32,7 @@
 #define TALK_NAXES	8
 #define TALK_CHUNK_MAX	32768
 #define TALK_WORD_MAX	64
+#define TALK_FAULTS_MAX	512		/* all of them at once */
 #define TALK_SAID_MAX	(KEYFILE_SAID_MAX + 64)
 #define TALK_QUESTIONS	16		/* under way at once */
 
@@ -50,6 +51,7 @@ struct talk_status {
 	int64_t utime;
 	char machine[TALK_WORD_MAX], daemon[TALK_WORD_MAX];
 	char state[TALK_WORD_MAX], fault[TALK_WORD_MAX];
+	char faults[TALK_FAULTS_MAX];	/* all that are latched */
 	char job[TALK_WORD_MAX], job_name[TALK_WORD_MAX];
 	char job_state[TALK_WORD_MAX];
 	int line, lines;

@@ -3,90 +3,34 @@
  * alarms.c - the fault in words: what it is, why, what clears it
  */
 #include "ctl.h"
+#include "faults.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sysexits.h>
 
-struct words {
-	const char *fault, *what, *why, *clear;
-};
-
-#define RESET	"edmctl reset; then start goes on, stop ends the job"
-
-/* clang-format off */
-static const struct words words[] = {
-	{ "e-stop", "emergency stop",
-	  "the e-stop input is on, or estop was commanded",
-	  "release the button; " RESET },
-	{ "short-not-cleared", "a short circuit that a retract did not clear",
-	  "debris or a broken piece between electrode and work, or contact "
-	  "elsewhere",
-	  "flush and look; edmctl retract MM moves further back; " RESET },
-	{ "gap-lost", "the gap voltage cannot be read",
-	  "sensor, wiring or [gap] source",
-	  "mend the sensor; " RESET },
-	{ "io-lost", "the drives or lines do not answer",
-	  "power, cable or bus of the machine",
-	  "mend it, home where the place is in doubt; " RESET },
-	{ "contact", "a touch while positioning",
-	  "something stands in the way of electrode or wire",
-	  "clear the way; retract or jog away; " RESET },
-	{ "soft-limit", "the path leaves the travel of an axis",
-	  "the program, or its work offset, leads outside [axis] travel_*",
-	  "edmctl reset, edmctl stop; correct the program" },
-	{ "program", "the program in memory is damaged",
-	  "a segment failed its check",
-	  "edmctl reset, edmctl stop; submit it again" },
-	{ "overrun", "too many periods missed in a row",
-	  "the host is not fit for real time, or too busy",
-	  "edmctl doctor; " RESET },
-	{ "retract-at-start", "still short where the way back ends",
-	  "the short is at the start of the path",
-	  "flush and look; " RESET },
-	{ "retract-time", "a retract took too long",
-	  "[gap] retract_max_s is over and it is still short",
-	  "flush and look; " RESET },
-	{ "retract-count", "many retracts without erosion between them",
-	  "[gap] abort_count; the cut does not go on",
-	  "flush, or a gentler condition; " RESET },
-	{ "arcing", "arcs that neither pause nor retract ended",
-	  "debris in the gap, or too much energy for its size",
-	  "flush, clean the electrode, longer off time; " RESET },
-	{ "wire-broken", "the wire is broken",
-	  "energy, tension or flushing",
-	  "thread it; " RESET },
-	{ "gap-stuck", "the gap signal stands still, or is noise",
-	  "sensor or wiring",
-	  "mend the sensor; " RESET },
-	{ "limit-switch", "an axis ran onto its limit switch",
-	  "not homed, a wrong travel_*, or a switch that failed",
-	  "edmctl reset; without a job edmctl jog AXIS MM, away from the "
-	  "switch" },
-	{ "door", "the door is open",
-	  "it was opened while a job ran, or its switch failed",
-	  "close it; " RESET },
-	{ "dielectric", "the dielectric is too low to spark in",
-	  "its level switch",
-	  "fill up; " RESET },
-	{ "home-not-found", "homing met no switch or no index mark",
-	  "the switch or its wiring, or home_dir, in the machine file",
-	  "edmctl reset; mend it; edmctl home" },
-};
-/* clang-format on */
-
-static const struct words *words_of(const char *fault)
+static const struct fault_row *row_of(const char *fault)
 {
-	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
-		if (strcmp(words[i].fault, fault) == 0)
-			return &words[i];
+	for (int i = FAULT_NONE + 1; i < CYCLE_NFAULTS; i++)
+		if (strcmp(fault_table[i].name, fault) == 0)
+			return &fault_table[i];
 	return NULL;
+}
+
+static void print_fault(const char *name)
+{
+	const struct fault_row *row = row_of(name);
+
+	printf("fault      %s%s%s\n", name, row ? ": " : "",
+	       row ? row->what : "");
+	if (row)
+		printf("why        %s\nclear      %s\n", row->why, row->clear);
 }
 
 static void print_now(const struct talk_status *s)
 {
-	const struct words *w = words_of(s->fault);
+	char all[sizeof(s->faults)], *at = all;
 
 	if (strcmp(s->daemon, "ok") != 0)
 		printf("edmd       %s; its last word follows.  systemctl start "
@@ -95,10 +39,11 @@ static void print_now(const struct talk_status *s)
 		printf("fault      none\n");
 		return;
 	}
-	printf("fault      %s%s%s\n", s->fault, w ? ": " : "",
-	       w ? w->what : "");
-	if (w)
-		printf("why        %s\nclear      %s\n", w->why, w->clear);
+	print_fault(s->fault);
+	memcpy(all, s->faults, sizeof(all));
+	for (char *name; (name = strsep(&at, " ")); )
+		if (*name && strcmp(name, s->fault) != 0)
+			print_fault(name);
 	if (*s->job)
 		printf("job        %s in line %d, at %.3f mm\n", s->job,
 		       s->line, s->place_mm);
@@ -121,12 +66,12 @@ static void print_past(json_t *rows)
 
 static int print_json(const struct talk_status *s, json_t *rows)
 {
-	const struct words *w = words_of(s->fault);
-	json_t *all = json_pack("{s:s,s:s,s:s,s:s,s:s,s:s,s:O}", "daemon",
-				s->daemon, "fault", s->fault, "what",
-				w ? w->what : "", "why", w ? w->why : "",
-				"clear", w ? w->clear : "", "job", s->job,
-				"alarms", rows);
+	const struct fault_row *w = row_of(s->fault);
+	json_t *all = json_pack("{s:s,s:s,s:s,s:s,s:s,s:s,s:s,s:O}", "daemon",
+				s->daemon, "fault", s->fault, "faults",
+				s->faults, "what", w ? w->what : "", "why",
+				w ? w->why : "", "clear", w ? w->clear : "",
+				"job", s->job, "alarms", rows);
 
 	if (!all)
 		return EX_SOFTWARE;
@@ -163,4 +108,57 @@ int ctl_alarms(struct ctl *c)
 	}
 	json_decref(rows);
 	return rc ? rc : strcmp(s->fault, "none") != 0;
+}
+
+/* -- Every fault there is ------------------------------------------------------ */
+
+static json_t *row_json(enum cycle_fault f)
+{
+	const struct fault_row *row = &fault_table[f];
+
+	return json_pack("{s:i,s:s,s:s,s:s,s:s,s:s,s:s,s:b}", "number", f,
+			 "fault", row->name, "what", row->what, "why",
+			 row->why, "clear", row->clear, "motion",
+			 fault_motion_text(f), "watched", fault_scope_text(f),
+			 "drives_off", row->disables);
+}
+
+static int print_all_json(void)
+{
+	json_t *all = json_array();
+
+	for (int i = FAULT_NONE + 1; all && i < CYCLE_NFAULTS; i++)
+		json_array_append_new(all, row_json((enum cycle_fault)i));
+	if (!all)
+		return EX_SOFTWARE;
+	json_dumpf(all, stdout, JSON_INDENT(1) | JSON_PRESERVE_ORDER);
+	putchar('\n');
+	json_decref(all);
+	return 0;
+}
+
+static void print_row(enum cycle_fault f)
+{
+	print_fault(fault_table[f].name);
+	printf("watched    %s\nmotion     %s\n", fault_scope_text(f),
+	       fault_motion_text(f));
+}
+
+int ctl_faults(struct ctl *c)
+{
+	if (c->arg && !row_of(c->arg)) {
+		fprintf(stderr, "edmctl: no fault '%s'; edmctl faults lists "
+			"them\n", c->arg);
+		return EX_USAGE;
+	}
+	if (c->json)
+		return print_all_json();
+	for (int i = FAULT_NONE + 1; i < CYCLE_NFAULTS; i++) {
+		if (c->arg && strcmp(c->arg, fault_table[i].name) != 0)
+			continue;
+		print_row((enum cycle_fault)i);
+		if (!c->arg && i < CYCLE_NFAULTS - 1)
+			putchar('\n');
+	}
+	return 0;
 }

@@ -44,6 +44,7 @@ int ctl_override(struct ctl *c);
 int ctl_jog(struct ctl *c);
 int ctl_home(struct ctl *c);
 int ctl_alarms(struct ctl *c);
+int ctl_faults(struct ctl *c);
 int ctl_doctor(struct ctl *c);
 int ctl_queue(struct ctl *c);
 int ctl_show(struct ctl *c);

@@ -61,6 +61,8 @@ static const struct verb verbs[] = {
 	  "the machine now; exits with 69 if edmd is not there" },
 	{ "alarms", "", ctl_alarms, 0, 0, false, "",
 	  "the fault, why and what clears it; and the last ones" },
+	{ "faults", "[FAULT]", ctl_faults, 1, 0, true, "",
+	  "what every fault, or one, means and what clears it" },
 	{ "doctor", "", ctl_doctor, 0, 0, false, "",
 	  "what this host lacks for cutting, and the command that mends it" },
 	{ "watch", "", ctl_watch, 0, 0, false, "o",

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* watch.c - one machine, seen through its shared memory */
+#include "faults.h"
 #include "watch.h"
 
 #include <errno.h>
@@ -120,7 +121,7 @@ void watch_look(struct watch *w, int64_t now_ns, edm_MachineState *ret)
 	snprintf(ret->machine, sizeof(ret->machine), "%s", w->machine);
 	snprintf(ret->state, sizeof(ret->state), "%s", state);
 	snprintf(ret->fault, sizeof(ret->fault), "%s",
-		 w->heard && s->fault ? shm_fault_name(s->fault) : "none");
+		 w->heard && s->fault ? fault_name(s->fault) : "none");
 	snprintf(ret->outcome, sizeof(ret->outcome), "%s",
 		 shm_outcome_name(w->heard ? s->outcome : SHM_OUTCOME_NONE));
 	if (!w->heard)

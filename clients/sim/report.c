@@ -111,9 +111,9 @@ static json_t *report(const struct sim_run *r)
 	json_t *o = json_object();
 
 	json_object_set_new(o, "outcome", json_string(r->result.outcome));
-	if (c->fault != FAULT_NONE)
+	if (c->fault.first != FAULT_NONE)
 		json_object_set_new(o, "fault",
-				    json_string(cycle_fault_name(c->fault)));
+				    json_string(fault_name(c->fault.first)));
 	add_int(o, "cycles", c->totals.cycles);
 	add_real(o, "virtual_s", seconds(c, c->totals.cycles));
 	add_real(o, "wall_s", r->result.wall_s);
@@ -157,8 +157,8 @@ void report_print(const struct sim_run *r, FILE *f)
 	const double s = seconds(c, t->cycles);
 
 	fprintf(f, "outcome    %s", r->result.outcome);
-	if (c->fault != FAULT_NONE)
-		fprintf(f, ": %s at line %u", cycle_fault_name(c->fault),
+	if (c->fault.first != FAULT_NONE)
+		fprintf(f, ": %s at line %u", fault_name(c->fault.first),
 			c->cursor.seg.line);
 	fprintf(f, "\npath       %.3f mm in %u segments, %u lines\n",
 		r->job.program.head->length_mm, motions(&r->job.program),

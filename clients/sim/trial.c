@@ -54,7 +54,7 @@ static void run_seed(struct crew *w, uint32_t k)
 	x->cut = r->result.cut;
 	x->virtual_s = (double)x->totals.cycles *
 		       (double)config_period_ns(w->c) * 1e-9;
-	x->fault = r->cycle.fault != FAULT_NONE;
+	x->fault = r->cycle.fault.first != FAULT_NONE;
 	free(r->spent);
 	free(r);
 }

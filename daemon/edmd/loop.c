@@ -167,7 +167,7 @@ int loop_start(struct loop *l, struct setup_report *report)
 
 	l->report = report;
 	l->told = (struct loop_told) {
-		.state = l->cycle.state, .fault = l->cycle.fault,
+		.state = l->cycle.state,
 		.outcome = l->cycle.outcome,
 	};
 	sem_init(&l->ready, 0, 0);

@@ -20,7 +20,6 @@
 /* What the events told last. */
 struct loop_told {
 	enum cycle_state state;
-	enum cycle_fault fault;
 	enum cycle_outcome outcome;
 	uint32_t program, number;	/* the condition called last, and in */
 	char letter;			/* which program; 0: none */

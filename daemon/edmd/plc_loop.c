@@ -35,7 +35,7 @@ static uint8_t flags_of(const struct cycle *c)
 		[1] = c->out.power,
 		[2] = state_duty[c->state].running,
 		[3] = c->state == STATE_HOLD,
-		[4] = c->fault != FAULT_NONE,
+		[4] = c->fault.first != FAULT_NONE,
 		[5] = c->out.pump,
 		[6] = c->loaded,
 	};
@@ -56,7 +56,7 @@ void loop_plc_write(struct loop *l)
 	struct plc_tell t = {
 		.state = (uint8_t)c->state,
 		.flags = flags_of(c),
-		.fault = (uint8_t)c->fault,
+		.fault = (uint8_t)c->fault.first,
 		.mcode = c->mcode.number,
 		.gap = (uint16_t)whole(c->gap_v * 100, 0, UINT16_MAX),
 		.feed = (int16_t)whole(c->feed_mm_s * 1000, INT16_MIN,

@@ -17,6 +17,6 @@ void loop_plc_values(FILE *f, uint8_t node)
 	fprintf(f, ";\nVAL_ %d Fault", id);
 	for (int i = 0; i < CYCLE_NFAULTS; i++)
 		fprintf(f, " %d \"%s\"", i,
-			cycle_fault_name((enum cycle_fault)i));
+			fault_name((uint32_t)i));
 	fputs(";\n", f);
 }

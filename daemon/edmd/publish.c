@@ -53,7 +53,8 @@ SAME(SHM_NOT_PASSED, ANSWER_NOT_PASSED);
 SAME(SHM_ELSEWHERE, ANSWER_ELSEWHERE);
 SAME(SHM_NOT_UP, ANSWER_NOT_UP);
 SAME(SHM_LOCKED, ANSWER_LOCKED);
-SAME(SHM_LOCKED + 1, CYCLE_NANSWERS);
+SAME(SHM_STILL_THERE, ANSWER_STILL_THERE);
+SAME(SHM_STILL_THERE + 1, CYCLE_NANSWERS);
 SAME(SHM_OUTCOME_NONE, OUTCOME_NONE);
 SAME(SHM_OUTCOME_DONE, OUTCOME_DONE);
 SAME(SHM_OUTCOME_FAULT, OUTCOME_FAULT);
@@ -143,17 +144,24 @@ static void notice_condition(struct loop *l)
 		   (int32_t)t->number);
 }
 
-/* Fault first, so that who reads "state: fault" already knows which. */
+/* Each one that was latched, whatever came after it. */
+static void notice_faults(struct loop *l)
+{
+	uint64_t f = l->cycle.fault.untold;
+
+	for (l->cycle.fault.untold = 0; f; f &= f - 1)
+		loop_event(l, SHM_EV_FAULT, 0, __builtin_ctzll(f));
+}
+
+/* Faults first, so that who reads "state: fault" already knows which. */
 void loop_notice(struct loop *l)
 {
 	const struct cycle *c = &l->cycle;
 	struct loop_told was = l->told;
 
 	l->told.state = c->state;
-	l->told.fault = c->fault;
 	l->told.outcome = c->outcome;
-	if (c->fault != was.fault && c->fault != FAULT_NONE)
-		loop_event(l, SHM_EV_FAULT, 0, (int32_t)c->fault);
+	notice_faults(l);
 	if (c->state != was.state)
 		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
 	if (c->outcome != was.outcome && c->outcome != OUTCOME_NONE)
@@ -243,7 +251,8 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 		.cycle = c->count,
 		.time_ns = l->time_ns,
 		.state = c->state,
-		.fault = c->fault,
+		.fault = c->fault.first,
+		.faults = c->fault.latched,
 		.outcome = c->outcome,
 		.program = l->program ? l->program->n : 0,
 		.cond_number = c->out.cond_number,

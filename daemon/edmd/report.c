@@ -85,7 +85,7 @@ static void tell_status(const struct shm_status *s)
 		return;
 	sd_notifyf(0, "STATUS=%s%s%s, program %u, line %u, %.3f of %.3f mm",
 		   shm_state_name(now.state), now.fault ? " " : "",
-		   now.fault ? shm_fault_name(now.fault) : "", now.program,
+		   now.fault ? fault_name(now.fault) : "", now.program,
 		   now.line, now.place_mm, now.length_mm);
 }
 
@@ -98,7 +98,7 @@ static void tell(struct report *r, const struct shm_event *e)
 	case SHM_EV_FAULT:
 		log_line(LOG_ERROR, "cycle: fault %s at %.3f mm; power is off; "
 			 "reset, then start goes on",
-			 shm_fault_name((uint32_t)e->code), e->place_mm);
+			 fault_name((uint32_t)e->code), e->place_mm);
 		break;
 	case SHM_EV_LOADED:
 		log_line(LOG_INFO, "cycle: program %d loaded", e->code);

@@ -103,15 +103,19 @@ static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 }
 
 /* Latched until an operator's reset, whoever latched it. */
-static void fault_restore(struct cycle *c, uint32_t fault)
+static void fault_restore(struct cycle *c, uint32_t fault, uint64_t faults)
 {
 	if (fault == FAULT_NONE || fault >= CYCLE_NFAULTS)
 		return;
-	c->fault = (enum cycle_fault)fault;
+	fault_latch(&c->fault, (enum cycle_fault)fault);
+	for (uint32_t i = FAULT_NONE + 1; i < CYCLE_NFAULTS; i++)
+		if (faults >> i & 1)
+			fault_latch(&c->fault, (enum cycle_fault)i);
+	c->fault.fresh = c->fault.untold = 0;
 	c->outcome = c->loaded ? OUTCOME_FAULT : c->outcome;
 	c->state = STATE_FAULT;
 	log_line(LOG_WARNING, "resume: the fault was %s; it stays until a "
-		 "reset", shm_fault_name(fault));
+		 "reset", fault_name(fault));
 }
 
 /* -- The job ------------------------------------------------------------------ */
@@ -328,5 +332,5 @@ void resume(struct loop *l, const struct machine_config *c,
 	l->cycle.plc_override = before->plc_override;
 	if (job_was_under_way(before))
 		job_restore(l, c, before);
-	fault_restore(&l->cycle, before->fault);
+	fault_restore(&l->cycle, before->fault, before->faults);
 }

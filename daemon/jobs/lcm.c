@@ -398,6 +398,7 @@ void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 		.daemon = lent(s->daemon),
 		.state = lent(s->state),
 		.fault = lent(s->fault),
+		.faults = lent(s->faults),
 		.job = lent(s->job),
 		.job_name = lent(s->job_name),
 		.job_state = lent(s->job_state),

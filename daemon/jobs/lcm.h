@@ -67,7 +67,7 @@ struct jobs_lcm_event {
 };
 
 struct jobs_lcm_status {
-	const char *daemon, *state, *fault;
+	const char *daemon, *state, *fault, *faults;
 	const char *job, *job_name, *job_state, *condition;
 	uint32_t line, lines;
 	double place_mm, length_mm, progress;

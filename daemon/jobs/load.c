@@ -38,7 +38,8 @@ static const char *answer_text(int code)
 	case SHM_NOT_UP:
 		return "its drives are not up yet";
 	case SHM_LOCKED:
-		return "the PLC does not permit it; start goes on once it does";
+		return "a guard or the PLC does not permit it; start goes on once "
+		       "they do";
 	case -ETIMEDOUT:
 		return "no answer";
 	default:

@@ -2,6 +2,7 @@
 /*
  * queue.c - follow the job at the machine
  */
+#include "faults.h"
 #include "jobs.h"
 
 #include "interp/tech_table.h"
@@ -205,7 +206,7 @@ void queue_event(struct jobs *j, const struct shm_event *e)
 static void follow_fault(struct jobs *j)
 {
 	struct queue *q = &j->queue;
-	const char *fault = shm_fault_name(q->snap.fault);
+	const char *fault = fault_name(q->snap.fault);
 
 	if (q->job.state == JOB_FAULT)
 		return;
@@ -331,7 +332,7 @@ static void unload_stranger(struct jobs *j, int64_t now_us)
 static void fault_without_job(struct jobs *j)
 {
 	struct queue *q = &j->queue;
-	const char *fault = shm_fault_name(j->link.snap.fault);
+	const char *fault = fault_name(j->link.snap.fault);
 
 	/* A reset alone must set nothing in motion. */
 	set_waiting(j, q->waiting || q->behind > 0);

@@ -2,6 +2,7 @@
 /*
  * status.c - edmd's snapshot and the job loaded, as STATUS
  */
+#include "faults.h"
 #include "jobs.h"
 
 #include "interp/tech_table.h"
@@ -54,11 +55,13 @@ static void fill_job(struct jobs_lcm_status *w, const struct jobs *j)
 static void fill_machine(struct jobs_lcm_status *w, const struct link *l)
 {
 	const struct shm_snapshot *s = &l->snap;
+	static char faults[512];
 	bool there = l->state == LINK_OK;
 
 	w->daemon = link_state_name(l->state);
 	w->state = there ? shm_state_name(s->state) : "unknown";
-	w->fault = shm_fault_name(s->fault);
+	w->fault = fault_name(s->fault);
+	w->faults = fault_list(s->faults, faults, sizeof(faults));
 	for (int i = 0; i < JOBS_LCM_NAXES; i++)
 		w->pos_mm[i] = s->pos[i] * s->pulse_mm[i];
 	if (there) {

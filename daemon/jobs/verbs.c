@@ -57,6 +57,11 @@ static const char *refusal(int code)
 				   "yet; start cuts on",
 		[SHM_ELSEWHERE] = "the axes are not where the program begins; "
 				  "submit it again",
+		[SHM_LOCKED] = "nothing may move now: the door is open, the "
+			       "gap cannot be read, or the PLC is not there, "
+			       "holds, or has no permit",
+		[SHM_STILL_THERE] = "what caused the fault is still there; "
+				    "edmctl alarms says what clears it",
 	};
 
 	return code >= 0 && code < (int)(sizeof(why) / sizeof(why[0])) ?
@@ -83,9 +88,6 @@ static void on_answer(void *arg, int code)
 	else if (code == SHM_NOT_UP)
 		verbs_answer(j, &c, REFUSED, "the drives are not up yet; edmd's "
 		       "journal tells which; again when they are");
-	else if (code == SHM_LOCKED)
-		verbs_answer(j, &c, REFUSED, "the PLC does not permit it: it is not "
-		       "there, holds, has no permit, or an interlock is open");
 	else if (code == SHM_BAD_ARGUMENT)
 		verbs_answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
 		       "edmd refused the value: with the others in force, "

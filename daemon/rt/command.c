@@ -4,27 +4,44 @@
  */
 #include "cycle.h"
 #include "enter.h"
+#include "guard.h"
 #include "path/step.h"
 #include "path/walk.h"
 
 #include <math.h>
 #include <string.h>
 
+/* May anything begin to move?  Before it does, not a period later. */
+static enum cycle_answer may_begin(const struct cycle *c)
+{
+	if (c->axes.starting)
+		return ANSWER_NOT_UP;
+	return guard_forbids(c) ? ANSWER_LOCKED : ANSWER_DONE;
+}
+
+/* In order, and not on its way to a fault or to the job's end. */
+static bool stands_held(const struct cycle *c)
+{
+	return c->state == STATE_HOLD && c->after_stand == STATE_HOLD &&
+	       !c->moving && c->fault.latched == 0;
+}
+
 static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 {
+	enum cycle_answer answer;
+
 	(void)arg_mm;
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
-	if (c->state != STATE_HOLD || c->after_stand != STATE_HOLD || c->moving)
+	if (!stands_held(c))
 		return ANSWER_WRONG_STATE;
 	if (c->limit.on)
 		return ANSWER_AT_LIMIT;
 	if (c->config.require_home && manual_unhomed(c))
 		return ANSWER_NOT_HOMED;
-	if (c->axes.starting)
-		return ANSWER_NOT_UP;
-	if (interlock_forbids(c))
-		return ANSWER_LOCKED;
+	answer = may_begin(c);
+	if (answer != ANSWER_DONE)
+		return answer;
 	c->outcome = OUTCOME_NONE;
 	c->retract.in_row = 0;
 	c->arcing = (struct arcing) { .rung = ARCING_NONE };
@@ -72,16 +89,17 @@ static enum cycle_answer do_stop(struct cycle *c, double arg_mm)
 
 static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 {
+	enum cycle_answer answer;
+
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
-	if (c->state == STATE_FAULT || c->after_stand != STATE_HOLD)
+	if (c->fault.latched || c->after_stand != STATE_HOLD)
 		return ANSWER_WRONG_STATE;
 	if (!(arg_mm > 0 && isfinite(arg_mm)))
 		return ANSWER_BAD_ARGUMENT;
-	if (c->axes.starting)
-		return ANSWER_NOT_UP;
-	if (interlock_forbids(c))
-		return ANSWER_LOCKED;
+	answer = may_begin(c);
+	if (answer != ANSWER_DONE)
+		return answer;
 	cycle_happen(c, EVENT_HOLD);
 	axes_want(c, false);
 	c->moving = true;
@@ -96,16 +114,13 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
-	if (c->state != STATE_HOLD || c->after_stand != STATE_HOLD ||
-	    c->moving || escape_is_out(&c->escape))
+	if (!stands_held(c) || escape_is_out(&c->escape))
 		return ANSWER_WRONG_STATE;
 	answer = (enum cycle_answer)step_to(c, arg_mm, &to_mm);
+	if (answer == ANSWER_DONE)
+		answer = may_begin(c);
 	if (answer != ANSWER_DONE)
 		return answer;
-	if (c->axes.starting)
-		return ANSWER_NOT_UP;
-	if (interlock_forbids(c))
-		return ANSWER_LOCKED;
 	axes_want(c, false);
 	c->moving = true;
 	c->move_to_mm = to_mm;
@@ -115,21 +130,26 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 static enum cycle_answer do_estop(struct cycle *c, double arg_mm)
 {
 	(void)arg_mm;
-	cycle_fail(c, FAULT_ESTOP);
+	fault_latch(&c->fault, FAULT_ESTOP);
 	return ANSWER_DONE;
 }
 
+/* What the drives report may end with the reset that they are given: it is
+ * cleared once they say so. */
 static enum cycle_answer do_reset(struct cycle *c, double arg_mm)
 {
+	const uint64_t remains = fault_remains(&c->fault);
+
 	(void)arg_mm;
-	if (c->state != STATE_FAULT)
+	if (c->state != STATE_FAULT || c->fault.fresh)
 		return ANSWER_WRONG_STATE;
-	c->fault = FAULT_NONE;
+	if (remains & ~axes_faults())
+		return ANSWER_STILL_THERE;
 	c->out.reset = true;
 	c->overruns_in_row = 0;
-	cycle_happen(c, EVENT_RESET);
-	if (!c->loaded)
-		cycle_enter(c, STATE_IDLE);
+	c->fault.resetting = remains != 0;
+	if (remains == 0)
+		cycle_reset(c);
 	return ANSWER_DONE;
 }
 
@@ -175,10 +195,11 @@ static enum cycle_answer do_manual(struct cycle *c,
 	const bool jog = m->verb == CYCLE_JOG;
 	enum cycle_answer answer;
 
-	if (c->axes.starting)
-		return ANSWER_NOT_UP;
-	if (interlock_forbids(c))
-		return ANSWER_LOCKED;
+	if (c->fault.latched)
+		return ANSWER_WRONG_STATE;
+	answer = may_begin(c);
+	if (answer != ANSWER_DONE)
+		return answer;
 	answer = (enum cycle_answer)(jog ?
 		manual_jog(c, m->arg, m->arg_mm) : manual_home(c, m->arg));
 	if (answer != ANSWER_DONE)

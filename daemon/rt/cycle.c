@@ -5,6 +5,7 @@
 #include "cycle.h"
 #include "enter.h"
 #include "feed.h"
+#include "guard.h"
 #include "path/laws.h"
 #include "path/step.h"
 #include "path/timed.h"
@@ -33,59 +34,9 @@ void cycle_overrun(struct cycle *c, uint32_t missed)
 	c->totals.overruns += missed;
 	c->overruns_in_row += missed;
 	c->overran = true;
-	if (c->config.overrun_limit && state_duty[c->state].running &&
+	if (c->config.overrun_limit && cycle_moves(c) &&
 	    c->overruns_in_row >= c->config.overrun_limit)
-		cycle_fail(c, FAULT_OVERRUN);
-}
-
-/* Away from the break, and held there.  Nothing is cut with a broken wire. */
-static void watch_wire(struct cycle *c)
-{
-	const double back = c->gap.wire_retreat_mm;
-
-	if (c->gap.process != PROCESS_WIRE)
-		return;
-	if (c->state == STATE_TRAVEL && walk_ahead(c) == AHEAD_CUT)
-		cycle_fail(c, FAULT_WIRE_BROKEN);
-	if (!state_duty[c->state].power && c->state != STATE_RETRACT)
-		return;
-	c->move_to_mm = back > 0 ? fmax(cycle_outer_mm(c),
-					law_place(c) - back) :
-				   retract_motion_mm(c);
-	cycle_fail(c, FAULT_WIRE_BROKEN);
-	c->moving = c->state == STATE_HOLD;
-}
-
-static void guard_switches(struct cycle *c, const struct io_inputs *in)
-{
-	limit_guard(c, in);
-	if (in->door_open && state_duty[c->state].running)
-		cycle_fail(c, FAULT_DOOR);
-	if (in->dielectric_low && state_duty[c->state].power)
-		cycle_fail(c, FAULT_DIELECTRIC);
-}
-
-static void guard(struct cycle *c, const struct io_inputs *in)
-{
-	const bool power = state_duty[c->state].power;
-
-	if (in->estop)
-		cycle_fail(c, FAULT_ESTOP);
-	if (in->lost)
-		cycle_fail(c, FAULT_IO_LOST);
-	axes_guard(c, in);
-	interlock_guard(c, in);
-	mcode_hear(c);
-	if (in->wire_broken || (in->plc.alive && !in->plc.wire_whole))
-		watch_wire(c);
-	if ((!c->sensed.valid && power) || probe_is_blind(c, in))
-		cycle_fail(c, FAULT_GAP_LOST);
-	if (c->sensed.suspect && power)
-		cycle_fail(c, FAULT_GAP_STUCK);
-	if (state_duty[c->state].power)
-		arcing_watch(c);
-	guard_switches(c, in);
-	c->busy = in->busy;
+		fault_latch(&c->fault, FAULT_OVERRUN);
 }
 
 /* Over ground it has passed before, only the gap's own window is the cut. */
@@ -136,19 +87,6 @@ static enum cycle_event look(struct cycle *c)
 	default:
 		return EVENT_NONE;
 	}
-}
-
-/*
- * A short while positioning is a collision, once the gap has been open: on the
- * way out of a cut, debris may still bridge it.
- */
-static void watch_contact(struct cycle *c)
-{
-	if (c->state != STATE_TRAVEL || c->config.dry_run)
-		return;
-	if (c->sensed.contact && c->free_seen)
-		cycle_fail(c, FAULT_CONTACT);
-	c->free_seen = c->free_seen || c->sensed.is_open;
 }
 
 static void stand(struct cycle *c)
@@ -217,15 +155,15 @@ static void go(struct cycle *c)
 
 	c->at_start = r == WALK_START;
 	if (r == WALK_BROKEN)
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 	else if (r == WALK_BEYOND)
-		cycle_fail(c, c->state == STATE_PROBE ? FAULT_NO_CONTACT :
+		fault_latch(&c->fault, c->state == STATE_PROBE ? FAULT_NO_CONTACT :
 							FAULT_SOFT_LIMIT);
 	else if (r == WALK_ACTION)
 		meet_action(c);
 	mcode_follow(c);
 	if (c->loaded && !conditions_follow(c))
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 	if (feed_done(c)) {
 		if (c->leaving)
 			timed_skip(c);
@@ -256,7 +194,8 @@ static bool moves_by_will(const struct cycle *c)
 static void give(struct cycle *c, struct io_outputs *out)
 {
 	/* M5 is heeded in its own cycle, and in a way back that it met. */
-	c->out.power = state_duty[c->state].power && !c->power_off;
+	c->out.power = state_duty[c->state].power && !c->power_off &&
+		       c->fault.latched == 0;
 	c->out.sense = c->state == STATE_PROBE;
 	if (c->loaded) {
 		const struct interp_cond *cond =
@@ -289,7 +228,7 @@ static void go_manually(struct cycle *c, const struct io_inputs *in)
 {
 	c->feed_mm_s = 0;
 	if (cycle_is_manual(c) && manual_go(c, in))
-		cycle_enter(c, STATE_IDLE);
+		cycle_enter(c, c->fault.latched ? STATE_FAULT : STATE_IDLE);
 }
 
 /* Held until the axes are under power and on their places. */
@@ -304,31 +243,50 @@ static bool may_move(struct cycle *c)
 	return a != AXES_AWAITED;
 }
 
+/* What the gap and the place make of the state, unless a guard found more. */
+static void choose_state(struct cycle *c)
+{
+	if (c->fault.fresh)
+		return;
+	cycle_happen(c, look(c));
+	guard_contact(c);
+	guard_judge(c);
+}
+
 void cycle_step(struct cycle *c, const struct io_inputs *in,
 		struct io_outputs *out)
 {
 	const bool running = state_duty[c->state].running;
-	bool moves;
+	bool moves, walks;
 
 	c->count++;
 	gap_sense(c, in);
 	probe_sense(c, in);
-	guard(c, in);
+	guard_look(c, in);
+	interlock_obey(c);
 	moves = c->state != STATE_FAULT && may_move(c);
-	if (c->loaded && moves) {
-		cycle_happen(c, look(c));
-		watch_contact(c);
+	if (c->loaded && moves)
+		choose_state(c);
+	cycle_react(c);
+	moves = moves && c->state != STATE_FAULT;
+	walks = moves && c->loaded;
+	if (walks) {
 		step_watch(c);
 		go(c);
 		retract_watch(c);
-		stand(c);
-		sum_up(c, running);
+		progress_watch(c);
 	} else if (moves) {
 		go_manually(c, in);
 	} else {
 		c->feed_mm_s = 0;
 	}
 	limit_watch(c);
+	guard_judge(c);
+	cycle_react(c);
+	if (walks) {
+		stand(c);
+		sum_up(c, running);
+	}
 	contouring_step(c, in);
 	if (!c->overran)
 		c->overruns_in_row = 0;

@@ -4,7 +4,8 @@
  *
  * The real-time thread calls cycle_step() once a period with the hardware's
  * inputs; edmsim calls the same object code with a simulated machine's.  The
- * order within: gap, guard, state, mover, walk along the path, outputs.
+ * order within: gap, guards, state, faults, walk along the path, faults,
+ * outputs.
  *
  * States and what leads from one to the next are tables in state.c.  Spark
  * power is on in approach and erode only.
@@ -23,6 +24,7 @@
 #include "axes/comp.h"
 #include "axes/contouring.h"
 #include "path/escape.h"
+#include "fault.h"
 #include "gap/flush.h"
 #include "gap/gap.h"
 #include "axes/manual.h"
@@ -36,39 +38,7 @@
 #include "gap/servo.h"
 #include "state.h"
 #include "path/probe.h"
-
-/* Why a fault is latched. */
-enum cycle_fault {
-	FAULT_NONE,
-	FAULT_ESTOP,			/* the e-stop input, or the command */
-	FAULT_SHORT_NOT_CLEARED,	/* retracted the whole limit, still short */
-	FAULT_GAP_LOST,			/* the gap cannot be read */
-	FAULT_IO_LOST,			/* the machine does not answer */
-	FAULT_CONTACT,			/* a short while positioning */
-	FAULT_SOFT_LIMIT,		/* the path leaves the travel */
-	FAULT_PROGRAM,			/* a segment failed its check */
-	FAULT_OVERRUN,			/* too many periods missed in a row */
-	FAULT_RETRACT_AT_START,		/* still short where the way back ends */
-	FAULT_RETRACT_TIME,		/* a retract that takes too long */
-	FAULT_RETRACT_COUNT,		/* retracts, and no erosion between */
-	FAULT_ARCING,			/* arcs that nothing ended */
-	FAULT_WIRE_BROKEN,
-	FAULT_GAP_STUCK,		/* the gap signal stands still, or is noise */
-	FAULT_LIMIT_SWITCH,		/* an axis ran onto its switch */
-	FAULT_DOOR,			/* it is open */
-	FAULT_DIELECTRIC,		/* its level is too low to spark */
-	FAULT_HOME,			/* no switch, or no index mark */
-	FAULT_NO_CONTACT,		/* a touch that met nothing */
-	FAULT_DRIVE,			/* a drive has a fault or is gone */
-	FAULT_FOLLOWING,		/* an axis is not where it was sent */
-	FAULT_BUS,			/* the way to the drives is cut */
-	FAULT_PLC_LOST,			/* its toggle does not turn any more */
-	FAULT_PERMIT,			/* the PLC has taken it */
-	FAULT_TEMPERATURE,		/* of the dielectric, out of range */
-	FAULT_FIRE,
-	FAULT_MCODE,			/* the PLC does not answer an M code */
-	CYCLE_NFAULTS
-};
+#include "path/progress.h"
 
 /* How the last job ended. */
 enum cycle_outcome {
@@ -205,7 +175,8 @@ enum cycle_answer {
 	ANSWER_NOT_PASSED,		/* a step over ground not cut yet */
 	ANSWER_ELSEWHERE,		/* a program begins where it is not */
 	ANSWER_NOT_UP,			/* the drives are not up yet */
-	ANSWER_LOCKED,			/* the PLC does not permit it */
+	ANSWER_LOCKED,			/* a guard or the PLC does not permit it */
+	ANSWER_STILL_THERE,		/* reset: what was found is still there */
 	CYCLE_NANSWERS
 };
 
@@ -239,7 +210,7 @@ struct cycle {
 	struct interp_cursor cursor;
 	bool loaded;			/* cursor stands on a program */
 	enum cycle_state state;
-	enum cycle_fault fault;
+	struct fault fault;		/* what is latched */
 	enum cycle_outcome outcome;
 	uint64_t count;			/* cycles since cycle_init() */
 	struct cycle_totals totals;
@@ -271,9 +242,10 @@ struct cycle {
 	uint32_t timed_end;		/* segment where a time ends; 0: none */
 	uint64_t timed_left;		/* cycles */
 	double timed_from_mm;		/* place where it began */
-	struct io_plc plc;		/* as read */
+	struct io_plc plc, plc_was;	/* as read, and in the period before */
 	double plc_override;		/* it said last; NAN: nothing yet */
 	struct mcode mcode;
+	struct progress progress;
 	double back_mm;			/* no way back beyond this place */
 	bool moving;			/* held, but walking back by command */
 	bool braked;			/* held, and has stood since */
@@ -330,6 +302,20 @@ static inline uint32_t cycle_moved(const struct cycle *c)
 	return escape_is_out(&c->escape) ? c->escape.moved : c->cursor.moved;
 }
 
+/** cycle_is_manual() - it moves, and not by a program. */
+static inline bool cycle_is_manual(const struct cycle *c)
+{
+	return c->state == STATE_JOG || c->state == STATE_HOME;
+}
+
+/** cycle_moves() - anything moves, is braking, or waits for power to move. */
+static inline bool cycle_moves(const struct cycle *c)
+{
+	return state_duty[c->state].running || c->moving ||
+	       cycle_is_manual(c) || c->axes.awaited ||
+	       c->mover.v_mm_s != 0;
+}
+
 /** cycle_init() - idle, nothing loaded.  Startup only. */
 void cycle_init(struct cycle *c, const struct cycle_config *config);
 
@@ -360,8 +346,7 @@ void cycle_overrun(struct cycle *c, uint32_t missed);
 void cycle_step(struct cycle *c, const struct io_inputs *in,
 		struct io_outputs *out);
 
-/** Names for logs, messages and reports: "short-not-cleared", ... Any thread. */
-const char *cycle_fault_name(enum cycle_fault f);
+/** Names for logs, messages and reports.  Any thread. */
 const char *cycle_outcome_name(enum cycle_outcome o);
 const char *cycle_answer_text(enum cycle_answer a);
 

@@ -102,48 +102,80 @@ void cycle_end_job(struct cycle *c, enum cycle_outcome o)
 	cycle_enter(c, STATE_IDLE);
 }
 
-/* Faults in which the axes are good: brake on the path, with the power off. */
-static const bool brakes[CYCLE_NFAULTS] = {
-	[FAULT_SHORT_NOT_CLEARED]	= true,
-	[FAULT_CONTACT]			= true,
-	[FAULT_GAP_LOST]		= true,
-	[FAULT_RETRACT_AT_START]	= true,
-	[FAULT_RETRACT_TIME]		= true,
-	[FAULT_RETRACT_COUNT]		= true,
-	[FAULT_ARCING]			= true,
-	[FAULT_WIRE_BROKEN]		= true,
-	[FAULT_GAP_STUCK]		= true,
-	[FAULT_DOOR]			= true,
-	[FAULT_DIELECTRIC]		= true,
-	[FAULT_NO_CONTACT]		= true,
-	[FAULT_PLC_LOST]		= true,
-	[FAULT_PERMIT]			= true,
-	[FAULT_TEMPERATURE]		= true,
-	[FAULT_FIRE]			= true,
-	[FAULT_MCODE]			= true,
-};
+/* -- Faults ------------------------------------------------------------------- */
 
-/* Faults in which an axis may not be where it is thought, or is not told. */
-static const bool disables[CYCLE_NFAULTS] = {
-	[FAULT_ESTOP]			= true,
-	[FAULT_IO_LOST]			= true,
-	[FAULT_OVERRUN]			= true,
-	[FAULT_DRIVE]			= true,
-	[FAULT_FOLLOWING]		= true,
-	[FAULT_BUS]			= true,
-};
-
-void cycle_fail(struct cycle *c, enum cycle_fault f)
+/* Out of a cut with a broken wire, and only then, it goes back a little. */
+static bool backs_off(const struct cycle *c)
 {
-	const bool brake = c->loaded && brakes[f];
+	return c->fault.latched == fault_bit(FAULT_WIRE_BROKEN) &&
+	       (state_duty[c->state].power || c->state == STATE_RETRACT);
+}
 
-	/* The first one is reported; a worse one still stops at once. */
-	if (c->state == STATE_FAULT || (c->fault != FAULT_NONE && brake))
+static void brake(struct cycle *c)
+{
+	const double back = c->gap.wire_retreat_mm;
+	const bool goes_back = backs_off(c);
+
+	if (c->after_stand == STATE_FAULT && c->state == STATE_HOLD) {
+		/* A second one while it goes back from the first. */
+		c->moving = false;
 		return;
-	if (c->fault == FAULT_NONE)
-		c->fault = f;
-	c->out.enable = c->out.enable && !disables[f];
+	}
+	if (goes_back)
+		c->move_to_mm = back > 0 ? fmax(cycle_outer_mm(c),
+						cycle_place_mm(c) - back) :
+					   retract_motion_mm(c);
+	cycle_enter(c, STATE_HOLD);
+	c->moving = goes_back;
+	c->after_stand = STATE_FAULT;
+}
+
+/* A jogged or homed axis brakes too, but not on against what it met. */
+static bool brakes_by_hand(const struct cycle *c, uint64_t fresh)
+{
+	return cycle_is_manual(c) && !(fresh & fault_bit(FAULT_CONTACT));
+}
+
+/* The drives have been told; what they say now is new. */
+static void finish_reset(struct cycle *c)
+{
+	if (!c->fault.resetting || c->out.reset)
+		return;
+	c->fault.resetting = false;
+	if (fault_remains(&c->fault) || c->fault.fresh)
+		c->fault.untold |= c->fault.latched;
+	else
+		cycle_reset(c);
+}
+
+void cycle_react(struct cycle *c)
+{
+	uint64_t fresh;
+
+	finish_reset(c);
+	fresh = c->fault.fresh;
+	if (fresh == 0)
+		return;
+	c->fault.fresh = 0;
+	if (fault_any(fresh, fault_row_disables))
+		c->out.enable = false;
 	c->outcome = c->loaded ? OUTCOME_FAULT : c->outcome;
-	cycle_enter(c, brake ? STATE_HOLD : STATE_FAULT);
-	c->after_stand = brake ? STATE_FAULT : STATE_HOLD;
+	if (c->state == STATE_FAULT)
+		return;
+	if (fault_any(fresh, fault_row_ends))
+		cycle_enter(c, STATE_FAULT);
+	else if (c->loaded)
+		brake(c);
+	else if (brakes_by_hand(c, fresh))
+		c->manual.halt = true;
+	else
+		cycle_enter(c, STATE_FAULT);
+}
+
+void cycle_reset(struct cycle *c)
+{
+	fault_clear(&c->fault);
+	cycle_happen(c, EVENT_RESET);
+	if (!c->loaded)
+		cycle_enter(c, STATE_IDLE);
 }

@@ -2,7 +2,7 @@
 /*
  * enter.h - from one state to another, for the cycle and its commands
  *
- * Private to the files of daemon/rt.  How it fails is cycle_fail(), walk.h.
+ * Private to the files of daemon/rt.
  *
  * Threads: RT-safe.
  */
@@ -33,10 +33,11 @@ static inline void cycle_set_off(struct cycle *c)
 						    EVENT_START);
 }
 
-/** cycle_is_manual() - it moves, and not by a program. */
-static inline bool cycle_is_manual(const struct cycle *c)
-{
-	return c->state == STATE_JOG || c->state == STATE_HOME;
-}
+/** cycle_reset() - out of a fault: held, or idle without a job. */
+void cycle_reset(struct cycle *c);
+
+/** cycle_react() - to the faults latched since it was called last, and to a
+ *  reset of the drives; at its two places in a period. */
+void cycle_react(struct cycle *c);
 
 #endif /* RT_ENTER_H */

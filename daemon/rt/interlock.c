@@ -3,21 +3,22 @@
  * interlock.c - a PLC's permit, interlocks and requests
  */
 #include "interlock.h"
-#include "path/walk.h"
+#include "cycle.h"
 
 #include <stddef.h>
 
-/* In this order: the first that is not well is the fault. */
 static const struct {
 	size_t at;			/* of its bool in struct io_plc */
 	enum cycle_fault fault;
-	bool always;			/* while nothing moves, too */
+	enum fault_scope scope;
 } rows[] = {
-	{ offsetof(struct io_plc, no_fire), FAULT_FIRE, true },
-	{ offsetof(struct io_plc, door_closed), FAULT_DOOR, false },
-	{ offsetof(struct io_plc, level_ok), FAULT_DIELECTRIC, false },
-	{ offsetof(struct io_plc, temperature_ok), FAULT_TEMPERATURE, false },
-	{ offsetof(struct io_plc, permit), FAULT_PERMIT, false },
+	{ offsetof(struct io_plc, no_fire), FAULT_FIRE, FAULT_ALWAYS },
+	{ offsetof(struct io_plc, door_closed), FAULT_DOOR, FAULT_IN_MOTION },
+	{ offsetof(struct io_plc, level_ok), FAULT_DIELECTRIC,
+	  FAULT_IN_MOTION },
+	{ offsetof(struct io_plc, temperature_ok), FAULT_TEMPERATURE,
+	  FAULT_IN_MOTION },
+	{ offsetof(struct io_plc, permit), FAULT_PERMIT, FAULT_IN_MOTION },
 };
 
 #define NROWS	(sizeof(rows) / sizeof(rows[0]))
@@ -27,36 +28,17 @@ static bool is_well(const struct io_plc *p, size_t row)
 	return *(const bool *)((const char *)p + rows[row].at);
 }
 
-bool interlock_forbids(const struct cycle *c)
+static void note(struct cycle *c)
 {
 	const struct io_plc *p = &c->plc;
-
-	if (!p->present)
-		return false;
-	for (size_t i = 0; i < NROWS; i++) {
-		if (!is_well(p, i))
-			return true;
-	}
-	return !p->alive || p->hold;
-}
-
-static void watch(struct cycle *c)
-{
-	const struct io_plc *p = &c->plc;
-	const bool moves = state_duty[c->state].running || c->moving ||
-			   c->axes.awaited || c->state == STATE_JOG ||
-			   c->state == STATE_HOME;
 
 	if (!p->alive) {
-		if (moves)
-			cycle_fail(c, FAULT_PLC_LOST);
+		fault_note(&c->fault, FAULT_PLC_LOST, FAULT_IN_MOTION);
 		return;
 	}
 	for (size_t i = 0; i < NROWS; i++) {
-		if (!is_well(p, i) && (moves || rows[i].always)) {
-			cycle_fail(c, rows[i].fault);
-			return;
-		}
+		if (!is_well(p, i))
+			fault_note(&c->fault, rows[i].fault, rows[i].scope);
 	}
 }
 
@@ -76,15 +58,19 @@ static void warm(struct cycle *c, double was_c)
 		comp_warm(&c->comp, &c->config.comp, c_now);
 }
 
-void interlock_guard(struct cycle *c, const struct io_inputs *in)
+void interlock_note(struct cycle *c, const struct io_inputs *in)
 {
-	const struct io_plc was = c->plc;
-
+	c->plc_was = c->plc;
 	c->plc = in->plc;
-	if (!c->plc.present)
-		return;
-	watch(c);
-	if (!c->plc.alive)
+	if (c->plc.present)
+		note(c);
+}
+
+void interlock_obey(struct cycle *c)
+{
+	const struct io_plc was = c->plc_was;
+
+	if (!c->plc.present || !c->plc.alive)
 		return;
 	if (c->plc.reset)
 		command(c, CYCLE_RESET, 0);

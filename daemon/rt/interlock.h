@@ -19,10 +19,10 @@
 
 struct cycle;
 
-/** interlock_guard() - once a period: faults, then what is asked for. */
-void interlock_guard(struct cycle *c, const struct io_inputs *in);
+/** interlock_note() - what the PLC says, once a period, among the guards. */
+void interlock_note(struct cycle *c, const struct io_inputs *in);
 
-/** interlock_forbids() - may nothing begin? */
-bool interlock_forbids(const struct cycle *c);
+/** interlock_obey() - do what it asks for, after the guards. */
+void interlock_obey(struct cycle *c);
 
 #endif /* RT_INTERLOCK_H */

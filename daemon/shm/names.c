@@ -32,20 +32,6 @@ const char *shm_state_name(uint32_t state)
 	return name_of(names, sizeof(names) / sizeof(names[0]), state);
 }
 
-const char *shm_fault_name(uint32_t fault)
-{
-	static const char *const names[] = {
-		"none", "e-stop", "short-not-cleared", "gap-lost", "io-lost",
-		"contact", "soft-limit", "program", "overrun",
-		"retract-at-start", "retract-time", "retract-count", "arcing",
-		"wire-broken", "gap-stuck", "limit-switch", "door", "dielectric",
-		"home-not-found", "no-contact", "drive", "following", "bus",
-		"plc-lost", "permit", "temperature", "fire", "m-code",
-	};
-
-	return name_of(names, sizeof(names) / sizeof(names[0]), fault);
-}
-
 const char *shm_outcome_name(uint32_t outcome)
 {
 	static const char *const names[] = {

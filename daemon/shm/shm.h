@@ -39,7 +39,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	5
+#define SHM_LAYOUT	6
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 
@@ -67,10 +67,11 @@ struct shm_snapshot {
 	uint64_t cycle;			/* since edmd started */
 	int64_t time_ns;		/* CLOCK_REALTIME of this cycle */
 	uint32_t state;			/* enum shm_state */
-	uint32_t fault;			/* enum cycle_fault; 0 none */
+	uint32_t fault;			/* the first; enum cycle_fault; 0 none */
 	uint32_t outcome;		/* enum cycle_outcome of the last job */
 	uint32_t program;		/* program.<n>, until unloaded; or 0 */
 	uint32_t seg, tick;		/* place, exactly */
+	uint64_t faults;		/* all that are latched: bit n, fault n */
 	uint32_t line;			/* of the source */
 	uint32_t cond_number;
 	char cond_letter;
@@ -229,7 +230,7 @@ enum shm_verb {
 enum shm_answer {
 	SHM_DONE, SHM_NO_PROGRAM, SHM_WRONG_STATE, SHM_BAD_ARGUMENT,
 	SHM_NOT_HOMED, SHM_AT_LIMIT, SHM_BEYOND, SHM_NO_NODE, SHM_NOT_PASSED,
-	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED
+	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE
 };
 
 /* Mirrors enum cycle_outcome. */
@@ -384,8 +385,6 @@ void shm_close(const void *object, size_t bytes);
 
 /** shm_state_name() - "erode", ...; "?" if unknown. Any thread. */
 const char *shm_state_name(uint32_t state);
-/** shm_fault_name() - "short-not-cleared", ... */
-const char *shm_fault_name(uint32_t fault);
 /** shm_outcome_name() - "done", ...; "none" while it runs. */
 const char *shm_outcome_name(uint32_t outcome);
 

@@ -97,7 +97,7 @@ static double run(const struct interp_program *p, const char *method)
 		cycle_step(&c, &in, &out);
 		memcpy(in.actual, out.target, sizeof(in.actual));
 	}
-	bench_must(c.loaded && c.fault == FAULT_NONE);
+	bench_must(c.loaded && c.fault.first == FAULT_NONE);
 	return (bench_now_s() - from_s) / CYCLES * 1e9;
 }
 

@@ -94,7 +94,7 @@ static void say_means(const struct interp_program *p)
 			from_s = now_s;
 		}
 		mean[i] = (bench_now_s() - begun_s) / CYCLES;
-		bench_must(c.fault == FAULT_NONE && c.totals.jumps > 100);
+		bench_must(c.fault.first == FAULT_NONE && c.totals.jumps > 100);
 	}
 	bench_say("mean_ns", bench_median(mean, BENCH_RUNS) * 1e9);
 	bench_say("worst_ns", bench_median(worst, BENCH_RUNS) * 1e9);
@@ -141,7 +141,7 @@ static void time_each(const struct interp_program *p, uint16_t *least)
 			least[n] = (uint16_t)took;
 		from = at;
 	}
-	bench_must(c.fault == FAULT_NONE && c.totals.jumps > 100);
+	bench_must(c.fault.first == FAULT_NONE && c.totals.jumps > 100);
 }
 
 static void say_worst(const struct interp_program *p)

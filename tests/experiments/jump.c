@@ -153,9 +153,9 @@ static struct cycle erode(const struct path *p, watch_fn watch, void *arg)
 	do
 		cycle_step(&c, &in, &out);
 	while (state_duty[c.state].running && (!watch || watch(&c, arg)));
-	if (c.fault != FAULT_NONE || (!watch && c.outcome != OUTCOME_DONE)) {
+	if (c.fault.first != FAULT_NONE || (!watch && c.outcome != OUTCOME_DONE)) {
 		fprintf(stderr, "experiment: fault %s\n",
-			cycle_fault_name(c.fault));
+			fault_name(c.fault.first));
 		exit(1);
 	}
 	free((void *)(uintptr_t)program.head);

@@ -84,10 +84,10 @@ static void then_a_jump_then_a_retract_then_a_fault(void **st)
 	while (r.c.state == STATE_RETRACT)
 		step(&r, SPARKING_V);
 	assert_near(from - place(&r), k.gap.arcing_retract_mm, 0.006);
-	for (int i = 0; i < 1000 && r.c.fault == FAULT_NONE; i++)
+	for (int i = 0; i < 1000 && r.c.fault.first == FAULT_NONE; i++)
 		step(&r, SPARKING_V);
-	assert_int_equal(r.c.fault, FAULT_ARCING);
-	assert_string_equal(cycle_fault_name(r.c.fault), "arcing");
+	assert_int_equal(r.c.fault.first, FAULT_ARCING);
+	assert_string_equal(fault_name(r.c.fault.first), "arcing");
 	assert_int_equal(r.c.totals.arcs, 6 + 5);
 	assert_false(r.out.power);
 	until(&r, STATE_FAULT, SPARKING_V, 100);
@@ -182,7 +182,7 @@ static uint32_t arcs_of(double v, double sigma)
 
 	k.gap.arcing_sigma_v = 1;
 	cut_at(&r, &k, 2);
-	for (int i = 0; i < 200 && r.c.fault == FAULT_NONE; i++)
+	for (int i = 0; i < 200 && r.c.fault.first == FAULT_NONE; i++)
 		step(&r, v + uniform(&s, -1.7, 1.7) * sigma);
 	arcs = r.c.totals.arcs;
 	rig_free(&r);

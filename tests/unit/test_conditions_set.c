@@ -321,7 +321,7 @@ static void a_damaged_condition_is_a_fault_and_no_value(void **state)
 	cut_until(&r, 3.9);
 	for (int i = 0; i < 1000 && r.c.state != STATE_FAULT; i++)
 		step(&r, SPARKING_V);
-	assert_int_equal(r.c.fault, FAULT_PROGRAM);
+	assert_int_equal(r.c.fault.first, FAULT_PROGRAM);
 	assert_true(r.c.gap.servo_v == 30);
 	c[2].tech.v[INTERP_TECH_SERVO_V] = -1;
 	assert_int_equal(interp_program_map(&r.m.p, r.m.block, r.m.bytes),

@@ -109,8 +109,8 @@ static void a_short_that_stays_is_a_fault_after_limit_and_wait(void **st)
 	cut_at(&r, &k, 3);
 	n = until(&r, STATE_FAULT, SHORTED_V, 1000);
 	assert_in_range(n, back + 50, back + 50 + 3);
-	assert_int_equal(r.c.fault, FAULT_SHORT_NOT_CLEARED);
-	assert_string_equal(cycle_fault_name(r.c.fault), "short-not-cleared");
+	assert_int_equal(r.c.fault.first, FAULT_SHORT_NOT_CLEARED);
+	assert_string_equal(fault_name(r.c.fault.first), "short-not-cleared");
 	assert_int_equal(r.c.outcome, OUTCOME_FAULT);
 	assert_near(place(&r), 3 - k.gap.retract_limit_mm, 0.01);
 	steps(&r, SPARKING_V, 100);
@@ -134,7 +134,7 @@ static void it_goes_back_no_farther_than_the_start_of_the_path(void **st)
 	assert_near(place(&r), 0, 2e-9);
 	assert_int_equal(r.out.target[INTERP_Z], 0);
 	until(&r, STATE_FAULT, SHORTED_V, 60);
-	assert_int_equal(r.c.fault, FAULT_RETRACT_AT_START);
+	assert_int_equal(r.c.fault.first, FAULT_RETRACT_AT_START);
 	rig_free(&r);
 }
 

@@ -69,7 +69,7 @@ static void check_damaged(bool dry, int how)
 	assert_int_equal(cycle_load(&r.c, &r.m.p), ANSWER_WRONG_STATE);
 	tell(&r, CYCLE_START);
 	until(&r, STATE_FAULT, SPARKING_V, 20000);
-	assert_int_equal(r.c.fault, FAULT_PROGRAM);
+	assert_int_equal(r.c.fault.first, FAULT_PROGRAM);
 	assert_in_range(-r.out.target[INTERP_Z], 1500 - 20, 1500);
 	tell(&r, CYCLE_RESET);
 	tell(&r, CYCLE_START);

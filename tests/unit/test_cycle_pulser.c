@@ -148,7 +148,7 @@ static void a_switch_ends_sparks_at_once_with_its_own_fault(void **state)
 		r.in.dielectric_low = i == 2;
 		step(&r, SPARKING_V);
 		assert_false(r.out.power);
-		assert_int_equal(r.c.fault, faults[i]);
+		assert_int_equal(r.c.fault.first, faults[i]);
 		for (int n = 0; n < 500; n++)
 			step(&r, SPARKING_V);
 		assert_int_equal(r.c.state, STATE_FAULT);
@@ -191,7 +191,7 @@ static void without_sparks_the_level_may_be_low(void **state)
 	tell(&r, CYCLE_START);
 	for (int n = 0; n < 100; n++)
 		step(&r, OPEN_V);
-	assert_int_equal(r.c.fault, FAULT_NONE);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
 	rig_free(&r);
 }
 

@@ -362,6 +362,7 @@ static void stop_at_once(struct beside *t)
 	way = t->r.c.escape.way_mm;
 	steps(&t->r, OPEN_V, 3);
 	t->r.in.estop = false;
+	step(&t->r, OPEN_V);
 	assert_int_equal(t->r.c.state, STATE_FAULT);
 	assert_true(t->r.c.escape.way_mm == way);
 	assert_int_equal(tell(&t->r, CYCLE_RESET), ANSWER_DONE);
@@ -451,7 +452,7 @@ static void shorts_that_stay_end_as_a_fault_at_the_limit(void **st)
 	begin_with(&t, &k, &e);
 	cut_until(&t.r, ON_RING);
 	until(&t.r, STATE_FAULT, SHORTED_V, 2000);
-	assert_int_equal(t.r.c.fault, FAULT_SHORT_NOT_CLEARED);
+	assert_int_equal(t.r.c.fault.first, FAULT_SHORT_NOT_CLEARED);
 	assert_near(t.r.out.off_path_mm, k.gap.retract_limit_mm, 0.01);
 	tell(&t.r, CYCLE_RESET);
 	come_home(&t);

@@ -137,7 +137,7 @@ static void no_switch_is_a_fault(void **state)
 	bench_init(&b, &k);
 	ask(&b, CYCLE_HOME, INTERP_X, 0);
 	run_out(&b, STATE_FAULT);
-	assert_string_equal(cycle_fault_name(b.c.fault), "home-not-found");
+	assert_string_equal(fault_name(b.c.fault.first), "home-not-found");
 	assert_in_range(-b.out.target[INTERP_X], 6000, 6020);
 	assert_int_equal(manual_unhomed(&b.c), X_BIT);
 }

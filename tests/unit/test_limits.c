@@ -248,7 +248,7 @@ static void no_ceiling_is_passed_there_and_back(void **st)
 		for (int n = 0; n < 400000 && r.c.state == STATE_TRAVEL; n++)
 			step_within(&r);
 		assert_int_equal(r.c.state, STATE_HOLD);
-		assert_int_equal(r.c.fault, FAULT_NONE);
+		assert_int_equal(r.c.fault.first, FAULT_NONE);
 		assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 1e9), ANSWER_DONE);
 		for (int n = 0; n < 400000 && r.c.moving; n++)
 			step_within(&r);
@@ -301,7 +301,7 @@ static void a_jump_keeps_to_every_ceiling(void **st)
 			v = r.c.mover.v_mm_s;
 			a = r.c.mover.a_mm_s2;
 		}
-		assert_int_equal(r.c.fault, FAULT_NONE);
+		assert_int_equal(r.c.fault.first, FAULT_NONE);
 		rig_free(&r);
 	}
 	assert_true(jumps > ROUNDS);
@@ -537,8 +537,8 @@ static void a_chain_that_lies_is_slow_or_a_fault_and_never_a_step(void **st)
 				tell_mm(&r, CYCLE_RETRACT, 1e9);
 			}
 		}
-		assert_true(r.c.fault == FAULT_NONE ||
-			    r.c.fault == FAULT_PROGRAM);
+		assert_true(r.c.fault.first == FAULT_NONE ||
+			    r.c.fault.first == FAULT_PROGRAM);
 		rig_free(&r);
 	}
 }

@@ -94,7 +94,7 @@ static void a_touch_ends_a_jog_but_lets_it_come_away(void **state)
 		period(&b);
 	b.in.gap_v = SHORTED_V;
 	run_out(&b, STATE_FAULT);
-	assert_int_equal(b.c.fault, FAULT_CONTACT);
+	assert_int_equal(b.c.fault.first, FAULT_CONTACT);
 	assert_int_equal(ask(&b, CYCLE_RESET, 0, 0), ANSWER_DONE);
 	assert_int_equal(b.c.state, STATE_IDLE);
 	assert_int_equal(jog(&b, INTERP_Z, 1), ANSWER_DONE);
@@ -129,7 +129,7 @@ static void a_limit_switch_stops_at_once_and_lets_away_alone(void **state)
 	b.limit_max = 5000;
 	jog(&b, INTERP_X, 20);
 	run_out(&b, STATE_FAULT);
-	assert_int_equal(b.c.fault, FAULT_LIMIT_SWITCH);
+	assert_int_equal(b.c.fault.first, FAULT_LIMIT_SWITCH);
 	assert_memory_equal(b.before, b.out.target, sizeof(b.before));
 	assert_in_range(b.out.target[INTERP_X], 5001, 5020);
 	assert_int_equal(jog(&b, INTERP_X, -1), ANSWER_WRONG_STATE);
@@ -152,7 +152,7 @@ static void a_limit_switch_stops_a_job_and_its_start(void **state)
 	r.in.limit = X_BIT;
 	step(&r, SPARKING_V);
 	assert_int_equal(r.c.state, STATE_FAULT);
-	assert_string_equal(cycle_fault_name(r.c.fault), "limit-switch");
+	assert_string_equal(fault_name(r.c.fault.first), "limit-switch");
 	assert_int_equal(tell(&r, CYCLE_RESET), ANSWER_DONE);
 	assert_int_equal(tell(&r, CYCLE_START), ANSWER_AT_LIMIT);
 	r.in.limit = 0;

@@ -169,14 +169,14 @@ static void no_answer_in_time_is_a_fault_and_start_waits_again(void **st)
 	begin_job(&r, INTERP_MCODE_BEFORE, INTERP_MCODE_SKIP);
 	meet(&r);
 	steps(&r, SPARKING_V, 490);
-	assert_int_equal(r.c.fault, FAULT_NONE);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
 	steps(&r, SPARKING_V, 15);
-	assert_int_equal(r.c.fault, FAULT_MCODE);
+	assert_int_equal(r.c.fault.first, FAULT_MCODE);
 	assert_int_equal(r.c.state, STATE_FAULT);
 	assert_int_equal(tell(&r, CYCLE_RESET), ANSWER_DONE);
 	go_on(&r);
 	steps(&r, SPARKING_V, 100);
-	assert_int_equal(r.c.fault, FAULT_NONE);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
 	do_it(&r);
 	cut_until(&r, 5);
 	rig_free(&r);
@@ -191,7 +191,7 @@ static void a_hold_lets_it_wait_as_long_as_need_be(void **st)
 	meet(&r);
 	tell(&r, CYCLE_HOLD);
 	steps(&r, SPARKING_V, 1000);
-	assert_int_equal(r.c.fault, FAULT_NONE);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
 	do_it(&r);
 	go_on(&r);
 	assert_false(told_on_the_way(&r, 5));
@@ -298,7 +298,7 @@ static void the_way_back_ends_at_one_of_stop(void **st)
 		step(&r, SHORTED_V);
 		assert_true(place(&r) > 3 - 1e-6);
 	}
-	assert_int_equal(r.c.fault, FAULT_RETRACT_AT_START);
+	assert_int_equal(r.c.fault.first, FAULT_RETRACT_AT_START);
 	rig_free(&r);
 }
 
@@ -311,7 +311,7 @@ static void a_lost_plc_is_a_fault_while_it_is_waited_for(void **st)
 	meet(&r);
 	r.in.plc = (struct io_plc) { .present = true, .mcode_done = CODE };
 	step(&r, SPARKING_V);
-	assert_int_equal(r.c.fault, FAULT_PLC_LOST);
+	assert_int_equal(r.c.fault.first, FAULT_PLC_LOST);
 	assert_true(is_told(&r, CODE));
 	rig_free(&r);
 }

@@ -328,7 +328,7 @@ static void a_limit_switch_is_on_the_side_it_was(void **st)
 	periods(&w, OPEN_V, 100);
 	w.in.limit = 1u << INTERP_X;
 	periods(&w, OPEN_V, 2);
-	assert_int_equal(w.l.cycle.fault, FAULT_LIMIT_SWITCH);
+	assert_int_equal(w.l.cycle.fault.first, FAULT_LIMIT_SWITCH);
 	assert_int_equal(ask(&w, CYCLE_RESET, 0, 0), ANSWER_DONE);
 	assert_int_equal(ask(&w, CYCLE_JOG, INTERP_X, -0.1), ANSWER_DONE);
 	periods(&w, OPEN_V, 300);
@@ -636,7 +636,7 @@ static void a_latched_fault_stays_until_the_reset(void **st)
 	assert_true(w.l.cycle.loaded);
 	periods(&w, OPEN_V, 3);
 	assert_int_equal(w.l.cycle.state, STATE_FAULT);
-	assert_int_equal(w.l.cycle.fault, FAULT_ESTOP);
+	assert_int_equal(w.l.cycle.fault.first, FAULT_ESTOP);
 	assert_int_equal(ask(&w, CYCLE_START, 0, 0), ANSWER_WRONG_STATE);
 	assert_int_equal(ask(&w, CYCLE_RESET, 0, 0), ANSWER_DONE);
 	go_on(&w);

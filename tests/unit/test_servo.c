@@ -104,7 +104,7 @@ static void a_retract_brakes_onto_its_limit(void **st)
 	k.gap.feed_a_mm_s2 = 500;
 	cut_at(&r, &k, 2);
 	v = r.c.feed_mm_s;
-	while (r.c.fault == FAULT_NONE) {
+	while (r.c.fault.first == FAULT_NONE) {
 		step(&r, SHORTED_V);
 		assert_near(r.c.feed_mm_s, v, 1.001);
 		v = r.c.feed_mm_s;

@@ -180,7 +180,7 @@ static void a_damaged_end_is_a_fault_not_a_leap(void **st)
 	segs[1].arg = 7;
 	for (int i = 0; i < 5000 && r.c.state != STATE_FAULT; i++)
 		step(&r, SPARKING_V);
-	assert_int_equal(r.c.fault, FAULT_PROGRAM);
+	assert_int_equal(r.c.fault.first, FAULT_PROGRAM);
 	rig_free(&r);
 }
 

@@ -35,7 +35,7 @@ static void say(const struct job *j, const struct rig *r, const char *what)
 		 "--period-us %g, a %g, j %g\n%s", what,
 		 place(r), r->m.p.head->length_mm,
 		 state_duty[r->c.state].name,
-		 cycle_fault_name(r->c.fault), j->dialect,
+		 fault_name(r->c.fault.first), j->dialect,
 		 interp_strategy_name(j->how), j->period_us, j->a_mm_s2,
 		 j->j_mm_s3, j->text.at);
 }

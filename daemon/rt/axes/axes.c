@@ -5,7 +5,6 @@
 #include "axes/axes.h"
 
 #include "cycle.h"
-#include "path/walk.h"
 
 static enum cycle_fault fault_of(enum io_trouble t)
 {
@@ -19,10 +18,10 @@ static enum cycle_fault fault_of(enum io_trouble t)
 	return t < IO_NTROUBLES ? faults[t] : FAULT_IO_LOST;
 }
 
-static bool in_motion(const struct cycle *c)
+uint64_t axes_faults(void)
 {
-	return state_duty[c->state].running || c->mover.v_mm_s != 0 ||
-	       c->moving || c->state == STATE_JOG || c->state == STATE_HOME;
+	return fault_bit(FAULT_DRIVE) | fault_bit(FAULT_FOLLOWING) |
+	       fault_bit(FAULT_BUS);
 }
 
 void axes_guard(struct cycle *c, const struct io_inputs *in)
@@ -31,9 +30,9 @@ void axes_guard(struct cycle *c, const struct io_inputs *in)
 	c->axes.off = in->axes_off;
 	/* A reset goes out at the end of this cycle: what is told is old. */
 	if (in->trouble != IO_WELL && !c->out.reset)
-		cycle_fail(c, fault_of(in->trouble));
-	if (in->axes_off && !c->axes.awaited && in_motion(c))
-		cycle_fail(c, FAULT_DRIVE);
+		fault_note(&c->fault, fault_of(in->trouble), FAULT_ALWAYS);
+	if (in->axes_off && !c->axes.awaited && cycle_moves(c))
+		fault_latch(&c->fault, FAULT_DRIVE);
 }
 
 bool axes_want(struct cycle *c, bool start)
@@ -66,6 +65,6 @@ enum axes_await axes_await(struct cycle *c)
 		return start ? AXES_START : AXES_READY;
 	}
 	if (a->waited++ >= c->config.axes_wait_cycles)
-		cycle_fail(c, FAULT_DRIVE);
+		fault_latch(&c->fault, FAULT_DRIVE);
 	return AXES_AWAITED;
 }

@@ -28,6 +28,9 @@ struct axes {
 /** axes_guard() - their troubles as faults. */
 void axes_guard(struct cycle *c, const struct io_inputs *in);
 
+/** axes_faults() - those that drives report, and may end by a reset. */
+uint64_t axes_faults(void);
+
 /**
  * axes_want() - power, for a @start or for a motion while held.
  * Return: true if motion may begin now; false: it is awaited.

@@ -8,7 +8,6 @@
 #include "axes/manual.h"
 #include "io.h"
 #include "path/laws.h"
-#include "path/walk.h"
 
 #include <math.h>
 
@@ -46,7 +45,7 @@ static void watch_way(struct cycle *c)
 			      c->config.travel_min[h->axis];
 
 	if (fabs(h->gone_mm - h->phase_mm) / manual_axis(c)->pulse_mm > travel)
-		cycle_fail(c, FAULT_HOME);
+		fault_latch(&c->fault, FAULT_HOME);
 }
 
 /* The first in order; of equals the first in name. */

@@ -3,18 +3,11 @@
  * limit.c - hard limit switches
  */
 #include "axes/limit.h"
-#include "path/walk.h"
+#include "cycle.h"
 
 bool limit_bars(const struct limit *l, uint32_t axis, int toward)
 {
 	return l->on >> axis & 1 && l->side[axis] == toward;
-}
-
-static bool moves(const struct cycle *c)
-{
-	return state_duty[c->state].running || c->moving ||
-	       c->state == STATE_JOG || c->state == STATE_HOME ||
-	       c->mover.v_mm_s != 0;
 }
 
 void limit_guard(struct cycle *c, const struct io_inputs *in)
@@ -31,8 +24,8 @@ void limit_guard(struct cycle *c, const struct io_inputs *in)
 		c->limit.side[i] = c->comp.begun ? c->comp.axis[i].toward : 0;
 	}
 	c->limit.on = in->limit;
-	if ((came && moves(c)) || (in->limit && state_duty[c->state].running))
-		cycle_fail(c, FAULT_LIMIT_SWITCH);
+	if ((came && cycle_moves(c)) || (in->limit && state_duty[c->state].running))
+		fault_latch(&c->fault, FAULT_LIMIT_SWITCH);
 }
 
 void limit_watch(struct cycle *c)
@@ -43,6 +36,6 @@ void limit_watch(struct cycle *c)
 		const int32_t is = c->out.target[i];
 
 		if (is != was && limit_bars(&c->limit, i, is < was ? -1 : 1))
-			cycle_fail(c, FAULT_LIMIT_SWITCH);
+			fault_latch(&c->fault, FAULT_LIMIT_SWITCH);
 	}
 }

@@ -4,7 +4,6 @@
  */
 #include "axes/manual.h"
 #include "path/laws.h"
-#include "path/walk.h"
 
 #include <math.h>
 
@@ -145,7 +144,7 @@ static bool jog_go(struct cycle *c)
 	const struct mover_limits l = manual_limits(c, jog_mm_s(c));
 
 	if (c->sensed.contact && h->free_seen && !c->config.dry_run) {
-		cycle_fail(c, FAULT_CONTACT);
+		fault_latch(&c->fault, FAULT_CONTACT);
 		return false;
 	}
 	h->free_seen = h->free_seen || c->sensed.is_open;

@@ -3,7 +3,7 @@
  * arcing.c - the ladder against arcs
  */
 #include "gap/arcing.h"
-#include "path/walk.h"
+#include "cycle.h"
 
 #include <math.h>
 
@@ -40,7 +40,7 @@ static void climb(struct cycle *c)
 	if (a->rung < ARCING_FAULT)
 		return;
 	a->rung = ARCING_NONE;
-	cycle_fail(c, FAULT_ARCING);
+	fault_latch(&c->fault, FAULT_ARCING);
 }
 
 /* What a jump or a retract ended: should arcs come again, so will they. */

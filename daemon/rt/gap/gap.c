@@ -238,6 +238,22 @@ static bool suspect(const struct cycle *c, struct gap_memory *m,
 	       fabs(place - m->same_mm) >= MOVED_MM;
 }
 
+/* Lines say nothing where nothing sparks, but must be read to be felt by. */
+static bool lines_unreadable(const struct cycle *c, const struct io_inputs *in)
+{
+	return c->out.power ? !c->sensed.valid :
+	       c->out.sense ? !in->shares_valid : false;
+}
+
+/* A probe may have an input of its own, which is enough. */
+bool gap_is_unreadable(const struct cycle *c, const struct io_inputs *in)
+{
+	if (c->config.dry_run || (c->state == STATE_PROBE && in->contact))
+		return false;
+	return c->gap.source == GAP_LINES ? lines_unreadable(c, in) :
+					    !c->sensed.valid;
+}
+
 void gap_forget(struct cycle *c)
 {
 	c->gap_past = (struct gap_memory) { .powered = 0 };

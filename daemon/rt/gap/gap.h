@@ -81,6 +81,9 @@ struct io_inputs;
 /** gap_sense() - fill c->sensed from this cycle's inputs. */
 void gap_sense(struct cycle *c, const struct io_inputs *in);
 
+/** gap_is_unreadable() - must it be, and can it not be read? */
+bool gap_is_unreadable(const struct cycle *c, const struct io_inputs *in);
+
 /** gap_forget() - what was before says nothing, after a fault or a hold. */
 void gap_forget(struct cycle *c);
 

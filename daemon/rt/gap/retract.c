@@ -4,7 +4,6 @@
  */
 #include "gap/retract.h"
 #include "path/laws.h"
-#include "path/walk.h"
 
 #include <math.h>
 
@@ -94,16 +93,16 @@ void retract_watch(struct cycle *c)
 		return;
 	c->totals.retract_mm_max = fmax(c->totals.retract_mm_max, back_mm(c));
 	if (g->abort_count && r->in_row >= g->abort_count) {
-		cycle_fail(c, FAULT_RETRACT_COUNT);
+		fault_latch(&c->fault, FAULT_RETRACT_COUNT);
 		return;
 	}
 	if (g->retract_max_cycles && ++r->cycles > g->retract_max_cycles) {
-		cycle_fail(c, FAULT_RETRACT_TIME);
+		fault_latch(&c->fault, FAULT_RETRACT_TIME);
 		return;
 	}
 	if (!r->waited && !at_floor(c))
 		return;
 	/* As far back as it may: stand, and give the short a little time. */
 	if (r->waited++ >= g->retract_wait_cycles)
-		cycle_fail(c, blame(c));
+		fault_latch(&c->fault, blame(c));
 }

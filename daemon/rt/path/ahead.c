@@ -167,7 +167,7 @@ static bool try_plans(struct cycle *c, struct lookahead *k, double v_mm_s)
 		if (k->missed_mm <= 0)
 			return true;
 		if (n == 0 && is_lie(c, k)) {
-			cycle_fail(c, FAULT_PROGRAM);
+			fault_latch(&c->fault, FAULT_PROGRAM);
 			return true;
 		}
 		plan_place(c, k, v_mm_s);
@@ -263,11 +263,11 @@ double ahead_distance(struct cycle *c, const struct ahead_move *w)
 	}
 	if (w->toward * c->mover.v_mm_s >
 	    fmax(most, c->ahead.entered_mm_s) * (1 + 1e-6) + 1e-9) {
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 		return 0;
 	}
 	k = look_of(c, w);
 	choose(c, &k, v);
 	c->ahead.room_mm = k.missed_mm > 0 ? 0 : k.room_mm;
-	return c->fault == FAULT_PROGRAM ? 0 : go(c, w);
+	return fault_is_latched(&c->fault, FAULT_PROGRAM) ? 0 : go(c, w);
 }

@@ -3,7 +3,7 @@
  * mcode.c - tell an M code, wait for its answer
  */
 #include "path/mcode.h"
-#include "path/walk.h"
+#include "cycle.h"
 
 #include <math.h>
 
@@ -17,6 +17,7 @@ void mcode_hear(struct cycle *c)
 {
 	struct mcode *m = &c->mcode;
 
+	m->waits = false;
 	if (!c->plc.present || !c->plc.alive)
 		return;
 	m->busy = c->plc.mcode_done != 0;
@@ -43,9 +44,10 @@ static bool stay(struct cycle *c)
 {
 	struct mcode *m = &c->mcode;
 
+	m->waits = true;
 	if (c->config.mcode_cycles && ++m->waited > c->config.mcode_cycles) {
 		m->waited = 0;
-		cycle_fail(c, FAULT_MCODE);
+		fault_latch(&c->fault, FAULT_MCODE);
 	}
 	return false;
 }

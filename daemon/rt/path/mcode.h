@@ -31,6 +31,7 @@ struct mcode {
 	uint32_t at;			/* segment in front of which it waits */
 	uint32_t back_to;		/* lowest segment walked back to, or
 					 * that of the last code */
+	bool waits;			/* in this period, for an answer */
 	uint64_t waited;		/* cycles */
 };
 

@@ -4,7 +4,6 @@
  */
 #include "path/probe.h"
 #include "path/laws.h"
-#include "path/walk.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,15 +17,6 @@
 void probe_sense(struct cycle *c, const struct io_inputs *in)
 {
 	c->probe.contact = c->sensed.contact || in->contact;
-}
-
-/* Lines say nothing where nothing sparks, but must be read. */
-bool probe_is_blind(const struct cycle *c, const struct io_inputs *in)
-{
-	if (c->state != STATE_PROBE || c->config.dry_run || in->contact)
-		return false;
-	return c->gap.source == GAP_LINES ? !in->shares_valid :
-					    !c->sensed.valid;
 }
 
 /* -- Places ------------------------------------------------------------------- */
@@ -108,7 +98,7 @@ static void finish(struct cycle *c)
 	if (segment(c)->flags & INTERP_SEG_TOUCH && !c->config.dry_run)
 		remember(c, axis, was[axis] + t->shift[axis]);
 	if (interp_cursor_seek_end(&c->cursor, index_of(c)) < 0) {
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 		return;
 	}
 	for (int i = 0; i < INTERP_NAXES; i++) {
@@ -116,7 +106,7 @@ static void finish(struct cycle *c)
 				      c->cursor.pos[i];
 
 		if (llabs(shift) > INTERP_PULSES_MAX) {
-			cycle_fail(c, FAULT_PROGRAM);
+			fault_latch(&c->fault, FAULT_PROGRAM);
 			return;
 		}
 		t->shift[i] = (int32_t)shift;
@@ -152,7 +142,7 @@ static void begin_going(struct cycle *c)
 	const double way = way_mm(c);
 
 	if (!(way <= left_mm(c))) {
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 		return;
 	}
 	c->probe.phase = PROBE_GO;
@@ -182,7 +172,7 @@ static double go(struct cycle *c)
 		return 0;
 	}
 	if (c->probe.contact && c->probe.open_seen) {
-		cycle_fail(c, FAULT_CONTACT);
+		fault_latch(&c->fault, FAULT_CONTACT);
 		return 0;
 	}
 	c->probe.open_seen = c->probe.open_seen || !c->probe.contact;
@@ -214,7 +204,7 @@ static double forward(struct cycle *c, double v_mm_s)
 
 	if (left > 0)
 		return law_go_at(c, fmin(v, left / law_period_s(c)));
-	cycle_fail(c, FAULT_NO_CONTACT);
+	fault_latch(&c->fault, FAULT_NO_CONTACT);
 	return 0;
 }
 
@@ -243,7 +233,7 @@ static double settle(struct cycle *c)
 	}
 	c->probe.met_mm = law_place(c);
 	if (law_place(c) - s->s_mm < s->length_mm / s->ticks)
-		cycle_fail(c, FAULT_CONTACT);
+		fault_latch(&c->fault, FAULT_CONTACT);
 	else
 		begin_back(c);
 	return 0;
@@ -277,7 +267,7 @@ static double back(struct cycle *c)
 	if (!is_there(c))
 		return go_to(c, feed_mm_s(c));
 	if (c->probe.contact)
-		cycle_fail(c, FAULT_CONTACT);
+		fault_latch(&c->fault, FAULT_CONTACT);
 	else
 		c->probe.phase = PROBE_FINE;
 	return 0;

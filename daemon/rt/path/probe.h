@@ -64,9 +64,6 @@ struct io_inputs;
 /** probe_sense() - is there contact? */
 void probe_sense(struct cycle *c, const struct io_inputs *in);
 
-/** probe_is_blind() - feeling for the work, with nothing to feel by? */
-bool probe_is_blind(const struct cycle *c, const struct io_inputs *in);
-
 /** probe_begin() - the segment in front, or what is left of it. */
 void probe_begin(struct cycle *c);
 

@@ -3,7 +3,7 @@
  * timed.c - a part of the program that ends by time as well as by depth
  */
 #include "path/timed.h"
-#include "path/walk.h"
+#include "cycle.h"
 
 #include <string.h>
 
@@ -12,7 +12,7 @@ void timed_begin(struct cycle *c, uint32_t end)
 	const uint64_t ms = c->cursor.p.segs[end].arg;
 
 	if (c->cursor.p.segs[end].kind != INTERP_TIMED_END) {
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 		return;
 	}
 	c->timed_end = end;
@@ -41,7 +41,7 @@ void timed_skip(struct cycle *c)
 
 	if (interp_cursor_seek(&end, c->timed_end, 0) < 0 ||
 	    memcmp(end.pos, c->cursor.pos, sizeof(end.pos)) != 0) {
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 		return;
 	}
 	c->cursor = end;

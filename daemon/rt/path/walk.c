@@ -247,7 +247,7 @@ enum walk_deed walk_action(struct cycle *c)
 		timed_over(c, next);
 	c->action_done = first ? next : c->action_done;
 	if (interp_cursor_pass(&c->cursor) == INTERP_BAD_SEGMENT) {
-		cycle_fail(c, FAULT_PROGRAM);
+		fault_latch(&c->fault, FAULT_PROGRAM);
 		return ACTION_PASSED;
 	}
 	if (first && s.kind == INTERP_TIMED)

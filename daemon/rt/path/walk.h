@@ -44,7 +44,4 @@ enum walk_result walk_by(struct cycle *c, double ds_mm);
 /** walk_action() - do the action in front, once. */
 enum walk_deed walk_action(struct cycle *c);
 
-/** cycle_fail() - latch a fault. */
-void cycle_fail(struct cycle *c, enum cycle_fault f);
-
 #endif /* RT_WALK_H */

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * guard.c - what is looked at in every period, before anything moves
+ */
+#include "guard.h"
+
+#include "cycle.h"
+#include "path/walk.h"
+
+/* A cut that is about to begin needs a wire, and so does the way back out of
+ * one: it would be felt by the gap. */
+static void watch_wire(struct cycle *c)
+{
+	if (c->gap.process != PROCESS_WIRE)
+		return;
+	fault_note(&c->fault, FAULT_WIRE_BROKEN, FAULT_IN_POWER);
+	if (c->state == STATE_RETRACT ||
+	    (c->state == STATE_TRAVEL && walk_ahead(c) == AHEAD_CUT))
+		fault_latch(&c->fault, FAULT_WIRE_BROKEN);
+}
+
+static void note_machine(struct cycle *c, const struct io_inputs *in)
+{
+	struct fault *f = &c->fault;
+
+	if (in->estop)
+		fault_note(f, FAULT_ESTOP, FAULT_ALWAYS);
+	if (in->lost)
+		fault_note(f, FAULT_IO_LOST, FAULT_ALWAYS);
+	if (in->door_open)
+		fault_note(f, FAULT_DOOR, FAULT_IN_MOTION);
+	if (in->dielectric_low)
+		fault_note(f, FAULT_DIELECTRIC, FAULT_IN_POWER);
+	if (in->wire_broken || (in->plc.alive && !in->plc.wire_whole))
+		watch_wire(c);
+}
+
+static void note_gap(struct cycle *c, const struct io_inputs *in)
+{
+	if (gap_is_unreadable(c, in))
+		fault_note(&c->fault, FAULT_GAP_LOST, FAULT_IN_MOTION);
+	if (c->sensed.suspect)
+		fault_note(&c->fault, FAULT_GAP_STUCK, FAULT_IN_POWER);
+}
+
+void guard_judge(struct cycle *c)
+{
+	fault_judge(&c->fault, cycle_moves(c), state_duty[c->state].power);
+}
+
+void guard_look(struct cycle *c, const struct io_inputs *in)
+{
+	fault_look_anew(&c->fault);
+	note_machine(c, in);
+	axes_guard(c, in);
+	interlock_note(c, in);
+	note_gap(c, in);
+	limit_guard(c, in);
+	guard_judge(c);
+	mcode_hear(c);
+	if (state_duty[c->state].power)
+		arcing_watch(c);
+	c->busy = in->busy;
+}
+
+bool guard_forbids(const struct cycle *c)
+{
+	return c->fault.seen[FAULT_ALWAYS] || c->fault.seen[FAULT_IN_MOTION] ||
+	       (c->plc.present && c->plc.hold);
+}
+
+/*
+ * A short while positioning is a collision, once the gap has been open: on the
+ * way out of a cut, debris may still bridge it.
+ */
+void guard_contact(struct cycle *c)
+{
+	if (c->state != STATE_TRAVEL || c->config.dry_run)
+		return;
+	if (c->sensed.contact && c->free_seen)
+		fault_latch(&c->fault, FAULT_CONTACT);
+	c->free_seen = c->free_seen || c->sensed.is_open;
+}

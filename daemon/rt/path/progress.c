@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * progress.c - does a motion that is under way go on?
+ */
+#include "path/progress.h"
+
+#include "path/laws.h"
+#include "path/lookahead.h"
+
+#include <math.h>
+
+#define STILL_S		1.0		/* at any speed */
+#define STILL_POINTS	8.0		/* at a low one */
+
+static bool moved(const struct cycle *c)
+{
+	const struct progress *p = &c->progress;
+
+	return p->index != c->cursor.index || p->tick != c->cursor.tick ||
+	       p->out_tick != c->escape.tick;
+}
+
+/* The gap says how fast: a stand is one of its answers. */
+static bool gap_stands(const struct cycle *c)
+{
+	const bool by_gap = state_duty[c->state].power ||
+			    c->state == STATE_RETRACT ||
+			    c->state == STATE_PROBE;
+
+	/* A way of a cycle that is lost in a rounding is a stand as well. */
+	return by_gap && (fabs(c->mover.v_mm_s) * law_period_s(c) <
+			  LAW_ONTO_MM ||
+			  law_place(c) != c->progress.place_mm);
+}
+
+/* One that was begun is forgotten on the way back, and waited for again. */
+static bool dwells(const struct cycle *c)
+{
+	return c->dwelling && (state_duty[c->state].power ||
+			       c->state == STATE_TRAVEL);
+}
+
+static bool has_a_name(const struct cycle *c)
+{
+	return !cycle_moves(c) || c->busy || dwells(c) || c->mcode.waits ||
+	       c->axes.awaited || !contouring_rests(&c->contouring) ||
+	       (c->override == 0 && (c->state == STATE_TRAVEL ||
+				     c->state == STATE_PROBE)) ||
+	       gap_stands(c);
+}
+
+/* The speed of what it is to do; jumps and moves by command are quick. */
+static double speed_mm_s(const struct cycle *c, const struct interp_seg *s)
+{
+	return c->state == STATE_TRAVEL ?
+	       law_seg_speed(s) * (c->override < 1 ? c->override : 1) :
+	       c->state == STATE_HOLD ? c->gap.retract_mm_s :
+					c->jump.v_max_mm_s;
+}
+
+/* So long that some points should have come? */
+static bool is_long(const struct cycle *c)
+{
+	const double still_s = (double)c->progress.still * law_period_s(c);
+	const struct interp_seg *s;
+	double point_mm;
+
+	if (still_s < STILL_S)
+		return false;
+	s = lookahead_toward(c, c->mover.v_mm_s < 0 ? -1 : 1);
+	if (!s || s->ticks == 0)
+		return true;
+	point_mm = s->length_mm / (double)s->ticks;
+	return still_s * speed_mm_s(c, s) > STILL_POINTS * point_mm;
+}
+
+void progress_watch(struct cycle *c)
+{
+	struct progress *p = &c->progress;
+
+	if (moved(c) || has_a_name(c))
+		p->still = 0;
+	else
+		p->still++;
+	p->index = c->cursor.index;
+	p->tick = c->cursor.tick;
+	p->out_tick = c->escape.tick;
+	p->place_mm = law_place(c);
+	if (p->still > 0 && is_long(c)) {
+		fault_latch(&c->fault, FAULT_STUCK);
+		p->still = 0;
+	}
+}

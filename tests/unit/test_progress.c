@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_progress.c - promises of path/progress.h: what stands and should move is
+ * told, and a wait that has a name is none
+ */
+#include "plc_help.h"
+
+#define SECONDS(s)	((int)((s) / PERIOD_S))
+
+static void begin_job(struct rig *r, struct cycle_config *k)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	rapid_to(b, -2);
+	action(b, INTERP_DWELL, 5000);
+	cut_to(b, -5);
+	rig_load(r, b, k);
+	r->in.plc = well();
+	step(r, OPEN_V);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
+/* The walk of a segment that was damaged behind its check: no tick comes. */
+static void freeze(struct rig *r)
+{
+	r->c.config.points_max = 0;
+}
+
+static void what_should_move_and_stands_is_stuck(void **st)
+{
+	(void)st;
+	for (int i = 0; i < 3; i++) {
+		struct cycle_config k = usual_config();
+		struct rig r;
+		double at;
+		int n;
+
+		k.jump.height_mm = 1;
+		begin_job(&r, &k);
+		if (i == 0)
+			steps(&r, OPEN_V, 20);
+		if (i == 1)
+			until(&r, STATE_JUMP, SPARKING_V, 20000);
+		if (i == 2) {
+			steps(&r, OPEN_V, 400);
+			tell(&r, CYCLE_HOLD);
+			steps(&r, OPEN_V, 100);
+			tell_mm(&r, CYCLE_RETRACT, 1);
+			steps(&r, OPEN_V, 5);
+		}
+		freeze(&r);
+		at = place(&r);
+		n = until(&r, STATE_FAULT, OPEN_V, SECONDS(2));
+		assert_in_range(n, SECONDS(0.9), SECONDS(1.1));
+		assert_int_equal(r.c.fault.first, FAULT_STUCK);
+		assert_near(place(&r), at, 0.01);
+		rig_free(&r);
+	}
+}
+
+/* 0.6 mm/min: a lattice point each 0.1 s; and a hundredth of that. */
+static void a_slow_motion_is_not_stuck(void **st)
+{
+	static const double overrides[] = { 1, 0.1, 0.01 };
+
+	(void)st;
+	for (int i = 0; i < 3; i++) {
+		struct cycle_config k = usual_config();
+		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+		const struct interp_build_word w = {
+			.line = 1, .feed_mm_s = 0.01,
+		};
+		double end[INTERP_NAXES] = { 0 };
+		struct interp_diag d;
+		struct rig r;
+
+		k.dry_run = true;
+		end[INTERP_Z] = -5;
+		assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+		rig_load(&r, b, &k);
+		tell(&r, CYCLE_START);
+		tell_mm(&r, CYCLE_OVERRIDE, overrides[i]);
+		steps(&r, OPEN_V, SECONDS(30));
+		assert_int_equal(r.c.fault.first, FAULT_NONE);
+		freeze(&r);
+		until(&r, STATE_FAULT, OPEN_V, SECONDS(100));
+		assert_int_equal(r.c.fault.first, FAULT_STUCK);
+		rig_free(&r);
+	}
+}
+
+static void hold_it(struct rig *r)
+{
+	tell(r, CYCLE_HOLD);
+}
+
+static void override_zero(struct rig *r)
+{
+	r->in.plc.override = 0;
+}
+
+static void busy(struct rig *r)
+{
+	r->in.busy = true;
+}
+
+static void dwell(struct rig *r)
+{
+	while (!r->c.dwelling)
+		step(r, OPEN_V);
+}
+
+static void gap_in_the_window(struct rig *r)
+{
+	until(r, STATE_ERODE, SPARKING_V, 20000);
+	/* Neither wide nor narrow: the servo stands. */
+	r->c.gap.window_low_v = 20;
+	r->c.gap.window_high_v = SPARKING_V + 1;
+}
+
+static void a_wait_that_has_a_name_may_last(void **st)
+{
+	static void (*const waits[])(struct rig *) = {
+		hold_it, override_zero, busy, dwell, gap_in_the_window,
+	};
+
+	(void)st;
+	for (size_t i = 0; i < sizeof(waits) / sizeof(waits[0]); i++) {
+		struct cycle_config k = usual_config();
+		struct rig r;
+
+		begin_job(&r, &k);
+		steps(&r, OPEN_V, 20);
+		waits[i](&r);
+		steps(&r, SPARKING_V, SECONDS(4));
+		assert_int_equal(r.c.fault.first, FAULT_NONE);
+		rig_free(&r);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_should_move_and_stands_is_stuck),
+		cmocka_unit_test(a_slow_motion_is_not_stuck),
+		cmocka_unit_test(a_wait_that_has_a_name_may_last),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
