@@ -50,6 +50,8 @@ CORE	:= $(wildcard libinterp/core/*/*.c)
 COMPILE	:= $(wildcard libinterp/compile/*/*.c)
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
+# What every program has in common.
+COMMON	:= $(wildcard common/*.c)
 WORDS	:= $(wildcard daemon/words/*.c)
 RT	:= $(wildcard daemon/rt/*.c daemon/rt/*/*.c)
 # Of two files for libgpiod, the one for the version that pkg-config finds.
@@ -81,6 +83,7 @@ TRIED	:= $(wildcard tests/experiments/tried/*.c)
 CORE_H		= -Ilibinterp/core/include
 COMPILE_H	= -Ilibinterp/compile/include
 MODEL_H		= -Ilibinterp/model/include
+INC_common	= -Icommon $(CORE_H)
 INC_core	= $(CORE_H) -Ilibinterp/core
 INC_compile	= $(COMPILE_H) -Ilibinterp/compile $(INC_core)
 INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
@@ -90,27 +93,28 @@ INC_rt		= -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
-INC_shm		= -Idaemon/shm $(WORDS_H)
+INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
 INC_setup	= -Idaemon/setup
-INC_edmd	= -Idaemon/edmd -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_edmd	= -Idaemon/edmd -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
+INC_jobs	= -Idaemon/jobs -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign
 INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
-INC_sim		= -Iclients/sim -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
-INC_ctl		= -Iclients/ctl -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
-INC_dds		= -Iclients/dds -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
+INC_ctl		= -Iclients/ctl -Icommon -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
+INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
-part = $(word 2,$(subst /, ,$1))
+part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
 
 obj	= $(patsubst %.c,$(B)/%.o,$1)
 CORE_A	 := $(B)/libinterp-core.a
 COMPILE_A := $(B)/libinterp-compile.a
 MODEL_A	 := $(B)/libinterp-model.a
 TRIED_A	 := $(B)/tests-tried.a
-INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A)
+COMMON_A := $(B)/common.a
+INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
 WORDS_O	 := $(call obj,$(WORDS))
 RT_O	 := $(call obj,$(RT)) $(WORDS_O)
 IO_O	 := $(call obj,$(IO))
@@ -185,6 +189,8 @@ $(call say,AR,$@)
 $(Q)$(AR) rcs $@ $^
 endef
 
+$(COMMON_A): $(call obj,$(COMMON))
+	$(archive)
 $(CORE_A): $(call obj,$(CORE))
 	$(archive)
 $(COMPILE_A): $(call obj,$(COMPILE))
@@ -197,19 +203,19 @@ $(TRIED_A): $(call obj,$(TRIED))
 $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
 	$(call link,-linih -ljansson -lpthread -lm)
 
-$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A)
+$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
 $(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A)
+$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
 	$(call link,-llcm -lsodium -ljansson -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -lm)
 
-$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O)
+$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
 	$(call link,-lddsc -ljansson -lm)
 
 # Of edmd itself, without its main().
@@ -321,7 +327,7 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 # Another compiler's opinion: warnings are errors, nothing is linked.
 clang:
 	$(call say,CLANG,all sources)
-	$(Q)for f in $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
+	$(Q)for f in $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
 		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
@@ -370,7 +376,7 @@ run-fuzz_%: $(B)/fuzz_%
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
 
-$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
+$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON)
 	$(call say,CLANG,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
@@ -379,7 +385,7 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP)
 
 # -- Lint ---------------------------------------------------------------------
 
-HEADERS	 = $(wildcard libinterp/*/include/interp/*.h daemon/*/*.h daemon/rt/*/*.h clients/*/*.h)
+HEADERS	 = $(wildcard common/*.h libinterp/*/include/interp/*.h daemon/*/*.h daemon/rt/*/*.h clients/*/*.h)
 
 # What an edmd must not have: a reader, messages, a database, another floor.
 NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
@@ -404,7 +410,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
 		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
-	$(Q)! grep -n '#include "\.\./' -r daemon libinterp clients tests
+	$(Q)! grep -n '#include "\.\./' -r common daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80
 	$(call say,LINT,what documents name is there)

@@ -4,7 +4,9 @@
  */
 #include "ctl.h"
 
-#include <getopt.h>
+#include "cmdline.h"
+#include "names.h"
+
 #include <math.h>
 #include <sodium.h>
 #include <stdio.h>
@@ -14,18 +16,44 @@
 
 #define URL_DEFAULT	TALK_URL
 
+/* Cut short, two jobs would be one. */
+static int take_id(void *to, const char *id)
+{
+	struct ctl *c = to;
+
+	c->id = id;
+	if (*id && strlen(id) < TALK_WORD_MAX)
+		return -1;
+	fprintf(stderr, "edmctl: --id of %zu bytes; 1 to %d of A-Z a-z 0-9 . _ "
+		"-\n", strlen(id), TALK_WORD_MAX - 1);
+	return EX_USAGE;
+}
+
+static int take_every(void *to, const char *word)
+{
+	struct ctl *c = to;
+	char *end;
+	long n = strtol(word, &end, 10);
+
+	if (end == word || *end || n < 1 || n > 1000000)
+		return cmdline_refuse("edmctl", "--every", word,
+				      "a whole number of cycles, 1 to 1000000");
+	c->every = (unsigned int)n;
+	return -1;
+}
+
 struct verb {
 	const char *name, *args;
 	int (*run)(struct ctl *c);
 	int takes, needs;		/* arguments */
 	bool offline;			/* asks no machine */
-	const char *options;		/* letters of its own options */
+	const char *options;		/* of its own, in a row */
 	const char *help;
 };
 
 /* clang-format off */
 static const struct verb verbs[] = {
-	{ "submit", "FILE", ctl_submit, 1, 1, false, "nihw",
+	{ "submit", "FILE", ctl_submit, 1, 1, false, "name id hold wait",
 	  "send a job of NC code; - is standard input" },
 	{ "queue", "", ctl_queue, 0, 0, false, "",
 	  "the job loaded and those that wait" },
@@ -65,9 +93,9 @@ static const struct verb verbs[] = {
 	  "what every fault, or one, means and what clears it" },
 	{ "doctor", "", ctl_doctor, 0, 0, false, "",
 	  "what this host lacks for cutting, and the command that mends it" },
-	{ "watch", "", ctl_watch, 0, 0, false, "o",
+	{ "watch", "", ctl_watch, 0, 0, false, "once",
 	  "the machine as it goes, until Ctrl-C" },
-	{ "record", "CSV", ctl_record, 1, 1, false, "epU",
+	{ "record", "CSV", ctl_record, 1, 1, false, "every plot until-end",
 	  "every cycle to a trace file, until Ctrl-C" },
 	{ "latency", "[S]", ctl_latency, 1, 0, false, "",
 	  "how late edmd woke, of S seconds from now or since its start" },
@@ -75,36 +103,44 @@ static const struct verb verbs[] = {
 	  "jobs that have ended, newest first" },
 	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
 	  "who may command: viewer, operator, service" },
-	{ "identify", "CSV", ctl_identify, true, true, true, "p",
+	{ "identify", "CSV", ctl_identify, true, true, true, "plot",
 	  "the loops of the axes, from what record wrote" },
 };
 
-static const struct option longs[] = {
-	{ "machine", required_argument, NULL, 'm' },
-	{ "url",     required_argument, NULL, 'u' },
-	{ "key",     required_argument, NULL, 'k' },
-	{ "json",    no_argument,       NULL, 'j' },
-	{ "timeout", required_argument, NULL, 't' },
-	{ "name",    required_argument, NULL, 'n' },
-	{ "id",      required_argument, NULL, 'i' },
-	{ "hold",    no_argument,       NULL, 'h' },
-	{ "wait",    no_argument,       NULL, 'w' },
-	{ "once",    no_argument,       NULL, 'o' },
-	{ "every",   required_argument, NULL, 'e' },
-	{ "plot",    required_argument, NULL, 'p' },
-	{ "until-end", no_argument,     NULL, 'U' },
-	{ "help",    no_argument,       NULL, 'H' },
-	{ "version", no_argument,       NULL, 'V' },
-	{ NULL, 0, NULL, 0 },
+#define AT(field)	.at = offsetof(struct ctl, field)
+
+/* The first NCOMMON are for all verbs; a verb names the others it takes. */
+static const struct cmdline_row rows[] = {
+	{ "machine", "NAME", CMDLINE_WORD, AT(machine), .help =
+	  "of the machine; default: edm" },
+	{ "url", "URL", CMDLINE_WORD, AT(url), .help =
+	  "of LCM; default: " URL_DEFAULT },
+	{ "key", "FILE", CMDLINE_WORD, AT(key), .help =
+	  "to sign with; default: EDM_KEY, or the host's" },
+	{ "json", NULL, CMDLINE_FLAG, AT(json), .help =
+	  "print results as JSON" },
+	{ "timeout", "S", CMDLINE_NUMBER, AT(timeout_s), .min = 1e-3,
+	  .max = 3600, .help = "wait for an answer so long; default: 3" },
+#define NCOMMON	5
+	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
+	  "submit: of the job; default: the file's" },
+	{ "id", "ID", CMDLINE_CALL, .take = take_id, .help =
+	  "submit: of the job; the same id twice is one job" },
+	{ "hold", NULL, CMDLINE_FLAG, AT(hold), .help =
+	  "submit: load it, wait for start" },
+	{ "wait", NULL, CMDLINE_FLAG, AT(wait), .help =
+	  "submit: follow it; exit 0 if done, 1 if not" },
+	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: one line" },
+	{ "every", "N", CMDLINE_CALL, .take = take_every, .help =
+	  "record: one cycle of N; default: 1" },
+	{ "plot", "FILE", CMDLINE_WORD, AT(plot), .help =
+	  "record, identify: then draw it, .png or .svg" },
+	{ "until-end", NULL, CMDLINE_FLAG, AT(until_end), .help =
+	  "record: until the job that runs, or the next, ends" },
 };
 /* clang-format on */
 
 #define NVERBS		(sizeof(verbs) / sizeof(verbs[0]))
-#define COMMON_OPTIONS	"mujtk"
-
-/* No option is short, so -1 is a word: a number below 0.  Words in order. */
-#define DIGITS		"0123456789."
-#define SHORTS		"-0::1::2::3::4::5::6::7::8::9::.::"
 
 /* The verb, its arguments, and one that is too much. */
 struct words {
@@ -112,122 +148,43 @@ struct words {
 	int n;
 };
 
-static void print_usage(FILE *f)
+static void print_verbs(void)
 {
-	fputs("Usage: edmctl [--machine NAME] [--url URL] [--json] "
-	      "[--timeout S] VERB ...\n\nVerbs:\n", f);
 	for (size_t i = 0; i < NVERBS; i++)
-		fprintf(f, "  %-8s %-9s %s\n", verbs[i].name, verbs[i].args,
-			verbs[i].help);
-	fputs("\nOptions:\n"
-	      "  --machine NAME  of the machine; default: edm\n"
-	      "  --url URL       of LCM; default: " URL_DEFAULT "\n"
-	      "  --key FILE      to sign with; default: EDM_KEY, or the host's\n"
-	      "  --json          print results as JSON\n"
-	      "  --timeout S     wait for an answer so long; default: 3\n"
-	      "  --name NAME     submit: of the job; default: the file's\n"
-	      "  --id ID         submit: of the job; the same id twice is one "
-	      "job\n"
-	      "  --hold          submit: load it, wait for start\n"
-	      "  --wait          submit: follow it; exit 0 if done, 1 if not\n"
-	      "  --once          watch: one line\n"
-	      "  --every N       record: one cycle of N; default: 1\n"
-	      "  --plot FILE     record, identify: then draw it, .png or "
-	      ".svg\n"
-	      "  --until-end     record: until the job that runs, or the "
-	      "next, ends\n"
-	      "  --help          this\n"
-	      "  --version       its version\n", f);
+		printf("  %-8s %-9s %s\n", verbs[i].name, verbs[i].args,
+		       verbs[i].help);
+	puts("\nOptions:");
 }
 
-/* Cut short, two jobs would be one. */
-static int id_take(struct ctl *c, const char *id)
+static const struct cmdline table = {
+	.program = "edmctl", .row = rows, .nrows = sizeof(rows) / sizeof(*rows),
+	.args_max = 16, .column = 18, .more = print_verbs,
+	.head = "Usage: edmctl [--machine NAME] [--url URL] [--json] "
+		"[--timeout S] VERB ...\n\nVerbs:\n",
+};
+
+static bool takes_option(const struct verb *v, const char *name)
 {
-	c->id = id;
-	if (*id && strlen(id) < TALK_WORD_MAX)
-		return 0;
-	fprintf(stderr, "edmctl: --id of %zu bytes; 1 to %d of A-Z a-z 0-9 . _ "
-		"-\n", strlen(id), TALK_WORD_MAX - 1);
-	return EX_USAGE;
-}
+	const size_t n = strlen(name);
 
-static int every_take(struct ctl *c, const char *word)
-{
-	char *end;
-	long n = strtol(word, &end, 10);
-
-	if (end == word || *end || n < 1 || n > 1000000) {
-		fprintf(stderr, "edmctl: --every %s; a whole number of "
-			"cycles, 1 to 1000000\n", word);
-		return EX_USAGE;
-	}
-	c->every = (unsigned int)n;
-	return 0;
-}
-
-static int option_take(struct ctl *c, int opt)
-{
-	char *end;
-
-	switch (opt) {
-	case 'm':
-		c->machine = optarg;
-		break;
-	case 'u':
-		c->url = optarg;
-		break;
-	case 'k':
-		c->key = optarg;
-		break;
-	case 'j':
-		c->json = true;
-		break;
-	case 't':
-		c->timeout_s = strtod(optarg, &end);
-		if (*end || !(c->timeout_s > 0 && c->timeout_s <= 3600)) {
-			fprintf(stderr, "edmctl: --timeout %s; seconds above "
-				"0, at most 3600\n", optarg);
-			return EX_USAGE;
-		}
-		break;
-	case 'n':
-		c->name = optarg;
-		break;
-	case 'i':
-		return id_take(c, optarg);
-	case 'h':
-		c->hold = true;
-		break;
-	case 'w':
-		c->wait = true;
-		break;
-	case 'o':
-		c->once = true;
-		break;
-	case 'e':
-		return every_take(c, optarg);
-	case 'p':
-		c->plot = optarg;
-		break;
-	case 'U':
-		c->until_end = true;
-		break;
-	}
-	return 0;
+	for (const char *at = v->options; (at = strstr(at, name)); at += n)
+		if ((at == v->options || at[-1] == ' ') &&
+		    (at[n] == ' ' || at[n] == '\0'))
+			return true;
+	return false;
 }
 
 /* A verb's options may stand before it, so they are checked at the end. */
-static int options_check(const struct verb *v, const char *given)
+static int options_check(const struct verb *v, const struct cmdline_given *g)
 {
-	for (; *given; given++) {
-		if (strchr(COMMON_OPTIONS, *given) ||
-		    strchr(v->options, *given))
+	for (size_t i = NCOMMON; i < table.nrows; i++) {
+		char option[32];
+
+		if (!(g->rows >> i & 1) || takes_option(v, rows[i].name))
 			continue;
-		for (int i = 0; longs[i].name; i++)
-			if (longs[i].val == *given)
-				fprintf(stderr, "edmctl: %s takes no --%s; "
-					"--help lists the options\n", v->name,
-					longs[i].name);
+		snprintf(option, sizeof(option), "--%s", rows[i].name);
+		fprintf(stderr, "edmctl: %s takes no %s; --help lists the "
+			"options\n", v->name, option);
 		return EX_USAGE;
 	}
 	return 0;
@@ -283,18 +240,6 @@ static const struct verb *verb_find(const char *name)
 	return NULL;
 }
 
-static int machine_check(const char *name)
-{
-	size_t n = strlen(name);
-
-	if (n > 0 && n < 32 && name[strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-		"abcdefghijklmnopqrstuvwxyz0123456789_-")] == '\0')
-		return 0;
-	fprintf(stderr, "edmctl: --machine %s; 1 to 31 of A-Z a-z 0-9 _ -\n",
-		name);
-	return EX_USAGE;
-}
-
 static void word_take(struct words *w, char *word)
 {
 	/* Of negatives_keep(). */
@@ -307,33 +252,16 @@ static int parse(struct ctl *c, int argc, char **argv,
 		 const struct verb **ret_verb)
 {
 	struct words w = { .n = 0 };
-	char given[64] = "";
-	size_t n = 0;
-	int opt, rc;
+	struct cmdline_given given;
+	int rc = cmdline_take(&table, c, argc, argv, &given);
 
-	while ((opt = getopt_long(argc, argv, SHORTS, longs, NULL)) != -1) {
-		if (opt == 1 || strchr(DIGITS, opt)) {
-			word_take(&w, argv[optind - 1]);
-			continue;
-		}
-		if (opt == 'H')
-			print_usage(stdout);
-		if (opt == 'V')
-			puts("edmctl " EDM_VERSION);
-		if (opt == 'H' || opt == 'V')
-			return -1;
-		rc = opt == '?' ? EX_USAGE : option_take(c, opt);
-		if (rc)
-			return rc;
-		if (n < sizeof(given) - 1 && !strchr(given, opt))
-			given[n++] = (char)opt;
-	}
-	while (optind < argc)
-		word_take(&w, argv[optind++]);
-	if (w.n == 0) {
-		print_usage(stderr);
-		return EX_USAGE;
-	}
+	if (rc >= 0)
+		return rc == EX_OK ? -1 : rc;
+	for (int i = given.first; i < argc; i++)
+		word_take(&w, argv[i]);
+	if (w.n == 0)
+		return cmdline_refuse("edmctl", "no", "verb",
+				      "--help lists the verbs");
 	*ret_verb = verb_find(w.at[0]);
 	if (!*ret_verb) {
 		fprintf(stderr, "edmctl: no verb '%s'; --help lists them\n",
@@ -341,10 +269,13 @@ static int parse(struct ctl *c, int argc, char **argv,
 		return EX_USAGE;
 	}
 	c->verb = (*ret_verb)->name;
-	rc = options_check(*ret_verb, given);
+	rc = options_check(*ret_verb, &given);
 	if (rc == 0)
 		rc = arguments_take(c, *ret_verb, w.n - 1, w.at + 1);
-	return rc ? rc : machine_check(c->machine);
+	if (rc == 0 && !names_machine_ok(c->machine))
+		rc = cmdline_refuse("edmctl", "--machine", c->machine,
+				    NAMES_MACHINE_WANTED);
+	return rc;
 }
 
 int main(int argc, char **argv)

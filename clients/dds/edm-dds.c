@@ -5,7 +5,9 @@
  * Reads edmd's shared memory and publishes an edm::MachineState at a fixed
  * rate.  It only reads; nothing that comes over DDS reaches the machine.
  */
+#include "cmdline.h"
 #include "config.h"
+#include "names.h"
 #include "tool.h"
 #include "topic.h"
 #include "watch.h"
@@ -19,9 +21,6 @@
 
 #define NS	1000000000LL
 #define ONCE_NS	(2 * NS)		/* --once waits so long for a reader */
-
-#define NAME_LETTERS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
-			"abcdefghijklmnopqrstuvwxyz0123456789_-"
 
 struct options {
 	const char *machine;
@@ -38,41 +37,21 @@ struct bridge {
 	char said[sizeof(((edm_MachineState *)0)->state)];
 };
 
-static const char usage[] =
-	"usage: edm-dds [options]\n"
-	"Publish a machine's state to the fleet over DDS.\n"
-	"\n"
-	"  --config FILE   machine file: its name, [dds] domain and hz;\n"
-	"                  options after it win\n"
-	"  --machine NAME  which edmd to read (edm)\n"
-	"  --domain N      DDS domain, 0 to 230 (0)\n"
-	"  --hz N          samples a second, 2 to 100 (10)\n"
-	"  --once          publish one sample to whoever listens within\n"
-	"                  2 s, then leave; 1 if nobody does\n"
-	"  --help, --version\n"
-	"\n"
-	"CYCLONEDDS_URI chooses the network interface and peers;\n"
-	"see docs/fleet.md.\n";
-
-static int refuse(const char *option, const char *found, const char *wanted)
+static int take_machine(void *to, const char *name)
 {
-	return tool_refuse("edm-dds", option, found, wanted);
-}
+	struct options *o = to;
 
-static int set_machine(struct options *o, const char *name)
-{
-	size_t n = strlen(name);
-
-	if (n == 0 || n >= SHM_NAME_MAX || strspn(name, NAME_LETTERS) != n)
-		return refuse("--machine", name,
-			      "1 to 31 of A-Z a-z 0-9 _ - are wanted");
+	if (!names_machine_ok(name))
+		return cmdline_refuse("edm-dds", "--machine", name,
+				      NAMES_MACHINE_WANTED);
 	o->machine = name;
-	return 0;
+	return -1;
 }
 
-static int set_config(struct options *o, const char *path)
+static int take_config(void *to, const char *path)
 {
 	static struct machine_config config;
+	struct options *o = to;
 	struct interp_diag d = { 0 };
 	const int r = config_read(&config, path, &d);
 
@@ -86,37 +65,46 @@ static int set_config(struct options *o, const char *path)
 	o->machine = config.name;
 	o->domain = (dds_domainid_t)config.dds_domain;
 	o->hz = config.dds_hz;
-	return 0;
+	return -1;
 }
 
-static int set_option(void *arg, int c)
+static int take_domain(void *to, const char *text)
 {
-	struct options *o = arg;
+	struct options *o = to;
 
-	switch (c) {
-	case 'c':
-		return set_config(o, optarg);
-	case 'm':
-		return set_machine(o, optarg);
-	case 'r':
-		if (topic_number_parse(optarg, TOPIC_HZ_MIN, 100, &o->hz) < 0)
-			return refuse("--hz", optarg, "a number, 2 to 100");
-		return 0;
-	default:
-		o->once = true;
-		return 0;
-	}
+	return tool_domain("edm-dds", text, &o->domain);
 }
 
-static const struct option longs[] = {
-	{ "config", required_argument, NULL, 'c' },
-	{ "machine", required_argument, NULL, 'm' },
-	{ "domain", required_argument, NULL, 'd' },
-	{ "hz", required_argument, NULL, 'r' },
-	{ "once", no_argument, NULL, '1' },
-	{ "help", no_argument, NULL, 'h' },
-	{ "version", no_argument, NULL, 'V' },
-	{ NULL, 0, NULL, 0 }
+#define AT(field)	.at = offsetof(struct options, field)
+
+/* clang-format off */
+static const struct cmdline_row rows[] = {
+	{ "config", "FILE", CMDLINE_CALL, .take = take_config, .help =
+	  "machine file: its name, [dds] domain and hz;\n"
+	  "options after it win" },
+	{ "machine", "NAME", CMDLINE_CALL, .take = take_machine, .help =
+	  "which edmd to read (edm)" },
+	{ "domain", "N", CMDLINE_CALL, .take = take_domain, .help =
+	  "DDS domain, 0 to 230 (0)" },
+	{ "hz", "N", CMDLINE_NUMBER, AT(hz), .min = TOPIC_HZ_MIN, .max = 100,
+	  .help = "samples a second, 2 to 100 (10)" },
+	{ "once", NULL, CMDLINE_FLAG, AT(once), .help =
+	  "publish one sample to whoever listens within\n"
+	  "2 s, then leave; 1 if nobody does" },
+};
+/* clang-format on */
+
+static const struct cmdline table = {
+	.program = "edm-dds", .row = rows,
+	.nrows = sizeof(rows) / sizeof(*rows), .column = 18,
+	.head =
+	"Usage: edm-dds [options]\n"
+	"Publish a machine's state to the fleet over DDS.\n"
+	"\n",
+	.tail =
+	"\n"
+	"CYCLONEDDS_URI chooses the network interface and peers;\n"
+	"see docs/fleet.md.\n",
 };
 
 static int bridge_open(struct bridge *b, const struct options *o)
@@ -243,18 +231,14 @@ int main(int argc, char **argv)
 {
 	struct options o = { .machine = "edm", .hz = 10 };
 	struct bridge b = { 0 };
-	const struct tool t = {
-		"edm-dds", "edm-dds " EDM_VERSION, usage, longs, set_option,
-		&o, &o.domain,
-	};
-	int r = tool_parse(&t, argc, argv);
+	struct cmdline_given given;
+	int r = cmdline_take(&table, &o, argc, argv, &given);
 
-	if (r)
+	if (r >= 0)
 		return r;
-
 	r = bridge_open(&b, &o);
 	if (r == 0)
 		r = o.once ? run_once(&b) : run(&b, o.hz);
 	bridge_close(&b);
-	return r < 0 ? tool_fail(t.name, o.domain, r) : r;
+	return r < 0 ? tool_fail(table.program, o.domain, r) : r;
 }

@@ -5,6 +5,7 @@
  * The reader's cache keeps the last sample of every machine, and whether its
  * writer is still there; each picture is that cache, read anew.
  */
+#include "cmdline.h"
 #include "table.h"
 #include "tool.h"
 #include "topic.h"
@@ -35,52 +36,60 @@ struct fleet {
 	size_t nrows;
 };
 
-static const char usage[] =
-	"usage: edm-fleet [options]\n"
+static int take_domain(void *to, const char *text)
+{
+	struct options *o = to;
+
+	return tool_domain("edm-fleet", text, &o->domain);
+}
+
+static int take_once(void *to, const char *text)
+{
+	struct options *o = to;
+
+	(void)text;
+	o->mode = MODE_ONCE;
+	return -1;
+}
+
+static int take_watch(void *to, const char *text)
+{
+	struct options *o = to;
+
+	(void)text;
+	o->mode = MODE_WATCH;
+	return -1;
+}
+
+#define AT(field)	.at = offsetof(struct options, field)
+
+/* clang-format off */
+static const struct cmdline_row rows[] = {
+	{ "domain", "N", CMDLINE_CALL, .take = take_domain, .help =
+	  "DDS domain, 0 to 230 (0)" },
+	{ "once", NULL, CMDLINE_CALL, .take = take_once, .help =
+	  "listen for a while, print a table, leave" },
+	{ "watch", NULL, CMDLINE_CALL, .take = take_watch, .help =
+	  "go on until Ctrl-C (default on a terminal)" },
+	{ "wait", "S", CMDLINE_NUMBER, AT(wait_s), .min = 0.1, .max = 3600,
+	  .help = "how long --once listens, 0.1 to 3600 s (2)" },
+	{ "json", NULL, CMDLINE_FLAG, AT(json), .help =
+	  "one object a picture, on one line" },
+};
+/* clang-format on */
+
+static const struct cmdline table = {
+	.program = "edm-fleet", .row = rows,
+	.nrows = sizeof(rows) / sizeof(*rows), .column = 18,
+	.head =
+	"Usage: edm-fleet [options]\n"
 	"List the machines heard over DDS.\n"
-	"\n"
-	"  --domain N      DDS domain, 0 to 230 (0)\n"
-	"  --once          listen for a while, print a table, leave\n"
-	"  --watch         go on until Ctrl-C (default on a terminal)\n"
-	"  --wait S        how long --once listens, 0.1 to 3600 s (2)\n"
-	"  --json          one object a picture, on one line\n"
-	"  --help, --version\n"
+	"\n",
+	.tail =
 	"\n"
 	"Exit code 0 if any machine was heard, 1 if none.\n"
 	"CYCLONEDDS_URI chooses the network interface and peers;\n"
-	"see docs/fleet.md.\n";
-
-static int set_option(void *arg, int c)
-{
-	struct options *o = arg;
-
-	switch (c) {
-	case 's':
-		if (topic_number_parse(optarg, 0.1, 3600, &o->wait_s) < 0)
-			return tool_refuse("edm-fleet", "--wait", optarg,
-					   "seconds, 0.1 to 3600");
-		return 0;
-	case '1':
-		o->mode = MODE_ONCE;
-		return 0;
-	case 'w':
-		o->mode = MODE_WATCH;
-		return 0;
-	default:
-		o->json = true;
-		return 0;
-	}
-}
-
-static const struct option longs[] = {
-	{ "domain", required_argument, NULL, 'd' },
-	{ "once", no_argument, NULL, '1' },
-	{ "watch", no_argument, NULL, 'w' },
-	{ "wait", required_argument, NULL, 's' },
-	{ "json", no_argument, NULL, 'j' },
-	{ "help", no_argument, NULL, 'h' },
-	{ "version", no_argument, NULL, 'V' },
-	{ NULL, 0, NULL, 0 }
+	"see docs/fleet.md.\n",
 };
 
 static int fleet_open(struct fleet *f, dds_domainid_t domain)
@@ -178,13 +187,10 @@ int main(int argc, char **argv)
 {
 	struct options o = { .wait_s = 2 };
 	static struct fleet f;
-	const struct tool t = {
-		"edm-fleet", "edm-fleet " EDM_VERSION, usage, longs,
-		set_option, &o, &o.domain,
-	};
-	int r = tool_parse(&t, argc, argv);
+	struct cmdline_given given;
+	int r = cmdline_take(&table, &o, argc, argv, &given);
 
-	if (r)
+	if (r >= 0)
 		return r;
 	if (o.mode == MODE_AUTO)
 		o.mode = isatty(STDOUT_FILENO) ? MODE_WATCH : MODE_ONCE;
@@ -195,7 +201,7 @@ int main(int argc, char **argv)
 	if (f.participant > 0)
 		dds_delete(f.participant);
 	if (r < 0)
-		return tool_fail(t.name, o.domain, r);
+		return tool_fail(table.program, o.domain, r);
 	if (f.nrows == 0)
 		fprintf(stderr, "edm-fleet: no machine heard in domain %u; "
 			"edm-dds runs beside each machine's edmd\n", o.domain);

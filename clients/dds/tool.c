@@ -1,21 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* tool.c - what the programs on DDS have in common */
 #include "tool.h"
+#include "cmdline.h"
 #include "topic.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <sysexits.h>
 #include <time.h>
 
 #define NS	1000000000LL
-
-int tool_refuse(const char *name, const char *option, const char *found,
-		const char *wanted)
-{
-	fprintf(stderr, "%s: error: %s %s; %s\n", name, option, found, wanted);
-	return EX_USAGE;
-}
 
 int tool_fail(const char *name, dds_domainid_t domain, dds_return_t code)
 {
@@ -25,40 +18,12 @@ int tool_fail(const char *name, dds_domainid_t domain, dds_return_t code)
 	return EX_UNAVAILABLE;
 }
 
-static int set_option(const struct tool *t, int c)
+int tool_domain(const char *program, const char *text, dds_domainid_t *ret)
 {
-	switch (c) {
-	case 'd':
-		if (topic_domain_parse(optarg, t->domain) < 0)
-			return tool_refuse(t->name, "--domain", optarg,
-					   "a whole number from 0 to 230");
-		return 0;
-	case 'h':
-		fputs(t->usage, stdout);
-		exit(EX_OK);
-	case 'V':
-		puts(t->version);
-		exit(EX_OK);
-	case '?':
-		return EX_USAGE;
-	default:
-		return t->set(t->arg, c);
-	}
-}
-
-int tool_parse(const struct tool *t, int argc, char **argv)
-{
-	int c, r;
-
-	while ((c = getopt_long(argc, argv, "", t->options, NULL)) != -1) {
-		r = set_option(t, c);
-		if (r)
-			return r;
-	}
-	if (optind < argc)
-		return tool_refuse(t->name, "argument", argv[optind],
-				   "options only");
-	return 0;
+	if (topic_domain_parse(text, ret) == 0)
+		return -1;
+	return cmdline_refuse(program, "--domain", text,
+			      "a whole number from 0 to 230");
 }
 
 void tool_block_stops(sigset_t *ret)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tool.h - what the programs on DDS have in common: options, stops, refusals
+ * tool.h - what the programs on DDS have in common
  *
  * Threads: startup only, but tool_wait().
  */
@@ -9,31 +9,12 @@
 
 #include "dds/dds.h"
 
-#include <getopt.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-struct tool {
-	const char *name;
-	const char *version;		/* the line that --version prints */
-	const char *usage;		/* the text that --help prints */
-	const struct option *options;	/* 'd', 'h' and 'V' are domain, help
-					 * and version, set here */
-	int (*set)(void *arg, int c);	/* any other; 0, or an exit code */
-	void *arg;
-	dds_domainid_t *domain;
-};
-
-/**
- * tool_parse() - the command line.  --help and --version print and exit.
- * Return: 0, or what to exit with, said why.
- */
-int tool_parse(const struct tool *t, int argc, char **argv);
-
-/** tool_refuse() - say it.  Return: EX_USAGE. */
-int tool_refuse(const char *name, const char *option, const char *found,
-		const char *wanted);
+/** tool_domain() - @text as a DDS domain.  Return: -1, or an exit code, said. */
+int tool_domain(const char *program, const char *text, dds_domainid_t *ret);
 
 /** tool_fail() - say why DDS is not there.  Return: EX_UNAVAILABLE. */
 int tool_fail(const char *name, dds_domainid_t domain, dds_return_t code);

@@ -198,6 +198,8 @@ static void describe_curves(const struct sim_job *job, FILE *f)
 void job_describe(const struct sim_job *job, FILE *f)
 {
 	const struct interp_program_head *h = job->program.head;
+	const enum interp_strategy strategy =
+		(enum interp_strategy)h->strategy;
 	const struct interp_seg *s = job->program.segs;
 	double cut_mm = 0, free_mm = 0, free_s = 0;
 	uint32_t motions = 0;
@@ -212,12 +214,12 @@ void job_describe(const struct sim_job *job, FILE *f)
 	}
 	fprintf(f, "lines      %u\nsegments   %u\nstrategy   %s\n", h->lines,
 		motions,
-		interp_strategy_name((enum interp_strategy)h->strategy));
-	if (h->strategy >= INTERP_MAIN_DIRECTION)
+		interp_strategy_name(strategy));
+	if (interp_strategy_takes_tolerance(strategy))
 		fprintf(f, "tolerance  %g pulses%s\n",
 			h->tolerance_milli / 1000.0,
 			h->perpendicular ? ", square to the path" : "");
-	if (h->strategy > INTERP_POINT_BY_POINT && h->strategy != INTERP_DDA)
+	if (interp_strategy_couples(strategy))
 		fprintf(f, "coupling   %s\n", interp_coupling_name(
 			(enum interp_coupling)h->coupling));
 	fprintf(f, "path       %.3f mm: %.3f mm cut, %.3f mm positioned in "

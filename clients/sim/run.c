@@ -59,9 +59,9 @@ static int open_machine(struct sim_run *r)
 	int e;
 
 	if (at_once(r))
-		e = io_null_open(&r->machine);
+		e = io_null_open(&r->machine, NULL, NULL);
 	else
-		e = io_sim_open(&r->machine, r->config, seed);
+		e = io_sim_open_seed(&r->machine, r->config, seed);
 	return e ? EX_OSERR : 0;
 }
 

@@ -15,7 +15,7 @@
 struct sim_options {
 	const char *job;
 	const char *machine_file;
-	const char *strategy, *coupling;	/* NULL: the machine file's */
+	int strategy, coupling;		/* -1: the machine file's */
 	double tolerance_pulses;	/* with tolerance_given */
 	bool tolerance_given, perpendicular;
 	double fit_um;			/* with fit_given */
@@ -30,7 +30,7 @@ struct sim_options {
 	uint64_t seed;
 	double budget;			/* of tuning, in trials */
 	bool tune_servo, json;
-	bool print_tech;
+	bool print_tech, print_config;
 	bool seed_given, dry_run, there_and_back, check, quiet, tune;
 };
 
@@ -76,6 +76,10 @@ struct sim_run {
 	void *on_cycle_arg;
 	int leg;			/* of there and back: 0, 1, 2 */
 };
+
+/** edmsim_options_read() - the command line: options.c.  Return: -1 to go on,
+ *  or an exit code. */
+int edmsim_options_read(struct sim_options *o, int argc, char **argv);
 
 /** edmsim_tech_load() - the technology table in force. Return: 0 or an exit code,
  *  said why; @ret is to be freed by config_tech_free() in any case. */

@@ -35,12 +35,10 @@ int config_check_kinematics(const struct machine_config *c,
 	for (uint32_t i = 0; r == 0 && i < kin.njoints; i++) {
 		if (c->axes.present & 1u << kin.joint[i].axis)
 			continue;
-		snprintf(diag->found, sizeof(diag->found),
-			 "kinematics.chain has an axis %c, the machine has not",
-			 INTERP_AXIS_LETTERS[kin.joint[i].axis]);
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "axes with present = yes");
-		return -EINVAL;
+		return interp_diag_say(diag, "kinematics.chain has an axis "
+				       "%c, the machine has not; axes with "
+				       "present = yes",
+				       INTERP_AXIS_LETTERS[kin.joint[i].axis]);
 	}
 	return r == -EINVAL ? r : 0;
 }

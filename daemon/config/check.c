@@ -88,12 +88,9 @@ static int check_order(struct check *q, const struct order *o, int instance)
 	config_key_unit(low, instance, unit, sizeof(unit));
 	config_number(x, xs, sizeof(xs));
 	config_number(y, ys, sizeof(ys));
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "%s.%s %s%s is not %s %s %s%s", section, o->low, xs, unit,
-		 how, o->high, ys, unit);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted), "%s %s %s",
-		 o->low, how, o->high);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "%s.%s %s%s is not %s %s %s%s; %s %s "
+			       "%s", section, o->low, xs, unit, how, o->high,
+			       ys, unit, o->low, how, o->high);
 }
 
 static bool is_set(const struct check *q, enum config_section_id s,
@@ -129,14 +126,12 @@ static int check_extent(struct check *q, const char *name, int instance)
 	blame(q, k, key_of(SECTION_AXIS, "pulse_mm"), instance);
 	config_key_unit(config_key(k), instance, unit, sizeof(unit));
 	config_number(x, xs, sizeof(xs));
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "axis.%s.%s %s%s is %.0f pulses",
-		 config_section[SECTION_AXIS].instance[instance], name, xs,
-		 unit, x / pulse_mm);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "at most %d pulses either way: %.6g%s with this pulse_mm",
-		 INTERP_PULSES_MAX, INTERP_PULSES_MAX * pulse_mm, unit);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "axis.%s.%s %s%s is %.0f pulses; at "
+			       "most %d pulses either way: %.6g%s with this "
+			       "pulse_mm",
+			       config_section[SECTION_AXIS].instance[instance],
+			       name, xs, unit, x / pulse_mm, INTERP_PULSES_MAX,
+			       INTERP_PULSES_MAX * pulse_mm, unit);
 }
 
 static int check_period(struct check *q)
@@ -147,11 +142,9 @@ static int check_period(struct check *q)
 		return 0;
 
 	blame(q, k, k, 0);
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "machine.period_us %g us is too short", q->c->period_us);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "0 for the backend's own, or %d us and more", PERIOD_MIN_US);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "machine.period_us %g us is too "
+			       "short; 0 for the backend's own, or %d us and "
+			       "more", q->c->period_us, PERIOD_MIN_US);
 }
 
 static int check_present(struct check *q)
@@ -162,10 +155,8 @@ static int check_present(struct check *q)
 		return 0;
 
 	blame(q, k, k, INTERP_NAXES - 1);
-	snprintf(q->diag->found, sizeof(q->diag->found), "no axis is present");
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "at least one [axis.*] with present = yes");
-	return -EINVAL;
+	return interp_diag_say(q->diag, "no axis is present; at least one "
+			       "[axis.*] with present = yes");
 }
 
 static int check_compensation(struct check *q)
@@ -178,12 +169,10 @@ static int check_compensation(struct check *q)
 	if (methods >= 0 && (methods & both) != both)
 		return 0;
 	blame(q, k, k, 0);
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "contour.method %.40s", q->c->contour.method);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "none, or of feedforward, cross-coupled, predictive, zpetc, "
-		 "twin joined by +, feedforward and zpetc not together");
-	return -EINVAL;
+	return interp_diag_say(q->diag, "contour.method %.40s; none, or of "
+			       "feedforward, cross-coupled, predictive, "
+			       "zpetc, twin joined by +, feedforward and "
+			       "zpetc not together", q->c->contour.method);
 }
 
 double config_longest_mm(const struct machine_config *c, int *ret_axis)
@@ -218,12 +207,10 @@ static int check_jump(struct check *q, const char *name)
 	travel_at = q->lines->at[key_of(SECTION_AXIS, "travel_max_mm")][axis];
 	q->diag->line = at > travel_at ? at : travel_at;
 	q->diag->column = 0;
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "jump.%s %g mm is higher than any axis travels", name, mm);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "at most %g mm, the travel of axis.%s", most,
-		 config_section[SECTION_AXIS].instance[axis]);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "jump.%s %g mm is higher than any "
+			       "axis travels; at most %g mm, the travel of "
+			       "axis.%s", name, mm, most,
+			       config_section[SECTION_AXIS].instance[axis]);
 }
 
 /* Guides are X Y below and U V above. */
@@ -238,12 +225,9 @@ static int check_guides(struct check *q)
 		if (q->c->axes.present & 1u << four[i])
 			continue;
 		blame(q, k, k, 0);
-		snprintf(q->diag->found, sizeof(q->diag->found),
-			 "wire.guides without an axis %c",
-			 INTERP_AXIS_LETTERS[four[i]]);
-		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-			 "X Y U V present, or guides = off");
-		return -EINVAL;
+		return interp_diag_say(q->diag, "wire.guides without an axis "
+				       "%c; X Y U V present, or guides = off",
+				       INTERP_AXIS_LETTERS[four[i]]);
 	}
 	return 0;
 }
@@ -256,11 +240,9 @@ static int check_lines(struct check *q)
 	if (q->c->gap.source != GAP_LINES || q->c->backend != BACKEND_SIM)
 		return 0;
 	blame(q, k, key_of(SECTION_MACHINE, "backend"), 0);
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "gap.source lines on backend sim, which has no comparators");
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "source = sim or shares; or backend = gpio");
-	return -EINVAL;
+	return interp_diag_say(q->diag, "gap.source lines on backend sim, "
+			       "which has no comparators; source = sim or "
+			       "shares; or backend = gpio");
 }
 
 bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
@@ -280,6 +262,7 @@ int config_check(const struct machine_config *c,
 		 const struct config_lines *lines, struct interp_diag *diag)
 {
 	struct check q = { c, lines, diag };
+	const struct config_backend *backend = config_backend(c);
 
 	for (size_t i = 0; i < COUNT(orders); i++)
 		for (int j = 0;
@@ -292,12 +275,13 @@ int config_check(const struct machine_config *c,
 		    check_extent(&q, "travel_max_mm", j))
 			return -EINVAL;
 
-	return check_period(&q) || check_present(&q) || check_lines(&q) || check_guides(&q) ||
-	       config_check_can402(c, lines, diag) ||
+	if (backend->check && backend->check(c, lines, diag))
+		return -EINVAL;
+	return check_period(&q) || check_present(&q) || check_lines(&q) ||
+	       check_guides(&q) ||
 	       config_check_plc(c, lines, diag) ||
 	       config_check_sim(c, lines, diag) ||
 	       check_orders_if_set(&q) || check_jump(&q, "height_mm") ||
 	       (c->jump.adaptive && check_jump(&q, "height_max_mm")) ||
-	       check_compensation(&q) ||
-	       config_check_gpio(c, lines, diag) ? -EINVAL : 0;
+	       check_compensation(&q) ? -EINVAL : 0;
 }

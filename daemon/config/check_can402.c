@@ -52,12 +52,9 @@ static int check_node(struct check *q, int axis)
 	if (node == 0 || (present && !twice))
 		return 0;
 	snprintf(name, sizeof(name), "node_%c", INTERP_AXIS_LETTERS[axis]);
-	snprintf(q->diag->found, sizeof(q->diag->found), "can402.%s %u %s",
-		 name, node, present ? "a second time" :
-		 "for an axis that is not present");
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "a node of its own for each axis that is present, and not "
-		 "master_node");
+	interp_diag_say(q->diag, "can402.%s %u %s; a node of its own for each "
+			"axis that is present, and not master_node", name, node,
+			present ? "a second time" : "for an axis that is not present");
 	return refuse(q, SECTION_CAN402, name, 0);
 }
 
@@ -74,12 +71,10 @@ static int check_increments(struct check *q, int axis)
 	if (node_of(q, axis) == 0 ||
 	    (d->increments != 0 && increments < INCREMENTS_MAX))
 		return 0;
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "axis.%c.drive_increments %.0f: its travel reaches to %.0f",
-		 INTERP_AXIS_LETTERS[axis], d->increments, increments);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "not 0, and a travel within %.0f increments of 0",
-		 INCREMENTS_MAX);
+	interp_diag_say(q->diag, "axis.%c.drive_increments %.0f: its travel "
+			"reaches to %.0f; not 0, and a travel within %.0f "
+			"increments of 0", INTERP_AXIS_LETTERS[axis],
+			d->increments, increments, INCREMENTS_MAX);
 	return refuse(q, SECTION_AXIS, "drive_increments", axis);
 }
 
@@ -93,11 +88,9 @@ static int check_id(struct check *q, const char *key, double id, double other)
 		taken = taken || (node_of(q, i) > 0 && node_of(q, i) == node);
 	if (id == 0 || !taken)
 		return 0;
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "can402.%s %.0f, which is in use", key, id);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "one from 384 to 1407 whose rest by 128 is no drive's "
-		 "node");
+	interp_diag_say(q->diag, "can402.%s %.0f, which is in use; one from "
+			"384 to 1407 whose rest by 128 is no drive's node", key,
+			id);
 	return refuse(q, SECTION_CAN402, key, 0);
 }
 
@@ -109,8 +102,6 @@ int config_check_can402(const struct machine_config *c,
 	const struct config_can402 *k = &c->can402;
 	bool any = false;
 
-	if (c->backend != BACKEND_CAN402)
-		return 0;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (check_node(&q, i) || check_increments(&q, i))
 			return -EINVAL;
@@ -121,9 +112,7 @@ int config_check_can402(const struct machine_config *c,
 		return -EINVAL;
 	if (any)
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "backend can402 without a drive");
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "[can402] with node_X or another axis's");
+	interp_diag_say(diag, "backend can402 without a drive; [can402] with "
+			"node_X or another axis's");
 	return refuse(&q, SECTION_MACHINE, "backend", 0);
 }

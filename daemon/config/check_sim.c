@@ -41,13 +41,11 @@ static int perimeter(struct check *q)
 
 	blame(q, line_of(q, SECTION_SIM, "perimeter_mm"),
 	      line_of(q, SECTION_SIM, "area_mm2"), 0);
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "sim.perimeter_mm %g mm is too short for area_mm2 %g mm2",
-		 q->c->sim.perimeter_mm, q->c->sim.area_mm2);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "0 for a round electrode, or more than its %.4g mm",
-		 round_mm);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "sim.perimeter_mm %g mm is too short "
+			       "for area_mm2 %g mm2; 0 for a round electrode, "
+			       "or more than its %.4g mm",
+			       q->c->sim.perimeter_mm, q->c->sim.area_mm2,
+			       round_mm);
 }
 
 /* Or hardly a pulse would ignite even at the best gap. */
@@ -61,13 +59,11 @@ static int ignition_wait(struct check *q)
 	blame(q, line_of(q, SECTION_SIM, "wait_us"),
 	      line_of(q, SECTION_SIM, "on_us"),
 	      line_of(q, SECTION_SIM, "off_us"));
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "sim.wait_us %g us is short for on_us %g us and off_us %g us",
-		 q->c->sim.wait_us, q->c->sim.on_us, q->c->sim.off_us);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "a quarter of on and off time, %.4g us, or more; or iso = no",
-		 least);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "sim.wait_us %g us is short for on_us "
+			       "%g us and off_us %g us; a quarter of on and "
+			       "off time, %.4g us, or more; or iso = no",
+			       q->c->sim.wait_us, q->c->sim.on_us,
+			       q->c->sim.off_us, least);
 }
 
 /* A gap that stands open must look wider than the one to be held. */
@@ -83,13 +79,10 @@ static int open_mean(struct check *q)
 	blame(q, line_of(q, SECTION_GAP, "servo_v"),
 	      line_of(q, SECTION_SIM, "open_v"),
 	      line_of(q, SECTION_SIM, "off_us"));
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "gap.servo_v %g V is not below the simulated gap's %.4g V "
-		 "when it is open", q->c->gap.servo_v, mean_v);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "a lower servo_v, or a shorter [sim] off_us %g us",
-		 s->off_us);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "gap.servo_v %g V is not below the "
+			       "simulated gap's %.4g V when it is open; a "
+			       "lower servo_v, or a shorter [sim] off_us %g us",
+			       q->c->gap.servo_v, mean_v, s->off_us);
 }
 
 /* Its sides, by their keys. */
@@ -102,11 +95,8 @@ static int block_side(struct check *q, int i, const char *min, const char *max)
 		return 0;
 
 	blame(q, line_of(q, SECTION_SIM, min), line_of(q, SECTION_SIM, max), 0);
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "sim.%s %g mm is not below %s %g mm", min, low, max, high);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "a block with an inside");
-	return -EINVAL;
+	return interp_diag_say(q->diag, "sim.%s %g mm is not below %s %g mm; "
+			       "a block with an inside", min, low, max, high);
 }
 
 static int block(struct check *q)

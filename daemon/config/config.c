@@ -12,9 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-#define PERIOD_NS	1000000
-#define PERIOD_CAN402_NS	2000000		/* six drives fit */
-#define PERIOD_GPIO_NS	50000		/* a pulse is made of periods */
 #define POINTS_MAX	4096		/* lattice points in one cycle */
 
 /* Pulses a limit may be off by the division alone, far below one. */
@@ -43,8 +40,7 @@ int64_t config_period_ns(const struct machine_config *c)
 {
 	if (c->period_us > 0)
 		return llround(c->period_us * 1e3);
-	return c->backend == BACKEND_GPIO ? PERIOD_GPIO_NS :
-	       c->backend == BACKEND_CAN402 ? PERIOD_CAN402_NS : PERIOD_NS;
+	return config_backend(c)->period_ns;
 }
 
 static bool has(const struct machine_config *c, enum interp_axis a)

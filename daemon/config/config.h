@@ -12,6 +12,8 @@
 #ifndef CONFIG_H
 #define CONFIG_H
 
+#include "backends.h"
+
 #include "interp/axis.h"
 #include "interp/axis_model.h"
 #include "interp/diag.h"
@@ -22,11 +24,6 @@
 
 #include <stdbool.h>
 #include <stdio.h>
-
-enum config_backend {
-	BACKEND_SIM, BACKEND_NULL, BACKEND_GPIO, BACKEND_CAN402,
-	CONFIG_NBACKENDS
-};
 
 /* [gap] */
 struct config_gap {

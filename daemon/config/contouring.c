@@ -45,7 +45,7 @@ static int check_methods(const struct machine_config *c, int methods,
 static int check_backend(const struct machine_config *c,
 			 struct interp_diag *diag)
 {
-	if (c->backend == BACKEND_CAN402 ||
+	if (config_backend(c)->drives ||
 	    (c->backend == BACKEND_SIM && (c->sim.loops || c->sim.lag_s > 0)))
 		return 0;
 	snprintf(diag->found, sizeof(diag->found),
@@ -83,7 +83,7 @@ static int check_margin(const struct machine_config *c, int axis,
 	double most;
 	char wanted[96];
 
-	if (c->backend == BACKEND_CAN402)
+	if (config_backend(c)->drives)
 		l.delay_s += CAN402_PERIODS * period_s(c);
 	if (interp_axis_model_init(&m, &l, period_s(c), 0) < 0) {
 		snprintf(diag->found, sizeof(diag->found),

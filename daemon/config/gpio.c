@@ -86,14 +86,13 @@ static int check_axis(struct check *q, int axis)
 		if (!(q->c->axes.present >> axis & 1) || q->at[line].wired)
 			continue;
 		blame(q, key_of_line(line), 0);
-		snprintf(q->diag->found, sizeof(q->diag->found),
-			 "axis.%c is present and gpio.%s is none",
-			 INTERP_AXIS_LETTERS[axis], config_line_name(line));
-		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-			 "gpio.%s = the number of a line, or [axis.%c] "
-			 "present = no", config_line_name(line),
-			 INTERP_AXIS_LETTERS[axis]);
-		return -EINVAL;
+		return interp_diag_say(q->diag, "axis.%c is present and "
+				       "gpio.%s is none; gpio.%s = the number "
+				       "of a line, or [axis.%c] present = no",
+				       INTERP_AXIS_LETTERS[axis],
+				       config_line_name(line),
+				       config_line_name(line),
+				       INTERP_AXIS_LETTERS[axis]);
 	}
 	return 0;
 }
@@ -117,12 +116,10 @@ static int check_shared(struct check *q, int output)
 		if (!is_same(q, output, i))
 			continue;
 		blame(q, k, 0);
-		snprintf(q->diag->found, sizeof(q->diag->found),
-			 "gpio.%s and gpio.%s are both line %u",
-			 config_line_name(output), k->name, q->at[i].offset);
-		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-			 "a line of its own for each output");
-		return -EINVAL;
+		return interp_diag_say(q->diag, "gpio.%s and gpio.%s are both "
+				       "line %u; a line of its own for each "
+				       "output", config_line_name(output),
+				       k->name, q->at[i].offset);
 	}
 	return 0;
 }
@@ -135,12 +132,10 @@ static int check_source(struct check *q)
 	if (q->c->gap.source == GAP_LINES)
 		return 0;
 	blame(q, k, 0);
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "gap.source is %s and there are gap lines",
-		 k->word(q->c->gap.source));
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "[gap] source = lines; or no gap_open, gap_spark, gap_short");
-	return -EINVAL;
+	return interp_diag_say(q->diag, "gap.source is %s and there are gap "
+			       "lines; [gap] source = lines; or no gap_open, "
+			       "gap_spark, gap_short",
+			       k->word(q->c->gap.source));
 }
 
 static int check_gap(struct check *q)
@@ -153,13 +148,11 @@ static int check_gap(struct check *q)
 		if (q->at[needs[i]].wired)
 			continue;
 		blame(q, key_of_line(needs[i]), 0);
-		snprintf(q->diag->found, sizeof(q->diag->found),
-			 "the gap's comparators are without gpio.%s",
-			 config_line_name(needs[i]));
-		snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-			 "gap_open and gap_short, and gap_spark if there is "
-			 "one; or none of them");
-		return -EINVAL;
+		return interp_diag_say(q->diag, "the gap's comparators are "
+				       "without gpio.%s; gap_open and "
+				       "gap_short, and gap_spark if there is "
+				       "one; or none of them",
+				       config_line_name(needs[i]));
 	}
 	return 0;
 }
@@ -184,13 +177,11 @@ static int check_speed(struct check *q, const struct config_key *k,
 	blame(q, k, instance);
 	config_section_name(k->section, instance, section, sizeof(section));
 	config_key_unit(k, instance, unit, sizeof(unit));
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "%s.%s %g%s is faster than the lines of [gpio], %g pulses/s",
-		 section, k->name, v, unit, pulses_s(q->c));
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "at most %g%s; or a larger pulse_mm, a shorter period_us, "
-		 "signal = quadrature", most, unit);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "%s.%s %g%s is faster than the lines "
+			       "of [gpio], %g pulses/s; at most %g%s; or a "
+			       "larger pulse_mm, a shorter period_us, signal "
+			       "= quadrature", section, k->name, v, unit,
+			       pulses_s(q->c), most, unit);
 }
 
 /* A jump may go along any linear axis. */
@@ -222,8 +213,6 @@ int config_check_gpio(const struct machine_config *c,
 {
 	struct check q = { .c = c, .lines = lines, .diag = diag };
 
-	if (c->backend != BACKEND_GPIO)
-		return 0;
 	for (int i = 0; i < CONFIG_NLINES; i++)
 		config_line_read(c->gpio.line[i], &q.at[i]);
 	for (int i = 0; i < INTERP_NAXES; i++)

@@ -4,18 +4,6 @@
  */
 #include "keys_rows.h"
 
-static const char *backend_word(int i)
-{
-	static const char *const words[] = {
-		[BACKEND_SIM] = "sim",
-		[BACKEND_NULL] = "null",
-		[BACKEND_GPIO] = "gpio",
-		[BACKEND_CAN402] = "can402",
-	};
-
-	return WORD_OF(words, i);
-}
-
 static const char *strategy_word(int i)
 {
 	if (i < 0 || i >= INTERP_NSTRATEGIES)
@@ -42,7 +30,7 @@ static const struct config_key row[] = {
 	NUMBER(MACHINE, "period_us", "us", "0", 0, 20000, AT(period_us),
 	       "cycle period, 20 or more; 0: by backend, 1000, gpio 50, "
 	       "can402 2000"),
-	WORDS(MACHINE, "backend", "sim", AT(backend), backend_word,
+	WORDS(MACHINE, "backend", "sim", AT(backend), config_backend_name,
 	      "what the cycle reads and writes"),
 	WORDS(MACHINE, "strategy", "simultaneous", AT(strategy), strategy_word,
 	      "how a path becomes pulses"),

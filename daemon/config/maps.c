@@ -40,10 +40,8 @@ static int refuse_at(const struct map *m, uint32_t line, const char *found,
 	if (m->at)
 		snprintf(where, sizeof(where), "%d:",
 			 (int)(m->at - m->text) + 1);
-	snprintf(m->diag->found, sizeof(m->diag->found),
-		 "%.20s: %.60s:%u:%s %s", m->key, m->name, line, where, found);
-	snprintf(m->diag->wanted, sizeof(m->diag->wanted), "%s", wanted);
-	return -EINVAL;
+	return interp_diag_say(m->diag, "%.20s: %.60s:%u:%s %s; %s", m->key,
+			       m->name, line, where, found, wanted);
 }
 
 static int refuse(const struct map *m, const char *found, const char *wanted)

@@ -37,9 +37,7 @@ static const struct list lists[] = {
 static int refuse(struct interp_diag *d, const struct list *l,
 		  const char *what, const char *wanted)
 {
-	snprintf(d->found, sizeof(d->found), "plc.%s: %.120s", l->key, what);
-	snprintf(d->wanted, sizeof(d->wanted), "%s", wanted);
-	return -EINVAL;
+	return interp_diag_say(d, "plc.%s: %.120s; %s", l->key, what, wanted);
 }
 
 /* M0 ... M5, M30, M98 and M99 are the program's own. */
@@ -158,15 +156,12 @@ static int check_node(const struct machine_config *c, struct interp_diag *d)
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		taken = taken || c->plc.node == c->can402.node[i];
-	if (!taken || c->backend != BACKEND_CAN402 ||
+	if (!taken || !config_backend(c)->drives ||
 	    strcmp(c->plc.interface, c->can402.interface) != 0)
 		return 0;
-	snprintf(d->found, sizeof(d->found),
-		 "plc.node %g is a node of [can402] on %s", c->plc.node,
-		 c->plc.interface);
-	snprintf(d->wanted, sizeof(d->wanted),
-		 "a node of its own, or an interface of its own");
-	return -EINVAL;
+	return interp_diag_say(d, "plc.node %g is a node of [can402] on %s; a "
+			       "node of its own, or an interface of its own",
+			       c->plc.node, c->plc.interface);
 }
 
 int config_check_plc(const struct machine_config *c,
@@ -183,7 +178,7 @@ int config_check_plc(const struct machine_config *c,
 	}
 	diag->line = line_of(lines, "interface");
 	if (!config_has_plc(c) && has_mcodes(table) &&
-	    c->backend != BACKEND_SIM && c->backend != BACKEND_NULL)
+	    !config_backend(c)->simulated)
 		return refuse(diag, &lists[0], "M codes and no PLC",
 			      "plc.interface, as in can1, or no M codes");
 	diag->line = line_of(lines, "node");

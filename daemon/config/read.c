@@ -116,8 +116,7 @@ static void refuse_key(struct reading *r, const char *section,
 static void refuse_syntax(struct reading *r, const char *found,
 			  const char *wanted)
 {
-	snprintf(r->diag->found, sizeof(r->diag->found), "%s", found);
-	snprintf(r->diag->wanted, sizeof(r->diag->wanted), "%s", wanted);
+	interp_diag_say(r->diag, "%s; %s", found, wanted);
 	refuse(r, strspn(r->text, BLANK) + 1);
 }
 

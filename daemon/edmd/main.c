@@ -28,46 +28,31 @@ static void signals_block(void)
 	sigprocmask(SIG_BLOCK, &set, NULL);
 }
 
-static int machine_refuse(const struct machine_config *c, int err,
-			  const struct interp_diag *d)
+static int machine_refuse(int err, const struct interp_diag *d)
 {
-	if (c->backend != BACKEND_GPIO && c->backend != BACKEND_CAN402) {
-		log_line(LOG_ERROR, "edmd: machine: %s", strerror(-err));
-		return EX_UNAVAILABLE;
-	}
 	log_line(LOG_ERROR, "edmd: %s; %s", d->found, d->wanted);
 	if (err == -EACCES || err == -EPERM)
 		return EX_NOPERM;
-	return err == -EBUSY || err == -ENODEV || err == -ENETDOWN ?
-	       EX_UNAVAILABLE : EX_CONFIG;
+	return err == -EBUSY || err == -ENODEV || err == -ENETDOWN ||
+	       err == -ENOMEM ? EX_UNAVAILABLE : EX_CONFIG;
 }
+
+#define BACKEND_OPEN(id, name, open, period_ns, is, has_gap, check) \
+	[BACKEND_##id] = open,
 
 /* EX_OK, or the exit code. */
 static int machine_open(struct loop *l, const struct machine_config *c)
 {
-	struct interp_diag diag;
-	int err;
+	static io_open_fn *const open[] = { CONFIG_BACKENDS(BACKEND_OPEN) };
+	struct interp_diag diag = { .found = "the machine cannot be opened",
+				    .wanted = "more free memory" };
+	const int err = open[c->backend](&l->io, c, &diag);
 
-	if (c->backend == BACKEND_NULL)
-		err = io_null_open(&l->io);
-	else if (c->backend == BACKEND_GPIO)
-		err = io_gpio_open(&l->io, c, &diag);
-	else if (c->backend == BACKEND_CAN402)
-		err = io_can402_open(&l->io, c, &diag);
-	else
-		err = io_sim_open(&l->io, c, (uint64_t)c->sim.seed);
 	if (err < 0)
-		return machine_refuse(c, err, &diag);
+		return machine_refuse(err, &diag);
 	if (l->io.edges_per_cycle)
 		l->cycle.config.points_max = l->io.edges_per_cycle;
 	return EX_OK;
-}
-
-static bool has_gap(const struct machine_config *c)
-{
-	return c->backend == BACKEND_SIM ||
-	       (c->backend == BACKEND_GPIO && config_gpio_has_gap(c)) ||
-	       (c->backend == BACKEND_CAN402 && c->can402.gap_id > 0);
 }
 
 static void loop_configure(struct loop *l, const struct machine_config *c)
@@ -75,7 +60,7 @@ static void loop_configure(struct loop *l, const struct machine_config *c)
 	struct cycle_config cycle;
 
 	config_cycle(c, &cycle);
-	cycle.dry_run = !has_gap(c);
+	cycle.dry_run = !config_backend(c)->has_gap(c);
 	cycle_init(&l->cycle, &cycle);
 	crossing_init(&l->crossing);
 	for (int a = 0; a < SHM_NAXES; a++)

@@ -51,13 +51,11 @@ static int check_load(const struct machine_config *c, struct interp_diag *diag)
 	load = can402_load(&b, us);
 	if (load <= CAN402_LOAD_MAX)
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "%u drives every %.0f us take %.0f %% of %.0f kbit/s",
-		 b.axes, us, 100 * load, c->can402.bitrate_kbit);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "at most %.0f %%: machine.period_us %.0f or more",
-		 100 * CAN402_LOAD_MAX, can402_period_us(&b));
-	return -EINVAL;
+	return interp_diag_say(diag, "%u drives every %.0f us take %.0f %% of "
+			       "%.0f kbit/s; at most %.0f %%: "
+			       "machine.period_us %.0f or more", b.axes, us,
+			       100 * load, c->can402.bitrate_kbit,
+			       100 * CAN402_LOAD_MAX, can402_period_us(&b));
 }
 
 static struct drive_config drive_of(const struct machine_config *c, int axis)

@@ -227,8 +227,7 @@ static void gpio_close(void *self)
 static int refuse(struct interp_diag *d, int err, const char *line,
 		  const char *found, const char *wanted)
 {
-	snprintf(d->found, sizeof(d->found), "gpio.%s: %s", line, found);
-	snprintf(d->wanted, sizeof(d->wanted), "%s", wanted);
+	interp_diag_say(d, "gpio.%s: %s; %s", line, found, wanted);
 	return err;
 }
 

@@ -125,12 +125,21 @@ struct io_machine {
 
 struct machine_config;
 
-/**
- * io_sim_open() - a simulated machine, see sim.c; @seed as `[sim] seed`.
- * Return: 0 or -ENOMEM.  Startup only.
+struct interp_diag;
+
+/*
+ * How each backend is opened.  Return: 0 or -errno with found and wanted of
+ * @diag filled, but for -ENOMEM.  Startup only.
  */
-int io_sim_open(struct io_machine *m, const struct machine_config *c,
-		uint64_t seed);
+typedef int io_open_fn(struct io_machine *m, const struct machine_config *c,
+		       struct interp_diag *diag);
+
+/** io_sim_open() - a simulated machine, see sim.c. */
+io_open_fn io_sim_open;
+
+/** io_sim_open_seed() - the same, with @seed in place of `[sim] seed`. */
+int io_sim_open_seed(struct io_machine *m, const struct machine_config *c,
+		     uint64_t seed);
 
 /* What a simulated cut came to. */
 struct io_sim_result {
@@ -149,27 +158,22 @@ struct io_sim_result {
 void io_sim_result(const struct io_machine *m, struct io_sim_result *ret);
 
 /** io_null_open() - nothing, correctly: no gap, axes follow at once. */
-int io_null_open(struct io_machine *m);
-
-struct interp_diag;
+io_open_fn io_null_open;
 
 /**
  * io_gpio_open() - step and direction lines, switches; docs/gpio.md.
  *
  * Sparks and pump are off from the request of the lines on.
- * Return: 0 or -errno with found and wanted of @diag filled: -EACCES and
- * -EPERM rights, -EBUSY a line in use, else a chip or line that is not there.
+ * Return: -EACCES and -EPERM rights, -EBUSY a line in use, else a chip or line
+ * that is not there.
  */
-int io_gpio_open(struct io_machine *m, const struct machine_config *c,
-		 struct interp_diag *diag);
+io_open_fn io_gpio_open;
 
 /**
  * io_can402_open() - CiA 402 drives on a CAN bus; can402.h, docs/can402.md.
  *
  * The drives are brought up by the first periods, see io_inputs.starting.
- * Return: 0 or -errno with found and wanted of @diag filled.  Startup only.
  */
-int io_can402_open(struct io_machine *m, const struct machine_config *c,
-		   struct interp_diag *diag);
+io_open_fn io_can402_open;
 
 #endif /* IO_H */

@@ -35,10 +35,13 @@ static void null_close(void *self)
 	free(self);
 }
 
-int io_null_open(struct io_machine *m)
+int io_null_open(struct io_machine *m, const struct machine_config *c,
+		 struct interp_diag *diag)
 {
 	struct null *n = calloc(1, sizeof(*n));
 
+	(void)c;
+	(void)diag;
 	if (!n)
 		return -ENOMEM;
 	*m = (struct io_machine) {

@@ -126,8 +126,8 @@ void io_sim_result(const struct io_machine *m, struct io_sim_result *ret)
 	};
 }
 
-int io_sim_open(struct io_machine *m, const struct machine_config *c,
-		uint64_t seed)
+int io_sim_open_seed(struct io_machine *m, const struct machine_config *c,
+		     uint64_t seed)
 {
 	struct sim *s = calloc(1, sizeof(*s));
 
@@ -150,4 +150,11 @@ int io_sim_open(struct io_machine *m, const struct machine_config *c,
 		.write = sim_write, .close = sim_close, .stays = true,
 	};
 	return 0;
+}
+
+int io_sim_open(struct io_machine *m, const struct machine_config *c,
+		struct interp_diag *diag)
+{
+	(void)diag;
+	return io_sim_open_seed(m, c, (uint64_t)c->sim.seed);
 }

@@ -4,12 +4,13 @@
  */
 #include "jobs.h"
 
+#include "cmdline.h"
 #include "compiling.h"
 #include "keys.h"
 #include "jobs_log.h"
+#include "names.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <signal.h>
 #include <sodium.h>
 #include <stdarg.h>
@@ -25,17 +26,29 @@ struct options {
 	const char *config, *name, *store;
 };
 
-static const char usage[] =
+#define AT(field)	.at = offsetof(struct options, field)
+
+/* clang-format off */
+static const struct cmdline_row rows[] = {
+	{ "config", "FILE", CMDLINE_WORD, AT(config), .help =
+	  "the machine file, the same as edmd's" },
+	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
+	  "of the machine; default: the file's [machine] name" },
+	{ "store", "DIR", CMDLINE_WORD, AT(store), .help =
+	  "for the database; default: the file's [jobs] store" },
+};
+/* clang-format on */
+
+static const struct cmdline table = {
+	.program = "edmd-jobs",
+	.row = rows, .nrows = sizeof(rows) / sizeof(*rows), .column = 17,
+	.head =
 	"Usage: edmd-jobs --config FILE [options]\n"
 	"\n"
 	"Takes jobs over LCM, keeps them in a queue, loads them into edmd and\n"
 	"tells how they go.  A job that runs goes on without it.\n"
-	"\n"
-	"  --config FILE  the machine file, the same as edmd's\n"
-	"  --name NAME    of the machine; default: the file's [machine] name\n"
-	"  --store DIR    for the database; default: the file's [jobs] store\n"
-	"  --help         this\n"
-	"  --version      its version\n";
+	"\n",
+};
 
 static int64_t clock_us(clockid_t clock)
 {
@@ -130,39 +143,16 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 	return sd_event_source_set_time_relative(s, TICK_US);
 }
 
-/* 0, or what to exit with. */
+/* -1 to go on, or what to exit with. */
 static int parse(int argc, char **argv, struct options *o)
 {
-	static const struct option longs[] = {
-		{ "config", required_argument, NULL, 'c' },
-		{ "name", required_argument, NULL, 'n' },
-		{ "store", required_argument, NULL, 's' },
-		{ "help", no_argument, NULL, 'h' },
-		{ "version", no_argument, NULL, 'v' },
-		{ NULL, 0, NULL, 0 },
-	};
-	int opt;
+	struct cmdline_given given;
+	const int code = cmdline_take(&table, o, argc, argv, &given);
 
-	while ((opt = getopt_long(argc, argv, "", longs, NULL)) != -1) {
-		if (opt == 'h' || opt == 'v') {
-			fputs(opt == 'h' ? usage :
-			      "edmd-jobs " EDM_VERSION "\n", stdout);
-			exit(EX_OK);
-		}
-		if (opt == 'c')
-			o->config = optarg;
-		else if (opt == 'n')
-			o->name = optarg;
-		else if (opt == 's')
-			o->store = optarg;
-		else
-			return EX_USAGE;
-	}
-	if (optind == argc && o->config)
-		return 0;
-	fprintf(stderr, "edmd-jobs: %s; --help tells more\n", o->config ?
-		"arguments that are no options" : "--config FILE is missing");
-	return EX_USAGE;
+	if (code >= 0 || o->config)
+		return code;
+	return cmdline_refuse("edmd-jobs", "no", "--config",
+			      "--config FILE, the machine file");
 }
 
 static int configure(struct jobs *j, struct machine_config *config,
@@ -191,13 +181,9 @@ static int configure(struct jobs *j, struct machine_config *config,
 	}
 	j->config = config;
 	j->machine = o->name ? o->name : config->name;
-	if (strlen(j->machine) - 1 >= SHM_NAME_MAX - 1 ||
-	    j->machine[strspn(j->machine, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefgh"
-			      "ijklmnopqrstuvwxyz0123456789_-")]) {
-		fprintf(stderr, "edmd-jobs: machine name %s; 1 to 31 of A-Z "
-			"a-z 0-9 _ -\n", j->machine);
-		return EX_USAGE;
-	}
+	if (!names_machine_ok(j->machine))
+		return cmdline_refuse("edmd-jobs", "machine name", j->machine,
+				      NAMES_MACHINE_WANTED);
 	return 0;
 }
 
@@ -331,7 +317,7 @@ int main(int argc, char **argv)
 	struct options o = { .config = NULL };
 	int rc = parse(argc, argv, &o);
 
-	if (rc)
+	if (rc >= 0)
 		return rc;
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;

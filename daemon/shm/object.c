@@ -4,6 +4,8 @@
  */
 #include "object.h"
 
+#include "names.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -12,18 +14,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define NAME_CHARS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
-			"abcdefghijklmnopqrstuvwxyz0123456789_-"
-
 /* A view of a record that may alias anything. */
 typedef uint64_t __attribute__((may_alias)) word_t;
 
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what)
 {
-	size_t n = strnlen(machine, SHM_NAME_MAX);
+	_Static_assert(SHM_NAME_MAX == NAMES_MACHINE_MAX, "one rule of names");
 
-	if (n == 0 || n >= SHM_NAME_MAX || strspn(machine, NAME_CHARS) != n)
+	if (!names_machine_ok(machine))
 		return -EINVAL;
 
 	snprintf(path, OBJECT_PATH_MAX, "/edmd.%.31s.%s", machine, what);

@@ -74,7 +74,7 @@ static double cycles_s(const struct interp_program *p, bool dry)
 		struct cycle c;
 
 		begin(&c, p, dry);
-		if (dry ? io_null_open(&m) : io_sim_open(&m, &machine, 1))
+		if (dry ? io_null_open(&m, NULL, NULL) : io_sim_open_seed(&m, &machine, 1))
 			exit(71);
 		m.write(m.self, &c.out);
 		while (state_duty[c.state].running ||
@@ -102,7 +102,7 @@ static double sims_s(void)
 	double took_s;
 	uint64_t n = 0;
 
-	if (io_sim_open(&m, &machine, 1))
+	if (io_sim_open_seed(&m, &machine, 1))
 		exit(71);
 	do {
 		for (int i = 0; i < 10000; i++, n++) {

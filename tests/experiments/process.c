@@ -26,7 +26,7 @@ static double bridge_per_s;		/* of the machine file */
 
 static void rig_open(struct rig *r)
 {
-	if (io_sim_open(&r->m, &r->k, 1))
+	if (io_sim_open_seed(&r->m, &r->k, 1))
 		abort();
 	r->out = (struct io_outputs) {
 		.path = 1, .power = true,

@@ -169,13 +169,18 @@ static void quadrature_is_twice_as_fast(void **state)
 /* None of it is asked of a machine that has no lines. */
 static void other_backends_need_no_lines(void **state)
 {
+	static const struct config_lines lines;
 	struct machine_config c;
 	struct interp_diag d;
 
 	(void)state;
 	assert_int_equal(read_with("step_X = 1\n", &c, &d), -EINVAL);
+	config_defaults(&c);
+	snprintf(c.gpio.line[LINE_STEP], sizeof(c.gpio.line[LINE_STEP]), "1");
 	c.backend = BACKEND_SIM;
-	assert_int_equal(config_check_gpio(&c, NULL, &d), 0);
+	assert_int_equal(config_check(&c, &lines, &d), 0);
+	c.backend = BACKEND_GPIO;
+	assert_int_equal(config_check(&c, &lines, &d), -EINVAL);
 }
 
 int main(void)

@@ -16,7 +16,7 @@ static int open_null(void **state)
 	static struct io_machine m;
 
 	*state = &m;
-	return io_null_open(&m);
+	return io_null_open(&m, NULL, NULL);
 }
 
 static int close_null(void **state)

@@ -48,9 +48,9 @@ const char *interp_dialect_name(const struct interp_dialect *d)
 	return d->name;
 }
 
-const char *interp_dialect_names(void)
+const char *interp_dialect_word(int i)
 {
-	return "generic, robofil, skd2, sodick, chmer, 3b or 4b";
+	return i >= 0 && i < (int)NDIALECTS ? dialects[i].name : NULL;
 }
 
 static int compile_nc(const struct interp_text *text,

@@ -165,18 +165,12 @@ int build_refuse_travel(const struct interp_machine *m, int axis,
 	const char letter = INTERP_AXIS_LETTERS[axis];
 
 	if (!(m->present & 1u << axis)) {
-		snprintf(diag->found, sizeof(diag->found),
-			 "the machine has no axis %c", letter);
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "a program for the axes it has");
-		return -EINVAL;
+		return interp_diag_say(diag, "the machine has no axis %c; a "
+				       "program for the axes it has", letter);
 	}
-	snprintf(diag->found, sizeof(diag->found),
-		 "%c %.4f is beyond the travel", letter, at_mm);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "%c from %g to %g in machine coordinates", letter,
-		 l->travel_min_mm, l->travel_max_mm);
-	return -EINVAL;
+	return interp_diag_say(diag, "%c %.4f is beyond the travel; %c from "
+			       "%g to %g in machine coordinates", letter, at_mm,
+			       letter, l->travel_min_mm, l->travel_max_mm);
 }
 
 /* In pulses, as the cycle guards them: the last ones inside the limits. */
@@ -236,10 +230,8 @@ int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
 	struct interp_seg *s;
 
 	if (cond == -ENOSPC) {
-		snprintf(diag->found, sizeof(diag->found),
-			 "more than %d different conditions", UINT16_MAX);
-		snprintf(diag->wanted, sizeof(diag->wanted), "fewer of them");
-		return -EINVAL;
+		return interp_diag_say(diag, "more than %d different "
+				       "conditions; fewer of them", UINT16_MAX);
 	}
 	if (cond < 0)
 		return cond;
@@ -351,10 +343,8 @@ void build_stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],
 
 static int refuse_long(struct interp_diag *diag, double length_mm)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "%.3g mm are too many pulses for one segment", length_mm);
-	snprintf(diag->wanted, sizeof(diag->wanted), "a shorter segment");
-	return -EINVAL;
+	return interp_diag_say(diag, "%.3g mm are too many pulses for one "
+			       "segment; a shorter segment", length_mm);
 }
 
 struct build_way build_way_to(const struct interp_build *b,
@@ -385,10 +375,8 @@ static int sensed_begin(struct interp_build *b, uint32_t moved,
 			struct interp_diag *diag)
 {
 	if (moved & (moved - 1)) {
-		snprintf(diag->found, sizeof(diag->found),
-			 "a touch, half or limit along several axes");
-		snprintf(diag->wanted, sizeof(diag->wanted), "one axis");
-		return -EINVAL;
+		return interp_diag_say(diag, "a touch, half or limit along "
+				       "several axes; one axis");
 	}
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
 }

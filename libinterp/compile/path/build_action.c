@@ -44,12 +44,10 @@ int interp_build_timed_end(struct interp_build *b, uint32_t ms,
 		if (interp_round_sub(b->here[i]) ==
 		    interp_round_sub(b->timed_at[i]))
 			continue;
-		snprintf(diag->found, sizeof(diag->found),
-			 "a time for motions that end elsewhere along %c",
-			 INTERP_AXIS_LETTERS[i]);
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "motions that end where they begin");
-		return -EINVAL;
+		return interp_diag_say(diag, "a time for motions that end "
+				       "elsewhere along %c; motions that end "
+				       "where they begin",
+				       INTERP_AXIS_LETTERS[i]);
 	}
 	begin[b->timed].arg = (uint32_t)b->segs.n;
 	return interp_build_action(b, INTERP_TIMED_END, ms, w, diag);

@@ -3,7 +3,7 @@
  * build_arc.c - from the words of a G2 or G3 to an arc segment
  */
 #include "path/build_arc.h"
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <math.h>
@@ -31,13 +31,11 @@ static const struct interp_axis_limits *limits(const struct build_arc *p,
 
 static int refuse_radius(double r0, double r1, struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "the arc starts %.4f mm from its centre and ends %.4f mm from it",
-		 r0, r1);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "radii that agree within %g pulses, or %g %% but %g pulses",
-		 RADIUS_PULSES, RADIUS_SHARE * 100, RADIUS_MOST);
-	return -EINVAL;
+	return interp_diag_say(diag, "the arc starts %.4f mm from its centre "
+			       "and ends %.4f mm from it; radii that agree "
+			       "within %g pulses, or %g %% but %g pulses", r0,
+			       r1, RADIUS_PULSES, RADIUS_SHARE * 100,
+			       RADIUS_MOST);
 }
 
 /* Angle from theta0 on to theta1 in the arc's direction, whole turns added. */
@@ -76,11 +74,8 @@ int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
 					 RADIUS_MOST * pulse))))
 		return refuse_radius(r0, r1, diag);
 	if (r0 < pulse / 2) {
-		snprintf(diag->found, sizeof(diag->found),
-			 "an arc of radius %.6f mm", r0);
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "a radius of half a pulse or more");
-		return -EINVAL;
+		return interp_diag_say(diag, "an arc of radius %.6f mm; a "
+				       "radius of half a pulse or more", r0);
 	}
 	p->arc = (struct interp_arc) {
 		.a_mm = w->centre_a_mm, .b_mm = w->centre_b_mm,
@@ -144,11 +139,8 @@ static void arc_length(struct build_arc *p)
 
 static int refuse_ticks(struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "the arc has too many pulses for one segment");
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "a smaller radius, or fewer turns");
-	return -EINVAL;
+	return interp_diag_say(diag, "the arc has too many pulses for one "
+			       "segment; a smaller radius, or fewer turns");
 }
 
 /* Ticks closer than a pulse, by a margin no rounding can use up. */
@@ -223,13 +215,18 @@ static bool is_tiny(const int64_t start[2])
 	return start[0] * start[0] + start[1] * start[1] == 1;
 }
 
+static const struct pulse_strategy *strategy(const struct build_arc *p)
+{
+	return pulse_strategy(p->o->strategy);
+}
+
 static bool measure(struct build_arc *p, const int64_t start[2],
 		    const int64_t end[2])
 {
 	const int64_t others = (p->way.longest_sub + INTERP_SUB - 1) >>
 			       INTERP_SUB_BITS;
 
-	return p->o->strategy == INTERP_DDA && !is_tiny(start) ?
+	return strategy(p)->accumulates && !is_tiny(start) ?
 	       dda_measure(&p->arc, start, end, others) :
 	       circle_measure(&p->arc, start, end);
 }
@@ -240,7 +237,7 @@ static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 	uint64_t ticks = p->arc.circle_ticks;
 	int r;
 
-	if (p->o->strategy != INTERP_DDA) {
+	if (!strategy(p)->accumulates) {
 		r = build_rule_check(p->o, &p->way, diag);
 		if (r < 0)
 			return r;
@@ -260,12 +257,10 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	int r = 0;
 
 	if (limits(p, arc->axis_b)->pulse_mm != pulse) {
-		snprintf(diag->found, sizeof(diag->found),
-			 "a %s arc over axes of unequal pulses",
-			 interp_strategy_name(p->o->strategy));
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "strategy simultaneous, or equal pulses");
-		return -EINVAL;
+		return interp_diag_say(diag, "a %s arc over axes of unequal "
+				       "pulses; strategy simultaneous, or "
+				       "equal pulses",
+				       interp_strategy_name(p->o->strategy));
 	}
 	if (fabs(arc->sweep) * arc->r_mm / pulse > INTERP_PULSES_MAX / 2.0)
 		return refuse_ticks(diag);
@@ -275,7 +270,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 		p->straight = true;
 		return 0;
 	}
-	if (is_tiny(start) && p->o->strategy == INTERP_DDA &&
+	if (is_tiny(start) && strategy(p)->accumulates &&
 	    p->way.longest_sub > 0) {
 		p->straight = true;
 		return 0;
@@ -285,7 +280,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
 		return p->straight ? 0 : refuse_ticks(diag);
 	}
-	if (p->o->strategy == INTERP_MIN_SWITCH && !is_tiny(start)) {
+	if (strategy(p)->runs && !is_tiny(start)) {
 		memcpy(p->runs.start, start, sizeof(start));
 		memcpy(p->runs.end, end, sizeof(end));
 		r = measure_runs(p, diag);
@@ -340,6 +335,6 @@ int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 	if (r < 0 || p->straight)
 		return r;
 	arc_length(p);
-	return p->o->strategy == INTERP_SIMULTANEOUS ?
-	       ticks_simultaneous(p, diag) : ticks_of_pulses(p, diag);
+	return strategy(p)->at_once ? ticks_simultaneous(p, diag) :
+				      ticks_of_pulses(p, diag);
 }

@@ -14,6 +14,7 @@
 #include "path/build_arc.h"
 #include "path/build_curve.h"
 #include "path/builder.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <math.h>
@@ -385,8 +386,7 @@ int interp_build_curve(struct interp_build *b,
 	};
 	interp_nurbs_open(&p.walk.eval, &n);
 	memcpy(p.walk.axis, p.curve.axis, sizeof(p.walk.axis));
-	p.turns = b->o.strategy == INTERP_SIMULTANEOUS ||
-		  b->o.strategy == INTERP_DDA ? 1 : n.naxes;
+	p.turns = pulse_curve_turns(b->o.strategy, n.naxes);
 	set_limits(&p);
 	r = build_curve_check_way(&p);
 	return r == 0 ? along(&p) : r;

@@ -18,9 +18,7 @@
 int build_curve_refuse(struct curve_plan *p, const char *found,
 		       const char *wanted)
 {
-	snprintf(p->diag->found, sizeof(p->diag->found), "%s", found);
-	snprintf(p->diag->wanted, sizeof(p->diag->wanted), "%s", wanted);
-	return -EINVAL;
+	return interp_diag_say(p->diag, "%s; %s", found, wanted);
 }
 
 void build_curve_blame(struct curve_plan *p, double u)

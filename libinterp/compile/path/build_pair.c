@@ -27,7 +27,7 @@
  */
 #include "path/build_pair.h"
 #include "path/build_arc.h"
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <math.h>
@@ -51,10 +51,8 @@ static const enum interp_axis plane[2][2] = {
 
 static int refuse_long(struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "two contours of too many pulses for one segment");
-	snprintf(diag->wanted, sizeof(diag->wanted), "shorter segments");
-	return -EINVAL;
+	return interp_diag_say(diag, "two contours of too many pulses for one "
+			       "segment; shorter segments");
 }
 
 static int side_line(const struct build_pair *p, int i, struct interp_arc *ret,
@@ -77,6 +75,11 @@ static int side_line(const struct build_pair *p, int i, struct interp_arc *ret,
 	return 0;
 }
 
+static bool at_once(const struct build_pair *p)
+{
+	return pulse_strategy(p->strategy)->at_once;
+}
+
 /* An arc of its own, as if nothing else moved. */
 static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 		    struct interp_diag *diag)
@@ -89,8 +92,8 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 	};
 	const struct interp_build_options o = {
 		.machine = p->machine,
-		.strategy = p->strategy == INTERP_SIMULTANEOUS ?
-			    INTERP_SIMULTANEOUS : INTERP_POINT_BY_POINT,
+		.strategy = at_once(p) ? INTERP_SIMULTANEOUS :
+					 INTERP_POINT_BY_POINT,
 	};
 	int r;
 
@@ -132,7 +135,7 @@ static int side_plan(struct build_pair *p, int i, double *ret_mm,
 		return side_line(p, i, &p->couple.side[i], ret_mm, diag);
 	p->couple.side[i] = plan.arc;
 	*ret_mm = plan.length_mm;
-	if (p->strategy == INTERP_SIMULTANEOUS && plan.ticks > p->ticks)
+	if (at_once(p) && plan.ticks > p->ticks)
 		p->ticks = plan.ticks;
 	return 0;
 }
@@ -256,7 +259,7 @@ int build_pair_plan(struct build_pair *p, struct interp_diag *diag)
 	}
 	p->length_mm = mm[0] > 0 ? mm[0] : mm[1];
 	p->feed_max_mm_s = p->length_mm / seconds;
-	if (p->strategy == INTERP_SIMULTANEOUS) {
+	if (at_once(p)) {
 		const int64_t n = (p->longest_sub + INTERP_SUB - 1) >>
 				  INTERP_SUB_BITS;
 

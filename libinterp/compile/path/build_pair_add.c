@@ -4,6 +4,7 @@
  */
 #include "path/build_pair.h"
 #include "path/builder.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -50,10 +51,8 @@ static int pair_finish(struct interp_build *b, struct build_pair *p,
 
 static int refuse_others(struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "another axis beside two contours");
-	snprintf(diag->wanted, sizeof(diag->wanted), "X Y U V alone");
-	return -EINVAL;
+	return interp_diag_say(diag, "another axis beside two contours; X Y U "
+			       "V alone");
 }
 
 /* One contour alone, the other stands: -ENOENT if both have a way to go. */
@@ -73,7 +72,7 @@ static int pair_alone(struct interp_build *b, const struct build_pair *p,
 	const bool other = i == 0 && (p->moved & ~XY || c[1].arc);
 
 	if (other && (c[0].arc || c[1].arc ||
-		      b->o.strategy != INTERP_SIMULTANEOUS))
+		      !pulse_strategy(b->o.strategy)->at_once))
 		return -ENOENT;
 	return c[i].arc ? interp_build_arc(b, end_mm, &arc, w, diag) :
 			  interp_build_line(b, end_mm, w, diag);

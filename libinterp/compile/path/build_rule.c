@@ -4,7 +4,7 @@
  */
 #include "path/build_rule.h"
 #include "pulse/couple.h"
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -26,9 +26,9 @@ uint64_t build_rule_ticks(enum interp_strategy s, const struct build_way *w)
 	const int64_t longest = (w->longest_sub + INTERP_SUB - 1) >>
 				INTERP_SUB_BITS;
 
-	if (s == INTERP_SIMULTANEOUS)
+	if (pulse_strategy(s)->at_once)
 		return (uint64_t)longest;
-	if (s != INTERP_DDA)
+	if (!pulse_strategy(s)->accumulates)
 		return pulses_of(w);
 	return longest > INTERP_PULSES_MAX ? UINT64_MAX :
 					     (uint64_t)pulse_dda_ticks(longest);
@@ -38,26 +38,21 @@ int build_refuse_tolerance(const struct interp_build_options *o,
 			   const char *what, uint32_t smallest,
 			   struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "a tolerance of %g pulses%s is too narrow for %s under %s",
-		 o->tolerance_milli / 1000.0,
-		 o->perpendicular ? ", square to the path," : "", what,
-		 interp_strategy_name(o->strategy));
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "%g pulses or more, or strategy centred or simultaneous",
-		 smallest / 1000.0);
-	return -EINVAL;
+	return interp_diag_say(diag, "a tolerance of %g pulses%s is too "
+			       "narrow for %s under %s; %g pulses or more, or "
+			       "strategy centred or simultaneous",
+			       o->tolerance_milli / 1000.0,
+			       o->perpendicular ? ", square to the path," : "",
+			       what, interp_strategy_name(o->strategy),
+			       smallest / 1000.0);
 }
 
 static int refuse_tube(const struct interp_build_options *o,
 		       struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "coupling tube with strategy %s",
-		 interp_strategy_name(o->strategy));
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "strategy min-switch, or coupling star or tree");
-	return -EINVAL;
+	return interp_diag_say(diag, "coupling tube with strategy %s; "
+			       "strategy min-switch, or coupling star or tree",
+			       interp_strategy_name(o->strategy));
 }
 
 static uint32_t inputs_of(const struct build_way *w, struct couple_input *in)
@@ -76,6 +71,7 @@ static uint32_t inputs_of(const struct build_way *w, struct couple_input *in)
 int build_rule_check(const struct interp_build_options *o,
 		     const struct build_way *w, struct interp_diag *diag)
 {
+	const struct pulse_strategy *s = pulse_strategy(o->strategy);
 	/* Beside a circle the other axes are always a tree. */
 	const struct couple_rule rule = {
 		.strategy = o->strategy,
@@ -85,15 +81,15 @@ int build_rule_check(const struct interp_build_options *o,
 	struct couple_input in[INTERP_NAXES];
 	uint32_t n, smallest;
 
-	if (o->strategy < INTERP_CENTRED || o->strategy == INTERP_DDA)
+	if (!s->couples)
 		return 0;
 	n = inputs_of(w, in);
 	if (n < 2)
 		return 0;
 	if (n > 2 && rule.coupling == INTERP_TUBE &&
-	    o->strategy != INTERP_MIN_SWITCH)
+	    !s->runs)
 		return refuse_tube(o, diag);
-	if (o->strategy == INTERP_CENTRED)
+	if (!s->takes_tolerance)
 		return 0;
 	smallest = couple_smallest_milli(&rule, in, n);
 	if (smallest == o->tolerance_milli)

@@ -3,7 +3,7 @@
  * deviation.c - how far a lattice point lies from the programmed path
  */
 #include "interp/cursor.h"
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <math.h>
 
@@ -136,7 +136,7 @@ static double circle_deviation(const struct interp_cursor *c,
 			       c->pos[arc->axis_b] * pulse[arc->axis_b] -
 			       arc->b_mm) - arc->r_mm;
 
-	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
+	if (pulse_strategy(c->p.head->strategy)->at_once)
 		return fabs(r - arc->dr_mm * at);
 	return fmax(fmax(r - fmax(arc->dr_mm, 0), fmin(arc->dr_mm, 0) - r), 0);
 }

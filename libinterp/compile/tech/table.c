@@ -167,16 +167,15 @@ int interp_tech_fits(const struct interp_tech *tech,
 		return 0;
 	low = &interp_tech_field[o->low];
 	high = &interp_tech_field[o->high];
-	snprintf(diag->found, sizeof(diag->found),
-		 "%s: %s %g %s%s is not %s %s %g %s%s", name, low->name,
-		 sum.v[o->low], low->unit,
-		 interp_tech_given(tech, o->low) ? "" : " of the machine",
-		 o->or_equal ? "at most" : "below", high->name,
-		 sum.v[o->high], high->unit,
-		 interp_tech_given(tech, o->high) ? "" : " of the machine");
-	snprintf(diag->wanted, sizeof(diag->wanted), "%s %s %s", low->name,
-		 o->or_equal ? "at most" : "below", high->name);
-	return -EINVAL;
+	return interp_diag_say(diag, "%s: %s %g %s%s is not %s %s %g %s%s; %s "
+			       "%s %s", name, low->name, sum.v[o->low],
+			       low->unit,
+			       interp_tech_given(tech, o->low) ? "" : " of the machine",
+			       o->or_equal ? "at most" : "below", high->name,
+			       sum.v[o->high], high->unit,
+			       interp_tech_given(tech, o->high) ? "" : " of the machine",
+			       low->name, o->or_equal ? "at most" : "below",
+			       high->name);
 }
 
 int interp_tech_table_fits(const struct interp_tech_table *t,

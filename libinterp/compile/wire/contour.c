@@ -53,25 +53,21 @@ static int refuse_radius(const struct contour_motion *m, int p,
 			 struct interp_diag *diag)
 {
 	diag->line = m->word.line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "an inside radius of %.4f mm under an offset of %.4f mm%s",
-		 m->c[p].r, fabs(m->d[p]), plane_name(p));
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "a radius of the offset or more, or a smaller offset");
-	return -EINVAL;
+	return interp_diag_say(diag, "an inside radius of %.4f mm under an "
+			       "offset of %.4f mm%s; a radius of the offset "
+			       "or more, or a smaller offset", m->c[p].r,
+			       fabs(m->d[p]), plane_name(p));
 }
 
 static int refuse_gouge(const struct contour_motion *m, int p,
 			struct interp_diag *diag)
 {
 	diag->line = m->word.line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "nothing is left of a motion of %.4f mm under an offset of "
-		 "%.4f mm%s", curve_length(&m->c[p]), fabs(m->d[p]),
-		 plane_name(p));
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "inner corners with room for the wire, or a smaller offset");
-	return -EINVAL;
+	return interp_diag_say(diag, "nothing is left of a motion of %.4f mm "
+			       "under an offset of %.4f mm%s; inner corners "
+			       "with room for the wire, or a smaller offset",
+			       curve_length(&m->c[p]), fabs(m->d[p]),
+			       plane_name(p));
 }
 
 static int refuse_lead(const struct contour_motion *m, double by_mm,
@@ -96,11 +92,8 @@ static int refuse_lead(const struct contour_motion *m, double by_mm,
 static int refuse_todo(const struct contour_motion *m, struct interp_diag *diag)
 {
 	diag->line = m->word.line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "more than %d actions behind a motion", CONTOUR_TODO_MAX);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "fewer of them, or no offset");
-	return -EINVAL;
+	return interp_diag_say(diag, "more than %d actions behind a motion; "
+			       "fewer of them, or no offset", CONTOUR_TODO_MAX);
 }
 
 /* -- Out ------------------------------------------------------------------- */
@@ -322,10 +315,8 @@ static int refuse_alone(const struct interp_build_word *w,
 			struct interp_diag *diag)
 {
 	diag->line = w->line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "another axis alone under an offset or a taper");
-	snprintf(diag->wanted, sizeof(diag->wanted), "G40 and G50 before it");
-	return -EINVAL;
+	return interp_diag_say(diag, "another axis alone under an offset or a "
+			       "taper; G40 and G50 before it");
 }
 
 /* A line on which neither contour moves: only other axes do, or none. */
@@ -377,11 +368,9 @@ static int refuse_plane(const struct interp_build_word *w,
 			struct interp_diag *diag)
 {
 	diag->line = w->line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "an arc outside the plane XY under an offset, a taper or "
-		 "corner control");
-	snprintf(diag->wanted, sizeof(diag->wanted), "G17 arcs, or G40 and G50");
-	return -EINVAL;
+	return interp_diag_say(diag, "an arc outside the plane XY under an "
+			       "offset, a taper or corner control; G17 arcs, "
+			       "or G40 and G50");
 }
 
 /* Start and end at one distance from the centre, as the builder wants it. */
@@ -394,12 +383,10 @@ static int check_radius(const struct contour *k, const struct curve *c,
 				    fmin(0.001 * c->r,
 					 5 * k->guides.pulse_mm)))
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "the arc starts %.4f mm from its centre and ends %.4f mm "
-		 "from it", c->r, r1);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "radii that agree within 2 pulses, or 0.1 %% but 5 pulses");
-	return -EINVAL;
+	return interp_diag_say(diag, "the arc starts %.4f mm from its centre "
+			       "and ends %.4f mm from it; radii that agree "
+			       "within 2 pulses, or 0.1 %% but 5 pulses", c->r,
+			       r1);
 }
 
 /* The wire keeps its lean: the top goes round as the bottom does. */
@@ -471,12 +458,10 @@ int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 
 	if (!is_idle(k)) {
 		diag->line = w->line;
-		snprintf(diag->found, sizeof(diag->found),
-			 "a curve under an offset, a taper, guides or corner "
-			 "control");
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "G40 and G50 before it, or the curve as G1 lines");
-		return -EINVAL;
+		return interp_diag_say(diag, "a curve under an offset, a "
+				       "taper, guides or corner control; G40 "
+				       "and G50 before it, or the curve as G1 "
+				       "lines");
 	}
 	r = interp_build_curve(k->guides.build, c, w, diag);
 	if (r == -EINVAL && !diag->line)

@@ -77,12 +77,10 @@ static struct vec guide_at(struct guide k, struct vec p, struct vec q)
 static int refuse_tilt(const struct guides *g, double slope,
 		       struct interp_diag *diag)
 {
-	snprintf(diag->found, sizeof(diag->found),
-		 "the wire leans by %.3f degrees", atan(slope) / DEGREE);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "up to %g degrees, wire.angle_max_deg of the machine; at a "
-		 "sharp corner both faces lean", g->wire->angle_max_deg);
-	return -EINVAL;
+	return interp_diag_say(diag, "the wire leans by %.3f degrees; up to "
+			       "%g degrees, wire.angle_max_deg of the "
+			       "machine; at a sharp corner both faces lean",
+			       atan(slope) / DEGREE, g->wire->angle_max_deg);
 }
 
 static int check_tilt(const struct guides *g, const struct curve c[2],
@@ -258,11 +256,8 @@ static int cut_chords(const struct cut *k)
 	struct cut chord = *k;
 
 	if (!(n <= CHORDS_MAX)) {
-		snprintf(k->diag->found, sizeof(k->diag->found),
-			 "two contours that need %.0f chords", n);
-		snprintf(k->diag->wanted, sizeof(k->diag->wanted),
-			 "smaller arcs");
-		return -EINVAL;
+		return interp_diag_say(k->diag, "two contours that need %.0f "
+				       "chords; smaller arcs", n);
 	}
 	chord.c = part;
 	for (double i = 1; i <= n; i++) {

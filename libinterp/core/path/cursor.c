@@ -6,7 +6,7 @@
  * has come does not depend on the steps it came by.
  */
 #include "interp/cursor.h"
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <math.h>
@@ -38,19 +38,24 @@ static uint32_t axes_moving(const struct interp_cursor *c)
 	return n;
 }
 
-/* Up to two axes a tree is all there is. */
 static const struct interp_walk *pulse_of_line(const struct interp_cursor *c)
 {
 	const struct interp_program_head *h = c->p.head;
+	const struct pulse_strategy *s = pulse_strategy(h->strategy);
 
-	if (h->strategy == INTERP_SIMULTANEOUS)
-		return &pulse_line;
-	if (h->strategy == INTERP_DDA)
-		return &pulse_dda_line;
-	if (h->strategy == INTERP_POINT_BY_POINT ||
-	    h->coupling == INTERP_TREE || axes_moving(c) < 3)
-		return &pulse_tree;
-	return &pulse_flat;
+	return s->flat == s->line || h->coupling == INTERP_TREE ||
+	       axes_moving(c) < 3 ? s->line : s->flat;
+}
+
+/* A dda's arc that is too small for accumulators has no shift. */
+static const struct interp_walk *pulse_of_arc(const struct interp_cursor *c)
+{
+	const struct pulse_strategy *s = pulse_strategy(c->p.head->strategy);
+
+	if (s->arc && (!s->accumulates || c->arc.shift > 0))
+		return s->arc;
+	return c->seg.ticks == c->arc.circle_ticks ? &pulse_circle :
+						     &pulse_helix;
 }
 
 static const struct interp_walk *pulse_of(const struct interp_cursor *c)
@@ -58,18 +63,10 @@ static const struct interp_walk *pulse_of(const struct interp_cursor *c)
 	if (c->seg.kind >= INTERP_BEGIN)
 		return &pulse_action;
 	if (c->seg.kind == INTERP_PAIR)
-		return c->p.head->strategy == INTERP_SIMULTANEOUS ?
-		       &pulse_pair_at_once : &pulse_pair;
+		return pulse_strategy(c->p.head->strategy)->pair;
 	if (c->seg.kind == INTERP_CURVE)
 		return &pulse_curve;
-	if (c->seg.kind != INTERP_ARC)
-		return pulse_of_line(c);
-	if (c->p.head->strategy == INTERP_SIMULTANEOUS)
-		return &pulse_arc;
-	if (c->p.head->strategy == INTERP_DDA && c->arc.shift > 0)
-		return &pulse_dda_arc;
-	return c->seg.ticks == c->arc.circle_ticks ? &pulse_circle :
-						     &pulse_helix;
+	return c->seg.kind == INTERP_ARC ? pulse_of_arc(c) : pulse_of_line(c);
 }
 
 /*

@@ -157,15 +157,6 @@ bool interp_program_curve(const struct interp_program *p, uint32_t i,
 	return true;
 }
 
-static const char *const strategies[INTERP_NSTRATEGIES] = {
-	[INTERP_SIMULTANEOUS]	= "simultaneous",
-	[INTERP_POINT_BY_POINT]	= "point-by-point",
-	[INTERP_CENTRED]	= "centred",
-	[INTERP_DDA]		= "dda",
-	[INTERP_MAIN_DIRECTION]	= "main-direction",
-	[INTERP_MIN_SWITCH]	= "min-switch",
-};
-
 static const char *const couplings[INTERP_NCOUPLINGS] = {
 	[INTERP_STAR]	= "star",
 	[INTERP_TREE]	= "tree",
@@ -186,16 +177,6 @@ static int parse(const char *const *names, int n, const char *name)
 			return i;
 	}
 	return -EINVAL;
-}
-
-const char *interp_strategy_name(enum interp_strategy s)
-{
-	return s < INTERP_NSTRATEGIES ? strategies[s] : NULL;
-}
-
-int interp_strategy_parse(const char *name)
-{
-	return parse(strategies, INTERP_NSTRATEGIES, name);
 }
 
 const char *interp_coupling_name(enum interp_coupling k)

@@ -3,7 +3,7 @@
  * couple.c - trees, stars and tubes of pairs
  */
 #include "pulse/couple.h"
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <string.h>
 
@@ -197,7 +197,7 @@ bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
 	struct couple_rule axis = *r;
 
 	axis.tube = axis_tube(r->tube, npairs);
-	if (r->coupling == INTERP_TUBE && r->strategy == INTERP_MIN_SWITCH &&
+	if (r->coupling == INTERP_TUBE && pulse_strategy(r->strategy)->runs &&
 	    npairs > 1 && tube_plan(pair, npairs, axis.tube, at_end))
 		return true;
 	couple_set(pair, npairs, &axis, at_end);
@@ -213,7 +213,7 @@ static bool couple_ok(const struct couple_rule *r,
 	struct interp_pair pair[INTERP_NAXES];
 	struct pair_tube t = r->tube;
 
-	if (r->strategy == INTERP_MAIN_DIRECTION && t.milli < 500)
+	if (t.milli < pulse_strategy(r->strategy)->least_milli)
 		return false;
 	memcpy(inputs, in, n * sizeof(*in));
 	if (r->coupling == INTERP_TREE) {

@@ -16,7 +16,7 @@
  * A damaged block may have any numbers in it; its walk ends when an axis would
  * leap.
  */
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <math.h>
 
@@ -123,8 +123,7 @@ static bool curve_enter(struct interp_cursor *c, bool at_end)
 		return false;
 	for (uint32_t i = 0; i < INTERP_NAXES; i++)
 		k->axis[i] = c->p.curves[piece.curve].axis[i];
-	k->turns = c->p.head->strategy == INTERP_SIMULTANEOUS ||
-		   c->p.head->strategy == INTERP_DDA ? 1 : nurbs.naxes;
+	k->turns = pulse_curve_turns(c->p.head->strategy, nurbs.naxes);
 	if (!axes_ok(c, k->axis, nurbs.naxes) || !ticks_ok(c, k->turns) ||
 	    !pulse_stand(c, at_end))
 		return false;

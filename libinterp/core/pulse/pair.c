@@ -5,8 +5,7 @@
  * Totals are at most 2^30 and mu at most 1000 pulses, so e, M and the
  * products of a burst stay within 2^62; only the square of M needs 128 bits.
  */
-#include "pulse/pair.h"
-#include "pulse/pulse.h"
+#include "pulse/strategy.h"
 
 #include <string.h>
 
@@ -298,27 +297,33 @@ void pair_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
 
 /* -- By name --------------------------------------------------------------- */
 
+void pair_set_centred(struct interp_pair *p, int64_t half, bool at_end)
+{
+	(void)half;
+	pair_set_limit(p, (p->a - p->b) / 2, at_end);
+}
+
+void pair_set_main_direction(struct interp_pair *p, int64_t half, bool at_end)
+{
+	pair_set_limit(p, half - p->b, at_end);
+}
+
+void pair_set_min_switch(struct interp_pair *p, int64_t half, bool at_end)
+{
+	int64_t burst;
+
+	if (p->b == 0)
+		return;
+	burst = pair_burst(p->a, p->b, half);
+	pair_set_bursts(p, (p->b + burst - 1) / burst, NULL, at_end);
+}
+
 void pair_set(struct interp_pair *p, enum interp_strategy rule,
 	      struct pair_tube t, bool at_end)
 {
-	const int64_t half = pair_half_width(p->a, p->b, t);
-	int64_t burst;
+	const struct pulse_strategy *s = pulse_strategy(rule);
 
 	pair_set_limit(p, 0, at_end);
-	switch (rule) {
-	case INTERP_CENTRED:
-		pair_set_limit(p, (p->a - p->b) / 2, at_end);
-		break;
-	case INTERP_MAIN_DIRECTION:
-		pair_set_limit(p, half - p->b, at_end);
-		break;
-	case INTERP_MIN_SWITCH:
-		if (p->b == 0)
-			break;
-		burst = pair_burst(p->a, p->b, half);
-		pair_set_bursts(p, (p->b + burst - 1) / burst, NULL, at_end);
-		break;
-	default:
-		break;
-	}
+	if (s->set)
+		s->set(p, pair_half_width(p->a, p->b, t), at_end);
 }

@@ -82,6 +82,11 @@ int64_t pair_burst(int64_t a, int64_t b, int64_t half_width);
 void pair_set(struct interp_pair *p, enum interp_strategy rule,
 	      struct pair_tube t, bool at_end);
 
+/* The three that are not point-by-point; for the table of strategies. */
+void pair_set_centred(struct interp_pair *p, int64_t half, bool at_end);
+void pair_set_main_direction(struct interp_pair *p, int64_t half, bool at_end);
+void pair_set_min_switch(struct interp_pair *p, int64_t half, bool at_end);
+
 /** pair_set_limit() - the same by T itself, at least -b: for experiments. */
 void pair_set_limit(struct interp_pair *p, int64_t limit, bool at_end);
 

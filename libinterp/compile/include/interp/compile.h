@@ -28,8 +28,8 @@ const struct interp_dialect *interp_dialect_by_file(const char *path);
 /** interp_dialect_name() - as interp_dialect_by_name() knows it. */
 const char *interp_dialect_name(const struct interp_dialect *d);
 
-/** interp_dialect_names() - all of them, in one line. */
-const char *interp_dialect_names(void);
+/** interp_dialect_word() - the name of dialect @i; NULL past the last. */
+const char *interp_dialect_word(int i);
 
 struct interp_text {
 	const char *at;			/* need not be NUL-terminated */

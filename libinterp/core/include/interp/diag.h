@@ -19,4 +19,14 @@ struct interp_diag {
 	char wanted[160];
 };
 
+/**
+ * interp_diag_say() - fill found and wanted by one sentence, "FOUND; WANTED".
+ *
+ * It is cut at the first "; " of @format; line and column stay as they are.
+ * Return: -EINVAL, for the caller to return.  Prints into memory: not for the
+ * cycle.
+ */
+int interp_diag_say(struct interp_diag *d, const char *format, ...)
+	__attribute__((format(printf, 2, 3)));
+
 #endif /* INTERP_DIAG_H */

@@ -29,6 +29,7 @@
 #include "interp/nurbs_length.h"
 #include "interp/tech.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -305,6 +306,13 @@ const char *interp_strategy_name(enum interp_strategy s);
 
 /** interp_strategy_parse() - the reverse; -EINVAL if unknown. Any thread. */
 int interp_strategy_parse(const char *name);
+
+/** interp_strategy_takes_tolerance() - does mu change what it does? */
+bool interp_strategy_takes_tolerance(enum interp_strategy s);
+
+/** interp_strategy_couples() - is the coupling of three and more axes its
+ *  choice? */
+bool interp_strategy_couples(enum interp_strategy s);
 
 /** interp_coupling_name() - "star", ...; NULL if unknown. Any thread. */
 const char *interp_coupling_name(enum interp_coupling k);

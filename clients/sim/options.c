@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * options.c - edmsim: the table of its options, and what they ask for together
+ */
+#include "sim.h"
+
+#include "cmdline.h"
+#include "names.h"
+
+#include <math.h>
+#include <string.h>
+#include <sysexits.h>
+
+#define AT(field)	.at = offsetof(struct sim_options, field)
+#define FLAG(field)	.kind = CMDLINE_FLAG, AT(field)
+#define WORD(field)	.kind = CMDLINE_WORD, AT(field)
+#define WHOLE(field)	.kind = CMDLINE_WHOLE, AT(field)
+#define NUMBER(field, low, high) \
+	.kind = CMDLINE_NUMBER, AT(field), .min = (low), .max = (high)
+#define CALL(function)	.kind = CMDLINE_CALL, .take = (function)
+
+static int refuse(const char *what, const char *value, const char *wanted)
+{
+	return cmdline_refuse("edmsim", what, value, wanted);
+}
+
+static int take_dialect(void *to, const char *text)
+{
+	struct sim_options *o = to;
+	char all[160];
+
+	o->dialect = interp_dialect_by_name(text);
+	return o->dialect ? -1 :
+	       refuse("--dialect", text, names_join(interp_dialect_word, all,
+						    sizeof(all)));
+}
+
+static const char *strategy_word(int i)
+{
+	return i < INTERP_NSTRATEGIES ?
+	       interp_strategy_name((enum interp_strategy)i) : NULL;
+}
+
+static int take_strategy(void *to, const char *text)
+{
+	struct sim_options *o = to;
+	char all[160];
+
+	o->strategy = interp_strategy_parse(text);
+	return o->strategy >= 0 ? -1 :
+	       refuse("--strategy", text, names_join(strategy_word, all,
+						     sizeof(all)));
+}
+
+static const char *coupling_word(int i)
+{
+	return i < INTERP_NCOUPLINGS ?
+	       interp_coupling_name((enum interp_coupling)i) : NULL;
+}
+
+static int take_coupling(void *to, const char *text)
+{
+	struct sim_options *o = to;
+	char all[160];
+
+	o->coupling = interp_coupling_parse(text);
+	return o->coupling >= 0 ? -1 :
+	       refuse("--coupling", text, names_join(coupling_word, all,
+						     sizeof(all)));
+}
+
+static int take_emit(void *to, const char *text)
+{
+	struct sim_options *o = to;
+
+	if (strcmp(text, "3b") != 0 && strcmp(text, "iso") != 0)
+		return refuse("--emit", text, "3b or iso");
+	o->emit = text;
+	return -1;
+}
+
+static int take_document_config(void *to, const char *text)
+{
+	(void)to, (void)text;
+	config_document(stdout);
+	return EX_OK;
+}
+
+static int take_document_tech(void *to, const char *text)
+{
+	(void)to, (void)text;
+	edmsim_tech_document();
+	return EX_OK;
+}
+
+/* clang-format off */
+static const struct cmdline_row rows[] = {
+	{ "machine", "FILE", WORD(machine_file), .help =
+	  "machine file; without: eight axes, +-200 mm" },
+	{ "dialect", "NAME", CALL(take_dialect), .help =
+	  "generic, robofil, skd2, sodick, chmer, 3b, 4b\n"
+	  "(by the file's name: .3b, .4b, else generic)" },
+	{ "tech", "FILE", WORD(tech), .help =
+	  "technology table, .tech or .enc (machine file's)" },
+	{ "print-tech", NULL, FLAG(print_tech), .help =
+	  "that table as a .tech text, and exit" },
+	{ "document-tech", NULL, CALL(take_document_tech), .help =
+	  "the fields of a condition as Markdown, and exit" },
+	{ "unit-um", "N", NUMBER(unit_um, 0.001, 1000), .help =
+	  "unit of a 3B or 4B program (machine file's, 1)" },
+	{ "offset-um", "N", NUMBER(offset_um, 0, 10000), .help =
+	  "of the wire, for 4B (machine file's, 0)" },
+	{ "emit", "FORMAT", CALL(take_emit), .help =
+	  "3b or iso: write the job as that to stdout, no run" },
+	{ "strategy", "NAME", CALL(take_strategy), .help =
+	  "simultaneous, point-by-point, centred, dda,\n"
+	  "main-direction, min-switch (machine file's)" },
+	{ "tolerance", "PULSES",
+	  NUMBER(tolerance_pulses, 0, INTERP_TOLERANCE_MAX / 1000), .help =
+	  "how far main-direction and min-switch may stray along\n"
+	  "the shorter axis (machine file's, 2)" },
+	{ "perpendicular", NULL, FLAG(perpendicular), .help =
+	  "the tolerance is square to the path instead" },
+	{ "coupling", "NAME", CALL(take_coupling), .help =
+	  "of three and more axes: star, tree, tube (machine\n"
+	  "file's, star)" },
+	{ "fit", "UM", NUMBER(fit_um, 0, 1000), .help =
+	  "join cut lines in a row into curves this near to\n"
+	  "them (machine file's, 0: not)" },
+	{ "dry-run", NULL, FLAG(dry_run), .help =
+	  "no gap: walk at the programmed feed" },
+	{ "there-and-back", NULL, FLAG(there_and_back), .help =
+	  "with --dry-run: to the end, back, to the end again" },
+	{ "period-us", "N", NUMBER(period_us, 20, 20000), .help =
+	  "cycle period (machine file's, 1000)" },
+	{ "seed", "N", WHOLE(seed), .help =
+	  "of every random process (machine file's, 1)" },
+	{ "speed", "X", NUMBER(speed, 0, 1e6), .help =
+	  "pace at X times real time; 0 as fast as possible (0)" },
+	{ "limit-s", "S", NUMBER(limit_s, 1e-6, 1e9), .help =
+	  "stop after S virtual seconds" },
+	{ "pulses", "FILE", WORD(pulses), .help =
+	  "CSV of every lattice point passed" },
+	{ "trace", "FILE", WORD(trace), .help = "CSV of every cycle" },
+	{ "report", "FILE", WORD(report), .help =
+	  "JSON report; - for stdout" },
+	{ "plot", "FILE", WORD(plot), .help =
+	  "picture, PNG or SVG by the name" },
+	{ "tune-contour", NULL, FLAG(tune), .help =
+	  "find the gains of [contour] method on models of the\n"
+	  "axes along this job, and print them" },
+	{ "check", NULL, FLAG(check), .help =
+	  "read and compile only; print what it would do" },
+	{ "tune", NULL, FLAG(tune_servo), .help =
+	  "look for the best servo and jump values of the machine\n"
+	  "file, print them as lines of it; --seed, --limit-s (60)" },
+	{ "budget", "N", NUMBER(budget, 1, 1e6), .help =
+	  "trials of --tune or --tune-contour (200)" },
+	{ "json", NULL, FLAG(json), .help = "what --tune came to as JSON" },
+	{ "quiet", NULL, FLAG(quiet), .help = "no progress, no summary" },
+	{ "print-config", NULL, FLAG(print_config), .help =
+	  "the machine file in force, and exit" },
+	{ "document-config", NULL, CALL(take_document_config), .help =
+	  "every key of a machine file as Markdown, and exit" },
+};
+/* clang-format on */
+
+static const struct cmdline table = {
+	.program = "edmsim", .row = rows, .nrows = sizeof(rows) / sizeof(*rows),
+	.args_max = 1, .column = 23,
+	.head =
+"Usage: edmsim [options] JOB\n"
+"Runs a job in virtual time: the daemon's own cycle on a simulated machine.\n"
+"JOB is NC code (.ngc .nc .iso .3b .4b), - for stdin.\n"
+"\n",
+	.tail =
+"\n"
+"Exit: 0 done, 1 ended by a fault or the limit, 64 usage, 65 bad job,\n"
+"66 no such file, 73 cannot create, 78 bad machine file.\n",
+};
+
+/* What one option alone cannot tell. */
+static int check_together(const struct sim_options *o)
+{
+	if (!o->job)
+		return refuse("no", "JOB", "a file of NC code, or - for stdin; "
+			      "--help lists the options");
+	if (o->there_and_back && !o->dry_run)
+		return refuse("--there-and-back", "alone",
+			      "--dry-run beside it");
+	if (o->budget > 0 && !o->tune_servo && !o->tune)
+		return refuse("--budget", "alone",
+			      "--tune or --tune-contour beside it");
+	if (o->json && !o->tune_servo)
+		return refuse("--json", "alone", "--tune beside it");
+	if (o->tune_servo && (o->trace || o->pulses || o->plot || o->report))
+		return refuse("--tune", "with a file of one run",
+			      "--json, or one of --trace --pulses --plot "
+			      "--report without --tune");
+	return -1;
+}
+
+int edmsim_options_read(struct sim_options *o, int argc, char **argv)
+{
+	struct cmdline_given given;
+	int code;
+
+	*o = (struct sim_options) { .offset_um = -1, .strategy = -1,
+				    .coupling = -1 };
+	code = cmdline_take(&table, o, argc, argv, &given);
+	if (code >= 0)
+		return code;
+	o->job = argv[given.first];
+	o->dry_run = o->dry_run || o->tune;
+	o->budget = floor(o->budget);
+	o->tolerance_given = cmdline_has(&table, &given, "tolerance");
+	o->fit_given = cmdline_has(&table, &given, "fit");
+	o->seed_given = cmdline_has(&table, &given, "seed");
+	return o->print_config || o->print_tech ? -1 : check_together(o);
+}

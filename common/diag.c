@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* diag.c - a refusal, said in one sentence */
+#include "interp/diag.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define SENTENCE_MAX	1024
+#define BETWEEN		"; "
+
+/*
+ * The arguments are those of the whole sentence.  So it is made as a whole, and
+ * once more without what is wanted: how long that is says where to cut.
+ */
+int interp_diag_say(struct interp_diag *d, const char *format, ...)
+{
+	const char *cut = strstr(format, BETWEEN);
+	char found[SENTENCE_MAX], all[SENTENCE_MAX];
+	size_t n;
+	va_list ap;
+
+	snprintf(found, sizeof(found), "%.*s",
+		 cut ? (int)(cut - format) : (int)strlen(format), format);
+	va_start(ap, format);
+	/* Its arguments were checked by the compiler with the whole. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+	vsnprintf(all, sizeof(all), found, ap);
+#pragma GCC diagnostic pop
+	va_end(ap);
+	snprintf(d->found, sizeof(d->found), "%.*s",
+		 (int)sizeof(d->found) - 1, all);
+	n = strlen(all);
+	va_start(ap, format);
+	vsnprintf(all, sizeof(all), format, ap);
+	va_end(ap);
+	n += cut ? sizeof(BETWEEN) - 1 : 0;
+	snprintf(d->wanted, sizeof(d->wanted), "%.*s",
+		 (int)sizeof(d->wanted) - 1, n < strlen(all) ? all + n : "");
+	return -EINVAL;
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * backends.h - the machines that edmd can run: one row for each
+ *
+ * A new backend is a file of daemon/io with its open function, and a row here.
+ *
+ * Threads: any; plain data.
+ */
+#ifndef CONFIG_BACKENDS_H
+#define CONFIG_BACKENDS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/*
+ * BACKEND_<id>, the word in a machine file, the function that opens it, the
+ * period unless the file gives one, what it is (see struct config_backend),
+ * whether it has a gap, what of the file is checked for it alone.
+ *
+ * A pulse of gpio is made of periods.  Six drives on a bus fit into 2 ms.
+ */
+#define CONFIG_BACKENDS(ROW) \
+	ROW(SIM, "sim", io_sim_open, 1000000, .simulated = true, \
+	    backend_has_gap, NULL) \
+	ROW(NULL, "null", io_null_open, 1000000, .simulated = true, \
+	    backend_has_no_gap, NULL) \
+	ROW(GPIO, "gpio", io_gpio_open, 50000, .simulated = false, \
+	    config_gpio_has_gap, config_check_gpio) \
+	ROW(CAN402, "can402", io_can402_open, 2000000, .drives = true, \
+	    backend_can402_has_gap, config_check_can402)
+
+#define CONFIG_BACKEND_ID(id, name, open, period_ns, is, has_gap, check) \
+	BACKEND_##id,
+
+enum config_backend_id {
+	CONFIG_BACKENDS(CONFIG_BACKEND_ID)
+	CONFIG_NBACKENDS
+};
+
+struct machine_config;
+struct config_lines;
+struct interp_diag;
+
+struct config_backend {
+	const char *name;
+	int64_t period_ns;
+	bool simulated;		/* no wires: nothing outside is needed */
+	bool drives;		/* drives on a bus: they are sent places, and
+				 * follow with a lag */
+	bool (*has_gap)(const struct machine_config *c);
+	/* As config_check(); NULL: nothing to check. */
+	int (*check)(const struct machine_config *c,
+		     const struct config_lines *lines,
+		     struct interp_diag *diag);
+};
+
+/** config_backend() - the row of the backend that @c names. */
+const struct config_backend *config_backend(const struct machine_config *c);
+
+/** config_backend_name() - of row @i; NULL past the last. */
+const char *config_backend_name(int i);
+
+#endif /* CONFIG_BACKENDS_H */
