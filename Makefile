@@ -11,6 +11,8 @@
 #                   values, into docs/experiments-*.md
 #   make walkable   random programs of every dialect are walked, there and back
 #   make invariants what holds in every cycle, over ten million random ones
+#   make callgraph  draw which file of the cycle calls which
+#   make faults     the table of faults in docs/, from the one in the code
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
 #   make fuzz       the readers of jobs under libFuzzer, a bounded time each
@@ -340,6 +342,12 @@ bench: vm
 
 include tests/experiments/Makefile
 
+# Which file of the cycle calls which; circles have a frame.
+callgraph: $(RT_O)
+	$(call say,DRAW,docs/pictures/callgraph.svg)
+	$(Q)tests/callgraph $(RT_O) > $(B)/callgraph.dot
+	$(Q)dot -Tsvg $(B)/callgraph.dot > docs/pictures/callgraph.svg
+
 # The table of faults in the documents, from the table in the code.
 faults: $(B)/edmctl
 	$(Q)docs/faults $(B)/edmctl > $(B)/faults.md
@@ -390,6 +398,9 @@ HEADERS	 = $(wildcard common/*.h libinterp/*/include/interp/*.h daemon/*/*.h dae
 # What an edmd must not have: a reader, messages, a database, another floor.
 NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
 
+# Files of the cycle that call each other in a circle, at most.
+CIRCLE_MOST = 3
+
 lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,what the cycle may call)
 	$(Q)$(LD) -r -o $(B)/rt.o $(RT_O) --whole-archive $(CORE_A)
@@ -403,6 +414,8 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 		{print $$3}' | grep -xFf $(B)/edmd.symbols
 	$(call say,LINT,each symbol has the prefix of its module)
 	$(Q)tests/symbol-prefixes $(B)
+	$(call say,LINT,no circle of calls in the cycle)
+	$(Q)tests/callgraph --most $(CIRCLE_MOST) $(RT_O)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
@@ -450,5 +463,5 @@ clean:
 .PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable \
-	pictures fuzz lint install clean
+	pictures callgraph faults fuzz lint install clean
 .SECONDARY:

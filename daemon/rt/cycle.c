@@ -276,7 +276,8 @@ void cycle_step(struct cycle *c, const struct io_inputs *in,
 		step_watch(c);
 		go(c);
 		retract_watch(c);
-		progress_watch(c);
+		if (c->count % PROGRESS_EVERY == 0)
+			progress_look(c);
 	} else if (moves) {
 		go_manually(c, in);
 	} else {

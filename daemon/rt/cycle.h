@@ -242,7 +242,9 @@ struct cycle {
 	uint32_t timed_end;		/* segment where a time ends; 0: none */
 	uint64_t timed_left;		/* cycles */
 	double timed_from_mm;		/* place where it began */
-	struct io_plc plc, plc_was;	/* as read, and in the period before */
+	struct io_plc plc;		/* as read */
+	bool plc_held;			/* it said so a period ago */
+	double plc_axes_c;		/* the temperature that it told then */
 	double plc_override;		/* it said last; NAN: nothing yet */
 	struct mcode mcode;
 	struct progress progress;

@@ -137,9 +137,9 @@ static bool brakes_by_hand(const struct cycle *c, uint64_t fresh)
 }
 
 /* The drives have been told; what they say now is new. */
-static void finish_reset(struct cycle *c)
+void cycle_end_reset(struct cycle *c)
 {
-	if (!c->fault.resetting || c->out.reset)
+	if (c->out.reset)
 		return;
 	c->fault.resetting = false;
 	if (fault_remains(&c->fault) || c->fault.fresh)
@@ -148,14 +148,10 @@ static void finish_reset(struct cycle *c)
 		cycle_reset(c);
 }
 
-void cycle_react(struct cycle *c)
+void cycle_fail(struct cycle *c)
 {
-	uint64_t fresh;
+	const uint64_t fresh = c->fault.fresh;
 
-	finish_reset(c);
-	fresh = c->fault.fresh;
-	if (fresh == 0)
-		return;
 	c->fault.fresh = 0;
 	if (fault_any(fresh, fault_row_disables))
 		c->out.enable = false;

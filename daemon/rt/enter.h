@@ -36,8 +36,18 @@ static inline void cycle_set_off(struct cycle *c)
 /** cycle_reset() - out of a fault: held, or idle without a job. */
 void cycle_reset(struct cycle *c);
 
+/* For cycle_react(). */
+void cycle_end_reset(struct cycle *c);
+void cycle_fail(struct cycle *c);
+
 /** cycle_react() - to the faults latched since it was called last, and to a
  *  reset of the drives; at its two places in a period. */
-void cycle_react(struct cycle *c);
+static inline void cycle_react(struct cycle *c)
+{
+	if (c->fault.resetting)
+		cycle_end_reset(c);
+	if (c->fault.fresh)
+		cycle_fail(c);
+}
 
 #endif /* RT_ENTER_H */

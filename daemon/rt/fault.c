@@ -26,12 +26,6 @@ void fault_latch(struct fault *s, enum cycle_fault f)
 		s->worst = f;
 }
 
-void fault_look_anew(struct fault *s)
-{
-	for (int i = 0; i <= FAULT_ALWAYS; i++)
-		s->seen[i] = 0;
-}
-
 static void latch_all(struct fault *s, uint64_t found)
 {
 	for (found &= ~s->latched; found; found &= found - 1)

@@ -50,13 +50,24 @@ static inline bool fault_is_latched(const struct fault *s, enum cycle_fault f)
 void fault_latch(struct fault *s, enum cycle_fault f);
 
 /** fault_look_anew() - a period begins: nothing is noted yet. */
-void fault_look_anew(struct fault *s);
+static inline void fault_look_anew(struct fault *s)
+{
+	s->seen[FAULT_IN_POWER] = s->seen[FAULT_IN_MOTION] =
+		s->seen[FAULT_ALWAYS] = 0;
+}
 
 /** fault_note() - a guard sees what is a fault in @scope. */
 static inline void fault_note(struct fault *s, enum cycle_fault f,
 			      enum fault_scope scope)
 {
 	s->seen[scope] |= fault_bit(f);
+}
+
+/** fault_is_seen() - is anything noted in this period? */
+static inline bool fault_is_seen(const struct fault *s)
+{
+	return s->seen[FAULT_IN_POWER] | s->seen[FAULT_IN_MOTION] |
+	       s->seen[FAULT_ALWAYS];
 }
 
 /** fault_judge() - latch what was noted and counts now. */

@@ -4,7 +4,6 @@
  */
 #include "guard.h"
 
-#include "cycle.h"
 #include "path/walk.h"
 
 /* A cut that is about to begin needs a wire, and so does the way back out of
@@ -37,15 +36,10 @@ static void note_machine(struct cycle *c, const struct io_inputs *in)
 
 static void note_gap(struct cycle *c, const struct io_inputs *in)
 {
-	if (gap_is_unreadable(c, in))
+	if (!c->sensed.valid && gap_is_unreadable(c, in))
 		fault_note(&c->fault, FAULT_GAP_LOST, FAULT_IN_MOTION);
 	if (c->sensed.suspect)
 		fault_note(&c->fault, FAULT_GAP_STUCK, FAULT_IN_POWER);
-}
-
-void guard_judge(struct cycle *c)
-{
-	fault_judge(&c->fault, cycle_moves(c), state_duty[c->state].power);
 }
 
 void guard_look(struct cycle *c, const struct io_inputs *in)

@@ -10,16 +10,18 @@
 #ifndef RT_GUARD_H
 #define RT_GUARD_H
 
-#include <stdbool.h>
-
-struct cycle;
-struct io_inputs;
+#include "cycle.h"
 
 /** guard_look() - at all inputs of this period, once. */
 void guard_look(struct cycle *c, const struct io_inputs *in);
 
 /** guard_judge() - latch what of it counts in the present state. */
-void guard_judge(struct cycle *c);
+static inline void guard_judge(struct cycle *c)
+{
+	if (fault_is_seen(&c->fault))
+		fault_judge(&c->fault, cycle_moves(c),
+			    state_duty[c->state].power);
+}
 
 /** guard_forbids() - would the guards not let anything move now? */
 bool guard_forbids(const struct cycle *c);

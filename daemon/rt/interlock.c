@@ -60,7 +60,6 @@ static void warm(struct cycle *c, double was_c)
 
 void interlock_note(struct cycle *c, const struct io_inputs *in)
 {
-	c->plc_was = c->plc;
 	c->plc = in->plc;
 	if (c->plc.present)
 		note(c);
@@ -68,19 +67,19 @@ void interlock_note(struct cycle *c, const struct io_inputs *in)
 
 void interlock_obey(struct cycle *c)
 {
-	const struct io_plc was = c->plc_was;
-
 	if (!c->plc.present || !c->plc.alive)
 		return;
 	if (c->plc.reset)
 		command(c, CYCLE_RESET, 0);
-	if (c->plc.hold && (!was.hold || state_duty[c->state].running))
+	if (c->plc.hold && (!c->plc_held || state_duty[c->state].running))
 		command(c, CYCLE_HOLD, 0);
 	/* Another client may set it too: the last one to change it has it. */
 	if (c->plc.override != c->plc_override)
 		command(c, CYCLE_OVERRIDE, c->plc.override);
 	c->plc_override = c->plc.override;
-	warm(c, was.axes_c);
+	warm(c, c->plc_axes_c);
+	c->plc_held = c->plc.hold;
+	c->plc_axes_c = c->plc.axes_c;
 	/* A start that comes with the reset was not meant for what comes now. */
 	if (c->plc.start && !c->plc.reset)
 		command(c, CYCLE_START, 0);

@@ -241,8 +241,7 @@ static bool suspect(const struct cycle *c, struct gap_memory *m,
 /* Lines say nothing where nothing sparks, but must be read to be felt by. */
 static bool lines_unreadable(const struct cycle *c, const struct io_inputs *in)
 {
-	return c->out.power ? !c->sensed.valid :
-	       c->out.sense ? !in->shares_valid : false;
+	return c->out.power || (c->out.sense && !in->shares_valid);
 }
 
 /* A probe may have an input of its own, which is enough. */
@@ -250,8 +249,7 @@ bool gap_is_unreadable(const struct cycle *c, const struct io_inputs *in)
 {
 	if (c->config.dry_run || (c->state == STATE_PROBE && in->contact))
 		return false;
-	return c->gap.source == GAP_LINES ? lines_unreadable(c, in) :
-					    !c->sensed.valid;
+	return c->gap.source != GAP_LINES || lines_unreadable(c, in);
 }
 
 void gap_forget(struct cycle *c)

@@ -81,7 +81,7 @@ struct io_inputs;
 /** gap_sense() - fill c->sensed from this cycle's inputs. */
 void gap_sense(struct cycle *c, const struct io_inputs *in);
 
-/** gap_is_unreadable() - must it be, and can it not be read? */
+/** gap_is_unreadable() - an invalid reading: should it be a valid one? */
 bool gap_is_unreadable(const struct cycle *c, const struct io_inputs *in);
 
 /** gap_forget() - what was before says nothing, after a fault or a hold. */

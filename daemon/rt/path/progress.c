@@ -12,25 +12,22 @@
 #define STILL_S		1.0		/* at any speed */
 #define STILL_POINTS	8.0		/* at a low one */
 
-static bool moved(const struct cycle *c)
+/* Another number at another lattice point, near the one before. */
+static uint64_t stamp(const struct cycle *c)
 {
-	const struct progress *p = &c->progress;
-
-	return p->index != c->cursor.index || p->tick != c->cursor.tick ||
-	       p->out_tick != c->escape.tick;
+	return (uint64_t)c->cursor.tick + ((uint64_t)c->cursor.index << 40) +
+	       ((uint64_t)c->escape.tick << 20);
 }
 
 /* The gap says how fast: a stand is one of its answers. */
 static bool gap_stands(const struct cycle *c)
 {
-	const bool by_gap = state_duty[c->state].power ||
-			    c->state == STATE_RETRACT ||
-			    c->state == STATE_PROBE;
-
+	if (!state_duty[c->state].power && c->state != STATE_RETRACT &&
+	    c->state != STATE_PROBE)
+		return false;
 	/* A way of a cycle that is lost in a rounding is a stand as well. */
-	return by_gap && (fabs(c->mover.v_mm_s) * law_period_s(c) <
-			  LAW_ONTO_MM ||
-			  law_place(c) != c->progress.place_mm);
+	return law_place(c) != c->progress.place_mm ||
+	       fabs(c->mover.v_mm_s) * law_period_s(c) < LAW_ONTO_MM;
 }
 
 /* One that was begun is forgotten on the way back, and waited for again. */
@@ -42,11 +39,11 @@ static bool dwells(const struct cycle *c)
 
 static bool has_a_name(const struct cycle *c)
 {
-	return !cycle_moves(c) || c->busy || dwells(c) || c->mcode.waits ||
-	       c->axes.awaited || !contouring_rests(&c->contouring) ||
+	return gap_stands(c) || !cycle_moves(c) || c->busy || dwells(c) ||
+	       c->mcode.waits || c->axes.awaited ||
+	       !contouring_rests(&c->contouring) ||
 	       (c->override == 0 && (c->state == STATE_TRAVEL ||
-				     c->state == STATE_PROBE)) ||
-	       gap_stands(c);
+				     c->state == STATE_PROBE));
 }
 
 /* The speed of what it is to do; jumps and moves by command are quick. */
@@ -74,20 +71,19 @@ static bool is_long(const struct cycle *c)
 	return still_s * speed_mm_s(c, s) > STILL_POINTS * point_mm;
 }
 
-void progress_watch(struct cycle *c)
+void progress_look(struct cycle *c)
 {
 	struct progress *p = &c->progress;
+	const uint64_t at = stamp(c);
 
-	if (moved(c) || has_a_name(c))
+	if (at != p->at) {
+		p->at = at;
 		p->still = 0;
-	else
-		p->still++;
-	p->index = c->cursor.index;
-	p->tick = c->cursor.tick;
-	p->out_tick = c->escape.tick;
-	p->place_mm = law_place(c);
-	if (p->still > 0 && is_long(c)) {
-		fault_latch(&c->fault, FAULT_STUCK);
-		p->still = 0;
+		return;
 	}
+	if (has_a_name(c))
+		p->still = 0;
+	else if ((p->still += PROGRESS_EVERY) && is_long(c))
+		fault_latch(&c->fault, FAULT_STUCK);
+	p->place_mm = law_place(c);
 }

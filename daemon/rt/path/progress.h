@@ -20,15 +20,15 @@
 
 struct cycle;
 
-/* Where it was when it last came to another lattice point. */
 struct progress {
-	uint32_t index;			/* segment */
-	int64_t tick, out_tick;		/* on it; on the way out beside it */
-	double place_mm;		/* a cycle ago */
+	uint64_t at;			/* stands for a lattice point */
+	double place_mm;		/* when it was looked at last */
 	uint64_t still;			/* cycles without a point and a name */
 };
 
-/** progress_watch() - once a period, after the walk of a job. */
-void progress_watch(struct cycle *c);
+#define PROGRESS_EVERY	16		/* cycles from look to look */
+
+/** progress_look() - after the walk of a job, every so many periods. */
+void progress_look(struct cycle *c);
 
 #endif /* RT_PROGRESS_H */
