@@ -9,6 +9,7 @@
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
+#   make wire-random  ten thousand contours of a wire against another geometry
 #   make walkable   random programs of every dialect are walked, there and back
 #   make invariants what holds in every cycle, over ten million random ones
 #   make callgraph  draw which file of the cycle calls which
@@ -315,6 +316,14 @@ run-units: $(UNIT_X) $(PEER_X)
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
 
+# Ten thousand random contours of a wire against shapely's geometry: some
+# minutes.
+WIRE_RUNS ?= 10000
+wire-random: $(B)/edmsim
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(WIRE_RUNS) \
+		$(if $(SEED),EDM_SEED=$(SEED)) .venv/bin/pytest -q -s \
+		tests/sim/test_wire_random.py
 # What is accepted is walked, there and back: so many random programs of every
 # dialect, by every strategy.
 RUNS	?= 100000
@@ -462,6 +471,6 @@ clean:
 
 .PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo invariants walkable \
+	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults fuzz lint install clean
 .SECONDARY:

@@ -76,6 +76,12 @@ static void say_refusal(const char *path, const struct interp_diag *d)
 		d->found, d->wanted);
 }
 
+/* @arg: the job's path. */
+static void say_note(void *arg, uint32_t line, const char *text)
+{
+	fprintf(stderr, "%s:%u: note: %s\n", (const char *)arg, line, text);
+}
+
 static int lay_out(struct sim_job *job, struct interp_build *b,
 		   const char *path)
 {
@@ -108,6 +114,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 		.dialect = o->dialect ? o->dialect :
 					interp_dialect_by_file(o->job),
 	};
+	const struct interp_notes notes = { say_note, (void *)(uintptr_t)o->job };
 	struct config_compiling of;
 	struct interp_diag diag = { 0 };
 	const double from_s = trials_now_s();
@@ -115,6 +122,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	int r;
 
 	config_compiling(c, tech, &of);
+	of.text.nc.notes = &notes;
 	b = interp_build_create(&of.build);
 	if (!b)
 		return EX_OSERR;

@@ -2,10 +2,12 @@
 /*
  * check_can402.c - what cannot be on a CAN bus of drives
  */
+#include "drives.h"
 #include "keys.h"
 
 #include <errno.h>
 #include <math.h>
+#include <string.h>
 
 /* Either way from 0: a drive counts round at 2^32. */
 #define INCREMENTS_MAX	2147483647.0
@@ -78,6 +80,66 @@ static int check_increments(struct check *q, int axis)
 	return refuse(q, SECTION_AXIS, "drive_increments", axis);
 }
 
+/* What would fall must not be left to a guess. */
+static int check_brake(struct check *q, int axis)
+{
+	if (node_of(q, axis) == 0 || axis != INTERP_Z ||
+	    q->c->drive[axis].brake != BRAKE_UNSAID)
+		return 0;
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "axis.Z.brake: not told");
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "free: it stays where it is without power; drive: the drive's "
+		 "own brake holds it; none: it is held under torque");
+	return refuse(q, SECTION_AXIS, "brake", axis);
+}
+
+/* Found has the word, behind the key it stands at. */
+static int refuse_list(struct check *q, const char *key, int axis)
+{
+	char word[sizeof(q->diag->found)];
+
+	memcpy(word, q->diag->found, sizeof(word));
+	snprintf(q->diag->found, sizeof(q->diag->found), "axis.%c.%s: %.60s",
+		 INTERP_AXIS_LETTERS[axis], key, word);
+	return refuse(q, SECTION_AXIS, key, axis);
+}
+
+static int check_lists(struct check *q, int axis)
+{
+	const struct config_drive *d = &q->c->drive[axis];
+	struct config_object object[CONFIG_SDO_MAX];
+	uint16_t leave[CONFIG_LEAVE_MAX];
+	uint32_t identity[4];
+	uint8_t given;
+
+	if (node_of(q, axis) == 0)
+		return 0;
+	if (config_drive_sdo(d->sdo, object, q->diag) < 0)
+		return refuse_list(q, "drive_sdo", axis);
+	if (config_drive_leave(d->leave, leave, q->diag) < 0)
+		return refuse_list(q, "drive_leave", axis);
+	if (config_drive_identity(d->identity, identity, &given, q->diag) < 0)
+		return refuse_list(q, "drive_identity", axis);
+	return 0;
+}
+
+/* Else the fault of a lag could never be left by reset and start. */
+static int check_following(struct check *q)
+{
+	const struct config_can402 *k = &q->c->can402;
+
+	if (k->following_mm < k->resync_mm)
+		return 0;
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "can402.following_mm %g with resync_mm %g", k->following_mm,
+		 k->resync_mm);
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "following_mm below resync_mm: what is off by more than it "
+		 "is a fault, and comes back by reset and start");
+	return refuse(q, SECTION_CAN402, "following_mm", 0);
+}
+
 /* The identifiers of CiA 301 belong to NMT, SYNC and the drives. */
 static int check_id(struct check *q, const char *key, double id, double other)
 {
@@ -103,11 +165,13 @@ int config_check_can402(const struct machine_config *c,
 	bool any = false;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		if (check_node(&q, i) || check_increments(&q, i))
+		if (check_node(&q, i) || check_increments(&q, i) ||
+		    check_brake(&q, i) || check_lists(&q, i))
 			return -EINVAL;
 		any = any || node_of(&q, i) > 0;
 	}
-	if (check_id(&q, "gap_id", k->gap_id, k->generator_id) ||
+	if (check_following(&q) ||
+	    check_id(&q, "gap_id", k->gap_id, k->generator_id) ||
 	    check_id(&q, "generator_id", k->generator_id, k->gap_id))
 		return -EINVAL;
 	if (any)

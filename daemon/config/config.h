@@ -55,7 +55,9 @@ struct config_can402 {
 	double master_node;
 	double heartbeat_ms;
 	double missing_max;		/* answers missing in a row */
+	double sdo_ms;			/* a drive may take for an answer */
 	double following_mm;		/* 0: not supervised */
+	double following_s;		/* ... and its speed times this */
 	double resync_mm, resync_mm_s;	/* back to its place when enabled */
 	double enable_s;		/* at most, from a start to motion */
 	double gap_id, generator_id;	/* of their frames; 0: none */
@@ -73,8 +75,15 @@ struct config_plc {
 };
 
 /* [axis.*]: so many increments of a drive are so many pulses. */
+enum config_brake { BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE };
+
 struct config_drive {
 	double increments, pulses;
+	int brake;			/* enum config_brake */
+	int absolute, follow_bit;	/* 1: yes */
+	double fault_reaction, connection_lost;	/* 605E, 6007; -1: as it is */
+	double window_mm, quick_stop_mm_s2;	/* 6065, 6085; 0: as it is */
+	char identity[64], sdo[160], leave[64], eds[128];
 };
 
 /* [jump] */
@@ -224,7 +233,11 @@ struct config_gpio {
 	int pull;			/* of inputs: 0 as is, 1 up, 2 down, 3 no */
 	double high_cycles, low_cycles;	/* of a step */
 	double dir_setup_cycles, dir_hold_cycles;
+	double edges_per_period;	/* writes by the edge thread; 1: none */
+	double edges_cpu;		/* -1: any */
 	double watchdog_us;		/* between two edges */
+	char watchdog_by[128], estop_by[128];	/* what does it without a line;
+						 * "none": nothing */
 	char line[CONFIG_NLINES][CONFIG_LINE_MAX];
 };
 

@@ -7,6 +7,7 @@
 #include "cycle.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -157,13 +158,39 @@ static int check_gap(struct check *q)
 	return 0;
 }
 
+/* Sparks that nobody ends when edmd is gone are the builder's to answer for. */
+static int check_guard(struct check *q, int line, const char *by,
+		       const char *key)
+{
+	if (!q->at[LINE_SPARK].wired || q->at[line].wired ||
+	    strcmp(by, "none") != 0)
+		return 0;
+	blame(q, key_of_line(LINE_SPARK), 0);
+	snprintf(q->diag->found, sizeof(q->diag->found),
+		 "gpio.spark without gpio.%s", config_line_name(line));
+	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
+		 "gpio.%s = the number of a line; or gpio.%s = in your words, "
+		 "what does it instead", config_line_name(line), key);
+	return -EINVAL;
+}
+
+static int check_guards(struct check *q)
+{
+	return check_guard(q, LINE_WATCHDOG, q->c->gpio.watchdog_by,
+			   "watchdog_by") ||
+	       check_guard(q, LINE_ESTOP, q->c->gpio.estop_by, "estop_by");
+}
+
 /* Pulses a second that the lines can make. */
 static double pulses_s(const struct machine_config *c)
 {
 	const double periods = c->gpio.high_cycles +
 			       (c->gpio.signal ? 0 : c->gpio.low_cycles);
 
-	return 1e9 / (double)config_period_ns(c) / periods;
+	const double in_period = c->gpio.edges_per_period > 1 ?
+		floor(c->gpio.edges_per_period / periods) : 1 / periods;
+
+	return 1e9 / (double)config_period_ns(c) * in_period;
 }
 
 static int check_speed(struct check *q, const struct config_key *k,
@@ -221,7 +248,7 @@ int config_check_gpio(const struct machine_config *c,
 	for (int i = 0; i < CONFIG_NOUTPUTS; i++)
 		if (check_shared(&q, i))
 			return -EINVAL;
-	if (check_gap(&q) || check_speeds(&q))
+	if (check_gap(&q) || check_guards(&q) || check_speeds(&q))
 		return -EINVAL;
 	return config_gpio_has_gap(c) ? check_source(&q) : 0;
 }

@@ -23,6 +23,25 @@ static const char *direction_word(int i)
 	return i == 0 ? "-" : i == 1 ? "+" : NULL;
 }
 
+static const char *yes_word(int i)
+{
+	return i == 0 ? "no" : i == 1 ? "yes" : NULL;
+}
+
+static const char *brake_word(int i)
+{
+	static const char *const words[] = {
+		[BRAKE_UNSAID] = "unsaid", [BRAKE_FREE] = "free",
+		[BRAKE_DRIVE] = "drive", [BRAKE_NONE] = "none",
+	};
+
+	return WORD_OF(words, i);
+}
+
+#define DRIVE(field)	EACH(drive[0].field, struct config_drive)
+#define DRIVE_TEXT(key, field, what) \
+	{ SECTION_AXIS, key, KEY_STRING, "", "none", 0, 0, DRIVE(field), \
+	  ROOM(drive[0].field), .help = what }
 #define AXIS(field)	EACH(axes.axis[0].field, struct interp_axis_limits)
 #define HAND(field)	EACH(hand[0].field, struct config_hand)
 #define LOOP(field)	EACH(loop[0].field, struct interp_axis_loop)
@@ -78,6 +97,33 @@ static const struct config_key row[] = {
 	WHOLE(AXIS, "drive_pulses", "pulses", "1", 1, 1e9,
 	      EACH(drive[0].pulses, struct config_drive),
 	      "... are so many pulses"),
+	WORDS(AXIS, "absolute", "no", DRIVE(absolute), yes_word,
+	      "its drive knows its place when it is switched on"),
+	WORDS(AXIS, "brake", "unsaid", DRIVE(brake), brake_word,
+	      "without power: stays put (free), the drive's own brake holds it "
+	      "(drive), or it would fall and is held under torque (none)"),
+	WORDS(AXIS, "drive_follow_bit", "yes", DRIVE(follow_bit), yes_word,
+	      "it has bit 12 of the statusword: it follows its target"),
+	WHOLE(AXIS, "drive_fault_reaction", "", "-1", -1, 4,
+	      DRIVE(fault_reaction), "object 605E; -1: as the drive has it"),
+	WHOLE(AXIS, "drive_connection_lost", "", "3", -1, 3,
+	      DRIVE(connection_lost),
+	      "object 6007: 1 fault, 2 no power, 3 quick stop; -1: as it is"),
+	NUMBER(AXIS, "drive_window_mm", "mm", "0", 0, 1000, DRIVE(window_mm),
+	       "object 6065, its own following error; 0: as it is"),
+	NUMBER(AXIS, "drive_quick_stop_mm_s2", "mm/s2", "0", 0, 1e6,
+	       DRIVE(quick_stop_mm_s2),
+	       "object 6085, its ramp to a quick stop; 0: as it is"),
+	DRIVE_TEXT("drive_identity", identity,
+		   "object 1018, hexadecimal, vendor product revision serial; "
+		   "x: any"),
+	DRIVE_TEXT("drive_sdo", sdo,
+		   "further objects to write, INDEX:SUB=VALUE/BYTES, "
+		   "hexadecimal but for the bytes"),
+	DRIVE_TEXT("drive_leave", leave,
+		   "objects, hexadecimal, that are left as the drive has them"),
+	DRIVE_TEXT("drive_eds", eds,
+		   "its EDS: what is written is checked against it"),
 	NUMBER(AXIS, "loop_gain_1_s", "1/s", "0", 0, 1000, LOOP(gain_1_s),
 	       "position loop, by edmctl identify; 0: not known"),
 	NUMBER(AXIS, "loop_hz", "Hz", "60", 1, 1000, LOOP(velocity_hz),

@@ -15,6 +15,27 @@ static const char *guides_word(int i)
 	return WORD_OF(words, i);
 }
 
+static const char *gouge_word(int i)
+{
+	static const char *const words[INTERP_NGOUGES] = {
+		[INTERP_GOUGE_REFUSE] = "refuse",
+		[INTERP_GOUGE_SKIP] = "skip",
+	};
+
+	return WORD_OF(words, i);
+}
+
+static const char *corner_word(int i)
+{
+	static const char *const words[INTERP_NCORNERS] = {
+		[INTERP_CORNER_CONICAL] = "conical",
+		[INTERP_CORNER_CONSTANT] = "constant",
+		[INTERP_CORNER_SHARP] = "sharp",
+	};
+
+	return WORD_OF(words, i);
+}
+
 #define ORIGIN(key, axis, unit) \
 	NUMBER(WORK, key, unit, "0", -1e7, 1e7, \
 	       EACH(work_offset_mm[0][INTERP_##axis], double[INTERP_NAXES]), \
@@ -56,6 +77,11 @@ static const struct config_key row[] = {
 	NUMBER(WIRE, "corner_dwell_s", "s", "0", 0, 3600,
 	       AT(wire.corner_dwell_s),
 	       "wait on a corner, for the wire to straighten"),
+	WORDS(WIRE, "taper_corner", "conical", AT(wire.corner), corner_word,
+	      "fillets and sharp corners on the second plane, G60 G61 G62"),
+	WORDS(WIRE, "gouge", "refuse", AT(wire.gouge), gouge_word,
+	      "a part of a contour too narrow for the wire: no job, or cut "
+	      "without it"),
 	NUMBER(WIRE, "offset_0_mm", "mm", "0", -50, 50, AT(offset_mm[0]),
 	       "register D0, H0 until a program fills it; 0: unfilled"),
 	NUMBER(WIRE, "offset_1_mm", "mm", "0", -50, 50, AT(offset_mm[1]),

@@ -47,8 +47,20 @@ static const struct config_key row[] = {
 	WHOLE(GPIO, "dir_hold_cycles", "periods", "1", 1, 1000,
 	      AT(gpio.dir_hold_cycles),
 	      "from a step's end to a change of direction"),
+	WHOLE(GPIO, "edges_per_period", "", "1", 1, 1000,
+	      AT(gpio.edges_per_period),
+	      "writes of step and dir in a period, by a thread of their own; "
+	      "1: the cycle's one"),
+	WHOLE(GPIO, "edges_cpu", "", "-1", -1, 1023, AT(gpio.edges_cpu),
+	      "processor of that thread; -1: any"),
 	NUMBER(GPIO, "watchdog_us", "us", "1000", 20, 1e6, AT(gpio.watchdog_us),
 	       "between two edges of the watchdog's wave"),
+	STRING(GPIO, "watchdog_by", "none", gpio.watchdog_by,
+	       "with spark and without watchdog: in your words, what ends the "
+	       "sparks when edmd dies"),
+	STRING(GPIO, "estop_by", "none", gpio.estop_by,
+	       "with spark and without estop: in your words, what tells edmd, "
+	       "or stops all, at an emergency stop"),
 	WORDS(GPIO, "pull", "as-is", AT(gpio.pull), pull_word,
 	      "resistors of all inputs"),
 	AXIS_LINES(X), AXIS_LINES(Y), AXIS_LINES(Z), AXIS_LINES(A),

@@ -206,6 +206,7 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 	memcpy(s->toward, at.toward, sizeof(s->toward));
 	memcpy(s->limit_side, at.limit.side, sizeof(s->limit_side));
 	s->homed = (uint8_t)at.homed;
+	s->unplaced = (uint8_t)at.unplaced;
 	s->axes_c = at.told_c;
 	s->axes_key = l->axes_key;
 	s->home_key = l->home_key;

@@ -10,8 +10,8 @@
 
 #include "log.h"
 #include "programs.h"
+#include "restore.h"
 #include "axes/axis_state.h"
-#include "path/timed.h"
 
 #include <errno.h>
 #include <math.h>
@@ -82,7 +82,7 @@ static void tell_left(const struct cycle *c)
 static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 {
 	struct axis_state at = {
-		.homed = homed(l, s), .limit.on = s->limit,
+		.homed = homed(l, s), .unplaced = s->unplaced, .limit.on = s->limit,
 		.told_c = s->axes_c,
 	};
 
@@ -103,132 +103,44 @@ static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 }
 
 /* Latched until an operator's reset, whoever latched it. */
-static void fault_restore(struct cycle *c, uint32_t fault, uint64_t faults)
+static void fault_restore(struct cycle *c, const struct shm_snapshot *s)
 {
-	if (fault == FAULT_NONE || fault >= CYCLE_NFAULTS)
+	if (s->fault == FAULT_NONE || s->fault >= CYCLE_NFAULTS)
 		return;
-	fault_latch(&c->fault, (enum cycle_fault)fault);
-	for (uint32_t i = FAULT_NONE + 1; i < CYCLE_NFAULTS; i++)
-		if (faults >> i & 1)
-			fault_latch(&c->fault, (enum cycle_fault)i);
-	c->fault.fresh = c->fault.untold = 0;
-	c->outcome = c->loaded ? OUTCOME_FAULT : c->outcome;
-	c->state = STATE_FAULT;
+	cycle_restore_faults(c, (enum cycle_fault)s->fault, s->faults);
 	log_line(LOG_WARNING, "resume: the fault was %s; it stays until a "
-		 "reset", fault_name(fault));
+		 "reset", fault_name(s->fault));
 }
 
 /* -- The job ------------------------------------------------------------------ */
 
-/* Actions behind the farthest place are done, wherever the walk stands. */
-static uint32_t last_done(const struct cycle *c)
+static struct cycle_past past_of(const struct shm_snapshot *s)
 {
-	const struct interp_program *p = &c->cursor.p;
-	uint32_t i = c->cursor.index;
+	struct cycle_past past = {
+		.far_mm = isfinite(s->far_mm) ? s->far_mm : s->place_mm,
+		.back_mm = s->back_mm,
+		.found_once = s->found_once, .found_twice = s->found_twice,
+		.pump = s->pump, .mcode = s->mcode, .mcode_at = s->mcode_at,
+		.totals = {
+			.cycles = s->job_cycles,
+			.erode_cycles = s->erode_cycles,
+			.jump_cycles = s->jump_cycles,
+			.retracts = s->retracts, .jumps = s->jumps,
+			.shorts = s->shorts, .overruns = s->overruns,
+			.retract_mm_max = s->retract_mm_max,
+		},
+	};
 
-	while (i + 1 < p->head->nsegs && p->segs[i + 1].s_mm < c->far_mm)
-		i++;
-	return i;
+	memcpy(past.pos, s->pos, sizeof(past.pos));
+	memcpy(past.shift, s->shift, sizeof(past.shift));
+	memcpy(past.found, s->found, sizeof(past.found));
+	return past;
 }
 
-static void power_on(struct cycle *c, uint32_t arg)
+/* Return: how many were `set` in the job, or -ESTALE. */
+static int sets_read(const struct shm_status *status, uint64_t key,
+		     struct conditions_set set[CONDITIONS_SETS_MAX])
 {
-	c->power_off = false;
-	conditions_say(c, arg == INTERP_AUX_POWER_NEGATIVE);
-}
-
-/* What the program has switched on its way there. */
-static void switches_restore(struct cycle *c, const struct shm_snapshot *s)
-{
-	const struct interp_program *p = &c->cursor.p;
-
-	c->out.pump = s->pump;
-	c->action_done = last_done(c);
-	for (uint32_t i = 0; i <= c->action_done; i++) {
-		/* How much of its time is over is not known: all of it again. */
-		if (p->segs[i].kind == INTERP_TIMED &&
-		    p->segs[i].arg > c->action_done) {
-			timed_begin(c, p->segs[i].arg);
-			c->timed_from_mm = p->segs[i].s_mm;
-		}
-		if (p->segs[i].kind == INTERP_TIMED_END)
-			timed_over(c, i);
-		if (p->segs[i].kind == INTERP_MCODE)
-			mcode_over(c, i);
-		if (p->segs[i].kind != INTERP_AUX)
-			continue;
-		if (p->segs[i].arg == INTERP_AUX_POWER_OFF)
-			c->power_off = true;
-		else if (p->segs[i].arg == INTERP_AUX_POWER_POSITIVE ||
-			 p->segs[i].arg == INTERP_AUX_POWER_NEGATIVE)
-			power_on(c, p->segs[i].arg);
-	}
-}
-
-/* One that the PLC was told, and has not answered, it is told still. */
-static void mcode_restore(struct cycle *c, const struct shm_snapshot *s)
-{
-	c->mcode.number = s->mcode;
-	c->mcode.at = s->mcode_at;
-	/* It was answered while the job stood. */
-	c->mcode.done = s->mcode == 0 && s->mcode_at != 0;
-}
-
-/* The sums of the job go on. */
-static void sums_restore(struct cycle *c, const struct shm_snapshot *s)
-{
-	c->totals.cycles = s->job_cycles;
-	c->totals.erode_cycles = s->erode_cycles;
-	c->totals.jump_cycles = s->jump_cycles;
-	c->totals.retracts = s->retracts;
-	c->totals.jumps = s->jumps;
-	c->totals.shorts = s->shorts;
-	c->totals.overruns = s->overruns;
-	c->totals.retract_mm_max = s->retract_mm_max;
-}
-
-/* Before anything is sent to the axes: it says where they stand. */
-static void probe_restore(struct cycle *c, const struct shm_snapshot *s)
-{
-	struct probe *t = &c->probe;
-
-	memcpy(t->shift, s->shift, sizeof(t->shift));
-	memcpy(t->found, s->found, sizeof(t->found));
-	t->once = s->found_once;
-	t->twice = s->found_twice;
-	probe_target(c, c->cursor.pos);
-}
-
-static bool stands_at(const struct cycle *c, const int32_t pos[SHM_NAXES])
-{
-	return memcmp(c->out.target, pos, sizeof(c->out.target)) == 0;
-}
-
-/* Beside the path it is on the escape that led there, or nobody knows where. */
-static int pos_restore(struct cycle *c, const struct shm_snapshot *s)
-{
-	int32_t pos[SHM_NAXES];
-
-	if (stands_at(c, s->pos))
-		return 0;
-	for (int i = 0; i < SHM_NAXES; i++)
-		pos[i] = (int32_t)((uint32_t)s->pos[i] - (uint32_t)s->shift[i]);
-	if (escape_find(c, pos))
-		return 0;
-	log_line(LOG_ERROR, "resume: the machine was at X %d Y %d Z %d pulses, "
-		 "neither on the path at segment %u, tick %u (X %d Y %d Z %d) "
-		 "nor on its way out from there", s->pos[INTERP_X],
-		 s->pos[INTERP_Y], s->pos[INTERP_Z], s->seg, s->tick,
-		 c->out.target[INTERP_X], c->out.target[INTERP_Y],
-		 c->out.target[INTERP_Z]);
-	return -ESTALE;
-}
-
-/* All of them, or it would be another cut. */
-static int sets_restore(struct cycle *c, const struct shm_status *status,
-			uint64_t key)
-{
-	struct conditions_set set[CONDITIONS_SETS_MAX];
 	struct shm_sets s;
 
 	if (!shm_sets(status, &s) || s.program_key != key ||
@@ -241,11 +153,7 @@ static int sets_restore(struct cycle *c, const struct shm_status *status,
 			s.set[i].value, (uint16_t)s.set[i].cond,
 			(uint8_t)s.set[i].field
 		};
-	if (conditions_restore(c, set, (uint32_t)s.n))
-		return 0;
-	log_line(LOG_ERROR, "resume: what was set in the job does not go with "
-		 "this machine file");
-	return -EINVAL;
+	return (int)s.n;
 }
 
 static int program_same(const struct program *p, const struct shm_snapshot *s)
@@ -256,36 +164,59 @@ static int program_same(const struct program *p, const struct shm_snapshot *s)
 	return -ESTALE;
 }
 
+/* Why the cycle could not take the job up. */
+static int tell_refusal(const struct cycle *c, enum cycle_restored why,
+			enum cycle_answer answer, const struct shm_snapshot *s)
+{
+	switch (why) {
+	case RESTORED:
+		return 0;
+	case RESTORE_ELSEWHERE:
+		log_line(LOG_ERROR, "resume: the machine was at X %d Y %d Z %d "
+			 "pulses, neither on the path at segment %u, tick %u "
+			 "(X %d Y %d Z %d) nor on its way out from there",
+			 s->pos[INTERP_X], s->pos[INTERP_Y], s->pos[INTERP_Z],
+			 s->seg, s->tick, c->out.target[INTERP_X],
+			 c->out.target[INTERP_Y], c->out.target[INTERP_Z]);
+		return -ESTALE;
+	case RESTORE_OTHER_VALUES:
+		log_line(LOG_ERROR, "resume: what was set in the job does not "
+			 "go with this machine file");
+		return -EINVAL;
+	default:
+		log_line(LOG_ERROR, "resume: program %u: %s", s->program,
+			 cycle_answer_text(answer));
+		return -EINVAL;
+	}
+}
+
 static int place_restore(struct loop *l, struct program *p,
 			 const struct shm_snapshot *s)
 {
-	double far_mm = isfinite(s->far_mm) ? s->far_mm : s->place_mm;
+	struct conditions_set sets[CONDITIONS_SETS_MAX];
+	struct cycle_past past = past_of(s);
 	int err = interp_cursor_seek(&p->cursor, s->seg, s->tick);
 	struct cycle held = l->cycle;
+	enum cycle_restored restored;
 	enum cycle_answer answer;
+	int n;
 
-	/* Where a touch was, axes and program differ; pos_restore() compares. */
-	held.manual.used = false;
 	if (err < 0) {
 		log_line(LOG_ERROR, "resume: segment %u, tick %u: %s; this is "
 			 "not the program that ran", s->seg, s->tick,
 			 strerror(-err));
 		return err;
 	}
-	answer = cycle_load_at(&held, &p->cursor, far_mm);
-	if (answer == ANSWER_DONE) {
-		probe_restore(&held, s);
-		held.manual.used = true;
-		err = pos_restore(&held, s);
-		if (err == 0)
-			err = sets_restore(&held, l->status, s->program_key);
-		if (err == 0)
-			l->cycle = held;
-		return err;
-	}
-	log_line(LOG_ERROR, "resume: program %u: %s", p->n,
-		 cycle_answer_text(answer));
-	return -1;
+	n = sets_read(l->status, s->program_key, sets);
+	if (n < 0)
+		return n;
+	past.sets = sets;
+	past.nsets = (uint32_t)n;
+	restored = cycle_restore(&held, &p->cursor, &past, &answer);
+	err = tell_refusal(&held, restored, answer, s);
+	if (err == 0)
+		l->cycle = held;
+	return err;
 }
 
 static void tell(const struct loop *l, const struct shm_snapshot *s)
@@ -312,11 +243,6 @@ static void job_restore(struct loop *l, const struct machine_config *c,
 		return;
 	}
 	l->program = p;
-	switches_restore(&l->cycle, before);
-	mcode_restore(&l->cycle, before);
-	if (isfinite(before->back_mm))
-		l->cycle.back_mm = fmax(l->cycle.back_mm, before->back_mm);
-	sums_restore(&l->cycle, before);
 	tell(l, before);
 }
 
@@ -328,9 +254,9 @@ void resume(struct loop *l, const struct machine_config *c,
 	axes_restore(l, before);
 	if (before->override >= 0 && before->override <= 2)
 		l->cycle.override = before->override;
-	/* Said once more, it is no change. */
+	/* What a PLC says as before is no change. */
 	l->cycle.plc_override = before->plc_override;
 	if (job_was_under_way(before))
 		job_restore(l, c, before);
-	fault_restore(&l->cycle, before->fault, before->faults);
+	fault_restore(&l->cycle, before);
 }

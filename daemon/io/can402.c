@@ -71,9 +71,18 @@ static void hear_gap(struct can402 *s, const struct can_msg *m)
 	s->gap_age = 0;
 }
 
+/* A PLC of ours on this bus commands our own node, and may call all. */
+static bool is_the_plcs(const struct can402 *s, const struct can_msg *m)
+{
+	return m->id == CAN_NMT && m->len == 2 && s->plc_node > 0 &&
+	       (m->data[1] == 0 || m->data[1] == s->plc_node);
+}
+
 /* NMT, SYNC, targets and one heartbeat are the master's to send: ours. */
 static bool is_foreign(const struct can402 *s, const struct can_msg *m)
 {
+	if (is_the_plcs(s, m))
+		return false;
 	if (m->id == CAN_NMT || m->id == CAN_SYNC ||
 	    m->id == CAN_HEARTBEAT + (int)s->c.master_node)
 		return true;
@@ -123,6 +132,10 @@ static void drain(struct can402 *s)
 			hear(s, &m);
 		else if (got == CAN_ODD)
 			can402_count(s, NOTE_MALFORMED, ++s->malformed);
+		else if (got == CAN_WARNING)
+			can402_count(s, NOTE_BUS_WARNING, ++s->bus_warnings);
+		else if (got == CAN_PASSIVE)
+			can402_count(s, NOTE_BUS_PASSIVE, ++s->bus_passives);
 		else if (got != CAN_RESTARTED)
 			bus_is(s, got);
 		if (got == CAN_DOWN)
@@ -135,7 +148,7 @@ static void drain(struct can402 *s)
 static bool all_up(const struct can402 *s)
 {
 	for (uint32_t i = 0; i < s->n; i++) {
-		if (s->drive[i].phase != DRIVE_RUNNING || !s->drive[i].heard)
+		if (s->drive[i].phase != DRIVE_RUNNING || !s->drive[i].stands)
 			return false;
 	}
 	return true;
@@ -163,14 +176,31 @@ static enum io_trouble trouble(const struct can402 *s)
 	return IO_WELL;
 }
 
-/* The first time they are all heard, they stand where the machine begins. */
+/*
+ * The first time they are all heard, they stand where the machine begins.  One
+ * that lost its place stands where it was sent last, by word: whoever asks is
+ * told that it is not homed.
+ */
 static void place(struct can402 *s)
 {
-	if (s->placed || !all_up(s))
+	if (!all_up(s))
 		return;
-	for (uint32_t i = 0; i < s->n; i++)
-		drive_set_zero(&s->drive[i], s->out.target[s->axis[i]]);
+	for (uint32_t i = 0; i < s->n; i++) {
+		struct drive *d = &s->drive[i];
+
+		if (!s->placed || d->lost)
+			drive_set_zero(d, s->out.target[s->axis[i]]);
+	}
 	s->placed = true;
+}
+
+static uint32_t lost_places(const struct can402 *s)
+{
+	uint32_t axes = 0;
+
+	for (uint32_t i = 0; i < s->n; i++)
+		axes |= (uint32_t)s->drive[i].lost << s->axis[i];
+	return axes;
 }
 
 bool can402_origin(void *self, int32_t ret[IO_NAXES])
@@ -204,7 +234,7 @@ static void beat(struct can402 *s)
 	send(s, &m);
 }
 
-static void fill(struct can402 *s, struct io_inputs *in)
+static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
 {
 	*in = (struct io_inputs) {
 		.gap_v = s->gap_v,
@@ -213,6 +243,7 @@ static void fill(struct can402 *s, struct io_inputs *in)
 		.trouble = trouble(s),
 		.starting = !all_up(s),
 		.axes_off = !all_arrived(s),
+		.unplaced = unplaced,
 	};
 	in->shares_valid = in->gap_valid && s->has_shares;
 	memcpy(in->actual, s->out.target, sizeof(in->actual));
@@ -225,6 +256,7 @@ static const struct can_msg sync_frame = { .id = CAN_SYNC };
 void can402_read(void *self, struct io_inputs *in)
 {
 	struct can402 *s = self;
+	uint32_t unplaced;
 
 	send(s, &sync_frame);
 	if (s->gap_age < CAN402_STALE)
@@ -234,9 +266,10 @@ void can402_read(void *self, struct io_inputs *in)
 		drive_sync(&s->drive[i]);
 		can402_watch(s, i);
 	}
+	unplaced = lost_places(s);
 	place(s);
 	beat(s);
-	fill(s, in);
+	fill(s, in, unplaced);
 }
 
 /* -- What the cycle wants --------------------------------------------------------- */
@@ -251,13 +284,14 @@ static void reset(struct can402 *s)
 }
 
 /* One that was moved by hand is not driven back over any distance. */
-static void watch_place(struct can402 *s, struct drive *d, uint8_t axis,
-			int32_t target)
+static void watch_place(struct can402 *s, uint32_t i, int32_t target)
 {
+	struct drive *d = &s->drive[i];
 	const int64_t off = llabs((int64_t)drive_place(d) - target);
 
-	if (!d->arrived && d->heard && s->placed &&
-	    off > s->resync_max[axis] && d->trouble == DRIVE_WELL)
+	if (!d->arrived && d->stands && s->placed && !d->lost &&
+	    off > (int64_t)s->resync_max[s->axis[i]] + s->stop[i].coast &&
+	    d->trouble == DRIVE_WELL)
 		d->trouble = DRIVE_FOLLOWING;
 }
 
@@ -282,31 +316,39 @@ static void tell_generator(struct can402 *s, bool safe)
 	send(s, &m);
 }
 
+static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
+{
+	const bool braking = s->stopping > 0;
+	const int32_t target = braking ? can402_stop_target(s, i) :
+			       s->out.target[s->axis[i]];
+	struct can_msg m[DRIVE_EMITS];
+	size_t n;
+
+	if (s->out.enable && !braking)
+		watch_place(s, i, target);
+	drive_aim(&s->drive[i], goal);
+	n = drive_emit(&s->drive[i], target, m);
+	for (size_t j = 0; j < n; j++)
+		send(s, &m[j]);
+}
+
 void can402_write(void *self, const struct io_outputs *out)
 {
 	struct can402 *s = self;
 	const bool other = out->path != s->out.path;
-	bool well;
+	bool well, on;
 
 	s->out = *out;
 	if (out->reset)
 		reset(s);
 	well = trouble(s) == IO_WELL;
 	tell_generator(s, well);
-	for (uint32_t i = 0; i < s->n; i++) {
-		struct drive *d = &s->drive[i];
-		const int32_t target = out->target[s->axis[i]];
-		struct can_msg m;
-
-		if (other)
-			drive_depart(d);
-		if (out->enable)
-			watch_place(s, d, s->axis[i], target);
-		drive_aim(d, out->enable && well ? DRIVE_GO_ON :
-			     DRIVE_GO_STOP);
-		if (drive_emit(d, target, &m) > 0)
-			send(s, &m);
-	}
+	for (uint32_t i = 0; i < s->n && other; i++)
+		drive_depart(&s->drive[i]);
+	on = can402_stop_step(s, out->enable && well);
+	can402_stop_pace(s);
+	for (uint32_t i = 0; i < s->n; i++)
+		tell_drive(s, i, on ? DRIVE_GO_ON : DRIVE_GO_STOP);
 }
 
 /* A quick stop, and nothing they would miss when we are gone. */
@@ -314,8 +356,9 @@ static void leave(struct can402 *s)
 {
 	struct can_msg m[DRIVE_ENDS];
 
-	s->out.enable = false;
+	s->out.enable = s->were_on = false;
 	s->out.power = s->out.pump = false;
+	s->stopping = 0;
 	can402_write(s, &s->out);
 	send(s, &sync_frame);
 	for (uint32_t i = 0; i < s->n; i++) {

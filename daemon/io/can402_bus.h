@@ -15,24 +15,34 @@
 #include <stdatomic.h>
 
 enum can402_note_kind {
-	NOTE_TROUBLE, NOTE_ABORT, NOTE_EMERGENCY, NOTE_UP, NOTE_SILENT,
-	NOTE_BUS_OFF, NOTE_DOWN, NOTE_BACK, NOTE_FULL, NOTE_FOREIGN,
-	NOTE_MALFORMED
+	NOTE_TROUBLE, NOTE_ABORT, NOTE_PASSED, NOTE_EMERGENCY, NOTE_UP,
+	NOTE_SILENT, NOTE_LOST, NOTE_WARNING, NOTE_UNMAPPED, NOTE_BUS_OFF,
+	NOTE_DOWN, NOTE_BACK, NOTE_FULL, NOTE_FOREIGN, NOTE_MALFORMED,
+	NOTE_BUS_WARNING, NOTE_BUS_PASSIVE
 };
 
 struct can402_note {
 	enum can402_note_kind kind;
-	uint8_t node, axis;
-	uint32_t number, more;
+	uint8_t node, axis, passed;
+	uint32_t number, more, value;
 };
 
-#define CAN402_NOTES	32		/* a power of two */
+#define CAN402_NOTES	256		/* a power of two */
 
 /* What was said of a drive. */
 struct can402_told {
-	bool up;
+	bool up, lost;
 	enum drive_trouble trouble;
-	uint32_t emergencies, unanswered;
+	uint32_t emergencies, unanswered, aborts, warnings;
+};
+
+/* One drive on the way to a stand, or back to its place; can402_stop.c. */
+struct can402_stop {
+	int32_t was;			/* increments, the target before */
+	double speed;			/* increments a period, when it began */
+	double a;			/* ... a period^2, the axis may brake by */
+	double at;			/* increments, on the way to a stand */
+	int32_t coast;			/* pulses, farther than that by now */
 };
 
 struct can402 {
@@ -44,6 +54,11 @@ struct can402 {
 	uint32_t beat_every, beat_in;
 	enum can_got bus;		/* CAN_NOTHING: well */
 	bool stopped;			/* bus trouble, until a reset */
+	int32_t plc_node;		/* of ours, on the same bus; 0: none */
+	bool were_on;			/* under power and well, a period ago */
+	uint32_t stopping, stop_of;	/* periods left of the way to a stand,
+					 * and of all of it */
+	struct can402_stop stop[IO_NAXES];
 	bool placed;			/* the drives' zeros are set */
 	int32_t resync_max[IO_NAXES];	/* pulses */
 	struct io_outputs out;
@@ -54,6 +69,7 @@ struct can402 {
 	uint32_t gap_age;
 	struct can402_told told[IO_NAXES];
 	uint32_t malformed, foreign, lost;	/* all so far */
+	uint32_t bus_warnings, bus_passives;
 	/* Written by read and write, taken by note. */
 	struct can402_note notes[CAN402_NOTES];
 	_Atomic uint32_t put, taken;
@@ -84,6 +100,24 @@ void can402_write(void *self, const struct io_outputs *out);
 void can402_close(void *self);
 bool can402_origin(void *self, int32_t ret[IO_NAXES]);
 void can402_originate(void *self, const int32_t zero[IO_NAXES]);
+
+/* -- can402_stop.c ------------------------------------------------------------ */
+
+/**
+ * can402_stop_step() - a period, before the drives are told their targets.
+ *
+ * @on: they are to be under power, and all is well.
+ * Those that can brake together brake together: each by the same part of its
+ * speed in a period, so that they stay on the tangent of the path.
+ * Return: true as long as they do, and none may be stopped by itself.
+ */
+bool can402_stop_step(struct can402 *s, bool on);
+
+/** can402_stop_target() - pulses drive @i is sent to on that way. */
+int32_t can402_stop_target(struct can402 *s, uint32_t i);
+
+/** can402_stop_pace() - on the way back to their places all arrive at once. */
+void can402_stop_pace(struct can402 *s);
 
 /* -- can402_open.c ------------------------------------------------------------ */
 

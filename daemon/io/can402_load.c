@@ -8,12 +8,14 @@
 
 #include <math.h>
 
-#define PDO_BYTES	6		/* control or status, and a position */
+#define RPDO_BYTES	6		/* controlword, position */
+#define TPDO_BYTES	7		/* statusword, position, mode */
 #define FRAME_BYTES	8		/* gap, generator */
 
 double can402_load(const struct can402_bus *b, double period_us)
 {
-	const uint32_t pdos = 2 * b->axes * can_bits(PDO_BYTES);
+	const uint32_t pdos = b->axes * (can_bits(RPDO_BYTES) +
+					 can_bits(TPDO_BYTES));
 	const uint32_t others = (uint32_t)(b->gap + b->generator) *
 				can_bits(FRAME_BYTES);
 	const double beats = (b->axes + 1) * can_bits(1) * period_us /

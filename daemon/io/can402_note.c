@@ -30,10 +30,16 @@ void can402_count(struct can402 *s, enum can402_note_kind kind, uint32_t n)
 		can402_tell(s, &(struct can402_note) { .kind = kind, .number = n });
 }
 
-static void say(const struct can402 *s, const struct can402_note *n, char *buf,
-		size_t size)
+static void say_drive(const struct can402_note *n, char *buf, size_t size)
 {
 	const char axis = INTERP_AXIS_LETTERS[n->axis];
+	const unsigned int index = n->more >> 8, sub = n->more & 0xff;
+	static const char *const passed[] = {
+		[DRIVE_NOT_PASSED] = "refused",
+		[DRIVE_WITHOUT] = "goes on without",
+		[DRIVE_ALREADY] = "it has that already",
+		[DRIVE_ANOTHER] = "another is tried",
+	};
 
 	switch (n->kind) {
 	case NOTE_TROUBLE:
@@ -41,9 +47,23 @@ static void say(const struct can402 *s, const struct can402_note *n, char *buf,
 			 drive_trouble_name((enum drive_trouble)n->number));
 		break;
 	case NOTE_ABORT:
-		snprintf(buf, size, "drive %c (node %u) refuses object "
-			 "%04x:%02x, code %08x", axis, n->node, n->more >> 8,
-			 n->more & 0xff, n->number);
+		if (n->number != 0)
+			snprintf(buf, size, "drive %c (node %u) refuses object "
+				 "%04x:%02x, value %x, code %08x: %s", axis,
+				 n->node, index, sub, n->value, n->number,
+				 drive_abort_text(n->number));
+		else
+			snprintf(buf, size, "drive %c (node %u): object "
+				 "%04x:%02x is %x, which does not go with the "
+				 "machine file", axis, n->node, index, sub,
+				 n->value);
+		break;
+	case NOTE_PASSED:
+		snprintf(buf, size, "drive %c (node %u): object %04x:%02x, "
+			 "value %x, code %08x: %s; %s", axis, n->node, index,
+			 sub, n->value, n->number,
+			 n->number ? drive_abort_text(n->number) : "not ours",
+			 passed[n->passed]);
 		break;
 	case NOTE_EMERGENCY:
 		snprintf(buf, size, "drive %c (node %u): emergency %04x, its "
@@ -54,36 +74,80 @@ static void say(const struct can402 *s, const struct can402_note *n, char *buf,
 			 "switched on, its node and its bit rate right?", axis,
 			 n->node);
 		break;
-	case NOTE_UP:
+	case NOTE_LOST:
+		snprintf(buf, size, "drive %c (node %u) was switched off: its "
+			 "place is lost; end the job, then edmctl home %c", axis,
+			 n->node, axis);
+		break;
+	case NOTE_WARNING:
+		snprintf(buf, size, "drive %c (node %u) warns: statusword "
+			 "%04x%s%s", axis, n->node, n->number,
+			 n->number & 0x80 ? ", bit 7: a warning of the maker" :
+					    "",
+			 n->number & 0x800 ? ", bit 11: at an internal limit" :
+					     "");
+		break;
+	case NOTE_UNMAPPED:
+		snprintf(buf, size, "drive %c (node %u) does not send its mode "
+			 "(6061): another mode is seen by bit 12 only", axis,
+			 n->node);
+		break;
+	default:
 		snprintf(buf, size, "drive %c (node %u) is up at %d increments",
 			 axis, n->node, (int32_t)n->number);
 		break;
+	}
+}
+
+static void say_bus(const struct can402 *s, const struct can402_note *n,
+		    char *buf, size_t size)
+{
+	const char *name = s->c.interface;
+
+	switch (n->kind) {
 	case NOTE_BUS_OFF:
 		snprintf(buf, size, "%s: bus off; check cable and termination, "
-			 "then: ip link set %s type can restart",
-			 s->c.interface, s->c.interface);
+			 "then: ip link set %s type can restart", name, name);
+		break;
+	case NOTE_BUS_WARNING:
+		snprintf(buf, size, "%s: many errors on the bus (error warning, "
+			 "%u times); check cable and termination", name,
+			 n->number);
+		break;
+	case NOTE_BUS_PASSIVE:
+		snprintf(buf, size, "%s: the controller is error passive (%u "
+			 "times); bus off is next; check cable, termination "
+			 "and bit rate", name, n->number);
 		break;
 	case NOTE_DOWN:
-		snprintf(buf, size, "%s is down; ip link set %s up",
-			 s->c.interface, s->c.interface);
+		snprintf(buf, size, "%s is down; ip link set %s up", name, name);
 		break;
 	case NOTE_BACK:
-		snprintf(buf, size, "%s is back", s->c.interface);
+		snprintf(buf, size, "%s is back", name);
 		break;
 	case NOTE_FULL:
 		snprintf(buf, size, "%s: %u frames not sent, its queue is full; "
-			 "ip link set %s txqueuelen 100", s->c.interface,
-			 n->number, s->c.interface);
+			 "nobody takes them, or ip link set %s txqueuelen 100",
+			 name, n->number, name);
 		break;
 	case NOTE_FOREIGN:
 		snprintf(buf, size, "%s: another master on the bus, %u frames "
-			 "of it", s->c.interface, n->number);
+			 "of it", name, n->number);
 		break;
 	default:
 		snprintf(buf, size, "%s: %u frames of a wrong length, or answers "
-			 "nobody asked for", s->c.interface, n->number);
+			 "nobody asked for", name, n->number);
 		break;
 	}
+}
+
+static void say(const struct can402 *s, const struct can402_note *n, char *buf,
+		size_t size)
+{
+	if (n->node != 0)
+		say_drive(n, buf, size);
+	else
+		say_bus(s, n, buf, size);
 }
 
 bool can402_note(void *self, char *buf, size_t size)
@@ -106,17 +170,43 @@ static void tell_of(struct can402 *s, uint32_t i, struct can402_note n)
 	can402_tell(s, &n);
 }
 
-static void tell_trouble(struct can402 *s, uint32_t i)
+static void tell_abort(struct can402 *s, uint32_t i)
 {
 	const struct drive *d = &s->drive[i];
 
-	tell_of(s, i, (struct can402_note) { .kind = NOTE_TROUBLE,
-				      .number = d->trouble });
-	if (d->trouble == DRIVE_MISCONFIGURED)
-		tell_of(s, i, (struct can402_note) {
-			.kind = NOTE_ABORT, .number = d->abort,
-			.more = (uint32_t)d->abort_index << 8 | d->abort_sub
-		});
+	tell_of(s, i, (struct can402_note) {
+		.kind = d->passed ? NOTE_PASSED : NOTE_ABORT,
+		.passed = (uint8_t)d->passed,
+		.number = d->abort, .value = d->abort_value,
+		.more = (uint32_t)d->abort_index << 8 | d->abort_sub
+	});
+}
+
+static void tell_up(struct can402 *s, uint32_t i)
+{
+	const struct drive *d = &s->drive[i];
+
+	tell_of(s, i, (struct can402_note) { .kind = NOTE_UP,
+				      .number = (uint32_t)d->actual });
+	if (!d->shows_mode)
+		tell_of(s, i, (struct can402_note) { .kind = NOTE_UNMAPPED });
+}
+
+/* Of those that may come in a flood a few are told. */
+static void tell_counts(struct can402 *s, uint32_t i,
+			const struct can402_told *was)
+{
+	const struct drive *d = &s->drive[i];
+
+	if (d->emergencies != was->emergencies && is_round(d->emergencies))
+		tell_of(s, i, (struct can402_note) { .kind = NOTE_EMERGENCY,
+					      .number = d->emergency,
+					      .more = d->emergencies });
+	if (d->unanswered != was->unanswered && is_round(d->unanswered))
+		tell_of(s, i, (struct can402_note) { .kind = NOTE_SILENT });
+	if (d->warnings != was->warnings && is_round(d->warnings))
+		tell_of(s, i, (struct can402_note) { .kind = NOTE_WARNING,
+					      .number = d->status });
 }
 
 void can402_watch(struct can402 *s, uint32_t i)
@@ -125,18 +215,19 @@ void can402_watch(struct can402 *s, uint32_t i)
 	const struct can402_told was = s->told[i];
 
 	s->told[i] = (struct can402_told) {
-		d->phase == DRIVE_RUNNING && d->heard, d->trouble,
-		d->emergencies, d->unanswered
+		.up = d->phase == DRIVE_RUNNING && d->stands, .lost = d->lost,
+		.trouble = d->trouble, .emergencies = d->emergencies,
+		.unanswered = d->unanswered, .aborts = d->aborts,
+		.warnings = d->warnings,
 	};
+	if (d->aborts != was.aborts)
+		tell_abort(s, i);
 	if (s->told[i].up && !was.up)
-		tell_of(s, i, (struct can402_note) { .kind = NOTE_UP,
-					      .number = (uint32_t)d->actual });
+		tell_up(s, i);
 	if (d->trouble != was.trouble && d->trouble != DRIVE_WELL)
-		tell_trouble(s, i);
-	if (d->emergencies != was.emergencies && is_round(d->emergencies))
-		tell_of(s, i, (struct can402_note) { .kind = NOTE_EMERGENCY,
-					      .number = d->emergency,
-					      .more = d->emergencies });
-	if (d->unanswered != was.unanswered && is_round(d->unanswered))
-		tell_of(s, i, (struct can402_note) { .kind = NOTE_SILENT });
+		tell_of(s, i, (struct can402_note) { .kind = NOTE_TROUBLE,
+					      .number = d->trouble });
+	if (d->lost && !was.lost)
+		tell_of(s, i, (struct can402_note) { .kind = NOTE_LOST });
+	tell_counts(s, i, &was);
 }

@@ -3,6 +3,8 @@
  * can402_open.c - the master as the machine file wants it, or why not
  */
 #include "can402_bus.h"
+#include "drive_steps.h"
+#include "drives.h"
 
 #include <errno.h>
 #include <math.h>
@@ -11,8 +13,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#define SDO_WAIT_US	200000
+#define LIMITED_US	100000	/* bit 11 may stand so long */
 #define BEATS_MISSED	2.5
+#define STOP_AND_OFF	2		/* quick stop options, object 605A */
+#define STOP_AND_HOLD	6
 
 static int refuse(struct interp_diag *diag, int err, const char *interface)
 {
@@ -58,6 +62,50 @@ static int check_load(const struct machine_config *c, struct interp_diag *diag)
 			       100 * CAN402_LOAD_MAX, can402_period_us(&b));
 }
 
+static void want(struct drive_config *d, struct drive_write w)
+{
+	if (d->nwrites < DRIVE_WRITES)
+		d->write[d->nwrites++] = w;
+}
+
+static uint32_t whole(double x)
+{
+	return x < 0 ? 0 : x > UINT32_MAX ? UINT32_MAX : (uint32_t)(x + 0.5);
+}
+
+/* What it is to do by itself, and what its maker or ours wants besides. */
+static void add_writes(struct drive_config *d, const struct config_drive *c,
+		       double increments_mm)
+{
+	struct config_object own[CONFIG_SDO_MAX];
+	struct interp_diag none;
+	const int n = config_drive_sdo(c->sdo, own, &none);
+
+	want(d, (struct drive_write) { 0x605a, 0, 2,
+		c->brake == BRAKE_NONE ? STOP_AND_HOLD : STOP_AND_OFF,
+		c->brake != BRAKE_NONE });
+	if (c->connection_lost >= 0)
+		want(d, (struct drive_write) { 0x6007, 0, 2,
+			(uint32_t)c->connection_lost, true });
+	if (c->fault_reaction >= 0)
+		want(d, (struct drive_write) { 0x605e, 0, 2,
+			(uint32_t)c->fault_reaction, false });
+	if (c->window_mm > 0)
+		want(d, (struct drive_write) { 0x6065, 0, 4,
+			whole(c->window_mm * increments_mm), false });
+	if (c->quick_stop_mm_s2 > 0)
+		want(d, (struct drive_write) { 0x6085, 0, 4,
+			whole(c->quick_stop_mm_s2 * increments_mm), false });
+	for (int i = 0; i < n; i++)
+		want(d, (struct drive_write) { own[i].index, own[i].sub,
+			own[i].bytes, own[i].value, false });
+}
+
+static uint32_t cycles_of(double ms, double period_us)
+{
+	return (uint32_t)(ms * 1e3 / period_us);
+}
+
 static struct drive_config drive_of(const struct machine_config *c, int axis)
 {
 	const struct config_can402 *k = &c->can402;
@@ -66,22 +114,58 @@ static struct drive_config drive_of(const struct machine_config *c, int axis)
 	const double period_us = (double)config_period_ns(c) * 1e-3;
 	const double increments_mm = fabs(d->increments / d->pulses) /
 				     pulse_mm;
-
-	return (struct drive_config) {
+	struct interp_diag none;
+	struct drive_config ret = {
 		.node = (uint8_t)k->node[axis],
 		.master = (uint8_t)k->master_node,
 		.increments = (int32_t)d->increments,
 		.pulses = (int32_t)d->pulses,
 		.period_us = (uint32_t)period_us,
 		.heartbeat_ms = (uint32_t)k->heartbeat_ms,
-		.beat_cycles = (uint32_t)(BEATS_MISSED * k->heartbeat_ms *
-					  1e3 / period_us),
-		.answer_cycles = (uint32_t)(SDO_WAIT_US / period_us),
+		.beat_cycles = cycles_of(BEATS_MISSED * k->heartbeat_ms,
+					 period_us),
+		.answer_cycles = cycles_of(k->sdo_ms, period_us),
 		.missing_max = (uint32_t)k->missing_max,
 		.following_max = (int32_t)(k->following_mm / pulse_mm),
+		.lag_cycles = k->following_s * 1e6 / period_us,
 		.slew_increments = (int32_t)fmax(1, k->resync_mm_s *
 			increments_mm * period_us * 1e-6),
+		.limited_cycles = (uint32_t)(LIMITED_US / period_us),
+		.absolute = d->absolute, .held = d->brake == BRAKE_NONE,
+		.no_follow_bit = !d->follow_bit,
 	};
+
+	config_drive_identity(d->identity, ret.identity, &ret.identified,
+			      &none);
+	ret.nleaves = (uint32_t)config_drive_leave(d->leave, ret.leave, &none);
+	add_writes(&ret, d, increments_mm);
+	return ret;
+}
+
+/* Increments a period^2. */
+static double brakes_by(const struct machine_config *c, int axis,
+			const struct drive_config *d)
+{
+	const struct interp_axis_limits *l = &c->axes.axis[axis];
+	const double period_s = (double)config_period_ns(c) * 1e-9;
+
+	return fmax(1e-3, l->a_max_mm_s2 / l->pulse_mm * abs(d->increments) /
+		    d->pulses * period_s * period_s);
+}
+
+static int check_eds(const struct machine_config *c, struct interp_diag *diag)
+{
+	for (int i = 0; i < IO_NAXES; i++) {
+		struct drive_config d;
+
+		if (c->can402.node[i] == 0 ||
+		    strcmp(c->drive[i].eds, "none") == 0)
+			continue;
+		d = drive_of(c, i);
+		if (drive_eds_check(c->drive[i].eds, &d, diag) < 0)
+			return -EINVAL;
+	}
+	return 0;
 }
 
 static void add_drives(struct can402 *s, const struct machine_config *c)
@@ -95,6 +179,7 @@ static void add_drives(struct can402 *s, const struct machine_config *c)
 		s->axis[s->n] = (uint8_t)i;
 		s->resync_max[i] = (int32_t)(c->can402.resync_mm /
 					     c->axes.axis[i].pulse_mm);
+		s->stop[s->n].a = brakes_by(c, i, &d);
 		drive_init(&s->drive[s->n++], &d);
 	}
 }
@@ -125,6 +210,9 @@ int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
 	s->fd = fd;
 	s->c = c->can402;
 	s->gap_age = CAN402_STALE;
+	if (config_has_plc(c) &&
+	    strcmp(c->plc.interface, c->can402.interface) == 0)
+		s->plc_node = (int32_t)c->plc.node;
 	add_drives(s, c);
 	s->beat_every = (uint32_t)fmax(1, s->c.heartbeat_ms * 1e6 /
 				       (double)config_period_ns(c));
@@ -143,11 +231,15 @@ int io_can402_open(struct io_machine *m, const struct machine_config *c,
 	const struct config_can402 *k = &c->can402;
 	int err = check_load(c, diag), fd;
 
+	if (err == 0)
+		err = check_eds(c, diag);
 	if (err < 0)
 		return err;
 	fd = open_bus(k);
 	if (fd < 0)
 		return refuse(diag, fd, k->interface);
+	/* A period's frames; more would be old when they go out. */
+	can_socket_queue(fd, 2 * INTERP_NAXES + 4);
 	err = can402_attach(m, c, fd);
 	if (err < 0) {
 		close(fd);

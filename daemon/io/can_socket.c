@@ -28,7 +28,8 @@ static int interface_up(int fd, const char *name)
 
 static int hear_only(int fd, const struct can_hear *hear, size_t n)
 {
-	const can_err_mask_t errors = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
+	const can_err_mask_t errors = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED |
+				      CAN_ERR_CRTL;
 	struct can_filter f[HEAR_MAX];
 
 	if (n > HEAR_MAX)
@@ -76,11 +77,35 @@ int can_socket_open(const char *interface, const struct can_hear *hear,
 	return err;
 }
 
+/* What the kernel takes for a frame that waits, half of what it is given. */
+#define FRAME_ROOM	512
+
+void can_socket_queue(int fd, size_t frames)
+{
+	const int bytes = (int)(frames * FRAME_ROOM);
+
+	setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof(bytes));
+}
+
+static enum can_got take_error(const struct can_frame *f)
+{
+	const uint8_t control = f->can_id & CAN_ERR_CRTL ? f->data[1] : 0;
+
+	if (f->can_id & CAN_ERR_BUSOFF)
+		return CAN_BUS_OFF;
+	if (f->can_id & CAN_ERR_RESTARTED)
+		return CAN_RESTARTED;
+	if (control & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE))
+		return CAN_PASSIVE;
+	if (control & (CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING))
+		return CAN_WARNING;
+	return CAN_ODD;
+}
+
 static enum can_got take(const struct can_frame *f, struct can_msg *ret)
 {
 	if (f->can_id & CAN_ERR_FLAG)
-		return f->can_id & CAN_ERR_BUSOFF ? CAN_BUS_OFF :
-		       f->can_id & CAN_ERR_RESTARTED ? CAN_RESTARTED : CAN_ODD;
+		return take_error(f);
 	if (f->can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG) || f->can_dlc > 8)
 		return CAN_ODD;
 	ret->id = (uint16_t)(f->can_id & CAN_SFF_MASK);

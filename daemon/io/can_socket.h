@@ -21,6 +21,8 @@ enum can_got {
 	CAN_ODD,			/* a frame that is no classic 11-bit one */
 	CAN_BUS_OFF,			/* the controller left the bus, */
 	CAN_RESTARTED,			/* ... and has come back to it */
+	CAN_WARNING,			/* it counts many errors, */
+	CAN_PASSIVE,			/* ... and more: bus off is next */
 	CAN_DOWN,			/* the interface is down or gone */
 };
 
@@ -37,6 +39,14 @@ struct can_hear {
  */
 int can_socket_open(const char *interface, const struct can_hear *hear,
 		    size_t n);
+
+/**
+ * can_socket_queue() - let at most some @frames wait to be sent.
+ *
+ * On a bus that takes none they would wait, and go out stale when it does.
+ * The kernel's own least is some five frames.  Startup only.
+ */
+void can_socket_queue(int fd, size_t frames);
 
 /** can_socket_receive() - the next frame, if one has come. */
 enum can_got can_socket_receive(int fd, struct can_msg *ret);

@@ -9,14 +9,22 @@
  */
 #include "drive.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #define FAULT_RESET	0x80
 #define RESET_CYCLES	500		/* to leave a fault; edges all the way */
+#define MODE_CSP	8
+#define FOLLOWS		0x1000u		/* bits of the statusword in mode 8 */
+#define FOLLOWING_ERROR	0x2000u
+#define AT_LIMIT	0x0800u
+#define NMT_OPERATIONAL	0x05
 
 void drive_init(struct drive *d, const struct drive_config *c)
 {
-	*d = (struct drive) { .c = *c, .goal = DRIVE_GO_OFF };
+	*d = (struct drive) {
+		.c = *c, .goal = DRIVE_GO_OFF, .slew = c->slew_increments
+	};
 }
 
 static void trouble(struct drive *d, enum drive_trouble t)
@@ -65,6 +73,7 @@ void drive_set_zero(struct drive *d, int32_t pulses)
 	d->zero = wrapped((int64_t)d->actual -
 			  drive_to_increments(&d->c, pulses));
 	d->homed = true;
+	d->lost = false;
 }
 
 void drive_keep_zero(struct drive *d, int32_t zero)
@@ -75,21 +84,53 @@ void drive_keep_zero(struct drive *d, int32_t zero)
 
 /* -- What it says ------------------------------------------------------------- */
 
+/* Its count begins anew, and what was configured is gone. */
+static void hear_restart(struct drive *d)
+{
+	if (d->homed && !d->c.absolute)
+		d->lost = true;
+	d->state = DRIVE_NOT_READY;
+	d->heard = d->stands = false;
+	if (d->phase == DRIVE_RUNNING)
+		trouble(d, DRIVE_REBOOTED);
+	else if (d->phase < DRIVE_RUNNING)
+		drive_setup_again(d);
+}
+
+static void hear_fault(struct drive *d)
+{
+	if (d->resetting == 0)
+		trouble(d, DRIVE_EMERGENCY);
+	else
+		d->resetting--;
+}
+
 static void hear_state(struct drive *d, const struct can_msg *m)
 {
-	d->status = (uint16_t)can_get(m->data, 2);
-	d->actual = (int32_t)can_get(m->data + 2, 4);
-	d->state = drive_state_of(d->status);
+	const uint16_t was = d->status;
+	const uint16_t now = (uint16_t)can_get(m->data, 2);
+	const enum drive_state state = drive_state_of(now);
+
+	/* Back in the state it has only after its power came on. */
+	if (state == DRIVE_NOT_READY && d->stands) {
+		hear_restart(d);
+		return;
+	}
+	d->status = now;
+	d->state = state;
 	d->heard = true;
 	d->answered = true;
-	if (d->state == DRIVE_FAULT || d->state == DRIVE_FAULT_REACTION) {
-		if (d->resetting == 0)
-			trouble(d, DRIVE_EMERGENCY);
-		else
-			d->resetting--;
-	} else {
-		d->resetting = 0;
+	d->warnings += (now & ~was & DRIVE_WARNS) != 0;
+	if (m->len > 6)
+		d->mode = m->data[6];
+	if (drive_has_place(state)) {
+		d->stands = true;
+		d->actual = (int32_t)can_get(m->data + 2, 4);
 	}
+	if (state == DRIVE_FAULT || state == DRIVE_FAULT_REACTION)
+		hear_fault(d);
+	else
+		d->resetting = 0;
 }
 
 static void hear_emergency(struct drive *d, const struct can_msg *m)
@@ -101,15 +142,23 @@ static void hear_emergency(struct drive *d, const struct can_msg *m)
 	trouble(d, DRIVE_EMERGENCY);
 }
 
-/* State 0 is the boot-up message: what was configured is gone. */
+/* State 0 is the boot-up message; all but 5 is not operational. */
 static void hear_heartbeat(struct drive *d, const struct can_msg *m)
 {
+	const uint8_t state = m->data[0] & 0x7f;
+
 	d->silent = 0;
-	if ((m->data[0] & 0x7f) != 0 || d->phase < DRIVE_RUNNING)
-		return;
-	trouble(d, DRIVE_REBOOTED);
-	d->state = DRIVE_NOT_READY;
-	d->heard = false;
+	if (state == 0)
+		hear_restart(d);
+	else if (state != NMT_OPERATIONAL && d->phase == DRIVE_RUNNING &&
+		 d->heard)
+		trouble(d, DRIVE_NOT_STARTED);
+}
+
+/* A TPDO is as long as what was mapped into it. */
+static uint8_t length_of(const struct drive *d, uint16_t id, uint8_t len)
+{
+	return id == CAN_TPDO1 && d->shows_mode ? (uint8_t)(len + 1) : len;
 }
 
 bool drive_receive(struct drive *d, const struct can_msg *m)
@@ -128,7 +177,7 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
 		if (m->id != kinds[i].id + d->c.node)
 			continue;
-		if (m->len != kinds[i].len)
+		if (m->len != length_of(d, kinds[i].id, kinds[i].len))
 			d->malformed++;
 		else if (m->id != CAN_TPDO1 + d->c.node ||
 			 d->phase == DRIVE_RUNNING)
@@ -140,10 +189,21 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 
 /* -- What did not come ---------------------------------------------------------- */
 
+/* What an axis lags dies away as slowly as it came. */
+static void watch_lag(struct drive *d)
+{
+	const int64_t way = llabs(wrapped((int64_t)d->sent[0] - d->sent[1]));
+	const double k = d->c.lag_cycles;
+	const double left = k > 0 ? d->lag * k / (k + 1) : 0;
+
+	d->lag = fmax(left, k * (double)way);
+}
+
 static void watch_following(struct drive *d)
 {
 	int64_t low = INT32_MAX, high = INT32_MIN;
 
+	watch_lag(d);
 	/* Each as seen from the place: it counts round. */
 	for (int i = 0; i < DRIVE_SENT; i++) {
 		const int64_t off = wrapped((int64_t)d->sent[i] - d->actual);
@@ -152,20 +212,49 @@ static void watch_following(struct drive *d)
 		high = off > high ? off : high;
 	}
 	low = low > 0 ? low : high < 0 ? -high : 0;
-	if (d->c.following_max > 0 && d->enabled_for > DRIVE_SENT &&
+	low -= (int64_t)d->lag;
+	if (d->c.following_max > 0 && d->enabled_for > DRIVE_SENT && low > 0 &&
 	    in_pulses(d, low) > d->c.following_max)
 		trouble(d, DRIVE_FOLLOWING);
+}
+
+bool drive_follows(const struct drive *d)
+{
+	return d->state == DRIVE_ENABLED &&
+	       (!d->shows_mode || d->mode == MODE_CSP) &&
+	       (d->c.no_follow_bit || d->status & FOLLOWS);
+}
+
+/* The bits of mode 8; they mean it once it has followed. */
+static void watch_bits(struct drive *d)
+{
+	if (drive_follows(d))
+		d->led = true;
+	else if (d->led || d->enabled_for > d->c.answer_cycles)
+		trouble(d, d->shows_mode && d->mode != MODE_CSP ?
+			   DRIVE_OTHER_MODE : DRIVE_NOT_LED);
+	if (!d->led)
+		return;
+	if (d->status & FOLLOWING_ERROR)
+		trouble(d, DRIVE_FOLLOWING);
+	d->limited_for = d->status & AT_LIMIT ? d->limited_for + 1 : 0;
+	if (d->limited_for > d->c.limited_cycles)
+		trouble(d, DRIVE_LIMITED);
 }
 
 static void watch_state(struct drive *d)
 {
 	if (d->state == DRIVE_ENABLED) {
 		d->enabled_for++;
+		if (d->goal == DRIVE_GO_ON)
+			watch_bits(d);
 		return;
 	}
 	if (d->enabled_for > 0 && d->goal == DRIVE_GO_ON)
 		trouble(d, DRIVE_FELL_OFF);
 	d->enabled_for = 0;
+	d->limited_for = 0;
+	d->led = false;
 }
 
 void drive_sync(struct drive *d)
@@ -191,34 +280,57 @@ void drive_sync(struct drive *d)
 
 /* -- What it is told ------------------------------------------------------------ */
 
+/* Not enabled in another mode; but some show theirs only when enabled. */
+static bool waits_for_mode(struct drive *d)
+{
+	if (d->state != DRIVE_SWITCHED_ON || !d->shows_mode ||
+	    d->mode == MODE_CSP) {
+		d->mode_waited = 0;
+		return false;
+	}
+	return d->mode_waited++ < d->c.answer_cycles;
+}
+
 static uint16_t control_word(struct drive *d)
 {
-	if (d->state != DRIVE_FAULT)
-		return drive_control(d->trouble == DRIVE_WELL ||
-				     d->goal != DRIVE_GO_ON ? d->goal :
-				     DRIVE_GO_STOP, d->state);
-	/* A rising edge of bit 7; only after a reset was asked for. */
-	d->edge = d->resetting > 0 && !d->edge;
-	return d->edge ? FAULT_RESET : 0;
+	const bool on = d->goal == DRIVE_GO_ON && d->trouble == DRIVE_WELL;
+
+	if (d->state == DRIVE_FAULT) {
+		/* A rising edge of bit 7; only after a reset was asked for. */
+		d->edge = d->resetting > 0 && !d->edge;
+		return d->edge ? FAULT_RESET : 0;
+	}
+	if (on && waits_for_mode(d))
+		return drive_control(DRIVE_GO_ON, DRIVE_READY);
+	/* Without power in between, what no brake holds would fall. */
+	if (on && d->c.held && d->state == DRIVE_QUICK_STOP)
+		return drive_control(DRIVE_GO_ON, DRIVE_SWITCHED_ON);
+	return drive_control(on || d->goal != DRIVE_GO_ON ? d->goal :
+			     DRIVE_GO_STOP, d->state);
 }
 
 /* From where it stands when it is enabled, slowly, to where it is wanted. */
 static void approach(struct drive *d, int32_t want)
 {
 	const int64_t left = wrapped((int64_t)want - d->target);
-	const int64_t most = d->c.slew_increments;
+	const int64_t most = d->slew;
 
 	d->target = wrapped((int64_t)d->target +
 			    (left > most ? most : left < -most ? -most : left));
 	d->arrived = d->target == want;
 }
 
+int32_t drive_wanted(const struct drive *d, int32_t target)
+{
+	return wrapped((int64_t)d->zero + drive_to_increments(&d->c, target));
+}
+
 static void aim_at(struct drive *d, int32_t target)
 {
-	const int32_t want = wrapped((int64_t)d->zero +
-				     drive_to_increments(&d->c, target));
+	const int32_t want = drive_wanted(d, target);
 
-	if (d->state != DRIVE_ENABLED || d->goal != DRIVE_GO_ON || !d->homed) {
+	if (!d->led || d->state != DRIVE_ENABLED || d->goal != DRIVE_GO_ON ||
+	    !d->homed || d->lost) {
 		d->target = d->actual;
 		d->arrived = false;
 		return;
@@ -240,7 +352,7 @@ size_t drive_emit(struct drive *d, int32_t target, struct can_msg *ret)
 				  .len = 6 };
 	can_put(ret->data, control_word(d), 2);
 	can_put(ret->data + 2, (uint32_t)d->target, 4);
-	return 1;
+	return 1 + drive_setup_remode(d, ret + 1);
 }
 
 void drive_aim(struct drive *d, enum drive_goal goal)
@@ -253,7 +365,8 @@ void drive_reset(struct drive *d)
 	const bool anew = d->trouble == DRIVE_REBOOTED ||
 			  d->trouble == DRIVE_MISCONFIGURED ||
 			  d->trouble == DRIVE_MUTE ||
-			  d->trouble == DRIVE_NO_ANSWER;
+			  d->trouble == DRIVE_NO_ANSWER ||
+			  d->trouble == DRIVE_NOT_STARTED;
 
 	d->trouble = DRIVE_WELL;
 	d->emergency = 0;
@@ -264,11 +377,14 @@ void drive_reset(struct drive *d)
 	d->resetting = anew || d->state == DRIVE_FAULT ||
 		       d->state == DRIVE_FAULT_REACTION ? RESET_CYCLES : 0;
 	d->edge = false;
-	if (!anew)
+	d->led = false;
+	if (!anew) {
+		d->remode = d->phase == DRIVE_RUNNING;
 		return;
+	}
 	drive_setup_again(d);
 	d->state = DRIVE_NOT_READY;
-	d->heard = false;
+	d->heard = d->stands = false;
 }
 
 void drive_depart(struct drive *d)

@@ -5,12 +5,17 @@
  *
  * A drive is brought up by SDO, in NMT state pre-operational, one request in
  * flight, a step a period at the most: identity, heartbeats both ways, one
- * RPDO (6040 and 607A), one TPDO (6041 and 6064), both with every SYNC, mode
- * 8, interpolation time.  Then it is started, and led through the state
- * machine of CiA 402 by its statusword.
+ * RPDO (6040 and 607A), one TPDO (6041, 6064 and 6061), both with every SYNC,
+ * what the machine file wants of it, mode 8, interpolation time.  Then it is
+ * started, and led through the state machine of CiA 402 by its statusword.
  *
- * Its target is its own actual position until it is enabled, so that enabling
- * moves nothing.
+ * Its target is its own actual position until it is enabled, shows mode 8 and
+ * says that it follows (bit 12), so that enabling moves nothing.
+ *
+ * A drive that restarted has lost its count, unless the machine file calls it
+ * absolute: @lost, until it is told where it stands.  A restart that nobody
+ * heard shows when the drive is brought up: object 1016:1, which we set and
+ * which a drive forgets, no longer names us.
  *
  * Units: pulses are the machine's, increments the drive's; time in cycles.
  * Threads: RT-safe; one object belongs to one thread.
@@ -62,8 +67,23 @@ enum drive_trouble {
 	DRIVE_NO_ANSWER,		/* no TPDO for too many SYNCs */
 	DRIVE_REBOOTED,			/* its settings are gone */
 	DRIVE_MISCONFIGURED,		/* an SDO refused */
+	DRIVE_OTHER_MODE,		/* left mode 8, or never came to it */
+	DRIVE_NOT_LED,			/* bit 12: it ignores its target */
+	DRIVE_LIMITED,			/* bit 11: its target is clipped */
+	DRIVE_NOT_STARTED,		/* NMT: not operational any more */
 	DRIVE_NTROUBLES
 };
+
+/* A number the machine file wants in a drive. */
+struct drive_write {
+	uint16_t index;
+	uint8_t sub, bytes;
+	uint32_t value;
+	bool may_miss;			/* a drive may not have the object */
+};
+
+#define DRIVE_WRITES	24
+#define DRIVE_LEAVES	8
 
 struct drive_config {
 	uint8_t node;			/* 1 ... 127 */
@@ -76,11 +96,33 @@ struct drive_config {
 	uint32_t answer_cycles;		/* an SDO is repeated after this */
 	uint32_t missing_max;		/* TPDOs missing in a row */
 	int32_t following_max;		/* pulses; 0: not supervised */
+	double lag_cycles;		/* it may lag by its way in so many */
 	int32_t slew_increments;	/* a cycle, to its place when enabled */
+	uint32_t limited_cycles;	/* bit 11 may stand so long */
+	bool absolute;			/* it knows its place when switched on */
+	bool held;			/* no brake: power stays in quick stop */
+	bool no_follow_bit;		/* it does not have bit 12 */
+	uint32_t identity[4];		/* 1018:1 ... 4, where ... */
+	uint8_t identified;		/* ... this has bit 0 ... 3 */
+	struct drive_write write[DRIVE_WRITES];
+	uint32_t nwrites;
+	uint16_t leave[DRIVE_LEAVES];	/* objects set-up does not touch */
+	uint32_t nleaves;
 };
+
+/* Bits of the statusword that are told when they come. */
+#define DRIVE_WARNS	0x0880u		/* warning, internal limit */
 
 /* Targets a measured place may belong to. */
 #define DRIVE_SENT	3
+
+/* What comes of an SDO that is refused. */
+enum drive_passed {
+	DRIVE_NOT_PASSED,		/* it cannot be used so */
+	DRIVE_WITHOUT,			/* it may be without that object */
+	DRIVE_ALREADY,			/* it has that value already */
+	DRIVE_ANOTHER,			/* another value is tried */
+};
 
 struct drive {
 	struct drive_config c;
@@ -91,23 +133,42 @@ struct drive {
 	uint16_t status;		/* statusword */
 	uint16_t emergency;		/* last EMCY code; 0: none */
 	uint32_t emergencies;		/* with a code, since a reset */
-	uint32_t abort;			/* SDO abort code, with its place: */
+	uint32_t aborts;		/* SDOs it refused, in all; the last: */
+	uint32_t abort, abort_value;	/* its code, 0: a value read does not
+					 * do; what was written, or read */
 	uint16_t abort_index;
 	uint8_t abort_sub;
-	bool heard;			/* an actual position has come */
+	enum drive_passed passed;	/* what came of it */
+	uint8_t mode;			/* as it shows it: 6061 */
+	bool shows_mode;		/* 6061 is in its TPDO */
+	bool heard;			/* a TPDO has come */
+	bool stands;			/* ... in a state that has a place */
 	bool homed;			/* zero is set: targets are ours */
+	bool lost;			/* it restarted: zero means nothing */
 	int32_t actual;			/* increments, as measured */
 	int32_t zero;			/* increments at pulse 0 */
 	int32_t target;			/* increments, as last sent */
 	int32_t sent[DRIVE_SENT];	/* targets of the last SYNCs */
-	bool arrived;			/* enabled, and on the machine's place */
+	int32_t slew;			/* increments it may approach by, now */
+	double lag;			/* increments it may lag by, now */
+	bool led;			/* enabled, and follows its targets */
+	bool arrived;			/* ... and on the machine's place */
 	uint32_t step, tries;		/* SDO */
+	uint32_t word;			/* read last, for the steps after it */
+	uint32_t choice;		/* of interpolation times */
+	int8_t time_index;		/* ... as the drive has it */
+	uint32_t refused;		/* a write's abort, while it is read back */
+	bool reading_back;
+	bool remode;			/* write 6060 once more */
 	uint32_t waited;		/* cycles since the last request */
 	bool quiet, asked;		/* told to send no PDOs; a request out */
 	uint32_t unanswered;		/* steps given up, in all */
 	uint32_t silent;		/* cycles since a heartbeat */
 	uint32_t missing;		/* SYNCs without a TPDO */
 	uint32_t enabled_for;		/* cycles in operation enabled */
+	uint32_t limited_for;		/* ... at an internal limit */
+	uint32_t mode_waited;		/* cycles switched on, in another mode */
+	uint32_t warnings;		/* times a bit of DRIVE_WARNS came */
 	bool answered;			/* a TPDO came since the last SYNC */
 	bool edge;			/* fault reset: bit 7 was high */
 	uint32_t resetting;		/* cycles it may still report a fault */
@@ -134,7 +195,7 @@ void drive_sync(struct drive *d);
  */
 size_t drive_emit(struct drive *d, int32_t target, struct can_msg *ret);
 
-#define DRIVE_EMITS	1
+#define DRIVE_EMITS	2
 
 /** drive_aim() - where the master wants it. */
 void drive_aim(struct drive *d, enum drive_goal goal);
@@ -160,6 +221,15 @@ int32_t drive_to_increments(const struct drive_config *c, int32_t pulses);
 /** drive_state_of() - by the statusword. */
 enum drive_state drive_state_of(uint16_t status);
 
+/** drive_has_place() - what it measures in this state may be believed. */
+bool drive_has_place(enum drive_state s);
+
+/** drive_wanted() - increments that @target, in pulses, is for it. */
+int32_t drive_wanted(const struct drive *d, int32_t target);
+
+/** drive_follows() - it shows mode 8, and that it heeds its target. */
+bool drive_follows(const struct drive *d);
+
 /** drive_control() - the controlword that leads from @s toward @goal. */
 uint16_t drive_control(enum drive_goal goal, enum drive_state s);
 
@@ -167,10 +237,16 @@ uint16_t drive_control(enum drive_goal goal, enum drive_state s);
 const char *drive_state_name(enum drive_state s);
 const char *drive_trouble_name(enum drive_trouble t);
 
+/** drive_abort_text() - an abort code of CiA 301 in words. Any thread. */
+const char *drive_abort_text(uint32_t code);
+
 /* -- drive_setup.c: the SDO steps -------------------------------------------- */
 
 /** drive_setup_emit() - the request of the step at hand, if it is due. */
 size_t drive_setup_emit(struct drive *d, struct can_msg *ret);
+
+/** drive_setup_remode() - while it runs: the request to be in mode 8. */
+size_t drive_setup_remode(struct drive *d, struct can_msg *ret);
 
 /** drive_setup_again() - from the first step on. */
 void drive_setup_again(struct drive *d);

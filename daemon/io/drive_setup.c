@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * drive_setup.c - bring a drive up by SDO, as a table of steps
+ * drive_setup.c - bring a drive up by SDO
  *
  * Expedited transfers of CiA 301, one in flight, in state pre-operational:
- * what PDOs carry may not change while they flow.  A step that is not answered
- * is repeated; after SETUP_TRIES the drive is asked from the first one on, so
- * that one which is switched on later is found.
+ * what PDOs carry may not change while they flow.  A request that is not
+ * answered is repeated; after SETUP_TRIES the drive is asked from the first
+ * one on, so that one which is switched on later is found.
+ *
+ * A write that is refused is read back: an object that has the value already
+ * will do, be it read-only or not.
  */
 #include "drive.h"
+#include "drive_steps.h"
 
 #define SETUP_TRIES	3
 
@@ -15,137 +19,31 @@
 #define NMT_QUIET	0x80		/* pre-operational */
 
 #define SDO_UPLOAD	0x40
+#define SDO_EXPEDITED	0x42
 #define SDO_STORED	0x60
 #define SDO_ABORT	0x80
 
-#define PDO_OFF		0x80000000u
-#define PDO_NO_RTR	0x40000000u
-#define EVERY_SYNC	1
-#define MODE_CSP	8
-#define PROFILE_402	0x0192u
-#define CSP_BIT		0x80u		/* of the supported modes */
-#define ABORT_STOPS	3		/* quick stop, when we are lost */
-
-/* What a step writes. */
-enum what {
-	IS_402,				/* reads, and looks for the profile, */
-	HAS_CSP,			/* ... or for the mode */
-	NUMBER,				/* the number beside it */
-	BEAT_MS,			/* how often it is to be heard */
-	MASTER_BEAT,			/* whose heartbeat it is to miss */
-	RPDO_OFF, RPDO_ON, TPDO_OFF, TPDO_ON,
-	TIME_VALUE, TIME_INDEX,		/* of interpolation: value * 10^index s */
-};
-
-struct step {
-	uint16_t index;
-	uint8_t sub, bytes;
-	enum what what;
-	uint32_t number;
-	bool may_miss;			/* a drive may not have it */
-};
-
-/* clang-format off */
-static const struct step steps[] = {
-	{ 0x1000, 0, 4, IS_402,      0,          false },
-	{ 0x6502, 0, 4, HAS_CSP,     0,          true },
-	{ 0x1017, 0, 2, BEAT_MS,     0,          false },
-	{ 0x1016, 1, 4, MASTER_BEAT, 0,          true },
-	{ 0x1400, 1, 4, RPDO_OFF,    0,          false },
-	{ 0x1400, 2, 1, NUMBER,      EVERY_SYNC, false },
-	{ 0x1600, 0, 1, NUMBER,      0,          false },
-	{ 0x1600, 1, 4, NUMBER,      0x60400010, false },
-	{ 0x1600, 2, 4, NUMBER,      0x607a0020, false },
-	{ 0x1600, 0, 1, NUMBER,      2,          false },
-	{ 0x1400, 1, 4, RPDO_ON,     0,          false },
-	{ 0x1800, 1, 4, TPDO_OFF,    0,          false },
-	{ 0x1800, 2, 1, NUMBER,      EVERY_SYNC, false },
-	{ 0x1a00, 0, 1, NUMBER,      0,          false },
-	{ 0x1a00, 1, 4, NUMBER,      0x60410010, false },
-	{ 0x1a00, 2, 4, NUMBER,      0x60640020, false },
-	{ 0x1a00, 0, 1, NUMBER,      2,          false },
-	{ 0x1800, 1, 4, TPDO_ON,     0,          false },
-	{ 0x1401, 1, 4, NUMBER,      PDO_OFF,    true },
-	{ 0x1402, 1, 4, NUMBER,      PDO_OFF,    true },
-	{ 0x1403, 1, 4, NUMBER,      PDO_OFF,    true },
-	{ 0x1801, 1, 4, NUMBER,      PDO_OFF,    true },
-	{ 0x1802, 1, 4, NUMBER,      PDO_OFF,    true },
-	{ 0x1803, 1, 4, NUMBER,      PDO_OFF,    true },
-	{ 0x6007, 0, 2, NUMBER,      ABORT_STOPS, true },
-	{ 0x6060, 0, 1, NUMBER,      MODE_CSP,   false },
-	{ 0x60c2, 1, 1, TIME_VALUE,  0,          true },
-	{ 0x60c2, 2, 1, TIME_INDEX,  0,          true },
-};
-/* clang-format on */
-
-#define NSTEPS	(sizeof(steps) / sizeof(steps[0]))
-
-/* The period as value * 10^index seconds, value one byte: 2, -3 is 2 ms. */
-static void interpolation_time(uint32_t period_us, uint32_t *value, int *index)
-{
-	*value = period_us;
-	*index = -6;
-	while (*value > 255 || (*value % 10 == 0 && *index < -3)) {
-		*value /= 10;
-		(*index)++;
-	}
-}
-
-static uint32_t number_of(const struct drive *d, const struct step *s)
-{
-	const struct drive_config *c = &d->c;
-	uint32_t value;
-	int index;
-
-	interpolation_time(c->period_us, &value, &index);
-	switch (s->what) {
-	case BEAT_MS:
-		return c->heartbeat_ms;
-	case MASTER_BEAT:
-		return (uint32_t)c->master << 16 | c->heartbeat_ms * 5 / 2;
-	case RPDO_OFF:
-		return PDO_OFF | (CAN_RPDO1 + (uint32_t)c->node);
-	case RPDO_ON:
-		return CAN_RPDO1 + (uint32_t)c->node;
-	case TPDO_OFF:
-		return PDO_OFF | PDO_NO_RTR | (CAN_TPDO1 + (uint32_t)c->node);
-	case TPDO_ON:
-		return PDO_NO_RTR | (CAN_TPDO1 + (uint32_t)c->node);
-	case TIME_VALUE:
-		return value;
-	case TIME_INDEX:
-		return (uint8_t)index;
-	default:
-		return s->number;
-	}
-}
-
 /* Expedited, with its size: CiA 301. */
-static struct can_msg download(const struct drive *d, const struct step *s,
-			       uint32_t number)
+static struct can_msg download(const struct drive *d,
+			       const struct drive_write *w)
 {
 	struct can_msg m = { .id = (uint16_t)(CAN_SDO_ASK + d->c.node),
 			     .len = 8 };
 
-	m.data[0] = (uint8_t)(0x23 | (4 - s->bytes) << 2);
-	can_put(m.data + 1, s->index, 2);
-	m.data[3] = s->sub;
-	can_put(m.data + 4, number, s->bytes);
+	m.data[0] = (uint8_t)(0x23 | (4 - w->bytes) << 2);
+	can_put(m.data + 1, w->index, 2);
+	m.data[3] = w->sub;
+	can_put(m.data + 4, w->value, w->bytes);
 	return m;
 }
 
-static bool reads(const struct step *s)
+static struct can_msg upload(const struct drive *d, const struct drive_write *w)
 {
-	return s->what == IS_402 || s->what == HAS_CSP;
-}
+	struct can_msg m = { .id = (uint16_t)(CAN_SDO_ASK + d->c.node),
+			     .len = 8, .data = { SDO_UPLOAD } };
 
-static struct can_msg request(const struct drive *d, const struct step *s)
-{
-	struct can_msg m = download(d, s, 0);
-
-	if (!reads(s))
-		return download(d, s, number_of(d, s));
-	m.data[0] = SDO_UPLOAD;
+	can_put(m.data + 1, w->index, 2);
+	m.data[3] = w->sub;
 	return m;
 }
 
@@ -158,36 +56,54 @@ static struct can_msg nmt(const struct drive *d, uint8_t command)
 void drive_setup_again(struct drive *d)
 {
 	d->phase = DRIVE_SILENT;
-	d->step = d->tries = 0;
-	d->quiet = d->asked = false;
+	d->step = d->tries = d->choice = 0;
+	d->quiet = d->asked = d->reading_back = d->remode = false;
+	d->shows_mode = false;
 }
 
+/* The heartbeat is no longer watched, but names us: the drive was not off. */
 size_t drive_setup_end(const struct drive *d, struct can_msg *ret)
 {
-	static const struct step beat = { 0x1016, 1, 4, MASTER_BEAT, 0, true };
+	const struct drive_write beat = {
+		0x1016, 1, 4, (uint32_t)d->c.master << 16, false
+	};
 
 	if (d->phase == DRIVE_SILENT)
 		return 0;
-	ret[0] = download(d, &beat, 0);
+	ret[0] = download(d, &beat);
 	ret[1] = nmt(d, NMT_QUIET);
 	return DRIVE_ENDS;
 }
 
+static size_t start(struct drive *d, struct can_msg *ret)
+{
+	d->phase = DRIVE_RUNNING;
+	d->silent = 0;
+	d->missing = 0;
+	d->heard = d->stands = false;
+	*ret = nmt(d, NMT_START);
+	return 1;
+}
+
+static size_t ask(struct drive *d, const struct drive_step *s,
+		  struct can_msg *ret)
+{
+	d->asked = true;
+	d->waited = 0;
+	*ret = s->reads || d->reading_back ? upload(d, &s->write) :
+					     download(d, &s->write);
+	return 1;
+}
+
 size_t drive_setup_emit(struct drive *d, struct can_msg *ret)
 {
+	struct drive_step s;
+
 	if (d->phase == DRIVE_REFUSED)
 		return 0;
 	if (!d->quiet) {
 		d->quiet = true;
 		*ret = nmt(d, NMT_QUIET);
-		return 1;
-	}
-	if (d->step == NSTEPS) {
-		d->phase = DRIVE_RUNNING;
-		d->silent = 0;
-		d->missing = 0;
-		d->heard = false;
-		*ret = nmt(d, NMT_START);
 		return 1;
 	}
 	if (d->asked && d->waited++ < d->c.answer_cycles)
@@ -197,58 +113,159 @@ size_t drive_setup_emit(struct drive *d, struct can_msg *ret)
 		drive_setup_again(d);
 		return 0;
 	}
+	if (!drive_step_due(d, &s))
+		return start(d, ret);
+	return ask(d, &s, ret);
+}
+
+size_t drive_setup_remode(struct drive *d, struct can_msg *ret)
+{
+	if (!d->remode || (d->asked && d->waited++ < d->c.answer_cycles))
+		return 0;
 	d->asked = true;
 	d->waited = 0;
-	*ret = request(d, &steps[d->step]);
+	*ret = download(d, &drive_mode_csp);
 	return 1;
 }
 
-static void refuse(struct drive *d, const struct step *s, uint32_t code)
+/* -- Answers ------------------------------------------------------------------ */
+
+static void note_abort(struct drive *d, const struct drive_write *w,
+		       uint32_t code, enum drive_passed passed)
+{
+	d->aborts++;
+	d->abort = code;
+	d->abort_index = w->index;
+	d->abort_sub = w->sub;
+	d->abort_value = w->value;
+	d->passed = passed;
+}
+
+static void refuse(struct drive *d)
 {
 	d->phase = DRIVE_REFUSED;
-	d->abort = code;
-	d->abort_index = s->index;
-	d->abort_sub = s->sub;
 	if (d->trouble == DRIVE_WELL)
 		d->trouble = DRIVE_MISCONFIGURED;
 }
 
-static bool is_answer(const struct drive *d, const struct step *s,
+static bool is_answer(const struct drive *d, const struct drive_write *w,
 		      const struct can_msg *m)
 {
-	if (!d->asked || can_get(m->data + 1, 2) != s->index ||
-	    m->data[3] != s->sub)
-		return false;
-	if (m->data[0] == SDO_ABORT)
-		return true;
-	return reads(s) ? (m->data[0] & 0xe0) == SDO_UPLOAD :
-			  m->data[0] == SDO_STORED;
+	return d->asked && can_get(m->data + 1, 2) == w->index &&
+	       m->data[3] == w->sub;
 }
 
-/* What was read is what a drive must have. */
-static bool is_fit(const struct step *s, uint32_t word)
+/* Of an upload, as many bytes as it says. */
+static uint32_t word_of(const struct can_msg *m)
 {
-	return s->what == IS_402 ? (word & 0xffff) == PROFILE_402 :
-	       s->what == HAS_CSP ? (word & CSP_BIT) != 0 : true;
+	const int bytes = m->data[0] & 1 ? 4 - (m->data[0] >> 2 & 3) : 4;
+
+	return can_get(m->data + 4, bytes);
+}
+
+/* The object is not there, or cannot be mapped; all else is a refusal. */
+static bool is_missing(uint32_t code, const struct drive_step *s)
+{
+	return code == 0x06020000 || code == 0x06040041 ||
+	       (code == 0x06090011 && s->write.sub > 0);
+}
+
+static void on_abort(struct drive *d, const struct drive_step *s,
+		     uint32_t code)
+{
+	const bool passes = s->write.may_miss && is_missing(code, s);
+
+	if (d->reading_back) {
+		/* It cannot be read either: what counts is the write. */
+		note_abort(d, &s->write, d->refused, DRIVE_NOT_PASSED);
+		refuse(d);
+		return;
+	}
+	if (!s->reads && !passes && !s->has_choice) {
+		d->refused = code;
+		d->reading_back = true;
+		return;
+	}
+	note_abort(d, &s->write, code, passes ? DRIVE_WITHOUT :
+		   s->has_choice ? DRIVE_ANOTHER : DRIVE_NOT_PASSED);
+	if (passes)
+		drive_step_missing(d, s);
+	else if (!s->has_choice || !drive_step_choose(d))
+		refuse(d);
+}
+
+static void on_word(struct drive *d, const struct drive_step *s, uint32_t word)
+{
+	const uint32_t mask = s->write.bytes == 4 ? UINT32_MAX :
+			      (1u << 8 * s->write.bytes) - 1;
+
+	if (d->reading_back) {
+		const bool same = (word & mask) == (s->write.value & mask);
+
+		d->reading_back = false;
+		note_abort(d, &s->write, d->refused,
+			   same ? DRIVE_ALREADY : DRIVE_NOT_PASSED);
+		if (same)
+			d->step++;
+		else
+			refuse(d);
+		return;
+	}
+	d->word = word & mask;
+	if (drive_step_fits(d, s)) {
+		d->step++;
+		return;
+	}
+	note_abort(d, &(struct drive_write) {
+		s->write.index, s->write.sub, s->write.bytes, d->word, false
+	}, 0, s->has_choice ? DRIVE_ANOTHER : DRIVE_NOT_PASSED);
+	if (!s->has_choice || !drive_step_choose(d))
+		refuse(d);
+}
+
+static void hear_remode(struct drive *d, const struct can_msg *m)
+{
+	if (!is_answer(d, &drive_mode_csp, m) ||
+	    (m->data[0] != SDO_STORED && m->data[0] != SDO_ABORT)) {
+		d->malformed++;
+		return;
+	}
+	d->asked = d->remode = false;
+	if (m->data[0] != SDO_ABORT)
+		return;
+	note_abort(d, &drive_mode_csp, can_get(m->data + 4, 4),
+		   DRIVE_NOT_PASSED);
+	if (d->trouble == DRIVE_WELL)
+		d->trouble = DRIVE_OTHER_MODE;
 }
 
 void drive_setup_receive(struct drive *d, const struct can_msg *m)
 {
-	const struct step *s = &steps[d->step < NSTEPS ? d->step : 0];
-	uint32_t word;
+	struct drive_step s;
+	bool reads;
 
-	if (d->phase > DRIVE_CONFIGURED_NEXT || d->step >= NSTEPS ||
-	    !is_answer(d, s, m)) {
+	if (d->phase == DRIVE_RUNNING) {
+		hear_remode(d, m);
+		return;
+	}
+	if (d->phase > DRIVE_CONFIGURED_NEXT || !drive_step_due(d, &s) ||
+	    !is_answer(d, &s.write, m)) {
 		d->malformed++;
 		return;
 	}
-	word = can_get(m->data + 4, 4);
-	if (m->data[0] == SDO_ABORT ? !s->may_miss : !is_fit(s, word)) {
-		refuse(d, s, word);
+	reads = s.reads || d->reading_back;
+	if (m->data[0] != SDO_ABORT && (reads ?
+	    (m->data[0] & 0xf2) != SDO_EXPEDITED : m->data[0] != SDO_STORED)) {
+		d->malformed++;
 		return;
 	}
 	d->phase = DRIVE_CONFIGURED_NEXT;
-	d->step++;
 	d->tries = 0;
 	d->asked = false;
+	if (m->data[0] == SDO_ABORT)
+		on_abort(d, &s, can_get(m->data + 4, 4));
+	else if (reads)
+		on_word(d, &s, word_of(m));
+	else
+		drive_step_done(d, &s);
 }

@@ -55,6 +55,13 @@ enum drive_state drive_state_of(uint16_t status)
 	return DRIVE_NOT_READY;
 }
 
+/* Before it is ready its count may be anything, and in a fault too. */
+bool drive_has_place(enum drive_state s)
+{
+	return s != DRIVE_NOT_READY && s != DRIVE_FAULT_REACTION &&
+	       s != DRIVE_FAULT;
+}
+
 uint16_t drive_control(enum drive_goal goal, enum drive_state s)
 {
 	return control[goal][s];
@@ -87,7 +94,57 @@ const char *drive_trouble_name(enum drive_trouble t)
 		[DRIVE_NO_ANSWER]	= "does not answer to SYNC",
 		[DRIVE_REBOOTED]	= "has restarted",
 		[DRIVE_MISCONFIGURED]	= "refuses its configuration",
+		[DRIVE_OTHER_MODE]	= "is not in mode 8, cyclic "
+					  "synchronous position",
+		[DRIVE_NOT_LED]		= "ignores its target: bit 12 of its "
+					  "statusword is 0",
+		[DRIVE_LIMITED]		= "clips its target: bit 11 of its "
+					  "statusword stays 1",
+		[DRIVE_NOT_STARTED]	= "is no longer operational: somebody "
+					  "stopped it by NMT",
 	};
 
 	return t < DRIVE_NTROUBLES ? names[t] : "?";
+}
+
+const char *drive_abort_text(uint32_t code)
+{
+	static const struct {
+		uint32_t code;
+		const char *text;
+	} texts[] = {
+		{ 0x05030000, "toggle bit not alternated" },
+		{ 0x05040000, "SDO protocol timed out" },
+		{ 0x05040001, "command not known" },
+		{ 0x05040005, "out of memory" },
+		{ 0x06010000, "access not supported" },
+		{ 0x06010001, "write only" },
+		{ 0x06010002, "read only" },
+		{ 0x06020000, "no such object" },
+		{ 0x06040041, "object cannot be mapped" },
+		{ 0x06040042, "more than a PDO holds" },
+		{ 0x06040043, "parameters do not go together" },
+		{ 0x06040047, "incompatible inside the device" },
+		{ 0x06060000, "hardware error" },
+		{ 0x06070010, "wrong length" },
+		{ 0x06070012, "too long" },
+		{ 0x06070013, "too short" },
+		{ 0x06090011, "no such sub-index" },
+		{ 0x06090030, "value out of range" },
+		{ 0x06090031, "value too high" },
+		{ 0x06090032, "value too low" },
+		{ 0x06090036, "maximum below minimum" },
+		{ 0x060a0023, "resource not available" },
+		{ 0x08000000, "general error" },
+		{ 0x08000020, "cannot be stored" },
+		{ 0x08000021, "cannot be stored: local control" },
+		{ 0x08000022, "cannot be stored in this state" },
+		{ 0x08000023, "no object dictionary" },
+		{ 0x08000024, "no data" },
+	};
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++)
+		if (texts[i].code == code)
+			return texts[i].text;
+	return "code of the maker";
 }

@@ -67,6 +67,8 @@ struct io_inputs {
 	uint32_t index;			/* index mark passed in this period */
 	enum io_trouble trouble;	/* until a reset */
 	bool starting;			/* not up yet: nothing can begin */
+	uint32_t unplaced;		/* bit per axis: its drive has lost count
+					 * of its place, as of this period */
 	bool axes_off;			/* not under power, or not yet on their
 					 * places: no motion can begin */
 	struct io_plc plc;

@@ -7,9 +7,13 @@
  */
 #include "plc.h"
 
+#include <string.h>
+
 #define NTPDO		4
 #define STATE_OPERATES	0x05
 #define STATE_READY	0x7f		/* pre-operational */
+#define STATE_STOPPED	0x04
+#define FAULT_CODE	0xff00u		/* emergency: of the device, and which */
 
 static const uint16_t tpdo_id[NTPDO + 1] = { 0, 0x180, 0x280, 0x380, 0x480 };
 
@@ -52,17 +56,18 @@ static void hear_nmt(struct plc *p, const struct can_msg *m)
 		return;
 	switch (m->data[0]) {
 	case 0x01:
-		p->operational = true;
-		break;
 	case 0x02:
 	case 0x80:
-		p->operational = false;
+		p->operational = m->data[0] == 0x01;
+		p->stopped = m->data[0] == 0x02;
 		break;
 	case 0x81:
 	case 0x82:
-		p->operational = false;
-		p->booted = false;
+		p->operational = p->stopped = p->booted = false;
 		p->ask = (struct plc_ask) { 0 };
+		/* What it asked is gone, and so is the PLC till it turns. */
+		p->alive = false;
+		p->since_turn = p->alive_cycles;
 		break;
 	default:
 		p->refused++;
@@ -94,6 +99,8 @@ bool plc_receive(struct plc *p, const struct can_msg *m)
 	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
 		if (m->id != kinds[i].id + kinds[i].plus_node * p->node)
 			continue;
+		if (p->stopped && m->id == CAN_SDO_ASK + p->node)
+			return true;
 		if (m->len == kinds[i].len)
 			kinds[i].hear(p, m);
 		else
@@ -142,6 +149,30 @@ static struct can_msg beat(const struct plc *p, uint8_t state)
 				  .len = 1, .data = { state } };
 }
 
+/* A fault, and its end, once each; not while stopped. */
+static bool emergency_due(struct plc *p, struct can_msg *ret)
+{
+	const uint8_t fault = p->tell.fault;
+	const uint32_t code = fault ? FAULT_CODE | fault : 0;
+
+	p->register_1001 = fault != 0;
+	if (fault == p->fault_sent || p->stopped || !p->booted)
+		return false;
+	p->fault_sent = fault;
+	*ret = (struct can_msg) { .id = (uint16_t)(CAN_EMCY + p->node),
+				  .len = 8 };
+	can_put(ret->data, code, 2);
+	ret->data[2] = p->register_1001;
+	if (fault) {
+		memmove(p->history + 1, p->history,
+			sizeof(p->history) - sizeof(p->history[0]));
+		p->history[0] = code;
+		p->nhistory = (uint8_t)(p->nhistory < PLC_HISTORY ?
+					p->nhistory + 1 : PLC_HISTORY);
+	}
+	return true;
+}
+
 /* One TPDO a period, so that the bus is not flooded at once. */
 static bool send_next(struct plc *p)
 {
@@ -165,8 +196,10 @@ size_t plc_emit(struct plc *p, struct can_msg *ret)
 	} else if (p->beat_in-- == 0) {
 		p->beat_in = p->beat_cycles - 1;
 		ret[n++] = beat(p, p->operational ? STATE_OPERATES :
-						    STATE_READY);
+				p->stopped ? STATE_STOPPED : STATE_READY);
 	}
+	if (emergency_due(p, &ret[n]))
+		n++;
 	if (p->answers)
 		ret[n++] = p->answer;
 	p->answers = false;

@@ -99,6 +99,8 @@ struct plc_signal {
 extern const struct plc_signal plc_signal[];
 extern const size_t plc_nsignals;
 
+#define PLC_HISTORY	8
+
 struct plc {
 	uint8_t node;
 	uint32_t beat_cycles, send_cycles;	/* own heartbeat and TPDOs */
@@ -106,11 +108,15 @@ struct plc {
 	uint32_t beat_in, send_in;
 	struct plc_tell tell;
 	struct plc_ask ask;
-	bool operational;		/* NMT */
+	bool operational, stopped;	/* NMT */
 	uint32_t since_turn;		/* cycles since the toggle turned */
 	bool alive;
 	bool toggle;
 	bool booted;			/* the boot-up message is out */
+	uint8_t register_1001;		/* error register; bit 0: a fault */
+	uint8_t fault_sent;		/* by an emergency message */
+	uint32_t history[PLC_HISTORY];	/* 1003: the newest first */
+	uint8_t nhistory;
 	uint32_t malformed, refused;	/* frames and values, in all */
 	uint32_t twins;			/* frames of another one of our node */
 	struct can_msg answer;		/* of the SDO server, if */
@@ -135,7 +141,8 @@ bool plc_receive(struct plc *p, const struct can_msg *m);
  */
 size_t plc_emit(struct plc *p, struct can_msg *ret);
 
-#define PLC_EMITS	3		/* heartbeat, SDO answer, one TPDO */
+#define PLC_EMITS	4		/* heartbeat, emergency, SDO answer, one
+					 * TPDO */
 
 /** plc_period() - once a period before the frames: time goes by. */
 void plc_period(struct plc *p);
@@ -174,13 +181,15 @@ uint32_t plc_value(const struct plc *p, const struct plc_signal *s);
 /** plc_take() - put @raw into its signal; false if it is out of range. */
 bool plc_take(struct plc *p, const struct plc_signal *s, uint32_t raw);
 
-/* The rest of the dictionary: constants a master asks for. */
+/* What a master asks for besides, and may write only as it is. */
+enum plc_live { PLC_FIXED, PLC_PLUS_NODE, PLC_REGISTER, PLC_ERRORS, PLC_ERROR };
+
 struct plc_constant {
 	uint16_t index;
 	uint8_t sub;
 	enum plc_type type;
 	uint32_t value;
-	bool plus_node;
+	enum plc_live live;		/* not the value alone */
 	const char *name;
 };
 

@@ -27,8 +27,9 @@ static void eds_value(FILE *f, const char *name, enum plc_type t,
 
 static void eds_constant(FILE *f, const struct plc_constant *c)
 {
-	eds_value(f, c->name, c->type, "ro", false);
-	if (c->plus_node)
+	eds_value(f, c->name, c->type, c->live == PLC_ERRORS ? "rw" : "ro",
+		  false);
+	if (c->live == PLC_PLUS_NODE)
 		fprintf(f, "DefaultValue=$NODEID+0x%" PRIx32 "\n", c->value);
 	else
 		fprintf(f, "DefaultValue=0x%" PRIx32 "\n", c->value);

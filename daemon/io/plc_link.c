@@ -76,7 +76,10 @@ int plc_link_open(struct plc_link *l, const struct machine_config *c,
 	memcpy(l->interface, c->plc.interface, sizeof(l->interface));
 	l->fd = can_socket_open(c->plc.interface, hear,
 				sizeof(hear) / sizeof(hear[0]));
-	return l->fd < 0 ? refuse(c, l->fd, diag) : 0;
+	if (l->fd < 0)
+		return refuse(c, l->fd, diag);
+	can_socket_queue(l->fd, 2 * PLC_EMITS);
+	return 0;
 }
 
 void plc_link_close(struct plc_link *l)
@@ -110,6 +113,12 @@ static void receive(struct plc_link *l)
 			break;
 		case CAN_ODD:
 			l->plc.malformed++;
+			break;
+		case CAN_WARNING:
+			add(l, PLC_WARNINGS);
+			break;
+		case CAN_PASSIVE:
+			add(l, PLC_PASSIVE);
 			break;
 		case CAN_BUS_OFF:
 			add(l, PLC_BUS_OFF);
@@ -199,6 +208,10 @@ static void say(const struct plc_link *l, enum plc_count i, uint32_t n,
 		[PLC_TWINS] = "frames of another device that has our node",
 		[PLC_UNSENT] = "frames not sent: is anything else on the bus? "
 			       "else its queue, txqueuelen 100",
+		[PLC_WARNINGS] = "many errors on the bus (error warning); check "
+				 "cable and termination",
+		[PLC_PASSIVE] = "the controller is error passive; bus off is "
+				"next; check cable, termination and bit rate",
 		[PLC_BUS_OFF] = "bus off; check cable and termination, then "
 				"restart the interface",
 		[PLC_DOWN] = "the interface is down",

@@ -32,6 +32,7 @@ enum plc_count {
 	PLC_REFUSED,			/* values and objects */
 	PLC_TWINS,			/* frames of another device of our node */
 	PLC_UNSENT,			/* frames, the queue was full */
+	PLC_WARNINGS, PLC_PASSIVE,	/* errors on the bus */
 	PLC_BUS_OFF,
 	PLC_DOWN,			/* times the interface went down */
 	PLC_NCOUNTS

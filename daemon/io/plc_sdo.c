@@ -90,6 +90,23 @@ static const struct plc_constant *constant_at(uint16_t index, uint8_t sub)
 	return NULL;
 }
 
+static uint32_t constant_value(const struct plc *p,
+			       const struct plc_constant *c)
+{
+	switch (c->live) {
+	case PLC_PLUS_NODE:
+		return c->value + p->node;
+	case PLC_REGISTER:
+		return p->register_1001;
+	case PLC_ERRORS:
+		return p->nhistory;
+	case PLC_ERROR:
+		return p->history[c->sub - 1];
+	default:
+		return c->value;
+	}
+}
+
 static void say_abort(struct plc *p, uint32_t code)
 {
 	p->answer.data[0] = ABORT << 5;
@@ -112,10 +129,38 @@ static void upload(struct plc *p, uint16_t index, uint8_t sub)
 		say_missing(p, index);
 		return;
 	}
+	if (c && c->live == PLC_ERROR && c->sub > p->nhistory) {
+		say_abort(p, ABORT_NO_SUB);
+		return;
+	}
 	bytes = plc_bytes(s ? s->type : c->type);
 	p->answer.data[0] = (uint8_t)(0x43 | (4 - bytes) << 2);
 	can_put(p->answer.data + 4, s ? plc_value(p, s) :
-		c->value + (c->plus_node ? p->node : 0u), 4);
+		constant_value(p, c), 4);
+}
+
+/* The value it has may be written: tools write all they know. */
+static bool is_as_it_is(const struct plc *p, const struct plc_constant *c,
+			const struct can_msg *m)
+{
+	return m->data[0] & 2 &&
+	       can_get(m->data + 4, (int)plc_bytes(c->type)) ==
+	       constant_value(p, c);
+}
+
+static void download_constant(struct plc *p, const struct plc_constant *c,
+			      const struct can_msg *m)
+{
+	const bool clears = c->live == PLC_ERRORS && m->data[4] == 0;
+
+	if (!clears && !is_as_it_is(p, c, m)) {
+		say_abort(p, c->live == PLC_ERRORS ? ABORT_RANGE :
+						     ABORT_READ_ONLY);
+		return;
+	}
+	if (clears)
+		p->nhistory = 0;
+	p->answer.data[0] = 3 << 5;
 }
 
 static void download(struct plc *p, const struct can_msg *m, uint16_t index,
@@ -127,7 +172,9 @@ static void download(struct plc *p, const struct can_msg *m, uint16_t index,
 
 	if (!s && !constant_at(index, sub))
 		say_missing(p, index);
-	else if (!s || !s->asked)
+	else if (!s)
+		download_constant(p, constant_at(index, sub), m);
+	else if (!s->asked)
 		say_abort(p, ABORT_READ_ONLY);
 	else if (!expedited || (sized && bytes != plc_bytes(s->type)))
 		say_abort(p, ABORT_LENGTH);

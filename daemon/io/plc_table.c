@@ -74,27 +74,34 @@ const size_t plc_nsignals = sizeof(plc_signal) / sizeof(plc_signal[0]);
 
 /* How a frame is sent, and what object stands in it. */
 #define TPDO(n, at, id) \
-	{ at, 0, PLC_U8, 2, false, "TPDO" #n ", highest sub-index" }, \
-	{ at, 1, PLC_U32, NO_RTR | (id), true, "TPDO" #n " COB-ID" }, \
-	{ at, 2, PLC_U8, 254, false, "TPDO" #n " transmission type" }
+	{ at, 0, PLC_U8, 2, PLC_FIXED, "TPDO" #n ", highest sub-index" }, \
+	{ at, 1, PLC_U32, NO_RTR | (id), PLC_PLUS_NODE, "TPDO" #n " COB-ID" }, \
+	{ at, 2, PLC_U8, 254, PLC_FIXED, "TPDO" #n " transmission type" }
 #define MAPPED(frame, at, i, index, sub, bits) \
 	{ at, i, PLC_U32, (uint32_t)(index) << 16 | (sub) << 8 | (bits), \
-	  false, #frame " object " #i }
+	  PLC_FIXED, #frame " object " #i }
+
+#define ERROR_AT(i) \
+	{ 0x1003, i, PLC_U32, 0, PLC_ERROR, "Error " #i }
 
 const struct plc_constant plc_constant[] = {
-	{ 0x1000, 0, PLC_U32, 0, false, "Device type" },
-	{ 0x1001, 0, PLC_U8, 0, false, "Error register" },
+	{ 0x1000, 0, PLC_U32, 0, PLC_FIXED, "Device type" },
+	{ 0x1001, 0, PLC_U8, 0, PLC_REGISTER, "Error register" },
+	{ 0x1003, 0, PLC_U8, 0, PLC_ERRORS, "Errors, number of them" },
+	ERROR_AT(1), ERROR_AT(2), ERROR_AT(3), ERROR_AT(4),
+	ERROR_AT(5), ERROR_AT(6), ERROR_AT(7), ERROR_AT(8),
 	{ 0x1008, 0, PLC_U32, 0x646d6465, false,
 	  "Manufacturer device name" },		/* "edmd" */
-	{ 0x1017, 0, PLC_U16, 100, false, "Producer heartbeat time" },
-	{ 0x1018, 0, PLC_U8, 3, false, "Identity, highest sub-index" },
-	{ 0x1018, 1, PLC_U32, 0, false, "Vendor" },
-	{ 0x1018, 2, PLC_U32, 0x65646d64, false, "Product code" },
-	{ 0x1018, 3, PLC_U32, 1, false, "Revision number" },
-	{ 0x1400, 0, PLC_U8, 2, false, "RPDO1, highest sub-index" },
-	{ 0x1400, 1, PLC_U32, CAN_RPDO1, true, "RPDO1 COB-ID" },
-	{ 0x1400, 2, PLC_U8, 255, false, "RPDO1 transmission type" },
-	{ 0x1600, 0, PLC_U8, 6, false, "RPDO1 mapping, objects" },
+	{ 0x1014, 0, PLC_U32, CAN_EMCY, PLC_PLUS_NODE, "COB-ID EMCY" },
+	{ 0x1017, 0, PLC_U16, 100, PLC_FIXED, "Producer heartbeat time" },
+	{ 0x1018, 0, PLC_U8, 3, PLC_FIXED, "Identity, highest sub-index" },
+	{ 0x1018, 1, PLC_U32, 0, PLC_FIXED, "Vendor" },
+	{ 0x1018, 2, PLC_U32, 0x65646d64, PLC_FIXED, "Product code" },
+	{ 0x1018, 3, PLC_U32, 1, PLC_FIXED, "Revision number" },
+	{ 0x1400, 0, PLC_U8, 2, PLC_FIXED, "RPDO1, highest sub-index" },
+	{ 0x1400, 1, PLC_U32, CAN_RPDO1, PLC_PLUS_NODE, "RPDO1 COB-ID" },
+	{ 0x1400, 2, PLC_U8, 255, PLC_FIXED, "RPDO1 transmission type" },
+	{ 0x1600, 0, PLC_U8, 6, PLC_FIXED, "RPDO1 mapping, objects" },
 	MAPPED(RPDO1, 0x1600, 1, 0x2100, 1, 8),
 	MAPPED(RPDO1, 0x1600, 2, 0x2100, 2, 8),
 	MAPPED(RPDO1, 0x1600, 3, 0x2100, 3, 16),
@@ -105,25 +112,25 @@ const struct plc_constant plc_constant[] = {
 	TPDO(2, 0x1801, 0x280),
 	TPDO(3, 0x1802, 0x380),
 	TPDO(4, 0x1803, 0x480),
-	{ 0x1a00, 0, PLC_U8, 6, false, "TPDO1 mapping, objects" },
+	{ 0x1a00, 0, PLC_U8, 6, PLC_FIXED, "TPDO1 mapping, objects" },
 	MAPPED(TPDO1, 0x1a00, 1, 0x2000, 1, 8),
 	MAPPED(TPDO1, 0x1a00, 2, 0x2000, 2, 8),
 	MAPPED(TPDO1, 0x1a00, 3, 0x2000, 3, 8),
 	MAPPED(TPDO1, 0x1a00, 4, 0x2000, 4, 8),
 	MAPPED(TPDO1, 0x1a00, 5, 0x2000, 5, 16),
 	MAPPED(TPDO1, 0x1a00, 6, 0x2000, 6, 16),
-	{ 0x1a01, 0, PLC_U8, 2, false, "TPDO2 mapping, objects" },
+	{ 0x1a01, 0, PLC_U8, 2, PLC_FIXED, "TPDO2 mapping, objects" },
 	MAPPED(TPDO2, 0x1a01, 1, 0x2000, 7, 32),
 	MAPPED(TPDO2, 0x1a01, 2, 0x2000, 8, 32),
-	{ 0x1a02, 0, PLC_U8, 2, false, "TPDO3 mapping, objects" },
+	{ 0x1a02, 0, PLC_U8, 2, PLC_FIXED, "TPDO3 mapping, objects" },
 	MAPPED(TPDO3, 0x1a02, 1, 0x2001, 1, 32),
 	MAPPED(TPDO3, 0x1a02, 2, 0x2001, 2, 32),
-	{ 0x1a03, 0, PLC_U8, 2, false, "TPDO4 mapping, objects" },
+	{ 0x1a03, 0, PLC_U8, 2, PLC_FIXED, "TPDO4 mapping, objects" },
 	MAPPED(TPDO4, 0x1a03, 1, 0x2001, 3, 32),
 	MAPPED(TPDO4, 0x1a03, 2, 0x2001, 6, 32),
-	{ 0x2000, 0, PLC_U8, 8, false, "Machine, highest sub-index" },
-	{ 0x2001, 0, PLC_U8, 8, false, "Positions, highest sub-index" },
-	{ 0x2100, 0, PLC_U8, 6, false, "PLC, highest sub-index" },
+	{ 0x2000, 0, PLC_U8, 8, PLC_FIXED, "Machine, highest sub-index" },
+	{ 0x2001, 0, PLC_U8, 8, PLC_FIXED, "Positions, highest sub-index" },
+	{ 0x2100, 0, PLC_U8, 6, PLC_FIXED, "PLC, highest sub-index" },
 };
 /* clang-format on */
 

@@ -36,7 +36,7 @@ static const char *answer_text(int code)
 	case SHM_ELSEWHERE:
 		return "the axes moved since it was compiled";
 	case SHM_NOT_UP:
-		return "its drives are not up yet";
+		return "its drives are not up yet; start goes on once they are";
 	case SHM_LOCKED:
 		return "a guard or the PLC does not permit it; start goes on once "
 		       "they do";
@@ -54,7 +54,9 @@ static void on_asked(void *arg, int code)
 	j->queue.asked = false;
 	if (code == SHM_DONE)
 		j->queue.again_us = 0;
-	if (code == SHM_LOCKED)
+	/* Nothing starts by itself because a PLC permits it, or a drive is
+	 * switched on, later. */
+	if (code == SHM_LOCKED || code == SHM_NOT_UP)
 		queue_wait(j);
 	if (code != SHM_DONE && code != -ENOTCONN) {
 		j->queue.again_us = jobs_now_us() + AGAIN_US;

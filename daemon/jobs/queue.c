@@ -344,10 +344,11 @@ static void fault_without_job(struct jobs *j)
 	}, "fault %s without a job; reset leaves it", fault);
 }
 
-/* An axis under way has no place to begin at; nor one not homed, if it must. */
+/* An axis under way has no place to begin at; nor one not homed, if it must;
+ * nor one whose drive has lost it. */
 static bool may_load(const struct jobs *j)
 {
-	return j->link.snap.state == SHM_IDLE &&
+	return j->link.snap.state == SHM_IDLE && !j->link.snap.unplaced &&
 	       !(j->config->require_home && j->link.snap.unhomed);
 }
 

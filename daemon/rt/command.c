@@ -22,8 +22,8 @@ static enum cycle_answer may_begin(const struct cycle *c)
 /* In order, and not on its way to a fault or to the job's end. */
 static bool stands_held(const struct cycle *c)
 {
-	return c->state == STATE_HOLD && c->after_stand == STATE_HOLD &&
-	       !c->moving && c->fault.latched == 0;
+	return c->state == STATE_HOLD && c->hold.then == STATE_HOLD &&
+	       !c->hold.moving && c->fault.latched == 0;
 }
 
 static enum cycle_answer do_start(struct cycle *c, double arg_mm)
@@ -37,7 +37,8 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 		return ANSWER_WRONG_STATE;
 	if (c->limit.on)
 		return ANSWER_AT_LIMIT;
-	if (c->config.require_home && manual_unhomed(c))
+	if (c->manual.unplaced ||
+	    (c->config.require_home && manual_unhomed(c)))
 		return ANSWER_NOT_HOMED;
 	answer = may_begin(c);
 	if (answer != ANSWER_DONE)
@@ -62,7 +63,7 @@ static enum cycle_answer do_hold(struct cycle *c, double arg_mm)
 		return ANSWER_NO_PROGRAM;
 	if (c->state == STATE_FAULT)
 		return ANSWER_WRONG_STATE;
-	c->moving = false;
+	c->hold.moving = false;
 	axes_forget(c);
 	cycle_happen(c, EVENT_HOLD);
 	return ANSWER_DONE;
@@ -81,9 +82,9 @@ static enum cycle_answer do_stop(struct cycle *c, double arg_mm)
 	}
 	cycle_happen(c, EVENT_STOP);
 	axes_forget(c);
-	c->moving = false;
-	if (c->after_stand == STATE_HOLD)
-		c->after_stand = STATE_IDLE;
+	c->hold.moving = false;
+	if (c->hold.then == STATE_HOLD)
+		c->hold.then = STATE_IDLE;
 	return ANSWER_DONE;
 }
 
@@ -93,17 +94,19 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
-	if (c->fault.latched || c->after_stand != STATE_HOLD)
+	if (c->fault.latched || c->hold.then != STATE_HOLD)
 		return ANSWER_WRONG_STATE;
 	if (!(arg_mm > 0 && isfinite(arg_mm)))
 		return ANSWER_BAD_ARGUMENT;
+	if (c->manual.unplaced)
+		return ANSWER_NOT_HOMED;
 	answer = may_begin(c);
 	if (answer != ANSWER_DONE)
 		return answer;
 	cycle_happen(c, EVENT_HOLD);
 	axes_want(c, false);
-	c->moving = true;
-	c->move_to_mm = fmax(cycle_outer_mm(c), cycle_place_mm(c) - arg_mm);
+	c->hold.moving = true;
+	c->hold.to_mm = fmax(cycle_outer_mm(c), cycle_place_mm(c) - arg_mm);
 	return ANSWER_DONE;
 }
 
@@ -121,9 +124,11 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 		answer = may_begin(c);
 	if (answer != ANSWER_DONE)
 		return answer;
+	if (c->manual.unplaced)
+		return ANSWER_NOT_HOMED;
 	axes_want(c, false);
-	c->moving = true;
-	c->move_to_mm = to_mm;
+	c->hold.moving = true;
+	c->hold.to_mm = to_mm;
 	return ANSWER_DONE;
 }
 
@@ -237,13 +242,13 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->outcome = OUTCOME_NONE;
 	c->totals = (struct cycle_totals) { 0 };
 	c->far_mm = far_mm;
-	c->action_done = at->index;
+	c->job.action_done = at->index;
 	c->flush = (struct flush) { .far_mm = far_mm };
-	c->dwelling = false;
-	c->timed_end = 0;
+	c->job.dwelling = false;
+	c->timed.end = 0;
 	c->back_mm = 0;
 	mcode_begin(c, at->index);
-	c->power_off = false;
+	c->job.power_off = false;
 	c->probe = (struct probe) { .phase = PROBE_SETTLE };
 	for (int i = 0; i < INTERP_NAXES; i++)
 		c->out.target[i] = at->pos[i];

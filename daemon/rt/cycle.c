@@ -22,7 +22,7 @@ void cycle_init(struct cycle *c, const struct cycle_config *config)
 		.gap = config->gap,
 		.jump = config->jump,
 		.state = STATE_IDLE,
-		.after_stand = STATE_HOLD,
+		.hold.then = STATE_HOLD,
 		.override = 1,
 		.plc_override = NAN,
 		.out.pulse = { NAN, NAN, NAN, NAN, false },
@@ -84,7 +84,7 @@ static enum cycle_event look(struct cycle *c)
 	case STATE_RETRACT:
 		return retract_is_clear(c) ? EVENT_CLEAR : EVENT_NONE;
 	case STATE_JUMP:
-		return !c->lifting && c->sensed.contact ? EVENT_SHORT :
+		return !c->lift.up && c->sensed.contact ? EVENT_SHORT :
 							EVENT_NONE;
 	default:
 		return EVENT_NONE;
@@ -93,11 +93,11 @@ static enum cycle_event look(struct cycle *c)
 
 static void stand(struct cycle *c)
 {
-	if (c->state != STATE_HOLD || c->moving || c->mover.v_mm_s != 0)
+	if (c->state != STATE_HOLD || c->hold.moving || c->mover.v_mm_s != 0)
 		return;
-	if (c->after_stand == STATE_FAULT)
+	if (c->hold.then == STATE_FAULT)
 		cycle_enter(c, STATE_FAULT);
-	else if (c->after_stand == STATE_IDLE &&
+	else if (c->hold.then == STATE_IDLE &&
 		 contouring_rests(&c->contouring))
 		cycle_end_job(c, OUTCOME_STOPPED);
 }
@@ -113,7 +113,7 @@ static void meet_action(struct cycle *c)
 {
 	if (c->state == STATE_HOLD) {
 		mover_set(&c->mover, 0);
-		c->moving = false;
+		c->hold.moving = false;
 		return;
 	}
 	switch (walk_action(c)) {
@@ -167,7 +167,7 @@ static void go(struct cycle *c)
 	if (c->loaded && !conditions_follow(c))
 		fault_latch(&c->fault, FAULT_PROGRAM);
 	if (feed_done(c)) {
-		if (c->leaving)
+		if (c->lift.leaving)
 			timed_skip(c);
 		cycle_happen(c, EVENT_MOVE_DONE);
 	}
@@ -189,14 +189,14 @@ static void sum_up(struct cycle *c, bool running)
 /* By a command, and under power: what the axes lack goes with it. */
 static bool moves_by_will(const struct cycle *c)
 {
-	return !c->axes.awaited && (state_duty[c->state].running || c->moving ||
+	return !c->axes.awaited && (state_duty[c->state].running || c->hold.moving ||
 				    cycle_is_manual(c));
 }
 
 static void give(struct cycle *c, struct io_outputs *out)
 {
 	/* M5 is heeded in its own cycle, and in a way back that it met. */
-	c->out.power = state_duty[c->state].power && !c->power_off &&
+	c->out.power = state_duty[c->state].power && !c->job.power_off &&
 		       c->fault.latched == 0;
 	c->out.sense = c->state == STATE_PROBE;
 	if (c->loaded) {

@@ -202,6 +202,37 @@ struct cycle_ahead {
 	double place_mm, v_max_mm_s;
 };
 
+/* A jump: up, then down to just above the cut. */
+struct cycle_lift {
+	double from_mm, to_mm;		/* places: where it began, leads to */
+	bool up;			/* on its way up */
+	bool leaving;			/* the time of a part is up: it does not
+					 * come back */
+};
+
+/* Held: standing, braking, or moved along the path by a command. */
+struct cycle_hold {
+	bool moving;
+	double to_mm;			/* place that it moves to */
+	bool braked;			/* it has stood since */
+	enum cycle_state then;		/* the state to follow the stand */
+};
+
+/* A part of the program that ends by time as well: timed.h. */
+struct timed {
+	uint32_t end;			/* segment where it ends; 0: none */
+	uint64_t left;			/* cycles */
+	double from_mm;			/* place where it began */
+};
+
+/* How far the program's actions are done. */
+struct cycle_job {
+	uint32_t action_done;		/* all up to this segment are */
+	bool dwelling;
+	uint64_t dwell_left;		/* cycles */
+	bool power_off;			/* the program switched it off (M5) */
+};
+
 struct cycle {
 	struct cycle_config config;
 	struct cycle_gap_config gap;	/* in force: config's, and what the */
@@ -219,9 +250,8 @@ struct cycle {
 	struct gap_reading sensed;	/* this cycle's gap */
 	struct gap_memory gap_past;
 	double far_mm;			/* farthest place eroded or passed */
-	double jump_from_mm;		/* place the jump began */
-	double jump_to_mm;		/* place the lift or the return leads to */
-	double move_to_mm;		/* place a retract by command leads to */
+	struct cycle_lift lift;		/* a jump's, or a return's */
+	struct cycle_hold hold;
 	struct retract retract;		/* the one under way, or the last */
 	struct servo servo;
 	struct arcing arcing;
@@ -236,12 +266,7 @@ struct cycle {
 	struct comp comp;		/* from places to pulses */
 	struct contouring contouring;	/* for axes that lag */
 	double override;		/* of positioning; 1: as programmed */
-	bool lifting;			/* a jump on its way up */
-	bool leaving;			/* the time is up: a jump that does not
-					 * come back */
-	uint32_t timed_end;		/* segment where a time ends; 0: none */
-	uint64_t timed_left;		/* cycles */
-	double timed_from_mm;		/* place where it began */
+	struct timed timed;
 	struct io_plc plc;		/* as read */
 	bool plc_held;			/* it said so a period ago */
 	double plc_axes_c;		/* the temperature that it told then */
@@ -249,15 +274,9 @@ struct cycle {
 	struct mcode mcode;
 	struct progress progress;
 	double back_mm;			/* no way back beyond this place */
-	bool moving;			/* held, but walking back by command */
-	bool braked;			/* held, and has stood since */
-	enum cycle_state after_stand;	/* held: where to, once it stands */
-	uint64_t dwell_left;		/* cycles */
+	struct cycle_job job;
 	uint32_t overruns_in_row;
 	bool overran;			/* since the last step */
-	uint32_t action_done;		/* actions up to this index are done */
-	bool dwelling;
-	bool power_off;			/* the program switched it off (M5) */
 	bool free_seen;			/* open since positioning began */
 	bool at_start;			/* the walk met the program's start */
 	bool busy;			/* the machine takes no point now */
@@ -313,7 +332,7 @@ static inline bool cycle_is_manual(const struct cycle *c)
 /** cycle_moves() - anything moves, is braking, or waits for power to move. */
 static inline bool cycle_moves(const struct cycle *c)
 {
-	return state_duty[c->state].running || c->moving ||
+	return state_duty[c->state].running || c->hold.moving ||
 	       cycle_is_manual(c) || c->axes.awaited ||
 	       c->mover.v_mm_s != 0;
 }

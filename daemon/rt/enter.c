@@ -19,28 +19,28 @@ static void lift(struct cycle *c)
 {
 	const double height_mm = flush_begin(c);
 
-	c->lifting = true;
+	c->lift.up = true;
 	/* Beside the path it is the way out that goes on; the time waits. */
-	c->leaving = timed_is_up(c) && !escape_is_out(&c->escape);
-	if (c->leaving) {
+	c->lift.leaving = timed_is_up(c) && !escape_is_out(&c->escape);
+	if (c->lift.leaving) {
 		/* No further in. */
 		mover_set(&c->mover, 0);
-		c->jump_to_mm = c->timed_from_mm;
+		c->lift.to_mm = c->timed.from_mm;
 		return;
 	}
 	c->totals.jumps++;
 	leave_path(c);
-	c->jump_from_mm = cycle_place_mm(c);
-	c->jump_to_mm = fmax(cycle_outer_mm(c), c->jump_from_mm - height_mm);
+	c->lift.from_mm = cycle_place_mm(c);
+	c->lift.to_mm = fmax(cycle_outer_mm(c), c->lift.from_mm - height_mm);
 }
 
 /* Held beside the path: back, as a jump comes back. */
 static void come_back(struct cycle *c)
 {
-	c->lifting = false;
-	c->leaving = false;
-	c->jump_from_mm = interp_cursor_place_mm(&c->cursor);
-	c->jump_to_mm = fmax(c->jump_from_mm - c->jump.short_of_mm,
+	c->lift.up = false;
+	c->lift.leaving = false;
+	c->lift.from_mm = interp_cursor_place_mm(&c->cursor);
+	c->lift.to_mm = fmax(c->lift.from_mm - c->jump.short_of_mm,
 			     cycle_place_mm(c));
 }
 
@@ -79,9 +79,9 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		break;
 	case STATE_HOLD:
 		axes_forget(c);
-		c->moving = false;
-		c->braked = false;
-		c->after_stand = STATE_HOLD;
+		c->hold.moving = false;
+		c->hold.braked = false;
+		c->hold.then = STATE_HOLD;
 		break;
 	case STATE_IDLE:
 	case STATE_FAULT:
@@ -116,18 +116,18 @@ static void brake(struct cycle *c)
 	const double back = c->gap.wire_retreat_mm;
 	const bool goes_back = backs_off(c);
 
-	if (c->after_stand == STATE_FAULT && c->state == STATE_HOLD) {
+	if (c->hold.then == STATE_FAULT && c->state == STATE_HOLD) {
 		/* A second one while it goes back from the first. */
-		c->moving = false;
+		c->hold.moving = false;
 		return;
 	}
 	if (goes_back)
-		c->move_to_mm = back > 0 ? fmax(cycle_outer_mm(c),
+		c->hold.to_mm = back > 0 ? fmax(cycle_outer_mm(c),
 						cycle_place_mm(c) - back) :
 					   retract_motion_mm(c);
 	cycle_enter(c, STATE_HOLD);
-	c->moving = goes_back;
-	c->after_stand = STATE_FAULT;
+	c->hold.moving = goes_back;
+	c->hold.then = STATE_FAULT;
 }
 
 /* A jogged or homed axis brakes too, but not on against what it met. */

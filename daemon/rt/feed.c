@@ -64,8 +64,8 @@ static double jump(struct cycle *c)
 	};
 
 	if (escape_is_out(&c->escape))
-		return escape_to(c, &beside, c->jump_to_mm);
-	return go_to(c, &w, c->jump_to_mm);
+		return escape_to(c, &beside, c->lift.to_mm);
+	return go_to(c, &w, c->lift.to_mm);
 }
 
 /* With what it moves with; what sets its own speed brakes as positioning. */
@@ -84,16 +84,16 @@ static double hold(struct cycle *c)
 	};
 	struct mover_limits beside;
 
-	c->braked = c->braked || c->mover.v_mm_s == 0;
+	c->hold.braked = c->hold.braked || c->mover.v_mm_s == 0;
 	if (!escape_is_out(&c->escape))
-		return c->moving && c->braked ? go_to(c, &w, c->move_to_mm) :
+		return c->hold.moving && c->hold.braked ? go_to(c, &w, c->hold.to_mm) :
 						brake(c);
 	/* As planned, so that it stands before a corner and before the cut. */
 	beside = escape_limits(c);
-	if (!c->moving)
+	if (!c->hold.moving)
 		return mover_stop(&c->mover, &beside);
 	beside.v_max_mm_s = fmin(c->gap.retract_mm_s, beside.v_max_mm_s);
-	return escape_to(c, &beside, c->move_to_mm);
+	return escape_to(c, &beside, c->hold.to_mm);
 }
 
 static double none(struct cycle *c)
@@ -129,14 +129,14 @@ static bool there(const struct cycle *c, double to_mm)
 /* Up, then back to just short of the cut. */
 static bool jump_done(struct cycle *c)
 {
-	if (!there(c, c->jump_to_mm))
+	if (!there(c, c->lift.to_mm))
 		return false;
-	if (!c->lifting || c->leaving)
+	if (!c->lift.up || c->lift.leaving)
 		return true;
-	c->lifting = false;
-	c->jump_to_mm = fmax(c->jump_from_mm - c->jump.short_of_mm,
+	c->lift.up = false;
+	c->lift.to_mm = fmax(c->lift.from_mm - c->jump.short_of_mm,
 			     law_place(c));
-	return there(c, c->jump_to_mm);
+	return there(c, c->lift.to_mm);
 }
 
 bool feed_done(struct cycle *c)
@@ -145,7 +145,7 @@ bool feed_done(struct cycle *c)
 		return jump_done(c);
 	if (c->state == STATE_PROBE)
 		return c->probe.phase == PROBE_DONE;
-	if (c->state == STATE_HOLD && c->moving && there(c, c->move_to_mm))
-		c->moving = false;
+	if (c->state == STATE_HOLD && c->hold.moving && there(c, c->hold.to_mm))
+		c->hold.moving = false;
 	return false;
 }

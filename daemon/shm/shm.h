@@ -77,9 +77,10 @@ struct shm_snapshot {
 	char cond_letter;
 	bool power, pump, negative;
 	bool loaded;			/* the job has not ended: held counts */
-	uint8_t unhomed;		/* bit per axis that has a home_method */
+	uint8_t unhomed;		/* bit per axis that has a home_method
+					 * and was not homed, or is unplaced */
 	uint8_t limit;			/* ... that is on its limit switch */
-	uint8_t pad;
+	uint8_t unplaced;		/* ... whose drive lost its place */
 	int32_t pos[SHM_NAXES];		/* pulses */
 	double pulse_mm[SHM_NAXES];
 	double place_mm, far_mm, length_mm;	/* along the path */

@@ -393,7 +393,7 @@ static bool draw(const struct cycle *c, void *arg)
 	if (c->state != STATE_JUMP || c->totals.jumps < 2)
 		return c->totals.jumps < 2;
 	if (p->cycles == 0)
-		p->from_mm = c->jump_from_mm;
+		p->from_mm = c->lift.from_mm;
 	printf("%.5f %.6f %.5f\n", (double)p->cycles++ * PERIOD_NS * 1e-9,
 	       interp_cursor_place_mm(&c->cursor) - p->from_mm,
 	       c->mover.v_mm_s);

@@ -116,6 +116,10 @@ static void a_wired_machine_is_read(void **state)
 				   "gap_short = 5\n[gap]\nsource = lines\n",
 				   &c, &d), 0);
 	assert_true(config_gpio_has_gap(&c));
+	assert_int_equal(read_with("step_X = 2\ndir_X = 3\nspark = 4\n"
+				   "watchdog_by = the generator times out\n"
+				   "estop_by = contactor K1 cuts all\n",
+				   &c, &d), 0);
 }
 
 static void what_does_not_agree_is_refused_with_the_remedy(void **state)
@@ -136,6 +140,10 @@ static void what_does_not_agree_is_refused_with_the_remedy(void **state)
 		{ "step_X = 1\ndir_X = 2\ngap_open = 3\ngap_short = 4\n",
 		  "gap.source is sim and there are gap lines",
 		  "source = lines" },
+		{ "step_X = 1\ndir_X = 2\nspark = 3\nestop = 4\n",
+		  "gpio.spark without gpio.watchdog", "or gpio.watchdog_by" },
+		{ "step_X = 1\ndir_X = 2\nspark = 3\nwatchdog = 4\n",
+		  "gpio.spark without gpio.estop", "or gpio.estop_by" },
 		{ "step_X = 1\ndir_X = 2\nhigh_cycles = 2\n",
 		  "axis.X.v_max_mm_s 10 mm/s is faster", "at most 6.66667 mm/s" },
 		{ "step_X = 1\ndir_X = two\n", "gpio.dir_X 'two' has no line",

@@ -141,6 +141,20 @@ static const struct refusal refusals[] = {
 	  "backend can402 without a drive", "node_X" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\nnode_Z = 5\n",
 	  5, 0, "can402.node_Z 5 a second time", "a node of its own" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_Z = 5\n", 2, 0,
+	  "axis.Z.brake: not told", "free: it stays where it is" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n"
+	  "following_mm = 0.2\n", 5, 0, "can402.following_mm 0.2 with resync_mm "
+	  "0.2", "following_mm below resync_mm" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
+	  "drive_sdo = 605e:0=2/2 6065:0=100/1\n", 6, 0,
+	  "axis.X.drive_sdo: \"6065:0=100/1\"", "INDEX:SUB=VALUE/BYTES" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
+	  "drive_leave = 1006 sixty\n", 6, 0, "axis.X.drive_leave: \"sixty\"",
+	  "hexadecimal indexes" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
+	  "drive_identity = fb x -1\n", 6, 0, "axis.X.drive_identity: \"-1\"",
+	  "vendor, product, revision, serial" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 9\n"
 	  "master_node = 9\n", 4, 0, "can402.node_X 9 a second time",
 	  "not master_node" },

@@ -4,6 +4,7 @@
  */
 #include "wire_help.h"
 
+#include "interp/compile.h"
 #include "interp/cursor.h"
 
 #define TENTH_DEG	"5.710593137499643"	/* its tangent is 0.1 */
@@ -170,7 +171,7 @@ static void a_line_and_an_arc_meet_inside(void **st)
 
 	(void)st;
 	/* Along the diameter, then the half circle above; the wire inside. */
-	nc_read(&r, "H9=0.1 F5 G1 X-5\nG41 H9 X0\nX5\nG3 X-5 I-5\nG1 X0\n");
+	nc_read(&r, "H9=0.1 F5 G1 Y1\nG41 H9 Y0\nX5\nG3 X-5 I-5\nG1 X0\n");
 	assert_xyz(&r, 2, -x, .1, 0);
 	assert_xyz(&r, 3, x, .1, 0);
 	assert_near(nc_arc_of(&r, 3)->r_mm, 4.9);
@@ -180,13 +181,18 @@ static void a_line_and_an_arc_meet_inside(void **st)
 static void the_register_may_change_on_the_way(void **st)
 {
 	static const struct at want[] = {
-		{ 5, .11, 0, 0 }, { 10, .11, 0, 0 }, { 20, .2, 0, 0 },
-		{ 30, .2, 0, 0 },
+		{ 5, .11, 0, 0 }, { 10, .11, 0, 0 }, { 10, .2, 0, 0 },
+		{ 20, .2, 0, 0 }, { 30, .2, 0, 0 },
+	};
+	static const struct at corner[] = {
+		{ 5, .11, 0, 0 }, { 9.8, .11, 0, 0 }, { 9.8, 8, 0, 0 },
 	};
 
 	(void)st;
 	assert_path(&no_guides, "F5 G41 D1 G1 X5\nX10\nD2 X20\nX30\n", want,
 		    N(want));
+	assert_path(&no_guides, "F5 G41 D1 G1 X5\nX10\nD2 Y8\n", corner,
+		    N(corner));
 }
 
 static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
@@ -195,18 +201,16 @@ static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
 
 	(void)st;
 	/* A step of 0.1 between two inner corners. */
-	assert_refused(w, "F5 G41 D1 G1 X5\nX10\nY0.1\nX5\nM2\n", 3,
-		       "nothing is left of a motion of 0.1000");
-	assert_refused(w, "F5 G41 D1 G1 X5\nX10\nG3 X10.1 Y.1 J.1\nG1 Y5\n", 3,
-		       "inside radius of 0.1000 mm under an offset of 0.1100");
-	assert_refused(w, "F5 G41 D2 G1 X5\nX8\nG3 X8.1 Y.1 J.1\n", 3,
-		       "inside radius of 0.1000 mm under an offset of 0.2000");
+	assert_refused(w, "F5 G41 D1\nG0 X2 Y3\nG1 Y0\nX10\nY0.1\nX5\nM2\n",
+		       4, "a width of 0.1000 mm between the motions of lines 4 "
+		       "and 6");
+	/* A slot in the side of a plate. */
+	assert_refused(w, "F5 G0 X5 Y-5\nG42 D1\nG1 Y0\nX10\nY5\nX10.2\nY0\n"
+		       "X20\nM2\n", 5, "a width of 0.2000 mm between the "
+		       "motions of lines 5 and 8");
 	assert_refused(w, "F5\nG41 D1 G1 X.11\nX8\n", 2,
 		       "a lead of 0.1100 mm for a change of offset of 0.1100");
 	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG40 Y.05\n", 3, "a lead of");
-	assert_refused(w, "F5 G41 D1\nG3 X5 I2.5\n", 2, "an arc where");
-	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG40\nG2 X9 I.5\n", 4,
-		       "an arc where");
 	assert_refused(w, "F5 G41 D1 G1 X5\nG18 G2 X9 I2\n", 2, "plane XY");
 	assert_refused(w, "F5 G41 D1 G1 X5\nX6\nZ4\nX9\n", 3, "another axis");
 	assert_refused(w, "F5\nG41 G1 X5\n", 2, "register 0, which is not defined");
@@ -238,6 +242,50 @@ static void actions_stay_at_their_corner(void **st)
 	assert_int_equal(nc_seg(&r, 3)->kind, INTERP_STOP);
 	assert_int_equal(nc_seg(&r, 4)->kind, INTERP_ARC);
 	assert_int_equal(nc_seg(&r, 5)->kind, INTERP_LINE);
+	nc_done(&r);
+}
+
+/* -- Four axes in the dialects of wire machines -------------------------------- */
+
+static void assert_lean(const char *dialect, const char *text, double u,
+			double v)
+{
+	struct nc_read r = ready(&guides);
+
+	r.o.dialect = interp_dialect_by_name(dialect);
+	nc_read(&r, text);
+	/* The guides are 20 below and 40 above: twice the lean above the top. */
+	assert_near(nc_end(&r, nc_count(&r) - 1, INTERP_U), u);
+	assert_near(nc_end(&r, nc_count(&r) - 1, INTERP_V), v);
+	nc_done(&r);
+}
+
+static void u_and_v_are_the_lean_in_the_dialects(void **st)
+{
+	(void)st;
+	assert_lean("fanuc", "G90\nG01 X10. Y0. U1. V2.\nX20.\nM30\n", 22, 4);
+	assert_lean("chmer", "G90\nG01 X10. Y0. U1.\nU-1.\nM30\n", 8, 0);
+	assert_lean("robofil", "G91\nG01 X10. Y0. U1.\nX1. U1.\nM02\n", 15, 0);
+	assert_lean("skd2", "G90\nG01 X10.0 U1.0\nM02\n", 12, 0);
+	assert_lean("sodick", "G90\nG01 X10. Y0.:G01 X11. Y0.\nM02\n", 12, 0);
+	/* A half circle over another, one mm to the side. */
+	assert_lean("fanuc", "G90\nG01 X10. U1.\nG02 X20. I5. U1. K5.\nM30\n",
+		    22, 0);
+	assert_lean("robofil", "G90\nG01 X10. Y0. U1.\n"
+		    "G02 X20. Y0. I15. J0. U1. K16. L0.\nM02\n", 22, 0);
+}
+
+static void a_leaning_arc_without_its_centre_is_refused(void **st)
+{
+	struct nc_read r = ready(&guides);
+	const char *text = "G90\nG01 X10. Y0.\nG02 X20. I5. U1.\nM30\n";
+
+	(void)st;
+	r.o.dialect = interp_dialect_by_name("fanuc");
+	nc_read_bytes(&r, text, strlen(text));
+	assert_int_equal(r.rc, -EINVAL);
+	assert_int_equal(r.diag.line, 3);
+	assert_non_null(strstr(r.diag.found, "no centre of its top"));
 	nc_done(&r);
 }
 
@@ -599,6 +647,8 @@ int main(void)
 		what_the_wire_cannot_reach_is_refused_with_its_line),
 		cmocka_unit_test(
 			an_inside_radius_equal_to_the_offset_is_a_point),
+		cmocka_unit_test(u_and_v_are_the_lean_in_the_dialects),
+		cmocka_unit_test(a_leaning_arc_without_its_centre_is_refused),
 		cmocka_unit_test(actions_stay_at_their_corner),
 		cmocka_unit_test(the_guides_of_a_tapered_square),
 		cmocka_unit_test(relative_upper_guides_move_by_the_difference),

@@ -153,7 +153,7 @@ static struct flight fly(struct rig *r)
 	double v;
 
 	until(r, STATE_JUMP, SPARKING_V, 1000);
-	f.from = r->c.jump_from_mm;
+	f.from = r->c.lift.from_mm;
 	v = r->c.feed_mm_s;
 	assert_true(fabs(v) <= at + 1e-6);
 	while (r->c.state == STATE_JUMP) {
@@ -238,7 +238,7 @@ static void a_short_on_the_way_down_ends_the_jump_in_a_retract(void **st)
 	k.jump.height_mm = 0.5;
 	cut_at(&r, &k, 2);
 	until(&r, STATE_JUMP, SPARKING_V, 1000);
-	while (r.c.lifting)
+	while (r.c.lift.up)
 		step(&r, SHORTED_V);
 	assert_int_equal(r.c.state, STATE_JUMP);
 	steps(&r, SPARKING_V, 5);

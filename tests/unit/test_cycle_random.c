@@ -207,9 +207,9 @@ static void check_power(const struct rig *r)
 	if (!r->out.power)
 		return;
 	assert_true(c->state == STATE_APPROACH || c->state == STATE_ERODE);
-	assert_false(c->moving);
+	assert_false(c->hold.moving);
 	assert_false(r->in.estop || r->in.lost || c->config.dry_run);
-	assert_false(c->power_off);
+	assert_false(c->job.power_off);
 	assert_int_equal(c->fault.first, FAULT_NONE);
 	powered++;
 }

@@ -231,7 +231,7 @@ static void a_retract_by_command_goes_back_that_far_and_holds(void **st)
 				 ANSWER_DONE);
 		steps(&r, SPARKING_V, 2000);
 		assert_int_equal(r.c.state, STATE_HOLD);
-		assert_false(r.c.moving);
+		assert_false(r.c.hold.moving);
 		assert_near(from - place(&r), mm[i], 2e-9);
 		rig_free(&r);
 	}
@@ -260,7 +260,7 @@ static void a_retract_beyond_the_start_ends_at_the_start(void **st)
 	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 1e9), ANSWER_DONE);
 	steps(&r, SPARKING_V, 2000);
 	assert_int_equal(r.c.state, STATE_HOLD);
-	assert_false(r.c.moving);
+	assert_false(r.c.hold.moving);
 	assert_true(place(&r) == 0 && r.out.target[INTERP_Z] == 0);
 	rig_free(&r);
 }
@@ -307,7 +307,7 @@ static void no_action_is_done_while_held(void **st)
 	action(b, INTERP_AUX, INTERP_AUX_PUMP_ON);
 	rig_load(&r, b, &k);
 	tell(&r, CYCLE_START);
-	while (!r.c.dwelling)
+	while (!r.c.job.dwelling)
 		step(&r, OPEN_V);
 	steps(&r, OPEN_V, 10);
 	tell(&r, CYCLE_HOLD);

@@ -18,12 +18,16 @@
 struct peer {
 	uint16_t status;
 	bool operational, mapped, fault, mute, deaf;
-	uint32_t refuses;		/* index << 8 | sub: aborted */
+	uint32_t refuses;		/* index << 8 | sub: aborted, */
+	uint32_t code;			/* ... so; 0: there is no such object */
+	uint8_t ntpdo;			/* objects in its TPDO */
+	uint32_t cob;			/* of its TPDO */
+	bool rude;			/* ... has another mode, all the same */
 	int32_t actual, target, latched;
 	uint16_t control;
 	uint8_t mode;
 	uint32_t profile, modes, abort_option;
-	uint32_t rpdo[2], tpdo[2], beat_ms, master_beat;
+	uint32_t rpdo[2], tpdo[3], beat_ms, master_beat;
 	uint8_t time_value;
 	int8_t time_index;
 };
@@ -34,7 +38,8 @@ static struct drive_config config(void)
 		.node = NODE, .master = 127, .increments = 10, .pulses = 1,
 		.period_us = 2000, .heartbeat_ms = 100, .beat_cycles = 125,
 		.answer_cycles = 50, .missing_max = 2, .following_max = 50,
-		.slew_increments = 40,
+		.slew_increments = 40, .limited_cycles = 50,
+		.write = { { 0x6007, 0, 2, 3, true } }, .nwrites = 1,
 	};
 }
 
@@ -44,7 +49,7 @@ static void peer_state(struct peer *p)
 		uint16_t from, control, to;
 	} moves[] = {
 		{ 0x40, 0x06, 0x21 }, { 0x21, 0x07, 0x23 },
-		{ 0x23, 0x0f, 0x27 }, { 0x27, 0x02, 0x07 },
+		{ 0x23, 0x0f, 0x1027 }, { 0x27, 0x02, 0x07 },
 		{ 0x27, 0x06, 0x21 }, { 0x23, 0x06, 0x21 },
 		{ 0x07, 0x00, 0x40 }, { 0x27, 0x00, 0x40 },
 		{ 0x23, 0x00, 0x40 }, { 0x21, 0x00, 0x40 },
@@ -77,12 +82,32 @@ static void peer_write(struct peer *p, const uint8_t *d)
 	case 0x160002: p->rpdo[1] = x; break;
 	case 0x1a0001: p->tpdo[0] = x; break;
 	case 0x1a0002: p->tpdo[1] = x; break;
-	case 0x180001: p->mapped = !(x & 0x80000000u); break;
+	case 0x1a0003: p->tpdo[2] = x; break;
+	case 0x1a0000: p->ntpdo = (uint8_t)x; break;
+	case 0x180001:
+		p->mapped = !(x & 0x80000000u);
+		p->cob = x;
+		break;
 	case 0x600700: p->abort_option = x; break;
 	case 0x606000: p->mode = (uint8_t)x; break;
 	case 0x60c201: p->time_value = (uint8_t)x; break;
 	case 0x60c202: p->time_index = (int8_t)x; break;
 	default: break;
+	}
+}
+
+static uint32_t peer_read(const struct peer *p, uint32_t at)
+{
+	switch (at) {
+	case 0x100000: return p->profile;
+	case 0x650200: return p->modes;
+	case 0x100500: return 0x80;
+	case 0x101601: return p->master_beat;
+	case 0x140001: return 0x200 + NODE;
+	case 0x180001: return p->cob;
+	case 0x60c201: return p->time_value;
+	case 0x60c202: return (uint8_t)p->time_index;
+	default: return at >> 8 >= 0x1400 && at >> 8 < 0x1900 ? 0x80000000u : 0;
 	}
 }
 
@@ -92,12 +117,13 @@ static void sdo(struct peer *p, struct drive *d, const struct can_msg *m)
 	const uint32_t at = can_get(m->data + 1, 2) << 8 | m->data[3];
 
 	memcpy(a.data + 1, m->data + 1, 3);
-	if (at == p->refuses) {
+	if (at == p->refuses &&
+	    (p->code != 0x06010002 || m->data[0] != 0x40)) {
 		a.data[0] = 0x80;
-		can_put(a.data + 4, 0x06020000, 4);
+		can_put(a.data + 4, p->code ? p->code : 0x06020000, 4);
 	} else if (m->data[0] == 0x40) {
 		a.data[0] = 0x43;
-		can_put(a.data + 4, at == 0x650200 ? p->modes : p->profile, 4);
+		can_put(a.data + 4, peer_read(p, at), 4);
 	} else {
 		a.data[0] = 0x60;
 		peer_write(p, m->data);
@@ -105,31 +131,40 @@ static void sdo(struct peer *p, struct drive *d, const struct can_msg *m)
 	drive_receive(d, &a);
 }
 
+static void hear(struct peer *p, struct drive *d, const struct can_msg *m)
+{
+	if (m->id == CAN_SDO_ASK + NODE) {
+		sdo(p, d, m);
+	} else if (m->id == CAN_NMT) {
+		p->operational = m->data[0] == 1;
+	} else if (m->id == CAN_RPDO1 + NODE) {
+		p->control = (uint16_t)can_get(m->data, 2);
+		p->target = (int32_t)can_get(m->data + 2, 4);
+		peer_state(p);
+	}
+}
+
 /* One period: what the master sends reaches the drive, and the other way. */
 static void period(struct drive *d, struct peer *p, int32_t target)
 {
-	struct can_msg m, a = { .id = CAN_TPDO1 + NODE, .len = 6 };
+	struct can_msg m[DRIVE_EMITS];
+	struct can_msg a = { .id = CAN_TPDO1 + NODE,
+			     .len = (uint8_t)(p->ntpdo == 3 ? 7 : 6) };
+	size_t n;
 
 	if (p->operational && p->mapped && !p->mute) {
 		can_put(a.data, p->status, 2);
 		can_put(a.data + 2, (uint32_t)p->actual, 4);
+		a.data[6] = p->rude ? 6 : p->mode;
 		drive_receive(d, &a);
 	}
 	drive_sync(d);
 	if ((p->status & 0x6f) == 0x27)
 		p->actual = p->latched;
 	p->latched = p->target;
-	if (!drive_emit(d, target, &m) || p->deaf)
-		return;
-	if (m.id == CAN_SDO_ASK + NODE)
-		sdo(p, d, &m);
-	else if (m.id == CAN_NMT)
-		p->operational = m.data[0] == 1;
-	else if (m.id == CAN_RPDO1 + NODE) {
-		p->control = (uint16_t)can_get(m.data, 2);
-		p->target = (int32_t)can_get(m.data + 2, 4);
-		peer_state(p);
-	}
+	n = drive_emit(d, target, m);
+	for (size_t i = 0; i < n && !p->deaf; i++)
+		hear(p, d, &m[i]);
 }
 
 static void beat(struct drive *d)
@@ -152,7 +187,8 @@ static void make(struct rig *r)
 	memset(r, 0, sizeof(*r));
 	drive_init(&r->d, &c);
 	r->p = (struct peer) { .status = 0x40, .profile = 0x20192, .modes = 0x3ff,
-			       .actual = 123456, .target = 123456,
+			       .time_value = 1, .time_index = -3,
+			       .cob = 0x40000180 + NODE, .actual = 123456, .target = 123456,
 			       .latched = 123456 };
 }
 
@@ -169,7 +205,7 @@ static void run(struct rig *r, int cycles, int32_t target)
 static void enable(struct rig *r)
 {
 	make(r);
-	run(r, 60, 0);
+	run(r, 80, 0);
 	drive_set_zero(&r->d, 0);
 	drive_aim(&r->d, DRIVE_GO_ON);
 	run(r, 20, 0);
@@ -183,9 +219,12 @@ static void a_drive_is_brought_up_as_cia_402_wants(void **state)
 
 	(void)state;
 	make(&r);
-	run(&r, 60, 0);
+	run(&r, 80, 0);
 	assert_int_equal(r.d.phase, DRIVE_RUNNING);
 	assert_true(r.p.operational);
+	assert_int_equal(r.p.tpdo[2], 0x60610008);
+	assert_int_equal(r.p.ntpdo, 3);
+	assert_int_equal(r.p.cob, 0x40000180 + NODE);
 	assert_int_equal(r.p.rpdo[0], 0x60400010);
 	assert_int_equal(r.p.rpdo[1], 0x607a0020);
 	assert_int_equal(r.p.tpdo[0], 0x60410010);
@@ -206,7 +245,7 @@ static void enabling_moves_nothing(void **state)
 
 	(void)state;
 	make(&r);
-	run(&r, 60, 0);
+	run(&r, 80, 0);
 	drive_set_zero(&r.d, 0);
 	drive_aim(&r.d, DRIVE_GO_ON);
 	for (int i = 0; i < 40; i++) {
@@ -359,9 +398,17 @@ static void what_a_drive_may_not_have_is_no_trouble(void **state)
 
 	(void)state;
 	make(&r);
-	r.p.refuses = 0x60c201;
-	run(&r, 60, 0);
+	r.p.refuses = 0x600700;
+	run(&r, 80, 0);
 	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+	assert_int_equal(r.d.passed, DRIVE_WITHOUT);
+	make(&r);
+	r.p.refuses = 0x600700;
+	r.p.code = 0x06090030;
+	run(&r, 80, 0);
+	assert_int_equal(r.d.phase, DRIVE_REFUSED);
+	assert_int_equal(r.d.abort, 0x06090030);
+	assert_int_equal(r.d.abort_value, 3);
 	make(&r);
 	r.p.refuses = 0x606000;
 	run(&r, 60, 0);
@@ -386,7 +433,7 @@ static void one_that_takes_its_time_to_begin_is_no_trouble(void **state)
 	(void)state;
 	make(&r);
 	r.p.mute = true;
-	run(&r, 60, 0);
+	run(&r, 80, 0);
 	assert_int_equal(r.d.phase, DRIVE_RUNNING);
 	assert_int_equal(r.d.trouble, DRIVE_WELL);
 	run(&r, 60, 0);
@@ -416,7 +463,7 @@ static void frames_of_a_wrong_length_are_counted_not_believed(void **state)
 	for (uint8_t len = 0; len <= 8; len++) {
 		struct can_msg m = { .id = CAN_TPDO1 + NODE, .len = len };
 
-		if (len != 6)
+		if (len != 7)
 			assert_true(drive_receive(&r.d, &m));
 	}
 	assert_int_equal(r.d.malformed, 8);
@@ -424,6 +471,233 @@ static void frames_of_a_wrong_length_are_counted_not_believed(void **state)
 	assert_int_equal(r.d.trouble, DRIVE_WELL);
 	assert_false(drive_receive(&r.d, &(struct can_msg) {
 		.id = CAN_TPDO1 + NODE + 1, .len = 6 }));
+}
+
+static void a_restart_loses_the_place_unless_it_is_absolute(void **state)
+{
+	const struct can_msg boot = { .id = CAN_HEARTBEAT + NODE, .len = 1 };
+
+	(void)state;
+	for (int absolute = 0; absolute < 2; absolute++) {
+		struct rig r;
+
+		enable(&r);
+		r.d.c.absolute = absolute;
+		r.p.operational = r.p.mapped = false;
+		r.p.status = 0x40;
+		r.p.actual = r.p.latched = r.p.target = 37;
+		r.p.master_beat = 0;
+		drive_receive(&r.d, &boot);
+		assert_int_equal(r.d.trouble, DRIVE_REBOOTED);
+		assert_int_equal(r.d.lost, !absolute);
+		drive_reset(&r.d);
+		run(&r, 100, 0);
+		assert_int_equal(r.d.lost, !absolute);
+		drive_aim(&r.d, DRIVE_GO_ON);
+		run(&r, 50, 0);
+		/* It goes back to its place, or does not move at all. */
+		assert_true(absolute ? r.p.actual > 37 : r.p.actual == 37);
+	}
+}
+
+static void a_restart_nobody_heard_is_seen_when_it_is_brought_up(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	drive_setup_again(&r.d);
+	run(&r, 100, 0);
+	assert_false(r.d.lost);
+	r.p.master_beat = 0;
+	drive_setup_again(&r.d);
+	run(&r, 100, 0);
+	assert_true(r.d.lost);
+	drive_set_zero(&r.d, 0);
+	assert_false(r.d.lost);
+	/* Left in order, it still names us. */
+	r.p.master_beat = 127 << 16;
+	drive_setup_again(&r.d);
+	run(&r, 100, 0);
+	assert_false(r.d.lost);
+}
+
+static void a_place_counts_only_in_a_state_that_has_one(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	r.p.status = 0;
+	r.p.actual = 0;
+	run(&r, 100, 0);
+	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+	assert_true(r.d.heard);
+	assert_false(r.d.stands);
+	r.p.status = 0x40;
+	r.p.actual = 123456;
+	run(&r, 1, 0);
+	assert_true(r.d.stands);
+	assert_int_equal(r.d.actual, 123456);
+}
+
+static void a_restart_in_the_set_up_begins_it_again(void **state)
+{
+	const struct can_msg boot = { .id = CAN_HEARTBEAT + NODE, .len = 1 };
+	struct rig r;
+
+	(void)state;
+	for (int after = 1; after < 60; after++) {
+		make(&r);
+		run(&r, after, 0);
+		if (r.d.phase == DRIVE_RUNNING)
+			break;
+		r.p.mode = 0;
+		r.p.ntpdo = 0;
+		r.p.mapped = false;
+		r.p.beat_ms = r.p.master_beat = 0;
+		drive_receive(&r.d, &boot);
+		run(&r, 80, 0);
+		assert_int_equal(r.d.phase, DRIVE_RUNNING);
+		assert_int_equal(r.p.mode, 8);
+		assert_int_equal(r.p.ntpdo, 3);
+		assert_int_equal(r.p.beat_ms, 100);
+		assert_int_equal(r.p.master_beat, 127 << 16 | 250);
+	}
+}
+
+static void bits_and_mode_are_watched_in_every_answer(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.rude = true;
+	run(&r, 1, 0);
+	assert_int_equal(r.d.trouble, DRIVE_OTHER_MODE);
+	enable(&r);
+	r.p.status = 0x27;
+	run(&r, 1, 0);
+	assert_int_equal(r.d.trouble, DRIVE_NOT_LED);
+	enable(&r);
+	r.p.status = 0x3027;
+	run(&r, 1, 0);
+	assert_int_equal(r.d.trouble, DRIVE_FOLLOWING);
+	enable(&r);
+	r.p.status = 0x18a7;
+	run(&r, 40, 0);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	assert_int_equal(r.d.warnings, 1);
+	run(&r, 40, 0);
+	assert_int_equal(r.d.trouble, DRIVE_LIMITED);
+}
+
+static void a_reset_writes_the_mode_again(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.mode = 6;
+	run(&r, 2, 0);
+	assert_int_equal(r.d.trouble, DRIVE_OTHER_MODE);
+	drive_aim(&r.d, DRIVE_GO_STOP);
+	run(&r, 5, 0);
+	assert_int_equal(r.p.mode, 6);
+	drive_reset(&r.d);
+	run(&r, 5, 0);
+	assert_int_equal(r.p.mode, 8);
+	drive_aim(&r.d, DRIVE_GO_ON);
+	r.p.status = 0x40;
+	run(&r, 20, 0);
+	assert_true(r.d.arrived);
+}
+
+static void one_that_is_not_in_mode_8_is_not_moved(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	run(&r, 80, 0);
+	drive_set_zero(&r.d, 0);
+	r.p.rude = true;
+	drive_aim(&r.d, DRIVE_GO_ON);
+	for (int i = 0; i < 150; i++) {
+		run(&r, 1, 40);
+		assert_int_equal(r.p.actual, 123456);
+	}
+	assert_int_equal(r.d.trouble, DRIVE_OTHER_MODE);
+}
+
+static void one_stopped_by_nmt_is_trouble(void **state)
+{
+	const struct can_msg m = { .id = CAN_HEARTBEAT + NODE, .len = 1,
+				   .data = { 0x04 } };
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	drive_receive(&r.d, &m);
+	assert_int_equal(r.d.trouble, DRIVE_NOT_STARTED);
+}
+
+/* Increments of time a drive may have, and what period fits. */
+static void the_period_is_told_in_a_unit_the_drive_has(void **state)
+{
+	static const struct {
+		int8_t index;		/* as it is; -7 is none of ours */
+		uint32_t period_us;
+		bool fixed, fits;
+		uint8_t value;
+		int8_t end;
+	} rows[] = {
+		{ -3, 2000, true, true, 2, -3 },
+		{ -3, 500, true, false, 0, 0 },
+		{ -3, 500, false, true, 5, -4 },
+		{ -3, 1500, false, true, 15, -4 },
+		{ -4, 2000, true, true, 20, -4 },
+		{ -4, 30000, false, true, 30, -3 },
+		{ -6, 250, true, true, 250, -6 },
+		{ -7, 1000, false, true, 1, -3 },
+		{ -3, 1234, false, false, 0, 0 },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		struct rig r;
+
+		make(&r);
+		r.d.c.period_us = rows[i].period_us;
+		r.p.time_index = rows[i].index;
+		r.p.refuses = rows[i].fixed ? 0x60c202 : 0;
+		r.p.code = 0x06010002;
+		r.p.time_value = 99;
+		run(&r, 120, 0);
+		assert_int_equal(r.d.phase, rows[i].fits ? DRIVE_RUNNING :
+							   DRIVE_REFUSED);
+		if (!rows[i].fits)
+			continue;
+		assert_int_equal(r.p.time_value, rows[i].value);
+		assert_int_equal(r.p.time_index, rows[i].end);
+	}
+}
+
+static void what_no_brake_holds_is_not_let_go(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.d.c.held = true;
+	r.p.status = 0x07;
+	drive_aim(&r.d, DRIVE_GO_STOP);
+	run(&r, 5, 0);
+	assert_int_equal(r.p.control, 0x02);
+	drive_aim(&r.d, DRIVE_GO_ON);
+	r.d.trouble = DRIVE_WELL;
+	run(&r, 3, 0);
+	assert_int_equal(r.p.control, 0x0f);
 }
 
 static void a_billion_pulses_do_not_drift(void **state)
@@ -485,6 +759,16 @@ int main(void)
 		cmocka_unit_test(one_that_takes_its_time_to_begin_is_no_trouble),
 		cmocka_unit_test(one_switched_on_late_is_found),
 		cmocka_unit_test(frames_of_a_wrong_length_are_counted_not_believed),
+		cmocka_unit_test(a_restart_loses_the_place_unless_it_is_absolute),
+		cmocka_unit_test(a_restart_nobody_heard_is_seen_when_it_is_brought_up),
+		cmocka_unit_test(a_place_counts_only_in_a_state_that_has_one),
+		cmocka_unit_test(a_restart_in_the_set_up_begins_it_again),
+		cmocka_unit_test(bits_and_mode_are_watched_in_every_answer),
+		cmocka_unit_test(a_reset_writes_the_mode_again),
+		cmocka_unit_test(one_that_is_not_in_mode_8_is_not_moved),
+		cmocka_unit_test(one_stopped_by_nmt_is_trouble),
+		cmocka_unit_test(the_period_is_told_in_a_unit_the_drive_has),
+		cmocka_unit_test(what_no_brake_holds_is_not_let_go),
 		cmocka_unit_test(a_billion_pulses_do_not_drift),
 		cmocka_unit_test(bits_are_those_of_the_standard),
 		cmocka_unit_test(every_statusword_is_a_state_and_every_state_has_a_way_on),

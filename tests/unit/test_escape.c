@@ -405,12 +405,12 @@ static void a_retract_by_command_goes_on_out_and_a_stop_ends_the_job(void **st)
 	stand_still(&t);
 	way = t.r.c.escape.way_mm;
 	assert_int_equal(tell_mm(&t.r, CYCLE_RETRACT, 0.5), ANSWER_DONE);
-	for (int i = 0; i < 5000 && t.r.c.moving; i++)
+	for (int i = 0; i < 5000 && t.r.c.hold.moving; i++)
 		step(&t.r, OPEN_V);
 	assert_near(t.r.c.escape.way_mm, way + 0.5, 1e-9);
 	check_ground(&t);
 	assert_int_equal(tell_mm(&t.r, CYCLE_RETRACT, 1e6), ANSWER_DONE);
-	for (int i = 0; i < 50000 && t.r.c.moving; i++)
+	for (int i = 0; i < 50000 && t.r.c.hold.moving; i++)
 		step(&t.r, OPEN_V);
 	assert_near(t.r.c.escape.way_mm, t.r.c.escape.length_mm, 1e-9);
 	assert_int_equal(tell(&t.r, CYCLE_STOP), ANSWER_DONE);

@@ -33,7 +33,7 @@ static uint64_t to_jump(struct rig *r, double v)
 
 static double height(const struct rig *r)
 {
-	return r->c.jump_from_mm - r->c.jump_to_mm;
+	return r->c.lift.from_mm - r->c.lift.to_mm;
 }
 
 static void a_jump_is_due_by_depth(void **st)

@@ -115,7 +115,7 @@ static void walk_back(struct rig *r, enum cycle_verb v)
 	hold_there(r);
 	assert_int_equal(ask(r, v), ANSWER_DONE);
 	steps(r, OPEN_V, 20);
-	assert_true(r->c.moving);
+	assert_true(r->c.hold.moving);
 }
 
 static void by_hand(struct rig *r, enum cycle_verb v)

@@ -224,7 +224,7 @@ static void check_motion(struct world *w, const struct forbidden *f)
 static bool goes_to_fault(const struct cycle *c)
 {
 	return c->state == STATE_FAULT ||
-	       (c->state == STATE_HOLD && c->after_stand == STATE_FAULT) ||
+	       (c->state == STATE_HOLD && c->hold.then == STATE_FAULT) ||
 	       (cycle_is_manual(c) && c->manual.halt);
 }
 

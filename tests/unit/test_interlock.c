@@ -169,7 +169,7 @@ static void a_way_back_by_command_is_watched_too(void **st)
 		cut_until(&r, 3);
 		assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 2), ANSWER_DONE);
 		steps(&r, OPEN_V, 20);
-		assert_true(r.c.moving);
+		assert_true(r.c.hold.moving);
 		*flag(&r, &losses[i]) = false;
 		step(&r, OPEN_V);
 		assert_int_equal(r.c.fault.first, losses[i].fault);

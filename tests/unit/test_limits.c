@@ -250,7 +250,7 @@ static void no_ceiling_is_passed_there_and_back(void **st)
 		assert_int_equal(r.c.state, STATE_HOLD);
 		assert_int_equal(r.c.fault.first, FAULT_NONE);
 		assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 1e9), ANSWER_DONE);
-		for (int n = 0; n < 400000 && r.c.moving; n++)
+		for (int n = 0; n < 400000 && r.c.hold.moving; n++)
 			step_within(&r);
 		assert_true(place(&r) == 0);
 		tell(&r, CYCLE_START);
@@ -530,7 +530,7 @@ static void a_chain_that_lies_is_slow_or_a_fault_and_never_a_step(void **st)
 			if (r.c.state != STATE_FAULT)
 				assert_true(fabs(r.c.mover.v_mm_s - v) <=
 					    A_MAX * PERIOD_S * (1 + 1e-9));
-			if (r.c.state == STATE_HOLD && !r.c.moving) {
+			if (r.c.state == STATE_HOLD && !r.c.hold.moving) {
 				if (back)
 					break;
 				back = true;

@@ -175,7 +175,7 @@ static void held_on_a_switch_only_the_way_away_is_gone(void **state)
 	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 0.5), ANSWER_DONE);
 	steps(&r, OPEN_V, 500);
 	assert_int_equal(r.c.state, STATE_HOLD);
-	assert_false(r.c.moving);
+	assert_false(r.c.hold.moving);
 	assert_int_equal(tell_mm(&r, CYCLE_STEP, 1), ANSWER_NOT_PASSED);
 	rig_free(&r);
 }
@@ -211,9 +211,9 @@ static void hold_between_nodes(struct rig *r)
 static void step_and_rest(struct rig *r, double n, enum cycle_answer a)
 {
 	assert_int_equal(tell_mm(r, CYCLE_STEP, n), a);
-	for (int i = 0; i < 5000 && r->c.moving; i++)
+	for (int i = 0; i < 5000 && r->c.hold.moving; i++)
 		step(r, OPEN_V);
-	assert_false(r->c.moving);
+	assert_false(r->c.hold.moving);
 	assert_int_equal(r->c.state, STATE_HOLD);
 }
 
@@ -249,7 +249,7 @@ static void a_short_ends_a_step_forward(void **state)
 	assert_int_equal(tell_mm(&r, CYCLE_STEP, 1), ANSWER_DONE);
 	steps(&r, OPEN_V, 100);
 	steps(&r, SHORTED_V, 200);
-	assert_false(r.c.moving);
+	assert_false(r.c.hold.moving);
 	assert_true(place(&r) > 1 && place(&r) < 2.9);
 	rig_free(&r);
 }

@@ -65,9 +65,9 @@ static bool told_on_the_way(struct rig *r, double to_mm)
 static void go_back(struct rig *r, double by_mm)
 {
 	assert_int_equal(tell_mm(r, CYCLE_RETRACT, by_mm), ANSWER_DONE);
-	for (int i = 0; i < 5000 && r->c.moving; i++)
+	for (int i = 0; i < 5000 && r->c.hold.moving; i++)
 		step(r, OPEN_V);
-	assert_false(r->c.moving);
+	assert_false(r->c.hold.moving);
 }
 
 static void go_on(struct rig *r)

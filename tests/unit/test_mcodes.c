@@ -78,7 +78,7 @@ static void what_is_not_in_the_table_is_refused(void **state)
 	(void)state;
 	assert_refused("M62", 1, "unknown word M62", "m_before");
 	assert_refused("M256", 1, "unknown word M256", "m_free");
-	assert_refused("G60", 1, "unknown word G60", "G120");
+	assert_refused("G66", 1, "unknown word G66", "G120");
 	assert_refused("T60", 1, "unknown word T60", "T84");
 }
 

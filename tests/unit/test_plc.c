@@ -154,6 +154,93 @@ static void a_reset_takes_the_permit_and_boots_again(void **state)
 	assert_int_equal(p.ask.command, 0);
 	assert_int_equal(plc_emit(&p, out), 1);
 	assert_int_equal(out[0].data[0], 0);
+	/* Nobody is there who could say that there is a fire. */
+	assert_false(plc_alive(&p));
+}
+
+static void one_that_is_stopped_only_beats(void **state)
+{
+	struct plc p = working();
+	struct can_msg out[PLC_EMITS];
+
+	(void)state;
+	nmt(&p, 0x02, NODE);
+	p.tell.fault = 7;
+	plc_receive(&p, &(struct can_msg) { .id = CAN_SDO_ASK + NODE, .len = 8,
+					    .data = { 0x40, 0x00, 0x10 } });
+	for (int i = 0; i < 300; i++) {
+		const size_t n = plc_emit(&p, out);
+
+		for (size_t k = 0; k < n; k++) {
+			assert_int_equal(out[k].id, CAN_HEARTBEAT + NODE);
+			assert_int_equal(out[k].data[0], 0x04);
+		}
+	}
+	nmt(&p, 0x80, NODE);
+	assert_true(plc_emit(&p, out) >= 1);
+}
+
+/* A fault and its end, each once, and what 1001 and 1003 say of it. */
+static void a_fault_is_an_emergency_and_in_the_history(void **state)
+{
+	struct plc p = working();
+	struct can_msg out[PLC_EMITS];
+	int emergencies = 0;
+	uint8_t first;
+
+	(void)state;
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1014, 0), 0, &first),
+			 CAN_EMCY + NODE);
+	for (int i = 0; i < 100; i++) {
+		const size_t n = plc_emit(&p, out);
+
+		p.tell.fault = (uint8_t)(i < 20 ? 0 : i < 50 ? 7 : i < 70 ? 0 : 9);
+		for (size_t k = 0; k < n; k++) {
+			if (out[k].id != CAN_EMCY + NODE)
+				continue;
+			emergencies++;
+			assert_int_equal(can_get(out[k].data, 2),
+					 emergencies == 1 ? 0xff07 :
+					 emergencies == 2 ? 0 : 0xff09);
+			assert_int_equal(out[k].data[2], emergencies != 2);
+		}
+	}
+	assert_int_equal(emergencies, 3);
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1001, 0), 0, &first), 1);
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 0), 0, &first), 2);
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 1), 0, &first), 0xff09);
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 2), 0, &first), 0xff07);
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 3), 0, &first),
+			 0x06090011);
+	assert_int_equal(ask(&p, 0x2f, OBJECT(0x1003, 0), 1, &first),
+			 0x06090030);
+	ask(&p, 0x2f, OBJECT(0x1003, 0), 0, &first);
+	assert_int_equal(first, 0x60);
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 0), 0, &first), 0);
+}
+
+/* Tools write all they know of a node. */
+static void what_an_object_has_may_be_written(void **state)
+{
+	struct plc p = begun();
+	uint8_t first;
+
+	(void)state;
+	for (size_t i = 0; i < plc_nconstants; i++) {
+		const struct plc_constant *c = &plc_constant[i];
+		const uint32_t object = OBJECT(c->index, c->sub);
+		const uint8_t write = (uint8_t)(0x23 |
+				      (4 - plc_bytes(c->type)) << 2);
+		uint32_t value;
+
+		if (c->live == PLC_ERROR)
+			continue;
+		value = ask(&p, 0x40, object, 0, &first);
+		ask(&p, write, object, value, &first);
+		assert_int_equal(first, 0x60);
+		ask(&p, write, object, value ^ 1, &first);
+		assert_int_equal(first, 0x80);
+	}
 }
 
 static void requests_count_when_operational_only(void **state)
@@ -341,9 +428,12 @@ static void every_object_of_the_table_can_be_read(void **state)
 	for (size_t i = 0; i < plc_nconstants; i++) {
 		const struct plc_constant *c = &plc_constant[i];
 
+		if (c->live == PLC_ERROR)
+			continue;
 		assert_int_equal(ask(&p, 0x40, OBJECT(c->index, c->sub), 0,
 				     &first),
-				 c->value + (c->plus_node ? NODE : 0));
+				 c->value + (c->live == PLC_PLUS_NODE ? NODE :
+									0));
 		assert_int_equal(first, 0x43 | (4 - plc_bytes(c->type)) << 2);
 	}
 	p.tell.line = 123456;
@@ -506,6 +596,9 @@ int main(void)
 		cmocka_unit_test(
 			an_unknown_nmt_command_is_counted_and_changes_nothing),
 		cmocka_unit_test(a_reset_takes_the_permit_and_boots_again),
+		cmocka_unit_test(one_that_is_stopped_only_beats),
+		cmocka_unit_test(a_fault_is_an_emergency_and_in_the_history),
+		cmocka_unit_test(what_an_object_has_may_be_written),
 		cmocka_unit_test(requests_count_when_operational_only),
 		cmocka_unit_test(frames_of_a_wrong_length_change_nothing),
 		cmocka_unit_test(frames_to_other_nodes_are_not_for_us),

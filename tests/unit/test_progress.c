@@ -106,7 +106,7 @@ static void busy(struct rig *r)
 
 static void dwell(struct rig *r)
 {
-	while (!r->c.dwelling)
+	while (!r->c.job.dwelling)
 		step(r, OPEN_V);
 }
 

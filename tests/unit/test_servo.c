@@ -184,12 +184,12 @@ static void an_integral_does_not_wind_up_where_nothing_walks(void **st)
 	cut_to(b, -3);
 	rig_load(&r, b, &k);
 	tell(&r, CYCLE_START);
-	while (!r.c.dwelling)
+	while (!r.c.job.dwelling)
 		step(&r, HIGH_V + 1);
 	step(&r, HIGH_V + 1);
 	before = r.c.servo.integral_mm_s;
 	steps(&r, HIGH_V + 1, 1000);
-	assert_true(r.c.dwelling && r.out.power);
+	assert_true(r.c.job.dwelling && r.out.power);
 	assert_near(r.c.servo.integral_mm_s, before, 1e-12);
 	rig_free(&r);
 }

@@ -103,7 +103,7 @@ static void it_leaves_during_a_dwell_too_and_the_next_dwell_is_whole(void **st)
 	load(&r, &k, 5050);
 	run_all(&r, &s);
 	assert_int_equal(s.low, -5000);
-	assert_false(r.c.dwelling);
+	assert_false(r.c.job.dwelling);
 	rig_free(&r);
 }
 

@@ -111,20 +111,20 @@ static bool compile(struct job *j, const struct interp_machine *m,
 
 static bool stands(const struct rig *r)
 {
-	return !r->c.moving && r->c.mover.v_mm_s == 0 &&
-	       r->c.after_stand == STATE_HOLD;
+	return !r->c.hold.moving && r->c.mover.v_mm_s == 0 &&
+	       r->c.hold.then == STATE_HOLD;
 }
 
 /* A cycle; it comes on, or it waits for what it should. */
 static void watch(const struct job *j, struct rig *r, int *still)
 {
 	const double was = place(r);
-	const uint32_t done = r->c.action_done;
+	const uint32_t done = r->c.job.action_done;
 
 	step(r, OPEN_V);
 	if (r->c.state == STATE_FAULT)
 		say(j, r, "a fault");
-	*still = place(r) != was || r->c.action_done != done || r->c.dwelling ?
+	*still = place(r) != was || r->c.job.action_done != done || r->c.job.dwelling ?
 		 0 : *still + 1;
 	if (*still > STILL_MAX)
 		say(j, r, "it stands");

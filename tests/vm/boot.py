@@ -140,17 +140,32 @@ VIRTUAL = {
 }
 
 
+# 40 writes in a period: a pulse in 50 us at the most, and in 12.5 us.
+EDGES = {
+    "edges.ini": machine(period_us=1000, v=20,
+                         tail=LINES + "edges_per_period = 40\n"),
+    "even.ini": machine(period_us=1000, v=20,
+                        tail=LINES + "edges_per_period = 40\n"),
+    "fast.ini": machine(period_us=250, v=80,
+                        tail=LINES + "edges_per_period = 40\n"),
+    "edges.ngc": PULSES_JOB.replace("F240", "F900"),
+    "even.ngc": "G21 G90\nG1 X2 F600\nG1 X0\nM30\n",
+    "fast.ngc": "G21 G90\nG1 X16 F3600\nM30\n",
+}
+
 # Increments and pulses of each drive: a fine encoder, turned round, coarse ...
 DRIVES = {"X": (1, 524288, 5000), "Y": (2, -65536, 10000), "Z": (3, 10, 1),
           "A": (4, 3, 7), "B": (5, -1, 1), "C": (6, 1000, 360)}
 
 
-def drives(axes, tail=""):
+def drives(axes, tail="", absolute="yes", falls=""):
     """A machine of drives, as many as there are letters."""
     nodes = "".join(f"node_{a} = {DRIVES[a][0]}\n" for a in axes)
     ratios = "".join(f"[axis.{a}]\ndrive_increments = {DRIVES[a][1]}\n"
                      f"drive_pulses = {DRIVES[a][2]}\n"
                      "travel_min_mm = -100\ntravel_max_mm = 100\n"
+                     f"brake = {'none' if a in falls else 'free'}\n"
+                     f"absolute = {absolute}\n"
                      for a in axes)
     absent = "".join(f"[axis.{a}]\npresent = no\n"
                      for a in "XYZABCUV" if a not in axes)
@@ -169,15 +184,34 @@ approach_mm_s = 1
 """
 
 
+# A strict drive each: what the machine file has to say of it.
+STRICT_UP = """[axis.X]
+drive_window_mm = 0.5
+[axis.Y]
+drive_fault_reaction = 1
+[axis.Z]
+drive_quick_stop_mm_s2 = 500
+[axis.A]
+drive_identity = fb 64100000 x 4d
+drive_sdo = 6085:0=7a120/4 605e:0=1/2
+drive_leave = 6502
+"""
+
+STRICT_REFUSED = """[axis.Z]
+drive_identity = 1111
+"""
+
+
 def lagging(method):
     """Two drives that follow by gains of 30 and 21.5 1/s: what those come to
     where a target is held for 10 ms is what identification would find."""
-    return drives("XY", "following_mm = 2\n"
+    return drives("XY", "following_s = 0.1\n"
                   f"[contour]\nmethod = {method}\ncross_1_s = 4\n"
                   "[axis.X]\nloop_gain_1_s = 25.9\nloop_hz = 1000\n"
                   "[axis.Y]\nloop_gain_1_s = 19.3\nloop_hz = 1000\n")
 
 
+CUT = "G21 G90\nG1 X10 Y3 F60\nM30\n"
 CIRCLE = "G21 G90 G17\nG3 X0 Y0 I-2 J0 F600\nM30\n"
 
 

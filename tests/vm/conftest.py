@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A boot for each mode, and its tests read what it left."""
 
+import os
 import shutil
 import subprocess
 
 import pytest
-from boot import (BUILD, BUILD_VM, CIRCLE, GAP, GAP_FRAMES, HERE, LINES,
-                  QUICK_JOB, ROOT, Run, SLOW_JOB, VIRTUAL, checked, drives,
-                  lagging, machine)
+from boot import (BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES,
+                  QUICK_JOB, ROOT, Run, SLOW_JOB, STRICT_REFUSED, STRICT_UP,
+                  VIRTUAL, checked, drives, lagging, machine)
 
 
 @pytest.fixture(scope="session")
@@ -18,8 +19,8 @@ def plain():
         "sim.ini": machine("sim", tail="[sim]\nspeed = 5\n"),
         "gap.ini": machine(tail=GAP),
         "no-chip.ini": machine(tail=LINES.replace("sim0", "sim7")),
-        "no-line.ini": machine(tail=LINES + "spark = 32\n"),
-        "busy.ini": machine(tail=LINES + "spark = 6\n"),
+        "no-line.ini": machine(tail=LINES + "pump = 32\n"),
+        "busy.ini": machine(tail=LINES + "pump = 6\n"),
         "rights.ini": machine(),
         "quick.ngc": QUICK_JOB,
         "slow.ngc": SLOW_JOB,
@@ -30,6 +31,12 @@ def plain():
 def virtual():
     """One CPU in virtual time."""
     return checked(Run("virtual", VIRTUAL, "-d"))
+
+
+@pytest.fixture(scope="session")
+def edges():
+    """One CPU in virtual time, four times as fast."""
+    return checked(Run("edges", EDGES, "-d", "-i", "0"))
 
 
 @pytest.fixture(scope="session")
@@ -47,8 +54,31 @@ def can402():
         "led.ini": lagging("feedforward"), "led.ngc": CIRCLE,
         "coupled.ini": lagging("feedforward+cross-coupled"), "coupled.ngc": CIRCLE,
         "faults.ini": drives("XY", GAP_FRAMES),
-        "faults.ngc": "G21 G90\nG1 X10 Y3 F60\nM30\n",
+        "faults.ngc": CUT,
     }, "-d", copies=(guest / "drives.py", guest / "can402.py")))
+
+
+@pytest.fixture(scope="session")
+def strict():
+    """Drives that refuse what they may, one CPU in virtual time."""
+    guest = HERE / "guest"
+    return checked(Run("strict", {
+        "strict-up.ini": drives("XYZA", STRICT_UP, "no", falls="Z"),
+        "strict-up.ngc": "G21 G90\nG1 X1 Y-0.5 Z0.3 A2 F60\n"
+                         "G1 X0.2 Y0.1 Z-0.1 A-0.4\nM30\n",
+        "strict-refused.ini": drives("XYZA", STRICT_REFUSED, "no", falls="Y"),
+        "strict-refused.ngc": CUT,
+        "strict-late.ini": drives("XY", GAP_FRAMES, "no"),
+        "strict-late.ngc": CUT,
+        "strict-faults.ini": drives("XY", GAP_FRAMES, "no"),
+        "strict-faults.ngc": CUT,
+        "strict-attack.ini": drives("XY", GAP_FRAMES, "no"),
+        "strict.env": f"SEED={os.environ.get('EDM_SEED', 1)}\n"
+                      f"RUNS={os.environ.get('EDM_RUNS', 4)}\n"
+                      "SCENES=" + os.environ.get(
+                          "EDM_SCENES", "up,refused,late,faults,attack") + "\n",
+    }, "-d", limit=1800, copies=[guest / n for n in (
+        "can402.py", "strict.py", "can402_strict.py")]))
 
 
 @pytest.fixture(scope="session")

@@ -22,8 +22,8 @@ def test_a_job_sent_by_a_client_is_done(plain, machine):
 @pytest.mark.parametrize("library", ["", "2"])
 @pytest.mark.parametrize("what, code, found, mend", [
     ("no-chip", 78, "gpio.step_X: chip sim7: No such file", "gpiodetect"),
-    ("no-line", 78, "gpio.spark: line 32 of sim0, which has 32", "0 to 31"),
-    ("busy", 69, "gpio.spark: line 6 of sim0 is in use by gpioset",
+    ("no-line", 78, "gpio.pump: line 32 of sim0, which has 32", "0 to 31"),
+    ("busy", 69, "gpio.pump: line 6 of sim0 is in use by gpioset",
      "gpioinfo"),
     ("rights", 77, "gpio.step_X: chip sim0: Permission denied",
      "usermod -aG gpio"),

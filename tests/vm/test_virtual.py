@@ -59,10 +59,10 @@ def points_by_quarters(text):
         was = is_
 
 
-def points_of_edmsim(folder, machine, job):
+def points_of_edmsim(folder, machine, job, files=VIRTUAL):
     """Lattice points of the same job on the same machine."""
-    (folder / "machine.ini").write_text(VIRTUAL[machine])
-    (folder / "job.ngc").write_text(VIRTUAL[job])
+    (folder / "machine.ini").write_text(files[machine])
+    (folder / "job.ngc").write_text(files[job])
     subprocess.run(
         [BUILD / "edmsim", "--machine", "machine.ini", "--dry-run", "--quiet",
          "--pulses", "pulses.csv", "job.ngc"], cwd=folder, check=True)

@@ -17,6 +17,7 @@ void axis_state_get(const struct cycle *c, struct axis_state *ret)
 		ret->toward[i] = c->comp.axis[i].toward;
 	}
 	ret->homed = c->manual.homed;
+	ret->unplaced = c->manual.unplaced;
 	ret->limit = c->limit;
 	ret->told_c = c->comp.told_c;
 }
@@ -46,6 +47,7 @@ void axis_state_set(struct cycle *c, const struct axis_state *s)
 	if (c->plc.present && s->told_c > 0)
 		comp_warm(&c->comp, &c->config.comp, s->told_c);
 	c->manual.homed = s->homed;
+	c->manual.unplaced = s->unplaced;
 	c->manual.used = true;
 	c->out.path++;
 }

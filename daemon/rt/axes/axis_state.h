@@ -24,7 +24,7 @@ struct axis_state {
 	int32_t drive[INTERP_NAXES];	/* where the drives were sent */
 	int32_t shift[INTERP_NAXES];	/* what homing found; comp.h */
 	int8_t toward[INTERP_NAXES];	/* of the last move; 0: none */
-	uint32_t homed;			/* bit per axis */
+	uint32_t homed, unplaced;	/* bit per axis */
 	struct limit limit;		/* switches they are on, and their sides */
 	double told_c;			/* temperature of the axes, as a PLC told
 					 * it; 0: not told */

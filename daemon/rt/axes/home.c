@@ -74,6 +74,7 @@ static void call(struct cycle *c, int32_t beyond, int32_t drive)
 	c->out.target[h->axis] = place;
 	comp_settle(&c->comp, &c->config.comp, h->axis, c->out.target, drive);
 	h->homed |= 1u << h->axis;
+	h->unplaced &= ~(1u << h->axis);
 	h->todo &= ~(1u << h->axis);
 }
 
@@ -82,6 +83,11 @@ static enum home_phase begin(struct cycle *c, const struct io_inputs *in)
 	struct manual *h = &c->manual;
 
 	manual_begin(c, next_axis(c));
+	if (manual_axis(c)->method == HOME_NONE) {
+		h->unplaced &= ~(1u << h->axis);
+		h->todo &= ~(1u << h->axis);
+		return HOME_BEGIN;
+	}
 	if (manual_axis(c)->method == HOME_ABSOLUTE) {
 		call(c, in->actual[h->axis], in->actual[h->axis]);
 		return HOME_BEGIN;

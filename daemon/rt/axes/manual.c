@@ -21,7 +21,7 @@ uint32_t manual_unhomed(const struct cycle *c)
 		if (c->config.axis[i].present &&
 		    c->config.axis[i].method != HOME_NONE)
 			axes |= 1u << i;
-	return axes & ~c->manual.homed;
+	return (axes & ~c->manual.homed) | c->manual.unplaced;
 }
 
 const struct manual_axis *manual_axis(const struct cycle *c)
@@ -114,7 +114,8 @@ int manual_home(struct cycle *c, uint32_t axis)
 	for (uint32_t i = 0; i < INTERP_NAXES; i++)
 		if ((axis == i || axis == MANUAL_ALL_AXES) &&
 		    c->config.axis[i].present &&
-		    c->config.axis[i].method != HOME_NONE)
+		    (c->config.axis[i].method != HOME_NONE ||
+		     c->manual.unplaced >> i & 1))
 			todo |= 1u << i;
 	if (todo == 0)
 		return ANSWER_BAD_ARGUMENT;

@@ -11,7 +11,9 @@
  *			further, slowly on it again: that edge is home_at_mm
  *	switch-index	the same, and slowly on to the index mark: that mark is
  *	absolute	no motion: the drive says where it stands
- *	none		the place it starts at is good
+ *	none		the place it starts at is good; one whose drive has
+ *			lost its place is where it stands, by the operator's
+ *			word
  *
  * What home found is a shift between places and pulses (comp.h); no pulse is
  * made by calling a place another.
@@ -76,13 +78,18 @@ struct manual {
 	double phase_mm;		/* gone_mm where the phase began */
 	int32_t met;			/* pulses at the switch or mark */
 	uint32_t homed;			/* bit per axis */
+	uint32_t unplaced;		/* ... whose drive lost its place; until
+					 * it is homed */
 	bool used;			/* places and programs may disagree */
 };
 
 struct cycle;
 struct io_inputs;
 
-/** manual_unhomed() - bits of the axes that have a method and were not homed. */
+/**
+ * manual_unhomed() - bits of the axes that have a method and were not homed,
+ * and of those whose place is lost, whatever their method.
+ */
 uint32_t manual_unhomed(const struct cycle *c);
 
 /**

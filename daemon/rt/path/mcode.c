@@ -75,7 +75,7 @@ bool mcode_meet(struct cycle *c, uint32_t next, uint32_t arg)
 	struct mcode *m = &c->mcode;
 
 	if (!c->plc.present ||
-	    (next <= c->action_done && !mcode_again(c, next, arg)))
+	    (next <= c->job.action_done && !mcode_again(c, next, arg)))
 		return true;
 	if (m->at != next) {
 		if (m->number != 0 || m->busy)

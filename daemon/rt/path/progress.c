@@ -33,7 +33,7 @@ static bool gap_stands(const struct cycle *c)
 /* One that was begun is forgotten on the way back, and waited for again. */
 static bool dwells(const struct cycle *c)
 {
-	return c->dwelling && (state_duty[c->state].power ||
+	return c->job.dwelling && (state_duty[c->state].power ||
 			       c->state == STATE_TRAVEL);
 }
 

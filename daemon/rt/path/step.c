@@ -60,7 +60,7 @@ int step_to(const struct cycle *c, double n, double *ret_mm)
 
 void step_watch(struct cycle *c)
 {
-	if (c->state == STATE_HOLD && c->moving && c->sensed.contact &&
-	    c->move_to_mm > law_place(c) && !c->config.dry_run)
-		c->moving = false;
+	if (c->state == STATE_HOLD && c->hold.moving && c->sensed.contact &&
+	    c->hold.to_mm > law_place(c) && !c->config.dry_run)
+		c->hold.moving = false;
 }

@@ -15,23 +15,23 @@ void timed_begin(struct cycle *c, uint32_t end)
 		fault_latch(&c->fault, FAULT_PROGRAM);
 		return;
 	}
-	c->timed_end = end;
-	c->timed_left = ms * 1000000 / (uint64_t)c->config.period_ns;
-	c->timed_from_mm = interp_cursor_place_mm(&c->cursor);
+	c->timed.end = end;
+	c->timed.left = ms * 1000000 / (uint64_t)c->config.period_ns;
+	c->timed.from_mm = interp_cursor_place_mm(&c->cursor);
 }
 
 void timed_count(struct cycle *c)
 {
-	if (c->timed_left > 0)
-		c->timed_left--;
+	if (c->timed.left > 0)
+		c->timed.left--;
 }
 
 void timed_over(struct cycle *c, uint32_t end)
 {
 	if (!c->config.dry_run)
 		c->back_mm = c->cursor.p.segs[end].s_mm;
-	if (end == c->timed_end)
-		c->timed_end = 0;
+	if (end == c->timed.end)
+		c->timed.end = 0;
 }
 
 /* At tick 0 a seek takes no steps. */
@@ -39,17 +39,17 @@ void timed_skip(struct cycle *c)
 {
 	struct interp_cursor end = c->cursor;
 
-	if (interp_cursor_seek(&end, c->timed_end, 0) < 0 ||
+	if (interp_cursor_seek(&end, c->timed.end, 0) < 0 ||
 	    memcmp(end.pos, c->cursor.pos, sizeof(end.pos)) != 0) {
 		fault_latch(&c->fault, FAULT_PROGRAM);
 		return;
 	}
 	c->cursor = end;
-	c->action_done = c->timed_end > c->action_done ? c->timed_end :
-							 c->action_done;
+	c->job.action_done = c->timed.end > c->job.action_done ? c->timed.end :
+							 c->job.action_done;
 	c->far_mm = interp_cursor_place_mm(&end);
 	c->out.path++;
-	timed_over(c, c->timed_end);
-	c->dwelling = false;
-	c->leaving = false;
+	timed_over(c, c->timed.end);
+	c->job.dwelling = false;
+	c->lift.leaving = false;
 }

@@ -24,7 +24,7 @@ void timed_count(struct cycle *c);
 
 static inline bool timed_is_up(const struct cycle *c)
 {
-	return c->timed_end > 0 && c->timed_left == 0;
+	return c->timed.end > 0 && c->timed.left == 0;
 }
 
 /** timed_over() - segment @end, where a part ends, is passed or skipped. */

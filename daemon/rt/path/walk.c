@@ -14,13 +14,13 @@
 
 bool walk_is_cut(const struct cycle *c, const struct interp_seg *s)
 {
-	return !c->config.dry_run && !c->power_off &&
+	return !c->config.dry_run && !c->job.power_off &&
 	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
 }
 
 bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s)
 {
-	return i > c->action_done ||
+	return i > c->job.action_done ||
 	       (s->kind == INTERP_MCODE && mcode_again(c, i, s->arg));
 }
 
@@ -196,16 +196,16 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 
 static bool dwell_over(struct cycle *c, const struct interp_seg *s)
 {
-	if (!c->dwelling) {
-		c->dwelling = true;
-		c->dwell_left = (uint64_t)s->arg * 1000000 /
+	if (!c->job.dwelling) {
+		c->job.dwelling = true;
+		c->job.dwell_left = (uint64_t)s->arg * 1000000 /
 				(uint64_t)c->config.period_ns;
 	}
-	if (c->dwell_left > 0) {
-		c->dwell_left--;
+	if (c->job.dwell_left > 0) {
+		c->job.dwell_left--;
 		return false;
 	}
-	c->dwelling = false;
+	c->job.dwelling = false;
 	return true;
 }
 
@@ -213,11 +213,11 @@ static void switch_aux(struct cycle *c, uint32_t what)
 {
 	switch (what) {
 	case INTERP_AUX_POWER_OFF:
-		c->power_off = true;
+		c->job.power_off = true;
 		break;
 	case INTERP_AUX_POWER_POSITIVE:
 	case INTERP_AUX_POWER_NEGATIVE:
-		c->power_off = false;
+		c->job.power_off = false;
 		conditions_say(c, what == INTERP_AUX_POWER_NEGATIVE);
 		break;
 	case INTERP_AUX_PUMP_ON:
@@ -233,7 +233,7 @@ enum walk_deed walk_action(struct cycle *c)
 {
 	const uint32_t next = c->cursor.index + 1;
 	const struct interp_seg s = c->cursor.p.segs[next];
-	const bool first = next > c->action_done;
+	const bool first = next > c->job.action_done;
 
 	if (s.kind == INTERP_END)
 		return ACTION_END;
@@ -245,7 +245,7 @@ enum walk_deed walk_action(struct cycle *c)
 		switch_aux(c, s.arg);
 	if (first && s.kind == INTERP_TIMED_END)
 		timed_over(c, next);
-	c->action_done = first ? next : c->action_done;
+	c->job.action_done = first ? next : c->job.action_done;
 	if (interp_cursor_pass(&c->cursor) == INTERP_BAD_SEGMENT) {
 		fault_latch(&c->fault, FAULT_PROGRAM);
 		return ACTION_PASSED;

@@ -121,7 +121,12 @@ static int top(struct nc_reader *r, int motion, struct interp_build_contour *c)
 	*c = (struct interp_build_contour) { .arc = false };
 	if (b->upper)
 		motion = b->upper->value;
-	if (!b->colon || motion < 2) {
+	if (!(b->colon || nc_has(r, NC_UI) || nc_has(r, NC_UJ)) || motion < 2) {
+		if (r->d->lean && !b->colon)
+			return nc_refuse_at(r, r->line, "K and L, the centre "
+					    "of the top's arc",
+					    "an arc with U or V and no centre "
+					    "of its top");
 		if (b->words & (NC_BIT(NC_UI) | NC_BIT(NC_UJ)))
 			return nc_refuse_at(r, r->line, "G2 or G3 before it",
 					    "a centre of a straight top");
@@ -167,7 +172,8 @@ static int go_round(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	};
 
 	if (nc_has_guides(r) && arc->axis_a == INTERP_X &&
-	    (r->block.colon || nc_has(r, NC_U) || nc_has(r, NC_V)))
+	    (r->block.colon || (r->block.words & (NC_BIT(NC_U) | NC_BIT(NC_V) |
+				NC_BIT(NC_UI) | NC_BIT(NC_UJ)))))
 		return go_two(r, end_mm, arc->clockwise ? 2 : 3, &bottom);
 	return contour_arc(&r->contour, end_mm, arc, &r->word, r->diag);
 }

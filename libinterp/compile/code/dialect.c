@@ -14,6 +14,7 @@ static const struct interp_dialect dialects[] = {
 	{ .name = "skd2", .nc = &nc_skd2 },
 	{ .name = "sodick", .nc = &nc_sodick },
 	{ .name = "chmer", .nc = &nc_chmer },
+	{ .name = "fanuc", .nc = &nc_fanuc },
 	{ .name = "3b", .suffix = ".3b" },
 	{ .name = "4b", .suffix = ".4b", .fourb = true },
 };

@@ -144,6 +144,7 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_REGISTER]		= nc_run_register,
 	[NC_OFFSET]		= nc_run_offset,
 	[NC_TAPER]		= nc_run_taper,
+	[NC_TAPER_CORNER]	= nc_run_taper_corner,
 	[NC_CORNER]		= run_nothing,
 	[NC_TRANSITION]		= run_nothing,
 	[NC_SUPPLY]		= run_nothing,

@@ -31,6 +31,21 @@ static void follow(const struct nc_reader *r, uint32_t named,
 				   here[INTERP_Y];
 }
 
+/* U V of the line are the distance of the top from X Y, or its change. */
+static void lean(const struct nc_reader *r, double end_mm[INTERP_NAXES])
+{
+	const struct nc_block *b = &r->block;
+	const double *here = nc_here(r);
+
+	for (int i = INTERP_U; i <= INTERP_V; i++) {
+		const int j = i - INTERP_U + INTERP_X;
+		const double was = r->incremental ? here[i] - here[j] : 0;
+
+		if (b->words & NC_BIT(i))
+			end_mm[i] = end_mm[j] + was + b->value[i] * r->scale[i];
+	}
+}
+
 void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 {
 	const struct nc_block *b = &r->block;
@@ -43,6 +58,8 @@ void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 	for EACH_AXIS(b->words & NC_AXES, i)
 		ret_end_mm[i] = base[i] + b->value[i] * r->scale[i];
 	follow(r, b->words, ret_end_mm);
+	if (r->d->lean && !b->colon && nc_has_guides(r))
+		lean(r, ret_end_mm);
 }
 
 /* F counts degrees per minute if nothing but rotary axes move, and these know

@@ -100,6 +100,7 @@ int interp_nc_compile(const char *text, size_t bytes,
 
 	diag->line = diag->column = 0;
 	contour_init(&r.contour, o->wire ? o->wire : &none, o->machine, b);
+	r.contour.notes = o->notes;
 	for (int i = 0; i < INTERP_NOFFSETS; i++)
 		r.registers[i] = (struct nc_register) {
 			o->offset_mm[i] != 0, o->offset_mm[i]
@@ -114,5 +115,6 @@ int interp_nc_compile(const char *text, size_t bytes,
 	free(r.labels);
 	nc_curve_free(&r.curve);
 	nc_forget_conditions(&r);
+	contour_free(&r.contour);
 	return rc;
 }

@@ -82,6 +82,13 @@ int nc_run_taper(struct nc_reader *r)
 	return set_side(r, r->block.code_at[NC_TAPER]);
 }
 
+int nc_run_taper_corner(struct nc_reader *r)
+{
+	r->contour.corner = (enum interp_taper_corner)
+			    r->block.code[NC_TAPER_CORNER]->value;
+	return 0;
+}
+
 static int refuse_angle(struct nc_reader *r, const uint8_t *at, double deg)
 {
 	const double most = r->contour.guides.wire->angle_max_deg;

@@ -234,6 +234,7 @@ int nc_check_touched(struct nc_reader *r);
 int nc_run_register(struct nc_reader *r);
 int nc_run_offset(struct nc_reader *r);
 int nc_run_taper(struct nc_reader *r);
+int nc_run_taper_corner(struct nc_reader *r);
 
 /** nc_take_angle() - the A of a G51 or G52 is no axis. */
 int nc_take_angle(struct nc_reader *r);

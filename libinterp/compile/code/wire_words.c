@@ -30,15 +30,22 @@
 	['-'] = NC_NUMERIC,						\
 	['('] = NC_OPEN, ['/'] = NC_SLASH, ['%'] = NC_PERCENT
 
+/* The centre of the top's arc. */
+#define TOP_CLASSES							\
+	SLOT('K', 'k', NC_UI), SLOT('L', 'l', NC_UJ)
+
 #define SUBPROGRAM_CLASSES						\
 	SLOT('P', 'p', NC_P), SLOT('L', 'l', NC_L)
 
 #define XY_	(NC_BIT(NC_X) | NC_BIT(NC_Y))
-#define ARC_	(XY_ | NC_BIT(NC_I) | NC_BIT(NC_J))
+#define UV_	(NC_BIT(NC_U) | NC_BIT(NC_V))
+#define LINE_	(XY_ | UV_)
+#define ARC_	(LINE_ | NC_BIT(NC_I) | NC_BIT(NC_J) | \
+		 NC_BIT(NC_UI) | NC_BIT(NC_UJ))
 
 #define MOTION_G							\
-	[0]   = { NC_MOTION, 0, XY_ },					\
-	[10]  = { NC_MOTION, 1, XY_ },					\
+	[0]   = { NC_MOTION, 0, LINE_ },				\
+	[10]  = { NC_MOTION, 1, LINE_ },				\
 	[20]  = { NC_MOTION, 2, ARC_ },					\
 	[30]  = { NC_MOTION, 3, ARC_ },					\
 	[900] = { NC_DISTANCE, false, 0 },				\
@@ -72,7 +79,8 @@
 /* -- robofil --------------------------------------------------------------- */
 
 static const uint8_t robofil_classes[256] = {
-	WIRE_CLASSES, [';'] = NC_SEMICOLON, LETTER('D', 'd', NC_LETTER_D),
+	WIRE_CLASSES, TOP_CLASSES, [';'] = NC_SEMICOLON,
+	LETTER('D', 'd', NC_LETTER_D),
 };
 
 static const struct nc_code robofil_g[NC_NG] = {
@@ -92,9 +100,9 @@ const struct nc_dialect nc_robofil = {
 		  "G42 G60 G61 G90 G91 G92" },
 		{ robofil_m, NC_NM, 1, "M00, M01, or M02 to end" MACHINE_M },
 	},
-	.any_word = "one of G M F N X Y I J D",
+	.any_word = "one of G M F N X Y I J U V K L D",
 	.label = 'O', .arc_places = true, .point = true, .m2_ends = true,
-	.no_feed = true,
+	.no_feed = true, .lean = true,
 };
 
 /* -- skd2 ------------------------------------------------------------------ */
@@ -115,14 +123,16 @@ const struct nc_dialect nc_skd2 = {
 		  "G52 G90 G91 G92" },
 		{ skd2_m, NC_NM, 1, "one of M00 M01 M02 M98 M99" MACHINE_M },
 	},
-	.any_word = "one of G M F N X Y I J A P L E H",
+	.any_word = "one of G M F N X Y I J U V A P L E H",
 	.label = 'N', .decimals = 3, .no_feed = true, .defines = true,
+	.lean = true,
 };
 
 /* -- sodick ---------------------------------------------------------------- */
 
 static const uint8_t sodick_classes[256] = {
 	WIRE_CLASSES, SUBPROGRAM_CLASSES, [';'] = NC_BLOCK_END,
+	[':'] = NC_COLON,
 	SLOT('A', 'a', NC_ANGLE), LETTER('C', 'c', NC_LETTER_C),
 	LETTER('T', 't', NC_LETTER_T),
 	LETTER('D', 'd', NC_LETTER_D), LETTER('H', 'h', NC_LETTER_D),
@@ -157,16 +167,16 @@ const struct nc_dialect nc_sodick = {
 		{ sodick_m, NC_NM, 1, "one of M00 M01 M02 M98 M99" MACHINE_M },
 		{ sodick_t, NC_NM, 1, "one of T80 ... T87" },
 	},
-	.any_word = "one of G M T F N X Y I J A P L C D H",
+	.any_word = "one of G M T F N X Y I J U V A P L C D H :",
 	.label = 'N', .point = true, .no_feed = true, .defines = true,
-	.touches = true,
+	.touches = true, .lean = true,
 };
 
 /* -- chmer ----------------------------------------------------------------- */
 
 static const uint8_t chmer_classes[256] = {
 	WIRE_CLASSES, SUBPROGRAM_CLASSES, [';'] = NC_SEMICOLON,
-	SLOT('A', 'a', NC_ANGLE), SLOT('O', 'o', NC_O),
+	SLOT('A', 'a', NC_ANGLE), SLOT('O', 'o', NC_O), [':'] = NC_COLON,
 	LETTER('S', 's', NC_LETTER_S), LETTER('H', 'h', NC_LETTER_D),
 };
 
@@ -187,7 +197,39 @@ const struct nc_dialect nc_chmer = {
 		  "G50 G51 G52 G54 ... G59 G90 G91 G92" },
 		{ chmer_m, NC_NM, 1, "one of M00 M01 M02 M30 M98 M99" MACHINE_M },
 	},
-	.any_word = "one of G M F N O X Y I J A P L S H",
+	.any_word = "one of G M F N O X Y I J U V A P L S H :",
 	.label = 'O', .point = true, .no_feed = true, .defines = true,
+	.lean = true,
+};
+
+/* -- fanuc ----------------------------------------------------------------- */
+
+static const uint8_t fanuc_classes[256] = {
+	WIRE_CLASSES, TOP_CLASSES, [';'] = NC_BLOCK_END,
+	SLOT('T', 't', NC_ANGLE), SLOT('O', 'o', NC_O), SLOT('P', 'p', NC_P),
+	LETTER('S', 's', NC_LETTER_S), LETTER('D', 'd', NC_LETTER_D),
+};
+
+static const struct nc_code fanuc_g[NC_NG] = {
+	MOTION_G, OFFSET_G, TAPER_G, WORK_G,
+	[200] = { NC_UNITS, true, 0 },
+	[210] = { NC_UNITS, false, 0 },
+};
+
+static const struct nc_code fanuc_m[NC_NM] = {
+	STOP_M, [30] = { NC_STOP, NC_FINISH, 0 },
+	[98] = { NC_STOP, NC_CALL, NC_BIT(NC_P) },
+	[99] = { NC_STOP, NC_RETURN, 0 },
+};
+
+const struct nc_dialect nc_fanuc = {
+	.classes = fanuc_classes,
+	.letter = {
+		{ fanuc_g, NC_NG, 10, "one of G0 G1 G2 G3 G20 G21 G40 G41 G42 "
+		  "G50 G51 G52 G54 ... G59 G90 G91 G92" },
+		{ fanuc_m, NC_NM, 1, "one of M00 M01 M02 M30 M98 M99" MACHINE_M },
+	},
+	.any_word = "one of G M F N O X Y I J U V K L T P S D",
+	.label = 'O', .point = true, .no_feed = true, .lean = true,
 };
 /* clang-format on */

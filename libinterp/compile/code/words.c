@@ -117,6 +117,9 @@ static const struct nc_code g[NC_NG] = {
 	[570] = { NC_WORK, 3, 0 },
 	[580] = { NC_WORK, 4, 0 },
 	[590] = { NC_WORK, 5, 0 },
+	[600] = { NC_TAPER_CORNER, INTERP_CORNER_CONICAL, 0 },
+	[610] = { NC_TAPER_CORNER, INTERP_CORNER_CONSTANT, 0 },
+	[620] = { NC_TAPER_CORNER, INTERP_CORNER_SHARP, 0 },
 	[800] = { NC_TOUCH, NC_TOUCH_ONE, XYZ_ },
 	[810] = { NC_TOUCH, NC_TOUCH_LIMIT, XYZ_ },
 	[820] = { NC_TOUCH, NC_TOUCH_HALF, XYZ_ },
@@ -167,7 +170,7 @@ const struct nc_dialect nc_generic = {
 	.letter = {
 		{ g, NC_NG, 10,
 		  "one of G0 ... G5.3 G6.2 G17 ... G21 G28 G38.2 G40 ... G42 "
-		  "G43.4 G49 ... G59 G80 ... G82 G86 G90 ... G92.1 G94 G120 "
+		  "G43.4 G49 ... G62 G80 ... G82 G86 G90 ... G92.1 G94 G120 "
 		  "G130 ... G135 G140 ... G143 G160 ... G162" },
 		{ m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" MACHINE_M },
 		{ t, NC_NM, 1, "T84 (pump on) or T85 (pump off)" },

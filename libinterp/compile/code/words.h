@@ -91,6 +91,7 @@ enum nc_group {
 	NC_REGISTER,			/* D H */
 	NC_OFFSET,			/* G40 G41 G42 */
 	NC_TAPER,			/* G50 G51 G52 */
+	NC_TAPER_CORNER,		/* G60 G61 G62 */
 	NC_CORNER,			/* G60 G61 */
 	NC_TRANSITION,			/* G38 G39 */
 	NC_SUPPLY,			/* T80 ... T83 T86 T87 */
@@ -165,9 +166,11 @@ struct nc_dialect {
 	bool defines;			/* E001= and H001= lines */
 	bool registers;			/* H001=0.11 alone */
 	bool touches;			/* X- and X, without a number */
+	bool lean;			/* U V: how far the top of the wire is
+					 * from X Y, not its place */
 };
 
 extern const struct nc_dialect nc_generic, nc_robofil, nc_skd2, nc_sodick,
-			       nc_chmer;
+			       nc_chmer, nc_fanuc;
 
 #endif /* CODE_WORDS_H */

@@ -4,32 +4,25 @@
  *
  * Takes programmed motions, moves each contour to its side by the offset and
  * the taper in force, joins neighbours at their corners and hands the result
- * to the guides.  One motion is held back until the next is known; memory is
- * bounded.  With nothing in force a motion goes straight to the builder.
+ * to the guides.
+ *
+ * What is cut under one G41 or G42, lead to lead, is collected first: no part
+ * of it may come too near to another, and pieces for which there is no room
+ * are left out, so all of it must be known.  With nothing in force one motion
+ * is held back until the next is known, or none.
  *
  * A function that refuses fills @diag's found, wanted and line (that of the
- * motion to blame, which may be the one held) and returns -EINVAL.
+ * motion to blame, which may be one collected before) and returns -EINVAL.
  *
- * Threads: allocates through the builder.  Never in the cycle.
+ * Threads: allocates.  Never in the cycle.
  */
 #ifndef WIRE_CONTOUR_H
 #define WIRE_CONTOUR_H
 
+#include "wire/face.h"
 #include "wire/guide.h"
 
-#define CONTOUR_TODO_MAX	32	/* actions between two motions */
-
-/* A motion as programmed, on both planes. */
-struct contour_motion {
-	struct curve c[2];
-	double from_mm[INTERP_NAXES], end_mm[INTERP_NAXES];
-	struct interp_build_word word;
-	/* Set by the stage: */
-	struct curve parallel[2];
-	double d[2];			/* to the left of each contour */
-	bool ramp[2];			/* d is reached over this motion */
-	bool point[2];			/* stands on this plane */
-};
+#define CONTOUR_MOTIONS_MAX	1000000u	/* under one offset */
 
 struct contour_action {
 	enum interp_kind kind;
@@ -40,17 +33,21 @@ struct contour_action {
 struct contour {
 	struct guides guides;
 	double here_mm[INTERP_NAXES];	/* as programmed: U V on the top */
-	double d[2];			/* in force for the next motion */
-	double d_end[2];		/* in force where the path has come to */
-	bool held;
-	struct contour_motion m;	/* if one is */
-	struct vec at[2];		/* where its parallels begin */
-	struct contour_action todo[CONTOUR_TODO_MAX];
-	uint32_t ntodo;			/* done behind the motion held */
+	double offset_mm, slope;	/* in force for the next motion ... */
+	enum interp_taper_corner corner;
+	double last_offset_mm, last_slope;	/* ... and for the last one */
+	struct contour_motion *m;	/* collected */
+	uint32_t n, room;
+	struct contour_action *todo;	/* behind them */
+	uint32_t ntodo, todo_room;
+	struct vec at[2];		/* where the wire crosses the planes */
+	const struct interp_notes *notes;	/* lent; NULL: nobody listens */
 };
 
 void contour_init(struct contour *k, const struct interp_wire *w,
 		  const struct interp_machine *m, struct interp_build *b);
+
+void contour_free(struct contour *k);
 
 /**
  * contour_side() - from the next motion on, @offset_mm to the left of the
@@ -59,7 +56,7 @@ void contour_init(struct contour *k, const struct interp_wire *w,
  */
 void contour_side(struct contour *k, double offset_mm, double slope);
 
-/** contour_tangent() - of a taper of @deg; -1 if beyond the machine. */
+/** contour_tangent() - of a taper of @deg; NAN if beyond the machine. */
 double contour_tangent(const struct contour *k, double deg);
 
 /* As the builder's functions of these names. */
@@ -83,32 +80,34 @@ int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
 		const struct interp_build_contour contour[2],
 		const struct interp_build_word *w, struct interp_diag *diag);
 
-/** contour_flush() - nothing follows: end the motion held. */
+/** contour_flush() - nothing follows: end what is collected. */
 int contour_flush(struct contour *k, struct interp_diag *diag);
 
-/* -- join.c: two neighbours on one plane --------------------------------- */
+/* -- release.c ------------------------------------------------------------- */
 
-struct contour_join {
-	struct vec end, start;		/* of this motion; of the next */
-	bool filled;			/* `fill` leads from end to start */
-	struct curve fill;
-};
+/** contour_release() - cut what is collected; @next follows, or NULL. */
+int contour_release(struct contour *k, const struct contour_motion *next,
+		    struct interp_diag *diag);
 
-/** contour_way() - unit vector along plane @p of @m, at its start or end. */
-struct vec contour_way(const struct contour_motion *m, int p, bool at_end);
+/* -- contour_refuse.c -------------------------------------------------------- */
 
-/** contour_turn() - the corner between the two: radian, + to the left. */
-double contour_turn(const struct contour_motion *a,
-		    const struct contour_motion *b, int p);
+struct track_fault;
 
-/** contour_parallels() - fill m->parallel; -1, or the plane whose inside
- *  radius is smaller than the offset. */
-int contour_parallels(struct contour_motion *m);
-
-/** contour_join() - false if an inner corner has no place for the offset.
- *  @b NULL: nothing follows. */
-bool contour_join(const struct contour_motion *a,
-		  const struct contour_motion *b, int p, double pulse_mm,
-		  struct contour_join *ret);
+/* Said of what is cut otherwise than it is written. */
+void contour_note_skip(const struct contour *k, const struct track_fault *f,
+		       int plane);
+void contour_note_constant(const struct contour *k, const struct face *f);
+int contour_refuse_track(const struct contour *k, const struct track_fault *f,
+			 int plane, struct interp_diag *diag);
+int contour_refuse_faces(const struct contour *k, const struct face_fault *f,
+			 struct interp_diag *diag);
+int contour_refuse_lead(const struct contour_motion *m, double by_mm,
+			struct interp_diag *diag);
+int contour_refuse_alone(const struct interp_build_word *w,
+			 struct interp_diag *diag);
+int contour_refuse_plane(const struct interp_build_word *w,
+			 struct interp_diag *diag);
+int contour_refuse_length(const struct interp_build_word *w,
+			  struct interp_diag *diag);
 
 #endif /* WIRE_CONTOUR_H */

@@ -55,6 +55,23 @@ struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 	return c;
 }
 
+/* A centre written to a micrometre is not as far from the one end as from the
+ * other: the nearest place that is. */
+struct curve curve_evened(const struct curve *c)
+{
+	const struct vec chord = { c->to.x - c->from.x, c->to.y - c->from.y };
+	const double len = hypot(chord.x, chord.y);
+	const struct vec mid = { (c->from.x + c->to.x) / 2,
+				 (c->from.y + c->to.y) / 2 };
+	const struct vec off = { mid.x - c->centre.x, mid.y - c->centre.y };
+
+	if (!c->arc || len < NOTHING_MM)
+		return *c;
+	return curve_arc(c->from, c->to,
+			 vec_add(c->centre, dot(off, chord) / (len * len),
+				 chord), c->sweep < 0);
+}
+
 double curve_length(const struct curve *c)
 {
 	return c->arc ? fabs(c->sweep) * c->r : curve_distance(c->from, c->to);
@@ -172,13 +189,18 @@ static int circle_circle(const struct curve *a, const struct curve *b,
 	return 2;
 }
 
+int curve_meets(const struct curve *a, const struct curve *b, struct vec ret[2])
+{
+	return a->arc && b->arc ? circle_circle(a, b, ret) :
+	       a->arc ? line_circle(b, a, ret) :
+	       b->arc ? line_circle(a, b, ret) : line_line(a, b, ret);
+}
+
 bool curve_meet(const struct curve *a, const struct curve *b, struct vec near,
 		struct vec *ret)
 {
 	struct vec at[2];
-	const int n = a->arc && b->arc ? circle_circle(a, b, at) :
-		      a->arc ? line_circle(b, a, at) :
-		      b->arc ? line_circle(a, b, at) : line_line(a, b, at);
+	const int n = curve_meets(a, b, at);
 
 	if (n == 0)
 		return false;
@@ -222,4 +244,36 @@ bool curve_trim(struct curve *c, struct vec from, struct vec to)
 		return trim_arc(c, from, to);
 	*c = curve_line(from, to);
 	return dot(way, left) > NOTHING_MM;
+}
+
+struct curve curve_reversed(const struct curve *c)
+{
+	struct curve back = *c;
+
+	back.from = c->to;
+	back.to = c->from;
+	back.theta = c->theta + c->sweep;
+	back.sweep = -c->sweep;
+	return back;
+}
+
+double curve_turn(const struct curve *a, const struct curve *b)
+{
+	const struct vec v = curve_way(a, true), w = curve_way(b, false);
+
+	return atan2(v.x * w.y - v.y * w.x, v.x * w.x + v.y * w.y);
+}
+
+/* Of the two turns by which a place on a circle may be named the one nearer
+ * to the middle of the arc is meant. */
+double curve_share(const struct curve *c, struct vec at)
+{
+	const struct vec way = curve_way(c, false);
+	const struct vec to = { at.x - c->from.x, at.y - c->from.y };
+
+	if (!c->arc)
+		return dot(to, way) / curve_distance(c->from, c->to);
+	if (c->sweep == 0)
+		return 0;
+	return 0.5 + past(c, c->theta + c->sweep / 2, at) / fabs(c->sweep);
 }

@@ -37,6 +37,9 @@ struct curve curve_line(struct vec from, struct vec to);
 struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 		       bool clockwise);
 
+/** curve_evened() - an arc with both ends on its circle; a line as it is. */
+struct curve curve_evened(const struct curve *c);
+
 double curve_length(const struct curve *c);
 
 /** curve_way() - the unit vector along it, at its start or end. */
@@ -54,6 +57,11 @@ struct curve curve_part(const struct curve *c, double t0, double t1);
  */
 bool curve_parallel(const struct curve *c, double d, struct curve *ret);
 
+/** curve_meets() - where the two, prolonged, meet: up to two places.
+ *  Return: how many.  Near misses count, up to 1.5 um. */
+int curve_meets(const struct curve *a, const struct curve *b,
+		struct vec ret[2]);
+
 /** curve_meet() - where the two, prolonged, meet nearest to @near. */
 bool curve_meet(const struct curve *a, const struct curve *b, struct vec near,
 		struct vec *ret);
@@ -63,5 +71,42 @@ bool curve_meet(const struct curve *a, const struct curve *b, struct vec near,
  * Return: false if nothing is left of it, or it would run backwards.
  */
 bool curve_trim(struct curve *c, struct vec from, struct vec to);
+
+/** curve_reversed() - the same way back. */
+struct curve curve_reversed(const struct curve *c);
+
+/** curve_turn() - from the end of @a to the start of @b: radian, + to the
+ *  left, in (-pi, pi]. */
+double curve_turn(const struct curve *a, const struct curve *b);
+
+/** curve_share() - the share of @c's length at which @at, a place on it,
+ *  lies; below 0 and above 1 on its prolongation. */
+double curve_share(const struct curve *c, struct vec at);
+
+/* -- gap.c: two curves ----------------------------------------------------- */
+
+struct curve_box {
+	struct vec lo, hi;
+};
+
+/** curve_bounds() - the smallest box with sides along X and Y around @c. */
+struct curve_box curve_bounds(const struct curve *c);
+
+/* Where two curves cross: the shares of their lengths. */
+struct curve_hit {
+	double t[2];
+	struct vec at;
+};
+
+/** curve_cross() - where @a and @b cross or touch with a point of both.
+ *  Return: how many there are; those that lie upon each other do not. */
+int curve_cross(const struct curve *a, const struct curve *b,
+		struct curve_hit ret[2]);
+
+/** curve_from() - the distance of @at from @c. */
+double curve_from(const struct curve *c, struct vec at);
+
+/** curve_gap() - the distance of the two; 0 if they cross. */
+double curve_gap(const struct curve *a, const struct curve *b);
 
 #endif /* WIRE_CURVE_H */

@@ -27,15 +27,15 @@ def frame(can_id, data):
 class Scene:
     """Drives, daemons and a client."""
 
-    def __init__(self, name, nodes):
+    def __init__(self, name, nodes, played=None):
         self.name, self.nodes, self.marks = name, nodes, []
         self.log = open(R / "log", "w+")
         if not FIFO.exists():
             os.mkfifo(FIFO)
         self.fifo = os.open(FIFO, os.O_RDWR)
         self.drives = subprocess.Popen(
-            [sys.executable, R / "drives.py", "vcan0", FIFO,
-             *map(str, nodes)])
+            [sys.executable, *(played or [R / "drives.py", "vcan0", FIFO,
+                                          *map(str, nodes)])])
         self.report("first")        # they are up when they answer
         self.edmd = subprocess.Popen(
             [R / "edmd", "--config", R / f"{name}.ini"], stderr=self.log)
@@ -54,6 +54,8 @@ class Scene:
         to.unlink(missing_ok=True)
         self.tell("report", to)
         while not to.exists():
+            if self.drives.poll() is not None:
+                raise SystemExit("the drives have died")
             time.sleep(0.02)
         return json.loads(to.read_text())
 
@@ -81,6 +83,15 @@ class Scene:
         self.mark(what)
         return s
 
+    def start(self):
+        """As an operator: again until the drives are up."""
+        for _ in range(100):
+            answer = self.ctl("start")
+            if answer[0] == 0:
+                break
+            time.sleep(0.05)
+        return answer
+
     def end(self, **more):
         self.edmd.send_signal(signal.SIGTERM)
         self.edmd.wait()
@@ -106,8 +117,11 @@ def whole_job(name, nodes, lags=()):
     for node, gain in zip(nodes, lags):
         s.tell("lag", node, gain)
     answers = [s.ctl("submit", "--name", "first", str(R / f"{name}.ngc"))]
+    s.start()
     s.until("running", 10, state=RUNNING)
     s.until("idle", 60, state="idle")
+    if lags:
+        time.sleep(1)           # 20 time constants: they arrive
     s.end(answers=answers, status=s.status())
 
 
@@ -117,6 +131,7 @@ def faults(name, nodes):
     out = {}
     s.tell("gap", 25)
     s.ctl("submit", str(R / f"{name}.ngc"))
+    s.start()
 
     def mend_link():
         subprocess.run(["ip", "link", "set", "vcan0", "up"], check=True)
@@ -156,11 +171,7 @@ def faults(name, nodes):
         s.until(f"{what}: reset", 2, state=("hold", "fault"))
         time.sleep(0.5)
         held = s.status()
-        for _ in range(40):             # the drives may still come up
-            start = s.ctl("start")
-            if start[0] == 0:
-                break
-            time.sleep(0.05)
+        start = s.start()               # the drives may still come up
         s.mark(f"{what}: start")
         out[what] = {"fault": got.get("fault"), "early": early,
                      "reset": reset, "held": held.get("state"),
@@ -180,11 +191,11 @@ def harmless(s):
     for size in range(9):
         for base in (0x180, 0x080, 0x700, 0x580):
             # Heartbeats of a wrong length, EMCY without a code in them, ...
-            if (base, size) not in ((0x180, 6), (0x080, 8), (0x700, 1)):
+            if (base, size) not in ((0x180, 7), (0x080, 8), (0x700, 1)):
                 frame(base + 1, bytes(size))
         if size not in (2, 6):
             frame(0x3f0, bytes(size))
-    for base, size in (0x180, 6), (0x080, 8), (0x700, 1), (0x580, 8):
+    for base, size in (0x180, 7), (0x080, 8), (0x700, 1), (0x580, 8):
         frame(base + 99, b"\xff" * size)
     frame(0x581, bytes.fromhex("8040600000000206"))
     frame(0x80000181, bytes(6))         # extended

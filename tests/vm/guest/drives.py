@@ -40,6 +40,7 @@ STATUS = {NOT_READY: 0x0200, DISABLED: 0x0250, READY: 0x0231,
 
 FRAME = struct.Struct("=IB3x8s")
 COMMAND = struct.Struct("<Hi")
+ANSWER = struct.Struct("<HiB")
 
 SHUTDOWN, SWITCH_ON, ENABLE, OFF, QUICK = range(5)
 
@@ -93,6 +94,7 @@ def dictionary():
             (0x6041, u16, 0, "statusword", "ro"),
             (0x605a, u16, 2, "quick stop option", "rw"),
             (0x6060, INTEGER8, 0, "mode", "rw"),
+            (0x6061, INTEGER8, 0, "mode shown", "ro"),
             (0x6064, INTEGER32, 0, "position actual", "ro"),
             (0x607a, INTEGER32, 0, "target position", "rw"),
             (0x6502, u32, 0x80, "supported modes", "ro")):
@@ -207,7 +209,7 @@ class Drive:
         taken = [m for m in node.rpdo.values() if m.enabled]
         sent = [m for m in node.tpdo.values() if m.enabled]
         assert [[v.index for v in m] for m in taken] == [[0x6040, 0x607a]]
-        assert [[v.index for v in m] for m in sent] == [[0x6041, 0x6064]]
+        assert [[v.index for v in m] for m in sent] == [[0x6041, 0x6064, 0x6061]]
         assert taken[0].trans_type == sent[0].trans_type == 1
         assert node.sdo[0x6060].raw == 8
         self.net.unsubscribe(taken[0].cob_id)
@@ -243,8 +245,8 @@ class Drive:
 
     def sync(self):
         if self.running and self.skip == 0:
-            self.net.send_message(self.tpdo_id, COMMAND.pack(
-                STATUS[self.state], self.place))
+            self.net.send_message(self.tpdo_id, ANSWER.pack(
+                STATUS[self.state], self.place, 8))
         self.skip = max(0, self.skip - 1)
         self.obey()
         self.move()

@@ -89,3 +89,15 @@ status_is() {
 		sleep 0.05
 	done
 }
+
+job_traced() {	# NAME PROGRAM CONFIG JOB
+	edmd_start $2 $3
+	jobs_start $3
+	trace_start ${5:-}
+	ctl submit --wait $4 > $1.job 2>&1
+	echo $? > $1.rc
+	# To end a trace the kernel patches itself, and delays everyone.
+	ctl status > $1.status 2>&1
+	trace_end sim0 $1.trace
+	daemons_end $1
+}

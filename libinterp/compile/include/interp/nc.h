@@ -28,6 +28,12 @@
 
 struct interp_dialect;
 
+/* Takes what is to be said of a program that is accepted. */
+struct interp_notes {
+	void (*say)(void *arg, uint32_t line, const char *text);
+	void *arg;
+};
+
 struct interp_nc_options {
 	const struct interp_dialect *dialect;	/* NULL: generic */
 	const struct interp_machine *machine;
@@ -47,6 +53,7 @@ struct interp_nc_options {
 				 * looked at */
 	const struct interp_mcode *mcode;	/* lent, INTERP_NMCODES of
 				 * them by number: the PLC's; NULL: none */
+	const struct interp_notes *notes;	/* lent; NULL: nobody listens */
 	uint32_t segs_max;	/* 0: INTERP_NC_SEGS_MAX */
 	uint32_t executed_max;	/* 0: INTERP_NC_EXECUTED_MAX */
 };

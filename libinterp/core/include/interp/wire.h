@@ -35,6 +35,18 @@ enum interp_guides {
 	INTERP_NGUIDES
 };
 
+/* What is done with a part of a contour that is too narrow for the wire. */
+enum interp_gouge { INTERP_GOUGE_REFUSE, INTERP_GOUGE_SKIP, INTERP_NGOUGES };
+
+/* What becomes of corners and fillets on the second plane under a taper. */
+enum interp_taper_corner {
+	INTERP_CORNER_CONICAL,		/* fillets change their radius */
+	INTERP_CORNER_CONSTANT,		/* fillets keep their radius */
+	INTERP_CORNER_SHARP,		/* as conical, and sharp outer corners
+					 * beyond a right angle stay sharp */
+	INTERP_NCORNERS
+};
+
 struct interp_wire {
 	int guides;			/* enum interp_guides */
 	double z_lower_mm, z_upper_mm;	/* guides; lower below upper */
@@ -46,6 +58,9 @@ struct interp_wire {
 	double corner_feed_percent;	/* of the programmed feed, before it */
 	double corner_before_mm;	/* so far */
 	double corner_dwell_s;		/* and wait on it; 0: no wait */
+
+	int gouge;			/* enum interp_gouge */
+	int corner;			/* enum interp_taper_corner, to start with */
 };
 
 #define INTERP_NOFFSETS	100		/* registers D0 ... D99, also called H */

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * drives.c - objects of a CiA 402 drive, as words of a line
+ */
+#include "drives.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WORD_MAX	32
+
+static int refuse(struct interp_diag *d, const char *word, const char *wanted)
+{
+	snprintf(d->found, sizeof(d->found), "\"%s\"", word);
+	snprintf(d->wanted, sizeof(d->wanted), "%s", wanted);
+	return -EINVAL;
+}
+
+/* The next word into @ret; false: there is none. */
+static bool next_word(const char **at, char ret[WORD_MAX])
+{
+	size_t n;
+
+	*at += strspn(*at, " \t,");
+	n = strcspn(*at, " \t,");
+	snprintf(ret, WORD_MAX, "%.*s", (int)n, *at);
+	*at += n;
+	return n > 0 && strcmp(ret, "none") != 0;
+}
+
+/* All of @text up to @end is a hexadecimal number of @most or less. */
+static bool hex(const char **text, char end, uint32_t most, uint32_t *ret)
+{
+	char *stop;
+	unsigned long long x;
+
+	if (strchr("+-", **text) || **text == '\0')
+		return false;
+	errno = 0;
+	x = strtoull(*text, &stop, 16);
+	if (stop == *text || *stop != end || errno || x > most)
+		return false;
+	*text = stop + (end != '\0');
+	*ret = (uint32_t)x;
+	return true;
+}
+
+static bool object_read(const char *word, struct config_object *ret)
+{
+	uint32_t index, sub, value, bytes;
+
+	if (!hex(&word, ':', 0xffff, &index) || !hex(&word, '=', 0xff, &sub) ||
+	    !hex(&word, '/', UINT32_MAX, &value) ||
+	    !hex(&word, '\0', 4, &bytes) || bytes == 0 || bytes == 3 ||
+	    (bytes < 4 && value >> 8 * bytes))
+		return false;
+	*ret = (struct config_object) {
+		(uint16_t)index, (uint8_t)sub, (uint8_t)bytes, value
+	};
+	return true;
+}
+
+int config_drive_sdo(const char *text, struct config_object *ret,
+		     struct interp_diag *diag)
+{
+	char word[WORD_MAX];
+	int n = 0;
+
+	while (next_word(&text, word)) {
+		if (n == CONFIG_SDO_MAX)
+			return refuse(diag, word, "at most 16 objects");
+		if (!object_read(word, &ret[n++]))
+			return refuse(diag, word, "INDEX:SUB=VALUE/BYTES, as "
+				      "605e:0=2/2: hexadecimal, 1, 2 or 4 "
+				      "bytes that hold the value");
+	}
+	return n;
+}
+
+int config_drive_leave(const char *text, uint16_t *ret,
+		       struct interp_diag *diag)
+{
+	char word[WORD_MAX];
+	int n = 0;
+
+	while (next_word(&text, word)) {
+		const char *at = word;
+		uint32_t index;
+
+		if (n == CONFIG_LEAVE_MAX)
+			return refuse(diag, word, "at most 8 objects");
+		if (!hex(&at, '\0', 0xffff, &index))
+			return refuse(diag, word, "hexadecimal indexes of "
+				      "objects, as 1006 60c2");
+		ret[n++] = (uint16_t)index;
+	}
+	return n;
+}
+
+int config_drive_identity(const char *text, uint32_t ret[4],
+			  uint8_t *ret_given, struct interp_diag *diag)
+{
+	char word[WORD_MAX];
+	int n = 0;
+
+	*ret_given = 0;
+	while (next_word(&text, word)) {
+		const char *at = word;
+		const bool any = strcmp(word, "x") == 0;
+
+		if (n == 4 || (!any && !hex(&at, '\0', UINT32_MAX, &ret[n])))
+			return refuse(diag, word, "up to four hexadecimal "
+				      "numbers, or x: vendor, product, "
+				      "revision, serial");
+		if (!any)
+			*ret_given |= (uint8_t)(1u << n);
+		n++;
+	}
+	return n;
+}

@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * edges.c - the edge thread
+ *
+ * Each side writes into the next of a few boxes and then says which: a reader
+ * that is interrupted for as long as the writer needs to come round reads
+ * again, a few times, and else keeps what it had.
+ */
+#include "edges.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define BOXES		8		/* a power of two */
+#define WORDS		24
+#define TRIES		4
+#define IDLE_NS		500000		/* before the first target */
+
+struct box {
+	_Atomic uint32_t word[WORDS];
+};
+
+struct mailbox {
+	struct box box[BOXES];
+	_Atomic uint32_t n;		/* boxes written; the last is n - 1 */
+};
+
+struct edges {
+	struct edges_config c;
+	struct mailbox told, shown;
+	struct edges_told last_told;	/* the cycle's and ... */
+	struct edges_shown last_shown;	/* ... the thread's own copies */
+	struct pulser pulser;
+	int32_t from[IO_NAXES], to[IO_NAXES];	/* of the period played */
+	int32_t held_at[IO_NAXES];	/* target when a stop was told */
+	bool held;
+	int64_t write_ns;		/* of the last slot */
+	struct edges_shown seen;	/* by the cycle */
+	pthread_t thread;
+	_Atomic bool quit;
+};
+
+_Static_assert(sizeof(struct edges_told) <= 4 * WORDS, "a box holds it");
+_Static_assert(sizeof(struct edges_shown) <= 4 * WORDS, "a box holds it");
+
+/* -- Between the threads --------------------------------------------------------- */
+
+static void post(struct mailbox *m, const void *what, size_t bytes)
+{
+	const uint32_t n = atomic_load_explicit(&m->n, memory_order_relaxed);
+	struct box *b = &m->box[n % BOXES];
+	uint32_t words[WORDS];
+
+	memcpy(words, what, bytes);
+	for (size_t i = 0; i < bytes / 4; i++)
+		atomic_store_explicit(&b->word[i], words[i],
+				      memory_order_relaxed);
+	atomic_store_explicit(&m->n, n + 1, memory_order_release);
+}
+
+/* False: nothing yet, or the writer came round each time. */
+static bool fetch(struct mailbox *m, void *ret, size_t bytes)
+{
+	uint32_t words[WORDS];
+
+	for (int try = 0; try < TRIES; try++) {
+		const uint32_t n = atomic_load_explicit(&m->n,
+							memory_order_acquire);
+		struct box *b = &m->box[(n - 1) % BOXES];
+		uint32_t now;
+
+		if (n == 0)
+			return false;
+		for (size_t i = 0; i < bytes / 4; i++)
+			words[i] = atomic_load_explicit(&b->word[i],
+							memory_order_relaxed);
+		atomic_thread_fence(memory_order_acquire);
+		now = atomic_load_explicit(&m->n, memory_order_relaxed);
+		if (now - n < BOXES - 1) {
+			memcpy(ret, words, bytes);
+			return true;
+		}
+	}
+	return false;
+}
+
+void edges_tell(struct edges *e, const struct edges_told *t)
+{
+	post(&e->told, t, sizeof(*t));
+}
+
+void edges_ask(struct edges *e, struct edges_shown *ret)
+{
+	fetch(&e->shown, &e->seen, sizeof(e->seen));
+	*ret = e->seen;
+}
+
+/* -- Time ------------------------------------------------------------------------ */
+
+static int64_t now_ns(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
+}
+
+static void sleep_until(int64_t ns)
+{
+	const struct timespec t = { ns / 1000000000, ns % 1000000000 };
+
+	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL) ==
+	       EINTR)
+		;
+}
+
+static int64_t wait_until(int64_t ns)
+{
+	int64_t now = now_ns();
+
+	if (ns - now > EDGES_SPIN_NS) {
+		sleep_until(ns - EDGES_SPIN_NS / 2);
+		now = now_ns();
+	}
+	while (now < ns)
+		now = now_ns();
+	return now;
+}
+
+/* -- The thread ------------------------------------------------------------------ */
+
+/* From the first word of a stop to the next target behind it. */
+static void heed_stop(struct edges *e)
+{
+	struct edges_told t = e->last_told;
+
+	fetch(&e->told, &t, sizeof(t));
+	if (t.stop) {
+		e->held = true;
+		memcpy(e->held_at, t.target, sizeof(e->held_at));
+	} else if (e->held && memcmp(e->held_at, t.target,
+				     sizeof(e->held_at)) != 0) {
+		e->held = false;
+		memcpy(e->from, e->pulser.put, sizeof(e->from));
+	}
+}
+
+/* @way pulses evenly over the slots, rounded to the nearest, ends alike. */
+static int64_t part(int64_t way, uint32_t slot, uint32_t slots)
+{
+	const int64_t n = (2 * llabs(way) * (slot + 1) + slots) / (2 * slots);
+
+	return way < 0 ? -n : n;
+}
+
+static void aim(const struct edges *e, uint32_t slot, int32_t ret[IO_NAXES])
+{
+	for (int i = 0; i < IO_NAXES; i++) {
+		const int64_t way = (int64_t)e->to[i] - e->from[i];
+
+		/* The first and the last half a pulse's time off the ends. */
+		ret[i] = e->held ? e->pulser.put[i] :
+			 (int32_t)(e->from[i] + part(way, slot, e->c.slots));
+	}
+}
+
+/* All pulses have begun; the last may end in the next period. */
+static bool is_put(const struct edges *e)
+{
+	return memcmp(e->pulser.put, e->to, sizeof(e->to)) == 0;
+}
+
+/* Of the axis that has most. */
+static uint32_t left(const struct edges *e)
+{
+	int64_t most = 0;
+
+	for (int i = 0; i < IO_NAXES; i++) {
+		const int64_t n = llabs((int64_t)e->to[i] - e->pulser.put[i]);
+
+		most = n > most ? n : most;
+	}
+	return (uint32_t)most;
+}
+
+static bool is_still(const struct edges *e)
+{
+	return is_put(e) && !pulser_busy(&e->pulser);
+}
+
+static void show(struct edges *e, bool end)
+{
+	struct edges_shown *s = &e->last_shown;
+
+	memcpy(s->put, e->pulser.put, sizeof(s->put));
+	if (end) {
+		s->busy = left(e) > e->c.slots / (4 * pulser_periods(&e->c.pulser));
+		s->periods++;
+	}
+	post(&e->shown, s, sizeof(*s));
+}
+
+/* Never closer to the one before than a slot, however late that was. */
+static void play_slot(struct edges *e, uint32_t slot, int64_t at_ns)
+{
+	const int64_t slot_ns = e->c.period_ns / e->c.slots;
+	const uint32_t step = e->pulser.step, dir = e->pulser.dir;
+	int32_t target[IO_NAXES];
+	int64_t woke;
+
+	if (at_ns < e->write_ns + slot_ns)
+		at_ns = e->write_ns + slot_ns;
+	woke = wait_until(at_ns);
+	e->last_shown.late += woke - at_ns > slot_ns;
+	heed_stop(e);
+	aim(e, slot, target);
+	pulser_period(&e->pulser, target);
+	e->write_ns = woke;
+	if (step == e->pulser.step && dir == e->pulser.dir)
+		return;
+	if (!e->c.write(e->c.arg, e->pulser.step, e->pulser.dir))
+		e->last_shown.lost = 1;
+	show(e, false);
+}
+
+/*
+ * One with nothing to do is slept through, lines as they are.  A slot that is
+ * late may still be played behind the end: the next period keeps its distance.
+ */
+static void play(struct edges *e, int64_t from_ns)
+{
+	const int64_t slot_ns = e->c.period_ns / e->c.slots;
+	const int64_t until_ns = from_ns + e->c.period_ns - slot_ns / 2;
+
+	fetch(&e->told, &e->last_told, sizeof(e->last_told));
+	memcpy(e->from, e->held ? e->pulser.put : e->to, sizeof(e->from));
+	memcpy(e->to, e->last_told.target, sizeof(e->to));
+	heed_stop(e);
+	for (uint32_t s = 0; s < e->c.slots && !e->last_shown.lost &&
+	     !is_still(e) && e->write_ns < until_ns; s++)
+		play_slot(e, s, from_ns + (int64_t)s * e->c.period_ns /
+					  e->c.slots);
+	show(e, true);
+}
+
+static void be_real(const struct edges_config *c)
+{
+	const struct sched_param p = { .sched_priority = c->priority };
+	cpu_set_t set;
+
+	if (c->cpu >= 0) {
+		CPU_ZERO(&set);
+		CPU_SET((size_t)c->cpu, &set);
+		pthread_setaffinity_np(pthread_self(), sizeof(set), &set);
+	}
+	if (c->priority > 0)
+		pthread_setschedparam(pthread_self(), SCHED_FIFO, &p);
+	pthread_setname_np(pthread_self(), "edmd-edges");
+}
+
+static void *run(void *arg)
+{
+	struct edges *e = arg;
+	int64_t next;
+
+	be_real(&e->c);
+	while (!atomic_load(&e->quit) && atomic_load(&e->told.n) == 0)
+		sleep_until(now_ns() + IDLE_NS);
+	next = now_ns() + e->c.period_ns / 2;
+	while (!atomic_load(&e->quit)) {
+		int64_t late = now_ns() - next;
+
+		/* Periods that went by are not made up for. */
+		if (late > e->c.period_ns)
+			next += late / e->c.period_ns * e->c.period_ns;
+		sleep_until(next);
+		play(e, next);
+		next += e->c.period_ns;
+	}
+	while (e->pulser.phase == PULSER_HIGH && !e->last_shown.lost) {
+		e->held = true;
+		play_slot(e, 0, now_ns());
+	}
+	return NULL;
+}
+
+int edges_start(struct edges **ret, const struct edges_config *c)
+{
+	struct edges *e = calloc(1, sizeof(*e));
+	sigset_t all, before;
+	int err;
+
+	if (!e)
+		return -ENOMEM;
+	e->c = *c;
+	pulser_init(&e->pulser, &c->pulser);
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	err = pthread_create(&e->thread, NULL, run, e);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	if (err) {
+		free(e);
+		return -err;
+	}
+	*ret = e;
+	return 0;
+}
+
+void edges_end(struct edges *e)
+{
+	if (!e)
+		return;
+	atomic_store(&e->quit, true);
+	pthread_join(e->thread, NULL);
+	free(e);
+}

@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * gpio_open.c - the lines as the machine file wants them, or why not
+ */
+#include "gpio_own.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define REFRESH_S	1e-3
+#define DEAD_S		0.02		/* the edge thread plays nothing */
+#define QUIET_S		0.1		/* no comparator on, with the power on */
+
+static int refuse(struct interp_diag *d, int err, const char *line,
+		  const char *found, const char *wanted)
+{
+	interp_diag_say(d, "gpio.%s: %s; %s", line, found, wanted);
+	return err;
+}
+
+static int refuse_chip(struct interp_diag *d, int err, const char *line,
+		       const char *chip)
+{
+	char found[128];
+
+	snprintf(found, sizeof(found), "chip %s: %s", chip, strerror(-err));
+	if (err == -EACCES || err == -EPERM)
+		return refuse(d, err, line, found, "a user of group gpio: "
+			      "usermod -aG gpio USER, and 60-edmd.rules in "
+			      "/usr/lib/udev/rules.d");
+	return refuse(d, err, line, found, "[gpio] chip = a name or label "
+		      "that gpiodetect lists");
+}
+
+/*
+ * By label, for boards that number their chips anew at each start.  A chip that
+ * may not be opened may be the one.
+ */
+static int chip_by_label(struct lines_chip **ret, const char *label)
+{
+	char path[32], has[64];
+	int err = -ENOENT;
+
+	for (int i = 0; i < 64; i++) {
+		int e;
+
+		snprintf(path, sizeof(path), "/dev/gpiochip%d", i);
+		e = lines_chip_open(ret, path);
+		if (e == -EACCES || e == -EPERM)
+			err = e;
+		if (e < 0)
+			continue;
+		lines_chip_label(*ret, has, sizeof(has));
+		if (strcmp(has, label) == 0)
+			return 0;
+		lines_chip_close(*ret);
+	}
+	return err;
+}
+
+static int chip_open(struct lines_chip **ret, const char *name)
+{
+	char path[96];
+	int err;
+
+	snprintf(path, sizeof(path), "%s%s", *name == '/' ? "" : "/dev/", name);
+	err = lines_chip_open(ret, path);
+	return err == -ENOENT && *name != '/' ? chip_by_label(ret, name) : err;
+}
+
+/* The number of chip @name, opened if it is a new one. */
+static int chip_find(struct gpio *g, const char *name, const char *line,
+		     struct interp_diag *d)
+{
+	struct chip *c = &g->chip[g->nchips];
+	int err;
+
+	for (int i = 0; i < g->nchips; i++)
+		if (strcmp(g->chip[i].name, name) == 0)
+			return i;
+	if (g->nchips == NCHIPS)
+		return refuse(d, -E2BIG, line, "a fifth chip",
+			      "lines on at most four chips");
+	err = chip_open(&c->chip, name);
+	if (err < 0)
+		return refuse_chip(d, err, line, name);
+	snprintf(c->name, sizeof(c->name), "%s", name);
+	return g->nchips++;
+}
+
+static int line_check(const struct chip *c, unsigned int offset,
+		      const char *line, struct interp_diag *d)
+{
+	const unsigned int n = lines_chip_count(c->chip);
+	char found[128], wanted[128], user[32];
+
+	if (offset >= n) {
+		snprintf(found, sizeof(found), "line %u of %s, which has %u",
+			 offset, c->name, n);
+		snprintf(wanted, sizeof(wanted), "0 to %u; gpioinfo %s", n - 1,
+			 c->name);
+		return refuse(d, -ERANGE, line, found, wanted);
+	}
+	if (lines_chip_user(c->chip, offset, user, sizeof(user))) {
+		snprintf(found, sizeof(found), "line %u of %s is in use by %s",
+			 offset, c->name, user);
+		snprintf(wanted, sizeof(wanted), "a free line; gpioinfo %s "
+			 "lists them; or end %s", c->name, user);
+		return refuse(d, -EBUSY, line, found, wanted);
+	}
+	return 0;
+}
+
+/* Inputs may share a line. */
+static uint8_t slot_find(struct bulk *b, unsigned int offset)
+{
+	size_t i = 0;
+
+	while (i < b->n && b->offset[i] != offset)
+		i++;
+	assert(i < LINES_MAX);
+	b->offset[i] = offset;
+	if (i == b->n)
+		b->n++;
+	return (uint8_t)i;
+}
+
+static bool has_edges(const struct config_gpio *k)
+{
+	return k->edges_per_period > 1;
+}
+
+static int line_place(struct gpio *g, const struct config_gpio *k, int line,
+		      struct interp_diag *d)
+{
+	const char *name = config_line_name(line);
+	struct config_line_at at;
+	struct chip *c;
+	int i, err;
+
+	const enum bulk_kind kind = line >= CONFIG_NOUTPUTS ? BULK_IN :
+				    line < LINE_SPARK && has_edges(k) ?
+				    BULK_EDGES : BULK_OUT;
+
+	g->at[line].chip = -1;
+	config_line_read(k->line[line], &at);
+	if (!at.wired)
+		return 0;
+	i = chip_find(g, *at.chip ? at.chip : k->chip, name, d);
+	if (i < 0)
+		return i;
+	c = &g->chip[i];
+	err = line_check(c, at.offset, name, d);
+	if (err < 0)
+		return err;
+	g->at[line] = (struct place) {
+		.chip = (int8_t)i,
+		.bulk = (uint8_t)kind,
+		.slot = slot_find(&c->bulk[kind], at.offset),
+		.inverted = at.inverted,
+	};
+	return 0;
+}
+
+/* A line of this bulk, for a message about all of them. */
+static const char *line_of(const struct gpio *g, int chip, int kind)
+{
+	int l = 0;
+
+	while (g->at[l].chip != chip || g->at[l].bulk != kind)
+		l++;
+	return config_line_name(l);
+}
+
+static int bulk_request(struct gpio *g, int chip, int kind,
+			struct lines_wanted *w, struct interp_diag *d)
+{
+	struct bulk *b = &g->chip[chip].bulk[kind];
+	int err;
+
+	if (b->n == 0)
+		return 0;
+	w->offset = b->offset;
+	w->value = b->value;
+	w->n = b->n;
+	w->output = kind != BULK_IN;
+	err = lines_request(&b->lines, g->chip[chip].chip, w);
+	return err < 0 ? refuse_chip(d, err, line_of(g, chip, kind),
+				     g->chip[chip].name) : 0;
+}
+
+static int lines_open(struct gpio *g, const struct machine_config *c,
+		      struct interp_diag *d)
+{
+	static const enum lines_pull pulls[] = {
+		LINES_AS_IS, LINES_PULL_UP, LINES_PULL_DOWN, LINES_NO_PULL
+	};
+	struct lines_wanted w = { .pull = pulls[c->gpio.pull] };
+
+	for (int l = 0; l < CONFIG_NLINES; l++)
+		g->at[l].chip = -1;
+	for (int l = 0; l < CONFIG_NLINES; l++) {
+		const int err = line_place(g, &c->gpio, l, d);
+
+		if (err < 0)
+			return err;
+	}
+	gpio_levels(g, 0, UINT64_MAX);
+	for (int i = 0; i < g->nchips * NBULKS; i++) {
+		const int err = bulk_request(g, i / NBULKS, i % NBULKS, &w, d);
+
+		if (err < 0)
+			return err;
+	}
+	return 0;
+}
+
+static uint32_t periods(const struct machine_config *c, double s)
+{
+	const double n = s * 1e9 / (double)config_period_ns(c);
+
+	return n < 1 ? 1 : (uint32_t)(n + 0.5);
+}
+
+static struct pulser_config pulser_of(const struct config_gpio *k)
+{
+	return (struct pulser_config) {
+		.high = (uint32_t)k->high_cycles,
+		.low = (uint32_t)k->low_cycles,
+		.dir_setup = (uint32_t)k->dir_setup_cycles,
+		.dir_hold = (uint32_t)k->dir_hold_cycles,
+		.quadrature = k->signal == 1,
+	};
+}
+
+/* Behind the cycle, should they share a processor. */
+static int edges_open(struct gpio *g, const struct machine_config *c,
+		      struct interp_diag *d)
+{
+	const struct edges_config e = {
+		.pulser = pulser_of(&c->gpio),
+		.period_ns = config_period_ns(c),
+		.slots = (uint32_t)c->gpio.edges_per_period,
+		.cpu = (int)c->gpio.edges_cpu,
+		.priority = (int)c->priority - 1,
+		.write = gpio_edges_write, .arg = g,
+	};
+	const int err = has_edges(&c->gpio) ? edges_start(&g->edges, &e) : 0;
+
+	return err < 0 ? refuse(d, err, "edges_per_period", strerror(-err),
+				"room for another thread") : 0;
+}
+
+static void configure(struct gpio *g, const struct machine_config *c)
+{
+	const struct config_gpio *k = &c->gpio;
+	const struct pulser_config p = pulser_of(k);
+
+	pulser_init(&g->pulser, &p);
+	g->watchdog_periods = periods(c, k->watchdog_us * 1e-6);
+	g->refresh_periods = periods(c, REFRESH_S);
+	g->dead_max = 1 + periods(c, DEAD_S);
+	g->quiet_max = periods(c, QUIET_S);
+	g->has_gap = config_gpio_has_gap(c);
+}
+
+int io_gpio_open(struct io_machine *m, const struct machine_config *c,
+		 struct interp_diag *diag)
+{
+	struct gpio *g = calloc(1, sizeof(*g));
+	int err;
+
+	*diag = (struct interp_diag) { .line = 0 };
+	if (!g)
+		return refuse(diag, -ENOMEM, "chip", strerror(ENOMEM),
+			      "memory");
+	configure(g, c);
+	err = lines_open(g, c, diag);
+	if (err == 0)
+		err = edges_open(g, c, diag);
+	if (err < 0) {
+		gpio_close(g);
+		return err;
+	}
+	*m = (struct io_machine) {
+		.name = "gpio", .self = g, .read = gpio_read,
+		.write = gpio_write, .close = gpio_close,
+		.edges_per_cycle = has_edges(&c->gpio) ?
+			(uint32_t)c->gpio.edges_per_period /
+			pulser_periods(&g->pulser.c) : 1,
+	};
+	return 0;
+}

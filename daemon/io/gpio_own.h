@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * gpio_own.h - a machine on lines: what gpio.c and gpio_open.c share
+ *
+ * Threads: as io.h; gpio_edges_write() is the edge thread's.
+ */
+#ifndef IO_GPIO_OWN_H
+#define IO_GPIO_OWN_H
+
+#include "config.h"
+#include "edges.h"
+#include "io.h"
+#include "lines.h"
+#include "pulser.h"
+
+#define NCHIPS		4
+
+/* Lines of one chip, one direction. */
+struct bulk {
+	struct lines *lines;		/* NULL: none */
+	unsigned int offset[LINES_MAX];
+	uint8_t value[LINES_MAX];	/* levels */
+	size_t n;
+};
+
+enum bulk_kind {
+	BULK_OUT,			/* written by the cycle */
+	BULK_EDGES,			/* step and dir, by the edge thread */
+	BULK_IN,
+	NBULKS
+};
+
+struct chip {
+	char name[CONFIG_LINE_MAX + 32];
+	struct lines_chip *chip;
+	struct bulk bulk[NBULKS];
+};
+
+/* Where a line of the machine file is found; chip < 0: nowhere. */
+struct place {
+	int8_t chip;
+	uint8_t bulk;			/* enum bulk_kind */
+	uint8_t slot;
+	bool inverted;
+};
+
+struct gpio {
+	struct chip chip[NCHIPS];
+	int nchips;
+	struct place at[CONFIG_NLINES];
+	struct pulser pulser;		/* without an edge thread */
+	struct edges *edges;		/* NULL: a line changes once a period */
+	struct edges_told told;
+	int32_t shift[IO_NAXES];	/* its pulses less the thread's */
+	struct edges_shown shown;
+	uint32_t ends;			/* limit switches on, a period ago */
+	uint32_t dead, dead_max;	/* periods in which it played none */
+	uint64_t in, out;		/* a bit per line: on */
+	uint32_t path;			/* program the pulser counts in */
+	bool placed;			/* a first target came */
+	bool lost;
+	uint32_t watchdog_left, watchdog_periods;
+	uint32_t refresh_left, refresh_periods;
+	uint32_t quiet, quiet_max;	/* periods without a comparator */
+	struct io_shares shares;	/* as told last */
+	bool has_gap;
+};
+
+/* Of struct io_machine. */
+void gpio_read(void *self, struct io_inputs *in);
+void gpio_write(void *self, const struct io_outputs *out);
+void gpio_close(void *self);
+
+/** gpio_levels() - what the lines on in @on are, into the chips' values. */
+bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines);
+
+/** gpio_edges_write() - edges_config.write */
+bool gpio_edges_write(void *self, uint32_t step, uint32_t dir);
+
+#endif /* IO_GPIO_OWN_H */

@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * clear.c - where the raw track crosses itself, and how near it is to the
+ *	     outline
+ */
+#include "wire/track.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Crossings that are looked at, for each element of the track. */
+#define HITS_MAX	64u
+
+static int add_hit(struct track_work *w, const struct track_hit *h)
+{
+	if (w->nhits == w->hits_room) {
+		const uint32_t room = w->hits_room ? w->hits_room * 2 : 64;
+		struct track_hit *p = realloc(w->hit, room * sizeof(*p));
+
+		if (!p)
+			return -ENOMEM;
+		w->hit = p;
+		w->hits_room = room;
+	}
+	w->hit[w->nhits++] = *h;
+	return 0;
+}
+
+/* Neighbours share an end; that is no crossing. */
+static bool is_joint(const struct curve_hit *h, uint32_t a, uint32_t b,
+		     const struct curve *p, const struct curve *q)
+{
+	return b == a + 1 && (1 - h->t[0]) * curve_length(p) < 1e-6 &&
+	       h->t[1] * curve_length(q) < 1e-6;
+}
+
+static int find_hits(void *arg, uint32_t a, uint32_t b)
+{
+	struct track_work *w = arg;
+	const struct curve *p = &w->elem[a].c, *q = &w->elem[b].c;
+	struct curve_hit hit[2];
+	const int n = w->elem[a].dead || w->elem[b].dead ? 0 :
+		      curve_cross(p, q, hit);
+	int rc = 0;
+
+	for (int i = 0; !rc && i < n; i++) {
+		const struct curve_hit *h = &hit[i];
+
+		if (is_joint(h, a, b, p, q))
+			continue;
+		if (w->nhits > 2 * (HITS_MAX * w->n + 1000))
+			return -E2BIG;
+		rc = add_hit(w, &(struct track_hit) { a, b, h->t[0], h->t[1],
+						      h->at });
+		if (!rc)
+			rc = add_hit(w, &(struct track_hit) {
+				     b, a, h->t[1], h->t[0], h->at });
+	}
+	return rc;
+}
+
+static int by_place(const void *a, const void *b)
+{
+	const struct track_hit *p = a, *q = b;
+
+	if (p->elem != q->elem)
+		return p->elem < q->elem ? -1 : 1;
+	if (p->t != q->t)
+		return p->t < q->t ? -1 : 1;
+	if (p->other != q->other)
+		return p->other < q->other ? -1 : 1;
+	return p->t_other < q->t_other ? -1 : p->t_other > q->t_other;
+}
+
+static void sort_hits(struct track_work *w)
+{
+	uint32_t k = 0, kept = 0;
+
+	if (w->nhits)
+		qsort(w->hit, w->nhits, sizeof(*w->hit), by_place);
+	for (uint32_t i = 0; i < w->nhits; i++) {
+		if (kept && by_place(&w->hit[kept - 1], &w->hit[i]) == 0)
+			continue;
+		w->hit[kept++] = w->hit[i];
+	}
+	w->nhits = kept;
+	for (uint32_t i = 0; i < w->n; i++) {
+		while (k < w->nhits && w->hit[k].elem < i)
+			k++;
+		w->elem[i].hit = k;
+	}
+}
+
+/* Cells about as large as an element is long, and not so small that a single
+ * long one fills many of them. */
+static double cell_of(const struct track_work *w, double least)
+{
+	double sum = 0;
+
+	for (uint32_t i = 0; i < w->n; i++)
+		sum += curve_length(&w->elem[i].c);
+	return fmax(fmax(sum / w->n, least), 1e-4);
+}
+
+static int find_crossings(struct track_work *w)
+{
+	struct grid g;
+	int rc = 0;
+
+	grid_init(&g, cell_of(w, w->reach_mm / 8), w->elem[0].c.from);
+	for (uint32_t i = 0; !rc && i < w->n; i++) {
+		if (!w->elem[i].dead)
+			rc = grid_add(&g, &w->elem[i].c, i);
+	}
+	if (!rc) {
+		grid_sort(&g);
+		rc = grid_pairs(&g, find_hits, w);
+	}
+	grid_free(&g);
+	if (!rc)
+		sort_hits(w);
+	return rc;
+}
+
+static int enter_outline(struct track_work *w)
+{
+	const struct face *f = w->job->face;
+	int rc = 0;
+
+	grid_init(&w->near, cell_of(w, w->reach_mm), w->elem[0].c.from);
+	for (uint32_t i = 0; !rc && i < f->n; i++) {
+		if (!f->piece[i].lead)
+			rc = grid_add(&w->near, &f->piece[i].c, i);
+	}
+	if (!rc)
+		grid_sort(&w->near);
+	w->stamp = calloc(f->n, sizeof(*w->stamp));
+	return rc ? rc : w->stamp ? 0 : -ENOMEM;
+}
+
+int clear_init(struct track_work *w)
+{
+	const struct face *f = w->job->face;
+
+	for (uint32_t i = 0; i < f->n; i++) {
+		const double end = f->piece[i].way_mm +
+				   curve_length(&f->piece[i].c);
+
+		w->reach_mm = fmax(w->reach_mm, f->piece[i].wire_mm);
+		w->total_mm = fmax(w->total_mm, end);
+	}
+	for (uint32_t i = 0; i < w->n; i++)
+		w->elem[i].hit = 0;
+	if (w->job->side == 0)
+		return 0;
+	const int rc = find_crossings(w);
+
+	return rc ? rc : enter_outline(w);
+}
+
+/* -- Questions --------------------------------------------------------------- */
+
+struct question {
+	struct track_work *w;
+	const struct track_elem *e;
+	struct curve c;
+	bool clear;
+};
+
+/* Along the outline from the one piece to the other. */
+static double way_between(const struct track_work *w, const struct face_piece *p,
+			  const struct face_piece *q)
+{
+	const struct face_piece *a = p < q ? p : q, *b = p < q ? q : p;
+	const double way = fmax(b->way_mm - a->way_mm - curve_length(&a->c), 0);
+
+	if (!w->job->face->closed)
+		return way;
+	return fmin(way, fmax(w->total_mm - (b->way_mm - a->way_mm) -
+			      curve_length(&b->c), 0));
+}
+
+/*
+ * What is wanted of element @e beside piece @q.  Where neighbours want
+ * different distances, the smaller one holds about their corner.
+ */
+static double wanted_of(const struct track_work *w, const struct track_elem *e,
+			const struct face_piece *q)
+{
+	const struct face *f = w->job->face;
+	const struct face_piece *p;
+	double other;
+
+	if (e->piece < 0) {
+		other = fmin(f->piece[0].wire_mm, f->piece[f->n - 1].wire_mm);
+		return fmin(other, q->wire_mm);
+	}
+	p = &f->piece[e->piece];
+	other = p->wire_mm;
+	if (e->fill && e->piece + 1 < f->n)
+		other = fmin(other, p[1].wire_mm);
+	if (other >= q->wire_mm || way_between(w, p, q) > w->reach_mm)
+		return q->wire_mm;
+	return other;
+}
+
+/*
+ * A lead touches the outline where it ends.  That is no fault of an open one,
+ * nor of a lead that was programmed to come through the outline from its other
+ * side.
+ */
+static bool is_own_end(const struct track_work *w, const struct track_elem *e,
+		       uint32_t id)
+{
+	const struct face *f = w->job->face;
+	const bool out = e != w->elem;
+	const struct curve *c = &f->piece[out ? f->n - 1 : 0].c;
+	const struct vec way = curve_way(c, out), far = w->job->lead[out].far;
+	const struct vec end = out ? c->to : c->from;
+	const double left = (far.y - end.y) * way.x - (far.x - end.x) * way.y;
+
+	return (id == 0 || id == f->n - 1) &&
+	       (!f->closed || left * w->job->side <= 0);
+}
+
+static bool ask(void *arg, uint32_t id)
+{
+	struct question *k = arg;
+	struct track_work *w = k->w;
+	const struct face_piece *q = &w->job->face->piece[id];
+
+	if (w->stamp[id] == w->stamp_now)
+		return true;
+	w->stamp[id] = w->stamp_now;
+	if (k->e->piece < 0 && is_own_end(w, k->e, id))
+		return true;
+	if (curve_gap(&k->c, &q->c) >= wanted_of(w, k->e, q) - w->slack_mm)
+		return true;
+	w->blocker = id;
+	k->clear = false;
+	return false;
+}
+
+bool clear_is(struct track_work *w, uint32_t e, double t0, double t1)
+{
+	struct question k = { .w = w, .e = &w->elem[e], .clear = true };
+
+	if (w->job->side == 0)
+		return true;
+	if (k.e->dead)
+		return false;
+	k.c = t0 == 0 && t1 == 1 ? k.e->c : curve_part(&k.e->c, t0, t1);
+	w->stamp_now++;
+	grid_near(&w->near, &k.c, w->reach_mm, ask, &k);
+	return k.clear;
+}

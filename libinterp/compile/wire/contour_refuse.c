@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * contour_refuse.c - what a wire's contour is refused for
+ */
+#include "interp/nc.h"
+#include "wire/contour.h"
+#include "wire/track.h"
+
+#include <errno.h>
+#include <stdio.h>
+
+static const char *plane_name(int p)
+{
+	return p ? " on the second plane" : "";
+}
+
+static int refuse_stuck(const struct contour *k, const struct track_fault *f,
+			int plane, struct interp_diag *diag)
+{
+	const uint32_t a = k->m[f->a].word.line, b = k->m[f->b].word.line;
+
+	diag->line = a < b ? a : b;
+	if (f->found_mm >= 0)
+		snprintf(diag->found, sizeof(diag->found),
+			 "a width of %.4f mm between the motions of lines %u "
+			 "and %u%s", f->found_mm, a, b, plane_name(plane));
+	else
+		snprintf(diag->found, sizeof(diag->found),
+			 "no room for the wire between the motions of lines %u "
+			 "and %u%s", a, b, plane_name(plane));
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "%.4f mm for this offset, or a smaller one; [wire] gouge = "
+		 "skip leaves out what is too narrow", f->wanted_mm);
+	return -EINVAL;
+}
+
+static int refuse_near_lead(const struct contour *k,
+			    const struct track_fault *f, int plane,
+			    struct interp_diag *diag)
+{
+	diag->line = k->m[f->a].word.line;
+	snprintf(diag->found, sizeof(diag->found),
+		 "a lead that comes within %.4f mm of the contour of line %u%s",
+		 f->found_mm, k->m[f->b].word.line, plane_name(plane));
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "%.4f mm: a lead from farther off, square to the contour if "
+		 "it can be", f->wanted_mm);
+	return -EINVAL;
+}
+
+static int refuse_crowded(const struct contour *k, const struct track_fault *f,
+			  struct interp_diag *diag)
+{
+	diag->line = k->m[f->a].word.line;
+	snprintf(diag->found, sizeof(diag->found),
+		 "a contour up to line %u that crosses itself too often under "
+		 "its offset", k->m[f->b].word.line);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "fewer motions that are short against the offset");
+	return -EINVAL;
+}
+
+int contour_refuse_track(const struct contour *k, const struct track_fault *f,
+			 int plane, struct interp_diag *diag)
+{
+	if (f->kind == TRACK_LEAD)
+		return refuse_near_lead(k, f, plane, diag);
+	if (f->kind == TRACK_CROWDED)
+		return refuse_crowded(k, f, diag);
+	return refuse_stuck(k, f, plane, diag);
+}
+
+void contour_note_skip(const struct contour *k, const struct track_fault *f,
+		       int plane)
+{
+	char text[160];
+
+	if (!k->notes)
+		return;
+	snprintf(text, sizeof(text), "what lies between lines %u and %u is too "
+		 "narrow for the wire%s and is left out (gouge = skip)",
+		 k->m[f->a].word.line, k->m[f->b].word.line, plane_name(plane));
+	k->notes->say(k->notes->arg, k->m[f->a].word.line, text);
+}
+
+void contour_note_constant(const struct contour *k, const struct face *f)
+{
+	const uint32_t line = k->m[f->first_constant].word.line;
+	char text[160];
+
+	if (!k->notes)
+		return;
+	snprintf(text, sizeof(text), "%u fillets, the first on line %u, would "
+		 "turn inside out on the second plane and keep their radius "
+		 "there", f->nconstant, line);
+	k->notes->say(k->notes->arg, line, text);
+}
+
+int contour_refuse_faces(const struct contour *k, const struct face_fault *f,
+			 struct interp_diag *diag)
+{
+	diag->line = k->m[f->a].word.line;
+	snprintf(diag->found, sizeof(diag->found),
+		 "the faces of lines %u and %u, which meet below the second "
+		 "plane", k->m[f->a].word.line, k->m[f->b].word.line);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "a smaller taper, or a second plane that is lower");
+	return -EINVAL;
+}
+
+int contour_refuse_lead(const struct contour_motion *m, double by_mm,
+			struct interp_diag *diag)
+{
+	diag->line = m->word.line;
+	snprintf(diag->found, sizeof(diag->found),
+		 "a lead of %.4f mm for a change of offset of %.4f mm",
+		 curve_length(&m->c[0]), by_mm);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "a motion longer than the offset, square to the contour if it "
+		 "can be");
+	return -EINVAL;
+}
+
+int contour_refuse_alone(const struct interp_build_word *w,
+			 struct interp_diag *diag)
+{
+	diag->line = w->line;
+	snprintf(diag->found, sizeof(diag->found),
+		 "another axis alone under an offset or a taper");
+	snprintf(diag->wanted, sizeof(diag->wanted), "G40 and G50 before it");
+	return -EINVAL;
+}
+
+int contour_refuse_plane(const struct interp_build_word *w,
+			 struct interp_diag *diag)
+{
+	diag->line = w->line;
+	snprintf(diag->found, sizeof(diag->found),
+		 "an arc outside the plane XY under an offset, a taper or "
+		 "corner control");
+	snprintf(diag->wanted, sizeof(diag->wanted), "G17 arcs, or G40 and G50");
+	return -EINVAL;
+}
+
+int contour_refuse_length(const struct interp_build_word *w,
+			  struct interp_diag *diag)
+{
+	diag->line = w->line;
+	snprintf(diag->found, sizeof(diag->found),
+		 "more than %u motions under one offset", CONTOUR_MOTIONS_MAX);
+	snprintf(diag->wanted, sizeof(diag->wanted),
+		 "G40 and G41 or G42 again between them");
+	return -EINVAL;
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * face.h - the outline of the part on one plane
+ *
+ * On the programmed plane it is the contour as written.  On the second plane
+ * each piece is moved sideways by what the taper of its motion makes of the
+ * height; neighbours meet, and pieces for which there is no room are left out.
+ * The wire's own offset is not in it: track.h.
+ *
+ * Units: mm, radian.  Threads: allocates.  Never in the cycle.
+ */
+#ifndef WIRE_FACE_H
+#define WIRE_FACE_H
+
+#include "interp/build.h"
+#include "interp/wire.h"
+#include "wire/curve.h"
+
+/* A motion as programmed, on both planes. */
+struct contour_motion {
+	struct curve c[2];
+	double from_mm[INTERP_NAXES], end_mm[INTERP_NAXES];
+	struct interp_build_word word;
+	double offset_mm;		/* of the wire; + to the left */
+	double slope;			/* tangent of the taper; + to the left */
+	enum interp_taper_corner corner;
+	bool lead;			/* the offset is reached or left here */
+	uint32_t todo, ntodo;		/* actions behind it */
+};
+
+struct face_piece {
+	struct curve c;
+	uint32_t owner;			/* index of its motion */
+	bool fill;			/* leads to the motion behind its own */
+	bool lead;			/* no surface: it leads to or from it */
+	double wire_mm;			/* the wire's axis keeps so far off */
+	double way_mm;			/* along the outline to its start */
+};
+
+struct face {
+	struct face_piece *piece;
+	uint32_t n, room;
+	bool closed;			/* it ends where it begins */
+	uint32_t nconstant;		/* fillets that would turn inside out and
+					 * got the constant radius instead */
+	uint32_t first_constant;	/* owner of the first of them */
+};
+
+/* What a face is made from: motions @first to @first + @n - 1 of @m. */
+struct face_from {
+	const struct contour_motion *m;
+	uint32_t first, n;
+	int plane;			/* 0: programmed, 1: second */
+	double height_mm;		/* from plane to plane; 0: no guides */
+	double pulse_mm;
+};
+
+/* Two neighbours that cannot be brought together: owners. */
+struct face_fault {
+	uint32_t a, b;
+};
+
+/**
+ * face_make() - fill @f, which is all zero.
+ * Return: 0, -ENOMEM, or -EINVAL with @fault filled.
+ */
+int face_make(struct face *f, const struct face_from *from,
+	      struct face_fault *fault);
+
+void face_free(struct face *f);
+
+#endif /* WIRE_FACE_H */

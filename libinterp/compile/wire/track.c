@@ -1,0 +1,379 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * track.c - the raw track: the parallels of an outline, joined at its corners
+ *
+ *	tangent		the one goes on where the other ends
+ *	inner corner	both are cut off where they meet, if they do
+ *	outer corner	up to a right angle both are prolonged until they meet;
+ *			beyond it an arc goes round the corner
+ *
+ * What does not meet is joined by a line that no way goes along.
+ */
+#include "wire/track.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RIGHT_ANGLE	(3.14159265358979323846 / 2)
+#define ANGLE_SLACK	1e-6
+#define SAME_MM		1e-9
+
+/* Ends so near are one: half a pulse of rounding on either side, and more. */
+#define TINY_PULSES	1.5
+
+static struct track_elem *add(struct track_work *w)
+{
+	if (w->n == w->room) {
+		const uint32_t room = w->room ? w->room * 2 : 64;
+		struct track_elem *e = realloc(w->elem, room * sizeof(*e));
+
+		if (!e)
+			return NULL;
+		w->elem = e;
+		w->room = room;
+	}
+	w->elem[w->n] = (struct track_elem) { .piece = -1 };
+	return &w->elem[w->n++];
+}
+
+static double shift_of(const struct track_work *w, uint32_t i)
+{
+	return w->job->side * w->job->face->piece[i].wire_mm;
+}
+
+/* The parallel of piece @i; a line that no way goes along if it is turned
+ * inside out. */
+static int lay_piece(struct track_work *w, uint32_t i)
+{
+	const struct face_piece *p = &w->job->face->piece[i];
+	struct track_elem *e = add(w);
+
+	if (!e)
+		return -ENOMEM;
+	e->owner = p->owner;
+	e->piece = i;
+	e->fill = p->fill;
+	if (curve_parallel(&p->c, shift_of(w, i), &e->c))
+		return 0;
+	if (e->c.r > -w->slack_mm) {
+		/* A wire as thick as the corner: all but a point. */
+		e->c.r = 0;
+		e->c.from = e->c.to = e->c.centre;
+		return 0;
+	}
+	e->c = curve_line(e->c.from, e->c.to);
+	e->dead = true;
+	return 0;
+}
+
+/* -- Corners ------------------------------------------------------------------- */
+
+struct corner {
+	uint32_t a, b;			/* elements */
+	struct vec at;			/* where their pieces meet */
+	double turn, da, db;
+};
+
+static int lay_fill(struct track_work *w, const struct corner *k,
+		    const struct curve *c, bool dead)
+{
+	const struct track_elem before = w->elem[k->a];
+	struct track_elem *e;
+
+	if (curve_distance(c->from, c->to) < SAME_MM)
+		return 0;
+	e = add(w);
+	if (!e)
+		return -ENOMEM;
+	*e = (struct track_elem) { .c = *c, .owner = before.owner,
+				   .piece = before.piece, .fill = true,
+				   .dead = dead };
+	return 0;
+}
+
+static int lay_round(struct track_work *w, const struct corner *k,
+		     const struct track_elem *b)
+{
+	const struct face_piece *q = &w->job->face->piece[b->piece];
+	const struct vec way = curve_way(&q->c, false);
+	const struct vec at = vec_add(k->at, k->da,
+				      (struct vec) { -way.y, way.x });
+	const struct curve round = curve_arc(w->elem[k->a].c.to, at, k->at,
+					     k->da > 0);
+	const struct curve step = curve_line(at, b->c.from);
+	const int rc = lay_fill(w, k, &round, false);
+
+	return rc ? rc : lay_fill(w, k, &step, false);
+}
+
+/* Cut both off where they meet.  Return: false if they do not. */
+static bool meet_inside(struct track_elem *a, struct track_elem *b,
+			struct vec near)
+{
+	struct curve_hit hit[2];
+	const int n = a->dead || b->dead ? 0 : curve_cross(&a->c, &b->c, hit);
+	struct curve p = a->c, q = b->c;
+	int best = 0;
+
+	if (n == 0)
+		return false;
+	if (n == 2 && curve_distance(hit[1].at, near) <
+		      curve_distance(hit[0].at, near))
+		best = 1;
+	if (!curve_trim(&p, a->c.from, hit[best].at) ||
+	    !curve_trim(&q, hit[best].at, b->c.to))
+		return false;
+	a->c = p;
+	b->c = q;
+	return true;
+}
+
+/* Prolong both until they meet. */
+static bool meet_outside(const struct track_work *w, const struct corner *k,
+			 struct track_elem *a, struct track_elem *b)
+{
+	const double most = fmax(fabs(k->da), fabs(k->db));
+	struct curve p = a->c, q = b->c;
+	struct vec at;
+
+	if (w->round || fabs(k->turn) > RIGHT_ANGLE + ANGLE_SLACK || a->dead ||
+	    b->dead || (p.arc && p.r == 0) || (q.arc && q.r == 0))
+		return false;
+	if (!curve_meet(&p, &q, k->at, &at) ||
+	    curve_distance(at, k->at) > 1.5 * most / cos(k->turn / 2) ||
+	    !curve_trim(&p, a->c.from, at) || !curve_trim(&q, at, b->c.to))
+		return false;
+	a->c = p;
+	a->mitre = true;
+	b->c = q;
+	return true;
+}
+
+/* Join the last element to @b, the parallel of piece @i. */
+static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
+{
+	const struct face_piece *p = &w->job->face->piece[i - 1], *q = p + 1;
+	const struct corner k = {
+		.a = w->n - 1, .at = q->c.from, .turn = curve_turn(&p->c, &q->c),
+		.da = shift_of(w, i - 1), .db = shift_of(w, i),
+	};
+	struct track_elem *a = &w->elem[k.a];
+	const struct curve gap = curve_line(a->c.to, b->c.from);
+	const double most = fmax(fabs(k.da), fabs(k.db));
+	const bool step = fabs(k.turn) * most < 2 * fabs(k.da - k.db);
+	const bool tiny = curve_length(&gap) < TINY_PULSES * w->job->pulse_mm;
+
+	if (curve_length(&gap) < SAME_MM || w->job->side == 0 || step ||
+	    (tiny && fabs(k.turn) < 0.1))
+		return lay_fill(w, &k, &gap, false);
+	if (k.turn * w->job->side > 0 &&
+	    fabs(k.turn) < 2 * RIGHT_ANGLE - ANGLE_SLACK) {
+		if (meet_inside(a, b, k.at))
+			return 0;
+		/* A kink so slight that the one end is clear of the other. */
+		return lay_fill(w, &k, &gap,
+				most * k.turn * k.turn > w->slack_mm);
+	}
+	return meet_outside(w, &k, a, b) ? 0 : lay_round(w, &k, b);
+}
+
+/* -- Leads ------------------------------------------------------------------------ */
+
+/* From @from to @at, which it reaches the way @way goes. */
+static struct curve tangent_arc(struct vec from, struct vec at, struct vec way)
+{
+	const struct vec d = { from.x - at.x, from.y - at.y };
+	const double across = d.y * way.x - d.x * way.y;
+	const double r = (d.x * d.x + d.y * d.y) / (2 * across);
+
+	if (fabs(across) < 1e-9 * hypot(d.x, d.y))
+		return curve_line(from, at);
+	return curve_arc(from, at, vec_add(at, r, (struct vec) {
+			 -way.y, way.x }), r < 0);
+}
+
+/* A lead to share 0 of @next (in), or from share 1 of @next (out). */
+static struct curve lead_curve(const struct track_lead *l,
+			       const struct curve *next, bool out)
+{
+	const struct curve back = curve_reversed(next);
+	const struct curve *to = out ? &back : next;
+	struct curve c = curve_line(l->far, to->from);
+
+	if (l->arc)
+		c = tangent_arc(l->far, to->from, curve_way(to, false));
+	return out ? curve_reversed(&c) : c;
+}
+
+static int lay_lead(struct track_work *w, int i, uint32_t next)
+{
+	const struct track_lead *l = &w->job->lead[i];
+	const struct curve c = lead_curve(l, &w->elem[next].c, i);
+	struct track_elem *e = add(w);
+
+	if (!e)
+		return -ENOMEM;
+	e->owner = l->owner;
+	e->c = c;
+	return 0;
+}
+
+int track_lay(struct track_work *w)
+{
+	const struct track_job *j = w->job;
+	const uint32_t in = j->lead[0].there;
+	int rc = 0;
+
+	w->n = 0;
+	if (in && !add(w))
+		return -ENOMEM;
+	for (uint32_t i = 0; !rc && i < j->face->n; i++) {
+		struct track_elem e;
+
+		rc = lay_piece(w, i);
+		if (rc || i == 0)
+			continue;
+		/* It stands behind what fills the corner in front of it. */
+		e = w->elem[--w->n];
+		rc = lay_corner(w, i, &e);
+		if (!rc && add(w))
+			w->elem[w->n - 1] = e;
+		else if (!rc)
+			rc = -ENOMEM;
+	}
+	if (!rc && in) {
+		w->elem[0].owner = j->lead[0].owner;
+		w->elem[0].c = lead_curve(&j->lead[0], &w->elem[1].c, false);
+	}
+	if (!rc && j->lead[1].there)
+		rc = lay_lead(w, 1, w->n - 1);
+	return rc;
+}
+
+/* -- The way as curves -------------------------------------------------------------- */
+
+void track_free(struct track *t)
+{
+	free(t->c);
+	free(t->owner);
+	free(t->fill);
+	*t = (struct track) { .n = 0 };
+}
+
+static bool put(struct track *t, const struct track_elem *e,
+		const struct curve *c)
+{
+	t->c[t->n] = *c;
+	t->owner[t->n] = e->owner;
+	t->fill[t->n++] = e->fill;
+	return true;
+}
+
+/* Ends that rounding has parted meet half way. */
+static void close_gaps(struct track *t, double pulse_mm)
+{
+	uint32_t n = 0;
+
+	for (uint32_t i = 0; i < t->n; i++) {
+		const bool tiny = t->fill[i] && curve_length(&t->c[i]) <
+					        TINY_PULSES * pulse_mm;
+
+		if (tiny && n > 0 && i + 1 < t->n)
+			continue;
+		if (n > 0 && curve_distance(t->c[n - 1].to, t->c[i].from) <
+			     3 * TINY_PULSES * pulse_mm) {
+			const struct vec at = {
+				(t->c[n - 1].to.x + t->c[i].from.x) / 2,
+				(t->c[n - 1].to.y + t->c[i].from.y) / 2,
+			};
+
+			t->c[n - 1].to = t->c[i].from = at;
+		}
+		t->c[n] = t->c[i];
+		t->owner[n] = t->owner[i];
+		t->fill[n++] = t->fill[i];
+	}
+	t->n = n;
+}
+
+static int take_way(struct track *t, const struct track_work *w)
+{
+	t->c = malloc(w->nruns * sizeof(*t->c));
+	t->owner = malloc(w->nruns * sizeof(*t->owner));
+	t->fill = malloc(w->nruns * sizeof(*t->fill));
+	if (!t->c || !t->owner || !t->fill)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < w->nruns; i++) {
+		const struct track_run *r = &w->run[i];
+		const struct track_elem *e = &w->elem[r->elem];
+		const struct curve part = curve_part(&e->c, r->t[0], r->t[1]);
+
+		put(t, e, &part);
+	}
+	close_gaps(t, w->job->pulse_mm);
+	return 0;
+}
+
+static void forget(struct track_work *w)
+{
+	grid_free(&w->near);
+	free(w->elem);
+	free(w->hit);
+	free(w->run);
+	free(w->stamp);
+}
+
+/* What is tried in turn: nearer by rounding, then corners without points. */
+static const struct attempt {
+	double slack_mm;
+	bool round;
+} attempts[] = {
+	{ 0.0002, false }, { 0.002, false }, { 0.0002, true }, { 0.002, true },
+};
+
+#define NATTEMPTS	(sizeof(attempts) / sizeof(attempts[0]))
+
+static int attempt(struct track *t, const struct track_job *j, uint32_t i,
+		   struct track_fault *fault)
+{
+	struct track_work w = { .job = j, .slack_mm = attempts[i].slack_mm,
+				.round = attempts[i].round };
+	int rc = track_lay(&w);
+
+	if (!rc)
+		rc = clear_init(&w);
+	if (rc == -E2BIG) {
+		*fault = (struct track_fault) {
+			.kind = TRACK_CROWDED, .a = w.elem[0].owner,
+			.b = w.elem[w.n - 1].owner,
+		};
+		rc = -EINVAL;
+	} else if (!rc) {
+		rc = way_find(&w, fault);
+	}
+	if (!rc || (rc == -EINVAL && j->skip && w.nruns &&
+		    fault->kind == TRACK_LOST)) {
+		t->skipped = rc != 0;
+		rc = take_way(t, &w);
+	}
+	forget(&w);
+	return rc;
+}
+
+int track_make(struct track *t, const struct track_job *j,
+	       struct track_fault *fault)
+{
+	struct track_job strict = *j;
+	struct track_fault first;
+	int rc = -EINVAL;
+
+	strict.skip = false;
+	for (uint32_t i = 0; rc == -EINVAL && i < NATTEMPTS; i++) {
+		rc = attempt(t, &strict, i, i == 1 ? fault : &first);
+	}
+	for (uint32_t i = 0; rc == -EINVAL && j->skip && i < NATTEMPTS; i++)
+		rc = attempt(t, j, i, fault);
+	return rc;
+}

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * track.h - the way of the wire's axis along an outline
+ *
+ *	track.c		the parallels of all pieces, joined at their corners
+ *	clear.c		how near to the outline a part of it comes
+ *	way.c		the way along it that is nowhere too near
+ *
+ * The parallels of neighbours are joined without regard to anything else, so
+ * the raw track crosses itself where there is no room for all of it.  The way
+ * goes along it, and where it would come too near to the outline it changes to
+ * the later part that crosses it there; what lies between is left out.  It is
+ * allowed to leave out what the wire cannot reach in an inner corner.  Anything
+ * more is a part of the outline that would be missing.
+ *
+ * Units: mm.  Threads: allocates.  Never in the cycle.
+ */
+#ifndef WIRE_TRACK_H
+#define WIRE_TRACK_H
+
+#include "wire/face.h"
+#include "wire/grid.h"
+
+/* A lead; the other end is where the track begins or ends. */
+struct track_lead {
+	bool there;
+	uint32_t owner;
+	struct vec far;			/* its end off the outline */
+	bool arc;			/* it touches the track in a tangent */
+};
+
+struct track_elem {
+	struct curve c;
+	uint32_t owner;
+	int64_t piece;			/* of the outline; -1: a lead */
+	bool fill;			/* leads to the next motion */
+	bool dead;			/* no way goes along it */
+	bool mitre;			/* prolonged at its end */
+	uint32_t hit;			/* its first crossing */
+};
+
+/* A crossing as one of the two sees it. */
+struct track_hit {
+	uint32_t elem, other;
+	double t, t_other;
+	struct vec at;
+};
+
+/* A stretch of the way: a share of an element. */
+struct track_run {
+	uint32_t elem;
+	double t[2];
+	bool jump;			/* something is left out in front of it */
+};
+
+enum track_fault_kind {
+	TRACK_STUCK,			/* it cannot go on behind motion a */
+	TRACK_LOST,			/* what lies from a to b is left out */
+	TRACK_LEAD,			/* lead a comes too near to b */
+	TRACK_CROWDED,			/* more crossings than are looked at */
+};
+
+struct track_fault {
+	enum track_fault_kind kind;
+	uint32_t a, b;			/* owners */
+	double found_mm, wanted_mm;	/* between them; found < 0: not known */
+};
+
+struct track_job {
+	const struct face *face;
+	int side;			/* +1: the wire is on the left, -1; 0 */
+	struct track_lead lead[2];	/* in, out */
+	double pulse_mm;
+	bool skip;			/* leave out what has no room */
+};
+
+struct track {
+	struct curve *c;		/* the way, in its order */
+	uint32_t *owner;
+	bool *fill;
+	uint32_t n;
+	bool skipped;			/* something is left out: it is in fault */
+};
+
+/**
+ * track_make() - fill @t, which is all zero.
+ * Return: 0, -ENOMEM, or -EINVAL with @fault filled.
+ */
+int track_make(struct track *t, const struct track_job *j,
+	       struct track_fault *fault);
+
+void track_free(struct track *t);
+
+/* -- Between the files of the track ------------------------------------------ */
+
+struct track_work {
+	const struct track_job *job;
+	struct track_elem *elem;
+	uint32_t n, room;
+	struct track_hit *hit;
+	uint32_t nhits, hits_room;
+	struct track_run *run;
+	uint32_t nruns, runs_room;
+	struct grid near;		/* pieces of the outline */
+	uint32_t *stamp, stamp_now;	/* pieces asked about already */
+	double reach_mm;		/* the largest distance of a piece */
+	double total_mm;		/* along the outline */
+	double slack_mm;		/* nearer by this is no fault */
+	bool round;			/* no corner is prolonged */
+	uint32_t blocker;		/* the piece found too near last */
+};
+
+/** track_lay() - the raw track. Return: 0 or -ENOMEM. */
+int track_lay(struct track_work *w);
+
+/** clear_init() - find crossings, make the outline ready for questions.
+ *  Return: 0, -ENOMEM or -E2BIG: too many crossings. */
+int clear_init(struct track_work *w);
+
+/** clear_is() - is share @t0 to @t1 of element @e far enough from all pieces?
+ *  If not, w->blocker is one that is too near. */
+bool clear_is(struct track_work *w, uint32_t e, double t0, double t1);
+
+/** way_find() - fill w->run. Return: 0, -ENOMEM, -EINVAL with @fault. */
+int way_find(struct track_work *w, struct track_fault *fault);
+
+#endif /* WIRE_TRACK_H */

@@ -1,0 +1,443 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * way.c - the way along the raw track that is nowhere too near to the outline
+ */
+#include "wire/track.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#define SAME_MM		1e-7
+#define BACK_MAX	4096u		/* runs gone back from where it is stuck */
+#define BACK_REACHES	6.0		/* ... and so many offsets */
+#define STARTS_MAX	10000u		/* crossings tried to begin at */
+
+/* What rounding to a micrometre may hide of the outline. */
+#define HIDDEN_MM	0.002
+
+struct walker {
+	struct track_work *w;
+	struct track_fault *fault;
+	uint32_t elem;			/* where it stands ... */
+	double t;
+	uint32_t stop_elem;		/* ... and where it ends */
+	double stop_t;
+	uint32_t farthest;		/* element where it was stuck */
+};
+
+static const struct face_piece *piece_of(const struct track_work *w, uint32_t e)
+{
+	const struct face *f = w->job->face;
+	const int64_t i = w->elem[e].piece;
+
+	return &f->piece[i >= 0 ? i : e == 0 ? 0 : f->n - 1];
+}
+
+/* -- Faults -------------------------------------------------------------------- */
+
+static void tell(struct walker *k, enum track_fault_kind kind,
+		 const struct face_piece *p, const struct face_piece *q)
+{
+	*k->fault = (struct track_fault) {
+		.kind = kind, .a = p->owner, .b = q->owner, .found_mm = -1,
+		.wanted_mm = p->wire_mm + q->wire_mm,
+	};
+	if (p + 1 < q || q + 1 < p)
+		k->fault->found_mm = curve_gap(&p->c, &q->c);
+}
+
+static void tell_stuck(struct walker *k)
+{
+	const struct track_elem *e = &k->w->elem[k->elem];
+	const struct face_piece *q = &k->w->job->face->piece[k->w->blocker];
+
+	if (k->elem < k->farthest)
+		return;
+	k->farthest = k->elem;
+	tell(k, e->piece < 0 ? TRACK_LEAD : TRACK_STUCK,
+	     piece_of(k->w, k->elem), q);
+	if (e->piece >= 0)
+		return;
+	k->fault->a = e->owner;
+	k->fault->found_mm = curve_gap(&e->c, &q->c);
+	k->fault->wanted_mm = q->wire_mm;
+}
+
+/* -- Is something lost? ---------------------------------------------------------- */
+
+/* A change from one element to a later one. */
+struct jump {
+	uint32_t e, f;
+	double te, tf, e_from;
+	struct vec at;
+	double reach;
+};
+
+/* How far the wire's axis is from the corner of the outline, if what it
+ * changes between are two sides of one. */
+static double reach_of(const struct track_work *w, const struct jump *j)
+{
+	const struct face_piece *p = piece_of(w, j->e), *q = piece_of(w, j->f);
+	const struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
+	const struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
+	const double turn = curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
+				       j->tf < 1 ? &b : &w->elem[j->f].c);
+	const double d = fmax(p->wire_mm, q->wire_mm), other =
+		fmin(p->wire_mm, q->wire_mm);
+	double reach = d;
+	struct vec corner;
+
+	if (turn * w->job->side <= 0 || fabs(turn) > 3.14)
+		return d;
+	reach = d / cos(turn / 2);
+	if (d - other > 1e-6 && fabs(sin(turn)) > 0.05)
+		reach = fmax(reach, sqrt(d * d + other * other -
+					 2 * d * other * cos(turn)) /
+				    fabs(sin(turn)));
+	if ((p->c.arc || q->c.arc) &&
+	    curve_meet(&p->c, &q->c, j->at, &corner) &&
+	    curve_distance(j->at, corner) < 3 * reach)
+		reach = fmax(reach, curve_distance(j->at, corner));
+	return reach;
+}
+
+static bool is_hidden(const struct track_work *w, const struct jump *j,
+		      struct vec at)
+{
+	const double most = j->reach + HIDDEN_MM + w->slack_mm;
+	struct curve part;
+
+	if (curve_distance(at, j->at) <= most)
+		return true;
+	part = curve_part(&w->elem[j->e].c, j->e_from, j->te);
+	if (curve_from(&part, at) <= most)
+		return true;
+	part = curve_part(&w->elem[j->f].c, j->tf, 1);
+	return curve_from(&part, at) <= most;
+}
+
+/* The pieces behind @a and in front of @b, of a closed outline round its end,
+ * are left out: is all of them what a corner hides? */
+static bool is_lost(const struct track_work *w, const struct jump *j)
+{
+	const struct face *f = w->job->face;
+	const int64_t first = piece_of(w, j->e) - f->piece;
+	const int64_t last = piece_of(w, j->f) - f->piece;
+	const int64_t n = last - first + (last < first ? f->n : 0);
+
+	if (n <= 1)
+		return false;
+	for (int64_t i = 0; i < n; i++) {
+		const struct curve *c = &f->piece[(first + i) % f->n].c;
+
+		if (!is_hidden(w, j, c->to))
+			return true;
+		for (int s = 1; i && c->arc && s < 4; s++) {
+			if (!is_hidden(w, j, curve_at(c, s / 4.0)))
+				return true;
+		}
+	}
+	return false;
+}
+
+static int check_jump(struct walker *k, struct jump *j)
+{
+	j->at = curve_at(&k->w->elem[j->e].c, j->te);
+	j->reach = reach_of(k->w, j);
+	if (!is_lost(k->w, j))
+		return 0;
+	tell(k, TRACK_LOST, piece_of(k->w, j->e), piece_of(k->w, j->f));
+	return -EINVAL;
+}
+
+static int check_jumps(struct walker *k)
+{
+	int rc = 0;
+
+	for (uint32_t i = 1; !rc && i < k->w->nruns; i++) {
+		const struct track_run *p = &k->w->run[i - 1], *q = p + 1;
+		struct jump j = { .e = p->elem, .f = q->elem, .te = p->t[1],
+				  .tf = q->t[0], .e_from = p->t[0] };
+
+		if (q->jump)
+			rc = check_jump(k, &j);
+	}
+	return rc;
+}
+
+/* -- Along it ---------------------------------------------------------------------- */
+
+static double slack_of(const struct track_work *w, uint32_t e)
+{
+	return SAME_MM / fmax(curve_length(&w->elem[e].c), SAME_MM);
+}
+
+static uint32_t hits_end(const struct track_work *w, uint32_t e)
+{
+	return e + 1 < w->n ? w->elem[e + 1].hit : w->nhits;
+}
+
+/* The first crossing of element @e behind @t. */
+static uint32_t hit_behind(const struct track_work *w, uint32_t e, double t)
+{
+	uint32_t lo = w->elem[e].hit, hi = hits_end(w, e);
+	const double past = t + slack_of(w, e);
+
+	while (lo < hi) {
+		const uint32_t mid = lo + (hi - lo) / 2;
+
+		if (w->hit[mid].t <= past)
+			lo = mid + 1;
+		else
+			hi = mid;
+	}
+	return lo;
+}
+
+static double next_place(const struct track_work *w, uint32_t e, double t)
+{
+	const uint32_t i = hit_behind(w, e, t);
+
+	return i < hits_end(w, e) ? w->hit[i].t : 1;
+}
+
+static bool is_clear(struct track_work *w, uint32_t e, double t0, double t1)
+{
+	if (!w->elem[e].dead && (t1 - t0) * curve_length(&w->elem[e].c) <
+				SAME_MM)
+		return true;
+	return clear_is(w, e, t0, t1);
+}
+
+static int add_run(struct track_work *w, uint32_t e, double t, bool jump)
+{
+	if (w->nruns == w->runs_room) {
+		const uint32_t room = w->runs_room ? w->runs_room * 2 : 64;
+		struct track_run *r = realloc(w->run, room * sizeof(*r));
+
+		if (!r)
+			return -ENOMEM;
+		w->run = r;
+		w->runs_room = room;
+	}
+	w->run[w->nruns++] = (struct track_run) { e, { t, t }, jump };
+	return 0;
+}
+
+static bool goes_on(struct walker *k, const struct track_hit *h)
+{
+	const uint32_t f = h->other;
+
+	if (f <= h->elem || f > k->stop_elem || k->w->elem[f].dead)
+		return false;
+	return is_clear(k->w, f, h->t_other, next_place(k->w, f, h->t_other));
+}
+
+/* Of the crossings at one place the one that leaves out least comes first. */
+static uint32_t first_at(const struct track_work *w, uint32_t i, double from)
+{
+	const double slack = slack_of(w, w->hit[i].elem);
+
+	while (i > w->elem[w->hit[i].elem].hit &&
+	       w->hit[i - 1].t >= w->hit[i].t - slack &&
+	       w->hit[i - 1].t >= from)
+		i--;
+	return i;
+}
+
+/* A change from run @i, from its end back.  Return: the crossing, or none. */
+static struct track_hit *change_from(struct walker *k, uint32_t i)
+{
+	struct track_work *w = k->w;
+	const struct track_run *r = &w->run[i];
+	const uint32_t begin = w->elem[r->elem].hit;
+	const double from = r->t[0] - slack_of(w, r->elem);
+	uint32_t end = hit_behind(w, r->elem, r->t[1]);
+
+	while (end > begin && w->hit[end - 1].t >= from) {
+		const uint32_t first = first_at(w, end - 1, from);
+
+		for (uint32_t h = first; h < end; h++) {
+			if (goes_on(k, &w->hit[h]))
+				return &w->hit[h];
+		}
+		end = first;
+	}
+	return NULL;
+}
+
+static int change(struct walker *k)
+{
+	struct track_work *w = k->w;
+	const uint32_t least = w->nruns > BACK_MAX ? w->nruns - BACK_MAX : 0;
+	double back = 0;
+
+	tell_stuck(k);
+	for (uint32_t i = w->nruns; i-- > least &&
+	     back < BACK_REACHES * w->reach_mm;) {
+		struct track_hit *h = change_from(k, i);
+
+		back += (w->run[i].t[1] - w->run[i].t[0]) *
+			curve_length(&w->elem[w->run[i].elem].c);
+		if (!h)
+			continue;
+		w->nruns = i + 1;
+		w->run[i].t[1] = h->t;
+		k->elem = h->other;
+		k->t = h->t_other;
+		h->other = 0;		/* it is not tried again */
+		return add_run(w, k->elem, k->t, true);
+	}
+	return -EINVAL;
+}
+
+static int walk(struct walker *k)
+{
+	struct track_work *w = k->w;
+	int rc = add_run(w, k->elem, k->t, false);
+
+	while (!rc) {
+		double next = next_place(w, k->elem, k->t);
+
+		if (k->elem == k->stop_elem && next > k->stop_t &&
+		    k->t <= k->stop_t + slack_of(w, k->elem))
+			next = fmax(k->stop_t, k->t);
+		if (!is_clear(w, k->elem, k->t, next)) {
+			rc = change(k);
+			continue;
+		}
+		k->t = w->run[w->nruns - 1].t[1] = next;
+		if (k->elem == k->stop_elem && next >= k->stop_t &&
+		    next - k->stop_t < 2 * slack_of(w, k->elem))
+			return 0;
+		if (next < 1)
+			continue;
+		if (k->elem == k->stop_elem)
+			return -EINVAL;
+		k->t = 0;
+		rc = add_run(w, ++k->elem, 0, false);
+	}
+	return rc;
+}
+
+/* -- A contour begun in an inner corner ---------------------------------------------- */
+
+/* The lead, from its far end to @at. */
+static struct curve lead_to(const struct track_work *w, int i, struct vec at)
+{
+	const struct vec far = w->job->lead[i].far;
+
+	return i ? curve_line(at, far) : curve_line(far, at);
+}
+
+static bool leads_are_clear(struct track_work *w, struct vec at)
+{
+	for (int i = 0; i < 2; i++) {
+		struct track_elem *e = &w->elem[i ? w->n - 1 : 0];
+		const struct curve was = e->c;
+		bool clear;
+
+		if (!w->job->lead[i].there)
+			continue;
+		e->c = lead_to(w, i, at);
+		clear = is_clear(w, i ? w->n - 1 : 0, 0, 1);
+		e->c = was;
+		if (!clear)
+			return false;
+	}
+	return true;
+}
+
+/* May the way begin at crossing @h and end there too? */
+static bool may_begin(struct walker *k, const struct track_hit *h)
+{
+	struct track_work *w = k->w;
+	uint32_t i = hit_behind(w, h->other, h->t_other);
+	double before = 0;
+
+	if (h->other <= h->elem || w->elem[h->other].piece < 0 ||
+	    !is_clear(w, h->elem, h->t, next_place(w, h->elem, h->t)))
+		return false;
+	while (i-- > w->elem[h->other].hit) {
+		if (w->hit[i].t < h->t_other - slack_of(w, h->other)) {
+			before = w->hit[i].t;
+			break;
+		}
+	}
+	return is_clear(w, h->other, before, h->t_other) &&
+	       leads_are_clear(w, h->at);
+}
+
+/* Begin where the first part that is far enough crosses the last one. */
+static int find_start(struct walker *k)
+{
+	struct track_work *w = k->w;
+	const uint32_t in = w->job->lead[0].there;
+
+	for (uint32_t i = w->elem[in].hit; i < w->nhits && i < STARTS_MAX; i++) {
+		const struct track_hit *h = &w->hit[i];
+		struct jump j = { .e = h->other, .f = h->elem, .te = h->t_other,
+				  .tf = h->t };
+
+		if (!may_begin(k, h))
+			continue;
+		k->elem = h->elem;
+		k->t = h->t;
+		k->stop_elem = h->other;
+		k->stop_t = h->t_other;
+		for (int s = 0; s < 2; s++) {
+			if (w->job->lead[s].there)
+				w->elem[s ? w->n - 1 : 0].c =
+					lead_to(w, s, h->at);
+		}
+		return check_jump(k, &j);
+	}
+	return 0;
+}
+
+/* Is the beginning of a closed outline out of reach? */
+static bool begins_inside(struct track_work *w)
+{
+	const uint32_t in = w->job->lead[0].there;
+	const struct face *f = w->job->face;
+
+	return f->closed && w->job->side && !f->piece[0].lead &&
+	       !f->piece[f->n - 1].lead &&
+	       !is_clear(w, in, 0, next_place(w, in, 0));
+}
+
+static int walk_inside(struct walker *k)
+{
+	struct track_work *w = k->w;
+	int rc = 0;
+
+	if (w->job->lead[0].there) {
+		rc = add_run(w, 0, 0, false);
+		if (!rc)
+			w->run[0].t[1] = 1;
+	}
+	if (!rc)
+		rc = walk(k);
+	if (!rc && w->job->lead[1].there) {
+		rc = add_run(w, w->n - 1, 0, false);
+		if (!rc)
+			w->run[w->nruns - 1].t[1] = 1;
+	}
+	return rc;
+}
+
+int way_find(struct track_work *w, struct track_fault *fault)
+{
+	struct walker k = { .w = w, .fault = fault, .stop_elem = w->n - 1,
+			    .stop_t = 1 };
+	int rc;
+
+	if (begins_inside(w)) {
+		rc = find_start(&k);
+		if (rc)
+			return rc;
+	}
+	rc = k.stop_elem < w->n - 1 || k.stop_t < 1 ? walk_inside(&k) : walk(&k);
+	return rc ? rc : check_jumps(&k);
+}

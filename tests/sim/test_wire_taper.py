@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tapers that change at the corners, on both planes, against a geometry of
+the test's own: the top outline is where the leaning faces meet."""
+import math
+import os
+
+import numpy as np
+import pytest
+import shapely
+from edmsim import ROOT, done, run, seeded
+from shapely.geometry import LineString, Polygon
+from wire_contours import star
+from wire_oracle import UM, verdict
+
+WIRE = ROOT / "examples/wire.ini"
+HEIGHT, LOWER, SPAN = 40, 20, 100   # of examples/wire.ini
+RUNS = int(os.environ.get("EDM_RUNS", 12))
+# Two axes one at a time, and rounding: docs/taper.md.
+BOUND_MM = 3.2 * UM
+
+
+def planes(rows):
+    """Where the wire crosses both planes: arrays of (line, x, y)."""
+    a = np.array(rows, dtype=float)
+    a[:, 1:] *= UM
+    k = np.array([LOWER, LOWER + HEIGHT]) / SPAN
+    return [np.column_stack([a[:, 0], a[:, 1] + s * a[:, 7],
+                             a[:, 2] + s * a[:, 8]]) for s in k]
+
+
+def rows_of(text, *more):
+    out = done("--machine", WIRE, "--dry-run", "--pulses", "-", *more,
+               text=text).stdout
+    return np.loadtxt(out.splitlines()[1:], delimiter=",",
+                      usecols=range(1, 10))
+
+
+def lines_meet(p, u, q, v):
+    k = u[0] * v[1] - u[1] * v[0]
+    t = ((q[0] - p[0]) * v[1] - (q[1] - p[1]) * v[0]) / k
+    return p[0] + t * u[0], p[1] + t * u[1]
+
+
+def top_outline(pts, slopes):
+    """Its corners; None where a face has no room, or is not simple."""
+    n = len(pts)
+    faces = []
+    for i in range(n):
+        p, q = pts[i], pts[(i + 1) % n]
+        d = math.dist(p, q)
+        u = (q[0] - p[0]) / d, (q[1] - p[1]) / d
+        s = slopes[i] * HEIGHT
+        faces.append(((p[0] - s * u[1], p[1] + s * u[0]), u))
+    top = []
+    for i in range(n):
+        (p, u), (q, v) = faces[i - 1], faces[i]
+        turn = math.atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
+        most = HEIGHT * max(abs(slopes[i - 1]), abs(slopes[i]))
+        if not 0.3 < abs(turn) < math.pi / 2:
+            return None
+        at = lines_meet(p, u, q, v)
+        if math.dist(at, pts[i]) > 2.9 * most:
+            return None
+        top.append(at)
+    for i in range(n):
+        a, b, u = top[i], top[(i + 1) % n], faces[i][1]
+        if (b[0] - a[0]) * u[0] + (b[1] - a[1]) * u[1] < 0.05:
+            return None
+    return top if Polygon(top).is_valid else None
+
+
+def outline_distance(points, pts, wires):
+    """The least of (distance to a side - what that side wants)."""
+    xy = shapely.points(points)
+    n = len(pts)
+    best = np.full(len(points), np.inf)
+    for i in range(n):
+        side = LineString([pts[i], pts[(i + 1) % n]])
+        best = np.minimum(best, shapely.distance(xy, side) - wires[i])
+    return best
+
+
+def job_of(pts, start, far, degrees, side, offset):
+    """Begun in the middle of the last side; one line a corner."""
+    def taper(i):
+        return f"G51 A{degrees[i]:g} " if degrees[i] else "G50 "
+    out = [f"F200 H1={offset}", f"G0 X{far[0]:.4f} Y{far[1]:.4f}",
+           f"{side} H1 {taper(-1)}G1 X{start[0]:.4f} Y{start[1]:.4f}"]
+    out.append(f"G1 X{pts[0][0]:.3f} Y{pts[0][1]:.3f}")
+    for i in range(1, len(pts)):
+        out.append(f"{taper(i - 1)}X{pts[i][0]:.3f} Y{pts[i][1]:.3f}")
+    out += [f"{taper(-1)}X{start[0]:.4f} Y{start[1]:.4f}",
+            f"G40 G50 X{far[0]:.4f} Y{far[1]:.4f}", "M2", ""]
+    return "\n".join(out)
+
+
+class Tapered:
+    def __init__(self, rnd):
+        while True:
+            pts = [(round(x, 3), round(y, 3))
+                   for x, y in star(rnd, rnd.randint(4, 9), 8, 20)]
+            inside = rnd.random() < 0.5
+            self.offset = rnd.choice([0.125, 0.2, 0.5])
+            self.degrees = [rnd.choice([-2, -1, 0, 0.5, 1, 2, 3])
+                            for _ in pts]
+            slopes = [math.tan(math.radians(a)) for a in self.degrees]
+            poly = Polygon(pts)
+            top = poly.is_valid and top_outline(pts, slopes)
+            if not top:
+                continue
+            start = ((pts[-1][0] + pts[0][0]) / 2,
+                     (pts[-1][1] + pts[0][1]) / 2)
+            start = round(start[0], 4), round(start[1], 4)
+            d = math.dist(pts[-1], pts[0])
+            k = (1 if inside else -1) * 1.5 / d
+            # The top's side must reach the beginning too.
+            way = [((q[0] - start[0]) * (pts[0][0] - pts[-1][0]) +
+                    (q[1] - start[1]) * (pts[0][1] - pts[-1][1])) / d
+                   for q in (top[-1], top[0])]
+            if not way[0] < -0.7 < 0.7 < way[1]:
+                continue
+            far = (start[0] - k * (pts[0][1] - pts[-1][1]),
+                   start[1] + k * (pts[0][0] - pts[-1][0]))
+            break
+        self.outlines = [pts, top]
+        self.wires = [self.offset * math.sqrt(1 + s * s) for s in slopes]
+        self.wants = {verdict(Polygon(o), w, inside, far)
+                      for o in self.outlines
+                      for w in (min(self.wires), max(self.wires))}
+        self.text = job_of(pts, start, far, self.degrees,
+                           "G41" if inside else "G42", self.offset)
+        self.lines = (4, len(pts) + 4)
+
+
+def test_tapers_that_change_at_corners_keep_off_on_both_planes():
+    rnd = seeded()
+    worst, cut = 0, 0
+    for i in range(RUNS):
+        c = Tapered(rnd)
+        r = run("--machine", WIRE, "--check", text=c.text)
+        about = f"{i}: {r.stderr.decode()}\n{c.text}"
+        if r.returncode:
+            assert b"leans" in r.stderr or b"a lead" in r.stderr or \
+                c.wants != {"cut"}, about
+            continue
+        assert "refuse" not in c.wants, about
+        cut += 1
+        rows = rows_of(c.text)
+        first, last = c.lines
+        for outline, at in zip(c.outlines, planes(rows)):
+            at = at[(at[:, 0] >= first) & (at[:, 0] <= last)][::17, 1:]
+            off = outline_distance(at, outline, c.wires)
+            worst = max(worst, -off.min())
+            assert off.min() > -BOUND_MM, (off.min(), about)
+    print(f"{cut} of {RUNS} cut, nearer by {1000 * worst:.2f} um at the worst")
+    assert cut > RUNS / 4
+
+
+CHANGES = [("G51 A2", "G51 A4"), ("G51 A2", "G50"), ("G51 A2", "H2=0.2 H2"),
+           ("G51 A5", "G51 A2"), ("", "H2=0.3 H2"), ("", "G51 A3")]
+
+
+@pytest.mark.parametrize("first,then", CHANGES)
+def test_a_change_at_a_corner_keeps_the_offset(first, then):
+    text = f"""G90 F200
+H1=0.125
+G0 X5 Y-8
+G42 H1 {first}
+G1 X5 Y0
+X25
+{then}
+Y20
+X0
+Y0
+X5
+G40 G50 Y-8
+M2
+"""
+    square = [(0, 0), (25, 0), (25, 20), (0, 20)]
+    bottom = planes(rows_of(text))[0]
+    on = bottom[(bottom[:, 0] >= 6) & (bottom[:, 0] <= 11)][:, 1:]
+    off = outline_distance(on, square, [0.125] * 4)
+    assert off.min() > -BOUND_MM
+
+
+def test_a_leaning_wall_of_two_contours_has_the_offset_over_cos():
+    """29 degrees by U V, as G51 would have it: 0.125 / cos on both planes."""
+    lean = HEIGHT * math.tan(math.radians(29))
+    text = f"""G90 F200
+H1=0.125
+G0 X20 Y-10
+G42 H1
+G1 X20 Y0 : X20 Y{lean:.4f}
+G1 X60 : X60
+G40 G1 X60 Y-10 : X60 Y-10
+M2
+"""
+    wire = 0.125 / math.cos(math.radians(29))
+    for y, at in zip((0, lean), planes(rows_of(text))):
+        on = at[(at[:, 0] == 6)][5:-5]
+        assert np.abs(y - on[:, 2] - wire).max() < 2.5 * UM

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_edges.c - promises of io/edges.h, with a real thread: what it puts out,
+ * however late it comes; how evenly is judged in the virtual machine
+ */
+#include "edges.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+struct rig {
+	struct edges *e;
+	struct edges_told told;
+	struct edges_shown shown;
+	uint32_t step;			/* levels, the thread's own */
+	_Atomic int32_t at[IO_NAXES];	/* counted from the lines */
+	_Atomic bool gone;
+};
+
+/* Counts as a drive does, at each step that rises. */
+static bool lines(void *arg, uint32_t step, uint32_t dir)
+{
+	struct rig *r = arg;
+	const uint32_t rises = step & ~r->step;
+
+	r->step = step;
+	for (int i = 0; i < IO_NAXES; i++)
+		if (rises >> i & 1)
+			r->at[i] += dir >> i & 1 ? 1 : -1;
+	return !r->gone;
+}
+
+static void begin(struct rig *r)
+{
+	const struct edges_config c = {
+		.pulser = { 1, 1, 1, 1, false }, .period_ns = 2000000,
+		.slots = 40, .cpu = -1, .write = lines, .arg = r,
+	};
+
+	memset(r, 0, sizeof(*r));
+	assert_int_equal(edges_start(&r->e, &c), 0);
+	edges_tell(r->e, &r->told);
+}
+
+static void look(struct rig *r)
+{
+	usleep(1000);
+	edges_ask(r->e, &r->shown);
+}
+
+/* Periods pass until it stands still and has nothing more. */
+static void settle(struct rig *r)
+{
+	uint32_t from;
+
+	edges_ask(r->e, &r->shown);
+	from = r->shown.periods;
+	do {
+		look(r);
+	} while (r->shown.periods - from < 4 || r->shown.busy ||
+		 memcmp(r->shown.put, r->told.target, sizeof(r->told.target)));
+}
+
+static void what_is_told_is_put_out_to_the_pulse(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	begin(&r);
+	for (int i = 1; i <= 100; i++) {
+		do
+			look(&r);
+		while (r.shown.busy);
+		r.told.target[0] = 17 * i;
+		r.told.target[2] = -(i % 2 ? 20 * i : 20 * (i - 1));
+		edges_tell(r.e, &r.told);
+	}
+	settle(&r);
+	assert_int_equal(r.at[0], 1700);
+	assert_int_equal(r.at[2], -1980);
+	assert_int_equal(r.at[1], 0);
+	assert_memory_equal(r.shown.put, r.told.target, sizeof(r.told.target));
+	edges_end(r.e);
+}
+
+static void more_than_a_period_holds_is_put_out_later_not_lost(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	begin(&r);
+	settle(&r);
+	r.told.target[1] = 500;
+	edges_tell(r.e, &r.told);
+	settle(&r);
+	assert_int_equal(r.at[1], 500);
+	edges_end(r.e);
+}
+
+/* What the lines say and what it says it put out are one, at any time. */
+static void a_stop_ends_the_pulses_until_another_target(void **state)
+{
+	struct rig r;
+	int32_t stood;
+
+	(void)state;
+	begin(&r);
+	settle(&r);
+	r.told.target[0] = 2000;
+	edges_tell(r.e, &r.told);
+	while (r.at[0] < 100)
+		look(&r);
+	r.told.stop = 1;
+	edges_tell(r.e, &r.told);
+	for (int i = 0; i < 10; i++)
+		look(&r);
+	stood = r.at[0];
+	assert_true(stood < 2000);
+	r.told.stop = 0;
+	edges_tell(r.e, &r.told);
+	for (int i = 0; i < 20; i++)
+		look(&r);
+	assert_int_equal(r.at[0], stood);
+	assert_int_equal(r.shown.put[0], stood);
+	assert_true(r.shown.busy);
+	r.told.target[0] = 1999;
+	edges_tell(r.e, &r.told);
+	settle(&r);
+	assert_int_equal(r.at[0], 1999);
+	edges_end(r.e);
+}
+
+static void lines_that_are_gone_are_told(void **state)
+{
+	struct rig r;
+	int32_t at;
+
+	(void)state;
+	begin(&r);
+	settle(&r);
+	r.gone = true;
+	r.told.target[0] = 10;
+	edges_tell(r.e, &r.told);
+	while (!r.shown.lost)
+		look(&r);
+	at = r.at[0];
+	r.told.target[0] = 20;
+	edges_tell(r.e, &r.told);
+	for (int i = 0; i < 10; i++)
+		look(&r);
+	assert_int_equal(r.at[0], at);
+	edges_end(r.e);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_is_told_is_put_out_to_the_pulse),
+		cmocka_unit_test(
+			more_than_a_period_holds_is_put_out_later_not_lost),
+		cmocka_unit_test(a_stop_ends_the_pulses_until_another_target),
+		cmocka_unit_test(lines_that_are_gone_are_told),
+	};
+
+	return cmocka_run_group_tests_name("io/edges", tests, NULL, NULL);
+}

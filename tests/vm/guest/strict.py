@@ -1,0 +1,550 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Drives that refuse whatever CiA 301 and 402 let a drive refuse.
+
+strict.py INTERFACE COMMANDS TRAITS
+
+Written from the standards, on a bare socket: no code of the daemon, none of
+drives.py, no CANopen package.  TRAITS is JSON, node -> what is particular:
+    slow       {"60c2:1": 0.7}: so long until that request is answered
+    without    ["6061", ...]: objects it does not have
+    unmappable ["6061"]: they are there, but in no PDO
+    fixed_ids  its PDOs keep their identifiers
+    not_ready  seconds after power-on in which its place reads 0
+    mode_lag   seconds until 6061 shows what was written to 6060
+    identity   [vendor, product, revision, serial]
+    absolute   its count survives a power cycle
+    refuse     {"605a:0": code}: that write is answered so
+    most       {"60c2:1": 8}: a larger value is out of range
+    off        it has no power at first
+
+COMMANDS is a FIFO, a line for each thing to do:
+    off N | on N | push N INCREMENTS | mode N M | bits N SET CLEAR | emcy N CODE
+    jam N | unjam N | gap V | nmt BYTE BYTE | report FILE | quit
+A report has a row for each SYNC: its time, the generator's flags, and of each
+drive its state, where the axis truly is, what the drive counts, and 6060.
+"""
+import json
+import os
+import select
+import socket
+import struct
+import sys
+import time
+
+FRAME = struct.Struct("=IB3x8s")
+GAP_ID, GENERATOR_ID = 0x3f0, 0x3f1
+
+NO_OBJECT, NO_SUB = 0x06020000, 0x06090011
+READ_ONLY, LENGTH = 0x06010002, 0x06070010
+RANGE, NOT_NOW, UNMAPPABLE = 0x06090030, 0x08000022, 0x06040041
+TOGETHER, COMMAND = 0x06040043, 0x05040001
+
+BOOTING, PREOP, OPERATIONAL, STOPPED = 0, 127, 5, 4
+
+
+class Abort(Exception):
+    pass
+
+
+class Entry:
+    def __init__(self, size, value=0, ro=False, low=0, high=None, values=None):
+        self.size, self.value, self.ro = size, value, ro
+        self.low = low
+        self.high = (1 << 8 * size) - 1 if high is None else high
+        self.values = values
+
+
+def dictionary(node, traits):
+    """As it comes from a box: mapped to other things, by event, switched on."""
+    u8, u16, u32 = 1, 2, 4
+    od = {
+        (0x1000, 0): Entry(u32, 0x00020192, ro=True),
+        (0x1001, 0): Entry(u8, 0, ro=True),
+        (0x1005, 0): Entry(u32, 0x80),
+        (0x1006, 0): Entry(u32, 0, high=1000000),
+        (0x1007, 0): Entry(u32, 0, high=1000000),
+        (0x1016, 0): Entry(u8, 1, ro=True), (0x1016, 1): Entry(u32, 0),
+        (0x1017, 0): Entry(u16, 0),
+        (0x1018, 0): Entry(u8, 4, ro=True),
+        (0x1019, 0): Entry(u8, 10, high=240),
+        (0x603f, 0): Entry(u16, 0, ro=True),
+        (0x6040, 0): Entry(u16, 0), (0x6041, 0): Entry(u16, 0, ro=True),
+        (0x605a, 0): Entry(u16, 2, values=(0, 1, 2, 5, 6)),
+        (0x605e, 0): Entry(u16, 2, values=(0, 1, 2)),
+        (0x6007, 0): Entry(u16, 1, values=(0, 1, 2, 3)),
+        (0x6060, 0): Entry(u8, 1, values=(1, 3, 6, 8)),
+        (0x6061, 0): Entry(u8, 1, ro=True),
+        (0x6064, 0): Entry(u32, 0, ro=True),
+        (0x6065, 0): Entry(u32, 2000, low=1, high=1000000),
+        (0x607a, 0): Entry(u32, 0),
+        (0x6085, 0): Entry(u32, 100000, low=1000, high=100000000),
+        (0x60c2, 0): Entry(u8, 2, ro=True),
+        (0x60c2, 1): Entry(u8, 1, low=1, high=20),
+        (0x60c2, 2): Entry(u8, 0xfd, ro=True),
+        (0x6502, 0): Entry(u32, 0xa5, ro=True),
+    }
+    identity = traits.get("identity", [0x1111, 0x2222, 1, node])
+    for sub, value in enumerate(identity, 1):
+        od[0x1018, sub] = Entry(u32, value, ro=True)
+    for i in range(4):
+        rpdo, tpdo = 0x200 + 0x100 * i + node, 0x180 + 0x100 * i + node
+        # Bit 30 of one that receives means nothing, and must stay as it is.
+        od |= {(0x1400 + i, 0): Entry(u8, 2, ro=True),
+               (0x1400 + i, 1): Entry(u32, 0x40000000 | rpdo),
+               (0x1400 + i, 2): Entry(u8, 255),
+               (0x1800 + i, 0): Entry(u8, 5, ro=True),
+               (0x1800 + i, 1): Entry(u32, 0x40000000 | tpdo),
+               (0x1800 + i, 2): Entry(u8, 255)}
+        for base, word in (0x1600, 0x60400010), (0x1a00, 0x60410010):
+            od[base + i, 0] = Entry(u8, 1, high=8)
+            for sub in range(1, 9):
+                od[base + i, sub] = Entry(u32, word if sub == 1 else 0)
+    for name, high in traits.get("most", {}).items():
+        index, sub = name.split(":")
+        od[int(index, 16), int(sub)].high = high
+    for name in traits.get("without", ()):
+        for key in [k for k in od if k[0] == int(name, 16)]:
+            del od[key]
+    return od
+
+
+class Drive:
+    def __init__(self, bus, node, traits):
+        self.bus, self.node, self.traits = bus, node, traits
+        self.true = 1000 * node             # increments, of the axis itself
+        self.count = self.true
+        self.offset, self.times = 0, 0      # of the count; power-ons
+        self.powered = False
+        self.state = "off"
+        self.slow = []                      # (when, frame) of late answers
+        self.nmt = BOOTING
+        if not traits.get("off"):
+            self.power_on()
+
+    # -- power
+
+    def power_off(self):
+        self.powered, self.state, self.nmt = False, "off", BOOTING
+        self.slow = []
+
+    def power_on(self):
+        now = time.monotonic()
+        if self.times and not self.traits.get("absolute"):
+            self.offset = self.true         # an incremental encoder begins at 0
+        self.times += 1
+        self.powered, self.nmt = True, BOOTING
+        self.od = dictionary(self.node, self.traits)
+        self.state = "not-ready"
+        self.born, self.ready_at = now + 0.1, now + 0.1 + self.traits.get(
+            "not_ready", 0)
+        self.control = self.taken = 0
+        self.target = self.sent = None
+        self.mode, self.mode_at, self.before = 1, 0, 1
+        self.force_set = self.force_clear = 0
+        self.jammed, self.enabling = False, 0
+        self.beat_at = self.heard_master = self.synced = None
+        self.step = 0
+
+    def get(self, index, sub=0):
+        """0 of what it does not have."""
+        e = self.od.get((index, sub))
+        return e.value if e else 0
+
+    # -- SDO
+
+    def upload(self, key):
+        if key not in self.od:
+            raise Abort(NO_SUB if any(k[0] == key[0] for k in self.od)
+                        else NO_OBJECT)
+        if key == (0x6061, 0):
+            return 1, self.mode_shown()
+        if key == (0x6041, 0):
+            return 2, self.status()
+        if key == (0x6064, 0):
+            return 4, self.count & 0xffffffff
+        return self.od[key].size, self.od[key].value
+
+    def download(self, key, size, value):
+        index, sub = key
+        if key not in self.od:
+            raise Abort(NO_SUB if any(k[0] == index for k in self.od)
+                        else NO_OBJECT)
+        e = self.od[key]
+        code = self.traits.get("refuse", {}).get(f"{index:04x}:{sub}")
+        if code:
+            raise Abort(int(code, 16))
+        if e.ro:
+            raise Abort(READ_ONLY)
+        if size != e.size:
+            raise Abort(LENGTH)
+        if not e.low <= value <= e.high or (e.values and
+                                            value not in e.values):
+            raise Abort(RANGE)
+        self.check(index, sub, value)
+        e.value = value
+        if key == (0x6060, 0):
+            self.before = self.mode_shown()
+            self.mode, self.mode_at = value, time.monotonic()
+        if key == (0x1016, 1):
+            self.heard_master = None
+
+    def check(self, index, sub, value):
+        now = self.od[index, sub].value
+        if 0x1400 <= index < 0x1600 or 0x1800 <= index < 0x1a00:
+            valid = not self.od[index, 1].value >> 31
+            if self.nmt == OPERATIONAL:
+                raise Abort(NOT_NOW)
+            if sub == 1:
+                self.check_cob(value, now, valid)
+            elif valid:
+                raise Abort(NOT_NOW)
+        elif 0x1600 <= index < 0x1800 or 0x1a00 <= index < 0x1c00:
+            self.check_mapping(index, sub, value)
+        elif index == 0x1016:
+            other, ms = value >> 16, value & 0xffff
+            if other > 127 or value >> 24 or (ms and not other):
+                raise Abort(RANGE)
+        elif index == 0x1019 and self.get(0x1006):
+            raise Abort(NOT_NOW)
+        elif index == 0x1019 and value == 1:
+            raise Abort(RANGE)
+        elif index == 0x1005 and value & 0x7ff != 0x80:
+            raise Abort(RANGE)
+        elif index in (0x60c2, 0x605a) and self.state == "enabled":
+            raise Abort(NOT_NOW)
+
+    def check_cob(self, value, now, valid):
+        if value >> 29 & 1 or (value ^ now) >> 30 & 1:
+            raise Abort(RANGE)              # 29 bits, or another bit 30
+        if valid and (value ^ now) & 0x1fffffff:
+            raise Abort(RANGE)              # not while it exists
+        if not valid and not value >> 31 and (value ^ now) & 0x1fffffff:
+            raise Abort(RANGE)              # first the identifier, then valid
+        if self.traits.get("fixed_ids") and (value ^ now) & 0x1fffffff:
+            raise Abort(RANGE)
+        if value & 0x7ff < 0x181:
+            raise Abort(RANGE)
+
+    def check_mapping(self, index, sub, value):
+        comm = index - 0x200
+        if not self.od[comm, 1].value >> 31:
+            raise Abort(NOT_NOW)
+        if sub == 0:
+            bits = sum(self.od[index, i].value & 0xff
+                       for i in range(1, value + 1))
+            if bits > 64:
+                raise Abort(0x06040042)
+            return
+        if self.od[index, 0].value:
+            raise Abort(NOT_NOW)
+        mapped = self.od.get((value >> 16, value >> 8 & 0xff))
+        if not mapped:
+            raise Abort(UNMAPPABLE)
+        if f"{value >> 16:04x}" in self.traits.get("unmappable", ()) or \
+                value & 0xff != 8 * mapped.size:
+            raise Abort(UNMAPPABLE)
+
+    def on_sdo(self, data):
+        what, (index, sub) = data[0] >> 5, struct.unpack_from("<HB", data, 1)
+        if what == 4:
+            return
+        answer = bytearray(8)
+        answer[1:4] = data[1:4]
+        try:
+            if what == 2:
+                size, value = self.upload((index, sub))
+                answer[0] = 0x43 | (4 - size) << 2
+                struct.pack_into("<I", answer, 4, value)
+            elif what == 1 and data[0] & 3 == 3:
+                size = 4 - (data[0] >> 2 & 3)
+                value = int.from_bytes(data[4:4 + size], "little")
+                self.download((index, sub), size, value)
+                answer[0] = 0x60
+            else:
+                raise Abort(COMMAND)
+        except Abort as e:
+            answer[0] = 0x80
+            struct.pack_into("<I", answer, 4, e.args[0])
+            self.bus.aborts.append((self.node, f"{index:04x}:{sub}",
+                                    f"{e.args[0]:08x}"))
+        late = self.traits.get("slow", {}).get(f"{index:04x}:{sub}", 0)
+        self.slow.append((time.monotonic() + late, bytes(answer)))
+
+    # -- PDO, NMT, SYNC
+
+    def on_nmt(self, command, node):
+        if node not in (0, self.node) or self.nmt == BOOTING:
+            return
+        was = self.nmt
+        if command in (0x81, 0x82):
+            self.power_off()
+            self.power_on()
+            return
+        self.nmt = {1: OPERATIONAL, 2: STOPPED, 0x80: PREOP}.get(
+            command, self.nmt)
+        if was == OPERATIONAL and self.nmt != OPERATIONAL:
+            self.lose_master()
+
+    def on_rpdo(self, data):
+        size = sum(self.get(0x1600, i) & 0xff
+                   for i in range(1, self.get(0x1600) + 1)) // 8
+        if self.nmt != OPERATIONAL or self.get(0x1400, 1) >> 31:
+            return
+        if len(data) < size:
+            self.emergency(0x8210)
+            return
+        at = 0
+        for i in range(1, self.get(0x1600) + 1):
+            word = self.get(0x1600, i)
+            n = (word & 0xff) // 8
+            value = int.from_bytes(data[at:at + n], "little")
+            at += n
+            if word >> 16 == 0x6040:
+                self.control = value
+            elif word >> 16 == 0x607a:
+                self.target = value - (1 << 32) if value >> 31 else value
+
+    def mode_shown(self):
+        if time.monotonic() - self.mode_at < self.traits.get("mode_lag", 0):
+            return self.before
+        return self.mode
+
+    def status(self):
+        word = {"not-ready": 0x0200, "disabled": 0x0250, "ready": 0x0231,
+                "on": 0x0233, "enabled": 0x0237, "stopping": 0x0217,
+                "held": 0x0217, "reacting": 0x021f, "fault": 0x0218}[self.state]
+        if self.state == "enabled" and self.mode_shown() == 8:
+            word |= 0x1000
+        return (word | self.force_set) & ~self.force_clear
+
+    def on_sync(self, now):
+        self.synced = now
+        if self.nmt != OPERATIONAL:
+            return
+        if not self.get(0x1800, 1) >> 31:
+            data = b""
+            for i in range(1, self.get(0x1a00) + 1):
+                word = self.get(0x1a00, i)
+                n = (word & 0xff) // 8
+                size, value = self.upload((word >> 16, word >> 8 & 0xff))
+                data += value.to_bytes(4, "little")[:n]
+            self.bus.send(self.get(0x1800, 1) & 0x7ff, data)
+        self.obey()
+        self.move()
+
+    def obey(self):
+        control, rises = self.control, self.control & ~self.taken
+        self.taken = control
+        s = self.state
+        if s == "fault":
+            if rises & 0x80:
+                self.state = "disabled"
+                self.emergency(0)
+            return
+        if s in ("not-ready", "reacting", "stopping"):
+            return
+        if control & 2 == 0:
+            self.state = "disabled"
+        elif control & 4 == 0:
+            if s == "enabled":
+                self.state = "stopping"
+            elif s != "held":
+                self.state = "disabled"
+        elif control & 0xf == 6 or control & 0xf == 0xe:
+            if s in ("disabled", "on", "enabled"):
+                self.state = "ready"
+        elif control & 0xf == 7:
+            self.state = {"ready": "on", "enabled": "on"}.get(s, s)
+        elif s in ("on", "held"):
+            self.enabling += 1
+            if self.enabling > 3:
+                self.state = "enabled"
+            return
+        self.enabling = 0
+
+    def move(self):
+        if self.state == "enabled" and self.mode_shown() == 8 and \
+                not self.jammed and self.target is not None and \
+                not self.force_clear & 0x1000:
+            self.step = self.target - self.count
+        elif self.state in ("stopping", "reacting"):
+            self.step = int(self.step / 2)
+            if self.step == 0:
+                self.state = ("fault" if self.state == "reacting" else
+                              "held" if self.get(0x605a) in (5, 6) else
+                              "disabled")
+        else:
+            self.step = 0
+        self.true += self.step
+        self.count = self.true - self.offset
+
+    def emergency(self, code):
+        self.bus.send(0x80 + self.node, struct.pack("<HBxxxxx", code,
+                                                    1 if code else 0))
+
+    def fail(self, code):
+        if self.state in ("fault", "reacting", "off"):
+            return
+        self.state = "reacting" if self.state in ("enabled", "stopping",
+                                                  "held") else "fault"
+        self.emergency(code)
+
+    def lose_master(self):
+        option = self.get(0x6007)
+        if option == 1:
+            self.fail(0x8130)
+        elif self.state == "enabled" and option in (2, 3):
+            self.state = "stopping" if option == 3 else "disabled"
+
+    # -- time
+
+    def live(self, now):
+        if not self.powered or now < self.born:
+            return
+        if self.nmt == BOOTING:
+            self.nmt = PREOP
+            self.bus.send(0x700 + self.node, b"\0")
+            self.beat_at = now
+        if self.state == "not-ready":
+            self.count = 0
+            if now >= self.ready_at:
+                self.state = "disabled"
+                self.count = self.true - self.offset
+        while self.slow and self.slow[0][0] <= now:
+            if self.nmt != STOPPED:
+                self.bus.send(0x580 + self.node, self.slow[0][1])
+            self.slow.pop(0)
+        beat = self.get(0x1017) / 1000
+        if beat and now >= self.beat_at:
+            self.bus.send(0x700 + self.node, bytes([self.nmt]))
+            self.beat_at = max(self.beat_at + beat, now)
+        word = self.get(0x1016, 1)
+        if self.heard_master and word & 0xffff and \
+                now - self.heard_master > (word & 0xffff) / 1000:
+            self.heard_master = None
+            self.emergency(0x8130)
+            self.lose_master()
+        cycle = self.get(0x60c2, 1) * 1e-3
+        if self.state == "enabled" and self.synced and \
+                now - self.synced > 5 * cycle:
+            self.fail(0x8700)
+
+    def hear(self, can_id, data, now):
+        if not self.powered or self.nmt == BOOTING:
+            return
+        if can_id == 0x600 + self.node and len(data) == 8:
+            if self.nmt != STOPPED:
+                self.on_sdo(data)
+        elif can_id == self.get(0x1400, 1) & 0x7ff:
+            self.on_rpdo(data)
+        elif can_id == 0x700 + (self.get(0x1016, 1) >> 16 & 0x7f) and can_id != 0x700:
+            self.heard_master = now
+
+
+class Bus:
+    def __init__(self, interface, commands, traits):
+        self.sock = socket.socket(socket.PF_CAN, socket.SOCK_RAW,
+                                  socket.CAN_RAW)
+        self.sock.setblocking(False)
+        self.sock.bind((interface,))
+        self.aborts, self.rows, self.flags, self.gap_v = [], [], 0, 0.0
+        self.noise = 0
+        self.drives = {int(n): Drive(self, int(n), t)
+                       for n, t in traits.items()}
+        self.fifo = os.open(commands, os.O_RDWR | os.O_NONBLOCK)
+        self.rest = b""
+
+    def send(self, can_id, data):
+        try:
+            self.sock.send(FRAME.pack(can_id, len(data),
+                                      bytes(data).ljust(8, b"\0")))
+        except OSError:
+            pass
+
+    def read(self):
+        for _ in range(200):
+            try:
+                frame = self.sock.recv(16)
+            except OSError:
+                return
+            can_id, size, data = FRAME.unpack(frame)
+            data, now = data[:size], time.monotonic()
+            if can_id == 0 and size == 2:
+                for d in self.drives.values():
+                    if d.powered:
+                        d.on_nmt(*data)
+            elif can_id == 0x80 and size <= 1:
+                self.sync(now)
+            elif can_id == GENERATOR_ID:
+                self.flags = data[0]
+            elif can_id < 0x800:
+                for d in self.drives.values():
+                    d.hear(can_id, data, now)
+
+    def sync(self, now):
+        for d in self.drives.values():
+            if d.powered and d.nmt != BOOTING:
+                d.on_sync(now)
+        if self.gap_v:
+            self.noise = (self.noise * 5 + 3) % 16
+            self.send(GAP_ID, struct.pack("<H", int(self.gap_v * 100) +
+                                          self.noise))
+        self.rows.append((now, self.flags, [
+            (d.state, d.true, d.count, d.mode if d.powered else 0)
+            for d in self.drives.values()]))
+
+    def command(self, words):
+        what, args = words[0], words[1:]
+        if what == "gap":
+            self.gap_v = float(args[0])
+        elif what == "nmt":
+            for d in self.drives.values():
+                if d.powered:
+                    d.on_nmt(int(args[0], 16), int(args[1], 16))
+            self.send(0, bytes(int(a, 16) for a in args))
+        elif what == "report":
+            with open(args[0] + ".new", "w") as f:
+                json.dump({"nodes": list(self.drives), "rows": self.rows,
+                           "aborts": self.aborts}, f)
+            os.rename(args[0] + ".new", args[0])
+            self.rows, self.aborts = [], []
+        elif what == "quit":
+            sys.exit(0)
+        else:
+            self.harm(self.drives[int(args[0])], what, args[1:])
+
+    def harm(self, d, what, args):
+        if what == "off":
+            d.power_off()
+        elif what == "on":
+            d.power_on()
+        elif what == "push":
+            d.true += int(args[0])
+            d.count = d.true - d.offset
+        elif what == "mode":
+            d.mode, d.mode_at = int(args[0]), 0
+        elif what == "bits":
+            d.force_set, d.force_clear = (int(a, 16) for a in args)
+        elif what == "emcy":
+            d.fail(int(args[0], 16))
+        elif what in ("jam", "unjam"):
+            d.jammed = what == "jam"
+
+    def run(self):
+        while True:
+            select.select([self.sock, self.fifo], [], [], 0.005)
+            self.read()
+            now = time.monotonic()
+            for d in self.drives.values():
+                d.live(now)
+            try:
+                self.rest += os.read(self.fifo, 4096)
+            except BlockingIOError:
+                continue
+            *lines, self.rest = self.rest.split(b"\n")
+            for line in lines:
+                self.command(line.decode().split())
+
+
+if __name__ == "__main__":
+    Bus(sys.argv[1], sys.argv[2], json.loads(sys.argv[3])).run()
