@@ -10,6 +10,13 @@
 /* Directions of short lines differ by their rounding; their ceilings must not.*/
 #define SAME		4e-6
 
+/*
+ * On a bend, shares of what an axis can do: to follow it, squared with the
+ * other no more than all of it.
+ */
+#define BEND_ACROSS	0.8
+#define BEND_ALONG	0.6
+
 #define HOP_MAX		UINT16_MAX
 
 /* Of an axis: no less than a pulse of it. */
@@ -61,14 +68,45 @@ static float level(const struct pass *w, double v_mm_s)
 	return v * (float)(1 - 2 * SAME);
 }
 
+/* Down to a level, but for the whole of an axis. */
+static float soft(const struct pass *w, double v, const double *own)
+{
+	for (uint32_t j = 0; j < w->n; j++) {
+		if (fabs(v - own[j]) <= SAME * v)
+			return (float)own[j];
+	}
+	return level(w, v);
+}
+
+/*
+ * Along the path, what its axes leave: on a bend a part, beside what they need
+ * to follow it.
+ */
+static void soften_seg(const struct pass *w, struct interp_seg *s, double part,
+		       const double rates[INTERP_NAXES])
+{
+	double a = INFINITY, j = INFINITY;
+
+	for (uint32_t k = 0; k < w->n; k++) {
+		if (!(rates[k] > 0))
+			continue;
+		a = fmin(a, part * w->a_mm_s2[k] / rates[k]);
+		j = fmin(j, part * w->j_mm_s3[k] / rates[k]);
+	}
+	s->a_mm_s2 = soft(w, a, w->a_mm_s2);
+	s->j_mm_s3 = soft(w, j, w->j_mm_s3);
+}
+
 /* What the axes of its bend can do. */
 static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 {
 	struct interp_seg *s = &w->segs[i];
 	double v = (double)s->feed_max_mm_s;
+	double rates[INTERP_NAXES];
 
+	pass_rates(w, i, h, rates);
 	if (s->kind == INTERP_LINE && pass_is_short(w, i))
-		v = fmax(v, pass_line_mm_s(w, i, &h->first));
+		v = fmax(v, pass_rate_mm_s(w, rates));
 	if (h->bend_mm > 0) {
 		double a = INFINITY, j = INFINITY;
 
@@ -78,8 +116,10 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 			a = fmin(a, w->a_mm_s2[k]);
 			j = fmin(j, w->j_mm_s3[k]);
 		}
-		v = fmin(v, pass_round_mm_s(h->bend_mm, a, j) / h->share);
+		v = fmin(v, pass_round_mm_s(h->bend_mm, BEND_ACROSS * a, j) /
+			    h->share);
 	}
+	soften_seg(w, s, h->bend_mm > 0 ? BEND_ALONG : 1, rates);
 	s->feed_max_mm_s = level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;
@@ -94,8 +134,10 @@ static void walk_nodes(struct pass *w)
 	int now = 0;
 
 	w->segs[0].node_mm_s = INFINITY;
+	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
 	for (uint32_t i = 1; i < nsegs; i++) {
 		w->segs[i].node_mm_s = INFINITY;
+		w->segs[i].a_mm_s2 = w->segs[i].j_mm_s3 = INFINITY;
 		if (w->segs[i].kind >= INTERP_BEGIN)
 			continue;
 		heading_find(&w->ways, i, &h[now]);
@@ -189,6 +231,40 @@ static void chain_behind(const struct pass *w)
 	}
 }
 
+/* -- The next softer ------------------------------------------------------- */
+
+static bool is_softer(const struct interp_seg *s, const struct interp_seg *than)
+{
+	return s->a_mm_s2 < than->a_mm_s2 || s->j_mm_s3 < than->j_mm_s3;
+}
+
+static void chain_softer(const struct pass *w)
+{
+	struct interp_seg *s = w->segs;
+	const uint32_t end = w->p->head->nsegs - 1;
+
+	s[end].softer_ahead = 0;
+	for (uint32_t i = end; i-- > 0; ) {
+		uint32_t m = i + 1;
+
+		while (m < end && m - i < HOP_MAX && s[i].kind < INTERP_BEGIN &&
+		       s[m].kind < INTERP_BEGIN && !is_softer(&s[m], &s[i]))
+			m += s[m].softer_ahead;
+		s[i].softer_ahead = (uint16_t)(m - i < HOP_MAX ? m - i :
+							   HOP_MAX);
+	}
+	s[0].softer_behind = 0;
+	for (uint32_t i = 1; i <= end; i++) {
+		uint32_t m = i - 1;
+
+		while (m > 0 && i - m < HOP_MAX && !is_softer(&s[m], &s[i]))
+			m = s[m].softer_behind ? m - s[m].softer_behind : 0;
+		s[i].softer_behind = (uint16_t)(m == 0 ? 0 :
+						i - m < HOP_MAX ? i - m :
+								  HOP_MAX);
+	}
+}
+
 void interp_limits_write(const struct interp_limits *l,
 			 const struct interp_program *p,
 			 struct interp_seg *segs)
@@ -200,4 +276,5 @@ void interp_limits_write(const struct interp_limits *l,
 	chain_ahead(&w);
 	chain_feed(&w);
 	chain_behind(&w);
+	chain_softer(&w);
 }

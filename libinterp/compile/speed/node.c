@@ -315,27 +315,50 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 }
 
 /*
- * The fastest on a short line: an axis whose share of the way is that of the
- * ways around it, but for a rounding, is as fast as there.
+ * On a short line an axis whose share of the way is that of the ways around it,
+ * but for a rounding, has the share it has there.
  */
-double pass_line_mm_s(struct pass *w, uint32_t i, const struct heading *h)
+static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
+		       double ret[INTERP_NAXES])
 {
 	const double per_mm = 1 / w->segs[i].length_mm;
 	struct around *k = &w->windows[AROUND];
 	struct heading around = { .along = h->along };
 	struct change c = { .a = h, .b = &around };
-	double v = INFINITY;
 
 	look_around(w, i, k);
 	if (!(chord(w, k->behind, k->ahead, &around) > 0))
 		around = *h;
 	change_of(w, per_mm, heard, &c);
-	for (uint32_t j = 0; j < w->n; j++) {
-		const double rate = fabs(c.d[j] > 0 ? h->rate[j] :
-						      around.rate[j]);
+	for (uint32_t j = 0; j < w->n; j++)
+		ret[j] = fabs(c.d[j] > 0 ? h->rate[j] : around.rate[j]);
+}
 
-		if (rate * v > w->v_mm_s[j])
-			v = w->v_mm_s[j] / rate;
+void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
+		double ret[INTERP_NAXES])
+{
+	if (w->segs[i].kind == INTERP_LINE && pass_is_short(w, i)) {
+		line_rates(w, i, &h->first, ret);
+		return;
+	}
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double ends = larger(fabs(h->first.rate[j]),
+					   fabs(h->last.rate[j]));
+		const bool bends = w->segs[i].kind != INTERP_LINE && ends > 0 &&
+				   (h->first.along | h->last.along) >> j & 1;
+
+		/* On its way it may go all along the axis. */
+		ret[j] = bends ? larger(ends, larger(h->share, 1)) : ends;
+	}
+}
+
+double pass_rate_mm_s(const struct pass *w, const double rates[INTERP_NAXES])
+{
+	double v = INFINITY;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		if (rates[j] * v > w->v_mm_s[j])
+			v = w->v_mm_s[j] / rates[j];
 	}
 	return v;
 }

@@ -51,7 +51,11 @@ bool pass_is_short(const struct pass *w, uint32_t i);
 double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		      const struct heading *a, const struct heading *b);
 
-/** pass_line_mm_s() - what the axes' own speeds allow on a short line @i. */
-double pass_line_mm_s(struct pass *w, uint32_t i, const struct heading *h);
+/** pass_rates() - the most that each column moves by, a mm of segment @i. */
+void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
+		double ret[INTERP_NAXES]);
+
+/** pass_rate_mm_s() - what the axes' own speeds allow at such rates. */
+double pass_rate_mm_s(const struct pass *w, const double rates[INTERP_NAXES]);
 
 #endif /* SPEED_PASS_H */
