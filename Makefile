@@ -45,7 +45,7 @@ OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
 	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
-LDFLAGS	= -Wl,--gc-sections $(SANFLAGS)
+LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
 
 # The parts, in the order data flows.
 # libinterp has a floor for each use: see docs/architecture.md.
@@ -71,6 +71,7 @@ SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
 JOBS	:= $(wildcard daemon/jobs/*.c)
 SIGN	:= $(wildcard messages/sign/*.c)
+LOGGER	:= $(wildcard daemon/logger/*.c)
 CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
@@ -98,8 +99,9 @@ INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
 INC_setup	= -Idaemon/setup
-INC_edmd	= -Idaemon/edmd -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_logger	= -Idaemon/logger -Imessages/sign
+INC_edmd	= -Idaemon/edmd $(INC_logger) -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
+INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign
 INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
@@ -126,6 +128,7 @@ CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM)) $(WORDS_O)
 SIGN_O	 := $(call obj,$(SIGN))
+LOGGER_O	 := $(call obj,$(LOGGER)) $(B)/messages/sign/plain.o
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
@@ -204,12 +207,12 @@ $(TRIED_A): $(call obj,$(TRIED))
 	$(archive)
 
 $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
-	$(call link,-linih -ljansson -lpthread -lm)
+	$(call link,-linih -ljansson -lpthread -lnlopt -lm)
 
-$(B)/edmd: $(call obj,$(EDMD)) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
+$(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
+$(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
@@ -222,21 +225,21 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 	$(call link,-lddsc -ljansson -lm)
 
 # Of edmd itself, without its main().
-$(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c))
+$(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
 
 # Of what stands in front of edmd-jobs.
-$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(B)/daemon/jobs/trust.o
+$(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call obj,$(addprefix daemon/jobs/,trust.c jobs_log.c))
 $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lm)
+	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
 
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lm)
+	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lnlopt -lm)
 
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
-	$(call link,$(if $(findstring sisl,$@),-lsisl) -lm)
+	$(call link,$(if $(findstring sisl,$@),-lsisl) -lnlopt -lm)
 
 # -- The commands -------------------------------------------------------------
 
@@ -311,6 +314,13 @@ run-units: $(UNIT_X) $(PEER_X)
 		{ cat $$t.log; echo "FAILED: $$t"; exit 1; }; \
 		printf '  UNIT    %s: ' $$t; \
 		sed -n 's/^\[==========\] \([0-9]* test(s) run\).*/\1/p' $$t.log; done
+
+# 500 kills of edmd, edmd-jobs and both around every verb: half an hour.
+KILLS ?= 500
+kills: all
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
+		tests/system/test_kills.py
 
 # What holds in every cycle, over ten million random ones; SEED=n repeats one.
 invariants: $(B)/unit/test_cycle_random
@@ -469,7 +479,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: kills all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults fuzz lint install clean

@@ -322,7 +322,7 @@ static int find(struct tuning *t, struct interp_compensate_gains *ret)
 	const struct interp_tune how = {
 		.trial = t->trial,
 		.budget = o->budget > 0 ? (unsigned int)o->budget : BUDGET,
-		.method = INTERP_TUNE_SIMPLEX,
+		.method = INTERP_TUNE_GLOBAL,
 		.on_trial = tell, .on_trial_arg = t,
 	};
 	double cost;

@@ -3,7 +3,7 @@
  * tune_servo.c - look for the values of [gap] and [jump] that do best
  *
  * Over the logarithms of the values: first the points of a Halton sequence, a
- * third of the budget, for the region; then interp/minimise.h's simplex from
+ * third of the budget, for the region; then interp/minimise.h's local method from
  * the best of them.  No chance: the same job is tuned the same way.
  */
 #include "tune_servo.h"
@@ -239,7 +239,7 @@ static void look(struct tune *t)
 {
 	struct interp_minimise m = { .n = (int)t->nkeys, .cost = cost,
 				     .arg = t };
-	double x[INTERP_MINIMISE_NMAX];
+	double x[INTERP_MINIMISE_NMAX], least;
 
 	screen(t);
 	for (uint32_t i = 0; i < t->nkeys; i++) {
@@ -247,7 +247,8 @@ static void look(struct tune *t)
 		m.high[i] = 1;
 	}
 	m.budget = t->budget - t->used;
-	interp_minimise_simplex(&m, x);
+	if (interp_minimise_local(&m, x, &least) == -ENOMEM)
+		t->e = EX_OSERR;
 	trials_end(&t->trials);
 }
 

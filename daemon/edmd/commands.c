@@ -8,6 +8,10 @@
  */
 #include "loop.h"
 
+#include "clock.h"
+
+#include <string.h>
+
 /* Taken in one period; the ring holds more, the period does not. */
 #define COMMANDS_A_PERIOD	4
 
@@ -54,7 +58,7 @@ static enum cycle_answer unload_ask(struct loop *l,
 static void unload_finish(struct loop *l)
 {
 	enum cycle_answer answer = ANSWER_DONE;
-	uint32_t id = l->unloading;
+	uint64_t id = l->unloading;
 
 	if (id == 0 || (l->cycle.loaded && l->cycle.state != STATE_FAULT))
 		return;
@@ -65,13 +69,13 @@ static void unload_finish(struct loop *l)
 		program_retire(l, l->program);
 		l->program = NULL;
 	}
-	loop_answer(l, id, answer);
+	loop_answer(l, id, (int32_t)answer);
 }
 
 static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 {
 	struct cycle_command m = {
-		.id = c->id, .verb = c->verb, .arg = c->arg,
+		.id = (uint32_t)c->id, .verb = c->verb, .arg = c->arg,
 		.arg_mm = c->arg_mm,
 	};
 	const double was = conditions_value(&l->cycle, c->arg);
@@ -91,11 +95,29 @@ static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 	return answer;
 }
 
-/* 0 is no command's id; without one there is nothing to answer. */
 static bool is_for_us(const struct loop *l, const struct shm_command *c)
 {
-	return c->id != 0 && c->instance == l->status->head.instance &&
-	       !l->ending;
+	return c->instance == l->status->head.instance && !l->ending;
+}
+
+/* Taken before, by this edmd or one before it: answered, and not done again. */
+static bool is_repeat(struct loop *l, const struct shm_command *c)
+{
+	struct shm_done d;
+
+	if (!shm_done(l->status, c->id, &d))
+		return false;
+	if (d.code != SHM_TAKEN)
+		loop_event(l, SHM_EV_ANSWER, c->id, d.code);
+	else if (d.instance != l->status->head.instance)
+		loop_answer(l, c->id, SHM_CUT_SHORT);
+	return true;
+}
+
+/* A stopped edmd finds what was sent long ago, by who no longer waits. */
+static bool is_late(const struct shm_command *c)
+{
+	return setup_now_ns() > c->until_ns;
 }
 
 static void carry_out(struct loop *l, const struct shm_command *c)
@@ -103,6 +125,14 @@ static void carry_out(struct loop *l, const struct shm_command *c)
 	bool later = c->verb == SHM_LOAD || c->verb == SHM_UNLOAD;
 	enum cycle_answer answer = ANSWER_WRONG_STATE;
 
+	/* Without an id there is nothing to answer. */
+	if (c->id == 0 || is_repeat(l, c))
+		return;
+	shm_done_begin(l->status, c->id);
+	if (is_late(c)) {
+		loop_answer(l, c->id, SHM_LATE);
+		return;
+	}
 	if (!is_for_us(l, c))
 		later = false;
 	else if (c->verb == SHM_LOAD)
@@ -115,7 +145,7 @@ static void carry_out(struct loop *l, const struct shm_command *c)
 	/* What is under way is answered when it is done. */
 	if (later && answer == ANSWER_DONE)
 		return;
-	loop_answer(l, c->id, answer);
+	loop_answer(l, c->id, (int32_t)answer);
 	loop_notice(l);
 }
 
@@ -138,6 +168,10 @@ static enum cycle_answer load(struct loop *l, struct program *p)
 
 	if (l->ending)
 		return ANSWER_WRONG_STATE;
+	/* Loading moves nothing, not even to where the program would begin. */
+	if (memcmp(p->cursor.pos, l->cycle.out.target,
+		   sizeof(p->cursor.pos)) != 0)
+		return ANSWER_ELSEWHERE;
 	answer = cycle_load(&l->cycle, &p->cursor.p);
 	if (answer != ANSWER_DONE)
 		return answer;
@@ -159,7 +193,7 @@ void loop_replies(struct loop *l)
 		if (r.answer != ANSWER_DONE)
 			program_retire(l, r.program);
 	}
-	loop_answer(l, r.id, r.answer);
+	loop_answer(l, r.id, (int32_t)r.answer);
 	if (r.answer == ANSWER_DONE)
 		loop_event(l, SHM_EV_LOADED, r.id, (int32_t)l->program->n);
 	loop_notice(l);

@@ -28,14 +28,14 @@ struct program {
 
 /* Cycle to main thread. */
 struct ask {
-	uint32_t id;			/* of the command behind it */
+	uint64_t id;			/* of the command behind it */
 	uint32_t n;			/* open program.<n>, ... */
 	struct program *close;		/* ... unless there is one to close */
 };
 
 /* Main thread to cycle: an opened program, or why not. */
 struct reply {
-	uint32_t id;
+	uint64_t id;
 	enum cycle_answer answer;
 	struct program *program;	/* NULL unless ANSWER_DONE */
 };

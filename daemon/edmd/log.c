@@ -4,8 +4,9 @@
  */
 #include "log.h"
 
+#include "logger.h"
+
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <systemd/sd-daemon.h>
 
@@ -27,11 +28,9 @@ static const char *prefix(enum log_level level)
 
 void log_line(enum log_level level, const char *format, ...)
 {
-	char text[512];
 	va_list args;
 
 	va_start(args, format);
-	vsnprintf(text, sizeof(text), format, args);
+	logger_say(prefix(level), format, args);
 	va_end(args);
-	fprintf(stderr, "%s%s\n", prefix(level), text);
 }

@@ -37,7 +37,7 @@ struct loop {
 	struct plc_link plc;
 	struct setup_wanted wanted;
 	struct shm_status *status;
-	struct shm_command_ring *commands;
+	struct shm_commands *commands;
 	struct program *program;	/* loaded; or NULL */
 	double pulse_mm[SHM_NAXES];
 	uint64_t axes_key, home_key;	/* key.h */
@@ -53,7 +53,7 @@ struct loop {
 	int64_t time_ns;		/* CLOCK_REALTIME of this period */
 	struct io_plc plc_in;		/* what the PLC asks, this period */
 	bool opening;			/* a program was asked for */
-	uint32_t unloading;		/* command that waits for a stop */
+	uint64_t unloading;		/* command that waits for a stop */
 	bool ending;			/* no more commands: shutting down */
 	pthread_t thread;
 	sem_t ready;
@@ -81,11 +81,12 @@ void loop_replies(struct loop *l);
 /** loop_notice() - events for what has changed since the last call. */
 void loop_notice(struct loop *l);
 
-/** loop_answer() - the event that answers command @id. */
-void loop_answer(struct loop *l, uint32_t id, enum cycle_answer answer);
+/** loop_answer() - the event that answers command @id, and its record;
+ *  @answer: enum shm_answer. */
+void loop_answer(struct loop *l, uint64_t id, int32_t answer);
 
 /** loop_event() - an event of @kind, here and now. */
-void loop_event(struct loop *l, uint32_t kind, uint32_t id, int32_t code);
+void loop_event(struct loop *l, uint32_t kind, uint64_t id, int32_t code);
 
 /** loop_event_set() - field @field is @now, was @was. */
 void loop_event_set(struct loop *l, uint32_t field, double was, double now);

@@ -3,6 +3,7 @@
  * main.c - edmd: start, run, end in the reverse order
  */
 #include "key.h"
+#include "logger.h"
 #include "log.h"
 #include "options.h"
 #include "plc.h"
@@ -135,7 +136,7 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 	resume(l, c, before);
 	code = run(l, c, &setup);
 	program_close(l->program);
-	shm_command_destroy(l->commands, c->name);
+	shm_command_destroy(l->commands);
 	return code;
 }
 
@@ -233,5 +234,8 @@ int main(int argc, char **argv)
 	}
 	signals_block();
 	loop_configure(&loop, &config);
-	return run_owner(&loop, &config);
+	logger_start();
+	code = run_owner(&loop, &config);
+	logger_stop();
+	return code;
 }

@@ -78,7 +78,7 @@ static struct shm_event event_of(const struct loop *l, uint32_t kind)
 	};
 }
 
-void loop_event(struct loop *l, uint32_t kind, uint32_t id, int32_t code)
+void loop_event(struct loop *l, uint32_t kind, uint64_t id, int32_t code)
 {
 	struct shm_event e = event_of(l, kind);
 
@@ -113,9 +113,10 @@ void loop_sets(struct loop *l)
 	shm_sets_put(l->status, &s);
 }
 
-void loop_answer(struct loop *l, uint32_t id, enum cycle_answer answer)
+void loop_answer(struct loop *l, uint64_t id, int32_t answer)
 {
-	loop_event(l, SHM_EV_ANSWER, id, (int32_t)answer);
+	shm_done_end(l->status, id, answer);
+	loop_event(l, SHM_EV_ANSWER, id, answer);
 }
 
 /*
@@ -140,7 +141,7 @@ static void notice_condition(struct loop *l)
 		return;
 	t->letter = c->out.cond_letter;
 	t->number = c->out.cond_number;
-	loop_event(l, SHM_EV_CONDITION, (uint32_t)t->letter,
+	loop_event(l, SHM_EV_CONDITION, (uint8_t)t->letter,
 		   (int32_t)t->number);
 }
 

@@ -89,6 +89,15 @@ static void tell_status(const struct shm_status *s)
 		   now.line, now.place_mm, now.length_mm);
 }
 
+static const char *answer_text(int32_t code)
+{
+	if (code == SHM_LATE)
+		return "it came too late";
+	if (code == SHM_CUT_SHORT)
+		return "the edmd before ended over it";
+	return cycle_answer_text((enum cycle_answer)code);
+}
+
 static void tell(struct report *r, const struct shm_event *e)
 {
 	switch (e->kind) {
@@ -109,8 +118,9 @@ static void tell(struct report *r, const struct shm_event *e)
 		break;
 	case SHM_EV_ANSWER:
 		if (e->code != ANSWER_DONE)
-			log_line(LOG_WARNING, "command: %u refused: %s", e->id,
-				 cycle_answer_text((enum cycle_answer)e->code));
+			log_line(LOG_WARNING, "command: %016llx refused: %s",
+				 (unsigned long long)e->id,
+				 answer_text(e->code));
 		break;
 	}
 }

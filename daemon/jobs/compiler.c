@@ -15,6 +15,14 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+/*
+ * A short text of calls inside calls asks for as much as it likes.  These are
+ * some seconds, and below a GB; a text of 64 MiB that says each line itself
+ * stays below them.
+ */
+#define SEGS_MAX	8000000u
+#define EXECUTED_MAX	32000000u
+
 struct compiler {
 	pthread_t thread;
 	int fd;				/* readable when it is done */
@@ -57,6 +65,8 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech)
 	struct config_compiling of;
 
 	config_compiling(c->request.config, tech, &of);
+	of.text.nc.segs_max = SEGS_MAX;
+	of.text.nc.executed_max = EXECUTED_MAX;
 	memcpy(of.build.start_mm, c->request.start_mm,
 	       sizeof(of.build.start_mm));
 	c->result.build = interp_build_create(&of.build);

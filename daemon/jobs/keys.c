@@ -87,10 +87,13 @@ static int machine_key(struct jobs *j, const char *dir)
 	memcpy(k->machine_key, k->public, sizeof(k->public));
 	snprintf(k->name, sizeof(k->name), "machine");
 	snprintf(k->role, sizeof(k->role), "machine");
-	log_warning("keys: the machine has a new key of its own; key files "
-		    "that were given out before do not fit it any more: "
-		    "make them anew with edmctl keys add");
 	return key_write(k, path, 0600);
+}
+
+static bool fits_machine(const struct jobs *j, const struct keyfile *k)
+{
+	return memcmp(k->machine_key, j->trust.machine.public,
+		      sizeof(k->machine_key)) == 0;
 }
 
 static int host_key(struct jobs *j, const char *dir)
@@ -104,8 +107,11 @@ static int host_key(struct jobs *j, const char *dir)
 	err = key_read(j, k, path);
 	if (err < 0)
 		return err;
-	if (err == 1 || memcmp(k->machine_key, j->trust.machine.public,
-			       sizeof(k->machine_key)) != 0) {
+	if (err == 0 && !fits_machine(j, k))
+		log_warning("keys: the machine's own key is a new one; key "
+			    "files that were given out before do not fit it: "
+			    "make them anew with edmctl keys add");
+	if (err == 1 || !fits_machine(j, k)) {
 		memcpy(k->machine_key, j->trust.machine.public,
 		       sizeof(k->machine_key));
 		snprintf(k->name, sizeof(k->name), HOST);

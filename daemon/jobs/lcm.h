@@ -35,6 +35,7 @@ struct jobs_lcm_command {
 	double arg;
 	const struct trust_key *by;	/* the same key, in the table */
 	const char *from;		/* address and port */
+	uint64_t act;			/* its id, act.h; 0: none */
 };
 
 struct jobs_lcm_chunk {

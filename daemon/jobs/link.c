@@ -10,10 +10,12 @@
 #include <sodium.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #define STALE_US	500000		/* the cycle counter stands */
 #define LOOK_US		100000		/* between looks at the process */
 #define ANSWER_US	2000000		/* edmd answers within a cycle */
+#define TAKE_US		1500000		/* later it does not take a command */
 
 const char *link_state_name(enum link_state s)
 {
@@ -23,18 +25,21 @@ const char *link_state_name(enum link_state s)
 void link_init(struct link *l, const char *machine,
 	       const struct link_handlers *h)
 {
-	*l = (struct link) { .state = LINK_ABSENT, .handlers = *h };
+	*l = (struct link) {
+		.state = LINK_ABSENT, .handlers = *h, .commands = -1,
+	};
 	snprintf(l->machine, sizeof(l->machine), "%s", machine);
 	/* Another start's answers may still lie in the ring. */
-	l->next_id = randombytes_random() | 1;
+	randombytes_buf(&l->next_id, sizeof(l->next_id));
 }
 
 static void link_unmap(struct link *l)
 {
 	shm_close(l->status, sizeof(*l->status));
-	shm_close(l->ring, sizeof(*l->ring));
+	if (l->commands >= 0)
+		close(l->commands);
 	l->status = NULL;
-	l->ring = NULL;
+	l->commands = -1;
 }
 
 static void pending_end(struct link_pending *p, int code)
@@ -46,16 +51,11 @@ static void pending_end(struct link_pending *p, int code)
 		was.answer(was.arg, code);
 }
 
-static void pending_end_all(struct link *l, int code)
+void link_fini(struct link *l)
 {
 	for (int i = 0; i < LINK_PENDING; i++)
 		if (l->pending[i].id)
-			pending_end(&l->pending[i], code);
-}
-
-void link_fini(struct link *l)
-{
-	pending_end_all(l, -ENOTCONN);
+			pending_end(&l->pending[i], -ESHUTDOWN);
 	link_unmap(l);
 }
 
@@ -70,6 +70,7 @@ static uint32_t instance_of(const struct link *l)
  */
 static int link_open(struct link *l, int64_t now_us)
 {
+	uint32_t instance;
 	int err = shm_status_open(&l->status, l->machine);
 
 	if (err < 0)
@@ -78,8 +79,8 @@ static int link_open(struct link *l, int64_t now_us)
 		link_unmap(l);
 		return -ENOENT;
 	}
-	err = shm_command_open(&l->ring, l->machine);
-	if (err == 0 && l->ring->head.instance != instance_of(l))
+	err = shm_command_open(&l->commands, l->machine, &instance);
+	if (err == 0 && instance != instance_of(l))
 		err = -ENOENT;
 	if (err < 0) {
 		link_unmap(l);
@@ -104,9 +105,11 @@ static void link_try(struct link *l, int64_t now_us)
 	if (err == -EPROTO)
 		log_error("link: edmd's shared memory is of another layout; "
 			  "install edmd and edmd-jobs of one version");
-	else if (err < 0 && err != -ENOENT)
-		log_error("link: cannot open edmd's shared memory: %s",
-			  strerror(-err));
+	else if (err == -EACCES)
+		log_error("link: edmd takes no commands of this user; it must "
+			  "be edm-jobs, root, or edmd's own");
+	else if (err < 0 && err != -ENOENT && err != -EAGAIN)
+		log_error("link: cannot reach edmd: %s", strerror(-err));
 }
 
 static void link_set(struct link *l, enum link_state state)
@@ -117,10 +120,28 @@ static void link_set(struct link *l, enum link_state state)
 	l->handlers.changed(l->handlers.arg);
 }
 
+/* What became of the commands that an edmd left behind: it is in its record. */
+static void pending_settle(struct link *l, int64_t now_us, int otherwise)
+{
+	for (int i = 0; i < LINK_PENDING; i++) {
+		struct link_pending *p = &l->pending[i];
+		struct shm_done d;
+
+		if (!p->id || (now_us && now_us <= p->until_us))
+			continue;
+		if (!l->status || !shm_done(l->status, p->id, &d))
+			pending_end(p, otherwise);
+		else if (d.code != SHM_TAKEN)
+			pending_end(p, d.code);
+		else
+			pending_end(p, now_us ? SHM_TAKEN : SHM_CUT_SHORT);
+	}
+}
+
 static void link_drop(struct link *l)
 {
+	pending_settle(l, 0, -ENOTCONN);
 	link_unmap(l);
-	pending_end_all(l, -ENOTCONN);
 	if (l->state == LINK_OK)
 		link_set(l, LINK_LOST);
 }
@@ -164,13 +185,6 @@ static void take_snapshot(struct link *l, int64_t now_us)
 	l->moved_us = now_us;
 }
 
-static void expire_pending(struct link *l, int64_t now_us)
-{
-	for (int i = 0; i < LINK_PENDING; i++)
-		if (l->pending[i].id && now_us > l->pending[i].until_us)
-			pending_end(&l->pending[i], -ETIMEDOUT);
-}
-
 void link_poll(struct link *l, int64_t now_us)
 {
 	if (l->status && link_is_gone(l, now_us))
@@ -188,30 +202,54 @@ void link_poll(struct link *l, int64_t now_us)
 		link_set(l, LINK_OK);
 	else if (l->state == LINK_OK)
 		link_set(l, LINK_LOST);
-	expire_pending(l, now_us);
+	pending_settle(l, now_us, -ETIMEDOUT);
+}
+
+static struct link_pending *pending_room(struct link *l)
+{
+	for (int i = 0; i < LINK_PENDING; i++)
+		if (l->pending[i].id == 0)
+			return &l->pending[i];
+	return NULL;
+}
+
+static void pending_begin(struct link_pending *p, uint64_t id,
+			  const struct link_command *c, int64_t now_us)
+{
+	*p = (struct link_pending) {
+		.id = id, .until_us = now_us + ANSWER_US,
+		.answer = c->answer, .arg = c->answer_arg,
+	};
+}
+
+int link_await(struct link *l, const struct link_command *c, int64_t now_us)
+{
+	struct link_pending *room = pending_room(l);
+
+	if (!room)
+		return -EAGAIN;
+	pending_begin(room, c->id, c, now_us);
+	return 0;
 }
 
 int link_send(struct link *l, const struct link_command *c, int64_t now_us)
 {
 	struct shm_command m = {
-		.id = l->next_id, .verb = c->verb, .arg = c->arg,
+		.id = c->id, .verb = c->verb, .arg = c->arg,
 		.instance = l->instance, .arg_mm = c->arg_mm,
+		.until_ns = (now_us + TAKE_US) * 1000,
 	};
-	int i = 0, err;
+	struct link_pending *room = pending_room(l);
+	int err;
 
 	if (l->state != LINK_OK)
 		return -ENOTCONN;
-	while (i < LINK_PENDING && l->pending[i].id)
-		i++;
-	if (i == LINK_PENDING)
+	if (!room)
 		return -EAGAIN;
-	err = shm_command_put(l->ring, &m);
-	if (err < 0)
-		return err;
-	l->next_id = l->next_id + 1 ? l->next_id + 1 : 1;
-	l->pending[i] = (struct link_pending) {
-		.id = m.id, .until_us = now_us + ANSWER_US,
-		.answer = c->answer, .arg = c->answer_arg,
-	};
-	return 0;
+	while (m.id == 0)
+		m.id = l->next_id++;
+	err = shm_command_put(l->commands, &m);
+	if (err == 0)
+		pending_begin(room, m.id, c, now_us);
+	return err;
 }

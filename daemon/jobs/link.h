@@ -19,7 +19,9 @@
 
 enum link_state { LINK_ABSENT, LINK_OK, LINK_LOST };
 
-/* @code: enum shm_answer; -ETIMEDOUT no answer; -ENOTCONN edmd went away. */
+/* @code: enum shm_answer; SHM_TAKEN edmd has it and does not answer;
+ * -ETIMEDOUT it was not taken in time and will not be; -ENOTCONN edmd went
+ * away before it took it. */
 typedef void (*link_answer_fn)(void *arg, int code);
 
 struct link_handlers {
@@ -31,7 +33,7 @@ struct link_handlers {
 };
 
 struct link_pending {
-	uint32_t id;			/* 0: free */
+	uint64_t id;			/* 0: free */
 	int64_t until_us;
 	link_answer_fn answer;
 	void *arg;
@@ -46,16 +48,17 @@ struct link {
 	char machine[SHM_NAME_MAX];
 	struct link_handlers handlers;
 	const struct shm_status *status;
-	struct shm_command_ring *ring;
+	int commands;			/* a socket; -1: none */
 	struct shm_follow events;
 	int64_t moved_us, looked_us;
 	bool moved;			/* a new cycle was seen since opening */
-	uint32_t next_id;
+	uint64_t next_id;
 	struct link_pending pending[LINK_PENDING];
 };
 
 /* What to tell edmd. */
 struct link_command {
+	uint64_t id;			/* 0: one is drawn */
 	uint32_t verb;			/* enum shm_verb */
 	uint32_t arg;
 	double arg_mm;			/* or in the unit of the field set */
@@ -72,6 +75,10 @@ void link_poll(struct link *l, int64_t now_us);
 
 /** link_send() - Return: 0; -ENOTCONN no edmd; -EAGAIN too many under way. */
 int link_send(struct link *l, const struct link_command *c, int64_t now_us);
+
+/** link_await() - wait for the answer to command @id, handed over before this
+ *  service was started anew.  Return: 0; -EAGAIN too many under way. */
+int link_await(struct link *l, const struct link_command *c, int64_t now_us);
 
 /** link_state_name() - "ok", "lost", "absent". */
 const char *link_state_name(enum link_state s);

@@ -36,11 +36,13 @@ static const char *answer_text(int code)
 	case SHM_ELSEWHERE:
 		return "the axes moved since it was compiled";
 	case SHM_NOT_UP:
-		return "its drives are not up yet; start goes on once they are";
+		return "its drives are not up yet";
 	case SHM_LOCKED:
-		return "a guard or the PLC does not permit it; start goes on once "
-		       "they do";
+		return "a guard or the PLC does not permit it";
 	case -ETIMEDOUT:
+	case SHM_LATE:
+		return "it did not take it in time";
+	case SHM_TAKEN:
 		return "no answer";
 	default:
 		return "it went away";
@@ -54,21 +56,36 @@ static void on_asked(void *arg, int code)
 	j->queue.asked = false;
 	if (code == SHM_DONE)
 		j->queue.again_us = 0;
-	/* Nothing starts by itself because a PLC permits it, or a drive is
-	 * switched on, later. */
-	if (code == SHM_LOCKED || code == SHM_NOT_UP)
-		queue_wait(j);
-	if (code != SHM_DONE && code != -ENOTCONN) {
+	if (code != SHM_DONE && code != -ENOTCONN && code != -ESHUTDOWN) {
 		j->queue.again_us = jobs_now_us() + AGAIN_US;
-		log_warning("load: edmd refused to start or unload program "
-			    "%u: %s", j->queue.job.n, answer_text(code));
+		log_warning("load: edmd refused to unload program %u: %s",
+			    j->queue.job.n, answer_text(code));
 	}
+}
+
+/* A start is one act: refused, it waits for the next one. */
+static void on_started(void *arg, int code)
+{
+	struct jobs *j = arg;
+
+	j->queue.asked = false;
+	if (code == -ESHUTDOWN)
+		return;
+	store_set_number(j->store, "started", 0);
+	if (code == SHM_DONE || !j->queue.job.n)
+		return;
+	queue_wait(j);
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "waits", .job = j->queue.job.id,
+	}, "job %s did not start: %s; it waits for start", j->queue.job.name,
+		  answer_text(code));
 }
 
 int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us)
 {
 	struct link_command c = {
-		.verb = verb, .arg = n, .answer = on_asked, .answer_arg = j,
+		.verb = verb, .arg = n, .answer_arg = j,
+		.answer = verb == SHM_DO_START ? on_started : on_asked,
 	};
 	int err = link_send(&j->link, &c, now_us);
 
@@ -92,13 +109,20 @@ static void on_loaded(void *arg, int code)
 	struct jobs *j = arg;
 	char reason[128];
 
+	/* A large one takes its time. */
+	if (code == SHM_TAKEN && j->link.state == LINK_OK &&
+	    link_await(&j->link, &(struct link_command) {
+			.id = j->queue.load_id, .answer = on_loaded,
+			.answer_arg = j }, jobs_now_us()) == 0)
+		return;
 	j->queue.loading = false;
-	if (code == SHM_DONE || !j->queue.job.n)
+	if (code == SHM_DONE || code == -ESHUTDOWN || !j->queue.job.n)
 		return;
 	snprintf(reason, sizeof(reason), "edmd did not load it: %s",
 		 answer_text(code));
 	log_warning("load: job %s: %s", j->queue.job.id, reason);
 	if (code < 0 || code == SHM_WRONG_STATE ||
+	    code == SHM_LATE || code == SHM_CUT_SHORT ||
 	    code == SHM_ELSEWHERE) {
 		j->queue.again_us = jobs_now_us() + AGAIN_US;
 		queue_drop(j, true);
@@ -138,6 +162,9 @@ static void load_ask(struct jobs *j, const struct compiler_result *r)
 	};
 	char reason[128];
 	int err = load_write(j, r);
+
+	randombytes_buf(&c.id, sizeof(c.id));
+	j->queue.load_id = c.id |= 1;
 
 	if (err < 0) {
 		snprintf(reason, sizeof(reason), "no room for its program: %s",

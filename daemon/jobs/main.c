@@ -8,6 +8,7 @@
 #include "compiling.h"
 #include "keys.h"
 #include "jobs_log.h"
+#include "logger.h"
 #include "names.h"
 
 #include <errno.h>
@@ -324,6 +325,7 @@ int main(int argc, char **argv)
 	rc = configure(&jobs, &config, &o);
 	if (rc)
 		return rc;
+	logger_start();
 	rc = open_store(&jobs, o.store ? o.store : config.store_dir);
 	jobs.claim = -1;
 	if (rc == 0)
@@ -339,5 +341,6 @@ int main(int argc, char **argv)
 	keys_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
 	store_close(jobs.store);
+	logger_stop();
 	return rc;
 }

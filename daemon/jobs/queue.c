@@ -40,6 +40,28 @@ void queue_go(struct jobs *j)
 	set_waiting(j, false);
 }
 
+void queue_started(struct jobs *j)
+{
+	struct queue *q = &j->queue;
+
+	queue_go(j);
+	if (!q->job.n || !q->job.hold)
+		return;
+	q->job.hold = false;
+	store_set_hold(j->store, q->job.n, false);
+}
+
+const char *queue_unready(const struct jobs *j)
+{
+	if (j->link.state != LINK_OK)
+		return "edmd is not there";
+	if (queue_is_faulted(j))
+		return "a fault is latched: it wants a reset";
+	if (j->config->require_home && j->link.snap.unhomed)
+		return "an axis is not homed: home it";
+	return NULL;
+}
+
 /* Asked of edmd itself: the last look may be older than the fault. */
 bool queue_is_faulted(const struct jobs *j)
 {
@@ -244,9 +266,21 @@ static void follow_hold(struct jobs *j, int64_t now_us)
 		return;
 	}
 	set_state(j, JOB_READY);
-	if (!q->job.hold && !q->waiting && !q->asked && !q->loading &&
-	    now_us >= q->again_us && load_send(j, SHM_DO_START, 0, now_us) < 0)
+	if (q->job.hold || q->waiting || q->asked || q->loading ||
+	    now_us < q->again_us)
+		return;
+	/* Asked for once: killed over it, or refused, it waits for a person. */
+	if (store_number(j->store, "started", 0) == q->job.n) {
+		log_notice("queue: job %s was to start when this service "
+			   "ended; it waits for start", q->job.id);
+		set_waiting(j, true);
+		return;
+	}
+	if (store_set_number(j->store, "started", q->job.n) < 0 ||
+	    load_send(j, SHM_DO_START, 0, now_us) < 0) {
+		store_set_number(j->store, "started", 0);
 		q->again_us = now_us + AGAIN_US;
+	}
 }
 
 static void follow_ended(struct jobs *j, uint32_t outcome)

@@ -35,7 +35,8 @@ struct queue {
 	bool waiting;			/* for "start" */
 	/* Private. */
 	uint32_t ended;			/* enum shm_outcome, by its event */
-	bool loading;			/* LOAD is under way */
+	bool loading;			/* LOAD is under way, ... */
+	uint64_t load_id;		/* ... of this id */
 	bool asked;			/* START or UNLOAD is under way */
 	int64_t missing_us;		/* since when edmd has not got it */
 	uint32_t fault_told;		/* without a job: the one told of */
@@ -65,6 +66,10 @@ void queue_recount(struct jobs *j);
 
 /** queue_go() - "start": the queue waits no more. */
 void queue_go(struct jobs *j);
+/** queue_started() - edmd has carried a start out. */
+void queue_started(struct jobs *j);
+/** queue_unready() - why no job could begin now, in words; NULL: one could. */
+const char *queue_unready(const struct jobs *j);
 /** queue_wait() - nothing starts until queue_go(). */
 void queue_wait(struct jobs *j);
 /** queue_is_faulted() - is edmd in fault at this moment? */

@@ -54,6 +54,14 @@ void reply_keep(struct replies *r, const struct jobs_lcm_ack *a)
 	one->body = strdup(a->body ? a->body : "");
 }
 
+void reply_forget(struct replies *r, const struct jobs_lcm_command *c)
+{
+	const struct reply *found = reply_find(r, c->key, c->client, c->seq);
+
+	if (found)
+		reply_clear(&r->slot[found - r->slot]);
+}
+
 void reply_fini(struct replies *r)
 {
 	for (int i = 0; i < REPLY_SLOTS; i++)

@@ -37,6 +37,9 @@ void reply_expect(struct replies *r, const struct jobs_lcm_command *c);
 /** reply_keep() - it is answered. */
 void reply_keep(struct replies *r, const struct jobs_lcm_ack *a);
 
+/** reply_forget() - its next repeat is looked into again. */
+void reply_forget(struct replies *r, const struct jobs_lcm_command *c);
+
 /** reply_fini() - free everything. */
 void reply_fini(struct replies *r);
 

@@ -14,7 +14,14 @@
 static const char tables[] =
 	"CREATE TABLE IF NOT EXISTS key("
 	" public TEXT PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
-	" role TEXT NOT NULL, added_us INTEGER NOT NULL);";
+	" role TEXT NOT NULL, added_us INTEGER NOT NULL);"
+	"CREATE TABLE IF NOT EXISTS act("
+	" id INTEGER PRIMARY KEY, instance INTEGER NOT NULL,"
+	" born INTEGER NOT NULL, verb TEXT NOT NULL, by TEXT NOT NULL,"
+	" begun_us INTEGER NOT NULL, code INTEGER, reason TEXT);";
+
+/* Nobody repeats a command as old as this. */
+#define ACT_OLD_US	(3600 * INT64_C(1000000))
 
 static int complain(struct store *s)
 {
@@ -50,6 +57,103 @@ int store_trust_init(struct store *s)
 		return complain(s);
 	return 0;
 }
+
+/* -- Transactions ----------------------------------------------------------- */
+
+static int execute(struct store *s, const char *sql)
+{
+	if (sqlite3_exec(store_db(s), sql, NULL, NULL, NULL) != SQLITE_OK)
+		return complain(s);
+	return 0;
+}
+
+int store_together(struct store *s, bool durable)
+{
+	int err = execute(s, durable ? "PRAGMA synchronous=FULL" :
+				       "PRAGMA synchronous=NORMAL");
+
+	return err ? err : execute(s, "BEGIN IMMEDIATE");
+}
+
+int store_commit(struct store *s)
+{
+	int err = execute(s, "COMMIT");
+
+	if (err)
+		execute(s, "ROLLBACK");
+	execute(s, "PRAGMA synchronous=FULL");
+	return err;
+}
+
+/* -- Acts ------------------------------------------------------------------- */
+
+int store_act_find(struct store *s, uint64_t id, struct store_act *ret)
+{
+	sqlite3_stmt *q = prepare(s, "SELECT instance, born, code, reason "
+				  "FROM act WHERE id=?");
+	const unsigned char *reason;
+	int err = -ENOENT;
+
+	if (!q)
+		return err;
+	sqlite3_bind_int64(q, 1, (int64_t)id);
+	if (sqlite3_step(q) == SQLITE_ROW) {
+		ret->instance = (uint32_t)sqlite3_column_int64(q, 0);
+		ret->born = (uint64_t)sqlite3_column_int64(q, 1);
+		ret->answered = sqlite3_column_type(q, 2) != SQLITE_NULL;
+		ret->code = sqlite3_column_int(q, 2);
+		reason = sqlite3_column_text(q, 3);
+		snprintf(ret->reason, sizeof(ret->reason), "%s",
+			 reason ? (const char *)reason : "");
+		err = 0;
+	}
+	sqlite3_finalize(q);
+	return err;
+}
+
+static void acts_forget(struct store *s, int64_t before_us)
+{
+	sqlite3_stmt *q = prepare(s, "DELETE FROM act WHERE begun_us<?");
+
+	if (!q)
+		return;
+	sqlite3_bind_int64(q, 1, before_us);
+	finish(s, q);
+}
+
+int store_act_begin(struct store *s, const struct store_act *a)
+{
+	sqlite3_stmt *q = prepare(s, "INSERT INTO act(id, instance, born, "
+				  "verb, by, begun_us) VALUES"
+				  "(?, ?, ?, ?, ?, ?)");
+
+	if (!q)
+		return -EIO;
+	if (a->id % 256 == 0)
+		acts_forget(s, a->now_us - ACT_OLD_US);
+	sqlite3_bind_int64(q, 1, (int64_t)a->id);
+	sqlite3_bind_int64(q, 2, a->instance);
+	sqlite3_bind_int64(q, 3, (int64_t)a->born);
+	bind_text(q, 4, a->verb);
+	bind_text(q, 5, a->by);
+	sqlite3_bind_int64(q, 6, a->now_us);
+	return finish(s, q);
+}
+
+int store_act_end(struct store *s, uint64_t id, int code, const char *reason)
+{
+	sqlite3_stmt *q = prepare(s, "UPDATE act SET code=?, reason=? WHERE "
+				  "id=?");
+
+	if (!q)
+		return -EIO;
+	sqlite3_bind_int(q, 1, code);
+	bind_text(q, 2, reason ? reason : "");
+	sqlite3_bind_int64(q, 3, (int64_t)id);
+	return finish(s, q);
+}
+
+/* -- Keys ------------------------------------------------------------------- */
 
 static bool key_get(sqlite3_stmt *q, struct trust_key *ret)
 {

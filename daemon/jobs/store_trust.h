@@ -25,4 +25,33 @@ int store_keys_load(struct store *s, struct trust *t);
 int store_key_add(struct store *s, const struct trust_key *k, int64_t now_us);
 int store_key_remove(struct store *s, const char *name);
 
+/* A command of a client that does something. */
+struct store_act {
+	uint64_t id;
+	uint32_t instance;		/* of the edmd it is meant for */
+	uint64_t born;			/* of that one's status */
+	const char *verb, *by;		/* for people; not read back */
+	int64_t now_us;
+	/* Read back: */
+	bool answered;
+	int code;
+	char reason[256];
+};
+
+/** store_act_find() - Return: 0 or -ENOENT. */
+int store_act_find(struct store *s, uint64_t id, struct store_act *ret);
+
+/** store_act_begin() - it will be done. */
+int store_act_begin(struct store *s, const struct store_act *a);
+
+/** store_act_end() - what is answered to it. */
+int store_act_end(struct store *s, uint64_t id, int code, const char *reason);
+
+/**
+ * store_together() - what is written up to store_commit() is written at once.
+ * @durable: through a power cut, not only through a kill.
+ */
+int store_together(struct store *s, bool durable);
+int store_commit(struct store *s);
+
 #endif /* JOBS_STORE_TRUST_H */

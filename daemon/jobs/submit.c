@@ -81,6 +81,8 @@ static const char *what_next(const struct jobs *j, bool hold)
 		return "edmd is not there: it waits, and wants a start";
 	if (j->link.snap.state == SHM_FAULT)
 		return "a fault is latched: it wants a reset, then a start";
+	if (queue_unready(j))
+		return "an axis is not homed: it wants a home, then a start";
 	if (j->queue.waiting)
 		return "the queue waits for start";
 	if (hold)
@@ -105,7 +107,7 @@ static void accept_text(struct jobs *j, struct upload *up,
 
 	hash_hex(hex, up->sha256);
 	/* What a queue waited for is over when there is no queue. */
-	if (queue_is_faulted(j))
+	if (queue_unready(j))
 		queue_wait(j);
 	else if (q->behind == 0 && (q->job.n == 0 || queue_is_leaving(q)))
 		queue_go(j);
@@ -149,6 +151,8 @@ static bool answer_known(struct jobs *j, const struct jobs_lcm_chunk *c)
 	return true;
 }
 
+static void check_next(struct jobs *j);
+
 static void on_checked(void *arg, const struct compiler_result *r)
 {
 	struct check *c = arg;
@@ -169,6 +173,7 @@ static void on_checked(void *arg, const struct compiler_result *r)
 			   "id too; try again", NULL);
 	else
 		accept_text(j, up, r);
+	check_next(j);
 }
 
 /* From where the machine stands, or will when there is none yet. */
@@ -202,6 +207,24 @@ static void check_begin(struct jobs *j, struct upload *up)
 	}
 }
 
+/* One at a time: eight at once would be eight times the memory. */
+static void check_next(struct jobs *j)
+{
+	struct upload *next = NULL;
+
+	for (int i = 0; i < UPLOAD_SLOTS; i++) {
+		struct upload *up = &j->uploads.slot[i];
+
+		if (j->check[i])
+			return;
+		if (up->state == UPLOAD_WHOLE &&
+		    (!next || up->last_us < next->last_us))
+			next = up;
+	}
+	if (next)
+		check_begin(j, next);
+}
+
 void submit_take(void *arg, const struct jobs_lcm_chunk *c)
 {
 	struct jobs *j = arg;
@@ -228,7 +251,7 @@ void submit_take(void *arg, const struct jobs_lcm_chunk *c)
 	a.reason = answer.reason;
 	jobs_lcm_ack(j->lcm, &a);
 	if (whole)
-		check_begin(j, whole);
+		check_next(j);
 }
 
 void submit_fini(struct jobs *j)

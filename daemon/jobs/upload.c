@@ -4,6 +4,8 @@
  */
 #include "upload.h"
 
+#include "plain.h"
+
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,28 +22,11 @@ static void refuse(struct upload_answer *a, int code, const char *reason)
 	a->body = NULL;
 }
 
-/* Bytes of the UTF-8 character at @s; 0 if it is none, or a control. */
-static size_t utf8_bytes(const unsigned char *s)
-{
-	size_t n = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 :
-		   s[0] < 0xf0 ? 3 : s[0] < 0xf5 ? 4 : 0;
-
-	if (s[0] < ' ' || s[0] == 0x7f)
-		return 0;
-	for (size_t i = 1; i < n; i++)
-		if ((s[i] & 0xc0) != 0x80)
-			return 0;
-	return n;
-}
-
 static bool name_is_plain(const char *name)
 {
-	const unsigned char *s = (const unsigned char *)name;
-	size_t n = strlen(name), step = 1;
+	const size_t n = strlen(name);
 
-	for (; *s && step; s += step)
-		step = utf8_bytes(s);
-	return n > 0 && n < JOBS_LCM_ID_MAX && step;
+	return n > 0 && n < JOBS_LCM_ID_MAX && plain_is(name);
 }
 
 static bool place_is_inside(const struct jobs_lcm_chunk *c)
@@ -65,7 +50,8 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 		       "0-9 . _ -");
 	else if (!name_is_plain(c->name))
 		refuse(a, EX_DATAERR, "job name not fit; 1 to 63 bytes of "
-		       "UTF-8 without control characters");
+		       "UTF-8, without characters that control a terminal or "
+		       "turn the direction of writing");
 	else if (c->bytes < 0 || c->bytes > UPLOAD_BYTES_MAX)
 		refuse(a, EX_DATAERR, "job too long; at most 64 MiB");
 	else if (!place_is_inside(c))
@@ -113,15 +99,51 @@ static void upload_clear(struct upload *up)
 	*up = (struct upload) { .state = UPLOAD_FREE };
 }
 
+static int uploads_of(const struct uploads *u, const struct jobs_lcm_chunk *c)
+{
+	int n = 0;
+
+	for (int i = 0; i < UPLOAD_SLOTS; i++)
+		n += u->slot[i].state != UPLOAD_FREE &&
+		     strcmp(u->slot[i].client, c->client) == 0 &&
+		     memcmp(u->slot[i].key, c->key, SEAL_KEY_BYTES) == 0;
+	return n;
+}
+
+/* A free one, else the one that has stood still the longest, and long enough
+ * for its client to be gone: who begins eight and goes on with none does not
+ * lock the others out. */
+static struct upload *upload_room(struct uploads *u, int64_t now_us)
+{
+	struct upload *oldest = NULL;
+
+	for (int i = 0; i < UPLOAD_SLOTS; i++) {
+		struct upload *up = &u->slot[i];
+
+		if (up->state == UPLOAD_FREE)
+			return up;
+		if (up->state == UPLOAD_FILLING &&
+		    now_us - up->last_us > UPLOAD_STALE_US &&
+		    (!oldest || up->last_us < oldest->last_us))
+			oldest = up;
+	}
+	if (oldest)
+		upload_clear(oldest);
+	return oldest;
+}
+
 static struct upload *upload_begin(struct uploads *u,
 				   const struct jobs_lcm_chunk *c,
-				   struct upload_answer *a)
+				   int64_t now_us, struct upload_answer *a)
 {
-	struct upload *up = NULL;
+	struct upload *up;
 
-	for (int i = 0; i < UPLOAD_SLOTS && !up; i++)
-		if (u->slot[i].state == UPLOAD_FREE)
-			up = &u->slot[i];
+	if (uploads_of(u, c) >= UPLOADS_A_CLIENT) {
+		refuse(a, EX_TEMPFAIL, "2 uploads of this client are under "
+		       "way; try again when one is done");
+		return NULL;
+	}
+	up = upload_room(u, now_us);
 	if (!up) {
 		refuse(a, EX_TEMPFAIL, "8 uploads are under way; try again "
 		       "when one is done");
@@ -209,7 +231,7 @@ void upload_take(struct uploads *u, const struct jobs_lcm_chunk *c,
 		return;
 	}
 	if (!up)
-		up = upload_begin(u, c, a);
+		up = upload_begin(u, c, now_us, a);
 	if (!up)
 		return;
 	if (!upload_agrees(up, c)) {

@@ -18,6 +18,8 @@
 #define UPLOAD_BYTES_MAX	(64 << 20)
 #define UPLOAD_CHUNKS_MAX	65536
 #define UPLOAD_IDLE_US		30000000	/* without a new chunk */
+#define UPLOAD_STALE_US		2000000		/* the same, if others wait */
+#define UPLOADS_A_CLIENT	2
 #define UPLOAD_VERDICTS		32
 
 enum upload_state { UPLOAD_FREE, UPLOAD_FILLING, UPLOAD_WHOLE };

@@ -11,9 +11,19 @@
 
 #define REFUSED		1		/* understood, and the answer is no */
 
+#define VERB_OWN	UINT32_MAX	/* the service does it itself */
+
+enum verb_kind {
+	VERB_ASKS,			/* a repeat is asked again */
+	VERB_ACTS,			/* done once: act.h */
+	VERB_ENDS,			/* the same; and if nothing can be
+					 * written it is done all the same */
+};
+
 struct verb {
 	const char *name;
 	enum trust_role role;		/* the least that may ask for it */
+	enum verb_kind kind;
 	void (*run)(struct jobs *j, const struct verb *v,
 		    const struct jobs_lcm_command *c);
 	uint32_t machine;		/* enum shm_verb, for verb_machine() */
@@ -23,5 +33,13 @@ struct verb {
 /** verbs_answer() - @code and @reason, to who asked. */
 void verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason);
+
+/** verbs_settle() - answer act @c with what edmd's @code says. */
+void verbs_settle(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c, int code);
+
+/** verbs_await() - edmd has act @c under way: answer it when it has. */
+void verbs_await(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c);
 
 #endif /* JOBS_VERB_H */

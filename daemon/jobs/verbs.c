@@ -5,6 +5,7 @@
  * A verb of the machine goes to edmd and is answered when edmd has answered;
  * the others are answered at once.
  */
+#include "act.h"
 #include "keys.h"
 #include "verb.h"
 
@@ -26,6 +27,7 @@
 /* A command on its way to edmd. */
 struct asked {
 	struct jobs *jobs;
+	uint64_t act;
 	uint8_t key[SEAL_KEY_BYTES];
 	char client[JOBS_LCM_CLIENT_MAX];
 	int64_t seq;
@@ -35,6 +37,8 @@ struct asked {
 void verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason)
 {
+	if (c->act)
+		act_answered(j, c->act, code, reason);
 	jobs_answer(j, &(struct jobs_lcm_ack) {
 		.key = c->key, .client = c->client, .seq = c->seq, .code = code,
 		.reason = reason,
@@ -68,21 +72,47 @@ static const char *refusal(int code)
 	       why[code] : NULL;
 }
 
+/* edmd did not say yes or no; NULL: it did. */
+static const char *gone(int code)
+{
+	switch (code) {
+	case SHM_LATE:
+	case -ETIMEDOUT:
+		return "edmd did not take it in time; it is not done, and will "
+		       "not be";
+	case SHM_TAKEN:
+		return "edmd took it and does not answer; status shows what "
+		       "comes of it";
+	case SHM_CUT_SHORT:
+		return "edmd ended over it: it was begun or not, but will not "
+		       "be done again; status shows where the machine stands";
+	case -ENOTCONN:
+		return "edmd went away before it took it; it is not done, and "
+		       "will not be";
+	default:
+		return NULL;
+	}
+}
+
 static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
 	struct jobs *j = a->jobs;
 	struct jobs_lcm_command c = {
 		.key = a->key, .client = a->client, .seq = a->seq,
+		.act = a->act,
 	};
 	char reason[160];
 
+	if (code == SHM_DONE && (a->verb->machine == SHM_DO_START ||
+				 a->verb->machine == SHM_DO_RESUME))
+		queue_started(j);
 	if (code == SHM_DONE)
 		verbs_answer(j, &c, 0, "done");
-	else if (code == -ETIMEDOUT)
-		verbs_answer(j, &c, EX_UNAVAILABLE, "edmd did not answer in 2 s");
-	else if (code < 0)
-		verbs_answer(j, &c, EX_UNAVAILABLE, "edmd went away");
+	else if (gone(code))
+		verbs_answer(j, &c, EX_UNAVAILABLE, gone(code));
+	else if (code == -ESHUTDOWN)
+		;			/* the next service knows more */
 	else if (code == SHM_NO_PROGRAM)
 		verbs_answer(j, &c, REFUSED, "no job is loaded; submit one");
 	else if (code == SHM_NOT_UP)
@@ -106,25 +136,59 @@ static void on_answer(void *arg, int code)
 	free(a);
 }
 
-static void ask_machine(struct jobs *j, const struct verb *v,
-			const struct jobs_lcm_command *c, uint32_t arg)
+/* NULL: told. */
+static struct asked *asked_new(struct jobs *j, const struct verb *v,
+			       const struct jobs_lcm_command *c)
 {
 	struct asked *a = calloc(1, sizeof(*a));
-	struct link_command m = {
-		.verb = v->machine, .arg = arg, .arg_mm = c->arg,
-		.answer = on_answer, .answer_arg = a,
-	};
-	int err;
 
 	if (!a) {
 		verbs_answer(j, c, EX_SOFTWARE, "no memory");
-		return;
+		return NULL;
 	}
 	a->jobs = j;
+	a->act = c->act;
 	a->seq = c->seq;
 	memcpy(a->key, c->key, sizeof(a->key));
 	a->verb = v;
 	snprintf(a->client, sizeof(a->client), "%s", c->client);
+	return a;
+}
+
+void verbs_settle(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c, int code)
+{
+	struct asked *a = asked_new(j, v, c);
+
+	if (a)
+		on_answer(a, code);
+}
+
+void verbs_await(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c)
+{
+	struct asked *a = asked_new(j, v, c);
+	const struct link_command m = {
+		.id = c->act, .answer = on_answer, .answer_arg = a,
+	};
+
+	if (a && link_await(&j->link, &m, jobs_now_us()) < 0)
+		on_answer(a, SHM_TAKEN);
+}
+
+static void ask_machine(struct jobs *j, const struct verb *v,
+			const struct jobs_lcm_command *c, uint32_t arg)
+{
+	struct asked *a = asked_new(j, v, c);
+	struct link_command m = {
+		.id = c->act, .verb = v->machine, .arg = arg, .arg_mm = c->arg,
+		.answer = on_answer, .answer_arg = a,
+	};
+	int err;
+
+	if (!a)
+		return;
+	act_commit(j);
 	err = link_send(&j->link, &m, jobs_now_us());
 	if (err == 0)
 		return;
@@ -295,18 +359,25 @@ static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 static void verb_resume(struct jobs *j, const struct verb *v,
 			const struct jobs_lcm_command *c)
 {
-	if (refused_by_fault(j, c))
-		return;
-	queue_go(j);
-	verb_machine(j, v, c);
+	if (!refused_by_fault(j, c))
+		verb_machine(j, v, c);
 }
 
 /* A job that waits: it is started when its turn comes. */
 static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 			 const struct store_job *job)
 {
+	char reason[128];
+
 	if (job->state != JOB_QUEUED) {
 		verbs_answer(j, c, REFUSED, "this job has ended; submit it again");
+		return;
+	}
+	/* A start is one act: what is not ready now must be started then. */
+	if (queue_unready(j)) {
+		snprintf(reason, sizeof(reason), "%s; start it then",
+			 queue_unready(j));
+		verbs_answer(j, c, REFUSED, reason);
 		return;
 	}
 	queue_go(j);
@@ -329,9 +400,6 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	} else if (*c->job && (!here || job.n != q->job.n)) {
 		start_behind(j, c, &job);
 	} else if (here) {
-		queue_go(j);
-		q->job.hold = false;
-		store_set_hold(j->store, q->job.n, false);
 		verb_machine(j, v, c);
 	} else if (store_head(j->store, &job) == 0) {
 		start_behind(j, c, &job);
@@ -420,37 +488,42 @@ static void verb_history(struct jobs *j, const struct verb *v,
 		       "0 is all that are kept");
 }
 
-/* clang-format off */
+/* What each is, who may ask for it: the one table of rights. */
 static const struct verb verbs[] = {
-	{ "start", ROLE_OPERATOR, verb_start,   SHM_DO_START,   "a job that is ready or "
-						   "held" },
-	{ "hold", ROLE_OPERATOR, verb_machine, SHM_DO_HOLD,    "a job that runs" },
-	{ "resume", ROLE_OPERATOR, verb_resume,  SHM_DO_RESUME,  "a job that is held" },
-	{ "stop", ROLE_OPERATOR, verb_machine, SHM_DO_STOP,    "a job, and no fault; reset "
-						   "first" },
-	{ "retract", ROLE_OPERATOR, verb_retract, SHM_DO_RETRACT, "a job, and no fault; reset "
-						   "first" },
-	{ "set", ROLE_OPERATOR, verb_set,     SHM_DO_SET,     "fewer than 64 values set "
-						   "in a job" },
-	{ "estop", ROLE_OPERATOR, verb_machine, SHM_DO_ESTOP,   "nothing" },
-	{ "reset", ROLE_OPERATOR, verb_machine, SHM_DO_RESET,   "a fault" },
-	{ "step", ROLE_OPERATOR, verb_step,    SHM_DO_STEP,    "a job held on its path" },
-	{ "jog", ROLE_OPERATOR, verb_jog,     SHM_DO_JOG,     "idle: no job loaded, no "
-						   "fault" },
-	{ "home", ROLE_OPERATOR, verb_home,    SHM_DO_HOME,    "idle: no job loaded, no "
-						   "fault" },
-	{ "override", ROLE_OPERATOR, verb_override, SHM_DO_OVERRIDE, "nothing" },
-	{ "alarms", ROLE_VIEWER, verb_alarms,  0, "" },
-	{ "remove", ROLE_OPERATOR, verb_remove,  0, "" },
-	{ "queue", ROLE_VIEWER, verb_queue,   0, "" },
-	{ "show", ROLE_VIEWER, verb_show,    0, "" },
-	{ "history", ROLE_VIEWER, verb_history, 0, "" },
-	{ "hello", ROLE_VIEWER, keys_hello, 0, "" },
-	{ "keys", ROLE_SERVICE, keys_list, 0, "" },
-	{ "keys-add", ROLE_SERVICE, keys_add, 0, "" },
-	{ "keys-remove", ROLE_SERVICE, keys_remove, 0, "" },
+	{ "start", ROLE_OPERATOR, VERB_ACTS, verb_start, SHM_DO_START,
+	  "a job that is ready or held" },
+	{ "hold", ROLE_OPERATOR, VERB_ENDS, verb_machine, SHM_DO_HOLD,
+	  "a job that runs" },
+	{ "resume", ROLE_OPERATOR, VERB_ACTS, verb_resume, SHM_DO_RESUME,
+	  "a job that is held" },
+	{ "stop", ROLE_OPERATOR, VERB_ENDS, verb_machine, SHM_DO_STOP,
+	  "a job, and no fault; reset first" },
+	{ "retract", ROLE_OPERATOR, VERB_ACTS, verb_retract, SHM_DO_RETRACT,
+	  "a job, and no fault; reset first" },
+	{ "set", ROLE_OPERATOR, VERB_ACTS, verb_set, SHM_DO_SET,
+	  "fewer than 64 values set in a job" },
+	{ "estop", ROLE_OPERATOR, VERB_ENDS, verb_machine, SHM_DO_ESTOP,
+	  "nothing" },
+	{ "reset", ROLE_OPERATOR, VERB_ACTS, verb_machine, SHM_DO_RESET,
+	  "a fault" },
+	{ "step", ROLE_OPERATOR, VERB_ACTS, verb_step, SHM_DO_STEP,
+	  "a job held on its path" },
+	{ "jog", ROLE_OPERATOR, VERB_ACTS, verb_jog, SHM_DO_JOG,
+	  "idle: no job loaded, no fault" },
+	{ "home", ROLE_OPERATOR, VERB_ACTS, verb_home, SHM_DO_HOME,
+	  "idle: no job loaded, no fault" },
+	{ "override", ROLE_OPERATOR, VERB_ACTS, verb_override,
+	  SHM_DO_OVERRIDE, "nothing" },
+	{ "remove", ROLE_OPERATOR, VERB_ACTS, verb_remove, VERB_OWN, "" },
+	{ "alarms", ROLE_VIEWER, VERB_ASKS, verb_alarms, VERB_OWN, "" },
+	{ "queue", ROLE_VIEWER, VERB_ASKS, verb_queue, VERB_OWN, "" },
+	{ "show", ROLE_VIEWER, VERB_ASKS, verb_show, VERB_OWN, "" },
+	{ "history", ROLE_VIEWER, VERB_ASKS, verb_history, VERB_OWN, "" },
+	{ "hello", ROLE_VIEWER, VERB_ASKS, keys_hello, VERB_OWN, "" },
+	{ "keys", ROLE_SERVICE, VERB_ASKS, keys_list, VERB_OWN, "" },
+	{ "keys-add", ROLE_SERVICE, VERB_ACTS, keys_add, VERB_OWN, "" },
+	{ "keys-remove", ROLE_SERVICE, VERB_ACTS, keys_remove, VERB_OWN, "" },
 };
-/* clang-format on */
 
 #define NVERBS	(sizeof(verbs) / sizeof(verbs[0]))
 
@@ -514,6 +587,8 @@ void verbs_take(void *arg, const struct jobs_lcm_command *c)
 		refuse_verb(j, c);
 	else if (c->by->role < v->role)
 		refuse_role(j, c, v);
-	else
+	else if (v->kind == VERB_ASKS)
 		v->run(j, v, c);
+	else
+		act_take(j, v, c);
 }

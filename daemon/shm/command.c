@@ -1,111 +1,265 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * command.c - the command ring, between two processes that differ in trust
+ * command.c - commands come through a socket, into a ring of edmd's own
  *
- * ck_ring keeps its size and mask beside the indices, in memory that the other
- * side may write.  So each side works on a copy of the ring's head with its
- * own size and mask, and exchanges nothing but the two indices, which are
- * masked before use: a bad index yields a stale command, never a bad address.
- * The indices go through C11 atomics, whose order a thread sanitizer can see.
+ * The two sides differ in trust, so they share no memory here: nothing can be
+ * changed after it was looked at, cut short while it is read, or turned back
+ * to be read again.  The kernel keeps packets whole and in order, says who
+ * connects, and ends the connection with the process.  A thread takes them
+ * from the socket, so that the cycle makes no system call and waits for
+ * nobody.
  */
 #include "object.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <sys/mman.h>
+#include <poll.h>
+#include <pthread.h>
+#include <pwd.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
+
+#define SERVICE_USER	"edm-jobs"
+#define FULL_MS		1		/* until a full ring is looked at again */
 
 CK_RING_PROTOTYPE(command, shm_command)
 
-static int command_make(void **ret, const char *path)
-{
-	int fd = shm_open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0660);
-	int err;
+struct shm_commands {
+	ck_ring_t ring;
+	struct shm_command slot[SHM_COMMAND_SLOTS];
+	struct shm_head head;		/* said to who connects */
+	char path[OBJECT_PATH_MAX];
+	int listening, connected, end;	/* end: an eventfd */
+	uid_t service;			/* who may connect beside ourselves */
+	pthread_t thread;
+};
 
-	if (fd < 0)
-		return -errno;
-	err = object_grow(fd, sizeof(struct shm_command_ring), 0660);
-	if (err == 0)
-		err = object_map(ret, fd, sizeof(struct shm_command_ring),
-				 true);
-	close(fd);
-	if (err < 0)
-		shm_unlink(path);
-	return err;
-}
-
-int shm_command_create(struct shm_command_ring **ret, const char *machine,
-		       uint32_t instance)
+static int socket_address(struct sockaddr_un *ret, const char *machine)
 {
 	char path[OBJECT_PATH_MAX];
 	int err = object_path(path, machine, "command");
-	struct shm_command_ring *r;
-	void *at = NULL;
 
 	if (err < 0)
 		return err;
-	if (shm_unlink(path) < 0 && errno != ENOENT)
-		return -errno;
-	err = command_make(&at, path);
-	if (err < 0)
-		return err;
-
-	r = at;
-	ck_ring_init(&r->ring, SHM_COMMAND_SLOTS);
-	object_head_fill(&r->head, machine, sizeof(*r), instance);
-	*ret = r;
+	*ret = (struct sockaddr_un) { .sun_family = AF_UNIX };
+	snprintf(ret->sun_path, sizeof(ret->sun_path), "%s", path);
 	return 0;
 }
 
-void shm_command_destroy(struct shm_command_ring *r, const char *machine)
+/* -- edmd: the thread ------------------------------------------------------- */
+
+static bool peer_is_service(const struct shm_commands *c, int fd)
 {
-	char path[OBJECT_PATH_MAX];
+	struct ucred peer;
+	socklen_t size = sizeof(peer);
 
-	if (!r)
-		return;
-	if (object_path(path, machine, "command") == 0)
-		shm_unlink(path);
-	shm_close(r, sizeof(*r));
-}
-
-int shm_command_open(struct shm_command_ring **ret, const char *machine)
-{
-	void *at;
-	int err = object_open(&at, machine, "command",
-			      sizeof(struct shm_command_ring), true);
-
-	if (err == 0)
-		*ret = at;
-	return err;
-}
-
-static struct ck_ring ring_copy(const struct shm_command_ring *r)
-{
-	struct ck_ring own;
-
-	ck_ring_init(&own, SHM_COMMAND_SLOTS);
-	own.c_head = __atomic_load_n(&r->ring.c_head, __ATOMIC_ACQUIRE);
-	own.p_tail = __atomic_load_n(&r->ring.p_tail, __ATOMIC_ACQUIRE);
-	return own;
-}
-
-bool shm_command_take(struct shm_command_ring *r, struct shm_command *ret)
-{
-	struct ck_ring own = ring_copy(r);
-
-	if (!ck_ring_dequeue_spsc_command(&own, r->slot, ret))
+	if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) < 0)
 		return false;
-	__atomic_store_n(&r->ring.c_head, own.c_head, __ATOMIC_RELEASE);
-	return true;
+	return peer.uid == 0 || peer.uid == geteuid() ||
+	       peer.uid == c->service;
 }
 
-int shm_command_put(struct shm_command_ring *r, const struct shm_command *c)
+/* A new one takes the place of the one before: that one is being ended. */
+static void commands_accept(struct shm_commands *c)
 {
-	struct ck_ring own = ring_copy(r);
-	struct shm_command copy = *c;
+	int fd = accept4(c->listening, NULL, NULL,
+			 SOCK_CLOEXEC | SOCK_NONBLOCK);
 
-	if (!ck_ring_enqueue_spsc_command(&own, r->slot, &copy))
-		return -EAGAIN;
-	__atomic_store_n(&r->ring.p_tail, own.p_tail, __ATOMIC_RELEASE);
+	if (fd < 0)
+		return;
+	if (!peer_is_service(c, fd) ||
+	    send(fd, &c->head, sizeof(c->head), MSG_NOSIGNAL) < 0) {
+		close(fd);
+		return;
+	}
+	if (c->connected >= 0)
+		close(c->connected);
+	c->connected = fd;
+}
+
+static void commands_receive(struct shm_commands *c)
+{
+	struct shm_command m;
+	ssize_t n = recv(c->connected, &m, sizeof(m), MSG_TRUNC);
+
+	if (n < 0 && (errno == EAGAIN || errno == EINTR))
+		return;
+	if (n != sizeof(m)) {
+		close(c->connected);
+		c->connected = -1;
+		return;
+	}
+	/* There was room: this thread alone fills the ring. */
+	ck_ring_enqueue_spsc_command(&c->ring, c->slot, &m);
+}
+
+static bool ring_is_full(const struct shm_commands *c)
+{
+	return ck_ring_size(&c->ring) >= SHM_COMMAND_SLOTS - 1;
+}
+
+static void *commands_run(void *arg)
+{
+	struct shm_commands *c = arg;
+
+	for (;;) {
+		const bool full = ring_is_full(c);
+		struct pollfd p[] = {
+			{ .fd = c->end, .events = POLLIN },
+			{ .fd = c->listening, .events = POLLIN },
+			{ .fd = full ? -1 : c->connected, .events = POLLIN },
+		};
+
+		if (poll(p, 3, full ? FULL_MS : -1) < 0 && errno != EINTR)
+			break;
+		if (p[0].revents)
+			break;
+		if (p[2].revents)
+			commands_receive(c);
+		if (p[1].revents)
+			commands_accept(c);
+	}
+	return NULL;
+}
+
+/* No signal is ever delivered to it. */
+static int thread_start(struct shm_commands *c)
+{
+	sigset_t all, before;
+	int err;
+
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	err = pthread_create(&c->thread, NULL, commands_run, c);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	return -err;
+}
+
+/* -- edmd: beginning and end ------------------------------------------------ */
+
+/* The socket takes its mode from the umask, which is not ours to change. */
+static int listen_at(struct shm_commands *c, const struct sockaddr_un *at)
+{
+	snprintf(c->path, sizeof(c->path), "%.95s", at->sun_path);
+	if (unlink(c->path) < 0 && errno != ENOENT)
+		return -errno;
+	c->listening = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC |
+			      SOCK_NONBLOCK, 0);
+	if (c->listening < 0 ||
+	    bind(c->listening, (const struct sockaddr *)at, sizeof(*at)) < 0 ||
+	    chmod(c->path, 0660) < 0 || listen(c->listening, 4) < 0)
+		return -errno;
+	c->end = eventfd(0, EFD_CLOEXEC);
+	return c->end < 0 ? -errno : thread_start(c);
+}
+
+static void commands_free(struct shm_commands *c)
+{
+	if (c->listening >= 0)
+		close(c->listening);
+	if (c->connected >= 0)
+		close(c->connected);
+	if (c->end >= 0)
+		close(c->end);
+	free(c);
+}
+
+int shm_command_create(struct shm_commands **ret, const char *machine,
+		       uint32_t instance)
+{
+	const struct passwd *service = getpwnam(SERVICE_USER);
+	struct sockaddr_un at;
+	int err = socket_address(&at, machine);
+	struct shm_commands *c;
+
+	if (err < 0)
+		return err;
+	c = calloc(1, sizeof(*c));
+	if (!c)
+		return -ENOMEM;
+	c->listening = c->connected = c->end = -1;
+	c->service = service ? service->pw_uid : geteuid();
+	ck_ring_init(&c->ring, SHM_COMMAND_SLOTS);
+	object_head_fill(&c->head, machine, sizeof(struct shm_command),
+			 instance);
+	err = listen_at(c, &at);
+	if (err < 0) {
+		commands_free(c);
+		return err;
+	}
+	*ret = c;
 	return 0;
+}
+
+void shm_command_destroy(struct shm_commands *c)
+{
+	const uint64_t one = 1;
+
+	if (!c)
+		return;
+	/* An eventfd at 0 takes a 1 without fail. */
+	if (write(c->end, &one, sizeof(one)) != sizeof(one))
+		abort();
+	pthread_join(c->thread, NULL);
+	unlink(c->path);
+	commands_free(c);
+}
+
+bool shm_command_take(struct shm_commands *c, struct shm_command *ret)
+{
+	return ck_ring_dequeue_spsc_command(&c->ring, c->slot, ret);
+}
+
+/* -- edmd-jobs -------------------------------------------------------------- */
+
+static int head_take(int fd, uint32_t *ret_instance)
+{
+	struct pollfd p = { .fd = fd, .events = POLLIN };
+	struct shm_head h;
+	int err;
+
+	/* edmd's thread answers at once, unless edmd is stopped. */
+	if (poll(&p, 1, 20) <= 0)
+		return -EAGAIN;
+	if (recv(fd, &h, sizeof(h), MSG_TRUNC) != sizeof(h))
+		return -EACCES;
+	err = object_head_check(&h, sizeof(struct shm_command));
+	*ret_instance = h.instance;
+	return err == -ENOENT ? -EPROTO : err;
+}
+
+int shm_command_open(int *ret, const char *machine, uint32_t *ret_instance)
+{
+	struct sockaddr_un at;
+	int err = socket_address(&at, machine), fd;
+
+	if (err < 0)
+		return err;
+	fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (fd < 0)
+		return -errno;
+	if (connect(fd, (const struct sockaddr *)&at, sizeof(at)) < 0)
+		err = errno == ECONNREFUSED ? -ENOENT : -errno;
+	if (err == 0)
+		err = head_take(fd, ret_instance);
+	if (err < 0) {
+		close(fd);
+		return err;
+	}
+	*ret = fd;
+	return 0;
+}
+
+int shm_command_put(int fd, const struct shm_command *c)
+{
+	if (send(fd, c, sizeof(*c), MSG_NOSIGNAL) == sizeof(*c))
+		return 0;
+	return errno == EAGAIN ? -EAGAIN : -ENOTCONN;
 }

@@ -9,11 +9,19 @@
 
 #include "shm.h"
 
-#define OBJECT_PATH_MAX	64
+#define OBJECT_PATH_MAX	96
 
-/** object_path() - "/edmd.<machine>.<what>"; -EINVAL for a bad name. */
+/**
+ * object_path() - "/dev/shm/edmd.<machine>.<what>"; -EINVAL for a bad name.
+ *
+ * In /dev/shm/edmd, if there is such a folder that root, edmd or this user
+ * made: anybody may make a file in /dev/shm, and would block its name.
+ */
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what);
+
+/* No link, and no pipe that waits for its other end. */
+#define OBJECT_FLAGS	(O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)
 
 /** object_size() - bytes of @fd, which must be a plain file; else -errno. */
 int64_t object_size(int fd);

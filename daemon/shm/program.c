@@ -10,6 +10,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#define COPY_BYTES	(1 << 24)
+
 static int program_path(char path[OBJECT_PATH_MAX], const char *machine,
 			uint32_t n)
 {
@@ -33,9 +35,9 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 	if (bytes == 0)
 		return -EINVAL;
 	/* A new file: the old one must not change under who has it mapped. */
-	if (shm_unlink(path) < 0 && errno != ENOENT)
+	if (unlink(path) < 0 && errno != ENOENT)
 		return -errno;
-	fd = shm_open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0640);
+	fd = open(path, O_RDWR | O_CREAT | O_EXCL | OBJECT_FLAGS, 0640);
 	if (fd < 0)
 		return -errno;
 
@@ -44,7 +46,41 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 		err = object_map(ret, fd, bytes, true);
 	close(fd);
 	if (err < 0)
-		shm_unlink(path);
+		unlink(path);
+	return err;
+}
+
+/* Read, not mapped: what is cut short meanwhile is an error, no signal. */
+static int copy_fill(char *to, int fd, size_t bytes)
+{
+	while (bytes > 0) {
+		ssize_t n = read(fd, to, bytes < COPY_BYTES ? bytes : COPY_BYTES);
+
+		if (n < 0 && errno == EINTR)
+			continue;
+		if (n <= 0)
+			return n < 0 ? -errno : -EPROTO;
+		to += n;
+		bytes -= (size_t)n;
+	}
+	return 0;
+}
+
+static int copy_make(void **ret, int fd, size_t bytes)
+{
+	void *at = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+			MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+	int err;
+
+	if (at == MAP_FAILED)
+		return -errno;
+	err = copy_fill(at, fd, bytes);
+	if (err == 0 && mprotect(at, bytes, PROT_READ) < 0)
+		err = -errno;
+	if (err < 0)
+		munmap(at, bytes);
+	else
+		*ret = at;
 	return err;
 }
 
@@ -59,13 +95,13 @@ int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 
 	if (err < 0)
 		return err;
-	fd = shm_open(path, O_RDONLY | O_CLOEXEC, 0);
+	fd = open(path, O_RDONLY | OBJECT_FLAGS, 0);
 	if (fd < 0)
 		return -errno;
 
 	size = object_size(fd);
 	if (size > 0)
-		err = object_map(&at, fd, (size_t)size, false);
+		err = copy_make(&at, fd, (size_t)size);
 	else
 		err = size < 0 ? (int)size : -EPROTO;
 	close(fd);
@@ -86,5 +122,5 @@ void shm_program_remove(const char *machine, uint32_t n)
 	char path[OBJECT_PATH_MAX];
 
 	if (program_path(path, machine, n) == 0)
-		shm_unlink(path);
+		unlink(path);
 }

@@ -55,6 +55,16 @@ static struct ring ring_of_sets(const struct shm_status *s)
 	};
 }
 
+static struct ring ring_of_done(const struct shm_status *s)
+{
+	return (struct ring) {
+		.slots = (void *)(uintptr_t)s->done,
+		.next = (uint64_t *)(uintptr_t)&s->done_next,
+		.count = SHM_DONE_SLOTS,
+		.slot_bytes = sizeof(s->done[0]),
+	};
+}
+
 static uint64_t *ring_stamp(const struct ring *r, uint64_t n)
 {
 	return (uint64_t *)(void *)((char *)r->slots +
@@ -210,4 +220,50 @@ bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
 	struct ring r = ring_of_events(s);
 
 	return ring_follow(&r, f, ret);
+}
+
+/* The newest first; a torn record is one that nobody has begun to do. */
+static bool done_find(const struct ring *r, uint64_t id, uint64_t *ret_n,
+		      struct shm_done *ret)
+{
+	uint64_t end = __atomic_load_n(r->next, __ATOMIC_ACQUIRE);
+
+	for (uint64_t i = 1; i <= r->count && i <= end; i++) {
+		if (!ring_get(r, end - i, ret) || ret->id != id)
+			continue;
+		*ret_n = end - i;
+		return true;
+	}
+	return false;
+}
+
+void shm_done_begin(struct shm_status *s, uint64_t id)
+{
+	const struct shm_done d = {
+		.id = id, .code = SHM_TAKEN, .instance = s->head.instance,
+	};
+	struct ring r = ring_of_done(s);
+
+	ring_put(&r, &d);
+}
+
+void shm_done_end(struct shm_status *s, uint64_t id, int32_t code)
+{
+	struct ring r = ring_of_done(s);
+	struct shm_done d;
+	uint64_t n;
+
+	if (!done_find(&r, id, &n, &d) || d.code != SHM_TAKEN)
+		return;
+	/* One store: killed here, it is answered or not, but never lost. */
+	__atomic_store_n(&s->done[n % SHM_DONE_SLOTS].record.code, code,
+			 __ATOMIC_RELEASE);
+}
+
+bool shm_done(const struct shm_status *s, uint64_t id, struct shm_done *ret)
+{
+	struct ring r = ring_of_done(s);
+	uint64_t n;
+
+	return done_find(&r, id, &n, ret);
 }

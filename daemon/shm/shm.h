@@ -6,12 +6,12 @@
  *
  *	status		edmd writes, anyone of the group reads: one snapshot,
  *			a ring of per-cycle trace records, a ring of events
- *	command		edmd-jobs writes, edmd reads: a ring of commands, each
- *			answered by an event with its id
- *	program.<n>	edmd-jobs writes once; edmd maps it read-only
- *			(interp/program.h)
+ *	command		a socket: edmd-jobs sends commands, each is answered by
+ *			an event with its id
+ *	program.<n>	edmd-jobs writes once; edmd copies it before it looks at
+ *			it (interp/program.h)
  *
- * Status and command begin with a struct shm_head.  A reader whose layout
+ * Status begins with a struct shm_head.  A reader whose layout
  * version or size differs must not read on.  All numbers are of the machine's
  * byte order; the objects never leave it.
  *
@@ -19,9 +19,12 @@
  * returns -EINVAL for any other.
  *
  * A restarted edmd takes its predecessor's status over in place: mappings
- * stay good, both rings go on counting, head.instance is new.  The command
- * ring is made anew and must be opened again; its head.instance tells which
- * edmd reads it.  An edmd that ends in order removes both objects.
+ * stay good, both rings go on counting, head.instance is new.  The socket is
+ * made anew and must be connected again; it tells which edmd listens.  An
+ * edmd that ends in order removes both objects.
+ *
+ * The ids of the last commands that were taken are kept in status too, with
+ * what was answered: no edmd of this machine takes one of them again.
  *
  * Everything that two processes touch at once is read and written through C11
  * atomics, the records word by word, so a torn one is noticed, never used.
@@ -39,13 +42,14 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	6
+#define SHM_LAYOUT	7
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 
 #define SHM_TRACE_SLOTS		16384	/* powers of two */
 #define SHM_EVENT_SLOTS		1024
 #define SHM_COMMAND_SLOTS	64
+#define SHM_DONE_SLOTS		256	/* commands that are remembered */
 #define SHM_LATENCY_BINS	256	/* of 1 us; the last holds all above */
 
 struct shm_head {
@@ -159,9 +163,10 @@ enum shm_event_kind {
 struct shm_event {
 	uint64_t cycle;
 	int64_t time_ns;
-	uint32_t kind, id;
+	uint64_t id;
+	uint32_t kind;
 	int32_t code;
-	uint32_t program;
+	uint32_t program, pad;
 	double place_mm;
 	double was, now;		/* set: values, NAN the generator's own */
 };
@@ -186,6 +191,18 @@ struct shm_sets_slot {
 	struct shm_sets record;
 };
 
+/* A command that was taken; its code follows when it is answered. */
+struct shm_done {
+	uint64_t id;
+	int32_t code;			/* enum shm_answer; SHM_TAKEN */
+	uint32_t instance;		/* of the edmd that took it */
+};
+
+struct shm_done_slot {
+	uint64_t stamp;
+	struct shm_done record;
+};
+
 /*
  * Snapshot n goes to snap[n & 1] and snap_next becomes n + 1 when it is whole,
  * so that a writer killed in the middle of one leaves the other.
@@ -197,13 +214,16 @@ struct shm_snap {
 
 struct shm_status {
 	struct shm_head head;
+	uint64_t born;			/* drawn when the object was made */
 	uint32_t latency_us[SHM_LATENCY_BINS];	/* histogram of wake_late */
 	struct shm_snap snap[2];
 	uint64_t snap_next;		/* snapshots written so far */
 	uint64_t trace_next;		/* records written so far */
 	uint64_t event_next;
 	uint64_t sets_next;
+	uint64_t done_next;
 	struct shm_sets_slot sets[2];
+	struct shm_done_slot done[SHM_DONE_SLOTS];
 	struct shm_trace_slot trace[SHM_TRACE_SLOTS];
 	struct shm_event_slot event[SHM_EVENT_SLOTS];
 };
@@ -231,7 +251,12 @@ enum shm_verb {
 enum shm_answer {
 	SHM_DONE, SHM_NO_PROGRAM, SHM_WRONG_STATE, SHM_BAD_ARGUMENT,
 	SHM_NOT_HOMED, SHM_AT_LIMIT, SHM_BEYOND, SHM_NO_NODE, SHM_NOT_PASSED,
-	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE
+	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE,
+	/* Not of the cycle: */
+	SHM_LATE = 50,			/* came after its until_ns: not done */
+	SHM_CUT_SHORT,			/* its edmd ended over it: done or not,
+					 * the place tells */
+	SHM_TAKEN = -1,			/* in struct shm_done: no answer yet */
 };
 
 /* Mirrors enum cycle_outcome. */
@@ -241,18 +266,16 @@ enum shm_outcome {
 };
 
 struct shm_command {
-	uint32_t id;			/* never 0 */
+	uint64_t id;			/* never 0, nor one that was used */
 	uint32_t verb;
 	uint32_t arg;
-	uint32_t instance;		/* of the edmd it is meant for */
 	double arg_mm;
+	int64_t until_ns;		/* CLOCK_MONOTONIC; then it is too late */
+	uint32_t instance;		/* of the edmd it is meant for */
+	uint32_t pad;
 };
 
-struct shm_command_ring {
-	struct shm_head head;
-	ck_ring_t ring;
-	struct shm_command slot[SHM_COMMAND_SLOTS];
-};
+struct shm_commands;			/* edmd's end */
 
 /* -- Writer: edmd ------------------------------------------------------- */
 
@@ -290,20 +313,30 @@ void shm_sets_put(struct shm_status *s, const struct shm_sets *sets);
 /** shm_sets() - what was put last; false: nothing yet. Any thread. */
 bool shm_sets(const struct shm_status *s, struct shm_sets *ret);
 
-/** shm_command_create() - make edmd.<machine>.command anew. Startup only. */
-int shm_command_create(struct shm_command_ring **ret, const char *machine,
+/**
+ * shm_command_create() - listen at edmd.<machine>.command.
+ *
+ * Who may connect is root, this user, and the user edm-jobs.  Starts a thread
+ * that takes commands from the socket.  Startup only.
+ */
+int shm_command_create(struct shm_commands **ret, const char *machine,
 		       uint32_t instance);
 
-/** shm_command_destroy() - remove and unmap; NULL is fine. */
-void shm_command_destroy(struct shm_command_ring *r, const char *machine);
+/** shm_command_destroy() - end the thread, remove; NULL is fine. */
+void shm_command_destroy(struct shm_commands *c);
+
+/** shm_command_take() - the next command, if any; its fields are not checked.
+ *  RT-safe. */
+bool shm_command_take(struct shm_commands *c, struct shm_command *ret);
 
 /**
- * shm_command_take() - the next command, if any. RT-safe.
- *
- * Whatever the other side did to the ring, this reads inside it.  The command
- * itself is not checked.
+ * shm_done_begin() - command @id is taken: before anything comes of it.
+ * RT-safe; one writer.
  */
-bool shm_command_take(struct shm_command_ring *r, struct shm_command *ret);
+void shm_done_begin(struct shm_status *s, uint64_t id);
+
+/** shm_done_end() - it was answered with @code.  RT-safe; one writer. */
+void shm_done_end(struct shm_status *s, uint64_t id, int32_t code);
 
 /* -- Readers, and edmd-jobs --------------------------------------------- */
 
@@ -357,13 +390,25 @@ int shm_writer_claim(const char *machine);
 void shm_writer_leave(int fd, const char *machine);
 
 /**
- * shm_command_open() - map the ring to write it, having claimed it.
- * Return: as shm_status_open().
+ * shm_command_open() - connect to command the machine, having claimed it.
+ *
+ * @ret: a descriptor, to be closed with close().
+ * @ret_instance: of the edmd at the other end.
+ * Return: 0; -ENOENT no edmd listens; -EAGAIN it does not answer; -EACCES it
+ * will not have this user; -EPROTO another layout; else -errno.
  */
-int shm_command_open(struct shm_command_ring **ret, const char *machine);
+int shm_command_open(int *ret, const char *machine, uint32_t *ret_instance);
 
-/** shm_command_put() - Return: 0, or -EAGAIN if the ring is full. */
-int shm_command_put(struct shm_command_ring *r, const struct shm_command *c);
+/** shm_command_put() - Return: 0; -EAGAIN no room; -ENOTCONN it is gone. */
+int shm_command_put(int fd, const struct shm_command *c);
+
+/**
+ * shm_done() - what became of command @id.
+ *
+ * Return: false if it was not taken, or so long ago that it is forgotten.
+ * RT-safe: a bounded search.  Any thread.
+ */
+bool shm_done(const struct shm_status *s, uint64_t id, struct shm_done *ret);
 
 /**
  * shm_program_create() - edmd.<machine>.program.<n>, @bytes to fill.
@@ -375,7 +420,10 @@ int shm_command_put(struct shm_command_ring *r, const struct shm_command *c);
 int shm_program_create(void **ret, const char *machine, uint32_t n,
 		       size_t bytes);
 
-/** shm_program_open() - map read-only. Return: 0, -ENOENT, else -errno. */
+/**
+ * shm_program_open() - a copy of it, which nobody else can change any more.
+ * Return: 0, -ENOENT, -EPROTO if it was cut short meanwhile, else -errno.
+ */
 int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 		     uint32_t n);
 void shm_program_unmap(const void *block, size_t bytes);

@@ -2,15 +2,15 @@
 /*
  * status.c - make, take over, open and remove the status object
  *
- * The owner holds a write lock of its open file description on the whole
- * object.  The kernel drops it with the process, however that ends, and
- * anyone may ask for it without taking it, so a reader that looks never
- * hinders an edmd that starts.
+ * The owner holds a write lock of its open file description on an object of
+ * its own, and another on the status, which readers may ask for.  The kernel
+ * drops both with the process, however that ends.
  */
 #include "object.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/random.h>
@@ -30,19 +30,71 @@ static uint32_t instance_draw(void)
 	return n;
 }
 
-/* Locked and still under its name: 0.  -EAGAIN: removed meanwhile. */
-static int status_own(int fd)
+static int lock_take(int fd)
 {
 	struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+
+	if (fcntl(fd, F_OFD_SETLK, &lock) == 0)
+		return 0;
+	return errno == EACCES || errno == EAGAIN ? -EBUSY : -errno;
+}
+
+/* Still under its name, and ours: 0.  -EAGAIN: removed meanwhile. */
+static int owner_check(int fd)
+{
 	struct stat st;
 
-	if (fcntl(fd, F_OFD_SETLK, &lock) < 0)
-		return errno == EACCES || errno == EAGAIN ? -EBUSY : -errno;
 	if (fstat(fd, &st) < 0)
 		return -errno;
 	if (st.st_nlink == 0)
 		return -EAGAIN;
 	return st.st_uid == geteuid() ? 0 : -EPERM;
+}
+
+/*
+ * Who owns the machine holds this lock.  It is on an object that nobody else
+ * may open: a lock for reading, which any reader of the status may take,
+ * would keep the next edmd out.
+ */
+static int owner_try(const char *path)
+{
+	int fd = open(path, O_RDWR | O_CREAT | OBJECT_FLAGS, 0600);
+	int err;
+
+	if (fd < 0)
+		return -errno;
+	err = lock_take(fd);
+	if (err == 0)
+		err = owner_check(fd);
+	if (err == 0)
+		return fd;
+	close(fd);
+	return err;
+}
+
+/* Return: a descriptor that stays open, or -errno. */
+static int owner_claim(const char *machine)
+{
+	char path[OBJECT_PATH_MAX];
+	int fd = object_path(path, machine, "owner");
+
+	if (fd < 0)
+		return fd;
+	fd = -EAGAIN;
+	for (int i = 0; i < CREATE_TRIES && fd == -EAGAIN; i++)
+		fd = owner_try(path);
+	return fd;
+}
+
+/*
+ * The lock on the status itself only shows to readers that its edmd lives.  If
+ * one of them has a lock for reading on it, there will be another object.
+ */
+static int status_own(int fd)
+{
+	int err = owner_check(fd);
+
+	return err ? err : lock_take(fd);
 }
 
 /* A whole object of this layout, left by a dead edmd of this machine? */
@@ -65,15 +117,33 @@ static void status_adopt(struct shm_status *s)
 }
 
 /* What cannot be made whole is not left half. */
-static int status_make(void **ret, int fd, const char *path)
+static int status_make(void **ret, int fd, const char *path,
+		       struct shm_status **before)
 {
 	int err = object_grow(fd, sizeof(struct shm_status), 0640);
 
 	if (err == 0)
 		err = object_map(ret, fd, sizeof(struct shm_status), true);
 	if (err < 0)
-		shm_unlink(path);
+		unlink(path);
+	else if (*before)
+		memcpy(*ret, *before, sizeof(struct shm_status));
 	return err;
+}
+
+/* Keep what the object says, and make room for a new one of its name. */
+static int status_move(int fd, const char *path, struct shm_status **before)
+{
+	if (!*before)
+		*before = malloc(sizeof(struct shm_status));
+	if (!*before)
+		return -ENOMEM;
+	if (pread(fd, *before, sizeof(struct shm_status), 0) !=
+	    sizeof(struct shm_status)) {
+		free(*before);
+		*before = NULL;
+	}
+	return unlink(path) < 0 && errno != ENOENT ? -errno : -EAGAIN;
 }
 
 /* -EAGAIN: of another layout, now removed; try again. */
@@ -90,30 +160,30 @@ static int status_take_over(void **ret, int fd, const char *path,
 			return 0;
 		munmap(*ret, sizeof(struct shm_status));
 	}
-	return shm_unlink(path) < 0 && errno != ENOENT ? -errno : -EAGAIN;
+	return unlink(path) < 0 && errno != ENOENT ? -errno : -EAGAIN;
 }
 
 /* One try.  The descriptor stays open if all is well: it carries the lock. */
 static int status_try(void **ret, const char *path, const char *machine,
-		      struct shm_snapshot *ret_before)
+		      struct shm_status **before)
 {
-	int fd = shm_open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+	int fd = open(path, O_RDWR | O_CREAT | OBJECT_FLAGS, 0640);
 	int err;
 
 	if (fd < 0)
 		return -errno;
 
 	err = status_own(fd);
-	if (err == 0 && object_size(fd) == 0)
-		err = status_make(ret, fd, path);
+	if (err == -EBUSY)
+		err = status_move(fd, path, before);
+	else if (err == 0 && object_size(fd) == 0)
+		err = status_make(ret, fd, path, before);
 	else if (err == 0)
 		err = status_take_over(ret, fd, path, machine);
 	if (err < 0) {
 		close(fd);
 		return err;
 	}
-	if (!shm_snapshot(*ret, ret_before))
-		*ret_before = (struct shm_snapshot) { .cycle = 0 };
 	return 0;
 }
 
@@ -121,23 +191,31 @@ int shm_status_create(struct shm_status **ret, const char *machine,
 		      struct shm_snapshot *ret_before)
 {
 	char path[OBJECT_PATH_MAX];
-	struct shm_snapshot before;
-	int err = object_path(path, machine, "status");
-	struct shm_status *s;
+	int err = object_path(path, machine, "status"), owner;
+	struct shm_status *s, *moved = NULL;
 	void *at = NULL;
 
 	if (err < 0)
 		return err;
+	owner = owner_claim(machine);
+	if (owner < 0)
+		return owner;
 	err = -EAGAIN;
 	for (int i = 0; i < CREATE_TRIES && err == -EAGAIN; i++)
-		err = status_try(&at, path, machine, &before);
-	if (err < 0)
+		err = status_try(&at, path, machine, &moved);
+	free(moved);
+	if (err < 0) {
+		close(owner);
 		return err;
+	}
 
 	s = at;
+	if (!status_fits(s, machine) || !shm_snapshot(s, ret_before))
+		*ret_before = (struct shm_snapshot) { .cycle = 0 };
+	if (s->born == 0)
+		s->born = (uint64_t)instance_draw() << 32 | instance_draw();
 	status_adopt(s);
 	object_head_fill(&s->head, machine, sizeof(*s), instance_draw());
-	*ret_before = before;
 	*ret = s;
 	return 0;
 }
@@ -149,7 +227,9 @@ void shm_status_destroy(struct shm_status *s, const char *machine)
 	if (!s)
 		return;
 	if (object_path(path, machine, "status") == 0)
-		shm_unlink(path);
+		unlink(path);
+	if (object_path(path, machine, "owner") == 0)
+		unlink(path);
 	shm_close(s, sizeof(*s));
 }
 
@@ -167,7 +247,8 @@ int shm_status_open(const struct shm_status **ret, const char *machine)
 /* Locked by another, and the object that @s maps: told by the instance. */
 static bool status_is_owned(int fd, const struct shm_status *s)
 {
-	struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+	/* Only a writer's lock is in the way of a reader's. */
+	struct flock lock = { .l_type = F_RDLCK, .l_whence = SEEK_SET };
 	struct shm_head h;
 
 	if (pread(fd, &h, sizeof(h), 0) != sizeof(h))
@@ -185,7 +266,7 @@ bool shm_alive(const struct shm_status *s)
 
 	if (object_path(path, s->head.machine, "status") < 0)
 		return false;
-	fd = shm_open(path, O_RDONLY | O_CLOEXEC, 0);
+	fd = open(path, O_RDONLY | OBJECT_FLAGS, 0);
 	if (fd < 0)
 		return false;
 	alive = status_is_owned(fd, s);

@@ -21,7 +21,7 @@ int shm_writer_claim(const char *machine)
 
 	if (err < 0)
 		return err;
-	fd = shm_open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+	fd = open(path, O_RDWR | O_CREAT | OBJECT_FLAGS, 0640);
 	if (fd < 0)
 		return -errno;
 	if (fcntl(fd, F_OFD_SETLK, &lock) == 0)
@@ -38,6 +38,6 @@ void shm_writer_leave(int fd, const char *machine)
 	if (fd < 0)
 		return;
 	if (object_path(path, machine, "writer") == 0)
-		shm_unlink(path);
+		unlink(path);
 	close(fd);
 }

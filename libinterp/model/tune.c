@@ -83,11 +83,10 @@ int interp_tune_run(const struct interp_tune *t,
 	};
 	struct interp_minimise m = {
 		.cost = cost_of, .arg = &s, .budget = t->budget,
-		.seed = t->seed,
 	};
 	struct interp_trial_result first;
 	double x[INTERP_MINIMISE_NMAX];
-	const int err = interp_trial_run(&t->trial, &first);
+	int err = interp_trial_run(&t->trial, &first);
 
 	if (err)
 		return err;
@@ -104,9 +103,11 @@ int interp_tune_run(const struct interp_tune *t,
 	if (s.n == 0)
 		return -EINVAL;
 	m.n = s.n;
-	*ret_cost = t->method == INTERP_TUNE_SWARM ?
-		    interp_minimise_swarm(&m, x) :
-		    interp_minimise_simplex(&m, x);
+	err = t->method == INTERP_TUNE_GLOBAL ?
+	      interp_minimise_global(&m, x, ret_cost) :
+	      interp_minimise_local(&m, x, ret_cost);
+	if (err)
+		return err;
 	*ret = t->trial.compensate->gains;
 	for (int i = 0; i < s.n; i++)
 		*field(ret, s.gain[i]->at) = x[i];

@@ -174,6 +174,7 @@ class Client:
     def acks_to(self, seq):
         return [
             a for a in self.acks if a.client == self.name and a.seq == seq
+            and bytes(a.key) == self.public
         ]
 
     def heard(self, what, timeout=5.0):
@@ -209,7 +210,8 @@ class Client:
             if time.monotonic() > again:
                 self.send_command(verb, job, arg, seq)
                 again += 0.5
-            return self.acks_to(seq)
+            # 100: signed for a service that is gone; status told the new one.
+            return [a for a in self.acks_to(seq) if a.code != 100]
 
         return self.heard(answered, timeout)[0]
 
@@ -238,7 +240,7 @@ class Client:
         seqs = {m.seq for m in chunks}
         for a in self.acks:
             if a.client == self.name and a.seq in seqs:
-                if a.code or a.body:
+                if a.code != 100 and (a.code or a.body):
                     return a
         return None
 

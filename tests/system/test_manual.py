@@ -73,14 +73,21 @@ def test_steps_and_override(machine):
     c.job_where("job", "done")
 
 
-def test_a_job_waits_until_all_axes_are_homed(homing):
+def test_a_job_waits_for_homing_and_then_for_a_start(homing):
     homing.start()
     c = homing.client
     text = b"G21 G90 F600\nG0 Z19\nG0 X-19\nM30\n"
     assert c.submit(text, "job").code == 0
     c.hear(0.6)
     assert c.status().job == ""
+    r = homing.ctl("start")
+    assert r.returncode == 1
+    assert "home it" in r.stderr
     assert homing.ctl("home").returncode == 0
+    c.job_where("job", "ready", timeout=30)
+    c.hear(1.5)
+    assert c.job("job")["state"] == "ready", "it began by itself"
+    assert homing.ctl("start").returncode == 0
     j = c.job_where("job", "done", timeout=30)
     assert j["state"] == "done"
     s = c.status_where(lambda s: s.state == "idle")

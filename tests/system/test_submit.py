@@ -190,15 +190,26 @@ def test_packets_of_no_shape_harm_nothing(machine):
     c.job_where("good", "done")
 
 
-def test_a_ninth_upload_is_asked_to_try_again(machine):
+def test_a_third_upload_of_a_client_is_asked_to_try_again(machine):
+    c = machine.client
+    for i in range(2):
+        c.send(c.chunks(LONG_JOB, f"half{i}", size=1000)[:1])
+    c.heard(lambda: len(c.acks) == 2)
+    assert all(a.code == 0 for a in c.acks)
+    third = c.chunks(LONG_JOB, "third", size=1000)
+    c.send(third[:1])
+    assert c.heard(lambda: c.acks_to(third[0].seq))[0].code == 75
+
+
+def test_eight_uploads_that_stand_still_lock_nobody_out(machine):
     c = machine.client
     for i in range(8):
+        c.name = f"slow-{i}"
         c.send(c.chunks(LONG_JOB, f"half{i}", size=1000)[:1])
-    c.hear(0.3)
-    assert all(a.code == 0 for a in c.acks)
-    ninth = c.chunks(LONG_JOB, "ninth", size=1000)
-    c.send(ninth[:1])
-    assert c.heard(lambda: c.acks_to(ninth[0].seq))[0].code == 75
+    c.hear(2.5)
+    c.name = "other"
+    assert c.submit(QUICK_JOB, "mine").code == 0
+    c.job_where("mine", "done")
 
 
 def test_jobs_wait_their_turn(machine):

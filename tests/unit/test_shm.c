@@ -104,14 +104,14 @@ static int object_fd(const char *what)
 	return fd;
 }
 
-static unsigned int object_mode(const char *what)
+static mode_t object_mode(const char *what)
 {
+	char path[96];
 	struct stat st;
-	int fd = object_fd(what);
 
-	assert_int_equal(fstat(fd, &st), 0);
-	close(fd);
-	return st.st_mode & 0777;
+	snprintf(path, sizeof(path), "/dev/shm/edmd.%s.%s", machine, what);
+	assert_int_equal(stat(path, &st), 0);
+	return st.st_mode & 07777;
 }
 
 static void shared_structs_keep_their_size(void **state)
@@ -121,16 +121,16 @@ static void shared_structs_keep_their_size(void **state)
 	assert_int_equal(sizeof(struct shm_snapshot), 576);
 	assert_int_equal(sizeof(struct shm_trace), 136);
 	assert_int_equal(sizeof(struct shm_trace_slot), 144);
-	assert_int_equal(sizeof(struct shm_event), 56);
-	assert_int_equal(sizeof(struct shm_event_slot), 64);
+	assert_int_equal(sizeof(struct shm_event), 64);
+	assert_int_equal(sizeof(struct shm_event_slot), 72);
 	assert_int_equal(sizeof(struct shm_snap), 584);
 	assert_int_equal(sizeof(struct shm_sets_slot), 1048);
-	assert_int_equal(sizeof(struct shm_command), 24);
-	assert_int_equal(offsetof(struct shm_status, trace), 4376);
+	assert_int_equal(sizeof(struct shm_command), 40);
+	assert_int_equal(sizeof(struct shm_done_slot), 24);
+	assert_int_equal(offsetof(struct shm_status, trace),
+			 4392 + 256 * 24);
 	assert_int_equal(sizeof(struct shm_status),
-			 4376 + 16384 * 144 + 1024 * 64);
-	assert_int_equal(offsetof(struct shm_command_ring, slot),
-			 56 + 8 + 2 * CK_MD_CACHELINE);
+			 4392 + 256 * 24 + 16384 * 144 + 1024 * 72);
 }
 
 static void names_are_those_of_the_cycle(void **state)
@@ -151,7 +151,9 @@ static void a_machine_name_with_other_characters_is_refused(void **state)
 
 	(void)state;
 	for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
-		struct shm_command_ring *r;
+		struct shm_commands *r;
+		uint32_t instance;
+		int fd;
 		const struct shm_status *c;
 		struct shm_snapshot before;
 		struct shm_status *s;
@@ -161,7 +163,8 @@ static void a_machine_name_with_other_characters_is_refused(void **state)
 				 -EINVAL);
 		assert_int_equal(shm_status_open(&c, bad[i]), -EINVAL);
 		assert_int_equal(shm_command_create(&r, bad[i], 1), -EINVAL);
-		assert_int_equal(shm_command_open(&r, bad[i]), -EINVAL);
+		assert_int_equal(shm_command_open(&fd, bad[i], &instance),
+				 -EINVAL);
 		assert_int_equal(shm_program_create(&block, bad[i], 1, 8),
 				 -EINVAL);
 	}
@@ -171,7 +174,7 @@ static void objects_are_for_owner_and_group_alone(void **state)
 {
 	mode_t before = umask(0077);
 	struct shm_status *s = status_new();
-	struct shm_command_ring *r;
+	struct shm_commands *r;
 	void *block;
 
 	(void)state;
@@ -183,7 +186,7 @@ static void objects_are_for_owner_and_group_alone(void **state)
 	assert_int_equal(object_mode("program.1"), 0640);
 	shm_program_unmap(block, 8);
 	shm_program_remove(machine, 1);
-	shm_command_destroy(r, machine);
+	shm_command_destroy(r);
 	shm_status_destroy(s, machine);
 }
 

@@ -9,56 +9,118 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
 static char machine[SHM_NAME_MAX];
 
-static void commands_come_in_order_and_a_full_ring_says_so(void **state)
+/* The thread takes them from the socket; it may be held up. */
+static void take(struct shm_commands *r, struct shm_command *ret)
 {
-	struct shm_command_ring *r, *jobs;
+	while (!shm_command_take(r, ret))
+		usleep(100);
+}
+
+static void commands_come_in_order_and_one_that_waits_does_not_block(void **state)
+{
 	struct shm_command c = { .verb = SHM_LOAD, .instance = 9 };
+	struct shm_commands *r;
+	uint32_t instance;
+	uint64_t sent;
+	int fd;
 
 	(void)state;
 	assert_int_equal(shm_command_create(&r, machine, 9), 0);
-	assert_int_equal(shm_command_open(&jobs, machine), 0);
-	assert_int_equal(jobs->head.instance, 9);
+	assert_int_equal(shm_command_open(&fd, machine, &instance), 0);
+	assert_int_equal(instance, 9);
 	assert_false(shm_command_take(r, &c));
 	for (int round = 0; round < 3; round++) {
-		for (c.id = 1; shm_command_put(jobs, &c) == 0; c.id++)
+		for (c.id = 1; shm_command_put(fd, &c) == 0; c.id++)
 			;
-		assert_int_equal(c.id, SHM_COMMAND_SLOTS);
-		assert_int_equal(shm_command_put(jobs, &c), -EAGAIN);
-		for (uint32_t id = 1; id < SHM_COMMAND_SLOTS; id++) {
-			assert_true(shm_command_take(r, &c));
+		sent = c.id - 1;
+		assert_int_equal(shm_command_put(fd, &c), -EAGAIN);
+		assert_true(sent >= SHM_COMMAND_SLOTS - 1);
+		for (uint64_t id = 1; id <= sent; id++) {
+			take(r, &c);
 			assert_int_equal(c.id, id);
 			assert_int_equal(c.verb, SHM_LOAD);
 			assert_int_equal(c.instance, 9);
 		}
 		assert_false(shm_command_take(r, &c));
 	}
-	shm_close(jobs, sizeof(*jobs));
-	shm_command_destroy(r, machine);
-	assert_int_equal(shm_command_open(&r, machine), -ENOENT);
+	close(fd);
+	shm_command_destroy(r);
+	assert_int_equal(shm_command_open(&fd, machine, &instance), -ENOENT);
 }
 
-static void a_spoilt_command_ring_is_read_inside_its_bounds(void **state)
+static void who_sends_no_command_is_cut_off(void **state)
 {
-	struct shm_command_ring *r;
-	struct shm_command c;
+	struct shm_commands *r;
+	struct shm_command c = { .id = 7 };
+	uint32_t instance;
+	int fd, other;
 
 	(void)state;
 	assert_int_equal(shm_command_create(&r, machine, 9), 0);
-	r->ring.size = UINT32_MAX;
-	r->ring.mask = UINT32_MAX;
-	r->ring.p_tail = 0x7fffff00u;
-	r->ring.c_head = 0x12345678u;
-	for (int i = 0; i < 1000; i++)
-		assert_true(shm_command_take(r, &c));
-	r->ring.p_tail = r->ring.c_head;
+	assert_int_equal(shm_command_open(&fd, machine, &instance), 0);
+	assert_int_equal(send(fd, "hello", 5, 0), 5);
+	while (shm_command_put(fd, &c) == 0)
+		usleep(100);
+	assert_int_equal(shm_command_put(fd, &c), -ENOTCONN);
 	assert_false(shm_command_take(r, &c));
-	shm_command_destroy(r, machine);
+	assert_int_equal(shm_command_open(&other, machine, &instance), 0);
+	assert_int_equal(shm_command_put(other, &c), 0);
+	take(r, &c);
+	assert_int_equal(c.id, 7);
+	close(fd);
+	close(other);
+	shm_command_destroy(r);
+}
+
+/* An edmd that is killed: it took all ids, and answered the odd ones. */
+static void edmd_killed(void)
+{
+	struct shm_snapshot before;
+	struct shm_status *s;
+
+	if (shm_status_create(&s, machine, &before) < 0)
+		_exit(1);
+	for (uint64_t id = 1; id <= SHM_DONE_SLOTS + 10; id++) {
+		shm_done_begin(s, id);
+		if (id % 2)
+			shm_done_end(s, id, SHM_AT_LIMIT);
+	}
+	_exit(0);
+}
+
+static void the_last_ids_are_remembered_through_a_restart(void **state)
+{
+	struct shm_snapshot before;
+	struct shm_status *s;
+	struct shm_done d;
+	pid_t child = fork();
+	int status;
+
+	(void)state;
+	if (child == 0)
+		edmd_killed();
+	assert_int_equal(waitpid(child, &status, 0), child);
+	assert_int_equal(status, 0);
+	assert_int_equal(shm_status_create(&s, machine, &before), 0);
+	assert_true(s->born != 0);
+	assert_false(shm_done(s, 10, &d));
+	for (uint64_t id = 11; id <= SHM_DONE_SLOTS + 10; id++) {
+		assert_true(shm_done(s, id, &d));
+		assert_int_equal(d.code, id % 2 ? SHM_AT_LIMIT : SHM_TAKEN);
+		assert_true(d.instance != s->head.instance);
+	}
+	shm_done_end(s, 11, SHM_DONE);
+	assert_true(shm_done(s, 11, &d));
+	assert_int_equal(d.code, SHM_AT_LIMIT);
+	shm_status_destroy(s, machine);
 }
 
 static void a_program_is_read_as_written_and_kept_while_mapped(void **state)
@@ -93,9 +155,9 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(
-			commands_come_in_order_and_a_full_ring_says_so),
-		cmocka_unit_test(
-			a_spoilt_command_ring_is_read_inside_its_bounds),
+			commands_come_in_order_and_one_that_waits_does_not_block),
+		cmocka_unit_test(who_sends_no_command_is_cut_off),
+		cmocka_unit_test(the_last_ids_are_remembered_through_a_restart),
 		cmocka_unit_test(
 			a_program_is_read_as_written_and_kept_while_mapped),
 	};

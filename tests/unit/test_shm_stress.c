@@ -33,7 +33,8 @@ static char machine[SHM_NAME_MAX];
 
 struct stress {
 	struct shm_status *status;
-	struct shm_command_ring *ring;
+	struct shm_commands *commands;
+	int fd;
 	bool end;
 	uint64_t written;
 };
@@ -182,7 +183,7 @@ static void *write_commands(void *arg)
 			.arg_mm = (double)id,
 		};
 
-		while (shm_command_put(st->ring, &c) < 0)
+		while (shm_command_put(st->fd, &c) < 0)
 			sched_yield();
 	}
 	return NULL;
@@ -192,15 +193,18 @@ static void every_command_comes_once_in_order_and_whole(void **state)
 {
 	struct stress st = { .status = NULL };
 	uint64_t empty = 0;
+	uint32_t instance;
 	pthread_t t;
 
 	(void)state;
-	assert_int_equal(shm_command_create(&st.ring, machine, 1), 0);
+	assert_int_equal(shm_command_create(&st.commands, machine, 1), 0);
+	assert_int_equal(shm_command_open(&st.fd, machine, &instance), 0);
+	assert_int_equal(instance, 1);
 	assert_int_equal(pthread_create(&t, NULL, write_commands, &st), 0);
 	for (uint32_t id = 1; id <= COMMANDS; id++) {
 		struct shm_command c;
 
-		while (!shm_command_take(st.ring, &c)) {
+		while (!shm_command_take(st.commands, &c)) {
 			empty++;
 			sched_yield();
 		}
@@ -212,7 +216,8 @@ static void every_command_comes_once_in_order_and_whole(void **state)
 	pthread_join(t, NULL);
 	print_message("commands: %u, found none %llu times\n",
 		      COMMANDS, (unsigned long long)empty);
-	shm_command_destroy(st.ring, machine);
+	close(st.fd);
+	shm_command_destroy(st.commands);
 }
 
 /* A test that fails leaves its objects: nobody else knows their names. */

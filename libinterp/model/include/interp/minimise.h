@@ -2,17 +2,16 @@
 /*
  * minimise.h - find the gains that make a cost least
  *
- * Two known methods over a box, none of which asks for a derivative:
- * Nelder and Mead's simplex, begun anew around its best when it has shrunk, and
- * a particle swarm (Clerc and Kennedy's constriction).  Both stop after the
- * budget of evaluations they are given.
+ * Two methods of NLopt over a box; neither asks for a derivative, and both do
+ * the same again when they are asked again.  The local one is Nelder and Mead's
+ * simplex, begun anew around its best when it has shrunk.  The global one spends
+ * half of its budget on dividing the box (DIRECT-L, Gablonsky and Kelley), and
+ * the rest on the local one from the best place that was found.
  *
  * Threads: any thread, not in the cycle.
  */
 #ifndef INTERP_MINIMISE_H
 #define INTERP_MINIMISE_H
-
-#include <stdint.h>
 
 #define INTERP_MINIMISE_NMAX	8
 
@@ -21,15 +20,16 @@ struct interp_minimise {
 	double low[INTERP_MINIMISE_NMAX], high[INTERP_MINIMISE_NMAX];
 	double (*cost)(void *arg, const double *x);	/* NAN counts as worst */
 	void *arg;
-	unsigned int budget;		/* evaluations */
-	uint64_t seed;			/* of the swarm */
+	unsigned int budget;		/* evaluations, at the most */
 };
 
 /**
- * Both: @x holds the place to begin with, and the best one found; the swarm
- * has one particle there.  Return: the least cost seen.
+ * Both: @x holds the place to begin with, and then the best one found, whose
+ * cost is @ret_least.  Return: 0, -ENOMEM, or -EINVAL for a box that is none.
  */
-double interp_minimise_simplex(const struct interp_minimise *m, double *x);
-double interp_minimise_swarm(const struct interp_minimise *m, double *x);
+int interp_minimise_local(const struct interp_minimise *m, double *x,
+			  double *ret_least);
+int interp_minimise_global(const struct interp_minimise *m, double *x,
+			   double *ret_least);
 
 #endif /* INTERP_MINIMISE_H */

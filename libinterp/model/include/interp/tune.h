@@ -15,13 +15,12 @@
 
 #define INTERP_TUNE_MEAN	10
 
-enum interp_tune_method { INTERP_TUNE_SIMPLEX, INTERP_TUNE_SWARM };
+enum interp_tune_method { INTERP_TUNE_LOCAL, INTERP_TUNE_GLOBAL };
 
 struct interp_tune {
 	struct interp_trial trial;	/* its compensate is begun with */
 	enum interp_tune_method method;
 	unsigned int budget;		/* trials */
-	uint64_t seed;
 	/* After each trial, or NULL: trials so far, the least cost. */
 	void (*on_trial)(void *arg, unsigned int used, double best);
 	void *on_trial_arg;
@@ -31,7 +30,7 @@ struct interp_tune {
  * interp_tune_run() - the gains of the methods in the trial's configuration.
  *
  * @ret_cost: the least cost.
- * Return: 0; -EINVAL if no method has a gain to find, or as
+ * Return: 0; -EINVAL if no method has a gain to find, -ENOMEM, or as
  * interp_compensate_begin() for the gains begun with.
  */
 int interp_tune_run(const struct interp_tune *t,
