@@ -377,6 +377,7 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(call say,DRAW,docs/pictures)
 	$(Q)docs/pictures/staircases $(B)
 	$(Q)docs/pictures/orbits $(B)
+	$(Q)docs/pictures/wire $(B)
 	$(Q)docs/pictures/process $(B)
 	$(Q)docs/pictures/curves $(B)
 	$(Q)docs/pictures/demo $(B)
