@@ -304,7 +304,7 @@ static void walk(const struct path *p, double ret_s[2])
 			cycle_command(&c, &back);
 		do
 			cycle_step(&c, &in, &out);
-		while (state_duty[c.state].running || c.moving);
+		while (state_duty[c.state].running || c.hold.moving);
 		ret_s[leg] = (double)(c.count - from) * PERIOD_NS * 1e-9;
 	}
 	free((void *)(uintptr_t)program.head);

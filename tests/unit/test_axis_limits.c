@@ -218,7 +218,7 @@ static void there_and_back_every_axis_keeps_its_limits(void **st)
 			watch(&r, &t, OPEN_V);
 		assert_int_equal(r.c.state, STATE_HOLD);
 		tell_mm(&r, CYCLE_RETRACT, 1e9);
-		for (int n = 0; n < 100000 && r.c.moving; n++)
+		for (int n = 0; n < 100000 && r.c.hold.moving; n++)
 			watch(&r, &t, OPEN_V);
 		assert_true(place(&r) == 0);
 		rig_free(&r);
@@ -244,7 +244,7 @@ static void in_jumps_every_axis_keeps_its_limits(void **st)
 		     n++) {
 			/* From the cut it first comes to a stand. */
 			if (r.c.state != STATE_JUMP ||
-			    (r.c.lifting && r.c.mover.v_mm_s > 0))
+			    (r.c.lift.up && r.c.mover.v_mm_s > 0))
 				t.n = 0;
 			watch(&r, &t, SPARKING_V);
 		}

@@ -65,7 +65,7 @@ static void walk_there_and_back(struct interp_build *b, uint64_t ret[2])
 	until(&r, STATE_HOLD, OPEN_V, 100000);
 	ret[0] = r.c.count;
 	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 1e9), ANSWER_DONE);
-	for (int n = 0; n < 100000 && r.c.moving; n++)
+	for (int n = 0; n < 100000 && r.c.hold.moving; n++)
 		step(&r, OPEN_V);
 	assert_true(place(&r) == 0);
 	ret[1] = r.c.count - ret[0];

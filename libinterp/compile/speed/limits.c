@@ -10,13 +10,6 @@
 /* Directions of short lines differ by their rounding; their ceilings must not.*/
 #define SAME		4e-6
 
-/*
- * On a bend, shares of what an axis can do: to follow it, squared with the
- * other no more than all of it.
- */
-#define BEND_ACROSS	0.8
-#define BEND_ALONG	0.6
-
 #define HOP_MAX		UINT16_MAX
 
 /* Of an axis: no less than a pulse of it. */
@@ -116,10 +109,12 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 			a = fmin(a, w->a_mm_s2[k]);
 			j = fmin(j, w->j_mm_s3[k]);
 		}
-		v = fmin(v, pass_round_mm_s(h->bend_mm, BEND_ACROSS * a, j) /
+		v = fmin(v, pass_round_mm_s(h->bend_mm,
+					    INTERP_BEND_ACROSS * a, j) /
 			    h->share);
 	}
-	soften_seg(w, s, h->bend_mm > 0 ? BEND_ALONG : 1, rates);
+	soften_seg(w, s, h->bend_mm > 0 || s->kind == INTERP_CURVE ?
+			 INTERP_BEND_ALONG : 1, rates);
 	s->feed_max_mm_s = level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;

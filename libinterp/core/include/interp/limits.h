@@ -45,6 +45,13 @@
 #define INTERP_TOLERANCE_MM	0.001
 #define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
 
+/*
+ * On a bend, shares of what an axis can do: to follow it, and to go along it.
+ * Square to each other, together they are no more than all of it.
+ */
+#define INTERP_BEND_ACROSS	0.8
+#define INTERP_BEND_ALONG	0.6
+
 struct interp_limits {
 	const struct interp_machine *machine;
 	double corner_mm;		/* > 0 */
