@@ -233,12 +233,25 @@ struct config_gpio {
 	int pull;			/* of inputs: 0 as is, 1 up, 2 down, 3 no */
 	double high_cycles, low_cycles;	/* of a step */
 	double dir_setup_cycles, dir_hold_cycles;
+	char adc[64], adc_trigger[64];	/* of industrial I/O; "none" */
+	double adc_channel, adc_ratio;	/* V at the gap for a V at the input */
 	double edges_per_period;	/* writes by the edge thread; 1: none */
 	double edges_cpu;		/* -1: any */
 	double watchdog_us;		/* between two edges */
 	char watchdog_by[128], estop_by[128];	/* what does it without a line;
 						 * "none": nothing */
 	char line[CONFIG_NLINES][CONFIG_LINE_MAX];
+};
+
+/* [panel]: the operator's page; docs/panel.md. */
+struct config_panel {
+	char address[64];
+	double port;			/* whole number */
+	char names[256];		/* "none": the address alone */
+	char certificate[256], key[256];	/* "none": no TLS */
+	char users[256];
+	int local_role;			/* 0 viewer, 1 operator, 2 service */
+	char assets[256];
 };
 
 struct machine_config {
@@ -295,6 +308,7 @@ struct machine_config {
 	char lcm_url[128];		/* [lcm] url */
 	double dds_domain;		/* [dds] domain */
 	double dds_hz;
+	struct config_panel panel;
 	char store_dir[256];		/* [jobs] store: SQLite database's folder */
 };
 
@@ -340,8 +354,11 @@ const char *config_line_read(const char *text, struct config_line_at *ret);
 /** config_line_name() - its key: "step_X", "spark", ... */
 const char *config_line_name(int line);
 
-/** config_gpio_has_gap() - are there lines of a gap comparator? */
+/** config_gpio_has_gap() - are there gap comparators, or a converter? */
 bool config_gpio_has_gap(const struct machine_config *c);
+
+/** config_gpio_has_lines() - are there lines of a gap comparator? */
+bool config_gpio_has_lines(const struct machine_config *c);
 
 /** config_print() - every key with its value, as a machine file. */
 void config_print(const struct machine_config *c, FILE *f);
