@@ -442,6 +442,10 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(Q)docs/pictures/curves $(B)
 	$(Q)docs/pictures/demo $(B)
 
+# The panel's pages, in Chromium: needs what `tests/setup check` installs.
+pictures-panel: all panel
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python docs/pictures/panel
+
 # A seed and a number of runs start from the examples alone, and try the same
 # inputs on every machine; without, what earlier runs found is built upon.
 FUZZ_S	?= 60
@@ -544,7 +548,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: kills all panel demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: kills all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults fuzz lint install clean
