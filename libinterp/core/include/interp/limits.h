@@ -24,7 +24,13 @@
  * A node on a straight line slows nothing down.  Lines shorter than 100
  * corner_mm are also limited by the radius of the curve that they follow.  That
  * radius is found from the chords of 20 corner_mm on both sides of a node, and
- * is not taken smaller than corner_mm.
+ * is not taken smaller than corner_mm.  An axis beside the path has the
+ * acceleration and the jerk by which its share changes over those chords.
+ *
+ * Rounding the nodes by tolerance_mm, or by a pulse, must not change the speed.
+ * So turns and steps of lines shorter than 20 tolerances are taken over chords
+ * of that length, and what could come from rounding is taken off.  To find what
+ * that takes off a real curve, chords up to 32 times as long are looked at.
  *
  * The speeds are rounded down to levels that are at most 1/32 apart (the top
  * speeds of the axes are levels too).  So at most a few hundred of them can
@@ -38,10 +44,21 @@
 #include "interp/program.h"
 
 #define INTERP_CORNER_MM	0.005	/* where none is given */
+#define INTERP_TOLERANCE_MM	0.001
+#define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
+
+/*
+ * On a bend, shares of what an axis can do: to follow it, and to go along it.
+ * Square to each other, together they are no more than all of it.
+ */
+#define INTERP_BEND_ACROSS	0.8
+#define INTERP_BEND_ALONG	0.6
 
 struct interp_limits {
 	const struct interp_machine *machine;
 	double corner_mm;		/* > 0 */
+	double tolerance_mm;		/* >= 0: what is less is a rounding */
+	double rotary_radius_mm;	/* > 0: where it is a rotary axis's, too */
 };
 
 /**
