@@ -322,6 +322,13 @@ kills: all
 	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
 		tests/system/test_kills.py
 
+# 100,000 packets from another host, and how late the cycle woke meanwhile.
+HOSTILE ?= 100000
+hostile: all
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) EDM_HOSTILE=$(HOSTILE) tests/netns .venv/bin/pytest -q \
+		-s tests/system/test_two_hosts.py
+
 # What holds in every cycle, over ten million random ones; SEED=n repeats one.
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
@@ -464,6 +471,9 @@ install: all
 		chmod 644 $(UNITDIR)/$$(basename $$u .in); done
 	$(Q)install -m 644 systemd/edmd.sysusers \
 		$(DESTDIR)/usr/lib/sysusers.d/edmd.conf
+	$(Q)install -d $(DESTDIR)/usr/lib/tmpfiles.d
+	$(Q)install -m 644 systemd/edmd.tmpfiles \
+		$(DESTDIR)/usr/lib/tmpfiles.d/edmd.conf
 	$(Q)install -m 644 systemd/edmd.rules \
 		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
@@ -479,7 +489,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: kills all demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: kills hostile all demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults fuzz lint install clean
