@@ -17,6 +17,7 @@
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
 #   make fuzz       the readers of jobs under libFuzzer, a bounded time each
+#   make panel      the operator's page, into build/panel
 #   make lint       what the cycle may call, headers alone, who may include whom
 #   make install    DESTDIR and PREFIX are honoured
 #
@@ -76,6 +77,7 @@ CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
+PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
 BENCH	:= $(wildcard tests/bench/*.c)
@@ -107,6 +109,7 @@ INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
 INC_ctl		= -Iclients/ctl -Icommon -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
 INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_panel	= -Iclients/panel -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
@@ -133,7 +136,8 @@ SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
 
-PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet
+PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet \
+	    $(B)/edm-panel
 UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
 PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
@@ -224,6 +228,9 @@ $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
 	$(call link,-lddsc -ljansson -lm)
 
+$(B)/edm-panel: $(call obj,$(PANEL_C) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
+	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
+
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
 
@@ -241,12 +248,45 @@ $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lnlopt -lm)
 
+# -- The panel's page ----------------------------------------------------------
+
+# Built by npm in a folder of its own, from a lock file that names no address.
+WEB	:= clients/panel/web
+WEB_SRC	:= $(wildcard $(WEB)/src/* $(WEB)/public/* $(WEB)/*.json $(WEB)/*.js \
+	   $(WEB)/*.mjs $(WEB)/index.html $(WEB)/.npmrc)
+
+panel: $(B)/panel.stamp
+
+$(B)/web/node_modules.stamp: $(WEB)/package.json $(WEB)/package-lock.json
+	@tests/setup panel
+	$(call say,NPM,$(WEB))
+	$(Q)mkdir -p $(B)/web
+	$(Q)cp $(WEB)/package.json $(WEB)/package-lock.json $(WEB)/.npmrc $(B)/web
+	$(Q)cd $(B)/web && npm ci --silent
+	$(Q)touch $@
+
+$(B)/panel.stamp: $(B)/web/node_modules.stamp $(WEB_SRC) $(B)/edm-panel
+	$(call say,VITE,$(B)/panel)
+	$(Q)rm -rf $(B)/web/src $(B)/web/public
+	$(Q)cp -r $(WEB)/src $(WEB)/public $(WEB)/index.html $(WEB)/*.js \
+		$(WEB)/*.mjs $(WEB)/tsconfig.json $(B)/web
+	$(Q)$(B)/edm-panel --print-words > $(B)/web/src/machine.json
+	$(Q)cd $(B)/web && npm run --silent check && \
+		EDM_PANEL_OUT=$(abspath $(B)/panel) npm run --silent build -- \
+			--logLevel warn && node finish.mjs $(abspath $(B)/panel)
+	@touch $@
+
 # -- The commands -------------------------------------------------------------
+
+# PANEL=1: with the operator's page, for a browser of this host; PORT=7680.
+PANEL	?= 0
+PORT	?= 7680
 
 demo:
 	@tests/setup build
-	@$(MAKE) --no-print-directory all
-	@EDM_BUILD=$(B) tests/netns examples/demo
+	@$(MAKE) --no-print-directory all $(if $(filter 1,$(PANEL)),panel)
+	@EDM_BUILD=$(B) PORT=$(PORT) \
+		$(if $(filter 1,$(PANEL)),examples/demo-panel,tests/netns examples/demo)
 
 # Everything: ends with the test runner's own lines.  Random tests have a seed
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
@@ -273,6 +313,8 @@ check:
 	@$(MAKE) --no-print-directory clang
 	@tests/stage check vm
 	@$(MAKE) --no-print-directory vm
+	@tests/stage check panel
+	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system tests/vm
 
@@ -356,10 +398,10 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 clang:
 	$(call say,CLANG,all sources)
 	$(Q)for f in $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
-		$(JOBS) $(SIM) $(CTL) $(PLOT) $(wildcard clients/dds/*.c); do \
+		$(JOBS) $(SIM) $(CTL) $(PLOT) $(PANEL_C) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
-			$(INC_dds) $(INC_libinterp)) $$f || exit 1; done
+			$(INC_dds) $(INC_panel) $(INC_libinterp)) $$f || exit 1; done
 
 bench: vm
 	@tests/setup check
@@ -384,6 +426,7 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(call say,DRAW,docs/pictures)
 	$(Q)docs/pictures/staircases $(B)
 	$(Q)docs/pictures/orbits $(B)
+	$(Q)docs/pictures/wire $(B)
 	$(Q)docs/pictures/process $(B)
 	$(Q)docs/pictures/curves $(B)
 	$(Q)docs/pictures/demo $(B)
@@ -445,7 +488,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
-		$(INC_ctl) $(INC_dds) $(INC_libinterp)) -x c $$h || exit 1; done
+		$(INC_ctl) $(INC_dds) $(INC_panel) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
 		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
@@ -457,7 +500,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 
 # -- Install ------------------------------------------------------------------
 
-install: all
+install: all panel
 	$(call say,INSTALL,$(DESTDIR)$(PREFIX))
 	$(Q)install -d $(BINDIR) $(UNITDIR) $(DESTDIR)/usr/lib/sysusers.d \
 		$(DESTDIR)/usr/lib/udev/rules.d $(DESTDIR)/etc/edmd \
@@ -465,6 +508,10 @@ install: all
 		$(DESTDIR)$(PREFIX)/share/man/man8 \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -m 755 $(PROGRAMS) $(BINDIR)
+	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/panel/assets
+	$(Q)install -m 644 $(B)/panel/*.gz $(DESTDIR)$(PREFIX)/share/edmd/panel
+	$(Q)install -m 644 $(B)/panel/assets/*.gz \
+		$(DESTDIR)$(PREFIX)/share/edmd/panel/assets
 	$(Q)for u in systemd/*.service.in; do \
 		sed 's,@BINDIR@,$(PREFIX)/bin,g' $$u \
 			> $(UNITDIR)/$$(basename $$u .in) && \
@@ -489,7 +536,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: kills hostile all demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: kills hostile all panel demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults fuzz lint install clean

@@ -114,7 +114,8 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 		.dialect = o->dialect ? o->dialect :
 					interp_dialect_by_file(o->job),
 	};
-	const struct interp_notes notes = { say_note, (void *)(uintptr_t)o->job };
+	const struct interp_notes notes = { say_note, (void *)(uintptr_t)o->job,
+					    o->check };
 	struct config_compiling of;
 	struct interp_diag diag = { 0 };
 	const double from_s = trials_now_s();

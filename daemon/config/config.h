@@ -241,6 +241,17 @@ struct config_gpio {
 	char line[CONFIG_NLINES][CONFIG_LINE_MAX];
 };
 
+/* [panel]: the operator's page; docs/panel.md. */
+struct config_panel {
+	char address[64];
+	double port;			/* whole number */
+	char names[256];		/* "none": the address alone */
+	char certificate[256], key[256];	/* "none": no TLS */
+	char users[256];
+	int local_role;			/* 0 viewer, 1 operator, 2 service */
+	char assets[256];
+};
+
 struct machine_config {
 	/* [machine] */
 	char name[32];
@@ -294,6 +305,7 @@ struct machine_config {
 	char lcm_url[128];		/* [lcm] url */
 	double dds_domain;		/* [dds] domain */
 	double dds_hz;
+	struct config_panel panel;
 	char store_dir[256];		/* [jobs] store: SQLite database's folder */
 };
 

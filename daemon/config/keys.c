@@ -54,6 +54,8 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"messages to the fleet" },
 	[SECTION_JOBS] = { "jobs", NULL, 1,
 		"the job service" },
+	[SECTION_PANEL] = { "panel", NULL, 1,
+		"the operator's page, edm-panel" },
 };
 
 /* Rows are counted through, file by file. */
@@ -65,6 +67,7 @@ static const struct config_keys *const part[] = {
 	&config_keys_bus,
 	&config_keys_sim,
 	&config_keys_gpio,
+	&config_keys_panel,
 };
 
 const struct config_key *config_key(int row)

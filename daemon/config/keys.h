@@ -37,6 +37,7 @@ enum config_section_id {
 	SECTION_LCM,
 	SECTION_DDS,
 	SECTION_JOBS,
+	SECTION_PANEL,
 	CONFIG_NSECTIONS
 };
 

@@ -57,5 +57,6 @@ extern const struct config_keys config_keys_gap;
 extern const struct config_keys config_keys_bus;
 extern const struct config_keys config_keys_sim;
 extern const struct config_keys config_keys_gpio;
+extern const struct config_keys config_keys_panel;
 
 #endif /* CONFIG_KEYS_ROWS_H */

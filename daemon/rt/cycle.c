@@ -39,7 +39,8 @@ void cycle_overrun(struct cycle *c, uint32_t missed)
 		fault_latch(&c->fault, FAULT_OVERRUN);
 }
 
-/* Over ground it has passed before, only the gap's own window is the cut. */
+/* On ground that it has passed before, it has come to the cut only when the
+ * signal is within the window. */
 static enum cycle_event look_in(const struct cycle *c)
 {
 	const bool known = law_place(c) < c->far_mm - LAW_ONTO_MM;
@@ -49,7 +50,7 @@ static enum cycle_event look_in(const struct cycle *c)
 	return c->sensed.is_open ? EVENT_OPEN : EVENT_SPARK;
 }
 
-/* The axes are on their pulses before anything near the work begins. */
+/* Axes that lag come to rest before anything near the work begins. */
 static enum cycle_event look_arrive(const struct cycle *c)
 {
 	if (!contouring_rests(&c->contouring))
@@ -106,7 +107,7 @@ static void stand_held(struct cycle *c)
 	mover_set(&c->mover, 0);
 }
 
-/* What is held does nothing more: it stands in front of the action. */
+/* A job that is held does no action: it stands in front of it. */
 static void meet_action(struct cycle *c)
 {
 	if (c->state == STATE_HOLD) {
@@ -157,8 +158,8 @@ static void go(struct cycle *c)
 	if (r == WALK_BROKEN)
 		fault_latch(&c->fault, FAULT_PROGRAM);
 	else if (r == WALK_BEYOND)
-		fault_latch(&c->fault, c->state == STATE_PROBE ? FAULT_NO_CONTACT :
-							FAULT_SOFT_LIMIT);
+		fault_latch(&c->fault, c->state == STATE_PROBE ?
+				       FAULT_NO_CONTACT : FAULT_SOFT_LIMIT);
 	else if (r == WALK_ACTION)
 		meet_action(c);
 	mcode_follow(c);
@@ -184,11 +185,12 @@ static void sum_up(struct cycle *c, bool running)
 	flush_watch(c);
 }
 
-/* By a command, and under power: what the axes lack goes with it. */
+/* A command moves the axes: their compensation may move with them. */
 static bool moves_by_will(const struct cycle *c)
 {
-	return !c->axes.awaited && (state_duty[c->state].running || c->hold.moving ||
-				    cycle_is_manual(c));
+	return !c->axes.awaited &&
+	       (state_duty[c->state].running || c->hold.moving ||
+		cycle_is_manual(c));
 }
 
 static void give(struct cycle *c, struct io_outputs *out)

@@ -130,7 +130,7 @@ struct cycle_config {
 	bool dry_run;			/* no gap: walk at the programmed feed */
 	bool optional_stop;		/* M1 holds */
 	uint64_t mcode_cycles;		/* longest wait for the PLC; 0: any */
-	bool hold_at_end;		/* stand held at the end; no job's end */
+	bool hold_at_end;		/* at the end hold; the job does not end */
 	bool require_home;		/* no start before all are homed */
 	struct manual_axis axis[INTERP_NAXES];
 	struct comp_config comp;
@@ -175,8 +175,8 @@ enum cycle_answer {
 	ANSWER_NOT_PASSED,		/* a step over ground not cut yet */
 	ANSWER_ELSEWHERE,		/* a program begins where it is not */
 	ANSWER_NOT_UP,			/* the drives are not up yet */
-	ANSWER_LOCKED,			/* a guard or the PLC does not permit it */
-	ANSWER_STILL_THERE,		/* reset: what was found is still there */
+	ANSWER_LOCKED,			/* a guard, or the PLC, is against it */
+	ANSWER_STILL_THERE,		/* reset: its cause is still there */
 	CYCLE_NANSWERS
 };
 
@@ -195,9 +195,9 @@ struct cycle_ahead {
 	int toward;			/* +1 or -1 */
 	double goal_mm, override;
 	struct mover_limits l;		/* as they were when it began */
-	double entered_mm_s;		/* the fastest it has from before */
-	double room_mm;			/* nothing to see, so far, at no
-					 * acceleration */
+	double entered_mm_s;		/* the fastest that it began with */
+	double room_mm;			/* so far nothing limits it, at constant
+					 * speed */
 	bool to_place;			/* the plan is for a place: */
 	double place_mm, v_max_mm_s;
 };
@@ -237,7 +237,7 @@ struct cycle {
 	struct cycle_config config;
 	struct cycle_gap_config gap;	/* in force: config's, and what the */
 	struct cycle_jump_config jump;	/* condition and `set` made of it */
-	struct conditions conditions;		/* what made gap, jump and out.pulse */
+	struct conditions conditions;	/* gap, jump and out.pulse are theirs */
 	struct interp_cursor cursor;
 	bool loaded;			/* cursor stands on a program */
 	enum cycle_state state;
@@ -277,7 +277,8 @@ struct cycle {
 	struct cycle_job job;
 	uint32_t overruns_in_row;
 	bool overran;			/* since the last step */
-	bool free_seen;			/* open since positioning began */
+	bool free_seen;			/* the gap was open since positioning
+					 * began */
 	bool at_start;			/* the walk met the program's start */
 	bool busy;			/* the machine takes no point now */
 	bool cut_short;			/* the last walk fell short of its way */

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-/* Out by the escape, if there is one here, from a stand. */
+/* Leave by the escape if there is one here; it begins at a stand. */
 static void leave_path(struct cycle *c)
 {
 	if (!escape_is_out(&c->escape) && escape_begin(c))
@@ -48,7 +48,8 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 {
 	const enum cycle_state from = c->state;
 
-	/* The gap is narrower than a brake's way: what can, stops at once. */
+	/* The gap is narrower than a braking distance: stop at once if the
+	 * axes can. */
 	if ((state_duty[from].power || from == STATE_PROBE) &&
 	    (s == STATE_HOLD || s == STATE_JUMP) &&
 	    c->mover.v_mm_s <= servo_dv_mm_s(c))
@@ -102,7 +103,7 @@ void cycle_end_job(struct cycle *c, enum cycle_outcome o)
 	cycle_enter(c, STATE_IDLE);
 }
 
-/* -- Faults ------------------------------------------------------------------- */
+/* -- Faults ---------------------------------------------------------------- */
 
 /* Out of a cut with a broken wire, and only then, it goes back a little. */
 static bool backs_off(const struct cycle *c)

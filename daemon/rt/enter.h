@@ -11,7 +11,7 @@
 
 #include "cycle.h"
 
-/** cycle_enter() - the state is @s; what is done once there, is done. */
+/** cycle_enter() - make @s the state, and do what is done on entering it. */
 void cycle_enter(struct cycle *c, enum cycle_state s);
 
 /** cycle_end_job() - the program is out, the state idle. */
@@ -26,7 +26,7 @@ static inline void cycle_happen(struct cycle *c, enum cycle_event ev)
 		cycle_enter(c, to);
 }
 
-/** cycle_set_off() - from held: on along the path, or back to it first. */
+/** cycle_set_off() - from hold: on along the path, or first back to it. */
 static inline void cycle_set_off(struct cycle *c)
 {
 	cycle_happen(c, escape_is_out(&c->escape) ? EVENT_RETURN :

@@ -13,8 +13,8 @@
  * sparks is known before the first spark.
  *
  * Several faults can be latched at a time.  The first one is the answer to
- * "why", the worst one decides how the motion ends.  A reset clears all of them,
- * but not while one of scope FAULT_ALWAYS is still seen.
+ * "why", the worst one decides how the motion ends.  A reset clears all of
+ * them, but not while one of scope FAULT_ALWAYS is still seen.
  *
  * Threads: RT-safe; the object belongs to the cycle's thread.
  */

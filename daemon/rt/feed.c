@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* -- Positioning, lifts and moves by command ---------------------------------- */
+/* -- Positioning, lifts and moves by command ------------------------------- */
 
 static double travel(struct cycle *c)
 {
@@ -28,7 +28,7 @@ static double go_to(struct cycle *c, struct ahead_move *w, double to_mm)
 	return ahead_distance(c, w);
 }
 
-/* Beside the path its axes have the last word. */
+/* Beside the path the axes of the escape may allow less. */
 static struct mover_limits escape_limits(const struct cycle *c)
 {
 	const struct cycle_jump_config *j = &c->jump;
@@ -68,7 +68,8 @@ static double jump(struct cycle *c)
 	return go_to(c, &w, c->lift.to_mm);
 }
 
-/* With what it moves with; what sets its own speed brakes as positioning. */
+/* With the limits of the motion under way; laws that set their own speed brake
+ * as positioning does. */
 static double brake(struct cycle *c)
 {
 	const struct mover_limits l = c->mover.kind != MOVER_NO_PLAN ?
@@ -86,9 +87,9 @@ static double hold(struct cycle *c)
 
 	c->hold.braked = c->hold.braked || c->mover.v_mm_s == 0;
 	if (!escape_is_out(&c->escape))
-		return c->hold.moving && c->hold.braked ? go_to(c, &w, c->hold.to_mm) :
-						brake(c);
-	/* As planned, so that it stands before a corner and before the cut. */
+		return c->hold.moving && c->hold.braked ?
+		       go_to(c, &w, c->hold.to_mm) : brake(c);
+	/* By a plan, so that it stops at a corner and before the cut. */
 	beside = escape_limits(c);
 	if (!c->hold.moving)
 		return mover_stop(&c->mover, &beside);
@@ -123,7 +124,8 @@ double feed_distance(struct cycle *c)
 
 static bool there(const struct cycle *c, double to_mm)
 {
-	return c->mover.v_mm_s == 0 && fabs(to_mm - law_place(c)) < 2 * LAW_ONTO_MM;
+	return c->mover.v_mm_s == 0 &&
+	       fabs(to_mm - law_place(c)) < 2 * LAW_ONTO_MM;
 }
 
 /* Up, then back to just short of the cut. */

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * interlock.h - what a PLC permits, locks and asks for
+ * interlock.h - what a PLC permits and asks for
  *
- * Sparks and motion need a PLC that is there, its permit and its interlocks.
- * Losing one of them while a job runs, or while it is walked back by command,
- * is a fault: sparks are off in the same period, the motion ends on the path.
- * A stand needs nothing; it cannot be left without them.
+ * Sparks and motion need a PLC that is there, gives its permit, and has its
+ * interlocks closed.  Losing one of them while anything moves is a fault:
+ * sparks are off in the same period, and the motion ends on the path.  A
+ * machine that stands needs none of them, but cannot begin to move without
+ * them.
  *
- * What it asks for - start, hold, reset, override - is what the commands do.
- * A machine without a PLC notices none of this.
+ * What a PLC asks for - start, hold, reset, override - does the same as the
+ * commands.  A machine without a PLC notices nothing of this.
  *
  * Threads: RT-safe.
  */

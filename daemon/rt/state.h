@@ -11,18 +11,18 @@
 #include <stdbool.h>
 
 enum cycle_state {
-	STATE_STAY,		/* in the table only: no transition */
+	STATE_STAY,		/* only in the table: no transition */
 	STATE_IDLE,		/* no job */
 	STATE_TRAVEL,		/* positioning, or a dry run: power off */
 	STATE_APPROACH,		/* power on, feeding until it sparks */
 	STATE_ERODE,		/* gap servo */
-	STATE_RETRACT,		/* back along the path, out of a short */
+	STATE_RETRACT,		/* back along the path because of a short */
 	STATE_JUMP,		/* timed lift and return */
 	STATE_HOLD,		/* stands, or walks back by command */
 	STATE_FAULT,		/* latched; power off, no motion */
 	STATE_JOG,		/* no job: an axis moves by command */
 	STATE_HOME,		/* no job: axes look for their switches */
-	STATE_PROBE,		/* feeling for the work, power off */
+	STATE_PROBE,		/* looking for the work by contact, power off */
 	CYCLE_NSTATES
 };
 
@@ -42,7 +42,7 @@ enum cycle_event {
 	EVENT_ARCING,		/* arcs that a jump did not end */
 	EVENT_CLEAR,		/* a retract's short is gone */
 	EVENT_JUMP_DUE,
-	EVENT_TIME_UP,		/* of a cycle that has one */
+	EVENT_TIME_UP,		/* the time of a timed part is up */
 	EVENT_MOVE_DONE,	/* the mover is where it was sent */
 	EVENT_END,		/* end of the program */
 	CYCLE_NEVENTS

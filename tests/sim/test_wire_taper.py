@@ -183,6 +183,65 @@ M2
     assert off.min() > -BOUND_MM
 
 
+PLATE = """G90 F180
+H1=0.185
+H2=0.135
+H3=0.128
+G150 H1
+G150 H2 F300
+G150 H3 F400
+G151 P100 X10 Y10
+{cut}
+M2
+O100
+G41 G1 X10 Y5
+X15
+Y15
+X5
+Y5
+X10
+G40 Y10
+M99
+"""
+
+
+@pytest.mark.parametrize("cut", ["G152", "G152 R1", "G152 L1", "G152 R12"])
+def test_each_pass_has_its_offset_all_the_way_round(cut):
+    text = PLATE.format(cut=cut)
+    at = planes(rows_of(text))[0]
+    lines = at[:, 0]
+    on = at[(lines >= 13) & (lines <= 17)][:, 1:]
+    square = [(5, 5), (15, 5), (15, 15), (5, 15)]
+    off = outline_distance(on, square, [0] * 4)
+    assert off.min() > 0.128 - BOUND_MM
+    for offset in (0.185, 0.135, 0.128):
+        near = on[np.abs(off - offset) < 2.5 * UM]
+        # Each side from end to end, but for the corners and the other passes.
+        for k, fixed in ((0, 5), (0, 15), (1, 5), (1, 15)):
+            side = near[np.abs(near[:, k] - fixed) < 0.3][:, 1 - k]
+            assert side.min() < 5.2 and side.max() > 14.8
+            assert np.diff(np.sort(side)).max() < 0.01
+    r = run("--machine", WIRE, "--check", text=text)
+    passes = [x for x in r.stderr.decode().splitlines() if "pass " in x]
+    assert len(passes) == (6 if "R" in cut else 3), passes
+
+
+@pytest.mark.parametrize("old,new,found", [
+    ("G150 H1", "G150 H9", "a pass with register 9"),
+    ("P100 X10 Y10", "P100 X10", "G151 without P, X or Y"),
+    ("P100 X", "P101 X", "a call of O101"),
+    ("G40 Y10", "Y10", "is not whole"),
+    ("{cut}", "G152 R99", "a tab of 99 mm"),
+    ("{cut}", "G152 R1 L1", "with a tab"),
+    ("X15\n", "X15\nM0\n", "more than motions in a contour"),
+    ("Y5\nX10\n", "Y5\nX9\n", "is not whole"),
+])
+def test_what_cannot_be_cut_in_passes_is_refused(old, new, found):
+    text = PLATE.replace(old, new).replace("{cut}", "G152")
+    r = run("--machine", WIRE, "--check", text=text)
+    assert r.returncode == 65 and found in r.stderr.decode(), r.stderr
+
+
 def test_a_leaning_wall_of_two_contours_has_the_offset_over_cos():
     """29 degrees by U V, as G51 would have it: 0.125 / cos on both planes."""
     lean = HEIGHT * math.tan(math.radians(29))

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * axes.h - axes under power
+ * axes.h - the power of the axes
  *
- * An operator's start or retract puts them under power; faults in which they
- * are not good take it from them.  They may take their time to be on their
- * places: the state is hold as long, then the start goes on by itself.
+ * An operator's start or retract gives the axes power.  Faults in which they
+ * may be wrong take it away.  The axes may need time until they have power and
+ * stand on their places.  Meanwhile the state is hold, and the start goes on by
+ * itself afterwards.
  *
- * A machine whose axes always have power never says starting or axes_off, and
- * none of this is seen.
+ * A machine whose axes always have power never says `starting` or `axes_off`,
+ * and none of this happens.
  *
  * Threads: RT-safe.
  */
@@ -20,8 +21,8 @@ struct cycle;
 
 struct axes {
 	bool starting, off;		/* as the machine says */
-	bool awaited;			/* power was asked for; no motion yet */
-	bool start;			/* ... and then start */
+	bool awaited;			/* asked for and not there: no motion */
+	bool start;			/* start the job once it is there */
 	uint64_t waited;		/* cycles */
 };
 
@@ -32,19 +33,19 @@ void axes_guard(struct cycle *c, const struct io_inputs *in);
 uint64_t axes_faults(void);
 
 /**
- * axes_want() - power, for a @start or for a motion while held.
- * Return: true if motion may begin now; false: it is awaited.
+ * axes_want() - ask for power, for a @start or for a motion while held.
+ * Return: true if motion may begin now; false if the power is awaited.
  */
 bool axes_want(struct cycle *c, bool start);
 
-/** axes_forget() - nothing is awaited any more; what has power keeps it. */
+/** axes_forget() - wait no more; axes that have power keep it. */
 void axes_forget(struct cycle *c);
 
 enum axes_await { AXES_READY, AXES_START, AXES_AWAITED };
 
 /**
- * axes_await() - a cycle: may there be motion?  AXES_START: yes, and the start
- * they were awaited for is due; said once.
+ * axes_await() - once a cycle: may anything move?  AXES_START: yes, and the
+ * start that waited for them is due now; it is said once.
  */
 enum axes_await axes_await(struct cycle *c);
 

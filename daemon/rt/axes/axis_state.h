@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * axis_state.h - where the axes stand, and what that rests on
+ * axis_state.h - where the axes stand, and how that is known
  *
- * Enough for a cycle to go on where another was killed: places, the pulses the
- * drives were sent to for them, which way each axis came, what homing found.
- * Without it the next one would take pitch error and backlash up anew, on top
- * of what the drives have already.
+ * It holds what a cycle needs to go on where another one was killed: places,
+ * the pulses that the drives were sent to for them, the direction of each
+ * axis's last move, and what homing found.  Without it the next cycle would add
+ * pitch error and backlash a second time.
  *
- * Units: pulses.  Threads: axis_state_get() is RT-safe, axis_state_set() startup only.
+ * Units: pulses.  Threads: axis_state_get() is RT-safe, axis_state_set()
+ * startup only.
  */
 #ifndef RT_AXIS_STATE_H
 #define RT_AXIS_STATE_H
@@ -34,11 +35,11 @@ struct axis_state {
 void axis_state_get(const struct cycle *c, struct axis_state *ret);
 
 /**
- * axis_state_set() - a cycle that never ran stands there, idle.
+ * axis_state_set() - put a cycle that never ran there, idle.
  *
- * A program that begins elsewhere is refused from then on, as after a jog.
- * Nothing is taken up, whatever the machine file says now, until a command
- * moves an axis; comp_left() says how much that is.
+ * From then on a program that begins elsewhere is refused, as after a jog.
+ * Whatever the machine file says now, no axis moves for its compensation until
+ * a command moves an axis; comp_left() says how much there is to do.
  */
 void axis_state_set(struct cycle *c, const struct axis_state *s);
 

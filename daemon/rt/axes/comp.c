@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * comp.c - backlash and geometric errors, taken up at a pace
+ * comp.c - backlash and geometric errors, added a few pulses a period
  */
 #include "axes/comp.h"
 

@@ -2,16 +2,17 @@
 /*
  * comp.h - from a place on the path to pulses of the drives
  *
- *	pulses = place + shift + map(places) + backlash(direction)
+ * 	pulses = place + shift + map(places) + backlash(direction)
  *
- * shift is what homing found (home.h).  The map is the cure of the machine's
- * geometric errors (interp/errormap.h): pitch, straightness, squareness and
- * growth, a function of the places of all axes alone.  The backlash is nothing
- * after a move toward + and all of it, downward, after one toward -.  There and
- * back the pulses are therefore the same ones.
+ * shift is what homing found (home.c). The map compensates geometric errors of
+ * the machine (interp/errormap.h): pitch, straightness, squareness and thermal
+ * growth.  It depends only on the places of all axes.  The backlash is zero
+ * after a move toward +, and all of it, downward, after a move toward -. So the
+ * pulses are the same ones there and back.
  *
- * A change is taken up a few pulses a period, while the path goes on or stands;
- * never more than the machine can put out in one, the path's own included.
+ * A change of these is added a few pulses a period, while the path goes on or
+ * stands, and never more than the machine can put out in one period together
+ * with the pulses of the path.
  *
  * Units: pulses.  Sign: + as the axis.
  * Threads: RT-safe; the work of interp_errormap_apply(), where a place changed.
@@ -29,7 +30,7 @@
 struct comp_config {
 	struct {
 		int32_t backlash;	/* >= 0 */
-		double take_up;		/* pulses a period, > 0 where used */
+		double take_up;		/* pulses a period at most, > 0 where used */
 		double pulse_mm;	/* > 0 where there are maps */
 	} axis[INTERP_NAXES];
 	double maps_c;			/* temperature they were measured at */
@@ -48,8 +49,8 @@ struct comp_axis {
 struct comp {
 	bool begun;
 	bool stale;			/* the maps changed */
-	bool resting;			/* nothing is taken up, until an axis is
-					 * to move */
+	bool resting;			/* nothing is added before an axis is to
+					 * move */
 	double told_c;			/* temperature of the axes; 0: not told */
 	struct comp_axis axis[INTERP_NAXES];
 };
@@ -70,11 +71,11 @@ void comp_apply(struct comp *c, const struct comp_config *k,
 		const struct comp_period *p, int32_t ret[INTERP_NAXES]);
 
 /**
- * comp_settle() - call the place where the drive of @axis is at @pulses its
- * @place.
+ * comp_settle() - from now on the drive of @axis is at its @place when it is at
+ * @pulses.
  *
- * Whole: of that axis nothing is left to be taken up there.  It stands.  Errors
- * of other axes along it are taken up as those of any move.
+ * The axis stands, and nothing is left to be added to it there.  What its place
+ * changes in the errors of other axes is added as in any move.
  */
 void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
 		 const int32_t place[INTERP_NAXES], int32_t pulses);
@@ -82,12 +83,12 @@ void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
 /**
  * comp_warm() - all axes are at @told_c, in degC.
  *
- * At most COMP_OVER_K_MAX off the maps' temperature.  What the machine grew is
- * taken up as any other change.
+ * At most COMP_OVER_K_MAX from the temperature of the maps.  The growth of the
+ * machine is added like any other change.
  */
 void comp_warm(struct comp *c, struct comp_config *k, double told_c);
 
-/** comp_left() - what is to be taken up yet, of each axis. */
+/** comp_left() - what is still to be added, for each axis. */
 void comp_left(const struct comp *c, const struct comp_config *k,
 	       int32_t ret[INTERP_NAXES]);
 

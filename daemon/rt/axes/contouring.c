@@ -10,7 +10,7 @@
 #define TAKEN_UP	(1.0 / 16)	/* a period */
 #define SEGMENTS_MAX	64		/* looked at for one point */
 
-/* -- Set values ------------------------------------------------------------------ */
+/* -- Set values ------------------------------------------------------------ */
 
 /* By axis: [0] is the period before, [1] the present one. */
 struct row_ahead {
@@ -55,7 +55,7 @@ static bool point_set(struct cycle *c, struct row_ahead *r, int k,
 	return true;
 }
 
-/* Axes that the program does not move stand. */
+/* Axes that the program does not move stay where they are. */
 static void stand_all(const struct cycle *c, struct row_ahead *r)
 {
 	for (int i = 0; i < INTERP_NAXES; i++)
@@ -65,8 +65,8 @@ static void stand_all(const struct cycle *c, struct row_ahead *r)
 }
 
 /*
- * The speed along the path goes on changing as it does, but does not turn: a
- * path that comes to a stand stays there.
+ * The speed along the path is taken to go on changing as it does now, but not
+ * to change its sign: a motion that comes to a stand stays there.
  */
 static bool look_ahead(struct cycle *c, double way_mm,
 		       struct row_ahead *r)
@@ -89,7 +89,7 @@ static bool look_ahead(struct cycle *c, double way_mm,
 	return true;
 }
 
-/* -- Cross-coupling -------------------------------------------------------------- */
+/* -- Cross-coupling -------------------------------------------------------- */
 
 static bool is_coupled(const struct contouring_config *k, int axis)
 {
@@ -139,9 +139,9 @@ static void couple(struct cycle *c, const struct io_inputs *in,
 				e.vector_mm[n++];
 }
 
-/* -- As places ------------------------------------------------------------------- */
+/* -- As places ------------------------------------------------------------- */
 
-/* A drive's own feedforward makes a speed of what the addition changes too. */
+/* The drive's own feedforward sees the changes of the addition as a speed. */
 static double as_place(const struct cycle *c, int axis, double v_mm_s)
 {
 	const struct interp_axis_loop *l = &c->config.contouring.loop[axis];
@@ -152,13 +152,13 @@ static double as_place(const struct cycle *c, int axis, double v_mm_s)
 	       (1 + own);
 }
 
-/* A damaged program may make what is no number: that is nothing. */
+/* A damaged program may lead to a value that is no number: it counts as 0. */
 static double within(double x, double low, double high)
 {
 	return isnan(x) ? fmin(fmax(0, low), high) : fmin(fmax(x, low), high);
 }
 
-/* The travel is that of the target too: a drive may watch it by itself. */
+/* The target stays inside the travel too: a drive may watch it by itself. */
 static int32_t inside(const struct cycle *c, int axis, double pulses)
 {
 	const double low = (double)c->config.travel_min[axis] -
@@ -169,7 +169,7 @@ static int32_t inside(const struct cycle *c, int axis, double pulses)
 	return (int32_t)llround(within(pulses, fmin(low, 0), fmax(high, 0)));
 }
 
-/* No farther in a period than what goes at v_max. */
+/* In a period no farther than the way at v_max. */
 static void put(struct cycle *c, int axis, double mm)
 {
 	const struct contouring_config *k = &c->config.contouring;
@@ -191,7 +191,7 @@ static void add(struct cycle *c, const double v[INTERP_NAXES])
 	}
 }
 
-/* -- One period ------------------------------------------------------------------ */
+/* -- One period ------------------------------------------------------------ */
 
 static bool applies(const struct cycle *c)
 {
@@ -221,7 +221,7 @@ static void leave(struct contouring *w)
 	}
 }
 
-/* At full speed, onto a path whose points are not known here. */
+/* It moves at full speed, and the points of its path are not known here. */
 static void ease_off(struct cycle *c)
 {
 	struct contouring *w = &c->contouring;
@@ -236,7 +236,7 @@ static void ease_off(struct cycle *c)
 		leave(w);
 }
 
-/* From here on; slowly, if it is moving. */
+/* Begin here; step by step if it is moving. */
 static void begin(struct cycle *c, bool stood)
 {
 	struct contouring *w = &c->contouring;

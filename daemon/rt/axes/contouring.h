@@ -1,33 +1,35 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * contouring.h - what is added to the targets so that lagging axes keep to the
+ * contouring.h - what is added to the targets so that axes that lag keep to the
  * path
  *
- * A drive that takes places follows them v / gain behind.  Axes that lag unlike
- * leave the path, and all of them round corners off.  Two cures of
- * interp/compensate.h can be had in the cycle, one or both; the speed that they
- * ask for is divided by the drive's position gain and added to the target:
+ * A drive that is sent to places follows them v / gain behind.  Axes that lag
+ * by different amounts leave the path, and all of them cut corners.  The cycle
+ * has two remedies of interp/compensate.h; either or both can be used.  Each
+ * asks for a speed.  That speed, divided by the drive's position gain, is added
+ * to the target:
  *
- *	feedforward	of the set speed and acceleration.  The path ahead is
- *			known exactly; how fast it will be gone along is this
- *			period's speed and its change, held for the lead and
- *			the delay.  Nothing is delayed, as a preview would.
- *	cross-coupled	of the contour error: the measured places against the
- *			row of the last set ones, so that their age does not
- *			count.
+ * 	feedforward	of the commanded speed and acceleration.  The path
+ * 			ahead is known exactly.  Its speed is taken from the
+ * 			speed of this period and its change, over the lead and
+ * 			the delay.  So nothing has to be delayed, as a preview
+ * 			would do.
+ * 	cross-coupled	of the contour error: the measured places are compared
+ * 			with the row of the last commanded places, so that
+ * 			their delay does not count.
  *
- * Only while it positions, and while it brakes or moves held: under the gap
- * servo speeds are small and noisy, and a lead of v / gain into a gap of some
- * um is no service.  Nothing while it homes, jogs or touches, beside the path,
- * and while axes are not under power; a fault takes it off at once.  At rest it
- * is zero: the axes stand on their pulses.  A cut and a touch are begun, and a
- * job ended, no sooner than that.
+ * It works only while positioning, and while a held job brakes or moves: under
+ * the gap servo speeds are small and noisy, and a gap of some micrometres has
+ * no room for a lead of v / gain.  Nothing is added while an axis is homed or
+ * jogged, while probing, beside the path, or while axes have no power.  At rest
+ * nothing is added: the axes stand on their pulses.  A cut, a probing motion
+ * and the end of a job wait for that.
  *
- * Two contours at once are not led; it eases off where they begin.
+ * Two contours at once are not led; the addition fades out where they begin.
  *
- * Never more than an axis lags at its v_max, and in a period never more of it
- * than the way at v_max; but a fault takes all of it off at once.  A target
- * inside the travel stays inside.
+ * It is never more than the lag of an axis at its v_max, and changes in a
+ * period by no more than the way at v_max; but a fault takes all of it off at
+ * once.  A target inside the travel stays inside.
  *
  * Units: mm, s; pulses.
  * Threads: RT-safe.  At most CONTOURING_AHEAD + 2 points of the path and the

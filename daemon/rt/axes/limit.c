@@ -15,8 +15,8 @@ void limit_guard(struct cycle *c, const struct io_inputs *in)
 	const uint32_t came = in->limit & ~c->limit.on;
 
 	/*
-	 * Which side it is on, by the last pulses out.  Of pulses before the
-	 * first period nobody knows what came after them.
+	 * The direction of the last pulses tells which side the switch is on.
+	 * Before the first period there were none of this edmd.
 	 */
 	for (uint32_t m = came; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
@@ -24,7 +24,8 @@ void limit_guard(struct cycle *c, const struct io_inputs *in)
 		c->limit.side[i] = c->comp.begun ? c->comp.axis[i].toward : 0;
 	}
 	c->limit.on = in->limit;
-	if ((came && cycle_moves(c)) || (in->limit && state_duty[c->state].running))
+	if ((came && cycle_moves(c)) ||
+	    (in->limit && state_duty[c->state].running))
 		fault_latch(&c->fault, FAULT_LIMIT_SWITCH);
 }
 

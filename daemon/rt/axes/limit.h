@@ -2,10 +2,10 @@
 /*
  * limit.h - hard limit switches
  *
- * A switch that comes on while anything moves stops it at once and latches
- * fault limit-switch.  An axis that stands on its switch moves only away from
- * it: the way it did not come.  On since the start nobody knows that way; then
- * both are open, slowly, to a jog.
+ * A switch that comes on while anything moves ends the motion at once and
+ * latches the fault `limit-switch`. An axis that stands on its switch moves
+ * only away from it: not the way it came.  If a switch was on from the start,
+ * nobody knows which way that is; then a jog may go both ways, slowly.
  *
  * Threads: RT-safe.
  */
@@ -26,10 +26,10 @@ struct limit {
 struct cycle;
 struct io_inputs;
 
-/** limit_guard() - look at the switches, before anything moves. */
+/** limit_guard() - look at the switches before anything moves. */
 void limit_guard(struct cycle *c, const struct io_inputs *in);
 
-/** limit_watch() - nothing went farther onto one, after it moved. */
+/** limit_watch() - after the motion: did an axis go farther onto its switch? */
 void limit_watch(struct cycle *c);
 
 /** limit_bars() - may @axis not move @toward +1 or -1? */

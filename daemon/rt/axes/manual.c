@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* So far from 0 a place keeps inside the lattice. */
+/* The lattice goes so far from 0. */
 static bool in_lattice(double pulses)
 {
 	return fabs(pulses) <= INTERP_PULSES_MAX;
@@ -42,7 +42,7 @@ void manual_begin(struct cycle *c, uint32_t axis)
 	mover_set(&h->mover, 0);
 }
 
-/* Behind the move, where the machine could not put them out yet. */
+/* Pulses of the move that the machine could not put out yet. */
 static int64_t left_pulses(const struct cycle *c)
 {
 	const struct manual *h = &c->manual;
@@ -129,7 +129,7 @@ int manual_home(struct cycle *c, uint32_t axis)
 	return ANSWER_DONE;
 }
 
-/* A place nobody knows is looked for at the pace of homing. */
+/* Where the place is not known, an axis moves as slowly as in homing. */
 static double jog_mm_s(const struct cycle *c)
 {
 	const struct manual_axis *a = manual_axis(c);

@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * manual.h - one axis moved by an operator, without a program: jogged or homed
+ * manual.h - one axis moved by an operator without a program: jogged or homed
  *
- * Only from idle.  The move is an S-curve with the axis's own limits; a hold
- * or a stop brakes it, a fault ends it at once.
+ * Only from idle.  The move is an S-curve with the axis's own limits.  A hold
+ * or a stop brakes it; so does a fault that leaves the axes good, but for a
+ * contact, which ends the move at once.
  *
- * Homing, an axis at a time, by method (docs/homing.md):
+ * Homing, one axis at a time, by method (docs/homing.md):
  *
- *	switch		fast toward the switch, off it and home_back_mm
- *			further, slowly on it again: that edge is home_at_mm
- *	switch-index	the same, and slowly on to the index mark: that mark is
- *	absolute	no motion: the drive says where it stands
- *	none		the place it starts at is good; one whose drive has
- *			lost its place is where it stands, by the operator's
- *			word
+ * 	switch		fast toward the switch, off it and home_back_mm
+ * 			further, slowly onto it again: that edge is home_at_mm
+ * 	switch-index	the same, and slowly on to the index mark: that mark is
+ * 	absolute	no motion: the drive says where it stands
+ * 	none		the place where it starts is good
  *
- * What home found is a shift between places and pulses (comp.h); no pulse is
- * made by calling a place another.
+ * What homing found is a shift between places and pulses (comp.h). Giving a
+ * place another number makes no pulse.
  *
  * Units: mm of the axis, deg if rotary; pulses.  Sign: + as the axis.
  * Threads: RT-safe.

@@ -14,7 +14,7 @@ static double own_off_us(const struct cycle *c)
 	return c->out.pulse.off_us > 0 ? c->out.pulse.off_us : c->gap.off_us;
 }
 
-/* Is there anything on it, on this machine? */
+/* Can this machine take this step? */
 static bool has(const struct cycle *c, uint32_t rung)
 {
 	if (rung <= ARCING_OFF_LAST)
@@ -43,7 +43,7 @@ static void climb(struct cycle *c)
 	fault_latch(&c->fault, FAULT_ARCING);
 }
 
-/* What a jump or a retract ended: should arcs come again, so will they. */
+/* The arcs have ended: if they come again, jump and retract come again too. */
 static void end_deeds(struct cycle *c)
 {
 	struct arcing *a = &c->arcing;
@@ -51,10 +51,11 @@ static void end_deeds(struct cycle *c)
 	a->lasting = 0;
 	a->due = false;
 	if (a->rung > ARCING_OFF_LAST)
-		a->rung = has(c, ARCING_OFF_LAST) ? ARCING_OFF_LAST : ARCING_NONE;
+		a->rung = has(c, ARCING_OFF_LAST) ? ARCING_OFF_LAST :
+						    ARCING_NONE;
 }
 
-/* Slowly: arcs come back to the place they burned. */
+/* Slowly: arcs like to come back to the place where they burned. */
 static void descend(struct cycle *c)
 {
 	struct arcing *a = &c->arcing;
@@ -105,7 +106,7 @@ double arcing_retract_mm(const struct cycle *c)
 	return arcing_retract_due(c) ? c->gap.arcing_retract_mm : 0;
 }
 
-/* The mean begins anew: power was off. */
+/* Power was off: the average starts from nothing. */
 void arcing_met(struct cycle *c)
 {
 	c->arcing.due = false;
@@ -115,8 +116,8 @@ void arcing_met(struct cycle *c)
 
 double arcing_off_us(const struct cycle *c)
 {
-	const uint32_t step = c->arcing.rung < ARCING_OFF_LAST ? c->arcing.rung :
-							   ARCING_OFF_LAST;
+	const uint32_t step = c->arcing.rung < ARCING_OFF_LAST ?
+			      c->arcing.rung : ARCING_OFF_LAST;
 
 	if (step == ARCING_NONE || !has(c, ARCING_OFF_FIRST))
 		return c->out.pulse.off_us;

@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * arcing.h - arcs, and what is done against them, one rung after another
+ * arcing.h - what is done against arcs, one step after another
  *
- * The share of arcs is a mean over arcing_cycles cycles with power.  Above
- * arcing_share, the next rung is taken; not above it, the jump and the retract
- * have done their work and may be taken again; below half of it, for
- * arcing_recover_cycles, one step of the off time is given back:
+ * The share of arcs among the pulses is averaged over arcing_cycles cycles with
+ * power.  An average above arcing_share takes the next step; one that is not
+ * above it means that the jump and the retract have done their work, and they
+ * may be taken again later.  While the average is below half of arcing_share,
+ * one step of the off time is given back every arcing_recover_cycles:
  *
- *	1 to 4		the off time, in equal steps up to arcing_off_max times
- *	5		a jump out of turn
- *	6		a retract of arcing_retract_mm at least
- *	7		the fault arcing, when five means in a row after the
- *			retract were above arcing_share
+ * 	1 to 4		the off time grows, in equal steps, to arcing_off_max
+ * 			times its own length
+ * 	5		a jump at once
+ * 	6		a retract of arcing_retract_mm at least
+ * 	7		the fault `arcing`, when five averages in a row after
+ * 			the retract were above arcing_share
  *
- * Rungs that the machine has not are passed over: the off time where nobody
- * knows it, the jump where there are none.
+ * A step that the machine cannot take is left out: the off time where it is not
+ * known, the jump on a machine without jumps.
  *
  * Threads: RT-safe.
  */
@@ -34,12 +36,15 @@ enum arcing_rung {
 };
 
 struct arcing {
-	double sum;			/* of shares, in the mean under way */
-	uint32_t cycles;		/* of it */
-	uint64_t calm;			/* cycles without arcs */
-	uint32_t lasting;		/* means above, after a retract */
+	double sum;			/* of the shares in this average ... */
+	uint32_t cycles;		/* ... and how many there are */
+	uint64_t calm;			/* cycles since the last step, without
+					 * arcs */
+	uint32_t lasting;		/* averages above arcing_share, after a
+					 * retract */
 	uint32_t rung;			/* enum arcing_rung */
-	bool due;			/* the rung's jump or retract */
+	bool due;			/* the jump or retract of this rung is
+					 * still to be done */
 };
 
 struct cycle;
@@ -47,14 +52,14 @@ struct cycle;
 /** arcing_watch() - once a cycle with power. */
 void arcing_watch(struct cycle *c);
 
-/** arcing_jump_due(), arcing_retract_due() - is the rung's deed still to do? */
+/** arcing_jump_due(), arcing_retract_due() - is one asked for, and not done? */
 bool arcing_jump_due(const struct cycle *c);
 bool arcing_retract_due(const struct cycle *c);
 
-/** arcing_retract_mm() - the least way of the retract that begins. */
+/** arcing_retract_mm() - how far the retract that begins goes at least. */
 double arcing_retract_mm(const struct cycle *c);
 
-/** arcing_met() - the deed is done: a jump or a retract begins. */
+/** arcing_met() - what was asked for is done: a jump or a retract begins. */
 void arcing_met(struct cycle *c);
 
 /** arcing_off_us() - the off time to ask for; NAN: as it is. */

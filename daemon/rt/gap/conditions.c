@@ -164,7 +164,7 @@ void conditions_say(struct cycle *c, bool negative)
 	put_polarity(c);
 }
 
-/* -- set ---------------------------------------------------------------------- */
+/* -- set ------------------------------------------------------------------- */
 
 static bool is_used(uint32_t field)
 {
@@ -200,7 +200,8 @@ static void change(struct conditions *p, uint32_t at, uint32_t field,
 	}
 }
 
-enum conditions_result conditions_set(struct cycle *c, uint32_t field, double value)
+enum conditions_result conditions_set(struct cycle *c, uint32_t field,
+				      double value)
 {
 	const struct conditions was = c->conditions;
 	const uint32_t at = place_of(&was, field);

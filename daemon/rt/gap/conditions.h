@@ -2,13 +2,13 @@
 /*
  * conditions.h - the values in force: machine file, condition, `set`
  *
- * A condition belongs to a place on the path: where the cursor stands, its
- * condition goes over the machine file's values, on the way back too.  What
- * is set while a condition is in force belongs to that condition, for the rest
- * of the job, and goes over both.
+ * A condition belongs to a part of the path.  Where the cursor stands, the
+ * values of the condition there replace those of the machine file; on the way
+ * back too.  What is `set` while a condition is in force belongs to that
+ * condition until the job ends, and replaces both.
  *
- * Polarity: a `set` is strongest, then what the program said last by M3 or M4,
- * then the condition; without all of them the electrode is positive.
+ * Polarity: a `set` counts most, then what the program said last by M3 or M4,
+ * then the condition.  Without any of them the electrode is positive.
  *
  * Threads: RT-safe.
  */
@@ -54,7 +54,8 @@ bool conditions_begin(struct cycle *c);
 bool conditions_follow(struct cycle *c);
 
 /** conditions_set() - @value NAN takes a set back. */
-enum conditions_result conditions_set(struct cycle *c, uint32_t field, double value);
+enum conditions_result conditions_set(struct cycle *c, uint32_t field,
+				      double value);
 
 /**
  * conditions_restore() - all that was set in the job that is loaded, before a

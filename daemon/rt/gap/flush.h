@@ -3,20 +3,21 @@
  * flush.h - when to jump, and how high
  *
  * A jump is due after every_s of erosion, after every_mm of depth, or when
- * arcs ask for one.  A wire machine never jumps.
+ * arcing asks for one.  A wire machine never jumps.
  *
- * With `adaptive`, every jump looks back to the one before it.  bad is the
- * part of that time with a short or in a retract, arcs counted by their share;
- * rate the depth for all of the time, jumps and approaches included.
+ * With `adaptive`, each jump judges the time since the jump before it.  `bad`
+ * is the part of that time that was spent shorted or in a retract, and arcs
+ * count by their share.  The rate is the depth gained in all of that time,
+ * jumps and approaches included.
  *
- *	bad > bad_share		period * 0.7, height * 1.25
- *	else, each four jumps	period * 1.15 or / 1.15: the other way than the
- *				last if the rate has fallen since;
- *				height * 0.95, while above height_mm
+ * 	bad > bad_share		period * 0.7, height * 1.25
+ * 	else, each four jumps	period * 1.15 or / 1.15; the direction changes
+ * 				if the rate has fallen since the last step;
+ * 				height * 0.95, while it is above height_mm
  *
- * within every_min_s to every_max_s and height_min_mm to height_max_mm.  It
- * begins, and begins anew when a condition or `set` changes them, with every_s
- * and height_mm.
+ * Period and height stay within every_min_s to every_max_s and height_min_mm to
+ * height_max_mm.  They start at every_s and height_mm, and start there again
+ * when a condition or `set` changes one of these.
  *
  * Threads: RT-safe.
  */
@@ -31,7 +32,7 @@ struct flush_trial {
 	uint32_t jumps;
 	double depth_mm, cycles;
 	double before;			/* rate of the trial before, mm a cycle */
-	bool seldomer;			/* the way the period goes */
+	bool seldomer;			/* the period is growing */
 };
 
 struct flush {

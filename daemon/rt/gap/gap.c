@@ -30,7 +30,7 @@ double gap_window_low_v(const struct cycle *c)
 	return fmin(low, high);
 }
 
-/* -- Can it be true? --------------------------------------------------------- */
+/* -- Can it be true? ------------------------------------------------------- */
 
 static double ignition_v(const struct cycle *c)
 {
@@ -63,7 +63,7 @@ static bool shares_ok(const struct io_inputs *in)
 	       (double)s->shorted <= 1 + SHARES_SLACK;
 }
 
-/* -- The signal, by source --------------------------------------------------- */
+/* -- The signal, by source ------------------------------------------------- */
 
 static void from_voltage(const struct cycle *c, const struct io_inputs *in,
 			 struct gap_reading *r)
@@ -136,7 +136,7 @@ static void (*const sources[GAP_NSOURCES])(const struct cycle *,
 	[GAP_CAN]	= from_can,
 };
 
-/* -- Filters ----------------------------------------------------------------- */
+/* -- Filters --------------------------------------------------------------- */
 
 /* By insertion: it is 15 at the most. */
 static double median(const double *v, uint32_t n)
@@ -183,7 +183,7 @@ static void forget(struct gap_memory *m, bool power)
 	m->same_cycles = 0;
 }
 
-/* -- Arcs -------------------------------------------------------------------- */
+/* -- Arcs ------------------------------------------------------------------ */
 
 /*
  * A spark's voltage scatters with its ignition delay; an arc has none and
@@ -209,7 +209,7 @@ static double arcing_by_voltage(const struct cycle *c, struct gap_memory *m,
 	       m->arcing_var_v2 < c->gap.arcing_sigma_v * c->gap.arcing_sigma_v ? 1 : 0;
 }
 
-/* -- Is it alive? ------------------------------------------------------------ */
+/* -- Is it alive? ---------------------------------------------------------- */
 
 /* Lines stand still by nature, and so do the shares of an open gap. */
 static bool may_stand(const struct cycle *c, const struct gap_reading *r)

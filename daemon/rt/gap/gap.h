@@ -2,25 +2,26 @@
 /*
  * gap.h - one reading of the gap, whatever the sensor
  *
- * A mean voltage, shares of the last period's pulses, or three comparator
- * lines: the cycle works on one signal in volts, + is wider, with servo_v the
- * value to hold, and on a few flags.
+ * A sensor may give a mean voltage, shares of the last period's pulses, or
+ * three comparator lines.  The cycle works with one signal in volts and a few
+ * flags.  A higher signal is a wider gap, and servo_v is the value to hold.
  *
- *	sim, voltage	the mean voltage
- *	shares		servo_v + share_v * (open - share_weight *
- *			(shorted + arc) - share_set); without power, and in
- *			its first cycle, where there are no pulses to count,
- *			the mean voltage if there is one
- *	lines		short 0 V, spark the middle of the window, open twice
- *			open_v; a short before a spark before an open
- *	can		shares where the backend has them, else the voltage
+ * 	sim, voltage	the mean voltage
+ * 	shares		servo_v + share_v * (open - share_weight *
+ * 			(shorted + arc) - share_set).  Without power, and in
+ * 			its first cycle, no pulses were counted: then the mean
+ * 			voltage, if there is one
+ * 	lines		a short is 0 V, a spark the middle of the window, an
+ * 			open gap twice open_v.  If several lines are on, a
+ * 			short counts before a spark and a spark before an open
+ * 	can		shares if the backend has them, else the voltage
  *
- * A reading counts as valid only if it can be true: finite, not below zero by
- * more than an amplifier's offset, not above 1.5 times the ignition voltage;
- * shares between 0 and 1, together no more than 1; one line at least.
+ * A reading is valid only if it can be true: finite, below zero by no more than
+ * the offset of an amplifier, not above 1.5 times the ignition voltage; shares
+ * between 0 and 1, with a sum of 1 at most; at least one line on.
  *
- * Filtered over filter_cycles is `signal_v` alone.  What narrows is seen at
- * once, in `now_v` and `contact`.
+ * Only `signal_v` is filtered, over filter_cycles.  A gap that narrows is seen
+ * at once, in `now_v` and `contact`.
  *
  * Threads: RT-safe.
  */
@@ -84,7 +85,7 @@ void gap_sense(struct cycle *c, const struct io_inputs *in);
 /** gap_is_unreadable() - an invalid reading: should it be a valid one? */
 bool gap_is_unreadable(const struct cycle *c, const struct io_inputs *in);
 
-/** gap_forget() - what was before says nothing, after a fault or a hold. */
+/** gap_forget() - forget all readings so far; after a fault or a hold. */
 void gap_forget(struct cycle *c);
 
 /** The window the servo stands in, from the values in force; low <= high. */

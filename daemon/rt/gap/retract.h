@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * retract.h - how far, how long and how often back along the path
+ * retract.h - how far, how long and how often it goes back along the path
  *
- * Each bound has an alarm of its own: the distance short-not-cleared, the end
- * of the way back retract-at-start, the time retract-time, and retracts in a
- * row without progress_mm of depth between them retract-count.
+ * Each bound has a fault of its own: the distance `short-not-cleared`, the end
+ * of the way back `retract-at-start`, the time `retract-time`, and too many
+ * retracts with less than progress_mm of depth between them `retract-count`.
  *
  * Threads: RT-safe.
  */
@@ -28,8 +28,9 @@ struct retract {
 	double least_mm;		/* at least so far, out of an arc */
 	uint64_t waited;		/* cycles stood at the limit */
 	uint64_t cycles;		/* of it, in all */
-	uint32_t in_row;		/* without erosion between */
-	double far_mm;			/* the farthest place, at the first */
+	uint32_t in_row;		/* retracts without erosion between */
+	double far_mm;			/* the farthest place when the first of
+					 * them began */
 };
 
 struct cycle;
@@ -37,10 +38,10 @@ struct cycle;
 /** retract_begin() - where the state is entered. */
 void retract_begin(struct cycle *c);
 
-/** retract_is_clear() - the gap is wide again, and the way far enough. */
+/** retract_is_clear() - the gap is wide again, and it went far enough. */
 bool retract_is_clear(const struct cycle *c);
 
-/** retract_watch() - after the walk: as far back as it may? */
+/** retract_watch() - after the walk: latch the fault of a bound that is met. */
 void retract_watch(struct cycle *c);
 
 /** retract_limit_mm() - distance a retract may go, by the process. */

@@ -27,7 +27,7 @@ static double cut_limit(const struct cycle *c, double v_mm_s)
 						   v_mm_s;
 }
 
-/* As fast as the axes can change their speed; what is usual, in a cycle. */
+/* Towards a speed, as fast as the axes may change theirs: usually at once. */
 static double go_toward(struct cycle *c, double v_mm_s)
 {
 	const double dv = servo_dv_mm_s(c), was = c->mover.v_mm_s;
@@ -35,7 +35,8 @@ static double go_toward(struct cycle *c, double v_mm_s)
 	return law_go_at(c, fmin(fmax(v_mm_s, was - dv), was + dv));
 }
 
-/* The speed that, after a cycle of it, can be braked in what is left. */
+/* The fastest speed that can still be braked within what is left, after a cycle
+ * at that speed. */
 static double stop_within(const struct cycle *c, double left_mm)
 {
 	const double dv = servo_dv_mm_s(c);
@@ -55,7 +56,7 @@ static double go_back(struct cycle *c, double v_mm_s, double floor_mm)
 		    -left - LAW_ONTO_MM);
 }
 
-/* -- Approach ---------------------------------------------------------------- */
+/* -- Approach -------------------------------------------------------------- */
 
 /*
  * Open, at the approach speed; with signs of sparks no faster than the servo
@@ -73,7 +74,7 @@ double law_approach(struct cycle *c)
 					 fmin(feed, g->approach_mm_s)));
 }
 
-/* -- Erode ------------------------------------------------------------------- */
+/* -- Erode ----------------------------------------------------------------- */
 
 void servo_reset(struct cycle *c)
 {
@@ -110,7 +111,7 @@ static void integrate(struct cycle *c, double error_mm_s, double limit_mm_s)
 		s->integral_mm_s = 0;
 		return;
 	}
-	/* Asked and not walked: an action in front, or the path's end. */
+	/* Asked for and not walked: an action is in front, or the end. */
 	if (s->asked_mm_s > 0 && c->feed_mm_s <= 0 && error_mm_s > 0)
 		error_mm_s = 0;
 	/* At its limit already. */
@@ -158,7 +159,7 @@ double law_erode(struct cycle *c)
 	return go_toward(c, 0);
 }
 
-/* -- Retract ----------------------------------------------------------------- */
+/* -- Retract --------------------------------------------------------------- */
 
 double law_retract(struct cycle *c)
 {

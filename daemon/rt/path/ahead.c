@@ -2,12 +2,13 @@
 /*
  * ahead.c - go along the path at a speed that what lies ahead can be met with
  *
- * Each cycle has a plan: to the fastest speed allowed here, or to pass a slow
- * place at its speed, or to stand at one.  Where the plan leads to within the
- * cycle is known, so it is asked whether everything ahead can still be met from
- * there (lookahead.h).  If so, the plan is good for the cycle.  If not, the place
- * that is missed by most is planned for instead, exactly.  If no plan is good,
- * braking at once is what is left: it meets all that could be met before.
+ * Each cycle has a plan: to reach the fastest speed allowed here, or to pass a
+ * slow place at its speed, or to stop at a place.  Where the plan leads within
+ * one cycle is known.  So the question is whether everything ahead can still be
+ * met from there (lookahead.h). If so, the plan is good for the cycle.  If not,
+ * the place that is missed by most is planned for instead, exactly.  If no plan
+ * is good, braking at once is what is left: it meets all that could be met
+ * before.
  *
  * "Way" and "left" are in the direction of the move, here, and so is the sign
  * of every speed.
@@ -193,8 +194,8 @@ static void plan_next(struct cycle *c, const struct lookahead *k, double v_mm_s)
 /*
  * Braking meets everything, but who stands already would stand for ever.  At
  * the lowest of all ceilings seen only a stop can be missed, and one plan meets
- * that.  If even so something is missed, from a stand the next place is gone to:
- * every move comes on by a place at least.
+ * that.  If even so something is missed, from a stand the next place is gone
+ * to: every move comes on by a place at least.
  */
 static void choose(struct cycle *c, struct lookahead *k, double v_mm_s)
 {

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * ahead.h - go along the path, either way, at a speed all that comes allows
+ * ahead.h - go along the path, either way, as fast as what comes allows
  *
- * One look ahead for positioning, jumps and moves by command.  The speed keeps
- * to every ceiling of the program (interp/limits.h) and to those of the move,
- * and stops where it must; a node limits the speed and never the acceleration,
- * so one on a line costs nothing.  In a cycle the look follows only what is
- * slower than what it has seen, as far as the braking distance.
+ * Positioning, jumps and moves by command all use this.  The speed keeps to
+ * every limit of the program (interp/limits.h) and of the move, and the motion
+ * stops where it has to.  A node limits the speed and never the acceleration,
+ * so a node on a straight line costs nothing.  In a cycle only those places are
+ * looked at that are slower than the ones already seen, as far as the braking
+ * distance.
  *
  * Private to feed.c and ahead.c.  Threads: RT-safe.
  */
@@ -15,7 +16,7 @@
 
 #include "cycle.h"
 
-/* One move; what leads to its end is latched when it begins. */
+/* One move.  Its limits are those of the cycle in which it begins. */
 struct ahead_move {
 	int toward;			/* +1 or -1 */
 	double goal_mm;			/* place to stand at; INFINITY: none */

@@ -20,7 +20,7 @@
 static const uint32_t linear = 1u << INTERP_X | 1u << INTERP_Y |
 			       1u << INTERP_Z | 1u << INTERP_U | 1u << INTERP_V;
 
-/* -- Its legs ---------------------------------------------------------------- */
+/* -- Its legs -------------------------------------------------------------- */
 
 static double pulse_mm(const struct cycle *c, int axis)
 {
@@ -134,7 +134,7 @@ bool escape_begin(struct cycle *c)
 	return e->nlegs > 0;
 }
 
-/* -- Walking ------------------------------------------------------------------ */
+/* -- Walking --------------------------------------------------------------- */
 
 static int32_t at_tick(const struct escape_leg *l, int axis, int64_t tick)
 {
@@ -248,7 +248,7 @@ double escape_stop_mm(const struct cycle *c, double to_mm)
 	return to_mm;
 }
 
-/* -- After a crash ------------------------------------------------------------ */
+/* -- After a crash --------------------------------------------------------- */
 
 /* The longest axis has a pulse in each tick, so it tells which one it is. */
 static bool leg_find(struct escape *e, const int32_t pos[INTERP_NAXES])

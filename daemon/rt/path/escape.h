@@ -2,14 +2,14 @@
 /*
  * escape.h - out of the cut and back beside the path
  *
- * A segment's struct interp_escape says which way out is free.  It is taken
- * from the lattice point the electrode stands on: up to three straight legs,
- * each a row of lattice points that depends on its two ends alone, so the way
- * back is the way out.  The cursor does not move meanwhile.
+ * A segment's struct interp_escape says which way out is free.  It starts at
+ * the lattice point where the electrode stands and has up to three straight
+ * legs.  Each leg is a row of lattice points that depends on its two ends
+ * alone, so the way back is the way out.  The cursor does not move meanwhile.
  *
- * Distances are signed as along the path: + leads back to it, - out.  Legs
- * meet in corners; a walk ends at a corner and goes on in the next cycle, and
- * what plans a motion plans a stop there.
+ * Distances are signed as along the path: + leads back to the path, - away from
+ * it.  Legs meet in corners.  A walk ends at a corner and goes on in the next
+ * cycle, so whoever plans a motion plans to stop there.
  *
  * Units: mm of way from the path, positions in pulses.
  * Threads: RT-safe.  A call takes at most config.points_max lattice points.
@@ -53,8 +53,8 @@ static inline bool escape_is_out(const struct escape *e)
 /**
  * escape_begin() - leave the path where the cursor stands.
  *
- * Return: false if the segment has no escape, or it leads out of the travel:
- * the way out is the path then.
+ * Return: false if the segment has no escape, or if it leads out of the travel.
+ * Then the way out is the path.
  */
 bool escape_begin(struct cycle *c);
 

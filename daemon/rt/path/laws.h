@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * laws.h - the feed laws, each in the file of its kind, and what they share
+ * laws.h - the feed laws of the gap, and what all laws share
  *
- * Every law leaves the speed it asked for in the mover, so that the next state
- * takes over from there.  Private to the files of daemon/rt.
+ * A law says how far to go in this cycle.  It leaves its speed in the mover, so
+ * that the law of the next state goes on from there.  Private to the files of
+ * daemon/rt.
  *
  * Threads: RT-safe.
  */
@@ -12,7 +13,7 @@
 
 #include "cycle.h"
 
-/* A stop is met, not missed by a rounding. */
+/* So near to a place counts as there: roundings are smaller. */
 #define LAW_ONTO_MM	1e-9
 
 static inline double law_period_s(const struct cycle *c)

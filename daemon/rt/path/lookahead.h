@@ -2,26 +2,30 @@
 /*
  * lookahead.h - can what lies ahead still be met?
  *
- * From where a plan leads to within the cycle: what comes on the path, forward
- * or back, as far as the braking distance, and the one place missed by most.
+ * A place is met if the speed there is no higher than it may be.  From where a
+ * plan leads within one cycle, this looks along the path, forward or back, as
+ * far as the braking distance, and finds the place that would be missed by
+ * most.
  *
- * "Way" and "left" are in the direction of the move, and so is the sign of
- * every speed.  Private to ahead.c and lookahead.c.  Threads: RT-safe.
+ * "Way", "left" and the sign of every speed count in the direction of the move.
+ * Private to ahead.c and lookahead.c.  Threads: RT-safe.
  */
 #ifndef RT_LOOKAHEAD_H
 #define RT_LOOKAHEAD_H
 
 #include "path/ahead.h"
 
-/* A slow place is planned for so much before it, and met so much before it;
- * a stand is met but for a rounding. */
+/* A plan reaches the speed of a slow place LOOKAHEAD_EARLY_MM before it, and it
+ * counts as met LOOKAHEAD_MARGIN_MM before it.  A stop is met exactly, but for a
+ * rounding. */
 #define LOOKAHEAD_EARLY_MM	2e-9
 #define LOOKAHEAD_MARGIN_MM	1e-9
 
 /* A place ahead, and how fast it may be come to. */
 struct lookahead_place {
 	double left_mm, v_mm_s;
-	bool guessed;			/* it may be faster; nobody looked */
+	bool guessed;			/* the search ended here: it may be
+					 * faster */
 };
 
 struct lookahead {
@@ -52,8 +56,8 @@ static inline double lookahead_override(const struct cycle *c,
 }
 
 /**
- * lookahead_toward() - the segment it is on or, from its very end, about to be on.
- * NULL: none.
+ * lookahead_toward() - the segment it is on or, from its very end, about to be
+ * on.  NULL: none.
  */
 const struct interp_seg *lookahead_toward(const struct cycle *c, int toward);
 

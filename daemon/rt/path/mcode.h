@@ -2,16 +2,17 @@
 /*
  * mcode.h - M codes that the PLC carries out
  *
- * One at a time is told, until the PLC says that it is done: it answers with
- * the same number, the number is taken away, it takes its answer away; then
- * there may be the next.  Who has to wait stands in front of the code without
- * sparks.  interp/mcode.h has when each is told and what waits.
+ * The PLC is told one code at a time.  It answers with the same number when the
+ * code is done; then edmd takes the number away, and then the PLC its answer.
+ * Only after that comes the next code.  A program that has to wait stands in
+ * front of the code, without sparks.  interp/mcode.h says when each code is
+ * told and what waits for it.
  *
- * Walked back over, each is passed.  On the way forward again one of "skip" is
- * passed too; one of "redo" is told again, if it was not a lift that led over
- * it.  The way back ends at one of "stop" that was done.
+ * On the way back every code is passed.  On the way forward again, a "skip"
+ * code is passed too, and a "redo" code is told again, unless a jump led over
+ * it.  The way back ends at a "stop" code that was done.
  *
- * Without a PLC all of them are passed.
+ * Without a PLC all codes are passed.
  *
  * Threads: RT-safe.
  */
@@ -26,7 +27,7 @@ struct cycle;
 /* Private to mcode.c, but for `number`. */
 struct mcode {
 	uint8_t number;			/* told to the PLC; 0: none */
-	bool done;			/* the one of segment `at` is */
+	bool done;			/* that of segment `at` was answered */
 	bool busy;			/* the PLC's last answer is still there */
 	uint32_t at;			/* segment in front of which it waits */
 	uint32_t back_to;		/* lowest segment walked back to, or

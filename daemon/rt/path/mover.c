@@ -2,16 +2,16 @@
 /*
  * mover.c - an S-curve along the path, sampled cycle by cycle
  *
- * A plan to a place is good as long as what is left to go is what the plan says
- * is left; the distance of a cycle leads onto the plan, so a rounding does not
- * add up.
+ * A plan to a place holds as long as the distance left is the one that the plan
+ * expects.  Each cycle goes to where the plan is then, so roundings do not add
+ * up.
  */
 #include "path/mover.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-/* Nearer than this is there. */
+/* Nearer than this counts as there. */
 #define THERE_MM	1e-9
 
 struct interp_scurve_limits mover_curve(const struct mover_limits *l)
@@ -94,7 +94,7 @@ struct interp_scurve_state mover_peek(const struct mover *m, double period_s)
 	return s;
 }
 
-/* The distance leads onto the plan. */
+/* The distance leads to where the plan is then. */
 double mover_go(struct mover *m, double period_s)
 {
 	const struct interp_scurve_state s = mover_peek(m, period_s);

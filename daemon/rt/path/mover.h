@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * mover.h - go to another place on the path, within speed and jerk
+ * mover.h - go to another place on the path, within limits of speed and jerk
  *
- * An S-curve along the path, in either direction: speed and acceleration never
- * step.  Jumps, retracts by command and positioning use this one.  It plans
- * when something changed and samples its plan otherwise; a new place, a new
- * limit or a hold goes on from the speed and acceleration it has.
+ * The motion is an S-curve along the path, in either direction: speed and
+ * acceleration make no step.  Jumps, retracts by command and positioning use
+ * it.  It plans when something has changed, and otherwise follows its plan.  A
+ * new place, a new limit or a hold starts from the present speed and
+ * acceleration.
  *
  * Units: mm along the path, + toward the program's end.
  * Threads: RT-safe.
@@ -45,7 +46,7 @@ static inline bool mover_is_standing(const struct mover *m)
 	return m->v_mm_s == 0 && m->a_mm_s2 == 0;
 }
 
-/** mover_set() - somebody else sets the speed; what was planned is void. */
+/** mover_set() - set the speed without a ramp; the plan is dropped. */
 void mover_set(struct mover *m, double v_mm_s);
 
 /**
@@ -66,30 +67,32 @@ double mover_run(struct mover *m, const struct mover_limits *l, double v_mm_s);
 double mover_stop(struct mover *m, const struct mover_limits *l);
 
 /*
- * The same in three steps, for who looks ahead: aim, peek at what the next
- * cycle would be, aim elsewhere if that is no good, go.
+ * The same in three steps, for a caller that looks ahead: aim; look with
+ * mover_peek() where the next cycle would lead; aim at something else if that
+ * is not good; go.
  */
 
-/** mover_aim_speed() - at a speed. */
+/** mover_aim_speed() - plan to reach a speed. */
 void mover_aim_speed(struct mover *m, const struct mover_limits *l,
 		     double v_mm_s);
 
 /**
- * mover_aim_place() - at a place @left_mm away (signed), to pass it at
- * @pass_mm_s toward it, or to stand there (0).
+ * mover_aim_place() - plan to pass a place @left_mm away (signed) at
+ * @pass_mm_s, or to stop there (0).
  *
- * Which can still be met, if it is not a stand: interp_scurve_to_pass().
+ * A place can be passed only if it is far enough: interp_scurve_to_pass() says
+ * which.
  */
 void mover_aim_place(struct mover *m, const struct mover_limits *l,
 		     double left_mm, double pass_mm_s);
 
-/** mover_peek() - after the next cycle; its place from here. */
+/** mover_peek() - the state after the next cycle; its place counts from here. */
 struct interp_scurve_state mover_peek(const struct mover *m, double period_s);
 
-/** mover_go() - take that cycle. Return: the distance. */
+/** mover_go() - go that cycle. Return: the distance. */
 double mover_go(struct mover *m, double period_s);
 
-/** mover_curve() - the same limits, as a plan takes them. */
+/** mover_curve() - the same limits, in the form that interp/scurve.h takes. */
 struct interp_scurve_limits mover_curve(const struct mover_limits *l);
 
 #endif /* RT_MOVER_H */

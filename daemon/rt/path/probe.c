@@ -9,17 +9,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Kept before a segment's end: its last point is met, what follows is not. */
+/* Stop so far before the end of a segment: its last point is reached, and the
+ * next segment is not begun. */
 #define SHY_MM		(2 * LAW_ONTO_MM)
 
-/* -- Sensing ----------------------------------------------------------------- */
+/* -- Sensing --------------------------------------------------------------- */
 
 void probe_sense(struct cycle *c, const struct io_inputs *in)
 {
 	c->probe.contact = c->sensed.contact || in->contact;
 }
 
-/* -- Places ------------------------------------------------------------------- */
+/* -- Places ---------------------------------------------------------------- */
 
 /* The one it is on or, from the stop in front of it, about to be on. */
 static uint32_t index_of(const struct cycle *c)
@@ -73,7 +74,7 @@ static int axis_of(const struct cycle *c, int *ret_sign)
 	return 0;
 }
 
-/* -- The end ------------------------------------------------------------------- */
+/* -- The end --------------------------------------------------------------- */
 
 static void remember(struct cycle *c, int axis, int32_t pos)
 {
@@ -116,7 +117,7 @@ static void finish(struct cycle *c)
 	t->phase = PROBE_DONE;
 }
 
-/* -- To a place known beforehand ------------------------------------------------- */
+/* -- To a place known beforehand ------------------------------------------- */
 
 /* The way to it, mm; below 0 if it lies behind. */
 static double way_mm(const struct cycle *c)
@@ -180,7 +181,7 @@ static double go(struct cycle *c)
 			mover_stop(&c->mover, &l);
 }
 
-/* -- Feeling --------------------------------------------------------------------- */
+/* -- Feeling --------------------------------------------------------------- */
 
 void probe_begin(struct cycle *c)
 {
@@ -215,7 +216,8 @@ static void begin_back(struct cycle *c)
 	c->probe.phase = PROBE_BACK;
 }
 
-/* Contact to begin with is none that was felt for; but a hold may end there. */
+/* Contact at the very beginning was not found by this touch, so it does not
+ * count; but a hold may have ended in contact, farther on. */
 static double settle(struct cycle *c)
 {
 	const struct interp_seg *s = segment(c);
@@ -261,7 +263,7 @@ static double fast(struct cycle *c)
 	return stop(c);
 }
 
-/* What does not open is no contact with the work. */
+/* A contact that does not open on the way back is not the work. */
 static double back(struct cycle *c)
 {
 	if (!is_there(c))
@@ -273,7 +275,7 @@ static double back(struct cycle *c)
 	return 0;
 }
 
-/* Well beyond the first contact that one was none. */
+/* Farther than the first contact by all of back_mm: that was not the work. */
 static double fine(struct cycle *c)
 {
 	if (c->probe.contact) {

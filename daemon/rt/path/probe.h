@@ -2,21 +2,22 @@
 /*
  * probe.h - segments that end where the machine says
  *
- * A touch feels for the work with the power off: fast to the first contact,
- * a little back, slowly to the contact that counts.  A half ends in the middle
- * between the last two contacts along its axis, a limit short of the travel's
- * end.
+ * A touch looks for the work with the power off: fast to the first contact, a
+ * little back, then slowly to the contact that counts.  A half ends in the
+ * middle between the last two contacts along its axis.  A limit ends just
+ * before the end of the travel.
  *
- * What is left of such a segment is not walked.  The cursor goes to its end,
- * the axes stay, and `shift` is what lies between the two from then on:
+ * The rest of such a segment is not walked.  The cursor goes to the segment's
+ * end, the axes stay where they are, and `shift` is the difference from then
+ * on:
  *
- *	out.target = cursor.pos + shift
+ * 	out.target = cursor.pos + shift
  *
- * So a place in the program counts from the contact, whatever the machine
- * knew of it before.  No way back leads over it.  In a dry run, where there
- * is nothing to feel, they end where they begin.
+ * So places in the program count from the contact, whatever the machine knew
+ * before.  No way back leads over it.  In a dry run there is nothing to feel,
+ * and these segments end where they begin.
  *
- * Units: pulses where not in the name.
+ * Units: pulses where the name has no unit.
  * Threads: RT-safe.
  */
 #ifndef RT_PROBE_H
@@ -64,10 +65,10 @@ struct io_inputs;
 /** probe_sense() - is there contact? */
 void probe_sense(struct cycle *c, const struct io_inputs *in);
 
-/** probe_begin() - the segment in front, or what is left of it. */
+/** probe_begin() - begin the segment in front, or what is left of it. */
 void probe_begin(struct cycle *c);
 
-/** probe_distance() - the law of this state; ends the segment, too. */
+/** probe_distance() - how far to go in this cycle; it ends the segment, too. */
 double probe_distance(struct cycle *c);
 
 /** probe_in_travel() - may the axis be where the program's @pos is? */

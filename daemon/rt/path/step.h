@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * step.h - held: from node to node of the path, by command
+ * step.h - by command, from node to node of the path, while held
  *
- * Back over what was passed, and forward again over what was passed before;
- * in a dry run to any node.  Nothing is done on the way: it stands in front of
- * the first action that was not done yet.
+ * It goes back over what was passed, and forward again as far as it was before;
+ * in a dry run to any node.  No action is done on the way: it stops in front of
+ * the first one that was not done yet.
  *
  * Threads: RT-safe; looks at a bounded number of segments.
  */
@@ -18,12 +18,12 @@ struct cycle;
 /**
  * step_to() - the place of the node @n ahead, or -@n behind.
  *
- * Nodes that lie in one place count once.
+ * Nodes at the same place count as one.
  * Return: enum cycle_answer; @ret_mm set if it is ANSWER_DONE.
  */
 int step_to(const struct cycle *c, double n, double *ret_mm);
 
-/** step_watch() - a short on the way forward ends it where it is. */
+/** step_watch() - a short on the way forward ends the motion. */
 void step_watch(struct cycle *c);
 
 #endif /* RT_STEP_H */

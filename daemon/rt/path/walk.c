@@ -66,7 +66,7 @@ static void undo_point(struct cycle *c)
 	interp_cursor_stop(&c->cursor);
 }
 
-/* -- Many points at once ----------------------------------------------------- */
+/* -- Many points at once --------------------------------------------------- */
 
 #define RUN	64
 
@@ -117,7 +117,7 @@ static uint32_t run(struct cycle *c, uint32_t max)
 	return n;
 }
 
-/* -- One by one -------------------------------------------------------------- */
+/* -- One by one ------------------------------------------------------------ */
 
 /* @left: points that this cycle may still go. */
 static enum walk_result points(struct cycle *c, uint32_t *left)
@@ -192,7 +192,7 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 	return r;
 }
 
-/* -- Actions ------------------------------------------------------------------ */
+/* -- Actions --------------------------------------------------------------- */
 
 static bool dwell_over(struct cycle *c, const struct interp_seg *s)
 {

@@ -19,7 +19,7 @@ enum walk_ahead {
 
 enum walk_result {
 	WALK_ON,
-	WALK_ACTION,			/* in front of an action */
+	WALK_ACTION,			/* it stands in front of an action */
 	WALK_START,			/* at the start of the program */
 	WALK_BEYOND,			/* the next point is outside the travel */
 	WALK_BROKEN,			/* a segment failed its check */

@@ -146,10 +146,10 @@ int nc_run_label(struct nc_reader *r)
 	return 0;
 }
 
-static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats)
+static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats,
+		 const uint8_t *at)
 {
 	const struct nc_label *l = &r->labels[number];
-	const uint8_t *at = r->block.at[NC_P];
 
 	if (l->line == 0)
 		return nc_refuse(r, at, r->d->label == 'O' ?
@@ -183,6 +183,20 @@ static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats)
 	return 0;
 }
 
+int nc_call(struct nc_reader *r, double number, const uint8_t *at)
+{
+	if (number != floor(number) || !(number >= 1 && number <= LABEL_MAX))
+		return nc_refuse(r, at, "a whole number of 1 to 9999",
+				 "P%g names no subprogram", number);
+	if (!r->labels) {
+		const int rc = find_labels(r);
+
+		if (rc)
+			return rc;
+	}
+	return enter(r, (uint32_t)number, 1, at);
+}
+
 /* M98 P1000 L3, or P31000: the last four digits are the number. */
 static int call(struct nc_reader *r)
 {
@@ -209,7 +223,7 @@ static int call(struct nc_reader *r)
 		if (rc)
 			return rc;
 	}
-	return enter(r, number, repeats);
+	return enter(r, number, repeats, b->at[NC_P]);
 }
 
 static int back(struct nc_reader *r)

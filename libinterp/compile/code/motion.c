@@ -281,6 +281,9 @@ int nc_run_one_shot(struct nc_reader *r)
 		[NC_SET]	= set_here,
 		[NC_SET_CANCEL]	= set_cancel,
 		[NC_SINK]	= nc_sink,
+		[NC_PASS]	= nc_pass,
+		[NC_CAVITY]	= nc_cavity,
+		[NC_CUT]	= nc_cut,
 	};
 
 	return shots[r->block.code[NC_ONE_SHOT]->value](r);

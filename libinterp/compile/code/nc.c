@@ -63,18 +63,23 @@ static int refuse_executed(struct nc_reader *r)
 			    "more than %u lines carried out", r->executed_max);
 }
 
+int nc_read_line(struct nc_reader *r)
+{
+	int rc;
+
+	r->line++;
+	if (r->executed++ >= r->executed_max)
+		return refuse_executed(r);
+	rc = nc_scan_line(r);
+	return rc ? rc : nc_run_line(r);
+}
+
 static int read_lines(struct nc_reader *r)
 {
 	int rc = 0;
 
-	while (!rc && !r->over && r->at < r->end) {
-		r->line++;
-		if (r->executed++ >= r->executed_max)
-			return refuse_executed(r);
-		rc = nc_scan_line(r);
-		if (!rc)
-			rc = nc_run_line(r);
-	}
+	while (!rc && !r->over && r->at < r->end)
+		rc = nc_read_line(r);
 	return rc ? rc : nc_end_of_text(r);
 }
 

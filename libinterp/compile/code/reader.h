@@ -14,6 +14,7 @@
  *	tip_way.c	... cut into lines of the axes
  *	nurbs.c		curves of control points and knots, G6.2
  *	spline.c	G5 ... G5.3: curves as LinuxCNC has them
+ *	passes.c	contours in passes: G150 ... G152
  *	offset.c	offset and taper: G40 ... G42, G50 ... G52, D and H
  *	tech.c		conditions: called, defined, in a sequence
  *	flow.c		subprograms and the end
@@ -75,6 +76,29 @@ struct nc_register {
 };
 
 #define NC_NREGISTERS	1000
+
+/* Contours in passes: G150 G151 G152. */
+#define NC_NPASSES	16
+#define NC_NCAVITIES	256
+
+struct nc_pass {
+	uint32_t reg;
+	double offset_mm;
+	struct interp_build_word word;
+};
+
+struct nc_cavity {
+	double number;			/* of its subprogram */
+	uint32_t line;			/* of its G151 */
+	double hole_mm[2];
+};
+
+struct nc_passes {
+	struct nc_pass pass[NC_NPASSES];
+	struct nc_cavity cavity[NC_NCAVITIES];
+	uint32_t npasses, ncavities;
+	double tab_mm;
+};
 
 /* A condition that the program defines, as E001= 60 10 25 does. */
 struct nc_defined {
@@ -142,6 +166,7 @@ struct nc_reader {
 	int offset_side, taper_side;	/* +1 left, -1 right, 0 off */
 	double slope;			/* tangent of the taper */
 
+	struct nc_passes passes;
 	enum interp_escape_mode escape;
 	struct nc_tool_point tool;
 
@@ -262,6 +287,17 @@ const uint8_t *nc_define_condition(struct nc_reader *r, const uint8_t *at,
 
 /** nc_forget_conditions() - those the program has defined. */
 void nc_forget_conditions(struct nc_reader *r);
+
+/* passes.c: G150, G151, G152. */
+int nc_pass(struct nc_reader *r);
+int nc_cavity(struct nc_reader *r);
+int nc_cut(struct nc_reader *r);
+
+/** nc_call() - go on in subprogram @number; the word is at @at. */
+int nc_call(struct nc_reader *r, double number, const uint8_t *at);
+
+/** nc_read_line() - the next line, carried out. */
+int nc_read_line(struct nc_reader *r);
 
 /** nc_sink() - G120: a straight motion by a sequence of conditions. */
 int nc_sink(struct nc_reader *r);

@@ -142,6 +142,9 @@ static const struct nc_code g[NC_NG] = {
 	[1410] = { NC_ESCAPE, INTERP_ESCAPE_CENTRE, 0 },
 	[1420] = { NC_ESCAPE, INTERP_ESCAPE_AXIS, 0 },
 	[1430] = { NC_ESCAPE, INTERP_ESCAPE_NORMAL, 0 },
+	[1500] = { NC_ONE_SHOT, NC_PASS, 0 },
+	[1510] = { NC_ONE_SHOT, NC_CAVITY, XY_ | P_ },
+	[1520] = { NC_ONE_SHOT, NC_CUT, NC_BIT(NC_R) | NC_BIT(NC_L) },
 	[1600] = { NC_TOUCH, NC_TOUCH_HOLE, NC_BIT(NC_R) | LQ_ },
 	[1610] = { NC_TOUCH, NC_TOUCH_PILLAR, NC_CENTRE | LQ_ },
 	[1620] = { NC_TOUCH, NC_TOUCH_CORNER, NC_BIT(NC_X) | NC_BIT(NC_Y) |
@@ -171,7 +174,8 @@ const struct nc_dialect nc_generic = {
 		{ g, NC_NG, 10,
 		  "one of G0 ... G5.3 G6.2 G17 ... G21 G28 G38.2 G40 ... G42 "
 		  "G43.4 G49 ... G62 G80 ... G82 G86 G90 ... G92.1 G94 G120 "
-		  "G130 ... G135 G140 ... G143 G160 ... G162" },
+		  "G130 ... G135 G140 ... G143 G150 ... G152 G160 ... "
+		  "G162" },
 		{ m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" MACHINE_M },
 		{ t, NC_NM, 1, "T84 (pump on) or T85 (pump off)" },
 	},

@@ -120,7 +120,10 @@ enum nc_motion {
 };
 
 /* What a member of NC_ONE_SHOT or NC_STOP does. */
-enum nc_one_shot { NC_DWELL, NC_HOME, NC_SET, NC_SET_CANCEL, NC_SINK };
+enum nc_one_shot {
+	NC_DWELL, NC_HOME, NC_SET, NC_SET_CANCEL, NC_SINK,
+	NC_PASS, NC_CAVITY, NC_CUT,	/* contours in passes */
+};
 /* What a member of NC_TOUCH does. */
 enum nc_touch {
 	NC_TOUCH_FEED,			/* at the programmed feed at the most */

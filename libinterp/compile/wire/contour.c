@@ -60,15 +60,23 @@ static bool is_on(double offset_mm, double slope)
 /* Nothing in force, nothing held: no business of this stage. */
 static bool is_idle(const struct contour *k)
 {
-	return !k->n && !guides_on(&k->guides) &&
+	return !k->n && !k->recording && !guides_on(&k->guides) &&
 	       !is_on(k->offset_mm, k->slope) &&
 	       !is_on(k->last_offset_mm, k->last_slope) &&
 	       !(k->guides.wire->corner_angle_deg < 180);
 }
 
+static int refuse_record(const struct contour *k, struct interp_diag *diag)
+{
+	diag->line = k->n ? k->m[k->n - 1].word.line : 0;
+	return interp_diag_say(diag, "more than motions in a contour of G151; "
+			       "only motions, offset and taper");
+}
+
 int contour_flush(struct contour *k, struct interp_diag *diag)
 {
-	const int r = contour_release(k, NULL, diag);
+	const int r = k->recording ? refuse_record(k, diag) :
+				     contour_release(k, NULL, diag);
 
 	return r ? r : interp_build_flush(k->guides.build, diag);
 }
@@ -99,8 +107,8 @@ static int check_lead(const struct contour *k, const struct contour_motion *m,
 	       contour_refuse_lead(m, by, diag) : 0;
 }
 
-static int keep(struct contour *k, const struct contour_motion *m,
-		struct interp_diag *diag)
+int contour_keep(struct contour *k, const struct contour_motion *m,
+		 struct interp_diag *diag)
 {
 	if (k->n == CONTOUR_MOTIONS_MAX)
 		return contour_refuse_length(&m->word, diag);
@@ -129,11 +137,11 @@ static int take(struct contour *k, struct contour_motion *m,
 	for (int p = 0; p < 2; p++)
 		m->c[p] = curve_evened(&m->c[p]);
 	r = check_lead(k, m, diag);
-	if (!r && !is_on(k->last_offset_mm, k->last_slope))
+	if (!r && !is_on(k->last_offset_mm, k->last_slope) && !k->recording)
 		r = contour_release(k, m, diag);
 	m->todo = k->ntodo;
 	if (!r)
-		r = keep(k, m, diag);
+		r = contour_keep(k, m, diag);
 	k->last_offset_mm = k->offset_mm;
 	k->last_slope = k->slope;
 	memcpy(k->here_mm, m->end_mm, sizeof(k->here_mm));
@@ -333,6 +341,8 @@ int contour_action(struct contour *k, enum interp_kind kind, uint32_t arg,
 {
 	int r;
 
+	if (k->recording)
+		return refuse_record(k, diag);
 	if (k->n && kind != INTERP_END)
 		return put_off(k, &(struct contour_action) { kind, arg, *w });
 	r = contour_flush(k, diag);

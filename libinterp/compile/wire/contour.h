@@ -40,6 +40,7 @@ struct contour {
 	uint32_t n, room;
 	struct contour_action *todo;	/* behind them */
 	uint32_t ntodo, todo_room;
+	bool recording;			/* nothing is cut: replay.h */
 	struct vec at[2];		/* where the wire crosses the planes */
 	const struct interp_notes *notes;	/* lent; NULL: nobody listens */
 };
@@ -82,6 +83,10 @@ int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
 
 /** contour_flush() - nothing follows: end what is collected. */
 int contour_flush(struct contour *k, struct interp_diag *diag);
+
+/** contour_keep() - put @m behind what is collected. */
+int contour_keep(struct contour *k, const struct contour_motion *m,
+		 struct interp_diag *diag);
 
 /* -- release.c ------------------------------------------------------------- */
 

@@ -25,6 +25,7 @@ struct contour_motion {
 	double slope;			/* tangent of the taper; + to the left */
 	enum interp_taper_corner corner;
 	bool lead;			/* the offset is reached or left here */
+	bool step;			/* a lead between two passes, on the spot */
 	uint32_t todo, ntodo;		/* actions behind it */
 };
 

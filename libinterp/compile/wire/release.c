@@ -290,11 +290,11 @@ int contour_release(struct contour *k, const struct contour_motion *next,
 
 		while (j < k->n && !k->m[j].lead)
 			j++;
-		if (j == i + s.in) {
+		if (k->m[i].step || j == i + s.in) {
 			r = cut_lead(k, i++, next, diag);
 			continue;
 		}
-		s.out = j < k->n;
+		s.out = j < k->n && !k->m[j].step;
 		s.end = j + s.out;
 		r = cut_stretch(k, &s, next, diag);
 		i = s.end;

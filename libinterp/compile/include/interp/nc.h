@@ -32,6 +32,7 @@ struct interp_dialect;
 struct interp_notes {
 	void (*say)(void *arg, uint32_t line, const char *text);
 	void *arg;
+	bool plan;		/* the passes of G152 too */
 };
 
 struct interp_nc_options {

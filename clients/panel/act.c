@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * act.c - ask edmd-jobs, and send it jobs, without waiting
+ */
+#include "act.h"
+
+#include "job.h"
+#include "talk.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sysexits.h>
+
+#define GIVE_UP_S	6.0
+#define ONCE_S		0.25		/* shorter than talk.c repeats after */
+#define HEARD_S		2.0
+#define OPEN_S		1.0		/* between two tries to open */
+#define SENDINGS	2
+
+/* A question under way; the library calls back with it. */
+struct asking {
+	struct asking *next;
+	struct act *act;
+	act_done_fn done;		/* NULL: forgotten */
+	void *arg;
+};
+
+struct sending {
+	struct job *job;		/* NULL: free */
+	void *text;
+	size_t bytes;
+	act_done_fn done;
+	void *arg;
+};
+
+struct act {
+	const char *url, *machine;
+	struct talk *talk;		/* NULL: not yet */
+	char why[TALK_SAID_MAX];
+	double tried_s;
+	struct asking *askings;
+	struct sending sending[SENDINGS];
+	struct act_status status;
+	uint64_t heard;
+	double heard_s;
+	act_event_fn on_event;
+	void *on_event_arg;
+};
+
+static void on_event(void *arg, const struct talk_event *e)
+{
+	struct act *a = arg;
+
+	if (a->on_event)
+		a->on_event(a->on_event_arg, e->kind, e->text);
+}
+
+static void try_open(struct act *a)
+{
+	const struct talk_options o = {
+		.machine = a->machine, .url = a->url, .program = "panel",
+	};
+
+	a->tried_s = talk_now_s();
+	if (talk_open(&a->talk, &o, a->why) < 0) {
+		a->talk = NULL;
+		return;
+	}
+	a->why[0] = '\0';
+	talk_on_event(a->talk, on_event, a);
+}
+
+struct act *act_create(const char *url, const char *machine)
+{
+	struct act *a = calloc(1, sizeof(*a));
+
+	if (!a)
+		return NULL;
+	a->url = url;
+	a->machine = machine;
+	a->status.eta_s = -1;
+	try_open(a);
+	return a;
+}
+
+static void free_sending(struct sending *s)
+{
+	job_end(s->job);
+	if (s->text)
+		munmap(s->text, s->bytes);
+	*s = (struct sending) { .job = NULL };
+}
+
+void act_destroy(struct act *a)
+{
+	if (!a)
+		return;
+	for (int i = 0; i < SENDINGS; i++)
+		free_sending(&a->sending[i]);
+	talk_close(a->talk);
+	while (a->askings) {
+		struct asking *next = a->askings->next;
+
+		free(a->askings);
+		a->askings = next;
+	}
+	free(a);
+}
+
+void act_on_event(struct act *a, act_event_fn fn, void *arg)
+{
+	a->on_event = fn;
+	a->on_event_arg = arg;
+}
+
+const char *act_why(const struct act *a)
+{
+	return a->talk ? talk_why(a->talk) : a->why;
+}
+
+static void on_answer(void *arg, int err, const struct talk_ack *ack)
+{
+	struct asking *q = arg;
+	struct asking **at = &q->act->askings;
+	const struct act_answer late = {
+		.code = EX_UNAVAILABLE, .body = "",
+		.reason = "edmd-jobs did not answer: it may have been done, or "
+			  "not; systemctl status edmd-jobs",
+	};
+
+	while (*at != q)
+		at = &(*at)->next;
+	*at = q->next;
+	if (q->done && err < 0)
+		q->done(q->arg, &late);
+	else if (q->done)
+		q->done(q->arg, &(struct act_answer) {
+			.code = ack->code, .reason = ack->reason,
+			.body = ack->body,
+		});
+	free(q);
+}
+
+int act_ask(struct act *a, const struct act_question *ask, act_done_fn done,
+	    void *arg)
+{
+	const struct talk_question q = {
+		.verb = ask->verb, .job = ask->job, .text = ask->text,
+		.arg = ask->arg,
+	};
+	struct asking *n;
+	int err;
+
+	if (!a->talk)
+		return -ENOTCONN;
+	n = calloc(1, sizeof(*n));
+	if (!n)
+		return -EAGAIN;
+	*n = (struct asking) { .next = a->askings, .act = a, .done = done,
+			       .arg = arg };
+	a->askings = n;
+	err = talk_send(a->talk, &q, ask->flags & ACT_ONCE ? ONCE_S :
+			GIVE_UP_S, on_answer, n);
+	if (err) {
+		a->askings = n->next;
+		free(n);
+	}
+	return err ? -EAGAIN : 0;
+}
+
+static struct sending *room_to_send(struct act *a)
+{
+	for (int i = 0; i < SENDINGS; i++)
+		if (!a->sending[i].job)
+			return &a->sending[i];
+	return NULL;
+}
+
+int act_send(struct act *a, const struct act_job *j, act_done_fn done,
+	     void *arg)
+{
+	struct sending *s = room_to_send(a);
+	struct job_text x = { .id = j->id, .name = j->name, .text = "",
+			      .bytes = j->bytes, .hold = j->hold };
+	int err;
+
+	if (!a->talk)
+		return -ENOTCONN;
+	if (!s)
+		return -EAGAIN;
+	if (j->bytes) {
+		s->text = mmap(NULL, j->bytes, PROT_READ, MAP_PRIVATE, j->fd,
+			       0);
+		if (s->text == MAP_FAILED) {
+			s->text = NULL;
+			return -ENOMEM;
+		}
+		s->bytes = j->bytes;
+		x.text = s->text;
+	}
+	err = job_begin(&s->job, a->talk, &x);
+	if (err) {
+		s->job = NULL;
+		free_sending(s);
+		return err;
+	}
+	s->done = done;
+	s->arg = arg;
+	return 0;
+}
+
+static void go_on_sending(struct sending *s)
+{
+	const int r = s->job ? job_step(s->job) : 0;
+	struct act_answer answer = {
+		.code = EX_UNAVAILABLE, .body = "",
+		.reason = "edmd-jobs does not answer; the job was not sent",
+	};
+
+	if (r == 0)
+		return;
+	if (r > 0) {
+		const struct talk_ack *ack = job_verdict(s->job);
+
+		answer = (struct act_answer) { .code = ack->code,
+					       .reason = ack->reason,
+					       .body = ack->body };
+	}
+	if (s->done)
+		s->done(s->arg, &answer);
+	free_sending(s);
+}
+
+static void take_status(struct act *a)
+{
+	struct act_status *s = &a->status;
+	uint64_t count;
+	const struct talk_status *t = talk_status(a->talk, &count);
+
+	if (t && count != a->heard) {
+		a->heard = count;
+		a->heard_s = talk_now_s();
+		snprintf(s->job, sizeof(s->job), "%s", t->job);
+		snprintf(s->job_name, sizeof(s->job_name), "%s", t->job_name);
+		snprintf(s->job_state, sizeof(s->job_state), "%s",
+			 t->job_state);
+		s->lines = t->lines;
+		s->queue_len = t->queue_len;
+		s->eta_s = t->eta_s;
+	}
+	s->heard = a->heard && talk_now_s() - a->heard_s < HEARD_S;
+}
+
+void act_look(struct act *a)
+{
+	if (!a->talk) {
+		if (talk_now_s() - a->tried_s > OPEN_S)
+			try_open(a);
+		return;
+	}
+	talk_step(a->talk);
+	for (int i = 0; i < SENDINGS; i++)
+		go_on_sending(&a->sending[i]);
+	take_status(a);
+	/* Keys that were made anew are read anew. */
+	if (!a->status.heard && talk_why(a->talk)[0] && !a->askings &&
+	    talk_now_s() - a->tried_s > OPEN_S) {
+		for (int i = 0; i < SENDINGS; i++)
+			if (a->sending[i].job)
+				return;
+		talk_close(a->talk);
+		a->talk = NULL;
+		try_open(a);
+	}
+}
+
+void act_forget(struct act *a, void *arg)
+{
+	for (struct asking *q = a->askings; q; q = q->next)
+		if (q->arg == arg)
+			q->done = NULL;
+	/* Its text goes with who sent it, so the sending ends here. */
+	for (int i = 0; i < SENDINGS; i++)
+		if (a->sending[i].job && a->sending[i].arg == arg)
+			free_sending(&a->sending[i]);
+}
+
+const struct act_status *act_status(const struct act *a)
+{
+	return &a->status;
+}

@@ -1,0 +1,600 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * http.c - pages, sessions, and texts that are too long for the web socket
+ *
+ *	GET  /, /assets/...	the page
+ *	GET  /api/session	who am I; begins a session on loopback
+ *	POST /api/login		{"user": ..., "password": ...}
+ *	POST /api/logout
+ *	POST /api/check?name=	a job's text: is it understood? its path
+ *	POST /api/jobs?name=&hold=	a job's text: into the queue
+ *	GET  /api/path?program=&tolerance=	of the program that is loaded
+ *	GET  /api/path?check=	of a text that was checked
+ *
+ * A POST bears the session's token in the header X-Edm-Token, and the Origin
+ * of this panel.
+ */
+#include "panel.h"
+#include "reply.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define BODY_S		60		/* an upload may take so long */
+#define BODIES_MAX	4
+#define CHECK_S		30
+#define CHECK_BYTES	((size_t)1536 << 20)
+#define LOGIN_MAX	1024
+
+struct route {
+	const char *path;
+	bool post;
+	enum role role;			/* the least */
+	size_t body_max;
+	int (*run)(struct request *r);
+};
+
+size_t http_request_size(void)
+{
+	return sizeof(struct request);
+}
+
+/* -- Whose request is it ------------------------------------------------------ */
+
+/* "HOST:PORT" is us: the address, or a name of [panel] names. */
+static bool is_our_name(const struct panel *p, const char *host)
+{
+	static const char *const local[] = { "127.0.0.1", "localhost",
+					     "[::1]" };
+	char want[160], names[sizeof(p->config.panel.names)];
+	const int port = (int)p->config.panel.port;
+	char *rest = names, *name;
+
+	for (size_t i = 0; i < sizeof(local) / sizeof(local[0]); i++) {
+		snprintf(want, sizeof(want), "%s:%d", local[i], port);
+		if (strcasecmp(want, host) == 0)
+			return true;
+	}
+	snprintf(want, sizeof(want), "%s:%d", p->config.panel.address, port);
+	if (strcasecmp(want, host) == 0)
+		return true;
+	snprintf(names, sizeof(names), "%s", p->config.panel.names);
+	while ((name = strsep(&rest, ", "))) {
+		snprintf(want, sizeof(want), "%s:%d", name, port);
+		if (*name && (strcasecmp(want, host) == 0 ||
+			      (port == 443 && strcasecmp(name, host) == 0)))
+			return true;
+	}
+	return false;
+}
+
+bool http_is_ours(struct panel *p, struct lws *wsi, bool want_origin)
+{
+	const char *scheme = p->tls ? "https://" : "http://";
+	char host[160] = "", origin[200] = "";
+
+	if (lws_hdr_copy(wsi, host, sizeof(host), WSI_TOKEN_HOST) <= 0 ||
+	    !is_our_name(p, host))
+		return false;
+	if (lws_hdr_copy(wsi, origin, sizeof(origin), WSI_TOKEN_ORIGIN) <= 0)
+		return !want_origin;
+	return strncmp(origin, scheme, strlen(scheme)) == 0 &&
+	       strcasecmp(origin + strlen(scheme), host) == 0;
+}
+
+struct session *http_session(struct panel *p, struct lws *wsi)
+{
+	char cookie[1024];
+
+	if (lws_hdr_copy(wsi, cookie, sizeof(cookie),
+			 WSI_TOKEN_HTTP_COOKIE) <= 0)
+		return NULL;
+	return session_find(p->sessions, cookie);
+}
+
+static bool has_token(struct request *r, const struct session *s)
+{
+	char token[64];
+
+	return lws_hdr_custom_copy(r->wsi, token, sizeof(token), "x-edm-token:",
+				   12) > 0 && session_token_ok(s, token);
+}
+
+static void peer_of(struct request *r, char to[SESSION_ADDRESS_MAX])
+{
+	static const char mapped[] = "::ffff:";
+
+	to[0] = '\0';
+	lws_get_peer_simple(r->wsi, to, SESSION_ADDRESS_MAX);
+	if (strncmp(to, mapped, sizeof(mapped) - 1) == 0)
+		memmove(to, to + sizeof(mapped) - 1,
+			strlen(to) - sizeof(mapped) + 2);
+}
+
+/* What follows "KEY=" of the address; as it is if it is not there. */
+static bool read_arg(struct request *r, const char *key, char *to, size_t size)
+{
+	char room[320];
+	const char *at = lws_get_urlarg_by_name(r->wsi, key, room,
+						sizeof(room));
+
+	if (at)
+		snprintf(to, size, "%s", at);
+	return at != NULL;
+}
+
+/* -- Sessions ------------------------------------------------------------------ */
+
+static int give_session(struct request *r, const struct session *s)
+{
+	json_t *o = json_pack("{s:s,s:s,s:s,s:b,s:s}", "user", s ? s->user : "",
+			      "role", role_name(s ? s->role : ROLE_NONE),
+			      "token", s ? s->token : "", "login",
+			      !r->panel->local, "machine",
+			      r->panel->config.name);
+
+	if (s)
+		snprintf(r->cookie, sizeof(r->cookie),
+			 "edm_session=%s; Path=/; HttpOnly; SameSite=Strict%s",
+			 s->id, r->panel->tls ? "; Secure" : "");
+	return reply_json(r, 200, o);
+}
+
+static int get_session(struct request *r)
+{
+	struct panel *p = r->panel;
+	struct session *s = http_session(p, r->wsi);
+	char user[SESSION_USER_MAX], address[SESSION_ADDRESS_MAX];
+	enum role role = ROLE_VIEWER;
+	unsigned int uid;
+
+	if (s || !p->local)
+		return give_session(r, s);
+	snprintf(user, sizeof(user), "?");
+	if (session_peer_uid(lws_get_socket_fd(r->wsi), &uid) == 0)
+		role = session_local_role(uid, p->local_role, user);
+	peer_of(r, address);
+	return give_session(r, session_begin(p->sessions, user, role, address));
+}
+
+static void on_verified(void *arg, int status, int out_fd)
+{
+	struct request *r = arg;
+	struct panel *p = r->panel;
+	char address[SESSION_ADDRESS_MAX];
+
+	close(out_fd);
+	peer_of(r, address);
+	if (status != 0) {
+		panel_note(p, "%s: login as %s was refused", address,
+			   r->user.name);
+		reply_refusal(r, 403, "name or password is wrong",
+			      "edm-panel --add-user makes users");
+		return;
+	}
+	session_try_ok(p->sessions, address);
+	panel_note(p, "%s: %s logged in as %s", address, r->user.name,
+		   role_name(r->user.role));
+	give_session(r, session_begin(p->sessions, r->user.name, r->user.role,
+				      address));
+}
+
+/* A hash no password fits, so that an unknown name takes as long. */
+#define NO_HASH	"$argon2id$v=19$m=65536,t=2,p=1$AAAAAAAAAAAAAAAAAAAAAA$" \
+		"AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"
+
+static int verify(struct request *r, const char *name, const char *password)
+{
+	const char *const argv[] = { r->panel->self, "--work", "verify", NULL };
+	struct child_job j = { .argv = argv, .limit_s = 10 };
+	int err;
+
+	if (session_user_find(r->panel->config.panel.users, name,
+			      &r->user) < 0) {
+		r->user = (struct session_user) { .hash = NO_HASH };
+		snprintf(r->user.name, sizeof(r->user.name), "%s", name);
+	}
+	j.in_fd = child_file("panel-login");
+	if (j.in_fd < 0)
+		return reply_refusal(r, 503, "no room", "try again");
+	dprintf(j.in_fd, "%s\n%s", r->user.hash, password);
+	err = child_start(r->panel->children, &j, on_verified, r);
+	close(j.in_fd);
+	if (err)
+		return reply_refusal(r, 503, "too much is under way",
+				     "try again");
+	return reply_wait(r, BODY_S);
+}
+
+/* What a name may be: it goes into the journal. */
+static bool is_plain(const char *s, size_t most)
+{
+	const size_t n = strlen(s);
+
+	return n > 0 && n < most &&
+	       strspn(s, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+			 "0123456789._-@") == n;
+}
+
+static int post_login(struct request *r)
+{
+	char address[SESSION_ADDRESS_MAX], wait[64];
+	size_t bytes;
+	char *text = child_read(r->body_fd, LOGIN_MAX, &bytes);
+	json_t *o = text ? json_loadb(text, bytes, 0, NULL) : NULL;
+	const char *name = json_string_value(json_object_get(o, "user"));
+	const char *password = json_string_value(json_object_get(o,
+								 "password"));
+	int rc, wait_s;
+
+	peer_of(r, address);
+	wait_s = session_may_try(r->panel->sessions, address);
+	if (wait_s) {
+		snprintf(wait, sizeof(wait), "again in %d s", wait_s);
+		rc = reply_refusal(r, 429, "too many tries", wait);
+	} else if (!name || !password || !is_plain(name, SESSION_USER_MAX) ||
+		   strlen(password) > 256) {
+		rc = reply_refusal(r, 400, "no user and password", "both");
+	} else {
+		rc = verify(r, name, password);
+	}
+	json_decref(o);
+	free(text);
+	return rc;
+}
+
+static int post_logout(struct request *r)
+{
+	struct session *s = http_session(r->panel, r->wsi);
+
+	if (s)
+		session_end(s);
+	return reply_json(r, 200, json_object());
+}
+
+/* -- Programs and paths --------------------------------------------------------- */
+
+/* The eight places the machine stands at, for --start. */
+static void places(const struct panel *p, char *to, size_t size)
+{
+	const struct shm_snapshot *s = live_snapshot(p->live);
+	size_t n = 0;
+
+	for (int i = 0; i < SHM_NAXES && n < size; i++)
+		n += (size_t)snprintf(to + n, size - n, "%s%.9g", i ? "," : "",
+				      s ? s->pos[i] * s->pulse_mm[i] :
+				      p->config.start_mm[i]);
+}
+
+/* Kept for a look at its path: the last few. */
+static void keep_check(struct request *r, int fd)
+{
+	struct panel *p = r->panel;
+	const unsigned int i = p->checked++ % 8;
+
+	if (p->checked_fd[i] > 0)
+		close(p->checked_fd[i]);
+	p->checked_fd[i] = fd;
+	memcpy(p->checked_path[i], r->id, sizeof(r->id));
+}
+
+static json_t *head_of(int fd)
+{
+	char head[4096], *end;
+	const ssize_t n = pread(fd, head, sizeof(head) - 1, 0);
+
+	if (n <= 0)
+		return NULL;
+	head[n] = '\0';
+	end = strchr(head, '\n');
+	if (end)
+		*end = '\0';
+	return json_loads(head, 0, NULL);
+}
+
+static json_t *check_failed(int status)
+{
+	return json_pack("{s:b,s:s,s:i,s:i,s:s,s:s}", "ok", 0, "where", "panel",
+			 "line", 0, "column", 0, "found", status >= 128 ?
+			 "reading it took more time or memory than the panel "
+			 "allows" : "it could not be read", "wanted",
+			 "a smaller program; edmsim --check reads any");
+}
+
+static void on_checked(void *arg, int status, int out_fd)
+{
+	struct request *r = arg;
+	json_t *o = head_of(out_fd);
+
+	if (!o || status > 1) {
+		json_decref(o);
+		o = check_failed(status);
+	}
+	if (json_is_true(json_object_get(o, "ok"))) {
+		json_object_set_new(o, "check", json_string(r->id));
+		keep_check(r, out_fd);
+	} else {
+		close(out_fd);
+	}
+	reply_json(r, 200, o);
+}
+
+static int post_check(struct request *r)
+{
+	char start[256];
+	const char *const argv[] = {
+		r->panel->self, "--work", "check", "--config",
+		r->panel->config_path, "--file-name", r->name, "--start",
+		start, NULL
+	};
+	const struct child_job j = {
+		.argv = argv, .in_fd = r->body_fd, .memory_bytes = CHECK_BYTES,
+		.limit_s = CHECK_S,
+	};
+
+	places(r->panel, start, sizeof(start));
+	reply_draw_id(r);
+	if (child_start(r->panel->children, &j, on_checked, r))
+		return reply_refusal(r, 503, "too much is under way",
+				     "try again");
+	return reply_wait(r, CHECK_S + 5);
+}
+
+static void on_sent(void *arg, const struct act_answer *a)
+{
+	struct request *r = arg;
+	json_t *body = json_loads(a->body, 0, NULL);
+
+	panel_note(r->panel, "%s (%s): sent job %s, %s: %.80s", r->who,
+		   role_name(r->role), r->id, r->name, a->reason);
+	reply_json(r, 200, json_pack("{s:i,s:s,s:s,s:o}", "code", a->code,
+				     "reason", a->reason, "job", r->id, "body",
+				     body ? body : json_null()));
+}
+
+static int post_job(struct request *r)
+{
+	struct stat st;
+	struct act_job j = {
+		.fd = r->body_fd, .id = r->id, .name = r->name,
+		.hold = r->hold,
+	};
+	int err;
+
+	if (fstat(r->body_fd, &st) < 0)
+		return reply_refusal(r, 500, "no text", "a text");
+	j.bytes = (size_t)st.st_size;
+	reply_draw_id(r);
+	/* Twelve letters are enough, and can be read out. */
+	r->id[12] = '\0';
+	err = act_send(r->panel->act, &j, on_sent, r);
+	if (err == -ENOTCONN)
+		return reply_refusal(r, 503, act_why(r->panel->act),
+				     "then try again");
+	if (err)
+		return reply_refusal(r, 503, "two jobs are being sent already",
+				     "try again when one of them is there");
+	return reply_wait(r, 180);
+}
+
+static void on_path(void *arg, int status, int out_fd)
+{
+	if (status == 0)
+		reply_file(arg, out_fd);
+	else
+		close(out_fd), reply_refusal(arg, 404, "there is no such path",
+					     "the program that is loaded");
+}
+
+static int get_path(struct request *r)
+{
+	char check[64] = "", number[16] = "", tolerance[24] = "";
+	const char *const argv[] = {
+		r->panel->self, "--work", "path", "--config",
+		r->panel->config_path, "--machine", r->panel->config.name,
+		"--program", number, "--tolerance", tolerance, NULL
+	};
+	const struct child_job j = { .argv = argv, .in_fd = -1,
+				     .memory_bytes = (size_t)2 << 30,
+				     .limit_s = CHECK_S };
+
+	if (read_arg(r, "check=", check, sizeof(check))) {
+		for (int i = 0; i < 8; i++)
+			if (r->panel->checked_fd[i] > 0 &&
+			    strcmp(r->panel->checked_path[i], check) == 0)
+				return reply_file(r, dup(
+						  r->panel->checked_fd[i]));
+		return reply_refusal(r, 404, "that text is forgotten",
+				     "check it again");
+	}
+	read_arg(r, "program=", number, sizeof(number));
+	read_arg(r, "tolerance=", tolerance, sizeof(tolerance));
+	if (!*number || strspn(number, "0123456789") != strlen(number))
+		return reply_refusal(r, 400, "no program", "its number");
+	if (strspn(tolerance, "0123456789.e-") != strlen(tolerance))
+		return reply_refusal(r, 400, "no tolerance", "mm");
+	if (child_start(r->panel->children, &j, on_path, r))
+		return reply_refusal(r, 503, "too much is under way",
+				     "try again");
+	return reply_wait(r, CHECK_S + 5);
+}
+
+static const struct route routes[] = {
+	{ "/api/session", false, ROLE_NONE, 0, get_session },
+	{ "/api/path", false, ROLE_VIEWER, 0, get_path },
+	{ "/api/login", true, ROLE_NONE, LOGIN_MAX, post_login },
+	{ "/api/logout", true, ROLE_NONE, 0, post_logout },
+	{ "/api/check", true, ROLE_VIEWER, PANEL_BODY_MAX, post_check },
+	{ "/api/jobs", true, ROLE_OPERATOR, PANEL_BODY_MAX, post_job },
+};
+
+/* -- Taking one ------------------------------------------------------------------ */
+
+static const struct route *route_of(const char *path)
+{
+	for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++)
+		if (strcmp(routes[i].path, path) == 0)
+			return &routes[i];
+	return NULL;
+}
+
+/* Return: 0, or an HTTP status to refuse it with. */
+static int may_do(struct request *r, bool post)
+{
+	const struct session *s = http_session(r->panel, r->wsi);
+
+	if (r->route->post != post)
+		return 405;
+	if (!http_is_ours(r->panel, r->wsi, post))
+		return 403;
+	if (r->route->role == ROLE_NONE && r->route->run != post_logout)
+		return 0;
+	if (!s)
+		return 401;
+	if (s->role < r->route->role || (post && !has_token(r, s)))
+		return 403;
+	snprintf(r->who, sizeof(r->who), "%s", s->user);
+	r->role = s->role;
+	return 0;
+}
+
+static void read_name(struct request *r)
+{
+	char hold[8] = "";
+	size_t n;
+
+	snprintf(r->name, sizeof(r->name), "job.ngc");
+	read_arg(r, "name=", r->name, sizeof(r->name));
+	for (char *at = r->name; *at; at++)
+		if ((unsigned char)*at < ' ' || *at == 0x7f || *at == '/')
+			*at = '_';
+	n = strlen(r->name);
+	/* Not in the middle of a character. */
+	while (n == sizeof(r->name) - 1 && n > 0 &&
+	       ((unsigned char)r->name[n - 1] & 0x80))
+		r->name[--n] = '\0';
+	read_arg(r, "hold=", hold, sizeof(hold));
+	r->hold = hold[0] == '1';
+}
+
+static int open_body(struct request *r)
+{
+	char length[24] = "0";
+
+	lws_hdr_copy(r->wsi, length, sizeof(length),
+		     WSI_TOKEN_HTTP_CONTENT_LENGTH);
+	if (strspn(length, "0123456789") != strlen(length) ||
+	    strlen(length) > 9 ||
+	    strtoul(length, NULL, 10) > r->route->body_max)
+		return reply_refusal(r, 413, "too long", "at most 64 MiB");
+	if (r->panel->bodies >= BODIES_MAX)
+		return reply_refusal(r, 503, "too many uploads at once",
+				     "try again");
+	r->body_fd = child_file("panel-body");
+	if (r->body_fd < 0)
+		return reply_refusal(r, 503, "no room", "try again");
+	r->has_body = true;
+	r->panel->bodies++;
+	if (strtoul(length, NULL, 10) == 0)
+		return r->route->run(r);
+	lws_set_timeout(r->wsi, PENDING_TIMEOUT_HTTP_CONTENT, BODY_S);
+	return 0;
+}
+
+static const char *reason_of(int status)
+{
+	return status == 401 ? "log in first" :
+	       status == 405 ? "GET for what is read, POST for what is done" :
+	       "the role, the token and the site of this panel";
+}
+
+static int take(struct request *r, const char *path)
+{
+	const bool post = lws_hdr_total_length(r->wsi, WSI_TOKEN_POST_URI) > 0;
+	const bool get = lws_hdr_total_length(r->wsi, WSI_TOKEN_GET_URI) > 0;
+	const struct asset *asset;
+	int status;
+
+	r->route = route_of(path);
+	if (!r->route) {
+		asset = assets_find(r->panel->assets, path);
+		if (!get || !asset)
+			return reply_refusal(r, get ? 404 : 405, "nothing here",
+					     "/");
+		if (!http_is_ours(r->panel, r->wsi, false))
+			return reply_refusal(r, 403, "another name",
+					     "an address of [panel] names");
+		return reply_asset(r, asset);
+	}
+	status = may_do(r, post);
+	if (status) {
+		if (status == 403)
+			panel_note(r->panel, "%s was refused: not from this "
+				   "panel's page, or not permitted", path);
+		return reply_refusal(r, status, "refused", reason_of(status));
+	}
+	if (!post)
+		return r->route->run(r);
+	read_name(r);
+	return open_body(r);
+}
+
+static int take_body(struct request *r, const char *in, size_t len)
+{
+	if (!r->has_body || r->answered)
+		return 0;
+	r->body_bytes += len;
+	if (r->body_bytes > r->route->body_max)
+		return -1;
+	while (len > 0) {
+		const ssize_t n = write(r->body_fd, in, len);
+
+		if (n <= 0)
+			return -1;
+		in += n;
+		len -= (size_t)n;
+	}
+	return 0;
+}
+
+static int begin(struct lws *wsi, struct request *r, const char *path)
+{
+	struct panel *p = lws_context_user(lws_get_context(wsi));
+
+	if (r->panel)
+		reply_forget(r);
+	*r = (struct request) { .panel = p, .wsi = wsi, .body_fd = -1,
+				.fd = -1 };
+	return take(r, path);
+}
+
+int http_callback(struct lws *wsi, enum lws_callback_reasons reason,
+		  void *user, void *in, size_t len)
+{
+	struct request *r = user;
+
+	switch (reason) {
+	case LWS_CALLBACK_HTTP:
+		return begin(wsi, r, in);
+	case LWS_CALLBACK_HTTP_BODY:
+		return take_body(r, in, len);
+	case LWS_CALLBACK_HTTP_BODY_COMPLETION:
+		if (r->answered || !r->has_body)
+			return 0;
+		return r->route->run(r);
+	case LWS_CALLBACK_HTTP_WRITEABLE:
+		return reply_write(r);
+	case LWS_CALLBACK_CLOSED_HTTP:
+	case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
+		if (r && r->panel)
+			reply_forget(r);
+		return 0;
+	default:
+		return lws_callback_http_dummy(wsi, reason, user, in, len);
+	}
+}

@@ -1,0 +1,431 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * main.c - edm-panel: options, the event loop, users
+ */
+#include "panel.h"
+#include "reply.h"
+#include "words.h"
+#include "work.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <signal.h>
+#include <sodium.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sysexits.h>
+#include <systemd/sd-daemon.h>
+#include <termios.h>
+#include <time.h>
+#include <unistd.h>
+
+#define TICK_US		10000
+#define CONNECTIONS_MAX	400
+
+static const char usage[] =
+"Usage: edm-panel [options]\n"
+"Serves the operator's page: the machine's state to browsers, and what they ask\n"
+"for to edmd-jobs.  docs/panel.md\n"
+"\n"
+"  --config FILE          machine file (/etc/edmd/machine.ini)\n"
+"  --machine NAME         instead of the machine file's [machine] name\n"
+"  --port N               instead of its [panel] port\n"
+"  --assets DIR           instead of its [panel] assets\n"
+"  --add-user NAME ROLE   add or change a user: viewer, operator or service;\n"
+"                         the password is read from the terminal or from\n"
+"                         standard input\n"
+"  --print-words          the machine's own words as JSON, for the page\n"
+"  --help, --version\n"
+"\n"
+"Exit: 0 ended in order, 64 usage, 66 no such file, 69 a port or the channels\n"
+"cannot be opened, 73 the file of users cannot be written, 78 bad machine file.\n";
+
+struct options {
+	const char *config, *machine, *assets, *add_user;
+	int port;
+	struct work work;
+};
+
+enum {
+	OPT_CONFIG = 256, OPT_MACHINE, OPT_PORT, OPT_ASSETS, OPT_ADD_USER,
+	OPT_WORK, OPT_FILE_NAME, OPT_START, OPT_PROGRAM, OPT_TOLERANCE,
+	OPT_PRINT_WORDS, OPT_HELP, OPT_VERSION,
+};
+
+static const struct option longs[] = {
+	{ "config", required_argument, NULL, OPT_CONFIG },
+	{ "machine", required_argument, NULL, OPT_MACHINE },
+	{ "port", required_argument, NULL, OPT_PORT },
+	{ "assets", required_argument, NULL, OPT_ASSETS },
+	{ "add-user", required_argument, NULL, OPT_ADD_USER },
+	/* What the panel asks of itself: work.h. */
+	{ "work", required_argument, NULL, OPT_WORK },
+	{ "file-name", required_argument, NULL, OPT_FILE_NAME },
+	{ "start", required_argument, NULL, OPT_START },
+	{ "program", required_argument, NULL, OPT_PROGRAM },
+	{ "tolerance", required_argument, NULL, OPT_TOLERANCE },
+	{ "print-words", no_argument, NULL, OPT_PRINT_WORDS },
+	{ "help", no_argument, NULL, OPT_HELP },
+	{ "version", no_argument, NULL, OPT_VERSION },
+	{ 0 },
+};
+
+static volatile sig_atomic_t over;
+
+static void on_signal(int number)
+{
+	(void)number;
+	over = 1;
+}
+
+/* -- The log ---------------------------------------------------------------------- */
+
+static int64_t utime_ms(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_REALTIME, &t);
+	return (int64_t)t.tv_sec * 1000 + t.tv_nsec / 1000000;
+}
+
+void panel_note(struct panel *p, const char *text, ...)
+{
+	struct panel_note *n = &p->note[p->notes++ % PANEL_NOTES];
+	va_list ap;
+
+	n->utime_ms = utime_ms();
+	va_start(ap, text);
+	vsnprintf(n->text, sizeof(n->text), text, ap);
+	va_end(ap);
+	for (char *at = n->text; *at; at++)
+		if ((unsigned char)*at < ' ' || *at == 0x7f)
+			*at = '?';
+	fprintf(stderr, SD_NOTICE "edm-panel: %s\n", n->text);
+}
+
+json_t *panel_notes(const struct panel *p)
+{
+	json_t *rows = json_array();
+
+	for (uint64_t i = 0; i < PANEL_NOTES && i < p->notes; i++) {
+		const struct panel_note *n =
+			&p->note[(p->notes - 1 - i) % PANEL_NOTES];
+
+		json_array_append_new(rows, json_pack("{s:I,s:s}", "t",
+					(json_int_t)n->utime_ms, "text",
+					n->text));
+	}
+	return rows;
+}
+
+/* -- The loop ---------------------------------------------------------------------- */
+
+static void on_tick(lws_sorted_usec_list_t *timer)
+{
+	struct panel *p = lws_container_of(timer, struct panel, timer);
+
+	act_look(p->act);
+	children_look(p->children);
+	live_look(p->live);
+	if (live_is_new_point(p->live))
+		socket_tell_all(p);
+	lws_sul_schedule(p->lws, 0, &p->timer, on_tick, TICK_US);
+}
+
+static void on_event(void *arg, const char *kind, const char *text)
+{
+	socket_tell_event(arg, kind, text);
+}
+
+static bool is_loopback(const char *address)
+{
+	return strncmp(address, "127.", 4) == 0 || strcmp(address, "::1") == 0;
+}
+
+static bool is_given(const char *file)
+{
+	return *file && strcmp(file, "none") != 0;
+}
+
+static int open_server(struct panel *p)
+{
+	static const struct lws_protocols protocols[] = {
+		{ .name = "http", .callback = http_callback,
+		  .per_session_data_size = sizeof(struct request) },
+		{ .name = "edm-panel", .callback = socket_callback,
+		  .rx_buffer_size = 8192 },
+		{ .name = NULL },
+	};
+	static struct lws_protocols mine[3];
+	struct lws_context_creation_info info = { .port = 0 };
+
+	memcpy(mine, protocols, sizeof(mine));
+	mine[1].per_session_data_size = socket_browser_size();
+	info.iface = p->config.panel.address;
+	info.port = (int)p->config.panel.port;
+	info.protocols = mine;
+	info.user = p;
+	info.gid = -1;
+	info.uid = -1;
+	info.alpn = "http/1.1";
+	info.fd_limit_per_thread = CONNECTIONS_MAX;
+	info.timeout_secs = 10;
+	info.keepalive_timeout = 15;
+	info.timeout_secs_ah_idle = 5;
+	info.max_http_header_data = 4096;
+	info.max_http_header_pool = 64;
+	info.ka_time = 10;
+	info.ka_interval = 5;
+	info.ka_probes = 3;
+	info.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND;
+	if (p->tls) {
+		info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+		info.ssl_cert_filepath = p->config.panel.certificate;
+		info.ssl_private_key_filepath = p->config.panel.key;
+		info.simultaneous_ssl_restriction = CONNECTIONS_MAX;
+	}
+	p->lws = lws_create_context(&info);
+	return p->lws ? 0 : -EADDRINUSE;
+}
+
+static int fail(int code, const char *what, const char *wanted)
+{
+	fprintf(stderr, "edm-panel: %s; %s\n", what, wanted);
+	return code;
+}
+
+static int open_parts(struct panel *p)
+{
+	const struct machine_config *c = &p->config;
+	char what[400];
+	int err;
+
+	err = assets_read(&p->assets, c->panel.assets);
+	if (err) {
+		snprintf(what, sizeof(what), "no page in %s: %s",
+			 c->panel.assets, strerror(-err));
+		return fail(EX_NOINPUT, what, "make panel makes it; [panel] "
+			    "assets says where it is");
+	}
+	p->sessions = sessions_create();
+	p->children = children_create();
+	if (!p->sessions || !p->children || live_create(&p->live, c) < 0)
+		return fail(EX_OSERR, "out of memory", "some MB");
+	p->act = act_create(c->lcm_url, c->name);
+	if (!p->act)
+		return fail(EX_OSERR, "out of memory", "some MB");
+	act_on_event(p->act, on_event, p);
+	if (open_server(p) == 0)
+		return 0;
+	snprintf(what, sizeof(what), "cannot listen on %s port %d",
+		 c->panel.address, (int)c->panel.port);
+	return fail(EX_UNAVAILABLE, what, "another port, an address of this "
+		    "host, and a certificate and key that can be read");
+}
+
+static void close_parts(struct panel *p)
+{
+	if (p->lws)
+		lws_context_destroy(p->lws);
+	act_destroy(p->act);
+	children_destroy(p->children);
+	live_destroy(p->live);
+	sessions_destroy(p->sessions);
+	assets_free(p->assets);
+	json_decref(p->told);
+	free(p->delta);
+}
+
+/* Beyond this host: no word in clear, and nobody without a password. */
+static int check_reach(struct panel *p)
+{
+	const struct config_panel *c = &p->config.panel;
+
+	p->local = is_loopback(c->address);
+	p->tls = is_given(c->certificate) && is_given(c->key);
+	p->local_role = (enum role)(c->local_role + ROLE_VIEWER);
+	if (p->local || p->tls)
+		return 0;
+	return fail(EX_CONFIG, "[panel] address is not of this host alone",
+		    "[panel] certificate and key, for TLS; or 127.0.0.1");
+}
+
+static int serve(struct panel *p)
+{
+	int rc = check_reach(p);
+
+	if (rc)
+		return rc;
+	lws_set_log_level(LLL_ERR, NULL);
+	rc = open_parts(p);
+	if (rc == 0) {
+		fprintf(stderr, SD_INFO "edm-panel: machine %s at %s://%s:%d/\n",
+			p->config.name, p->tls ? "https" : "http",
+			p->config.panel.address, (int)p->config.panel.port);
+		sd_notify(0, "READY=1");
+		on_tick(&p->timer);
+	}
+	while (rc == 0 && !over)
+		if (lws_service(p->lws, 0) < 0)
+			rc = EX_SOFTWARE;
+	close_parts(p);
+	return rc;
+}
+
+/* -- Users -------------------------------------------------------------------------- */
+
+static void read_password(char to[260])
+{
+	struct termios was, quiet;
+	const bool tty = tcgetattr(STDIN_FILENO, &was) == 0;
+
+	if (tty) {
+		fprintf(stderr, "Password (12 characters or more): ");
+		quiet = was;
+		quiet.c_lflag &= ~(tcflag_t)ECHO;
+		tcsetattr(STDIN_FILENO, TCSANOW, &quiet);
+	}
+	if (!fgets(to, 260, stdin))
+		to[0] = '\0';
+	to[strcspn(to, "\n")] = '\0';
+	if (tty) {
+		tcsetattr(STDIN_FILENO, TCSANOW, &was);
+		fputc('\n', stderr);
+	}
+}
+
+static int add_user(const struct panel *p, const char *name, const char *role)
+{
+	static const char plain[] = "abcdefghijklmnopqrstuvwxyz"
+		"ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-@";
+	struct session_user u = { .role = role_parse(role) };
+	char password[260];
+	int err;
+
+	if (u.role == ROLE_NONE)
+		return fail(EX_USAGE, "no such role", "viewer, operator or "
+			    "service");
+	if (strlen(name) >= sizeof(u.name) || !*name ||
+	    strspn(name, plain) != strlen(name))
+		return fail(EX_USAGE, "no such name", "1 to 31 letters, "
+			    "digits, . _ - @");
+	snprintf(u.name, sizeof(u.name), "%s", name);
+	read_password(password);
+	if (strlen(password) < 12 || strlen(password) > 256)
+		return fail(EX_DATAERR, "this password is too short or too "
+			    "long", "12 to 256 characters");
+	if (crypto_pwhash_str(u.hash, password, strlen(password),
+			      crypto_pwhash_OPSLIMIT_INTERACTIVE,
+			      crypto_pwhash_MEMLIMIT_INTERACTIVE))
+		return fail(EX_OSERR, "out of memory", "64 MiB");
+	sodium_memzero(password, sizeof(password));
+	err = session_user_put(p->config.panel.users, &u);
+	if (err) {
+		fprintf(stderr, "edm-panel: %s: %s; a file that can be "
+			"written, [panel] users\n", p->config.panel.users,
+			strerror(-err));
+		return EX_CANTCREAT;
+	}
+	printf("%s is %s in %s\n", name, role, p->config.panel.users);
+	return 0;
+}
+
+/* -- Options -------------------------------------------------------------------------- */
+
+static int set_option(struct options *o, int c)
+{
+	switch (c) {
+	case OPT_CONFIG: o->config = optarg; break;
+	case OPT_MACHINE: o->machine = optarg; break;
+	case OPT_PORT: o->port = atoi(optarg); break;
+	case OPT_ASSETS: o->assets = optarg; break;
+	case OPT_ADD_USER: o->add_user = optarg; break;
+	case OPT_WORK: o->work.what = optarg; break;
+	case OPT_FILE_NAME: o->work.name = optarg; break;
+	case OPT_START: o->work.start = optarg; break;
+	case OPT_PROGRAM:
+		o->work.program = (uint32_t)strtoul(optarg, NULL, 10);
+		break;
+	case OPT_TOLERANCE: o->work.tolerance_mm = strtod(optarg, NULL); break;
+	case OPT_PRINT_WORDS: exit(words_print());
+	case OPT_HELP: fputs(usage, stdout); exit(0);
+	case OPT_VERSION: puts("edm-panel " EDM_VERSION); exit(0);
+	default: return EX_USAGE;
+	}
+	return 0;
+}
+
+static int read_config(struct panel *p, const struct options *o)
+{
+	struct interp_diag d = { .line = 0 };
+	const int err = config_read(&p->config, o->config, &d);
+
+	if (err == -EINVAL) {
+		config_say(o->config, &d);
+		return EX_CONFIG;
+	}
+	if (err < 0) {
+		fprintf(stderr, "edm-panel: %s: %s; a machine file\n",
+			o->config, strerror(-err));
+		return EX_NOINPUT;
+	}
+	if (o->machine)
+		snprintf(p->config.name, sizeof(p->config.name), "%s",
+			 o->machine);
+	if (o->port)
+		p->config.panel.port = o->port;
+	if (o->assets)
+		snprintf(p->config.panel.assets,
+			 sizeof(p->config.panel.assets), "%s", o->assets);
+	return 0;
+}
+
+static void find_self(char to[512])
+{
+	const ssize_t n = readlink("/proc/self/exe", to, 511);
+
+	to[n > 0 ? n : 0] = '\0';
+}
+
+int main(int argc, char **argv)
+{
+	static struct panel p;
+	static char self[512];
+	struct options o = {
+		.config = "/etc/edmd/machine.ini", .work.name = "job.ngc",
+	};
+	const struct sigaction sa = { .sa_handler = on_signal };
+	int c, rc = 0;
+
+	while (rc == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) >= 0)
+		rc = set_option(&o, c);
+	if (rc || o.port < 0 || o.port > 65535 ||
+	    optind + (o.add_user ? 1 : 0) != argc) {
+		fputs(usage, stderr);
+		return EX_USAGE;
+	}
+	if (o.work.what) {
+		o.work.config = o.config;
+		o.work.machine = o.machine;
+		return work_run(&o.work);
+	}
+	rc = read_config(&p, &o);
+	if (rc)
+		return rc;
+	if (sodium_init() < 0)
+		return EX_SOFTWARE;
+	if (o.add_user)
+		return add_user(&p, o.add_user, argv[optind]);
+	find_self(self);
+	p.self = self;
+	p.config_path = o.config;
+	sigaction(SIGINT, &sa, NULL);
+	sigaction(SIGTERM, &sa, NULL);
+	signal(SIGPIPE, SIG_IGN);
+	/* Passwords and keys are in this memory. */
+	prctl(PR_SET_DUMPABLE, 0);
+	return serve(&p);
+}

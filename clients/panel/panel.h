@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * panel.h - edm-panel as a whole: what its parts share
+ *
+ * One event loop.  A browser that is slow, gone or hostile costs a bounded
+ * part of it, and nothing here can hold edmd or edmd-jobs up.
+ *
+ * Threads: one.
+ */
+#ifndef PANEL_PANEL_H
+#define PANEL_PANEL_H
+
+#include "act.h"
+#include "assets.h"
+#include "child.h"
+#include "config.h"
+#include "live.h"
+#include "session.h"
+
+#include <jansson.h>
+#include <libwebsockets.h>
+
+#define PANEL_BROWSERS_MAX	128
+#define PANEL_BODY_MAX		(64u << 20)	/* of a job's text */
+#define PANEL_NOTES		200
+
+/* A line of the panel's own log: who did what. */
+struct panel_note {
+	int64_t utime_ms;
+	char text[320];
+};
+
+struct browser;
+
+struct panel {
+	struct machine_config config;
+	const char *config_path;
+	const char *self;		/* the program, to be run as --work */
+	bool tls, local;		/* local: 127.0.0.1 or ::1 alone */
+	enum role local_role;
+	struct lws_context *lws;
+	struct lws_vhost *vhost;
+	lws_sorted_usec_list_t timer;
+	struct live *live;
+	struct act *act;
+	struct assets *assets;
+	struct sessions *sessions;
+	struct children *children;
+	/* What is told to all. */
+	json_t *told;			/* as last told */
+	char *delta;			/* from the one before it */
+	uint64_t tellings;
+	struct browser *browsers;
+	int nbrowsers;
+	struct panel_note note[PANEL_NOTES];
+	uint64_t notes;
+	int bodies;			/* uploads under way */
+	char checked_path[8][33];	/* ids of the texts checked last, ... */
+	int checked_fd[8];		/* ... and their paths */
+	unsigned int checked;
+};
+
+/** panel_note() - to the journal, and the log that Machine shows. */
+void panel_note(struct panel *p, const char *text, ...)
+	__attribute__((format(printf, 2, 3)));
+
+/** panel_notes() - the newest first. */
+json_t *panel_notes(const struct panel *p);
+
+/* -- http.c: what is asked for by HTTP --------------------------------------- */
+
+int http_callback(struct lws *wsi, enum lws_callback_reasons reason,
+		  void *user, void *in, size_t len);
+
+/** http_is_ours() - do Host and, where there is one, Origin name this panel?
+ *  A page of another site, or a name that was bent to this address, does not. */
+bool http_is_ours(struct panel *p, struct lws *wsi, bool want_origin);
+
+/** http_session() - of the request's cookie; NULL: none. */
+struct session *http_session(struct panel *p, struct lws *wsi);
+
+/** http_request_size() - of what HTTP keeps for a connection. */
+size_t http_request_size(void);
+
+/* -- socket.c: the web socket ------------------------------------------------ */
+
+int socket_callback(struct lws *wsi, enum lws_callback_reasons reason,
+		    void *user, void *in, size_t len);
+size_t socket_browser_size(void);
+
+/** socket_tell_all() - the state of the machine, if something is new. */
+void socket_tell_all(struct panel *p);
+
+/** socket_tell_event() - something happened. */
+void socket_tell_event(struct panel *p, const char *kind, const char *text);
+
+/** socket_answer() - to request @n of a browser; @body is taken over. */
+void socket_answer(struct browser *b, int64_t n, int code, const char *reason,
+		   json_t *body);
+
+/** socket_look() - end jogs whose finger is not felt any more. */
+void socket_look(struct panel *p);
+
+struct session *socket_session(struct browser *b);
+struct panel *socket_panel(struct browser *b);
+
+/* -- verbs.c: what a browser may ask for ------------------------------------- */
+
+/** verbs_do() - one request. */
+void verbs_do(struct browser *b, const json_t *request);
+
+/** verbs_forget() - this browser is gone. */
+void verbs_forget(struct browser *b);
+
+/** verbs_hello() - what a page has to know once. */
+json_t *verbs_hello(struct panel *p, const struct session *s);
+
+#endif /* PANEL_PANEL_H */

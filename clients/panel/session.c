@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * session.c - cookies, tokens, and tries to log in
+ */
+#include "session.h"
+
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define IDLE_S		3600		/* without a browser that holds it */
+#define LONGEST_S	(12 * 3600)
+#define TRIES_MAX	5		/* of an address, in TRY_S */
+#define TRIES_ALL	30		/* of all addresses, in TRY_S */
+#define TRY_S		60
+#define PLACES		64
+
+struct place {
+	char address[SESSION_ADDRESS_MAX];
+	int tries;
+	int64_t since_s;
+};
+
+struct sessions {
+	struct session session[SESSIONS_MAX];
+	struct place place[PLACES];
+	struct place all;
+};
+
+static int64_t now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return t.tv_sec;
+}
+
+static const char *const names[] = {
+	[ROLE_NONE] = "none",
+	[ROLE_VIEWER] = "viewer",
+	[ROLE_OPERATOR] = "operator",
+	[ROLE_SERVICE] = "service",
+};
+
+const char *role_name(enum role r)
+{
+	return names[r];
+}
+
+enum role role_parse(const char *name)
+{
+	for (int i = ROLE_VIEWER; i <= ROLE_SERVICE; i++)
+		if (strcmp(names[i], name) == 0)
+			return (enum role)i;
+	return ROLE_NONE;
+}
+
+struct sessions *sessions_create(void)
+{
+	return calloc(1, sizeof(struct sessions));
+}
+
+void sessions_destroy(struct sessions *s)
+{
+	if (s)
+		sodium_memzero(s, sizeof(*s));
+	free(s);
+}
+
+void session_end(struct session *session)
+{
+	sodium_memzero(session, sizeof(*session));
+}
+
+static bool is_over(const struct session *s, int64_t at_s)
+{
+	if (at_s - s->begun_s > LONGEST_S)
+		return true;
+	return s->sockets == 0 && at_s - s->used_s > IDLE_S;
+}
+
+static struct session *make_room(struct sessions *s)
+{
+	struct session *oldest = NULL;
+
+	for (int i = 0; i < SESSIONS_MAX; i++) {
+		struct session *t = &s->session[i];
+
+		if (!t->id[0])
+			return t;
+		if (t->sockets == 0 && (!oldest || t->used_s < oldest->used_s))
+			oldest = t;
+	}
+	return oldest;
+}
+
+static void draw_hex(char *to, size_t bytes)
+{
+	uint8_t drawn[32];
+
+	randombytes_buf(drawn, bytes);
+	sodium_bin2hex(to, 2 * bytes + 1, drawn, bytes);
+	sodium_memzero(drawn, sizeof(drawn));
+}
+
+struct session *session_begin(struct sessions *s, const char *user,
+			      enum role role, const char *address)
+{
+	struct session *n = make_room(s);
+
+	if (!n)
+		return NULL;
+	session_end(n);
+	draw_hex(n->id, 32);
+	draw_hex(n->token, 16);
+	snprintf(n->user, sizeof(n->user), "%s", user);
+	snprintf(n->address, sizeof(n->address), "%s", address);
+	n->role = role;
+	n->begun_s = n->used_s = now_s();
+	return n;
+}
+
+struct session *session_by_id(struct sessions *s, const char *id)
+{
+	const int64_t at_s = now_s();
+
+	if (strlen(id) != SESSION_ID_BYTES - 1)
+		return NULL;
+	for (int i = 0; i < SESSIONS_MAX; i++) {
+		struct session *t = &s->session[i];
+
+		if (!t->id[0] || sodium_memcmp(t->id, id,
+					       SESSION_ID_BYTES - 1) != 0)
+			continue;
+		if (is_over(t, at_s)) {
+			session_end(t);
+			return NULL;
+		}
+		t->used_s = at_s;
+		return t;
+	}
+	return NULL;
+}
+
+struct session *session_find(struct sessions *s, const char *cookie)
+{
+	static const char name[] = "edm_session=";
+	char id[SESSION_ID_BYTES];
+
+	for (const char *at = cookie; at && *at;) {
+		at += strspn(at, " ;");
+		if (strncmp(at, name, sizeof(name) - 1) == 0) {
+			snprintf(id, sizeof(id), "%s", at + sizeof(name) - 1);
+			id[strcspn(id, "; ")] = '\0';
+			return session_by_id(s, id);
+		}
+		at = strchr(at, ';');
+	}
+	return NULL;
+}
+
+bool session_token_ok(const struct session *session, const char *token)
+{
+	return token && strlen(token) == sizeof(session->token) - 1 &&
+	       sodium_memcmp(token, session->token,
+			     sizeof(session->token) - 1) == 0;
+}
+
+static struct place *place_of(struct sessions *s, const char *address)
+{
+	struct place *oldest = &s->place[0];
+
+	for (int i = 0; i < PLACES; i++) {
+		if (strcmp(s->place[i].address, address) == 0)
+			return &s->place[i];
+		if (s->place[i].since_s < oldest->since_s)
+			oldest = &s->place[i];
+	}
+	*oldest = (struct place) { .since_s = now_s() };
+	snprintf(oldest->address, sizeof(oldest->address), "%s", address);
+	return oldest;
+}
+
+static int count_try(struct place *p, int most)
+{
+	const int64_t at_s = now_s();
+
+	if (at_s - p->since_s >= TRY_S) {
+		p->tries = 0;
+		p->since_s = at_s;
+	}
+	if (p->tries >= most)
+		return (int)(p->since_s + TRY_S - at_s) + 1;
+	p->tries++;
+	return 0;
+}
+
+int session_may_try(struct sessions *s, const char *address)
+{
+	const int wait_s = count_try(place_of(s, address), TRIES_MAX);
+
+	return wait_s ? wait_s : count_try(&s->all, TRIES_ALL);
+}
+
+void session_try_ok(struct sessions *s, const char *address)
+{
+	place_of(s, address)->tries = 0;
+}

@@ -1,0 +1,399 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * verbs.c - what a browser may ask for over the web socket: one table
+ *
+ * An act goes to edmd-jobs and is answered when that has answered; who did it
+ * stands in the journal, with what became of it.
+ */
+#include "panel.h"
+#include "values.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+#include <unistd.h>
+
+#define HISTORY_S_MAX	3600.0
+#define TEXT_MAX	(4u << 20)	/* of what a child says */
+#define CACHE_MS	5000
+
+struct verb {
+	const char *name;
+	enum role role;			/* the least */
+	void (*run)(struct browser *b, const struct verb *v, int64_t n,
+		    const json_t *o);
+	const char *asks;		/* of edmd-jobs; NULL: its own name */
+	bool act;			/* it does something: journal it */
+	unsigned int flags;		/* ACT_* */
+};
+
+/* What was asked for, and is not answered yet. */
+struct pending {
+	struct pending *next;
+	struct browser *browser;	/* NULL: gone */
+	struct panel *panel;
+	const struct verb *verb;
+	int64_t n;
+	char what[256];			/* who did what; "": not an act */
+};
+
+static struct pending *all;
+
+static const char *text_of(const json_t *o, const char *key)
+{
+	const char *s = json_string_value(json_object_get(o, key));
+
+	return s && strlen(s) < ACT_WORD_MAX ? s : "";
+}
+
+static double number_of(const json_t *o, const char *key)
+{
+	return json_number_value(json_object_get(o, key));
+}
+
+static struct pending *pend(struct browser *b, const struct verb *v, int64_t n)
+{
+	struct pending *p = calloc(1, sizeof(*p));
+
+	if (!p)
+		return NULL;
+	p->browser = b;
+	p->panel = socket_panel(b);
+	p->verb = v;
+	p->n = n;
+	p->next = all;
+	all = p;
+	return p;
+}
+
+static void unpend(struct pending *p)
+{
+	struct pending **at = &all;
+
+	while (*at != p)
+		at = &(*at)->next;
+	*at = p->next;
+	free(p);
+}
+
+void verbs_forget(struct browser *b)
+{
+	for (struct pending *p = all; p; p = p->next)
+		if (p->browser == b)
+			p->browser = NULL;
+}
+
+static void refuse(struct browser *b, int64_t n, int code, const char *reason)
+{
+	socket_answer(b, n, code, reason, NULL);
+}
+
+/* -- Of edmd-jobs -------------------------------------------------------------- */
+
+static void on_answer(void *arg, const struct act_answer *a)
+{
+	struct pending *p = arg;
+
+	if (p->what[0])
+		panel_note(p->panel, "%s: %.60s", p->what, a->reason);
+	if (p->browser)
+		socket_answer(p->browser, p->n, a->code, a->reason,
+			      a->body && *a->body ?
+			      json_loads(a->body, JSON_DECODE_ANY, NULL) :
+			      NULL);
+	unpend(p);
+}
+
+static void describe(struct pending *p, const struct session *s,
+		     const struct act_question *q)
+{
+	snprintf(p->what, sizeof(p->what), "%s (%s, %s): %s%s%.40s%s%.40s",
+		 s->user, role_name(s->role), s->address, q->verb,
+		 *q->text ? " " : "", q->text, *q->job ? " " : "", q->job);
+	if (q->arg != 0)
+		snprintf(p->what + strlen(p->what),
+			 sizeof(p->what) - strlen(p->what), " %g", q->arg);
+}
+
+static void run_ask(struct browser *b, const struct verb *v, int64_t n,
+		    const json_t *o)
+{
+	/* A JSON null takes a value back: what messages/README.md calls NaN. */
+	const struct act_question q = {
+		.verb = v->asks ? v->asks : v->name, .flags = v->flags,
+		.job = text_of(o, "job"), .text = text_of(o, "text"),
+		.arg = json_is_null(json_object_get(o, "arg")) ? NAN :
+		       number_of(o, "arg"),
+	};
+	struct pending *p = pend(b, v, n);
+
+	if (p && v->act)
+		describe(p, socket_session(b), &q);
+	if (p && act_ask(socket_panel(b)->act, &q, on_answer, p) == 0)
+		return;
+	if (p)
+		unpend(p);
+	refuse(b, n, EX_TEMPFAIL, *act_why(socket_panel(b)->act) ?
+	       act_why(socket_panel(b)->act) :
+	       "too many requests are under way; try again");
+}
+
+/* -- Of the panel itself --------------------------------------------------------- */
+
+static void run_history(struct browser *b, const struct verb *v, int64_t n,
+			const json_t *o)
+{
+	const double s = number_of(o, "seconds");
+	const double points = number_of(o, "points");
+
+	(void)v;
+	if (!(s > 0 && s <= HISTORY_S_MAX && points >= 10 && points <= 2000)) {
+		refuse(b, n, EX_DATAERR, "seconds up to 3600, and 10 to 2000 "
+		       "points");
+		return;
+	}
+	socket_answer(b, n, 0, "done",
+		      live_history(socket_panel(b)->live, s, (int)points));
+}
+
+static void run_latency(struct browser *b, const struct verb *v, int64_t n,
+			const json_t *o)
+{
+	const uint32_t *bin = live_latency(socket_panel(b)->live);
+	json_t *bins = json_array();
+
+	(void)v, (void)o;
+	for (int i = 0; bin && i < SHM_LATENCY_BINS; i++)
+		json_array_append_new(bins, json_integer(bin[i]));
+	socket_answer(b, n, 0, "done", bins);
+}
+
+static void run_notes(struct browser *b, const struct verb *v, int64_t n,
+		      const json_t *o)
+{
+	(void)v, (void)o;
+	socket_answer(b, n, 0, "done", panel_notes(socket_panel(b)));
+}
+
+/* -- Of other programs ------------------------------------------------------------ */
+
+/* One JSON value, or one in each line. */
+static json_t *read_said(const char *text)
+{
+	json_t *one = json_loads(text, 0, NULL), *rows;
+
+	if (one)
+		return one;
+	rows = json_array();
+	while (*text) {
+		const size_t len = strcspn(text, "\n");
+		json_t *row = json_loadb(text, len, 0, NULL);
+
+		if (row)
+			json_array_append_new(rows, row);
+		text += len + (text[len] == '\n');
+	}
+	return rows;
+}
+
+static void on_said(void *arg, int status, int out_fd)
+{
+	struct pending *p = arg;
+	char *text = child_read(out_fd, TEXT_MAX, NULL);
+
+	close(out_fd);
+	if (p->browser && text && status < 64)
+		socket_answer(p->browser, p->n, 0, "done", read_said(text));
+	else if (p->browser)
+		refuse(p->browser, p->n, EX_UNAVAILABLE, status == 127 ?
+		       "the program that tells it is not installed" :
+		       "the program that tells it failed");
+	free(text);
+	unpend(p);
+}
+
+static void say(struct browser *b, const struct verb *v, int64_t n,
+		const char *const argv[])
+{
+	const struct child_job j = { .argv = argv, .in_fd = -1, .limit_s = 15 };
+	struct pending *p = pend(b, v, n);
+
+	if (p && child_start(socket_panel(b)->children, &j, on_said, p) == 0)
+		return;
+	if (p)
+		unpend(p);
+	refuse(b, n, EX_TEMPFAIL, "too much is under way; try again");
+}
+
+/* A program that lies beside this one, or in PATH. */
+static const char *beside(const struct panel *p, const char *name,
+			  char to[512])
+{
+	const char *slash = strrchr(p->self, '/');
+
+	snprintf(to, 512, "%.*s/%s", slash ? (int)(slash - p->self) : 0,
+		 p->self, name);
+	return access(to, X_OK) == 0 ? to : name;
+}
+
+static void run_doctor(struct browser *b, const struct verb *v, int64_t n,
+		       const json_t *o)
+{
+	struct panel *p = socket_panel(b);
+	char path[512];
+	const char *const argv[] = {
+		beside(p, "edmctl", path), "--machine", p->config.name,
+		"--url", p->config.lcm_url, "--json", "doctor", NULL
+	};
+
+	(void)o;
+	say(b, v, n, argv);
+}
+
+static void run_fleet(struct browser *b, const struct verb *v, int64_t n,
+		      const json_t *o)
+{
+	struct panel *p = socket_panel(b);
+	char path[512], domain[16];
+	const char *const argv[] = {
+		beside(p, "edm-fleet", path), "--once", "--json", "--wait",
+		"2", "--domain", domain, NULL
+	};
+
+	(void)o;
+	snprintf(domain, sizeof(domain), "%d", (int)p->config.dds_domain);
+	say(b, v, n, argv);
+}
+
+static void run_log(struct browser *b, const struct verb *v, int64_t n,
+		    const json_t *o)
+{
+	static const char *const argv[] = {
+		"journalctl", "-u", "edmd", "-u", "edmd-jobs", "-u",
+		"edm-panel", "-n", "200", "-o", "json", "--output-fields",
+		"MESSAGE,_SYSTEMD_UNIT,PRIORITY", "--no-pager", "-q", NULL
+	};
+
+	(void)o;
+	say(b, v, n, argv);
+}
+
+static void run_tech(struct browser *b, const struct verb *v, int64_t n,
+		     const json_t *o)
+{
+	struct panel *p = socket_panel(b);
+	const char *const argv[] = {
+		p->self, "--work", "tech", "--config", p->config_path, NULL
+	};
+
+	(void)o;
+	say(b, v, n, argv);
+}
+
+/* clang-format off */
+static const struct verb verbs[] = {
+	{ "start",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "hold",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "resume",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "stop",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "retract",  ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "step",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true, ACT_ONCE },
+	{ "home",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "override", ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "estop",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "reset",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "set",      ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "remove",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "queue",    ROLE_VIEWER,   run_ask, NULL, false, 0 },
+	{ "show",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
+	{ "past",     ROLE_VIEWER,   run_ask, "history", false, 0 },
+	{ "alarms",   ROLE_VIEWER,   run_ask, NULL, false, 0 },
+	{ "history",  ROLE_VIEWER,   run_history, NULL, false, 0 },
+	{ "latency",  ROLE_VIEWER,   run_latency, NULL, false, 0 },
+	{ "notes",    ROLE_VIEWER,   run_notes, NULL, false, 0 },
+	{ "doctor",   ROLE_VIEWER,   run_doctor, NULL, false, 0 },
+	{ "fleet",    ROLE_VIEWER,   run_fleet, NULL, false, 0 },
+	{ "log",      ROLE_OPERATOR, run_log, NULL, false, 0 },
+	{ "tech",     ROLE_VIEWER,   run_tech, NULL, false, 0 },
+};
+/* clang-format on */
+
+#define NVERBS	(sizeof(verbs) / sizeof(verbs[0]))
+
+void verbs_do(struct browser *b, const json_t *o)
+{
+	const char *name = json_string_value(json_object_get(o, "do"));
+	const int64_t n = json_integer_value(json_object_get(o, "n"));
+	const struct session *s = socket_session(b);
+	char reason[160];
+
+	for (size_t i = 0; i < NVERBS; i++) {
+		if (strcmp(verbs[i].name, name) != 0)
+			continue;
+		if (s->role >= verbs[i].role) {
+			verbs[i].run(b, &verbs[i], n, o);
+			return;
+		}
+		snprintf(reason, sizeof(reason), "the role %s may not %s; "
+			 "log in as %s", role_name(s->role), name,
+			 role_name(verbs[i].role));
+		panel_note(socket_panel(b), "%s (%s, %s): %s was refused",
+			   s->user, role_name(s->role), s->address, name);
+		refuse(b, n, EX_NOPERM, reason);
+		return;
+	}
+	refuse(b, n, EX_USAGE, "no such request");
+}
+
+/* -- Hello ----------------------------------------------------------------------- */
+
+static json_t *axis(const struct machine_config *c, int i)
+{
+	const struct interp_axis_limits *a = &c->axes.axis[i];
+
+	return json_pack("{s:s#,s:i,s:b,s:f,s:f,s:f,s:f,s:f,s:b}", "name",
+			 &INTERP_AXIS_LETTERS[i], 1, "index", i, "rotary",
+			 interp_axis_is_rotary((enum interp_axis)i), "min",
+			 a->travel_min_mm, "max", a->travel_max_mm, "pulse",
+			 a->pulse_mm, "vMax", a->v_max_mm_s, "jog",
+			 c->hand[i].jog_mm_s, "homes",
+			 c->hand[i].home_method != 0);
+}
+
+static json_t *offsets(const struct machine_config *c)
+{
+	json_t *all_of = json_array();
+
+	for (int i = 0; i < INTERP_NC_NWORK; i++) {
+		json_t *row = json_array();
+
+		for (int a = 0; a < INTERP_NAXES; a++)
+			json_array_append_new(row,
+				json_real(c->work_offset_mm[i][a]));
+		json_array_append_new(all_of, row);
+	}
+	return all_of;
+}
+
+json_t *verbs_hello(struct panel *p, const struct session *s)
+{
+	const struct machine_config *c = &p->config;
+	json_t *axes = json_array();
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (c->axes.present >> i & 1)
+			json_array_append_new(axes, axis(c, i));
+	return json_pack("{s:s,s:s,s:s,s:s,s:o,s:o,s:o,s:i,s:f,s:f,s:b,s:b,"
+			 "s:s}",
+			 "machine", c->name, "user", s->user, "role",
+			 role_name(s->role), "version", EDM_VERSION, "axes",
+			 axes, "fields", values_fields(), "offsets",
+			 offsets(c), "process", c->gap.process, "touchFeed",
+			 c->probe.feed_mm_s, "touchBack", c->probe.back_mm,
+			 "plc", config_has_plc(c), "simulated",
+			 c->backend == BACKEND_SIM || c->backend ==
+			 BACKEND_NULL, "table", c->tech_table);
+}

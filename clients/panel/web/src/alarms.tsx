@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What is wrong, why, and what clears it; and what was wrong before.
+import type { JSX } from "preact";
+import { whyNot } from "./can";
+import { moment, number } from "./format";
+import { link } from "./link";
+import { Card, Key, PressKey, act } from "./parts";
+import { useAsk } from "./use";
+import { faultWords, t } from "./words";
+
+interface Alarm { utime: number; kind: string; job: string; fault: string; place_mm: number; text: string }
+
+function Now(): JSX.Element {
+	const s = link.state, w = faultWords(s.fault);
+	if (s.fault === "none") return <Card title={t("alarms.now")}><p class="calm">{t("alarms.none")}</p></Card>;
+	return <Card title={t("alarms.now")} class="alarm-now">
+		<h3><span class="dot cross" aria-hidden="true" />{w.what} <code>{s.fault}</code></h3>
+		<dl><dt>{t("alarms.why")}</dt><dd>{w.why}</dd><dt>{t("alarms.clear")}</dt><dd>{w.clear}</dd>
+			{s.job && <><dt>{t("alarms.where")}</dt><dd>{t("alarms.inline", { job: s.jobName, line: s.line, mm: number(s.place, 3) })}</dd></>}</dl>
+		<div class="keys"><Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key>
+			<PressKey id="start" why={whyNot("start")} onPress={() => void act("start")}>{t("resume")}</PressKey></div>
+		<p class="note">{t("alarms.resetgo")}</p>
+	</Card>;
+}
+
+export function Alarms(): JSX.Element {
+	const [rows, refused] = useAsk<Alarm[]>("alarms", { fault: link.state.fault }, 4000);
+	return <div class="column">
+		<Now />
+		<Card title={t("alarms.history")}>
+			{refused && <p class="note">{refused}</p>}
+			{rows && rows.length === 0 && <p class="calm">{t("alarms.empty")}</p>}
+			{rows && rows.length > 0 && <div class="scroll"><table class="list"><tbody>{rows.map((a) => <tr>
+				<td class="when">{moment(a.utime / 1000)}</td><td><b>{a.kind === "alarm" ? faultWords(a.fault).what : a.kind}</b><p>{a.text}</p></td></tr>)}</tbody></table></div>}
+		</Card>
+	</div>;
+}

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The frame of every page: rail, state line, stop; and what is dropped on it.
+import type { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { Alarms } from "./alarms";
+import { whyNot } from "./can";
+import { Cut } from "./cut";
+import { Fleet } from "./fleet";
+import { clock } from "./format";
+import { Jobs, takeFile } from "./jobs";
+import { link } from "./link";
+import { Machine } from "./machine";
+import { Icon, act } from "./parts";
+import { Setup } from "./setup";
+import { stateLine } from "./stateline";
+import { Tech } from "./tech";
+import { drop, say, useLink, useSettings, useToasts } from "./use";
+import { t, type Word } from "./words";
+
+const PAGES: { id: string; word: Word; page: () => JSX.Element }[] = [
+	{ id: "cut", word: "page.cut", page: Cut },
+	{ id: "jobs", word: "page.jobs", page: Jobs },
+	{ id: "setup", word: "page.setup", page: Setup },
+	{ id: "tech", word: "page.tech", page: Tech },
+	{ id: "alarms", word: "page.alarms", page: Alarms },
+	{ id: "machine", word: "page.machine", page: Machine },
+	{ id: "fleet", word: "page.fleet", page: Fleet },
+];
+
+function pageOf(): string {
+	const id = location.hash.replace("#/", "");
+	return PAGES.some((p) => p.id === id) ? id : "cut";
+}
+
+export function goTo(id: string): void {
+	location.hash = `#/${id}`;
+}
+
+function Rail(p: { at: string }): JSX.Element {
+	const fault = link.state.fault !== "none";
+	return <nav class="rail" aria-label="edmd">
+		{PAGES.map((page) => <a href={`#/${page.id}`} class={p.at === page.id ? "on" : ""}
+			aria-current={p.at === page.id ? "page" : undefined}>
+			<Icon name={page.id} /><span>{t(page.word)}</span>
+			{page.id === "alarms" && fault && <b class="badge" aria-label={t("event.alarm")}>!</b>}
+		</a>)}
+	</nav>;
+}
+
+function Head(): JSX.Element {
+	const s = stateLine();
+	const why = whyNot("estop");
+	return <header class={`head ${s.tone}`}>
+		<span class={`dot ${s.shape}`} aria-hidden="true" />
+		<div class="state" role="status" aria-live="polite"><h1>{s.title}</h1><p title={s.why}>{s.why}</p></div>
+		<small class="who">{link.hello?.machine ?? ""} <time>{clock(Date.now())}</time><br />
+			{link.hello ? t(`role.${link.hello.role}`) : ""}</small>
+		<button type="button" class={`stop ${why ? "off" : ""}`} id="stop" title={t("stop.about")} aria-disabled={!!why}
+			onClick={() => why ? say(why, true) : void act("estop")}>
+			{t("stop")}<small>{t("stop.note")}</small></button>
+	</header>;
+}
+
+function Login(): JSX.Element {
+	const [user, setUser] = useState(""), [password, setPassword] = useState("");
+	const [refused, refuse] = useState("");
+	const go = async (e: Event) => {
+		e.preventDefault();
+		refuse(await link.login(user, password));
+		setPassword("");
+	};
+	return <main class="login"><form class="card" onSubmit={(e) => void go(e)}>
+		<h1>{t("login.title")}</h1><p>{link.session?.machine}</p>
+		<label class="field"><span>{t("login.user")}</span><span class="box"><input id="user" autocomplete="username" value={user} onInput={(e) => setUser(e.currentTarget.value)} /></span></label>
+		<label class="field"><span>{t("login.password")}</span><span class="box"><input id="password" type="password" autocomplete="current-password" value={password} onInput={(e) => setPassword(e.currentTarget.value)} /></span></label>
+		{refused && <p class="bad" role="alert">{refused}</p>}
+		<button type="submit" class="key primary">{t("login.go")}</button>
+	</form></main>;
+}
+
+function Toasts(): JSX.Element {
+	return <div class="toasts" role="alert">{useToasts().map((o) =>
+		<button type="button" class={`toast ${o.bad ? "bad" : ""}`} onClick={() => drop(o.n)}>{o.text}</button>)}</div>;
+}
+
+/** A file may be dropped anywhere. */
+function useDrop(): boolean {
+	const [over, set] = useState(false);
+	useEffect(() => {
+		const has = (e: DragEvent) => !!e.dataTransfer?.types.includes("Files");
+		const on = (e: DragEvent) => { if (has(e)) { e.preventDefault(); set(true); } };
+		const off = (e: DragEvent) => { if (!e.relatedTarget) set(false); };
+		const take = (e: DragEvent) => {
+			if (!has(e)) return;
+			e.preventDefault();
+			set(false);
+			const f = e.dataTransfer?.files[0];
+			if (f) { goTo("jobs"); void takeFile(f); }
+		};
+		addEventListener("dragover", on);
+		addEventListener("dragleave", off);
+		addEventListener("drop", take);
+		return () => { removeEventListener("dragover", on); removeEventListener("dragleave", off); removeEventListener("drop", take); };
+	}, []);
+	return over;
+}
+
+export function App(): JSX.Element {
+	useLink();
+	useSettings();
+	const [at, set] = useState(pageOf());
+	const over = useDrop();
+	useEffect(() => {
+		const h = () => set(pageOf());
+		addEventListener("hashchange", h);
+		return () => removeEventListener("hashchange", h);
+	}, []);
+	if (link.connection === "login") return <><Login /><Toasts /></>;
+	const page = PAGES.find((p) => p.id === at) ?? PAGES[0]!;
+	const Page = page.page;
+	document.title = `${stateLine().title} \u00b7 ${link.hello?.machine ?? "edmd"}`;
+	return <div class="frame">
+		<a class="skip" href="#page" onClick={(e) => { e.preventDefault(); document.getElementById("page")?.focus(); }}>{t("skip")}</a>
+		<Rail at={at} /><Head />
+		<main id="page" tabIndex={-1} class={`page page-${page.id}`} key={page.id}><Page /></main>
+		{over && <div class="dropping"><Icon name="file" />{t("drop.here")}</div>}
+		<Toasts />
+	</div>;
+}

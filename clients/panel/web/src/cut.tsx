@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The first page: the path, the gap, the feed, and the keys of a cut.
+import type { JSX } from "preact";
+import { useState } from "preact/hooks";
+import { isRunning, whyNot } from "./can";
+import { Strip } from "./chart";
+import { duration, number, parse, short } from "./format";
+import { link, type Point } from "./link";
+import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
+import { PathView } from "./pathview";
+import { useAsk } from "./use";
+import { ValueSheet, ValuesSheet } from "./values";
+import { t } from "./words";
+
+const RETRACTS = [0.5, 1, 2, 5, 10];
+
+function Gap(p: { onOpen: () => void }): JSX.Element {
+	const s = link.state, v = s.values;
+	const top = Math.max(v.ignition_v ?? 0, (v.open_v ?? 60) * 1.3) * 0.5 > (v.open_v ?? 60) ? (v.open_v ?? 60) * 1.4 : (v.open_v ?? 60) * 1.25;
+	const share = (x: number) => `${Math.min(100, Math.max(0, x / top * 100))}%`;
+	const low = v.window_low_v || v.servo_v || 0, high = v.window_high_v || v.servo_v || 0;
+	return <Card class="gap" label={t("cut.gap")}>
+		<div class="reading"><h2>{t("cut.gap")}</h2><p><b>{number(s.gap, 1)}</b> <u>V</u> <em>{t(s.power ? "cut.sparks" : "cut.nosparks")}</em></p></div>
+		<div class="bar gapbar" aria-hidden="true">
+			<i class="window" style={{ left: share(Math.min(low, (v.servo_v ?? 0) - top * 0.01)), right: `calc(100% - ${share(Math.max(high, (v.servo_v ?? 0) + top * 0.01))})` }} />
+			<i class="mark" style={{ left: share(v.short_v ?? 0) }} /><i class="mark" style={{ left: share(v.open_v ?? 0) }} />
+			<i class={`pointer ${s.gap > top ? "over" : ""}`} style={{ left: share(s.gap) }} />
+		</div>
+		<div class="barwords" aria-hidden="true"><span style={{ left: share(v.short_v ?? 0) }}>{t("cut.short")}</span>
+			<span class="servo" style={{ left: share(v.servo_v ?? 0) }}>{t("cut.servo")} {short(v.servo_v ?? 0)}</span>
+			<span style={{ left: share(v.open_v ?? 0) }}>{t("cut.open")}</span></div>
+		<button type="button" class="stripkey" onClick={p.onOpen} aria-label={t("chart.gap")}>
+			<Strip points={link.points} at={1} colour="--acc" label={t("chart.gap")} height={62} span={60} lines={[v.servo_v ?? 0]} clip={[0, top]} /></button>
+	</Card>;
+}
+
+function Feed(p: { onOpen: () => void }): JSX.Element {
+	const s = link.state, v = s.values;
+	const slow = Math.abs(s.feed) < 5, most = Math.max(v.feed_max_mm_s ?? 0.5, 0.1);
+	const span = Math.abs(s.feed) > most * 1.5 ? Math.max(v.retract_mm_s ?? 5, Math.abs(s.feed)) : most;
+	const share = Math.min(50, Math.abs(s.feed) / span * 50);
+	const way = s.feed > 1e-6 ? "cut.forward" : s.feed < -1e-6 ? "cut.back" : "cut.still";
+	return <Card class="feed" label={t("cut.feed")}>
+		<div class="reading"><h2>{t("cut.feed")}</h2><p><b>{number(s.feed, slow ? 3 : 1, true)}</b> <u>mm/s</u> <em>{t(way)}</em></p></div>
+		<div class="bar feedbar" aria-hidden="true"><i class={s.feed < 0 ? "flow back" : "flow"} style={s.feed < 0 ? { right: "50%", width: `${share}%` } : { left: "50%", width: `${share}%` }} /><i class="zero" /></div>
+		<button type="button" class="stripkey" onClick={p.onOpen} aria-label={t("chart.feed")}>
+			<Strip points={link.points} at={4} colour="--done" label={t("chart.feed")} height={44} span={60} lines={[0]} clip={[-most * 1.2, most * 1.2]} /></button>
+	</Card>;
+}
+
+function Positions(): JSX.Element {
+	const s = link.state;
+	return <Card class="positions" label={t("cut.position")}><table><tbody>
+		{(link.hello?.axes ?? []).map((a) => <tr key={a.name}><th scope="row">{a.name}</th>
+			<td class="n">{number(s.pos[a.index] ?? 0, 3, true)}</td><td class="u">{a.rotary ? "deg" : "mm"}</td>
+			<td class="w">{s.limit >> a.index & 1 ? t("setup.limit") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</td></tr>)}
+	</tbody></table></Card>;
+}
+
+function Sums(): JSX.Element {
+	const s = link.state, share = s.length > 0 ? s.far / s.length * 100 : 0;
+	return <Card class="sums" label={t("cut.done")}>
+		<div class="three"><div><span>{t("cut.depth")}</span><p><b>{number(s.depth, 3)}</b> <u>mm</u></p></div>
+			<div><span>{t("cut.done")}</span><p><b>{number(share, 1)}</b> <u>%</u></p></div>
+			<div><span>{t("cut.left")}</span><p><b>{duration(s.left)}</b></p></div></div>
+		<div class="counts"><span>{t("cut.jumps")} <b>{s.jumps}</b></span><span>{t("cut.retracts")} <b>{s.retracts}</b></span>
+			<span>{t("cut.shorts")} <b>{s.shorts}</b></span><span>{t("cut.time")} <b>{duration(s.jobS)}</b></span></div>
+	</Card>;
+}
+
+function Past(p: { onClose: () => void }): JSX.Element {
+	const [span, set] = useState<"60" | "600" | "3600">("600");
+	const [rows] = useAsk<Point[]>("history", { seconds: Number(span), points: 900 }, 2000);
+	return <Sheet title={t("cut.past")} onClose={p.onClose} wide>
+		<Choice label={t("cut.past")} value={span} onChange={set} of={[{ value: "60", text: t("range.60") }, { value: "600", text: t("range.600") }, { value: "3600", text: t("range.3600") }]} />
+		<h3>{t("cut.gap")}, V</h3><Strip points={rows ?? []} at={1} colour="--acc" label={t("chart.gap")} height={190} axes span={Number(span)} />
+		<h3>{t("cut.feed")}, mm/s</h3><Strip points={rows ?? []} at={4} colour="--done" label={t("chart.feed")} height={190} axes span={Number(span)} />
+	</Sheet>;
+}
+
+function RetractSheet(p: { onClose: () => void }): JSX.Element {
+	const [text, set] = useState("1");
+	const mm = parse(text);
+	const ok = mm > 0 && mm <= 10000;
+	const go = (x: number) => { void act("retract", { arg: x }); p.onClose(); };
+	return <Sheet title={t("cut.retractby")} onClose={p.onClose}>
+		<p>{t("cut.retractnote")}</p>
+		<div class="keys wrap">{RETRACTS.map((x) => <PressKey onPress={() => go(x)} why={whyNot("retract")}>{short(x)} mm</PressKey>)}</div>
+		<div class="keys"><NumberField label={t("cut.retractby")} unit="mm" value={text} onInput={set} />
+			<PressKey class="primary" onPress={() => go(mm)} why={ok ? whyNot("retract") : t("probe.bad")}>{t("retract").replace("\u2026", "")}</PressKey></div>
+		<h3>{t("cut.step")}</h3>
+		<div class="keys"><Key onPress={() => void act("step", { arg: -1 })} why={whyNot("retract")}>{"\u2212"}1</Key>
+			<Key onPress={() => void act("step", { arg: 1 })} why={whyNot("retract")}>+1</Key></div>
+		<div class="keys end"><PressKey class="danger" onPress={() => { void act("stop"); p.onClose(); }} why={whyNot("end")}>{t("end")}</PressKey></div>
+	</Sheet>;
+}
+
+function OverrideSheet(p: { onClose: () => void }): JSX.Element {
+	return <Sheet title={t("cut.override")} onClose={p.onClose}><p>{t("cut.override.about")}</p>
+		<div class="keys wrap">{[10, 25, 50, 75, 100, 125, 150, 200].map((x) => <Key class={Math.round(link.state.override * 100) === x ? "primary" : ""}
+			why={whyNot("estop")} onPress={() => { void act("override", { arg: x / 100 }); p.onClose(); }}>{x} %</Key>)}</div></Sheet>;
+}
+
+interface Chip { id: string; label: string; text: string; open: string }
+
+function chips(): Chip[] {
+	const s = link.state, v = s.values;
+	const f = (name: string, unit: string) => v[name] === undefined ? "\u2013" : `${short(v[name] as number)} ${unit}`;
+	return [
+		{ id: "condition", label: t("cut.condition"), text: s.condition || "\u2013", open: "*" },
+		{ id: "peak_a", label: t("cut.peak"), text: f("peak_a", "A"), open: "peak_a" },
+		{ id: "on_us", label: t("cut.onoff"), text: v.on_us === undefined ? "\u2013" : `${short(v.on_us)} / ${short(v.off_us ?? 0)} \u00b5s`, open: "on_us off_us" },
+		{ id: "servo_v", label: t("cut.servochip"), text: f("servo_v", "V"), open: "servo_v" },
+		{ id: "jump_mm", label: t("cut.jump"), text: v.jump_mm === undefined ? "\u2013" : `${short(v.jump_mm)} mm / ${short(v.jump_every_s ?? 0)} s`, open: "jump_mm jump_every_s" },
+		{ id: "override", label: t("cut.override"), text: `${number(s.override * 100, 0)} %`, open: "%" },
+	];
+}
+
+function Foot(p: { open: (what: string) => void }): JSX.Element {
+	const s = link.state, held = s.state === "hold" && s.far > 0;
+	const fault = s.state === "fault";
+	return <footer class="foot">
+		<div class="chips">{chips().map((c) => <button type="button" id={`chip-${c.id}`} class={`chip ${s.set.some((f) => c.open.split(" ").includes(f)) ? "set" : ""}`} onClick={() => p.open(c.open)}>
+			<span>{c.label}</span><b>{c.text}</b></button>)}</div>
+		<div class="keys">
+			<Key id="retract" onPress={() => p.open("retract")}>{t("retract")}</Key>
+			{fault ? <Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key> :
+				<Key id="hold" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}
+			<PressKey id="start" class={isRunning() ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
+				onPress={() => void act("start")}>{t(held ? "resume" : "start")}</PressKey>
+		</div>
+	</footer>;
+}
+
+export function Cut(): JSX.Element {
+	const [open, set] = useState("");
+	const s = link.state;
+	const shown = s.program > 0 && s.loaded;
+	const back = Math.max(0, s.far - s.place), whole = s.length || 1;
+	const foot = shown ? <div class="progress"><p><span /><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
+		<div class="bar"><i class="done" style={{ width: `${Math.min(100, s.far / whole * 100)}%` }} />
+			{back > 0.0005 && <i class="back" style={{ left: `${s.place / whole * 100}%`, width: `${back / whole * 100}%` }} />}</div></div> : null;
+	return <>
+		<div class="cut-grid">
+			<section class="card view" aria-label={t("cut.path")}>
+				<PathView query={shown ? `program=${s.program}` : ""} place={s.place} far={s.far} electrode={s.pos.length ? s.pos : null} foot={foot}
+					title={shown ? <>{s.jobName || t("cut.nojob")}{s.line > 0 && <> {"\u00b7"} {t("cut.line")} {s.line} {t("of")} {s.lines}</>}</> : t("cut.nojob")} />
+			</section>
+			<div class="cut-side"><Gap onOpen={() => set("past")} /><Feed onOpen={() => set("past")} /><Positions /><Sums /></div>
+		</div>
+		<Foot open={set} />
+		{open === "past" && <Past onClose={() => set("")} />}
+		{open === "retract" && <RetractSheet onClose={() => set("")} />}
+		{open === "%" && <OverrideSheet onClose={() => set("")} />}
+		{open === "*" && <ValuesSheet onClose={() => set("")} />}
+		{open && !["past", "retract", "%", "*"].includes(open) && <ValueSheet names={open.split(" ")} onClose={() => set("")} onMore={() => set("*")} />}
+	</>;
+}
+

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Programs: drop one, check it, mend it where it stands, send it; the queue and
+// what has been.
+import type { JSX } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { whyNot } from "./can";
+import { duration, moment, number } from "./format";
+import { link } from "./link";
+import { Card, Key, PressKey, Sheet, act } from "./parts";
+import { PathView } from "./pathview";
+import { say, useAsk } from "./use";
+import { jobWord, t } from "./words";
+
+interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
+interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string }
+interface Job { n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; jumps: number; retracts: number; shorts: number; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
+
+const EDITOR_MAX = 2 << 20, FILE_MAX = 64 << 20;
+
+// Of this browser, and there when the page is left and opened again.
+let draft: Draft | null = null;
+const heard = new Set<() => void>();
+
+function put(d: Draft | null): void {
+	draft = d;
+	for (const h of heard) h();
+}
+
+function useDraft(): Draft | null {
+	const [, again] = useState(0);
+	useEffect(() => {
+		let n = 0;
+		const h = () => again(++n);
+		heard.add(h);
+		return () => { heard.delete(h); };
+	}, []);
+	return draft;
+}
+
+let turn = 0;
+
+async function check(): Promise<void> {
+	const d = draft, my = ++turn;
+	if (!d) return;
+	put({ ...d, busy: t("jobs.checking") });
+	try {
+		const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(d.name)}`, d.file ?? new Blob([d.text]));
+		if (my === turn && draft) put({ ...draft, busy: "", checked: c });
+	} catch (e) {
+		if (my === turn && draft) put({ ...draft, busy: "", checked: { ok: false, line: 0, column: 0, found: String(e), wanted: "" } });
+	}
+}
+
+/** A file that was dropped or chosen: it is checked at once. */
+export async function takeFile(f: File): Promise<void> {
+	if (f.size > FILE_MAX) { say(t("jobs.toolong"), true); return; }
+	const short = f.size <= EDITOR_MAX;
+	put({ name: f.name.slice(0, 60), text: short ? await f.text() : "", file: short ? null : f, checked: null, busy: "" });
+	await check();
+}
+
+/** G code that a form made: checked, then sent. */
+export async function sendText(name: string, text: string, start: boolean): Promise<boolean> {
+	const d: Draft = { name, text, file: null, checked: null, busy: "" };
+	const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(name)}`, new Blob([text]));
+	if (!c.ok) { say(`${t("jobs.errorat", { line: c.line, column: c.column })}: ${c.found}; ${c.wanted}`, true); return false; }
+	return send(d, start);
+}
+
+async function send(d: Draft, start: boolean): Promise<boolean> {
+	interface Sent { code?: number; reason?: string; job?: string; found?: string; wanted?: string; body?: Checked }
+	const progress = (share: number) => { if (draft) put({ ...draft, busy: t("jobs.sending", { share: Math.round(share * 100) }) }); };
+	try {
+		// Held first, so that what starts it is the press of a person.
+		const a = await link.post<Sent>(`/api/jobs?hold=1&name=${encodeURIComponent(d.name)}`, d.file ?? new Blob([d.text]), progress);
+		if (a.code !== 0) { say(a.reason ?? `${a.found}; ${a.wanted}`, true); if (draft) put({ ...draft, busy: "" }); return false; }
+		say(t("jobs.sent", { name: d.name }));
+		if (start) await begin(a.job as string);
+	} catch (e) {
+		say(String(e), true);
+		if (draft) put({ ...draft, busy: "" });
+		return false;
+	}
+	return true;
+}
+
+// It takes a moment until it is loaded and can be started.
+async function begin(job: string): Promise<void> {
+	for (let i = 0; i < 40; i++) {
+		if (link.state.job === job && link.state.loaded && link.state.state === "hold") break;
+		await new Promise((r) => setTimeout(r, 100));
+	}
+	if (await act("start", { job })) location.hash = "#/cut";
+}
+
+function Editor(p: { draft: Draft; error: Checked | null }): JSX.Element {
+	const area = useRef<HTMLTextAreaElement>(null), gutter = useRef<HTMLDivElement>(null);
+	const lines = p.draft.text.split("\n");
+	const goTo = () => {
+		const a = area.current, e = p.error;
+		if (!a || !e || e.line < 1) return;
+		const from = lines.slice(0, e.line - 1).reduce((n, l) => n + l.length + 1, 0) + Math.max(0, e.column - 1);
+		a.focus();
+		a.setSelectionRange(from, from + Math.max(1, (lines[e.line - 1] ?? "").slice(e.column - 1).match(/^\S+/)?.[0].length ?? 1));
+		a.scrollTop = Math.max(0, (e.line - 4) * 22);
+	};
+	useEffect(goTo, [p.error]);
+	const many = Math.min(lines.length, 60000);
+	return <div class="editor"><div class="gutter" ref={gutter} aria-hidden="true">{Array.from({ length: many }, (_, i) =>
+		<i class={p.error && p.error.line === i + 1 ? "bad" : ""}>{i + 1}</i>)}</div>
+		<textarea ref={area} id="editor" spellcheck={false} autocapitalize="off" wrap="off" aria-label={t("jobs.editor")} value={p.draft.text}
+			onScroll={(e) => { if (gutter.current) gutter.current.scrollTop = e.currentTarget.scrollTop; }}
+			onInput={(e) => { turn++; put({ ...p.draft, text: e.currentTarget.value, checked: null, busy: "" }); }} /></div>;
+}
+
+function New(): JSX.Element {
+	const d = useDraft(), input = useRef<HTMLInputElement>(null);
+	const choose = <><input ref={input} id="file" type="file" class="hidden" tabIndex={-1} aria-label={t("jobs.choose")} onChange={(e) => {
+		const f = e.currentTarget.files?.[0];
+		e.currentTarget.value = "";
+		if (f) void takeFile(f);
+	}} /><Key onPress={() => input.current?.click()}>{t("jobs.choose")}</Key></>;
+	// A change of the text is checked when the hand rests.
+	useEffect(() => {
+		if (!d || d.checked || d.busy || d.file) return;
+		const timer = setTimeout(() => void check(), 700);
+		return () => clearTimeout(timer);
+	}, [d]);
+	if (!d) return <Card title={t("jobs.new")} class="dropzone"><p class="calm">{t("jobs.drop")}</p>{choose}</Card>;
+	const c = d.checked, why = c && !c.ok ? t("jobs.checkfirst") : d.busy || !c ? t("jobs.checking") : whyNot("send");
+	return <Card title={d.name} class="draft" right={<div class="keys">{choose}<Key class="quiet" onPress={() => put(null)}>{t("close")}</Key></div>}>
+		<div class="draft-grid">
+			{d.file ? <p class="calm">{t("jobs.large")}</p> : <Editor draft={d} error={c && !c.ok ? c : null} />}
+			<div class="preview">{c?.ok && c.check ? <PathView query={`check=${c.check}`} title={t("jobs.preview")} still /> : <p class="empty">{d.busy || t("jobs.preview")}</p>}</div>
+		</div>
+		<div class="verdict" role="status" aria-live="polite">
+			{d.busy && <p>{d.busy}</p>}
+			{!d.busy && c?.ok && <p class="good">{t("jobs.ok", { lines: c.lines ?? 0, mm: number(c.length ?? 0, 2) })} {t("jobs.sum", { cut: number(c.cut ?? 0, 2), rapid: number(c.rapid ?? 0, 2) })}</p>}
+			{!d.busy && c && !c.ok && <div class="refusal"><b>{c.line > 0 ? t("jobs.errorat", { line: c.line, column: c.column }) : c.where}</b><p>{c.found}</p><p><i>{t("jobs.accepted")}:</i> {c.wanted}</p></div>}
+		</div>
+		<div class="keys end"><Key id="send" why={why} onPress={() => void send(d, false).then((ok) => { if (ok) put(null); })}>{t("jobs.send")}</Key>
+			<PressKey id="sendstart" class="primary" why={why || (link.state.loaded ? t("no.loaded") : "")} onPress={() => void send(d, true).then((ok) => { if (ok) put(null); })}>{t("jobs.sendstart")}</PressKey></div>
+	</Card>;
+}
+
+function Details(p: { id: string; name: string; onClose: () => void }): JSX.Element {
+	const [j] = useAsk<Job>("show", { job: p.id });
+	return <Sheet title={t("jobs.details", { name: p.name })} onClose={p.onClose} wide>{j && <>
+		<dl class="facts"><dt>{t("jobs.state")}</dt><dd>{jobWord(j.state)}</dd>{j.reason && <><dt>{t("jobs.reason")}</dt><dd>{j.reason}</dd></>}
+			<dt>{t("jobs.time")}</dt><dd>{duration(j.job_s)}</dd><dt>{t("jobs.length")}</dt><dd>{number(j.path_mm ?? 0, 3)} {t("of")} {number(j.length_mm ?? 0, 3)} mm</dd>
+			<dt>{t("jobs.depth")}</dt><dd>{number(j.depth_mm ?? 0, 3)} mm</dd><dt>{t("cut.jumps")}</dt><dd>{j.jumps ?? 0}</dd><dt>{t("cut.retracts")}</dt><dd>{j.retracts ?? 0}</dd><dt>{t("cut.shorts")}</dt><dd>{j.shorts ?? 0}</dd></dl>
+		<h3>{t("jobs.changes")}</h3>
+		{(j.changes ?? []).length === 0 ? <p class="calm">{t("jobs.nochanges")}</p> : <div class="scroll"><table class="list"><tbody>{j.changes?.map((c) =>
+			<tr><td class="when">{moment(c.utime / 1000)}</td><td>{c.what}{c.now !== null && <> {c.was ?? "\u2013"} {"\u2192"} {c.now}</>}</td><td class="n">{number(c.place_mm, 3)} mm</td></tr>)}</tbody></table></div>}
+	</>}</Sheet>;
+}
+
+function Queue(p: { open: (j: Job) => void }): JSX.Element {
+	const s = link.state;
+	const [rows, refused, again] = useAsk<Job[]>("queue", { turn: `${s.job}${s.jobState}${s.queue}` }, 3000);
+	return <Card title={t("jobs.queue")}>{refused && <p class="note">{refused}</p>}
+		{rows && rows.length === 0 && <p class="calm">{t("jobs.empty")}</p>}
+		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b><span>{jobWord(j.state)}{j.hold && j.state !== "running" ? `, ${t("jobs.waits")}` : ""}</span></button>
+			{(j.state === "queued" || j.state === "ready") && <Key class="small quiet" why={whyNot("send")} onPress={() => void act("remove", { job: j.job }).then(again)}>{t("remove")}</Key>}</li>)}</ul>
+	</Card>;
+}
+
+function History(p: { open: (j: Job) => void }): JSX.Element {
+	const [rows, refused] = useAsk<Job[]>("past", { arg: 50, text: "", turn: link.state.job + link.state.jobState }, 5000);
+	return <Card title={t("jobs.history")}>{refused && <p class="note">{refused}</p>}
+		{rows && rows.length === 0 && <p class="calm">{t("jobs.nohistory")}</p>}
+		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b>
+			<span class={`job-${j.state}`}>{jobWord(j.state)}</span><span class="when">{moment(j.ended_us / 1000)}</span><span class="n">{duration(j.job_s)}</span></button></li>)}</ul>
+	</Card>;
+}
+
+export function Jobs(): JSX.Element {
+	const [open, set] = useState<Job | null>(null);
+	return <div class="jobs-grid"><New /><div class="two"><Queue open={set} /><History open={set} /></div>
+		{open && <Details id={open.job} name={open.name} onClose={() => set(null)} />}</div>;
+}

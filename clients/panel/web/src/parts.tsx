@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Keys, cards and sheets: what every page is made of.
+import type { ComponentChildren, JSX } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { parse } from "./format";
+import { link } from "./link";
+import { say } from "./use";
+import { t } from "./words";
+
+export const PRESS_MS = 1000;
+
+export function Card(p: { title?: ComponentChildren; children: ComponentChildren; class?: string; right?: ComponentChildren; label?: string }): JSX.Element {
+	return <section class={`card ${p.class ?? ""}`} aria-label={p.label}>
+		{(p.title || p.right) && <header class="card-head">{p.title ? <h2>{p.title}</h2> : null}{p.right}</header>}
+		{p.children}
+	</section>;
+}
+
+interface KeyProps {
+	children: ComponentChildren; note?: string; why?: string; class?: string;
+	onPress: () => void; label?: string; id?: string;
+}
+
+/** A key.  With `why` it is grey, and says why when it is pressed. */
+export function Key(p: KeyProps): JSX.Element {
+	const off = !!p.why;
+	return <button type="button" id={p.id} class={`key ${off ? "off" : ""} ${p.class ?? ""}`}
+		aria-disabled={off} aria-label={p.label}
+		onClick={() => off ? say(p.why as string, true) : p.onPress()}>
+		<span>{p.children}</span>{p.note && <small>{p.note}</small>}
+	</button>;
+}
+
+/** Acts when it was pressed for a second, by finger, mouse or keyboard. */
+export function PressKey(p: KeyProps): JSX.Element {
+	const [since, set] = useState(0);
+	const timer = useRef<number>(0);
+	const latest = useRef(p);
+	latest.current = p;
+	const off = !!p.why;
+	const begin = () => {
+		if (off) { say(p.why as string, true); return; }
+		if (timer.current) return;
+		set(Date.now());
+		timer.current = window.setTimeout(() => {
+			timer.current = 0;
+			set(0);
+			if (!latest.current.why) latest.current.onPress();
+		}, PRESS_MS);
+	};
+	const end = () => {
+		clearTimeout(timer.current);
+		timer.current = 0;
+		set(0);
+	};
+	useEffect(() => {
+		window.addEventListener("blur", end);
+		return () => { window.removeEventListener("blur", end); end(); };
+	}, []);
+	const key = (e: KeyboardEvent, go: () => void) => {
+		if (e.key !== "Enter" && e.key !== " ") return;
+		e.preventDefault();
+		if (!e.repeat) go();
+	};
+	return <button type="button" id={p.id} class={`key press ${off ? "off" : ""} ${since ? "pressed" : ""} ${p.class ?? ""}`}
+		aria-disabled={off} aria-label={p.label}
+		onPointerDown={(e) => { if (e.button === 0) begin(); }} onPointerUp={end} onPointerLeave={end}
+		onPointerCancel={end} onContextMenu={(e) => e.preventDefault()}
+		onKeyDown={(e) => key(e, begin)} onKeyUp={(e) => key(e, end)}>
+		<svg class="ring" viewBox="0 0 28 28" aria-hidden="true"><circle cx="14" cy="14" r="11" /><circle class="fill" cx="14" cy="14" r="11" pathLength="1" /></svg>
+		<span>{p.children}<small>{p.note ?? t("press")}</small></span>
+	</button>;
+}
+
+export function Sheet(p: { title: string; onClose: () => void; children: ComponentChildren; wide?: boolean }): JSX.Element {
+	const ref = useRef<HTMLDialogElement>(null);
+	useEffect(() => {
+		const d = ref.current;
+		if (d && !d.open) d.showModal();
+		return () => d?.close();
+	}, []);
+	return <dialog ref={ref} class={`sheet ${p.wide ? "wide" : ""}`} aria-label={p.title}
+		onClick={(e) => { if (e.target === ref.current) p.onClose(); }}
+		onCancel={(e) => { e.preventDefault(); p.onClose(); }}>
+		<header><h2>{p.title}</h2><Key class="small quiet" onPress={p.onClose}>{t("close")}</Key></header>
+		<div class="sheet-body">{p.children}</div>
+	</dialog>;
+}
+
+/** A number with its unit; takes point and comma. */
+export function NumberField(p: { label: string; unit?: string; value: string; onInput: (text: string) => void; id?: string; onEnter?: () => void }): JSX.Element {
+	const bad = p.value.trim() !== "" && Number.isNaN(parse(p.value));
+	return <label class={`field ${bad ? "bad" : ""}`}><span>{p.label}</span>
+		<span class="box"><input id={p.id} inputMode="decimal" autocomplete="off" value={p.value} aria-invalid={bad}
+			onInput={(e) => p.onInput(e.currentTarget.value)}
+			onKeyDown={(e) => { if (e.key === "Enter") p.onEnter?.(); }} /><u>{p.unit}</u></span></label>;
+}
+
+export function Choice<T extends string>(p: { value: T; of: { value: T; text: string }[]; onChange: (v: T) => void; label: string; class?: string }): JSX.Element {
+	return <div class={`choice ${p.class ?? ""}`} role="radiogroup" aria-label={p.label}>
+		{p.of.map((o) => <button type="button" role="radio" aria-checked={o.value === p.value}
+			class={o.value === p.value ? "on" : ""} onClick={() => p.onChange(o.value)}>{o.text}</button>)}
+	</div>;
+}
+
+/** A request that does something; a refusal is said. */
+export async function act(what: string, more: Record<string, unknown> = {}): Promise<boolean> {
+	const a = await link.ask(what, more);
+	if (a.code !== 0) say(a.reason === "connection" ? t("no.connection") : a.reason, true);
+	return a.code === 0;
+}
+
+const paths: Record<string, string> = {
+	cut: "M4 17 9 8l4 6 3-9 4 7", jobs: "M5 6h14M5 12h14M5 18h9",
+	setup: "M12 4v16M4 12h16M9 7l3-3 3 3M9 17l3 3 3-3M7 9l-3 3 3 3M17 9l3 3-3 3",
+	tech: "M5 5h14v14H5zM5 10h14M10 5v14", alarms: "M12 4 21 19H3zM12 10v4M12 16.5v.5",
+	machine: "M4 7h16v9H4zM9 19h6M12 16v3M8 11h3M14 11h2",
+	fleet: "M5 5h6v6H5zM13 5h6v6h-6zM5 13h6v6H5zM13 13h6v6h-6z",
+	up: "M12 5v14M6 11l6-6 6 6", file: "M7 4h7l4 4v12H7zM14 4v4h4",
+};
+
+export function Icon(p: { name: string }): JSX.Element {
+	return <svg class="icon" viewBox="0 0 24 24" aria-hidden="true"><path d={paths[p.name]} /></svg>;
+}

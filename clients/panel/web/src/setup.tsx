@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Before the cut: home, jog, probe, offsets.
+import type { JSX } from "preact";
+import { useState } from "preact/hooks";
+import { whyNot } from "./can";
+import { number, short } from "./format";
+import { sendText } from "./jobs";
+import { link, type Axis } from "./link";
+import { Card, Choice, Key, NumberField, PressKey, act } from "./parts";
+import { PROBES, isWhole, type Probe, type ProbeId } from "./probes";
+import { t } from "./words";
+
+const STEPS = ["0.001", "0.01", "0.1", "1", "10"] as const;
+
+function JogKey(p: { axis: Axis; way: number; step: string }): JSX.Element {
+	const why = whyNot("jog"), name = `${p.axis.name}${p.way > 0 ? "+" : "\u2212"}`;
+	return <Key class="jogkey" why={why} label={`${name} ${p.step}`} id={`jog-${p.axis.name}-${p.way > 0 ? "plus" : "minus"}`}
+		onPress={() => void act("jog", { text: p.axis.name, arg: p.way * Number(p.step) })}>{name}</Key>;
+}
+
+function AxisState(p: { axis: Axis }): JSX.Element {
+	const s = link.state, a = p.axis;
+	const word = s.limit >> a.index & 1 ? "setup.limit" : s.unhomed >> a.index & 1 ? "setup.unhomed" : a.homes ? "setup.homed" : "setup.nohome";
+	return <span class={`axis-state ${word === "setup.homed" || word === "setup.nohome" ? "" : "warn"}`}>{t(word)}</span>;
+}
+
+function JogCard(): JSX.Element {
+	const [step, set] = useState<string>("0.1");
+	const axes = link.hello?.axes ?? [];
+	return <Card title={t("setup.jog")} class="jog" right={<Key class="small" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}>
+		<Choice label={t("setup.faster")} value={step} onChange={set} of={STEPS.map((v) => ({ value: v as string, text: short(Number(v)) }))} />
+		<table class="axes"><tbody>{axes.map((a) => <tr key={a.name}><th scope="row">{a.name}</th>
+			<td><JogKey axis={a} way={-1} step={step} /></td>
+			<td class="n">{number(link.state.pos[a.index] ?? 0, 3, true)}<u>{a.rotary ? "deg" : "mm"}</u><AxisState axis={a} /></td>
+			<td><JogKey axis={a} way={1} step={step} /></td></tr>)}</tbody></table>
+		<p class="note">{whyNot("jog") || t("cut.machine")}</p>
+	</Card>;
+}
+
+function HomeCard(): JSX.Element {
+	const axes = (link.hello?.axes ?? []).filter((a) => a.homes);
+	return <Card title={t("setup.home")}>
+		{axes.length === 0 ? <p class="calm">{t("setup.nohome")}</p> : <div class="keys wrap">
+			<PressKey class="primary" why={whyNot("home")} onPress={() => void act("home")}>{t("setup.homeall")}</PressKey>
+			{axes.map((a) => <PressKey why={whyNot("home")} onPress={() => void act("home", { text: a.name })}>{t("setup.home")} {a.name}</PressKey>)}</div>}
+	</Card>;
+}
+
+/** What the cycle does, drawn: the work hatched, the electrode as a ring. */
+function Drawing(p: { id: ProbeId; v: Record<string, string> }): JSX.Element {
+	const minus = p.v.way === "-";
+	const art: Record<ProbeId, JSX.Element> = {
+		edge: p.v.axis === "Z" ? <g transform={minus ? "" : "translate(0 120) scale(1 -1)"}><rect class="work" x="20" y="80" width="160" height="30" /><circle class="tool" cx="100" cy="30" r="12" /><path class="way" d="M100 44v24m-5 -7 5 7 5 -7" /></g> :
+			<g transform={(minus ? "" : "translate(200 0) scale(-1 1)") + (p.v.axis === "Y" ? " rotate(-90 100 60)" : "")}><rect class="work" x="20" y="15" width="40" height="90" /><circle class="tool" cx="150" cy="60" r="12" /><path class="way" d="M134 60H68m7 -5 -7 5 7 5" /></g>,
+		hole: <g><path class="work" fill-rule="evenodd" d="M30 8h140v104H30zM100 18a42 42 0 1 0 .1 0z" /><circle class="tool" cx="92" cy="64" r="10" /><path class="way" d="M104 64h32m-6 -4 6 4 -6 4M80 64H62m6 -4 -6 4 6 4M92 52V24m-4 6 4 -6 4 6M92 76v20m-4 -6 4 6 4 -6" /><path class="cross" d="M96 60h8m-4 -4v8" /></g>,
+		block: <g><rect class="work" x="62" y="28" width="76" height="64" /><circle class="tool" cx="100" cy="60" r="9" /><path class="way" d="M26 60h30m-6 -4 6 4 -6 4M174 60h-30m6 -4 -6 4 6 4M100 6v16m-4 -6 4 6 4 -6M100 114V98m-4 6 4 -6 4 6" /><path class="cross" d="M96 60h8m-4 -4v8" /></g>,
+		corner: <g transform={`translate(100 60) scale(${p.v.wayX === "-" ? -1 : 1} ${p.v.wayY === "-" ? 1 : -1}) translate(-100 -60)`}><path class="work" d="M130 10h40v102H20V84h110z" /><circle class="tool" cx="90" cy="44" r="11" /><path class="way" d="M104 44h20m-6 -4 6 4 -6 4M90 58v20m-4 -6 4 6 4 -6" /></g>,
+	};
+	return <svg class="drawing" viewBox="0 0 200 120" aria-hidden="true">{art[p.id]}</svg>;
+}
+
+function ProbeForm(p: { probe: Probe }): JSX.Element {
+	const [v, set] = useState<Record<string, string>>(() => Object.fromEntries(p.probe.asks.map((a) => [a.key, a.preset])));
+	const whole = isWhole(p.probe, v), code = whole ? p.probe.code(v) : [];
+	const change = (key: string, text: string) => set({ ...v, [key]: text });
+	const why = !whole ? t("probe.bad") : link.state.loaded ? t("no.loaded") : whyNot("send");
+	return <div class="probe"><div class="probe-top"><Drawing id={p.probe.id} v={v} /><p>{t(`probe.${p.probe.id}.about`)}</p></div>
+		<div class="fields">{p.probe.asks.map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c.replace("-", "\u2212") }))} /></label> :
+			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")}: ${"\u2013"})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
+		<details open><summary>{t("setup.make")}</summary><pre>{code.join("\n")}</pre></details>
+		<p class="note">{t("probe.warn")}</p>
+		<div class="keys end"><PressKey id="probe-run" class="primary" why={why} onPress={() => void sendText(`probe-${p.probe.id}.ngc`, code.join("\n") + "\n", true)}>{t("setup.run")}</PressKey></div>
+	</div>;
+}
+
+function ProbeCard(): JSX.Element {
+	const [at, set] = useState<ProbeId>("edge");
+	const probe = PROBES.find((x) => x.id === at) as Probe;
+	return <Card title={t("setup.probe")} class="probing">
+		<Choice label={t("setup.probe")} value={at} onChange={set} of={PROBES.map((x) => ({ value: x.id, text: t(`probe.${x.id}`) }))} />
+		<ProbeForm probe={probe} key={at} /></Card>;
+}
+
+function OffsetCard(): JSX.Element {
+	const axes = link.hello?.axes ?? [], rows = link.hello?.offsets ?? [];
+	const some = rows.some((r) => r.some((x) => x !== 0));
+	return <Card title={t("setup.offsets")}><p class="note">{t("setup.offsetnote")}</p>
+		{some ? <div class="scroll"><table class="list"><thead><tr><th /><>{axes.map((a) => <th scope="col">{a.name}</th>)}</></tr></thead><tbody>{rows.map((r, i) =>
+			<tr><th scope="row">G{54 + i}</th>{axes.map((a) => <td class="n">{number(r[a.index] ?? 0, 3, true)}</td>)}</tr>)}</tbody></table></div> : <p class="calm">{t("setup.nooffsets")}</p>}
+	</Card>;
+}
+
+export function Setup(): JSX.Element {
+	return <div class="setup-grid"><div><JogCard /><HomeCard /></div><div><ProbeCard /><OffsetCard /></div></div>;
+}

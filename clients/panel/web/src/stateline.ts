@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One line that says how it is: the state, why it waits, what to do.
+import { number } from "./format";
+import { link } from "./link";
+import { faultWords, isWord, stateWord, t } from "./words";
+
+export interface StateLine {
+	title: string; why: string;
+	tone: "calm" | "busy" | "warn" | "bad";
+	shape: "square" | "bars" | "play" | "cross" | "ring";
+}
+
+function unhomed(): string {
+	const bits = link.state.unhomed;
+	return (link.hello?.axes ?? []).filter((a) => bits >> a.index & 1).map((a) => a.name).join(" ");
+}
+
+function idle(): string {
+	if (!link.state.jobs) return t("why.nojobs");
+	if (unhomed()) return t("why.idle.unhomed", { axes: unhomed() });
+	return t(link.state.queue > 0 ? "why.idle.queue" : "why.idle");
+}
+
+function held(): StateLine {
+	const s = link.state;
+	const ready = s.jobState === "ready" || s.far === 0;
+	return {
+		title: ready ? t("state.ready") : stateWord("hold"), tone: "warn", shape: "bars",
+		why: ready ? t("why.ready", { job: s.jobName || s.job }) : t("why.hold"),
+	};
+}
+
+export function stateLine(): StateLine {
+	const s = link.state;
+	if (link.connection !== "open")
+		return { title: t("lost.title"), why: t("why.connection"), tone: "warn", shape: "ring" };
+	if (s.daemon !== "ok")
+		return { title: stateWord("unknown"), why: t(s.daemon === "lost" ? "why.lost" : "why.absent"), tone: "warn", shape: "ring" };
+	if (s.state === "fault") {
+		const w = faultWords(s.fault);
+		return { title: w.what[0]!.toUpperCase() + w.what.slice(1), why: w.clear, tone: "bad", shape: "cross" };
+	}
+	if (s.state === "idle") return { title: stateWord("idle"), why: idle(), tone: "calm", shape: "ring" };
+	if (s.state === "hold") return held();
+	const word = `why.${s.state}`;
+	return {
+		title: stateWord(s.state), tone: "busy", shape: s.state === "erode" ? "play" : "square",
+		why: isWord(word) ? t(word, { line: s.line, mm: number(s.values.jump_mm ?? 0, 1) }) : "",
+	};
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The one catalogue of the page's words.  English stands here; zh.ts has the
+// same keys, and a missing one fails the build.  The machine's own words
+// (states, faults and their remedies) come from the tables of the daemons:
+// machine.json is printed by `edm-panel --print-words`.
+import machine from "./machine.json";
+import { settings } from "./use";
+import { zh, zhFaults, zhFields } from "./zh";
+
+export const en = {
+	"page.cut": "Cut", "page.jobs": "Jobs", "page.setup": "Set up",
+	"page.tech": "Technology", "page.alarms": "Alarms", "page.machine": "Machine",
+	"page.fleet": "Fleet",
+
+	"stop": "Stop", "stop.note": "not the emergency stop",
+	"stop.about": "Ends motion and sparks at once. It does not replace the emergency stop of the machine.",
+	"start": "Start", "resume": "Go on", "hold": "Hold", "retract": "Retract\u2026",
+	"reset": "Reset", "end": "End job", "press": "press for 1 s",
+	"close": "Close", "cancel": "Cancel", "again": "Try again", "remove": "Remove",
+	"done": "done", "of": "of", "role": "role",
+
+	"role.none": "nobody", "role.viewer": "viewer", "role.operator": "operator",
+	"role.service": "service",
+
+	"state.idle": "Idle", "state.travel": "Positioning", "state.approach": "Approach",
+	"state.erode": "Cutting", "state.retract": "Retract", "state.jump": "Jump",
+	"state.hold": "Held", "state.fault": "Fault", "state.jog": "Jog",
+	"state.home": "Homing", "state.probe": "Probing", "state.unknown": "No contact",
+	"state.ready": "Ready",
+
+	"why.idle": "No job is loaded. Drop a program anywhere to begin.",
+	"why.idle.queue": "Jobs wait in the queue. Press Start for 1 s to begin the next one.",
+	"why.idle.unhomed": "Axes are not homed: {axes}. Home them on Set up.",
+	"why.ready": "{job} is ready. Press Start for 1 s.",
+	"why.travel": "Moves without sparks to where the cut begins.",
+	"why.approach": "Moves up to the work until it sparks.",
+	"why.erode": "Cuts line {line} by the gap voltage.",
+	"why.retract": "Goes back along the path: the gap was short.",
+	"why.jump": "Flushing lift of {mm} mm, then on at the same place.",
+	"why.hold": "Stands on the path, sparks off. Go on, retract, or end the job.",
+	"why.jog": "Moves by hand.",
+	"why.home": "Looks for the home of an axis.",
+	"why.probe": "Moves until the electrode meets the work.",
+	"why.absent": "edmd does not run on this host. Start it: systemctl start edmd.",
+	"why.lost": "The cycle stands still, or edmd is dead. The last known values are shown.",
+	"why.connection": "The page has lost the panel. What runs goes on; it tries again by itself.",
+	"why.nojobs": "edmd-jobs does not answer: programs and commands have to wait.",
+
+	"no.role": "The role {role} only looks on. Log in as operator.",
+	"no.connection": "No connection to the panel.",
+	"no.edmd": "edmd is not there.",
+	"no.runs": "It runs already.",
+	"no.job": "There is no job. Send one on Jobs.",
+	"no.fault": "A fault is latched. Reset it first.",
+	"no.nofault": "There is no fault.",
+	"no.still": "Nothing runs.",
+	"no.loaded": "A job is loaded. End it first.",
+	"no.moving": "The machine moves. Wait until it stands.",
+
+	"cut.gap": "Gap voltage", "cut.feed": "Feed along the path", "cut.short": "short",
+	"cut.servo": "servo", "cut.servochip": "Servo", "cut.runs": "runs already", "cut.open": "open", "cut.sparks": "sparks on",
+	"cut.nosparks": "sparks off", "cut.back": "back", "cut.forward": "forward",
+	"cut.still": "still", "cut.togo": "to go", "cut.depth": "Depth", "cut.done": "Done",
+	"cut.left": "Left", "cut.jumps": "Jumps", "cut.retracts": "Retracts",
+	"cut.shorts": "Shorts", "cut.time": "Time", "cut.line": "line", "cut.nojob": "No program",
+	"cut.condition": "Condition", "cut.peak": "Peak", "cut.onoff": "On / off",
+	"cut.jump": "Jump", "cut.override": "Positioning", "cut.more": "All values",
+	"cut.path": "Path of the program", "cut.position": "Positions", "cut.machine": "machine coordinates",
+	"cut.past": "Last hour", "cut.last": "last {s}", "cut.retractby": "Retract along the path",
+	"cut.retractnote": "Goes back so far along the path, then stands held.",
+	"cut.step": "Step to a node of the path", "cut.values": "Values in force",
+	"cut.setnote": "A value that is set stays with its condition until the job ends.",
+	"cut.takeback": "Take back", "cut.set": "Set", "cut.range": "{min} to {max} {unit}",
+	"cut.setby": "set by hand", "cut.ofcondition": "of the condition",
+	"cut.bounds": "{low} has to stay below {high}.",
+	"cut.override.about": "Speed of positioning, in per cent of the programmed one.",
+
+	"view.3d": "3D", "view.top": "Top", "view.front": "Front", "view.follow": "Follow",
+	"view.cut": "cut", "view.back": "walked back now", "view.todo": "to do",
+	"view.rapid": "positioning", "view.none": "The path of a program is drawn here.",
+	"view.loading": "Drawing the path\u2026", "view.nogl": "This browser has no WebGL; the path cannot be drawn.",
+	"view.failed": "The path cannot be drawn: {why}", "view.atline": "line {line}",
+	"view.fit": "Fit", "view.electrode": "electrode",
+
+	"jobs.drop": "Drop a program anywhere on this page", "jobs.choose": "Choose a file",
+	"jobs.new": "New program", "jobs.queue": "Queue", "jobs.history": "History",
+	"jobs.check": "Check", "jobs.checking": "Checking\u2026", "jobs.send": "Send",
+	"jobs.sendstart": "Send and start", "jobs.ok": "Understood: {lines} lines, {mm} mm of path.",
+	"jobs.errorat": "Line {line}, column {column}", "jobs.toerror": "Go to line {line}",
+	"jobs.accepted": "Accepted instead", "jobs.name": "Name", "jobs.state": "State",
+	"jobs.time": "Time", "jobs.depth": "Depth", "jobs.ended": "Ended", "jobs.reason": "Reason",
+	"jobs.empty": "The queue is empty.", "jobs.nohistory": "No job has ended yet.",
+	"jobs.sent": "{name} is in the queue.", "jobs.sending": "Sending: {share} %",
+	"jobs.toolong": "The file is longer than 64 MiB.", "jobs.details": "Details of {name}",
+	"jobs.changes": "Conditions called and values set", "jobs.nochanges": "None.",
+	"jobs.length": "Path", "jobs.preview": "Preview", "jobs.editor": "Program text",
+	"jobs.large": "This program is too long for the editor; it is checked and sent as it is.",
+	"jobs.checkfirst": "The program has an error. Mend it first.",
+	"jobs.sum": "Cut {cut} mm, positioning {rapid} mm",
+	"jobs.waits": "waits for Start",
+
+	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",
+	"job.done": "done", "job.fault": "fault", "job.stopped": "ended",
+
+	"setup.jog": "Jog", "setup.step": "Step",
+	"setup.home": "Home", "setup.homeall": "Home all axes", "setup.probe": "Probing",
+	"setup.offsets": "Work offsets", "setup.position": "Position",
+	"setup.homed": "homed", "setup.unhomed": "not homed", "setup.limit": "on its limit switch",
+	"setup.nohome": "needs no homing", "setup.run": "Send and start", "setup.make": "G code it runs",
+	"setup.offsetnote": "As the machine file gives them; a program can shift them by G92.",
+	"setup.nooffsets": "All work offsets are 0.",
+	"setup.faster": "Step size",
+
+	"probe.edge": "Edge or face", "probe.edge.about": "Moves along one axis until the electrode meets the work.",
+	"probe.hole": "Centre of a hole", "probe.hole.about": "The electrode stands in the hole. X and Y are probed both ways, then it goes to the middle.",
+	"probe.block": "Centre of a block", "probe.block.about": "The electrode stands over the block, near its middle. It goes beside it, down, and probes each side.",
+	"probe.corner": "Corner", "probe.corner.about": "Probes X, then Y, and stands off both walls.",
+	"probe.axis": "Axis", "probe.way": "Way", "probe.far": "At most", "probe.radius": "Farthest way to a wall",
+	"probe.off": "Off a wall", "probe.times": "Times", "probe.sidex": "Beside, X", "probe.sidey": "Beside, Y",
+	"probe.down": "Down", "probe.wayx": "Wall, X", "probe.wayy": "Wall, Y", "probe.zero": "Call this place",
+	"probe.nozero": "leave it without a name", "probe.outer": "Outer corner",
+	"probe.warn": "The electrode moves. Look at the machine, not at this page.",
+	"probe.bad": "Number wanted",
+
+	"tech.table": "Technology table", "tech.none": "The machine file names no technology table ([tech] table).",
+	"tech.refused": "The table is refused", "tech.condition": "Condition", "tech.sequences": "Sequences",
+	"tech.compare": "Compare", "tech.with": "with", "tech.export": "Export as .tech",
+	"tech.electrode": "Electrode", "tech.workpiece": "Workpiece", "tech.field": "Field",
+	"tech.value": "Value", "tech.unit": "Unit", "tech.inforce": "in force",
+	"tech.edit": "Edit", "tech.edited": "Edited here only: export it, and put it in place of {file}.",
+	"tech.machine": "machine file", "tech.same": "same", "tech.notes": "Notes",
+	"tech.discard": "Discard changes",
+
+	"alarms.now": "Now", "alarms.none": "No fault.", "alarms.history": "Earlier",
+	"alarms.empty": "No alarm is recorded.", "alarms.what": "What", "alarms.why": "Why",
+	"alarms.clear": "What to do", "alarms.where": "Where", "alarms.inline": "{job}, line {line}, {mm} mm along the path",
+	"alarms.resetgo": "Reset, then Start goes on where it stands.",
+
+	"machine.latency": "Latency of the cycle", "machine.latency.about": "How late the cycle was woken, and how often.",
+	"machine.late": "latest", "machine.took": "longest cycle", "machine.missed": "missed periods",
+	"machine.period": "period", "machine.doctor": "Host", "machine.log": "Log", "machine.acts": "Who did what",
+	"machine.versions": "Versions", "machine.settings": "This browser", "machine.language": "Language",
+	"machine.theme": "Colours", "theme.auto": "as the device", "theme.light": "light", "theme.dark": "dark",
+	"machine.bundle": "Download for support", "machine.nolog": "This host keeps no journal of the services.",
+	"machine.noacts": "Nothing was done yet.", "machine.user": "You are", "machine.logout": "Log out",
+	"machine.browsers": "Panel", "verdict.good": "good", "verdict.lacking": "lacking", "verdict.unused": "unused",
+	"machine.doctoring": "Looking at the host\u2026", "machine.count": "wakes", "machine.simulated": "simulated machine",
+	"machine.real": "real machine", "machine.kind": "Kind",
+
+	"fleet.none": "No machine is heard over DDS. edm-dds tells the fleet of a machine.",
+	"fleet.looking": "Listening for machines\u2026", "fleet.progress": "done", "fleet.needs": "needs a person",
+
+	"login.title": "Log in", "login.user": "User", "login.password": "Password", "login.go": "Log in",
+	"lost.title": "Connection lost", "unit.mms": "mm/s", "unit.min": "min",
+	"skip": "Skip to the page", "chart.gap": "Gap voltage over time", "chart.feed": "Feed over time",
+	"chart.latency": "Histogram of lateness", "range.60": "60 s", "range.600": "10 min", "range.3600": "1 h",
+	"drop.here": "Drop to check the program", "event.alarm": "Alarm",
+} as const;
+
+// Every state and outcome of the machine has a word above.
+type States = `state.${keyof typeof machine.states}`;
+type Outcomes = `job.${Exclude<keyof typeof machine.outcomes, "none">}`;
+type Missing = Exclude<States | Outcomes, keyof typeof en>;
+const missing: [Missing] extends [never] ? true : Missing = true;
+void missing;
+
+export type Word = keyof typeof en;
+export type Fault = keyof typeof machine.faults;
+export interface FaultWords { what: string; why: string; clear: string }
+
+/** The text of a word in this browser's language; {x} is put in. */
+export function t(word: Word, put: Record<string, string | number> = {}): string {
+	const text: string = settings.language === "zh-CN" ? zh[word] : en[word];
+	return text.replace(/\{(\w+)\}/g, (_, k: string) => String(put[k] ?? ""));
+}
+
+export function isWord(word: string): word is Word {
+	return word in en;
+}
+
+export function faultWords(fault: string): FaultWords {
+	const of = settings.language === "zh-CN" ? zhFaults : machine.faults;
+	return of[fault as Fault] ?? { what: fault, why: "", clear: "" };
+}
+
+export function stateWord(state: string): string {
+	const word = `state.${state}`;
+	return isWord(word) ? t(word) : state;
+}
+
+export function jobWord(state: string): string {
+	const word = `job.${state}`;
+	return isWord(word) ? t(word) : state;
+}
+
+/** What a field of a condition is called. */
+export function fieldWord(name: string, help: string): string {
+	return settings.language === "zh-CN" ? zhFields[name] ?? help : help;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * work.h - what the panel has a process of its own do: edm-panel --work WHAT
+ *
+ *	check	standard input is a job's text; writes an answer and its path
+ *	path	the path of the program that is loaded
+ *	verify	standard input is a password's hash, a newline, the password
+ *	tech	the technology table as JSON
+ *
+ * check and path write one line of JSON, filled up with blanks to a multiple of
+ * 8 bytes with its newline; then, if it says "ok", `points` times: place in mm
+ * (double), all of them; X Y Z less `origin` (float), all of them; line
+ * (uint32); kind (uint8, enum flat_kind); and, if `upper`, in between the last
+ * two: U V (float).
+ *
+ * Exit: 0 done, 1 the answer is no, 70 no memory.
+ */
+#ifndef PANEL_WORK_H
+#define PANEL_WORK_H
+
+#include <stdint.h>
+
+struct work {
+	const char *what;
+	const char *config;		/* the machine file */
+	const char *machine;		/* its name */
+	const char *name;		/* check: of the file, for its dialect */
+	const char *start;		/* check: eight places, mm; NULL: the
+					 * machine file's */
+	uint32_t program;		/* path: its number */
+	double tolerance_mm;		/* 0: by the extent */
+};
+
+/** work_run() - do it. Return: what to exit with. */
+int work_run(const struct work *w);
+
+#endif /* PANEL_WORK_H */

@@ -1,0 +1,504 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The panel's gateway: what it tells, what it refuses, what it survives.
+
+docs/panel.md has a table of the OWASP ASVS requirements that these tests show.
+"""
+
+import concurrent.futures
+import json
+import os
+import socket
+import subprocess
+import time
+
+import panel
+import pytest
+import rig
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+
+@pytest.fixture(scope="module")
+def p(tmp_path_factory):
+    p = panel.Panel(tmp_path_factory.mktemp("panel"))
+    p.start()
+    yield p
+    p.close()
+
+
+@pytest.fixture
+def me(p):
+    return p.session()
+
+
+# -- What it tells
+
+def test_a_browser_is_told_the_state_ten_times_a_second(p, me):
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok" and s["jobs"])
+        assert live.hello["machine"] == p.machine.name
+        assert [a["name"] for a in live.hello["axes"]] == list("XYZCUV")
+        begun, n = time.monotonic(), live.told
+        while live.told < n + 20:
+            live.take()
+        # Not faster than it says; a busy machine may be slower.
+        assert time.monotonic() - begun > 1.5
+
+
+def test_who_comes_late_has_a_past(p, me):
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok")
+        rows = rig.until(lambda: live.ask("history", seconds=60,
+                                          points=600)["body"])
+        assert all(len(r) == 9 for r in rows)
+        assert all(r[1] <= r[2] + 1e-3 and r[2] <= r[3] + 1e-3 for r in rows)
+        assert live.ask("history", seconds=1e9, points=5)["code"] == 65
+
+
+def test_a_text_with_an_error_is_refused_at_its_place(p, me):
+    status, got = me.post("/api/check?name=a.ngc", b"G21\nG1 X5 Q77\n")
+    assert status == 200 and not got["ok"]
+    assert (got["line"], got["column"]) == (2, 7)
+    assert "Q77" in got["found"] and got["wanted"]
+
+
+def test_a_text_that_is_understood_has_a_path_to_draw(p, me):
+    status, got = me.post("/api/check?name=a.ngc", panel.JOB)
+    assert status == 200 and got["ok"], got
+    status, _, path = p.ask("GET", f"/api/path?check={got['check']}",
+                            headers=me.headers())
+    head = path[:path.index(b"\n") + 1]
+    told = json.loads(head)
+    assert status == 200 and len(head) % 8 == 0
+    assert len(path) == len(head) + told["points"] * (8 + 12 + 4 + 1)
+    assert told["max"][2] - told["min"][2] == pytest.approx(2.4)
+
+
+def test_a_job_runs_from_upload_to_end(p, me):
+    with me.live() as live:
+        live.where(lambda s: s.get("jobs"))
+        status, got = me.post("/api/jobs?name=part.ngc&hold=1", panel.JOB)
+        assert status == 200 and got["code"] == 0, got
+        live.where(lambda s: s["job"] == got["job"] and s["loaded"])
+        assert live.state["jobName"] == "part.ngc"
+        assert live.state["state"] == "hold"
+        assert live.ask("start")["code"] == 0
+        live.where(lambda s: s["state"] == "erode", 60)
+        assert live.state["condition"] == "C120"
+        assert live.state["values"]["peak_a"] == 30
+
+        assert live.ask("set", text="servo_v", arg=22)["code"] == 0
+        live.where(lambda s: s["values"]["servo_v"] == 22)
+        assert live.state["set"] == ["servo_v"]
+        refused = live.ask("set", text="servo_v", arg=2)
+        assert refused["code"] == 65 and "servo_v" in refused["reason"]
+        assert live.ask("set", text="servo_v", arg=None)["code"] == 0
+        live.where(lambda s: s["values"]["servo_v"] == 15)
+
+        status, _, path = p.ask(
+            "GET", f"/api/path?program={live.state['program']}",
+            headers=me.headers())
+        assert status == 200 and b'"part.ngc"' in path[:400]
+
+        assert live.ask("estop")["code"] == 0
+        live.where(lambda s: s["fault"] == "e-stop")
+        assert live.ask("reset")["code"] == 0
+        live.where(lambda s: s["state"] == "hold")
+        assert live.ask("stop")["code"] == 0
+        live.where(lambda s: s["state"] == "idle" and not s["loaded"])
+        past = live.ask("past", arg=5)["body"]
+        assert past[0]["name"] == "part.ngc"
+    assert f"operator, 127.0.0.1): start" in p.log()
+
+
+def test_a_daemon_that_dies_is_told_and_found_again(p, me):
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok")
+        p.machine.kill("edmd")
+        live.where(lambda s: s["daemon"] != "ok", 20)
+        assert live.ask("hold")["code"] != 0
+        p.machine.start_edmd()
+        live.where(lambda s: s["daemon"] == "ok", 20)
+        p.machine.kill("jobs")
+        live.where(lambda s: not s["jobs"], 20)
+        p.machine.start_jobs()
+        live.where(lambda s: s["jobs"], 20)
+        rig.until(lambda: live.ask("queue")["code"] == 0, 20)
+
+
+def test_pages_and_programs_of_the_host_are_told(p, me):
+    with me.live() as live:
+        live.where(lambda s: s.get("jobs"))
+        tech = live.ask("tech")["body"]
+        assert [r["name"] for r in tech["table"]["rows"]][:2] == [
+            "C100", "C110"]
+        doctor = live.ask("doctor", timeout=30)["body"]
+        assert {"kernel", "edmd"} <= {f["what"] for f in doctor}
+        assert sum(live.ask("latency")["body"]) > 0
+        assert isinstance(live.ask("notes")["body"], list)
+
+
+# -- What it refuses
+
+def test_a_stranger_gets_nothing_but_the_page(p):
+    assert p.ask("GET", "/")[0] == 200
+    assert p.ask("GET", "/api/path?program=1")[0] == 401
+    for path in ("/api/check", "/api/jobs", "/api/logout"):
+        assert p.ask("POST", path, b"x", {"Origin": p.url})[0] == 401
+    nobody = panel.Session(p, "edm_session=" + "0" * 64, {"token": "0" * 32})
+    with pytest.raises((InvalidStatus, ConnectionClosed, EOFError, OSError)):
+        nobody.live()
+
+
+def test_an_act_without_the_sessions_token_is_refused(p, me):
+    assert me.post("/api/check", b"G1", **{"X-Edm-Token": ""})[0] == 403
+    assert me.post("/api/check", b"G1", **{"X-Edm-Token": "0" * 32})[0] == 403
+    with me.live() as live:
+        live.take()
+        live.ws.send(json.dumps({"n": 1, "token": "0" * 32, "do": "estop"}))
+        with pytest.raises(ConnectionClosed):
+            while True:
+                live.take()
+    assert "without the token" in p.log()
+
+
+def test_another_sites_page_is_refused(p, me):
+    assert me.post("/api/check", b"G1", Origin="http://evil.example")[0] == 403
+    assert me.post("/api/check", b"G1", Origin="")[0] == 403
+    assert me.post("/api/check", b"G1", Origin="null")[0] == 403
+    for origin in ("http://evil.example", f"http://127.0.0.1:{p.port + 1}",
+                   "null"):
+        with pytest.raises((InvalidStatus, ConnectionClosed, EOFError,
+                            OSError)):
+            me.live(origin=origin)
+
+
+def test_a_name_that_was_bent_to_this_address_is_refused(p, me):
+    for path in ("/", "/api/session"):
+        got = p.raw(f"GET {path} HTTP/1.1\r\nHost: evil.example:{p.port}\r\n"
+                    f"Connection: close\r\n\r\n".encode())
+        assert b" 403 " in got.split(b"\r\n")[0], got[:80]
+
+
+def test_a_request_is_taken_once(p, me):
+    with me.live() as live:
+        assert live.ask("queue")["code"] == 0
+        live.n -= 1
+        again = live.ask("estop")
+        assert again["code"] == 76 and "before" in again["reason"]
+        live.where(lambda s: s.get("daemon") == "ok")
+        assert live.state["fault"] == "none"
+
+
+def test_a_session_that_was_ended_is_over(p, me):
+    with me.live() as live:
+        live.take()
+        assert me.post("/api/logout")[0] == 200
+        live.ws.send(json.dumps({"n": 1, "token": me.token, "do": "queue"}))
+        with pytest.raises(ConnectionClosed):
+            while True:
+                live.take()
+    assert me.post("/api/check", b"G1")[0] == 401
+
+
+@pytest.mark.parametrize("path", [
+    "/../machine.ini", "/..%2f..%2fetc/passwd", "/assets/../../store",
+    "//etc/passwd", "/assets/%00", "/index.html/x", "/.git/config", "/api",
+    "/assets/", "/%2e%2e/%2e%2e/etc/passwd"])
+def test_no_path_leads_out_of_the_page(p, path):
+    got = p.raw(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
+                f"Connection: close\r\n\r\n".encode())
+    assert b" 200 " not in got.split(b"\r\n")[0], got[:80]
+    assert b"root:" not in got and b"[machine]" not in got
+
+
+@pytest.mark.parametrize("method", ["PUT", "DELETE", "OPTIONS", "TRACE",
+                                    "PATCH", "CONNECT"])
+def test_other_methods_do_nothing(p, me, method):
+    got = p.raw(f"{method} /api/jobs HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
+                f"Cookie: {me.cookie}\r\nConnection: close\r\n\r\n".encode())
+    assert b" 200 " not in got.split(b"\r\n")[0]
+    assert p.listens()
+
+
+def test_a_text_that_is_too_long_is_refused_before_it_is_read(p, me):
+    got = p.raw(f"POST /api/jobs HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
+                f"Cookie: {me.cookie}\r\nOrigin: {p.url}\r\n"
+                f"X-Edm-Token: {me.token}\r\n"
+                f"Content-Length: {80 << 20}\r\n\r\n".encode() + b"x" * 9999)
+    assert b" 413 " in got.split(b"\r\n")[0]
+
+
+def test_frames_that_make_no_sense_end_the_connection_alone(p, me):
+    with me.live() as other:
+        for bad in ("", "{", "[]", "{}", '{"n":"1","do":2}', "x" * 70000,
+                    '{"n":1,"do":"estop"}', b"\x00\xff\xfe", "[" * 30000,
+                    '{"n":1e999,"do":"x"}', '{"n":1,"n":2,"do":"x"}'):
+            with me.live() as live:
+                live.take()
+                live.ws.send(bad)
+                with pytest.raises(ConnectionClosed):
+                    for _ in range(300):
+                        live.take()
+        other.where(lambda s: s.get("daemon") == "ok")
+        assert other.state["fault"] == "none"
+
+
+def test_random_bytes_on_a_web_socket_end_it_alone(p, me):
+    for _ in range(20):
+        with me.raw_live() as s:
+            try:
+                s.sendall(os.urandom(2000))
+            except OSError:
+                pass
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok")
+
+
+def test_no_such_request_and_no_such_value_are_refused_in_words(p, me):
+    with me.live() as live:
+        assert live.ask("destroy")["code"] == 64
+        assert live.ask("jog", text="Q", arg=1)["code"] != 0
+        assert live.ask("retract", arg=-5)["code"] != 0
+        assert live.ask("start", job="' OR 1=1 --")["code"] != 0
+        assert live.ask("override", arg=99)["code"] == 65
+
+
+def test_a_browser_that_asks_too_much_is_slowed_down(p, me):
+    with me.live() as live:
+        for _ in range(400):
+            live.send("latency")
+        codes = []
+        while len(codes) < 400:
+            m = live.take()
+            if "n" in m:
+                codes.append(m["code"])
+        assert codes.count(75) > 100
+        assert codes[0] == 0
+
+
+def test_a_browser_that_does_not_read_costs_little(p, me):
+    begun = resident_kb(p)
+    with me.raw_live() as stuck:
+        for i in range(110):
+            try:
+                stuck.sendall(me.frame(i + 1, "history", seconds=3600,
+                                       points=2000))
+            except OSError:
+                break
+        with me.live() as live:
+            live.where(lambda s: s.get("daemon") == "ok")
+            n = live.told
+            while live.told < n + 30:
+                live.take()
+        assert resident_kb(p) - begun < 20000
+
+
+def resident_kb(p):
+    with open(f"/proc/{p.process.pid}/status") as f:
+        return int(next(line.split()[1] for line in f
+                        if line.startswith("VmRSS")))
+
+
+def test_slow_and_many_connections_do_not_keep_others_out(p, me):
+    slow = []
+    for i in range(60):
+        s = socket.create_connection(("127.0.0.1", p.port), 10)
+        s.sendall(b"GET / HTTP/1.1\r\nHost: x")
+        slow.append(s)
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok", 40)
+    assert p.ask("GET", "/")[0] == 200
+    # Who never ends a request is ended.
+    for s in slow:
+        s.settimeout(60)
+        try:
+            assert s.recv(4096) == b"" or True
+        except ConnectionError:
+            pass
+        s.close()
+
+
+def test_a_flood_of_connections_is_bounded(p, me):
+    held = []
+    for _ in range(600):
+        try:
+            held.append(socket.create_connection(("127.0.0.1", p.port), 2))
+        except OSError:
+            break
+    fds = len(os.listdir(f"/proc/{p.process.pid}/fd"))
+    for s in held:
+        s.close()
+    assert fds < 500
+    rig.until(lambda: p.ask("GET", "/api/session")[0] == 200, 20, 0.2)
+
+
+def test_the_page_may_run_nothing_that_is_not_its_own(p):
+    _, headers, body = p.ask("GET", "/")
+    csp = headers["Content-Security-Policy"]
+    assert "default-src 'none'" in csp and "script-src 'self'" in csp
+    assert "unsafe" not in csp and "frame-ancestors 'none'" in csp
+    assert headers["X-Content-Type-Options"] == "nosniff"
+    assert headers["Referrer-Policy"] == "no-referrer"
+    _, headers, _ = p.ask("GET", "/api/session")
+    cookie = headers["Set-Cookie"]
+    assert "HttpOnly" in cookie and "SameSite=Strict" in cookie
+    assert headers["Cache-Control"] == "no-store"
+
+
+def test_a_program_that_explodes_is_ended_in_its_own_process(p, me):
+    # A subprogram that calls another, a hundred times each, five deep.
+    subs = "".join(f"O{i}\n" + f"M98 P{i + 1}\n" * 100 + "M99\n"
+                   for i in range(2, 7)) + "O7\nG91 G1 X0.001\nG90\nM99\n"
+    text = "G21 G90 F30\nM98 P2\nM30\n" + subs
+    status, got = me.post("/api/check?name=bomb.ngc", text.encode())
+    assert status == 200 and not got["ok"]
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok")
+    assert resident_kb(p) < 100000
+
+
+# -- Beyond this host
+
+def certificate(folder):
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt",
+         "ec_paramgen_curve:P-256", "-nodes", "-days", "2", "-subj",
+         "/CN=test", "-keyout", folder / "key.pem", "-out",
+         folder / "cert.pem"], check=True, capture_output=True)
+
+
+@pytest.fixture(scope="module")
+def far(tmp_path_factory):
+    """A panel on all addresses: TLS, and users who log in."""
+    folder = tmp_path_factory.mktemp("far")
+    certificate(folder)
+    more = (f"address = 0.0.0.0\nnames = 127.0.0.1\n"
+            f"certificate = {folder}/cert.pem\nkey = {folder}/key.pem\n"
+            f"users = {folder}/users\n")
+    p = panel.Panel(folder, more=more)
+    p.start()
+    for name, role in (("anna", "operator"), ("ben", "viewer")):
+        done = subprocess.run(
+            [str(rig.BUILD / "edm-panel"), "--config",
+             str(p.machine.config), "--add-user", name, role],
+            input=f"{name} has a long word\n", text=True,
+            capture_output=True)
+        assert done.returncode == 0, done.stderr
+    yield p
+    p.close()
+
+
+def login(p, user, password):
+    status, headers, body = p.ask(
+        "POST", "/api/login", json.dumps({"user": user,
+                                          "password": password}),
+        {"Origin": p.url})
+    who = json.loads(body)
+    if status != 200:
+        return status, who
+    return status, panel.Session(p, headers["Set-Cookie"].split(";")[0], who)
+
+
+def test_beyond_the_host_it_wants_a_certificate(tmp_path):
+    p = panel.Panel(tmp_path, more="address = 0.0.0.0\n")
+    done = subprocess.run([str(rig.BUILD / "edm-panel"), "--config",
+                           str(p.machine.config)], capture_output=True,
+                          text=True, timeout=30)
+    assert done.returncode == 78
+    assert "certificate" in done.stderr
+
+
+def test_beyond_the_host_nobody_acts_without_a_login(far):
+    status, headers, body = far.ask("GET", "/api/session")
+    assert json.loads(body)["role"] == "none" and "Set-Cookie" not in headers
+    assert far.ask("POST", "/api/check", b"G1", {"Origin": far.url})[0] == 401
+
+
+def test_passwords_are_kept_as_argon2id(far):
+    text = (far.folder / "users").read_text()
+    assert "long word" not in text and text.count("$argon2id$") == 2
+    assert os.stat(far.folder / "users").st_mode & 0o77 == 0
+
+
+def test_a_short_password_is_refused(far):
+    done = subprocess.run(
+        [str(rig.BUILD / "edm-panel"), "--config", str(far.machine.config),
+         "--add-user", "eve", "viewer"], input="short\n", text=True,
+        capture_output=True)
+    assert done.returncode == 65 and "12" in done.stderr
+
+
+def test_a_viewer_looks_on(far):
+    import ssl
+    status, ben = login(far, "ben", "ben has a long word")
+    assert status == 200 and ben.who["role"] == "viewer"
+    assert ben.post("/api/jobs?name=a.ngc", panel.JOB)[0] == 403
+    context = ssl.create_default_context()
+    context.check_hostname = False
+    context.verify_mode = ssl.CERT_NONE
+    with ben.live(ssl=context) as live:
+        live.where(lambda s: s.get("daemon") == "ok")
+        assert live.ask("queue")["code"] == 0
+        refused = live.ask("estop")
+        assert refused["code"] == 77 and "viewer" in refused["reason"]
+        assert live.state["fault"] == "none"
+
+
+def test_who_logs_in_gets_a_new_session_that_ends(far):
+    status, one = login(far, "anna", "anna has a long word")
+    assert status == 200
+    status, two = login(far, "anna", "anna has a long word")
+    assert one.cookie != two.cookie and one.token != two.token
+    status, headers, _ = far.ask("GET", "/api/session",
+                                 headers={"Cookie": two.cookie})
+    assert "Secure" in headers["Set-Cookie"]
+    assert "max-age" in headers["Strict-Transport-Security"]
+    assert one.post("/api/logout")[0] == 200
+    assert one.post("/api/check", b"G1")[0] == 401
+    assert two.post("/api/check", b"M30\n")[0] == 200
+
+
+def test_guessing_is_slowed_down(far):
+    codes = [login(far, "anna", f"guess number {i}")[0] for i in range(8)]
+    assert 429 in codes and 200 not in codes
+    # Even the right word has to wait then.
+    assert login(far, "anna", "anna has a long word")[0] == 429
+    assert "was refused" in far.log()
+
+
+def test_the_word_in_clear_is_not_spoken(far):
+    plain = socket.create_connection(("127.0.0.1", far.port), 10)
+    plain.settimeout(20)
+    plain.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+    try:
+        assert b"200" not in plain.recv(100)
+    except ConnectionError:
+        pass
+    plain.close()
+
+
+def test_another_user_of_the_host_only_looks_on(p):
+    """Root of this test may become nobody; who may not, cannot show it."""
+    if os.getuid() != 0:
+        pytest.skip("needs root, to be another user")
+    code = ("import http.client,json,sys; c=http.client.HTTPConnection("
+            f"'127.0.0.1',{p.port}); c.request('GET','/api/session'); "
+            "print(json.load(c.getresponse())['role'])")
+    done = subprocess.run(["/usr/bin/python3", "-c", code], user=65534,
+                          group=65534, extra_groups=[], capture_output=True,
+                          text=True, timeout=30)
+    assert done.stdout.strip() == "viewer", done.stderr
+
+
+def test_many_at_once_are_told(p, me):
+    def one(_):
+        with p.session().live() as live:
+            live.where(lambda s: s.get("daemon") == "ok", 40)
+            n = live.told
+            while live.told < n + 5:
+                live.take(20)
+            return True
+
+    with concurrent.futures.ThreadPoolExecutor(50) as pool:
+        assert all(pool.map(one, range(50)))
+    assert resident_kb(p) < 100000
