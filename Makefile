@@ -446,19 +446,26 @@ fuzz: $(FUZZ:%=run-%)
 
 run-fuzz_%: $(B)/fuzz_%
 	$(Q)$(if $(filter-out 0,$(FUZZ_SEED)),rm -rf $(B)/corpus_$*)
-	$(Q)mkdir -p $(B)/corpus_$* && cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/
+	$(Q)mkdir -p $(B)/corpus_$*
+	$(Q)$(if $(SEEDS_fuzz_$*),cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/)
 	$(Q)$< -seed=$(FUZZ_SEED) -runs=$(FUZZ_RUNS) \
-		-max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
+		-max_total_time=$(or $(FUZZ_MOST_S),$(FUZZ_S)) -max_len=4096 -verbosity=0 \
 		-print_final_stats=1 $(B)/corpus_$* 2>$<.log || \
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
+
+# Changes to an object that readers map: each run is short, and like the others.
+run-fuzz_status: FUZZ_MOST_S = $(if $(filter-out 0,$(FUZZ_SEED)),15)
+$(B)/fuzz_status: daemon/shm/publish.c daemon/shm/object.c
+$(B)/fuzz_status: FUZZ_INC = $(INC_shm)
 
 $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON)
 	$(call say,CLANG,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
 		-fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
-		$(INC_libinterp) -o $@ $(filter %.c,$^) -lm
+		-DEDM_VERSION='"$(VERSION)"' $(INC_libinterp) $(FUZZ_INC) \
+		-o $@ $(filter %.c,$^) -lm
 
 # -- Lint ---------------------------------------------------------------------
 
