@@ -107,7 +107,7 @@ INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon -Idaemon/shm $(WORDS_H) $(INC_co
 INC_sign	= -Imessages/sign
 INC_client	= -Iclients/client -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
-INC_ctl		= -Iclients/ctl -Icommon -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
+INC_ctl		= -Iclients/ctl -Icommon -Idaemon/io -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
 INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_panel	= -Iclients/panel -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
@@ -126,7 +126,8 @@ INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
 WORDS_O	 := $(call obj,$(WORDS))
 RT_O	 := $(call obj,$(RT)) $(WORDS_O)
 IO_O	 := $(call obj,$(IO))
-SIM_IO_O := $(filter-out %/gpio.o %/gpiod1.o %/gpiod2.o,$(IO_O))
+SIM_IO_O := $(filter-out %/gpio.o %/gpio_open.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
+LINES_O	 := $(filter %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM)) $(WORDS_O)
@@ -219,8 +220,8 @@ $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_
 $(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
-	$(call link,-llcm -lsodium -ljansson -lm)
+$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
+	$(call link,-llcm -lsodium -ljansson $(LIBGPIOD) -lm)
 
 $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -lm)

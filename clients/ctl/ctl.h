@@ -21,6 +21,7 @@ struct ctl {
 	bool hold, wait, once;
 	unsigned int every;		/* record: cycles; 0: not given */
 	const char *plot;
+	const char *pulses;		/* doctor: CHIP:LINE */
 	bool until_end;
 	/* The verb, and what follows it. */
 	const char *verb;
@@ -46,6 +47,9 @@ int ctl_home(struct ctl *c);
 int ctl_alarms(struct ctl *c);
 int ctl_faults(struct ctl *c);
 int ctl_doctor(struct ctl *c);
+
+/** ctl_pulses() - drive @line, CHIP:NUMBER, and print how fast it goes. */
+int ctl_pulses(const char *line);
 int ctl_queue(struct ctl *c);
 int ctl_show(struct ctl *c);
 int ctl_history(struct ctl *c);

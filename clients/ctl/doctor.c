@@ -301,6 +301,10 @@ int ctl_doctor(struct ctl *c)
 	json_t *rows = json_array();
 	int lacking = 0;
 
+	if (c->pulses) {
+		json_decref(rows);
+		return ctl_pulses(c->pulses);
+	}
 	meet(&h);
 	for (size_t i = 0; i < NTHINGS; i++) {
 		struct finding f;

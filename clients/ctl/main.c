@@ -91,7 +91,7 @@ static const struct verb verbs[] = {
 	  "the fault, why and what clears it; and the last ones" },
 	{ "faults", "[FAULT]", ctl_faults, 1, 0, true, "",
 	  "what every fault, or one, means and what clears it" },
-	{ "doctor", "", ctl_doctor, 0, 0, false, "",
+	{ "doctor", "", ctl_doctor, 0, 0, false, "pulses",
 	  "what this host lacks for cutting, and the command that mends it" },
 	{ "watch", "", ctl_watch, 0, 0, false, "once",
 	  "the machine as it goes, until Ctrl-C" },
@@ -135,6 +135,8 @@ static const struct cmdline_row rows[] = {
 	  "record: one cycle of N; default: 1" },
 	{ "plot", "FILE", CMDLINE_WORD, AT(plot), .help =
 	  "record, identify: then draw it, .png or .svg" },
+	{ "pulses", "CHIP:LINE", CMDLINE_WORD, AT(pulses), .help =
+	  "doctor: instead, how fast an output line with nothing on it is" },
 	{ "until-end", NULL, CMDLINE_FLAG, AT(until_end), .help =
 	  "record: until the job that runs, or the next, ends" },
 };

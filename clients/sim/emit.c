@@ -39,12 +39,13 @@ int job_emit(const struct sim_job *job, const struct sim_options *o,
 	const struct interp_sink to = { put, stdout };
 	const struct interp_threeb_options threeb = {
 		.unit_um = c->threeb_unit_um,
+		.fourb = strcmp(o->emit, "4b") == 0,
 	};
 	struct interp_threeb_left left = { 0 };
 	struct interp_diag d = { 0 };
 	int r;
 
-	if (strcmp(o->emit, "3b") == 0)
+	if (strcmp(o->emit, "iso") != 0)
 		r = interp_threeb_write(&job->program, &threeb, &to, &left, &d);
 	else
 		r = interp_iso_write(&job->program, &to, &d);

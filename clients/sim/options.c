@@ -73,8 +73,9 @@ static int take_emit(void *to, const char *text)
 {
 	struct sim_options *o = to;
 
-	if (strcmp(text, "3b") != 0 && strcmp(text, "iso") != 0)
-		return refuse("--emit", text, "3b or iso");
+	if (strcmp(text, "3b") != 0 && strcmp(text, "4b") != 0 &&
+	    strcmp(text, "iso") != 0)
+		return refuse("--emit", text, "3b, 4b or iso");
 	o->emit = text;
 	return -1;
 }
@@ -112,7 +113,7 @@ static const struct cmdline_row rows[] = {
 	{ "offset-um", "N", NUMBER(offset_um, 0, 10000), .help =
 	  "of the wire, for 4B (machine file's, 0)" },
 	{ "emit", "FORMAT", CALL(take_emit), .help =
-	  "3b or iso: write the job as that to stdout, no run" },
+	  "3b, 4b or iso: write the job as that to stdout, no run" },
 	{ "strategy", "NAME", CALL(take_strategy), .help =
 	  "simultaneous, point-by-point, centred, dda,\n"
 	  "main-direction, min-switch (machine file's)" },

@@ -233,6 +233,8 @@ struct config_gpio {
 	int pull;			/* of inputs: 0 as is, 1 up, 2 down, 3 no */
 	double high_cycles, low_cycles;	/* of a step */
 	double dir_setup_cycles, dir_hold_cycles;
+	char adc[64], adc_trigger[64];	/* of industrial I/O; "none" */
+	double adc_channel, adc_ratio;	/* V at the gap for a V at the input */
 	double edges_per_period;	/* writes by the edge thread; 1: none */
 	double edges_cpu;		/* -1: any */
 	double watchdog_us;		/* between two edges */
@@ -351,8 +353,11 @@ const char *config_line_read(const char *text, struct config_line_at *ret);
 /** config_line_name() - its key: "step_X", "spark", ... */
 const char *config_line_name(int line);
 
-/** config_gpio_has_gap() - are there lines of a gap comparator? */
+/** config_gpio_has_gap() - are there gap comparators, or a converter? */
 bool config_gpio_has_gap(const struct machine_config *c);
+
+/** config_gpio_has_lines() - are there lines of a gap comparator? */
+bool config_gpio_has_lines(const struct machine_config *c);
 
 /** config_print() - every key with its value, as a machine file. */
 void config_print(const struct machine_config *c, FILE *f);

@@ -130,9 +130,15 @@ static int check_source(struct check *q)
 	const struct config_key *k =
 		config_key(config_key_find(SECTION_GAP, "source"));
 
-	if (q->c->gap.source == GAP_LINES)
+	const bool lines = config_gpio_has_lines(q->c);
+
+	if (q->c->gap.source == (lines ? GAP_LINES : GAP_VOLTAGE))
 		return 0;
 	blame(q, k, 0);
+	if (!lines)
+		return interp_diag_say(q->diag, "gap.source is %s and the gap "
+				       "is read by gpio.adc; [gap] source = "
+				       "voltage", k->word(q->c->gap.source));
 	return interp_diag_say(q->diag, "gap.source is %s and there are gap "
 			       "lines; [gap] source = lines; or no gap_open, "
 			       "gap_spark, gap_short",
@@ -143,7 +149,7 @@ static int check_gap(struct check *q)
 {
 	static const int needs[] = { LINE_GAP_OPEN, LINE_GAP_SHORT };
 
-	if (!config_gpio_has_gap(q->c))
+	if (!config_gpio_has_lines(q->c))
 		return 0;
 	for (int i = 0; i < 2; i++) {
 		if (q->at[needs[i]].wired)
@@ -254,6 +260,11 @@ int config_check_gpio(const struct machine_config *c,
 }
 
 bool config_gpio_has_gap(const struct machine_config *c)
+{
+	return config_gpio_has_lines(c) || strcmp(c->gpio.adc, "none") != 0;
+}
+
+bool config_gpio_has_lines(const struct machine_config *c)
 {
 	struct config_line_at at;
 

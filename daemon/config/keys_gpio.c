@@ -47,6 +47,15 @@ static const struct config_key row[] = {
 	WHOLE(GPIO, "dir_hold_cycles", "periods", "1", 1, 1000,
 	      AT(gpio.dir_hold_cycles),
 	      "from a step's end to a change of direction"),
+	STRING(GPIO, "adc", "none", gpio.adc,
+	       "converter of the gap's voltage: iio:deviceN or its name; for "
+	       "[gap] source = voltage"),
+	WHOLE(GPIO, "adc_channel", "", "0", 0, 255, AT(gpio.adc_channel),
+	      "N of its in_voltageN"),
+	STRING(GPIO, "adc_trigger", "none", gpio.adc_trigger,
+	       "what starts a sample, by its name; none: it needs none"),
+	NUMBER(GPIO, "adc_ratio", "", "1", -1e6, 1e6, AT(gpio.adc_ratio),
+	       "V at the gap for one V at its input"),
 	WHOLE(GPIO, "edges_per_period", "", "1", 1, 1000,
 	      AT(gpio.edges_per_period),
 	      "writes of step and dir in a period, by a thread of their own; "

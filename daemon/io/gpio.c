@@ -81,9 +81,14 @@ void gpio_read(void *self, struct io_inputs *in)
 	inputs_read(g);
 	if (g->has_gap)
 		gap_read(g);
+	double gap_v = 0;
+	const bool read = g->adc.fd >= 0 && adc_read(&g->adc, &gap_v);
+
 	if (g->edges)
 		edges_look(g);
 	*in = (struct io_inputs) {
+		.gap_v = gap_v,
+		.gap_valid = read,
 		.shares = g->shares,
 		.shares_valid = g->has_gap && g->quiet <= g->quiet_max,
 		.wire_broken = is_on(g, LINE_WIRE),
@@ -238,6 +243,7 @@ void gpio_close(void *self)
 	struct gpio *g = self;
 
 	edges_end(g->edges);
+	adc_close(&g->adc);
 	g->edges = NULL;
 	g->out = 0;
 	gpio_levels(g, 0, UINT64_MAX);

@@ -12,7 +12,8 @@
 
 #define REFRESH_S	1e-3
 #define DEAD_S		0.02		/* the edge thread plays nothing */
-#define QUIET_S		0.1		/* no comparator on, with the power on */
+#define QUIET_S		0.1		/* no comparator on, with the power on; or
+					 * no sample of the converter */
 
 static int refuse(struct interp_diag *d, int err, const char *line,
 		  const char *found, const char *wanted)
@@ -218,6 +219,19 @@ static int lines_open(struct gpio *g, const struct machine_config *c,
 	return 0;
 }
 
+static int adc_begin(struct gpio *g, const struct machine_config *c,
+		     struct interp_diag *d)
+{
+	const struct adc_config a = {
+		.sysfs = "/sys/bus/iio/devices", .dev = "/dev",
+		.device = c->gpio.adc, .trigger = c->gpio.adc_trigger,
+		.channel = (uint32_t)c->gpio.adc_channel,
+		.ratio = c->gpio.adc_ratio, .stale_periods = g->adc_max,
+	};
+
+	return strcmp(c->gpio.adc, "none") == 0 ? 0 : adc_open(&g->adc, &a, d);
+}
+
 static uint32_t periods(const struct machine_config *c, double s)
 {
 	const double n = s * 1e9 / (double)config_period_ns(c);
@@ -263,8 +277,9 @@ static void configure(struct gpio *g, const struct machine_config *c)
 	g->watchdog_periods = periods(c, k->watchdog_us * 1e-6);
 	g->refresh_periods = periods(c, REFRESH_S);
 	g->dead_max = 1 + periods(c, DEAD_S);
+	g->adc_max = 1 + periods(c, QUIET_S);
 	g->quiet_max = periods(c, QUIET_S);
-	g->has_gap = config_gpio_has_gap(c);
+	g->has_gap = config_gpio_has_lines(c);
 }
 
 int io_gpio_open(struct io_machine *m, const struct machine_config *c,
@@ -277,8 +292,11 @@ int io_gpio_open(struct io_machine *m, const struct machine_config *c,
 	if (!g)
 		return refuse(diag, -ENOMEM, "chip", strerror(ENOMEM),
 			      "memory");
+	g->adc.fd = -1;
 	configure(g, c);
 	err = lines_open(g, c, diag);
+	if (err == 0)
+		err = adc_begin(g, c, diag);
 	if (err == 0)
 		err = edges_open(g, c, diag);
 	if (err < 0) {

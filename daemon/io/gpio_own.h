@@ -7,6 +7,7 @@
 #ifndef IO_GPIO_OWN_H
 #define IO_GPIO_OWN_H
 
+#include "adc.h"
 #include "config.h"
 #include "edges.h"
 #include "io.h"
@@ -54,6 +55,7 @@ struct gpio {
 	int32_t shift[IO_NAXES];	/* its pulses less the thread's */
 	struct edges_shown shown;
 	uint32_t ends;			/* limit switches on, a period ago */
+	uint32_t adc_max;		/* periods without a sample */
 	uint32_t dead, dead_max;	/* periods in which it played none */
 	uint64_t in, out;		/* a bit per line: on */
 	uint32_t path;			/* program the pulser counts in */
@@ -63,7 +65,8 @@ struct gpio {
 	uint32_t refresh_left, refresh_periods;
 	uint32_t quiet, quiet_max;	/* periods without a comparator */
 	struct io_shares shares;	/* as told last */
-	bool has_gap;
+	bool has_gap;			/* comparators */
+	struct adc adc;			/* fd -1: none */
 };
 
 /* Of struct io_machine. */

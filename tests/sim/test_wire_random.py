@@ -7,7 +7,8 @@ tries ten thousand.
 import os
 
 import pytest
-from edmsim import run, seeded
+from edmsim import done, run, seeded
+from shapely.geometry import LineString, Point
 from wire_contours import Contour
 from wire_oracle import UM, path_of, read_iso
 
@@ -43,3 +44,58 @@ def test_random_contours_are_cut_or_refused_as_geometry_has_it(plain):
         assert gap >= c.offset - BOUND_MM, \
             f"{gap} mm near under {c.offset}: {about}"
     print(f"{counts}; nearer by {1000 * nearest:.2f} um at the worst")
+
+
+def emitted(plain, form, text, *more):
+    out = done("--machine", plain, *more, "--emit", form, text=text).stdout
+    return out.decode()
+
+
+def test_4b_records_are_the_same_way_again(plain):
+    rnd = seeded()
+    for _ in range(15):
+        c = Contour(rnd)
+        if run("--machine", plain, "--emit", "4b", text=c.text).returncode:
+            continue
+        way = path_of(read_iso(emitted(plain, "iso", c.text))[1:])
+        back = emitted(plain, "4b", c.text)
+        again = emitted(plain, "iso", back, "--dialect", "4b")
+        again = path_of([("G1", *w[1:]) for w in read_iso(again)][1:])
+        assert way.hausdorff_distance(again) < 2.5 * UM, back
+
+
+CURVES = [
+    ("G5 X20 Y10 I6 J0 P0 Q-6",
+     [(10, 0), (16, 0), (20, 4), (20, 10)]),
+    ("G5.1 X20 Y10 I10 J0", [(10, 0), (16.667, 0), (20, 3.3333), (20, 10)]),
+]
+
+
+@pytest.mark.parametrize("word,points", CURVES)
+def test_a_curve_keeps_the_offset(plain, word, points):
+    text = f"""F200 H1=0.125
+G0 X5 Y-5
+G42 H1
+G1 X5 Y0
+X10
+{word}
+G1 Y20
+X0
+Y0
+X5
+G40 Y-5
+M2
+"""
+    ways = read_iso(emitted(plain, "iso", text))[2:-1]
+    way = path_of(ways)
+    bezier = []
+    for i in range(2001):
+        t = i / 2000
+        w = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t ** 3)
+        bezier.append(tuple(sum(k * p[j] for k, p in zip(w, points))
+                            for j in (0, 1)))
+    curve = LineString(bezier)
+    assert abs(way.distance(curve) - 0.125) < 1 * UM
+    # Seen from the curve, too: the wire comes along all of it.
+    for p in bezier[::50]:
+        assert abs(way.distance(Point(p)) - 0.125) < 1.5 * UM

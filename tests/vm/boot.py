@@ -62,6 +62,16 @@ source = lines
 retract_wait_s = 60
 """
 
+ADC = LINES + """
+spark = sim1:0
+watchdog = sim1:1
+estop = 16
+adc = adc-sim
+adc_ratio = 80
+[gap]
+source = voltage
+"""
+
 QUICK_JOB = "G21 G90\nG1 X0.02 F6\nG1 X0\nM30\n"
 SLOW_JOB = "G21 G90\nG1 X1 F2\nG1 X0\nM30\n"
 
@@ -128,6 +138,8 @@ class Run:
 
 
 VIRTUAL = {
+    "adc.ini": machine(period_us=1000, v=0.5, tail=ADC),
+    "adc.ngc": SLOW_JOB,
     "step.ini": machine(period_us=100, v=5),
     "slow.ini": machine(period_us=100, v=1,
                         tail=LINES + "high_cycles = 3\nlow_cycles = 2\n"

@@ -164,7 +164,10 @@ def never_moves_unplaced(seen, what, out, node):
     true = [r[2][node - 1][1] for r in rows[lost:]]
     pushed = len(set(true)) - 1
     assert pushed <= 1, "it moved with an unknown place"
-    assert all(r[2][node - 1][0] not in ("enabled", "on") for r in rows[lost:])
+    # Under power it comes by the home alone, which is the operator's.
+    before = seen.between(f"{what}: harm", f"{what}: idle")
+    assert all(r[2][node - 1][0] not in ("enabled", "on")
+               for r in before[lost:]), "under power with an unknown place"
 
 
 def test_a_drive_that_was_off_is_not_moved_before_it_is_homed(faults):

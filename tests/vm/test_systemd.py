@@ -56,6 +56,18 @@ def test_systemd_restarts_a_cycle_that_stands(systemd):
     assert took < 10
 
 
+def test_one_that_is_stopped_is_replaced_within_its_watchdogs_time(systemd):
+    """It heeds no signal but SIGKILL; its lines stay as they are till then."""
+    said = systemd.words("watchdog")
+    took = float(said["replaced-at"]) - float(said["frozen-at"])
+    print(f"replaced {took:.1f} s after it was stopped; sparks meanwhile "
+          f"{said['spark-frozen']}, then {said['spark-replaced']}")
+    assert said["spark-frozen"] == "1"
+    assert said["spark-replaced"] == "0"
+    # What heeds SIGKILL alone is not waited for, 10 s, after another signal.
+    assert "timed out. Killing" not in systemd.text("journal")
+
+
 def test_no_spark_comes_back_before_a_start(systemd):
     said = systemd.words("watchdog")
     assert said["spark-after-kill"] == "0"

@@ -184,7 +184,9 @@ int nc_curve_build(struct nc_reader *r)
 	if (r->tool.on)
 		return nc_tip_curve(r, &bc);
 	rc = contour_nurbs(&r->contour, c->last_mm, &bc, &r->word, r->diag);
-	if (!rc)
+	if (rc == 1)
+		rc = 0;
+	else if (!rc)
 		rc = nc_curve_check_end(r,
 				interp_build_here(r->contour.guides.build));
 	return nc_placed(r, rc, c->last_mm);

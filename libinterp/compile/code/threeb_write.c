@@ -15,6 +15,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #define TURN	(2 * 3.14159265358979323846)
@@ -42,6 +43,8 @@ struct threeb_writer {
 	struct place at;		/* where a reader would be */
 	uint32_t line;			/* of the source, in hand */
 	uint16_t cond;
+	bool fourb;			/* with the radius and the shape of arcs */
+	bool clockwise;			/* the whole contour goes round so */
 };
 
 /* An arc that goes from w->at to `end`. */
@@ -79,9 +82,9 @@ static int put_line(struct threeb_writer *w, struct place to)
 				   "a line of %lld by %lld units",
 				   (long long)x, (long long)y);
 	w->at = to;
-	return emit_line(w->to, "B%lld B%lld B%lld %s L%u\n", (long long)x,
+	return emit_line(w->to, "B%lld B%lld B%lld %s%s L%u\n", (long long)x,
 			 (long long)y, (long long)(count_y ? y : x),
-			 direction(count_y),
+			 w->fourb ? "B0 " : "", direction(count_y),
 			 threeb_quadrant(THREEB_LINE, dx, dy));
 }
 
@@ -168,12 +171,17 @@ static int put_attempt(struct threeb_writer *w, const struct attempt *t)
 {
 	const enum threeb_kind kind = t->arc.clockwise ? THREEB_CW :
 							 THREEB_CCW;
+	const double r = hypot((double)t->arc.x, (double)t->arc.y);
+	char shape[40] = "";
 
+	if (w->fourb)
+		snprintf(shape, sizeof(shape), "B%lld %s ", llround(r),
+			 t->arc.clockwise == w->clockwise ? "D" : "DD");
 	w->at.x += t->end.x - t->arc.x;
 	w->at.y += t->end.y - t->arc.y;
-	return emit_line(w->to, "B%lld B%lld B%lld %s %s%u\n",
+	return emit_line(w->to, "B%lld B%lld B%lld %s%s %s%u\n",
 			 llabs(t->arc.x), llabs(t->arc.y), (long long)t->j,
-			 direction(t->arc.count_y),
+			 shape, direction(t->arc.count_y),
 			 t->arc.clockwise ? "SR" : "NR",
 			 threeb_quadrant(kind, t->arc.x, t->arc.y));
 }
@@ -347,10 +355,40 @@ static int segment(struct threeb_writer *w,
 		return emit_line(w->to, "D\n");
 	case INTERP_END:
 		return emit_line(w->to, "%s\n", end_word(o));
+	case INTERP_PAIR:
+		return emit_refuse(w->diag, w->line, "a contour without G51, U "
+				   "and V, whose taper is set at the machine; "
+				   "or the NC code itself",
+				   "two contours at once, for which records "
+				   "have no word");
 	default:
 		return emit_refuse(w->diag, w->line, "lines and arcs in XY",
 				   "%s", emit_kind_name(seg->kind));
 	}
+}
+
+/* Does the whole contour go round clockwise?  The area it goes round: of its
+ * chords, and of what each arc has beside its chord. */
+static bool goes_clockwise(const struct interp_program *p)
+{
+	double twice = 0;
+
+	for (uint32_t i = 0; i < p->head->nsegs; i++) {
+		const struct interp_seg *seg = &p->segs[i];
+		double at[4];
+
+		for (size_t k = 0; k < 4; k++)
+			at[k] = emit_mm(p, k % 2 ? INTERP_Y : INTERP_X,
+					emit_node_sub(p, i + k / 2, k % 2 ?
+						      INTERP_Y : INTERP_X));
+		twice += at[0] * at[3] - at[2] * at[1];
+		if (seg->kind == INTERP_ARC) {
+			const struct interp_arc *a = &p->arcs[seg->arg];
+
+			twice += a->r_mm * a->r_mm * (a->sweep - sin(a->sweep));
+		}
+	}
+	return twice < 0;
 }
 
 int interp_threeb_write(const struct interp_program *p,
@@ -361,6 +399,7 @@ int interp_threeb_write(const struct interp_program *p,
 {
 	struct threeb_writer w = {
 		.p = p, .to = to, .left = left, .diag = diag,
+		.fourb = o->fourb,
 		.unit_mm = (o->unit_um > 0 ? o->unit_um : 1) / 1000,
 		.x0_mm = emit_mm(p, INTERP_X, emit_node_sub(p, 0, INTERP_X)),
 		.y0_mm = emit_mm(p, INTERP_Y, emit_node_sub(p, 0, INTERP_Y)),
@@ -368,9 +407,12 @@ int interp_threeb_write(const struct interp_program *p,
 	int rc = 0;
 
 	*left = (struct interp_threeb_left) { 0 };
-	for (uint32_t i = 0; !rc && i < p->head->nsegs; i++) {
+	for (uint32_t i = 0; i < p->head->nsegs; i++) {
 		if (!interp_program_seg_ok(p, i, &p->segs[i]))
 			return -EBADMSG;
+	}
+	w.clockwise = w.fourb && goes_clockwise(p);
+	for (uint32_t i = 0; !rc && i < p->head->nsegs; i++) {
 		rc = segment(&w, o, i);
 	}
 	return rc;

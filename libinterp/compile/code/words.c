@@ -172,10 +172,9 @@ const struct nc_dialect nc_generic = {
 	.classes = nc_classes,
 	.letter = {
 		{ g, NC_NG, 10,
-		  "one of G0 ... G5.3 G6.2 G17 ... G21 G28 G38.2 G40 ... G42 "
-		  "G43.4 G49 ... G62 G80 ... G82 G86 G90 ... G92.1 G94 G120 "
-		  "G130 ... G135 G140 ... G143 G150 ... G152 G160 ... "
-		  "G162" },
+		  "one of G0 ... G5.3 G6.2 G17 ... G21 G28 G38.2 G40 ... G43.4 "
+		  "G49 ... G62 G80 ... G82 G86 G90 ... G94 G120 G130 ... G152 "
+		  "G160 ... G162" },
 		{ m, NC_NM, 1, "one of M0 M1 M2 M3 M4 M5 M30 M98 M99" MACHINE_M },
 		{ t, NC_NM, 1, "T84 (pump on) or T85 (pump off)" },
 	},

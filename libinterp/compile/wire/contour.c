@@ -307,11 +307,8 @@ int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 	int r;
 
 	if (!is_idle(k)) {
-		diag->line = w->line;
-		return interp_diag_say(diag, "a curve under an offset, a "
-				       "taper, guides or corner control; G40 "
-				       "and G50 before it, or the curve as G1 "
-				       "lines");
+		r = contour_cut_nurbs(k, end_mm, c, w, diag);
+		return r ? r : 1;
 	}
 	r = interp_build_curve(k->guides.build, c, w, diag);
 	if (r == -EINVAL && !diag->line)

@@ -66,7 +66,8 @@ int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 int contour_arc(struct contour *k, const double end_mm[INTERP_NAXES],
 		const struct interp_build_arc *arc,
 		const struct interp_build_word *w, struct interp_diag *diag);
-/* Refused with an offset, a taper, guides or corner control in force. */
+/* With anything in force it is cut into arcs and lines and 1 is returned; a
+ * curve of other axes than X and Y is refused then. */
 int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 		  const struct interp_build_curve *c,
 		  const struct interp_build_word *w, struct interp_diag *diag);
@@ -87,6 +88,13 @@ int contour_flush(struct contour *k, struct interp_diag *diag);
 /** contour_keep() - put @m behind what is collected. */
 int contour_keep(struct contour *k, const struct contour_motion *m,
 		 struct interp_diag *diag);
+
+/* -- contour_curve.c -------------------------------------------------------- */
+
+int contour_cut_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
+		      const struct interp_build_curve *c,
+		      const struct interp_build_word *w,
+		      struct interp_diag *diag);
 
 /* -- release.c ------------------------------------------------------------- */
 

@@ -108,6 +108,25 @@ static int lay_round(struct track_work *w, const struct corner *k,
 	return rc ? rc : lay_fill(w, k, &step, false);
 }
 
+/* The bottom of a slot as wide as the wire, but for rounding: what is left of
+ * it runs back by less than the slack. */
+static bool meet_behind(struct track_elem *a, struct track_elem *b,
+			struct vec near, double slack_mm)
+{
+	struct curve q = b->c;
+	struct vec at;
+
+	if (a->dead || b->dead || a->c.arc ||
+	    curve_distance(a->c.from, a->c.to) < SAME_MM ||
+	    !curve_meet(&a->c, &b->c, near, &at) ||
+	    curve_distance(at, a->c.from) > slack_mm ||
+	    !curve_trim(&q, at, b->c.to))
+		return false;
+	a->c = curve_line(a->c.from, at);
+	b->c = q;
+	return true;
+}
+
 /* Cut both off where they meet.  Return: false if they do not. */
 static bool meet_inside(struct track_elem *a, struct track_elem *b,
 			struct vec near)
@@ -170,7 +189,8 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 		return lay_fill(w, &k, &gap, false);
 	if (k.turn * w->job->side > 0 &&
 	    fabs(k.turn) < 2 * RIGHT_ANGLE - ANGLE_SLACK) {
-		if (meet_inside(a, b, k.at))
+		if (meet_inside(a, b, k.at) ||
+		    meet_behind(a, b, k.at, w->slack_mm))
 			return 0;
 		/* A kink so slight that the one end is clear of the other. */
 		return lay_fill(w, &k, &gap,

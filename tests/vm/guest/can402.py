@@ -17,6 +17,10 @@ R = pathlib.Path(sys.argv[1])
 FIFO = R / "drives.fifo"
 
 
+RUNNING = ("travel", "approach", "erode", "retract")
+CUTTING = ("approach", "erode")
+
+
 def frame(can_id, data):
     """Raw, onto the bus, as someone else's."""
     with socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as s:
@@ -84,11 +88,14 @@ class Scene:
         return s
 
     def start(self):
-        """As an operator: again until the drives are up."""
+        """As an operator: again until the drives are up and it goes.  One
+        that "starts when its turn comes" may still find them not up."""
         for _ in range(100):
             answer = self.ctl("start")
-            if answer[0] == 0:
+            if answer[0] == 0 and "turn" not in answer[1]:
                 break
+            if self.status().get("state") in RUNNING:
+                return 0, "it goes"
             time.sleep(0.05)
         return answer
 
@@ -105,10 +112,6 @@ class Scene:
         pathlib.Path(f"{self.name}.log").write_text(self.log.read())
         pathlib.Path(f"{self.name}.json").write_text(json.dumps(
             seen | {"marks": self.marks, "edmd": self.edmd.returncode} | more))
-
-
-RUNNING = ("travel", "approach", "erode", "retract")
-CUTTING = ("approach", "erode")
 
 
 def whole_job(name, nodes, lags=()):

@@ -46,6 +46,19 @@ trace_end sim1 watchdog.trace
 echo "active-again $(unit ActiveState)/$(unit SubState)"
 ctl start; status_is 'state *approach'
 echo "spark-again $(level sim1 0)"
+pid=$(unit MainPID)
+read -r up _ < /proc/uptime
+echo "frozen-at $up"
+kill -STOP $pid
+echo "spark-frozen $(level sim1 0)"
+n=0
+until [ "$(unit NRestarts)" != 1 ] || [ $n -ge 200 ]; do
+	n=$((n + 1)); sleep 0.1
+done
+read -r up _ < /proc/uptime
+echo "replaced-at $up"
+echo "spark-replaced $(level sim1 0)"
+status_is 'state *hold'
 ctl stop; status_is 'state *idle'
 echo "spark-idle $(level sim1 0)"
 systemctl stop edmd.service

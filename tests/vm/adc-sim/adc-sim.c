@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-2.0
+/*
+ * adc-sim - a converter of industrial I/O for the test VM: one channel, 12 bits
+ * signed, a sample each 200 us of what /sys/module/adc_sim/parameters/raw says,
+ * with a count of noise.
+ */
+#include <linux/hrtimer.h>
+#include <linux/iio/buffer.h>
+#include <linux/iio/iio.h>
+#include <linux/iio/kfifo_buf.h>
+#include <linux/module.h>
+#include <linux/platform_device.h>
+
+#define SAMPLE_US	200
+
+static int raw = 1000;
+module_param(raw, int, 0644);
+
+struct adc {
+	struct iio_dev *dev;
+	struct hrtimer timer;
+	s16 noise;
+};
+
+static struct platform_device *platform;
+
+static enum hrtimer_restart sample(struct hrtimer *timer)
+{
+	struct adc *a = container_of(timer, struct adc, timer);
+	s16 v;
+
+	a->noise = !a->noise;
+	v = cpu_to_le16((READ_ONCE(raw) + a->noise) << 4);
+	iio_push_to_buffers(a->dev, &v);
+	hrtimer_forward_now(timer, ns_to_ktime(SAMPLE_US * NSEC_PER_USEC));
+	return HRTIMER_RESTART;
+}
+
+static int begin(struct iio_dev *dev)
+{
+	struct adc *a = iio_priv(dev);
+
+	hrtimer_start(&a->timer, ns_to_ktime(SAMPLE_US * NSEC_PER_USEC), HRTIMER_MODE_REL_SOFT);
+	return 0;
+}
+
+static int end(struct iio_dev *dev)
+{
+	struct adc *a = iio_priv(dev);
+
+	hrtimer_cancel(&a->timer);
+	return 0;
+}
+
+static const struct iio_buffer_setup_ops ops = {
+	.postenable = begin, .predisable = end
+};
+
+static int read_raw(struct iio_dev *dev, struct iio_chan_spec const *chan,
+		    int *val, int *val2, long mask)
+{
+	if (mask == IIO_CHAN_INFO_RAW) {
+		*val = raw;
+		return IIO_VAL_INT;
+	}
+	*val = 0;
+	*val2 = 500000;			/* 0.5 mV a count */
+	return IIO_VAL_INT_PLUS_MICRO;
+}
+
+static const struct iio_info info = { .read_raw = read_raw };
+
+static const struct iio_chan_spec channels[] = {
+	{
+		.type = IIO_VOLTAGE, .indexed = 1, .channel = 0,
+		.info_mask_separate = BIT(IIO_CHAN_INFO_RAW),
+		.info_mask_shared_by_type = BIT(IIO_CHAN_INFO_SCALE),
+		.scan_index = 0,
+		.scan_type = { .sign = 's', .realbits = 12, .storagebits = 16,
+			       .shift = 4, .endianness = IIO_LE },
+	},
+};
+
+static int probe(struct platform_device *p)
+{
+	struct iio_dev *dev = devm_iio_device_alloc(&p->dev, sizeof(struct adc));
+	struct adc *a;
+	int err;
+
+	if (!dev)
+		return -ENOMEM;
+	a = iio_priv(dev);
+	a->dev = dev;
+	hrtimer_init(&a->timer, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
+	a->timer.function = sample;
+	dev->name = "adc-sim";
+	dev->info = &info;
+	dev->channels = channels;
+	dev->num_channels = ARRAY_SIZE(channels);
+	dev->modes = INDIO_DIRECT_MODE;
+	err = devm_iio_kfifo_buffer_setup(&p->dev, dev, &ops);
+	return err ? err : devm_iio_device_register(&p->dev, dev);
+}
+
+static struct platform_driver driver = {
+	.driver = { .name = "adc-sim" }, .probe = probe
+};
+
+static int __init adc_init(void)
+{
+	int err = platform_driver_register(&driver);
+
+	if (err)
+		return err;
+	platform = platform_device_register_simple("adc-sim", -1, NULL, 0);
+	return PTR_ERR_OR_ZERO(platform);
+}
+
+static void __exit adc_exit(void)
+{
+	platform_device_unregister(platform);
+	platform_driver_unregister(&driver);
+}
+
+module_init(adc_init);
+module_exit(adc_exit);
+MODULE_LICENSE("GPL");
+MODULE_DESCRIPTION("Simulated converter for tests");
