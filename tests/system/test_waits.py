@@ -276,7 +276,7 @@ def test_a_stranger_s_file_blocks_no_start(idle):
     /dev/shm is not looked at."""
     p = subprocess.Popen(["unshare", "-m", "sh", "-c", MOUNT, "sh",
                           idle.name])
-    shm = pathlib.Path(f"/proc/{p.pid}/root/dev/shm")
+    shm = pathlib.Path("/proc", str(p.pid), "root", "dev", "shm")
     last = shm / f"edmd.{idle.name}.program.1"
     inside = ["nsenter", "-t", str(p.pid), "-m", f"--wd={os.getcwd()}"]
     try:
