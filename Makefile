@@ -2,9 +2,11 @@
 #
 #   make            build everything into build/
 #   make demo       set up, build, run the main job on the simulated machine
+#   make demo-plan  plan a way into a closed channel, prove it, cut along it
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make quick      of these, most of what goes wrong, in 90 s
 #   make check-vm   of these, those on a PREEMPT_RT kernel in a virtual machine
+#   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
@@ -77,6 +79,7 @@ CLIENT	:= $(wildcard clients/client/*.c)
 SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
+PLAN	:= $(wildcard clients/plan/*.c)
 PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
@@ -111,7 +114,8 @@ INC_ctl		= -Iclients/ctl -Icommon -Idaemon/io -Iclients/plot -Idaemon/shm $(WORD
 INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_panel	= -Iclients/panel -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
-INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp)
+INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
@@ -138,7 +142,7 @@ LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
 
 PROGRAMS := $(B)/edmsim $(B)/edmd $(B)/edmd-jobs $(B)/edmctl $(B)/edm-dds $(B)/edm-fleet \
-	    $(B)/edm-panel
+	    $(B)/edm-panel $(B)/edm-plan
 UNIT_X	 := $(UNIT:tests/unit/%.c=$(B)/unit/%)
 BENCH_X	 := $(BENCH:tests/bench/%.c=$(B)/bench/%)
 PEER_X	 := $(PEER:tests/peer/%.c=$(B)/peer/%)
@@ -232,6 +236,14 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
 	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
+$(B)/edm-plan: $(call obj,$(PLAN)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+	$(call link,-ladmesh -lglpk -linih -ljansson -lpthread -lm)
+
+# Of edm-plan, without its main().
+PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c near.c motion.c prove.c))
+
+$(B)/unit/test_plan_core: $(PLAN_CORE)
+
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
 
@@ -288,6 +300,11 @@ demo:
 	@$(MAKE) --no-print-directory all $(if $(filter 1,$(PANEL)),panel)
 	@EDM_BUILD=$(B) PORT=$(PORT) \
 		$(if $(filter 1,$(PANEL)),examples/demo-panel,tests/netns examples/demo)
+
+demo-plan:
+	@tests/setup build
+	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/edmsim
+	@EDM_BUILD=$(B) examples/demo-plan
 
 # Everything: ends with the test runner's own lines.  Random tests have a seed
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
@@ -360,6 +377,7 @@ run-units: $(UNIT_X) $(PEER_X)
 
 # 500 kills of edmd, edmd-jobs and both around every verb: half an hour.
 KILLS ?= 500
+.PHONY: kills hostile
 kills: all
 	@tests/setup check
 	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
@@ -399,10 +417,10 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 clang:
 	$(call say,CLANG,all sources)
 	$(Q)for f in $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
-		$(JOBS) $(SIM) $(CTL) $(PLOT) $(PANEL_C) $(wildcard clients/dds/*.c); do \
+		$(JOBS) $(SIM) $(CTL) $(PLOT) $(PANEL_C) $(PLAN) $(wildcard clients/dds/*.c); do \
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
-			$(INC_dds) $(INC_panel) $(INC_libinterp)) $$f || exit 1; done
+			$(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp)) $$f || exit 1; done
 
 bench: vm
 	@tests/setup check
@@ -431,6 +449,10 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(Q)docs/pictures/process $(B)
 	$(Q)docs/pictures/curves $(B)
 	$(Q)docs/pictures/demo $(B)
+
+# The panel's pages, in Chromium: needs what `tests/setup check` installs.
+pictures-panel: all panel
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python docs/pictures/panel
 
 # A seed and a number of runs start from the examples alone, and try the same
 # inputs on every machine; without, what earlier runs found is built upon.
@@ -496,7 +518,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
-		$(INC_ctl) $(INC_dds) $(INC_panel) $(INC_libinterp)) -x c $$h || exit 1; done
+		$(INC_ctl) $(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
 		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
@@ -544,7 +566,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: kills hostile all panel demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults fuzz lint install clean

@@ -27,6 +27,15 @@ static void configure_pulses(struct machine_config *c,
 		c->perpendicular = 1;
 }
 
+/* Without axes that lag there is nothing to compensate: nothing is tried. */
+static void say_no_contouring(const struct machine_config *c)
+{
+	if (strcmp(c->contour.method, "none") != 0 && !c->sim.loops)
+		fprintf(stderr, "edmsim: [contour] method %s has no effect: the "
+			"simulated axes do not lag; [sim] loops = yes gives "
+			"them the models of [axis.*]\n", c->contour.method);
+}
+
 static int configure(struct machine_config *c, const struct sim_options *o)
 {
 	struct interp_diag d = { 0 };
@@ -52,6 +61,8 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	if (o->period_us > 0)
 		c->period_us = o->period_us;
 	configure_pulses(c, o);
+	if (!o->tune && !o->quiet)
+		say_no_contouring(c);
 	if (o->unit_um > 0)
 		c->threeb_unit_um = o->unit_um;
 	if (o->offset_um >= 0)

@@ -93,7 +93,7 @@ int record_open(struct sim_run *r)
 		fprintf(r->trace, "t_s,line,s_mm,feed_mm_s,gap_v,state,"
 			"X,Y,Z,A,B,C,U,V,open,spark,arc,short,debris,"
 			"X_sent,Y_sent,Z_sent,A_sent,B_sent,C_sent,U_sent,"
-			"V_sent\n");
+			"V_sent,X_is,Y_is,Z_is,A_is,B_is,C_is,U_is,V_is\n");
 	return 0;
 }
 
@@ -178,6 +178,9 @@ static void trace_cycle(const struct sim_run *r)
 	put_gap(r);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		fprintf(r->trace, ",%.10g", c->given.target[i] * pulse[i]);
+	/* As the machine measured it in this cycle, before it was sent on. */
+	for (int i = 0; i < INTERP_NAXES; i++)
+		fprintf(r->trace, ",%.10g", r->in.actual[i] * pulse[i]);
 	fputc('\n', r->trace);
 }
 

@@ -69,6 +69,8 @@ static void add_cut(json_t *o, const struct sim_run *r)
 
 	add_int(o, "retracts", t->retracts);
 	add_real(o, "retract_mm_max", t->retract_mm_max);
+	add_int(o, "hunts", t->hunts);
+	add_int(o, "retracts_in_row_max", t->in_row_max);
 	add_int(o, "jumps", t->jumps);
 	add_real(o, "jump_s", seconds(&r->cycle, t->jump_cycles));
 	add_real(o, "erosion_s", seconds(&r->cycle, t->erode_cycles));
@@ -150,6 +152,23 @@ int report_write(const struct sim_run *r, const char *path)
 	return e;
 }
 
+/* A servo that goes in and out on the spot cuts nothing and says nothing. */
+static void print_hunting(const struct sim_run *r, FILE *f)
+{
+	const struct cycle *c = &r->cycle;
+	const struct cycle_gap_config *g = &c->config.gap;
+
+	if (c->totals.hunts == 0)
+		return;
+	fprintf(f, "hunting    warning: %u times %d retracts and more in a row "
+		"without %g um of progress,\n           at most %u.  Raise "
+		"[gap] servo_v (%g; short_v is %g), lower feed_gain_mm_s_v "
+		"(%g),\n           or jump oftener: lower [jump] every_s; "
+		"--tune finds them\n",
+		c->totals.hunts, RETRACT_HUNTING, g->progress_mm * 1e3,
+		c->totals.in_row_max, g->servo_v, g->short_v, g->gain_mm_s_v);
+}
+
 void report_print(const struct sim_run *r, FILE *f)
 {
 	const struct cycle *c = &r->cycle;
@@ -175,4 +194,5 @@ void report_print(const struct sim_run *r, FILE *f)
 		seconds(c, t->jump_cycles));
 	fprintf(f, "retracts   %u, the longest %.3f mm, from %u shorts\n",
 		t->retracts, t->retract_mm_max, t->shorts);
+	print_hunting(r, f);
 }

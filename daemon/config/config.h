@@ -297,6 +297,7 @@ struct machine_config {
 	struct config_contour contour;
 	struct config_probe probe;
 	double corner_um;		/* [speed] corner_um */
+	double tolerance_um, rotary_radius_mm;	/* [speed], of its ends */
 	int nodes;			/* [speed] nodes: 0 pass, 1 stop */
 	struct config_sim sim;
 	struct config_gpio gpio;

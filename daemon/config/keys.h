@@ -73,7 +73,7 @@ struct config_key {
 	const char *help;
 };
 
-#define CONFIG_NKEYS_MAX	320	/* rows the table may have; asserted */
+#define CONFIG_NKEYS_MAX	512	/* rows the table may have; asserted */
 #define CONFIG_NINSTANCES_MAX	8
 #define CONFIG_TEXT_MAX		256	/* of a value, with its NUL */
 

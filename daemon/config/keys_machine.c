@@ -68,6 +68,12 @@ static const struct config_key row[] = {
 
 	NUMBER(SPEED, "corner_um", "um", "5", 0.01, 1000, AT(corner_um),
 	       "a node's speed is that of an arc so near its corner"),
+	NUMBER(SPEED, "tolerance_um", "um", "1", 0.001, 100, AT(tolerance_um),
+	       "what a program's ends are rounded to: no change of direction, "
+	       "but for a pulse"),
+	NUMBER(SPEED, "rotary_radius_mm", "mm", "57.3", 0.01, 10000,
+	       AT(rotary_radius_mm),
+	       "where a rotary axis's part of tolerance_um is measured"),
 	WORDS(SPEED, "nodes", "pass", AT(nodes), nodes_word,
 	      "stop: at every node of a jump, for comparison only"),
 

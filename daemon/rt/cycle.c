@@ -6,6 +6,7 @@
 #include "enter.h"
 #include "feed.h"
 #include "guard.h"
+#include "path/ground.h"
 #include "path/laws.h"
 #include "path/step.h"
 #include "path/timed.h"
@@ -79,7 +80,8 @@ static enum cycle_event look(struct cycle *c)
 	case STATE_ERODE:
 		return flush_due(c) ? EVENT_JUMP_DUE : EVENT_NONE;
 	case STATE_TRAVEL:
-		return look_arrive(c);
+		return guard_met(c) && ground_is_cut(c) ? EVENT_SHORT :
+							  look_arrive(c);
 	case STATE_RETRACT:
 		return retract_is_clear(c) ? EVENT_CLEAR : EVENT_NONE;
 	case STATE_JUMP:

@@ -65,13 +65,19 @@ bool guard_forbids(const struct cycle *c)
 
 /*
  * A short while positioning is a collision, once the gap has been open: on the
- * way out of a cut, debris may still bridge it.
+ * way out of a cut, debris may still bridge it.  Over ground that was cut it is
+ * no collision either, but a short as any other: look() has it first.
  */
+bool guard_met(const struct cycle *c)
+{
+	return c->state == STATE_TRAVEL && !c->config.dry_run &&
+	       c->sensed.contact && c->free_seen;
+}
+
 void guard_contact(struct cycle *c)
 {
-	if (c->state != STATE_TRAVEL || c->config.dry_run)
-		return;
-	if (c->sensed.contact && c->free_seen)
+	if (guard_met(c))
 		fault_latch(&c->fault, FAULT_CONTACT);
-	c->free_seen = c->free_seen || c->sensed.is_open;
+	if (c->state == STATE_TRAVEL)
+		c->free_seen = c->free_seen || c->sensed.is_open;
 }

@@ -26,6 +26,9 @@ static inline void guard_judge(struct cycle *c)
 /** guard_forbids() - would the guards not let anything move now? */
 bool guard_forbids(const struct cycle *c);
 
+/** guard_met() - positioning, it met something that was not there before. */
+bool guard_met(const struct cycle *c);
+
 /** guard_contact() - a collision on the way?  After the state is chosen. */
 void guard_contact(struct cycle *c);
 

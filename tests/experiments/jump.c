@@ -33,6 +33,8 @@ struct path {
 	double discharge_min;
 	int lines;
 	bool stop_at_nodes;
+	int decimals;			/* as it is written; 0: four */
+	double deg_mm;			/* C beside it */
 };
 
 struct text {
@@ -61,13 +63,17 @@ static struct text write_path(const struct path *p)
 	const double chord = p->length_mm / p->lines;
 	const double turn = p->lines > 1 ? p->turn / (p->lines - 1) : 0;
 	struct text t = { 0 };
+	const int d = p->decimals ? p->decimals : 4;
 	double x = 0, y = 0;
 
 	put(&t, "G21 G90 G17 F4000\n");
 	for (int i = 0; i < p->lines; i++) {
 		x += chord * cos(i * turn);
 		y += chord * sin(i * turn);
-		put(&t, "G1 X%.4f Y%.4f\n", x, y);
+		put(&t, "G1 X%.*f Y%.*f", d, x, d, y);
+		if (p->deg_mm > 0)
+			put(&t, " C%.*f", d, chord * (i + 1) * p->deg_mm);
+		put(&t, "\n");
 	}
 	put(&t, "M2\n");
 	return t;
@@ -189,8 +195,13 @@ static void head(void)
 	       "|---|---|---|---|---|---|---|---|---|\n");
 }
 
-static const struct path hole = { HOLE_MM, 0, HOLE_MIN, 1, false };
-static const struct path blisk = { BLISK_MM, TURN / 4, BLISK_MIN, 63, false };
+static const struct path hole = {
+	.length_mm = HOLE_MM, .discharge_min = HOLE_MIN, .lines = 1,
+};
+static const struct path blisk = {
+	.length_mm = BLISK_MM, .turn = TURN / 4, .discharge_min = BLISK_MIN,
+	.lines = 63,
+};
 
 static struct path with(struct path p, int lines, bool stop)
 {
@@ -245,7 +256,7 @@ static void node_table(void)
 {
 	static const double degrees[] = { 0.5, 1, 2, 5, 10, 20, 45, 90, 135,
 					  180 };
-	struct path p = { HOLE_MM, 0, 1, 2, false };
+	struct path p = { .length_mm = HOLE_MM, .discharge_min = 1, .lines = 2 };
 
 	printf("\n## Speed of a node\n\nBetween two lines of %g mm, the first "
 	       "along X, with the axes' limits above; mm/s.\n\n"
@@ -261,6 +272,80 @@ static void node_table(void)
 		printf("| %g | %.3g | %.3g |\n", degrees[i], v,
 		       fmin(v, (double)c.segs[1].feed_max_mm_s));
 		free((void *)(uintptr_t)c.head);
+	}
+}
+
+/* -- As CAM systems write ----------------------------------------------------- */
+
+#define SPARSE_MM	1.0
+#define C_DEG_MM	7.0
+
+/* Positioned, all of it, and back. */
+static void walk(const struct path *p, double ret_s[2])
+{
+	const struct io_inputs in = { .gap_valid = true, .gap_v = 50 };
+	const struct cycle_command start = { .verb = CYCLE_START };
+	const struct cycle_command back = { .verb = CYCLE_RETRACT,
+					    .arg_mm = 1e9 };
+	const struct interp_program program = compile(p);
+	struct cycle_config k = config_of(p);
+	struct io_outputs out;
+	struct cycle c;
+
+	k.dry_run = k.hold_at_end = true;
+	k.gap.retract_mm_s = V_MAX_MM_S;
+	cycle_init(&c, &k);
+	cycle_load(&c, &program);
+	cycle_command(&c, &start);
+	for (int leg = 0; leg < 2; leg++) {
+		const uint64_t from = c.count;
+
+		if (leg == 1)
+			cycle_command(&c, &back);
+		do
+			cycle_step(&c, &in, &out);
+		while (state_duty[c.state].running || c.hold.moving);
+		ret_s[leg] = (double)(c.count - from) * PERIOD_NS * 1e-9;
+	}
+	free((void *)(uintptr_t)program.head);
+}
+
+static void dense_row(struct path p, double mm, int decimals)
+{
+	static double sparse_s;		/* of the first row */
+	double s[2];
+	struct cycle c;
+
+	p.lines = (int)lround(p.length_mm / mm);
+	p.decimals = decimals;
+	walk(&p, s);
+	c = erode(&p, NULL, NULL);
+	if (mm == SPARSE_MM)
+		sparse_s = s[0];
+	printf("| %s | %g | %d | %.3f | %.3f | %.3f | %.3f |\n",
+	       p.deg_mm > 0 ? "X Y C" : "X Y", mm, decimals, s[0], s[1],
+	       s[0] / sparse_s, (double)c.totals.jump_cycles * PERIOD_NS *
+				1e-9 / c.totals.jumps);
+	fflush(stdout);
+}
+
+static void dense_table(void)
+{
+	static const double mm[] = { 0.1, 0.02, 0.01, 0.005 };
+	struct path p = { .length_mm = 30, .turn = 6, .discharge_min = 0.4 };
+
+	printf("\n## Lines as CAM systems write them\n\nThree to six decimals "
+	       "along 30 mm of a circle of 5 mm, alone and with C\nturning by "
+	       "%g degrees a mm; 4000 mm/min, and back at %g mm/s.\n\n"
+	       "| axes | mm a line | decimals | there, s | back, s | there, of "
+	       "%g mm a line | s a jump |\n|---|---|---|---|---|---|---|\n",
+	       C_DEG_MM, V_MAX_MM_S, SPARSE_MM);
+	for (int rotary = 0; rotary < 2; rotary++) {
+		p.deg_mm = rotary ? C_DEG_MM : 0;
+		dense_row(p, SPARSE_MM, 6);
+		for (size_t i = 0; i < COUNT(mm); i++)
+			for (int d = 6; d >= 3; d--)
+				dense_row(p, mm[i], d);
 	}
 }
 
@@ -289,6 +374,7 @@ static void tables(void)
 	hole_table();
 	blisk_table();
 	node_table();
+	dense_table();
 	printf("\n![speed in one jump](pictures/jump.svg)\n");
 }
 

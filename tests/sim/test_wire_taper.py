@@ -3,6 +3,7 @@
 the test's own: the top outline is where the leaning faces meet."""
 import math
 import os
+import random
 
 import numpy as np
 import pytest
@@ -133,7 +134,8 @@ class Tapered:
 
 
 def test_tapers_that_change_at_corners_keep_off_on_both_planes():
-    rnd = seeded()
+    # The same in every `make check`; others with EDM_SEED.
+    rnd = seeded() if "EDM_SEED" in os.environ else random.Random(1)
     worst, cut = 0, 0
     for i in range(RUNS):
         c = Tapered(rnd)

@@ -78,7 +78,8 @@ static void an_arc_is_limited_by_what_its_axes_can_do(void **st)
 		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 		const double r = radii[i];
 		const double end[INTERP_NAXES] = { r, r };
-		const double most = fmin(V_MAX, fmin(sqrt(A_MAX * r),
+		/* A part is left to go along it. */
+		const double most = fmin(V_MAX, fmin(sqrt(0.8 * A_MAX * r),
 						     cbrt(J_MAX * r * r)));
 		struct made m;
 		double v;
@@ -409,16 +410,22 @@ static void a_hold_at_every_cycle_of_a_thousand_lines_stops_where_it_says(void *
 	load_random(&r, &s, 1000);
 	/* A thousand lines at a slow F take above a million cycles. */
 	for (int n = 0; n < 4000000 && r.c.state == STATE_TRAVEL; n++) {
-		const struct interp_scurve_limits l = { 1, A_MAX, A_MAX,
-							J_MAX };
 		struct rig fork = r;
+		struct interp_scurve_limits l;
 		double way;
 
-		way = interp_scurve_way_mm(&l, r.c.mover.v_mm_s,
-					   r.c.mover.a_mm_s2, 0);
+		/* What its axes allow, if it began to move. */
 		tell(&fork, CYCLE_HOLD);
-		for (int k = 0; k < 2000 && (k == 0 ||
-					     fork.c.mover.v_mm_s != 0); k++)
+		step_within(&fork);
+		l = (struct interp_scurve_limits) {
+			1, fork.c.mover.l.a_max_mm_s2,
+			fork.c.mover.l.a_max_mm_s2,
+			fork.c.mover.l.j_max_mm_s3,
+		};
+		way = l.a_up_mm_s2 > 0 ?
+		      interp_scurve_way_mm(&l, r.c.mover.v_mm_s,
+					   r.c.mover.a_mm_s2, 0) : 0;
+		for (int k = 0; k < 2000 && fork.c.mover.v_mm_s != 0; k++)
 			step_within(&fork);
 		assert_int_equal(fork.c.state, STATE_HOLD);
 		assert_near(place(&fork) - place(&r), way, 1e-6);

@@ -99,18 +99,22 @@ static void a_hold_at_any_instant_stops_where_it_says(void **st)
 		for (uint64_t n = rnd(&s) % 400; n > 0; n--)
 			step_smoothly(&r);
 		while (r.c.state == STATE_TRAVEL) {
-			const struct interp_scurve_limits l = {
-				1, r.c.config.travel_a_mm_s2,
-				r.c.config.travel_a_mm_s2,
-				r.c.config.travel_j_mm_s3,
-			};
+			const double v = r.c.mover.v_mm_s;
+			const double a = r.c.mover.a_mm_s2;
+			struct interp_scurve_limits l;
 
 			from = place(&r);
-			way = interp_scurve_way_mm(&l, r.c.mover.v_mm_s,
-						   r.c.mover.a_mm_s2, 0);
 			tell(&r, CYCLE_HOLD);
-			for (int n = 0; n < 5000 && (n == 0 ||
-			     r.c.mover.v_mm_s != 0); n++)
+			step_smoothly(&r);
+			/* What its axes allow, if it began to move. */
+			l = (struct interp_scurve_limits) {
+				1, r.c.mover.l.a_max_mm_s2,
+				r.c.mover.l.a_max_mm_s2,
+				r.c.mover.l.j_max_mm_s3,
+			};
+			way = l.a_up_mm_s2 > 0 ?
+			      interp_scurve_way_mm(&l, v, a, 0) : 0;
+			for (int n = 0; n < 5000 && r.c.mover.v_mm_s != 0; n++)
 				step_smoothly(&r);
 			assert_int_equal(r.c.state, STATE_HOLD);
 			assert_near(place(&r) - from, way, 1e-7);

@@ -44,6 +44,9 @@ static void count(struct cycle *c)
 		r->far_mm = c->far_mm;
 	}
 	r->in_row++;
+	c->totals.hunts += r->in_row == RETRACT_HUNTING;
+	if (r->in_row > c->totals.in_row_max)
+		c->totals.in_row_max = r->in_row;
 }
 
 void retract_begin(struct cycle *c)

@@ -14,6 +14,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* So many in a row without progress between: the gap servo hunts. */
+#define RETRACT_HUNTING	20
+
 /* How far a retract may go. */
 enum retract_to {
 	RETRACT_LIMIT,			/* retract_limit_mm */

@@ -23,6 +23,9 @@
 /* Other plans tried in one cycle. */
 #define PLANS_MAX	4
 
+/* Segments looked at for what the axes allow. */
+#define SOFTER_MAX	512
+
 /* More than this was never promised to be met: the program lies. */
 #define LIE_MM		1e-6
 
@@ -47,6 +50,52 @@ static double speed_here(const struct cycle *c, const struct ahead_move *w,
 	return v;
 }
 
+static void soften(struct mover_limits *l, const struct interp_seg *s)
+{
+	const double a = (double)s->a_mm_s2, j = (double)s->j_mm_s3;
+
+	if (s->kind >= INTERP_BEGIN)
+		return;
+	l->a_max_mm_s2 = fmin(l->a_max_mm_s2, a);
+	if (l->a_back_mm_s2 > 0)
+		l->a_back_mm_s2 = fmin(l->a_back_mm_s2, a);
+	l->j_max_mm_s3 = fmin(l->j_max_mm_s3, j);
+}
+
+/*
+ * What every axis allows, from here to where the move ends or has to stop: it
+ * is the same for the whole of a move, so what can be met can be met to its end.
+ */
+static struct mover_limits limits_of(const struct cycle *c,
+				     const struct ahead_move *w)
+{
+	const struct interp_program *p = &c->cursor.p;
+	struct mover_limits l = w->l;
+	uint32_t i = c->cursor.index;
+
+	for (int n = 0; n < SOFTER_MAX; n++) {
+		const struct interp_seg *s = &p->segs[i];
+		const uint32_t hop = w->toward > 0 ? s->softer_ahead :
+						     s->softer_behind;
+
+		if (!interp_program_seg_ok(p, i, s) ||
+		    (n > 0 && s->kind >= INTERP_BEGIN && w->toward > 0 &&
+		     walk_is_due(c, i, s)))
+			break;
+		/* Beyond its goal nothing counts. */
+		if (n > 0 && isfinite(w->goal_mm) &&
+		    (w->toward > 0 ? s->s_mm >= w->goal_mm :
+				     s->s_mm + s->length_mm <= w->goal_mm))
+			break;
+		soften(&l, s);
+		if (hop == 0 || (w->toward > 0 ? hop >= p->head->nsegs - i :
+						 hop > i))
+			break;
+		i = w->toward > 0 ? i + hop : i - hop;
+	}
+	return l;
+}
+
 /*
  * A move begins: with another state, another way, or another override.  One
  * that was held up by too many points is where no plan had it: it begins anew.
@@ -60,10 +109,12 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 
 	c->cut_short = false;
 	if (!short_of && a->state == c->state && a->toward == w->toward &&
-	    a->override == by && a->goal_mm == w->goal_mm)
+	    a->override == by && a->goal_mm == w->goal_mm &&
+	    !mover_is_standing(&c->mover))
 		return;
-	if (a->state != c->state || a->toward != w->toward)
-		a->l = w->l;
+	if (a->state != c->state || a->toward != w->toward ||
+	    mover_is_standing(&c->mover))
+		a->l = limits_of(c, w);
 	a->state = c->state;
 	a->toward = w->toward;
 	a->override = by;

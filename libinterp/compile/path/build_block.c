@@ -95,6 +95,10 @@ static void write_limits(const struct interp_build *b, void *block,
 		.machine = b->o.machine,
 		.corner_mm = b->o.corner_mm > 0 ? b->o.corner_mm :
 						  INTERP_CORNER_MM,
+		.tolerance_mm = b->o.tolerance_mm > 0 ? b->o.tolerance_mm :
+							INTERP_TOLERANCE_MM,
+		.rotary_radius_mm = b->o.rotary_radius_mm > 0 ?
+				    b->o.rotary_radius_mm : INTERP_ROTARY_MM,
 	};
 	struct interp_program p;
 

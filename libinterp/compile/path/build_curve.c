@@ -16,6 +16,8 @@
 #include "path/builder.h"
 #include "pulse/strategy.h"
 
+#include "interp/limits.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -51,14 +53,14 @@ static void set_limits(struct curve_plan *p)
 			&o->machine->axis[p->curve.axis[k]];
 
 		l->v_mm_s[k] = m->v_max_mm_s;
-		l->a_mm_s2[k] = m->a_max_mm_s2;
+		l->a_mm_s2[k] = INTERP_BEND_ACROSS * m->a_max_mm_s2;
 		l->j_mm_s3[k] = m->j_max_mm_s3;
 		p->pulses_mm[p->curve.axis[k]] = 1 / m->pulse_mm;
 		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
 		jerk = fmin(jerk, m->j_max_mm_s3);
 		if (k < p->curve.counted)
 			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
-						    m->a_max_mm_s2);
+						    l->a_mm_s2[k]);
 	}
 	/* A bend of less than a pulse's radius is none that the axes see. */
 	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);

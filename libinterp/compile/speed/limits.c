@@ -2,37 +2,25 @@
 /*
  * limits.c - speed ceilings of a finished program, and which comes next
  */
-#include "interp/limits.h"
-#include "speed/heading.h"
+#include "speed/pass.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Nodes turned by less are on a line: (2*sin(phi/2))^2. */
-#define STRAIGHT	1e-12
-
 /* Directions of short lines differ by their rounding; their ceilings must not.*/
 #define SAME		4e-6
 
-/* A curve of short lines is seen over so many corners' width, either way. */
-#define WINDOW		20
-/* Longer lines have no curve that their corners do not have. */
-#define LONG		5
-
 #define HOP_MAX		UINT16_MAX
 
-struct pass {
-	const struct interp_program *p;
-	struct interp_seg *segs;
-	double corner_mm;
-	uint32_t n;			/* columns */
-	struct ways ways;
-	uint32_t behind, ahead;		/* nodes one window from here */
-	/* Of each column: */
-	double v_mm_s[INTERP_NAXES], a_mm_s2[INTERP_NAXES];
-	double j_mm_s3[INTERP_NAXES];
-	double step_mm_s[INTERP_NAXES];	/* at a node */
-};
+/* Of an axis: no less than a pulse of it. */
+static double tolerance(const struct interp_limits *l, uint8_t axis)
+{
+	const double deg = 180 / 3.14159265358979323846;
+	const double at = interp_axis_is_rotary((enum interp_axis)axis) ?
+			  deg / l->rotary_radius_mm : 1;
+
+	return fmax(l->machine->axis[axis].pulse_mm, l->tolerance_mm * at);
+}
 
 static void begin(struct pass *w, const struct interp_limits *l,
 		  const struct interp_program *p, struct interp_seg *segs)
@@ -40,11 +28,15 @@ static void begin(struct pass *w, const struct interp_limits *l,
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
 			     .n = p->head->naxes };
 	heading_ways_init(&w->ways, p);
+	for (int k = 0; k < PASS_WINDOWS; k++)
+		w->windows[k].mm = PASS_WINDOW * l->corner_mm * (1 << k);
 	for (uint32_t j = 0; j < w->n; j++) {
-		const struct interp_axis_limits *m =
-			&l->machine->axis[p->head->column[j]];
+		const uint8_t axis = p->head->column[j];
+		const struct interp_axis_limits *m = &l->machine->axis[axis];
 		const double six = 6 * l->corner_mm;
 
+		w->tol[j] = tolerance(l, axis);
+		w->near.mm = fmax(w->near.mm, PASS_NEAR * w->tol[j]);
 		w->v_mm_s[j] = m->v_max_mm_s;
 		w->a_mm_s2[j] = m->a_max_mm_s2;
 		w->j_mm_s3[j] = m->j_max_mm_s3;
@@ -69,142 +61,45 @@ static float level(const struct pass *w, double v_mm_s)
 	return v * (float)(1 - 2 * SAME);
 }
 
-/* The fastest round a bend, where the axes give so much. */
-static double round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3)
+/* Down to a level, but for the whole of an axis. */
+static float soft(const struct pass *w, double v, const double *own)
 {
-	const double v = sqrt(a_mm_s2 * r_mm), jrr = j_mm_s3 * r_mm * r_mm;
-
-	return v * v * v <= jrr ? v : cbrt(jrr);
-}
-
-/* -- Nodes --------------------------------------------------------------- */
-
-static double larger(double a, double b)
-{
-	return a > b ? a : b;
-}
-
-static double smaller(double a, double b)
-{
-	return a < b ? a : b;
-}
-
-/* The columns both lengths are made of: a corner as an arc. */
-static double corner(const struct pass *w, const struct heading *a,
-		     const struct heading *b)
-{
-	const uint32_t both = a->along & b->along, any = a->along | b->along;
-	double turn = 0, acc = INFINITY, jerk = INFINITY, half, r;
-
 	for (uint32_t j = 0; j < w->n; j++) {
-		const double d = both >> j & 1 ? b->rate[j] - a->rate[j] : 0;
-
-		turn += d * d;
+		if (fabs(v - own[j]) <= SAME * v)
+			return (float)own[j];
 	}
-	if (!both)
-		turn = 2;
-	if (turn < STRAIGHT)
-		return INFINITY;
-	/* No branch in here: corners are as good as random.  x/0 is no limit. */
-	for (uint32_t j = 0; j < w->n; j++) {
-		const double is = (double)(any >> j & 1);
-		const double d = is * fabs(b->rate[j] - a->rate[j]);
-		const double m = is * larger(fabs(a->rate[j]),
-					     fabs(b->rate[j]));
-
-		acc = smaller(acc, w->a_mm_s2[j] / d);
-		jerk = smaller(jerk, w->j_mm_s3[j] / m);
-	}
-	half = turn < 4 ? sqrt(1 - turn / 4) : 0;
-	r = w->corner_mm * half * (1 + half) / (turn / 4);
-	return round_mm_s(larger(r, w->corner_mm), acc * sqrt(turn), jerk);
-}
-
-/* The others: their speed steps. */
-static double step(const struct pass *w, const struct heading *a,
-		   const struct heading *b)
-{
-	const uint32_t both = a->along & b->along;
-	double v = INFINITY;
-
-	for (uint32_t j = 0; j < w->n; j++) {
-		const double d = fabs(b->rate[j] - a->rate[j]);
-
-		if (!(both >> j & 1) && d * v > w->step_mm_s[j] && d > 1e-9)
-			v = w->step_mm_s[j] / d;
-	}
-	return v;
-}
-
-/* From node @from to @to, in the columns of @along: its length, as it goes. */
-static double chord(const struct pass *w, uint32_t from, uint32_t to,
-		    uint32_t along, double ret[INTERP_NAXES])
-{
-	const int64_t *a = w->p->nodes + (uint64_t)from * w->n;
-	const int64_t *b = w->p->nodes + (uint64_t)to * w->n;
-	double sum = 0, mm;
-
-	for (uint32_t j = 0; j < w->n; j++) {
-		ret[j] = along >> j & 1 ?
-			 (double)(b[j] - a[j]) * w->ways.sub_mm[j] : 0;
-		sum += ret[j] * ret[j];
-	}
-	mm = sqrt(sum);
-	for (uint32_t j = 0; j < w->n && mm > 0; j++)
-		ret[j] /= mm;
-	return mm;
+	return level(w, v);
 }
 
 /*
- * Short lines turn by as little as one likes at each node: their curve is that
- * of the chords to both sides.
+ * Along the path, what its axes leave: on a bend a part, beside what they need
+ * to follow it.
  */
-static double curve(struct pass *w, uint32_t i, uint32_t along)
+static void soften_seg(const struct pass *w, struct interp_seg *s, double part,
+		       const double rates[INTERP_NAXES])
 {
-	const struct interp_seg *s = w->segs;
-	const double window = WINDOW * w->corner_mm, here = s[i].s_mm;
-	double a[INTERP_NAXES], b[INTERP_NAXES], turn = 0, acc = INFINITY;
-	double jerk = INFINITY, mm;
+	double a = INFINITY, j = INFINITY;
 
-	while (here - s[w->behind + 1].s_mm >= window)
-		w->behind++;
-	if (w->ahead < i)
-		w->ahead = i;
-	while (w->ahead < w->p->head->nsegs - 1 &&
-	       s[w->ahead].s_mm - here < window)
-		w->ahead++;
-	mm = (chord(w, w->behind, i, along, a) +
-	      chord(w, i, w->ahead, along, b)) / 2;
-	for (uint32_t j = 0; j < w->n; j++) {
-		turn += (b[j] - a[j]) * (b[j] - a[j]);
-		if (a[j] == 0 && b[j] == 0)
+	for (uint32_t k = 0; k < w->n; k++) {
+		if (!(rates[k] > 0))
 			continue;
-		acc = smaller(acc, w->a_mm_s2[j]);
-		jerk = smaller(jerk, w->j_mm_s3[j]);
+		a = fmin(a, part * w->a_mm_s2[k] / rates[k]);
+		j = fmin(j, part * w->j_mm_s3[k] / rates[k]);
 	}
-	return turn < STRAIGHT ? INFINITY :
-	       round_mm_s(larger(mm / sqrt(turn), w->corner_mm), acc, jerk);
-}
-
-/* In front of segment @i; @last is the one before that moves. */
-static float node(struct pass *w, uint32_t last, uint32_t i,
-		  const struct heading *a, const struct heading *b)
-{
-	const double mm = LONG * WINDOW * w->corner_mm;
-	double v = smaller(corner(w, a, b), step(w, a, b));
-
-	if (w->segs[last].length_mm < mm || w->segs[i].length_mm < mm)
-		v = smaller(v, curve(w, i, a->along & b->along));
-
-	return isinf(v) ? INFINITY : level(w, v);
+	s->a_mm_s2 = soft(w, a, w->a_mm_s2);
+	s->j_mm_s3 = soft(w, j, w->j_mm_s3);
 }
 
 /* What the axes of its bend can do. */
-static void limit_seg(const struct pass *w, struct interp_seg *s,
-		      const struct headings *h)
+static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 {
+	struct interp_seg *s = &w->segs[i];
 	double v = (double)s->feed_max_mm_s;
+	double rates[INTERP_NAXES];
 
+	pass_rates(w, i, h, rates);
+	if (s->kind == INTERP_LINE && pass_is_short(w, i))
+		v = fmax(v, pass_rate_mm_s(w, rates));
 	if (h->bend_mm > 0) {
 		double a = INFINITY, j = INFINITY;
 
@@ -214,8 +109,12 @@ static void limit_seg(const struct pass *w, struct interp_seg *s,
 			a = fmin(a, w->a_mm_s2[k]);
 			j = fmin(j, w->j_mm_s3[k]);
 		}
-		v = fmin(v, round_mm_s(h->bend_mm, a, j) / h->share);
+		v = fmin(v, pass_round_mm_s(h->bend_mm,
+					    INTERP_BEND_ACROSS * a, j) /
+			    h->share);
 	}
+	soften_seg(w, s, h->bend_mm > 0 || s->kind == INTERP_CURVE ?
+			 INTERP_BEND_ALONG : 1, rates);
 	s->feed_max_mm_s = level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;
@@ -230,18 +129,22 @@ static void walk_nodes(struct pass *w)
 	int now = 0;
 
 	w->segs[0].node_mm_s = INFINITY;
+	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
 	for (uint32_t i = 1; i < nsegs; i++) {
 		w->segs[i].node_mm_s = INFINITY;
+		w->segs[i].a_mm_s2 = w->segs[i].j_mm_s3 = INFINITY;
 		if (w->segs[i].kind >= INTERP_BEGIN)
 			continue;
 		heading_find(&w->ways, i, &h[now]);
-		limit_seg(w, &w->segs[i], &h[now]);
+		limit_seg(w, i, &h[now]);
 		if (last > 0) {
-			const float v = node(w, last, i, &h[!now].last,
-					     &h[now].first);
+			const double v = pass_node_mm_s(w, last, i,
+							&h[!now].last,
+							&h[now].first);
 
 			for (uint32_t k = last; k < i; k++)
-				w->segs[k].node_mm_s = v;
+				w->segs[k].node_mm_s = isinf(v) ? INFINITY :
+							level(w, v);
 		}
 		last = i;
 		now = !now;
@@ -323,6 +226,40 @@ static void chain_behind(const struct pass *w)
 	}
 }
 
+/* -- The next softer ------------------------------------------------------- */
+
+static bool is_softer(const struct interp_seg *s, const struct interp_seg *than)
+{
+	return s->a_mm_s2 < than->a_mm_s2 || s->j_mm_s3 < than->j_mm_s3;
+}
+
+static void chain_softer(const struct pass *w)
+{
+	struct interp_seg *s = w->segs;
+	const uint32_t end = w->p->head->nsegs - 1;
+
+	s[end].softer_ahead = 0;
+	for (uint32_t i = end; i-- > 0; ) {
+		uint32_t m = i + 1;
+
+		while (m < end && m - i < HOP_MAX && s[i].kind < INTERP_BEGIN &&
+		       s[m].kind < INTERP_BEGIN && !is_softer(&s[m], &s[i]))
+			m += s[m].softer_ahead;
+		s[i].softer_ahead = (uint16_t)(m - i < HOP_MAX ? m - i :
+							   HOP_MAX);
+	}
+	s[0].softer_behind = 0;
+	for (uint32_t i = 1; i <= end; i++) {
+		uint32_t m = i - 1;
+
+		while (m > 0 && i - m < HOP_MAX && !is_softer(&s[m], &s[i]))
+			m = s[m].softer_behind ? m - s[m].softer_behind : 0;
+		s[i].softer_behind = (uint16_t)(m == 0 ? 0 :
+						i - m < HOP_MAX ? i - m :
+								  HOP_MAX);
+	}
+}
+
 void interp_limits_write(const struct interp_limits *l,
 			 const struct interp_program *p,
 			 struct interp_seg *segs)
@@ -334,4 +271,5 @@ void interp_limits_write(const struct interp_limits *l,
 	chain_ahead(&w);
 	chain_feed(&w);
 	chain_behind(&w);
+	chain_softer(&w);
 }

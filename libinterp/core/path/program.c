@@ -121,7 +121,8 @@ bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 	return isfinite(seg->s_mm) && isfinite(seg->length_mm) &&
 	       seg->length_mm > 0 && isfinite(seg->feed_mm_s) &&
 	       seg->feed_mm_s > 0 && isfinite(seg->feed_max_mm_s) &&
-	       seg->feed_max_mm_s > 0 &&
+	       seg->feed_max_mm_s > 0 && seg->a_mm_s2 > 0 &&
+	       seg->j_mm_s3 > 0 &&
 	       (seg->kind != INTERP_ARC || seg->arg < p->head->narcs) &&
 	       (seg->kind != INTERP_PAIR || seg->arg < p->head->ncouples) &&
 	       (seg->kind != INTERP_CURVE || seg->arg < p->head->npieces);

@@ -26,7 +26,8 @@ struct interp_build_options {
 					 * path can keep to */
 	bool perpendicular;		/* mu is measured square to the line */
 	enum interp_coupling coupling;	/* of three and more axes */
-	double corner_mm;		/* of limits.h; 0: its default */
+	double corner_mm;		/* of limits.h; 0: its defaults */
+	double tolerance_mm, rotary_radius_mm;
 	double start_mm[INTERP_NAXES];	/* where the machine stands */
 	double chord_error_mm;		/* of curves: between two cycles no */
 	double period_s;		/* farther off; either 0: no limit */

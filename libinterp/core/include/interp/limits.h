@@ -22,7 +22,14 @@
  *
  * Nodes on a line are slowed by nothing.  Lines shorter than 100 corner_mm have
  * besides the radius of the curve they follow, from the chords of 20 corner_mm
- * to both sides of a node, no smaller than corner_mm.
+ * to both sides of a node, no smaller than corner_mm; an axis beside the path
+ * has the acceleration and jerk that its share changes by over those chords.
+ *
+ * What a rounding of nodes by tolerance_mm, or a pulse, can do is no change:
+ * turns and steps of lines shorter than 20 tolerances are those of chords as
+ * long, and what could be a rounding is taken off.  What that takes off a curve
+ * is looked for over chords up to 32 times as long.
+ *
  * Ceilings are rounded down to levels at most 1/32 apart (the speeds of the
  * axes are levels too), so no more than a few hundred can follow each other,
  * each slower than the one before.
@@ -35,10 +42,21 @@
 #include "interp/program.h"
 
 #define INTERP_CORNER_MM	0.005	/* where none is given */
+#define INTERP_TOLERANCE_MM	0.001
+#define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
+
+/*
+ * On a bend, shares of what an axis can do: to follow it, and to go along it.
+ * Square to each other, together they are no more than all of it.
+ */
+#define INTERP_BEND_ACROSS	0.8
+#define INTERP_BEND_ALONG	0.6
 
 struct interp_limits {
 	const struct interp_machine *machine;
 	double corner_mm;		/* > 0 */
+	double tolerance_mm;		/* >= 0: what is less is a rounding */
+	double rotary_radius_mm;	/* > 0: where it is a rotary axis's, too */
 };
 
 /**

@@ -37,7 +37,7 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	5
+#define INTERP_PROGRAM_VERSION	6
 
 /* How a path becomes pulses. */
 enum interp_strategy {
@@ -125,7 +125,11 @@ struct interp_seg {
 	uint16_t slower_feed;		/* so many on has a smaller F; 0: none */
 	uint16_t escape;		/* escapes[escape]; 0 is "along the
 					 * path" */
-	uint32_t pad;
+	uint16_t softer_ahead;		/* so many on is an action, or one of
+					 * less a_mm_s2 or j_mm_s3 */
+	uint16_t softer_behind;		/* the same, going back; 0: none */
+	float a_mm_s2, j_mm_s3;		/* along the path, that its axes allow;
+					 * INFINITY for an action */
 };
 
 /*

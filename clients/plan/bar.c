@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * bar.c - a bar while a person waits, and what Ctrl-C asks for
+ */
+#include "job.h"
+
+#include <signal.h>
+#include <time.h>
+#include <unistd.h>
+
+#define BAR	20
+
+static volatile sig_atomic_t asked;
+
+static void on_signal(int sig)
+{
+	(void)sig;
+	/* A second one ends the program at once. */
+	signal(SIGINT, SIG_DFL);
+	asked = 1;
+}
+
+void bar_catch(void)
+{
+	struct sigaction a = { .sa_handler = on_signal,
+			       .sa_flags = SA_RESTART };
+
+	sigemptyset(&a.sa_mask);
+	sigaction(SIGINT, &a, NULL);
+	sigaction(SIGTERM, &a, NULL);
+}
+
+void bar_forget(void)
+{
+	asked = 0;
+}
+
+bool bar_interrupted(void)
+{
+	return asked != 0;
+}
+
+static double now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+void bar_show(const struct job *j, double share, const char *text)
+{
+	static double last;
+	const double now = now_s();
+	char bar[BAR + 1];
+	int full = (int)(share * BAR);
+
+	if (j->o->quiet || !isatty(STDERR_FILENO) || now - last < 0.1)
+		return;
+	last = now;
+	full = full < 0 ? 0 : full > BAR ? BAR : full;
+	for (int i = 0; i < BAR; i++)
+		bar[i] = i < full ? '=' : ' ';
+	bar[BAR] = '\0';
+	fprintf(stderr, "\r[%s] %3.0f %% %.100s\033[K", bar, share * 100, text);
+}
+
+void bar_end(const struct job *j)
+{
+	if (!j->o->quiet && isatty(STDERR_FILENO))
+		fprintf(stderr, "\r\033[K");
+}

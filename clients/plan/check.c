@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * check.c - a whole way proved, or its first contact
+ *
+ * A dense program has thousands of blocks shorter than the room round the
+ * electrode.  Of those no point goes farther than the sum of their ways, so one
+ * distance covers many; only a block longer than the room left has a proof of
+ * its own.
+ */
+#include "check.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+#include <sysexits.h>
+
+/* The end pose's own distance less this is what the end zone comes down to. */
+#define END_LESS_MM	0.005
+
+struct checking {
+	const struct job *j;
+	const struct route *w;
+	const struct clearance *c;
+	struct check_result *ret;
+	struct near_pair pair;		/* nearest at the node last looked at */
+	double room_mm;			/* round it, beyond what is to be kept */
+};
+
+static struct clearance more(const struct clearance *c, double mm)
+{
+	struct clearance ret = *c;
+
+	ret.mm += mm;
+	ret.end_mm += mm;
+	return ret;
+}
+
+static void contact(struct checking *k, uint32_t i, const struct block *b,
+		    const struct proof *p, const struct clearance *c)
+{
+	struct check_result *r = k->ret;
+	struct pose pose;
+
+	r->ok = false;
+	r->block = i;
+	r->t = p->t;
+	r->pair = p->pair;
+	block_at(b, p->t, r->q);
+	block_pose(b, p->t, &pose, NULL);
+	r->wanted_mm = clearance_at(c, &pose, 0);
+}
+
+static void see(struct checking *k, uint32_t i, double mm)
+{
+	if (mm < k->ret->least_mm) {
+		k->ret->least_mm = mm;
+		k->ret->least_block = i;
+	}
+}
+
+/* The room round node @i, if block @i is to begin there. */
+static void look(struct checking *k, uint32_t i, const struct block *b,
+		 const struct clearance *c)
+{
+	struct pose pose;
+	double mm;
+
+	block_pose(b, 0, &pose, NULL);
+	mm = near_distance(&k->j->bodies, &pose, &k->pair);
+	k->ret->queries++;
+	see(k, i, mm);
+	/* Round it all, not only here. */
+	k->room_mm = mm - c->mm - PROVE_EPS_MM;
+}
+
+static bool check_block(struct checking *k, uint32_t i, const struct block *b,
+			const struct clearance *c)
+{
+	struct proof p = { .least_mm = DBL_MAX, .pair = k->pair };
+	const bool ok = prove_block(&k->j->bodies, b, c, &p);
+
+	k->ret->queries += p.queries;
+	k->room_mm = 0;
+	if (!ok) {
+		see(k, i, p.pair.mm);
+		contact(k, i, b, &p, c);
+	}
+	return ok;
+}
+
+static bool check_next(struct checking *k, uint32_t i)
+{
+	struct clearance c;
+	struct block b;
+	double strays;
+
+	job_block(k->j, k->w, i, &b);
+	strays = job_strays_mm(k->w, i, &b);
+	k->ret->most_added_mm = fmax(k->ret->most_added_mm, strays);
+	/* What is added differs a little from block to block. */
+	if (b.way_mm + strays <= k->room_mm) {
+		k->room_mm -= b.way_mm;
+		return true;
+	}
+	c = more(k->c, strays + k->j->chord_mm);
+	look(k, i, &b, &c);
+	if (b.way_mm <= k->room_mm) {
+		k->room_mm -= b.way_mm;
+		return true;
+	}
+	return check_block(k, i, &b, &c);
+}
+
+/* Does the way begin inside? */
+static int check_start(struct checking *k)
+{
+	struct pose pose;
+	int r;
+
+	motion_pose(&k->j->motion, k->w->node[0].q, &pose);
+	if (near_below(&k->j->bodies, &pose, 1e-9, &k->pair))
+		return 0;		/* it touches, and will be found */
+	r = job_inside(k->j, &pose, k->ret->say, sizeof(k->ret->say));
+	if (r < 0)
+		return -ENOMEM;
+	k->ret->inside = r > 0;
+	return 0;
+}
+
+int check_way(const struct job *j, const struct route *w,
+	      const struct clearance *c, struct check_result *ret)
+{
+	struct checking k = { .j = j, .w = w, .c = c, .ret = ret };
+	int r;
+
+	*ret = (struct check_result) { .ok = true, .least_mm = DBL_MAX };
+	r = check_start(&k);
+	if (r || ret->inside) {
+		ret->ok = false;
+		memcpy(ret->q, w->node[0].q, sizeof(ret->q));
+		return r;
+	}
+	for (uint32_t i = 0; i + 1 < w->n && ret->ok; i++) {
+		char text[100];
+
+		if (bar_interrupted()) {
+			bar_end(j);
+			return -EINTR;
+		}
+		check_next(&k, i);
+		if (i % 64)
+			continue;
+		snprintf(text, sizeof(text), "block %u of %u, least seen %.3f "
+			 "mm", i + 1, w->n - 1, ret->least_mm);
+		bar_show(j, (double)i / w->n, text);
+	}
+	bar_end(j);
+	return 0;
+}
+
+int check_clearance(const struct job *j, const double end[INTERP_NAXES],
+		    struct clearance *ret)
+{
+	struct near_pair pair = { 0 };
+	struct pose pose;
+	double mm;
+
+	clearance_init(ret, j->clear_mm);
+	if (!(j->o->end_zone_mm > 0))
+		return 0;
+	motion_pose(&j->motion, end, &pose);
+	mm = near_distance(&j->bodies, &pose, &pair) - j->chord_mm -
+	     END_LESS_MM;
+	if (mm < ret->mm)
+		clearance_end(ret, &j->tool, &pose, j->o->end_zone_mm,
+			      fmax(mm, 0));
+	return 0;
+}
+
+/* -- --check ------------------------------------------------------------------- */
+
+static void say_axes(const struct job *j, const double q[INTERP_NAXES], FILE *f)
+{
+	const uint32_t moves = motion_moves(&j->motion);
+
+	for (int k = 0; k < INTERP_NAXES; k++)
+		if (moves & 1u << k)
+			fprintf(f, " %c%.4f", INTERP_AXIS_LETTERS[k], q[k]);
+}
+
+static void say_contact(const struct job *j, const struct route *w,
+			const struct check_result *r)
+{
+	const struct route_node *n = &w->node[r->block + 1];
+
+	if (r->inside) {
+		printf("%s: not free: %s at the start, at", j->o->program,
+		       r->say);
+	} else if (r->pair.mm > 0) {
+		printf("%s:%u: not free: %.4f mm are left of %.4f, %.1f %% "
+		       "along the block, at", j->o->program, n->line,
+		       r->pair.mm, r->wanted_mm, 100 * r->t);
+	} else {
+		printf("%s:%u: not free: they touch, %.1f %% along the block, "
+		       "at", j->o->program, n->line, 100 * r->t);
+	}
+	say_axes(j, r->q, stdout);
+	putchar('\n');
+	if (!r->inside)
+		job_say_pair(j, &r->pair, stdout);
+}
+
+static int say_result(const struct job *j, const struct route *w,
+		      const struct check_result *r)
+{
+	if (!r->ok) {
+		say_contact(j, w, r);
+		return 1;
+	}
+	printf("proved     %u blocks keep %.3f mm%s, jumps and retracts along "
+	       "them too\n", w->n - 1, j->clear_mm,
+	       j->o->end_zone_mm > 0 ? " but in the end zone" : "");
+	printf("           %.4f mm more are kept for pulses and arcs\n",
+	       r->most_added_mm);
+	printf("least seen %.4f mm, line %u; %llu queries\n", r->least_mm,
+	       w->node[r->least_block + 1].line,
+	       (unsigned long long)r->queries);
+	if (!w->beside)
+		return 0;
+	printf("%s:%u: not proved: %u segments lift beside the path; G140, or "
+	       "[jump] escape = path\n", j->o->program, w->beside_line,
+	       w->beside);
+	return 1;
+}
+
+int check_program(struct job *j)
+{
+	const struct route_text from = { .path = j->o->program,
+				       .dialect = j->o->dialect };
+	struct check_result result;
+	struct clearance c;
+	struct route w;
+	int r = route_read(&w, &j->config, &from);
+
+	if (r)
+		return r;
+	if (!job_moves_known(j, &w, j->o->program)) {
+		r = EX_DATAERR;
+	} else {
+		check_clearance(j, w.node[w.n - 1].q, &c);
+		if (!j->o->quiet)
+			job_describe(j, stdout);
+		r = check_way(j, &w, &c, &result);
+		if (r == -EINTR)
+			fprintf(stderr, "edm-plan: interrupted; nothing is "
+				"proved\n");
+		r = r == -ENOMEM ? EX_OSERR : r ? 1 : say_result(j, &w, &result);
+	}
+	route_free(&w);
+	return r;
+}

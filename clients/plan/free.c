@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * free.c - inner nodes off the path, by sequential linear programs
+ *
+ * At a pose of block k at time t each axis is off by (1 - t) d_k + t d_k+1, if
+ * node k is moved by d_k.  A pair of triangles at distance g, with n from the
+ * part to the electrode, then is at g + n . J d to the first order.  The least
+ * of all those is made as large as it goes.
+ */
+#include "free.h"
+
+#include "near_set.h"
+
+#include <errno.h>
+#include <float.h>
+#include <glpk.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define POSES		10		/* of a block */
+#define PAIRS		14		/* of triangles at each */
+#define BAND_MM		0.2		/* over the least distance */
+#define ROOM_FIRST_MM	1.5		/* of a step, at first */
+#define ROOM_LEAST_MM	0.01
+
+struct lp {
+	glp_prob *p;
+	const struct free_way *w;
+	uint32_t axes[INTERP_NAXES], naxes;	/* those that may move */
+	double reach_mm[INTERP_NAXES];	/* mm per unit of an axis, at most */
+	int least;			/* column of the least distance */
+};
+
+static int col(const struct lp *l, uint32_t node, uint32_t a)
+{
+	return 1 + (int)((node - 1) * l->naxes + a);
+}
+
+int free_init(struct free_way *w, const struct job *j,
+	      double (*q)[INTERP_NAXES], uint32_t n)
+{
+	*w = (struct free_way) { .j = j, .n = n };
+	if (n > FREE_NODES_MAX)
+		return -E2BIG;
+	memcpy(w->q, q, n * sizeof(*w->q));
+	return 0;
+}
+
+void free_round(const struct machine_config *c, double q[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const double pulse = c->axes.axis[i].pulse_mm;
+
+		q[i] = round(q[i] / pulse) * pulse;
+	}
+}
+
+/* -- Trying ------------------------------------------------------------------- */
+
+/* The least distance over poses of all blocks; gives up below @stop. */
+static double try_way(struct free_way *w, double stop)
+{
+	double least = DBL_MAX;
+
+	for (uint32_t i = 0; i + 1 < w->n; i++) {
+		struct near_pair pair = { 0 };
+		struct block b;
+
+		block_init(&b, &w->j->motion, w->q[i], w->q[i + 1]);
+		for (int k = i == 0 ? 0 : 1; k <= POSES; k++) {
+			struct pose pose;
+
+			block_pose(&b, (double)k / POSES, &pose, NULL);
+			w->queries++;
+			least = fmin(least, near_distance(&w->j->bodies, &pose,
+							  &pair));
+			if (least < stop)
+				return least;
+		}
+	}
+	return least;
+}
+
+/* -- The linear program ------------------------------------------------------- */
+
+static void find_axes(struct lp *l)
+{
+	const struct job *j = l->w->j;
+	const uint32_t moves = motion_moves(&j->motion);
+	struct block b;
+
+	block_init(&b, &j->motion, l->w->q[0], l->w->q[l->w->n - 1]);
+	for (uint32_t i = 0; i < INTERP_NAXES; i++)
+		if (moves & j->config.axes.present & 1u << i)
+			l->axes[l->naxes++] = i;
+	for (uint32_t i = 0; i < j->kin.njoints; i++) {
+		const enum interp_axis a = j->kin.joint[i].axis;
+
+		l->reach_mm[a] = b.reach_mm[i] *
+				 (interp_axis_is_rotary(a) ? PLAN_RADIAN : 1);
+	}
+}
+
+static void add_columns(struct lp *l, double room_mm)
+{
+	const struct machine_config *c = &l->w->j->config;
+	const uint32_t inner = l->w->n - 2;
+
+	glp_add_cols(l->p, (int)(inner * l->naxes) + 1);
+	l->least = (int)(inner * l->naxes) + 1;
+	glp_set_col_bnds(l->p, l->least, GLP_FR, 0, 0);
+	for (uint32_t node = 1; node <= inner; node++) {
+		for (uint32_t a = 0; a < l->naxes; a++) {
+			const uint32_t axis = l->axes[a];
+			const double room = room_mm / l->reach_mm[axis];
+			const double at = l->w->q[node][axis];
+			const double low = fmax(-room,
+				c->axes.axis[axis].travel_min_mm - at);
+			const double high = fmin(room,
+				c->axes.axis[axis].travel_max_mm - at);
+
+			glp_set_col_bnds(l->p, col(l, node, a),
+					 low < high ? GLP_DB : GLP_FX,
+					 low < high ? low : 0, high);
+		}
+	}
+}
+
+struct row {
+	int n, index[2 * INTERP_NAXES + 2];
+	double value[2 * INTERP_NAXES + 2];
+};
+
+static void row_add(struct row *r, int index, double value)
+{
+	r->n++;
+	r->index[r->n] = index;
+	r->value[r->n] = value;
+}
+
+/* One pair at time @t of block @i: g + n . J d - least >= 0. */
+static void add_pair(struct lp *l, uint32_t i, double t,
+		     const double q[INTERP_NAXES], const struct near_pair *x)
+{
+	double jac[INTERP_NAXES][3], n[3];
+	struct row r = { 0 };
+	int at;
+
+	if (!(x->mm > 1e-9))
+		return;
+	v_sub(x->q, x->p, n);
+	motion_jacobian(&l->w->j->motion, q, x->q, jac);
+	for (uint32_t a = 0; a < l->naxes; a++) {
+		const double g = v_dot(n, jac[l->axes[a]]) / x->mm;
+
+		if (i > 0 && t < 1)
+			row_add(&r, col(l, i, a), (1 - t) * g);
+		if (i + 2 < l->w->n && t > 0)
+			row_add(&r, col(l, i + 1, a), t * g);
+	}
+	row_add(&r, l->least, -1);
+	at = glp_add_rows(l->p, 1);
+	glp_set_row_bnds(l->p, at, GLP_LO, -x->mm, 0);
+	glp_set_mat_row(l->p, at, r.n, r.index, r.value);
+}
+
+static void add_pairs(struct lp *l, struct free_way *w)
+{
+	static struct near_set set = { .max = PAIRS };
+
+	for (uint32_t i = 0; i + 1 < w->n; i++) {
+		struct near_pair last = { 0 };
+		struct block b;
+
+		block_init(&b, &w->j->motion, w->q[i], w->q[i + 1]);
+		for (int k = i == 0 ? 0 : 1; k <= POSES; k++) {
+			const double t = (double)k / POSES;
+			double q[INTERP_NAXES], mm;
+			struct pose pose;
+
+			block_at(&b, t, q);
+			block_pose(&b, t, &pose, NULL);
+			mm = near_distance(&w->j->bodies, &pose, &last);
+			w->queries += 2;
+			near_set_collect(&w->j->bodies, &pose, fmin(mm, 2),
+					 BAND_MM, &set);
+			for (uint32_t x = 0; x < set.n; x++)
+				add_pair(l, i, t, q, &set.pair[x]);
+		}
+	}
+}
+
+static bool solve(struct lp *l)
+{
+	glp_smcp how;
+
+	glp_init_smcp(&how);
+	how.msg_lev = GLP_MSG_OFF;
+	how.tm_lim = 20000;
+	how.presolve = GLP_ON;
+	return glp_simplex(l->p, &how) == 0 &&
+	       (glp_get_status(l->p) == GLP_OPT ||
+		glp_get_status(l->p) == GLP_FEAS);
+}
+
+static void begin(struct lp *l, struct free_way *w, double room_mm)
+{
+	*l = (struct lp) { .p = glp_create_prob(), .w = w };
+	glp_term_out(GLP_OFF);
+	find_axes(l);
+	add_columns(l, room_mm);
+	add_pairs(l, w);
+	w->programs++;
+}
+
+static void move_nodes(const struct lp *l, const struct free_way *from,
+		       struct free_way *to)
+{
+	for (uint32_t node = 1; node + 1 < from->n; node++)
+		for (uint32_t a = 0; a < l->naxes; a++)
+			to->q[node][l->axes[a]] = from->q[node][l->axes[a]] +
+				glp_get_col_prim(l->p, col(l, node, a));
+}
+
+/* -- More clearance ----------------------------------------------------------- */
+
+void free_widen(struct free_way *w, int rounds)
+{
+	double room = ROOM_FIRST_MM;
+
+	w->least_mm = try_way(w, 0);
+	for (int i = 0; i < rounds && room > ROOM_LEAST_MM && w->n > 2 &&
+	     !bar_interrupted(); i++) {
+		struct free_way next = *w;
+		char text[100];
+		struct lp l;
+
+		snprintf(text, sizeof(text), "free nodes: %u blocks, %.3f mm",
+			 w->n - 1, w->least_mm);
+		bar_show(w->j, (double)i / rounds, text);
+		begin(&l, w, room);
+		glp_set_obj_dir(l.p, GLP_MAX);
+		glp_set_obj_coef(l.p, l.least, 1);
+		if (solve(&l)) {
+			move_nodes(&l, w, &next);
+			next.least_mm = try_way(&next, w->least_mm);
+		}
+		glp_delete_prob(l.p);
+		next.queries = w->queries > next.queries ? w->queries :
+							   next.queries;
+		next.programs = w->programs;
+		if (next.least_mm > w->least_mm + 0.0005) {
+			room = next.least_mm - w->least_mm < 0.01 ? room / 2 :
+								    room;
+			*w = next;
+		} else {
+			room /= 3;
+		}
+	}
+}

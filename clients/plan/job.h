@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * job.h - what a run of edm-plan has loaded: machine, bodies, clearance
+ *
+ * Units: mm and degrees.  Threads: one; once loaded it is only read.
+ */
+#ifndef PLAN_JOB_H
+#define PLAN_JOB_H
+
+#include "prove.h"
+#include "route.h"
+
+struct job_options {
+	bool check, measure;
+	const char *part, *electrode, *machine_file;
+	const char *program;		/* NC code; of --measure, the poses */
+	const char *dialect;		/* NULL: by the file's name */
+	const char *output, *report, *picture, *view;	/* NULL: none */
+	double unit_mm;			/* of the meshes' numbers */
+	double part_at[3], electrode_at[3];
+	double clearance_mm;		/* < 0: from the machine file's gap */
+	double chord_mm;		/* < 0: guessed from the meshes */
+	double end_zone_mm;
+	double end[INTERP_NAXES];	/* --end-pose, with end_given */
+	bool end_given;
+	bool any_size, accept_flaws, quiet, times, on_path, no_pivot;
+};
+
+struct job {
+	const struct job_options *o;
+	struct machine_config config;
+	struct interp_kinematics kin;
+	struct mesh part, tool;
+	struct mesh_findings part_found, tool_found;
+	struct tree part_tree, tool_tree;
+	struct bodies bodies;
+	struct machine_motion motion;
+	double clear_mm;		/* asked for */
+	double chord_mm;		/* of both meshes, added to it */
+};
+
+/** job_load() - Return: 0; else a sysexits code, the reason on stderr. */
+int job_load(struct job *j, const struct job_options *o);
+
+void job_free(struct job *j);
+
+/** job_describe() - what was loaded, in words. */
+void job_describe(const struct job *j, FILE *f);
+
+/** job_say_pair() - the two triangles of @pair, in words. */
+void job_say_pair(const struct job *j, const struct near_pair *pair, FILE *f);
+
+/**
+ * job_inside() - is a shell of one body inside the other at @pose?
+ *
+ * Distances cannot tell.  @say: where, in words.  Return: 1, 0, or -1 if out of
+ * memory.
+ */
+int job_inside(const struct job *j, const struct pose *pose, char *say,
+	       size_t size);
+
+/** job_strays_mm() - what block @i of @w may be off, on any point. */
+double job_strays_mm(const struct route *w, uint32_t i, const struct block *b);
+
+/** job_block() - block @i of @w. */
+void job_block(const struct job *j, const struct route *w, uint32_t i,
+	       struct block *ret);
+
+/** job_moves_known() - does @w move only axes that the chain has?  Else it is
+ *  said on stderr. */
+bool job_moves_known(const struct job *j, const struct route *w,
+		     const char *path);
+
+/** bar_show() - one line on stderr, rewritten; nothing with --quiet. */
+void bar_show(const struct job *j, double share, const char *text);
+void bar_end(const struct job *j);
+
+/** bar_bar_interrupted() - was Ctrl-C pressed? */
+bool bar_interrupted(void);
+void bar_catch(void);
+void bar_forget(void);
+
+#endif /* PLAN_JOB_H */

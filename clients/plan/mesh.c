@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * mesh.c - questions about a mesh
+ */
+#include "mesh.h"
+
+#include "tree.h"
+#include "vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void mesh_free(struct mesh *m)
+{
+	free(m->vert);
+	free(m->tri);
+	*m = (struct mesh) { 0 };
+}
+
+void mesh_bounds(struct mesh *m)
+{
+	memcpy(m->min, m->vert[0], sizeof(m->min));
+	memcpy(m->max, m->vert[0], sizeof(m->max));
+	for (uint32_t i = 1; i < m->nverts; i++) {
+		for (int k = 0; k < 3; k++) {
+			m->min[k] = fmin(m->min[k], m->vert[i][k]);
+			m->max[k] = fmax(m->max[k], m->vert[i][k]);
+		}
+	}
+}
+
+double mesh_size_mm(const struct mesh *m)
+{
+	double size = 0;
+
+	for (int k = 0; k < 3; k++)
+		size = fmax(size, m->max[k] - m->min[k]);
+	return size;
+}
+
+/* The solid angle of each triangle, by A. van Oosterom and J. Strackee, 1983. */
+double mesh_winding(const struct mesh *m, const double p[3])
+{
+	double sum = 0;
+
+	for (uint32_t i = 0; i < m->ntris; i++) {
+		double a[3], b[3], c[3], x[3], na, nb, nc;
+
+		v_sub(mesh_corner(m, i, 0), p, a);
+		v_sub(mesh_corner(m, i, 1), p, b);
+		v_sub(mesh_corner(m, i, 2), p, c);
+		v_cross(b, c, x);
+		na = v_length(a);
+		nb = v_length(b);
+		nc = v_length(c);
+		sum += 2 * atan2(v_dot(a, x), na * nb * nc +
+				 v_dot(a, b) * nc + v_dot(a, c) * nb +
+				 v_dot(b, c) * na);
+	}
+	return sum / (4 * 3.14159265358979323846);
+}
+
+static uint32_t root_of(uint32_t *parent, uint32_t i)
+{
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
+	return i;
+}
+
+uint32_t mesh_shells(const struct mesh *m, uint32_t **ret)
+{
+	uint32_t *parent = malloc(m->nverts * sizeof(*parent)), n = 0;
+
+	*ret = parent;
+	if (!parent)
+		return 0;
+	for (uint32_t i = 0; i < m->nverts; i++)
+		parent[i] = i;
+	for (uint32_t i = 0; i < m->ntris; i++)
+		for (int k = 1; k < 3; k++)
+			parent[root_of(parent, m->tri[i][k])] =
+				root_of(parent, m->tri[i][0]);
+	for (uint32_t i = 0; i < m->nverts; i++)
+		if (parent[i] == i)
+			parent[n++] = i;
+	return n;
+}
+
+/* -- Does it cross itself? ------------------------------------------------------ */
+
+#define CROSSINGS_MAX	1000
+
+struct crossing {
+	const struct tree *t;
+	uint32_t n, *first;
+};
+
+static bool overlap(const struct box *a, const struct box *b)
+{
+	double between[3], r[3][3];
+
+	v_sub(b->centre, a->centre, between);
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			r[i][j] = fabs(v_dot(a->axis.m[i], b->axis.m[j]));
+	for (int i = 0; i < 3; i++) {
+		const double ra = a->half[i] + b->half[0] * r[i][0] +
+				  b->half[1] * r[i][1] + b->half[2] * r[i][2];
+		const double rb = b->half[i] + a->half[0] * r[0][i] +
+				  a->half[1] * r[1][i] + a->half[2] * r[2][i];
+
+		if (fabs(v_dot(a->axis.m[i], between)) > ra ||
+		    fabs(v_dot(b->axis.m[i], between)) > rb)
+			return false;
+	}
+	return true;
+}
+
+static bool share_corner(const struct mesh *m, uint32_t i, uint32_t j)
+{
+	for (int a = 0; a < 3; a++)
+		for (int b = 0; b < 3; b++)
+			if (memcmp(m->vert[m->tri[i][a]], m->vert[m->tri[j][b]],
+				   sizeof(*m->vert)) == 0)
+				return true;
+	return false;
+}
+
+static void cross_leaves(struct crossing *c, const struct tree_node *a,
+			 const struct tree_node *b)
+{
+	for (uint32_t i = a->first; i < a->first + a->n; i++) {
+		for (uint32_t j = b->first; j < b->first + b->n; j++) {
+			const uint32_t ti = c->t->id[i], tj = c->t->id[j];
+			double p[3], q[3];
+
+			if (i == j || share_corner(c->t->mesh, ti, tj) ||
+			    tri_distance(&c->t->tri[i], &c->t->tri[j], p, q) > 0)
+				continue;
+			if (c->n++ == 0) {
+				c->first[0] = ti;
+				c->first[1] = tj;
+			}
+		}
+	}
+}
+
+static void cross(struct crossing *c, const struct tree_node *a,
+		  const struct tree_node *b)
+{
+	const struct tree_node *node = c->t->node;
+
+	if (c->n >= CROSSINGS_MAX || (a != b && !overlap(&a->box, &b->box)))
+		return;
+	if (a->n && b->n) {
+		cross_leaves(c, a, b);
+	} else if (a == b) {
+		cross(c, &node[a->first], &node[a->first]);
+		cross(c, &node[a->first], &node[a->first + 1]);
+		cross(c, &node[a->first + 1], &node[a->first + 1]);
+	} else if (b->n || (!a->n && v_dot(a->box.half, a->box.half) >
+				     v_dot(b->box.half, b->box.half))) {
+		cross(c, &node[a->first], b);
+		cross(c, &node[a->first + 1], b);
+	} else {
+		cross(c, a, &node[b->first]);
+		cross(c, a, &node[b->first + 1]);
+	}
+}
+
+uint32_t mesh_crossings(const struct tree *t, uint32_t ret[2])
+{
+	struct crossing c = { .t = t, .first = ret };
+
+	cross(&c, &t->node[0], &t->node[0]);
+	return c.n;
+}

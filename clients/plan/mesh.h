@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * mesh.h - a body as triangles: read, mended, judged
+ *
+ * Corners run counter-clockwise seen from outside.  A message names a triangle
+ * by its number in the mended mesh, from 1, and by its corners.
+ *
+ * Units: mm.  Threads: a mesh is not changed once it is loaded; any thread may
+ * read it.
+ */
+#ifndef PLAN_MESH_H
+#define PLAN_MESH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define MESH_TRIS_MAX	20000000u
+
+struct mesh {
+	const char *name;		/* lent: the file's */
+	uint32_t nverts, ntris;
+	double (*vert)[3];
+	uint32_t (*tri)[3];
+	double min[3], max[3];
+};
+
+/* What was found in a file, and what was done about it. */
+struct mesh_findings {
+	uint32_t in_file;		/* triangles in the file */
+	uint32_t degenerate;		/* without area, removed */
+	uint32_t joined;		/* edges whose ends were moved together,
+					 * by a micrometre at most */
+	uint32_t turned;		/* triangles whose corners ran backward */
+	bool inverted;			/* the whole: inside was outside */
+	uint32_t open;			/* edges with one triangle only */
+	uint32_t open_tri;		/* a triangle with one of them */
+	uint32_t crossings;		/* pairs of triangles that cross */
+	uint32_t cross_tri[2];		/* such a pair */
+	double volume_mm3;
+	double grain_mm;		/* between two floats at the far corner */
+	double chord_mm;		/* a guess from the bends: the true
+					 * surface bulges out by this much */
+};
+
+struct mesh_load {
+	const char *path;
+	double unit_mm;			/* of the file's numbers */
+	double shift_mm[3];		/* added to every corner */
+};
+
+/**
+ * mesh_load() - read an STL file, binary or text, and mend what can be mended.
+ *
+ * Return: 0; else a sysexits code, and the reason is on stderr.
+ */
+int mesh_load(struct mesh *m, const struct mesh_load *from,
+	      struct mesh_findings *f);
+
+/** mesh_free() - what mesh_load() took; a zeroed mesh is fine. */
+void mesh_free(struct mesh *m);
+
+/** mesh_corner() - corner @k of triangle @i. */
+static inline const double *mesh_corner(const struct mesh *m, uint32_t i,
+					uint32_t k)
+{
+	return m->vert[m->tri[i][k]];
+}
+
+/** mesh_bounds() - fill min and max. */
+void mesh_bounds(struct mesh *m);
+
+/** mesh_size_mm() - the longest side of its box. */
+double mesh_size_mm(const struct mesh *m);
+
+/** mesh_winding() - how often @m goes round @p: 0 outside, 1 inside. */
+double mesh_winding(const struct mesh *m, const double p[3]);
+
+/**
+ * mesh_shells() - one vertex of each shell.
+ *
+ * @ret: allocated, for free().  Return: how many, or 0 if out of memory.
+ */
+uint32_t mesh_shells(const struct mesh *m, uint32_t **ret);
+
+struct tree;
+
+/**
+ * mesh_crossings() - pairs of triangles that cross and share no corner.
+ *
+ * Return: how many, counted up to 1000; @ret is the first.
+ */
+uint32_t mesh_crossings(const struct tree *t, uint32_t ret[2]);
+
+#endif /* PLAN_MESH_H */

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * motion.h - where a block of the machine's own axes takes the electrode
+ *
+ * A block is straight in the axes: every axis goes linearly with one time from
+ * 0 to 1.  Its points do not go straight where a rotary turns.
+ *
+ * The electrode's mesh is given in the machine's frame with all axes at 0; the
+ * part's in the frame of the work, which is the same one there.
+ *
+ * Units: mm; q is mm or, of a rotary, degrees.  Any thread.
+ */
+#ifndef PLAN_MOTION_H
+#define PLAN_MOTION_H
+
+#include "near.h"
+
+#include "interp/kinematics.h"
+
+struct machine_motion {
+	const struct interp_kinematics *kin;	/* lent */
+	double ball_mm[3], ball_r_mm;	/* holds the electrode, axes at 0 */
+};
+
+/* One block, with what bounds its points' ways. */
+struct block {
+	const struct machine_motion *m;	/* lent */
+	double from[INTERP_NAXES], to[INTERP_NAXES];
+	double reach_mm[INTERP_NAXES];	/* by joint of the chain: how far a unit
+					 * (mm, radian) of it moves any point */
+	double way_mm;			/* no point goes farther in the block */
+	double accel_mm;		/* no point's second derivative is more */
+};
+
+/** motion_init() - for an electrode. */
+void motion_init(struct machine_motion *m, const struct interp_kinematics *kin,
+		 const struct mesh *tool);
+
+/** block_init() - @from and @to are copied. */
+void block_init(struct block *b, const struct machine_motion *m,
+		const double from[INTERP_NAXES], const double to[INTERP_NAXES]);
+
+/** block_at() - the axes at time @t. */
+void block_at(const struct block *b, double t, double q[INTERP_NAXES]);
+
+/** block_pose() - the pose at @t; @rate may be NULL. */
+void block_pose(const struct block *b, double t, struct pose *pose,
+		struct pose_rate *rate);
+
+/** motion_pose() - the pose at axes @q. */
+void motion_pose(const struct machine_motion *m, const double q[INTERP_NAXES],
+		 struct pose *pose);
+
+/**
+ * motion_jacobian() - how the point @p (part's frame) of the electrode moves
+ * with each axis at @q: @ret[axis] per mm or degree; 0 for axes outside the
+ * chain.
+ */
+void motion_jacobian(const struct machine_motion *m,
+		     const double q[INTERP_NAXES], const double p[3],
+		     double ret[INTERP_NAXES][3]);
+
+/**
+ * motion_strays_mm() - no point moves farther than that if every axis is off by
+ * at most @off, anywhere on @b.
+ */
+double motion_strays_mm(const struct block *b, const double off[INTERP_NAXES]);
+
+/** motion_moves() - bit per axis that the chain has. */
+uint32_t motion_moves(const struct machine_motion *m);
+
+#endif /* PLAN_MOTION_H */

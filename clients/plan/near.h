@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * near.h - how near the electrode is to the part, and how far it may go on
+ *
+ * Both walk the two trees of boxes at once.  A pose takes places of the
+ * electrode's mesh to places of the part's.
+ *
+ * Units: mm; time is the block's parameter, 0 at its start and 1 at its end.
+ * Threads: any, each with its own struct near_pair.
+ */
+#ifndef PLAN_NEAR_H
+#define PLAN_NEAR_H
+
+#include "tree.h"
+
+#include <stdbool.h>
+
+struct pose {
+	struct rot r;			/* part = r electrode + t */
+	double t[3];
+};
+
+/* How the electrode moves at one moment: the point p (in the part's frame)
+ * at v + w x p, and no point of it bends its way by more than accel. */
+struct pose_rate {
+	double v[3], w[3];		/* per unit of time */
+	double accel;			/* for the whole of the block */
+};
+
+/* Two triangles and their nearest points, in the part's frame. */
+struct near_pair {
+	double mm;			/* 0: they meet */
+	uint32_t part, tool;		/* triangles, in the order of the trees */
+	double p[3], q[3];		/* on the part, on the electrode */
+};
+
+struct bodies {
+	const struct tree *part, *tool;
+};
+
+/**
+ * near_distance() - the least distance at @pose.
+ *
+ * @pair holds the triangles of the last answer, which are tried first, and
+ * gets the new one: begin with a zeroed one.
+ */
+double near_distance(const struct bodies *b, const struct pose *pose,
+		     struct near_pair *pair);
+
+/** near_below() - is it less than @mm?  Then @pair is such a pair. */
+bool near_below(const struct bodies *b, const struct pose *pose, double mm,
+		struct near_pair *pair);
+
+struct near_step {
+	double keep_mm;			/* what the way on is to keep */
+	double refuse_mm;		/* nearer than that here: refused;
+					 * > keep_mm */
+	double until;			/* no step longer than that */
+};
+
+/**
+ * near_step() - for how long no point comes nearer than keep_mm.
+ *
+ * Return: the time, > 0; or 0, and @pair is nearer than refuse_mm.  @pair is
+ * used as in near_distance(), and gets the pair that ends the step.
+ */
+double near_step(const struct bodies *b, const struct pose *pose,
+		 const struct pose_rate *rate, const struct near_step *s,
+		 struct near_pair *pair);
+
+/* Called with each pair; false ends the search. */
+typedef bool near_take(void *arg, const struct near_pair *pair);
+
+/** near_within() - all pairs of triangles nearer than @mm. */
+void near_within(const struct bodies *b, const struct pose *pose, double mm,
+		 near_take *take, void *arg);
+
+#endif /* PLAN_NEAR_H */

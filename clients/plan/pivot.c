@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * pivot.c - where the work, or the electrode in its holder, had better be
+ *
+ * A block is straight in the axes, so the way of the electrode on it depends on
+ * where the lines of the rotaries pass.  For the same poses seen from the part,
+ * the linear axes go linearly with a shift of the part by s and of the
+ * electrode by e.  So the shifts that make the axes' ways straightest, between a
+ * few nodes and by the share of the turn, are a problem of least squares with
+ * six unknowns.  A shift that changes nothing stays 0: large ones cost a little.
+ */
+#include "plan.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SHIFTS		6		/* three of the part, three of the tool */
+#define COST		1e-6		/* of a mm of shift, to a mm of bend */
+#define SHIFT_LEAST_MM	0.001
+
+struct nodes {
+	uint32_t n;
+	double (*q)[INTERP_NAXES];
+	double *share;		/* of the turn, 0 ... 1 */
+	double (*by)[SHIFTS][3];	/* linear axes, per mm of shift */
+};
+
+/* The tip seen from the work, if the part is moved by @s and the electrode by
+ * @e and the electrode keeps its place to the part. */
+static int place(const struct interp_kinematics *k, const double *q,
+		 const double s[SHIFTS], double ret[INTERP_NAXES])
+{
+	struct interp_kin_pose pose;
+	struct interp_kinematics tool = *k;
+	double tip[3];
+
+	memcpy(ret, q, INTERP_NAXES * sizeof(*ret));
+	/* Where the electrode's point goes that is to be at the old tip's. */
+	interp_kin_forward(k, q, &pose);
+	for (int i = 0; i < 3; i++) {
+		tool.tip_mm[i] = k->tip_mm[i] + s[3 + i];
+		tip[i] = pose.tip_mm[i] + s[i];
+	}
+	return interp_kin_place(&tool, tip, ret);
+}
+
+static int find_columns(const struct job *j, struct nodes *n)
+{
+	for (uint32_t i = 0; i < n->n; i++) {
+		for (int c = 0; c < SHIFTS; c++) {
+			double s[SHIFTS] = { 0 }, q[INTERP_NAXES];
+
+			s[c] = 1;
+			if (place(&j->kin, n->q[i], s, q))
+				return -EDOM;
+			for (int k = 0; k < 3; k++)
+				n->by[i][c][k] = q[k] - n->q[i][k];
+		}
+	}
+	return 0;
+}
+
+/* By all rotaries together. Return: false if none turns. */
+static bool find_shares(struct nodes *n)
+{
+	double sum = 0;
+
+	n->share[0] = 0;
+	for (uint32_t i = 1; i < n->n; i++) {
+		double turn = 0;
+
+		for (int k = INTERP_A; k <= INTERP_C; k++)
+			turn += fabs(n->q[i][k] - n->q[i - 1][k]);
+		sum += turn;
+		n->share[i] = sum;
+	}
+	for (uint32_t i = 0; i < n->n && sum > 0; i++)
+		n->share[i] /= sum;
+	return sum > 1;
+}
+
+/* -- Least squares --------------------------------------------------------------- */
+
+struct squares {
+	double a[SHIFTS][SHIFTS + 1];
+};
+
+/* @row . shifts + @rest is to be 0. */
+static void add_row(struct squares *s, const double row[SHIFTS], double rest)
+{
+	for (int i = 0; i < SHIFTS; i++) {
+		for (int k = 0; k < SHIFTS; k++)
+			s->a[i][k] += row[i] * row[k];
+		s->a[i][SHIFTS] -= row[i] * rest;
+	}
+}
+
+static void eliminate(struct squares *s, double ret[SHIFTS])
+{
+	for (int i = 0; i < SHIFTS; i++) {
+		int top = i;
+
+		for (int k = i + 1; k < SHIFTS; k++)
+			if (fabs(s->a[k][i]) > fabs(s->a[top][i]))
+				top = k;
+		for (int k = 0; k <= SHIFTS; k++) {
+			const double keep = s->a[i][k];
+
+			s->a[i][k] = s->a[top][k];
+			s->a[top][k] = keep;
+		}
+		for (int r = 0; r < SHIFTS; r++) {
+			const double f = s->a[r][i] / s->a[i][i];
+
+			for (int k = i; k <= SHIFTS && r != i; k++)
+				s->a[r][k] -= f * s->a[i][k];
+		}
+	}
+	for (int i = 0; i < SHIFTS; i++)
+		ret[i] = s->a[i][SHIFTS] / s->a[i][i];
+}
+
+/* The nodes between @from and @to on the line between those two. */
+static void add_block(struct squares *s, const struct nodes *n, uint32_t from,
+		      uint32_t to)
+{
+	const double turn = n->share[to] - n->share[from];
+
+	for (uint32_t i = from + 1; i < to && turn > 0; i++) {
+		const double t = (n->share[i] - n->share[from]) / turn;
+
+		for (int k = 0; k < 3; k++) {
+			double row[SHIFTS];
+
+			for (int c = 0; c < SHIFTS; c++)
+				row[c] = n->by[i][c][k] -
+					 (1 - t) * n->by[from][c][k] -
+					 t * n->by[to][c][k];
+			add_row(s, row, n->q[i][k] - (1 - t) * n->q[from][k] -
+					t * n->q[to][k]);
+		}
+	}
+}
+
+static void best_shift(const struct nodes *n, uint32_t blocks,
+		       double ret[SHIFTS])
+{
+	struct squares s = { { { 0 } } };
+	uint32_t from = 0;
+
+	for (int i = 0; i < SHIFTS; i++)
+		s.a[i][i] = COST * n->n;
+	for (uint32_t k = 1; k <= blocks; k++) {
+		uint32_t to = from + 1;
+
+		while (to + 1 < n->n &&
+		       n->share[to] < (double)k / blocks - 1e-9)
+			to++;
+		if (k == blocks)
+			to = n->n - 1;
+		add_block(&s, n, from, to);
+		from = to;
+	}
+	eliminate(&s, ret);
+}
+
+/* -- Trying a shift --------------------------------------------------------------- */
+
+static int shifted_body(const struct mesh *from, const double by[3],
+			struct mesh *ret, struct tree *tree)
+{
+	*ret = *from;
+	ret->vert = malloc(from->nverts * sizeof(*ret->vert));
+	if (!ret->vert)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < from->nverts; i++)
+		v_add(from->vert[i], by, ret->vert[i]);
+	mesh_bounds(ret);
+	return tree_build(tree, ret);
+}
+
+static int shifted_job(const struct job *j, const double s[SHIFTS],
+		       struct job *ret)
+{
+	*ret = *j;
+	ret->part_tree = ret->tool_tree = (struct tree) { 0 };
+	ret->tool.vert = NULL;
+	if (shifted_body(&j->part, s, &ret->part, &ret->part_tree) ||
+	    shifted_body(&j->tool, s + 3, &ret->tool, &ret->tool_tree))
+		return -ENOMEM;
+	ret->bodies = (struct bodies) { &ret->part_tree, &ret->tool_tree };
+	motion_init(&ret->motion, &ret->kin, &ret->tool);
+	return 0;
+}
+
+static void drop_job(struct job *j)
+{
+	tree_free(&j->part_tree);
+	tree_free(&j->tool_tree);
+	free(j->part.vert);
+	free(j->tool.vert);
+}
+
+static bool in_travel(const struct job *j, const struct plan_way *w)
+{
+	for (uint32_t i = 0; i < w->n; i++) {
+		for (int k = 0; k < INTERP_NAXES; k++) {
+			const struct interp_axis_limits *a =
+				&j->config.axes.axis[k];
+
+			if (w->q[i][k] < a->travel_min_mm ||
+			    w->q[i][k] > a->travel_max_mm)
+				return false;
+		}
+	}
+	return true;
+}
+
+static int try_shift(struct plan *p, const struct nodes *n,
+		     const double s[SHIFTS])
+{
+	static double q[FEWEST_NODES_MAX][INTERP_NAXES];
+	static struct plan trial;
+	struct job j;
+	int r = shifted_job(p->j, s, &j);
+
+	trial = (struct plan) { .j = p->j, .c = p->c };
+	for (uint32_t i = 0; i < n->n && r == 0; i++) {
+		r = place(&p->j->kin, n->q[i], s, q[i]);
+		free_round(&p->j->config, q[i]);
+	}
+	if (r == 0)
+		r = plan_over(&trial, &j, q,
+			      n->n);
+	p->queries += trial.queries;
+	if (r == 0 && (!p->pivot.way.how || trial.best.n < p->pivot.way.n ||
+		       (trial.best.n == p->pivot.way.n &&
+			trial.best.least_mm > p->pivot.way.least_mm))) {
+		p->pivot.way = trial.best;
+		memcpy(p->pivot.part_mm, s, sizeof(p->pivot.part_mm));
+		memcpy(p->pivot.tool_mm, s + 3, sizeof(p->pivot.tool_mm));
+		p->pivot.outside = !in_travel(p->j, &trial.best);
+	}
+	drop_job(&j);
+	return r;
+}
+
+static int try_all(struct plan *p, struct nodes *n)
+{
+	int r = 0;
+
+	if (!find_shares(n)) {
+		snprintf(p->pivot.why, sizeof(p->pivot.why),
+			 "no rotary turns: it does not matter");
+		return 0;
+	}
+	if (find_columns(p->j, n))
+		return 0;
+	for (uint32_t blocks = 1; blocks <= 2 && !bar_interrupted(); blocks++) {
+		double s[SHIFTS];
+
+		best_shift(n, blocks, s);
+		for (int i = 0; i < SHIFTS; i++)
+			s[i] = round(s[i] / SHIFT_LEAST_MM) * SHIFT_LEAST_MM;
+		r = try_shift(p, n, s);
+		if (r == -ENOMEM)
+			return r;
+	}
+	return 0;
+}
+
+int plan_pivot(struct plan *p)
+{
+	const uint32_t all = p->last - p->first + 1;
+	struct nodes n = { .n = all < FEWEST_NODES_MAX ? all :
+							 FEWEST_NODES_MAX };
+	int r = -ENOMEM;
+
+	if (p->c.zone_mm > 0)
+		return 0;
+	n.q = malloc(n.n * sizeof(*n.q));
+	n.share = malloc(n.n * sizeof(*n.share));
+	n.by = malloc(n.n * sizeof(*n.by));
+	if (n.q && n.share && n.by) {
+		for (uint32_t i = 0; i < n.n; i++)
+			memcpy(n.q[i], p->dense.node[p->first +
+			       (uint32_t)((uint64_t)i * (all - 1) /
+					  (n.n - 1))].q, sizeof(n.q[i]));
+		r = try_all(p, &n);
+	}
+	free(n.q);
+	free(n.share);
+	free(n.by);
+	return r;
+}

@@ -1,0 +1,429 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * plan.c - from a dense program to the fewest blocks, in the order of trust
+ *
+ * The dense way is proved or refused; then greedy, fewest over its nodes, nodes
+ * off it, a better pivot.  Ctrl-C ends the search, and the best so far is written.
+ */
+#include "plan.h"
+
+#include "check.h"
+#include "pullout.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+#include <time.h>
+
+#define WIDEN_ROUNDS	12
+#define TOUCH_MM	0.01		/* less than that is as good as contact */
+
+static double now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+/* -- The way in of a program --------------------------------------------------- */
+
+/* From the last rapid before the first cut to the last cut. */
+static int find_way_in(struct plan *p)
+{
+	const struct route *w = &p->dense;
+
+	p->first = p->last = 0;
+	for (uint32_t i = 1; i < w->n; i++) {
+		if (w->node[i].rapid)
+			continue;
+		if (p->last == 0)
+			p->first = i - 1;
+		else if (p->last != i - 1)
+			break;
+		p->last = i;
+	}
+	for (uint32_t i = p->last + 1; i < w->n && p->last; i++) {
+		if (w->node[i].rapid)
+			continue;
+		fprintf(stderr, "%s:%u: error: a second cut, after it was "
+			"positioned; a program of one way in\n",
+			p->j->o->program, w->node[i].line);
+		return EX_DATAERR;
+	}
+	if (p->last > 0)
+		return 0;
+	fprintf(stderr, "%s: error: no cut in it; a program of one way in, "
+		"as G1 or G6.2\n", p->j->o->program);
+	return EX_DATAERR;
+}
+
+static void take_nodes(const struct plan *p, double (*q)[INTERP_NAXES],
+		       uint32_t *n)
+{
+	const uint32_t all = p->last - p->first + 1;
+
+	*n = all < FEWEST_NODES_MAX ? all : FEWEST_NODES_MAX;
+	for (uint32_t i = 0; i < *n; i++) {
+		const uint32_t at = p->first + (uint32_t)((uint64_t)i *
+				    (all - 1) / (*n - 1));
+
+		memcpy(q[i], p->dense.node[at].q, sizeof(q[i]));
+		free_round(&p->j->config, q[i]);
+	}
+}
+
+static void say_contact(const struct plan *p, const struct check_result *r)
+{
+	const struct route_node *n = &p->dense.node[r->block + 1];
+
+	fprintf(stderr, "%s:%u: the program is not free itself: %.4f mm are "
+		"left of %.4f, %.1f %% along the block\n", p->j->o->program ?
+		p->j->o->program : "the way found", n->line, r->pair.mm,
+		r->wanted_mm, 100 * r->t);
+	job_say_pair(p->j, &r->pair, stderr);
+}
+
+/* An end pose that is too near is a mistake in electrode or program. */
+int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
+{
+	const double wanted = p->j->clear_mm + p->j->chord_mm;
+	struct near_pair pair = { 0 };
+	struct pose pose;
+	char say[80];
+
+	motion_pose(&p->j->motion, end, &pose);
+	p->end_mm = near_distance(&p->j->bodies, &pose, &pair);
+	if (p->end_mm > 0 && job_inside(p->j, &pose, say, sizeof(say)) == 1) {
+		fprintf(stderr, "edm-plan: end pose: %s; an end pose in the "
+			"cavity\n", say);
+		return 1;
+	}
+	if (p->end_mm >= wanted + PROVE_EPS_MM ||
+	    (p->end_mm > 0 && p->j->o->end_zone_mm > 0))
+		return 0;
+	fprintf(stderr, "edm-plan: end pose: %.4f mm are left of %.4f; an "
+		"electrode thinner all round by %.3f mm, --clearance, or "
+		"--end-zone to come nearer at the end\n", p->end_mm, wanted,
+		wanted - p->end_mm);
+	job_say_pair(p->j, &pair, stderr);
+	return 1;
+}
+
+/* Without one the search may still find a way round. */
+static int check_dense(struct plan *p)
+{
+	struct check_result r;
+	int rc;
+
+	rc = check_way(p->j, &p->dense, &p->c, &r);
+	if (rc)
+		return rc == -ENOMEM ? EX_OSERR : 1;
+	p->queries += r.queries;
+	p->dense_least_mm = r.least_mm;
+	if (r.ok)
+		return 0;
+	if (r.inside) {
+		fprintf(stderr, "edm-plan: the way begins wrong: %s\n", r.say);
+		return 1;
+	}
+	say_contact(p, &r);
+	if (r.block < p->first || r.block >= p->last || r.pair.mm <= 0)
+		return 1;
+	fprintf(stderr, "edm-plan: looking for a way round that place\n");
+	return 0;
+}
+
+/* -- Plans ------------------------------------------------------------------- */
+
+void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries)
+{
+	double lattice[INTERP_NAXES];
+
+	route_lattice(&j->config, lattice);
+	w->least_mm = DBL_MAX;
+	for (uint32_t i = 0; i + 1 < w->n; i++) {
+		struct proof p = { 0 };
+		struct block b;
+
+		block_init(&b, &j->motion, w->q[i], w->q[i + 1]);
+		w->proved_mm[i] = prove_least(&j->bodies, &b, &p) -
+				  motion_strays_mm(&b, lattice) - j->chord_mm;
+		w->t[i] = p.t;
+		w->pair[i] = p.pair;
+		*queries += p.queries;
+		w->least_mm = fmin(w->least_mm, w->proved_mm[i]);
+	}
+}
+
+static void take_way(struct plan_way *w, const char *how,
+		     const struct fewest *f, const uint32_t *at, uint32_t n)
+{
+	w->how = how;
+	w->n = n + 1;
+	for (uint32_t i = 0; i <= n; i++)
+		memcpy(w->q[i], f->q[at[i]], sizeof(w->q[i]));
+}
+
+static void from_free(struct plan_way *w, const struct free_way *f,
+		      const struct job *j)
+{
+	w->how = "free nodes";
+	w->n = f->n;
+	memcpy(w->q, f->q, f->n * sizeof(*w->q));
+	for (uint32_t i = 1; i + 1 < w->n; i++)
+		free_round(&j->config, w->q[i]);
+}
+
+/* Is @a to be written rather than @b? */
+static bool is_better(const struct plan_way *a, const struct plan_way *b,
+		      double mm)
+{
+	if (!a->how || a->least_mm < mm)
+		return false;
+	if (!b->how || a->n != b->n)
+		return !b->how || a->n < b->n;
+	return a->least_mm > b->least_mm;
+}
+
+/* Along the nodes @at, then off them. Return: is it to be written? */
+static bool try_free(struct plan *p, const struct fewest *f,
+		     const uint32_t *at)
+{
+	static struct plan_way way;
+	struct free_way w;
+	uint32_t n = 0;
+
+	while (at[n] != f->n - 1)
+		n++;
+	take_way(&way, NULL, f, at, n);
+	if (free_init(&w, f->j, way.q, way.n))
+		return false;
+	free_widen(&w, WIDEN_ROUNDS);
+	p->queries += w.queries;
+	from_free(&way, &w, f->j);
+	plan_prove(f->j, &way, &p->queries);
+	if (!is_better(&way, &p->best, f->j->clear_mm))
+		return false;
+	p->best = way;
+	return true;
+}
+
+/*
+ * A way of fewer blocks that only just does not touch is where nodes off the
+ * path begin; linear programs then find it room.  Where that does not come to
+ * the clearance, the way that has it gets more.
+ */
+static void plan_free(struct plan *p, struct fewest *f, const uint32_t *best)
+{
+	const double touch_mm = TOUCH_MM - f->j->chord_mm;
+	const uint32_t most = p->best.n - 1;
+	uint32_t at[FEWEST_NODES_MAX];
+	uint32_t n = p->c.zone_mm > 0 || most < 2 ? 0 :
+		     fewest_search(f, touch_mm, most - 1, at);
+
+	for (; n && n < most && !bar_interrupted(); n++) {
+		fewest_widest(f, touch_mm, n, at);
+		if (try_free(p, f, at))
+			return;
+	}
+	if (!(p->c.zone_mm > 0) && !bar_interrupted())
+		try_free(p, f, best);
+}
+
+int plan_over(struct plan *p, const struct job *j,
+	      double (*q)[INTERP_NAXES], uint32_t n)
+{
+	uint32_t at[FEWEST_NODES_MAX], blocks;
+	struct fewest f;
+
+	if (fewest_init(&f, j, q, n))
+		return -ENOMEM;
+	f.c = &p->c;
+	blocks = fewest_greedy(&f, j->clear_mm, at);
+	if (blocks && blocks != UINT32_MAX) {
+		take_way(&p->greedy, "greedy", &f, at, blocks);
+		plan_prove(j, &p->greedy, &p->queries);
+		p->best = p->greedy;
+	}
+	blocks = bar_interrupted() ? 0 :
+		 fewest_search(&f, j->clear_mm, n - 1, at);
+	if (blocks) {
+		if (!(p->c.zone_mm > 0))
+			fewest_widest(&f, j->clear_mm, blocks, at);
+		take_way(&p->fewest, "fewest over nodes", &f, at, blocks);
+		plan_prove(j, &p->fewest, &p->queries);
+		if (p->c.zone_mm > 0 ||
+		    is_better(&p->fewest, &p->best, j->clear_mm))
+			p->best = p->fewest;
+	}
+	if (blocks && !j->o->on_path)
+		plan_free(p, &f, at);
+	p->queries += f.queries;
+	fewest_free(&f);
+	return p->best.how ? 0 : 1;
+}
+
+/* -- Words -------------------------------------------------------------------- */
+
+static void say_way(const char *name, const struct plan_way *w)
+{
+	if (!w->how)
+		return;
+	printf("%-10s %u blocks, proved %.4f mm (%s)\n", name, w->n - 1,
+	       w->least_mm, w->how);
+	if (w->time_pass_s > 0)
+		printf("           %.1f min, %.1f min with a stop at each node\n",
+		       w->time_pass_s / 60, w->time_stop_s / 60);
+}
+
+static void say_pivot(const struct plan_pivot *v)
+{
+	if (!v->way.how) {
+		if (v->why[0])
+			printf("pivot      %s\n", v->why);
+		return;
+	}
+	printf("pivot      %u blocks, proved %.4f mm, with the work moved by "
+	       "%.3f %.3f %.3f mm\n           and the electrode in its holder "
+	       "by %.3f %.3f %.3f mm%s\n", v->way.n - 1, v->way.least_mm,
+	       v->part_mm[0], v->part_mm[1], v->part_mm[2], v->tool_mm[0],
+	       v->tool_mm[1], v->tool_mm[2],
+	       v->outside ? "; beyond this machine's travel" : "");
+}
+
+static void describe(const struct plan *p, FILE *out)
+{
+	job_describe(p->j, out);
+	printf("end pose   %.4f mm are left\n", p->end_mm);
+	printf("dense      %u blocks, least seen %.4f mm\n", p->last - p->first,
+	       p->dense_least_mm);
+	if (p->dense_pass_s > 0)
+		printf("           %.1f min, %.1f min with a stop at each node\n",
+		       p->dense_pass_s / 60, p->dense_stop_s / 60);
+	say_way("greedy", &p->greedy);
+	say_way("fewest", &p->fewest);
+	say_way("written", &p->best);
+	say_pivot(&p->pivot);
+	printf("%-10s %llu queries, %.1f s\n", p->stopped ? "stopped" : "planned",
+	       (unsigned long long)p->queries, p->planned_s);
+}
+
+/* -- Writing ------------------------------------------------------------------- */
+
+/* What stands in the text is read back and proved, not what was computed. */
+static int prove_text(struct plan *p, const char *text)
+{
+	const struct route_text from = { .path = "planned program",
+				       .text = text };
+	struct check_result r;
+	struct route w;
+	int rc = route_read(&w, &p->j->config, &from);
+
+	if (rc)
+		return EX_SOFTWARE;
+	rc = check_way(p->j, &w, &p->c, &r);
+	route_free(&w);
+	p->queries += r.queries;
+	if (rc == 0 && r.ok)
+		return 0;
+	if (rc == -EINTR)
+		return 1;
+	fprintf(stderr, "edm-plan: what would be written is not free: %.4f mm "
+		"of %.4f; nothing is written\n", r.pair.mm, r.wanted_mm);
+	return EX_SOFTWARE;
+}
+
+static int write_all(struct plan *p)
+{
+	char *text = text_write(p, &p->best);
+	int r;
+
+	if (!text)
+		return EX_OSERR;
+	bar_forget();
+	r = prove_text(p, text);
+	if (r == 0 && p->j->o->times)
+		r = times_ask(p);
+	if (r == 0)
+		r = text_put(p->j->o->output, text);
+	free(text);
+	if (r == 0)
+		r = report_put(p);
+	if (r == 0)
+		r = picture_put(p);
+	if (r == 0)
+		r = view_put(p);
+	if (r == 0 && !p->j->o->quiet)
+		describe(p, stdout);
+	return r;
+}
+
+static int plan_nodes(struct plan *p)
+{
+	static double q[FEWEST_NODES_MAX][INTERP_NAXES];
+	uint32_t n;
+	int r;
+
+	take_nodes(p, q, &n);
+	r = plan_over(p, p->j, q, n);
+	if (r == -ENOMEM)
+		return EX_OSERR;
+	if (r) {
+		fprintf(stderr, "edm-plan: no way over the nodes of the program "
+			"keeps %.3f mm%s\n", p->j->clear_mm,
+			bar_interrupted() ? ": interrupted" : "");
+		return 1;
+	}
+	if (!p->j->o->no_pivot && !bar_interrupted())
+		r = plan_pivot(p) == -ENOMEM ? EX_OSERR : 0;
+	return r;
+}
+
+static int load_way(struct plan *p)
+{
+	const struct route_text from = { .path = p->j->o->program,
+				       .dialect = p->j->o->dialect };
+	int r;
+
+	if (p->j->o->end_given)
+		r = pullout_way(p);
+	else
+		r = route_read(&p->dense, &p->j->config, &from);
+	if (r)
+		return r;
+	if (!p->j->o->end_given &&
+	    !job_moves_known(p->j, &p->dense, p->j->o->program))
+		return EX_DATAERR;
+	return find_way_in(p);
+}
+
+int plan_program(struct job *j)
+{
+	static struct plan p;
+	int r;
+
+	p.j = j;
+	p.seconds = now_s();
+	r = load_way(&p);
+	if (r == 0)
+		r = check_clearance(j, p.dense.node[p.last].q, &p.c);
+	if (r == 0)
+		r = plan_check_end(&p, p.dense.node[p.last].q);
+	if (r == 0)
+		r = check_dense(&p);
+	if (r == 0)
+		r = plan_nodes(&p);
+	p.stopped = bar_interrupted();
+	p.planned_s = now_s() - p.seconds;
+	bar_end(j);
+	if (r == 0)
+		r = write_all(&p);
+	if (r == EX_OSERR)
+		fprintf(stderr, "edm-plan: out of memory\n");
+	route_free(&p.dense);
+	return r;
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * plan.h - from a dense program or an end pose to the fewest blocks
+ *
+ * Units: mm and degrees; machine coordinates.  Threads: one.
+ */
+#ifndef PLAN_PLAN_H
+#define PLAN_PLAN_H
+
+#include "fewest.h"
+#include "free.h"
+
+/* A way in, as it is written and proved. */
+struct plan_way {
+	const char *how;		/* "greedy", "fewest", ...; NULL: none */
+	uint32_t n;			/* nodes */
+	double q[FEWEST_NODES_MAX][INTERP_NAXES];
+	double proved_mm[FEWEST_NODES_MAX];	/* of each block; what strays
+						 * and the chords taken off */
+	double t[FEWEST_NODES_MAX];	/* where it is nearest */
+	struct near_pair pair[FEWEST_NODES_MAX];
+	double least_mm;		/* of all blocks, proved */
+	double time_pass_s, time_stop_s;	/* by edmsim; 0: not asked */
+};
+
+/* A better place of the work, or of the electrode in its holder. */
+struct plan_pivot {
+	double part_mm[3], tool_mm[3];	/* shifts */
+	struct plan_way way;
+	bool outside;			/* an axis would leave its travel */
+	char why[120];
+};
+
+struct plan {
+	struct job *j;
+	struct route dense;		/* as given, with what leads to it */
+	uint32_t first, last;		/* its nodes of the way in */
+	struct clearance c;
+	double end_mm;			/* distance at the end pose */
+	double dense_least_mm;		/* least seen along the dense way */
+	double dense_pass_s, dense_stop_s;
+	struct plan_way greedy, fewest, best;
+	struct plan_pivot pivot;
+	uint64_t queries;
+	double seconds, planned_s;	/* when it began; how long it took */
+	bool stopped;			/* by Ctrl-C */
+};
+
+/** plan_program() - plan, prove, write. Return: 0, 1 no way; else sysexits. */
+int plan_program(struct job *j);
+
+/** plan_check_end() - is @end a pose to be reached?  It fills end_mm. Return: 0;
+ *  1, and the reason is on stderr. */
+int plan_check_end(struct plan *p, const double end[INTERP_NAXES]);
+
+/** plan_over() - the fewest blocks over the nodes @q; then, if @free, with
+ *  inner nodes off them. Return: 0, 1 none, -ENOMEM. */
+int plan_over(struct plan *p, const struct job *j,
+	      double (*q)[INTERP_NAXES], uint32_t n);
+
+/** plan_prove() - fill proved_mm and what belongs to it. */
+void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries);
+
+/** plan_pivot() - look for a better place of the work. */
+int plan_pivot(struct plan *p);
+
+/* -- What is written ------------------------------------------------------------ */
+
+/** text_write() - the way in as NC code, @text allocated; NULL if out of memory. */
+char *text_write(const struct plan *p, const struct plan_way *w);
+
+/** text_put() - write @text to @path, - is standard output. Return: 0 or a
+ *  sysexits code, and the reason is on stderr. */
+int text_put(const char *path, const char *text);
+
+/** report_put(), picture_put(), view_put() - the files asked for. */
+int report_put(const struct plan *p);
+int picture_put(const struct plan *p);
+int view_put(const struct plan *p);
+
+/** times_ask() - how long each way takes, by edmsim. Return: 0 or sysexits. */
+int times_ask(struct plan *p);
+
+#endif /* PLAN_PLAN_H */

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * prove.h - that a block keeps a clearance, or where it does not
+ *
+ * Conservative advancement: from each pose as far as no point can come nearer,
+ * until the end.  Nothing is sampled.
+ *
+ * Units: mm; time 0..1 of the block.  Any thread.
+ * Source: B. Mirtich, Impulse-based dynamic simulation of rigid body systems,
+ * 1996; the directed bound per pair of boxes is this project's (docs/plan.md).
+ */
+#ifndef PLAN_PROVE_H
+#define PLAN_PROVE_H
+
+#include "motion.h"
+
+/* A pose is refused if it is nearer than the clearance plus this; so a way that
+ * is not refused goes on by a step that is never arbitrarily short. */
+#define PROVE_EPS_MM	0.002
+
+/*
+ * What is to be kept.  Within zone_mm of the end pose, counted by the farthest
+ * way of any point of the electrode, the clearance falls linearly to end_mm.
+ */
+struct clearance {
+	double mm;
+	double zone_mm;			/* 0: it does not fall */
+	double end_mm;			/* at the end pose itself */
+	double corner[8][3];		/* of a box round the electrode: its mesh */
+	double end[8][3];		/* and at the end pose: the part's frame */
+};
+
+struct proof {
+	double least_mm;		/* the least distance that was seen */
+	double t;			/* where */
+	struct near_pair pair;		/* of it; begin with a zeroed one */
+	uint64_t queries;		/* walks of the trees, added to */
+};
+
+/** clearance_init() - of one value; clearance_end() lets it fall. */
+void clearance_init(struct clearance *c, double mm);
+void clearance_end(struct clearance *c, const struct mesh *tool,
+		   const struct pose *end, double zone_mm, double end_mm);
+
+/** clearance_at() - what is to be kept at @pose, and as long as no point goes
+ *  farther than @way_mm from there. */
+double clearance_at(const struct clearance *c, const struct pose *pose,
+		    double way_mm);
+
+/**
+ * prove_block() - that no point of it comes nearer than @c.
+ *
+ * Return: whether.  If not, @p has the first time, within a step of the proof,
+ * at which the distance is less than the clearance + PROVE_EPS_MM.
+ */
+bool prove_block(const struct bodies *bodies, const struct block *b,
+		 const struct clearance *c, struct proof *p);
+
+/**
+ * prove_refuted() - do a few poses show that it does not keep @c?
+ *
+ * Quick, and no proof of the contrary.
+ */
+bool prove_refuted(const struct bodies *bodies, const struct block *b,
+		   const struct clearance *c, struct proof *p);
+
+/**
+ * prove_least() - the largest clearance that can be proved, within 2 um.
+ *
+ * Return: it, proved; less than 0 if the electrode touches.  @p tells where the
+ * block is nearest.
+ */
+double prove_least(const struct bodies *bodies, const struct block *b,
+		   struct proof *p);
+
+#endif /* PLAN_PROVE_H */

@@ -1,0 +1,374 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * pullout.c - pull the electrode out of the cavity, step by step
+ *
+ * Points of the electrode are each led outward by the air of the cavity.  What
+ * all axes do in a step is a linear program: as much of that as goes, and toward
+ * the middle of the cavity, with every near pair of triangles kept apart.  A step
+ * counts once it is proved.
+ */
+#include "pullout.h"
+
+#include "air.h"
+#include "check.h"
+#include "near_set.h"
+
+#include <errno.h>
+#include <float.h>
+#include <glpk.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sysexits.h>
+
+#define POINTS		150		/* of the electrode that are led */
+#define STEPS_MAX	400
+#define OUT_MM		5.0		/* so far from the part it is out */
+#define ROOM_MM		2.0		/* of a step */
+#define ROOM_LEAST_MM	0.02
+#define MIDDLE_MM	0.4		/* more clearance than that is not
+					 * looked for */
+#define MIDDLE_WORTH	4.0		/* of it, to a mm outward */
+
+struct pull {
+	const struct job *j;
+	struct air air;
+	double keep_mm;
+	double q[INTERP_NAXES];
+	double left_mm;			/* to the open, mean of the points */
+	double reach_mm[INTERP_NAXES];
+	uint32_t axes[INTERP_NAXES], naxes;
+	struct route out;			/* nodes, from the end outward */
+	struct near_pair nearest;
+};
+
+static const double *point(const struct pull *p, uint32_t i)
+{
+	const struct mesh *m = &p->j->tool;
+
+	return m->vert[(uint64_t)i * m->nverts / POINTS];
+}
+
+/* How each axis leads the points outward, per unit. Return: what is left. */
+static double outward(const struct pull *p, const double q[INTERP_NAXES],
+		      double ret[INTERP_NAXES])
+{
+	struct pose pose;
+	double left = 0;
+
+	memset(ret, 0, INTERP_NAXES * sizeof(*ret));
+	motion_pose(&p->j->motion, q, &pose);
+	for (uint32_t i = 0; i < POINTS; i++) {
+		double at[3], to[3], jac[INTERP_NAXES][3];
+		double way;
+
+		rot_apply(&pose.r, point(p, i), at);
+		v_add(at, pose.t, at);
+		way = air_way(&p->air, at, to);
+		if (!(way > 0))
+			continue;
+		left += way / POINTS;
+		motion_jacobian(&p->j->motion, q, at, jac);
+		for (int k = 0; k < INTERP_NAXES; k++)
+			ret[k] += v_dot(jac[k], to) / POINTS;
+	}
+	return left;
+}
+
+static void add_limits(const struct pull *p, glp_prob *lp, double room_mm)
+{
+	const struct machine_config *c = &p->j->config;
+
+	glp_add_cols(lp, (int)p->naxes + 1);
+	for (uint32_t a = 0; a < p->naxes; a++) {
+		const uint32_t x = p->axes[a];
+		const double room = room_mm / p->reach_mm[x];
+		const double low = fmax(-room, c->axes.axis[x].travel_min_mm -
+					       p->q[x]);
+		const double high = fmin(room, c->axes.axis[x].travel_max_mm -
+					       p->q[x]);
+
+		glp_set_col_bnds(lp, (int)a + 1, low < high ? GLP_DB : GLP_FX,
+				 low < high ? low : 0, high);
+	}
+}
+
+static void add_pairs(const struct pull *p, glp_prob *lp,
+		      const struct near_set *set)
+{
+	for (uint32_t i = 0; i < set->n; i++) {
+		const struct near_pair *x = &set->pair[i];
+		double jac[INTERP_NAXES][3], n[3], value[INTERP_NAXES + 2];
+		int index[INTERP_NAXES + 2], row;
+
+		if (!(x->mm > 1e-9))
+			continue;
+		v_sub(x->q, x->p, n);
+		motion_jacobian(&p->j->motion, p->q, x->q, jac);
+		for (uint32_t a = 0; a < p->naxes; a++) {
+			index[a + 1] = (int)a + 1;
+			value[a + 1] = v_dot(n, jac[p->axes[a]]) / x->mm;
+		}
+		index[p->naxes + 1] = (int)p->naxes + 1;
+		value[p->naxes + 1] = -1;
+		row = glp_add_rows(lp, 1);
+		glp_set_row_bnds(lp, row, GLP_LO, -x->mm, 0);
+		glp_set_mat_row(lp, row, (int)p->naxes + 1, index, value);
+	}
+}
+
+static bool step_to(const struct pull *p, double room_mm,
+		    const double lead[INTERP_NAXES], double to[INTERP_NAXES])
+{
+	static struct near_set set = { .max = NEAR_SET_MAX };
+	glp_prob *lp = glp_create_prob();
+	struct near_pair pair = p->nearest;
+	struct pose pose;
+	double mm, keep;
+	glp_smcp how;
+	bool ok;
+
+	motion_pose(&p->j->motion, p->q, &pose);
+	mm = near_distance(&p->j->bodies, &pose, &pair);
+	near_set_collect(&p->j->bodies, &pose, mm, 1.0, &set);
+	keep = fmin(p->keep_mm + 0.01, mm);
+	glp_term_out(GLP_OFF);
+	glp_set_obj_dir(lp, GLP_MAX);
+	add_limits(p, lp, room_mm);
+	for (uint32_t a = 0; a < p->naxes; a++)
+		glp_set_obj_coef(lp, (int)a + 1, lead[p->axes[a]]);
+	glp_set_obj_coef(lp, (int)p->naxes + 1, MIDDLE_WORTH * room_mm /
+						ROOM_MM);
+	glp_set_col_bnds(lp, (int)p->naxes + 1, GLP_DB, keep,
+			 keep + MIDDLE_MM);
+	add_pairs(p, lp, &set);
+	glp_init_smcp(&how);
+	how.msg_lev = GLP_MSG_OFF;
+	how.presolve = GLP_ON;
+	ok = glp_simplex(lp, &how) == 0 && glp_get_status(lp) == GLP_OPT;
+	memcpy(to, p->q, sizeof(p->q));
+	for (uint32_t a = 0; a < p->naxes && ok; a++)
+		to[p->axes[a]] += glp_get_col_prim(lp, (int)a + 1);
+	glp_delete_prob(lp);
+	free_round(&p->j->config, to);
+	return ok;
+}
+
+static bool is_free(struct pull *p, const double from[INTERP_NAXES],
+		    const double to[INTERP_NAXES], const struct clearance *c)
+{
+	struct proof proof = { .pair = p->nearest };
+	struct clearance with = *c;
+	double lattice[INTERP_NAXES], more;
+	struct block b;
+	bool ok;
+
+	/* Inward, as it will be gone. */
+	block_init(&b, &p->j->motion, to, from);
+	route_lattice(&p->j->config, lattice);
+	more = motion_strays_mm(&b, lattice) + p->j->chord_mm;
+	with.mm += more;
+	with.end_mm += more;
+	ok = prove_block(&p->j->bodies, &b, &with, &proof);
+	p->nearest = proof.pair;
+	return ok;
+}
+
+static int add_node(struct pull *p, bool rapid)
+{
+	struct route_node n = { .rapid = rapid, .feed_mm_s = 0.5 };
+
+	memcpy(n.q, p->q, sizeof(n.q));
+	return route_add(&p->out, &n);
+}
+
+/* No point of it is in the part's box, or it is far from the part. */
+static bool is_out(struct pull *p)
+{
+	const struct mesh *m = &p->j->part;
+	bool within = false;
+	struct pose pose;
+
+	motion_pose(&p->j->motion, p->q, &pose);
+	if (near_distance(&p->j->bodies, &pose, &p->nearest) > OUT_MM)
+		return true;
+	for (uint32_t i = 0; i < POINTS && !within; i++) {
+		double at[3];
+
+		rot_apply(&pose.r, point(p, i), at);
+		v_add(at, pose.t, at);
+		within = at[0] > m->min[0] && at[0] < m->max[0] &&
+			 at[1] > m->min[1] && at[1] < m->max[1] &&
+			 at[2] > m->min[2] && at[2] < m->max[2];
+	}
+	return !within;
+}
+
+/* Return: 0 out, 1 stuck, -ENOMEM. */
+static int pull(struct pull *p, const struct clearance *c)
+{
+	double lead[INTERP_NAXES], room = ROOM_MM, first;
+
+	p->left_mm = first = outward(p, p->q, lead);
+	if (add_node(p, false))
+		return -ENOMEM;
+	for (int i = 0; i < STEPS_MAX && !bar_interrupted(); i++) {
+		double to[INTERP_NAXES], next[INTERP_NAXES], left;
+		char text[80];
+
+		if (!(p->left_mm > 0) || is_out(p))
+			return 0;
+		snprintf(text, sizeof(text), "pulling out: %.1f mm of %.1f "
+			 "left", p->left_mm, first);
+		bar_show(p->j, 1 - p->left_mm / first, text);
+		if (room < ROOM_LEAST_MM)
+			return 1;
+		left = step_to(p, room, lead, to) ? outward(p, to, next) :
+						    DBL_MAX;
+		if (left > p->left_mm + 0.02 || !is_free(p, p->q, to, c)) {
+			room /= 2;
+			continue;
+		}
+		/* Toward the middle is good, too, but not for ever. */
+		room = left > p->left_mm - 0.005 ? room * 0.7 :
+						   fmin(room * 1.5, ROOM_MM);
+		memcpy(p->q, to, sizeof(p->q));
+		memcpy(lead, next, sizeof(lead));
+		p->left_mm = left;
+		if (add_node(p, false))
+			return -ENOMEM;
+	}
+	return 1;
+}
+
+static void find_axes(struct pull *p)
+{
+	const struct job *j = p->j;
+	struct block b;
+
+	block_init(&b, &j->motion, p->q, p->q);
+	for (uint32_t i = 0; i < INTERP_NAXES; i++)
+		if (motion_moves(&j->motion) & j->config.axes.present & 1u << i)
+			p->axes[p->naxes++] = i;
+	for (uint32_t i = 0; i < j->kin.njoints; i++) {
+		const enum interp_axis a = j->kin.joint[i].axis;
+
+		p->reach_mm[a] = b.reach_mm[i] * (interp_axis_is_rotary(a) ?
+						  PLAN_RADIAN : 1);
+	}
+}
+
+static void say_stuck(const struct pull *p)
+{
+	fprintf(stderr, "edm-plan: no way out found%s: %.2f mm are left of the "
+		"way through the cavity, at",
+		bar_interrupted() ? " before it was interrupted" : "",
+		p->left_mm);
+	for (uint32_t a = 0; a < p->naxes; a++)
+		fprintf(stderr, " %c%.3f", INTERP_AXIS_LETTERS[p->axes[a]],
+			p->q[p->axes[a]]);
+	fprintf(stderr, "; a thinner electrode, less --clearance, or a program "
+		"to begin with.  It is narrowest, %.3f mm, between\n",
+		p->nearest.mm);
+	job_say_pair(p->j, &p->nearest, stderr);
+}
+
+/* From where the machine stands to the mouth: straight, or X Y and the rotaries
+ * first and Z then. */
+static int lead_in(struct plan *p, struct pull *u, const struct clearance *c)
+{
+	const double *start = p->j->config.start_mm;
+	const struct route_node *mouth = &u->out.node[u->out.n - 1];
+	struct route_node n = { .rapid = true };
+
+	memcpy(n.q, start, sizeof(n.q));
+	if (route_add(&p->dense, &n))
+		return EX_OSERR;
+	memcpy(n.q, mouth->q, sizeof(n.q));
+	if (!is_free(u, mouth->q, start, c)) {
+		n.q[INTERP_Z] = start[INTERP_Z];
+		if (!is_free(u, mouth->q, n.q, c) ||
+		    !is_free(u, n.q, start, c)) {
+			fprintf(stderr, "edm-plan: the way is found, but "
+				"nothing straight leads from start_mm of the "
+				"machine file to its mouth; start_mm "
+				"elsewhere\n");
+			return 1;
+		}
+		if (route_add(&p->dense, &n))
+			return EX_OSERR;
+		n.q[INTERP_Z] = mouth->q[INTERP_Z];
+	}
+	return route_add(&p->dense, &n) ? EX_OSERR : 0;
+}
+
+static int turn_round(struct plan *p, struct pull *u, const struct clearance *c)
+{
+	int r = lead_in(p, u, c);
+
+	for (uint32_t i = u->out.n - 1; i-- > 0 && r == 0;)
+		r = route_add(&p->dense, &u->out.node[i]) ? EX_OSERR : 0;
+	p->dense.lines = p->dense.n;
+	route_lattice(&p->j->config, p->dense.lattice);
+	return r;
+}
+
+/* Where the stem is at the end pose is out; a channel may have two ends. */
+static void open_air(struct pull *u)
+{
+	struct pose pose;
+
+	motion_pose(&u->j->motion, u->q, &pose);
+	for (uint32_t i = 0; i < u->j->tool.nverts; i++) {
+		double at[3];
+
+		rot_apply(&pose.r, u->j->tool.vert[i], at);
+		v_add(at, pose.t, at);
+		air_open(&u->air, at);
+	}
+	air_fill(&u->air);
+}
+
+static bool in_travel(const struct job *j, const double q[INTERP_NAXES])
+{
+	for (int k = 0; k < INTERP_NAXES; k++) {
+		const struct interp_axis_limits *a = &j->config.axes.axis[k];
+
+		if (!(j->config.axes.present & 1u << k) ||
+		    (q[k] >= a->travel_min_mm && q[k] <= a->travel_max_mm))
+			continue;
+		fprintf(stderr, "edm-plan: --end-pose: %c%g; from %g to %g, the "
+			"travel of the axis\n", INTERP_AXIS_LETTERS[k], q[k],
+			a->travel_min_mm, a->travel_max_mm);
+		return false;
+	}
+	return true;
+}
+
+int pullout_way(struct plan *p)
+{
+	struct pull u = { .j = p->j, .keep_mm = p->j->clear_mm +
+						p->j->chord_mm };
+	struct clearance c;
+	int r;
+
+	memcpy(u.q, p->j->o->end, sizeof(u.q));
+	if (!in_travel(p->j, u.q))
+		return EX_DATAERR;
+	r = plan_check_end(p, u.q);
+	if (r)
+		return r;
+	check_clearance(p->j, u.q, &c);
+	if (air_cut(&u.air, &p->j->part))
+		return EX_OSERR;
+	open_air(&u);
+	find_axes(&u);
+	r = pull(&u, &c);
+	bar_end(p->j);
+	if (r == 1)
+		say_stuck(&u);
+	else
+		r = r ? EX_OSERR : turn_round(p, &u, &c);
+	air_free(&u.air);
+	route_free(&u.out);
+	return r;
+}

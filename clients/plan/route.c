@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * route.c - compile a program and follow it
+ */
+#include "route.h"
+
+#include "compiling.h"
+#include "route_curve.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sysexits.h>
+
+#define TEXT_BYTES_MAX	(1u << 30)
+
+/* How far an arc's axes stray from its chords. */
+#define ARC_STRAYS	0.001
+
+void route_free(struct route *w)
+{
+	free(w->node);
+	*w = (struct route) { 0 };
+}
+
+int route_add(struct route *w, const struct route_node *node)
+{
+	if (w->n == w->room) {
+		const uint32_t room = w->room ? 2 * w->room : 256;
+		void *more = realloc(w->node, room * sizeof(*w->node));
+
+		if (!more)
+			return -ENOMEM;
+		w->node = more;
+		w->room = room;
+	}
+	w->node[w->n++] = *node;
+	return 0;
+}
+
+void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES])
+{
+	double pulses = 0.5;
+
+	if (c->strategy == INTERP_POINT_BY_POINT ||
+	    c->strategy == INTERP_CENTRED)
+		pulses = 1;
+	else if (c->strategy >= INTERP_MAIN_DIRECTION)
+		pulses = 1 + c->tolerance_pulses;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret[i] = pulses * c->axes.axis[i].pulse_mm;
+}
+
+/* -- Segments ---------------------------------------------------------------- */
+
+static void node_of(const struct interp_program *p, uint32_t node,
+		    double q[INTERP_NAXES])
+{
+	const struct interp_program_head *h = p->head;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		q[i] = h->start_pulses[i] * h->pulse_mm[i];
+	for (uint32_t j = 0; j < h->naxes; j++)
+		q[h->column[j]] = (double)p->nodes[(uint64_t)node * h->naxes +
+						   j] / INTERP_SUB *
+				  h->pulse_mm[h->column[j]];
+}
+
+/*
+ * Between two places dp apart, of a motion whose second derivative is at most
+ * d2, the motion strays by dp^2 d2 / 8 from the chord.
+ */
+static int follow_arc(struct route *w, const struct interp_arc *a,
+		      const struct route_node *end)
+{
+	const struct route_node from = w->node[w->n - 1];
+	const double r = fabs(a->r_mm) + fabs(a->dr_mm);
+	const double bend = r * a->sweep * a->sweep +
+			    2 * fabs(a->dr_mm * a->sweep);
+	const double pieces = ceil(sqrt(bend / 8 / ARC_STRAYS));
+	const uint32_t n = pieces < 1 ? 1 : (uint32_t)fmin(pieces, 1e6);
+	struct route_node at = *end;
+	int rc = 0;
+
+	at.strays = (float)(bend / 8 / n / n * (1 + 1e-6));
+	for (uint32_t i = 1; i <= n && rc == 0; i++) {
+		const double p = (double)i / n;
+		const double angle = a->theta + a->sweep * p;
+
+		for (int k = 0; k < INTERP_NAXES; k++)
+			at.q[k] = from.q[k] + p * (end->q[k] - from.q[k]);
+		if (i < n) {
+			at.q[a->axis_a] = a->a_mm + (a->r_mm + a->dr_mm * p) *
+						    cos(angle);
+			at.q[a->axis_b] = a->b_mm + (a->r_mm + a->dr_mm * p) *
+						    sin(angle);
+		}
+		rc = route_add(w, &at);
+	}
+	return rc;
+}
+
+static int follow_curve(struct route *w, const struct interp_program *p,
+			const struct interp_seg *s, const struct route_node *end)
+{
+	const struct interp_piece *piece = &p->pieces[s->arg];
+	const struct interp_nurbs_stop *stop = p->stops + piece->stops_at;
+	struct route_curve k = {
+		.axis = p->curves[piece->curve].axis, .at = *end,
+		.from = stop[0].u, .to = stop[piece->nstops - 1].u,
+	};
+	int r;
+
+	if (!interp_program_curve(p, piece->curve, &k.curve))
+		return -EINVAL;
+	r = route_curve(w, &k);
+	/* The node is rounded, the curve is not. */
+	return r ? r : route_add(w, end);
+}
+
+static int refuse_seg(const struct route_text *from, uint32_t line,
+		      const char *found, const char *wanted)
+{
+	fprintf(stderr, "%s:%u: error: %s; %s\n", from->path, line, found,
+		wanted);
+	return EX_DATAERR;
+}
+
+static int follow_seg(struct route *w, const struct interp_program *p,
+		      uint32_t i, const struct route_text *from)
+{
+	const struct interp_seg *s = &p->segs[i];
+	struct route_node end = { .line = s->line,
+				.feed_mm_s = s->feed_mm_s,
+				.rapid = s->flags & INTERP_SEG_RAPID };
+	int r;
+
+	if (s->flags & INTERP_SEG_SENSED)
+		return refuse_seg(from, s->line, "a move that ends at a "
+				  "contact", "a program without: where it "
+				  "goes on is not known before it is run");
+	if (!interp_program_seg_ok(p, i, s))
+		return refuse_seg(from, s->line, "a segment that is not sound",
+				  "another text");
+	if (s->kind == INTERP_PAIR)
+		return refuse_seg(from, s->line, "two contours at once",
+				  "motion of one rigid electrode, on X Y Z A "
+				  "B C");
+	if (s->escape && w->beside++ == 0)
+		w->beside_line = s->line;
+	node_of(p, i + 1, end.q);
+	if (s->kind == INTERP_LINE)
+		r = route_add(w, &end);
+	else if (s->kind == INTERP_ARC)
+		r = follow_arc(w, &p->arcs[s->arg], &end);
+	else if (s->kind == INTERP_CURVE)
+		r = follow_curve(w, p, s, &end);
+	else
+		return 0;
+	if (r == -EINVAL)
+		return refuse_seg(from, s->line, "a curve that cannot be cut "
+				  "into chords", "a curve without a cusp");
+	return r ? EX_OSERR : 0;
+}
+
+static int follow(struct route *w, const struct interp_program *p,
+		  const struct route_text *from)
+{
+	struct route_node start = { .line = 0 };
+	int r = 0;
+
+	node_of(p, 0, start.q);
+	if (route_add(w, &start))
+		return EX_OSERR;
+	for (uint32_t i = 0; i < p->head->nsegs && r == 0; i++)
+		r = follow_seg(w, p, i, from);
+	return r;
+}
+
+/* -- Text -------------------------------------------------------------------- */
+
+static int read_file(const char *path, char **text, size_t *bytes)
+{
+	const bool standard = strcmp(path, "-") == 0;
+	FILE *f = standard ? stdin : fopen(path, "rb");
+	struct stat st;
+	size_t room = 1 << 16, n;
+	int r = 0;
+
+	*text = malloc(room);
+	*bytes = 0;
+	if (!f || !*text || fstat(fileno(f), &st) < 0 || S_ISDIR(st.st_mode)) {
+		fprintf(stderr, "edm-plan: %s: %s; a file of NC code\n", path,
+			f ? "cannot be read" : strerror(errno));
+		r = EX_NOINPUT;
+	}
+	while (r == 0 && (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
+		*bytes += n;
+		if (*bytes < room)
+			continue;
+		room *= 2;
+		if (room > TEXT_BYTES_MAX) {
+			fprintf(stderr, "edm-plan: %s: more than 1 GiB; a file "
+				"of NC code\n", path);
+			r = EX_DATAERR;
+		} else {
+			void *more = realloc(*text, room);
+
+			*text = more ? more : *text;
+			r = more ? 0 : EX_OSERR;
+		}
+	}
+	if (f && !standard)
+		fclose(f);
+	return r;
+}
+
+static int lay_out(struct interp_build *b, const struct route_text *from,
+		   struct route *w)
+{
+	const struct interp_build_about about = { .lines = w->lines,
+						  .name = from->path };
+	const size_t bytes = interp_build_bytes(b);
+	struct interp_program p;
+	void *block = malloc(bytes);
+	int r;
+
+	if (!block)
+		return EX_OSERR;
+	interp_build_write(b, &about, block);
+	r = interp_program_map(&p, block, bytes) ? EX_SOFTWARE :
+						   follow(w, &p, from);
+	free(block);
+	return r;
+}
+
+static int compile(struct route *w, const struct machine_config *c,
+		   const struct route_text *from, const struct interp_text *text)
+{
+	struct config_compiling of;
+	struct interp_diag diag = { 0 };
+	struct config_tech tech;
+	struct interp_build *b;
+	int r;
+
+	if (config_tech_load(&tech, c, NULL)) {
+		config_tech_free(&tech);
+		fprintf(stderr, "edm-plan: %s: the technology table cannot be "
+			"read; [tech] table of the machine file\n", tech.path);
+		return EX_CONFIG;
+	}
+	config_compiling(c, &tech, &of);
+	if (from->start)
+		memcpy(of.build.start_mm, from->start,
+		       sizeof(of.build.start_mm));
+	b = interp_build_create(&of.build);
+	r = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
+	if (r == -EINVAL) {
+		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", from->path,
+			diag.line, diag.column, diag.found, diag.wanted);
+		r = EX_DATAERR;
+	} else {
+		r = r ? EX_OSERR : lay_out(b, from, w);
+	}
+	interp_build_destroy(b);
+	config_tech_free(&tech);
+	return r;
+}
+
+int route_read(struct route *w, const struct machine_config *c,
+	     const struct route_text *from)
+{
+	struct interp_text text = {
+		.at = from->text,
+		.dialect = from->dialect ?
+			   interp_dialect_by_name(from->dialect) :
+			   interp_dialect_by_file(from->path),
+	};
+	char *mine = NULL;
+	int r = 0;
+
+	*w = (struct route) { 0 };
+	route_lattice(c, w->lattice);
+	if (from->text) {
+		text.bytes = strlen(from->text);
+	} else {
+		r = read_file(from->path, &mine, &text.bytes);
+		text.at = mine;
+	}
+	if (r == 0)
+		r = compile(w, c, from, &text);
+	if (r == EX_OSERR)
+		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
+	free(mine);
+	if (r)
+		route_free(w);
+	return r;
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * route.h - a program as a row of poses with straight blocks between them
+ *
+ * The poses are those of the compiled program, as rounded as the machine has
+ * them.  Arcs and curves become short blocks; how far the axes stray from those
+ * is bounded, not sampled, and kept with each.
+ *
+ * Units: mm, and degrees of a rotary axis; machine coordinates.
+ * Threads: one at a time.
+ */
+#ifndef PLAN_ROUTE_H
+#define PLAN_ROUTE_H
+
+#include "config.h"
+
+#include "interp/program.h"
+
+struct route_node {
+	double q[INTERP_NAXES];
+	uint32_t line;			/* of the block that leads here */
+	float feed_mm_s;		/* F on it, as the path's length counts */
+	float strays;			/* mm, and degrees: of any axis on it */
+	bool rapid;			/* it is positioned, not eroded */
+};
+
+struct route {
+	struct route_node *node;		/* block i leads from node[i] to
+					 * node[i + 1] */
+	uint32_t n, room;
+	double lattice[INTERP_NAXES];	/* how far the pulses stray from it */
+	uint32_t lines;			/* of the text */
+	uint32_t beside;		/* segments that leave beside the path */
+	uint32_t beside_line;		/* the first of them */
+};
+
+/** route_free() - a zeroed one is fine. */
+void route_free(struct route *w);
+
+/** route_add() - Return: 0 or -ENOMEM. */
+int route_add(struct route *w, const struct route_node *node);
+
+/** route_lattice() - how far the machine's pulses stray from a straight block. */
+void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES]);
+
+struct route_text {
+	const char *path;		/* as messages name it; - is stdin */
+	const char *text;		/* NULL: read it from there */
+	const char *dialect;		/* NULL: by the file's name */
+	const double *start;		/* of all axes; NULL: the machine
+					 * file's start_mm */
+};
+
+/**
+ * route_read() - compile a program and follow it.
+ *
+ * Refused: words that the readers do not know, motion that is not that of one
+ * rigid electrode (guides of a wire), and moves that end at a contact.
+ * Return: 0; else a sysexits code, and the reason is on stderr.
+ */
+int route_read(struct route *w, const struct machine_config *c,
+	     const struct route_text *from);
+
+#endif /* PLAN_ROUTE_H */

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * times.c - how long each way takes, by edmsim
+ *
+ * edmsim stands beside this program.  It gets the machine file as it is in force
+ * with [speed] nodes set, and runs each program twice.
+ */
+#include "plan.h"
+
+#include <errno.h>
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <sysexits.h>
+#include <unistd.h>
+
+struct room {
+	char dir[64], ini[96], ngc[96], sim[512];
+};
+
+static int make_room(struct room *r)
+{
+	const ssize_t n = readlink("/proc/self/exe", r->sim,
+				   sizeof(r->sim) - 8);
+	char *slash;
+
+	if (n <= 0)
+		return EX_OSERR;
+	r->sim[n] = '\0';
+	slash = strrchr(r->sim, '/');
+	strcpy(slash ? slash + 1 : r->sim, "edmsim");
+	snprintf(r->dir, sizeof(r->dir), "/tmp/edm-plan-XXXXXX");
+	if (!mkdtemp(r->dir))
+		return EX_CANTCREAT;
+	snprintf(r->ini, sizeof(r->ini), "%s/machine.ini", r->dir);
+	snprintf(r->ngc, sizeof(r->ngc), "%s/way.ngc", r->dir);
+	return 0;
+}
+
+static void clear_room(const struct room *r)
+{
+	unlink(r->ini);
+	unlink(r->ngc);
+	rmdir(r->dir);
+}
+
+static int put_machine(const struct room *r, const struct machine_config *c,
+		       int nodes)
+{
+	static struct machine_config with;
+	FILE *f = fopen(r->ini, "w");
+
+	if (!f)
+		return EX_CANTCREAT;
+	with = *c;
+	with.nodes = nodes;
+	config_print(&with, f);
+	return fclose(f) ? EX_IOERR : 0;
+}
+
+/* What edmsim writes to its standard output. */
+static json_t *run(const struct room *r, const char *program)
+{
+	json_t *o = NULL;
+	int end[2], status;
+	pid_t pid;
+	FILE *f;
+
+	if (pipe(end) < 0)
+		return NULL;
+	pid = fork();
+	if (pid == 0) {
+		dup2(end[1], STDOUT_FILENO);
+		close(end[0]);
+		close(end[1]);
+		execl(r->sim, "edmsim", "--quiet", "--seed", "1", "--machine",
+		      r->ini, "--report", "-", program, (char *)NULL);
+		_exit(127);
+	}
+	close(end[1]);
+	f = pid > 0 ? fdopen(end[0], "r") : NULL;
+	if (f) {
+		o = json_loadf(f, 0, NULL);
+		fclose(f);
+	} else {
+		close(end[0]);
+	}
+	if (pid > 0)
+		waitpid(pid, &status, 0);
+	return o;
+}
+
+static int ask(const struct room *r, const struct machine_config *c,
+	       const char *program, double ret_s[2])
+{
+	for (int nodes = 0; nodes < 2; nodes++) {
+		const char *outcome;
+		json_t *o;
+		int e = put_machine(r, c, nodes);
+
+		if (e)
+			return e;
+		o = run(r, program);
+		outcome = json_string_value(json_object_get(o, "outcome"));
+		ret_s[nodes] = json_number_value(json_object_get(o,
+							"virtual_s"));
+		e = outcome && strcmp(outcome, "done") == 0 ? 0 : EX_SOFTWARE;
+		if (e)
+			fprintf(stderr, "edm-plan: %s on %s: %s; a program "
+				"that it runs to its end\n", r->sim, program,
+				outcome ? outcome : "no report");
+		json_decref(o);
+		if (e)
+			return e;
+	}
+	return 0;
+}
+
+static int ask_way(const struct plan *p, const struct room *r,
+		   struct plan_way *w)
+{
+	double s[2] = { 0, 0 };
+	char *text;
+	int e;
+
+	if (!w->how)
+		return 0;
+	text = text_write(p, w);
+	e = text ? text_put(r->ngc, text) : EX_OSERR;
+	free(text);
+	if (e == 0)
+		e = ask(r, &p->j->config, r->ngc, s);
+	w->time_pass_s = s[0];
+	w->time_stop_s = s[1];
+	return e;
+}
+
+int times_ask(struct plan *p)
+{
+	double s[2] = { 0, 0 };
+	struct room r;
+	int e = make_room(&r);
+
+	if (e) {
+		fprintf(stderr, "edm-plan: %s; a folder in /tmp\n",
+			strerror(errno));
+		return e;
+	}
+	bar_show(p->j, 0.1, "edmsim runs the dense way");
+	if (p->j->o->program)
+		e = ask(&r, &p->j->config, p->j->o->program, s);
+	p->dense_pass_s = s[0];
+	p->dense_stop_s = s[1];
+	bar_show(p->j, 0.4, "edmsim runs the greedy way");
+	if (e == 0)
+		e = ask_way(p, &r, &p->greedy);
+	bar_show(p->j, 0.7, "edmsim runs the way to be written");
+	if (e == 0)
+		e = ask_way(p, &r, &p->best);
+	bar_end(p->j);
+	clear_room(&r);
+	return e;
+}

@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * node.c - how fast a node may be passed
+ *
+ * The ends of lines are rounded: to a pulse, or to the decimals of whoever wrote
+ * them.  On short lines that turns the way from node to node by more than the
+ * curve does.  No axis follows what lies within a rounding, so what a rounding
+ * can do is no change: turns are taken from chords of some length, less what a
+ * rounding of their ends can turn them by, and what that hides on short chords
+ * is found on longer ones.
+ */
+#include "speed/pass.h"
+
+#include <math.h>
+
+/* Nodes turned by less are on a line: (2*sin(phi/2))^2. */
+#define STRAIGHT	1e-12
+
+/* Of the windows: to see a line's own way. */
+#define AROUND		1
+
+/* Longer lines have no curve that their corners do not have. */
+#define LONG		5
+
+/* Where all but this of a turn is more than a rounding, no wider window says
+ * more. */
+#define CLEAR		0.02
+
+static double larger(double a, double b)
+{
+	return a > b ? a : b;
+}
+
+static double smaller(double a, double b)
+{
+	return a < b ? a : b;
+}
+
+/* The fastest round a bend, where the axes give so much. */
+double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3)
+{
+	const double v = sqrt(a_mm_s2 * r_mm), jrr = j_mm_s3 * r_mm * r_mm;
+
+	return v * v * v <= jrr ? v : cbrt(jrr);
+}
+
+bool pass_is_short(const struct pass *w, uint32_t i)
+{
+	return w->segs[i].length_mm < LONG * PASS_WINDOW * w->corner_mm;
+}
+
+/*
+ * How a way changes at a node.  Where both its lines are short, a rounding of
+ * their ends changes it as well: by as much as that can, it has not changed.
+ */
+struct change {
+	const struct heading *a, *b;	/* before and behind */
+	double d[INTERP_NAXES];		/* of each column's rate; >= 0 */
+};
+
+/* Of a corner: what is twice as much as a rounding is a change, all of it. */
+static double heard(double d, double noise)
+{
+	return d >= 2 * noise ? d : 2 * larger(d - noise, 0);
+}
+
+/* Of a curve: what is sure.  A wider window is surer. */
+static double sure(double d, double noise)
+{
+	return larger(d - noise, 0);
+}
+
+/* @per_mm: 1 by the length before, and 1 by the one behind. */
+static void change_of(const struct pass *w, double per_mm,
+		      double (*of)(double, double), struct change *c)
+{
+	const uint32_t both = c->a->along & c->b->along;
+	double along = 0;
+
+	for (uint32_t j = 0; j < w->n; j++)
+		along = both >> j & 1 ? larger(along, w->tol[j]) : along;
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double a = c->a->rate[j], b = c->b->rate[j];
+		/* Of what is beside the path, the path's is rounded, too. */
+		const double by = both >> j & 1 ? 0 :
+				  along * larger(fabs(a), fabs(b));
+
+		c->d[j] = of(fabs(b - a), (w->tol[j] + by) * per_mm);
+	}
+}
+
+/* The columns both lengths are made of: a corner as an arc. */
+static double corner(const struct pass *w, const struct change *c)
+{
+	const struct heading *a = c->a, *b = c->b;
+	const uint32_t both = a->along & b->along, any = a->along | b->along;
+	double turn = 0, acc = INFINITY, jerk = INFINITY, half, r;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double d = both >> j & 1 ? c->d[j] : 0;
+
+		turn += d * d;
+	}
+	if (!both)
+		turn = 2;
+	if (turn < STRAIGHT)
+		return INFINITY;
+	/* No branch in here: corners are as good as random.  x/0 is no limit. */
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double is = (double)(any >> j & 1);
+		const double d = is * c->d[j];
+		const double m = is * larger(fabs(a->rate[j]),
+					     fabs(b->rate[j]));
+
+		acc = smaller(acc, w->a_mm_s2[j] / d);
+		jerk = smaller(jerk, w->j_mm_s3[j] / m);
+	}
+	half = turn < 4 ? sqrt(1 - turn / 4) : 0;
+	r = w->corner_mm * half * (1 + half) / (turn / 4);
+	return pass_round_mm_s(larger(r, w->corner_mm), acc * sqrt(turn), jerk);
+}
+
+/* The others: their speed steps. */
+static double step(const struct pass *w, const struct change *c)
+{
+	const uint32_t both = c->a->along & c->b->along;
+	double v = INFINITY;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		if (!(both >> j & 1) && c->d[j] * v > w->step_mm_s[j] &&
+		    c->d[j] > 1e-9)
+			v = w->step_mm_s[j] / c->d[j];
+	}
+	return v;
+}
+
+/* -- Of short lines ---------------------------------------------------------- */
+
+/* From node @from to @to: the length in the columns of ret->along, and the
+ * rates of all by it. */
+static double chord(const struct pass *w, uint32_t from, uint32_t to,
+		    struct heading *ret)
+{
+	const int64_t *a = w->p->nodes + (uint64_t)from * w->n;
+	const int64_t *b = w->p->nodes + (uint64_t)to * w->n;
+	double sum = 0, mm, per_mm;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		ret->rate[j] = (double)(b[j] - a[j]) * w->ways.sub_mm[j];
+		sum += ret->along >> j & 1 ? ret->rate[j] * ret->rate[j] : 0;
+	}
+	mm = sqrt(sum);
+	per_mm = mm > 0 ? 1 / mm : 0;
+	for (uint32_t j = 0; j < w->n; j++)
+		ret->rate[j] *= per_mm;
+	return mm;
+}
+
+static void look_around(const struct pass *w, uint32_t i, struct around *k)
+{
+	const struct interp_seg *s = w->segs;
+	const double here = s[i].s_mm;
+
+	while (here - s[k->behind + 1].s_mm >= k->mm)
+		k->behind++;
+	if (k->ahead < i)
+		k->ahead = i;
+	while (k->ahead < w->p->head->nsegs - 1 && s[k->ahead].s_mm - here < k->mm)
+		k->ahead++;
+}
+
+/* The chords to both sides of a node, over one window. */
+struct bow {
+	struct heading a, b;
+	double mm;			/* half the way */
+	double per_mm;			/* as change_of() has it */
+};
+
+/* Return: false if there is no way to a side. */
+static bool bow_of(const struct pass *w, uint32_t i, const struct around *k,
+		   uint32_t along, struct bow *ret)
+{
+	double la, lb;
+
+	ret->a.along = ret->b.along = along;
+	la = chord(w, k->behind, i, &ret->a);
+	lb = chord(w, i, k->ahead, &ret->b);
+	ret->mm = (la + lb) / 2;
+	ret->per_mm = 1 / la + 1 / lb;
+	return la > 0 && lb > 0;
+}
+
+/* As fast as the axes follow a bow; @d is what each column's rate changes by. */
+static double bow_mm_s(const struct pass *w, const struct bow *k,
+		       const double d[INTERP_NAXES])
+{
+	double turn = 0, acc = INFINITY, jerk = INFINITY, v = INFINITY;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		if (!(k->a.along >> j & 1)) {
+			/* One that turns beside the path, by its own. */
+			if (d[j] * k->mm > w->tol[j])
+				v = smaller(v, pass_round_mm_s(k->mm / d[j],
+							  w->a_mm_s2[j],
+							  w->j_mm_s3[j] *
+							  d[j]));
+			continue;
+		}
+		turn += d[j] * d[j];
+		if (k->a.rate[j] == 0 && k->b.rate[j] == 0)
+			continue;
+		acc = smaller(acc, w->a_mm_s2[j]);
+		jerk = smaller(jerk, w->j_mm_s3[j]);
+	}
+	if (turn < STRAIGHT)
+		return v;
+	return smaller(v, pass_round_mm_s(larger(k->mm / sqrt(turn), w->corner_mm),
+				     acc, jerk));
+}
+
+/* Does a rounding hide a share of any change that counts? */
+static bool is_clear(const struct pass *w, const struct change *c,
+		     const double all[INTERP_NAXES])
+{
+	for (uint32_t j = 0; j < w->n; j++) {
+		if (all[j] - c->d[j] > CLEAR * all[j])
+			return false;
+	}
+	return true;
+}
+
+/*
+ * Short lines turn by as little as one likes at each node: their curve is that
+ * of the chords to both sides.  What is less than a rounding over one window
+ * shows over a wider one, if it goes on.  @most: faster needs no look.
+ */
+static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
+{
+	double v = INFINITY;
+
+	for (int n = 0; n < PASS_WINDOWS; n++) {
+		double all[INTERP_NAXES], fast;
+		struct change c;
+		struct bow k;
+
+		look_around(w, i, &w->windows[n]);
+		if (!bow_of(w, i, &w->windows[n], along, &k))
+			break;
+		for (uint32_t j = 0; j < w->n; j++)
+			all[j] = fabs(k.b.rate[j] - k.a.rate[j]);
+		fast = bow_mm_s(w, &k, all);
+		if (fast >= most)
+			return smaller(v, fast);
+		c.a = &k.a;
+		c.b = &k.b;
+		change_of(w, k.per_mm, sure, &c);
+		if (is_clear(w, &c, all))
+			return smaller(v, fast);
+		v = smaller(v, bow_mm_s(w, &k, c.d));
+	}
+	return v;
+}
+
+/* Near by, but not over a long line behind a short one: it has its own turn. */
+static struct around look_near(struct pass *w, uint32_t i)
+{
+	const struct interp_seg *s = w->segs;
+	struct around k;
+
+	look_around(w, i, &w->near);
+	k = w->near;
+	if (k.behind + 1 < i && s[i].s_mm - s[k.behind].s_mm > 2 * k.mm)
+		k.behind++;
+	if (k.ahead > i + 1 && s[k.ahead].s_mm - s[i].s_mm > 2 * k.mm)
+		k.ahead--;
+	return k;
+}
+
+/* The turn of a node between lines: of longer chords, if they are short. */
+static double turn(struct pass *w, uint32_t last, uint32_t i,
+		   const struct change *change)
+{
+	const struct interp_seg *s = w->segs;
+	struct bow k;
+
+	if (s[last].kind == INTERP_LINE && s[i].kind == INTERP_LINE &&
+	    fmin(s[last].length_mm, s[i].length_mm) < w->near.mm) {
+		const struct around near = look_near(w, i);
+		struct change c = { .a = &k.a, .b = &k.b };
+
+		if (change->a->along == change->b->along &&
+		    bow_of(w, i, &near, change->a->along, &k)) {
+			change_of(w, k.per_mm, heard, &c);
+			return smaller(corner(w, &c), step(w, &c));
+		}
+	}
+	return smaller(corner(w, change), step(w, change));
+}
+
+/* In front of segment @i; @last is the one before that moves. */
+double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
+		      const struct heading *a, const struct heading *b)
+{
+	const struct interp_seg *s = w->segs;
+	struct change c = { .a = a, .b = b };
+	double v;
+
+	change_of(w, 1 / s[last].length_mm + 1 / s[i].length_mm, heard, &c);
+	v = turn(w, last, i, &c);
+	if (pass_is_short(w, last) || pass_is_short(w, i))
+		v = smaller(v, curve(w, i, a->along & b->along,
+				     larger((double)s[last].feed_max_mm_s,
+					    (double)s[i].feed_max_mm_s)));
+	return v;
+}
+
+/*
+ * On a short line an axis whose share of the way is that of the ways around it,
+ * but for a rounding, has the share it has there.
+ */
+static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
+		       double ret[INTERP_NAXES])
+{
+	const double per_mm = 1 / w->segs[i].length_mm;
+	struct around *k = &w->windows[AROUND];
+	struct heading around = { .along = h->along };
+	struct change c = { .a = h, .b = &around };
+
+	look_around(w, i, k);
+	if (!(chord(w, k->behind, k->ahead, &around) > 0))
+		around = *h;
+	change_of(w, per_mm, heard, &c);
+	for (uint32_t j = 0; j < w->n; j++)
+		ret[j] = fabs(c.d[j] > 0 ? h->rate[j] : around.rate[j]);
+}
+
+void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
+		double ret[INTERP_NAXES])
+{
+	if (w->segs[i].kind == INTERP_LINE && pass_is_short(w, i)) {
+		line_rates(w, i, &h->first, ret);
+		return;
+	}
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double ends = larger(fabs(h->first.rate[j]),
+					   fabs(h->last.rate[j]));
+		const bool bends = w->segs[i].kind != INTERP_LINE && ends > 0 &&
+				   (h->first.along | h->last.along) >> j & 1;
+
+		/* On its way it may go all along the axis. */
+		ret[j] = bends ? larger(ends, larger(h->share, 1)) : ends;
+	}
+}
+
+double pass_rate_mm_s(const struct pass *w, const double rates[INTERP_NAXES])
+{
+	double v = INFINITY;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		if (rates[j] * v > w->v_mm_s[j])
+			v = w->v_mm_s[j] / rates[j];
+	}
+	return v;
+}
