@@ -377,10 +377,18 @@ run-units: $(UNIT_X) $(PEER_X)
 
 # 500 kills of edmd, edmd-jobs and both around every verb: half an hour.
 KILLS ?= 500
+.PHONY: kills hostile
 kills: all
 	@tests/setup check
 	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
 		tests/system/test_kills.py
+
+# 100,000 packets from another host, and how late the cycle woke meanwhile.
+HOSTILE ?= 100000
+hostile: all
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) EDM_HOSTILE=$(HOSTILE) tests/netns .venv/bin/pytest -q \
+		-s tests/system/test_two_hosts.py
 
 # What holds in every cycle, over ten million random ones; SEED=n repeats one.
 invariants: $(B)/unit/test_cycle_random
@@ -461,19 +469,26 @@ fuzz: $(FUZZ:%=run-%)
 
 run-fuzz_%: $(B)/fuzz_%
 	$(Q)$(if $(filter-out 0,$(FUZZ_SEED)),rm -rf $(B)/corpus_$*)
-	$(Q)mkdir -p $(B)/corpus_$* && cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/
+	$(Q)mkdir -p $(B)/corpus_$*
+	$(Q)$(if $(SEEDS_fuzz_$*),cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/)
 	$(Q)$< -seed=$(FUZZ_SEED) -runs=$(FUZZ_RUNS) \
-		-max_total_time=$(FUZZ_S) -max_len=4096 -verbosity=0 \
+		-max_total_time=$(or $(FUZZ_MOST_S),$(FUZZ_S)) -max_len=4096 -verbosity=0 \
 		-print_final_stats=1 $(B)/corpus_$* 2>$<.log || \
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
+
+# Changes to an object that readers map: each run is short, and like the others.
+run-fuzz_status: FUZZ_MOST_S = $(if $(filter-out 0,$(FUZZ_SEED)),15)
+$(B)/fuzz_status: daemon/shm/publish.c daemon/shm/object.c
+$(B)/fuzz_status: FUZZ_INC = $(INC_shm)
 
 $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON)
 	$(call say,CLANG,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
 		-fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
-		$(INC_libinterp) -o $@ $(filter %.c,$^) -lm
+		-DEDM_VERSION='"$(VERSION)"' $(INC_libinterp) $(FUZZ_INC) \
+		-o $@ $(filter %.c,$^) -lm
 
 # -- Lint ---------------------------------------------------------------------
 
@@ -533,6 +548,9 @@ install: all panel
 		chmod 644 $(UNITDIR)/$$(basename $$u .in); done
 	$(Q)install -m 644 systemd/edmd.sysusers \
 		$(DESTDIR)/usr/lib/sysusers.d/edmd.conf
+	$(Q)install -d $(DESTDIR)/usr/lib/tmpfiles.d
+	$(Q)install -m 644 systemd/edmd.tmpfiles \
+		$(DESTDIR)/usr/lib/tmpfiles.d/edmd.conf
 	$(Q)install -m 644 systemd/edmd.rules \
 		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
@@ -548,7 +566,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: kills all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults fuzz lint install clean

@@ -251,5 +251,7 @@ int link_send(struct link *l, const struct link_command *c, int64_t now_us)
 	err = shm_command_put(l->commands, &m);
 	if (err == 0)
 		pending_begin(room, m.id, c, now_us);
+	else if (err == -ENOTCONN)
+		link_drop(l);
 	return err;
 }
