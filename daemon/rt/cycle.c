@@ -60,6 +60,19 @@ static enum cycle_event look_arrive(const struct cycle *c)
 	       walk_ahead(c) == AHEAD_PROBE ? EVENT_PROBE : EVENT_NONE;
 }
 
+/*
+ * Positioning, it met something over ground that was cut already: a short as
+ * any other.  Where a lead is on the axes it stays a collision, because a
+ * retract has no lead and would drop it in one step.
+ */
+static enum cycle_event look_out(const struct cycle *c)
+{
+	if (guard_met(c) && contouring_rests(&c->contouring) &&
+	    ground_is_cut(c))
+		return EVENT_SHORT;
+	return look_arrive(c);
+}
+
 /* What this cycle's gap and place mean to the state; at most one thing. */
 static enum cycle_event look(struct cycle *c)
 {
@@ -80,8 +93,7 @@ static enum cycle_event look(struct cycle *c)
 	case STATE_ERODE:
 		return flush_due(c) ? EVENT_JUMP_DUE : EVENT_NONE;
 	case STATE_TRAVEL:
-		return guard_met(c) && ground_is_cut(c) ? EVENT_SHORT :
-							  look_arrive(c);
+		return look_out(c);
 	case STATE_RETRACT:
 		return retract_is_clear(c) ? EVENT_CLEAR : EVENT_NONE;
 	case STATE_JUMP:
