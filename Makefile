@@ -488,7 +488,7 @@ $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
 		-fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
 		-DEDM_VERSION='"$(VERSION)"' $(INC_libinterp) $(FUZZ_INC) \
-		-o $@ $(filter %.c,$^) -lm
+		-o $@ $(filter %.c,$^) -lnlopt -lm
 
 # -- Lint ---------------------------------------------------------------------
 

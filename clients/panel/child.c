@@ -86,7 +86,7 @@ int child_file(const char *name)
 	return fd < 0 ? -errno : fd;
 }
 
-static void limit(int what, rlim_t most)
+static void limit(enum __rlimit_resource what, rlim_t most)
 {
 	const struct rlimit l = { .rlim_cur = most, .rlim_max = most };
 

@@ -26,8 +26,7 @@ static const char *const causes[TRUST_NCAUSES] = {
 	[TRUST_FINE]	= "nothing is wrong",
 	[TRUST_SHAPE]	= "not the shape of a signed message",
 	[TRUST_KEY]	= "signed by a key that is not known here",
-	[TRUST_SIGNATURE] = "the signature does not hold for this machine and "
-			    "channel",
+	[TRUST_SIGNATURE] = "its signature is not for this machine and channel",
 	[TRUST_BOOT]	= "signed for another start of the service",
 	[TRUST_TIME]	= "signed too long ago, or ahead of time",
 	[TRUST_REPLAY]	= "sent before, or overtaken by a later one",

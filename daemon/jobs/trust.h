@@ -101,7 +101,7 @@ void trust_refuse(struct trust *t, enum trust_cause cause, const char *who,
 /** trust_who() - the name of a packet's key, or the key's first digits. */
 void trust_who(const struct trust_packet *p, char to[KEYFILE_NAME_MAX]);
 
-/** trust_cause_text() - "its signature does not hold", ... */
+/** trust_cause_text() - "its signature is not for ...", ... */
 const char *trust_cause_text(enum trust_cause c);
 
 /** trust_role_name() and back; ROLE_NONE for no such name. */

@@ -76,9 +76,12 @@ static int refuse_contour(struct nc_reader *r, const struct nc_cavity *c)
 			    "G40", "a contour P%g that is not whole", c->number);
 }
 
+/* Behind it the line of the G152 is the one in hand again. */
 static int record(struct nc_reader *r, const struct nc_cavity *c,
 		  struct contour_tape *t)
 {
+	const struct nc_block block = r->block;
+	const uint8_t *line_at = r->line_at;
 	const uint32_t depth = r->depth;
 	const uint8_t *code_at = my_word(r);
 	int rc;
@@ -92,6 +95,10 @@ static int record(struct nc_reader *r, const struct nc_cavity *c,
 	if (!rc && r->depth > depth)
 		rc = nc_refuse_at(r, c->line, "M99 at its end",
 				  "the end inside contour P%g", c->number);
+	if (!rc) {
+		r->block = block;
+		r->line_at = line_at;
+	}
 	return !rc && !contour_tape_is_whole(t, r->contour.guides.pulse_mm) ?
 	       refuse_contour(r, c) : rc;
 }
