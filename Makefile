@@ -5,6 +5,7 @@
 #   make demo-plan  plan a way into a closed channel, prove it, cut along it
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make quick      of these, most of what goes wrong, in 90 s
+#   make check-strict  CAN against strict drives, in the virtual machine; long
 #   make check-vm   of these, those on a PREEMPT_RT kernel in a virtual machine
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
@@ -334,7 +335,8 @@ check:
 	@tests/stage check panel
 	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system tests/vm
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system \
+		tests/vm --ignore tests/vm/test_strict.py
 
 # For somebody who changes code: most of what goes wrong, in 90 s.
 SLOW_UNITS = arcs cycle_random limits identify contouring taper \
@@ -361,6 +363,12 @@ vm: all
 	@$(MAKE) --no-print-directory B=build-gpiod2 build-gpiod2/edmd \
 		PKG_CONFIG="env PKG_CONFIG_SYSROOT_DIR=$(PC2) PKG_CONFIG_LIBDIR=$$(\
 		echo $(PC2)/usr/lib/*/pkgconfig) pkg-config"
+
+# Strict drives of another hand, powered off at random: too long for each check.
+check-strict:
+	@tests/setup check
+	@$(MAKE) --no-print-directory vm
+	@EDM_BUILD=$(B) .venv/bin/pytest -q tests/vm/test_strict.py
 
 check-vm:
 	@tests/setup check
