@@ -23,11 +23,22 @@ static const uint8_t *my_word(const struct nc_reader *r)
 	return r->block.code_at[NC_ONE_SHOT];
 }
 
+/* The list must not grow while it is carried out. */
+static int refuse_inside(struct nc_reader *r)
+{
+	if (!r->contour.recording)
+		return 0;
+	return nc_refuse(r, my_word(r), WORDS_WANTED, "%s inside a contour",
+			 nc_quote_word(r, my_word(r)).s);
+}
+
 int nc_pass(struct nc_reader *r)
 {
 	struct nc_passes *s = &r->passes;
 	const struct nc_register *g = &r->registers[r->selected];
 
+	if (refuse_inside(r))
+		return -EINVAL;
 	if (s->npasses == NC_NPASSES)
 		return nc_refuse(r, my_word(r), "up to 16 passes",
 				 "a pass too many");
@@ -52,6 +63,8 @@ int nc_cavity(struct nc_reader *r)
 	struct nc_passes *s = &r->passes;
 	double at_mm[INTERP_NAXES];
 
+	if (refuse_inside(r))
+		return -EINVAL;
 	if (s->ncavities == NC_NCAVITIES)
 		return nc_refuse(r, my_word(r), "up to 256 contours, or another "
 				 "G152", "a contour too many");
