@@ -335,8 +335,13 @@ check:
 	@tests/stage check panel
 	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system \
-		tests/vm --ignore tests/vm/test_strict.py
+		tests/vm --ignore tests/vm/test_strict.py \
+		$(PANEL_TESTS:%=--ignore %)
+
+# A browser is driven in the tests' own process; LCM has one for itself.
+PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_page.py
 
 # For somebody who changes code: most of what goes wrong, in 90 s.
 SLOW_UNITS = arcs cycle_random limits identify contouring taper \
