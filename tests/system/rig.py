@@ -15,6 +15,7 @@ import struct
 import subprocess
 import sys
 import time
+import weakref
 
 from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives.asymmetric.ed25519 import (
@@ -97,6 +98,9 @@ class Client:
         self.name = f"test-{os.getpid()}-{random.getrandbits(32):08x}"
         self.seq = 0
         self.acks, self.statuses, self.events = [], [], []
+        # LCM keeps its handlers for ever: one that knows this client would keep
+        # it and its sockets, and select() ends at 1024 descriptors.
+        me = weakref.proxy(self)
         for channel, kind, where in (
             ("ACK", ack_t, self.acks),
             ("STATUS", status_t, self.statuses),
@@ -104,7 +108,7 @@ class Client:
         ):
             subscription = self.lcm.subscribe(
                 f"EDM\\.{machine}\\.{channel}",
-                lambda channel, data, kind=kind, where=where: self._take(
+                lambda channel, data, kind=kind, where=where: me._take(
                     channel, data, kind, where
                 ),
             )
