@@ -6,7 +6,8 @@
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make quick      of these, most of what goes wrong, in 90 s
 #   make check-strict  CAN against strict drives, in the virtual machine; long
-#   make check-vm   of these, those on a PREEMPT_RT kernel in a virtual machine
+#   make check-vm   what runs on a PREEMPT_RT kernel in a virtual machine; apart
+#                   from check, because it takes longer than all the rest
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
 #   make experiments  count the pulse rules and the ways along curves, time the
@@ -337,7 +338,6 @@ check:
 	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system \
-		tests/vm --ignore tests/vm/test_strict.py \
 		$(PANEL_TESTS:%=--ignore %)
 
 # A browser is driven in the tests' own process; LCM has one for itself.
