@@ -318,7 +318,8 @@ static void no_point_moves_more_than_bounded(void **state)
 		block_init(&b, &s.motion, from, to);
 		for (int k = 0; k < 20; k++) {
 			const double t = draw(h, 1 - h);
-			const double *v = s.tool.m.vert[k * 5];
+			const double *v = s.tool.m.vert[k * 5 %
+						       (int)s.tool.m.nverts];
 			double at[3][3], bend[3], go[3], x[3];
 
 			for (int n = 0; n < 3; n++) {
