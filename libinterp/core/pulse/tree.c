@@ -146,16 +146,19 @@ static void pair_ticks(struct interp_cursor *c, struct interp_pair *p,
 static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
 		     uint16_t *ret)
 {
-	struct interp_pair *p = &c->pair[~code];
+	struct interp_pair *p;
 	uint16_t pulse[2][RUN_MAX];
 	uint8_t second[RUN_MAX];
 	uint32_t n = 0;
-	const int64_t m = p->m, s = p->s;
+	int64_t m, s;
 
 	if (code >= 0) {
 		leaf_run(c, code, (int)ticks, ret);
 		return;
 	}
+	p = &c->pair[~code];
+	m = p->m;
+	s = p->s;
 	pair_ticks(c, p, ticks, second);
 	if (p->in_a >= 0 && p->in_b >= 0) {
 		c->pos[p->in_a] += (int32_t)(p->m - m) * c->sign[p->in_a];
