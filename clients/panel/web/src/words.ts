@@ -110,7 +110,9 @@ export const en = {
 	"setup.nohome": "needs no homing", "setup.run": "Send and start", "setup.make": "G code it runs",
 	"setup.offsetnote": "As the machine file gives them; a program can shift them by G92.",
 	"setup.nooffsets": "All work offsets are 0.",
-	"setup.faster": "Step size",
+	"setup.faster": "Step size", "setup.held": "while pressed", "setup.speed": "Speed",
+	"setup.held.about": "Moves while the key is pressed, and stands when it is let go or the connection is lost.",
+	"speed.slow": "slow", "speed.middle": "middle", "speed.fast": "fast",
 
 	"probe.edge": "Edge or face", "probe.edge.about": "Moves along one axis until the electrode meets the work.",
 	"probe.hole": "Centre of a hole", "probe.hole.about": "The electrode stands in the hole. X and Y are probed both ways, then it goes to the middle.",

@@ -92,6 +92,8 @@ export const zh: Record<Word, string> = {
 	"setup.homed": "已回零", "setup.unhomed": "未回零", "setup.limit": "在限位开关上", "setup.nohome": "不需回零",
 	"setup.run": "发送并启动", "setup.make": "将运行的 G 代码", "setup.offsetnote": "由机床文件给出;程序可用 G92 移动。",
 	"setup.nooffsets": "所有工件偏置为 0。", "setup.faster": "步长",
+	"setup.held": "按住", "setup.speed": "速度", "setup.held.about": "按住时移动;松开或断线即停。",
+	"speed.slow": "慢", "speed.middle": "中", "speed.fast": "快",
 
 	"probe.edge": "边或面", "probe.edge.about": "沿一轴移动,直到电极碰到工件。",
 	"probe.hole": "孔中心", "probe.hole.about": "电极在孔内。X 和 Y 双向测量,然后移到中心。",
