@@ -115,7 +115,7 @@ def test_a_part_from_its_error_to_the_history(p, page):
                                   20)
     page.locator("#stop").click()
     expect(page.locator(".head h1")).to_have_text("Emergency stop")
-    expect(page.locator(".head .state p")).to_contain_text("release the button")
+    expect(page.locator(".head .state p")).to_contain_text("Release the button")
     page.goto(p.url + "/#/alarms")
     expect(page.locator(".alarm-now dl")).to_contain_text("part.ngc, line")
     page.locator("#reset").click()

@@ -21,7 +21,7 @@ function Gap(p: { onOpen: () => void }): JSX.Element {
 	const share = (x: number) => `${Math.min(100, Math.max(0, x / top * 100))}%`;
 	const low = v.window_low_v || v.servo_v || 0, high = v.window_high_v || v.servo_v || 0;
 	return <Card class="gap" label={t("cut.gap")}>
-		<div class="reading"><h2>{t("cut.gap")}</h2><p><b>{number(s.gap, 1)}</b> <u>V</u> <em>{t(s.power ? "cut.sparks" : "cut.nosparks")}</em></p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.gap")}</button></h2><p><b>{number(s.gap, 1)}</b> <u>V</u> <em>{t(s.power ? "cut.sparks" : "cut.nosparks")}</em></p></div>
 		<div class="bar gapbar" aria-hidden="true">
 			<i class="window" style={{ left: share(Math.min(low, (v.servo_v ?? 0) - top * 0.01)), right: `calc(100% - ${share(Math.max(high, (v.servo_v ?? 0) + top * 0.01))})` }} />
 			<i class="mark" style={{ left: share(v.short_v ?? 0) }} /><i class="mark" style={{ left: share(v.open_v ?? 0) }} />
@@ -42,7 +42,7 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 	const share = Math.min(50, Math.abs(s.feed) / span * 50);
 	const way = s.feed > 1e-6 ? "cut.forward" : s.feed < -1e-6 ? "cut.back" : "cut.still";
 	return <Card class="feed" label={t("cut.feed")}>
-		<div class="reading"><h2>{t("cut.feed")}</h2><p><b>{number(s.feed, slow ? 3 : 1, true)}</b> <u>mm/s</u> <em>{t(way)}</em></p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{number(s.feed, slow ? 3 : 1, true)}</b> <u>mm/s</u> <em>{t(way)}</em></p></div>
 		<div class="bar feedbar" aria-hidden="true"><i class={s.feed < 0 ? "flow back" : "flow"} style={s.feed < 0 ? { right: "50%", width: `${share}%` } : { left: "50%", width: `${share}%` }} /><i class="zero" /></div>
 		<button type="button" class="stripkey" onClick={p.onOpen} aria-label={t("chart.feed")}>
 			<Strip points={link.points} at={4} colour="--done" label={t("chart.feed")} height={44} span={60} lines={[0]} clip={[-most * 1.2, most * 1.2]} /></button>
@@ -50,12 +50,12 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 }
 
 function Positions(): JSX.Element {
-	const s = link.state;
-	return <Card class="positions" label={t("cut.position")}><table><tbody>
-		{(link.hello?.axes ?? []).map((a) => <tr key={a.name}><th scope="row">{a.name}</th>
-			<td class="n">{number(s.pos[a.index] ?? 0, 3, true)}</td><td class="u">{a.rotary ? "deg" : "mm"}</td>
-			<td class="w">{s.limit >> a.index & 1 ? t("setup.limit") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</td></tr>)}
-	</tbody></table></Card>;
+	const s = link.state, axes = link.hello?.axes ?? [];
+	return <Card class={`positions ${axes.length > 4 ? "many" : ""}`} label={t("cut.position")}><ul>
+		{axes.map((a) => <li key={a.name}><b>{a.name}</b>
+			<span class="n">{number(s.pos[a.index] ?? 0, 3, true)}</span><u>{a.rotary ? "deg" : "mm"}</u>
+			<em>{s.limit >> a.index & 1 ? t("setup.limit") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</em></li>)}
+	</ul></Card>;
 }
 
 function Sums(): JSX.Element {

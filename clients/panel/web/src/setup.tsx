@@ -76,7 +76,7 @@ function ProbeForm(p: { probe: Probe }): JSX.Element {
 	const why = !whole ? t("probe.bad") : link.state.loaded ? t("no.loaded") : whyNot("send");
 	return <div class="probe"><div class="probe-top"><Drawing id={p.probe.id} v={v} /><p>{t(`probe.${p.probe.id}.about`)}</p></div>
 		<div class="fields">{p.probe.asks.map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c.replace("-", "\u2212") }))} /></label> :
-			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")}: ${"\u2013"})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
+			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
 		<details open><summary>{t("setup.make")}</summary><pre>{code.join("\n")}</pre></details>
 		<p class="note">{t("probe.warn")}</p>
 		<div class="keys end"><PressKey id="probe-run" class="primary" why={why} onPress={() => void sendText(`probe-${p.probe.id}.ngc`, code.join("\n") + "\n", true)}>{t("setup.run")}</PressKey></div>

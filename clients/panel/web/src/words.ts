@@ -26,7 +26,7 @@ export const en = {
 	"state.idle": "Idle", "state.travel": "Positioning", "state.approach": "Approach",
 	"state.erode": "Cutting", "state.retract": "Retract", "state.jump": "Jump",
 	"state.hold": "Held", "state.fault": "Fault", "state.jog": "Jog",
-	"state.home": "Homing", "state.probe": "Probing", "state.unknown": "No contact",
+	"state.home": "Homing", "state.probe": "Probing", "state.unknown": "No signal",
 	"state.ready": "Ready",
 
 	"why.idle": "No job is loaded. Drop a program anywhere to begin.",
@@ -121,7 +121,7 @@ export const en = {
 	"probe.axis": "Axis", "probe.way": "Way", "probe.far": "At most", "probe.radius": "Farthest way to a wall",
 	"probe.off": "Off a wall", "probe.times": "Times", "probe.sidex": "Beside, X", "probe.sidey": "Beside, Y",
 	"probe.down": "Down", "probe.wayx": "Wall, X", "probe.wayy": "Wall, Y", "probe.zero": "Call this place",
-	"probe.nozero": "leave it without a name", "probe.outer": "Outer corner",
+	"probe.nozero": "or empty", "probe.outer": "Outer corner",
 	"probe.warn": "The electrode moves. Look at the machine, not at this page.",
 	"probe.bad": "Number wanted",
 
@@ -134,6 +134,7 @@ export const en = {
 	"tech.machine": "machine file", "tech.same": "same", "tech.notes": "Notes",
 	"tech.discard": "Discard changes",
 
+	"event.lost": "edmd was lost", "event.back": "edmd is there",
 	"alarms.now": "Now", "alarms.none": "No fault.", "alarms.history": "Earlier",
 	"alarms.empty": "No alarm is recorded.", "alarms.what": "What", "alarms.why": "Why",
 	"alarms.clear": "What to do", "alarms.where": "Where", "alarms.inline": "{job}, line {line}, {mm} mm along the path",
@@ -181,9 +182,16 @@ export function isWord(word: string): word is Word {
 	return word in en;
 }
 
+// The table speaks of edmctl; here its verbs are keys and pages.
+function onPage(text: string): string {
+	return text.replace(/edmctl doctor/g, "Host on page Machine").replace(/edmctl estop/g, "Stop")
+		.replace(/edmctl /g, "").replace(/^./, (c) => c.toUpperCase());
+}
+
 export function faultWords(fault: string): FaultWords {
-	const of = settings.language === "zh-CN" ? zhFaults : machine.faults;
-	return of[fault as Fault] ?? { what: fault, why: "", clear: "" };
+	if (settings.language === "zh-CN") return zhFaults[fault as Fault] ?? { what: fault, why: "", clear: "" };
+	const w = machine.faults[fault as Fault] ?? { what: fault, why: "", clear: "" };
+	return { what: onPage(w.what), why: onPage(w.why), clear: onPage(w.clear) };
 }
 
 export function stateWord(state: string): string {
