@@ -26,18 +26,12 @@
 #include "interp/axis.h"
 #include "path/mover.h"
 
+#include "settings.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
 #define MANUAL_ALL_AXES	INTERP_NAXES	/* home: each that has a method */
-
-enum home_method {
-	HOME_NONE,
-	HOME_SWITCH,
-	HOME_SWITCH_INDEX,
-	HOME_ABSOLUTE,
-	HOME_NMETHODS
-};
 
 enum home_phase {
 	HOME_BEGIN,
@@ -49,19 +43,6 @@ enum home_phase {
 	HOME_INDEX,			/* slowly, on to the index mark */
 	HOME_STAND,			/* brake, and call the place */
 	HOME_NPHASES
-};
-
-struct manual_axis {
-	bool present;
-	double pulse_mm;
-	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
-	double jog_mm_s;
-	enum home_method method;
-	int home_toward;		/* +1, -1 */
-	double home_fast_mm_s, home_slow_mm_s;
-	double home_at_mm;		/* the place of the switch */
-	double home_back_mm;
-	uint32_t home_order;		/* lowest first */
 };
 
 struct manual {
