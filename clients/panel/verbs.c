@@ -316,6 +316,8 @@ static const struct verb verbs[] = {
 	{ "reset",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "set",      ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "remove",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "move",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "text",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "queue",    ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "show",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "past",     ROLE_VIEWER,   run_ask, "history", false, 0 },

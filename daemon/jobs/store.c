@@ -3,6 +3,7 @@
  * store.c - jobs, events and a few numbers in SQLite
  */
 #include "store.h"
+#include "store_turn.h"
 
 #include "jobs_log.h"
 
@@ -287,8 +288,8 @@ int store_loaded(struct store *s, struct store_job *ret)
 int store_head(struct store *s, struct store_job *ret)
 {
 	return job_get(query(s, "SELECT " JOB_COLUMNS " FROM job WHERE "
-			     "state='queued' AND loaded=0 ORDER BY n=? DESC, n "
-			     "LIMIT 1", "i",
+			     "state='queued' AND loaded=0 ORDER BY n=? DESC, "
+			     STORE_TURN " LIMIT 1", "i",
 			     store_number(s, "selected", 0)), ret);
 }
 
@@ -422,7 +423,8 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 		return query(s, "SELECT json_group_array(json(j)) FROM "
 			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
 			     "state='queued' OR (loaded=1 AND state NOT IN "
-			     "('done', 'stopped')) ORDER BY n)", "");
+			     "('done', 'stopped')) ORDER BY loaded DESC, "
+			     STORE_TURN ")", "");
 	if (what == STORE_ALARMS)
 		return query(s, "SELECT json_group_array(json(a)) FROM (SELECT "
 			     "json_object('utime', utime, 'kind', kind, 'job', "

@@ -45,4 +45,21 @@ void verbs_settle(struct jobs *j, const struct verb *v,
 void verbs_await(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 
+/* -- verbs_queue.c: functions of rows -- */
+
+void verb_remove(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c);
+void verb_move(struct jobs *j, const struct verb *v,
+	       const struct jobs_lcm_command *c);
+void verb_text(struct jobs *j, const struct verb *v,
+	       const struct jobs_lcm_command *c);
+void verb_queue(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c);
+void verb_show(struct jobs *j, const struct verb *v,
+	       const struct jobs_lcm_command *c);
+void verb_alarms(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c);
+void verb_history(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c);
+
 #endif /* JOBS_VERB_H */

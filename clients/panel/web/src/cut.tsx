@@ -7,6 +7,7 @@ import { isRunning, whyNot } from "./can";
 import { Strip } from "./chart";
 import { duration, number, parse, short } from "./format";
 import { link, type Point } from "./link";
+import { useLine } from "./lines";
 import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
 import { PathView } from "./pathview";
 import { useAsk } from "./use";
@@ -138,13 +139,14 @@ export function Cut(): JSX.Element {
 	const s = link.state;
 	const shown = s.program > 0 && s.loaded;
 	const back = Math.max(0, s.far - s.place), whole = s.length || 1;
-	const foot = shown ? <div class="progress"><p><span /><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
+	const line = useLine(shown ? s.job : "", s.line);
+	const foot = shown ? <div class="progress"><p><code title={line}>{line}</code><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
 		<div class="bar"><i class="done" style={{ width: `${Math.min(100, s.far / whole * 100)}%` }} />
 			{back > 0.0005 && <i class="back" style={{ left: `${s.place / whole * 100}%`, width: `${back / whole * 100}%` }} />}</div></div> : null;
 	return <>
 		<div class="cut-grid">
 			<section class="card view" aria-label={t("cut.path")}>
-				<PathView query={shown ? `program=${s.program}` : ""} place={s.place} far={s.far} electrode={s.pos.length ? s.pos : null} foot={foot}
+				<PathView query={shown ? `program=${s.program}` : ""} job={s.job} place={s.place} far={s.far} electrode={s.pos.length ? s.pos : null} foot={foot}
 					title={shown ? <>{s.jobName || t("cut.nojob")}{s.line > 0 && <> {"\u00b7"} {t("cut.line")} {s.line} {t("of")} {s.lines}</>}</> : t("cut.nojob")} />
 			</section>
 			<div class="cut-side"><Gap onOpen={() => set("past")} /><Feed onOpen={() => set("past")} /><Positions /><Sums /></div>

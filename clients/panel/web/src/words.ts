@@ -99,6 +99,7 @@ export const en = {
 	"jobs.checkfirst": "The program has an error. Mend it first.",
 	"jobs.sum": "Cut {cut} mm, positioning {rapid} mm",
 	"jobs.waits": "waits for Start",
+	"jobs.ahead": "{name}: earlier", "jobs.behind": "{name}: later",
 
 	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",
 	"job.done": "done", "job.fault": "fault", "job.stopped": "ended",

@@ -83,6 +83,7 @@ export const zh: Record<Word, string> = {
 	"jobs.length": "路径", "jobs.preview": "预览", "jobs.editor": "程序文本",
 	"jobs.large": "此程序太长,编辑器放不下;它会原样检查和发送。", "jobs.checkfirst": "程序有错误。请先改正。",
 	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动",
+	"jobs.ahead": "{name}:提前", "jobs.behind": "{name}:推后",
 
 	"job.queued": "排队", "job.ready": "就绪", "job.running": "运行", "job.held": "保持",
 	"job.done": "完成", "job.fault": "故障", "job.stopped": "已结束",
