@@ -82,10 +82,10 @@ static int follow_arc(struct route *w, const struct interp_arc *a,
 	const double pieces = ceil(sqrt(bend / 8 / ARC_STRAYS));
 	const uint32_t n = pieces < 1 ? 1 : (uint32_t)fmin(pieces, 1e6);
 	struct route_node at = *end;
-	int rc = 0;
+	int err = 0;
 
 	at.strays = (float)(bend / 8 / n / n * (1 + 1e-6));
-	for (uint32_t i = 1; i <= n && rc == 0; i++) {
+	for (uint32_t i = 1; i <= n && err == 0; i++) {
 		const double p = (double)i / n;
 		const double angle = a->theta + a->sweep * p;
 
@@ -97,9 +97,9 @@ static int follow_arc(struct route *w, const struct interp_arc *a,
 			at.q[a->axis_b] = a->b_mm + (a->r_mm + a->dr_mm * p) *
 						    sin(angle);
 		}
-		rc = route_add(w, &at);
+		err = route_add(w, &at);
 	}
-	return rc;
+	return err;
 }
 
 static int follow_curve(struct route *w, const struct interp_program *p,
@@ -111,13 +111,13 @@ static int follow_curve(struct route *w, const struct interp_program *p,
 		.axis = p->curves[piece->curve].axis, .at = *end,
 		.from = stop[0].u, .to = stop[piece->nstops - 1].u,
 	};
-	int r;
+	int err;
 
 	if (!interp_program_curve(p, piece->curve, &k.curve))
 		return -EINVAL;
-	r = route_curve(w, &k);
+	err = route_curve(w, &k);
 	/* The node is rounded, the curve is not. */
-	return r ? r : route_add(w, end);
+	return err ? err : route_add(w, end);
 }
 
 static int refuse_seg(const struct route_text *from, uint32_t line,
@@ -135,7 +135,7 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 	struct route_node end = { .line = s->line,
 				.feed_mm_s = s->feed_mm_s,
 				.rapid = s->flags & INTERP_SEG_RAPID };
-	int r;
+	int err;
 
 	if (s->flags & INTERP_SEG_SENSED)
 		return refuse_seg(from, s->line, "a move that ends at a "
@@ -152,31 +152,31 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 		w->beside_line = s->line;
 	node_of(p, i + 1, end.q);
 	if (s->kind == INTERP_LINE)
-		r = route_add(w, &end);
+		err = route_add(w, &end);
 	else if (s->kind == INTERP_ARC)
-		r = follow_arc(w, &p->arcs[s->arg], &end);
+		err = follow_arc(w, &p->arcs[s->arg], &end);
 	else if (s->kind == INTERP_CURVE)
-		r = follow_curve(w, p, s, &end);
+		err = follow_curve(w, p, s, &end);
 	else
 		return 0;
-	if (r == -EINVAL)
+	if (err == -EINVAL)
 		return refuse_seg(from, s->line, "a curve that cannot be cut "
 				  "into chords", "a curve without a cusp");
-	return r ? EX_OSERR : 0;
+	return err ? EX_OSERR : 0;
 }
 
 static int follow(struct route *w, const struct interp_program *p,
 		  const struct route_text *from)
 {
 	struct route_node start = { .line = 0 };
-	int r = 0;
+	int err = 0;
 
 	node_of(p, 0, start.q);
 	if (route_add(w, &start))
 		return EX_OSERR;
-	for (uint32_t i = 0; i < p->head->nsegs && r == 0; i++)
-		r = follow_seg(w, p, i, from);
-	return r;
+	for (uint32_t i = 0; i < p->head->nsegs && err == 0; i++)
+		err = follow_seg(w, p, i, from);
+	return err;
 }
 
 /* -- Text -------------------------------------------------------------------- */
@@ -187,16 +187,17 @@ static int read_file(const char *path, char **text, size_t *bytes)
 	FILE *f = standard ? stdin : fopen(path, "rb");
 	struct stat st;
 	size_t room = 1 << 16, n;
-	int r = 0;
+	int err = 0;
 
 	*text = malloc(room);
 	*bytes = 0;
 	if (!f || !*text || fstat(fileno(f), &st) < 0 || S_ISDIR(st.st_mode)) {
 		fprintf(stderr, "edm-plan: %s: %s; a file of NC code\n", path,
 			f ? "cannot be read" : strerror(errno));
-		r = EX_NOINPUT;
+		err = EX_NOINPUT;
 	}
-	while (r == 0 && (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
+	while (err == 0 &&
+	       (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
 		*bytes += n;
 		if (*bytes < room)
 			continue;
@@ -204,17 +205,17 @@ static int read_file(const char *path, char **text, size_t *bytes)
 		if (room > TEXT_BYTES_MAX) {
 			fprintf(stderr, "edm-plan: %s: more than 1 GiB; a file "
 				"of NC code\n", path);
-			r = EX_DATAERR;
+			err = EX_DATAERR;
 		} else {
 			void *more = realloc(*text, room);
 
 			*text = more ? more : *text;
-			r = more ? 0 : EX_OSERR;
+			err = more ? 0 : EX_OSERR;
 		}
 	}
 	if (f && !standard)
 		fclose(f);
-	return r;
+	return err;
 }
 
 static int lay_out(struct interp_build *b, const struct route_text *from,
@@ -225,15 +226,15 @@ static int lay_out(struct interp_build *b, const struct route_text *from,
 	const size_t bytes = interp_build_bytes(b);
 	struct interp_program p;
 	void *block = malloc(bytes);
-	int r;
+	int err;
 
 	if (!block)
 		return EX_OSERR;
 	interp_build_write(b, &about, block);
-	r = interp_program_map(&p, block, bytes) ? EX_SOFTWARE :
+	err = interp_program_map(&p, block, bytes) ? EX_SOFTWARE :
 						   follow(w, &p, from);
 	free(block);
-	return r;
+	return err;
 }
 
 static int compile(struct route *w, const struct machine_config *c,
@@ -243,7 +244,7 @@ static int compile(struct route *w, const struct machine_config *c,
 	struct interp_diag diag = { 0 };
 	struct config_tech tech;
 	struct interp_build *b;
-	int r;
+	int err;
 
 	if (config_tech_load(&tech, c, NULL)) {
 		config_tech_free(&tech);
@@ -256,17 +257,17 @@ static int compile(struct route *w, const struct machine_config *c,
 		memcpy(of.build.start_mm, from->start,
 		       sizeof(of.build.start_mm));
 	b = interp_build_create(&of.build);
-	r = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
-	if (r == -EINVAL) {
+	err = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
+	if (err == -EINVAL) {
 		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", from->path,
 			diag.line, diag.column, diag.found, diag.wanted);
-		r = EX_DATAERR;
+		err = EX_DATAERR;
 	} else {
-		r = r ? EX_OSERR : lay_out(b, from, w);
+		err = err ? EX_OSERR : lay_out(b, from, w);
 	}
 	interp_build_destroy(b);
 	config_tech_free(&tech);
-	return r;
+	return err;
 }
 
 int route_read(struct route *w, const struct machine_config *c,
@@ -279,22 +280,22 @@ int route_read(struct route *w, const struct machine_config *c,
 			   interp_dialect_by_file(from->path),
 	};
 	char *mine = NULL;
-	int r = 0;
+	int err = 0;
 
 	*w = (struct route) { 0 };
 	route_lattice(c, w->lattice);
 	if (from->text) {
 		text.bytes = strlen(from->text);
 	} else {
-		r = read_file(from->path, &mine, &text.bytes);
+		err = read_file(from->path, &mine, &text.bytes);
 		text.at = mine;
 	}
-	if (r == 0)
-		r = compile(w, c, from, &text);
-	if (r == EX_OSERR)
+	if (err == 0)
+		err = compile(w, c, from, &text);
+	if (err == EX_OSERR)
 		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
 	free(mine);
-	if (r)
+	if (err)
 		route_free(w);
-	return r;
+	return err;
 }
