@@ -9,6 +9,7 @@
 
 #include "check.h"
 #include "pullout.h"
+#include "repair.h"
 
 #include <errno.h>
 #include <float.h>
@@ -117,11 +118,11 @@ int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
 static int check_dense(struct plan *p)
 {
 	struct check_result r;
-	int err;
+	int rc;
 
-	err = check_way(p->j, &p->dense, &p->c, &r);
-	if (err)
-		return err == -ENOMEM ? EX_OSERR : 1;
+	rc = check_way(p->j, &p->dense, &p->c, &r);
+	if (rc)
+		return rc == -ENOMEM ? EX_OSERR : 1;
 	p->queries += r.queries;
 	p->dense_least_mm = r.least_mm;
 	if (r.ok)
@@ -295,6 +296,28 @@ static void say_pivot(const struct plan_pivot *v)
 	       v->outside ? "; beyond this machine's travel" : "");
 }
 
+/* What the dense program calls while it goes in has no place among fewer
+ * blocks. */
+static void say_left_out(const struct plan *p)
+{
+	const struct route_node *n = p->dense.node;
+	uint32_t said = 0;
+
+	if (!p->carried) {
+		printf("note       only positioning and blocks are written; "
+		       "conditions and other words of\n           %s are not\n",
+		       p->j->o->program);
+		return;
+	}
+	for (uint32_t i = p->first + 2; i <= p->last && said < 5; i++) {
+		if (!n[i].act_line && n[i].cond == n[i - 1].cond)
+			continue;
+		printf("note       line %u: what it calls within the way in is "
+		       "left out\n", n[i].act_line ? n[i].act_line : n[i].line);
+		said++;
+	}
+}
+
 static void describe(const struct plan *p, FILE *out)
 {
 	job_describe(p->j, out);
@@ -304,10 +327,15 @@ static void describe(const struct plan *p, FILE *out)
 	if (p->dense_pass_s > 0)
 		printf("           %.1f min, %.1f min with a stop at each node\n",
 		       p->dense_pass_s / 60, p->dense_stop_s / 60);
+	if (p->repaired)
+		printf("repaired   %u nodes of the dense way are others now\n",
+		       p->repaired);
 	say_way("greedy", &p->greedy);
 	say_way("fewest", &p->fewest);
 	say_way("written", &p->best);
 	say_pivot(&p->pivot);
+	if (p->j->o->program)
+		say_left_out(p);
 	printf("%-10s %llu queries, %.1f s\n", p->stopped ? "stopped" : "planned",
 	       (unsigned long long)p->queries, p->planned_s);
 }
@@ -340,61 +368,81 @@ static int prove_text(struct plan *p, const char *text)
 static int write_all(struct plan *p)
 {
 	char *text = text_write(p, &p->best);
-	int err;
+	int r;
 
 	if (!text)
 		return EX_OSERR;
 	bar_forget();
-	err = prove_text(p, text);
-	if (err == 0 && p->j->o->times)
-		err = times_ask(p);
-	if (err == 0)
-		err = text_put(p->j->o->output, text);
+	r = prove_text(p, text);
+	if (r == 0 && p->j->o->times)
+		r = times_ask(p);
+	if (r == 0)
+		r = text_put(p->j->o->output, text);
 	free(text);
-	if (err == 0)
-		err = report_put(p);
-	if (err == 0)
-		err = picture_put(p);
-	if (err == 0)
-		err = view_put(p);
-	if (err == 0 && !p->j->o->quiet)
+	if (r == 0)
+		r = report_put(p);
+	if (r == 0)
+		r = picture_put(p);
+	if (r == 0)
+		r = view_put(p);
+	if (r == 0 && !p->j->o->quiet)
 		describe(p, stdout);
-	return err;
+	return r;
+}
+
+static void say_no_way(const struct plan *p)
+{
+	if (bar_interrupted()) {
+		fprintf(stderr, "edm-plan: interrupted before a way that keeps "
+			"%.3f mm was found\n", p->j->clear_mm);
+		return;
+	}
+	fprintf(stderr, "edm-plan: no way near the program keeps %.3f mm; a "
+		"thinner electrode, less --clearance, or another program to "
+		"begin with\n", p->j->clear_mm);
+	if (p->nearest.mm > 0) {
+		fprintf(stderr, "edm-plan: the last that was tried came to "
+			"%.3f mm\n", p->nearest.mm);
+		job_say_pair(p->j, &p->nearest, stderr);
+	}
 }
 
 static int plan_nodes(struct plan *p)
 {
 	static double q[FEWEST_NODES_MAX][INTERP_NAXES];
 	uint32_t n;
-	int err;
+	int r;
 
 	take_nodes(p, q, &n);
-	err = plan_over(p, p->j, q, n);
-	if (err == -ENOMEM)
+	r = plan_over(p, p->j, q, n);
+	if (r == 1 && !(p->c.zone_mm > 0) && !bar_interrupted()) {
+		r = repair_nodes(p, q, &n);
+		if (r == 0)
+			r = plan_over(p, p->j, q, n);
+	}
+	if (r == -ENOMEM)
 		return EX_OSERR;
-	if (err) {
-		fprintf(stderr, "edm-plan: no way over the nodes of the program "
-			"keeps %.3f mm%s\n", p->j->clear_mm,
-			bar_interrupted() ? ": interrupted" : "");
+	if (r) {
+		say_no_way(p);
 		return 1;
 	}
 	if (!p->j->o->no_pivot && !bar_interrupted())
-		err = plan_pivot(p) == -ENOMEM ? EX_OSERR : 0;
-	return err;
+		r = plan_pivot(p) == -ENOMEM ? EX_OSERR : 0;
+	return r;
 }
 
 static int load_way(struct plan *p)
 {
 	const struct route_text from = { .path = p->j->o->program,
 				       .dialect = p->j->o->dialect };
-	int err;
+	int r;
 
 	if (p->j->o->end_given)
-		err = pullout_way(p);
+		r = pullout_way(p);
 	else
-		err = route_read(&p->dense, &p->j->config, &from);
-	if (err)
-		return err;
+		r = route_read(&p->dense, &p->j->config, &from);
+	if (r)
+		return r;
 	if (!p->j->o->end_given &&
 	    !job_moves_known(p->j, &p->dense, p->j->o->program))
 		return EX_DATAERR;
@@ -404,26 +452,26 @@ static int load_way(struct plan *p)
 int plan_program(struct job *j)
 {
 	static struct plan p;
-	int err;
+	int r;
 
 	p.j = j;
 	p.seconds = now_s();
-	err = load_way(&p);
-	if (err == 0)
-		err = check_clearance(j, p.dense.node[p.last].q, &p.c);
-	if (err == 0)
-		err = plan_check_end(&p, p.dense.node[p.last].q);
-	if (err == 0)
-		err = check_dense(&p);
-	if (err == 0)
-		err = plan_nodes(&p);
+	r = load_way(&p);
+	if (r == 0)
+		r = check_clearance(j, p.dense.node[p.last].q, &p.c);
+	if (r == 0)
+		r = plan_check_end(&p, p.dense.node[p.last].q);
+	if (r == 0)
+		r = check_dense(&p);
+	if (r == 0)
+		r = plan_nodes(&p);
 	p.stopped = bar_interrupted();
 	p.planned_s = now_s() - p.seconds;
 	bar_end(j);
-	if (err == 0)
-		err = write_all(&p);
-	if (err == EX_OSERR)
+	if (r == 0)
+		r = write_all(&p);
+	if (r == EX_OSERR)
 		fprintf(stderr, "edm-plan: out of memory\n");
 	route_free(&p.dense);
-	return err;
+	return r;
 }

@@ -22,6 +22,7 @@
 void route_free(struct route *w)
 {
 	free(w->node);
+	free(w->text);
 	*w = (struct route) { 0 };
 }
 
@@ -82,10 +83,10 @@ static int follow_arc(struct route *w, const struct interp_arc *a,
 	const double pieces = ceil(sqrt(bend / 8 / ARC_STRAYS));
 	const uint32_t n = pieces < 1 ? 1 : (uint32_t)fmin(pieces, 1e6);
 	struct route_node at = *end;
-	int err = 0;
+	int rc = 0;
 
 	at.strays = (float)(bend / 8 / n / n * (1 + 1e-6));
-	for (uint32_t i = 1; i <= n && err == 0; i++) {
+	for (uint32_t i = 1; i <= n && rc == 0; i++) {
 		const double p = (double)i / n;
 		const double angle = a->theta + a->sweep * p;
 
@@ -97,9 +98,9 @@ static int follow_arc(struct route *w, const struct interp_arc *a,
 			at.q[a->axis_b] = a->b_mm + (a->r_mm + a->dr_mm * p) *
 						    sin(angle);
 		}
-		err = route_add(w, &at);
+		rc = route_add(w, &at);
 	}
-	return err;
+	return rc;
 }
 
 static int follow_curve(struct route *w, const struct interp_program *p,
@@ -111,21 +112,29 @@ static int follow_curve(struct route *w, const struct interp_program *p,
 		.axis = p->curves[piece->curve].axis, .at = *end,
 		.from = stop[0].u, .to = stop[piece->nstops - 1].u,
 	};
-	int err;
+	int r;
 
 	if (!interp_program_curve(p, piece->curve, &k.curve))
 		return -EINVAL;
-	err = route_curve(w, &k);
+	r = route_curve(w, &k);
 	/* The node is rounded, the curve is not. */
-	return err ? err : route_add(w, end);
+	return r ? r : route_add(w, end);
 }
 
 static int refuse_seg(const struct route_text *from, uint32_t line,
 		      const char *found, const char *wanted)
 {
-	fprintf(stderr, "%s:%u: error: %s; %s\n", from->path, line, found,
-		wanted);
+	if (!from->quiet)
+		fprintf(stderr, "%s:%u: error: %s; %s\n", from->path, line,
+			found, wanted);
 	return EX_DATAERR;
+}
+
+static int note_action(struct route *w, const struct interp_seg *s)
+{
+	if (s->kind != INTERP_BEGIN && s->kind != INTERP_END)
+		w->act_line = s->line;
+	return 0;
 }
 
 static int follow_seg(struct route *w, const struct interp_program *p,
@@ -134,8 +143,9 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 	const struct interp_seg *s = &p->segs[i];
 	struct route_node end = { .line = s->line,
 				.feed_mm_s = s->feed_mm_s,
-				.rapid = s->flags & INTERP_SEG_RAPID };
-	int err;
+				.rapid = s->flags & INTERP_SEG_RAPID,
+				.cond = s->cond, .act_line = w->act_line };
+	int r;
 
 	if (s->flags & INTERP_SEG_SENSED)
 		return refuse_seg(from, s->line, "a move that ends at a "
@@ -152,31 +162,32 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 		w->beside_line = s->line;
 	node_of(p, i + 1, end.q);
 	if (s->kind == INTERP_LINE)
-		err = route_add(w, &end);
+		r = route_add(w, &end);
 	else if (s->kind == INTERP_ARC)
-		err = follow_arc(w, &p->arcs[s->arg], &end);
+		r = follow_arc(w, &p->arcs[s->arg], &end);
 	else if (s->kind == INTERP_CURVE)
-		err = follow_curve(w, p, s, &end);
+		r = follow_curve(w, p, s, &end);
 	else
-		return 0;
-	if (err == -EINVAL)
+		return note_action(w, s);
+	w->act_line = 0;
+	if (r == -EINVAL)
 		return refuse_seg(from, s->line, "a curve that cannot be cut "
 				  "into chords", "a curve without a cusp");
-	return err ? EX_OSERR : 0;
+	return r ? EX_OSERR : 0;
 }
 
 static int follow(struct route *w, const struct interp_program *p,
 		  const struct route_text *from)
 {
 	struct route_node start = { .line = 0 };
-	int err = 0;
+	int r = 0;
 
 	node_of(p, 0, start.q);
 	if (route_add(w, &start))
 		return EX_OSERR;
-	for (uint32_t i = 0; i < p->head->nsegs && err == 0; i++)
-		err = follow_seg(w, p, i, from);
-	return err;
+	for (uint32_t i = 0; i < p->head->nsegs && r == 0; i++)
+		r = follow_seg(w, p, i, from);
+	return r;
 }
 
 /* -- Text -------------------------------------------------------------------- */
@@ -187,17 +198,16 @@ static int read_file(const char *path, char **text, size_t *bytes)
 	FILE *f = standard ? stdin : fopen(path, "rb");
 	struct stat st;
 	size_t room = 1 << 16, n;
-	int err = 0;
+	int r = 0;
 
 	*text = malloc(room);
 	*bytes = 0;
 	if (!f || !*text || fstat(fileno(f), &st) < 0 || S_ISDIR(st.st_mode)) {
 		fprintf(stderr, "edm-plan: %s: %s; a file of NC code\n", path,
 			f ? "cannot be read" : strerror(errno));
-		err = EX_NOINPUT;
+		r = EX_NOINPUT;
 	}
-	while (err == 0 &&
-	       (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
+	while (r == 0 && (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
 		*bytes += n;
 		if (*bytes < room)
 			continue;
@@ -205,17 +215,17 @@ static int read_file(const char *path, char **text, size_t *bytes)
 		if (room > TEXT_BYTES_MAX) {
 			fprintf(stderr, "edm-plan: %s: more than 1 GiB; a file "
 				"of NC code\n", path);
-			err = EX_DATAERR;
+			r = EX_DATAERR;
 		} else {
 			void *more = realloc(*text, room);
 
 			*text = more ? more : *text;
-			err = more ? 0 : EX_OSERR;
+			r = more ? 0 : EX_OSERR;
 		}
 	}
 	if (f && !standard)
 		fclose(f);
-	return err;
+	return r;
 }
 
 static int lay_out(struct interp_build *b, const struct route_text *from,
@@ -226,15 +236,15 @@ static int lay_out(struct interp_build *b, const struct route_text *from,
 	const size_t bytes = interp_build_bytes(b);
 	struct interp_program p;
 	void *block = malloc(bytes);
-	int err;
+	int r;
 
 	if (!block)
 		return EX_OSERR;
 	interp_build_write(b, &about, block);
-	err = interp_program_map(&p, block, bytes) ? EX_SOFTWARE :
+	r = interp_program_map(&p, block, bytes) ? EX_SOFTWARE :
 						   follow(w, &p, from);
 	free(block);
-	return err;
+	return r;
 }
 
 static int compile(struct route *w, const struct machine_config *c,
@@ -244,7 +254,7 @@ static int compile(struct route *w, const struct machine_config *c,
 	struct interp_diag diag = { 0 };
 	struct config_tech tech;
 	struct interp_build *b;
-	int err;
+	int r;
 
 	if (config_tech_load(&tech, c, NULL)) {
 		config_tech_free(&tech);
@@ -257,17 +267,19 @@ static int compile(struct route *w, const struct machine_config *c,
 		memcpy(of.build.start_mm, from->start,
 		       sizeof(of.build.start_mm));
 	b = interp_build_create(&of.build);
-	err = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
-	if (err == -EINVAL) {
-		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", from->path,
-			diag.line, diag.column, diag.found, diag.wanted);
-		err = EX_DATAERR;
+	r = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
+	if (r == -EINVAL) {
+		if (!from->quiet)
+			fprintf(stderr, "%s:%u:%u: error: %s; %s\n", from->path,
+				diag.line, diag.column, diag.found,
+				diag.wanted);
+		r = EX_DATAERR;
 	} else {
-		err = err ? EX_OSERR : lay_out(b, from, w);
+		r = r ? EX_OSERR : lay_out(b, from, w);
 	}
 	interp_build_destroy(b);
 	config_tech_free(&tech);
-	return err;
+	return r;
 }
 
 int route_read(struct route *w, const struct machine_config *c,
@@ -280,22 +292,24 @@ int route_read(struct route *w, const struct machine_config *c,
 			   interp_dialect_by_file(from->path),
 	};
 	char *mine = NULL;
-	int err = 0;
+	int r = 0;
 
 	*w = (struct route) { 0 };
 	route_lattice(c, w->lattice);
 	if (from->text) {
 		text.bytes = strlen(from->text);
 	} else {
-		err = read_file(from->path, &mine, &text.bytes);
+		r = read_file(from->path, &mine, &text.bytes);
 		text.at = mine;
 	}
-	if (err == 0)
-		err = compile(w, c, from, &text);
-	if (err == EX_OSERR)
+	if (r == 0)
+		r = compile(w, c, from, &text);
+	if (r == EX_OSERR)
 		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
-	free(mine);
-	if (err)
+	if (mine)
+		mine[text.bytes] = '\0';
+	w->text = mine;
+	if (r)
 		route_free(w);
-	return err;
+	return r;
 }
