@@ -208,6 +208,13 @@ approach_mm_s = 1
 """
 
 
+# A PLC on the drives' own bus.
+SHARED = """[plc]
+interface = vcan0
+alive_ms = 500
+"""
+
+
 # A strict drive each: what the machine file has to say of it.
 STRICT_UP = """[axis.X]
 drive_window_mm = 0.5

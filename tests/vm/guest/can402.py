@@ -11,6 +11,7 @@ import socket
 import struct
 import subprocess
 import sys
+import threading
 import time
 
 R = pathlib.Path(sys.argv[1])
@@ -249,9 +250,76 @@ def harmless(s):
     return {"harmless": got}
 
 
+class Plc(threading.Thread):
+    """On the drives' own bus: its request each 20 ms, with a turned toggle."""
+
+    NODE, LOCKS = 32, 0x1f
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.permit, self.talking, self.toggle = 1, True, 0
+
+    def run(self):
+        while self.talking:
+            self.toggle ^= 0x80
+            frame(0x200 + self.NODE, bytes(
+                [self.toggle | self.permit, self.LOCKS, 0xe8, 3, 0, 0, 0, 0]))
+            time.sleep(0.02)
+
+    def nmt(self, command, node=NODE):
+        frame(0x000, bytes([command, node]))
+
+
+def shared(name, nodes):
+    """A PLC of ours on the drives' bus, and all that it may say by NMT."""
+    with Scene(name, nodes) as s:
+        plc = Plc()
+        s.tell("gap", 25)
+        s.submit(str(R / f"{name}.ngc"))
+        plc.nmt(1)
+        plc.start()
+        time.sleep(0.2)
+        s.start()
+        s.until("cutting", 10, state=CUTTING)
+        s.mark("NMT")
+        for node in Plc.NODE, 0:
+            plc.nmt(1, node)
+        time.sleep(0.5)
+        s.more["after NMT"] = s.status()
+        s.mark("NMT taken")
+        s.more["taken"] = {}
+        for what, take, give in (
+                ("permit", lambda: setattr(plc, "permit", 0),
+                 lambda: setattr(plc, "permit", 1)),
+                ("stop", lambda: plc.nmt(2), lambda: plc.nmt(1)),
+                ("reset", lambda: plc.nmt(0x81), lambda: plc.nmt(1)),
+                ("stop all", lambda: plc.nmt(2, 0), lambda: plc.nmt(1))):
+            s.more["taken"][what] = taken(s, what, take, give)
+        s.until("cutting again", 10, state=CUTTING)
+        s.tell("gap", 45)
+        s.until("idle", 60, state="idle")
+        plc.talking = False
+
+
+def taken(s, what, take, give):
+    """While it cuts: what ends it, and that it goes on when it is given back."""
+    s.until(f"{what}: cutting", 10, state=CUTTING)
+    time.sleep(0.3)
+    s.mark(f"{what}: harm")
+    take()
+    got = s.until(f"{what}: fault", 5, state="fault")
+    time.sleep(0.3)
+    give()
+    time.sleep(0.3)
+    s.ctl("reset")
+    s.until(f"{what}: reset", 5, state="hold")
+    return {"fault": got["fault"], "start": s.start()}
+
+
 if __name__ == "__main__":
     whole_job("two", [1, 2])
     whole_job("six", [1, 2, 3, 4, 5, 6])
     for name in "lagging", "led", "coupled":
         whole_job(name, [1, 2], lags=(30, 21.5))
+    shared("shared", [1, 2])
     faults("faults", [1, 2])
