@@ -275,17 +275,18 @@ static void print_gains(const struct tuning *t,
 			const struct interp_compensate_gains *g)
 {
 	const uint32_t m = t->config.methods;
+	const int d = INTERP_TUNE_DIGITS;
 
 	printf("[contour]\nmethod = %s\n", t->run->config->contour.method);
 	if (m & INTERP_COMPENSATE_FEEDFORWARD)
-		printf("speed = %.4g\nacceleration = %.4g\nlead_periods = %.4g\n",
-		       g->velocity, g->acceleration, g->lead_periods);
+		printf("speed = %.*g\nacceleration = %.*g\nlead_periods = %.*g\n",
+		       d, g->velocity, d, g->acceleration, d, g->lead_periods);
 	if (m & INTERP_COMPENSATE_CROSS)
-		printf("cross_1_s = %.4g\n", g->cross_1_s);
+		printf("cross_1_s = %.*g\n", d, g->cross_1_s);
 	if (m & INTERP_COMPENSATE_PREDICTIVE)
-		printf("predicted_1_s = %.4g\nmeasured_1_s = %.4g\n"
-		       "horizon_s = %.4g\n", g->predicted_1_s, g->measured_1_s,
-		       g->horizon_s);
+		printf("predicted_1_s = %.*g\nmeasured_1_s = %.*g\n"
+		       "horizon_s = %.*g\n", d, g->predicted_1_s,
+		       d, g->measured_1_s, d, g->horizon_s);
 }
 
 static int try_out(struct tuning *t, const char *what, uint32_t methods,
