@@ -10,6 +10,7 @@
 #                   from check, because it takes longer than all the rest
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
+#   make count      instructions of what is done most, into docs/performance.md
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
@@ -140,7 +141,7 @@ INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
 WORDS_O	 := $(call obj,$(WORDS))
 RT_O	 := $(call obj,$(RT)) $(WORDS_O)
 IO_O	 := $(call obj,$(IO))
-SIM_IO_O := $(filter-out %/gpio.o %/gpio_open.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
+SIM_IO_O := $(filter-out %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 LINES_O	 := $(filter %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
@@ -270,6 +271,9 @@ $(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call 
 $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 
+# The lines of its encoder are its own.
+$(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
+
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
 
@@ -336,6 +340,8 @@ check:
 	@$(MAKE) --no-print-directory lint
 	@tests/stage check units
 	@EDM_SEED=1 $(MAKE) --no-print-directory run-units
+	@tests/stage check count
+	@$(MAKE) --no-print-directory run-count
 	@tests/stage check san
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
 	@tests/stage check run-san
@@ -455,6 +461,17 @@ bench: vm
 	@tests/setup check
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
+
+# Instructions, which do not depend on how busy the machine is.  What needs over
+# 5 % more than docs/performance.md says fails the check.
+.PHONY: count run-count
+count: $(B)/bench/count
+	@EDM_BUILD=$(B) tests/bench/count > $(B)/count.md
+	@docs/put-table $(B)/count.md docs/performance.md
+	@cat $(B)/count.md
+
+run-count: $(B)/bench/count
+	@EDM_BUILD=$(B) tests/bench/count --check docs/performance.md
 
 include tests/experiments/Makefile
 
