@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <sysexits.h>
 
-void verb_remove(struct jobs *j, const struct verb *v,
-		 const struct jobs_lcm_command *c)
+void verbs_remove(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c)
 {
 	struct store_end e = {
 		.state = JOB_STOPPED, .reason = "removed from the queue",
@@ -38,8 +38,8 @@ void verb_remove(struct jobs *j, const struct verb *v,
 	}
 }
 
-void verb_move(struct jobs *j, const struct verb *v,
-	       const struct jobs_lcm_command *c)
+void verbs_move(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c)
 {
 	struct store_job job;
 	int err;
@@ -63,8 +63,8 @@ void verb_move(struct jobs *j, const struct verb *v,
 	}
 }
 
-void verb_text(struct jobs *j, const struct verb *v,
-	       const struct jobs_lcm_command *c)
+void verbs_text(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c)
 {
 	struct jobs_lcm_ack a = {
 		.key = c->key, .client = c->client, .seq = c->seq,
@@ -105,29 +105,29 @@ static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 	free(body);
 }
 
-void verb_queue(struct jobs *j, const struct verb *v,
-		const struct jobs_lcm_command *c)
+void verbs_queue(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_QUEUE);
 }
 
-void verb_show(struct jobs *j, const struct verb *v,
-	       const struct jobs_lcm_command *c)
+void verbs_show(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_SHOW);
 }
 
-void verb_alarms(struct jobs *j, const struct verb *v,
-		 const struct jobs_lcm_command *c)
+void verbs_alarms(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c)
 {
 	(void)v;
 	answer_list(j, c, STORE_ALARMS);
 }
 
-void verb_history(struct jobs *j, const struct verb *v,
-		  const struct jobs_lcm_command *c)
+void verbs_history(struct jobs *j, const struct verb *v,
+		   const struct jobs_lcm_command *c)
 {
 	(void)v;
 	if (c->arg >= 0 && c->arg <= 1000)
