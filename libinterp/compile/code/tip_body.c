@@ -178,7 +178,7 @@ static int go_span(struct nc_reader *r, struct pair *p)
 						  r->o->tip_tolerance_mm };
 	struct body_span s = { .r = r, .pair = p };
 	const struct nc_pose_way w = { .at = span_at, .of = &s, .body = true };
-	int rc = 0;
+	int err = 0;
 
 	s.nstops = interp_nurbs_stops(e, &range, NULL, 0);
 	s.stops = malloc(s.nstops * sizeof(*s.stops));
@@ -187,9 +187,9 @@ static int go_span(struct nc_reader *r, struct pair *p)
 	interp_nurbs_stops(e, &range, s.stops, s.nstops);
 	/* Where both stand there is no length to go by. */
 	if (s.stops[s.nstops - 1].s_mm > 0)
-		rc = nc_pose_way(r, &w);
+		err = nc_pose_way(r, &w);
 	free(s.stops);
-	return rc;
+	return err;
 }
 
 /* -- Checks -------------------------------------------------------------------------- */
@@ -251,30 +251,30 @@ static int check(struct nc_reader *r, struct curve_plan *plan, struct pair *p)
 	const struct interp_nurbs both = nurbs_of(c, COLUMNS, p->both);
 	const struct interp_nurbs move = nurbs_of(c, 3, p->move);
 	const struct interp_nurbs turn = nurbs_of(c, 4, p->turn);
-	int rc = build_curve_check(plan);
+	int err = build_curve_check(plan);
 
-	if (rc) {
+	if (err) {
 		if (!r->diag->line)
 			r->diag->line = r->line;
-		return rc;
+		return err;
 	}
 	interp_nurbs_open(&p->e, &both);
 	interp_pose_open(&p->path, &move, &turn);
-	rc = check_start(r, p);
-	return rc ? rc : check_end(r, p);
+	err = check_start(r, p);
+	return err ? err : check_end(r, p);
 }
 
 static int walk(struct nc_reader *r, struct curve_plan *plan, struct pair *p)
 {
 	const struct interp_nurbs *c = &p->e.c;
-	int rc;
+	int err;
 
 	nurbs_span_enter(&p->e, interp_nurbs_span(c, interp_nurbs_first(c)));
 	do {
 		r->word.line = build_curve_line(plan, p->e.from);
-		rc = go_span(r, p);
-	} while (!rc && nurbs_span_next(&p->e));
-	return rc;
+		err = go_span(r, p);
+	} while (!err && nurbs_span_next(&p->e));
+	return err;
 }
 
 static int body_build(struct nc_reader *r)
@@ -286,19 +286,19 @@ static int body_build(struct nc_reader *r)
 	};
 	struct curve_plan plan = { .c = &bc, .diag = r->diag };
 	struct pair p = { .k = &r->tool.k };
-	int rc = nc_word(r, c->last_mm, false);
+	int err = nc_word(r, c->last_mm, false);
 
 	c->open = 0;
 	r->word.feed_mm_s = r->feed_mm_s;
 	nc_curve_set_marks(c);
-	if (!rc)
-		rc = pair_make(&p, c) ? check(r, &plan, &p) : -ENOMEM;
-	if (!rc)
-		rc = walk(r, &plan, &p);
-	if (!rc)
+	if (!err)
+		err = pair_make(&p, c) ? check(r, &plan, &p) : -ENOMEM;
+	if (!err)
+		err = walk(r, &plan, &p);
+	if (!err)
 		nc_tool_looks(r);
 	pair_free(&p);
-	return rc;
+	return err;
 }
 
 int nc_body(struct nc_reader *r)
@@ -307,7 +307,7 @@ int nc_body(struct nc_reader *r)
 	const uint32_t point = XYZ | QUATERNION | NC_BIT(NC_R);
 	struct nc_curve *c = &r->curve;
 	const bool first = !c->open;
-	int rc = 0;
+	int err = 0;
 
 	if (!(b->words & (point | NC_BIT(NC_P) | NC_BIT(NC_L))))
 		return 0;
@@ -319,18 +319,18 @@ int nc_body(struct nc_reader *r)
 				 "P and a knot in each block of G6.3",
 				 "a block of G6.3 without a knot");
 	if (first)
-		rc = body_open(r);
+		err = body_open(r);
 	else if (nc_has(r, NC_L))
-		rc = nc_refuse(r, b->at[NC_L], "L in the first block of G6.3",
+		err = nc_refuse(r, b->at[NC_L], "L in the first block of G6.3",
 			       "a second order of one curve");
-	if (!rc)
-		rc = nc_curve_next_knot(r, NC_P);
-	if (!rc && (first || b->words & point))
-		rc = nc_curve_in_turn(r, NC_P);
-	if (!rc && (first || b->words & point))
-		rc = body_point(r);
-	if (rc || c->nknots != c->npoints + c->order)
-		return rc;
-	rc = nc_curve_check_points(r, b->at[NC_P]);
-	return rc ? rc : body_build(r);
+	if (!err)
+		err = nc_curve_next_knot(r, NC_P);
+	if (!err && (first || b->words & point))
+		err = nc_curve_in_turn(r, NC_P);
+	if (!err && (first || b->words & point))
+		err = body_point(r);
+	if (err || c->nknots != c->npoints + c->order)
+		return err;
+	err = nc_curve_check_points(r, b->at[NC_P]);
+	return err ? err : body_build(r);
 }

@@ -120,7 +120,7 @@ static int solve(const struct track *k, double t, struct nc_pose *p,
 	const struct interp_kinematics *kin = &k->r->tool.k;
 	const double was[3] = { q[INTERP_A], q[INTERP_B], q[INTERP_C] };
 	struct interp_kin_pose want;
-	int rc;
+	int err;
 
 	k->w->at(k->w->of, t, p);
 	memcpy(q, p->mm, INTERP_NAXES * sizeof(*q));
@@ -131,16 +131,16 @@ static int solve(const struct track *k, double t, struct nc_pose *p,
 	}
 	memcpy(want.tip_mm, p->mm, sizeof(want.tip_mm));
 	memcpy(want.dir, p->dir, sizeof(want.dir));
-	rc = interp_kin_inverse(kin, &want, q);
-	if (rc && rc != -ESRCH)
-		return rc;
+	err = interp_kin_inverse(kin, &want, q);
+	if (err && err != -ESRCH)
+		return err;
 	if (k->w->body && nc_pose_roll(kin) >= 0) {
 		q[kin->joint[nc_pose_roll(kin)].axis] =
 			was[kin->joint[nc_pose_roll(kin)].axis - INTERP_A];
 		roll(kin, p->q, q);
-		rc = interp_kin_place(kin, p->mm, q);
+		err = interp_kin_place(kin, p->mm, q);
 	}
-	return rc == -ESRCH ? 0 : rc;
+	return err == -ESRCH ? 0 : err;
 }
 
 static int refuse(struct nc_reader *r, const char *wanted, const char *found)
@@ -208,7 +208,7 @@ static int step(const struct track *k, double *t, double h,
 	double next[INTERP_NAXES], here[INTERP_NAXES];
 	struct nc_pose p, was;
 	bool jumps = false;
-	int rc;
+	int err;
 
 	memcpy(here, q, sizeof(here));
 	k->w->at(k->w->of, *t, &was);
@@ -216,9 +216,9 @@ static int step(const struct track *k, double *t, double h,
 		const double to = fmin(1, *t + h);
 
 		memcpy(next, here, sizeof(next));
-		rc = solve(k, to, &p, next);
-		if (rc)
-			return rc;
+		err = solve(k, to, &p, next);
+		if (err)
+			return err;
 		if (turn_of(here, next) <= STEP_DEG)
 			break;
 		jumps = same(k, &was, &p);
@@ -239,24 +239,24 @@ static int step(const struct track *k, double *t, double h,
 static int follow(struct track *k, double *t, double q[INTERP_NAXES])
 {
 	double h = STEP_MOST;
-	int rc;
+	int err;
 
 	k->n = 0;
 	k->t0 = k->t1 = *t;
-	rc = node_add(k, *t, q);
-	while (rc == 0 && *t < 1) {
+	err = node_add(k, *t, q);
+	while (err == 0 && *t < 1) {
 		const double from = *t;
 
-		rc = step(k, t, h, q);
-		if (rc == -EDOM)
+		err = step(k, t, h, q);
+		if (err == -EDOM)
 			return refuse_pose(k->r);
-		if (rc)
+		if (err)
 			break;
 		k->t1 = *t;
 		h = fmin(STEP_MOST, 2 * (*t - from));
-		rc = node_add(k, *t, q);
+		err = node_add(k, *t, q);
 	}
-	return rc;
+	return err;
 }
 
 static void section_at(const void *of, double u, double ret_mm[INTERP_NAXES])
@@ -299,15 +299,15 @@ static int go_section(struct track *k)
 	struct nc_tip_way w = { .at = section_at, .of = k,
 				.turn_deg = turn_deg(k) };
 	double at[INTERP_NAXES];
-	int rc;
+	int err;
 
 	section_at(k, 0, at);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		w.off_mm[0][i] = r->tool.here_mm[i] - at[i];
 	section_at(k, 1, at);
-	rc = nc_tip_way(r, &w);
+	err = nc_tip_way(r, &w);
 	memcpy(r->tool.here_mm, at, sizeof(at));
-	return rc;
+	return err;
 }
 
 /* The tip stands, the rotaries turn to where @q has them. */
@@ -324,18 +324,18 @@ int nc_pose_way(struct nc_reader *r, const struct nc_pose_way *w)
 {
 	struct track k = { .r = r, .w = w };
 	double q[INTERP_NAXES], t = 0;
-	int rc, jumps;
+	int err, jumps;
 
 	memcpy(q, r->contour.here_mm, sizeof(q));
 	do {
-		rc = jumps = follow(&k, &t, q);
-		if (rc >= 0)
-			rc = k.t1 > k.t0 ? go_section(&k) : 0;
-		if (rc == 0 && jumps)
-			rc = turn_in_place(r, q);
-	} while (rc == 0 && jumps);
+		err = jumps = follow(&k, &t, q);
+		if (err >= 0)
+			err = k.t1 > k.t0 ? go_section(&k) : 0;
+		if (err == 0 && jumps)
+			err = turn_in_place(r, q);
+	} while (err == 0 && jumps);
 	for (uint32_t i = 0; i < r->tool.k.njoints; i++)
 		r->moved |= NC_BIT(r->tool.k.joint[i].axis);
 	free(k.node);
-	return rc;
+	return err;
 }

@@ -53,7 +53,7 @@ void nc_tool_looks(struct nc_reader *r)
 static int switch_on(struct nc_reader *r)
 {
 	struct interp_kin_pose p;
-	int rc;
+	int err;
 
 	if (!r->o->kinematics)
 		return refuse_on(r, "kinematics.chain in the machine file",
@@ -68,9 +68,9 @@ static int switch_on(struct nc_reader *r)
 				 "places of the tip with a wire's offset or "
 				 "taper");
 	r->tool.k = *r->o->kinematics;
-	rc = lengthen(r);
-	if (rc)
-		return rc;
+	err = lengthen(r);
+	if (err)
+		return err;
 	memcpy(r->tool.here_mm, r->contour.here_mm, sizeof(r->tool.here_mm));
 	interp_kin_forward(&r->tool.k, r->contour.here_mm, &p);
 	memcpy(r->tool.here_mm, p.tip_mm, sizeof(p.tip_mm));
@@ -185,13 +185,13 @@ int nc_tool_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	struct swing s = { .to_mm = end_mm };
 	const struct nc_pose_way w = { .at = swing_at, .of = &s };
 	double from[INTERP_NAXES], to[3];
-	int rc;
+	int err;
 
 	if (!r->tool.vector)
 		return nc_tip_line(r, end_mm, rapid);
-	rc = direction(r, to);
-	if (rc)
-		return rc;
+	err = direction(r, to);
+	if (err)
+		return err;
 	if (!swing_set(&s, r->tool.dir, to))
 		return nc_refuse(r, r->block.code_at[NC_MOTION], "a direction "
 				 "between them first", "a direction opposite "
@@ -200,7 +200,7 @@ int nc_tool_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		return nc_tip_line(r, end_mm, rapid);
 	memcpy(from, r->tool.here_mm, sizeof(from));
 	s.from_mm = from;
-	rc = nc_pose_way(r, &w);
+	err = nc_pose_way(r, &w);
 	memcpy(r->tool.dir, to, sizeof(to));
-	return rc;
+	return err;
 }
