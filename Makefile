@@ -18,6 +18,7 @@
 #   make invariants what holds in every cycle, over ten million random ones
 #   make callgraph  draw which file of the cycle calls which
 #   make faults     the table of faults in docs/, from the one in the code
+#   make plc-files  EDS, DBC and the page of signals, from the one in the code
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
 #   make fuzz       the readers of jobs under libFuzzer, a bounded time each
@@ -50,6 +51,11 @@ OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
 	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
+# A shim round a library of C++, whose own headers are not ours to mend.
+CXXFLAGS = -std=c++17 $(OPT) -g -Wall -Wextra -Wshadow $(if $(WERROR),-Werror) \
+	   -isystem /usr/include/eigen3 \
+	   $(subst -I,-isystem ,$(filter -I%,$(shell pkg-config --cflags ompl))) \
+	   -MMD -MP $(SANFLAGS)
 LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
 
 # The parts, in the order data flows.
@@ -82,6 +88,8 @@ SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
 PLAN	:= $(wildcard clients/plan/*.c)
+# The one library for which a little C++ is needed.
+OMPL	:= clients/plan/corridor.cc
 PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
@@ -101,9 +109,9 @@ INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
 WORDS_H		= -Idaemon/words
 INC_words	= $(WORDS_H)
 INC_rt		= -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
-INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
+INC_io		= -Idaemon/io -Idaemon/config $(WORDS_H) $(CORE_H) $(GPIOD_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
-INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
+INC_compiling	= -Idaemon/compiling -Idaemon/config $(WORDS_H) $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
 INC_setup	= -Idaemon/setup
 INC_logger	= -Idaemon/logger -Imessages/sign
@@ -162,6 +170,11 @@ $(B)/%.o: %.c
 	$(call say,CC,$<)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
+
+$(B)/%.o: %.cc
+	$(call say,CXX,$<)
+	@mkdir -p $(@D)
+	$(Q)$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
 
 # Generated messages: compiled without our warnings, they are not ours.
 LCM_TYPES := $(shell sed -n 's/^struct \([a-z_]*_t\).*/\1/p' messages/edm.lcm 2>/dev/null)
@@ -238,13 +251,16 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
 	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
-$(B)/edm-plan: $(call obj,$(PLAN)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
-	$(call link,-ladmesh -lglpk -linih -ljansson -lpthread -lm)
+$(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 # Of edm-plan, without its main().
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c near.c motion.c prove.c))
 
 $(B)/unit/test_plan_core: $(PLAN_CORE)
+
+$(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
+$(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
@@ -457,6 +473,11 @@ faults: $(B)/edmctl
 	$(Q)docs/faults $(B)/edmctl > $(B)/faults.md
 	$(Q)docs/put-table $(B)/faults.md docs/architecture.md
 
+# What a PLC's tools read, from the tables in the code.
+plc-files:
+	$(Q).venv/bin/python messages/plc-files messages/edmd.eds messages/edmd.dbc \
+		docs/plc-signals.md
+
 # Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
 pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(call say,DRAW,docs/pictures)
@@ -586,5 +607,5 @@ clean:
 .PHONY: all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
-	pictures callgraph faults fuzz lint install clean
+	pictures callgraph faults plc-files fuzz lint install clean
 .SECONDARY:
