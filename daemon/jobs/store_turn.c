@@ -4,56 +4,48 @@
  */
 #include "store_turn.h"
 #include "plain.h"
-#include "store.h"
+#include "store_sql.h"
 
-#include <errno.h>
-#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define LINE_MAX	256		/* of a line, with its end */
 #define TEXT_MAX	12000
+#define SHORT_MAX	(4 << 20)	/* of a text whose lines are told */
 
 static int set_turn(struct store *s, uint32_t n, int64_t turn)
 {
 	char key[32];
+	int err;
 
 	snprintf(key, sizeof(key), "turn %u", n);
-	return store_set_number(s, key, turn);
+	err = store_set_number(s, key, turn);
+	return err < 0 ? err : 0;
 }
+
+#define NEIGHBOUR(THAN, ORDER) \
+	"SELECT n, " STORE_TURN " AS t, (SELECT " STORE_TURN " FROM job WHERE " \
+	"n=?) AS mine FROM job WHERE state='queued' AND loaded=0 AND t" THAN \
+	"mine ORDER BY t" ORDER " LIMIT 1"
 
 int store_move(struct store *s, uint32_t n, bool ahead)
 {
-	static const char *const ask[2] = {
-		"SELECT n, " STORE_TURN " AS t, (SELECT " STORE_TURN " FROM "
-		"job WHERE n=?1) AS mine FROM job WHERE state='queued' AND "
-		"loaded=0 AND t > mine ORDER BY t LIMIT 1",
-		"SELECT n, " STORE_TURN " AS t, (SELECT " STORE_TURN " FROM "
-		"job WHERE n=?1) AS mine FROM job WHERE state='queued' AND "
-		"loaded=0 AND t < mine ORDER BY t DESC LIMIT 1",
-	};
-	sqlite3_stmt *q = NULL;
 	int64_t theirs, mine;
 	uint32_t other;
-	int err = -EIO;
+	int err;
+	sqlite3_stmt *q = ahead ?
+		store_ask(s, &err, NEIGHBOUR(" < ", " DESC"), "i", (int64_t)n) :
+		store_ask(s, &err, NEIGHBOUR(" > ", ""), "i", (int64_t)n);
 
-	if (sqlite3_prepare_v2(store_db(s), ask[ahead], -1, &q, NULL) !=
-	    SQLITE_OK)
-		return -EIO;
-	sqlite3_bind_int64(q, 1, n);
-	if (sqlite3_step(q) == SQLITE_ROW) {
-		other = (uint32_t)sqlite3_column_int64(q, 0);
-		theirs = sqlite3_column_int64(q, 1);
-		mine = sqlite3_column_int64(q, 2);
-		err = set_turn(s, n, theirs);
-		if (err == 0)
-			err = set_turn(s, other, mine);
-	} else {
-		err = -ENOENT;
-	}
+	if (!q)
+		return err;
+	other = (uint32_t)sqlite3_column_int64(q, 0);
+	theirs = sqlite3_column_int64(q, 1);
+	mine = sqlite3_column_int64(q, 2);
 	sqlite3_finalize(q);
-	return err;
+	err = set_turn(s, n, theirs);
+	return err ? err : set_turn(s, other, mine);
 }
 
 static const char *next_line(const char *at, const char *end)
@@ -79,30 +71,33 @@ static size_t put_line(char *to, const char *at, const char *next)
 	return n + 1;
 }
 
-static char *as_json(struct store *s, uint32_t first, const char *text, int n)
+static char *as_json(struct store *s, uint32_t first, const char *text)
 {
-	sqlite3_stmt *q = NULL;
 	char *json = NULL;
+	sqlite3_stmt *q = store_ask(s, NULL, "SELECT json_object('first', ?, "
+				    "'text', ?)", "is", (int64_t)first, text);
 
-	if (sqlite3_prepare_v2(store_db(s), "SELECT json_object('first', ?, "
-			       "'text', ?)", -1, &q, NULL) == SQLITE_OK) {
-		sqlite3_bind_int64(q, 1, first);
-		sqlite3_bind_text(q, 2, text, n, SQLITE_STATIC);
-		if (sqlite3_step(q) == SQLITE_ROW)
-			json = strdup((const char *)sqlite3_column_text(q, 0));
-	}
+	if (q)
+		json = strdup((const char *)sqlite3_column_text(q, 0));
 	sqlite3_finalize(q);
 	return json;
 }
 
+/* A long text is read as a whole; for that the service has no time. */
+static bool is_short(struct store *s, uint32_t n)
+{
+	return store_number_of(s, INT64_MAX, "SELECT length(text) FROM text "
+			       "WHERE n=?", "i", (int64_t)n) <= SHORT_MAX;
+}
+
 char *store_lines(struct store *s, uint32_t n, uint32_t first)
 {
-	char out[TEXT_MAX + LINE_MAX], *text;
+	char out[TEXT_MAX + LINE_MAX + 1], *text;
 	const char *at, *end;
 	size_t bytes, put = 0;
 	char *json = NULL;
 
-	if (store_text(s, n, &text, &bytes) < 0)
+	if (!is_short(s, n) || store_text(s, n, &text, &bytes) < 0)
 		return NULL;
 	at = text;
 	end = text + bytes;
@@ -114,8 +109,9 @@ char *store_lines(struct store *s, uint32_t n, uint32_t first)
 		put += put_line(out + put, at, next);
 		at = next;
 	}
+	out[put] = '\0';
 	if (put > 0)
-		json = as_json(s, first, out, (int)put);
+		json = as_json(s, first, out);
 	free(text);
 	return json;
 }

@@ -26,7 +26,8 @@ int store_move(struct store *s, uint32_t n, bool ahead);
 /**
  * store_lines() - STORE_LINES lines of job @n from line @first on, as JSON:
  * an object of `first` and `text`.  Fewer if they are long.
- * Return: to be freed; NULL: no memory, or no such line.
+ * Return: to be freed; NULL: no memory, no such line, or a text of more than
+ * 4 MiB.
  */
 char *store_lines(struct store *s, uint32_t n, uint32_t first);
 

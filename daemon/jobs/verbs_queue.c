@@ -80,7 +80,8 @@ void verbs_text(struct jobs *j, const struct verb *v,
 	a.body = body;
 	if (!body) {
 		a.code = EX_NOINPUT;
-		a.reason = "no such line of such a job; 1 is the first";
+		a.reason = "no such line of such a job, or its "
+			   "text is longer than 4 MiB; 1 is the first";
 	}
 	jobs_answer(j, &a);
 	free(body);
