@@ -128,6 +128,7 @@ static void gap_of(const struct machine_config *m, struct cycle_config *c,
 		.stuck_cycles = cycles_of(g->stuck_s, c->period_ns),
 		.noise_limit_v = g->noise_limit_v,
 		.wire_retract_mm = g->wire_retract_mm,
+		.wire_retreat_to = (enum retreat_to)g->wire_retreat_to,
 		.wire_retreat_mm = g->wire_retreat_mm,
 	};
 }

@@ -44,6 +44,7 @@ struct config_gap {
 	double off_us, arcing_off_max, arcing_recover_s, arcing_retract_mm;
 	double stuck_s, noise_limit_v;
 	double wire_retract_mm, wire_retreat_mm;
+	int wire_retreat_to;		/* enum retreat_to */
 	int retract;			/* 0 along the path, 1 by the escape */
 };
 

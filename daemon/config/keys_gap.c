@@ -50,6 +50,17 @@ static const char *retract_to_word(int i)
 	return WORD_OF(words, i);
 }
 
+static const char *retreat_to_word(int i)
+{
+	static const char *const words[RETREAT_NPLACES] = {
+		[RETREAT_DISTANCE] = "distance",
+		[RETREAT_MOTION] = "motion",
+		[RETREAT_HOLE] = "hole",
+	};
+
+	return WORD_OF(words, i);
+}
+
 static const char *retract_word(int i)
 {
 	return i == 0 ? "path" : i == 1 ? "escape" : NULL;
@@ -146,9 +157,11 @@ static const struct config_key row[] = {
 	       "mean change in a cycle: fault gap-stuck; 0: any"),
 	NUMBER(GAP, "wire_retract_mm", "mm", "0.02", 0.001, 1000,
 	       AT(gap.wire_retract_mm), "wire: limit of a retract"),
+	WORDS(GAP, "wire_retreat_to", "distance", AT(gap.wire_retreat_to),
+	      retreat_to_word, "wire: how far back from a break: "
+	      "wire_retreat_mm, the start of the motion, or the start hole"),
 	NUMBER(GAP, "wire_retreat_mm", "mm", "1", 0, 1000,
-	       AT(gap.wire_retreat_mm),
-	       "wire: back from a break; 0: to the motion's start"),
+	       AT(gap.wire_retreat_mm), "wire: back from a break"),
 	WORDS(GAP, "retract", "path", AT(gap.retract), retract_word,
 	      "out of a short: back along the path, or by the escape"),
 

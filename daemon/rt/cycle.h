@@ -98,7 +98,8 @@ struct cycle_gap_config {
 	uint64_t stuck_cycles;		/* no change, then a fault; 0: never */
 	double noise_limit_v;		/* mean change of a cycle; 0: any */
 	double wire_retract_mm;		/* limit of a retract, if wire */
-	double wire_retreat_mm;		/* from a break; 0: to the motion's start */
+	enum retreat_to wire_retreat_to;	/* from a break */
+	double wire_retreat_mm;
 };
 
 struct cycle_jump_config {
@@ -208,6 +209,8 @@ struct cycle_lift {
 struct cycle_hold {
 	bool moving;
 	double to_mm;			/* place that it moves to */
+	uint32_t seek;			/* segments in front of this one are not
+					 * yet looked at for it; 0: all are */
 	bool braked;			/* it has stood since */
 	enum cycle_state then;		/* the state to follow the stand */
 };

@@ -25,6 +25,14 @@ enum retract_to {
 	RETRACT_NPLACES
 };
 
+/* How far a wire goes back from where it broke. */
+enum retreat_to {
+	RETREAT_DISTANCE,		/* wire_retreat_mm */
+	RETREAT_MOTION,			/* the start of the motion it is in */
+	RETREAT_HOLE,			/* the start hole: path/hole.h */
+	RETREAT_NPLACES
+};
+
 struct retract {
 	double from_mm;			/* place it began */
 	double floor_mm;		/* never farther back */

@@ -16,6 +16,9 @@
 /* What rounding to a micrometre may hide of the outline. */
 #define HIDDEN_MM	0.002
 
+/* Turns that differ by less are one. */
+#define MOUTH		0.001
+
 struct walker {
 	struct track_work *w;
 	struct track_fault *fault;
@@ -74,22 +77,64 @@ struct jump {
 	double reach;
 };
 
+/* The place of a piece that is nearest to the wire, along the piece. */
+static struct vec contact(const struct face_piece *p, struct vec at)
+{
+	const double len = curve_length(&p->c);
+
+	return len < SAME_MM ? p->c.from :
+	       curve_at(&p->c, fmin(fmax(curve_share(&p->c, at), 0), 1));
+}
+
+/* By how much the way turns in a jump. */
+static double turn_of(const struct track_work *w, const struct jump *j)
+{
+	const struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
+	const struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
+
+	return curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
+			  j->tf < 1 ? &b : &w->elem[j->f].c);
+}
+
+/*
+ * Where the sides of the way are prolonged round corners of the outline and
+ * meet there, the wire touches these two corners and not the sides behind
+ * them: the mouth of a notch that is too narrow.  What it hides there is what
+ * two sides at right angles to its touch would hide.
+ * Return: that reach; 0 if the wire touches both sides.
+ */
+static double mouth_reach(const struct track_work *w, const struct jump *j,
+			  double turn)
+{
+	const struct curve u = curve_line(j->at,
+					  contact(piece_of(w, j->e), j->at));
+	const struct curve v = curve_line(j->at,
+					  contact(piece_of(w, j->f), j->at));
+	const double far = fmax(curve_length(&u), curve_length(&v));
+	double by;
+
+	if (curve_length(&u) < SAME_MM || curve_length(&v) < SAME_MM)
+		return 0;
+	by = curve_turn(&u, &v);
+	return turn * by > 0 && fabs(by) < fabs(turn) - MOUTH ?
+	       far / cos(by / 2) : 0;
+}
+
 /* How far the wire's axis is from the corner of the outline, if what it
  * changes between are two sides of one. */
 static double reach_of(const struct track_work *w, const struct jump *j)
 {
 	const struct face_piece *p = piece_of(w, j->e), *q = piece_of(w, j->f);
-	const struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
-	const struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
-	const double turn = curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
-				       j->tf < 1 ? &b : &w->elem[j->f].c);
-	const double d = fmax(p->wire_mm, q->wire_mm), other =
-		fmin(p->wire_mm, q->wire_mm);
-	double reach = d;
+	const double d = fmax(p->wire_mm, q->wire_mm);
+	const double other = fmin(p->wire_mm, q->wire_mm);
+	const double turn = turn_of(w, j);
+	double reach = mouth_reach(w, j, turn);
 	struct vec corner;
 
 	if (turn * w->job->side <= 0 || fabs(turn) > 3.14)
 		return d;
+	if (reach > 0)
+		return reach;
 	reach = d / cos(turn / 2);
 	if (d - other > 1e-6 && fabs(sin(turn)) > 0.05)
 		reach = fmax(reach, sqrt(d * d + other * other -
