@@ -222,6 +222,10 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 						   config_period_ns(c)),
 		},
 	};
+	ret->press_cycles = cycles_of(VERB_PRESS_S *
+				      (c->backend == BACKEND_SIM ?
+				       (double)c->sim.speed : 1),
+				      ret->period_ns);
 	ret->mcode_cycles = cycles_of(c->plc.m_timeout_s, ret->period_ns);
 	travel_of(c, ret);
 	gap_of(c, ret, &ret->gap);

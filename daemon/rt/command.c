@@ -214,10 +214,27 @@ static enum cycle_answer do_manual(struct cycle *c,
 	return ANSWER_DONE;
 }
 
+static enum cycle_answer do_press(struct cycle *c,
+				  const struct cycle_command *m)
+{
+	const enum cycle_answer may = c->fault.latched ? ANSWER_WRONG_STATE :
+				      may_begin(c);
+	bool begun;
+	const int answer = manual_press(c, m->arg, m->arg_mm, may, &begun);
+
+	if (begun) {
+		cycle_enter(c, STATE_JOG);
+		axes_want(c, false);
+	}
+	return (enum cycle_answer)answer;
+}
+
 enum cycle_answer cycle_command(struct cycle *c, const struct cycle_command *m)
 {
 	if (m->verb >= CYCLE_NVERBS)
 		return ANSWER_BAD_ARGUMENT;
+	if (m->verb == CYCLE_JOG_ON)
+		return do_press(c, m);
 	if (m->verb == CYCLE_SET)
 		return do_set(c, m);
 	if (m->verb == CYCLE_JOG || m->verb == CYCLE_HOME)

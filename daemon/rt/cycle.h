@@ -135,6 +135,7 @@ struct cycle_config {
 	bool hold_at_end;		/* at the end hold; the job does not end */
 	bool require_home;		/* no start before all are homed */
 	struct manual_axis axis[INTERP_NAXES];
+	uint64_t press_cycles;		/* VERB_PRESS_S of a person's time */
 	struct comp_config comp;
 	struct contouring_config contouring;
 };
