@@ -356,7 +356,7 @@ static void verb_jog_on(struct jobs *j, const struct verb *v,
 static bool is_homed_by(const struct jobs *j, int axis)
 {
 	return j->config->axes.present >> axis & 1 &&
-	       (j->config->hand[axis].home_method != 0 ||
+	       (j->config->manual[axis].method != 0 ||
 		j->link.snap.unplaced >> axis & 1);
 }
 

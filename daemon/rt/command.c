@@ -7,6 +7,7 @@
 #include "guard.h"
 #include "path/step.h"
 #include "path/walk.h"
+#include "path/place.h"
 
 #include <math.h>
 #include <string.h>
@@ -106,7 +107,7 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 	cycle_happen(c, EVENT_HOLD);
 	axes_want(c, false);
 	c->hold.moving = true;
-	c->hold.to_mm = fmax(cycle_outer_mm(c), cycle_place_mm(c) - arg_mm);
+	c->hold.to_mm = fmax(place_outer_mm(c), place_mm(c) - arg_mm);
 	return ANSWER_DONE;
 }
 

@@ -6,6 +6,7 @@
 #include "path/hole.h"
 #include "path/timed.h"
 #include "path/walk.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -31,8 +32,8 @@ static void lift(struct cycle *c)
 	}
 	c->totals.jumps++;
 	leave_path(c);
-	c->lift.from_mm = cycle_place_mm(c);
-	c->lift.to_mm = fmax(cycle_outer_mm(c), c->lift.from_mm - height_mm);
+	c->lift.from_mm = place_mm(c);
+	c->lift.to_mm = fmax(place_outer_mm(c), c->lift.from_mm - height_mm);
 }
 
 /* Held beside the path: back, as a jump comes back. */
@@ -42,7 +43,7 @@ static void come_back(struct cycle *c)
 	c->lift.leaving = false;
 	c->lift.from_mm = interp_cursor_place_mm(&c->cursor);
 	c->lift.to_mm = fmax(c->lift.from_mm - c->jump.short_of_mm,
-			     cycle_place_mm(c));
+			     place_mm(c));
 }
 
 void cycle_enter(struct cycle *c, enum cycle_state s)
@@ -126,8 +127,7 @@ static void retreat(struct cycle *c)
 		c->hold.to_mm = retract_motion_mm(c);
 		break;
 	default:
-		c->hold.to_mm = fmax(cycle_outer_mm(c),
-				     cycle_place_mm(c) - back);
+		c->hold.to_mm = fmax(place_outer_mm(c), place_mm(c) - back);
 	}
 }
 

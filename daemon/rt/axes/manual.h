@@ -29,6 +29,8 @@
 #include "interp/axis.h"
 #include "path/mover.h"
 
+#include "settings.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -37,14 +39,6 @@
 /* So long a jog that is pressed brakes at most, of the VERB_PRESS_S that it has
  * to stand in: it is no faster than that. */
 #define MANUAL_BRAKE_S	0.1
-
-enum home_method {
-	HOME_NONE,
-	HOME_SWITCH,
-	HOME_SWITCH_INDEX,
-	HOME_ABSOLUTE,
-	HOME_NMETHODS
-};
 
 enum home_phase {
 	HOME_BEGIN,
@@ -56,19 +50,6 @@ enum home_phase {
 	HOME_INDEX,			/* slowly, on to the index mark */
 	HOME_STAND,			/* brake, and call the place */
 	HOME_NPHASES
-};
-
-struct manual_axis {
-	bool present;
-	double pulse_mm;
-	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
-	double jog_mm_s;
-	enum home_method method;
-	int home_toward;		/* +1, -1 */
-	double home_fast_mm_s, home_slow_mm_s;
-	double home_at_mm;		/* the place of the switch */
-	double home_back_mm;
-	uint32_t home_order;		/* lowest first */
 };
 
 struct manual {

@@ -3,7 +3,7 @@
  * hole.c - back from a wire's break to the hole it was threaded in
  */
 #include "path/hole.h"
-#include "cycle.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -22,7 +22,7 @@ static double past_mm(const struct cycle *c, const struct interp_seg *rapid)
 
 void hole_begin(struct cycle *c)
 {
-	c->hold.to_mm = cycle_outer_mm(c);
+	c->hold.to_mm = place_outer_mm(c);
 	c->hold.seek = c->cursor.index;
 	hole_follow(c);
 }
