@@ -92,23 +92,23 @@ static int record(struct nc_reader *r, const struct nc_cavity *c,
 	const uint8_t *line_at = r->line_at;
 	const uint32_t depth = r->depth;
 	const uint8_t *code_at = my_word(r);
-	int rc;
+	int err;
 
 	contour_record(&r->contour, c->hole_mm);
 	r->selected = r->passes.pass[0].reg;
-	rc = nc_call(r, c->number, code_at);
-	while (!rc && r->depth > depth && !r->over && r->at < r->end)
-		rc = nc_read_line(r);
+	err = nc_call(r, c->number, code_at);
+	while (!err && r->depth > depth && !r->over && r->at < r->end)
+		err = nc_read_line(r);
 	contour_recorded(&r->contour, t);
-	if (!rc && r->depth > depth)
-		rc = nc_refuse_at(r, c->line, "M99 at its end",
+	if (!err && r->depth > depth)
+		err = nc_refuse_at(r, c->line, "M99 at its end",
 				  "the end inside contour P%g", c->number);
-	if (!rc) {
+	if (!err) {
 		r->block = block;
 		r->line_at = line_at;
 	}
-	return !rc && !contour_tape_is_whole(t, r->contour.guides.pulse_mm) ?
-	       refuse_contour(r, c) : rc;
+	return !err && !contour_tape_is_whole(t, r->contour.guides.pulse_mm) ?
+	       refuse_contour(r, c) : err;
 }
 
 static int refuse_tab(struct nc_reader *r, const struct nc_cavity *c)
@@ -121,16 +121,16 @@ static int refuse_tab(struct nc_reader *r, const struct nc_cavity *c)
 static int record_all(struct nc_reader *r, struct contour_tape *tape)
 {
 	struct nc_passes *s = &r->passes;
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t i = 0; !rc && i < s->ncavities; i++) {
-		rc = record(r, &s->cavity[i], &tape[i]);
-		if (!rc && s->tab_mm > 0)
-			rc = contour_tape_split(&tape[i], s->tab_mm);
-		if (rc == -ERANGE)
-			rc = refuse_tab(r, &s->cavity[i]);
+	for (uint32_t i = 0; !err && i < s->ncavities; i++) {
+		err = record(r, &s->cavity[i], &tape[i]);
+		if (!err && s->tab_mm > 0)
+			err = contour_tape_split(&tape[i], s->tab_mm);
+		if (err == -ERANGE)
+			err = refuse_tab(r, &s->cavity[i]);
 	}
-	return rc;
+	return err;
 }
 
 /* L of a G152: in which order many contours are cut. */
@@ -172,14 +172,14 @@ int nc_cut(struct nc_reader *r)
 {
 	struct nc_passes *s = &r->passes;
 	struct contour_tape *tape;
-	int rc;
+	int err;
 
 	s->tab_mm = nc_has(r, NC_R) ? r->block.value[NC_R] * r->unit_mm : 0;
-	rc = check_cut(r);
-	if (!rc)
-		rc = contour_flush(&r->contour, r->diag);
-	if (rc)
-		return rc;
+	err = check_cut(r);
+	if (!err)
+		err = contour_flush(&r->contour, r->diag);
+	if (err)
+		return err;
 	tape = calloc(s->ncavities, sizeof(*tape));
 	if (!tape)
 		return -ENOMEM;
@@ -189,17 +189,17 @@ int nc_cut(struct nc_reader *r)
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		here_mm[i] = r->contour.here_mm[i];
-	rc = record_all(r, tape);
+	err = record_all(r, tape);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		r->contour.here_mm[i] = here_mm[i];
 	r->word = word;
 	r->selected = selected;
 	r->segs++;
-	if (!rc)
-		rc = nc_cut_passes(r, tape);
+	if (!err)
+		err = nc_cut_passes(r, tape);
 	for (uint32_t i = 0; i < s->ncavities; i++)
 		free(tape[i].m);
 	free(tape);
 	s->npasses = s->ncavities = 0;
-	return rc;
+	return err;
 }

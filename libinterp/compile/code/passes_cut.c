@@ -81,25 +81,25 @@ static int go_to(struct nc_reader *r, const double hole_mm[2])
 static int begin_turn(const struct cutting *k)
 {
 	struct nc_reader *r = k->r;
-	int rc = go_to(r, k->cavity->hole_mm);
+	int err = go_to(r, k->cavity->hole_mm);
 
-	if (!rc && k->round.part == PART_TAB && is_for_plc(r, M_THREAD))
-		rc = stop(r);
-	if (!rc)
-		rc = wire_action(r, M_THREAD);
-	return rc ? rc : contour_release(&r->contour, NULL, r->diag);
+	if (!err && k->round.part == PART_TAB && is_for_plc(r, M_THREAD))
+		err = stop(r);
+	if (!err)
+		err = wire_action(r, M_THREAD);
+	return err ? err : contour_release(&r->contour, NULL, r->diag);
 }
 
 /* Wherever the wire stands: without it the way to the next hole is free. */
 static int end_turn(const struct cutting *k)
 {
 	struct contour *c = &k->r->contour;
-	int rc;
+	int err;
 
 	if (c->n)
 		memcpy(c->here_mm, c->m[c->n - 1].end_mm, sizeof(c->here_mm));
-	rc = contour_release(c, NULL, k->r->diag);
-	return rc ? rc : wire_action(k->r, M_CUT);
+	err = contour_release(c, NULL, k->r->diag);
+	return err ? err : wire_action(k->r, M_CUT);
 }
 
 /* -- A turn --------------------------------------------------------------------- */
@@ -136,30 +136,30 @@ static int to_and_fro(const struct cutting *k, const uint32_t range[2],
 		      bool back, const char *what)
 {
 	const struct nc_passes *s = &k->r->passes;
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t i = k->round.first; !rc && i < k->round.end;
+	for (uint32_t i = k->round.first; !err && i < k->round.end;
 	     i++, back = !back) {
 		const struct contour_pass how = { s->pass[i].offset_mm,
 						  &s->pass[i].word, back };
 
 		say_pass(k, i, back, range, what);
 		if (k->r->contour.n > 1)
-			rc = contour_play_step(&k->r->contour, &how,
+			err = contour_play_step(&k->r->contour, &how,
 					       k->r->diag);
-		if (!rc)
-			rc = play(k, i, back, range[0], range[1]);
+		if (!err)
+			err = play(k, i, back, range[0], range[1]);
 	}
-	return rc;
+	return err;
 }
 
 /* In from the hole, and all but the tab. */
 static int cut_open(const struct cutting *k)
 {
 	const uint32_t open[2] = { 1, k->t->tab };
-	const int rc = play(k, k->round.first, false, 0, 1);
+	const int err = play(k, k->round.first, false, 0, 1);
 
-	return rc ? rc : to_and_fro(k, open, false, "");
+	return err ? err : to_and_fro(k, open, false, "");
 }
 
 static int lead_out(const struct cutting *k)
@@ -171,11 +171,11 @@ static int lead_out(const struct cutting *k)
 static int cut_tab(const struct cutting *k)
 {
 	const uint32_t tab[2] = { k->t->tab, k->t->n - 1 };
-	int rc = play(k, k->round.first, true, k->t->n - 1, k->t->n);
+	int err = play(k, k->round.first, true, k->t->n - 1, k->t->n);
 
-	if (!rc)
-		rc = to_and_fro(k, tab, true, "tab, ");
-	return rc || (k->round.end - k->round.first) % 2 ? rc : lead_out(k);
+	if (!err)
+		err = to_and_fro(k, tab, true, "tab, ");
+	return err || (k->round.end - k->round.first) % 2 ? err : lead_out(k);
 }
 
 /* The open part in all passes, a stop, then the tab; the wire stays in the
@@ -183,57 +183,57 @@ static int cut_tab(const struct cutting *k)
 static int cut_with_tab(const struct cutting *k)
 {
 	const uint32_t tab[2] = { k->t->tab, k->t->n - 1 };
-	int rc = cut_open(k);
+	int err = cut_open(k);
 
-	if (!rc)
-		rc = stop(k->r);
-	if (!rc)
-		rc = to_and_fro(k, tab, (k->round.end - 1) % 2, "tab, ");
-	return rc ? rc : lead_out(k);
+	if (!err)
+		err = stop(k->r);
+	if (!err)
+		err = to_and_fro(k, tab, (k->round.end - 1) % 2, "tab, ");
+	return err ? err : lead_out(k);
 }
 
 /* From the hole to the hole. */
 static int cut_round(const struct cutting *k, uint32_t i)
 {
 	const uint32_t range[2] = { 1, k->t->n - 1 };
-	int rc;
+	int err;
 
 	say_pass(k, i, i % 2, range, "");
-	rc = play(k, i, i % 2, 0, k->t->n);
+	err = play(k, i, i % 2, 0, k->t->n);
 	/* What falls out is taken away behind the rough cut. */
-	if (!rc && i == 0)
-		rc = stop(k->r);
-	return rc ? rc : contour_release(&k->r->contour, NULL, k->r->diag);
+	if (!err && i == 0)
+		err = stop(k->r);
+	return err ? err : contour_release(&k->r->contour, NULL, k->r->diag);
 }
 
 static int cut_whole(const struct cutting *k)
 {
-	int rc = 0;
+	int err = 0;
 
 	if (k->t->tab < k->t->n - 1)
 		return cut_with_tab(k);
-	for (uint32_t i = k->round.first; !rc && i < k->round.end; i++)
-		rc = cut_round(k, i);
-	return rc;
+	for (uint32_t i = k->round.first; !err && i < k->round.end; i++)
+		err = cut_round(k, i);
+	return err;
 }
 
 static int take_turn(const struct cutting *k)
 {
-	int rc = begin_turn(k);
+	int err = begin_turn(k);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	switch (k->round.part) {
 	case PART_OPEN:
-		rc = cut_open(k);
+		err = cut_open(k);
 		break;
 	case PART_TAB:
-		rc = cut_tab(k);
+		err = cut_tab(k);
 		break;
 	default:
-		rc = cut_whole(k);
+		err = cut_whole(k);
 	}
-	return rc ? rc : end_turn(k);
+	return err ? err : end_turn(k);
 }
 
 /* -- The rounds ------------------------------------------------------------------- */
@@ -264,16 +264,16 @@ int nc_cut_passes(struct nc_reader *r, const struct contour_tape *tape)
 	const struct nc_passes *s = &r->passes;
 	struct round round[ROUNDS_MAX];
 	const uint32_t n = rounds_of(s, round);
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t k = 0; !rc && k < n; k++) {
-		for (uint32_t i = 0; !rc && i < s->ncavities; i++) {
+	for (uint32_t k = 0; !err && k < n; k++) {
+		for (uint32_t i = 0; !err && i < s->ncavities; i++) {
 			const struct cutting turn = {
 				r, &s->cavity[i], &tape[i], i + 1, round[k] };
 
 			r->word.line = r->line;
-			rc = take_turn(&turn);
+			err = take_turn(&turn);
 		}
 	}
-	return rc;
+	return err;
 }
