@@ -118,8 +118,8 @@ def verdict(poly, offset, inside, at):
     between the two places it touches there.  A place that is hidden by a
     corner of the contour alone is close to call.
 
-    A buffer of GEOS leaves out hollows of a hundredth of its distance, so what
-    lies deeper by no more than that is not looked at.
+    A buffer of GEOS leaves out hollows of a hundredth of its distance, so a
+    place that is missed by no more than that is close to call, too.
     """
     blur = max(0.5 * UM, 0.01 * offset)
     sure = 4 * UM + blur
@@ -138,17 +138,18 @@ def verdict(poly, offset, inside, at):
     reach = offset / np.cos(turns / 2)
     vague = sure + reach * np.tan(turns / 2) * 0.004
     result = "cut"
-    for i in np.flatnonzero(far > offset + blur):
+    for i in np.flatnonzero(far > offset + 0.5 * UM):
         v = pts[i] - corners
         off = np.hypot(*v.T) if len(corners) else np.empty(0)
         between = np.einsum("ij,ij->i", v, toward) >= \
             off * np.cos(np.minimum(turns / 2 + 0.05, np.pi / 2))
-        if (between & (off < reach + blur)).any():
+        if (between & (off < reach + UM)).any():
             continue
         if (off < reach + vague).any() or far[i] < offset + sure:
             result = "close"
             continue
-        near = pts[np.hypot(*(pts - pts[i]).T) < offset][:60]
+        order = np.argsort(np.hypot(*(pts - pts[i]).T))[:200]
+        near = pts[order][np.hypot(*(pts[order] - pts[i]).T) < offset]
         own = max(turns_at(ring, near, w).max()
                   for w in (UM, 10 * UM, 50 * UM, offset / 4, offset / 2))
         if own < 3.0 and far[i] > offset / math.cos(own / 2) + sure:

@@ -6,12 +6,12 @@
  * outline in two places.  What lies between them is not cut.  It may be what a
  * round wire leaves in an inner corner of these two sides, and no more.
  *
- * The wire touches a side of the outline along its length, or, where that side
- * ends in an outer corner, that corner:
+ * The wire touches a side of the outline, or, where that side is too short, the
+ * outer corner at its end:
  *
  *	two sides		the corner of these two
- *	a side, a corner	a step lower than the wire: the corner of the
- *				side and the wall of the step
+ *	a side, a corner	a step or a rib lower than the wire: the inner
+ *				corner between them
  *	two corners		the mouth of a notch that is too narrow: what
  *				two sides square to the touch would hide
  */
@@ -25,6 +25,9 @@
 #define HIDDEN_MM	0.002
 
 #define NO_CORNER	3.0		/* turns by more are slots */
+#define SHARP		2.1		/* ... or notches, if one wall is short */
+#define TANGENT		0.02		/* of neighbours that are written rounded */
+#define SAME_TURN	0.001
 
 const struct face_piece *track_piece(const struct track_work *w, uint32_t e)
 {
@@ -37,8 +40,7 @@ const struct face_piece *track_piece(const struct track_work *w, uint32_t e)
 /* Where the wire touches on one side of a jump. */
 struct touch {
 	struct vec at;
-	const struct face_piece *wall;	/* the side, or the one behind it */
-	bool corner;
+	const struct face_piece *side;	/* NULL: a corner, and no side */
 };
 
 /* Piece @by places on, round the end of the outline. */
@@ -50,27 +52,21 @@ static const struct face_piece *beside(const struct track_work *w,
 	return &f->piece[(uint32_t)(p - f->piece + f->n + by) % f->n];
 }
 
-/* From the wire at @at; @ahead: on the later side. */
+/* By element @e, from the wire at @at. */
 static struct touch touch_of(const struct track_work *w, uint32_t e,
-			     struct vec at, bool ahead)
+			     struct vec at)
 {
 	const struct face_piece *p = track_piece(w, e);
 	const double len = curve_length(&p->c);
 	const double slack = len > SAME_MM ? HIDDEN_MM / len : 0;
 	const double t = len > SAME_MM ? curve_share(&p->c, at) : 0;
-	struct touch ret = {
-		.at = curve_at(&p->c, fmin(fmax(t, 0), 1)), .wall = p,
-	};
 
-	if (w->elem[e].fill || t > 1 + slack) {
-		ret.at = p->c.to;
-		ret.corner = true;
-		ret.wall = ahead ? p : beside(w, p, 1);
-	} else if (t < -slack) {
-		ret.corner = true;
-		ret.wall = ahead ? beside(w, p, -1) : p;
-	}
-	return ret;
+	if (w->elem[e].fill)
+		return (struct touch) { p->c.to, NULL };
+	return (struct touch) {
+		curve_at(&p->c, fmin(fmax(t, 0), 1)),
+		t < -slack || t > 1 + slack ? NULL : p,
+	};
 }
 
 /* By how much the way turns in a jump. */
@@ -83,24 +79,74 @@ static double turn_of(const struct track_work *w, const struct track_jump *j)
 			  j->tf < 1 ? &b : &w->elem[j->f].c);
 }
 
-/* The reach where the wire touches a corner; 0: it touches two sides. */
-static double corner_reach(const struct track_work *w,
-			   const struct track_jump *j, struct vec at)
-{
-	const struct touch a = touch_of(w, j->e, at, false);
-	const struct touch b = touch_of(w, j->f, at, true);
-	const struct curve u = curve_line(at, a.at), v = curve_line(at, b.at);
-	const double far = fmax(curve_length(&u), curve_length(&v));
-	double turn, step;
+/* The one inner corner between two places that the wire touches. */
+struct inner {
+	double turn;			/* 0: there is none, or several */
+	const struct face_piece *wall[2];	/* its sides */
+};
 
-	if (curve_length(&u) < SAME_MM || curve_length(&v) < SAME_MM ||
-	    (!a.corner && !b.corner))
+/* Into the corner and out of it the outline may turn round outer ones. */
+static struct inner inner_between(const struct track_work *w,
+				  const struct face_piece *a,
+				  const struct face_piece *b)
+{
+	enum { BEFORE, IN, BEHIND } part = BEFORE;
+	struct inner ret = { .turn = 0 };
+
+	for (const struct face_piece *p = a, *next; p != b; p = next) {
+		double turn;
+
+		next = beside(w, p, 1);
+		turn = curve_turn(&p->c, &next->c) * w->job->side;
+		if (p != a && p->c.arc)
+			turn += p->c.sweep * w->job->side;
+		if (turn > TANGENT && part == BEHIND)
+			return (struct inner) { .turn = 0 };
+		if (turn > TANGENT && part == BEFORE) {
+			part = IN;
+			ret.wall[0] = p;
+		}
+		if (turn < -TANGENT && part == IN)
+			part = BEHIND;
+		if (part != IN)
+			continue;
+		ret.turn += turn;
+		ret.wall[1] = next;
+	}
+	return ret;
+}
+
+/* The turn of the inner corner, if the wire touches enough of its walls for
+ * what it leaves to be that corner's: one of them, if it is not too sharp. */
+static double corner_turn(const struct track_work *w, const struct track_jump *j,
+			  const struct touch *a, const struct touch *b)
+{
+	const struct inner c = inner_between(w, track_piece(w, j->e),
+					     track_piece(w, j->f));
+	const int walls = (a->side && a->side == c.wall[0]) +
+			  (b->side && b->side == c.wall[1]);
+
+	return c.turn > (walls == 2 ? NO_CORNER : SHARP) || !walls ? 0 : c.turn;
+}
+
+/* The reach where the wire does not touch two sides of a corner; 0: it does. */
+static double corner_reach(const struct track_work *w,
+			   const struct track_jump *j, struct vec at,
+			   double wire_mm)
+{
+	const struct touch a = touch_of(w, j->e, at);
+	const struct touch b = touch_of(w, j->f, at);
+	const struct curve u = curve_line(at, a.at), v = curve_line(at, b.at);
+	double turn, own;
+
+	if (curve_length(&u) < SAME_MM || curve_length(&v) < SAME_MM)
 		return 0;
 	turn = fabs(curve_turn(&u, &v));
-	step = curve_turn(&a.wall->c, &b.wall->c) * w->job->side;
-	if (a.corner != b.corner && step > turn && step < NO_CORNER)
-		turn = step;
-	return turn < NO_CORNER ? far / cos(turn / 2) : far;
+	own = corner_turn(w, j, &a, &b);
+	if (a.side && b.side && own < turn + SAME_TURN)
+		return 0;
+	turn = fmax(turn, own);
+	return turn < NO_CORNER ? wire_mm / cos(turn / 2) : wire_mm;
 }
 
 /* How far the wire's axis is from the corner of the outline, if what it
@@ -113,7 +159,7 @@ static double reach_of(const struct track_work *w, const struct track_jump *j,
 	const double d = fmax(p->wire_mm, q->wire_mm);
 	const double other = fmin(p->wire_mm, q->wire_mm);
 	const double turn = turn_of(w, j);
-	double reach = corner_reach(w, j, at);
+	double reach = corner_reach(w, j, at, d);
 	struct vec corner;
 
 	if (turn * w->job->side <= 0 || fabs(turn) > 3.14)
