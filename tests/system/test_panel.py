@@ -247,6 +247,28 @@ def test_a_text_that_is_too_long_is_refused_before_it_is_read(p, me):
     assert b" 413 " in got.split(b"\r\n")[0]
 
 
+def test_a_body_in_chunks_is_refused(p, me):
+    head = "".join(f"{k}: {v}\r\n" for k, v in me.headers().items())
+    got = p.raw(f"POST /api/check HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
+                f"{head}Transfer-Encoding: chunked\r\n\r\n"
+                "5\r\nG21\r\n\r\n0\r\n\r\n".encode(), timeout=3)
+    assert b" 411 " in got.split(b"\r\n")[0], got[:200]
+
+
+def test_a_connection_that_stays_holds_no_upload(p, me):
+    kept = []
+    for _ in range(8):
+        c = p.connection()
+        c.request("POST", "/api/check?name=a.ngc", body=panel.JOB,
+                  headers=me.headers())
+        r = c.getresponse()
+        assert r.status == 200, r.read()
+        r.read()
+        kept.append(c)
+    for c in kept:
+        c.close()
+
+
 def test_frames_that_make_no_sense_end_the_connection_alone(p, me):
     with me.live() as other:
         for bad in ("", "{", "[]", "{}", '{"n":"1","do":2}', "x" * 70000,
