@@ -317,6 +317,18 @@ def test_a_browser_that_asks_too_much_is_slowed_down(p, me):
         assert codes[0] == 0
 
 
+def test_a_crowd_that_asks_for_the_past_keeps_nobody_out(p, me):
+    crowd = [me.raw_live() for _ in range(20)]
+    for s in crowd:
+        for k in range(60):
+            s.sendall(me.frame(k + 1, "history", seconds=3600, points=2000))
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok", 20)
+        assert live.ask("queue", timeout=20)["code"] == 0
+    for s in crowd:
+        s.close()
+
+
 def test_a_browser_that_does_not_read_costs_little(p, me):
     begun = resident_kb(p)
     with me.raw_live() as stuck:
