@@ -65,7 +65,9 @@ turns() {
 edmd_start() {	# PROGRAM CONFIG
 	$1 --config $2 2>$R/edmd.log &
 	edmd=$!
-	turns 200 edmd_is_up || cat $R/edmd.log
+	turns 200 edmd_is_up && kill -0 $edmd 2>/dev/null && return
+	echo "edmd is not up:"; cat $R/edmd.log
+	exit 1
 }
 
 edmd_is_up() {	# or has ended
@@ -76,7 +78,9 @@ jobs_start() {	# CONFIG
 	rm -rf $R/store; mkdir -p $R/store
 	$R/edmd-jobs --config $1 --store $R/store 2>$R/jobs.log &
 	jobs=$!
-	turns 100 jobs_answer || cat $R/edmd.log $R/jobs.log
+	turns 100 jobs_answer && return
+	echo "edmd-jobs does not answer:"; cat $R/edmd.log $R/jobs.log
+	exit 1
 }
 
 jobs_answer() { ctl status >/dev/null 2>&1; }
