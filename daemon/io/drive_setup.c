@@ -212,6 +212,10 @@ static void on_word(struct drive *d, const struct drive_step *s, uint32_t word)
 		return;
 	}
 	d->word = word & mask;
+	if (drive_step_finds_restart(d, s)) {
+		drive_setup_again(d);
+		return;
+	}
 	if (drive_step_fits(d, s)) {
 		d->step++;
 		return;

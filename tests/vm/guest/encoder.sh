@@ -48,9 +48,9 @@ for name in edmd edmd2; do
 	status_is 'state *idle'
 	ctl submit back.ngc
 	status_is 'state *travel' && ended
-	} > $name.said 2>&1
-	daemons_end $name
-	cp $name.said $name.log $name.edmd-rc $J/
+	} > run-$name.said 2>&1
+	daemons_end run-$name
+	cp run-$name.said run-$name.log run-$name.edmd-rc $J/
 	rm -f /dev/shm/edmd.vm.*
 done
 kill $axis
