@@ -115,6 +115,10 @@ size_t drive_setup_emit(struct drive *d, struct can_msg *ret)
 	}
 	if (!drive_step_due(d, &s))
 		return start(d, ret);
+	if (d->asked && drive_step_forgets(&s)) {
+		drive_setup_again(d);
+		return 0;
+	}
 	return ask(d, &s, ret);
 }
 

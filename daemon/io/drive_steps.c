@@ -298,6 +298,11 @@ static void heed_memory(struct drive *d)
 		d->lost = true;
 }
 
+bool drive_step_forgets(const struct drive_step *s)
+{
+	return s->what == BEAT_MS || s->what == MASTER_BEAT;
+}
+
 bool drive_step_finds_restart(const struct drive *d, const struct drive_step *s)
 {
 	return s->what == STILL_ON && !names_us(d);

@@ -36,6 +36,12 @@ bool drive_step_fits(struct drive *d, const struct drive_step *s);
  */
 bool drive_step_finds_restart(const struct drive *d, const struct drive_step *s);
 
+/**
+ * drive_step_forgets() - is repeating it no way to go on?  What it writes over
+ * would have told that the drive was switched off after it was read.
+ */
+bool drive_step_forgets(const struct drive_step *s);
+
 /** drive_step_done() - a write was stored: on to the next. */
 void drive_step_done(struct drive *d, const struct drive_step *s);
 
