@@ -10,6 +10,7 @@
 #                   shorter half of it is in check
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
+#   make count      instructions of what is done most, into docs/performance.md
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
@@ -270,6 +271,10 @@ $(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call 
 $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 
+# Of the store, without the rest of edmd-jobs.
+$(B)/unit/test_store: $(SIGN_O) $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/store*.c) daemon/jobs/trust.c daemon/jobs/jobs_log.c)
+$(B)/unit/test_store: UNIT_LIBS = -lsqlite3 -lsodium -lsystemd
+
 # The lines of its encoder are its own.
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
@@ -339,6 +344,8 @@ check:
 	@$(MAKE) --no-print-directory lint
 	@tests/stage check units
 	@EDM_SEED=1 $(MAKE) --no-print-directory run-units
+	@tests/stage check count
+	@$(MAKE) --no-print-directory run-count
 	@tests/stage check san
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
 	@tests/stage check run-san
@@ -462,6 +469,17 @@ bench: vm
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
 
+# Instructions, which do not depend on how busy the machine is.  What needs over
+# 5 % more than docs/performance.md says fails the check.
+.PHONY: count run-count
+count: $(B)/bench/count
+	@EDM_BUILD=$(B) tests/bench/count > $(B)/count.md
+	@docs/put-table $(B)/count.md docs/performance.md
+	@cat $(B)/count.md
+
+run-count: $(B)/bench/count
+	@EDM_BUILD=$(B) tests/bench/count --check docs/performance.md
+
 include tests/experiments/Makefile
 
 # Which file of the cycle calls which; circles have a frame.
@@ -489,6 +507,13 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(Q)docs/pictures/process $(B)
 	$(Q)docs/pictures/curves $(B)
 	$(Q)docs/pictures/demo $(B)
+
+# What many browsers cost, and how smoothly a long path is drawn: figures.
+panel-load: all panel
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-load
+
+panel-frames: all panel
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-frames
 
 # The panel's pages, in Chromium: needs what `tests/setup check` installs.
 pictures-panel: all panel
@@ -606,7 +631,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults plc-files fuzz lint install clean

@@ -56,10 +56,10 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 static int command(struct ctl *c, const struct talk_question *q)
 {
 	struct talk_answer a;
-	int rc = ctl_ask(c, q, &a);
+	int err = ctl_ask(c, q, &a);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if (c->json)
 		printf("{\"verb\": \"%s\", \"code\": 0}\n", q->verb);
 	else
@@ -135,12 +135,22 @@ static int number(const struct ctl *c, const char *text, const char *wanted,
 	return EX_USAGE;
 }
 
+int ctl_move(struct ctl *c)
+{
+	double way;
+	int rc = number(c, c->value, "-1 or +1", &way);
+
+	return rc ? rc : command(c, &(struct talk_question) {
+		.verb = "move", .job = c->arg, .arg = way,
+	});
+}
+
 int ctl_step(struct ctl *c)
 {
 	double n;
-	int rc = number(c, c->arg, "nodes, as +1 or -2", &n);
+	int err = number(c, c->arg, "nodes, as +1 or -2", &n);
 
-	return rc ? rc : command(c, &(struct talk_question) {
+	return err ? err : command(c, &(struct talk_question) {
 		.verb = "step", .arg = n,
 	});
 }
@@ -148,9 +158,9 @@ int ctl_step(struct ctl *c)
 int ctl_override(struct ctl *c)
 {
 	double percent;
-	int rc = number(c, c->arg, "percent, 0 to 200", &percent);
+	int err = number(c, c->arg, "percent, 0 to 200", &percent);
 
-	return rc ? rc : command(c, &(struct talk_question) {
+	return err ? err : command(c, &(struct talk_question) {
 		.verb = "override", .arg = percent / 100,
 	});
 }
@@ -158,9 +168,9 @@ int ctl_override(struct ctl *c)
 int ctl_jog(struct ctl *c)
 {
 	double mm;
-	int rc = number(c, c->value, "mm, or degrees of A B C, + or -", &mm);
+	int err = number(c, c->value, "mm, or degrees of A B C, + or -", &mm);
 
-	return rc ? rc : command(c, &(struct talk_question) {
+	return err ? err : command(c, &(struct talk_question) {
 		.verb = "jog", .text = c->arg, .arg = mm,
 	});
 }
@@ -258,6 +268,8 @@ static void print_one(json_t *job)
 		{ "ended", "ended_us" },
 	};
 	char text[32];
+	json_t *note;
+	size_t i;
 
 	printf("job        %s\nname       %s\nstate      %s\n",
 	       text_of(job, "job"), text_of(job, "name"),
@@ -265,7 +277,7 @@ static void print_one(json_t *job)
 	if (*text_of(job, "reason"))
 		printf("reason     %s\n", text_of(job, "reason"));
 	printf("lines      %.0f\n", number_of(job, "lines"));
-	for (size_t i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
+	for (i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
 		ctl_when(text, job, times[i].key);
 		printf("%-10s %s\n", times[i].label, text);
 	}
@@ -278,6 +290,9 @@ static void print_one(json_t *job)
 	       number_of(job, "shorts"), text_of(job, "sha256"));
 	if (*text_of(job, "tech_sha256"))
 		printf("table      %s\n", text_of(job, "tech_sha256"));
+	json_array_foreach(json_object_get(job, "notes"), i, note)
+		printf("%-10s %s\n", i ? "" : "notes",
+		       json_string_value(note));
 	print_changes(json_object_get(job, "changes"));
 }
 
@@ -287,10 +302,10 @@ static int list(struct ctl *c, const struct talk_question *q,
 	struct talk_answer a;
 	json_t *rows, *row;
 	size_t i;
-	int rc = ctl_ask(c, q, &a);
+	int err = ctl_ask(c, q, &a);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	rows = json_loads(a.body, 0, NULL);
 	if (c->json) {
 		printf("%s\n", a.body);
@@ -303,10 +318,10 @@ static int list(struct ctl *c, const struct talk_question *q,
 	} else {
 		printf("none\n");
 	}
-	rc = rows ? 0 : EX_PROTOCOL;
+	err = rows ? 0 : EX_PROTOCOL;
 	json_decref(rows);
 	talk_answer_free(&a);
-	return rc;
+	return err;
 }
 
 int ctl_queue(struct ctl *c)

@@ -96,17 +96,17 @@ static void show_progress(const struct ctl *c, const struct job *j,
 static int job_run(const struct ctl *c, struct job *j)
 {
 	struct line l;
-	int rc = 0;
+	int err = 0;
 
 	line_init(&l);
-	while (rc == 0 && !talk_interrupted()) {
-		rc = job_step(j);
-		if (rc == 0)
+	while (err == 0 && !talk_interrupted()) {
+		err = job_step(j);
+		if (err == 0)
 			talk_wait(c->talk, 20);
 		show_progress(c, j, &l);
 	}
 	line_end(&l);
-	return rc < 0 ? rc : rc ? 0 : -EINTR;
+	return err < 0 ? err : err ? 0 : -EINTR;
 }
 
 /* The service says NAME:LINE:COLUMN; who sent it knows it as FILE. */
@@ -130,6 +130,21 @@ static void print_refusal(const struct ctl *c, const struct talk_ack *a)
 	json_decref(j);
 }
 
+static void print_notes(const struct talk_ack *a)
+{
+	json_t *j = json_loads(a->body, 0, NULL), *note;
+	char text[512];
+	size_t i;
+
+	json_array_foreach(json_object_get(j, "notes"), i, note) {
+		if (!json_is_string(note))
+			continue;
+		plain_copy(text, sizeof(text), json_string_value(note));
+		fprintf(stderr, "%s\n", text);
+	}
+	json_decref(j);
+}
+
 static int print_outcome(const struct ctl *c, const struct job *j)
 {
 	const struct talk_ack *a = job_verdict(j);
@@ -138,6 +153,7 @@ static int print_outcome(const struct ctl *c, const struct job *j)
 		print_refusal(c, a);
 		return a->code;
 	}
+	print_notes(a);
 	if (c->wait && c->json)
 		return 0;
 	if (c->json)
@@ -186,12 +202,12 @@ int ctl_submit(struct ctl *c)
 {
 	struct text t = { .size = 0 };
 	char id[TALK_WORD_MAX];
-	int rc = read_text(c->arg, &t);
+	int err = read_text(c->arg, &t);
 
-	if (rc == 0)
-		rc = send_text(c, &t, id);
+	if (err == 0)
+		err = send_text(c, &t, id);
 	free(t.bytes);
-	if (rc == 0 && c->wait)
-		rc = ctl_wait(c, id);
-	return rc;
+	if (err == 0 && c->wait)
+		err = ctl_wait(c, id);
+	return err;
 }
