@@ -6,6 +6,7 @@
 
 #include "cmdline.h"
 #include "compiling.h"
+#include "interrupt.h"
 #include "keys.h"
 #include "jobs_log.h"
 #include "logger.h"
@@ -163,6 +164,7 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 		log_notice("submit: dropped %d uploads that did not go on for "
 			   "30 s", dropped);
 	watch_store(j, now_us);
+	checkpoint_tick(j, now_us);
 	store_retain(j->store, (int64_t)j->config->keep_jobs,
 		     (int64_t)j->config->keep_days, jobs_utime());
 	status_tick(j, now_us);
@@ -321,6 +323,7 @@ static int run(struct jobs *j)
 		}, "%s", store_mended(j->store));
 	if (err >= 0)
 		err = queue_init(j);
+	interrupt_init(j);
 	if (err >= 0)
 		err = add_sources(j);
 	if (err >= 0) {
@@ -336,6 +339,23 @@ static int run(struct jobs *j)
 	link_fini(&j->link);
 	sd_event_unref(j->event);
 	return err < 0 ? EX_SOFTWARE : EX_OK;
+}
+
+/* Zeros if it cannot be read. */
+static void hash_file(uint8_t ret[32], const char *path)
+{
+	crypto_hash_sha256_state h;
+	unsigned char part[4096];
+	FILE *f = fopen(path, "re");
+	size_t n;
+
+	if (!f)
+		return;
+	crypto_hash_sha256_init(&h);
+	while ((n = fread(part, 1, sizeof(part), f)) > 0)
+		crypto_hash_sha256_update(&h, part, n);
+	crypto_hash_sha256_final(&h, ret);
+	fclose(f);
 }
 
 int main(int argc, char **argv)
@@ -357,6 +377,11 @@ int main(int argc, char **argv)
 	jobs.claim = -1;
 	if (rc == 0)
 		rc = claim(&jobs);
+	/* A service without checkpoints is better than none. */
+	if (rc == 0)
+		checkpoint_open(&jobs.checkpoint, o.store ? o.store :
+				config.store_dir, jobs.machine, &jobs.last);
+	hash_file(jobs.config_hash, o.config);
 	if (rc == 0)
 		rc = keys_open(&jobs, o.store ? o.store : config.store_dir);
 	if (rc == 0)
@@ -367,6 +392,7 @@ int main(int argc, char **argv)
 	jobs_lcm_close(jobs.lcm);
 	keys_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
+	checkpoint_close(jobs.checkpoint);
 	store_close(jobs.store);
 	logger_stop();
 	return rc;

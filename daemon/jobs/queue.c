@@ -3,6 +3,7 @@
  * queue.c - follow the job at the machine
  */
 #include "faults.h"
+#include "interrupt.h"
 #include "jobs.h"
 
 #include "interp/tech_table.h"
@@ -88,6 +89,9 @@ const char *queue_unready(const struct jobs *j)
 		return "edmd is not there";
 	if (queue_is_faulted(j))
 		return "a fault is latched: it wants a reset";
+	if (*j->interrupted)
+		return "a job was interrupted, and its work may still be "
+		       "there: remove it from the queue first";
 	if (j->config->require_home && j->link.snap.unhomed)
 		return "an axis is not homed: home it";
 	return NULL;
@@ -165,7 +169,8 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 	queue_recount(j);
 	q->ended = SHM_OUTCOME_NONE;
 	jobs_note(j, &(struct jobs_note) {
-		.kind = "ended", .job = q->job.id,
+		.kind = state == JOB_INTERRUPTED ? "interrupted" : "ended",
+		.job = q->job.id,
 		.outcome = store_state_name(state),
 		.place_mm = q->snap.place_mm,
 	}, "job %s %s%s%s", q->job.name, store_state_name(state),
@@ -391,12 +396,11 @@ static void follow_missing(struct jobs *j, int64_t now_us)
 		q->missing_us = now_us;
 	} else if (now_us - q->missing_us > MISSING_US && !q->loading) {
 		if (may_have_begun(j))
-			queue_end(j, JOB_STOPPED,
-				  "edmd restarted without its program; its "
-				  "log says why");
+			interrupt_take(j);
 		else
 			set_waiting(j, true);
-		queue_drop(j, q->job.state != JOB_STOPPED);
+		queue_drop(j, q->job.state == JOB_QUEUED ||
+			      q->job.state == JOB_READY);
 	}
 }
 
@@ -438,7 +442,7 @@ static void fault_without_job(struct jobs *j)
 static bool may_load(const struct jobs *j)
 {
 	return j->link.snap.state == SHM_IDLE && !j->link.snap.unplaced &&
-	       !*store_why(j->store) &&
+	       !*store_why(j->store) && !*j->interrupted &&
 	       !(j->config->require_home && j->link.snap.unhomed);
 }
 

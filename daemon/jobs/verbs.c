@@ -6,6 +6,7 @@
  * the others are answered at once.
  */
 #include "act.h"
+#include "interrupt.h"
 #include "keys.h"
 #include "verb.h"
 
@@ -434,6 +435,11 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 {
 	char reason[128];
 
+	if (job->state == JOB_INTERRUPTED) {
+		verbs_answer(j, c, REFUSED, "this job was interrupted; look at "
+			     "the work, remove it, and submit what is left");
+		return;
+	}
 	if (job->state != JOB_QUEUED) {
 		verbs_answer(j, c, REFUSED, "this job has ended; submit it again");
 		return;
@@ -491,6 +497,11 @@ static void verb_remove(struct jobs *j, const struct verb *v,
 		queue_end(j, JOB_STOPPED, e.reason);
 		if (!waiting)
 			queue_go(j);
+		verbs_answer(j, c, 0, "removed");
+	} else if (job.state == JOB_INTERRUPTED) {
+		e.reason = "interrupted, then removed";
+		store_end(j->store, job.n, &e);
+		interrupt_init(j);
 		verbs_answer(j, c, 0, "removed");
 	} else if (job.state != JOB_QUEUED || job.loaded) {
 		verbs_answer(j, c, REFUSED, "it has begun or ended; stop ends a job "
