@@ -48,4 +48,8 @@ void checkpoint_tick(struct jobs *j, int64_t now_us)
 	if (j->link.status)
 		shm_sets(j->link.status, &now.sets);
 	checkpoint_look(j->checkpoint, &now, now_us);
+	/* As long as this service lives it knows better than its disk. */
+	j->last.there = true;
+	j->last.base = now;
+	j->last.utime = now.utime;
 }
