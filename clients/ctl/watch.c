@@ -182,7 +182,8 @@ int ctl_watch(struct ctl *c)
 static bool is_over(const char *state)
 {
 	return strcmp(state, "done") == 0 || strcmp(state, "fault") == 0 ||
-	       strcmp(state, "stopped") == 0;
+	       strcmp(state, "stopped") == 0 ||
+	       strcmp(state, "interrupted") == 0;
 }
 
 static int report(const struct ctl *c, const char *body, json_t *job)

@@ -52,7 +52,7 @@ static void say_when(char *to, size_t size, int64_t utime)
 static void keep(struct jobs *j, const struct checkpoint *c)
 {
 	const size_t bytes = sizeof(c->base);
-	char *hex = malloc(2 * bytes + 1), reason[256], when[32];
+	char *hex = malloc(2 * bytes + 1), reason[320], when[32];
 
 	if (!hex)
 		return;
@@ -60,7 +60,8 @@ static void keep(struct jobs *j, const struct checkpoint *c)
 	sodium_bin2hex(hex, 2 * bytes + 1, (const unsigned char *)&c->base,
 		       bytes);
 	snprintf(reason, sizeof(reason), "interrupted in %s, line %u, at %.3f "
-		 "mm of %.3f, cut to %.3f mm; last seen %s",
+		 "mm of %.3f, cut to %.3f mm; last seen %s; if the host did not "
+		 "go down, edmd's log says why",
 		 shm_state_name(c->base.snap.state), c->base.snap.line,
 		 c->base.snap.place_mm, c->base.snap.length_mm,
 		 c->base.snap.far_mm, when);

@@ -127,6 +127,7 @@ def test_an_edmd_without_its_program_ends_the_job_without_motion(machine):
     assert j["path_mm"] > 0.3
     s = c.status_where(lambda s: not s.job)
     assert s.state == "idle"
+    assert c.ask("remove", "job").code == 0
     assert c.submit(QUICK_JOB, "next").code == 0
     c.job_where("next", "done")
 
