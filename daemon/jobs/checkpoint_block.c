@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define MAGIC	"edmplace"
-#define VERSION	1
+#define VERSION	(1 << 16 | SHM_LAYOUT)	/* it has shm.h's structs in it */
 
 _Static_assert(sizeof(struct checkpoint_head) +
 	       sizeof(struct checkpoint_base) <= CHECKPOINT_BLOCK, "a block");

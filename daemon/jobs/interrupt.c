@@ -24,6 +24,13 @@ static bool is_of_job(const struct checkpoint *c, const struct store_job *job)
 	       strcmp(hex, job->sha256) == 0;
 }
 
+/* A PLC starts a job without asking this service. */
+bool interrupt_saw_begin(const struct jobs *j)
+{
+	return is_of_job(&j->last, &j->queue.job) &&
+	       j->last.base.snap.job_cycles > 0;
+}
+
 void interrupt_init(struct jobs *j)
 {
 	struct store_job job;

@@ -22,6 +22,9 @@ void checkpoint_tick(struct jobs *j, int64_t now_us);
 /** interrupt_init() - find the one that waits.  Startup only. */
 void interrupt_init(struct jobs *j);
 
+/** interrupt_saw_begin() - the last checkpoint has the job loaded, under way. */
+bool interrupt_saw_begin(const struct jobs *j);
+
 /** interrupt_take() - the job loaded has begun, and edmd has not got it: say what
  *  is known of it, and drop it. */
 void interrupt_take(struct jobs *j);

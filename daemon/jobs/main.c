@@ -130,6 +130,13 @@ static int on_lcm(sd_event_source *s, int fd, uint32_t events, void *arg)
 	return 0;
 }
 
+static void tell_mended(struct jobs *j)
+{
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "store", .outcome = "mended",
+	}, "%s", store_mended(j->store));
+}
+
 /* Tell when the store is degraded, and when it is whole again. */
 static void watch_store(struct jobs *j, int64_t now_us)
 {
@@ -142,6 +149,8 @@ static void watch_store(struct jobs *j, int64_t now_us)
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "store", .outcome = *why ? "degraded" : "ok",
 	}, "store %s%s", *why ? "degraded: " : "is whole again", why);
+	if (whole && *store_mended(j->store))
+		tell_mended(j);
 	/* Nothing was known of what is in it. */
 	if (whole && j->queue.job.n == 0)
 		queue_init(j);
@@ -318,9 +327,7 @@ static int run(struct jobs *j)
 	twin_init(&j->twin, j->config);
 	j->store_told = "";
 	if (*store_mended(j->store))
-		jobs_note(j, &(struct jobs_note) {
-			.kind = "store", .outcome = "mended",
-		}, "%s", store_mended(j->store));
+		tell_mended(j);
 	if (err >= 0)
 		err = queue_init(j);
 	interrupt_init(j);

@@ -60,7 +60,7 @@ int queue_promise(struct jobs *j)
 }
 
 /* It did not begin: that it may have is taken back. */
-static void unpromise(struct jobs *j)
+void queue_unpromise(struct jobs *j)
 {
 	if (j->queue.promised)
 		store_may_begin(j->store, 0);
@@ -73,7 +73,7 @@ void queue_started(struct jobs *j, int code)
 
 	/* Whatever is not a clear no may have been done. */
 	if (code > 0 && code != SHM_CUT_SHORT && code != SHM_DONE)
-		unpromise(j);
+		queue_unpromise(j);
 	if (code != SHM_DONE)
 		return;
 	queue_go(j);
@@ -185,7 +185,7 @@ void queue_drop(struct jobs *j, bool again)
 
 	if (again) {
 		set_state(j, JOB_QUEUED);
-		unpromise(j);
+		queue_unpromise(j);
 	}
 	q->promised = 0;
 	shm_program_remove(j->machine, q->job.n);
@@ -299,7 +299,7 @@ static void follow_running(struct jobs *j)
 		return;
 	q->job.begun_us = jobs_utime();
 	store_begin(j->store, q->job.n, q->job.begun_us);
-	unpromise(j);
+	queue_unpromise(j);
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "begun", .job = q->job.id,
 	}, "job %s begun", q->job.name);
@@ -331,7 +331,7 @@ static void follow_hold(struct jobs *j, int64_t now_us)
 		return;
 	}
 	if (queue_promise(j) < 0 || load_send(j, SHM_DO_START, 0, now_us) < 0) {
-		unpromise(j);
+		queue_unpromise(j);
 		q->again_us = now_us + AGAIN_US;
 	}
 }
@@ -379,7 +379,7 @@ static void follow_state(struct jobs *j, int64_t now_us)
 /* It was handed a start, and nobody is left who knows what came of it. */
 static bool may_have_begun(const struct jobs *j)
 {
-	return j->queue.job.begun_us ||
+	return j->queue.job.begun_us || interrupt_saw_begin(j) ||
 	       store_number(j->store, "started", 0) == j->queue.job.n;
 }
 

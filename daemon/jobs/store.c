@@ -96,7 +96,7 @@ static void column_copy(sqlite3_stmt *q, int i, char *to, size_t size)
 }
 
 #define JOB_COLUMNS	"n, id, name, sha256, state, hold, loaded, " \
-			"begun_us, lines, tech_sha256"
+			"begun_us, lines, tech_sha256, submitted_us"
 
 static int job_get(sqlite3_stmt *q, int err, struct store_job *ret)
 {
@@ -112,6 +112,7 @@ static int job_get(sqlite3_stmt *q, int err, struct store_job *ret)
 	ret->begun_us = sqlite3_column_int64(q, 7);
 	ret->lines = (uint32_t)sqlite3_column_int64(q, 8);
 	column_copy(q, 9, ret->tech_sha256, sizeof(ret->tech_sha256));
+	ret->submitted_us = sqlite3_column_int64(q, 10);
 	sqlite3_finalize(q);
 	return 0;
 }

@@ -46,6 +46,7 @@ struct store_job {
 	enum job_state state;
 	bool hold;			/* waits for "start" */
 	bool loaded;			/* program.<n> exists, or may exist */
+	int64_t submitted_us;
 	int64_t begun_us;		/* 0: not yet */
 	uint32_t lines;			/* of the text */
 };

@@ -208,7 +208,8 @@ static int open_once(struct store *s, sqlite3 **ret)
 		sqlite3_busy_timeout(db, STORE_BUSY_MS);
 		err = execute(db, set);
 	}
-	if (err == 0)
+	/* Not each time that there may be room again. */
+	if (err == 0 && (!s->in_memory || s->err == -EILSEQ))
 		err = check(s, db);
 	if (err == 0)
 		err = bring_up(db);

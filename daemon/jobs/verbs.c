@@ -199,7 +199,11 @@ static bool may_start(struct jobs *j, const struct verb *v)
 	const int err = starts ? queue_promise(j) : 0;
 	const int committed = act_commit(j);
 
-	return err == 0 && (!starts || committed == 0 || queue_has_begun(j));
+	if (!starts || queue_has_begun(j))
+		return true;
+	if (err || committed)
+		queue_unpromise(j);
+	return err == 0 && committed == 0;
 }
 
 static void ask_machine(struct jobs *j, const struct verb *v,
