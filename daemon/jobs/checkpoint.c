@@ -175,6 +175,21 @@ static bool takes_sectors(const char *path)
 	return takes;
 }
 
+/* What cannot be written may still be read. */
+static void look_only(const char *path, const char *machine,
+		      struct checkpoint *ret)
+{
+	_Alignas(CHECKPOINT_BLOCK) static union checkpoint_block block[4];
+	const int fd = open(path, O_RDONLY | O_CLOEXEC);
+	struct checkpoint_head head;
+
+	if (fd < 0)
+		return;
+	if (file_read(fd, block) == 0)
+		checkpoint_choose(block, machine, ret, &head);
+	close(fd);
+}
+
 static int file_open(struct checkpoint_file *f, const char *path)
 {
 	const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
@@ -222,8 +237,7 @@ int checkpoint_open(struct checkpoint_file **ret, const char *dir,
 		err = thread_start(f);
 	}
 	if (err < 0) {
-		log_error("checkpoint: %s: %s; after a power cut a job cannot "
-			  "be resumed", path, strerror(-err));
+		look_only(path, machine, ret_last);
 		checkpoint_close(f);
 		return err;
 	}

@@ -82,8 +82,8 @@ struct checkpoint_stats {
 /**
  * checkpoint_open() - read what is there, make the file if it is not.
  *
- * Torn and foreign blocks are told in the log.  Return: 0 or -errno: there will be
- * no checkpoints.
+ * Torn and foreign blocks are told in the log.  Return: 0; -errno: it cannot be
+ * written; @ret_last is filled as far as it can be read.
  */
 int checkpoint_open(struct checkpoint_file **ret, const char *dir,
 		    const char *machine, struct checkpoint *ret_last);

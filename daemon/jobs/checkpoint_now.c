@@ -5,9 +5,12 @@
 #include "interrupt.h"
 
 #include "jobs.h"
+#include "jobs_log.h"
 
 #include <sodium.h>
 #include <string.h>
+
+#define AGAIN_US	5000000
 
 static void fill_job(struct checkpoint_job *to, const struct jobs *j)
 {
@@ -30,11 +33,30 @@ static void forget_timing(struct shm_snapshot *s)
 	s->wake_late_ns = s->took_ns = 0;
 }
 
+/* The disk would not have it: perhaps now. */
+static void try_open(struct jobs *j, int64_t now_us)
+{
+	static struct checkpoint ignored;
+	int err;
+
+	if (j->checkpoint || now_us < j->checkpoint_again_us)
+		return;
+	j->checkpoint_again_us = now_us + AGAIN_US;
+	err = checkpoint_open(&j->checkpoint, j->store_dir, j->machine,
+			      &ignored);
+	if (err != j->checkpoint_err && err)
+		log_error("checkpoint: %s/%s.place: %s; until it can be written "
+			  "a job is not found again after a power cut",
+			  j->store_dir, j->machine, strerror(-err));
+	j->checkpoint_err = err;
+}
+
 void checkpoint_tick(struct jobs *j, int64_t now_us)
 {
 	static struct checkpoint_base now;
 	const struct queue *q = &j->queue;
 
+	try_open(j, now_us);
 	/* Until it is known what became of the job, the last one stays. */
 	if (!j->checkpoint || j->link.state != LINK_OK ||
 	    (q->job.n && j->link.snap.program != q->job.n))

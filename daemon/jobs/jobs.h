@@ -43,6 +43,9 @@ struct jobs {
 	uint64_t status_key;		/* what a change of is sent at once */
 	int64_t begun_us;		/* of this service */
 	struct checkpoint_file *checkpoint;	/* NULL: there is none */
+	const char *store_dir;
+	int64_t checkpoint_again_us;	/* not before */
+	int checkpoint_err;		/* of the last try */
 	struct checkpoint last;		/* as it was found at the start */
 	char interrupted[64];		/* id of the job that waits; or "" */
 	uint32_t vouched;		/* axes that an operator answers for */

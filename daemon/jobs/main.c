@@ -384,10 +384,11 @@ int main(int argc, char **argv)
 	jobs.claim = -1;
 	if (err == 0)
 		err = claim(&jobs);
+	jobs.store_dir = o.store ? o.store : config.store_dir;
 	/* A service without checkpoints is better than none. */
 	if (err == 0)
-		checkpoint_open(&jobs.checkpoint, o.store ? o.store :
-				config.store_dir, jobs.machine, &jobs.last);
+		checkpoint_open(&jobs.checkpoint, jobs.store_dir, jobs.machine,
+				&jobs.last);
 	hash_file(jobs.config_hash, o.config);
 	if (err == 0)
 		err = keys_open(&jobs, o.store ? o.store : config.store_dir);
