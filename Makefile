@@ -633,6 +633,7 @@ clean:
 
 .PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo invariants walkable wire-random \
+	experiments-curve experiments-servo experiments-wire invariants \
+	walkable wire-random \
 	pictures callgraph faults plc-files fuzz lint install clean
 .SECONDARY:
