@@ -63,7 +63,8 @@ def test_the_power_goes_at_a_random_instant(idle, seed):
     assert c.ask("remove", "cut").code == 0
     c.status_where(lambda s: not s.interrupted)
     assert c.job("cut")["state"] == "stopped"
-    c.ask("start")
+    c.job_where("behind", "ready")
+    assert c.ask("start").code == 0
     c.job_where("behind", "done")
 
 
