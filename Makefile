@@ -56,6 +56,10 @@ LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
 # libinterp has a floor for each use: see docs/architecture.md.
 CORE	:= $(wildcard libinterp/core/*/*.c)
 COMPILE	:= $(wildcard libinterp/compile/*/*.c)
+# Built into the reader, in this order: a base is in front of what begins from it.
+DIALECTS := generic linuxcnc heekscnc fanuc-sinker sodick-sinker \
+	    charmilles-robofil charmilles-cmd skd2 sodick-wire chmer \
+	    fanuc-wire mastercam-wire makino agievision 3b 4b
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
 # What every program has in common.
@@ -158,6 +162,19 @@ $(B)/share/edmd/%: clients/plot/%
 
 # -- Compile ------------------------------------------------------------------
 
+$(B)/dialect_files.c: $(DIALECTS:%=dialects/%.ini) Makefile
+	$(call say,GEN,$@)
+	@mkdir -p $(@D)
+	$(Q){ echo '#include "code/dialect.h"'; \
+		echo 'const struct dialect_file dialect_files[] = {'; \
+		for d in $(DIALECTS); do echo "{ \"$$d\","; \
+			sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' dialects/$$d.ini; \
+			echo '},'; done; echo '{ 0, 0 } };'; } > $@
+
+$(B)/dialect_files.o: $(B)/dialect_files.c
+	$(call say,CC,$<)
+	$(Q)$(CC) $(CFLAGS) -Wno-overlength-strings $(INC_compile) -c -o $@ $<
+
 $(B)/%.o: %.c
 	$(call say,CC,$<)
 	@mkdir -p $(@D)
@@ -210,7 +227,7 @@ $(COMMON_A): $(call obj,$(COMMON))
 	$(archive)
 $(CORE_A): $(call obj,$(CORE))
 	$(archive)
-$(COMPILE_A): $(call obj,$(COMPILE))
+$(COMPILE_A): $(call obj,$(COMPILE)) $(B)/dialect_files.o
 	$(archive)
 $(MODEL_A): $(call obj,$(MODEL))
 	$(archive)
@@ -477,6 +494,7 @@ FUZZ	:= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 SEEDS_fuzz_nc	  = $(filter-out %/identify.ngc,$(wildcard examples/*.ngc))
 SEEDS_fuzz_threeb = tests/fuzz/corpus_threeb/*
 SEEDS_fuzz_tech	  = examples/*.tech examples/*.enc
+SEEDS_fuzz_dialect = dialects/*.ini
 
 fuzz: $(FUZZ:%=run-%)
 
@@ -495,7 +513,8 @@ run-fuzz_status: FUZZ_MOST_S = $(if $(filter-out 0,$(FUZZ_SEED)),15)
 $(B)/fuzz_status: daemon/shm/publish.c daemon/shm/object.c
 $(B)/fuzz_status: FUZZ_INC = $(INC_shm)
 
-$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON)
+$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON) \
+	     $(B)/dialect_files.c
 	$(call say,CLANG,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
@@ -571,6 +590,9 @@ install: all panel
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
 		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
+	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/dialects
+	$(Q)install -m 644 dialects/*.ini \
+		$(DESTDIR)$(PREFIX)/share/edmd/dialects
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
 

@@ -105,14 +105,18 @@ static double trials_now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
+/* What a job is compiled with. */
+struct tables {
+	struct config_tech tech;
+	struct config_dialect dialect;
+};
+
 static int compile(struct sim_job *job, const struct sim_options *o,
 		   const struct machine_config *c, struct text *t,
-		   const struct config_tech *tech)
+		   const struct tables *with)
 {
 	const struct interp_text text = {
-		.at = t->at, .bytes = t->n,
-		.dialect = o->dialect ? o->dialect :
-					interp_dialect_by_file(o->job),
+		.at = t->at, .bytes = t->n, .dialect = with->dialect.use,
 	};
 	const struct interp_notes notes = { say_note, (void *)(uintptr_t)o->job,
 					    o->check };
@@ -122,7 +126,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	struct interp_build *b;
 	int r;
 
-	config_compiling(c, tech, &of);
+	config_compiling(c, &with->tech, &of);
 	of.text.nc.notes = &notes;
 	b = interp_build_create(&of.build);
 	if (!b)
@@ -140,18 +144,34 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	return r;
 }
 
+static int dialect_load(struct config_dialect *d, const struct sim_options *o,
+			const struct machine_config *c)
+{
+	char why[1024];
+	const int err = config_dialect_load(d, c, o->dialect, o->job);
+
+	if (err == 0)
+		return 0;
+	config_dialect_why(d, err, why, sizeof(why));
+	fprintf(stderr, "edmsim: %s\n", why);
+	return o->dialect ? EX_USAGE : EX_CONFIG;
+}
+
 int job_load(struct sim_job *job, const struct sim_options *o,
 	     const struct machine_config *c)
 {
 	struct text t = { 0 };
-	struct config_tech tech;
-	int r = edmsim_tech_load(&tech, o, c);
+	struct tables with = { .tech = { .table = NULL } };
+	int r = dialect_load(&with.dialect, o, c);
 
+	if (r == 0)
+		r = edmsim_tech_load(&with.tech, o, c);
 	if (r == 0)
 		r = text_load(o->job, &t);
 	if (r == 0)
-		r = compile(job, o, c, &t, &tech);
-	config_tech_free(&tech);
+		r = compile(job, o, c, &t, &with);
+	config_tech_free(&with.tech);
+	config_dialect_free(&with.dialect);
 	if (r == EX_OSERR)
 		fprintf(stderr, "edmsim: %s: out of memory\n", o->job);
 	free(t.at);

@@ -31,7 +31,8 @@ struct compiler_result {
 	struct interp_diag diag;
 	uint32_t lines;
 	char tech_sha256[65];		/* of the table, hex; "": none */
-	char tech_refusal[1024];		/* the table's own; "": none */
+	char tech_refusal[1024];		/* of the table or the
+					 * dialect; "": none */
 	struct interp_build *build;
 };
 

@@ -73,7 +73,7 @@ static int note_label(struct nc_reader *r, struct nc_label l,
 		      const uint8_t *end)
 {
 	const uint8_t *at;
-	const uint32_t n = label_of(r->d->label, l.at, end, &at);
+	const uint32_t n = label_of((char)r->d->label, l.at, end, &at);
 
 	if (n == 0)
 		return 0;

@@ -15,7 +15,7 @@ void nc_set_units(struct nc_reader *r, bool inches)
 void nc_set_offset(struct nc_reader *r)
 {
 	for (int i = 0; i < INTERP_NAXES; i++)
-		r->offset_mm[i] = r->o->work_offset_mm[r->work][i] +
+		r->offset_mm[i] = r->work_mm[r->work][i] +
 				  r->shift_mm[i];
 	/* The second plane is measured from the same origin. */
 	if (nc_has_guides(r)) {
@@ -83,8 +83,7 @@ static int run_condition(struct nc_reader *r)
 				 r->block.code_at[NC_CONDITION]);
 }
 
-/* Feed per minute is the only mode there is; corners and transitions belong to
- * an offset; no output switches wire and water. */
+/* Feed per minute is the only mode there is. */
 static int run_nothing(struct nc_reader *r)
 {
 	(void)r;
@@ -145,9 +144,6 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_OFFSET]		= nc_run_offset,
 	[NC_TAPER]		= nc_run_taper,
 	[NC_TAPER_CORNER]	= nc_run_taper_corner,
-	[NC_CORNER]		= run_nothing,
-	[NC_TRANSITION]		= run_nothing,
-	[NC_SUPPLY]		= run_nothing,
 	[NC_MCODE]		= run_mcode,
 	[NC_POWER]		= run_power,
 	[NC_PUMP]		= run_pump,

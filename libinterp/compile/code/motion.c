@@ -205,6 +205,8 @@ static int dwell(struct nc_reader *r)
 				 nc_has(r, NC_P) ? "G4 with both P and X" :
 				 "G4 without a time");
 	s = r->block.value[slot];
+	if (slot == NC_P && r->d->dwell_ms)
+		s /= 1000;
 	if (!(s >= 0 && s <= 1000000))
 		return nc_refuse(r, r->block.at[slot],
 				 "0 to 1000000 seconds", "a dwell of %g s", s);
@@ -259,7 +261,7 @@ static int set_here(struct nc_reader *r)
 				 "G92 with U or V, which go with X and Y");
 	for EACH_AXIS(b->words & NC_AXES, i)
 		r->shift_mm[i] = here[i] - b->value[i] * r->scale[i] -
-				 r->o->work_offset_mm[r->work][i];
+				 r->work_mm[r->work][i];
 	nc_set_offset(r);
 	r->unnamed &= ~b->words;
 	return 0;

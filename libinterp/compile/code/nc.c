@@ -37,9 +37,12 @@ static void reset_modes(struct nc_reader *r)
 {
 	const struct interp_nc_options *o = r->o;
 
-	r->d = o->dialect ? o->dialect->nc : &nc_generic;
+	r->d = o->dialect ? o->dialect->nc :
+	       interp_dialect_by_name("generic")->nc;
+	memcpy(r->work_mm, o->work_offset_mm, sizeof(r->work_mm));
 	r->arc_incremental = !r->d->arc_places;
-	r->lengths = r->d->point || r->d->decimals ? NC_LENGTHS : 0;
+	r->lengths = r->d->point != NC_POINT_FREE || (o->notes && o->notes->plan) ?
+		     NC_LENGTHS : 0;
 	r->feed_mm_s = first_feed(r);
 	r->feed_deg_s = r->feed_mm_s;
 	r->fresh = true;
@@ -71,6 +74,8 @@ int nc_read_line(struct nc_reader *r)
 	if (r->executed++ >= r->executed_max)
 		return refuse_executed(r);
 	rc = nc_scan_line(r);
+	if (!rc && r->o->notes && r->o->notes->plan)
+		nc_note_line(r);
 	return rc ? rc : nc_run_line(r);
 }
 

@@ -18,6 +18,7 @@
  *	offset.c	offset and taper: G40 ... G42, G50 ... G52, D and H
  *	tech.c		conditions: called, defined, in a sequence
  *	flow.c		subprograms and the end
+ *	note.c		say what is ignored, or is read otherwise elsewhere
  *	nc.c		line after line
  *	refuse.c	say what was found and what would be accepted
  *
@@ -39,6 +40,10 @@ struct nc_tool_point {
 					 * the others as the axes stand */
 };
 
+/* Notes of one kind each. */
+enum nc_told { NC_TOLD_POINT, NC_TOLD_INCHES, NC_TOLD_CONDITION,
+	       NC_TOLD_DWELL, NC_TOLD_OFFSET };
+
 /* Why no further line is read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
 
@@ -47,12 +52,16 @@ struct nc_block {
 	uint32_t words;			/* bit per enum nc_slot */
 	uint32_t groups;		/* bit per enum nc_group */
 	uint32_t takes;			/* slots its codes use */
+	uint32_t drops;			/* ... have no use for, and say so */
 	uint32_t cond_number;
 	char cond_letter;
 	uint32_t angles;		/* A and B of a cycle: they are no axes */
 	uint32_t toward;		/* slots without a number: only a sign,
 					 * +1 -1 or 0, is their value */
 	double value[NC_NSLOTS];
+	const struct nc_code *dropper;	/* one that is carried out without some
+					 * of its words, or NULL */
+	const uint8_t *dropper_at;
 	const uint8_t *at[NC_NSLOTS];	/* the letter */
 	const struct nc_code *code[NC_NGROUPS];
 	const uint8_t *code_at[NC_NGROUPS];
@@ -147,7 +156,8 @@ struct nc_reader {
 	/* Modes, until changed. */
 	const struct nc_code *motion;	/* NULL: none yet */
 	uint8_t plane;			/* 0 ... 2: G17 ... G19 */
-	uint8_t work;			/* 0 ... 5: G54 ... G59 */
+	uint8_t work;			/* 0 ... 8: G54 ... G59.3 */
+	double work_mm[INTERP_NC_NWORK][INTERP_NAXES];
 	bool incremental, arc_incremental;
 	uint32_t lengths;		/* slots where a point matters */
 	double unit_mm;			/* 1 or 25.4 */
@@ -188,6 +198,11 @@ struct nc_reader {
 	uint32_t absent;		/* axes the machine has not */
 	uint32_t segs, segs_max;
 	uint32_t executed, executed_max;
+
+	/* What has been noted already: codes, then letters by the place of
+	 * their reason in d->text; and enum nc_told. */
+	uint8_t told[(NC_NCODES + NC_TEXT_MAX) / 8 + 1];
+	uint32_t told_once;
 
 	const struct interp_nc_options *o;
 	struct interp_build *build;
@@ -367,6 +382,22 @@ static inline const uint8_t *nc_line_next(const uint8_t *p, const uint8_t *end)
 		return p + 2;
 	return p < end ? p + 1 : end;
 }
+
+/* note.c.  Nothing is noted twice.  All but nc_note_code() speak only to who
+ * wants to know before a run: notes->plan. */
+
+/** nc_note_code() - the word at @at has a reason to be mentioned. */
+void nc_note_code(struct nc_reader *r, const uint8_t *at,
+		  const struct nc_code *code);
+
+/** nc_note_point() - the length at @at has no decimal point. */
+void nc_note_point(struct nc_reader *r, const uint8_t *at);
+
+/** nc_note_line() - what the line in hand means, and would not elsewhere. */
+void nc_note_line(struct nc_reader *r);
+
+/** nc_write_offset() - G10 L2 and L20: a work offset of this program. */
+int nc_write_offset(struct nc_reader *r);
 
 /** nc_refuse() - fill the diag for the byte at @at. Return: -EINVAL. */
 int nc_refuse(struct nc_reader *r, const uint8_t *at, const char *wanted,

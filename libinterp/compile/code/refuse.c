@@ -77,7 +77,8 @@ struct nc_quote nc_quote_run(const struct nc_reader *r, const uint8_t *at)
 
 static uint32_t next_code(const struct nc_letter *l, uint32_t i)
 {
-	while (i < l->ncodes && l->codes[i].group == NC_UNKNOWN)
+	while (i < l->ncodes && (l->codes[i].group == NC_UNKNOWN ||
+				 l->codes[i].group == NC_REFUSED))
 		i++;
 	return i;
 }
