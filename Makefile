@@ -18,6 +18,7 @@
 #   make invariants what holds in every cycle, over ten million random ones
 #   make callgraph  draw which file of the cycle calls which
 #   make faults     the table of faults in docs/, from the one in the code
+#   make plc-files  EDS, DBC and the page of signals, from the one in the code
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
 #   make fuzz       the readers of jobs under libFuzzer, a bounded time each
@@ -105,9 +106,9 @@ INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
 WORDS_H		= -Idaemon/words
 INC_words	= $(WORDS_H)
 INC_rt		= -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
-INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
+INC_io		= -Idaemon/io -Idaemon/config $(WORDS_H) $(CORE_H) $(GPIOD_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
-INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
+INC_compiling	= -Idaemon/compiling -Idaemon/config $(WORDS_H) $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
 INC_setup	= -Idaemon/setup
 INC_logger	= -Idaemon/logger -Imessages/sign
@@ -470,6 +471,11 @@ faults: $(B)/edmctl
 	$(Q)docs/faults $(B)/edmctl > $(B)/faults.md
 	$(Q)docs/put-table $(B)/faults.md docs/architecture.md
 
+# What a PLC's tools read, from the tables in the code.
+plc-files:
+	$(Q).venv/bin/python messages/plc-files messages/edmd.eds messages/edmd.dbc \
+		docs/plc-signals.md
+
 # Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
 pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(call say,DRAW,docs/pictures)
@@ -604,5 +610,5 @@ clean:
 .PHONY: all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
-	pictures callgraph faults fuzz lint install clean
+	pictures callgraph faults plc-files fuzz lint install clean
 .SECONDARY:

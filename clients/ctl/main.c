@@ -73,6 +73,8 @@ static const struct verb verbs[] = {
 	  "held: to the Nth node of the path, ahead or back" },
 	{ "jog", "AXIS MM", ctl_jog, 2, 2, false, "",
 	  "idle: move one axis so far" },
+	{ "jog-on", "AXIS MM/S", ctl_jog_on, 2, 2, false, "",
+	  "idle: move one axis at that speed, until Ctrl-C" },
 	{ "home", "[AXIS]", ctl_home, 1, 0, false, "",
 	  "idle: find the place of one axis, or of all" },
 	{ "override", "PERCENT", ctl_override, 1, 1, false, "",

@@ -141,7 +141,7 @@ static void take_keys(struct tune *t, const struct candidate *a, size_t n)
 
 static void choose_keys(struct tune *t)
 {
-	const struct config_gap *g = &t->was->gap;
+	const struct cycle_gap_config *g = &t->was->gap;
 	/* The window's upper end, where it is set, is what is held. */
 	const struct candidate held = {
 		SECTION_GAP, g->window_high_v > 0 ? "window_high_v" : "servo_v",

@@ -89,4 +89,4 @@ static const struct config_key row[] = {
 };
 /* clang-format on */
 
-const struct config_keys config_keys_gpio = { row, COUNT(row) };
+const struct config_keys config_keys_gpio = { row, ROWS_IN(row) };

@@ -6,6 +6,7 @@
 
 #include "cycle.h"
 #include "interp/orbit.h"
+#include "path/place.h"
 
 #define PULSE	0.001
 
@@ -374,11 +375,11 @@ static void look_at(void *arg, const struct cycle *c)
 {
 	const struct flight *f = arg;
 
-	if (block_meets(f->k, cycle_pos(c)))
+	if (block_meets(f->k, place_pos(c)))
 		fail_msg("%s, line %u: the way out meets the workpiece at "
 			 "%d %d %d, from %d %d %d", f->text,
-			 c->cursor.seg.line, cycle_pos(c)[0],
-			 cycle_pos(c)[1], cycle_pos(c)[2], c->cursor.pos[0],
+			 c->cursor.seg.line, place_pos(c)[0],
+			 place_pos(c)[1], place_pos(c)[2], c->cursor.pos[0],
 			 c->cursor.pos[1], c->cursor.pos[2]);
 }
 

@@ -17,6 +17,7 @@
 #include "path/laws.h"
 #include "path/lookahead.h"
 #include "path/walk.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -130,7 +131,7 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 static bool plan_holds(struct cycle *c, double v_mm_s)
 {
 	const struct cycle_ahead *a = &c->ahead;
-	const double left = a->place_mm - law_place(c);
+	const double left = a->place_mm - place_mm(c);
 	struct mover *m = &c->mover;
 
 	if (!a->to_place || m->kind != MOVER_TO_PLACE ||
@@ -174,7 +175,7 @@ static void plan_place(struct cycle *c, const struct lookahead *k, double v_mm_s
 	}
 	mover_aim_place(&c->mover, &l, toward * left, toward * v);
 	c->ahead.to_place = true;
-	c->ahead.place_mm = law_place(c) + toward * left;
+	c->ahead.place_mm = place_mm(c) + toward * left;
 	c->ahead.v_max_mm_s = l.v_max_mm_s;
 }
 
@@ -238,7 +239,7 @@ static void plan_next(struct cycle *c, const struct lookahead *k, double v_mm_s)
 	l.v_max_mm_s = v_mm_s;
 	mover_aim_place(&c->mover, &l, c->ahead.toward * k->next_mm, 0);
 	c->ahead.to_place = true;
-	c->ahead.place_mm = law_place(c) + c->ahead.toward * k->next_mm;
+	c->ahead.place_mm = place_mm(c) + c->ahead.toward * k->next_mm;
 	c->ahead.v_max_mm_s = v_mm_s;
 }
 

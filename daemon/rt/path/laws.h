@@ -21,11 +21,6 @@ static inline double law_period_s(const struct cycle *c)
 	return (double)c->config.period_ns * 1e-9;
 }
 
-static inline double law_place(const struct cycle *c)
-{
-	return cycle_place_mm(c);
-}
-
 /* A speed set at once, without a ramp. */
 static inline double law_go_at(struct cycle *c, double v_mm_s)
 {

@@ -13,6 +13,7 @@
 #include "path/walk.h"
 
 #include "interp/limits.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -273,7 +274,7 @@ void lookahead_from(struct lookahead *k, struct interp_scurve_state s)
 	if (k->w->positions)
 		look_feeds(k);
 	if (isfinite(k->w->goal_mm))
-		consider(k, toward * (k->w->goal_mm - law_place(c)), 0);
+		consider(k, toward * (k->w->goal_mm - place_mm(c)), 0);
 	if (k->w->stops_at_nodes)
 		consider(k, node_mm(c, toward), 0);
 }

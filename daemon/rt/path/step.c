@@ -4,6 +4,7 @@
  */
 #include "path/step.h"
 #include "path/laws.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -61,6 +62,6 @@ int step_to(const struct cycle *c, double n, double *ret_mm)
 void step_watch(struct cycle *c)
 {
 	if (c->state == STATE_HOLD && c->hold.moving && c->sensed.contact &&
-	    c->hold.to_mm > law_place(c) && !c->config.dry_run)
+	    c->hold.to_mm > place_mm(c) && !c->config.dry_run)
 		c->hold.moving = false;
 }

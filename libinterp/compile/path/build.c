@@ -6,6 +6,7 @@
  */
 #include "path/builder.h"
 #include "path/build_arc.h"
+#include "path/build_bits.h"
 #include "path/build_pair.h"
 #include "path/build_rule.h"
 #include "pulse/pulse.h"
@@ -352,10 +353,15 @@ struct build_way build_way_to(const struct interp_build *b,
 			      const struct build_measure *m)
 {
 	struct build_way w = { .longest_sub = m->longest };
+	uint32_t n = b->naxes;
 
+	memcpy(w.order, b->column, n);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		w.from[i] = interp_round_sub(b->here[i]);
 		w.to[i] = interp_round_sub(to[i]);
+		/* Those without a column get theirs in this order. */
+		if (!(b->columns & 1u << i))
+			w.order[n++] = (uint8_t)i;
 	}
 	return w;
 }
@@ -412,7 +418,8 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	build_seg_feed(&seg, w, m.length_mm / m.seconds);
 	if (m.moved & ~b->columns && build_columns(b, m.moved) < 0)
 		return -ENOMEM;
-	if (w->ends)
+	r = build_bits_add(b, &way, &seg.arg);
+	if (r == 0 && w->ends)
 		r = sensed_begin(b, m.moved, w, diag);
 	if (r < 0)
 		return r;

@@ -88,8 +88,7 @@ static void stand(struct contour *k, const double end_mm[INTERP_NAXES])
 					     end_mm[INTERP_Y] };
 }
 
-/* The offset is reached or left over it, or a taper without offset. */
-static bool is_lead(const struct contour *k)
+bool contour_leads(const struct contour *k)
 {
 	const double was = k->last_offset_mm, is = k->offset_mm;
 
@@ -133,7 +132,7 @@ static int take(struct contour *k, struct contour_motion *m,
 	m->offset_mm = k->offset_mm;
 	m->slope = k->slope;
 	m->corner = k->corner;
-	m->lead = is_lead(k);
+	m->lead = contour_leads(k);
 	for (int p = 0; p < 2; p++)
 		m->c[p] = curve_evened(&m->c[p]);
 	r = check_lead(k, m, diag);

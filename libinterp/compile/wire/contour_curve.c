@@ -105,30 +105,31 @@ static int cut(struct cutter *k, double u0, double u1, int depth)
 	return rc ? rc : cut(k, mid, u1, depth + 1);
 }
 
-static int refuse(const struct interp_build_word *w, struct interp_diag *diag,
-		  const char *what)
-{
-	diag->line = w->line;
-	return interp_diag_say(diag, "%s", what);
-}
-
 static int check(struct cutter *k, const double end_mm[INTERP_NAXES])
 {
 	const struct interp_nurbs *n = &k->curve->nurbs;
 	const struct vec to = at(k, interp_nurbs_last(n));
 	const double slack = 2 * k->k->guides.pulse_mm;
 
+	k->diag->line = k->w->line;
+	/* Over which of its arcs would depend on the length of a pulse. */
+	if (contour_leads(k->k))
+		return interp_diag_say(k->diag, "a curve over which the offset "
+				       "or the taper is reached or left; G1, G2 "
+				       "or G3 as the lead");
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (i > INTERP_Y && fabs(end_mm[i] - k->k->here_mm[i]) > 1e-9)
-			return refuse(k->w, k->diag, "a curve with another "
-				      "axis under an offset, a taper, guides or "
-				      "corner control; X and Y alone");
+			return interp_diag_say(k->diag, "a curve with another "
+					       "axis under an offset, a taper, "
+					       "guides or corner control; X and "
+					       "Y alone");
 	}
 	if (fabs(to.x - end_mm[INTERP_X]) > slack ||
 	    fabs(to.y - end_mm[INTERP_Y]) > slack)
-		return refuse(k->w, k->diag, "a curve that does not end at its "
-			      "last control point; a last knot as often as "
-			      "the order");
+		return interp_diag_say(k->diag, "a curve that does not end at "
+				       "its last control point; a last knot as "
+				       "often as the order");
+	k->diag->line = 0;
 	return 0;
 }
 
