@@ -167,7 +167,7 @@ $(B)/dialect_files.c: $(DIALECTS:%=dialects/%.ini) Makefile
 	$(call say,GEN,$@)
 	@mkdir -p $(@D)
 	$(Q){ echo '#include "code/dialect.h"'; \
-		echo 'const struct dialect_file dialect_files[] = {'; \
+		echo 'const struct dialect_file nc_dialect_files[] = {'; \
 		for d in $(DIALECTS); do echo "{ \"$$d\","; \
 			sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' dialects/$$d.ini; \
 			echo '},'; done; echo '{ 0, 0 } };'; } > $@

@@ -21,9 +21,9 @@ static void every_file_that_is_built_in_is_read(void **state)
 	int n = 0;
 
 	(void)state;
-	for (; dialect_files[n].name; n++) {
-		if (read_text(dialect_files[n].text, &d))
-			fail_msg("%s.ini:%u:%u: %s; %s", dialect_files[n].name,
+	for (; nc_dialect_files[n].name; n++) {
+		if (read_text(nc_dialect_files[n].text, &d))
+			fail_msg("%s.ini:%u:%u: %s; %s", nc_dialect_files[n].name,
 				 diag.line, diag.column, diag.found,
 				 diag.wanted);
 		interp_dialect_free(d);

@@ -23,15 +23,15 @@ static void build(void)
 {
 	struct interp_diag diag;
 
-	for (; dialect_files[ndialects].name; ndialects++) {
-		const struct dialect_file *f = &dialect_files[ndialects];
+	for (; nc_dialect_files[ndialects].name; ndialects++) {
+		const struct dialect_file *f = &nc_dialect_files[ndialects];
 		struct interp_dialect *d = &dialects[ndialects];
 		int rc;
 
 		assert(ndialects < NDIALECTS_MAX);
 		d->nc = &tables[ndialects];
 		snprintf(d->name, sizeof(d->name), "%s", f->name);
-		rc = dialect_read(d, f->text, strlen(f->text), &diag);
+		rc = nc_dialect_read(d, f->text, strlen(f->text), &diag);
 		assert(rc == 0);
 		(void)rc;
 	}

@@ -24,11 +24,11 @@ struct dialect_file {
 	const char *name, *text;
 };
 
-extern const struct dialect_file dialect_files[];
+extern const struct dialect_file nc_dialect_files[];
 
-/** dialect_read() - the tables of @text into @d, whose name and whose zeroed
+/** nc_dialect_read() - the tables of @text into @d, whose name and whose zeroed
  *  nc are there.  Return: 0, or -EINVAL with @diag filled. */
-int dialect_read(struct interp_dialect *d, const char *text, size_t bytes,
+int nc_dialect_read(struct interp_dialect *d, const char *text, size_t bytes,
 		 struct interp_diag *diag);
 
 /** interp_dialect_base() - one that is built in already; NULL: none. */

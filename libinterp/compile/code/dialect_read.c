@@ -478,7 +478,7 @@ static int read_line(struct reading *f, struct piece line,
 	return (*in)->read(f, key, trim(value));
 }
 
-int dialect_read(struct interp_dialect *d, const char *text, size_t bytes,
+int nc_dialect_read(struct interp_dialect *d, const char *text, size_t bytes,
 		 struct interp_diag *diag)
 {
 	struct reading f = { .d = d, .diag = diag };
@@ -511,7 +511,7 @@ int interp_dialect_read(struct interp_dialect **ret, const char *name,
 		return -ENOMEM;
 	}
 	snprintf(d->name, sizeof(d->name), "%s", name);
-	rc = dialect_read(d, text->at, text->bytes, diag);
+	rc = nc_dialect_read(d, text->at, text->bytes, diag);
 	if (rc)
 		interp_dialect_free(d);
 	else
