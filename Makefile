@@ -51,6 +51,11 @@ OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
 	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
+# A shim round a library of C++, whose own headers are not ours to mend.
+CXXFLAGS = -std=c++17 $(OPT) -g -Wall -Wextra -Wshadow $(if $(WERROR),-Werror) \
+	   -isystem /usr/include/eigen3 \
+	   $(subst -I,-isystem ,$(filter -I%,$(shell pkg-config --cflags ompl))) \
+	   -MMD -MP $(SANFLAGS)
 LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
 
 # The parts, in the order data flows.
@@ -87,6 +92,8 @@ SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
 PLAN	:= $(wildcard clients/plan/*.c)
+# The one library for which a little C++ is needed.
+OMPL	:= clients/plan/corridor.cc
 PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
@@ -137,7 +144,7 @@ INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
 WORDS_O	 := $(call obj,$(WORDS))
 RT_O	 := $(call obj,$(RT)) $(WORDS_O)
 IO_O	 := $(call obj,$(IO))
-SIM_IO_O := $(filter-out %/gpio.o %/gpio_open.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
+SIM_IO_O := $(filter-out %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 LINES_O	 := $(filter %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
@@ -180,6 +187,11 @@ $(B)/%.o: %.c
 	$(call say,CC,$<)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
+
+$(B)/%.o: %.cc
+	$(call say,CXX,$<)
+	@mkdir -p $(@D)
+	$(Q)$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
 
 # Generated messages: compiled without our warnings, they are not ours.
 LCM_TYPES := $(shell sed -n 's/^struct \([a-z_]*_t\).*/\1/p' messages/edm.lcm 2>/dev/null)
@@ -256,13 +268,16 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
 	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
-$(B)/edm-plan: $(call obj,$(PLAN)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
-	$(call link,-ladmesh -lglpk -linih -ljansson -lpthread -lm)
+$(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 # Of edm-plan, without its main().
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c near.c motion.c prove.c))
 
 $(B)/unit/test_plan_core: $(PLAN_CORE)
+
+$(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
+$(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
@@ -271,6 +286,9 @@ $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemo
 $(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call obj,$(addprefix daemon/jobs/,trust.c jobs_log.c))
 $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
+
+# The lines of its encoder are its own.
+$(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)

@@ -74,7 +74,7 @@ static void look(struct checking *k, uint32_t i, const struct block *b,
 	k->room_mm = mm - c->mm - PROVE_EPS_MM;
 }
 
-static bool check_block(struct checking *k, uint32_t i, const struct block *b,
+static bool prove_next(struct checking *k, uint32_t i, const struct block *b,
 			const struct clearance *c)
 {
 	struct proof p = { .least_mm = DBL_MAX, .pair = k->pair };
@@ -109,7 +109,26 @@ static bool check_next(struct checking *k, uint32_t i)
 		k->room_mm -= b.way_mm;
 		return true;
 	}
-	return check_block(k, i, &b, &c);
+	return prove_next(k, i, &b, &c);
+}
+
+bool check_block(const struct job *j, const double from[INTERP_NAXES],
+		 const double to[INTERP_NAXES], const struct clearance *c,
+		 struct near_pair *pair)
+{
+	struct proof p = { .pair = *pair };
+	double lattice[INTERP_NAXES];
+	struct clearance with;
+	struct block b;
+	bool ok;
+
+	block_init(&b, &j->motion, from, to);
+	route_lattice(&j->config, lattice);
+	with = more(c, motion_strays_mm(&b, lattice) + j->chord_mm);
+	ok = !prove_refuted(&j->bodies, &b, &with, &p) &&
+	     prove_block(&j->bodies, &b, &with, &p);
+	*pair = p.pair;
+	return ok;
 }
 
 /* Does the way begin inside? */

@@ -327,3 +327,23 @@ bool job_moves_known(const struct job *j, const struct route *w,
 	}
 	return true;
 }
+
+void job_axes_find(const struct job *j, const double from[INTERP_NAXES],
+		   const double to[INTERP_NAXES], struct job_axes *ret)
+{
+	const uint32_t moves = motion_moves(&j->motion) &
+			       j->config.axes.present;
+	struct block b;
+
+	*ret = (struct job_axes) { 0 };
+	block_init(&b, &j->motion, from, to);
+	for (uint32_t i = 0; i < INTERP_NAXES; i++)
+		if (moves & 1u << i)
+			ret->axis[ret->n++] = (enum interp_axis)i;
+	for (uint32_t i = 0; i < j->kin.njoints; i++) {
+		const enum interp_axis a = j->kin.joint[i].axis;
+
+		ret->reach_mm[a] = b.reach_mm[i] * (interp_axis_is_rotary(a) ?
+						    PLAN_RADIAN : 1);
+	}
+}

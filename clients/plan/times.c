@@ -117,7 +117,7 @@ static int ask(const struct room *r, const struct machine_config *c,
 	return 0;
 }
 
-static int ask_way(const struct plan *p, const struct room *r,
+static int ask_way(struct plan *p, const struct room *r,
 		   struct plan_way *w)
 {
 	double s[2] = { 0, 0 };

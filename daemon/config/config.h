@@ -70,6 +70,7 @@ enum config_brake { BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE };
 
 struct config_drive {
 	double increments, pulses;
+	double encoder_counts, encoder_pulses;	/* of [gpio] encoder_ */
 	int brake;			/* enum config_brake */
 	int absolute, follow_bit;	/* 1: yes */
 	double fault_reaction, connection_lost;	/* 605E, 6007; -1: as it is */
@@ -168,7 +169,9 @@ enum config_line {
 	LINE_SPARK = LINE_DIR + INTERP_NAXES,
 	LINE_PUMP,
 	LINE_WATCHDOG,
-	CONFIG_NOUTPUTS,
+	LINE_ENABLE,
+	LINE_BRAKE,
+	CONFIG_NOUTPUTS = LINE_BRAKE + INTERP_NAXES,
 	LINE_LIMIT = CONFIG_NOUTPUTS,
 	LINE_HOME = LINE_LIMIT + INTERP_NAXES,
 	LINE_GAP_OPEN = LINE_HOME + INTERP_NAXES,
@@ -182,6 +185,7 @@ enum config_line {
 };
 
 #define CONFIG_LINE_MAX	32		/* of a line's text, with its NUL */
+#define CONFIG_ENCODER_MAX	(2 * CONFIG_LINE_MAX)
 
 /* A line's text, read. */
 struct config_line_at {
@@ -206,6 +210,11 @@ struct config_gpio {
 	char watchdog_by[128], estop_by[128];	/* what does it without a line;
 						 * "none": nothing */
 	char line[CONFIG_NLINES][CONFIG_LINE_MAX];
+	double brake_ms;		/* to open, and to close */
+	char encoder[INTERP_NAXES][CONFIG_ENCODER_MAX];	/* as
+						 * config_encoder_read() */
+	double following_mm, following_s;	/* of axes with an encoder */
+	double resync_mm, resync_mm_s;
 };
 
 /* [panel]: the operator's page; docs/panel.md. */
@@ -320,6 +329,21 @@ int64_t config_period_ns(const struct machine_config *c);
  * Return: NULL, or what is wrong with @text.
  */
 const char *config_line_read(const char *text, struct config_line_at *ret);
+
+/* An encoder's text, read. */
+struct config_encoder_at {
+	bool present;			/* false: none */
+	bool lines;			/* by two lines, else by a counter */
+	struct config_line_at a, b;
+	char counter[CONFIG_ENCODER_MAX];	/* as counter0/count0 */
+};
+
+/**
+ * config_encoder_read() - `none`, two lines, or counterN/countM.
+ * Return: what is wrong with it, or NULL.
+ */
+const char *config_encoder_read(const char *text,
+				struct config_encoder_at *ret);
 
 /** config_line_name() - its key: "step_X", "spark", ... */
 const char *config_line_name(int line);

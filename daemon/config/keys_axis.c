@@ -98,6 +98,12 @@ static const struct config_key row[] = {
 	WHOLE(AXIS, "drive_pulses", "pulses", "1", 1, 1e9,
 	      EACH(drive[0].pulses, struct config_drive),
 	      "... are so many pulses"),
+	WHOLE(AXIS, "encoder_counts", "", "1", -1e9, 1e9,
+	      DRIVE(encoder_counts),
+	      "of [gpio] encoder_: so many, four in a period of A, negative to "
+	      "turn it round, ..."),
+	WHOLE(AXIS, "encoder_pulses", "pulses", "1", 1, 1e9,
+	      DRIVE(encoder_pulses), "... are so many pulses"),
 	WORDS(AXIS, "absolute", "no", DRIVE(absolute), yes_word,
 	      "its drive knows its place when it is switched on"),
 	WORDS(AXIS, "brake", "unsaid", DRIVE(brake), brake_word,
