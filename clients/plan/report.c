@@ -106,7 +106,7 @@ int report_put(const struct plan *p)
 	const struct job *j = p->j;
 	json_t *o;
 	char *text;
-	int r;
+	int err;
 
 	if (!j->o->report)
 		return 0;
@@ -129,7 +129,7 @@ int report_put(const struct plan *p)
 	json_decref(o);
 	if (!text)
 		return EX_OSERR;
-	r = text_put(j->o->report, text);
+	err = text_put(j->o->report, text);
 	free(text);
-	return r;
+	return err;
 }

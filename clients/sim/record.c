@@ -74,16 +74,16 @@ static struct plot *begin_plot(const struct sim_run *r)
 int record_open(struct sim_run *r)
 {
 	const struct sim_options *o = r->o;
-	int e = 0;
+	int err = 0;
 
 	if (o->pulses)
-		e = open_out(&r->pulses, o->pulses);
-	if (e)
-		return e;
+		err = open_out(&r->pulses, o->pulses);
+	if (err)
+		return err;
 	if (o->trace)
-		e = open_out(&r->trace, o->trace);
-	if (e)
-		return e;
+		err = open_out(&r->trace, o->trace);
+	if (err)
+		return err;
 	if (o->plot && !(r->plot = begin_plot(r)))
 		return EX_OSERR;
 	if (r->pulses) {
@@ -205,9 +205,9 @@ static int close_out(FILE *f, const char *path)
 
 int record_close(struct sim_run *r)
 {
-	const int e = close_out(r->pulses, r->o->pulses);
+	const int err = close_out(r->pulses, r->o->pulses);
 	const int f = close_out(r->trace, r->o->trace ? r->o->trace :
 							"trace");
 
-	return e ? e : f;
+	return err ? err : f;
 }

@@ -253,22 +253,22 @@ static int check_method(const struct tuning *t)
 
 static int prepare(struct tuning *t)
 {
-	int e = check_job(t->run);
+	int err = check_job(t->run);
 
-	if (e)
-		return e;
+	if (err)
+		return err;
 	watch(t);
-	e = check_loops(t);
-	if (e)
-		return e;
-	e = check_method(t);
-	if (e)
-		return e;
-	e = run_job(t->run);
-	if (e == 0 && t->rows.full)
+	err = check_loops(t);
+	if (err)
+		return err;
+	err = check_method(t);
+	if (err)
+		return err;
+	err = run_job(t->run);
+	if (err == 0 && t->rows.full)
 		return refuse("the job takes too long", "a piece of it, of at "
 			      "most 2000000 periods");
-	return e == 0 && !fill(t) ? EX_OSERR : e;
+	return err == 0 && !fill(t) ? EX_OSERR : err;
 }
 
 static void print_gains(const struct tuning *t,
@@ -338,18 +338,18 @@ static int find(struct tuning *t, struct interp_compensate_gains *ret)
 static int tune(struct tuning *t)
 {
 	struct interp_compensate_gains g = t->config.gains;
-	int e = try_out(t, "position loops alone", 0, &g);
+	int err = try_out(t, "position loops alone", 0, &g);
 
-	if (e == 0)
-		e = try_out(t, "the gains it has", t->config.methods, &g);
-	if (e)
-		return e;
+	if (err == 0)
+		err = try_out(t, "the gains it has", t->config.methods, &g);
+	if (err)
+		return err;
 	if (find(t, &g) < 0)
 		return refuse("its method has no gains",
 			      "feedforward, cross-coupled or predictive");
-	e = try_out(t, "these gains", t->config.methods, &g);
+	err = try_out(t, "these gains", t->config.methods, &g);
 	print_gains(t, &g);
-	return e;
+	return err;
 }
 
 static void forget(struct tuning *t)
@@ -362,12 +362,12 @@ static void forget(struct tuning *t)
 int tune_contour(struct sim_run *r)
 {
 	struct tuning t = { .run = r };
-	int e = prepare(&t);
+	int err = prepare(&t);
 
-	if (e == 0)
-		e = tune(&t);
+	if (err == 0)
+		err = tune(&t);
 	forget(&t);
-	return e;
+	return err;
 }
 
 void tune_contour_watch(struct sim_run *r)

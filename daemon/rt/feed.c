@@ -126,7 +126,7 @@ double feed_distance(struct cycle *c)
 static bool there(const struct cycle *c, double to_mm)
 {
 	return c->mover.v_mm_s == 0 &&
-	       fabs(to_mm - place_mm(c)) < 2 * LAW_ONTO_MM;
+	       fabs(to_mm - place_mm(c)) < 2 * MOVER_ONTO_MM;
 }
 
 /* Up, then back to just short of the cut. */

@@ -271,7 +271,7 @@ static bool jog_go(struct cycle *c)
 	h->free_seen = h->free_seen || c->sensed.is_open;
 	manual_move(c, mover_step(&h->mover, &l, h->goal_mm - h->gone_mm));
 	return h->mover.v_mm_s == 0 && left_pulses(c) == 0 &&
-	       fabs(h->goal_mm - h->gone_mm) < LAW_ONTO_MM * 2;
+	       fabs(h->goal_mm - h->gone_mm) < MOVER_ONTO_MM * 2;
 }
 
 bool manual_go(struct cycle *c, const struct io_inputs *in)

@@ -71,7 +71,7 @@ static double back_mm(const struct cycle *c)
 static bool at_floor(const struct cycle *c)
 {
 	return c->at_start ||
-	       place_mm(c) <= c->retract.floor_mm + LAW_ONTO_MM;
+	       place_mm(c) <= c->retract.floor_mm + MOVER_ONTO_MM;
 }
 
 bool retract_is_clear(const struct cycle *c)
@@ -84,7 +84,7 @@ bool retract_is_clear(const struct cycle *c)
 static enum cycle_fault blame(const struct cycle *c)
 {
 	return c->at_start || c->gap.retract_to != RETRACT_LIMIT ||
-	       place_mm(c) <= place_outer_mm(c) + LAW_ONTO_MM ?
+	       place_mm(c) <= place_outer_mm(c) + MOVER_ONTO_MM ?
 	       FAULT_RETRACT_AT_START : FAULT_SHORT_NOT_CLEARED;
 }
 

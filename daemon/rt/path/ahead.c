@@ -136,9 +136,9 @@ static bool plan_holds(struct cycle *c, double v_mm_s)
 
 	if (!a->to_place || m->kind != MOVER_TO_PLACE ||
 	    a->v_max_mm_s > v_mm_s ||
-	    (a->toward * left < LAW_ONTO_MM &&
+	    (a->toward * left < MOVER_ONTO_MM &&
 	     (m->pass_mm_s != 0 || mover_is_standing(&c->mover))) ||
-	    fabs(m->goal - m->gone_mm - left) > LAW_ONTO_MM)
+	    fabs(m->goal - m->gone_mm - left) > MOVER_ONTO_MM)
 		return false;
 	m->left_mm = left;
 	return true;
@@ -289,13 +289,14 @@ static double go(struct cycle *c, const struct ahead_move *w)
 {
 	const bool onto = c->ahead.to_place && c->mover.pass_mm_s == 0 &&
 			  !w->stops_at_nodes &&
-			  !(fabs(c->ahead.place_mm - w->goal_mm) <= LAW_ONTO_MM);
+			  !(fabs(c->ahead.place_mm - w->goal_mm) <=
+			    MOVER_ONTO_MM);
 	const double left = c->mover.left_mm;
 	const double ds = mover_go(&c->mover, w->l.period_s);
 
 	return onto && mover_is_standing(&c->mover) &&
-	       fabs(ds - left) <= LAW_ONTO_MM ?
-	       left + w->toward * LAW_ONTO_MM : ds;
+	       fabs(ds - left) <= MOVER_ONTO_MM ?
+	       left + w->toward * MOVER_ONTO_MM : ds;
 }
 
 double ahead_distance(struct cycle *c, const struct ahead_move *w)

@@ -13,9 +13,6 @@
 
 #include "cycle.h"
 
-/* So near to a place counts as there: roundings are smaller. */
-#define LAW_ONTO_MM	1e-9
-
 static inline double law_period_s(const struct cycle *c)
 {
 	return (double)c->config.period_ns * 1e-9;

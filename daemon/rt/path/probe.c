@@ -12,7 +12,7 @@
 
 /* Stop so far before the end of a segment: its last point is reached, and the
  * next segment is not begun. */
-#define SHY_MM		(2 * LAW_ONTO_MM)
+#define SHY_MM		(2 * MOVER_ONTO_MM)
 
 /* -- Sensing --------------------------------------------------------------- */
 
@@ -29,7 +29,7 @@ static uint32_t index_of(const struct cycle *c)
 	const struct interp_cursor *at = &c->cursor;
 
 	return at->seg.flags & INTERP_SEG_SENSED &&
-	       at->s_mm < at->seg.length_mm - LAW_ONTO_MM ? at->index :
+	       at->s_mm < at->seg.length_mm - MOVER_ONTO_MM ? at->index :
 							    at->index + 1;
 }
 
@@ -154,7 +154,7 @@ static void begin_going(struct cycle *c)
 static bool is_there(const struct cycle *c)
 {
 	return c->mover.v_mm_s == 0 &&
-	       fabs(c->probe.to_mm - place_mm(c)) < 2 * LAW_ONTO_MM;
+	       fabs(c->probe.to_mm - place_mm(c)) < 2 * MOVER_ONTO_MM;
 }
 
 static double go_to(struct cycle *c, double v_max_mm_s)

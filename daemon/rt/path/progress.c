@@ -28,7 +28,7 @@ static bool gap_stands(const struct cycle *c)
 		return false;
 	/* A way of a cycle that is lost in a rounding is a stand as well. */
 	return place_mm(c) != c->progress.place_mm ||
-	       fabs(c->mover.v_mm_s) * law_period_s(c) < LAW_ONTO_MM;
+	       fabs(c->mover.v_mm_s) * law_period_s(c) < MOVER_ONTO_MM;
 }
 
 /* One that was begun is forgotten on the way back, and waited for again. */

@@ -26,14 +26,14 @@ static void build(void)
 	for (; nc_dialect_files[ndialects].name; ndialects++) {
 		const struct dialect_file *f = &nc_dialect_files[ndialects];
 		struct interp_dialect *d = &dialects[ndialects];
-		int rc;
+		int err;
 
 		assert(ndialects < NDIALECTS_MAX);
 		d->nc = &tables[ndialects];
 		snprintf(d->name, sizeof(d->name), "%s", f->name);
-		rc = nc_dialect_read(d, f->text, strlen(f->text), &diag);
-		assert(rc == 0);
-		(void)rc;
+		err = nc_dialect_read(d, f->text, strlen(f->text), &diag);
+		assert(err == 0);
+		(void)err;
 	}
 }
 
@@ -93,12 +93,12 @@ static int compile_nc(const struct interp_text *text,
 {
 	struct interp_nc_options o = *options;
 	struct interp_nc_result done = { 0 };
-	int rc;
+	int err;
 
 	o.dialect = text->dialect;
-	rc = interp_nc_compile(text->at, text->bytes, &o, b, &done, diag);
+	err = interp_nc_compile(text->at, text->bytes, &o, b, &done, diag);
 	*ret_lines = done.lines;
-	return rc;
+	return err;
 }
 
 static int compile_records(const struct interp_text *text,
@@ -112,13 +112,13 @@ static int compile_records(const struct interp_text *text,
 		.feed_mm_s = o->nc.feed_mm_s, .segs_max = o->nc.segs_max,
 	};
 	struct interp_threeb_result done = { 0 };
-	int rc;
+	int err;
 
 	threeb.fourb = text->dialect->reads == DIALECT_4B;
-	rc = interp_threeb_compile(text->at, text->bytes, &read, b, &done,
+	err = interp_threeb_compile(text->at, text->bytes, &read, b, &done,
 				   diag);
 	*ret_lines = done.lines;
-	return rc;
+	return err;
 }
 
 int interp_compile(const struct interp_text *text,
@@ -128,15 +128,15 @@ int interp_compile(const struct interp_text *text,
 {
 	const bool records = text->dialect &&
 			     text->dialect->reads != DIALECT_NC;
-	int rc = records ? compile_records(text, o, b, ret_lines, diag) :
+	int err = records ? compile_records(text, o, b, ret_lines, diag) :
 			   compile_nc(text, &o->nc, b, ret_lines, diag);
 
-	if (rc == 0)
-		rc = interp_build_flush(b, diag);
+	if (err == 0)
+		err = interp_build_flush(b, diag);
 	/* The whole line is at its first column, the whole input at 1:1. */
-	if (rc == -EINVAL && diag->line == 0)
+	if (err == -EINVAL && diag->line == 0)
 		diag->line = 1;
-	if (rc == -EINVAL && diag->column == 0)
+	if (err == -EINVAL && diag->column == 0)
 		diag->column = 1;
-	return rc;
+	return err;
 }

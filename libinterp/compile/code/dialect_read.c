@@ -298,7 +298,7 @@ static int read_meaning(struct reading *f, struct piece value,
 	struct piece text = value, head = cut(&text, ':'), w, left;
 	const size_t n = sizeof(meanings) / sizeof(meanings[0]);
 	size_t i = 0;
-	int rc;
+	int err;
 
 	w = next_word(&head);
 	while (i < n && !is(w, meanings[i].name))
@@ -318,8 +318,8 @@ static int read_meaning(struct reading *f, struct piece value,
 	    !is(next_word(&left), "ignore"))
 		return refuse(f, head.at, "ignore and letters, or a :",
 			      "behind a meaning:", head);
-	rc = read_drops(f, left, &ret->drops);
-	return rc ? rc : keep_text(f, text, &ret->text);
+	err = read_drops(f, left, &ret->drops);
+	return err ? err : keep_text(f, text, &ret->text);
 }
 
 /* G59.1, M*: where its meaning is kept. */
@@ -352,9 +352,9 @@ static int read_words(struct reading *f, struct piece key, struct piece value)
 {
 	struct nc_code code;
 	struct piece w;
-	int rc = read_meaning(f, value, &code);
+	int err = read_meaning(f, value, &code);
 
-	while (!rc && (w = next_word(&key)).n) {
+	while (!err && (w = next_word(&key)).n) {
 		struct nc_code *at = place_of(f, w);
 
 		if (!at)
@@ -363,7 +363,7 @@ static int read_words(struct reading *f, struct piece key, struct piece value)
 				      "no word", w);
 		*at = code;
 	}
-	return rc;
+	return err;
 }
 
 /* -- [dialect] --------------------------------------------------------------- */
@@ -484,15 +484,15 @@ int nc_dialect_read(struct interp_dialect *d, const char *text, size_t bytes,
 	struct reading f = { .d = d, .diag = diag };
 	struct piece all = { text, bytes };
 	const struct section *in = NULL;
-	int rc = 0;
+	int err = 0;
 
 	begin_tables(d->nc);
-	while (!rc && all.n) {
+	while (!err && all.n) {
 		f.line++;
 		f.line_at = all.at;
-		rc = read_line(&f, cut(&all, '\n'), &in);
+		err = read_line(&f, cut(&all, '\n'), &in);
 	}
-	return rc;
+	return err;
 }
 
 int interp_dialect_read(struct interp_dialect **ret, const char *name,
@@ -500,7 +500,7 @@ int interp_dialect_read(struct interp_dialect **ret, const char *name,
 			struct interp_diag *diag)
 {
 	struct interp_dialect *d = calloc(1, sizeof(*d));
-	int rc;
+	int err;
 
 	if (!d)
 		return -ENOMEM;
@@ -511,12 +511,12 @@ int interp_dialect_read(struct interp_dialect **ret, const char *name,
 		return -ENOMEM;
 	}
 	snprintf(d->name, sizeof(d->name), "%s", name);
-	rc = nc_dialect_read(d, text->at, text->bytes, diag);
-	if (rc)
+	err = nc_dialect_read(d, text->at, text->bytes, diag);
+	if (err)
 		interp_dialect_free(d);
 	else
 		*ret = d;
-	return rc;
+	return err;
 }
 
 void interp_dialect_free(struct interp_dialect *d)

@@ -68,24 +68,24 @@ static int refuse_executed(struct nc_reader *r)
 
 int nc_read_line(struct nc_reader *r)
 {
-	int rc;
+	int err;
 
 	r->line++;
 	if (r->executed++ >= r->executed_max)
 		return refuse_executed(r);
-	rc = nc_scan_line(r);
-	if (!rc && r->o->notes && r->o->notes->plan)
+	err = nc_scan_line(r);
+	if (!err && r->o->notes && r->o->notes->plan)
 		nc_note_line(r);
-	return rc ? rc : nc_run_line(r);
+	return err ? err : nc_run_line(r);
 }
 
 static int read_lines(struct nc_reader *r)
 {
-	int rc = 0;
+	int err = 0;
 
-	while (!rc && !r->over && r->at < r->end)
-		rc = nc_read_line(r);
-	return rc ? rc : nc_end_of_text(r);
+	while (!err && !r->over && r->at < r->end)
+		err = nc_read_line(r);
+	return err ? err : nc_end_of_text(r);
 }
 
 /* Lines in the text: those the main program has come to, and the rest. */
@@ -106,7 +106,7 @@ int interp_nc_compile(const char *text, size_t bytes,
 {
 	struct nc_reader r = { .o = o, .build = b, .diag = diag };
 	static const struct interp_wire none = { .corner_angle_deg = 180 };
-	int rc;
+	int err;
 
 	diag->line = diag->column = 0;
 	contour_init(&r.contour, o->wire ? o->wire : &none, o->machine, b);
@@ -117,8 +117,8 @@ int interp_nc_compile(const char *text, size_t bytes,
 		};
 	open_text(&r, bytes ? text : "", bytes);
 	reset_modes(&r);
-	rc = read_lines(&r);
-	if (!rc) {
+	err = read_lines(&r);
+	if (!err) {
 		ret->lines = count_lines(&r);
 		ret->executed = r.executed;
 	}
@@ -126,5 +126,5 @@ int interp_nc_compile(const char *text, size_t bytes,
 	nc_curve_free(&r.curve);
 	nc_forget_conditions(&r);
 	contour_free(&r.contour);
-	return rc;
+	return err;
 }

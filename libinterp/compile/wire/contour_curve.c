@@ -97,12 +97,12 @@ static int cut(struct cutter *k, double u0, double u1, int depth)
 {
 	const double mid = (u0 + u1) / 2;
 	const struct curve c = through(at(k, u0), at(k, mid), at(k, u1));
-	int rc;
+	int err;
 
 	if (depth == DEPTH_MAX || is_near(k, &c, u0, u1))
 		return curve_length(&c) > 0 ? lay(k, &c) : 0;
-	rc = cut(k, u0, mid, depth + 1);
-	return rc ? rc : cut(k, mid, u1, depth + 1);
+	err = cut(k, u0, mid, depth + 1);
+	return err ? err : cut(k, mid, u1, depth + 1);
 }
 
 static int check(struct cutter *k, const double end_mm[INTERP_NAXES])
@@ -142,7 +142,7 @@ int contour_cut_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 	const struct interp_nurbs *n = &c->nurbs;
 	uint32_t bad;
 	const enum interp_nurbs_flaw flaw = interp_nurbs_check(n, &bad);
-	int rc;
+	int err;
 
 	if (flaw != INTERP_NURBS_SOUND) {
 		diag->line = w->line;
@@ -152,10 +152,10 @@ int contour_cut_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 	}
 	memcpy(cutter.end_mm, end_mm, sizeof(cutter.end_mm));
 	interp_nurbs_open(&cutter.eval, n);
-	rc = check(&cutter, end_mm);
-	for (uint32_t i = n->degree; !rc && i < n->npoints; i++) {
+	err = check(&cutter, end_mm);
+	for (uint32_t i = n->degree; !err && i < n->npoints; i++) {
 		if (n->knots[i] < n->knots[i + 1])
-			rc = cut(&cutter, n->knots[i], n->knots[i + 1], 0);
+			err = cut(&cutter, n->knots[i], n->knots[i + 1], 0);
 	}
-	return rc;
+	return err;
 }
