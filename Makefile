@@ -10,6 +10,7 @@
 #                   from check, because it takes longer than all the rest
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
+#   make count      instructions of what is done most, into docs/performance.md
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
@@ -356,6 +357,8 @@ check:
 	@$(MAKE) --no-print-directory lint
 	@tests/stage check units
 	@EDM_SEED=1 $(MAKE) --no-print-directory run-units
+	@tests/stage check count
+	@$(MAKE) --no-print-directory run-count
 	@tests/stage check san
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
 	@tests/stage check run-san
@@ -475,6 +478,17 @@ bench: vm
 	@tests/setup check
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
+
+# Instructions, which do not depend on how busy the machine is.  What needs over
+# 5 % more than docs/performance.md says fails the check.
+.PHONY: count run-count
+count: $(B)/bench/count
+	@EDM_BUILD=$(B) tests/bench/count > $(B)/count.md
+	@docs/put-table $(B)/count.md docs/performance.md
+	@cat $(B)/count.md
+
+run-count: $(B)/bench/count
+	@EDM_BUILD=$(B) tests/bench/count --check docs/performance.md
 
 include tests/experiments/Makefile
 
