@@ -533,6 +533,7 @@ SEEDS_fuzz_nc	  = $(filter-out %/identify.ngc,$(wildcard examples/*.ngc))
 SEEDS_fuzz_threeb = tests/fuzz/corpus_threeb/*
 SEEDS_fuzz_tech	  = examples/*.tech examples/*.enc
 SEEDS_fuzz_dialect = dialects/*.ini
+SEEDS_fuzz_macro  = tests/data/macros/*
 
 fuzz: $(FUZZ:%=run-%)
 

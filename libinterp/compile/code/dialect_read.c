@@ -100,6 +100,8 @@ static const struct rule {
 	{ "registers_defined", RULE(registers), { "no", "yes" }, { 0, 1 } },
 	{ "ways_without_number", RULE(touches), { "no", "yes" }, { 0, 1 } },
 	{ "top_of_wire", RULE(lean), { "place", "lean" }, { 0, 1 } },
+	{ "macros", RULE(macros), { "none", "fanuc", "linuxcnc" },
+	  { MACRO_NONE, MACRO_FANUC, MACRO_LINUXCNC } },
 	{ "dwell_p", RULE(dwell_ms), { "seconds", "milliseconds" }, { 0, 1 } },
 };
 
@@ -124,7 +126,7 @@ static int read_rule(struct reading *f, struct piece key, struct piece value)
 	}
 	return refuse(f, key.at, "one of length_without_point centre end feed "
 		      "subprograms conditions_defined registers_defined "
-		      "ways_without_number top_of_wire dwell_p", "rule", key);
+		      "ways_without_number top_of_wire macros dwell_p", "rule", key);
 }
 
 /* -- [letters] --------------------------------------------------------------- */

@@ -138,8 +138,7 @@ static const uint8_t *blame(const struct nc_reader *r,
 int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES])
 {
 	if (rc == -EINVAL && r->diag->line == r->line)
-		r->diag->column =
-			(uint32_t)(blame(r, end_mm) - r->line_at) + 1;
+		r->diag->column = nc_column(r, blame(r, end_mm));
 	r->moved |= r->block.words & NC_AXES;
 	return rc;
 }
@@ -155,7 +154,7 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 	r->word.rapid = false;
 	err = contour_action(&r->contour, kind, arg, &r->word, r->diag);
 	if (err == -EINVAL && r->diag->line == r->line)
-		r->diag->column = (uint32_t)(at - r->line_at) + 1;
+		r->diag->column = nc_column(r, at);
 	return err;
 }
 

@@ -3,7 +3,7 @@
  * nc.c - read NC code, line after line
  */
 #include "code/dialect.h"
-#include "code/reader.h"
+#include "code/macro.h"
 
 #include <errno.h>
 #include <math.h>
@@ -123,6 +123,7 @@ int interp_nc_compile(const char *text, size_t bytes,
 		ret->executed = r.executed;
 	}
 	free(r.labels);
+	nc_macro_free(&r);
 	nc_curve_free(&r.curve);
 	nc_forget_conditions(&r);
 	contour_free(&r.contour);

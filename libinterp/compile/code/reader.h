@@ -18,6 +18,7 @@
  *	offset.c	offset and taper: G40 ... G42, G50 ... G52, D and H
  *	tech.c		conditions: called, defined, in a sequence
  *	flow.c		subprograms and the end
+ *	macro.h		variables and jumps, in front of the scanner
  *	note.c		say what is ignored, or is read otherwise elsewhere
  *	nc.c		line after line
  *	refuse.c	say what was found and what would be accepted
@@ -143,6 +144,8 @@ struct nc_curve {
 
 struct nc_reader {
 	const struct nc_dialect *d;
+	struct nc_macro *macro;		/* NULL: nothing to expand yet */
+	bool mapped;			/* the line in hand is in its buffer */
 
 	/* The text, and the line in hand. */
 	const uint8_t *text, *end;
@@ -371,6 +374,13 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 
 /** nc_end_of_text() - the text is over: may it be? */
 int nc_end_of_text(struct nc_reader *r);
+
+/** nc_label_at() - does the line @p to @end begin a program? Its number, or 0. */
+uint32_t nc_label_at(const struct nc_reader *r, const uint8_t *p,
+		     const uint8_t *end);
+
+/** nc_column() - of the byte @at of the line in hand, in the text. */
+uint32_t nc_column(const struct nc_reader *r, const uint8_t *at);
 
 /** nc_line_end() - the line break at or after @p, or @end. */
 const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end);

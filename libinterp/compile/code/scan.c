@@ -4,8 +4,8 @@
  *
  * One pass over the bytes; a byte's class picks what reads on from it.
  */
+#include "code/macro.h"
 #include "code/number.h"
-#include "code/reader.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -568,14 +568,37 @@ static void add_groups(struct nc_block *b)
 		b->groups |= NC_BIT(NC_REGISTER);
 }
 
-int nc_scan_line(struct nc_reader *r)
+/* The line at r->at, or what macros make of it. */
+static int begin_line(struct nc_reader *r)
 {
-	struct nc_block *b = &r->block;
-	const uint8_t *p = r->at;
+	const uint8_t *p = r->at, *end;
+	int err;
 
+	r->mapped = false;
 	r->line_at = p;
 	r->stop = r->end - p > INTERP_NC_LINE_MAX ? p + INTERP_NC_LINE_MAX :
 						    r->end;
+	if (!r->d->macros)
+		return 0;
+	end = nc_line_end(p, r->stop);
+	r->at = nc_line_next(end, r->end);
+	err = nc_macro_line(r, p, end);
+	if (err <= 0) {
+		r->at = p;
+		return err;
+	}
+	r->mapped = true;
+	r->line_at = r->macro->text;
+	r->stop = r->line_at + r->macro->used;
+	return 0;
+}
+
+int nc_scan_line(struct nc_reader *r)
+{
+	struct nc_block *b = &r->block;
+	const uint8_t *p;
+	int err = begin_line(r);
+
 	r->value_end = NULL;
 	b->words = 0;
 	b->groups = 0;
@@ -586,19 +609,22 @@ int nc_scan_line(struct nc_reader *r)
 	b->drops = 0;
 	b->dropper = NULL;
 
-	p = scan_words(r, p);
+	if (err)
+		return err;
+	p = scan_words(r, r->line_at);
 	if (!p)
 		return -EINVAL;
 	if (b->dropper && (b->words & b->dropper->drops))
 		nc_note_code(r, b->dropper_at, b->dropper);
 	b->words &= ~b->drops;
 	b->toward &= ~b->drops;
-	if (p < r->end && nc_classes[*p] != NC_EOL)
+	if (!r->mapped && p < r->end && nc_classes[*p] != NC_EOL)
 		return nc_refuse(r, p, "lines of up to 4096 bytes",
 				 "a line longer than %d bytes",
 				 INTERP_NC_LINE_MAX);
 	if (b->words & (NC_BIT(NC_F) | NC_BIT(NC_O) | NC_OFFSETS))
 		add_groups(b);
-	r->at = nc_line_next(p, r->end);
+	if (!r->mapped)
+		r->at = nc_line_next(p, r->end);
 	return 0;
 }

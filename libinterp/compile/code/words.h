@@ -184,6 +184,9 @@ struct nc_letter {
  * decimals, or refused unless it is 0. */
 enum nc_point { NC_POINT_FREE, NC_POINT_LAST, NC_POINT_WANTED };
 
+/* Variables, expressions and jumps: none, Fanuc's or LinuxCNC's. */
+enum nc_macros { MACRO_NONE, MACRO_FANUC, MACRO_LINUXCNC };
+
 struct nc_dialect {
 	uint8_t classes[256];		/* of bytes */
 	struct nc_letter letter[3];	/* G M T */
@@ -198,6 +201,7 @@ struct nc_dialect {
 	uint8_t lean;			/* U V: how far the top of the wire is
 					 * from X Y, not its place */
 	uint8_t dwell_ms;		/* P of a dwell is in ms, not s */
+	uint8_t macros;			/* enum nc_macros */
 	uint16_t reason[26];		/* of letters, in text */
 	struct nc_code code[NC_NCODES];	/* G, M, T */
 	uint16_t used;			/* of text */
