@@ -39,6 +39,8 @@
 	W("nurbs-end", MOTION, NC_NURBS_END, 0) \
 	W("nurbs", MOTION, NC_NURBS, \
 	  NC_AXES | NC_BIT(NC_P) | NC_BIT(NC_K) | NC_BIT(NC_R)) \
+	W("body-curve", MOTION, NC_BODY, NC_XYZ | NC_BIT(NC_P) | NC_LQ | \
+	  NC_CENTRE | NC_BIT(NC_R)) \
 	W("plane-xy", PLANE, 0, 0) \
 	W("plane-zx", PLANE, 1, 0) \
 	W("plane-yz", PLANE, 2, 0) \
@@ -67,8 +69,9 @@
 	W("corner-conical", TAPER_CORNER, INTERP_CORNER_CONICAL, 0) \
 	W("corner-constant", TAPER_CORNER, INTERP_CORNER_CONSTANT, 0) \
 	W("corner-sharp", TAPER_CORNER, INTERP_CORNER_SHARP, 0) \
-	W("tool-tip", TOOL_POINT, true, 0) \
-	W("tool-tip-off", TOOL_POINT, false, 0) \
+	W("tool-tip", TOOL_POINT, NC_TOOL_ANGLES, 0) \
+	W("tool-tip-by-vector", TOOL_POINT, NC_TOOL_VECTOR, 0) \
+	W("tool-tip-off", TOOL_POINT, NC_TOOL_OFF, 0) \
 	W("machine-place", MACHINE, 0, 0) \
 	W("touch-at-feed", TOUCH, NC_TOUCH_FEED, NC_XYZ) \
 	W("touch", TOUCH, NC_TOUCH_ONE, NC_XYZ) \

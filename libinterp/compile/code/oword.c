@@ -80,7 +80,7 @@ static int note(struct macro_line *l, const struct oword *w, size_t *room)
 	struct nc_macro *m = l->m;
 
 	if (m->nowords == MACRO_OWORDS_MAX)
-		return macro_refuse(l, w->at, "up to 100000 of them", "an o "
+		return macro_refuse(l, l->p, "up to 100000 of them", "an o "
 				    "word too many");
 	if (m->nowords == *room) {
 		struct oword *more;
@@ -125,6 +125,16 @@ static int find_all(struct macro_line *at)
 
 /* -- What belongs to it ------------------------------------------------------ */
 
+/* Where @i begins, for a refusal of its line. */
+static const uint8_t *word_at(struct macro_line *l, uint32_t i)
+{
+	const struct oword *w = &l->m->oword[i];
+
+	l->r->line_at = w->at;
+	l->r->line = w->line;
+	return w->at;
+}
+
 /* The next one behind @i of its name and one of @kinds; nowords: none. */
 static uint32_t next_of(struct macro_line *l, uint32_t i, uint32_t kinds)
 {
@@ -145,7 +155,7 @@ static int refuse_alone(struct macro_line *l, uint32_t i, const char *other)
 	char wanted[80];
 
 	snprintf(wanted, sizeof(wanted), "o%s %s behind it", w->name, other);
-	return macro_refuse(l, w->at, wanted, "o%s without its %s", w->name,
+	return macro_refuse(l, word_at(l, i), wanted, "o%s without its %s", w->name,
 			    other);
 }
 
@@ -226,7 +236,7 @@ static int take_while(struct macro_line *l, uint32_t i)
 					   "endwhile");
 	if (!truth)
 		return 1;
-	err = macro_round(l, l->m->oword[i].at);
+	err = macro_round(l, word_at(l, i));
 	return err ? err : go(l, begin, true);
 }
 
@@ -239,10 +249,10 @@ static int take_endwhile(struct macro_line *l, uint32_t i)
 		if (all[j].kind != OWORD_WHILE ||
 		    strcmp(all[j].name, all[i].name) != 0)
 			continue;
-		err = macro_round(l, all[i].at);
+		err = macro_round(l, word_at(l, i));
 		return err ? err : go(l, j, false);
 	}
-	return macro_refuse(l, all[i].at, "while before it", "o%s endwhile of "
+	return macro_refuse(l, word_at(l, i), "while before it", "o%s endwhile of "
 			    "no loop", all[i].name);
 }
 
@@ -255,12 +265,12 @@ static int take_repeat(struct macro_line *l, uint32_t i)
 	if (err)
 		return err;
 	if (!(n < 1e9))
-		return macro_refuse(l, m->oword[i].at, "fewer rounds",
+		return macro_refuse(l, word_at(l, i), "fewer rounds",
 				    "a repeat of %g", n);
 	if (n < 1)
 		return skip_to(l, i, KIND(OWORD_ENDREPEAT), "endrepeat");
 	if (m->nloops == MACRO_LOOPS)
-		return macro_refuse(l, m->oword[i].at, "up to 16 of them inside "
+		return macro_refuse(l, word_at(l, i), "up to 16 of them inside "
 				    "each other", "a repeat too many");
 	m->loop[m->nloops++] = (struct macro_loop) {
 		.id = i, .depth = l->r->depth, .left = (uint32_t)n - 1,
@@ -286,7 +296,7 @@ static int take_endrepeat(struct macro_line *l, uint32_t i)
 	int err;
 
 	if (!loop)
-		return macro_refuse(l, l->m->oword[i].at, "repeat before it",
+		return macro_refuse(l, word_at(l, i), "repeat before it",
 				    "o%s endrepeat of no loop",
 				    l->m->oword[i].name);
 	if (loop->left == 0) {
@@ -294,7 +304,7 @@ static int take_endrepeat(struct macro_line *l, uint32_t i)
 		return 1;
 	}
 	loop->left--;
-	err = macro_round(l, l->m->oword[i].at);
+	err = macro_round(l, word_at(l, i));
 	return err ? err : go(l, loop->id, true);
 }
 
@@ -343,11 +353,11 @@ static int take_call(struct macro_line *l, uint32_t i)
 				   strcmp(all[j].name, all[i].name) == 0))
 		j++;
 	if (j == m->nowords)
-		return macro_refuse(l, all[i].at, "a sub of this text; other "
+		return macro_refuse(l, word_at(l, i), "a sub of this text; other "
 				    "files are not read", "a call of o%s, "
 				    "which is not there", all[i].name);
 	if (r->depth == INTERP_NC_DEPTH_MAX)
-		return macro_refuse(l, all[i].at, "up to 8 calls inside each "
+		return macro_refuse(l, word_at(l, i), "up to 8 calls inside each "
 				    "other", "a call inside %d others",
 				    INTERP_NC_DEPTH_MAX);
 	r->frame[++r->depth] = (struct nc_frame) {
@@ -363,7 +373,7 @@ static int take_call(struct macro_line *l, uint32_t i)
 static int take_return(struct macro_line *l, uint32_t i)
 {
 	struct nc_reader *r = l->r;
-	const uint8_t *at = l->m->oword[i].at;
+	const uint8_t *at = word_at(l, i);
 	double v = 0;
 	bool given;
 	int err = 0;

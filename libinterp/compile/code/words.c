@@ -7,7 +7,7 @@
 #define ANY_PLACE	-999999999, 999999999, "-999999999 to 999999999"
 #define AXIS_LINES	"an axis word goes with G0 G1 G2 G3 G28 G92 G120 G6.2, X " \
 			"and Y with G5 G5.1 G5.2 too, X with G4"
-#define CENTRE_LINES	"goes with G2 or G3, or a curve"
+#define CENTRE_LINES	"goes with G2 or G3, a curve, or G0 and G1 under G43.5"
 
 /* clang-format off */
 const struct nc_word nc_words[NC_NSLOTS] = {
@@ -28,9 +28,9 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_N] = { 'N', true, 0, 999999999, "0 to 999999999", "" },
 	[NC_S] = { 'S', false, 0, 999999999, "0 to 999999999", "" },
 	[NC_P] = { 'P', false, -99999999, 99999999, "-99999999 to 99999999",
-		   "P goes with G5 G5.2 G6.2, G4 or M98, and with G120" },
-	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats; with G5.2 an order of 2 to 10",
-		   "L goes with M98, G5.2, G160 and G161" },
+		   "P goes with G5 G5.2 G6.2 G6.3, G4 or M98, and with G120" },
+	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats; with G5.2 and G6.3 an order of 2 to 10",
+		   "L goes with M98, G5.2, G6.3, G160 and G161" },
 	[NC_O] = { 'O', true, 0, 9999, "a program number of 0 to 9999", "" },
 	[NC_D] = { 'D', true, 0, 999, "a register of 0 to 999", "" },
 	[NC_H] = { 'H', true, 0, 999, "a register of 0 to 999", "" },
@@ -39,7 +39,7 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_UI] = { 'I', false, ANY_PLACE, "I " CENTRE_LINES },
 	[NC_UJ] = { 'J', false, ANY_PLACE, "J " CENTRE_LINES },
 	[NC_Q] = { 'Q', false, ANY_PLACE,
-		   "Q goes with G130 ... G135, G160 ... G162, or G5" },
+		   "Q goes with G130 ... G135, G160 ... G162, G5 or G6.3" },
 	[NC_SPARE] = { '?', false, ANY_PLACE, "only with a word that this "
 		       "dialect ignores" },
 };
