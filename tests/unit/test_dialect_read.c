@@ -90,7 +90,8 @@ static void an_ignored_word_takes_its_letters_along(void **state)
 	assert_taken(d, "T12 M6\nG43 H9 G0 X1\n", 3);
 	assert_taken(d, "T1234567\nG0 X1\n", 3);
 	refuse_in(d, "G43 H1 G0 R2 X1", "R2 has no use on this line",
-		       "R goes with G2 or G3, or a curve");
+		       "R goes with G2 or G3, a curve, or G0 and G1 under "
+		       "G43.5");
 }
 
 static void a_refused_word_says_what_it_means_elsewhere(void **state)
