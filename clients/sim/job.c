@@ -76,6 +76,67 @@ static void say_refusal(const char *path, const struct interp_diag *d)
 		d->found, d->wanted);
 }
 
+/* All refusals of a text, for --check. */
+struct refusals {
+	const char *path;		/* NULL: they are only counted */
+	uint32_t n;
+};
+
+static void say_one(void *arg, const struct interp_diag *d)
+{
+	struct refusals *all = arg;
+
+	all->n++;
+	if (all->path)
+		say_refusal(all->path, d);
+}
+
+/* Enough to see whether a dialect takes a text. */
+#define TRIED_SEGS_MAX	1000000u
+
+static bool is_taken(const struct interp_text *text, const char *name,
+		     struct config_compiling of)
+{
+	struct interp_text tried = *text;
+	struct interp_diag diag;
+	struct interp_build *b;
+	uint32_t lines;
+	int err;
+
+	tried.dialect = interp_dialect_by_name(name);
+	if (!interp_dialect_is_nc(tried.dialect))
+		return false;
+	of.text.nc.notes = NULL;
+	of.text.nc.refused = NULL;
+	of.text.nc.segs_max = TRIED_SEGS_MAX;
+	of.text.nc.executed_max = TRIED_SEGS_MAX;
+	b = interp_build_create(&of.build);
+	err = b ? interp_compile(&tried, &of.text, b, &lines, &diag) : -ENOMEM;
+	interp_build_destroy(b);
+	return err == 0;
+}
+
+/* How many they were, and which dialects have none. */
+static void say_all(const struct refusals *all, const struct interp_text *text,
+		    const struct config_compiling *of)
+{
+	bool any = false;
+
+	fprintf(stderr, "%s: %u refusal%s%s\n", all->path, all->n,
+		all->n == 1 ? "" : "s", all->n == INTERP_NC_REFUSED_MAX ?
+		", and perhaps more" : "");
+	for (int i = 0; interp_dialect_word(i); i++) {
+		if (!is_taken(text, interp_dialect_word(i), *of))
+			continue;
+		fprintf(stderr, any ? " %s" : "%s: taken by dialect %s",
+			any ? interp_dialect_word(i) : all->path,
+			interp_dialect_word(i));
+		any = true;
+	}
+	if (any)
+		fputc('\n', stderr);
+}
+
 /* @arg: the job's path. */
 static void say_note(void *arg, uint32_t line, const char *text)
 {
@@ -118,6 +179,8 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	const struct interp_text text = {
 		.at = t->at, .bytes = t->n, .dialect = with->dialect.use,
 	};
+	struct refusals all = { .path = o->job };
+	const struct interp_refused refused = { say_one, &all };
 	const struct interp_notes notes = { say_note, (void *)(uintptr_t)o->job,
 					    o->check };
 	struct config_compiling of;
@@ -128,15 +191,18 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 
 	config_compiling(c, &with->tech, &of);
 	of.text.nc.notes = &notes;
+	of.text.nc.refused = o->check ? &refused : NULL;
 	b = interp_build_create(&of.build);
 	if (!b)
 		return EX_OSERR;
 	err = interp_compile(&text, &of.text, b, &job->lines, &diag);
 	job->compile_lines_s = job->lines / (trials_now_s() - from_s);
+	if (err == -EINVAL && o->check)
+		say_all(&all, &text, &of);
 	/* A million lines are as large as half their program. */
 	free(t->at);
 	t->at = NULL;
-	if (err == -EINVAL)
+	if (err == -EINVAL && all.n == 0)
 		say_refusal(o->job, &diag);
 	err = err == 0 ? lay_out(job, b, o->job) :
 	    err == -EINVAL ? EX_DATAERR : EX_OSERR;

@@ -124,3 +124,26 @@ def test_the_machine_file_names_the_dialect(tmp_path):
     (tmp_path / "mine.ini").write_text("[dialect]\nbase = linuxnc\n")
     r = run("--machine", machine, "--check", job)
     assert r.returncode == 78 and b"mine.ini:2:8: error: no base" in r.stderr
+
+
+def test_check_lists_all_refusals_and_who_takes_the_text():
+    r = check("linuxcnc-vcarve.ngc", "generic", None)
+    said = r.stderr.decode().splitlines()
+    assert [re.search(r":(\d+:\d+): error: (\w+)", s).groups()
+            for s in said[:5]] == [
+        ("2:13", "G64"), ("2:23", "M6"), ("2:26", "T1"), ("4:1", "M7"),
+        ("14:1", "M9")]
+    assert said[5].endswith(": 5 refusals")
+    assert said[6].endswith(": taken by dialect linuxcnc heekscnc")
+
+
+def test_a_place_that_is_refused_is_listed_among_the_words():
+    r = run("--dialect", "fanuc-sinker", "--check",
+            text="G0 X1. X2.\nG90 G0 X900.\n#1=2\nG999\nX1.\n")
+    said = r.stderr.decode().splitlines()
+    assert ["-:1:8:" in said[0], "-:4:1:" in said[1], said[2]] == [
+        True, True, "-: 2 refusals"]
+    r = run("--dialect", "fanuc-sinker", "--check",
+            text="G999\n" * 150 + "G0 X900.\n")
+    assert r.stderr.decode().splitlines()[100] == \
+        "-: 100 refusals, and perhaps more"

@@ -80,6 +80,11 @@ const char *interp_dialect_name(const struct interp_dialect *d)
 	return d->name;
 }
 
+bool interp_dialect_is_nc(const struct interp_dialect *d)
+{
+	return d->reads == DIALECT_NC;
+}
+
 const char *interp_dialect_word(int i)
 {
 	call_once(&built, build);

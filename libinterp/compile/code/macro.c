@@ -72,8 +72,8 @@ static bool is_g65(const uint8_t *p, const uint8_t *end)
 	return n == 65;
 }
 
-static bool wants_macro(const struct nc_reader *r, const uint8_t *p,
-			const uint8_t *end)
+bool nc_macro_wanted(const struct nc_reader *r, const uint8_t *p,
+		     const uint8_t *end)
 {
 	const bool fanuc = r->d->macros == MACRO_FANUC;
 
@@ -269,7 +269,7 @@ int nc_macro_line(struct nc_reader *r, const uint8_t *at, const uint8_t *end)
 	struct macro_line l = { .r = r, .p = at, .end = end };
 	int err;
 
-	if (!wants_macro(r, at, end))
+	if (!nc_macro_wanted(r, at, end))
 		return 0;
 	if (!r->macro)
 		r->macro = create(r);

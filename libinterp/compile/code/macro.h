@@ -96,6 +96,10 @@ struct macro_line {
  *  expand.  Return: 1 if it did, into r->macro->text; 0 if not. */
 int nc_macro_line(struct nc_reader *r, const uint8_t *at, const uint8_t *end);
 
+/** nc_macro_wanted() - has the line @p ... @end something to expand? */
+bool nc_macro_wanted(const struct nc_reader *r, const uint8_t *p,
+		     const uint8_t *end);
+
 void nc_macro_free(struct nc_reader *r);
 
 /** nc_macro_leave() - the frame r->depth ends: its locals go. */

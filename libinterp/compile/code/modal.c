@@ -256,9 +256,8 @@ static int complete(struct nc_reader *r)
 	return 0;
 }
 
-int nc_run_line(struct nc_reader *r)
+int nc_check_line(struct nc_reader *r)
 {
-	const uint32_t first = NC_BIT(NC_TAPE) | NC_BIT(NC_LABEL);
 	struct nc_block *b = &r->block;
 	int err = nc_take_angle(r);
 
@@ -279,6 +278,17 @@ int nc_run_line(struct nc_reader *r)
 		return refuse_leftover(r, b->words & ~b->takes);
 	if (b->words & r->absent)
 		return refuse_absent(r, b->words & r->absent);
+	return 0;
+}
+
+int nc_run_line(struct nc_reader *r)
+{
+	const uint32_t first = NC_BIT(NC_TAPE) | NC_BIT(NC_LABEL);
+	struct nc_block *b = &r->block;
+	int err = nc_check_line(r);
+
+	if (err)
+		return err;
 	if (b->toward | r->loose) {
 		err = nc_check_touched(r);
 		if (err)

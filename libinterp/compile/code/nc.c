@@ -123,6 +123,8 @@ int interp_nc_compile(const char *text, size_t bytes,
 		ret->executed = r.executed;
 	}
 	free(r.labels);
+	if (err == -EINVAL && o->refused)
+		nc_list_refusals(&r);
 	nc_macro_free(&r);
 	nc_curve_free(&r.curve);
 	nc_forget_conditions(&r);

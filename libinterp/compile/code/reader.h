@@ -22,6 +22,7 @@
  *	flow.c		subprograms and the end
  *	macro.h		variables and jumps, in front of the scanner
  *	note.c		say what is ignored, or is read otherwise elsewhere
+ *	list.c		all refusals of a text
  *	nc.c		line after line
  *	refuse.c	say what was found and what would be accepted
  *
@@ -148,7 +149,11 @@ struct nc_curve {
 
 struct nc_reader {
 	const struct nc_dialect *d;
+	struct interp_diag first;	/* the refusal that ended the reading */
+	bool first_told;
+	uint32_t ntold;
 	struct nc_macro *macro;		/* NULL: nothing to expand yet */
+	bool listing;			/* all refusals are wanted: list.c */
 	bool mapped;			/* the line in hand is in its buffer */
 
 	/* The text, and the line in hand. */
@@ -238,6 +243,15 @@ extern const struct nc_plane nc_planes[3];
 
 /** nc_scan_line() - the line at r->at into r->block; r->at is the next. */
 int nc_scan_line(struct nc_reader *r);
+
+/** nc_check_line() - do the words of r->block go together? */
+int nc_check_line(struct nc_reader *r);
+
+/** nc_list_refusals() - what r->diag has, and all others, to o->refused. */
+void nc_list_refusals(struct nc_reader *r);
+
+/** nc_tell() - what r->diag has, to o->refused. */
+void nc_tell(struct nc_reader *r);
 
 /** nc_run_line() - carry r->block out. */
 int nc_run_line(struct nc_reader *r);

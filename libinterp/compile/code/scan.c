@@ -272,7 +272,12 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 	code = find_code(r, l, n);
 	if (code->group == NC_UNKNOWN || code->group == NC_REFUSED) {
 		refuse_code(r, at, l, code);
-		return NULL;
+		/* What its line has besides is looked at, too. */
+		if (!r->listing)
+			return NULL;
+		nc_tell(r);
+		r->block.takes = UINT32_MAX;
+		return p;
 	}
 	return add_code(r, at, code) ? p : NULL;
 }
@@ -578,7 +583,7 @@ static int begin_line(struct nc_reader *r)
 	r->line_at = p;
 	r->stop = r->end - p > INTERP_NC_LINE_MAX ? p + INTERP_NC_LINE_MAX :
 						    r->end;
-	if (!r->d->macros)
+	if (!r->d->macros || r->listing)
 		return 0;
 	end = nc_line_end(p, r->stop);
 	r->at = nc_line_next(end, r->end);

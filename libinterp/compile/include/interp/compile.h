@@ -32,6 +32,9 @@ const struct interp_dialect *interp_dialect_by_file(const char *path);
 /** interp_dialect_name() - as interp_dialect_by_name() knows it. */
 const char *interp_dialect_name(const struct interp_dialect *d);
 
+/** interp_dialect_is_nc() - NC code, not records of 3B or 4B? */
+bool interp_dialect_is_nc(const struct interp_dialect *d);
+
 /** interp_dialect_word() - the name of dialect @i; NULL past the last. */
 const char *interp_dialect_word(int i);
 
