@@ -258,6 +258,8 @@ static void print_one(json_t *job)
 		{ "ended", "ended_us" },
 	};
 	char text[32];
+	json_t *note;
+	size_t i;
 
 	printf("job        %s\nname       %s\nstate      %s\n",
 	       text_of(job, "job"), text_of(job, "name"),
@@ -265,7 +267,7 @@ static void print_one(json_t *job)
 	if (*text_of(job, "reason"))
 		printf("reason     %s\n", text_of(job, "reason"));
 	printf("lines      %.0f\n", number_of(job, "lines"));
-	for (size_t i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
+	for (i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
 		ctl_when(text, job, times[i].key);
 		printf("%-10s %s\n", times[i].label, text);
 	}
@@ -278,6 +280,9 @@ static void print_one(json_t *job)
 	       number_of(job, "shorts"), text_of(job, "sha256"));
 	if (*text_of(job, "tech_sha256"))
 		printf("table      %s\n", text_of(job, "tech_sha256"));
+	json_array_foreach(json_object_get(job, "notes"), i, note)
+		printf("%-10s %s\n", i ? "" : "notes",
+		       json_string_value(note));
 	print_changes(json_object_get(job, "changes"));
 }
 

@@ -26,11 +26,17 @@
 			"'now', now) AS c FROM change WHERE change.n=job.n " \
 			"ORDER BY time_ns))"
 
+/* What is cut otherwise than it is written. */
+#define NOTES_JSON	", 'notes', (SELECT json_group_array(text) FROM " \
+			"(SELECT text FROM event WHERE event.job=job.id AND " \
+			"kind='note' ORDER BY event.rowid))"
+
 static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				const char *id, int rows)
 {
 	if (what == STORE_SHOW)
-		return store_ask(s, NULL, "SELECT " JOB_JSON(CHANGES_JSON) " FROM job "
+		return store_ask(s, NULL, "SELECT " JOB_JSON(CHANGES_JSON NOTES_JSON)
+				 " FROM job "
 			     "WHERE id=?",
 			     "s", id);
 	if (what == STORE_QUEUE)
