@@ -135,6 +135,16 @@ static int number(const struct ctl *c, const char *text, const char *wanted,
 	return EX_USAGE;
 }
 
+int ctl_move(struct ctl *c)
+{
+	double way;
+	int rc = number(c, c->value, "-1 or +1", &way);
+
+	return rc ? rc : command(c, &(struct talk_question) {
+		.verb = "move", .job = c->arg, .arg = way,
+	});
+}
+
 int ctl_step(struct ctl *c)
 {
 	double n;

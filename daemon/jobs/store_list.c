@@ -3,6 +3,7 @@
  * store_list.c - lists of jobs and events, as JSON
  */
 #include "store_sql.h"
+#include "store_turn.h"
 
 #include <string.h>
 
@@ -43,7 +44,8 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 		return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM "
 			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
 			     "state='queued' OR (loaded=1 AND state NOT IN "
-			     "('done', 'stopped')) ORDER BY n)", "");
+			     "('done', 'stopped')) ORDER BY loaded DESC, "
+			     STORE_TURN ")", "");
 	if (what == STORE_ALARMS)
 		return store_ask(s, NULL, "SELECT json_group_array(json(a)) FROM (SELECT "
 			     "json_object('utime', utime, 'kind', kind, 'job', "
