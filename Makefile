@@ -386,8 +386,8 @@ check:
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system \
 		$(VM_TESTS) $(PANEL_TESTS:%=--ignore %)
 
-# Of the virtual machine's tests the shorter ones, some 3 minutes.
-VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd encoder)
+# Of the virtual machine's tests the shorter ones, some 6 minutes.
+VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd encoder can402)
 
 # A browser is driven in the tests' own process; LCM has one for itself.
 PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_page.py
