@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * key.h - is it the same as before?  Numbers to be compared across a restart
+ * key.h - has something changed since before a restart? Numbers to compare
  *
  * Threads: any.
  */

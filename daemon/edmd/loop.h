@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * loop.h - the real-time thread: once a period, commands in, one cycle, out
+ * loop.h - the real-time thread: once a period, take commands, run one cycle,
+ * write the outputs
  *
- * The loop is placed and filled by the main thread, which from loop_start()
- * to loop_stop() touches nothing of it but `crossing`.
+ * The main thread places and fills the loop. From loop_start() to loop_stop()
+ * it uses nothing of it but `crossing`.
  */
 #ifndef EDMD_LOOP_H
 #define EDMD_LOOP_H

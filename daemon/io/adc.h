@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * adc.h - the gap's voltage from an analog-digital converter of the kernel's
- * industrial I/O
+ * adc.h - the voltage of the gap from an analog-digital converter of the
+ * kernel's industrial I/O
  *
- * One channel of one device, whose samples the kernel puts into a buffer; a
- * period reads what has come, without waiting, and takes the mean.  The files
- * are those of the kernel's documentation, ABI/testing/sysfs-bus-iio.
+ * One channel of one device is read. The kernel puts its samples into a buffer.
+ * Each period reads the samples that have come, without waiting, and takes
+ * their mean. The files are those of the kernel's documentation,
+ * ABI/testing/sysfs-bus-iio.
  *
- * Threads: open and close are startup only; adc_read() is RT-safe: at most
- * ADC_READS system calls.
+ * Threads: open and close are startup only; adc_read() is RT-safe: it makes at
+ * most ADC_READS system calls.
  */
 #ifndef IO_ADC_H
 #define IO_ADC_H

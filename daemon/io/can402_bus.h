@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * can402_bus.h - the master's own: a bus, its drives, and what to say of them
+ * can402_bus.h - what the files of the CAN master share: the bus, its drives,
+ * and what the log says of them
  *
- * Threads: can402_tell() and can402_count() the cycle's, can402_note() the
- * logging one's; the rest as io.h.
+ * Threads: can402_tell() and can402_count() belong to the cycle's thread,
+ * can402_note() to the thread that logs; the others are as in io.h.
  */
 #ifndef IO_CAN402_BUS_H
 #define IO_CAN402_BUS_H

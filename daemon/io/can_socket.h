@@ -2,11 +2,11 @@
 /*
  * can_socket.h - frames to and from a CAN interface of the kernel
  *
- * Raw SocketCAN, without waiting.  What the interface itself has to say (bus
- * off, down) comes as a state, not as a frame.
+ * It uses raw SocketCAN and never waits. What the interface reports about
+ * itself (bus off, down) is returned as a state and not as a frame.
  *
- * Threads: open and close are startup only; send and receive are RT-safe, one
- * system call each.
+ * Threads: open and close are startup only; send and receive are RT-safe and
+ * make one system call each.
  */
 #ifndef CAN_SOCKET_H
 #define CAN_SOCKET_H

@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * drive.h - one CiA 402 drive in cyclic synchronous position, seen from its
- * master: frames in, frames out, no socket
+ * drive.h - one CiA 402 drive in cyclic synchronous position mode, as its
+ * master sees it: frames in, frames out, no socket
  *
- * A drive is brought up by SDO, in NMT state pre-operational, one request in
- * flight, a step a period at the most: identity, heartbeats both ways, one
- * RPDO (6040 and 607A), one TPDO (6041, 6064 and 6061), both with every SYNC,
- * what the machine file wants of it, mode 8, interpolation time.  Then it is
- * started, and led through the state machine of CiA 402 by its statusword.
+ * While the drive is in NMT state pre-operational, it is set up by SDO, with
+ * one request at a time and at most one step per period: its identity;
+ * heartbeats in both directions; one RPDO (6040 and 607A) and one TPDO (6041,
+ * 6064 and 6061), both with every SYNC; the values that the machine file asks
+ * for; mode 8; the interpolation time. Then it is started, and led by its
+ * statusword through the state machine of CiA 402.
  *
  * Its target is its own actual position until it is enabled, shows mode 8 and
- * says that it follows (bit 12), so that enabling moves nothing.
+ * reports that it follows (bit 12). So enabling it moves nothing.
  *
- * A drive that restarted has lost its count, unless the machine file calls it
- * absolute: @lost, until it is told where it stands.  A restart that nobody
- * heard shows when the drive is brought up: object 1016:1, which we set and
- * which a drive forgets, no longer names us.
+ * A drive that restarted has lost its count, unless the machine file says that
+ * it is absolute. Then `lost` is set until somebody tells it where it stands. A
+ * restart that nobody heard is found when the drive is set up: edmd wrote its
+ * own node into object 1016:1, and a drive forgets this when it loses power.
  *
- * Units: pulses are the machine's, increments the drive's; time in cycles.
+ * Units: pulses are those of the machine, increments those of the drive; time
+ * is in cycles.
+ *
  * Threads: RT-safe; one object belongs to one thread.
  */
 #ifndef IO_DRIVE_H

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * gpio_own.h - a machine on lines: what gpio.c and gpio_open.c share
+ * gpio_own.h - what gpio.c and gpio_open.c share
  *
- * Threads: as io.h; gpio_edges_write() is the edge thread's.
+ * Threads: as in io.h; gpio_edges_write() belongs to the edge thread.
  */
 #ifndef IO_GPIO_OWN_H
 #define IO_GPIO_OWN_H

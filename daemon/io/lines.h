@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * lines.h - lines of a GPIO chip, by whichever libgpiod there is
+ * lines.h - lines of a GPIO chip, with the version of libgpiod that is
+ * installed
  *
- * gpiod1.c and gpiod2.c are the same calls on libgpiod 1.6 and 2.x; the
- * Makefile takes the one that pkg-config speaks of.  Values are levels: 1 is
- * high; inverting is the caller's.
+ * gpiod1.c and gpiod2.c have the same functions, for libgpiod 1.6 and 2.x; the
+ * Makefile takes the one whose version pkg-config reports. Values are levels: 1
+ * is high. Inverting a line is left to the caller.
  *
- * Threads: lines_set() and lines_get() are RT-safe, one ioctl each, and so is
- * lines_events(), a read or two; the rest is startup only.
+ * Threads: lines_set() and lines_get() are RT-safe, with one ioctl each, and so
+ * is lines_events(), with a read or two; the others are startup only.
  */
 #ifndef IO_LINES_H
 #define IO_LINES_H

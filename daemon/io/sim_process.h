@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * sim_process.h - the simulated machine's inside; private to sim*.c
+ * sim_process.h - the inside of the simulated machine; private to sim*.c
  *
- * What a touch meets is in sim_probe.c.  A period goes through four files, in this order:
+ * A period goes through four files, in this order:
  *
- *	sim_axes.c	where the electrode really is
- *	sim_pulses.c	what a train of pulses does in this gap
- *	sim_erosion.c	what the sparks take away, from work and electrode
- *	sim_debris.c	where that goes; bridges, arcs that stay in one place
+ * 	sim_axes.c	where the electrode really is
+ * 	sim_pulses.c	what a train of pulses does in this gap
+ * 	sim_erosion.c	what the sparks take away, from work and electrode
+ * 	sim_debris.c	where that goes; bridges, arcs that stay in one place
  *
- * The model is described, with sources and pictures, in
- * docs/process-model.md.
+ * What a touch meets is in sim_probe.c. docs/process-model.md describes the
+ * model, with sources and pictures.
  *
  * Units: in every name; debris is 0 (clean) to 1 (choked).
+ *
  * Threads: RT-safe; one object belongs to one thread.
  */
 #ifndef IO_SIM_PROCESS_H

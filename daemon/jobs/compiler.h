@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * compile.h - NC code to a program, in a thread of its own
+ * compiler.h - NC code to a program, in a thread of its own
  *
- * A text of millions of lines takes seconds; commands and status go on
+ * A text of millions of lines takes seconds. Commands and status go on
  * meanwhile.
  *
- * Threads: the event loop's, which also gets the result.
+ * Threads: that of the event loop, which also gets the result.
  */
 #ifndef JOBS_COMPILE_H
 #define JOBS_COMPILE_H

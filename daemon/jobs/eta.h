@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * eta.h - how long the job that runs will take yet
+ * eta.h - estimate how long the running job will still take
  *
- * What is cut takes the time, and positioning next to none of it, however long
- * its way is: so what has been cut is told from what has been positioned.
+ * Nearly all of the time goes into cutting, and almost none into positioning,
+ * however long its way is. So the path is divided into parts that are cut and
+ * parts that are positioned.
  *
  * Threads: one, that of the event loop.
  */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * keys.h - the service's own keys, and the verbs that manage those of others
+ * keys.h - the service's own keys, and the verbs that manage the keys of others
  *
- * Beside the store lie two files: <machine>.machine-key, with which the
- * service signs, for its user alone, and <machine>.key, the host's, which
- * group edm may read.  Both are made at the first start.  A service with
- * another store than the usual one leaves a copy of the host's key in
+ * Beside the store there are two files. <machine>.machine-key is the key that
+ * the service signs with; only its own user may read it. <machine>.key is the
+ * host's key; group edm may read it. Both are made at the first start. A
+ * service whose store is not the usual one leaves a copy of the host's key in
  * /dev/shm, where clients look too.
  *
  * Threads: one, that of the event loop.

@@ -2,12 +2,12 @@
 /*
  * lcm.h - the LCM side of edmd-jobs: our structs in and out
  *
- * The only place that knows the generated messages.  What comes in must be
- * signed (trust.h), and is checked for its shape before it is decoded: lengths
- * inside the packet, strings ended.  What the fields mean is checked by who
- * takes them.  What goes out is signed with the machine's key.
+ * Only this module knows the generated messages. A message that comes in must
+ * be signed (trust.h). Its shape is checked before it is decoded: lengths
+ * inside the packet, strings with an end. What its fields mean is checked by
+ * the function that takes them. What goes out is signed with the machine's key.
  *
- * Units: in every name.  Threads: one, that of the event loop.
+ * Units: in every name. Threads: one, that of the event loop.
  */
 #ifndef JOBS_LCM_H
 #define JOBS_LCM_H

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * link.h - edmd as edmd-jobs sees it: there or not, its snapshot, its answers
+ * link.h - edmd as edmd-jobs sees it: whether it runs, its snapshot, its
+ * answers
  *
- * Looked at every 20 ms.  edmd counts as there while its process lives and its
- * cycle counter moves; it counts as lost 0.5 s after the counter stood, at
- * once if the process is gone.  One that was started anew is another
- * instance, even if it was never seen missing.
+ * It is looked at every 20 ms. edmd is there while its process lives and its
+ * cycle counter moves. It is lost 0.5 s after the counter stopped, or at once
+ * if the process has ended. An edmd that was started again is another instance,
+ * even if nobody saw it missing.
  *
  * Units: in every name; now_us is monotonic.
+ *
  * Threads: one, that of the event loop.
  */
 #ifndef JOBS_LINK_H

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * queue.h - the job at the machine, and which comes next
+ * queue.h - the job at the machine, and the job that comes next
  *
- * At most one job is loaded.  Where it stands is read from edmd's snapshot
- * and written to the store, never the other way round, so that this service
- * may be killed at any time and finds its job again.
+ * At most one job is loaded. Its state is read from edmd's snapshot and written
+ * to the store, never in the other direction. So this service may be killed at
+ * any time and finds its job again.
  *
- *	queued -> ready -> running <-> held -> done, stopped
- *	                      |  ^
- *	                      v  |
- *	                      fault
+ * 	queued -> ready -> running <-> held -> done, stopped
+ * 	                      |  ^
+ * 	                      v  |
+ * 	                      fault
  *
- * Nothing starts by itself after a fault, a stop, or a new start of edmd: the
+ * Nothing starts by itself after a fault, a stop, or a restart of edmd: the
  * queue waits for "start".
  *
  * Threads: one, that of the event loop.

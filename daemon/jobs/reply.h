@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * reply.h - a command repeated is answered again, not done again
+ * reply.h - a repeated command gets the same answer and is not done again
  *
- * Remembers the last commands by key, client and seq, with what was answered.
+ * The last commands are remembered by key, client and seq, with their answers.
  *
  * Threads: one object belongs to one thread.
  */
