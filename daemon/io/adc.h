@@ -52,16 +52,18 @@ struct adc {
 int adc_open(struct adc *a, const struct adc_config *c,
 	     struct interp_diag *diag);
 
-/** adc_close() - also of one that was never opened. */
+/** adc_close() - also for one that was never opened. */
 void adc_close(struct adc *a);
 
-/** adc_read() - a period.  Return: @ret_v is a reading. */
+/** adc_read() - once a period. Return: true if @ret_v is a reading. */
 bool adc_read(struct adc *a, double *ret_v);
 
-/** adc_format_read() - false: @text is no format that can be read. */
+/**
+ * adc_format_read() - Return: false if @text is not a format that can be read.
+ */
 bool adc_format_read(const char *text, struct adc_format *ret);
 
-/** adc_count() - of one sample at @at. */
+/** adc_count() - the number in one sample at @at. */
 int64_t adc_count(const struct adc_format *f, const uint8_t *at);
 
 #endif /* IO_ADC_H */

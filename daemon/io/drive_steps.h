@@ -22,29 +22,32 @@ struct drive_step {
 extern const struct drive_write drive_mode_csp;
 
 /**
- * drive_step_due() - the step at hand; steps that are not due are passed.
- * Return: false: there is none left.
+ * drive_step_due() - the present step; steps that are not due are skipped.
+ *
+ * Return: false if no step is left.
  */
 bool drive_step_due(struct drive *d, struct drive_step *ret);
 
-/** drive_step_fits() - d->word, which was read, is what it must be. */
+/** drive_step_fits() - is d->word, which was read, what it has to be? */
 bool drive_step_fits(struct drive *d, const struct drive_step *s);
 
-/** drive_step_done() - a write was stored: on to the next. */
+/** drive_step_done() - a write was accepted: go on to the next step. */
 void drive_step_done(struct drive *d, const struct drive_step *s);
 
-/** drive_step_missing() - on past all steps of this object. */
+/** drive_step_missing() - skip all steps of this object. */
 void drive_step_missing(struct drive *d, const struct drive_step *s);
 
-/** drive_step_choose() - try the next value. Return: false: there is none. */
+/** drive_step_choose() - try the next value. Return: false if there is none. */
 bool drive_step_choose(struct drive *d);
 
 struct interp_diag;
 
 /**
- * drive_eds_check() - drive_eds.c: would the drive of this EDS take it all?
- * Return: 0; -ENOENT; -EINVAL; with found and wanted of @diag filled.
- * Startup only.
+ * drive_eds_check() - would the drive of this EDS accept everything? In
+ * drive_eds.c.
+ *
+ * Return: 0; -ENOENT; -EINVAL; with found and wanted of @diag filled. Startup
+ * only.
  */
 int drive_eds_check(const char *path, const struct drive_config *c,
 		    struct interp_diag *diag);

@@ -60,7 +60,7 @@ struct edges;
 /** edges_start() - Return: 0 or -errno; -EPERM: no right to its priority. */
 int edges_start(struct edges **ret, const struct edges_config *c);
 
-/** edges_end() - the pulse under way is finished, the lines are left. */
+/** edges_end() - finish the pulse under way and leave the lines alone. */
 void edges_end(struct edges *e);
 
 void edges_tell(struct edges *e, const struct edges_told *t);

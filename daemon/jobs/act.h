@@ -28,12 +28,14 @@ struct jobs_lcm_command;
 void act_take(struct jobs *j, const struct verb *v,
 	      const struct jobs_lcm_command *c);
 
-/** act_commit() - what was written so far is kept.  Before it is handed over,
- *  and before it is answered.  Return: 0, or STORE_KEPT: not on the disk. */
+/**
+ * act_commit() - make sure that everything written so far is kept: before an
+ * act is handed over, and before it is answered. Return: 0, or STORE_KEPT: it
+ * is not on the disk.
+ */
 int act_commit(struct jobs *j);
 
-/** act_answered() - remember what is answered to act @id.  Return: as
- *  act_commit(). */
+/** act_answered() - remember the answer to act @id. Return: as act_commit(). */
 int act_answered(struct jobs *j, uint64_t id, int code, const char *reason);
 
 #endif /* JOBS_ACT_H */

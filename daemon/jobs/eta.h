@@ -29,20 +29,23 @@ struct eta {
 	double cut_mm;			/* of the whole path */
 };
 
-/** eta_take() - program @n of @machine, if it is not the one it has. */
+/** eta_take() - use program @n of @machine, if it is not the one in use. */
 void eta_take(struct eta *l, const char *machine, uint32_t n);
 
-/** eta_measure() - the parts of @p. Return: 0 or -ENOMEM, then none. */
+/**
+ * eta_measure() - divide @p into its parts. Return: 0; or -ENOMEM, and then it
+ * has none.
+ */
 int eta_measure(struct eta *l, const struct interp_program *p);
 
 /**
- * eta_s() - estimate, s, when @far_mm of the path took @job_s.
+ * eta_s() - the estimate in s, if @far_mm of the path took @job_s.
  *
- * Return: -1 if there is none: nothing is cut yet.
+ * Return: -1 if there is none, because nothing has been cut yet.
  */
 double eta_s(const struct eta *l, double far_mm, double job_s);
 
-/** eta_fini() - forget all. */
+/** eta_fini() - free everything. */
 void eta_fini(struct eta *l);
 
 #endif /* JOBS_ETA_H */

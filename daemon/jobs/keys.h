@@ -17,11 +17,13 @@ struct jobs;
 struct verb;
 struct jobs_lcm_command;
 
-/** keys_open() - read or make them.  Return: 0, or what to exit with; what is
- *  wrong and what mends it is in the log. */
+/**
+ * keys_open() - read the keys, or make them. Return: 0, or an exit code; then
+ * the log says what is wrong and how to mend it.
+ */
 int keys_open(struct jobs *j, const char *dir);
 
-/** keys_close() - take the copy away. */
+/** keys_close() - remove the copy. */
 void keys_close(struct jobs *j);
 
 /* Verbs: "keys", "keys-add" with text NAME ROLE HEX, "keys-remove" NAME. */
@@ -32,7 +34,7 @@ void keys_add(struct jobs *j, const struct verb *v,
 void keys_remove(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 
-/** keys_hello() - verb "hello": who am I to this service? */
+/** keys_hello() - verb "hello": tell a client who it is to this service. */
 void keys_hello(struct jobs *j, const struct verb *v,
 		const struct jobs_lcm_command *c);
 

@@ -98,13 +98,13 @@ struct jobs_lcm_handlers {
 int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
 	      const char *machine, const struct jobs_lcm_handlers *h);
 
-/** jobs_lcm_close() - NULL is fine. */
+/** jobs_lcm_close() - @l may be NULL. */
 void jobs_lcm_close(struct jobs_lcm *w);
 
 /** jobs_lcm_fd() - readable when jobs_lcm_handle() has something to do. */
 int jobs_lcm_fd(const struct jobs_lcm *w);
 
-/** jobs_lcm_handle() - take one message, if it is to be taken. */
+/** jobs_lcm_handle() - take one message, if it may be taken. */
 void jobs_lcm_handle(struct jobs_lcm *w);
 
 void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a);

@@ -73,18 +73,26 @@ void link_init(struct link *l, const char *machine,
 	       const struct link_handlers *h);
 void link_fini(struct link *l);
 
-/** link_poll() - look; calls the handlers. */
+/** link_poll() - look at edmd and call the handlers. */
 void link_poll(struct link *l, int64_t now_us);
 
-/** link_send() - Return: 0; -ENOTCONN no edmd; -EAGAIN too many under way. */
+/**
+ * link_send() - Return: 0; -ENOTCONN: there is no edmd; -EAGAIN: too many
+ * commands are under way.
+ */
 int link_send(struct link *l, const struct link_command *c, int64_t now_us);
 
-/** link_await() - wait for the answer to command @id, handed over before this
- *  service was started anew.  Return: 0; -EAGAIN too many under way. */
+/**
+ * link_await() - wait for the answer to command @id, which was handed over
+ * before this service was restarted. Return: 0; -EAGAIN: too many commands are
+ * under way.
+ */
 int link_await(struct link *l, const struct link_command *c, int64_t now_us);
 
-/** link_ended() - call @each with every job that edmd knows to have ended, the
- *  last one last. */
+/**
+ * link_ended() - call @each with every job that edmd knows to have ended, the
+ * oldest first.
+ */
 void link_ended(struct link *l,
 		void (*each)(void *arg, const struct shm_ended *e), void *arg);
 
