@@ -73,7 +73,7 @@ void queue_go(struct jobs *j);
  * Return: 0; or -errno: this cannot be stored, so it was not begun.
  */
 int queue_promise(struct jobs *j);
-/** queue_has_begun() - the loaded job has begun; record that. */
+/** queue_has_begun() - has the loaded job begun, and is that known? */
 bool queue_has_begun(const struct jobs *j);
 /** queue_started() - take the answer of edmd to a start: a code of link.h. */
 void queue_started(struct jobs *j, int code);
