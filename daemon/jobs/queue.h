@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * queue.h - the job at the machine, and the job that comes next
+ * queue.h - the job at the machine, and which comes next
  *
- * At most one job is loaded. Its state is read from edmd's snapshot and written
- * to the store, never in the other direction. So this service may be killed at
- * any time and finds its job again.
+ * At most one job is loaded.  Where it stands is read from edmd's snapshot
+ * and written to the store, never the other way round, so that this service
+ * may be killed at any time and finds its job again.
  *
- * 	queued -> ready -> running <-> held -> done, stopped
- * 	                      |  ^
- * 	                      v  |
- * 	                      fault
+ *	queued -> ready -> running <-> held -> done, stopped
+ *	                      |  ^
+ *	                      v  |
+ *	                      fault
  *
- * Nothing starts by itself after a fault, a stop, or a restart of edmd: the
+ * Nothing starts by itself after a fault, a stop, or a new start of edmd: the
  * queue waits for "start".
  *
  * Threads: one, that of the event loop.
@@ -50,47 +50,43 @@ struct queue {
 /** queue_init() - find the job that was loaded. Startup only. */
 int queue_init(struct jobs *j);
 
-/** queue_fini() - leave running jobs alone and take the others back. */
+/** queue_fini() - leave running jobs alone, take the others back. */
 void queue_fini(struct jobs *j);
 
-/** queue_attach() - edmd has appeared, or appeared again. */
+/** queue_attach() - edmd came, or came back. */
 void queue_attach(struct jobs *j);
 
-/** queue_event() - take one event of edmd. */
+/** queue_event() - one of edmd's events. */
 void queue_event(struct jobs *j, const struct shm_event *e);
 
-/** queue_step() - call this every 20 ms while edmd is there. */
+/** queue_step() - every 20 ms while edmd is there. */
 void queue_step(struct jobs *j, int64_t now_us);
 
 /** queue_recount() - jobs were added or removed. */
 void queue_recount(struct jobs *j);
 
-/** queue_go() - "start": the queue does not wait any longer. */
+/** queue_go() - "start": the queue waits no more. */
 void queue_go(struct jobs *j);
-/**
- * queue_promise() - the loaded job is about to be started.
- *
- * Return: 0; or -errno: this cannot be stored, so it was not begun.
- */
+/** queue_promise() - the job loaded is about to be started.
+ *  Return: 0; -errno: it has not begun, and that it does cannot be stored. */
 int queue_promise(struct jobs *j);
-/** queue_has_begun() - has the loaded job begun, and is that known? */
+/** queue_unpromise() - it was not started after all. */
+void queue_unpromise(struct jobs *j);
+/** queue_has_begun() - the job loaded, and that is known. */
 bool queue_has_begun(const struct jobs *j);
-/** queue_started() - take the answer of edmd to a start: a code of link.h. */
+/** queue_started() - what edmd answered to a start: enum link's codes. */
 void queue_started(struct jobs *j, int code);
-/**
- * queue_unready() - why no job could begin now, in words; NULL: one could
- * begin.
- */
+/** queue_unready() - why no job could begin now, in words; NULL: one could. */
 const char *queue_unready(const struct jobs *j);
 /** queue_wait() - nothing starts until queue_go(). */
 void queue_wait(struct jobs *j);
 /** queue_is_faulted() - is edmd in fault at this moment? */
 bool queue_is_faulted(const struct jobs *j);
 
-/** queue_is_leaving() - has the job ended, and is it still to be unloaded? */
+/** queue_is_leaving() - ended, still to be unloaded. */
 bool queue_is_leaving(const struct queue *q);
 
-/** queue_end() - the job is over: record and publish it. */
+/** queue_end() - the job is over: record it, tell. */
 void queue_end(struct jobs *j, enum job_state state, const char *reason);
 
 /** queue_drop() - edmd has no program of ours any more. */
@@ -103,16 +99,13 @@ void settle_ended(struct jobs *j);
 
 /* -- load.c: from the store into edmd ------------------------------------- */
 
-/**
- * load_begin() - compile the first waiting job, if there is one, and then load
- * it.
- */
+/** load_begin() - compile the first that waits, if any, then load it. */
 void load_begin(struct jobs *j, int64_t now_us);
 
-/** load_send() - send a command about program @n; its answer ends `asked`. */
+/** load_send() - a command about program @n whose answer ends `asked`. */
 int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us);
 
-/** load_fini() - drop what is being compiled. */
+/** load_fini() - forget what is being compiled. */
 void load_fini(struct jobs *j);
 
 #endif /* JOBS_QUEUE_H */

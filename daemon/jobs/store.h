@@ -1,24 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * store.h - jobs, events and a few numbers that survive a power cut
+ * store.h - jobs, events and a few numbers, kept through a power cut
  *
- * It is one SQLite database, <dir>/<machine>.db, in WAL mode with
- * synchronous=FULL: when a call has returned 0, what it wrote is on the disk. A
- * lock file beside it keeps a second service of the same machine out.
+ * One SQLite database, <dir>/<machine>.db, in WAL with synchronous=FULL: what
+ * a call has returned 0 for is on the disk.  A lock file beside it keeps a
+ * second service of the same machine out.
  *
  * When the disk is full, read-only or fails, the store is degraded: it goes on
  * in memory, calls that write return STORE_KEPT, and store_tick() writes what
- * was kept when there is room again. Calls that make a promise (a new job, a
- * key, a job that is about to begin) are refused with the reason instead. A
- * damaged file is moved aside, and what can be recovered is recovered.
+ * was kept when there is room.  Calls that take a promise (a new job, a key, a
+ * job that is about to begin) are refused with the reason instead.  A damaged
+ * file is set aside and recovered as far as that goes.
  *
- * Every job has a number n that is never used twice. It is also the n of its
+ * Every job has a number n, never used twice, which is also the n of its
  * program.<n> in shared memory.
  *
  * Units: in every name; times are microseconds since 1970.
- *
- * Threads: one. If nothing else is said, calls return 0, STORE_KEPT or -errno,
- * and log what SQLite said.
+ * Threads: one.  Calls return 0, STORE_KEPT or -errno unless they say more, and
+ * log what SQLite said.
  */
 #ifndef JOBS_STORE_H
 #define JOBS_STORE_H
@@ -33,6 +32,7 @@
 enum job_state {
 	JOB_QUEUED, JOB_READY, JOB_RUNNING, JOB_HELD,
 	JOB_DONE, JOB_FAULT, JOB_STOPPED,
+	JOB_INTERRUPTED,		/* by the power: waits to be resumed */
 	JOB_NSTATES
 };
 
@@ -42,9 +42,11 @@ struct store_job {
 	uint32_t n;
 	char id[64], name[64];
 	char sha256[65];		/* hex */
+	char tech_sha256[65];		/* of its technology table; "" */
 	enum job_state state;
 	bool hold;			/* waits for "start" */
 	bool loaded;			/* program.<n> exists, or may exist */
+	int64_t submitted_us;
 	int64_t begun_us;		/* 0: not yet */
 	uint32_t lines;			/* of the text */
 };
@@ -91,33 +93,26 @@ const char *store_state_name(enum job_state s);
 /**
  * store_open() - open or make the database.
  *
- * A disk that is full, read-only or fails is not an error here: see
- * store_why().
- *
- * Return: 0; -EALREADY: another service has it; -EPROTO: a newer version made
- * it; -errno: @dir cannot be used.
+ * A disk that is full, read-only or fails is no error here: see store_why().
+ * Return: 0; -EALREADY if another service has it; -EPROTO if a newer version
+ * made it; -errno if @dir cannot be used.
  */
 int store_open(struct store **ret, const char *dir, const char *machine);
-/** store_close() - @s may be NULL. */
+/** store_close() - NULL is fine. */
 void store_close(struct store *s);
 
-/** store_why() - why the store is degraded; "": it is not. */
+/** store_why() - it is degraded, because ...; "": it is whole. */
 const char *store_why(const struct store *s);
 
 /** store_mended() - what was done to a damaged file; "": nothing. */
 const char *store_mended(const struct store *s);
 
-/**
- * store_tick() - every 20 ms: try to write what was kept.
- *
- * Return: true if the store is no longer degraded from now on.
- */
+/** store_tick() - every 20 ms: try to store what was kept.
+ *  Return: true: it is whole again from now on. */
 bool store_tick(struct store *s, int64_t now_us);
 
-/**
- * store_retain() - forget ended jobs beyond the newest @jobs, and those older
- * than @days (0: of any age), a few at a time, but never the last 20.
- */
+/** store_retain() - forget ended jobs above @jobs and older than @days (0: any
+ *  number), a few at a time, but never the last 20. */
 void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us);
 
 /* What it takes, and how it is. */
@@ -131,7 +126,7 @@ struct store_size {
 
 void store_measure(struct store *s, struct store_size *ret);
 
-/** store_add() - add a queued job, or refuse it. @ret_n: its number. */
+/** store_add() - a new job, queued, or not at all.  @ret_n its number. */
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n);
 
 /* Find one: 0, -ENOENT, or -EIO: it cannot be known. */
@@ -142,43 +137,40 @@ int store_loaded(struct store *s, struct store_job *ret);
  *  oldest. */
 int store_head(struct store *s, struct store_job *ret);
 
-/**
- * store_text() - the text of job @n; free it. -EILSEQ: it is not the text that
- * was sent.
- */
+/** store_text() - the text of job @n; to be freed.  -EILSEQ: it is not the one
+ *  that was sent. */
 int store_text(struct store *s, uint32_t n, char **ret, size_t *ret_bytes);
 
 int store_set_state(struct store *s, uint32_t n, enum job_state state);
 int store_set_hold(struct store *s, uint32_t n, bool hold);
-/** store_set_loaded() - with true: it is on the disk, or refused. */
+/** store_set_loaded() - true: on the disk, or refused. */
 int store_set_loaded(struct store *s, uint32_t n, bool loaded);
 int store_begin(struct store *s, uint32_t n, int64_t now_us);
 
 /**
- * store_may_begin() - job @n is about to be started: this is on the disk, or
- * refused.
+ * store_may_begin() - job @n is about to be started: on the disk, or refused.
  *
- * A job for which this was not stored has not begun, whatever happens
- * afterwards. 0: no job was started after all.
+ * A job that this was not stored of has not begun, whatever happens after.
+ * 0: it was not started after all.
  */
 int store_may_begin(struct store *s, uint32_t n);
 int store_end(struct store *s, uint32_t n, const struct store_end *e);
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
-/**
- * store_change() - record a change of job @n; the same change twice is kept
- * once.
- */
+/** store_interrupt() - @at: its checkpoint, hex, for store_resume_at(). */
+int store_interrupt(struct store *s, uint32_t n, const char *at);
+/** store_interrupted() - the job that was interrupted last.  0 or -ENOENT. */
+int store_interrupted(struct store *s, struct store_job *ret);
+/** store_resume_at() - the checkpoint of job @n; to be freed.  NULL: none. */
+char *store_resume_at(struct store *s, uint32_t n);
+/** store_change() - of job @n; the same one twice is kept once. */
 int store_change(struct store *s, uint32_t n, const struct store_change *c);
 int store_note(struct store *s, const struct store_note *e);
 
 /**
- * store_together() - everything that is written until store_commit() is written
- * at once.
- *
- * @durable: it survives a power cut, and not only a kill of the process.
- *
- * Return: 0, or STORE_KEPT: what was written without a promise is in memory;
- * what must be on the disk is not.
+ * store_together() - what is written up to store_commit() is written at once.
+ * @durable: through a power cut, not only through a kill.
+ * Return: 0, or STORE_KEPT: what was written without a promise is in memory; what
+ * must be on the disk is not.
  */
 int store_together(struct store *s, bool durable);
 int store_commit(struct store *s);
@@ -186,16 +178,13 @@ int store_commit(struct store *s);
 /** store_waiting() - jobs that are queued and not loaded. */
 uint32_t store_waiting(struct store *s);
 
-/**
- * store_number() - a number that is kept by name; @otherwise if there is none.
- */
+/** store_number() - a number kept by name; @otherwise if there is none. */
 int64_t store_number(struct store *s, const char *key, int64_t otherwise);
 int store_set_number(struct store *s, const char *key, int64_t value);
 
 /**
  * store_json() - a list as JSON; @id for show, @rows for history.
- *
- * Return: a text to free; NULL if there is no such job or no memory.
+ * Return: to be freed; NULL if there is no such job or no memory.
  */
 char *store_json(struct store *s, enum store_list what, const char *id,
 		 int rows);
