@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * cmdline.h - a program's command line as one table: parsed, checked, printed
+ * cmdline.h - the command line of a program as one table: parsed, checked,
+ * printed
  *
- * --help and --version need no row.  What is refused is said on stderr as
- *	PROGRAM: error: OPTION VALUE; WHAT WOULD BE ACCEPTED
+ * --help and --version need no row. A refusal is printed on stderr as
+ *
+ * 	PROGRAM: error: OPTION VALUE; WHAT WOULD BE ACCEPTED
  *
  * Threads: one, at the start of the program.
  */
@@ -64,12 +66,16 @@ int cmdline_take(const struct cmdline *o, void *to, int argc, char **argv,
 bool cmdline_has(const struct cmdline *o, const struct cmdline_given *g,
 		 const char *name);
 
-/** cmdline_number() - @text as a number in the range.  Return: -1 or an exit
- *  code, said. */
+/**
+ * cmdline_number() - @text as a number in the range. Return: -1, or an exit
+ * code whose reason was printed.
+ */
 int cmdline_number(const struct cmdline *o, const char *name, const char *text,
 		   double min, double max, double *ret);
 
-/** cmdline_refuse() - say it.  Return: the exit code for a wrong usage. */
+/**
+ * cmdline_refuse() - print a refusal. Return: the exit code for wrong usage.
+ */
 int cmdline_refuse(const char *program, const char *what, const char *value,
 		   const char *wanted);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * names.h - the rule of a machine's name, and words in a row
+ * names.h - the rule for the name of a machine, and lists of words
  *
  * Threads: any.
  */
@@ -14,7 +14,7 @@
 #define NAMES_MACHINE_MAX	32	/* with its NUL */
 #define NAMES_MACHINE_WANTED	"1 to 31 of A-Z a-z 0-9 _ -"
 
-/** names_machine_ok() - may a machine be called so? */
+/** names_machine_ok() - may a machine have this name? */
 bool names_machine_ok(const char *name);
 
 /**

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * job.h - send a job: a few chunks at a time, repeated until answered
+ * job.h - send a job: a few chunks at a time, each repeated until it is
+ * answered
  *
- * Call job_step() whenever talk_step() or talk_wait() was called.
+ * Call job_step() after every talk_step() or talk_wait().
  *
  * Threads: that of its struct talk.
  */
@@ -27,28 +28,33 @@ struct job_text {
 	double silent_s;		/* give up without an ack; 0: 10 s */
 };
 
-/** job_begin() - Return: 0; -ENOMEM; -EFBIG; -EAGAIN too many at once. */
+/** job_begin() - Return: 0; -ENOMEM; -EFBIG; -EAGAIN: too many jobs at once. */
 int job_begin(struct job **ret, struct talk *t, const struct job_text *x);
 
 /**
  * job_step() - send what is due.
- * Return: 1 it is answered: job_verdict(); 0 it goes on; -ETIMEDOUT nothing
- * was heard for so long that the service must be gone.
+ *
+ * Return: 1: it is answered, see job_verdict(); 0: it goes on; -ETIMEDOUT:
+ * nothing was heard for so long that the service must be gone.
  */
 int job_step(struct job *j);
 
-/** job_verdict() - code 0: it is in the queue, body is it as JSON. */
+/** job_verdict() - code 0: the job is in the queue, and body is its JSON. */
 const struct talk_ack *job_verdict(const struct job *j);
 
-/** job_id() - its id, drawn or given. */
+/** job_id() - the id of the job, given by the caller or drawn. */
 const char *job_id(const struct job *j);
-/** job_name() - its name as sent, cut to what a name may be. */
+/**
+ * job_name() - the name as it was sent, cut to the length that a name may have.
+ */
 const char *job_name(const struct job *j);
 
-/** job_progress() - chunks that arrived.  Return: of how many. */
+/**
+ * job_progress() - how many chunks have arrived. Return: how many there are.
+ */
 int job_progress(const struct job *j, int *ret_arrived);
 
-/** job_end() - NULL is fine.  Not sent whole, it is forgotten. */
+/** job_end() - @s may be NULL. A job that was not sent whole is forgotten. */
 void job_end(struct job *j);
 
 #endif /* CLIENT_JOB_H */

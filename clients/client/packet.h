@@ -22,19 +22,22 @@ typedef void (*packet_ack_fn)(void *arg, const struct seal *s,
 			      const uint8_t *key, const char *client,
 			      const struct talk_ack *a);
 
-/** packet_command(), packet_chunk() - as LCM lays them out; to be freed. */
+/** packet_command(), packet_chunk() - encode as LCM does; free the result. */
 uint8_t *packet_command(const struct packet_from *f,
 			const struct talk_question *q, size_t *ret_bytes);
 uint8_t *packet_chunk(const struct packet_from *f, const struct talk_chunk *c,
 		      size_t *ret_bytes);
 
-/** packet_ack() - decode, clean, call @fn.  False: not an ack. */
+/**
+ * packet_ack() - decode, clean, and call @fn. Return: false if it is not an
+ * ack.
+ */
 bool packet_ack(const struct seal *s, packet_ack_fn fn, void *arg);
 
-/** packet_status() - decode and clean.  False: not a status. */
+/** packet_status() - decode and clean. Return: false if it is not a status. */
 bool packet_status(const struct seal *s, struct talk_status *ret);
 
-/** packet_event() - decode, clean, call @fn if there is one. */
+/** packet_event() - decode, clean, and call @fn if there is one. */
 bool packet_event(const struct seal *s,
 		  void (*fn)(void *arg, const struct talk_event *e), void *arg);
 

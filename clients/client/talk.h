@@ -2,23 +2,23 @@
 /*
  * talk.h - speak with edmd-jobs: commands, jobs, status
  *
- * What is sent is signed with a key file; what is heard counts only if the
- * machine has signed it, just now.  LCM may lose what is sent, so a question
- * is asked again, with the same number, until it is answered.
+ * What is sent is signed with a key file. What is received counts only if the
+ * machine has signed it, just now. LCM may lose packets, so a question is sent
+ * again, with the same number, until it is answered.
  *
- * Two ways to use it.  A program that does one thing asks and waits:
+ * There are two ways to use it. A program that does one thing asks and waits:
  *
- *	talk_open(&t, &(struct talk_options) { .machine = "edm" }, said);
- *	talk_ask(t, &(struct talk_question) { .verb = "hold" }, 3, &answer);
+ * 	talk_open(&t, &(struct talk_options) { .machine = "edm" }, said);
+ * 	talk_ask(t, &(struct talk_question) { .verb = "hold" }, 3, &answer);
  *
- * One with an event loop of its own polls talk_fd(), calls talk_step() when it
- * is readable and at least every 50 ms, and gets answers by talk_send()'s
- * function, statuses by talk_status().
+ * A program with an event loop of its own polls talk_fd(), and calls
+ * talk_step() when it is readable and at least every 50 ms. It gets answers
+ * through the function given to talk_send(), and the state by talk_status().
  *
- * Text that is handed out is plain (plain.h), but for the body of an answer,
+ * Text that is handed out is plain (plain.h), except the body of an answer,
  * which is JSON.
  *
- * Units: in every name.  Threads: one object belongs to one thread.
+ * Units: in every name. Threads: one object belongs to one thread.
  */
 #ifndef CLIENT_TALK_H
 #define CLIENT_TALK_H
@@ -99,33 +99,37 @@ struct talk_answer {
 /**
  * talk_open() - read the key and join the channels of the machine.
  *
- * @said: on failure what is wrong and what mends it, in words.
- * Return: 0; -ENETUNREACH no multicast; as keyfile_read() for the key; else
- * -errno.
+ * @said: on failure, what is wrong and how to mend it, in words.
+ *
+ * Return: 0; -ENETUNREACH: no multicast; for the key the values of
+ * keyfile_read(); else -errno.
  */
 int talk_open(struct talk **ret, const struct talk_options *o,
 	      char said[TALK_SAID_MAX]);
 
-/** talk_close() - NULL is fine.  Questions under way are not answered. */
+/**
+ * talk_close() - @t may be NULL. Questions under way stay without an answer.
+ */
 void talk_close(struct talk *t);
 
 /** talk_key() - the key in use. */
 const struct keyfile *talk_key(const struct talk *t);
 
-/** talk_why() - why nothing is heard, if the service said so; else "". */
+/** talk_why() - why nothing is received, if the service said so; else "". */
 const char *talk_why(const struct talk *t);
 
 /* -- Waiting for the answer ------------------------------------------------- */
 
 /**
- * talk_ask() - ask until answered, @timeout_s at most.
- * Return: 0, -ETIMEDOUT, -EAGAIN, -EINTR if talk_interrupted().
+ * talk_ask() - ask until there is an answer, for at most @timeout_s.
+ *
+ * Return: 0, -ETIMEDOUT, -EAGAIN, or -EINTR if talk_interrupted().
  */
 int talk_ask(struct talk *t, const struct talk_question *q, double timeout_s,
 	     struct talk_answer *ret);
 void talk_answer_free(struct talk_answer *a);
 
-/** talk_wait() - take what comes, for @ms at most. */
+/** talk_wait() - take what comes, for at most @ms. */
 void talk_wait(struct talk *t, int ms);
 
 /* -- In an event loop ------------------------------------------------------- */
@@ -133,34 +137,40 @@ void talk_wait(struct talk *t, int ms);
 /** talk_fd() - readable when talk_step() has something to take. */
 int talk_fd(const struct talk *t);
 
-/** talk_step() - take what has come, send again what is due.  Never waits. */
+/**
+ * talk_step() - take what has come and send again what is due. It never waits.
+ */
 void talk_step(struct talk *t);
 
 /* @err: 0; -ETIMEDOUT not answered: it may have been done, or not. */
 typedef void (*talk_answer_fn)(void *arg, int err, const struct talk_ack *a);
 
 /**
- * talk_send() - ask; @fn is called once, by talk_step() or talk_wait().
+ * talk_send() - ask; talk_step() or talk_wait() will call @fn once.
+ *
  * Return: 0; -EAGAIN if TALK_QUESTIONS are under way; -ENOMEM.
  */
 int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 	      talk_answer_fn fn, void *arg);
 
-/** talk_on_event() - who hears EVENTs; NULL: no one. */
+/** talk_on_event() - set the function that gets every EVENT; NULL: none. */
 void talk_on_event(struct talk *t,
 		   void (*fn)(void *arg, const struct talk_event *e),
 		   void *arg);
 
 /* -- Either way ------------------------------------------------------------- */
 
-/** talk_status() - the last; NULL before the first.  @ret_count: how many. */
+/**
+ * talk_status() - the last one; NULL before the first. @ret_count: how many
+ * came.
+ */
 const struct talk_status *talk_status(const struct talk *t,
 				      uint64_t *ret_count);
 
-/** talk_events() - how many EVENTs were heard. */
+/** talk_events() - how many EVENTs came. */
 uint64_t talk_events(const struct talk *t);
 
-/** talk_now_s() - monotonic. */
+/** talk_now_s() - the time of a monotonic clock. */
 double talk_now_s(void);
 
 /** talk_catch_signals() - SIGINT and SIGTERM only set a flag from now on. */
@@ -169,17 +179,22 @@ bool talk_interrupted(void);
 
 /* -- For job.c -------------------------------------------------------------- */
 
-/** talk_numbers() - the next @n seqs; the first of them. */
+/** talk_numbers() - reserve @n seqs. Return: the first of them. */
 int64_t talk_numbers(struct talk *t, int n);
 
-/** talk_on_acks() - who gets the acks from @first on, @n of them.
- *  Return: 0, or -EAGAIN: too many already. */
+/**
+ * talk_on_acks() - set the function that gets the @n acks from @first on.
+ * Return: 0, or -EAGAIN: there are too many such functions.
+ */
 int talk_on_acks(struct talk *t, int64_t first, int n,
 		 void (*fn)(void *arg, const struct talk_ack *a), void *arg);
-/** talk_off_acks() - no one any more. */
+/** talk_off_acks() - nobody gets them any more. */
 void talk_off_acks(struct talk *t, int64_t first);
 
-/** talk_send_chunk() - false: not yet, the service has not answered once. */
+/**
+ * talk_send_chunk() - Return: false: not yet, because the service has not
+ * answered once.
+ */
 bool talk_send_chunk(struct talk *t, const struct talk_chunk *c);
 
 #endif /* CLIENT_TALK_H */

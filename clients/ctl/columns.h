@@ -32,17 +32,22 @@ struct contour {
 };
 
 /**
- * ctl_contour_make() - linear axes of @loop with a gain beside the trace.
- * Return: 0; -ENOENT if there are not two of them; -ENOMEM.
+ * ctl_contour_make() - the linear axes of @loop that have a gain, beside the
+ * trace.
+ *
+ * Return: 0; -ENOENT if there are fewer than two of them; -ENOMEM.
  */
 int ctl_contour_make(struct contour *k, const struct columns *t,
 		     const struct interp_axis_loop *loop);
 void ctl_contour_free(struct contour *k);
 
-/** ctl_contour_print() - the largest and the mean, for a person. */
+/** ctl_contour_print() - the largest and the mean error, for a person. */
 void ctl_contour_print(const struct contour *k);
 
-/** ctl_contour_draw() - over time, to a .png or .svg. Return: 0; < 0, told. */
+/**
+ * ctl_contour_draw() - the error over time, to a .png or .svg. Return: 0; or <
+ * 0, and the reason was printed.
+ */
 int ctl_contour_draw(const struct contour *k, const char *output);
 
 #endif /* CTL_COLUMNS_H */

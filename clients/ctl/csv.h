@@ -36,18 +36,21 @@ struct csv {
 };
 
 /**
- * csv_open() - open and check the heading, to read it so many @times.
- * Return: 0 or -errno, told.
+ * csv_open() - open the file and check its heading.
+ *
+ * @times: how often it will be read from the start.
+ *
+ * Return: 0; or -errno, and the reason was printed.
  */
 int csv_open(struct csv *c, const char *program, const char *path, int times);
 
-/** csv_rewind() - to the first row again. */
+/** csv_rewind() - go back to the first row. */
 void csv_rewind(struct csv *c);
 
-/** csv_next() - Return: 1, 0 at the end, -EINVAL with the place told. */
+/** csv_next() - Return: 1; 0 at the end; -EINVAL, and the place was printed. */
 int csv_next(struct csv *c, struct csv_row *ret);
 
-/** csv_close() - also after a failed csv_open(). */
+/** csv_close() - also after a csv_open() that failed. */
 void csv_close(struct csv *c);
 
 #endif /* PLOT_CSV_H */

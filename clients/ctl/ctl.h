@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * ctl.h - edmctl: what its verbs share
+ * ctl.h - what the verbs of edmctl share
  *
- * A verb is a row of the table in main.c and a function here.  Each returns
- * what the program exits with.
+ * A verb is a row of the table in main.c and a function here. Each function
+ * returns the exit code of the program.
  */
 #ifndef CTL_CTL_H
 #define CTL_CTL_H
@@ -50,7 +50,9 @@ int ctl_alarms(struct ctl *c);
 int ctl_faults(struct ctl *c);
 int ctl_doctor(struct ctl *c);
 
-/** ctl_pulses() - drive @line, CHIP:NUMBER, and print how fast it goes. */
+/**
+ * ctl_pulses() - send pulses to @line, CHIP:NUMBER, and print how fast it goes.
+ */
 int ctl_pulses(const char *line);
 int ctl_queue(struct ctl *c);
 int ctl_show(struct ctl *c);
@@ -63,19 +65,23 @@ int ctl_latency(struct ctl *c);
 
 struct shm_status;
 
-/** ctl_shm_open() - edmd's own status, on its host; a refusal is printed.
- *  Return: what to exit with; 0: @ret is open. */
+/**
+ * ctl_shm_open() - open edmd's status in the shared memory of this host; print
+ * why that fails. Return: an exit code; 0: @ret is open.
+ */
 int ctl_shm_open(const struct ctl *c, const struct shm_status **ret);
 
-/** ctl_ask() - ask; what went wrong is printed, nothing else.
- *  Return: what to exit with; 0: @ret is filled and to be freed. */
+/**
+ * ctl_ask() - ask, and print only what went wrong. Return: an exit code; 0:
+ * @ret is filled, and the caller frees it.
+ */
 int ctl_ask(struct ctl *c, const struct talk_question *q,
 	    struct talk_answer *ret);
 
-/** ctl_unanswered() - print that there is no service. Return: EX_*. */
+/** ctl_unanswered() - print that no service answers. Return: EX_*. */
 int ctl_unanswered(const struct ctl *c, int err);
 
-/** ctl_first_status() - the first from now on; NULL: none in time. */
+/** ctl_first_status() - the next status; NULL: none came in time. */
 const struct talk_status *ctl_first_status(struct ctl *c);
 
 /** ctl_when() - a JSON time in us as local time, "-" if there is none. */
@@ -97,11 +103,14 @@ struct line {
 };
 
 void line_init(struct line *l);
-/** line_status() - draw it; on no terminal once a second or on a change. */
+/**
+ * line_status() - draw it; if stderr is no terminal, once a second or on a
+ * change.
+ */
 void line_status(struct line *l, const struct talk_status *s);
-/** line_bar() - @done of 1, with a text behind. */
+/** line_bar() - a bar for @done, from 0 to 1, with a text behind it. */
 void line_bar(struct line *l, double done, const char *text);
-/** line_end() - the next print begins on a line of its own. */
+/** line_end() - what is printed next begins on a new line. */
 void line_end(struct line *l);
 
 #endif /* CTL_CTL_H */

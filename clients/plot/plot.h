@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * plot.h - a picture of a job, thinned while it runs, drawn by gnuplot
+ * plot.h - a picture of a job, thinned while the job runs, drawn by gnuplot
  *
- * One sheet has the path, the place along it, gap voltage, feed, the axes that
- * are no X Y Z, and the share of each state.  A run of any length takes the
- * same little memory: rows fall into strips of time that keep the least and the
- * greatest value, so a short spike stays in the picture.  How the sheet looks is
- * in trace.gp, which anybody may change; it stands in the folder share/edmd
- * beside the programs, or in the one that EDM_SHARE names.
+ * One sheet shows the path, the place along it, the gap voltage, the feed, the
+ * axes other than X Y Z, and the share of each state. A run of any length takes
+ * the same small memory: rows fall into strips of time that keep their least
+ * and their greatest value, so that a short spike stays in the picture. The
+ * script trace.gp decides how the sheet looks, and anybody may change it. It
+ * stands in the folder share/edmd beside the programs, or in the folder that
+ * EDM_SHARE names.
  *
  * Threads: any one thread, not in the cycle; plot_finish() waits for gnuplot.
  */
@@ -46,24 +47,28 @@ struct plot;
 /**
  * plot_check() - can @output be drawn at all?
  *
- * To be asked before a long job: is the ending known, may the file be written,
- * is gnuplot there.
- * Return: 0, -EINVAL (ending), -ENOPKG (gnuplot) or that of the file; the
+ * Ask this before a long job. It checks that the ending of the name is known,
+ * that the file can be written, and that gnuplot is installed.
+ *
+ * Return: 0, -EINVAL (ending), -ENOPKG (gnuplot) or the -errno of the file; the
  * reason is on stderr.
  */
 int plot_check(const char *program, const char *output);
 
-/** plot_begin() - @o is lent until plot_finish().  Return: NULL: no memory. */
+/**
+ * plot_begin() - @o must stay until plot_finish(). Return: NULL if there is no
+ * memory.
+ */
 struct plot *plot_begin(const struct plot_options *o);
 
 /** plot_add() - the next row. */
 void plot_add(struct plot *p, const struct plot_row *r);
 
 /**
- * plot_finish() - draw what was added, and free @p; NULL is fine.
+ * plot_finish() - draw what was added, and free @p, which may be NULL.
  *
- * Return: 0, or a negative errno with the reason on stderr: -ENODATA without
- * any row, otherwise as plot_draw().
+ * Return: 0, or a negative errno with the reason on stderr: -ENODATA if there
+ * was no row, otherwise as plot_draw().
  */
 int plot_finish(struct plot *p);
 
@@ -77,8 +82,10 @@ struct plot_sheet {
 	const void *arg;
 };
 
-/** plot_draw() - after plot_check().  Return: 0, -EIO, -ENOENT (no script) or
- *  that of the file, told on stderr. */
+/**
+ * plot_draw() - call it after plot_check(). Return: 0; -EIO; -ENOENT: there is
+ * no script; or the -errno of the file. The reason is on stderr.
+ */
 int plot_draw(const struct plot_sheet *s);
 
 #endif /* PLOT_H */

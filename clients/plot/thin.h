@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * thin.h - a run of any length, thinned to what a sheet can show, in one pass
+ * thin.h - a run of any length, reduced in one pass to what a sheet can show
  *
- * Rows fall into strips of time.  When the strips are used up, two and two
- * become one, which is then twice as wide; so no length has to be known before.
+ * Rows fall into strips of time. When all strips are used, each two of them
+ * become one that is twice as wide. So the length of the run need not be known
+ * before.
  */
 #ifndef PLOT_THIN_H
 #define PLOT_THIN_H
@@ -86,17 +87,21 @@ struct thin {
 	unsigned long try_at;		/* the next begins at this jump */
 };
 
-/** thin_init() - @name is a state's name; NULL behind the last. */
+/**
+ * thin_init() - @name is a table of the names of states, NULL behind the last.
+ */
 void thin_init(struct thin *t, const char *(*name)(int state));
 
 /** thin_add() - Threads: one. */
 void thin_add(struct thin *t, const struct plot_row *r);
 
-/** thin_end() - no more rows: keep the zoom that is not whole, if it is all
- *  there is. */
+/**
+ * thin_end() - there are no more rows. A zoom that is not complete is kept if
+ * it is the only one.
+ */
 void thin_end(struct thin *t);
 
-/** thin_range_join() - @b into @a. */
+/** thin_range_join() - add @b to @a. */
 void thin_range_join(struct thin_range *a, const struct thin_range *b);
 
 #endif /* PLOT_THIN_H */

@@ -77,12 +77,17 @@ struct sim_run {
 	int leg;			/* of there and back: 0, 1, 2 */
 };
 
-/** edmsim_options_read() - the command line: options.c.  Return: -1 to go on,
- *  or an exit code. */
+/**
+ * edmsim_options_read() - read the command line; in options.c. Return: -1 to go
+ * on, or an exit code.
+ */
 int edmsim_options_read(struct sim_options *o, int argc, char **argv);
 
-/** edmsim_tech_load() - the technology table in force. Return: 0 or an exit code,
- *  said why; @ret is to be freed by config_tech_free() in any case. */
+/**
+ * edmsim_tech_load() - load the technology table in force. Return: 0, or an
+ * exit code whose reason was printed. Free @ret by config_tech_free() in any
+ * case.
+ */
 int edmsim_tech_load(struct config_tech *ret, const struct sim_options *o,
 		  const struct machine_config *c);
 /**
@@ -92,7 +97,10 @@ int edmsim_tech_load(struct config_tech *ret, const struct sim_options *o,
 int edmsim_tech_print(const struct config_tech *t);
 void edmsim_tech_document(void);
 
-/** job_load() - read and compile. Return: 0 or an exit code, said why. */
+/**
+ * job_load() - read and compile. Return: 0, or an exit code whose reason was
+ * printed.
+ */
 int job_load(struct sim_job *job, const struct sim_options *o,
 	     const struct machine_config *c);
 void job_unload(struct sim_job *job);
@@ -106,12 +114,17 @@ void plan_print(const struct sim_job *job, const struct machine_config *c,
 int job_emit(const struct sim_job *job, const struct sim_options *o,
 	     const struct machine_config *c);
 
-/** run_job() - the whole run. Return: 0 or an exit code, said why. */
+/**
+ * run_job() - run the whole job. Return: 0, or an exit code whose reason was
+ * printed.
+ */
 int run_job(struct sim_run *r);
-/** run_interrupted() - has a signal ended a run?  Any thread. */
+/** run_interrupted() - has a signal ended a run? Any thread. */
 bool run_interrupted(void);
 
-/** tune_contour() - run it dry, find gains, print them. Return: exit code. */
+/**
+ * tune_contour() - run the job dry, find gains, print them. Return: exit code.
+ */
 int tune_contour(struct sim_run *r);
 
 /**

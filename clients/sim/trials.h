@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * trials.h - how far a search is, on stderr: a line rewritten on a terminal;
- * elsewhere one in twenty, to keep
+ * trials.h - the progress of a search, on stderr: one line that is rewritten on
+ * a terminal; elsewhere a line for every twentieth trial
  */
 #ifndef SIM_TRIALS_H
 #define SIM_TRIALS_H
@@ -14,13 +14,16 @@ struct trials {
 	double from_s;
 };
 
-/** trials_now_s() - of a clock that never goes back. */
+/** trials_now_s() - the time of a clock that never goes back. */
 double trials_now_s(void);
 
 /** trials_begin() - the search begins now. */
 struct trials trials_begin(bool quiet, unsigned int budget);
 
-/** trials_tell() - after trial @used, from 1; @best so far, in words. */
+/**
+ * trials_tell() - after trial number @used, counted from 1; @best: the best so
+ * far, in words.
+ */
 void trials_tell(const struct trials *t, unsigned int used, const char *best);
 
 void trials_end(const struct trials *t);

@@ -2,8 +2,8 @@
 /*
  * tune_servo.h - edmsim --tune: keys of [gap] and [jump] for one kind of work
  *
- * A trial is the job run for some seeds with one set of values; tune_servo.c looks
- * for the set that does best and prints it.
+ * A trial runs the job for some seeds with one set of values. tune_servo.c
+ * looks for the set with the best result and prints it.
  */
 #ifndef SIM_TUNE_SERVO_H
 #define SIM_TUNE_SERVO_H
@@ -33,7 +33,8 @@ struct trial_sum {
 };
 
 /**
- * trial_run() - the runs, on as many processors as there are.
+ * trial_run() - do the runs, on as many processors as there are.
+ *
  * Return: 0; -EINTR if a signal ended one; an exit code of run_job().
  */
 int trial_run(const struct trial *t, const struct machine_config *c,
@@ -63,14 +64,16 @@ struct tune {
 	int e;				/* of a trial that could not be run */
 };
 
-/** tune_servo() - the command. Return: an exit code, said why. */
+/**
+ * tune_servo() - the command. Return: an exit code whose reason was printed.
+ */
 int tune_servo(const struct sim_options *o, const struct machine_config *c,
 	     const struct sim_job *job);
 
 /** tune_score() - how much better @s is than @ref. */
 double tune_score(const struct trial_sum *s, const struct trial_sum *ref);
 
-/** tune_value() - of a key that is tuned. */
+/** tune_value() - the value of a key that is tuned. */
 double tune_value(const struct tune_key *k, const struct machine_config *c);
 
 /** tune_print() - lines for a machine file; tune_write() - JSON. */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * crossing.h - between edmd's cycle and its main thread
+ * crossing.h - between the cycle of edmd and its main thread
  *
- * The cycle may not map, allocate or print.  It asks the main thread for what
- * needs that, over one ring, and gets the answer over another.
+ * The cycle may not map, allocate or print. For work that needs one of these it
+ * asks the main thread over one ring, and gets the answer over another.
  *
- * Threads: each call names the one it belongs to; those of the cycle are
+ * Threads: each function names the one it belongs to; those of the cycle are
  * RT-safe.
  */
 #ifndef EDMD_CROSSING_H

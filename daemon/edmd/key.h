@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * key.h - is it the same as before?  Numbers to be compared across a restart
+ * key.h - has something changed since before a restart? Numbers to compare
  *
  * Threads: any.
  */
@@ -12,13 +12,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** key_of() - of @bytes at @block; never 0. */
+/** key_of() - a number for the @bytes at @block; never 0. */
 uint64_t key_of(const void *block, size_t bytes);
 
-/** key_axes() - of what turns pulses into motion: backend and drives. */
+/**
+ * key_axes() - for everything that turns pulses into motion: backend and
+ * drives.
+ */
 uint64_t key_axes(const struct machine_config *c);
 
-/** key_home() - of what homing is by, and of the places it gives. */
+/**
+ * key_home() - for everything that decides how homing works and what places it
+ * gives.
+ */
 uint64_t key_home(const struct machine_config *c);
 
 #endif /* EDMD_KEY_H */

@@ -3,7 +3,7 @@
  * log.h - lines on stderr: "module: what, with numbers and units"
  *
  * Under the journal each line begins with its level, as sd-daemon(3) says.
- * A reader that stands still holds nothing up (logger.h).
+ * A reader that does not read delays nothing (logger.h).
  * Threads: main thread only.  The cycle never prints.
  */
 #ifndef EDMD_LOG_H

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * loop.h - the real-time thread: once a period, commands in, one cycle, out
+ * loop.h - the real-time thread: once a period, take commands, run one cycle,
+ * write the outputs
  *
- * The loop is placed and filled by the main thread, which from loop_start()
- * to loop_stop() touches nothing of it but `crossing`.
+ * The main thread places and fills the loop. From loop_start() to loop_stop()
+ * it uses nothing of it but `crossing`.
  */
 #ifndef EDMD_LOOP_H
 #define EDMD_LOOP_H
@@ -62,55 +63,61 @@ struct loop {
 /**
  * loop_start() - start the thread and wait until it is set up.
  *
- * @report: filled with what the thread got of the host.
- * Return: 0 or -errno.  Startup only.
+ * @report: filled with what the host gave to the thread.
+ *
+ * Return: 0 or -errno. Startup only.
  */
 int loop_start(struct loop *l, struct setup_report *report);
 
-/** loop_stop() - outputs safe, thread ended.  Startup only. */
+/** loop_stop() - make the outputs safe and end the thread. Startup only. */
 void loop_stop(struct loop *l);
 
 /* -- Its parts, all of them RT-safe ------------------------------------- */
 
-/** loop_commands() - carry out what is in the ring, a few at a time. */
+/** loop_commands() - carry out a few of the commands in the ring. */
 void loop_commands(struct loop *l);
 
-/** loop_replies() - take what the main thread has opened. */
+/** loop_replies() - take the programs that the main thread has opened. */
 void loop_replies(struct loop *l);
 
-/** loop_notice() - events for what has changed since the last call. */
+/**
+ * loop_notice() - send events for everything that has changed since the last
+ * call.
+ */
 void loop_notice(struct loop *l);
 
 /** loop_answer() - the event that answers command @id, and its record;
  *  @answer: enum shm_answer. */
 void loop_answer(struct loop *l, uint64_t id, int32_t answer);
 
-/** loop_event() - an event of @kind, here and now. */
+/** loop_event() - send an event of @kind, with the present time and place. */
 void loop_event(struct loop *l, uint32_t kind, uint64_t id, int32_t code);
 
-/** loop_event_set() - field @field is @now, was @was. */
+/** loop_event_set() - field @field is @now and was @was. */
 void loop_event_set(struct loop *l, uint32_t field, double was, double now);
 
-/** loop_sets() - what is set in the job, for the next edmd. */
+/** loop_sets() - record what is set in the job, for the next edmd. */
 void loop_sets(struct loop *l);
 
-/** loop_snapshot() - the cycle's state as others see it. */
+/** loop_snapshot() - publish the state of the cycle. */
 void loop_snapshot(const struct loop *l, struct shm_snapshot *ret);
 
-/** loop_trace() - the same for one record of the trace. */
+/** loop_trace() - publish one record of the trace. */
 void loop_trace(const struct loop *l, const struct io_inputs *in,
 		struct shm_trace *ret);
 
-/** loop_plc_read() - once a period of time: what the PLC asks. */
+/** loop_plc_read() - once per real period: read what the PLC asks for. */
 void loop_plc_read(struct loop *l);
 
-/** loop_plc_input() - the same, for a cycle. */
+/** loop_plc_input() - hand this to a cycle. */
 void loop_plc_input(struct loop *l, struct io_inputs *in);
 
-/** loop_plc_write() - once a period of time: how the machine is. */
+/** loop_plc_write() - once per real period: tell the PLC how the machine is. */
 void loop_plc_write(struct loop *l);
 
-/** loop_stands() - no motion, and none to come by itself. */
+/**
+ * loop_stands() - does the machine stand, and will nothing move it by itself?
+ */
 bool loop_stands(const struct loop *l);
 
 #endif /* EDMD_LOOP_H */

@@ -15,13 +15,16 @@ struct options {
 };
 
 /**
- * options_read() - the command line.
+ * options_read() - read the command line.
  *
- * Return: -1 to go on, or the exit code: help, version, a usage error.
+ * Return: -1 to go on, or the exit code: after help, version, or a usage error.
  */
 int options_read(struct options *o, int argc, char **argv);
 
-/** options_config() - the machine they name. Return: -1 or the exit code. */
+/**
+ * options_config() - read the machine file that the options name. Return: -1 or
+ * the exit code.
+ */
 int options_config(const struct options *o, struct machine_config *c);
 
 #endif /* EDMD_OPTIONS_H */

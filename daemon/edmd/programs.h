@@ -12,13 +12,13 @@
 #include "config.h"
 
 /**
- * program_open() - map program.<n>, check it, keep it in memory.
+ * program_open() - map program.<n>, check it and keep it in memory.
  *
- * Says in the log why it cannot.  Return: NULL then.
+ * Return: NULL if this fails; the log says why.
  */
 struct program *program_open(const struct machine_config *c, uint32_t n);
 
-/** program_close() - NULL is fine. */
+/** program_close() - @p may be NULL. */
 void program_close(struct program *p);
 
 /** programs_serve() - do what the cycle has asked for. */

@@ -27,7 +27,10 @@ struct report {
 /** report_init() - begin at the newest event. */
 void report_init(struct report *r, const struct shm_status *s);
 
-/** report_setup() - one line for each thing the host did not give. */
+/**
+ * report_setup() - one line of the log for each thing that the host did not
+ * give.
+ */
 void report_setup(const struct setup_report *r);
 
 /** report_ready() - tell systemd that the cycle runs. */
@@ -43,8 +46,10 @@ void report_notes(const struct io_machine *m);
 void report_events(struct report *r, const struct shm_status *s);
 
 /**
- * report_watchdog() - pet systemd's watchdog, when it is time and only if
- * @beats, the periods the cycle has run, has advanced.
+ * report_watchdog() - tell systemd's watchdog that edmd is alive, when it is
+ * time.
+ *
+ * Only if @beats, the number of periods that the cycle has run, has grown.
  */
 void report_watchdog(struct report *r, uint64_t beats);
 

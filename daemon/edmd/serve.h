@@ -18,8 +18,10 @@ struct server {
 };
 
 /**
- * serve() - maps programs, logs, pets the watchdog, until a signal and then
- * a stand.  Return: 0 or a negative errno.
+ * serve() - map programs, write the log and keep systemd's watchdog content,
+ * until a signal comes; then wait until the machine stands.
+ *
+ * Return: 0 or a negative errno.
  */
 int serve(struct server *s);
 

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * adc.h - the gap's voltage from an analog-digital converter of the kernel's
- * industrial I/O
+ * adc.h - the voltage of the gap from an analog-digital converter of the
+ * kernel's industrial I/O
  *
- * One channel of one device, whose samples the kernel puts into a buffer; a
- * period reads what has come, without waiting, and takes the mean.  The files
- * are those of the kernel's documentation, ABI/testing/sysfs-bus-iio.
+ * One channel of one device is read. The kernel puts its samples into a buffer.
+ * Each period reads the samples that have come, without waiting, and takes
+ * their mean. The files are those of the kernel's documentation,
+ * ABI/testing/sysfs-bus-iio.
  *
- * Threads: open and close are startup only; adc_read() is RT-safe: at most
- * ADC_READS system calls.
+ * Threads: open and close are startup only; adc_read() is RT-safe: it makes at
+ * most ADC_READS system calls.
  */
 #ifndef IO_ADC_H
 #define IO_ADC_H
@@ -51,16 +52,18 @@ struct adc {
 int adc_open(struct adc *a, const struct adc_config *c,
 	     struct interp_diag *diag);
 
-/** adc_close() - also of one that was never opened. */
+/** adc_close() - also for one that was never opened. */
 void adc_close(struct adc *a);
 
-/** adc_read() - a period.  Return: @ret_v is a reading. */
+/** adc_read() - once a period. Return: true if @ret_v is a reading. */
 bool adc_read(struct adc *a, double *ret_v);
 
-/** adc_format_read() - false: @text is no format that can be read. */
+/**
+ * adc_format_read() - Return: false if @text is not a format that can be read.
+ */
 bool adc_format_read(const char *text, struct adc_format *ret);
 
-/** adc_count() - of one sample at @at. */
+/** adc_count() - the number in one sample at @at. */
 int64_t adc_count(const struct adc_format *f, const uint8_t *at);
 
 #endif /* IO_ADC_H */

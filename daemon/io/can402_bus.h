@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * can402_bus.h - the master's own: a bus, its drives, and what to say of them
+ * can402_bus.h - what the files of the CAN master share: the bus, its drives,
+ * and what the log says of them
  *
- * Threads: can402_tell() and can402_count() the cycle's, can402_note() the
- * logging one's; the rest as io.h.
+ * Threads: can402_tell() and can402_count() belong to the cycle's thread,
+ * can402_note() to the thread that logs; the others are as in io.h.
  */
 #ifndef IO_CAN402_BUS_H
 #define IO_CAN402_BUS_H
@@ -77,16 +78,18 @@ struct can402 {
 
 /* -- can402_note.c ------------------------------------------------------------ */
 
-/** can402_tell() - what the next line of the log is to say. */
+/** can402_tell() - say what the next line of the log is about. */
 void can402_tell(struct can402 *s, const struct can402_note *n);
 
 /**
- * can402_count() - the @n-th of its kind; told of are the first, the second,
- * the fourth ...: a flood says little.
+ * can402_count() - count an event, which is the @n-th of its kind.
+ *
+ * The log tells of the first, the second, the fourth, the eighth and so on, so
+ * that a flood of events makes few lines.
  */
 void can402_count(struct can402 *s, enum can402_note_kind kind, uint32_t n);
 
-/** can402_watch() - tell what is new of drive @i. */
+/** can402_watch() - tell what has changed on drive @i. */
 void can402_watch(struct can402 *s, uint32_t i);
 
 /** can402_note() - io_machine.note */
@@ -104,26 +107,31 @@ void can402_originate(void *self, const int32_t zero[IO_NAXES]);
 /* -- can402_stop.c ------------------------------------------------------------ */
 
 /**
- * can402_stop_step() - a period, before the drives are told their targets.
+ * can402_stop_step() - once a period, before the drives get their targets.
  *
- * @on: they are to be under power, and all is well.
- * Those that can brake together brake together: each by the same part of its
- * speed in a period, so that they stay on the tangent of the path.
- * Return: true as long as they do, and none may be stopped by itself.
+ * @on: the drives are to have power, and all is well.
+ *
+ * Drives that can brake do so together: each loses the same part of its speed
+ * in a period, so that they stay on the tangent of the path.
+ *
+ * Return: true as long as they brake; then none may be stopped alone.
  */
 bool can402_stop_step(struct can402 *s, bool on);
 
-/** can402_stop_target() - pulses drive @i is sent to on that way. */
+/** can402_stop_target() - where drive @i is sent to on that way, pulses. */
 int32_t can402_stop_target(struct can402 *s, uint32_t i);
 
-/** can402_stop_pace() - on the way back to their places all arrive at once. */
+/**
+ * can402_stop_pace() - on the way back to their places all drives arrive at the
+ * same time.
+ */
 void can402_stop_pace(struct can402 *s);
 
 /* -- can402_open.c ------------------------------------------------------------ */
 
 /**
- * can402_attach() - the drives that @c names, on an open @fd, which is the
- * machine's from then on.  Return: 0 or -ENOMEM.  Startup only.
+ * can402_attach() - the drives that @c names, on the open socket @fd, which
+ * belongs to the machine from then on. Return: 0 or -ENOMEM. Startup only.
  */
 int can402_attach(struct io_machine *m, const struct machine_config *c, int fd);
 

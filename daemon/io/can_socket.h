@@ -2,11 +2,11 @@
 /*
  * can_socket.h - frames to and from a CAN interface of the kernel
  *
- * Raw SocketCAN, without waiting.  What the interface itself has to say (bus
- * off, down) comes as a state, not as a frame.
+ * It uses raw SocketCAN and never waits. What the interface reports about
+ * itself (bus off, down) is returned as a state and not as a frame.
  *
- * Threads: open and close are startup only; send and receive are RT-safe, one
- * system call each.
+ * Threads: open and close are startup only; send and receive are RT-safe and
+ * make one system call each.
  */
 #ifndef CAN_SOCKET_H
 #define CAN_SOCKET_H
@@ -32,19 +32,20 @@ struct can_hear {
 };
 
 /**
- * can_socket_open() - hear @n kinds of identifiers on @interface.
+ * can_socket_open() - receive @n kinds of identifiers on @interface.
  *
- * Return: a descriptor; -ENODEV no such interface, -ENETDOWN it is down,
- * -EAFNOSUPPORT the kernel has no CAN, -EPERM, else -errno.
+ * Return: a descriptor; -ENODEV: there is no such interface; -ENETDOWN: it is
+ * down; -EAFNOSUPPORT: the kernel has no CAN; -EPERM; or another -errno.
  */
 int can_socket_open(const char *interface, const struct can_hear *hear,
 		    size_t n);
 
 /**
- * can_socket_queue() - let at most some @frames wait to be sent.
+ * can_socket_queue() - let no more than about @frames wait to be sent.
  *
- * On a bus that takes none they would wait, and go out stale when it does.
- * The kernel's own least is some five frames.  Startup only.
+ * On a bus that takes no frames they would wait, and be out of date when they
+ * are sent at last. The smallest queue of the kernel is about five frames.
+ * Startup only.
  */
 void can_socket_queue(int fd, size_t frames);
 

@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * drive.h - one CiA 402 drive in cyclic synchronous position, seen from its
- * master: frames in, frames out, no socket
+ * drive.h - one CiA 402 drive in cyclic synchronous position mode, as its
+ * master sees it: frames in, frames out, no socket
  *
- * A drive is brought up by SDO, in NMT state pre-operational, one request in
- * flight, a step a period at the most: identity, heartbeats both ways, one
- * RPDO (6040 and 607A), one TPDO (6041, 6064 and 6061), both with every SYNC,
- * what the machine file wants of it, mode 8, interpolation time.  Then it is
- * started, and led through the state machine of CiA 402 by its statusword.
+ * While the drive is in NMT state pre-operational, it is set up by SDO, with
+ * one request at a time and at most one step per period: its identity;
+ * heartbeats in both directions; one RPDO (6040 and 607A) and one TPDO (6041,
+ * 6064 and 6061), both with every SYNC; the values that the machine file asks
+ * for; mode 8; the interpolation time. Then it is started, and led by its
+ * statusword through the state machine of CiA 402.
  *
  * Its target is its own actual position until it is enabled, shows mode 8 and
- * says that it follows (bit 12), so that enabling moves nothing.
+ * reports that it follows (bit 12). So enabling it moves nothing.
  *
- * A drive that restarted has lost its count, unless the machine file calls it
- * absolute: @lost, until it is told where it stands.  A restart that nobody
- * heard shows when the drive is brought up: object 1016:1, which we set and
- * which a drive forgets, no longer names us.
+ * A drive that restarted has lost its count, unless the machine file says that
+ * it is absolute. Then `lost` is set until somebody tells it where it stands. A
+ * restart that nobody heard is found when the drive is set up: edmd wrote its
+ * own node into object 1016:1, and a drive forgets this when it loses power.
  *
- * Units: pulses are the machine's, increments the drive's; time in cycles.
+ * Units: pulses are those of the machine, increments those of the drive; time
+ * is in cycles.
+ *
  * Threads: RT-safe; one object belongs to one thread.
  */
 #ifndef IO_DRIVE_H
@@ -178,14 +181,18 @@ struct drive {
 					 * to nothing asked, in all */
 };
 
-/** drive_init() - nothing known, asked for nothing. */
+/** drive_init() - nothing is known of it, and it is asked for nothing. */
 void drive_init(struct drive *d, const struct drive_config *c);
 
-/** drive_receive() - a frame; false if it is not of this drive. */
+/**
+ * drive_receive() - take a frame. Return: false if it does not come from this
+ * drive.
+ */
 bool drive_receive(struct drive *d, const struct can_msg *m);
 
 /**
- * drive_sync() - a SYNC went out: count what did not come since the last one.
+ * drive_sync() - a SYNC was sent: count the answers that are missing since the
+ * last one.
  */
 void drive_sync(struct drive *d);
 
@@ -199,40 +206,54 @@ size_t drive_emit(struct drive *d, int32_t target, struct can_msg *ret);
 
 #define DRIVE_EMITS	2
 
-/** drive_aim() - where the master wants it. */
+/** drive_aim() - say in which state the master wants the drive. */
 void drive_aim(struct drive *d, enum drive_goal goal);
 
-/** drive_reset() - forget the trouble; a rebooted one is brought up again. */
+/**
+ * drive_reset() - clear the trouble; a drive that restarted is set up again.
+ */
 void drive_reset(struct drive *d);
 
-/** drive_depart() - its next target is another place: go there slowly. */
+/**
+ * drive_depart() - its next target is far from the last one: go there slowly.
+ */
 void drive_depart(struct drive *d);
 
-/** drive_set_zero() - what it measures now is place @pulses. */
+/** drive_set_zero() - the position that it measures now is place @pulses. */
 void drive_set_zero(struct drive *d, int32_t pulses);
 
-/** drive_keep_zero() - place 0 is at @zero increments, as it was before. */
+/**
+ * drive_keep_zero() - place 0 is at @zero increments, as before a restart of
+ * edmd.
+ */
 void drive_keep_zero(struct drive *d, int32_t zero);
 
-/** drive_place() - its actual position in pulses, toward the nearest. */
+/** drive_place() - its actual position in pulses, rounded to the nearest. */
 int32_t drive_place(const struct drive *d);
 
-/** drive_to_increments() - exact for every pulse: no rounding adds up. */
+/**
+ * drive_to_increments() - exact for every pulse, so that no rounding adds up.
+ */
 int32_t drive_to_increments(const struct drive_config *c, int32_t pulses);
 
-/** drive_state_of() - by the statusword. */
+/** drive_state_of() - the state that a statusword shows. */
 enum drive_state drive_state_of(uint16_t status);
 
-/** drive_has_place() - what it measures in this state may be believed. */
+/**
+ * drive_has_place() - can the position that it measures in this state be
+ * believed?
+ */
 bool drive_has_place(enum drive_state s);
 
-/** drive_wanted() - increments that @target, in pulses, is for it. */
+/** drive_wanted() - @target, in pulses, as increments of this drive. */
 int32_t drive_wanted(const struct drive *d, int32_t target);
 
-/** drive_follows() - it shows mode 8, and that it heeds its target. */
+/**
+ * drive_follows() - does it show mode 8, and report that it follows its target?
+ */
 bool drive_follows(const struct drive *d);
 
-/** drive_control() - the controlword that leads from @s toward @goal. */
+/** drive_control() - the controlword that leads from state @s toward @goal. */
 uint16_t drive_control(enum drive_goal goal, enum drive_state s);
 
 /** drive_state_name(), drive_trouble_name() - for logs. Any thread. */
@@ -244,24 +265,24 @@ const char *drive_abort_text(uint32_t code);
 
 /* -- drive_setup.c: the SDO steps -------------------------------------------- */
 
-/** drive_setup_emit() - the request of the step at hand, if it is due. */
+/** drive_setup_emit() - the request of the present step, if it is due. */
 size_t drive_setup_emit(struct drive *d, struct can_msg *ret);
 
-/** drive_setup_remode() - while it runs: the request to be in mode 8. */
+/** drive_setup_remode() - the request for mode 8, while the drive runs. */
 size_t drive_setup_remode(struct drive *d, struct can_msg *ret);
 
-/** drive_setup_again() - from the first step on. */
+/** drive_setup_again() - begin again with the first step. */
 void drive_setup_again(struct drive *d);
 
 /**
- * drive_setup_end() - frames that leave it alone: not to watch for our
- * heartbeat any more, and pre-operational.  Return: 0 or DRIVE_ENDS.
+ * drive_setup_end() - the frames that leave the drive alone: it stops watching
+ * our heartbeat and becomes pre-operational. Return: 0 or DRIVE_ENDS.
  */
 size_t drive_setup_end(const struct drive *d, struct can_msg *ret);
 
 #define DRIVE_ENDS	2
 
-/** drive_setup_receive() - an SDO answer. */
+/** drive_setup_receive() - take an answer by SDO. */
 void drive_setup_receive(struct drive *d, const struct can_msg *m);
 
 #endif /* IO_DRIVE_H */

@@ -1,24 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * edges.h - a thread that plays the edges of a period within the next one
+ * edges.h - a thread that puts out the edges of one period during the next one
  *
- * The cycle says where the axes are to be; the thread goes there in `slots`
- * writes, evenly over a period, so that pulses are faster than the cycle.  It
- * takes what was said half a period before, so that neither need be on time to
- * less than that: a target is reached one and a half periods after it was said.
+ * The cycle says where the axes are to be. The thread goes there in `slots`
+ * writes, evenly spread over a period, so pulses can be faster than the cycle.
+ * It takes what the cycle said half a period before. So neither of the two has
+ * to be in time to better than that; a target is reached one and a half periods
+ * after the cycle said it.
  *
- * What could not be put out in its period is put out in the next; if that is
- * more than a quarter of what a period holds, the thread is busy meanwhile.
- * Nothing is lost, or squeezed.  `stop`
- * ends the pulses with the one under way; those that are left come with the
+ * Edges that do not fit into their period are put out in the next one. While
+ * more than a quarter of what a period holds is left over, the thread says that
+ * it is busy. No edge is lost, and none comes too soon after another. `stop`
+ * ends with the pulse that is under way; the pulses that are left come with the
  * next target.
  *
- * Between slots that are less than EDGES_SPIN_NS apart the thread does not
- * sleep: it wants a processor of its own.
+ * If slots are less than EDGES_SPIN_NS apart, the thread does not sleep between
+ * them. Then it needs a processor core of its own.
  *
  * Units: pulses; slots are the periods of pulser.h.
- * Threads: edges_start() and edges_end() startup only; edges_tell() and
- * edges_ask() RT-safe, the cycle's; @write is the thread's own.
+ *
+ * Threads: edges_start() and edges_end() are startup only. edges_tell() and
+ * edges_ask() are RT-safe and belong to the cycle. @write is called by the edge
+ * thread.
  */
 #ifndef IO_EDGES_H
 #define IO_EDGES_H
@@ -57,7 +60,7 @@ struct edges;
 /** edges_start() - Return: 0 or -errno; -EPERM: no right to its priority. */
 int edges_start(struct edges **ret, const struct edges_config *c);
 
-/** edges_end() - the pulse under way is finished, the lines are left. */
+/** edges_end() - finish the pulse under way and leave the lines alone. */
 void edges_end(struct edges *e);
 
 void edges_tell(struct edges *e, const struct edges_told *t);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * gpio_own.h - a machine on lines: what gpio.c and gpio_open.c share
+ * gpio_own.h - what gpio.c and gpio_open.c share
  *
- * Threads: as io.h; gpio_edges_write() is the edge thread's.
+ * Threads: as in io.h; gpio_edges_write() belongs to the edge thread.
  */
 #ifndef IO_GPIO_OWN_H
 #define IO_GPIO_OWN_H
@@ -93,10 +93,14 @@ void gpio_read(void *self, struct io_inputs *in);
 void gpio_write(void *self, const struct io_outputs *out);
 void gpio_close(void *self);
 
-/** gpio_outputs_write() - what the cycle has to write of g->out. */
+/**
+ * gpio_outputs_write() - write those of g->out that the cycle itself writes.
+ */
 void gpio_outputs_write(struct gpio *g);
 
-/** gpio_levels() - what the lines on in @on are, into the chips' values. */
+/**
+ * gpio_levels() - turn the lines that are on, @on, into values for the chips.
+ */
 bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines);
 
 /* -- gpio_axes.c -------------------------------------------------------------- */

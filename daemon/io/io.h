@@ -139,7 +139,7 @@ typedef int io_open_fn(struct io_machine *m, const struct machine_config *c,
 /** io_sim_open() - a simulated machine, see sim.c. */
 io_open_fn io_sim_open;
 
-/** io_sim_open_seed() - the same, with @seed in place of `[sim] seed`. */
+/** io_sim_open_seed() - the same, but with @seed instead of `[sim] seed`. */
 int io_sim_open_seed(struct io_machine *m, const struct machine_config *c,
 		     uint64_t seed);
 
@@ -156,18 +156,25 @@ struct io_sim_result {
 	uint32_t burns;			/* times that arcs stayed */
 };
 
-/** io_sim_result() - of a machine opened by io_sim_open(). Any time. */
+/**
+ * io_sim_result() - the result of a machine that io_sim_open() opened. Any
+ * time.
+ */
 void io_sim_result(const struct io_machine *m, struct io_sim_result *ret);
 
-/** io_null_open() - nothing, correctly: no gap, axes follow at once. */
+/**
+ * io_null_open() - a machine that does nothing: it has no gap, and its axes
+ * follow at once.
+ */
 io_open_fn io_null_open;
 
 /**
  * io_gpio_open() - step and direction lines, switches; docs/gpio.md.
  *
- * Sparks and pump are off from the request of the lines on.
- * Return: -EACCES and -EPERM rights, -EBUSY a line in use, else a chip or line
- * that is not there.
+ * Sparks and pump are off from the moment at which the lines are requested.
+ *
+ * Return: -EACCES or -EPERM for missing rights, -EBUSY for a line in use,
+ * another -errno for a chip or line that does not exist.
  */
 io_open_fn io_gpio_open;
 

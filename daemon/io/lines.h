@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * lines.h - lines of a GPIO chip, by whichever libgpiod there is
+ * lines.h - lines of a GPIO chip, with the version of libgpiod that is
+ * installed
  *
- * gpiod1.c and gpiod2.c are the same calls on libgpiod 1.6 and 2.x; the
- * Makefile takes the one that pkg-config speaks of.  Values are levels: 1 is
- * high; inverting is the caller's.
+ * gpiod1.c and gpiod2.c have the same functions, for libgpiod 1.6 and 2.x; the
+ * Makefile takes the one whose version pkg-config reports. Values are levels: 1
+ * is high. Inverting a line is left to the caller.
  *
- * Threads: lines_set() and lines_get() are RT-safe, one ioctl each, and so is
- * lines_events(), a read or two; the rest is startup only.
+ * Threads: lines_set() and lines_get() are RT-safe, with one ioctl each, and so
+ * is lines_events(), with a read or two; the others are startup only.
  */
 #ifndef IO_LINES_H
 #define IO_LINES_H
@@ -44,26 +45,30 @@ struct lines_event {
 /** lines_chip_open() - the chip of device file @path.  0 or -errno. */
 int lines_chip_open(struct lines_chip **ret, const char *path);
 
-/** lines_chip_close() - lines requested of it stay. */
+/** lines_chip_close() - lines that were requested from it stay. */
 void lines_chip_close(struct lines_chip *chip);
 
 unsigned int lines_chip_count(struct lines_chip *chip);
 
-/** lines_chip_label() - into @buf; empty if there is none. */
+/** lines_chip_label() - its label into @buf; empty if it has none. */
 void lines_chip_label(struct lines_chip *chip, char *buf, size_t size);
 
-/** lines_chip_user() - is it in use?  By whom, into @buf. */
+/** lines_chip_user() - is a line in use? @buf gets the name of its user. */
 bool lines_chip_user(struct lines_chip *chip, unsigned int offset, char *buf,
 		     size_t size);
 
-/** lines_request() - all of them, in one; 0 or -errno. */
+/** lines_request() - request all lines with one call. Return: 0 or -errno. */
 int lines_request(struct lines **ret, struct lines_chip *chip,
 		  const struct lines_wanted *w);
 
-/** lines_set() - a level for each line, in one call; 0 or -errno. */
+/**
+ * lines_set() - write a level to each line with one call. Return: 0 or -errno.
+ */
 int lines_set(struct lines *l, const uint8_t *value);
 
-/** lines_get() - the level of each line, in one call; 0 or -errno. */
+/**
+ * lines_get() - read the level of each line with one call. Return: 0 or -errno.
+ */
 int lines_get(struct lines *l, uint8_t *value);
 
 /**
@@ -76,7 +81,7 @@ int lines_get(struct lines *l, uint8_t *value);
  */
 int lines_events(struct lines *l, struct lines_event *ret, int room);
 
-/** lines_release() - NULL is fine. */
+/** lines_release() - @request may be NULL. */
 void lines_release(struct lines *l);
 
 #endif /* IO_LINES_H */

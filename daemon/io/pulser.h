@@ -2,19 +2,19 @@
 /*
  * pulser.h - from targets in pulses to levels on step and direction lines
  *
- * One call is one period, and changes each line at most once.  A lattice point
- * is one round of all axes together: directions first, then after the set-up
- * all step lines at once, so that axes that move in the same point pulse in
- * the same write.
+ * One call is one period, and changes each line at most once. All axes make a
+ * lattice point in the same round: first their directions change, then, after
+ * the set-up time, all step lines change together. So axes that move in the
+ * same point pulse in the same write.
  *
- *	dir	____/------------------------
- *		    | setup | high | low  |
- *	step	____________/------\______/---
+ * 	dir	____/------------------------
+ * 		    | setup | high | low  |
+ * 	step	____________/------\______/---
  *
- * In quadrature the two lines of an axis are A and B, a quarter turn is one
+ * In quadrature the two lines of an axis are A and B. A quarter turn is one
  * pulse, and A leads B in the positive direction.
  *
- * Units: times in periods.  Threads: RT-safe.
+ * Units: times in periods. Threads: RT-safe.
  */
 #ifndef IO_PULSER_H
 #define IO_PULSER_H

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * sim_process.h - the simulated machine's inside; private to sim*.c
+ * sim_process.h - the inside of the simulated machine; private to sim*.c
  *
- * What a touch meets is in sim_probe.c.  A period goes through four files, in this order:
+ * A period goes through four files, in this order:
  *
- *	sim_axes.c	where the electrode really is
- *	sim_pulses.c	what a train of pulses does in this gap
- *	sim_erosion.c	what the sparks take away, from work and electrode
- *	sim_debris.c	where that goes; bridges, arcs that stay in one place
+ * 	sim_axes.c	where the electrode really is
+ * 	sim_pulses.c	what a train of pulses does in this gap
+ * 	sim_erosion.c	what the sparks take away, from work and electrode
+ * 	sim_debris.c	where that goes; bridges, arcs that stay in one place
  *
- * The model is described, with sources and pictures, in
- * docs/process-model.md.
+ * What a touch meets is in sim_probe.c. docs/process-model.md describes the
+ * model, with sources and pictures.
  *
  * Units: in every name; debris is 0 (clean) to 1 (choked).
+ *
  * Threads: RT-safe; one object belongs to one thread.
  */
 #ifndef IO_SIM_PROCESS_H
@@ -114,18 +115,27 @@ void sim_switches_init(struct sim *s, const struct machine_config *c);
 void sim_switches_read(struct sim *s, struct io_inputs *in);
 
 /* sim_probe.c */
-/** sim_probe() - is the electrode against the block? */
+/** sim_probe() - does the electrode touch the block? */
 bool sim_probe(const struct sim *s);
 
 /* sim_pulses.c */
 void sim_pulses_init(struct sim *s);
-/** sim_pulses_set() - the pulses that out.pulse asks for. */
+/** sim_pulses_set() - take the pulses that out.pulse asks for. */
 void sim_pulses_set(struct sim *s);
-/** sim_pulses_train() - in a gap of so much, debris taken off. */
+/**
+ * sim_pulses_train() - what they do in a gap of this width, from which debris
+ * has been subtracted.
+ */
 void sim_pulses_train(struct sim *s, double gap_mm);
-/** sim_pulses_shares() - as a generator counts them; may use chance. */
+/**
+ * sim_pulses_shares() - the shares as a generator counts them; may use random
+ * numbers.
+ */
 struct io_shares sim_pulses_shares(struct sim *s);
-/** sim_pulses_volts() - as a sensor reads them, @sparks or a steady supply. */
+/**
+ * sim_pulses_volts() - the voltage as a sensor reads it, with @sparks or a
+ * steady supply.
+ */
 double sim_pulses_volts(struct sim *s, bool sparks);
 
 /* sim_erosion.c */

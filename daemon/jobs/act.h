@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * act.h - a command that does something is done once, whoever dies when
+ * act.h - a command that does something is done exactly once, whichever program
+ * dies in between
  *
- * An act's id is made of its key, client and seq, so the client decides it.
- * It is written to the store before it is handed to edmd, under the same id;
- * edmd takes an id once (shm.h).  What the service does itself is written
- * together with its answer, in one transaction, and answered after that.
+ * The id of an act is made of its key, client and seq, so the client decides
+ * it. An act for edmd is written to the store before edmd gets it, under the
+ * same id; edmd takes an id only once (shm.h). What the service does itself is
+ * written together with its answer, in one transaction, and answered after
+ * that.
  *
- *	killed before it is written	it never came; a repeat does it
- *	... before edmd took it		a repeat hands it over again
- *	... after that			a repeat is told what became of it
+ * 	killed before it is written	it never came; a repeat does it
+ * 	... before edmd took it		a repeat hands it over again
+ * 	... after that			a repeat is told what became of it
  *
  * Threads: one, that of the event loop.
  */
@@ -26,12 +28,14 @@ struct jobs_lcm_command;
 void act_take(struct jobs *j, const struct verb *v,
 	      const struct jobs_lcm_command *c);
 
-/** act_commit() - what was written so far is kept.  Before it is handed over,
- *  and before it is answered.  Return: 0, or STORE_KEPT: not on the disk. */
+/**
+ * act_commit() - make sure that everything written so far is kept: before an
+ * act is handed over, and before it is answered. Return: 0, or STORE_KEPT: it
+ * is not on the disk.
+ */
 int act_commit(struct jobs *j);
 
-/** act_answered() - remember what is answered to act @id.  Return: as
- *  act_commit(). */
+/** act_answered() - remember the answer to act @id. Return: as act_commit(). */
 int act_answered(struct jobs *j, uint64_t id, int code, const char *reason);
 
 #endif /* JOBS_ACT_H */

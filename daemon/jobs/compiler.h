@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * compile.h - NC code to a program, in a thread of its own
+ * compiler.h - NC code to a program, in a thread of its own
  *
- * A text of millions of lines takes seconds; commands and status go on
+ * A text of millions of lines takes seconds. Commands and status go on
  * meanwhile.
  *
- * Threads: the event loop's, which also gets the result.
+ * Threads: that of the event loop, which also gets the result.
  */
 #ifndef JOBS_COMPILE_H
 #define JOBS_COMPILE_H
@@ -49,7 +49,8 @@ struct compiler_result {
 typedef void (*compiler_done_fn)(void *arg, const struct compiler_result *r);
 
 /**
- * compiler_start() - begin; @done is called from the event loop, once.
+ * compiler_start() - begin; the event loop calls @done once.
+ *
  * Return: 0 or a negative errno.
  */
 int compiler_start(struct compiler **ret, sd_event *event,
@@ -57,9 +58,10 @@ int compiler_start(struct compiler **ret, sd_event *event,
 		   compiler_done_fn done, void *arg);
 
 /**
- * compiler_destroy() - give up: waits for the thread, never calls @done.
+ * compiler_destroy() - give up: wait for the thread; @done is not called.
  *
- * Not for one whose @done was called: that frees itself.  NULL is fine.
+ * Not for one whose @done was called: that one frees itself. NULL is allowed.
+ *
  * Return: the @arg of compiler_start().
  */
 void *compiler_destroy(struct compiler *c);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * eta.h - how long the job that runs will take yet
+ * eta.h - estimate how long the running job will still take
  *
- * What is cut takes the time, and positioning next to none of it, however long
- * its way is: so what has been cut is told from what has been positioned.
+ * Nearly all of the time goes into cutting, and almost none into positioning,
+ * however long its way is. So the path is divided into parts that are cut and
+ * parts that are positioned.
  *
  * Threads: one, that of the event loop.
  */
@@ -29,20 +30,23 @@ struct eta {
 	int32_t start[INTERP_NAXES];	/* where it begins, pulses */
 };
 
-/** eta_take() - program @n of @machine, if it is not the one it has. */
+/** eta_take() - use program @n of @machine, if it is not the one in use. */
 void eta_take(struct eta *l, const char *machine, uint32_t n);
 
-/** eta_measure() - the parts of @p. Return: 0 or -ENOMEM, then none. */
+/**
+ * eta_measure() - divide @p into its parts. Return: 0; or -ENOMEM, and then it
+ * has none.
+ */
 int eta_measure(struct eta *l, const struct interp_program *p);
 
 /**
- * eta_s() - estimate, s, when @far_mm of the path took @job_s.
+ * eta_s() - the estimate in s, if @far_mm of the path took @job_s.
  *
- * Return: -1 if there is none: nothing is cut yet.
+ * Return: -1 if there is none, because nothing has been cut yet.
  */
 double eta_s(const struct eta *l, double far_mm, double job_s);
 
-/** eta_fini() - forget all. */
+/** eta_fini() - free everything. */
 void eta_fini(struct eta *l);
 
 #endif /* JOBS_ETA_H */

@@ -65,24 +65,24 @@ struct jobs_note {
 	double place_mm;
 };
 
-/** jobs_note() - tell it; @text as for printf. */
+/** jobs_note() - record and publish it; @text is as for printf. */
 void jobs_note(struct jobs *j, const struct jobs_note *n,
 	       const char *text, ...)
 	__attribute__((format(printf, 3, 4)));
 
-/** jobs_answer() - to a command; remembered for its repeats. */
+/** jobs_answer() - answer a command; repeats of it get the same answer. */
 void jobs_answer(struct jobs *j, const struct jobs_lcm_ack *a);
 
 /** status_tick() - publish STATUS if it is due or has changed. */
 void status_tick(struct jobs *j, int64_t now_us);
 
-/** verbs_take() - a COMMAND, from lcm.c. */
+/** verbs_take() - take a COMMAND; called by lcm.c. */
 void verbs_take(void *jobs, const struct jobs_lcm_command *c);
 
-/** submit_take() - a JOB chunk, from lcm.c. */
+/** submit_take() - take a JOB chunk; called by lcm.c. */
 void submit_take(void *jobs, const struct jobs_lcm_chunk *c);
 
-/** submit_fini() - forget what is being checked. */
+/** submit_fini() - drop the texts that are being checked. */
 void submit_fini(struct jobs *j);
 
 #endif /* JOBS_JOBS_H */

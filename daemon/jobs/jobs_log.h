@@ -2,8 +2,8 @@
 /*
  * jobs_log.h - lines on stderr; for the journal with sd-daemon's level prefixes
  *
- * "module: what, with numbers and units".  A reader that stands still holds
- * nothing up (logger.h).  Threads: any.
+ * "module: what, with numbers and units".  A reader that does not read
+ * delays nothing (logger.h).  Threads: any.
  */
 #ifndef JOBS_LOG_H
 #define JOBS_LOG_H

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * keys.h - the service's own keys, and the verbs that manage those of others
+ * keys.h - the service's own keys, and the verbs that manage the keys of others
  *
- * Beside the store lie two files: <machine>.machine-key, with which the
- * service signs, for its user alone, and <machine>.key, the host's, which
- * group edm may read.  Both are made at the first start.  A service with
- * another store than the usual one leaves a copy of the host's key in
+ * Beside the store there are two files. <machine>.machine-key is the key that
+ * the service signs with; only its own user may read it. <machine>.key is the
+ * host's key; group edm may read it. Both are made at the first start. A
+ * service whose store is not the usual one leaves a copy of the host's key in
  * /dev/shm, where clients look too.
  *
  * Threads: one, that of the event loop.
@@ -17,11 +17,13 @@ struct jobs;
 struct verb;
 struct jobs_lcm_command;
 
-/** keys_open() - read or make them.  Return: 0, or what to exit with; what is
- *  wrong and what mends it is in the log. */
+/**
+ * keys_open() - read the keys, or make them. Return: 0, or an exit code; then
+ * the log says what is wrong and how to mend it.
+ */
 int keys_open(struct jobs *j, const char *dir);
 
-/** keys_close() - take the copy away. */
+/** keys_close() - remove the copy. */
 void keys_close(struct jobs *j);
 
 /* Verbs: "keys", "keys-add" with text NAME ROLE HEX, "keys-remove" NAME. */
@@ -32,7 +34,7 @@ void keys_add(struct jobs *j, const struct verb *v,
 void keys_remove(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 
-/** keys_hello() - verb "hello": who am I to this service? */
+/** keys_hello() - verb "hello": tell a client who it is to this service. */
 void keys_hello(struct jobs *j, const struct verb *v,
 		const struct jobs_lcm_command *c);
 

@@ -2,12 +2,12 @@
 /*
  * lcm.h - the LCM side of edmd-jobs: our structs in and out
  *
- * The only place that knows the generated messages.  What comes in must be
- * signed (trust.h), and is checked for its shape before it is decoded: lengths
- * inside the packet, strings ended.  What the fields mean is checked by who
- * takes them.  What goes out is signed with the machine's key.
+ * Only this module knows the generated messages. A message that comes in must
+ * be signed (trust.h). Its shape is checked before it is decoded: lengths
+ * inside the packet, strings with an end. What its fields mean is checked by
+ * the function that takes them. What goes out is signed with the machine's key.
  *
- * Units: in every name.  Threads: one, that of the event loop.
+ * Units: in every name. Threads: one, that of the event loop.
  */
 #ifndef JOBS_LCM_H
 #define JOBS_LCM_H
@@ -98,13 +98,13 @@ struct jobs_lcm_handlers {
 int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
 	      const char *machine, const struct jobs_lcm_handlers *h);
 
-/** jobs_lcm_close() - NULL is fine. */
+/** jobs_lcm_close() - @l may be NULL. */
 void jobs_lcm_close(struct jobs_lcm *w);
 
 /** jobs_lcm_fd() - readable when jobs_lcm_handle() has something to do. */
 int jobs_lcm_fd(const struct jobs_lcm *w);
 
-/** jobs_lcm_handle() - take one message, if it is to be taken. */
+/** jobs_lcm_handle() - take one message, if it may be taken. */
 void jobs_lcm_handle(struct jobs_lcm *w);
 
 void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a);

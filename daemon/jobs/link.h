@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * link.h - edmd as edmd-jobs sees it: there or not, its snapshot, its answers
+ * link.h - edmd as edmd-jobs sees it: whether it runs, its snapshot, its
+ * answers
  *
- * Looked at every 20 ms.  edmd counts as there while its process lives and its
- * cycle counter moves; it counts as lost 0.5 s after the counter stood, at
- * once if the process is gone.  One that was started anew is another
- * instance, even if it was never seen missing.
+ * It is looked at every 20 ms. edmd is there while its process lives and its
+ * cycle counter moves. It is lost 0.5 s after the counter stopped, or at once
+ * if the process has ended. An edmd that was started again is another instance,
+ * even if nobody saw it missing.
  *
  * Units: in every name; now_us is monotonic.
+ *
  * Threads: one, that of the event loop.
  */
 #ifndef JOBS_LINK_H
@@ -71,18 +73,26 @@ void link_init(struct link *l, const char *machine,
 	       const struct link_handlers *h);
 void link_fini(struct link *l);
 
-/** link_poll() - look; calls the handlers. */
+/** link_poll() - look at edmd and call the handlers. */
 void link_poll(struct link *l, int64_t now_us);
 
-/** link_send() - Return: 0; -ENOTCONN no edmd; -EAGAIN too many under way. */
+/**
+ * link_send() - Return: 0; -ENOTCONN: there is no edmd; -EAGAIN: too many
+ * commands are under way.
+ */
 int link_send(struct link *l, const struct link_command *c, int64_t now_us);
 
-/** link_await() - wait for the answer to command @id, handed over before this
- *  service was started anew.  Return: 0; -EAGAIN too many under way. */
+/**
+ * link_await() - wait for the answer to command @id, which was handed over
+ * before this service was restarted. Return: 0; -EAGAIN: too many commands are
+ * under way.
+ */
 int link_await(struct link *l, const struct link_command *c, int64_t now_us);
 
-/** link_ended() - call @each with every job that edmd knows to have ended, the
- *  last one last. */
+/**
+ * link_ended() - call @each with every job that edmd knows to have ended, the
+ * oldest first.
+ */
 void link_ended(struct link *l,
 		void (*each)(void *arg, const struct shm_ended *e), void *arg);
 

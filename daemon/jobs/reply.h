@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * reply.h - a command repeated is answered again, not done again
+ * reply.h - a repeated command gets the same answer and is not done again
  *
- * Remembers the last commands by key, client and seq, with what was answered.
+ * The last commands are remembered by key, client and seq, with their answers.
  *
  * Threads: one object belongs to one thread.
  */
@@ -27,17 +27,17 @@ struct replies {
 	unsigned int next;
 };
 
-/** reply_find() - the one to this command; NULL if it is new. */
+/** reply_find() - what is remembered of this command; NULL if it is new. */
 const struct reply *reply_find(const struct replies *r, const uint8_t *key,
 			       const char *client, int64_t seq);
 
 /** reply_expect() - this command is under way. */
 void reply_expect(struct replies *r, const struct jobs_lcm_command *c);
 
-/** reply_keep() - it is answered. */
+/** reply_keep() - this command has been answered. */
 void reply_keep(struct replies *r, const struct jobs_lcm_ack *a);
 
-/** reply_forget() - its next repeat is looked into again. */
+/** reply_forget() - take its next repeat as a new command. */
 void reply_forget(struct replies *r, const struct jobs_lcm_command *c);
 
 /** reply_fini() - free everything. */

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * store_sql.h - SQLite under the store: every result heard, none lost
+ * store_sql.h - SQLite under the store: every result is checked and none is
+ * lost
  *
- * While the disk takes what is written, `db` is the database on the disk.  When
- * a write or a read fails, the store is degraded: `db` becomes a copy in memory
- * of all tables but the texts, what is written goes there and into a list, and
- * store_tick() tries to bring the list to the disk.  So what is asked is always
- * answered by what was written last.
+ * While the disk takes what is written, `db` is the database on the disk. When
+ * a write or a read fails, the store is degraded. Then `db` becomes a copy in
+ * memory of all tables but the texts; what is written goes there and into a
+ * list, and store_tick() tries to bring the list to the disk. So a question is
+ * always answered by what was written last.
  *
- * The list is bounded.  Of two writes of the same statement to the same row the
- * later one is enough; when there is no room, the oldest of those that may go is
- * dropped and counted.
+ * The list is bounded. Of two writes of the same statement to the same row only
+ * the later one is needed. If there is no room, the oldest write that may be
+ * dropped is dropped and counted.
  *
  * Private to the files store*.c.
  */
@@ -71,17 +72,21 @@ struct store {
 /**
  * store_do() - write.
  *
- * @sql: a constant.  @kinds: a letter for each ?: i int64_t, d double, s
- * string; a capital letter is the value that says which row.
- * Return: 0 it is on the disk, or will be with its transaction; STORE_KEPT it
- * is in memory; -EEXIST a constraint; for STORE_MUST why it cannot be written.
+ * @sql: a constant. @kinds: one letter for each ?: i int64_t, d double, s
+ * string. A capital letter marks the value that identifies the row.
+ *
+ * Return: 0: it is on the disk, or will be with its transaction; STORE_KEPT: it
+ * is in memory; -EEXIST: a constraint; for STORE_MUST the reason why it cannot
+ * be written.
  */
 int store_do(struct store *s, enum store_keep keep, const char *sql,
 	     const char *kinds, ...);
 
 /**
- * store_ask() - the first row of a query; to be finalized.
- * @ret_err: -ENOENT there is none; or why it cannot be read.  NULL is fine.
+ * store_ask() - the first row of a query; finalize it.
+ *
+ * @ret_err: -ENOENT: there is none; or the reason why it cannot be read. It may
+ * be NULL.
  */
 sqlite3_stmt *store_ask(struct store *s, int *ret_err, const char *sql,
 			const char *kinds, ...);
@@ -93,16 +98,16 @@ int64_t store_number_of(struct store *s, int64_t otherwise, const char *sql,
 /** store_failed() - @rc of SQLite: degrade if it must be.  Return: -errno. */
 int store_failed(struct store *s, int rc);
 
-/** store_degrade() - from now on in memory. */
+/** store_degrade() - from now on the store is in memory. */
 void store_degrade(struct store *s, int err);
 
-/** store_undo() - give an open transaction up, without what was in it. */
+/** store_undo() - drop an open transaction and what is in it. */
 void store_undo(struct store *s);
 
 /** store_replay() - what was kept, into @db, whole or not.  Return: SQLite's */
 int store_replay(struct store *s, sqlite3 *db);
 
-/** store_writes_free() - forget them. */
+/** store_writes_free() - forget the kept writes. */
 void store_writes_free(struct store_writes *w);
 
 /* -- store_file.c ----------------------------------------------------------- */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * store_trust.h - keys, and commands handed over, in the store
+ * store_trust.h - keys, and commands that were handed over, in the store
  *
- * A command is written before it is handed to edmd, so that a service that is
- * killed in between knows afterwards what it may have handed over.  That need
+ * A command is written before it is handed to edmd. So a service that was
+ * killed in between knows afterwards what it may have handed over. This need
  * not reach the disk: after a power cut there is no edmd that could have done
  * it.
  *
- * Threads: one.  Calls return as those of store.h do.
+ * Threads: one. Calls return the same values as those of store.h.
  */
 #ifndef JOBS_STORE_TRUST_H
 #define JOBS_STORE_TRUST_H
@@ -38,10 +38,10 @@ struct store_act {
 /** store_act_find() - Return: 0 or -ENOENT. */
 int store_act_find(struct store *s, uint64_t id, struct store_act *ret);
 
-/** store_act_begin() - it will be done. */
+/** store_act_begin() - the act is about to be done. */
 int store_act_begin(struct store *s, const struct store_act *a);
 
-/** store_act_end() - what is answered to it. */
+/** store_act_end() - what was answered to it. */
 int store_act_end(struct store *s, uint64_t id, int code, const char *reason);
 
 #endif /* JOBS_STORE_TRUST_H */

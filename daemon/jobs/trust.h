@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * trust.h - whose packet it is, and whether it is a new one
+ * trust.h - who sent a packet, and is it a new one?
  *
- * A packet is taken when its signature holds for a key in the table, it is
- * signed for this start of the service (`boot`), its count is near the
- * service's clock, and greater than that of the last packet of the same
- * client.  So none is taken twice, whoever sends it again, and what has to be
- * remembered is bounded: a client that was silent for TRUST_OLD_US can be
- * forgotten, because its old packets are too old by then.
+ * A packet is taken if its signature is valid for a key in the table, if it was
+ * signed for this start of the service (`boot`), if its count is near the
+ * service's clock, and if its count is greater than that of the last packet of
+ * the same client. So no packet is taken twice, whoever sends it again. What
+ * has to be remembered is bounded: a client that was silent for TRUST_OLD_US
+ * can be forgotten, because its old packets are too old by then.
  *
- * What is refused is counted by cause and told in the log, at most once in
- * ten seconds for each cause.
+ * What is refused is counted by cause and told in the log, at most once in ten
+ * seconds for each cause.
  *
- * Units: in every name.  Threads: one, that of the event loop.
+ * Units: in every name. Threads: one, that of the event loop.
  */
 #ifndef JOBS_TRUST_H
 #define JOBS_TRUST_H
@@ -73,33 +73,43 @@ struct trust_packet {
 	const struct trust_key *key;	/* NULL: not in the table */
 };
 
-/** trust_init() - a new boot number; @machine and the keys are there. */
+/**
+ * trust_init() - draw a new boot number; @machine and the keys are set already.
+ */
 void trust_init(struct trust *t, int64_t now_us);
 
-/** trust_count() - the service's clock, for a packet to be sent; grows. */
+/**
+ * trust_count() - the count for a packet to be sent: the clock of the service;
+ * it always grows.
+ */
 int64_t trust_count(struct trust *t, int64_t now_us);
 
 /**
  * trust_look() - is the packet signed by a key of the table, for us, now?
  *
- * @p->channel and @p->from are the caller's; the rest is filled.
- * Return: TRUST_FINE; TRUST_KEY, TRUST_BOOT or TRUST_TIME with a signature
- * that holds and leave to answer why; else what is to be dropped silently.
+ * The caller has set @p->channel and @p->from; the rest is filled.
+ *
+ * Return: TRUST_FINE; TRUST_KEY, TRUST_BOOT or TRUST_TIME if the signature is
+ * valid and the reason may be answered; any other value: drop it silently.
  */
 enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 			    const void *packet, size_t bytes, int64_t now_us,
 			    bool *ret_answer);
 
-/** trust_fresh() - is it @client's next packet?  TRUST_FINE, else why not. */
+/**
+ * trust_fresh() - is it the next packet of @client? TRUST_FINE, else why not.
+ */
 enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 			     const char *client, int64_t now_us);
 
-/** trust_age_us() - how long ago its client signed it, as far as the client
- *  knows the service's clock. */
+/**
+ * trust_age_us() - how long ago the client signed it, as far as the client
+ * knows the clock of the service.
+ */
 int64_t trust_age_us(const struct trust *t, const struct seal *s,
 		     int64_t now_us);
 
-/** trust_refuse() - count it, and tell it if that is due. */
+/** trust_refuse() - count it, and write it to the log if that is due. */
 void trust_refuse(struct trust *t, enum trust_cause cause, const char *who,
 		  const char *from, int64_t now_us);
 
@@ -117,10 +127,16 @@ enum trust_role trust_role_of(const char *name);
 const struct trust_key *trust_find(const struct trust *t,
 				   const uint8_t key[SEAL_KEY_BYTES]);
 
-/** trust_add() - Return: 0; -EEXIST the key or its name is there; -ENOSPC. */
+/**
+ * trust_add() - Return: 0; -EEXIST: the key or its name is there already;
+ * -ENOSPC.
+ */
 int trust_add(struct trust *t, const struct trust_key *k);
 
-/** trust_remove() - by name.  Its sessions end.  Return: 0 or -ENOENT. */
+/**
+ * trust_remove() - remove the key of this name, and end its sessions. Return: 0
+ * or -ENOENT.
+ */
 int trust_remove(struct trust *t, const char *name);
 
 #endif /* JOBS_TRUST_H */

@@ -37,7 +37,7 @@ struct twin {
 /** twin_init() - for the machine of @c. */
 void twin_init(struct twin *t, const struct machine_config *c);
 
-/** twin_poll() - what is new in the ring; @s NULL: edmd is not there. */
+/** twin_poll() - take what is new in the ring; @s NULL: edmd is not there. */
 void twin_poll(struct twin *t, const struct shm_status *s,
 	       const struct shm_snapshot *snap);
 

@@ -3,13 +3,13 @@
  * udpm.h - LCM's packets from a socket of our own
  *
  * LCM's library takes what any host sends to the port, on any interface, and
- * does not say who sent it.  This socket hears its multicast group alone, and
- * of an URL with ttl=0 what this host has sent alone: a packet with another
- * source address is dropped before a byte of it is read.  (The kernel drops
- * what comes in from outside with an address of this host.)
+ * does not say who sent it. This socket receives only its own multicast group.
+ * If the URL has ttl=0, it receives only what this host has sent: a packet with
+ * another source address is dropped before a byte of it is read. (The kernel
+ * drops packets that come from outside with an address of this host.)
  *
- * Only LCM's short packets are read: everything a client sends fits one, and
- * there is nothing that an attacker could leave half sent.
+ * Only LCM's short packets are read. Everything that a client sends fits into
+ * one, and an attacker cannot leave one half sent.
  *
  * Threads: one, that of the event loop.
  */
@@ -47,20 +47,24 @@ const char *udpm_url_read(struct udpm_url *ret, const char *url);
 /** udpm_open() - join the group.  Return: 0 or -errno. */
 int udpm_open(struct udpm **ret, const struct udpm_url *url);
 
-/** udpm_close() - NULL is fine. */
+/** udpm_close() - @u may be NULL. */
 void udpm_close(struct udpm *u);
 
 /** udpm_fd() - readable when udpm_take() has something. */
 int udpm_fd(const struct udpm *u);
 
 /**
- * udpm_take() - one packet, if there is one for us.
- * Return: true with @ret filled; it is good until the next call.
+ * udpm_take() - take one packet, if there is one for us.
+ *
+ * Return: true with @ret filled; it is valid until the next call.
  */
 bool udpm_take(struct udpm *u, struct udpm_packet *ret);
 
-/** udpm_strange() - packets dropped so far: of other hosts, or no short ones.
- *  @ret_from: the last one's sender; "" if there was none. */
+/**
+ * udpm_strange() - packets dropped so far, because they came from other hosts
+ * or were not short. @ret_from: the sender of the last one; "" if there was
+ * none.
+ */
 uint64_t udpm_strange(const struct udpm *u, const char **ret_from);
 
 #endif /* JOBS_UDPM_H */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * upload.h - a job's text put together from chunks
+ * upload.h - put the text of a job together from chunks
  *
- * Chunks come in any order, twice, or never.  An upload becomes whole when
- * every chunk is there and the text fits its hash; until then it is nothing.
- * What was decided about one is remembered for a while, for a client that
- * missed the answer and repeats a chunk.
+ * Chunks come in any order, twice, or never. An upload is whole when every
+ * chunk is there and the text fits its hash; before that it has no effect. The
+ * decision about an upload is remembered for a while, for a client that missed
+ * the answer and repeats a chunk.
  *
  * Threads: one object belongs to one thread.
  */
@@ -65,7 +65,8 @@ struct upload_answer {
 };
 
 /**
- * upload_take() - one chunk, already known to be of no job in the store.
+ * upload_take() - take one chunk that is known to belong to no job in the
+ * store.
  *
  * @ret is set to the upload if this chunk made it whole, else to NULL.
  */
@@ -77,12 +78,18 @@ void upload_take(struct uploads *u, const struct jobs_lcm_chunk *c,
  *  Return: true, or false with @answer filled. */
 bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *answer);
 
-/** upload_forget() - done with it: remember the verdict, free the text. */
+/**
+ * upload_forget() - the upload is finished: remember the decision and free the
+ * text.
+ */
 void upload_forget(struct uploads *u, struct upload *up, int code,
 		   const char *reason, const char *body);
 
-/** upload_expire() - drop what has waited too long.
- *  Return: how many were dropped. */
+/**
+ * upload_expire() - drop uploads that have waited too long.
+ *
+ * Return: how many were dropped.
+ */
 int upload_expire(struct uploads *u, int64_t now_us);
 
 /** upload_fini() - free everything. */

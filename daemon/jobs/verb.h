@@ -33,8 +33,10 @@ struct verb {
 	const char *wants;		/* the state it wants */
 };
 
-/** verbs_answer() - @code and @reason, to who asked.  Return: 0, or STORE_KEPT: it
- *  could not be written to the disk, and that was answered. */
+/**
+ * verbs_answer() - answer @code and @reason to the sender. Return: 0; or
+ * STORE_KEPT: it could not be written to the disk, and this was answered.
+ */
 int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason);
 
@@ -42,11 +44,13 @@ int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 void verbs_store(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 
-/** verbs_settle() - answer act @c with what edmd's @code says. */
+/** verbs_settle() - answer act @c according to the @code of edmd. */
 void verbs_settle(struct jobs *j, const struct verb *v,
 		  const struct jobs_lcm_command *c, int code);
 
-/** verbs_await() - edmd has act @c under way: answer it when it has. */
+/**
+ * verbs_await() - edmd has act @c under way: answer it when edmd has answered.
+ */
 void verbs_await(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * logger.h - lines on stderr that never hold their writer up
+ * logger.h - lines on stderr that never delay the thread that writes them
  *
- * Who reads stderr may stand still: a full pipe, a stopped terminal, a journal
- * under load.  So lines go into a bounded ring, and a thread of its own writes
- * them.  What does not fit is dropped and counted, and the count is told when
- * there is room again.  Of one cause no more than LOGGER_A_SECOND are told in a
- * second; how many more there were is told after it.
+ * The reader of stderr may stop reading: a full pipe, a stopped terminal, a
+ * journal under load. So lines go into a bounded ring, and a thread of its own
+ * writes them. Lines that do not fit are dropped and counted, and the count is
+ * written when there is room again. At most LOGGER_A_SECOND lines of one cause
+ * are written in a second; after them comes a line that says how many more
+ * there were.
  *
- * Before logger_start(), and in a program that never calls it, a line is written
- * at once.
+ * Before logger_start(), and in a program that never calls it, a line is
+ * written at once.
  *
  * Threads: any but the cycle.
  */
@@ -22,10 +23,15 @@
 #define LOGGER_SLOTS	256
 #define LOGGER_A_SECOND	50
 
-/** logger_start() - from now on by a thread.  Return: 0 or -errno. */
+/**
+ * logger_start() - from now on a thread writes the lines. Return: 0 or -errno.
+ */
 int logger_start(void);
 
-/** logger_stop() - write what is left, if it can be written in 0.2 s. */
+/**
+ * logger_stop() - write the lines that are left, if that takes no longer than
+ * 0.2 s.
+ */
 void logger_stop(void);
 
 /**

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * clock.h - when to wake next, how late it was, how many periods went by
+ * clock.h - when to wake next, how late a wake was, how many periods went by
  *
- * The next wake is the last plus one period, never "now" plus one: lateness
- * does not add up.  Whoever wakes a whole period or more too late has missed
- * periods; they are counted and skipped, not made up for.
+ * The next wake is the last one plus one period, never "now" plus one period,
+ * so that lateness does not add up. A thread that wakes a whole period or more
+ * too late has missed periods. They are counted and skipped; nobody makes up
+ * for them.
  *
  * Units: ns of CLOCK_MONOTONIC.
+ *
  * Threads: RT-safe; one object belongs to one thread.
  */
 #ifndef SETUP_CLOCK_H
@@ -36,14 +38,18 @@ void setup_clock_start(struct setup_clock *c, int64_t period_ns);
 struct setup_wake setup_clock_wait(struct setup_clock *c);
 
 /**
- * setup_clock_woke() - the reckoning of setup_clock_wait(), pure.
+ * setup_clock_woke() - the calculation of setup_clock_wait(), without the
+ * clock.
  *
- * For a wake due at c->next_ns that came at @now_ns: sets c->next_ns to the
- * one after, more than 0 and at most one period from @now_ns.
+ * For a wake that was due at c->next_ns and came at @now_ns: sets c->next_ns to
+ * the next one, which is more than 0 and at most one period after @now_ns.
  */
 struct setup_wake setup_clock_woke(struct setup_clock *c, int64_t now_ns);
 
-/** setup_latency_bin() - bin of 1 us for @late_ns; the last holds all above. */
+/**
+ * setup_latency_bin() - bin of 1 us for @late_ns; the last bin holds everything
+ * above.
+ */
 size_t setup_latency_bin(int64_t late_ns, size_t nbins);
 
 #endif /* SETUP_CLOCK_H */

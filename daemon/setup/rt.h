@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * rt.h - what a real-time thread wants of its host, and what it got
+ * rt.h - what a real-time thread asks of its host, and what it got
  *
- * Nothing here is fatal: a host that refuses is reported, with the reason and
+ * Nothing here is fatal. What the host refuses is reported, with the reason and
  * the command that mends it, and the cycle runs anyway.
  *
  * Threads: startup only.
@@ -43,12 +43,14 @@ struct setup_wanted {
 #define SETUP_STACK_TOUCHED	(256 * 1024)
 
 /**
- * setup_process() - lock memory, keep the processor awake.  Fills its items
- * of @r.  Holds /dev/cpu_dma_latency open as long as the process lives.
+ * setup_process() - lock the memory and keep the processor awake. Fills its
+ * items of @r.
+ *
+ * It holds /dev/cpu_dma_latency open as long as the process lives.
  */
 void setup_process(struct setup_report *r);
 
-/** setup_thread() - called by the real-time thread, first thing. */
+/** setup_thread() - the real-time thread calls this first of all. */
 void setup_thread(struct setup_report *r, const struct setup_wanted *w);
 
 #endif /* SETUP_RT_H */

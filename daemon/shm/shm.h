@@ -297,31 +297,33 @@ struct shm_commands;			/* edmd's end */
 /* -- Writer: edmd ------------------------------------------------------- */
 
 /**
- * shm_status_create() - make or take over edmd.<machine>.status.
+ * shm_status_create() - make edmd.<machine>.status, or take it over.
  *
- * A lock on the object lasts as long as the process and tells a living owner
- * from a killed one; its descriptor stays open for that reason and is in no
- * one's hands.
+ * A lock on the object lasts as long as the process, and so tells a living
+ * owner from a killed one. For this reason its descriptor stays open; no one
+ * else uses it.
  *
- * @ret_before: the last snapshot a predecessor left, or cycle 0.
- * Return: 0 or a negative errno; -EBUSY if a living edmd owns it, -EPERM if
- * the object is another user's.
+ * @ret_before: the last snapshot of the edmd before, or cycle 0.
+ *
+ * Return: 0 or a negative errno; -EBUSY if a living edmd owns it, -EPERM if the
+ * object is another user's.
+ *
  * Startup only.
  */
 int shm_status_create(struct shm_status **ret, const char *machine,
 		      struct shm_snapshot *ret_before);
 
-/** shm_status_destroy() - remove and unmap; NULL is fine. */
+/** shm_status_destroy() - remove and unmap it; @s may be NULL. */
 void shm_status_destroy(struct shm_status *s, const char *machine);
 
-/** shm_publish() - a whole snapshot and its trace record. RT-safe. */
+/** shm_publish() - publish a whole snapshot and its trace record. RT-safe. */
 void shm_publish(struct shm_status *s, const struct shm_snapshot *snap);
 
 /** The two halves of it, for one who has more of one than of the other. */
 void shm_snapshot_put(struct shm_status *s, const struct shm_snapshot *snap);
 void shm_trace_put(struct shm_status *s, const struct shm_trace *t);
 
-/** shm_event() - append to the event ring. RT-safe; one writer. */
+/** shm_event() - append an event to the ring. RT-safe; one writer. */
 void shm_event(struct shm_status *s, const struct shm_event *e);
 
 /** shm_sets_put() - all that is set now. RT-safe; one writer. */
@@ -333,26 +335,34 @@ bool shm_sets(const struct shm_status *s, struct shm_sets *ret);
 /**
  * shm_command_create() - listen at edmd.<machine>.command.
  *
- * Who may connect is root, this user, and the user edm-jobs.  Starts a thread
- * that takes commands from the socket.  Startup only.
+ * Root, this user, and the user edm-jobs may connect. It starts a thread that
+ * takes commands from the socket. Startup only.
  */
 int shm_command_create(struct shm_commands **ret, const char *machine,
 		       uint32_t instance);
 
-/** shm_command_destroy() - end the thread, remove; NULL is fine. */
+/**
+ * shm_command_destroy() - end the thread and remove the socket; @c may be NULL.
+ */
 void shm_command_destroy(struct shm_commands *c);
 
-/** shm_command_take() - the next command, if any; its fields are not checked.
- *  RT-safe. */
+/**
+ * shm_command_take() - the next command, if there is one; its fields are not
+ * checked. RT-safe.
+ */
 bool shm_command_take(struct shm_commands *c, struct shm_command *ret);
 
 /**
- * shm_done_begin() - command @id is taken: before anything comes of it.
+ * shm_done_begin() - record that command @id is taken, before it has any
+ * effect.
+ *
  * RT-safe; one writer.
  */
 void shm_done_begin(struct shm_status *s, uint64_t id);
 
-/** shm_done_end() - it was answered with @code.  RT-safe; one writer. */
+/**
+ * shm_done_end() - command @id was answered with @code. RT-safe; one writer.
+ */
 void shm_done_end(struct shm_status *s, uint64_t id, int32_t code);
 
 /** shm_ended_put() - a job has ended.  RT-safe; one writer. */
@@ -375,8 +385,8 @@ bool shm_snapshot(const struct shm_status *s, struct shm_snapshot *ret);
 /**
  * shm_alive() - is the process that writes @s still there?
  *
- * False also once another edmd has made the object anew: open it again.
- * A few system calls; not for a tight loop.  Any thread.
+ * False also if another edmd has made the object again: then open it again. It
+ * takes a few system calls; not for a tight loop. Any thread.
  */
 bool shm_alive(const struct shm_status *s);
 
@@ -398,28 +408,33 @@ bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
 		    struct shm_event *ret);
 
 /**
- * shm_writer_claim() - be the one that commands the machine and loads it.
+ * shm_writer_claim() - become the only process that commands the machine and
+ * loads it.
  *
- * Return: a descriptor that holds the claim until shm_writer_leave(), or the
- * process ends; -EBUSY if another living process has it; else -errno.
+ * Return: a descriptor that holds the claim until shm_writer_leave() or the end
+ * of the process; -EBUSY if another living process has it; else -errno.
+ *
  * Startup only.
  */
 int shm_writer_claim(const char *machine);
 
-/** shm_writer_leave() - give it up; -1 is fine. */
+/** shm_writer_leave() - give the claim up; @fd may be -1. */
 void shm_writer_leave(int fd, const char *machine);
 
 /**
- * shm_command_open() - connect to command the machine, having claimed it.
+ * shm_command_open() - connect to command the machine, after
+ * shm_writer_claim().
  *
- * @ret: a descriptor, to be closed with close().
- * @ret_instance: of the edmd at the other end.
- * Return: 0; -ENOENT no edmd listens; -EAGAIN it does not answer; -EACCES it
- * will not have this user; -EPROTO another layout; else -errno.
+ * @ret: a descriptor; close it with close().
+ *
+ * @ret_instance: the number of the edmd at the other end.
+ *
+ * Return: 0; -ENOENT: no edmd listens; -EAGAIN: it does not answer; -EACCES: it
+ * does not accept this user; -EPROTO: another layout; else -errno.
  */
 int shm_command_open(int *ret, const char *machine, uint32_t *ret_instance);
 
-/** shm_command_put() - Return: 0; -EAGAIN no room; -ENOTCONN it is gone. */
+/** shm_command_put() - Return: 0; -EAGAIN: no room; -ENOTCONN: edmd is gone. */
 int shm_command_put(int fd, const struct shm_command *c);
 
 /**
@@ -435,17 +450,20 @@ bool shm_ended_next(const struct shm_status *s, struct shm_follow *f,
 		    struct shm_ended *ret);
 
 /**
- * shm_program_create() - edmd.<machine>.program.<n>, @bytes to fill.
+ * shm_program_create() - make edmd.<machine>.program.<n>, @bytes to fill.
  *
- * Zeroed.  One of the same n is replaced; who has that one mapped keeps it.
- * The caller unmaps it with shm_program_unmap() when it is written.
+ * It is filled with zeros. An object with the same n is replaced; a process
+ * that has mapped the old one keeps it. The caller unmaps it by
+ * shm_program_unmap() when it is written.
+ *
  * Return: 0; -EINVAL for n 0 or no bytes; -ENOSPC; else -errno.
  */
 int shm_program_create(void **ret, const char *machine, uint32_t n,
 		       size_t bytes);
 
 /**
- * shm_program_open() - a copy of it, which nobody else can change any more.
+ * shm_program_open() - a private copy of it, which nobody else can change.
+ *
  * Return: 0, -ENOENT, -EPROTO if it was cut short meanwhile, else -errno.
  */
 int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
@@ -453,7 +471,7 @@ int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 void shm_program_unmap(const void *block, size_t bytes);
 void shm_program_remove(const char *machine, uint32_t n);
 
-/** shm_close() - unmap any of the above; NULL is fine. */
+/** shm_close() - unmap any of the above; @map may be NULL. */
 void shm_close(const void *object, size_t bytes);
 
 /** shm_state_name() - "erode", ...; "?" if unknown. Any thread. */

@@ -40,22 +40,26 @@ struct keyfile {
 	uint8_t secret[SEAL_SECRET_BYTES];	/* as libsodium keeps it */
 };
 
-/** keyfile_draw() - a new key pair; the other fields are the caller's. */
+/** keyfile_draw() - draw a new key pair; the caller fills the other fields. */
 void keyfile_draw(struct keyfile *k);
 
 /**
- * keyfile_read() - read and check one.
+ * keyfile_read() - read and check a key file.
  *
- * @said: what is wrong with it and what mends it, in words.
- * Return: 0; -ENOENT; -EACCES it may not be read; -EPERM others may read or
- * write it; -EINVAL it is no key file; else -errno.
+ * @said: what is wrong with it and how to mend it, in words.
+ *
+ * Return: 0; -ENOENT; -EACCES: it may not be read; -EPERM: others may read or
+ * write it; -EINVAL: it is not a key file; else -errno.
  */
 int keyfile_read(struct keyfile *k, const char *path,
 		 char said[KEYFILE_SAID_MAX]);
 
 /**
- * keyfile_write() - write it whole or not at all, over one that is there.
- * @mode: 0600, or 0640 for one that the file's group may use.
+ * keyfile_write() - write it as a whole or not at all; replaces a file that is
+ * there.
+ *
+ * @mode: 0600, or 0640 for a file that its group may use.
+ *
  * Return: 0 or -errno.
  */
 int keyfile_write(const struct keyfile *k, const char *path,
@@ -64,9 +68,11 @@ int keyfile_write(const struct keyfile *k, const char *path,
 /**
  * keyfile_find() - the key that this user has for @machine on this host.
  *
- * The one edmd-jobs keeps in its usual folder, else the one of a service that
- * was started by hand, in /dev/shm: that one must belong to root, to the user
- * edm-jobs or to this user, because anybody may make a file there.
+ * It is the one that edmd-jobs keeps in its usual folder; else the one in
+ * /dev/shm of a service that was started by hand. The latter must belong to
+ * root, to the user edm-jobs or to this user, because anybody may make a file
+ * there.
+ *
  * Return: as keyfile_read(); -ENOENT if there is none.
  */
 int keyfile_find(struct keyfile *k, const char *machine,

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * seal.h - the signed envelope that every LCM packet of edmd is in
+ * seal.h - the signed envelope of every LCM packet of edmd
  *
- * README.md in this folder says it byte by byte, with test vectors.  The
- * envelope has a fixed shape, so it is read without allocation and before
- * anything inside it is looked at.
+ * README.md in this folder's parent describes it byte by byte, with test
+ * vectors. The envelope has a fixed shape. So it is read without allocation,
+ * and before anything inside it is looked at.
  *
  * Units: count is microseconds of the service's clock.
- * Threads: any.  sodium_init() comes first.
+ *
+ * Threads: any. Call sodium_init() first.
  */
 #ifndef EDM_SEAL_H
 #define EDM_SEAL_H
@@ -45,12 +46,13 @@ size_t seal_make(uint8_t *to, const struct seal *s, const char *channel,
 		 const uint8_t *secret);
 
 /**
- * seal_read() - find the parts of a packet; checks its shape only.
- * Return: false: it is no envelope; @ret is not touched.
+ * seal_read() - find the parts of a packet; only its shape is checked.
+ *
+ * Return: false if it is no envelope; then @ret is not changed.
  */
 bool seal_read(struct seal *ret, const void *packet, size_t bytes);
 
-/** seal_holds() - is the signature that of @s->key, for @channel? */
+/** seal_holds() - is it a valid signature by @s->key, for @channel? */
 bool seal_holds(const struct seal *s, const char *channel);
 
 #endif /* EDM_SEAL_H */
