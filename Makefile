@@ -615,6 +615,9 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 
 # -- Install ------------------------------------------------------------------
 
+EXAMPLES = $(wildcard examples/*.ini examples/*.ngc examples/*.tech \
+	   examples/*.enc examples/*.maps)
+
 install: all panel
 	$(call say,INSTALL,$(DESTDIR)$(PREFIX))
 	$(Q)install -d $(BINDIR) $(UNITDIR) $(DESTDIR)/usr/lib/sysusers.d \
@@ -639,15 +642,32 @@ install: all panel
 	$(Q)install -m 644 systemd/edmd.rules \
 		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
-		examples/machine.ini $(DESTDIR)/etc/edmd/machine.ini
+		examples/template.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
 		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
+	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/examples \
+		$(DESTDIR)$(PREFIX)/share/doc/edmd
+	$(Q)install -m 644 $(EXAMPLES) $(DESTDIR)$(PREFIX)/share/edmd/examples
+	$(Q)install -m 644 README.md CHANGELOG.md LICENSE docs/*.md \
+		$(DESTDIR)$(PREFIX)/share/doc/edmd
 	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/dialects
 	$(Q)install -m 644 dialects/*.ini \
 		$(DESTDIR)$(PREFIX)/share/edmd/dialects
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
+
+# All that install brought, but for /etc/edmd, which is the user's.
+uninstall:
+	$(call say,REMOVE,$(DESTDIR)$(PREFIX))
+	$(Q)rm -f $(PROGRAMS:$(B)/%=$(BINDIR)/%) \
+		$(patsubst systemd/%.in,$(UNITDIR)/%,$(wildcard systemd/*.service.in)) \
+		$(DESTDIR)/usr/lib/sysusers.d/edmd.conf \
+		$(DESTDIR)/usr/lib/tmpfiles.d/edmd.conf \
+		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules \
+		$(patsubst docs/man/%,$(DESTDIR)$(PREFIX)/share/man/man1/%,$(wildcard docs/man/*.1)) \
+		$(patsubst docs/man/%,$(DESTDIR)$(PREFIX)/share/man/man8/%,$(wildcard docs/man/*.8))
+	$(Q)rm -rf $(DESTDIR)$(PREFIX)/share/edmd $(DESTDIR)$(PREFIX)/share/doc/edmd
 
 clean:
 	rm -rf build build-san build-tsan build-gpiod2 build-vm
@@ -656,7 +676,12 @@ clean:
 
 .PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
+<<<<<<< ours
 	experiments-curve experiments-servo experiments-wire invariants \
 	walkable wire-random \
 	pictures callgraph faults plc-files fuzz lint install clean
+=======
+	experiments-curve experiments-servo invariants walkable wire-random \
+	pictures callgraph faults plc-files fuzz lint install uninstall clean
+>>>>>>> theirs
 .SECONDARY:
