@@ -679,12 +679,7 @@ clean:
 
 .PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-<<<<<<< ours
 	experiments-curve experiments-servo experiments-wire invariants \
 	walkable wire-random \
-	pictures callgraph faults plc-files fuzz lint install clean
-=======
-	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults plc-files fuzz lint install uninstall clean
->>>>>>> theirs
 .SECONDARY:
