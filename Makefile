@@ -249,6 +249,9 @@ $(B)/unit/test_plan_core: $(PLAN_CORE)
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
 
+$(B)/unit/test_loop_commands: $(call obj,$(addprefix daemon/edmd/,commands.c loop.c plc_loop.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
+$(B)/unit/test_loop_commands: UNIT_LIBS = -lsystemd
+
 # Of what stands in front of edmd-jobs.
 $(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call obj,$(addprefix daemon/jobs/,trust.c jobs_log.c))
 $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
