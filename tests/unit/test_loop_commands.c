@@ -123,7 +123,7 @@ static int32_t ask_verb(struct desk *d, uint32_t verb)
 static int32_t give_again(struct desk *d, const struct shm_command *c)
 {
 	assert_int_equal(shm_command_put(d->fd, c), 0);
-	ask_verb(d, SHM_DO_HOLD);
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_NO_PROGRAM);
 	return code_of(d, c->id);
 }
 
