@@ -148,18 +148,57 @@ static int64_t ask(struct store *s, const char *sql, const char *key,
 	return value;
 }
 
-static int lock_take(struct store *s, const char *dir, const char *machine)
+/*
+ * For this user alone.  The folder is open to the group, for its key; who may
+ * read a file may lock it too, and so keep the service from starting, or from
+ * writing a job.  SQLite gives the files beside it the mode of its database.
+ */
+static int file_open(const char *dir, const char *machine, const char *what)
 {
 	char path[512];
+	int fd, err = 0;
+
+	snprintf(path, sizeof(path), "%s/%s.%s", dir, machine, what);
+	fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+		  0600);
+	if (fd >= 0 && fchmod(fd, 0600) < 0)
+		err = -errno;
+	if (fd < 0 || err == 0)
+		return fd < 0 ? -errno : fd;
+	close(fd);
+	return err;
+}
+
+static int lock_take(struct store *s, const char *dir, const char *machine)
+{
+	int db;
 
 	if (mkdir(dir, 0750) < 0 && errno != EEXIST)
 		return -errno;
-	snprintf(path, sizeof(path), "%s/%s.lock", dir, machine);
-	s->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+	s->lock = file_open(dir, machine, "lock");
 	if (s->lock < 0)
-		return -errno;
+		return s->lock;
 	if (flock(s->lock, LOCK_EX | LOCK_NB) < 0)
 		return errno == EWOULDBLOCK ? -EBUSY : -errno;
+	return 0;
+}
+
+/* The database, and what one that was killed left beside it. */
+static int files_close(const char *dir, const char *machine)
+{
+	static const char *const left[] = { "wal", "shm" };
+	int fd = file_open(dir, machine, "db");
+	char path[512];
+
+	if (fd < 0)
+		return fd;
+	close(fd);
+	for (int i = 0; i < 2; i++) {
+		snprintf(path, sizeof(path), "%s/%s.db-%s", dir, machine,
+			 left[i]);
+		if (chmod(path, 0600) < 0 && errno != ENOENT)
+			return -errno;
+	}
 	return 0;
 }
 
@@ -197,6 +236,8 @@ int store_open(struct store **ret, const char *dir, const char *machine)
 		return -ENOMEM;
 	s->lock = -1;
 	err = lock_take(s, dir, machine);
+	if (err == 0)
+		err = files_close(dir, machine);
 	if (err == 0)
 		err = db_open(s, dir, machine);
 	if (err < 0) {
