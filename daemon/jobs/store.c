@@ -5,6 +5,7 @@
 #include "store.h"
 
 #include "jobs_log.h"
+#include "plain.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -18,8 +19,6 @@
 #include <unistd.h>
 
 #define STORE_VERSION	2
-#define HISTORY_MAX	200
-#define ALARMS_MAX	20
 
 struct store {
 	sqlite3 *db;
@@ -171,8 +170,6 @@ static int file_open(const char *dir, const char *machine, const char *what)
 
 static int lock_take(struct store *s, const char *dir, const char *machine)
 {
-	int db;
-
 	if (mkdir(dir, 0750) < 0 && errno != EEXIST)
 		return -errno;
 	s->lock = file_open(dir, machine, "lock");
@@ -211,6 +208,8 @@ static int db_open(struct store *s, const char *dir, const char *machine)
 	if (sqlite3_open(path, &s->db) != SQLITE_OK)
 		return complain(s);
 	sqlite3_busy_timeout(s->db, 2000);
+	if (store_json_init(s) < 0)
+		return complain(s);
 	if (sqlite3_exec(s->db, "PRAGMA journal_mode=WAL;"
 			 "PRAGMA synchronous=FULL;", NULL, NULL, NULL) !=
 	    SQLITE_OK)
@@ -287,7 +286,7 @@ static void column_copy(sqlite3_stmt *q, int i, char *to, size_t size)
 {
 	const unsigned char *from = sqlite3_column_text(q, i);
 
-	snprintf(to, size, "%s", from ? (const char *)from : "");
+	plain_copy(to, size, from ? (const char *)from : "");
 }
 
 #define JOB_COLUMNS	"n, id, name, sha256, state, hold, loaded, " \
@@ -433,60 +432,4 @@ int store_set_number(struct store *s, const char *key, int64_t value)
 {
 	return run(s, "INSERT OR REPLACE INTO number VALUES(?, ?)", "si", key,
 		   value);
-}
-
-#define JOB_JSON(MORE)	"json_object('n', n, 'job', id, 'name', name, " \
-			"'state', state, 'hold', json(iif(hold, 'true', " \
-			"'false')), 'lines', lines, 'sha256', sha256, " \
-			"'submitted_us', submitted_us, 'begun_us', begun_us, " \
-			"'ended_us', ended_us, 'reason', reason, 'path_mm', " \
-			"place_mm, 'length_mm', length_mm, 'depth_mm', " \
-			"depth_mm, 'job_s', job_s, 'jumps', jumps, " \
-			"'retracts', retracts, 'shorts', shorts, " \
-			"'tech_sha256', tech_sha256" MORE ")"
-
-/* Of one job alone: what was called and set, in the order of time. */
-#define CHANGES_JSON	", 'changes', (SELECT json_group_array(json(c)) FROM " \
-			"(SELECT json_object('utime', time_ns / 1000, " \
-			"'place_mm', place_mm, 'what', what, 'was', was, " \
-			"'now', now) AS c FROM change WHERE change.n=job.n " \
-			"ORDER BY time_ns))"
-
-static sqlite3_stmt *list_query(struct store *s, enum store_list what,
-				const char *id, int rows)
-{
-	if (what == STORE_SHOW)
-		return query(s, "SELECT " JOB_JSON(CHANGES_JSON) " FROM job "
-			     "WHERE id=?",
-			     "s", id);
-	if (what == STORE_QUEUE)
-		return query(s, "SELECT json_group_array(json(j)) FROM "
-			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
-			     "state='queued' OR (loaded=1 AND state NOT IN "
-			     "('done', 'stopped')) ORDER BY n)", "");
-	if (what == STORE_ALARMS)
-		return query(s, "SELECT json_group_array(json(a)) FROM (SELECT "
-			     "json_object('utime', utime, 'kind', kind, 'job', "
-			     "job, 'fault', outcome, 'place_mm', place_mm, "
-			     "'text', text) AS a FROM event WHERE kind IN "
-			     "('alarm', 'lost', 'back') ORDER BY utime DESC, "
-			     "rowid DESC LIMIT ?)", "i", (int64_t)ALARMS_MAX);
-	if (rows <= 0 || rows > HISTORY_MAX)
-		rows = HISTORY_MAX;
-	return query(s, "SELECT json_group_array(json(j)) FROM (SELECT "
-		     JOB_JSON("") " AS j FROM job WHERE state IN ('done', "
-		     "'stopped', 'fault') ORDER BY ended_us DESC, n DESC "
-		     "LIMIT ?)", "i", (int64_t)rows);
-}
-
-char *store_json(struct store *s, enum store_list what, const char *id,
-		 int rows)
-{
-	sqlite3_stmt *q = list_query(s, what, id, rows);
-	char *text = NULL;
-
-	if (q && sqlite3_step(q) == SQLITE_ROW)
-		text = strdup((const char *)sqlite3_column_text(q, 0));
-	sqlite3_finalize(q);
-	return text;
 }

@@ -87,7 +87,7 @@ const char *store_state_name(enum job_state s);
 int store_open(struct store **ret, const char *dir, const char *machine);
 /** store_close() - NULL is fine. */
 void store_close(struct store *s);
-/** store_db() - the database, for store_trust.c. */
+/** store_db() - the database, for store_trust.c and store_json.c. */
 struct sqlite3 *store_db(struct store *s);
 
 /** store_add() - a new job, queued.  @ret_n its number. */
@@ -120,8 +120,13 @@ uint32_t store_waiting(struct store *s);
 int64_t store_number(struct store *s, const char *key, int64_t otherwise);
 int store_set_number(struct store *s, const char *key, int64_t value);
 
+/** store_json_init() - by store_open().  Return: 0 or -EIO. */
+int store_json_init(struct store *s);
+
 /**
  * store_json() - a list as JSON; @id for show, @rows for history.
+ *
+ * Its strings are plain text, whatever the store has.
  * Return: to be freed; NULL if there is no such job or no memory.
  */
 char *store_json(struct store *s, enum store_list what, const char *id,

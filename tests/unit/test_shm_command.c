@@ -162,6 +162,27 @@ static void a_program_is_read_as_written_and_kept_while_mapped(void **state)
 	assert_int_equal(shm_program_open(&old, &bytes, machine, 5), -ENOENT);
 }
 
+/* A few bytes of a folder's own, which would be gigabytes of edmd's memory. */
+static void a_program_with_holes_is_not_read(void **state)
+{
+	char path[96];
+	const void *at;
+	void *block;
+	size_t bytes;
+
+	(void)state;
+	assert_int_equal(shm_program_create(&block, machine, 6, 4096), 0);
+	shm_program_unmap(block, 4096);
+	snprintf(path, sizeof(path), "/dev/shm/edmd.%s.program.6", machine);
+	assert_int_equal(truncate(path, 1 << 20), 0);
+	assert_int_equal(shm_program_open(&at, &bytes, machine, 6), -EPROTO);
+	assert_int_equal(truncate(path, SHM_PROGRAM_MAX + 1), 0);
+	assert_int_equal(shm_program_open(&at, &bytes, machine, 6), -EFBIG);
+	shm_program_remove(machine, 6);
+	assert_int_equal(shm_program_create(&block, machine, 6,
+					    SHM_PROGRAM_MAX + 1), -EFBIG);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -171,6 +192,7 @@ int main(void)
 		cmocka_unit_test(the_last_ids_are_remembered_through_a_restart),
 		cmocka_unit_test(
 			a_program_is_read_as_written_and_kept_while_mapped),
+		cmocka_unit_test(a_program_with_holes_is_not_read),
 	};
 
 	snprintf(machine, sizeof(machine), "command-%d", (int)getpid());
