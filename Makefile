@@ -10,6 +10,7 @@
 #                   from check, because it takes longer than all the rest
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
+#   make count      instructions of what is done most, into docs/performance.md
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
@@ -18,6 +19,7 @@
 #   make invariants what holds in every cycle, over ten million random ones
 #   make callgraph  draw which file of the cycle calls which
 #   make faults     the table of faults in docs/, from the one in the code
+#   make plc-files  EDS, DBC and the page of signals, from the one in the code
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
 #   make fuzz       the readers of jobs, and what edmd is given, under libFuzzer, a
@@ -51,6 +53,11 @@ OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
 	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
+# A shim round a library of C++, whose own headers are not ours to mend.
+CXXFLAGS = -std=c++17 $(OPT) -g -Wall -Wextra -Wshadow $(if $(WERROR),-Werror) \
+	   -isystem /usr/include/eigen3 \
+	   $(subst -I,-isystem ,$(filter -I%,$(shell pkg-config --cflags ompl))) \
+	   -MMD -MP $(SANFLAGS)
 LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
 
 # The parts, in the order data flows.
@@ -83,6 +90,8 @@ SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
 PLAN	:= $(wildcard clients/plan/*.c)
+# The one library for which a little C++ is needed.
+OMPL	:= clients/plan/corridor.cc
 PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
@@ -102,9 +111,9 @@ INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
 WORDS_H		= -Idaemon/words
 INC_words	= $(WORDS_H)
 INC_rt		= -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
-INC_io		= -Idaemon/io -Idaemon/config $(CORE_H) $(GPIOD_INC)
+INC_io		= -Idaemon/io -Idaemon/config $(WORDS_H) $(CORE_H) $(GPIOD_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
-INC_compiling	= -Idaemon/compiling -Idaemon/config $(CORE_H) $(COMPILE_H)
+INC_compiling	= -Idaemon/compiling -Idaemon/config $(WORDS_H) $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
 INC_setup	= -Idaemon/setup
 INC_logger	= -Idaemon/logger -Imessages/sign
@@ -133,7 +142,7 @@ INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
 WORDS_O	 := $(call obj,$(WORDS))
 RT_O	 := $(call obj,$(RT)) $(WORDS_O)
 IO_O	 := $(call obj,$(IO))
-SIM_IO_O := $(filter-out %/gpio.o %/gpio_open.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
+SIM_IO_O := $(filter-out %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 LINES_O	 := $(filter %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
@@ -163,6 +172,11 @@ $(B)/%.o: %.c
 	$(call say,CC,$<)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
+
+$(B)/%.o: %.cc
+	$(call say,CXX,$<)
+	@mkdir -p $(@D)
+	$(Q)$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
 
 # Generated messages: compiled without our warnings, they are not ours.
 LCM_TYPES := $(shell sed -n 's/^struct \([a-z_]*_t\).*/\1/p' messages/edm.lcm 2>/dev/null)
@@ -239,13 +253,16 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
 	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
-$(B)/edm-plan: $(call obj,$(PLAN)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
-	$(call link,-ladmesh -lglpk -linih -ljansson -lpthread -lm)
+$(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 # Of edm-plan, without its main().
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c near.c motion.c prove.c))
 
 $(B)/unit/test_plan_core: $(PLAN_CORE)
+
+$(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
+$(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
@@ -257,6 +274,9 @@ $(B)/unit/test_loop_commands: UNIT_LIBS = -lsystemd
 $(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call obj,$(addprefix daemon/jobs/,trust.c jobs_log.c))
 $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
+
+# The lines of its encoder are its own.
+$(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
@@ -324,6 +344,8 @@ check:
 	@$(MAKE) --no-print-directory lint
 	@tests/stage check units
 	@EDM_SEED=1 $(MAKE) --no-print-directory run-units
+	@tests/stage check count
+	@$(MAKE) --no-print-directory run-count
 	@tests/stage check san
 	@$(MAKE) --no-print-directory -j2 SAN=1 all units
 	@tests/stage check run-san
@@ -444,6 +466,17 @@ bench: vm
 	@$(MAKE) --no-print-directory $(BENCH_X)
 	@EDM_BUILD=$(B) tests/bench/run
 
+# Instructions, which do not depend on how busy the machine is.  What needs over
+# 5 % more than docs/performance.md says fails the check.
+.PHONY: count run-count
+count: $(B)/bench/count
+	@EDM_BUILD=$(B) tests/bench/count > $(B)/count.md
+	@docs/put-table $(B)/count.md docs/performance.md
+	@cat $(B)/count.md
+
+run-count: $(B)/bench/count
+	@EDM_BUILD=$(B) tests/bench/count --check docs/performance.md
+
 include tests/experiments/Makefile
 
 # Which file of the cycle calls which; circles have a frame.
@@ -456,6 +489,11 @@ callgraph: $(RT_O)
 faults: $(B)/edmctl
 	$(Q)docs/faults $(B)/edmctl > $(B)/faults.md
 	$(Q)docs/put-table $(B)/faults.md docs/architecture.md
+
+# What a PLC's tools read, from the tables in the code.
+plc-files:
+	$(Q).venv/bin/python messages/plc-files messages/edmd.eds messages/edmd.dbc \
+		docs/plc-signals.md
 
 # Each from a run of edmsim or of the simulated gap; needs gnuplot and python3.
 pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
@@ -603,5 +641,5 @@ clean:
 .PHONY: all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
-	pictures callgraph faults fuzz lint install clean
+	pictures callgraph faults plc-files fuzz lint install clean
 .SECONDARY:

@@ -272,6 +272,9 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 		else
 			snprintf(t->why, sizeof(t->why), "%s", a->reason);
 	} else if (q) {
+		/* Its clock and ours drift apart, a little in each hour. */
+		if (s->boot == t->boot)
+			t->ahead_us = s->count - now_us();
 		question_end(q, 0, a);
 	} else {
 		hear_listeners(t, a);

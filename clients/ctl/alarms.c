@@ -86,14 +86,14 @@ int ctl_alarms(struct ctl *c)
 	const struct talk_status *s = ctl_first_status(c);
 	struct talk_answer a;
 	json_t *rows;
-	int rc;
+	int err;
 
 	if (!s)
 		return ctl_unanswered(c, talk_interrupted() ? -EINTR :
 				      -ETIMEDOUT);
-	rc = ctl_ask(c, &(struct talk_question) { .verb = "alarms" }, &a);
-	if (rc)
-		return rc;
+	err = ctl_ask(c, &(struct talk_question) { .verb = "alarms" }, &a);
+	if (err)
+		return err;
 	rows = json_loads(a.body, 0, NULL);
 	talk_answer_free(&a);
 	if (!json_is_array(rows)) {
@@ -101,13 +101,13 @@ int ctl_alarms(struct ctl *c)
 		return EX_PROTOCOL;
 	}
 	if (c->json) {
-		rc = print_json(s, rows);
+		err = print_json(s, rows);
 	} else {
 		print_now(s);
 		print_past(rows);
 	}
 	json_decref(rows);
-	return rc ? rc : strcmp(s->fault, "none") != 0;
+	return err ? err : strcmp(s->fault, "none") != 0;
 }
 
 /* -- Every fault there is ------------------------------------------------------ */

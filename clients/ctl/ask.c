@@ -56,10 +56,10 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 static int command(struct ctl *c, const struct talk_question *q)
 {
 	struct talk_answer a;
-	int rc = ctl_ask(c, q, &a);
+	int err = ctl_ask(c, q, &a);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if (c->json)
 		printf("{\"verb\": \"%s\", \"code\": 0}\n", q->verb);
 	else
@@ -138,9 +138,9 @@ static int number(const struct ctl *c, const char *text, const char *wanted,
 int ctl_step(struct ctl *c)
 {
 	double n;
-	int rc = number(c, c->arg, "nodes, as +1 or -2", &n);
+	int err = number(c, c->arg, "nodes, as +1 or -2", &n);
 
-	return rc ? rc : command(c, &(struct talk_question) {
+	return err ? err : command(c, &(struct talk_question) {
 		.verb = "step", .arg = n,
 	});
 }
@@ -148,9 +148,9 @@ int ctl_step(struct ctl *c)
 int ctl_override(struct ctl *c)
 {
 	double percent;
-	int rc = number(c, c->arg, "percent, 0 to 200", &percent);
+	int err = number(c, c->arg, "percent, 0 to 200", &percent);
 
-	return rc ? rc : command(c, &(struct talk_question) {
+	return err ? err : command(c, &(struct talk_question) {
 		.verb = "override", .arg = percent / 100,
 	});
 }
@@ -158,9 +158,9 @@ int ctl_override(struct ctl *c)
 int ctl_jog(struct ctl *c)
 {
 	double mm;
-	int rc = number(c, c->value, "mm, or degrees of A B C, + or -", &mm);
+	int err = number(c, c->value, "mm, or degrees of A B C, + or -", &mm);
 
-	return rc ? rc : command(c, &(struct talk_question) {
+	return err ? err : command(c, &(struct talk_question) {
 		.verb = "jog", .text = c->arg, .arg = mm,
 	});
 }
@@ -287,10 +287,10 @@ static int list(struct ctl *c, const struct talk_question *q,
 	struct talk_answer a;
 	json_t *rows, *row;
 	size_t i;
-	int rc = ctl_ask(c, q, &a);
+	int err = ctl_ask(c, q, &a);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	rows = json_loads(a.body, 0, NULL);
 	if (c->json) {
 		printf("%s\n", a.body);
@@ -303,10 +303,10 @@ static int list(struct ctl *c, const struct talk_question *q,
 	} else {
 		printf("none\n");
 	}
-	rc = rows ? 0 : EX_PROTOCOL;
+	err = rows ? 0 : EX_PROTOCOL;
 	json_decref(rows);
 	talk_answer_free(&a);
-	return rc;
+	return err;
 }
 
 int ctl_queue(struct ctl *c)

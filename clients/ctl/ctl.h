@@ -43,6 +43,7 @@ int ctl_set(struct ctl *c);
 int ctl_step(struct ctl *c);
 int ctl_override(struct ctl *c);
 int ctl_jog(struct ctl *c);
+int ctl_jog_on(struct ctl *c);
 int ctl_home(struct ctl *c);
 int ctl_alarms(struct ctl *c);
 int ctl_faults(struct ctl *c);

@@ -232,16 +232,16 @@ static int contour(const struct ctl *c, const struct columns *t,
 		   const struct interp_axis_loop *loop)
 {
 	struct contour k;
-	int rc = 0;
+	int err = 0;
 
 	if (ctl_contour_make(&k, t, loop) < 0)
 		return 0;
 	if (!c->json)
 		ctl_contour_print(&k);
 	if (c->plot && ctl_contour_draw(&k, c->plot) < 0)
-		rc = EX_CANTCREAT;
+		err = EX_CANTCREAT;
 	ctl_contour_free(&k);
-	return rc;
+	return err;
 }
 
 static int identify(const struct ctl *c, const struct columns *t)

@@ -18,10 +18,10 @@ static int list(struct ctl *c)
 	const char *name, *role, *public;
 	json_t *rows, *row;
 	size_t i;
-	int rc = ctl_ask(c, &(struct talk_question) { .verb = "keys" }, &a);
+	int err = ctl_ask(c, &(struct talk_question) { .verb = "keys" }, &a);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	rows = json_loads(a.body, 0, NULL);
 	if (c->json)
 		printf("%s\n", a.body);
@@ -38,12 +38,12 @@ static int list(struct ctl *c)
 static int send(struct ctl *c, const char *verb, const char *text)
 {
 	struct talk_answer a;
-	int rc = ctl_ask(c, &(struct talk_question) {
+	int err = ctl_ask(c, &(struct talk_question) {
 		.verb = verb, .text = text,
 	}, &a);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	printf("%s: %s\n", c->value, a.reason);
 	talk_answer_free(&a);
 	return 0;

@@ -73,6 +73,8 @@ static const struct verb verbs[] = {
 	  "held: to the Nth node of the path, ahead or back" },
 	{ "jog", "AXIS MM", ctl_jog, 2, 2, false, "",
 	  "idle: move one axis so far" },
+	{ "jog-on", "AXIS MM/S", ctl_jog_on, 2, 2, false, "",
+	  "idle: move one axis at that speed, until Ctrl-C" },
 	{ "home", "[AXIS]", ctl_home, 1, 0, false, "",
 	  "idle: find the place of one axis, or of all" },
 	{ "override", "PERCENT", ctl_override, 1, 1, false, "",
@@ -255,10 +257,10 @@ static int parse(struct ctl *c, int argc, char **argv,
 {
 	struct words w = { .n = 0 };
 	struct cmdline_given given;
-	int rc = cmdline_take(&table, c, argc, argv, &given);
+	int err = cmdline_take(&table, c, argc, argv, &given);
 
-	if (rc >= 0)
-		return rc == EX_OK ? -1 : rc;
+	if (err >= 0)
+		return err == EX_OK ? -1 : err;
 	for (int i = given.first; i < argc; i++)
 		word_take(&w, argv[i]);
 	if (w.n == 0)
@@ -271,13 +273,13 @@ static int parse(struct ctl *c, int argc, char **argv,
 		return EX_USAGE;
 	}
 	c->verb = (*ret_verb)->name;
-	rc = options_check(*ret_verb, &given);
-	if (rc == 0)
-		rc = arguments_take(c, *ret_verb, w.n - 1, w.at + 1);
-	if (rc == 0 && !names_machine_ok(c->machine))
-		rc = cmdline_refuse("edmctl", "--machine", c->machine,
+	err = options_check(*ret_verb, &given);
+	if (err == 0)
+		err = arguments_take(c, *ret_verb, w.n - 1, w.at + 1);
+	if (err == 0 && !names_machine_ok(c->machine))
+		err = cmdline_refuse("edmctl", "--machine", c->machine,
 				    NAMES_MACHINE_WANTED);
-	return rc;
+	return err;
 }
 
 int main(int argc, char **argv)
@@ -286,12 +288,12 @@ int main(int argc, char **argv)
 		.machine = "edm", .url = URL_DEFAULT, .timeout_s = 3,
 	};
 	const struct verb *v = NULL;
-	int rc;
+	int err;
 
 	negatives_keep(argc, argv);
-	rc = parse(&c, argc, argv, &v);
-	if (rc)
-		return rc < 0 ? EX_OK : rc;
+	err = parse(&c, argc, argv, &v);
+	if (err)
+		return err < 0 ? EX_OK : err;
 	if (v->offline)
 		return v->run(&c);
 	if (sodium_init() < 0)
@@ -308,7 +310,7 @@ int main(int argc, char **argv)
 		.program = "edmctl",
 	}, c.said);
 	talk_catch_signals();
-	rc = v->run(&c);
+	err = v->run(&c);
 	talk_close(c.talk);
-	return rc;
+	return err;
 }

@@ -252,37 +252,37 @@ static int record(const struct ctl *c, struct recording *r)
 		.program = "edmctl", .output = c->plot, .title = c->arg,
 		.state_name = state_name,
 	};
-	int rc = open_csv(c, r);
+	int err = open_csv(c, r);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	r->plot = c->plot ? plot_begin(&o) : NULL;
 	if (c->plot && !r->plot)
 		return refuse(c, c->plot, "no memory", EX_OSERR);
 	follow(c, r);
-	rc = close_csv(c, r);
-	if (rc)
-		return rc;
+	err = close_csv(c, r);
+	if (err)
+		return err;
 	report(c, r);
-	rc = draw(r);
-	if (rc == 0 && r->dead)
+	err = draw(r);
+	if (err == 0 && r->dead)
 		return EX_UNAVAILABLE;
-	return rc ? rc : r->ended && r->outcome != SHM_OUTCOME_DONE;
+	return err ? err : r->ended && r->outcome != SHM_OUTCOME_DONE;
 }
 
 int ctl_record(struct ctl *c)
 {
 	struct recording r = { 0 };
-	int rc;
+	int err;
 
 	if (c->every == 0)
 		c->every = 1;
 	if (c->plot && plot_check("edmctl", c->plot) < 0)
 		return EX_USAGE;
-	rc = open_status(c, &r);
-	if (rc == 0)
-		rc = record(c, &r);
+	err = open_status(c, &r);
+	if (err == 0)
+		err = record(c, &r);
 	free(r.plot);
 	shm_close(r.status, sizeof(*r.status));
-	return rc;
+	return err;
 }

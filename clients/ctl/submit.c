@@ -96,17 +96,17 @@ static void show_progress(const struct ctl *c, const struct job *j,
 static int job_run(const struct ctl *c, struct job *j)
 {
 	struct line l;
-	int rc = 0;
+	int err = 0;
 
 	line_init(&l);
-	while (rc == 0 && !talk_interrupted()) {
-		rc = job_step(j);
-		if (rc == 0)
+	while (err == 0 && !talk_interrupted()) {
+		err = job_step(j);
+		if (err == 0)
 			talk_wait(c->talk, 20);
 		show_progress(c, j, &l);
 	}
 	line_end(&l);
-	return rc < 0 ? rc : rc ? 0 : -EINTR;
+	return err < 0 ? err : err ? 0 : -EINTR;
 }
 
 /* The service says NAME:LINE:COLUMN; who sent it knows it as FILE. */
@@ -186,12 +186,12 @@ int ctl_submit(struct ctl *c)
 {
 	struct text t = { .size = 0 };
 	char id[TALK_WORD_MAX];
-	int rc = read_text(c->arg, &t);
+	int err = read_text(c->arg, &t);
 
-	if (rc == 0)
-		rc = send_text(c, &t, id);
+	if (err == 0)
+		err = send_text(c, &t, id);
 	free(t.bytes);
-	if (rc == 0 && c->wait)
-		rc = ctl_wait(c, id);
-	return rc;
+	if (err == 0 && c->wait)
+		err = ctl_wait(c, id);
+	return err;
 }

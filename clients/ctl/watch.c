@@ -211,7 +211,7 @@ static int look(struct ctl *c, const char *id, struct line *l, double *heard_s)
 	struct talk_answer a;
 	const char *state = "";
 	json_t *job;
-	int rc = -1;
+	int err = -1;
 
 	if (talk_ask(c->talk, &q, c->timeout_s, &a) < 0)
 		return -1;
@@ -220,15 +220,15 @@ static int look(struct ctl *c, const char *id, struct line *l, double *heard_s)
 	if (a.code) {
 		line_end(l);
 		fprintf(stderr, "edmctl: job %s: %s\n", id, a.reason);
-		rc = a.code;
+		err = a.code;
 	} else if (json_unpack(job, "{s:s}", "state", &state) == 0 &&
 		   is_over(state)) {
 		line_end(l);
-		rc = report(c, a.body, job);
+		err = report(c, a.body, job);
 	}
 	json_decref(job);
 	talk_answer_free(&a);
-	return rc;
+	return err;
 }
 
 static void draw(struct ctl *c, struct line *l, const char *id,
@@ -249,29 +249,29 @@ int ctl_wait(struct ctl *c, const char *id)
 	struct line l;
 	double heard_s = talk_now_s(), asked_s = 0;
 	uint64_t seen = 0, events = 0;
-	int rc = -1;
+	int err = -1;
 
 	line_init(&l);
-	while (rc < 0 && !talk_interrupted()) {
+	while (err < 0 && !talk_interrupted()) {
 		bool told = talk_events(c->talk) != events;
 
 		if (told || talk_now_s() - asked_s > ASK_S) {
 			events = talk_events(c->talk);
 			asked_s = talk_now_s();
-			rc = look(c, id, &l, &heard_s);
+			err = look(c, id, &l, &heard_s);
 		}
-		if (rc < 0 && talk_now_s() - heard_s > GIVE_UP_S) {
+		if (err < 0 && talk_now_s() - heard_s > GIVE_UP_S) {
 			line_end(&l);
 			return ctl_unanswered(c, -ETIMEDOUT);
 		}
-		if (rc < 0) {
+		if (err < 0) {
 			draw(c, &l, id, &seen);
 			talk_wait(c->talk, 100);
 		}
 	}
 	line_end(&l);
-	if (rc >= 0)
-		return rc;
+	if (err >= 0)
+		return err;
 	goes_on(c, id);
 	return EX_TEMPFAIL;
 }

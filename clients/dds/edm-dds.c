@@ -53,15 +53,15 @@ static int take_config(void *to, const char *path)
 	static struct machine_config config;
 	struct options *o = to;
 	struct interp_diag d = { 0 };
-	const int r = config_read(&config, path, &d);
+	const int err = config_read(&config, path, &d);
 
-	if (r == -EINVAL)
+	if (err == -EINVAL)
 		config_say(path, &d);
-	else if (r < 0)
+	else if (err < 0)
 		fprintf(stderr, "edm-dds: error: %s: %s; a machine file\n",
-			path, strerror(-r));
-	if (r < 0)
-		return r == -EINVAL ? EX_CONFIG : EX_NOINPUT;
+			path, strerror(-err));
+	if (err < 0)
+		return err == -EINVAL ? EX_CONFIG : EX_NOINPUT;
 	o->machine = config.name;
 	o->domain = (dds_domainid_t)config.dds_domain;
 	o->hz = config.dds_hz;
@@ -188,13 +188,13 @@ static int run(struct bridge *b, double hz)
 {
 	int64_t period = (int64_t)((double)NS / hz);
 	int64_t next = now_ns();
-	int r;
+	int err;
 
 	do {
-		r = publish(b);
+		err = publish(b);
 		/* A slow reader costs this sample, not the next. */
-		if (r < 0 && r != DDS_RETCODE_TIMEOUT)
-			return r;
+		if (err < 0 && err != DDS_RETCODE_TIMEOUT)
+			return err;
 		next += period;
 		if (next < now_ns())
 			next = now_ns();
@@ -214,7 +214,7 @@ static bool has_reader(const struct bridge *b)
 static int run_once(struct bridge *b)
 {
 	int64_t until = now_ns() + ONCE_NS;
-	int r;
+	int err;
 
 	while (!has_reader(b) && now_ns() < until)
 		if (wait_until(b, now_ns() + NS / 50))
@@ -223,8 +223,8 @@ static int run_once(struct bridge *b)
 		fputs("edm-dds: nobody listened within 2 s\n", stderr);
 		return 1;
 	}
-	r = publish(b);
-	return r < 0 ? r : dds_wait_for_acks(b->writer, DDS_SECS(2));
+	err = publish(b);
+	return err < 0 ? err : dds_wait_for_acks(b->writer, DDS_SECS(2));
 }
 
 int main(int argc, char **argv)
@@ -232,13 +232,13 @@ int main(int argc, char **argv)
 	struct options o = { .machine = "edm", .hz = 10 };
 	struct bridge b = { 0 };
 	struct cmdline_given given;
-	int r = cmdline_take(&table, &o, argc, argv, &given);
+	int err = cmdline_take(&table, &o, argc, argv, &given);
 
-	if (r >= 0)
-		return r;
-	r = bridge_open(&b, &o);
-	if (r == 0)
-		r = o.once ? run_once(&b) : run(&b, o.hz);
+	if (err >= 0)
+		return err;
+	err = bridge_open(&b, &o);
+	if (err == 0)
+		err = o.once ? run_once(&b) : run(&b, o.hz);
 	bridge_close(&b);
-	return r < 0 ? tool_fail(table.program, o.domain, r) : r;
+	return err < 0 ? tool_fail(table.program, o.domain, err) : err;
 }

@@ -147,20 +147,20 @@ static int run_once(struct fleet *f, const struct options *o)
 {
 	bool tty = isatty(STDERR_FILENO);
 	bool stop = false;
-	int r = 0;
+	int err = 0;
 
-	for (double s = 0; s < o->wait_s && !stop && r == 0; s += 0.1) {
+	for (double s = 0; s < o->wait_s && !stop && err == 0; s += 0.1) {
 		if (tty)
 			fprintf(stderr, "\redm-fleet: domain %u, listened "
 				"%.1f of %.1f s, machines: %zu ", o->domain,
 				s, o->wait_s, f->nrows);
 		stop = tool_wait(&f->stops, 100 * MS);
-		r = fleet_look(f);
+		err = fleet_look(f);
 	}
 	if (tty)
 		fputs("\r\033[K", stderr);
-	if (r < 0)
-		return r;
+	if (err < 0)
+		return err;
 	print(f, o->json);
 	return 0;
 }
@@ -168,12 +168,12 @@ static int run_once(struct fleet *f, const struct options *o)
 static int run_watch(struct fleet *f, const struct options *o)
 {
 	bool redraw = !o->json && isatty(STDOUT_FILENO);
-	int r;
+	int err;
 
 	do {
-		r = fleet_look(f);
-		if (r < 0)
-			return r;
+		err = fleet_look(f);
+		if (err < 0)
+			return err;
 		if (redraw)
 			printf("\033[H\033[JEDM fleet, DDS domain %u, "
 			       "machines: %zu (Ctrl-C ends)\n\n", o->domain,
@@ -188,20 +188,21 @@ int main(int argc, char **argv)
 	struct options o = { .wait_s = 2 };
 	static struct fleet f;
 	struct cmdline_given given;
-	int r = cmdline_take(&table, &o, argc, argv, &given);
+	int err = cmdline_take(&table, &o, argc, argv, &given);
 
-	if (r >= 0)
-		return r;
+	if (err >= 0)
+		return err;
 	if (o.mode == MODE_AUTO)
 		o.mode = isatty(STDOUT_FILENO) ? MODE_WATCH : MODE_ONCE;
 
-	r = fleet_open(&f, o.domain);
-	if (r == 0)
-		r = o.mode == MODE_ONCE ? run_once(&f, &o) : run_watch(&f, &o);
+	err = fleet_open(&f, o.domain);
+	if (err == 0)
+		err = o.mode == MODE_ONCE ? run_once(&f, &o) :
+					    run_watch(&f, &o);
 	if (f.participant > 0)
 		dds_delete(f.participant);
-	if (r < 0)
-		return tool_fail(table.program, o.domain, r);
+	if (err < 0)
+		return tool_fail(table.program, o.domain, err);
 	if (f.nrows == 0)
 		fprintf(stderr, "edm-fleet: no machine heard in domain %u; "
 			"edm-dds runs beside each machine's edmd\n", o.domain);

@@ -255,24 +255,24 @@ static int check_reach(struct panel *p)
 
 static int serve(struct panel *p)
 {
-	int rc = check_reach(p);
+	int err = check_reach(p);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	lws_set_log_level(LLL_ERR, NULL);
-	rc = open_parts(p);
-	if (rc == 0) {
+	err = open_parts(p);
+	if (err == 0) {
 		fprintf(stderr, SD_INFO "edm-panel: machine %s at %s://%s:%d/\n",
 			p->config.name, p->tls ? "https" : "http",
 			p->config.panel.address, (int)p->config.panel.port);
 		sd_notify(0, "READY=1");
 		on_tick(&p->timer);
 	}
-	while (rc == 0 && !over)
+	while (err == 0 && !over)
 		if (lws_service(p->lws, 0) < 0)
-			rc = EX_SOFTWARE;
+			err = EX_SOFTWARE;
 	close_parts(p);
-	return rc;
+	return err;
 }
 
 /* -- Users -------------------------------------------------------------------------- */

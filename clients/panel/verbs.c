@@ -359,8 +359,8 @@ static json_t *axis(const struct machine_config *c, int i)
 			 interp_axis_is_rotary((enum interp_axis)i), "min",
 			 a->travel_min_mm, "max", a->travel_max_mm, "pulse",
 			 a->pulse_mm, "vMax", a->v_max_mm_s, "jog",
-			 c->hand[i].jog_mm_s, "homes",
-			 c->hand[i].home_method != 0);
+			 c->manual[i].jog_mm_s, "homes",
+			 c->manual[i].method != 0);
 }
 
 static json_t *offsets(const struct machine_config *c)

@@ -111,16 +111,16 @@ static int lay_out(struct interp_build *b, uint32_t lines, const struct work *w)
 	const size_t bytes = interp_build_bytes(b);
 	struct interp_program p;
 	void *block = malloc(bytes);
-	int rc;
+	int err;
 
 	if (!block)
 		return put_failure("the program is too large",
 				   "a smaller one, or in parts");
 	interp_build_write(b, &about, block);
-	rc = interp_program_map(&p, block, bytes) == 0 ?
+	err = interp_program_map(&p, block, bytes) == 0 ?
 	     put_path(&p, w->tolerance_mm) : EX_SOFTWARE;
 	free(block);
-	return rc;
+	return err;
 }
 
 static int compile(const struct machine_config *c, const struct work *w,
@@ -162,15 +162,15 @@ static int work_check(const struct machine_config *c, const struct work *w)
 		.dialect = interp_dialect_by_file(w->name),
 	};
 	char *at = child_read(0, TEXT_MAX, &text.bytes);
-	int rc;
+	int err;
 
 	if (!at)
 		return put_failure("the text cannot be read",
 				   "at most 64 MiB of NC code");
 	text.at = at;
-	rc = compile(c, w, &text);
+	err = compile(c, w, &text);
 	free(at);
-	return rc;
+	return err;
 }
 
 static int work_path(const struct work *w)
@@ -178,16 +178,16 @@ static int work_path(const struct work *w)
 	struct interp_program p;
 	const void *block;
 	size_t bytes;
-	int rc;
+	int err;
 
 	if (shm_program_open(&block, &bytes, w->machine, w->program) < 0)
 		return put_failure("the program is not there any more",
 				   "the one that is loaded");
-	rc = interp_program_map(&p, block, bytes) == 0 ?
+	err = interp_program_map(&p, block, bytes) == 0 ?
 	     put_path(&p, w->tolerance_mm) :
 	     put_failure("the program is damaged", "stop; send it again");
 	shm_program_unmap(block, bytes);
-	return rc;
+	return err;
 }
 
 static int work_verify(void)
@@ -195,18 +195,18 @@ static int work_verify(void)
 	size_t bytes;
 	char *text = child_read(0, 1024, &bytes);
 	char *password = text ? strchr(text, '\n') : NULL;
-	int rc = 1;
+	int err = 1;
 
 	if (password) {
 		*password++ = '\0';
 		if (sodium_init() >= 0 &&
 		    crypto_pwhash_str_verify(text, password,
 					     strlen(password)) == 0)
-			rc = 0;
+			err = 0;
 		sodium_memzero(text, bytes);
 	}
 	free(text);
-	return rc;
+	return err;
 }
 
 int work_run(const struct work *w)

@@ -74,7 +74,7 @@ static void look(struct checking *k, uint32_t i, const struct block *b,
 	k->room_mm = mm - c->mm - PROVE_EPS_MM;
 }
 
-static bool check_block(struct checking *k, uint32_t i, const struct block *b,
+static bool prove_next(struct checking *k, uint32_t i, const struct block *b,
 			const struct clearance *c)
 {
 	struct proof p = { .least_mm = DBL_MAX, .pair = k->pair };
@@ -109,22 +109,41 @@ static bool check_next(struct checking *k, uint32_t i)
 		k->room_mm -= b.way_mm;
 		return true;
 	}
-	return check_block(k, i, &b, &c);
+	return prove_next(k, i, &b, &c);
+}
+
+bool check_block(const struct job *j, const double from[INTERP_NAXES],
+		 const double to[INTERP_NAXES], const struct clearance *c,
+		 struct near_pair *pair)
+{
+	struct proof p = { .pair = *pair };
+	double lattice[INTERP_NAXES];
+	struct clearance with;
+	struct block b;
+	bool ok;
+
+	block_init(&b, &j->motion, from, to);
+	route_lattice(&j->config, lattice);
+	with = more(c, motion_strays_mm(&b, lattice) + j->chord_mm);
+	ok = !prove_refuted(&j->bodies, &b, &with, &p) &&
+	     prove_block(&j->bodies, &b, &with, &p);
+	*pair = p.pair;
+	return ok;
 }
 
 /* Does the way begin inside? */
 static int check_start(struct checking *k)
 {
 	struct pose pose;
-	int r;
+	int err;
 
 	motion_pose(&k->j->motion, k->w->node[0].q, &pose);
 	if (near_below(&k->j->bodies, &pose, 1e-9, &k->pair))
 		return 0;		/* it touches, and will be found */
-	r = job_inside(k->j, &pose, k->ret->say, sizeof(k->ret->say));
-	if (r < 0)
+	err = job_inside(k->j, &pose, k->ret->say, sizeof(k->ret->say));
+	if (err < 0)
 		return -ENOMEM;
-	k->ret->inside = r > 0;
+	k->ret->inside = err > 0;
 	return 0;
 }
 
@@ -132,14 +151,14 @@ int check_way(const struct job *j, const struct route *w,
 	      const struct clearance *c, struct check_result *ret)
 {
 	struct checking k = { .j = j, .w = w, .c = c, .ret = ret };
-	int r;
+	int err;
 
 	*ret = (struct check_result) { .ok = true, .least_mm = DBL_MAX };
-	r = check_start(&k);
-	if (r || ret->inside) {
+	err = check_start(&k);
+	if (err || ret->inside) {
 		ret->ok = false;
 		memcpy(ret->q, w->node[0].q, sizeof(ret->q));
-		return r;
+		return err;
 	}
 	for (uint32_t i = 0; i + 1 < w->n && ret->ok; i++) {
 		char text[100];
@@ -241,22 +260,23 @@ int check_program(struct job *j)
 	struct check_result result;
 	struct clearance c;
 	struct route w;
-	int r = route_read(&w, &j->config, &from);
+	int err = route_read(&w, &j->config, &from);
 
-	if (r)
-		return r;
+	if (err)
+		return err;
 	if (!job_moves_known(j, &w, j->o->program)) {
-		r = EX_DATAERR;
+		err = EX_DATAERR;
 	} else {
 		check_clearance(j, w.node[w.n - 1].q, &c);
 		if (!j->o->quiet)
 			job_describe(j, stdout);
-		r = check_way(j, &w, &c, &result);
-		if (r == -EINTR)
+		err = check_way(j, &w, &c, &result);
+		if (err == -EINTR)
 			fprintf(stderr, "edm-plan: interrupted; nothing is "
 				"proved\n");
-		r = r == -ENOMEM ? EX_OSERR : r ? 1 : say_result(j, &w, &result);
+		err = err == -ENOMEM ? EX_OSERR : err ? 1 :
+		      say_result(j, &w, &result);
 	}
 	route_free(&w);
-	return r;
+	return err;
 }

@@ -36,6 +36,16 @@ int check_way(const struct job *j, const struct route *w,
 int check_clearance(const struct job *j, const double end[INTERP_NAXES],
 		    struct clearance *ret);
 
+/**
+ * check_block() - is the straight block from @from to @to proved to keep @c?
+ *
+ * What pulses stray and the meshes' chords are kept in addition.  @pair: as in
+ * near_distance(); where not, the pair that is too near.
+ */
+bool check_block(const struct job *j, const double from[INTERP_NAXES],
+		 const double to[INTERP_NAXES], const struct clearance *c,
+		 struct near_pair *pair);
+
 /** check_program() - --check. Return: 0 proved, 1 not; else sysexits. */
 int check_program(struct job *j);
 

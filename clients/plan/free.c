@@ -26,20 +26,19 @@
 struct lp {
 	glp_prob *p;
 	const struct free_way *w;
-	uint32_t axes[INTERP_NAXES], naxes;	/* those that may move */
-	double reach_mm[INTERP_NAXES];	/* mm per unit of an axis, at most */
+	struct job_axes axes;
 	int least;			/* column of the least distance */
 };
 
 static int col(const struct lp *l, uint32_t node, uint32_t a)
 {
-	return 1 + (int)((node - 1) * l->naxes + a);
+	return 1 + (int)((node - 1) * l->axes.n + a);
 }
 
 int free_init(struct free_way *w, const struct job *j,
 	      double (*q)[INTERP_NAXES], uint32_t n)
 {
-	*w = (struct free_way) { .j = j, .n = n };
+	*w = (struct free_way) { .j = j, .n = n, .enough_mm = DBL_MAX };
 	if (n > FREE_NODES_MAX)
 		return -E2BIG;
 	memcpy(w->q, q, n * sizeof(*w->q));
@@ -83,36 +82,18 @@ static double try_way(struct free_way *w, double stop)
 
 /* -- The linear program ------------------------------------------------------- */
 
-static void find_axes(struct lp *l)
-{
-	const struct job *j = l->w->j;
-	const uint32_t moves = motion_moves(&j->motion);
-	struct block b;
-
-	block_init(&b, &j->motion, l->w->q[0], l->w->q[l->w->n - 1]);
-	for (uint32_t i = 0; i < INTERP_NAXES; i++)
-		if (moves & j->config.axes.present & 1u << i)
-			l->axes[l->naxes++] = i;
-	for (uint32_t i = 0; i < j->kin.njoints; i++) {
-		const enum interp_axis a = j->kin.joint[i].axis;
-
-		l->reach_mm[a] = b.reach_mm[i] *
-				 (interp_axis_is_rotary(a) ? PLAN_RADIAN : 1);
-	}
-}
-
 static void add_columns(struct lp *l, double room_mm)
 {
 	const struct machine_config *c = &l->w->j->config;
 	const uint32_t inner = l->w->n - 2;
 
-	glp_add_cols(l->p, (int)(inner * l->naxes) + 1);
-	l->least = (int)(inner * l->naxes) + 1;
+	glp_add_cols(l->p, (int)(inner * l->axes.n) + 1);
+	l->least = (int)(inner * l->axes.n) + 1;
 	glp_set_col_bnds(l->p, l->least, GLP_FR, 0, 0);
 	for (uint32_t node = 1; node <= inner; node++) {
-		for (uint32_t a = 0; a < l->naxes; a++) {
-			const uint32_t axis = l->axes[a];
-			const double room = room_mm / l->reach_mm[axis];
+		for (uint32_t a = 0; a < l->axes.n; a++) {
+			const uint32_t axis = l->axes.axis[a];
+			const double room = room_mm / l->axes.reach_mm[axis];
 			const double at = l->w->q[node][axis];
 			const double low = fmax(-room,
 				c->axes.axis[axis].travel_min_mm - at);
@@ -150,8 +131,8 @@ static void add_pair(struct lp *l, uint32_t i, double t,
 		return;
 	v_sub(x->q, x->p, n);
 	motion_jacobian(&l->w->j->motion, q, x->q, jac);
-	for (uint32_t a = 0; a < l->naxes; a++) {
-		const double g = v_dot(n, jac[l->axes[a]]) / x->mm;
+	for (uint32_t a = 0; a < l->axes.n; a++) {
+		const double g = v_dot(n, jac[l->axes.axis[a]]) / x->mm;
 
 		if (i > 0 && t < 1)
 			row_add(&r, col(l, i, a), (1 - t) * g);
@@ -207,7 +188,7 @@ static void begin(struct lp *l, struct free_way *w, double room_mm)
 {
 	*l = (struct lp) { .p = glp_create_prob(), .w = w };
 	glp_term_out(GLP_OFF);
-	find_axes(l);
+	job_axes_find(w->j, w->q[0], w->q[w->n - 1], &l->axes);
 	add_columns(l, room_mm);
 	add_pairs(l, w);
 	w->programs++;
@@ -217,8 +198,8 @@ static void move_nodes(const struct lp *l, const struct free_way *from,
 		       struct free_way *to)
 {
 	for (uint32_t node = 1; node + 1 < from->n; node++)
-		for (uint32_t a = 0; a < l->naxes; a++)
-			to->q[node][l->axes[a]] = from->q[node][l->axes[a]] +
+		for (uint32_t a = 0; a < l->axes.n; a++)
+			to->q[node][l->axes.axis[a]] = from->q[node][l->axes.axis[a]] +
 				glp_get_col_prim(l->p, col(l, node, a));
 }
 
@@ -230,7 +211,7 @@ void free_widen(struct free_way *w, int rounds)
 
 	w->least_mm = try_way(w, 0);
 	for (int i = 0; i < rounds && room > ROOM_LEAST_MM && w->n > 2 &&
-	     !bar_interrupted(); i++) {
+	     w->least_mm < w->enough_mm && !bar_interrupted(); i++) {
 		struct free_way next = *w;
 		char text[100];
 		struct lp l;

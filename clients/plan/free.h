@@ -20,10 +20,12 @@ struct free_way {
 	uint32_t n;			/* nodes; first and last stay */
 	double q[FREE_NODES_MAX][INTERP_NAXES];
 	double least_mm;		/* at the poses tried */
+	double enough_mm;		/* more is not looked for */
 	uint64_t queries, programs;	/* programs: linear ones */
 };
 
-/** free_init() - Return: 0, or -E2BIG with too many nodes. */
+/** free_init() - with no end to what is enough. Return: 0, or -E2BIG with too
+ *  many nodes. */
 int free_init(struct free_way *w, const struct job *j,
 	      double (*q)[INTERP_NAXES], uint32_t n);
 

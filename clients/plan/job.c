@@ -19,26 +19,26 @@ static int load_machine(struct job *j)
 {
 	const char *path = j->o->machine_file;
 	struct interp_diag d = { 0 };
-	int r = 0;
+	int err = 0;
 
 	config_defaults(&j->config);
 	if (path)
-		r = config_read(&j->config, path, &d);
-	if (r == -EINVAL) {
+		err = config_read(&j->config, path, &d);
+	if (err == -EINVAL) {
 		config_say(path, &d);
 		return EX_CONFIG;
 	}
-	if (r < 0) {
+	if (err < 0) {
 		fprintf(stderr, "edm-plan: %s: %s; a machine file\n", path,
-			strerror(-r));
+			strerror(-err));
 		return EX_NOINPUT;
 	}
-	r = config_kinematics(&j->config, &j->kin, &d);
-	if (r == -EINVAL) {
+	err = config_kinematics(&j->config, &j->kin, &d);
+	if (err == -EINVAL) {
 		config_say(path, &d);
 		return EX_CONFIG;
 	}
-	if (r == -ENOENT) {
+	if (err == -ENOENT) {
 		interp_kin_clear(&j->kin);
 		fprintf(stderr, "edm-plan: %s: no chain in [kinematics]; X Y Z "
 			"alone move the electrode\n",
@@ -110,12 +110,12 @@ static int check_size(const struct job *j, const struct mesh *m)
 static int check_sizes(const struct job *j)
 {
 	const double a = mesh_size_mm(&j->part), b = mesh_size_mm(&j->tool);
-	int r = check_size(j, &j->part);
+	int err = check_size(j, &j->part);
 
-	if (r == 0)
-		r = check_size(j, &j->tool);
-	if (r || j->o->any_size || (a < 20 * b && b < 20 * a))
-		return r;
+	if (err == 0)
+		err = check_size(j, &j->tool);
+	if (err || j->o->any_size || (a < 20 * b && b < 20 * a))
+		return err;
 	fprintf(stderr, "edm-plan: part and electrode are %.4g and %.4g mm "
 		"long; both in one unit, mm or --unit inch, or --any-size if "
 		"they are\n", a, b);
@@ -125,30 +125,30 @@ static int check_sizes(const struct job *j)
 static int load_body(const struct job *j, const struct mesh_load *from,
 		     struct mesh *m, struct mesh_findings *f, struct tree *t)
 {
-	int r = mesh_load(m, from, f);
+	int err = mesh_load(m, from, f);
 
-	if (r == 0 && tree_build(t, m)) {
+	if (err == 0 && tree_build(t, m)) {
 		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
-		r = EX_OSERR;
+		err = EX_OSERR;
 	}
-	return r ? r : check_body(j, t, f);
+	return err ? err : check_body(j, t, f);
 }
 
 static int load_bodies(struct job *j)
 {
 	struct mesh_load from = { .path = j->o->part,
 				  .unit_mm = j->o->unit_mm };
-	int r;
+	int err;
 
 	memcpy(from.shift_mm, j->o->part_at, sizeof(from.shift_mm));
-	r = load_body(j, &from, &j->part, &j->part_found, &j->part_tree);
-	if (r)
-		return r;
+	err = load_body(j, &from, &j->part, &j->part_found, &j->part_tree);
+	if (err)
+		return err;
 	from.path = j->o->electrode;
 	for (int k = 0; k < 3; k++)
 		from.shift_mm[k] = j->o->electrode_at[k] + j->kin.tip_mm[k];
-	r = load_body(j, &from, &j->tool, &j->tool_found, &j->tool_tree);
-	return r ? r : check_sizes(j);
+	err = load_body(j, &from, &j->tool, &j->tool_found, &j->tool_tree);
+	return err ? err : check_sizes(j);
 }
 
 /* Half the gap between the electrode and the place where sparks still ignite is
@@ -165,14 +165,14 @@ static void choose_clearance(struct job *j)
 
 int job_load(struct job *j, const struct job_options *o)
 {
-	int r;
+	int err;
 
 	*j = (struct job) { .o = o };
-	r = load_machine(j);
-	if (r == 0)
-		r = load_bodies(j);
-	if (r)
-		return r;
+	err = load_machine(j);
+	if (err == 0)
+		err = load_bodies(j);
+	if (err)
+		return err;
 	j->bodies = (struct bodies) { &j->part_tree, &j->tool_tree };
 	motion_init(&j->motion, &j->kin, &j->tool);
 	choose_clearance(j);
@@ -275,20 +275,20 @@ int job_inside(const struct job *j, const struct pose *pose, char *say,
 	uint32_t *of_tool = NULL, *of_part = NULL;
 	const uint32_t ntool = mesh_shells(&j->tool, &of_tool);
 	const uint32_t npart = mesh_shells(&j->part, &of_part);
-	int r = 0;
+	int err = 0;
 
 	if (ntool == 0 || npart == 0) {
-		r = -1;
+		err = -1;
 	} else if (any_inside(&j->tool, &j->part, pose, of_tool, ntool)) {
 		snprintf(say, size, "the electrode is inside the part");
-		r = 1;
+		err = 1;
 	} else if (any_inside(&j->part, &j->tool, &back, of_part, npart)) {
 		snprintf(say, size, "the part is inside the electrode");
-		r = 1;
+		err = 1;
 	}
 	free(of_tool);
 	free(of_part);
-	return r;
+	return err;
 }
 
 /* -- Blocks of a way ------------------------------------------------------------ */
@@ -326,4 +326,24 @@ bool job_moves_known(const struct job *j, const struct route *w,
 		}
 	}
 	return true;
+}
+
+void job_axes_find(const struct job *j, const double from[INTERP_NAXES],
+		   const double to[INTERP_NAXES], struct job_axes *ret)
+{
+	const uint32_t moves = motion_moves(&j->motion) &
+			       j->config.axes.present;
+	struct block b;
+
+	*ret = (struct job_axes) { 0 };
+	block_init(&b, &j->motion, from, to);
+	for (uint32_t i = 0; i < INTERP_NAXES; i++)
+		if (moves & 1u << i)
+			ret->axis[ret->n++] = (enum interp_axis)i;
+	for (uint32_t i = 0; i < j->kin.njoints; i++) {
+		const enum interp_axis a = j->kin.joint[i].axis;
+
+		ret->reach_mm[a] = b.reach_mm[i] * (interp_axis_is_rotary(a) ?
+						    PLAN_RADIAN : 1);
+	}
 }

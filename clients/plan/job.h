@@ -71,11 +71,23 @@ void job_block(const struct job *j, const struct route *w, uint32_t i,
 bool job_moves_known(const struct job *j, const struct route *w,
 		     const char *path);
 
+/* The axes that move the electrode. */
+struct job_axes {
+	uint32_t n;
+	enum interp_axis axis[INTERP_NAXES];
+	double reach_mm[INTERP_NAXES];	/* by axis: a unit of it moves no point
+					 * farther */
+};
+
+/** job_axes_find() - their reach is that between @from and @to. */
+void job_axes_find(const struct job *j, const double from[INTERP_NAXES],
+		   const double to[INTERP_NAXES], struct job_axes *ret);
+
 /** bar_show() - one line on stderr, rewritten; nothing with --quiet. */
 void bar_show(const struct job *j, double share, const char *text);
 void bar_end(const struct job *j);
 
-/** bar_bar_interrupted() - was Ctrl-C pressed? */
+/** bar_interrupted() - was Ctrl-C pressed? */
 bool bar_interrupted(void);
 void bar_catch(void);
 void bar_forget(void);

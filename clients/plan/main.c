@@ -194,19 +194,19 @@ int main(int argc, char **argv)
 	struct job_options o = { .unit_mm = 1, .clearance_mm = -1,
 				 .chord_mm = -1 };
 	struct cmdline_given given;
-	int r = cmdline_take(&table, &o, argc, argv, &given);
+	int err = cmdline_take(&table, &o, argc, argv, &given);
 
-	if (r >= 0)
-		return r;
+	if (err >= 0)
+		return err;
 	o.program = given.first < argc ? argv[given.first] : NULL;
-	r = judge(&o);
-	if (r >= 0)
-		return r;
+	err = judge(&o);
+	if (err >= 0)
+		return err;
 	bar_catch();
-	r = job_load(&job, &o);
-	if (r == 0)
-		r = o.check ? check_program(&job) :
+	err = job_load(&job, &o);
+	if (err == 0)
+		err = o.check ? check_program(&job) :
 		    o.measure ? measure_poses(&job) : plan_program(&job);
 	job_free(&job);
-	return r;
+	return err;
 }

@@ -48,25 +48,25 @@ int measure_poses(struct job *j)
 	char *line = NULL;
 	size_t room = 0;
 	uint32_t n = 0;
-	int r = 0;
+	int err = 0;
 
 	if (!f) {
 		fprintf(stderr, "edm-plan: %s: %s; a file of poses\n",
 			j->o->program, strerror(errno));
 		return EX_NOINPUT;
 	}
-	while (r == 0 && getline(&line, &room, f) > 0) {
+	while (err == 0 && getline(&line, &room, f) > 0) {
 		n++;
 		if (read_pose(line, q)) {
 			measure(j, q, &pair);
 		} else {
 			fprintf(stderr, "%s:%u: error: not a pose; six "
 				"numbers, X Y Z A B C\n", j->o->program, n);
-			r = EX_DATAERR;
+			err = EX_DATAERR;
 		}
 	}
 	free(line);
 	if (!standard)
 		fclose(f);
-	return r;
+	return err;
 }

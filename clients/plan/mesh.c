@@ -7,6 +7,7 @@
 #include "tree.h"
 #include "vec.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,7 +58,7 @@ double mesh_winding(const struct mesh *m, const double p[3])
 				 v_dot(a, b) * nc + v_dot(a, c) * nb +
 				 v_dot(b, c) * na);
 	}
-	return sum / (4 * 3.14159265358979323846);
+	return sum / (4 * M_PI);
 }
 
 static uint32_t root_of(uint32_t *parent, uint32_t i)

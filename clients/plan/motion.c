@@ -4,6 +4,7 @@
  */
 #include "motion.h"
 
+#include <math.h>
 #include <string.h>
 
 static bool is_turn(const struct interp_kin_joint *j)
@@ -170,7 +171,7 @@ static void pass_turn(struct ball *b, const struct interp_kin_joint *j,
 		      double from, double to)
 {
 	const double half = fabs(to - from) / 2 * PLAN_RADIAN;
-	const double chord = 2 * sin(fmin(half, 3.14159265358979323846) / 2);
+	const double chord = 2 * sin(fmin(half, M_PI) / 2);
 	struct rot turn;
 	double arm[3], turned[3];
 

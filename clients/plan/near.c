@@ -6,8 +6,8 @@
  * the electrode is brought into the part's frame once and is then compared with
  * as many boxes of the part as needed.
  *
- * The gap of two boxes along one of their axes bounds their distance from
- * below.  The same gap g along n bounds the time: what is in the electrode's box
+ * The gaps of two boxes along the three axes of one of them bound their
+ * distance from below.  The same gap g along n bounds the time: what is in the electrode's box
  * comes toward the part by at most s x + A x^2 / 2 in a time x, where s is the
  * greatest n . (v + w x p) in the box.  Until that is g - keep the pair cannot
  * be nearer than keep.  Each axis gives such a time; the longest holds.
@@ -18,6 +18,12 @@
 
 #include <float.h>
 #include <string.h>
+
+/* Taken off the gap of two triangles, far more than their arithmetic is off. */
+#define ROUNDING_MM	1e-9
+
+/* Directions in which a gap of two triangles is looked for. */
+#define BESIDE_STEPS	4
 
 struct walk {
 	const struct bodies *b;
@@ -59,6 +65,9 @@ struct gaps {
 	double along[6];		/* gap on each axis: 3 of the part's box,
 					 * 3 of the tool's */
 	double sign[6];
+	double beside[2];		/* all gaps on the part's axes together,
+					 * and on the tool's: no less than the
+					 * widest of them */
 	int widest;
 };
 
@@ -82,6 +91,7 @@ static bool box_gaps(const struct box *part, const struct box *tool,
 		for (int j = 0; j < 3; j++)
 			r[i][j] = fabs(v_dot(part->axis.m[i], tool->axis.m[j]));
 	g->widest = 0;
+	g->beside[0] = g->beside[1] = 0;
 	for (int k = 0; k < 6; k++) {
 		const int i = k % 3;
 		const double *n = k < 3 ? part->axis.m[i] : tool->axis.m[i];
@@ -95,9 +105,13 @@ static bool box_gaps(const struct box *part, const struct box *tool,
 		g->along[k] = fabs(at) - reach;
 		if (g->along[k] > g->along[g->widest])
 			g->widest = k;
-		if (g->along[k] >= enough)
+		if (g->along[k] > 0)
+			g->beside[k / 3] += g->along[k] * g->along[k];
+		if (g->beside[k / 3] >= enough * enough)
 			return false;
 	}
+	g->beside[0] = sqrt(g->beside[0]);
+	g->beside[1] = sqrt(g->beside[1]);
 	return true;
 }
 
@@ -124,6 +138,28 @@ static double box_time_along(const struct walk *w, const struct box *part,
 	for (int i = 0; i < 3; i++)
 		n[i] = -g->sign[k] * axis[i];
 	return box_time(w, tool, n, g->along[k] - w->keep);
+}
+
+/* Boxes that stand beside each other on two axes or three: the shortest way from
+ * the one box (@of: 0 the part's, 1 the tool's) to a box round the other that is
+ * turned like it. */
+static double box_time_beside(const struct walk *w, const struct box *part,
+			      const struct box *tool, const struct gaps *g,
+			      int of)
+{
+	const struct box *axes = of ? tool : part;
+	double n[3] = { 0, 0, 0 };
+
+	if (g->beside[of] <= w->keep)
+		return 0;
+	for (int k = 0; k < 3; k++) {
+		const double gap = g->along[3 * of + k];
+
+		if (gap > 0)
+			v_madd(n, -g->sign[3 * of + k] * gap / g->beside[of],
+			       axes->axis.m[k], n);
+	}
+	return box_time(w, tool, n, g->beside[of] - w->keep);
 }
 
 /* Boxes that face each other by their corners: the way between the centres. */
@@ -154,7 +190,7 @@ static double box_bound(const struct walk *w, const struct box *part,
 	if (!box_gaps(part, tool, w->rate ? DBL_MAX : w->best, &g))
 		return w->best;
 	if (!w->rate)
-		return g.along[g.widest] > 0 ? g.along[g.widest] : 0;
+		return fmax(g.beside[0], g.beside[1]);
 	most = box_time_along(w, part, tool, &g, g.widest);
 	for (int k = 0; k < 6 && most < w->best; k++) {
 		const double x = k == g.widest ? 0 :
@@ -162,6 +198,8 @@ static double box_bound(const struct walk *w, const struct box *part,
 
 		most = x > most ? x : most;
 	}
+	for (int of = 0; of < 2 && most < w->best; of++)
+		most = fmax(most, box_time_beside(w, part, tool, &g, of));
 	if (most < w->best) {
 		const double x = box_time_between(w, part, tool, &g);
 
@@ -197,31 +235,96 @@ static double tri_time(const struct walk *w, const struct triangle *tool,
 	return root(x->mm - w->keep, s + v_dot(n, w->rate->v), w->rate->accel);
 }
 
-/*
- * Is the gap over the plane of the part's triangle alone enough to leave the
- * pair out?  Along a wall that faces another it mostly is.
- */
-static bool is_clear(const struct walk *w, uint32_t part,
-		     const struct triangle *tool)
+/* Is a gap along @n, a unit vector from the tool to the part, enough to leave the
+ * pair out? */
+static bool is_enough(const struct walk *w, const struct triangle *tool,
+		      const double n[3], double gap)
 {
-	const double *plane = w->b->part->plane[part];
-	double h[3], n[3], m[3], side, gap, s = -DBL_MAX;
+	double m[3], s = -DBL_MAX;
 
-	for (int k = 0; k < 3; k++)
-		h[k] = v_dot(plane, tool->at[k]) - plane[3];
-	side = h[0] > 0 ? 1 : -1;
-	gap = fmin(side * h[0], fmin(side * h[1], side * h[2])) - 1e-9;
 	if (!w->rate)
 		return gap >= w->best;
 	if (gap <= w->refuse)
 		return false;
-	for (int k = 0; k < 3; k++)
-		n[k] = -side * plane[k];
 	v_cross(n, w->rate->w, m);
 	for (int k = 0; k < 3; k++)
 		s = fmax(s, v_dot(m, tool->at[k]));
 	return root(gap - w->keep, s + v_dot(n, w->rate->v),
 		    w->rate->accel) >= w->best;
+}
+
+/* Over the plane of the part's triangle: along a wall that faces another it
+ * mostly is. */
+static bool is_over(const struct walk *w, uint32_t part,
+		    const struct triangle *tool)
+{
+	const double *plane = w->b->part->plane[part];
+	double h[3], n[3], side, gap;
+
+	for (int k = 0; k < 3; k++)
+		h[k] = v_dot(plane, tool->at[k]) - plane[3];
+	side = h[0] > 0 ? 1 : -1;
+	gap = fmin(side * h[0], fmin(side * h[1], side * h[2])) - ROUNDING_MM;
+	if (gap <= 0)
+		return false;
+	for (int k = 0; k < 3; k++)
+		n[k] = -side * plane[k];
+	return is_enough(w, tool, n, gap);
+}
+
+static void middle(const struct triangle *t, double ret[3])
+{
+	for (int i = 0; i < 3; i++)
+		ret[i] = (t->at[0][i] + t->at[1][i] + t->at[2][i]) / 3;
+}
+
+/* The way between the corners that are nearest along @v, as from @a to @b. */
+static void nearest_along(const struct triangle *a, const struct triangle *b,
+			  const double v[3], double ret[3])
+{
+	int i = 0, j = 0;
+
+	for (int k = 1; k < 3; k++) {
+		if (v_dot(a->at[k], v) > v_dot(a->at[i], v))
+			i = k;
+		if (v_dot(b->at[k], v) < v_dot(b->at[j], v))
+			j = k;
+	}
+	v_sub(b->at[j], a->at[i], ret);
+}
+
+/*
+ * A triangle that stands beside the other, not over it.  Any way v from one to
+ * the other is a direction to measure the gap along; it is turned toward the
+ * shortest by Frank and Wolfe's steps, and each costs a tenth of the distance.
+ */
+static bool is_beside(const struct walk *w, uint32_t part,
+		      const struct triangle *tool)
+{
+	const struct triangle *at = &w->b->part->tri[part];
+	double a[3], v[3];
+
+	middle(at, a);
+	middle(tool, v);
+	v_sub(v, a, v);
+	for (int i = 0; i < BESIDE_STEPS; i++) {
+		const double d = v_length(v);
+		double to[3], n[3], share;
+
+		if (!(d > 0) || (!w->rate && d < w->best))
+			return false;
+		nearest_along(at, tool, v, to);
+		for (int k = 0; k < 3; k++)
+			n[k] = -v[k] / d;
+		if (is_enough(w, tool, n, -v_dot(n, to) - ROUNDING_MM))
+			return true;
+		v_sub(to, v, to);
+		share = -v_dot(v, to) / v_dot(to, to);
+		if (!(share > 0))
+			return false;
+		v_madd(v, fmin(share, 1), to, v);
+	}
+	return false;
 }
 
 static void tri_offer(struct walk *w, uint32_t part, uint32_t tool,
@@ -230,7 +333,7 @@ static void tri_offer(struct walk *w, uint32_t part, uint32_t tool,
 	struct near_pair x = { .part = part, .tool = tool };
 	double key;
 
-	if (is_clear(w, part, at))
+	if (is_over(w, part, at) || is_beside(w, part, at))
 		return;
 	x.mm = tri_distance(&w->b->part->tri[part], at, x.p, x.q);
 	if (w->take) {

@@ -177,7 +177,7 @@ int picture_put(const struct plan *p)
 	char *text = NULL;
 	size_t size;
 	FILE *f;
-	int r;
+	int err;
 
 	if (!p->j->o->picture)
 		return 0;
@@ -194,7 +194,7 @@ int picture_put(const struct plan *p)
 		p->best.least_mm);
 	put_curve(f, p);
 	fputs("</svg>\n", f);
-	r = fclose(f) ? EX_OSERR : text_put(p->j->o->picture, text);
+	err = fclose(f) ? EX_OSERR : text_put(p->j->o->picture, text);
 	free(text);
-	return r;
+	return err;
 }

@@ -224,18 +224,18 @@ static int try_shift(struct plan *p, const struct nodes *n,
 	static double q[FEWEST_NODES_MAX][INTERP_NAXES];
 	static struct plan trial;
 	struct job j;
-	int r = shifted_job(p->j, s, &j);
+	int err = shifted_job(p->j, s, &j);
 
 	trial = (struct plan) { .j = p->j, .c = p->c };
-	for (uint32_t i = 0; i < n->n && r == 0; i++) {
-		r = place(&p->j->kin, n->q[i], s, q[i]);
+	for (uint32_t i = 0; i < n->n && err == 0; i++) {
+		err = place(&p->j->kin, n->q[i], s, q[i]);
 		free_round(&p->j->config, q[i]);
 	}
-	if (r == 0)
-		r = plan_over(&trial, &j, q,
+	if (err == 0)
+		err = plan_over(&trial, &j, q,
 			      n->n);
 	p->queries += trial.queries;
-	if (r == 0 && (!p->pivot.way.how || trial.best.n < p->pivot.way.n ||
+	if (err == 0 && (!p->pivot.way.how || trial.best.n < p->pivot.way.n ||
 		       (trial.best.n == p->pivot.way.n &&
 			trial.best.least_mm > p->pivot.way.least_mm))) {
 		p->pivot.way = trial.best;
@@ -244,12 +244,12 @@ static int try_shift(struct plan *p, const struct nodes *n,
 		p->pivot.outside = !in_travel(p->j, &trial.best);
 	}
 	drop_job(&j);
-	return r;
+	return err;
 }
 
 static int try_all(struct plan *p, struct nodes *n)
 {
-	int r = 0;
+	int err = 0;
 
 	if (!find_shares(n)) {
 		snprintf(p->pivot.why, sizeof(p->pivot.why),
@@ -264,9 +264,9 @@ static int try_all(struct plan *p, struct nodes *n)
 		best_shift(n, blocks, s);
 		for (int i = 0; i < SHIFTS; i++)
 			s[i] = round(s[i] / SHIFT_LEAST_MM) * SHIFT_LEAST_MM;
-		r = try_shift(p, n, s);
-		if (r == -ENOMEM)
-			return r;
+		err = try_shift(p, n, s);
+		if (err == -ENOMEM)
+			return err;
 	}
 	return 0;
 }
@@ -276,7 +276,7 @@ int plan_pivot(struct plan *p)
 	const uint32_t all = p->last - p->first + 1;
 	struct nodes n = { .n = all < FEWEST_NODES_MAX ? all :
 							 FEWEST_NODES_MAX };
-	int r = -ENOMEM;
+	int err = -ENOMEM;
 
 	if (p->c.zone_mm > 0)
 		return 0;
@@ -288,10 +288,10 @@ int plan_pivot(struct plan *p)
 			memcpy(n.q[i], p->dense.node[p->first +
 			       (uint32_t)((uint64_t)i * (all - 1) /
 					  (n.n - 1))].q, sizeof(n.q[i]));
-		r = try_all(p, &n);
+		err = try_all(p, &n);
 	}
 	free(n.q);
 	free(n.share);
 	free(n.by);
-	return r;
+	return err;
 }

@@ -9,6 +9,7 @@
 
 #include "check.h"
 #include "pullout.h"
+#include "repair.h"
 
 #include <errno.h>
 #include <float.h>
@@ -295,6 +296,28 @@ static void say_pivot(const struct plan_pivot *v)
 	       v->outside ? "; beyond this machine's travel" : "");
 }
 
+/* What the dense program calls while it goes in has no place among fewer
+ * blocks. */
+static void say_left_out(const struct plan *p)
+{
+	const struct route_node *n = p->dense.node;
+	uint32_t said = 0;
+
+	if (!p->carried) {
+		printf("note       only positioning and blocks are written; "
+		       "conditions and other words of\n           %s are not\n",
+		       p->j->o->program);
+		return;
+	}
+	for (uint32_t i = p->first + 2; i <= p->last && said < 5; i++) {
+		if (!n[i].act_line && n[i].cond == n[i - 1].cond)
+			continue;
+		printf("note       line %u: what it calls within the way in is "
+		       "left out\n", n[i].act_line ? n[i].act_line : n[i].line);
+		said++;
+	}
+}
+
 static void describe(const struct plan *p, FILE *out)
 {
 	job_describe(p->j, out);
@@ -304,10 +327,15 @@ static void describe(const struct plan *p, FILE *out)
 	if (p->dense_pass_s > 0)
 		printf("           %.1f min, %.1f min with a stop at each node\n",
 		       p->dense_pass_s / 60, p->dense_stop_s / 60);
+	if (p->repaired)
+		printf("repaired   %u nodes of the dense way are others now\n",
+		       p->repaired);
 	say_way("greedy", &p->greedy);
 	say_way("fewest", &p->fewest);
 	say_way("written", &p->best);
 	say_pivot(&p->pivot);
+	if (p->j->o->program)
+		say_left_out(p);
 	printf("%-10s %llu queries, %.1f s\n", p->stopped ? "stopped" : "planned",
 	       (unsigned long long)p->queries, p->planned_s);
 }
@@ -362,6 +390,23 @@ static int write_all(struct plan *p)
 	return r;
 }
 
+static void say_no_way(const struct plan *p)
+{
+	if (bar_interrupted()) {
+		fprintf(stderr, "edm-plan: interrupted before a way that keeps "
+			"%.3f mm was found\n", p->j->clear_mm);
+		return;
+	}
+	fprintf(stderr, "edm-plan: no way near the program keeps %.3f mm; a "
+		"thinner electrode, less --clearance, or another program to "
+		"begin with\n", p->j->clear_mm);
+	if (p->nearest.mm > 0) {
+		fprintf(stderr, "edm-plan: the last that was tried came to "
+			"%.3f mm\n", p->nearest.mm);
+		job_say_pair(p->j, &p->nearest, stderr);
+	}
+}
+
 static int plan_nodes(struct plan *p)
 {
 	static double q[FEWEST_NODES_MAX][INTERP_NAXES];
@@ -370,12 +415,15 @@ static int plan_nodes(struct plan *p)
 
 	take_nodes(p, q, &n);
 	r = plan_over(p, p->j, q, n);
+	if (r == 1 && !(p->c.zone_mm > 0) && !bar_interrupted()) {
+		r = repair_nodes(p, q, &n);
+		if (r == 0)
+			r = plan_over(p, p->j, q, n);
+	}
 	if (r == -ENOMEM)
 		return EX_OSERR;
 	if (r) {
-		fprintf(stderr, "edm-plan: no way over the nodes of the program "
-			"keeps %.3f mm%s\n", p->j->clear_mm,
-			bar_interrupted() ? ": interrupted" : "");
+		say_no_way(p);
 		return 1;
 	}
 	if (!p->j->o->no_pivot && !bar_interrupted())

@@ -38,12 +38,16 @@ struct plan {
 	struct clearance c;
 	double end_mm;			/* distance at the end pose */
 	double dense_least_mm;		/* least seen along the dense way */
+	uint32_t repaired;		/* nodes moved, or put instead of others */
+	struct near_pair nearest;	/* of the last block refused by repair */
 	double dense_pass_s, dense_stop_s;
 	struct plan_way greedy, fewest, best;
 	struct plan_pivot pivot;
 	uint64_t queries;
 	double seconds, planned_s;	/* when it began; how long it took */
 	bool stopped;			/* by Ctrl-C */
+	bool carried;			/* text_write(): with the other lines of
+					 * the dense program */
 };
 
 /** plan_program() - plan, prove, write. Return: 0, 1 no way; else sysexits. */
@@ -66,8 +70,12 @@ int plan_pivot(struct plan *p);
 
 /* -- What is written ------------------------------------------------------------ */
 
-/** text_write() - the way in as NC code, @text allocated; NULL if out of memory. */
-char *text_write(const struct plan *p, const struct plan_way *w);
+/**
+ * text_write() - the dense program with @w as its way in, allocated; where its
+ * other lines cannot stand beside those blocks, its positioning and the blocks
+ * alone.  It sets p->carried.  Return: NULL if out of memory.
+ */
+char *text_write(struct plan *p, const struct plan_way *w);
 
 /** text_put() - write @text to @path, - is standard output. Return: 0 or a
  *  sysexits code, and the reason is on stderr. */

@@ -28,6 +28,7 @@
 #define MIDDLE_MM	0.4		/* more clearance than that is not
 					 * looked for */
 #define MIDDLE_WORTH	4.0		/* of it, to a mm outward */
+#define TOUCH_MM	0.02		/* kept at least by a way to be repaired */
 
 struct pull {
 	const struct job *j;
@@ -35,8 +36,7 @@ struct pull {
 	double keep_mm;
 	double q[INTERP_NAXES];
 	double left_mm;			/* to the open, mean of the points */
-	double reach_mm[INTERP_NAXES];
-	uint32_t axes[INTERP_NAXES], naxes;
+	struct job_axes axes;
 	struct route out;			/* nodes, from the end outward */
 	struct near_pair nearest;
 };
@@ -78,10 +78,10 @@ static void add_limits(const struct pull *p, glp_prob *lp, double room_mm)
 {
 	const struct machine_config *c = &p->j->config;
 
-	glp_add_cols(lp, (int)p->naxes + 1);
-	for (uint32_t a = 0; a < p->naxes; a++) {
-		const uint32_t x = p->axes[a];
-		const double room = room_mm / p->reach_mm[x];
+	glp_add_cols(lp, (int)p->axes.n + 1);
+	for (uint32_t a = 0; a < p->axes.n; a++) {
+		const uint32_t x = p->axes.axis[a];
+		const double room = room_mm / p->axes.reach_mm[x];
 		const double low = fmax(-room, c->axes.axis[x].travel_min_mm -
 					       p->q[x]);
 		const double high = fmin(room, c->axes.axis[x].travel_max_mm -
@@ -104,15 +104,15 @@ static void add_pairs(const struct pull *p, glp_prob *lp,
 			continue;
 		v_sub(x->q, x->p, n);
 		motion_jacobian(&p->j->motion, p->q, x->q, jac);
-		for (uint32_t a = 0; a < p->naxes; a++) {
+		for (uint32_t a = 0; a < p->axes.n; a++) {
 			index[a + 1] = (int)a + 1;
-			value[a + 1] = v_dot(n, jac[p->axes[a]]) / x->mm;
+			value[a + 1] = v_dot(n, jac[p->axes.axis[a]]) / x->mm;
 		}
-		index[p->naxes + 1] = (int)p->naxes + 1;
-		value[p->naxes + 1] = -1;
+		index[p->axes.n + 1] = (int)p->axes.n + 1;
+		value[p->axes.n + 1] = -1;
 		row = glp_add_rows(lp, 1);
 		glp_set_row_bnds(lp, row, GLP_LO, -x->mm, 0);
-		glp_set_mat_row(lp, row, (int)p->naxes + 1, index, value);
+		glp_set_mat_row(lp, row, (int)p->axes.n + 1, index, value);
 	}
 }
 
@@ -134,11 +134,11 @@ static bool step_to(const struct pull *p, double room_mm,
 	glp_term_out(GLP_OFF);
 	glp_set_obj_dir(lp, GLP_MAX);
 	add_limits(p, lp, room_mm);
-	for (uint32_t a = 0; a < p->naxes; a++)
-		glp_set_obj_coef(lp, (int)a + 1, lead[p->axes[a]]);
-	glp_set_obj_coef(lp, (int)p->naxes + 1, MIDDLE_WORTH * room_mm /
+	for (uint32_t a = 0; a < p->axes.n; a++)
+		glp_set_obj_coef(lp, (int)a + 1, lead[p->axes.axis[a]]);
+	glp_set_obj_coef(lp, (int)p->axes.n + 1, MIDDLE_WORTH * room_mm /
 						ROOM_MM);
-	glp_set_col_bnds(lp, (int)p->naxes + 1, GLP_DB, keep,
+	glp_set_col_bnds(lp, (int)p->axes.n + 1, GLP_DB, keep,
 			 keep + MIDDLE_MM);
 	add_pairs(p, lp, &set);
 	glp_init_smcp(&how);
@@ -146,31 +146,18 @@ static bool step_to(const struct pull *p, double room_mm,
 	how.presolve = GLP_ON;
 	ok = glp_simplex(lp, &how) == 0 && glp_get_status(lp) == GLP_OPT;
 	memcpy(to, p->q, sizeof(p->q));
-	for (uint32_t a = 0; a < p->naxes && ok; a++)
-		to[p->axes[a]] += glp_get_col_prim(lp, (int)a + 1);
+	for (uint32_t a = 0; a < p->axes.n && ok; a++)
+		to[p->axes.axis[a]] += glp_get_col_prim(lp, (int)a + 1);
 	glp_delete_prob(lp);
 	free_round(&p->j->config, to);
 	return ok;
 }
 
+/* Inward, as it will be gone. */
 static bool is_free(struct pull *p, const double from[INTERP_NAXES],
 		    const double to[INTERP_NAXES], const struct clearance *c)
 {
-	struct proof proof = { .pair = p->nearest };
-	struct clearance with = *c;
-	double lattice[INTERP_NAXES], more;
-	struct block b;
-	bool ok;
-
-	/* Inward, as it will be gone. */
-	block_init(&b, &p->j->motion, to, from);
-	route_lattice(&p->j->config, lattice);
-	more = motion_strays_mm(&b, lattice) + p->j->chord_mm;
-	with.mm += more;
-	with.end_mm += more;
-	ok = prove_block(&p->j->bodies, &b, &with, &proof);
-	p->nearest = proof.pair;
-	return ok;
+	return check_block(p->j, to, from, c, &p->nearest);
 }
 
 static int add_node(struct pull *p, bool rapid)
@@ -240,32 +227,15 @@ static int pull(struct pull *p, const struct clearance *c)
 	return 1;
 }
 
-static void find_axes(struct pull *p)
-{
-	const struct job *j = p->j;
-	struct block b;
-
-	block_init(&b, &j->motion, p->q, p->q);
-	for (uint32_t i = 0; i < INTERP_NAXES; i++)
-		if (motion_moves(&j->motion) & j->config.axes.present & 1u << i)
-			p->axes[p->naxes++] = i;
-	for (uint32_t i = 0; i < j->kin.njoints; i++) {
-		const enum interp_axis a = j->kin.joint[i].axis;
-
-		p->reach_mm[a] = b.reach_mm[i] * (interp_axis_is_rotary(a) ?
-						  PLAN_RADIAN : 1);
-	}
-}
-
 static void say_stuck(const struct pull *p)
 {
 	fprintf(stderr, "edm-plan: no way out found%s: %.2f mm are left of the "
 		"way through the cavity, at",
 		bar_interrupted() ? " before it was interrupted" : "",
 		p->left_mm);
-	for (uint32_t a = 0; a < p->naxes; a++)
-		fprintf(stderr, " %c%.3f", INTERP_AXIS_LETTERS[p->axes[a]],
-			p->q[p->axes[a]]);
+	for (uint32_t a = 0; a < p->axes.n; a++)
+		fprintf(stderr, " %c%.3f", INTERP_AXIS_LETTERS[p->axes.axis[a]],
+			p->q[p->axes.axis[a]]);
 	fprintf(stderr, "; a thinner electrode, less --clearance, or a program "
 		"to begin with.  It is narrowest, %.3f mm, between\n",
 		p->nearest.mm);
@@ -344,6 +314,27 @@ static bool in_travel(const struct job *j, const double q[INTERP_NAXES])
 	return true;
 }
 
+/* With the clearance; where that sticks, just without touching: such a way is
+ * then repaired as a program would be. Return: as pull(). */
+static int pull_twice(struct pull *u, const struct clearance *c)
+{
+	struct clearance touch = *c;
+	struct pull again = *u;
+	int r = pull(u, c);
+
+	if (r != 1 || bar_interrupted() || c->zone_mm > 0)
+		return r;
+	bar_end(u->j);
+	say_stuck(u);
+	fprintf(stderr, "edm-plan: trying to come out with less, and to widen "
+		"that way\n");
+	touch.mm = touch.end_mm = TOUCH_MM - u->j->chord_mm;
+	again.keep_mm = TOUCH_MM;
+	route_free(&u->out);
+	*u = again;
+	return pull(u, &touch);
+}
+
 int pullout_way(struct plan *p)
 {
 	struct pull u = { .j = p->j, .keep_mm = p->j->clear_mm +
@@ -361,8 +352,8 @@ int pullout_way(struct plan *p)
 	if (air_cut(&u.air, &p->j->part))
 		return EX_OSERR;
 	open_air(&u);
-	find_axes(&u);
-	r = pull(&u, &c);
+	job_axes_find(p->j, u.q, u.q, &u.axes);
+	r = pull_twice(&u, &c);
 	bar_end(p->j);
 	if (r == 1)
 		say_stuck(&u);

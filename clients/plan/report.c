@@ -76,9 +76,11 @@ static json_t *body(const struct mesh *m, const struct mesh_findings *f)
 
 static json_t *dense(const struct plan *p)
 {
-	json_t *ret = json_pack("{s:i,s:f}", "blocks",
+	json_t *ret = json_pack("{s:i,s:f,s:i,s:b}", "blocks",
 				(int)(p->last - p->first), "least_seen_mm",
-				p->dense_least_mm);
+				p->dense_least_mm, "repaired_nodes",
+				(int)p->repaired, "other_lines_carried",
+				p->carried);
 
 	if (p->dense_pass_s > 0) {
 		json_object_set_new(ret, "time_s", json_real(p->dense_pass_s));
@@ -104,7 +106,7 @@ int report_put(const struct plan *p)
 	const struct job *j = p->j;
 	json_t *o;
 	char *text;
-	int r;
+	int err;
 
 	if (!j->o->report)
 		return 0;
@@ -127,7 +129,7 @@ int report_put(const struct plan *p)
 	json_decref(o);
 	if (!text)
 		return EX_OSERR;
-	r = text_put(j->o->report, text);
+	err = text_put(j->o->report, text);
 	free(text);
-	return r;
+	return err;
 }

@@ -22,6 +22,7 @@
 void route_free(struct route *w)
 {
 	free(w->node);
+	free(w->text);
 	*w = (struct route) { 0 };
 }
 
@@ -123,9 +124,17 @@ static int follow_curve(struct route *w, const struct interp_program *p,
 static int refuse_seg(const struct route_text *from, uint32_t line,
 		      const char *found, const char *wanted)
 {
-	fprintf(stderr, "%s:%u: error: %s; %s\n", from->path, line, found,
-		wanted);
+	if (!from->quiet)
+		fprintf(stderr, "%s:%u: error: %s; %s\n", from->path, line,
+			found, wanted);
 	return EX_DATAERR;
+}
+
+static int note_action(struct route *w, const struct interp_seg *s)
+{
+	if (s->kind != INTERP_BEGIN && s->kind != INTERP_END)
+		w->act_line = s->line;
+	return 0;
 }
 
 static int follow_seg(struct route *w, const struct interp_program *p,
@@ -134,7 +143,8 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 	const struct interp_seg *s = &p->segs[i];
 	struct route_node end = { .line = s->line,
 				.feed_mm_s = s->feed_mm_s,
-				.rapid = s->flags & INTERP_SEG_RAPID };
+				.rapid = s->flags & INTERP_SEG_RAPID,
+				.cond = s->cond, .act_line = w->act_line };
 	int r;
 
 	if (s->flags & INTERP_SEG_SENSED)
@@ -158,7 +168,8 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 	else if (s->kind == INTERP_CURVE)
 		r = follow_curve(w, p, s, &end);
 	else
-		return 0;
+		return note_action(w, s);
+	w->act_line = 0;
 	if (r == -EINVAL)
 		return refuse_seg(from, s->line, "a curve that cannot be cut "
 				  "into chords", "a curve without a cusp");
@@ -258,8 +269,10 @@ static int compile(struct route *w, const struct machine_config *c,
 	b = interp_build_create(&of.build);
 	r = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
 	if (r == -EINVAL) {
-		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", from->path,
-			diag.line, diag.column, diag.found, diag.wanted);
+		if (!from->quiet)
+			fprintf(stderr, "%s:%u:%u: error: %s; %s\n", from->path,
+				diag.line, diag.column, diag.found,
+				diag.wanted);
 		r = EX_DATAERR;
 	} else {
 		r = r ? EX_OSERR : lay_out(b, from, w);
@@ -293,7 +306,9 @@ int route_read(struct route *w, const struct machine_config *c,
 		r = compile(w, c, from, &text);
 	if (r == EX_OSERR)
 		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
-	free(mine);
+	if (mine)
+		mine[text.bytes] = '\0';
+	w->text = mine;
 	if (r)
 		route_free(w);
 	return r;

@@ -22,6 +22,9 @@ struct route_node {
 	float feed_mm_s;		/* F on it, as the path's length counts */
 	float strays;			/* mm, and degrees: of any axis on it */
 	bool rapid;			/* it is positioned, not eroded */
+	uint32_t cond;			/* number of its conditions; 0: none */
+	uint32_t act_line;		/* of the last M word, dwell ... between
+					 * the block before and this one; 0: none */
 };
 
 struct route {
@@ -30,6 +33,8 @@ struct route {
 	uint32_t n, room;
 	double lattice[INTERP_NAXES];	/* how far the pulses stray from it */
 	uint32_t lines;			/* of the text */
+	char *text;			/* as it was read; NULL: it was given */
+	uint32_t act_line;		/* as a node's, since the last node */
 	uint32_t beside;		/* segments that leave beside the path */
 	uint32_t beside_line;		/* the first of them */
 };
@@ -47,6 +52,7 @@ struct route_text {
 	const char *path;		/* as messages name it; - is stdin */
 	const char *text;		/* NULL: read it from there */
 	const char *dialect;		/* NULL: by the file's name */
+	bool quiet;			/* a refusal has no words */
 	const double *start;		/* of all axes; NULL: the machine
 					 * file's start_mm */
 };

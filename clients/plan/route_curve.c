@@ -111,7 +111,7 @@ static int cut(struct route *w, const struct route_curve *k, double from,
 	const double mid = from + (to - from) / 2;
 	struct piece x;
 	double off;
-	int r;
+	int err;
 
 	bezier(&k->curve, interp_nurbs_span(&k->curve, mid), from, to, &x);
 	off = strays(&x);
@@ -119,21 +119,21 @@ static int cut(struct route *w, const struct route_curve *k, double from,
 		return add_chord(w, k, &x, off);
 	if (depth == DEPTH_MAX || !isfinite(off))
 		return -EINVAL;
-	r = cut(w, k, from, mid, depth + 1);
-	return r ? r : cut(w, k, mid, to, depth + 1);
+	err = cut(w, k, from, mid, depth + 1);
+	return err ? err : cut(w, k, mid, to, depth + 1);
 }
 
 int route_curve(struct route *w, const struct route_curve *k)
 {
 	const struct interp_nurbs *c = &k->curve;
-	int r = 0;
+	int err = 0;
 
-	for (uint32_t i = c->degree; i < c->npoints && r == 0; i++) {
+	for (uint32_t i = c->degree; i < c->npoints && err == 0; i++) {
 		const double from = fmax(c->knots[i], k->from);
 		const double to = fmin(c->knots[i + 1], k->to);
 
 		if (from < to)
-			r = cut(w, k, from, to, 0);
+			err = cut(w, k, from, to, 0);
 	}
-	return r;
+	return err;
 }

@@ -183,11 +183,11 @@ static int mended(struct mesh *m, const struct mesh_load *from,
 		  struct stl_raw *raw, struct mesh_findings *f)
 {
 	stl_file s;
-	int r;
+	int err;
 
 	scale(raw, from);
-	r = fill(&s, raw);
-	if (r == 0) {
+	err = fill(&s, raw);
+	if (err == 0) {
 		mend(&s, f);
 		if (s.stats.number_of_facets < 4) {
 			fprintf(stderr, "edm-plan: %s: %u triangles are left "
@@ -195,18 +195,18 @@ static int mended(struct mesh *m, const struct mesh_load *from,
 				"body\n", from->path,
 				(unsigned int)s.stats.number_of_facets,
 				raw->n);
-			r = EX_DATAERR;
+			err = EX_DATAERR;
 		}
 	}
-	if (r == 0)
-		r = take(m, &s, from->shift_mm);
-	if (r == 0) {
+	if (err == 0)
+		err = take(m, &s, from->shift_mm);
+	if (err == 0) {
 		f->inverted = volume(m) < 0;
 		judge_edges(m, &s, f);
 		turn_out(m, f);
 	}
 	stl_close(&s);
-	return r;
+	return err;
 }
 
 int mesh_load(struct mesh *m, const struct mesh_load *from,
@@ -214,19 +214,19 @@ int mesh_load(struct mesh *m, const struct mesh_load *from,
 {
 	struct stl_raw raw;
 	double far = 0;
-	int r = stl_raw_read(from->path, &raw);
+	int err = stl_raw_read(from->path, &raw);
 
 	*m = (struct mesh) { .name = from->path };
 	*f = (struct mesh_findings) { .in_file = raw.n };
-	if (r)
-		return r;
-	r = mended(m, from, &raw, f);
+	if (err)
+		return err;
+	err = mended(m, from, &raw, f);
 	free(raw.corner);
-	if (r == EX_OSERR)
+	if (err == EX_OSERR)
 		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
-	if (r) {
+	if (err) {
 		mesh_free(m);
-		return r;
+		return err;
 	}
 	for (int k = 0; k < 3; k++)
 		far = fmax(far, fmax(fabs(m->min[k] - from->shift_mm[k]),

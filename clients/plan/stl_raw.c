@@ -48,28 +48,28 @@ static int slurp(struct source *s)
 {
 	FILE *f = fopen(s->path, "rb");
 	struct stat st;
-	int r = 0;
+	int err = 0;
 
 	if (!f || fstat(fileno(f), &st) < 0 || !S_ISREG(st.st_mode)) {
 		fprintf(stderr, "edm-plan: %s: %s; an STL file\n", s->path,
 			f ? "not a file" : strerror(errno));
-		r = EX_NOINPUT;
+		err = EX_NOINPUT;
 	} else if ((uint64_t)st.st_size >
 		   (uint64_t)MESH_TRIS_MAX * TRI_BYTES * 6) {
-		r = refuse(s, "more than 20 million triangles");
+		err = refuse(s, "more than 20 million triangles");
 	} else {
 		s->bytes = (size_t)st.st_size;
 		s->text = malloc(s->bytes + 1);
 		if (!s->text)
-			r = EX_OSERR;
+			err = EX_OSERR;
 		else if (fread(s->text, 1, s->bytes, f) != s->bytes)
-			r = refuse(s, "cannot be read to its end");
+			err = refuse(s, "cannot be read to its end");
 	}
 	if (f)
 		fclose(f);
-	if (r == 0)
+	if (err == 0)
 		s->text[s->bytes] = '\0';
-	return r;
+	return err;
 }
 
 static int check_finite(const struct source *s, const struct stl_raw *raw)
@@ -168,7 +168,7 @@ static int take_facet(struct source *s, struct stl_raw *raw)
 	static const char wanted[] = "facet normal, outer loop, three vertex, "
 				     "endloop, endfacet";
 	float normal;
-	int r;
+	int err;
 
 	if (raw->n == MESH_TRIS_MAX)
 		return refuse(s, "more than 20 million triangles");
@@ -190,68 +190,68 @@ static int take_facet(struct source *s, struct stl_raw *raw)
 			return refuse_line(s, "not a normal", wanted);
 	if (!take_word(s, "outer") || !take_word(s, "loop"))
 		return refuse_line(s, "no outer loop here", wanted);
-	r = take_corners(s, raw->corner[raw->n]);
-	if (r == 0 && (!take_word(s, "endloop") || !take_word(s, "endfacet")))
-		r = refuse_line(s, "a facet that does not end", wanted);
-	raw->n += r == 0;
-	return r;
+	err = take_corners(s, raw->corner[raw->n]);
+	if (err == 0 && (!take_word(s, "endloop") || !take_word(s, "endfacet")))
+		err = refuse_line(s, "a facet that does not end", wanted);
+	raw->n += err == 0;
+	return err;
 }
 
 static int read_text(struct source *s, struct stl_raw *raw)
 {
 	bool within = false;
-	int r = 0;
+	int err = 0;
 
 	if (memchr(s->text, '\0', s->bytes))
 		return refuse(s, "neither text nor as long as its number of "
 			      "triangles says: it may be cut short");
 	s->at = s->text;
 	s->line = 1;
-	while (r == 0) {
+	while (err == 0) {
 		if (take_word(s, within ? "endsolid" : "solid")) {
 			within = !within;
 			skip_line(s);
 		} else if (within && take_word(s, "facet")) {
-			r = take_facet(s, raw);
+			err = take_facet(s, raw);
 		} else {
 			break;
 		}
 	}
-	if (r == 0 && *s->at != '\0')
+	if (err == 0 && *s->at != '\0')
 		return refuse_line(s, "not understood", within ?
 				   "facet or endsolid" : "solid");
-	if (r == 0 && within)
+	if (err == 0 && within)
 		return refuse_line(s, "the text ends inside its solid",
 				   "endsolid: it may be cut short");
-	return r;
+	return err;
 }
 
 int stl_raw_read(const char *path, struct stl_raw *ret)
 {
 	struct source s = { .path = path };
 	uint32_t n = 0;
-	int r = slurp(&s);
+	int err = slurp(&s);
 
 	*ret = (struct stl_raw) { 0 };
-	if (r == 0 && s.bytes == 0)
-		r = refuse(&s, "an empty file");
-	if (r == 0 && s.bytes >= HEAD_BYTES)
+	if (err == 0 && s.bytes == 0)
+		err = refuse(&s, "an empty file");
+	if (err == 0 && s.bytes >= HEAD_BYTES)
 		memcpy(&n, s.text + HEAD_BYTES - 4, 4);
-	if (r == 0 && s.bytes >= HEAD_BYTES &&
+	if (err == 0 && s.bytes >= HEAD_BYTES &&
 	    s.bytes == HEAD_BYTES + (uint64_t)n * TRI_BYTES)
-		r = read_binary(&s, n, ret);
-	else if (r == 0)
-		r = read_text(&s, ret);
-	if (r == 0)
-		r = check_finite(&s, ret);
-	if (r == 0 && ret->n < 4)
-		r = refuse(&s, "fewer than 4 triangles");
-	if (r == EX_OSERR)
+		err = read_binary(&s, n, ret);
+	else if (err == 0)
+		err = read_text(&s, ret);
+	if (err == 0)
+		err = check_finite(&s, ret);
+	if (err == 0 && ret->n < 4)
+		err = refuse(&s, "fewer than 4 triangles");
+	if (err == EX_OSERR)
 		fprintf(stderr, "edm-plan: %s: out of memory\n", path);
 	free(s.text);
-	if (r) {
+	if (err) {
 		free(ret->corner);
 		*ret = (struct stl_raw) { 0 };
 	}
-	return r;
+	return err;
 }

@@ -55,7 +55,15 @@ static void put_way_in(FILE *f, const struct plan *p, const struct plan_way *w)
 	}
 }
 
-char *text_write(const struct plan *p, const struct plan_way *w)
+static void put_head(FILE *f, const struct plan *p, const struct plan_way *w)
+{
+	fprintf(f, "(edm-plan " EDM_VERSION ": %u blocks for %u, proved to "
+		"keep %.3f mm: %s)\n", w->n - 1, p->last - p->first,
+		w->least_mm, w->how);
+}
+
+/* Its positioning and the blocks. */
+static char *plain(const struct plan *p, const struct plan_way *w)
 {
 	const double *at = p->dense.node[0].q;
 	char *text = NULL;
@@ -64,9 +72,8 @@ char *text_write(const struct plan *p, const struct plan_way *w)
 
 	if (!f)
 		return NULL;
-	fprintf(f, "(edm-plan " EDM_VERSION ": %u blocks for %u, proved to "
-		"keep %.3f mm: %s)\nG21 G90 G94 G54 M5\n", w->n - 1,
-		p->last - p->first, w->least_mm, w->how);
+	put_head(f, p, w);
+	fputs("G21 G90 G94 G54 M5\n", f);
 	for (uint32_t i = 1; i <= p->first; i++) {
 		const double *to = i < p->first ? p->dense.node[i].q : w->q[0];
 
@@ -84,6 +91,101 @@ char *text_write(const struct plan *p, const struct plan_way *w)
 		return NULL;
 	}
 	return text;
+}
+
+/* -- The program's other lines -------------------------------------------------- */
+
+static const char *line_at(const char *text, uint32_t line)
+{
+	for (; line > 1 && text; line--) {
+		text = strchr(text, '\n');
+		text += text != NULL;
+	}
+	return text;
+}
+
+/* The dense program with the blocks of @w instead of those of its way in. */
+static char *carried(const struct plan *p, const struct plan_way *w)
+{
+	const char *text = p->dense.text;
+	const char *from = line_at(text, p->dense.node[p->first + 1].line);
+	const char *to = line_at(text, p->dense.node[p->last].line + 1);
+	char *ret = NULL;
+	size_t size;
+	FILE *f;
+
+	if (!from)
+		return NULL;
+	f = open_memstream(&ret, &size);
+	if (!f)
+		return NULL;
+	put_head(f, p, w);
+	fwrite(text, 1, (size_t)(from - text), f);
+	fputs("G21 G90 G94\n", f);
+	put_way_in(f, p, w);
+	if (to)
+		fputs(to, f);
+	if (fclose(f)) {
+		free(ret);
+		return NULL;
+	}
+	return ret;
+}
+
+static bool is_at(const struct route_node *a, const struct plan *p,
+		  const double q[INTERP_NAXES])
+{
+	for (int k = 0; k < INTERP_NAXES; k++)
+		if (fabs(a->q[k] - q[k]) >
+		    p->j->config.axes.axis[k].pulse_mm * 1.01)
+			return false;
+	return true;
+}
+
+/* Does @r go where the dense program goes, but along @w? */
+static bool goes_same_way(const struct plan *p, const struct plan_way *w,
+			  const struct route *r)
+{
+	const struct route *d = &p->dense;
+	const uint32_t left = d->n - 1 - p->last;
+
+	if (r->n != p->first + w->n + left)
+		return false;
+	for (uint32_t i = 0; i < r->n; i++) {
+		const bool in = i >= p->first && i < p->first + w->n;
+		const double *q = in ? w->q[i - p->first] :
+				  i < p->first ? d->node[i].q :
+				  d->node[d->n - (r->n - i)].q;
+
+		if (!is_at(&r->node[i], p, q) ||
+		    (i > p->first && in && (r->node[i].rapid ||
+		     r->node[i].cond != d->node[p->first + 1].cond)))
+			return false;
+	}
+	return true;
+}
+
+/*
+ * Lines are carried over as they stand, and what comes out is read back: where
+ * inches, increments or subprograms give the blocks or the lines another sense,
+ * it goes another way.
+ */
+char *text_write(struct plan *p, const struct plan_way *w)
+{
+	char *text = p->dense.text ? carried(p, w) : NULL;
+	const struct route_text from = { .path = p->j->o->program,
+				       .text = text,
+				       .dialect = p->j->o->dialect,
+				       .quiet = true };
+	struct route r = { 0 };
+
+	p->carried = text && route_read(&r, &p->j->config, &from) == 0 &&
+		     goes_same_way(p, w, &r);
+	route_free(&r);
+	if (p->carried)
+		return text;
+	free(text);
+	return plain(p, w);
 }
 
 int text_put(const char *path, const char *text)

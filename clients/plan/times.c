@@ -97,68 +97,68 @@ static int ask(const struct room *r, const struct machine_config *c,
 	for (int nodes = 0; nodes < 2; nodes++) {
 		const char *outcome;
 		json_t *o;
-		int e = put_machine(r, c, nodes);
+		int err = put_machine(r, c, nodes);
 
-		if (e)
-			return e;
+		if (err)
+			return err;
 		o = run(r, program);
 		outcome = json_string_value(json_object_get(o, "outcome"));
 		ret_s[nodes] = json_number_value(json_object_get(o,
 							"virtual_s"));
-		e = outcome && strcmp(outcome, "done") == 0 ? 0 : EX_SOFTWARE;
-		if (e)
+		err = outcome && strcmp(outcome, "done") == 0 ? 0 : EX_SOFTWARE;
+		if (err)
 			fprintf(stderr, "edm-plan: %s on %s: %s; a program "
 				"that it runs to its end\n", r->sim, program,
 				outcome ? outcome : "no report");
 		json_decref(o);
-		if (e)
-			return e;
+		if (err)
+			return err;
 	}
 	return 0;
 }
 
-static int ask_way(const struct plan *p, const struct room *r,
+static int ask_way(struct plan *p, const struct room *r,
 		   struct plan_way *w)
 {
 	double s[2] = { 0, 0 };
 	char *text;
-	int e;
+	int err;
 
 	if (!w->how)
 		return 0;
 	text = text_write(p, w);
-	e = text ? text_put(r->ngc, text) : EX_OSERR;
+	err = text ? text_put(r->ngc, text) : EX_OSERR;
 	free(text);
-	if (e == 0)
-		e = ask(r, &p->j->config, r->ngc, s);
+	if (err == 0)
+		err = ask(r, &p->j->config, r->ngc, s);
 	w->time_pass_s = s[0];
 	w->time_stop_s = s[1];
-	return e;
+	return err;
 }
 
 int times_ask(struct plan *p)
 {
 	double s[2] = { 0, 0 };
 	struct room r;
-	int e = make_room(&r);
+	int err = make_room(&r);
 
-	if (e) {
+	if (err) {
 		fprintf(stderr, "edm-plan: %s; a folder in /tmp\n",
 			strerror(errno));
-		return e;
+		return err;
 	}
 	bar_show(p->j, 0.1, "edmsim runs the dense way");
 	if (p->j->o->program)
-		e = ask(&r, &p->j->config, p->j->o->program, s);
+		err = ask(&r, &p->j->config, p->j->o->program, s);
 	p->dense_pass_s = s[0];
 	p->dense_stop_s = s[1];
 	bar_show(p->j, 0.4, "edmsim runs the greedy way");
-	if (e == 0)
-		e = ask_way(p, &r, &p->greedy);
+	if (err == 0)
+		err = ask_way(p, &r, &p->greedy);
 	bar_show(p->j, 0.7, "edmsim runs the way to be written");
-	if (e == 0)
-		e = ask_way(p, &r, &p->best);
+	if (err == 0)
+		err = ask_way(p, &r, &p->best);
 	bar_end(p->j);
 	clear_room(&r);
-	return e;
+	return err;
 }

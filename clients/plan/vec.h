@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-#define PLAN_RADIAN	(3.14159265358979323846 / 180)
+#define PLAN_RADIAN	(M_PI / 180)
 
 static inline double v_dot(const double a[3], const double b[3])
 {

@@ -61,7 +61,7 @@ int view_put(const struct plan *p)
 	char *text = NULL;
 	size_t size;
 	FILE *f;
-	int r;
+	int err;
 
 	if (!p->j->o->view)
 		return 0;
@@ -77,7 +77,7 @@ int view_put(const struct plan *p)
 			put_pose(f, p, i, k, &pair);
 	fputs("];\n", f);
 	fputs(view_page_tail, f);
-	r = fclose(f) ? EX_OSERR : text_put(p->j->o->view, text);
+	err = fclose(f) ? EX_OSERR : text_put(p->j->o->view, text);
 	free(text);
-	return r;
+	return err;
 }

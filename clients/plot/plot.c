@@ -169,16 +169,16 @@ static int draw(const struct plot_sheet *s, int out)
 {
 	char *argv[] = { "gnuplot", "-d", "-", NULL };
 	int in = script_fd(s);
-	int r;
+	int err;
 
 	if (in < 0)
 		return in;
-	r = run_gnuplot(argv, in, out);
+	err = run_gnuplot(argv, in, out);
 	close(in);
-	if (r > 0)
+	if (err > 0)
 		fprintf(stderr, "%s: error: plot: gnuplot ended with %d\n",
-			s->program, r);
-	return r > 0 ? -EIO : r;
+			s->program, err);
+	return err > 0 ? -EIO : err;
 }
 
 int plot_draw(const struct plot_sheet *s)

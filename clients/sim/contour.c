@@ -6,6 +6,7 @@
 #include "sim.h"
 
 #include "interp/at.h"
+#include "path/place.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,11 +28,11 @@ static void look(struct sim_run *r)
 	struct watch *w = r->on_cycle_arg;
 	const struct cycle *c = &r->cycle;
 	const struct interp_program_head *h = r->job.program.head;
-	const double place_mm = cycle_place_mm(c);
+	const double at_mm = place_mm(c);
 	struct interp_contour_error e;
 	double mm[INTERP_NAXES];
 
-	if (place_mm == w->place_mm)
+	if (at_mm == w->place_mm)
 		return;
 	for (uint32_t j = 0; j < h->naxes; j++) {
 		const uint8_t i = h->column[j];
@@ -39,8 +40,8 @@ static void look(struct sim_run *r)
 		mm[j] = (comp_place(&c->comp.axis[i], r->in.actual[i]) -
 			 c->probe.shift[i]) * h->pulse_mm[i];
 	}
-	interp_contour_step(&w->foot, mm, place_mm, &e);
-	w->place_mm = place_mm;
+	interp_contour_step(&w->foot, mm, at_mm, &e);
+	w->place_mm = at_mm;
 	w->max_mm = fmax(w->max_mm, e.mm);
 	w->sum_mm += e.mm;
 	w->n++;

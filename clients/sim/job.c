@@ -55,7 +55,7 @@ static int text_load(const char *path, struct text *t)
 {
 	struct stat st;
 	FILE *f;
-	int r;
+	int err;
 
 	if (strcmp(path, "-") == 0)
 		return read_all(stdin, path, t);
@@ -63,11 +63,11 @@ static int text_load(const char *path, struct text *t)
 	if (!f)
 		return refuse_file(path, strerror(errno));
 	if (fstat(fileno(f), &st) == 0 && S_ISDIR(st.st_mode))
-		r = refuse_file(path, "is a directory");
+		err = refuse_file(path, "is a directory");
 	else
-		r = read_all(f, path, t);
+		err = read_all(f, path, t);
 	fclose(f);
-	return r;
+	return err;
 }
 
 static void say_refusal(const char *path, const struct interp_diag *d)
@@ -120,24 +120,24 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	struct interp_diag diag = { 0 };
 	const double from_s = trials_now_s();
 	struct interp_build *b;
-	int r;
+	int err;
 
 	config_compiling(c, tech, &of);
 	of.text.nc.notes = &notes;
 	b = interp_build_create(&of.build);
 	if (!b)
 		return EX_OSERR;
-	r = interp_compile(&text, &of.text, b, &job->lines, &diag);
+	err = interp_compile(&text, &of.text, b, &job->lines, &diag);
 	job->compile_lines_s = job->lines / (trials_now_s() - from_s);
 	/* A million lines are as large as half their program. */
 	free(t->at);
 	t->at = NULL;
-	if (r == -EINVAL)
+	if (err == -EINVAL)
 		say_refusal(o->job, &diag);
-	r = r == 0 ? lay_out(job, b, o->job) :
-	    r == -EINVAL ? EX_DATAERR : EX_OSERR;
+	err = err == 0 ? lay_out(job, b, o->job) :
+	    err == -EINVAL ? EX_DATAERR : EX_OSERR;
 	interp_build_destroy(b);
-	return r;
+	return err;
 }
 
 int job_load(struct sim_job *job, const struct sim_options *o,
@@ -145,17 +145,17 @@ int job_load(struct sim_job *job, const struct sim_options *o,
 {
 	struct text t = { 0 };
 	struct config_tech tech;
-	int r = edmsim_tech_load(&tech, o, c);
+	int err = edmsim_tech_load(&tech, o, c);
 
-	if (r == 0)
-		r = text_load(o->job, &t);
-	if (r == 0)
-		r = compile(job, o, c, &t, &tech);
+	if (err == 0)
+		err = text_load(o->job, &t);
+	if (err == 0)
+		err = compile(job, o, c, &t, &tech);
 	config_tech_free(&tech);
-	if (r == EX_OSERR)
+	if (err == EX_OSERR)
 		fprintf(stderr, "edmsim: %s: out of memory\n", o->job);
 	free(t.at);
-	return r;
+	return err;
 }
 
 void job_unload(struct sim_job *job)

@@ -39,23 +39,23 @@ static void say_no_contouring(const struct machine_config *c)
 static int configure(struct machine_config *c, const struct sim_options *o)
 {
 	struct interp_diag d = { 0 };
-	int r = 0;
+	int err = 0;
 
 	config_defaults(c);
 	if (o->machine_file)
-		r = config_read(c, o->machine_file, &d);
-	if (r == 0)
-		r = config_check_kinematics(c, &d);
+		err = config_read(c, o->machine_file, &d);
+	if (err == 0)
+		err = config_check_kinematics(c, &d);
 	/* Axes that are led by the cycle have what the cycle has. */
-	if (r == 0 && c->sim.loops && !o->tune)
-		r = config_check_contouring(c, &d);
-	if (r == -EINVAL) {
+	if (err == 0 && c->sim.loops && !o->tune)
+		err = config_check_contouring(c, &d);
+	if (err == -EINVAL) {
 		config_say(o->machine_file, &d);
 		return EX_CONFIG;
 	}
-	if (r < 0) {
+	if (err < 0) {
 		fprintf(stderr, "edmsim: %s: %s; a machine file\n",
-			o->machine_file, strerror(-r));
+			o->machine_file, strerror(-err));
 		return EX_NOINPUT;
 	}
 	if (o->period_us > 0)
@@ -73,27 +73,27 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 static int finish(struct sim_run *r)
 {
 	const bool to_stdout = r->o->report && strcmp(r->o->report, "-") == 0;
-	int e = 0;
+	int err = 0;
 
 	if (!r->o->quiet)
 		report_print(r, to_stdout ? stderr : stdout);
 	if (r->o->report)
-		e = report_write(r, r->o->report);
-	if (e == 0 && r->o->plot)
-		e = plot_finish(r->plot) < 0 ? EX_CANTCREAT : 0;
-	return e ? e : strcmp(r->result.outcome, "done") != 0;
+		err = report_write(r, r->o->report);
+	if (err == 0 && r->o->plot)
+		err = plot_finish(r->plot) < 0 ? EX_CANTCREAT : 0;
+	return err ? err : strcmp(r->result.outcome, "done") != 0;
 }
 
 static int print_tech(const struct sim_options *o,
 		      const struct machine_config *c)
 {
 	struct config_tech t;
-	int e = edmsim_tech_load(&t, o, c);
+	int err = edmsim_tech_load(&t, o, c);
 
-	if (e == 0)
-		e = edmsim_tech_print(&t);
+	if (err == 0)
+		err = edmsim_tech_print(&t);
 	config_tech_free(&t);
-	return e;
+	return err;
 }
 
 static void check(const struct sim_run *r)
@@ -106,16 +106,16 @@ static int run_whole(struct sim_run *r)
 {
 	const bool wanted = r->o->report && r->o->dry_run;
 	const bool looks = wanted && edmsim_contour_look(r);
-	int e;
+	int err;
 
 	if (wanted && !looks)
 		tune_contour_watch(r);
-	e = run_job(r);
+	err = run_job(r);
 	if (looks)
 		edmsim_contour_looked(r);
 	else
 		tune_contour_measure(r);
-	return e ? e : finish(r);
+	return err ? err : finish(r);
 }
 
 int main(int argc, char **argv)
@@ -123,13 +123,13 @@ int main(int argc, char **argv)
 	static struct machine_config config;
 	static struct sim_run run;
 	struct sim_options o;
-	int e = edmsim_options_read(&o, argc, argv);
+	int err = edmsim_options_read(&o, argc, argv);
 
-	if (e >= 0)
-		return e;
-	e = configure(&config, &o);
-	if (e)
-		return e;
+	if (err >= 0)
+		return err;
+	err = configure(&config, &o);
+	if (err)
+		return err;
 	if (o.print_config) {
 		config_print(&config, stdout);
 		return 0;
@@ -140,18 +140,18 @@ int main(int argc, char **argv)
 		return EX_CANTCREAT;
 	run.o = &o;
 	run.config = &config;
-	e = job_load(&run.job, &o, &config);
-	if (e == 0 && o.check)
+	err = job_load(&run.job, &o, &config);
+	if (err == 0 && o.check)
 		check(&run);
-	else if (e == 0 && o.tune)
-		e = tune_contour(&run);
-	else if (e == 0 && o.emit)
-		e = job_emit(&run.job, &o, &config);
-	else if (e == 0 && o.tune_servo)
-		e = tune_servo(&o, &config, &run.job);
-	else if (e == 0)
-		e = run_whole(&run);
+	else if (err == 0 && o.tune)
+		err = tune_contour(&run);
+	else if (err == 0 && o.emit)
+		err = job_emit(&run.job, &o, &config);
+	else if (err == 0 && o.tune_servo)
+		err = tune_servo(&o, &config, &run.job);
+	else if (err == 0)
+		err = run_whole(&run);
 	free(run.spent);
 	job_unload(&run.job);
-	return e;
+	return err;
 }

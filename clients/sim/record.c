@@ -4,6 +4,7 @@
  */
 #include "plot.h"
 #include "sim.h"
+#include "path/place.h"
 
 #include <errno.h>
 #include <math.h>
@@ -48,7 +49,7 @@ static void put_point(FILE *f, const struct cycle *c)
 	p = put_int(p, c->cursor.seg.line);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		*p++ = ',';
-		p = put_int(p, cycle_axis(c, i));
+		p = put_int(p, place_axis(c, i));
 	}
 	*p++ = '\n';
 	fwrite(row, 1, (size_t)(p - row), f);
@@ -73,16 +74,16 @@ static struct plot *begin_plot(const struct sim_run *r)
 int record_open(struct sim_run *r)
 {
 	const struct sim_options *o = r->o;
-	int e = 0;
+	int err = 0;
 
 	if (o->pulses)
-		e = open_out(&r->pulses, o->pulses);
-	if (e)
-		return e;
+		err = open_out(&r->pulses, o->pulses);
+	if (err)
+		return err;
 	if (o->trace)
-		e = open_out(&r->trace, o->trace);
-	if (e)
-		return e;
+		err = open_out(&r->trace, o->trace);
+	if (err)
+		return err;
 	if (o->plot && !(r->plot = begin_plot(r)))
 		return EX_OSERR;
 	if (r->pulses) {
@@ -104,8 +105,8 @@ void record_point(void *arg, const struct cycle *c)
 
 	w->points++;
 	/* A change of axis: nothing that moved goes on. */
-	w->switches += w->last_moved && !(cycle_moved(c) & w->last_moved);
-	w->last_moved = cycle_moved(c);
+	w->switches += w->last_moved && !(place_moved(c) & w->last_moved);
+	w->last_moved = place_moved(c);
 	if (r->deviation && !escape_is_out(&c->escape)) {
 		const double d = interp_cursor_deviation_mm(&c->cursor);
 
@@ -154,14 +155,14 @@ static void plot_cycle(const struct sim_run *r)
 	const struct cycle *c = &r->cycle;
 	const double *pulse = c->cursor.p.head->pulse_mm;
 	struct plot_row row = {
-		.t_s = time_s(c), .s_mm = cycle_place_mm(c),
+		.t_s = time_s(c), .s_mm = place_mm(c),
 		.feed_mm_s = c->feed_mm_s,
 		.gap_v = c->config.dry_run ? NAN : c->gap_v,
 		.state = (int)c->state, .cut = cuts(c),
 	};
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		row.axis_mm[i] = cycle_axis(c, i) * pulse[i];
+		row.axis_mm[i] = place_axis(c, i) * pulse[i];
 	plot_add(r->plot, &row);
 }
 
@@ -171,10 +172,10 @@ static void trace_cycle(const struct sim_run *r)
 	const double *pulse = c->cursor.p.head->pulse_mm;
 
 	fprintf(r->trace, "%.6f,%u,%.6f,%.6f,%.2f,%s",
-		time_s(c), c->cursor.seg.line, cycle_place_mm(c),
+		time_s(c), c->cursor.seg.line, place_mm(c),
 		c->feed_mm_s, c->gap_v, state_duty[c->state].name);
 	for (int i = 0; i < INTERP_NAXES; i++)
-		fprintf(r->trace, ",%.10g", cycle_axis(c, i) * pulse[i]);
+		fprintf(r->trace, ",%.10g", place_axis(c, i) * pulse[i]);
 	put_gap(r);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		fprintf(r->trace, ",%.10g", c->given.target[i] * pulse[i]);
@@ -204,9 +205,9 @@ static int close_out(FILE *f, const char *path)
 
 int record_close(struct sim_run *r)
 {
-	const int e = close_out(r->pulses, r->o->pulses);
+	const int err = close_out(r->pulses, r->o->pulses);
 	const int f = close_out(r->trace, r->o->trace ? r->o->trace :
 							"trace");
 
-	return e ? e : f;
+	return err ? err : f;
 }

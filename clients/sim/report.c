@@ -136,20 +136,20 @@ int report_write(const struct sim_run *r, const char *path)
 {
 	json_t *o = report(r);
 	FILE *f = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
-	int e = 0;
+	int err = 0;
 
 	if (!f) {
-		e = EX_CANTCREAT;
+		err = EX_CANTCREAT;
 	} else {
 		const bool bad = json_dumpf(o, f, JSON_INDENT(2)) < 0 ||
 				 fputc('\n', f) < 0 || fflush(f) != 0;
 
-		e = (f != stdout && fclose(f) != 0) || bad ? EX_IOERR : 0;
+		err = (f != stdout && fclose(f) != 0) || bad ? EX_IOERR : 0;
 	}
-	if (e)
+	if (err)
 		fprintf(stderr, "edmsim: %s: %s\n", path, strerror(errno));
 	json_decref(o);
-	return e;
+	return err;
 }
 
 /* A servo that goes in and out on the spot cuts nothing and says nothing. */

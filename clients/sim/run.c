@@ -56,22 +56,22 @@ static int open_machine(struct sim_run *r)
 {
 	const uint64_t seed = r->o->seed_given ? r->o->seed :
 						 (uint64_t)r->config->sim.seed;
-	int e;
+	int err;
 
 	if (at_once(r))
-		e = io_null_open(&r->machine, NULL, NULL);
+		err = io_null_open(&r->machine, NULL, NULL);
 	else
-		e = io_sim_open_seed(&r->machine, r->config, seed);
-	return e ? EX_OSERR : 0;
+		err = io_sim_open_seed(&r->machine, r->config, seed);
+	return err ? EX_OSERR : 0;
 }
 
 static int set_up(struct sim_run *r)
 {
 	struct cycle_config cc;
-	int e = open_machine(r);
+	int err = open_machine(r);
 
-	if (e)
-		return e;
+	if (err)
+		return err;
 	config_cycle(r->config, &cc);
 	cc.dry_run = r->o->dry_run || r->config->backend == BACKEND_NULL;
 	cc.overrun_limit = 0;
@@ -89,11 +89,11 @@ static int set_up(struct sim_run *r)
 	r->spent = calloc(r->job.program.head->nconds, sizeof(*r->spent));
 	if (!r->spent)
 		return EX_OSERR;
-	e = record_open(r);
+	err = record_open(r);
 	r->deviation = r->o->report != NULL;
 	r->cycle.on_point = record_point;
 	r->cycle.on_point_arg = r;
-	return e;
+	return err;
 }
 
 static void progress(const struct sim_run *r, bool last)
@@ -211,10 +211,10 @@ static int32_t end_error(const struct sim_run *r)
 
 int run_job(struct sim_run *r)
 {
-	int e = set_up(r);
+	int err = set_up(r);
 
-	if (e)
-		return e;
+	if (err)
+		return err;
 	signal(SIGINT, on_signal);
 	signal(SIGTERM, on_signal);
 	cycles(r);

@@ -253,39 +253,40 @@ static int check_method(const struct tuning *t)
 
 static int prepare(struct tuning *t)
 {
-	int e = check_job(t->run);
+	int err = check_job(t->run);
 
-	if (e)
-		return e;
+	if (err)
+		return err;
 	watch(t);
-	e = check_loops(t);
-	if (e)
-		return e;
-	e = check_method(t);
-	if (e)
-		return e;
-	e = run_job(t->run);
-	if (e == 0 && t->rows.full)
+	err = check_loops(t);
+	if (err)
+		return err;
+	err = check_method(t);
+	if (err)
+		return err;
+	err = run_job(t->run);
+	if (err == 0 && t->rows.full)
 		return refuse("the job takes too long", "a piece of it, of at "
 			      "most 2000000 periods");
-	return e == 0 && !fill(t) ? EX_OSERR : e;
+	return err == 0 && !fill(t) ? EX_OSERR : err;
 }
 
 static void print_gains(const struct tuning *t,
 			const struct interp_compensate_gains *g)
 {
 	const uint32_t m = t->config.methods;
+	const int d = INTERP_TUNE_DIGITS;
 
 	printf("[contour]\nmethod = %s\n", t->run->config->contour.method);
 	if (m & INTERP_COMPENSATE_FEEDFORWARD)
-		printf("speed = %.4g\nacceleration = %.4g\nlead_periods = %.4g\n",
-		       g->velocity, g->acceleration, g->lead_periods);
+		printf("speed = %.*g\nacceleration = %.*g\nlead_periods = %.*g\n",
+		       d, g->velocity, d, g->acceleration, d, g->lead_periods);
 	if (m & INTERP_COMPENSATE_CROSS)
-		printf("cross_1_s = %.4g\n", g->cross_1_s);
+		printf("cross_1_s = %.*g\n", d, g->cross_1_s);
 	if (m & INTERP_COMPENSATE_PREDICTIVE)
-		printf("predicted_1_s = %.4g\nmeasured_1_s = %.4g\n"
-		       "horizon_s = %.4g\n", g->predicted_1_s, g->measured_1_s,
-		       g->horizon_s);
+		printf("predicted_1_s = %.*g\nmeasured_1_s = %.*g\n"
+		       "horizon_s = %.*g\n", d, g->predicted_1_s,
+		       d, g->measured_1_s, d, g->horizon_s);
 }
 
 static int try_out(struct tuning *t, const char *what, uint32_t methods,
@@ -337,18 +338,18 @@ static int find(struct tuning *t, struct interp_compensate_gains *ret)
 static int tune(struct tuning *t)
 {
 	struct interp_compensate_gains g = t->config.gains;
-	int e = try_out(t, "position loops alone", 0, &g);
+	int err = try_out(t, "position loops alone", 0, &g);
 
-	if (e == 0)
-		e = try_out(t, "the gains it has", t->config.methods, &g);
-	if (e)
-		return e;
+	if (err == 0)
+		err = try_out(t, "the gains it has", t->config.methods, &g);
+	if (err)
+		return err;
 	if (find(t, &g) < 0)
 		return refuse("its method has no gains",
 			      "feedforward, cross-coupled or predictive");
-	e = try_out(t, "these gains", t->config.methods, &g);
+	err = try_out(t, "these gains", t->config.methods, &g);
 	print_gains(t, &g);
-	return e;
+	return err;
 }
 
 static void forget(struct tuning *t)
@@ -361,12 +362,12 @@ static void forget(struct tuning *t)
 int tune_contour(struct sim_run *r)
 {
 	struct tuning t = { .run = r };
-	int e = prepare(&t);
+	int err = prepare(&t);
 
-	if (e == 0)
-		e = tune(&t);
+	if (err == 0)
+		err = tune(&t);
 	forget(&t);
-	return e;
+	return err;
 }
 
 void tune_contour_watch(struct sim_run *r)

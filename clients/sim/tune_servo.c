@@ -141,7 +141,7 @@ static void take_keys(struct tune *t, const struct candidate *a, size_t n)
 
 static void choose_keys(struct tune *t)
 {
-	const struct config_gap *g = &t->was->gap;
+	const struct cycle_gap_config *g = &t->was->gap;
 	/* The window's upper end, where it is set, is what is held. */
 	const struct candidate held = {
 		SECTION_GAP, g->window_high_v > 0 ? "window_high_v" : "servo_v",
@@ -254,14 +254,14 @@ static void look(struct tune *t)
 
 static int test(struct tune *t)
 {
-	int e = trial_run(&t->test, t->was, &t->test_before);
+	int err = trial_run(&t->test, t->was, &t->test_before);
 
-	if (e == 0)
-		e = trial_run(&t->test, &t->now, &t->test_after);
-	t->tested = e == 0;
+	if (err == 0)
+		err = trial_run(&t->test, &t->now, &t->test_after);
+	t->tested = err == 0;
 	if (t->tested)
 		t->test_score = tune_score(&t->test_after, &t->test_before);
-	return e;
+	return err;
 }
 
 static int search_and_test(struct tune *t)
@@ -300,7 +300,7 @@ int tune_servo(const struct sim_options *o, const struct machine_config *c,
 {
 	const uint64_t seed = o->seed_given ? o->seed : (uint64_t)c->sim.seed;
 	static struct tune t;
-	int e;
+	int err;
 
 	t.was = c;
 	t.now = *c;
@@ -316,12 +316,12 @@ int tune_servo(const struct sim_options *o, const struct machine_config *c,
 			      "a job, or a table, that leaves some to the "
 			      "machine file");
 	t.trials = trials_begin(o->quiet, t.budget);
-	e = search_and_test(&t);
-	if (e)
-		return e;
+	err = search_and_test(&t);
+	if (err)
+		return err;
 	if (o->json)
-		e = tune_write(&t, stdout);
+		err = tune_write(&t, stdout);
 	else
 		tune_print(&t, stdout);
-	return e ? e : t.interrupted;
+	return err ? err : t.interrupted;
 }

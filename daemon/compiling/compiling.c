@@ -38,7 +38,7 @@ void config_compiling(const struct machine_config *c,
 	*o = (struct interp_compile_options) {
 		.nc = { .machine = &c->axes, .wire = &c->wire,
 			.feed_mm_s = c->feed_default_mm_min / 60,
-			.escape = (enum interp_escape_mode)c->jump.escape,
+			.escape = (enum interp_escape_mode)c->jump_escape,
 			.tip_tolerance_mm =
 				c->kinematics.tolerance_um / 1000,
 			.tech = tech->table, .machine_tech = &ret->tech,

@@ -23,16 +23,16 @@ int config_check_kinematics(const struct machine_config *c,
 {
 	struct interp_kinematics kin;
 	char why[sizeof(diag->found)];
-	const int r = config_kinematics(c, &kin, diag);
+	const int err = config_kinematics(c, &kin, diag);
 
 	diag->line = c->kinematics.line;
 	diag->column = 0;
-	if (r == -EINVAL) {
+	if (err == -EINVAL) {
 		snprintf(why, sizeof(why), "%s", diag->found);
 		snprintf(diag->found, sizeof(diag->found),
 			 "kinematics.chain: %.130s", why);
 	}
-	for (uint32_t i = 0; r == 0 && i < kin.njoints; i++) {
+	for (uint32_t i = 0; err == 0 && i < kin.njoints; i++) {
 		if (c->axes.present & 1u << kin.joint[i].axis)
 			continue;
 		return interp_diag_say(diag, "kinematics.chain has an axis "
@@ -40,5 +40,5 @@ int config_check_kinematics(const struct machine_config *c,
 				       "present = yes",
 				       INTERP_AXIS_LETTERS[kin.joint[i].axis]);
 	}
-	return r == -EINVAL ? r : 0;
+	return err == -EINVAL ? err : 0;
 }

@@ -19,11 +19,11 @@ void config_tech_base(const struct machine_config *c, struct interp_tech *ret)
 	ret->v[INTERP_TECH_OPEN_V] = c->gap.open_v;
 	ret->v[INTERP_TECH_WINDOW_LOW_V] = c->gap.window_low_v;
 	ret->v[INTERP_TECH_WINDOW_HIGH_V] = c->gap.window_high_v;
-	ret->v[INTERP_TECH_GAIN_MM_S_V] = c->gap.feed_gain_mm_s_v;
+	ret->v[INTERP_TECH_GAIN_MM_S_V] = c->gap.gain_mm_s_v;
 	ret->v[INTERP_TECH_FEED_MAX_MM_S] = c->gap.feed_max_mm_s;
 	ret->v[INTERP_TECH_RETRACT_MM_S] = c->gap.retract_mm_s;
 	ret->v[INTERP_TECH_JUMP_MM] = c->jump.height_mm;
-	ret->v[INTERP_TECH_JUMP_EVERY_S] = c->jump.every_s;
+	ret->v[INTERP_TECH_JUMP_EVERY_S] = c->seconds.jump_every;
 	ret->v[INTERP_TECH_JUMP_SHORT_OF_MM] = c->jump.short_of_mm;
 }
 

@@ -7,7 +7,6 @@
 #include <errno.h>
 #include <math.h>
 
-#define PI	3.14159265358979323846
 
 struct check {
 	const struct machine_config *c;
@@ -32,7 +31,7 @@ static void blame(struct check *q, uint32_t a, uint32_t b, uint32_t c)
 /* No area has less around it than a round one. */
 static int perimeter(struct check *q)
 {
-	const double round_mm = 2 * sqrt(PI * q->c->sim.area_mm2);
+	const double round_mm = 2 * sqrt(M_PI * q->c->sim.area_mm2);
 
 	/* A round one may be given with two decimals. */
 	if (q->c->sim.perimeter_mm == 0 ||

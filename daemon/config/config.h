@@ -13,6 +13,7 @@
 #define CONFIG_H
 
 #include "backends.h"
+#include "settings.h"
 
 #include "interp/axis.h"
 #include "interp/axis_model.h"
@@ -25,26 +26,16 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* [gap] */
-struct config_gap {
-	int process;			/* enum cycle_process */
-	int source;			/* enum gap_source */
-	int filter;			/* enum gap_filter */
-	double filter_cycles, short_cycles;	/* whole numbers */
-	double servo_v, short_v, open_v;
-	double window_low_v, window_high_v, ignition_v;
-	double feed_gain_mm_s_v, integral_s;
-	double feed_max_mm_s, creep_mm_s, feed_a_mm_s2, approach_mm_s;
-	double share_v, share_set, share_weight, share_short, share_open;
-	double retract_mm_s, retract_limit_mm, retract_wait_s, retract_max_s;
-	int retract_to;			/* enum retract_to */
-	double abort_count;		/* whole number */
-	double progress_mm;
-	double arcing_share, arcing_cycles, arcing_sigma_v;
-	double off_us, arcing_off_max, arcing_recover_s, arcing_retract_mm;
-	double stuck_s, noise_limit_v;
-	double wire_retract_mm, wire_retreat_mm;
-	int retract;			/* 0 along the path, 1 by the escape */
+/* Times of the file that become cycles in struct cycle_config. */
+struct config_seconds {
+	double retract_wait, retract_max, arcing_recover, stuck;
+	double jump_every, jump_every_min, jump_every_max;
+	double probe_settle;
+};
+
+/* [axis.*] backlash_* */
+struct config_backlash {
+	double um, mm_s;
 };
 
 /* [can402]: drives on a CAN bus; docs/can402.md. */
@@ -79,22 +70,12 @@ enum config_brake { BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE };
 
 struct config_drive {
 	double increments, pulses;
+	double encoder_counts, encoder_pulses;	/* of [gpio] encoder_ */
 	int brake;			/* enum config_brake */
 	int absolute, follow_bit;	/* 1: yes */
 	double fault_reaction, connection_lost;	/* 605E, 6007; -1: as it is */
 	double window_mm, quick_stop_mm_s2;	/* 6065, 6085; 0: as it is */
 	char identity[64], sdo[160], leave[64], eds[128];
-};
-
-/* [jump] */
-struct config_jump {
-	double height_mm, every_s, every_mm;
-	uint32_t adaptive;		/* 1: yes */
-	double every_min_s, every_max_s, height_min_mm, height_max_mm;
-	double bad_share;
-	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
-	double a_down_mm_s2, short_of_mm;
-	int escape;			/* enum interp_escape_mode */
 };
 
 /* [contour]: compensation of the contour error. */
@@ -108,11 +89,6 @@ struct config_contour {
 
 enum sim_process { SIM_SINK, SIM_WIRE };
 enum sim_electrode { ELECTRODE_FLAT, ELECTRODE_BALL, ELECTRODE_CONE };
-
-/* [probe] */
-struct config_probe {
-	double feed_mm_s, fine_mm_s, back_mm, settle_s;
-};
 
 /* [sim]: the simulated machine; docs/process-model.md says what each does. */
 struct config_sim {
@@ -186,16 +162,6 @@ struct config_kinematics {
 	uint32_t line;			/* of chain in the file; 0: not set */
 };
 
-/* [axis.X] home_*, jog_mm_s, backlash_*. */
-struct config_hand {
-	double jog_mm_s;
-	int home_method;		/* enum home_method */
-	int home_dir;			/* 0 toward -, 1 toward + */
-	double home_fast_mm_s, home_slow_mm_s, home_at_mm, home_back_mm;
-	double home_order;		/* whole number */
-	double backlash_um, backlash_mm_s;
-};
-
 /* [gpio] lines, in the order of their keys; those of an axis are 8 in a row. */
 enum config_line {
 	LINE_STEP,
@@ -203,7 +169,9 @@ enum config_line {
 	LINE_SPARK = LINE_DIR + INTERP_NAXES,
 	LINE_PUMP,
 	LINE_WATCHDOG,
-	CONFIG_NOUTPUTS,
+	LINE_ENABLE,
+	LINE_BRAKE,
+	CONFIG_NOUTPUTS = LINE_BRAKE + INTERP_NAXES,
 	LINE_LIMIT = CONFIG_NOUTPUTS,
 	LINE_HOME = LINE_LIMIT + INTERP_NAXES,
 	LINE_GAP_OPEN = LINE_HOME + INTERP_NAXES,
@@ -217,6 +185,7 @@ enum config_line {
 };
 
 #define CONFIG_LINE_MAX	32		/* of a line's text, with its NUL */
+#define CONFIG_ENCODER_MAX	(2 * CONFIG_LINE_MAX)
 
 /* A line's text, read. */
 struct config_line_at {
@@ -241,6 +210,11 @@ struct config_gpio {
 	char watchdog_by[128], estop_by[128];	/* what does it without a line;
 						 * "none": nothing */
 	char line[CONFIG_NLINES][CONFIG_LINE_MAX];
+	double brake_ms;		/* to open, and to close */
+	char encoder[INTERP_NAXES][CONFIG_ENCODER_MAX];	/* as
+						 * config_encoder_read() */
+	double following_mm, following_s;	/* of axes with an encoder */
+	double resync_mm, resync_mm_s;
 };
 
 /* [panel]: the operator's page; docs/panel.md. */
@@ -275,7 +249,9 @@ struct machine_config {
 	uint32_t require_home;		/* 1: no start before */
 
 	struct interp_machine axes;	/* [axis.X] ... [axis.V] */
-	struct config_hand hand[INTERP_NAXES];
+	struct manual_axis manual[INTERP_NAXES];	/* jog_*, home_* alone */
+	int home_dir[INTERP_NAXES];	/* 0 toward -, 1 toward + */
+	struct config_backlash backlash[INTERP_NAXES];
 	char pitch_map[INTERP_NAXES][128];	/* a file; "none" */
 	struct interp_axis_loop loop[INTERP_NAXES];	/* gain 0: not known */
 	char maps[128];			/* [geometry] maps: a file; "none" */
@@ -292,10 +268,12 @@ struct machine_config {
 	struct config_can402 can402;
 	struct config_plc plc;
 	struct config_drive drive[INTERP_NAXES];
-	struct config_gap gap;
-	struct config_jump jump;
+	struct cycle_gap_config gap;
+	struct cycle_jump_config jump;
+	int jump_escape;		/* enum interp_escape_mode */
 	struct config_contour contour;
-	struct config_probe probe;
+	struct probe_config probe;
+	struct config_seconds seconds;
 	double corner_um;		/* [speed] corner_um */
 	double tolerance_um, rotary_radius_mm;	/* [speed], of its ends */
 	int nodes;			/* [speed] nodes: 0 pass, 1 stop */
@@ -350,6 +328,21 @@ int64_t config_period_ns(const struct machine_config *c);
  * Return: NULL, or what is wrong with @text.
  */
 const char *config_line_read(const char *text, struct config_line_at *ret);
+
+/* An encoder's text, read. */
+struct config_encoder_at {
+	bool present;			/* false: none */
+	bool lines;			/* by two lines, else by a counter */
+	struct config_line_at a, b;
+	char counter[CONFIG_ENCODER_MAX];	/* as counter0/count0 */
+};
+
+/**
+ * config_encoder_read() - `none`, two lines, or counterN/countM.
+ * Return: what is wrong with it, or NULL.
+ */
+const char *config_encoder_read(const char *text,
+				struct config_encoder_at *ret);
 
 /** config_line_name() - its key: "step_X", "spark", ... */
 const char *config_line_name(int line);

@@ -43,6 +43,37 @@ const char *config_line_read(const char *text, struct config_line_at *ret)
 	return NULL;
 }
 
+const char *config_encoder_read(const char *text,
+				struct config_encoder_at *ret)
+{
+	const size_t n = strcspn(text, " ");
+	const char *rest = text + n + strspn(text + n, " ");
+	char a[CONFIG_ENCODER_MAX];
+	const char *wrong;
+
+	*ret = (struct config_encoder_at) { .present = false };
+	if (strcmp(text, "none") == 0)
+		return NULL;
+	ret->present = true;
+	if (strncmp(text, "counter", 7) == 0 && strchr(text, '/') &&
+	    !strstr(text, "..") && *rest == '\0') {
+		snprintf(ret->counter, sizeof(ret->counter), "%s", text);
+		return NULL;
+	}
+	ret->lines = true;
+	snprintf(a, sizeof(a), "%.*s", (int)n, text);
+	wrong = config_line_read(a, &ret->a);
+	if (!wrong)
+		wrong = config_line_read(rest, &ret->b);
+	if (!wrong && (!ret->a.wired || !ret->b.wired))
+		wrong = "has one line";
+	if (!wrong && strcmp(ret->a.chip, ret->b.chip) != 0)
+		wrong = "has lines of two chips";
+	if (!wrong && (ret->a.inverted || ret->b.inverted))
+		wrong = "has a !: encoder_counts below 0 turns it round";
+	return wrong;
+}
+
 static const struct config_key *key_of_line(int line)
 {
 	const size_t at = offsetof(struct machine_config, gpio.line) +
@@ -164,6 +195,46 @@ static int check_gap(struct check *q)
 	return 0;
 }
 
+static bool has_line(const struct config_line_at *list, int n,
+		     const char *chip, const struct config_line_at *x)
+{
+	for (int i = 0; i < n; i++)
+		if (list[i].wired && list[i].offset == x->offset &&
+		    strcmp(*list[i].chip ? list[i].chip : chip,
+			   *x->chip ? x->chip : chip) == 0)
+			return true;
+	return false;
+}
+
+/* Edges and levels of a line cannot both be asked for. */
+static int check_encoder(struct check *q, int axis)
+{
+	const struct config_key *k =
+		config_key(config_key_find(SECTION_GPIO, "encoder_X") + axis);
+	const char *chip = q->c->gpio.chip;
+	const char *text = q->c->gpio.encoder[axis];
+	struct config_encoder_at at;
+	const char *wrong = config_encoder_read(text, &at);
+
+	if (!wrong && at.present && !(q->c->axes.present >> axis & 1))
+		wrong = "is of an axis that is not present";
+	if (!wrong && at.present && q->c->drive[axis].encoder_counts == 0)
+		wrong = "has encoder_counts 0";
+	if (!wrong && at.lines &&
+	    (has_line(q->at, CONFIG_NLINES, chip, &at.a) ||
+	     has_line(q->at, CONFIG_NLINES, chip, &at.b) ||
+	     has_line(&at.a, 1, chip, &at.b)))
+		wrong = "has a line that is used for something else too";
+	if (!wrong)
+		return 0;
+	blame(q, k, 0);
+	return interp_diag_say(q->diag, "gpio.%s \"%s\" %s; two lines of one "
+			       "chip, A and B, as 24 25 or gpiochip1:4 "
+			       "gpiochip1:5; or a counter of the kernel, as "
+			       "counter0/count0; or none",
+			       k->name, text, wrong);
+}
+
 /* Sparks that nobody ends when edmd is gone are the builder's to answer for. */
 static int check_guard(struct check *q, int line, const char *by,
 		       const char *key)
@@ -253,6 +324,9 @@ int config_check_gpio(const struct machine_config *c,
 			return -EINVAL;
 	for (int i = 0; i < CONFIG_NOUTPUTS; i++)
 		if (check_shared(&q, i))
+			return -EINVAL;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (check_encoder(&q, i))
 			return -EINVAL;
 	if (check_gap(&q) || check_guards(&q) || check_speeds(&q))
 		return -EINVAL;

@@ -75,7 +75,7 @@ const struct config_key *config_key(int row)
 	size_t i = (size_t)row;
 
 	assert(row >= 0 && row <= CONFIG_NKEYS_MAX);
-	for (size_t p = 0; p < COUNT(part); p++) {
+	for (size_t p = 0; p < ROWS_IN(part); p++) {
 		if (i < part[p]->n)
 			return &part[p]->row[i];
 		i -= part[p]->n;

@@ -44,6 +44,7 @@ enum config_section_id {
 enum config_kind {
 	KEY_NUMBER,			/* double */
 	KEY_WHOLE,			/* double without a fraction */
+	KEY_COUNT,			/* uint32_t */
 	KEY_ENUM,			/* int, one of word(0), word(1), ... */
 	KEY_BIT,			/* yes or no: a bit of a uint32_t */
 	KEY_NAME,			/* char[]: letters, digits, - and _ */

@@ -43,7 +43,8 @@ static const char *brake_word(int i)
 	{ SECTION_AXIS, key, KEY_STRING, "", "none", 0, 0, DRIVE(field), \
 	  ROOM(drive[0].field), .help = what }
 #define AXIS(field)	EACH(axes.axis[0].field, struct interp_axis_limits)
-#define HAND(field)	EACH(hand[0].field, struct config_hand)
+#define MANUAL(field)	EACH(manual[0].field, struct manual_axis)
+#define BACKLASH(field)	EACH(backlash[0].field, struct config_backlash)
 #define LOOP(field)	EACH(loop[0].field, struct interp_axis_loop)
 
 /* clang-format off */
@@ -62,28 +63,28 @@ static const struct config_key row[] = {
 	       AXIS(a_max_mm_s2), "largest acceleration"),
 	NUMBER(AXIS, "j_max_mm_s3", "mm/s3", "20000", 1, 1e9, AXIS(j_max_mm_s3),
 	       "largest jerk"),
-	NUMBER(AXIS, "jog_mm_s", "mm/s", "5", 1e-3, 1e5, HAND(jog_mm_s),
+	NUMBER(AXIS, "jog_mm_s", "mm/s", "5", 1e-3, 1e5, MANUAL(jog_mm_s),
 	       "speed of a jog"),
-	WORDS(AXIS, "home_method", "none", HAND(home_method), method_word,
+	WORDS(AXIS, "home_method", "none", MANUAL(method), method_word,
 	      "how its place is found; docs/homing.md"),
-	WORDS(AXIS, "home_dir", "-", HAND(home_dir), direction_word,
+	WORDS(AXIS, "home_dir", "-", EACH(home_dir[0], int), direction_word,
 	      "the home switch lies that way"),
 	NUMBER(AXIS, "home_fast_mm_s", "mm/s", "10", 1e-3, 1e5,
-	       HAND(home_fast_mm_s), "speed toward the switch"),
+	       MANUAL(home_fast_mm_s), "speed toward the switch"),
 	NUMBER(AXIS, "home_slow_mm_s", "mm/s", "0.5", 1e-3, 1e5,
-	       HAND(home_slow_mm_s),
+	       MANUAL(home_slow_mm_s),
 	       "speed off it and on it again, and of jogs before"),
-	NUMBER(AXIS, "home_at_mm", "mm", "0", -1e6, 1e6, HAND(home_at_mm),
+	NUMBER(AXIS, "home_at_mm", "mm", "0", -1e6, 1e6, MANUAL(home_at_mm),
 	       "the place of the switch, or of the index mark; absolute: "
 	       "where the drive says 0"),
-	NUMBER(AXIS, "home_back_mm", "mm", "1", 1e-3, 1e4, HAND(home_back_mm),
+	NUMBER(AXIS, "home_back_mm", "mm", "1", 1e-3, 1e4, MANUAL(home_back_mm),
 	       "so far off the switch before it is met slowly"),
-	WHOLE(AXIS, "home_order", "", "0", 0, 99, HAND(home_order),
+	COUNT(AXIS, "home_order", "", "0", 0, 99, MANUAL(home_order),
 	      "axes are homed one by one, the lowest first"),
-	NUMBER(AXIS, "backlash_um", "um", "0", 0, 10000, HAND(backlash_um),
+	NUMBER(AXIS, "backlash_um", "um", "0", 0, 10000, BACKLASH(um),
 	       "lost motion where the axis turns back"),
 	NUMBER(AXIS, "backlash_mm_s", "mm/s", "1", 1e-3, 1e5,
-	       HAND(backlash_mm_s),
+	       BACKLASH(mm_s),
 	       "backlash and geometric errors are taken up so fast"),
 	{ SECTION_AXIS, "pitch_map", KEY_STRING, "", "none", 0, 0,
 	  EACH(pitch_map[0], char[128]), 128,
@@ -97,6 +98,12 @@ static const struct config_key row[] = {
 	WHOLE(AXIS, "drive_pulses", "pulses", "1", 1, 1e9,
 	      EACH(drive[0].pulses, struct config_drive),
 	      "... are so many pulses"),
+	WHOLE(AXIS, "encoder_counts", "", "1", -1e9, 1e9,
+	      DRIVE(encoder_counts),
+	      "of [gpio] encoder_: so many, four in a period of A, negative to "
+	      "turn it round, ..."),
+	WHOLE(AXIS, "encoder_pulses", "pulses", "1", 1, 1e9,
+	      DRIVE(encoder_pulses), "... are so many pulses"),
 	WORDS(AXIS, "absolute", "no", DRIVE(absolute), yes_word,
 	      "its drive knows its place when it is switched on"),
 	WORDS(AXIS, "brake", "unsaid", DRIVE(brake), brake_word,
@@ -176,4 +183,4 @@ static const struct config_key row[] = {
 };
 /* clang-format on */
 
-const struct config_keys config_keys_axis = { row, COUNT(row) };
+const struct config_keys config_keys_axis = { row, ROWS_IN(row) };

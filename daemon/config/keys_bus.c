@@ -67,4 +67,4 @@ static const struct config_key row[] = {
 };
 /* clang-format on */
 
-const struct config_keys config_keys_bus = { row, COUNT(row) };
+const struct config_keys config_keys_bus = { row, ROWS_IN(row) };

@@ -102,4 +102,4 @@ static const struct config_key row[] = {
 };
 /* clang-format on */
 
-const struct config_keys config_keys_geometry = { row, COUNT(row) };
+const struct config_keys config_keys_geometry = { row, ROWS_IN(row) };

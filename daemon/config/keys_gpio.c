@@ -28,7 +28,13 @@ static const char *pull_word(int i)
 	     "output: direction, on for +; or B"), \
 	LINE("limit_" #axis, LINE_LIMIT + INTERP_##axis, \
 	     "input: an end of the travel, either; fault limit-switch"), \
-	LINE("home_" #axis, LINE_HOME + INTERP_##axis, "input: home switch")
+	LINE("home_" #axis, LINE_HOME + INTERP_##axis, "input: home switch"), \
+	LINE("brake_" #axis, LINE_BRAKE + INTERP_##axis, \
+	     "output: opens the axis' brake, while it is under power")
+#define ENCODER(axis) \
+	STRING(GPIO, "encoder_" #axis, "none", gpio.encoder[INTERP_##axis], \
+	       "input: A and B of an encoder, as 24 25; or a counter of the " \
+	       "kernel, as counter0/count0")
 
 /* clang-format off */
 static const struct config_key row[] = {
@@ -74,6 +80,23 @@ static const struct config_key row[] = {
 	      "resistors of all inputs"),
 	AXIS_LINES(X), AXIS_LINES(Y), AXIS_LINES(Z), AXIS_LINES(A),
 	AXIS_LINES(B), AXIS_LINES(C), AXIS_LINES(U), AXIS_LINES(V),
+	ENCODER(X), ENCODER(Y), ENCODER(Z), ENCODER(A),
+	ENCODER(B), ENCODER(C), ENCODER(U), ENCODER(V),
+	NUMBER(GPIO, "following_mm", "mm", "0.05", 0, 1000,
+	       AT(gpio.following_mm),
+	       "an axis farther from its pulses, by its encoder, is a fault; "
+	       "0: never"),
+	NUMBER(GPIO, "following_s", "s", "0", 0, 10, AT(gpio.following_s),
+	       "and by so much of its speed"),
+	NUMBER(GPIO, "resync_mm", "mm", "0.2", 0, 100, AT(gpio.resync_mm),
+	       "so much is made good after such a fault; farther off, its "
+	       "place is lost"),
+	NUMBER(GPIO, "resync_mm_s", "mm/s", "0.5", 0.001, 100,
+	       AT(gpio.resync_mm_s), "so fast"),
+	LINE("enable", LINE_ENABLE,
+	     "output: power on the axes' drives"),
+	NUMBER(GPIO, "brake_ms", "ms", "100", 0, 5000, AT(gpio.brake_ms),
+	       "until a brake is open, or closed"),
 	LINE("spark", LINE_SPARK, "output: sparks allowed"),
 	LINE("pump", LINE_PUMP, "output: dielectric pump"),
 	LINE("watchdog", LINE_WATCHDOG,
@@ -89,4 +112,4 @@ static const struct config_key row[] = {
 };
 /* clang-format on */
 
-const struct config_keys config_keys_gpio = { row, COUNT(row) };
+const struct config_keys config_keys_gpio = { row, ROWS_IN(row) };

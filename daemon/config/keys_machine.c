@@ -93,4 +93,4 @@ static const struct config_key row[] = {
 };
 /* clang-format on */
 
-const struct config_keys config_keys_machine = { row, COUNT(row) };
+const struct config_keys config_keys_machine = { row, ROWS_IN(row) };

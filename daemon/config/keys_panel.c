@@ -34,4 +34,4 @@ static const struct config_key row[] = {
 };
 /* clang-format on */
 
-const struct config_keys config_keys_panel = { row, COUNT(row) };
+const struct config_keys config_keys_panel = { row, ROWS_IN(row) };

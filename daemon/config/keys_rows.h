@@ -12,11 +12,11 @@
 
 #include "keys.h"
 
-#define COUNT(a)	(sizeof(a) / sizeof((a)[0]))
+#define ROWS_IN(a)	(sizeof(a) / sizeof((a)[0]))
 
 /* For the word() of an enum whose words are a table. */
 #define WORD_OF(words, i) \
-	((i) >= 0 && (size_t)(i) < COUNT(words) ? (words)[i] : NULL)
+	((i) >= 0 && (size_t)(i) < ROWS_IN(words) ? (words)[i] : NULL)
 
 #define AT(field)	offsetof(struct machine_config, field)
 #define EACH(first, type)	AT(first), sizeof(type)
@@ -30,6 +30,9 @@
 	  .def_rotary = def_abc, .help = what }
 #define WHOLE(section, key, unit_, def_, low, high, place, what) \
 	{ SECTION_##section, key, KEY_WHOLE, unit_, def_, low, high, place, \
+	  .help = what }
+#define COUNT(section, key, unit_, def_, low, high, place, what) \
+	{ SECTION_##section, key, KEY_COUNT, unit_, def_, low, high, place, \
 	  .help = what }
 #define WORDS(section, key, def_, place, word_, what) \
 	{ SECTION_##section, key, KEY_ENUM, "", def_, 0, 0, place, \

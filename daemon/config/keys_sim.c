@@ -160,4 +160,4 @@ static const struct config_key row[] = {
 };
 /* clang-format on */
 
-const struct config_keys config_keys_sim = { row, COUNT(row) };
+const struct config_keys config_keys_sim = { row, ROWS_IN(row) };

@@ -109,11 +109,12 @@ const char *config_key_range(const struct config_key *k, int instance,
 	switch (k->kind) {
 	case KEY_NUMBER:
 	case KEY_WHOLE:
+	case KEY_COUNT:
 		config_number(k->min, a, sizeof(a));
 		config_number(k->max, b, sizeof(b));
 		config_key_unit(k, instance, unit, sizeof(unit));
 		snprintf(buf, size, "%s from %s to %s%s",
-			 k->kind == KEY_WHOLE ? "whole number" : "number", a,
+			 k->kind != KEY_NUMBER ? "whole number" : "number", a,
 			 b, unit);
 		break;
 	case KEY_ENUM:
@@ -163,7 +164,7 @@ static const char *parse_number(const struct config_key *k, const char *text,
 	x = strtod(text, &end);
 	if (end == text || *end)
 		return "is not a number";
-	if (k->kind == KEY_WHOLE && isfinite(x) && x != floor(x))
+	if (k->kind != KEY_NUMBER && isfinite(x) && x != floor(x))
 		return "is not a whole number";
 	if (x < k->min)
 		return "is too small";
@@ -171,6 +172,17 @@ static const char *parse_number(const struct config_key *k, const char *text,
 		return "is too large";
 	*ret = x + 0.0;			/* -0 becomes 0 */
 	return NULL;
+}
+
+static const char *parse_count(const struct config_key *k, const char *text,
+			       uint32_t *ret)
+{
+	double x = 0;
+	const char *wrong = parse_number(k, text, &x);
+
+	if (!wrong)
+		*ret = (uint32_t)x;
+	return wrong;
 }
 
 static const char *parse_enum(const struct config_key *k, const char *text,
@@ -238,6 +250,9 @@ int config_key_parse(const struct config_key *k, int instance,
 	case KEY_WHOLE:
 		wrong = parse_number(k, text, at);
 		break;
+	case KEY_COUNT:
+		wrong = parse_count(k, text, at);
+		break;
 	case KEY_ENUM:
 		wrong = parse_enum(k, text, at);
 		break;
@@ -272,6 +287,8 @@ const char *config_key_format(const struct config_key *k, int instance,
 	case KEY_NUMBER:
 	case KEY_WHOLE:
 		return config_number(*(const double *)in, buf, size);
+	case KEY_COUNT:
+		return config_number(*(const uint32_t *)in, buf, size);
 	case KEY_ENUM:
 		snprintf(buf, size, "%s", k->word(*(const int *)in));
 		break;

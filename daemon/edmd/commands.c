@@ -84,7 +84,8 @@ static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 	if (c->verb >= CYCLE_NVERBS)
 		return ANSWER_BAD_ARGUMENT;
 	/* A program on its way in begins where the axes stand. */
-	if ((c->verb == CYCLE_JOG || c->verb == CYCLE_HOME) && l->opening)
+	if ((c->verb == CYCLE_JOG || c->verb == CYCLE_HOME ||
+	     c->verb == CYCLE_JOG_ON) && l->opening)
 		return ANSWER_WRONG_STATE;
 	answer = cycle_command(&l->cycle, &m);
 	if (c->verb == CYCLE_SET && answer == ANSWER_DONE) {
@@ -120,6 +121,13 @@ static bool is_late(const struct shm_command *c)
 	return setup_now_ns() > c->until_ns;
 }
 
+/* Many a second come of it, each is new, and none does any harm twice: the
+ * record is kept for the others. */
+static bool is_sign(const struct shm_command *c)
+{
+	return c->verb == SHM_DO_JOG_ON;
+}
+
 static void carry_out(struct loop *l, const struct shm_command *c)
 {
 	bool later = c->verb == SHM_LOAD || c->verb == SHM_UNLOAD;
@@ -128,7 +136,8 @@ static void carry_out(struct loop *l, const struct shm_command *c)
 	/* Without an id there is nothing to answer. */
 	if (c->id == 0 || is_repeat(l, c))
 		return;
-	shm_done_begin(l->status, c->id);
+	if (!is_sign(c))
+		shm_done_begin(l->status, c->id);
 	if (is_late(c)) {
 		loop_answer(l, c->id, SHM_LATE);
 		return;

@@ -41,8 +41,8 @@ uint64_t key_home(const struct machine_config *c)
 	double of[2 * INTERP_NAXES], *at = of;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		*at++ = c->hand[i].home_method;
-		*at++ = c->hand[i].home_at_mm;
+		*at++ = c->manual[i].method;
+		*at++ = c->manual[i].home_at_mm;
 	}
 	return key_of(of, sizeof(of));
 }

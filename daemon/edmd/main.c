@@ -7,7 +7,6 @@
 #include "log.h"
 #include "options.h"
 #include "plc.h"
-#include "plc_values.h"
 #include "programs.h"
 #include "resume.h"
 #include "serve.h"
@@ -198,19 +197,6 @@ static int run_owner(struct loop *l, const struct machine_config *c)
 	return code;
 }
 
-static bool plc_print(const struct options *o, uint8_t node)
-{
-	if (o->print_eds)
-		plc_eds(stdout);
-	if (o->print_dbc) {
-		plc_dbc(stdout, node);
-		loop_plc_values(stdout, node);
-	}
-	if (o->document_plc)
-		plc_document(stdout);
-	return o->print_eds || o->print_dbc || o->document_plc;
-}
-
 int main(int argc, char **argv)
 {
 	struct machine_config config;
@@ -226,8 +212,6 @@ int main(int argc, char **argv)
 		config_print(&config, stdout);
 		return EX_OK;
 	}
-	if (plc_print(&o, (uint8_t)config.plc.node))
-		return EX_OK;
 	if (o.check) {
 		printf("%s: good\n", o.config ? o.config : "built-in machine");
 		return EX_OK;

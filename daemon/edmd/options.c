@@ -23,12 +23,6 @@ static const struct cmdline_row rows[] = {
 	  "read the machine file, say whether it is good, end" },
 	{ "print-config", NULL, CMDLINE_FLAG, AT(print_config), .help =
 	  "every key with its value, as a machine file, end" },
-	{ "print-eds", NULL, CMDLINE_FLAG, AT(print_eds), .help =
-	  "what a PLC tool imports of a CANopen slave, end" },
-	{ "print-dbc", NULL, CMDLINE_FLAG, AT(print_dbc), .help =
-	  "the same frames for tools without CANopen, end" },
-	{ "document-plc", NULL, CMDLINE_FLAG, AT(document_plc), .help =
-	  "the same as a page to read, docs/plc-signals.md, end" },
 };
 /* clang-format on */
 

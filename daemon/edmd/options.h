@@ -12,7 +12,6 @@ struct options {
 	const char *name;		/* NULL: as the machine file says */
 	bool check;
 	bool print_config;
-	bool print_eds, print_dbc, document_plc;
 };
 
 /**

@@ -8,6 +8,7 @@
 #include "loop.h"
 
 #include "axes/axis_state.h"
+#include "path/place.h"
 
 #include <string.h>
 
@@ -49,7 +50,7 @@ SAME(SHM_OUTCOME_STOPPED, OUTCOME_STOPPED);
 _Static_assert((int)CYCLE_NVERBS <= (int)SHM_LOAD, "verbs do not overlap");
 
 /* A job that has ended still shows its last place, until it is unloaded. */
-static double place_mm(const struct loop *l)
+static double told_place_mm(const struct loop *l)
 {
 	return l->program ? interp_cursor_place_mm(&l->cycle.cursor) : 0;
 }
@@ -61,7 +62,7 @@ static struct shm_event event_of(const struct loop *l, uint32_t kind)
 		.time_ns = l->time_ns,
 		.kind = kind,
 		.program = l->program ? l->program->n : 0,
-		.place_mm = place_mm(l),
+		.place_mm = told_place_mm(l),
 	};
 }
 
@@ -124,7 +125,7 @@ static void notice_condition(struct loop *l)
 	if (!c->loaded || !c->out.cond_letter ||
 	    (c->out.cond_letter == t->letter &&
 	     c->out.cond_number == t->number) ||
-	    place_mm(l) < c->far_mm)
+	    told_place_mm(l) < c->far_mm)
 		return;
 	t->letter = c->out.cond_letter;
 	t->number = c->out.cond_number;
@@ -272,7 +273,7 @@ void loop_trace(const struct loop *l, const struct io_inputs *in,
 
 	*ret = (struct shm_trace) {
 		.cycle = c->count,
-		.place_mm = l->program ? cycle_place_mm(c) : 0,
+		.place_mm = l->program ? place_mm(c) : 0,
 		.feed_mm_s = c->feed_mm_s,
 		.gap_v = c->gap_v,
 		.line = l->program ? c->cursor.seg.line : 0,

@@ -17,6 +17,8 @@ struct can_msg {
 };
 
 /* Default identifiers of CiA 301: function code + node. */
+#define CAN_NODE_MAX	127
+
 enum can_id {
 	CAN_NMT		= 0x000,
 	CAN_SYNC	= 0x080,

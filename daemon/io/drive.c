@@ -19,6 +19,7 @@
 #define FOLLOWING_ERROR	0x2000u
 #define AT_LIMIT	0x0800u
 #define NMT_OPERATIONAL	0x05
+#define ALARM_SYNCS	2		/* the answer of the first may be older */
 
 void drive_init(struct drive *d, const struct drive_config *c)
 {
@@ -139,7 +140,7 @@ static void hear_emergency(struct drive *d, const struct can_msg *m)
 	if (d->emergency == 0)
 		return;
 	d->emergencies++;
-	trouble(d, DRIVE_EMERGENCY);
+	d->alarmed = ALARM_SYNCS;
 }
 
 /* State 0 is the boot-up message; all but 5 is not operational. */
@@ -257,12 +258,26 @@ static void watch_state(struct drive *d)
 	d->led = false;
 }
 
+/*
+ * Many drives send an emergency for a warning too.  Whether it is more than
+ * that is in their statusword, which must follow at once.
+ */
+static void watch_alarm(struct drive *d)
+{
+	if (d->alarmed == 0)
+		return;
+	d->alarmed--;
+	if (!d->answered)
+		trouble(d, DRIVE_EMERGENCY);
+}
+
 void drive_sync(struct drive *d)
 {
 	if (d->phase != DRIVE_RUNNING)
 		return;
 	if (++d->silent > d->c.beat_cycles)
 		trouble(d, DRIVE_MUTE);
+	watch_alarm(d);
 	if (d->answered) {
 		d->missing = 0;
 		watch_state(d);
@@ -371,6 +386,7 @@ void drive_reset(struct drive *d)
 	d->trouble = DRIVE_WELL;
 	d->emergency = 0;
 	d->emergencies = 0;
+	d->alarmed = 0;
 	d->enabled_for = 0;
 	d->missing = 0;
 	d->silent = 0;

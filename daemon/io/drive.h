@@ -60,7 +60,7 @@ enum drive_phase {
 /* What is wrong with it; the first one stays until drive_reset(). */
 enum drive_trouble {
 	DRIVE_WELL,
-	DRIVE_EMERGENCY,		/* EMCY, or state fault */
+	DRIVE_EMERGENCY,		/* state fault; EMCY and no answer */
 	DRIVE_FELL_OFF,			/* out of operation enabled by itself */
 	DRIVE_FOLLOWING,		/* too far from its target */
 	DRIVE_MUTE,			/* no heartbeat */
@@ -133,6 +133,8 @@ struct drive {
 	uint16_t status;		/* statusword */
 	uint16_t emergency;		/* last EMCY code; 0: none */
 	uint32_t emergencies;		/* with a code, since a reset */
+	uint32_t alarmed;		/* SYNCs that must be answered after the
+					 * last one: is it more than a warning? */
 	uint32_t aborts;		/* SDOs it refused, in all; the last: */
 	uint32_t abort, abort_value;	/* its code, 0: a value read does not
 					 * do; what was written, or read */

@@ -100,9 +100,7 @@ void gpio_read(void *self, struct io_inputs *in)
 		.lost = g->lost,
 		.busy = g->edges ? g->shown.busy : pulser_busy(&g->pulser),
 	};
-	memcpy(in->actual, g->pulser.put, sizeof(in->actual));
-	for (int i = 0; i < IO_NAXES && g->edges; i++)
-		in->actual[i] = g->shown.put[i] + g->shift[i];
+	gpio_axes_read(g, in);
 }
 
 /* -- Outputs ----------------------------------------------------------------- */
@@ -126,8 +124,11 @@ bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines)
 }
 
 #define PULSE_LINES	((UINT64_C(1) << (LINE_DIR + IO_NAXES)) - 1)
+#define AXES_LINES	(((UINT64_C(1) << (1 + IO_NAXES)) - 1) << LINE_ENABLE)
 
 _Static_assert(LINE_STEP == 0 && LINE_DIR == IO_NAXES, "the first lines");
+_Static_assert(LINE_BRAKE == LINE_ENABLE + 1, "the lines of power in a row");
+_Static_assert(CONFIG_NLINES <= 64, "a bit for each");
 
 /* Of each chip; false: one did not answer. */
 static bool bulk_write(struct gpio *g, enum bulk_kind kind)
@@ -152,7 +153,7 @@ bool gpio_edges_write(void *self, uint32_t step, uint32_t dir)
 	       bulk_write(g, BULK_EDGES);
 }
 
-static void outputs_write(struct gpio *g)
+void gpio_outputs_write(struct gpio *g)
 {
 	const uint64_t ours = g->edges ? ~PULSE_LINES : UINT64_MAX;
 
@@ -171,18 +172,15 @@ static int32_t minus(int32_t a, int32_t b)
 }
 
 /* What stops at once stops between two pulses, not at the period's end. */
-static void pulses_order(struct gpio *g, const struct io_outputs *out)
+static void pulses_order(struct gpio *g, const int32_t *target, bool anew)
 {
 	const uint32_t ends = axes_on(g, LINE_LIMIT);
 
-	/* Another program begins where the machine stands. */
 	for (int i = 0; i < IO_NAXES; i++) {
-		if (!g->placed || out->path != g->path)
-			g->shift[i] = minus(out->target[i], g->told.target[i]);
-		g->told.target[i] = minus(out->target[i], g->shift[i]);
+		if (anew)
+			g->shift[i] = minus(target[i], g->told.target[i]);
+		g->told.target[i] = minus(target[i], g->shift[i]);
 	}
-	g->placed = true;
-	g->path = out->path;
 	g->told.stop = is_on(g, LINE_ESTOP) || (ends & ~g->ends);
 	g->ends = ends;
 	edges_tell(g->edges, &g->told);
@@ -191,15 +189,24 @@ static void pulses_order(struct gpio *g, const struct io_outputs *out)
 /* Another program begins where the machine stands: no pulses to there. */
 static void pulses_make(struct gpio *g, const struct io_outputs *out)
 {
-	if (g->edges) {
-		pulses_order(g, out);
-		return;
+	const bool anew = !g->placed || out->path != g->path;
+	int32_t target[IO_NAXES], before[IO_NAXES];
+
+	for (int i = 0; i < IO_NAXES; i++) {
+		target[i] = (int32_t)((uint32_t)out->target[i] +
+				      (uint32_t)g->extra[i]);
+		before[i] = gpio_put(g, i);
 	}
-	if (!g->placed || out->path != g->path)
-		pulser_stand_at(&g->pulser, out->target);
 	g->placed = true;
 	g->path = out->path;
-	pulser_period(&g->pulser, out->target);
+	if (anew && !g->edges)
+		pulser_stand_at(&g->pulser, target);
+	else if (g->edges)
+		pulses_order(g, target, anew);
+	if (anew)
+		gpio_axes_counted(g, before);
+	if (!g->edges)
+		pulser_period(&g->pulser, target);
 }
 
 static bool watchdog_level(struct gpio *g)
@@ -217,12 +224,14 @@ static bool watchdog_level(struct gpio *g)
 void gpio_write(void *self, const struct io_outputs *out)
 {
 	struct gpio *g = self;
+	const uint64_t axes = gpio_axes_write(g, out);
 
 	if (g->lost) {
 		g->told.stop = true;
 		if (g->edges)
 			edges_tell(g->edges, &g->told);
-		g->out &= ~(UINT64_C(1) << LINE_SPARK);
+		g->out &= ~((UINT64_C(1) << LINE_SPARK) | AXES_LINES);
+		g->out |= axes;
 	} else {
 		const bool dog = watchdog_level(g);
 
@@ -231,9 +240,9 @@ void gpio_write(void *self, const struct io_outputs *out)
 			 (uint64_t)g->pulser.dir << LINE_DIR |
 			 (uint64_t)out->power << LINE_SPARK |
 			 (uint64_t)out->pump << LINE_PUMP |
-			 (uint64_t)dog << LINE_WATCHDOG;
+			 (uint64_t)dog << LINE_WATCHDOG | axes;
 	}
-	outputs_write(g);
+	gpio_outputs_write(g);
 }
 
 /* -- Close ------------------------------------------------------------------- */
@@ -245,6 +254,7 @@ void gpio_close(void *self)
 	edges_end(g->edges);
 	adc_close(&g->adc);
 	g->edges = NULL;
+	gpio_axes_close(g);
 	g->out = 0;
 	gpio_levels(g, 0, UINT64_MAX);
 	bulk_write(g, BULK_EDGES);

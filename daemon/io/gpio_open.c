@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define COUNTERS	"/sys/bus/counter/devices"
 #define REFRESH_S	1e-3
 #define DEAD_S		0.02		/* the edge thread plays nothing */
 #define QUIET_S		0.1		/* no comparator on, with the power on; or
@@ -25,7 +26,7 @@ static int refuse(struct interp_diag *d, int err, const char *line,
 static int refuse_chip(struct interp_diag *d, int err, const char *line,
 		       const char *chip)
 {
-	char found[128];
+	char found[192];
 
 	snprintf(found, sizeof(found), "chip %s: %s", chip, strerror(-err));
 	if (err == -EACCES || err == -EPERM)
@@ -96,7 +97,7 @@ static int line_check(const struct chip *c, unsigned int offset,
 		      const char *line, struct interp_diag *d)
 {
 	const unsigned int n = lines_chip_count(c->chip);
-	char found[128], wanted[128], user[32];
+	char found[192], wanted[192], user[32];
 
 	if (offset >= n) {
 		snprintf(found, sizeof(found), "line %u of %s, which has %u",
@@ -193,13 +194,19 @@ static int bulk_request(struct gpio *g, int chip, int kind,
 				     g->chip[chip].name) : 0;
 }
 
-static int lines_open(struct gpio *g, const struct machine_config *c,
-		      struct interp_diag *d)
+static enum lines_pull pull_of(const struct config_gpio *k)
 {
 	static const enum lines_pull pulls[] = {
 		LINES_AS_IS, LINES_PULL_UP, LINES_PULL_DOWN, LINES_NO_PULL
 	};
-	struct lines_wanted w = { .pull = pulls[c->gpio.pull] };
+
+	return pulls[k->pull];
+}
+
+static int lines_open(struct gpio *g, const struct machine_config *c,
+		      struct interp_diag *d)
+{
+	struct lines_wanted w = { .pull = pull_of(&c->gpio) };
 
 	for (int l = 0; l < CONFIG_NLINES; l++)
 		g->at[l].chip = -1;
@@ -213,6 +220,80 @@ static int lines_open(struct gpio *g, const struct machine_config *c,
 	for (int i = 0; i < g->nchips * NBULKS; i++) {
 		const int err = bulk_request(g, i / NBULKS, i % NBULKS, &w, d);
 
+		if (err < 0)
+			return err;
+	}
+	return 0;
+}
+
+static bool is_wired(const struct gpio *g, int first, int n)
+{
+	for (int l = first; l < first + n; l++)
+		if (g->at[l].chip >= 0)
+			return true;
+	return false;
+}
+
+static void encoder_configure(struct gpio *g, const struct machine_config *c,
+			      int axis)
+{
+	const struct config_gpio *k = &c->gpio;
+	const double mm = c->axes.axis[axis].pulse_mm;
+	const double period_s = (double)config_period_ns(c) * 1e-9;
+	const struct encoder_config e = {
+		.counts = (int64_t)c->drive[axis].encoder_counts,
+		.pulses = (int64_t)c->drive[axis].encoder_pulses,
+		.following_max = (int32_t)(k->following_mm / mm + 0.5),
+		.lag_cycles = k->following_s / period_s,
+		.resync_max = (int32_t)(k->resync_mm / mm + 0.5),
+		.slew = k->resync_mm_s / mm * period_s,
+	};
+
+	encoder_init(&g->encoder[axis], &e);
+	g->encoders |= 1u << axis;
+}
+
+/* A and B, on the chip that both are of. */
+static int encoder_lines(struct gpio *g, const struct machine_config *c,
+			 int axis, const struct config_encoder_at *at,
+			 struct interp_diag *d)
+{
+	const unsigned int offset[2] = { at->a.offset, at->b.offset };
+	const struct lines_wanted w = {
+		.offset = offset, .n = 2, .watched = true,
+		.pull = pull_of(&c->gpio),
+	};
+	char name[16];
+	struct lines *l;
+	int chip, err;
+
+	snprintf(name, sizeof(name), "encoder_%c", INTERP_AXIS_LETTERS[axis]);
+	chip = chip_find(g, *at->a.chip ? at->a.chip : c->gpio.chip, name, d);
+	err = chip < 0 ? chip : 0;
+	for (int i = 0; i < 2 && err == 0; i++)
+		err = line_check(&g->chip[chip], offset[i], name, d);
+	if (err < 0)
+		return err;
+	err = lines_request(&l, g->chip[chip].chip, &w);
+	if (err == 0)
+		err = quadrature_edges(&g->quadrature[axis], l);
+	return err < 0 ? refuse_chip(d, err, name, g->chip[chip].name) : 0;
+}
+
+static int encoders_open(struct gpio *g, const struct machine_config *c,
+			 struct interp_diag *d)
+{
+	for (int i = 0; i < IO_NAXES; i++) {
+		struct config_encoder_at at;
+		int err;
+
+		config_encoder_read(c->gpio.encoder[i], &at);
+		if (!at.present)
+			continue;
+		encoder_configure(g, c, i);
+		err = at.lines ? encoder_lines(g, c, i, &at, d) :
+		      quadrature_counter(&g->quadrature[i], COUNTERS,
+					 at.counter, d);
 		if (err < 0)
 			return err;
 	}
@@ -280,6 +361,11 @@ static void configure(struct gpio *g, const struct machine_config *c)
 	g->adc_max = 1 + periods(c, QUIET_S);
 	g->quiet_max = periods(c, QUIET_S);
 	g->has_gap = config_gpio_has_lines(c);
+	g->brake_ns = (int64_t)(k->brake_ms * 1e6);
+	g->brake_periods = periods(c, k->brake_ms * 1e-3);
+	g->open_left = g->brake_periods + 1;
+	for (int i = 0; i < IO_NAXES; i++)
+		g->quadrature[i].fd = -1;
 }
 
 int io_gpio_open(struct io_machine *m, const struct machine_config *c,
@@ -295,6 +381,9 @@ int io_gpio_open(struct io_machine *m, const struct machine_config *c,
 	g->adc.fd = -1;
 	configure(g, c);
 	err = lines_open(g, c, diag);
+	g->has_power = err == 0 && is_wired(g, LINE_ENABLE, 1 + IO_NAXES);
+	if (err == 0)
+		err = encoders_open(g, c, diag);
 	if (err == 0)
 		err = adc_begin(g, c, diag);
 	if (err == 0)
@@ -305,7 +394,7 @@ int io_gpio_open(struct io_machine *m, const struct machine_config *c,
 	}
 	*m = (struct io_machine) {
 		.name = "gpio", .self = g, .read = gpio_read,
-		.write = gpio_write, .close = gpio_close,
+		.write = gpio_write, .close = gpio_close, .note = gpio_note,
 		.edges_per_cycle = has_edges(&c->gpio) ?
 			(uint32_t)c->gpio.edges_per_period /
 			pulser_periods(&g->pulser.c) : 1,

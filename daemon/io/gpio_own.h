@@ -10,9 +10,13 @@
 #include "adc.h"
 #include "config.h"
 #include "edges.h"
+#include "encoder.h"
 #include "io.h"
 #include "lines.h"
 #include "pulser.h"
+#include "quadrature.h"
+
+#include <stdatomic.h>
 
 #define NCHIPS		4
 
@@ -45,6 +49,9 @@ struct place {
 	bool inverted;
 };
 
+/* What the log is to say of an axis. */
+enum gpio_tell { GPIO_TELL_OFF, GPIO_TELL_MISSED, GPIO_TELL_LOST, GPIO_NTELLS };
+
 struct gpio {
 	struct chip chip[NCHIPS];
 	int nchips;
@@ -67,6 +74,18 @@ struct gpio {
 	struct io_shares shares;	/* as told last */
 	bool has_gap;			/* comparators */
 	struct adc adc;			/* fd -1: none */
+
+	/* gpio_axes.c */
+	uint32_t encoders;		/* a bit per axis that has one */
+	struct encoder encoder[IO_NAXES];
+	struct quadrature quadrature[IO_NAXES];
+	int32_t extra[IO_NAXES];	/* pulses put out once more */
+	uint32_t unplaced;		/* for the next read */
+	_Atomic uint32_t tell[GPIO_NTELLS];	/* a bit per axis */
+	bool has_power;			/* lines that switch it */
+	uint32_t brake_periods;
+	int64_t brake_ns;
+	uint32_t open_left, close_left;	/* periods until the brakes are */
 };
 
 /* Of struct io_machine. */
@@ -74,8 +93,31 @@ void gpio_read(void *self, struct io_inputs *in);
 void gpio_write(void *self, const struct io_outputs *out);
 void gpio_close(void *self);
 
+/** gpio_outputs_write() - what the cycle has to write of g->out. */
+void gpio_outputs_write(struct gpio *g);
+
 /** gpio_levels() - what the lines on in @on are, into the chips' values. */
 bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines);
+
+/* -- gpio_axes.c -------------------------------------------------------------- */
+
+/** gpio_put() - pulses put out for axis @i, as the machine counts them. */
+int32_t gpio_put(const struct gpio *g, int i);
+
+/** gpio_axes_read() - encoders, and what power and they mean for the axes. */
+void gpio_axes_read(struct gpio *g, struct io_inputs *in);
+
+/** gpio_axes_write() - what to add to the targets; lines that are on. */
+uint64_t gpio_axes_write(struct gpio *g, const struct io_outputs *out);
+
+/** gpio_axes_counted() - pulses count from elsewhere than @before now. */
+void gpio_axes_counted(struct gpio *g, const int32_t *before);
+
+/** gpio_axes_close() - brakes first. */
+void gpio_axes_close(struct gpio *g);
+
+/** gpio_note() - io_machine.note */
+bool gpio_note(void *self, char *buf, size_t size);
 
 /** gpio_edges_write() - edges_config.write */
 bool gpio_edges_write(void *self, uint32_t step, uint32_t dir);

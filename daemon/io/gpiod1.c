@@ -5,11 +5,13 @@
 #include "lines.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <gpiod.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define CONSUMER	"edmd"
+#define KEPT		16		/* edges of a line, by the kernel */
 
 struct lines_chip {
 	struct gpiod_chip *gpiod;
@@ -84,12 +86,27 @@ static int flags_of(enum lines_pull pull)
 	}
 }
 
+/* A line that is watched is a file of its own. */
+static int never_wait(struct lines *l)
+{
+	for (unsigned int i = 0; i < gpiod_line_bulk_num_lines(&l->bulk); i++) {
+		const int fd = gpiod_line_event_get_fd(
+			gpiod_line_bulk_get_line(&l->bulk, i));
+
+		if (fd < 0 || fcntl(fd, F_SETFL, O_NONBLOCK) < 0)
+			return -errno;
+	}
+	return 0;
+}
+
 static int request(struct lines *l, const struct lines_wanted *w)
 {
 	const struct gpiod_line_request_config config = {
 		.consumer = CONSUMER,
 		.request_type = w->output ?
 				GPIOD_LINE_REQUEST_DIRECTION_OUTPUT :
+				w->watched ?
+				GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES :
 				GPIOD_LINE_REQUEST_DIRECTION_INPUT,
 		.flags = w->output ? 0 : flags_of(w->pull),
 	};
@@ -105,8 +122,9 @@ static int request(struct lines *l, const struct lines_wanted *w)
 		gpiod_line_bulk_add(&l->bulk, line);
 		value[i] = w->output && w->value[i];
 	}
-	return gpiod_line_request_bulk(&l->bulk, &config, value) < 0 ? -errno :
-								       0;
+	if (gpiod_line_request_bulk(&l->bulk, &config, value) < 0)
+		return -errno;
+	return w->watched ? never_wait(l) : 0;
 }
 
 int lines_request(struct lines **ret, struct lines_chip *chip,
@@ -146,6 +164,34 @@ int lines_get(struct lines *l, uint8_t *value)
 	for (unsigned int i = 0; i < gpiod_line_bulk_num_lines(&l->bulk); i++)
 		value[i] = level[i] != 0;
 	return 0;
+}
+
+static uint64_t ns_of(const struct timespec *t)
+{
+	return (uint64_t)t->tv_sec * 1000000000 + (uint64_t)t->tv_nsec;
+}
+
+int lines_events(struct lines *l, struct lines_event *ret, int room)
+{
+	struct gpiod_line_event e[KEPT];
+	int n = 0;
+
+	for (unsigned int i = 0; i < gpiod_line_bulk_num_lines(&l->bulk); i++) {
+		const int fd = gpiod_line_event_get_fd(
+			gpiod_line_bulk_get_line(&l->bulk, i));
+		const int got = gpiod_line_event_read_fd_multiple(fd, e, KEPT);
+
+		if (got == KEPT || (got < 0 && errno != EAGAIN) ||
+		    n + got > room)
+			return -EOVERFLOW;
+		for (int k = 0; k < got; k++)
+			ret[n++] = (struct lines_event) {
+				.ns = ns_of(&e[k].ts), .slot = (uint8_t)i,
+				.high = e[k].event_type ==
+					GPIOD_LINE_EVENT_RISING_EDGE,
+			};
+	}
+	return n;
 }
 
 void lines_release(struct lines *l)

@@ -5,6 +5,7 @@
 #include "lines.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <gpiod.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,6 +19,11 @@ struct lines_chip {
 struct lines {
 	struct gpiod_line_request *request;
 	size_t n;
+
+	/* Of watched lines. */
+	struct gpiod_edge_event_buffer *events;
+	unsigned int offset[LINES_MAX];
+	unsigned long seen[LINES_MAX];	/* number of the last edge */
 };
 
 int lines_chip_open(struct lines_chip **ret, const char *path)
@@ -99,6 +105,9 @@ static int configure(struct gpiod_line_config *config,
 					     GPIOD_LINE_DIRECTION_INPUT);
 	if (!w->output)
 		gpiod_line_settings_set_bias(s, bias_of(w->pull));
+	if (w->watched)
+		gpiod_line_settings_set_edge_detection(s,
+						       GPIOD_LINE_EDGE_BOTH);
 	for (size_t i = 0; i < w->n && err == 0; i++) {
 		gpiod_line_settings_set_output_value(
 			s, w->output && w->value[i] ?
@@ -130,6 +139,17 @@ static int request(struct lines *l, struct lines_chip *chip,
 	return err;
 }
 
+static int watch(struct lines *l, const struct lines_wanted *w)
+{
+	for (size_t i = 0; i < w->n; i++)
+		l->offset[i] = w->offset[i];
+	l->events = gpiod_edge_event_buffer_new(LINES_EVENTS);
+	if (!l->events)
+		return -ENOMEM;
+	return fcntl(gpiod_line_request_get_fd(l->request), F_SETFL,
+		     O_NONBLOCK) < 0 ? -errno : 0;
+}
+
 int lines_request(struct lines **ret, struct lines_chip *chip,
 		  const struct lines_wanted *w)
 {
@@ -140,8 +160,10 @@ int lines_request(struct lines **ret, struct lines_chip *chip,
 		return -ENOMEM;
 	l->n = w->n;
 	err = request(l, chip, w);
+	if (err == 0 && w->watched)
+		err = watch(l, w);
 	if (err < 0) {
-		free(l);
+		lines_release(l);
 		return err;
 	}
 	*ret = l;
@@ -170,10 +192,45 @@ int lines_get(struct lines *l, uint8_t *value)
 	return 0;
 }
 
+/* Each edge of a line has a number; false: some before it were dropped. */
+static bool event_of(struct lines *l, struct gpiod_edge_event *e,
+		     struct lines_event *ret)
+{
+	const unsigned int offset = gpiod_edge_event_get_line_offset(e);
+	const unsigned long number = gpiod_edge_event_get_line_seqno(e);
+	bool all;
+
+	*ret = (struct lines_event) {
+		.ns = gpiod_edge_event_get_timestamp_ns(e),
+		.high = gpiod_edge_event_get_event_type(e) ==
+			GPIOD_EDGE_EVENT_RISING_EDGE,
+	};
+	while (ret->slot + 1u < l->n && l->offset[ret->slot] != offset)
+		ret->slot++;
+	all = number == l->seen[ret->slot] + 1;
+	l->seen[ret->slot] = number;
+	return all;
+}
+
+int lines_events(struct lines *l, struct lines_event *ret, int room)
+{
+	const int got = gpiod_line_request_read_edge_events(
+		l->request, l->events, LINES_EVENTS);
+	bool all = true;
+
+	if (got < 0)
+		return errno == EAGAIN ? 0 : -EOVERFLOW;
+	for (int i = 0; i < got && i < room; i++)
+		all &= event_of(l, gpiod_edge_event_buffer_get_event(
+					l->events, (unsigned long)i), &ret[i]);
+	return all ? got : -EOVERFLOW;
+}
+
 void lines_release(struct lines *l)
 {
 	if (!l)
 		return;
+	gpiod_edge_event_buffer_free(l->events);
 	gpiod_line_request_release(l->request);
 	free(l);
 }

@@ -6,8 +6,8 @@
  * Makefile takes the one that pkg-config speaks of.  Values are levels: 1 is
  * high; inverting is the caller's.
  *
- * Threads: lines_set() and lines_get() are RT-safe, one ioctl each; the rest
- * is startup only.
+ * Threads: lines_set() and lines_get() are RT-safe, one ioctl each, and so is
+ * lines_events(), a read or two; the rest is startup only.
  */
 #ifndef IO_LINES_H
 #define IO_LINES_H
@@ -17,6 +17,7 @@
 #include <stdint.h>
 
 #define LINES_MAX	64		/* of one request */
+#define LINES_EVENTS	32		/* edges taken at a time, at the most */
 
 struct lines_chip;
 struct lines;
@@ -28,7 +29,16 @@ struct lines_wanted {
 	const uint8_t *value;		/* of outputs, to begin with */
 	size_t n;			/* 1 ... LINES_MAX */
 	bool output;
+	bool watched;			/* inputs: edges are kept, for
+					 * lines_events() */
 	enum lines_pull pull;		/* of inputs */
+};
+
+/* An edge of a watched line. */
+struct lines_event {
+	uint64_t ns;			/* CLOCK_MONOTONIC */
+	uint8_t slot;			/* which line of the request */
+	bool high;			/* level after it */
 };
 
 /** lines_chip_open() - the chip of device file @path.  0 or -errno. */
@@ -55,6 +65,16 @@ int lines_set(struct lines *l, const uint8_t *value);
 
 /** lines_get() - the level of each line, in one call; 0 or -errno. */
 int lines_get(struct lines *l, uint8_t *value);
+
+/**
+ * lines_events() - edges that came since the last call; those of one line are
+ * in their order.
+ *
+ * @room: LINES_EVENTS or more.
+ * Return: how many, without waiting; -EOVERFLOW if the kernel may have dropped
+ * some.
+ */
+int lines_events(struct lines *l, struct lines_event *ret, int room);
 
 /** lines_release() - NULL is fine. */
 void lines_release(struct lines *l);

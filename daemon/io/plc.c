@@ -7,8 +7,10 @@
  */
 #include "plc.h"
 
+#include <math.h>
 #include <string.h>
 
+#define BEAT_MS		100		/* object 1017 begins with it */
 #define NTPDO		4
 #define STATE_OPERATES	0x05
 #define STATE_READY	0x7f		/* pre-operational */
@@ -17,10 +19,26 @@
 
 static const uint16_t tpdo_id[NTPDO + 1] = { 0, 0x180, 0x280, 0x380, 0x480 };
 
+/* What an NMT reset makes of the objects that the PLC may write. */
+static void reset(struct plc *p)
+{
+	p->emcy_id = CAN_EMCY + p->node;
+	plc_beat(p, BEAT_MS);
+}
+
 void plc_init(struct plc *p, uint8_t node)
 {
-	*p = (struct plc) { .node = node, .beat_cycles = 1, .send_cycles = 1,
-			    .alive_cycles = 1 };
+	*p = (struct plc) { .node = node, .send_cycles = 1, .alive_cycles = 1,
+			    .cycles_per_ms = 0.01 };
+	reset(p);
+}
+
+void plc_beat(struct plc *p, uint16_t ms)
+{
+	p->beat_ms = ms;
+	p->beat_cycles = ms > 0 ? (uint32_t)fmax(1, round(ms *
+						p->cycles_per_ms)) : 0;
+	p->beat_in = p->beat_cycles > 0 ? p->beat_cycles - 1 : 0;
 }
 
 /* -- From the PLC ----------------------------------------------------------------- */
@@ -65,6 +83,7 @@ static void hear_nmt(struct plc *p, const struct can_msg *m)
 	case 0x82:
 		p->operational = p->stopped = p->booted = false;
 		p->ask = (struct plc_ask) { 0 };
+		reset(p);
 		/* What it asked is gone, and so is the PLC till it turns. */
 		p->alive = false;
 		p->since_turn = p->alive_cycles;
@@ -159,7 +178,7 @@ static bool emergency_due(struct plc *p, struct can_msg *ret)
 	if (fault == p->fault_sent || p->stopped || !p->booted)
 		return false;
 	p->fault_sent = fault;
-	*ret = (struct can_msg) { .id = (uint16_t)(CAN_EMCY + p->node),
+	*ret = (struct can_msg) { .id = (uint16_t)(p->emcy_id & 0x7ff),
 				  .len = 8 };
 	can_put(ret->data, code, 2);
 	ret->data[2] = p->register_1001;
@@ -170,7 +189,7 @@ static bool emergency_due(struct plc *p, struct can_msg *ret)
 		p->nhistory = (uint8_t)(p->nhistory < PLC_HISTORY ?
 					p->nhistory + 1 : PLC_HISTORY);
 	}
-	return true;
+	return !(p->emcy_id & PLC_EMCY_OFF);
 }
 
 /* One TPDO a period, so that the bus is not flooded at once. */
@@ -193,7 +212,7 @@ size_t plc_emit(struct plc *p, struct can_msg *ret)
 		p->booted = true;
 		p->beat_in = p->beat_cycles;
 		ret[n++] = beat(p, 0);
-	} else if (p->beat_in-- == 0) {
+	} else if (p->beat_cycles > 0 && p->beat_in-- == 0) {
 		p->beat_in = p->beat_cycles - 1;
 		ret[n++] = beat(p, p->operational ? STATE_OPERATES :
 				p->stopped ? STATE_STOPPED : STATE_READY);

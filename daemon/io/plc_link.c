@@ -12,8 +12,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#define BEAT_MS		100		/* object 1017 says so */
-
 /* -- Open ------------------------------------------------------------------------- */
 
 static int refuse(const struct machine_config *c, int err,
@@ -52,7 +50,8 @@ static void time_by(struct plc *p, const struct machine_config *c)
 {
 	const int64_t period_ns = config_period_ns(c);
 
-	p->beat_cycles = cycles_of(BEAT_MS, period_ns);
+	p->cycles_per_ms = 1e6 / (double)period_ns;
+	plc_beat(p, p->beat_ms);
 	p->send_cycles = cycles_of(c->plc.cycle_ms, period_ns);
 	p->alive_cycles = cycles_of(c->plc.alive_ms, period_ns);
 }

@@ -24,7 +24,7 @@ size_t plc_bytes(enum plc_type t)
 {
 	static const uint8_t bytes[] = {
 		[PLC_U8] = 1, [PLC_U16] = 2, [PLC_U32] = 4, [PLC_I16] = 2,
-		[PLC_I32] = 4,
+		[PLC_I32] = 4, [PLC_TEXT] = 4,
 	};
 
 	return bytes[t];
@@ -102,6 +102,10 @@ static uint32_t constant_value(const struct plc *p,
 		return p->nhistory;
 	case PLC_ERROR:
 		return p->history[c->sub - 1];
+	case PLC_EMCY:
+		return p->emcy_id;
+	case PLC_BEAT:
+		return p->beat_ms;
 	default:
 		return c->value;
 	}
@@ -139,52 +143,93 @@ static void upload(struct plc *p, uint16_t index, uint8_t sub)
 		constant_value(p, c), 4);
 }
 
-/* The value it has may be written: tools write all they know. */
-static bool is_as_it_is(const struct plc *p, const struct plc_constant *c,
-			const struct can_msg *m)
+static bool take_history(struct plc *p, uint32_t x)
 {
-	return m->data[0] & 2 &&
-	       can_get(m->data + 4, (int)plc_bytes(c->type)) ==
-	       constant_value(p, c);
+	if (x == 0)
+		p->nhistory = 0;
+	return x == p->nhistory;
 }
 
-static void download_constant(struct plc *p, const struct plc_constant *c,
-			      const struct can_msg *m)
+/* CiA 301: the id may be changed only in a value that has bit 31 set. */
+static bool take_emcy(struct plc *p, uint32_t x)
 {
-	const bool clears = c->live == PLC_ERRORS && m->data[4] == 0;
+	const uint32_t id = x & ~PLC_EMCY_OFF;
 
-	if (!clears && !is_as_it_is(p, c, m)) {
-		say_abort(p, c->live == PLC_ERRORS ? ABORT_RANGE :
-						     ABORT_READ_ONLY);
-		return;
-	}
-	if (clears)
-		p->nhistory = 0;
-	p->answer.data[0] = 3 << 5;
+	if (id <= CAN_EMCY || id > CAN_EMCY + CAN_NODE_MAX)
+		return false;
+	if (id != (p->emcy_id & ~PLC_EMCY_OFF) &&
+	    !((p->emcy_id | x) & PLC_EMCY_OFF))
+		return false;
+	p->emcy_id = x;
+	return true;
+}
+
+static bool take_beat(struct plc *p, uint32_t ms)
+{
+	plc_beat(p, (uint16_t)ms);
+	return true;
+}
+
+/* The value that an object has may be written: tools write all they know. */
+static void download_constant(struct plc *p, const struct plc_constant *c,
+			      uint32_t x)
+{
+	static bool (*const take[PLC_NLIVE])(struct plc *, uint32_t) = {
+		[PLC_ERRORS] = take_history, [PLC_EMCY] = take_emcy,
+		[PLC_BEAT] = take_beat,
+	};
+
+	if (x == constant_value(p, c))
+		p->answer.data[0] = 3 << 5;
+	else if (!take[c->live])
+		say_abort(p, ABORT_READ_ONLY);
+	else if (!take[c->live](p, x))
+		say_abort(p, ABORT_RANGE);
+	else
+		p->answer.data[0] = 3 << 5;
+}
+
+static bool has_length(const struct can_msg *m, enum plc_type t)
+{
+	const bool sized = m->data[0] & 1, expedited = m->data[0] & 2;
+	const size_t bytes = 4 - (m->data[0] >> 2 & 3u);
+
+	return expedited && (!sized || bytes == plc_bytes(t));
+}
+
+static void download_signal(struct plc *p, const struct plc_signal *s,
+			    uint32_t x)
+{
+	if (p->operational)
+		say_abort(p, ABORT_STATE);
+	else if (!plc_take(p, s, x))
+		say_abort(p, ABORT_RANGE);
+	else
+		p->answer.data[0] = 3 << 5;
 }
 
 static void download(struct plc *p, const struct can_msg *m, uint16_t index,
 		     uint8_t sub)
 {
 	const struct plc_signal *s = signal_at(index, sub);
-	const bool sized = m->data[0] & 1, expedited = m->data[0] & 2;
-	const size_t bytes = 4 - (m->data[0] >> 2 & 3u);
+	const struct plc_constant *c = constant_at(index, sub);
+	enum plc_type type;
 
-	if (!s && !constant_at(index, sub))
+	if (!s && !c) {
 		say_missing(p, index);
-	else if (!s)
-		download_constant(p, constant_at(index, sub), m);
-	else if (!s->asked)
+		return;
+	}
+	type = s ? s->type : c->type;
+	if (s && !s->asked)
 		say_abort(p, ABORT_READ_ONLY);
-	else if (!expedited || (sized && bytes != plc_bytes(s->type)))
+	else if (!has_length(m, type))
 		say_abort(p, ABORT_LENGTH);
-	else if (p->operational)
-		say_abort(p, ABORT_STATE);
-	else if (!plc_take(p, s, can_get(m->data + 4,
-					 (int)plc_bytes(s->type))))
-		say_abort(p, ABORT_RANGE);
+	else if (s)
+		download_signal(p, s, can_get(m->data + 4,
+					      (int)plc_bytes(type)));
 	else
-		p->answer.data[0] = 3 << 5;
+		download_constant(p, c, can_get(m->data + 4,
+						(int)plc_bytes(type)));
 }
 
 void plc_sdo(struct plc *p, const struct can_msg *m)

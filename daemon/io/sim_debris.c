@@ -20,7 +20,6 @@
 #include <math.h>
 
 #define LN_2		0.693147180559945309
-#define PI		3.14159265358979323846
 #define ARC_DEBRIS_S	0.5	/* debris a second, were all pulses arcs */
 #define ARC_COOL	3.0	/* times faster with power off, or lifted */
 #define BURN_FROM	0.3	/* share of arcs: they stay, and burn */
@@ -38,7 +37,7 @@ double sim_side_mm(const struct sim *s)
 	const double around = s->p.perimeter_mm > 0 ?
 			      s->p.perimeter_mm *
 			      sqrt(area / s->p.area_mm2) :
-			      2 * sqrt(PI * area);
+			      2 * sqrt(M_PI * area);
 
 	return around * s->p.side_gap_mm * s->depth_mm / area;
 }

@@ -16,12 +16,12 @@ void sim_switches_init(struct sim *s, const struct machine_config *c)
 {
 	for (int i = 0; i < IO_NAXES; i++) {
 		const struct interp_axis_limits *l = &c->axes.axis[i];
-		const struct config_hand *h = &c->hand[i];
+		const struct manual_axis *h = &c->manual[i];
 		const double off_mm = s->p.home_off_mm;
 
 		s->switches[i] = (struct sim_switches) {
 			.wired = config_has_switch(c, i),
-			.toward = h->home_dir ? 1 : -1,
+			.toward = c->home_dir[i] ? 1 : -1,
 			.home = (h->home_at_mm + off_mm) / l->pulse_mm,
 			.min = (l->travel_min_mm + off_mm - OUTSIDE_MM) /
 			       l->pulse_mm,

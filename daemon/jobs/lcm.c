@@ -186,6 +186,7 @@ static bool on_command(struct jobs_lcm *w, const struct origin *o)
 		.key = s->key, .client = m.client, .seq = m.seq, .verb = m.verb,
 		.job = m.job, .text = m.text, .arg = m.arg,
 		.by = o->packet->key, .from = o->packet->from,
+		.age_us = trust_age_us(w->trust, s, now_us()),
 	};
 	if (is_taken(w, o, m.client, m.seq))
 		w->handlers.command(w->handlers.arg, &c);

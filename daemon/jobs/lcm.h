@@ -38,6 +38,7 @@ struct jobs_lcm_command {
 	const struct trust_key *by;	/* the same key, in the table */
 	const char *from;		/* address and port */
 	uint64_t act;			/* its id, act.h; 0: none */
+	int64_t age_us;			/* since it was signed */
 };
 
 struct jobs_lcm_chunk {

@@ -14,8 +14,8 @@
 
 #define STALE_US	500000		/* the cycle counter stands */
 #define LOOK_US		100000		/* between looks at the process */
-#define ANSWER_US	2000000		/* edmd answers within a cycle */
 #define TAKE_US		1500000		/* later it does not take a command */
+#define ANSWER_US	500000		/* after that: it answers in a cycle */
 
 const char *link_state_name(enum link_state s)
 {
@@ -217,7 +217,9 @@ static void pending_begin(struct link_pending *p, uint64_t id,
 			  const struct link_command *c, int64_t now_us)
 {
 	*p = (struct link_pending) {
-		.id = id, .until_us = now_us + ANSWER_US,
+		.id = id,
+		.until_us = now_us + (c->take_us ? c->take_us : TAKE_US) +
+			    ANSWER_US,
 		.answer = c->answer, .arg = c->answer_arg,
 	};
 }
@@ -237,7 +239,8 @@ int link_send(struct link *l, const struct link_command *c, int64_t now_us)
 	struct shm_command m = {
 		.id = c->id, .verb = c->verb, .arg = c->arg,
 		.instance = l->instance, .arg_mm = c->arg_mm,
-		.until_ns = (now_us + TAKE_US) * 1000,
+		.until_ns = (now_us + (c->take_us ? c->take_us : TAKE_US)) *
+			    1000,
 	};
 	struct link_pending *room = pending_room(l);
 	int err;

@@ -62,6 +62,7 @@ struct link_command {
 	uint32_t verb;			/* enum shm_verb */
 	uint32_t arg;
 	double arg_mm;			/* or in the unit of the field set */
+	int64_t take_us;		/* later edmd leaves it; 0: the usual */
 	link_answer_fn answer;		/* once, never from link_send() */
 	void *answer_arg;
 };

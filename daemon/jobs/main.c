@@ -316,31 +316,31 @@ int main(int argc, char **argv)
 	static struct machine_config config;
 	static struct jobs jobs;
 	struct options o = { .config = NULL };
-	int rc = parse(argc, argv, &o);
+	int err = parse(argc, argv, &o);
 
-	if (rc >= 0)
-		return rc;
+	if (err >= 0)
+		return err;
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;
-	rc = configure(&jobs, &config, &o);
-	if (rc)
-		return rc;
+	err = configure(&jobs, &config, &o);
+	if (err)
+		return err;
 	logger_start();
-	rc = open_store(&jobs, o.store ? o.store : config.store_dir);
+	err = open_store(&jobs, o.store ? o.store : config.store_dir);
 	jobs.claim = -1;
-	if (rc == 0)
-		rc = claim(&jobs);
-	if (rc == 0)
-		rc = keys_open(&jobs, o.store ? o.store : config.store_dir);
-	if (rc == 0)
-		rc = open_lcm(&jobs);
-	if (rc == 0)
-		rc = run(&jobs);
+	if (err == 0)
+		err = claim(&jobs);
+	if (err == 0)
+		err = keys_open(&jobs, o.store ? o.store : config.store_dir);
+	if (err == 0)
+		err = open_lcm(&jobs);
+	if (err == 0)
+		err = run(&jobs);
 	reply_fini(&jobs.replies);
 	jobs_lcm_close(jobs.lcm);
 	keys_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
 	store_close(jobs.store);
 	logger_stop();
-	return rc;
+	return err;
 }

@@ -105,6 +105,11 @@ enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 			     const char *client, int64_t now_us);
 
+/** trust_age_us() - how long ago its client signed it, as far as the client
+ *  knows the service's clock. */
+int64_t trust_age_us(const struct trust *t, const struct seal *s,
+		     int64_t now_us);
+
 /** trust_refuse() - count it, and tell it if that is due. */
 void trust_refuse(struct trust *t, enum trust_cause cause, const char *who,
 		  const char *from, int64_t now_us);

@@ -15,6 +15,9 @@
 
 enum verb_kind {
 	VERB_ASKS,			/* a repeat is asked again */
+	VERB_SIGNS,			/* of a press: many a second, so they
+					 * are not written down; late, they are
+					 * no use */
 	VERB_ACTS,			/* done once: act.h */
 	VERB_ENDS,			/* the same; and if nothing can be
 					 * written it is done all the same */

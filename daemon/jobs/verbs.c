@@ -12,6 +12,7 @@
 #include "interp/tech_table.h"
 #include "jobs_log.h"
 #include "nearest.h"
+#include "verbs.h"
 
 #include <errno.h>
 #include <math.h>
@@ -23,6 +24,7 @@
 #define RETRACT_MAX_MM	10000.0
 #define STEP_MAX	100
 #define OVERRIDE_MAX	2.0
+#define SIGN_US		100000		/* a sign of a press is no older */
 
 /* A command on its way to edmd. */
 struct asked {
@@ -182,6 +184,7 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 	struct asked *a = asked_new(j, v, c);
 	struct link_command m = {
 		.id = c->act, .verb = v->machine, .arg = arg, .arg_mm = c->arg,
+		.take_us = v->kind == VERB_SIGNS ? SIGN_US : 0,
 		.answer = on_answer, .answer_arg = a,
 	};
 	int err;
@@ -286,18 +289,18 @@ static void verb_override(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
 }
 
-/* One letter of an axis the machine has; -1: it was refused. */
-static int axis_of(struct jobs *j, const struct jobs_lcm_command *c)
+/* One letter of an axis the machine has, of @n in the text; -1: refused. */
+static int axis_of(struct jobs *j, const struct jobs_lcm_command *c, size_t n)
 {
-	const char *at = c->text[0] ? strchr(INTERP_AXIS_LETTERS, c->text[0]) :
-				      NULL;
+	const char *at = n == 1 ? strchr(INTERP_AXIS_LETTERS, c->text[0]) :
+				  NULL;
 	char reason[96], has[INTERP_NAXES + 1] = "";
-	size_t n = 0;
+	size_t k = 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		if (j->config->axes.present >> i & 1)
-			has[n++] = INTERP_AXIS_LETTERS[i];
-	if (at && c->text[1] == '\0' && strchr(has, *at))
+			has[k++] = INTERP_AXIS_LETTERS[i];
+	if (at && strchr(has, *at))
 		return (int)(at - INTERP_AXIS_LETTERS);
 	snprintf(reason, sizeof(reason), "no axis '%.20s' here; one of %s",
 		 c->text, has);
@@ -315,22 +318,53 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 		       "degrees, + or -");
 		return;
 	}
-	axis = axis_of(j, c);
+	axis = axis_of(j, c, strlen(c->text));
 	if (axis >= 0)
 		ask_machine(j, v, c, (uint32_t)axis);
+}
+
+/* The text is the axis, the number of the press, and `begin`, if it begins. */
+static void verb_jog_on(struct jobs *j, const struct verb *v,
+			const struct jobs_lcm_command *c)
+{
+	const size_t n = strcspn(c->text, " ");
+	char *end = NULL;
+	const unsigned long press = strtoul(c->text + n, &end, 10);
+	const bool begins = strcmp(end, " begin") == 0;
+	int axis;
+
+	if (!isfinite(c->arg)) {
+		verbs_answer(j, c, EX_DATAERR, "no such speed; mm/s or deg/s, "
+			     "+ or -, 0 ends it");
+		return;
+	}
+	if (press < 1 || press > VERB_PRESS_MAX || (*end && !begins)) {
+		verbs_answer(j, c, EX_DATAERR, "no such press; AXIS, a number "
+			     "that no press before it had, 1 to 16777215, and "
+			     "begin if it begins");
+		return;
+	}
+	axis = axis_of(j, c, n);
+	if (axis >= 0 && c->age_us > SIGN_US)
+		verbs_answer(j, c, EX_UNAVAILABLE, "this sign of a press came "
+			     "too late; press again");
+	else if (axis >= 0)
+		ask_machine(j, v, c, (uint32_t)axis | (uint32_t)press << 8 |
+			    (begins ? VERB_PRESS_BEGINS : 0));
 }
 
 static bool is_homed_by(const struct jobs *j, int axis)
 {
 	return j->config->axes.present >> axis & 1 &&
-	       (j->config->hand[axis].home_method != 0 ||
+	       (j->config->manual[axis].method != 0 ||
 		j->link.snap.unplaced >> axis & 1);
 }
 
 static void verb_home(struct jobs *j, const struct verb *v,
 		      const struct jobs_lcm_command *c)
 {
-	int axis = c->text[0] ? axis_of(j, c) : INTERP_NAXES;
+	int axis = c->text[0] ? axis_of(j, c, strlen(c->text)) :
+				INTERP_NAXES;
 	bool any = false;
 
 	if (axis < 0)
@@ -512,6 +546,8 @@ static const struct verb verbs[] = {
 	  "a job held on its path" },
 	{ "jog", ROLE_OPERATOR, VERB_ACTS, verb_jog, SHM_DO_JOG,
 	  "idle: no job loaded, no fault" },
+	{ "jog-on", ROLE_OPERATOR, VERB_SIGNS, verb_jog_on, SHM_DO_JOG_ON,
+	  "idle, no job, no fault; and a press that is not over: press again" },
 	{ "home", ROLE_OPERATOR, VERB_ACTS, verb_home, SHM_DO_HOME,
 	  "idle: no job loaded, no fault" },
 	{ "override", ROLE_OPERATOR, VERB_ACTS, verb_override,
@@ -589,7 +625,7 @@ void verbs_take(void *arg, const struct jobs_lcm_command *c)
 		refuse_verb(j, c);
 	else if (c->by->role < v->role)
 		refuse_role(j, c, v);
-	else if (v->kind == VERB_ASKS)
+	else if (v->kind == VERB_ASKS || v->kind == VERB_SIGNS)
 		v->run(j, v, c);
 	else
 		act_take(j, v, c);

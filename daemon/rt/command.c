@@ -7,6 +7,7 @@
 #include "guard.h"
 #include "path/step.h"
 #include "path/walk.h"
+#include "path/place.h"
 
 #include <math.h>
 #include <string.h>
@@ -106,7 +107,7 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 	cycle_happen(c, EVENT_HOLD);
 	axes_want(c, false);
 	c->hold.moving = true;
-	c->hold.to_mm = fmax(cycle_outer_mm(c), cycle_place_mm(c) - arg_mm);
+	c->hold.to_mm = fmax(place_outer_mm(c), place_mm(c) - arg_mm);
 	return ANSWER_DONE;
 }
 
@@ -214,10 +215,27 @@ static enum cycle_answer do_manual(struct cycle *c,
 	return ANSWER_DONE;
 }
 
+static enum cycle_answer do_press(struct cycle *c,
+				  const struct cycle_command *m)
+{
+	const enum cycle_answer may = c->fault.latched ? ANSWER_WRONG_STATE :
+				      may_begin(c);
+	bool begun;
+	const int answer = manual_press(c, m->arg, m->arg_mm, may, &begun);
+
+	if (begun) {
+		cycle_enter(c, STATE_JOG);
+		axes_want(c, false);
+	}
+	return (enum cycle_answer)answer;
+}
+
 enum cycle_answer cycle_command(struct cycle *c, const struct cycle_command *m)
 {
 	if (m->verb >= CYCLE_NVERBS)
 		return ANSWER_BAD_ARGUMENT;
+	if (m->verb == CYCLE_JOG_ON)
+		return do_press(c, m);
 	if (m->verb == CYCLE_SET)
 		return do_set(c, m);
 	if (m->verb == CYCLE_JOG || m->verb == CYCLE_HOME)

@@ -11,6 +11,7 @@
 #include "path/step.h"
 #include "path/timed.h"
 #include "path/walk.h"
+#include "path/place.h"
 
 #include <math.h>
 #include <string.h>
@@ -44,7 +45,7 @@ void cycle_overrun(struct cycle *c, uint32_t missed)
  * signal is within the window. */
 static enum cycle_event look_in(const struct cycle *c)
 {
-	const bool known = law_place(c) < c->far_mm - LAW_ONTO_MM;
+	const bool known = place_mm(c) < c->far_mm - MOVER_ONTO_MM;
 
 	if (known && c->sensed.now_v > gap_window_high_v(c))
 		return EVENT_NONE;

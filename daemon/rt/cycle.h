@@ -36,6 +36,7 @@
 #include "gap/conditions.h"
 #include "gap/retract.h"
 #include "gap/servo.h"
+#include "settings.h"
 #include "state.h"
 #include "path/probe.h"
 #include "path/progress.h"
@@ -47,71 +48,6 @@ enum cycle_outcome {
 	OUTCOME_DONE,
 	OUTCOME_FAULT,
 	OUTCOME_STOPPED,		/* by command */
-};
-
-/* Where the sparks are: in a cavity, or along a wire. */
-enum cycle_process {
-	PROCESS_SINK,
-	PROCESS_WIRE,
-	CYCLE_NPROCESSES
-};
-
-struct cycle_gap_config {
-	enum cycle_process process;
-	enum gap_source source;
-	enum gap_filter filter;
-	uint32_t filter_cycles;		/* 0, 1: none */
-	uint32_t short_cycles;		/* in a row make a short; 0 as 1 */
-	double servo_v;			/* hold this mean gap voltage */
-	double short_v;			/* below: short circuit */
-	double open_v;			/* above: nothing to cut yet */
-	double window_low_v;		/* stand from here; 0: derived */
-	double window_high_v;		/* ... to here; 0: servo_v */
-	double ignition_v;		/* open circuit; 0: not known */
-	double gain_mm_s_v;		/* feed per volt outside the window */
-	double integral_s;		/* reset time; 0: proportional alone */
-	double feed_max_mm_s;		/* fastest feed while eroding */
-	double creep_mm_s;		/* fastest back, while eroding */
-	double feed_a_mm_s2;		/* of the servo; 0: at once */
-	double approach_mm_s;		/* feed until the first spark */
-	double share_v;			/* worth of a share of 1 */
-	double share_set;		/* weighted share to hold */
-	double share_weight;		/* of shorts and arcs, against opens */
-	double share_short;		/* this share of shorts is a short */
-	double share_open;		/* this share of opens is open */
-	double retract_mm_s;		/* back along the path on a short */
-	enum retract_to retract_to;
-	double retract_limit_mm;	/* then stand, and wait ... */
-	uint64_t retract_wait_cycles;	/* ... then fault short-not-cleared */
-	uint64_t retract_max_cycles;	/* then fault retract-time; 0: never */
-	bool retract_escape;		/* out of a short by the escape */
-	uint32_t abort_count;		/* retracts without erosion; 0: any */
-	double progress_mm;		/* cut so much deeper is erosion */
-	double arcing_share;		/* more is arcing; 0: not looked at */
-	uint32_t arcing_cycles;		/* ... in a mean over so many */
-	double arcing_sigma_v;		/* steadier in a plateau: an arc; 0: not
-					 * judged by voltage */
-	double off_us;			/* the generator's own; 0: not known */
-	double arcing_off_max;		/* times the off time, against arcs */
-	uint64_t arcing_recover_cycles;	/* to a step down */
-	double arcing_retract_mm;		/* at least, out of an arc */
-	uint64_t stuck_cycles;		/* no change, then a fault; 0: never */
-	double noise_limit_v;		/* mean change of a cycle; 0: any */
-	double wire_retract_mm;		/* limit of a retract, if wire */
-	double wire_retreat_mm;		/* from a break; 0: to the motion's start */
-};
-
-struct cycle_jump_config {
-	double height_mm;		/* 0: never */
-	uint64_t every_cycles;		/* of erosion between two jumps */
-	double every_mm;		/* ... or of depth; 0: by time alone */
-	bool adaptive;			/* flush.h */
-	uint64_t every_min_cycles, every_max_cycles;
-	double height_min_mm, height_max_mm;
-	double bad_share;		/* of the time between two jumps */
-	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
-	double a_down_mm_s2;		/* toward the cut; 0: a_max_mm_s2 */
-	double short_of_mm;		/* come back to this far above the cut */
 };
 
 struct cycle_config {
@@ -134,6 +70,7 @@ struct cycle_config {
 	bool hold_at_end;		/* at the end hold; the job does not end */
 	bool require_home;		/* no start before all are homed */
 	struct manual_axis axis[INTERP_NAXES];
+	uint64_t press_cycles;		/* VERB_PRESS_S of a person's time */
 	struct comp_config comp;
 	struct contouring_config contouring;
 };
@@ -283,40 +220,6 @@ struct cycle {
 	void (*on_point)(void *arg, const struct cycle *c);
 	void *on_point_arg;
 };
-
-/**
- * cycle_place_mm() - where it is on its path; beside it, less the way back.
- */
-static inline double cycle_place_mm(const struct cycle *c)
-{
-	return interp_cursor_place_mm(&c->cursor) - c->escape.way_mm;
-}
-
-/** cycle_outer_mm() - the farthest back it may go, counted the same way. */
-static inline double cycle_outer_mm(const struct cycle *c)
-{
-	return c->escape.nlegs > 0 ? interp_cursor_place_mm(&c->cursor) -
-				     c->escape.length_mm : c->back_mm;
-}
-
-/** cycle_pos() - the lattice point it stands on, as programmed; the axes are
- *  at probe.shift from it. */
-static inline const int32_t *cycle_pos(const struct cycle *c)
-{
-	return escape_is_out(&c->escape) ? c->escape.pos : c->cursor.pos;
-}
-
-/** cycle_axis() - where axis @i is then, pulses. */
-static inline int32_t cycle_axis(const struct cycle *c, int i)
-{
-	return cycle_pos(c)[i] + c->probe.shift[i];
-}
-
-/** cycle_moved() - bit per axis that moved to it. */
-static inline uint32_t cycle_moved(const struct cycle *c)
-{
-	return escape_is_out(&c->escape) ? c->escape.moved : c->cursor.moved;
-}
 
 /** cycle_is_manual() - it moves, and not by a program. */
 static inline bool cycle_is_manual(const struct cycle *c)

@@ -5,6 +5,7 @@
 #include "enter.h"
 #include "path/timed.h"
 #include "path/walk.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -30,8 +31,8 @@ static void lift(struct cycle *c)
 	}
 	c->totals.jumps++;
 	leave_path(c);
-	c->lift.from_mm = cycle_place_mm(c);
-	c->lift.to_mm = fmax(cycle_outer_mm(c), c->lift.from_mm - height_mm);
+	c->lift.from_mm = place_mm(c);
+	c->lift.to_mm = fmax(place_outer_mm(c), c->lift.from_mm - height_mm);
 }
 
 /* Held beside the path: back, as a jump comes back. */
@@ -41,7 +42,7 @@ static void come_back(struct cycle *c)
 	c->lift.leaving = false;
 	c->lift.from_mm = interp_cursor_place_mm(&c->cursor);
 	c->lift.to_mm = fmax(c->lift.from_mm - c->jump.short_of_mm,
-			     cycle_place_mm(c));
+			     place_mm(c));
 }
 
 void cycle_enter(struct cycle *c, enum cycle_state s)
@@ -123,8 +124,8 @@ static void brake(struct cycle *c)
 		return;
 	}
 	if (goes_back)
-		c->hold.to_mm = back > 0 ? fmax(cycle_outer_mm(c),
-						cycle_place_mm(c) - back) :
+		c->hold.to_mm = back > 0 ? fmax(place_outer_mm(c),
+						place_mm(c) - back) :
 					   retract_motion_mm(c);
 	cycle_enter(c, STATE_HOLD);
 	c->hold.moving = goes_back;

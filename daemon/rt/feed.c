@@ -5,6 +5,7 @@
 #include "path/ahead.h"
 #include "feed.h"
 #include "path/laws.h"
+#include "path/place.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -24,7 +25,7 @@ static double travel(struct cycle *c)
 static double go_to(struct cycle *c, struct ahead_move *w, double to_mm)
 {
 	w->goal_mm = to_mm;
-	w->toward = to_mm < law_place(c) ? -1 : 1;
+	w->toward = to_mm < place_mm(c) ? -1 : 1;
 	return ahead_distance(c, w);
 }
 
@@ -44,7 +45,7 @@ static double escape_to(struct cycle *c, const struct mover_limits *l,
 			double to_mm)
 {
 	return mover_step(&c->mover, l, escape_stop_mm(c, to_mm) -
-					law_place(c));
+					place_mm(c));
 }
 
 static double jump(struct cycle *c)
@@ -125,7 +126,7 @@ double feed_distance(struct cycle *c)
 static bool there(const struct cycle *c, double to_mm)
 {
 	return c->mover.v_mm_s == 0 &&
-	       fabs(to_mm - law_place(c)) < 2 * LAW_ONTO_MM;
+	       fabs(to_mm - place_mm(c)) < 2 * MOVER_ONTO_MM;
 }
 
 /* Up, then back to just short of the cut. */
@@ -137,7 +138,7 @@ static bool jump_done(struct cycle *c)
 		return true;
 	c->lift.up = false;
 	c->lift.to_mm = fmax(c->lift.from_mm - c->jump.short_of_mm,
-			     law_place(c));
+			     place_mm(c));
 	return there(c, c->lift.to_mm);
 }
 

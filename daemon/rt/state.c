@@ -6,20 +6,12 @@
 
 #include <stdint.h>
 
+#define DUTY(id, name, power, running) \
+	[STATE_##id] = { name, power, running },
+
 const struct state_duty state_duty[CYCLE_NSTATES] = {
-	/*		      name		power	running */
-	[STATE_STAY]	 = { "?",		false,	false },
-	[STATE_IDLE]	 = { "idle",		false,	false },
-	[STATE_TRAVEL]	 = { "travel",		false,	true },
-	[STATE_APPROACH] = { "approach",	true,	true },
-	[STATE_ERODE]	 = { "erode",		true,	true },
-	[STATE_RETRACT]	 = { "retract",		false,	true },
-	[STATE_JUMP]	 = { "jump",		false,	true },
-	[STATE_HOLD]	 = { "hold",		false,	false },
-	[STATE_FAULT]	 = { "fault",		false,	false },
-	[STATE_JOG]	 = { "jog",		false,	false },
-	[STATE_HOME]	 = { "home",		false,	false },
-	[STATE_PROBE]	 = { "probe",		false,	true },
+	[STATE_STAY] = { "?", false, false },
+	STATE_ROWS(DUTY)
 };
 
 /*

@@ -8,23 +8,9 @@
 #ifndef RT_STATE_H
 #define RT_STATE_H
 
-#include <stdbool.h>
+#include "states.h"
 
-enum cycle_state {
-	STATE_STAY,		/* only in the table: no transition */
-	STATE_IDLE,		/* no job */
-	STATE_TRAVEL,		/* positioning, or a dry run: power off */
-	STATE_APPROACH,		/* power on, feeding until it sparks */
-	STATE_ERODE,		/* gap servo */
-	STATE_RETRACT,		/* back along the path because of a short */
-	STATE_JUMP,		/* timed lift and return */
-	STATE_HOLD,		/* stands, or walks back by command */
-	STATE_FAULT,		/* latched; power off, no motion */
-	STATE_JOG,		/* no job: an axis moves by command */
-	STATE_HOME,		/* no job: axes look for their switches */
-	STATE_PROBE,		/* looking for the work by contact, power off */
-	CYCLE_NSTATES
-};
+#include <stdbool.h>
 
 enum cycle_event {
 	EVENT_NONE,

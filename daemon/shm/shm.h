@@ -34,6 +34,7 @@
 #ifndef EDM_SHM_H
 #define EDM_SHM_H
 
+#include "states.h"
 #include "verbs.h"
 
 #include <stdbool.h>
@@ -63,11 +64,13 @@ struct shm_head {
 	uint32_t instance;		/* drawn anew at every start of edmd */
 };
 
-/* Mirrors enum cycle_state; fixed here because others rely on it. */
+/* The same numbers as enum cycle_state. */
+#define SHM_STATE_NUMBER(id, name, power, running) SHM_##id,
 enum shm_state {
-	SHM_IDLE = 1, SHM_TRAVEL, SHM_APPROACH, SHM_ERODE, SHM_RETRACT,
-	SHM_JUMP, SHM_HOLD, SHM_FAULT, SHM_JOG, SHM_HOME, SHM_PROBE
+	SHM_NO_STATE,
+	STATE_ROWS(SHM_STATE_NUMBER)
 };
+#undef SHM_STATE_NUMBER
 
 struct shm_snapshot {
 	uint64_t cycle;			/* since edmd started */

@@ -50,13 +50,25 @@ static double high_of(const struct search *s, const struct gain *g)
 	       fmin(g->high, horizon) : g->high;
 }
 
+/* As a machine file has it: a gain that is tried is one that can be printed. */
+static double rounded(double x)
+{
+	double unit;
+
+	if (x == 0)
+		return 0;
+	unit = pow(10, floor(log10(fabs(x))) + 1 - INTERP_TUNE_DIGITS);
+	return unit < 1 ? round(x / unit) / round(1 / unit) :
+	       round(x / unit) * unit;
+}
+
 static double try_gains(struct search *s, const double *x)
 {
 	struct interp_trial trial = s->tune->trial;
 	struct interp_trial_result r;
 
 	for (int i = 0; i < s->n; i++)
-		*field(&s->config.gains, s->gain[i]->at) = x[i];
+		*field(&s->config.gains, s->gain[i]->at) = rounded(x[i]);
 	trial.compensate = &s->config;
 	if (interp_trial_run(&trial, &r) < 0)
 		return INFINITY;
@@ -110,6 +122,6 @@ int interp_tune_run(const struct interp_tune *t,
 		return err;
 	*ret = t->trial.compensate->gains;
 	for (int i = 0; i < s.n; i++)
-		*field(ret, s.gain[i]->at) = x[i];
+		*field(ret, s.gain[i]->at) = rounded(x[i]);
 	return 0;
 }

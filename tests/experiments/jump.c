@@ -12,9 +12,10 @@
 #include "interp/nc.h"
 #include "make_program.h"
 
+#include <math.h>
 #include <stdarg.h>
 
-#define TURN	(2 * 3.14159265358979323846)
+#define TURN	(2 * M_PI)
 
 /* Given with the experiment: what the published times follow from. */
 #define HEIGHT_MM	3.0

@@ -3,8 +3,8 @@
  * lines.c - two axes, one at a time: changes of axis and deviation of each
  * rule, counted on whole lines of 10000 main pulses
  */
-#include "tried/greedy.h"
-#include "pulse/pair.h"
+#include "tried/greedy_walk.h"
+#include "path/build_bits.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -166,14 +166,13 @@ static uint64_t rnd(uint64_t *s)
 	return z ^ (z >> 31);
 }
 
-/* Changes of the bursts: a run each, and main ones between and around. */
-static int64_t burst_changes(int64_t a, int64_t b, int64_t half)
+/* Changes of the bursts. */
+static int64_t burst_changes(int64_t a, int64_t b, struct pair_tube t)
 {
-	const int64_t burst = pair_burst(a, b, half);
-	const int64_t n = (b + burst - 1) / burst;
+	struct interp_pair p = { .a = a, .b = b };
 
-	return 2 * n - (pair_stop(a, b, n, 0) == 0) -
-	       (pair_stop(a, b, n, n - 1) == a);
+	pair_set(&p, INTERP_MIN_SWITCH, t, false);
+	return pair_burst_changes(&p);
 }
 
 static int64_t pbp_changes(int64_t a, int64_t b)
@@ -193,46 +192,62 @@ static int64_t pbp_changes(int64_t a, int64_t b)
 	return n;
 }
 
-static void random_row(uint32_t mu)
+struct sums {
+	double few, bursts, worst, kept, bits;
+};
+
+static void add_line(struct sums *s, int64_t a, int64_t b, struct pair_tube t)
 {
-	double few = 0, bursts = 0, more = 0, worst = 0;
+	const struct greedy_line l = { a, b, pair_half_width(a, b, t) };
+	struct greedy_runs r = { .run = NULL };
+	double few, n;
+
+	greedy_plan(&l, &r);
+	few = (double)(r.n - 1);
+	n = (double)burst_changes(a, b, t) / few;
+	s->few += few / (double)pbp_changes(a, b);
+	s->bursts += n;
+	s->worst = n > s->worst ? n : s->worst;
+	s->kept += 100 * n > BUILD_BITS_ENOUGH ? 1 : n;
+	s->bits += 100 * n > BUILD_BITS_ENOUGH;
+}
+
+static void random_row(struct pair_tube t)
+{
+	struct sums s = { 0 };
 	uint64_t seed = 1;
 
 	for (int i = 0; i < LINES; i++) {
 		const int64_t a = 1000 + (int64_t)(rnd(&seed) % 9000);
 		const int64_t b = 1 + (int64_t)(rnd(&seed) % (uint64_t)a);
-		const struct pair_tube t = { mu, false };
-		const struct greedy_line l = { a, b,
-					       pair_half_width(a, b, t) };
-		struct greedy_runs r = { .run = NULL };
-		const double pbp = (double)pbp_changes(a, b);
-		double g, n;
 
-		greedy_plan(&l, &r);
-		g = (double)(r.n - 1);
-		n = (double)burst_changes(a, b, l.half_width);
-		few += g / pbp;
-		bursts += n / pbp;
-		more += n / g;
-		worst = n / g > worst ? n / g : worst;
+		add_line(&s, a, b, t);
 	}
-	printf("| %g | %.3f | %.3f | %.3f | %.3f |\n", mu / 1000.0,
-	       few / LINES, bursts / LINES, more / LINES, worst);
+	printf("| %g | %s | %.3f | %.3f | %.3f | %.3f | %.1f %% |\n",
+	       t.milli / 1000.0, t.perpendicular ? "square" : "axial",
+	       s.few / LINES, s.bursts / LINES, s.worst, s.kept / LINES,
+	       100 * s.bits / LINES);
 }
 
 static void random_lines(void)
 {
-	static const uint32_t at[] = { 1000, 1500, 2000, 3000, 5000, 10000 };
+	static const uint32_t at[] = { 1000, 1200, 1500, 2000, 2300, 3000,
+				       5000, 10000 };
 
 	printf("\n## Random lines\n\n"
-	       "%d lines of 1000 to 9999 main pulses, any slope, seed 1: "
-	       "changes of axis as a\nshare of point-by-point's, and of "
-	       "min-switch beside the fewest.\n\n"
-	       "| mu | the fewest / point-by-point | min-switch / "
-	       "point-by-point | min-switch / the fewest, mean | worst |\n"
-	       "|---|---|---|---|---|\n", LINES);
-	for (size_t i = 0; i < COUNT(at); i++)
-		random_row(at[i]);
+	       "%d lines of 1000 to 9999 main pulses, any slope, seed 1; mu "
+	       "along the secondary\naxis or square to the line.  Changes of "
+	       "axis: the fewest as a share of\npoint-by-point's; bursts beside "
+	       "the fewest, mean and worst; what a program by\nmin-switch has "
+	       "beside the fewest; and the share of lines that keep a bit for\n"
+	       "each pulse, for bursts had more than %d %% of the fewest.\n\n"
+	       "| mu | measured | the fewest | bursts | worst | program | with "
+	       "bits |\n|---|---|---|---|---|---|---|\n", LINES,
+	       BUILD_BITS_ENOUGH);
+	for (int square = 0; square < 2; square++) {
+		for (size_t i = 0; i < COUNT(at); i++)
+			random_row((struct pair_tube) { at[i], square });
+	}
 }
 
 int main(void)
@@ -242,7 +257,7 @@ int main(void)
 	       "whole walks.\n\n"
 	       "## Two axes, lines of 10000 main pulses\n\n"
 	       "The rules are those of `libinterp/core/pulse/pair.h`; the fewest "
-	       "there can be is\n`tests/experiments/tried/greedy.h`, planned with a "
+	       "there can be is\n`libinterp/compile/pulse/greedy.h`, planned with a "
 	       "list of runs.  *Main direction as printed*\nis the paper's "
 	       "rule judged at the present point, each axis stopped at its "
 	       "total;\n`main-direction` judges the point after the next "

@@ -2,6 +2,7 @@
 """Promises of curves: one row of points, whatever feed, period and direction."""
 import math
 import random
+import re
 
 import pytest
 from edmsim import ROOT, assert_neighbours, places, pulses, report, run
@@ -120,11 +121,26 @@ def test_a_curve_slower_than_its_feed_is_noted():
         "F6000", "F6")).stdout.decode()
 
 
-def test_where_no_curve_can_be_the_way_out_is_told():
-    r = run("--check", text=b"F600\nG41 D1 H1=0.1\nG1 X5\n"
-                            b"G5.1 X10 Y0 I5 J5\n")
+def test_a_curve_may_end_a_program_under_an_offset():
+    r = run("--emit", "iso", text=b"F600\nG41 D1 H1=0.1\nG1 X5\n"
+                                  b"G5.1 X10 Y0 I5 J5\n")
+    assert r.returncode == 0, r.stderr
+    # It arrives downwards, at X10 Y0: the wire is to the left of that.
+    x, y = re.findall(r"X(\S+) Y(\S+)", r.stdout.decode())[-1]
+    assert abs(float(x) - 10.1) < 0.0015 and abs(float(y)) < 0.0015
+
+
+@pytest.mark.parametrize("lead_in,lead_out", [(1, 0), (0, 1)])
+def test_a_curve_is_no_lead(lead_in, lead_out):
+    curve = "G91 G5.1 X10 Y0 I5 J5\n"
+    line = "G91 G1 X10\n"
+    text = "F600\nG41 D1 H1=0.1\n" + (curve if lead_in else line) + line + \
+        "G40\n" + (curve if lead_out else line) + line
+    r = run("--check", text=text)
     assert r.returncode == 65
-    assert b"G40 and G50 before it, or the curve as G1" in r.stderr, r.stderr
+    assert f"{3 if lead_in else 6}:10: error: a curve over which the offset " \
+        "or the taper is reached or left; G1, G2 or G3 as the lead" in \
+        r.stderr.decode(), r.stderr
 
 
 def test_a_mistake_in_a_curve_is_told_with_its_place():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""messages/edmd.eds and edmd.dbc: as printed, and as PLC tools read them."""
+"""messages/edmd.eds and edmd.dbc: as written, and as PLC tools read them."""
 import subprocess
+import sys
 
 import canopen
 import cantools
@@ -13,17 +14,19 @@ EDS, DBC = ROOT / "messages/edmd.eds", ROOT / "messages/edmd.dbc"
 NODE = 32
 
 
-def printed(*args):
-    return subprocess.run([EDMD, *args], check=True, capture_output=True,
-                          text=True).stdout
+WRITE = ROOT / "messages/plc-files"
 
 
-@pytest.mark.parametrize("option, path", [
-    ("--print-eds", EDS), ("--print-dbc", DBC),
-    ("--document-plc", ROOT / "docs/plc-signals.md")])
-def test_the_file_is_what_the_command_prints(option, path):
-    assert path.read_text() == printed(option), \
-        f"build/edmd {option} > {path.relative_to(ROOT)}"
+def written(*args):
+    subprocess.run([sys.executable, WRITE, "--edmd", EDMD, *args], check=True)
+
+
+def test_the_kept_files_are_what_the_script_writes(tmp_path):
+    kept = [EDS, DBC, ROOT / "docs/plc-signals.md"]
+    new = [tmp_path / p.name for p in kept]
+    written(*new)
+    for a, b in zip(kept, new):
+        assert a.read_text() == b.read_text(), f"{a.name}: make plc-files"
 
 
 def pdos(od, first, count):
@@ -85,14 +88,33 @@ def test_numbers_have_the_units_of_the_table():
     assert asked == bytes([0x81, 0x1f, 0xbc, 2, 12, 0, 60, 86])
 
 
-def test_the_node_of_the_machine_file_is_that_of_the_dbc(tmp_path):
+def test_a_machine_file_decides_node_times_and_units(tmp_path):
     machine = tmp_path / "m.ini"
-    machine.write_text("[plc]\nnode = 5\n")
+    machine.write_text("[machine]\nbackend = null\n[plc]\nnode = 5\n"
+                       "cycle_ms = 40\nalive_ms = 300\n"
+                       "[axis.X]\npulse_mm = 0.0005\n")
     dbc = tmp_path / "m.dbc"
-    dbc.write_text(printed("--config", machine, "--print-dbc"))
+    written("--machine", machine, dbc)
     db = cantools.database.load_file(dbc)
-    assert db.get_message_by_name("EdmdStatus").frame_id == 0x185
-    assert db.get_message_by_name("PlcRequest").frame_id == 0x205
+    status, ask = (db.get_message_by_name(n)
+                   for n in ("EdmdStatus", "PlcRequest"))
+    assert (status.frame_id, ask.frame_id) == (0x185, 0x205)
+    assert (status.cycle_time, ask.cycle_time) == (40, 150)
+    place = db.decode_message("EdmdPositionXY", (3000).to_bytes(4, "little") +
+                              bytes(4))
+    assert place["PositionX"] == pytest.approx(1.5)
+    assert db.get_message_by_name("EdmdPositionXY").get_signal_by_name(
+        "PositionX").unit == "mm"
+
+
+def test_types_and_access_are_those_of_cia_301():
+    od = canopen.import_od(str(EDS), node_id=NODE)
+    types = canopen.objectdictionary.datatypes
+    assert od[0x1008].data_type == types.VISIBLE_STRING
+    assert od[0x1008].default == "edmd"
+    assert od[0x1014].default == 0x80 + NODE
+    assert all(v.writable for v in (od[0x1003][0], od[0x1014], od[0x1017]))
+    assert not any(v.writable for v in (od[0x1000], od[0x1001], od[0x1018][1]))
 
 
 def machine_check(tmp_path, plc, backend="null"):

@@ -35,10 +35,12 @@ ALWAYS = {
 }
 OF_A_CUT = {
     "retracts", "retract_mm_max", "jumps", "jump_s", "erosion_s", "shorts",
-    "arcs", "removed_mm3", "removal_mm3_min", "wear_mm", "burns",
+    "arcs", "removed_mm3", "removal_mm3_min", "wear_mm", "burns", "hunts",
+    "retracts_in_row_max",
 }
 COUNTS = {"lines", "segments", "cycles", "switches", "end_error_pulses",
-          "retracts", "jumps", "shorts", "arcs", "burns"}
+          "retracts", "jumps", "shorts", "arcs", "burns", "hunts",
+          "retracts_in_row_max"}
 
 
 def check_kinds(r):
@@ -100,14 +102,19 @@ def test_the_trace_has_a_row_for_each_cycle(tmp_path):
     rows = name.read_text().splitlines()
     assert rows[0] == ("t_s,line,s_mm,feed_mm_s,gap_v,state,"
                        "X,Y,Z,A,B,C,U,V,open,spark,arc,short,debris,"
-                       + ",".join(f"{a}_sent" for a in "XYZABCUV"))
+                       + ",".join(f"{a}_{kind}" for kind in ("sent", "is")
+                                  for a in "XYZABCUV"))
     assert len(rows) - 1 == r["cycles"]
     states = {row.split(",")[5] for row in rows[1:]}
     assert {"travel", "approach", "erode", "jump"} <= states
+    found = ["0"] * 8
     for row in rows[1:]:
         t, line, s, feed, gap, state, *more = row.split(",")
         axes, shares, debris = more[:8], more[8:12], more[12]
-        assert more[13:] == axes   # nothing is added in this machine
+        # Nothing is added in this machine.  It measures before it sends, and
+        # its axes do not lag: it finds what the row before sent.
+        assert more[13:21] == axes and more[21:] == found
+        found = axes
         assert abs(float(axes[2])) < 3 and float(gap) >= 0
         assert 0 <= float(debris) <= 1
         if any(shares):

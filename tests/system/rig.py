@@ -195,24 +195,25 @@ class Client:
             )
             self.hear()
 
-    def send_command(self, verb, job="", arg=0.0, seq=None):
+    def send_command(self, verb, job="", arg=0.0, seq=None, text="",
+                     count=None):
         m = command_t()
         m.utime = int(time.time() * 1e6)
         m.client = self.name
         m.seq = self.number() if seq is None else seq
-        m.verb, m.job, m.arg, m.text = verb, job, float(arg), ""
-        self.publish("COMMAND", m.encode())
+        m.verb, m.job, m.arg, m.text = verb, job, float(arg), text
+        self.publish("COMMAND", m.encode(), count=count)
         return m.seq
 
-    def ask(self, verb, job="", arg=0.0, timeout=6.0):
+    def ask(self, verb, job="", arg=0.0, timeout=6.0, text=""):
         """Ask, and ask again with the same seq, until answered."""
-        seq = self.send_command(verb, job, arg)
+        seq = self.send_command(verb, job, arg, text=text)
         again = time.monotonic() + 0.5
 
         def answered():
             nonlocal again
             if time.monotonic() > again:
-                self.send_command(verb, job, arg, seq)
+                self.send_command(verb, job, arg, seq, text)
                 again += 0.5
             # 100: signed for a service that is gone; status told the new one.
             return [a for a in self.acks_to(seq) if a.code != 100]

@@ -2,6 +2,9 @@
 """Axes moved by hand: jog, home, step; alarms and doctor."""
 
 import json
+import signal
+import subprocess
+import time
 
 import pytest
 import rig
@@ -142,3 +145,60 @@ def test_a_pitch_map_is_refused_with_its_line(idle):
     assert f":{line}:" in r.stderr
     assert "x.pitch:3" in r.stderr
     assert "rise" in r.stderr
+
+
+def pressed(machine, *args):
+    return subprocess.Popen(
+        [str(rig.BUILD / "edmctl"), "--machine", machine.name, "jog-on",
+         *args], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL,
+                                    signal.SIGSTOP])
+def test_a_press_moves_an_axis_until_nothing_is_heard_of_it(machine, number):
+    # On a busy host a sign may be late: then it stands, and is pressed again.
+    for _ in range(10):
+        before = machine.client.status().pos_mm[1]
+        p = pressed(machine, "Y", "20")
+        try:
+            rig.until(lambda: p.poll() is not None or
+                      machine.client.status().pos_mm[1] > before + 0.5)
+            over = p.poll() is not None
+            p.send_signal(number)
+            s = machine.client.status_where(lambda s: s.state == "idle")
+            if number == signal.SIGINT and not over:
+                assert p.wait(timeout=20) == 0
+        finally:
+            p.kill()
+            p.wait()
+        if s.pos_mm[1] > before + 0.5:
+            break
+    assert s.pos_mm[1] > before + 0.5
+    assert machine.client.status_where(
+        lambda t: t.utime > s.utime + 500000).pos_mm[1] == s.pos_mm[1]
+
+
+@pytest.mark.parametrize("text, arg, code, words", [
+    ("Y", 10, 65, "number"),
+    ("Y 0 begin", 10, 65, "number"), ("Q 5 begin", 10, 65, "one of"),
+    ("Y 16777216 begin", 10, 65, "number"), ("Y 5 bogus", 10, 65, "begin"),
+    ("Y 5 begin", float("nan"), 65, "speed")])
+def test_a_sign_that_begins_nothing_moves_nothing(machine, text, arg, code,
+                                                  words):
+    answer = machine.client.ask("jog-on", text=text, arg=arg)
+    assert answer.code == code and words in answer.reason
+    assert machine.client.status().state == "idle"
+
+
+def test_a_sign_that_comes_late_moves_nothing(machine):
+    c = machine.client
+    c.ask("hello")
+    signed = c.count + 1
+    time.sleep(0.3)
+    seq = c.send_command("jog-on", arg=10, text="Y 8 begin", count=signed)
+    answer = c.heard(lambda: c.acks_to(seq))[0]
+    assert answer.code == 69 and "late" in answer.reason
+    # A sign that begins nothing, of a press that nobody knows.
+    assert c.ask("jog-on", text="Y 9", arg=10).code in (1, 69)
+    s = c.status_where(lambda s: s.state == "idle")
+    assert s.pos_mm[1] == 0

@@ -26,6 +26,7 @@ static inline struct cycle_config manual_config(void)
 {
 	struct cycle_config k = usual_config();
 
+	k.press_cycles = 200;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		k.axis[i] = (struct manual_axis) {
 			.present = i < 3,

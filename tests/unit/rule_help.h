@@ -5,7 +5,7 @@
 #ifndef RULE_HELP_H
 #define RULE_HELP_H
 
-#include "tried/greedy.h"
+#include "tried/greedy_walk.h"
 #include "pulse/pair.h"
 
 /* The range of e that pulse/pair.h promises. */

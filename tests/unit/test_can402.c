@@ -557,7 +557,7 @@ static void an_emergency_stops_all_drives_and_is_told_with_its_code(void **st)
 	begin(&r);
 	put(&r, CAN_EMCY + 2, "\x10\x23\x01\0\0\0\0\0", 8);
 	r.p[1].status = 0x08;
-	run(&r, 1);
+	run(&r, 2);
 	ends_with(&r, IO_DRIVE);
 	assert_true(said(&r, "drive Y (node 2): emergency 2310"));
 	resets(&r);
@@ -565,10 +565,30 @@ static void an_emergency_stops_all_drives_and_is_told_with_its_code(void **st)
 	for (int i = 0; i < 3; i++) {
 		put(&r, CAN_EMCY + 2, "\x00\x87\x01\0\0\0\0\0", 8);
 		put(&r, CAN_EMCY + 2, "\x30\x81\x11\0\0\0\0\0", 8);
-		run(&r, 1);
+		r.p[1].status = 0x08;
+		run(&r, 2);
+		ends_with(&r, IO_DRIVE);
 		assert_true(said(&r, "drive Y (node 2): emergency 8700"));
 		resets(&r);
 	}
+	unmake(&r);
+}
+
+static void an_emergency_of_a_warning_is_told_and_stops_nothing(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	put(&r, CAN_EMCY + 2, "\x82\x32\x04\0\0\0\0\0", 8);
+	run(&r, 5);
+	assert_true(said(&r, "drive Y (node 2): emergency 3282"));
+	assert_int_equal(r.in.trouble, IO_WELL);
+	/* From a drive that is silent then it is no warning. */
+	put(&r, CAN_EMCY + 2, "\x82\x32\x04\0\0\0\0\0", 8);
+	r.p[1].mute = true;
+	run(&r, 2);
+	assert_int_equal(r.in.trouble, IO_DRIVE);
 	unmake(&r);
 }
 
@@ -851,6 +871,7 @@ int main(void)
 			a_gap_sensor_without_a_reading_is_a_lost_gap_at_once),
 		cmocka_unit_test(the_generator_is_told_each_period),
 		cmocka_unit_test(an_emergency_stops_all_drives_and_is_told_with_its_code),
+		cmocka_unit_test(an_emergency_of_a_warning_is_told_and_stops_nothing),
 		cmocka_unit_test(a_flood_of_emergencies_is_told_a_few_times),
 		cmocka_unit_test(a_bus_that_is_off_or_gone_is_told_and_comes_back_by_reset),
 		cmocka_unit_test(another_master_is_a_fault),

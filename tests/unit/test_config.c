@@ -131,7 +131,8 @@ static void every_key_reads_back_at_its_smallest_and_largest(void **state)
 		const struct config_key *k = config_key(i);
 		const double ends[] = { k->min, k->max };
 
-		if (k->kind != KEY_NUMBER && k->kind != KEY_WHOLE)
+		if (k->kind != KEY_NUMBER && k->kind != KEY_WHOLE &&
+		    k->kind != KEY_COUNT)
 			continue;
 		for (int e = 0; e < 2; e++) {
 			config_number(ends[e], num, sizeof(num));

@@ -146,6 +146,20 @@ static void what_does_not_agree_is_refused_with_the_remedy(void **state)
 		  "gpio.spark without gpio.estop", "or gpio.estop_by" },
 		{ "step_X = 1\ndir_X = 2\nhigh_cycles = 2\n",
 		  "axis.X.v_max_mm_s 10 mm/s is faster", "at most 6.66667 mm/s" },
+		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 2\n",
+		  "gpio.encoder_X \"3 2\" has a line that is used for "
+		  "something else too", "counter0/count0" },
+		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 gpiochip0:3\n",
+		  "two chips", "two lines of one chip" },
+		{ "step_X = 1\ndir_X = 2\nencoder_X = 3\n", "has no line number",
+		  "two lines" },
+		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 !4\n", "has a !",
+		  "two lines" },
+		{ "step_X = 1\ndir_X = 2\nencoder_Y = 3 4\n",
+		  "is of an axis that is not present", "two lines" },
+		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 4\n[axis.X]\n"
+		  "encoder_counts = 0\n", "has encoder_counts 0",
+		  "two lines" },
 		{ "step_X = 1\ndir_X = two\n", "gpio.dir_X 'two' has no line",
 		  "none, or [!][CHIP:]NUMBER" },
 	};
@@ -160,6 +174,24 @@ static void what_does_not_agree_is_refused_with_the_remedy(void **state)
 			fail_msg("%s\ngave %s; %s", cases[i].text, d.found,
 				 d.wanted);
 	}
+}
+
+static void an_encoder_is_two_lines_or_a_counter(void **state)
+{
+	struct config_encoder_at at;
+
+	(void)state;
+	assert_null(config_encoder_read("none", &at));
+	assert_false(at.present);
+	assert_null(config_encoder_read("sim0:24  sim0:25", &at));
+	assert_true(at.present && at.lines);
+	assert_int_equal(at.a.offset, 24);
+	assert_int_equal(at.b.offset, 25);
+	assert_string_equal(at.b.chip, "sim0");
+	assert_null(config_encoder_read("counter1/count2", &at));
+	assert_true(at.present && !at.lines);
+	assert_string_equal(at.counter, "counter1/count2");
+	assert_non_null(config_encoder_read("counter1/../../x", &at));
 }
 
 static void quadrature_is_twice_as_fast(void **state)
@@ -199,6 +231,7 @@ int main(void)
 		cmocka_unit_test(each_line_has_a_key_of_its_own),
 		cmocka_unit_test(a_wired_machine_is_read),
 		cmocka_unit_test(what_does_not_agree_is_refused_with_the_remedy),
+		cmocka_unit_test(an_encoder_is_two_lines_or_a_counter),
 		cmocka_unit_test(quadrature_is_twice_as_fast),
 		cmocka_unit_test(other_backends_need_no_lines),
 	};

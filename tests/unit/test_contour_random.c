@@ -9,9 +9,9 @@
 
 #include "interp/cursor.h"
 
+#include <math.h>
 #include <float.h>
 
-#define PI	3.14159265358979323846
 
 static struct nc_read ready(const struct interp_wire *w)
 {
@@ -171,7 +171,7 @@ static bool random_outline(struct outline *o, uint64_t *seed)
 	o->n = 3 + (int)(nc_random(seed) % 6);
 	o->r = random_in(seed, 0.5, 1.5);
 	for (int i = 0; i < o->n; i++) {
-		const double a = 2 * PI * (i + random_in(seed, -.3, .3)) / o->n;
+		const double a = 2 * M_PI * (i + random_in(seed, -.3, .3)) / o->n;
 		const double r = random_in(seed, 6, 12);
 
 		at[i][0] = r * cos(a);
@@ -227,7 +227,7 @@ static double outline_gap(const struct outline *o, double x, double y)
 		const struct corner *k = &o->k[i], *b = &o->k[(i + 1) % o->n];
 		double a = atan2(y - k->centre[1], x - k->centre[0]) - k->theta;
 
-		a -= 2 * PI * floor(a / (2 * PI) + 0.5);
+		a -= 2 * M_PI * floor(a / (2 * M_PI) + 0.5);
 		if (a * k->turn >= 0 && fabs(a) <= fabs(k->turn))
 			best = fmin(best, fabs(hypot(x - k->centre[0],
 						     y - k->centre[1]) - o->r));
@@ -266,7 +266,7 @@ static double outline_error(const struct nc_read *r, const struct outline *o,
 
 static void rounded_contours_are_followed_on_both_planes(void **st)
 {
-	const double slope = tan(0.5 * PI / 180);
+	const double slope = tan(0.5 * M_PI / 180);
 	const double d = 0.2 * sqrt(1 + slope * slope);
 	uint64_t seed = 5;
 	double worst = 0;

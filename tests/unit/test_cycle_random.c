@@ -12,6 +12,7 @@
 #include "random_drives.h"
 #include "guard.h"
 #include "seed.h"
+#include "path/place.h"
 
 #ifdef __SANITIZE_ADDRESS__
 #define CYCLES		1000000
@@ -126,7 +127,7 @@ static void check_place(const struct cycle *c, const struct points *set,
 
 static void check_point(void *arg, const struct cycle *c)
 {
-	check_place(c, arg, cycle_pos(c));
+	check_place(c, arg, place_pos(c));
 }
 
 /* -- What must hold ------------------------------------------------------ */
@@ -182,7 +183,7 @@ static void check_feed(const struct rig *r)
 	if (c->state == STATE_RETRACT) {
 		assert_true(at_most(c, 0));
 		assert_true(at_least(c, -c->gap.retract_mm_s));
-		assert_true(cycle_place_mm(c) >= c->retract.floor_mm - 1e-8);
+		assert_true(place_mm(c) >= c->retract.floor_mm - 1e-8);
 	}
 	if (c->state == STATE_ERODE)
 		check_erode(c);

@@ -4,7 +4,6 @@
  */
 #include "compile_help.h"
 
-#define PI	3.14159265358979323846
 
 static const char robofil[] =
 	"%\r\nN10 G92 X1.0 Y0\r\nN20 G60\r\nN30 G38\r\nN40 G90\r\nN50 G40\r\n"
@@ -76,7 +75,7 @@ static void sodick_ends_blocks_by_semicolons(void **state)
 	assert_int_equal(compiled_count(&c), 5);
 	assert_int_equal(compiled_seg(&c, 0)->arg, INTERP_AUX_PUMP_ON);
 	assert_near(compiled_end(&c, 1, INTERP_X), 5);
-	assert_near(compiled_arc(&c, 2)->sweep, PI);
+	assert_near(compiled_arc(&c, 2)->sweep, M_PI);
 	assert_int_equal(c.p.conds[compiled_seg(&c, 2)->cond].letter, 'C');
 	compile_done(&c);
 }

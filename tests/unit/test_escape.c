@@ -3,6 +3,7 @@
  * test_escape.c - promises of the ways out beside the path
  */
 #include "cycle_help.h"
+#include "path/place.h"
 
 /*
  * Down to Z-3 in the middle, out to X0.3, round it twice; from the ring up by
@@ -46,14 +47,14 @@ struct watch {
 static void on_point(void *arg, const struct cycle *c)
 {
 	struct watch *w = arg;
-	const int32_t *pos = cycle_pos(c);
+	const int32_t *pos = place_pos(c);
 	uint32_t moved = 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		assert_true(abs(pos[i] - w->last[i]) <= 1);
 		moved |= (uint32_t)(pos[i] != w->last[i]) << i;
 	}
-	assert_int_equal(moved, cycle_moved(c));
+	assert_int_equal(moved, place_moved(c));
 	memcpy(w->last, pos, sizeof(w->last));
 	w->points++;
 	if (!escape_is_out(&c->escape))

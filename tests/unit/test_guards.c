@@ -49,11 +49,12 @@ static enum cycle_answer ask(struct rig *r, enum cycle_verb v)
 {
 	static const double args[CYCLE_NVERBS] = {
 		[CYCLE_RETRACT] = 0.5, [CYCLE_OVERRIDE] = 1,
-		[CYCLE_STEP] = -1, [CYCLE_JOG] = 5,
+		[CYCLE_STEP] = -1, [CYCLE_JOG] = 5, [CYCLE_JOG_ON] = 5,
 	};
 	const struct cycle_command m = {
 		.verb = v, .arg_mm = args[v],
-		.arg = v == CYCLE_SET ? (uint32_t)INTERP_TECH_SERVO_V : 0,
+		.arg = v == CYCLE_SET ? (uint32_t)INTERP_TECH_SERVO_V :
+		       v == CYCLE_JOG_ON ? VERB_PRESS_BEGINS | 1u << 8 : 0,
 	};
 
 	return cycle_command(&r->c, &m);
@@ -254,6 +255,8 @@ static const struct verb_row {
 	{ CYCLE_JOG,	ANSWER_WRONG_STATE,	ANSWER_WRONG_STATE,
 			ANSWER_LOCKED,		ANSWER_LOCKED },
 	{ CYCLE_HOME,	ANSWER_WRONG_STATE,	ANSWER_WRONG_STATE,
+			ANSWER_LOCKED,		ANSWER_LOCKED },
+	{ CYCLE_JOG_ON,	ANSWER_WRONG_STATE,	ANSWER_WRONG_STATE,
 			ANSWER_LOCKED,		ANSWER_LOCKED },
 	{ CYCLE_ESTOP,	ANSWER_DONE,		ANSWER_DONE,
 			ANSWER_DONE,		ANSWER_DONE },

@@ -24,7 +24,7 @@ static const double corner = INTERP_CORNER_MM;
 
 static float node_of_turn(double degrees)
 {
-	const double phi = degrees * 3.14159265358979323846 / 180;
+	const double phi = degrees * M_PI / 180;
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	double end[INTERP_NAXES] = { 100 };
 	struct made m;
@@ -46,7 +46,7 @@ static void a_node_is_passed_as_the_arc_that_cuts_its_corner(void **st)
 
 	(void)st;
 	for (int i = 0; i < 7; i++) {
-		const double phi = turns[i] * 3.14159265358979323846 / 180;
+		const double phi = turns[i] * M_PI / 180;
 		const double half = cos(phi / 2);
 		const double r = corner * half / (1 - half);
 		/* What the weaker of X and Y leaves in the corner's direction. */

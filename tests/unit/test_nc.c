@@ -4,7 +4,6 @@
  */
 #include "nc_read.h"
 
-#define PI	3.14159265358979323846
 
 static void a_line_ends_where_its_words_say(void **state)
 {
@@ -220,12 +219,12 @@ static void a_positive_radius_is_the_shorter_arc(void **state)
 		const char *text;
 		double a, b, sweep;
 	} arcs[] = {
-		{ "G3 F1 X10 Y10 R10",	0, 10, PI / 2 },
-		{ "G2 F1 X10 Y10 R10",	10, 0, -PI / 2 },
-		{ "G3 F1 X10 Y10 R-10",	10, 0, 3 * PI / 2 },
-		{ "G2 F1 X10 Y10 R-10",	0, 10, -3 * PI / 2 },
-		{ "G2 F1 X10 R5",	5, 0, -PI },
-		{ "G2 F1 X10 R4.9999",	5, 0, -PI },
+		{ "G3 F1 X10 Y10 R10",	0, 10, M_PI / 2 },
+		{ "G2 F1 X10 Y10 R10",	10, 0, -M_PI / 2 },
+		{ "G3 F1 X10 Y10 R-10",	10, 0, 3 * M_PI / 2 },
+		{ "G2 F1 X10 Y10 R-10",	0, 10, -3 * M_PI / 2 },
+		{ "G2 F1 X10 R5",	5, 0, -M_PI },
+		{ "G2 F1 X10 R4.9999",	5, 0, -M_PI },
 	};
 
 	(void)state;
@@ -251,11 +250,11 @@ static void a_centre_may_be_a_distance_or_a_place(void **state)
 	(void)state;
 	assert_near(nc_arc_of(&n, 1)->a_mm, 10);
 	assert_near(nc_arc_of(&n, 1)->b_mm, 10);
-	assert_near(nc_arc_of(&n, 1)->sweep, PI / 2);
+	assert_near(nc_arc_of(&n, 1)->sweep, M_PI / 2);
 	assert_near(nc_arc_of(&n, 2)->a_mm, 15);
 	assert_near(nc_arc_of(&n, 2)->b_mm, 5);
-	assert_near(nc_arc_of(&n, 2)->sweep, -3 * PI / 2);
-	assert_near(nc_arc_of(&n, 3)->sweep, 2 * PI);
+	assert_near(nc_arc_of(&n, 2)->sweep, -3 * M_PI / 2);
+	assert_near(nc_arc_of(&n, 3)->sweep, 2 * M_PI);
 	assert_xyz(&n, 3, 10, 5, 1);
 	nc_done(&n);
 }
@@ -268,10 +267,10 @@ static void a_plane_turns_its_first_axis_toward_its_second(void **state)
 	(void)state;
 	assert_int_equal(nc_arc_of(&n, 0)->axis_a, INTERP_Z);
 	assert_int_equal(nc_arc_of(&n, 0)->axis_b, INTERP_X);
-	assert_near(nc_arc_of(&n, 0)->sweep, PI / 2);
+	assert_near(nc_arc_of(&n, 0)->sweep, M_PI / 2);
 	assert_int_equal(nc_arc_of(&n, 1)->axis_a, INTERP_Y);
 	assert_int_equal(nc_arc_of(&n, 1)->axis_b, INTERP_Z);
-	assert_near(nc_arc_of(&n, 1)->sweep, PI / 2);
+	assert_near(nc_arc_of(&n, 1)->sweep, M_PI / 2);
 	nc_done(&n);
 }
 

@@ -13,6 +13,7 @@
 #include "random_curve.h"
 #include "seed.h"
 
+#include <math.h>
 #include <errno.h>
 
 #define ROUNDS	2000
@@ -146,7 +147,7 @@ static void a_circle_is_round_and_as_long_as_it_is(void **state)
 				 0.02) < 1e-12);
 	}
 	assert_true(fabs(interp_nurbs_length(&e, 0, 1, 1e-9) -
-			 100 * 3.14159265358979323846) < 1e-9);
+			 100 * M_PI) < 1e-9);
 }
 
 /* -- Edits ------------------------------------------------------------------- */

@@ -6,6 +6,7 @@
 
 #include "cycle.h"
 #include "interp/orbit.h"
+#include "path/place.h"
 
 #define PULSE	0.001
 
@@ -105,7 +106,7 @@ static double off_ball(const int32_t *p)
 
 static double off_cone(const int32_t *p)
 {
-	const double a = 10 * 3.14159265358979 / 180;
+	const double a = 10 * M_PI / 180;
 
 	return fabs(radius(p) - R_MM - (p[2] * PULSE + 0.5) * tan(a)) * cos(a);
 }
@@ -118,7 +119,7 @@ static double off_tip(const int32_t *p)
 /* r = q (turn + n): the arm that is nearest; the last turns are a circle. */
 static double off_spiral(const int32_t *p)
 {
-	const double turn = atan2(p[1], p[0]) / (2 * 3.14159265358979);
+	const double turn = atan2(p[1], p[0]) / (2 * M_PI);
 	const double q = 0.05, n = radius(p) / q - turn;
 
 	/* Inside, an arm runs outward more than round. */
@@ -132,7 +133,7 @@ static double off_rays(const int32_t *p)
 	double best = 1;
 
 	for (int i = 0; i < 3; i++) {
-		const double a = (30 + 120 * i) * 3.14159265358979 / 180;
+		const double a = (30 + 120 * i) * M_PI / 180;
 		const double across = p[1] * cos(a) - p[0] * sin(a);
 		const double along = p[0] * cos(a) + p[1] * sin(a);
 
@@ -374,11 +375,11 @@ static void look_at(void *arg, const struct cycle *c)
 {
 	const struct flight *f = arg;
 
-	if (block_meets(f->k, cycle_pos(c)))
+	if (block_meets(f->k, place_pos(c)))
 		fail_msg("%s, line %u: the way out meets the workpiece at "
 			 "%d %d %d, from %d %d %d", f->text,
-			 c->cursor.seg.line, cycle_pos(c)[0],
-			 cycle_pos(c)[1], cycle_pos(c)[2], c->cursor.pos[0],
+			 c->cursor.seg.line, place_pos(c)[0],
+			 place_pos(c)[1], place_pos(c)[2], c->cursor.pos[0],
 			 c->cursor.pos[1], c->cursor.pos[2]);
 }
 

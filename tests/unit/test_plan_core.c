@@ -115,7 +115,7 @@ static void make_lump(struct body *b, uint32_t n, double r)
 	b->m.tri = malloc(2 * n * around * sizeof(*b->m.tri));
 	for (uint32_t i = 0; i <= n; i++) {
 		for (uint32_t j = 0; j < around; j++) {
-			const double a = 3.14159265358979 * i / n;
+			const double a = M_PI * i / n;
 			const double c = 6.28318530717959 * j / around;
 			const double s = r * (1 + bump * sin(k * a) *
 					      cos(3 * c + f));

@@ -233,7 +233,7 @@ static void what_an_object_has_may_be_written(void **state)
 				      (4 - plc_bytes(c->type)) << 2);
 		uint32_t value;
 
-		if (c->live == PLC_ERROR)
+		if (c->live == PLC_ERROR || c->live == PLC_BEAT)
 			continue;
 		value = ask(&p, 0x40, object, 0, &first);
 		ask(&p, write, object, value, &first);
@@ -432,13 +432,68 @@ static void every_object_of_the_table_can_be_read(void **state)
 			continue;
 		assert_int_equal(ask(&p, 0x40, OBJECT(c->index, c->sub), 0,
 				     &first),
-				 c->value + (c->live == PLC_PLUS_NODE ? NODE :
-									0));
+				 c->value + (c->live == PLC_PLUS_NODE ||
+					     c->live == PLC_EMCY ? NODE : 0));
 		assert_int_equal(first, 0x43 | (4 - plc_bytes(c->type)) << 2);
 	}
 	p.tell.line = 123456;
 	assert_int_equal(ask(&p, 0x40, OBJECT(0x2000, 8), 0, &first), 123456);
 	assert_int_equal(p.refused, 0);
+}
+
+static int beats_in(struct plc *p, int cycles)
+{
+	struct can_msg out[PLC_EMITS];
+	int n = 0;
+
+	for (int i = 0; i < cycles; i++) {
+		const size_t got = plc_emit(p, out);
+
+		for (size_t k = 0; k < got; k++)
+			n += out[k].id == CAN_HEARTBEAT + NODE;
+	}
+	return n;
+}
+
+static void the_plc_sets_the_time_of_the_heartbeat(void **state)
+{
+	struct plc p = working();
+	uint8_t first;
+
+	(void)state;
+	p.cycles_per_ms = 0.5;
+	ask(&p, 0x2b, OBJECT(0x1017, 0), 20, &first);
+	assert_int_equal(first, 0x60);
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1017, 0), 0, &first), 20);
+	assert_in_range(beats_in(&p, 1000), 99, 101);
+	ask(&p, 0x2b, OBJECT(0x1017, 0), 0, &first);
+	assert_int_equal(beats_in(&p, 1000), 0);
+	plc_receive(&p, &(struct can_msg) { CAN_NMT, 2, { 0x82, NODE } });
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1017, 0), 0, &first), 100);
+}
+
+/* Bit 31 off and on again, and another id in between. */
+static void the_plc_sets_the_id_of_emergencies(void **state)
+{
+	static const uint32_t writes[] = {
+		0x80000000u | (CAN_EMCY + NODE), 0x80000000u | 0x85, 0x85
+	};
+	struct plc p = working();
+	struct can_msg out[PLC_EMITS];
+	size_t found = 0;
+	uint8_t first;
+
+	(void)state;
+	for (size_t i = 0; i < 3; i++) {
+		ask(&p, 0x23, OBJECT(0x1014, 0), writes[i], &first);
+		assert_int_equal(first, 0x60);
+		assert_int_equal(ask(&p, 0x40, OBJECT(0x1014, 0), 0, &first),
+				 writes[i]);
+		p.tell.fault = (uint8_t)(i + 1);
+		for (size_t k = 0, n = plc_emit(&p, out); k < n; k++)
+			found += out[k].id == 0x85;
+		assert_int_equal(found, i == 2);
+	}
 }
 
 static void requests_may_be_written_before_the_pdos_come(void **state)
@@ -482,7 +537,12 @@ static void what_cannot_be_is_aborted_with_its_code(void **state)
 		{ 0x2f, OBJECT(0x3000, 0), 1, 0x06020000, false },
 		{ 0x2f, OBJECT(0x2100, 7), 1, 0x06090011, false },
 		{ 0x2f, OBJECT(0x2000, 1), 1, 0x06010002, false },
-		{ 0x2b, OBJECT(0x1017, 0), 1, 0x06010002, false },
+		{ 0x23, OBJECT(0x1018, 2), 1, 0x06010002, false },
+		{ 0x2f, OBJECT(0x1017, 0), 1, 0x06070010, false },
+		{ 0x23, OBJECT(0x1014, 0), 0x80, 0x06090030, false },
+		{ 0x23, OBJECT(0x1014, 0), 0x100, 0x06090030, false },
+		{ 0x23, OBJECT(0x1014, 0), 0x81, 0x06090030, false },
+		{ 0x23, OBJECT(0x1014, 0), 0x40000081, 0x06090030, false },
 		{ 0x2f, OBJECT(0x2100, 3), 1, 0x06070010, false },
 		{ 0x23, OBJECT(0x2100, 3), 1, 0x06070010, false },
 		{ 0x21, OBJECT(0x2100, 3), 2, 0x06070010, false },
@@ -610,6 +670,8 @@ int main(void)
 		cmocka_unit_test(tpdos_go_round_with_what_is_told),
 		cmocka_unit_test(tpdos_are_sent_when_operational_only),
 		cmocka_unit_test(every_object_of_the_table_can_be_read),
+		cmocka_unit_test(the_plc_sets_the_time_of_the_heartbeat),
+		cmocka_unit_test(the_plc_sets_the_id_of_emergencies),
 		cmocka_unit_test(requests_may_be_written_before_the_pdos_come),
 		cmocka_unit_test(a_permit_by_sdo_is_no_permit),
 		cmocka_unit_test(what_cannot_be_is_aborted_with_its_code),

@@ -422,7 +422,7 @@ static void axes_that_are_homed_otherwise_now_are_to_be_homed_again(void **st)
 	homed_axes(&w, true);
 	assert_true(shm_snapshot(w.l.status, &before));
 	loop_make(&w);
-	w.config.hand[INTERP_X].home_at_mm += 1;
+	w.config.manual[INTERP_X].home_at_mm += 1;
 	w.l.home_key = key_home(&w.config);
 	resume(&w.l, &w.config, &before);
 	assert_int_equal(manual_unhomed(&w.l.cycle), 1u << INTERP_X);

@@ -4,7 +4,6 @@
  */
 #include "walk_help.h"
 
-#define PI	3.14159265358979323846
 #define PULSE	0.001
 
 /* Two contours on the lattice, places from their own centres, pulses. */
@@ -62,7 +61,7 @@ struct shown {
 
 static double wrap(double a)
 {
-	return a - 2 * PI * floor(a / (2 * PI) + 0.5);
+	return a - 2 * M_PI * floor(a / (2 * M_PI) + 0.5);
 }
 
 static double share(const struct pair *p, int i, double x, double y,
@@ -80,7 +79,7 @@ static double share(const struct pair *p, int i, double x, double y,
 	if (p->clockwise[i])
 		whole = -whole;
 	while (whole <= 1e-12)
-		whole += 2 * PI;
+		whole += 2 * M_PI;
 	return turned / whole;
 }
 
@@ -241,12 +240,12 @@ static void full_circles_follow_within_a_pulse_of_the_smaller(void **st)
 	(void)st;
 	for (size_t i = 0; i < sizeof(radii) / sizeof(radii[0]); i++) {
 		for (int k = 0; k < 4; k++) {
-			const double a = k * PI / 2;
+			const double a = k * M_PI / 2;
 
 			worst = fmax(worst, check_cone(radii[i][0], radii[i][1],
-						       a, 2 * PI, 0));
+						       a, 2 * M_PI, 0));
 			worst = fmax(worst, check_cone(radii[i][0], radii[i][1],
-						       a, -2 * PI, 0));
+						       a, -2 * M_PI, 0));
 		}
 	}
 	print_message("    worst lag %.3f pulses of the smaller circle\n",
@@ -259,13 +258,13 @@ static void every_start_quadrant_and_both_ways_round(void **st)
 	(void)st;
 	for (size_t i = 0; i < sizeof(radii) / sizeof(radii[0]); i++) {
 		for (int k = 0; k < 16; k++) {
-			const double a = k * PI / 8 + 0.01;
+			const double a = k * M_PI / 8 + 0.01;
 			const double by[] = { 0.4, 1.3, 2.9, 4.4, 6.1 };
 
 			for (int j = 0; j < 10; j++)
 				check_cone(radii[i][0], radii[i][1], a,
 					   j % 2 ? -by[j / 2] : by[j / 2],
-					   k % 3 == 2 ? PI : 0);
+					   k % 3 == 2 ? M_PI : 0);
 		}
 	}
 }
@@ -278,8 +277,8 @@ static void ratios_to_a_thousand_to_one(void **st)
 
 	(void)st;
 	for (int i = 0; i < 4; i++) {
-		check_cone(r[i][0], r[i][1], PI / 2, -2 * PI, 0);
-		check_cone(r[i][0], r[i][1], 0.3, 4.1, PI);
+		check_cone(r[i][0], r[i][1], M_PI / 2, -2 * M_PI, 0);
+		check_cone(r[i][0], r[i][1], 0.3, 4.1, M_PI);
 	}
 }
 
@@ -298,7 +297,7 @@ static void random_cones_follow_end_exactly_and_retrace(void **st)
 
 		worst = fmax(worst, check_cone(r1, r2, uniform(&s, -3, 3),
 					       rnd(&s) % 2 ? sweep : -sweep,
-					       rnd(&s) % 4 ? 0 : PI));
+					       rnd(&s) % 4 ? 0 : M_PI));
 	}
 	print_message("    worst lag %.3f pulses of the smaller circle\n",
 		      worst);
@@ -314,8 +313,8 @@ static struct pair different(const double a[3], const double b[3])
 	/* { radius, from, sweep } in pulses and degrees, or { 0, dx, dy }. */
 	for (int i = 0; i < 2; i++) {
 		const double r = k[i][0];
-		const double t0 = k[i][1] * PI / 180;
-		const double t1 = t0 + k[i][2] * PI / 180;
+		const double t0 = k[i][1] * M_PI / 180;
+		const double t1 = t0 + k[i][2] * M_PI / 180;
 
 		p.arc[i] = r > 0;
 		p.clockwise[i] = r > 0 && k[i][2] < 0;
@@ -329,7 +328,7 @@ static struct pair different(const double a[3], const double b[3])
 
 static double length_of(const double k[3])
 {
-	return k[0] > 0 ? k[0] * fabs(k[2]) * PI / 180 : hypot(k[1], k[2]);
+	return k[0] > 0 ? k[0] * fabs(k[2]) * M_PI / 180 : hypot(k[1], k[2]);
 }
 
 static void different_contours_keep_equal_shares_of_length(void **st)

@@ -7,7 +7,6 @@
  */
 #include "compile_help.h"
 
-#define PI	3.14159265358979323846
 
 static const struct vector {
 	const char *record;		/* as published but for blanks */
@@ -62,7 +61,7 @@ static void the_published_records_end_where_their_iso_code_does(void **state)
 			assert_near(a->b_mm, (y + v->j) / 1000);
 			assert_true((a->sweep < 0) == v->clockwise);
 			if (v->end_x == 0 && v->end_y == 0)
-				assert_near(fabs(a->sweep), 2 * PI);
+				assert_near(fabs(a->sweep), 2 * M_PI);
 		} else {
 			assert_int_equal(seg->kind, INTERP_LINE);
 		}
@@ -291,7 +290,7 @@ static void an_arc_of_any_start_sense_and_direction_comes_back(void **state)
 		static const char *const sense[] = { "NR", "SR" };
 		const int cw = (int)(nc_random(&seed) % 2);
 		const double r = 2000 + nc_random(&seed) % 20000;
-		const double from = nc_random(&seed) % 36000 * PI / 18000;
+		const double from = nc_random(&seed) % 36000 * M_PI / 18000;
 		const double sweep = (.02 + nc_random(&seed) % 600 / 100.0) *
 				     (cw ? -1 : 1);
 		const long x = lround(r * cos(from)), y = lround(r * sin(from));
@@ -345,7 +344,7 @@ static void a_circle_of_an_irrational_radius_closes(void **state)
 			 4 * true_r);
 		compile(&c, text);
 		assert_int_equal(compiled_count(&c), 1);
-		assert_near(compiled_arc(&c, 0)->sweep, 2 * PI);
+		assert_near(compiled_arc(&c, 0)->sweep, 2 * M_PI);
 		assert_int_equal(compiled_end_sub(&c, 0, INTERP_X), 0);
 		assert_int_equal(compiled_end_sub(&c, 0, INTERP_Y), 0);
 		compile_done(&c);

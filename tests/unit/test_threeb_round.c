@@ -4,7 +4,6 @@
  */
 #include "compile_help.h"
 
-#define PI		3.14159265358979323846
 #define NCONTOURS	10000
 
 /* Text that grows in place. */
@@ -61,9 +60,9 @@ static void add_line(struct text *t, struct pen *p)
 static void add_arc(struct text *t, struct pen *p)
 {
 	const double r = pow(10, uniform(p->seed, -1.5, 1));
-	const double from = uniform(p->seed, 0, 2 * PI);
+	const double from = uniform(p->seed, 0, 2 * M_PI);
 	const bool cw = nc_random(p->seed) % 2, full = nc_random(p->seed) % 8 == 0;
-	const double sweep = (full ? 2 * PI : uniform(p->seed, .05, 6.2)) *
+	const double sweep = (full ? 2 * M_PI : uniform(p->seed, .05, 6.2)) *
 			     (cw ? -1 : 1);
 	const double i = on_grid(p, -r * cos(from));
 	const double j = on_grid(p, -r * sin(from));

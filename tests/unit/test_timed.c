@@ -3,6 +3,7 @@
  * test_timed.c - promises of a part that ends by time as well as by depth
  */
 #include "cycle_help.h"
+#include "path/place.h"
 
 /* From Z0 down to Z-5 and up again in @ms, then down to Z-1 beside it. */
 static void load(struct rig *r, const struct cycle_config *k, uint32_t ms)
@@ -41,8 +42,8 @@ static void on_point(void *arg, const struct cycle *c)
 	struct seen *s = arg;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		assert_true(abs(cycle_pos(c)[i] - s->last[i]) <= 1);
-	memcpy(s->last, cycle_pos(c), sizeof(s->last));
+		assert_true(abs(place_pos(c)[i] - s->last[i]) <= 1);
+	memcpy(s->last, place_pos(c), sizeof(s->last));
 	if (s->last[INTERP_X] == 0 && s->last[INTERP_Z] < s->low)
 		s->low = s->last[INTERP_Z];
 	/* What was not cut is not gone through. */

@@ -62,6 +62,18 @@ source = lines
 retract_wait_s = 60
 """
 
+# Two counts of the encoder are a pulse.
+ENCODER = LINES + """
+encoder_X = 24 25
+following_mm = 0.02
+resync_mm = 0.1
+enable = 27
+brake_X = 26
+brake_ms = 50
+[axis.X]
+encoder_counts = 2
+"""
+
 ADC = LINES + """
 spark = sim1:0
 watchdog = sim1:1
@@ -101,9 +113,9 @@ def machine(backend="gpio", period_us=5000, cpu=-1, v=0.1, tail=LINES):
 
 
 class Run:
-    """What one boot left."""
+    """What one boot left.  @limit: s, ends what hangs; no run needs it."""
 
-    def __init__(self, mode, files, *options, limit=600, copies=()):
+    def __init__(self, mode, files, *options, limit=1500, copies=()):
         self.folder = BUILD_VM / "runs" / mode
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
@@ -193,6 +205,13 @@ following_mm = 0.05
 feed_gain_mm_s_v = 0.1
 feed_max_mm_s = 5
 approach_mm_s = 1
+"""
+
+
+# A PLC on the drives' own bus.
+SHARED = """[plc]
+interface = vcan0
+alive_ms = 500
 """
 
 

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 from boot import (BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES,
-                  QUICK_JOB, ROOT, Run, SLOW_JOB, STRICT_REFUSED, STRICT_UP,
+                  ENCODER, QUICK_JOB, ROOT, Run, SHARED, SLOW_JOB, STRICT_REFUSED, STRICT_UP,
                   VIRTUAL, checked, drives, lagging, machine)
 
 
@@ -39,6 +39,23 @@ def edges():
     return checked(Run("edges", EDGES, "-d", "-i", "0"))
 
 
+def compiled(name):
+    """A program of this folder, for the guest."""
+    to = BUILD_VM / name
+    subprocess.run(["cc", "-O1", "-o", to, HERE / f"{name}.c"], check=True)
+    return to
+
+
+@pytest.fixture(scope="session")
+def encoder():
+    """An axis that slips, one CPU in virtual time."""
+    return checked(Run("encoder", {
+        "encoder.ini": machine(period_us=1000, v=0.5, tail=ENCODER),
+        "encoder.ngc": "G21 G90\nG1 X0.8 F12\nG1 X0.1\nM30\n",
+        "back.ngc": "G21 G90\nG1 X0.3 F12\nM30\n",
+    }, "-d", copies=(compiled("axis-sim"),)))
+
+
 @pytest.fixture(scope="session")
 def can402():
     """Drives on vcan0, one CPU in virtual time."""
@@ -53,6 +70,7 @@ def can402():
         "lagging.ini": lagging("none"), "lagging.ngc": CIRCLE,
         "led.ini": lagging("feedforward"), "led.ngc": CIRCLE,
         "coupled.ini": lagging("feedforward+cross-coupled"), "coupled.ngc": CIRCLE,
+        "shared.ini": drives("XY", GAP_FRAMES + SHARED), "shared.ngc": CUT,
         "faults.ini": drives("XY", GAP_FRAMES),
         "faults.ngc": CUT,
     }, "-d", copies=(guest / "drives.py", guest / "can402.py")))
@@ -77,7 +95,7 @@ def strict():
                       f"RUNS={os.environ.get('EDM_RUNS', 4)}\n"
                       "SCENES=" + os.environ.get(
                           "EDM_SCENES", "up,refused,late,faults,attack") + "\n",
-    }, "-d", limit=1800, copies=[guest / n for n in (
+    }, "-d", copies=[guest / n for n in (
         "can402.py", "strict.py", "can402_strict.py")]))
 
 
@@ -89,9 +107,6 @@ def systemd():
     subprocess.run(["make", "-s", "-C", ROOT, "install", f"B={BUILD}",
                     f"DESTDIR={root}", "PREFIX=/usr/local"],
                    check=True, capture_output=True)
-    stop = BUILD_VM / "stop-thread"
-    subprocess.run(["cc", "-O1", "-o", stop, HERE / "stop-thread.c"],
-                   check=True)
     return checked(Run("systemd", {"service.ini": machine(cpu=1, tail=GAP),
                                    "slow.ngc": SLOW_JOB},
-                       "-m", "systemd", copies=(root, stop)))
+                       "-m", "systemd", copies=(root, compiled("stop-thread"))))

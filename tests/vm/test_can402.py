@@ -188,6 +188,38 @@ def test_what_is_malformed_is_told_a_few_times_and_changes_nothing(faults):
     assert 1 <= len(told) <= 10
 
 
+@pytest.fixture(scope="module")
+def shared(can402):
+    return Seen(can402, "shared")
+
+
+def test_a_plc_may_share_the_drives_bus(shared):
+    """Its NMT to us and to all is no other master's, and stops nothing."""
+    shared.went_as_planned()
+    rows = shared.between("NMT", "NMT taken")
+    assert len(rows) > 40
+    assert all(r[1] == 1 and r[2] == ["enabled"] * 2 for r in rows)
+    assert "another master" not in shared.log
+    assert "program 1 ended: done" in shared.log
+    stands_at(shared, "XY")
+
+
+# What the PLC does, the fault, SYNCs until sparks are off: a request comes each
+# two, alive_ms are 50, and a heartbeat says each 10 that a drive was stopped.
+@pytest.mark.parametrize("what, fault, syncs", [
+    ("permit", "permit", 5), ("stop", "plc-lost", 55),
+    ("reset", "plc-lost", 55), ("stop all", "drive", 14)])
+def test_what_the_plc_takes_ends_the_sparks(shared, what, fault, syncs):
+    got = shared.d["taken"][what]
+    assert got["fault"] == fault
+    assert got["start"][0] == 0
+    after = shared.between(f"{what}: harm", f"{what}: reset")
+    off = next(i for i, r in enumerate(after) if not r[1])
+    print(f"{what}: sparks off after {off} SYNCs")
+    assert off <= syncs
+    assert not any(r[1] for r in after[off:])
+
+
 def test_after_all_that_the_job_ends_where_its_pulses_do(faults):
     assert "program 1 ended: done" in faults.log
     assert faults.d["status"]["pos_mm"][:2] == [10, 3]

@@ -129,7 +129,7 @@ static enum home_phase clear(struct cycle *c, const struct io_inputs *in)
 		return HOME_LEAVE;
 	manual_move(c, mover_step(&h->mover, &l, goal - h->gone_mm));
 	return h->mover.v_mm_s == 0 &&
-	       fabs(goal - h->gone_mm) < 2 * LAW_ONTO_MM ? HOME_ONTO :
+	       fabs(goal - h->gone_mm) < 2 * MOVER_ONTO_MM ? HOME_ONTO :
 							    HOME_CLEAR;
 }
 

@@ -4,6 +4,7 @@
  */
 #include "axes/manual.h"
 #include "path/laws.h"
+#include "verbs.h"
 
 #include <math.h>
 
@@ -38,6 +39,7 @@ void manual_begin(struct cycle *c, uint32_t axis)
 	h->gone_mm = 0;
 	h->halt = false;
 	h->free_seen = false;
+	h->pressed = false;
 	h->used = true;
 	mover_set(&h->mover, 0);
 }
@@ -105,6 +107,134 @@ int manual_jog(struct cycle *c, uint32_t axis, double mm)
 	return ANSWER_DONE;
 }
 
+/* -- Jogs that last as long as a press ------------------------------------- */
+
+/* So long an axis brakes at most from @v, even if it is still speeding up:
+ * that has to end first. */
+static double press_brake_s(const struct manual_axis *a, double v_mm_s)
+{
+	const double rise_s = a->a_max_mm_s2 / a->j_max_mm_s3;
+
+	if (v_mm_s <= a->a_max_mm_s2 * rise_s)
+		return 3 * sqrt(v_mm_s / a->j_max_mm_s3);
+	return v_mm_s / a->a_max_mm_s2 + 2 * rise_s;
+}
+
+/* From this speed it takes MANUAL_BRAKE_S: the other way round. */
+static double press_max_mm_s(const struct manual_axis *a)
+{
+	const double t_s = MANUAL_BRAKE_S;
+
+	if (a->j_max_mm_s3 * t_s / 3 <= a->a_max_mm_s2)
+		return a->j_max_mm_s3 * t_s * t_s / 9;
+	return a->a_max_mm_s2 * (t_s - 2 * a->a_max_mm_s2 / a->j_max_mm_s3);
+}
+
+/* Where the place is not known, an axis moves as slowly as in homing. */
+static double jog_mm_s(const struct cycle *c)
+{
+	const struct manual_axis *a = manual_axis(c);
+	double v_mm_s = a->jog_mm_s;
+
+	if ((manual_unhomed(c) | c->limit.on) >> c->manual.axis & 1)
+		v_mm_s = fmin(v_mm_s, a->home_slow_mm_s);
+	if (c->manual.pressed)
+		v_mm_s = fmin(fmin(v_mm_s, c->manual.press_mm_s),
+			      press_max_mm_s(a));
+	return v_mm_s;
+}
+
+/* The way to the end of the travel, or the whole of it where the place is not
+ * known. */
+static double press_goal_mm(const struct cycle *c, uint32_t axis, bool forward)
+{
+	const double min = c->config.travel_min[axis];
+	const double max = c->config.travel_max[axis];
+	const double at = c->out.target[axis];
+	double pulses = forward ? max - at : min - at;
+
+	if (manual_unhomed(c) >> axis & 1) {
+		pulses = forward ? max - min : min - max;
+		pulses = fmax(fmin(pulses, INTERP_PULSES_MAX - at),
+			      -INTERP_PULSES_MAX - at);
+	}
+	return pulses * c->config.axis[axis].pulse_mm;
+}
+
+/* A sign of the press came: when it has to brake if no other comes. */
+static void press_felt(struct cycle *c, double mm_s)
+{
+	struct manual *h = &c->manual;
+	double fast, brake;
+
+	h->press_mm_s = fabs(mm_s);
+	fast = fmax(jog_mm_s(c), fabs(h->mover.v_mm_s));
+	brake = press_brake_s(manual_axis(c), fast) / law_period_s(c);
+	h->until = c->count + c->config.press_cycles -
+		   (uint64_t)fmin(ceil(brake), (double)c->config.press_cycles);
+}
+
+static int press_begin(struct cycle *c, uint32_t arg, double mm_s)
+{
+	struct manual *h = &c->manual;
+	const uint32_t axis = VERB_PRESS_AXIS(arg);
+	double goal_mm;
+
+	if (c->state != STATE_IDLE || c->loaded ||
+	    !(arg & VERB_PRESS_BEGINS) || VERB_PRESS(arg) == h->press)
+		return ANSWER_WRONG_STATE;
+	if (axis >= INTERP_NAXES || !c->config.axis[axis].present)
+		return ANSWER_BAD_ARGUMENT;
+	if (limit_bars(&c->limit, axis, mm_s < 0 ? -1 : 1))
+		return ANSWER_AT_LIMIT;
+	goal_mm = press_goal_mm(c, axis, mm_s > 0);
+	if (!(goal_mm * mm_s > 0))
+		return ANSWER_BEYOND;
+	manual_begin(c, axis);
+	h->goal_mm = goal_mm;
+	h->pressed = true;
+	h->press = VERB_PRESS(arg);
+	press_felt(c, mm_s);
+	return ANSWER_DONE;
+}
+
+/* Of the press under way: the same axis, the same way, and not braking yet. */
+static bool goes_on(const struct cycle *c, uint32_t arg, double mm_s)
+{
+	const struct manual *h = &c->manual;
+
+	return c->state == STATE_JOG && h->pressed && !h->halt &&
+	       c->count < h->until && h->press == VERB_PRESS(arg) &&
+	       h->axis == VERB_PRESS_AXIS(arg) && h->goal_mm * mm_s >= 0;
+}
+
+int manual_press(struct cycle *c, uint32_t arg, double mm_s, int may,
+		 bool *ret_begun)
+{
+	struct manual *h = &c->manual;
+	int answer;
+
+	*ret_begun = false;
+	if (!isfinite(mm_s) || VERB_PRESS(arg) == 0)
+		return ANSWER_BAD_ARGUMENT;
+	if (goes_on(c, arg, mm_s)) {
+		h->halt = mm_s == 0;
+		press_felt(c, mm_s);
+		return ANSWER_DONE;
+	}
+	if (mm_s == 0) {
+		/* Its beginning may be on its way still. */
+		if (c->state != STATE_JOG)
+			h->press = VERB_PRESS(arg);
+		return ANSWER_DONE;
+	}
+	if (may != ANSWER_DONE)
+		return may;
+	answer = press_begin(c, arg, mm_s);
+	*ret_begun = answer == ANSWER_DONE;
+	return answer;
+}
+
 int manual_home(struct cycle *c, uint32_t axis)
 {
 	uint32_t todo = 0;
@@ -129,16 +259,6 @@ int manual_home(struct cycle *c, uint32_t axis)
 	return ANSWER_DONE;
 }
 
-/* Where the place is not known, an axis moves as slowly as in homing. */
-static double jog_mm_s(const struct cycle *c)
-{
-	const struct manual_axis *a = manual_axis(c);
-
-	if ((manual_unhomed(c) | c->limit.on) >> c->manual.axis & 1)
-		return fmin(a->jog_mm_s, a->home_slow_mm_s);
-	return a->jog_mm_s;
-}
-
 static bool jog_go(struct cycle *c)
 {
 	struct manual *h = &c->manual;
@@ -151,7 +271,7 @@ static bool jog_go(struct cycle *c)
 	h->free_seen = h->free_seen || c->sensed.is_open;
 	manual_move(c, mover_step(&h->mover, &l, h->goal_mm - h->gone_mm));
 	return h->mover.v_mm_s == 0 && left_pulses(c) == 0 &&
-	       fabs(h->goal_mm - h->gone_mm) < LAW_ONTO_MM * 2;
+	       fabs(h->goal_mm - h->gone_mm) < MOVER_ONTO_MM * 2;
 }
 
 bool manual_go(struct cycle *c, const struct io_inputs *in)
@@ -159,6 +279,9 @@ bool manual_go(struct cycle *c, const struct io_inputs *in)
 	struct manual *h = &c->manual;
 	struct mover_limits l;
 
+	/* While the axes wait for power this goes on to count. */
+	if (c->state == STATE_JOG && h->pressed && c->count >= h->until)
+		h->halt = true;
 	if (!h->halt)
 		return c->state == STATE_HOME ? home_go(c, in) : jog_go(c);
 	if (h->mover.v_mm_s == 0)

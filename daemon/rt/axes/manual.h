@@ -2,7 +2,10 @@
 /*
  * manual.h - one axis moved by an operator without a program: jogged or homed
  *
- * Only from idle.  The move is an S-curve with the axis's own limits.  A hold
+ * Only from idle.  The move is an S-curve with the axis's own limits.  A jog is
+ * of a given length, or goes on while a person presses a key: then a sign of
+ * that press comes again and again, and the axis stands VERB_PRESS_S after the
+ * last one, whatever became of the person, the page or the network.  A hold
  * or a stop brakes it; so does a fault that leaves the axes good, but for a
  * contact, which ends the move at once.
  *
@@ -26,18 +29,16 @@
 #include "interp/axis.h"
 #include "path/mover.h"
 
+#include "settings.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
 #define MANUAL_ALL_AXES	INTERP_NAXES	/* home: each that has a method */
 
-enum home_method {
-	HOME_NONE,
-	HOME_SWITCH,
-	HOME_SWITCH_INDEX,
-	HOME_ABSOLUTE,
-	HOME_NMETHODS
-};
+/* So long a jog that is pressed brakes at most, of the VERB_PRESS_S that it has
+ * to stand in: it is no faster than that. */
+#define MANUAL_BRAKE_S	0.1
 
 enum home_phase {
 	HOME_BEGIN,
@@ -51,19 +52,6 @@ enum home_phase {
 	HOME_NPHASES
 };
 
-struct manual_axis {
-	bool present;
-	double pulse_mm;
-	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
-	double jog_mm_s;
-	enum home_method method;
-	int home_toward;		/* +1, -1 */
-	double home_fast_mm_s, home_slow_mm_s;
-	double home_at_mm;		/* the place of the switch */
-	double home_back_mm;
-	uint32_t home_order;		/* lowest first */
-};
-
 struct manual {
 	uint32_t axis;
 	int32_t from;			/* its place when the move began */
@@ -71,6 +59,10 @@ struct manual {
 	double goal_mm;			/* jog: to go, from there */
 	bool halt;			/* brake, then idle */
 	bool free_seen;			/* jog: the gap has been open */
+	bool pressed;			/* jog: only while its press lasts */
+	uint32_t press;			/* the last one, over or not */
+	double press_mm_s;		/* the speed that it asks for */
+	uint64_t until;			/* cycle in which it begins to brake */
 	struct mover mover;
 	uint32_t todo;			/* home: bit per axis still to do */
 	enum home_phase phase;
@@ -96,6 +88,16 @@ uint32_t manual_unhomed(const struct cycle *c);
  * Return: enum cycle_answer; the state is the caller's.
  */
 int manual_jog(struct cycle *c, uint32_t axis, double mm);
+
+/**
+ * manual_press() - a sign of a press: begin a jog at @mm_s, let it go on, or
+ * end it (0).  @arg: words/verbs.h.
+ *
+ * @may: what a guard says of a motion that begins.
+ * Return: enum cycle_answer; *@ret_begun: the state is the caller's to change.
+ */
+int manual_press(struct cycle *c, uint32_t arg, double mm_s, int may,
+		 bool *ret_begun);
 
 /** manual_home() - begin to home @axis, or MANUAL_ALL_AXES. */
 int manual_home(struct cycle *c, uint32_t axis);

@@ -4,6 +4,7 @@
  */
 #include "gap/gap.h"
 #include "path/laws.h"
+#include "path/place.h"
 
 #include <math.h>
 #include <string.h>
@@ -222,7 +223,7 @@ static bool may_stand(const struct cycle *c, const struct gap_reading *r)
 static bool suspect(const struct cycle *c, struct gap_memory *m,
 		    const struct gap_reading *r)
 {
-	const double place = law_place(c);
+	const double place = place_mm(c);
 
 	m->change_v += (fabs(r->now_v - m->before_v) - m->change_v) /
 		       CHANGE_CYCLES;

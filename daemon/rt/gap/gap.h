@@ -28,25 +28,12 @@
 #ifndef RT_GAP_H
 #define RT_GAP_H
 
+#include "settings.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
 #define GAP_FILTER_MAX	15		/* cycles of a median */
-
-enum gap_source {
-	GAP_SIM,
-	GAP_VOLTAGE,
-	GAP_SHARES,
-	GAP_LINES,
-	GAP_CAN,
-	GAP_NSOURCES
-};
-
-enum gap_filter {
-	GAP_MEDIAN,
-	GAP_FIRST_ORDER,
-	GAP_NFILTERS
-};
 
 /* This cycle's gap, as the rest of the cycle sees it. */
 struct gap_reading {

@@ -4,6 +4,7 @@
  */
 #include "gap/retract.h"
 #include "path/laws.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -16,13 +17,13 @@ double retract_limit_mm(const struct cycle *c)
 double retract_motion_mm(const struct cycle *c)
 {
 	/* Beside the path nothing has begun but the way out. */
-	return escape_is_out(&c->escape) ? cycle_outer_mm(c) :
+	return escape_is_out(&c->escape) ? place_outer_mm(c) :
 	       fmax(c->back_mm, c->cursor.seg.s_mm);
 }
 
 static double floor_of(const struct cycle *c)
 {
-	const double outer = cycle_outer_mm(c);
+	const double outer = place_outer_mm(c);
 
 	switch (c->gap.retract_to) {
 	case RETRACT_START:
@@ -30,7 +31,7 @@ static double floor_of(const struct cycle *c)
 	case RETRACT_MOTION:
 		return fmax(outer, retract_motion_mm(c));
 	default:
-		return fmax(outer, law_place(c) - retract_limit_mm(c));
+		return fmax(outer, place_mm(c) - retract_limit_mm(c));
 	}
 }
 
@@ -54,7 +55,7 @@ void retract_begin(struct cycle *c)
 	struct retract *r = &c->retract;
 
 	c->totals.retracts++;
-	r->from_mm = law_place(c);
+	r->from_mm = place_mm(c);
 	r->floor_mm = floor_of(c);
 	r->least_mm = arcing_retract_mm(c);
 	r->waited = 0;
@@ -64,13 +65,13 @@ void retract_begin(struct cycle *c)
 
 static double back_mm(const struct cycle *c)
 {
-	return c->retract.from_mm - law_place(c);
+	return c->retract.from_mm - place_mm(c);
 }
 
 static bool at_floor(const struct cycle *c)
 {
 	return c->at_start ||
-	       law_place(c) <= c->retract.floor_mm + LAW_ONTO_MM;
+	       place_mm(c) <= c->retract.floor_mm + MOVER_ONTO_MM;
 }
 
 bool retract_is_clear(const struct cycle *c)
@@ -83,7 +84,7 @@ bool retract_is_clear(const struct cycle *c)
 static enum cycle_fault blame(const struct cycle *c)
 {
 	return c->at_start || c->gap.retract_to != RETRACT_LIMIT ||
-	       law_place(c) <= cycle_outer_mm(c) + LAW_ONTO_MM ?
+	       place_mm(c) <= place_outer_mm(c) + MOVER_ONTO_MM ?
 	       FAULT_RETRACT_AT_START : FAULT_SHORT_NOT_CLEARED;
 }
 

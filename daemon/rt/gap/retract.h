@@ -11,6 +11,8 @@
 #ifndef RT_RETRACT_H
 #define RT_RETRACT_H
 
+#include "settings.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -18,13 +20,6 @@
 #define RETRACT_HUNTING	20
 
 /* How far a retract may go. */
-enum retract_to {
-	RETRACT_LIMIT,			/* retract_limit_mm */
-	RETRACT_START,			/* the start of the program */
-	RETRACT_MOTION,			/* the start of the motion it is in */
-	RETRACT_NPLACES
-};
-
 struct retract {
 	double from_mm;			/* place it began */
 	double floor_mm;		/* never farther back */

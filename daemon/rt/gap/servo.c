@@ -4,6 +4,7 @@
  */
 #include "gap/servo.h"
 #include "path/laws.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -48,12 +49,12 @@ static double stop_within(const struct cycle *c, double left_mm)
 /* Back, onto a place and not beyond. */
 static double go_back(struct cycle *c, double v_mm_s, double floor_mm)
 {
-	const double left = law_place(c) - floor_mm;
+	const double left = place_mm(c) - floor_mm;
 
-	if (left <= LAW_ONTO_MM)
+	if (left <= MOVER_ONTO_MM)
 		return fmax(go_toward(c, 0), 0);
 	return fmax(go_toward(c, -fmin(v_mm_s, stop_within(c, left))),
-		    -left - LAW_ONTO_MM);
+		    -left - MOVER_ONTO_MM);
 }
 
 /* -- Approach -------------------------------------------------------------- */

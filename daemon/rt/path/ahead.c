@@ -17,6 +17,7 @@
 #include "path/laws.h"
 #include "path/lookahead.h"
 #include "path/walk.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -130,14 +131,14 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 static bool plan_holds(struct cycle *c, double v_mm_s)
 {
 	const struct cycle_ahead *a = &c->ahead;
-	const double left = a->place_mm - law_place(c);
+	const double left = a->place_mm - place_mm(c);
 	struct mover *m = &c->mover;
 
 	if (!a->to_place || m->kind != MOVER_TO_PLACE ||
 	    a->v_max_mm_s > v_mm_s ||
-	    (a->toward * left < LAW_ONTO_MM &&
+	    (a->toward * left < MOVER_ONTO_MM &&
 	     (m->pass_mm_s != 0 || mover_is_standing(&c->mover))) ||
-	    fabs(m->goal - m->gone_mm - left) > LAW_ONTO_MM)
+	    fabs(m->goal - m->gone_mm - left) > MOVER_ONTO_MM)
 		return false;
 	m->left_mm = left;
 	return true;
@@ -174,7 +175,7 @@ static void plan_place(struct cycle *c, const struct lookahead *k, double v_mm_s
 	}
 	mover_aim_place(&c->mover, &l, toward * left, toward * v);
 	c->ahead.to_place = true;
-	c->ahead.place_mm = law_place(c) + toward * left;
+	c->ahead.place_mm = place_mm(c) + toward * left;
 	c->ahead.v_max_mm_s = l.v_max_mm_s;
 }
 
@@ -238,7 +239,7 @@ static void plan_next(struct cycle *c, const struct lookahead *k, double v_mm_s)
 	l.v_max_mm_s = v_mm_s;
 	mover_aim_place(&c->mover, &l, c->ahead.toward * k->next_mm, 0);
 	c->ahead.to_place = true;
-	c->ahead.place_mm = law_place(c) + c->ahead.toward * k->next_mm;
+	c->ahead.place_mm = place_mm(c) + c->ahead.toward * k->next_mm;
 	c->ahead.v_max_mm_s = v_mm_s;
 }
 
@@ -288,13 +289,14 @@ static double go(struct cycle *c, const struct ahead_move *w)
 {
 	const bool onto = c->ahead.to_place && c->mover.pass_mm_s == 0 &&
 			  !w->stops_at_nodes &&
-			  !(fabs(c->ahead.place_mm - w->goal_mm) <= LAW_ONTO_MM);
+			  !(fabs(c->ahead.place_mm - w->goal_mm) <=
+			    MOVER_ONTO_MM);
 	const double left = c->mover.left_mm;
 	const double ds = mover_go(&c->mover, w->l.period_s);
 
 	return onto && mover_is_standing(&c->mover) &&
-	       fabs(ds - left) <= LAW_ONTO_MM ?
-	       left + w->toward * LAW_ONTO_MM : ds;
+	       fabs(ds - left) <= MOVER_ONTO_MM ?
+	       left + w->toward * MOVER_ONTO_MM : ds;
 }
 
 double ahead_distance(struct cycle *c, const struct ahead_move *w)

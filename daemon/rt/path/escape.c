@@ -11,8 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Nearer to a corner than this is on it. */
-#define ONTO_MM		1e-9
 
 /* Keeps 2 * ticks * pulses inside int64_t. */
 #define TICKS_MAX	(INT64_C(1) << 30)
@@ -184,9 +182,9 @@ static const struct escape_leg *turn_corner(struct escape *e, double ds_mm)
 
 static double onto(double way_mm, const struct escape_leg *l)
 {
-	if (way_mm <= l->start_mm + ONTO_MM)
+	if (way_mm <= l->start_mm + MOVER_ONTO_MM)
 		return l->start_mm;
-	return way_mm >= l->end_mm - ONTO_MM ? l->end_mm : way_mm;
+	return way_mm >= l->end_mm - MOVER_ONTO_MM ? l->end_mm : way_mm;
 }
 
 /* Point by point to @tick; false if a cycle may not have so many. */

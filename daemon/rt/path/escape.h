@@ -76,7 +76,7 @@ bool escape_by(struct cycle *c, double ds_mm);
 /**
  * escape_stop_mm() - the place to plan for on the way to the place @to_mm.
  *
- * The next corner if one lies between; both as cycle_place_mm() counts.
+ * The next corner if one lies between; both as place_mm() counts.
  */
 double escape_stop_mm(const struct cycle *c, double to_mm);
 

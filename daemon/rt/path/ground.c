@@ -8,7 +8,7 @@
 #include <math.h>
 
 #define NEAR_PULSES	2.0
-#define TURN		(2 * 3.14159265358979323846)
+#define TURN		(2 * M_PI)
 #define TURNS_MAX	16
 
 /* A node of column @j, pulses. */

@@ -13,17 +13,9 @@
 
 #include "cycle.h"
 
-/* So near to a place counts as there: roundings are smaller. */
-#define LAW_ONTO_MM	1e-9
-
 static inline double law_period_s(const struct cycle *c)
 {
 	return (double)c->config.period_ns * 1e-9;
-}
-
-static inline double law_place(const struct cycle *c)
-{
-	return cycle_place_mm(c);
 }
 
 /* A speed set at once, without a ramp. */

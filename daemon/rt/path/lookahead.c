@@ -13,6 +13,7 @@
 #include "path/walk.h"
 
 #include "interp/limits.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -55,12 +56,12 @@ static void set_out(struct lookahead *k, struct interp_scurve_state s)
 static double room_mm(const struct lookahead *k, double left_mm, double v_mm_s)
 {
 	if (v_mm_s <= 0)
-		return left_mm + LOOKAHEAD_MARGIN_MM - slowed_mm(k, 0);
+		return left_mm + MOVER_ONTO_MM - slowed_mm(k, 0);
 	if (v_mm_s < k->plan_mm_s)
-		return left_mm - LOOKAHEAD_MARGIN_MM -
+		return left_mm - MOVER_ONTO_MM -
 		       slowed_mm(k, v_mm_s < k->let_go_mm_s ? v_mm_s :
 							      k->let_go_mm_s);
-	return left_mm - LOOKAHEAD_MARGIN_MM - k->s.x_mm -
+	return left_mm - MOVER_ONTO_MM - k->s.x_mm -
 	       interp_scurve_falls_mm(&k->brake, v_mm_s);
 }
 
@@ -72,7 +73,7 @@ static void consider(struct lookahead *k, double left_mm, double v_mm_s)
 
 	if (v_mm_s > 0 && v_mm_s < k->lowest_mm_s)
 		k->lowest_mm_s = v_mm_s;
-	if (left_mm > LAW_ONTO_MM && left_mm < k->next_mm)
+	if (left_mm > MOVER_ONTO_MM && left_mm < k->next_mm)
 		k->next_mm = left_mm;
 	if (top >= k->let_go_mm_s && top >= k->s.v_mm_s)
 		return;
@@ -113,7 +114,7 @@ static bool is_next(const struct lookahead *k, uint32_t i, double *ret_mm)
 	    !interp_program_seg_ok(&at->p, i, &at->p.segs[i]))
 		return false;
 	left = at->p.segs[i].s_mm - interp_cursor_place_mm(at);
-	if (left < *ret_mm - LAW_ONTO_MM)
+	if (left < *ret_mm - MOVER_ONTO_MM)
 		return false;
 	*ret_mm = left;
 	return true;
@@ -230,7 +231,7 @@ const struct interp_seg *lookahead_toward(const struct cycle *c, int toward)
 	uint32_t i = at->index;
 
 	if (s->kind < INTERP_BEGIN &&
-	    (toward > 0 ? s->length_mm - at->s_mm : at->s_mm) > LAW_ONTO_MM)
+	    (toward > 0 ? s->length_mm - at->s_mm : at->s_mm) > MOVER_ONTO_MM)
 		return s;
 	for (int n = 0; n < HOPS_MAX; n++) {
 		if (toward < 0 && i == 0)
@@ -254,7 +255,7 @@ static double node_mm(const struct cycle *c, int toward)
 					 at->s_mm;
 	const struct interp_seg *next;
 
-	if (left > LAW_ONTO_MM || !mover_is_standing(&c->mover))
+	if (left > MOVER_ONTO_MM || !mover_is_standing(&c->mover))
 		return left;
 	next = lookahead_toward(c, toward);
 	return next ? left + next->length_mm : INFINITY;
@@ -273,7 +274,7 @@ void lookahead_from(struct lookahead *k, struct interp_scurve_state s)
 	if (k->w->positions)
 		look_feeds(k);
 	if (isfinite(k->w->goal_mm))
-		consider(k, toward * (k->w->goal_mm - law_place(c)), 0);
+		consider(k, toward * (k->w->goal_mm - place_mm(c)), 0);
 	if (k->w->stops_at_nodes)
 		consider(k, node_mm(c, toward), 0);
 }

@@ -16,10 +16,9 @@
 #include "path/ahead.h"
 
 /* A plan reaches the speed of a slow place LOOKAHEAD_EARLY_MM before it, and it
- * counts as met LOOKAHEAD_MARGIN_MM before it.  A stop is met exactly, but for a
+ * counts as met MOVER_ONTO_MM before it.  A stop is met exactly, but for a
  * rounding. */
-#define LOOKAHEAD_EARLY_MM	2e-9
-#define LOOKAHEAD_MARGIN_MM	1e-9
+#define LOOKAHEAD_EARLY_MM	(2 * MOVER_ONTO_MM)
 
 /* A place ahead, and how fast it may be come to. */
 struct lookahead_place {

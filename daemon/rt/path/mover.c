@@ -11,9 +11,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Nearer than this counts as there. */
-#define THERE_MM	1e-9
-
 struct interp_scurve_limits mover_curve(const struct mover_limits *l)
 {
 	return (struct interp_scurve_limits) {
@@ -69,7 +66,7 @@ void mover_aim_place(struct mover *m, const struct mover_limits *l,
 	m->left_mm = left_mm;
 	if (m->kind == MOVER_TO_PLACE && m->pass_mm_s == pass_mm_s &&
 	    same(&m->l, l) &&
-	    fabs(m->goal - m->gone_mm - left_mm) <= THERE_MM)
+	    fabs(m->goal - m->gone_mm - left_mm) <= MOVER_ONTO_MM)
 		return;
 	c = mover_curve(l);
 	interp_scurve_to_pass(&m->plan, &c, &from, left_mm, pass_mm_s);
@@ -80,7 +77,7 @@ void mover_aim_place(struct mover *m, const struct mover_limits *l,
 static bool stands_there(const struct mover *m)
 {
 	return m->kind == MOVER_TO_PLACE && m->pass_mm_s == 0 &&
-	       fabs(m->left_mm) < THERE_MM && mover_is_standing(m);
+	       fabs(m->left_mm) < MOVER_ONTO_MM && mover_is_standing(m);
 }
 
 struct interp_scurve_state mover_peek(const struct mover *m, double period_s)

@@ -24,6 +24,13 @@ enum mover_plan {
 	MOVER_TO_SPEED,
 };
 
+/*
+ * A place that is nearer than this has been reached.  Places are sums of
+ * doubles: along a path of 1 km they round by 2e-10 mm.  A pulse is a million
+ * times longer.
+ */
+#define MOVER_ONTO_MM	1e-9
+
 struct mover_limits {
 	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	double period_s;

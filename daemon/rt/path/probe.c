@@ -4,6 +4,7 @@
  */
 #include "path/probe.h"
 #include "path/laws.h"
+#include "path/place.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@
 
 /* Stop so far before the end of a segment: its last point is reached, and the
  * next segment is not begun. */
-#define SHY_MM		(2 * LAW_ONTO_MM)
+#define SHY_MM		(2 * MOVER_ONTO_MM)
 
 /* -- Sensing --------------------------------------------------------------- */
 
@@ -28,7 +29,7 @@ static uint32_t index_of(const struct cycle *c)
 	const struct interp_cursor *at = &c->cursor;
 
 	return at->seg.flags & INTERP_SEG_SENSED &&
-	       at->s_mm < at->seg.length_mm - LAW_ONTO_MM ? at->index :
+	       at->s_mm < at->seg.length_mm - MOVER_ONTO_MM ? at->index :
 							    at->index + 1;
 }
 
@@ -41,7 +42,7 @@ static double left_mm(const struct cycle *c)
 {
 	const struct interp_seg *s = segment(c);
 
-	return s->s_mm + s->length_mm - SHY_MM - law_place(c);
+	return s->s_mm + s->length_mm - SHY_MM - place_mm(c);
 }
 
 bool probe_in_travel(const struct cycle *c, int axis, int64_t pos)
@@ -112,7 +113,7 @@ static void finish(struct cycle *c)
 		}
 		t->shift[i] = (int32_t)shift;
 	}
-	c->far_mm = c->back_mm = law_place(c);
+	c->far_mm = c->back_mm = place_mm(c);
 	c->out.path++;
 	t->phase = PROBE_DONE;
 }
@@ -147,20 +148,20 @@ static void begin_going(struct cycle *c)
 		return;
 	}
 	c->probe.phase = PROBE_GO;
-	c->probe.to_mm = law_place(c) + fmax(way, 0);
+	c->probe.to_mm = place_mm(c) + fmax(way, 0);
 }
 
 static bool is_there(const struct cycle *c)
 {
 	return c->mover.v_mm_s == 0 &&
-	       fabs(c->probe.to_mm - law_place(c)) < 2 * LAW_ONTO_MM;
+	       fabs(c->probe.to_mm - place_mm(c)) < 2 * MOVER_ONTO_MM;
 }
 
 static double go_to(struct cycle *c, double v_max_mm_s)
 {
 	const struct mover_limits l = law_travel_limits(c, v_max_mm_s);
 
-	return mover_step(&c->mover, &l, c->probe.to_mm - law_place(c));
+	return mover_step(&c->mover, &l, c->probe.to_mm - place_mm(c));
 }
 
 static double go(struct cycle *c)
@@ -212,7 +213,7 @@ static double forward(struct cycle *c, double v_mm_s)
 static void begin_back(struct cycle *c)
 {
 	c->probe.to_mm = fmax(segment(c)->s_mm,
-			      law_place(c) - c->config.probe.back_mm);
+			      place_mm(c) - c->config.probe.back_mm);
 	c->probe.phase = PROBE_BACK;
 }
 
@@ -233,8 +234,8 @@ static double settle(struct cycle *c)
 		c->probe.phase = PROBE_FAST;
 		return 0;
 	}
-	c->probe.met_mm = law_place(c);
-	if (law_place(c) - s->s_mm < s->length_mm / s->ticks)
+	c->probe.met_mm = place_mm(c);
+	if (place_mm(c) - s->s_mm < s->length_mm / s->ticks)
 		fault_latch(&c->fault, FAULT_CONTACT);
 	else
 		begin_back(c);
@@ -258,7 +259,7 @@ static double fast(struct cycle *c)
 {
 	if (!c->probe.contact)
 		return forward(c, feed_mm_s(c));
-	c->probe.met_mm = law_place(c);
+	c->probe.met_mm = place_mm(c);
 	c->probe.phase = PROBE_STOP;
 	return stop(c);
 }
@@ -282,7 +283,7 @@ static double fine(struct cycle *c)
 		finish(c);
 		return 0;
 	}
-	if (law_place(c) > c->probe.met_mm + c->config.probe.back_mm)
+	if (place_mm(c) > c->probe.met_mm + c->config.probe.back_mm)
 		c->probe.phase = PROBE_FAST;
 	return forward(c, fmin(c->config.probe.fine_mm_s, feed_mm_s(c)));
 }

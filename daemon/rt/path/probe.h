@@ -25,15 +25,10 @@
 
 #include "interp/cursor.h"
 
+#include "settings.h"
+
 #include <stdbool.h>
 #include <stdint.h>
-
-struct probe_config {
-	double feed_mm_s;		/* to the first contact */
-	double fine_mm_s;		/* to the one that counts */
-	double back_mm;			/* between them; 0: the first counts */
-	uint64_t settle_cycles;		/* of the sensing voltage, at first */
-};
 
 enum probe_phase {
 	PROBE_SETTLE,

@@ -6,6 +6,7 @@
 
 #include "path/laws.h"
 #include "path/lookahead.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -26,8 +27,8 @@ static bool gap_stands(const struct cycle *c)
 	    c->state != STATE_PROBE)
 		return false;
 	/* A way of a cycle that is lost in a rounding is a stand as well. */
-	return law_place(c) != c->progress.place_mm ||
-	       fabs(c->mover.v_mm_s) * law_period_s(c) < LAW_ONTO_MM;
+	return place_mm(c) != c->progress.place_mm ||
+	       fabs(c->mover.v_mm_s) * law_period_s(c) < MOVER_ONTO_MM;
 }
 
 /* One that was begun is forgotten on the way back, and waited for again. */
@@ -85,5 +86,5 @@ void progress_look(struct cycle *c)
 		p->still = 0;
 	else if ((p->still += PROGRESS_EVERY) && is_long(c))
 		fault_latch(&c->fault, FAULT_STUCK);
-	p->place_mm = law_place(c);
+	p->place_mm = place_mm(c);
 }

@@ -4,6 +4,7 @@
  */
 #include "path/step.h"
 #include "path/laws.h"
+#include "path/place.h"
 
 #include <math.h>
 
@@ -25,7 +26,7 @@ static int count_nodes(const struct interp_cursor *at, int toward, int n,
 	for (int seen = 0; seen < SEGMENTS_MAX && i <= nsegs; seen++) {
 		const double to = node_mm(&at->p, i);
 
-		if (toward * (to - from) > LAW_ONTO_MM) {
+		if (toward * (to - from) > MOVER_ONTO_MM) {
 			from = to;
 			n--;
 		}
@@ -50,10 +51,10 @@ int step_to(const struct cycle *c, double n, double *ret_mm)
 	answer = count_nodes(&c->cursor, toward, (int)fabs(n), ret_mm);
 	if (answer != ANSWER_DONE)
 		return answer;
-	if (toward > 0 && *ret_mm > c->far_mm + LAW_ONTO_MM &&
+	if (toward > 0 && *ret_mm > c->far_mm + MOVER_ONTO_MM &&
 	    !c->config.dry_run)
 		return ANSWER_NOT_PASSED;
-	if (toward < 0 && *ret_mm < c->back_mm - LAW_ONTO_MM)
+	if (toward < 0 && *ret_mm < c->back_mm - MOVER_ONTO_MM)
 		return ANSWER_NO_NODE;
 	return ANSWER_DONE;
 }
@@ -61,6 +62,6 @@ int step_to(const struct cycle *c, double n, double *ret_mm)
 void step_watch(struct cycle *c)
 {
 	if (c->state == STATE_HOLD && c->hold.moving && c->sensed.contact &&
-	    c->hold.to_mm > law_place(c) && !c->config.dry_run)
+	    c->hold.to_mm > place_mm(c) && !c->config.dry_run)
 		c->hold.moving = false;
 }

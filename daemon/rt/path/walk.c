@@ -10,8 +10,6 @@
 
 #include <string.h>
 
-#define AT_END_MM	1e-9
-
 bool walk_is_cut(const struct cycle *c, const struct interp_seg *s)
 {
 	return !c->config.dry_run && !c->job.power_off &&
@@ -30,7 +28,8 @@ enum walk_ahead walk_ahead(const struct cycle *c)
 	const struct interp_seg *s = &at->seg;
 	const uint32_t next = at->index + 1;
 
-	if (at->s_mm >= s->length_mm - AT_END_MM && next < at->p.head->nsegs)
+	if (at->s_mm >= s->length_mm - MOVER_ONTO_MM &&
+	    next < at->p.head->nsegs)
 		s = &at->p.segs[next];
 	if (s->kind >= INTERP_BEGIN)
 		return AHEAD_ACTION;

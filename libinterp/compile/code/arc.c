@@ -157,9 +157,9 @@ static int go_two(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		  int motion, const struct interp_build_contour *bottom)
 {
 	struct interp_build_contour two[2] = { *bottom };
-	const int rc = top(r, motion, &two[1]);
+	const int err = top(r, motion, &two[1]);
 
-	return rc ? rc : contour_two(&r->contour, end_mm, two, &r->word,
+	return err ? err : contour_two(&r->contour, end_mm, two, &r->word,
 				     r->diag);
 }
 
@@ -181,12 +181,12 @@ static int go_round(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 {
 	const struct interp_build_contour bottom = { .arc = false };
-	int rc = nc_word(r, end_mm, r->block.code[NC_MOTION]->value == 0);
+	int err = nc_word(r, end_mm, r->block.code[NC_MOTION]->value == 0);
 
-	if (!rc)
-		rc = nc_room(r);
-	if (rc)
-		return rc;
+	if (!err)
+		err = nc_room(r);
+	if (err)
+		return err;
 	return nc_placed(r, go_two(r, end_mm, 1, &bottom), end_mm);
 }
 
@@ -197,23 +197,23 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 		.axis_a = p->a, .axis_b = p->b, .clockwise = clockwise,
 	};
 	double end_mm[INTERP_NAXES];
-	int rc;
+	int err;
 
 	if (r->absent & (NC_BIT(p->a) | NC_BIT(p->b)))
 		return nc_refuse(r, r->block.code_at[NC_MOTION],
 				 "a plane of axes the machine has",
 				 "an arc in the plane %s", p->name);
 	nc_target(r, end_mm);
-	rc = centre(r, p, end_mm, &arc);
-	if (!rc)
-		rc = nc_word(r, end_mm, false);
-	if (!rc)
-		rc = nc_room(r);
-	if (rc)
-		return rc;
+	err = centre(r, p, end_mm, &arc);
+	if (!err)
+		err = nc_word(r, end_mm, false);
+	if (!err)
+		err = nc_room(r);
+	if (err)
+		return err;
 	r->moved |= NC_BIT(p->a) | NC_BIT(p->b);
 	if (r->tool.on)
 		return nc_tip_arc(r, end_mm, &arc);
-	rc = go_round(r, end_mm, &arc);
-	return nc_placed(r, rc, end_mm);
+	err = go_round(r, end_mm, &arc);
+	return nc_placed(r, err, end_mm);
 }

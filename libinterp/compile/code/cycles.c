@@ -35,11 +35,11 @@ void nc_set_lift(struct nc_reader *r)
 int nc_run_escape(struct nc_reader *r)
 {
 	/* Lines held back are still by the way out before. */
-	const int rc = interp_build_flush(r->build, r->diag);
+	const int err = interp_build_flush(r->build, r->diag);
 
 	r->escape = r->block.code[NC_ESCAPE]->value;
 	nc_set_lift(r);
-	return rc;
+	return err;
 }
 
 /* -- Words ---------------------------------------------------------------------- */
@@ -177,7 +177,7 @@ static int take_radius(struct nc_orbit *c)
 	const double least = fmax(l[o->a].pulse_mm, l[o->b].pulse_mm);
 	const uint32_t parts = r->block.words & (NC_CENTRE | NC_BIT(NC_D));
 	double under_mm = 0;
-	int rc = 0;
+	int err = 0;
 
 	c->radius_at = r->block.at[NC_R];
 	if (nc_has(r, NC_R) && parts)
@@ -187,11 +187,11 @@ static int take_radius(struct nc_orbit *c)
 	if (nc_has(r, NC_R)) {
 		o->radius_mm = length_of(r, NC_R);
 	} else {
-		rc = take_undersize(c, &under_mm);
+		err = take_undersize(c, &under_mm);
 		o->radius_mm = under_mm - length_of(r, NC_J) -
 			       length_of(r, NC_K);
 	}
-	return rc ? rc : o->radius_mm >= least - NOTHING_MM ? 0 :
+	return err ? err : o->radius_mm >= least - NOTHING_MM ? 0 :
 	       refuse_small(c, least);
 }
 
@@ -262,7 +262,7 @@ static int take_angle(struct nc_orbit *c)
 				 "larger R",
 				 "a cone that closes %g mm over its bottom",
 				 -o->radius_mm / tan(o->angle_deg *
-						     3.14159265358979 / 180));
+						     M_PI / 180));
 	return 0;
 }
 
@@ -307,11 +307,11 @@ static int to_line(void *arg, const double end_mm[INTERP_NAXES], bool rapid)
 {
 	struct nc_orbit *c = arg;
 	struct nc_reader *r = c->r;
-	int rc = nc_word(r, end_mm, rapid);
+	int err = nc_word(r, end_mm, rapid);
 
-	if (!rc)
-		rc = nc_room(r);
-	return rc ? rc : placed(c, contour_line(&r->contour, end_mm, &r->word,
+	if (!err)
+		err = nc_room(r);
+	return err ? err : placed(c, contour_line(&r->contour, end_mm, &r->word,
 						r->diag));
 }
 
@@ -320,20 +320,20 @@ static int to_arc(void *arg, const double end_mm[INTERP_NAXES],
 {
 	struct nc_orbit *c = arg;
 	struct nc_reader *r = c->r;
-	int rc = nc_word(r, end_mm, false);
+	int err = nc_word(r, end_mm, false);
 
-	if (!rc)
-		rc = nc_room(r);
-	return rc ? rc : placed(c, contour_arc(&r->contour, end_mm, arc,
+	if (!err)
+		err = nc_room(r);
+	return err ? err : placed(c, contour_arc(&r->contour, end_mm, arc,
 					       &r->word, r->diag));
 }
 
 static int to_escape(void *arg, const struct interp_escape *e)
 {
 	struct nc_orbit *c = arg;
-	const int rc = interp_build_flush(c->r->build, c->r->diag);
+	const int err = interp_build_flush(c->r->build, c->r->diag);
 
-	return rc ? rc : interp_build_escape(c->r->build, e);
+	return err ? err : interp_build_escape(c->r->build, e);
 }
 
 /* The most time it may take: S, in seconds. */
@@ -357,15 +357,15 @@ static int sink(struct nc_orbit *c)
 	struct nc_reader *r = c->r;
 	const struct interp_orbit *o = &c->orbit;
 	double end_mm[INTERP_NAXES];
-	int rc;
+	int err;
 
 	memcpy(end_mm, o->start_mm, sizeof(end_mm));
 	end_mm[o->sink] = o->end_mm;
 	end_mm[INTERP_C] = o->c_end_deg;
-	rc = to_line(c, end_mm, false);
-	if (!rc && c->dwell_ms > 0)
-		rc = nc_action(r, INTERP_DWELL, c->dwell_ms, c->at);
-	return rc ? rc : to_line(c, o->start_mm, true);
+	err = to_line(c, end_mm, false);
+	if (!err && c->dwell_ms > 0)
+		err = nc_action(r, INTERP_DWELL, c->dwell_ms, c->at);
+	return err ? err : to_line(c, o->start_mm, true);
 }
 
 static int carry_out(struct nc_orbit *c)
@@ -380,19 +380,19 @@ static int carry_out(struct nc_orbit *c)
 static int timed(struct nc_orbit *c)
 {
 	struct nc_reader *r = c->r;
-	int rc;
+	int err;
 
 	r->word.line = r->line;
 	r->word.rapid = false;
-	rc = interp_build_timed(r->build, &r->word, r->diag);
-	if (!rc)
-		rc = carry_out(c);
-	if (!rc) {
+	err = interp_build_timed(r->build, &r->word, r->diag);
+	if (!err)
+		err = carry_out(c);
+	if (!err) {
 		r->word.rapid = false;
-		rc = interp_build_timed_end(r->build, c->most_ms, &r->word,
+		err = interp_build_timed_end(r->build, c->most_ms, &r->word,
 					    r->diag);
 	}
-	return rc;
+	return err;
 }
 
 static int walk(struct nc_orbit *c)
@@ -400,15 +400,15 @@ static int walk(struct nc_orbit *c)
 	struct nc_reader *r = c->r;
 	struct interp_orbit *o = &c->orbit;
 	const int side = o->end_mm < o->start_mm[o->sink] ? 1 : -1;
-	int rc = contour_flush(&r->contour, r->diag);
+	int err = contour_flush(&r->contour, r->diag);
 
 	o->escape = r->escape;
 	o->top_mm = interp_build_came_mm(r->build, (int)o->sink, side);
-	if (!rc)
-		rc = c->most_ms > 0 ? timed(c) : carry_out(c);
+	if (!err)
+		err = c->most_ms > 0 ? timed(c) : carry_out(c);
 	r->moved |= NC_BIT(o->a) | NC_BIT(o->b) | NC_BIT(o->sink) |
 		    (r->block.words & NC_BIT(NC_C));
-	return rc;
+	return err;
 }
 
 /* G86: P is the time to spark out. */
@@ -430,11 +430,11 @@ static int take_sink(struct nc_orbit *c)
 static int take_all(struct nc_orbit *c,
 		    int (*const take[])(struct nc_orbit *))
 {
-	int rc = 0;
+	int err = 0;
 
-	for (size_t i = 0; take[i] && !rc; i++)
-		rc = take[i](c);
-	return rc;
+	for (size_t i = 0; take[i] && !err; i++)
+		err = take[i](c);
+	return err;
 }
 
 int nc_run_cycle(struct nc_reader *r)

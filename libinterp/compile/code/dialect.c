@@ -61,12 +61,12 @@ static int compile_nc(const struct interp_text *text,
 {
 	struct interp_nc_options o = *options;
 	struct interp_nc_result done = { 0 };
-	int rc;
+	int err;
 
 	o.dialect = text->dialect;
-	rc = interp_nc_compile(text->at, text->bytes, &o, b, &done, diag);
+	err = interp_nc_compile(text->at, text->bytes, &o, b, &done, diag);
 	*ret_lines = done.lines;
-	return rc;
+	return err;
 }
 
 static int compile_records(const struct interp_text *text,
@@ -80,13 +80,13 @@ static int compile_records(const struct interp_text *text,
 		.feed_mm_s = o->nc.feed_mm_s, .segs_max = o->nc.segs_max,
 	};
 	struct interp_threeb_result done = { 0 };
-	int rc;
+	int err;
 
 	threeb.fourb = text->dialect->fourb;
-	rc = interp_threeb_compile(text->at, text->bytes, &read, b, &done,
+	err = interp_threeb_compile(text->at, text->bytes, &read, b, &done,
 				   diag);
 	*ret_lines = done.lines;
-	return rc;
+	return err;
 }
 
 int interp_compile(const struct interp_text *text,
@@ -95,15 +95,15 @@ int interp_compile(const struct interp_text *text,
 		   struct interp_diag *diag)
 {
 	const bool records = text->dialect && !text->dialect->nc;
-	int rc = records ? compile_records(text, o, b, ret_lines, diag) :
+	int err = records ? compile_records(text, o, b, ret_lines, diag) :
 			   compile_nc(text, &o->nc, b, ret_lines, diag);
 
-	if (rc == 0)
-		rc = interp_build_flush(b, diag);
+	if (err == 0)
+		err = interp_build_flush(b, diag);
 	/* The whole line is at its first column, the whole input at 1:1. */
-	if (rc == -EINVAL && diag->line == 0)
+	if (err == -EINVAL && diag->line == 0)
 		diag->line = 1;
-	if (rc == -EINVAL && diag->column == 0)
+	if (err == -EINVAL && diag->column == 0)
 		diag->column = 1;
-	return rc;
+	return err;
 }

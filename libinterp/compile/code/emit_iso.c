@@ -9,7 +9,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#define TURN	(2 * 3.14159265358979323846)
+#define TURN	(2 * M_PI)
 
 /* What stands in the text so far. */
 struct iso_writer {
@@ -155,10 +155,10 @@ static void condition(struct iso_writer *o, struct words *w,
 static int words_of(struct iso_writer *o, struct words *w, uint32_t i)
 {
 	const struct interp_seg *seg = &o->p->segs[i];
-	const int rc = emit_refuse_sensed(o->diag, seg);
+	const int err = emit_refuse_sensed(o->diag, seg);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	condition(o, w, seg);
 	switch (seg->kind) {
 	case INTERP_LINE:
@@ -196,16 +196,16 @@ int interp_iso_write(const struct interp_program *p,
 		     const struct interp_sink *to, struct interp_diag *diag)
 {
 	struct iso_writer o = { .p = p, .to = to, .diag = diag };
-	int rc = emit_line(to, "G21 G17 G90 G91.1\n");
+	int err = emit_line(to, "G21 G17 G90 G91.1\n");
 
-	for (uint32_t i = 1; !rc && i < p->head->nsegs; i++) {
+	for (uint32_t i = 1; !err && i < p->head->nsegs; i++) {
 		struct words w = { .n = 0 };
 
 		if (!interp_program_seg_ok(p, i, &p->segs[i]))
 			return -EBADMSG;
-		rc = words_of(&o, &w, i);
-		if (!rc)
-			rc = emit_line(to, "%s\n", w.s);
+		err = words_of(&o, &w, i);
+		if (!err)
+			err = emit_line(to, "%s\n", w.s);
 	}
-	return rc;
+	return err;
 }

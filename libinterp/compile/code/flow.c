@@ -91,12 +91,12 @@ static int find_labels(struct nc_reader *r)
 {
 	struct nc_label l = { .at = r->text, .line = 1 };
 	bool fresh = true;
-	int rc = 0;
+	int err = 0;
 
 	r->labels = calloc(LABEL_MAX + 1, sizeof(r->labels[0]));
 	if (!r->labels)
 		return -ENOMEM;
-	for (; !rc && l.at < r->end; l.line++) {
+	for (; !err && l.at < r->end; l.line++) {
 		const uint8_t *end = nc_line_end(l.at, r->end);
 		const uint8_t *p = skip_void(l.at, end);
 
@@ -104,10 +104,10 @@ static int find_labels(struct nc_reader *r)
 			break;
 		if (p < end && *p != ';' && *p != '/')
 			fresh = false;
-		rc = note_label(r, l, end);
+		err = note_label(r, l, end);
 		l.at = nc_line_next(end, r->end);
 	}
-	return rc;
+	return err;
 }
 
 /* Where the words end that must not stand in front of an O. */
@@ -189,10 +189,10 @@ int nc_call(struct nc_reader *r, double number, const uint8_t *at)
 		return nc_refuse(r, at, "a whole number of 1 to 9999",
 				 "P%g names no subprogram", number);
 	if (!r->labels) {
-		const int rc = find_labels(r);
+		const int err = find_labels(r);
 
-		if (rc)
-			return rc;
+		if (err)
+			return err;
 	}
 	return enter(r, (uint32_t)number, 1, at);
 }
@@ -218,10 +218,10 @@ static int call(struct nc_reader *r)
 	if (nc_has(r, NC_L))
 		repeats = (uint32_t)b->value[NC_L];
 	if (!r->labels) {
-		const int rc = find_labels(r);
+		const int err = find_labels(r);
 
-		if (rc)
-			return rc;
+		if (err)
+			return err;
 	}
 	return enter(r, number, repeats, b->at[NC_P]);
 }

@@ -165,10 +165,10 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 static int run_groups(struct nc_reader *r, uint32_t groups)
 {
 	for (; groups; groups &= groups - 1) {
-		const int rc = run[__builtin_ctz(groups)](r);
+		const int err = run[__builtin_ctz(groups)](r);
 
-		if (rc)
-			return rc;
+		if (err)
+			return err;
 	}
 	return 0;
 }
@@ -260,32 +260,32 @@ int nc_run_line(struct nc_reader *r)
 {
 	const uint32_t first = NC_BIT(NC_TAPE) | NC_BIT(NC_LABEL);
 	struct nc_block *b = &r->block;
-	int rc = nc_take_angle(r);
+	int err = nc_take_angle(r);
 
 	nc_take_cycle(r);
-	if (!rc)
-		rc = complete(r);
-	if (rc)
-		return rc;
+	if (!err)
+		err = complete(r);
+	if (err)
+		return err;
 	if (r->curve.open && (b->words | b->groups)) {
-		rc = nc_curve_goes_on(r);
-		if (rc)
-			return rc;
+		err = nc_curve_goes_on(r);
+		if (err)
+			return err;
 	}
 	if (b->words & ~b->takes)
 		return refuse_leftover(r, b->words & ~b->takes);
 	if (b->words & r->absent)
 		return refuse_absent(r, b->words & r->absent);
 	if (b->toward | r->loose) {
-		rc = nc_check_touched(r);
-		if (rc)
-			return rc;
+		err = nc_check_touched(r);
+		if (err)
+			return err;
 	}
 
 	if (b->groups & first) {
-		rc = run_groups(r, b->groups & first);
-		if (rc)
-			return rc;
+		err = run_groups(r, b->groups & first);
+		if (err)
+			return err;
 	}
 	if ((b->words | b->groups) && !nc_has_group(r, NC_TAPE))
 		r->fresh = false;

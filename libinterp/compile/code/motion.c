@@ -147,32 +147,32 @@ int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES])
 int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 	      const uint8_t *at)
 {
-	int rc = nc_room(r);
+	int err = nc_room(r);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	r->word.line = r->line;
 	r->word.rapid = false;
-	rc = contour_action(&r->contour, kind, arg, &r->word, r->diag);
-	if (rc == -EINVAL && r->diag->line == r->line)
+	err = contour_action(&r->contour, kind, arg, &r->word, r->diag);
+	if (err == -EINVAL && r->diag->line == r->line)
 		r->diag->column = (uint32_t)(at - r->line_at) + 1;
-	return rc;
+	return err;
 }
 
 int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	       bool rapid)
 {
-	int rc = nc_word(r, end_mm, rapid);
+	int err = nc_word(r, end_mm, rapid);
 
 	r->curve.smooth = false;
-	if (!rc)
-		rc = nc_room(r);
-	if (rc)
-		return rc;
+	if (!err)
+		err = nc_room(r);
+	if (err)
+		return err;
 	if (r->tool.on)
 		return nc_tip_line(r, end_mm, rapid);
-	rc = contour_line(&r->contour, end_mm, &r->word, r->diag);
-	return nc_placed(r, rc, end_mm);
+	err = contour_line(&r->contour, end_mm, &r->word, r->diag);
+	return nc_placed(r, err, end_mm);
 }
 
 int nc_run_motion(struct nc_reader *r)
@@ -218,16 +218,16 @@ static int home(struct nc_reader *r)
 {
 	uint32_t axes = r->block.words & NC_AXES;
 	double end_mm[INTERP_NAXES];
-	int rc;
+	int err;
 
 	if (r->tool.on)
 		return nc_refuse(r, r->block.code_at[NC_ONE_SHOT],
 				 "G49 before it", "G28 under G43.4");
 	nc_target(r, end_mm);
 	if (axes) {
-		rc = nc_line_to(r, end_mm, true);
-		if (rc)
-			return rc;
+		err = nc_line_to(r, end_mm, true);
+		if (err)
+			return err;
 	} else {
 		axes = r->moved;
 	}

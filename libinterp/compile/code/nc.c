@@ -65,22 +65,22 @@ static int refuse_executed(struct nc_reader *r)
 
 int nc_read_line(struct nc_reader *r)
 {
-	int rc;
+	int err;
 
 	r->line++;
 	if (r->executed++ >= r->executed_max)
 		return refuse_executed(r);
-	rc = nc_scan_line(r);
-	return rc ? rc : nc_run_line(r);
+	err = nc_scan_line(r);
+	return err ? err : nc_run_line(r);
 }
 
 static int read_lines(struct nc_reader *r)
 {
-	int rc = 0;
+	int err = 0;
 
-	while (!rc && !r->over && r->at < r->end)
-		rc = nc_read_line(r);
-	return rc ? rc : nc_end_of_text(r);
+	while (!err && !r->over && r->at < r->end)
+		err = nc_read_line(r);
+	return err ? err : nc_end_of_text(r);
 }
 
 /* Lines in the text: those the main program has come to, and the rest. */
@@ -101,7 +101,7 @@ int interp_nc_compile(const char *text, size_t bytes,
 {
 	struct nc_reader r = { .o = o, .build = b, .diag = diag };
 	static const struct interp_wire none = { .corner_angle_deg = 180 };
-	int rc;
+	int err;
 
 	diag->line = diag->column = 0;
 	contour_init(&r.contour, o->wire ? o->wire : &none, o->machine, b);
@@ -112,8 +112,8 @@ int interp_nc_compile(const char *text, size_t bytes,
 		};
 	open_text(&r, bytes ? text : "", bytes);
 	reset_modes(&r);
-	rc = read_lines(&r);
-	if (!rc) {
+	err = read_lines(&r);
+	if (!err) {
 		ret->lines = count_lines(&r);
 		ret->executed = r.executed;
 	}
@@ -121,5 +121,5 @@ int interp_nc_compile(const char *text, size_t bytes,
 	nc_curve_free(&r.curve);
 	nc_forget_conditions(&r);
 	contour_free(&r.contour);
-	return rc;
+	return err;
 }

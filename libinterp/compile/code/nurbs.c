@@ -170,26 +170,26 @@ int nc_curve_build(struct nc_reader *r)
 			   .knots = c->knots, .points = c->points },
 		.marks = c->marks, .nmarks = c->npoints,
 	};
-	int rc = nc_word(r, c->last_mm, false);
+	int err = nc_word(r, c->last_mm, false);
 
 	c->open = 0;
-	if (!rc)
-		rc = nc_room(r);
-	if (rc)
-		return rc;
+	if (!err)
+		err = nc_room(r);
+	if (err)
+		return err;
 	for (uint8_t i = 0; i < INTERP_NAXES; i++)
 		bc.axis[i] = i;
 	set_feed(r);
 	set_marks(c);
 	if (r->tool.on)
 		return nc_tip_curve(r, &bc);
-	rc = contour_nurbs(&r->contour, c->last_mm, &bc, &r->word, r->diag);
-	if (rc == 1)
-		rc = 0;
-	else if (!rc)
-		rc = nc_curve_check_end(r,
+	err = contour_nurbs(&r->contour, c->last_mm, &bc, &r->word, r->diag);
+	if (err == 1)
+		err = 0;
+	else if (!err)
+		err = nc_curve_check_end(r,
 				interp_build_here(r->contour.guides.build));
-	return nc_placed(r, rc, c->last_mm);
+	return nc_placed(r, err, c->last_mm);
 }
 
 int nc_curve_refuse_weight(struct nc_reader *r, enum nc_slot slot)
@@ -271,7 +271,7 @@ static int fanuc(struct nc_reader *r)
 	const struct nc_block *b = &r->block;
 	struct nc_curve *c = &r->curve;
 	const bool first = !c->open;
-	int rc = 0;
+	int err = 0;
 
 	if (!(b->words & (NC_AXES | NC_BIT(NC_K))) && !nc_has(r, NC_R) &&
 	    !nc_has(r, NC_P))
@@ -281,18 +281,18 @@ static int fanuc(struct nc_reader *r)
 				 "K and a knot in each block of G6.2",
 				 "a block of G6.2 without a knot");
 	if (first)
-		rc = fanuc_open(r);
+		err = fanuc_open(r);
 	else if (nc_has(r, NC_P))
-		rc = nc_refuse(r, b->at[NC_P], "P in the first block of G6.2",
+		err = nc_refuse(r, b->at[NC_P], "P in the first block of G6.2",
 			       "a second order of one curve");
-	if (!rc)
-		rc = fanuc_knot(r);
-	if (!rc && (first || b->words & (NC_AXES | NC_BIT(NC_R))))
-		rc = fanuc_point(r);
-	if (rc || c->nknots != c->npoints + c->order)
-		return rc;
-	rc = nc_curve_check_points(r, b->at[NC_K]);
-	return rc ? rc : nc_curve_build(r);
+	if (!err)
+		err = fanuc_knot(r);
+	if (!err && (first || b->words & (NC_AXES | NC_BIT(NC_R))))
+		err = fanuc_point(r);
+	if (err || c->nknots != c->npoints + c->order)
+		return err;
+	err = nc_curve_check_points(r, b->at[NC_K]);
+	return err ? err : nc_curve_build(r);
 }
 
 int nc_curve_refuse_plane(struct nc_reader *r)

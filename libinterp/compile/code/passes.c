@@ -97,23 +97,23 @@ static int record(struct nc_reader *r, const struct nc_cavity *c,
 	const uint8_t *line_at = r->line_at;
 	const uint32_t depth = r->depth;
 	const uint8_t *code_at = my_word(r);
-	int rc;
+	int err;
 
 	contour_record(&r->contour, c->hole_mm);
 	r->selected = r->passes.pass[0].reg;
-	rc = nc_call(r, c->number, code_at);
-	while (!rc && r->depth > depth && !r->over && r->at < r->end)
-		rc = nc_read_line(r);
+	err = nc_call(r, c->number, code_at);
+	while (!err && r->depth > depth && !r->over && r->at < r->end)
+		err = nc_read_line(r);
 	contour_recorded(&r->contour, t);
-	if (!rc && r->depth > depth)
-		rc = nc_refuse_at(r, c->line, "M99 at its end",
+	if (!err && r->depth > depth)
+		err = nc_refuse_at(r, c->line, "M99 at its end",
 				  "the end inside contour P%g", c->number);
-	if (!rc) {
+	if (!err) {
 		r->block = block;
 		r->line_at = line_at;
 	}
-	return !rc && !contour_tape_is_whole(t, r->contour.guides.pulse_mm) ?
-	       refuse_contour(r, c) : rc;
+	return !err && !contour_tape_is_whole(t, r->contour.guides.pulse_mm) ?
+	       refuse_contour(r, c) : err;
 }
 
 /* -- Cut ------------------------------------------------------------------------ */
@@ -194,20 +194,20 @@ static int to_and_fro(const struct cutting *k, const uint32_t range[2],
 		      bool back, const char *what)
 {
 	struct nc_passes *s = &k->r->passes;
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t i = 0; !rc && i < s->npasses; i++, back = !back) {
+	for (uint32_t i = 0; !err && i < s->npasses; i++, back = !back) {
 		const struct contour_pass how = { s->pass[i].offset_mm,
 						  &s->pass[i].word, back };
 
 		say_pass(k, i, back, range, what);
 		if (i || k->r->contour.n > 1)
-			rc = contour_play_step(&k->r->contour, &how,
+			err = contour_play_step(&k->r->contour, &how,
 					       k->r->diag);
-		if (!rc)
-			rc = play(k, i, back, range[0], range[1]);
+		if (!err)
+			err = play(k, i, back, range[0], range[1]);
 	}
-	return rc;
+	return err;
 }
 
 /* The open part in all passes, a stop, then the tab; it ends where the lead out
@@ -217,42 +217,44 @@ static int cut_with_tab(const struct cutting *k)
 	const uint32_t open[2] = { 1, k->t->tab };
 	const uint32_t tab[2] = { k->t->tab, k->t->n - 1 };
 	const uint32_t last = k->r->passes.npasses - 1;
-	int rc = play(k, 0, false, 0, 1);
+	int err = play(k, 0, false, 0, 1);
 
-	if (!rc)
-		rc = to_and_fro(k, open, false, "");
-	if (!rc)
-		rc = contour_action(&k->r->contour, INTERP_STOP, 0, &k->r->word,
+	if (!err)
+		err = to_and_fro(k, open, false, "");
+	if (!err)
+		err = contour_action(&k->r->contour, INTERP_STOP, 0,
+				     &k->r->word,
 				    k->r->diag);
-	if (!rc)
-		rc = to_and_fro(k, tab, last % 2, "tab, ");
-	return rc ? rc : play(k, last, false, k->t->n - 1, k->t->n);
+	if (!err)
+		err = to_and_fro(k, tab, last % 2, "tab, ");
+	return err ? err : play(k, last, false, k->t->n - 1, k->t->n);
 }
 
 /* Passes @first to @end - 1 of one contour. */
 static int cut_passes(const struct cutting *k, uint32_t first, uint32_t end)
 {
 	struct contour *c = &k->r->contour;
-	int rc = go_to(k->r, k->cavity->hole_mm);
+	int err = go_to(k->r, k->cavity->hole_mm);
 
-	if (!rc)
-		rc = wire_action(k->r, M_THREAD);
-	if (!rc)
-		rc = contour_release(c, NULL, k->r->diag);
-	if (!rc && k->t->tab < k->t->n - 1)
-		rc = cut_with_tab(k);
-	for (uint32_t i = first; !rc && k->t->tab == k->t->n - 1 && i < end; i++) {
-		rc = cut_round(k, i);
+	if (!err)
+		err = wire_action(k->r, M_THREAD);
+	if (!err)
+		err = contour_release(c, NULL, k->r->diag);
+	if (!err && k->t->tab < k->t->n - 1)
+		err = cut_with_tab(k);
+	for (uint32_t i = first;
+	     !err && k->t->tab == k->t->n - 1 && i < end; i++) {
+		err = cut_round(k, i);
 		/* What falls out is taken away behind the rough cut. */
-		if (!rc && i == 0)
-			rc = contour_action(c, INTERP_STOP, 0, &k->r->word,
+		if (!err && i == 0)
+			err = contour_action(c, INTERP_STOP, 0, &k->r->word,
 					    k->r->diag);
-		if (!rc)
-			rc = contour_release(c, NULL, k->r->diag);
+		if (!err)
+			err = contour_release(c, NULL, k->r->diag);
 	}
-	if (!rc)
-		rc = contour_release(c, NULL, k->r->diag);
-	return rc ? rc : wire_action(k->r, M_CUT);
+	if (!err)
+		err = contour_release(c, NULL, k->r->diag);
+	return err ? err : wire_action(k->r, M_CUT);
 }
 
 static int cut_all(struct nc_reader *r, const struct contour_tape *tape,
@@ -260,21 +262,21 @@ static int cut_all(struct nc_reader *r, const struct contour_tape *tape,
 {
 	struct nc_passes *s = &r->passes;
 	const uint32_t rounds = roughs_first && s->npasses > 1 ? 2 : 1;
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t round = 0; !rc && round < rounds; round++) {
+	for (uint32_t round = 0; !err && round < rounds; round++) {
 		const uint32_t first = round;
 		const uint32_t end = rounds == 2 && round == 0 ? 1 : s->npasses;
 
-		for (uint32_t i = 0; !rc && i < s->ncavities; i++) {
+		for (uint32_t i = 0; !err && i < s->ncavities; i++) {
 			const struct cutting k = { r, &s->cavity[i], &tape[i],
 						   i + 1 };
 
 			r->word.line = r->line;
-			rc = cut_passes(&k, first, end);
+			err = cut_passes(&k, first, end);
 		}
 	}
-	return rc;
+	return err;
 }
 
 static int refuse_tab(struct nc_reader *r, const struct nc_cavity *c)
@@ -287,16 +289,16 @@ static int refuse_tab(struct nc_reader *r, const struct nc_cavity *c)
 static int record_all(struct nc_reader *r, struct contour_tape *tape)
 {
 	struct nc_passes *s = &r->passes;
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t i = 0; !rc && i < s->ncavities; i++) {
-		rc = record(r, &s->cavity[i], &tape[i]);
-		if (!rc && s->tab_mm > 0)
-			rc = contour_tape_split(&tape[i], s->tab_mm);
-		if (rc == -ERANGE)
-			rc = refuse_tab(r, &s->cavity[i]);
+	for (uint32_t i = 0; !err && i < s->ncavities; i++) {
+		err = record(r, &s->cavity[i], &tape[i]);
+		if (!err && s->tab_mm > 0)
+			err = contour_tape_split(&tape[i], s->tab_mm);
+		if (err == -ERANGE)
+			err = refuse_tab(r, &s->cavity[i]);
 	}
-	return rc;
+	return err;
 }
 
 static int check_cut(struct nc_reader *r, bool roughs_first)
@@ -328,14 +330,14 @@ int nc_cut(struct nc_reader *r)
 	struct nc_passes *s = &r->passes;
 	const bool roughs_first = nc_has(r, NC_L);
 	struct contour_tape *tape;
-	int rc;
+	int err;
 
 	s->tab_mm = nc_has(r, NC_R) ? r->block.value[NC_R] * r->unit_mm : 0;
-	rc = check_cut(r, roughs_first);
-	if (!rc)
-		rc = contour_flush(&r->contour, r->diag);
-	if (rc)
-		return rc;
+	err = check_cut(r, roughs_first);
+	if (!err)
+		err = contour_flush(&r->contour, r->diag);
+	if (err)
+		return err;
 	tape = calloc(s->ncavities, sizeof(*tape));
 	if (!tape)
 		return -ENOMEM;
@@ -345,17 +347,17 @@ int nc_cut(struct nc_reader *r)
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		here_mm[i] = r->contour.here_mm[i];
-	rc = record_all(r, tape);
+	err = record_all(r, tape);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		r->contour.here_mm[i] = here_mm[i];
 	r->word = word;
 	r->selected = selected;
 	r->segs++;
-	if (!rc)
-		rc = cut_all(r, tape, roughs_first);
+	if (!err)
+		err = cut_all(r, tape, roughs_first);
 	for (uint32_t i = 0; i < s->ncavities; i++)
 		free(tape[i].m);
 	free(tape);
 	s->npasses = s->ncavities = 0;
-	return rc;
+	return err;
 }

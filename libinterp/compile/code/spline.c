@@ -26,15 +26,15 @@ int nc_curve_block(struct nc_reader *r)
 	const bool named = b->words & (NC_BIT(NC_X) | NC_BIT(NC_Y));
 	struct nc_curve *c = &r->curve;
 	double weight, at_mm[INTERP_NAXES];
-	int rc = linuxcnc_weight(r, &weight);
+	int err = linuxcnc_weight(r, &weight);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if (r->plane != 0)
 		return nc_curve_refuse_plane(r);
 	if (!c->open) {
 		nc_curve_open(r, NC_NURBS_BLOCK, LINUXCNC_ORDER);
-		rc = nc_curve_point(r, nc_here(r), named ? 1 : weight);
+		err = nc_curve_point(r, nc_here(r), named ? 1 : weight);
 	} else if (!named && nc_has(r, NC_P)) {
 		return nc_refuse(r, b->at[NC_P], "X and Y with it, but in the "
 				 "first block", "a weight without a point");
@@ -47,8 +47,8 @@ int nc_curve_block(struct nc_reader *r)
 					 "%g", b->value[NC_L]);
 		c->order = (uint32_t)b->value[NC_L];
 	}
-	if (rc || !named)
-		return rc;
+	if (err || !named)
+		return err;
 	nc_curve_target(r, at_mm);
 	return nc_curve_point(r, at_mm, weight);
 }
@@ -56,18 +56,18 @@ int nc_curve_block(struct nc_reader *r)
 int nc_curve_end(struct nc_reader *r)
 {
 	struct nc_curve *c = &r->curve;
-	int rc = 0;
+	int err = 0;
 
 	if (c->open != NC_NURBS_BLOCK)
 		return nc_refuse(r, r->block.code_at[NC_MOTION],
 				 "G5.2 and control points before it",
 				 "G5.3 without G5.2");
-	rc = nc_curve_check_points(r, r->block.code_at[NC_MOTION]);
+	err = nc_curve_check_points(r, r->block.code_at[NC_MOTION]);
 	/* Even knots, the ends as often as the order. */
-	for (uint32_t i = 0; !rc && i < c->npoints + c->order; i++)
-		rc = nc_curve_knot(r, i < c->order ? 0 : i < c->npoints ?
+	for (uint32_t i = 0; !err && i < c->npoints + c->order; i++)
+		err = nc_curve_knot(r, i < c->order ? 0 : i < c->npoints ?
 				 i - c->order + 1 : c->npoints - c->order + 1);
-	return rc ? rc : nc_curve_build(r);
+	return err ? err : nc_curve_build(r);
 }
 
 /* -- G5 and G5.1 ---------------------------------------------------------------------- */
@@ -77,20 +77,20 @@ int nc_curve_end(struct nc_reader *r)
 static int bezier(struct nc_reader *r, const double *p, uint32_t n)
 {
 	double at_mm[INTERP_NAXES];
-	int rc;
+	int err;
 
 	nc_curve_open(r, NC_NURBS, n + 1);
 	memcpy(at_mm, nc_here(r), sizeof(at_mm));
-	rc = nc_curve_point(r, at_mm, 1);
-	for (uint32_t i = 0; !rc && i < n; i++) {
+	err = nc_curve_point(r, at_mm, 1);
+	for (uint32_t i = 0; !err && i < n; i++) {
 		at_mm[INTERP_X] = p[2 * i];
 		at_mm[INTERP_Y] = p[2 * i + 1];
-		rc = nc_curve_point(r, at_mm, 1);
+		err = nc_curve_point(r, at_mm, 1);
 	}
-	for (uint32_t i = 0; !rc && i < 2 * (n + 1); i++)
-		rc = nc_curve_knot(r, i <= n ? 0 : 1);
+	for (uint32_t i = 0; !err && i < 2 * (n + 1); i++)
+		err = nc_curve_knot(r, i <= n ? 0 : 1);
 	r->curve.open = 0;
-	return rc ? rc : nc_curve_build(r);
+	return err ? err : nc_curve_build(r);
 }
 
 /* I and J of the line, or on from the last G5. */
@@ -119,15 +119,15 @@ int nc_curve_spline(struct nc_reader *r)
 	const struct nc_block *b = &r->block;
 	const double *here = nc_here(r);
 	double end_mm[INTERP_NAXES], p[6] = { 0 };
-	int rc;
+	int err;
 
 	if (!nc_has(r, NC_P) || !nc_has(r, NC_Q))
 		return nc_refuse(r, b->code_at[NC_MOTION],
 				 "P and Q, from the end to the second control "
 				 "point", "G5 without P and Q");
-	rc = handle(r, p);
-	if (rc)
-		return rc;
+	err = handle(r, p);
+	if (err)
+		return err;
 	nc_target(r, end_mm);
 	for (int i = 0; i < 2; i++) {
 		const double back_mm = b->value[i ? NC_Q : NC_P] * r->unit_mm;
@@ -137,9 +137,9 @@ int nc_curve_spline(struct nc_reader *r)
 		p[4 + i] = end_mm[i];
 		r->curve.leave_mm[i] = -back_mm;
 	}
-	rc = bezier(r, p, 3);
-	r->curve.smooth = !rc;
-	return rc;
+	err = bezier(r, p, 3);
+	r->curve.smooth = !err;
+	return err;
 }
 
 int nc_curve_parabola(struct nc_reader *r)

@@ -219,10 +219,10 @@ static int sink_by(struct nc_reader *r, const struct interp_tech_sequence *s,
 	const struct interp_tech *fine =
 		&interp_tech_row(r->o->tech, last->letter, last->number)->tech;
 	double from_mm[INTERP_NAXES];
-	int rc = 0;
+	int err = 0;
 
 	memcpy(from_mm, nc_here(r), sizeof(from_mm));
-	for (uint32_t i = 0; !rc && i < s->nsteps; i++) {
+	for (uint32_t i = 0; !err && i < s->nsteps; i++) {
 		const struct interp_tech_step *step = &s->step[i];
 		const struct interp_tech_row *row =
 			interp_tech_row(r->o->tech, step->letter,
@@ -232,12 +232,12 @@ static int sink_by(struct nc_reader *r, const struct interp_tech_sequence *s,
 
 		if (short_mm >= way_mm)
 			continue;
-		rc = nc_call_condition(r, step->letter, step->number, at);
-		if (!rc)
-			rc = sink_to(r, from_mm, end_mm,
+		err = nc_call_condition(r, step->letter, step->number, at);
+		if (!err)
+			err = sink_to(r, from_mm, end_mm,
 				     1 - short_mm / way_mm);
 	}
-	return rc;
+	return err;
 }
 
 int nc_sink(struct nc_reader *r)

@@ -96,17 +96,17 @@ static int line(struct threeb_reader *r, const struct threeb_record *c)
 	const double sy = c->quadrant <= 2 ? 1 : -1;
 	double end_mm[INTERP_NAXES];
 	int64_t counted = 0, other = 0;
-	int rc = no_radius(r, c);
+	int err = no_radius(r, c);
 
-	if (!rc)
-		rc = line_way(r, c, &counted, &other);
-	if (rc)
-		return rc;
+	if (!err)
+		err = line_way(r, c, &counted, &other);
+	if (err)
+		return err;
 	r->x += sx * (double)(c->count_y ? other : counted);
 	r->y += sy * (double)(c->count_y ? counted : other);
 	place_mm(r, r->x, r->y, end_mm);
-	rc = interp_build_line(r->build, end_mm, &r->word, r->text.diag);
-	return placed(r, c, rc);
+	err = interp_build_line(r->build, end_mm, &r->word, r->text.diag);
+	return placed(r, c, err);
 }
 
 /* -- Arcs ------------------------------------------------------------------ */
@@ -207,7 +207,7 @@ static int arc(struct threeb_reader *r, const struct threeb_record *c)
 	};
 	struct threeb_end e;
 	double scale;
-	int rc;
+	int err;
 
 	if (a.x == 0 && a.y == 0)
 		return threeb_refuse(&r->text, c->at, "X and Y from the centre "
@@ -218,10 +218,10 @@ static int arc(struct threeb_reader *r, const struct threeb_record *c)
 	if (threeb_arc_end(&a, c->j, &e))
 		return refuse_end(r, c, "at most four times the radius, "
 				  "which is a full circle");
-	rc = scale_of(r, c, hypot((double)a.x, (double)a.y), &scale);
+	err = scale_of(r, c, hypot((double)a.x, (double)a.y), &scale);
 	/* An end that rounds to the start would be taken for a full turn. */
-	if (rc || (!e.full && e.x == a.x && e.y == a.y))
-		return rc;
+	if (err || (!e.full && e.x == a.x && e.y == a.y))
+		return err;
 	return build_arc(r, c, &a, &e, scale);
 }
 
@@ -299,19 +299,19 @@ int interp_threeb_compile(const char *text, size_t bytes,
 	struct threeb_reader r = {
 		.text = { .o = o->options, .diag = diag }, .o = o, .build = b,
 	};
-	int rc;
+	int err;
 
 	set_up(&r);
-	rc = threeb_open(&r.text, bytes ? text : "", bytes);
-	if (!rc)
-		rc = read_records(&r);
-	if (!rc && r.records == 0) {
-		rc = threeb_refuse(&r.text, r.text.line_at, "at least one "
+	err = threeb_open(&r.text, bytes ? text : "", bytes);
+	if (!err)
+		err = read_records(&r);
+	if (!err && r.records == 0) {
+		err = threeb_refuse(&r.text, r.text.line_at, "at least one "
 				   "record", "empty program");
 		diag->line = diag->column = 0;
 	}
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	ret->lines = r.text.line - (r.text.line_at == r.text.end);
 	ret->records = r.records;
 	return 0;

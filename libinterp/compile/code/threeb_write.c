@@ -18,7 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TURN	(2 * 3.14159265358979323846)
+#define TURN	(2 * M_PI)
 
 /* Shorter than this an arc is as well a line. */
 #define ARC_MIN_UNITS	4.0
@@ -195,15 +195,15 @@ static int put_halves(struct threeb_writer *w, const struct wanted *want)
 	const double y = (double)w->at.y - want->cy;
 	const double c = cos(want->sweep / 2), s = sin(want->sweep / 2);
 	struct wanted half = *want;
-	int rc;
+	int err;
 
 	half.full = false;
 	half.sweep = want->sweep / 2;
 	half.end.x = llround(want->cx + c * x - s * y);
 	half.end.y = llround(want->cy + s * x + c * y);
-	rc = put_arc(w, &half);
+	err = put_arc(w, &half);
 	half.end = want->end;
-	return rc ? rc : put_arc(w, &half);
+	return err ? err : put_arc(w, &half);
 }
 
 static struct attempt best_attempt(const struct threeb_writer *w,
@@ -279,14 +279,14 @@ static int arc(struct threeb_writer *w, uint32_t i)
 				   "an arc in another plane");
 	for (; fabs(rest) > TURN * (1 - 1e-9); rest -= way) {
 		struct wanted turn = want;
-		int rc;
+		int err;
 
 		turn.end = w->at;
 		turn.sweep = way;
 		turn.full = true;
-		rc = put_arc(w, &turn);
-		if (rc)
-			return rc;
+		err = put_arc(w, &turn);
+		if (err)
+			return err;
 	}
 	if (fabs(rest) * a->r_mm < 1e-3 * w->unit_mm)
 		return put_line(w, want.end);	/* the radius may have grown */
@@ -303,10 +303,10 @@ static int motion(struct threeb_writer *w, uint32_t i)
 	const struct interp_seg *seg = &w->p->segs[i];
 	const uint32_t beside = emit_moved(w->p, i) &
 				~(1u << INTERP_X | 1u << INTERP_Y);
-	const int rc = emit_refuse_sensed(w->diag, seg);
+	const int err = emit_refuse_sensed(w->diag, seg);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if (beside)
 		return emit_refuse(w->diag, w->line, "lines and arcs in XY",
 				   "%s with a move of %c",
@@ -404,7 +404,7 @@ int interp_threeb_write(const struct interp_program *p,
 		.x0_mm = emit_mm(p, INTERP_X, emit_node_sub(p, 0, INTERP_X)),
 		.y0_mm = emit_mm(p, INTERP_Y, emit_node_sub(p, 0, INTERP_Y)),
 	};
-	int rc = 0;
+	int err = 0;
 
 	*left = (struct interp_threeb_left) { 0 };
 	for (uint32_t i = 0; i < p->head->nsegs; i++) {
@@ -412,8 +412,8 @@ int interp_threeb_write(const struct interp_program *p,
 			return -EBADMSG;
 	}
 	w.clockwise = w.fourb && goes_clockwise(p);
-	for (uint32_t i = 0; !rc && i < p->head->nsegs; i++) {
-		rc = segment(&w, o, i);
+	for (uint32_t i = 0; !err && i < p->head->nsegs; i++) {
+		err = segment(&w, o, i);
 	}
-	return rc;
+	return err;
 }

@@ -64,10 +64,10 @@ static double turn_deg(const struct ends *e)
 static int go(struct nc_reader *r, const struct nc_tip_way *w,
 	      const double end_mm[INTERP_NAXES])
 {
-	const int rc = nc_tip_way(r, w);
+	const int err = nc_tip_way(r, w);
 
 	memcpy(r->tool.here_mm, end_mm, sizeof(r->tool.here_mm));
-	return rc;
+	return err;
 }
 
 int nc_tip_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
@@ -184,10 +184,10 @@ static int go_span(struct nc_reader *r, struct interp_nurbs_eval *e)
 	struct nc_tip_way w = { .at = span_at };
 	double at_mm[INTERP_NAXES];
 	struct knot_span k;
-	int rc = make_stops(&k, e, r->o->tip_tolerance_mm);
+	int err = make_stops(&k, e, r->o->tip_tolerance_mm);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	w.of = &k;
 	w.turn_deg = k.stops[k.nstops - 1].s_mm;
 	span_at(&k, 0, at_mm);
@@ -199,29 +199,29 @@ static int go_span(struct nc_reader *r, struct interp_nurbs_eval *e)
 	}
 	/* Where the curve stands there is no length to go by. */
 	if (w.turn_deg > 0)
-		rc = go(r, &w, at_mm);
+		err = go(r, &w, at_mm);
 	free(k.stops);
-	return rc;
+	return err;
 }
 
 static int check(struct nc_reader *r, struct curve_plan *p)
 {
 	struct interp_nurbs_point end;
-	int rc = build_curve_check(p);
+	int err = build_curve_check(p);
 
 	for (uint8_t i = 0; i < INTERP_NAXES; i++) {
 		p->curve.axis[i] = p->c->axis[i];
 		p->pulses_mm[i] = 1 / r->o->machine->axis[i].pulse_mm;
 	}
 	p->curve.naxes = INTERP_NAXES;
-	if (!rc) {
+	if (!err) {
 		interp_nurbs_open(&p->walk.eval, &p->c->nurbs);
-		rc = build_curve_check_start(p);
+		err = build_curve_check_start(p);
 	}
-	if (rc) {
+	if (err) {
 		if (!r->diag->line)
 			r->diag->line = r->line;
-		return nc_placed(r, rc, r->curve.last_mm);
+		return nc_placed(r, err, r->curve.last_mm);
 	}
 	interp_nurbs_at(&p->walk.eval, interp_nurbs_last(&p->c->nurbs), 0,
 			&end);
@@ -233,15 +233,15 @@ int nc_tip_curve(struct nc_reader *r, const struct interp_build_curve *c)
 	struct curve_plan p = { .c = c, .word = r->word, .diag = r->diag,
 				.here_mm = r->tool.here_mm };
 	struct interp_nurbs_eval *e = &p.walk.eval;
-	int rc = check(r, &p);
+	int err = check(r, &p);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	nurbs_span_enter(e, interp_nurbs_span(&c->nurbs,
 					      interp_nurbs_first(&c->nurbs)));
 	do {
 		r->word.line = build_curve_line(&p, e->from);
-		rc = go_span(r, e);
-	} while (!rc && nurbs_span_next(e));
-	return rc;
+		err = go_span(r, e);
+	} while (!err && nurbs_span_next(e));
+	return err;
 }

@@ -202,10 +202,10 @@ static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
 static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		      const struct extent *whole, const struct piece *p)
 {
-	int rc = nc_room(r);
+	int err = nc_room(r);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if (!r->word.rapid) {
 		const struct extent part = measure(w, p->t0, p->t1);
 		const double s = seconds(r, whole, &part), path = path_mm(p);
@@ -213,8 +213,8 @@ static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		if (s > 0)
 			r->word.feed_mm_s = path / s;
 	}
-	rc = contour_line(&r->contour, p->q1, &r->word, r->diag);
-	return nc_placed(r, rc, p->q1);
+	err = contour_line(&r->contour, p->q1, &r->word, r->diag);
+	return nc_placed(r, err, p->q1);
 }
 
 int nc_tip_way(struct nc_reader *r, const struct nc_tip_way *w)
@@ -224,19 +224,19 @@ int nc_tip_way(struct nc_reader *r, const struct nc_tip_way *w)
 	struct piece p = { .t0 = 0 };
 	double step = most;
 	uint32_t pieces = 0;
-	int rc = most < 1.0 / PIECES_MAX ? refuse_pieces(r) : 0;
+	int err = most < 1.0 / PIECES_MAX ? refuse_pieces(r) : 0;
 
 	memcpy(p.q0, r->contour.here_mm, sizeof(p.q0));
-	while (!rc && p.t0 < 1) {
+	while (!err && p.t0 < 1) {
 		p.t1 = fmin(1, p.t0 + step);
-		rc = pieces++ == PIECES_MAX ? refuse_pieces(r) :
+		err = pieces++ == PIECES_MAX ? refuse_pieces(r) :
 					      cut_piece(r, w, &p);
-		if (!rc)
-			rc = emit_piece(r, w, &whole, &p);
+		if (!err)
+			err = emit_piece(r, w, &whole, &p);
 		/* What was long enough here may do, or more. */
 		step = fmin(2 * (p.t1 - p.t0), most);
 		p.t0 = p.t1;
 		memcpy(p.q0, p.q1, sizeof(p.q0));
 	}
-	return rc;
+	return err;
 }

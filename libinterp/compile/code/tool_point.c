@@ -43,7 +43,7 @@ static int lengthen(struct nc_reader *r)
 static int switch_on(struct nc_reader *r)
 {
 	struct interp_kin_pose p;
-	int rc;
+	int err;
 
 	if (!r->o->kinematics)
 		return refuse_on(r, "kinematics.chain in the machine file",
@@ -57,9 +57,9 @@ static int switch_on(struct nc_reader *r)
 		return refuse_on(r, "G40 and G50 before it, and no guides",
 				 "G43.4 with a wire's offset or taper");
 	r->tool.k = *r->o->kinematics;
-	rc = lengthen(r);
-	if (rc)
-		return rc;
+	err = lengthen(r);
+	if (err)
+		return err;
 	memcpy(r->tool.here_mm, r->contour.here_mm, sizeof(r->tool.here_mm));
 	interp_kin_forward(&r->tool.k, r->contour.here_mm, &p);
 	memcpy(r->tool.here_mm, p.tip_mm, sizeof(p.tip_mm));

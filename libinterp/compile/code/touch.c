@@ -118,17 +118,17 @@ static int go(struct nc_reader *r, int axis, double by_mm)
 
 static int go_sensed(struct nc_reader *r, int axis, double by_mm, uint8_t ends)
 {
-	int rc;
+	int err;
 
 	/* And the stop in front of it. */
-	rc = nc_room(r);
+	err = nc_room(r);
 	r->word.ends = ends;
-	if (!rc)
-		rc = go(r, axis, by_mm);
+	if (!err)
+		err = go(r, axis, by_mm);
 	r->word.ends = 0;
 	r->loose |= NC_BIT(axis);
 	r->unnamed |= NC_BIT(axis);
-	return rc;
+	return err;
 }
 
 static int touch(struct nc_reader *r, int axis, double by_mm)
@@ -141,9 +141,9 @@ static int touch(struct nc_reader *r, int axis, double by_mm)
 /* Which way it is, only the machine knows: one of the two is none. */
 static int half(struct nc_reader *r, int axis)
 {
-	const int rc = go_sensed(r, axis, span_mm(r, axis), INTERP_SEG_HALF);
+	const int err = go_sensed(r, axis, span_mm(r, axis), INTERP_SEG_HALF);
 
-	return rc ? rc : go_sensed(r, axis, -span_mm(r, axis),
+	return err ? err : go_sensed(r, axis, -span_mm(r, axis),
 				   INTERP_SEG_HALF);
 }
 
@@ -254,102 +254,102 @@ static uint32_t passes(const struct nc_reader *r)
 
 static int touch_off(struct nc_reader *r, int axis, double by_mm)
 {
-	const int rc = touch(r, axis, by_mm);
+	const int err = touch(r, axis, by_mm);
 
-	return rc ? rc : go(r, axis, by_mm > 0 ? -off_mm(r) : off_mm(r));
+	return err ? err : go(r, axis, by_mm > 0 ? -off_mm(r) : off_mm(r));
 }
 
 /* From wall to wall, and half of it. */
 static int across_hole(struct nc_reader *r, int axis)
 {
 	const double most = length_of(r, NC_R, span_mm(r, axis));
-	int rc = touch_off(r, axis, -most);
+	int err = touch_off(r, axis, -most);
 
-	if (!rc)
-		rc = touch(r, axis, most);
-	return rc ? rc : half(r, axis);
+	if (!err)
+		err = touch(r, axis, most);
+	return err ? err : half(r, axis);
 }
 
 static int hole(struct nc_reader *r)
 {
-	int rc = check_positive(r, NC_R, "the farthest from wall to wall, "
+	int err = check_positive(r, NC_R, "the farthest from wall to wall, "
 				"above 0");
 
-	if (!rc)
-		rc = check_off(r);
-	for (uint32_t n = passes(r); n > 0 && !rc; n--) {
-		rc = across_hole(r, INTERP_X);
-		if (!rc)
-			rc = across_hole(r, INTERP_Y);
+	if (!err)
+		err = check_off(r);
+	for (uint32_t n = passes(r); n > 0 && !err; n--) {
+		err = across_hole(r, INTERP_X);
+		if (!err)
+			err = across_hole(r, INTERP_Y);
 	}
-	return rc;
+	return err;
 }
 
 /* Down beside it, against it, off it and up again. */
 static int against_pillar(struct nc_reader *r, int axis, double by_mm)
 {
 	const double down = length_of(r, NC_K, 0);
-	int rc = go(r, INTERP_Z, -down);
+	int err = go(r, INTERP_Z, -down);
 
-	if (!rc)
-		rc = touch_off(r, axis, by_mm);
-	return rc ? rc : go(r, INTERP_Z, down);
+	if (!err)
+		err = touch_off(r, axis, by_mm);
+	return err ? err : go(r, INTERP_Z, down);
 }
 
 static int over_pillar(struct nc_reader *r, int axis, double beside_mm)
 {
-	int rc = go(r, axis, -beside_mm);
+	int err = go(r, axis, -beside_mm);
 
-	if (!rc)
-		rc = against_pillar(r, axis, beside_mm);
-	if (!rc)
-		rc = go(r, axis, 2 * beside_mm + off_mm(r));
-	if (!rc)
-		rc = against_pillar(r, axis, -2 * beside_mm);
-	return rc ? rc : half(r, axis);
+	if (!err)
+		err = against_pillar(r, axis, beside_mm);
+	if (!err)
+		err = go(r, axis, 2 * beside_mm + off_mm(r));
+	if (!err)
+		err = against_pillar(r, axis, -2 * beside_mm);
+	return err ? err : half(r, axis);
 }
 
 static int check_pillar(struct nc_reader *r)
 {
-	int rc = check_off(r);
+	int err = check_off(r);
 
-	if (!rc && !(nc_has(r, NC_K) && (nc_has(r, NC_I) || nc_has(r, NC_J))))
-		rc = nc_refuse(r, word_at(r), "I, J or both: how far to the "
+	if (!err && !(nc_has(r, NC_K) && (nc_has(r, NC_I) || nc_has(r, NC_J))))
+		err = nc_refuse(r, word_at(r), "I, J or both: how far to the "
 			       "side; and K: how far down",
 			       "G161 without %s", nc_has(r, NC_K) ? "I and J" :
 			       "K");
-	if (!rc)
-		rc = check_positive(r, NC_I, "so far that it is beside the "
+	if (!err)
+		err = check_positive(r, NC_I, "so far that it is beside the "
 				    "work, above 0");
-	if (!rc)
-		rc = check_positive(r, NC_J, "so far that it is beside the "
+	if (!err)
+		err = check_positive(r, NC_J, "so far that it is beside the "
 				    "work, above 0");
-	return rc ? rc : check_positive(r, NC_K, "so far that it is below "
+	return err ? err : check_positive(r, NC_K, "so far that it is below "
 					"the edge, above 0");
 }
 
 static int pillar(struct nc_reader *r)
 {
-	int rc = check_pillar(r);
+	int err = check_pillar(r);
 
-	for (uint32_t n = passes(r); n > 0 && !rc; n--) {
+	for (uint32_t n = passes(r); n > 0 && !err; n--) {
 		if (nc_has(r, NC_I))
-			rc = over_pillar(r, INTERP_X, length_of(r, NC_I, 0));
-		if (!rc && nc_has(r, NC_J))
-			rc = over_pillar(r, INTERP_Y, length_of(r, NC_J, 0));
+			err = over_pillar(r, INTERP_X, length_of(r, NC_I, 0));
+		if (!err && nc_has(r, NC_J))
+			err = over_pillar(r, INTERP_Y, length_of(r, NC_J, 0));
 	}
-	return rc;
+	return err;
 }
 
 /* One wall of it, having gone to where it is in front, and back from there. */
 static int wall(struct nc_reader *r, int axis, int beside, double by_mm)
 {
 	const double most = length_of(r, NC_R, span_mm(r, axis));
-	int rc = go(r, beside, by_mm);
+	int err = go(r, beside, by_mm);
 
-	if (!rc)
-		rc = touch_off(r, axis, r->block.value[axis] * most);
-	return rc ? rc : go(r, beside, -by_mm);
+	if (!err)
+		err = touch_off(r, axis, r->block.value[axis] * most);
+	return err ? err : go(r, beside, -by_mm);
 }
 
 /* An outer one: from beyond it, I and J lead in front of its walls. */
@@ -357,19 +357,19 @@ static int corner(struct nc_reader *r)
 {
 	const uint32_t xy = NC_BIT(NC_X) | NC_BIT(NC_Y);
 	const double *way = r->block.value;
-	int rc = check_off(r);
+	int err = check_off(r);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if ((r->block.toward & xy) != xy || way[NC_X] == 0 || way[NC_Y] == 0)
 		return nc_refuse(r, word_at(r), "the way to both walls, as in "
 				 "G162 X+ Y-", "G162 without the ways of X and "
 				 "Y");
-	rc = check_positive(r, NC_R, "the farthest to a wall, above 0");
-	if (!rc)
-		rc = wall(r, INTERP_X, INTERP_Y,
+	err = check_positive(r, NC_R, "the farthest to a wall, above 0");
+	if (!err)
+		err = wall(r, INTERP_X, INTERP_Y,
 			  way[NC_Y] * length_of(r, NC_J, 0));
-	return rc ? rc : wall(r, INTERP_Y, INTERP_X,
+	return err ? err : wall(r, INTERP_Y, INTERP_X,
 			      way[NC_X] * length_of(r, NC_I, 0));
 }
 
@@ -400,10 +400,10 @@ int nc_run_touch(struct nc_reader *r)
 		[NC_TOUCH_PILLAR]	= pillar,
 		[NC_TOUCH_CORNER]	= corner,
 	};
-	int rc;
+	int err;
 
 	if (r->tool.on || nc_has_guides(r) || r->offset_side || r->taper_side)
 		return refuse_mode(r);
-	rc = contour_flush(&r->contour, r->diag);
-	return rc ? rc : touches[r->block.code[NC_TOUCH]->value](r);
+	err = contour_flush(&r->contour, r->diag);
+	return err ? err : touches[r->block.code[NC_TOUCH]->value](r);
 }

@@ -281,7 +281,7 @@ int interp_nurbs_fit(const struct interp_fit *f, struct interp_nurbs_own *ret)
 {
 	const size_t n = f->npoints;
 	struct work w = { .f = f, .o = ret };
-	int r = -ENOMEM;
+	int err = -ENOMEM;
 
 	if (f->npoints < INTERP_FIT_POINTS_MIN ||
 	    f->npoints > INTERP_FIT_POINTS_MAX || ret->room < f->npoints)
@@ -292,11 +292,11 @@ int interp_nurbs_fit(const struct interp_fit *f, struct interp_nurbs_own *ret)
 	w.rhs = malloc(n * f->naxes * sizeof(*w.rhs));
 	w.bad = malloc(n * sizeof(*w.bad));
 	if (w.t && w.knot && w.m && w.rhs && w.bad)
-		r = fit(&w);
+		err = fit(&w);
 	free(w.t);
 	free(w.knot);
 	free(w.m);
 	free(w.rhs);
 	free(w.bad);
-	return r;
+	return err;
 }

@@ -5,12 +5,13 @@
 #include "interp/kinematics.h"
 #include "kinematics/vector.h"
 
+#include <math.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#define RADIAN		(3.14159265358979323846 / 180)
+#define RADIAN		(M_PI / 180)
 
 /* Directions nearer than this are one. */
 #define SAME_DIR	1e-9
@@ -143,16 +144,16 @@ static int check_turns(struct interp_kinematics *k, struct interp_diag *diag)
 
 int interp_kin_prepare(struct interp_kinematics *k, struct interp_diag *diag)
 {
-	int rc = check_joints(k, diag);
+	int err = check_joints(k, diag);
 
-	if (!rc && !make_unit(k->tool_dir))
-		rc = refuse(diag, "a direction, as in 0 0 1",
+	if (!err && !make_unit(k->tool_dir))
+		err = refuse(diag, "a direction, as in 0 0 1",
 			    "a tool without a direction");
-	if (!rc)
-		rc = check_linear(k, diag);
-	if (!rc)
-		rc = check_turns(k, diag);
-	return rc;
+	if (!err)
+		err = check_linear(k, diag);
+	if (!err)
+		err = check_turns(k, diag);
+	return err;
 }
 
 /* -- Forward ---------------------------------------------------------------- */

@@ -17,10 +17,11 @@
 #include "interp/kinematics.h"
 #include "kinematics/vector.h"
 
+#include <math.h>
 #include <errno.h>
 #include <string.h>
 
-#define DEGREE		(180 / 3.14159265358979323846)
+#define DEGREE		(180 / M_PI)
 
 /* A tool points this well, or not at all. */
 #define POINTS		1e-9
@@ -187,7 +188,7 @@ int interp_kin_inverse(const struct interp_kinematics *k,
 	const double n = vec_length(pose->dir);
 	double at[INTERP_NAXES], d[3], last[2] = { 0, 0 };
 	struct turns t;
-	int rc;
+	int err;
 
 	if (!(n > 0) || !isfinite(n))
 		return -EDOM;
@@ -195,15 +196,15 @@ int interp_kin_inverse(const struct interp_kinematics *k,
 		d[i] = pose->dir[i] / n;
 	for (uint32_t i = 0; i < k->nturn; i++)
 		last[i] = q[k->joint[k->turn[i]].axis];
-	rc = turns_of(k, d, last, &t);
-	if (rc)
-		return rc;
+	err = turns_of(k, d, last, &t);
+	if (err)
+		return err;
 	memcpy(at, q, sizeof(at));
 	for (uint32_t i = 0; i < k->nturn; i++)
 		at[k->joint[k->turn[i]].axis] = t.deg[i];
-	rc = interp_kin_place(k, pose->tip_mm, at);
-	if (rc)
-		return rc;
+	err = interp_kin_place(k, pose->tip_mm, at);
+	if (err)
+		return err;
 	memcpy(q, at, sizeof(at));
 	return t.singular ? -ESRCH : 0;
 }

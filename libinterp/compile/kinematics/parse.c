@@ -51,16 +51,16 @@ static int three(struct text *t, double ret[3])
 
 static int brackets(struct text *t, struct interp_kin_joint *j)
 {
-	int rc;
+	int err;
 
 	t->at++;
-	rc = three(t, j->at_mm);
-	if (!rc && *t->at == '/') {
+	err = three(t, j->at_mm);
+	if (!err && *t->at == '/') {
 		t->at++;
-		rc = three(t, j->dir);
+		err = three(t, j->dir);
 	}
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if (*t->at != ')')
 		return refuse_here(t, "a ) behind the numbers");
 	t->at++;
@@ -90,13 +90,13 @@ int interp_kin_parse(struct interp_kinematics *k, const char *chain,
 
 	k->njoints = 0;
 	for (skip(&t); *t.at; skip(&t)) {
-		int rc;
+		int err;
 
 		if (k->njoints == INTERP_NAXES)
 			return refuse_here(&t, "at most 8 axes");
-		rc = joint(&t, &k->joint[k->njoints]);
-		if (rc)
-			return rc;
+		err = joint(&t, &k->joint[k->njoints]);
+		if (err)
+			return err;
 		k->njoints++;
 	}
 	return interp_kin_prepare(k, diag);

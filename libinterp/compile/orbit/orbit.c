@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#define TURN		(2 * 3.14159265358979323846)
+#define TURN		(2 * M_PI)
 #define CHORD_PULSES	0.4		/* a polyline's distance from its curve */
 #define NEAR_MM		1e-9
 
@@ -257,17 +257,17 @@ static uint32_t chords(struct walk *w, const struct round *q)
 static int turn_polyline(struct walk *w, const struct round *q)
 {
 	const uint32_t n = chords(w, q);
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t j = 1; j <= n && !rc; j++) {
+	for (uint32_t j = 1; j <= n && !err; j++) {
 		const double t = (double)j / n;
 		const double angle = j == n ? 0 : TURN * t;
 
 		profile_at(w, q->from_mm + t * (q->to_mm - q->from_mm));
-		rc = line_to(w, w->r_mm * cos(angle), w->r_mm * sin(angle),
+		err = line_to(w, w->r_mm * cos(angle), w->r_mm * sin(angle),
 			     false);
 	}
-	return rc;
+	return err;
 }
 
 /* From the middle of a side; square to it is one axis alone. */
@@ -278,29 +278,29 @@ static int turn_square(struct walk *w, const struct round *q)
 		{ 0.875, 1, -1, 0 }, { 1, 1, 0, 1 },
 	};
 	const bool normal = w->o->escape == INTERP_ESCAPE_NORMAL;
-	int rc = 0;
+	int err = 0;
 
-	for (int j = 0; j < 5 && !rc; j++) {
+	for (int j = 0; j < 5 && !err; j++) {
 		if (q->home && normal)
-			rc = escape_home(w, 1u << (corner[j].along_b ?
+			err = escape_home(w, 1u << (corner[j].along_b ?
 						   w->o->a : w->o->b),
 					 q->rise_mm);
 		profile_at(w, q->from_mm + corner[j].t *
 				       (q->to_mm - q->from_mm));
-		if (!rc)
-			rc = line_to(w, corner[j].x * w->r_mm,
+		if (!err)
+			err = line_to(w, corner[j].x * w->r_mm,
 				     corner[j].y * w->r_mm, false);
 	}
-	return rc;
+	return err;
 }
 
 static int turn(struct walk *w, const struct round *q)
 {
 	const struct interp_orbit *o = w->o;
-	int rc = q->home ? escape_home(w, q->home, q->rise_mm) : no_escape(w);
+	int err = q->home ? escape_home(w, q->home, q->rise_mm) : no_escape(w);
 
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if (o->shape == INTERP_ORBIT_SQUARE)
 		return turn_square(w, q);
 	return q->level ? turn_arc(w, q) : turn_polyline(w, q);
@@ -310,9 +310,9 @@ static int turn(struct walk *w, const struct round *q)
 
 static int go_round(struct walk *w)
 {
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t k = 0; k < w->steps && !rc; k++) {
+	for (uint32_t k = 0; k < w->steps && !err; k++) {
 		struct round q = {
 			.from_mm = k * w->step_mm,
 			.to_mm = k + 1 == w->steps ? w->length_mm :
@@ -324,23 +324,23 @@ static int go_round(struct walk *w)
 		r0 = w->r_mm;
 		profile_at(w, q.to_mm);
 		way_out(w, k, r0, w->r_mm, &q);
-		rc = turn(w, &q);
+		err = turn(w, &q);
 	}
-	return rc;
+	return err;
 }
 
 /* The first after a helix has its last turn a step above it. */
 static int finish(struct walk *w)
 {
 	double r0;
-	int rc = 0;
+	int err = 0;
 
 	profile_at(w, fmax(0, w->length_mm - w->step_mm));
 	r0 = w->r_mm;
 	profile_at(w, w->length_mm);
 	if (w->r_mm < pulse_mm(w))
 		return 0;
-	for (uint32_t k = 0; k < w->o->turns && !rc; k++) {
+	for (uint32_t k = 0; k < w->o->turns && !err; k++) {
 		struct round q = {
 			.from_mm = w->length_mm, .to_mm = w->length_mm,
 		};
@@ -350,72 +350,72 @@ static int finish(struct walk *w)
 			q = (struct round) { w->length_mm, w->length_mm,
 					     both(w), 0, true };
 		q.level = true;
-		rc = turn(w, &q);
+		err = turn(w, &q);
 	}
-	return rc;
+	return err;
 }
 
 /* Straight down in the centre to @h_mm over the bottom. */
 static int sink(struct walk *w, double h_mm)
 {
-	int rc = escape_up(w);
+	int err = escape_up(w);
 
 	w->h_mm = h_mm;
-	return rc ? rc : line_to(w, 0, 0, false);
+	return err ? err : line_to(w, 0, 0, false);
 }
 
 static int step_aside(struct walk *w)
 {
-	const int rc = escape_home(w, both(w), 0);
+	const int err = escape_home(w, both(w), 0);
 
-	return rc ? rc : line_to(w, w->r_mm, 0, false);
+	return err ? err : line_to(w, w->r_mm, 0, false);
 }
 
 static int vectors(struct walk *w)
 {
 	const struct interp_orbit *o = w->o;
-	int rc = escape_home(w, both(w), 0);
+	int err = escape_home(w, both(w), 0);
 
-	for (uint32_t i = 0; i < o->directions && !rc; i++) {
+	for (uint32_t i = 0; i < o->directions && !err; i++) {
 		const double angle = (o->angle_deg + 360.0 * i / o->directions) *
 				     TURN / 360;
 
-		rc = line_to(w, o->radius_mm * cos(angle),
+		err = line_to(w, o->radius_mm * cos(angle),
 			     o->radius_mm * sin(angle), false);
-		if (!rc)
-			rc = line_to(w, 0, 0, true);
+		if (!err)
+			err = line_to(w, 0, 0, true);
 	}
-	return rc;
+	return err;
 }
 
 static int walk_vectors(struct walk *w)
 {
 	const uint32_t levels = w->steps > 0 ? w->steps : 1;
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t k = 1; k <= levels && !rc; k++) {
-		rc = sink(w, k == levels ? 0 : w->depth_mm - k * w->step_mm);
-		for (uint32_t n = k == levels ? w->o->turns : 1; n > 0 && !rc;
+	for (uint32_t k = 1; k <= levels && !err; k++) {
+		err = sink(w, k == levels ? 0 : w->depth_mm - k * w->step_mm);
+		for (uint32_t n = k == levels ? w->o->turns : 1; n > 0 && !err;
 		     n--)
-			rc = vectors(w);
+			err = vectors(w);
 	}
-	return rc;
+	return err;
 }
 
 static int walk_round(struct walk *w)
 {
 	const bool first = w->o->shape == INTERP_ORBIT_EXPAND || !w->steps;
-	int rc = 0;
+	int err = 0;
 
 	if (first)
-		rc = sink(w, 0);
-	if (w->o->shape != INTERP_ORBIT_EXPAND && !rc) {
+		err = sink(w, 0);
+	if (w->o->shape != INTERP_ORBIT_EXPAND && !err) {
 		profile_at(w, first ? w->length_mm : 0);
-		rc = step_aside(w);
+		err = step_aside(w);
 	}
-	if (!rc)
-		rc = go_round(w);
-	return rc ? rc : finish(w);
+	if (!err)
+		err = go_round(w);
+	return err ? err : finish(w);
 }
 
 /*
@@ -425,13 +425,13 @@ static int walk_round(struct walk *w)
 static int go_home(struct walk *w)
 {
 	const bool cut = w->o->turns == 0 && w->o->shape != INTERP_ORBIT_VECTOR;
-	int rc = no_escape(w);
+	int err = no_escape(w);
 
 	w->h_mm = 0;
-	if (!rc)
-		rc = line_to(w, 0, 0, !cut);
+	if (!err)
+		err = line_to(w, 0, 0, !cut);
 	w->h_mm = w->depth_mm;
-	return rc ? rc : line_to(w, 0, 0, true);
+	return err ? err : line_to(w, 0, 0, true);
 }
 
 int interp_orbit_walk(const struct interp_orbit *o,
@@ -439,15 +439,15 @@ int interp_orbit_walk(const struct interp_orbit *o,
 		      const struct interp_orbit_to *to)
 {
 	struct walk w = { .o = o, .m = m, .to = to };
-	int rc;
+	int err;
 
 	w.depth_mm = height_of(o);
 	w.side = o->end_mm < o->start_mm[o->sink] ? -1 : 1;
 	w.h_mm = w.depth_mm;
 	plan_steps(&w);
-	rc = o->shape == INTERP_ORBIT_VECTOR ? walk_vectors(&w) :
+	err = o->shape == INTERP_ORBIT_VECTOR ? walk_vectors(&w) :
 					       walk_round(&w);
-	if (!rc)
-		rc = go_home(&w);
-	return rc ? rc : no_escape(&w);
+	if (!err)
+		err = go_home(&w);
+	return err ? err : no_escape(&w);
 }

@@ -6,6 +6,7 @@
  */
 #include "path/builder.h"
 #include "path/build_arc.h"
+#include "path/build_bits.h"
 #include "path/build_pair.h"
 #include "path/build_rule.h"
 #include "pulse/pulse.h"
@@ -322,9 +323,9 @@ int build_measure_next(struct interp_build *b,
 		       int64_t to[INTERP_NAXES], struct build_measure *ret,
 		       struct interp_diag *diag)
 {
-	const int r = interp_build_flush(b, diag);
+	const int err = interp_build_flush(b, diag);
 
-	return r < 0 ? r : build_measure(b, end_mm, to, ret, diag);
+	return err < 0 ? err : build_measure(b, end_mm, to, ret, diag);
 }
 
 void build_mm(const struct interp_build *b, const int64_t at[INTERP_NAXES],
@@ -352,10 +353,15 @@ struct build_way build_way_to(const struct interp_build *b,
 			      const struct build_measure *m)
 {
 	struct build_way w = { .longest_sub = m->longest };
+	uint32_t n = b->naxes;
 
+	memcpy(w.order, b->column, n);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		w.from[i] = interp_round_sub(b->here[i]);
 		w.to[i] = interp_round_sub(to[i]);
+		/* Those without a column get theirs in this order. */
+		if (!(b->columns & 1u << i))
+			w.order[n++] = (uint8_t)i;
 	}
 	return w;
 }
@@ -389,13 +395,13 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	struct build_measure m;
 	struct build_way way;
 	uint64_t ticks;
-	int r;
+	int err;
 
 	if (w->ends)
 		loosen(b, end_mm);
-	r = build_measure(b, end_mm, to, &m, diag);
-	if (r < 0)
-		return r;
+	err = build_measure(b, end_mm, to, &m, diag);
+	if (err < 0)
+		return err;
 	if (!m.moved) {
 		build_stand_at(b, end_mm, to);
 		return 0;
@@ -404,18 +410,19 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	ticks = build_rule_ticks(b->o.strategy, &way);
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_long(diag, m.length_mm);
-	r = build_rule_check(&b->o, &way, diag);
-	if (r < 0)
-		return r;
+	err = build_rule_check(&b->o, &way, diag);
+	if (err < 0)
+		return err;
 	seg.ticks = (uint32_t)ticks;
 	seg.length_mm = m.length_mm;
 	build_seg_feed(&seg, w, m.length_mm / m.seconds);
 	if (m.moved & ~b->columns && build_columns(b, m.moved) < 0)
 		return -ENOMEM;
-	if (w->ends)
-		r = sensed_begin(b, m.moved, w, diag);
-	if (r < 0)
-		return r;
+	err = build_bits_add(b, &way, &seg.arg);
+	if (err == 0 && w->ends)
+		err = sensed_begin(b, m.moved, w, diag);
+	if (err < 0)
+		return err;
 	build_descend(b, m.moved, end_mm);
 	b->stand_escape = w->ends ? 0 : build_escape_of(b, m.moved, end_mm);
 	build_stand_at(b, end_mm, to);

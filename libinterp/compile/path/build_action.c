@@ -13,19 +13,19 @@ int interp_build_action(struct interp_build *b, enum interp_kind kind,
 			struct interp_diag *diag)
 {
 	struct interp_seg seg = { .kind = (uint8_t)kind, .arg = arg };
-	const int r = interp_build_flush(b, diag);
+	const int err = interp_build_flush(b, diag);
 
-	return r ? r : build_seg_finish(b, &seg, w, diag);
+	return err ? err : build_seg_finish(b, &seg, w, diag);
 }
 
 int interp_build_timed(struct interp_build *b,
 		       const struct interp_build_word *w,
 		       struct interp_diag *diag)
 {
-	const int r = interp_build_flush(b, diag);
+	const int err = interp_build_flush(b, diag);
 
-	if (r < 0)
-		return r;
+	if (err < 0)
+		return err;
 	b->timed = b->segs.n;
 	memcpy(b->timed_at, b->here, sizeof(b->timed_at));
 	return interp_build_action(b, INTERP_TIMED, 0, w, diag);
@@ -35,11 +35,11 @@ int interp_build_timed_end(struct interp_build *b, uint32_t ms,
 			   const struct interp_build_word *w,
 			   struct interp_diag *diag)
 {
-	const int r = interp_build_flush(b, diag);
+	const int err = interp_build_flush(b, diag);
 	struct interp_seg *begin = b->segs.at;
 
-	if (r < 0)
-		return r;
+	if (err < 0)
+		return err;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (interp_round_sub(b->here[i]) ==
 		    interp_round_sub(b->timed_at[i]))

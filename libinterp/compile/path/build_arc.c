@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TURN	(2 * 3.14159265358979323846)
+#define TURN	(2 * M_PI)
 
 /* Start and end radius may differ by a rounding of the last digit, or this. */
 #define RADIUS_PULSES	2.0
@@ -235,12 +235,12 @@ static bool measure(struct build_arc *p, const int64_t start[2],
 static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 {
 	uint64_t ticks = p->arc.circle_ticks;
-	int r;
+	int err;
 
 	if (!strategy(p)->accumulates) {
-		r = build_rule_check(p->o, &p->way, diag);
-		if (r < 0)
-			return r;
+		err = build_rule_check(p->o, &p->way, diag);
+		if (err < 0)
+			return err;
 		ticks += build_rule_ticks(INTERP_POINT_BY_POINT, &p->way);
 	}
 	if (ticks > INTERP_PULSES_MAX)
@@ -254,7 +254,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	struct interp_arc *arc = &p->arc;
 	const double pulse = limits(p, arc->axis_a)->pulse_mm;
 	int64_t start[2], end[2];
-	int r = 0;
+	int err = 0;
 
 	if (limits(p, arc->axis_b)->pulse_mm != pulse) {
 		return interp_diag_say(diag, "a %s arc over axes of unequal "
@@ -283,9 +283,9 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	if (strategy(p)->runs && !is_tiny(start)) {
 		memcpy(p->runs.start, start, sizeof(start));
 		memcpy(p->runs.end, end, sizeof(end));
-		r = measure_runs(p, diag);
+		err = measure_runs(p, diag);
 	}
-	return r < 0 ? r : count_ticks(p, diag);
+	return err < 0 ? err : count_ticks(p, diag);
 }
 
 /* How far its chord is from it, at most. */
@@ -324,16 +324,16 @@ static int settle_spiral(struct build_arc *p, struct interp_diag *diag)
 
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 {
-	int r = build_arc_shape(p, diag);
+	int err = build_arc_shape(p, diag);
 
-	if (r < 0)
-		return r;
-	r = arc_travel(p, diag);
-	if (r < 0)
-		return r;
-	r = settle_spiral(p, diag);
-	if (r < 0 || p->straight)
-		return r;
+	if (err < 0)
+		return err;
+	err = arc_travel(p, diag);
+	if (err < 0)
+		return err;
+	err = settle_spiral(p, diag);
+	if (err < 0 || p->straight)
+		return err;
 	arc_length(p);
 	return strategy(p)->at_once ? ticks_simultaneous(p, diag) :
 				      ticks_of_pulses(p, diag);

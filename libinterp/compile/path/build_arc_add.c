@@ -42,17 +42,17 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	int64_t to[INTERP_NAXES];
 	struct interp_arc *arc;
 	struct build_measure m;
-	int r = build_measure_next(b, end_mm, to, &m, diag);
+	int err = build_measure_next(b, end_mm, to, &m, diag);
 
-	if (r < 0)
-		return r;
+	if (err < 0)
+		return err;
 	build_mm(b, b->here, plan.from_mm);
 	build_mm(b, to, plan.to_mm);
 	plan.way = build_way_to(b, to, &m);
 	plan.way.except = plane;
-	r = build_arc_plan(&plan, diag);
-	if (r < 0)
-		return r;
+	err = build_arc_plan(&plan, diag);
+	if (err < 0)
+		return err;
 	if (plan.straight)
 		return interp_build_line(b, end_mm, w, diag);
 	seg.ticks = plan.ticks;

@@ -147,24 +147,24 @@ static int try_places(struct curve_plan *p, const double end_mm[INTERP_NAXES])
 {
 	struct interp_curve_walk *w = &p->walk;
 	int32_t was[INTERP_NAXES];
-	int r = 0;
+	int err = 0;
 
 	for (uint32_t k = 0; k < p->curve.naxes; k++)
 		was[k] = interp_round_sub(p->b->here[p->curve.axis[k]]);
-	for (uint32_t i = 1; r == 0 && i <= w->places; i++) {
+	for (uint32_t i = 1; err == 0 && i <= w->places; i++) {
 		if (i < w->places)
 			pulse_curve_place(w, p->pulses_mm, i);
-		for (uint32_t k = 0; r == 0 && k < p->curve.naxes; k++) {
+		for (uint32_t k = 0; err == 0 && k < p->curve.naxes; k++) {
 			const int axis = p->curve.axis[k];
 
 			if (i == w->places)
 				w->pos[k] = interp_round_sub(llround(
 					end_mm[axis] * p->b->sub_mm[axis]));
-			r = try_axis(p, k, w->pos[k], was[k]);
+			err = try_axis(p, k, w->pos[k], was[k]);
 			was[k] = w->pos[k];
 		}
 	}
-	return r;
+	return err;
 }
 
 /* Places enough: 0, or what refuses. */
@@ -177,7 +177,7 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 			     (p->turns > 1 ? 2 : 1)) + 1;
 
 	for (int i = 0; i < TRIES; i++) {
-		int r;
+		int err;
 
 		p->tried += places;
 		if (places * p->turns > INTERP_PULSES_MAX ||
@@ -185,9 +185,9 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 			break;
 		pulse_curve_aim(&p->walk, stops, piece->nstops,
 				(uint32_t)places, length_mm);
-		r = try_places(p, end_mm);
-		if (r <= 0)
-			return r;
+		err = try_places(p, end_mm);
+		if (err <= 0)
+			return err;
 		places = ceil(places * 1.2);
 	}
 	return build_curve_refuse(p, "a curve with too many pulses for one "
@@ -224,18 +224,18 @@ static int piece_add(struct curve_plan *p, double to)
 	struct build_step step = { .seg = { .kind = INTERP_CURVE },
 				   .moved = p->moved, .end_mm = end_mm };
 	struct interp_piece piece, *stored;
-	int r = add_stops(p, to, &piece);
+	int err = add_stops(p, to, &piece);
 
-	if (r < 0)
-		return r;
+	if (err < 0)
+		return err;
 	end_of(p, to, end_mm);
 	step.seg.length_mm = stops_of(p, &piece)[piece.nstops - 1].s_mm;
 	/* The curve stands still here. */
 	if (!(step.seg.length_mm > 0))
 		return 0;
-	r = find_places(p, &piece, end_mm);
-	if (r < 0)
-		return r;
+	err = find_places(p, &piece, end_mm);
+	if (err < 0)
+		return err;
 	step.seg.ticks = p->walk.places * p->turns;
 	step.seg.arg = (uint32_t)p->b->pieces.n;
 	stored = build_table_add(&p->b->pieces);
@@ -259,27 +259,27 @@ static void piece_begin(struct curve_plan *p, double u)
 static int piece_extend(struct curve_plan *p, double last, double u)
 {
 	const double bend = p->bend, rate = p->rate, feed = look(p, u);
-	int r = 0;
+	int err = 0;
 
 	if (last > p->from && fmax(p->most_mm_s, feed) >
 			      FEED_RATIO * fmin(p->least_mm_s, feed)) {
 		p->bend = bend;
 		p->rate = rate;
-		r = piece_add(p, last);
+		err = piece_add(p, last);
 		piece_begin(p, last);
 		look(p, u);
 	}
 	p->least_mm_s = fmin(p->least_mm_s, feed);
 	p->most_mm_s = fmax(p->most_mm_s, feed);
-	return r;
+	return err;
 }
 
 static int piece_end(struct curve_plan *p, double u)
 {
-	const int r = u > p->from ? piece_add(p, u) : 0;
+	const int err = u > p->from ? piece_add(p, u) : 0;
 
 	piece_begin(p, u);
-	return r;
+	return err;
 }
 
 /* -- Along the curve ------------------------------------------------------------ */
@@ -307,7 +307,7 @@ static int along_look(struct curve_plan *p, double last, double u)
 {
 	const struct interp_nurbs_eval *e = &p->walk.eval;
 	struct interp_nurbs_point a, b;
-	int r = 0;
+	int err = 0;
 
 	interp_nurbs_at(&p->walk.eval, last, 1, &a);
 	nurbs_span_at(e, u, 1, &b);
@@ -315,12 +315,12 @@ static int along_look(struct curve_plan *p, double last, double u)
 		const double cusp = cusp_of(e, last, u);
 
 		if (cusp > last && cusp < u) {
-			r = piece_extend(p, last, cusp);
-			r = r == 0 ? piece_end(p, cusp) : r;
+			err = piece_extend(p, last, cusp);
+			err = err == 0 ? piece_end(p, cusp) : err;
 			last = cusp;
 		}
 	}
-	return r == 0 ? piece_extend(p, last, u) : r;
+	return err == 0 ? piece_extend(p, last, u) : err;
 }
 
 /* May the curve have a corner at @u? */
@@ -342,25 +342,25 @@ static int along(struct curve_plan *p)
 	double last = interp_nurbs_first(&e->c);
 	const double end = interp_nurbs_last(&e->c);
 	struct interp_nurbs_point at;
-	int r = 0;
+	int err = 0;
 
 	piece_begin(p, last);
-	while (r == 0 && last < end) {
+	while (err == 0 && last < end) {
 		double to, from = last;
 
 		interp_nurbs_at(e, last, 0, &at);
 		to = e->to;
-		for (int i = 1; r == 0 && i <= LOOKS; i++) {
+		for (int i = 1; err == 0 && i <= LOOKS; i++) {
 			const double u = i < LOOKS ? from + (to - from) * i /
 						     LOOKS : to;
 
-			r = along_look(p, last, u);
+			err = along_look(p, last, u);
 			last = u;
 		}
-		if (r == 0 && (last >= end || corner_at(&e->c, last)))
-			r = piece_end(p, last);
+		if (err == 0 && (last >= end || corner_at(&e->c, last)))
+			err = piece_end(p, last);
 	}
-	return r;
+	return err;
 }
 
 int interp_build_curve(struct interp_build *b,
@@ -371,14 +371,14 @@ int interp_build_curve(struct interp_build *b,
 	struct curve_plan p = { .b = b, .c = c, .word = *w, .diag = diag,
 				.here_mm = b->here_mm };
 	struct interp_nurbs n;
-	int r = interp_build_flush(b, diag);
+	int err = interp_build_flush(b, diag);
 
-	if (r == 0)
-		r = build_curve_check(&p);
-	if (r == 0)
-		r = build_curve_store(b, c, &p.curve, &p.moved);
-	if (r < 0 || p.curve.naxes == 0)
-		return r;
+	if (err == 0)
+		err = build_curve_check(&p);
+	if (err == 0)
+		err = build_curve_store(b, c, &p.curve, &p.moved);
+	if (err < 0 || p.curve.naxes == 0)
+		return err;
 	n = (struct interp_nurbs) {
 		.degree = p.curve.degree, .naxes = p.curve.naxes,
 		.npoints = p.curve.npoints, .counted = p.curve.counted,
@@ -390,6 +390,6 @@ int interp_build_curve(struct interp_build *b,
 	memcpy(p.walk.axis, p.curve.axis, sizeof(p.walk.axis));
 	p.turns = pulse_curve_turns(b->o.strategy, n.naxes);
 	set_limits(&p);
-	r = build_curve_check_way(&p);
-	return r == 0 ? along(&p) : r;
+	err = build_curve_check_way(&p);
+	return err == 0 ? along(&p) : err;
 }

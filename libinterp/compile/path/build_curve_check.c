@@ -104,16 +104,16 @@ static int check_travel(struct curve_plan *p)
 	struct interp_nurbs_eval *e = &p->walk.eval;
 	const double end = interp_nurbs_last(&e->c);
 	double from = interp_nurbs_first(&e->c), to;
-	int r = 0;
+	int err = 0;
 
-	for (; r == 0 && from < end; from = to) {
-		r = check_place(p, from);
+	for (; err == 0 && from < end; from = to) {
+		err = check_place(p, from);
 		to = e->to;
-		for (int i = 1; r == 0 && i <= FIRST_LOOKS; i++)
-			r = check_place(p, i < FIRST_LOOKS ?
+		for (int i = 1; err == 0 && i <= FIRST_LOOKS; i++)
+			err = check_place(p, i < FIRST_LOOKS ?
 				from + (to - from) * i / FIRST_LOOKS : to);
 	}
-	return r;
+	return err;
 }
 
 int build_curve_check(struct curve_plan *p)
@@ -136,9 +136,9 @@ static int check_axes(struct curve_plan *p)
 
 int build_curve_check_way(struct curve_plan *p)
 {
-	int r = check_axes(p);
+	int err = check_axes(p);
 
-	if (r == 0)
-		r = build_curve_check_start(p);
-	return r == 0 ? check_travel(p) : r;
+	if (err == 0)
+		err = build_curve_check_start(p);
+	return err == 0 ? check_travel(p) : err;
 }

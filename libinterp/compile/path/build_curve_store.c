@@ -80,20 +80,20 @@ static int number_add(struct store *p, double x)
 static int store_numbers(struct store *p, const uint32_t from[INTERP_NAXES])
 {
 	const struct interp_nurbs *n = &p->c->nurbs;
-	int r = 0;
+	int err = 0;
 
 	p->curve.knots_at = p->b->numbers.n;
-	for (uint32_t i = 0; r == 0 && i <= n->npoints + n->degree; i++)
-		r = number_add(p, n->knots[i]);
+	for (uint32_t i = 0; err == 0 && i <= n->npoints + n->degree; i++)
+		err = number_add(p, n->knots[i]);
 	p->curve.points_at = p->b->numbers.n;
-	for (uint32_t i = 0; r == 0 && i < n->npoints; i++) {
+	for (uint32_t i = 0; err == 0 && i < n->npoints; i++) {
 		const double *row = n->points + (size_t)i * (n->naxes + 1);
 
-		for (uint32_t k = 0; r == 0 && k < p->curve.naxes; k++)
-			r = number_add(p, row[from[k]]);
-		r = r == 0 ? number_add(p, row[n->naxes]) : r;
+		for (uint32_t k = 0; err == 0 && k < p->curve.naxes; k++)
+			err = number_add(p, row[from[k]]);
+		err = err == 0 ? number_add(p, row[n->naxes]) : err;
 	}
-	return r;
+	return err;
 }
 
 int build_curve_store(struct interp_build *b, const struct interp_build_curve *c,

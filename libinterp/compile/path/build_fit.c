@@ -57,7 +57,7 @@ int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
 {
 	const double *here = interp_build_here(b);
 	struct build_fit *f = &b->fit;
-	int r = 0;
+	int err = 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (end_mm[i] != here[i] &&
@@ -67,15 +67,15 @@ int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	}
 	if (f->n == INTERP_FIT_POINTS_MAX ||
 	    (f->n > 0 && !same_word(&f->word, w)))
-		r = interp_build_flush(b, diag);
-	if (r == 0 && f->n == 0) {
+		err = interp_build_flush(b, diag);
+	if (err == 0 && f->n == 0) {
 		f->word = *w;
-		r = keep(f, b->here_mm, w->line);
+		err = keep(f, b->here_mm, w->line);
 	}
-	if (r == 0 && memcmp(end_mm, interp_build_here(b),
+	if (err == 0 && memcmp(end_mm, interp_build_here(b),
 			     INTERP_NAXES * sizeof(*end_mm)) != 0)
-		r = keep(f, end_mm, w->line);
-	return r;
+		err = keep(f, end_mm, w->line);
+	return err;
 }
 
 /* -- Lay down -------------------------------------------------------------------- */
@@ -83,16 +83,16 @@ int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
 static int lay_lines(struct part *p, uint32_t from, uint32_t to)
 {
 	const struct build_fit *f = &p->b->fit;
-	int r = 0;
+	int err = 0;
 
-	for (uint32_t i = from + 1; r == 0 && i <= to; i++) {
+	for (uint32_t i = from + 1; err == 0 && i <= to; i++) {
 		struct interp_build_word w = f->word;
 
 		w.line = f->lines[i];
-		r = build_line(p->b, f->end_mm + (size_t)i * INTERP_NAXES, &w,
+		err = build_line(p->b, f->end_mm + (size_t)i * INTERP_NAXES, &w,
 			       p->diag);
 	}
-	return r;
+	return err;
 }
 
 /* What a builder was before a curve, to be that again. */
@@ -168,42 +168,42 @@ static int lay_curve(struct part *p, uint32_t from, uint32_t to)
 	};
 	struct interp_build_mark *marks = malloc(n * sizeof(*marks));
 	const struct before was = before(p->b);
-	int r = own.knots && own.points && marks ?
+	int err = own.knots && own.points && marks ?
 		interp_nurbs_fit(&fit, &own) : -ENOMEM;
 
-	if (r == 0 && own.c.npoints * 2 > n)
-		r = -ERANGE;
-	if (r == 0) {
+	if (err == 0 && own.c.npoints * 2 > n)
+		err = -ERANGE;
+	if (err == 0) {
 		struct interp_build_curve c = { .nurbs = own.c, .marks = marks,
 						.nmarks = n - 1 };
 
 		memcpy(c.axis, p->axis, sizeof(c.axis));
 		set_marks(p, from, n, marks);
-		r = interp_build_curve(p->b, &c, &p->b->fit.word, p->diag);
+		err = interp_build_curve(p->b, &c, &p->b->fit.word, p->diag);
 	}
-	if (r < 0 && r != -ENOMEM) {
+	if (err < 0 && err != -ENOMEM) {
 		undo(p->b, &was);
 		p->diag->line = 0;
 	}
 	free(own.knots);
 	free(own.points);
 	free(marks);
-	return r == -ENOMEM ? r : r < 0;
+	return err == -ENOMEM ? err : err < 0;
 }
 
 static int lay_part(struct part *p, uint32_t from, uint32_t to)
 {
 	const uint32_t middle = from + (to - from) / 2;
-	int r = 1;
+	int err = 1;
 
 	if (to - from >= PART_MIN)
-		r = lay_curve(p, from, to);
-	if (r <= 0)
-		return r;
+		err = lay_curve(p, from, to);
+	if (err <= 0)
+		return err;
 	if (to - from < 2 * PART_MIN)
 		return lay_lines(p, from, to);
-	r = lay_part(p, from, middle);
-	return r == 0 ? lay_part(p, middle, to) : r;
+	err = lay_part(p, from, middle);
+	return err == 0 ? lay_part(p, middle, to) : err;
 }
 
 /* The axes that move, without the others. */
@@ -237,30 +237,30 @@ int interp_build_flush(struct interp_build *b, struct interp_diag *diag)
 				   .tolerance_mm = b->o.fit_mm } };
 	const uint32_t n = b->fit.n;
 	uint32_t from = 0;
-	int r;
+	int err;
 
 	b->fit.n = 0;
 	if (n < 2)
 		return 0;
-	r = take_axes(&p, n);
-	for (uint32_t i = 1; r == 0 && i < n; i++) {
+	err = take_axes(&p, n);
+	for (uint32_t i = 1; err == 0 && i < n; i++) {
 		if (i + 1 < n && !interp_fit_corner(&p.fit, i))
 			continue;
-		r = lay_part(&p, from, i);
+		err = lay_part(&p, from, i);
 		from = i;
 	}
 	free((void *)p.fit.points);
-	return r;
+	return err;
 }
 
 int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag)
 {
-	int r;
+	int err;
 
 	if (b->o.fit_mm > 0 && !w->rapid && !w->ends && !b->escape && b->lift_axis < 0)
 		return build_fit_add(b, end_mm, w, diag);
-	r = interp_build_flush(b, diag);
-	return r ? r : build_line(b, end_mm, w, diag);
+	err = interp_build_flush(b, diag);
+	return err ? err : build_line(b, end_mm, w, diag);
 }

@@ -35,7 +35,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TURN	(2 * 3.14159265358979323846)
+#define TURN	(2 * M_PI)
 
 /* Arcs follow by angle if phase and sweep agree to this: so many pulses on
  * the smaller circle, which is what rounding can do, and never more than
@@ -95,7 +95,7 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 		.strategy = at_once(p) ? INTERP_SIMULTANEOUS :
 					 INTERP_POINT_BY_POINT,
 	};
-	int r;
+	int err;
 
 	*plan = (struct build_arc) { .o = &o, .word = &word };
 	for (int j = 0; j < 2; j++) {
@@ -107,10 +107,10 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 		plan->way.to[a] = p->to[a];
 		plan->way.except |= 1u << a;
 	}
-	r = build_arc_plan(plan, diag);
+	err = build_arc_plan(plan, diag);
 	plan->word = NULL;
 	plan->o = NULL;
-	return r;
+	return err;
 }
 
 static double v_max(const struct build_pair *p, int i)
@@ -124,13 +124,13 @@ static int side_plan(struct build_pair *p, int i, double *ret_mm,
 		     struct interp_diag *diag)
 {
 	struct build_arc plan;
-	int r;
+	int err;
 
 	if (!p->contour[i].arc)
 		return side_line(p, i, &p->couple.side[i], ret_mm, diag);
-	r = side_arc(p, i, &plan, diag);
-	if (r < 0)
-		return r;
+	err = side_arc(p, i, &plan, diag);
+	if (err < 0)
+		return err;
 	if (plan.straight)
 		return side_line(p, i, &p->couple.side[i], ret_mm, diag);
 	p->couple.side[i] = plan.arc;
@@ -251,10 +251,10 @@ int build_pair_plan(struct build_pair *p, struct interp_diag *diag)
 	p->bits = NULL;
 	p->ticks = 0;
 	for (int i = 0; i < 2; i++) {
-		const int r = side_plan(p, i, &mm[i], diag);
+		const int err = side_plan(p, i, &mm[i], diag);
 
-		if (r < 0)
-			return r;
+		if (err < 0)
+			return err;
 		seconds = fmax(seconds, mm[i] / v_max(p, i));
 	}
 	p->length_mm = mm[0] > 0 ? mm[0] : mm[1];

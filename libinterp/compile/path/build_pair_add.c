@@ -87,16 +87,16 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 				   .strategy = b->o.strategy };
 	int64_t to[INTERP_NAXES];
 	struct build_measure m;
-	int r = build_measure_next(b, end_mm, to, &m, diag);
+	int err = build_measure_next(b, end_mm, to, &m, diag);
 
-	if (r < 0)
-		return r;
+	if (err < 0)
+		return err;
 	if (m.moved & ~(XY | UV))
 		return refuse_others(diag);
 	plan.moved = m.moved;
-	r = pair_alone(b, &plan, end_mm, w, diag);
-	if (r != -ENOENT)
-		return r;
+	err = pair_alone(b, &plan, end_mm, w, diag);
+	if (err != -ENOENT)
+		return err;
 	build_mm(b, b->here, plan.from_mm);
 	build_mm(b, to, plan.to_mm);
 	for (int i = 0; i < INTERP_NAXES; i++) {
@@ -104,11 +104,11 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		plan.to[i] = interp_round_sub(to[i]);
 	}
 	plan.longest_sub = m.longest;
-	r = build_pair_plan(&plan, diag);
-	if (r == 0) {
+	err = build_pair_plan(&plan, diag);
+	if (err == 0) {
 		build_stand_at(b, end_mm, to);
-		r = pair_finish(b, &plan, w, diag);
+		err = pair_finish(b, &plan, w, diag);
 	}
 	free(plan.bits);
-	return r;
+	return err;
 }

@@ -3,7 +3,6 @@
  * build_rule.c - what a strategy makes of a line, and which it refuses
  */
 #include "path/build_rule.h"
-#include "pulse/couple.h"
 #include "pulse/strategy.h"
 
 #include <errno.h>
@@ -55,11 +54,12 @@ static int refuse_tube(const struct interp_build_options *o,
 			       interp_strategy_name(o->strategy));
 }
 
-static uint32_t inputs_of(const struct build_way *w, struct couple_input *in)
+uint32_t build_rule_inputs(const struct build_way *w, struct couple_input *in)
 {
 	uint32_t n = 0;
 
-	for (int i = 0; i < INTERP_NAXES; i++) {
+	for (int j = 0; j < INTERP_NAXES; j++) {
+		const int i = w->order[j];
 		const int64_t d = (int64_t)w->to[i] - w->from[i];
 
 		if (d != 0 && !(w->except & 1u << i))
@@ -68,22 +68,28 @@ static uint32_t inputs_of(const struct build_way *w, struct couple_input *in)
 	return n;
 }
 
-int build_rule_check(const struct interp_build_options *o,
-		     const struct build_way *w, struct interp_diag *diag)
+/* Beside a circle the other axes are always a tree. */
+struct couple_rule build_rule_of(const struct interp_build_options *o,
+				 const struct build_way *w)
 {
-	const struct pulse_strategy *s = pulse_strategy(o->strategy);
-	/* Beside a circle the other axes are always a tree. */
-	const struct couple_rule rule = {
+	return (struct couple_rule) {
 		.strategy = o->strategy,
 		.coupling = w->except ? INTERP_TREE : o->coupling,
 		.tube = { o->tolerance_milli, o->perpendicular },
 	};
+}
+
+int build_rule_check(const struct interp_build_options *o,
+		     const struct build_way *w, struct interp_diag *diag)
+{
+	const struct pulse_strategy *s = pulse_strategy(o->strategy);
+	const struct couple_rule rule = build_rule_of(o, w);
 	struct couple_input in[INTERP_NAXES];
 	uint32_t n, smallest;
 
 	if (!s->couples)
 		return 0;
-	n = inputs_of(w, in);
+	n = build_rule_inputs(w, in);
 	if (n < 2)
 		return 0;
 	if (n > 2 && rule.coupling == INTERP_TUBE &&

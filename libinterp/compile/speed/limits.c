@@ -15,7 +15,7 @@
 /* Of an axis: no less than a pulse of it. */
 static double tolerance(const struct interp_limits *l, uint8_t axis)
 {
-	const double deg = 180 / 3.14159265358979323846;
+	const double deg = 180 / M_PI;
 	const double at = interp_axis_is_rotary((enum interp_axis)axis) ?
 			  deg / l->rotary_radius_mm : 1;
 

@@ -101,7 +101,7 @@ static int take_line(struct tech_text *t, struct interp_tech_table *table)
 	const char *at = t->line_at;
 	struct tech_cell c;
 	size_t n = 0;
-	int rc = 0;
+	int err = 0;
 
 	tech_unpad(t);
 	if (!tech_word(t, &at, &c) || tech_is(&c, "NR"))
@@ -113,15 +113,15 @@ static int take_line(struct tech_text *t, struct interp_tech_table *table)
 	if (!row)
 		return -ENOMEM;
 	at = t->line_at;
-	for (; !rc && tech_word(t, &at, &c); n++) {
+	for (; !err && tech_word(t, &at, &c); n++) {
 		if (n == NCOLUMNS)
 			return tech_refuse(t, c.at, "14 to 17 numbers",
 					   "a number too many, '%s'",
 					   tech_quote(&c).s);
-		rc = take_cell(t, &c, n, row);
+		err = take_cell(t, &c, n, row);
 	}
-	if (rc)
-		return rc;
+	if (err)
+		return err;
 	if (n >= COLUMNS_MIN)
 		return find_servo_v(t, &row->tech);
 	return tech_refuse(t, t->line_end, "14 to 17 numbers",
@@ -131,14 +131,14 @@ static int take_line(struct tech_text *t, struct interp_tech_table *table)
 
 static int read_all(struct tech_text *t, struct interp_tech_table *table)
 {
-	int rc;
+	int err;
 
-	while ((rc = tech_line(t)) > 0) {
-		rc = take_line(t, table);
-		if (rc)
-			return rc;
+	while ((err = tech_line(t)) > 0) {
+		err = take_line(t, table);
+		if (err)
+			return err;
 	}
-	return rc ? rc : tech_finish(t, table);
+	return err ? err : tech_finish(t, table);
 }
 
 int interp_tech_read_enc(struct interp_tech_table **ret, const char *text,
@@ -146,17 +146,17 @@ int interp_tech_read_enc(struct interp_tech_table **ret, const char *text,
 {
 	struct interp_tech_table *table = tech_table_new();
 	struct tech_text t;
-	int rc;
+	int err;
 
 	if (!table)
 		return -ENOMEM;
 	strcpy(table->note[table->nnotes++],
 	       "from an .enc table; its columns P VDI VE VW are not taken");
 	tech_open(&t, bytes ? text : "", bytes, diag);
-	rc = read_all(&t, table);
-	if (rc)
+	err = read_all(&t, table);
+	if (err)
 		interp_tech_table_destroy(table);
 	else
 		*ret = table;
-	return rc;
+	return err;
 }

@@ -80,7 +80,7 @@ static int take_sequence(struct reading *r, const struct tech_cell *name)
 	const char *at = r->value;
 	struct tech_cell word;
 	double n;
-	int rc = 0;
+	int err = 0;
 
 	if (name->n < 2 || (name->at[0] | 0x20) != 'q' ||
 	    !tech_number(&digits, &n) || !(n >= 1 && n <= 9999) ||
@@ -95,14 +95,14 @@ static int take_sequence(struct reading *r, const struct tech_cell *name)
 	if (t->nsequences == INTERP_TECH_SEQUENCES_MAX)
 		return tech_refuse(&r->text, name->at, "at most 64 sequences",
 				   "one sequence too many");
-	while (!rc && tech_word(&r->text, &at, &word))
-		rc = add_step(r, &s, &word);
-	if (!rc && s.nsteps == 0)
+	while (!err && tech_word(&r->text, &at, &word))
+		err = add_step(r, &s, &word);
+	if (!err && s.nsteps == 0)
 		return tech_refuse(&r->text, name->at, "its conditions, rough "
 				   "to fine", "an empty sequence");
-	if (!rc)
+	if (!err)
 		t->sequence[t->nsequences++] = s;
-	return rc;
+	return err;
 }
 
 /* "-", "on_us" or "on_us*0.5". */
@@ -145,7 +145,7 @@ static int take_inline(struct reading *r, const struct tech_cell *name)
 	struct interp_tech_inline in = { 0 };
 	struct interp_tech_inline *to;
 	struct tech_cell word;
-	int rc = 0;
+	int err = 0;
 
 	if (name->n != 1 || !strchr("CES", name->at[0]))
 		return tech_refuse(&r->text, name->at, "inline C, E or S",
@@ -154,14 +154,14 @@ static int take_inline(struct reading *r, const struct tech_cell *name)
 	if (to->ncolumns)
 		return tech_refuse(&r->text, name->at, "each letter once",
 				   "inline %c again", name->at[0]);
-	while (!rc && tech_word(&r->text, &at, &word))
-		rc = add_inline(r, &in, &word);
-	if (!rc && in.ncolumns == 0)
+	while (!err && tech_word(&r->text, &at, &word))
+		err = add_inline(r, &in, &word);
+	if (!err && in.ncolumns == 0)
 		return tech_refuse(&r->text, name->at, "a field or - for each "
 				   "column", "inline without columns");
-	if (!rc)
+	if (!err)
 		*to = in;
-	return rc;
+	return err;
 }
 
 static int take_key(struct reading *r, const char *equals)
@@ -253,7 +253,7 @@ static int take_head(struct reading *r)
 {
 	const char *at = r->text.line_at;
 	struct tech_cell cell;
-	int rc = 0;
+	int err = 0;
 
 	tech_unpad(&r->text);
 	tech_cell(&r->text, &at, &cell);
@@ -263,12 +263,12 @@ static int take_head(struct reading *r)
 				   "key and =",
 				   "'%s'", tech_quote(&cell).s);
 	r->head_line = r->text.line;
-	while (!rc && tech_cell(&r->text, &at, &cell))
-		rc = take_column(r, &cell);
-	if (!rc && r->ncolumns == 0)
+	while (!err && tech_cell(&r->text, &at, &cell))
+		err = take_column(r, &cell);
+	if (!err && r->ncolumns == 0)
 		return tech_refuse(&r->text, NULL, "at least one field behind "
 				   "condition", "a head without fields");
-	return rc;
+	return err;
 }
 
 static int take_cells(struct reading *r, struct interp_tech_row *row,
@@ -278,7 +278,7 @@ static int take_cells(struct reading *r, struct interp_tech_row *row,
 	uint32_t n = 0;
 
 	for (; tech_cell(&r->text, &at, &cell); n++) {
-		int rc;
+		int err;
 
 		if (cell.n == 0 || tech_is(&cell, "-"))
 			continue;
@@ -287,11 +287,11 @@ static int take_cells(struct reading *r, struct interp_tech_row *row,
 					   "each column of the head, no more",
 					   "a value too many, '%s'",
 					   tech_quote(&cell).s);
-		rc = tech_value(&r->text, &cell,
+		err = tech_value(&r->text, &cell,
 				(enum interp_tech_id)r->column[n],
 				&row->tech.v[r->column[n]]);
-		if (rc)
-			return rc;
+		if (err)
+			return err;
 	}
 	if (n >= r->ncolumns)
 		return 0;
@@ -392,33 +392,33 @@ static int check_sequence(struct reading *r,
 
 static int read_all(struct reading *r)
 {
-	int rc;
+	int err;
 
-	while ((rc = tech_line(&r->text)) > 0) {
-		rc = take_line(r);
-		if (rc)
-			return rc;
+	while ((err = tech_line(&r->text)) > 0) {
+		err = take_line(r);
+		if (err)
+			return err;
 	}
-	if (!rc)
-		rc = tech_finish(&r->text, r->table);
-	for (uint32_t i = 0; !rc && i < r->table->nsequences; i++)
-		rc = check_sequence(r, &r->table->sequence[i]);
-	return rc;
+	if (!err)
+		err = tech_finish(&r->text, r->table);
+	for (uint32_t i = 0; !err && i < r->table->nsequences; i++)
+		err = check_sequence(r, &r->table->sequence[i]);
+	return err;
 }
 
 int interp_tech_read(struct interp_tech_table **ret, const char *text,
 		     size_t bytes, struct interp_diag *diag)
 {
 	struct reading r = { .table = tech_table_new() };
-	int rc;
+	int err;
 
 	if (!r.table)
 		return -ENOMEM;
 	tech_open(&r.text, bytes ? text : "", bytes, diag);
-	rc = read_all(&r);
-	if (rc)
+	err = read_all(&r);
+	if (err)
 		interp_tech_table_destroy(r.table);
 	else
 		*ret = r.table;
-	return rc;
+	return err;
 }

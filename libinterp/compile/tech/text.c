@@ -96,12 +96,12 @@ static bool is_empty(const struct tech_text *t)
 int tech_line(struct tech_text *t)
 {
 	while (t->next < t->end) {
-		int rc;
+		int err;
 
 		cut_line(t);
-		rc = check_line(t);
-		if (rc)
-			return rc;
+		err = check_line(t);
+		if (err)
+			return err;
 		cut_comment(t);
 		if (!is_empty(t))
 			return 1;

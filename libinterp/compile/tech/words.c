@@ -185,31 +185,31 @@ int interp_tech_write(const struct interp_tech_table *t,
 		      const struct interp_sink *to)
 {
 	struct columns c;
-	int rc = put_key(to, "electrode", t->electrode);
+	int err = put_key(to, "electrode", t->electrode);
 
-	if (!rc)
-		rc = put_key(to, "workpiece", t->workpiece);
-	for (uint32_t i = 0; !rc && i < t->nnotes; i++)
-		rc = put_key(to, "note", t->note[i]);
+	if (!err)
+		err = put_key(to, "workpiece", t->workpiece);
+	for (uint32_t i = 0; !err && i < t->nnotes; i++)
+		err = put_key(to, "note", t->note[i]);
 	measure(t, &c);
-	if (!rc)
-		rc = put_row(to, &c, NULL);
-	for (uint32_t i = 0; !rc && i < t->nrows; i++)
-		rc = put_row(to, &c, &t->row[i]);
-	for (uint32_t i = 0; !rc && i < t->nsequences; i++)
-		rc = put_sequence(to, &t->sequence[i]);
-	for (int i = 0; !rc && i < 3; i++)
-		rc = put_inline(to, "CES"[i], &t->inlined[i]);
-	return rc;
+	if (!err)
+		err = put_row(to, &c, NULL);
+	for (uint32_t i = 0; !err && i < t->nrows; i++)
+		err = put_row(to, &c, &t->row[i]);
+	for (uint32_t i = 0; !err && i < t->nsequences; i++)
+		err = put_sequence(to, &t->sequence[i]);
+	for (int i = 0; !err && i < 3; i++)
+		err = put_inline(to, "CES"[i], &t->inlined[i]);
+	return err;
 }
 
 int interp_tech_document(const struct interp_sink *to)
 {
 	static const char head[] = "| field | unit | accepted | means |\n"
 				   "|---|---|---|---|\n";
-	int rc = to->put(to->arg, head, sizeof(head) - 1);
+	int err = to->put(to->arg, head, sizeof(head) - 1);
 
-	for (int i = 0; !rc && i < INTERP_NTECH; i++) {
+	for (int i = 0; !err && i < INTERP_NTECH; i++) {
 		const struct interp_tech_field *f = &interp_tech_field[i];
 		char line[256], range[96];
 		int n;
@@ -218,7 +218,7 @@ int interp_tech_document(const struct interp_sink *to)
 				  sizeof(range));
 		n = snprintf(line, sizeof(line), "| `%s` | %s | %s | %s |\n",
 			     f->name, f->unit, range, f->help);
-		rc = to->put(to->arg, line, (size_t)n);
+		err = to->put(to->arg, line, (size_t)n);
 	}
-	return rc;
+	return err;
 }

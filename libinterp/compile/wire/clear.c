@@ -42,22 +42,22 @@ static int find_hits(void *arg, uint32_t a, uint32_t b)
 	struct curve_hit hit[2];
 	const int n = w->elem[a].dead || w->elem[b].dead ? 0 :
 		      curve_cross(p, q, hit);
-	int rc = 0;
+	int err = 0;
 
-	for (int i = 0; !rc && i < n; i++) {
+	for (int i = 0; !err && i < n; i++) {
 		const struct curve_hit *h = &hit[i];
 
 		if (is_joint(h, a, b, p, q))
 			continue;
 		if (w->nhits > 2 * (HITS_MAX * w->n + 1000))
 			return -E2BIG;
-		rc = add_hit(w, &(struct track_hit) { a, b, h->t[0], h->t[1],
+		err = add_hit(w, &(struct track_hit) { a, b, h->t[0], h->t[1],
 						      h->at });
-		if (!rc)
-			rc = add_hit(w, &(struct track_hit) {
+		if (!err)
+			err = add_hit(w, &(struct track_hit) {
 				     b, a, h->t[1], h->t[0], h->at });
 	}
-	return rc;
+	return err;
 }
 
 static int by_place(const void *a, const void *b)
@@ -106,37 +106,37 @@ static double cell_of(const struct track_work *w, double least)
 static int find_crossings(struct track_work *w)
 {
 	struct grid g;
-	int rc = 0;
+	int err = 0;
 
 	grid_init(&g, cell_of(w, w->reach_mm / 8), w->elem[0].c.from);
-	for (uint32_t i = 0; !rc && i < w->n; i++) {
+	for (uint32_t i = 0; !err && i < w->n; i++) {
 		if (!w->elem[i].dead)
-			rc = grid_add(&g, &w->elem[i].c, i);
+			err = grid_add(&g, &w->elem[i].c, i);
 	}
-	if (!rc) {
+	if (!err) {
 		grid_sort(&g);
-		rc = grid_pairs(&g, find_hits, w);
+		err = grid_pairs(&g, find_hits, w);
 	}
 	grid_free(&g);
-	if (!rc)
+	if (!err)
 		sort_hits(w);
-	return rc;
+	return err;
 }
 
 static int enter_outline(struct track_work *w)
 {
 	const struct face *f = w->job->face;
-	int rc = 0;
+	int err = 0;
 
 	grid_init(&w->near, cell_of(w, w->reach_mm), w->elem[0].c.from);
-	for (uint32_t i = 0; !rc && i < f->n; i++) {
+	for (uint32_t i = 0; !err && i < f->n; i++) {
 		if (!f->piece[i].lead)
-			rc = grid_add(&w->near, &f->piece[i].c, i);
+			err = grid_add(&w->near, &f->piece[i].c, i);
 	}
-	if (!rc)
+	if (!err)
 		grid_sort(&w->near);
 	w->stamp = calloc(f->n, sizeof(*w->stamp));
-	return rc ? rc : w->stamp ? 0 : -ENOMEM;
+	return err ? err : w->stamp ? 0 : -ENOMEM;
 }
 
 int clear_init(struct track_work *w)
@@ -154,9 +154,9 @@ int clear_init(struct track_work *w)
 		w->elem[i].hit = 0;
 	if (w->job->side == 0)
 		return 0;
-	const int rc = find_crossings(w);
+	const int err = find_crossings(w);
 
-	return rc ? rc : enter_outline(w);
+	return err ? err : enter_outline(w);
 }
 
 /* -- Questions --------------------------------------------------------------- */

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEGREE		(3.14159265358979323846 / 180)
+#define DEGREE		(M_PI / 180)
 #define SAME_MM		1e-9		/* two places that are one */
 
 void contour_init(struct contour *k, const struct interp_wire *w,
@@ -75,10 +75,10 @@ static int refuse_record(const struct contour *k, struct interp_diag *diag)
 
 int contour_flush(struct contour *k, struct interp_diag *diag)
 {
-	const int r = k->recording ? refuse_record(k, diag) :
+	const int err = k->recording ? refuse_record(k, diag) :
 				     contour_release(k, NULL, diag);
 
-	return r ? r : interp_build_flush(k->guides.build, diag);
+	return err ? err : interp_build_flush(k->guides.build, diag);
 }
 
 static void stand(struct contour *k, const double end_mm[INTERP_NAXES])
@@ -88,8 +88,7 @@ static void stand(struct contour *k, const double end_mm[INTERP_NAXES])
 					     end_mm[INTERP_Y] };
 }
 
-/* The offset is reached or left over it, or a taper without offset. */
-static bool is_lead(const struct contour *k)
+bool contour_leads(const struct contour *k)
 {
 	const double was = k->last_offset_mm, is = k->offset_mm;
 
@@ -128,24 +127,24 @@ int contour_keep(struct contour *k, const struct contour_motion *m,
 static int take(struct contour *k, struct contour_motion *m,
 		struct interp_diag *diag)
 {
-	int r;
+	int err;
 
 	m->offset_mm = k->offset_mm;
 	m->slope = k->slope;
 	m->corner = k->corner;
-	m->lead = is_lead(k);
+	m->lead = contour_leads(k);
 	for (int p = 0; p < 2; p++)
 		m->c[p] = curve_evened(&m->c[p]);
-	r = check_lead(k, m, diag);
-	if (!r && !is_on(k->last_offset_mm, k->last_slope) && !k->recording)
-		r = contour_release(k, m, diag);
+	err = check_lead(k, m, diag);
+	if (!err && !is_on(k->last_offset_mm, k->last_slope) && !k->recording)
+		err = contour_release(k, m, diag);
 	m->todo = k->ntodo;
-	if (!r)
-		r = contour_keep(k, m, diag);
+	if (!err)
+		err = contour_keep(k, m, diag);
 	k->last_offset_mm = k->offset_mm;
 	k->last_slope = k->slope;
 	memcpy(k->here_mm, m->end_mm, sizeof(k->here_mm));
-	return r;
+	return err;
 }
 
 /* -- In -------------------------------------------------------------------- */
@@ -183,39 +182,39 @@ static int stay(struct contour *k, const double end_mm[INTERP_NAXES],
 		const struct interp_build_word *w, struct interp_diag *diag)
 {
 	double to_mm[INTERP_NAXES];
-	int r;
+	int err;
 
 	if (!moves(k, end_mm))
 		return 0;
 	if (is_on(k->last_offset_mm, k->last_slope))
 		return contour_refuse_alone(w, diag);
-	r = contour_flush(k, diag);
-	if (r)
-		return r;
+	err = contour_flush(k, diag);
+	if (err)
+		return err;
 	memcpy(to_mm, end_mm, sizeof(to_mm));
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (i <= INTERP_Y || (i >= INTERP_U && guides_on(&k->guides)))
 			to_mm[i] = interp_build_here(k->guides.build)[i];
 	}
 	memcpy(k->here_mm, end_mm, sizeof(k->here_mm));
-	r = interp_build_line(k->guides.build, to_mm, w, diag);
-	if (r == -EINVAL)
+	err = interp_build_line(k->guides.build, to_mm, w, diag);
+	if (err == -EINVAL)
 		diag->line = w->line;
-	return r;
+	return err;
 }
 
 int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 		 const struct interp_build_word *w, struct interp_diag *diag)
 {
 	struct contour_motion m;
-	int r;
+	int err;
 
 	if (is_idle(k)) {
-		r = interp_build_line(k->guides.build, end_mm, w, diag);
-		if (r == -EINVAL)
+		err = interp_build_line(k->guides.build, end_mm, w, diag);
+		if (err == -EINVAL)
 			diag->line = w->line;
 		stand(k, end_mm);
-		return r;
+		return err;
 	}
 	motion_init(k, &m, end_mm, w);
 	if (curve_length(&m.c[0]) < SAME_MM && curve_length(&m.c[1]) < SAME_MM)
@@ -263,14 +262,14 @@ int contour_arc(struct contour *k, const double end_mm[INTERP_NAXES],
 		const struct interp_build_word *w, struct interp_diag *diag)
 {
 	struct contour_motion m;
-	int r;
+	int err;
 
 	if (is_idle(k)) {
-		r = interp_build_arc(k->guides.build, end_mm, arc, w, diag);
-		if (r == -EINVAL)
+		err = interp_build_arc(k->guides.build, end_mm, arc, w, diag);
+		if (err == -EINVAL)
 			diag->line = w->line;
 		stand(k, end_mm);
-		return r;
+		return err;
 	}
 	if (arc->axis_a != INTERP_X || arc->turns)
 		return contour_refuse_plane(w, diag);
@@ -304,17 +303,17 @@ int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 		  const struct interp_build_curve *c,
 		  const struct interp_build_word *w, struct interp_diag *diag)
 {
-	int r;
+	int err;
 
 	if (!is_idle(k)) {
-		r = contour_cut_nurbs(k, end_mm, c, w, diag);
-		return r ? r : 1;
+		err = contour_cut_nurbs(k, end_mm, c, w, diag);
+		return err ? err : 1;
 	}
-	r = interp_build_curve(k->guides.build, c, w, diag);
-	if (r == -EINVAL && !diag->line)
+	err = interp_build_curve(k->guides.build, c, w, diag);
+	if (err == -EINVAL && !diag->line)
 		diag->line = w->line;
 	stand(k, end_mm);
-	return r;
+	return err;
 }
 
 static int put_off(struct contour *k, const struct contour_action *a)
@@ -336,16 +335,16 @@ static int put_off(struct contour *k, const struct contour_action *a)
 int contour_action(struct contour *k, enum interp_kind kind, uint32_t arg,
 		   const struct interp_build_word *w, struct interp_diag *diag)
 {
-	int r;
+	int err;
 
 	if (k->recording)
 		return refuse_record(k, diag);
 	if (k->n && kind != INTERP_END)
 		return put_off(k, &(struct contour_action) { kind, arg, *w });
-	r = contour_flush(k, diag);
-	if (!r)
-		r = interp_build_action(k->guides.build, kind, arg, w, diag);
-	if (r == -EINVAL && !diag->line)
+	err = contour_flush(k, diag);
+	if (!err)
+		err = interp_build_action(k->guides.build, kind, arg, w, diag);
+	if (err == -EINVAL && !diag->line)
 		diag->line = w->line;
-	return r;
+	return err;
 }

@@ -85,6 +85,10 @@ int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
 /** contour_flush() - nothing follows: end what is collected. */
 int contour_flush(struct contour *k, struct interp_diag *diag);
 
+/** contour_leads() - is the next motion a lead?  The offset is reached or left
+ *  over it, or a taper without an offset. */
+bool contour_leads(const struct contour *k);
+
 /** contour_keep() - put @m behind what is collected. */
 int contour_keep(struct contour *k, const struct contour_motion *m,
 		 struct interp_diag *diag);

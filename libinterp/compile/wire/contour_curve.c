@@ -97,19 +97,12 @@ static int cut(struct cutter *k, double u0, double u1, int depth)
 {
 	const double mid = (u0 + u1) / 2;
 	const struct curve c = through(at(k, u0), at(k, mid), at(k, u1));
-	int rc;
+	int err;
 
 	if (depth == DEPTH_MAX || is_near(k, &c, u0, u1))
 		return curve_length(&c) > 0 ? lay(k, &c) : 0;
-	rc = cut(k, u0, mid, depth + 1);
-	return rc ? rc : cut(k, mid, u1, depth + 1);
-}
-
-static int refuse(const struct interp_build_word *w, struct interp_diag *diag,
-		  const char *what)
-{
-	diag->line = w->line;
-	return interp_diag_say(diag, "%s", what);
+	err = cut(k, u0, mid, depth + 1);
+	return err ? err : cut(k, mid, u1, depth + 1);
 }
 
 static int check(struct cutter *k, const double end_mm[INTERP_NAXES])
@@ -118,17 +111,25 @@ static int check(struct cutter *k, const double end_mm[INTERP_NAXES])
 	const struct vec to = at(k, interp_nurbs_last(n));
 	const double slack = 2 * k->k->guides.pulse_mm;
 
+	k->diag->line = k->w->line;
+	/* Over which of its arcs would depend on the length of a pulse. */
+	if (contour_leads(k->k))
+		return interp_diag_say(k->diag, "a curve over which the offset "
+				       "or the taper is reached or left; G1, G2 "
+				       "or G3 as the lead");
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (i > INTERP_Y && fabs(end_mm[i] - k->k->here_mm[i]) > 1e-9)
-			return refuse(k->w, k->diag, "a curve with another "
-				      "axis under an offset, a taper, guides or "
-				      "corner control; X and Y alone");
+			return interp_diag_say(k->diag, "a curve with another "
+					       "axis under an offset, a taper, "
+					       "guides or corner control; X and "
+					       "Y alone");
 	}
 	if (fabs(to.x - end_mm[INTERP_X]) > slack ||
 	    fabs(to.y - end_mm[INTERP_Y]) > slack)
-		return refuse(k->w, k->diag, "a curve that does not end at its "
-			      "last control point; a last knot as often as "
-			      "the order");
+		return interp_diag_say(k->diag, "a curve that does not end at "
+				       "its last control point; a last knot as "
+				       "often as the order");
+	k->diag->line = 0;
 	return 0;
 }
 
@@ -141,7 +142,7 @@ int contour_cut_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 	const struct interp_nurbs *n = &c->nurbs;
 	uint32_t bad;
 	const enum interp_nurbs_flaw flaw = interp_nurbs_check(n, &bad);
-	int rc;
+	int err;
 
 	if (flaw != INTERP_NURBS_SOUND) {
 		diag->line = w->line;
@@ -151,10 +152,10 @@ int contour_cut_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 	}
 	memcpy(cutter.end_mm, end_mm, sizeof(cutter.end_mm));
 	interp_nurbs_open(&cutter.eval, n);
-	rc = check(&cutter, end_mm);
-	for (uint32_t i = n->degree; !rc && i < n->npoints; i++) {
+	err = check(&cutter, end_mm);
+	for (uint32_t i = n->degree; !err && i < n->npoints; i++) {
 		if (n->knots[i] < n->knots[i + 1])
-			rc = cut(&cutter, n->knots[i], n->knots[i + 1], 0);
+			err = cut(&cutter, n->knots[i], n->knots[i + 1], 0);
 	}
-	return rc;
+	return err;
 }

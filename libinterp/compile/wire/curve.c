@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#define TURN	(2 * 3.14159265358979323846)
+#define TURN	(2 * M_PI)
 
 /* Nothing, against the 0.0001 mm of the finest pulse. */
 #define NOTHING_MM	1e-7

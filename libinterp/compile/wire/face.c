@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define RIGHT_ANGLE	(3.14159265358979323846 / 2)
+#define RIGHT_ANGLE	(M_PI / 2)
 #define ANGLE_SLACK	1e-6		/* the rounding of a right angle */
 #define TANGENT		0.02		/* turns of neighbours written rounded */
 #define CLOSED_PULSES	3.0		/* an end written to a pulse */
@@ -312,7 +312,7 @@ static int push(struct maker *k, struct open *o)
 {
 	struct curve c;
 	struct join j;
-	int rc;
+	int err;
 
 	while (k->depth) {
 		const struct open *top = &k->stack[k->depth - 1];
@@ -320,9 +320,9 @@ static int push(struct maker *k, struct open *o)
 		if (!join(k, top, o, &j))
 			return fail(k, top->owner, o->owner);
 		if (cut(top, j.end, &c)) {
-			rc = lay(k, top, &c, &j);
-			if (rc)
-				return rc;
+			err = lay(k, top, &c, &j);
+			if (err)
+				return err;
 			o->from = j.start;
 			break;
 		}
@@ -350,22 +350,22 @@ static int finish(struct maker *k)
 
 static int move_all(struct maker *k)
 {
-	int rc = 0;
+	int err = 0;
 
 	k->stack = malloc(k->from->n * sizeof(*k->stack));
 	if (!k->stack)
 		return -ENOMEM;
-	for (uint32_t i = 0; !rc && i < k->from->n; i++) {
+	for (uint32_t i = 0; !err && i < k->from->n; i++) {
 		struct open o;
 
 		if (move(k, k->from->first + i, &o))
-			rc = push(k, &o);
+			err = push(k, &o);
 	}
-	if (!rc)
-		rc = k->depth ? finish(k) :
+	if (!err)
+		err = k->depth ? finish(k) :
 		     fail(k, k->from->first, k->from->first + k->from->n - 1);
 	free(k->stack);
-	return rc;
+	return err;
 }
 
 static int take_all(struct maker *k)
@@ -376,10 +376,10 @@ static int take_all(struct maker *k)
 		};
 		const struct curve c = contour_on(&k->from->m[o.owner],
 						  k->from->plane);
-		const int rc = lay(k, &o, &c, NULL);
+		const int err = lay(k, &o, &c, NULL);
 
-		if (rc)
-			return rc;
+		if (err)
+			return err;
 	}
 	return 0;
 }
@@ -423,16 +423,16 @@ int face_make(struct face *f, const struct face_from *from,
 	struct maker k = { .f = f, .from = from, .fault = fault };
 	bool moved = false;
 	double way = 0;
-	int rc;
+	int err;
 
 	for (uint32_t i = 0; i < from->n; i++)
 		moved = moved || sigma_of(from, from->first + i) != 0;
-	rc = moved ? move_all(&k) : take_all(&k);
-	for (uint32_t i = 0; !rc && i < f->n; i++) {
+	err = moved ? move_all(&k) : take_all(&k);
+	for (uint32_t i = 0; !err && i < f->n; i++) {
 		f->piece[i].way_mm = way;
 		way += curve_length(&f->piece[i].c);
 	}
-	if (!rc)
+	if (!err)
 		find_closure(f, from->pulse_mm);
-	return rc;
+	return err;
 }

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#define TURN		(2 * 3.14159265358979323846)
+#define TURN		(2 * M_PI)
 #define QUARTER		(TURN / 4)
 
 /* Places this near are one. */

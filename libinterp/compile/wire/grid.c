@@ -78,18 +78,18 @@ static int enter(struct grid *g, uint64_t cell, uint32_t id)
 int grid_add(struct grid *g, const struct curve *c, uint32_t id)
 {
 	const uint32_t n = parts_of(g, c);
-	int rc = 0;
+	int err = 0;
 
 	for (uint32_t i = 0; i < n; i++) {
 		const struct curve part = part_of(c, i, n);
 		const struct span s = span_of(g, &part, 0);
 
-		for (int64_t y = s.row[0]; !rc && y <= s.row[1]; y++) {
-			for (int64_t x = s.col[0]; !rc && x <= s.col[1]; x++)
-				rc = enter(g, cell_of(x, y), id);
+		for (int64_t y = s.row[0]; !err && y <= s.row[1]; y++) {
+			for (int64_t x = s.col[0]; !err && x <= s.col[1]; x++)
+				err = enter(g, cell_of(x, y), id);
 		}
 	}
-	return rc;
+	return err;
 }
 
 static int by_cell(const void *a, const void *b)
@@ -169,10 +169,10 @@ int grid_pairs(const struct grid *g,
 
 		for (size_t j = i + 1; j < g->n &&
 		     g->entry[j].cell == e->cell; j++) {
-			const int rc = visit(arg, e->id, g->entry[j].id);
+			const int err = visit(arg, e->id, g->entry[j].id);
 
-			if (rc)
-				return rc;
+			if (err)
+				return err;
 		}
 	}
 	return 0;

@@ -17,7 +17,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DEGREE		(3.14159265358979323846 / 180)
+#define DEGREE		(M_PI / 180)
 
 #define CHORDS_MAX	20000.0
 #define TILT_SAMPLES	16		/* along an arc */
@@ -261,14 +261,14 @@ static int cut_chords(const struct cut *k)
 	}
 	chord.c = part;
 	for (double i = 1; i <= n; i++) {
-		int r;
+		int err;
 
 		for (int j = 0; j < 2; j++)
 			part[j] = curve_line(curve_at(&k->c[j], (i - 1) / n),
 					     curve_at(&k->c[j], i / n));
-		r = cut_lines(&chord);
-		if (r < 0)
-			return r;
+		err = cut_lines(&chord);
+		if (err < 0)
+			return err;
 	}
 	return 0;
 }
@@ -298,13 +298,13 @@ int guides_cut(struct guides *g, const struct curve c[2],
 	       const struct interp_build_word *w, struct interp_diag *diag)
 {
 	const struct cut k = { g, c, end_mm, w, diag };
-	int r;
+	int err;
 
 	if (!guides_on(g))
 		return cut_bottom(&k);
-	r = check_tilt(g, c, diag);
-	if (r < 0)
-		return r;
+	err = check_tilt(g, c, diag);
+	if (err < 0)
+		return err;
 	if (!(c[0].arc && c[0].r > 0) && !(c[1].arc && c[1].r > 0))
 		return cut_lines(&k);
 	if (are_similar(&k))

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#define DEGREE		(3.14159265358979323846 / 180)
+#define DEGREE		(M_PI / 180)
 
 /* -- One motion, or a part of it --------------------------------------------- */
 
@@ -32,15 +32,15 @@ static int cut_part(const struct step *s, double t0, double t1,
 	const struct curve part[2] = { curve_part(&s->c[0], t0, t1),
 				       curve_part(&s->c[1], t0, t1) };
 	double end_mm[INTERP_NAXES];
-	int r;
+	int err;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		end_mm[i] = t1 >= 1 ? s->m->end_mm[i] : s->m->from_mm[i] +
 			    t1 * (s->m->end_mm[i] - s->m->from_mm[i]);
-	r = guides_cut(&s->k->guides, part, end_mm, w, s->diag);
-	if (r == -EINVAL)
+	err = guides_cut(&s->k->guides, part, end_mm, w, s->diag);
+	if (err == -EINVAL)
 		s->diag->line = w->line;
-	return r;
+	return err;
 }
 
 /* The motion, its last part slower if a corner follows. */
@@ -51,14 +51,14 @@ static int cut_motion(const struct step *s, bool corner)
 	const double before = corner ? fmin(w->corner_before_mm, len) : 0;
 	const double at = len > 0 ? 1 - before / len : 0;
 	struct interp_build_word slow = s->m->word;
-	int r = 0;
+	int err = 0;
 
 	if (!(before > 0))
 		return cut_part(s, 0, 1, &s->m->word);
 	if (at > 0)
-		r = cut_part(s, 0, at, &s->m->word);
+		err = cut_part(s, 0, at, &s->m->word);
 	slow.feed_mm_s *= w->corner_feed_percent / 100;
-	return r < 0 ? r : cut_part(s, at, 1, &slow);
+	return err < 0 ? err : cut_part(s, at, 1, &slow);
 }
 
 /* Does corner control ask for care in front of @b? */
@@ -80,13 +80,13 @@ static int do_todo(const struct step *s)
 {
 	for (uint32_t i = 0; i < s->m->ntodo; i++) {
 		const struct contour_action *a = &s->k->todo[s->m->todo + i];
-		const int r = interp_build_action(s->k->guides.build, a->kind,
+		const int err = interp_build_action(s->k->guides.build, a->kind,
 						  a->arg, &a->word, s->diag);
 
-		if (r == -EINVAL)
+		if (err == -EINVAL)
 			s->diag->line = a->word.line;
-		if (r < 0)
-			return r;
+		if (err < 0)
+			return err;
 	}
 	return 0;
 }
@@ -95,13 +95,13 @@ static int do_todo(const struct step *s)
 static int do_corner(const struct step *s, bool corner)
 {
 	const double wait_s = s->k->guides.wire->corner_dwell_s;
-	int r = 0;
+	int err = 0;
 
 	if (corner && wait_s > 0)
-		r = interp_build_action(s->k->guides.build, INTERP_DWELL,
+		err = interp_build_action(s->k->guides.build, INTERP_DWELL,
 					(uint32_t)(wait_s * 1000 + 0.5),
 					&s->m->word, s->diag);
-	return r < 0 ? r : do_todo(s);
+	return err < 0 ? err : do_todo(s);
 }
 
 /* -- One outline ---------------------------------------------------------------- */
@@ -169,9 +169,9 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 	struct face_fault bad;
 	struct track_fault fault;
 	struct face f = { .n = 0 };
-	int rc = face_make(&f, &from, &bad);
+	int err = face_make(&f, &from, &bad);
 
-	if (rc == -EINVAL)
+	if (err == -EINVAL)
 		contour_refuse_faces(k, &bad, diag);
 	job.face = &f;
 	if (s->in)
@@ -180,17 +180,17 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 	if (s->out)
 		job.lead[1] = (struct track_lead) {
 			true, b, lead_end(k, b, next, p), k->m[b].c[p].arc };
-	if (!rc) {
-		rc = track_make(&s->t[p], &job, &fault);
-		if (rc == -EINVAL)
+	if (!err) {
+		err = track_make(&s->t[p], &job, &fault);
+		if (err == -EINVAL)
 			contour_refuse_track(k, &fault, p, diag);
 	}
-	if (!rc && s->t[p].skipped)
+	if (!err && s->t[p].skipped)
 		contour_note_skip(k, &fault, p);
-	if (!rc && f.nconstant)
+	if (!err && f.nconstant)
 		contour_note_constant(k, &f);
 	face_free(&f);
-	return rc;
+	return err;
 }
 
 /* The next curve of plane @p's track, if it is motion @owner's. */
@@ -232,31 +232,31 @@ static int cut_owner(struct contour *k, struct stretch *s, uint32_t i,
 	const bool corner = is_corner(k, &k->m[i], b);
 	struct curve c[2];
 	const struct step step = { k, &k->m[i], c, diag };
-	int r = 0;
+	int err = 0;
 
 	if (take_curves(k, s, i, false, c))
-		r = cut_motion(&step, corner);
-	if (!r)
-		r = do_corner(&step, corner);
-	while (!r && take_curves(k, s, i, true, c))
-		r = cut_part(&step, 0, 1, &step.m->word);
-	return r;
+		err = cut_motion(&step, corner);
+	if (!err)
+		err = do_corner(&step, corner);
+	while (!err && take_curves(k, s, i, true, c))
+		err = cut_part(&step, 0, 1, &step.m->word);
+	return err;
 }
 
 static int cut_stretch(struct contour *k, struct stretch *s,
 		       const struct contour_motion *next,
 		       struct interp_diag *diag)
 {
-	int r = make_track(k, s, 0, next, diag);
+	int err = make_track(k, s, 0, next, diag);
 
 	s->one = !guides_on(&k->guides);
-	if (!r && !s->one)
-		r = make_track(k, s, 1, next, diag);
-	for (uint32_t i = s->first; !r && i < s->end; i++)
-		r = cut_owner(k, s, i, next, diag);
+	if (!err && !s->one)
+		err = make_track(k, s, 1, next, diag);
+	for (uint32_t i = s->first; !err && i < s->end; i++)
+		err = cut_owner(k, s, i, next, diag);
 	track_free(&s->t[0]);
 	track_free(&s->t[1]);
-	return r;
+	return err;
 }
 
 /* A lead with no contour behind it, or between two others. */
@@ -266,7 +266,7 @@ static int cut_lead(struct contour *k, uint32_t i,
 {
 	struct curve c[2];
 	const struct step step = { k, &k->m[i], c, diag };
-	int r;
+	int err;
 
 	for (int p = 0; p < 2; p++) {
 		const struct vec end = lead_end(k, i, next, p);
@@ -274,31 +274,31 @@ static int cut_lead(struct contour *k, uint32_t i,
 		c[p] = curve_line(k->at[p], end);
 		k->at[p] = end;
 	}
-	r = cut_motion(&step, false);
-	return r ? r : do_corner(&step, false);
+	err = cut_motion(&step, false);
+	return err ? err : do_corner(&step, false);
 }
 
 int contour_release(struct contour *k, const struct contour_motion *next,
 		    struct interp_diag *diag)
 {
 	uint32_t i = 0;
-	int r = 0;
+	int err = 0;
 
-	while (!r && i < k->n) {
+	while (!err && i < k->n) {
 		struct stretch s = { .first = i, .in = k->m[i].lead };
 		uint32_t j = i + s.in;
 
 		while (j < k->n && !k->m[j].lead)
 			j++;
 		if (k->m[i].step || j == i + s.in) {
-			r = cut_lead(k, i++, next, diag);
+			err = cut_lead(k, i++, next, diag);
 			continue;
 		}
 		s.out = j < k->n && !k->m[j].step;
 		s.end = j + s.out;
-		r = cut_stretch(k, &s, next, diag);
+		err = cut_stretch(k, &s, next, diag);
 		i = s.end;
 	}
 	k->n = k->ntodo = 0;
-	return r;
+	return err;
 }

@@ -145,15 +145,15 @@ int contour_play(struct contour *k, const struct contour_tape *t,
 		const uint32_t i = p->back ? range[1] - 1 - (j - range[0]) : j;
 		struct contour_motion m = p->back ? reversed(&t->m[i]) :
 						    t->m[i];
-		int rc;
+		int err;
 
 		set_word(&m, p);
 		set_offset(&m, t, i, p);
 		m.todo = k->ntodo;
 		m.ntodo = 0;
-		rc = contour_keep(k, &m, diag);
-		if (rc)
-			return rc;
+		err = contour_keep(k, &m, diag);
+		if (err)
+			return err;
 	}
 	return 0;
 }

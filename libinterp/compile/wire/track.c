@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RIGHT_ANGLE	(3.14159265358979323846 / 2)
+#define RIGHT_ANGLE	(M_PI / 2)
 #define ANGLE_SLACK	1e-6
 #define SAME_MM		1e-9
 
@@ -103,9 +103,9 @@ static int lay_round(struct track_work *w, const struct corner *k,
 	const struct curve round = curve_arc(w->elem[k->a].c.to, at, k->at,
 					     k->da > 0);
 	const struct curve step = curve_line(at, b->c.from);
-	const int rc = lay_fill(w, k, &round, false);
+	const int err = lay_fill(w, k, &round, false);
 
-	return rc ? rc : lay_fill(w, k, &step, false);
+	return err ? err : lay_fill(w, k, &step, false);
 }
 
 /* The bottom of a slot as wide as the wire, but for rounding: what is left of
@@ -244,32 +244,32 @@ int track_lay(struct track_work *w)
 {
 	const struct track_job *j = w->job;
 	const uint32_t in = j->lead[0].there;
-	int rc = 0;
+	int err = 0;
 
 	w->n = 0;
 	if (in && !add(w))
 		return -ENOMEM;
-	for (uint32_t i = 0; !rc && i < j->face->n; i++) {
+	for (uint32_t i = 0; !err && i < j->face->n; i++) {
 		struct track_elem e;
 
-		rc = lay_piece(w, i);
-		if (rc || i == 0)
+		err = lay_piece(w, i);
+		if (err || i == 0)
 			continue;
 		/* It stands behind what fills the corner in front of it. */
 		e = w->elem[--w->n];
-		rc = lay_corner(w, i, &e);
-		if (!rc && add(w))
+		err = lay_corner(w, i, &e);
+		if (!err && add(w))
 			w->elem[w->n - 1] = e;
-		else if (!rc)
-			rc = -ENOMEM;
+		else if (!err)
+			err = -ENOMEM;
 	}
-	if (!rc && in) {
+	if (!err && in) {
 		w->elem[0].owner = j->lead[0].owner;
 		w->elem[0].c = lead_curve(&j->lead[0], &w->elem[1].c, false);
 	}
-	if (!rc && j->lead[1].there)
-		rc = lay_lead(w, 1, w->n - 1);
-	return rc;
+	if (!err && j->lead[1].there)
+		err = lay_lead(w, 1, w->n - 1);
+	return err;
 }
 
 /* -- The way as curves -------------------------------------------------------------- */
@@ -360,26 +360,26 @@ static int attempt(struct track *t, const struct track_job *j, uint32_t i,
 {
 	struct track_work w = { .job = j, .slack_mm = attempts[i].slack_mm,
 				.round = attempts[i].round };
-	int rc = track_lay(&w);
+	int err = track_lay(&w);
 
-	if (!rc)
-		rc = clear_init(&w);
-	if (rc == -E2BIG) {
+	if (!err)
+		err = clear_init(&w);
+	if (err == -E2BIG) {
 		*fault = (struct track_fault) {
 			.kind = TRACK_CROWDED, .a = w.elem[0].owner,
 			.b = w.elem[w.n - 1].owner,
 		};
-		rc = -EINVAL;
-	} else if (!rc) {
-		rc = way_find(&w, fault);
+		err = -EINVAL;
+	} else if (!err) {
+		err = way_find(&w, fault);
 	}
-	if (!rc || (rc == -EINVAL && j->skip && w.nruns &&
+	if (!err || (err == -EINVAL && j->skip && w.nruns &&
 		    fault->kind == TRACK_LOST)) {
-		t->skipped = rc != 0;
-		rc = take_way(t, &w);
+		t->skipped = err != 0;
+		err = take_way(t, &w);
 	}
 	forget(&w);
-	return rc;
+	return err;
 }
 
 int track_make(struct track *t, const struct track_job *j,
@@ -387,13 +387,13 @@ int track_make(struct track *t, const struct track_job *j,
 {
 	struct track_job strict = *j;
 	struct track_fault first;
-	int rc = -EINVAL;
+	int err = -EINVAL;
 
 	strict.skip = false;
-	for (uint32_t i = 0; rc == -EINVAL && i < NATTEMPTS; i++) {
-		rc = attempt(t, &strict, i, i == 1 ? fault : &first);
+	for (uint32_t i = 0; err == -EINVAL && i < NATTEMPTS; i++) {
+		err = attempt(t, &strict, i, i == 1 ? fault : &first);
 	}
-	for (uint32_t i = 0; rc == -EINVAL && j->skip && i < NATTEMPTS; i++)
-		rc = attempt(t, j, i, fault);
-	return rc;
+	for (uint32_t i = 0; err == -EINVAL && j->skip && i < NATTEMPTS; i++)
+		err = attempt(t, j, i, fault);
+	return err;
 }

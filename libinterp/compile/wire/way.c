@@ -153,17 +153,17 @@ static int check_jump(struct walker *k, struct jump *j)
 
 static int check_jumps(struct walker *k)
 {
-	int rc = 0;
+	int err = 0;
 
-	for (uint32_t i = 1; !rc && i < k->w->nruns; i++) {
+	for (uint32_t i = 1; !err && i < k->w->nruns; i++) {
 		const struct track_run *p = &k->w->run[i - 1], *q = p + 1;
 		struct jump j = { .e = p->elem, .f = q->elem, .te = p->t[1],
 				  .tf = q->t[0], .e_from = p->t[0] };
 
 		if (q->jump)
-			rc = check_jump(k, &j);
+			err = check_jump(k, &j);
 	}
-	return rc;
+	return err;
 }
 
 /* -- Along it ---------------------------------------------------------------------- */
@@ -295,16 +295,16 @@ static int change(struct walker *k)
 static int walk(struct walker *k)
 {
 	struct track_work *w = k->w;
-	int rc = add_run(w, k->elem, k->t, false);
+	int err = add_run(w, k->elem, k->t, false);
 
-	while (!rc) {
+	while (!err) {
 		double next = next_place(w, k->elem, k->t);
 
 		if (k->elem == k->stop_elem && next > k->stop_t &&
 		    k->t <= k->stop_t + slack_of(w, k->elem))
 			next = fmax(k->stop_t, k->t);
 		if (!is_clear(w, k->elem, k->t, next)) {
-			rc = change(k);
+			err = change(k);
 			continue;
 		}
 		k->t = w->run[w->nruns - 1].t[1] = next;
@@ -316,9 +316,9 @@ static int walk(struct walker *k)
 		if (k->elem == k->stop_elem)
 			return -EINVAL;
 		k->t = 0;
-		rc = add_run(w, ++k->elem, 0, false);
+		err = add_run(w, ++k->elem, 0, false);
 	}
-	return rc;
+	return err;
 }
 
 /* -- A contour begun in an inner corner ---------------------------------------------- */
@@ -410,34 +410,35 @@ static bool begins_inside(struct track_work *w)
 static int walk_inside(struct walker *k)
 {
 	struct track_work *w = k->w;
-	int rc = 0;
+	int err = 0;
 
 	if (w->job->lead[0].there) {
-		rc = add_run(w, 0, 0, false);
-		if (!rc)
+		err = add_run(w, 0, 0, false);
+		if (!err)
 			w->run[0].t[1] = 1;
 	}
-	if (!rc)
-		rc = walk(k);
-	if (!rc && w->job->lead[1].there) {
-		rc = add_run(w, w->n - 1, 0, false);
-		if (!rc)
+	if (!err)
+		err = walk(k);
+	if (!err && w->job->lead[1].there) {
+		err = add_run(w, w->n - 1, 0, false);
+		if (!err)
 			w->run[w->nruns - 1].t[1] = 1;
 	}
-	return rc;
+	return err;
 }
 
 int way_find(struct track_work *w, struct track_fault *fault)
 {
 	struct walker k = { .w = w, .fault = fault, .stop_elem = w->n - 1,
 			    .stop_t = 1 };
-	int rc;
+	int err;
 
 	if (begins_inside(w)) {
-		rc = find_start(&k);
-		if (rc)
-			return rc;
+		err = find_start(&k);
+		if (err)
+			return err;
 	}
-	rc = k.stop_elem < w->n - 1 || k.stop_t < 1 ? walk_inside(&k) : walk(&k);
-	return rc ? rc : check_jumps(&k);
+	err = k.stop_elem < w->n - 1 || k.stop_t < 1 ? walk_inside(&k) :
+						      walk(&k);
+	return err ? err : check_jumps(&k);
 }

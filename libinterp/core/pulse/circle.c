@@ -314,7 +314,7 @@ bool circle_enter(struct interp_circle *k, const struct interp_arc *arc,
 static int64_t circle_crossings(const struct interp_arc *arc,
 				const int64_t start[2], const int64_t end[2])
 {
-	const double turn = 2 * 3.14159265358979323846;
+	const double turn = 2 * M_PI;
 	const bool ccw = arc->sweep > 0;
 	const int from = ccw ? quadrant_leaving(start[0], start[1]) :
 			       quadrant_arriving(start[0], start[1]);

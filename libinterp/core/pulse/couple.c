@@ -74,6 +74,12 @@ static struct pair_tube axis_tube(struct pair_tube t, uint32_t npairs)
 	};
 }
 
+struct pair_tube couple_tube(const struct couple_rule *r, uint32_t npairs)
+{
+	return r->coupling == INTERP_TREE ? r->tube :
+					    axis_tube(r->tube, npairs);
+}
+
 /* -- Shared stops ---------------------------------------------------------- */
 
 /* Would @count bursts at the stops of @lead keep @p to its M of @half? */

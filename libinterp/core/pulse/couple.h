@@ -63,6 +63,9 @@ void couple_set(struct interp_pair *pair, uint32_t npairs,
 bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
 		     const struct couple_rule *r, bool at_end);
 
+/** couple_tube() - the tube of each of @npairs pairs by the rule. */
+struct pair_tube couple_tube(const struct couple_rule *r, uint32_t npairs);
+
 /**
  * couple_smallest_milli() - the least mu that a line of these inputs admits.
  *

@@ -25,7 +25,7 @@ static bool flat_enter(struct interp_cursor *c, bool at_end)
 	c->root = in[couple_star(c->pair, in, n)].code;
 	c->npairs = n - 1;
 	couple_set_flat(c->pair, c->npairs, &rule, at_end);
-	return true;
+	return pulse_bits(c, c->npairs);
 }
 
 static inline uint32_t flat_move(struct interp_cursor *c, int8_t axis, int dir)

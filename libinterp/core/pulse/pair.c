@@ -69,6 +69,7 @@ static void pair_stand(struct interp_pair *p, bool at_end)
 	p->s = at_end ? p->b : 0;
 	p->dev = 0;
 	p->bursts = 0;
+	p->bits = NULL;
 }
 
 void pair_set_limit(struct interp_pair *p, int64_t limit, bool at_end)
@@ -151,6 +152,12 @@ void pair_burst_back(struct interp_pair *p)
 	p->done = burst_at(p, burst_before(p, p->burst));
 }
 
+int64_t pair_burst_changes(const struct interp_pair *p)
+{
+	return 2 * p->bursts - (burst_at(p, 0) == 0) -
+	       (burst_at(p, p->bursts - 1) == p->a);
+}
+
 void pair_set_bursts(struct interp_pair *p, int64_t n,
 		     const struct interp_pair *lead, bool at_end)
 {
@@ -162,6 +169,26 @@ void pair_set_bursts(struct interp_pair *p, int64_t n,
 	burst_look(p);
 	burst_skip_empty(p);
 	p->done = burst_at(p, burst_before(p, p->burst));
+}
+
+/* -- Stored bits ------------------------------------------------------------ */
+
+void pair_set_bits(struct interp_pair *p, const uint64_t *bits)
+{
+	p->bursts = 0;
+	p->bits = bits;
+}
+
+static void bits_run(struct interp_pair *p, uint32_t n, uint8_t *second)
+{
+	for (uint32_t k = 0; k < n; k++)
+		second[k] = !pair_forward(p);
+}
+
+static void bits_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
+{
+	for (uint32_t k = 0; k < n; k++)
+		second[k] = !pair_back(p);
 }
 
 /* -- Many pulses ----------------------------------------------------------- */
@@ -283,6 +310,8 @@ void pair_run(struct interp_pair *p, uint32_t n, uint8_t *second)
 {
 	if (p->bursts)
 		bursts_run(p, n, second);
+	else if (p->bits)
+		bits_run(p, n, second);
 	else
 		limits_run(p, n, second);
 }
@@ -291,6 +320,8 @@ void pair_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
 {
 	if (p->bursts)
 		bursts_run_back(p, n, second);
+	else if (p->bits)
+		bits_run_back(p, n, second);
 	else
 		limits_run_back(p, n, second);
 }

@@ -127,6 +127,9 @@ struct couple_rule;
 /** pulse_inputs() - every axis but @except with a pulse to give; signs set. */
 uint32_t pulse_inputs(struct interp_cursor *c, uint32_t except,
 		      struct couple_input *in);
+/** pulse_bits() - @npairs pairs of a line by the bits of the program, if it has
+ *  some for it; false: not as many as it needs. */
+bool pulse_bits(struct interp_cursor *c, uint32_t npairs);
 /** pulse_rule() - strategy, coupling and tolerance of the program. */
 struct couple_rule pulse_rule(const struct interp_cursor *c);
 

@@ -48,6 +48,25 @@ struct couple_rule pulse_rule(const struct interp_cursor *c)
 	};
 }
 
+bool pulse_bits(struct interp_cursor *c, uint32_t npairs)
+{
+	const uint64_t room = c->p.head->nbits;
+	uint64_t at = c->seg.arg;
+
+	if (c->seg.kind != INTERP_LINE || at == 0)
+		return true;
+	at--;
+	for (uint32_t i = 0; i < npairs; i++) {
+		const uint64_t words = pair_words(&c->pair[i]);
+
+		if (at > room || words > room - at)
+			return false;
+		pair_set_bits(&c->pair[i], c->p.bits + at);
+		at += words;
+	}
+	return true;
+}
+
 /* Aim the tree at all axes but @except; the sum of their pulses. */
 static int64_t tree_set(struct interp_cursor *c, uint32_t except, bool at_end)
 {
@@ -67,7 +86,7 @@ static int64_t tree_set(struct interp_cursor *c, uint32_t except, bool at_end)
 		return -1;
 	couple_set(c->pair, n - 1, &rule, at_end);
 	c->root = root.code;
-	return root.pulses;
+	return pulse_bits(c, n - 1) ? root.pulses : -1;
 }
 
 static bool tree_enter(struct interp_cursor *c, bool at_end)

@@ -11,12 +11,14 @@ import socket
 import struct
 import subprocess
 import sys
+import threading
 import time
 
 R = pathlib.Path(sys.argv[1])
 FIFO = R / "drives.fifo"
 
 
+READY_S = 60            # until daemons answer and drives are up
 RUNNING = ("travel", "approach", "erode", "retract")
 CUTTING = ("approach", "erode")
 
@@ -28,11 +30,16 @@ def frame(can_id, data):
         s.send(struct.pack("=IB3x8s", can_id, len(data), data.ljust(8, b"\0")))
 
 
+class Vain(Exception):
+    """What was waited for did not come: the rest of the scene is left out."""
+
+
 class Scene:
-    """Drives, daemons and a client."""
+    """Drives, daemons and a client; ends with its `with`, come what may."""
 
     def __init__(self, name, nodes, played=None):
-        self.name, self.nodes, self.marks = name, nodes, []
+        self.name, self.nodes, self.marks, self.more = name, nodes, [], {}
+        self.began = time.monotonic()
         self.log = open(R / "log", "w+")
         if not FIFO.exists():
             os.mkfifo(FIFO)
@@ -46,6 +53,15 @@ class Scene:
         self.jobs = subprocess.Popen(
             [R / "edmd-jobs", "--config", R / f"{name}.ini", "--store",
              R / f"store-{name}"], stderr=self.log)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, where):
+        self.end()
+        print(f"{self.name}: {time.monotonic() - self.began:.0f} s"
+              f"{f', ended by {error}' if kind else ''}", flush=True)
+        return kind is Vain
 
     def mark(self, what):
         self.marks.append((time.monotonic(), what))
@@ -81,25 +97,42 @@ class Scene:
                    for k, v in wanted.items()):
                 break
             if time.monotonic() > end:
-                self.mark(f"{what}: waited in vain for {wanted}: {s}")
-                break
+                self.in_vain(f"{what}: waited in vain for {wanted}: {s}")
             time.sleep(0.05)
         self.mark(what)
         return s
 
+    def in_vain(self, what):
+        self.mark(what)
+        raise Vain(what)
+
+    def submit(self, *args):
+        """Again until edmd-jobs is there to take it."""
+        end = time.monotonic() + READY_S
+        while True:
+            answer = self.ctl("submit", *args)
+            if answer[0] == 0:
+                return answer
+            if time.monotonic() > end:
+                self.in_vain(f"submitted in vain: {answer}")
+            time.sleep(0.05)
+
     def start(self):
         """As an operator: again until the drives are up and it goes.  One
         that "starts when its turn comes" may still find them not up."""
-        for _ in range(100):
+        end = time.monotonic() + READY_S
+        while True:
             answer = self.ctl("start")
             if answer[0] == 0 and "turn" not in answer[1]:
-                break
+                return answer
             if self.status().get("state") in RUNNING:
                 return 0, "it goes"
+            if time.monotonic() > end:
+                self.in_vain(f"started in vain: {answer}")
             time.sleep(0.05)
-        return answer
 
-    def end(self, **more):
+    def end(self):
+        self.last = self.status()
         self.edmd.send_signal(signal.SIGTERM)
         self.edmd.wait()
         time.sleep(0.1)
@@ -111,40 +144,36 @@ class Scene:
         self.log.seek(0)
         pathlib.Path(f"{self.name}.log").write_text(self.log.read())
         pathlib.Path(f"{self.name}.json").write_text(json.dumps(
-            seen | {"marks": self.marks, "edmd": self.edmd.returncode} | more))
+            {"status": self.last} | seen | {
+                "marks": self.marks, "edmd": self.edmd.returncode}
+            | self.more))
 
 
 def whole_job(name, nodes, lags=()):
     """Boot, enable, a job from end to end without a gap."""
-    s = Scene(name, nodes)
-    for node, gain in zip(nodes, lags):
-        s.tell("lag", node, gain)
-    answers = [s.ctl("submit", "--name", "first", str(R / f"{name}.ngc"))]
-    s.start()
-    s.until("running", 10, state=RUNNING)
-    s.until("idle", 60, state="idle")
-    if lags:
-        time.sleep(1)           # 20 time constants: they arrive
-    s.end(answers=answers, status=s.status())
+    with Scene(name, nodes) as s:
+        for node, gain in zip(nodes, lags):
+            s.tell("lag", node, gain)
+        s.submit("--name", "first", str(R / f"{name}.ngc"))
+        s.start()
+        s.until("running", 10, state=RUNNING)
+        s.until("idle", 60, state="idle")
+        if lags:
+            time.sleep(1)           # 20 time constants: they arrive
 
 
-def faults(name, nodes):
-    """Each fault in turn while it cuts, and back from it by reset."""
-    s = Scene(name, nodes)
-    out = {}
-    s.tell("gap", 25)
-    s.ctl("submit", str(R / f"{name}.ngc"))
-    s.start()
+def interface(what):
+    subprocess.run(["ip", "link", "set", "vcan0", what], check=True)
 
-    def mend_link():
-        subprocess.run(["ip", "link", "set", "vcan0", "up"], check=True)
 
+def plan_of(s):
+    """What is done, how, and how it is mended."""
     def stop_edmd():
         s.edmd.send_signal(signal.SIGSTOP)
         time.sleep(0.2)
         s.edmd.send_signal(signal.SIGCONT)
 
-    plan = [
+    return [
         ("emcy", lambda: s.tell("emcy", 1, "2310"), None),
         ("leave", lambda: s.tell("leave", 2), None),
         ("mute", lambda: s.tell("mute", 1), lambda: s.tell("unmute", 1)),
@@ -154,36 +183,46 @@ def faults(name, nodes):
         ("reboot", lambda: s.tell("reboot", 2), None),
         ("bus-off", lambda: frame(0x20000040, bytes(8)),
          lambda: frame(0x20000100, bytes(8))),
-        ("down", lambda: subprocess.run(
-            ["ip", "link", "set", "vcan0", "down"], check=True), mend_link),
+        ("down", lambda: interface("down"), lambda: interface("up")),
         ("master", lambda: frame(0x000, b"\x80\x01"), None),
     ]
-    for what, harm, mend in plan:
-        s.until(f"{what}: cutting", 10, state=CUTTING)
-        time.sleep(0.3)
-        s.mark(f"{what}: harm")
-        harm()
-        got = s.until(f"{what}: fault", 5, state="fault")
-        time.sleep(0.3)
-        if mend:
-            mend()
-            s.mark(f"{what}: mended")
-        early = s.ctl("start")
-        time.sleep(0.2)
-        reset = s.ctl("reset")
-        s.until(f"{what}: reset", 2, state=("hold", "fault"))
-        time.sleep(0.5)
-        held = s.status()
-        start = s.start()               # the drives may still come up
-        s.mark(f"{what}: start")
-        out[what] = {"fault": got.get("fault"), "early": early,
-                     "reset": reset, "held": held.get("state"),
-                     "start": start}
-    s.until("cutting again", 10, state=CUTTING)
-    out |= harmless(s)
-    s.tell("gap", 45)
-    s.until("idle", 60, state="idle")
-    s.end(faults=out, status=s.status())
+
+
+def faults(name, nodes):
+    """Each fault in turn while it cuts, and back from it by reset."""
+    with Scene(name, nodes) as s:
+        s.tell("gap", 25)
+        s.submit(str(R / f"{name}.ngc"))
+        s.start()
+        s.more["faults"] = {}
+        for what, harm, mend in plan_of(s):
+            s.more["faults"][what] = fault(s, what, harm, mend)
+        s.until("cutting again", 10, state=CUTTING)
+        s.more["faults"] |= harmless(s)
+        s.tell("gap", 45)
+        s.until("idle", 60, state="idle")
+
+
+def fault(s, what, harm, mend):
+    s.until(f"{what}: cutting", 10, state=CUTTING)
+    time.sleep(0.3)
+    s.mark(f"{what}: harm")
+    harm()
+    got = s.until(f"{what}: fault", 5, state="fault")
+    time.sleep(0.3)
+    if mend:
+        mend()
+        s.mark(f"{what}: mended")
+    early = s.ctl("start")
+    time.sleep(0.2)
+    reset = s.ctl("reset")
+    s.until(f"{what}: reset", 2, state=("hold", "fault"))
+    time.sleep(0.5)
+    held = s.status()
+    start = s.start()               # the drives may still come up
+    s.mark(f"{what}: start")
+    return {"fault": got.get("fault"), "early": early, "reset": reset,
+            "held": held.get("state"), "start": start}
 
 
 def harmless(s):
@@ -211,9 +250,76 @@ def harmless(s):
     return {"harmless": got}
 
 
+class Plc(threading.Thread):
+    """On the drives' own bus: its request each 20 ms, with a turned toggle."""
+
+    NODE, LOCKS = 32, 0x1f
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.permit, self.talking, self.toggle = 1, True, 0
+
+    def run(self):
+        while self.talking:
+            self.toggle ^= 0x80
+            frame(0x200 + self.NODE, bytes(
+                [self.toggle | self.permit, self.LOCKS, 0xe8, 3, 0, 0, 0, 0]))
+            time.sleep(0.02)
+
+    def nmt(self, command, node=NODE):
+        frame(0x000, bytes([command, node]))
+
+
+def shared(name, nodes):
+    """A PLC of ours on the drives' bus, and all that it may say by NMT."""
+    with Scene(name, nodes) as s:
+        plc = Plc()
+        s.tell("gap", 25)
+        s.submit(str(R / f"{name}.ngc"))
+        plc.nmt(1)
+        plc.start()
+        time.sleep(0.2)
+        s.start()
+        s.until("cutting", 10, state=CUTTING)
+        s.mark("NMT")
+        for node in Plc.NODE, 0:
+            plc.nmt(1, node)
+        time.sleep(0.5)
+        s.more["after NMT"] = s.status()
+        s.mark("NMT taken")
+        s.more["taken"] = {}
+        for what, take, give in (
+                ("permit", lambda: setattr(plc, "permit", 0),
+                 lambda: setattr(plc, "permit", 1)),
+                ("stop", lambda: plc.nmt(2), lambda: plc.nmt(1)),
+                ("reset", lambda: plc.nmt(0x81), lambda: plc.nmt(1)),
+                ("stop all", lambda: plc.nmt(2, 0), lambda: plc.nmt(1))):
+            s.more["taken"][what] = taken(s, what, take, give)
+        s.until("cutting again", 10, state=CUTTING)
+        s.tell("gap", 45)
+        s.until("idle", 60, state="idle")
+        plc.talking = False
+
+
+def taken(s, what, take, give):
+    """While it cuts: what ends it, and that it goes on when it is given back."""
+    s.until(f"{what}: cutting", 10, state=CUTTING)
+    time.sleep(0.3)
+    s.mark(f"{what}: harm")
+    take()
+    got = s.until(f"{what}: fault", 5, state="fault")
+    time.sleep(0.3)
+    give()
+    time.sleep(0.3)
+    s.ctl("reset")
+    s.until(f"{what}: reset", 5, state="hold")
+    return {"fault": got["fault"], "start": s.start()}
+
+
 if __name__ == "__main__":
     whole_job("two", [1, 2])
     whole_job("six", [1, 2, 3, 4, 5, 6])
     for name in "lagging", "led", "coupled":
         whole_job(name, [1, 2], lags=(30, 21.5))
+    shared("shared", [1, 2])
     faults("faults", [1, 2])

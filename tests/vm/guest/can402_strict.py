@@ -18,13 +18,7 @@ def scene(name, traits):
 
 
 def submit(s, name):
-    """Again until edmd-jobs is there to take it."""
-    for _ in range(100):
-        answer = s.ctl("submit", str(R / f"{name}.ngc"))
-        if answer[0] == 0:
-            break
-        time.sleep(0.05)
-    return answer
+    return s.submit(str(R / f"{name}.ngc"))
 
 
 def job(s, name):
@@ -34,105 +28,99 @@ def job(s, name):
 
 def until_log(s, text, seconds):
     end = time.monotonic() + seconds
-    while time.monotonic() < end and s.edmd.poll() is None:
-        if text in pathlib.Path(R / "log").read_text():
-            return True
+    while text not in pathlib.Path(R / "log").read_text():
+        if time.monotonic() > end or s.edmd.poll() is not None:
+            s.in_vain(f"waited in vain for {text}")
         time.sleep(0.05)
-    s.mark(f"waited in vain for {text}")
-    return False
 
 
 def whole():
     """Each with something of its own, and a job from end to end."""
-    s = scene("strict-up", {
+    with scene("strict-up", {
         1: {"slow": {"60c2:1": 0.7, "1017:0": 0.7}},
         2: {"unmappable": ["6061"], "without": ["1006", "1007", "1019"]},
         3: {"fixed_ids": True, "mode_lag": 0.3, "not_ready": 1.0},
         4: {"identity": [0xfb, 0x64100000, 0x170, 77],
             "without": ["6007", "6502", "6061"]},
-    })
-    until_log(s, "(node 3) is up", 30)
-    answers = [job(s, "strict-up")]
-    s.until("running", 10, state=RUNNING)
-    s.until("idle", 60, state="idle")
-    s.end(answers=answers, status=s.status())
+    }) as s:
+        until_log(s, "(node 3) is up", 30)
+        job(s, "strict-up")
+        s.until("running", 10, state=RUNNING)
+        s.until("idle", 60, state="idle")
 
 
 def refused():
     """What they do not take is told with value, code and words."""
-    s = scene("strict-refused", {
+    with scene("strict-refused", {
         1: {"most": {"60c2:1": 8}},
         2: {"refuse": {"605a:0": "06090030"}},
         3: {"identity": [0xbad, 1, 2, 3]}, 4: {"without": ["1016"]},
-    })
-    for n in 1, 2, 3, 4:
-        until_log(s, f"(node {n}) refuses its configuration", 20)
-    s.end(status=s.status())
+    }) as s:
+        for n in 1, 2, 3, 4:
+            until_log(s, f"(node {n}) refuses its configuration", 20)
 
 
 def late():
     """One is switched on after the job was submitted; then off and on while
     it is being set up."""
-    s = scene("strict-late", {1: {}, 2: {"off": True}})
-    s.tell("gap", 25)
-    submit(s, "strict-late")
-    time.sleep(1.5)
-    s.mark("on")
-    s.tell("on", 2)
-    time.sleep(0.25)
-    s.tell("off", 2)
-    s.tell("on", 2)
-    up = until_log(s, "(node 2) is up", 20)
-    time.sleep(2)
-    s.mark("start")
-    before = s.status()
-    start = s.start()
-    s.until("cutting", 10, state=CUTTING)
-    s.end(up=up, before=before, start=start, status=s.status())
+    with scene("strict-late", {1: {}, 2: {"off": True}}) as s:
+        s.tell("gap", 25)
+        submit(s, "strict-late")
+        time.sleep(1.5)
+        s.mark("on")
+        s.tell("on", 2)
+        time.sleep(0.25)
+        s.tell("off", 2)
+        s.tell("on", 2)
+        until_log(s, "(node 2) is up", 20)
+        time.sleep(2)
+        s.mark("start")
+        s.more["before"] = s.status()
+        s.more["start"] = s.start()
+        s.until("cutting", 10, state=CUTTING)
 
 
-def recover(s, what, out):
-    """Reset and start, as an operator does."""
+# What is done while it cuts, and undone.
+PLAN = [
+    ("mode", ("mode", 1, 6), None),
+    ("ignores", ("bits", 2, "0", "1000"), ("bits", 2, "0", "0")),
+    ("lags", ("bits", 2, "2000", "0"), ("bits", 2, "0", "0")),
+    ("limit", ("bits", 1, "800", "0"), ("bits", 1, "0", "0")),
+    ("jam", ("jam", 1), ("unjam", 1)),
+]
+
+
+def faults():
+    """Each thing in turn, then a warning, then power off."""
+    with scene("strict-faults", {1: {}, 2: {}}) as s:
+        s.tell("gap", 25)
+        job(s, "strict-faults")
+        out = s.more["out"] = {}
+        for what, harm, mend in PLAN:
+            out[what] = fault(s, what, harm, mend)
+        s.until("warning: cutting", 10, state=CUTTING)
+        s.tell("bits", 1, "80", "0")
+        time.sleep(0.5)
+        out["warning"] = {"state": s.status().get("state")}
+        s.tell("bits", 1, "0", "0")
+        out["off"] = power_cycle(s, "off", 2, 0.2)
+
+
+def fault(s, what, harm, mend):
+    s.until(f"{what}: cutting", 10, state=CUTTING)
+    time.sleep(0.3)
+    s.mark(f"{what}: harm")
+    s.tell(*harm)
     got = s.until(f"{what}: fault", 5, state="fault")
     time.sleep(0.2)
     s.mark(f"{what}: stands")
     time.sleep(0.3)
-    return got
-
-
-def faults():
-    """Each thing in turn while it cuts."""
-    s = scene("strict-faults", {1: {}, 2: {}})
-    out = {}
-    s.tell("gap", 25)
-    job(s, "strict-faults")
-    plan = [
-        ("mode", ("mode", 1, 6), None),
-        ("ignores", ("bits", 2, "0", "1000"), ("bits", 2, "0", "0")),
-        ("lags", ("bits", 2, "2000", "0"), ("bits", 2, "0", "0")),
-        ("limit", ("bits", 1, "800", "0"), ("bits", 1, "0", "0")),
-        ("jam", ("jam", 1), ("unjam", 1)),
-    ]
-    for what, harm, mend in plan:
-        s.until(f"{what}: cutting", 10, state=CUTTING)
-        time.sleep(0.3)
-        s.mark(f"{what}: harm")
-        s.tell(*harm)
-        got = recover(s, what, out)
-        if mend:
-            s.tell(*mend)
-        reset = s.ctl("reset")
-        time.sleep(0.3)
-        s.mark(f"{what}: start")
-        out[what] = {"fault": got.get("fault"), "reset": reset,
-                     "start": s.start(), "program": s.status().get("job")}
-    s.until("warning: cutting", 10, state=CUTTING)
-    s.tell("bits", 1, "80", "0")
-    time.sleep(0.5)
-    out["warning"] = {"state": s.status().get("state")}
-    s.tell("bits", 1, "0", "0")
-    out["off"] = power_cycle(s, "off", 2, 0.2)
-    s.end(out=out, status=s.status())
+    if mend:
+        s.tell(*mend)
+    reset = s.ctl("reset")
+    time.sleep(0.3)
+    s.mark(f"{what}: start")
+    return {"fault": got.get("fault"), "reset": reset, "start": s.start()}
 
 
 def power_cycle(s, what, node, seconds):
@@ -146,60 +134,67 @@ def power_cycle(s, what, node, seconds):
 
 
 def lost(s, what, node):
-    axis = " XY"[node]
     got = s.until(f"{what}: fault", 5, state="fault")
     time.sleep(0.6)
     s.ctl("reset")
     time.sleep(0.6)
-    starts = [s.ctl("start") for _ in range(5)]
+    starts = [s.ctl("start") for _ in range(3)]
     time.sleep(0.3)
     steps = [s.ctl("retract", "0.05")]
     s.mark(f"{what}: stop")
     s.ctl("stop")
-    s.until(f"{what}: idle", 5, state="idle")
-    homed = None
-    for _ in range(40):
-        homed = s.ctl("home", axis)
-        if homed[0] == 0:
-            break
-        time.sleep(0.1)
+    s.until(f"{what}: idle", 10, state="idle")
+    homed = home(s, " XY"[node])
     s.mark(f"{what}: homed")
-    s.until(f"{what}: idle again", 5, state="idle")
+    s.until(f"{what}: idle again", 10, state="idle")
     again = submit(s, "strict-faults")      # it begins by itself
     return {"fault": got.get("fault"), "starts": starts, "steps": steps,
             "home": homed, "again": again}
 
 
+def home(s, axis):
+    """Again until the drives are up."""
+    for _ in range(60):
+        answer = s.ctl("home", axis)
+        if answer[0] == 0:
+            return answer
+        time.sleep(0.1)
+    s.in_vain(f"home {axis} in vain: {answer}")
+
+
 def attack(seed, runs):
     """Power cycles at random instants: of approach, cut, hold, set-up, ..."""
     rng = random.Random(seed)
-    s = scene("strict-attack", {1: {}, 2: {}})
-    s.tell("gap", 25)
-    job(s, "strict-faults")
-    done = []
-    for i in range(runs):
-        what, node = f"attack {i}", rng.choice((1, 2))
-        s.until(f"{what}: running", 10, state=RUNNING)
-        time.sleep(rng.uniform(0, 0.4))
-        if rng.random() < 0.3:
-            s.ctl("hold")
-        s.mark(f"{what}: harm")
+    with scene("strict-attack", {1: {}, 2: {}}) as s:
+        s.tell("gap", 25)
+        job(s, "strict-faults")
+        s.more["done"] = []
+        for i in range(runs):
+            s.more["done"].append(cycle_at_random(s, rng, f"attack {i}"))
+
+
+def cycle_at_random(s, rng, what):
+    node = rng.choice((1, 2))
+    s.until(f"{what}: running", 10, state=RUNNING)
+    time.sleep(rng.uniform(0, 0.4))
+    if rng.random() < 0.3:
+        s.ctl("hold")
+    s.mark(f"{what}: harm")
+    s.tell("off", node)
+    time.sleep(rng.choice((0, 0.02, 0.15, 0.4)))
+    s.tell("on", node)
+    # Once more while it boots, is set up, or has just come.
+    if rng.random() < 0.5:
+        time.sleep(rng.uniform(0, 0.6))
         s.tell("off", node)
-        time.sleep(rng.choice((0, 0.02, 0.15, 0.4)))
         s.tell("on", node)
-        # Once more while it boots, is set up, or has just come.
-        if rng.random() < 0.5:
-            time.sleep(rng.uniform(0, 0.6))
-            s.tell("off", node)
-            s.tell("on", node)
-        if rng.random() < 0.3:
-            s.tell("push", node, rng.randrange(-300, 300))
-        done.append({"node": node} | lost(s, what, node))
-    s.end(done=done, status=s.status())
+    if rng.random() < 0.3:
+        s.tell("push", node, rng.randrange(-300, 300))
+    return {"node": node} | lost(s, what, node)
 
 
 if __name__ == "__main__":
-    scenes = {"up": whole, "refused": refused, "late": late, "faults": faults,
+    SCENES = {"up": whole, "refused": refused, "late": late, "faults": faults,
               "attack": lambda: attack(int(sys.argv[2]), int(sys.argv[3]))}
     for which in sys.argv[4].split(","):
-        scenes[which]()
+        SCENES[which]()

@@ -54,10 +54,9 @@ trace_end() {	# CHIP FILE
 edmd_start() {	# PROGRAM CONFIG
 	$1 --config $2 2>$R/edmd.log &
 	edmd=$!
-	n=0
-	until grep -q 'edmd: machine' $R/edmd.log || [ $n -ge 100 ]; do
+	until grep -q 'edmd: machine' $R/edmd.log; do
 		kill -0 $edmd 2>/dev/null || break
-		n=$((n + 1)); sleep 0.05
+		sleep 0.05
 	done
 }
 
@@ -65,9 +64,9 @@ jobs_start() {	# CONFIG
 	rm -rf $R/store; mkdir -p $R/store
 	$R/edmd-jobs --config $1 --store $R/store 2>$R/jobs.log &
 	jobs=$!
-	n=0
-	until ctl --timeout 1 status >/dev/null 2>&1 || [ $n -ge 20 ]; do
-		n=$((n + 1)); sleep 0.05
+	until ctl --timeout 1 status >/dev/null 2>&1; do
+		kill -0 $jobs 2>/dev/null || break
+		sleep 0.05
 	done
 }
 
@@ -80,12 +79,13 @@ daemons_end() {	# NAME
 
 ctl() { $R/edmctl --machine vm "$@"; }
 
-# status_is PATTERN - wait for it; says what it is if it does not come
+# status_is PATTERN - wait for it; says what it is if it does not come.  Turns,
+# not seconds: a turn takes as long as the host is slow.
 status_is() {
 	n=0
 	until ctl status > $R/status 2>&1 && grep -q "$1" $R/status; do
 		n=$((n + 1))
-		[ $n -lt 40 ] || { echo "no '$1'"; cat $R/status; return 1; }
+		[ $n -lt 200 ] || { echo "no '$1'"; cat $R/status; return 1; }
 		sleep 0.05
 	done
 }

@@ -3,11 +3,24 @@
 # systemd as PID 1, the units as `make install` puts them.
 . ./lib.sh
 unit() { systemctl show -P $1 edmd.service; }
+uptime_s() { read -r up _ < /proc/uptime; echo $up; }
+
+# restarted TIMES - wait until systemd has started edmd again so often, with
+# the sparks' level at each look
+restarted() {
+	n=0 levels=
+	until [ "$(unit NRestarts)" = $1 ] || [ $n -ge 600 ]; do
+		levels="$levels$(level sim1 0)"
+		n=$((n + 1)); sleep 0.1
+	done
+	levels="$levels$(level sim1 0)"
+}
 {
 echo "pid1 $(cat /proc/1/comm)"
 cp -r root/. /
 cp service.ini /etc/edmd/machine.ini
 systemd-sysusers edmd.conf
+systemd-tmpfiles --create edmd.conf
 # There is no udev here; this is what 60-edmd.rules does.
 chgrp gpio /dev/gpiochip*; chmod 660 /dev/gpiochip*
 
@@ -22,21 +35,21 @@ systemctl start edmd-jobs.service
 pull sim0 20 up
 } > start 2>&1
 
+# Who may do what with what they share.
+(cd /dev/shm/edmd && stat -c '%n %A %U %G' . *) > shared 2>&1
+setpriv --reuid=nobody --regid=nogroup --clear-groups \
+	ls /dev/shm/edmd > shared-nobody 2>&1
+
 {
 status_is 'edmd *ok' && ctl submit slow.ngc
 status_is 'state *approach'
 echo "spark $(level sim1 0)"
 trace_start
 tid=$(chrt -a -p $pid | sed -n "s/.*pid \([0-9]*\)'s.*SCHED_FIFO/\1/p")
-read -r up _ < /proc/uptime
-echo "stopped-at $up"
+echo "stopped-at $(uptime_s)"
 ./stop-thread $tid &
-n=0
-until [ "$(unit NRestarts)" != 0 ] || [ $n -ge 100 ]; do
-	n=$((n + 1)); sleep 0.1
-done
-read -r up _ < /proc/uptime
-echo "restart-seen-at $up"
+restarted 1
+echo "restart-seen-at $(uptime_s)"
 wait
 echo "restarts $(unit NRestarts)"
 echo "spark-after-kill $(level sim1 0)"
@@ -47,17 +60,11 @@ echo "active-again $(unit ActiveState)/$(unit SubState)"
 ctl start; status_is 'state *approach'
 echo "spark-again $(level sim1 0)"
 pid=$(unit MainPID)
-read -r up _ < /proc/uptime
-echo "frozen-at $up"
+echo "frozen-at $(uptime_s)"
 kill -STOP $pid
-echo "spark-frozen $(level sim1 0)"
-n=0
-until [ "$(unit NRestarts)" != 1 ] || [ $n -ge 200 ]; do
-	n=$((n + 1)); sleep 0.1
-done
-read -r up _ < /proc/uptime
-echo "replaced-at $up"
-echo "spark-replaced $(level sim1 0)"
+restarted 2
+echo "replaced-at $(uptime_s)"
+echo "spark-levels $levels"
 status_is 'state *hold'
 ctl stop; status_is 'state *idle'
 echo "spark-idle $(level sim1 0)"

@@ -55,6 +55,8 @@ struct interp_pair {
 	int64_t due, done;		/* m where it is, where the last was */
 	int64_t lead, stops;		/* bursts at another pair's: its b and
 					 * bursts; 0: at places of its own */
+	const uint64_t *bits;		/* which input gives each pulse; NULL:
+					 * by bursts or by limit */
 	int8_t in_a, in_b;		/* an axis, or ~another pair */
 };
 

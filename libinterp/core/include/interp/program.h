@@ -13,6 +13,10 @@
  *	     | bits[nbits] | curves[ncurves] | pieces[npieces]
  *	     | stops[nstops] | numbers[nnumbers] | runs[nruns]
  *
+ * Bits are strings of whole words, one bit a pulse.  Those of a line by
+ * min-switch are one string for each of its pairs of axes, in their order
+ * (pulse/couple.h): which pulses are the secondary input's.
+ *
  * Nodes are in fixed-point numbers: 1 pulse = INTERP_SUB subpulses.  So a
  * programmed point between two pulses is kept, and the way there and back is
  * exact.  A node has one column for each axis that the program moves.  The
@@ -39,7 +43,7 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	6
+#define INTERP_PROGRAM_VERSION	7
 
 /* How a path becomes pulses. */
 enum interp_strategy {
@@ -69,7 +73,8 @@ enum interp_coupling {
 #define INTERP_TOLERANCE_MAX	1000000		/* 1/1000 pulse */
 
 enum interp_kind {
-	INTERP_LINE,
+	INTERP_LINE,			/* arg: 0, or 1 + the first word of its
+					 * bits */
 	INTERP_ARC,			/* circular or helical; arg: arc index */
 	INTERP_PAIR,			/* X Y and U V, each a line or an arc;
 					 * arg: couple index */

@@ -3,7 +3,10 @@
  * tune.h - find the gains of a compensation on the models of the axes
  *
  * The cost of a set of gains is the largest contour error of a trial plus
- * INTERP_TUNE_MEAN times the mean one, in um.
+ * INTERP_TUNE_MEAN times the mean one, in um.  A gain that is tried has
+ * INTERP_TUNE_DIGITS significant digits, so that one that is printed with as
+ * many means what was tried: the largest error may jump within the rounding,
+ * for a standing axis may creep into its friction or not.
  *
  * Threads: any thread, not in the cycle.
  */
@@ -14,6 +17,7 @@
 #include "interp/trial.h"
 
 #define INTERP_TUNE_MEAN	10
+#define INTERP_TUNE_DIGITS	4
 
 enum interp_tune_method { INTERP_TUNE_LOCAL, INTERP_TUNE_GLOBAL };
 

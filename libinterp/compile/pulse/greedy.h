@@ -9,9 +9,9 @@
  * pulse is legal at every place.  So the better of the two first axes is the
  * optimum; the other one costs a run more at the most.
  *
- * What it cannot do is walk back from its place alone: two places may lead to
- * one.  It needs its list of runs, which the caller owns.  Programs use the
- * bursts of pulse/pair.h instead; this is the yardstick they are measured by.
+ * It cannot be walked back from its place alone, for two places may lead to one.
+ * So the builder plans it, and the program keeps which input gives each pulse:
+ * path/build_bits.h.
  *
  * Threads: any; planning takes as long as the line has runs.
  */
@@ -42,17 +42,5 @@ void greedy_plan_from(const struct greedy_line *l, bool main_first,
 
 /** greedy_plan() - the better one. */
 void greedy_plan(const struct greedy_line *l, struct greedy_runs *r);
-
-/* A place on it. */
-struct greedy_walk {
-	const struct greedy_runs *r;
-	size_t i;			/* run being walked */
-	uint32_t sent;			/* of it; 0 only at the start */
-};
-
-/** greedy_forward() - true: main.  Not at the end. */
-bool greedy_forward(struct greedy_walk *w);
-/** greedy_back() - undo the last one.  Not at the start. */
-bool greedy_back(struct greedy_walk *w);
 
 #endif /* PULSE_GREEDY_H */

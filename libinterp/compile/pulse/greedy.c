@@ -2,7 +2,7 @@
 /*
  * greedy.c - the fewest changes of axis a line in a tube can have
  */
-#include "tried/greedy.h"
+#include "pulse/greedy.h"
 
 #include <stdlib.h>
 
@@ -81,31 +81,4 @@ void greedy_plan(const struct greedy_line *l, struct greedy_runs *r)
 	greedy_plan_from(l, true, r);
 	if (second.n < r->n)
 		greedy_plan_from(l, false, r);
-}
-
-static bool run_main(const struct greedy_walk *w)
-{
-	return w->r->main_first == (w->i % 2 == 0);
-}
-
-bool greedy_forward(struct greedy_walk *w)
-{
-	if (w->sent == w->r->run[w->i]) {
-		w->i++;
-		w->sent = 0;
-	}
-	w->sent++;
-	return run_main(w);
-}
-
-bool greedy_back(struct greedy_walk *w)
-{
-	const bool main = run_main(w);
-
-	w->sent--;
-	if (w->sent == 0 && w->i > 0) {
-		w->i--;
-		w->sent = w->r->run[w->i];
-	}
-	return main;
 }

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * encoder.c - where an axis truly is, and what it has lost
+ */
+#include "encoder.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int32_t minus(int32_t a, int32_t b)
+{
+	return (int32_t)((uint32_t)a - (uint32_t)b);
+}
+
+static int64_t floor_div(int64_t a, int64_t b)
+{
+	const int64_t q = a / b;
+
+	return q - (a % b != 0 && (a < 0) != (b < 0));
+}
+
+/* The nearest pulse. */
+static int32_t pulses_of(const struct encoder *e, int64_t counts)
+{
+	return (int32_t)(uint32_t)floor_div(2 * counts * e->c.pulses +
+					    e->c.counts, 2 * e->c.counts);
+}
+
+static int64_t counts_of(const struct encoder *e, int32_t pulses)
+{
+	return floor_div(pulses * e->c.counts, e->c.pulses);
+}
+
+void encoder_init(struct encoder *e, const struct encoder_config *c)
+{
+	*e = (struct encoder) { .c = *c };
+}
+
+static void stand_at(struct encoder *e, int32_t place)
+{
+	e->zero = e->count - counts_of(e, place);
+	e->at = place;
+	e->stands = true;
+}
+
+/* As of a drive: what it lags dies away as slowly as it came. */
+static void watch(struct encoder *e, int32_t put)
+{
+	const int32_t way = abs(minus(put, e->put));
+	const double k = e->c.lag_cycles;
+	const double left = k > 0 ? e->lag * k / (k + 1) : 0;
+	const int32_t off = abs(minus(minus(put, e->lost), e->at));
+
+	/* Two cycles of its way: the counts are that much older. */
+	e->lag = fmax(left, (k + 2) * way);
+	if (e->c.following_max > 0 && off > e->c.following_max + e->lag)
+		e->too_far = true;
+}
+
+void encoder_look(struct encoder *e, int64_t count, bool ok, int32_t put)
+{
+	e->count = count;
+	if (!e->stands) {
+		e->put = put;
+		stand_at(e, minus(put, e->lost));
+	}
+	e->at = pulses_of(e, e->count - e->zero);
+	e->ill = e->ill || !ok;
+	e->too_far = e->too_far || e->ill;
+	watch(e, put);
+	e->put = put;
+}
+
+void encoder_shift(struct encoder *e, int32_t by)
+{
+	if (!e->stands)
+		return;
+	e->put = (int32_t)((uint32_t)e->put + (uint32_t)by);
+	e->at = (int32_t)((uint32_t)e->at + (uint32_t)by);
+	e->zero -= counts_of(e, by);
+}
+
+bool encoder_reset(struct encoder *e)
+{
+	const int32_t missing = minus(minus(e->put, e->lost), e->at);
+	const bool gone = e->ill || abs(missing) > e->c.resync_max;
+
+	if (!e->too_far)
+		return false;
+	e->too_far = e->ill = false;
+	e->lag = 0;
+	if (gone)
+		stand_at(e, minus(e->put, e->lost));
+	else
+		e->lost = minus(e->put, e->at);
+	return gone;
+}
+
+int32_t encoder_extra(struct encoder *e, bool go)
+{
+	const int32_t left = minus(e->lost, e->extra);
+	int32_t step;
+
+	e->owed = go && left ? fmin(e->owed + e->c.slew, abs(left)) : 0;
+	step = (int32_t)e->owed;
+	e->owed -= step;
+	e->extra += left < 0 ? -step : step;
+	return e->extra;
+}
+
+bool encoder_is_well(const struct encoder *e)
+{
+	return !e->too_far && e->extra == e->lost;
+}

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * plc_signals.h - the one table of what crosses between edmd and a PLC
+ *
+ * The SDO server and the frames (plc_table.c) are made of these rows, and so
+ * are messages/edmd.eds, messages/edmd.dbc and docs/plc-signals.md: the script
+ * messages/plc-files reads this file through the preprocessor.  After a change
+ * run `make plc-files`.
+ *
+ * Threads: any; the tables are constant.
+ */
+#ifndef IO_PLC_SIGNALS_H
+#define IO_PLC_SIGNALS_H
+
+#include <stdint.h>
+
+/* clang-format off */
+
+/*
+ * S(index, sub, type, by, field, pdo, byte, min, max, name, unit, scale, help)
+ *
+ * An object of the dictionary that carries a signal.  @by: TELL, edmd sends it;
+ * ASK, the PLC does.  @field: its member of struct plc_tell or plc_ask.  @pdo:
+ * the TPDO or RPDO that carries it, from @byte on; 0: none has room for it, it
+ * is read by SDO.  @min and @max are counts; one count is @scale of @unit.
+ */
+#define PLC_SIGNAL_ROWS(S) \
+S(0x2000, 1, U8, TELL, state, 1, 0, 0, 255, "State", "", 1, "what edmd does") \
+S(0x2000, 2, U8, TELL, flags, 1, 1, 0, 255, "Flags", "", 1, "bits") \
+S(0x2000, 3, U8, TELL, fault, 1, 2, 0, 255, "Fault", "", 1, \
+  "the first fault that is latched") \
+S(0x2000, 4, U8, TELL, mcode, 1, 3, 0, 255, "McodeWaiting", "", 1, \
+  "M code that the PLC is to carry out; 0: none") \
+S(0x2000, 5, U16, TELL, gap, 1, 4, 0, 65535, "GapVoltage", "V", 0.01, \
+  "mean gap voltage") \
+S(0x2000, 6, I16, TELL, feed, 1, 6, -32768, 32767, "Feed", "mm/s", 0.001, \
+  "along the path; negative is backward") \
+S(0x2000, 7, U32, TELL, job, 2, 0, 0, 4294967295, "Job", "", 1, \
+  "number of the program; 0: none") \
+S(0x2000, 8, U32, TELL, line, 2, 4, 0, 4294967295, "Line", "", 1, \
+  "line of the source text") \
+PLC_POSITION(S, 1, "X", 3, 0) \
+PLC_POSITION(S, 2, "Y", 3, 4) \
+PLC_POSITION(S, 3, "Z", 4, 0) \
+PLC_POSITION(S, 4, "A", 0, 0) \
+PLC_POSITION(S, 5, "B", 0, 0) \
+PLC_POSITION(S, 6, "C", 4, 4) \
+PLC_POSITION(S, 7, "U", 0, 0) \
+PLC_POSITION(S, 8, "V", 0, 0) \
+S(0x2100, 1, U8, ASK, command, 1, 0, 0, 255, "Command", "", 1, "bits") \
+S(0x2100, 2, U8, ASK, locks, 1, 1, 0, 31, "Interlocks", "", 1, \
+  "bits, each 1 while all is well") \
+S(0x2100, 3, U16, ASK, override, 1, 2, 0, 2000, "FeedOverride", "%", 0.1, \
+  "of positioning") \
+S(0x2100, 4, U16, ASK, program, 1, 4, 0, 9999, "ProgramSelect", "", 1, \
+  "job to be loaded next; 0: none") \
+S(0x2100, 5, U8, ASK, mcode_done, 1, 6, 0, 255, "McodeDone", "", 1, \
+  "M code that has been carried out; 0: none") \
+S(0x2100, 6, U8, ASK, axes_c, 1, 7, 0, 255, "AxisTemperature", "degC", 0.25, \
+  "of the axes, for [geometry] maps; 0: not told")
+
+#define PLC_POSITION(S, sub, axis, pdo, byte) \
+S(0x2001, sub, I32, TELL, pos[(sub) - 1], pdo, byte, -2147483648, 2147483647, \
+  "Position" axis, "pulses", 1, "target of axis " axis)
+
+/* B(id, of, bit, name, help): bit @bit of the signal @of is PLC_@id in C. */
+#define PLC_BIT_ROWS(B) \
+B(TOGGLE,      "Flags", 0, "Toggle", "turns with every frame") \
+B(SPARK,       "Flags", 1, "Spark", "edmd asks for spark power") \
+B(RUNS,        "Flags", 2, "Runs", "a job is under way") \
+B(HELD,        "Flags", 3, "Held", "the machine stands on the path") \
+B(FAULTY,      "Flags", 4, "Faulty", "there is a fault; `Fault` tells which") \
+B(PUMP,        "Flags", 5, "Pump", "edmd asks for dielectric") \
+B(LOADED,      "Flags", 6, "Loaded", "a job is loaded or under way") \
+B(PERMIT,      "Command", 0, "Permit", "1: sparks and motion are allowed") \
+B(START,       "Command", 1, "Start", "rising edge: start, or go on") \
+B(HOLD,        "Command", 2, "Hold", "1: the machine is held") \
+B(RESET,       "Command", 3, "Reset", "rising edge: from a fault to hold") \
+B(ALIVE,       "Command", 7, "Alive", "to be turned within each `alive_ms`") \
+B(DOOR,        "Interlocks", 0, "DoorClosed", "1: the door is closed") \
+B(LEVEL,       "Interlocks", 1, "LevelOk", "1: dielectric covers the work") \
+B(TEMPERATURE, "Interlocks", 2, "TemperatureOk", \
+  "1: the dielectric is neither too warm nor too cold") \
+B(FIRE,        "Interlocks", 3, "NoFire", "1: there is no fire") \
+B(WIRE,        "Interlocks", 4, "WireWhole", "1: the wire is whole")
+
+/* F(id, by, pdo, name): a frame, and the CAN id that its node is added to. */
+#define PLC_FRAME_ROWS(F) \
+F(0x180, TELL, 1, "EdmdStatus") \
+F(0x280, TELL, 2, "EdmdJob") \
+F(0x380, TELL, 3, "EdmdPositionXY") \
+F(0x480, TELL, 4, "EdmdPositionZC") \
+F(0x200, ASK,  1, "PlcRequest")
+
+/*
+ * O(index, sub, type, value, live, name)
+ *
+ * The other objects that CiA 301 has.  @live says what becomes of @value:
+ * FIXED, nothing; PLUS_NODE, the node is added; the others are read from
+ * struct plc.  The PLC may write EMCY, BEAT and, with 0, ERRORS.  What stands
+ * before a comma in the name of sub-index 0 is the name of the whole object.
+ */
+#define PLC_OBJECT_ROWS(O) \
+O(0x1000, 0, U32, 0, FIXED, "Device type") \
+O(0x1001, 0, U8, 0, REGISTER, "Error register") \
+O(0x1003, 0, U8, 0, ERRORS, "Errors, number of them") \
+PLC_ERROR_AT(O, 1) \
+PLC_ERROR_AT(O, 2) \
+PLC_ERROR_AT(O, 3) \
+PLC_ERROR_AT(O, 4) \
+PLC_ERROR_AT(O, 5) \
+PLC_ERROR_AT(O, 6) \
+PLC_ERROR_AT(O, 7) \
+PLC_ERROR_AT(O, 8) \
+/* "edmd", the first letter lowest */ \
+O(0x1008, 0, TEXT, 0x646d6465, FIXED, "Manufacturer device name") \
+O(0x1014, 0, U32, 0x80, EMCY, "COB-ID EMCY") \
+O(0x1017, 0, U16, 100, BEAT, "Producer heartbeat time") \
+O(0x1018, 0, U8, 3, FIXED, "Identity, highest sub-index") \
+O(0x1018, 1, U32, 0, FIXED, "Vendor") \
+O(0x1018, 2, U32, 0x65646d64, FIXED, "Product code") \
+O(0x1018, 3, U32, 1, FIXED, "Revision number") \
+O(0x1400, 0, U8, 2, FIXED, "RPDO1, highest sub-index") \
+O(0x1400, 1, U32, 0x200, PLUS_NODE, "RPDO1 COB-ID") \
+O(0x1400, 2, U8, 255, FIXED, "RPDO1 transmission type") \
+O(0x1600, 0, U8, 6, FIXED, "RPDO1 mapping, objects") \
+PLC_MAPPED(O, RPDO1, 0x1600, 1, 0x2100, 1, 8) \
+PLC_MAPPED(O, RPDO1, 0x1600, 2, 0x2100, 2, 8) \
+PLC_MAPPED(O, RPDO1, 0x1600, 3, 0x2100, 3, 16) \
+PLC_MAPPED(O, RPDO1, 0x1600, 4, 0x2100, 4, 16) \
+PLC_MAPPED(O, RPDO1, 0x1600, 5, 0x2100, 5, 8) \
+PLC_MAPPED(O, RPDO1, 0x1600, 6, 0x2100, 6, 8) \
+PLC_TPDO(O, 1, 0x1800, 0x180) \
+PLC_TPDO(O, 2, 0x1801, 0x280) \
+PLC_TPDO(O, 3, 0x1802, 0x380) \
+PLC_TPDO(O, 4, 0x1803, 0x480) \
+O(0x1a00, 0, U8, 6, FIXED, "TPDO1 mapping, objects") \
+PLC_MAPPED(O, TPDO1, 0x1a00, 1, 0x2000, 1, 8) \
+PLC_MAPPED(O, TPDO1, 0x1a00, 2, 0x2000, 2, 8) \
+PLC_MAPPED(O, TPDO1, 0x1a00, 3, 0x2000, 3, 8) \
+PLC_MAPPED(O, TPDO1, 0x1a00, 4, 0x2000, 4, 8) \
+PLC_MAPPED(O, TPDO1, 0x1a00, 5, 0x2000, 5, 16) \
+PLC_MAPPED(O, TPDO1, 0x1a00, 6, 0x2000, 6, 16) \
+O(0x1a01, 0, U8, 2, FIXED, "TPDO2 mapping, objects") \
+PLC_MAPPED(O, TPDO2, 0x1a01, 1, 0x2000, 7, 32) \
+PLC_MAPPED(O, TPDO2, 0x1a01, 2, 0x2000, 8, 32) \
+O(0x1a02, 0, U8, 2, FIXED, "TPDO3 mapping, objects") \
+PLC_MAPPED(O, TPDO3, 0x1a02, 1, 0x2001, 1, 32) \
+PLC_MAPPED(O, TPDO3, 0x1a02, 2, 0x2001, 2, 32) \
+O(0x1a03, 0, U8, 2, FIXED, "TPDO4 mapping, objects") \
+PLC_MAPPED(O, TPDO4, 0x1a03, 1, 0x2001, 3, 32) \
+PLC_MAPPED(O, TPDO4, 0x1a03, 2, 0x2001, 6, 32) \
+O(0x2000, 0, U8, 8, FIXED, "Machine, highest sub-index") \
+O(0x2001, 0, U8, 8, FIXED, "Positions, highest sub-index") \
+O(0x2100, 0, U8, 6, FIXED, "PLC, highest sub-index")
+
+#define PLC_ERROR_AT(O, i) \
+O(0x1003, i, U32, 0, ERROR, "Error " #i)
+
+/* How a frame is sent (bit 30: not on request), and what stands in it. */
+#define PLC_TPDO(O, n, at, id) \
+O(at, 0, U8, 2, FIXED, "TPDO" #n ", highest sub-index") \
+O(at, 1, U32, 0x40000000 + id, PLUS_NODE, "TPDO" #n " COB-ID") \
+O(at, 2, U8, 254, FIXED, "TPDO" #n " transmission type")
+#define PLC_MAPPED(O, frame, at, i, index, sub, bits) \
+O(at, i, U32, index * 0x10000 + sub * 0x100 + bits, FIXED, \
+  #frame " object " #i)
+
+/* clang-format on */
+
+#endif /* IO_PLC_SIGNALS_H */

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * settings.h - what the machine file says and the cycle reads
+ *
+ * The table of keys (daemon/config/keys_*.c) writes most members of these
+ * structs directly.  A time in the file is in seconds; a member in cycles is
+ * made of it by config_cycle().
+ *
+ * Units: in every name.
+ * Threads: any; plain data.
+ */
+#ifndef WORDS_SETTINGS_H
+#define WORDS_SETTINGS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* -- The gap: [gap] ---------------------------------------------------------- */
+
+/* Where the sparks are: in a cavity, or along a wire. */
+enum cycle_process {
+	PROCESS_SINK,
+	PROCESS_WIRE,
+	CYCLE_NPROCESSES
+};
+
+enum gap_source {
+	GAP_SIM,
+	GAP_VOLTAGE,
+	GAP_SHARES,
+	GAP_LINES,
+	GAP_CAN,
+	GAP_NSOURCES
+};
+
+enum gap_filter {
+	GAP_MEDIAN,
+	GAP_FIRST_ORDER,
+	GAP_NFILTERS
+};
+
+enum retract_to {
+	RETRACT_LIMIT,			/* retract_limit_mm */
+	RETRACT_START,			/* the start of the program */
+	RETRACT_MOTION,			/* the start of the motion it is in */
+	RETRACT_NPLACES
+};
+
+struct cycle_gap_config {
+	enum cycle_process process;
+	enum gap_source source;
+	enum gap_filter filter;
+	uint32_t filter_cycles;		/* 0, 1: none */
+	uint32_t short_cycles;		/* in a row make a short; 0 as 1 */
+	double servo_v;			/* hold this mean gap voltage */
+	double short_v;			/* below: short circuit */
+	double open_v;			/* above: nothing to cut yet */
+	double window_low_v;		/* stand from here; 0: derived */
+	double window_high_v;		/* ... to here; 0: servo_v */
+	double ignition_v;		/* open circuit; 0: not known */
+	double gain_mm_s_v;		/* feed per volt outside the window */
+	double integral_s;		/* reset time; 0: proportional alone */
+	double feed_max_mm_s;		/* fastest feed while eroding */
+	double creep_mm_s;		/* fastest back, while eroding */
+	double feed_a_mm_s2;		/* of the servo; 0: at once */
+	double approach_mm_s;		/* feed until the first spark */
+	double share_v;			/* worth of a share of 1 */
+	double share_set;		/* weighted share to hold */
+	double share_weight;		/* of shorts and arcs, against opens */
+	double share_short;		/* this share of shorts is a short */
+	double share_open;		/* this share of opens is open */
+	double retract_mm_s;		/* back along the path on a short */
+	enum retract_to retract_to;
+	double retract_limit_mm;	/* then stand, and wait ... */
+	uint64_t retract_wait_cycles;	/* ... then fault short-not-cleared */
+	uint64_t retract_max_cycles;	/* then fault retract-time; 0: never */
+	uint32_t retract_escape;	/* 1: out of a short by the escape */
+	uint32_t abort_count;		/* retracts without erosion; 0: any */
+	double progress_mm;		/* cut so much deeper is erosion */
+	double arcing_share;		/* more is arcing; 0: not looked at */
+	uint32_t arcing_cycles;		/* ... in a mean over so many */
+	double arcing_sigma_v;		/* steadier in a plateau: an arc; 0: not
+					 * judged by voltage */
+	double off_us;			/* the generator's own; 0: not known */
+	double arcing_off_max;		/* times the off time, against arcs */
+	uint64_t arcing_recover_cycles;	/* to a step down */
+	double arcing_retract_mm;		/* at least, out of an arc */
+	uint64_t stuck_cycles;		/* no change, then a fault; 0: never */
+	double noise_limit_v;		/* mean change of a cycle; 0: any */
+	double wire_retract_mm;		/* limit of a retract, if wire */
+	double wire_retreat_mm;		/* from a break; 0: to the motion's start */
+};
+
+/* -- Jumps: [jump] ----------------------------------------------------------- */
+
+struct cycle_jump_config {
+	double height_mm;		/* 0: never */
+	uint64_t every_cycles;		/* of erosion between two jumps */
+	double every_mm;		/* ... or of depth; 0: by time alone */
+	uint32_t adaptive;		/* 1: flush.h */
+	uint64_t every_min_cycles, every_max_cycles;
+	double height_min_mm, height_max_mm;
+	double bad_share;		/* of the time between two jumps */
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
+	double a_down_mm_s2;		/* toward the cut; 0: a_max_mm_s2 */
+	double short_of_mm;		/* come back to this far above the cut */
+};
+
+/* -- Touching the work: [probe] ---------------------------------------------- */
+
+struct probe_config {
+	double feed_mm_s;		/* to the first contact */
+	double fine_mm_s;		/* to the one that counts */
+	double back_mm;			/* between them; 0: the first counts */
+	uint64_t settle_cycles;		/* of the sensing voltage, at first */
+};
+
+/* -- Jogs and homing: [axis.*] ------------------------------------------------ */
+
+enum home_method {
+	HOME_NONE,
+	HOME_SWITCH,
+	HOME_SWITCH_INDEX,
+	HOME_ABSOLUTE,
+	HOME_NMETHODS
+};
+
+struct manual_axis {
+	bool present;
+	double pulse_mm;
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
+	double jog_mm_s;
+	enum home_method method;
+	int home_toward;		/* +1, -1 */
+	double home_fast_mm_s, home_slow_mm_s;
+	double home_at_mm;		/* the place of the switch */
+	double home_back_mm;
+	uint32_t home_order;		/* lowest first */
+};
+
+#endif /* WORDS_SETTINGS_H */

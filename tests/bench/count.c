@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * count.c - work of known size between two marks of callgrind, which counts
+ * the instructions; tests/bench/count runs it
+ *
+ * It prints a line for each piece of work: its name and its units.  The counts
+ * do not depend on how busy the machine is.
+ */
+#include "bench.h"
+
+#include "config.h"
+#include "cycle.h"
+#include "interp/cursor.h"
+#include "interp/nc.h"
+
+#include <math.h>
+#include <string.h>
+#include <valgrind/callgrind.h>
+
+#define REACH_MM	100.0
+#define POINTS		20000
+#define LINES		5000
+#define CYCLES		5000
+#define RUN		64		/* points at once, as the cycle takes */
+
+static struct machine_config machine;
+
+static void begin(void)
+{
+	CALLGRIND_ZERO_STATS;
+}
+
+/* What was done since begin(). */
+static void end(const char *name, uint64_t units)
+{
+	CALLGRIND_DUMP_STATS_AT(name);
+	printf("%s %llu\n", name, (unsigned long long)units);
+}
+
+/* -- Lattice points ------------------------------------------------------------ */
+
+struct path {
+	const char *name;
+	enum interp_strategy strategy;
+	enum interp_coupling coupling;
+	int axes;			/* 0: a circle in X and Y */
+};
+
+static const struct path paths[] = {
+	{ "simultaneous, 2 axes", INTERP_SIMULTANEOUS, 0, 2 },
+	{ "simultaneous, 8 axes", INTERP_SIMULTANEOUS, 0, 8 },
+	{ "simultaneous, arc", INTERP_SIMULTANEOUS, 0, 0 },
+	{ "dda, 2 axes", INTERP_DDA, 0, 2 },
+	{ "dda, arc", INTERP_DDA, 0, 0 },
+	{ "point-by-point, 2 axes", INTERP_POINT_BY_POINT, 0, 2 },
+	{ "point-by-point, arc", INTERP_POINT_BY_POINT, 0, 0 },
+	{ "main-direction, 2 axes", INTERP_MAIN_DIRECTION, 0, 2 },
+	{ "main-direction, tree of 8", INTERP_MAIN_DIRECTION, INTERP_TREE, 8 },
+	{ "min-switch, 2 axes", INTERP_MIN_SWITCH, 0, 2 },
+	{ "min-switch, tree of 8", INTERP_MIN_SWITCH, INTERP_TREE, 8 },
+	{ "min-switch, tube of 8", INTERP_MIN_SWITCH, INTERP_TUBE, 8 },
+};
+
+static struct interp_program program_of(const struct path *p)
+{
+	const struct interp_build_options o = {
+		.machine = &machine.axes, .strategy = p->strategy,
+		.tolerance_milli = 2000, .coupling = p->coupling,
+	};
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
+	const struct interp_build_arc arc = {
+		.axis_a = INTERP_X, .axis_b = INTERP_Y,
+		.centre_a_mm = REACH_MM / 4,
+	};
+	struct interp_build *b = interp_build_create(&o);
+	double to[INTERP_NAXES] = { 0 };
+	struct interp_diag d;
+
+	for (int i = 0; i < p->axes; i++)
+		to[i] = REACH_MM / (1 + 0.37 * i);
+	bench_must(b && !(p->axes ? interp_build_line(b, to, &w, &d) :
+				    interp_build_arc(b, to, &arc, &w, &d)));
+	return bench_program(b);
+}
+
+/* The first points of a run on the way; the rest is not walked. */
+static void walk(struct interp_cursor *c, double ds_mm, uint64_t points)
+{
+	uint16_t pulses[RUN];
+
+	interp_cursor_aim(c, ds_mm);
+	for (uint64_t n = 0; n < points; ) {
+		const uint64_t left = points - n;
+		const uint32_t some = interp_cursor_run(c, pulses,
+				left < RUN ? (uint32_t)left : RUN);
+
+		n += some;
+		if (some == 0 && interp_cursor_step(c) == INTERP_MOVED)
+			n++;
+		else
+			bench_must(some > 0);
+	}
+}
+
+static void count_path(const struct path *p)
+{
+	const struct interp_program prog = program_of(p);
+	struct interp_cursor c;
+	char name[80];
+
+	interp_cursor_init(&c, &prog);
+	begin();
+	walk(&c, 1e9, POINTS);
+	snprintf(name, sizeof(name), "a point forward: %s", p->name);
+	end(name, POINTS);
+	begin();
+	walk(&c, -1e9, POINTS - 1000);
+	snprintf(name, sizeof(name), "a point back: %s", p->name);
+	end(name, POINTS - 1000);
+}
+
+/* -- Lines ----------------------------------------------------------------------- */
+
+static const char *const texts[] = {
+	"a line compiled: X Y Z", "a line compiled: arcs",
+	"a line compiled: X Y Z C",
+};
+
+static void write_text(FILE *f, int kind)
+{
+	fputs("G21 G90 F600\n", f);
+	for (int i = 1; i <= LINES; i++) {
+		const double a = i * 0.02, x = 20 * cos(a), y = 20 * sin(a);
+
+		if (kind == 0)
+			fprintf(f, "G1 X%.3f Y%.3f Z%.3f\n", x, y, -i * 1e-3);
+		else if (kind == 1)
+			fprintf(f, "G3 X%.3f I%.3f J0\n", i & 1 ? 0.4 : 0.0,
+				i & 1 ? 0.2 : -0.2);
+		else
+			fprintf(f, "G1 X%.3f Y%.3f Z%.3f C%.3f\n", x, y,
+				-i * 1e-3, i * 0.03);
+	}
+}
+
+/* As edmd-jobs makes a program of a text. */
+static struct interp_program compile(const char *text, size_t size)
+{
+	struct interp_build_options bo = { .machine = &machine.axes };
+	const struct interp_nc_options no = { .machine = &machine.axes };
+	struct interp_build *b = interp_build_create(&bo);
+	struct interp_nc_result done;
+	struct interp_diag diag = { 0 };
+
+	bench_must(b != NULL);
+	if (interp_nc_compile(text, size, &no, b, &done, &diag)) {
+		fprintf(stderr, "count: %u:%u: %s\n", diag.line, diag.column,
+			diag.found);
+		exit(70);
+	}
+	return bench_program(b);
+}
+
+static void count_compile(int kind)
+{
+	char *text = NULL;
+	size_t size;
+	FILE *f = open_memstream(&text, &size);
+
+	bench_must(f != NULL);
+	write_text(f, kind);
+	bench_must(fclose(f) == 0);
+	begin();
+	compile(text, size);
+	end(texts[kind], LINES);
+	free(text);
+}
+
+/* -- Cycles ---------------------------------------------------------------------- */
+
+static void steps(struct cycle *c, struct io_machine *m, uint64_t n)
+{
+	struct io_outputs out;
+	struct io_inputs in;
+
+	for (uint64_t i = 0; i < n; i++) {
+		m->read(m->self, &in);
+		cycle_step(c, &in, &out);
+		m->write(m->self, &out);
+		bench_must(state_duty[c->state].running);
+	}
+}
+
+static void count_cycles(const struct interp_program *p, bool dry)
+{
+	const struct cycle_command start = { .verb = CYCLE_START };
+	static struct cycle_config cc;
+	static struct cycle c;
+	struct io_machine m;
+
+	config_cycle(&machine, &cc);
+	cc.dry_run = dry;
+	cycle_init(&c, &cc);
+	cycle_load(&c, p);
+	cycle_command(&c, &start);
+	bench_must(!(dry ? io_null_open(&m, NULL, NULL) :
+			   io_sim_open_seed(&m, &machine, 1)));
+	m.write(m.self, &c.out);
+	/* Past the approach, so that it sparks. */
+	steps(&c, &m, 200);
+	begin();
+	steps(&c, &m, dry ? 1000 : CYCLES);
+	end(dry ? "a cycle of a dry run" : "a cycle in the simulated gap",
+	    dry ? 1000 : CYCLES);
+	m.close(m.self);
+}
+
+int main(void)
+{
+	static const char cut[] = "G21 G90 F60\nM3\nG1 X1 Y-2 Z-4\nM2\n";
+	struct interp_program p;
+
+	config_defaults(&machine);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		machine.axes.axis[i] = (struct interp_axis_limits) {
+			0.001, -200, 200, 80, 1000, 20000
+		};
+	machine.axes.present = 0xff;
+	for (size_t i = 0; i < sizeof(paths) / sizeof(*paths); i++)
+		count_path(&paths[i]);
+	for (int i = 0; i < 3; i++)
+		count_compile(i);
+	p = compile(cut, strlen(cut));
+	count_cycles(&p, true);
+	count_cycles(&p, false);
+	return 0;
+}

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * axis-sim - an axis of a motor on step and direction, with an encoder
+ *
+ *	axis-sim TRACE-PIPE STEP DIR PULL-A PULL-B COMMANDS PLACE
+ *
+ * What is driven on lines STEP and DIR comes from the kernel's trace, events
+ * gpio_value; A and B are moved by the pulls of a simulated chip.  A pulse is
+ * two counts.  Each line of the FIFO COMMANDS is a number: the axis slips back
+ * by so many pulses.  File PLACE has where the axis truly is, in counts.
+ */
+#include <fcntl.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define COUNTS_A_PULSE	2
+
+static const char *pull[2], *place_file;
+static int level[2], high[2], number[2];	/* encoder; step and dir */
+static long place;
+
+static void put(const char *path, const char *text, int flags)
+{
+	const int fd = open(path, O_WRONLY | flags, 0644);
+
+	if (fd < 0 || write(fd, text, strlen(text)) < 0) {
+		perror(path);
+		exit(1);
+	}
+	close(fd);
+}
+
+/* A leads in the positive direction. */
+static void count(int sign)
+{
+	const int line = (level[0] == level[1]) == (sign > 0) ? 0 : 1;
+
+	level[line] ^= 1;
+	put(pull[line], level[line] ? "pull-up" : "pull-down", 0);
+	place += sign;
+}
+
+static void move(int sign, long pulses)
+{
+	char text[32];
+
+	for (long i = 0; i < COUNTS_A_PULSE * pulses; i++)
+		count(sign);
+	snprintf(text, sizeof(text), "%ld\n", place);
+	put(place_file, text, O_CREAT | O_TRUNC);
+}
+
+static void driven(const char *row)
+{
+	const char *at = strstr(row, "gpio_value: ");
+	int line, value;
+
+	if (!at || sscanf(at, "gpio_value: %d set %d", &line, &value) != 2)
+		return;
+	if (line == number[0] && value && !high[0])
+		move(high[1] ? 1 : -1, 1);
+	for (int i = 0; i < 2; i++)
+		if (line == number[i])
+			high[i] = value;
+}
+
+int main(int argc, char **argv)
+{
+	char text[65536];
+	struct pollfd p[2];
+	size_t n = 0;
+
+	if (argc != 8)
+		return 2;
+	p[0].fd = open(argv[1], O_RDONLY | O_NONBLOCK);
+	p[1].fd = open(argv[6], O_RDWR | O_NONBLOCK);
+	p[0].events = p[1].events = POLLIN;
+	number[0] = atoi(argv[2]);
+	number[1] = atoi(argv[3]);
+	pull[0] = argv[4];
+	pull[1] = argv[5];
+	place_file = argv[7];
+	while (poll(p, 2, -1) >= 0) {
+		char order[64], *line = text, *end;
+		ssize_t got = read(p[1].fd, order, sizeof(order) - 1);
+
+		if (got > 0) {
+			order[got] = '\0';
+			move(-1, atol(order));
+		}
+		got = read(p[0].fd, text + n, sizeof(text) - 1 - n);
+		n += got > 0 ? (size_t)got : 0;
+		text[n] = '\0';
+		for (; (end = strchr(line, '\n')); line = end + 1) {
+			*end = '\0';
+			driven(line);
+		}
+		n = strlen(line);
+		memmove(text, line, n + 1);
+	}
+	return 1;
+}

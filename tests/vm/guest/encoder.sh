@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# One CPU in virtual time: an axis with an encoder, a brake and a line of power.
+# ./axis-sim is the axis: it follows the pulses, and slips when it is told to.
+. ./lib.sh
+J=$PWD
+cp axis-sim $R/
+cd $R
+b=$(base sim0)
+mkfifo slip
+echo mono > $T/trace_clock
+echo "gpio==$b||gpio==$((b + 1))" > $T/events/gpio/gpio_value/filter
+echo 1 > $T/events/gpio/gpio_value/enable
+./axis-sim $T/trace_pipe $b $((b + 1)) $(chip_dir sim0)/sim_gpio24/pull \
+	$(chip_dir sim0)/sim_gpio25/pull slip place 2> axis-sim.err &
+axis=$!
+
+lines() { echo "brake $(level sim0 26) enable $(level sim0 27)"; }
+
+ended() { status_is 'state *idle' && echo "at $(cat place) $(ctl --json status)"; }
+
+for edmd in edmd edmd2; do
+	edmd_start ./$edmd encoder.ini
+	jobs_start encoder.ini
+	{
+	echo "before: $(lines)"
+	ctl submit encoder.ngc
+	status_is 'state *travel' && sleep 1 && echo "travel: $(lines)"
+	# Less than resync_mm: made good after reset and start.
+	echo 50 > slip
+	status_is 'fault *following' && echo "slipped: $(lines)"
+	sleep 0.2
+	echo "later: $(lines)"
+	ctl start; echo "early start $?"
+	ctl reset; status_is 'fault *none' && echo "reset: $(lines)"
+	ctl start; echo "start $?"
+	status_is 'state *travel' && echo "goes on: $(lines)"
+	ended
+	# More than that: its place is lost.
+	ctl submit encoder.ngc
+	status_is 'state *travel' && sleep 1
+	echo 150 > slip
+	status_is 'fault *following'
+	ctl reset; status_is 'fault *none'
+	ctl start; echo "lost start $?"
+	ctl stop; status_is 'state *idle'
+	ctl home X; echo "home $?"
+	status_is 'state *idle'
+	ctl submit back.ngc
+	status_is 'state *travel' && ended
+	} > $edmd.said 2>&1
+	daemons_end $edmd
+	cp $edmd.said $edmd.log $edmd.edmd-rc $J/
+	rm -f /dev/shm/edmd.vm.*
+done
+kill $axis
+cp axis-sim.err $J/
+cd $J
+dmesg | grep -E 'Call Trace|WARNING:|BUG:|detected.*stall|soft lockup' > kernel
+true
