@@ -38,8 +38,7 @@ static int put_failure(const char *found, const char *wanted)
 {
 	struct interp_diag d = { .line = 0 };
 
-	snprintf(d.found, sizeof(d.found), "%s", found);
-	snprintf(d.wanted, sizeof(d.wanted), "%s", wanted);
+	interp_diag_say(&d, "%s; %s", found, wanted);
 	return put_refusal("panel", &d);
 }
 

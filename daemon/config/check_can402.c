@@ -86,11 +86,10 @@ static int check_brake(struct check *q, int axis)
 	if (node_of(q, axis) == 0 || axis != INTERP_Z ||
 	    q->c->drive[axis].brake != BRAKE_UNSAID)
 		return 0;
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "axis.Z.brake: not told");
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "free: it stays where it is without power; drive: the drive's "
-		 "own brake holds it; none: it is held under torque");
+	interp_diag_say(q->diag, "axis.Z.brake: not told; free: it stays "
+				 "where it is without power; drive: the "
+				 "drive's own brake holds it; none: it is "
+				 "held under torque");
 	return refuse(q, SECTION_AXIS, "brake", axis);
 }
 
@@ -131,12 +130,10 @@ static int check_following(struct check *q)
 
 	if (k->following_mm < k->resync_mm)
 		return 0;
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "can402.following_mm %g with resync_mm %g", k->following_mm,
-		 k->resync_mm);
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "following_mm below resync_mm: what is off by more than it "
-		 "is a fault, and comes back by reset and start");
+	interp_diag_say(q->diag, "can402.following_mm %g with resync_mm %g; "
+			"following_mm below resync_mm: an axis that is off by "
+			"more than following_mm is a fault, and reset and "
+			"start bring it back", k->following_mm, k->resync_mm);
 	return refuse(q, SECTION_CAN402, "following_mm", 0);
 }
 

@@ -12,12 +12,11 @@
 /* Between a place that is measured and the target that heeds it. */
 #define CAN402_PERIODS	2
 
-static int refuse(const struct machine_config *c, struct interp_diag *diag,
-		  const char *wanted)
+/* What interp_diag_say() said is of the line of `method`. */
+static int refuse(const struct machine_config *c, struct interp_diag *diag)
 {
 	diag->line = c->contour.line;
 	diag->column = 0;
-	snprintf(diag->wanted, sizeof(diag->wanted), "%s", wanted);
 	return -EINVAL;
 }
 
@@ -33,12 +32,13 @@ static int check_methods(const struct machine_config *c, int methods,
 
 	if ((methods & ~had) == 0)
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "contour.method %.40s asks for more than the cycle knows of "
-		 "what comes", c->contour.method);
-	return refuse(c, diag, "none, feedforward, cross-coupled or "
-		      "feedforward+cross-coupled; predictive, zpetc and twin "
-		      "are for edmsim --tune-contour and --dry-run");
+	interp_diag_say(diag, "contour.method %.40s asks for more than the "
+			      "cycle knows of what comes; none, feedforward, "
+			      "cross-coupled or feedforward+cross-coupled; "
+			      "predictive, zpetc and twin are for edmsim "
+			      "--tune-contour and --dry-run",
+			      c->contour.method);
+	return refuse(c, diag);
 }
 
 /* Its axes lag, and take places. */
@@ -48,11 +48,10 @@ static int check_backend(const struct machine_config *c,
 	if (config_backend(c)->drives ||
 	    (c->backend == BACKEND_SIM && (c->sim.loops || c->sim.lag_s > 0)))
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "contour.method %.40s on axes that do not lag",
-		 c->contour.method);
-	return refuse(c, diag, "none; or backend = can402, or sim with [sim] "
-		      "loops = yes");
+	interp_diag_say(diag, "contour.method %.40s on axes that do not lag; "
+			      "none; or backend = can402, or sim with [sim] "
+			      "loops = yes", c->contour.method);
+	return refuse(c, diag);
 }
 
 static double lead_periods(const struct machine_config *c, int axis)
@@ -67,10 +66,11 @@ static int check_lead(const struct machine_config *c, int axis,
 
 	if (floor(lead) <= CONTOURING_LEAD_MAX)
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "contour.lead_periods and axis.%c.loop_delay_s are %.3g "
-		 "periods together", INTERP_AXIS_LETTERS[axis], lead);
-	return refuse(c, diag, "below 7 periods; or contour.method = none");
+	interp_diag_say(diag, "contour.lead_periods and axis.%c.loop_delay_s "
+			      "are %.3g periods together; below 7 periods; or "
+			      "contour.method = none",
+			      INTERP_AXIS_LETTERS[axis], lead);
+	return refuse(c, diag);
 }
 
 /* Half of what makes the loop swing is left as its margin. */
@@ -81,27 +81,27 @@ static int check_margin(const struct machine_config *c, int axis,
 	struct interp_axis_loop l = c->loop[axis];
 	struct interp_axis_model m;
 	double most;
-	char wanted[96];
 
 	if (config_backend(c)->drives)
 		l.delay_s += CAN402_PERIODS * period_s(c);
 	if (interp_axis_model_init(&m, &l, period_s(c), 0) < 0) {
-		snprintf(diag->found, sizeof(diag->found),
-			 "axis.%c.loop_* are no loop", INTERP_AXIS_LETTERS[axis]);
-		return refuse(c, diag, "what edmctl identify prints");
+		interp_diag_say(diag, "axis.%c.loop_* are no loop; what "
+				      "edmctl identify prints",
+				      INTERP_AXIS_LETTERS[axis]);
+		return refuse(c, diag);
 	}
 	most = interp_axis_model_gain_max_1_s(&m) / 2;
 	if (gain <= most)
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "contour.cross_1_s %g and axis.%c.loop_gain_1_s %g leave less "
-		 "than 6 dB before they swing", c->contour.cross_1_s,
-		 INTERP_AXIS_LETTERS[axis], c->loop[axis].gain_1_s);
 	/* Rounded down: what is told is taken. */
-	snprintf(wanted, sizeof(wanted), "at most %.4g 1/s together: cross_1_s "
-		 "%.4g and less", floor(most * 10) / 10,
-		 floor(fmax(most - c->loop[axis].gain_1_s, 0) * 10) / 10);
-	return refuse(c, diag, wanted);
+	interp_diag_say(diag, "contour.cross_1_s %g and axis.%c.loop_gain_1_s "
+			"%g leave less than 6 dB before they swing; at most "
+			"%.4g 1/s together: cross_1_s %.4g and less",
+			c->contour.cross_1_s, INTERP_AXIS_LETTERS[axis],
+			c->loop[axis].gain_1_s, floor(most * 10) / 10,
+			floor(fmax(most - c->loop[axis].gain_1_s, 0) * 10) /
+			10);
+	return refuse(c, diag);
 }
 
 static int check_axis(const struct machine_config *c, int methods, int axis,
@@ -111,11 +111,11 @@ static int check_axis(const struct machine_config *c, int methods, int axis,
 		return check_lead(c, axis, diag) ||
 		       (methods & INTERP_COMPENSATE_CROSS &&
 			check_margin(c, axis, diag)) ? -EINVAL : 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "contour.method %.40s, and axis.%c has no loop_gain_1_s",
-		 c->contour.method, INTERP_AXIS_LETTERS[axis]);
-	return refuse(c, diag, "the loop of each axis that is present, by "
-		      "edmctl identify; or method = none");
+	interp_diag_say(diag, "contour.method %.40s, and axis.%c has no "
+			"loop_gain_1_s; the loop of each axis that is "
+			"present, by edmctl identify; or method = none",
+			c->contour.method, INTERP_AXIS_LETTERS[axis]);
+	return refuse(c, diag);
 }
 
 int config_check_contouring(const struct machine_config *c,

@@ -12,9 +12,7 @@
 
 static int refuse(struct interp_diag *d, const char *word, const char *wanted)
 {
-	snprintf(d->found, sizeof(d->found), "\"%s\"", word);
-	snprintf(d->wanted, sizeof(d->wanted), "%s", wanted);
-	return -EINVAL;
+	return interp_diag_say(d, "\"%s\"; %s", word, wanted);
 }
 
 /* The next word into @ret; false: there is none. */

@@ -243,12 +243,11 @@ static int check_guard(struct check *q, int line, const char *by,
 	    strcmp(by, "none") != 0)
 		return 0;
 	blame(q, key_of_line(LINE_SPARK), 0);
-	snprintf(q->diag->found, sizeof(q->diag->found),
-		 "gpio.spark without gpio.%s", config_line_name(line));
-	snprintf(q->diag->wanted, sizeof(q->diag->wanted),
-		 "gpio.%s = the number of a line; or gpio.%s = in your words, "
-		 "what does it instead", config_line_name(line), key);
-	return -EINVAL;
+	return interp_diag_say(q->diag, "gpio.spark without gpio.%s; gpio.%s "
+					"= the number of a line; or gpio.%s = "
+					"in your words, what does it instead",
+					config_line_name(line),
+					config_line_name(line), key);
 }
 
 static int check_guards(struct check *q)

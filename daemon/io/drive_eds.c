@@ -114,12 +114,12 @@ static bool is_outside(const struct object *o)
 static int refuse(struct interp_diag *d, const char *path,
 		  const struct object *o, const char *why)
 {
-	snprintf(d->found, sizeof(d->found), "%s: object %04x:%02x, value %x: "
-		 "%s", path, o->want.index, o->want.sub, o->want.value, why);
-	snprintf(d->wanted, sizeof(d->wanted), "a drive that has it; or another "
-		 "value in the machine file; or drive_leave = %x, if "
-		 "something else does its work", o->want.index);
-	return -EINVAL;
+	return interp_diag_say(d, "%s: object %04x:%02x, value %x: %s; a "
+				  "drive that has it; or another value in the "
+				  "machine file; or drive_leave = %x, if "
+				  "something else does its work", path,
+				  o->want.index, o->want.sub, o->want.value,
+				  why, o->want.index);
 }
 
 int drive_eds_check(const char *path, const struct drive_config *c,
@@ -132,10 +132,9 @@ int drive_eds_check(const char *path, const struct drive_config *c,
 	collect(&e, c);
 	line = ini_parse(path, on_key, &e);
 	if (line != 0) {
-		snprintf(diag->found, sizeof(diag->found), "%s: %s", path,
-			 line < 0 ? strerror(errno) : "not the lines of an EDS");
-		snprintf(diag->wanted, sizeof(diag->wanted),
-			 "the EDS of the drive, as its maker has it");
+		interp_diag_say(diag, "%s: %s; the EDS of the drive, as its "
+				      "maker has it", path,
+				      line < 0 ? strerror(errno) : "not the lines of an EDS");
 		return line < 0 ? -ENOENT : -EINVAL;
 	}
 	for (size_t i = 0; i < e.n; i++) {

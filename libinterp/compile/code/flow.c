@@ -290,7 +290,7 @@ int nc_end_of_text(struct nc_reader *r)
 				    "the end of the text without M02");
 	if (r->curve.open && r->over != NC_FINISHED)
 		return nc_refuse_at(r, r->curve.line,
-				    r->curve.open == NC_NURBS ?
+				    r->curve.open != NC_NURBS_BLOCK ?
 				    "all its knots, in blocks of their own" :
 				    "G5.3 behind its last control point",
 				    "a curve that does not end");

@@ -204,7 +204,7 @@ static int refuse_absent(struct nc_reader *r, uint32_t absent)
 static int add_motion(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
-	const int slot = __builtin_ctz(b->words & NC_MOVES);
+	const int slot = __builtin_ctz(b->words);
 
 	if (!r->motion)
 		return nc_refuse(r, b->at[slot], "G0 G1 G2 or G3 in this line "
@@ -238,6 +238,10 @@ static int check_alone(struct nc_reader *r)
 static int complete(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
+	/* The knots of a body are P and Q is of its rotation. */
+	const uint32_t moves = r->curve.open == NC_BODY ?
+			       NC_MOVES | NC_BIT(NC_P) | NC_BIT(NC_Q) :
+			       NC_MOVES;
 
 	if (nc_has_group(r, NC_CYCLE) || nc_has_group(r, NC_TOUCH))
 		return check_alone(r);
@@ -251,7 +255,7 @@ static int complete(struct nc_reader *r)
 					 b->code_at[NC_ONE_SHOT]).s);
 		return 0;
 	}
-	if ((b->words & NC_MOVES) && !nc_has_group(r, NC_MOTION))
+	if (b->words & moves && !nc_has_group(r, NC_MOTION))
 		return add_motion(r);
 	return 0;
 }
@@ -272,6 +276,9 @@ int nc_run_line(struct nc_reader *r)
 		if (err)
 			return err;
 	}
+	err = nc_tool_vector(r);
+	if (err)
+		return err;
 	if (b->words & ~b->takes)
 		return refuse_leftover(r, b->words & ~b->takes);
 	if (b->words & r->absent)

@@ -170,7 +170,7 @@ int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	if (err)
 		return err;
 	if (r->tool.on)
-		return nc_tip_line(r, end_mm, rapid);
+		return nc_tool_line(r, end_mm, rapid);
 	err = contour_line(&r->contour, end_mm, &r->word, r->diag);
 	return nc_placed(r, err, end_mm);
 }

@@ -7,6 +7,7 @@
  * order ask for.  Until then no other word may stand on a line.
  */
 #include "code/nurbs_words.h"
+#include "code/tip_turn.h"
 
 #include <errno.h>
 #include <math.h>
@@ -131,7 +132,7 @@ static void set_feed(struct nc_reader *r)
 }
 
 /* The line of a control point, where the curve is nearest to it. */
-static void set_marks(struct nc_curve *c)
+void nc_curve_set_marks(struct nc_curve *c)
 {
 	for (uint32_t i = 0; i < c->npoints; i++) {
 		double sum = 0;
@@ -180,7 +181,7 @@ int nc_curve_build(struct nc_reader *r)
 	for (uint8_t i = 0; i < INTERP_NAXES; i++)
 		bc.axis[i] = i;
 	set_feed(r);
-	set_marks(c);
+	nc_curve_set_marks(c);
 	if (r->tool.on)
 		return nc_tip_curve(r, &bc);
 	err = contour_nurbs(&r->contour, c->last_mm, &bc, &r->word, r->diag);
@@ -229,11 +230,11 @@ static int fanuc_open(struct nc_reader *r)
 	return 0;
 }
 
-static int fanuc_knot(struct nc_reader *r)
+int nc_curve_next_knot(struct nc_reader *r, enum nc_slot slot)
 {
 	const struct nc_curve *c = &r->curve;
-	const uint8_t *at = r->block.at[NC_K];
-	const double u = r->block.value[NC_K];
+	const uint8_t *at = r->block.at[slot];
+	const double u = r->block.value[slot];
 	uint32_t same = 1;
 
 	if (c->nknots > 0 && u < c->knots[c->nknots - 1])
@@ -251,15 +252,23 @@ static int fanuc_knot(struct nc_reader *r)
 	return nc_curve_knot(r, u);
 }
 
+int nc_curve_in_turn(struct nc_reader *r, enum nc_slot slot)
+{
+	if (r->curve.nknots <= r->curve.npoints + 1)
+		return 0;
+	return nc_refuse(r, r->block.at[slot], "the rest of the knots, "
+			 "alone in their blocks",
+			 "a control point behind knots of their own");
+}
+
 static int fanuc_point(struct nc_reader *r)
 {
 	const double weight = nc_has(r, NC_R) ? r->block.value[NC_R] : 1;
 	double at_mm[INTERP_NAXES];
+	const int err = nc_curve_in_turn(r, NC_K);
 
-	if (r->curve.nknots > r->curve.npoints + 1)
-		return nc_refuse(r, r->block.at[NC_K], "the rest of the knots, "
-				 "alone in their blocks",
-				 "a control point behind knots of their own");
+	if (err)
+		return err;
 	if (!(weight >= NC_WEIGHT_MIN))
 		return nc_curve_refuse_weight(r, NC_R);
 	nc_curve_target(r, at_mm);
@@ -286,7 +295,7 @@ static int fanuc(struct nc_reader *r)
 		err = nc_refuse(r, b->at[NC_P], "P in the first block of G6.2",
 			       "a second order of one curve");
 	if (!err)
-		err = fanuc_knot(r);
+		err = nc_curve_next_knot(r, NC_K);
 	if (!err && (first || b->words & (NC_AXES | NC_BIT(NC_R))))
 		err = fanuc_point(r);
 	if (err || c->nknots != c->npoints + c->order)
@@ -327,9 +336,10 @@ int nc_curve_goes_on(struct nc_reader *r)
 		    NC_BIT(g))
 			at = b->code_at[g];
 	}
-	if (c->open == NC_NURBS)
-		return nc_refuse(r, at, "the rest of its knots, K alone in a "
-				 "block", "%u knots for %u control points of "
+	if (c->open == NC_NURBS || c->open == NC_BODY)
+		return nc_refuse(r, at, c->open == NC_BODY ? "the rest of its "
+				 "knots, P alone in a block" :
+				 "the rest of its knots, K alone in a block", "%u knots for %u control points of "
 				 "order %u: it takes %u", c->nknots, c->npoints,
 				 c->order, c->npoints + c->order);
 	return nc_refuse(r, at, "G5.3 before it",
@@ -345,6 +355,7 @@ int nc_curve(struct nc_reader *r)
 		[NC_NURBS_BLOCK]	= nc_curve_block,
 		[NC_NURBS_END]		= nc_curve_end,
 		[NC_NURBS]		= fanuc,
+		[NC_BODY]		= nc_body,
 	};
 	const int motion = r->block.code[NC_MOTION]->value;
 

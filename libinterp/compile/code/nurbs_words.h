@@ -9,7 +9,7 @@
 
 #define NC_WEIGHT_MIN	1e-9
 
-/** nc_curve_open() - begin one of @kind, NC_NURBS or NC_NURBS_BLOCK. */
+/** nc_curve_open() - begin one of @kind: NC_NURBS, NC_NURBS_BLOCK, NC_BODY. */
 void nc_curve_open(struct nc_reader *r, uint8_t kind, uint32_t order);
 
 /** nc_curve_point(), nc_curve_knot() - one more.
@@ -20,6 +20,15 @@ int nc_curve_knot(struct nc_reader *r, double u);
 
 /** nc_curve_target() - as nc_target(), from the last control point. */
 void nc_curve_target(const struct nc_reader *r, double ret_mm[INTERP_NAXES]);
+
+/** nc_curve_next_knot() - that of the line, in @slot. */
+int nc_curve_next_knot(struct nc_reader *r, enum nc_slot slot);
+
+/** nc_curve_in_turn() - may a control point stand beside the knot in @slot? */
+int nc_curve_in_turn(struct nc_reader *r, enum nc_slot slot);
+
+/** nc_curve_set_marks() - the lines of its control points. */
+void nc_curve_set_marks(struct nc_curve *c);
 
 /** nc_curve_check_points() - are they enough?  The word @at ended the curve. */
 int nc_curve_check_points(struct nc_reader *r, const uint8_t *at);

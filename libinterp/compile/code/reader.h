@@ -9,9 +9,11 @@
  *	arc.c		G2 and G3
  *	cycles.c	G130 ... G135, and the way out: G140 ... G143
  *	touch.c		touches: G38.2, G80 ... G82, G160 ... G162
- *	tool_point.c	G43.4: places of the tool's tip
+ *	tool_point.c	G43.4, G43.5: places of the tool's tip
  *	tip_curve.c	... its lines, arcs and curves
  *	tip_way.c	... cut into lines of the axes
+ *	tip_turn.c	... by its direction: the rotaries are found
+ *	tip_body.c	G6.3: a rigid body along two NURBS
  *	nurbs.c		curves of control points and knots, G6.2
  *	spline.c	G5 ... G5.3: curves as LinuxCNC has them
  *	passes.c	contours in passes: G150 ... G152
@@ -34,6 +36,8 @@
 /* Tool-centre-point programming. */
 struct nc_tool_point {
 	bool on;
+	bool vector;			/* G43.5: I J K are its direction */
+	double dir[3];			/* the last one, of length 1 */
 	struct interp_kinematics k;	/* with the tool's length */
 	double here_mm[INTERP_NAXES];	/* X Y Z of the tip, seen from the work;
 					 * the others as the axes stand */
@@ -248,6 +252,17 @@ int nc_tip_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 int nc_tip_arc(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	       const struct interp_build_arc *arc);
 int nc_tip_curve(struct nc_reader *r, const struct interp_build_curve *c);
+
+/** nc_tool_vector() - of a line under G43.5: may it have I J K, and no angles
+ *  of the rotaries that turn the tool? */
+int nc_tool_vector(struct nc_reader *r);
+
+/** nc_tool_looks() - the tool's direction is that of the axes. */
+void nc_tool_looks(struct nc_reader *r);
+
+/** nc_tool_line() - a line under G43.4 or G43.5. */
+int nc_tool_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		 bool rapid);
 
 /* touch.c */
 int nc_run_touch(struct nc_reader *r);

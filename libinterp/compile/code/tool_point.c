@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tool_point.c - G43.4: X Y Z are places of the tool's tip, seen from the work
+ * tool_point.c - G43.4: X Y Z are places of the tool's tip, seen from the work;
+ * G43.5: I J K are the tool's direction
  */
-#include "code/reader.h"
+#include "code/tip_turn.h"
+#include "kinematics/vector.h"
 
 #include <string.h>
 
@@ -40,6 +42,14 @@ static int lengthen(struct nc_reader *r)
 	return 0;
 }
 
+void nc_tool_looks(struct nc_reader *r)
+{
+	struct interp_kin_pose p;
+
+	interp_kin_forward(&r->tool.k, r->contour.here_mm, &p);
+	memcpy(r->tool.dir, p.dir, sizeof(r->tool.dir));
+}
+
 static int switch_on(struct nc_reader *r)
 {
 	struct interp_kin_pose p;
@@ -47,15 +57,16 @@ static int switch_on(struct nc_reader *r)
 
 	if (!r->o->kinematics)
 		return refuse_on(r, "kinematics.chain in the machine file",
-				 "G43.4 on a machine whose joints are not "
-				 "known");
+				 "places of the tip on a machine whose joints "
+				 "are not known");
 	if (!has_xyz(r->o->kinematics))
 		return refuse_on(r, "a kinematics.chain with X Y Z",
-				 "G43.4 on a machine without X Y Z in its "
-				 "chain");
+				 "places of the tip on a machine without X Y Z "
+				 "in its chain");
 	if (r->offset_side || r->taper_side || nc_has_guides(r))
 		return refuse_on(r, "G40 and G50 before it, and no guides",
-				 "G43.4 with a wire's offset or taper");
+				 "places of the tip with a wire's offset or "
+				 "taper");
 	r->tool.k = *r->o->kinematics;
 	err = lengthen(r);
 	if (err)
@@ -64,14 +75,132 @@ static int switch_on(struct nc_reader *r)
 	interp_kin_forward(&r->tool.k, r->contour.here_mm, &p);
 	memcpy(r->tool.here_mm, p.tip_mm, sizeof(p.tip_mm));
 	r->tool.on = true;
+	r->tool.vector = r->block.code[NC_TOOL_POINT]->value == NC_TOOL_VECTOR;
+	nc_tool_looks(r);
 	return 0;
 }
 
 int nc_run_tool_point(struct nc_reader *r)
 {
 	r->curve.smooth = false;
-	if (r->block.code[NC_TOOL_POINT]->value)
+	if (r->block.code[NC_TOOL_POINT]->value != NC_TOOL_OFF)
 		return switch_on(r);
-	r->tool.on = false;
+	r->tool.on = r->tool.vector = false;
 	return 0;
+}
+
+/* -- G43.5 ---------------------------------------------------------------------- */
+
+/* Rotaries that turn the tool. */
+static uint32_t turning(const struct interp_kinematics *k)
+{
+	uint32_t axes = 0;
+
+	for (uint32_t i = 0; i < k->nturn; i++)
+		axes |= NC_BIT(k->joint[k->turn[i]].axis);
+	return axes;
+}
+
+int nc_tool_vector(struct nc_reader *r)
+{
+	struct nc_block *b = &r->block;
+	const bool motion = nc_has_group(r, NC_MOTION);
+	uint32_t angles;
+
+	if (nc_has_group(r, NC_TOOL_POINT) ?
+	    b->code[NC_TOOL_POINT]->value != NC_TOOL_VECTOR : !r->tool.vector)
+		return 0;
+	if (motion && b->code[NC_MOTION]->value <= 1)
+		b->takes |= NC_CENTRE;
+	angles = r->o->kinematics && motion ?
+		 b->words & turning(r->o->kinematics) : 0;
+	if (!angles)
+		return 0;
+	return nc_refuse(r, b->at[__builtin_ctz(angles)],
+			 "I J K, from the tip into the holder; G43.4 for angles",
+			 "an angle of a rotary that turns the tool, under G43.5");
+}
+
+struct swing {
+	const double *from_mm, *to_mm;
+	double dir[3], side[3];		/* where it begins; square to that, the
+					 * way it turns */
+	double angle;
+};
+
+static void swing_at(const void *of, double t, struct nc_pose *ret)
+{
+	const struct swing *s = of;
+	const double c = cos(s->angle * t), d = sin(s->angle * t);
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret->mm[i] = t < 1 ? s->from_mm[i] +
+			     (s->to_mm[i] - s->from_mm[i]) * t : s->to_mm[i];
+	for (int i = 0; i < 3; i++)
+		ret->dir[i] = c * s->dir[i] + d * s->side[i];
+}
+
+/* The tool turns in the plane of both directions.  false: they are opposite. */
+static bool swing_set(struct swing *s, const double from[3], const double to[3])
+{
+	double x[3], sine;
+
+	vec_cross(from, to, x);
+	sine = vec_length(x);
+	s->angle = atan2(sine, vec_dot(from, to));
+	memcpy(s->dir, from, sizeof(s->dir));
+	memset(s->side, 0, sizeof(s->side));
+	if (!(sine > 1e-12))
+		return vec_dot(from, to) > 0;
+	vec_cross(x, from, s->side);
+	for (int i = 0; i < 3; i++)
+		s->side[i] /= sine;
+	return true;
+}
+
+/* The direction that the line names, or the one before it. */
+static int direction(struct nc_reader *r, double ret[3])
+{
+	double n;
+
+	memcpy(ret, r->tool.dir, sizeof(r->tool.dir));
+	if (!r->tool.vector || !(r->block.words & NC_CENTRE))
+		return 0;
+	for (int i = 0; i < 3; i++)
+		ret[i] = nc_has(r, (enum nc_slot)(NC_I + i)) ?
+			 r->block.value[NC_I + i] : 0;
+	n = vec_length(ret);
+	for (int i = 0; i < 3; i++)
+		ret[i] /= n;
+	if (n > 0 && isfinite(n))
+		return 0;
+	return nc_refuse(r, r->block.code_at[NC_MOTION], "I J K from the tip "
+			 "into the holder, as in I0 J0 K1",
+			 "a direction of length 0");
+}
+
+int nc_tool_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		 bool rapid)
+{
+	struct swing s = { .to_mm = end_mm };
+	const struct nc_pose_way w = { .at = swing_at, .of = &s };
+	double from[INTERP_NAXES], to[3];
+	int err;
+
+	if (!r->tool.vector)
+		return nc_tip_line(r, end_mm, rapid);
+	err = direction(r, to);
+	if (err)
+		return err;
+	if (!swing_set(&s, r->tool.dir, to))
+		return nc_refuse(r, r->block.code_at[NC_MOTION], "a direction "
+				 "between them first", "a direction opposite "
+				 "to the last one");
+	if (!(s.angle > 0))
+		return nc_tip_line(r, end_mm, rapid);
+	memcpy(from, r->tool.here_mm, sizeof(from));
+	s.from_mm = from;
+	err = nc_pose_way(r, &w);
+	memcpy(r->tool.dir, to, sizeof(to));
+	return err;
 }

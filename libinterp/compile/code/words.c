@@ -12,7 +12,7 @@
 #define ANY_PLACE	-999999999, 999999999, "-999999999 to 999999999"
 #define AXIS_LINES	"an axis word goes with G0 G1 G2 G3 G28 G92 G120 G6.2, X " \
 			"and Y with G5 G5.1 G5.2 too, X with G4"
-#define CENTRE_LINES	"goes with G2 or G3, or a curve"
+#define CENTRE_LINES	"goes with G2 or G3, a curve, or G0 and G1 under G43.5"
 
 /* clang-format off */
 const struct nc_word nc_words[NC_NSLOTS] = {
@@ -33,9 +33,9 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_N] = { 'N', true, 0, 999999999, "0 to 999999999", "" },
 	[NC_S] = { 'S', false, 0, 999999999, "0 to 999999999", "" },
 	[NC_P] = { 'P', false, -99999999, 99999999, "-99999999 to 99999999",
-		   "P goes with G5 G5.2 G6.2, G4 or M98, and with G120" },
-	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats; with G5.2 an order of 2 to 10",
-		   "L goes with M98, G5.2, G160 and G161" },
+		   "P goes with G5 G5.2 G6.2 G6.3, G4 or M98, and with G120" },
+	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats; with G5.2 and G6.3 an order of 2 to 10",
+		   "L goes with M98, G5.2, G6.3, G160 and G161" },
 	[NC_O] = { 'O', true, 1, 9999, "a program number of 1 to 9999", "" },
 	[NC_D] = { 'D', true, 0, 999, "a register of 0 to 999", "" },
 	[NC_H] = { 'H', true, 0, 999, "a register of 0 to 999", "" },
@@ -44,7 +44,7 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_UI] = { 'I', false, ANY_PLACE, "I " CENTRE_LINES },
 	[NC_UJ] = { 'J', false, ANY_PLACE, "J " CENTRE_LINES },
 	[NC_Q] = { 'Q', false, ANY_PLACE,
-		   "Q goes with G130 ... G135, G160 ... G162, or G5" },
+		   "Q goes with G130 ... G135, G160 ... G162, G5 or G6.3" },
 };
 
 #define LETTER(upper, lower, class)	[upper] = (class), [lower] = (class)
@@ -98,6 +98,8 @@ static const struct nc_code g[NC_NG] = {
 	[53]  = { NC_MOTION, NC_NURBS_END, 0 },
 	[62]  = { NC_MOTION, NC_NURBS,
 		  NC_AXES | P_ | NC_BIT(NC_K) | NC_BIT(NC_R) },
+	[63]  = { NC_MOTION, NC_BODY, XYZ_ | P_ | NC_BIT(NC_L) | NC_BIT(NC_Q) |
+		  NC_CENTRE | NC_BIT(NC_R) },
 	[170] = { NC_PLANE, 0, 0 },
 	[180] = { NC_PLANE, 1, 0 },
 	[190] = { NC_PLANE, 2, 0 },
@@ -107,8 +109,9 @@ static const struct nc_code g[NC_NG] = {
 	[400] = { NC_OFFSET, 0, 0 },
 	[410] = { NC_OFFSET, 1, 0 },
 	[420] = { NC_OFFSET, 2, 0 },
-	[434] = { NC_TOOL_POINT, true, 0 },
-	[490] = { NC_TOOL_POINT, false, 0 },
+	[434] = { NC_TOOL_POINT, NC_TOOL_ANGLES, 0 },
+	[435] = { NC_TOOL_POINT, NC_TOOL_VECTOR, 0 },
+	[490] = { NC_TOOL_POINT, NC_TOOL_OFF, 0 },
 	[500] = { NC_TAPER, 0, 0 },
 	[510] = { NC_TAPER, 1, NC_BIT(NC_A) },
 	[520] = { NC_TAPER, 2, NC_BIT(NC_A) },

@@ -99,12 +99,12 @@ enum nc_group {
 	NC_POWER,			/* M3 M4 M5 */
 	NC_PUMP,			/* T84 T85 */
 	NC_ESCAPE,			/* G140 ... G143 */
-	NC_TOOL_POINT,			/* G43.4 G49 */
+	NC_TOOL_POINT,			/* G43.4 G43.5 G49 */
 	NC_MACHINE,			/* G53 */
 	NC_CYCLE,			/* G130 ... G135 */
 	NC_TOUCH,			/* G38.2 G80 G81 G82 G160 ... G162 */
 	NC_ONE_SHOT,			/* G4 G28 G92 G92.1 G120 */
-	NC_MOTION,			/* G0 ... G3, G5 ... G5.3, G6.2 */
+	NC_MOTION,			/* G0 ... G3, G5 ... G5.3, G6.2, G6.3 */
 	NC_MCODE_AFTER,			/* the PLC's, after it */
 	NC_STOP,			/* M0 M1 M2 M30 M98 M99 */
 	NC_NGROUPS
@@ -117,6 +117,7 @@ enum nc_motion {
 	NC_NURBS_BLOCK,			/* G5.2: a control point */
 	NC_NURBS_END,			/* G5.3 */
 	NC_NURBS,			/* G6.2: a control point or a knot */
+	NC_BODY,			/* G6.3: the same of a rigid body */
 };
 
 /*
@@ -144,6 +145,9 @@ enum nc_touch {
 	NC_TOUCH_HOLE, NC_TOUCH_PILLAR, NC_TOUCH_CORNER,
 	NC_NTOUCHES
 };
+/* What a member of NC_TOOL_POINT does. */
+enum nc_tool { NC_TOOL_OFF, NC_TOOL_ANGLES, NC_TOOL_VECTOR };
+
 /* What a member of NC_STOP does. */
 enum nc_stop { NC_HALT, NC_OPTIONAL_HALT, NC_FINISH, NC_CALL, NC_RETURN };
 

@@ -315,11 +315,9 @@ static int settle_spiral(struct build_arc *p, struct interp_diag *diag)
 	p->straight = chord_off_mm(arc) <= RADIUS_PULSES * pulse;
 	if (p->straight)
 		return 0;
-	snprintf(diag->found, sizeof(diag->found),
-		 "a spiral from %.4f mm to %.4f mm from its centre", r0, r1);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "radii that differ by half of the smaller at most");
-	return -EINVAL;
+	return interp_diag_say(diag, "a spiral from %.4f mm to %.4f mm from "
+				     "its centre; radii that differ by half "
+				     "of the smaller at most", r0, r1);
 }
 
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag)

@@ -39,25 +39,22 @@ static int refuse_near_lead(const struct contour *k,
 			    struct interp_diag *diag)
 {
 	diag->line = k->m[f->a].word.line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "a lead that comes within %.4f mm of the contour of line %u%s",
-		 f->found_mm, k->m[f->b].word.line, plane_name(plane));
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "%.4f mm: a lead from farther off, square to the contour if "
-		 "it can be", f->wanted_mm);
-	return -EINVAL;
+	return interp_diag_say(diag, "a lead that comes within %.4f mm of the "
+				     "contour of line %u%s; %.4f mm: a lead "
+				     "from farther off, square to the contour "
+				     "if it can be", f->found_mm,
+				     k->m[f->b].word.line, plane_name(plane),
+				     f->wanted_mm);
 }
 
 static int refuse_crowded(const struct contour *k, const struct track_fault *f,
 			  struct interp_diag *diag)
 {
 	diag->line = k->m[f->a].word.line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "a contour up to line %u that crosses itself too often under "
-		 "its offset", k->m[f->b].word.line);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "fewer motions that are short against the offset");
-	return -EINVAL;
+	return interp_diag_say(diag, "a contour up to line %u that crosses "
+				     "itself too often under its offset; "
+				     "fewer motions that are short against "
+				     "the offset", k->m[f->b].word.line);
 }
 
 int contour_refuse_track(const struct contour *k, const struct track_fault *f,
@@ -100,55 +97,45 @@ int contour_refuse_faces(const struct contour *k, const struct face_fault *f,
 			 struct interp_diag *diag)
 {
 	diag->line = k->m[f->a].word.line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "the faces of lines %u and %u, which meet below the second "
-		 "plane", k->m[f->a].word.line, k->m[f->b].word.line);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "a smaller taper, or a second plane that is lower");
-	return -EINVAL;
+	return interp_diag_say(diag, "the faces of lines %u and %u, which "
+				     "meet below the second plane; a smaller "
+				     "taper, or a second plane that is lower",
+				     k->m[f->a].word.line,
+				     k->m[f->b].word.line);
 }
 
 int contour_refuse_lead(const struct contour_motion *m, double by_mm,
 			struct interp_diag *diag)
 {
 	diag->line = m->word.line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "a lead of %.4f mm for a change of offset of %.4f mm",
-		 curve_length(&m->c[0]), by_mm);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "a motion longer than the offset, square to the contour if it "
-		 "can be");
-	return -EINVAL;
+	return interp_diag_say(diag, "a lead of %.4f mm for a change of "
+				     "offset of %.4f mm; a motion longer than "
+				     "the offset, square to the contour if it "
+				     "can be", curve_length(&m->c[0]), by_mm);
 }
 
 int contour_refuse_alone(const struct interp_build_word *w,
 			 struct interp_diag *diag)
 {
 	diag->line = w->line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "another axis alone under an offset or a taper");
-	snprintf(diag->wanted, sizeof(diag->wanted), "G40 and G50 before it");
-	return -EINVAL;
+	return interp_diag_say(diag, "another axis alone under an offset or a "
+				     "taper; G40 and G50 before it");
 }
 
 int contour_refuse_plane(const struct interp_build_word *w,
 			 struct interp_diag *diag)
 {
 	diag->line = w->line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "an arc outside the plane XY under an offset, a taper or "
-		 "corner control");
-	snprintf(diag->wanted, sizeof(diag->wanted), "G17 arcs, or G40 and G50");
-	return -EINVAL;
+	return interp_diag_say(diag, "an arc outside the plane XY under an "
+				     "offset, a taper or corner control; G17 "
+				     "arcs, or G40 and G50");
 }
 
 int contour_refuse_length(const struct interp_build_word *w,
 			  struct interp_diag *diag)
 {
 	diag->line = w->line;
-	snprintf(diag->found, sizeof(diag->found),
-		 "more than %u motions under one offset", CONTOUR_MOTIONS_MAX);
-	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "G40 and G41 or G42 again between them");
-	return -EINVAL;
+	return interp_diag_say(diag, "more than %u motions under one offset; "
+				     "G40 and G41 or G42 again between them",
+				     CONTOUR_MOTIONS_MAX);
 }

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+"""G43.5, the tool's direction by I J K, and G6.3, a body along two NURBS.
+
+The machine's joints, the great circle and the rotations are written anew here;
+the curves are geomdl's.
+"""
+import functools
+import math
+
+import numpy as np
+import pytest
+from edmsim import AXES, ROOT, pulses, run
+from geomdl import NURBS
+
+INI = (ROOT / "examples/five-axis.ini").read_text()
+ROLL = INI.replace("[axis.B]\npresent = no", "[axis.B]\nv_max_mm_s = 60") \
+    .replace("A(0 15 -80) X Y Z", "A(0 15 -80) X Y Z B(0 0 -75 / 0 0 1)")
+UM = 1
+# Half a pulse of each axis: thrice 0.5 um, and 0.0005 degrees of two rotaries
+# at up to 200 mm; of the direction that of two or three rotaries.
+OFF_UM = UM + 0.5 * 3**0.5 + 2 * 200e3 * math.radians(0.0005)
+OFF_DEG = 2 * 0.001 + 3 * 0.0005
+BEGIN = "G90\nG0 Z20\n"
+END = "G49\nG0 Z40\nM30\n"
+
+
+def turn(axis, deg):
+    c, s = np.cos(np.radians(deg)), np.sin(np.radians(deg))
+    i, j = {"X": (1, 2), "Z": (0, 1)}[axis]
+    m = np.zeros((len(deg), 3, 3))
+    m[:] = np.eye(3)
+    m[:, i, i] = m[:, j, j] = c
+    m[:, i, j], m[:, j, i] = -s, s
+    return m
+
+
+def poses(rows):
+    """Tips in mm and rotations of the tool, seen from the work."""
+    q = {n: np.array([r[1 + AXES.index(n)] for r in rows]) / 1e3
+         for n in "XYZABC"}
+    tip = np.stack([q["X"], q["Y"] - 15, q["Z"] - 75 + 80], axis=1)
+    a, c = turn("X", q["A"]), turn("Z", q["C"])
+    tip = np.einsum("nij,nj->ni", a, tip) + (0, 15, -80)
+    tip = np.einsum("nij,nj->ni", c, tip)
+    return tip, c @ a @ turn("Z", q["B"])
+
+
+def walked(tmp_path, text, ini=INI, line=None):
+    machine = tmp_path / "m.ini"
+    machine.write_text(ini)
+    rows = pulses("--dry-run", "--machine", machine, text=text)
+    return poses([r for r in rows if line is None or r[0] in line])
+
+
+def unit(v):
+    return np.array(v, float) / np.linalg.norm(v)
+
+
+def angle_deg(a, b):
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1),
+                                 (a * b).sum(-1)))
+
+
+WAYS = {
+    "tilt": ((0.3, 0.2, 1), (-0.3, 0.4, 1)),
+    "from upright": ((0, 0, 1), (0.3, -0.5, 1)),
+    "to upright": ((0.3, -0.5, 1), (0, 0, 1)),
+    "over upright": ((0.2, 0.1, 1), (-0.4, -0.2, 1)),
+    "close by upright": ((0.3, 0.001, 1), (-0.3, 0.001, 1)),
+    "turn alone": ((0.4, 0.2, 1), (-0.1, 0.3, 1)),
+}
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_the_tool_turns_in_the_plane_of_both_directions(tmp_path, name):
+    d0, d1 = WAYS[name]
+    to = (30, 0, -60) if name == "turn alone" else (10, 5, -62)
+    words = [" ".join(f"{a}{x:.6f}" for a, x in zip("IJK", d))
+             for d in (d0, d1)]
+    text = (BEGIN + f"G43.5\nG0 X30 Y0 Z-60 {words[0]}\nF120\n"
+            f"G1 X{to[0]}. Y{to[1]}. Z{to[2]}. {words[1]}\n" + END)
+    tip, rotation = walked(tmp_path, text, line=(6,))
+    a, b = np.array((30, 0, -60.0)), np.array(to, float)
+    d0, d1 = unit(d0), unit(d1)
+    d = rotation[:, :, 2]
+    side = np.cross(d0, d1)
+    side /= np.linalg.norm(side)
+    assert np.degrees(np.abs(np.arcsin(d @ side))).max() < OFF_DEG
+    assert angle_deg(d[-1], d1) < OFF_DEG
+    whole = angle_deg(d0, d1)
+    done = angle_deg(d, d0) / whole
+    assert done.min() >= 0 and done.max() < 1 + OFF_DEG / whole
+    if name == "turn alone":
+        assert np.linalg.norm(tip - a, axis=1).max() * 1e3 < OFF_UM
+        return
+    share = (tip - a) @ (b - a) / ((b - a) @ (b - a))
+    off = np.linalg.norm(tip - a - np.outer(share, b - a), axis=1)
+    assert off.max() * 1e3 < OFF_UM
+    # The direction goes with the tip: at equal shares of both ways.
+    length = np.linalg.norm(b - a) * 1e3
+    assert np.abs(share - done).max() < OFF_UM / length + OFF_DEG / whole
+
+
+def test_without_i_j_k_the_direction_stays(tmp_path):
+    text = (BEGIN + "G43.5\nG0 X30 Y0 Z-60 I0.3 J0.2 K1\nF120\nG1 X10\n"
+            "G3 X0 Y10 I-10 J0\nG1 Y0 K1\n" + END)
+    _, rotation = walked(tmp_path, text, line=(6, 7))
+    assert angle_deg(rotation[:, :, 2], unit((0.3, 0.2, 1))).max() < OFF_DEG
+    _, rotation = walked(tmp_path, text, line=(8,))
+    assert angle_deg(rotation[-1, :, 2], unit((0, 0, 1))) < OFF_DEG
+
+
+# -- A body ------------------------------------------------------------------
+
+KNOTS = [0, 0, 0, 0, 0.4, 1, 1, 1, 1]
+PLACES = [(30, 0, -60), (20, 10, -60), (10, 15, -62), (0, 5, -60), (-8, 0, -61)]
+TURNS = [(1, 0, 0, 0), (0.97, 0.15, 0.1, 0.1), (0.9, 0.3, 0.1, 0.2),
+         (1.8, 0.6, 0.4, 0.6), (0.9, 0.1, 0.2, 0.3)]
+WEIGHTS = [1, 2, 1, 0.5, 1]
+
+
+def body_text():
+    lines = []
+    for i, (p, q, w) in enumerate(zip(PLACES, TURNS, WEIGHTS)):
+        words = [f"{a}{float(x)}" for a, x in zip("XYZQIJK", (*p, *q))]
+        lines.append(f"P{KNOTS[i]} R{w} " + " ".join(words))
+    return ("G6.3 L4 " + "\n".join(lines) + "\n" +
+            "".join(f"P{k}\n" for k in KNOTS[len(PLACES):]))
+
+
+@functools.cache
+def true_body(n=4000):
+    """Tips and rotations along the two curves."""
+    out = []
+    for rows in (PLACES, TURNS):
+        c = NURBS.Curve(normalize_kv=False)
+        c.degree = 3
+        c.ctrlptsw = [[x * w for x in p] + [w] for p, w in zip(rows, WEIGHTS)]
+        c.knotvector = KNOTS
+        out.append(np.array(c.evaluate_list(list(np.linspace(0, 1, n)))))
+    tip, q = out
+    q /= np.linalg.norm(q, axis=1)[:, None]
+    w, x, y, z = q.T
+    return tip, np.stack([
+        np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z),
+                  2 * (x * z + w * y)], axis=1),
+        np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
+                  2 * (y * z - w * x)], axis=1),
+        np.stack([2 * (x * z - w * y), 2 * (y * z + w * x),
+                  1 - 2 * (x * x + y * y)], axis=1)], axis=1)
+
+
+BODY = BEGIN + "G43.4\nG0 X30 Y0 Z-60\nF120\n" + body_text() + END
+LINES = range(6, 6 + body_text().count("\n"))
+
+
+def compare(tip, rotation, whole):
+    """Of each point the nearest place on the true way: um off, degrees off."""
+    true_tip, true_turn = true_body()
+    off, turned = [], []
+    steps = np.linalg.norm(np.diff(true_tip, axis=0), axis=1)
+    step = steps.max()
+    c = (np.einsum("nij,nij->n", true_turn[1:], true_turn[:-1]) - 1) / 2
+    rate = (np.degrees(np.arccos(np.clip(c, -1, 1))) / steps).max()
+    for p, m in zip(tip[::41], rotation[::41]):
+        d = np.linalg.norm(true_tip - p, axis=1)
+        near = d < d.min() + step
+        off.append(d.min())
+        # Every place that the tip may be meant for.
+        r = np.einsum("nji,jk->nik", true_turn[near], m)
+        if whole:
+            c = (np.trace(r, axis1=1, axis2=2) - 1) / 2
+            turned.append(np.degrees(np.arccos(np.clip(c, -1, 1))).min())
+        else:
+            turned.append(angle_deg(true_turn[near][:, :, 2], m[:, 2]).min())
+    return 1e3 * np.array(off), np.array(turned), step, rate
+
+
+@pytest.mark.parametrize("whole", [False, True])
+def test_a_body_keeps_to_both_curves(tmp_path, whole):
+    tip, rotation = walked(tmp_path, BODY, ROLL if whole else INI, LINES)
+    assert len(tip) > 10000
+    off, turned, step, rate = compare(tip, rotation, whole)
+    # Between two samples the nearest one is half a step away at the most.
+    assert off.max() < OFF_UM + 1e3 * step / 2
+    # The rotation goes on while the tip goes on by what it is off its place.
+    assert turned.max() < OFF_DEG + rate * (step / 2 + OFF_UM / 1e3)
+    assert turned.max() < 0.1
+    true_tip, true_turn = true_body(2)
+    assert np.linalg.norm(tip[-1] - true_tip[-1]) * 1e3 < OFF_UM
+    assert angle_deg(rotation[-1, :, 2], true_turn[-1, :, 2]) < OFF_DEG
+    if whole:
+        assert angle_deg(rotation[-1, :, 0], true_turn[-1, :, 0]) < OFF_DEG
+
+
+def test_a_body_goes_back_as_it_came(tmp_path):
+    (tmp_path / "m.ini").write_text(INI)
+    rows = pulses("--dry-run", "--there-and-back",
+                  "--machine", tmp_path / "m.ini", text=BODY)
+    at = [r[1:] for r in rows]
+    n = len(at) // 3
+    assert len(at) == 3 * n + 1 and n > 100000
+    assert at[n:2 * n + 1] == at[n::-1]
+    assert at[2 * n:] == at[:n + 1]
+
+
+@pytest.mark.parametrize("text, column, told", [
+    ("G43.5\nF120\nG1 X1 A5\n", 7, "G43.4 for angles"),
+    ("G43.5\nF120\nG1 X1 I0 J0 K0\n", 1, "a direction of length 0"),
+    ("G43.5\nF120\nG1 X1 I0 J0 K-1\n", 1, "opposite"),
+    ("G43.4\nF120\nG1 X1 I1 J0 K-5\n", 7, "I1 has no use"),
+    ("F120\nG49\nG6.3 P0 X1\n", 1, "G43.4 or G43.5 before it"),
+    ("G43.4\nF120\nG6.3 X1\n", 1, "P and a knot"),
+    ("G43.4\nF120\nG6.3 P0 X300\nP0 X1\nP0 Y1\nP0 Z1\nP1\nP1\nP1\nP1\n", None,
+     "begins elsewhere than where it is: X0.0000 Y0.0000"),
+    ("G43.4\nF120\nG6.3 P0 Q1\nP0 X1\nP0 Y1\nG1 X1\n", None, "P alone"),
+    ("G43.4\nF120\nG6.3 L11 P0\n", 6, "an order of 2 to 10"),
+    ("G43.4\nF120\nG6.3 P0 Q1\nP0 X1\n", None, "does not end"),
+])
+def test_what_is_no_pose_is_refused_with_its_place(tmp_path, text, column,
+                                                   told):
+    (tmp_path / "m.ini").write_text(INI)
+    r = run("--dry-run", "--machine", tmp_path / "m.ini", text=text)
+    err = r.stderr.decode()
+    assert r.returncode == 65 and told in err, err
+    if column:
+        assert f":3:{column}: error" in err, err
+
+
+@pytest.mark.parametrize("text", [
+    "G43.4\nF120\nG6.3 L2 P0 Q1\nP0 X1 Q0\nP0.5 X2 I1\nP1\nP1\n",
+    "G43.5\nF120\nG1 X1 I1 K1\n",
+])
+def test_what_the_rotaries_cannot_follow_is_refused(tmp_path, text):
+    (tmp_path / "m.ini").write_text(
+        INI.replace("C(0 0 -120) ", "") if "G1" in text else INI)
+    r = run("--dry-run", "--machine", tmp_path / "m.ini", text=text)
+    assert r.returncode == 65 and b"cannot point its tool" in r.stderr, \
+        r.stderr
