@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -26,6 +27,24 @@ def good(*args, **more):
     r = python(*args, **more)
     assert r.returncode == 0, r.stderr
     return r.stdout
+
+
+def test_it_is_installed_by_pip_and_typed(tmp_path):
+    source, target = tmp_path / "source", tmp_path / "target"
+    shutil.copytree(ROOT / "clients/python", source)
+    # What it needs is in this environment; there is no network here.
+    subprocess.run([sys.executable, "-m", "pip", "install", "-q", "--no-deps",
+                    "--no-index", "--no-build-isolation", "--target", target,
+                    source], check=True, timeout=300)
+    assert (target / "edm" / "py.typed").exists()
+    out = good("import edm; print(edm.__file__); edm.Client",
+               env={"PYTHONPATH": str(target)})
+    assert out.startswith(str(target))
+    r = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--cache-dir",
+         tmp_path / "cache", target / "edm"], capture_output=True, text=True,
+        cwd=tmp_path, timeout=600)
+    assert r.returncode == 0, r.stdout
 
 
 def test_its_types_are_those_of_lcm_gen(tmp_path):

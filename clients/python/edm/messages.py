@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
-from typing import NamedTuple
 
 SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
@@ -52,7 +51,8 @@ def string(text: str) -> bytes:
     return struct.pack(">i", len(data)) + data
 
 
-class Signed(NamedTuple):
+@dataclass(frozen=True)
+class Signed:
     """The envelope."""
 
     key: bytes
@@ -205,7 +205,7 @@ class Chunk:
 
     job: str
     name: str
-    bytes: int
+    size: int
     sha256: bytes
     chunk: int
     chunks: int
@@ -216,7 +216,7 @@ class Chunk:
     def encode(self, client: str, seq: int, utime: int = 0) -> bytes:
         return (JOB_CHUNK + struct.pack(">q", utime) + string(client)
                 + struct.pack(">q", seq) + string(self.job)
-                + string(self.name) + struct.pack(">q", self.bytes)
+                + string(self.name) + struct.pack(">q", self.size)
                 + self.sha256
                 + struct.pack(">iiqbi", self.chunk, self.chunks, self.offset,
                               self.hold, len(self.data)) + self.data)
