@@ -337,24 +337,23 @@ def test_names_of_an_old_store_are_cleaned_where_they_are_shown(idle):
     """Written before they were refused, or by another hand."""
     idle.start()
     c = idle.client
-    for job in ("old", "late"):
-        assert c.submit(QUICK_JOB, job).code == 0
-        c.job_where(job, "done")
+    assert c.submit(QUICK_JOB, "late").code == 0
+    c.job_where("late", "done")
     assert c.ask("estop").code == 0
+    assert c.submit(QUICK_JOB, "old", hold=True).code == 0
     assert idle.end("jobs") == 0
     bad = "\x1b]0;x\x07\u009b2J\u202eevil\u2066\x7f"
     with sqlite3.connect(idle.store / f"{idle.name}.db") as db:
         db.execute("UPDATE job SET name=?, reason=?", (bad, bad))
         db.execute("UPDATE job SET name=CAST(x'fffe41c3' AS TEXT) "
                    "WHERE id='late'")
-        db.execute("UPDATE job SET state='queued', loaded=0 WHERE id='old'")
         db.execute("UPDATE event SET job=?, outcome=?, text=?", (bad,) * 3)
     idle.start_jobs()
     c.status_where(lambda s: s.daemon == "ok")
     for words in (["queue"], ["show", "old"], ["show", "late"], ["history"],
                   ["alarms"]):
         a = c.ask(words[0], *words[1:])
-        assert "evil" in a.body or words[-1] == "late"
+        assert "evil" in a.body or "late" in a.body
         told = [json.dumps(json.loads(a.body), ensure_ascii=False)]
         for more in ([], ["--json"]):
             r = idle.ctl(*more, *words)
