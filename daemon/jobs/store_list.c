@@ -6,9 +6,10 @@
 
 #include "plain.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-#define HISTORY_MAX	200
+#define LIST_MAX	200
 #define ALARMS_MAX	20
 
 #define JOB_JSON(MORE)	"json_object('n', n, 'job', id, 'name', name, " \
@@ -25,7 +26,8 @@
 #define CHANGES_JSON	", 'changes', (SELECT json_group_array(json(c)) FROM " \
 			"(SELECT json_object('utime', time_ns / 1000, " \
 			"'place_mm', place_mm, 'what', what, 'was', was, " \
-			"'now', now) AS c FROM change WHERE change.n=job.n " \
+			"'now', now) AS c FROM (SELECT * FROM change WHERE " \
+			"change.n=job.n ORDER BY time_ns DESC LIMIT ?2) " \
 			"ORDER BY time_ns))"
 
 static sqlite3_stmt *list_query(struct store *s, enum store_list what,
@@ -33,13 +35,13 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 {
 	if (what == STORE_SHOW)
 		return store_ask(s, NULL, "SELECT " JOB_JSON(CHANGES_JSON) " FROM job "
-			     "WHERE id=?",
-			     "s", id);
+			     "WHERE id=?1", "si", id, (int64_t)rows);
 	if (what == STORE_QUEUE)
 		return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM "
 			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
 			     "state='queued' OR (loaded=1 AND state NOT IN "
-			     "('done', 'stopped')) ORDER BY n)", "");
+			     "('done', 'stopped')) ORDER BY n LIMIT ?)", "i",
+			     (int64_t)rows);
 	if (what == STORE_ALARMS)
 		return store_ask(s, NULL, "SELECT json_group_array(json(a)) FROM (SELECT "
 			     "json_object('utime', utime, 'kind', kind, 'job', "
@@ -47,8 +49,6 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 			     "'text', text) AS a FROM event WHERE kind IN "
 			     "('alarm', 'lost', 'back') ORDER BY utime DESC, "
 			     "rowid DESC LIMIT ?)", "i", (int64_t)ALARMS_MAX);
-	if (rows <= 0 || rows > HISTORY_MAX)
-		rows = HISTORY_MAX;
 	return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM (SELECT "
 		     JOB_JSON("") " AS j FROM job WHERE state IN ('done', "
 		     "'stopped', 'fault') ORDER BY ended_us DESC, n DESC "
@@ -79,8 +79,8 @@ static void make_plain(char *json)
 	*to = '\0';
 }
 
-char *store_json(struct store *s, enum store_list what, const char *id,
-		 int rows)
+static char *list_text(struct store *s, enum store_list what, const char *id,
+		       int rows)
 {
 	sqlite3_stmt *q = list_query(s, what, id, rows);
 	char *text = NULL;
@@ -90,5 +90,22 @@ char *store_json(struct store *s, enum store_list what, const char *id,
 	sqlite3_finalize(q);
 	if (text)
 		make_plain(text);
+	return text;
+}
+
+/* A client reads what fits one packet: the first of them, then. */
+char *store_json(struct store *s, enum store_list what, const char *id,
+		 int rows)
+{
+	char *text;
+
+	if (rows <= 0 || rows > LIST_MAX)
+		rows = LIST_MAX;
+	text = list_text(s, what, id, rows);
+	while (text && strlen(text) > STORE_JSON_MAX && rows > 1) {
+		rows -= rows / 8 + 1;
+		free(text);
+		text = list_text(s, what, id, rows);
+	}
 	return text;
 }

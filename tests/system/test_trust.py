@@ -15,6 +15,7 @@ import sqlite3
 import stat
 import struct
 import subprocess
+import sys
 import time
 
 import lcm
@@ -366,6 +367,61 @@ def test_names_of_an_old_store_are_cleaned_where_they_are_shown(idle):
     for arg in (float("nan"), 1e300, -1e300):
         assert c.ask("history", arg=arg).code == 65
         assert c.ask("queue", arg=arg).code == 0
+
+
+def strange_packets(c, draw, n):
+    """Of no shape, of a wrong one, in LCM's pieces; nobody has signed them."""
+    names = [f"EDM.{c.machine}.{what}".encode() + b"\0"
+             for what in ("ACK", "STATUS", "EVENT", "COMMAND", "JOB")]
+    sizes = (0, 10, 70000, 16 << 20, 2**31, 2**32 - 1)
+    for _ in range(n):
+        kind = draw.randrange(4)
+        if kind == 0:
+            yield draw.randbytes(draw.randrange(60))
+        elif kind == 1:
+            yield (b"LC02" + bytes(4) + draw.choice(names)
+                   + draw.randbytes(draw.randrange(300)))
+        elif kind == 2:
+            yield b"LC02" + bytes(4) + b"A" * draw.randrange(1, 5000)
+        else:
+            yield (struct.pack(
+                ">4sIIIHH", b"LC03", draw.randrange(8), draw.choice(sizes),
+                draw.choice(sizes), draw.choice((0, 1, 5, 65535)),
+                draw.choice((0, 1, 2, 65535))) + draw.choice(names)
+                + draw.randbytes(draw.randrange(2000)))
+
+
+def test_strange_packets_end_neither_clients_nor_the_service(machine):
+    """Anybody on the host may send them."""
+    c = machine.client
+    c.status()
+    root = pathlib.Path(__file__).parents[2]
+    watchers = [
+        subprocess.Popen([str(BUILD / "edmctl"), "--machine", machine.name,
+                          "watch"], stdout=subprocess.DEVNULL),
+        subprocess.Popen(
+            [sys.executable, "-c", "import sys, edm\n"
+             "m = edm.Client(sys.argv[1], timeout=60)\n"
+             "while True: m.status()", machine.name],
+            env={**os.environ, "PYTHONPATH": str(root / "clients/python")})]
+    # In a test's own process LCM's library would end too.
+    c.lcm = None
+    try:
+        time.sleep(1)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+            s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+            for i, p in enumerate(strange_packets(c, random.Random(5), 20000)):
+                s.sendto(p, ("239.255.76.67", 7667))
+                if i % 100 == 0:
+                    time.sleep(0.005)
+        assert machine.ctl("queue").returncode == 0
+        assert machine.ctl("jog", "X", "0.1").returncode == 0
+        assert [w.poll() for w in watchers] == [None, None]
+    finally:
+        for w in watchers:
+            w.kill()
+            w.wait()
+        machine.client = Client(machine.name)
 
 
 def test_a_short_text_of_nested_calls_is_refused_soon_and_small(machine):
