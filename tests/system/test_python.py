@@ -50,12 +50,14 @@ def test_it_is_installed_by_pip_and_typed(tmp_path):
 def test_its_types_are_those_of_lcm_gen(tmp_path):
     out = good("""
         from edm import messages as m
+        print(*m.Status.__dataclass_fields__, sep=",")
         for k in ("SIGNED", "COMMAND", "ACK", "JOB_CHUNK", "STATUS", "EVENT"):
             print(getattr(m, k).hex())
         print(m.command("me", 7, "jog", "j", 1.5, "X", 99).hex())
         print(m.Chunk("j", "n", 3, bytes(32), 0, 1, 0, True, b"abc")
               .encode("me", 8, 99).hex())
     """).split()
+    assert out.pop(0).split(",") == rig.status_t.__slots__
     kinds = (rig.signed_t, rig.command_t, rig.ack_t, rig.job_chunk_t,
              rig.status_t, rig.event_t)
     assert out[:6] == [k._get_packed_fingerprint().hex() for k in kinds]
