@@ -6,8 +6,8 @@
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make quick      of these, most of what goes wrong, in 90 s
 #   make check-strict  CAN against strict drives, in the virtual machine; long
-#   make check-vm   what runs on a PREEMPT_RT kernel in a virtual machine; apart
-#                   from check, because it takes longer than all the rest
+#   make check-vm   all that runs on a PREEMPT_RT kernel in a virtual machine; the
+#                   shorter half of it is in check
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
 #   make count      instructions of what is done most, into docs/performance.md
@@ -368,7 +368,10 @@ check:
 	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system \
-		$(PANEL_TESTS:%=--ignore %)
+		$(VM_TESTS) $(PANEL_TESTS:%=--ignore %)
+
+# Of the virtual machine's tests the shorter ones, some 3 minutes.
+VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd encoder)
 
 # A browser is driven in the tests' own process; LCM has one for itself.
 PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_page.py
@@ -651,6 +654,7 @@ clean:
 
 .PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo invariants walkable wire-random \
+	experiments-curve experiments-servo experiments-wire invariants \
+	walkable wire-random \
 	pictures callgraph faults plc-files fuzz lint install clean
 .SECONDARY:
