@@ -64,6 +64,10 @@ LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
 # libinterp has a floor for each use: see docs/architecture.md.
 CORE	:= $(wildcard libinterp/core/*/*.c)
 COMPILE	:= $(wildcard libinterp/compile/*/*.c)
+# Built into the reader, in this order: a base is in front of what begins from it.
+DIALECTS := generic linuxcnc heekscnc fanuc-sinker sodick-sinker \
+	    charmilles-robofil charmilles-cmd skd2 sodick-wire chmer \
+	    fanuc-wire mastercam-wire makino agie agievision 3b 4b
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
 # What every program has in common.
@@ -168,6 +172,19 @@ $(B)/share/edmd/%: clients/plot/%
 
 # -- Compile ------------------------------------------------------------------
 
+$(B)/dialect_files.c: $(DIALECTS:%=dialects/%.ini) Makefile
+	$(call say,GEN,$@)
+	@mkdir -p $(@D)
+	$(Q){ echo '#include "code/dialect.h"'; \
+		echo 'const struct dialect_file nc_dialect_files[] = {'; \
+		for d in $(DIALECTS); do echo "{ \"$$d\","; \
+			sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' dialects/$$d.ini; \
+			echo '},'; done; echo '{ 0, 0 } };'; } > $@
+
+$(B)/dialect_files.o: $(B)/dialect_files.c
+	$(call say,CC,$<)
+	$(Q)$(CC) $(CFLAGS) -Wno-overlength-strings $(INC_compile) -c -o $@ $<
+
 $(B)/%.o: %.c
 	$(call say,CC,$<)
 	@mkdir -p $(@D)
@@ -225,7 +242,7 @@ $(COMMON_A): $(call obj,$(COMMON))
 	$(archive)
 $(CORE_A): $(call obj,$(CORE))
 	$(archive)
-$(COMPILE_A): $(call obj,$(COMPILE))
+$(COMPILE_A): $(call obj,$(COMPILE)) $(B)/dialect_files.o
 	$(archive)
 $(MODEL_A): $(call obj,$(MODEL))
 	$(archive)
@@ -278,6 +295,9 @@ $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 # Of the store, without the rest of edmd-jobs.
 $(B)/unit/test_store: $(SIGN_O) $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/store*.c) daemon/jobs/trust.c daemon/jobs/jobs_log.c)
 $(B)/unit/test_store: UNIT_LIBS = -lsqlite3 -lsodium -lsystemd
+
+$(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
+$(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
 
 # The lines of its encoder are its own.
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
@@ -533,6 +553,8 @@ FUZZ	:= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 SEEDS_fuzz_nc	  = $(filter-out %/identify.ngc,$(wildcard examples/*.ngc))
 SEEDS_fuzz_threeb = tests/fuzz/corpus_threeb/*
 SEEDS_fuzz_tech	  = examples/*.tech examples/*.enc
+SEEDS_fuzz_dialect = dialects/*.ini
+SEEDS_fuzz_macro  = tests/data/macros/*
 
 fuzz: $(FUZZ:%=run-%)
 
@@ -568,7 +590,12 @@ $(B)/watched/%.o: %.c
 	$(Q)$(FUZZ_CC) -MMD -MP -fsanitize=fuzzer-no-link,address,undefined \
 		$(INC_$(call part,$<)) -c -o $@ $<
 
-$(FUZZ_A): $(call fuzz_o,$(FUZZ_PARTS))
+$(B)/watched/dialect_files.o: $(B)/dialect_files.c
+	$(Q)mkdir -p $(@D)
+	$(Q)$(FUZZ_CC) -fsanitize=fuzzer-no-link,address,undefined \
+		$(INC_compile) -c -o $@ $<
+
+$(FUZZ_A): $(call fuzz_o,$(FUZZ_PARTS)) $(B)/watched/dialect_files.o
 	$(archive)
 
 $(B)/fuzz_%: $(B)/watched/tests/fuzz/fuzz_%.o $(FUZZ_A)
@@ -644,6 +671,9 @@ install: all panel
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
 		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
+	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/dialects
+	$(Q)install -m 644 dialects/*.ini \
+		$(DESTDIR)$(PREFIX)/share/edmd/dialects
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
 

@@ -39,7 +39,9 @@
 	COUNT(overruns) \
 	COUNT(wake_late_max_us) \
 	WORD(condition) \
-	WORD(store)
+	WORD(store) \
+	WORD(interrupted) \
+	WORD(lost)
 
 #define STATUS_ONE(name)	+ 1
 
