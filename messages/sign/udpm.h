@@ -8,13 +8,14 @@
  * source address is dropped before a byte of it is read.  (The kernel drops
  * what comes in from outside with an address of this host.)
  *
- * Only LCM's short packets are read: everything a client sends fits one, and
- * there is nothing that an attacker could leave half sent.
+ * Only LCM's short packets are read: everything that clients and the service
+ * send fits one, and there is nothing that an attacker could leave half sent.
+ * The library's reader of long ones ends by SIGSEGV over some that nobody signed.
  *
- * Threads: one, that of the event loop.
+ * Threads: one.
  */
-#ifndef JOBS_UDPM_H
-#define JOBS_UDPM_H
+#ifndef EDM_UDPM_H
+#define EDM_UDPM_H
 
 #include <netinet/in.h>
 #include <stdbool.h>
@@ -63,4 +64,4 @@ bool udpm_take(struct udpm *u, struct udpm_packet *ret);
  *  @ret_from: the last one's sender; "" if there was none. */
 uint64_t udpm_strange(const struct udpm *u, const char **ret_from);
 
-#endif /* JOBS_UDPM_H */
+#endif /* EDM_UDPM_H */
