@@ -22,7 +22,8 @@
 #   make plc-files  EDS, DBC and the page of signals, from the one in the code
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
 #                   the README prints
-#   make fuzz       the readers of jobs under libFuzzer, a bounded time each
+#   make fuzz       the readers of jobs, and what edmd is given, under libFuzzer, a
+#                   bounded time each
 #   make panel      the operator's page, into build/panel
 #   make lint       what the cycle may call, headers alone, who may include whom
 #   make install    DESTDIR and PREFIX are honoured
@@ -282,6 +283,9 @@ $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
 
 # Of edmd itself, without its main().
 $(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
+
+$(B)/unit/test_loop_commands: $(call obj,$(addprefix daemon/edmd/,commands.c loop.c plc_loop.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
+$(B)/unit/test_loop_commands: UNIT_LIBS = -lsystemd
 
 # Of what stands in front of edmd-jobs.
 $(B)/unit/test_seal $(B)/unit/test_trust: $(SIGN_O) $(LCM_O) $(LOGGER_O) $(call obj,$(addprefix daemon/jobs/,trust.c jobs_log.c))
@@ -559,24 +563,45 @@ run-fuzz_%: $(B)/fuzz_%
 	$(Q)mkdir -p $(B)/corpus_$*
 	$(Q)$(if $(SEEDS_fuzz_$*),cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/)
 	$(Q)$< -seed=$(FUZZ_SEED) -runs=$(FUZZ_RUNS) \
-		-max_total_time=$(or $(FUZZ_MOST_S),$(FUZZ_S)) -max_len=4096 -verbosity=0 \
+		-max_total_time=$(or $(FUZZ_MOST_S),$(FUZZ_S)) -max_len=4096 $(FUZZ_MORE) -verbosity=0 \
 		-print_final_stats=1 $(B)/corpus_$* 2>$<.log || \
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
 
-# Changes to an object that readers map: each run is short, and like the others.
-run-fuzz_status: FUZZ_MOST_S = $(if $(filter-out 0,$(FUZZ_SEED)),15)
-$(B)/fuzz_status: daemon/shm/publish.c daemon/shm/object.c
-$(B)/fuzz_status: FUZZ_INC = $(INC_shm)
+# What edmd and its readers are given: the readers of jobs are the larger part.
+run-fuzz_status run-fuzz_block run-fuzz_command: \
+	FUZZ_MOST_S = $(if $(filter-out 0,$(FUZZ_SEED)),15)
+# An input of a few bytes says nothing there, so they are long from the first.
+run-fuzz_block run-fuzz_command: FUZZ_MORE = -max_len=512 -len_control=0
 
-$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON) \
-	     $(B)/dialect_files.c
-	$(call say,CLANG,$@)
+# Of our objects, watched; all that are not asked for stay in the archive.
+FUZZ_CC	= clang -std=c11 -D_GNU_SOURCE -g -O1 -DEDM_VERSION='"$(VERSION)"' \
+	  -fno-sanitize-recover=all
+fuzz_o	= $(patsubst %.c,$(B)/watched/%.o,$1)
+FUZZ_A	:= $(B)/watched/all.a
+INC_fuzz = -Itests/unit $(INC_edmd) $(INC_libinterp)
+FUZZ_PARTS = $(INTERP) $(COMMON) $(RT) $(WORDS) $(SETUP) \
+	  $(addprefix daemon/shm/,publish.c object.c names.c) \
+	  $(addprefix daemon/edmd/,commands.c crossing.c loop.c publish.c)
+
+$(B)/watched/%.o: %.c
+	$(call say,CLANG,$<)
 	$(Q)mkdir -p $(@D)
-	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
-		-fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
-		-DEDM_VERSION='"$(VERSION)"' $(INC_libinterp) $(FUZZ_INC) \
-		-o $@ $(filter %.c,$^) -lnlopt -lm
+	$(Q)$(FUZZ_CC) -MMD -MP -fsanitize=fuzzer-no-link,address,undefined \
+		$(INC_$(call part,$<)) -c -o $@ $<
+
+$(B)/watched/dialect_files.o: $(B)/dialect_files.c
+	$(Q)mkdir -p $(@D)
+	$(Q)$(FUZZ_CC) -fsanitize=fuzzer-no-link,address,undefined \
+		$(INC_compile) -c -o $@ $<
+
+$(FUZZ_A): $(call fuzz_o,$(FUZZ_PARTS)) $(B)/watched/dialect_files.o
+	$(archive)
+
+$(B)/fuzz_%: $(B)/watched/tests/fuzz/fuzz_%.o $(FUZZ_A)
+	$(call say,LD,$@)
+	$(Q)$(FUZZ_CC) -fsanitize=fuzzer,address,undefined -o $@ $^ -lcmocka \
+		-lnlopt -lpthread -lm
 
 # -- Lint ---------------------------------------------------------------------
 
@@ -618,6 +643,9 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 
 # -- Install ------------------------------------------------------------------
 
+EXAMPLES = $(wildcard examples/*.ini examples/*.ngc examples/*.tech \
+	   examples/*.enc examples/*.maps)
+
 install: all panel
 	$(call say,INSTALL,$(DESTDIR)$(PREFIX))
 	$(Q)install -d $(BINDIR) $(UNITDIR) $(DESTDIR)/usr/lib/sysusers.d \
@@ -642,15 +670,32 @@ install: all panel
 	$(Q)install -m 644 systemd/edmd.rules \
 		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules
 	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
-		examples/machine.ini $(DESTDIR)/etc/edmd/machine.ini
+		examples/template.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
 		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
+	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/examples \
+		$(DESTDIR)$(PREFIX)/share/doc/edmd
+	$(Q)install -m 644 $(EXAMPLES) $(DESTDIR)$(PREFIX)/share/edmd/examples
+	$(Q)install -m 644 README.md CHANGELOG.md LICENSE docs/*.md \
+		$(DESTDIR)$(PREFIX)/share/doc/edmd
 	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/dialects
 	$(Q)install -m 644 dialects/*.ini \
 		$(DESTDIR)$(PREFIX)/share/edmd/dialects
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
+
+# All that install brought, but for /etc/edmd, which is the user's.
+uninstall:
+	$(call say,REMOVE,$(DESTDIR)$(PREFIX))
+	$(Q)rm -f $(PROGRAMS:$(B)/%=$(BINDIR)/%) \
+		$(patsubst systemd/%.in,$(UNITDIR)/%,$(wildcard systemd/*.service.in)) \
+		$(DESTDIR)/usr/lib/sysusers.d/edmd.conf \
+		$(DESTDIR)/usr/lib/tmpfiles.d/edmd.conf \
+		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules \
+		$(patsubst docs/man/%,$(DESTDIR)$(PREFIX)/share/man/man1/%,$(wildcard docs/man/*.1)) \
+		$(patsubst docs/man/%,$(DESTDIR)$(PREFIX)/share/man/man8/%,$(wildcard docs/man/*.8))
+	$(Q)rm -rf $(DESTDIR)$(PREFIX)/share/edmd $(DESTDIR)$(PREFIX)/share/doc/edmd
 
 clean:
 	rm -rf build build-san build-tsan build-gpiod2 build-vm
@@ -661,5 +706,5 @@ clean:
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo experiments-wire invariants \
 	walkable wire-random \
-	pictures callgraph faults plc-files fuzz lint install clean
+	pictures callgraph faults plc-files fuzz lint install uninstall clean
 .SECONDARY:

@@ -14,6 +14,7 @@
 #define REPEAT_S	0.3
 #define REMIND_S	1.0
 #define SILENT_S	10.0		/* the service is started again by then */
+#define STORE_S		15.0		/* while it writes 64 MiB to a busy disk */
 #define COMPILE_S	120.0		/* a text of 64 MiB takes its time */
 
 struct job {
@@ -94,14 +95,24 @@ static void send_reminder(struct job *j, double now_s)
 	send_chunk(j, 0);
 }
 
+/* The service hears nothing while it writes a job. */
+static bool waited_enough(const struct job *j, double now_s)
+{
+	const double silent_s = now_s - j->heard_s;
+
+	if (j->whole_s == 0)
+		return silent_s > j->silent_s;
+	return (silent_s > j->silent_s && silent_s > STORE_S) ||
+	       now_s - j->whole_s > COMPILE_S;
+}
+
 int job_step(struct job *j)
 {
 	double now_s = talk_now_s();
 
 	if (j->over)
 		return 1;
-	if (now_s - j->heard_s > j->silent_s ||
-	    (j->whole_s > 0 && now_s - j->whole_s > COMPILE_S))
+	if (waited_enough(j, now_s))
 		return -ETIMEDOUT;
 	if (j->acked < j->chunks)
 		send_window(j, now_s);

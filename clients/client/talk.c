@@ -12,6 +12,7 @@
 
 #include "packet.h"
 #include "seal.h"
+#include "udpm.h"
 
 #include <errno.h>
 #include <lcm/lcm.h>
@@ -49,8 +50,8 @@ struct listener {
 };
 
 struct talk {
-	lcm_t *lcm;
-	lcm_subscription_t *subscribed[3];
+	lcm_t *lcm;			/* to send by; it hears nothing */
+	struct udpm *in;
 	struct keyfile key;
 	char machine[32];
 	char client[TALK_WORD_MAX];
@@ -283,12 +284,12 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 
 /* Signed by the machine of our key file, for this channel? */
 static bool is_machine(struct talk *t, struct seal *ret,
-		       const lcm_recv_buf_t *buf, const char *channel)
+		       const struct udpm_packet *u)
 {
-	if (!seal_read(ret, buf->data, buf->data_size))
+	if (!seal_read(ret, u->data, u->size))
 		return false;
 	if (memcmp(ret->key, t->key.machine_key, SEAL_KEY_BYTES) != 0) {
-		if (!t->known && !t->why[0] && seal_holds(ret, channel))
+		if (!t->known && !t->why[0] && seal_holds(ret, u->channel))
 			snprintf(t->why, sizeof(t->why), "somebody signs as "
 				 "machine %s with another key than that of our "
 				 "key file; if the machine's keys were made "
@@ -296,7 +297,7 @@ static bool is_machine(struct talk *t, struct seal *ret,
 				 t->machine);
 		return false;
 	}
-	return seal_holds(ret, channel);
+	return seal_holds(ret, u->channel);
 }
 
 /* Of this start of the service, and later than the one before. */
@@ -312,62 +313,43 @@ static bool is_news(struct talk *t, const struct seal *s)
 	return true;
 }
 
-static void on_ack(const lcm_recv_buf_t *buf, const char *channel, void *arg)
+static void on_ack(struct talk *t, const struct seal *s)
 {
-	struct talk *t = arg;
-	struct seal s;
-
-	if (is_machine(t, &s, buf, channel))
-		packet_ack(&s, hear_ack, t);
+	packet_ack(s, hear_ack, t);
 }
 
-static void on_status(const lcm_recv_buf_t *buf, const char *channel,
-		      void *arg)
+static void on_status(struct talk *t, const struct seal *s)
 {
-	struct talk *t = arg;
-	struct seal s;
-
-	if (is_machine(t, &s, buf, channel) && is_news(t, &s) &&
-	    packet_status(&s, &t->status))
+	if (is_news(t, s) && packet_status(s, &t->status))
 		t->nstatus++;
 }
 
-static void on_event(const lcm_recv_buf_t *buf, const char *channel, void *arg)
+static void on_event(struct talk *t, const struct seal *s)
 {
-	struct talk *t = arg;
-	struct seal s;
-
-	if (is_machine(t, &s, buf, channel) && is_news(t, &s) &&
-	    packet_event(&s, t->on_event, t->on_event_arg))
+	if (is_news(t, s) && packet_event(s, t->on_event, t->on_event_arg))
 		t->nevents++;
 }
 
-/* -- Opening ---------------------------------------------------------------- */
-
-/* A channel to subscribe to is a pattern to LCM: the dots are meant. */
-static int subscribe(struct talk *t)
+static void take(struct talk *t, const struct udpm_packet *u)
 {
 	static const struct {
 		const char *name;
-		lcm_msg_handler_t handler;
-	} channel[] = {
+		void (*fn)(struct talk *t, const struct seal *s);
+	} heard[] = {
 		{ "ACK", on_ack }, { "STATUS", on_status },
 		{ "EVENT", on_event },
 	};
-	char pattern[CHANNEL_MAX + 4];
+	char channel[CHANNEL_MAX];
+	struct seal s;
 
-	for (int i = 0; i < 3; i++) {
-		snprintf(pattern, sizeof(pattern), "EDM\\.%s\\.%s", t->machine,
-			 channel[i].name);
-		t->subscribed[i] = lcm_subscribe(t->lcm, pattern,
-						 channel[i].handler, t);
-		if (!t->subscribed[i])
-			return -ENETUNREACH;
-		lcm_subscription_set_queue_capacity(t->subscribed[i],
-						    QUEUE_MESSAGES);
+	for (size_t i = 0; i < sizeof(heard) / sizeof(heard[0]); i++) {
+		channel_name(t, heard[i].name, channel);
+		if (strcmp(u->channel, channel) == 0 && is_machine(t, &s, u))
+			heard[i].fn(t, &s);
 	}
-	return 0;
 }
+
+/* -- Opening ---------------------------------------------------------------- */
 
 static int key_take(struct talk *t, const char *path, char *said)
 {
@@ -389,13 +371,19 @@ static int key_take(struct talk *t, const char *path, char *said)
 
 static int join(struct talk *t, const struct talk_options *o, char *said)
 {
-	const char *url = o->url ? o->url : TALK_URL;
+	const char *url = o->url ? o->url : TALK_URL, *wrong;
+	struct udpm_url at;
 
 	snprintf(t->client, sizeof(t->client), "%.20s-%d-%08x%08x",
 		 o->program ? o->program : "client", (int)getpid(),
 		 randombytes_random(), randombytes_random());
+	wrong = udpm_url_read(&at, url);
+	if (wrong) {
+		snprintf(said, TALK_SAID_MAX, "URL %s: %s", url, wrong);
+		return -EINVAL;
+	}
 	t->lcm = lcm_create(url);
-	if (t->lcm && subscribe(t) == 0)
+	if (t->lcm && udpm_open(&t->in, &at) == 0)
 		return 0;
 	snprintf(said, TALK_SAID_MAX, "cannot open %s; does the host have a "
 		 "multicast route? ip link set lo multicast on; ip route add "
@@ -435,11 +423,9 @@ void talk_close(struct talk *t)
 		t->question[i].fn = NULL;
 		question_end(&t->question[i], -ECANCELED, NULL);
 	}
-	for (int i = 0; i < 3; i++)
-		if (t->subscribed[i])
-			lcm_unsubscribe(t->lcm, t->subscribed[i]);
 	if (t->lcm)
 		lcm_destroy(t->lcm);
+	udpm_close(t->in);
 	sodium_memzero(&t->key, sizeof(t->key));
 	free(t);
 }
@@ -477,16 +463,17 @@ static void questions_turn(struct talk *t)
 
 int talk_fd(const struct talk *t)
 {
-	return lcm_get_fileno(t->lcm);
+	return udpm_fd(t->in);
 }
 
 void talk_step(struct talk *t)
 {
 	struct pollfd p = { .fd = talk_fd(t), .events = POLLIN };
+	struct udpm_packet u;
 
 	for (int i = 0; i < QUEUE_MESSAGES && poll(&p, 1, 0) > 0; i++)
-		if (lcm_handle(t->lcm) < 0)
-			break;
+		if (udpm_take(t->in, &u))
+			take(t, &u);
 	questions_turn(t);
 }
 

@@ -290,6 +290,23 @@ static void describe_curves(const struct sim_job *job, FILE *f)
 		": slower than F, it bends too much\n" : "\n");
 }
 
+/* A dwell takes its time beside the path's. */
+static void describe_dwells(const struct sim_job *job, FILE *f)
+{
+	const struct interp_program *p = &job->program;
+	uint32_t n = 0;
+	double s = 0;
+
+	for (uint32_t i = 0; i < p->head->nsegs; i++) {
+		if (p->segs[i].kind != INTERP_DWELL)
+			continue;
+		s += p->segs[i].arg * 1e-3;
+		n++;
+	}
+	if (n)
+		fprintf(f, "dwells     %u, %.3f s in all\n", n, s);
+}
+
 void job_describe(const struct sim_job *job, FILE *f)
 {
 	const struct interp_program_head *h = job->program.head;
@@ -319,6 +336,7 @@ void job_describe(const struct sim_job *job, FILE *f)
 			(enum interp_coupling)h->coupling));
 	fprintf(f, "path       %.3f mm: %.3f mm cut, %.3f mm positioned in "
 		"%.1f s\n", h->length_mm, cut_mm, free_mm, free_s);
+	describe_dwells(job, f);
 	describe_curves(job, f);
 	describe_escapes(job, f);
 }

@@ -169,6 +169,15 @@ static void print_hunting(const struct sim_run *r, FILE *f)
 		c->totals.in_row_max, g->servo_v, g->short_v, g->gain_mm_s_v);
 }
 
+/* As edmctl alarms says it, from the one table. */
+static void print_fault(const struct sim_run *r, FILE *f)
+{
+	const struct fault_row *row = &fault_table[r->cycle.fault.first];
+
+	fprintf(f, ": %s at line %u: %s\nwhy        %s\nclear      %s", row->name,
+		r->cycle.cursor.seg.line, row->what, row->why, row->clear);
+}
+
 void report_print(const struct sim_run *r, FILE *f)
 {
 	const struct cycle *c = &r->cycle;
@@ -177,8 +186,7 @@ void report_print(const struct sim_run *r, FILE *f)
 
 	fprintf(f, "outcome    %s", r->result.outcome);
 	if (c->fault.first != FAULT_NONE)
-		fprintf(f, ": %s at line %u", fault_name(c->fault.first),
-			c->cursor.seg.line);
+		print_fault(r, f);
 	fprintf(f, "\npath       %.3f mm in %u segments, %u lines\n",
 		r->job.program.head->length_mm, motions(&r->job.program),
 		r->job.program.head->lines);

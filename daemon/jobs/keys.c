@@ -74,6 +74,19 @@ static int key_write(const struct keyfile *k, const char *path,
 	return err;
 }
 
+/* The group commands by the host's key; it does not speak for the machine. */
+static int alone_check(const char *path)
+{
+	struct stat st;
+
+	if (stat(path, &st) < 0 || (st.st_mode & 0077) == 0)
+		return 0;
+	log_error("keys: %s has mode %04o: others may sign as the machine; "
+		  "move it away, and a new one is made", path,
+		  st.st_mode & 07777u);
+	return -EPERM;
+}
+
 static int machine_key(struct jobs *j, const char *dir)
 {
 	struct keyfile *k = &j->trust.machine;
@@ -82,6 +95,8 @@ static int machine_key(struct jobs *j, const char *dir)
 
 	snprintf(path, sizeof(path), "%.250s/%s.machine-key", dir, j->machine);
 	err = key_read(j, k, path);
+	if (err == 0)
+		err = alone_check(path);
 	if (err <= 0)
 		return err;
 	memcpy(k->machine_key, k->public, sizeof(k->public));

@@ -18,6 +18,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sysexits.h>
 #include <time.h>
 
@@ -376,6 +377,8 @@ int main(int argc, char **argv)
 		return err;
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;
+	/* What others may read says so itself. */
+	umask(0077);
 	err = configure(&jobs, &config, &o);
 	if (err)
 		return err;

@@ -5,6 +5,8 @@
 #include "store_sql.h"
 #include "store_turn.h"
 
+#include "plain.h"
+
 #include <errno.h>
 #include <sodium.h>
 #include <stdio.h>
@@ -93,7 +95,7 @@ static void column_copy(sqlite3_stmt *q, int i, char *to, size_t size)
 {
 	const unsigned char *from = sqlite3_column_text(q, i);
 
-	snprintf(to, size, "%s", from ? (const char *)from : "");
+	plain_copy(to, size, from ? (const char *)from : "");
 }
 
 #define JOB_COLUMNS	"n, id, name, sha256, state, hold, loaded, " \

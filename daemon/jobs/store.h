@@ -182,6 +182,8 @@ uint32_t store_waiting(struct store *s);
 int64_t store_number(struct store *s, const char *key, int64_t otherwise);
 int store_set_number(struct store *s, const char *key, int64_t value);
 
+#define STORE_JSON_MAX	60000	/* bytes: an answer fits one LCM packet */
+
 /**
  * store_json() - a list as JSON; @id for show, @rows for history.
  * Return: to be freed; NULL if there is no such job or no memory.

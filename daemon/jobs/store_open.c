@@ -24,16 +24,40 @@ static bool is_of_disk(int err)
 	       err == -EIO;
 }
 
+/*
+ * The folder is open to the group, for the host's key; what else is in it is for
+ * this user alone, as main() says by its umask.  An earlier version let the group
+ * read it; and who may read a file may lock it, and so keep the service from
+ * starting, or from writing a job.
+ */
+static int folder_make(const struct store *s, const char *machine)
+{
+	static const char *const old[] = { "lock", "db", "db-wal", "db-shm" };
+	char path[600];
+
+	if (mkdir(s->dir, 0750) == 0)
+		chmod(s->dir, 0750);
+	else if (errno != EEXIST)
+		return -errno;
+	/* What is not ours, or cannot be changed, is told when it is opened. */
+	for (size_t i = 0; i < sizeof(old) / sizeof(old[0]); i++) {
+		snprintf(path, sizeof(path), "%s/%s.%s", s->dir, machine,
+			 old[i]);
+		chmod(path, 0600);
+	}
+	return 0;
+}
+
 /* On a disk that takes no new file there is still shm_writer_claim(). */
 static int lock_take(struct store *s, const char *machine)
 {
 	char path[512];
-	int err = 0;
+	int err = folder_make(s, machine);
 
-	if (mkdir(s->dir, 0750) < 0 && errno != EEXIST)
-		return -errno;
+	if (err < 0)
+		return err;
 	snprintf(path, sizeof(path), "%s/%s.lock", s->dir, machine);
-	s->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+	s->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
 	if (s->lock < 0)
 		err = -errno;
 	if (is_of_disk(err))

@@ -33,6 +33,7 @@ static const char *const causes[TRUST_NCAUSES] = {
 	[TRUST_CROWD]	= "too many clients at once",
 	[TRUST_ROLE]	= "the role of its key does not allow it",
 	[TRUST_STRANGE]	= "from another host, or in LCM's pieces",
+	[TRUST_OFTEN]	= "more than is taken of a viewer in a second",
 };
 
 const char *trust_cause_text(enum trust_cause c)
@@ -121,9 +122,7 @@ int trust_remove(struct trust *t, const char *name)
 
 		if (one->role == ROLE_NONE || strcmp(one->name, name) != 0)
 			continue;
-		for (int s = 0; s < TRUST_SESSIONS; s++)
-			if (t->session[s].key == one)
-				t->session[s].key = NULL;
+		memset(t->session[i], 0, sizeof(t->session[i]));
 		one->role = ROLE_NONE;
 		t->nkeys--;
 		return 0;
@@ -159,14 +158,24 @@ void trust_who(const struct trust_packet *p, char to[KEYFILE_NAME_MAX])
 	snprintf(to, KEYFILE_NAME_MAX, "key %.8s...", hex);
 }
 
+/* Fewer than @most in this second? */
+static bool rate_allows(struct trust_rate *r, int most, int64_t now_us)
+{
+	if (now_us - r->since_us > 1000000)
+		*r = (struct trust_rate) { .since_us = now_us };
+	return r->n < most;
+}
+
 /* A flood is not answered packet by packet. */
 static bool may_answer(struct trust *t, int64_t now_us)
 {
-	if (now_us - t->answer_us > 1000000) {
-		t->answer_us = now_us;
-		t->answers = 0;
-	}
-	return t->answers < ANSWERS_A_S;
+	return rate_allows(&t->answered, ANSWERS_A_S, now_us);
+}
+
+static bool may_ask(struct trust *t, const struct trust_key *k, int64_t now_us)
+{
+	return k->role > ROLE_VIEWER ||
+	       rate_allows(&t->asked[k - t->key], TRUST_VIEWER_A_S, now_us);
 }
 
 /* What can be told without a signature being computed. */
@@ -199,10 +208,14 @@ enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 	cause = look_quickly(t, p, now_us);
 	if (cause != TRUST_FINE && !may_answer(t, now_us))
 		return cause;
+	if (p->key && !may_ask(t, p->key, now_us))
+		return TRUST_OFTEN;
 	if (!seal_holds(&p->seal, p->channel))
 		return TRUST_SIGNATURE;
+	if (p->key)
+		t->asked[p->key - t->key].n++;
 	*ret_answer = cause != TRUST_FINE;
-	t->answers += *ret_answer;
+	t->answered.n += *ret_answer;
 	return cause;
 }
 
@@ -210,19 +223,19 @@ enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 
 static bool session_is_over(const struct trust_session *s, int64_t now)
 {
-	return !s->key || s->count < now - TRUST_OLD_US;
+	return !s->client[0] || s->count < now - TRUST_OLD_US;
 }
 
 enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 			     const char *client, int64_t now_us)
 {
 	int64_t now = clock_of(t, now_us);
-	struct trust_session *room = NULL;
+	struct trust_session *of = t->session[p->key - t->key], *room = NULL;
 
 	for (int i = 0; i < TRUST_SESSIONS; i++) {
-		struct trust_session *s = &t->session[i];
+		struct trust_session *s = &of[i];
 
-		if (s->key == p->key && strcmp(s->client, client) == 0) {
+		if (strcmp(s->client, client) == 0) {
 			if (p->seal.count <= s->count)
 				return TRUST_REPLAY;
 			s->count = p->seal.count;
@@ -233,7 +246,6 @@ enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 	}
 	if (!room)
 		return TRUST_CROWD;
-	room->key = p->key;
 	room->count = p->seal.count;
 	snprintf(room->client, sizeof(room->client), "%s", client);
 	return TRUST_FINE;

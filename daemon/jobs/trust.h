@@ -9,6 +9,10 @@
  * has to be remembered is bounded: a client that was silent for TRUST_OLD_US
  * can be forgotten, because its old packets are too old by then.
  *
+ * Who may only look must not keep the service from those who may stop the
+ * machine. So each key has room of its own for its clients, and of a viewer's
+ * packets only so many a second are looked at.
+ *
  * What is refused is counted by cause and told in the log, at most once in ten
  * seconds for each cause.
  *
@@ -21,7 +25,8 @@
 #include "seal.h"
 
 #define TRUST_KEYS		64
-#define TRUST_SESSIONS		1024
+#define TRUST_SESSIONS		1024	/* of each key */
+#define TRUST_VIEWER_A_S	50	/* packets that are taken of a viewer */
 #define TRUST_CLIENT_MAX	64	/* with its NUL */
 #define TRUST_OLD_US		30000000
 #define TRUST_AHEAD_US		10000000
@@ -39,18 +44,24 @@ struct trust_key {
 enum trust_cause {
 	TRUST_FINE, TRUST_SHAPE, TRUST_KEY, TRUST_SIGNATURE, TRUST_BOOT,
 	TRUST_TIME, TRUST_REPLAY, TRUST_CROWD, TRUST_ROLE, TRUST_STRANGE,
+	TRUST_OFTEN,
 	TRUST_NCAUSES
 };
 
 struct trust_session {
-	const struct trust_key *key;	/* NULL: free */
-	char client[TRUST_CLIENT_MAX];
+	char client[TRUST_CLIENT_MAX];	/* "": free */
 	int64_t count;			/* of its last packet */
 };
 
 struct trust_refusals {
 	uint64_t count, told;
 	int64_t told_us;
+};
+
+/* How often in this second. */
+struct trust_rate {
+	int64_t since_us;
+	int n;
 };
 
 /* Placed by the caller. */
@@ -61,9 +72,9 @@ struct trust {
 	int64_t boot;
 	/* Private. */
 	int64_t begun_us, sent;
-	struct trust_session session[TRUST_SESSIONS];
+	struct trust_session session[TRUST_KEYS][TRUST_SESSIONS];
+	struct trust_rate asked[TRUST_KEYS], answered;
 	struct trust_refusals refused[TRUST_NCAUSES];
-	int64_t answer_us, answers;	/* answered to those not taken */
 };
 
 /* One packet. */

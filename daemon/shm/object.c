@@ -16,22 +16,28 @@
 #include <unistd.h>
 
 #define FOLDER		"/dev/shm"
+#define CLAIM_TRIES	8		/* another one may remove it meanwhile */
 
 /* A view of a record that may alias anything. */
 typedef uint64_t __attribute__((may_alias)) word_t;
 
-static bool folder_is_ours(void)
+/* Made by root, by edmd, or by this user: nobody else can do anything to it. */
+static bool maker_is_trusted(uid_t uid)
 {
 	const struct passwd *edmd;
-	struct stat st;
 
-	if (lstat(FOLDER "/edmd", &st) < 0 || !S_ISDIR(st.st_mode) ||
-	    (st.st_mode & 0002))
-		return false;
-	if (st.st_uid == 0 || st.st_uid == geteuid())
+	if (uid == 0 || uid == geteuid())
 		return true;
 	edmd = getpwnam("edmd");
-	return edmd && st.st_uid == edmd->pw_uid;
+	return edmd && uid == edmd->pw_uid;
+}
+
+static bool folder_is_ours(void)
+{
+	struct stat st;
+
+	return lstat(FOLDER "/edmd", &st) == 0 && S_ISDIR(st.st_mode) &&
+	       !(st.st_mode & 0002) && maker_is_trusted(st.st_uid);
 }
 
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
@@ -54,6 +60,68 @@ int64_t object_size(int fd)
 	if (fstat(fd, &st) < 0)
 		return -errno;
 	return S_ISREG(st.st_mode) ? st.st_size : -EPROTO;
+}
+
+int object_lock(int fd)
+{
+	struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+
+	if (fcntl(fd, F_OFD_SETLK, &lock) == 0)
+		return 0;
+	return errno == EACCES || errno == EAGAIN ? -EBUSY : -errno;
+}
+
+int object_check(int fd)
+{
+	struct stat st;
+
+	if (fstat(fd, &st) < 0)
+		return -errno;
+	if (st.st_nlink == 0)
+		return -EAGAIN;
+	return st.st_uid == geteuid() ? 0 : -EPERM;
+}
+
+static int claim_try(const char *path)
+{
+	int fd = open(path, O_RDWR | O_CREAT | OBJECT_FLAGS, 0600);
+	int err;
+
+	if (fd < 0)
+		return -errno;
+	err = object_lock(fd);
+	if (err == 0)
+		err = object_check(fd);
+	if (err == 0 && fchmod(fd, 0600) < 0)
+		err = -errno;
+	if (err == 0)
+		return fd;
+	close(fd);
+	return err;
+}
+
+int object_claim(const char *machine, const char *what)
+{
+	char path[OBJECT_PATH_MAX];
+	int fd = object_path(path, machine, what);
+
+	if (fd < 0)
+		return fd;
+	fd = -EAGAIN;
+	for (int i = 0; i < CLAIM_TRIES && fd == -EAGAIN; i++)
+		fd = claim_try(path);
+	return fd;
+}
+
+void object_leave(int fd, const char *machine, const char *what)
+{
+	char path[OBJECT_PATH_MAX];
+
+	if (fd < 0)
+		return;
+	if (object_path(path, machine, what) == 0)
+		unlink(path);
+	close(fd);
 }
 
 /*
@@ -112,12 +180,16 @@ static int object_open_fd(void **ret, int fd, size_t bytes, bool writable)
 {
 	int64_t size = object_size(fd);
 	void *at = NULL;
+	struct stat st;
 	int err;
 
 	if (size < 0)
 		return (int)size;
 	if (size == 0)
 		return -ENOENT;
+	/* Another user could cut it short, and end us by a signal. */
+	if (fstat(fd, &st) < 0 || !maker_is_trusted(st.st_uid))
+		return -EPERM;
 	if ((uint64_t)size != bytes)
 		return -EPROTO;
 

@@ -20,6 +20,27 @@
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what);
 
+/**
+ * object_claim() - lock the object @what, which is empty, for this process.
+ *
+ * Only its maker may open it: a lock for reading, which any reader of an object
+ * may take, would keep the next owner out.
+ * Return: a descriptor that holds the lock, to the end of the process at most;
+ * -EBUSY another living process has it; -EPERM another user made it; else
+ * -errno.
+ */
+int object_claim(const char *machine, const char *what);
+
+/** object_leave() - remove it and give the lock up; -1 is fine. */
+void object_leave(int fd, const char *machine, const char *what);
+
+/** object_lock() - lock @fd for writing.  Return: 0, -EBUSY, else -errno. */
+int object_lock(int fd);
+
+/** object_check() - 0 if @fd is ours and still has its name; -EAGAIN it was
+ *  removed meanwhile, -EPERM it is another user's, else -errno. */
+int object_check(int fd);
+
 /* No link, and no pipe that waits for its other end. */
 #define OBJECT_FLAGS	(O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)
 

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define COPY_BYTES	(1 << 24)
@@ -34,6 +35,8 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 		return err;
 	if (bytes == 0)
 		return -EINVAL;
+	if (bytes > SHM_PROGRAM_MAX)
+		return -EFBIG;
 	/* A new file: the old one must not change under who has it mapped. */
 	if (unlink(path) < 0 && errno != ENOENT)
 		return -errno;
@@ -84,6 +87,24 @@ static int copy_make(void **ret, int fd, size_t bytes)
 	return err;
 }
 
+/*
+ * Its writer has taken all of its memory; a file with holes, or one larger than
+ * any program, was not made by it, and would take all the memory there is.
+ */
+static int64_t program_size(int fd)
+{
+	const int64_t size = object_size(fd);
+	struct stat st;
+
+	if (size < 0)
+		return size;
+	if (fstat(fd, &st) < 0)
+		return -errno;
+	if (size > SHM_PROGRAM_MAX)
+		return -EFBIG;
+	return size > 0 && st.st_blocks * 512 >= size ? size : -EPROTO;
+}
+
 int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 		     uint32_t n)
 {
@@ -99,11 +120,8 @@ int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 	if (fd < 0)
 		return -errno;
 
-	size = object_size(fd);
-	if (size > 0)
-		err = copy_make(&at, fd, (size_t)size);
-	else
-		err = size < 0 ? (int)size : -EPROTO;
+	size = program_size(fd);
+	err = size < 0 ? (int)size : copy_make(&at, fd, (size_t)size);
 	close(fd);
 	if (err < 0)
 		return err;

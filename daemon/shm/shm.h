@@ -372,7 +372,8 @@ void shm_ended_put(struct shm_status *s, const struct shm_ended *e);
 
 /**
  * shm_status_open() - map read-only.
- * Return: 0; -ENOENT no edmd yet; -EPROTO another layout; else -errno.
+ * Return: 0; -ENOENT no edmd yet; -EPROTO another layout; -EPERM made by a
+ * user who is neither root, edmd nor this one; else -errno.
  */
 int shm_status_open(const struct shm_status **ret, const char *machine);
 
@@ -412,7 +413,8 @@ bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
  * loads it.
  *
  * Return: a descriptor that holds the claim until shm_writer_leave() or the end
- * of the process; -EBUSY if another living process has it; else -errno.
+ * of the process; -EBUSY if another living process has it; -EPERM if another
+ * user made it; else -errno.
  *
  * Startup only.
  */
@@ -449,6 +451,8 @@ bool shm_done(const struct shm_status *s, uint64_t id, struct shm_done *ret);
 bool shm_ended_next(const struct shm_status *s, struct shm_follow *f,
 		    struct shm_ended *ret);
 
+#define SHM_PROGRAM_MAX	(INT64_C(4) << 30)	/* bytes of one program */
+
 /**
  * shm_program_create() - make edmd.<machine>.program.<n>, @bytes to fill.
  *
@@ -456,7 +460,7 @@ bool shm_ended_next(const struct shm_status *s, struct shm_follow *f,
  * that has mapped the old one keeps it. The caller unmaps it by
  * shm_program_unmap() when it is written.
  *
- * Return: 0; -EINVAL for n 0 or no bytes; -ENOSPC; else -errno.
+ * Return: 0; -EINVAL for n 0 or no bytes; -EFBIG; -ENOSPC; else -errno.
  */
 int shm_program_create(void **ret, const char *machine, uint32_t n,
 		       size_t bytes);
@@ -464,7 +468,8 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 /**
  * shm_program_open() - a private copy of it, which nobody else can change.
  *
- * Return: 0, -ENOENT, -EPROTO if it was cut short meanwhile, else -errno.
+ * Return: 0; -ENOENT; -EPROTO if it was cut short meanwhile, or has holes;
+ * -EFBIG; else -errno.
  */
 int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 		     uint32_t n);

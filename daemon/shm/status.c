@@ -30,71 +30,15 @@ static uint32_t instance_draw(void)
 	return n;
 }
 
-static int lock_take(int fd)
-{
-	struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
-
-	if (fcntl(fd, F_OFD_SETLK, &lock) == 0)
-		return 0;
-	return errno == EACCES || errno == EAGAIN ? -EBUSY : -errno;
-}
-
-/* Still under its name, and ours: 0.  -EAGAIN: removed meanwhile. */
-static int owner_check(int fd)
-{
-	struct stat st;
-
-	if (fstat(fd, &st) < 0)
-		return -errno;
-	if (st.st_nlink == 0)
-		return -EAGAIN;
-	return st.st_uid == geteuid() ? 0 : -EPERM;
-}
-
-/*
- * Who owns the machine holds this lock.  It is on an object that nobody else
- * may open: a lock for reading, which any reader of the status may take,
- * would keep the next edmd out.
- */
-static int owner_try(const char *path)
-{
-	int fd = open(path, O_RDWR | O_CREAT | OBJECT_FLAGS, 0600);
-	int err;
-
-	if (fd < 0)
-		return -errno;
-	err = lock_take(fd);
-	if (err == 0)
-		err = owner_check(fd);
-	if (err == 0)
-		return fd;
-	close(fd);
-	return err;
-}
-
-/* Return: a descriptor that stays open, or -errno. */
-static int owner_claim(const char *machine)
-{
-	char path[OBJECT_PATH_MAX];
-	int fd = object_path(path, machine, "owner");
-
-	if (fd < 0)
-		return fd;
-	fd = -EAGAIN;
-	for (int i = 0; i < CREATE_TRIES && fd == -EAGAIN; i++)
-		fd = owner_try(path);
-	return fd;
-}
-
 /*
  * The lock on the status itself only shows to readers that its edmd lives.  If
  * one of them has a lock for reading on it, there will be another object.
  */
 static int status_own(int fd)
 {
-	int err = owner_check(fd);
+	int err = object_check(fd);
 
-	return err ? err : lock_take(fd);
+	return err ? err : object_lock(fd);
 }
 
 /* A whole object of this layout, left by a dead edmd of this machine? */
@@ -197,7 +141,7 @@ int shm_status_create(struct shm_status **ret, const char *machine,
 
 	if (err < 0)
 		return err;
-	owner = owner_claim(machine);
+	owner = object_claim(machine, "owner");
 	if (owner < 0)
 		return owner;
 	err = -EAGAIN;

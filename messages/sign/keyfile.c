@@ -98,10 +98,33 @@ static int mode_check(const struct stat *st, const char *path, char *said)
 	return 0;
 }
 
-static int open_check(int *ret, const char *path, char *said)
+static bool owner_is_trusted(uid_t uid)
+{
+	const struct passwd *service;
+
+	if (uid == 0 || uid == geteuid())
+		return true;
+	service = getpwnam(SERVICE_USER);
+	return service && uid == service->pw_uid;
+}
+
+static int owner_check(const struct stat *st, const char *path, char *said)
+{
+	if (owner_is_trusted(st->st_uid))
+		return 0;
+	return say(said, -EPERM, "key file %s belongs to user %u, who is "
+		   "neither root nor " SERVICE_USER " nor you, so it is not "
+		   "used; remove it, or name the right one with --key FILE",
+		   path, (unsigned int)st->st_uid);
+}
+
+/* @shared: where anybody may have made it.  Checked when it is open: a name may
+ * be another file a moment later. */
+static int open_check(int *ret, const char *path, bool shared, char *said)
 {
 	struct stat st;
-	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK), err = 0;
+	int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK |
+		      (shared ? O_NOFOLLOW : 0)), err = 0;
 
 	if (fd < 0 && errno == ENOENT)
 		return say(said, -ENOENT, "there is no key file %s; edmd-jobs "
@@ -116,6 +139,8 @@ static int open_check(int *ret, const char *path, char *said)
 			   strerror(errno));
 	if (fstat(fd, &st) < 0)
 		err = -errno;
+	if (err == 0 && shared)
+		err = owner_check(&st, path, said);
 	if (err == 0)
 		err = mode_check(&st, path, said);
 	if (err < 0) {
@@ -213,14 +238,14 @@ static int fd_take(struct keyfile *k, int fd, const char *path, char *said)
 	return err;
 }
 
-int keyfile_read(struct keyfile *k, const char *path,
-		 char said[KEYFILE_SAID_MAX])
+static int file_take(struct keyfile *k, const char *path, bool shared,
+		     char said[KEYFILE_SAID_MAX])
 {
 	struct keyfile got = { .machine = "" };
 	int fd = -1, err;
 
 	said[0] = '\0';
-	err = open_check(&fd, path, said);
+	err = open_check(&fd, path, shared, said);
 	if (err < 0)
 		return err;
 	err = fd_take(&got, fd, path, said);
@@ -228,6 +253,12 @@ int keyfile_read(struct keyfile *k, const char *path,
 	if (err == 0)
 		*k = got;
 	return err;
+}
+
+int keyfile_read(struct keyfile *k, const char *path,
+		 char said[KEYFILE_SAID_MAX])
+{
+	return file_take(k, path, false, said);
 }
 
 /* -- Writing ---------------------------------------------------------------- */
@@ -274,26 +305,6 @@ int keyfile_write(const struct keyfile *k, const char *path,
 
 /* -- Finding ---------------------------------------------------------------- */
 
-static bool owner_is_trusted(uid_t uid)
-{
-	const struct passwd *service = getpwnam(SERVICE_USER);
-
-	return uid == 0 || uid == geteuid() ||
-	       (service && uid == service->pw_uid);
-}
-
-static int shared_read(struct keyfile *k, const char *path, char *said)
-{
-	struct stat st;
-
-	if (lstat(path, &st) == 0 && !owner_is_trusted(st.st_uid))
-		return say(said, -EPERM, "key file %s belongs to user %u, who "
-			   "is neither root nor " SERVICE_USER " nor you, so "
-			   "it is not used; remove it, or name the right one "
-			   "with --key FILE", path, (unsigned int)st.st_uid);
-	return keyfile_read(k, path, said);
-}
-
 int keyfile_find(struct keyfile *k, const char *machine,
 		 char said[KEYFILE_SAID_MAX])
 {
@@ -304,7 +315,7 @@ int keyfile_find(struct keyfile *k, const char *machine,
 	keyfile_shared_path(shared, machine);
 	err = keyfile_read(k, stored, said);
 	if ((err == -ENOENT || err == -EACCES) && access(shared, F_OK) == 0)
-		return shared_read(k, shared, said);
+		return file_take(k, shared, true, said);
 	if (err == -ENOENT)
 		say(said, err, "there is no key of machine %s: neither %s nor "
 		    "%s; edmd-jobs makes it when it starts: systemctl start "

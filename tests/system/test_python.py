@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -28,15 +29,35 @@ def good(*args, **more):
     return r.stdout
 
 
+def test_it_is_installed_by_pip_and_typed(tmp_path):
+    source, target = tmp_path / "source", tmp_path / "target"
+    shutil.copytree(ROOT / "clients/python", source)
+    # What it needs is in this environment; there is no network here.
+    subprocess.run([sys.executable, "-m", "pip", "install", "-q", "--no-deps",
+                    "--no-index", "--no-build-isolation", "--target", target,
+                    source], check=True, timeout=300)
+    assert (target / "edm" / "py.typed").exists()
+    out = good("import edm; print(edm.__file__); edm.Client",
+               env={"PYTHONPATH": str(target)})
+    assert out.startswith(str(target))
+    r = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--cache-dir",
+         tmp_path / "cache", target / "edm"], capture_output=True, text=True,
+        cwd=tmp_path, timeout=600)
+    assert r.returncode == 0, r.stdout
+
+
 def test_its_types_are_those_of_lcm_gen(tmp_path):
     out = good("""
         from edm import messages as m
+        print(*m.Status.__dataclass_fields__, sep=",")
         for k in ("SIGNED", "COMMAND", "ACK", "JOB_CHUNK", "STATUS", "EVENT"):
             print(getattr(m, k).hex())
         print(m.command("me", 7, "jog", "j", 1.5, "X", 99).hex())
         print(m.Chunk("j", "n", 3, bytes(32), 0, 1, 0, True, b"abc")
               .encode("me", 8, 99).hex())
     """).split()
+    assert out.pop(0).split(",") == rig.status_t.__slots__
     kinds = (rig.signed_t, rig.command_t, rig.ack_t, rig.job_chunk_t,
              rig.status_t, rig.event_t)
     assert out[:6] == [k._get_packed_fingerprint().hex() for k in kinds]

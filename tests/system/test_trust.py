@@ -11,9 +11,11 @@ import pathlib
 import random
 import signal
 import socket
+import sqlite3
 import stat
 import struct
 import subprocess
+import sys
 import time
 
 import lcm
@@ -224,8 +226,10 @@ def test_a_bad_key_file_is_told_with_what_mends_it(machine, what):
     assert machine.client.status().state == "idle"
 
 
-@pytest.mark.parametrize("which", ["key", "machine-key"])
-@pytest.mark.parametrize("what", ["wide", "foreign", "cut"])
+@pytest.mark.parametrize("which,what", [
+    ("key", "wide"), ("key", "foreign"), ("key", "cut"),
+    ("machine-key", "wide"), ("machine-key", "group"),
+    ("machine-key", "foreign"), ("machine-key", "cut")])
 def test_the_service_does_not_start_with_a_bad_key_file(idle, which, what):
     idle.start_jobs()
     path = idle.store / f"{idle.name}.{which}"
@@ -234,6 +238,8 @@ def test_the_service_does_not_start_with_a_bad_key_file(idle, which, what):
     assert idle.end("jobs") == 0
     if what == "wide":
         path.chmod(0o644)
+    elif what == "group":
+        path.chmod(0o640)
     elif what == "foreign":
         path.write_text(path.read_text().replace(idle.name, "other"))
     else:
@@ -249,6 +255,29 @@ def test_the_service_does_not_start_with_a_bad_key_file(idle, which, what):
     idle.client.status(10)
     mode = stat.S_IMODE(path.stat().st_mode)
     assert mode == (0o640 if which == "key" else 0o600)
+
+
+def test_who_may_read_the_key_may_lock_nothing(machine):
+    """A lock takes no more than leave to read: the group reads the key alone.
+
+    So it is when the store of an earlier version was open to the group.
+    """
+    def open_to_the_group():
+        return sorted(p.name for p in machine.store.iterdir()
+                      if p.stat().st_mode & 0o077)
+
+    wanted = [f"{machine.name}.key"]
+    assert open_to_the_group() == wanted
+    machine.kill("jobs")
+    for path in machine.store.iterdir():
+        if path.suffix != ".machine-key":
+            path.chmod(0o640)
+    machine.start_jobs()
+    machine.client.status_where(lambda s: s.daemon == "ok")
+    assert open_to_the_group() == wanted
+    for what in ("owner", "writer"):
+        path = pathlib.Path(f"/dev/shm/edmd.{machine.name}.{what}")
+        assert path.stat().st_mode & 0o077 == 0
 
 
 def test_a_lost_machine_key_makes_old_key_files_say_so(machine):
@@ -303,6 +332,96 @@ def test_names_that_move_a_terminal_are_refused(machine):
     for bad in (b"\x1b", b"\xe2\x80\xae"):
         assert bad not in r.stderr
         assert bad not in (machine.folder / "edmd-jobs.log").read_bytes()
+
+
+def test_names_of_an_old_store_are_cleaned_where_they_are_shown(idle):
+    """Written before they were refused, or by another hand."""
+    idle.start()
+    c = idle.client
+    assert c.submit(QUICK_JOB, "late").code == 0
+    c.job_where("late", "done")
+    assert c.ask("estop").code == 0
+    assert c.submit(QUICK_JOB, "old", hold=True).code == 0
+    assert idle.end("jobs") == 0
+    bad = "\x1b]0;x\x07\u009b2J\u202eevil\u2066\x7f"
+    with sqlite3.connect(idle.store / f"{idle.name}.db") as db:
+        db.execute("UPDATE job SET name=?, reason=?", (bad, bad))
+        db.execute("UPDATE job SET name=CAST(x'fffe41c3' AS TEXT) "
+                   "WHERE id='late'")
+        db.execute("UPDATE event SET job=?, outcome=?, text=?", (bad,) * 3)
+    idle.start_jobs()
+    c.status_where(lambda s: s.daemon == "ok")
+    for words in (["queue"], ["show", "old"], ["show", "late"], ["history"],
+                  ["alarms"]):
+        a = c.ask(words[0], *words[1:])
+        assert "evil" in a.body or "late" in a.body
+        told = [json.dumps(json.loads(a.body), ensure_ascii=False)]
+        for more in ([], ["--json"]):
+            r = idle.ctl(*more, *words)
+            # 1: an alarm is there.
+            assert r.returncode in (0, 1), r.stderr
+            told.append(r.stdout)
+        for text in told:
+            for ch in ("\\u001b", *"\x1b\x07\u009b\u202e\u2066\x7f\ufffd"):
+                assert ch not in text, (words, ch)
+    for arg in (float("nan"), 1e300, -1e300):
+        assert c.ask("history", arg=arg).code == 65
+        assert c.ask("queue", arg=arg).code == 0
+
+
+def strange_packets(c, draw, n):
+    """Of no shape, of a wrong one, in LCM's pieces; nobody has signed them."""
+    names = [f"EDM.{c.machine}.{what}".encode() + b"\0"
+             for what in ("ACK", "STATUS", "EVENT", "COMMAND", "JOB")]
+    sizes = (0, 10, 70000, 16 << 20, 2**31, 2**32 - 1)
+    for _ in range(n):
+        kind = draw.randrange(4)
+        if kind == 0:
+            yield draw.randbytes(draw.randrange(60))
+        elif kind == 1:
+            yield (b"LC02" + bytes(4) + draw.choice(names)
+                   + draw.randbytes(draw.randrange(300)))
+        elif kind == 2:
+            yield b"LC02" + bytes(4) + b"A" * draw.randrange(1, 5000)
+        else:
+            yield (struct.pack(
+                ">4sIIIHH", b"LC03", draw.randrange(8), draw.choice(sizes),
+                draw.choice(sizes), draw.choice((0, 1, 5, 65535)),
+                draw.choice((0, 1, 2, 65535))) + draw.choice(names)
+                + draw.randbytes(draw.randrange(2000)))
+
+
+def test_strange_packets_end_neither_clients_nor_the_service(machine):
+    """Anybody on the host may send them."""
+    c = machine.client
+    c.status()
+    root = pathlib.Path(__file__).parents[2]
+    watchers = [
+        subprocess.Popen([str(BUILD / "edmctl"), "--machine", machine.name,
+                          "watch"], stdout=subprocess.DEVNULL),
+        subprocess.Popen(
+            [sys.executable, "-c", "import sys, edm\n"
+             "m = edm.Client(sys.argv[1], timeout=60)\n"
+             "while True: m.status()", machine.name],
+            env={**os.environ, "PYTHONPATH": str(root / "clients/python")})]
+    # In a test's own process LCM's library would end too.
+    c.lcm = None
+    try:
+        time.sleep(1)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+            s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+            for i, p in enumerate(strange_packets(c, random.Random(5), 20000)):
+                s.sendto(p, ("239.255.76.67", 7667))
+                if i % 100 == 0:
+                    time.sleep(0.005)
+        assert machine.ctl("queue").returncode == 0
+        assert machine.ctl("jog", "X", "0.1").returncode == 0
+        assert [w.poll() for w in watchers] == [None, None]
+    finally:
+        for w in watchers:
+            w.kill()
+            w.wait()
+        machine.client = Client(machine.name)
 
 
 def test_a_short_text_of_nested_calls_is_refused_soon_and_small(machine):

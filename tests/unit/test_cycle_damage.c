@@ -87,9 +87,46 @@ static void a_damaged_segment_is_a_fault_and_the_last_good_target_stays(void **s
 	}
 }
 
+/* An action has no length: its two nodes are one place. */
+static void an_action_whose_nodes_differ_is_no_jump(void **st)
+{
+	const enum interp_kind kinds[] = { INTERP_DWELL, INTERP_AUX };
+
+	(void)st;
+	for (int i = 0; i < 2; i++) {
+		struct cycle_config k = usual_config();
+		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+		int64_t *nodes;
+		struct rig r;
+
+		k.dry_run = true;
+		cut_to(b, -0.5);
+		action(b, kinds[i], INTERP_AUX_PUMP_ON);
+		cut_to(b, -1);
+		rig_load(&r, b, &k);
+		/* Begin, line, action: the node behind it, one axis. */
+		assert_int_equal(r.m.p.head->naxes, 1);
+		assert_int_equal(r.m.p.segs[2].kind, kinds[i]);
+		nodes = (void *)((char *)r.m.block + r.m.p.head->nodes_at);
+		nodes[3] += INT64_C(90000) << INTERP_SUB_BITS;
+		nodes[4] += INT64_C(90000) << INTERP_SUB_BITS;
+		tell(&r, CYCLE_START);
+		until(&r, STATE_FAULT, SPARKING_V, 20000);
+		assert_int_equal(r.c.fault.first, FAULT_PROGRAM);
+		assert_int_equal(r.out.target[INTERP_Z], -500);
+		tell(&r, CYCLE_RESET);
+		tell(&r, CYCLE_START);
+		tell_mm(&r, CYCLE_RETRACT, 0.1);
+		steps(&r, SPARKING_V, 500);
+		assert_in_range(-r.out.target[INTERP_Z], 400, 500);
+		rig_free(&r);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(an_action_whose_nodes_differ_is_no_jump),
 		cmocka_unit_test(a_damaged_segment_is_a_fault_and_the_last_good_target_stays),
 	};
 

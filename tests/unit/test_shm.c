@@ -461,6 +461,41 @@ static void a_slow_reader_is_told_how_many_it_lost(void **state)
 	shm_status_destroy(s, machine);
 }
 
+/* Who made it may cut it short under its readers. */
+static void a_status_of_another_user_is_not_read(void **state)
+{
+	const struct shm_status *seen;
+	struct shm_snapshot before;
+	struct shm_status *s;
+	char path[96];
+
+	(void)state;
+	if (geteuid() != 0)
+		skip();
+	snprintf(path, sizeof(path), "/dev/shm/edmd.%s.status", machine);
+	assert_int_equal(shm_status_create(&s, machine, &before), 0);
+	assert_int_equal(chown(path, 65534, 65534), 0);
+	assert_int_equal(shm_status_open(&seen, machine), -EPERM);
+	assert_int_equal(chown(path, 0, 0), 0);
+	assert_int_equal(shm_status_open(&seen, machine), 0);
+	shm_close(seen, sizeof(*seen));
+	shm_status_destroy(s, machine);
+}
+
+/* One that was removed while the other waited for its lock is not theirs. */
+static void two_writers_there_are_never(void **state)
+{
+	int one = shm_writer_claim(machine), two;
+
+	(void)state;
+	assert_true(one >= 0);
+	assert_int_equal(shm_writer_claim(machine), -EBUSY);
+	shm_writer_leave(one, machine);
+	two = shm_writer_claim(machine);
+	assert_true(two >= 0);
+	shm_writer_leave(two, machine);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -480,6 +515,8 @@ int main(void)
 		cmocka_unit_test(an_object_of_another_layout_is_replaced),
 		cmocka_unit_test(a_reader_gets_every_trace_record_in_order),
 		cmocka_unit_test(a_slow_reader_is_told_how_many_it_lost),
+		cmocka_unit_test(a_status_of_another_user_is_not_read),
+		cmocka_unit_test(two_writers_there_are_never),
 	};
 
 	snprintf(machine, sizeof(machine), "unit-%d", (int)getpid());

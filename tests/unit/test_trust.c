@@ -142,14 +142,74 @@ static void a_crowd_lets_no_replay_through(void **state)
 	assert_int_equal(send(w, &s), TRUST_FINE);
 }
 
+static void add_other(struct world *w, enum trust_role role)
+{
+	struct trust_key row = { .name = "guest", .role = role };
+
+	memcpy(row.key, w->other.public, sizeof(row.key));
+	assert_int_equal(trust_add(&w->t, &row), 0);
+}
+
+/* Its owner draws a thousand names; the others come in. */
+static void a_crowd_of_one_key_locks_no_other_out(void **state)
+{
+	struct world *w = *state;
+	struct sent s;
+	char name[32];
+
+	add_other(w, ROLE_OPERATOR);
+	for (int i = 0; i <= TRUST_SESSIONS; i++) {
+		s = good(w, 1);
+		s.by = &w->other;
+		snprintf(name, sizeof(name), "c%d", i);
+		s.client = name;
+		assert_int_equal(send(w, &s), i < TRUST_SESSIONS ?
+				 TRUST_FINE : TRUST_CROWD);
+	}
+	s.by = &w->host;
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	s.client = "c0";
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	assert_int_equal(send(w, &s), TRUST_REPLAY);
+}
+
+static void so_much_is_taken_of_a_viewer_and_all_of_an_operator(void **state)
+{
+	struct world *w = *state;
+	struct sent mine = good(w, 1), guest = mine;
+	enum trust_cause cause;
+
+	add_other(w, ROLE_VIEWER);
+	guest.by = &w->other;
+	for (int second = 0; second < 3; second++) {
+		for (int i = 0; i < 3 * TRUST_VIEWER_A_S; i++) {
+			guest.count++;
+			mine.count++;
+			cause = send(w, &guest);
+			assert_int_equal(cause, i < TRUST_VIEWER_A_S ?
+					 TRUST_FINE : TRUST_OFTEN);
+			assert_int_equal(send(w, &mine), TRUST_FINE);
+		}
+		w->now_us += S + 1;
+		guest.count = mine.count += S + 1;
+	}
+	/* What somebody else sends in a viewer's name is not the viewer's. */
+	guest.channel = "EDM.other.COMMAND";
+	for (int i = 0; i < 3 * TRUST_VIEWER_A_S; i++)
+		assert_int_equal(send(w, &guest), TRUST_SIGNATURE);
+	guest.channel = CHANNEL;
+	guest.count++;
+	assert_int_equal(send(w, &guest), TRUST_FINE);
+}
+
 static void a_removed_key_is_out_at_once(void **state)
 {
 	struct world *w = *state;
 	struct trust_key row = { .name = "guest", .role = ROLE_VIEWER };
 	struct sent s = good(w, 5);
 
+	add_other(w, ROLE_VIEWER);
 	memcpy(row.key, w->other.public, sizeof(row.key));
-	assert_int_equal(trust_add(&w->t, &row), 0);
 	assert_int_equal(trust_add(&w->t, &row), -EEXIST);
 	s.by = &w->other;
 	assert_int_equal(send(w, &s), TRUST_FINE);
@@ -178,6 +238,8 @@ int main(void)
 		T(a_packet_is_taken_once),
 		T(what_is_not_ours_is_not_taken),
 		T(a_crowd_lets_no_replay_through),
+		T(a_crowd_of_one_key_locks_no_other_out),
+		T(so_much_is_taken_of_a_viewer_and_all_of_an_operator),
 		T(a_removed_key_is_out_at_once),
 		T(no_two_starts_have_one_number),
 	};

@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import lcm
 from nacl.exceptions import BadSignatureError
 from nacl.signing import VerifyKey
 
@@ -20,6 +19,7 @@ from .keys import Key, find_key, read_key
 from .messages import (
     Ack, Chunk, Event, Signed, Status, command, to_be_signed,
 )
+from .udpm import Udpm
 
 URL = "udpm://239.255.76.67:7667?ttl=0"
 CHUNK = 32768
@@ -68,19 +68,18 @@ class Client:
         self._status: Status | None = None
         self._statuses = 0
         self.on_event: Callable[[Event], None] | None = None
-        self._lcm = lcm.LCM(url)
-        for name, take in (("ACK", self._take_ack),
-                           ("STATUS", self._take_status),
-                           ("EVENT", self._take_event)):
-            s = self._lcm.subscribe(f"EDM\\.{machine}\\.{name}",
-                                    self._checked(take))
-            s.set_queue_capacity(256)
+        self._net = Udpm(url)
+        self._takes: dict[str, Callable[[Signed], None]] = {
+            f"EDM.{machine}.ACK": self._take_ack,
+            f"EDM.{machine}.STATUS": self._take_status,
+            f"EDM.{machine}.EVENT": self._take_event,
+        }
 
     def __enter__(self) -> Client:
         return self
 
     def __exit__(self, *_: object) -> None:
-        pass
+        self._net.close()
 
     # -- Signing and believing
 
@@ -94,24 +93,21 @@ class Client:
         self._count = max(self._count + 1, now)
         signed = self.key.secret.sign(
             to_be_signed(channel, self._boot, self._count, data))
-        self._lcm.publish(channel, Signed(
+        self._net.publish(channel, Signed(
             self.key.public, self._boot, self._count, signed.signature,
             data).encode())
 
-    def _checked(self, take: Callable[[Signed], None],
-                 ) -> Callable[[str, bytes], None]:
-        def handle(channel: str, packet: bytes) -> None:
-            try:
-                s = Signed.decode(packet)
-                if s.key != self.key.machine_key:
-                    return
-                self._verify.verify(
-                    to_be_signed(channel, s.boot, s.count, s.data),
-                    s.signature)
-                take(s)
-            except (ValueError, BadSignatureError):
-                pass
-        return handle
+    def _take(self, channel: str, packet: bytes) -> None:
+        take = self._takes.get(channel)
+        try:
+            s = Signed.decode(packet)
+            if not take or s.key != self.key.machine_key:
+                return
+            self._verify.verify(
+                to_be_signed(channel, s.boot, s.count, s.data), s.signature)
+        except (ValueError, BadSignatureError):
+            return
+        take(s)
 
     def _is_news(self, s: Signed) -> bool:
         if not self._boot or s.boot != self._boot:
@@ -165,7 +161,9 @@ class Client:
         """Take what comes, for so long at most."""
         if not self._boot:
             self._say_hello()
-        self._lcm.handle_timeout(max(1, int(seconds * 1000)))
+        packet = self._net.take(seconds)
+        if packet:
+            self._take(*packet)
 
     def _until(self, what: Callable[[], bool], timeout: float,
                again: Callable[[], None]) -> None:

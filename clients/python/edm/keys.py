@@ -14,6 +14,7 @@ from nacl.signing import SigningKey
 STORE = Path("/var/lib/edmd")
 SHARED = Path("/dev/shm")
 SERVICE_USER = "edm-jobs"
+FILE_MAX = 2048
 
 
 class KeyFileError(Exception):
@@ -32,10 +33,14 @@ class Key:
     secret: SigningKey = field(repr=False)
 
 
-def _check_mode(path: Path) -> None:
-    mode = path.stat().st_mode
+def _check(about: os.stat_result, path: Path, shared: bool) -> None:
+    mode = about.st_mode
     if not stat.S_ISREG(mode):
         raise KeyFileError(f"key file {path} is not a plain file")
+    if shared and not _is_trusted(about.st_uid):
+        raise KeyFileError(
+            f"key file {path} belongs to a user who is neither root nor "
+            f"{SERVICE_USER} nor you, so it is not used; remove it")
     if mode & 0o007:
         raise KeyFileError(
             f"key file {path} has mode {stat.S_IMODE(mode):04o}: everyone on "
@@ -46,12 +51,25 @@ def _check_mode(path: Path) -> None:
             f"key file {path}: its group may write it; chmod g-w {path}")
 
 
-def read_key(path: str | os.PathLike[str]) -> Key:
-    """Read and check a key file."""
+def _read(path: Path, shared: bool) -> str:
+    """Checked when it is open: a name may be another file a moment later."""
+    fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK
+                 | (os.O_NOFOLLOW if shared else 0))
+    try:
+        _check(os.fstat(fd), path, shared)
+        return os.read(fd, FILE_MAX).decode("ascii")
+    finally:
+        os.close(fd)
+
+
+def read_key(path: str | os.PathLike[str], shared: bool = False) -> Key:
+    """Read and check a key file.
+
+    shared: it lies where anybody may have made it, so its owner counts.
+    """
     at = Path(path)
     try:
-        _check_mode(at)
-        text = at.read_text(encoding="ascii")
+        text = _read(at, shared)
     except FileNotFoundError:
         raise KeyFileError(
             f"there is no key file {at}; edmd-jobs makes the host's key when "
@@ -93,8 +111,7 @@ def _parse(path: Path, text: str) -> Key:
     return key
 
 
-def _is_trusted(path: Path) -> bool:
-    uid = path.lstat().st_uid
+def _is_trusted(uid: int) -> bool:
     if uid in (0, os.geteuid()):
         return True
     try:
@@ -112,8 +129,4 @@ def find_key(machine: str) -> Key:
     stored, shared = STORE / f"{machine}.key", SHARED / f"edmd.{machine}.key"
     if os.access(stored, os.R_OK) or not shared.exists():
         return read_key(stored)
-    if not _is_trusted(shared):
-        raise KeyFileError(
-            f"key file {shared} belongs to a user who is neither root nor "
-            f"{SERVICE_USER} nor you, so it is not used; remove it")
-    return read_key(shared)
+    return read_key(shared, shared=True)

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
-from typing import NamedTuple
 
 SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("bb4ab1a64211c912")
-STATUS = bytes.fromhex("02a477cdfb4987d5")
+STATUS = bytes.fromhex("fd3b05a927ceaa6c")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -52,7 +51,8 @@ def string(text: str) -> bytes:
     return struct.pack(">i", len(data)) + data
 
 
-class Signed(NamedTuple):
+@dataclass(frozen=True)
+class Signed:
     """The envelope."""
 
     key: bytes
@@ -154,6 +154,7 @@ class Status:
     overruns: int
     wake_late_max_us: int
     condition: str
+    store: str
 
     @staticmethod
     def decode(data: bytes) -> Status:
@@ -188,6 +189,7 @@ class Status:
             r.int32(),
             r.int32(),
             r.string(),
+            r.string(),
         )
 
 
@@ -205,7 +207,7 @@ class Chunk:
 
     job: str
     name: str
-    bytes: int
+    size: int
     sha256: bytes
     chunk: int
     chunks: int
@@ -216,7 +218,7 @@ class Chunk:
     def encode(self, client: str, seq: int, utime: int = 0) -> bytes:
         return (JOB_CHUNK + struct.pack(">q", utime) + string(client)
                 + struct.pack(">q", seq) + string(self.job)
-                + string(self.name) + struct.pack(">q", self.bytes)
+                + string(self.name) + struct.pack(">q", self.size)
                 + self.sha256
                 + struct.pack(">iiqbi", self.chunk, self.chunks, self.offset,
                               self.hold, len(self.data)) + self.data)

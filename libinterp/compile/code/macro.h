@@ -78,7 +78,7 @@ struct nc_macro {
 	uint32_t nowords;
 
 	uint8_t text[MACRO_BUFFER];
-	uint16_t column[MACRO_BUFFER];	/* of each byte, from 1 */
+	uint16_t column[MACRO_BUFFER + 1];	/* of each byte, from 1 */
 	size_t used;
 };
 

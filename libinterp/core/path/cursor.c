@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <string.h>
 
 /* -- Actions: no length, no points ---------------------------------------- */
 
@@ -187,6 +188,23 @@ bool interp_cursor_slide(struct interp_cursor *c)
 
 /* -- Crossing from one segment into the next ------------------------------- */
 
+/*
+ * Into the segment beside this one.  Both say where they meet; a block in which
+ * they differ is damaged, and would be a jump.
+ */
+static bool cursor_follow(struct interp_cursor *c, uint32_t i, bool at_end)
+{
+	int32_t here[INTERP_NAXES];
+
+	memcpy(here, c->pos, sizeof(here));
+	if (cursor_enter(c, i, at_end) &&
+	    memcmp(here, c->pos, sizeof(here)) == 0)
+		return true;
+	memcpy(c->pos, here, sizeof(here));
+	c->walk = NULL;
+	return false;
+}
+
 /* MOVED here means: crossed, look again. */
 static enum interp_step cross_forward(struct interp_cursor *c)
 {
@@ -201,7 +219,7 @@ static enum interp_step cross_forward(struct interp_cursor *c)
 		c->s_mm = c->want_mm = c->seg.length_mm;
 		return end ? INTERP_AT_END : INTERP_AT_ACTION;
 	}
-	if (!cursor_enter(c, next, false))
+	if (!cursor_follow(c, next, false))
 		return INTERP_BAD_SEGMENT;
 	c->want_mm = over_mm;
 	cursor_want(c);
@@ -214,7 +232,7 @@ static enum interp_step cross_back(struct interp_cursor *c)
 		c->s_mm = c->want_mm = 0;
 		return INTERP_AT_START;
 	}
-	if (!cursor_enter(c, c->index - 1, true))
+	if (!cursor_follow(c, c->index - 1, true))
 		return INTERP_BAD_SEGMENT;
 	c->want_mm += c->seg.length_mm;
 	cursor_want(c);
@@ -337,7 +355,7 @@ enum interp_step interp_cursor_pass(struct interp_cursor *c)
 		return INTERP_BAD_SEGMENT;
 	if (next >= c->p.head->nsegs)
 		return INTERP_AT_END;
-	if (!cursor_enter(c, next, false))
+	if (!cursor_follow(c, next, false))
 		return INTERP_BAD_SEGMENT;
 	c->want_mm = 0;
 	c->want = 0;

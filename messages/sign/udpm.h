@@ -8,13 +8,14 @@
  * another source address is dropped before a byte of it is read. (The kernel
  * drops packets that come from outside with an address of this host.)
  *
- * Only LCM's short packets are read. Everything that a client sends fits into
- * one, and an attacker cannot leave one half sent.
+ * Only LCM's short packets are read. Everything that clients and the service send
+ * fits into one, and an attacker cannot leave one half sent. The library's reader
+ * of long packets crashes on some that nobody signed.
  *
- * Threads: one, that of the event loop.
+ * Threads: one.
  */
-#ifndef JOBS_UDPM_H
-#define JOBS_UDPM_H
+#ifndef EDM_UDPM_H
+#define EDM_UDPM_H
 
 #include <netinet/in.h>
 #include <stdbool.h>
@@ -67,4 +68,4 @@ bool udpm_take(struct udpm *u, struct udpm_packet *ret);
  */
 uint64_t udpm_strange(const struct udpm *u, const char **ret_from);
 
-#endif /* JOBS_UDPM_H */
+#endif /* EDM_UDPM_H */

@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_loop_commands.c - what edmd does with a command that comes by the socket
+ *
+ * The loop is stepped by hand.  Each test sends what a service could send that
+ * is out of order, and looks at the answer, at the record of it, and whether an
+ * axis has moved.
+ */
+#include "resume_help.h"
+
+#include "clock.h"
+
+#include <errno.h>
+#include <stdio.h>
+
+#define SOON_NS	INT64_C(60000000000)	/* a busy machine is no late command */
+
+struct desk {
+	struct world w;
+	uint32_t instance;
+	int fd;
+	uint64_t id;			/* of the last command */
+};
+
+/* -EAGAIN: the thread that answers is held up, by a busy machine. */
+static void connect_to(struct desk *d)
+{
+	int err;
+
+	do
+		err = shm_command_open(&d->fd, d->w.config.name, &d->instance);
+	while (err == -EAGAIN);
+	assert_int_equal(err, 0);
+}
+
+static void begin_loop(struct desk *d)
+{
+	struct loop *l = &d->w.l;
+
+	loop_make(&d->w);
+	crossing_init(&l->crossing);
+	assert_int_equal(shm_command_create(&l->commands, d->w.config.name,
+					    l->status->head.instance), 0);
+	connect_to(d);
+}
+
+static void end_loop(struct desk *d)
+{
+	shm_command_destroy(d->w.l.commands);
+	d->w.l.commands = NULL;
+	close(d->fd);
+}
+
+static int setup(void **state)
+{
+	struct desk *d = calloc(1, sizeof(*d));
+
+	assert_non_null(d);
+	world_init(&d->w);
+	d->w.k.dry_run = true;
+	d->w.k.axis[INTERP_X] = (struct manual_axis) {
+		.present = true, .pulse_mm = PULSE_MM, .v_max_mm_s = 50,
+		.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000, .jog_mm_s = 20,
+	};
+	begin_loop(d);
+	*state = d;
+	return 0;
+}
+
+static int teardown(void **state)
+{
+	struct desk *d = *state;
+
+	end_loop(d);
+	world_free(&d->w);
+	free(d);
+	return 0;
+}
+
+static struct shm_command command(struct desk *d, uint32_t verb)
+{
+	return (struct shm_command) {
+		.id = ++d->id, .verb = verb, .instance = d->instance,
+		.until_ns = setup_now_ns() + SOON_NS,
+	};
+}
+
+/* A period of edmd: both threads of it. */
+static void turn(struct desk *d)
+{
+	loop_commands(&d->w.l);
+	programs_serve(&d->w.l.crossing, &d->w.config);
+	loop_replies(&d->w.l);
+	period(&d->w, OPEN_V);
+}
+
+/* Until it is answered. */
+static int32_t code_of(struct desk *d, uint64_t id)
+{
+	struct shm_done done;
+
+	while (!shm_done(d->w.l.status, id, &done) || done.code == SHM_TAKEN) {
+		usleep(100);
+		turn(d);
+	}
+	return done.code;
+}
+
+static int32_t give(struct desk *d, const struct shm_command *c)
+{
+	assert_int_equal(shm_command_put(d->fd, c), 0);
+	return code_of(d, c->id);
+}
+
+static int32_t ask_verb(struct desk *d, uint32_t verb)
+{
+	const struct shm_command c = command(d, verb);
+
+	return give(d, &c);
+}
+
+/* What came before a command was taken before it, a repeat too. */
+static int32_t give_again(struct desk *d, const struct shm_command *c)
+{
+	assert_int_equal(shm_command_put(d->fd, c), 0);
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_NO_PROGRAM);
+	return code_of(d, c->id);
+}
+
+static struct shm_command jog(struct desk *d, double mm)
+{
+	struct shm_command c = command(d, SHM_DO_JOG);
+
+	c.arg = INTERP_X;
+	c.arg_mm = mm;
+	return c;
+}
+
+static int32_t x_after(struct desk *d, int periods_more)
+{
+	for (int i = 0; i < periods_more; i++)
+		turn(d);
+	return d->w.out.target[INTERP_X];
+}
+
+/* A program that begins at @x pulses, as program.7. */
+static void put_program(struct desk *d, double x_mm)
+{
+	struct interp_build_options o = { .machine = &help_machine };
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	double end[INTERP_NAXES] = { [INTERP_X] = x_mm + 3 };
+
+	interp_build_destroy(b);
+	o.start_mm[INTERP_X] = x_mm;
+	b = interp_build_create(&o);
+	assert_non_null(b);
+	line(b, end);
+	if (d->w.m.block)
+		unmake(&d->w.m);
+	d->w.m = finish(b);
+	program_put(&d->w, &d->w.m);
+}
+
+static int32_t load_it(struct desk *d)
+{
+	struct shm_command c = command(d, SHM_LOAD);
+
+	c.arg = N;
+	return give(d, &c);
+}
+
+static void a_program_that_begins_elsewhere_is_not_loaded(void **state)
+{
+	struct desk *d = *state;
+
+	put_program(d, 5);
+	assert_int_equal(x_after(d, 3), 0);
+	assert_int_equal(load_it(d), SHM_ELSEWHERE);
+	assert_int_equal(x_after(d, 50), 0);
+	assert_null(d->w.l.program);
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_NO_PROGRAM);
+	assert_int_equal(x_after(d, 50), 0);
+	put_program(d, 0);
+	assert_int_equal(load_it(d), SHM_DONE);
+	assert_int_equal(x_after(d, 50), 0);
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_DONE);
+	assert_true(x_after(d, 50) > 0);
+}
+
+static void a_program_of_other_pulses_is_not_loaded(void **state)
+{
+	struct desk *d = *state;
+
+	put_program(d, 0);
+	d->w.config.axes.axis[INTERP_X].pulse_mm *= 2;
+	assert_int_equal(load_it(d), SHM_BAD_ARGUMENT);
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_NO_PROGRAM);
+	assert_int_equal(x_after(d, 50), 0);
+}
+
+static void a_command_is_done_once(void **state)
+{
+	struct desk *d = *state;
+	const struct shm_command c = jog(d, 0.1);
+
+	assert_int_equal(give(d, &c), SHM_DONE);
+	for (int i = 0; i < 3; i++) {
+		assert_int_equal(x_after(d, 500), 100);
+		assert_int_equal(give_again(d, &c), SHM_DONE);
+	}
+	assert_int_equal(x_after(d, 500), 100);
+}
+
+/* The next edmd has the record of the one before: the same status. */
+static void nor_is_it_done_again_by_the_next_edmd(void **state)
+{
+	struct desk *d = *state;
+	struct shm_command c = jog(d, 0.1);
+	struct shm_done done;
+
+	assert_int_equal(give(d, &c), SHM_DONE);
+	x_after(d, 500);
+	end_loop(d);
+	d->w.l.status->head.instance++;
+	begin_loop(d);
+	c.instance = d->instance;
+	assert_int_equal(give_again(d, &c), SHM_DONE);
+	assert_int_equal(x_after(d, 100), 0);
+	/* One that the edmd before began, and ended over. */
+	c = jog(d, 0.1);
+	shm_done_begin(d->w.l.status, c.id);
+	end_loop(d);
+	d->w.l.status->head.instance++;
+	begin_loop(d);
+	c.instance = d->instance;
+	assert_int_equal(give_again(d, &c), SHM_CUT_SHORT);
+	assert_int_equal(x_after(d, 100), 0);
+	assert_true(shm_done(d->w.l.status, c.id, &done));
+	assert_int_equal(done.code, SHM_CUT_SHORT);
+}
+
+static void a_late_one_is_not_done(void **state)
+{
+	struct desk *d = *state;
+	struct shm_command c = jog(d, 0.1);
+
+	c.until_ns = setup_now_ns() - 1;
+	assert_int_equal(give(d, &c), SHM_LATE);
+	c = jog(d, 0.1);
+	c.until_ns = INT64_MIN;
+	assert_int_equal(give(d, &c), SHM_LATE);
+	assert_int_equal(x_after(d, 100), 0);
+}
+
+static void one_for_another_edmd_or_without_an_id_is_not_done(void **state)
+{
+	struct desk *d = *state;
+	struct shm_command c = jog(d, 0.1);
+
+	c.instance++;
+	assert_int_equal(give(d, &c), SHM_WRONG_STATE);
+	c = jog(d, 0.1);
+	c.id = 0;
+	assert_int_equal(shm_command_put(d->fd, &c), 0);
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_NO_PROGRAM);
+	c = command(d, SHM_LOAD);
+	c.arg = N;
+	c.instance++;
+	put_program(d, 0);
+	assert_int_equal(give(d, &c), SHM_WRONG_STATE);
+	assert_int_equal(x_after(d, 100), 0);
+	assert_null(d->w.l.program);
+}
+
+static void no_verb_is_no_command(void **state)
+{
+	static const uint32_t none[] = {
+		CYCLE_NVERBS, 99, SHM_UNLOAD + 1, 0x80000000u, UINT32_MAX,
+	};
+	struct desk *d = *state;
+
+	for (size_t i = 0; i < sizeof(none) / sizeof(none[0]); i++)
+		assert_int_equal(ask_verb(d, none[i]), SHM_BAD_ARGUMENT);
+	assert_int_equal(x_after(d, 100), 0);
+}
+
+/* -- A start that is refused ---------------------------------------------------- */
+
+struct cause {
+	const char *what;
+	int32_t answer;
+	void (*make)(struct desk *d, bool there);
+};
+
+static void fault(struct desk *d, bool there)
+{
+	assert_int_equal(ask_verb(d, there ? SHM_DO_ESTOP : SHM_DO_RESET),
+			 SHM_DONE);
+	x_after(d, 2);
+}
+
+static void drives_down(struct desk *d, bool there)
+{
+	d->w.in.starting = there;
+	x_after(d, 2);
+}
+
+static void on_switch(struct desk *d, bool there)
+{
+	d->w.in.limit = there ? 1u << INTERP_X : 0;
+	x_after(d, 2);
+}
+
+static void not_homed(struct desk *d, bool there)
+{
+	d->w.l.cycle.config.require_home = there;
+	d->w.l.cycle.config.axis[INTERP_X].method = there ? HOME_SWITCH :
+							    HOME_NONE;
+	x_after(d, 2);
+}
+
+static void no_permit(struct desk *d, bool there)
+{
+	d->w.l.cycle.plc.present = true;
+	d->w.in.plc = well();
+	d->w.in.plc.permit = !there;
+	x_after(d, 2);
+}
+
+/* The cause ends, and nothing moves until somebody starts it then. */
+static void a_refused_start_leaves_nothing_behind(void **state)
+{
+	static const struct cause causes[] = {
+		{ "fault", SHM_WRONG_STATE, fault },
+		{ "drives", SHM_NOT_UP, drives_down },
+		{ "switch", SHM_AT_LIMIT, on_switch },
+		{ "home", SHM_NOT_HOMED, not_homed },
+		{ "permit", SHM_LOCKED, no_permit },
+	};
+	struct desk *d = *state;
+
+	for (size_t i = 0; i < sizeof(causes) / sizeof(causes[0]); i++) {
+		const struct cause *c = &causes[i];
+		const int verb = i % 2 ? SHM_DO_START : SHM_DO_RESUME;
+
+		print_message("%s\n", c->what);
+		put_program(d, 0);
+		assert_int_equal(load_it(d), SHM_DONE);
+		c->make(d, true);
+		assert_int_equal(ask_verb(d, SHM_DO_START), c->answer);
+		assert_int_equal(ask_verb(d, (uint32_t)verb), c->answer);
+		c->make(d, false);
+		assert_int_equal(x_after(d, 300), 0);
+		assert_int_equal(ask_verb(d, SHM_DO_START), SHM_DONE);
+		assert_true(x_after(d, 50) > 0);
+		end_loop(d);
+		program_close(d->w.l.program);
+		begin_loop(d);
+		d->w.in = (struct io_inputs) { .gap_valid = true };
+	}
+}
+
+int main(void)
+{
+#define T(f)	cmocka_unit_test_setup_teardown(f, setup, teardown)
+	const struct CMUnitTest tests[] = {
+		T(a_program_that_begins_elsewhere_is_not_loaded),
+		T(a_program_of_other_pulses_is_not_loaded),
+		T(a_command_is_done_once),
+		T(nor_is_it_done_again_by_the_next_edmd),
+		T(a_late_one_is_not_done),
+		T(one_for_another_edmd_or_without_an_id_is_not_done),
+		T(no_verb_is_no_command),
+		T(a_refused_start_leaves_nothing_behind),
+	};
+
+	return cmocka_run_group_tests_name("loop_commands", tests, NULL, NULL);
+}
