@@ -142,6 +142,15 @@ static void notice_faults(struct loop *l)
 		loop_event(l, SHM_EV_FAULT, 0, __builtin_ctzll(f));
 }
 
+/* A servo that hunts does so many times a minute: it is told the first time, the
+ * tenth, the hundredth ... */
+static bool is_power_of_ten(uint32_t n)
+{
+	while (n > 1 && n % 10 == 0)
+		n /= 10;
+	return n == 1;
+}
+
 /* Faults first, so that who reads "state: fault" already knows which. */
 void loop_notice(struct loop *l)
 {
@@ -150,11 +159,14 @@ void loop_notice(struct loop *l)
 
 	l->told.state = c->state;
 	l->told.outcome = c->outcome;
+	l->told.hunts = c->totals.hunts;
 	notice_faults(l);
 	if (c->state != was.state)
 		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
 	if (c->outcome != was.outcome && c->outcome != OUTCOME_NONE)
 		loop_event(l, SHM_EV_ENDED, 0, (int32_t)c->outcome);
+	if (c->totals.hunts > was.hunts && is_power_of_ten(c->totals.hunts))
+		loop_event(l, SHM_EV_HUNTING, 0, (int32_t)c->retract.in_row);
 	notice_condition(l);
 }
 
@@ -216,6 +228,8 @@ static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
 	s->erode_cycles = t->erode_cycles;
 	s->jump_cycles = t->jump_cycles;
 	s->retracts = t->retracts;
+	s->hunts = t->hunts;
+	s->in_row = c->retract.in_row;
 	s->jumps = t->jumps;
 	s->shorts = t->shorts;
 	s->overruns = t->overruns;

@@ -428,7 +428,8 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 			     "json_object('utime', utime, 'kind', kind, 'job', "
 			     "job, 'fault', outcome, 'place_mm', place_mm, "
 			     "'text', text) AS a FROM event WHERE kind IN "
-			     "('alarm', 'lost', 'back') ORDER BY utime DESC, "
+			     "('alarm', 'warning', 'lost', 'back') ORDER BY "
+			     "utime DESC, "
 			     "rowid DESC LIMIT ?)", "i", (int64_t)ALARMS_MAX);
 	if (rows <= 0 || rows > HISTORY_MAX)
 		rows = HISTORY_MAX;

@@ -45,7 +45,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	7
+#define SHM_LAYOUT	8
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 
@@ -98,6 +98,8 @@ struct shm_snapshot {
 	/* Sums of the job. */
 	uint64_t job_cycles, erode_cycles, jump_cycles;
 	uint32_t retracts, jumps, shorts, overruns;
+	uint32_t hunts, in_row;		/* rows of retracts without progress;
+					 * the row in hand */
 	double retract_mm_max;
 	/* The cycle's own time, ns. */
 	int64_t period_ns;
@@ -163,6 +165,7 @@ enum shm_event_kind {
 	SHM_EV_CONDITION,		/* called; id: its letter; code: number */
 	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
 	SHM_EV_SELECT,			/* by the PLC; code: job n */
+	SHM_EV_HUNTING,			/* code: retracts in a row */
 };
 
 struct shm_event {

@@ -38,7 +38,8 @@
 	COUNT(queue_len) \
 	COUNT(overruns) \
 	COUNT(wake_late_max_us) \
-	WORD(condition)
+	WORD(condition) \
+	COUNT(hunts)
 
 #define STATUS_ONE(name)	+ 1
 
