@@ -245,6 +245,36 @@ static void look_jobs(const struct host *h, struct finding *f)
 	    "no STATUS is heard", "systemctl start edmd-jobs");
 }
 
+static void look_store(const struct host *h, struct finding *f)
+{
+	const struct talk_question q = { .verb = "store" };
+	const char *path = "?", *why = "";
+	json_int_t bytes = 0, jobs = 0, kept = 0;
+	struct talk_answer a;
+	char found[160];
+	json_t *j;
+
+	uint64_t heard;
+
+	if (!h->ctl->talk || !talk_status(h->ctl->talk, &heard) ||
+	    talk_ask(h->ctl->talk, &q, h->ctl->timeout_s, &a) < 0) {
+		say(f, UNUSED, "edmd-jobs does not answer", "");
+		return;
+	}
+	j = json_loads(a.body ? a.body : "", 0, NULL);
+	json_unpack(j, "{s:s,s:s,s:I,s:I,s:I}", "path", &path, "why", &why,
+		    "bytes", &bytes, "jobs", &jobs, "kept", &kept);
+	snprintf(found, sizeof(found), "%.80s: %.1f MB, %lld jobs", path,
+		 (double)bytes / 1e6, (long long)jobs);
+	if (*why)
+		snprintf(found, sizeof(found), "degraded: %.60s; %lld entries "
+			 "wait in memory", why, (long long)kept);
+	say(f, *why ? BAD : GOOD, found, "make room on the disk of [jobs] "
+	    "store, or mend it; nothing else needs to be done");
+	json_decref(j);
+	talk_answer_free(&a);
+}
+
 /* clang-format off */
 static const struct {
 	const char *what;
@@ -260,6 +290,7 @@ static const struct {
 	{ "shared memory",	look_objects },
 	{ "edmd",		look_edmd },
 	{ "edmd-jobs",		look_jobs },
+	{ "store",		look_store },
 };
 /* clang-format on */
 

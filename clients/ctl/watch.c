@@ -72,8 +72,9 @@ static void print_text(const struct talk_status *s)
 		printf("contour    off by %.1f um at most, predicted %.1f um\n",
 		       s->contour_mm * 1e3, s->contour_predicted_mm * 1e3);
 	printf("queue      %d\n"
-	       "condition  %s\ntiming     woken late by %d us at most, %d overruns\n",
+	       "condition  %s\nstore      %s\ntiming     woken late by %d us at most, %d overruns\n",
 	       s->queue_len, *s->condition ? s->condition : "none",
+	       s->store,
 	       s->wake_late_max_us, s->overruns);
 }
 

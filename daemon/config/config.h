@@ -287,6 +287,7 @@ struct machine_config {
 	double dds_domain;		/* [dds] domain */
 	double dds_hz;
 	struct config_panel panel;
+	double keep_jobs, keep_days;	/* [jobs]; ended ones */
 	char store_dir[256];		/* [jobs] store: SQLite database's folder */
 };
 

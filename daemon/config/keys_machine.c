@@ -88,6 +88,10 @@ static const struct config_key row[] = {
 	NUMBER(DDS, "hz", "Hz", "10", 2, 100, AT(dds_hz),
 	       "status samples a second"),
 
+	WHOLE(JOBS, "keep_jobs", "", "10000", 20, 10000000, AT(keep_jobs),
+	      "ended jobs that are kept in the history, with their texts"),
+	WHOLE(JOBS, "keep_days", "", "0", 0, 36500, AT(keep_days),
+	      "days that an ended job is kept; 0: without end"),
 	STRING(JOBS, "store", "/var/lib/edmd", store_dir,
 	       "folder of jobs, history and checkpoints"),
 };

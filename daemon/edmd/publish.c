@@ -151,6 +151,26 @@ static bool is_power_of_ten(uint32_t n)
 	return n == 1;
 }
 
+static void notice_ended(const struct loop *l)
+{
+	struct shm_snapshot s;
+	struct shm_ended e;
+
+	if (!l->program)
+		return;
+	loop_snapshot(l, &s);
+	e = (struct shm_ended) {
+		.program = s.program, .outcome = s.outcome,
+		.time_ns = s.time_ns, .period_ns = s.period_ns,
+		.place_mm = s.place_mm, .far_mm = s.far_mm,
+		.length_mm = s.length_mm, .depth_mm = s.depth_mm,
+		.job_cycles = s.job_cycles, .jumps = s.jumps,
+		.retracts = s.retracts, .shorts = s.shorts,
+	};
+	memcpy(e.hash, l->cycle.cursor.p.head->hash, sizeof(e.hash));
+	shm_ended_put(l->status, &e);
+}
+
 /* Faults first, so that who reads "state: fault" already knows which. */
 void loop_notice(struct loop *l)
 {
@@ -163,8 +183,10 @@ void loop_notice(struct loop *l)
 	notice_faults(l);
 	if (c->state != was.state)
 		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
-	if (c->outcome != was.outcome && c->outcome != OUTCOME_NONE)
+	if (c->outcome != was.outcome && c->outcome != OUTCOME_NONE) {
+		notice_ended(l);
 		loop_event(l, SHM_EV_ENDED, 0, (int32_t)c->outcome);
+	}
 	if (c->totals.hunts > was.hunts && is_power_of_ten(c->totals.hunts))
 		loop_event(l, SHM_EV_HUNTING, 0, (int32_t)c->retract.in_row);
 	notice_condition(l);

@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <sodium.h>
+#include <stdio.h>
 #include <string.h>
 #include <sysexits.h>
 
@@ -32,17 +33,42 @@ static uint64_t act_id(const struct jobs_lcm_command *c)
 	return id ? id : 1;
 }
 
-void act_commit(struct jobs *j)
+int act_commit(struct jobs *j)
 {
-	if (j->act_open)
-		store_commit(j->store);
+	const int err = j->act_open ? store_commit(j->store) : 0;
+
 	j->act_open = false;
+	return err;
 }
 
-void act_answered(struct jobs *j, uint64_t id, int code, const char *reason)
+int act_answered(struct jobs *j, uint64_t id, int code, const char *reason)
 {
 	store_act_end(j->store, id, code, reason);
-	act_commit(j);
+	return act_commit(j);
+}
+
+/* What edmd does is gone with the host's power; the rest is not.  Nor is the
+ * promise that a job may begin. */
+static bool is_durable(const struct verb *v)
+{
+	return v->machine == VERB_OWN || v->machine == SHM_DO_START ||
+	       v->machine == SHM_DO_RESUME;
+}
+
+/* edmd remembers what it was handed; what this service does itself would be
+ * forgotten. */
+static bool refuse_degraded(struct jobs *j, const struct verb *v,
+			    const struct jobs_lcm_command *c)
+{
+	char reason[240];
+
+	if (v->machine != VERB_OWN || !*store_why(j->store))
+		return false;
+	snprintf(reason, sizeof(reason), "the store is degraded: %s; make room "
+		 "or mend it, then again; stop, hold and estop work",
+		 store_why(j->store));
+	verbs_answer(j, c, EX_IOERR, reason);
+	return true;
 }
 
 static void act_begin(struct jobs *j, const struct verb *v,
@@ -53,19 +79,10 @@ static void act_begin(struct jobs *j, const struct verb *v,
 		.born = j->link.status ? j->link.status->born : 0,
 		.verb = v->name, .by = c->by->name, .now_us = jobs_utime(),
 	};
-	/* What edmd does is gone with the host's power; the rest is not. */
-	int err = store_together(j->store, v->machine == VERB_OWN);
-
-	j->act_open = err == 0;
-	if (err == 0)
-		err = store_act_begin(j->store, &a);
-	if (err == 0 || v->kind == VERB_ENDS) {
+	j->act_open = store_together(j->store, is_durable(v)) == 0;
+	store_act_begin(j->store, &a);
+	if (!refuse_degraded(j, v, c))
 		v->run(j, v, c);
-	} else {
-		verbs_answer(j, c, EX_IOERR, "the store failed, so it was not "
-			     "done; see the journal of edmd-jobs; stop, hold "
-			     "and estop work");
-	}
 	act_commit(j);
 }
 

@@ -27,10 +27,11 @@ void act_take(struct jobs *j, const struct verb *v,
 	      const struct jobs_lcm_command *c);
 
 /** act_commit() - what was written so far is kept.  Before it is handed over,
- *  and before it is answered. */
-void act_commit(struct jobs *j);
+ *  and before it is answered.  Return: 0, or STORE_KEPT: not on the disk. */
+int act_commit(struct jobs *j);
 
-/** act_answered() - remember what is answered to act @id. */
-void act_answered(struct jobs *j, uint64_t id, int code, const char *reason);
+/** act_answered() - remember what is answered to act @id.  Return: as
+ *  act_commit(). */
+int act_answered(struct jobs *j, uint64_t id, int code, const char *reason);
 
 #endif /* JOBS_ACT_H */

@@ -41,6 +41,7 @@ struct jobs {
 	int64_t status_us;		/* when the last was sent, monotonic */
 	uint64_t status_key;		/* what a change of is sent at once */
 	int64_t begun_us;		/* of this service */
+	const char *store_told;		/* store_why() as it was told last */
 	bool act_open;			/* act.c: a transaction is */
 	int claim;			/* shm_writer_claim(); -1: none */
 };

@@ -142,9 +142,9 @@ int keys_open(struct jobs *j, const char *dir)
 {
 	if (machine_key(j, dir) < 0 || host_key(j, dir) < 0)
 		return EX_CONFIG;
-	if (store_trust_init(j->store) < 0 ||
-	    store_keys_load(j->store, &j->trust) < 0)
-		return EX_IOERR;
+	if (store_keys_load(j->store, &j->trust) < 0)
+		log_error("keys: the keys in the store cannot be read; only "
+			  "the host's own is known");
 	leave_copy(j, dir);
 	trust_init(&j->trust, jobs_now_us());
 	return 0;
@@ -236,10 +236,12 @@ void keys_add(struct jobs *j, const struct verb *v,
 	if (err == 0)
 		log_notice("keys: %s added %s, a %s, from %s", c->by->name,
 			   k.name, role, c->from);
-	verbs_answer(j, c, err ? REFUSED : 0, err == -EEXIST ?
-		    "this key, or one of this name, is there already; edmctl "
-		    "keys list" : err ? "64 keys are there; remove one" :
-		    "added");
+	if (verbs_answer(j, c, err ? REFUSED : 0, err == -EEXIST ?
+			 "this key, or one of this name, is there already; "
+			 "edmctl keys list" :
+			 err ? "64 keys are there; remove one" : "added") &&
+	    err == 0)
+		trust_remove(&j->trust, k.name);
 }
 
 void keys_remove(struct jobs *j, const struct verb *v,

@@ -205,6 +205,16 @@ void link_poll(struct link *l, int64_t now_us)
 	pending_settle(l, now_us, -ETIMEDOUT);
 }
 
+void link_ended(struct link *l,
+		void (*each)(void *arg, const struct shm_ended *e), void *arg)
+{
+	struct shm_follow all = { .next = 0 };
+	struct shm_ended e;
+
+	while (l->status && shm_ended_next(l->status, &all, &e))
+		each(arg, &e);
+}
+
 static struct link_pending *pending_room(struct link *l)
 {
 	for (int i = 0; i < LINK_PENDING; i++)

@@ -81,6 +81,11 @@ int link_send(struct link *l, const struct link_command *c, int64_t now_us);
  *  service was started anew.  Return: 0; -EAGAIN too many under way. */
 int link_await(struct link *l, const struct link_command *c, int64_t now_us);
 
+/** link_ended() - call @each with every job that edmd knows to have ended, the
+ *  last one last. */
+void link_ended(struct link *l,
+		void (*each)(void *arg, const struct shm_ended *e), void *arg);
+
 /** link_state_name() - "ok", "lost", "absent". */
 const char *link_state_name(enum link_state s);
 

@@ -71,7 +71,7 @@ static void on_started(void *arg, int code)
 	j->queue.asked = false;
 	if (code == -ESHUTDOWN)
 		return;
-	store_set_number(j->store, "started", 0);
+	queue_started(j, code);
 	if (code == SHM_DONE || !j->queue.job.n)
 		return;
 	queue_wait(j);
@@ -145,8 +145,9 @@ static int load_write(struct jobs *j, const struct compiler_result *r)
 		       strlen(q->job.sha256), NULL, NULL, NULL);
 	/* Before the object exists: a killed service finds and removes it. */
 	err = store_set_loaded(j->store, q->job.n, true);
-	if (err == 0)
-		err = shm_program_create(&block, j->machine, q->job.n, bytes);
+	if (err != 0)
+		return -EAGAIN;
+	err = shm_program_create(&block, j->machine, q->job.n, bytes);
 	if (err < 0)
 		return err;
 	interp_build_write(r->build, &about, block);
@@ -166,6 +167,11 @@ static void load_ask(struct jobs *j, const struct compiler_result *r)
 	randombytes_buf(&c.id, sizeof(c.id));
 	j->queue.load_id = c.id |= 1;
 
+	/* The store failed: it waits in the queue as before. */
+	if (err == -EAGAIN) {
+		queue_drop(j, true);
+		return;
+	}
 	if (err < 0) {
 		snprintf(reason, sizeof(reason), "no room for its program: %s",
 			 strerror(-err));
@@ -224,7 +230,10 @@ void load_begin(struct jobs *j, int64_t now_us)
 		err = compiler_start(&q->compile, j->event, &request,
 				     on_compiled, j);
 	}
-	if (err < 0) {
+	if (err == -EILSEQ) {
+		load_refuse(j, q->next, "its text in the store is not the one "
+			    "that was sent: the disk damaged it; send it again");
+	} else if (err < 0) {
 		q->again_us = now_us + AGAIN_US;
 		free(q->next_text);
 		q->next_text = NULL;

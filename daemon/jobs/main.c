@@ -72,18 +72,24 @@ int64_t jobs_utime(void)
 void jobs_note(struct jobs *j, const struct jobs_note *n,
 	       const char *text, ...)
 {
-	char words[512];
+	char words[700];
 	va_list ap;
+	int err;
 
 	va_start(ap, text);
-	vsnprintf(words, sizeof(words), text, ap);
+	vsnprintf(words, 512, text, ap);
 	va_end(ap);
 	log_notice("%s: %s", n->kind, words);
-	store_note(j->store, &(struct store_note) {
+	err = store_note(j->store, &(struct store_note) {
 		.kind = n->kind, .job = n->job ? n->job : "",
 		.outcome = n->outcome ? n->outcome : "", .text = words,
 		.place_mm = n->place_mm, .now_us = jobs_utime(),
 	});
+	/* What is told is true; that the disk does not know it is told, too. */
+	if (err != 0)
+		snprintf(words + strlen(words), sizeof(words) - strlen(words),
+			 " (kept in memory, not on the disk: %s)",
+			 store_why(j->store));
 	jobs_lcm_event(j->lcm, &(struct jobs_lcm_event) {
 		.kind = n->kind, .job = n->job, .outcome = n->outcome,
 		.text = words, .place_mm = n->place_mm,
@@ -123,6 +129,23 @@ static int on_lcm(sd_event_source *s, int fd, uint32_t events, void *arg)
 	return 0;
 }
 
+/* Tell when the store is degraded, and when it is whole again. */
+static void watch_store(struct jobs *j, int64_t now_us)
+{
+	const bool whole = store_tick(j->store, now_us);
+	const char *why = store_why(j->store);
+
+	if (strcmp(why, j->store_told) == 0)
+		return;
+	j->store_told = why;
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "store", .outcome = *why ? "degraded" : "ok",
+	}, "store %s%s", *why ? "degraded: " : "is whole again", why);
+	/* Nothing was known of what is in it. */
+	if (whole && j->queue.job.n == 0)
+		queue_init(j);
+}
+
 static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 {
 	struct jobs *j = arg;
@@ -139,6 +162,9 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 	if (dropped)
 		log_notice("submit: dropped %d uploads that did not go on for "
 			   "30 s", dropped);
+	watch_store(j, now_us);
+	store_retain(j->store, (int64_t)j->config->keep_jobs,
+		     (int64_t)j->config->keep_days, jobs_utime());
 	status_tick(j, now_us);
 	sd_event_source_set_enabled(s, SD_EVENT_ONESHOT);
 	return sd_event_source_set_time_relative(s, TICK_US);
@@ -194,7 +220,7 @@ static int open_store(struct jobs *j, const char *dir)
 
 	if (err == 0)
 		return 0;
-	if (err == -EBUSY) {
+	if (err == -EALREADY) {
 		log_error("store: %s/%s.db is in use; one edmd-jobs for a "
 			  "machine", dir, j->machine);
 		return EX_TEMPFAIL;
@@ -204,11 +230,7 @@ static int open_store(struct jobs *j, const char *dir)
 			  j->machine);
 		return EX_CONFIG;
 	}
-	if (err == -EILSEQ)
-		log_error("store: %s/%s.db is no database of jobs; move it "
-			  "away, a new one is made", dir, j->machine);
-	else
-		log_error("store: %s: %s; a folder that can be written", dir,
+	log_error("store: %s: %s; a folder that can be written", dir,
 			  strerror(-err));
 	return EX_CANTCREAT;
 }
@@ -292,6 +314,11 @@ static int run(struct jobs *j)
 	j->begun_us = jobs_now_us();
 	link_init(&j->link, j->machine, &h);
 	twin_init(&j->twin, j->config);
+	j->store_told = "";
+	if (*store_mended(j->store))
+		jobs_note(j, &(struct jobs_note) {
+			.kind = "store", .outcome = "mended",
+		}, "%s", store_mended(j->store));
 	if (err >= 0)
 		err = queue_init(j);
 	if (err >= 0)

@@ -41,10 +41,41 @@ void queue_go(struct jobs *j)
 	set_waiting(j, false);
 }
 
-void queue_started(struct jobs *j)
+bool queue_has_begun(const struct jobs *j)
+{
+	return j->queue.job.begun_us || j->queue.snap.job_cycles ||
+	       !j->queue.job.n;
+}
+
+int queue_promise(struct jobs *j)
+{
+	int err;
+
+	if (queue_has_begun(j))
+		return 0;
+	err = store_may_begin(j->store, j->queue.job.n);
+	if (err == 0)
+		j->queue.promised = j->queue.job.n;
+	return err;
+}
+
+/* It did not begin: that it may have is taken back. */
+static void unpromise(struct jobs *j)
+{
+	if (j->queue.promised)
+		store_may_begin(j->store, 0);
+	j->queue.promised = 0;
+}
+
+void queue_started(struct jobs *j, int code)
 {
 	struct queue *q = &j->queue;
 
+	/* Whatever is not a clear no may have been done. */
+	if (code > 0 && code != SHM_CUT_SHORT && code != SHM_DONE)
+		unpromise(j);
+	if (code != SHM_DONE)
+		return;
 	queue_go(j);
 	if (!q->job.n || !q->job.hold)
 		return;
@@ -148,8 +179,11 @@ void queue_drop(struct jobs *j, bool again)
 {
 	struct queue *q = &j->queue;
 
-	if (again)
+	if (again) {
 		set_state(j, JOB_QUEUED);
+		unpromise(j);
+	}
+	q->promised = 0;
 	shm_program_remove(j->machine, q->job.n);
 	store_set_loaded(j->store, q->job.n, false);
 	q->job = (struct store_job) { .n = 0 };
@@ -167,6 +201,7 @@ void queue_attach(struct jobs *j)
 
 	q->missing_us = 0;
 	q->again_us = 0;
+	settle_ended(j);
 	if (!anew)
 		return;
 	store_set_number(j->store, "instance", j->link.instance);
@@ -198,6 +233,14 @@ static void follow_change(struct jobs *j, const struct shm_event *e)
 	store_change(j->store, j->queue.job.n, &c);
 }
 
+/* One that has not begun makes room: for another, or because nothing may begin
+ * that cannot be stored. */
+static void give_back(struct jobs *j)
+{
+	load_send(j, SHM_UNLOAD, j->queue.job.n, jobs_now_us());
+	queue_drop(j, true);
+}
+
 /* By the PLC.  One that has begun stays; one that has not makes room. */
 static void follow_select(struct jobs *j, uint32_t n)
 {
@@ -208,8 +251,7 @@ static void follow_select(struct jobs *j, uint32_t n)
 	if (!q->job.n || q->job.n == n || q->job.begun_us || q->loading ||
 	    q->snap.job_cycles)
 		return;
-	load_send(j, SHM_UNLOAD, q->job.n, jobs_now_us());
-	queue_drop(j, true);
+	give_back(j);
 }
 
 /* The cut goes on, and somebody should look at it. */
@@ -268,6 +310,7 @@ static void follow_running(struct jobs *j)
 		return;
 	q->job.begun_us = jobs_utime();
 	store_begin(j->store, q->job.n, q->job.begun_us);
+	unpromise(j);
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "begun", .job = q->job.id,
 	}, "job %s begun", q->job.name);
@@ -282,6 +325,12 @@ static void follow_hold(struct jobs *j, int64_t now_us)
 		return;
 	}
 	set_state(j, JOB_READY);
+	if (q->promised == q->job.n)
+		return;
+	if (*store_why(j->store)) {
+		give_back(j);
+		return;
+	}
 	if (q->job.hold || q->waiting || q->asked || q->loading ||
 	    now_us < q->again_us)
 		return;
@@ -292,9 +341,8 @@ static void follow_hold(struct jobs *j, int64_t now_us)
 		set_waiting(j, true);
 		return;
 	}
-	if (store_set_number(j->store, "started", q->job.n) < 0 ||
-	    load_send(j, SHM_DO_START, 0, now_us) < 0) {
-		store_set_number(j->store, "started", 0);
+	if (queue_promise(j) < 0 || load_send(j, SHM_DO_START, 0, now_us) < 0) {
+		unpromise(j);
 		q->again_us = now_us + AGAIN_US;
 	}
 }
@@ -339,6 +387,13 @@ static void follow_state(struct jobs *j, int64_t now_us)
 	}
 }
 
+/* It was handed a start, and nobody is left who knows what came of it. */
+static bool may_have_begun(const struct jobs *j)
+{
+	return j->queue.job.begun_us ||
+	       store_number(j->store, "started", 0) == j->queue.job.n;
+}
+
 /* edmd shows another program, or none: for a moment, or for good? */
 static void follow_missing(struct jobs *j, int64_t now_us)
 {
@@ -351,13 +406,13 @@ static void follow_missing(struct jobs *j, int64_t now_us)
 	} else if (!q->missing_us) {
 		q->missing_us = now_us;
 	} else if (now_us - q->missing_us > MISSING_US && !q->loading) {
-		if (q->job.begun_us)
+		if (may_have_begun(j))
 			queue_end(j, JOB_STOPPED,
 				  "edmd restarted without its program; its "
 				  "log says why");
 		else
 			set_waiting(j, true);
-		queue_drop(j, !q->job.begun_us);
+		queue_drop(j, q->job.state != JOB_STOPPED);
 	}
 }
 
@@ -399,6 +454,7 @@ static void fault_without_job(struct jobs *j)
 static bool may_load(const struct jobs *j)
 {
 	return j->link.snap.state == SHM_IDLE && !j->link.snap.unplaced &&
+	       !*store_why(j->store) &&
 	       !(j->config->require_home && j->link.snap.unhomed);
 }
 

@@ -33,6 +33,7 @@ struct queue {
 	double depth_mm;		/* deepest seen of that job */
 	uint32_t behind;		/* jobs that wait */
 	bool waiting;			/* for "start" */
+	uint32_t promised;		/* the job that was started, or 0 */
 	/* Private. */
 	uint32_t ended;			/* enum shm_outcome, by its event */
 	bool loading;			/* LOAD is under way, ... */
@@ -66,8 +67,13 @@ void queue_recount(struct jobs *j);
 
 /** queue_go() - "start": the queue waits no more. */
 void queue_go(struct jobs *j);
-/** queue_started() - edmd has carried a start out. */
-void queue_started(struct jobs *j);
+/** queue_promise() - the job loaded is about to be started.
+ *  Return: 0; -errno: it has not begun, and that it does cannot be stored. */
+int queue_promise(struct jobs *j);
+/** queue_has_begun() - the job loaded, and that is known. */
+bool queue_has_begun(const struct jobs *j);
+/** queue_started() - what edmd answered to a start: enum link's codes. */
+void queue_started(struct jobs *j, int code);
 /** queue_unready() - why no job could begin now, in words; NULL: one could. */
 const char *queue_unready(const struct jobs *j);
 /** queue_wait() - nothing starts until queue_go(). */
@@ -83,6 +89,11 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason);
 
 /** queue_drop() - edmd has no program of ours any more. */
 void queue_drop(struct jobs *j, bool again);
+
+/* -- settle.c ------------------------------------------------------------- */
+
+/** settle_ended() - end the jobs that edmd knows to have ended. */
+void settle_ended(struct jobs *j);
 
 /* -- load.c: from the store into edmd ------------------------------------- */
 

@@ -7,6 +7,7 @@
 
 #include "interp/tech_table.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define STATUS_US	100000
@@ -19,6 +20,7 @@ static uint64_t key_of(const struct jobs *j)
 
 	return (uint64_t)j->link.state << 60 | (uint64_t)(s->state & 15) << 56 |
 	       (uint64_t)(s->fault & 255) << 48 |
+	       (uint64_t)(*store_why(j->store) != 0) << 47 |
 	       (uint64_t)j->queue.job.state << 44 |
 	       (uint64_t)(j->queue.behind & 0xfff) << 32 | j->queue.job.n;
 }
@@ -77,7 +79,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 {
 	uint64_t key = key_of(j);
 	struct jobs_lcm_status w = { .line = 0 };
-	char condition[16];
+	char condition[16], store[64];
 
 	if (key == j->status_key && now_us - j->status_us < STATUS_US)
 		return;
@@ -93,5 +95,8 @@ void status_tick(struct jobs *j, int64_t now_us)
 	fill_job(&w, j);
 	name_condition(condition, &j->queue.snap);
 	w.condition = condition;
+	snprintf(store, sizeof(store), "%s%s", *store_why(j->store) ?
+		 "degraded: " : "ok", store_why(j->store));
+	w.store = store;
 	jobs_lcm_status(j->lcm, &w);
 }

@@ -3,15 +3,21 @@
  * store.h - jobs, events and a few numbers, kept through a power cut
  *
  * One SQLite database, <dir>/<machine>.db, in WAL with synchronous=FULL: what
- * a call has returned from is on the disk.  A lock file beside it keeps a
+ * a call has returned 0 for is on the disk.  A lock file beside it keeps a
  * second service of the same machine out.
+ *
+ * When the disk is full, read-only or fails, the store is degraded: it goes on
+ * in memory, calls that write return STORE_KEPT, and store_tick() writes what
+ * was kept when there is room.  Calls that take a promise (a new job, a key, a
+ * job that is about to begin) are refused with the reason instead.  A damaged
+ * file is set aside and recovered as far as that goes.
  *
  * Every job has a number n, never used twice, which is also the n of its
  * program.<n> in shared memory.
  *
  * Units: in every name; times are microseconds since 1970.
- * Threads: one.  Calls return 0 or -EIO unless they say more, and log what
- * SQLite said.
+ * Threads: one.  Calls return 0, STORE_KEPT or -errno unless they say more, and
+ * log what SQLite said.
  */
 #ifndef JOBS_STORE_H
 #define JOBS_STORE_H
@@ -19,6 +25,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#define STORE_KEPT	1		/* in memory, not on the disk */
+#define STORE_BUSY_MS	500
 
 enum job_state {
 	JOB_QUEUED, JOB_READY, JOB_RUNNING, JOB_HELD,
@@ -81,37 +90,81 @@ const char *store_state_name(enum job_state s);
 /**
  * store_open() - open or make the database.
  *
- * Return: 0; -EBUSY if another service has it; -EPROTO if a newer version
- * made it; -errno if @dir cannot be used; -EIO.
+ * A disk that is full, read-only or fails is no error here: see store_why().
+ * Return: 0; -EALREADY if another service has it; -EPROTO if a newer version
+ * made it; -errno if @dir cannot be used.
  */
 int store_open(struct store **ret, const char *dir, const char *machine);
 /** store_close() - NULL is fine. */
 void store_close(struct store *s);
-/** store_db() - the database, for store_trust.c. */
-struct sqlite3 *store_db(struct store *s);
 
-/** store_add() - a new job, queued.  @ret_n its number. */
+/** store_why() - it is degraded, because ...; "": it is whole. */
+const char *store_why(const struct store *s);
+
+/** store_mended() - what was done to a damaged file; "": nothing. */
+const char *store_mended(const struct store *s);
+
+/** store_tick() - every 20 ms: try to store what was kept.
+ *  Return: true: it is whole again from now on. */
+bool store_tick(struct store *s, int64_t now_us);
+
+/** store_retain() - forget ended jobs above @jobs and older than @days (0: any
+ *  number), a few at a time, but never the last 20. */
+void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us);
+
+/* What it takes, and how it is. */
+struct store_size {
+	char path[512];
+	int64_t bytes;			/* of the files */
+	uint32_t jobs;
+	uint32_t kept;			/* entries in memory */
+	uint64_t dropped;
+};
+
+void store_measure(struct store *s, struct store_size *ret);
+
+/** store_add() - a new job, queued, or not at all.  @ret_n its number. */
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n);
 
-/* Find one: 0, or -ENOENT. */
+/* Find one: 0, -ENOENT, or -EIO: it cannot be known. */
 int store_find(struct store *s, const char *id, struct store_job *ret);
+int store_find_number(struct store *s, uint32_t n, struct store_job *ret);
 int store_loaded(struct store *s, struct store_job *ret);
 /** ... the job to be loaded next: number "selected", if it waits, else the
  *  oldest. */
 int store_head(struct store *s, struct store_job *ret);
 
-/** store_text() - the text of job @n; to be freed. */
+/** store_text() - the text of job @n; to be freed.  -EILSEQ: it is not the one
+ *  that was sent. */
 int store_text(struct store *s, uint32_t n, char **ret, size_t *ret_bytes);
 
 int store_set_state(struct store *s, uint32_t n, enum job_state state);
 int store_set_hold(struct store *s, uint32_t n, bool hold);
+/** store_set_loaded() - true: on the disk, or refused. */
 int store_set_loaded(struct store *s, uint32_t n, bool loaded);
 int store_begin(struct store *s, uint32_t n, int64_t now_us);
+
+/**
+ * store_may_begin() - job @n is about to be started: on the disk, or refused.
+ *
+ * A job that this was not stored of has not begun, whatever happens after.
+ * 0: it was not started after all.
+ */
+int store_may_begin(struct store *s, uint32_t n);
 int store_end(struct store *s, uint32_t n, const struct store_end *e);
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
 /** store_change() - of job @n; the same one twice is kept once. */
 int store_change(struct store *s, uint32_t n, const struct store_change *c);
 int store_note(struct store *s, const struct store_note *e);
+
+/**
+ * store_together() - what is written up to store_commit() is written at once.
+ * @durable: through a power cut, not only through a kill.
+ * Return: 0, or STORE_KEPT: what was written without a promise is in memory; what
+ * must be on the disk is not.
+ */
+int store_together(struct store *s, bool durable);
+int store_commit(struct store *s);
 
 /** store_waiting() - jobs that are queued and not loaded. */
 uint32_t store_waiting(struct store *s);

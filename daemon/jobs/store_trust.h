@@ -7,16 +7,13 @@
  * not reach the disk: after a power cut there is no edmd that could have done
  * it.
  *
- * Threads: one.  Calls return 0 or -EIO unless they say more.
+ * Threads: one.  Calls return as those of store.h do.
  */
 #ifndef JOBS_STORE_TRUST_H
 #define JOBS_STORE_TRUST_H
 
 #include "store.h"
 #include "trust.h"
-
-/** store_trust_init() - make the tables.  Startup only. */
-int store_trust_init(struct store *s);
 
 /** store_keys_load() - the keys that were added, into @t. */
 int store_keys_load(struct store *s, struct trust *t);
@@ -46,12 +43,5 @@ int store_act_begin(struct store *s, const struct store_act *a);
 
 /** store_act_end() - what is answered to it. */
 int store_act_end(struct store *s, uint64_t id, int code, const char *reason);
-
-/**
- * store_together() - what is written up to store_commit() is written at once.
- * @durable: through a power cut, not only through a kill.
- */
-int store_together(struct store *s, bool durable);
-int store_commit(struct store *s);
 
 #endif /* JOBS_STORE_TRUST_H */

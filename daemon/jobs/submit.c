@@ -91,6 +91,16 @@ static const char *what_next(const struct jobs *j, bool hold)
 	       "it starts when those before it are done" : "it starts now";
 }
 
+static void refuse_degraded(struct jobs *j, struct upload *up)
+{
+	char reason[240];
+
+	snprintf(reason, sizeof(reason), "the store is degraded: %s; no job is "
+		 "taken until it can be stored; make room, then send it again",
+		 store_why(j->store));
+	answer_end(j, up, EX_IOERR, reason, NULL);
+}
+
 static void accept_text(struct jobs *j, struct upload *up,
 			const struct compiler_result *r)
 {
@@ -106,16 +116,15 @@ static void accept_text(struct jobs *j, struct upload *up,
 	uint32_t number;
 
 	hash_hex(hex, up->sha256);
+	if (store_add(j->store, &n, &number) != 0) {
+		refuse_degraded(j, up);
+		return;
+	}
 	/* What a queue waited for is over when there is no queue. */
 	if (queue_unready(j))
 		queue_wait(j);
 	else if (q->behind == 0 && (q->job.n == 0 || queue_is_leaving(q)))
 		queue_go(j);
-	if (store_add(j->store, &n, &number) < 0) {
-		answer_end(j, up, EX_IOERR, "the store failed; see the "
-			   "journal of edmd-jobs", NULL);
-		return;
-	}
 	queue_recount(j);
 	jobs_note(j, &(struct jobs_note) { .kind = "queued", .job = n.id },
 		  "job %s queued, %u lines, %zu bytes", n.name, lines,

@@ -33,9 +33,14 @@ struct verb {
 	const char *wants;		/* the state it wants */
 };
 
-/** verbs_answer() - @code and @reason, to who asked. */
-void verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
+/** verbs_answer() - @code and @reason, to who asked.  Return: 0, or STORE_KEPT: it
+ *  could not be written to the disk, and that was answered. */
+int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason);
+
+/** verbs_store() - the verb "store". */
+void verbs_store(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c);
 
 /** verbs_settle() - answer act @c with what edmd's @code says. */
 void verbs_settle(struct jobs *j, const struct verb *v,

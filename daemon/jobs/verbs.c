@@ -12,6 +12,7 @@
 #include "interp/tech_table.h"
 #include "jobs_log.h"
 #include "nearest.h"
+#include "store_trust.h"
 #include "verbs.h"
 
 #include <errno.h>
@@ -36,15 +37,26 @@ struct asked {
 	const struct verb *verb;
 };
 
-void verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
+int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason)
 {
+	char failed[200];
+	int err = 0;
+
 	if (c->act)
-		act_answered(j, c->act, code, reason);
+		err = act_answered(j, c->act, code, reason);
+	if (err && code == 0) {
+		snprintf(failed, sizeof(failed), "the store failed, so it is "
+			 "not kept: %s", store_why(j->store));
+		code = EX_IOERR;
+		reason = failed;
+		store_act_end(j->store, c->act, code, reason);
+	}
 	jobs_answer(j, &(struct jobs_lcm_ack) {
 		.key = c->key, .client = c->client, .seq = c->seq, .code = code,
 		.reason = reason,
 	});
+	return err;
 }
 
 /* What the cycle says no to in any state; NULL: it is the state. */
@@ -106,9 +118,9 @@ static void on_answer(void *arg, int code)
 	};
 	char reason[160];
 
-	if (code == SHM_DONE && (a->verb->machine == SHM_DO_START ||
-				 a->verb->machine == SHM_DO_RESUME))
-		queue_started(j);
+	if (a->verb->machine == SHM_DO_START ||
+	    a->verb->machine == SHM_DO_RESUME)
+		queue_started(j, code);
 	if (code == SHM_DONE)
 		verbs_answer(j, &c, 0, "done");
 	else if (gone(code))
@@ -178,6 +190,17 @@ void verbs_await(struct jobs *j, const struct verb *v,
 		on_answer(a, SHM_TAKEN);
 }
 
+/* A job begins only when the disk knows that it may have begun. */
+static bool may_start(struct jobs *j, const struct verb *v)
+{
+	const bool starts = v->machine == SHM_DO_START ||
+			    v->machine == SHM_DO_RESUME;
+	const int err = starts ? queue_promise(j) : 0;
+	const int committed = act_commit(j);
+
+	return err == 0 && (!starts || committed == 0 || queue_has_begun(j));
+}
+
 static void ask_machine(struct jobs *j, const struct verb *v,
 			const struct jobs_lcm_command *c, uint32_t arg)
 {
@@ -187,11 +210,19 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 		.take_us = v->kind == VERB_SIGNS ? SIGN_US : 0,
 		.answer = on_answer, .answer_arg = a,
 	};
+	char reason[240];
 	int err;
 
 	if (!a)
 		return;
-	act_commit(j);
+	if (!may_start(j, v)) {
+		free(a);
+		snprintf(reason, sizeof(reason), "the store is degraded: %s; a "
+			 "job begins when that can be stored, one that has "
+			 "begun goes on", store_why(j->store));
+		verbs_answer(j, c, EX_IOERR, reason);
+		return;
+	}
 	err = link_send(&j->link, &m, jobs_now_us());
 	if (err == 0)
 		return;
@@ -555,6 +586,7 @@ static const struct verb verbs[] = {
 	{ "queue", ROLE_VIEWER, VERB_ASKS, verb_queue, VERB_OWN, "" },
 	{ "show", ROLE_VIEWER, VERB_ASKS, verb_show, VERB_OWN, "" },
 	{ "history", ROLE_VIEWER, VERB_ASKS, verb_history, VERB_OWN, "" },
+	{ "store", ROLE_VIEWER, VERB_ASKS, verbs_store, VERB_OWN, "" },
 	{ "hello", ROLE_VIEWER, VERB_ASKS, keys_hello, VERB_OWN, "" },
 	{ "keys", ROLE_SERVICE, VERB_ASKS, keys_list, VERB_OWN, "" },
 	{ "keys-add", ROLE_SERVICE, VERB_ACTS, keys_add, VERB_OWN, "" },

@@ -65,6 +65,16 @@ static struct ring ring_of_done(const struct shm_status *s)
 	};
 }
 
+static struct ring ring_of_ended(const struct shm_status *s)
+{
+	return (struct ring) {
+		.slots = (void *)(uintptr_t)s->ended,
+		.next = (uint64_t *)(uintptr_t)&s->ended_next,
+		.count = SHM_ENDED_SLOTS,
+		.slot_bytes = sizeof(s->ended[0]),
+	};
+}
+
 static uint64_t *ring_stamp(const struct ring *r, uint64_t n)
 {
 	return (uint64_t *)(void *)((char *)r->slots +
@@ -218,6 +228,21 @@ bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
 		    struct shm_event *ret)
 {
 	struct ring r = ring_of_events(s);
+
+	return ring_follow(&r, f, ret);
+}
+
+void shm_ended_put(struct shm_status *s, const struct shm_ended *e)
+{
+	struct ring r = ring_of_ended(s);
+
+	ring_put(&r, e);
+}
+
+bool shm_ended_next(const struct shm_status *s, struct shm_follow *f,
+		    struct shm_ended *ret)
+{
+	struct ring r = ring_of_ended(s);
 
 	return ring_follow(&r, f, ret);
 }

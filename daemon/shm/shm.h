@@ -23,6 +23,9 @@
  * made anew and must be connected again; it tells which edmd listens.  An
  * edmd that ends in order removes both objects.
  *
+ * The jobs that ended last are kept in status as well: a service that could not
+ * write that down, and was killed, does not take one of them for a job to be cut.
+ *
  * The ids of the last commands that were taken are kept in status too, with
  * what was answered: no edmd of this machine takes one of them again.
  *
@@ -53,6 +56,7 @@
 #define SHM_EVENT_SLOTS		1024
 #define SHM_COMMAND_SLOTS	64
 #define SHM_DONE_SLOTS		256	/* commands that are remembered */
+#define SHM_ENDED_SLOTS		64	/* jobs that ended; a power of two */
 #define SHM_LATENCY_BINS	256	/* of 1 us; the last holds all above */
 
 struct shm_head {
@@ -206,6 +210,22 @@ struct shm_done {
 	uint32_t instance;		/* of the edmd that took it */
 };
 
+/* A job that ended, or ended for now in a fault. */
+struct shm_ended {
+	uint32_t program;		/* n */
+	uint32_t outcome;		/* enum shm_outcome */
+	uint8_t hash[32];		/* SHA-256 of its text */
+	int64_t time_ns, period_ns;
+	double place_mm, far_mm, length_mm, depth_mm;
+	uint64_t job_cycles;		/* 0: it had not begun */
+	uint32_t jumps, retracts, shorts, pad;
+};
+
+struct shm_ended_slot {
+	uint64_t stamp;
+	struct shm_ended record;
+};
+
 struct shm_done_slot {
 	uint64_t stamp;
 	struct shm_done record;
@@ -230,8 +250,10 @@ struct shm_status {
 	uint64_t event_next;
 	uint64_t sets_next;
 	uint64_t done_next;
+	uint64_t ended_next;
 	struct shm_sets_slot sets[2];
 	struct shm_done_slot done[SHM_DONE_SLOTS];
+	struct shm_ended_slot ended[SHM_ENDED_SLOTS];
 	struct shm_trace_slot trace[SHM_TRACE_SLOTS];
 	struct shm_event_slot event[SHM_EVENT_SLOTS];
 };
@@ -336,6 +358,9 @@ void shm_done_begin(struct shm_status *s, uint64_t id);
 /** shm_done_end() - it was answered with @code.  RT-safe; one writer. */
 void shm_done_end(struct shm_status *s, uint64_t id, int32_t code);
 
+/** shm_ended_put() - a job has ended.  RT-safe; one writer. */
+void shm_ended_put(struct shm_status *s, const struct shm_ended *e);
+
 /* -- Readers, and edmd-jobs --------------------------------------------- */
 
 /**
@@ -407,6 +432,10 @@ int shm_command_put(int fd, const struct shm_command *c);
  * RT-safe: a bounded search.  Any thread.
  */
 bool shm_done(const struct shm_status *s, uint64_t id, struct shm_done *ret);
+
+/** shm_ended_next() - the jobs that ended, as shm_event_next(). */
+bool shm_ended_next(const struct shm_status *s, struct shm_follow *f,
+		    struct shm_ended *ret);
 
 /**
  * shm_program_create() - edmd.<machine>.program.<n>, @bytes to fill.

@@ -39,6 +39,7 @@
 	COUNT(overruns) \
 	COUNT(wake_late_max_us) \
 	WORD(condition) \
+	WORD(store) \
 	COUNT(hunts)
 
 #define STATUS_ONE(name)	+ 1

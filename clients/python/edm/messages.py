@@ -15,7 +15,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("bb4ab1a64211c912")
-STATUS = bytes.fromhex("26f9d8b752a38dff")
+STATUS = bytes.fromhex("aee6575978757b73")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -154,6 +154,7 @@ class Status:
     overruns: int
     wake_late_max_us: int
     condition: str
+    store: str
     hunts: int
 
     @staticmethod
@@ -188,6 +189,7 @@ class Status:
             r.int32(),
             r.int32(),
             r.int32(),
+            r.string(),
             r.string(),
             r.int32(),
         )

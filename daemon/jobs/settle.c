@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * settle.c - what edmd knows of jobs that ended, and the store does not
+ *
+ * A service that could not write to the disk, and was killed, left jobs in the
+ * store that are queued, ready or running there and have ended long ago.  edmd
+ * remembers the last of them by number and text.
+ */
+#include "jobs.h"
+
+#include "jobs_log.h"
+
+#include <sodium.h>
+#include <string.h>
+
+static bool is_over(const struct store_job *job)
+{
+	return job->state == JOB_DONE || job->state == JOB_STOPPED;
+}
+
+/* One that was unloaded before it began is still to be cut. */
+static bool is_of(const struct shm_ended *e, const struct store_job *job)
+{
+	char hex[65];
+
+	sodium_bin2hex(hex, sizeof(hex), e->hash, sizeof(e->hash));
+	return strcmp(hex, job->sha256) == 0 &&
+	       (e->outcome == SHM_OUTCOME_DONE || e->job_cycles > 0);
+}
+
+static void settle_one(void *arg, const struct shm_ended *e)
+{
+	struct jobs *j = arg;
+	const bool done = e->outcome == SHM_OUTCOME_DONE;
+	struct store_job job;
+
+	/* The one that is there is followed by its snapshot. */
+	if (e->program == j->link.snap.program ||
+	    store_find_number(j->store, e->program, &job) < 0 ||
+	    is_over(&job) || !is_of(e, &job))
+		return;
+	log_notice("queue: edmd says that job %s, which is %s in the store, %s",
+		   job.id, store_state_name(job.state),
+		   done ? "was done" : "was begun and ended");
+	store_end(j->store, job.n, &(struct store_end) {
+		.state = done ? JOB_DONE : JOB_STOPPED,
+		.reason = done ? "" : e->outcome == SHM_OUTCOME_FAULT ?
+			  "after a fault" : "by command",
+		.now_us = e->time_ns / 1000, .place_mm = e->far_mm,
+		.length_mm = e->length_mm, .depth_mm = e->depth_mm,
+		.job_s = (double)e->job_cycles * (double)e->period_ns / 1e9,
+		.jumps = e->jumps, .retracts = e->retracts,
+		.shorts = e->shorts,
+	});
+	store_set_loaded(j->store, job.n, false);
+	if (j->queue.job.n == job.n) {
+		j->queue.job.state = done ? JOB_DONE : JOB_STOPPED;
+		queue_drop(j, false);
+	}
+	queue_recount(j);
+}
+
+void settle_ended(struct jobs *j)
+{
+	link_ended(&j->link, settle_one, j);
+}

@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * store_file.c - the database's file: opened, brought up to date, copied
+ *
+ * A new shape of the tables is a new row of `steps`, never a change of an old
+ * one: a new file goes through all of them, so that it has the same columns in
+ * the same order as one that was made by the first edmd-jobs.
+ */
+#include "store_sql.h"
+
+#include "jobs_log.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define CHECK_BYTES	(256ll << 20)	/* larger ones take too long */
+
+/* Step i brings a file of version i to version i + 1. */
+static const char *const steps[] = {
+	"CREATE TABLE job("
+	" n INTEGER PRIMARY KEY AUTOINCREMENT,"
+	" id TEXT NOT NULL UNIQUE, name TEXT NOT NULL,"
+	" sha256 TEXT NOT NULL, text BLOB NOT NULL, lines INTEGER NOT NULL,"
+	" state TEXT NOT NULL DEFAULT 'queued',"
+	" hold INTEGER NOT NULL, loaded INTEGER NOT NULL DEFAULT 0,"
+	" submitted_us INTEGER NOT NULL,"
+	" begun_us INTEGER NOT NULL DEFAULT 0,"
+	" ended_us INTEGER NOT NULL DEFAULT 0,"
+	" reason TEXT NOT NULL DEFAULT '',"
+	" place_mm REAL, length_mm REAL, depth_mm REAL, job_s REAL,"
+	" jumps INTEGER, retracts INTEGER, shorts INTEGER);",
+
+	"ALTER TABLE job ADD COLUMN tech_sha256 TEXT NOT NULL DEFAULT '';",
+
+	/* An update of a job writes its row anew, and must not write its text
+	 * anew.  What an earlier edmd-jobs made without a version may be there. */
+	"CREATE TABLE text(n INTEGER PRIMARY KEY, text BLOB NOT NULL);"
+	"INSERT INTO text SELECT n, text FROM job;"
+	"ALTER TABLE job DROP COLUMN text;"
+	"CREATE TABLE IF NOT EXISTS change("
+	" n INTEGER NOT NULL, time_ns INTEGER NOT NULL, what TEXT NOT NULL,"
+	" was, now, place_mm REAL, PRIMARY KEY(n, time_ns, what));"
+	"CREATE INDEX IF NOT EXISTS job_by_state ON job(state, loaded);"
+	"CREATE TABLE IF NOT EXISTS event("
+	" utime INTEGER NOT NULL, kind TEXT NOT NULL, job TEXT NOT NULL,"
+	" outcome TEXT NOT NULL, place_mm REAL, text TEXT NOT NULL);"
+	"CREATE INDEX event_by_job ON event(job);"
+	"CREATE TABLE IF NOT EXISTS number("
+	" key TEXT PRIMARY KEY, value INTEGER NOT NULL);"
+	"CREATE TABLE IF NOT EXISTS key("
+	" public TEXT PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
+	" role TEXT NOT NULL, added_us INTEGER NOT NULL);"
+	"CREATE TABLE IF NOT EXISTS act("
+	" id INTEGER PRIMARY KEY, instance INTEGER NOT NULL,"
+	" born INTEGER NOT NULL, verb TEXT NOT NULL, by TEXT NOT NULL,"
+	" begun_us INTEGER NOT NULL, code INTEGER, reason TEXT);"
+	"CREATE TRIGGER job_gone AFTER DELETE ON job BEGIN"
+	" DELETE FROM text WHERE n=old.n;"
+	" DELETE FROM change WHERE n=old.n;"
+	" DELETE FROM event WHERE job=old.id; END;",
+};
+
+#define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))
+
+int store_file_errno(sqlite3 *db, int rc)
+{
+	const int system = db ? sqlite3_system_errno(db) : 0;
+
+	switch (rc & 0xff) {
+	case SQLITE_FULL:
+		return -ENOSPC;
+	case SQLITE_READONLY:
+		return -EROFS;
+	case SQLITE_CORRUPT:
+	case SQLITE_NOTADB:
+		return -EILSEQ;
+	case SQLITE_BUSY:
+	case SQLITE_LOCKED:
+		return -EBUSY;
+	case SQLITE_CONSTRAINT:
+		return -EEXIST;
+	case SQLITE_NOMEM:
+		return -ENOMEM;
+	default:
+		break;
+	}
+	if (system == ENOSPC || system == EDQUOT)
+		return -ENOSPC;
+	return system == EROFS ? -EROFS : system == EACCES ? -EACCES : -EIO;
+}
+
+static int execute(sqlite3 *db, const char *sql)
+{
+	const int rc = sqlite3_exec(db, sql, NULL, NULL, NULL);
+
+	return rc == SQLITE_OK ? 0 : store_file_errno(db, rc);
+}
+
+/* The first column of the first row: 0 or -errno. */
+static int ask_number(sqlite3 *db, const char *sql, int64_t *ret)
+{
+	sqlite3_stmt *q = NULL;
+	int rc = sqlite3_prepare_v2(db, sql, -1, &q, NULL);
+
+	if (rc == SQLITE_OK)
+		rc = sqlite3_step(q);
+	*ret = rc == SQLITE_ROW ? sqlite3_column_int64(q, 0) : 0;
+	sqlite3_finalize(q);
+	return rc == SQLITE_ROW ? 0 : rc == SQLITE_DONE ? -EIO :
+	       store_file_errno(db, rc);
+}
+
+static int step_up(sqlite3 *db, int64_t from)
+{
+	char version[64];
+	int err = execute(db, "BEGIN IMMEDIATE");
+
+	for (int64_t i = from; i < VERSION && err == 0; i++)
+		err = execute(db, steps[i]);
+	snprintf(version, sizeof(version), "PRAGMA user_version=%d", VERSION);
+	if (err == 0)
+		err = execute(db, version);
+	if (err == 0)
+		err = execute(db, "COMMIT");
+	if (err < 0 && !sqlite3_get_autocommit(db))
+		execute(db, "ROLLBACK");
+	return err;
+}
+
+static int bring_up(sqlite3 *db)
+{
+	int64_t version, tables;
+	int err = ask_number(db, "PRAGMA user_version", &version);
+
+	if (err == 0)
+		err = ask_number(db, "SELECT count(*) FROM sqlite_schema",
+				 &tables);
+	if (err < 0)
+		return err;
+	if (version > VERSION)
+		return -EPROTO;
+	if (version == VERSION)
+		return 0;
+	if (tables > 0)
+		log_notice("store: bringing it from version %d to %d",
+			   (int)version, VERSION);
+	return step_up(db, version);
+}
+
+/* A page that is damaged is found now, not when its job's turn comes. */
+static int check(struct store *s, sqlite3 *db)
+{
+	sqlite3_stmt *q = NULL;
+	struct stat st;
+	int rc, err = 0;
+
+	if (stat(s->path, &st) < 0 || st.st_size > CHECK_BYTES)
+		return 0;
+	rc = sqlite3_prepare_v2(db, "PRAGMA quick_check(1)", -1, &q, NULL);
+	if (rc == SQLITE_OK)
+		rc = sqlite3_step(q);
+	if (rc != SQLITE_ROW)
+		err = store_file_errno(db, rc);
+	else if (strcmp((const char *)sqlite3_column_text(q, 0), "ok") != 0)
+		err = -EILSEQ;
+	sqlite3_finalize(q);
+	return err;
+}
+
+int store_file_probe(const struct store *s)
+{
+	char path[600];
+	int fd, err = 0;
+
+	snprintf(path, sizeof(path), "%s.probe", s->path);
+	fd = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+	if (fd < 0)
+		return -errno;
+	if (write(fd, path, sizeof(path)) < 0 || fsync(fd) < 0)
+		err = -errno;
+	close(fd);
+	unlink(path);
+	return err ? err : -EIO;
+}
+
+static int open_once(struct store *s, sqlite3 **ret)
+{
+	static const char set[] =
+		"PRAGMA auto_vacuum=INCREMENTAL;"
+		"PRAGMA journal_mode=WAL;"
+		"PRAGMA synchronous=FULL;"
+		"PRAGMA journal_size_limit=4194304;";
+	sqlite3 *db = NULL;
+	int err, rc = sqlite3_open(s->path, &db);
+
+	err = rc == SQLITE_OK ? 0 : store_file_errno(db, rc);
+	if (err == 0) {
+		sqlite3_busy_timeout(db, STORE_BUSY_MS);
+		err = execute(db, set);
+	}
+	if (err == 0)
+		err = check(s, db);
+	if (err == 0)
+		err = bring_up(db);
+	if (err < 0) {
+		if (!s->in_memory)
+			log_error("store: %s: %s", s->path,
+				  sqlite3_errmsg(db));
+		sqlite3_close_v2(db);
+		return err == -EIO ? store_file_probe(s) : err;
+	}
+	*ret = db;
+	return 0;
+}
+
+int store_file_make(const char *path, sqlite3 **ret)
+{
+	sqlite3 *db = NULL;
+	int err, rc = sqlite3_open(path, &db);
+
+	err = rc == SQLITE_OK ? 0 : store_file_errno(db, rc);
+	if (err == 0)
+		err = execute(db, "PRAGMA auto_vacuum=INCREMENTAL;"
+			      "PRAGMA synchronous=FULL;");
+	if (err == 0)
+		err = step_up(db, 0);
+	if (err == 0)
+		*ret = db;
+	else
+		sqlite3_close_v2(db);
+	return err;
+}
+
+int store_file_open(struct store *s, sqlite3 **ret)
+{
+	int err = open_once(s, ret);
+
+	if (err != -EILSEQ)
+		return err;
+	err = store_mend(s);
+	return err < 0 ? err : open_once(s, ret);
+}
+
+/* -- The copy in memory ----------------------------------------------------- */
+
+static int copy_row(sqlite3_stmt *from, sqlite3_stmt *to)
+{
+	for (int i = 0; i < sqlite3_column_count(from); i++)
+		sqlite3_bind_value(to, i + 1, sqlite3_column_value(from, i));
+	sqlite3_step(to);
+	return sqlite3_reset(to);
+}
+
+static int copy_table(sqlite3 *disk, sqlite3 *memory, const char *name)
+{
+	sqlite3_stmt *from = NULL, *to = NULL;
+	char sql[400];
+	int n, rc;
+
+	snprintf(sql, sizeof(sql), "SELECT * FROM \"%.60s\"", name);
+	rc = sqlite3_prepare_v2(disk, sql, -1, &from, NULL);
+	if (rc != SQLITE_OK)
+		return rc;
+	n = snprintf(sql, sizeof(sql), "INSERT INTO \"%.60s\" VALUES(?", name);
+	for (int i = 1; i < sqlite3_column_count(from) && n < 380; i++)
+		n += snprintf(sql + n, sizeof(sql) - (size_t)n, ",?");
+	snprintf(sql + n, sizeof(sql) - (size_t)n, ")");
+	rc = sqlite3_prepare_v2(memory, sql, -1, &to, NULL);
+	while (rc == SQLITE_OK && (rc = sqlite3_step(from)) == SQLITE_ROW)
+		rc = copy_row(from, to);
+	sqlite3_finalize(from);
+	sqlite3_finalize(to);
+	return rc == SQLITE_DONE ? SQLITE_OK : rc;
+}
+
+static int copy_tables(sqlite3 *disk, sqlite3 *memory)
+{
+	sqlite3_stmt *names = NULL;
+	int rc = sqlite3_prepare_v2(memory, "SELECT name FROM sqlite_schema "
+				    "WHERE type='table' AND name NOT LIKE "
+				    "'sqlite_%' AND name<>'text'", -1, &names,
+				    NULL);
+	int all = rc;
+
+	while (rc == SQLITE_OK && sqlite3_step(names) == SQLITE_ROW) {
+		const int one = copy_table(disk, memory, (const char *)
+					   sqlite3_column_text(names, 0));
+
+		all = all == SQLITE_OK ? one : all;
+	}
+	sqlite3_finalize(names);
+	return all;
+}
+
+sqlite3 *store_file_copy(struct store *s, sqlite3 *disk)
+{
+	sqlite3 *memory = NULL;
+
+	/* Without memory for a row there is none for the service. */
+	if (sqlite3_open(":memory:", &memory) != SQLITE_OK ||
+	    step_up(memory, 0) < 0)
+		abort();
+	s->unread = !disk || copy_tables(disk, memory) != SQLITE_OK;
+	if (s->unread)
+		log_error("store: %s cannot be read either; what is in it is "
+			  "not known until it can be", s->path);
+	return memory;
+}
+
+/* A log that nobody can lock or write is read into memory, by a database that
+ * is nobody else's; without a log the file is all there is. */
+sqlite3 *store_file_look(struct store *s)
+{
+	char uri[600], log[520];
+	struct stat st;
+	sqlite3 *db = NULL;
+	bool has_log;
+
+	snprintf(log, sizeof(log), "%s-wal", s->path);
+	has_log = stat(log, &st) == 0 && st.st_size > 0;
+	snprintf(uri, sizeof(uri), "file:%s?mode=ro%s", s->path,
+		 has_log ? "&vfs=unix-none" : "&immutable=1");
+	if (sqlite3_open_v2(uri, &db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI,
+			    NULL) == SQLITE_OK) {
+		execute(db, "PRAGMA locking_mode=EXCLUSIVE");
+		return db;
+	}
+	sqlite3_close_v2(db);
+	return NULL;
+}

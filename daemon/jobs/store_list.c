@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * store_list.c - lists of jobs and events, as JSON
+ */
+#include "store_sql.h"
+
+#include <string.h>
+
+#define HISTORY_MAX	200
+#define ALARMS_MAX	20
+
+#define JOB_JSON(MORE)	"json_object('n', n, 'job', id, 'name', name, " \
+			"'state', state, 'hold', json(iif(hold, 'true', " \
+			"'false')), 'lines', lines, 'sha256', sha256, " \
+			"'submitted_us', submitted_us, 'begun_us', begun_us, " \
+			"'ended_us', ended_us, 'reason', reason, 'path_mm', " \
+			"place_mm, 'length_mm', length_mm, 'depth_mm', " \
+			"depth_mm, 'job_s', job_s, 'jumps', jumps, " \
+			"'retracts', retracts, 'shorts', shorts, " \
+			"'tech_sha256', tech_sha256" MORE ")"
+
+/* Of one job alone: what was called and set, in the order of time. */
+#define CHANGES_JSON	", 'changes', (SELECT json_group_array(json(c)) FROM " \
+			"(SELECT json_object('utime', time_ns / 1000, " \
+			"'place_mm', place_mm, 'what', what, 'was', was, " \
+			"'now', now) AS c FROM change WHERE change.n=job.n " \
+			"ORDER BY time_ns))"
+
+static sqlite3_stmt *list_query(struct store *s, enum store_list what,
+				const char *id, int rows)
+{
+	if (what == STORE_SHOW)
+		return store_ask(s, NULL, "SELECT " JOB_JSON(CHANGES_JSON) " FROM job "
+			     "WHERE id=?",
+			     "s", id);
+	if (what == STORE_QUEUE)
+		return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM "
+			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
+			     "state='queued' OR (loaded=1 AND state NOT IN "
+			     "('done', 'stopped')) ORDER BY n)", "");
+	if (what == STORE_ALARMS)
+		return store_ask(s, NULL, "SELECT json_group_array(json(a)) FROM (SELECT "
+			     "json_object('utime', utime, 'kind', kind, 'job', "
+			     "job, 'fault', outcome, 'place_mm', place_mm, "
+			     "'text', text) AS a FROM event WHERE kind IN "
+			     "('alarm', 'warning', 'lost', 'back') "
+			     "ORDER BY utime DESC, "
+			     "rowid DESC LIMIT ?)", "i", (int64_t)ALARMS_MAX);
+	if (rows <= 0 || rows > HISTORY_MAX)
+		rows = HISTORY_MAX;
+	return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM (SELECT "
+		     JOB_JSON("") " AS j FROM job WHERE state IN ('done', "
+		     "'stopped', 'fault') ORDER BY ended_us DESC, n DESC "
+		     "LIMIT ?)", "i", (int64_t)rows);
+}
+
+char *store_json(struct store *s, enum store_list what, const char *id,
+		 int rows)
+{
+	sqlite3_stmt *q = list_query(s, what, id, rows);
+	char *text = NULL;
+
+	if (q)
+		text = strdup((const char *)sqlite3_column_text(q, 0));
+	sqlite3_finalize(q);
+	return text;
+}

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * store_open.c - the store opened and closed, its size, and what it forgets
+ */
+#include "store_sql.h"
+
+#include "jobs_log.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define RETAIN_US	INT64_C(10000000)
+#define DAY_US		INT64_C(86400000000)
+
+/* The disk's fault, not that of who wrote the path. */
+static bool is_of_disk(int err)
+{
+	return err == -ENOSPC || err == -EDQUOT || err == -EROFS ||
+	       err == -EIO;
+}
+
+/* On a disk that takes no new file there is still shm_writer_claim(). */
+static int lock_take(struct store *s, const char *machine)
+{
+	char path[512];
+	int err = 0;
+
+	if (mkdir(s->dir, 0750) < 0 && errno != EEXIST)
+		return -errno;
+	snprintf(path, sizeof(path), "%s/%s.lock", s->dir, machine);
+	s->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+	if (s->lock < 0)
+		err = -errno;
+	if (is_of_disk(err))
+		s->lock = open(path, O_RDONLY | O_CLOEXEC);
+	if (s->lock < 0)
+		return is_of_disk(err) ? 0 : err;
+	if (flock(s->lock, LOCK_EX | LOCK_NB) < 0)
+		return errno == EWOULDBLOCK ? -EALREADY : -errno;
+	return 0;
+}
+
+static int store_init(struct store *s, const char *dir, const char *machine)
+{
+	int err;
+
+	s->lock = -1;
+	snprintf(s->dir, sizeof(s->dir), "%s", dir);
+	snprintf(s->path, sizeof(s->path), "%s/%s.db", dir, machine);
+	err = lock_take(s, machine);
+	if (err < 0)
+		return err;
+	err = store_file_open(s, &s->db);
+	if (err == 0 || err == -EPROTO || err == -EACCES)
+		return err;
+	/* The disk does not take it: begin with what can be read. */
+	s->db = store_file_look(s);
+	store_degrade(s, err);
+	return 0;
+}
+
+int store_open(struct store **ret, const char *dir, const char *machine)
+{
+	struct store *s = calloc(1, sizeof(*s));
+	int err;
+
+	if (!s)
+		return -ENOMEM;
+	err = store_init(s, dir, machine);
+	if (err < 0) {
+		store_close(s);
+		return err;
+	}
+	*ret = s;
+	return 0;
+}
+
+void store_close(struct store *s)
+{
+	if (!s)
+		return;
+	if (s->kept.n)
+		log_error("store: %u entries could not be stored: %s", s->kept.n,
+			  store_why(s));
+	store_writes_free(&s->group);
+	store_writes_free(&s->kept);
+	sqlite3_close_v2(s->db);
+	if (s->lock >= 0)
+		close(s->lock);
+	free(s);
+}
+
+const char *store_mended(const struct store *s)
+{
+	return s->told;
+}
+
+static int64_t file_bytes(const char *path, const char *suffix)
+{
+	struct stat st;
+	char name[600];
+
+	snprintf(name, sizeof(name), "%s%s", path, suffix);
+	return stat(name, &st) == 0 ? st.st_size : 0;
+}
+
+void store_measure(struct store *s, struct store_size *ret)
+{
+	*ret = (struct store_size) {
+		.bytes = file_bytes(s->path, "") + file_bytes(s->path, "-wal"),
+		.jobs = (uint32_t)store_number_of(s, 0, "SELECT count(*) FROM "
+						  "job", ""),
+		.kept = s->kept.n, .dropped = s->dropped,
+	};
+	snprintf(ret->path, sizeof(ret->path), "%s", s->path);
+}
+
+/* The last 20 stay, so that a clock that jumped takes not everything. */
+void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us)
+{
+	const int64_t before = days ? now_us - days * DAY_US : 0;
+
+	if (s->in_memory || s->together ||
+	    llabs(now_us - s->retained_us) < RETAIN_US)
+		return;
+	s->retained_us = now_us;
+	store_do(s, STORE_MAY_GO, "DELETE FROM job WHERE n IN (SELECT n FROM "
+		 "job WHERE state IN ('done', 'stopped', 'fault') AND loaded=0 "
+		 "AND n NOT IN (SELECT n FROM job ORDER BY n DESC LIMIT 20) "
+		 "AND (ended_us<?1 OR n NOT IN (SELECT n FROM job WHERE state "
+		 "IN ('done', 'stopped', 'fault') ORDER BY n DESC LIMIT ?2)) "
+		 "ORDER BY n LIMIT 10)", "ii", before, jobs ? jobs : -1);
+	store_do(s, STORE_MAY_GO, "DELETE FROM event WHERE rowid IN (SELECT "
+		 "rowid FROM event WHERE utime<? ORDER BY rowid LIMIT 100)", "i",
+		 before);
+	if (!s->in_memory)
+		sqlite3_exec(s->db, "PRAGMA incremental_vacuum(256)", NULL,
+			     NULL, NULL);
+}

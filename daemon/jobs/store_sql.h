@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * store_sql.h - SQLite under the store: every result heard, none lost
+ *
+ * While the disk takes what is written, `db` is the database on the disk.  When
+ * a write or a read fails, the store is degraded: `db` becomes a copy in memory
+ * of all tables but the texts, what is written goes there and into a list, and
+ * store_tick() tries to bring the list to the disk.  So what is asked is always
+ * answered by what was written last.
+ *
+ * The list is bounded.  Of two writes of the same statement to the same row the
+ * later one is enough; when there is no room, the oldest of those that may go is
+ * dropped and counted.
+ *
+ * Private to the files store*.c.
+ */
+#ifndef JOBS_STORE_SQL_H
+#define JOBS_STORE_SQL_H
+
+#include "store.h"
+
+#include <sqlite3.h>
+#include <stdarg.h>
+
+enum store_keep {
+	STORE_MUST,			/* on the disk, or refused */
+	STORE_KEEP,			/* else in memory, until it can be */
+	STORE_MAY_GO			/* the same; dropped if there are many */
+};
+
+struct store_value {
+	char kind;			/* i, d, s as in store_do() */
+	union {
+		int64_t i;
+		double d;
+		char *s;
+	};
+};
+
+/* A statement with its values. */
+struct store_write {
+	struct store_write *next;
+	const char *sql;		/* a constant */
+	enum store_keep keep;
+	int key;			/* the value that says which row; -1 */
+	int n;
+	struct store_value v[20];
+};
+
+struct store_writes {
+	struct store_write *first, **last;
+	uint32_t n;
+};
+
+struct store {
+	sqlite3 *db;			/* the one in force */
+	bool in_memory;			/* it is the copy */
+	bool unread;			/* nothing could be copied */
+	char dir[256], path[512];
+	int lock;			/* -1: the disk would not have it */
+	int err;			/* why it is degraded; 0: it is not */
+	int64_t again_us;		/* not before */
+	bool together;			/* a transaction is open ... */
+	struct store_writes group;	/* ... of these */
+	struct store_writes kept;
+	uint64_t dropped;
+	int64_t retained_us;
+	char told[512];			/* what was mended at the start */
+};
+
+/**
+ * store_do() - write.
+ *
+ * @sql: a constant.  @kinds: a letter for each ?: i int64_t, d double, s
+ * string; a capital letter is the value that says which row.
+ * Return: 0 it is on the disk, or will be with its transaction; STORE_KEPT it
+ * is in memory; -EEXIST a constraint; for STORE_MUST why it cannot be written.
+ */
+int store_do(struct store *s, enum store_keep keep, const char *sql,
+	     const char *kinds, ...);
+
+/**
+ * store_ask() - the first row of a query; to be finalized.
+ * @ret_err: -ENOENT there is none; or why it cannot be read.  NULL is fine.
+ */
+sqlite3_stmt *store_ask(struct store *s, int *ret_err, const char *sql,
+			const char *kinds, ...);
+
+/** store_number_of() - the first column of the first row. */
+int64_t store_number_of(struct store *s, int64_t otherwise, const char *sql,
+			const char *kinds, ...);
+
+/** store_failed() - @rc of SQLite: degrade if it must be.  Return: -errno. */
+int store_failed(struct store *s, int rc);
+
+/** store_degrade() - from now on in memory. */
+void store_degrade(struct store *s, int err);
+
+/** store_undo() - give an open transaction up, without what was in it. */
+void store_undo(struct store *s);
+
+/** store_replay() - what was kept, into @db, whole or not.  Return: SQLite's */
+int store_replay(struct store *s, sqlite3 *db);
+
+/** store_writes_free() - forget them. */
+void store_writes_free(struct store_writes *w);
+
+/* -- store_file.c ----------------------------------------------------------- */
+
+/** store_file_open() - open, mend, bring up to date.  Return: 0 or -errno. */
+int store_file_open(struct store *s, sqlite3 **ret);
+
+/** store_file_make() - a new, empty one at @path.  Return: 0 or -errno. */
+int store_file_make(const char *path, sqlite3 **ret);
+
+/** store_file_copy() - all but the texts, as far as it can be read.
+ *  @disk: NULL is fine. */
+sqlite3 *store_file_copy(struct store *s, sqlite3 *disk);
+
+/** store_file_errno() - what SQLite's @rc, of @db, comes to. */
+int store_file_errno(sqlite3 *db, int rc);
+
+/** store_file_probe() - why nothing can be written: SQLite does not always say
+ *  what the system said.  Return: -errno. */
+int store_file_probe(const struct store *s);
+
+/** store_file_look() - to read only, where nothing can be written; or NULL. */
+sqlite3 *store_file_look(struct store *s);
+
+/* -- store_mend.c ----------------------------------------------------------- */
+
+/** store_mend() - set the damaged file aside, and put what can be recovered of
+ *  it in its place.  Says in `told` what it did.  Return: 0 or -errno. */
+int store_mend(struct store *s);
+
+#endif /* JOBS_STORE_SQL_H */

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The store on a disk that is full, read-only or fails: what runs goes on,
+what is told is true, and no job is ever cut a second time."""
+
+import errno
+import json
+import os
+import subprocess
+
+import pytest
+import rig
+from rig import QUICK_JOB, SLOW_JOB
+
+
+@pytest.fixture(scope="session")
+def shim(tmp_path_factory):
+    """The preloaded library that lets a folder's disk fail."""
+    out = tmp_path_factory.mktemp("shim") / "failing_disk.so"
+    source = os.path.join(os.path.dirname(__file__), "failing_disk.c")
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", str(out), source,
+                    "-ldl"], check=True)
+    return out
+
+
+class Failing(rig.Machine):
+    """A machine whose edmd-jobs stores on a disk that fails on demand."""
+
+    shim = None
+
+    def __init__(self, folder, shim):
+        super().__init__(folder)
+        self.shim = shim
+        self.errno = self.folder / "errno"
+
+    def _start(self, program, *args):
+        env = dict(os.environ)
+        if program == "edmd-jobs":
+            env |= {"LD_PRELOAD": str(self.shim),
+                    "EDM_DISK": str(self.store),
+                    "EDM_DISK_ERRNO": str(self.errno)}
+        with open(self.folder / f"{program}.log", "ab") as log:
+            return subprocess.Popen(
+                [str(rig.BUILD / program), *args], stdout=log, stderr=log,
+                env=env)
+
+    def fail(self, number):
+        self.errno.with_suffix(".new").write_text(str(number))
+        self.errno.with_suffix(".new").rename(self.errno)
+
+    def heal(self):
+        self.errno.unlink()
+
+
+@pytest.fixture
+def failing(tmp_path, shim):
+    m = Failing(tmp_path, shim)
+    yield m
+    if m.errno.exists():
+        m.heal()
+    m.close()
+    m.sweep()
+
+
+def degraded(c, why):
+    return c.status_where(lambda s: s.store == f"degraded: {why}")
+
+
+WORDS = {
+    errno.ENOSPC: "the disk is full",
+    errno.EROFS: "the disk is read-only",
+    errno.EIO: "the disk fails: input/output error",
+}
+
+
+@pytest.mark.parametrize("number", WORDS, ids=errno.errorcode.get)
+def test_a_disk_that_fails_in_a_cut_stops_nothing(failing, number):
+    m = failing
+    m.start()
+    c = m.client
+    assert c.status().store == "ok"
+    assert c.submit(SLOW_JOB, "cut").code == 0
+    c.status_where(lambda s: s.job_state == "running")
+    assert c.submit(QUICK_JOB, "behind").code == 0
+    m.fail(number)
+    # The cut goes on to its end, and that is told, with what it is worth.
+    c.heard(lambda: [e for e in c.events if e.kind == "ended"], 20)
+    ended = [e for e in c.events if e.kind == "ended"][0]
+    assert ended.outcome == "done"
+    assert f"not on the disk: {WORDS[number]}" in ended.text
+    degraded(c, WORDS[number])
+    assert c.job("cut")["state"] == "done"
+    # Nothing new is taken or begun.
+    a = c.submit(QUICK_JOB, "new")
+    assert a.code == 74 and WORDS[number] in a.reason
+    c.hear(0.5)
+    assert c.job("behind")["state"] == "queued"
+    a = c.ask("remove", "behind")
+    assert a.code == 74 and WORDS[number] in a.reason
+    # A service that is killed now has no disk to ask: edmd knows.
+    m.kill("jobs")
+    m.start_jobs()
+    degraded(c, WORDS[number])
+    assert c.job("cut")["state"] == "done"
+    assert c.job("behind")["state"] == "queued"
+    r = m.ctl("doctor", "--json")
+    (row,) = [x for x in json.loads(r.stdout) if x["what"] == "store"]
+    assert row["verdict"] == "lacking" and WORDS[number] in row["found"]
+    # Room comes.
+    m.heal()
+    c.status_where(lambda s: s.store == "ok")
+    assert c.job("cut")["state"] == "done"
+    m.kill("jobs")
+    m.start_jobs()
+    c.status_where(lambda s: s.daemon == "ok")
+    assert c.job("cut")["state"] == "done"
+    if c.job("behind")["state"] == "queued":
+        c.ask("start")
+    c.job_where("behind", "done")
+    begun = [e for e in c.events if e.kind == "begun" and e.job == "cut"]
+    assert len(begun) <= 1
+
+
+def test_a_ready_job_cannot_begin_that_cannot_be_stored(failing):
+    m = failing
+    m.start()
+    c = m.client
+    assert c.submit(SLOW_JOB, "job", hold=True).code == 0
+    c.job_where("job", "ready")
+    m.fail(errno.ENOSPC)
+    a = c.ask("start")
+    assert a.code == 74 and "the disk is full" in a.reason
+    c.hear(0.5)
+    assert c.status().state in ("idle", "hold")
+    assert c.status().job_s == 0
+    m.heal()
+    c.status_where(lambda s: s.store == "ok")
+    c.job_where("job", "ready")
+    assert c.ask("start").code == 0
+    c.job_where("job", "done")
+
+
+def test_after_the_host_died_on_a_full_disk_nothing_is_cut_again(failing):
+    """The disk filled up in the cut; then the power went: /dev/shm is empty."""
+    m = failing
+    m.start()
+    c = m.client
+    assert c.submit(QUICK_JOB, "first").code == 0
+    c.job_where("first", "done")
+    assert c.submit(SLOW_JOB, "cut").code == 0
+    c.status_where(lambda s: s.job_state == "running")
+    m.fail(errno.ENOSPC)
+    c.heard(lambda: [e for e in c.events
+                     if e.kind == "ended" and e.job == "cut"], 20)
+    m.kill("jobs")
+    m.kill("edmd")
+    m.sweep()
+    m.heal()
+    m.start()
+    c.hear(1)
+    assert c.job("cut")["state"] != "queued"
+    assert not c.status().job
+    c.ask("start")
+    c.hear(0.5)
+    assert not c.status().job
+
+
+def test_the_disk_is_read_only_from_the_start(failing):
+    m = failing
+    m.start()
+    c = m.client
+    assert c.submit(QUICK_JOB, "before").code == 0
+    c.job_where("before", "done")
+    assert m.end("jobs") == 0
+    m.fail(errno.EROFS)
+    m.start_jobs()
+    degraded(c, WORDS[errno.EROFS])
+    assert c.job("before")["state"] == "done"
+    assert c.submit(QUICK_JOB, "new").code == 74
+    m.heal()
+    c.status_where(lambda s: s.store == "ok")
+    assert c.submit(QUICK_JOB, "new").code == 0
+    c.job_where("new", "done")
+
+
+def test_a_damaged_store_is_set_aside_and_told(failing):
+    m = failing
+    m.start()
+    c = m.client
+    assert c.submit(QUICK_JOB, "before").code == 0
+    c.job_where("before", "done")
+    assert m.end("jobs") == 0
+    (db,) = m.store.glob("*.db")
+    db.write_bytes(b"no database at all" * 1000)
+    m.start_jobs()
+    c.heard(lambda: [e for e in c.events if e.outcome == "mended"])
+    assert list(m.store.glob("*.db.damaged-*"))
+    assert c.submit(QUICK_JOB, "new").code == 0

@@ -1,0 +1,540 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_store.c - the store on disks that are full, read-only, broken or cut off
+ */
+#include "store.h"
+#include "store_trust.h"
+#include "disk_help.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <sodium.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char base[64], dir[128];		/* the store's; base for all */
+
+static void in_dir(const char *command)
+{
+	char line[500];
+
+	snprintf(line, sizeof(line), command, dir, dir, dir);
+	assert_int_equal(system(line), 0);
+}
+
+static int setup(void **state)
+{
+	(void)state;
+	snprintf(base, sizeof(base), "/tmp/edmd-store.XXXXXX");
+	disk.fail_from = -1;
+	disk.snoop = NULL;
+	if (!mkdtemp(base))
+		return -1;
+	snprintf(dir, sizeof(dir), "%s", base);
+	return 0;
+}
+
+static int teardown(void **state)
+{
+	(void)state;
+	disk.fail_from = -1;
+	disk.snoop = NULL;
+	in_dir("rm -rf %s");
+	return 0;
+}
+
+static struct store *open_store(void)
+{
+	struct store *s = NULL;
+
+	assert_int_equal(store_open(&s, dir, "m"), 0);
+	return s;
+}
+
+/* By SQLite itself, while no store is open. */
+static void by_hand(const char *sql)
+{
+	char path[200];
+	sqlite3 *db = NULL;
+
+	snprintf(path, sizeof(path), "%s/m.db", dir);
+	assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+	assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+	sqlite3_close(db);
+}
+
+static void by_file(const char *name)
+{
+	char text[16384] = "";
+	FILE *f = fopen(name, "re");
+
+	assert_non_null(f);
+	assert_true(fread(text, 1, sizeof(text) - 1, f) > 0);
+	fclose(f);
+	by_hand(text);
+}
+
+static int add_text(struct store *s, const char *id, const char *text,
+		    size_t bytes, uint32_t *n)
+{
+	unsigned char hash[32];
+	char hex[65];
+
+	crypto_hash_sha256(hash, (const unsigned char *)text, bytes);
+	sodium_bin2hex(hex, sizeof(hex), hash, sizeof(hash));
+	return store_add(s, &(struct store_new) {
+		.id = id, .name = id, .sha256 = hex, .tech_sha256 = "",
+		.text = text, .bytes = bytes, .lines = 3, .now_us = 1000,
+	}, n);
+}
+
+static int add(struct store *s, const char *id, uint32_t *n)
+{
+	return add_text(s, id, "G1 X1\n", 6, n);
+}
+
+static enum job_state state_in(struct store *s, const char *id)
+{
+	struct store_job j = { .n = 0 };
+
+	return store_find(s, id, &j) == 0 ? j.state : JOB_NSTATES;
+}
+
+static int end(struct store *s, uint32_t n, enum job_state state)
+{
+	return store_end(s, n, &(struct store_end) {
+		.state = state, .reason = "", .now_us = 5000, .jumps = 7,
+	});
+}
+
+/* -- A life of two jobs, and what must be true of it whatever fails ---------- */
+
+struct life {
+	bool added[2];			/* acknowledged */
+	bool promised;			/* that the first may begin */
+	bool ended;			/* it was told */
+};
+
+static const char *const ids[] = { "first", "second" };
+
+static void live(struct store *s, struct life *l)
+{
+	uint32_t n[2] = { 0 };
+
+	for (int i = 0; i < 2; i++)
+		l->added[i] = add(s, ids[i], &n[i]) == 0;
+	if (!l->added[0] || store_set_loaded(s, n[0], true) != 0)
+		return;
+	l->promised = store_may_begin(s, n[0]) == 0;
+	if (!l->promised)
+		return;
+	store_set_state(s, n[0], JOB_RUNNING);
+	store_begin(s, n[0], 2000);
+	store_may_begin(s, 0);
+	store_change(s, n[0], &(struct store_change) {
+		.condition = "C1", .time_ns = 1 });
+	end(s, n[0], JOB_DONE);
+	l->ended = true;
+	store_set_loaded(s, n[0], false);
+	store_note(s, &(struct store_note) {
+		.kind = "ended", .job = "first", .outcome = "done",
+		.text = "job first done", .now_us = 5000 });
+	/* What was told is what is answered, disk or not. */
+	assert_int_equal(state_in(s, "first"), JOB_DONE);
+}
+
+/* What the next service finds, when this one was killed. */
+static void look(struct life *l, bool healed)
+{
+	struct store *s = open_store();
+	uint32_t n;
+
+	assert_string_equal(store_why(s), "");
+	for (int i = 0; i < 2; i++)
+		assert_true(!l->added[i] || state_in(s, ids[i]) != JOB_NSTATES);
+	if (l->ended && healed)
+		assert_int_equal(state_in(s, "first"), JOB_DONE);
+	/* A job that began is known to have: it is not cut as a new one. */
+	if (l->promised && state_in(s, "first") != JOB_DONE) {
+		struct store_job j;
+
+		assert_int_equal(store_find(s, "first", &j), 0);
+		assert_true(j.begun_us != 0 ||
+			    store_number(s, "started", 0) == j.n);
+	}
+	assert_int_equal(add(s, "next", &n), 0);
+	store_close(s);
+}
+
+static const int failures[] = {
+	SQLITE_FULL, SQLITE_IOERR_FSYNC
+};
+
+static long count_changes(void)
+{
+	struct store *s = open_store();
+	struct life l = { .ended = false };
+	long n;
+
+	disk.n = 0;
+	live(s, &l);
+	n = disk.n;
+	store_close(s);
+	in_dir("rm -f %s/*");
+	assert_true(l.ended);
+	return n;
+}
+
+/* The disk fails from change @k on; it heals, or the service is killed. */
+static void fail_at(long k, int rc, bool heals)
+{
+	struct store *s = open_store();
+	struct life l = { .ended = false };
+	uint32_t n;
+
+	disk.n = 0;
+	disk.fail_from = k;
+	disk.fail_rc = rc;
+	live(s, &l);
+	if (*store_why(s)) {
+		assert_true(add(s, "third", &n) < 0);
+		assert_false(store_tick(s, 10000000));
+	}
+	disk.fail_from = -1;
+	if (heals && *store_why(s)) {
+		assert_true(store_tick(s, 20000000));
+		assert_int_equal(state_in(s, "third"), JOB_NSTATES);
+		for (int i = 0; i < 2; i++)
+			assert_true(l.added[i] ||
+				    state_in(s, ids[i]) == JOB_NSTATES);
+	}
+	assert_true(!heals || !*store_why(s));
+	store_close(s);
+	look(&l, heals);
+	in_dir("rm -f %s/*");
+}
+
+static void a_disk_that_fails_at_any_write_loses_no_truth(void **state)
+{
+	const long n = count_changes();
+
+	(void)state;
+	print_message("%ld changes of the disk in the life\n", n);
+	for (size_t i = 0; i < sizeof(failures) / sizeof(*failures); i++)
+		for (long k = 0; k < n; k++)
+			for (int heals = 0; heals < 2; heals++)
+				fail_at(k, failures[i], heals != 0);
+}
+
+/* -- The host dies at every write -------------------------------------------- */
+
+#define CUTS_MAX	400
+
+static int ncuts;
+static struct life cut_life;		/* as it is at the moment */
+static struct life cuts[CUTS_MAX];
+
+static void copy_with(const char *path, const void *data, int n, int64_t at)
+{
+	char line[600], to[300];
+	FILE *f;
+
+	snprintf(line, sizeof(line), "mkdir -p %s/cut%d && cp -f %s/m.db* "
+		 "%s/cut%d/", dir, ncuts, dir, dir, ncuts);
+	assert_int_equal(system(line), 0);
+	if (n <= 0)
+		return;
+	/* Half of the write came to the disk. */
+	snprintf(to, sizeof(to), "%s/cut%d/%s", dir, ncuts,
+		 strrchr(path, '/') + 1);
+	f = fopen(to, "r+e");
+	assert_non_null(f);
+	assert_int_equal(fseek(f, (long)at, SEEK_SET), 0);
+	assert_int_equal(fwrite(data, 1, (size_t)n / 2, f), (size_t)n / 2);
+	fclose(f);
+}
+
+static void snoop(const char *path, const void *data, int n, int64_t at)
+{
+	assert_true(ncuts < CUTS_MAX);
+	copy_with(path, data, n, at);
+	cuts[ncuts++] = cut_life;
+}
+
+static void a_host_that_dies_at_any_write_leaves_a_store(void **state)
+{
+	struct store *s = open_store();
+
+	(void)state;
+	ncuts = 0;
+	memset(&cut_life, 0, sizeof(cut_life));
+	disk.snoop = snoop;
+	live(s, &cut_life);
+	disk.snoop = NULL;
+	store_close(s);
+	print_message("%d copies, each cut within a write\n", ncuts);
+	assert_true(ncuts > 20);
+	for (int i = 0; i < ncuts; i++) {
+		snprintf(dir, sizeof(dir), "%s/cut%d", base, i);
+		look(&cuts[i], false);
+	}
+	snprintf(dir, sizeof(dir), "%s", base);
+}
+
+/* -- Other rows --------------------------------------------------------------- */
+
+static void the_text_is_written_twice_at_most(void **state)
+{
+	const size_t bytes = 4 << 20;
+	char *text = calloc(1, bytes);
+	struct store *s = open_store();
+	uint32_t n;
+
+	(void)state;
+	memset(text, ' ', bytes);
+	disk.bytes = 0;
+	assert_int_equal(add_text(s, "large", text, bytes, &n), 0);
+	store_set_loaded(s, n, true);
+	for (int i = 0; i < 20; i++)
+		store_set_state(s, n, i % 2 ? JOB_HELD : JOB_RUNNING);
+	end(s, n, JOB_DONE);
+	store_close(s);
+	print_message("%.3f times the text\n",
+		      (double)disk.bytes / (double)bytes);
+	assert_true(disk.bytes < (int64_t)bytes * 21 / 10);
+	free(text);
+}
+
+static void the_list_in_memory_is_bounded_and_keeps_what_counts(void **state)
+{
+	struct store *s = open_store();
+	struct store_size size;
+	uint32_t n;
+
+	(void)state;
+	assert_int_equal(add(s, "job", &n), 0);
+	disk.n = 0;
+	disk.fail_from = 0;
+	disk.fail_rc = SQLITE_FULL;
+	assert_int_equal(end(s, n, JOB_DONE), STORE_KEPT);
+	for (int i = 0; i < 20000; i++) {
+		store_note(s, &(struct store_note) {
+			.kind = "alarm", .job = "", .outcome = "", .text = "",
+			.now_us = i });
+		store_set_number(s, "waiting", i);
+	}
+	store_measure(s, &size);
+	assert_true(size.kept <= 4096);
+	assert_true(size.dropped > 15000);
+	disk.fail_from = -1;
+	assert_true(store_tick(s, 1));
+	store_close(s);
+	s = open_store();
+	assert_int_equal(state_in(s, "job"), JOB_DONE);
+	assert_int_equal(store_number(s, "waiting", 0), 19999);
+	store_close(s);
+}
+
+static void a_store_of_0_1_0_is_brought_up(void **state)
+{
+	struct store_job j;
+	struct store *s;
+	size_t bytes;
+	char *text;
+
+	(void)state;
+	by_file("tests/data/store-0.1.0.sql");
+	s = open_store();
+	assert_int_equal(state_in(s, "old-done"), JOB_DONE);
+	assert_int_equal(store_find(s, "old-queued", &j), 0);
+	assert_int_equal(j.state, JOB_QUEUED);
+	assert_int_equal(store_text(s, j.n, &text, &bytes), 0);
+	assert_memory_equal(text, "G21 G90\nG1 X1 F60\nM30\n", bytes);
+	free(text);
+	text = store_json(s, STORE_SHOW, "old-done", 0);
+	assert_non_null(strstr(text, "\"now\":\"C120\""));
+	free(text);
+	assert_int_equal(store_number(s, "waiting", 0), 1);
+	store_close(s);
+	/* And once more: it is of this version now. */
+	s = open_store();
+	assert_int_equal(state_in(s, "old-done"), JOB_DONE);
+	store_close(s);
+}
+
+static void many_jobs(struct store *s, int count)
+{
+	char id[32];
+	uint32_t n;
+
+	for (int i = 0; i < count; i++) {
+		snprintf(id, sizeof(id), "job-%d", i);
+		assert_int_equal(add(s, id, &n), 0);
+		end(s, n, JOB_DONE);
+	}
+}
+
+static void break_pages(const char *from, const char *count)
+{
+	char line[500];
+
+	snprintf(line, sizeof(line), "dd if=/dev/urandom of=%s/m.db bs=4096 "
+		 "seek=%s count=%s conv=notrunc status=none", dir, from, count);
+	assert_int_equal(system(line), 0);
+}
+
+/* Any one page but the first: the others' jobs are there afterwards. */
+static void a_damaged_page_costs_what_is_in_it(void **state)
+{
+	struct store *s = open_store();
+	struct store_size size;
+	uint32_t n, worst = 200;
+	int pages, mended = 0;
+	char from[16];
+	struct stat st;
+	char path[200];
+
+	(void)state;
+	many_jobs(s, 200);
+	store_close(s);
+	snprintf(path, sizeof(path), "%s/m.db", dir);
+	assert_int_equal(stat(path, &st), 0);
+	pages = (int)(st.st_size / 4096);
+	in_dir("mv %s/m.db %s/whole");
+	for (int i = 1; i < pages; i++) {
+		in_dir("rm -f %s/m.db*; cp %s/whole %s/m.db");
+		snprintf(from, sizeof(from), "%d", i);
+		break_pages(from, "1");
+		s = open_store();
+		assert_string_equal(store_why(s), "");
+		store_measure(s, &size);
+		mended += *store_mended(s) != 0;
+		worst = size.jobs < worst ? size.jobs : worst;
+		assert_int_equal(add(s, "new", &n), 0);
+		if (*store_mended(s)) {
+			assert_true(n > 1000);
+			assert_int_equal(store_number(s, "waiting", 0), 1);
+			in_dir("ls %s/m.db.damaged-* > /dev/null");
+		}
+		store_close(s);
+	}
+	print_message("%d pages, %d mended, %u of 200 jobs at the worst\n",
+		      pages, mended, worst);
+	assert_true(mended > 5);
+}
+
+static void what_is_no_database_is_set_aside(void **state)
+{
+	struct store *s;
+	uint32_t n;
+
+	(void)state;
+	in_dir("head -c 20000 /dev/urandom > %s/m.db");
+	s = open_store();
+	assert_string_equal(store_why(s), "");
+	assert_int_equal(add(s, "new", &n), 0);
+	store_close(s);
+	in_dir("ls %s/m.db.damaged-* > /dev/null");
+}
+
+static void the_first_page_torn_is_no_end(void **state)
+{
+	struct store *s = open_store();
+
+	(void)state;
+	many_jobs(s, 50);
+	store_close(s);
+	break_pages("0", "1");
+	s = open_store();
+	assert_string_equal(store_why(s), "");
+	store_close(s);
+}
+
+static void a_text_of_other_bytes_is_not_cut(void **state)
+{
+	struct store *s = open_store();
+	uint32_t n;
+	size_t bytes;
+	char *text;
+
+	(void)state;
+	assert_int_equal(add(s, "job", &n), 0);
+	store_close(s);
+	by_hand("UPDATE text SET text='G1 X9'||char(10)");
+	s = open_store();
+	assert_int_equal(store_text(s, n, &text, &bytes), -EILSEQ);
+	store_close(s);
+}
+
+static void what_is_old_goes_but_never_the_last(void **state)
+{
+	const int64_t day_us = 86400ll * 1000000, t0 = 400 * day_us;
+	struct store *s = open_store();
+	struct store_size size;
+	uint32_t n;
+
+	(void)state;
+	many_jobs(s, 100);
+	assert_int_equal(add(s, "waits", &n), 0);
+	for (int64_t i = 0; i < 20; i++)
+		store_retain(s, 50, 0, t0 + i * 20000000);
+	store_measure(s, &size);
+	assert_int_equal(size.jobs, 51);
+	assert_int_equal(state_in(s, "job-49"), JOB_NSTATES);
+	assert_int_equal(state_in(s, "job-50"), JOB_DONE);
+	/* The clock jumps by a year. */
+	for (int64_t i = 0; i < 20; i++)
+		store_retain(s, 50, 30, t0 + 365 * day_us + i * 20000000);
+	store_measure(s, &size);
+	assert_int_equal(size.jobs, 20);
+	assert_int_equal(state_in(s, "waits"), JOB_QUEUED);
+	assert_int_equal(state_in(s, "job-99"), JOB_DONE);
+	store_close(s);
+}
+
+static void a_key_that_cannot_be_stored_is_not_kept(void **state)
+{
+	const struct trust_key k = { .name = "k", .role = ROLE_OPERATOR };
+	struct store *s = open_store();
+
+	(void)state;
+	disk.n = 0;
+	disk.fail_from = 0;
+	disk.fail_rc = SQLITE_FULL;
+	assert_int_equal(store_key_add(s, &k, 1), -ENOSPC);
+	assert_int_equal(store_key_add(s, &k, 1), -ENOSPC);
+	disk.fail_from = -1;
+	assert_true(store_tick(s, 1));
+	assert_int_equal(store_key_add(s, &k, 1), 0);
+	assert_int_equal(store_key_add(s, &k, 1), -EEXIST);
+	assert_string_equal(store_why(s), "");
+	store_close(s);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+#define T(f)	cmocka_unit_test_setup_teardown(f, setup, teardown)
+		T(a_disk_that_fails_at_any_write_loses_no_truth),
+		T(a_host_that_dies_at_any_write_leaves_a_store),
+		T(the_text_is_written_twice_at_most),
+		T(the_list_in_memory_is_bounded_and_keeps_what_counts),
+		T(a_store_of_0_1_0_is_brought_up),
+		T(a_damaged_page_costs_what_is_in_it),
+		T(what_is_no_database_is_set_aside),
+		T(the_first_page_torn_is_no_end),
+		T(a_text_of_other_bytes_is_not_cut),
+		T(what_is_old_goes_but_never_the_last),
+		T(a_key_that_cannot_be_stored_is_not_kept),
+	};
+
+	if (sodium_init() < 0)
+		return 1;
+	disk_install();
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
