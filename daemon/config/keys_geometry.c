@@ -53,39 +53,45 @@ static const struct config_key row[] = {
 	ORIGIN("v", V, "mm"),
 
 	WORDS(WIRE, "guides", "off", AT(wire.guides), guides_word,
-	      "what U V are: off: axes as any other; the upper guide"),
+	      "what U V are: off, axes like any other; else the upper "
+	       "guide, absolute or relative to X Y"),
 	NUMBER(WIRE, "z_lower_mm", "mm", "-20", -2000, 2000,
 	       AT(wire.z_lower_mm), "height of the lower guide"),
 	NUMBER(WIRE, "z_upper_mm", "mm", "80", -2000, 2000, AT(wire.z_upper_mm),
 	       "height of the upper guide"),
 	NUMBER(WIRE, "z_program_mm", "mm", "0", -2000, 2000,
 	       AT(wire.z_program_mm),
-	       "height of the plane X Y are programmed on"),
+	       "height of the plane on which X Y are programmed"),
 	NUMBER(WIRE, "z_second_mm", "mm", "40", -2000, 2000,
 	       AT(wire.z_second_mm),
-	       "height of the plane U V are programmed on"),
+	       "height of the plane on which U V are programmed"),
 	NUMBER(WIRE, "angle_max_deg", "deg", "30", 0, 80,
-	       AT(wire.angle_max_deg), "the wire may lean so far from upright"),
+	       AT(wire.angle_max_deg),
+	       "largest angle by which the wire may lean from upright"),
 	NUMBER(WIRE, "corner_angle_deg", "deg", "180", 1, 180,
 	       AT(wire.corner_angle_deg),
-	       "a turn by so much is a corner; 180: no corner control"),
+	       "a turn by at least this angle is a corner; 180: no corner "
+	       "control"),
 	NUMBER(WIRE, "corner_feed_percent", "%", "50", 1, 100,
 	       AT(wire.corner_feed_percent),
-	       "of the feed, at most, in front of a corner"),
+	       "largest part of the feed in front of a corner"),
 	NUMBER(WIRE, "corner_before_mm", "mm", "0.2", 0, 100,
-	       AT(wire.corner_before_mm), "so far in front of it"),
+	       AT(wire.corner_before_mm),
+	       "distance in front of a corner at which the feed is lowered"),
 	NUMBER(WIRE, "corner_dwell_s", "s", "0", 0, 3600,
 	       AT(wire.corner_dwell_s),
-	       "wait on a corner, for the wire to straighten"),
+	       "wait on a corner until the wire is straight again"),
 	WORDS(WIRE, "taper_corner", "conical", AT(wire.corner), corner_word,
-	      "fillets and sharp corners on the second plane, G60 G61 G62"),
+	      "form of corners on the second plane until G60 G61 G62"),
 	WORDS(WIRE, "gouge", "refuse", AT(wire.gouge), gouge_word,
-	      "a part of a contour too narrow for the wire: no job, or cut "
-	      "without it"),
+	      "a part of a contour that is too narrow for the wire: the "
+	       "job is refused, or the part is skipped"),
 	NUMBER(WIRE, "offset_0_mm", "mm", "0", -50, 50, AT(offset_mm[0]),
-	       "register D0, H0 until a program fills it; 0: unfilled"),
+	       "value of register D0, H0 until a program sets it; 0: not "
+	       "set"),
 	NUMBER(WIRE, "offset_1_mm", "mm", "0", -50, 50, AT(offset_mm[1]),
-	       "register D1, H1 until a program fills it; 0: unfilled"),
+	       "value of register D1, H1 until a program sets it; 0: not "
+	       "set"),
 
 	STRING(KINEMATICS, "chain", "none", kinematics.chain,
 	       "joints from work to tool, as C(0 0 -120) A(0 15 -80) X Y Z"),
@@ -98,7 +104,8 @@ static const struct config_key row[] = {
 	       AT(kinematics.tip_mm[2]), "the same, Z"),
 	NUMBER(KINEMATICS, "tolerance_um", "um", "1", 0.001, 1000,
 	       AT(kinematics.tolerance_um),
-	       "the tip keeps so near to its way under G43.4"),
+	       "under G43.4 the tip is no farther than this from its "
+	       "programmed way"),
 };
 /* clang-format on */
 

@@ -39,64 +39,68 @@ static const char *pull_word(int i)
 /* clang-format off */
 static const struct config_key row[] = {
 	STRING(GPIO, "chip", "gpiochip0", gpio.chip,
-	       "of lines that name none: name, label or device file"),
+	       "GPIO chip of lines that name none: its name, label or "
+	       "device file"),
 	WORDS(GPIO, "signal", "step", AT(gpio.signal), signal_word,
-	      "what step_ and dir_ are: step and direction, or A and B"),
+	      "what step_ and dir_ carry: step and direction, or A and B "
+	       "of quadrature"),
 	WHOLE(GPIO, "high_cycles", "periods", "1", 1, 1000,
 	      AT(gpio.high_cycles),
-	      "a step stays on; in quadrature, between two edges"),
+	      "time that a step stays on; in quadrature, between two "
+	       "edges"),
 	WHOLE(GPIO, "low_cycles", "periods", "1", 1, 1000, AT(gpio.low_cycles),
-	      "it stays off before the next"),
+	      "time that a step stays off before the next one"),
 	WHOLE(GPIO, "dir_setup_cycles", "periods", "1", 1, 1000,
 	      AT(gpio.dir_setup_cycles),
-	      "from a change of direction to the step"),
+	      "time from a change of direction to the step"),
 	WHOLE(GPIO, "dir_hold_cycles", "periods", "1", 1, 1000,
 	      AT(gpio.dir_hold_cycles),
-	      "from a step's end to a change of direction"),
+	      "time from the end of a step to a change of direction"),
 	STRING(GPIO, "adc", "none", gpio.adc,
 	       "converter of the gap's voltage: iio:deviceN or its name; for "
 	       "[gap] source = voltage"),
 	WHOLE(GPIO, "adc_channel", "", "0", 0, 255, AT(gpio.adc_channel),
 	      "N of its in_voltageN"),
 	STRING(GPIO, "adc_trigger", "none", gpio.adc_trigger,
-	       "what starts a sample, by its name; none: it needs none"),
+	       "name of the trigger that starts a sample; none: the "
+	       "converter needs none"),
 	NUMBER(GPIO, "adc_ratio", "", "1", -1e6, 1e6, AT(gpio.adc_ratio),
-	       "V at the gap for one V at its input"),
+	       "volts at the gap for one volt at the converter's input"),
 	WHOLE(GPIO, "edges_per_period", "", "1", 1, 1000,
 	      AT(gpio.edges_per_period),
-	      "writes of step and dir in a period, by a thread of their own; "
-	      "1: the cycle's one"),
+	      "how often step and dir are written in a period, by a "
+	       "thread of its own; 1: once, by the cycle"),
 	WHOLE(GPIO, "edges_cpu", "", "-1", -1, 1023, AT(gpio.edges_cpu),
-	      "processor of that thread; -1: any"),
+	      "processor core of that thread; -1: any"),
 	NUMBER(GPIO, "watchdog_us", "us", "1000", 20, 1e6, AT(gpio.watchdog_us),
-	       "between two edges of the watchdog's wave"),
+	       "time between two edges of the watchdog's wave"),
 	STRING(GPIO, "watchdog_by", "none", gpio.watchdog_by,
-	       "with spark and without watchdog: in your words, what ends the "
-	       "sparks when edmd dies"),
+	       "if there is a line spark and no line watchdog: in your "
+	       "words, what ends the sparks when edmd dies"),
 	STRING(GPIO, "estop_by", "none", gpio.estop_by,
-	       "with spark and without estop: in your words, what tells edmd, "
-	       "or stops all, at an emergency stop"),
+	       "if there is a line spark and no line estop: in your words, "
+	       "what stops everything at an emergency stop"),
 	WORDS(GPIO, "pull", "as-is", AT(gpio.pull), pull_word,
-	      "resistors of all inputs"),
+	      "pull resistors of all inputs"),
 	AXIS_LINES(X), AXIS_LINES(Y), AXIS_LINES(Z), AXIS_LINES(A),
 	AXIS_LINES(B), AXIS_LINES(C), AXIS_LINES(U), AXIS_LINES(V),
 	ENCODER(X), ENCODER(Y), ENCODER(Z), ENCODER(A),
 	ENCODER(B), ENCODER(C), ENCODER(U), ENCODER(V),
 	NUMBER(GPIO, "following_mm", "mm", "0.05", 0, 1000,
 	       AT(gpio.following_mm),
-	       "an axis farther from its pulses, by its encoder, is a fault; "
-	       "0: never"),
+	       "an axis whose encoder is farther from its pulses is fault "
+	       "following; 0: not watched"),
 	NUMBER(GPIO, "following_s", "s", "0", 0, 10, AT(gpio.following_s),
-	       "and by so much of its speed"),
+	       "added to following_mm: this time multiplied by the speed"),
 	NUMBER(GPIO, "resync_mm", "mm", "0.2", 0, 100, AT(gpio.resync_mm),
-	       "so much is made good after such a fault; farther off, its "
-	       "place is lost"),
+	       "after such a fault, an axis that is nearer than this is "
+	       "brought back to its place; one that is farther has lost it"),
 	NUMBER(GPIO, "resync_mm_s", "mm/s", "0.5", 0.001, 100,
-	       AT(gpio.resync_mm_s), "so fast"),
+	       AT(gpio.resync_mm_s), "speed back to that place"),
 	LINE("enable", LINE_ENABLE,
 	     "output: power on the axes' drives"),
 	NUMBER(GPIO, "brake_ms", "ms", "100", 0, 5000, AT(gpio.brake_ms),
-	       "until a brake is open, or closed"),
+	       "time until a brake is open, or closed"),
 	LINE("spark", LINE_SPARK, "output: sparks allowed"),
 	LINE("pump", LINE_PUMP, "output: dielectric pump"),
 	LINE("watchdog", LINE_WATCHDOG,

@@ -26,27 +26,32 @@ static const char *coupling_word(int i)
 /* clang-format off */
 static const struct config_key row[] = {
 	NAME(MACHINE, "name", "edm", name,
-	     "of the machine, in shared memory and channel names"),
+	     "name of the machine, in shared memory and in names of "
+	       "channels"),
 	NUMBER(MACHINE, "period_us", "us", "0", 0, 20000, AT(period_us),
-	       "cycle period, 20 or more; 0: by backend, 1000, gpio 50, "
-	       "can402 2000"),
+	       "cycle period, at least 20; 0: that of the backend: 1000, "
+	       "gpio 50, can402 2000"),
 	WORDS(MACHINE, "backend", "sim", AT(backend), config_backend_name,
-	      "what the cycle reads and writes"),
+	      "kind of machine that the cycle reads and writes"),
 	WORDS(MACHINE, "strategy", "simultaneous", AT(strategy), strategy_word,
-	      "how a path becomes pulses"),
+	      "rule by which a path becomes pulses"),
 	NUMBER(MACHINE, "tolerance_pulses", "pulses", "2", 0,
 	       INTERP_TOLERANCE_MAX / 1000, AT(tolerance_pulses),
-	       "mu: how far main-direction and min-switch may stray"),
+	       "mu: how far main-direction and min-switch may be off the "
+	       "path"),
 	BIT(MACHINE, "perpendicular", "no", AT(perpendicular),
-	    "mu is square to the path, not along the shorter axis"),
+	    "mu is measured square to the path instead of along the "
+	       "shorter axis"),
 	WORDS(MACHINE, "coupling", "star", AT(coupling), coupling_word,
-	      "how three and more axes pulse one at a time"),
+	      "how three and more axes are coupled when one axis pulses "
+	       "at a time"),
 	NUMBER(MACHINE, "chord_error_um", "um", "1", 0, 1000,
 	       AT(chord_error_um),
-	       "of curves: a cycle's way is no farther off; 0: no limit"),
+	       "on a curve, the straight way of one cycle is no farther "
+	       "off than this; 0: no limit"),
 	NUMBER(MACHINE, "fit_um", "um", "0", 0, 1000, AT(fit_um),
-	       "cut lines in a row are joined into curves this near to them; "
-	       "0: not"),
+	       "lines that are cut one after another are joined into "
+	       "curves no farther off than this; 0: they stay lines"),
 	NUMBER(MACHINE, "feed_default_mm_min", "mm/min", "0", 0, 60000,
 	       AT(feed_default_mm_min),
 	       "feed before the first F; 0: a program must give F"),
@@ -56,37 +61,43 @@ static const struct config_key row[] = {
 	       AT(threeb_unit_um), "unit of the lengths in 3B and 4B programs"),
 	NUMBER(MACHINE, "fourb_offset_um", "um", "0", 0, 10000,
 	       AT(fourb_offset_um),
-	       "wire radius and gap, by which 4B arcs grow or shrink"),
+	       "wire radius plus gap, by which arcs of 4B programs grow or "
+	       "shrink"),
 	WHOLE(MACHINE, "cpu", "", "-1", -1, 1023, AT(cpu),
-	      "core the cycle is pinned to; -1: none"),
+	      "processor core that the cycle is pinned to; -1: none"),
 	WHOLE(MACHINE, "priority", "", "80", 1, 99, AT(priority),
 	      "SCHED_FIFO priority of the cycle"),
 	WHOLE(MACHINE, "overrun_limit", "periods", "100", 0, 1e6,
-	      AT(overrun_limit), "missed in a row before a fault; 0: no fault"),
+	      AT(overrun_limit),
+	       "this many missed periods in a row are fault overrun; 0: no "
+	       "fault"),
 	BIT(MACHINE, "require_home", "no", AT(require_home),
-	    "no start before each axis with a home_method is homed"),
+	    "no job starts before every axis with a home_method is "
+	       "homed"),
 
 	NUMBER(SPEED, "corner_um", "um", "5", 0.01, 1000, AT(corner_um),
-	       "a node's speed is that of an arc so near its corner"),
+	       "a corner is passed at the speed of an arc that comes this "
+	       "near to it"),
 	NUMBER(SPEED, "tolerance_um", "um", "1", 0.001, 100, AT(tolerance_um),
-	       "what a program's ends are rounded to: no change of direction, "
-	       "but for a pulse"),
+	       "rounding of the end points in programs: a change of "
+	       "direction that is no larger than this is not slowed down "
+	       "for"),
 	NUMBER(SPEED, "rotary_radius_mm", "mm", "57.3", 0.01, 10000,
 	       AT(rotary_radius_mm),
-	       "where a rotary axis's part of tolerance_um is measured"),
+	       "radius at which tolerance_um is measured on a rotary axis"),
 	WORDS(SPEED, "nodes", "pass", AT(nodes), nodes_word,
-	      "stop: at every node of a jump, for comparison only"),
+	      "stop: a jump stops at every node; for comparisons only"),
 
 	STRING(TECH, "table", "none", tech_table,
-	       "file of conditions, beside this one; none: there is none"),
+	       "file of the technology table, beside this file"),
 
 	STRING(LCM, "url", "udpm://239.255.76.67:7667?ttl=0", lcm_url,
-	       "where messages go; ttl=0 stays on this host"),
+	       "address of the messages; with ttl=0 they stay on this host"),
 
 	WHOLE(DDS, "domain", "", "0", 0, 230, AT(dds_domain),
 	      "DDS domain of the fleet"),
 	NUMBER(DDS, "hz", "Hz", "10", 2, 100, AT(dds_hz),
-	       "status samples a second"),
+	       "samples of the state per second"),
 
 	WHOLE(JOBS, "keep_jobs", "", "10000", 20, 10000000, AT(keep_jobs),
 	      "ended jobs that are kept in the history, with their texts"),

@@ -14,13 +14,13 @@ static const char *role_word(int i)
 /* clang-format off */
 static const struct config_key row[] = {
 	STRING(PANEL, "address", "127.0.0.1", panel.address,
-	       "where edm-panel listens; another than this host's own wants "
-	       "certificate and key"),
+	       "address that edm-panel listens on; if it is not the "
+	       "loopback, certificate and key are needed"),
 	WHOLE(PANEL, "port", "", "7680", 1, 65535, AT(panel.port),
 	      "port it listens on"),
 	STRING(PANEL, "names", "none", panel.names,
-	       "names or addresses browsers may call it by, apart from the "
-	       "address"),
+	       "names or addresses by which browsers may call it, besides "
+	       "the address"),
 	STRING(PANEL, "certificate", "none", panel.certificate,
 	       "file of the TLS certificate, PEM"),
 	STRING(PANEL, "key", "none", panel.key,
@@ -28,9 +28,9 @@ static const struct config_key row[] = {
 	STRING(PANEL, "users", "/etc/edmd/panel.users", panel.users,
 	       "who may log in; written by edm-panel --add-user"),
 	WORDS(PANEL, "local_role", "operator", AT(panel.local_role), role_word,
-	      "of who is at this host and is root or in group edm"),
+	      "role of a user of this host who is root or in group edm"),
 	STRING(PANEL, "assets", "/usr/local/share/edmd/panel", panel.assets,
-	       "folder of the page"),
+	       "folder of the page's files"),
 };
 /* clang-format on */
 
