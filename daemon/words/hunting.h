@@ -8,6 +8,9 @@
 #ifndef WORDS_HUNTING_H
 #define WORDS_HUNTING_H
 
+/* So many retracts in a row without progress between: the gap servo hunts. */
+enum { HUNTING_ROW = 20 };
+
 /* %d: retracts in a row. */
 #define HUNTING_WHAT	"the gap servo hunts: %d retracts in a row without progress"
 
