@@ -505,6 +505,13 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(Q)docs/pictures/curves $(B)
 	$(Q)docs/pictures/demo $(B)
 
+# What many browsers cost, and how smoothly a long path is drawn: figures.
+panel-load: all panel
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-load
+
+panel-frames: all panel
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-frames
+
 # The panel's pages, in Chromium: needs what `tests/setup check` installs.
 pictures-panel: all panel
 	@EDM_BUILD=$(B) tests/netns .venv/bin/python docs/pictures/panel
@@ -621,7 +628,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all panel pictures-panel demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo invariants walkable wire-random \
 	pictures callgraph faults plc-files fuzz lint install clean

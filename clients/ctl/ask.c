@@ -135,6 +135,16 @@ static int number(const struct ctl *c, const char *text, const char *wanted,
 	return EX_USAGE;
 }
 
+int ctl_move(struct ctl *c)
+{
+	double way;
+	int rc = number(c, c->value, "-1 or +1", &way);
+
+	return rc ? rc : command(c, &(struct talk_question) {
+		.verb = "move", .job = c->arg, .arg = way,
+	});
+}
+
 int ctl_step(struct ctl *c)
 {
 	double n;
@@ -258,6 +268,8 @@ static void print_one(json_t *job)
 		{ "ended", "ended_us" },
 	};
 	char text[32];
+	json_t *note;
+	size_t i;
 
 	printf("job        %s\nname       %s\nstate      %s\n",
 	       text_of(job, "job"), text_of(job, "name"),
@@ -265,7 +277,7 @@ static void print_one(json_t *job)
 	if (*text_of(job, "reason"))
 		printf("reason     %s\n", text_of(job, "reason"));
 	printf("lines      %.0f\n", number_of(job, "lines"));
-	for (size_t i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
+	for (i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
 		ctl_when(text, job, times[i].key);
 		printf("%-10s %s\n", times[i].label, text);
 	}
@@ -278,6 +290,9 @@ static void print_one(json_t *job)
 	       number_of(job, "shorts"), text_of(job, "sha256"));
 	if (*text_of(job, "tech_sha256"))
 		printf("table      %s\n", text_of(job, "tech_sha256"));
+	json_array_foreach(json_object_get(job, "notes"), i, note)
+		printf("%-10s %s\n", i ? "" : "notes",
+		       json_string_value(note));
 	print_changes(json_object_get(job, "changes"));
 }
 

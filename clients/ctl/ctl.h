@@ -39,6 +39,7 @@ int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);
 int ctl_retract(struct ctl *c);
 int ctl_remove(struct ctl *c);
+int ctl_move(struct ctl *c);
 int ctl_set(struct ctl *c);
 int ctl_step(struct ctl *c);
 int ctl_override(struct ctl *c);

@@ -85,6 +85,8 @@ static const struct verb verbs[] = {
 	  "leave the fault, to held" },
 	{ "estop", "", ctl_command, 0, 0, false, "",
 	  "power off, no motion, until reset" },
+	{ "move", "JOB -1|+1", ctl_move, 2, 2, false, "",
+	  "a job that waits: one place ahead (-1) or back (+1)" },
 	{ "remove", "JOB", ctl_remove, 1, 1, false, "",
 	  "take a job that has not begun out of the queue" },
 	{ "status", "", ctl_status, 0, 0, false, "",

@@ -130,6 +130,21 @@ static void print_refusal(const struct ctl *c, const struct talk_ack *a)
 	json_decref(j);
 }
 
+static void print_notes(const struct talk_ack *a)
+{
+	json_t *j = json_loads(a->body, 0, NULL), *note;
+	char text[512];
+	size_t i;
+
+	json_array_foreach(json_object_get(j, "notes"), i, note) {
+		if (!json_is_string(note))
+			continue;
+		plain_copy(text, sizeof(text), json_string_value(note));
+		fprintf(stderr, "%s\n", text);
+	}
+	json_decref(j);
+}
+
 static int print_outcome(const struct ctl *c, const struct job *j)
 {
 	const struct talk_ack *a = job_verdict(j);
@@ -138,6 +153,7 @@ static int print_outcome(const struct ctl *c, const struct job *j)
 		print_refusal(c, a);
 		return a->code;
 	}
+	print_notes(a);
 	if (c->wait && c->json)
 		return 0;
 	if (c->json)

@@ -393,7 +393,7 @@ static void on_path(void *arg, int status, int out_fd)
 
 static int get_path(struct request *r)
 {
-	char check[64] = "", number[16] = "", tolerance[24] = "";
+	char check[64] = "", number[16] = "", tolerance[24] = "0";
 	const char *const argv[] = {
 		r->panel->self, "--work", "path", "--config",
 		r->panel->config_path, "--machine", r->panel->config.name,

@@ -162,7 +162,9 @@ void live_look(struct live *l)
 	if (at_ms - l->begun_ms < LIVE_POINT_MS)
 		return;
 	end_point(l);
-	begin_point(l, at_ms);
+	/* Ten a second, however late each look is; what was missed is missed. */
+	begin_point(l, at_ms - l->begun_ms < 2 * LIVE_POINT_MS ?
+		    l->begun_ms + LIVE_POINT_MS : at_ms);
 }
 
 bool live_is_new_point(const struct live *l)

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * main.c - edm-panel: options, the event loop, users
+ * main.c - edm-panel: the event loop, users
  */
+#include "options.h"
 #include "panel.h"
 #include "reply.h"
 #include "words.h"
 #include "work.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <signal.h>
 #include <sodium.h>
 #include <stdarg.h>
@@ -24,54 +24,6 @@
 
 #define TICK_US		10000
 #define CONNECTIONS_MAX	400
-
-static const char usage[] =
-"Usage: edm-panel [options]\n"
-"Serves the operator's page: the machine's state to browsers, and what they ask\n"
-"for to edmd-jobs.  docs/panel.md\n"
-"\n"
-"  --config FILE          machine file (/etc/edmd/machine.ini)\n"
-"  --machine NAME         instead of the machine file's [machine] name\n"
-"  --port N               instead of its [panel] port\n"
-"  --assets DIR           instead of its [panel] assets\n"
-"  --add-user NAME ROLE   add or change a user: viewer, operator or service;\n"
-"                         the password is read from the terminal or from\n"
-"                         standard input\n"
-"  --print-words          the machine's own words as JSON, for the page\n"
-"  --help, --version\n"
-"\n"
-"Exit: 0 ended in order, 64 usage, 66 no such file, 69 a port or the channels\n"
-"cannot be opened, 73 the file of users cannot be written, 78 bad machine file.\n";
-
-struct options {
-	const char *config, *machine, *assets, *add_user;
-	int port;
-	struct work work;
-};
-
-enum {
-	OPT_CONFIG = 256, OPT_MACHINE, OPT_PORT, OPT_ASSETS, OPT_ADD_USER,
-	OPT_WORK, OPT_FILE_NAME, OPT_START, OPT_PROGRAM, OPT_TOLERANCE,
-	OPT_PRINT_WORDS, OPT_HELP, OPT_VERSION,
-};
-
-static const struct option longs[] = {
-	{ "config", required_argument, NULL, OPT_CONFIG },
-	{ "machine", required_argument, NULL, OPT_MACHINE },
-	{ "port", required_argument, NULL, OPT_PORT },
-	{ "assets", required_argument, NULL, OPT_ASSETS },
-	{ "add-user", required_argument, NULL, OPT_ADD_USER },
-	/* What the panel asks of itself: work.h. */
-	{ "work", required_argument, NULL, OPT_WORK },
-	{ "file-name", required_argument, NULL, OPT_FILE_NAME },
-	{ "start", required_argument, NULL, OPT_START },
-	{ "program", required_argument, NULL, OPT_PROGRAM },
-	{ "tolerance", required_argument, NULL, OPT_TOLERANCE },
-	{ "print-words", no_argument, NULL, OPT_PRINT_WORDS },
-	{ "help", no_argument, NULL, OPT_HELP },
-	{ "version", no_argument, NULL, OPT_VERSION },
-	{ 0 },
-};
 
 static volatile sig_atomic_t over;
 
@@ -333,31 +285,6 @@ static int add_user(const struct panel *p, const char *name, const char *role)
 	return 0;
 }
 
-/* -- Options -------------------------------------------------------------------------- */
-
-static int set_option(struct options *o, int c)
-{
-	switch (c) {
-	case OPT_CONFIG: o->config = optarg; break;
-	case OPT_MACHINE: o->machine = optarg; break;
-	case OPT_PORT: o->port = atoi(optarg); break;
-	case OPT_ASSETS: o->assets = optarg; break;
-	case OPT_ADD_USER: o->add_user = optarg; break;
-	case OPT_WORK: o->work.what = optarg; break;
-	case OPT_FILE_NAME: o->work.name = optarg; break;
-	case OPT_START: o->work.start = optarg; break;
-	case OPT_PROGRAM:
-		o->work.program = (uint32_t)strtoul(optarg, NULL, 10);
-		break;
-	case OPT_TOLERANCE: o->work.tolerance_mm = strtod(optarg, NULL); break;
-	case OPT_PRINT_WORDS: exit(words_print());
-	case OPT_HELP: fputs(usage, stdout); exit(0);
-	case OPT_VERSION: puts("edm-panel " EDM_VERSION); exit(0);
-	default: return EX_USAGE;
-	}
-	return 0;
-}
-
 static int read_config(struct panel *p, const struct options *o)
 {
 	struct interp_diag d = { .line = 0 };
@@ -394,31 +321,23 @@ int main(int argc, char **argv)
 {
 	static struct panel p;
 	static char self[512];
-	struct options o = {
-		.config = "/etc/edmd/machine.ini", .work.name = "job.ngc",
-	};
+	struct options o;
 	const struct sigaction sa = { .sa_handler = on_signal };
-	int c, rc = 0;
+	int rc = options_take(&o, argc, argv);
 
-	while (rc == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) >= 0)
-		rc = set_option(&o, c);
-	if (rc || o.port < 0 || o.port > 65535 ||
-	    optind + (o.add_user ? 1 : 0) != argc) {
-		fputs(usage, stderr);
-		return EX_USAGE;
-	}
-	if (o.work.what) {
-		o.work.config = o.config;
-		o.work.machine = o.machine;
+	if (rc >= 0)
+		return rc;
+	if (o.work.what)
 		return work_run(&o.work);
-	}
+	if (o.print_words)
+		return words_print();
 	rc = read_config(&p, &o);
 	if (rc)
 		return rc;
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;
 	if (o.add_user)
-		return add_user(&p, o.add_user, argv[optind]);
+		return add_user(&p, o.add_user, o.role);
 	find_self(self);
 	p.self = self;
 	p.config_path = o.config;

@@ -98,8 +98,8 @@ void socket_tell_event(struct panel *p, const char *kind, const char *text);
 void socket_answer(struct browser *b, int64_t n, int code, const char *reason,
 		   json_t *body);
 
-/** socket_look() - end jogs whose finger is not felt any more. */
-void socket_look(struct panel *p);
+/** socket_press() - the key of its page that is pressed. */
+struct press *socket_press(struct browser *b);
 
 struct session *socket_session(struct browser *b);
 struct panel *socket_panel(struct browser *b);

@@ -7,6 +7,7 @@
  * needs no queue, and is never more than one message behind.
  */
 #include "panel.h"
+#include "press.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +38,7 @@ struct browser {
 	size_t in_bytes;
 	int64_t number;			/* of the last request */
 	double tokens, tokens_s;
+	struct press press;
 };
 
 static double now_s(void)
@@ -55,6 +57,11 @@ size_t socket_browser_size(void)
 struct panel *socket_panel(struct browser *b)
 {
 	return b->panel;
+}
+
+struct press *socket_press(struct browser *b)
+{
+	return &b->press;
 }
 
 struct session *socket_session(struct browser *b)
@@ -358,6 +365,7 @@ static void end(struct browser *b)
 	struct session *s = socket_session(b);
 	struct browser **at = &b->panel->browsers;
 
+	press_end(b);
 	verbs_forget(b);
 	if (s)
 		s->sockets--;

@@ -6,6 +6,7 @@
  * stands in the journal, with what became of it.
  */
 #include "panel.h"
+#include "press.h"
 #include "values.h"
 
 #include <math.h>
@@ -177,6 +178,13 @@ static void run_notes(struct browser *b, const struct verb *v, int64_t n,
 	socket_answer(b, n, 0, "done", panel_notes(socket_panel(b)));
 }
 
+static void run_press(struct browser *b, const struct verb *v, int64_t n,
+		      const json_t *o)
+{
+	(void)v;
+	press_take(b, n, o);
+}
+
 /* -- Of other programs ------------------------------------------------------------ */
 
 /* One JSON value, or one in each line. */
@@ -301,12 +309,15 @@ static const struct verb verbs[] = {
 	{ "retract",  ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "step",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true, ACT_ONCE },
+	{ "press",    ROLE_OPERATOR, run_press, NULL, false, 0 },
 	{ "home",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "override", ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "estop",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "reset",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "set",      ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "remove",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "move",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "text",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "queue",    ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "show",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "past",     ROLE_VIEWER,   run_ask, "history", false, 0 },

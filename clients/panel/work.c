@@ -179,7 +179,8 @@ static int work_path(const struct work *w)
 	size_t bytes;
 	int err;
 
-	if (shm_program_open(&block, &bytes, w->machine, w->program) < 0)
+	if (shm_program_open(&block, &bytes, w->machine,
+			     (uint32_t)w->program) < 0)
 		return put_failure("the program is not there any more",
 				   "the one that is loaded");
 	err = interp_program_map(&p, block, bytes) == 0 ?

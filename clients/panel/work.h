@@ -27,7 +27,7 @@ struct work {
 	const char *name;		/* check: of the file, for its dialect */
 	const char *start;		/* check: eight places, mm; NULL: the
 					 * machine file's */
-	uint32_t program;		/* path: its number */
+	uint64_t program;		/* path: its number */
 	double tolerance_mm;		/* 0: by the extent */
 };
 

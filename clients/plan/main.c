@@ -98,7 +98,7 @@ static int take_dialect(void *to, const char *text)
 	if (interp_dialect_by_name(text))
 		return -1;
 	return refuse("--dialect", text, "generic, robofil, skd2, sodick, "
-		      "chmer, 3b or 4b");
+		      "chmer, fanuc, agie, 3b or 4b");
 }
 
 #define AT(field)	offsetof(struct job_options, field)

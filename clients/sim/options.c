@@ -99,7 +99,7 @@ static const struct cmdline_row rows[] = {
 	{ "machine", "FILE", WORD(machine_file), .help =
 	  "machine file; without: eight axes, +-200 mm" },
 	{ "dialect", "NAME", CALL(take_dialect), .help =
-	  "generic, robofil, skd2, sodick, chmer, fanuc, 3b,\n"
+	  "generic, robofil, skd2, sodick, chmer, fanuc, agie, 3b,\n"
 	  "4b\n"
 	  "(by the file's name: .3b, .4b, else generic)" },
 	{ "tech", "FILE", WORD(tech), .help =

@@ -50,6 +50,17 @@ static const char *retract_to_word(int i)
 	return WORD_OF(words, i);
 }
 
+static const char *retreat_to_word(int i)
+{
+	static const char *const words[RETREAT_NPLACES] = {
+		[RETREAT_DISTANCE] = "distance",
+		[RETREAT_MOTION] = "motion",
+		[RETREAT_HOLE] = "hole",
+	};
+
+	return WORD_OF(words, i);
+}
+
 static const char *retract_word(int i)
 {
 	return i == 0 ? "path" : i == 1 ? "escape" : NULL;
@@ -170,10 +181,13 @@ static const struct config_key row[] = {
 	NUMBER(GAP, "wire_retract_mm", "mm", "0.02", 0.001, 1000,
 	       AT(gap.wire_retract_mm),
 	       "wire machines: a retract goes no farther back"),
+	WORDS(GAP, "wire_retreat_to", "distance", AT(gap.wire_retreat_to),
+	      retreat_to_word, "wire machines: how far the way back from a "
+	      "broken wire goes: wire_retreat_mm, to the start of the motion, "
+	      "or to the start hole"),
 	NUMBER(GAP, "wire_retreat_mm", "mm", "1", 0, 1000,
 	       AT(gap.wire_retreat_mm),
-	       "wire machines: way back from a broken wire; 0: to the "
-	       "start of the motion"),
+	       "wire machines: way back from a broken wire"),
 	WORDS(GAP, "retract", "path", AT(gap.retract_escape), retract_word,
 	      "way out of a short: back along the path, or by the escape"),
 

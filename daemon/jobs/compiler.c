@@ -56,15 +56,31 @@ static int read_tech(struct compiler *c, struct config_tech *t)
 	return 0;
 }
 
+static void take_note(void *arg, uint32_t line, const char *text)
+{
+	struct compiler_result *r = arg;
+
+	if (r->nnotes < COMPILER_NOTES_MAX) {
+		struct compiler_note *n = &r->note[r->nnotes];
+
+		n->line = line;
+		snprintf(n->text, sizeof(n->text), "%s", text);
+	}
+	r->nnotes++;
+}
+
 static int compiler_text(struct compiler *c, const struct config_tech *tech)
 {
 	const struct interp_text text = {
 		.at = c->request.text, .bytes = c->request.bytes,
 		.dialect = interp_dialect_by_file(c->request.name),
 	};
+	const struct interp_notes notes = { .say = take_note,
+					    .arg = &c->result };
 	struct config_compiling of;
 
 	config_compiling(c->request.config, tech, &of);
+	of.text.nc.notes = &notes;
 	of.text.nc.segs_max = SEGS_MAX;
 	of.text.nc.executed_max = EXECUTED_MAX;
 	memcpy(of.build.start_mm, c->request.start_mm,

@@ -25,11 +25,21 @@ struct compiler_request {
 	size_t bytes;
 };
 
+#define COMPILER_NOTES_MAX	16
+
+/* What is cut otherwise than it is written. */
+struct compiler_note {
+	uint32_t line;
+	char text[200];
+};
+
 /* @build is lent; diag is filled if err is -EINVAL. */
 struct compiler_result {
 	int err;
 	struct interp_diag diag;
 	uint32_t lines;
+	struct compiler_note note[COMPILER_NOTES_MAX];
+	uint32_t nnotes;		/* all of them, also those not kept */
 	char tech_sha256[65];		/* of the table, hex; "": none */
 	char tech_refusal[1024];		/* the table's own; "": none */
 	struct interp_build *build;

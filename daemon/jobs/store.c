@@ -3,6 +3,7 @@
  * store.c - jobs, events and a few numbers: what is written and asked
  */
 #include "store_sql.h"
+#include "store_turn.h"
 
 #include <errno.h>
 #include <sodium.h>
@@ -146,7 +147,7 @@ int store_head(struct store *s, struct store_job *ret)
 	int err;
 	sqlite3_stmt *q = store_ask(s, &err, "SELECT " JOB_COLUMNS " FROM job "
 				    "WHERE state='queued' AND loaded=0 ORDER "
-				    "BY n=? DESC, n LIMIT 1", "i",
+				    "BY n=? DESC, " STORE_TURN " LIMIT 1", "i",
 				    store_number(s, "selected", 0));
 
 	return job_get(q, err, ret);

@@ -3,6 +3,7 @@
  * store_list.c - lists of jobs and events, as JSON
  */
 #include "store_sql.h"
+#include "store_turn.h"
 
 #include <string.h>
 
@@ -26,18 +27,25 @@
 			"'now', now) AS c FROM change WHERE change.n=job.n " \
 			"ORDER BY time_ns))"
 
+/* What is cut otherwise than it is written. */
+#define NOTES_JSON	", 'notes', (SELECT json_group_array(text) FROM " \
+			"(SELECT text FROM event WHERE event.job=job.id AND " \
+			"kind='note' ORDER BY event.rowid))"
+
 static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				const char *id, int rows)
 {
 	if (what == STORE_SHOW)
-		return store_ask(s, NULL, "SELECT " JOB_JSON(CHANGES_JSON) " FROM job "
+		return store_ask(s, NULL, "SELECT " JOB_JSON(CHANGES_JSON NOTES_JSON)
+				 " FROM job "
 			     "WHERE id=?",
 			     "s", id);
 	if (what == STORE_QUEUE)
 		return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM "
 			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
 			     "state='queued' OR (loaded=1 AND state NOT IN "
-			     "('done', 'stopped')) ORDER BY n)", "");
+			     "('done', 'stopped')) ORDER BY loaded DESC, "
+			     STORE_TURN ")", "");
 	if (what == STORE_ALARMS)
 		return store_ask(s, NULL, "SELECT json_group_array(json(a)) FROM (SELECT "
 			     "json_object('utime', utime, 'kind', kind, 'job', "

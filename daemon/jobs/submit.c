@@ -91,6 +91,21 @@ static const char *what_next(const struct jobs *j, bool hold)
 	       "it starts when those before it are done" : "it starts now";
 }
 
+/* They are events of the job: every client hears them, `show` lists them. */
+static void tell_notes(struct jobs *j, const struct upload *up,
+		       const struct compiler_result *r)
+{
+	const struct jobs_note n = { .kind = "note", .job = up->id };
+
+	for (uint32_t i = 0; i < r->nnotes && i < COMPILER_NOTES_MAX; i++)
+		jobs_note(j, &n, "%s:%u: note: %s", up->name, r->note[i].line,
+			  r->note[i].text);
+	if (r->nnotes > COMPILER_NOTES_MAX)
+		jobs_note(j, &n, "%s: note: %u notes more; edmsim --check "
+			  "prints all", up->name,
+			  r->nnotes - COMPILER_NOTES_MAX);
+}
+
 static void refuse_degraded(struct jobs *j, struct upload *up)
 {
 	char reason[240];
@@ -129,6 +144,7 @@ static void accept_text(struct jobs *j, struct upload *up,
 	jobs_note(j, &(struct jobs_note) { .kind = "queued", .job = n.id },
 		  "job %s queued, %u lines, %zu bytes", n.name, lines,
 		  n.bytes);
+	tell_notes(j, up, r);
 	snprintf(reason, sizeof(reason), "accepted; %s",
 		 what_next(j, up->hold));
 	body = store_json(j->store, STORE_SHOW, n.id, 0);

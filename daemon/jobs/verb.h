@@ -50,4 +50,21 @@ void verbs_settle(struct jobs *j, const struct verb *v,
 void verbs_await(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 
+/* -- verbs_queue.c: functions of rows -- */
+
+void verbs_remove(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c);
+void verbs_move(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c);
+void verbs_text(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c);
+void verbs_queue(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c);
+void verbs_show(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c);
+void verbs_alarms(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c);
+void verbs_history(struct jobs *j, const struct verb *v,
+		   const struct jobs_lcm_command *c);
+
 #endif /* JOBS_VERB_H */

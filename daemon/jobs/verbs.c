@@ -473,86 +473,6 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	}
 }
 
-static void verb_remove(struct jobs *j, const struct verb *v,
-			const struct jobs_lcm_command *c)
-{
-	struct store_end e = {
-		.state = JOB_STOPPED, .reason = "removed from the queue",
-		.now_us = jobs_utime(),
-	};
-	bool waiting = j->queue.waiting;
-	struct store_job job;
-
-	(void)v;
-	if (store_find(j->store, c->job, &job) < 0) {
-		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
-		       "them");
-	} else if (job.n == j->queue.job.n && job.state == JOB_READY) {
-		queue_end(j, JOB_STOPPED, e.reason);
-		if (!waiting)
-			queue_go(j);
-		verbs_answer(j, c, 0, "removed");
-	} else if (job.state != JOB_QUEUED || job.loaded) {
-		verbs_answer(j, c, REFUSED, "it has begun or ended; stop ends a job "
-		       "that runs");
-	} else {
-		store_end(j->store, job.n, &e);
-		queue_recount(j);
-		verbs_answer(j, c, 0, "removed");
-	}
-}
-
-static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
-			enum store_list what)
-{
-	char *body = store_json(j->store, what, c->job, (int)c->arg);
-	struct jobs_lcm_ack a = {
-		.key = c->key, .client = c->client, .seq = c->seq, .body = body,
-		.reason = "done",
-	};
-
-	if (!body) {
-		a.code = what == STORE_SHOW ? EX_NOINPUT : EX_IOERR;
-		a.reason = what == STORE_SHOW ?
-			   "no such job; edmctl queue and edmctl history list "
-			   "them" : "the store failed";
-	}
-	jobs_answer(j, &a);
-	free(body);
-}
-
-static void verb_queue(struct jobs *j, const struct verb *v,
-		       const struct jobs_lcm_command *c)
-{
-	(void)v;
-	answer_list(j, c, STORE_QUEUE);
-}
-
-static void verb_show(struct jobs *j, const struct verb *v,
-		      const struct jobs_lcm_command *c)
-{
-	(void)v;
-	answer_list(j, c, STORE_SHOW);
-}
-
-static void verb_alarms(struct jobs *j, const struct verb *v,
-			const struct jobs_lcm_command *c)
-{
-	(void)v;
-	answer_list(j, c, STORE_ALARMS);
-}
-
-static void verb_history(struct jobs *j, const struct verb *v,
-			 const struct jobs_lcm_command *c)
-{
-	(void)v;
-	if (c->arg >= 0 && c->arg <= 1000)
-		answer_list(j, c, STORE_HISTORY);
-	else
-		verbs_answer(j, c, EX_DATAERR, "no such number of rows; 0 to 1000, "
-		       "0 is all that are kept");
-}
-
 /* What each is, who may ask for it: the one table of rights. */
 static const struct verb verbs[] = {
 	{ "start", ROLE_OPERATOR, VERB_ACTS, verb_start, SHM_DO_START,
@@ -581,11 +501,13 @@ static const struct verb verbs[] = {
 	  "idle: no job loaded, no fault" },
 	{ "override", ROLE_OPERATOR, VERB_ACTS, verb_override,
 	  SHM_DO_OVERRIDE, "nothing" },
-	{ "remove", ROLE_OPERATOR, VERB_ACTS, verb_remove, VERB_OWN, "" },
-	{ "alarms", ROLE_VIEWER, VERB_ASKS, verb_alarms, VERB_OWN, "" },
-	{ "queue", ROLE_VIEWER, VERB_ASKS, verb_queue, VERB_OWN, "" },
-	{ "show", ROLE_VIEWER, VERB_ASKS, verb_show, VERB_OWN, "" },
-	{ "history", ROLE_VIEWER, VERB_ASKS, verb_history, VERB_OWN, "" },
+	{ "remove", ROLE_OPERATOR, VERB_ACTS, verbs_remove, VERB_OWN, "" },
+	{ "move", ROLE_OPERATOR, VERB_ACTS, verbs_move, VERB_OWN, "" },
+	{ "text", ROLE_VIEWER, VERB_ASKS, verbs_text, VERB_OWN, "" },
+	{ "alarms", ROLE_VIEWER, VERB_ASKS, verbs_alarms, VERB_OWN, "" },
+	{ "queue", ROLE_VIEWER, VERB_ASKS, verbs_queue, VERB_OWN, "" },
+	{ "show", ROLE_VIEWER, VERB_ASKS, verbs_show, VERB_OWN, "" },
+	{ "history", ROLE_VIEWER, VERB_ASKS, verbs_history, VERB_OWN, "" },
 	{ "store", ROLE_VIEWER, VERB_ASKS, verbs_store, VERB_OWN, "" },
 	{ "hello", ROLE_VIEWER, VERB_ASKS, keys_hello, VERB_OWN, "" },
 	{ "keys", ROLE_SERVICE, VERB_ASKS, keys_list, VERB_OWN, "" },

@@ -145,6 +145,8 @@ struct cycle_lift {
 struct cycle_hold {
 	bool moving;
 	double to_mm;			/* place that it moves to */
+	uint32_t seek;			/* segments in front of this one are not
+					 * yet looked at for it; 0: all are */
 	bool braked;			/* it has stood since */
 	enum cycle_state then;		/* the state to follow the stand */
 };

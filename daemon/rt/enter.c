@@ -3,6 +3,7 @@
  * enter.c - what is done where a state is entered; how a job ends or fails
  */
 #include "enter.h"
+#include "path/hole.h"
 #include "path/timed.h"
 #include "path/walk.h"
 #include "path/place.h"
@@ -82,6 +83,7 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 	case STATE_HOLD:
 		axes_forget(c);
 		c->hold.moving = false;
+		c->hold.seek = 0;
 		c->hold.braked = false;
 		c->hold.then = STATE_HOLD;
 		break;
@@ -113,9 +115,24 @@ static bool backs_off(const struct cycle *c)
 	       (state_duty[c->state].power || c->state == STATE_RETRACT);
 }
 
-static void brake(struct cycle *c)
+static void retreat(struct cycle *c)
 {
 	const double back = c->gap.wire_retreat_mm;
+
+	switch (c->gap.wire_retreat_to) {
+	case RETREAT_HOLE:
+		hole_begin(c);
+		break;
+	case RETREAT_MOTION:
+		c->hold.to_mm = retract_motion_mm(c);
+		break;
+	default:
+		c->hold.to_mm = fmax(place_outer_mm(c), place_mm(c) - back);
+	}
+}
+
+static void brake(struct cycle *c)
+{
 	const bool goes_back = backs_off(c);
 
 	if (c->hold.then == STATE_FAULT && c->state == STATE_HOLD) {
@@ -123,11 +140,9 @@ static void brake(struct cycle *c)
 		c->hold.moving = false;
 		return;
 	}
-	if (goes_back)
-		c->hold.to_mm = back > 0 ? fmax(place_outer_mm(c),
-						place_mm(c) - back) :
-					   retract_motion_mm(c);
 	cycle_enter(c, STATE_HOLD);
+	if (goes_back)
+		retreat(c);
 	c->hold.moving = goes_back;
 	c->hold.then = STATE_FAULT;
 }

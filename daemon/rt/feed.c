@@ -4,6 +4,7 @@
  */
 #include "path/ahead.h"
 #include "feed.h"
+#include "path/hole.h"
 #include "path/laws.h"
 #include "path/place.h"
 
@@ -87,6 +88,8 @@ static double hold(struct cycle *c)
 	struct mover_limits beside;
 
 	c->hold.braked = c->hold.braked || c->mover.v_mm_s == 0;
+	if (c->hold.seek > 0)
+		hole_follow(c);
 	if (!escape_is_out(&c->escape))
 		return c->hold.moving && c->hold.braked ?
 		       go_to(c, &w, c->hold.to_mm) : brake(c);

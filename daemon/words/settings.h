@@ -46,6 +46,14 @@ enum retract_to {
 	RETRACT_NPLACES
 };
 
+/* How far a wire goes back from where it broke. */
+enum retreat_to {
+	RETREAT_DISTANCE,		/* wire_retreat_mm */
+	RETREAT_MOTION,			/* the start of the motion it is in */
+	RETREAT_HOLE,			/* the start hole: rt/path/hole.h */
+	RETREAT_NPLACES
+};
+
 struct cycle_gap_config {
 	enum cycle_process process;
 	enum gap_source source;
@@ -88,7 +96,8 @@ struct cycle_gap_config {
 	uint64_t stuck_cycles;		/* no change, then a fault; 0: never */
 	double noise_limit_v;		/* mean change of a cycle; 0: any */
 	double wire_retract_mm;		/* limit of a retract, if wire */
-	double wire_retreat_mm;		/* from a break; 0: to the motion's start */
+	enum retreat_to wire_retreat_to;	/* from a break */
+	double wire_retreat_mm;
 };
 
 /* -- Jumps: [jump] ----------------------------------------------------------- */

@@ -4,6 +4,7 @@ the test's own: the top outline is where the leaning faces meet."""
 import math
 import os
 import random
+import re
 
 import numpy as np
 import pytest
@@ -207,7 +208,8 @@ M99
 """
 
 
-@pytest.mark.parametrize("cut", ["G152", "G152 R1", "G152 L1", "G152 R12"])
+@pytest.mark.parametrize("cut", ["G152", "G152 R1", "G152 L1", "G152 R12",
+                                 "G152 R1 L1", "G152 R12 L1", "G152 R1 L2"])
 def test_each_pass_has_its_offset_all_the_way_round(cut):
     text = PLATE.format(cut=cut)
     at = planes(rows_of(text))[0]
@@ -234,7 +236,8 @@ def test_each_pass_has_its_offset_all_the_way_round(cut):
     ("P100 X", "P101 X", "a call of O101"),
     ("G40 Y10", "Y10", "is not whole"),
     ("{cut}", "G152 R99", "a tab of 99 mm"),
-    ("{cut}", "G152 R1 L1", "with a tab"),
+    ("{cut}", "G152 L2", "G152 L2 without a tab"),
+    ("{cut}", "G152 R1 L3", "G152 L3"),
     ("X15\n", "X15\nM0\n", "more than motions in a contour"),
     ("Y5\nX10\n", "Y5\nX9\n", "is not whole"),
 ])
@@ -242,6 +245,41 @@ def test_what_cannot_be_cut_in_passes_is_refused(old, new, found):
     text = PLATE.replace(old, new).replace("{cut}", "G152")
     r = run("--machine", WIRE, "--check", text=text)
     assert r.returncode == 65 and found in r.stderr.decode(), r.stderr
+
+
+ORDERS = [
+    ("", [(1, 1), (1, 2), (1, 3), (2, 1), (2, 2), (2, 3)]),
+    ("L1", [(1, 1), (2, 1), (1, 2), (1, 3), (2, 2), (2, 3)]),
+    ("R1", [(1, 1), (1, 2), (1, 3), (1, -1), (1, -2), (1, -3),
+            (2, 1), (2, 2), (2, 3), (2, -1), (2, -2), (2, -3)]),
+    ("R1 L1", [(1, 1), (2, 1), (1, 2), (1, 3), (2, 2), (2, 3),
+               (1, -1), (1, -2), (1, -3), (2, -1), (2, -2), (2, -3)]),
+    ("R1 L2", [(1, 1), (1, 2), (1, 3), (2, 1), (2, 2), (2, 3),
+               (1, -1), (1, -2), (1, -3), (2, -1), (2, -2), (2, -3)]),
+]
+
+
+@pytest.mark.parametrize("words,order", ORDERS)
+def test_passes_of_many_contours_come_in_their_order(words, order):
+    """(contour, pass), below 0 on the tab."""
+    second = PLATE[PLATE.index("O100"):].replace("O100", "O200")
+    for was, to in ("X15", "X35"), ("X5", "X25"), ("X10", "X30"):
+        second = second.replace(was, to)
+    text = PLATE.replace("{cut}", "G151 P200 X30 Y10\nG152 " + words) + second
+    told = run("--machine", WIRE, "--check", text=text).stderr.decode()
+    found = re.findall(r"contour (\d), P\d+: (tab, )?pass (\d)", told)
+    assert [(int(c), -int(p) if tab else int(p))
+            for c, tab, p in found] == order
+    # In each turn the wire is threaded and cut; a person is asked for.
+    turns = 1 + sum(a[0] != b[0] for a, b in zip(order, order[1:]))
+    stops = told_stops(text)
+    tabs_apart = words in ("R1 L1", "R1 L2")
+    assert stops == 2 * turns + (0 if tabs_apart else 2)
+
+
+def told_stops(text):
+    out = run("--machine", WIRE, "--emit", "iso", text=text).stdout.decode()
+    return sum(line.strip() == "M0" for line in out.splitlines())
 
 
 def test_a_leaning_wall_of_two_contours_has_the_offset_over_cos():

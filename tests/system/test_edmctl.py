@@ -49,6 +49,41 @@ def test_refused_code_is_told_with_file_line_and_column(machine):
     assert ";" in p.stderr
 
 
+SLOT = b"""G90 F6000
+H1=0.125
+G0 X5 Y-2
+G42 H1
+G1 X5 Y0
+X10
+Y5
+X6
+Y4
+X5.8
+Y5
+X0
+Y0
+X5
+G40 Y-2
+M2
+"""
+
+
+def test_what_is_cut_otherwise_than_written_is_told(idle):
+    with open(idle.config, "a") as f:
+        f.write("\n[wire]\ngouge = skip\n")
+    idle.start()
+    told = "slot.ngc:9: note: what lies between lines 9 and 12 is too narrow " \
+        "for the wire and is left out (gouge = skip)"
+    p = idle.ctl("submit", write(idle, "slot.ngc", SLOT), "--wait")
+    assert p.returncode == 0, p.stderr
+    assert told in p.stderr.splitlines(), p.stderr
+    c = idle.client
+    events = c.heard(lambda: [e for e in c.events if e.kind == "note"])
+    assert [e.text for e in events] == [told]
+    p = idle.ctl("show", events[0].job)
+    assert "notes      " + told in p.stdout.splitlines(), p.stdout
+
+
 def test_input_that_is_not_there(machine):
     assert machine.ctl("submit", "/no/such/file").returncode == 66
     assert machine.ctl("submit", str(machine.folder)).returncode == 66

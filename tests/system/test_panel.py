@@ -137,6 +137,25 @@ def test_pages_and_programs_of_the_host_are_told(p, me):
         assert isinstance(live.ask("notes")["body"], list)
 
 
+def test_a_press_that_is_old_or_begins_nothing_moves_nothing(p, me):
+    with me.live() as live:
+        live.where(lambda s: s.get("state") == "idle" and s["jobs"])
+        at = live.state["pos"][1]
+        # A heap that was held up: no sign names an answer of this moment.
+        codes = [live.ask("press", text="Y", arg=5, press=1, heard=0)["code"]
+                 for _ in range(5)]
+        n = live.n
+        time.sleep(0.4)
+        late = live.ask("press", text="Y", arg=5, press=1, heard=n)
+        assert codes == [0] * 5 and late["code"] == 69, late
+        assert "press again" in late["reason"]
+        assert live.ask("press", text="Y", arg=5, press=1,
+                        heard=live.n)["code"] == 69
+        assert live.ask("press", text="Y", arg=5, heard=0)["code"] == 65
+        live.where(lambda s: s["state"] == "idle")
+        assert live.state["pos"][1] == at
+
+
 # -- What it refuses
 
 def test_a_stranger_gets_nothing_but_the_page(p):
@@ -215,7 +234,7 @@ def test_no_path_leads_out_of_the_page(p, path):
                                     "PATCH", "CONNECT"])
 def test_other_methods_do_nothing(p, me, method):
     got = p.raw(f"{method} /api/jobs HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
-                f"Cookie: {me.cookie}\r\nConnection: close\r\n\r\n".encode())
+                f"Cookie: {me.cookie}\r\nConnection: close\r\n\r\n".encode(), timeout=4)
     assert b" 200 " not in got.split(b"\r\n")[0]
     assert p.listens()
 

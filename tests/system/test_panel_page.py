@@ -2,12 +2,16 @@
 """The panel's page in a browser, against the real gateway and daemons."""
 
 import re
+import signal
 
 import panel
 import pytest
+import rig
 from playwright.sync_api import expect, sync_playwright
 
 PATIENCE_MS = 40000
+AXE = rig.BUILD / "web/node_modules/axe-core/axe.min.js"
+PAGES = ("cut", "jobs", "setup", "tech", "alarms", "machine", "fleet")
 expect.set_options(timeout=PATIENCE_MS)
 
 WRONG = b"G21 G90\nG1 X5 F30\nG1 Y5 Q77\nM30\n"
@@ -114,7 +118,7 @@ def test_a_part_from_its_error_to_the_history(p, page):
                                   20)
     page.locator("#stop").click()
     expect(page.locator(".head h1")).to_have_text("Emergency stop")
-    expect(page.locator(".head .state p")).to_contain_text("release the button")
+    expect(page.locator(".head .state p")).to_contain_text("Release the button")
     page.goto(p.url + "/#/alarms")
     expect(page.locator(".alarm-now dl")).to_contain_text("part.ngc, line")
     page.locator("#reset").click()
@@ -163,12 +167,63 @@ def test_an_axis_is_jogged_by_steps(p, page):
                                   20)
 
 
+def hold_until_it_moves(p, page, key):
+    """On a busy host a sign may be late: then it is pressed again."""
+    for _ in range(10):
+        before = p.machine.client.status().pos_mm[1]
+        key.hover()
+        page.mouse.down()
+        try:
+            p.machine.client.status_where(
+                lambda s: abs(s.pos_mm[1] - before) > 0.3, 3)
+            return before
+        except AssertionError:
+            page.mouse.up()
+    raise AssertionError("no press moved the axis")
+
+
+def stands(p):
+    """Where it stands, and goes on to stand."""
+    c = p.machine.client
+    s = c.status_where(lambda s: s.state == "idle", 20)
+    return c.status_where(
+        lambda t: t.utime > s.utime + 400000).pos_mm[1] == s.pos_mm[1]
+
+
+def test_an_axis_moves_while_its_key_is_pressed(p, page):
+    page.goto(p.url + "/#/setup")
+    page.get_by_role("radio", name="while pressed").click()
+    page.get_by_role("radio", name="middle").click()
+    key = page.locator("#jog-Y-plus")
+    # Let go.
+    hold_until_it_moves(p, page, key)
+    page.mouse.up()
+    assert stands(p)
+    # Slipped off.
+    hold_until_it_moves(p, page, page.locator("#jog-Y-minus"))
+    page.mouse.move(5, 5)
+    assert stands(p)
+    page.mouse.up()
+    # The panel stops in the middle, and what it was sent meanwhile is old.
+    hold_until_it_moves(p, page, key)
+    p.process.send_signal(signal.SIGSTOP)
+    try:
+        assert stands(p)
+    finally:
+        p.process.send_signal(signal.SIGCONT)
+    assert stands(p)
+    page.mouse.up()
+    # The page is gone.
+    hold_until_it_moves(p, page, key)
+    page.close()
+    assert stands(p)
+
+
 def test_both_languages(p, page):
     page.goto(p.url + "/#/machine")
     page.get_by_role("radio", name="\u4e2d\u6587").click()
     expect(page.locator(".rail")).to_contain_text("\u52a0\u5de5")
-    for name in ("cut", "jobs", "setup", "tech", "alarms", "machine",
-                 "fleet"):
+    for name in PAGES:
         page.goto(p.url + f"/#/{name}")
         expect(page.locator("main.page")).to_be_visible()
         page.wait_for_timeout(150)
@@ -181,3 +236,163 @@ def test_both_languages(p, page):
     page.goto(p.url + "/#/machine")
     page.get_by_role("radio", name="English").click()
     expect(page.locator(".rail")).to_contain_text("Cut")
+
+
+def show(page, name):
+    page.evaluate(f"location.hash = '#/{name}'")
+    page.locator(f"main.page-{name}").wait_for()
+    page.wait_for_timeout(150)
+
+
+def test_axe_finds_nothing_serious(p, page):
+    page.evaluate(AXE.read_text())
+    found = []
+
+    def look(where, rules=""):
+        got = page.evaluate("axe.run(document, {resultTypes: ['violations']"
+                            f"{rules}}})")
+        found.extend((where, v["id"], v["impact"], v["nodes"][0]["html"])
+                     for v in got["violations"]
+                     if v["impact"] in ("serious", "critical"))
+
+    # In the dark only the colours are others.
+    for theme, rules in (("light", ""),
+                         ("dark", ", runOnly: ['color-contrast']")):
+        page.emulate_media(color_scheme=theme)
+        for name in PAGES:
+            show(page, name)
+            look((name, theme), rules)
+        show(page, "cut")
+        page.locator("#chip-servo_v").click()
+        look(("sheet", theme), rules)
+        page.keyboard.press("Escape")
+    assert found == []
+
+
+# What no scrolling sideways can reach, or lies under another key.
+CUT_OFF = """() => [...document.querySelectorAll(
+    "button, a, input, select, h2, .n")].filter((e) => {
+        const r = e.getBoundingClientRect();
+        return r.width > 0 && (r.right > innerWidth + 1 || r.left < -1) &&
+            !e.closest(".scroll, .chips, .skip, .editor") &&
+            !e.matches(".skip, .hidden");
+    }).map((e) => e.outerHTML.slice(0, 120))"""
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (800, 480), (390, 844)])
+def test_nothing_is_cut_off(p, page, size):
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    for name in PAGES:
+        show(page, name)
+        assert page.evaluate(CUT_OFF) == [], name
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+        stop = page.locator("#stop").bounding_box()
+        assert stop["height"] >= 44 and stop["width"] >= 88
+    show(page, "cut")
+    for key in ("#start", "#hold", "#retract"):
+        assert page.locator(key).bounding_box()["height"] >= 48, key
+
+
+def clicks(page):
+    return page.evaluate("window.clicks")
+
+
+def test_few_clicks_lead_where_one_wants(p, page):
+    page.goto(p.url + "/#/jobs")
+    page.evaluate("""() => { window.clicks = 0;
+        addEventListener("pointerdown", () => window.clicks++, true); }""")
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Choose a file").click()
+    chooser.value.set_files({"name": "a.ngc", "mimeType": "text/plain",
+                             "buffer": panel.JOB})
+    expect(page.locator("#sendstart")).to_have_attribute("aria-disabled",
+                                                         "false")
+    press(page.locator("#sendstart"))
+    expect(page.locator(".head h1")).to_have_text("Cutting")
+    assert clicks(page) <= 3
+    # The line of the program that is cut can be read.
+    expect(page.locator(".progress code")).to_contain_text("G1 Z-2")
+
+    page.evaluate("window.clicks = 0")
+    page.locator("#chip-servo_v").click()
+    page.locator("#more-servo_v").click()
+    expect(page.locator(".stepper output")).to_have_text("16 V")
+    assert clicks(page) == 2
+    assert p.machine.client.status().state != "fault"
+    expect(page.locator("#chip-servo_v")).to_have_class(re.compile("set"))
+    page.keyboard.press("Escape")
+
+    # Why it stands: read from any page, without a click.
+    p.machine.client.ask("estop")
+    for name in PAGES:
+        show(page, name)
+        expect(page.locator(".head h1")).to_have_text("Emergency stop")
+        expect(page.locator(".head .state p")).to_contain_text("Release")
+    assert clicks(page) == 2
+    end_job(page, p)
+
+
+def test_a_program_is_dropped_on_any_page(p, page):
+    show(page, "machine")
+    page.evaluate("""() => { const d = new DataTransfer();
+        d.items.add(new File(["G21\\nG1 X1 F30\\nM30\\n"], "dropped.ngc"));
+        for (const kind of ["dragover", "drop"])
+            dispatchEvent(new DragEvent(kind, {dataTransfer: d,
+                                               cancelable: true})); }""")
+    expect(page.locator("main.page-jobs .draft h2").first).to_have_text(
+        "dropped.ngc")
+    expect(page.locator(".verdict .good")).to_be_visible()
+
+
+def test_jobs_that_wait_change_places(p, page):
+    session = p.session()
+    for name in ("one.ngc", "two.ngc", "three.ngc"):
+        session.post(f"/api/jobs?name={name}&hold=1", panel.JOB)
+    show(page, "jobs")
+    names = page.locator(".jobs").first.locator(".job b")
+    expect(names).to_have_text(["one.ngc", "two.ngc", "three.ngc"])
+    page.get_by_role("button", name="three.ngc: earlier").click()
+    expect(names).to_have_text(["one.ngc", "three.ngc", "two.ngc"])
+    for _ in range(3):
+        end_job_of_queue(p)
+    p.machine.client.status_where(lambda s: not s.job, 20)
+
+
+def end_job_of_queue(p):
+    """The job that is first in the queue, whatever it is."""
+    with p.session().live() as live:
+        for job in live.ask("queue")["body"]:
+            live.ask("remove", job=job["job"])
+
+
+def test_the_panel_dies_and_comes_back(p, page):
+    page.evaluate("window.same = 1")
+    p.kill()
+    expect(page.locator(".head h1")).to_have_text("Connection lost")
+    show(page, "cut")
+    expect(page.locator("#start")).to_have_attribute("aria-disabled", "true")
+    page.locator("#stop").click(force=True)
+    expect(page.locator(".toast.bad")).to_contain_text("No connection")
+    p.start_panel()
+    expect(page.locator(".head h1")).to_have_text("Idle")
+    # What is done on it after that is done: a new session was made.
+    page.locator("#chip-override").click()
+    page.get_by_role("button", name="50 %", exact=True).click()
+    expect(page.locator("#chip-override")).to_contain_text("50")
+    page.locator("#chip-override").click()
+    page.get_by_role("button", name="100 %", exact=True).click()
+    expect(page.locator("#chip-override")).to_contain_text("100")
+    assert page.evaluate("window.same") == 1
+
+
+def test_the_daemon_dies_and_comes_back(p, page):
+    p.machine.kill("edmd")
+    expect(page.locator(".head h1")).to_have_text("No signal")
+    expect(page.locator(".head .state p")).to_contain_text("last known")
+    p.machine.start_edmd()
+    expect(page.locator(".head h1")).to_have_text("Idle")
+    p.machine.kill("jobs")
+    expect(page.locator(".head .state p")).to_contain_text(
+        "edmd-jobs does not answer")
+    p.machine.start_jobs()
+    expect(page.locator(".head .state p")).to_contain_text("No job is loaded")

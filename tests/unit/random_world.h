@@ -214,7 +214,8 @@ static inline void random_bounds(struct cycle_gap_config *g, uint64_t *s)
 	g->arcing_retract_mm = uniform(s, 0, 1);
 	g->retract_escape = rnd(s) % 2;
 	g->wire_retract_mm = uniform(s, 0.01, 0.1);
-	g->wire_retreat_mm = rnd(s) % 3 ? uniform(s, 0, 1) : 0;
+	g->wire_retreat_to = (enum retreat_to)(rnd(s) % RETREAT_NPLACES);
+	g->wire_retreat_mm = uniform(s, 0, 1);
 }
 
 static inline void random_jump(struct cycle_jump_config *j, uint64_t *s)

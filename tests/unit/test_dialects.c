@@ -128,6 +128,24 @@ static void taper_and_offset_that_are_none_are_taken(void **state)
 	compile_done(&c);
 }
 
+/* As the post of Fusion for AgieVision writes it. */
+static const char agie[] =
+	"N100 G70 ;\n\nN110 G00 X1.0 Y0.5 ;\nN120 G90 ;\n"
+	"N130 G01 X2.0 Y0.5 ;\nN140 G03 X2.0 Y1.5 I0.0 J0.5 ;\nN150 M02 ;\n";
+
+static void agie_counts_inches_by_g70(void **state)
+{
+	struct compiled c = compile_ready("agie");
+
+	(void)state;
+	compile(&c, agie);
+	assert_int_equal(compiled_count(&c), 3);
+	assert_near(compiled_end(&c, 0, INTERP_X), 25.4);
+	assert_near(compiled_end(&c, 1, INTERP_X), 50.8);
+	assert_near(compiled_arc(&c, 2)->r_mm, 12.7);
+	compile_done(&c);
+}
+
 static const struct bad {
 	const char *dialect, *text;
 	uint32_t line, column;
@@ -167,6 +185,8 @@ static const struct bad {
 	{ "chmer", "SC0100 004\nM02", 1, 1, "SC without a =" },
 	{ "chmer", "G1 G41 X1.0\nM02", 1, 4, "an offset by register 0" },
 	{ "chmer", "Z1.0\nM02", 1, 1, "unknown word Z1.0" },
+	{ "agie", "G01 X5 ;\nM02 ;", 1, 5, "X5 without a decimal point" },
+	{ "agie", "G20 ;\nM02 ;", 1, 1, "unknown word G20" },
 	{ "generic", "E001=5\n", 1, 5, "'=', which begins no word" },
 };
 
@@ -216,6 +236,7 @@ int main(void)
 		cmocka_unit_test(skd2_counts_micrometres_and_calls_by_n),
 		cmocka_unit_test(sodick_ends_blocks_by_semicolons),
 		cmocka_unit_test(chmer_calls_conditions_by_s),
+		cmocka_unit_test(agie_counts_inches_by_g70),
 		cmocka_unit_test(a_wire_program_needs_no_feed),
 		cmocka_unit_test(taper_and_offset_that_are_none_are_taken),
 		cmocka_unit_test(

@@ -43,7 +43,8 @@ static struct cycle_config any_config(uint64_t *s)
 	k.gap.source = GAP_VOLTAGE;
 	k.gap.process = one_in(s, 3) ? PROCESS_WIRE : PROCESS_SINK;
 	k.gap.wire_retract_mm = 0.1;
-	k.gap.wire_retreat_mm = one_in(s, 2) ? 0.3 : 0;
+	k.gap.wire_retreat_to = (enum retreat_to)(rnd(s) % RETREAT_NPLACES);
+	k.gap.wire_retreat_mm = 0.3;
 	k.gap.arcing_share = one_in(s, 2) ? 0.3 : 0;
 	k.gap.arcing_cycles = 10;
 	k.jump.height_mm = one_in(s, 2) ? 0.5 : 0;

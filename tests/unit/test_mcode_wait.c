@@ -256,6 +256,56 @@ static void a_short_that_leads_back_over_it_redoes_it(void **st)
 	rig_free(&r);
 }
 
+/* The wire breaks, the way leads back to the hole it was threaded in, and the
+ * PLC threads it there before the cut goes on. */
+static void a_broken_wire_is_threaded_again_in_its_hole(void **st)
+{
+	const struct interp_mcode m = { INTERP_MCODE_BEFORE,
+					INTERP_MCODE_REDO };
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	k.gap.process = PROCESS_WIRE;
+	k.gap.wire_retreat_to = RETREAT_HOLE;
+	k.mcode_cycles = 500;
+	rapid_to(b, -1);
+	action(b, INTERP_MCODE, interp_mcode_arg(CODE, m));
+	for (int i = 1; i <= 800; i++)
+		cut_to(b, -1 - 0.005 * i);
+	rig_load(&r, b, &k);
+	r.in.plc = well();
+	step(&r, OPEN_V);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	meet(&r);
+	do_it(&r);
+	cut_until(&r, 4.5);
+	r.in.wire_broken = true;
+	until(&r, STATE_FAULT, OPEN_V, 10000);
+	assert_int_equal(r.c.fault.first, FAULT_WIRE_BROKEN);
+	assert_near(place(&r), 1, 0.0021);
+	for (int i = 0; i < 2; i++) {
+		/* The first time the PLC does not get it done. */
+		if (i == 1)
+			until(&r, STATE_FAULT, OPEN_V, 1000);
+		assert_int_equal(r.c.fault.first, i ? FAULT_MCODE :
+						  FAULT_WIRE_BROKEN);
+		assert_int_equal(tell(&r, CYCLE_RESET), ANSWER_DONE);
+		assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+		meet(&r);
+		assert_false(r.out.power);
+	}
+	r.in.wire_broken = false;
+	do_it(&r);
+	until(&r, STATE_APPROACH, OPEN_V, 10000);
+	for (int i = 0; i < 20000 && place(&r) < 4.5; i++)
+		step(&r, OPEN_V);
+	cut_until(&r, 4.9);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	rig_free(&r);
+}
+
 /* The lift comes back to where it left: nothing was undone. */
 static void a_lift_over_it_redoes_nothing(void **st)
 {
@@ -360,6 +410,7 @@ int main(void)
 		cmocka_unit_test(one_of_skip_is_told_once),
 		cmocka_unit_test(one_of_redo_is_told_on_each_way_forward),
 		cmocka_unit_test(a_short_that_leads_back_over_it_redoes_it),
+		cmocka_unit_test(a_broken_wire_is_threaded_again_in_its_hole),
 		cmocka_unit_test(a_lift_over_it_redoes_nothing),
 		cmocka_unit_test(the_way_back_ends_at_one_of_stop),
 		cmocka_unit_test(a_lost_plc_is_a_fault_while_it_is_waited_for),

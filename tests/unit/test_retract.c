@@ -187,16 +187,25 @@ static void a_wire_retracts_by_micrometres_and_never_jumps(void **st)
 
 static void a_broken_wire_is_held_back_from_the_break_and_cut_on_there(void **st)
 {
-	static const double retreats[] = { 0.3, 0.01, 50, 0 };
-	static const double ends[] = { 2.7, 2.99, 0, 2 };
+	static const struct {
+		enum retreat_to to;
+		double mm, end_mm;
+	} ways[] = {
+		{ RETREAT_DISTANCE, 0.3, 2.7 },
+		{ RETREAT_DISTANCE, 0.01, 2.99 },
+		{ RETREAT_DISTANCE, 50, 0 },
+		{ RETREAT_MOTION, 50, 2 },
+		{ RETREAT_HOLE, 50, 1 },
+	};
 
 	(void)st;
-	for (int i = 0; i < 4; i++) {
+	for (int i = 0; i < 5; i++) {
 		struct cycle_config k = wired();
 		double at;
 		struct rig r;
 
-		k.gap.wire_retreat_mm = retreats[i];
+		k.gap.wire_retreat_to = ways[i].to;
+		k.gap.wire_retreat_mm = ways[i].mm;
 		cut_two_motions(&r, &k, 3);
 		at = place(&r);
 		r.in.wire_broken = true;
@@ -204,7 +213,7 @@ static void a_broken_wire_is_held_back_from_the_break_and_cut_on_there(void **st
 		assert_false(r.out.power);
 		assert_int_equal(r.c.fault.first, FAULT_WIRE_BROKEN);
 		until(&r, STATE_FAULT, SPARKING_V, 20000);
-		assert_near(place(&r), ends[i], 0.006);
+		assert_near(place(&r), ways[i].end_mm, 0.006);
 		/* Still broken: it does not begin. */
 		tell(&r, CYCLE_RESET);
 		tell(&r, CYCLE_START);

@@ -15,6 +15,7 @@ static const struct interp_dialect dialects[] = {
 	{ .name = "sodick", .nc = &nc_sodick },
 	{ .name = "chmer", .nc = &nc_chmer },
 	{ .name = "fanuc", .nc = &nc_fanuc },
+	{ .name = "agie", .nc = &nc_agie },
 	{ .name = "3b", .suffix = ".3b" },
 	{ .name = "4b", .suffix = ".4b", .fourb = true },
 };

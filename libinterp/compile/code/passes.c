@@ -5,18 +5,13 @@
  * A contour is an ordinary subprogram under G41 or G42.  It is read once, onto
  * a tape, and cut from that as often as there are passes.
  */
-#include "code/reader.h"
-#include "wire/replay.h"
+#include "code/passes.h"
 
 #include <errno.h>
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #define WORDS_WANTED	"G150 H1 E001 for each pass, then G151 P1000 X0 Y0 " \
 			"for each contour, then G152"
-#define M_CUT		50	/* the wire */
-#define M_THREAD	60
 
 static const uint8_t *my_word(const struct nc_reader *r)
 {
@@ -116,169 +111,6 @@ static int record(struct nc_reader *r, const struct nc_cavity *c,
 	       refuse_contour(r, c) : err;
 }
 
-/* -- Cut ------------------------------------------------------------------------ */
-
-/* The PLC's M code; on a machine without one the job stops for a person. */
-static int wire_action(struct nc_reader *r, uint8_t number)
-{
-	const struct interp_mcode *all = r->o->mcode;
-
-	if (all && all[number].sync != INTERP_MCODE_NONE)
-		return contour_action(&r->contour, INTERP_MCODE,
-				      interp_mcode_arg(number, all[number]),
-				      &r->word, r->diag);
-	return contour_action(&r->contour, INTERP_STOP, 0, &r->word, r->diag);
-}
-
-static int go_to(struct nc_reader *r, const double hole_mm[2])
-{
-	double end_mm[INTERP_NAXES];
-
-	for (int i = 0; i < INTERP_NAXES; i++)
-		end_mm[i] = r->contour.here_mm[i];
-	end_mm[INTERP_X] = hole_mm[0];
-	end_mm[INTERP_Y] = hole_mm[1];
-	if (nc_has_guides(r)) {
-		end_mm[INTERP_U] = hole_mm[0];
-		end_mm[INTERP_V] = hole_mm[1];
-	}
-	r->word.rapid = true;
-	return contour_line(&r->contour, end_mm, &r->word, r->diag);
-}
-
-struct cutting {
-	struct nc_reader *r;
-	const struct nc_cavity *cavity;
-	const struct contour_tape *t;
-	uint32_t n;			/* of the cavity, from 1 */
-};
-
-static void say_pass(const struct cutting *k, uint32_t i, bool back,
-		     const uint32_t range[2], const char *what)
-{
-	const struct nc_pass *p = &k->r->passes.pass[i];
-	const double mm = contour_tape_length(k->t, range[0], range[1]);
-	char text[200];
-
-	if (!k->r->o->notes || !k->r->o->notes->plan)
-		return;
-	snprintf(text, sizeof(text), "contour %u, P%g: %spass %u, register %u "
-		 "(%.4f mm), %s, %.3f mm in %.1f s", k->n, k->cavity->number,
-		 what, i + 1, p->reg, p->offset_mm, back ? "back" : "forward",
-		 mm, mm / p->word.feed_mm_s);
-	k->r->o->notes->say(k->r->o->notes->arg, k->cavity->line, text);
-}
-
-static int play(const struct cutting *k, uint32_t i, bool back, uint32_t first,
-		uint32_t end)
-{
-	const struct nc_pass *p = &k->r->passes.pass[i];
-	const struct contour_pass how = { p->offset_mm, &p->word, back };
-
-	return contour_play(&k->r->contour, k->t,
-			    (const uint32_t[]) { first, end }, &how, k->r->diag);
-}
-
-/* One pass all the way round, from the hole to the hole. */
-static int cut_round(const struct cutting *k, uint32_t i)
-{
-	const uint32_t range[2] = { 1, k->t->n - 1 };
-
-	say_pass(k, i, i % 2, range, "");
-	return play(k, i, i % 2, 0, k->t->n);
-}
-
-/* All passes of a part, to and fro; the first goes back if @back.  What stands
- * collected leads to it. */
-static int to_and_fro(const struct cutting *k, const uint32_t range[2],
-		      bool back, const char *what)
-{
-	struct nc_passes *s = &k->r->passes;
-	int err = 0;
-
-	for (uint32_t i = 0; !err && i < s->npasses; i++, back = !back) {
-		const struct contour_pass how = { s->pass[i].offset_mm,
-						  &s->pass[i].word, back };
-
-		say_pass(k, i, back, range, what);
-		if (i || k->r->contour.n > 1)
-			err = contour_play_step(&k->r->contour, &how,
-					       k->r->diag);
-		if (!err)
-			err = play(k, i, back, range[0], range[1]);
-	}
-	return err;
-}
-
-/* The open part in all passes, a stop, then the tab; it ends where the lead out
- * begins. */
-static int cut_with_tab(const struct cutting *k)
-{
-	const uint32_t open[2] = { 1, k->t->tab };
-	const uint32_t tab[2] = { k->t->tab, k->t->n - 1 };
-	const uint32_t last = k->r->passes.npasses - 1;
-	int err = play(k, 0, false, 0, 1);
-
-	if (!err)
-		err = to_and_fro(k, open, false, "");
-	if (!err)
-		err = contour_action(&k->r->contour, INTERP_STOP, 0,
-				     &k->r->word,
-				    k->r->diag);
-	if (!err)
-		err = to_and_fro(k, tab, last % 2, "tab, ");
-	return err ? err : play(k, last, false, k->t->n - 1, k->t->n);
-}
-
-/* Passes @first to @end - 1 of one contour. */
-static int cut_passes(const struct cutting *k, uint32_t first, uint32_t end)
-{
-	struct contour *c = &k->r->contour;
-	int err = go_to(k->r, k->cavity->hole_mm);
-
-	if (!err)
-		err = wire_action(k->r, M_THREAD);
-	if (!err)
-		err = contour_release(c, NULL, k->r->diag);
-	if (!err && k->t->tab < k->t->n - 1)
-		err = cut_with_tab(k);
-	for (uint32_t i = first;
-	     !err && k->t->tab == k->t->n - 1 && i < end; i++) {
-		err = cut_round(k, i);
-		/* What falls out is taken away behind the rough cut. */
-		if (!err && i == 0)
-			err = contour_action(c, INTERP_STOP, 0, &k->r->word,
-					    k->r->diag);
-		if (!err)
-			err = contour_release(c, NULL, k->r->diag);
-	}
-	if (!err)
-		err = contour_release(c, NULL, k->r->diag);
-	return err ? err : wire_action(k->r, M_CUT);
-}
-
-static int cut_all(struct nc_reader *r, const struct contour_tape *tape,
-		   bool roughs_first)
-{
-	struct nc_passes *s = &r->passes;
-	const uint32_t rounds = roughs_first && s->npasses > 1 ? 2 : 1;
-	int err = 0;
-
-	for (uint32_t round = 0; !err && round < rounds; round++) {
-		const uint32_t first = round;
-		const uint32_t end = rounds == 2 && round == 0 ? 1 : s->npasses;
-
-		for (uint32_t i = 0; !err && i < s->ncavities; i++) {
-			const struct cutting k = { r, &s->cavity[i], &tape[i],
-						   i + 1 };
-
-			r->word.line = r->line;
-			err = cut_passes(&k, first, end);
-		}
-	}
-	return err;
-}
-
 static int refuse_tab(struct nc_reader *r, const struct nc_cavity *c)
 {
 	return nc_refuse_at(r, c->line, "a tab shorter than the contour",
@@ -301,7 +133,22 @@ static int record_all(struct nc_reader *r, struct contour_tape *tape)
 	return err;
 }
 
-static int check_cut(struct nc_reader *r, bool roughs_first)
+/* L of a G152: in which order many contours are cut. */
+static int read_order(struct nc_reader *r)
+{
+	struct nc_passes *s = &r->passes;
+	const double l = nc_has(r, NC_L) ? r->block.value[NC_L] : 0;
+
+	s->order = l == 0 ? NC_BY_CONTOUR : l == 1 ? NC_ROUGHS_FIRST :
+		   NC_TABS_LAST;
+	if (l > 2 || (s->order == NC_TABS_LAST && !(s->tab_mm > 0)))
+		return nc_refuse(r, r->block.at[NC_L], "L1: all rough cuts "
+				 "first; L2 with a tab, as in R1: all tabs last",
+				 "G152 L%g%s", l, l > 2 ? "" : " without a tab");
+	return 0;
+}
+
+static int check_cut(struct nc_reader *r)
 {
 	struct nc_passes *s = &r->passes;
 
@@ -318,22 +165,17 @@ static int check_cut(struct nc_reader *r, bool roughs_first)
 		return nc_refuse(r, r->block.at[NC_R], "R of 0 or more, the "
 				 "length of the tab", "a tab of %g mm",
 				 s->tab_mm);
-	if (roughs_first && s->tab_mm > 0)
-		return nc_refuse(r, r->block.at[NC_L], "L1 without a tab: the "
-				 "wire stays in the kerf until the tab is cut",
-				 "G152 L%g with a tab", r->block.value[NC_L]);
-	return 0;
+	return read_order(r);
 }
 
 int nc_cut(struct nc_reader *r)
 {
 	struct nc_passes *s = &r->passes;
-	const bool roughs_first = nc_has(r, NC_L);
 	struct contour_tape *tape;
 	int err;
 
 	s->tab_mm = nc_has(r, NC_R) ? r->block.value[NC_R] * r->unit_mm : 0;
-	err = check_cut(r, roughs_first);
+	err = check_cut(r);
 	if (!err)
 		err = contour_flush(&r->contour, r->diag);
 	if (err)
@@ -354,7 +196,7 @@ int nc_cut(struct nc_reader *r)
 	r->selected = selected;
 	r->segs++;
 	if (!err)
-		err = cut_all(r, tape, roughs_first);
+		err = nc_cut_passes(r, tape);
 	for (uint32_t i = 0; i < s->ncavities; i++)
 		free(tape[i].m);
 	free(tape);

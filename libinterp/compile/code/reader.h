@@ -97,11 +97,19 @@ struct nc_cavity {
 	double hole_mm[2];
 };
 
+/* In which order many contours are cut. */
+enum nc_pass_order {
+	NC_BY_CONTOUR,			/* one after the other */
+	NC_ROUGHS_FIRST,		/* rough cuts, other passes, tabs */
+	NC_TABS_LAST,			/* all but the tabs, tabs */
+};
+
 struct nc_passes {
 	struct nc_pass pass[NC_NPASSES];
 	struct nc_cavity cavity[NC_NCAVITIES];
 	uint32_t npasses, ncavities;
 	double tab_mm;
+	enum nc_pass_order order;	/* of the G152 in hand, as tab_mm */
 };
 
 /* A condition that the program defines, as E001= 60 10 25 does. */

@@ -221,4 +221,27 @@ const struct nc_dialect nc_fanuc = {
 	},
 	.label = 'O', .point = true, .no_feed = true, .lean = true,
 };
+
+/* -- agie ------------------------------------------------------------------ */
+
+static const uint8_t agie_classes[256] = {
+	WIRE_CLASSES, [';'] = NC_BLOCK_END, LETTER('D', 'd', NC_LETTER_D),
+};
+
+static const struct nc_code agie_g[NC_NG] = {
+	MOTION_G, OFFSET_G,
+	[700] = { NC_UNITS, true, 0 },
+	[710] = { NC_UNITS, false, 0 },
+};
+
+static const struct nc_code agie_m[NC_NM] = { STOP_M };
+
+const struct nc_dialect nc_agie = {
+	.classes = agie_classes,
+	.letter = {
+		{ agie_g, NC_NG, 10 },
+		{ agie_m, NC_NM, 1 },
+	},
+	.label = 'O', .point = true, .no_feed = true, .lean = true,
+};
 /* clang-format on */

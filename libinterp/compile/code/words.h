@@ -186,6 +186,6 @@ struct nc_dialect {
 };
 
 extern const struct nc_dialect nc_generic, nc_robofil, nc_skd2, nc_sodick,
-			       nc_chmer, nc_fanuc;
+			       nc_chmer, nc_fanuc, nc_agie;
 
 #endif /* CODE_WORDS_H */

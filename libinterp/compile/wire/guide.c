@@ -21,6 +21,7 @@
 
 #define CHORDS_MAX	20000.0
 #define TILT_SAMPLES	16		/* along an arc */
+#define LEAST_PULSES	1.5		/* of a smaller arc is made a line */
 
 static double share_at(const struct interp_wire *w, double z_mm)
 {
@@ -198,9 +199,8 @@ static int cut_arcs(const struct cut *k)
 					 m.from_top * radius_of(&c[1]);
 		const struct vec at = guide_at(m, centre[0], centre[1]);
 
-		/* Of a pulse or less the builder makes no circle. */
 		two[i] = (struct interp_build_contour) {
-			.arc = cabs(r) > 1.5 * k->g->pulse_mm,
+			.arc = cabs(r) > LEAST_PULSES * k->g->pulse_mm,
 			.clockwise = sweep < 0,
 			.centre_mm = { at.x, at.y },
 		};
@@ -221,7 +221,9 @@ static int cut_direct(const struct cut *k)
 
 	for (int i = 0; i < 2; i++)
 		two[i] = (struct interp_build_contour) {
-			.arc = k->c[i].arc, .clockwise = k->c[i].sweep < 0,
+			.arc = k->c[i].arc &&
+			       k->c[i].r > LEAST_PULSES * k->g->pulse_mm,
+			.clockwise = k->c[i].sweep < 0,
 			.centre_mm = { k->c[i].centre.x, k->c[i].centre.y },
 		};
 	return put(k, two);
@@ -288,7 +290,8 @@ static int cut_bottom(const struct cut *k)
 	memcpy(end, k->end_mm, sizeof(end));
 	end[INTERP_X] = c->to.x;
 	end[INTERP_Y] = c->to.y;
-	return c->arc && c->r > 0 ?
+	/* The builder makes no circle of half a pulse or less. */
+	return c->arc && c->r > 0.51 * k->g->pulse_mm ?
 	       interp_build_arc(k->g->build, end, &arc, k->w, k->diag) :
 	       interp_build_line(k->g->build, end, k->w, k->diag);
 }

@@ -4,6 +4,7 @@
  *
  *	track.c		the parallels of all pieces, joined at their corners
  *	clear.c		how near to the outline a part of it comes
+ *	lost.c		what it may leave out
  *	way.c		the way along it that is nowhere too near
  *
  * The parallels of neighbours are joined without regard to anything else, so
@@ -120,6 +121,20 @@ int clear_init(struct track_work *w);
 /** clear_is() - is share @t0 to @t1 of element @e far enough from all pieces?
  *  If not, w->blocker is one that is too near. */
 bool clear_is(struct track_work *w, uint32_t e, double t0, double t1);
+
+/* A change of the way from one element to another; what lies between them is
+ * left out. */
+struct track_jump {
+	uint32_t e, f;
+	double te, tf;			/* shares of them */
+	double e_from;			/* the way came along e from here */
+};
+
+/** track_piece() - the piece of the outline that element @e goes along. */
+const struct face_piece *track_piece(const struct track_work *w, uint32_t e);
+
+/** lost_is() - would a part of the outline be missing by @j? */
+bool lost_is(const struct track_work *w, const struct track_jump *j);
 
 /** way_find() - fill w->run. Return: 0, -ENOMEM, -EINVAL with @fault. */
 int way_find(struct track_work *w, struct track_fault *fault);

@@ -13,9 +13,6 @@
 #define BACK_REACHES	6.0		/* ... and so many offsets */
 #define STARTS_MAX	10000u		/* crossings tried to begin at */
 
-/* What rounding to a micrometre may hide of the outline. */
-#define HIDDEN_MM	0.002
-
 struct walker {
 	struct track_work *w;
 	struct track_fault *fault;
@@ -25,14 +22,6 @@ struct walker {
 	double stop_t;
 	uint32_t farthest;		/* element where it was stuck */
 };
-
-static const struct face_piece *piece_of(const struct track_work *w, uint32_t e)
-{
-	const struct face *f = w->job->face;
-	const int64_t i = w->elem[e].piece;
-
-	return &f->piece[i >= 0 ? i : e == 0 ? 0 : f->n - 1];
-}
 
 /* -- Faults -------------------------------------------------------------------- */
 
@@ -56,7 +45,7 @@ static void tell_stuck(struct walker *k)
 		return;
 	k->farthest = k->elem;
 	tell(k, e->piece < 0 ? TRACK_LEAD : TRACK_STUCK,
-	     piece_of(k->w, k->elem), q);
+	     track_piece(k->w, k->elem), q);
 	if (e->piece >= 0)
 		return;
 	k->fault->a = e->owner;
@@ -66,88 +55,11 @@ static void tell_stuck(struct walker *k)
 
 /* -- Is something lost? ---------------------------------------------------------- */
 
-/* A change from one element to a later one. */
-struct jump {
-	uint32_t e, f;
-	double te, tf, e_from;
-	struct vec at;
-	double reach;
-};
-
-/* How far the wire's axis is from the corner of the outline, if what it
- * changes between are two sides of one. */
-static double reach_of(const struct track_work *w, const struct jump *j)
+static int check_jump(struct walker *k, struct track_jump *j)
 {
-	const struct face_piece *p = piece_of(w, j->e), *q = piece_of(w, j->f);
-	const struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
-	const struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
-	const double turn = curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
-				       j->tf < 1 ? &b : &w->elem[j->f].c);
-	const double d = fmax(p->wire_mm, q->wire_mm), other =
-		fmin(p->wire_mm, q->wire_mm);
-	double reach = d;
-	struct vec corner;
-
-	if (turn * w->job->side <= 0 || fabs(turn) > 3.14)
-		return d;
-	reach = d / cos(turn / 2);
-	if (d - other > 1e-6 && fabs(sin(turn)) > 0.05)
-		reach = fmax(reach, sqrt(d * d + other * other -
-					 2 * d * other * cos(turn)) /
-				    fabs(sin(turn)));
-	if ((p->c.arc || q->c.arc) &&
-	    curve_meet(&p->c, &q->c, j->at, &corner) &&
-	    curve_distance(j->at, corner) < 3 * reach)
-		reach = fmax(reach, curve_distance(j->at, corner));
-	return reach;
-}
-
-static bool is_hidden(const struct track_work *w, const struct jump *j,
-		      struct vec at)
-{
-	const double most = j->reach + HIDDEN_MM + w->slack_mm;
-	struct curve part;
-
-	if (curve_distance(at, j->at) <= most)
-		return true;
-	part = curve_part(&w->elem[j->e].c, j->e_from, j->te);
-	if (curve_from(&part, at) <= most)
-		return true;
-	part = curve_part(&w->elem[j->f].c, j->tf, 1);
-	return curve_from(&part, at) <= most;
-}
-
-/* The pieces behind @a and in front of @b, of a closed outline round its end,
- * are left out: is all of them what a corner hides? */
-static bool is_lost(const struct track_work *w, const struct jump *j)
-{
-	const struct face *f = w->job->face;
-	const int64_t first = piece_of(w, j->e) - f->piece;
-	const int64_t last = piece_of(w, j->f) - f->piece;
-	const int64_t n = last - first + (last < first ? f->n : 0);
-
-	if (n <= 1)
-		return false;
-	for (int64_t i = 0; i < n; i++) {
-		const struct curve *c = &f->piece[(first + i) % f->n].c;
-
-		if (!is_hidden(w, j, c->to))
-			return true;
-		for (int s = 1; i && c->arc && s < 4; s++) {
-			if (!is_hidden(w, j, curve_at(c, s / 4.0)))
-				return true;
-		}
-	}
-	return false;
-}
-
-static int check_jump(struct walker *k, struct jump *j)
-{
-	j->at = curve_at(&k->w->elem[j->e].c, j->te);
-	j->reach = reach_of(k->w, j);
-	if (!is_lost(k->w, j))
+	if (!lost_is(k->w, j))
 		return 0;
-	tell(k, TRACK_LOST, piece_of(k->w, j->e), piece_of(k->w, j->f));
+	tell(k, TRACK_LOST, track_piece(k->w, j->e), track_piece(k->w, j->f));
 	return -EINVAL;
 }
 
@@ -157,7 +69,7 @@ static int check_jumps(struct walker *k)
 
 	for (uint32_t i = 1; !err && i < k->w->nruns; i++) {
 		const struct track_run *p = &k->w->run[i - 1], *q = p + 1;
-		struct jump j = { .e = p->elem, .f = q->elem, .te = p->t[1],
+		struct track_jump j = { .e = p->elem, .f = q->elem, .te = p->t[1],
 				  .tf = q->t[0], .e_from = p->t[0] };
 
 		if (q->jump)
@@ -377,7 +289,7 @@ static int find_start(struct walker *k)
 
 	for (uint32_t i = w->elem[in].hit; i < w->nhits && i < STARTS_MAX; i++) {
 		const struct track_hit *h = &w->hit[i];
-		struct jump j = { .e = h->other, .f = h->elem, .te = h->t_other,
+		struct track_jump j = { .e = h->other, .f = h->elem, .te = h->t_other,
 				  .tf = h->t };
 
 		if (!may_begin(k, h))

@@ -32,7 +32,7 @@ export function Alarms(): JSX.Element {
 			{refused && <p class="note">{refused}</p>}
 			{rows && rows.length === 0 && <p class="calm">{t("alarms.empty")}</p>}
 			{rows && rows.length > 0 && <div class="scroll"><table class="list"><tbody>{rows.map((a) => <tr>
-				<td class="when">{moment(a.utime / 1000)}</td><td><b>{a.kind === "alarm" ? faultWords(a.fault).what : a.kind}</b><p>{a.text}</p></td></tr>)}</tbody></table></div>}
+				<td class="when">{moment(a.utime / 1000)}</td><td><b>{a.kind === "alarm" ? faultWords(a.fault).what : t(a.kind === "lost" ? "event.lost" : "event.back")}</b>{a.kind !== "back" && <p>{a.text}</p>}</td></tr>)}</tbody></table></div>}
 		</Card>
 	</div>;
 }

@@ -120,7 +120,8 @@ export function App(): JSX.Element {
 	const page = PAGES.find((p) => p.id === at) ?? PAGES[0]!;
 	const Page = page.page;
 	document.title = `${stateLine().title} \u00b7 ${link.hello?.machine ?? "edmd"}`;
-	return <div class="frame">
+	const stale = link.connection !== "open" || link.state.daemon !== "ok";
+	return <div class={`frame ${stale ? "stale" : ""}`}>
 		<a class="skip" href="#page" onClick={(e) => { e.preventDefault(); document.getElementById("page")?.focus(); }}>{t("skip")}</a>
 		<Rail at={at} /><Head />
 		<main id="page" tabIndex={-1} class={`page page-${page.id}`} key={page.id}><Page /></main>

@@ -7,6 +7,7 @@ import { isRunning, whyNot } from "./can";
 import { Strip } from "./chart";
 import { duration, number, parse, short } from "./format";
 import { link, type Point } from "./link";
+import { useLine } from "./lines";
 import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
 import { PathView } from "./pathview";
 import { useAsk } from "./use";
@@ -21,7 +22,7 @@ function Gap(p: { onOpen: () => void }): JSX.Element {
 	const share = (x: number) => `${Math.min(100, Math.max(0, x / top * 100))}%`;
 	const low = v.window_low_v || v.servo_v || 0, high = v.window_high_v || v.servo_v || 0;
 	return <Card class="gap" label={t("cut.gap")}>
-		<div class="reading"><h2>{t("cut.gap")}</h2><p><b>{number(s.gap, 1)}</b> <u>V</u> <em>{t(s.power ? "cut.sparks" : "cut.nosparks")}</em></p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.gap")}</button></h2><p><b>{number(s.gap, 1)}</b> <u>V</u> <em>{t(s.power ? "cut.sparks" : "cut.nosparks")}</em></p></div>
 		<div class="bar gapbar" aria-hidden="true">
 			<i class="window" style={{ left: share(Math.min(low, (v.servo_v ?? 0) - top * 0.01)), right: `calc(100% - ${share(Math.max(high, (v.servo_v ?? 0) + top * 0.01))})` }} />
 			<i class="mark" style={{ left: share(v.short_v ?? 0) }} /><i class="mark" style={{ left: share(v.open_v ?? 0) }} />
@@ -42,7 +43,7 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 	const share = Math.min(50, Math.abs(s.feed) / span * 50);
 	const way = s.feed > 1e-6 ? "cut.forward" : s.feed < -1e-6 ? "cut.back" : "cut.still";
 	return <Card class="feed" label={t("cut.feed")}>
-		<div class="reading"><h2>{t("cut.feed")}</h2><p><b>{number(s.feed, slow ? 3 : 1, true)}</b> <u>mm/s</u> <em>{t(way)}</em></p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{number(s.feed, slow ? 3 : 1, true)}</b> <u>mm/s</u> <em>{t(way)}</em></p></div>
 		<div class="bar feedbar" aria-hidden="true"><i class={s.feed < 0 ? "flow back" : "flow"} style={s.feed < 0 ? { right: "50%", width: `${share}%` } : { left: "50%", width: `${share}%` }} /><i class="zero" /></div>
 		<button type="button" class="stripkey" onClick={p.onOpen} aria-label={t("chart.feed")}>
 			<Strip points={link.points} at={4} colour="--done" label={t("chart.feed")} height={44} span={60} lines={[0]} clip={[-most * 1.2, most * 1.2]} /></button>
@@ -50,12 +51,12 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 }
 
 function Positions(): JSX.Element {
-	const s = link.state;
-	return <Card class="positions" label={t("cut.position")}><table><tbody>
-		{(link.hello?.axes ?? []).map((a) => <tr key={a.name}><th scope="row">{a.name}</th>
-			<td class="n">{number(s.pos[a.index] ?? 0, 3, true)}</td><td class="u">{a.rotary ? "deg" : "mm"}</td>
-			<td class="w">{s.limit >> a.index & 1 ? t("setup.limit") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</td></tr>)}
-	</tbody></table></Card>;
+	const s = link.state, axes = link.hello?.axes ?? [];
+	return <Card class={`positions ${axes.length > 4 ? "many" : ""}`} label={t("cut.position")}><ul>
+		{axes.map((a) => <li key={a.name}><b>{a.name}</b>
+			<span class="n">{number(s.pos[a.index] ?? 0, 3, true)}</span><u>{a.rotary ? "deg" : "mm"}</u>
+			<em>{s.limit >> a.index & 1 ? t("setup.limit") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</em></li>)}
+	</ul></Card>;
 }
 
 function Sums(): JSX.Element {
@@ -138,13 +139,14 @@ export function Cut(): JSX.Element {
 	const s = link.state;
 	const shown = s.program > 0 && s.loaded;
 	const back = Math.max(0, s.far - s.place), whole = s.length || 1;
-	const foot = shown ? <div class="progress"><p><span /><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
+	const line = useLine(shown ? s.job : "", s.line);
+	const foot = shown ? <div class="progress"><p><code title={line}>{line}</code><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
 		<div class="bar"><i class="done" style={{ width: `${Math.min(100, s.far / whole * 100)}%` }} />
 			{back > 0.0005 && <i class="back" style={{ left: `${s.place / whole * 100}%`, width: `${back / whole * 100}%` }} />}</div></div> : null;
 	return <>
 		<div class="cut-grid">
 			<section class="card view" aria-label={t("cut.path")}>
-				<PathView query={shown ? `program=${s.program}` : ""} place={s.place} far={s.far} electrode={s.pos.length ? s.pos : null} foot={foot}
+				<PathView query={shown ? `program=${s.program}` : ""} job={s.job} place={s.place} far={s.far} electrode={s.pos.length ? s.pos : null} foot={foot}
 					title={shown ? <>{s.jobName || t("cut.nojob")}{s.line > 0 && <> {"\u00b7"} {t("cut.line")} {s.line} {t("of")} {s.lines}</>}</> : t("cut.nojob")} />
 			</section>
 			<div class="cut-side"><Gap onOpen={() => set("past")} /><Feed onOpen={() => set("past")} /><Positions /><Sums /></div>

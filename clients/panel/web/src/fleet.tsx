@@ -31,8 +31,7 @@ export function Fleet(): JSX.Element {
 	const [got, refused] = useAsk<Row[] | { machines: Row[] }>("fleet", {}, 6000);
 	const rows = Array.isArray(got) ? got : got?.machines;
 	return <div class="column">
-		{!rows && !refused && <p class="calm">{t("fleet.looking")}</p>}
-		{refused && <p class="note">{refused}</p>}
+		{!rows && <Card title={t("page.fleet")}><p class="calm">{refused || t("fleet.looking")}</p></Card>}
 		{rows && rows.length === 0 && <Card title={t("page.fleet")}><p class="calm">{t("fleet.none")}</p></Card>}
 		<div class="tiles">{[...(rows ?? [])].sort((a, b) => rank(a) - rank(b) || a.machine.localeCompare(b.machine)).map((r) => <Tile row={r} key={r.machine} />)}</div>
 	</div>;

@@ -40,7 +40,7 @@ export interface Session {
 	user: string; role: Role; token: string; login: boolean; machine: string;
 }
 
-export interface Answer<T = unknown> { code: number; reason: string; body: T }
+export interface Answer<T = unknown> { n?: number; code: number; reason: string; body: T }
 
 export type Connection = "waiting" | "open" | "lost" | "login";
 

@@ -73,6 +73,45 @@ export function PressKey(p: KeyProps): JSX.Element {
 	</button>;
 }
 
+/** Goes on as long as it is pressed; a finger that slips off has let go. */
+export function HoldKey(p: Omit<KeyProps, "onPress"> & { onHold: (over: (why: string) => void) => () => void }): JSX.Element {
+	const [on, set] = useState(false);
+	const stop = useRef<(() => void) | null>(null);
+	const off = !!p.why;
+	const end = () => {
+		stop.current?.();
+		stop.current = null;
+		set(false);
+	};
+	const begin = () => {
+		if (off) { say(p.why as string, true); return; }
+		if (stop.current) return;
+		set(true);
+		stop.current = p.onHold((why) => {
+			stop.current = null;
+			set(false);
+			say(why === "connection" ? t("no.connection") : why, true);
+		});
+	};
+	useEffect(() => {
+		const hidden = () => { if (document.hidden) end(); };
+		window.addEventListener("blur", end);
+		document.addEventListener("visibilitychange", hidden);
+		return () => { window.removeEventListener("blur", end); document.removeEventListener("visibilitychange", hidden); end(); };
+	}, []);
+	const key = (e: KeyboardEvent, go: () => void) => {
+		if (e.key !== "Enter" && e.key !== " ") return;
+		e.preventDefault();
+		if (!e.repeat) go();
+	};
+	return <button type="button" id={p.id} class={`key hold ${off ? "off" : ""} ${on ? "pressed" : ""} ${p.class ?? ""}`}
+		aria-disabled={off} aria-label={p.label} aria-pressed={on}
+		onPointerDown={(e) => { if (e.button !== 0) return; e.currentTarget.releasePointerCapture(e.pointerId); begin(); }}
+		onPointerUp={end} onPointerLeave={end} onPointerCancel={end} onContextMenu={(e) => e.preventDefault()}
+		onKeyDown={(e) => key(e, begin)} onKeyUp={(e) => key(e, end)} onBlur={end}>
+		<span>{p.children}</span></button>;
+}
+
 export function Sheet(p: { title: string; onClose: () => void; children: ComponentChildren; wide?: boolean }): JSX.Element {
 	const ref = useRef<HTMLDialogElement>(null);
 	useEffect(() => {

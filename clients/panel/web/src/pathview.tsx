@@ -4,6 +4,7 @@
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { number } from "./format";
+import { useLine } from "./lines";
 import { Choice } from "./parts";
 import { fetchPath, type PathData } from "./pathdata";
 import type { Marks, PathScene, View } from "./scene";
@@ -15,6 +16,7 @@ export interface PathViewProps {
 	place?: number; far?: number; electrode?: number[] | null;
 	title?: JSX.Element | string; onLine?: (line: number) => void;
 	foot?: JSX.Element | null; still?: boolean;
+	job?: string;			// whose text is shown for a line
 }
 
 const BACK_MM = 0.0005;
@@ -49,6 +51,7 @@ export function PathView(p: PathViewProps): JSX.Element {
 	const [view, setView] = useState<View | "follow">("3d");
 	const [marks, setMarks] = useState<Marks | null>(null);
 	const [touched, touch] = useState(0);
+	const text = useLine(p.job ?? "", p.job ? touched : 0);
 	const back = (p.far ?? 0) - (p.place ?? 0) > BACK_MM;
 
 	useEffect(() => {
@@ -119,7 +122,7 @@ export function PathView(p: PathViewProps): JSX.Element {
 			{data && <Overlay marks={marks} back={back} />}
 			{!p.query && !note && <p class="empty">{t("view.none")}</p>}
 			{note && <p class="empty">{note}</p>}
-			{touched > 0 && <p class="touched">{t("view.atline", { line: touched })}</p>}
+			{touched > 0 && <p class="touched">{t("view.atline", { line: touched })} <code>{text}</code></p>}
 		</div>
 		{p.foot}
 	</div>;

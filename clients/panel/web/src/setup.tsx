@@ -7,15 +7,23 @@ import { whyNot } from "./can";
 import { number, short } from "./format";
 import { sendText } from "./jobs";
 import { link, type Axis } from "./link";
-import { Card, Choice, Key, NumberField, PressKey, act } from "./parts";
+import { Card, Choice, HoldKey, Key, NumberField, PressKey, act } from "./parts";
+import { beginPress } from "./press";
 import { PROBES, isWhole, type Probe, type ProbeId } from "./probes";
 import { t } from "./words";
 
 const STEPS = ["0.001", "0.01", "0.1", "1", "10"] as const;
 
-function JogKey(p: { axis: Axis; way: number; step: string }): JSX.Element {
+const SPEEDS = { slow: 0.05, middle: 0.3, fast: 1 } as const;
+type Speed = keyof typeof SPEEDS;
+
+function JogKey(p: { axis: Axis; way: number; step: string; speed: Speed }): JSX.Element {
 	const why = whyNot("jog"), name = `${p.axis.name}${p.way > 0 ? "+" : "\u2212"}`;
-	return <Key class="jogkey" why={why} label={`${name} ${p.step}`} id={`jog-${p.axis.name}-${p.way > 0 ? "plus" : "minus"}`}
+	const id = `jog-${p.axis.name}-${p.way > 0 ? "plus" : "minus"}`;
+	if (p.step === "hold")
+		return <HoldKey class="jogkey" why={why} label={`${name} ${t("setup.held")}`} id={id}
+			onHold={(over) => beginPress(p.axis.name, p.way * p.axis.jog * SPEEDS[p.speed], over)}>{name}</HoldKey>;
+	return <Key class="jogkey" why={why} label={`${name} ${p.step}`} id={id}
 		onPress={() => void act("jog", { text: p.axis.name, arg: p.way * Number(p.step) })}>{name}</Key>;
 }
 
@@ -26,15 +34,16 @@ function AxisState(p: { axis: Axis }): JSX.Element {
 }
 
 function JogCard(): JSX.Element {
-	const [step, set] = useState<string>("0.1");
-	const axes = link.hello?.axes ?? [];
+	const [step, set] = useState<string>("0.1"), [speed, setSpeed] = useState<Speed>("slow");
+	const axes = link.hello?.axes ?? [], held = step === "hold";
 	return <Card title={t("setup.jog")} class="jog" right={<Key class="small" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}>
-		<Choice label={t("setup.faster")} value={step} onChange={set} of={STEPS.map((v) => ({ value: v as string, text: short(Number(v)) }))} />
+		<Choice label={t("setup.faster")} value={step} onChange={set} of={[...STEPS.map((v) => ({ value: v as string, text: short(Number(v)) })), { value: "hold", text: t("setup.held") }]} />
+		{held && <Choice label={t("setup.speed")} value={speed} onChange={setSpeed} of={(Object.keys(SPEEDS) as Speed[]).map((v) => ({ value: v, text: t(`speed.${v}`) }))} />}
 		<table class="axes"><tbody>{axes.map((a) => <tr key={a.name}><th scope="row">{a.name}</th>
-			<td><JogKey axis={a} way={-1} step={step} /></td>
+			<td><JogKey axis={a} way={-1} step={step} speed={speed} /></td>
 			<td class="n">{number(link.state.pos[a.index] ?? 0, 3, true)}<u>{a.rotary ? "deg" : "mm"}</u><AxisState axis={a} /></td>
-			<td><JogKey axis={a} way={1} step={step} /></td></tr>)}</tbody></table>
-		<p class="note">{whyNot("jog") || t("cut.machine")}</p>
+			<td><JogKey axis={a} way={1} step={step} speed={speed} /></td></tr>)}</tbody></table>
+		<p class="note">{whyNot("jog") || t(held ? "setup.held.about" : "cut.machine")}</p>
 	</Card>;
 }
 
@@ -67,7 +76,7 @@ function ProbeForm(p: { probe: Probe }): JSX.Element {
 	const why = !whole ? t("probe.bad") : link.state.loaded ? t("no.loaded") : whyNot("send");
 	return <div class="probe"><div class="probe-top"><Drawing id={p.probe.id} v={v} /><p>{t(`probe.${p.probe.id}.about`)}</p></div>
 		<div class="fields">{p.probe.asks.map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c.replace("-", "\u2212") }))} /></label> :
-			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")}: ${"\u2013"})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
+			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
 		<details open><summary>{t("setup.make")}</summary><pre>{code.join("\n")}</pre></details>
 		<p class="note">{t("probe.warn")}</p>
 		<div class="keys end"><PressKey id="probe-run" class="primary" why={why} onPress={() => void sendText(`probe-${p.probe.id}.ngc`, code.join("\n") + "\n", true)}>{t("setup.run")}</PressKey></div>

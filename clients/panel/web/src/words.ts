@@ -26,7 +26,7 @@ export const en = {
 	"state.idle": "Idle", "state.travel": "Positioning", "state.approach": "Approach",
 	"state.erode": "Cutting", "state.retract": "Retract", "state.jump": "Jump",
 	"state.hold": "Held", "state.fault": "Fault", "state.jog": "Jog",
-	"state.home": "Homing", "state.probe": "Probing", "state.unknown": "No contact",
+	"state.home": "Homing", "state.probe": "Probing", "state.unknown": "No signal",
 	"state.ready": "Ready",
 
 	"why.idle": "No job is loaded. Drop a program anywhere to begin.",
@@ -99,6 +99,7 @@ export const en = {
 	"jobs.checkfirst": "The program has an error. Mend it first.",
 	"jobs.sum": "Cut {cut} mm, positioning {rapid} mm",
 	"jobs.waits": "waits for Start",
+	"jobs.ahead": "{name}: earlier", "jobs.behind": "{name}: later",
 
 	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",
 	"job.done": "done", "job.fault": "fault", "job.stopped": "ended",
@@ -110,7 +111,9 @@ export const en = {
 	"setup.nohome": "needs no homing", "setup.run": "Send and start", "setup.make": "G code it runs",
 	"setup.offsetnote": "As the machine file gives them; a program can shift them by G92.",
 	"setup.nooffsets": "All work offsets are 0.",
-	"setup.faster": "Step size",
+	"setup.faster": "Step size", "setup.held": "while pressed", "setup.speed": "Speed",
+	"setup.held.about": "Moves while the key is pressed, and stands when it is let go or the connection is lost.",
+	"speed.slow": "slow", "speed.middle": "middle", "speed.fast": "fast",
 
 	"probe.edge": "Edge or face", "probe.edge.about": "Moves along one axis until the electrode meets the work.",
 	"probe.hole": "Centre of a hole", "probe.hole.about": "The electrode stands in the hole. X and Y are probed both ways, then it goes to the middle.",
@@ -119,7 +122,7 @@ export const en = {
 	"probe.axis": "Axis", "probe.way": "Way", "probe.far": "At most", "probe.radius": "Farthest way to a wall",
 	"probe.off": "Off a wall", "probe.times": "Times", "probe.sidex": "Beside, X", "probe.sidey": "Beside, Y",
 	"probe.down": "Down", "probe.wayx": "Wall, X", "probe.wayy": "Wall, Y", "probe.zero": "Call this place",
-	"probe.nozero": "leave it without a name", "probe.outer": "Outer corner",
+	"probe.nozero": "or empty", "probe.outer": "Outer corner",
 	"probe.warn": "The electrode moves. Look at the machine, not at this page.",
 	"probe.bad": "Number wanted",
 
@@ -132,6 +135,7 @@ export const en = {
 	"tech.machine": "machine file", "tech.same": "same", "tech.notes": "Notes",
 	"tech.discard": "Discard changes",
 
+	"event.lost": "edmd was lost", "event.back": "edmd is there",
 	"alarms.now": "Now", "alarms.none": "No fault.", "alarms.history": "Earlier",
 	"alarms.empty": "No alarm is recorded.", "alarms.what": "What", "alarms.why": "Why",
 	"alarms.clear": "What to do", "alarms.where": "Where", "alarms.inline": "{job}, line {line}, {mm} mm along the path",
@@ -179,9 +183,16 @@ export function isWord(word: string): word is Word {
 	return word in en;
 }
 
+// The table speaks of edmctl; here its verbs are keys and pages.
+function onPage(text: string): string {
+	return text.replace(/edmctl doctor/g, "Host on page Machine").replace(/edmctl estop/g, "Stop")
+		.replace(/edmctl /g, "").replace(/^./, (c) => c.toUpperCase());
+}
+
 export function faultWords(fault: string): FaultWords {
-	const of = settings.language === "zh-CN" ? zhFaults : machine.faults;
-	return of[fault as Fault] ?? { what: fault, why: "", clear: "" };
+	if (settings.language === "zh-CN") return zhFaults[fault as Fault] ?? { what: fault, why: "", clear: "" };
+	const w = machine.faults[fault as Fault] ?? { what: fault, why: "", clear: "" };
+	return { what: onPage(w.what), why: onPage(w.why), clear: onPage(w.clear) };
 }
 
 export function stateWord(state: string): string {

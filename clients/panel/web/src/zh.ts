@@ -20,7 +20,7 @@ export const zh: Record<Word, string> = {
 
 	"state.idle": "空闲", "state.travel": "定位", "state.approach": "趋近", "state.erode": "加工",
 	"state.retract": "回退", "state.jump": "抬刀", "state.hold": "保持", "state.fault": "故障",
-	"state.jog": "点动", "state.home": "回零", "state.probe": "测量", "state.unknown": "无联系",
+	"state.jog": "点动", "state.home": "回零", "state.probe": "测量", "state.unknown": "无信号",
 	"state.ready": "就绪",
 
 	"why.idle": "没有载入任务。把程序拖到页面任意处即可开始。",
@@ -83,6 +83,7 @@ export const zh: Record<Word, string> = {
 	"jobs.length": "路径", "jobs.preview": "预览", "jobs.editor": "程序文本",
 	"jobs.large": "此程序太长,编辑器放不下;它会原样检查和发送。", "jobs.checkfirst": "程序有错误。请先改正。",
 	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动",
+	"jobs.ahead": "{name}:提前", "jobs.behind": "{name}:推后",
 
 	"job.queued": "排队", "job.ready": "就绪", "job.running": "运行", "job.held": "保持",
 	"job.done": "完成", "job.fault": "故障", "job.stopped": "已结束",
@@ -92,6 +93,8 @@ export const zh: Record<Word, string> = {
 	"setup.homed": "已回零", "setup.unhomed": "未回零", "setup.limit": "在限位开关上", "setup.nohome": "不需回零",
 	"setup.run": "发送并启动", "setup.make": "将运行的 G 代码", "setup.offsetnote": "由机床文件给出;程序可用 G92 移动。",
 	"setup.nooffsets": "所有工件偏置为 0。", "setup.faster": "步长",
+	"setup.held": "按住", "setup.speed": "速度", "setup.held.about": "按住时移动;松开或断线即停。",
+	"speed.slow": "慢", "speed.middle": "中", "speed.fast": "快",
 
 	"probe.edge": "边或面", "probe.edge.about": "沿一轴移动,直到电极碰到工件。",
 	"probe.hole": "孔中心", "probe.hole.about": "电极在孔内。X 和 Y 双向测量,然后移到中心。",
@@ -100,7 +103,7 @@ export const zh: Record<Word, string> = {
 	"probe.axis": "轴", "probe.way": "方向", "probe.far": "最远", "probe.radius": "到壁的最远距离",
 	"probe.off": "离壁", "probe.times": "次数", "probe.sidex": "X 向旁边", "probe.sidey": "Y 向旁边",
 	"probe.down": "下降", "probe.wayx": "X 壁", "probe.wayy": "Y 壁", "probe.zero": "此处坐标",
-	"probe.nozero": "不命名", "probe.outer": "外角", "probe.warn": "电极会移动。请看机床,不要看页面。",
+	"probe.nozero": "可留空", "probe.outer": "外角", "probe.warn": "电极会移动。请看机床,不要看页面。",
 	"probe.bad": "需要数字",
 
 	"tech.table": "工艺表", "tech.none": "机床文件没有指定工艺表([tech] table)。", "tech.refused": "工艺表被拒绝",
@@ -110,6 +113,7 @@ export const zh: Record<Word, string> = {
 	"tech.edited": "只在此处修改:请导出并替换 {file}。", "tech.machine": "机床文件", "tech.same": "相同",
 	"tech.notes": "说明", "tech.discard": "放弃修改",
 
+	"event.lost": "edmd 失联", "event.back": "edmd 已恢复",
 	"alarms.now": "当前", "alarms.none": "没有故障。", "alarms.history": "以前", "alarms.empty": "没有报警记录。",
 	"alarms.what": "内容", "alarms.why": "原因", "alarms.clear": "处理", "alarms.where": "位置",
 	"alarms.inline": "{job},第 {line} 行,路径 {mm} mm 处", "alarms.resetgo": "复位后按启动,从原处继续。",
@@ -145,7 +149,7 @@ export const zhFaults: Record<Fault, FaultWords> = {
 	"contact": { what: "电极在应当无阻处碰到东西", why: "定位或点动中出现运动开始时没有的短路,或测量前已接触", clear: "复位;回退或点动离开;清除障碍;然后启动或结束任务" },
 	"soft-limit": { what: "路径超出轴的行程", why: "下一个格点在 travel_min 和 travel_max 之外;测量之后,工件不在程序预期的位置", clear: "复位;结束任务;改正程序或工件偏置" },
 	"program": { what: "内存中的程序已损坏", why: "一个程序段没有通过检查", clear: "复位;结束任务;重新发送并报告" },
-	"overrun": { what: "连续错过太多周期", why: "错过了 overrun_limit 个周期:主机太忙,或没有为实时设置", clear: `edmctl doctor 会说明主机缺什么;${RESET}` },
+	"overrun": { what: "连续错过太多周期", why: "错过了 overrun_limit 个周期:主机太忙,或没有为实时设置", clear: `机床页的“主机”会说明缺什么;${RESET}` },
 	"retract-at-start": { what: "退到尽头仍然短路", why: "已退到程序或运动的起点,短路仍在", clear: `检查间隙并冲液;让程序从更远处开始;${RESET}` },
 	"retract-time": { what: "回退时间太长", why: "超过 [gap] retract_max_s", clear: `检查间隙并冲液;${RESET}` },
 	"retract-count": { what: "多次回退而没有加工", why: "连续 [gap] abort_count 次回退:碎屑,或伺服电压太接近短路", clear: `冲液,或选较弱的条件;${RESET}` },

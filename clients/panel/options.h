@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * options.h - the command line of edm-panel
+ */
+#ifndef PANEL_OPTIONS_H
+#define PANEL_OPTIONS_H
+
+#include "work.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct options {
+	const char *config, *machine, *assets;
+	double port;			/* 0: as the machine file says */
+	const char *add_user, *role;
+	bool print_words;
+	struct work work;		/* work.what: it is this that is wanted */
+};
+
+/** options_take() - Return: -1 to go on, or what to exit with. */
+int options_take(struct options *ret, int argc, char **argv);
+
+#endif /* PANEL_OPTIONS_H */

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * store_turn.h - whose turn it is in the queue, and lines of a job's text
+ *
+ * Jobs go in the order they came, unless one was moved.
+ * Threads: one, that of the event loop.
+ */
+#ifndef JOBS_STORE_TURN_H
+#define JOBS_STORE_TURN_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct store;
+
+/* The order of the queue, in SQL. */
+#define STORE_TURN	"coalesce((SELECT value FROM number WHERE " \
+			"key='turn '||n), n)"
+
+#define STORE_LINES	200		/* at once */
+
+/** store_move() - job @n changes places with the one before or behind it.
+ *  Return: 0; -ENOENT if there is none; -EIO. */
+int store_move(struct store *s, uint32_t n, bool ahead);
+
+/**
+ * store_lines() - STORE_LINES lines of job @n from line @first on, as JSON:
+ * an object of `first` and `text`.  Fewer if they are long.
+ * Return: to be freed; NULL: no memory, no such line, or a text of more than
+ * 4 MiB.
+ */
+char *store_lines(struct store *s, uint32_t n, uint32_t first);
+
+#endif /* JOBS_STORE_TURN_H */

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The order of the queue, and lines of a job's text."""
+
+import json
+
+import rig
+
+
+def names(machine):
+    return [j["job"] for j in json.loads(machine.client.ask("queue").body)]
+
+
+def test_a_job_that_waits_is_moved_and_stays_there(machine):
+    c = machine.client
+    for job in ("a", "b", "c", "d"):
+        assert c.submit(rig.QUICK_JOB, job, hold=True).code == 0
+    c.status_where(lambda s: s.job == "a" and s.job_state == "ready")
+    assert machine.ctl("move", "d", "-1").returncode == 0
+    assert machine.ctl("move", "d", "-1").returncode == 0
+    assert names(machine) == ["a", "d", "b", "c"]
+    # The first that waits cannot pass the one that is loaded.
+    r = machine.ctl("move", "d", "-1")
+    assert r.returncode == 1 and "end of the queue" in r.stderr
+    assert machine.ctl("move", "b", "+1").returncode == 0
+    assert names(machine) == ["a", "d", "c", "b"]
+    machine.kill("jobs")
+    machine.start_jobs()
+    assert rig.until(lambda: names(machine)) == ["a", "d", "c", "b"]
+    # And they are cut in that order.
+    for job in ("a", "d", "c", "b"):
+        rig.until(lambda: c.ask("start").code == 0)
+        c.job_where(job, "done")
+
+
+def test_what_cannot_be_moved_is_refused_in_words(machine):
+    c = machine.client
+    assert c.submit(rig.QUICK_JOB, "a", hold=True).code == 0
+    c.status_where(lambda s: s.job_state == "ready")
+    assert c.ask("move", "a", -1).code == 1
+    assert c.ask("move", "none", -1).code == 66
+    assert c.ask("move", "a", 2).code == 65
+    assert c.ask("move", "a", float("nan")).code == 65
+
+
+def test_lines_of_a_job_are_told(machine):
+    c = machine.client
+    text = b"(\xe7\x94\xb5 \xff\x07 \x1b[2J)\r\nG21 G90 F600\n" + b"".join(
+        b"G1 X%d.5\n" % (i % 9) for i in range(500)) + b"M30"
+    assert c.submit(text, "a", hold=True).code == 0
+    got = json.loads(c.ask("text", "a", 1).body)
+    lines = got["text"].split("\n")
+    assert got["first"] == 1 and len(lines) == 201
+    assert lines[0] == "(\u7535 ?? ?[2J)" and lines[1] == "G21 G90 F600"
+    got = json.loads(c.ask("text", "a", 503).body)
+    assert got == {"first": 503, "text": "M30\n"}
+    for line in (0, -1, 504, 1e30, float("nan")):
+        assert c.ask("text", "a", line).code == 66, line
+    assert c.ask("text", "none", 1).code == 66
