@@ -6,8 +6,8 @@
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make quick      of these, most of what goes wrong, in 90 s
 #   make check-strict  CAN against strict drives, in the virtual machine; long
-#   make check-vm   what runs on a PREEMPT_RT kernel in a virtual machine; apart
-#                   from check, because it takes longer than all the rest
+#   make check-vm   all that runs on a PREEMPT_RT kernel in a virtual machine; the
+#                   shorter half of it is in check
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
 #   make count      instructions of what is done most, into docs/performance.md
@@ -63,6 +63,10 @@ LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
 # libinterp has a floor for each use: see docs/architecture.md.
 CORE	:= $(wildcard libinterp/core/*/*.c)
 COMPILE	:= $(wildcard libinterp/compile/*/*.c)
+# Built into the reader, in this order: a base is in front of what begins from it.
+DIALECTS := generic linuxcnc heekscnc fanuc-sinker sodick-sinker \
+	    charmilles-robofil charmilles-cmd skd2 sodick-wire chmer \
+	    fanuc-wire mastercam-wire makino agie agievision 3b 4b
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
 # What every program has in common.
@@ -167,6 +171,19 @@ $(B)/share/edmd/%: clients/plot/%
 
 # -- Compile ------------------------------------------------------------------
 
+$(B)/dialect_files.c: $(DIALECTS:%=dialects/%.ini) Makefile
+	$(call say,GEN,$@)
+	@mkdir -p $(@D)
+	$(Q){ echo '#include "code/dialect.h"'; \
+		echo 'const struct dialect_file nc_dialect_files[] = {'; \
+		for d in $(DIALECTS); do echo "{ \"$$d\","; \
+			sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' dialects/$$d.ini; \
+			echo '},'; done; echo '{ 0, 0 } };'; } > $@
+
+$(B)/dialect_files.o: $(B)/dialect_files.c
+	$(call say,CC,$<)
+	$(Q)$(CC) $(CFLAGS) -Wno-overlength-strings $(INC_compile) -c -o $@ $<
+
 $(B)/%.o: %.c
 	$(call say,CC,$<)
 	@mkdir -p $(@D)
@@ -224,7 +241,7 @@ $(COMMON_A): $(call obj,$(COMMON))
 	$(archive)
 $(CORE_A): $(call obj,$(CORE))
 	$(archive)
-$(COMPILE_A): $(call obj,$(COMPILE))
+$(COMPILE_A): $(call obj,$(COMPILE)) $(B)/dialect_files.o
 	$(archive)
 $(MODEL_A): $(call obj,$(MODEL))
 	$(archive)
@@ -364,7 +381,10 @@ check:
 	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system \
-		$(PANEL_TESTS:%=--ignore %)
+		$(VM_TESTS) $(PANEL_TESTS:%=--ignore %)
+
+# Of the virtual machine's tests the shorter ones, some 3 minutes.
+VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd encoder)
 
 # A browser is driven in the tests' own process; LCM has one for itself.
 PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_page.py
@@ -526,6 +546,8 @@ FUZZ	:= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 SEEDS_fuzz_nc	  = $(filter-out %/identify.ngc,$(wildcard examples/*.ngc))
 SEEDS_fuzz_threeb = tests/fuzz/corpus_threeb/*
 SEEDS_fuzz_tech	  = examples/*.tech examples/*.enc
+SEEDS_fuzz_dialect = dialects/*.ini
+SEEDS_fuzz_macro  = tests/data/macros/*
 
 fuzz: $(FUZZ:%=run-%)
 
@@ -544,7 +566,8 @@ run-fuzz_status: FUZZ_MOST_S = $(if $(filter-out 0,$(FUZZ_SEED)),15)
 $(B)/fuzz_status: daemon/shm/publish.c daemon/shm/object.c
 $(B)/fuzz_status: FUZZ_INC = $(INC_shm)
 
-$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON)
+$(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz_help.h $(INTERP) $(COMMON) \
+	     $(B)/dialect_files.c
 	$(call say,CLANG,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)clang -std=c11 -D_GNU_SOURCE -g -O1 \
@@ -620,6 +643,9 @@ install: all panel
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
 		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
 		$(DESTDIR)$(PREFIX)/share/edmd
+	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/dialects
+	$(Q)install -m 644 dialects/*.ini \
+		$(DESTDIR)$(PREFIX)/share/edmd/dialects
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
 
@@ -630,6 +656,7 @@ clean:
 
 .PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo invariants walkable wire-random \
+	experiments-curve experiments-servo experiments-wire invariants \
+	walkable wire-random \
 	pictures callgraph faults plc-files fuzz lint install clean
 .SECONDARY:

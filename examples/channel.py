@@ -254,6 +254,11 @@ present = no
 [kinematics]
 chain = A(%g %g %g) B(%g %g %g) X Y Z C(0 0 0)
 tolerance_um = 1
+
+; Many jumps, as a channel of graphite needs: docs/experiments-jump.md.
+[jump]
+every_s = 0.543
+height_mm = 3
 """ % (TABLE + TABLE)
 
 

@@ -492,6 +492,10 @@ static int open_body(struct request *r)
 	    strlen(length) > 9 ||
 	    strtoul(length, NULL, 10) > r->route->body_max)
 		return reply_refusal(r, 413, "too long", "at most 64 MiB");
+	/* Who comes behind another server must count its bytes as that does. */
+	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0)
+		return reply_refusal(r, 411, "a body in chunks",
+				     "Content-Length");
 	if (r->panel->bodies >= BODIES_MAX)
 		return reply_refusal(r, 503, "too many uploads at once",
 				     "try again");

@@ -55,6 +55,7 @@ struct panel {
 	struct panel_note note[PANEL_NOTES];
 	uint64_t notes;
 	int bodies;			/* uploads under way */
+	double past_owed_s, past_at_s;	/* time spent on the past */
 	char checked_path[8][33];	/* ids of the texts checked last, ... */
 	int checked_fd[8];		/* ... and their paths */
 	unsigned int checked;

@@ -74,9 +74,20 @@ static int write_head(struct request *r)
 	return 0;
 }
 
+/* A connection that goes on to live has no upload under way any more. */
+static void drop_body(struct request *r)
+{
+	if (!r->has_body)
+		return;
+	close(r->body_fd);
+	r->panel->bodies--;
+	r->has_body = false;
+}
+
 static int answer(struct request *r, int status, const char *type)
 {
 	r->answered = true;
+	drop_body(r);
 	r->status = status;
 	r->type = type;
 	lws_set_timeout(r->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
@@ -172,10 +183,7 @@ void reply_forget(struct request *r)
 {
 	child_forget(r->panel->children, r);
 	act_forget(r->panel->act, r);
-	if (r->has_body) {
-		close(r->body_fd);
-		r->panel->bodies--;
-	}
+	drop_body(r);
 	if (r->fd >= 0)
 		close(r->fd);
 	free(r->text);

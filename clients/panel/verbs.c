@@ -14,11 +14,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
+#include <time.h>
 #include <unistd.h>
 
 #define HISTORY_S_MAX	3600.0
 #define TEXT_MAX	(4u << 20)	/* of what a child says */
-#define CACHE_MS	5000
+#define PAST_SHARE	0.2		/* of the time, for the past */
+#define PAST_BURST_S	0.5
 
 struct verb {
 	const char *name;
@@ -143,11 +145,32 @@ static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 
 /* -- Of the panel itself --------------------------------------------------------- */
 
+static double now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+/* All browsers together get a part of the time for it: the state, and a stop,
+ * must not wait behind a crowd that asks for the past. */
+static bool may_look_back(struct panel *p, double at_s)
+{
+	p->past_owed_s -= (at_s - p->past_at_s) * PAST_SHARE;
+	if (p->past_owed_s < 0)
+		p->past_owed_s = 0;
+	p->past_at_s = at_s;
+	return p->past_owed_s < PAST_BURST_S;
+}
+
 static void run_history(struct browser *b, const struct verb *v, int64_t n,
 			const json_t *o)
 {
 	const double s = number_of(o, "seconds");
 	const double points = number_of(o, "points");
+	struct panel *p = socket_panel(b);
+	const double begun_s = now_s();
 
 	(void)v;
 	if (!(s > 0 && s <= HISTORY_S_MAX && points >= 10 && points <= 2000)) {
@@ -155,8 +178,13 @@ static void run_history(struct browser *b, const struct verb *v, int64_t n,
 		       "points");
 		return;
 	}
-	socket_answer(b, n, 0, "done",
-		      live_history(socket_panel(b)->live, s, (int)points));
+	if (!may_look_back(p, begun_s)) {
+		refuse(b, n, EX_TEMPFAIL, "too many browsers ask for the past; "
+		       "try again");
+		return;
+	}
+	socket_answer(b, n, 0, "done", live_history(p->live, s, (int)points));
+	p->past_owed_s += now_s() - begun_s;
 }
 
 static void run_latency(struct browser *b, const struct verb *v, int64_t n,

@@ -157,17 +157,24 @@ static int compile(const struct machine_config *c, const struct work *w,
 
 static int work_check(const struct machine_config *c, const struct work *w)
 {
-	struct interp_text text = {
-		.dialect = interp_dialect_by_file(w->name),
-	};
+	struct interp_text text = { .bytes = 0 };
 	char *at = child_read(0, TEXT_MAX, &text.bytes);
+	struct config_dialect d;
 	int err;
 
 	if (!at)
 		return put_failure("the text cannot be read",
 				   "at most 64 MiB of NC code");
+	err = config_dialect_load(&d, c, NULL, w->name);
 	text.at = at;
-	err = compile(c, w, &text);
+	text.dialect = d.use;
+	if (err == -EINVAL)
+		err = put_refusal(d.path, &d.diag);
+	else
+		err = err ? put_failure("the dialect's file cannot be read",
+					"a file that [nc] dialect names") :
+			    compile(c, w, &text);
+	config_dialect_free(&d);
 	free(at);
 	return err;
 }

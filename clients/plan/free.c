@@ -36,9 +36,9 @@ static int col(const struct lp *l, uint32_t node, uint32_t a)
 }
 
 int free_init(struct free_way *w, const struct job *j,
-	      double (*q)[INTERP_NAXES], uint32_t n)
+	      const struct clearance *c, double (*q)[INTERP_NAXES], uint32_t n)
 {
-	*w = (struct free_way) { .j = j, .n = n, .enough_mm = DBL_MAX };
+	*w = (struct free_way) { .j = j, .c = c, .n = n, .enough_mm = DBL_MAX };
 	if (n > FREE_NODES_MAX)
 		return -E2BIG;
 	memcpy(w->q, q, n * sizeof(*w->q));
@@ -56,6 +56,19 @@ void free_round(const struct machine_config *c, double q[INTERP_NAXES])
 
 /* -- Trying ------------------------------------------------------------------- */
 
+/* How much less than outside of the end zone is wanted at @pose. */
+static double falls_mm(const struct free_way *w, const struct pose *pose)
+{
+	return w->c->mm - clearance_at(w->c, pose, 0);
+}
+
+/* The poses of block @i that are looked at: up to its end, but for an end pose
+ * with a clearance of its own, which no node can better. */
+static int poses(const struct free_way *w, uint32_t i)
+{
+	return w->c->zone_mm > 0 && i + 2 == w->n ? POSES - 1 : POSES;
+}
+
 /* The least distance over poses of all blocks; gives up below @stop. */
 static double try_way(struct free_way *w, double stop)
 {
@@ -66,13 +79,14 @@ static double try_way(struct free_way *w, double stop)
 		struct block b;
 
 		block_init(&b, &w->j->motion, w->q[i], w->q[i + 1]);
-		for (int k = i == 0 ? 0 : 1; k <= POSES; k++) {
+		for (int k = i == 0 ? 0 : 1; k <= poses(w, i); k++) {
 			struct pose pose;
 
 			block_pose(&b, (double)k / POSES, &pose, NULL);
 			w->queries++;
-			least = fmin(least, near_distance(&w->j->bodies, &pose,
-							  &pair));
+			least = fmin(least, falls_mm(w, &pose) +
+				     near_distance(&w->j->bodies, &pose,
+						   &pair));
 			if (least < stop)
 				return least;
 		}
@@ -119,10 +133,19 @@ static void row_add(struct row *r, int index, double value)
 	r->value[r->n] = value;
 }
 
-/* One pair at time @t of block @i: g + n . J d - least >= 0. */
-static void add_pair(struct lp *l, uint32_t i, double t,
-		     const double q[INTERP_NAXES], const struct near_pair *x)
+struct moment {
+	uint32_t block;
+	double t;			/* 0..1 on it */
+	double q[INTERP_NAXES];
+	double falls_mm;
+};
+
+/* One pair at a moment: g + n . J d + what the clearance falls - least >= 0. */
+static void add_pair(struct lp *l, const struct moment *m,
+		     const struct near_pair *x)
 {
+	const uint32_t i = m->block;
+	const double t = m->t;
 	double jac[INTERP_NAXES][3], n[3];
 	struct row r = { 0 };
 	int at;
@@ -130,7 +153,7 @@ static void add_pair(struct lp *l, uint32_t i, double t,
 	if (!(x->mm > 1e-9))
 		return;
 	v_sub(x->q, x->p, n);
-	motion_jacobian(&l->w->j->motion, q, x->q, jac);
+	motion_jacobian(&l->w->j->motion, m->q, x->q, jac);
 	for (uint32_t a = 0; a < l->axes.n; a++) {
 		const double g = v_dot(n, jac[l->axes.axis[a]]) / x->mm;
 
@@ -141,7 +164,7 @@ static void add_pair(struct lp *l, uint32_t i, double t,
 	}
 	row_add(&r, l->least, -1);
 	at = glp_add_rows(l->p, 1);
-	glp_set_row_bnds(l->p, at, GLP_LO, -x->mm, 0);
+	glp_set_row_bnds(l->p, at, GLP_LO, -x->mm - m->falls_mm, 0);
 	glp_set_mat_row(l->p, at, r.n, r.index, r.value);
 }
 
@@ -154,19 +177,21 @@ static void add_pairs(struct lp *l, struct free_way *w)
 		struct block b;
 
 		block_init(&b, &w->j->motion, w->q[i], w->q[i + 1]);
-		for (int k = i == 0 ? 0 : 1; k <= POSES; k++) {
-			const double t = (double)k / POSES;
-			double q[INTERP_NAXES], mm;
+		for (int k = i == 0 ? 0 : 1; k <= poses(w, i); k++) {
+			struct moment m = { .block = i,
+					    .t = (double)k / POSES };
 			struct pose pose;
+			double mm;
 
-			block_at(&b, t, q);
-			block_pose(&b, t, &pose, NULL);
+			block_at(&b, m.t, m.q);
+			block_pose(&b, m.t, &pose, NULL);
+			m.falls_mm = falls_mm(w, &pose);
 			mm = near_distance(&w->j->bodies, &pose, &last);
 			w->queries += 2;
 			near_set_collect(&w->j->bodies, &pose, fmin(mm, 2),
 					 BAND_MM, &set);
 			for (uint32_t x = 0; x < set.n; x++)
-				add_pair(l, i, t, q, &set.pair[x]);
+				add_pair(l, &m, &set.pair[x]);
 		}
 	}
 }

@@ -17,9 +17,11 @@
 
 struct free_way {
 	const struct job *j;
+	const struct clearance *c;	/* lent: where it falls less is wanted */
 	uint32_t n;			/* nodes; first and last stay */
 	double q[FREE_NODES_MAX][INTERP_NAXES];
-	double least_mm;		/* at the poses tried */
+	double least_mm;		/* at the poses tried; in an end zone,
+					 * and what the clearance falls there */
 	double enough_mm;		/* more is not looked for */
 	uint64_t queries, programs;	/* programs: linear ones */
 };
@@ -27,7 +29,8 @@ struct free_way {
 /** free_init() - with no end to what is enough. Return: 0, or -E2BIG with too
  *  many nodes. */
 int free_init(struct free_way *w, const struct job *j,
-	      double (*q)[INTERP_NAXES], uint32_t n);
+	      const struct clearance *c, double (*q)[INTERP_NAXES],
+	      uint32_t n);
 
 /** free_widen() - as much clearance as goes, in at most @rounds. */
 void free_widen(struct free_way *w, int rounds);

@@ -92,15 +92,6 @@ static int take_unit(void *to, const char *text)
 	return refuse("--unit", text, "mm, inch or m");
 }
 
-static int take_dialect(void *to, const char *text)
-{
-	((struct job_options *)to)->dialect = text;
-	if (interp_dialect_by_name(text))
-		return -1;
-	return refuse("--dialect", text, "generic, robofil, skd2, sodick, "
-		      "chmer, fanuc, agie, 3b or 4b");
-}
-
 #define AT(field)	offsetof(struct job_options, field)
 
 static const struct cmdline_row rows[] = {
@@ -148,8 +139,9 @@ static const struct cmdline_row rows[] = {
 	  "take meshes of under 1 mm or over 10 m" },
 	{ "accept-flaws", NULL, CMDLINE_FLAG, AT(accept_flaws), .help =
 	  "take meshes that are open or cross themselves" },
-	{ "dialect", "NAME", CMDLINE_CALL, .take = take_dialect, .help =
-	  "of PROGRAM (by its name: .3b, .4b, else generic)" },
+	{ "dialect", "NAME", CMDLINE_WORD, AT(dialect), .help =
+	  "of PROGRAM, a name or a file .ini (.3b and .4b by its\n"
+	  "name, else the machine file's)" },
 	{ "quiet", NULL, CMDLINE_FLAG, AT(quiet), .help =
 	  "no progress, no summary" },
 };

@@ -179,15 +179,29 @@ static void from_free(struct plan_way *w, const struct free_way *f,
 		free_round(&j->config, w->q[i]);
 }
 
-/* Is @a to be written rather than @b? */
-static bool is_better(const struct plan_way *a, const struct plan_way *b,
-		      double mm)
+/* In an end zone the least distance says nothing of the rest. */
+static bool keeps(const struct plan *p, const struct plan_way *w)
 {
-	if (!a->how || a->least_mm < mm)
+	struct near_pair pair = { 0 };
+
+	if (!(p->c.zone_mm > 0))
+		return w->least_mm >= p->c.mm;
+	for (uint32_t i = 0; i + 1 < w->n; i++)
+		if (!check_block(p->j, w->q[i], w->q[i + 1], &p->c, &pair))
+			return false;
+	return true;
+}
+
+/* Is @a to be written rather than the best so far? */
+static bool is_better(const struct plan *p, const struct plan_way *a)
+{
+	const struct plan_way *b = &p->best;
+
+	if (b->how && a->n > b->n)
 		return false;
-	if (!b->how || a->n != b->n)
-		return !b->how || a->n < b->n;
-	return a->least_mm > b->least_mm;
+	if (b->how && a->n == b->n && a->least_mm <= b->least_mm)
+		return false;
+	return keeps(p, a);
 }
 
 /* Along the nodes @at, then off them. Return: is it to be written? */
@@ -201,13 +215,13 @@ static bool try_free(struct plan *p, const struct fewest *f,
 	while (at[n] != f->n - 1)
 		n++;
 	take_way(&way, NULL, f, at, n);
-	if (free_init(&w, f->j, way.q, way.n))
+	if (free_init(&w, f->j, &p->c, way.q, way.n))
 		return false;
 	free_widen(&w, WIDEN_ROUNDS);
 	p->queries += w.queries;
 	from_free(&way, &w, f->j);
 	plan_prove(f->j, &way, &p->queries);
-	if (!is_better(&way, &p->best, f->j->clear_mm))
+	if (!is_better(p, &way))
 		return false;
 	p->best = way;
 	return true;
@@ -223,15 +237,14 @@ static void plan_free(struct plan *p, struct fewest *f, const uint32_t *best)
 	const double touch_mm = TOUCH_MM - f->j->chord_mm;
 	const uint32_t most = p->best.n - 1;
 	uint32_t at[FEWEST_NODES_MAX];
-	uint32_t n = p->c.zone_mm > 0 || most < 2 ? 0 :
-		     fewest_search(f, touch_mm, most - 1, at);
+	uint32_t n = most < 2 ? 0 : fewest_search(f, touch_mm, most - 1, at);
 
 	for (; n && n < most && !bar_interrupted(); n++) {
 		fewest_widest(f, touch_mm, n, at);
 		if (try_free(p, f, at))
 			return;
 	}
-	if (!(p->c.zone_mm > 0) && !bar_interrupted())
+	if (!bar_interrupted())
 		try_free(p, f, best);
 }
 
@@ -253,12 +266,10 @@ int plan_over(struct plan *p, const struct job *j,
 	blocks = bar_interrupted() ? 0 :
 		 fewest_search(&f, j->clear_mm, n - 1, at);
 	if (blocks) {
-		if (!(p->c.zone_mm > 0))
-			fewest_widest(&f, j->clear_mm, blocks, at);
+		fewest_widest(&f, j->clear_mm, blocks, at);
 		take_way(&p->fewest, "fewest over nodes", &f, at, blocks);
 		plan_prove(j, &p->fewest, &p->queries);
-		if (p->c.zone_mm > 0 ||
-		    is_better(&p->fewest, &p->best, j->clear_mm))
+		if (is_better(p, &p->fewest))
 			p->best = p->fewest;
 	}
 	if (blocks && !j->o->on_path)
@@ -415,7 +426,7 @@ static int plan_nodes(struct plan *p)
 
 	take_nodes(p, q, &n);
 	r = plan_over(p, p->j, q, n);
-	if (r == 1 && !(p->c.zone_mm > 0) && !bar_interrupted()) {
+	if (r == 1 && !bar_interrupted()) {
 		r = repair_nodes(p, q, &n);
 		if (r == 0)
 			r = plan_over(p, p->j, q, n);

@@ -322,13 +322,14 @@ static int pull_twice(struct pull *u, const struct clearance *c)
 	struct pull again = *u;
 	int r = pull(u, c);
 
-	if (r != 1 || bar_interrupted() || c->zone_mm > 0)
+	if (r != 1 || bar_interrupted())
 		return r;
 	bar_end(u->j);
 	say_stuck(u);
 	fprintf(stderr, "edm-plan: trying to come out with less, and to widen "
 		"that way\n");
-	touch.mm = touch.end_mm = TOUCH_MM - u->j->chord_mm;
+	touch.mm = TOUCH_MM - u->j->chord_mm;
+	touch.end_mm = fmin(touch.end_mm, touch.mm);
 	again.keep_mm = TOUCH_MM;
 	route_free(&u->out);
 	*u = again;

@@ -81,7 +81,7 @@ static bool by_programs(struct repair *r, struct stretch *s)
 	for (uint32_t i = 0; i < n; i++)
 		memcpy(q[i], r->q[s->first + i * (all - 1) / (n - 1)],
 		       sizeof(q[i]));
-	if (n < 3 || free_init(&w, r->p->j, q, n))
+	if (n < 3 || free_init(&w, r->p->j, &r->p->c, q, n))
 		return false;
 	w.enough_mm = r->p->c.mm + r->p->j->chord_mm + SPARE_MM;
 	free_widen(&w, ROUNDS);

@@ -282,20 +282,40 @@ static int compile(struct route *w, const struct machine_config *c,
 	return r;
 }
 
+/* What edm-plan has written itself is generic. */
+static int dialect_load(struct config_dialect *d,
+			const struct machine_config *c,
+			const struct route_text *from)
+{
+	const char *asked = from->dialect ? from->dialect :
+			    from->text ? "generic" : NULL;
+	const int err = config_dialect_load(d, c, asked, from->path);
+	char why[1024];
+
+	if (err == 0)
+		return 0;
+	config_dialect_why(d, err, why, sizeof(why));
+	fprintf(stderr, "edm-plan: %s\n", why);
+	return from->dialect ? EX_USAGE : EX_CONFIG;
+}
+
 int route_read(struct route *w, const struct machine_config *c,
 	     const struct route_text *from)
 {
 	struct interp_text text = {
 		.at = from->text,
-		.dialect = from->dialect ?
-			   interp_dialect_by_name(from->dialect) :
-			   interp_dialect_by_file(from->path),
 	};
+	struct config_dialect d;
 	char *mine = NULL;
-	int r = 0;
+	int r = dialect_load(&d, c, from);
 
+	text.dialect = d.use;
 	*w = (struct route) { 0 };
 	route_lattice(c, w->lattice);
+	if (r) {
+		config_dialect_free(&d);
+		return r;
+	}
 	if (from->text) {
 		text.bytes = strlen(from->text);
 	} else {
@@ -306,6 +326,7 @@ int route_read(struct route *w, const struct machine_config *c,
 		r = compile(w, c, from, &text);
 	if (r == EX_OSERR)
 		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
+	config_dialect_free(&d);
 	if (mine)
 		mine[text.bytes] = '\0';
 	w->text = mine;

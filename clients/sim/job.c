@@ -76,6 +76,67 @@ static void say_refusal(const char *path, const struct interp_diag *d)
 		d->found, d->wanted);
 }
 
+/* All refusals of a text, for --check. */
+struct refusals {
+	const char *path;		/* NULL: they are only counted */
+	uint32_t n;
+};
+
+static void say_one(void *arg, const struct interp_diag *d)
+{
+	struct refusals *all = arg;
+
+	all->n++;
+	if (all->path)
+		say_refusal(all->path, d);
+}
+
+/* Enough to see whether a dialect takes a text. */
+#define TRIED_SEGS_MAX	1000000u
+
+static bool is_taken(const struct interp_text *text, const char *name,
+		     struct config_compiling of)
+{
+	struct interp_text tried = *text;
+	struct interp_diag diag;
+	struct interp_build *b;
+	uint32_t lines;
+	int err;
+
+	tried.dialect = interp_dialect_by_name(name);
+	if (!interp_dialect_is_nc(tried.dialect))
+		return false;
+	of.text.nc.notes = NULL;
+	of.text.nc.refused = NULL;
+	of.text.nc.segs_max = TRIED_SEGS_MAX;
+	of.text.nc.executed_max = TRIED_SEGS_MAX;
+	b = interp_build_create(&of.build);
+	err = b ? interp_compile(&tried, &of.text, b, &lines, &diag) : -ENOMEM;
+	interp_build_destroy(b);
+	return err == 0;
+}
+
+/* How many they were, and which dialects have none. */
+static void say_all(const struct refusals *all, const struct interp_text *text,
+		    const struct config_compiling *of)
+{
+	bool any = false;
+
+	fprintf(stderr, "%s: %u refusal%s%s\n", all->path, all->n,
+		all->n == 1 ? "" : "s", all->n == INTERP_NC_REFUSED_MAX ?
+		", and perhaps more" : "");
+	for (int i = 0; interp_dialect_word(i); i++) {
+		if (!is_taken(text, interp_dialect_word(i), *of))
+			continue;
+		fprintf(stderr, any ? " %s" : "%s: taken by dialect %s",
+			any ? interp_dialect_word(i) : all->path,
+			interp_dialect_word(i));
+		any = true;
+	}
+	if (any)
+		fputc('\n', stderr);
+}
+
 /* @arg: the job's path. */
 static void say_note(void *arg, uint32_t line, const char *text)
 {
@@ -105,15 +166,21 @@ static double trials_now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
+/* What a job is compiled with. */
+struct tables {
+	struct config_tech tech;
+	struct config_dialect dialect;
+};
+
 static int compile(struct sim_job *job, const struct sim_options *o,
 		   const struct machine_config *c, struct text *t,
-		   const struct config_tech *tech)
+		   const struct tables *with)
 {
 	const struct interp_text text = {
-		.at = t->at, .bytes = t->n,
-		.dialect = o->dialect ? o->dialect :
-					interp_dialect_by_file(o->job),
+		.at = t->at, .bytes = t->n, .dialect = with->dialect.use,
 	};
+	struct refusals all = { .path = o->job };
+	const struct interp_refused refused = { say_one, &all };
 	const struct interp_notes notes = { say_note, (void *)(uintptr_t)o->job,
 					    o->check };
 	struct config_compiling of;
@@ -122,17 +189,20 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	struct interp_build *b;
 	int err;
 
-	config_compiling(c, tech, &of);
+	config_compiling(c, &with->tech, &of);
 	of.text.nc.notes = &notes;
+	of.text.nc.refused = o->check ? &refused : NULL;
 	b = interp_build_create(&of.build);
 	if (!b)
 		return EX_OSERR;
 	err = interp_compile(&text, &of.text, b, &job->lines, &diag);
 	job->compile_lines_s = job->lines / (trials_now_s() - from_s);
+	if (err == -EINVAL && o->check)
+		say_all(&all, &text, &of);
 	/* A million lines are as large as half their program. */
 	free(t->at);
 	t->at = NULL;
-	if (err == -EINVAL)
+	if (err == -EINVAL && all.n == 0)
 		say_refusal(o->job, &diag);
 	err = err == 0 ? lay_out(job, b, o->job) :
 	    err == -EINVAL ? EX_DATAERR : EX_OSERR;
@@ -140,18 +210,34 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	return err;
 }
 
+static int dialect_load(struct config_dialect *d, const struct sim_options *o,
+			const struct machine_config *c)
+{
+	char why[1024];
+	const int err = config_dialect_load(d, c, o->dialect, o->job);
+
+	if (err == 0)
+		return 0;
+	config_dialect_why(d, err, why, sizeof(why));
+	fprintf(stderr, "edmsim: %s\n", why);
+	return o->dialect ? EX_USAGE : EX_CONFIG;
+}
+
 int job_load(struct sim_job *job, const struct sim_options *o,
 	     const struct machine_config *c)
 {
 	struct text t = { 0 };
-	struct config_tech tech;
-	int err = edmsim_tech_load(&tech, o, c);
+	struct tables with = { .tech = { .table = NULL } };
+	int err = dialect_load(&with.dialect, o, c);
 
+	if (err == 0)
+		err = edmsim_tech_load(&with.tech, o, c);
 	if (err == 0)
 		err = text_load(o->job, &t);
 	if (err == 0)
-		err = compile(job, o, c, &t, &tech);
-	config_tech_free(&tech);
+		err = compile(job, o, c, &t, &with);
+	config_tech_free(&with.tech);
+	config_dialect_free(&with.dialect);
 	if (err == EX_OSERR)
 		fprintf(stderr, "edmsim: %s: out of memory\n", o->job);
 	free(t.at);

@@ -24,15 +24,16 @@ static int refuse(const char *what, const char *value, const char *wanted)
 	return cmdline_refuse("edmsim", what, value, wanted);
 }
 
-static int take_dialect(void *to, const char *text)
+/* A line each; the names of what a file may say of its words. */
+static int take_document_dialects(void *to, const char *text)
 {
-	struct sim_options *o = to;
-	char all[160];
-
-	o->dialect = interp_dialect_by_name(text);
-	return o->dialect ? -1 :
-	       refuse("--dialect", text, names_join(interp_dialect_word, all,
-						    sizeof(all)));
+	(void)to, (void)text;
+	for (int i = 0; interp_dialect_word(i); i++)
+		printf("%s\n", interp_dialect_word(i));
+	printf("\nmeanings:\n");
+	for (int i = 0; interp_dialect_meaning(i); i++)
+		printf("%s\n", interp_dialect_meaning(i));
+	return EX_OK;
 }
 
 static const char *strategy_word(int i)
@@ -98,10 +99,13 @@ static int take_document_tech(void *to, const char *text)
 static const struct cmdline_row rows[] = {
 	{ "machine", "FILE", WORD(machine_file), .help =
 	  "machine file; without: eight axes, +-200 mm" },
-	{ "dialect", "NAME", CALL(take_dialect), .help =
-	  "generic, robofil, skd2, sodick, chmer, fanuc, agie, 3b,\n"
-	  "4b\n"
-	  "(by the file's name: .3b, .4b, else generic)" },
+	{ "dialect", "NAME", WORD(dialect), .help =
+	  "what the job is written in: a name that\n"
+	  "--document-dialects lists, or a file .ini (.3b and\n"
+	  ".4b by the job's name, else the machine file's)" },
+	{ "document-dialects", NULL, CALL(take_document_dialects), .help =
+	  "the dialects there are and what their words can mean,\n"
+	  "and exit" },
 	{ "tech", "FILE", WORD(tech), .help =
 	  "technology table, .tech or .enc (machine file's)" },
 	{ "print-tech", NULL, FLAG(print_tech), .help =

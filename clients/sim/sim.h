@@ -20,7 +20,7 @@ struct sim_options {
 	bool tolerance_given, perpendicular;
 	double fit_um;			/* with fit_given */
 	bool fit_given;
-	const struct interp_dialect *dialect;	/* NULL: by the job's name */
+	const char *dialect;		/* a name or a file; NULL: the job's */
 	const char *emit;		/* "3b" or "iso": write that, no run */
 	double unit_um, offset_um;	/* 0, -1: the machine file's */
 	const char *tech;		/* table; NULL: the machine file's */

@@ -34,6 +34,31 @@ int config_tech_load(struct config_tech *ret, const struct machine_config *c,
 		     const char *path);
 void config_tech_free(struct config_tech *t);
 
+/* What config_dialect_load() came to. */
+struct config_dialect {
+	const struct interp_dialect *use;
+	struct interp_dialect *own;	/* read from a file; NULL: built in */
+	char path[512];			/* of that file, or the name */
+	struct interp_diag diag;	/* filled with -EINVAL */
+};
+
+/**
+ * config_dialect_load() - the dialect that a job is written in.
+ *
+ * @asked: a name, or a file that ends in .ini; NULL: by the end of @job's name,
+ * else [nc] dialect.  A name that there is not is refused at line 0.
+ * Return: 0; -errno of the file; -EINVAL with ret->diag filled; -ENOMEM.  @ret
+ * is to be handed to config_dialect_free() in any case.  Any thread.
+ */
+int config_dialect_load(struct config_dialect *ret,
+			const struct machine_config *c, const char *asked,
+			const char *job);
+void config_dialect_free(struct config_dialect *d);
+
+/** config_dialect_why() - what went wrong, as one line into @buf. */
+void config_dialect_why(const struct config_dialect *d, int err, char *buf,
+			size_t size);
+
 /** config_tech_base() - the machine's own values of the fields. */
 void config_tech_base(const struct machine_config *c, struct interp_tech *ret);
 

@@ -280,6 +280,7 @@ struct machine_config {
 	struct config_sim sim;
 	struct config_gpio gpio;
 
+	char dialect[256];		/* [nc] dialect: a name or a file */
 	char tech_table[256];		/* [tech] table; "none": there is none */
 	char folder[256];		/* of the machine file; "": here */
 

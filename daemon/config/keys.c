@@ -11,7 +11,7 @@ static const char *const axes[INTERP_NAXES] = {
 };
 
 static const char *const works[INTERP_NC_NWORK] = {
-	"G54", "G55", "G56", "G57", "G58", "G59"
+	"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"
 };
 
 const struct config_section config_section[CONFIG_NSECTIONS] = {
@@ -42,6 +42,8 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"drives of CiA 402 on a CAN bus, for backend can402" },
 	[SECTION_PLC] = { "plc", NULL, 1,
 		"a PLC on a CAN bus, edmd is its CANopen slave; docs/plc.md" },
+	[SECTION_NC] = { "nc", NULL, 1,
+		"how programs are read; docs/nc-code.md" },
 	[SECTION_TECH] = { "tech", NULL, 1,
 		"technology conditions; docs/technology.md" },
 	[SECTION_SIM] = { "sim", NULL, 1,

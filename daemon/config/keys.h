@@ -31,6 +31,7 @@ enum config_section_id {
 	SECTION_SPEED,
 	SECTION_CAN402,
 	SECTION_PLC,
+	SECTION_NC,
 	SECTION_TECH,
 	SECTION_SIM,
 	SECTION_GPIO,
@@ -75,7 +76,7 @@ struct config_key {
 };
 
 #define CONFIG_NKEYS_MAX	512	/* rows the table may have; asserted */
-#define CONFIG_NINSTANCES_MAX	8
+#define CONFIG_NINSTANCES_MAX	9
 #define CONFIG_TEXT_MAX		256	/* of a value, with its NUL */
 
 extern const struct config_section config_section[CONFIG_NSECTIONS];

@@ -88,6 +88,10 @@ static const struct config_key row[] = {
 	WORDS(SPEED, "nodes", "pass", AT(nodes), nodes_word,
 	      "stop: a jump stops at every node; for comparisons only"),
 
+	STRING(NC, "dialect", "generic", dialect,
+	       "what programs are written in, by name, or a file beside this "
+	       "one that ends in .ini; .3b and .4b files go by their names"),
+
 	STRING(TECH, "table", "none", tech_table,
 	       "file of the technology table, beside this file"),
 

@@ -115,6 +115,10 @@ size_t drive_setup_emit(struct drive *d, struct can_msg *ret)
 	}
 	if (!drive_step_due(d, &s))
 		return start(d, ret);
+	if (d->asked && drive_step_forgets(&s)) {
+		drive_setup_again(d);
+		return 0;
+	}
 	return ask(d, &s, ret);
 }
 
@@ -212,6 +216,10 @@ static void on_word(struct drive *d, const struct drive_step *s, uint32_t word)
 		return;
 	}
 	d->word = word & mask;
+	if (drive_step_finds_restart(d, s)) {
+		drive_setup_again(d);
+		return;
+	}
 	if (drive_step_fits(d, s)) {
 		d->step++;
 		return;

@@ -23,7 +23,8 @@ enum what {
 	SYNC_READ, COUNTER_READ,
 	INDEX_READ,			/* of interpolation time */
 	INDEX_CHECK, VALUE_CHECK,
-	LAST_READ = VALUE_CHECK,
+	STILL_ON,			/* was it switched off meanwhile? */
+	LAST_READ = STILL_ON,
 	/* Writes. */
 	NUMBER,				/* the number beside it */
 	BEAT_MS,			/* how often it is to be heard */
@@ -102,6 +103,7 @@ static const struct row rows[] = {
 	{ 0x60c2, 2, 1, INDEX_CHECK, 0,          false },
 	{ 0x60c2, 1, 1, VALUE_CHECK, 0,          false },
 	{ 0x6060, 0, 1, NUMBER,      MODE_CSP,   false },
+	{ 0x1016, 1, 4, STILL_ON,    0,          false },
 };
 /* clang-format on */
 
@@ -284,13 +286,26 @@ bool drive_step_due(struct drive *d, struct drive_step *ret)
 
 /* -- What came of them ------------------------------------------------------------ */
 
+static bool names_us(const struct drive *d)
+{
+	return (d->word >> 16 & 0x7f) == d->c.master;
+}
+
 /* It was switched off since we set it up: its count is another. */
 static void heed_memory(struct drive *d)
 {
-	const bool names_us = (d->word >> 16 & 0x7f) == d->c.master;
-
-	if (d->homed && !names_us && !d->c.absolute)
+	if (d->homed && !names_us(d) && !d->c.absolute)
 		d->lost = true;
+}
+
+bool drive_step_forgets(const struct drive_step *s)
+{
+	return s->what == BEAT_MS || s->what == MASTER_BEAT;
+}
+
+bool drive_step_finds_restart(const struct drive *d, const struct drive_step *s)
+{
+	return s->what == STILL_ON && !names_us(d);
 }
 
 static bool interpolates(const struct drive *d)

@@ -30,6 +30,18 @@ bool drive_step_due(struct drive *d, struct drive_step *ret);
 /** drive_step_fits() - d->word, which was read, is what it must be. */
 bool drive_step_fits(struct drive *d, const struct drive_step *s);
 
+/**
+ * drive_step_finds_restart() - d->word, which was read, tells that it forgot
+ * what was written before: all of it is to be done again.
+ */
+bool drive_step_finds_restart(const struct drive *d, const struct drive_step *s);
+
+/**
+ * drive_step_forgets() - is repeating it no way to go on?  What it writes over
+ * would have told that the drive was switched off after it was read.
+ */
+bool drive_step_forgets(const struct drive_step *s);
+
 /** drive_step_done() - a write was stored: on to the next. */
 void drive_step_done(struct drive *d, const struct drive_step *s);
 

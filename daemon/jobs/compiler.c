@@ -69,11 +69,12 @@ static void take_note(void *arg, uint32_t line, const char *text)
 	r->nnotes++;
 }
 
-static int compiler_text(struct compiler *c, const struct config_tech *tech)
+static int compiler_text(struct compiler *c, const struct config_tech *tech,
+			 const struct interp_dialect *dialect)
 {
 	const struct interp_text text = {
 		.at = c->request.text, .bytes = c->request.bytes,
-		.dialect = interp_dialect_by_file(c->request.name),
+		.dialect = dialect,
 	};
 	const struct interp_notes notes = { .say = take_note,
 					    .arg = &c->result };
@@ -92,6 +93,23 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech)
 			      &c->result.diag);
 }
 
+/* The dialect's file is read for each job, too. */
+static int compiler_read(struct compiler *c, const struct config_tech *tech)
+{
+	struct compiler_result *r = &c->result;
+	struct config_dialect d;
+	int err = config_dialect_load(&d, c->request.config, NULL,
+				      c->request.name);
+
+	if (err == 0)
+		err = compiler_text(c, tech, d.use);
+	else
+		config_dialect_why(&d, err, r->tech_refusal,
+				   sizeof(r->tech_refusal));
+	config_dialect_free(&d);
+	return err;
+}
+
 static void *compiler_main(void *arg)
 {
 	struct compiler *c = arg;
@@ -100,7 +118,7 @@ static void *compiler_main(void *arg)
 
 	c->result.err = read_tech(c, &tech);
 	if (c->result.err == 0)
-		c->result.err = compiler_text(c, &tech);
+		c->result.err = compiler_read(c, &tech);
 	config_tech_free(&tech);
 	/* An eventfd at 0 takes a 1 without fail. */
 	if (write(c->fd, &one, sizeof(one)) != sizeof(one))

@@ -41,7 +41,8 @@ struct compiler_result {
 	struct compiler_note note[COMPILER_NOTES_MAX];
 	uint32_t nnotes;		/* all of them, also those not kept */
 	char tech_sha256[65];		/* of the table, hex; "": none */
-	char tech_refusal[1024];		/* the table's own; "": none */
+	char tech_refusal[1024];		/* of the table or the
+					 * dialect; "": none */
 	struct interp_build *build;
 };
 

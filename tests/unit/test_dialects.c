@@ -151,10 +151,10 @@ static const struct bad {
 	uint32_t line, column;
 	const char *found;
 } bads[] = {
-	{ "robofil", "G21\nM02", 1, 1, "unknown word G21" },
-	{ "robofil", "G17\nM02", 1, 1, "unknown word G17" },
-	{ "robofil", "G90 G54\nM02", 1, 5, "unknown word G54" },
-	{ "robofil", "G1 X1.0\nM30", 2, 1, "unknown word M30" },
+	{ "robofil", "G21\nM02", 1, 1, "G21: a Robofil rejects it" },
+	{ "robofil", "G17\nM02", 1, 1, "G17: a Robofil rejects it" },
+	{ "robofil", "G90 G54\nM02", 1, 5, "G54: a Robofil rejects it" },
+	{ "robofil", "G1 X1.0\nM30", 2, 1, "M30: a Robofil rejects it" },
 	{ "robofil", "G1 X1.0\n", 1, 1, "the end of the text without M02" },
 	{ "robofil", "G1 X10\nM02", 1, 4, "X10 without a decimal point" },
 	{ "robofil", "G41 D0\nM02", 1, 1,
@@ -179,8 +179,8 @@ static const struct bad {
 	{ "skd2", "A5\nM02", 1, 1, "A5 has no use on this line" },
 	{ "sodick", "G54; G90;\nM02;", 1, 6, "words behind the ;" },
 	{ "sodick", "G01 X5;\nM02;", 1, 5, "X5 without a decimal point" },
-	{ "sodick", "G28 X0;\nM02;", 1, 1, "unknown word G28" },
-	{ "sodick", "M05;\nM02;", 1, 1, "unknown word M05" },
+	{ "sodick", "G28 X0;\nM02;", 1, 1, "G28: it goes to the start" },
+	{ "sodick", "M05;\nM02;", 1, 1, "M05: discharge, or a touch" },
 	{ "sodick", "G02 X2.0 R1.0;\nM02;", 1, 10, "unknown word R1.0" },
 	{ "chmer", "SC0100 004\nM02", 1, 1, "SC without a =" },
 	{ "chmer", "G1 G41 X1.0\nM02", 1, 4, "an offset by register 0" },

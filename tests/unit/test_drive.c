@@ -522,6 +522,38 @@ static void a_restart_nobody_heard_is_seen_when_it_is_brought_up(void **state)
 	assert_false(r.d.lost);
 }
 
+/* Off too short for an SDO to stay unanswered three times. */
+static void a_restart_nobody_heard_in_the_set_up_is_seen_too(void **state)
+{
+	struct rig r;
+	int missed = 0;
+
+	(void)state;
+	for (int after = 1; after < 100; after++) {
+		enable(&r);
+		drive_setup_again(&r.d);
+		run(&r, after, 0);
+		if (r.d.phase == DRIVE_RUNNING)
+			break;
+		missed++;
+		r.p.master_beat = 0;
+		for (int off = 0; off < 5; off++) {
+			struct can_msg unheard[DRIVE_EMITS];
+
+			drive_emit(&r.d, 0, unheard);
+			drive_sync(&r.d);
+		}
+		/* Behind the last step it misses the start: no answers. */
+		if (r.d.phase == DRIVE_RUNNING)
+			break;
+		run(&r, 300, 0);
+		assert_int_equal(r.d.phase, DRIVE_RUNNING);
+		assert_true(r.d.lost);
+		assert_int_equal(r.p.master_beat, 127 << 16 | 250);
+	}
+	assert_true(missed > 20);
+}
+
 static void a_place_counts_only_in_a_state_that_has_one(void **state)
 {
 	struct rig r;
@@ -761,6 +793,8 @@ int main(void)
 		cmocka_unit_test(frames_of_a_wrong_length_are_counted_not_believed),
 		cmocka_unit_test(a_restart_loses_the_place_unless_it_is_absolute),
 		cmocka_unit_test(a_restart_nobody_heard_is_seen_when_it_is_brought_up),
+		cmocka_unit_test(
+			a_restart_nobody_heard_in_the_set_up_is_seen_too),
 		cmocka_unit_test(a_place_counts_only_in_a_state_that_has_one),
 		cmocka_unit_test(a_restart_in_the_set_up_begins_it_again),
 		cmocka_unit_test(bits_and_mode_are_watched_in_every_answer),

@@ -76,10 +76,10 @@ static void assert_refused(const char *text, uint32_t column,
 static void what_is_not_in_the_table_is_refused(void **state)
 {
 	(void)state;
-	assert_refused("M62", 1, "unknown word M62", "m_before");
+	assert_refused("M69", 1, "unknown word M69", "m_before");
 	assert_refused("M256", 1, "unknown word M256", "m_free");
-	assert_refused("G66", 1, "unknown word G66", "G120");
-	assert_refused("T60", 1, "unknown word T60", "T84");
+	assert_refused("G63", 1, "unknown word G63", "G120");
+	assert_refused("T60", 1, "T60: the number of a tool", "T84");
 }
 
 static void two_of_a_side_on_a_line_are_refused(void **state)

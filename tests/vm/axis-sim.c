@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #define COUNTS_A_PULSE	2
+#define LOOK_US		20000		/* many rows in one look */
 
 static const char *pull[2], *place_file;
 static int level[2], high[2], number[2];	/* encoder; step and dir */
@@ -91,6 +92,7 @@ int main(int argc, char **argv)
 			order[got] = '\0';
 			move(-1, atol(order));
 		}
+		usleep(LOOK_US);
 		got = read(p[0].fd, text + n, sizeof(text) - 1 - n);
 		n += got > 0 ? (size_t)got : 0;
 		text[n] = '\0';

@@ -50,9 +50,9 @@ def compiled(name):
 def encoder():
     """An axis that slips, one CPU in virtual time."""
     return checked(Run("encoder", {
-        "encoder.ini": machine(period_us=1000, v=0.5, tail=ENCODER),
-        "encoder.ngc": "G21 G90\nG1 X0.8 F12\nG1 X0.1\nM30\n",
-        "back.ngc": "G21 G90\nG1 X0.3 F12\nM30\n",
+        "encoder.ini": machine(tail=ENCODER),
+        "encoder.ngc": "G21 G90\nG1 X0.3 F6\nG1 X0.1\nM30\n",
+        "back.ngc": "G21 G90\nG1 X0.2 F6\nM30\n",
     }, "-d", copies=(compiled("axis-sim"),)))
 
 

@@ -12,9 +12,9 @@ both = pytest.mark.parametrize("edmd", ["edmd", "edmd2"])  # libgpiod 1, 2
 
 
 def said(encoder, edmd):
-    text = encoder.text(f"{edmd}.said")
-    assert encoder.text(f"{edmd}.edmd-rc") == "0\n", text
-    return text, encoder.text(f"{edmd}.log")
+    text = encoder.text(f"run-{edmd}.said")
+    assert encoder.text(f"run-{edmd}.edmd-rc") == "0\n", text
+    return text, encoder.text(f"run-{edmd}.log")
 
 
 def test_the_kernel_has_nothing_to_complain_of(encoder):

@@ -148,6 +148,7 @@ def test_a_following_error_is_seen_before_it_is_as_wide_as_the_gap(faults):
 def test_a_warning_is_told_and_stops_nothing(faults):
     assert faults.d["out"]["warning"]["state"] in ("approach", "erode")
     assert "warns: statusword 12b7, bit 7" in faults.log
+    assert "drive X (node 1): emergency 3283" in faults.log
 
 
 def never_moves_unplaced(seen, what, out, node):

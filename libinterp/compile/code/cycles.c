@@ -299,7 +299,7 @@ static int placed(struct nc_orbit *c, int rc)
 			    r->block.at[o->sink] : c->at;
 
 	if (rc == -EINVAL && r->diag->line == r->line)
-		r->diag->column = (uint32_t)(at - r->line_at) + 1;
+		r->diag->column = nc_column(r, at);
 	return rc;
 }
 

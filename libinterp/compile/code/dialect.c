@@ -4,28 +4,65 @@
  */
 #include "code/dialect.h"
 
+#include <assert.h>
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
+#include <threads.h>
 
-static const struct interp_dialect dialects[] = {
-	{ .name = "generic", .nc = &nc_generic },
-	{ .name = "robofil", .nc = &nc_robofil },
-	{ .name = "skd2", .nc = &nc_skd2 },
-	{ .name = "sodick", .nc = &nc_sodick },
-	{ .name = "chmer", .nc = &nc_chmer },
-	{ .name = "fanuc", .nc = &nc_fanuc },
-	{ .name = "agie", .nc = &nc_agie },
-	{ .name = "3b", .suffix = ".3b" },
-	{ .name = "4b", .suffix = ".4b", .fourb = true },
-};
+#define NDIALECTS_MAX	24
 
-#define NDIALECTS	(sizeof(dialects) / sizeof(dialects[0]))
+static struct interp_dialect dialects[NDIALECTS_MAX];
+static struct nc_dialect tables[NDIALECTS_MAX];
+static size_t ndialects;
+static once_flag built = ONCE_FLAG_INIT;
+
+/* The files that are built in have been read by a test: they are sound. */
+static void build(void)
+{
+	struct interp_diag diag;
+
+	for (; nc_dialect_files[ndialects].name; ndialects++) {
+		const struct dialect_file *f = &nc_dialect_files[ndialects];
+		struct interp_dialect *d = &dialects[ndialects];
+		int err;
+
+		assert(ndialects < NDIALECTS_MAX);
+		d->nc = &tables[ndialects];
+		snprintf(d->name, sizeof(d->name), "%s", f->name);
+		err = nc_dialect_read(d, f->text, strlen(f->text), &diag);
+		assert(err == 0);
+		(void)err;
+	}
+}
+
+const struct interp_dialect *interp_dialect_base(const char *name)
+{
+	for (size_t i = 0; i < ndialects; i++) {
+		if (strcmp(dialects[i].name, name) == 0 ||
+		    strcmp(dialects[i].also, name) == 0)
+			return &dialects[i];
+	}
+	return NULL;
+}
 
 const struct interp_dialect *interp_dialect_by_name(const char *name)
 {
-	for (size_t i = 0; i < NDIALECTS; i++) {
-		if (strcmp(dialects[i].name, name) == 0)
+	call_once(&built, build);
+	return name[0] ? interp_dialect_base(name) : NULL;
+}
+
+const struct interp_dialect *interp_dialect_by_suffix(const char *path)
+{
+	const size_t n = strlen(path);
+
+	call_once(&built, build);
+	for (size_t i = 0; i < ndialects; i++) {
+		const char *s = dialects[i].suffix;
+
+		if (*s && n >= strlen(s) &&
+		    strcasecmp(path + n - strlen(s), s) == 0)
 			return &dialects[i];
 	}
 	return NULL;
@@ -33,16 +70,9 @@ const struct interp_dialect *interp_dialect_by_name(const char *name)
 
 const struct interp_dialect *interp_dialect_by_file(const char *path)
 {
-	const size_t n = strlen(path);
+	const struct interp_dialect *d = interp_dialect_by_suffix(path);
 
-	for (size_t i = 0; i < NDIALECTS; i++) {
-		const char *s = dialects[i].suffix;
-
-		if (s && n >= strlen(s) &&
-		    strcasecmp(path + n - strlen(s), s) == 0)
-			return &dialects[i];
-	}
-	return &dialects[0];
+	return d ? d : &dialects[0];
 }
 
 const char *interp_dialect_name(const struct interp_dialect *d)
@@ -50,9 +80,15 @@ const char *interp_dialect_name(const struct interp_dialect *d)
 	return d->name;
 }
 
+bool interp_dialect_is_nc(const struct interp_dialect *d)
+{
+	return d->reads == DIALECT_NC;
+}
+
 const char *interp_dialect_word(int i)
 {
-	return i >= 0 && i < (int)NDIALECTS ? dialects[i].name : NULL;
+	call_once(&built, build);
+	return i >= 0 && i < (int)ndialects ? dialects[i].name : NULL;
 }
 
 static int compile_nc(const struct interp_text *text,
@@ -83,7 +119,7 @@ static int compile_records(const struct interp_text *text,
 	struct interp_threeb_result done = { 0 };
 	int err;
 
-	threeb.fourb = text->dialect->fourb;
+	threeb.fourb = text->dialect->reads == DIALECT_4B;
 	err = interp_threeb_compile(text->at, text->bytes, &read, b, &done,
 				   diag);
 	*ret_lines = done.lines;
@@ -95,7 +131,8 @@ int interp_compile(const struct interp_text *text,
 		   struct interp_build *b, uint32_t *ret_lines,
 		   struct interp_diag *diag)
 {
-	const bool records = text->dialect && !text->dialect->nc;
+	const bool records = text->dialect &&
+			     text->dialect->reads != DIALECT_NC;
 	int err = records ? compile_records(text, o, b, ret_lines, diag) :
 			   compile_nc(text, &o->nc, b, ret_lines, diag);
 

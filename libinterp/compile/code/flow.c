@@ -6,8 +6,8 @@
  * same text; in some dialects the label is N, which numbers other lines too.  M98 P1000 L3 carries it out three times; so does M98 P31000.
  * Where the O words stand is looked up once, at the first M98.
  */
+#include "code/macro.h"
 #include "code/number.h"
-#include "code/reader.h"
 
 #include <errno.h>
 #include <math.h>
@@ -37,6 +37,13 @@ static const uint8_t *skip_void(const uint8_t *p, const uint8_t *end)
 	}
 }
 
+static bool is_keyword(const uint8_t *p, const uint8_t *end)
+{
+	p = nc_skip_blanks(p, end);
+	return p < end && (*p & 0xdf) >= 'A' && (*p & 0xdf) <= 'Z' &&
+	       p + 1 < end && (p[1] & 0xdf) >= 'A' && (p[1] & 0xdf) <= 'Z';
+}
+
 /* The number behind an O (or an N, if @letter is that) that begins the line @p
  * to @end; 0: none does. */
 static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
@@ -55,12 +62,24 @@ static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
 	*ret_at = p;
 	first = nc_skip_blanks(p + 1, end);
 	p = nc_digits(first, end, &n);
+	/* LinuxCNC's o100 sub is none. */
+	if (is_keyword(p, end))
+		return 0;
 	return p - first <= NC_DIGITS_MAX && n <= LABEL_MAX ? (uint32_t)n : 0;
+}
+
+uint32_t nc_label_at(const struct nc_reader *r, const uint8_t *p,
+		     const uint8_t *end)
+{
+	const uint8_t *at;
+
+	return r->d->label == 'O' ? label_of('O', p, end, &at) : 0;
 }
 
 static int refuse_second(struct nc_reader *r, struct nc_label l,
 			 const uint8_t *at, uint32_t n)
 {
+	r->mapped = false;
 	r->line_at = l.at;
 	r->line = l.line;
 	return nc_refuse(r, at, "each O number once",
@@ -73,7 +92,7 @@ static int note_label(struct nc_reader *r, struct nc_label l,
 		      const uint8_t *end)
 {
 	const uint8_t *at;
-	const uint32_t n = label_of(r->d->label, l.at, end, &at);
+	const uint32_t n = label_of((char)r->d->label, l.at, end, &at);
 
 	if (n == 0)
 		return 0;
@@ -162,7 +181,8 @@ static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats,
 		return nc_refuse(r, at, "a number that one line has",
 				 "a call of N%u, which lines %u and %u have",
 				 number, l->line, l->second);
-	for (uint32_t i = 0; i <= r->depth; i++) {
+	/* With variables it may end. */
+	for (uint32_t i = 0; !r->d->macros && i <= r->depth; i++) {
 		if (r->frame[i].number == number)
 			return nc_refuse(r, at, "calls of other subprograms",
 					 "recursion: %c%u is being carried out "
@@ -241,6 +261,7 @@ static int back(struct nc_reader *r)
 		r->fresh = true;
 		return 0;
 	}
+	nc_macro_leave(r);
 	r->at = f->back;
 	r->line = f->return_line;
 	r->depth--;

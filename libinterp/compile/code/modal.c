@@ -15,7 +15,7 @@ void nc_set_units(struct nc_reader *r, bool inches)
 void nc_set_offset(struct nc_reader *r)
 {
 	for (int i = 0; i < INTERP_NAXES; i++)
-		r->offset_mm[i] = r->o->work_offset_mm[r->work][i] +
+		r->offset_mm[i] = r->work_mm[r->work][i] +
 				  r->shift_mm[i];
 	/* The second plane is measured from the same origin. */
 	if (nc_has_guides(r)) {
@@ -83,8 +83,7 @@ static int run_condition(struct nc_reader *r)
 				 r->block.code_at[NC_CONDITION]);
 }
 
-/* Feed per minute is the only mode there is; corners and transitions belong to
- * an offset; no output switches wire and water. */
+/* Feed per minute is the only mode there is. */
 static int run_nothing(struct nc_reader *r)
 {
 	(void)r;
@@ -145,9 +144,6 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_OFFSET]		= nc_run_offset,
 	[NC_TAPER]		= nc_run_taper,
 	[NC_TAPER_CORNER]	= nc_run_taper_corner,
-	[NC_CORNER]		= run_nothing,
-	[NC_TRANSITION]		= run_nothing,
-	[NC_SUPPLY]		= run_nothing,
 	[NC_MCODE]		= run_mcode,
 	[NC_POWER]		= run_power,
 	[NC_PUMP]		= run_pump,
@@ -260,9 +256,8 @@ static int complete(struct nc_reader *r)
 	return 0;
 }
 
-int nc_run_line(struct nc_reader *r)
+int nc_check_line(struct nc_reader *r)
 {
-	const uint32_t first = NC_BIT(NC_TAPE) | NC_BIT(NC_LABEL);
 	struct nc_block *b = &r->block;
 	int err = nc_take_angle(r);
 
@@ -283,6 +278,17 @@ int nc_run_line(struct nc_reader *r)
 		return refuse_leftover(r, b->words & ~b->takes);
 	if (b->words & r->absent)
 		return refuse_absent(r, b->words & r->absent);
+	return 0;
+}
+
+int nc_run_line(struct nc_reader *r)
+{
+	const uint32_t first = NC_BIT(NC_TAPE) | NC_BIT(NC_LABEL);
+	struct nc_block *b = &r->block;
+	int err = nc_check_line(r);
+
+	if (err)
+		return err;
 	if (b->toward | r->loose) {
 		err = nc_check_touched(r);
 		if (err)

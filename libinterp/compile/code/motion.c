@@ -138,8 +138,7 @@ static const uint8_t *blame(const struct nc_reader *r,
 int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES])
 {
 	if (rc == -EINVAL && r->diag->line == r->line)
-		r->diag->column =
-			(uint32_t)(blame(r, end_mm) - r->line_at) + 1;
+		r->diag->column = nc_column(r, blame(r, end_mm));
 	r->moved |= r->block.words & NC_AXES;
 	return rc;
 }
@@ -155,7 +154,7 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 	r->word.rapid = false;
 	err = contour_action(&r->contour, kind, arg, &r->word, r->diag);
 	if (err == -EINVAL && r->diag->line == r->line)
-		r->diag->column = (uint32_t)(at - r->line_at) + 1;
+		r->diag->column = nc_column(r, at);
 	return err;
 }
 
@@ -205,6 +204,8 @@ static int dwell(struct nc_reader *r)
 				 nc_has(r, NC_P) ? "G4 with both P and X" :
 				 "G4 without a time");
 	s = r->block.value[slot];
+	if (slot == NC_P && r->d->dwell_ms)
+		s /= 1000;
 	if (!(s >= 0 && s <= 1000000))
 		return nc_refuse(r, r->block.at[slot],
 				 "0 to 1000000 seconds", "a dwell of %g s", s);
@@ -259,7 +260,7 @@ static int set_here(struct nc_reader *r)
 				 "G92 with U or V, which go with X and Y");
 	for EACH_AXIS(b->words & NC_AXES, i)
 		r->shift_mm[i] = here[i] - b->value[i] * r->scale[i] -
-				 r->o->work_offset_mm[r->work][i];
+				 r->work_mm[r->work][i];
 	nc_set_offset(r);
 	r->unnamed &= ~b->words;
 	return 0;

@@ -3,7 +3,7 @@
  * nc.c - read NC code, line after line
  */
 #include "code/dialect.h"
-#include "code/reader.h"
+#include "code/macro.h"
 
 #include <errno.h>
 #include <math.h>
@@ -37,9 +37,12 @@ static void reset_modes(struct nc_reader *r)
 {
 	const struct interp_nc_options *o = r->o;
 
-	r->d = o->dialect ? o->dialect->nc : &nc_generic;
+	r->d = o->dialect ? o->dialect->nc :
+	       interp_dialect_by_name("generic")->nc;
+	memcpy(r->work_mm, o->work_offset_mm, sizeof(r->work_mm));
 	r->arc_incremental = !r->d->arc_places;
-	r->lengths = r->d->point || r->d->decimals ? NC_LENGTHS : 0;
+	r->lengths = r->d->point != NC_POINT_FREE || (o->notes && o->notes->plan) ?
+		     NC_LENGTHS : 0;
 	r->feed_mm_s = first_feed(r);
 	r->feed_deg_s = r->feed_mm_s;
 	r->fresh = true;
@@ -71,6 +74,8 @@ int nc_read_line(struct nc_reader *r)
 	if (r->executed++ >= r->executed_max)
 		return refuse_executed(r);
 	err = nc_scan_line(r);
+	if (!err && r->o->notes && r->o->notes->plan)
+		nc_note_line(r);
 	return err ? err : nc_run_line(r);
 }
 
@@ -118,6 +123,9 @@ int interp_nc_compile(const char *text, size_t bytes,
 		ret->executed = r.executed;
 	}
 	free(r.labels);
+	if (err == -EINVAL && o->refused)
+		nc_list_refusals(&r);
+	nc_macro_free(&r);
 	nc_curve_free(&r.curve);
 	nc_forget_conditions(&r);
 	contour_free(&r.contour);

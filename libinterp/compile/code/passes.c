@@ -90,6 +90,7 @@ static int record(struct nc_reader *r, const struct nc_cavity *c,
 {
 	const struct nc_block block = r->block;
 	const uint8_t *line_at = r->line_at;
+	const bool mapped = r->mapped;
 	const uint32_t depth = r->depth;
 	const uint8_t *code_at = my_word(r);
 	int err;
@@ -106,6 +107,7 @@ static int record(struct nc_reader *r, const struct nc_cavity *c,
 	if (!err) {
 		r->block = block;
 		r->line_at = line_at;
+		r->mapped = mapped;
 	}
 	return !err && !contour_tape_is_whole(t, r->contour.guides.pulse_mm) ?
 	       refuse_contour(r, c) : err;

@@ -20,6 +20,9 @@
  *	offset.c	offset and taper: G40 ... G42, G50 ... G52, D and H
  *	tech.c		conditions: called, defined, in a sequence
  *	flow.c		subprograms and the end
+ *	macro.h		variables and jumps, in front of the scanner
+ *	note.c		say what is ignored, or is read otherwise elsewhere
+ *	list.c		all refusals of a text
  *	nc.c		line after line
  *	refuse.c	say what was found and what would be accepted
  *
@@ -43,6 +46,10 @@ struct nc_tool_point {
 					 * the others as the axes stand */
 };
 
+/* Notes of one kind each. */
+enum nc_told { NC_TOLD_POINT, NC_TOLD_INCHES, NC_TOLD_CONDITION,
+	       NC_TOLD_DWELL, NC_TOLD_OFFSET };
+
 /* Why no further line is read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
 
@@ -51,12 +58,16 @@ struct nc_block {
 	uint32_t words;			/* bit per enum nc_slot */
 	uint32_t groups;		/* bit per enum nc_group */
 	uint32_t takes;			/* slots its codes use */
+	uint32_t drops;			/* ... have no use for, and say so */
 	uint32_t cond_number;
 	char cond_letter;
 	uint32_t angles;		/* A and B of a cycle: they are no axes */
 	uint32_t toward;		/* slots without a number: only a sign,
 					 * +1 -1 or 0, is their value */
 	double value[NC_NSLOTS];
+	const struct nc_code *dropper;	/* one that is carried out without some
+					 * of its words, or NULL */
+	const uint8_t *dropper_at;
 	const uint8_t *at[NC_NSLOTS];	/* the letter */
 	const struct nc_code *code[NC_NGROUPS];
 	const uint8_t *code_at[NC_NGROUPS];
@@ -146,6 +157,12 @@ struct nc_curve {
 
 struct nc_reader {
 	const struct nc_dialect *d;
+	struct interp_diag first;	/* the refusal that ended the reading */
+	bool first_told;
+	uint32_t ntold;
+	struct nc_macro *macro;		/* NULL: nothing to expand yet */
+	bool listing;			/* all refusals are wanted: list.c */
+	bool mapped;			/* the line in hand is in its buffer */
 
 	/* The text, and the line in hand. */
 	const uint8_t *text, *end;
@@ -159,7 +176,8 @@ struct nc_reader {
 	/* Modes, until changed. */
 	const struct nc_code *motion;	/* NULL: none yet */
 	uint8_t plane;			/* 0 ... 2: G17 ... G19 */
-	uint8_t work;			/* 0 ... 5: G54 ... G59 */
+	uint8_t work;			/* 0 ... 8: G54 ... G59.3 */
+	double work_mm[INTERP_NC_NWORK][INTERP_NAXES];
 	bool incremental, arc_incremental;
 	uint32_t lengths;		/* slots where a point matters */
 	double unit_mm;			/* 1 or 25.4 */
@@ -201,6 +219,11 @@ struct nc_reader {
 	uint32_t segs, segs_max;
 	uint32_t executed, executed_max;
 
+	/* What has been noted already: codes, then letters by the place of
+	 * their reason in d->text; and enum nc_told. */
+	uint8_t told[(NC_NCODES + NC_TEXT_MAX) / 8 + 1];
+	uint32_t told_once;
+
 	const struct interp_nc_options *o;
 	struct interp_build *build;
 	struct interp_diag *diag;
@@ -228,6 +251,15 @@ extern const struct nc_plane nc_planes[3];
 
 /** nc_scan_line() - the line at r->at into r->block; r->at is the next. */
 int nc_scan_line(struct nc_reader *r);
+
+/** nc_check_line() - do the words of r->block go together? */
+int nc_check_line(struct nc_reader *r);
+
+/** nc_list_refusals() - what r->diag has, and all others, to o->refused. */
+void nc_list_refusals(struct nc_reader *r);
+
+/** nc_tell() - what r->diag has, to o->refused. */
+void nc_tell(struct nc_reader *r);
 
 /** nc_run_line() - carry r->block out. */
 int nc_run_line(struct nc_reader *r);
@@ -380,6 +412,13 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 /** nc_end_of_text() - the text is over: may it be? */
 int nc_end_of_text(struct nc_reader *r);
 
+/** nc_label_at() - does the line @p to @end begin a program? Its number, or 0. */
+uint32_t nc_label_at(const struct nc_reader *r, const uint8_t *p,
+		     const uint8_t *end);
+
+/** nc_column() - of the byte @at of the line in hand, in the text. */
+uint32_t nc_column(const struct nc_reader *r, const uint8_t *at);
+
 /** nc_line_end() - the line break at or after @p, or @end. */
 const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end);
 
@@ -390,6 +429,22 @@ static inline const uint8_t *nc_line_next(const uint8_t *p, const uint8_t *end)
 		return p + 2;
 	return p < end ? p + 1 : end;
 }
+
+/* note.c.  Nothing is noted twice.  All but nc_note_code() speak only to who
+ * wants to know before a run: notes->plan. */
+
+/** nc_note_code() - the word at @at has a reason to be mentioned. */
+void nc_note_code(struct nc_reader *r, const uint8_t *at,
+		  const struct nc_code *code);
+
+/** nc_note_point() - the length at @at has no decimal point. */
+void nc_note_point(struct nc_reader *r, const uint8_t *at);
+
+/** nc_note_line() - what the line in hand means, and would not elsewhere. */
+void nc_note_line(struct nc_reader *r);
+
+/** nc_write_offset() - G10 L2 and L20: a work offset of this program. */
+int nc_write_offset(struct nc_reader *r);
 
 /** nc_refuse() - fill the diag for the byte at @at. Return: -EINVAL. */
 int nc_refuse(struct nc_reader *r, const uint8_t *at, const char *wanted,

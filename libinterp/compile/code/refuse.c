@@ -2,7 +2,7 @@
 /*
  * refuse.c - say what was found and what would be accepted
  */
-#include "code/reader.h"
+#include "code/macro.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -15,13 +15,19 @@ static void fill(struct interp_diag *d, const char *wanted, const char *found,
 	vsnprintf(d->found, sizeof(d->found), found, ap);
 }
 
+uint32_t nc_column(const struct nc_reader *r, const uint8_t *at)
+{
+	return r->mapped ? r->macro->column[at - r->line_at] :
+			   (uint32_t)(at - r->line_at) + 1;
+}
+
 int nc_refuse(struct nc_reader *r, const uint8_t *at, const char *wanted,
 	      const char *found, ...)
 {
 	va_list ap;
 
 	r->diag->line = r->line;
-	r->diag->column = (uint32_t)(at - r->line_at) + 1;
+	r->diag->column = nc_column(r, at);
 	va_start(ap, found);
 	fill(r->diag, wanted, found, ap);
 	va_end(ap);
@@ -77,7 +83,8 @@ struct nc_quote nc_quote_run(const struct nc_reader *r, const uint8_t *at)
 
 static uint32_t next_code(const struct nc_letter *l, uint32_t i)
 {
-	while (i < l->ncodes && l->codes[i].group == NC_UNKNOWN)
+	while (i < l->ncodes && (l->codes[i].group == NC_UNKNOWN ||
+				 l->codes[i].group == NC_REFUSED))
 		i++;
 	return i;
 }

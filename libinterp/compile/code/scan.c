@@ -4,13 +4,14 @@
  *
  * One pass over the bytes; a byte's class picks what reads on from it.
  */
+#include "code/macro.h"
 #include "code/number.h"
-#include "code/reader.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define KNOWN_MAX	240
 
@@ -56,15 +57,18 @@ static bool has_point(const uint8_t *p, const uint8_t *end)
 	return p < end;
 }
 
-/* A length without a point, in a dialect where that matters: @v counts the
- * last of its decimals, or is refused if it is not 0. */
+/* A length without a point: 0 is 0 everywhere.  Others are as they are, count
+ * the last of their decimals (0.001 mm, 0.0001 inches), or are refused. */
 static bool pointed_length(struct nc_reader *r, const uint8_t *at,
 			   const uint8_t *end, double *v)
 {
-	if (has_point(at, end))
+	if (*v == 0 || has_point(at, end))
 		return true;
-	*v /= nc_pow10[r->d->decimals];
-	if (*v == 0 || !r->d->point)
+	if (r->d->point == NC_POINT_FREE)
+		nc_note_point(r, at);
+	else if (r->d->point == NC_POINT_LAST)
+		*v /= nc_pow10[r->unit_mm > 1 ? 4 : 3];
+	if (r->d->point != NC_POINT_WANTED)
 		return true;
 	nc_refuse(r, at, "a decimal point, as in X10.0: without one some "
 		  "controls read micrometres", "%s without a decimal point",
@@ -105,7 +109,7 @@ static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 	const uint8_t *p;
 	double v;
 
-	if (b->words & NC_BIT(slot))
+	if ((b->words & NC_BIT(slot)) && slot != NC_SPARE)
 		return refuse_twice(r, at);
 	p = nc_number(at + 1, r->stop, &v);
 	if (!p)
@@ -183,13 +187,79 @@ static bool scan_upper_code(struct nc_reader *r, const uint8_t *at,
 	return true;
 }
 
+static const struct nc_code *find_code(struct nc_reader *r,
+				       const struct nc_letter *l, uint64_t n)
+{
+	const struct nc_code *code = n < l->ncodes ? &l->codes[n] : &l->other;
+
+	if (code->group == NC_UNKNOWN)
+		code = &l->other;
+	/* The machine's own is more than a word that does nothing here. */
+	if (l == &r->d->letter[1] &&
+	    (code->group == NC_UNKNOWN || code->group >= NC_NGROUPS)) {
+		const struct nc_code *mine = nc_mcode(r, n);
+
+		code = mine ? mine : code;
+	}
+	return code;
+}
+
+/* The reason at @text has a ; between what was found and what is accepted. */
+static void refuse_known(struct nc_reader *r, const uint8_t *at, uint32_t text)
+{
+	const char *found = r->d->text + text, *wanted = strchr(found, ';');
+
+	nc_refuse(r, at, wanted + 1 + strspn(wanted + 1, " "), "%s: %.*s",
+		  nc_quote_word(r, at).s, (int)(wanted - found), found);
+}
+
+static void refuse_code(struct nc_reader *r, const uint8_t *at,
+			const struct nc_letter *l, const struct nc_code *code)
+{
+	char known[KNOWN_MAX];
+
+	if (code->group == NC_REFUSED)
+		refuse_known(r, at, code->text);
+	else
+		nc_refuse(r, at, nc_codes_known(l, (char)toupper(*at), known,
+						sizeof(known)),
+			  "unknown word %s", nc_quote_word(r, at).s);
+}
+
+static bool add_code(struct nc_reader *r, const uint8_t *at,
+		     const struct nc_code *code)
+{
+	struct nc_block *b = &r->block;
+
+	if (b->colon)
+		return scan_upper_code(r, at, code);
+	b->drops |= code->drops;
+	if (code->text && code->drops && code->group != NC_IGNORED) {
+		b->dropper = code;
+		b->dropper_at = at;
+	} else if (code->text) {
+		nc_note_code(r, at, code);
+	}
+	r->word_at = at;
+	if (code->group == NC_IGNORED)
+		return true;
+	if (b->groups & NC_BIT(code->group)) {
+		refuse_group(r, at, code->group);
+		return false;
+	}
+	b->groups |= NC_BIT(code->group);
+	b->takes |= code->takes;
+	b->code[code->group] = code;
+	b->code_at[code->group] = at;
+	return true;
+}
+
 static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 {
-	const struct nc_letter *l = &r->d->letter[nc_classes[*at] -
+	const struct nc_letter *l = &r->d->letter[r->d->classes[*at] -
 						  NC_LETTER_G];
 	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p;
 	const struct nc_code *code;
-	struct nc_block *b = &r->block;
 	uint64_t n = 0;
 
 	p = nc_digits(first, r->stop, &n);
@@ -199,27 +269,17 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 	if (l->scale > 1 && p < r->stop && *p == '.' && ++p < r->stop &&
 	    *p >= '0' && *p <= '9')
 		n += (uint64_t)(*p++ - '0');
-	code = n < l->ncodes && l->codes[n].group != NC_UNKNOWN ?
-	       &l->codes[n] : nc_classes[*at] == NC_LETTER_M ?
-	       nc_mcode(r, n) : NULL;
-	if (!code) {
-		char known[KNOWN_MAX];
-
-		nc_refuse(r, at, nc_codes_known(l, (char)toupper(*at), known,
-						sizeof(known)),
-			  "unknown word %s", nc_quote_word(r, at).s);
-		return NULL;
+	code = find_code(r, l, n);
+	if (code->group == NC_UNKNOWN || code->group == NC_REFUSED) {
+		refuse_code(r, at, l, code);
+		/* What its line has besides is looked at, too. */
+		if (!r->listing)
+			return NULL;
+		nc_tell(r);
+		r->block.takes = UINT32_MAX;
+		return p;
 	}
-	if (b->colon)
-		return scan_upper_code(r, at, code) ? p : NULL;
-	if (b->groups & NC_BIT(code->group))
-		return refuse_group(r, at, code->group);
-	b->groups |= NC_BIT(code->group);
-	b->takes |= code->takes;
-	b->code[code->group] = code;
-	b->code_at[code->group] = at;
-	r->word_at = at;
-	return p;
+	return add_code(r, at, code) ? p : NULL;
 }
 
 /* Is this the = of a definition? Then behind it; else NULL. */
@@ -398,11 +458,14 @@ static const uint8_t *scan_to_end(struct nc_reader *r, const uint8_t *at)
 	return at;
 }
 
-/* ; ends a block, and there is one block on a line. */
+/* ; ends a block, and there is one block on a line; with no block in front of
+ * it, it begins a comment. */
 static const uint8_t *scan_block_end(struct nc_reader *r, const uint8_t *at)
 {
 	const uint8_t *p = nc_skip_blanks(at + 1, r->stop);
 
+	if (nc_skip_blanks(r->line_at, at) == at)
+		return scan_to_end(r, p);
 	if (p == r->stop || nc_classes[*p] == NC_EOL || *p == '(')
 		return p;
 	nc_refuse(r, p, "each block on a line of its own",
@@ -437,6 +500,22 @@ static const uint8_t *scan_blank(struct nc_reader *r, const uint8_t *at)
 	return at + 1;
 }
 
+static const uint8_t *scan_refused(struct nc_reader *r, const uint8_t *at)
+{
+	refuse_known(r, at, r->d->reason[(*at & 0xdf) - 'A']);
+	return NULL;
+}
+
+static const uint8_t *scan_rest(struct nc_reader *r, const uint8_t *at)
+{
+	const struct nc_code code = {
+		.group = NC_IGNORED, .text = r->d->reason[(*at & 0xdf) - 'A'],
+	};
+
+	nc_note_code(r, at, &code);
+	return scan_to_end(r, at);
+}
+
 static scan_fn *const scan_other[NC_NCLASSES] = {
 	[NC_BAD]	= scan_bad,
 	[NC_BLANK]	= scan_blank,
@@ -455,6 +534,8 @@ static scan_fn *const scan_other[NC_NCLASSES] = {
 	[NC_SLASH]	= scan_slash,
 	[NC_PERCENT]	= scan_percent,
 	[NC_COLON]	= scan_colon,
+	[NC_LETTER_REFUSED] = scan_refused,
+	[NC_LETTER_REST] = scan_rest,
 };
 
 /* Words from @p to the end of the line, which is returned. */
@@ -492,14 +573,37 @@ static void add_groups(struct nc_block *b)
 		b->groups |= NC_BIT(NC_REGISTER);
 }
 
-int nc_scan_line(struct nc_reader *r)
+/* The line at r->at, or what macros make of it. */
+static int begin_line(struct nc_reader *r)
 {
-	struct nc_block *b = &r->block;
-	const uint8_t *p = r->at;
+	const uint8_t *p = r->at, *end;
+	int err;
 
+	r->mapped = false;
 	r->line_at = p;
 	r->stop = r->end - p > INTERP_NC_LINE_MAX ? p + INTERP_NC_LINE_MAX :
 						    r->end;
+	if (!r->d->macros || r->listing)
+		return 0;
+	end = nc_line_end(p, r->stop);
+	r->at = nc_line_next(end, r->end);
+	err = nc_macro_line(r, p, end);
+	if (err <= 0) {
+		r->at = p;
+		return err;
+	}
+	r->mapped = true;
+	r->line_at = r->macro->text;
+	r->stop = r->line_at + r->macro->used;
+	return 0;
+}
+
+int nc_scan_line(struct nc_reader *r)
+{
+	struct nc_block *b = &r->block;
+	const uint8_t *p;
+	int err = begin_line(r);
+
 	r->value_end = NULL;
 	b->words = 0;
 	b->groups = 0;
@@ -507,16 +611,25 @@ int nc_scan_line(struct nc_reader *r)
 	b->upper = NULL;
 	b->colon = false;
 	b->toward = 0;
+	b->drops = 0;
+	b->dropper = NULL;
 
-	p = scan_words(r, p);
+	if (err)
+		return err;
+	p = scan_words(r, r->line_at);
 	if (!p)
 		return -EINVAL;
-	if (p < r->end && nc_classes[*p] != NC_EOL)
+	if (b->dropper && (b->words & b->dropper->drops))
+		nc_note_code(r, b->dropper_at, b->dropper);
+	b->words &= ~b->drops;
+	b->toward &= ~b->drops;
+	if (!r->mapped && p < r->end && nc_classes[*p] != NC_EOL)
 		return nc_refuse(r, p, "lines of up to 4096 bytes",
 				 "a line longer than %d bytes",
 				 INTERP_NC_LINE_MAX);
 	if (b->words & (NC_BIT(NC_F) | NC_BIT(NC_O) | NC_OFFSETS))
 		add_groups(b);
-	r->at = nc_line_next(p, r->end);
+	if (!r->mapped)
+		r->at = nc_line_next(p, r->end);
 	return 0;
 }

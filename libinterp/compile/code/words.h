@@ -5,7 +5,9 @@
  * A word is a letter and a number.  Words with a value have a slot; G, M and T
  * words are codes, each of a modal group; C with three digits and E call a
  * condition.  A dialect is a table of what bytes begin, tables of its codes,
- * and a few rules.  docs/nc-code.md says what each does.
+ * and a few rules: all of it read from a file of dialects/, by dialect_read.c.
+ * What a code can mean is a row of meanings.h.  docs/nc-code.md says what each
+ * does.
  */
 #ifndef CODE_WORDS_H
 #define CODE_WORDS_H
@@ -23,6 +25,7 @@ enum nc_slot {
 	NC_D, NC_H, NC_ANGLE,		/* offset registers; A of a taper */
 	NC_UI, NC_UJ,			/* I J behind a : */
 	NC_Q,
+	NC_SPARE,			/* a letter that only ignored words use */
 	NC_NSLOTS
 };
 
@@ -69,9 +72,12 @@ enum nc_class {
 	NC_SLASH,
 	NC_PERCENT,
 	NC_COLON,
+	NC_LETTER_REFUSED,		/* known elsewhere: a reason */
+	NC_LETTER_REST,			/* the rest of the line is ignored */
 	NC_NCLASSES
 };
 
+/* Of digits, blanks, ends of lines and what else is equal in all dialects. */
 extern const uint8_t nc_classes[256];
 
 /* Modal groups, one word of each on a line; a line is carried out in this
@@ -84,7 +90,7 @@ enum nc_group {
 	NC_PLANE,			/* G17 G18 G19 */
 	NC_DISTANCE,			/* G90 G91 */
 	NC_ARC_DISTANCE,		/* G90.1 G91.1 */
-	NC_WORK,			/* G54 ... G59 */
+	NC_WORK,			/* G54 ... G59.3 */
 	NC_FEED_MODE,			/* G94 */
 	NC_FEED,			/* F */
 	NC_CONDITION,			/* C120 E001 */
@@ -92,9 +98,6 @@ enum nc_group {
 	NC_OFFSET,			/* G40 G41 G42 */
 	NC_TAPER,			/* G50 G51 G52 */
 	NC_TAPER_CORNER,		/* G60 G61 G62 */
-	NC_CORNER,			/* G60 G61 */
-	NC_TRANSITION,			/* G38 G39 */
-	NC_SUPPLY,			/* T80 ... T83 T86 T87 */
 	NC_MCODE,			/* the PLC's, before the motion */
 	NC_POWER,			/* M3 M4 M5 */
 	NC_PUMP,			/* T84 T85 */
@@ -103,11 +106,14 @@ enum nc_group {
 	NC_MACHINE,			/* G53 */
 	NC_CYCLE,			/* G130 ... G135 */
 	NC_TOUCH,			/* G38.2 G80 G81 G82 G160 ... G162 */
-	NC_ONE_SHOT,			/* G4 G28 G92 G92.1 G120 */
+	NC_ONE_SHOT,			/* G4 G10 G28 G92 G92.1 G120 */
 	NC_MOTION,			/* G0 ... G3, G5 ... G5.3, G6.2, G6.3 */
 	NC_MCODE_AFTER,			/* the PLC's, after it */
 	NC_STOP,			/* M0 M1 M2 M30 M98 M99 */
-	NC_NGROUPS
+	NC_NGROUPS,
+	NC_IGNORED = NC_NGROUPS,	/* not carried out: a note says so */
+	NC_REFUSED			/* known elsewhere: the file says what it
+					 * means there */
 };
 
 /* What a member of NC_MOTION does; G0 ... G3 are their numbers. */
@@ -121,21 +127,23 @@ enum nc_motion {
 };
 
 /*
- * Words done once: ten times the number of the G, what it is called, the
- * function that does it, the slots it uses.  A new one is a row and a function.
+ * Words done once: what a dialect's file calls it, an id, the function that does
+ * it, the slots it uses.  A new one is a row and a function.
  */
 #define NC_ONE_SHOTS(W) \
-	W(40, DWELL, dwell, NC_BIT(NC_P) | NC_BIT(NC_X)) \
-	W(280, HOME, home, NC_AXES) \
-	W(920, SET, set_here, NC_AXES) \
-	W(921, SET_CANCEL, set_cancel, 0) \
-	W(1200, SINK, nc_sink, NC_AXES | NC_BIT(NC_P)) \
-	W(1500, PASS, nc_pass, 0) \
-	W(1510, CAVITY, nc_cavity, \
+	W("dwell", DWELL, dwell, NC_BIT(NC_P) | NC_BIT(NC_X)) \
+	W("write-offset", WRITE, nc_write_offset, \
+	  NC_AXES | NC_BIT(NC_L) | NC_BIT(NC_P)) \
+	W("home", HOME, home, NC_AXES) \
+	W("set-place", SET, set_here, NC_AXES) \
+	W("set-place-off", SET_CANCEL, set_cancel, 0) \
+	W("sink", SINK, nc_sink, NC_AXES | NC_BIT(NC_P)) \
+	W("pass", PASS, nc_pass, 0) \
+	W("cavity", CAVITY, nc_cavity, \
 	  NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_P)) \
-	W(1520, CUT, nc_cut, NC_BIT(NC_R) | NC_BIT(NC_L))
+	W("cut", CUT, nc_cut, NC_BIT(NC_R) | NC_BIT(NC_L))
 
-#define NC_ONE_SHOT_ID(number, id, run, takes)	NC_##id,
+#define NC_ONE_SHOT_ID(name, id, run, takes)	NC_##id,
 enum nc_one_shot { NC_ONE_SHOTS(NC_ONE_SHOT_ID) };
 
 /* What a member of NC_TOUCH does. */
@@ -155,37 +163,53 @@ enum nc_stop { NC_HALT, NC_OPTIONAL_HALT, NC_FINISH, NC_CALL, NC_RETURN };
 struct nc_code {
 	uint8_t group;			/* enum nc_group */
 	uint8_t value;			/* meant for the group's function */
+	uint16_t text;			/* why, in nc_dialect.text; 0: none */
 	uint32_t takes;			/* slots it uses on its line */
+	uint32_t drops;			/* ... and those it has no use for */
 };
 
 /* Index: ten times the number for G, the number itself for M and T. */
 #define NC_NG	2000
-#define NC_NM	100
+#define NC_NM	1000
+#define NC_NT	100
+#define NC_NCODES	(NC_NG + NC_NM + NC_NT)
 
 /* The codes of a letter. */
 struct nc_letter {
-	const struct nc_code *codes;	/* NULL: none of that letter */
+	struct nc_code *codes;
 	uint32_t ncodes;
 	uint32_t scale;			/* 10: one decimal may follow */
+	struct nc_code other;		/* every number without a code */
 };
+
+#define NC_TEXT_MAX	12288
+
+/* A length without a decimal point is taken as it is, or in the last of its
+ * decimals, or refused unless it is 0. */
+enum nc_point { NC_POINT_FREE, NC_POINT_LAST, NC_POINT_WANTED };
+
+/* Variables, expressions and jumps: none, Fanuc's or LinuxCNC's. */
+enum nc_macros { MACRO_NONE, MACRO_FANUC, MACRO_LINUXCNC };
 
 struct nc_dialect {
-	const uint8_t *classes;		/* of bytes */
+	uint8_t classes[256];		/* of bytes */
 	struct nc_letter letter[3];	/* G M T */
-	char label;			/* of subprograms: O or N */
-	uint8_t decimals;		/* of a length without a point */
-	bool point;			/* but 0, a length has a point */
-	bool arc_places;		/* I J are places */
-	bool m2_ends;			/* M2 ends the text, nothing else */
-	bool no_feed;			/* F is optional: the gap says */
-	bool defines;			/* E001= and H001= lines */
-	bool registers;			/* H001=0.11 alone */
-	bool touches;			/* X- and X, without a number */
-	bool lean;			/* U V: how far the top of the wire is
+	uint8_t label;			/* of subprograms: O or N */
+	uint8_t point;			/* enum nc_point */
+	uint8_t arc_places;		/* I J are places */
+	uint8_t m2_ends;		/* M2 ends the text, nothing else */
+	uint8_t no_feed;		/* F is optional: the gap says */
+	uint8_t defines;		/* E001= and H001= lines */
+	uint8_t registers;		/* H001=0.11 alone */
+	uint8_t touches;		/* X- and X, without a number */
+	uint8_t lean;			/* U V: how far the top of the wire is
 					 * from X Y, not its place */
+	uint8_t dwell_ms;		/* P of a dwell is in ms, not s */
+	uint8_t macros;			/* enum nc_macros */
+	uint16_t reason[26];		/* of letters, in text */
+	struct nc_code code[NC_NCODES];	/* G, M, T */
+	uint16_t used;			/* of text */
+	char text[NC_TEXT_MAX];		/* begins with an empty one */
 };
-
-extern const struct nc_dialect nc_generic, nc_robofil, nc_skd2, nc_sodick,
-			       nc_chmer, nc_fanuc, nc_agie;
 
 #endif /* CODE_WORDS_H */

@@ -18,6 +18,7 @@ R = pathlib.Path(sys.argv[1])
 FIFO = R / "drives.fifo"
 
 
+LOOK_S = 0.15           # between two looks: one costs as much as all drives do
 READY_S = 60            # until daemons answer and drives are up
 RUNNING = ("travel", "approach", "erode", "retract")
 CUTTING = ("approach", "erode")
@@ -98,7 +99,7 @@ class Scene:
                 break
             if time.monotonic() > end:
                 self.in_vain(f"{what}: waited in vain for {wanted}: {s}")
-            time.sleep(0.05)
+            time.sleep(LOOK_S)
         self.mark(what)
         return s
 

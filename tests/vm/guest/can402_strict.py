@@ -99,6 +99,7 @@ def faults():
         for what, harm, mend in PLAN:
             out[what] = fault(s, what, harm, mend)
         s.until("warning: cutting", 10, state=CUTTING)
+        s.tell("warn", 1, "3283")
         s.tell("bits", 1, "80", "0")
         time.sleep(0.5)
         out["warning"] = {"state": s.status().get("state")}

@@ -368,13 +368,16 @@ class Stage:
 
     def run(self):
         while True:
-            select.select([self.net.sock, self.fifo], [], [], 0.005)
+            ready, _, _ = select.select([self.net.sock, self.fifo], [], [],
+                                        0.02)
             now = time.monotonic()
-            self.net.read()
+            if self.net.sock in ready:
+                self.net.read()
             self.net.beat(now)
             for d in self.drives.values():
                 d.watch(now, self.synced)
-            self.commands()
+            if self.fifo in ready:
+                self.commands()
 
 
 if __name__ == "__main__":

@@ -19,8 +19,8 @@ lines() { echo "brake $(level sim0 26) enable $(level sim0 27)"; }
 
 ended() { status_is 'state *idle' && echo "at $(cat place) $(ctl --json status)"; }
 
-for edmd in edmd edmd2; do
-	edmd_start ./$edmd encoder.ini
+for name in edmd edmd2; do
+	edmd_start ./$name encoder.ini
 	jobs_start encoder.ini
 	{
 	echo "before: $(lines)"
@@ -48,9 +48,9 @@ for edmd in edmd edmd2; do
 	status_is 'state *idle'
 	ctl submit back.ngc
 	status_is 'state *travel' && ended
-	} > $edmd.said 2>&1
-	daemons_end $edmd
-	cp $edmd.said $edmd.log $edmd.edmd-rc $J/
+	} > run-$name.said 2>&1
+	daemons_end run-$name
+	cp run-$name.said run-$name.log run-$name.edmd-rc $J/
 	rm -f /dev/shm/edmd.vm.*
 done
 kill $axis

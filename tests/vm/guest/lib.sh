@@ -51,24 +51,39 @@ trace_end() {	# CHIP FILE
 	awk '$NF != 0 { print "trace lost", $0 }' $R/overrun
 }
 
+# turns N COMMAND ... - until it succeeds, N times at the most: turns, not
+# seconds, because a turn takes as long as the host is slow.
+turns() {
+	left=$1; shift
+	until "$@"; do
+		left=$((left - 1))
+		[ $left -gt 0 ] || return 1
+		sleep 0.05
+	done
+}
+
 edmd_start() {	# PROGRAM CONFIG
 	$1 --config $2 2>$R/edmd.log &
 	edmd=$!
-	until grep -q 'edmd: machine' $R/edmd.log; do
-		kill -0 $edmd 2>/dev/null || break
-		sleep 0.05
-	done
+	turns 200 edmd_is_up && kill -0 $edmd 2>/dev/null && return
+	echo "edmd is not up:"; cat $R/edmd.log
+	exit 1
+}
+
+edmd_is_up() {	# or has ended
+	grep -q 'edmd: machine' $R/edmd.log || ! kill -0 $edmd 2>/dev/null
 }
 
 jobs_start() {	# CONFIG
 	rm -rf $R/store; mkdir -p $R/store
 	$R/edmd-jobs --config $1 --store $R/store 2>$R/jobs.log &
 	jobs=$!
-	until ctl --timeout 1 status >/dev/null 2>&1; do
-		kill -0 $jobs 2>/dev/null || break
-		sleep 0.05
-	done
+	turns 100 jobs_answer && return
+	echo "edmd-jobs does not answer:"; cat $R/edmd.log $R/jobs.log
+	exit 1
 }
+
+jobs_answer() { ctl status >/dev/null 2>&1; }
 
 daemons_end() {	# NAME
 	kill $jobs; wait $jobs
@@ -79,16 +94,12 @@ daemons_end() {	# NAME
 
 ctl() { $R/edmctl --machine vm "$@"; }
 
-# status_is PATTERN - wait for it; says what it is if it does not come.  Turns,
-# not seconds: a turn takes as long as the host is slow.
+# status_is PATTERN - wait for it; says what it is if it does not come
 status_is() {
-	n=0
-	until ctl status > $R/status 2>&1 && grep -q "$1" $R/status; do
-		n=$((n + 1))
-		[ $n -lt 200 ] || { echo "no '$1'"; cat $R/status; return 1; }
-		sleep 0.05
-	done
+	turns 150 status_has "$1" || { echo "no '$1'"; cat $R/status; return 1; }
 }
+
+status_has() { ctl status > $R/status 2>&1 && grep -q "$1" $R/status; }
 
 job_traced() {	# NAME PROGRAM CONFIG JOB
 	edmd_start $2 $3

@@ -19,7 +19,7 @@ drives.py, no CANopen package.  TRAITS is JSON, node -> what is particular:
 
 COMMANDS is a FIFO, a line for each thing to do:
     off N | on N | push N INCREMENTS | mode N M | bits N SET CLEAR | emcy N CODE
-    jam N | unjam N | gap V | nmt BYTE BYTE | report FILE | quit
+    warn N CODE, an emergency without a fault | jam N | unjam N | gap V | nmt BYTE BYTE | report FILE | quit
 A report has a row for each SYNC: its time, the generator's flags, and of each
 drive its state, where the axis truly is, what the drive counts, and 6060.
 """
@@ -527,20 +527,23 @@ class Bus:
             d.force_set, d.force_clear = (int(a, 16) for a in args)
         elif what == "emcy":
             d.fail(int(args[0], 16))
+        elif what == "warn":
+            self.send(0x80 + d.node, struct.pack("<HBxxxxx",
+                                                 int(args[0], 16), 4))
         elif what in ("jam", "unjam"):
             d.jammed = what == "jam"
 
     def run(self):
         while True:
-            select.select([self.sock, self.fifo], [], [], 0.005)
-            self.read()
+            ready, _, _ = select.select([self.sock, self.fifo], [], [], 0.02)
+            if self.sock in ready:
+                self.read()
             now = time.monotonic()
             for d in self.drives.values():
                 d.live(now)
-            try:
-                self.rest += os.read(self.fifo, 4096)
-            except BlockingIOError:
+            if self.fifo not in ready:
                 continue
+            self.rest += os.read(self.fifo, 4096)
             *lines, self.rest = self.rest.split(b"\n")
             for line in lines:
                 self.command(line.decode().split())

@@ -157,6 +157,7 @@ class Link {
 	private async fetchPast(): Promise<void> {
 		const a = await this.ask<Point[]>("history", { seconds: 60, points: 600 });
 		if (a.code === 0 && Array.isArray(a.body)) this.points = a.body;
+		else if (a.code === 75) setTimeout(() => void this.fetchPast(), 2000);
 	}
 
 	ask<T = unknown>(what: string, more: Record<string, unknown> = {}): Promise<Answer<T>> {

@@ -96,7 +96,7 @@ function OffsetCard(): JSX.Element {
 	const some = rows.some((r) => r.some((x) => x !== 0));
 	return <Card title={t("setup.offsets")}><p class="note">{t("setup.offsetnote")}</p>
 		{some ? <div class="scroll"><table class="list"><thead><tr><th /><>{axes.map((a) => <th scope="col">{a.name}</th>)}</></tr></thead><tbody>{rows.map((r, i) =>
-			<tr><th scope="row">G{54 + i}</th>{axes.map((a) => <td class="n">{number(r[a.index] ?? 0, 3, true)}</td>)}</tr>)}</tbody></table></div> : <p class="calm">{t("setup.nooffsets")}</p>}
+			<tr><th scope="row">G{i < 6 ? 54 + i : `59.${i - 5}`}</th>{axes.map((a) => <td class="n">{number(r[a.index] ?? 0, 3, true)}</td>)}</tr>)}</tbody></table></div> : <p class="calm">{t("setup.nooffsets")}</p>}
 	</Card>;
 }
 

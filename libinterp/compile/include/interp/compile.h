@@ -5,9 +5,9 @@
  * This is the one entry.  Whoever has a job to compile finds its dialect by
  * name, or by the name of the file, and calls interp_compile().
  *
- *	generic				NC code, docs/nc-code.md
- *	robofil skd2 sodick chmer	NC code of wire machines, there too
- *	3b 4b				records, docs/3b.md
+ * The dialects are files of dialects/, which are built in; users copy one and
+ * change it.  docs/nc-code.md tells what they say, docs/3b.md has the records
+ * of 3B and 4B.
  *
  * Threads: allocates through the builder; any thread.  Never in the cycle.
  */
@@ -22,12 +22,18 @@ struct interp_dialect;
 /** interp_dialect_by_name() - the dialect called @name; NULL if there is none. */
 const struct interp_dialect *interp_dialect_by_name(const char *name);
 
-/** interp_dialect_by_file() - by the end of the file's name (.3b, .4b, in upper
- *  or lower case); else generic. */
+/** interp_dialect_by_suffix() - by the end of the file's name (.3b, .4b, in upper
+ *  or lower case); else NULL. */
+const struct interp_dialect *interp_dialect_by_suffix(const char *path);
+
+/** interp_dialect_by_file() - the same; else generic. */
 const struct interp_dialect *interp_dialect_by_file(const char *path);
 
 /** interp_dialect_name() - as interp_dialect_by_name() knows it. */
 const char *interp_dialect_name(const struct interp_dialect *d);
+
+/** interp_dialect_is_nc() - NC code, not records of 3B or 4B? */
+bool interp_dialect_is_nc(const struct interp_dialect *d);
 
 /** interp_dialect_word() - the name of dialect @i; NULL past the last. */
 const char *interp_dialect_word(int i);
@@ -37,6 +43,21 @@ struct interp_text {
 	size_t bytes;
 	const struct interp_dialect *dialect;	/* NULL: generic */
 };
+
+/**
+ * interp_dialect_read() - a dialect of the user's own, from a file's text.
+ *
+ * Return: 0 with @ret to be handed to interp_dialect_free(); -EINVAL with @diag
+ * filled; -ENOMEM.
+ */
+int interp_dialect_read(struct interp_dialect **ret, const char *name,
+			const struct interp_text *text,
+			struct interp_diag *diag);
+void interp_dialect_free(struct interp_dialect *d);
+
+/** interp_dialect_meaning() - what words can mean, by number; NULL past the
+ *  last. */
+const char *interp_dialect_meaning(int i);
 
 struct interp_compile_options {
 	struct interp_nc_options nc;	/* machine, feed and limits: every

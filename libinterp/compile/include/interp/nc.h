@@ -38,6 +38,16 @@ struct interp_notes {
 	bool plan;		/* the passes of G152 too */
 };
 
+/* Takes what a text is refused for, in its order: up to INTERP_NC_REFUSED_MAX.
+ * The places of a program are known up to the first alone, so behind it only
+ * words are looked at. */
+struct interp_refused {
+	void (*say)(void *arg, const struct interp_diag *diag);
+	void *arg;
+};
+
+#define INTERP_NC_REFUSED_MAX	100
+
 struct interp_nc_options {
 	const struct interp_dialect *dialect;	/* NULL: generic */
 	const struct interp_machine *machine;
@@ -58,6 +68,8 @@ struct interp_nc_options {
 	const struct interp_mcode *mcode;	/* lent, INTERP_NMCODES of
 				 * them by number: the PLC's; NULL: none */
 	const struct interp_notes *notes;	/* lent; NULL: nobody listens */
+	const struct interp_refused *refused;	/* lent; NULL: the first is
+				 * enough */
 	uint32_t segs_max;	/* 0: INTERP_NC_SEGS_MAX */
 	uint32_t executed_max;	/* 0: INTERP_NC_EXECUTED_MAX */
 };

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * list.c - all refusals of a text
+ *
+ * Behind the first one nobody knows where the machine would be, so places are
+ * not looked at any more: the words of each line are, from the first line to
+ * the last, subprograms where they stand.  Lines with variables are left out.
+ */
+#include "code/macro.h"
+
+#include <errno.h>
+#include <string.h>
+
+static void say(struct nc_reader *r, const struct interp_diag *d)
+{
+	if (r->ntold++ < INTERP_NC_REFUSED_MAX)
+		r->o->refused->say(r->o->refused->arg, d);
+}
+
+static bool is_before(const struct interp_diag *a, const struct interp_diag *b)
+{
+	return a->line < b->line || (a->line == b->line && a->column < b->column);
+}
+
+void nc_tell(struct nc_reader *r)
+{
+	const struct interp_diag *d = r->diag;
+
+	if (!r->first_told && is_before(&r->first, d)) {
+		r->first_told = true;
+		say(r, &r->first);
+	}
+	if (d->line == r->first.line && d->column == r->first.column)
+		r->first_told = true;
+	say(r, d);
+}
+
+static void begin_again(struct nc_reader *r)
+{
+	r->listing = true;
+	r->first = *r->diag;
+	r->at = r->text;
+	r->line = 0;
+	r->depth = 0;
+	r->motion = NULL;
+	r->fresh = true;
+	r->tape = false;
+	r->curve.open = 0;
+}
+
+static void look_at(struct nc_reader *r, const uint8_t *end)
+{
+	int err = nc_scan_line(r);
+
+	if (err == 0)
+		err = nc_check_line(r);
+	if (err == -EINVAL)
+		nc_tell(r);
+	if (nc_has_group(r, NC_MOTION) && !nc_has_group(r, NC_ONE_SHOT))
+		r->motion = r->block.code[NC_MOTION];
+	r->at = nc_line_next(end, r->end);
+}
+
+void nc_list_refusals(struct nc_reader *r)
+{
+	begin_again(r);
+	while (r->at < r->end && r->ntold < INTERP_NC_REFUSED_MAX) {
+		const uint8_t *end = nc_line_end(r->at, r->end);
+
+		r->line++;
+		if (r->d->macros && nc_macro_wanted(r, r->at, end))
+			r->at = nc_line_next(end, r->end);
+		else
+			look_at(r, end);
+		if (nc_has_group(r, NC_TAPE) && r->tape)
+			break;
+		r->tape |= nc_has_group(r, NC_TAPE);
+	}
+	if (!r->first_told)
+		say(r, &r->first);
+	*r->diag = r->first;
+}

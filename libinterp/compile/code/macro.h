@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * macro.h - variables, expressions and jumps in NC code
+ *
+ * Two languages share it: Custom Macro B as Fanuc has it, and the parameters
+ * and O words of LinuxCNC.  Both work in front of the scanner: a line with
+ * variables is written anew into a buffer, with numbers where expressions were,
+ * and scanned there; a map leads from the buffer back to the columns of the
+ * text.  So the scanner and all behind it know nothing of macros.
+ *
+ *	macro.c		a line into the buffer; assignments
+ *	macro_expr.c	values of expressions
+ *	macro_var.c	variables
+ *	macro_flow.c	IF GOTO WHILE DO END, G65
+ *	oword.c		o100 sub, call, if, while, repeat, ...
+ *
+ * Bounded: variables, depth of calls and of brackets, rounds of loops, and
+ * everything read counts as lines carried out.
+ */
+#ifndef CODE_MACRO_H
+#define CODE_MACRO_H
+
+#include "code/reader.h"
+
+#define MACRO_LOCALS	34		/* #1 ... #33, or #1 ... #30 */
+#define MACRO_VARIABLES	5700
+#define MACRO_NAMED_MAX	256
+#define MACRO_NAME_MAX	32
+#define MACRO_BUFFER	8192
+#define MACRO_BRACKETS	32
+#define MACRO_LOOPS	16
+#define MACRO_OWORDS_MAX 100000
+#define MACRO_ROUNDS_MAX 1000000u	/* jumps back, in all */
+
+/* A loop being carried out. */
+struct macro_loop {
+	uint32_t id;			/* of DO; index of its o word */
+	uint32_t depth;			/* frame it is in */
+	uint32_t left;			/* rounds of a repeat */
+	const uint8_t *at;		/* its line */
+	uint32_t line;
+};
+
+struct macro_named {
+	char name[MACRO_NAME_MAX];
+	uint32_t level;			/* 0: global */
+	double value;
+};
+
+enum oword_kind {
+	OWORD_SUB, OWORD_ENDSUB, OWORD_CALL, OWORD_RETURN,
+	OWORD_IF, OWORD_ELSEIF, OWORD_ELSE, OWORD_ENDIF,
+	OWORD_WHILE, OWORD_ENDWHILE, OWORD_DO, OWORD_REPEAT, OWORD_ENDREPEAT,
+	OWORD_BREAK, OWORD_CONTINUE, OWORD_NKINDS
+};
+
+/* Where an o word stands. */
+struct oword {
+	char name[MACRO_NAME_MAX];
+	const uint8_t *at;		/* its line */
+	const uint8_t *behind;		/* its keyword */
+	uint32_t line;
+	uint8_t kind;			/* enum oword_kind */
+};
+
+struct nc_macro {
+	double variable[MACRO_VARIABLES];	/* NAN: vacant */
+	double local[INTERP_NC_DEPTH_MAX + 1][MACRO_LOCALS];
+	uint32_t level;			/* of local in use */
+	struct macro_named named[MACRO_NAMED_MAX];
+	uint32_t nnamed;
+	struct macro_loop loop[MACRO_LOOPS];
+	uint32_t nloops;
+	uint32_t rounds;
+	/* Behind a frame's call: what it was called by. */
+	bool own_level[INTERP_NC_DEPTH_MAX + 1];	/* with locals */
+	struct oword *oword;		/* NULL: not looked for */
+	uint32_t nowords;
+
+	uint8_t text[MACRO_BUFFER];
+	uint16_t column[MACRO_BUFFER];	/* of each byte, from 1 */
+	size_t used;
+};
+
+/* The source line being expanded. */
+struct macro_line {
+	struct nc_reader *r;
+	struct nc_macro *m;
+	const uint8_t *p, *end;		/* its rest */
+	int brackets;
+};
+
+/* All return -EINVAL with the diag filled where they refuse. */
+
+/** nc_macro_line() - expand the line @at ... @end, if it has something to
+ *  expand.  Return: 1 if it did, into r->macro->text; 0 if not. */
+int nc_macro_line(struct nc_reader *r, const uint8_t *at, const uint8_t *end);
+
+/** nc_macro_wanted() - has the line @p ... @end something to expand? */
+bool nc_macro_wanted(const struct nc_reader *r, const uint8_t *p,
+		     const uint8_t *end);
+
+void nc_macro_free(struct nc_reader *r);
+
+/** nc_macro_leave() - the frame r->depth ends: its locals go. */
+void nc_macro_leave(struct nc_reader *r);
+
+/* macro_expr.c */
+int macro_expression(struct macro_line *l, double *ret);	/* to its end */
+int macro_bracket(struct macro_line *l, double *ret);	/* at the [ */
+int macro_value(struct macro_line *l, double *ret);	/* # [ number SIN[ */
+int macro_truth(struct macro_line *l, bool *ret);	/* a bracket */
+
+/* macro_var.c */
+int macro_get(struct macro_line *l, const uint8_t *at, double number,
+	      double *ret);
+int macro_set(struct macro_line *l, const uint8_t *at, double number, double v);
+struct macro_named *macro_find(struct nc_macro *m, const char *name);
+int macro_name(struct macro_line *l, char name[MACRO_NAME_MAX]); /* at the < */
+int macro_set_named(struct macro_line *l, const uint8_t *at, const char *name,
+		    double v);
+
+/* macro_flow.c: 1 if the line was one of these, 0 if not. */
+int macro_flow(struct macro_line *l);
+int macro_round(struct macro_line *l, const uint8_t *at);
+int macro_assign(struct macro_line *l);	/* one #.. = .., at the # */
+
+/* oword.c: the same. */
+int macro_oword(struct macro_line *l);
+
+static inline void macro_blanks(struct macro_line *l)
+{
+	while (l->p < l->end && (*l->p == ' ' || *l->p == '\t'))
+		l->p++;
+}
+
+/** macro_word() - is the next word @word, in upper or lower case? Then behind
+ *  it. */
+bool macro_word(struct macro_line *l, const char *word);
+
+/** macro_refuse() - what is found at @at, in columns of the text. */
+int macro_refuse(struct macro_line *l, const uint8_t *at, const char *wanted,
+		 const char *found, ...)
+	__attribute__((cold, format(printf, 4, 5)));
+
+#endif /* CODE_MACRO_H */

@@ -1,0 +1,369 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * macro_expr.c - values of expressions
+ *
+ * Angles are in degrees.  A vacant variable is NAN; in arithmetic it counts as
+ * 0, and EQ and NE tell it from 0 where both sides are looked at as variables.
+ */
+#include "code/macro.h"
+#include "code/number.h"
+
+#include <errno.h>
+#include <math.h>
+
+#define DEG	(M_PI / 180)
+
+/* From loose to tight; 0 ends an expression. */
+enum { NOTHING, LOGIC, RELATION, SUM, PRODUCT, POWER };
+
+enum op { NONE, OR, XOR, AND, EQ, NE, GT, GE, LT, LE, ADD, SUB, MUL, DIV, MOD,
+	  POW };
+
+static const struct {
+	const char *word;
+	uint8_t op, fanuc, linuxcnc;	/* how tight it binds */
+} ops[] = {
+	{ "**", POW, NOTHING, POWER },
+	{ "+", ADD, SUM, SUM }, { "-", SUB, SUM, SUM },
+	{ "*", MUL, PRODUCT, PRODUCT }, { "/", DIV, PRODUCT, PRODUCT },
+	{ "MOD", MOD, PRODUCT, PRODUCT },
+	{ "AND", AND, PRODUCT, LOGIC },
+	{ "OR", OR, SUM, LOGIC }, { "XOR", XOR, SUM, LOGIC },
+	{ "EQ", EQ, RELATION, RELATION }, { "NE", NE, RELATION, RELATION },
+	{ "GT", GT, RELATION, RELATION }, { "GE", GE, RELATION, RELATION },
+	{ "LT", LT, RELATION, RELATION }, { "LE", LE, RELATION, RELATION },
+};
+
+#define NOPS	(sizeof(ops) / sizeof(ops[0]))
+
+static bool is_fanuc(const struct macro_line *l)
+{
+	return l->r->d->macros == MACRO_FANUC;
+}
+
+/* The operator at l->p; its tightness, or NOTHING. */
+static uint8_t next_op(struct macro_line *l, size_t *ret)
+{
+	const uint8_t *from;
+
+	macro_blanks(l);
+	from = l->p;
+	for (size_t i = 0; i < NOPS; i++) {
+		const uint8_t tight = is_fanuc(l) ? ops[i].fanuc :
+						    ops[i].linuxcnc;
+
+		if (tight && macro_word(l, ops[i].word)) {
+			*ret = i;
+			l->p = from;
+			return tight;
+		}
+	}
+	return NOTHING;
+}
+
+static double number(double v)
+{
+	return isnan(v) ? 0 : v;
+}
+
+/* Fanuc's work on bits, LinuxCNC's on truth. */
+static double logic(bool bits, uint8_t op, double a, double b)
+{
+	const uint32_t i = bits ? (uint32_t)(int64_t)a : a != 0;
+	const uint32_t j = bits ? (uint32_t)(int64_t)b : b != 0;
+
+	return op == AND ? i & j : op == OR ? i | j : i ^ j;
+}
+
+static bool equal(bool vacant, double a, double b)
+{
+	if (vacant && (isnan(a) || isnan(b)))
+		return isnan(a) && isnan(b);
+	return vacant ? a == b : fabs(number(a) - number(b)) < 1e-6;
+}
+
+static double modulo(bool fanuc, double a, double b)
+{
+	const double left = fmod(a, b);
+
+	/* LinuxCNC's is never negative. */
+	return !fanuc && left < 0 ? left + fabs(b) : left;
+}
+
+static int apply(struct macro_line *l, const uint8_t *at, size_t i,
+		 double *a, double b)
+{
+	const bool fanuc = is_fanuc(l);
+	const double x = number(*a), y = number(b);
+	const uint8_t op = ops[i].op;
+
+	if ((op == DIV || op == MOD) && y == 0)
+		return macro_refuse(l, at, "a divisor other than 0",
+				    "a division by 0");
+	if ((op == AND || op == OR || op == XOR) && fanuc &&
+	    !(fabs(x) < 2147483648.0 && fabs(y) < 2147483648.0))
+		return macro_refuse(l, at, "whole numbers of 32 bits",
+				    "%s of %g and %g", ops[i].word, x, y);
+	switch (op) {
+	case ADD: *a = x + y; break;
+	case SUB: *a = x - y; break;
+	case MUL: *a = x * y; break;
+	case DIV: *a = x / y; break;
+	case MOD: *a = modulo(fanuc, x, y); break;
+	case POW: *a = pow(x, y); break;
+	case EQ: *a = equal(fanuc, *a, b); break;
+	case NE: *a = !equal(fanuc, *a, b); break;
+	case GT: *a = x > y; break;
+	case GE: *a = x >= y; break;
+	case LT: *a = x < y; break;
+	case LE: *a = x <= y; break;
+	default: *a = logic(fanuc, op, x, y); break;
+	}
+	if (isfinite(*a))
+		return 0;
+	return macro_refuse(l, at, "a number", "%s, which comes to no number",
+			    ops[i].word);
+}
+
+/* Operators at least as tight as @least, from left to right. */
+static int climb(struct macro_line *l, uint8_t least, double *ret)
+{
+	int err = macro_value(l, ret);
+	uint8_t tight;
+	size_t i;
+
+	while (!err && (tight = next_op(l, &i)) >= least && tight) {
+		const uint8_t *at = l->p;
+		double right;
+
+		macro_word(l, ops[i].word);
+		err = climb(l, (uint8_t)(tight + 1), &right);
+		if (!err)
+			err = apply(l, at, i, ret, right);
+	}
+	return err;
+}
+
+static int enter(struct macro_line *l)
+{
+	macro_blanks(l);
+	if (l->p == l->end || *l->p != '[')
+		return macro_refuse(l, l->p, "[ and an expression",
+				    "no [ where one belongs");
+	if (++l->brackets > MACRO_BRACKETS)
+		return macro_refuse(l, l->p, "up to 32 brackets inside each "
+				    "other", "a bracket too many");
+	l->p++;
+	return 0;
+}
+
+static int leave(struct macro_line *l)
+{
+	macro_blanks(l);
+	if (l->p == l->end || *l->p != ']')
+		return macro_refuse(l, l->p, "an operator, or ]",
+				    "an expression without its ]");
+	l->brackets--;
+	l->p++;
+	return 0;
+}
+
+int macro_expression(struct macro_line *l, double *ret)
+{
+	return climb(l, LOGIC, ret);
+}
+
+int macro_bracket(struct macro_line *l, double *ret)
+{
+	int err = enter(l);
+
+	if (!err)
+		err = climb(l, LOGIC, ret);
+	return err ? err : leave(l);
+}
+
+int macro_truth(struct macro_line *l, bool *ret)
+{
+	double v;
+	const int err = macro_bracket(l, &v);
+
+	*ret = !err && number(v) != 0;
+	return err;
+}
+
+/* -- Functions --------------------------------------------------------------- */
+
+static double fup(double v)
+{
+	return v < 0 ? floor(v) : ceil(v);
+}
+
+static double sin_deg(double v) { return sin(v * DEG); }
+static double cos_deg(double v) { return cos(v * DEG); }
+static double tan_deg(double v) { return tan(v * DEG); }
+static double asin_deg(double v) { return asin(v) / DEG; }
+static double acos_deg(double v) { return acos(v) / DEG; }
+
+static const struct {
+	const char *name;
+	double (*fanuc)(double v), (*linuxcnc)(double v);
+} functions[] = {
+	{ "SIN", sin_deg, sin_deg }, { "COS", cos_deg, cos_deg },
+	{ "TAN", tan_deg, tan_deg },
+	{ "ASIN", asin_deg, asin_deg }, { "ACOS", acos_deg, acos_deg },
+	{ "SQRT", sqrt, sqrt }, { "SQR", sqrt, NULL },
+	{ "ABS", fabs, fabs }, { "LN", log, log }, { "EXP", exp, exp },
+	{ "ROUND", round, round }, { "RND", round, NULL },
+	/* LinuxCNC's are floor and ceiling. */
+	{ "FIX", trunc, floor }, { "FUP", fup, ceil },
+};
+
+/* ATAN[1]/[2], and Fanuc's ATAN[1,2]. */
+static int atangent(struct macro_line *l, double *ret)
+{
+	double y, x = 1;
+	bool two = false;
+	int err = enter(l);
+
+	if (!err)
+		err = climb(l, LOGIC, &y);
+	macro_blanks(l);
+	if (!err && is_fanuc(l) && l->p < l->end && *l->p == ',') {
+		two = true;
+		l->p++;
+		err = climb(l, LOGIC, &x);
+	}
+	if (!err)
+		err = leave(l);
+	macro_blanks(l);
+	if (!err && !two && l->p < l->end && *l->p == '/') {
+		l->p++;
+		err = macro_bracket(l, &x);
+	}
+	if (!err)
+		*ret = atan2(number(y), number(x)) / DEG;
+	return err;
+}
+
+static int power(struct macro_line *l, double *ret)
+{
+	const uint8_t *at = l->p;
+	double to;
+	int err = enter(l);
+
+	if (!err)
+		err = climb(l, LOGIC, ret);
+	macro_blanks(l);
+	if (!err && (l->p == l->end || *l->p++ != ','))
+		err = macro_refuse(l, at, "POW[2,3]", "POW without a comma");
+	if (!err)
+		err = climb(l, LOGIC, &to);
+	if (!err)
+		err = leave(l);
+	if (err)
+		return err;
+	*ret = pow(number(*ret), number(to));
+	return isfinite(*ret) ? 0 :
+	       macro_refuse(l, at, "a number", "POW, which comes to none");
+}
+
+/* EXISTS[#<name>] */
+static int exists(struct macro_line *l, double *ret)
+{
+	char name[MACRO_NAME_MAX];
+	int err = enter(l);
+
+	macro_blanks(l);
+	if (!err && (l->p == l->end || *l->p != '#'))
+		err = macro_refuse(l, l->p, "EXISTS[#<name>]",
+				  "EXISTS of no parameter");
+	if (err)
+		return err;
+	l->p++;
+	err = macro_name(l, name);
+	if (err)
+		return err;
+	*ret = macro_find(l->m, name) != NULL;
+	return leave(l);
+}
+
+static int function(struct macro_line *l, double *ret)
+{
+	const uint8_t *at = l->p;
+	double v;
+
+	if (macro_word(l, "ATAN"))
+		return atangent(l, ret);
+	if (is_fanuc(l) && macro_word(l, "POW"))
+		return power(l, ret);
+	if (!is_fanuc(l) && macro_word(l, "EXISTS"))
+		return exists(l, ret);
+	for (size_t i = 0; i < sizeof(functions) / sizeof(functions[0]); i++) {
+		double (*f)(double) = is_fanuc(l) ? functions[i].fanuc :
+						    functions[i].linuxcnc;
+		int err;
+
+		if (!f || !macro_word(l, functions[i].name))
+			continue;
+		err = macro_bracket(l, &v);
+		if (err)
+			return err;
+		*ret = f(number(v));
+		return isfinite(*ret) ? 0 :
+		       macro_refuse(l, at, "a value the function has",
+				    "%s[%g]", functions[i].name, v);
+	}
+	return macro_refuse(l, at, "a number, a #variable, [ ] or one of SIN "
+			    "COS TAN ASIN ACOS ATAN SQRT ABS ROUND FIX FUP LN "
+			    "EXP", "no value where one belongs");
+}
+
+static int variable(struct macro_line *l, double *ret)
+{
+	char name[MACRO_NAME_MAX];
+	const uint8_t *at = l->p++;
+	const struct macro_named *n;
+	double which;
+	int err;
+
+	macro_blanks(l);
+	if (!is_fanuc(l) && l->p < l->end && *l->p == '<') {
+		err = macro_name(l, name);
+		n = err ? NULL : macro_find(l->m, name);
+		if (n)
+			*ret = n->value;
+		return err || n ? err :
+		       macro_refuse(l, at, "a parameter that has been given a "
+				    "value", "#<%s>, which has none", name);
+	}
+	if (++l->brackets > MACRO_BRACKETS)
+		return macro_refuse(l, at, "up to 32 of them", "a # too many");
+	err = macro_value(l, &which);
+	l->brackets--;
+	return err ? err : macro_get(l, at, number(which), ret);
+}
+
+int macro_value(struct macro_line *l, double *ret)
+{
+	const uint8_t *p;
+	bool minus = false;
+	int err;
+
+	macro_blanks(l);
+	if (l->p < l->end && (*l->p == '-' || *l->p == '+')) {
+		minus = *l->p++ == '-';
+		macro_blanks(l);
+	}
+	if (l->p < l->end && *l->p == '#') {
+		err = variable(l, ret);
+	} else if (l->p < l->end && *l->p == '[') {
+		err = macro_bracket(l, ret);
+	} else {
+		p = nc_number(l->p, l->end, ret);
+		err = p ? 0 : function(l, ret);
+		l->p = p ? p : l->p;
+	}
+	if (!err && minus)
+		*ret = -*ret;
+	return err;
+}

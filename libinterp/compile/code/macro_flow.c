@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * macro_flow.c - IF GOTO WHILE DO END and G65, as Fanuc has them
+ */
+#include "code/macro.h"
+#include "code/number.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+
+/* -- Jumps ------------------------------------------------------------------- */
+
+int macro_round(struct macro_line *l, const uint8_t *at)
+{
+	const struct nc_reader *r = l->r;
+	const uint32_t most = r->executed_max < MACRO_ROUNDS_MAX ?
+			      r->executed_max : MACRO_ROUNDS_MAX;
+
+	if (l->m->rounds++ < most)
+		return 0;
+	return macro_refuse(l, at, "loops that end", "a loop that has gone on "
+			    "for %u rounds", most);
+}
+
+/* A line looked at counts as one carried out. */
+static int count(struct macro_line *l, const uint8_t *at)
+{
+	if (l->r->executed++ < l->r->executed_max)
+		return 0;
+	return macro_refuse(l, at, "fewer jumps, or nearer ones", "more than "
+			    "%u lines carried out or searched",
+			    l->r->executed_max);
+}
+
+/* A line of the program at hand, when it is looked through. */
+struct place {
+	const uint8_t *at;
+	uint32_t line;
+};
+
+typedef bool match_fn(const uint8_t *p, const uint8_t *end, uint32_t n);
+
+static const uint8_t *behind_n(const uint8_t *p, const uint8_t *end,
+			       uint64_t *n)
+{
+	p = nc_skip_blanks(p, end);
+	if (p == end || (*p | 0x20) != 'n')
+		return p;
+	return nc_digits(nc_skip_blanks(p + 1, end), end, n);
+}
+
+static bool is_n(const uint8_t *p, const uint8_t *end, uint32_t n)
+{
+	uint64_t found = UINT64_MAX;
+	const uint8_t *first = nc_skip_blanks(p, end);
+
+	if (first == end || (*first | 0x20) != 'n')
+		return false;
+	found = 0;
+	return behind_n(p, end, &found) > first + 1 && found == n;
+}
+
+static bool is_end(const uint8_t *p, const uint8_t *end, uint32_t n)
+{
+	uint64_t ignored = 0, found = 0;
+	struct macro_line l = { .p = behind_n(p, end, &ignored), .end = end };
+
+	if (!macro_word(&l, "END"))
+		return false;
+	macro_blanks(&l);
+	return nc_digits(l.p, end, &found) > l.p && found == n;
+}
+
+/* From @from up to @stop, or where the next program begins. */
+static int search(struct macro_line *l, struct place from, const uint8_t *stop,
+		  match_fn *match, uint32_t n, struct place *ret)
+{
+	const struct nc_reader *r = l->r;
+	const uint8_t *begin = from.at;
+	int err = 0;
+
+	ret->at = NULL;
+	while (!err && from.at < stop) {
+		const uint8_t *end = nc_line_end(from.at, r->end);
+
+		err = count(l, l->p);
+		if (match(from.at, end, n)) {
+			*ret = from;
+			return err;
+		}
+		if (from.at > begin && nc_label_at(r, from.at, end))
+			return err;
+		from.at = nc_line_next(end, r->end);
+		from.line++;
+	}
+	return err;
+}
+
+static void go(struct nc_reader *r, struct place to)
+{
+	r->at = to.at;
+	r->line = to.line - 1;
+}
+
+/* Forward to the end of the program, then from its begin. */
+static int go_to(struct macro_line *l, const uint8_t *at)
+{
+	struct nc_reader *r = l->r;
+	const struct nc_frame *f = &r->frame[r->depth];
+	const struct place next = { r->at, r->line + 1 };
+	const struct place first = r->depth ?
+		(struct place) { f->entry, f->entry_line } :
+		(struct place) { r->text, 1 };
+	struct place to;
+	double n;
+	int err = macro_value(l, &n);
+
+	if (err)
+		return err;
+	if (!(n >= 1 && n < 1e9 && n == floor(n)))
+		return macro_refuse(l, at, "GOTO and the number of an N word",
+				    "GOTO %g", n);
+	err = search(l, next, r->end, is_n, (uint32_t)n, &to);
+	if (!err && !to.at)
+		err = search(l, first, next.at, is_n, (uint32_t)n, &to);
+	if (err)
+		return err;
+	if (!to.at)
+		return macro_refuse(l, at, "the number of an N word that begins "
+				    "a line of this program", "GOTO %g, which "
+				    "is not there", n);
+	if (to.at < next.at)
+		err = macro_round(l, at);
+	go(r, to);
+	return err ? err : 1;
+}
+
+static int take_if(struct macro_line *l, const uint8_t *at)
+{
+	bool truth;
+	int err = macro_truth(l, &truth);
+
+	if (err)
+		return err;
+	if (macro_word(l, "GOTO"))
+		return truth ? go_to(l, at) : 1;
+	if (!macro_word(l, "THEN"))
+		return macro_refuse(l, l->p, "GOTO or THEN behind IF [ ]",
+				    "an IF without either");
+	err = truth ? macro_assign(l) : 0;
+	return err ? err : 1;
+}
+
+/* -- Loops ------------------------------------------------------------------- */
+
+/* The number of DO and END. */
+static int take_number(struct macro_line *l, uint32_t *ret)
+{
+	uint64_t n = 0;
+	const uint8_t *p;
+
+	macro_blanks(l);
+	p = nc_digits(l->p, l->end, &n);
+	if (p == l->p || n < 1 || n > 3)
+		return macro_refuse(l, l->p, "DO1, DO2 or DO3, and END with the "
+				    "same number", "DO or END without one");
+	l->p = p;
+	*ret = (uint32_t)n;
+	return 0;
+}
+
+static struct macro_loop *loop_of(struct macro_line *l, uint32_t id)
+{
+	for (uint32_t i = l->m->nloops; i-- > 0; ) {
+		struct macro_loop *loop = &l->m->loop[i];
+
+		if (loop->depth == l->r->depth && loop->id == id)
+			return loop;
+	}
+	return NULL;
+}
+
+static int begin_loop(struct macro_line *l, const uint8_t *at, uint32_t id)
+{
+	struct macro_loop *loop = loop_of(l, id);
+
+	if (!loop && l->m->nloops == MACRO_LOOPS)
+		return macro_refuse(l, at, "up to 16 loops inside each other, "
+				    "calls counted", "a loop too many");
+	if (!loop)
+		loop = &l->m->loop[l->m->nloops++];
+	*loop = (struct macro_loop) {
+		.id = id, .depth = l->r->depth, .at = l->r->line_at,
+		.line = l->r->line,
+	};
+	return 1;
+}
+
+/* WHILE [ ] DO1, and DO1 alone. */
+static int take_while(struct macro_line *l, const uint8_t *at, bool truth)
+{
+	struct nc_reader *r = l->r;
+	struct place next = { r->at, r->line + 1 }, to;
+	uint32_t id;
+	int err = take_number(l, &id);
+
+	if (err)
+		return err;
+	if (truth)
+		return begin_loop(l, at, id);
+	err = search(l, next, r->end, is_end, id, &to);
+	if (err)
+		return err;
+	if (!to.at)
+		return macro_refuse(l, at, "END with the number of its DO, in "
+				    "the same program", "a WHILE without END%u",
+				    id);
+	r->at = nc_line_next(nc_line_end(to.at, r->end), r->end);
+	r->line = to.line;
+	return 1;
+}
+
+static int take_end(struct macro_line *l, const uint8_t *at)
+{
+	struct macro_loop *loop;
+	uint32_t id;
+	int err = take_number(l, &id);
+
+	if (err)
+		return err;
+	loop = loop_of(l, id);
+	if (!loop)
+		return macro_refuse(l, at, "WHILE [ ] DO or DO before it",
+				    "END%u of no loop", id);
+	err = macro_round(l, at);
+	go(l->r, (struct place) { loop->at, loop->line });
+	return err ? err : 1;
+}
+
+/* -- Calls ------------------------------------------------------------------- */
+
+/* The variables of A ... Z behind G65; 0: not an argument. */
+static const uint8_t argument[26] = {
+	1, 2, 3, 7, 8, 9, 0, 11, 4, 5, 6, 0, 13, 0, 0, 0, 17, 18, 19, 20, 21,
+	22, 23, 24, 25, 26
+};
+
+struct call {
+	double local[MACRO_LOCALS];
+	double number;
+	uint32_t triples;		/* of I J K */
+	uint8_t last;			/* the last of I J K */
+};
+
+/* A second I, J or K that does not come behind its predecessor begins the next
+ * three: #7 #8 #9, ... */
+static uint32_t variable_of(struct call *c, uint8_t letter)
+{
+	if (letter < 'I' || letter > 'K')
+		return argument[letter - 'A'];
+	if (letter <= c->last)
+		c->triples++;
+	c->last = letter;
+	return 4 + 3 * c->triples + (uint32_t)(letter - 'I');
+}
+
+static int take_argument(struct macro_line *l, struct call *c)
+{
+	const uint8_t *at = l->p, letter = (uint8_t)toupper(*l->p++);
+	uint32_t which = 0;
+	double v;
+	int err;
+
+	if (letter >= 'A' && letter <= 'Z' && letter != 'P')
+		which = variable_of(c, letter);
+	if (which >= MACRO_LOCALS || (!which && letter != 'P'))
+		return macro_refuse(l, at, "P, then A B C D E F H I J K M Q R S "
+				    "T U V W X Y Z with values", "'%c' behind "
+				    "G65", *at);
+	err = macro_value(l, &v);
+	if (err)
+		return err;
+	if (letter == 'P')
+		c->number = v;
+	else
+		c->local[which] = v;
+	return 0;
+}
+
+static int take_call(struct macro_line *l, const uint8_t *at)
+{
+	struct nc_reader *r = l->r;
+	struct nc_macro *m = l->m;
+	struct call c = { .number = 0 };
+	int err = 0;
+
+	for (int i = 0; i < MACRO_LOCALS; i++)
+		c.local[i] = NAN;
+	for (;;) {
+		macro_blanks(l);
+		if (err || l->p == l->end || *l->p == '(' || *l->p == ';')
+			break;
+		err = take_argument(l, &c);
+	}
+	if (!err)
+		err = nc_call(r, c.number, at);
+	if (err)
+		return err;
+	m->level++;
+	m->own_level[r->depth] = true;
+	for (int i = 0; i < MACRO_LOCALS; i++)
+		m->local[m->level][i] = c.local[i];
+	return 1;
+}
+
+int macro_flow(struct macro_line *l)
+{
+	uint64_t ignored = 0;
+	const uint8_t *at;
+	bool truth;
+	int err;
+
+	l->p = behind_n(l->p, l->end, &ignored);
+	macro_blanks(l);
+	at = l->p;
+	if (macro_word(l, "IF"))
+		return take_if(l, at);
+	if (macro_word(l, "GOTO"))
+		return go_to(l, at);
+	if (macro_word(l, "G65"))
+		return take_call(l, at);
+	if (macro_word(l, "END"))
+		return take_end(l, at);
+	if (macro_word(l, "DO"))
+		return take_while(l, at, true);
+	if (!macro_word(l, "WHILE"))
+		return 0;
+	err = macro_truth(l, &truth);
+	if (!err && !macro_word(l, "DO"))
+		err = macro_refuse(l, l->p, "WHILE [ ] DO1", "WHILE without DO");
+	return err ? err : take_while(l, at, truth);
+}

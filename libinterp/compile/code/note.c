@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * note.c - say what is ignored, and what other controls read otherwise
+ */
+#include "code/reader.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static void say(struct nc_reader *r, const char *format, ...)
+	__attribute__((format(printf, 2, 3)));
+
+static void say(struct nc_reader *r, const char *format, ...)
+{
+	char text[320];
+	va_list ap;
+
+	va_start(ap, format);
+	vsnprintf(text, sizeof(text), format, ap);
+	va_end(ap);
+	r->o->notes->say(r->o->notes->arg, r->line, text);
+}
+
+void nc_note_code(struct nc_reader *r, const uint8_t *at,
+		  const struct nc_code *code)
+{
+	const bool listed = code >= r->d->code &&
+			    code < r->d->code + NC_NCODES;
+	const size_t which = listed ? (size_t)(code - r->d->code) :
+				      (size_t)NC_NCODES + code->text;
+	uint8_t *told = &r->told[which / 8];
+	const uint8_t bit = (uint8_t)(1u << which % 8);
+
+	if (!r->o->notes || (*told & bit))
+		return;
+	*told |= bit;
+	say(r, code->group == NC_IGNORED ? "%s is ignored: %s" : "%s: %s",
+	    nc_quote_word(r, at).s, r->d->text + code->text);
+}
+
+/* Has this kind been told?  From now on it has. */
+static bool told(struct nc_reader *r, enum nc_told kind)
+{
+	const bool was = r->told_once & NC_BIT(kind);
+
+	r->told_once |= NC_BIT(kind);
+	return was;
+}
+
+void nc_note_point(struct nc_reader *r, const uint8_t *at)
+{
+	if (!r->o->notes || !r->o->notes->plan || told(r, NC_TOLD_POINT))
+		return;
+	say(r, "%s has no decimal point: it is read as %s here, and counts "
+	    "the last decimal on many controls of EDM machines",
+	    nc_quote_word(r, at).s, r->unit_mm > 1 ? "inches" : "mm");
+}
+
+/* G0 C120: an axis for whoever wrote it? */
+static void note_condition(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+	const uint8_t *at;
+
+	if (!nc_has_group(r, NC_CONDITION) || b->cond_letter != 'C' ||
+	    !nc_has_group(r, NC_MOTION) || r->absent & NC_BIT(NC_C) ||
+	    told(r, NC_TOLD_CONDITION))
+		return;
+	at = b->code_at[NC_CONDITION];
+	say(r, "%s calls a condition; the axis would be %s.",
+	    nc_quote_word(r, at).s, nc_quote_word(r, at).s);
+}
+
+static void note_dwell(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+
+	if (!nc_has_group(r, NC_ONE_SHOT) || r->d->dwell_ms ||
+	    b->code[NC_ONE_SHOT]->value != NC_DWELL || !nc_has(r, NC_P) ||
+	    b->value[NC_P] < 60 || told(r, NC_TOLD_DWELL))
+		return;
+	say(r, "a dwell of %g s: P counts seconds here, and milliseconds in "
+	    "Fanuc's dialects", b->value[NC_P]);
+}
+
+void nc_note_line(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+
+	note_condition(r);
+	note_dwell(r);
+	if (nc_has_group(r, NC_UNITS) && b->code[NC_UNITS]->value &&
+	    !told(r, NC_TOLD_INCHES))
+		say(r, "lengths and feeds are in inches from here on");
+}

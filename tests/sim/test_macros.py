@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Variables, expressions and jumps: against LinuxCNC's own interpreter, and
+against the same program written out line by line.
+"""
+import math
+import re
+import shutil
+import subprocess
+
+import pytest
+from edmsim import PROGRAM, ROOT, run, seeded
+
+RS274 = shutil.which("rs274")
+MACROS = ROOT / "tests/data/macros"
+peer = pytest.mark.skipif(
+    not RS274, reason="no rs274 to compare with: apt install linuxcnc-uspace")
+
+
+def theirs(path):
+    """Ends of LinuxCNC's motions, X Y Z A B C."""
+    out = subprocess.run([RS274, "-g", str(path)], capture_output=True,
+                         text=True, timeout=100).stdout
+    return [tuple(float(n) for n in m.split(", ")) for m in re.findall(
+        r"STRAIGHT_(?:TRAVERSE|FEED)\((.*?)\)", out)]
+
+
+def ours(path, dialect):
+    """The same, of what edmsim reads; words that do not change are missing."""
+    out = subprocess.run([PROGRAM, "--dialect", dialect, "--emit", "iso",
+                          str(path)], capture_output=True, text=True,
+                         timeout=100)
+    assert out.returncode == 0, out.stderr
+    at, ends = [0.0] * 6, []
+    for line in out.stdout.splitlines():
+        words = re.findall(r"([XYZABC])(-?[\d.]+)", line)
+        for letter, value in words:
+            at["XYZABC".index(letter)] = float(value)
+        if words:
+            ends.append(tuple(at))
+    return ends
+
+
+def moved(ends):
+    """Without motions that go nowhere."""
+    ret, at = [], (0.0,) * 6
+    for end in ends:
+        if max(map(abs, map(float.__sub__, end, at))) > 1e-4:
+            ret.append(end)
+            at = end
+    return ret
+
+
+def assert_same(path):
+    a, b = moved(ours(path, "linuxcnc")), moved(theirs(path))
+    assert len(a) == len(b) and a, (len(a), len(b))
+    for mine, other in zip(a, b):
+        assert all(math.isclose(m, o, abs_tol=1.01e-3)
+                   for m, o in zip(mine, other)), (mine, other)
+
+
+@peer
+@pytest.mark.parametrize("name", ["linuxcnc.ngc", "cavities.ngc"])
+def test_o_words_end_where_linuxcnc_ends(name):
+    assert_same(MACROS / name)
+
+
+def expression(rnd, depth):
+    """A random one that both read, without values that are no numbers."""
+    if depth == 0 or rnd.random() < 0.2:
+        return rnd.choice([f"{rnd.uniform(-9, 9):.3f}", "#1", "#2", "#<a>"])
+    a, b = expression(rnd, depth - 1), expression(rnd, depth - 1)
+    kind = rnd.randrange(6)
+    if kind == 0:
+        f = rnd.choice(["sin", "cos", "abs", "fix", "fup", "round", "atan"])
+        return f"atan[{a}]/[{b}]" if f == "atan" else f"{f}[{a}]"
+    if kind == 1:
+        return f"sqrt[abs[{a}]]"
+    if kind == 2:
+        return f"[{a} / [abs[{b}] + 1]]"
+    if kind == 3:
+        return f"[{a} {rnd.choice(['lt', 'ge', 'and', 'xor', 'or'])} {b}]"
+    if kind == 4:
+        return f"[[{a}] mod [abs[{b}] + 1]]"
+    return f"[{a} {rnd.choice('+-')} {b} * {expression(rnd, depth - 1)}]"
+
+
+@peer
+def test_random_expressions_come_to_what_linuxcnc_says(tmp_path):
+    rnd = seeded()
+    lines = ["G21 G90", "#1=2.5 #2=-1.25 #<a>=7"]
+    for _ in range(60):
+        # Within the travel, wherever it comes to; far from a rounding.
+        lines.append(f"G0 X[50 * sin[{expression(rnd, 3)}]]")
+        lines.append(f"#{rnd.choice([1, 2])} = [5 * cos[{expression(rnd, 2)}]]")
+    path = tmp_path / "e.ngc"
+    path.write_text("\n".join(lines) + "\nM2\n")
+    assert_same(path)
+
+
+def written_out(text, tmp_path):
+    path = tmp_path / "out.nc"
+    path.write_text(text)
+    return ours(path, "generic")
+
+
+def test_custom_macro_b_ends_where_it_does_written_out(tmp_path):
+    assert ours(MACROS / "fanuc.nc", "fanuc-sinker") == written_out(
+        "G0 X10 Y.5\nG0 X20 Y1\nG0 X30 Y1.5\nG0 Z4\nG0 X7.5\nM2\n", tmp_path)
+
+
+def test_a_bolt_circle_ends_where_it_does_written_out(tmp_path):
+    """Arguments, loops, GOTO out of a loop, #100 shared, locals apart."""
+    path = tmp_path / "bolts.nc"
+    path.write_text("""O1
+G90 G21
+#100=0
+#1=99
+G65 P9010 X10. Y-5. R25. A30. H7
+IF [#1 NE 99] THEN #3000=1(LOCALS)
+IF [#100 NE 6] THEN #3000=2(COUNT)
+M30
+O9010 (#24 #25 centre, #18 radius, #1 first angle, #11 holes)
+#2=0
+WHILE [1 EQ 1] DO1
+IF [#2 GE #11] GOTO 90
+IF [#2 EQ 3] GOTO 80
+G0 X[#24+#18*COS[#1+#2*360/#11]] Y[#25+#18*SIN[#1+#2*360/#11]]
+G65 P9020 Z-2.
+#100=#100+1
+N80 #2=#2+1
+END1
+N90 M99
+O9020
+#24=#26/2
+G0 Z#24
+G0 Z0
+M99
+""")
+    text = "G21 G90\n"
+    for i in range(7):
+        if i == 3:
+            continue
+        a = math.radians(30 + i * 360 / 7)
+        text += f"G0 X{10 + 25 * math.cos(a):.6f} Y{-5 + 25 * math.sin(a):.6f}\n"
+        text += "G0 Z-1\nG0 Z0\n"
+    assert ours(path, "fanuc-sinker") == written_out(text, tmp_path)
+
+
+REFUSED = [
+    ("fanuc-sinker", "#1=1\nWHILE[#1 EQ 1]DO2\nG0 X1.\nEND2\nM30\n",
+     b":4:1: error: a loop that has gone on for 1000000 rounds; loops"),
+    ("fanuc-sinker", "N1 G0 X1.\nGOTO 1\n", b":2:1: error: a loop that has"),
+    ("fanuc-sinker", "G0 X1.\nGOTO 7\n", b":2:1: error: GOTO 7, which is not"),
+    ("fanuc-sinker", "G0 X[1/0]\n", b":1:7: error: a division by 0; a divisor"),
+    ("fanuc-sinker", "G0 X[1+2] Y[400]\n", b":1:11: error: Y 400.0000 is bey"),
+    ("fanuc-sinker", "G0 X[SQRT[-4]]\n", b":1:6: error: SQRT[-4]; a value"),
+    ("fanuc-sinker", "G0 X[1+[2]\n", b":1:11: error: an expression without"),
+    ("fanuc-sinker", "#3000=5\n", b":1:1: error: the program's own alarm"),
+    ("fanuc-sinker", "#200=5\n", b":1:1: error: a value for #200; #1 ..."),
+    ("fanuc-sinker", "G0 X#4102\n", b":1:5: error: variable #4102, whose"),
+    ("fanuc-sinker", "WHILE[1 EQ 2]DO1\nG0 X1.\n", b":1:1: error: a WHILE with"),
+    ("fanuc-sinker", "IF[1 EQ 2] G0 X1.\n", b":1:12: error: an IF without"),
+    ("fanuc-sinker", "G65 P77 X1.\nM30\n", b":1:1: error: a call of O77"),
+    ("fanuc-sinker", "O5\nG65 P5\nM30\n", b":2:1: error: a call inside 8 oth"),
+    ("linuxcnc", "G0 X#<none>\n", b":1:5: error: #<none>, which has none; a"),
+    ("linuxcnc", "o1 while [1]\no1 endwhile\n", b":2:1: error: a loop that has"),
+    ("linuxcnc", "o1 call\nG0 X1\n", b":1:1: error: a call of o1, which"),
+    ("linuxcnc", "o1 if [0]\nG0 X1\n", b":1:1: error: o1 without its endif"),
+    ("linuxcnc", "o1 endsub\n", b":1:1: error: o1 return or endsub outside"),
+    ("linuxcnc", "o1 sub\no1 call\no1 endsub\no1 call\nG0 X1\n",
+     b":2:1: error: a call inside 8 others"),
+    ("linuxcnc", "G0 X[" + "[" * 40 + "1\n", b"brackets inside each other"[:8]),
+    ("generic", "G0 X[1]\n", b":1:4: error: X[1] is not a word"),
+]
+
+
+@pytest.mark.parametrize("dialect, text, said", REFUSED)
+def test_what_cannot_be_carried_out_is_refused_at_its_place(dialect, text,
+                                                            said):
+    r = run("--dialect", dialect, "--check", text=text)
+    assert r.returncode == 65 and said in r.stderr, r.stderr
+
+
+def test_places_and_offsets_of_the_machine_are_known(tmp_path):
+    path = tmp_path / "p.nc"
+    path.write_text("G10 L2 P1 X5.\nG54 G0 X3. Y1.5\nG0 Y[#5041*10+#5221]\n"
+                    "G0 X[#5021]\n")
+    # X 3 from 5 is 8 of the machine; Y is 3 times 10 and 5.
+    assert ours(path, "fanuc-sinker")[1:] == [(8, 35, 0, 0, 0, 0),
+                                              (13, 35, 0, 0, 0, 0)]
