@@ -292,6 +292,9 @@ $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 $(B)/unit/test_store: $(SIGN_O) $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/store*.c) daemon/jobs/trust.c daemon/jobs/jobs_log.c)
 $(B)/unit/test_store: UNIT_LIBS = -lsqlite3 -lsodium -lsystemd
 
+$(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
+$(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
+
 # The lines of its encoder are its own.
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 

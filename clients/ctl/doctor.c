@@ -275,6 +275,36 @@ static void look_store(const struct host *h, struct finding *f)
 	talk_answer_free(&a);
 }
 
+static void look_place(const struct host *h, struct finding *f)
+{
+	const struct talk_question q = { .verb = "store" };
+	json_int_t writes = 0, bytes = 0, slowest_us = 0;
+	struct talk_answer a;
+	const char *why = "";
+	char found[160];
+	uint64_t heard;
+	json_t *j;
+
+	if (!h->ctl->talk || !talk_status(h->ctl->talk, &heard) ||
+	    talk_ask(h->ctl->talk, &q, h->ctl->timeout_s, &a) < 0) {
+		say(f, UNUSED, "edmd-jobs does not answer", "");
+		return;
+	}
+	j = json_loads(a.body ? a.body : "", 0, NULL);
+	json_unpack(j, "{s:I,s:I,s:I,s:s}", "place_writes", &writes,
+		    "place_bytes", &bytes, "place_slowest_us", &slowest_us,
+		    "place_why", &why);
+	snprintf(found, sizeof(found), "%lld written since the start, %.3f MB, "
+		 "the slowest took %.1f ms", (long long)writes,
+		 (double)bytes / 1e6, (double)slowest_us / 1e3);
+	if (*why)
+		snprintf(found, sizeof(found), "cannot be written: %.80s", why);
+	say(f, *why ? BAD : GOOD, found, "mend the disk of [jobs] store: "
+	    "until then a job cannot be found again after a power cut");
+	json_decref(j);
+	talk_answer_free(&a);
+}
+
 /* clang-format off */
 static const struct {
 	const char *what;
@@ -291,6 +321,7 @@ static const struct {
 	{ "edmd",		look_edmd },
 	{ "edmd-jobs",		look_jobs },
 	{ "store",		look_store },
+	{ "checkpoint",		look_place },
 };
 /* clang-format on */
 

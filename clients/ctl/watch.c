@@ -68,6 +68,12 @@ static void print_text(const struct talk_status *s)
 	for (int i = 0; i < TALK_NAXES; i++)
 		printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
 	printf(" (mm, degrees)\n");
+	if (*s->lost)
+		printf("not sure   %s: not homed, or nothing homes it, since the "
+		       "power went\n", s->lost);
+	if (*s->interrupted)
+		printf("interrupted %s; edmctl show tells where\n",
+		       s->interrupted);
 	if (s->contour_mm >= 0)
 		printf("contour    off by %.1f um at most, predicted %.1f um\n",
 		       s->contour_mm * 1e3, s->contour_predicted_mm * 1e3);
@@ -178,7 +184,8 @@ int ctl_watch(struct ctl *c)
 static bool is_over(const char *state)
 {
 	return strcmp(state, "done") == 0 || strcmp(state, "fault") == 0 ||
-	       strcmp(state, "stopped") == 0;
+	       strcmp(state, "stopped") == 0 ||
+	       strcmp(state, "interrupted") == 0;
 }
 
 static int report(const struct ctl *c, const char *body, json_t *job)

@@ -178,7 +178,7 @@ static const struct config_key row[] = {
 	NUMBER(GAP, "noise_limit_v", "V", "100", 0, 1000, AT(gap.noise_limit_v),
 	       "a signal that changes by more than this in a cycle, on "
 	       "average, is fault gap-stuck; 0: not watched"),
-	NUMBER(GAP, "wire_retract_mm", "mm", "0.02", 0.001, 1000,
+	NUMBER(GAP, "wire_retract_mm", "mm", "0.5", 0.001, 1000,
 	       AT(gap.wire_retract_mm),
 	       "wire machines: a retract goes no farther back"),
 	WORDS(GAP, "wire_retreat_to", "distance", AT(gap.wire_retreat_to),

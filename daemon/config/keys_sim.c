@@ -123,7 +123,7 @@ static const struct config_key row[] = {
 	       "crowding is above 1"),
 	NUMBER(SIM, "arcing_s", "s", "1", 1e-3, 1000, AT(sim.arcing_s),
 	       "time constant of a place heated by arcs"),
-	NUMBER(SIM, "break_per_j", "1/J", "0.0002", 0, 1, AT(sim.break_per_j),
+	NUMBER(SIM, "break_per_j", "1/J", "0.000002", 0, 1, AT(sim.break_per_j),
 	       "probability per joule that the wire breaks; process wire"),
 	NUMBER(SIM, "rethread_s", "s", "30", 0, 3600, AT(sim.rethread_s),
 	       "time with the power off until a broken wire is threaded "

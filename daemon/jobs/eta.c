@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 void eta_fini(struct eta *l)
 {
@@ -67,8 +68,11 @@ void eta_take(struct eta *l, const char *machine, uint32_t n)
 		return;
 	eta_fini(l);
 	if (n && shm_program_open(&block, &bytes, machine, n) == 0) {
-		if (interp_program_map(&p, block, bytes) == 0)
+		if (interp_program_map(&p, block, bytes) == 0) {
 			eta_measure(l, &p);
+			memcpy(l->start, p.head->start_pulses,
+			       sizeof(l->start));
+		}
 		shm_program_unmap(block, bytes);
 	}
 	l->n = n;

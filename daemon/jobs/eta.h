@@ -26,6 +26,7 @@ struct eta {
 	struct eta_part *part;
 	size_t nparts;
 	double cut_mm;			/* of the whole path */
+	int32_t start[INTERP_NAXES];	/* where it begins, pulses */
 };
 
 /** eta_take() - program @n of @machine, if it is not the one it has. */

@@ -8,6 +8,7 @@
 #ifndef JOBS_JOBS_H
 #define JOBS_JOBS_H
 
+#include "checkpoint.h"
 #include "config.h"
 #include "eta.h"
 #include "link.h"
@@ -41,6 +42,14 @@ struct jobs {
 	int64_t status_us;		/* when the last was sent, monotonic */
 	uint64_t status_key;		/* what a change of is sent at once */
 	int64_t begun_us;		/* of this service */
+	struct checkpoint_file *checkpoint;	/* NULL: there is none */
+	const char *store_dir;
+	int64_t checkpoint_again_us;	/* not before */
+	int checkpoint_err;		/* of the last try */
+	struct checkpoint last;		/* as it was found at the start */
+	char interrupted[64];		/* id of the job that waits; or "" */
+	uint32_t vouched;		/* axes that an operator answers for */
+	uint8_t config_hash[32];	/* of the machine file */
 	const char *store_told;		/* store_why() as it was told last */
 	bool act_open;			/* act.c: a transaction is */
 	int claim;			/* shm_writer_claim(); -1: none */

@@ -6,6 +6,7 @@
 
 #include "cmdline.h"
 #include "compiling.h"
+#include "interrupt.h"
 #include "keys.h"
 #include "jobs_log.h"
 #include "logger.h"
@@ -129,6 +130,13 @@ static int on_lcm(sd_event_source *s, int fd, uint32_t events, void *arg)
 	return 0;
 }
 
+static void tell_mended(struct jobs *j)
+{
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "store", .outcome = "mended",
+	}, "%s", store_mended(j->store));
+}
+
 /* Tell when the store is degraded, and when it is whole again. */
 static void watch_store(struct jobs *j, int64_t now_us)
 {
@@ -141,6 +149,8 @@ static void watch_store(struct jobs *j, int64_t now_us)
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "store", .outcome = *why ? "degraded" : "ok",
 	}, "store %s%s", *why ? "degraded: " : "is whole again", why);
+	if (whole && *store_mended(j->store))
+		tell_mended(j);
 	/* Nothing was known of what is in it. */
 	if (whole && j->queue.job.n == 0)
 		queue_init(j);
@@ -163,6 +173,7 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 		log_notice("submit: dropped %d uploads that did not go on for "
 			   "30 s", dropped);
 	watch_store(j, now_us);
+	checkpoint_tick(j, now_us);
 	store_retain(j->store, (int64_t)j->config->keep_jobs,
 		     (int64_t)j->config->keep_days, jobs_utime());
 	status_tick(j, now_us);
@@ -316,11 +327,10 @@ static int run(struct jobs *j)
 	twin_init(&j->twin, j->config);
 	j->store_told = "";
 	if (*store_mended(j->store))
-		jobs_note(j, &(struct jobs_note) {
-			.kind = "store", .outcome = "mended",
-		}, "%s", store_mended(j->store));
+		tell_mended(j);
 	if (err >= 0)
 		err = queue_init(j);
+	interrupt_init(j);
 	if (err >= 0)
 		err = add_sources(j);
 	if (err >= 0) {
@@ -336,6 +346,23 @@ static int run(struct jobs *j)
 	link_fini(&j->link);
 	sd_event_unref(j->event);
 	return err < 0 ? EX_SOFTWARE : EX_OK;
+}
+
+/* Zeros if it cannot be read. */
+static void hash_file(uint8_t ret[32], const char *path)
+{
+	crypto_hash_sha256_state h;
+	unsigned char part[4096];
+	FILE *f = fopen(path, "re");
+	size_t n;
+
+	if (!f)
+		return;
+	crypto_hash_sha256_init(&h);
+	while ((n = fread(part, 1, sizeof(part), f)) > 0)
+		crypto_hash_sha256_update(&h, part, n);
+	crypto_hash_sha256_final(&h, ret);
+	fclose(f);
 }
 
 int main(int argc, char **argv)
@@ -357,6 +384,12 @@ int main(int argc, char **argv)
 	jobs.claim = -1;
 	if (err == 0)
 		err = claim(&jobs);
+	jobs.store_dir = o.store ? o.store : config.store_dir;
+	/* A service without checkpoints is better than none. */
+	if (err == 0)
+		checkpoint_open(&jobs.checkpoint, jobs.store_dir, jobs.machine,
+				&jobs.last);
+	hash_file(jobs.config_hash, o.config);
 	if (err == 0)
 		err = keys_open(&jobs, o.store ? o.store : config.store_dir);
 	if (err == 0)
@@ -367,6 +400,7 @@ int main(int argc, char **argv)
 	jobs_lcm_close(jobs.lcm);
 	keys_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
+	checkpoint_close(jobs.checkpoint);
 	store_close(jobs.store);
 	logger_stop();
 	return err;

@@ -4,6 +4,7 @@
  */
 #include "faults.h"
 #include "hunting.h"
+#include "interrupt.h"
 #include "jobs.h"
 
 #include "interp/tech_table.h"
@@ -60,7 +61,7 @@ int queue_promise(struct jobs *j)
 }
 
 /* It did not begin: that it may have is taken back. */
-static void unpromise(struct jobs *j)
+void queue_unpromise(struct jobs *j)
 {
 	if (j->queue.promised)
 		store_may_begin(j->store, 0);
@@ -73,7 +74,7 @@ void queue_started(struct jobs *j, int code)
 
 	/* Whatever is not a clear no may have been done. */
 	if (code > 0 && code != SHM_CUT_SHORT && code != SHM_DONE)
-		unpromise(j);
+		queue_unpromise(j);
 	if (code != SHM_DONE)
 		return;
 	queue_go(j);
@@ -89,6 +90,9 @@ const char *queue_unready(const struct jobs *j)
 		return "edmd is not there";
 	if (queue_is_faulted(j))
 		return "a fault is latched: it wants a reset";
+	if (*j->interrupted)
+		return "a job was interrupted, and its work may still be "
+		       "there: remove it from the queue first";
 	if (j->config->require_home && j->link.snap.unhomed)
 		return "an axis is not homed: home it";
 	return NULL;
@@ -166,7 +170,8 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 	queue_recount(j);
 	q->ended = SHM_OUTCOME_NONE;
 	jobs_note(j, &(struct jobs_note) {
-		.kind = "ended", .job = q->job.id,
+		.kind = state == JOB_INTERRUPTED ? "interrupted" : "ended",
+		.job = q->job.id,
 		.outcome = store_state_name(state),
 		.place_mm = q->snap.place_mm,
 	}, "job %s %s%s%s", q->job.name, store_state_name(state),
@@ -181,7 +186,7 @@ void queue_drop(struct jobs *j, bool again)
 
 	if (again) {
 		set_state(j, JOB_QUEUED);
-		unpromise(j);
+		queue_unpromise(j);
 	}
 	q->promised = 0;
 	shm_program_remove(j->machine, q->job.n);
@@ -310,7 +315,7 @@ static void follow_running(struct jobs *j)
 		return;
 	q->job.begun_us = jobs_utime();
 	store_begin(j->store, q->job.n, q->job.begun_us);
-	unpromise(j);
+	queue_unpromise(j);
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "begun", .job = q->job.id,
 	}, "job %s begun", q->job.name);
@@ -342,7 +347,7 @@ static void follow_hold(struct jobs *j, int64_t now_us)
 		return;
 	}
 	if (queue_promise(j) < 0 || load_send(j, SHM_DO_START, 0, now_us) < 0) {
-		unpromise(j);
+		queue_unpromise(j);
 		q->again_us = now_us + AGAIN_US;
 	}
 }
@@ -390,7 +395,7 @@ static void follow_state(struct jobs *j, int64_t now_us)
 /* It was handed a start, and nobody is left who knows what came of it. */
 static bool may_have_begun(const struct jobs *j)
 {
-	return j->queue.job.begun_us ||
+	return j->queue.job.begun_us || interrupt_saw_begin(j) ||
 	       store_number(j->store, "started", 0) == j->queue.job.n;
 }
 
@@ -407,12 +412,11 @@ static void follow_missing(struct jobs *j, int64_t now_us)
 		q->missing_us = now_us;
 	} else if (now_us - q->missing_us > MISSING_US && !q->loading) {
 		if (may_have_begun(j))
-			queue_end(j, JOB_STOPPED,
-				  "edmd restarted without its program; its "
-				  "log says why");
+			interrupt_take(j);
 		else
 			set_waiting(j, true);
-		queue_drop(j, q->job.state != JOB_STOPPED);
+		queue_drop(j, q->job.state == JOB_QUEUED ||
+			      q->job.state == JOB_READY);
 	}
 }
 
@@ -454,7 +458,7 @@ static void fault_without_job(struct jobs *j)
 static bool may_load(const struct jobs *j)
 {
 	return j->link.snap.state == SHM_IDLE && !j->link.snap.unplaced &&
-	       !*store_why(j->store) &&
+	       !*store_why(j->store) && !*j->interrupted &&
 	       !(j->config->require_home && j->link.snap.unhomed);
 }
 

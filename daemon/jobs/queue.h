@@ -70,6 +70,8 @@ void queue_go(struct jobs *j);
 /** queue_promise() - the job loaded is about to be started.
  *  Return: 0; -errno: it has not begun, and that it does cannot be stored. */
 int queue_promise(struct jobs *j);
+/** queue_unpromise() - it was not started after all. */
+void queue_unpromise(struct jobs *j);
 /** queue_has_begun() - the job loaded, and that is known. */
 bool queue_has_begun(const struct jobs *j);
 /** queue_started() - what edmd answered to a start: enum link's codes. */

@@ -18,13 +18,15 @@ static bool is_over(const struct store_job *job)
 	return job->state == JOB_DONE || job->state == JOB_STOPPED;
 }
 
-/* One that was unloaded before it began is still to be cut. */
+/* One that was unloaded before it began is still to be cut; so is one of the same
+ * number and text that was sent later, to a store that began anew. */
 static bool is_of(const struct shm_ended *e, const struct store_job *job)
 {
 	char hex[65];
 
 	sodium_bin2hex(hex, sizeof(hex), e->hash, sizeof(e->hash));
 	return strcmp(hex, job->sha256) == 0 &&
+	       e->time_ns / 1000 > job->submitted_us &&
 	       (e->outcome == SHM_OUTCOME_DONE || e->job_cycles > 0);
 }
 

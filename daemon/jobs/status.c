@@ -3,6 +3,7 @@
  * status.c - edmd's snapshot and the job loaded, as STATUS
  */
 #include "faults.h"
+#include "interrupt.h"
 #include "jobs.h"
 
 #include "interp/tech_table.h"
@@ -98,5 +99,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 	snprintf(store, sizeof(store), "%s%s", *store_why(j->store) ?
 		 "degraded: " : "ok", store_why(j->store));
 	w.store = store;
+	w.interrupted = j->interrupted;
+	w.lost = j->link.state == LINK_OK ? interrupt_lost(j) : "";
 	jobs_lcm_status(j->lcm, &w);
 }

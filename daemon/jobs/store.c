@@ -19,6 +19,7 @@ static const char *const state_names[JOB_NSTATES] = {
 	[JOB_DONE]	= "done",
 	[JOB_FAULT]	= "fault",
 	[JOB_STOPPED]	= "stopped",
+	[JOB_INTERRUPTED] = "interrupted",
 };
 
 const char *store_state_name(enum job_state s)
@@ -96,7 +97,7 @@ static void column_copy(sqlite3_stmt *q, int i, char *to, size_t size)
 }
 
 #define JOB_COLUMNS	"n, id, name, sha256, state, hold, loaded, " \
-			"begun_us, lines"
+			"begun_us, lines, tech_sha256, submitted_us"
 
 static int job_get(sqlite3_stmt *q, int err, struct store_job *ret)
 {
@@ -111,6 +112,8 @@ static int job_get(sqlite3_stmt *q, int err, struct store_job *ret)
 	ret->loaded = sqlite3_column_int(q, 6) != 0;
 	ret->begun_us = sqlite3_column_int64(q, 7);
 	ret->lines = (uint32_t)sqlite3_column_int64(q, 8);
+	column_copy(q, 9, ret->tech_sha256, sizeof(ret->tech_sha256));
+	ret->submitted_us = sqlite3_column_int64(q, 10);
 	sqlite3_finalize(q);
 	return 0;
 }
@@ -250,6 +253,32 @@ int store_set_tech(struct store *s, uint32_t n, const char *sha256)
 {
 	return store_do(s, STORE_KEEP, "UPDATE job SET tech_sha256=? WHERE n=?",
 			"sI", sha256, (int64_t)n);
+}
+
+int store_interrupt(struct store *s, uint32_t n, const char *at)
+{
+	return store_do(s, STORE_KEEP, "INSERT OR REPLACE INTO resume VALUES"
+			"(?, ?)", "Is", (int64_t)n, at);
+}
+
+int store_interrupted(struct store *s, struct store_job *ret)
+{
+	int err;
+	sqlite3_stmt *q = store_ask(s, &err, "SELECT " JOB_COLUMNS " FROM job "
+				    "WHERE state='interrupted' ORDER BY n DESC "
+				    "LIMIT 1", "");
+
+	return job_get(q, err, ret);
+}
+
+char *store_resume_at(struct store *s, uint32_t n)
+{
+	sqlite3_stmt *q = store_ask(s, NULL, "SELECT at FROM resume WHERE n=?",
+				    "i", (int64_t)n);
+	char *at = q ? strdup((const char *)sqlite3_column_text(q, 0)) : NULL;
+
+	sqlite3_finalize(q);
+	return at;
 }
 
 /* edmd's events come again when either side was restarted; their time tells

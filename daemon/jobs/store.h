@@ -32,6 +32,7 @@
 enum job_state {
 	JOB_QUEUED, JOB_READY, JOB_RUNNING, JOB_HELD,
 	JOB_DONE, JOB_FAULT, JOB_STOPPED,
+	JOB_INTERRUPTED,		/* by the power: waits to be resumed */
 	JOB_NSTATES
 };
 
@@ -41,9 +42,11 @@ struct store_job {
 	uint32_t n;
 	char id[64], name[64];
 	char sha256[65];		/* hex */
+	char tech_sha256[65];		/* of its technology table; "" */
 	enum job_state state;
 	bool hold;			/* waits for "start" */
 	bool loaded;			/* program.<n> exists, or may exist */
+	int64_t submitted_us;
 	int64_t begun_us;		/* 0: not yet */
 	uint32_t lines;			/* of the text */
 };
@@ -153,6 +156,12 @@ int store_begin(struct store *s, uint32_t n, int64_t now_us);
 int store_may_begin(struct store *s, uint32_t n);
 int store_end(struct store *s, uint32_t n, const struct store_end *e);
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
+/** store_interrupt() - @at: its checkpoint, hex, for store_resume_at(). */
+int store_interrupt(struct store *s, uint32_t n, const char *at);
+/** store_interrupted() - the job that was interrupted last.  0 or -ENOENT. */
+int store_interrupted(struct store *s, struct store_job *ret);
+/** store_resume_at() - the checkpoint of job @n; to be freed.  NULL: none. */
+char *store_resume_at(struct store *s, uint32_t n);
 /** store_change() - of job @n; the same one twice is kept once. */
 int store_change(struct store *s, uint32_t n, const struct store_change *c);
 int store_note(struct store *s, const struct store_note *e);

@@ -63,6 +63,11 @@ static const char *const steps[] = {
 	" DELETE FROM text WHERE n=old.n;"
 	" DELETE FROM change WHERE n=old.n;"
 	" DELETE FROM event WHERE job=old.id; END;",
+
+	/* The checkpoint of a job that was interrupted, hex. */
+	"CREATE TABLE resume(n INTEGER PRIMARY KEY, at TEXT NOT NULL);"
+	"CREATE TRIGGER resume_gone AFTER DELETE ON job BEGIN"
+	" DELETE FROM resume WHERE n=old.n; END;",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))
@@ -203,7 +208,8 @@ static int open_once(struct store *s, sqlite3 **ret)
 		sqlite3_busy_timeout(db, STORE_BUSY_MS);
 		err = execute(db, set);
 	}
-	if (err == 0)
+	/* Not each time that there may be room again. */
+	if (err == 0 && (!s->in_memory || s->err == -EILSEQ))
 		err = check(s, db);
 	if (err == 0)
 		err = bring_up(db);

@@ -43,7 +43,8 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 	if (what == STORE_QUEUE)
 		return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM "
 			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
-			     "state='queued' OR (loaded=1 AND state NOT IN "
+			     "state IN ('queued', 'interrupted') OR "
+			     "(loaded=1 AND state NOT IN "
 			     "('done', 'stopped')) ORDER BY loaded DESC, "
 			     STORE_TURN ")", "");
 	if (what == STORE_ALARMS)

@@ -248,7 +248,10 @@ int store_replay(struct store *s, sqlite3 *db)
 static int come_back(struct store *s)
 {
 	sqlite3 *disk = NULL;
-	int rc, err = store_file_open(s, &disk);
+	int rc, err;
+
+	s->told[0] = '\0';
+	err = store_file_open(s, &disk);
 
 	if (err < 0)
 		return err;

@@ -81,6 +81,8 @@ static const char *what_next(const struct jobs *j, bool hold)
 		return "edmd is not there: it waits, and wants a start";
 	if (j->link.snap.state == SHM_FAULT)
 		return "a fault is latched: it wants a reset, then a start";
+	if (*j->interrupted)
+		return "a job was interrupted: remove it, then start";
 	if (queue_unready(j))
 		return "an axis is not homed: it wants a home, then a start";
 	if (j->queue.waiting)

@@ -198,7 +198,11 @@ static bool may_start(struct jobs *j, const struct verb *v)
 	const int err = starts ? queue_promise(j) : 0;
 	const int committed = act_commit(j);
 
-	return err == 0 && (!starts || committed == 0 || queue_has_begun(j));
+	if (!starts || queue_has_begun(j))
+		return true;
+	if (err || committed)
+		queue_unpromise(j);
+	return err == 0 && committed == 0;
 }
 
 static void ask_machine(struct jobs *j, const struct verb *v,
@@ -434,6 +438,11 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 {
 	char reason[128];
 
+	if (job->state == JOB_INTERRUPTED) {
+		verbs_answer(j, c, REFUSED, "this job was interrupted; look at "
+			     "the work, remove it, and submit what is left");
+		return;
+	}
 	if (job->state != JOB_QUEUED) {
 		verbs_answer(j, c, REFUSED, "this job has ended; submit it again");
 		return;

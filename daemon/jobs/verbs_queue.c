@@ -2,6 +2,7 @@
 /*
  * verbs_queue.c - verbs that the service answers from its store
  */
+#include "interrupt.h"
 #include "store_turn.h"
 #include "verb.h"
 
@@ -27,6 +28,11 @@ void verbs_remove(struct jobs *j, const struct verb *v,
 		queue_end(j, JOB_STOPPED, e.reason);
 		if (!waiting)
 			queue_go(j);
+		verbs_answer(j, c, 0, "removed");
+	} else if (job.state == JOB_INTERRUPTED) {
+		e.reason = "interrupted, then removed";
+		store_end(j->store, job.n, &e);
+		interrupt_init(j);
 		verbs_answer(j, c, 0, "removed");
 	} else if (job.state != JOB_QUEUED || job.loaded) {
 		verbs_answer(j, c, REFUSED, "it has begun or ended; stop ends a job "

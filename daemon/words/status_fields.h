@@ -40,6 +40,8 @@
 	COUNT(wake_late_max_us) \
 	WORD(condition) \
 	WORD(store) \
+	WORD(interrupted) \
+	WORD(lost) \
 	COUNT(hunts)
 
 #define STATUS_ONE(name)	+ 1

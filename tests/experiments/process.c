@@ -424,7 +424,7 @@ static void bridge(void)
 static void wire(void)
 {
 	static const double offs[] = { 10, 20, 50 };
-	const double raised = 1000;
+	const double raised = 100000;
 
 	printf("gap_um off10 off20 off50\n");
 	for (double um = 5; um <= 30; um += 1) {

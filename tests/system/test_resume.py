@@ -100,8 +100,8 @@ def test_places_of_another_backend_are_not_believed(idle):
     idle.kill("edmd")
     change(idle, "backend = null", "backend = sim")
     idle.start_edmd()
-    j = c.job_where("job", "stopped")
-    assert "its log says why" in j["reason"]
+    j = c.job_where("job", "interrupted")
+    assert "edmd's log says why" in j["reason"]
     assert "the backend, or a drive's node" in edmd_log(idle)
     assert c.status_where(lambda s: s.daemon == "ok").pos_mm[0] == 0
 
@@ -143,7 +143,7 @@ def test_a_program_that_was_swapped_is_not_gone_on_with(screws):
     block[-1] ^= 1
     path.write_bytes(block)
     screws.start_edmd()
-    j = c.job_where("job", "stopped")
-    assert "its log says why" in j["reason"]
+    j = c.job_where("job", "interrupted")
+    assert "edmd's log says why" in j["reason"]
     assert "is not the one that ran" in (
         screws.folder / "edmd.log").read_text()

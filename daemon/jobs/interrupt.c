@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * interrupt.c - a job that the power, or edmd's death, cut short
+ */
+#include "interrupt.h"
+
+#include "jobs.h"
+#include "jobs_log.h"
+
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* The last checkpoint is of this very job. */
+static bool is_of_job(const struct checkpoint *c, const struct store_job *job)
+{
+	char hex[65];
+
+	sodium_bin2hex(hex, sizeof(hex), c->base.job.sha256,
+		       sizeof(c->base.job.sha256));
+	return c->there && c->base.job.n == job->n &&
+	       strcmp(hex, job->sha256) == 0;
+}
+
+/* A PLC starts a job without asking this service. */
+bool interrupt_saw_begin(const struct jobs *j)
+{
+	return is_of_job(&j->last, &j->queue.job) &&
+	       j->last.base.snap.job_cycles > 0;
+}
+
+void interrupt_init(struct jobs *j)
+{
+	struct store_job job;
+
+	j->interrupted[0] = '\0';
+	if (store_interrupted(j->store, &job) == 0)
+		snprintf(j->interrupted, sizeof(j->interrupted), "%s", job.id);
+}
+
+/* Its sums are those of the checkpoint. */
+static void take_sums(struct queue *q, const struct checkpoint_base *b)
+{
+	q->snap = b->snap;
+	q->depth_mm = b->snap.depth_mm;
+}
+
+static void say_when(char *to, size_t size, int64_t utime)
+{
+	const time_t at = (time_t)(utime / 1000000);
+	struct tm tm;
+
+	localtime_r(&at, &tm);
+	strftime(to, size, "%Y-%m-%d %H:%M:%S", &tm);
+}
+
+static void keep(struct jobs *j, const struct checkpoint *c)
+{
+	const size_t bytes = sizeof(c->base);
+	char *hex = malloc(2 * bytes + 1), reason[320], when[32];
+
+	if (!hex)
+		return;
+	say_when(when, sizeof(when), c->utime);
+	sodium_bin2hex(hex, 2 * bytes + 1, (const unsigned char *)&c->base,
+		       bytes);
+	snprintf(reason, sizeof(reason), "interrupted in %s, line %u, at %.3f "
+		 "mm of %.3f, cut to %.3f mm; last seen %s; if the host did not "
+		 "go down, edmd's log says why",
+		 shm_state_name(c->base.snap.state), c->base.snap.line,
+		 c->base.snap.place_mm, c->base.snap.length_mm,
+		 c->base.snap.far_mm, when);
+	store_interrupt(j->store, j->queue.job.n, hex);
+	free(hex);
+	queue_end(j, JOB_INTERRUPTED, reason);
+	interrupt_init(j);
+}
+
+void interrupt_take(struct jobs *j)
+{
+	const struct checkpoint *c = &j->last;
+	struct queue *q = &j->queue;
+
+	if (!is_of_job(c, &q->job)) {
+		queue_end(j, JOB_STOPPED, "the host or edmd went down in it, "
+			  "and no checkpoint of it is left: where it was is "
+			  "not known");
+		return;
+	}
+	take_sums(q, &c->base);
+	/* The end was written, and the store did not get it. */
+	if (!c->base.snap.loaded && c->base.snap.outcome == SHM_OUTCOME_DONE)
+		queue_end(j, JOB_DONE, "");
+	else if (!c->base.snap.loaded && c->base.snap.outcome)
+		queue_end(j, JOB_STOPPED, "by command, or after a fault");
+	else
+		keep(j, c);
+}
+
+const char *interrupt_lost(const struct jobs *j)
+{
+	static char letters[INTERP_NAXES + 1];
+	const bool cut_short = *j->interrupted != '\0';
+	size_t n = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (!(j->config->axes.present >> i & 1))
+			continue;
+		/* What nothing homes stands where somebody says. */
+		if (j->link.snap.unhomed >> i & 1 ||
+		    (cut_short && j->config->manual[i].method == 0 &&
+		     !(j->vouched >> i & 1)))
+			letters[n++] = INTERP_AXIS_LETTERS[i];
+	}
+	letters[n] = '\0';
+	return letters;
+}
