@@ -4,6 +4,7 @@
  */
 #include "ctl.h"
 #include "faults.h"
+#include "hunting.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -28,6 +29,14 @@ static void print_fault(const char *name)
 		printf("why        %s\nclear      %s\n", row->why, row->clear);
 }
 
+static void print_hunting(const struct talk_status *s)
+{
+	if (s->hunts == 0)
+		return;
+	printf("warning    hunting: %d times many retracts in a row without "
+	       "progress\nadvice     %s\n", s->hunts, HUNTING_ADVICE);
+}
+
 static void print_now(const struct talk_status *s)
 {
 	char all[sizeof(s->faults)], *at = all;
@@ -37,8 +46,10 @@ static void print_now(const struct talk_status *s)
 		       "edmd\n", s->daemon);
 	if (strcmp(s->fault, "none") == 0) {
 		printf("fault      none\n");
+		print_hunting(s);
 		return;
 	}
+	print_hunting(s);
 	print_fault(s->fault);
 	memcpy(all, s->faults, sizeof(all));
 	for (char *name; (name = strsep(&at, " ")); )

@@ -61,6 +61,8 @@ static void print_text(const struct talk_status *s)
 		       s->retracts, s->shorts, took, left);
 	else
 		printf("job        none\n");
+	if (s->hunts > 0)
+		printf("warning    the gap servo hunts; edmctl alarms\n");
 	printf("gap        %.1f V\nfeed       %.3f mm/min\nposition  ",
 	       s->gap_v, s->feed_mm_s * 60);
 	for (int i = 0; i < TALK_NAXES; i++)

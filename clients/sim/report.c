@@ -5,6 +5,7 @@
  * The keys are a contract; a key that does not apply is absent.
  */
 #include "sim.h"
+#include "hunting.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -165,7 +166,7 @@ static void print_hunting(const struct sim_run *r, FILE *f)
 		"[gap] servo_v (%g; short_v is %g), lower feed_gain_mm_s_v "
 		"(%g),\n           or jump oftener: lower [jump] every_s; "
 		"--tune finds them\n",
-		c->totals.hunts, RETRACT_HUNTING, g->progress_mm * 1e3,
+		c->totals.hunts, HUNTING_ROW, g->progress_mm * 1e3,
 		c->totals.in_row_max, g->servo_v, g->short_v, g->gain_mm_s_v);
 }
 

@@ -384,6 +384,17 @@ int config_check_contouring(const struct machine_config *c,
 void config_contouring(const struct machine_config *c,
 		       struct contouring_config *ret);
 
+/**
+ * config_loop_true() - what axis @axis may really be like: [contour] model_error
+ * off what is believed of it.
+ *
+ * @odd: neighbours are off the other way, for what all axes do alike is no
+ * contour error.  Gain and velocity loop are off together, the delay against
+ * them: so the axis is quicker in all, or slower.
+ */
+struct interp_axis_loop config_loop_true(const struct machine_config *c,
+					 int axis, bool odd);
+
 /** config_gains() - of [contour]. */
 void config_gains(const struct machine_config *c,
 		  struct interp_compensate_gains *ret);

@@ -134,6 +134,19 @@ int config_check_contouring(const struct machine_config *c,
 	return 0;
 }
 
+struct interp_axis_loop config_loop_true(const struct machine_config *c,
+					 int axis, bool odd)
+{
+	const double off = odd ? -c->contour.model_error :
+				 c->contour.model_error;
+	struct interp_axis_loop l = c->loop[axis];
+
+	l.gain_1_s *= 1 + off;
+	l.velocity_hz *= 1 + off;
+	l.delay_s *= 1 - off;
+	return l;
+}
+
 void config_gains(const struct machine_config *c,
 		  struct interp_compensate_gains *ret)
 {

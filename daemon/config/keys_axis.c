@@ -191,9 +191,9 @@ static const struct config_key row[] = {
 	       AT(contour.horizon_s), "predictive: how far it looks ahead"),
 	NUMBER(CONTOUR, "noise_mm", "mm", "0.0005", 0, 0.1,
 	       AT(contour.noise_mm), "sigma of the encoders, for trials"),
-	NUMBER(CONTOUR, "model_error", "", "0.1", 0, 0.5,
+	NUMBER(CONTOUR, "model_error", "", "0.02", 0, 0.5,
 	       AT(contour.model_error),
-	       "velocity loops are off by this part, for trials"),
+	       "gain, velocity loop and delay are off by it, for trials"),
 };
 /* clang-format on */
 

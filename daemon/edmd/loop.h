@@ -24,6 +24,7 @@ struct loop_told {
 	enum cycle_outcome outcome;
 	uint32_t program, number;	/* the condition called last, and in */
 	char letter;			/* which program; 0: none */
+	uint32_t hunts;			/* of the totals */
 };
 
 struct loop_timing {

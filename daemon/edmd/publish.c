@@ -142,6 +142,15 @@ static void notice_faults(struct loop *l)
 		loop_event(l, SHM_EV_FAULT, 0, __builtin_ctzll(f));
 }
 
+/* A servo that hunts does so many times a minute: it is told the first time, the
+ * tenth, the hundredth ... */
+static bool is_power_of_ten(uint32_t n)
+{
+	while (n > 1 && n % 10 == 0)
+		n /= 10;
+	return n == 1;
+}
+
 static void notice_ended(const struct loop *l)
 {
 	struct shm_snapshot s;
@@ -170,6 +179,7 @@ void loop_notice(struct loop *l)
 
 	l->told.state = c->state;
 	l->told.outcome = c->outcome;
+	l->told.hunts = c->totals.hunts;
 	notice_faults(l);
 	if (c->state != was.state)
 		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
@@ -177,6 +187,8 @@ void loop_notice(struct loop *l)
 		notice_ended(l);
 		loop_event(l, SHM_EV_ENDED, 0, (int32_t)c->outcome);
 	}
+	if (c->totals.hunts > was.hunts && is_power_of_ten(c->totals.hunts))
+		loop_event(l, SHM_EV_HUNTING, 0, (int32_t)c->retract.in_row);
 	notice_condition(l);
 }
 
@@ -238,6 +250,8 @@ static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
 	s->erode_cycles = t->erode_cycles;
 	s->jump_cycles = t->jump_cycles;
 	s->retracts = t->retracts;
+	s->hunts = t->hunts;
+	s->in_row = c->retract.in_row;
 	s->jumps = t->jumps;
 	s->shorts = t->shorts;
 	s->overruns = t->overruns;

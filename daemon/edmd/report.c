@@ -6,6 +6,7 @@
 
 #include "clock.h"
 #include "cycle.h"
+#include "hunting.h"
 #include "log.h"
 
 #include <systemd/sd-daemon.h>
@@ -115,6 +116,10 @@ static void tell(struct report *r, const struct shm_event *e)
 	case SHM_EV_ENDED:
 		log_line(LOG_INFO, "cycle: program %u ended: %s", e->program,
 			 cycle_outcome_name((enum cycle_outcome)e->code));
+		break;
+	case SHM_EV_HUNTING:
+		log_line(LOG_WARNING, "cycle: " HUNTING_WHAT " at %.3f mm; "
+			 HUNTING_ADVICE, e->code, e->place_mm);
 		break;
 	case SHM_EV_ANSWER:
 		if (e->code != ANSWER_DONE)

@@ -127,6 +127,7 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 			.jump_cycles = s->jump_cycles,
 			.retracts = s->retracts, .jumps = s->jumps,
 			.shorts = s->shorts, .overruns = s->overruns,
+			.hunts = s->hunts,
 			.retract_mm_max = s->retract_mm_max,
 		},
 	};

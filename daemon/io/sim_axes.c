@@ -11,20 +11,14 @@
 #include <math.h>
 #include <string.h>
 
-/*
- * Neighbours are off what is believed of them the other way: what all axes do
- * alike is no contour error.
- */
 void sim_axes_init(struct sim *s, const struct machine_config *c)
 {
 	for (int i = 0; i < IO_NAXES; i++) {
-		struct interp_axis_loop l = c->loop[i];
+		const struct interp_axis_loop l = config_loop_true(c, i, i % 2);
 
 		s->drive_mm[i] = c->axes.axis[i].pulse_mm;
 		if (!c->sim.loops || !(l.gain_1_s > 0))
 			continue;
-		l.velocity_hz *= i % 2 ? 1 - c->contour.model_error :
-					 1 + c->contour.model_error;
 		if (interp_axis_model_init(&s->model[i], &l, s->period_s, 0) ==
 		    0)
 			s->modelled |= 1u << i;

@@ -3,6 +3,7 @@
  * queue.c - follow the job at the machine
  */
 #include "faults.h"
+#include "hunting.h"
 #include "interrupt.h"
 #include "jobs.h"
 
@@ -258,11 +259,26 @@ static void follow_select(struct jobs *j, uint32_t n)
 	give_back(j);
 }
 
+/* The cut goes on, and somebody should look at it. */
+static void follow_hunting(struct jobs *j, const struct shm_event *e)
+{
+	struct queue *q = &j->queue;
+
+	if (!q->job.n || e->program != q->job.n)
+		return;
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "warning", .job = q->job.id, .outcome = "hunting",
+		.place_mm = e->place_mm,
+	}, "job %s: " HUNTING_WHAT "; " HUNTING_ADVICE, q->job.name, e->code);
+}
+
 void queue_event(struct jobs *j, const struct shm_event *e)
 {
 	struct queue *q = &j->queue;
 
 	follow_change(j, e);
+	if (e->kind == SHM_EV_HUNTING)
+		follow_hunting(j, e);
 	if (e->kind == SHM_EV_SELECT)
 		follow_select(j, (uint32_t)e->code);
 	/* May be an old one, of an earlier loading: only used if it is gone. */

@@ -50,6 +50,7 @@ static void fill_job(struct jobs_lcm_status *w, const struct jobs *j)
 	w->jumps = s->jumps;
 	w->retracts = s->retracts;
 	w->shorts = s->shorts;
+	w->hunts = s->hunts;
 	w->job_s = (double)s->job_cycles * (double)s->period_ns / 1e9;
 	w->eta_s = eta_s(&j->eta, s->far_mm, w->job_s);
 	w->queue_len = q->behind;

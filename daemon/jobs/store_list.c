@@ -55,7 +55,8 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 			     "json_object('utime', utime, 'kind', kind, 'job', "
 			     "job, 'fault', outcome, 'place_mm', place_mm, "
 			     "'text', text) AS a FROM event WHERE kind IN "
-			     "('alarm', 'lost', 'back') ORDER BY utime DESC, "
+			     "('alarm', 'warning', 'lost', 'back') "
+			     "ORDER BY utime DESC, "
 			     "rowid DESC LIMIT ?)", "i", (int64_t)ALARMS_MAX);
 	return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM (SELECT "
 		     JOB_JSON("") " AS j FROM job WHERE state IN ('done', "

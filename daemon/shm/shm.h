@@ -102,6 +102,8 @@ struct shm_snapshot {
 	/* Sums of the job. */
 	uint64_t job_cycles, erode_cycles, jump_cycles;
 	uint32_t retracts, jumps, shorts, overruns;
+	uint32_t hunts, in_row;		/* rows of retracts without progress;
+					 * the row in hand */
 	double retract_mm_max;
 	/* The cycle's own time, ns. */
 	int64_t period_ns;
@@ -167,6 +169,7 @@ enum shm_event_kind {
 	SHM_EV_CONDITION,		/* called; id: its letter; code: number */
 	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
 	SHM_EV_SELECT,			/* by the PLC; code: job n */
+	SHM_EV_HUNTING,			/* code: retracts in a row */
 };
 
 struct shm_event {

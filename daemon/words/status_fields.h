@@ -41,7 +41,8 @@
 	WORD(condition) \
 	WORD(store) \
 	WORD(interrupted) \
-	WORD(lost)
+	WORD(lost) \
+	COUNT(hunts)
 
 #define STATUS_ONE(name)	+ 1
 

@@ -358,7 +358,7 @@ def test_the_cycle_leads_axes_that_lag(tmp_path):
               "feedforward+cross-coupled")}
     assert found["none"] > 100
     assert found["cross-coupled"] < found["none"] / 3
-    assert found["feedforward"] < found["none"] / 20
+    assert found["feedforward"] < found["none"] / 10
     assert found["feedforward+cross-coupled"] < found["feedforward"]
 
 

@@ -2,14 +2,15 @@
 /*
  * test_cycle_random.c - what holds in every cycle, whatever happens
  *
- * Ten million cycles of random programs with ways out, planetary cycles,
- * sensors, gaps that wander, stick, scatter or are no number, conditions,
+ * Ten million cycles of random programs with ways out, planetary cycles, texts of
+ * every dialect with curves, tapers and rotary axes, by every strategy, sensors, gaps that wander, stick, scatter or are no number, conditions,
  * values in force, commands, broken wires, losses and e-stops, maps, backlash,
  * leads and drives that lag; a million where a sanitizer watches.
  * `make invariants` runs it alone; the seed is printed.
  */
 #include "random_world.h"
 #include "random_drives.h"
+#include "random_compile.h"
 #include "guard.h"
 #include "seed.h"
 #include "path/place.h"
@@ -268,6 +269,66 @@ static void check_cycle(const struct rig *r, const struct points *set)
 	count_states(&r->c);
 }
 
+/* Kinds of segments, and rotary axes, that were met in texts. */
+static uint64_t met[INTERP_NKINDS], turning;
+
+/* Touches shift what follows: no place of theirs is in the program.  A long
+ * program takes longer to be listed than to be walked. */
+static bool fits(const struct made *m)
+{
+	const struct interp_program_head *h = m->p.head;
+	uint64_t ticks = 0;
+
+	for (uint32_t i = 0; i < h->nsegs; i++) {
+		ticks += m->p.segs[i].ticks;
+		if (m->p.segs[i].flags & INTERP_SEG_SENSED)
+			return false;
+	}
+	return h->length_mm > 0 && ticks < 20000;
+}
+
+/* Curves, tapers, orbits, rotary axes, records: a text of any dialect. */
+static struct made random_text_program(uint64_t *s)
+{
+	static struct script text;
+	struct interp_build_options o = {
+		.machine = &help_machine, .tolerance_milli = 2000,
+		.chord_error_mm = 0.001, .period_s = 1e-3,
+	};
+	struct made m;
+
+	interp_build_destroy(begin(INTERP_SIMULTANEOUS));
+	for (;;) {
+		const char *dialect = random_text(&text, s);
+
+		o.strategy = (enum interp_strategy)
+			(rnd(s) % INTERP_NSTRATEGIES);
+		o.perpendicular = rnd(s) % 2;
+		if (!random_compile(&text, dialect, &o, &m))
+			continue;
+		if (fits(&m))
+			break;
+		unmake(&m);
+	}
+	for (uint32_t i = 0; i < m.p.head->nsegs; i++)
+		met[m.p.segs[i].kind]++;
+	for (uint32_t j = 0; j < m.p.head->naxes; j++)
+		turning += interp_axis_is_rotary(m.p.head->column[j]);
+	return m;
+}
+
+static struct made random_job(uint64_t *s)
+{
+	switch (rnd(s) % 4) {
+	case 0:
+		return random_orbits(s);
+	case 1:
+		return random_text_program(s);
+	default:
+		return random_segments(s);
+	}
+}
+
 static int run_job(uint64_t *s)
 {
 	static const int32_t none[INTERP_NAXES];
@@ -280,7 +341,7 @@ static int run_job(uint64_t *s)
 
 	random_comp(&k.comp, s);
 	random_contouring(&k.contouring, s);
-	rig_take(&r, rnd(s) % 4 ? random_segments(s) : random_orbits(s), &k);
+	rig_take(&r, random_job(s), &k);
 	set = points_of(&r.m);
 	r.c.on_point = check_point;
 	r.c.on_point_arg = &set;
@@ -322,6 +383,14 @@ static void millions_of_random_cycles_keep_every_promise(void **st)
 	print_message("    %llu led, %llu settled on their maps\n",
 		      (unsigned long long)led, (unsigned long long)settled);
 	assert_true(led > 0 && settled > 0);
+	print_message("    of texts: %llu curves, %llu pairs of contours, %llu "
+		      "arcs, %llu rotary axes\n",
+		      (unsigned long long)met[INTERP_CURVE],
+		      (unsigned long long)met[INTERP_PAIR],
+		      (unsigned long long)met[INTERP_ARC],
+		      (unsigned long long)turning);
+	assert_true(met[INTERP_CURVE] > 0 && met[INTERP_PAIR] > 0 &&
+		    met[INTERP_ARC] > 0 && turning > 0);
 	assert_true(powered > 0 && beside > 0 && beside_retract > 0);
 	/* test_hand.c has those of a machine without a job. */
 	for (int i = STATE_IDLE; i < STATE_JOG; i++) {

@@ -7,12 +7,8 @@
  * many texts are tried.
  */
 #include "cycle_help.h"
-#include "random_program.h"
+#include "random_compile.h"
 #include "seed.h"
-
-#include "interp/compile.h"
-
-#include <errno.h>
 
 #define RUNS		120
 
@@ -51,60 +47,17 @@ static void machine(struct interp_machine *m, const struct job *j)
 		};
 }
 
-static const struct interp_tech_table *table(void)
-{
-	static const char text[] =
-		"condition, servo_v, on_us, allowance_mm\n"
-		"C001,40,8,0\nC120,35,40,0.01\nE001,45,-,-\n"
-		"sequence Q1 = C120 C001\ninline E = - on_us servo_v\n";
-	static struct interp_tech_table *t;
-	struct interp_diag d;
-
-	if (!t)
-		assert_int_equal(interp_tech_read(&t, text, sizeof(text) - 1,
-						  &d), 0);
-	return t;
-}
-
 /* Return: was it taken? */
 static bool compile(struct job *j, const struct interp_machine *m,
 		    struct made *ret)
 {
-	static const struct interp_wire wire = {
-		.guides = INTERP_GUIDES_ABSOLUTE, .z_lower_mm = -20,
-		.z_upper_mm = 80, .z_second_mm = 40, .angle_max_deg = 45,
-		.corner_angle_deg = 30, .corner_feed_percent = 50,
-		.corner_before_mm = 0.2,
-	};
-	const bool generic = strcmp(j->dialect, "generic") == 0;
-	const struct interp_compile_options o = {
-		.nc = {
-			.machine = m, .wire = generic ? NULL : &wire,
-			.tech = table(), .feed_mm_s = 20,
-			.offset_mm = { [1] = 0.05 }, .executed_max = 100000,
-		},
-		.threeb.offset_um = 5,
-	};
-	const struct interp_build_options bo = {
+	const struct interp_build_options o = {
 		.machine = m, .strategy = j->how, .tolerance_milli = 2000,
 		.fit_mm = rnd(j->text.seed) % 4 ? 0 : 0.01,
 		.chord_error_mm = 0.001, .period_s = j->period_us * 1e-6,
 	};
-	const struct interp_text t = {
-		j->text.at, (size_t)j->text.n,
-		interp_dialect_by_name(j->dialect),
-	};
-	struct interp_build *b = interp_build_create(&bo);
-	struct interp_diag d = { 0 };
-	uint32_t lines;
 
-	assert_non_null(b);
-	if (interp_compile(&t, &o, b, &lines, &d) != 0) {
-		interp_build_destroy(b);
-		return false;
-	}
-	*ret = finish(b);
-	return true;
+	return random_compile(&j->text, j->dialect, &o, ret);
 }
 
 /* -- The walk -------------------------------------------------------------- */

@@ -14,7 +14,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("bb4ab1a64211c912")
-STATUS = bytes.fromhex("fd3b05a927ceaa6c")
+STATUS = bytes.fromhex("145ae31af6e30f78")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -155,6 +155,9 @@ class Status:
     wake_late_max_us: int
     condition: str
     store: str
+    interrupted: str
+    lost: str
+    hunts: int
 
     @staticmethod
     def decode(data: bytes) -> Status:
@@ -190,6 +193,9 @@ class Status:
             r.int32(),
             r.string(),
             r.string(),
+            r.string(),
+            r.string(),
+            r.int32(),
         )
 
 

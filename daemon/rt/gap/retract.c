@@ -3,6 +3,7 @@
  * retract.c - the bounds of a retract
  */
 #include "gap/retract.h"
+#include "hunting.h"
 #include "path/laws.h"
 #include "path/place.h"
 
@@ -45,7 +46,7 @@ static void count(struct cycle *c)
 		r->far_mm = c->far_mm;
 	}
 	r->in_row++;
-	c->totals.hunts += r->in_row == RETRACT_HUNTING;
+	c->totals.hunts += r->in_row == HUNTING_ROW;
 	if (r->in_row > c->totals.in_row_max)
 		c->totals.in_row_max = r->in_row;
 }

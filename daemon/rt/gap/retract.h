@@ -16,9 +16,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* So many in a row without progress between: the gap servo hunts. */
-#define RETRACT_HUNTING	20
-
 /* How far a retract may go. */
 struct retract {
 	double from_mm;			/* place it began */
