@@ -438,8 +438,8 @@ units: $(UNIT_X) $(PEER_X)
 run-units: $(UNIT_X) $(PEER_X)
 	$(Q)for t in $^; do $$t >$$t.log 2>&1 || \
 		{ cat $$t.log; echo "FAILED: $$t"; exit 1; }; \
-		printf '  UNIT    %s: ' $$t; \
-		sed -n 's/^\[==========\] \([0-9]* test(s) run\).*/\1/p' $$t.log; done
+		echo "  UNIT    $$t$$(sed -n \
+		's/^\[==========\] \([0-9]* test(s) run\).*/: \1/p' $$t.log)"; done
 
 # 500 kills of edmd, edmd-jobs and both around every verb: half an hour.
 KILLS ?= 500

@@ -296,51 +296,90 @@ static void print_one(json_t *job)
 	print_changes(json_object_get(job, "changes"));
 }
 
-static int list(struct ctl *c, const struct talk_question *q,
-		const char *head, void (*print)(json_t *job))
+static void print_rows(json_t *rows, const char *head,
+		       void (*print)(json_t *job))
+{
+	json_t *row;
+	size_t i;
+
+	printf("%s\n", json_array_size(rows) ? head : "none");
+	json_array_foreach(rows, i, row)
+		print(row);
+}
+
+/* One answer's JSON. Return: 0, or a sysexits code, said. */
+static int ask_json(struct ctl *c, const struct talk_question *q, json_t **ret)
 {
 	struct talk_answer a;
-	json_t *rows, *row;
-	size_t i;
-	int err = ctl_ask(c, q, &a);
+	const int err = ctl_ask(c, q, &a);
 
 	if (err)
 		return err;
-	rows = json_loads(a.body, 0, NULL);
-	if (c->json) {
-		printf("%s\n", a.body);
-	} else if (json_is_object(rows)) {
-		print(rows);
-	} else if (json_array_size(rows)) {
-		printf("%s\n", head);
-		json_array_foreach(rows, i, row)
-			print(row);
-	} else {
-		printf("none\n");
-	}
-	err = rows ? 0 : EX_PROTOCOL;
-	json_decref(rows);
+	*ret = json_loads(a.body, 0, NULL);
 	talk_answer_free(&a);
+	return *ret ? 0 : EX_PROTOCOL;
+}
+
+static int put_json(json_t *o)
+{
+	const int err = json_dumpf(o, stdout, JSON_ENCODE_ANY |
+				   JSON_REAL_PRECISION(15));
+
+	putchar('\n');
+	return err ? EX_IOERR : 0;
+}
+
+/* All pages of a list: each begins behind the last job of the one before. */
+static int list(struct ctl *c, const char *verb, const char *head,
+		void (*print)(json_t *job))
+{
+	struct talk_question q = { .verb = verb };
+	json_t *all = json_array(), *page = NULL;
+	size_t n;
+	int err;
+
+	do {
+		json_decref(page);
+		page = NULL;
+		err = ask_json(c, &q, &page);
+		json_array_extend(all, page);
+		n = json_array_size(page);
+		q.job = text_of(json_array_get(page, n ? n - 1 : 0), "job");
+	} while (err == 0 && n > 0);
+	json_decref(page);
+	if (err == 0 && c->json)
+		err = put_json(all);
+	else if (err == 0)
+		print_rows(all, head, print);
+	json_decref(all);
 	return err;
 }
 
 int ctl_queue(struct ctl *c)
 {
-	return list(c, &(struct talk_question) { .verb = "queue" },
+	return list(c, "queue",
 		    "JOB            NAME                     STATE        LINES"
 		    "  SUBMITTED", print_queued);
 }
 
 int ctl_history(struct ctl *c)
 {
-	return list(c, &(struct talk_question) { .verb = "history" },
+	return list(c, "history",
 		    "JOB            NAME                     STATE    ENDED    "
 		    "                   DEPTH  TIME", print_ended);
 }
 
 int ctl_show(struct ctl *c)
 {
-	return list(c, &(struct talk_question) {
+	json_t *job = NULL;
+	int err = ask_json(c, &(struct talk_question) {
 		.verb = "show", .job = c->arg,
-	}, "", print_one);
+	}, &job);
+
+	if (err == 0 && c->json)
+		err = put_json(job);
+	else if (err == 0)
+		print_one(job);
+	json_decref(job);
+	return err;
 }

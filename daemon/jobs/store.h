@@ -185,8 +185,13 @@ int store_set_number(struct store *s, const char *key, int64_t value);
 #define STORE_JSON_MAX	60000	/* bytes: an answer fits one LCM packet */
 
 /**
- * store_json() - a list as JSON; @id for show, @rows for history.
- * Return: to be freed; NULL if there is no such job or no memory.
+ * store_json() - a list as JSON, to be freed.
+ *
+ * STORE_SHOW: the object of job @id. STORE_QUEUE and STORE_HISTORY: an array of
+ * the jobs behind job @id in that order, or the first ones if it is ""; at most
+ * @rows (0: 200), and no more than fit one answer. So a client asks again with
+ * the last job it got, until the array is empty. STORE_ALARMS: the last 20.
+ * Return: NULL if there is no such job, no memory, or the store failed.
  */
 char *store_json(struct store *s, enum store_list what, const char *id,
 		 int rows);

@@ -7,6 +7,8 @@
 
 #include "plain.h"
 
+#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,32 +38,42 @@
 			"(SELECT text FROM event WHERE event.job=job.id AND " \
 			"kind='note' ORDER BY event.rowid LIMIT ?2))"
 
+/* Where a job stands in a list, less is earlier. */
+#define IN_QUEUE	"1 - loaded, " STORE_TURN
+#define IN_HISTORY	"-ended_us, -n"
+
+/* So many jobs, those after job ?2 if one is given.  The order is found from few
+ * columns, and the JSON made of the rows that are wanted alone. */
+#define JOBS_SQL(WHICH, PLACE) \
+	"SELECT " JOB_JSON("") " FROM job JOIN (SELECT n AS m FROM job WHERE " \
+	"(" WHICH ") AND (?2='' OR (" PLACE ") > (SELECT " PLACE " FROM " \
+	"job WHERE id=?2)) ORDER BY " PLACE " LIMIT ?1) ON n=m ORDER BY " PLACE
+
 static sqlite3_stmt *list_query(struct store *s, enum store_list what,
-				const char *id, int rows)
+				const char *id, int rows, int *ret_err)
 {
-	if (what == STORE_SHOW)
-		return store_ask(s, NULL, "SELECT "
+	switch (what) {
+	case STORE_SHOW:
+		return store_ask(s, ret_err, "SELECT "
 				 JOB_JSON(CHANGES_JSON NOTES_JSON) " FROM job "
 				 "WHERE id=?1", "si", id, (int64_t)rows);
-	if (what == STORE_QUEUE)
-		return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM "
-			     "(SELECT " JOB_JSON("") " AS j FROM job WHERE "
-			     "state IN ('queued', 'interrupted') OR "
-			     "(loaded=1 AND state NOT IN "
-			     "('done', 'stopped')) ORDER BY loaded DESC, "
-			     STORE_TURN " LIMIT ?)", "i", (int64_t)rows);
-	if (what == STORE_ALARMS)
-		return store_ask(s, NULL, "SELECT json_group_array(json(a)) FROM (SELECT "
-			     "json_object('utime', utime, 'kind', kind, 'job', "
-			     "job, 'fault', outcome, 'place_mm', place_mm, "
-			     "'text', text) AS a FROM event WHERE kind IN "
-			     "('alarm', 'warning', 'lost', 'back') "
-			     "ORDER BY utime DESC, "
-			     "rowid DESC LIMIT ?)", "i", (int64_t)ALARMS_MAX);
-	return store_ask(s, NULL, "SELECT json_group_array(json(j)) FROM (SELECT "
-		     JOB_JSON("") " AS j FROM job WHERE state IN ('done', "
-		     "'stopped', 'fault') ORDER BY ended_us DESC, n DESC "
-		     "LIMIT ?)", "i", (int64_t)rows);
+	case STORE_QUEUE:
+		return store_ask(s, ret_err, JOBS_SQL("state IN ('queued', "
+				 "'interrupted') OR (loaded=1 AND state NOT IN "
+				 "('done', 'stopped'))", IN_QUEUE), "is",
+				 (int64_t)rows, id);
+	case STORE_ALARMS:
+		return store_ask(s, ret_err, "SELECT json_object('utime', utime, "
+				 "'kind', kind, 'job', job, 'fault', outcome, "
+				 "'place_mm', place_mm, 'text', text) FROM "
+				 "event WHERE kind IN ('alarm', 'warning', "
+				 "'lost', 'back') ORDER BY utime DESC, rowid "
+				 "DESC LIMIT ?", "i", (int64_t)ALARMS_MAX);
+	case STORE_HISTORY:
+		break;
+	}
+	return store_ask(s, ret_err, JOBS_SQL("state IN ('done', 'stopped', "
+			 "'fault')", IN_HISTORY), "is", (int64_t)rows, id);
 }
 
 /*
@@ -88,33 +100,84 @@ static void make_plain(char *json)
 	*to = '\0';
 }
 
-static char *list_text(struct store *s, enum store_list what, const char *id,
-		       int rows)
+/* The first column of the row that a question stands at. */
+static char *row_text(sqlite3_stmt *q)
 {
-	sqlite3_stmt *q = list_query(s, what, id, rows);
-	char *text = NULL;
+	char *text = strdup((const char *)sqlite3_column_text(q, 0));
 
-	if (q)
-		text = strdup((const char *)sqlite3_column_text(q, 0));
-	sqlite3_finalize(q);
 	if (text)
 		make_plain(text);
 	return text;
 }
 
-/* A client reads what fits one packet: the first of them, then. */
+/* All about one job: of what it called and set so much as fits. */
+static char *one(struct store *s, const char *id)
+{
+	for (int rows = LIST_MAX; rows > 0; rows -= rows / 8 + 1) {
+		int err;
+		sqlite3_stmt *q = list_query(s, STORE_SHOW, id, rows, &err);
+		char *text = q ? row_text(q) : NULL;
+
+		sqlite3_finalize(q);
+		if (!text || strlen(text) <= STORE_JSON_MAX)
+			return text;
+		free(text);
+	}
+	return NULL;
+}
+
+/* An array of as many rows as fit. Return: SQLITE_DONE; else it is not whole. */
+static int put_rows(FILE *f, sqlite3_stmt *q)
+{
+	size_t bytes = 2;
+	int rc = q ? SQLITE_ROW : SQLITE_DONE;
+
+	fputc('[', f);
+	while (rc == SQLITE_ROW) {
+		char *text = row_text(q);
+
+		if (!text)
+			return SQLITE_NOMEM;
+		bytes += strlen(text) + 1;
+		if (bytes <= STORE_JSON_MAX)
+			fprintf(f, "%s%s", ftell(f) > 1 ? "," : "", text);
+		free(text);
+		rc = bytes <= STORE_JSON_MAX ? sqlite3_step(q) : SQLITE_DONE;
+	}
+	fputc(']', f);
+	return rc;
+}
+
+static char *list_text(struct store *s, enum store_list what, const char *id,
+		       int rows)
+{
+	int err = 0, rc = SQLITE_NOMEM;
+	sqlite3_stmt *q = list_query(s, what, id, rows, &err);
+	char *text = NULL;
+	size_t size;
+	FILE *f = open_memstream(&text, &size);
+
+	if (f && (q || err == -ENOENT))
+		rc = put_rows(f, q);
+	sqlite3_finalize(q);
+	if (f && fclose(f) == 0 && rc == SQLITE_DONE)
+		return text;
+	free(text);
+	/* A disk that fails in the middle: the copy in memory is asked then. */
+	if (rc != SQLITE_NOMEM && rc != SQLITE_DONE)
+		store_failed(s, rc);
+	return NULL;
+}
+
 char *store_json(struct store *s, enum store_list what, const char *id,
 		 int rows)
 {
 	char *text;
 
+	if (what == STORE_SHOW)
+		return one(s, id);
 	if (rows <= 0 || rows > LIST_MAX)
 		rows = LIST_MAX;
 	text = list_text(s, what, id, rows);
-	while (text && strlen(text) > STORE_JSON_MAX && rows > 1) {
-		rows -= rows / 8 + 1;
-		free(text);
-		text = list_text(s, what, id, rows);
-	}
-	return text;
+	return text ? text : list_text(s, what, id, rows);
 }

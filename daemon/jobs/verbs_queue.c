@@ -98,17 +98,22 @@ static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 {
 	/* Only history has it; anything but a few rows is as many as there are. */
 	const int rows = c->arg > 0 && c->arg < 1000 ? (int)c->arg : 0;
-	char *body = store_json(j->store, what, c->job, rows);
+	struct store_job before;
+	const bool known = what == STORE_ALARMS || !*c->job ||
+			   store_find(j->store, c->job, &before) != -ENOENT;
+	char *body = known ? store_json(j->store, what, c->job, rows) : NULL;
 	struct jobs_lcm_ack a = {
 		.key = c->key, .client = c->client, .seq = c->seq, .body = body,
 		.reason = "done",
 	};
 
-	if (!body) {
-		a.code = what == STORE_SHOW ? EX_NOINPUT : EX_IOERR;
-		a.reason = what == STORE_SHOW ?
-			   "no such job; edmctl queue and edmctl history list "
-			   "them" : "the store failed";
+	if (!known) {
+		a.code = EX_NOINPUT;
+		a.reason = "no such job; edmctl queue and edmctl history list "
+			   "them";
+	} else if (!body) {
+		a.code = EX_IOERR;
+		a.reason = "the store failed";
 	}
 	jobs_answer(j, &a);
 	free(body);

@@ -348,6 +348,9 @@ class Machine:
 
     def _clear(self):
         try:
+            # The one that is loaded cannot be removed; none may follow it.
+            for job in json.loads(self.client.ask("queue").body)[1:]:
+                self.client.ask("remove", job["job"])
             for verb in ("hold", "reset", "stop"):
                 self.client.ask(verb)
                 self.client.hear(0.1)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The order of the queue, and lines of a job's text."""
 
+import contextlib
 import json
+import sqlite3
 
 import rig
 
@@ -56,3 +58,46 @@ def test_lines_of_a_job_are_told(machine):
     for line in (0, -1, 504, 1e30, float("nan")):
         assert c.ask("text", "a", line).code == 66, line
     assert c.ask("text", "none", 1).code == 66
+
+
+@contextlib.contextmanager
+def store_of(machine):
+    """While nobody else has it."""
+    machine.kill("jobs")
+    with sqlite3.connect(machine.store / f"{machine.name}.db") as db:
+        yield db
+    machine.start_jobs()
+
+
+def fill(machine, count):
+    """Copies of the job that waits."""
+    with store_of(machine) as db:
+        cols = [c[1] for c in db.execute("PRAGMA table_info(job)")
+                if c[1] not in ("n", "id")]
+        for i in range(count):
+            db.execute(f"INSERT INTO job(id, {', '.join(cols)}) SELECT ?, "
+                       f"{', '.join(cols)} FROM job WHERE id='b'",
+                       (f"job-{i:03}",))
+        db.execute("INSERT INTO text SELECT job.n, text.text FROM job JOIN "
+                   "text ON text.n=(SELECT n FROM job WHERE id='b') WHERE "
+                   "job.id LIKE 'job-%'")
+
+
+def test_a_queue_longer_than_an_answer_is_listed_whole(machine):
+    c = machine.client
+    for job in ("a", "b"):
+        assert c.submit(rig.QUICK_JOB, job, hold=True).code == 0
+    c.status_where(lambda s: s.job == "a" and s.job_state == "ready")
+    fill(machine, 300)
+    wanted = ["a", "b"] + [f"job-{i:03}" for i in range(300)]
+    assert rig.until(lambda: names(machine)) == wanted[:len(names(machine))]
+    assert len(names(machine)) < len(wanted)
+    r = machine.ctl("queue", "--json")
+    assert [j["job"] for j in json.loads(r.stdout)] == wanted
+    assert len(machine.ctl("queue").stdout.splitlines()) == 1 + len(wanted)
+    # From behind any job; a job that never was is refused.
+    after = json.loads(c.ask("queue", wanted[290]).body)
+    assert [j["job"] for j in after] == wanted[291:]
+    assert c.ask("queue", "never").code == 66
+    with store_of(machine) as db:
+        db.execute("DELETE FROM job WHERE id LIKE 'job-%'")

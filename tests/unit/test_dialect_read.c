@@ -130,6 +130,8 @@ static const struct {
 	{ "[words]\nG200 = line", "no word G200", 2, 1 },
 	{ "[words]\nG1 G1.12 = line", "no word G1.12", 2, 4 },
 	{ "[words]\nX1 = line", "no word X1", 2, 1 },
+	{ "[words]\nG7 = refuse: a\x1b[2J; b", "a control character behind a",
+	  2, 15 },
 	{ "[words]\nG7 = refuse: nothing", "not enough in refuse: nothing",
 	  2, 6 },
 	{ "[words]\nG7 = ignore h: why", "letter h", 2, 13 },

@@ -3,6 +3,7 @@
  * test_store.c - the store on disks that are full, read-only, broken or cut off
  */
 #include "store.h"
+#include "store_turn.h"
 #include "store_trust.h"
 #include "disk_help.h"
 
@@ -379,6 +380,57 @@ static void many_jobs(struct store *s, int count)
 	}
 }
 
+/* Through all pages of a list: how many jobs; each is the one before or after
+ * the last, by @step. */
+static int walk_pages(struct store *s, enum store_list what, int first,
+		      int step)
+{
+	char last[32] = "";
+	int seen = 0;
+
+	for (int pages = 0; pages < 100; pages++) {
+		char *text = store_json(s, what, last, 0), *at = text;
+		int here = 0;
+
+		assert_non_null(text);
+		assert_true(strlen(text) <= STORE_JSON_MAX);
+		for (; (at = strstr(at, "\"job\":\"")); at++, seen++, here++) {
+			char wanted[32];
+
+			snprintf(wanted, sizeof(wanted), "job-%d",
+				 first + step * seen);
+			snprintf(last, sizeof(last), "%.*s",
+				 (int)strcspn(at + 7, "\""), at + 7);
+			assert_string_equal(last, wanted);
+		}
+		free(text);
+		if (here == 0)
+			return seen;
+	}
+	return -1;
+}
+
+static void a_long_list_comes_in_pages(void **state)
+{
+	struct store *s = open_store();
+	char id[32];
+	uint32_t n;
+
+	(void)state;
+	many_jobs(s, 450);
+	for (int i = 450; i < 800; i++) {
+		snprintf(id, sizeof(id), "job-%d", i);
+		assert_int_equal(add(s, id, &n), 0);
+	}
+	assert_int_equal(walk_pages(s, STORE_QUEUE, 450, 1), 350);
+	/* One of which the turn is earlier than its number. */
+	assert_int_equal(store_move(s, n, true), 0);
+	assert_int_equal(store_move(s, n, false), 0);
+	assert_int_equal(walk_pages(s, STORE_QUEUE, 450, 1), 350);
+	assert_int_equal(walk_pages(s, STORE_HISTORY, 449, -1), 450);
+	store_close(s);
+}
+
 static void break_pages(const char *from, const char *count)
 {
 	char line[500];
@@ -525,6 +577,7 @@ int main(void)
 		T(the_text_is_written_twice_at_most),
 		T(the_list_in_memory_is_bounded_and_keeps_what_counts),
 		T(a_store_of_0_1_0_is_brought_up),
+		T(a_long_list_comes_in_pages),
 		T(a_damaged_page_costs_what_is_in_it),
 		T(what_is_no_database_is_set_aside),
 		T(the_first_page_torn_is_no_end),

@@ -203,6 +203,17 @@ class Client:
     def _json(self, verb: str, job: str = "", arg: float = 0.0) -> Any:
         return json.loads(self.ask(verb, job, arg).body)
 
+    def _pages(self, verb: str, rows: int = 0) -> list[dict[str, Any]]:
+        """A list that may not fit one answer: each page begins behind the
+        last job of the one before."""
+        found: list[dict[str, Any]] = []
+        while True:
+            page = self._json(verb, found[-1]["job"] if found else "",
+                              max(rows - len(found), 0))
+            found += page
+            if not page or 0 < rows <= len(found):
+                return found
+
     def start(self, job: str = "") -> None:
         """Start the job that is ready or held, and the queue."""
         self.ask("start", job)
@@ -258,11 +269,11 @@ class Client:
 
     def queue(self) -> list[dict[str, Any]]:
         """The job loaded and those behind it."""
-        return list(self._json("queue"))
+        return self._pages("queue")
 
     def history(self, rows: int = 0) -> list[dict[str, Any]]:
-        """Jobs that have ended, newest first."""
-        return list(self._json("history", arg=rows))
+        """Jobs that have ended, newest first; all, or so many rows."""
+        return self._pages("history", rows)
 
     def alarms(self) -> list[dict[str, Any]]:
         """The last alarms, newest first."""

@@ -196,6 +196,12 @@ static int keep_text(struct reading *f, struct piece text, uint16_t *ret)
 
 	if (text.n == 0)
 		return 0;
+	/* It is printed as it stands, and a NUL would end it. */
+	for (size_t i = 0; i < text.n; i++)
+		if (iscntrl((unsigned char)text.at[i]) && text.at[i] != '\t')
+			return refuse(f, text.at + i, "letters in a reason",
+				      "a control character behind",
+				      (struct piece) { text.at, i });
 	if (d->used + text.n + 1 > sizeof(d->text))
 		return refuse(f, text.at, "shorter reasons: 12 kB in all",
 			      "no room for", text);
