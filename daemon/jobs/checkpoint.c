@@ -192,12 +192,13 @@ static void look_only(const char *path, const char *machine,
 
 static int file_open(struct checkpoint_file *f, const char *path)
 {
-	const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+	const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
 	int err;
 
 	if (fd < 0)
 		return -errno;
-	err = file_make(fd);
+	/* Who may read it may lock it; an earlier one may be open to the group. */
+	err = fchmod(fd, 0600) < 0 ? -errno : file_make(fd);
 	f->direct = takes_sectors(path);
 	if (err == 0 && f->direct) {
 		f->fd = open(path, O_RDWR | O_DIRECT | O_CLOEXEC);

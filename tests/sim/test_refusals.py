@@ -194,15 +194,20 @@ def test_a_url_of_another_kind_is_refused_as_one():
     assert "--url http://x; " in r.stderr
 
 
-def test_a_file_that_is_no_database_is_told_by_its_name(tmp_path):
+def test_a_file_that_is_no_database_is_set_aside_and_kept(tmp_path):
     jobs = pathlib.Path(PROGRAM).with_name("edmd-jobs")
     config = tmp_path / "m.ini"
     config.write_text("[machine]\nname = garbage\n")
-    (tmp_path / "garbage.db").write_text("not a database, whatever it is\n")
-    r = told_in_time(jobs, "--config", config, "--store", tmp_path)
-    assert r.returncode == 73
-    assert f"{tmp_path}/garbage.db is no database of jobs; move it" in r.stderr
-    assert "<3>" not in r.stderr
+    text = "not a database, whatever it is\n"
+    (tmp_path / "garbage.db").write_text(text)
+    p = subprocess.Popen([jobs, "--config", config, "--store", tmp_path],
+                         stderr=subprocess.PIPE, text=True)
+    told = next(line for line in p.stderr if "kept as" in line)
+    p.terminate()
+    p.communicate(timeout=60)
+    assert "0 jobs were recovered" in told
+    kept = pathlib.Path(told.rsplit("kept as ", 1)[1].strip())
+    assert kept.parent == tmp_path and kept.read_text() == text
 
 
 def edmd_on_gpio(tmp_path, text):

@@ -110,7 +110,20 @@ def way_of(poly, offset, inside, at):
     return min(rings, key=lambda r: r.distance(Point(at)))
 
 
+NEARER = 3 * UM         # docs/taper.md: the wire may come nearer by this
+
+
 def verdict(poly, offset, inside, at):
+    """As verdict_of(), but a contour that a wire with an offset less by the bound
+    could cut is close to call: there it may go where it may not."""
+    said = verdict_of(poly, offset, inside, at)
+    if said == "refuse" and offset > NEARER and \
+            verdict_of(poly, offset - NEARER, inside, at) != "refuse":
+        return "close"
+    return said
+
+
+def verdict_of(poly, offset, inside, at):
     """What is to be said of it: "cut", "refuse", or "close" to call.
 
     A place of the contour is cut if the wire comes to it, or if it lies in an
