@@ -302,7 +302,7 @@ static int read_config(struct panel *p, const struct options *o)
 	if (o->machine)
 		snprintf(p->config.name, sizeof(p->config.name), "%s",
 			 o->machine);
-	if (o->port)
+	if (o->port > 0)
 		p->config.panel.port = o->port;
 	if (o->assets)
 		snprintf(p->config.panel.assets,

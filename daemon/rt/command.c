@@ -221,7 +221,7 @@ static enum cycle_answer do_press(struct cycle *c,
 	const enum cycle_answer may = c->fault.latched ? ANSWER_WRONG_STATE :
 				      may_begin(c);
 	bool begun;
-	const int answer = manual_press(c, m->arg, m->arg_mm, may, &begun);
+	const int answer = manual_press(c, m->arg, m->arg_mm, (int)may, &begun);
 
 	if (begun) {
 		cycle_enter(c, STATE_JOG);

@@ -125,7 +125,7 @@ static int solve(const struct track *k, double t, struct nc_pose *p,
 	k->w->at(k->w->of, t, p);
 	memcpy(q, p->mm, INTERP_NAXES * sizeof(*q));
 	for (uint32_t i = 0; i < kin->nturn; i++) {
-		const int axis = kin->joint[kin->turn[i]].axis;
+		const int axis = (int)kin->joint[kin->turn[i]].axis;
 
 		q[axis] = was[axis - INTERP_A];
 	}
