@@ -348,21 +348,26 @@ static sqlite3_stmt *ask(struct store *s, const struct store_write *w,
 	return NULL;
 }
 
+static sqlite3_stmt *ask_with(struct store *s, int *ret_err, const char *sql,
+			      const char *kinds, va_list ap)
+{
+	struct store_write *w = write_new(sql, STORE_MAY_GO, kinds, ap);
+	sqlite3_stmt *q = ask(s, w, ret_err);
+
+	write_free(w);
+	return q;
+}
+
 sqlite3_stmt *store_ask(struct store *s, int *ret_err, const char *sql,
 			const char *kinds, ...)
 {
-	struct store_write *w;
 	sqlite3_stmt *q;
 	va_list ap;
 	int err;
 
 	va_start(ap, kinds);
-	w = write_new(sql, STORE_MAY_GO, kinds, ap);
+	q = ask_with(s, ret_err ? ret_err : &err, sql, kinds, ap);
 	va_end(ap);
-	q = ask(s, w, &err);
-	write_free(w);
-	if (ret_err)
-		*ret_err = err;
 	return q;
 }
 
@@ -370,16 +375,13 @@ int64_t store_number_of(struct store *s, int64_t otherwise, const char *sql,
 			const char *kinds, ...)
 {
 	int64_t value = otherwise;
-	struct store_write *w;
 	sqlite3_stmt *q;
 	va_list ap;
 	int err;
 
 	va_start(ap, kinds);
-	w = write_new(sql, STORE_MAY_GO, kinds, ap);
+	q = ask_with(s, &err, sql, kinds, ap);
 	va_end(ap);
-	q = ask(s, w, &err);
-	write_free(w);
 	if (q)
 		value = sqlite3_column_int64(q, 0);
 	sqlite3_finalize(q);

@@ -58,6 +58,40 @@ static inline struct interp_program bench_program(struct interp_build *b)
 	return p;
 }
 
+/* One segment, walked by one strategy. */
+struct bench_path {
+	const char *name;
+	enum interp_strategy strategy;
+	enum interp_coupling coupling;
+	int axes;			/* 0: a circle in X and Y */
+};
+
+#define BENCH_REACH_MM	100.0
+
+/** bench_path() - it alone as a program, of about 100 mm. */
+static inline struct interp_program
+bench_path(const struct interp_machine *machine, const struct bench_path *p)
+{
+	const struct interp_build_options o = {
+		.machine = machine, .strategy = p->strategy,
+		.tolerance_milli = 2000, .coupling = p->coupling,
+	};
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
+	const struct interp_build_arc arc = {
+		.axis_a = INTERP_X, .axis_b = INTERP_Y,
+		.centre_a_mm = BENCH_REACH_MM / 4,
+	};
+	struct interp_build *b = interp_build_create(&o);
+	double to[INTERP_NAXES] = { 0 };
+	struct interp_diag d;
+
+	for (int i = 0; i < p->axes; i++)
+		to[i] = BENCH_REACH_MM / (1 + 0.37 * i);
+	bench_must(b && !(p->axes ? interp_build_line(b, to, &w, &d) :
+				    interp_build_arc(b, to, &arc, &w, &d)));
+	return bench_program(b);
+}
+
 /** bench_say() - one result; @name is one word. */
 static inline void bench_say(const char *name, double value)
 {

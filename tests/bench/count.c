@@ -17,7 +17,6 @@
 #include <string.h>
 #include <valgrind/callgrind.h>
 
-#define REACH_MM	100.0
 #define POINTS		20000
 #define LINES		5000
 #define CYCLES		5000
@@ -39,14 +38,7 @@ static void end(const char *name, uint64_t units)
 
 /* -- Lattice points ------------------------------------------------------------ */
 
-struct path {
-	const char *name;
-	enum interp_strategy strategy;
-	enum interp_coupling coupling;
-	int axes;			/* 0: a circle in X and Y */
-};
-
-static const struct path paths[] = {
+static const struct bench_path paths[] = {
 	{ "simultaneous, 2 axes", INTERP_SIMULTANEOUS, 0, 2 },
 	{ "simultaneous, 8 axes", INTERP_SIMULTANEOUS, 0, 8 },
 	{ "simultaneous, arc", INTERP_SIMULTANEOUS, 0, 0 },
@@ -60,28 +52,6 @@ static const struct path paths[] = {
 	{ "min-switch, tree of 8", INTERP_MIN_SWITCH, INTERP_TREE, 8 },
 	{ "min-switch, tube of 8", INTERP_MIN_SWITCH, INTERP_TUBE, 8 },
 };
-
-static struct interp_program program_of(const struct path *p)
-{
-	const struct interp_build_options o = {
-		.machine = &machine.axes, .strategy = p->strategy,
-		.tolerance_milli = 2000, .coupling = p->coupling,
-	};
-	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
-	const struct interp_build_arc arc = {
-		.axis_a = INTERP_X, .axis_b = INTERP_Y,
-		.centre_a_mm = REACH_MM / 4,
-	};
-	struct interp_build *b = interp_build_create(&o);
-	double to[INTERP_NAXES] = { 0 };
-	struct interp_diag d;
-
-	for (int i = 0; i < p->axes; i++)
-		to[i] = REACH_MM / (1 + 0.37 * i);
-	bench_must(b && !(p->axes ? interp_build_line(b, to, &w, &d) :
-				    interp_build_arc(b, to, &arc, &w, &d)));
-	return bench_program(b);
-}
 
 /* The first points of a run on the way; the rest is not walked. */
 static void walk(struct interp_cursor *c, double ds_mm, uint64_t points)
@@ -102,9 +72,9 @@ static void walk(struct interp_cursor *c, double ds_mm, uint64_t points)
 	}
 }
 
-static void count_path(const struct path *p)
+static void count_path(const struct bench_path *p)
 {
-	const struct interp_program prog = program_of(p);
+	const struct interp_program prog = bench_path(&machine.axes, p);
 	struct interp_cursor c;
 	char name[80];
 

@@ -16,7 +16,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* How far a retract may go. */
 struct retract {
 	double from_mm;			/* place it began */
 	double floor_mm;		/* never farther back */
