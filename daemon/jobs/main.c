@@ -287,18 +287,26 @@ static int open_lcm(struct jobs *j)
 	return err < 0 ? EX_UNAVAILABLE : 0;
 }
 
-/* Signals end the loop; its exit code is the program's. */
-static int add_sources(struct jobs *j)
+static const int signals[] = { SIGTERM, SIGINT };
+
+/* One that comes before the loop waits for it, so that a service that is ended
+ * while it starts leaves nothing behind. */
+static void block_signals(void)
 {
-	static const int signals[] = { SIGTERM, SIGINT };
 	sigset_t set;
-	int err;
 
 	sigemptyset(&set);
 	for (int i = 0; i < 2; i++)
 		sigaddset(&set, signals[i]);
 	sigprocmask(SIG_BLOCK, &set, NULL);
 	signal(SIGPIPE, SIG_IGN);
+}
+
+/* Signals end the loop; its exit code is the program's. */
+static int add_sources(struct jobs *j)
+{
+	int err;
+
 	for (int i = 0; i < 2; i++) {
 		err = sd_event_add_signal(j->event, NULL, signals[i], NULL,
 					  NULL);
@@ -382,6 +390,7 @@ int main(int argc, char **argv)
 	err = configure(&jobs, &config, &o);
 	if (err)
 		return err;
+	block_signals();
 	logger_start();
 	err = open_store(&jobs, o.store ? o.store : config.store_dir);
 	jobs.claim = -1;

@@ -205,6 +205,8 @@ def test_a_file_that_is_no_database_is_set_aside_and_kept(tmp_path):
     told = next(line for line in p.stderr if "kept as" in line)
     p.terminate()
     p.communicate(timeout=60)
+    assert p.returncode == 0
+    assert not list(pathlib.Path("/dev/shm").glob("edmd.garbage.*"))
     assert "0 jobs were recovered" in told
     kept = pathlib.Path(told.rsplit("kept as ", 1)[1].strip())
     assert kept.parent == tmp_path and kept.read_text() == text

@@ -110,8 +110,13 @@ class Panel:
         return f"{'https' if self.secure else 'http'}://127.0.0.1:{self.port}"
 
     def start(self):
-        self.machine.start()
-        self.start_panel()
+        assert PAGE.exists(), f"no page in {PAGE}; make panel"
+        try:
+            self.machine.start()
+            self.start_panel()
+        except BaseException:
+            self.close()    # a fixture that fails is not asked to
+            raise
 
     def start_panel(self):
         with open(self.folder / "panel.log", "ab") as log:

@@ -235,8 +235,6 @@ def test_the_service_does_not_start_with_a_bad_key_file(idle, which, what):
     path = idle.store / f"{idle.name}.{which}"
     until(path.exists)
     until(lambda: pathlib.Path(idle.client.key).exists())
-    # In its loop: before that a SIGTERM ends it as it stands.
-    idle.client.status(10)
     assert idle.end("jobs") == 0
     if what == "wide":
         path.chmod(0o644)
