@@ -33,7 +33,7 @@ static const struct cmdline table = {
 "Usage: edmd [options]\n"
 "\n"
 "The controller of one machine: runs the cycle in real time and answers to\n"
-"edmd-jobs through shared memory, /dev/shm/edmd.<name>.*\n"
+"edmd-jobs through shared memory, edmd.<name>.* in /dev/shm\n"
 "\n",
 	.tail =
 "\n"
