@@ -106,7 +106,7 @@ static const struct verb verbs[] = {
 	{ "history", "", ctl_history, 0, 0, false, "",
 	  "print the jobs that have ended, newest first" },
 	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
-	  "who may command; roles: viewer, operator, service" },
+	  "who may command; by role" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "plot",
 	  "find the loops of the axes in a file that record wrote" },
 };
