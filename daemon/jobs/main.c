@@ -34,11 +34,11 @@ struct options {
 /* clang-format off */
 static const struct cmdline_row rows[] = {
 	{ "config", "FILE", CMDLINE_WORD, AT(config), .help =
-	  "the machine file, the same as edmd's" },
+	  "machine file, the same as for edmd" },
 	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
-	  "of the machine; default: the file's [machine] name" },
+	  "name of the machine; default: [machine] name" },
 	{ "store", "DIR", CMDLINE_WORD, AT(store), .help =
-	  "for the database; default: the file's [jobs] store" },
+	  "folder of the database; default: [jobs] store" },
 };
 /* clang-format on */
 
@@ -48,8 +48,8 @@ static const struct cmdline table = {
 	.head =
 	"Usage: edmd-jobs --config FILE [options]\n"
 	"\n"
-	"Takes jobs over LCM, keeps them in a queue, loads them into edmd and\n"
-	"tells how they go.  A job that runs goes on without it.\n"
+	"Receives jobs over LCM, keeps them in a queue, loads them into edmd and\n"
+	"reports how they proceed.  A running job goes on without it.\n"
 	"\n",
 };
 

@@ -111,7 +111,7 @@ struct shm_snapshot {
 	int64_t period_ns;
 	int64_t wake_late_ns, wake_late_max_ns;
 	int64_t took_ns, took_max_ns;
-	/* Of touches: pos less the program's own place, pulses; where the last
+	/* Of probing: pos less the program's own place, pulses; where the last
 	 * two contacts along each axis were, and which of them there are; no
 	 * way back beyond that place on the path. */
 	int32_t shift[SHM_NAXES], found[2][SHM_NAXES];
