@@ -33,7 +33,7 @@ static const struct cmdline table = {
 "Usage: edmd [options]\n"
 "\n"
 "Controls one machine: runs the cycle in real time and takes commands from\n"
-"edmd-jobs, through /dev/shm/edmd.<name>.*\n"
+"edmd-jobs, through edmd.<name>.* in /dev/shm\n"
 "\n",
 	.tail =
 "\n"

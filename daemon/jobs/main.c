@@ -249,6 +249,8 @@ static int open_store(struct jobs *j, const char *dir)
 /* Two services would give one machine two different queues. */
 static int claim(struct jobs *j)
 {
+	char path[SHM_PATH_MAX];
+
 	j->claim = shm_writer_claim(j->machine);
 	if (j->claim >= 0)
 		return 0;
@@ -257,9 +259,9 @@ static int claim(struct jobs *j)
 			  "edmd-jobs for a machine", j->machine);
 		return EX_TEMPFAIL;
 	}
-	log_error("machine %s: /dev/shm/edmd.%s.writer: %s; remove it, or run "
-		  "as the user who made it", j->machine, j->machine,
-		  strerror(-j->claim));
+	shm_path(path, j->machine, "writer");
+	log_error("machine %s: %s: %s; remove it, or run as the user who made "
+		  "it", j->machine, path, strerror(-j->claim));
 	return EX_CANTCREAT;
 }
 

@@ -9,13 +9,15 @@
 
 #include "shm.h"
 
-#define OBJECT_PATH_MAX	96
+#define OBJECT_PATH_MAX	SHM_PATH_MAX
 
 /**
  * object_path() - "/dev/shm/edmd.<machine>.<what>"; -EINVAL for a bad name.
  *
- * The path is in /dev/shm/edmd if there is such a folder and root, edmd or this
- * user made it.  In /dev/shm anybody may make a file and so block its name.
+ * The path is in the folder of the object's maker, /dev/shm/edmd or
+ * /dev/shm/edmd-jobs, if there is one that belongs to that service, root or this
+ * user, and nobody else may write in it.  In /dev/shm anybody may make a file
+ * and so block its name.
  */
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what);
