@@ -96,7 +96,7 @@ void verbs_text(struct jobs *j, const struct verb *v,
 static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 			enum store_list what)
 {
-	/* Only history has it; anything but a few rows is as many as there are. */
+	/* Anything but a few rows is as many as there are. */
 	const int rows = c->arg > 0 && c->arg < 1000 ? (int)c->arg : 0;
 	struct store_job before;
 	const bool known = what == STORE_ALARMS ||
