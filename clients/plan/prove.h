@@ -34,7 +34,7 @@ struct proof {
 	double least_mm;		/* the least distance that was seen */
 	double t;			/* where */
 	struct near_pair pair;		/* of it; begin with a zeroed one */
-	uint64_t queries;		/* walks of the trees, added to */
+	uint64_t queries;		/* poses looked at; added to */
 };
 
 /** clearance_init() - of one value; clearance_end() lets it fall. */
