@@ -35,7 +35,7 @@ static double time_along(const struct apart *a, const struct triangle *tool,
 	v_cross(n, a->rate->w, m);
 	for (int k = 0; k < 3; k++)
 		s = fmax(s, v_dot(m, tool->at[k]));
-	return root(gap - a->keep_mm, s + v_dot(n, a->rate->v),
+	return root(gap - a->keep_mm, s + v_dot(n, a->rate->v) + a->rises,
 		    a->rate->accel);
 }
 

@@ -22,7 +22,8 @@ struct apart {
 	const struct pose_rate *rate;	/* NULL: distances are asked for */
 	double least_mm;		/* with a rate: nearer than that now is
 					 * not enough for any time; > keep_mm */
-	double keep_mm, time;
+	double keep_mm, rises, time;	/* rises: what is to be kept, by a unit of
+					 * time */
 };
 
 /** apart_seen() - is a gap found that is enough?  @plane: of @part, as a tree has

@@ -57,13 +57,13 @@ static box_v4 speed(const struct box_placed *tool, const box_v4 axis[3],
 
 /* Along the way that leads past the gaps on three axes at once. */
 static float beside(const struct box_placed *tool, const box_v4 axis[3],
-		    box_v4 at, box_v4 gaps, float keep, float accel)
+		    box_v4 at, box_v4 gaps, const struct box_keep *keep)
 {
 	const box_v4 g = box_positive(gaps);
 	const float gap = sqrtf(box_beside2(gaps));
 	box_v4 n[3], s;
 
-	if (!(gap > keep))
+	if (!(gap > keep->mm))
 		return 0;
 	for (int k = 0; k < 3; k++) {
 		/* With the sign of @at. */
@@ -74,24 +74,25 @@ static float beside(const struct box_placed *tool, const box_v4 axis[3],
 		n[k] = (box_v4){ sum, sum, sum, sum };
 	}
 	s = speed(tool, n, (box_v4){ 1, 1, 1, 1 });
-	return root(gap - keep, s[0], accel);
+	return root(gap - keep->mm, s[0] + keep->rises, keep->accel);
 }
 
 float box_time(const struct box *part, const struct box_placed *tool,
-	       float keep, float accel, float enough)
+	       const struct box_keep *keep)
 {
+	const float enough = keep->enough;
 	struct box_gaps g;
 	box_v4 rest[2], s[2];
 	float most = 0;
 
 	box_gaps(part, &tool->at, &g);
-	rest[0] = g.part - keep;
-	rest[1] = g.tool - keep;
-	s[0] = speed(tool, part->axis, g.part_at);
-	s[1] = speed(tool, tool->at.axis, g.tool_at);
+	rest[0] = g.part - keep->mm;
+	rest[1] = g.tool - keep->mm;
+	s[0] = speed(tool, part->axis, g.part_at) + keep->rises;
+	s[1] = speed(tool, tool->at.axis, g.tool_at) + keep->rises;
 	for (int of = 0; of < 2; of++) {
 		const box_i4 ok = (rest[of] > 0) &
-			(s[of] * enough + accel * enough * enough / 2 <=
+			(s[of] * enough + keep->accel * enough * enough / 2 <=
 			 rest[of]);
 
 		if (ok[0] | ok[1] | ok[2])
@@ -101,12 +102,12 @@ float box_time(const struct box *part, const struct box_placed *tool,
 		for (int i = 0; i < 3; i++)
 			if (rest[of][i] > 0)
 				most = fmaxf(most, root(rest[of][i], s[of][i],
-							accel));
+							keep->accel));
 	if (most < enough)
 		most = fmaxf(most, beside(tool, part->axis, g.part_at, g.part,
-					  keep, accel));
+					  keep));
 	if (most < enough)
 		most = fmaxf(most, beside(tool, tool->at.axis, g.tool_at,
-					  g.tool, keep, accel));
+					  g.tool, keep));
 	return fminf(most, enough);
 }

@@ -141,6 +141,13 @@ static inline void box_place(const struct box *in, const struct box_pose *pose,
 void box_move(const struct box *in, const struct box_pose *pose,
 	      struct box_placed *ret);
 
+struct box_keep {
+	float mm;			/* to be kept now */
+	float rises;			/* more, by a unit of time */
+	float accel;			/* of the points, as in struct pose_rate */
+	float enough;			/* a longer time is not asked for */
+};
+
 /**
  * box_time() - for how long no point of @tool comes nearer to @part than @keep.
  *
@@ -148,9 +155,9 @@ void box_move(const struct box *in, const struct box_pose *pose,
  * time x, where s is the greatest n . (v + w x p) in the box.  Until that is a
  * gap along n less @keep, the pair is not nearer than @keep.  Each axis gives
  * such a time, and the longest holds.
- * Return: it, or @enough as soon as it is known to be no less; 0: none.
+ * Return: it, or keep->enough as soon as it is known to be no less; 0: none.
  */
 float box_time(const struct box *part, const struct box_placed *tool,
-	       float keep, float accel, float enough);
+	       const struct box_keep *keep);
 
 #endif /* PLAN_BOX_H */

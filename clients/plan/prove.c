@@ -14,10 +14,6 @@
 #define LEAST_KEEP_MM	0.0016
 #define LEAST_EPS_MM	0.0008
 
-/* A step of the proof asks for so much more than its own pose does, at most,
- * where the clearance falls. */
-#define FALL_MM		0.001
-
 /* -- What is to be kept --------------------------------------------------------- */
 
 void clearance_init(struct clearance *c, double mm)
@@ -59,14 +55,13 @@ static double from_end(const struct clearance *c, const struct pose *pose)
 	return most;
 }
 
-double clearance_at(const struct clearance *c, const struct pose *pose,
-		    double way_mm)
+double clearance_at(const struct clearance *c, const struct pose *pose)
 {
 	double far;
 
 	if (!(c->zone_mm > 0))
 		return c->mm;
-	far = from_end(c, pose) + way_mm;
+	far = from_end(c, pose);
 	if (far >= c->zone_mm)
 		return c->mm;
 	return c->end_mm + (c->mm - c->end_mm) * far / c->zone_mm;
@@ -79,25 +74,22 @@ struct asked {
 	const struct block *block;
 };
 
-/* The clearance a step from here has to keep, and how long the step may be. */
+/* The farther from the end, the more is to be kept; how far is told by the corners
+ * of the electrode's bounds. */
 static void keep_from(void *arg, const struct pose *pose,
 		      struct sweep_keep *ret)
 {
 	const struct asked *a = arg;
 	const struct clearance *c = a->clear;
-	const double way = a->block->way_mm;
-	double far, fall;
+	const double way = a->block->corner_way_mm;
 
-	ret->most_mm = ret->mm = c->mm;
-	ret->until = 2;
-	if (!(c->zone_mm > 0) || !(way > 0))
+	ret->most_mm = c->zone_mm > 0 ? fmax(c->mm, c->end_mm) : c->mm;
+	ret->mm = ret->most_mm;
+	ret->rises = 0;
+	if (!(c->zone_mm > 0) || c->end_mm >= c->mm)
 		return;
-	far = from_end(c, pose);
-	if (far - c->zone_mm > way)
-		return;
-	fall = (c->mm - c->end_mm) / c->zone_mm;
-	ret->until = fmax(far / 8, fall > 0 ? FALL_MM / fall : far) / way;
-	ret->mm = clearance_at(c, pose, ret->until * way);
+	ret->mm = clearance_at(c, pose);
+	ret->rises = (c->mm - c->end_mm) / c->zone_mm * way;
 }
 
 bool prove_block(const struct bodies *bodies, const struct block *b,
@@ -130,7 +122,7 @@ bool prove_refuted(const struct bodies *bodies, const struct block *b,
 
 		block_pose(b, t, &pose, NULL);
 		p->queries++;
-		if (!near_below(bodies, &pose, clearance_at(c, &pose, 0),
+		if (!near_below(bodies, &pose, clearance_at(c, &pose),
 				&p->pair))
 			continue;
 		p->t = t;
@@ -194,7 +186,7 @@ static void keep_least(void *arg, const struct pose *pose,
 	const struct least *l = arg;
 
 	(void)pose;
-	*ret = (struct sweep_keep) { l->keep_mm, l->keep_mm, 2 };
+	*ret = (struct sweep_keep) { l->keep_mm, l->keep_mm, 0 };
 }
 
 static bool lower(void *arg, double t, const struct near_pair *pair)

@@ -42,10 +42,8 @@ void clearance_init(struct clearance *c, double mm);
 void clearance_end(struct clearance *c, const struct mesh *tool,
 		   const struct pose *end, double zone_mm, double end_mm);
 
-/** clearance_at() - what is to be kept at @pose, and as long as no point goes
- *  farther than @way_mm from there. */
-double clearance_at(const struct clearance *c, const struct pose *pose,
-		    double way_mm);
+/** clearance_at() - what is to be kept at @pose. */
+double clearance_at(const struct clearance *c, const struct pose *pose);
 
 /**
  * prove_block() - that no point of it comes nearer than @c.

@@ -127,8 +127,9 @@ static double leaf_time(const struct state *x, const struct moment *m,
 {
 	const struct bodies *b = x->s->bodies;
 	struct apart far = { .rate = &m->rate, .keep_mm = m->keep.mm,
+			     .rises = m->keep.rises,
 			     .least_mm = m->keep.mm + x->s->eps_mm,
-			     .time = fmin(1 - m->t, m->keep.until) };
+			     .time = 1 - m->t };
 
 	for (uint32_t j = tool->first; j < tool->first + tool->n; j++) {
 		struct triangle at;
@@ -144,21 +145,22 @@ static double leaf_time(const struct state *x, const struct moment *m,
 	return far.time;
 }
 
-/* For how long boxes keep what is asked: the most of the block for ever, or what
- * is asked here for a while. */
+/* For how long boxes keep what is asked: the most of the block, or what is asked
+ * here and rises. */
 static double pair_time(const struct moment *m, const struct box *part,
 			const struct box_placed *tool)
 {
 	const struct sweep_keep *k = &m->keep;
-	const double time = (double)box_time(part, tool, (float)k->most_mm,
-			m->at.accel, (float)(1 - m->t) * (1 + 0x1p-20f));
+	const float left = (float)(1 - m->t) * (1 + 0x1p-20f);
+	struct box_keep keep = { .mm = (float)k->most_mm,
+				 .accel = m->at.accel, .enough = left };
+	const float time = box_time(part, tool, &keep);
 
-	if (k->mm >= k->most_mm || time >= SPLIT)
-		return time;
-	return fmax(time, fmin(k->until,
-			       (double)box_time(part, tool, (float)k->mm,
-						m->at.accel,
-						(float)k->until)));
+	if (k->mm >= k->most_mm || (double)time >= SPLIT)
+		return (double)time;
+	keep.mm = (float)k->mm;
+	keep.rises = (float)k->rises;
+	return (double)fmaxf(time, box_time(part, tool, &keep));
 }
 
 /* The same of two leaves; 0: too near. */
@@ -213,7 +215,7 @@ static void settle(struct state *x, struct moment *m, uint32_t part,
 			time = fmax(time, leaves_time(x, m, p, q));
 		if (m->t + time >= 1 || !(time > 0 || !leaves))
 			return;
-		if (!leaves && time < fmin(SPLIT, m->keep.until)) {
+		if (!leaves && time < SPLIT) {
 			split(x, m, part, tool);
 			return;
 		}

@@ -19,8 +19,9 @@
 /* What is to be kept from a moment on. */
 struct sweep_keep {
 	double most_mm;			/* anywhere on the block */
-	double mm;			/* for a time of until */
-	double until;
+	double mm;			/* at this moment */
+	double rises;			/* a unit of time on it is no more than
+					 * mm and that */
 };
 
 struct sweep {

@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Triangles. */
+#define MANY		32
+
 struct build {
 	struct tree *t;
 	double (*centre)[3];		/* of each triangle, in the tree's order */
@@ -96,17 +99,20 @@ static void principal(double m[3][3], struct rot *ret)
 	v_cross(axis[0], axis[1], axis[2]);
 }
 
+/* Of few triangles all corners count; of many the middle of each will do. */
 static void spread(const struct build *b, uint32_t from, uint32_t n,
 		   double mean[3], double m[3][3])
 {
 	double sum[3] = { 0 }, sq[6] = { 0 };
 	const double *o = b->centre[from];
+	const int corners = n > MANY ? 1 : 3;
 
 	for (uint32_t i = from; i < from + n; i++) {
-		for (int k = 0; k < 3; k++) {
+		for (int k = 0; k < corners; k++) {
 			double d[3];
 
-			v_sub(b->t->tri[i].at[k], o, d);
+			v_sub(corners == 1 ? b->centre[i] :
+					     b->t->tri[i].at[k], o, d);
 			v_add(sum, d, sum);
 			sq[0] += d[0] * d[0];
 			sq[1] += d[1] * d[1];
@@ -117,13 +123,13 @@ static void spread(const struct build *b, uint32_t from, uint32_t n,
 		}
 	}
 	for (int k = 0; k < 3; k++)
-		sum[k] /= 3.0 * n;
+		sum[k] /= corners * (double)n;
 	v_add(o, sum, mean);
 	for (int k = 0; k < 3; k++)
-		m[k][k] = sq[k] / (3.0 * n) - sum[k] * sum[k];
-	m[0][1] = m[1][0] = sq[3] / (3.0 * n) - sum[0] * sum[1];
-	m[0][2] = m[2][0] = sq[4] / (3.0 * n) - sum[0] * sum[2];
-	m[1][2] = m[2][1] = sq[5] / (3.0 * n) - sum[1] * sum[2];
+		m[k][k] = sq[k] / (corners * (double)n) - sum[k] * sum[k];
+	m[0][1] = m[1][0] = sq[3] / (corners * (double)n) - sum[0] * sum[1];
+	m[0][2] = m[2][0] = sq[4] / (corners * (double)n) - sum[0] * sum[2];
+	m[1][2] = m[2][1] = sq[5] / (corners * (double)n) - sum[1] * sum[2];
 }
 
 /* The axes as the box has them: in single precision. */

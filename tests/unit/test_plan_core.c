@@ -373,6 +373,7 @@ static void boxes_stay_apart_as_long_as_they_say(void **state)
 	for (int i = 0; i < 40 * runs; i++) {
 		const double far = i % 2 ? 0 : 4e4;
 		double from[INTERP_NAXES], to[INTERP_NAXES];
+		struct box_keep keep = { .mm = 0.3f, .enough = 1 };
 		struct box_placed now;
 		struct box_pose at;
 		struct pose_rate rate;
@@ -389,6 +390,7 @@ static void boxes_stay_apart_as_long_as_they_say(void **state)
 		block_init(&b, &s.motion, from, to);
 		block_pose(&b, 0, &pose, &rate);
 		near_pose(&pose, &rate, &at);
+		keep.accel = (float)b.accel_mm;
 		for (int k = 0; k < 60; k++) {
 			struct box part = s.part.t.node[k];
 			const struct box *tool = &s.tool.t.node[k * 7 % 60];
@@ -397,7 +399,7 @@ static void boxes_stay_apart_as_long_as_they_say(void **state)
 			part.centre[0] += far;
 			box_move(tool, &at, &now);
 			d = (double)box_distance(&part, &now.at);
-			x = box_time(&part, &now, 0.3f, (float)b.accel_mm, 1);
+			x = box_time(&part, &now, &keep);
 			apart += d > 0;
 			held += x > 0;
 			for (int n = 0; n < 30; n++) {
@@ -497,7 +499,7 @@ static void a_clearance_that_falls_is_kept(void **state)
 		for (int k = 0; k <= 60 && ok; k++) {
 			block_pose(&b, k / 60.0, &pose, NULL);
 			assert_true(near_distance(&s.bodies, &pose, &pair) >=
-				    clearance_at(&c, &pose, 0));
+				    clearance_at(&c, &pose));
 		}
 		proved += ok;
 		by_fall += ok && !prove_block(&s.bodies, &b, &whole, &p);
