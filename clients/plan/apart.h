@@ -2,8 +2,8 @@
 /*
  * apart.h - is a pair of triangles far enough apart, and for how long?
  *
- * Most pairs are seen to be without their distance: any direction in which there
- * is a gap between them will do.
+ * Of most pairs this is seen without their distance: any direction in which
+ * there is a gap between them will do.
  *
  * Units: mm; time is the block's parameter.  Any thread.
  */
@@ -26,13 +26,13 @@ struct apart {
 					 * time */
 };
 
-/** apart_seen() - is a gap found that is enough?  @plane: of @part, as a tree has
- *  them; @tool is in the part's frame. */
+/** apart_seen() - is a gap found that is enough?  @plane: of @part, as a tree
+ *  has them; @tool is in the part's frame. */
 bool apart_seen(const struct apart *a, const struct triangle *part,
 		const double plane[4], const struct triangle *tool);
 
-/** apart_time() - until @tool, at the distance @mm from the point @q on it to @p
- *  on the part, may be nearer than keep_mm. */
+/** apart_time() - until @tool, at the distance @mm from the point @q on it to
+ *  @p on the part, may be nearer than keep_mm. */
 double apart_time(const struct apart *a, const struct triangle *tool, double mm,
 		  const double p[3], const double q[3]);
 

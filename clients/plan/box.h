@@ -3,9 +3,9 @@
  * box.h - oriented boxes, and what the gap between two of them promises
  *
  * Boxes are in single precision, four numbers at a time: a walk of two trees
- * does little else than compare boxes.  Every bound is made smaller by more than
- * its arithmetic can be off (BOX_MARGIN), so that it stays a bound.  Centres are
- * in double precision: what counts is the difference of two.
+ * does little else than compare boxes.  Every bound is made smaller by more
+ * than its arithmetic can be off (BOX_MARGIN), so that it stays a bound.
+ * Centres are in double precision: what counts is the difference of two.
  *
  * Units: mm; time is the block's parameter.  Any thread.
  */

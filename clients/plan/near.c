@@ -46,7 +46,7 @@ void near_tri(const struct bodies *b, const struct pose *pose, uint32_t tool,
 	}
 }
 
-/* -- Triangles ---------------------------------------------------------------- */
+/* -- Triangles ------------------------------------------------------------ */
 
 static void offer(struct walk *w, uint32_t part, uint32_t tool,
 		  const struct triangle *at)
@@ -84,7 +84,7 @@ static void leaves(struct walk *w, const struct box *part,
 	}
 }
 
-/* -- The walk ----------------------------------------------------------------- */
+/* -- The walk ------------------------------------------------------------- */
 
 static void visit(struct walk *w, const struct box *part,
 		  const struct box *placed);

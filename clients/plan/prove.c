@@ -14,7 +14,7 @@
 #define LEAST_KEEP_MM	0.0016
 #define LEAST_EPS_MM	0.0008
 
-/* -- What is to be kept --------------------------------------------------------- */
+/* -- What is to be kept --------------------------------------------------- */
 
 void clearance_init(struct clearance *c, double mm)
 {
@@ -67,7 +67,7 @@ double clearance_at(const struct clearance *c, const struct pose *pose)
 	return c->end_mm + (c->mm - c->end_mm) * far / c->zone_mm;
 }
 
-/* -- Proofs ------------------------------------------------------------------ */
+/* -- Proofs --------------------------------------------------------------- */
 
 struct asked {
 	const struct clearance *clear;
@@ -132,7 +132,7 @@ bool prove_refuted(const struct bodies *bodies, const struct block *b,
 	return false;
 }
 
-/* -- The most that can be proved ------------------------------------------------ */
+/* -- The most that can be proved ------------------------------------------ */
 
 struct least {
 	const struct bodies *bodies;

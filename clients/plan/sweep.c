@@ -87,7 +87,7 @@ static void put(struct state *x, uint32_t part, uint32_t tool, double t)
 	*bin = i;
 }
 
-/* -- One pair ------------------------------------------------------------------- */
+/* -- One pair ------------------------------------------------------------- */
 
 /* Too near.  True: once more, for less is asked now. */
 static bool refuse(struct state *x, struct moment *m,
@@ -228,7 +228,7 @@ static void settle(struct state *x, struct moment *m, uint32_t part,
 	}
 }
 
-/* -- All pairs -------------------------------------------------------------------- */
+/* -- All pairs ------------------------------------------------------------ */
 
 static void go_through(struct state *x, int i)
 {
