@@ -204,7 +204,7 @@ int check_clearance(const struct job *j, const double end[INTERP_NAXES],
 	return 0;
 }
 
-/* -- --check ------------------------------------------------------------------- */
+/* -- --check -------------------------------------------------------------- */
 
 static void say_axes(const struct job *j, const double q[INTERP_NAXES], FILE *f)
 {

@@ -103,7 +103,7 @@ uint32_t fewest_greedy(struct fewest *f, double mm, uint32_t *ret)
 	return n;
 }
 
-/* -- Breadth first -------------------------------------------------------------- */
+/* -- Breadth first -------------------------------------------------------- */
 
 struct search {
 	uint32_t *before;		/* UINT32_MAX: not reached */

@@ -87,7 +87,7 @@ uint32_t mesh_shells(const struct mesh *m, uint32_t **ret)
 	return n;
 }
 
-/* -- Does it cross itself? ------------------------------------------------------ */
+/* -- Does it cross itself? ------------------------------------------------ */
 
 #define CROSSINGS_MAX	1000
 

@@ -35,7 +35,7 @@ uint32_t motion_moves(const struct machine_motion *m)
 	return set;
 }
 
-/* -- Poses -------------------------------------------------------------------- */
+/* -- Poses ---------------------------------------------------------------- */
 
 /* pose = pose . joint at @q */
 static void append(struct pose *p, const struct interp_kin_joint *j, double q)
@@ -146,7 +146,7 @@ void motion_jacobian(const struct machine_motion *m,
 	}
 }
 
-/* -- Bounds ------------------------------------------------------------------- */
+/* -- Bounds --------------------------------------------------------------- */
 
 /*
  * A ball that holds the electrode is carried from the tool toward the work, one

@@ -58,7 +58,7 @@ static double root(double gap, double s, double accel)
 	return s > 0 ? 2 * gap / (s + b) : (b - s) / accel;
 }
 
-/* -- Boxes -------------------------------------------------------------------- */
+/* -- Boxes ---------------------------------------------------------------- */
 
 struct gaps {
 	double between[3];		/* from the part's centre to the tool's */
@@ -208,7 +208,7 @@ static double box_bound(const struct walk *w, const struct box *part,
 	return most;
 }
 
-/* -- Triangles ---------------------------------------------------------------- */
+/* -- Triangles ------------------------------------------------------------ */
 
 static void tri_place(const struct walk *w, uint32_t tool, struct triangle *ret)
 {
@@ -370,7 +370,7 @@ static void leaves(struct walk *w, const struct tree_node *part,
 	}
 }
 
-/* -- The walk ----------------------------------------------------------------- */
+/* -- The walk ------------------------------------------------------------- */
 
 static double size2(const struct box *b)
 {

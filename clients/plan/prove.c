@@ -21,7 +21,7 @@
  * where the clearance falls. */
 #define FALL_MM		0.001
 
-/* -- What is to be kept --------------------------------------------------------- */
+/* -- What is to be kept --------------------------------------------------- */
 
 void clearance_init(struct clearance *c, double mm)
 {
@@ -92,7 +92,7 @@ static double keep_from(const struct clearance *c, const struct block *b,
 	return clearance_at(c, pose, *until * b->way_mm);
 }
 
-/* -- Proofs ------------------------------------------------------------------ */
+/* -- Proofs --------------------------------------------------------------- */
 
 struct march {
 	const struct bodies *bodies;

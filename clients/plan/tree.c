@@ -36,7 +36,7 @@ static void swap_tris(struct build *b, uint32_t i, uint32_t j)
 	swap_bytes(b->centre[i], b->centre[j], sizeof(*b->centre));
 }
 
-/* -- Axes of a spread ------------------------------------------------------- */
+/* -- Axes of a spread ----------------------------------------------------- */
 
 /* One of Jacobi's rotations: it makes m[p][q] zero. */
 static void jacobi(double m[3][3], double v[3][3], int p, int q)
@@ -157,7 +157,7 @@ static void enclose(const struct tree *t, uint32_t from, uint32_t n,
 		b->half[j] += 8 * DBL_EPSILON * size;
 }
 
-/* -- Cutting ------------------------------------------------------------------ */
+/* -- Cutting -------------------------------------------------------------- */
 
 static int longest(const struct box *b)
 {

@@ -76,7 +76,7 @@ struct can402 {
 	_Atomic uint32_t put, taken;
 };
 
-/* -- can402_note.c ------------------------------------------------------------ */
+/* -- can402_note.c -------------------------------------------------------- */
 
 /** can402_tell() - say what the next line of the log is about. */
 void can402_tell(struct can402 *s, const struct can402_note *n);
@@ -95,7 +95,7 @@ void can402_watch(struct can402 *s, uint32_t i);
 /** can402_note() - io_machine.note */
 bool can402_note(void *self, char *buf, size_t size);
 
-/* -- can402.c ----------------------------------------------------------------- */
+/* -- can402.c ------------------------------------------------------------- */
 
 /* Of struct io_machine. */
 void can402_read(void *self, struct io_inputs *in);
@@ -104,7 +104,7 @@ void can402_close(void *self);
 bool can402_origin(void *self, int32_t ret[IO_NAXES]);
 void can402_originate(void *self, const int32_t zero[IO_NAXES]);
 
-/* -- can402_stop.c ------------------------------------------------------------ */
+/* -- can402_stop.c -------------------------------------------------------- */
 
 /**
  * can402_stop_step() - once a period, before the drives get their targets.
@@ -127,7 +127,7 @@ int32_t can402_stop_target(struct can402 *s, uint32_t i);
  */
 void can402_stop_pace(struct can402 *s);
 
-/* -- can402_open.c ------------------------------------------------------------ */
+/* -- can402_open.c -------------------------------------------------------- */
 
 /**
  * can402_attach() - the drives that @c names, on the open socket @fd, which

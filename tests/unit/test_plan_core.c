@@ -27,7 +27,7 @@ static double draw(double lo, double hi)
 	return lo + (hi - lo) * (double)(seed >> 11) * 0x1p-53;
 }
 
-/* -- Triangles ---------------------------------------------------------------- */
+/* -- Triangles ------------------------------------------------------------ */
 
 static void draw_triangle(struct triangle *t, double size)
 {
@@ -97,7 +97,7 @@ static void triangle_distance_is_exact(void **state)
 	assert_true(met > 0);
 }
 
-/* -- Bodies ------------------------------------------------------------------- */
+/* -- Bodies --------------------------------------------------------------- */
 
 struct body {
 	struct mesh m;
@@ -282,7 +282,7 @@ static void pose_is_that_of_the_kinematics(void **state)
 	}
 }
 
-/* -- Blocks ------------------------------------------------------------------- */
+/* -- Blocks --------------------------------------------------------------- */
 
 static double least_sampled(const struct scene *s, const struct block *b,
 			    int n)

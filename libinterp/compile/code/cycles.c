@@ -42,7 +42,7 @@ int nc_run_escape(struct nc_reader *r)
 	return err;
 }
 
-/* -- Words ---------------------------------------------------------------------- */
+/* -- Words ---------------------------------------------------------------- */
 
 struct nc_orbit {
 	struct nc_reader *r;
@@ -285,7 +285,7 @@ static int take_rest(struct nc_orbit *c)
 	return take_angle(c);
 }
 
-/* -- Out ------------------------------------------------------------------------ */
+/* -- Out ------------------------------------------------------------------ */
 
 /* The word to blame: the bottom, if that is what lies beyond the travel. */
 static int placed(struct nc_orbit *c, int rc)

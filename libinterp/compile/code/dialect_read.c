@@ -45,7 +45,7 @@ static int refuse(struct reading *f, const char *at, const char *wanted,
 	return -EINVAL;
 }
 
-/* -- Pieces ------------------------------------------------------------------ */
+/* -- Pieces --------------------------------------------------------------- */
 
 static struct piece trim(struct piece p)
 {
@@ -80,7 +80,7 @@ static struct piece next_word(struct piece *p)
 	return cut(p, ' ');
 }
 
-/* -- [rules] ----------------------------------------------------------------- */
+/* -- [rules] -------------------------------------------------------------- */
 
 static const struct rule {
 	const char *key;
@@ -129,7 +129,7 @@ static int read_rule(struct reading *f, struct piece key, struct piece value)
 		      "ways_without_number top_of_wire macros dwell_p", "rule", key);
 }
 
-/* -- [letters] --------------------------------------------------------------- */
+/* -- [letters] ------------------------------------------------------------ */
 
 /* What may stand for a class, besides the name of a slot. */
 static const struct {
@@ -258,7 +258,7 @@ static int read_letter(struct reading *f, struct piece key, struct piece value)
 		      "a letter cannot be", value);
 }
 
-/* -- [words] ----------------------------------------------------------------- */
+/* -- [words] -------------------------------------------------------------- */
 
 static const struct meaning {
 	const char *name;
@@ -374,7 +374,7 @@ static int read_words(struct reading *f, struct piece key, struct piece value)
 	return err;
 }
 
-/* -- [dialect] --------------------------------------------------------------- */
+/* -- [dialect] ------------------------------------------------------------ */
 
 static void point_letters(struct nc_dialect *d)
 {
@@ -442,7 +442,7 @@ static int read_head(struct reading *f, struct piece key, struct piece value)
 	return 0;
 }
 
-/* -- Lines ------------------------------------------------------------------- */
+/* -- Lines ---------------------------------------------------------------- */
 
 static const struct section {
 	const char *name;

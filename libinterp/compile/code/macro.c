@@ -47,7 +47,7 @@ bool macro_word(struct macro_line *l, const char *word)
 	return true;
 }
 
-/* -- Has the line something to expand? --------------------------------------- */
+/* -- Has the line something to expand? ------------------------------------ */
 
 static const uint8_t *skip_comment(const uint8_t *p, const uint8_t *end)
 {
@@ -94,7 +94,7 @@ bool nc_macro_wanted(const struct nc_reader *r, const uint8_t *p,
 	return false;
 }
 
-/* -- The buffer -------------------------------------------------------------- */
+/* -- The buffer ----------------------------------------------------------- */
 
 static int put(struct macro_line *l, const uint8_t *at, const char *text,
 	       size_t n)
@@ -131,7 +131,7 @@ static int put_number(struct macro_line *l, const uint8_t *at, uint8_t letter,
 	return put(l, at, text, n);
 }
 
-/* -- The line ---------------------------------------------------------------- */
+/* -- The line ------------------------------------------------------------- */
 
 /* Behind the letter @letter stands an expression: in its place its value. */
 static int expand_value(struct macro_line *l, uint8_t letter)

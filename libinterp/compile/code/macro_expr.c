@@ -191,7 +191,7 @@ int macro_truth(struct macro_line *l, bool *ret)
 	return err;
 }
 
-/* -- Functions --------------------------------------------------------------- */
+/* -- Functions ------------------------------------------------------------ */
 
 static double fup(double v)
 {

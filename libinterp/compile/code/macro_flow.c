@@ -9,7 +9,7 @@
 #include <errno.h>
 #include <math.h>
 
-/* -- Jumps ------------------------------------------------------------------- */
+/* -- Jumps ---------------------------------------------------------------- */
 
 int macro_round(struct macro_line *l, const uint8_t *at)
 {
@@ -152,7 +152,7 @@ static int take_if(struct macro_line *l, const uint8_t *at)
 	return err ? err : 1;
 }
 
-/* -- Loops ------------------------------------------------------------------- */
+/* -- Loops ---------------------------------------------------------------- */
 
 /* The number of DO and END. */
 static int take_number(struct macro_line *l, uint32_t *ret)
@@ -238,7 +238,7 @@ static int take_end(struct macro_line *l, const uint8_t *at)
 	return err ? err : 1;
 }
 
-/* -- Calls ------------------------------------------------------------------- */
+/* -- Calls ---------------------------------------------------------------- */
 
 /* The variables of A ... Z behind G65; 0: not an argument. */
 static const uint8_t argument[26] = {

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* -- By number --------------------------------------------------------------- */
+/* -- By number ------------------------------------------------------------ */
 
 /* Where it is kept, or NULL. */
 static double *place_of(struct macro_line *l, uint32_t n)
@@ -119,7 +119,7 @@ int macro_set(struct macro_line *l, const uint8_t *at, double number, double v)
 	return 0;
 }
 
-/* -- By name ----------------------------------------------------------------- */
+/* -- By name -------------------------------------------------------------- */
 
 int macro_name(struct macro_line *l, char name[MACRO_NAME_MAX])
 {

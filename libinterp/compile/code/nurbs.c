@@ -19,7 +19,7 @@
 #define POINTS_MAX	1000000u
 #define END_PULSES	2.0
 
-/* -- Points and knots ------------------------------------------------------------ */
+/* -- Points and knots ----------------------------------------------------- */
 
 void nc_curve_free(struct nc_curve *c)
 {
@@ -213,7 +213,7 @@ int nc_curve_check_points(struct nc_reader *r, const uint8_t *at)
 			 c->npoints, c->order);
 }
 
-/* -- G6.2 ------------------------------------------------------------------------ */
+/* -- G6.2 ----------------------------------------------------------------- */
 
 static int fanuc_open(struct nc_reader *r)
 {
@@ -311,7 +311,7 @@ int nc_curve_refuse_plane(struct nc_reader *r)
 			 r->block.code_at[NC_MOTION]).s);
 }
 
-/* -- Lines ----------------------------------------------------------------------------- */
+/* -- Lines ---------------------------------------------------------------- */
 
 int nc_curve_goes_on(struct nc_reader *r)
 {

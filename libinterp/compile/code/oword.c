@@ -32,7 +32,7 @@ static const struct {
 
 #define KIND(kind)	(1u << (kind))
 
-/* -- Found once -------------------------------------------------------------- */
+/* -- Found once ----------------------------------------------------------- */
 
 /* 1: @l is at an o word, and behind its name; 0: it is none. */
 static int take_name(struct macro_line *l, char name[MACRO_NAME_MAX])
@@ -123,7 +123,7 @@ static int find_all(struct macro_line *at)
 	return err;
 }
 
-/* -- What belongs to it ------------------------------------------------------ */
+/* -- What belongs to it --------------------------------------------------- */
 
 /* Where @i begins, for a refusal of its line. */
 static const uint8_t *word_at(struct macro_line *l, uint32_t i)
@@ -179,7 +179,7 @@ static int skip_to(struct macro_line *l, uint32_t i, uint32_t kinds,
 	return j < l->m->nowords ? go(l, j, true) : refuse_alone(l, i, other);
 }
 
-/* -- if ---------------------------------------------------------------------- */
+/* -- if ------------------------------------------------------------------- */
 
 static int take_if(struct macro_line *l, uint32_t i)
 {
@@ -205,7 +205,7 @@ static int take_if(struct macro_line *l, uint32_t i)
 	return err ? err : j == i ? 1 : go(l, j, true);
 }
 
-/* -- Loops ------------------------------------------------------------------- */
+/* -- Loops ---------------------------------------------------------------- */
 
 /* The do that this while ends; nowords: it begins a loop of its own. */
 static uint32_t do_of(const struct macro_line *l, uint32_t i)
@@ -320,7 +320,7 @@ static int take_break(struct macro_line *l, uint32_t i, bool leave)
 	return go(l, j, leave);
 }
 
-/* -- Calls ------------------------------------------------------------------- */
+/* -- Calls ---------------------------------------------------------------- */
 
 static int take_arguments(struct macro_line *l, double *local)
 {

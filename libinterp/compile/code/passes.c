@@ -75,7 +75,7 @@ int nc_cavity(struct nc_reader *r)
 	return 0;
 }
 
-/* -- Onto the tape ------------------------------------------------------------ */
+/* -- Onto the tape -------------------------------------------------------- */
 
 static int refuse_contour(struct nc_reader *r, const struct nc_cavity *c)
 {

@@ -37,7 +37,7 @@ struct cutting {
 	struct round round;
 };
 
-/* -- Between the turns ---------------------------------------------------------- */
+/* -- Between the turns ---------------------------------------------------- */
 
 static bool is_for_plc(const struct nc_reader *r, uint8_t number)
 {
@@ -102,7 +102,7 @@ static int end_turn(const struct cutting *k)
 	return err ? err : wire_action(k->r, M_CUT);
 }
 
-/* -- A turn --------------------------------------------------------------------- */
+/* -- A turn --------------------------------------------------------------- */
 
 static void say_pass(const struct cutting *k, uint32_t i, bool back,
 		     const uint32_t range[2], const char *what)
@@ -236,7 +236,7 @@ static int take_turn(const struct cutting *k)
 	return err ? err : end_turn(k);
 }
 
-/* -- The rounds ------------------------------------------------------------------- */
+/* -- The rounds ----------------------------------------------------------- */
 
 /* Return: how many there are. */
 static uint32_t rounds_of(const struct nc_passes *s,

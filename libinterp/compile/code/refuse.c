@@ -79,7 +79,7 @@ struct nc_quote nc_quote_run(const struct nc_reader *r, const uint8_t *at)
 	return quote(r, at, is_visible);
 }
 
-/* -- What a letter may be followed by --------------------------------------- */
+/* -- What a letter may be followed by ------------------------------------- */
 
 static uint32_t next_code(const struct nc_letter *l, uint32_t i)
 {

@@ -10,7 +10,7 @@
 
 #define LINUXCNC_ORDER	3
 
-/* -- G5.2 and G5.3 ------------------------------------------------------------------ */
+/* -- G5.2 and G5.3 -------------------------------------------------------- */
 
 static int linuxcnc_weight(struct nc_reader *r, double *ret)
 {
@@ -70,7 +70,7 @@ int nc_curve_end(struct nc_reader *r)
 	return err ? err : nc_curve_build(r);
 }
 
-/* -- G5 and G5.1 ---------------------------------------------------------------------- */
+/* -- G5 and G5.1 ---------------------------------------------------------- */
 
 /* Control points @p, rows of X and Y, behind where it stands; the last is the
  * curve's end. */

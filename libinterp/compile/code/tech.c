@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* -- Called ------------------------------------------------------------------ */
+/* -- Called --------------------------------------------------------------- */
 
 static struct nc_defined *defined_of(const struct nc_reader *r, char letter,
 				     uint32_t number)
@@ -54,7 +54,7 @@ int nc_call_condition(struct nc_reader *r, char letter, uint32_t number,
 	return 0;
 }
 
-/* -- Defined ----------------------------------------------------------------- */
+/* -- Defined -------------------------------------------------------------- */
 
 /* What the table has of it; the definition goes over that. */
 static void begin_definition(const struct nc_reader *r, struct nc_defined *d)
@@ -171,7 +171,7 @@ void nc_forget_conditions(struct nc_reader *r)
 	}
 }
 
-/* -- One after the other ------------------------------------------------------ */
+/* -- One after the other -------------------------------------------------- */
 
 /* The sequence that P names, or NULL. */
 static const struct interp_tech_sequence *

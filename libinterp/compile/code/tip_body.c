@@ -33,7 +33,7 @@
 #define XYZ		(NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z))
 #define QUATERNION	(NC_BIT(NC_Q) | NC_CENTRE)
 
-/* -- Control points --------------------------------------------------------------- */
+/* -- Control points ------------------------------------------------------- */
 
 static int body_open(struct nc_reader *r)
 {
@@ -68,7 +68,7 @@ static int body_point(struct nc_reader *r)
 	return nc_curve_point(r, at, weight);
 }
 
-/* -- The walk --------------------------------------------------------------------- */
+/* -- The walk ------------------------------------------------------------- */
 
 /* Both curves, and both as one, for its length. */
 struct pair {
@@ -192,7 +192,7 @@ static int go_span(struct nc_reader *r, struct pair *p)
 	return err;
 }
 
-/* -- Checks -------------------------------------------------------------------------- */
+/* -- Checks --------------------------------------------------------------- */
 
 /* The angle between two poses of the body; without a rotary that rolls the
  * tool, between its directions. */

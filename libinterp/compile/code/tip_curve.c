@@ -21,7 +21,7 @@
 /* Ends of an arc as near as this are one place, in pulses. */
 #define SAME_PULSES	0.5
 
-/* -- Lines and arcs ------------------------------------------------------------- */
+/* -- Lines and arcs ------------------------------------------------------- */
 
 struct ends {
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
@@ -130,7 +130,7 @@ int nc_tip_arc(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	return go(r, &w, end_mm);
 }
 
-/* -- Curves ------------------------------------------------------------------------ */
+/* -- Curves --------------------------------------------------------------- */
 
 struct knot_span {
 	const struct interp_nurbs_eval *e;

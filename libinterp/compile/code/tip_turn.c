@@ -19,7 +19,7 @@
 #define STEP_LEAST	1e-13
 #define NODES_MAX	1000000
 
-/* -- Rotations ------------------------------------------------------------------ */
+/* -- Rotations ------------------------------------------------------------ */
 
 void nc_pose_turn(const double q[4], double v[3])
 {
@@ -99,7 +99,7 @@ static void roll(const struct interp_kinematics *k, const double want[4],
 	axes[j->axis] = deg + 360 * round((axes[j->axis] - deg) / 360);
 }
 
-/* -- The rotaries along a way --------------------------------------------------- */
+/* -- The rotaries along a way --------------------------------------------- */
 
 struct node {
 	double t, deg[3];

@@ -89,7 +89,7 @@ int nc_run_tool_point(struct nc_reader *r)
 	return 0;
 }
 
-/* -- G43.5 ---------------------------------------------------------------------- */
+/* -- G43.5 ---------------------------------------------------------------- */
 
 /* Rotaries that turn the tool. */
 static uint32_t turning(const struct interp_kinematics *k)

@@ -63,7 +63,7 @@ bool interp_fit_corner(const struct interp_fit *f, uint32_t at)
 	return fmax(before, after) * acos(cosine) / 8 > f->tolerance_mm;
 }
 
-/* -- The system --------------------------------------------------------------- */
+/* -- The system ----------------------------------------------------------- */
 
 static void set_knots(struct work *w)
 {
@@ -176,7 +176,7 @@ static bool least_squares(struct work *w)
 	return true;
 }
 
-/* -- How near it is, and where a knot is missing ------------------------------- */
+/* -- How near it is, and where a knot is missing -------------------------- */
 
 static double off_line(const struct interp_fit *f, const double *p,
 		       const double *a, const double *b)

@@ -35,7 +35,7 @@ void interp_kin_clear(struct interp_kinematics *k)
 	}
 }
 
-/* -- Is it a machine? --------------------------------------------------------- */
+/* -- Is it a machine? ----------------------------------------------------- */
 
 __attribute__((format(printf, 3, 4)))
 static int refuse(struct interp_diag *d, const char *wanted,
@@ -156,7 +156,7 @@ int interp_kin_prepare(struct interp_kinematics *k, struct interp_diag *diag)
 	return err;
 }
 
-/* -- Forward ---------------------------------------------------------------- */
+/* -- Forward -------------------------------------------------------------- */
 
 static void move(const struct interp_kin_joint *j, double q, double at[3])
 {

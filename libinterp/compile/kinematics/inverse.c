@@ -29,7 +29,7 @@
 /* A rotary this near to the tool's axis has no angle of its own. */
 #define SINGULAR	1e-7
 
-/* -- The linear joints --------------------------------------------------------- */
+/* -- The linear joints ---------------------------------------------------- */
 
 /* Which way joint @n moves the tip, seen from the work. */
 static void column(const struct interp_kinematics *k, uint32_t n,
@@ -71,7 +71,7 @@ int interp_kin_place(const struct interp_kinematics *k,
 	return 0;
 }
 
-/* -- The rotaries ------------------------------------------------------------- */
+/* -- The rotaries --------------------------------------------------------- */
 
 /* The angle about @u from @from to @to; false: any angle will do. */
 static bool angle(const double u[3], const double from[3], const double to[3],

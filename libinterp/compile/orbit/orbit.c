@@ -25,7 +25,7 @@ struct walk {
 	double r_mm, h_mm;		/* where it has come to */
 };
 
-/* -- The profile -------------------------------------------------------------- */
+/* -- The profile ---------------------------------------------------------- */
 
 static double height_of(const struct interp_orbit *o)
 {
@@ -103,7 +103,7 @@ static void plan_steps(struct walk *w)
 	w->step_mm = w->length_mm / w->steps;
 }
 
-/* -- Places --------------------------------------------------------------------- */
+/* -- Places --------------------------------------------------------------- */
 
 /* @x and @y from the centre, at height w->h_mm. */
 static void place(const struct walk *w, double x_mm, double y_mm,
@@ -136,7 +136,7 @@ static double pulse_mm(const struct walk *w)
 	return fmin(w->m->axis[w->o->a].pulse_mm, w->m->axis[w->o->b].pulse_mm);
 }
 
-/* -- Ways out --------------------------------------------------------------------- */
+/* -- Ways out ------------------------------------------------------------- */
 
 /* C turns back as it rises. */
 static void lead_out(const struct walk *w, struct interp_escape *e)
@@ -222,7 +222,7 @@ static void way_out(const struct walk *w, uint32_t nth, double r0, double r1,
 	q->rise_mm = expand ? 0 : w->step_mm;
 }
 
-/* -- Once round --------------------------------------------------------------------- */
+/* -- Once round ----------------------------------------------------------- */
 
 static int turn_arc(struct walk *w, const struct round *q)
 {
@@ -306,7 +306,7 @@ static int turn(struct walk *w, const struct round *q)
 	return q->level ? turn_arc(w, q) : turn_polyline(w, q);
 }
 
-/* -- The stages --------------------------------------------------------------------- */
+/* -- The stages ----------------------------------------------------------- */
 
 static int go_round(struct walk *w)
 {

@@ -33,7 +33,7 @@
 #define TRIED_MAX	200000000.0	/* places of a curve, all tries: some
 					 * twenty seconds */
 
-/* -- What limits it ------------------------------------------------------------ */
+/* -- What limits it ------------------------------------------------------- */
 
 static void set_limits(struct curve_plan *p)
 {
@@ -91,7 +91,7 @@ static double feed_of(const struct curve_plan *p)
 	return fmax(fmin(p->least_mm_s, chord), p->slowest_mm_s);
 }
 
-/* -- Pieces -------------------------------------------------------------------- */
+/* -- Pieces --------------------------------------------------------------- */
 
 static const struct interp_nurbs_stop *stops_of(const struct curve_plan *p,
 						const struct interp_piece *q)
@@ -282,7 +282,7 @@ static int piece_end(struct curve_plan *p, double u)
 	return err;
 }
 
-/* -- Along the curve ------------------------------------------------------------ */
+/* -- Along the curve ------------------------------------------------------ */
 
 /* Between two looks of a span the direction has turned back: where? */
 static double cusp_of(const struct interp_nurbs_eval *e, double from,

@@ -26,7 +26,7 @@ struct part {
 	uint8_t axis[INTERP_NAXES];
 };
 
-/* -- Take ---------------------------------------------------------------------- */
+/* -- Take ----------------------------------------------------------------- */
 
 static bool same_word(const struct interp_build_word *a,
 		      const struct interp_build_word *b)
@@ -78,7 +78,7 @@ int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	return err;
 }
 
-/* -- Lay down -------------------------------------------------------------------- */
+/* -- Lay down ------------------------------------------------------------- */
 
 static int lay_lines(struct part *p, uint32_t from, uint32_t to)
 {

@@ -23,7 +23,7 @@ struct reading {
 
 #define THE_KEYS	"electrode, workpiece, note, sequence Q1 or inline E"
 
-/* -- key = value ------------------------------------------------------------ */
+/* -- key = value ---------------------------------------------------------- */
 
 static int take_text(struct reading *r, struct tech_cell value, char *to)
 {
@@ -199,7 +199,7 @@ static int take_key(struct reading *r, const char *equals)
 			   "unknown key '%s'", tech_quote(&key).s);
 }
 
-/* -- Head and rows ---------------------------------------------------------- */
+/* -- Head and rows -------------------------------------------------------- */
 
 static int check_unit(struct reading *r, const struct tech_cell *cell,
 		      const char *bracket, int id)
@@ -338,7 +338,7 @@ static int take_line(struct reading *r)
 	return r->head_line ? take_row(r) : take_head(r);
 }
 
-/* -- The whole -------------------------------------------------------------- */
+/* -- The whole ------------------------------------------------------------ */
 
 static int refuse_step(struct reading *r, const struct interp_tech_sequence *s,
 		       uint32_t i)
