@@ -537,6 +537,13 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 panel-load: all panel
 	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-load
 
+# The page in Firefox, which is not among what `tests/setup check` installs.
+panel-firefox: all panel
+	@test -x /usr/bin/firefox-esr || { echo "firefox-esr is not here:" \
+		"apt-get install firefox-esr"; exit 1; }
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q \
+		tests/system/panel_firefox.py
+
 panel-frames: all panel
 	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-frames
 
@@ -703,7 +710,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: all panel pictures-panel panel-load panel-frames panel-firefox demo check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo experiments-wire invariants \
 	walkable wire-random \
