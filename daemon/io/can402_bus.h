@@ -44,6 +44,8 @@ struct can402_stop {
 	double a;			/* ... a period^2, the axis may brake by */
 	double at;			/* increments, on the way to a stand */
 	int32_t coast;			/* pulses, farther than that by now */
+	bool ill;			/* its drive stops by itself, while the
+					 * others brake on the path */
 };
 
 struct can402 {
@@ -107,9 +109,15 @@ void can402_originate(void *self, const int32_t zero[IO_NAXES]);
 /* -- can402_stop.c ------------------------------------------------------------ */
 
 /**
+ * can402_stop_follow() - once a period, before @out becomes s->out: how far does
+ * a drive that stops by itself stay behind the targets of its axis?
+ */
+void can402_stop_follow(struct can402 *s, const struct io_outputs *out);
+
+/**
  * can402_stop_step() - once a period, before the drives get their targets.
  *
- * @on: the drives are to have power, and all is well.
+ * @on: the drives are to have power, and the bus works.
  *
  * Drives that can brake do so together: each loses the same part of its speed
  * in a period, so that they stay on the tangent of the path.

@@ -220,6 +220,8 @@ static void ends_with(struct rig *r, enum io_trouble t)
 {
 	assert_int_equal(r->in.trouble, t);
 	assert_int_equal(r->generator.data[0] & 3, 0);
+	/* As the cycle does where nothing moves, or where none can brake. */
+	r->out.enable = false;
 	run(r, 3);
 	for (int i = 0; i < NDRIVES; i++)
 		assert_int_not_equal(r->p[i].status, 0x1027);
@@ -425,6 +427,69 @@ static void the_others_brake_along_the_path_and_come_back_along_it(void **st)
 	}
 	assert_int_equal(x, 0);
 	assert_int_equal(y, 0);
+	unmake(&r);
+}
+
+/* X has the fault.  Y follows until its power is taken; then it stops too. */
+static void the_drive_that_is_well_follows_while_the_cycle_brakes(void **st)
+{
+	struct rig r;
+	int32_t x;
+
+	(void)st;
+	begin(&r);
+	for (int i = 1; i <= 100; i++) {
+		r.out.target[INTERP_X] = 8 * i;
+		r.out.target[INTERP_Y] = 4 * i;
+		run(&r, 1);
+	}
+	r.p[0].status = 0x08;
+	run(&r, 2);
+	x = r.p[0].actual;
+	assert_int_equal(r.in.trouble, IO_DRIVE);
+	assert_true(r.in.steers);
+	assert_int_equal(r.generator.data[0] & 3, 0);
+	for (int i = 0; i < 40; i++) {
+		r.out.target[INTERP_X] += 4;
+		r.out.target[INTERP_Y] += 2;
+		run(&r, 1);
+	}
+	run(&r, 3);
+	assert_int_equal(r.p[0].actual, x);
+	assert_int_equal(r.p[1].actual, 777 + 480);
+	assert_int_equal(r.p[1].status, 0x1027);
+	ends_with(&r, IO_DRIVE);
+	assert_false(r.in.steers);
+	/* X is farther from its place than resync_mm, but by this way alone. */
+	((struct can402 *)r.m.self)->resync_max[INTERP_X] = 20;
+	r.out.reset = true;
+	run(&r, 150);
+	r.out.enable = true;
+	run(&r, 400);
+	assert_int_equal(r.in.trouble, IO_WELL);
+	assert_false(r.in.axes_off);
+	assert_int_equal(r.p[0].actual, 777 + 10 * r.out.target[INTERP_X]);
+	/* On its place again, that way counts no more. */
+	r.out.enable = false;
+	run(&r, 10);
+	r.p[0].actual += 10 * 21;
+	run(&r, 3);
+	r.out.enable = true;
+	run(&r, 20);
+	assert_int_equal(r.in.trouble, IO_FOLLOWING);
+	unmake(&r);
+}
+
+static void none_steers_where_the_bus_is_at_fault(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	assert_true(r.in.steers);
+	put(&r, CAN_NMT, "\x02\x01", 2);
+	run(&r, 1);
+	assert_false(r.in.steers);
 	unmake(&r);
 }
 
@@ -863,6 +928,8 @@ int main(void)
 		cmocka_unit_test(after_a_crash_a_drive_that_was_off_has_no_place),
 		cmocka_unit_test(a_restart_tells_that_the_place_is_lost_and_moves_nothing),
 		cmocka_unit_test(the_others_brake_along_the_path_and_come_back_along_it),
+		cmocka_unit_test(the_drive_that_is_well_follows_while_the_cycle_brakes),
+		cmocka_unit_test(none_steers_where_the_bus_is_at_fault),
 		cmocka_unit_test(a_plc_on_the_same_bus_is_no_other_master),
 		cmocka_unit_test(errors_on_the_bus_are_told_and_stop_nothing),
 		cmocka_unit_test(another_program_far_away_is_not_jumped_to),

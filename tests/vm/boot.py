@@ -242,6 +242,9 @@ def lagging(method):
                   "[axis.Y]\nloop_gain_1_s = 19.3\nloop_hz = 1000\n")
 
 
+# Slow to brake: from 10 mm/s in 0.5 mm.
+BRAKES = "[axis.X]\na_max_mm_s2 = 100\n[axis.Y]\na_max_mm_s2 = 100\n"
+
 CUT = "G21 G90\nG1 X10 Y3 F60\nM30\n"
 CIRCLE = "G21 G90 G17\nG3 X0 Y0 I-2 J0 F600\nM30\n"
 
