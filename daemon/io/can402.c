@@ -162,7 +162,7 @@ static bool all_arrived(const struct can402 *s)
 		if (s->drive[i].state != DRIVE_ENABLED || !s->drive[i].arrived)
 			return false;
 	}
-	return true;
+	return !can402_brake_opens(s);
 }
 
 static enum io_trouble trouble(const struct can402 *s)
@@ -257,6 +257,7 @@ static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
 		.starting = !all_up(s),
 		.axes_off = !all_arrived(s), .steers = steers(s),
 		.unplaced = unplaced,
+		.lost = s->brakes_lost,
 	};
 	in->shares_valid = in->gap_valid && s->has_shares;
 	memcpy(in->actual, s->out.target, sizeof(in->actual));
@@ -331,7 +332,8 @@ static void tell_generator(struct can402 *s, bool safe)
 
 static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
 {
-	const bool braking = s->stopping > 0;
+	const bool braking = s->stopping > 0 ||
+			     (!s->were_on && s->closing > 0);
 	const int32_t target = braking ? can402_stop_target(s, i) :
 			       s->out.target[s->axis[i]];
 	struct can_msg m[DRIVE_EMITS];
@@ -359,6 +361,7 @@ void can402_write(void *self, const struct io_outputs *out)
 	for (uint32_t i = 0; i < s->n && other; i++)
 		drive_depart(&s->drive[i]);
 	on = can402_stop_step(s, out->enable && !s->stopped);
+	on = can402_brake_step(s, on);
 	can402_stop_pace(s);
 	for (uint32_t i = 0; i < s->n; i++)
 		tell_drive(s, i, on ? DRIVE_GO_ON : DRIVE_GO_STOP);

@@ -123,7 +123,7 @@ int32_t can402_stop_target(struct can402 *s, uint32_t i)
 void can402_stop_pace(struct can402 *s)
 {
 	double periods = 1;
-	bool ready = true;
+	bool ready = !can402_brake_opens(s);
 
 	for (uint32_t i = 0; i < s->n; i++)
 		ready = ready && s->drive[i].led;

@@ -70,7 +70,7 @@ def can402():
         "lagging.ini": lagging("none"), "lagging.ngc": CIRCLE,
         "led.ini": lagging("feedforward"), "led.ngc": CIRCLE,
         "coupled.ini": lagging("feedforward+cross-coupled"), "coupled.ngc": CIRCLE,
-        "brakes.ini": drives("XYZ", BRAKES), "brakes.ngc": CIRCLE,
+        "brakes.ini": drives("XYZ", BRAKES, braked="Z"), "brakes.ngc": CIRCLE,
         "shared.ini": drives("XY", GAP_FRAMES + SHARED), "shared.ngc": CUT,
         "faults.ini": drives("XY", GAP_FRAMES),
         "faults.ngc": CUT,

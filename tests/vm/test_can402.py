@@ -144,6 +144,15 @@ def test_a_drive_that_stopped_behind_the_path_comes_back_and_the_job_ends(
     stands_at(seen, "XYZ")
 
 
+def test_a_brake_on_a_line_is_open_under_torque_alone(can402):
+    """Z's; after the faults of X and Y its own drive holds on until it has
+    closed."""
+    brake = json.loads(can402.text("brake.json"))
+    assert brake == {"before": 0, "idle": 1, "ended": 0} | {
+        f"{n}: {what}": is_open for n in (1, 2, 3)
+        for what, is_open in (("running", 1), ("stands", 0))}
+
+
 def test_drives_that_lag_are_led_along_the_path(can402):
     lagging, led, coupled = (off_the_circle(can402, n)
                              for n in ("lagging", "led", "coupled"))
