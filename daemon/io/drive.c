@@ -20,6 +20,7 @@
 #define AT_LIMIT	0x0800u
 #define NMT_OPERATIONAL	0x05
 #define ALARM_SYNCS	2		/* the answer of the first may be older */
+#define SURPLUS_MAX	2		/* answers may come late, and then two */
 
 void drive_init(struct drive *d, const struct drive_config *c)
 {
@@ -121,6 +122,8 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 	d->state = state;
 	d->heard = true;
 	d->answered = true;
+	if (++d->surplus > SURPLUS_MAX)
+		trouble(d, DRIVE_TWICE);
 	d->warnings += (now & ~was & DRIVE_WARNS) != 0;
 	if (m->len > 6)
 		d->mode = m->data[6];
@@ -275,6 +278,8 @@ void drive_sync(struct drive *d)
 {
 	if (d->phase != DRIVE_RUNNING)
 		return;
+	if (d->surplus > -SURPLUS_MAX)
+		d->surplus--;
 	if (++d->silent > d->c.beat_cycles)
 		trouble(d, DRIVE_MUTE);
 	watch_alarm(d);
@@ -389,6 +394,7 @@ void drive_reset(struct drive *d)
 	d->alarmed = 0;
 	d->enabled_for = 0;
 	d->missing = 0;
+	d->surplus = 0;
 	d->silent = 0;
 	d->resetting = anew || d->state == DRIVE_FAULT ||
 		       d->state == DRIVE_FAULT_REACTION ? RESET_CYCLES : 0;

@@ -92,10 +92,11 @@ def strict():
         "strict-faults.ini": drives("XY", GAP_FRAMES, "no"),
         "strict-faults.ngc": CUT,
         "strict-attack.ini": drives("XY", GAP_FRAMES, "no"),
+        "strict-noise.ini": drives("XY", GAP_FRAMES, "no"),
         "strict.env": f"SEED={os.environ.get('EDM_SEED', 1)}\n"
                       f"RUNS={os.environ.get('EDM_RUNS', 4)}\n"
                       "SCENES=" + os.environ.get(
-                          "EDM_SCENES", "up,refused,late,faults,attack") + "\n",
+                          "EDM_SCENES", "up,refused,late,faults,attack,noise") + "\n",
     }, "-d", copies=[guest / n for n in (
         "can402.py", "strict.py", "can402_strict.py")]))
 
