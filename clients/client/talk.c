@@ -5,8 +5,10 @@
  * The service's boot number and its clock are learnt from an ack that bears
  * our client's name, which was drawn a moment ago: nobody can have recorded
  * such an ack before.  A status or an event counts if it is of that boot, and
- * later than the one before.  Until the boot is known, and whenever a status
- * is of another one, "hello" is asked.
+ * later than that ack and the one before.  Until the boot is known, and
+ * whenever a status is of another one, "hello" is asked, signed for that
+ * status's boot and time: if they are the true ones the service always
+ * answers, however many recorded packets of other times it has to answer.
  */
 #include "talk.h"
 
@@ -56,12 +58,15 @@ struct talk {
 	char machine[32];
 	char client[TALK_WORD_MAX];
 	char why[TALK_SAID_MAX];
+	bool turned_away;		/* the service itself said why */
 	int64_t seq;
 	/* The service: known is its start and how its clock goes. */
 	bool known;
 	int64_t boot, ahead_us;		/* its clock less ours */
 	int64_t count;			/* the last we signed with */
 	int64_t heard;			/* of its last status or event */
+	int64_t guess, guess_ahead_us;	/* boot and clock of a status that may
+					 * be a recording; 0: none */
 	int64_t hello;			/* seq; 0: none under way */
 	double hello_s;
 	struct question question[TALK_QUESTIONS];
@@ -131,17 +136,15 @@ static int64_t next_count(struct talk *t)
 }
 
 /* @data is freed. */
-static void sign_and_send(struct talk *t, const char *name, uint8_t *data,
-			  size_t bytes)
+static void sign_and_send(struct talk *t, const char *name, struct seal s,
+			  uint8_t *data)
 {
-	struct seal s = {
-		.key = t->key.public, .boot = t->known ? t->boot : 0,
-		.count = next_count(t), .data = data, .size = bytes,
-	};
-	uint8_t *packet = data ? malloc(SEAL_BYTES + bytes) : NULL;
+	uint8_t *packet = data ? malloc(SEAL_BYTES + s.size) : NULL;
 	char channel[CHANNEL_MAX];
 	size_t n = 0;
 
+	s.key = t->key.public;
+	s.data = data;
 	channel_name(t, name, channel);
 	if (packet)
 		n = seal_make(packet, &s, channel, t->key.secret);
@@ -151,24 +154,31 @@ static void sign_and_send(struct talk *t, const char *name, uint8_t *data,
 	free(data);
 }
 
+static struct seal next_seal(struct talk *t)
+{
+	return (struct seal) {
+		.boot = t->known ? t->boot : 0, .count = next_count(t),
+	};
+}
+
 static void send_question(struct talk *t, struct question *q)
 {
 	const struct packet_from f = { .client = t->client, .seq = q->seq };
 	const struct talk_question what = {
 		.verb = q->verb, .job = q->job, .text = q->text, .arg = q->arg,
 	};
-	size_t bytes;
-	uint8_t *data = packet_command(&f, &what, &bytes);
+	struct seal s = next_seal(t);
+	uint8_t *data = packet_command(&f, &what, &s.size);
 
 	q->sent_s = talk_now_s();
-	sign_and_send(t, "COMMAND", data, bytes);
+	sign_and_send(t, "COMMAND", s, data);
 }
 
 static void send_hello(struct talk *t)
 {
 	const struct talk_question what = { .verb = "hello" };
 	struct packet_from f;
-	size_t bytes;
+	struct seal s;
 	uint8_t *data;
 
 	if (talk_now_s() - t->hello_s < HELLO_S)
@@ -177,20 +187,27 @@ static void send_hello(struct talk *t)
 	if (!t->hello)
 		t->hello = ++t->seq;
 	f = (struct packet_from) { .client = t->client, .seq = t->hello };
-	data = packet_command(&f, &what, &bytes);
-	sign_and_send(t, "COMMAND", data, bytes);
+	if (t->guess && (!t->known || t->guess != t->boot))
+		s = (struct seal) {
+			.boot = t->guess, .count = now_us() + t->guess_ahead_us,
+		};
+	else
+		s = next_seal(t);
+	data = packet_command(&f, &what, &s.size);
+	sign_and_send(t, "COMMAND", s, data);
 }
 
 bool talk_send_chunk(struct talk *t, const struct talk_chunk *c)
 {
 	const struct packet_from f = { .client = t->client, .seq = c->seq };
-	size_t bytes;
+	struct seal s;
 	uint8_t *data;
 
 	if (!t->known)
 		return false;
-	data = packet_chunk(&f, c, &bytes);
-	sign_and_send(t, "JOB", data, bytes);
+	s = next_seal(t);
+	data = packet_chunk(&f, c, &s.size);
+	sign_and_send(t, "JOB", s, data);
 	return true;
 }
 
@@ -222,13 +239,14 @@ static void learn(struct talk *t, const struct seal *s)
 {
 	if (!t->known || t->boot != s->boot) {
 		t->boot = s->boot;
-		t->heard = 0;
+		t->heard = s->count;
 		t->count = 0;
 	}
 	t->ahead_us = s->count - now_us();
 	t->known = true;
 	t->hello = 0;
 	t->why[0] = '\0';
+	t->turned_away = false;
 }
 
 static void send_waiting(struct talk *t)
@@ -268,6 +286,7 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 		learn(t, s);
 		send_waiting(t);
 	} else if (a->seq == t->hello && a->seq) {
+		t->turned_away = a->code != 0;
 		if (a->code == 0)
 			learn(t, s);
 		else
@@ -282,7 +301,11 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 	}
 }
 
-/* Signed by the machine of our key file, for this channel? */
+/*
+ * Signed by the machine of our key file, for this channel?  Anybody may sign
+ * with a key of his own: that explains why nothing was heard, and decides
+ * nothing.
+ */
 static bool is_machine(struct talk *t, struct seal *ret,
 		       const struct udpm_packet *u)
 {
@@ -304,6 +327,8 @@ static bool is_machine(struct talk *t, struct seal *ret,
 static bool is_news(struct talk *t, const struct seal *s)
 {
 	if (!t->known || s->boot != t->boot) {
+		t->guess = s->boot;
+		t->guess_ahead_us = s->count - now_us();
 		send_hello(t);
 		return false;
 	}
@@ -524,7 +549,7 @@ static void on_asked(void *arg, int err, const struct talk_ack *a)
 /* The service will not have us: that is an answer too. */
 static bool is_turned_away(const struct talk *t, struct asking *asking)
 {
-	if (t->known || !t->why[0])
+	if (t->known || !t->turned_away)
 		return false;
 	*asking->ret = (struct talk_answer) {
 		.code = EX_NOPERM, .reason = strdup(t->why),

@@ -115,7 +115,10 @@ void talk_close(struct talk *t);
 /** talk_key() - the key in use. */
 const struct keyfile *talk_key(const struct talk *t);
 
-/** talk_why() - why nothing is received, if the service said so; else "". */
+/**
+ * talk_why() - why nothing is received: what the service said, or that somebody
+ * signs with another key, whoever that is; else "".
+ */
 const char *talk_why(const struct talk *t);
 
 /* -- Waiting for the answer ------------------------------------------------- */

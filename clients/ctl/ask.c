@@ -12,13 +12,21 @@
 #include <sysexits.h>
 #include <time.h>
 
+/* Then it does not come with the service. */
+static bool key_is_named(const struct ctl *c)
+{
+	const char *key = c->key ? c->key : getenv("EDM_KEY");
+
+	return key && *key;
+}
+
 int ctl_unanswered(const struct ctl *c, int err)
 {
 	if (err == -EINTR) {
 		fprintf(stderr, "edmctl: interrupted before an answer came\n");
 		return EX_TEMPFAIL;
 	}
-	if (!c->talk && c->talk_err != -ENOENT) {
+	if (!c->talk && (c->talk_err != -ENOENT || key_is_named(c))) {
 		fprintf(stderr, "edmctl: %s\n", c->said);
 		return c->talk_err == -ENETUNREACH ? EX_UNAVAILABLE :
 						     EX_NOPERM;

@@ -213,10 +213,10 @@ static void look_can(const struct host *h, struct finding *f)
 
 static void look_objects(const struct host *h, struct finding *f)
 {
-	char found[sizeof(f->found)];
+	char found[sizeof(f->found)], path[SHM_PATH_MAX];
 
-	snprintf(found, sizeof(found), "/dev/shm/edmd.%s.status %s",
-		 h->ctl->machine, h->status ? "is there" :
+	shm_path(path, h->ctl->machine, "status");
+	snprintf(found, sizeof(found), "%s %s", path, h->status ? "is there" :
 		 "is not there, or not for this user");
 	say(f, h->status ? GOOD : BAD, found,
 	    "systemctl start edmd; usermod -aG edm USER");

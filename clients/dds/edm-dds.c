@@ -80,17 +80,17 @@ static int take_domain(void *to, const char *text)
 /* clang-format off */
 static const struct cmdline_row rows[] = {
 	{ "config", "FILE", CMDLINE_CALL, .take = take_config, .help =
-	  "machine file: its name, [dds] domain and hz;\n"
-	  "options after it win" },
+	  "machine file: gives name, [dds] domain and hz;\n"
+	  "options after it replace them" },
 	{ "machine", "NAME", CMDLINE_CALL, .take = take_machine, .help =
-	  "which edmd to read (edm)" },
+	  "name of the machine to read (edm)" },
 	{ "domain", "N", CMDLINE_CALL, .take = take_domain, .help =
 	  "DDS domain, 0 to 230 (0)" },
 	{ "hz", "N", CMDLINE_NUMBER, AT(hz), .min = TOPIC_HZ_MIN, .max = 100,
 	  .help = "samples a second, 2 to 100 (10)" },
 	{ "once", NULL, CMDLINE_FLAG, AT(once), .help =
-	  "publish one sample to whoever listens within\n"
-	  "2 s, then leave; 1 if nobody does" },
+	  "publish one sample to everybody who listens\n"
+	  "within 2 s, then exit; 1 if nobody listens" },
 };
 /* clang-format on */
 

@@ -68,13 +68,13 @@ static const struct cmdline_row rows[] = {
 	{ "domain", "N", CMDLINE_CALL, .take = take_domain, .help =
 	  "DDS domain, 0 to 230 (0)" },
 	{ "once", NULL, CMDLINE_CALL, .take = take_once, .help =
-	  "listen for a while, print a table, leave" },
+	  "listen for a while, print one table, exit" },
 	{ "watch", NULL, CMDLINE_CALL, .take = take_watch, .help =
-	  "go on until Ctrl-C (default on a terminal)" },
+	  "redraw until Ctrl-C (default on a terminal)" },
 	{ "wait", "S", CMDLINE_NUMBER, AT(wait_s), .min = 0.1, .max = 3600,
 	  .help = "how long --once listens, 0.1 to 3600 s (2)" },
 	{ "json", NULL, CMDLINE_FLAG, AT(json), .help =
-	  "one object a picture, on one line" },
+	  "print each table as JSON, on one line" },
 };
 /* clang-format on */
 
@@ -87,7 +87,7 @@ static const struct cmdline table = {
 	"\n",
 	.tail =
 	"\n"
-	"Exit code 0 if any machine was heard, 1 if none.\n"
+	"Exit code: 0 if any machine was heard, 1 if none.\n"
 	"CYCLONEDDS_URI chooses the network interface and peers;\n"
 	"see docs/fleet.md.\n",
 };

@@ -4,6 +4,7 @@
  */
 #include "options.h"
 #include "panel.h"
+#include "plain.h"
 #include "reply.h"
 #include "words.h"
 #include "work.h"
@@ -52,9 +53,7 @@ void panel_note(struct panel *p, const char *text, ...)
 	va_start(ap, text);
 	vsnprintf(n->text, sizeof(n->text), text, ap);
 	va_end(ap);
-	for (char *at = n->text; *at; at++)
-		if ((unsigned char)*at < ' ' || *at == 0x7f)
-			*at = '?';
+	plain_copy(n->text, sizeof(n->text), n->text);
 	fprintf(stderr, SD_NOTICE "edm-panel: %s\n", n->text);
 }
 

@@ -198,6 +198,11 @@ static json_t *state_of(struct panel *p)
 	json_object_set_new(o, "job", json_string(s->job));
 	json_object_set_new(o, "jobName", json_string(s->job_name));
 	json_object_set_new(o, "jobState", json_string(s->job_state));
+	json_object_set_new(o, "store", json_string(s->store));
+	json_object_set_new(o, "interrupted", json_string(s->interrupted));
+	json_object_set_new(o, "lost", json_string(s->lost));
+	json_object_set_new(o, "faults", json_string(s->faults));
+	json_object_set_new(o, "hunts", json_integer(s->hunts));
 	json_object_set_new(o, "lines", json_integer(s->lines));
 	json_object_set_new(o, "queue", json_integer(s->queue_len));
 	json_object_set_new(o, "left", json_real(s->eta_s));

@@ -148,7 +148,7 @@ struct config_sim {
 	double home_off_mm, index_mm;	/* switches; sim_switches.c */
 	double measure_pulses;		/* sigma of the scales */
 
-	/* What a touch meets: sim_probe.c. */
+	/* What a probing motion meets: sim_probe.c. */
 	uint32_t block;			/* 1: there is a block */
 	double block_min_mm[2], block_max_mm[2];	/* X, Y; machine */
 	double block_top_mm;		/* Z; it has no bottom */

@@ -74,15 +74,18 @@ static void loop_configure(struct loop *l, const struct machine_config *c)
 
 static int status_refuse(const char *name, int err)
 {
+	char path[SHM_PATH_MAX];
+
+	shm_path(path, name, "status");
 	if (err == -EBUSY)
 		log_line(LOG_ERROR, "edmd: machine %s has an edmd already; one "
 			 "with another --name, or end that one", name);
 	else if (err == -EPERM || err == -EACCES)
-		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status belongs to "
-			 "another user; run as that one, or remove it", name);
+		log_line(LOG_ERROR, "edmd: %s belongs to another user; run as "
+			 "that one, or remove it", path);
 	else
-		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status: %s; remove "
-			 "it, or make room in /dev/shm", name, strerror(-err));
+		log_line(LOG_ERROR, "edmd: %s: %s; remove it, or make room in "
+			 "/dev/shm", path, strerror(-err));
 	return err == -EBUSY ? EX_UNAVAILABLE : EX_CANTCREAT;
 }
 
@@ -118,8 +121,8 @@ static int commands_open(struct loop *l, const char *name)
 				     l->status->head.instance);
 
 	if (err < 0)
-		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.command: %s",
-			 name, strerror(-err));
+		log_line(LOG_ERROR, "edmd: the socket for commands: %s",
+			 strerror(-err));
 	return err;
 }
 
@@ -148,10 +151,10 @@ static void tell_foreign(const char *name)
 	if (err == 0)
 		shm_close(s, sizeof(*s));
 	if (err == -EPROTO)
-		log_line(LOG_WARNING, "edmd: /dev/shm/edmd.%s.status is of "
+		log_line(LOG_WARNING, "edmd: the status in /dev/shm is of "
 			 "another version; where its axes stood, and its job, "
 			 "are lost: they are taken to stand at start_mm; move "
-			 "or home them", name);
+			 "or home them");
 }
 
 static int run_on(struct loop *l, const struct machine_config *c,

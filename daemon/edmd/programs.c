@@ -73,8 +73,8 @@ struct program *program_open(const struct machine_config *c, uint32_t n)
 	p->n = n;
 	err = shm_program_open(&p->block, &p->bytes, c->name, n);
 	if (err < 0) {
-		log_line(LOG_ERROR, "program: /dev/shm/edmd.%s.program.%u: %s",
-			 c->name, n, strerror(-err));
+		log_line(LOG_ERROR, "program: %u of machine %s: %s", n,
+			 c->name, strerror(-err));
 		free(p);
 		return NULL;
 	}

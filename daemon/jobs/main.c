@@ -34,11 +34,11 @@ struct options {
 /* clang-format off */
 static const struct cmdline_row rows[] = {
 	{ "config", "FILE", CMDLINE_WORD, AT(config), .help =
-	  "the machine file, the same as edmd's" },
+	  "machine file, the same as for edmd" },
 	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
-	  "of the machine; default: the file's [machine] name" },
+	  "name of the machine; default: [machine] name" },
 	{ "store", "DIR", CMDLINE_WORD, AT(store), .help =
-	  "for the database; default: the file's [jobs] store" },
+	  "folder of the database; default: [jobs] store" },
 };
 /* clang-format on */
 
@@ -48,8 +48,8 @@ static const struct cmdline table = {
 	.head =
 	"Usage: edmd-jobs --config FILE [options]\n"
 	"\n"
-	"Takes jobs over LCM, keeps them in a queue, loads them into edmd and\n"
-	"tells how they go.  A job that runs goes on without it.\n"
+	"Receives jobs over LCM, keeps them in a queue, loads them into edmd and\n"
+	"reports how they proceed.  A running job goes on without it.\n"
 	"\n",
 };
 
@@ -250,6 +250,8 @@ static int open_store(struct jobs *j, const char *dir)
 /* Two of them would give one machine two orders of jobs. */
 static int claim(struct jobs *j)
 {
+	char path[SHM_PATH_MAX];
+
 	j->claim = shm_writer_claim(j->machine);
 	if (j->claim >= 0)
 		return 0;
@@ -258,9 +260,9 @@ static int claim(struct jobs *j)
 			  "edmd-jobs for a machine", j->machine);
 		return EX_TEMPFAIL;
 	}
-	log_error("machine %s: /dev/shm/edmd.%s.writer: %s; remove it, or run "
-		  "as the user who made it", j->machine, j->machine,
-		  strerror(-j->claim));
+	shm_path(path, j->machine, "writer");
+	log_error("machine %s: %s: %s; remove it, or run as the user who made "
+		  "it", j->machine, path, strerror(-j->claim));
 	return EX_CANTCREAT;
 }
 

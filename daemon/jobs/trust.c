@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define TELL_US		10000000	/* between two lines of one cause */
-#define ANSWERS_A_S	200		/* to packets that are not taken */
+#define STRANGERS_A_S	200		/* of their packets looked at */
 
 static const char *const roles[] = {
 	[ROLE_NONE]	= "none",
@@ -166,16 +166,23 @@ static bool rate_allows(struct trust_rate *r, int most, int64_t now_us)
 	return r->n < most;
 }
 
-/* A flood is not answered packet by packet. */
-static bool may_answer(struct trust *t, int64_t now_us)
+/*
+ * What is looked at in a second: of all strangers together; of each key what is
+ * signed for another time, as what was recorded is; of a viewer what is new.
+ * So nobody uses up what is another's.  NULL: all of it.
+ */
+static struct trust_rate *rate_of(struct trust *t, const struct trust_packet *p,
+				  enum trust_cause cause, int *ret_most)
 {
-	return rate_allows(&t->answered, ANSWERS_A_S, now_us);
-}
+	const bool viewer = p->key && p->key->role == ROLE_VIEWER;
 
-static bool may_ask(struct trust *t, const struct trust_key *k, int64_t now_us)
-{
-	return k->role > ROLE_VIEWER ||
-	       rate_allows(&t->asked[k - t->key], TRUST_VIEWER_A_S, now_us);
+	*ret_most = !p->key ? STRANGERS_A_S :
+		    viewer ? TRUST_VIEWER_A_S : TRUST_AGAIN_A_S;
+	if (!p->key)
+		return &t->strangers;
+	if (cause != TRUST_FINE)
+		return &t->again[p->key - t->key];
+	return viewer ? &t->asked[p->key - t->key] : NULL;
 }
 
 /* What can be told without a signature being computed. */
@@ -199,23 +206,26 @@ enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 			    const void *packet, size_t bytes, int64_t now_us,
 			    bool *ret_answer)
 {
+	struct trust_rate *rate;
 	enum trust_cause cause;
+	int most;
 
 	*ret_answer = false;
 	if (!seal_read(&p->seal, packet, bytes))
 		return TRUST_SHAPE;
 	p->key = trust_find(t, p->seal.key);
 	cause = look_quickly(t, p, now_us);
-	if (cause != TRUST_FINE && !may_answer(t, now_us))
-		return cause;
-	if (p->key && !may_ask(t, p->key, now_us))
-		return TRUST_OFTEN;
+	rate = rate_of(t, p, cause, &most);
+	if (rate && !rate_allows(rate, most, now_us))
+		return cause == TRUST_FINE ? TRUST_OFTEN : cause;
+	/* A stranger's signature costs as much as a good one. */
+	if (!p->key)
+		rate->n++;
 	if (!seal_holds(&p->seal, p->channel))
 		return TRUST_SIGNATURE;
-	if (p->key)
-		t->asked[p->key - t->key].n++;
 	*ret_answer = cause != TRUST_FINE;
-	t->answered.n += *ret_answer;
+	if (p->key && *ret_answer)
+		rate->n++;
 	return cause;
 }
 
@@ -239,6 +249,7 @@ enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 			if (p->seal.count <= s->count)
 				return TRUST_REPLAY;
 			s->count = p->seal.count;
+			t->asked[p->key - t->key].n++;
 			return TRUST_FINE;
 		}
 		if (!room && session_is_over(s, now))
@@ -248,5 +259,6 @@ enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 		return TRUST_CROWD;
 	room->count = p->seal.count;
 	snprintf(room->client, sizeof(room->client), "%s", client);
+	t->asked[p->key - t->key].n++;
 	return TRUST_FINE;
 }

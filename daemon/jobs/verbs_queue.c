@@ -99,7 +99,8 @@ static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 	/* Only history has it; anything but a few rows is as many as there are. */
 	const int rows = c->arg > 0 && c->arg < 1000 ? (int)c->arg : 0;
 	struct store_job before;
-	const bool known = what == STORE_ALARMS || !*c->job ||
+	const bool known = what == STORE_ALARMS ||
+			   (!*c->job && what != STORE_SHOW) ||
 			   store_find(j->store, c->job, &before) != -ENOENT;
 	char *body = known ? store_json(j->store, what, c->job, rows) : NULL;
 	struct jobs_lcm_ack a = {

@@ -21,23 +21,35 @@
 /* A view of a record that may alias anything. */
 typedef uint64_t __attribute__((may_alias)) word_t;
 
-/* Made by root, by edmd, or by this user: nobody else can do anything to it. */
-static bool maker_is_trusted(uid_t uid)
+/* Made by root, by @service, or by this user: nobody else can do anything to
+ * it. */
+static bool maker_is_trusted(uid_t uid, const char *service)
 {
-	const struct passwd *edmd;
+	const struct passwd *made;
 
 	if (uid == 0 || uid == geteuid())
 		return true;
-	edmd = getpwnam("edmd");
-	return edmd && uid == edmd->pw_uid;
+	made = getpwnam(service);
+	return made && uid == made->pw_uid;
 }
 
-static bool folder_is_ours(void)
+static const char *folder_of(const char *what)
 {
+	static const struct {
+		const char *path, *service;
+	} folder[] = {
+		{ FOLDER "/edmd", "edmd" },
+		{ FOLDER "/edmd-jobs", "edm-jobs" },
+	};
+	const bool jobs = strcmp(what, "writer") == 0 ||
+			  strncmp(what, "program.", 8) == 0;
 	struct stat st;
 
-	return lstat(FOLDER "/edmd", &st) == 0 && S_ISDIR(st.st_mode) &&
-	       !(st.st_mode & 0002) && maker_is_trusted(st.st_uid);
+	if (lstat(folder[jobs].path, &st) == 0 && S_ISDIR(st.st_mode) &&
+	    !(st.st_mode & 0022) &&
+	    maker_is_trusted(st.st_uid, folder[jobs].service))
+		return folder[jobs].path;
+	return FOLDER;
 }
 
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
@@ -48,9 +60,15 @@ int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 	if (!names_machine_ok(machine))
 		return -EINVAL;
 
-	snprintf(path, OBJECT_PATH_MAX, "%s/edmd.%.31s.%s",
-		 folder_is_ours() ? FOLDER "/edmd" : FOLDER, machine, what);
+	snprintf(path, OBJECT_PATH_MAX, "%s/edmd.%.31s.%s", folder_of(what),
+		 machine, what);
 	return 0;
+}
+
+void shm_path(char path[SHM_PATH_MAX], const char *machine, const char *what)
+{
+	if (object_path(path, machine, what) < 0)
+		path[0] = '\0';
 }
 
 int64_t object_size(int fd)
@@ -188,7 +206,7 @@ static int object_open_fd(void **ret, int fd, size_t bytes, bool writable)
 	if (size == 0)
 		return -ENOENT;
 	/* Another user could cut it short, and end us by a signal. */
-	if (fstat(fd, &st) < 0 || !maker_is_trusted(st.st_uid))
+	if (fstat(fd, &st) < 0 || !maker_is_trusted(st.st_uid, "edmd"))
 		return -EPERM;
 	if ((uint64_t)size != bytes)
 		return -EPROTO;

@@ -9,13 +9,15 @@
 
 #include "shm.h"
 
-#define OBJECT_PATH_MAX	96
+#define OBJECT_PATH_MAX	SHM_PATH_MAX
 
 /**
  * object_path() - "/dev/shm/edmd.<machine>.<what>"; -EINVAL for a bad name.
  *
- * In /dev/shm/edmd, if there is such a folder that root, edmd or this user
- * made: anybody may make a file in /dev/shm, and would block its name.
+ * In the folder of who makes the object, /dev/shm/edmd or /dev/shm/edmd-jobs,
+ * if there is one that belongs to that service, root or this user, and nobody
+ * else may write in it: anybody may make a file in /dev/shm, and would block
+ * its name.
  */
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what);

@@ -2,7 +2,8 @@
 /*
  * shm.h - edmd's shared memory: layout and the three crossings
  *
- * Three objects in /dev/shm, named edmd.<machine>.*:
+ * Three objects in /dev/shm/edmd and /dev/shm/edmd-jobs, or in /dev/shm where
+ * there are no such folders, named edmd.<machine>.*:
  *
  *	status		edmd writes, anyone of the group reads: one snapshot,
  *			a ring of per-cycle trace records, a ring of events
@@ -51,6 +52,7 @@
 #define SHM_LAYOUT	8
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
+#define SHM_PATH_MAX	96
 
 #define SHM_TRACE_SLOTS		16384	/* powers of two */
 #define SHM_EVENT_SLOTS		1024
@@ -109,7 +111,7 @@ struct shm_snapshot {
 	int64_t period_ns;
 	int64_t wake_late_ns, wake_late_max_ns;
 	int64_t took_ns, took_max_ns;
-	/* Of touches: pos less the program's own place, pulses; where the last
+	/* Of probing: pos less the program's own place, pulses; where the last
 	 * two contacts along each axis were, and which of them there are; no
 	 * way back beyond that place on the path. */
 	int32_t shift[SHM_NAXES], found[2][SHM_NAXES];
@@ -410,6 +412,9 @@ bool shm_trace_next(const struct shm_status *s, struct shm_follow *f,
 /** shm_event_next() - the same for events. */
 bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
 		    struct shm_event *ret);
+
+/** shm_path() - the file of the object @what of @machine, to tell of it. */
+void shm_path(char path[SHM_PATH_MAX], const char *machine, const char *what);
 
 /**
  * shm_writer_claim() - become the only process that commands the machine and

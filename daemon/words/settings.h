@@ -115,7 +115,7 @@ struct cycle_jump_config {
 	double short_of_mm;		/* come back to this far above the cut */
 };
 
-/* -- Touching the work: [probe] ---------------------------------------------- */
+/* -- Probing the work: [probe] ----------------------------------------------- */
 
 struct probe_config {
 	double feed_mm_s;		/* to the first contact */

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random contours under a wire's offset, against shapely's geometry.
+"""Random contours under a wire's offset, against another geometry.
 
 EDM_SEED repeats a run, EDM_RUNS says how many contours; `make wire-random`
 tries ten thousand.
@@ -11,7 +11,7 @@ import pytest
 from edmsim import done, run, seeded
 from shapely.geometry import LineString, Point
 from wire_contours import Contour
-from wire_oracle import UM, path_of, read_iso
+from wire_oracle import UM, left_by, path_of, read_iso
 
 RUNS = int(os.environ.get("EDM_RUNS", 120))
 
@@ -33,7 +33,7 @@ def plain(tmp_path_factory):
 
 def test_random_contours_are_cut_or_refused_as_geometry_has_it(plain):
     rnd = contours()
-    counts, nearest = {}, 0
+    counts, nearest, left = {}, 0, 0
     for i in range(RUNS):
         c = Contour(rnd)
         want = c.verdict()
@@ -46,12 +46,18 @@ def test_random_contours_are_cut_or_refused_as_geometry_has_it(plain):
         if r.returncode:
             assert b"-:" in r.stderr, about
             continue
-        ways = read_iso(r.stdout.decode())
-        gap = path_of(ways[2:-1]).distance(c.poly.exterior)
+        path = path_of(read_iso(r.stdout.decode())[2:-1])
+        gap = path.distance(c.poly.exterior)
         nearest = max(nearest, c.offset - gap)
         assert gap >= c.offset - BOUND_MM, \
             f"{gap} mm near under {c.offset}: {about}"
-    print(f"{counts}; nearer by {1000 * nearest:.2f} um at the worst")
+        if want == "cut":
+            left = max(left, left_by(c.poly, c.offset, c.inside, c.far, path))
+            assert left < BOUND_MM, f"{left} mm not cut: {about}"
+    print(f"{counts}; nearer by {1000 * nearest:.2f} um at the worst, "
+          f"farther by {1000 * left:.2f}")
+    close = sum(n for (want, _), n in counts.items() if want == "close")
+    assert close <= 2 + RUNS / 50
 
 
 def emitted(plain, form, text, *more):

@@ -385,6 +385,29 @@ def test_the_panel_dies_and_comes_back(p, page):
     assert page.evaluate("window.same") == 1
 
 
+def test_a_power_cut_is_told(p, page):
+    """All of the machine is gone at once, and nothing of it is in memory."""
+    client = p.machine.client
+    p.session().post("/api/jobs?name=night.ngc", panel.JOB)
+    client.status_where(lambda s: s.state == "erode", 60)
+    p.machine.kill("jobs")
+    p.machine.kill("edmd")
+    p.machine.sweep()
+    p.machine.start()
+    expect(page.locator(".head h1")).to_have_text("Interrupted")
+    expect(page.locator(".badge.warn")).to_be_visible()
+    page.locator("#start").click(force=True)
+    expect(page.locator(".toast.bad")).to_contain_text("cut off")
+    expect(page.locator(".positions")).to_contain_text("not certain")
+    show(page, "alarms")
+    expect(page.locator(".warnings")).to_contain_text("X Y Z")
+    show(page, "jobs")
+    row = page.locator(".jobs li", has_text="night.ngc").first
+    expect(row).to_contain_text("interrupted")
+    row.get_by_role("button", name="Remove").click()
+    expect(page.locator(".head h1")).to_have_text("Idle")
+
+
 def test_the_daemon_dies_and_comes_back(p, page):
     p.machine.kill("edmd")
     expect(page.locator(".head h1")).to_have_text("No signal")

@@ -63,7 +63,7 @@ static enum cycle_answer ask(struct rig *r, enum cycle_verb v)
 static void to_probe(struct interp_build *b)
 {
 	const struct interp_build_word w = {
-		.line = 1, .rapid = true, .ends = INTERP_SEG_TOUCH,
+		.line = 1, .rapid = true, .ends = INTERP_SEG_PROBE,
 	};
 	double end[INTERP_NAXES] = { [INTERP_X] = -10 };
 	struct interp_diag d;

@@ -81,7 +81,7 @@ static struct made cutting(void)
 static struct made probing(void)
 {
 	const struct interp_build_word w = {
-		.line = 1, .rapid = true, .ends = INTERP_SEG_TOUCH,
+		.line = 1, .rapid = true, .ends = INTERP_SEG_PROBE,
 	};
 	double end[INTERP_NAXES] = { [INTERP_X] = -3 };
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);

@@ -98,7 +98,7 @@ static const struct rule {
 	{ "subprograms", RULE(label), { "O", "N" }, { 'O', 'N' } },
 	{ "conditions_defined", RULE(defines), { "no", "yes" }, { 0, 1 } },
 	{ "registers_defined", RULE(registers), { "no", "yes" }, { 0, 1 } },
-	{ "ways_without_number", RULE(touches), { "no", "yes" }, { 0, 1 } },
+	{ "ways_without_number", RULE(lone_ways), { "no", "yes" }, { 0, 1 } },
 	{ "top_of_wire", RULE(lean), { "place", "lean" }, { 0, 1 } },
 	{ "macros", RULE(macros), { "none", "fanuc", "linuxcnc" },
 	  { MACRO_NONE, MACRO_FANUC, MACRO_LINUXCNC } },

@@ -151,7 +151,7 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_TOOL_POINT]		= nc_run_tool_point,
 	[NC_MACHINE]		= run_machine,
 	[NC_CYCLE]		= nc_run_cycle,
-	[NC_TOUCH]		= nc_run_touch,
+	[NC_PROBE]		= nc_run_probe,
 	[NC_ONE_SHOT]		= nc_run_one_shot,
 	[NC_MOTION]		= nc_run_motion,
 	[NC_MCODE_AFTER]	= run_mcode_after,
@@ -214,15 +214,15 @@ static int add_motion(struct nc_reader *r)
 	return 0;
 }
 
-/* Cycles and touches. */
+/* Cycles and probing motions. */
 static int check_alone(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
-	const uint32_t mine = NC_BIT(NC_CYCLE) | NC_BIT(NC_TOUCH);
+	const uint32_t mine = NC_BIT(NC_CYCLE) | NC_BIT(NC_PROBE);
 	const uint32_t others = NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE) |
 				NC_BIT(NC_ONE_SHOT);
 	const uint8_t *at = b->code_at[nc_has_group(r, NC_CYCLE) ? NC_CYCLE :
-								   NC_TOUCH];
+								   NC_PROBE];
 
 	if (!(b->groups & others) && (b->groups & mine) != mine)
 		return 0;
@@ -239,7 +239,7 @@ static int complete(struct nc_reader *r)
 			       NC_MOVES | NC_BIT(NC_P) | NC_BIT(NC_Q) :
 			       NC_MOVES;
 
-	if (nc_has_group(r, NC_CYCLE) || nc_has_group(r, NC_TOUCH))
+	if (nc_has_group(r, NC_CYCLE) || nc_has_group(r, NC_PROBE))
 		return check_alone(r);
 	if (nc_has_group(r, NC_ONE_SHOT)) {
 		if (b->groups & (NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE)))
@@ -290,7 +290,7 @@ int nc_run_line(struct nc_reader *r)
 	if (err)
 		return err;
 	if (b->toward | r->loose) {
-		err = nc_check_touched(r);
+		err = nc_check_probed(r);
 		if (err)
 			return err;
 	}

@@ -90,8 +90,8 @@ int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid)
 		return 0;
 	return nc_refuse(r, r->block.code_at[nc_has_group(r, NC_CYCLE) ?
 					     NC_CYCLE :
-					     nc_has_group(r, NC_TOUCH) ?
-					     NC_TOUCH :
+					     nc_has_group(r, NC_PROBE) ?
+					     NC_PROBE :
 					     nc_has_group(r, NC_ONE_SHOT) ?
 					     NC_ONE_SHOT : NC_MOTION],
 			 "an F word, such as F5, in this line or before it",
@@ -130,7 +130,7 @@ static const uint8_t *blame(const struct nc_reader *r,
 	}
 	if (at)
 		return at;
-	return b->code_at[nc_has_group(r, NC_TOUCH) ? NC_TOUCH :
+	return b->code_at[nc_has_group(r, NC_PROBE) ? NC_PROBE :
 			  nc_has_group(r, NC_ONE_SHOT) ? NC_ONE_SHOT :
 							 NC_MOTION];
 }

@@ -8,7 +8,7 @@
  *	motion.c	lines, machine zero, dwell, offsets: what axis words do
  *	arc.c		G2 and G3
  *	cycles.c	G130 ... G135, and the way out: G140 ... G143
- *	touch.c		touches: G38.2, G80 ... G82, G160 ... G162
+ *	probing.c	probing: G38.2, G80 ... G82, G160 ... G162
  *	tool_point.c	G43.4, G43.5: places of the tool's tip
  *	tip_curve.c	... its lines, arcs and curves
  *	tip_way.c	... cut into lines of the axes
@@ -200,7 +200,7 @@ struct nc_reader {
 	enum interp_escape_mode escape;
 	struct nc_tool_point tool;
 
-	/* Touches. */
+	/* Probing. */
 	uint32_t loose;			/* axes that count from a contact */
 	uint32_t unnamed;		/* ... and what they read is not said */
 	uint32_t once, twice;		/* axes with so many contacts */
@@ -304,11 +304,11 @@ void nc_tool_looks(struct nc_reader *r);
 int nc_tool_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		 bool rapid);
 
-/* touch.c */
-int nc_run_touch(struct nc_reader *r);
+/* probing.c */
+int nc_run_probe(struct nc_reader *r);
 
-/** nc_check_touched() - does the line name places that nobody knows? */
-int nc_check_touched(struct nc_reader *r);
+/** nc_check_probed() - does the line name places that nobody knows? */
+int nc_check_probed(struct nc_reader *r);
 
 /* The same for wires. */
 int nc_run_register(struct nc_reader *r);

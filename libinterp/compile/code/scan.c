@@ -87,7 +87,7 @@ static const uint8_t *scan_toward(struct nc_reader *r, const uint8_t *at,
 	const uint8_t *p = at + 1;
 	const uint8_t sign = p < r->stop && (*p == '+' || *p == '-') ? *p++ : 0;
 
-	if (!r->d->touches || slot > NC_Z)
+	if (!r->d->lone_ways || slot > NC_Z)
 		return NULL;
 	if (p < r->stop && nc_classes[*p] != NC_BLANK &&
 	    nc_classes[*p] != NC_EOL && *p != '(' && *p != ';')

@@ -105,7 +105,7 @@ enum nc_group {
 	NC_TOOL_POINT,			/* G43.4 G43.5 G49 */
 	NC_MACHINE,			/* G53 */
 	NC_CYCLE,			/* G130 ... G135 */
-	NC_TOUCH,			/* G38.2 G80 G81 G82 G160 ... G162 */
+	NC_PROBE,			/* G38.2 G80 G81 G82 G160 ... G162 */
 	NC_ONE_SHOT,			/* G4 G10 G28 G92 G92.1 G120 */
 	NC_MOTION,			/* G0 ... G3, G5 ... G5.3, G6.2, G6.3 */
 	NC_MCODE_AFTER,			/* the PLC's, after it */
@@ -146,12 +146,12 @@ enum nc_motion {
 #define NC_ONE_SHOT_ID(name, id, run, takes)	NC_##id,
 enum nc_one_shot { NC_ONE_SHOTS(NC_ONE_SHOT_ID) };
 
-/* What a member of NC_TOUCH does. */
-enum nc_touch {
-	NC_TOUCH_FEED,			/* at the programmed feed at the most */
-	NC_TOUCH_ONE, NC_TOUCH_LIMIT, NC_TOUCH_HALF,
-	NC_TOUCH_HOLE, NC_TOUCH_PILLAR, NC_TOUCH_CORNER,
-	NC_NTOUCHES
+/* What a member of NC_PROBE does. */
+enum nc_probe {
+	NC_PROBE_FEED,			/* at the programmed feed at the most */
+	NC_PROBE_ONE, NC_PROBE_LIMIT, NC_PROBE_HALF,
+	NC_PROBE_HOLE, NC_PROBE_PILLAR, NC_PROBE_CORNER,
+	NC_NPROBES
 };
 /* What a member of NC_TOOL_POINT does. */
 enum nc_tool { NC_TOOL_OFF, NC_TOOL_ANGLES, NC_TOOL_VECTOR };
@@ -201,7 +201,7 @@ struct nc_dialect {
 	uint8_t no_feed;		/* F is optional: the gap says */
 	uint8_t defines;		/* E001= and H001= lines */
 	uint8_t registers;		/* H001=0.11 alone */
-	uint8_t touches;		/* X- and X, without a number */
+	uint8_t lone_ways;		/* X- and X, without a number */
 	uint8_t lean;			/* U V: how far the top of the wire is
 					 * from X Y, not its place */
 	uint8_t dwell_ms;		/* P of a dwell is in ms, not s */

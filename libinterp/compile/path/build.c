@@ -381,7 +381,7 @@ static int sensed_begin(struct interp_build *b, uint32_t moved,
 			struct interp_diag *diag)
 {
 	if (moved & (moved - 1)) {
-		return interp_diag_say(diag, "a touch, half or limit along "
+		return interp_diag_say(diag, "a probing motion, half or limit along "
 				       "several axes; one axis");
 	}
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);

@@ -55,11 +55,18 @@ static void tell_stuck(struct walker *k)
 
 /* -- Is something lost? ---------------------------------------------------------- */
 
+/* The walls: behind a corner that the wire goes round is the first of them. */
 static int check_jump(struct walker *k, struct track_jump *j)
 {
+	const struct face *f = k->w->job->face;
+	const struct face_piece *p = track_piece(k->w, j->e);
+	const struct face_piece *q = track_piece(k->w, j->f);
+
 	if (!lost_is(k->w, j))
 		return 0;
-	tell(k, TRACK_LOST, track_piece(k->w, j->e), track_piece(k->w, j->f));
+	if (k->w->elem[j->e].fill && p + 1 < f->piece + f->n && p + 1 != q)
+		p++;
+	tell(k, TRACK_LOST, p, q);
 	return -EINVAL;
 }
 

@@ -164,7 +164,7 @@ function Queue(p: { open: (j: Job) => void }): JSX.Element {
 		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b><span>{jobWord(j.state)}{j.hold && j.state !== "running" ? `, ${t("jobs.waits")}` : ""}</span></button>
 			{j.state === "queued" && (rows ?? []).filter((o) => o.state === "queued").length > 1 && [-1, 1].map((way) =>
 				<Key class="small quiet" label={t(way < 0 ? "jobs.ahead" : "jobs.behind", { name: j.name })} why={whyNot("send")} onPress={() => void act("move", { job: j.job, arg: way }).then(again)}>{way < 0 ? "\u2191" : "\u2193"}</Key>)}
-			{(j.state === "queued" || j.state === "ready") && <Key class="small quiet" why={whyNot("send")} onPress={() => void act("remove", { job: j.job }).then(again)}>{t("remove")}</Key>}</li>)}</ul>
+			{["queued", "ready", "interrupted"].includes(j.state) && <Key class="small quiet" why={whyNot("send")} onPress={() => void act("remove", { job: j.job }).then(again)}>{t("remove")}</Key>}</li>)}</ul>
 	</Card>;
 }
 

@@ -40,7 +40,7 @@ struct interp_build_word {
 	uint32_t line;			/* of the source, from 1 */
 	double feed_mm_s;		/* > 0; ignored for a rapid */
 	bool rapid;
-	uint8_t ends;			/* INTERP_SEG_TOUCH, _HALF or _LIMIT; 0: it
+	uint8_t ends;			/* INTERP_SEG_PROBE, _HALF or _LIMIT; 0: it
 					 * ends at its end */
 	char cond_letter;		/* 0: none */
 	uint32_t cond_number;

@@ -108,7 +108,7 @@ enum interp_aux {
 /* Straight lines that end where the machine says, and not at their end node.  The
  * rest of such a line is not walked, and everything after it is shifted by that
  * rest.  The power is off. */
-#define INTERP_SEG_TOUCH	0x02	/* at contact */
+#define INTERP_SEG_PROBE	0x02	/* at contact */
 #define INTERP_SEG_HALF		0x04	/* between the last two contacts along
 					 * its axis */
 #define INTERP_SEG_LIMIT	0x08	/* at the end of its axis's travel */
