@@ -177,6 +177,7 @@ struct drive {
 	uint32_t mode_waited;		/* cycles switched on, in another mode */
 	uint32_t warnings;		/* times a bit of DRIVE_WARNS came */
 	bool answered;			/* a TPDO came since the last SYNC */
+	uint32_t answers;		/* so many did */
 	int32_t surplus;		/* TPDOs more than SYNCs */
 	bool edge;			/* fault reset: bit 7 was high */
 	uint32_t resetting;		/* cycles it may still report a fault */

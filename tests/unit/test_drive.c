@@ -474,12 +474,13 @@ static void answers_that_come_late_are_not_of_two_drives(void **state)
 
 	(void)state;
 	enable(&r);
+	r.d.c.missing_max = 20;
 	for (int i = 0; i < 50; i++) {
 		r.p.mute = true;
-		run(&r, 1 + i % 2, 0);
+		run(&r, 1 + i % 15, 0);
 		r.p.mute = false;
 		/* One, and those that were late. */
-		for (int k = 0; k <= i % 2; k++) {
+		for (int k = 0; k <= i % 15; k++) {
 			struct can_msg a = { .id = CAN_TPDO1 + NODE, .len = 7 };
 
 			can_put(a.data, r.p.status, 2);

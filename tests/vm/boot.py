@@ -252,6 +252,7 @@ BRAKES = ("[axis.X]\na_max_mm_s2 = 100\n[axis.Y]\na_max_mm_s2 = 100\n"
 
 CUT = "G21 G90\nG1 X10 Y3 F60\nM30\n"
 CIRCLE = "G21 G90 G17\nG3 X0 Y0 I-2 J0 F600\nM30\n"
+ROUNDS = "G21 G90 G17\n" + 5 * "G3 X0 Y0 I-2 J0 F600\n" + "M30\n"
 
 
 def checked(run):

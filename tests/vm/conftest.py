@@ -6,7 +6,7 @@ import shutil
 import subprocess
 
 import pytest
-from boot import (BRAKES, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES,
+from boot import (BRAKES, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES, ROUNDS,
                   ENCODER, QUICK_JOB, ROOT, Run, SHARED, SLOW_JOB, STRICT_REFUSED, STRICT_UP,
                   VIRTUAL, checked, drives, lagging, machine)
 
@@ -70,7 +70,7 @@ def can402():
         "lagging.ini": lagging("none"), "lagging.ngc": CIRCLE,
         "led.ini": lagging("feedforward"), "led.ngc": CIRCLE,
         "coupled.ini": lagging("feedforward+cross-coupled"), "coupled.ngc": CIRCLE,
-        "brakes.ini": drives("XYZ", BRAKES, braked="Z"), "brakes.ngc": CIRCLE,
+        "brakes.ini": drives("XYZ", BRAKES, braked="Z"), "brakes.ngc": ROUNDS,
         "shared.ini": drives("XY", GAP_FRAMES + SHARED), "shared.ngc": CUT,
         "faults.ini": drives("XY", GAP_FRAMES),
         "faults.ngc": CUT,

@@ -13,14 +13,9 @@ cp $LIB2/libgpiod.so.3* $R/
 export LD_LIBRARY_PATH=$R
 chmod 755 $R $R/*
 # What they and this script call is read once, so that it is in memory too.
-warm() {
-	for f in "$@"; do
-		ldd $f 2>/dev/null | awk '/=> \// { print $3 }'
-		readlink -f $f
-	done | sort -u | xargs cat > /dev/null
-}
-warm $R/edmd $R/edmd2 $R/edmd-jobs $R/edmctl /bin/sh /bin/cat /bin/sleep \
-	/bin/grep /bin/rm /bin/mkdir /usr/bin/awk /bin/sed
+ldd $R/edmd $R/edmd2 $R/edmd-jobs $R/edmctl /bin/grep |
+	awk '/=> \// { print $3 }' | sort -u | xargs cat \
+	/bin/sh /bin/cat /bin/sleep /bin/grep /bin/rm /bin/mkdir /bin/sed > /dev/null
 [ -e $T/trace ] || mount -t tracefs tracefs $T
 
 # pull CHIP LINE up|down - what a switch does to an input
