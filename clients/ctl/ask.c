@@ -60,7 +60,7 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 	return code;
 }
 
-/* A verb whose answer is a word of its success. */
+/* For a verb whose answer is one word of success. */
 static int command(struct ctl *c, const struct talk_question *q)
 {
 	struct talk_answer a;
@@ -129,7 +129,7 @@ int ctl_set(struct ctl *c)
 	});
 }
 
-/* A number and nothing behind it; else it is said what is wrong. */
+/* Read a number with nothing behind it; otherwise print what is wrong. */
 static int number(const struct ctl *c, const char *text, const char *wanted,
 		  double *ret)
 {
@@ -315,7 +315,7 @@ static void print_rows(json_t *rows, const char *head,
 		print(row);
 }
 
-/* One answer's JSON. Return: 0, or a sysexits code, said. */
+/* The JSON of one answer.  Return: 0, or a sysexits code after a message. */
 static int ask_json(struct ctl *c, const struct talk_question *q, json_t **ret)
 {
 	struct talk_answer a;
@@ -337,7 +337,8 @@ static int put_json(json_t *o)
 	return err ? EX_IOERR : 0;
 }
 
-/* All pages of a list: each begins behind the last job of the one before. */
+/* Print all pages of a list: each begins after the last job of the previous
+ * page. */
 static int list(struct ctl *c, const char *verb, const char *head,
 		void (*print)(json_t *job))
 {

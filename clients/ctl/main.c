@@ -16,7 +16,7 @@
 
 #define URL_DEFAULT	TALK_URL
 
-/* Cut short, two jobs would be one. */
+/* If the id were cut, two jobs could become one. */
 static int take_id(void *to, const char *id)
 {
 	struct ctl *c = to;
@@ -113,7 +113,8 @@ static const struct verb verbs[] = {
 
 #define AT(field)	.at = offsetof(struct ctl, field)
 
-/* The first NCOMMON are for all verbs; a verb names the others it takes. */
+/* The first NCOMMON options are for all verbs.  A verb names the others that it
+ * takes. */
 static const struct cmdline_row rows[] = {
 	{ "machine", "NAME", CMDLINE_WORD, AT(machine), .help =
 	  "name of the machine; default: edm" },
@@ -148,7 +149,7 @@ static const struct cmdline_row rows[] = {
 
 #define NVERBS		(sizeof(verbs) / sizeof(verbs[0]))
 
-/* The verb, its arguments, and one that is too much. */
+/* The verb, its arguments, and one that would be too many. */
 struct words {
 	char *at[5];
 	int n;
@@ -180,7 +181,7 @@ static bool takes_option(const struct verb *v, const char *name)
 	return false;
 }
 
-/* A verb's options may stand before it, so they are checked at the end. */
+/* The options of a verb may stand before it, so they are checked at the end. */
 static int options_check(const struct verb *v, const struct cmdline_given *g)
 {
 	for (size_t i = NCOMMON; i < table.nrows; i++) {
@@ -220,8 +221,8 @@ static int arguments_take(struct ctl *c, const struct verb *v, int argc,
 }
 
 /*
- * A number below zero is no option.  With a blank in front getopt passes it by
- * and strtod() reads it the same.
+ * A negative number is not an option.  With a blank in front of it, getopt
+ * ignores it and strtod() still reads it.
  */
 static void negatives_keep(int argc, char **argv)
 {
@@ -248,12 +249,12 @@ static const struct verb *verb_find(const char *name)
 
 static void word_take(struct words *w, char *word)
 {
-	/* Of negatives_keep(). */
+	/* The blank of negatives_keep() is removed. */
 	if (w->n < (int)(sizeof(w->at) / sizeof(w->at[0])))
 		w->at[w->n++] = word + (word[0] == ' ' && word[1] == '-');
 }
 
-/* 0: @ret_verb is to be run; < 0: done; else what to exit with. */
+/* Return: 0: run @ret_verb; < 0: nothing is left to do; else the exit code. */
 static int parse(struct ctl *c, int argc, char **argv,
 		 const struct verb **ret_verb)
 {
@@ -306,7 +307,7 @@ int main(int argc, char **argv)
 			URL_DEFAULT "\n", c.url);
 		return EX_USAGE;
 	}
-	/* What is wrong with the words of the verb is said first. */
+	/* Errors in the words of the verb are reported first. */
 	c.talk_err = talk_open(&c.talk, &(struct talk_options) {
 		.machine = c.machine, .url = c.url, .key = c.key,
 		.program = "edmctl",

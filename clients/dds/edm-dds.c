@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * edm-dds - tell the fleet how one machine is
+ * edm-dds - publishes the state of one machine to the fleet
  *
- * Reads edmd's shared memory and publishes an edm::MachineState at a fixed
- * rate.  It only reads; nothing that comes over DDS reaches the machine.
+ * It reads edmd's shared memory and publishes an edm::MachineState at a fixed
+ * rate.  It only reads: nothing that comes over DDS reaches the machine.
  */
 #include "cmdline.h"
 #include "config.h"
@@ -20,7 +20,8 @@
 #include <unistd.h>
 
 #define NS	1000000000LL
-#define ONCE_NS	(2 * NS)		/* --once waits so long for a reader */
+#define ONCE_NS	(2 * NS)		/* --once waits this long for a
+					 * reader */
 
 struct options {
 	const char *machine;
@@ -125,7 +126,8 @@ static int bridge_open(struct bridge *b, const struct options *o)
 	return b->writer < 0 ? b->writer : 0;
 }
 
-/* Deleting the writer disposes of its instance: readers see it leave. */
+/* Deleting the writer disposes of its instance, so readers see that it
+ * leaves. */
 static void bridge_close(struct bridge *b)
 {
 	if (b->participant > 0)
@@ -146,7 +148,7 @@ static bool is_missing(const char *state)
 	return !strcmp(state, "absent") || !strcmp(state, "lost");
 }
 
-/* A line for every time the machine comes or goes, not for every state. */
+/* Print a line each time the machine comes or goes, but not for every state. */
 static void say(struct bridge *b, const edm_MachineState *m)
 {
 	const char *word = is_missing(m->state) ? m->state : "here";
@@ -176,7 +178,7 @@ static int publish(struct bridge *b)
 	return dds_write(b->writer, &m);
 }
 
-/* Wait until @until_ns; true if told to stop meanwhile. */
+/* Wait until @until_ns.  Return: true if it was told to stop meanwhile. */
 static bool wait_until(const struct bridge *b, int64_t until_ns)
 {
 	const int64_t left = until_ns - now_ns();
@@ -192,7 +194,7 @@ static int run(struct bridge *b, double hz)
 
 	do {
 		err = publish(b);
-		/* A slow reader costs this sample, not the next. */
+		/* A slow reader costs this sample, but not the next one. */
 		if (err < 0 && err != DDS_RETCODE_TIMEOUT)
 			return err;
 		next += period;

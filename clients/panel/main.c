@@ -34,7 +34,7 @@ static void on_signal(int number)
 	over = 1;
 }
 
-/* -- The log ---------------------------------------------------------------------- */
+/* -- The log -------------------------------------------------------------- */
 
 static int64_t utime_ms(void)
 {
@@ -72,7 +72,7 @@ json_t *panel_notes(const struct panel *p)
 	return rows;
 }
 
-/* -- The loop ---------------------------------------------------------------------- */
+/* -- The loop ------------------------------------------------------------- */
 
 static void on_tick(lws_sorted_usec_list_t *timer)
 {
@@ -226,7 +226,7 @@ static int serve(struct panel *p)
 	return err;
 }
 
-/* -- Users -------------------------------------------------------------------------- */
+/* -- Users ---------------------------------------------------------------- */
 
 static void read_password(char to[260])
 {

@@ -69,7 +69,7 @@ struct session *socket_session(struct browser *b)
 	return session_by_id(b->panel->sessions, b->session);
 }
 
-/* -- Out --------------------------------------------------------------------- */
+/* -- Out ------------------------------------------------------------------ */
 
 static void queue_text(struct browser *b, const char *text)
 {
@@ -228,7 +228,7 @@ void socket_tell_all(struct panel *p)
 		lws_callback_on_writable(b->wsi);
 }
 
-/* -- In ---------------------------------------------------------------------- */
+/* -- In ------------------------------------------------------------------- */
 
 static bool has_token(struct browser *b)
 {

@@ -81,7 +81,7 @@ static bool find_shares(struct nodes *n)
 	return sum > 1;
 }
 
-/* -- Least squares --------------------------------------------------------------- */
+/* -- Least squares -------------------------------------------------------- */
 
 struct squares {
 	double a[SHIFTS][SHIFTS + 1];
@@ -166,7 +166,7 @@ static void best_shift(const struct nodes *n, uint32_t blocks,
 	eliminate(&s, ret);
 }
 
-/* -- Trying a shift --------------------------------------------------------------- */
+/* -- Trying a shift ------------------------------------------------------- */
 
 static int shifted_body(const struct mesh *from, const double by[3],
 			struct mesh *ret, struct tree *tree)

@@ -30,7 +30,7 @@ static double now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-/* -- The way in of a program --------------------------------------------------- */
+/* -- The way in of a program ---------------------------------------------- */
 
 /* From the last rapid before the first cut to the last cut. */
 static int find_way_in(struct plan *p)
@@ -138,7 +138,7 @@ static int check_dense(struct plan *p)
 	return 0;
 }
 
-/* -- Plans ------------------------------------------------------------------- */
+/* -- Plans ---------------------------------------------------------------- */
 
 void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries)
 {
@@ -279,7 +279,7 @@ int plan_over(struct plan *p, const struct job *j,
 	return p->best.how ? 0 : 1;
 }
 
-/* -- Words -------------------------------------------------------------------- */
+/* -- Words ---------------------------------------------------------------- */
 
 static void say_way(const char *name, const struct plan_way *w)
 {
@@ -351,7 +351,7 @@ static void describe(const struct plan *p, FILE *out)
 	       (unsigned long long)p->queries, p->planned_s);
 }
 
-/* -- Writing ------------------------------------------------------------------- */
+/* -- Writing -------------------------------------------------------------- */
 
 /* What stands in the text is read back and proved, not what was computed. */
 static int prove_text(struct plan *p, const char *text)

@@ -68,7 +68,7 @@ void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries);
 /** plan_pivot() - look for a better place of the work. */
 int plan_pivot(struct plan *p);
 
-/* -- What is written ------------------------------------------------------------ */
+/* -- What is written ------------------------------------------------------ */
 
 /**
  * text_write() - the dense program with @w as its way in, allocated; where its

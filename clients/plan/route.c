@@ -54,7 +54,7 @@ void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES])
 		ret[i] = pulses * c->axes.axis[i].pulse_mm;
 }
 
-/* -- Segments ---------------------------------------------------------------- */
+/* -- Segments ------------------------------------------------------------- */
 
 static void node_of(const struct interp_program *p, uint32_t node,
 		    double q[INTERP_NAXES])
@@ -190,7 +190,7 @@ static int follow(struct route *w, const struct interp_program *p,
 	return r;
 }
 
-/* -- Text -------------------------------------------------------------------- */
+/* -- Text ----------------------------------------------------------------- */
 
 static int read_file(const char *path, char **text, size_t *bytes)
 {

@@ -93,7 +93,7 @@ static char *plain(const struct plan *p, const struct plan_way *w)
 	return text;
 }
 
-/* -- The program's other lines -------------------------------------------------- */
+/* -- The program's other lines -------------------------------------------- */
 
 static const char *line_at(const char *text, uint32_t line)
 {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * options.c - edmsim: the table of its options, and what they ask for together
- */
+/* options.c - edmsim: the table of its options, and their combinations */
 #include "sim.h"
 
 #include "cmdline.h"
@@ -24,7 +22,7 @@ static int refuse(const char *what, const char *value, const char *wanted)
 	return cmdline_refuse("edmsim", what, value, wanted);
 }
 
-/* A line each; the names of what a file may say of its words. */
+/* One line for each, and the names of the meanings for files of dialects. */
 static int take_document_dialects(void *to, const char *text)
 {
 	(void)to, (void)text;
@@ -187,7 +185,7 @@ static const struct cmdline table = {
 "65 job refused, 66 no such file, 73 cannot create, 78 machine file refused.\n",
 };
 
-/* What one option alone cannot tell. */
+/* Checks that need more than one option. */
 static int check_together(const struct sim_options *o)
 {
 	if (!o->job)

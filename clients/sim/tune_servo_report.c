@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * tune_servo_report.c - what tuning came to: lines to paste, or JSON
- */
+/* tune_servo_report.c - the result of tuning: lines to paste, or JSON */
 #include "keys.h"
 #include "tune_servo.h"
 

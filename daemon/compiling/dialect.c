@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * dialect.c - which dialect a job is written in, and the file of one's own
+ * dialect.c - the dialect in which a job is written, and dialect files of users
  */
 #include "compiling.h"
 

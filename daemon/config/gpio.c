@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * gpio.c - [gpio]: a line as text, and what its keys must agree on
- */
+/* gpio.c - [gpio]: a line as text, and keys that must agree */
 #include "keys.h"
 
 #include "cycle.h"
@@ -92,7 +90,7 @@ const char *config_line_name(int line)
 	return key_of_line(line)->name;
 }
 
-/* -- What the keys must agree on ---------------------------------------------- */
+/* -- What the keys must agree on ------------------------------------------ */
 
 struct check {
 	const struct machine_config *c;
@@ -139,7 +137,7 @@ static bool is_same(const struct check *q, int a, int b)
 		      *y->chip ? y->chip : chip) == 0;
 }
 
-/* Inputs may share a line: limit switches in a row. */
+/* Inputs may share a line: limit switches in series. */
 static int check_shared(struct check *q, int output)
 {
 	for (int i = output + 1; i < CONFIG_NLINES; i++) {
@@ -206,7 +204,7 @@ static bool has_line(const struct config_line_at *list, int n,
 	return false;
 }
 
-/* Edges and levels of a line cannot both be asked for. */
+/* One line cannot be asked for edges and for levels at once. */
 static int check_encoder(struct check *q, int axis)
 {
 	const struct config_key *k =
@@ -235,7 +233,8 @@ static int check_encoder(struct check *q, int axis)
 			       k->name, text, wrong);
 }
 
-/* Sparks that nobody ends when edmd is gone are the builder's to answer for. */
+/* If nothing ends the sparks after edmd is gone, the machine builder must say
+ * what does. */
 static int check_guard(struct check *q, int line, const char *by,
 		       const char *key)
 {
@@ -257,7 +256,7 @@ static int check_guards(struct check *q)
 	       check_guard(q, LINE_ESTOP, q->c->gpio.estop_by, "estop_by");
 }
 
-/* Pulses a second that the lines can make. */
+/* The number of pulses a second that the lines can make. */
 static double pulses_s(const struct machine_config *c)
 {
 	const double periods = c->gpio.high_cycles +

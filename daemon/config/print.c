@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * print.c - a machine file from a struct machine_config, and docs/config.md
+ * print.c - writes a struct machine_config as a machine file, and
+ * docs/config.md
  */
 #include "keys.h"
 

@@ -17,7 +17,8 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* Before any thread: the event loop reads them as a file. */
+/* This is done before there is any thread: the event loop reads signals as a
+ * file. */
 static void signals_block(void)
 {
 	sigset_t set;
@@ -40,7 +41,7 @@ static int machine_refuse(int err, const struct interp_diag *d)
 #define BACKEND_OPEN(id, name, open, period_ns, is, has_gap, check) \
 	[BACKEND_##id] = open,
 
-/* EX_OK, or the exit code. */
+/* Return: EX_OK, or the exit code. */
 static int machine_open(struct loop *l, const struct machine_config *c)
 {
 	static io_open_fn *const open[] = { CONFIG_BACKENDS(BACKEND_OPEN) };
@@ -142,7 +143,7 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 	return code;
 }
 
-/* It will be made anew: what is lost with it is told. */
+/* The object will be made again.  Say what is lost with it. */
 static void tell_foreign(const char *name)
 {
 	const struct shm_status *s;
@@ -179,9 +180,9 @@ static int run_on(struct loop *l, const struct machine_config *c,
 }
 
 /*
- * The status comes first: who does not own it must not touch the machine.
- * After a failure, or with a job not ended, it stays: it is where the next
- * edmd finds the place to stand held at.
+ * The status comes first: who does not own it must not use the machine.  After
+ * a failure, or if the job has not ended, it stays.  There the next edmd finds
+ * the place at which it is held.
  */
 static int run_owner(struct loop *l, const struct machine_config *c)
 {

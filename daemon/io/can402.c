@@ -19,7 +19,7 @@
 #define RX_MAX		512		/* frames taken in a period: more than a bus
 					 * carries in the longest one */
 
-/* -- The bus -------------------------------------------------------------------- */
+/* -- The bus -------------------------------------------------------------- */
 
 /* The first trouble stops everything; the end of it is only noted. */
 static void bus_is(struct can402 *s, enum can_got state)
@@ -145,7 +145,7 @@ static void drain(struct can402 *s)
 	}
 }
 
-/* -- The drives ----------------------------------------------------------------- */
+/* -- The drives ----------------------------------------------------------- */
 
 static bool all_up(const struct can402 *s)
 {
@@ -286,7 +286,7 @@ void can402_read(void *self, struct io_inputs *in)
 	fill(s, in, unplaced);
 }
 
-/* -- What the cycle wants --------------------------------------------------------- */
+/* -- What the cycle wants ------------------------------------------------- */
 
 static void reset(struct can402 *s)
 {

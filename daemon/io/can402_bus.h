@@ -90,7 +90,7 @@ struct can402 {
 	_Atomic uint32_t put, taken;
 };
 
-/* -- can402_note.c ------------------------------------------------------------ */
+/* -- can402_note.c -------------------------------------------------------- */
 
 /** can402_tell() - say what the next line of the log is about. */
 void can402_tell(struct can402 *s, const struct can402_note *n);
@@ -109,7 +109,7 @@ void can402_watch(struct can402 *s, uint32_t i);
 /** can402_note() - io_machine.note */
 bool can402_note(void *self, char *buf, size_t size);
 
-/* -- can402.c ----------------------------------------------------------------- */
+/* -- can402.c ------------------------------------------------------------- */
 
 /* Of struct io_machine. */
 void can402_read(void *self, struct io_inputs *in);
@@ -118,7 +118,7 @@ void can402_close(void *self);
 bool can402_origin(void *self, int32_t ret[IO_NAXES]);
 void can402_originate(void *self, const int32_t zero[IO_NAXES]);
 
-/* -- can402_stop.c ------------------------------------------------------------ */
+/* -- can402_stop.c -------------------------------------------------------- */
 
 /**
  * can402_stop_follow() - once a period, before @out becomes s->out: how far does
@@ -147,7 +147,7 @@ int32_t can402_stop_target(struct can402 *s, uint32_t i);
  */
 void can402_stop_pace(struct can402 *s);
 
-/* -- can402_brake.c ----------------------------------------------------------- */
+/* -- can402_brake.c ------------------------------------------------------- */
 
 /**
  * can402_brake_step() - once a period, after can402_stop_step() said @on.
@@ -168,7 +168,7 @@ bool can402_brake_opens(const struct can402 *s);
  */
 void can402_brake_close(struct can402 *s);
 
-/* -- can402_open.c ------------------------------------------------------------ */
+/* -- can402_open.c -------------------------------------------------------- */
 
 /** can402_open() - the bus, without lines for brakes.  Startup only. */
 io_open_fn can402_open;

@@ -35,7 +35,7 @@ static void trouble(struct drive *d, enum drive_trouble t)
 		d->trouble = t;
 }
 
-/* -- Places ------------------------------------------------------------------- */
+/* -- Places --------------------------------------------------------------- */
 
 /* Rounded down, so that pulses and increments go up and down together. */
 static int64_t floor_div(int64_t a, int64_t b)
@@ -84,7 +84,7 @@ void drive_keep_zero(struct drive *d, int32_t zero)
 	d->homed = true;
 }
 
-/* -- What it says ------------------------------------------------------------- */
+/* -- What it says --------------------------------------------------------- */
 
 /* Its count begins anew, and what was configured is gone. */
 static void hear_restart(struct drive *d)
@@ -190,7 +190,7 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 	return false;
 }
 
-/* -- What did not come ---------------------------------------------------------- */
+/* -- What did not come ---------------------------------------------------- */
 
 /* What an axis lags dies away as slowly as it came. */
 static void watch_lag(struct drive *d)
@@ -314,7 +314,7 @@ void drive_sync(struct drive *d)
 	d->sent[0] = d->target;
 }
 
-/* -- What it is told ------------------------------------------------------------ */
+/* -- What it is told ------------------------------------------------------ */
 
 /* Not enabled in another mode; but some show theirs only when enabled. */
 static bool waits_for_mode(struct drive *d)

@@ -267,7 +267,7 @@ const char *drive_trouble_name(enum drive_trouble t);
 /** drive_abort_text() - an abort code of CiA 301 in words. Any thread. */
 const char *drive_abort_text(uint32_t code);
 
-/* -- drive_setup.c: the SDO steps -------------------------------------------- */
+/* -- drive_setup.c: the SDO steps ----------------------------------------- */
 
 /** drive_setup_emit() - the request of the present step, if it is due. */
 size_t drive_setup_emit(struct drive *d, struct can_msg *ret);

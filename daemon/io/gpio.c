@@ -19,7 +19,7 @@ static bool is_on(const struct gpio *g, int line)
 	return g->in >> line & 1;
 }
 
-/* -- Inputs ------------------------------------------------------------------ */
+/* -- Inputs --------------------------------------------------------------- */
 
 static void inputs_read(struct gpio *g)
 {
@@ -104,7 +104,7 @@ void gpio_read(void *self, struct io_inputs *in)
 	gpio_axes_read(g, in);
 }
 
-/* -- Outputs ----------------------------------------------------------------- */
+/* -- Outputs -------------------------------------------------------------- */
 
 bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines)
 {
@@ -246,7 +246,7 @@ void gpio_write(void *self, const struct io_outputs *out)
 	gpio_outputs_write(g);
 }
 
-/* -- Close ------------------------------------------------------------------- */
+/* -- Close ---------------------------------------------------------------- */
 
 void gpio_close(void *self)
 {

@@ -110,7 +110,7 @@ void gpio_outputs_write(struct gpio *g);
  */
 bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines);
 
-/* -- gpio_axes.c -------------------------------------------------------------- */
+/* -- gpio_axes.c ---------------------------------------------------------- */
 
 /** gpio_put() - pulses put out for axis @i, as the machine counts them. */
 int32_t gpio_put(const struct gpio *g, int i);

@@ -98,7 +98,7 @@ void checkpoint_look(struct checkpoint_file *f,
 /** checkpoint_stats() - since it was opened. */
 void checkpoint_stats(struct checkpoint_file *f, struct checkpoint_stats *ret);
 
-/* -- checkpoint_block.c ------------------------------------------------------ */
+/* -- checkpoint_block.c --------------------------------------------------- */
 
 #define CHECKPOINT_BLOCK	4096
 #define CHECKPOINT_SECTOR	512

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * compile.c - NC code to a program, in a thread of its own
- */
+/* compiler.c - NC code to a program, in a thread of its own */
 #include "compiler.h"
 #include "compiling.h"
 
@@ -16,16 +14,17 @@
 #include <unistd.h>
 
 /*
- * A short text of calls inside calls asks for as much as it likes.  These are
- * some seconds, and below a GB; a text of 64 MiB that says each line itself
- * stays below them.
+ * A short text with calls inside calls can ask for any number of segments.
+ * This limit means some seconds of work and less than a GB.  A text of 64 MiB
+ * that has every line itself stays below it.
  */
 #define SEGS_MAX	8000000u
 #define EXECUTED_MAX	32000000u
 
 struct compiler {
 	pthread_t thread;
-	int fd;				/* readable when it is done */
+	int fd;				/* becomes readable when the thread is
+					 * done */
 	sd_event_source *source;
 	struct compiler_request request;
 	struct compiler_result result;
@@ -33,7 +32,7 @@ struct compiler {
 	void *arg;
 };
 
-/* The table is read for each job: one that was mended counts from the next
+/* The table is read for each job, so a corrected table is used from the next
  * job on. */
 static int read_tech(struct compiler *c, struct config_tech *t)
 {
@@ -93,7 +92,7 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 			      &c->result.diag);
 }
 
-/* The dialect's file is read for each job, too. */
+/* The file of the dialect is read for each job, too. */
 static int compiler_read(struct compiler *c, const struct config_tech *tech)
 {
 	struct compiler_result *r = &c->result;
@@ -120,7 +119,7 @@ static void *compiler_main(void *arg)
 	if (c->result.err == 0)
 		c->result.err = compiler_read(c, &tech);
 	config_tech_free(&tech);
-	/* An eventfd at 0 takes a 1 without fail. */
+	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
 	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
 		abort();
 	return NULL;
@@ -146,7 +145,7 @@ static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
 	return 0;
 }
 
-/* Signals are the event loop's: the thread blocks them all. */
+/* Signals belong to the event loop, so the thread blocks all of them. */
 static int thread_start(struct compiler *c)
 {
 	sigset_t all, old;

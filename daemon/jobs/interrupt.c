@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * interrupt.c - a job that the power, or edmd's death, cut short
- */
+/* interrupt.c - a job that a power cut or the death of edmd ended early */
 #include "interrupt.h"
 
 #include "jobs.h"
@@ -13,7 +11,7 @@
 #include <string.h>
 #include <time.h>
 
-/* The last checkpoint is of this very job. */
+/* Does the last checkpoint belong to this job? */
 static bool is_of_job(const struct checkpoint *c, const struct store_job *job)
 {
 	char hex[65];
@@ -24,7 +22,7 @@ static bool is_of_job(const struct checkpoint *c, const struct store_job *job)
 	       strcmp(hex, job->sha256) == 0;
 }
 
-/* A PLC starts a job without asking this service. */
+/* A PLC can start a job without asking this service. */
 bool interrupt_saw_begin(const struct jobs *j)
 {
 	return is_of_job(&j->last, &j->queue.job) &&
@@ -40,7 +38,7 @@ void interrupt_init(struct jobs *j)
 		snprintf(j->interrupted, sizeof(j->interrupted), "%s", job.id);
 }
 
-/* Its sums are those of the checkpoint. */
+/* Take the totals of the job from the checkpoint. */
 static void take_sums(struct queue *q, const struct checkpoint_base *b)
 {
 	q->snap = b->snap;
@@ -90,7 +88,8 @@ void interrupt_take(struct jobs *j)
 		return;
 	}
 	take_sums(q, &c->base);
-	/* The end was written, and the store did not get it. */
+	/* The checkpoint has the end of the job, but the store did not get
+	 * it. */
 	if (!c->base.snap.loaded && c->base.snap.outcome == SHM_OUTCOME_DONE)
 		queue_end(j, JOB_DONE, "");
 	else if (!c->base.snap.loaded && c->base.snap.outcome)
@@ -108,7 +107,8 @@ const char *interrupt_lost(const struct jobs *j)
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (!(j->config->axes.present >> i & 1))
 			continue;
-		/* What nothing homes stands where somebody says. */
+		/* An axis that cannot be homed stands where an operator says
+		 * that it stands. */
 		if (j->link.snap.unhomed >> i & 1 ||
 		    (cut_short && j->config->manual[i].method == 0 &&
 		     !(j->vouched >> i & 1)))

@@ -20,7 +20,7 @@
 #define STORE		"/var/lib/edmd"
 #define HOST		"host"		/* the name of the host's key */
 
-/* -- At the start ----------------------------------------------------------- */
+/* -- At the start --------------------------------------------------------- */
 
 static int key_check(const struct jobs *j, const struct keyfile *k,
 		     const char *path)
@@ -175,7 +175,7 @@ void keys_close(struct jobs *j)
 	unlink(path);
 }
 
-/* -- Verbs ------------------------------------------------------------------ */
+/* -- Verbs ---------------------------------------------------------------- */
 
 static void answer_body(struct jobs *j, const struct jobs_lcm_command *c,
 			const char *body)

@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * load.c - from the store into edmd: compile, lay out, load
- *
- * The text is compiled again although submit did so: the machine may stand
- * somewhere else by now, and the path begins there.
- */
+/* load.c - takes a job from the store and loads it into edmd */
 #include "jobs.h"
 
 #include "compiler.h"
@@ -63,7 +58,7 @@ static void on_asked(void *arg, int code)
 	}
 }
 
-/* A start is one act: refused, it waits for the next one. */
+/* A start is one act: if it is refused, the job waits for the next start. */
 static void on_started(void *arg, int code)
 {
 	struct jobs *j = arg;
@@ -93,7 +88,7 @@ int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us)
 	return err;
 }
 
-/* The job did not get as far as edmd. */
+/* The job did not reach edmd. */
 static void load_refuse(struct jobs *j, struct store_job job,
 			const char *reason)
 {
@@ -109,7 +104,7 @@ static void on_loaded(void *arg, int code)
 	struct jobs *j = arg;
 	char reason[128];
 
-	/* A large one takes its time. */
+	/* A large program takes its time. */
 	if (code == SHM_TAKEN && j->link.state == LINK_OK &&
 	    link_await(&j->link, &(struct link_command) {
 			.id = j->queue.load_id, .answer = on_loaded,
@@ -143,7 +138,8 @@ static int load_write(struct jobs *j, const struct compiler_result *r)
 
 	sodium_hex2bin(about.hash, sizeof(about.hash), q->job.sha256,
 		       strlen(q->job.sha256), NULL, NULL, NULL);
-	/* Before the object exists: a killed service finds and removes it. */
+	/* This is written before the object exists, so that a service that is
+	 * started after a kill finds the object and removes it. */
 	err = store_set_loaded(j->store, q->job.n, true);
 	if (err != 0)
 		return -EAGAIN;
@@ -167,7 +163,7 @@ static void load_ask(struct jobs *j, const struct compiler_result *r)
 	randombytes_buf(&c.id, sizeof(c.id));
 	j->queue.load_id = c.id |= 1;
 
-	/* The store failed: it waits in the queue as before. */
+	/* The store failed.  The job waits in the queue as before. */
 	if (err == -EAGAIN) {
 		queue_drop(j, true);
 		return;
@@ -195,7 +191,7 @@ static void on_compiled(void *arg, const struct compiler_result *r)
 	q->compile = NULL;
 	free(q->next_text);
 	q->next_text = NULL;
-	/* It may have been removed, and edmd may have gone, meanwhile. */
+	/* Meanwhile the job may have been removed, and edmd may have ended. */
 	if (q->job.n || store_find(j->store, job.id, &found) < 0 ||
 	    found.state != JOB_QUEUED || j->link.state != LINK_OK)
 		return;

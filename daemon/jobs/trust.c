@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * trust.c - whose packet it is, and whether it is a new one
- */
+/* trust.c - who signed a packet, and whether it is new */
 #include "trust.h"
 
 #include "jobs_log.h"
@@ -12,7 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define TELL_US		10000000	/* between two lines of one cause */
+#define TELL_US		10000000	/* between two lines of the log for one
+					 * cause */
 #define STRANGERS_A_S	200		/* of their packets looked at */
 
 static const char *const roles[] = {
@@ -83,7 +82,7 @@ int64_t trust_count(struct trust *t, int64_t now_us)
 	return t->sent;
 }
 
-/* -- Keys ------------------------------------------------------------------- */
+/* -- Keys ----------------------------------------------------------------- */
 
 const struct trust_key *trust_find(const struct trust *t,
 				   const uint8_t key[SEAL_KEY_BYTES])
@@ -130,7 +129,7 @@ int trust_remove(struct trust *t, const char *name)
 	return -ENOENT;
 }
 
-/* -- Refusals --------------------------------------------------------------- */
+/* -- Refusals ------------------------------------------------------------- */
 
 void trust_refuse(struct trust *t, enum trust_cause cause, const char *who,
 		  const char *from, int64_t now_us)
@@ -158,7 +157,7 @@ void trust_who(const struct trust_packet *p, char to[KEYFILE_NAME_MAX])
 	snprintf(to, KEYFILE_NAME_MAX, "key %.8s...", hex);
 }
 
-/* Fewer than @most in this second? */
+/* Were there fewer than @most in this second? */
 static bool rate_allows(struct trust_rate *r, int most, int64_t now_us)
 {
 	if (now_us - r->since_us > 1000000)
@@ -167,9 +166,10 @@ static bool rate_allows(struct trust_rate *r, int most, int64_t now_us)
 }
 
 /*
- * What is looked at in a second: of all strangers together; of each key what is
- * signed for another time, as what was recorded is; of a viewer what is new.
- * So nobody uses up what is another's.  NULL: all of it.
+ * How many packets are looked at in a second.  All strangers share one limit.
+ * Each key has one for packets that are signed for another time, as recorded ones
+ * are.  A viewer has one for new packets.  So nobody uses up what belongs to
+ * another.  NULL: no limit.
  */
 static struct trust_rate *rate_of(struct trust *t, const struct trust_packet *p,
 				  enum trust_cause cause, int *ret_most)
@@ -185,7 +185,7 @@ static struct trust_rate *rate_of(struct trust *t, const struct trust_packet *p,
 	return viewer ? &t->asked[p->key - t->key] : NULL;
 }
 
-/* What can be told without a signature being computed. */
+/* What can be seen before a signature is computed. */
 static enum trust_cause look_quickly(const struct trust *t,
 				     const struct trust_packet *p,
 				     int64_t now_us)
@@ -196,7 +196,7 @@ static enum trust_cause look_quickly(const struct trust *t,
 		return TRUST_KEY;
 	if (p->seal.boot != t->boot)
 		return TRUST_BOOT;
-	/* Not by a difference, which a packet could make overflow. */
+	/* Do not subtract: a packet could make the difference overflow. */
 	if (count < now - TRUST_OLD_US || count > now + TRUST_AHEAD_US)
 		return TRUST_TIME;
 	return TRUST_FINE;
@@ -229,7 +229,7 @@ enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 	return cause;
 }
 
-/* -- Sessions --------------------------------------------------------------- */
+/* -- Sessions ------------------------------------------------------------- */
 
 static bool session_is_over(const struct trust_session *s, int64_t now)
 {

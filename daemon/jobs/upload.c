@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * upload.c - a job's text put together from chunks
- */
+/* upload.c - puts the text of a job together from chunks */
 #include "upload.h"
 
 #include "plain.h"
@@ -110,9 +108,9 @@ static int uploads_of(const struct uploads *u, const struct jobs_lcm_chunk *c)
 	return n;
 }
 
-/* A free one, else the one that has stood still the longest, and long enough
- * for its client to be gone: who begins eight and goes on with none does not
- * lock the others out. */
+/* Take a free slot.  Otherwise take the one that has stood still the longest,
+ * if that is long enough for its client to be gone.  So a client that begins
+ * eight uploads and continues none does not lock the others out. */
 static struct upload *upload_room(struct uploads *u, int64_t now_us)
 {
 	struct upload *oldest = NULL;

@@ -2,8 +2,8 @@
 /*
  * verbs.c - what a COMMAND may ask for: one table
  *
- * A verb of the machine goes to edmd and is answered when edmd has answered;
- * the others are answered at once.
+ * A verb of the machine goes to edmd, and is answered when edmd has answered.
+ * The other verbs are answered at once.
  */
 #include "act.h"
 #include "keys.h"
@@ -25,7 +25,7 @@
 #define RETRACT_MAX_MM	10000.0
 #define STEP_MAX	100
 #define OVERRIDE_MAX	2.0
-#define SIGN_US		100000		/* a sign of a press is no older */
+#define SIGN_US		100000		/* a sign of a press may not be older */
 
 /* A command on its way to edmd. */
 struct asked {
@@ -59,7 +59,8 @@ int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 	return err;
 }
 
-/* What the cycle says no to in any state; NULL: it is the state. */
+/* Refusals of the cycle that do not depend on the state; NULL: the state
+ * refuses. */
 static const char *refusal(int code)
 {
 	static const char *const why[] = {
@@ -86,7 +87,7 @@ static const char *refusal(int code)
 	       why[code] : NULL;
 }
 
-/* edmd did not say yes or no; NULL: it did. */
+/* edmd said neither yes nor no; NULL: it said one of them. */
 static const char *gone(int code)
 {
 	switch (code) {
@@ -150,7 +151,7 @@ static void on_answer(void *arg, int code)
 	free(a);
 }
 
-/* NULL: told. */
+/* NULL: the client was told why. */
 static struct asked *asked_new(struct jobs *j, const struct verb *v,
 			       const struct jobs_lcm_command *c)
 {
@@ -190,7 +191,7 @@ void verbs_await(struct jobs *j, const struct verb *v,
 		on_answer(a, SHM_TAKEN);
 }
 
-/* A job begins only when the disk knows that it may have begun. */
+/* A job begins only after the disk has recorded that it may begin. */
 static bool may_start(struct jobs *j, const struct verb *v)
 {
 	const bool starts = v->machine == SHM_DO_START ||
@@ -268,7 +269,7 @@ static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
 	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
-/* NaN gives the field back to the condition. */
+/* NaN removes the set value; the condition's own value is valid again. */
 static void verb_set(struct jobs *j, const struct verb *v,
 		     const struct jobs_lcm_command *c)
 {
@@ -324,7 +325,8 @@ static void verb_override(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
 }
 
-/* One letter of an axis the machine has, of @n in the text; -1: refused. */
+/* The text must be the letter of an axis that the machine has; @n: its length.
+ * Return: -1 if it was refused. */
 static int axis_of(struct jobs *j, const struct jobs_lcm_command *c, size_t n)
 {
 	const char *at = n == 1 ? strchr(INTERP_AXIS_LETTERS, c->text[0]) :
@@ -358,7 +360,7 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 		ask_machine(j, v, c, (uint32_t)axis);
 }
 
-/* The text is the axis, the number of the press, and `begin`, if it begins. */
+/* The text is the axis, the number of the press, and `begin` if it begins. */
 static void verb_jog_on(struct jobs *j, const struct verb *v,
 			const struct jobs_lcm_command *c)
 {
@@ -416,7 +418,7 @@ static void verb_home(struct jobs *j, const struct verb *v,
 		       "it starts at is good");
 }
 
-/* A refused start must not set the queue going. */
+/* A refused start must not start the queue. */
 static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	if (!queue_is_faulted(j))
@@ -432,7 +434,7 @@ static void verb_resume(struct jobs *j, const struct verb *v,
 		verb_machine(j, v, c);
 }
 
-/* A job that waits: it is started when its turn comes. */
+/* A waiting job is started when its turn comes. */
 static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 			 const struct store_job *job)
 {
@@ -447,7 +449,8 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 		verbs_answer(j, c, REFUSED, "this job has ended; submit it again");
 		return;
 	}
-	/* A start is one act: what is not ready now must be started then. */
+	/* A start is one act: if the machine is not ready now, the operator
+	 * must start again later. */
 	if (queue_unready(j)) {
 		snprintf(reason, sizeof(reason), "%s; start it then",
 			 queue_unready(j));
@@ -482,7 +485,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	}
 }
 
-/* What each is, who may ask for it: the one table of rights. */
+/* The one table of rights: what each verb is, and who may ask for it. */
 static const struct verb verbs[] = {
 	{ "start", ROLE_OPERATOR, VERB_ACTS, verb_start, SHM_DO_START,
 	  "a job that is ready or held" },
@@ -559,7 +562,7 @@ static void refuse_role(struct jobs *j, const struct jobs_lcm_command *c,
 	verbs_answer(j, c, EX_NOPERM, reason);
 }
 
-/* Answered before, or under way: not done again. */
+/* It was answered before, or is under way: it is not done again. */
 static bool is_repeat(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	const struct reply *r = reply_find(&j->replies, c->key, c->client,

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * verbs_queue.c - verbs that the service answers from its store
- */
+/* verbs_queue.c - verbs that the service answers from its store */
 #include "interrupt.h"
 #include "store_turn.h"
 #include "verb.h"
@@ -96,7 +94,8 @@ void verbs_text(struct jobs *j, const struct verb *v,
 static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 			enum store_list what)
 {
-	/* Only history has it; anything but a few rows is as many as there are. */
+	/* Only `history` has an argument.  Without a sensible one, as many rows
+	 * as fit. */
 	const int rows = c->arg > 0 && c->arg < 1000 ? (int)c->arg : 0;
 	struct store_job before;
 	const bool known = what == STORE_ALARMS ||

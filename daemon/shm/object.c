@@ -16,13 +16,14 @@
 #include <unistd.h>
 
 #define FOLDER		"/dev/shm"
-#define CLAIM_TRIES	8		/* another one may remove it meanwhile */
+#define CLAIM_TRIES	8		/* somebody else may remove it
+					 * meanwhile */
 
 /* A view of a record that may alias anything. */
 typedef uint64_t __attribute__((may_alias)) word_t;
 
-/* Made by root, by @service, or by this user: nobody else can do anything to
- * it. */
+/* Was it made by root, by @service, or by this user?  Then nobody else can
+ * change it. */
 static bool maker_is_trusted(uid_t uid, const char *service)
 {
 	const struct passwd *made;
@@ -143,14 +144,14 @@ void object_leave(int fd, const char *machine, const char *what)
 }
 
 /*
- * The memory is taken at once: a sparse object would end its writer with
- * SIGBUS on the day /dev/shm is full.
+ * The memory is reserved at once.  A sparse object would end its writer with
+ * SIGBUS when /dev/shm is full one day.
  */
 int object_grow(int fd, size_t bytes, unsigned int mode)
 {
 	int err;
 
-	/* shm_open() has cut the mode by the umask. */
+	/* shm_open() has reduced the mode by the umask. */
 	if (fchmod(fd, mode) < 0 || ftruncate(fd, (off_t)bytes) < 0)
 		return -errno;
 
@@ -205,7 +206,7 @@ static int object_open_fd(void **ret, int fd, size_t bytes, bool writable)
 		return (int)size;
 	if (size == 0)
 		return -ENOENT;
-	/* Another user could cut it short, and end us by a signal. */
+	/* Another user could truncate the file and so end us by a signal. */
 	if (fstat(fd, &st) < 0 || !maker_is_trusted(st.st_uid, "edmd"))
 		return -EPERM;
 	if ((uint64_t)size != bytes)
@@ -241,10 +242,10 @@ int object_open(void **ret, const char *machine, const char *what,
 }
 
 /*
- * A record under a sequence is read while it may be written; the sequence
- * tells afterwards.  In C11 that is a race unless every word is atomic.
- * Release and acquire on the words also hold the order against the stamps, on
- * any processor, with no fence; on x86 they are plain moves.
+ * A record under a sequence number may be written while it is read; the
+ * sequence shows this afterwards.  In C11 that is a data race unless every word
+ * is atomic.  Release and acquire on the words also keep the order against the
+ * stamps, on any processor and without a fence.  On x86 they are plain moves.
  */
 void object_words_put(void *shared, const void *from, size_t bytes)
 {

@@ -16,13 +16,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* How the motion ends.  Sparks are off in the same period, whatever it is. */
+/* How the motion ends.  In each case the sparks are off in the same period. */
 enum fault_motion {
 	FAULT_BRAKES,			/* along the path: the axes are good, or
 					 * all but one are */
 	FAULT_ENDS,			/* at once: no further lattice point */
-	FAULT_BACKS_OFF,		/* as BRAKES; out of a cut it goes back
-					 * along the path first, and stands */
+	FAULT_BACKS_OFF,		/* as FAULT_BRAKES; in a cut it then
+					 * goes back along the path, and
+					 * stands */
 };
 
 /* When a fault can come up. */
@@ -166,11 +167,12 @@ enum cycle_fault {
 struct fault_row {
 	const char *name;		/* "short-not-cleared" */
 	enum fault_motion motion;
-	bool disables;			/* takes the power from the axes, once
-					 * the motion has ended: one may not be
-					 * where it is thought */
+	bool disables;			/* it takes the power from the axes,
+					 * once the motion has ended, because
+					 * an axis may not be where it should
+					 * be */
 	enum fault_scope scope;
-	const char *what, *why;		/* half a sentence each */
+	const char *what, *why;		/* half a sentence each, for people */
 	const char *clear;		/* what the operator does */
 };
 

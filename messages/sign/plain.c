@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * plain.c - text that does nothing but show
- */
+/* plain.c - text without control characters */
 #include "plain.h"
 
 #include <stdint.h>
 #include <string.h>
 
-/* Characters that are not seen, and change what is seen. */
+/* Characters that are invisible but change what is seen. */
 static bool is_hidden(uint32_t c)
 {
 	static const struct {
@@ -39,7 +37,8 @@ static bool is_hidden(uint32_t c)
 	return false;
 }
 
-/* Smallest character of so many bytes: a longer form of it is refused. */
+/* The smallest character with this many bytes; a longer form of it is
+ * refused. */
 static const uint32_t smallest[] = { 0, 0, 0x80, 0x800, 0x10000 };
 
 static size_t length_of(unsigned char first)

@@ -22,7 +22,7 @@ struct random_drives {
 	bool begun;
 };
 
-/* -- Any there can be ------------------------------------------------------------ */
+/* -- Any there can be ----------------------------------------------------- */
 
 static inline void random_row(struct interp_errormap_row *r, uint64_t *s)
 {
@@ -121,7 +121,7 @@ static inline void random_actual(struct random_drives *d, struct rig *r,
 					  uniform(s, -10, 60);
 }
 
-/* -- What must hold ------------------------------------------------------------- */
+/* -- What must hold ------------------------------------------------------- */
 
 /* Longer than the slowest take-up waits for its next pulse. */
 #define SETTLED	25

@@ -61,7 +61,7 @@ static bool on_path(const struct points *set, const int32_t *pos)
 	return bsearch(&here, set->at, set->n, sizeof(here), by_place) != NULL;
 }
 
-/* -- The way out that a segment allows ----------------------------------------- */
+/* -- The way out that a segment allows ------------------------------------ */
 
 /*
  * On the straight line between two places, in pulses: its ends, its points and

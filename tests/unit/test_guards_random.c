@@ -34,7 +34,7 @@ static bool one_in(uint64_t *s, unsigned int n)
 	return rnd(s) % n == 0;
 }
 
-/* -- The machine ----------------------------------------------------------------- */
+/* -- The machine ---------------------------------------------------------- */
 
 static struct cycle_config any_config(uint64_t *s)
 {
@@ -92,7 +92,7 @@ static struct made probing(void)
 	return finish(b);
 }
 
-/* -- What comes and goes ------------------------------------------------------------ */
+/* -- What comes and goes -------------------------------------------------- */
 
 static void flip(bool *b, bool rest, uint64_t *s, unsigned int seldom)
 {
@@ -163,7 +163,7 @@ static void load(struct world *w, uint64_t *s)
 	cycle_load(&w->r.c, w->job ? &w->r.m.p : &w->probing.p);
 }
 
-/* -- What must hold: told from the inputs alone -------------------------------------- */
+/* -- What must hold: told from the inputs alone --------------------------- */
 
 struct forbidden {
 	uint64_t always;		/* bits that must be latched */
@@ -265,7 +265,7 @@ static void check_latch(struct world *w, const struct forbidden *f)
 	w->latched_before = s->latched;
 }
 
-/* -- A machine's life ------------------------------------------------------------------ */
+/* -- A machine's life ----------------------------------------------------- */
 
 static void period(struct world *w, uint64_t *s)
 {

@@ -129,7 +129,7 @@ static void a_pillar_is_gone_round_over_its_top(void **state)
 	nc_done(&n);
 }
 
-/* -- Refusals ------------------------------------------------------------------ */
+/* -- Refusals ------------------------------------------------------------- */
 
 static const struct nc_refusal refusals[] = {
 	{ "G80",		1, 1, "G80 without an axis", "G80 X-" },

@@ -85,7 +85,7 @@ static struct interp_build *one_probe(double by_mm)
 	return b;
 }
 
-/* -- Where it ends -------------------------------------------------------------- */
+/* -- Where it ends -------------------------------------------------------- */
 
 /* The contact that counts is met at 0.5 um a cycle: on the pulse. */
 static void probe_somewhere(uint64_t *s, bool by_input)
@@ -170,7 +170,7 @@ static void test_without_a_way_back_the_first_contact_counts(void **state)
 	rig_free(&w.r);
 }
 
-/* -- Half and limit ---------------------------------------------------------------- */
+/* -- Half and limit ------------------------------------------------------- */
 
 static struct interp_build *two_probes(bool first_low)
 {
@@ -267,7 +267,7 @@ static void test_a_limit_ends_where_the_travel_does(void **state)
 	}
 }
 
-/* -- Faults ------------------------------------------------------------------------- */
+/* -- Faults --------------------------------------------------------------- */
 
 static void test_no_contact_by_its_end_is_a_fault(void **state)
 {
@@ -370,7 +370,7 @@ static void test_soft_limits_are_of_the_axes_not_of_the_program(void **state)
 	rig_free(&w.r);
 }
 
-/* -- Interruptions --------------------------------------------------------------------- */
+/* -- Interruptions -------------------------------------------------------- */
 
 static void hold_after(int cycles, uint64_t *s)
 {
@@ -495,7 +495,7 @@ static void test_a_dry_run_probes_nothing_and_goes_nowhere(void **state)
 	rig_free(&w.r);
 }
 
-/* -- Programs that lie ------------------------------------------------------------------- */
+/* -- Programs that lie ---------------------------------------------------- */
 
 static void test_an_arc_cannot_end_at_contact(void **state)
 {

@@ -69,7 +69,7 @@ static int lay_piece(struct track_work *w, uint32_t i)
 	return 0;
 }
 
-/* -- Corners ------------------------------------------------------------------- */
+/* -- Corners -------------------------------------------------------------- */
 
 struct corner {
 	uint32_t a;			/* the element in front of it */
@@ -202,7 +202,7 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 	return meet_outside(w, &k, a, b) ? 0 : lay_round(w, &k, b);
 }
 
-/* -- Leads ------------------------------------------------------------------------ */
+/* -- Leads ---------------------------------------------------------------- */
 
 /* From @from to @at, which it reaches the way @way goes. */
 static struct curve tangent_arc(struct vec from, struct vec at, struct vec way)
@@ -275,7 +275,7 @@ int track_lay(struct track_work *w)
 	return err;
 }
 
-/* -- The way as curves -------------------------------------------------------------- */
+/* -- The way as curves ---------------------------------------------------- */
 
 void track_free(struct track *t)
 {

@@ -93,7 +93,7 @@ int track_make(struct track *t, const struct track_job *j,
 
 void track_free(struct track *t);
 
-/* -- Between the files of the track ------------------------------------------ */
+/* -- Between the files of the track --------------------------------------- */
 
 struct track_work {
 	const struct track_job *job;

@@ -23,7 +23,7 @@ struct walker {
 	uint32_t farthest;		/* element where it was stuck */
 };
 
-/* -- Faults -------------------------------------------------------------------- */
+/* -- Faults --------------------------------------------------------------- */
 
 static void tell(struct walker *k, enum track_fault_kind kind,
 		 const struct face_piece *p, const struct face_piece *q)
@@ -53,7 +53,7 @@ static void tell_stuck(struct walker *k)
 	k->fault->wanted_mm = q->wire_mm;
 }
 
-/* -- Is something lost? ---------------------------------------------------------- */
+/* -- Is something lost? --------------------------------------------------- */
 
 /* The walls: behind a corner that the wire goes round is the first of them. */
 static int check_jump(struct walker *k, struct track_jump *j)
@@ -85,7 +85,7 @@ static int check_jumps(struct walker *k)
 	return err;
 }
 
-/* -- Along it ---------------------------------------------------------------------- */
+/* -- Along it ------------------------------------------------------------- */
 
 static double slack_of(const struct track_work *w, uint32_t e)
 {
@@ -240,7 +240,7 @@ static int walk(struct walker *k)
 	return err;
 }
 
-/* -- A contour begun in an inner corner ---------------------------------------------- */
+/* -- A contour begun in an inner corner ----------------------------------- */
 
 /* The lead, from its far end to @at. */
 static struct curve lead_to(const struct track_work *w, int i, struct vec at)

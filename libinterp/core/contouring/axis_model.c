@@ -240,7 +240,7 @@ double interp_axis_model_follow(struct interp_axis_model *m, double target_mm,
 	return u;
 }
 
-/* -- In z --------------------------------------------------------------------- */
+/* -- In z ----------------------------------------------------------------- */
 
 /* One step of x = phi x. */
 static void advance(const struct interp_axis_model *m, double x[N])

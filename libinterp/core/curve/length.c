@@ -99,7 +99,7 @@ double interp_nurbs_length(struct interp_nurbs_eval *e, double from, double to,
 	}
 }
 
-/* -- Tables ------------------------------------------------------------------ */
+/* -- Tables --------------------------------------------------------------- */
 
 /* A slope a monotone cubic may have at an end, for a chord of @secant. */
 static double bounded(double slope, double secant)

@@ -21,7 +21,7 @@
 #define WEIGHTS_PART	1e4		/* largest over smallest */
 #define KNOTS_NEAR	1e-9		/* of the way from the first to the last */
 
-/* -- Check ------------------------------------------------------------------- */
+/* -- Check ---------------------------------------------------------------- */
 
 static const char *const flaw_text[INTERP_NURBS_NFLAWS] = {
 	[INTERP_NURBS_SOUND]		= "a sound curve",
@@ -155,7 +155,7 @@ enum interp_nurbs_flaw interp_nurbs_check(const struct interp_nurbs *c,
 	return f == INTERP_NURBS_SOUND ? check_knots(c, ret_at) : f;
 }
 
-/* -- Spans ------------------------------------------------------------------- */
+/* -- Spans ---------------------------------------------------------------- */
 
 uint32_t interp_nurbs_span(const struct interp_nurbs *c, double u)
 {
@@ -265,7 +265,7 @@ uint32_t nurbs_basis(const struct interp_nurbs *c, double u,
 	return span - p;
 }
 
-/* -- Points ------------------------------------------------------------------ */
+/* -- Points --------------------------------------------------------------- */
 
 /* Basis functions of degree p - k for every k asked for. */
 struct basis {

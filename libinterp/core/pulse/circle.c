@@ -133,7 +133,7 @@ static void tail_forward(struct interp_circle *k, int8_t ret[2])
 	ret[1] = ret[0] ? 0 : toward(k->y, k->ye);
 }
 
-/* -- Along stored runs ------------------------------------------------------ */
+/* -- Along stored runs ---------------------------------------------------- */
 
 static void run_pulse(const struct interp_circle *k, uint32_t run,
 		      int8_t ret[2])
@@ -183,7 +183,7 @@ static void runs_back(struct interp_circle *k, int8_t ret[2])
 	}
 }
 
-/* -- By comparison ---------------------------------------------------------- */
+/* -- By comparison -------------------------------------------------------- */
 
 void circle_forward(struct interp_circle *k, int8_t ret[2])
 {

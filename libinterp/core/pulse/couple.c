@@ -210,7 +210,7 @@ bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
 	return false;
 }
 
-/* -- What mu a line admits -------------------------------------------------- */
+/* -- What mu a line admits ------------------------------------------------ */
 
 static bool couple_ok(const struct couple_rule *r,
 		      const struct couple_input *in, uint32_t n)

@@ -30,7 +30,7 @@
 
 #define DDA_SHIFT_MAX	28
 
-/* -- Lines ------------------------------------------------------------------ */
+/* -- Lines ---------------------------------------------------------------- */
 
 int64_t pulse_dda_ticks(int64_t longest)
 {
@@ -53,7 +53,7 @@ const struct interp_walk pulse_dda_line = {
 	.back = pulse_dda_back,
 };
 
-/* -- Arcs ------------------------------------------------------------------- */
+/* -- Arcs ----------------------------------------------------------------- */
 
 /* Add @v, at most the modulus either way; the pulse it makes. */
 static int64_t rotor_add(int64_t *rest, int64_t v, uint32_t shift)

@@ -171,7 +171,7 @@ void pair_set_bursts(struct interp_pair *p, int64_t n,
 	p->done = burst_at(p, burst_before(p, p->burst));
 }
 
-/* -- Stored bits ------------------------------------------------------------ */
+/* -- Stored bits ---------------------------------------------------------- */
 
 void pair_set_bits(struct interp_pair *p, const uint64_t *bits)
 {

@@ -231,7 +231,7 @@ const struct interp_walk pulse_tree = {
 	.back = tree_back,
 };
 
-/* -- Helices ---------------------------------------------------------------- */
+/* -- Helices -------------------------------------------------------------- */
 
 static bool helix_enter(struct interp_cursor *c, bool at_end)
 {

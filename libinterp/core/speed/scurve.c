@@ -116,7 +116,7 @@ double interp_scurve_way_mm(const struct interp_scurve_limits *l,
 	return place_at(l, s, to_mm_s);
 }
 
-/* -- A plan, phase by phase --------------------------------------------------- */
+/* -- A plan, phase by phase ----------------------------------------------- */
 
 static void begin(struct interp_scurve *c, double v, double a)
 {
@@ -199,7 +199,7 @@ double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s)
 	return 0;
 }
 
-/* -- To a place --------------------------------------------------------------- */
+/* -- To a place ----------------------------------------------------------- */
 
 struct leave {
 	const struct interp_scurve_limits *l;
