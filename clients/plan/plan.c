@@ -151,8 +151,9 @@ void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries)
 		struct block b;
 
 		block_init(&b, &j->motion, w->q[i], w->q[i + 1]);
+		w->strays_mm[i] = motion_strays_mm(&b, lattice);
 		w->proved_mm[i] = prove_least(&j->bodies, &b, &p) -
-				  motion_strays_mm(&b, lattice) - j->chord_mm;
+				  w->strays_mm[i] - j->chord_mm;
 		w->t[i] = p.t;
 		w->pair[i] = p.pair;
 		*queries += p.queries;
@@ -388,7 +389,7 @@ static int write_all(struct plan *p)
 	if (r == 0 && p->j->o->times)
 		r = times_ask(p);
 	if (r == 0)
-		r = text_put(p->j->o->output, text);
+		r = put_text(p->j->o->output, text);
 	free(text);
 	if (r == 0)
 		r = report_put(p);
