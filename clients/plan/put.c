@@ -84,7 +84,7 @@ int put_text(const char *path, const char *text)
 			      EX_IOERR : EX_CANTCREAT);
 }
 
-/* -- Before anything is planned ---------------------------------------------- */
+/* -- Before anything is planned ------------------------------------------- */
 
 static bool same_file(const char *a, const char *b)
 {

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* As many decimals as a pulse of any machine has, and no zeros behind.  The point
- * stays: C120 calls a condition, and to some readers X10 is ten pulses. */
+/* As many decimals as a pulse of any machine has, and no zeros behind.  The
+ * point stays: C120 calls a condition, and to some readers X10 is ten pulses. */
 static void put_number(FILE *f, char axis, double v)
 {
 	char s[40];
@@ -47,7 +47,7 @@ static void put_way_in(FILE *f, const struct plan *p, const struct plan_way *w)
 	for (uint32_t i = 1; i < w->n; i++) {
 		put_block(f, p, "G1", w->q[i - 1], w->q[i]);
 		if (i == 1 && feed > 0)
-			fprintf(f, " F%.6g", feed);
+			put_number(f, 'F', feed);
 		fprintf(f, "\t(keeps %.3f mm)\n", w->proved_mm[i - 1]);
 	}
 }
