@@ -51,10 +51,11 @@ static int put_beside(const char *path, const char *text)
 
 	if (asprintf(&fresh, "%s.new", place) < 0)
 		err = ENOMEM;
-	if (err == 0)
+	if (err == 0) {
+		unlink(fresh);		/* of a run that was killed */
 		f = fopen(fresh, "wx");
-	if (err == 0 && !f)
-		err = errno;
+		err = f ? 0 : errno;
+	}
 	if (f) {
 		err = put_stream(f, text);
 		if (err == 0 && rename(fresh, place))
