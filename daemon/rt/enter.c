@@ -63,6 +63,9 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		servo_reset(c);
 		c->free_seen = false;
 		break;
+	case STATE_APPROACH:
+		c->job.rejoin_mm = 0;
+		break;
 	case STATE_PROBE:
 		probe_begin(c);
 		break;
@@ -119,6 +122,7 @@ static void retreat(struct cycle *c)
 {
 	const double back = c->gap.wire_retreat_mm;
 
+	c->job.rejoin_mm = place_mm(c) - back;
 	switch (c->gap.wire_retreat_to) {
 	case RETREAT_HOLE:
 		hole_begin(c);
