@@ -96,7 +96,8 @@ static uint32_t check_way(const struct interp_program *p,
 	assert_int_equal(interp_cursor_init(&c, p), 0);
 	assert_int_equal(interp_cursor_seek_end(&c, i - 1), 0);
 	for (int k = 0; k < INTERP_NAXES; k++)
-		assert_int_equal(c.pos[k], lround(e->entry_mm[k] * 1000));
+		assert_int_equal(c.pos[k], (int32_t)floor(e->entry_mm[k] * 1000 +
+						0.5 + 1e-9));
 	return i - 1;
 }
 

@@ -77,6 +77,15 @@ static int check(const struct from *f)
 	return 0;
 }
 
+void interp_build_set(struct interp_build *b, uint32_t cond, uint32_t field,
+		      double value)
+{
+	struct interp_cond *c = b->conds.at;
+
+	if (cond < b->conds.n && field < INTERP_NTECH)
+		c[cond].tech.v[field] = value;
+}
+
 /* -- The way in --------------------------------------------------------------- */
 
 static void entry_of(const struct from *f, double to[INTERP_NAXES])

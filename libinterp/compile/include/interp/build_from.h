@@ -32,6 +32,11 @@ struct interp_build_from {
 					 * -1: none, the way is straight */
 };
 
+/** interp_build_set() - condition @cond of the program has @value in @field
+ *  (enum interp_tech_id); those that it has not are left alone. */
+void interp_build_set(struct interp_build *b, uint32_t cond, uint32_t field,
+		      double value);
+
 /* What became of it. */
 struct interp_build_entry {
 	uint32_t line;			/* of the place */
