@@ -48,7 +48,7 @@ static void contact(struct checking *k, uint32_t i, const struct block *b,
 	r->pair = p->pair;
 	block_at(b, p->t, r->q);
 	block_pose(b, p->t, &pose, NULL);
-	r->wanted_mm = clearance_at(c, &pose, 0);
+	r->wanted_mm = clearance_at(c, &pose);
 }
 
 static void see(struct checking *k, uint32_t i, double mm)

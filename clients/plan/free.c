@@ -59,7 +59,7 @@ void free_round(const struct machine_config *c, double q[INTERP_NAXES])
 /* How much less than outside of the end zone is wanted at @pose. */
 static double falls_mm(const struct free_way *w, const struct pose *pose)
 {
-	return w->c->mm - clearance_at(w->c, pose, 0);
+	return w->c->mm - clearance_at(w->c, pose);
 }
 
 /* The poses of block @i that are looked at: up to its end, but for an end pose

@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Triangles. */
+#define MANY		32
+
 struct build {
 	struct tree *t;
 	double (*centre)[3];		/* of each triangle, in the tree's order */
@@ -96,17 +99,20 @@ static void principal(double m[3][3], struct rot *ret)
 	v_cross(axis[0], axis[1], axis[2]);
 }
 
+/* Of few triangles all corners count; of many the middle of each will do. */
 static void spread(const struct build *b, uint32_t from, uint32_t n,
 		   double mean[3], double m[3][3])
 {
 	double sum[3] = { 0 }, sq[6] = { 0 };
 	const double *o = b->centre[from];
+	const int corners = n > MANY ? 1 : 3;
 
 	for (uint32_t i = from; i < from + n; i++) {
-		for (int k = 0; k < 3; k++) {
+		for (int k = 0; k < corners; k++) {
 			double d[3];
 
-			v_sub(b->t->tri[i].at[k], o, d);
+			v_sub(corners == 1 ? b->centre[i] :
+					     b->t->tri[i].at[k], o, d);
 			v_add(sum, d, sum);
 			sq[0] += d[0] * d[0];
 			sq[1] += d[1] * d[1];
@@ -117,21 +123,30 @@ static void spread(const struct build *b, uint32_t from, uint32_t n,
 		}
 	}
 	for (int k = 0; k < 3; k++)
-		sum[k] /= 3.0 * n;
+		sum[k] /= corners * (double)n;
 	v_add(o, sum, mean);
 	for (int k = 0; k < 3; k++)
-		m[k][k] = sq[k] / (3.0 * n) - sum[k] * sum[k];
-	m[0][1] = m[1][0] = sq[3] / (3.0 * n) - sum[0] * sum[1];
-	m[0][2] = m[2][0] = sq[4] / (3.0 * n) - sum[0] * sum[2];
-	m[1][2] = m[2][1] = sq[5] / (3.0 * n) - sum[1] * sum[2];
+		m[k][k] = sq[k] / (corners * (double)n) - sum[k] * sum[k];
+	m[0][1] = m[1][0] = sq[3] / (corners * (double)n) - sum[0] * sum[1];
+	m[0][2] = m[2][0] = sq[4] / (corners * (double)n) - sum[0] * sum[2];
+	m[1][2] = m[2][1] = sq[5] / (corners * (double)n) - sum[1] * sum[2];
 }
 
-/* The box along @axis that holds them, a little more for rounding. */
+/* The axes as the box has them: in single precision. */
+static void take_axes(const struct rot *axis, struct box *b)
+{
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 3; i++)
+			b->axis[k][i] = (float)axis->m[i][k];
+}
+
+/* The box along its axes that holds them, a little more for rounding: the axes
+ * are of length 1 and square to each other to 2^-22. */
 static void enclose(const struct tree *t, uint32_t from, uint32_t n,
 		    struct box *b)
 {
 	const double *o = t->tri[from].at[0];
-	double lo[3] = { 0 }, hi[3] = { 0 }, mid[3], size = 0;
+	double lo[3] = { 0 }, hi[3] = { 0 }, mid[3] = { 0 }, size = 0;
 
 	for (uint32_t i = from; i < from + n; i++) {
 		for (int k = 0; k < 3; k++) {
@@ -139,7 +154,9 @@ static void enclose(const struct tree *t, uint32_t from, uint32_t n,
 
 			v_sub(t->tri[i].at[k], o, d);
 			for (int j = 0; j < 3; j++) {
-				const double at = v_dot(b->axis.m[j], d);
+				const double at = (double)b->axis[0][j] * d[0] +
+					(double)b->axis[1][j] * d[1] +
+					(double)b->axis[2][j] * d[2];
 
 				lo[j] = at < lo[j] ? at : lo[j];
 				hi[j] = at > hi[j] ? at : hi[j];
@@ -147,14 +164,18 @@ static void enclose(const struct tree *t, uint32_t from, uint32_t n,
 		}
 	}
 	for (int j = 0; j < 3; j++) {
-		mid[j] = (lo[j] + hi[j]) / 2;
-		b->half[j] = (hi[j] - lo[j]) / 2;
-		size += fabs(o[j]) + b->half[j];
+		size += 0x1p-20 * (hi[j] - lo[j]) +
+			16 * DBL_EPSILON * fabs(o[j]);
+		for (int k = 0; k < 3; k++)
+			mid[k] += (double)b->axis[k][j] * (lo[j] + hi[j]) / 2;
 	}
-	rot_back(&b->axis, mid, b->centre);
-	v_add(b->centre, o, b->centre);
-	for (int j = 0; j < 3; j++)
-		b->half[j] += 8 * DBL_EPSILON * size;
+	v_add(mid, o, b->centre);
+	b->half[3] = 0;
+	for (int j = 0; j < 3; j++) {
+		b->half[j] = (float)(((hi[j] - lo[j]) / 2 + size) *
+				     (1 + 0x1p-22));
+		b->half[3] += b->half[j];
+	}
 }
 
 /* -- Cutting -------------------------------------------------------------- */
@@ -187,20 +208,24 @@ static uint32_t cut(struct build *b, uint32_t from, uint32_t n,
 
 static void split(struct build *b, uint32_t node, uint32_t from, uint32_t n)
 {
-	struct tree_node *x = &b->t->node[node];
+	struct box *x = &b->t->node[node];
 	double mean[3], m[3][3];
+	struct rot axis;
 	uint32_t below;
+	int along;
 
 	spread(b, from, n, mean, m);
-	principal(m, &x->box.axis);
-	enclose(b->t, from, n, &x->box);
+	principal(m, &axis);
+	*x = (struct box) { 0 };
+	take_axes(&axis, x);
+	enclose(b->t, from, n, x);
 	if (n <= TREE_LEAF) {
 		x->first = from;
 		x->n = n;
 		return;
 	}
-	below = cut(b, from, n, x->box.axis.m[longest(&x->box)],
-		    v_dot(x->box.axis.m[longest(&x->box)], mean));
+	along = longest(x);
+	below = cut(b, from, n, axis.m[along], v_dot(axis.m[along], mean));
 	x->first = b->t->nnodes;
 	x->n = 0;
 	b->t->nnodes += 2;

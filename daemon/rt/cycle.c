@@ -69,7 +69,7 @@ static enum cycle_event look_arrive(const struct cycle *c)
 static enum cycle_event look_out(const struct cycle *c)
 {
 	if (guard_met(c) && contouring_rests(&c->contouring) &&
-	    ground_is_cut(c))
+	    (walk_rejoins(c) || ground_is_cut(c)))
 		return EVENT_SHORT;
 	return look_arrive(c);
 }

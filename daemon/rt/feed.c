@@ -7,6 +7,7 @@
 #include "path/hole.h"
 #include "path/laws.h"
 #include "path/place.h"
+#include "path/walk.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -16,7 +17,8 @@
 static double travel(struct cycle *c)
 {
 	const struct ahead_move w = {
-		.toward = 1, .goal_mm = INFINITY, .positions = true,
+		.toward = 1, .positions = true,
+		.goal_mm = walk_rejoins(c) ? c->job.rejoin_mm : INFINITY,
 		.l = law_travel_limits(c, INFINITY),
 	};
 

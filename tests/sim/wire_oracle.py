@@ -66,7 +66,7 @@ def write_job(start, far, edges, side, offset, more="", feed=200):
 # -- What the wire can do -----------------------------------------------------
 
 SCALE = 2.0 ** 22       # places of Clipper are whole numbers
-ARC_MM = 0.00002        # its round corners are this near
+ARC_MM = 0.0001        # its round corners are this near
 
 
 def ways_of(poly, offset, inside):
@@ -144,9 +144,9 @@ def left_out(poly, way, offset, inside):
     return ret
 
 
-def judge(poly, offset, inside, at, hidden, open_corner):
-    """Can it be cut?  A place that the wire does not come to must lie no
-    farther from it than the point of an inner corner does (docs/taper.md)."""
+def can_be_cut(poly, offset, inside, at, hidden=2 * UM, open_corner=2.1):
+    """A place that the wire does not come to must lie no farther from it than
+    the point of an inner corner does (docs/taper.md)."""
     way = way_of(poly, offset, inside, at)
     if way is None:
         return False
@@ -158,16 +158,21 @@ def judge(poly, offset, inside, at, hidden, open_corner):
     return True
 
 
+def is_close(poly, offset, inside, at):
+    """Is the answer another one for a wire that is nearer by the bound of
+    docs/taper.md, or farther by a micrometre?"""
+    said = can_be_cut(poly, offset, inside, at)
+    if can_be_cut(poly, max(offset - NEARER, UM), inside, at, 6 * UM,
+                  2.15) != said:
+        return True
+    return said and not can_be_cut(poly, offset + UM, inside, at, UM, 2.05)
+
+
 def verdict(poly, offset, inside, at):
-    """What is to be said of it: "cut", "refuse", or "close" to call: then it
-    can be cut by a wire that is nearer by the bound of docs/taper.md, but not
-    by one that is farther by a micrometre, or the other way round."""
-    said = judge(poly, offset, inside, at, 2 * UM, 2.1)
-    if judge(poly, max(offset - NEARER, UM), inside, at, 6 * UM, 2.15) != said:
+    """What is to be said of it: "cut", "refuse" or "close" to call."""
+    if is_close(poly, offset, inside, at):
         return "close"
-    if said and not judge(poly, offset + UM, inside, at, UM, 2.05):
-        return "close"
-    return "cut" if said else "refuse"
+    return "cut" if can_be_cut(poly, offset, inside, at) else "refuse"
 
 
 def left_by(poly, offset, inside, at, path):
@@ -175,7 +180,7 @@ def left_by(poly, offset, inside, at, path):
     wire can come to."""
     way = way_of(poly, offset, inside, at)
     pts = shapely.points(np.asarray(
-        shapely.segmentize(poly.exterior, 0.05).coords))
+        shapely.segmentize(poly.exterior, 0.1).coords))
     reached = shapely.distance(pts, way) <= offset + TOUCHED
     return shapely.distance(pts[reached], path).max() - offset
 

@@ -125,6 +125,30 @@ def test_a_daemon_that_dies_is_told_and_found_again(p, me):
         rig.until(lambda: live.ask("queue")["code"] == 0, 20)
 
 
+def test_a_queue_longer_than_an_answer_is_told_page_by_page(tmp_path):
+    p = panel.Panel(tmp_path)
+    p.start()
+    try:
+        c = p.machine.client
+        for job in ("a", "b"):
+            assert c.submit(rig.QUICK_JOB, job, hold=True).code == 0
+        c.status_where(lambda s: s.job == "a" and s.job_state == "ready")
+        rig.fill_queue(p.machine, "b", 420)
+        wanted = ["a", "b"] + [f"job-{i:03}" for i in range(420)]
+        with p.session().live() as live:
+            rig.until(lambda: live.ask("queue")["code"] == 0, 20)
+            got, pages, page = [], 0, live.ask("queue")["body"]
+            while page:
+                got += [j["job"] for j in page]
+                pages += 1
+                page = live.ask("queue", job=got[-1])["body"]
+        assert got == wanted and pages > 1
+    finally:
+        with rig.store_of(p.machine) as db:
+            db.execute("DELETE FROM job WHERE id LIKE 'job-%'")
+        p.close()
+
+
 def test_pages_and_programs_of_the_host_are_told(p, me):
     with me.live() as live:
         live.where(lambda s: s.get("jobs"))

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A piece of a line. */
+/* A part of a line. */
 struct piece {
 	const char *at;
 	size_t n;
@@ -45,7 +45,8 @@ static int refuse(struct reading *f, const char *at, const char *wanted,
 	return -EINVAL;
 }
 
-/* -- Pieces --------------------------------------------------------------- */
+/* -- Parts of a line
+ * -------------------------------------------------------- */
 
 static struct piece trim(struct piece p)
 {
@@ -61,8 +62,8 @@ static bool is(struct piece p, const char *word)
 	return strlen(word) == p.n && memcmp(p.at, word, p.n) == 0;
 }
 
-/* What stands before the first @c, which is taken off with it; all of it if
- * there is none. */
+/* Take off what stands before the first @c, and @c itself; everything if there
+ * is no @c. */
 static struct piece cut(struct piece *p, char c)
 {
 	const char *at = memchr(p->at, c, p->n);
@@ -73,7 +74,7 @@ static struct piece cut(struct piece *p, char c)
 	return trim(head);
 }
 
-/* The next word, up to a blank; n is 0 behind the last. */
+/* The next word, up to a blank.  After the last word, n is 0. */
 static struct piece next_word(struct piece *p)
 {
 	*p = trim(*p);
@@ -152,7 +153,7 @@ static const struct {
 	{ "none", NC_BAD },
 };
 
-/* X Y ...: the slot that bears the letter's own name. */
+/* X Y ...: the slot with the letter's own name. */
 static int slot_of(char letter)
 {
 	for (int i = 0; i < NC_NSLOTS; i++) {
@@ -196,7 +197,7 @@ static int keep_text(struct reading *f, struct piece text, uint16_t *ret)
 
 	if (text.n == 0)
 		return 0;
-	/* It is printed as it stands, and a NUL would end it. */
+	/* The text is printed as it is, and a NUL would end it. */
 	for (size_t i = 0; i < text.n; i++)
 		if (iscntrl((unsigned char)text.at[i]) && text.at[i] != '\t')
 			return refuse(f, text.at + i, "letters in a reason",
@@ -281,7 +282,7 @@ const char *interp_dialect_meaning(int i)
 	       meanings[i].name : NULL;
 }
 
-/* Letters behind `ignore`: the slots they fill. */
+/* The letters behind `ignore`: the slots that they fill. */
 static int read_drops(struct reading *f, struct piece letters, uint32_t *ret)
 {
 	struct piece w;
@@ -330,7 +331,7 @@ static int read_meaning(struct reading *f, struct piece value,
 	return err ? err : keep_text(f, text, &ret->text);
 }
 
-/* G59.1, M*: where its meaning is kept. */
+/* G59.1, M*: the place where its meaning is stored. */
 static struct nc_code *place_of(struct reading *f, struct piece w)
 {
 	struct nc_dialect *d = f->d->nc;

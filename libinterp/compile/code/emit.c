@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * emit.c - what the writers of programs share
- */
+/* emit.c - what the writers of programs have in common */
 #include "code/emitter.h"
 
 #include <errno.h>

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * macro_flow.c - IF GOTO WHILE DO END and G65, as Fanuc has them
- */
+/* macro_flow.c - IF GOTO WHILE DO END and G65, in Fanuc's form */
 #include "code/macro.h"
 #include "code/number.h"
 
@@ -23,7 +21,7 @@ int macro_round(struct macro_line *l, const uint8_t *at)
 			    "for %u rounds", most);
 }
 
-/* A line looked at counts as one carried out. */
+/* A line that is looked at counts as a line carried out. */
 static int count(struct macro_line *l, const uint8_t *at)
 {
 	if (l->r->executed++ < l->r->executed_max)
@@ -33,7 +31,7 @@ static int count(struct macro_line *l, const uint8_t *at)
 			    l->r->executed_max);
 }
 
-/* A line of the program at hand, when it is looked through. */
+/* A line of the present program, while it is searched. */
 struct place {
 	const uint8_t *at;
 	uint32_t line;
@@ -72,7 +70,7 @@ static bool is_end(const uint8_t *p, const uint8_t *end, uint32_t n)
 	return nc_digits(l.p, end, &found) > l.p && found == n;
 }
 
-/* From @from up to @stop, or where the next program begins. */
+/* Search from @from up to @stop, or up to the beginning of the next program. */
 static int search(struct macro_line *l, struct place from, const uint8_t *stop,
 		  match_fn *match, uint32_t n, struct place *ret)
 {
@@ -103,7 +101,7 @@ static void go(struct nc_reader *r, struct place to)
 	r->line = to.line - 1;
 }
 
-/* Forward to the end of the program, then from its begin. */
+/* Search forward to the end of the program, and then from its beginning. */
 static int go_to(struct macro_line *l, const uint8_t *at)
 {
 	struct nc_reader *r = l->r;
@@ -154,7 +152,7 @@ static int take_if(struct macro_line *l, const uint8_t *at)
 
 /* -- Loops ---------------------------------------------------------------- */
 
-/* The number of DO and END. */
+/* The number behind DO or END. */
 static int take_number(struct macro_line *l, uint32_t *ret)
 {
 	uint64_t n = 0;
@@ -240,7 +238,7 @@ static int take_end(struct macro_line *l, const uint8_t *at)
 
 /* -- Calls ---------------------------------------------------------------- */
 
-/* The variables of A ... Z behind G65; 0: not an argument. */
+/* The variables of A ... Z behind G65; 0: the letter is not an argument. */
 static const uint8_t argument[26] = {
 	1, 2, 3, 7, 8, 9, 0, 11, 4, 5, 6, 0, 13, 0, 0, 0, 17, 18, 19, 20, 21,
 	22, 23, 24, 25, 26
@@ -249,11 +247,11 @@ static const uint8_t argument[26] = {
 struct call {
 	double local[MACRO_LOCALS];
 	double number;
-	uint32_t triples;		/* of I J K */
+	uint32_t triples;		/* how many groups of I J K began */
 	uint8_t last;			/* the last of I J K */
 };
 
-/* A second I, J or K that does not come behind its predecessor begins the next
+/* A second I, J or K that is not in the order I J K begins the next group of
  * three: #7 #8 #9, ... */
 static uint32_t variable_of(struct call *c, uint8_t letter)
 {

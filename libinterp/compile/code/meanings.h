@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * meanings.h - what a G, M or T word can mean: the names that a dialect's file
- * gives to its words
+ * meanings.h - what a G, M or T word can mean: the names by which the file of a
+ * dialect gives a meaning to its words
  *
- * A row is the name, the group whose function carries it out, a value for that
- * function, and the slots that the word uses on its line.  Letters that a
- * dialect has not are never on a line, so one row does for all dialects.
+ * A row has the name, the group whose function carries it out, a value for that
+ * function, and the slots that the word uses on its line.  A letter that a
+ * dialect does not have is never on a line, so one row serves all dialects.
  */
 #ifndef CODE_MEANINGS_H
 #define CODE_MEANINGS_H

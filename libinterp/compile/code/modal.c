@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * modal.c - carry a block out, group by group
- */
+/* modal.c - carries out a block, group by group */
 #include "code/reader.h"
 
 void nc_set_units(struct nc_reader *r, bool inches)
@@ -24,7 +22,7 @@ void nc_set_offset(struct nc_reader *r)
 	}
 }
 
-/* The first % begins the text, the second ends it. */
+/* The first % begins the text, and the second ends it. */
 static int run_tape(struct nc_reader *r)
 {
 	if (r->block.words || r->block.groups != NC_BIT(NC_TAPE))
@@ -83,7 +81,7 @@ static int run_condition(struct nc_reader *r)
 				 r->block.code_at[NC_CONDITION]);
 }
 
-/* Feed per minute is the only mode there is. */
+/* Feed per minute is the only feed mode. */
 static int run_nothing(struct nc_reader *r)
 {
 	(void)r;
@@ -112,7 +110,7 @@ static int run_pump(struct nc_reader *r)
 			 r->block.code_at[NC_PUMP]);
 }
 
-/* G53 itself is obeyed by nc_target(); this is who may use it. */
+/* nc_target() obeys G53.  This function checks who may use it. */
 static int run_machine(struct nc_reader *r)
 {
 	const struct nc_code *motion = nc_has_group(r, NC_MOTION) ?
@@ -169,7 +167,7 @@ static int run_groups(struct nc_reader *r, uint32_t groups)
 	return 0;
 }
 
-/* Words of no use on this line: a mistake, so the line is refused. */
+/* Words that have no use on this line are a mistake, so the line is refused. */
 static int refuse_leftover(struct nc_reader *r, uint32_t left)
 {
 	const int slot = __builtin_ctz(left);
@@ -196,7 +194,8 @@ static int refuse_absent(struct nc_reader *r, uint32_t absent)
 			 nc_words[slot].letter);
 }
 
-/* A line with places but no motion word goes by the motion in force. */
+/* A line with places but without a motion word uses the motion mode in
+ * force. */
 static int add_motion(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
@@ -214,7 +213,7 @@ static int add_motion(struct nc_reader *r)
 	return 0;
 }
 
-/* Cycles and probing motions. */
+/* Cycles and probing motions must be alone. */
 static int check_alone(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
@@ -234,7 +233,7 @@ static int check_alone(struct nc_reader *r)
 static int complete(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
-	/* The knots of a body are P and Q is of its rotation. */
+	/* For a body, P is a knot and Q belongs to the rotation. */
 	const uint32_t moves = r->curve.open == NC_BODY ?
 			       NC_MOVES | NC_BIT(NC_P) | NC_BIT(NC_Q) :
 			       NC_MOVES;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * nurbs.c - curves of control points and knots; G6.2 as Fanuc has it
+ * nurbs.c - curves of control points and knots; G6.2 in Fanuc's form
  *
- * A NURBS is put together block by block and built when it is whole: of G5.2
- * at G5.3, of G6.2 when it has as many knots as its control points and its
- * order ask for.  Until then no other word may stand on a line.
+ * A NURBS is put together block by block and built when it is complete: for
+ * G5.2 at G5.3; for G6.2 when it has as many knots as its control points and
+ * its order need.  Until then no other word may stand on a line.
  */
 #include "code/nurbs_words.h"
 #include "code/tip_turn.h"
@@ -28,7 +28,7 @@ void nc_curve_free(struct nc_curve *c)
 	free(c->marks);
 }
 
-/* Room for one more; the array may move. */
+/* Make room for one more; the array may move. */
 static bool grow(void **at, uint32_t n, uint32_t room, size_t bytes)
 {
 	void *more;
@@ -112,7 +112,7 @@ void nc_curve_target(const struct nc_reader *r, double ret_mm[INTERP_NAXES])
 			    b->value[i] * r->scale[i];
 }
 
-/* A curve moves along a line as soon as its control points do. */
+/* A curve moves along a line if its control points do. */
 static void set_feed(struct nc_reader *r)
 {
 	const struct nc_curve *c = &r->curve;
@@ -131,7 +131,8 @@ static void set_feed(struct nc_reader *r)
 	}
 }
 
-/* The line of a control point, where the curve is nearest to it. */
+/* The line of a control point is valid where the curve is nearest to the
+ * point. */
 void nc_curve_set_marks(struct nc_curve *c)
 {
 	for (uint32_t i = 0; i < c->npoints; i++) {
@@ -143,8 +144,8 @@ void nc_curve_set_marks(struct nc_curve *c)
 	}
 }
 
-/* Ends that are loose end elsewhere; what follows would begin in a place where
- * the machine does not stand. */
+/* A curve with loose ends ends at another place.  What follows would then begin
+ * where the machine does not stand. */
 int nc_curve_check_end(struct nc_reader *r, const double here[INTERP_NAXES])
 {
 	const double *last = r->curve.last_mm;

@@ -3,7 +3,7 @@
  * passes.c - G150 G151 G152: contours cut in several passes
  *
  * A contour is an ordinary subprogram under G41 or G42.  It is read once, onto
- * a tape, and cut from that as often as there are passes.
+ * a tape.  From the tape it is cut as many times as there are passes.
  */
 #include "code/passes.h"
 
@@ -18,7 +18,7 @@ static const uint8_t *my_word(const struct nc_reader *r)
 	return r->block.code_at[NC_ONE_SHOT];
 }
 
-/* The list must not grow while it is carried out. */
+/* The list must not grow while it is being carried out. */
 static int refuse_inside(struct nc_reader *r)
 {
 	if (!r->contour.recording)
@@ -84,7 +84,7 @@ static int refuse_contour(struct nc_reader *r, const struct nc_cavity *c)
 			    "G40", "a contour P%g that is not whole", c->number);
 }
 
-/* Behind it the line of the G152 is the one in hand again. */
+/* Afterwards the line of the G152 is the present line again. */
 static int record(struct nc_reader *r, const struct nc_cavity *c,
 		  struct contour_tape *t)
 {
@@ -135,7 +135,7 @@ static int record_all(struct nc_reader *r, struct contour_tape *tape)
 	return err;
 }
 
-/* L of a G152: in which order many contours are cut. */
+/* L of a G152: the order in which several contours are cut. */
 static int read_order(struct nc_reader *r)
 {
 	struct nc_passes *s = &r->passes;

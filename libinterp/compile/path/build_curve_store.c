@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build_curve_store.c - a NURBS among those of the program
+ * build_curve_store.c - stores a NURBS in the program
  *
- * Columns that stand still are left out.  Those that length counts come first:
- * the linear axes as elsewhere.  The others count a little, so that a stretch
- * where only those move has a length to be walked by.
+ * Columns that stand still are left out.  The axes that count for the length
+ * come first: the linear axes, as elsewhere.  The others count a little, so
+ * that a stretch where only they move has a length that can be walked.
  */
 #include "path/build_curve.h"
 #include "path/builder.h"
@@ -12,7 +12,7 @@
 #include <errno.h>
 #include <math.h>
 
-#define OTHERS	1e-3			/* what they weigh in length */
+#define OTHERS	1e-3			/* their weight in the length */
 
 struct store {
 	struct interp_build *b;
@@ -44,7 +44,7 @@ static uint32_t counted_axes(uint32_t moved)
 	return moved & xyz ? xyz : moved & uv ? uv : ~0u;
 }
 
-/* The columns that move, those that count first. */
+/* The columns that move; those that count come first. */
 static uint32_t order(struct store *p, uint32_t from[INTERP_NAXES])
 {
 	const struct interp_nurbs *n = &p->c->nurbs;

@@ -15,10 +15,10 @@
 struct reading {
 	struct tech_text text;
 	struct interp_tech_table *table;
-	uint32_t head_line;		/* 0: not yet */
+	uint32_t head_line;		/* 0: there was none yet */
 	int column[INTERP_NTECH];	/* field of each column of a row */
 	uint32_t ncolumns;
-	const char *value;		/* behind the = of the line in hand */
+	const char *value;		/* behind the = of the present line */
 };
 
 #define THE_KEYS	"electrode, workpiece, note, sequence Q1 or inline E"
@@ -71,7 +71,7 @@ static int add_step(struct reading *r, struct interp_tech_sequence *s,
 	return 0;
 }
 
-/* Whether the conditions are there is seen at the end. */
+/* Whether the conditions exist is checked at the end. */
 static int take_sequence(struct reading *r, const struct tech_cell *name)
 {
 	struct interp_tech_table *t = r->table;
@@ -175,7 +175,7 @@ static int take_key(struct reading *r, const char *equals)
 		value++;
 	rest = (struct tech_cell) { value, (size_t)(r->text.line_end - value) };
 	tech_word(&r->text, &at, &key);
-	/* The = may be right behind the key, or be a word of its own. */
+	/* The = may follow the key directly, or be a word of its own. */
 	if (key.at + key.n > equals)
 		key.n = (size_t)(equals - key.at);
 	while (at < equals && *at == ' ')
@@ -330,7 +330,7 @@ static int take_line(struct reading *r)
 {
 	const char *p = r->text.line_at;
 
-	/* A key has its = before any separator. */
+	/* A line with a key has its = before any separator. */
 	while (p < r->text.line_end && *p != '=' && *p != ',' && *p != ';')
 		p++;
 	if (p < r->text.line_end && *p == '=')
@@ -356,7 +356,7 @@ static int refuse_step(struct reading *r, const struct interp_tech_sequence *s,
 					    sizeof(name)));
 }
 
-/* From rough to fine, each leaves less than the one before. */
+/* From rough to fine, each condition leaves less than the previous one. */
 static int check_sequence(struct reading *r,
 			  const struct interp_tech_sequence *s)
 {

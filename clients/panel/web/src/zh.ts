@@ -84,7 +84,7 @@ export const zh: Record<Word, string> = {
 	"jobs.details": "{name} 的详情", "jobs.changes": "调用的条件和设定的值", "jobs.nochanges": "没有。",
 	"jobs.length": "路径", "jobs.preview": "预览", "jobs.editor": "程序文本",
 	"jobs.large": "此程序太长,编辑器放不下;它会原样检查和发送。", "jobs.checkfirst": "程序有错误。请先改正。",
-	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动",
+	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动", "jobs.more": "显示更多",
 	"jobs.resume": "继续任务", "jobs.resume.about": "任务被重新读取并就绪。按启动后先定位到工件之外,再沿已加工的路径进入。",
 	"jobs.resume.sure": "机床确实停在所显示的位置:{axes}",
 	"jobs.ahead": "{name}:提前", "jobs.behind": "{name}:推后",
