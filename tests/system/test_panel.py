@@ -571,6 +571,42 @@ def test_another_user_of_the_host_only_looks_on(p):
     assert done.stdout.strip() == "viewer", done.stderr
 
 
+NOBODY = """
+import os, socket, sys
+port, own = int(sys.argv[1]), int(sys.argv[2])
+os.setgroups([]), os.setgid(65534), os.setuid(65534)
+s = socket.socket()
+s.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+s.bind(("127.0.0.1", own))
+s.connect(("127.0.0.1", port))
+s.sendall(b"GET /api/session HTTP/1.1\\r\\nHost: 127.0.0.1:%d\\r\\n"
+          b"Connection: close\\r\\n\\r\\n" % port)
+while got := s.recv(4096):
+    sys.stdout.buffer.write(got)
+"""
+
+
+def test_another_user_on_the_port_of_an_operator_only_looks_on(p):
+    """Root has connections to elsewhere from that very port."""
+    if os.getuid() != 0:
+        pytest.skip("needs root, to be another user")
+    for _ in range(3):
+        held, own = [], panel.free_port()
+        for _ in range(12):
+            there, here = socket.create_server(("127.0.0.1", 0)), \
+                socket.socket()
+            here.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            here.bind(("127.0.0.1", own))
+            here.connect(there.getsockname())
+            held += [there, here]
+        done = subprocess.run(
+            ["/usr/bin/python3", "-c", NOBODY, str(p.port), str(own)],
+            capture_output=True, text=True, timeout=30)
+        assert '"role":"viewer"' in done.stdout, done.stdout + done.stderr
+        for s in held:
+            s.close()
+
+
 def test_many_at_once_are_told(p, me):
     def one(_):
         with p.session().live() as live:
