@@ -43,6 +43,7 @@ static void contact(struct checking *k, uint32_t i, const struct block *b,
 	struct pose pose;
 
 	r->ok = false;
+	r->given_up = p->given_up;
 	r->block = i;
 	r->t = p->t;
 	r->pair = p->pair;
@@ -223,6 +224,10 @@ static void say_contact(const struct job *j, const struct route *w,
 	if (r->inside) {
 		printf("%s: not free: %s at the start, at", j->o->program,
 		       r->say);
+	} else if (r->given_up) {
+		printf("%s:%u: not proved: given up, out of memory or after "
+		       "millions of steps; a shorter block, or coarser meshes, "
+		       "at", j->o->program, n->line);
 	} else if (r->pair.mm > 0) {
 		printf("%s:%u: not free: %.4f mm are left of %.4f, %.1f %% "
 		       "along the block, at", j->o->program, n->line,
@@ -233,7 +238,7 @@ static void say_contact(const struct job *j, const struct route *w,
 	}
 	say_axes(j, r->q, stdout);
 	putchar('\n');
-	if (!r->inside)
+	if (!r->inside && !r->given_up)
 		job_say_pair(j, &r->pair, stdout);
 }
 

@@ -98,23 +98,24 @@ bool prove_block(const struct bodies *bodies, const struct block *b,
 	struct asked asked = { c, b };
 	struct sweep s = { .bodies = bodies, .block = b, .keep = keep_from,
 			   .eps_mm = PROVE_EPS_MM, .arg = &asked };
-	const int r = sweep_block(&s);
+	const int kept = sweep_block(&s);
 
 	p->queries += s.poses;
-	if (r == 0) {
+	p->given_up = kept < 0;
+	if (kept == 0) {
 		p->t = s.t;
 		p->pair = s.pair;
 		p->least_mm = s.pair.mm;
 	}
-	return r > 0;
+	return kept > 0;
 }
 
 bool prove_refuted(const struct bodies *bodies, const struct block *b,
 		   const struct clearance *c, struct proof *p)
 {
-	/* The middle first: there a block is farthest from the path. */
-	static const int order[] = { 8, 4, 12, 16, 6, 10, 2, 14, 7, 9, 5, 11,
-				     3, 13, 1, 15 };
+	/* The middle first: there a block is farthest from the path.  More
+	 * poses cost more than the proof itself. */
+	static const int order[] = { 8, 4, 12 };
 
 	for (unsigned int i = 0; i < sizeof(order) / sizeof(order[0]); i++) {
 		const double t = order[i] / 16.0;
@@ -207,13 +208,13 @@ double prove_least(const struct bodies *bodies, const struct block *b,
 	struct least l = { .bodies = bodies, .b = b, .pair = p->pair, .p = p };
 	struct sweep s = { .bodies = bodies, .block = b, .keep = keep_least,
 			   .lower = lower, .eps_mm = LEAST_EPS_MM, .arg = &l };
-	int r;
+	int kept;
 
 	p->least_mm = DBL_MAX;
 	for (int i = 0; i <= 8; i++)
 		see(&l, i / 8.0);
 	descend(&l, p->t);
-	r = l.keep_mm > 0 ? sweep_block(&s) : 0;
+	kept = l.keep_mm > 0 ? sweep_block(&s) : 0;
 	p->queries += s.poses;
-	return r > 0 ? l.keep_mm : -1;
+	return kept > 0 ? l.keep_mm : -1;
 }

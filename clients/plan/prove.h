@@ -34,6 +34,8 @@ struct proof {
 	double least_mm;		/* the least distance that was seen */
 	double t;			/* where */
 	struct near_pair pair;		/* of it; begin with a zeroed one */
+	bool given_up;			/* memory or patience ended; nothing is
+					 * too near */
 	uint64_t queries;		/* poses looked at; added to */
 };
 

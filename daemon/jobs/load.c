@@ -235,8 +235,9 @@ void load_begin(struct jobs *j, int64_t now_us)
 		err = compiler_start(&q->compile, j->event, &request,
 				     on_compiled, j);
 	if (err == -EILSEQ) {
-		load_refuse(j, q->next, "its text in the store is not the one "
-			    "that was sent: the disk damaged it; send it again");
+		load_refuse(j, q->next,
+			    "its text in the store is not the one that was "
+			    "sent: the disk damaged it; send it again");
 	} else if (err == -ESTALE) {
 		free(q->next_text);
 		q->next_text = NULL;
