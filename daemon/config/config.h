@@ -66,7 +66,9 @@ struct config_plc {
 };
 
 /* [axis.*]: so many increments of a drive are so many pulses. */
-enum config_brake { BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE };
+enum config_brake {
+	BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE, BRAKE_LINE
+};
 
 struct config_drive {
 	double increments, pulses;

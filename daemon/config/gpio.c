@@ -309,6 +309,79 @@ static int check_speeds(struct check *q)
 	return 0;
 }
 
+/* -- Beside drives on a bus --------------------------------------------------- */
+
+static bool has_brake_line(const struct machine_config *c, int axis)
+{
+	return c->can402.node[axis] > 0 && c->drive[axis].brake == BRAKE_LINE;
+}
+
+static int check_brake_line(struct check *q, int axis)
+{
+	const int line = LINE_BRAKE + axis;
+	const bool wired = q->at[line].wired;
+	const char letter = INTERP_AXIS_LETTERS[axis];
+
+	if (wired == has_brake_line(q->c, axis))
+		return 0;
+	if (wired)
+		blame(q, key_of_line(line), 0);
+	else
+		blame(q, config_key(config_key_find(SECTION_AXIS, "brake")),
+		      axis);
+	return wired ?
+		interp_diag_say(q->diag, "gpio.brake_%c of an axis that does "
+				"not have [axis.%c] brake = line; this, and "
+				"can402.node_%c, or none", letter, letter,
+				letter) :
+		interp_diag_say(q->diag, "axis.%c.brake = line and gpio.brake_%c "
+				"is none; gpio.brake_%c = the number of a "
+				"line, or another brake", letter, letter,
+				letter);
+}
+
+/* What nobody would read or write must not look as if somebody did. */
+static int refuse_unused(struct check *q, const struct config_key *k)
+{
+	blame(q, k, 0);
+	return interp_diag_say(q->diag, "gpio.%s with backend can402; of [gpio] "
+			       "it has chip, brake_X ... brake_V and brake_ms",
+			       k->name);
+}
+
+static int check_unused(struct check *q)
+{
+	const int adc = config_key_find(SECTION_GPIO, "adc");
+	const int encoder = config_key_find(SECTION_GPIO, "encoder_X");
+
+	for (int i = 0; i < CONFIG_NLINES; i++)
+		if (q->at[i].wired && (i < LINE_BRAKE ||
+				       i >= LINE_BRAKE + INTERP_NAXES))
+			return refuse_unused(q, key_of_line(i));
+	if (strcmp(q->c->gpio.adc, "none") != 0)
+		return refuse_unused(q, config_key(adc));
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (strcmp(q->c->gpio.encoder[i], "none") != 0)
+			return refuse_unused(q, config_key(encoder + i));
+	return 0;
+}
+
+int config_check_brakes(const struct machine_config *c,
+			const struct config_lines *lines,
+			struct interp_diag *diag)
+{
+	struct check q = { .c = c, .lines = lines, .diag = diag };
+
+	for (int i = 0; i < CONFIG_NLINES; i++)
+		config_line_read(c->gpio.line[i], &q.at[i]);
+	if (check_unused(&q))
+		return -EINVAL;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (check_brake_line(&q, i) || check_shared(&q, LINE_BRAKE + i))
+			return -EINVAL;
+	return 0;
+}
+
 int config_check_gpio(const struct machine_config *c,
 		      const struct config_lines *lines,
 		      struct interp_diag *diag)

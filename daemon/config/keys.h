@@ -156,6 +156,11 @@ int config_check_gpio(const struct machine_config *c,
 		      const struct config_lines *lines,
 		      struct interp_diag *diag);
 
+/** config_check_brakes() - what [gpio] has beside drives on a bus. */
+int config_check_brakes(const struct machine_config *c,
+			const struct config_lines *lines,
+			struct interp_diag *diag);
+
 /** config_check_sim() - the same for [sim] alone, and for what it senses. */
 int config_check_sim(const struct machine_config *c,
 		     const struct config_lines *lines,

@@ -20,6 +20,7 @@
 #define AT_LIMIT	0x0800u
 #define NMT_OPERATIONAL	0x05
 #define ALARM_SYNCS	2		/* the answer of the first may be older */
+#define SURPLUS_MAX	2		/* answers that none was missing for */
 
 void drive_init(struct drive *d, const struct drive_config *c)
 {
@@ -121,6 +122,7 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 	d->state = state;
 	d->heard = true;
 	d->answered = true;
+	d->answers++;
 	d->warnings += (now & ~was & DRIVE_WARNS) != 0;
 	if (m->len > 6)
 		d->mode = m->data[6];
@@ -271,10 +273,29 @@ static void watch_alarm(struct drive *d)
 		trouble(d, DRIVE_EMERGENCY);
 }
 
+/*
+ * Answers that are late come together, and were missing before.  More than one
+ * to each SYNC, of which none was missing, are of two drives.  What is missing
+ * for good is forgotten as slowly as it was lost.
+ */
+static void watch_answers(struct drive *d)
+{
+	const int32_t owed = (int32_t)d->c.answer_cycles;
+
+	d->surplus += (int32_t)d->answers - 1;
+	if (d->surplus < -owed ||
+	    (d->answers == 1 && d->surplus < -SURPLUS_MAX))
+		d->surplus++;
+	if (d->surplus > SURPLUS_MAX)
+		trouble(d, DRIVE_TWICE);
+	d->answers = 0;
+}
+
 void drive_sync(struct drive *d)
 {
 	if (d->phase != DRIVE_RUNNING)
 		return;
+	watch_answers(d);
 	if (++d->silent > d->c.beat_cycles)
 		trouble(d, DRIVE_MUTE);
 	watch_alarm(d);
@@ -389,6 +410,7 @@ void drive_reset(struct drive *d)
 	d->alarmed = 0;
 	d->enabled_for = 0;
 	d->missing = 0;
+	d->surplus = 0;
 	d->silent = 0;
 	d->resetting = anew || d->state == DRIVE_FAULT ||
 		       d->state == DRIVE_FAULT_REACTION ? RESET_CYCLES : 0;

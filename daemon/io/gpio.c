@@ -98,6 +98,7 @@ void gpio_read(void *self, struct io_inputs *in)
 		.limit = axes_on(g, LINE_LIMIT),
 		.home = axes_on(g, LINE_HOME),
 		.lost = g->lost,
+		.steers = !g->lost,
 		.busy = g->edges ? g->shown.busy : pulser_busy(&g->pulser),
 	};
 	gpio_axes_read(g, in);

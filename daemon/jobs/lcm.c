@@ -65,8 +65,8 @@ static char *lent(const char *s)
  * one as a huge one, and a string need not have an end.  So the shape of its
  * type is checked for each packet first:
  *
- * q 8 bytes, i 4 bytes, b 1 byte, H 32 bytes, s a string, a as many bytes as
- * the i before it says
+ *	q 8 bytes, i 4 bytes, b 1 byte, H 32 bytes, s a string,
+ *	a as many bytes as the i before it says
  */
 static bool shape_step(char what, const uint8_t **at, size_t *left,
 		       uint32_t *count)

@@ -94,8 +94,7 @@ void verbs_text(struct jobs *j, const struct verb *v,
 static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 			enum store_list what)
 {
-	/* Only `history` has an argument.  Without a sensible one, as many rows
-	 * as fit. */
+	/* Without a sensible argument, as many rows as fit. */
 	const int rows = c->arg > 0 && c->arg < 1000 ? (int)c->arg : 0;
 	struct store_job before;
 	const bool known = what == STORE_ALARMS ||

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The panel's page in a browser, against the real gateway and daemons."""
 
+import json
 import re
 import signal
 
@@ -354,6 +355,37 @@ def test_jobs_that_wait_change_places(p, page):
     page.get_by_role("button", name="three.ngc: earlier").click()
     expect(names).to_have_text(["one.ngc", "three.ngc", "two.ngc"])
     for _ in range(3):
+        end_job_of_queue(p)
+    p.machine.client.status_where(lambda s: not s.job, 20)
+
+
+def test_a_long_queue_is_shown_page_by_page(p, page):
+    session = p.session()
+    for name in ("one.ngc", "two.ngc"):
+        session.post(f"/api/jobs?name={name}&hold=1", panel.JOB)
+    show(page, "jobs")
+    rows = page.locator(".jobs").first.locator(".job")
+    expect(rows).to_have_count(2)
+    more = page.locator(".two > :first-child").get_by_role(
+        "button", name="Show more")
+    expect(more).to_have_count(0)
+    waits = [j["job"] for j in json.loads(
+        p.machine.client.ask("queue").body)][1]
+    rig.fill_queue(p.machine, waits, 420)
+    expect(more).to_be_visible()
+    first = rows.count()
+    assert 100 < first < 422
+    while more.count():
+        shown = rows.count()
+        more.click()
+        expect(rows.nth(shown)).to_be_attached()
+        if rows.count() == 422:
+            expect(more).to_have_count(0)
+    expect(rows).to_have_count(422)
+    with rig.store_of(p.machine) as db:
+        db.execute("DELETE FROM job WHERE id LIKE 'job-%'")
+    expect(rows).to_have_count(2)
+    for _ in range(2):
         end_job_of_queue(p)
     p.machine.client.status_where(lambda s: not s.job, 20)
 

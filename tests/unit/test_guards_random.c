@@ -132,6 +132,7 @@ static void inputs(struct world *w, uint64_t *s)
 	else if (one_in(s, 2500))
 		in->trouble = (enum io_trouble)(rnd(s) % IO_NTROUBLES);
 	in->axes_off = !w->r.out.enable || one_in(s, 2000);
+	flip(&in->steers, true, s, 500);
 	in->starting = one_in(s, 1000);
 }
 
@@ -203,10 +204,23 @@ static void check_sparks(const struct world *w, const struct forbidden *f)
 	assert_false(w->r.c.config.dry_run);
 }
 
+/* Those that end a motion at once. */
+static uint64_t ending(const struct world *w, const struct forbidden *f)
+{
+	const uint64_t brake = fault_bit(FAULT_FIRE) |
+			       (w->r.in.steers ? fault_bit(FAULT_DRIVE) |
+						 fault_bit(FAULT_FOLLOWING) :
+						 0);
+
+	return f->always & ~brake;
+}
+
 static void check_drives(const struct world *w, const struct forbidden *f)
 {
 	enabled += w->r.out.enable;
-	if (f->always & ~fault_bit(FAULT_FIRE))
+	if (ending(w, f) ||
+	    (f->always & ~fault_bit(FAULT_FIRE) &&
+	     w->r.c.state == STATE_FAULT))
 		assert_false(w->r.out.enable);
 }
 
@@ -217,7 +231,7 @@ static void check_motion(struct world *w, const struct forbidden *f)
 
 	moved += !stands;
 	w->forbidden = f->motion ? w->forbidden + 1 : 0;
-	if (w->forbidden > BRAKES_IN || f->always & ~fault_bit(FAULT_FIRE))
+	if (w->forbidden > BRAKES_IN || ending(w, f))
 		assert_true(stands);
 }
 

@@ -4,7 +4,7 @@
  *
  * The derivatives by length follow from those by parameter.  With g = |C'|:
  *
- * u_s = 1/g,  u_ss = -g'/g^3,  u_sss = (3 g'^2 - g g'')/g^5
+ *	u_s = 1/g,  u_ss = -g'/g^3,  u_sss = (3 g'^2 - g g'')/g^5
  */
 #include "interp/nurbs_feed.h"
 

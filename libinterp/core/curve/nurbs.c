@@ -18,8 +18,9 @@
 #include <math.h>
 
 #define WEIGHT_MOST	1e9
-#define WEIGHTS_PART	1e4		/* largest over smallest */
-#define KNOTS_NEAR	1e-9		/* of the way from the first to the last */
+#define WEIGHTS_PART	1e4		/* largest divided by smallest */
+#define KNOTS_NEAR	1e-9		/* share of the distance from first to
+					 * last */
 
 /* -- Check ---------------------------------------------------------------- */
 
@@ -115,7 +116,7 @@ static bool too_near(const struct interp_nurbs *c, uint32_t i)
 	return gap > 0 && gap <= KNOTS_NEAR * all;
 }
 
-/* Inside, degree + 1 equal knots would tear the curve. */
+/* Inside the curve, degree + 1 equal knots would tear it apart. */
 static enum interp_nurbs_flaw check_knots(const struct interp_nurbs *c,
 					  uint32_t *ret_at)
 {
@@ -196,7 +197,8 @@ static void load_points(struct interp_nurbs_eval *e)
 	}
 }
 
-/* Control points of the k-th derivative from those of the one before. */
+/* Make the control points of the k-th derivative from those of the previous
+ * one. */
 static void load_derivative(struct interp_nurbs_eval *e, uint32_t k)
 {
 	const struct interp_nurbs *c = &e->c;
@@ -267,7 +269,7 @@ uint32_t nurbs_basis(const struct interp_nurbs *c, double u,
 
 /* -- Points --------------------------------------------------------------- */
 
-/* Basis functions of degree p - k for every k asked for. */
+/* The basis functions of degree p - k, for every k that is asked for. */
 struct basis {
 	double of[INTERP_NURBS_DERIVS + 1][INTERP_NURBS_ORDER_MAX];
 };

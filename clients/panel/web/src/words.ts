@@ -100,7 +100,7 @@ export const en = {
 	"jobs.large": "This program is too long for the editor; it is checked and sent as it is.",
 	"jobs.checkfirst": "The program has an error. Mend it first.",
 	"jobs.sum": "Cut {cut} mm, positioning {rapid} mm",
-	"jobs.waits": "waits for Start",
+	"jobs.waits": "waits for Start", "jobs.more": "Show more",
 	"jobs.ahead": "{name}: earlier", "jobs.behind": "{name}: later",
 
 	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",

@@ -84,7 +84,7 @@ export const zh: Record<Word, string> = {
 	"jobs.details": "{name} 的详情", "jobs.changes": "调用的条件和设定的值", "jobs.nochanges": "没有。",
 	"jobs.length": "路径", "jobs.preview": "预览", "jobs.editor": "程序文本",
 	"jobs.large": "此程序太长,编辑器放不下;它会原样检查和发送。", "jobs.checkfirst": "程序有错误。请先改正。",
-	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动",
+	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动", "jobs.more": "显示更多",
 	"jobs.ahead": "{name}:提前", "jobs.behind": "{name}:推后",
 
 	"job.queued": "排队", "job.ready": "就绪", "job.running": "运行", "job.held": "保持",
