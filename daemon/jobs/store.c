@@ -261,6 +261,13 @@ int store_interrupt(struct store *s, uint32_t n, const char *at)
 			"(?, ?)", "Is", (int64_t)n, at);
 }
 
+int store_again(struct store *s, uint32_t n)
+{
+	return store_do(s, STORE_KEEP, "UPDATE job SET state='queued', hold=1, "
+			"begun_us=0 WHERE n=? AND state='interrupted'", "I",
+			(int64_t)n);
+}
+
 int store_interrupted(struct store *s, struct store_job *ret)
 {
 	int err;
@@ -286,12 +293,13 @@ char *store_resume_at(struct store *s, uint32_t n)
 int store_change(struct store *s, uint32_t n, const struct store_change *c)
 {
 	if (c->condition)
-		return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO change "
-				"VALUES(?1, ?2, 'condition', (SELECT now FROM "
-				"change WHERE n=?1 AND what='condition' AND "
-				"time_ns<?2 ORDER BY time_ns DESC LIMIT 1), ?3, "
-				"?4)", "iisd", (int64_t)n, c->time_ns,
-				c->condition, c->place_mm);
+		return store_do(s, STORE_MAY_GO,
+				"INSERT OR IGNORE INTO change VALUES(?1, ?2, "
+				"'condition', (SELECT now FROM change WHERE "
+				"n=?1 AND what='condition' AND time_ns<?2 "
+				"ORDER BY time_ns DESC LIMIT 1), ?3, ?4)",
+				"iisd", (int64_t)n, c->time_ns, c->condition,
+				c->place_mm);
 	return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO change "
 			"VALUES(?, ?, ?, ?, ?, ?)", "iisddd", (int64_t)n,
 			c->time_ns, c->field, c->was, c->now, c->place_mm);
