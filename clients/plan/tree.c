@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <float.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,22 +22,20 @@ struct build {
 	double (*centre)[3];		/* of each triangle, in the tree's order */
 };
 
-static void swap_bytes(void *a, void *b, size_t n)
-{
-	unsigned char keep[sizeof(struct triangle)];
-
-	memcpy(keep, a, n);
-	memcpy(a, b, n);
-	memcpy(b, keep, n);
-}
-
 static void swap_tris(struct build *b, uint32_t i, uint32_t j)
 {
 	struct tree *t = b->t;
+	const struct triangle tri = t->tri[i];
+	const uint32_t id = t->id[i];
+	double centre[3];
 
-	swap_bytes(&t->tri[i], &t->tri[j], sizeof(*t->tri));
-	swap_bytes(&t->id[i], &t->id[j], sizeof(*t->id));
-	swap_bytes(b->centre[i], b->centre[j], sizeof(*b->centre));
+	memcpy(centre, b->centre[i], sizeof(centre));
+	t->tri[i] = t->tri[j];
+	t->id[i] = t->id[j];
+	memcpy(b->centre[i], b->centre[j], sizeof(centre));
+	t->tri[j] = tri;
+	t->id[j] = id;
+	memcpy(b->centre[j], centre, sizeof(centre));
 }
 
 /* -- Axes of a spread ----------------------------------------------------- */
@@ -99,6 +98,29 @@ static void principal(double m[3][3], struct rot *ret)
 	v_cross(axis[0], axis[1], axis[2]);
 }
 
+/* One triangle lies along its longest edge. Return: false if it is too thin to
+ * have a normal. */
+static bool lie_along(const struct triangle *t, struct rot *ret)
+{
+	double edge[3][3], n[3], size[3];
+	int k = 0;
+
+	for (int i = 0; i < 3; i++) {
+		v_sub(t->at[(i + 1) % 3], t->at[i], edge[i]);
+		size[i] = v_length(edge[i]);
+		k = size[i] > size[k] ? i : k;
+	}
+	v_cross(edge[0], edge[1], n);
+	if (!(v_length(n) > 1e-6 * size[k] * size[k]))
+		return false;
+	for (int i = 0; i < 3; i++) {
+		ret->m[0][i] = edge[k][i] / size[k];
+		ret->m[2][i] = n[i] / v_length(n);
+	}
+	v_cross(ret->m[2], ret->m[0], ret->m[1]);
+	return true;
+}
+
 /* Of few triangles all corners count; of many the middle of each will do. */
 static void spread(const struct build *b, uint32_t from, uint32_t n,
 		   double mean[3], double m[3][3])
@@ -147,16 +169,18 @@ static void enclose(const struct tree *t, uint32_t from, uint32_t n,
 {
 	const double *o = t->tri[from].at[0];
 	double lo[3] = { 0 }, hi[3] = { 0 }, mid[3] = { 0 }, size = 0;
+	double axis[3][3];
 
+	for (int j = 0; j < 3; j++)
+		for (int k = 0; k < 3; k++)
+			axis[j][k] = (double)b->axis[k][j];
 	for (uint32_t i = from; i < from + n; i++) {
 		for (int k = 0; k < 3; k++) {
 			double d[3];
 
 			v_sub(t->tri[i].at[k], o, d);
 			for (int j = 0; j < 3; j++) {
-				const double at = (double)b->axis[0][j] * d[0] +
-					(double)b->axis[1][j] * d[1] +
-					(double)b->axis[2][j] * d[2];
+				const double at = v_dot(axis[j], d);
 
 				lo[j] = at < lo[j] ? at : lo[j];
 				hi[j] = at > hi[j] ? at : hi[j];
@@ -167,7 +191,7 @@ static void enclose(const struct tree *t, uint32_t from, uint32_t n,
 		size += 0x1p-20 * (hi[j] - lo[j]) +
 			16 * DBL_EPSILON * fabs(o[j]);
 		for (int k = 0; k < 3; k++)
-			mid[k] += (double)b->axis[k][j] * (lo[j] + hi[j]) / 2;
+			mid[k] += axis[j][k] * (lo[j] + hi[j]) / 2;
 	}
 	v_add(mid, o, b->centre);
 	b->half[3] = 0;
@@ -214,8 +238,10 @@ static void split(struct build *b, uint32_t node, uint32_t from, uint32_t n)
 	uint32_t below;
 	int along;
 
-	spread(b, from, n, mean, m);
-	principal(m, &axis);
+	if (n > 1 || !lie_along(&b->t->tri[from], &axis)) {
+		spread(b, from, n, mean, m);
+		principal(m, &axis);
+	}
 	*x = (struct box) { 0 };
 	take_axes(&axis, x);
 	enclose(b->t, from, n, x);

@@ -83,7 +83,7 @@ static const char *what_next(const struct jobs *j, bool hold)
 	if (j->link.snap.state == SHM_FAULT)
 		return "a fault is latched: it wants a reset, then a start";
 	if (*j->interrupted)
-		return "a job was interrupted: remove it, then start";
+		return "a job was interrupted: resume it or remove it, then start";
 	if (queue_unready(j))
 		return "an axis is not homed: it wants a home, then a start";
 	if (j->queue.waiting)
@@ -271,6 +271,11 @@ void submit_take(void *arg, const struct jobs_lcm_chunk *c)
 		answer = (struct upload_answer) {
 			.code = EX_NOPERM,
 			.reason = "a job wants a key of role operator",
+		};
+	} else if (jobs_lcm_is_late(c->signed_us)) {
+		/* The last one may set the job in motion. */
+		answer = (struct upload_answer) {
+			.code = JOBS_LCM_AGAIN, .reason = JOBS_LCM_LATE_TEXT,
 		};
 	} else if (upload_check(c, &answer)) {
 		if (answer_known(j, c))
