@@ -466,14 +466,17 @@ hostile: all
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
 
-# Ten thousand random contours of a wire against shapely's geometry: some
-# minutes.
+# Ten thousand random contours of a wire against another geometry, a tenth as many
+# with other leads, a hundredth with a taper: half an hour.
 WIRE_RUNS ?= 10000
+WIRE_TEST = EDM_BUILD=$(B) $(if $(SEED),EDM_SEED=$(SEED)) \
+	EDM_RUNS=$$(( $(WIRE_RUNS) / $(1) )) .venv/bin/pytest -q -s tests/sim
 wire-random: $(B)/edmsim
 	@tests/setup check
-	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(WIRE_RUNS) \
-		$(if $(SEED),EDM_SEED=$(SEED)) .venv/bin/pytest -q -s \
-		tests/sim/test_wire_random.py
+	$(Q)$(call WIRE_TEST,1)/test_wire_random.py
+	$(Q)$(call WIRE_TEST,10)/test_wire_leads.py
+	$(Q)$(call WIRE_TEST,100)/test_wire_taper.py -k "tapers or taper"
+
 # What is accepted is walked, there and back: so many random programs of every
 # dialect, by every strategy.
 RUNS	?= 100000

@@ -7,9 +7,9 @@
  * recorded such an ack before.  A status or an event counts if it has that boot
  * number and is later than that ack and than the previous one.  Until the boot
  * number is known, and whenever a status has another one, the client asks
- * "hello", signed for the boot number and the time of that status.  If these are
- * the true ones, the service always answers, however many recorded packets of
- * other times it has to answer.
+ * "hello", signed for the boot number and the time of that status.  If these
+ * are the true ones, the service always answers, however many recorded packets
+ * of other times it has to answer.
  */
 #include "talk.h"
 
@@ -308,8 +308,8 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 
 /*
  * Is it signed by the machine of our key file, for this channel?  Anybody may
- * sign with a key of their own: that explains why nothing was heard, and decides
- * nothing.
+ * sign with a key of their own: that explains why nothing was heard, and
+ * decides nothing.
  */
 static bool is_machine(struct talk *t, struct seal *ret,
 		       const struct udpm_packet *u)

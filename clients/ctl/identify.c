@@ -19,7 +19,8 @@
 #include <sysexits.h>
 #include <unistd.h>
 
-#define ROWS_MAX	(1 << 20)	/* 128 MiB; 17 minutes of milliseconds */
+#define ROWS_MAX	(1 << 20)	/* 128 MiB; 17 minutes of
+					 * milliseconds */
 #define SLOW_ROWS	10000		/* for a longer trace, progress is
 					 * shown */
 
@@ -252,7 +253,8 @@ static int identify(const struct ctl *c, const struct columns *t)
 	const int told = identify_all(c, t, loop, list);
 
 	if (c->json && told > 0) {
-		json_dumpf(list, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(7));
+		json_dumpf(list, stdout,
+			   JSON_INDENT(1) | JSON_REAL_PRECISION(7));
 		putchar('\n');
 	}
 	json_decref(list);

@@ -70,8 +70,8 @@ static void print_text(const struct talk_status *s)
 		printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
 	printf(" (mm, degrees)\n");
 	if (*s->lost)
-		printf("not sure   %s: not homed, or nothing homes it, since the "
-		       "power went\n", s->lost);
+		printf("not sure   %s: not homed, or nothing homes it, since "
+		       "the power went\n", s->lost);
 	if (*s->interrupted)
 		printf("interrupted %s; edmctl show tells where\n",
 		       s->interrupted);
@@ -79,9 +79,9 @@ static void print_text(const struct talk_status *s)
 		printf("contour    off by %.1f um at most, predicted %.1f um\n",
 		       s->contour_mm * 1e3, s->contour_predicted_mm * 1e3);
 	printf("queue      %d\n"
-	       "condition  %s\nstore      %s\ntiming     woken late by %d us at most, %d overruns\n",
-	       s->queue_len, *s->condition ? s->condition : "none",
-	       s->store,
+	       "condition  %s\nstore      %s\ntiming     woken late by %d us "
+	       "at most, %d overruns\n",
+	       s->queue_len, *s->condition ? s->condition : "none", s->store,
 	       s->wake_late_max_us, s->overruns);
 }
 

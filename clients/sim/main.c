@@ -29,9 +29,11 @@ static void configure_pulses(struct machine_config *c,
 static void say_no_contouring(const struct machine_config *c)
 {
 	if (strcmp(c->contour.method, "none") != 0 && !c->sim.loops)
-		fprintf(stderr, "edmsim: [contour] method %s has no effect: the "
+		fprintf(stderr,
+			"edmsim: [contour] method %s has no effect: the "
 			"simulated axes do not lag; [sim] loops = yes gives "
-			"them the models of [axis.*]\n", c->contour.method);
+			"them the models of [axis.*]\n",
+			c->contour.method);
 }
 
 static int configure(struct machine_config *c, const struct sim_options *o)

@@ -176,8 +176,9 @@ static void print_fault(const struct sim_run *r, FILE *f)
 {
 	const struct fault_row *row = &fault_table[r->cycle.fault.first];
 
-	fprintf(f, ": %s at line %u: %s\nwhy        %s\nclear      %s", row->name,
-		r->cycle.cursor.seg.line, row->what, row->why, row->clear);
+	fprintf(f, ": %s at line %u: %s\nwhy        %s\nclear      %s",
+		row->name, r->cycle.cursor.seg.line, row->what, row->why,
+		row->clear);
 }
 
 void report_print(const struct sim_run *r, FILE *f)

@@ -283,7 +283,8 @@ static void print_gains(const struct tuning *t,
 
 	printf("[contour]\nmethod = %s\n", t->run->config->contour.method);
 	if (m & INTERP_COMPENSATE_FEEDFORWARD)
-		printf("speed = %.*g\nacceleration = %.*g\nlead_periods = %.*g\n",
+		printf("speed = %.*g\nacceleration = %.*g\n"
+		       "lead_periods = %.*g\n",
 		       d, g->velocity, d, g->acceleration, d, g->lead_periods);
 	if (m & INTERP_COMPENSATE_CROSS)
 		printf("cross_1_s = %.*g\n", d, g->cross_1_s);

@@ -14,7 +14,8 @@ static bool is_file(const char *name)
 {
 	const size_t n = strlen(name);
 
-	return strchr(name, '/') || (n > 4 && strcmp(name + n - 4, ".ini") == 0);
+	return strchr(name, '/') ||
+	       (n > 4 && strcmp(name + n - 4, ".ini") == 0);
 }
 
 static int read_file(struct config_dialect *d)

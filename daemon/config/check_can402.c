@@ -54,9 +54,12 @@ static int check_node(struct check *q, int axis)
 	if (node == 0 || (present && !twice))
 		return 0;
 	snprintf(name, sizeof(name), "node_%c", INTERP_AXIS_LETTERS[axis]);
-	interp_diag_say(q->diag, "can402.%s %u %s; a node of its own for each "
-			"axis that is present, and not master_node", name, node,
-			present ? "a second time" : "for an axis that is not present");
+	interp_diag_say(q->diag,
+			"can402.%s %u %s; a node of its own for each axis that "
+			"is present, and not master_node",
+			name, node,
+			present ? "a second time" :
+				  "for an axis that is not present");
 	return refuse(q, SECTION_CAN402, name, 0);
 }
 

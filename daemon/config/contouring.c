@@ -177,7 +177,8 @@ void config_contouring(const struct machine_config *c,
 
 		ret->ahead = ahead > ret->ahead ? ahead : ret->ahead;
 		ret->loop[i] = c->loop[i];
-		ret->most_mm[i] = l->v_max_mm_s / fmax(c->loop[i].gain_1_s, 1e-3);
+		ret->most_mm[i] = l->v_max_mm_s /
+				  fmax(c->loop[i].gain_1_s, 1e-3);
 	}
 	for (int i = 0; i < INTERP_NAXES; i++)
 		ret->pulse_mm[i] = c->axes.axis[i].pulse_mm;

@@ -165,9 +165,10 @@ static int check_source(struct check *q)
 		return 0;
 	blame(q, k, 0);
 	if (!lines)
-		return interp_diag_say(q->diag, "gap.source is %s and the gap "
-				       "is read by gpio.adc; [gap] source = "
-				       "voltage", k->word((int)q->c->gap.source));
+		return interp_diag_say(q->diag,
+				       "gap.source is %s and the gap is read "
+				       "by gpio.adc; [gap] source = voltage",
+				       k->word((int)q->c->gap.source));
 	return interp_diag_say(q->diag, "gap.source is %s and there are gap "
 			       "lines; [gap] source = lines; or no gap_open, "
 			       "gap_spark, gap_short",

@@ -71,6 +71,7 @@ struct config_key {
 	size_t stride;			/* from one instance to the next */
 	size_t bytes;			/* text only: room, with its NUL */
 	const char *def_rotary;		/* for A B C; NULL: as def */
+	const char *def_wire;		/* with process = wire; NULL: as def */
 	const char *(*word)(int i);	/* enums only; NULL past the last */
 	const char *help;
 };

@@ -23,7 +23,8 @@
 struct map {
 	const struct machine_config *c;
 	struct interp_diag *diag;
-	const char *key;		/* "geometry.maps", "axis.X.pitch_map" */
+	const char *key;		/* "geometry.maps",
+					 * "axis.X.pitch_map" */
 	const char *name;		/* of the file, as it was given */
 	uint32_t line, head_line;
 	const char *text, *at;		/* the line, and where it is read */

@@ -10,6 +10,7 @@
 #include "keys.h"
 #include "nearest.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <ini.h>
 #include <string.h>
@@ -252,6 +253,27 @@ static void set_syntax(void)
 	ini_max_line = LINE_BYTES;
 }
 
+/* What is not written has other defaults on a wire machine: of [sim] process
+ * first, which the others depend on. */
+static void take_wire_defaults(struct reading *r)
+{
+	const int process = config_key_find(SECTION_SIM, "process");
+
+	if (r->config.gap.process == PROCESS_WIRE && !r->lines.at[process][0])
+		r->config.sim.process = SIM_WIRE;
+	if (r->config.sim.process != SIM_WIRE)
+		return;
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
+
+		if (!k->def_wire || r->lines.at[i][0])
+			continue;
+		r->err = config_key_parse(k, 0, k->def_wire, &r->config,
+					  r->diag);
+		assert(!r->err);
+	}
+}
+
 static int read_all(struct reading *r)
 {
 	int n;
@@ -273,6 +295,7 @@ static int read_all(struct reading *r)
 		config_key_find(SECTION_CONTOUR, "method")][0];
 	r->config.kinematics.line = r->lines.at[
 		config_key_find(SECTION_KINEMATICS, "chain")][0];
+	take_wire_defaults(r);
 	r->err = config_check(&r->config, &r->lines, r->diag);
 	return r->err ? r->err :
 	       config_maps_read(&r->config, &r->lines, r->diag);

@@ -24,7 +24,8 @@ bool loop_stands(const struct loop *l)
 	const struct cycle *c = &l->cycle;
 
 	return (c->state == STATE_IDLE || c->state == STATE_HOLD ||
-		c->state == STATE_FAULT) && c->feed_mm_s == 0 && !c->hold.moving;
+		c->state == STATE_FAULT) &&
+	       c->feed_mm_s == 0 && !c->hold.moving;
 }
 
 static void count_latency(struct loop *l, int64_t late_ns)

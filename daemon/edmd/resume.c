@@ -33,9 +33,10 @@ static bool same_axes(const struct loop *l, const struct shm_snapshot *s)
 
 	if (pulses && l->axes_key == s->axes_key)
 		return true;
-	log_line(LOG_ERROR, "resume: %s of the machine file is not what it was; "
-		 "the places of the edmd before mean nothing: the axes are "
-		 "taken to stand at start_mm; move or home them",
+	log_line(LOG_ERROR,
+		 "resume: %s of the machine file is not what it was; the "
+		 "places of the edmd before mean nothing: the axes are taken "
+		 "to stand at start_mm; move or home them",
 		 pulses ? "the backend, or a drive's node or increments," :
 			  "pulse_mm");
 	return false;
@@ -55,9 +56,10 @@ static uint32_t homed(const struct loop *l, const struct shm_snapshot *s)
 		return 0;
 	if (l->home_key == s->home_key || s->homed == 0)
 		return s->homed;
-	log_line(LOG_WARNING, "resume: home_method or home_at_mm of the machine "
-		 "file is not what it was; the axes keep their places, but "
-		 "count as not homed: home them");
+	log_line(LOG_WARNING,
+		 "resume: home_method or home_at_mm of the machine file is not "
+		 "what it was; the axes keep their places, but count as not "
+		 "homed: home them");
 	return 0;
 }
 
@@ -84,7 +86,8 @@ static void tell_left(const struct cycle *c)
 static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 {
 	struct axis_state at = {
-		.homed = homed(l, s), .unplaced = s->unplaced, .limit.on = s->limit,
+		.homed = homed(l, s), .unplaced = s->unplaced,
+		.limit.on = s->limit,
 		.told_c = s->axes_c,
 	};
 
@@ -225,9 +228,10 @@ static int place_restore(struct loop *l, struct program *p,
 
 static void tell(const struct loop *l, const struct shm_snapshot *s)
 {
-	log_line(LOG_WARNING, "resume: a job was under way; its program %u is "
-		 "held at %.3f mm of %.3f, line %u, %.3f mm beside the path; it "
-		 "was in %s; start goes on",
+	log_line(LOG_WARNING,
+		 "resume: a job was under way; its program %u is held at %.3f "
+		 "mm of %.3f, line %u, %.3f mm beside the path; it was in %s; "
+		 "start goes on",
 		 s->program, interp_cursor_place_mm(&l->cycle.cursor),
 		 l->cycle.cursor.p.head->length_mm, l->cycle.cursor.seg.line,
 		 l->cycle.escape.way_mm, shm_state_name(s->state));

@@ -19,7 +19,8 @@
 _Static_assert(sizeof(struct checkpoint_head) +
 	       sizeof(struct checkpoint_base) <= CHECKPOINT_BLOCK, "a block");
 _Static_assert(sizeof(struct checkpoint_head) +
-	       sizeof(struct checkpoint_place) <= CHECKPOINT_SECTOR, "a sector");
+	       sizeof(struct checkpoint_place) <= CHECKPOINT_SECTOR,
+	       "a sector");
 
 /* The hash of a place covers the bytes that are written. */
 static size_t bytes_of(const union checkpoint_block *b)

@@ -43,8 +43,8 @@ static void try_open(struct jobs *j, int64_t now_us)
 	err = checkpoint_open(&j->checkpoint, j->store_dir, j->machine,
 			      &ignored);
 	if (err != j->checkpoint_err && err)
-		log_error("checkpoint: %s/%s.place: %s; until it can be written "
-			  "a job is not found again after a power cut",
+		log_error("checkpoint: %s/%s.place: %s; until it can be "
+			  "written a job is not found again after a power cut",
 			  j->store_dir, j->machine, strerror(-err));
 	j->checkpoint_err = err;
 }

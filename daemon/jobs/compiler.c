@@ -88,8 +88,8 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	c->result.build = interp_build_create(&of.build);
 	if (!c->result.build)
 		return -ENOMEM;
-	return interp_compile(&text, &of.text, c->result.build, &c->result.lines,
-			      &c->result.diag);
+	return interp_compile(&text, &of.text, c->result.build,
+			      &c->result.lines, &c->result.diag);
 }
 
 /* The file of the dialect is read for each job, too. */

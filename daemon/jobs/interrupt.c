@@ -64,9 +64,10 @@ static void keep(struct jobs *j, const struct checkpoint *c)
 	say_when(when, sizeof(when), c->utime);
 	sodium_bin2hex(hex, 2 * bytes + 1, (const unsigned char *)&c->base,
 		       bytes);
-	snprintf(reason, sizeof(reason), "interrupted in %s, line %u, at %.3f "
-		 "mm of %.3f, cut to %.3f mm; last seen %s; if the host did not "
-		 "go down, edmd's log says why",
+	snprintf(reason, sizeof(reason),
+		 "interrupted in %s, line %u, at %.3f mm of %.3f, cut to %.3f "
+		 "mm; last seen %s; if the host did not go down, edmd's log "
+		 "says why",
 		 shm_state_name(c->base.snap.state), c->base.snap.line,
 		 c->base.snap.place_mm, c->base.snap.length_mm,
 		 c->base.snap.far_mm, when);

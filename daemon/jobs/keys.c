@@ -277,9 +277,10 @@ void keys_remove(struct jobs *j, const struct verb *v,
 		return;
 	}
 	if (store_key_remove(j->store, c->text) < 0) {
-		verbs_answer(j, c, EX_IOERR, "it is not taken any more, but the "
-			    "store failed: it comes back when edmd-jobs is "
-			    "started again; see its journal");
+		verbs_answer(j, c, EX_IOERR,
+			     "it is not taken any more, but the store failed: "
+			     "it comes back when edmd-jobs is started again; "
+			     "see its journal");
 		return;
 	}
 	log_notice("keys: %s removed %s, from %s", by.name, c->text, c->from);

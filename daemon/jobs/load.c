@@ -227,8 +227,9 @@ void load_begin(struct jobs *j, int64_t now_us)
 				     on_compiled, j);
 	}
 	if (err == -EILSEQ) {
-		load_refuse(j, q->next, "its text in the store is not the one "
-			    "that was sent: the disk damaged it; send it again");
+		load_refuse(j, q->next,
+			    "its text in the store is not the one that was "
+			    "sent: the disk damaged it; send it again");
 	} else if (err < 0) {
 		q->again_us = now_us + AGAIN_US;
 		free(q->next_text);

@@ -169,8 +169,8 @@ int store_note(struct store *s, const struct store_note *e);
 /**
  * store_together() - what is written up to store_commit() is written at once.
  * @durable: through a power cut, not only through a kill.
- * Return: 0, or STORE_KEPT: what was written without a promise is in memory; what
- * must be on the disk is not.
+ * Return: 0, or STORE_KEPT: what was written without a promise is in memory;
+ * what must be on the disk is not.
  */
 int store_together(struct store *s, bool durable);
 int store_commit(struct store *s);

@@ -64,12 +64,14 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				 "('done', 'stopped'))", IN_QUEUE), "is",
 				 (int64_t)rows, id);
 	case STORE_ALARMS:
-		return store_ask(s, ret_err, "SELECT json_object('utime', utime, "
-				 "'kind', kind, 'job', job, 'fault', outcome, "
+		return store_ask(s, ret_err,
+				 "SELECT json_object('utime', utime, 'kind', "
+				 "kind, 'job', job, 'fault', outcome, "
 				 "'place_mm', place_mm, 'text', text) FROM "
 				 "event WHERE kind IN ('alarm', 'warning', "
 				 "'lost', 'back') ORDER BY utime DESC, rowid "
-				 "DESC LIMIT ?", "i", (int64_t)ALARMS_MAX);
+				 "DESC LIMIT ?",
+				 "i", (int64_t)ALARMS_MAX);
 	case STORE_HISTORY:
 		break;
 	}

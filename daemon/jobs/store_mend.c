@@ -212,9 +212,10 @@ int store_mend(struct store *s)
 	remove_with(s->path, "-shm");
 	if (rename(fresh, s->path) < 0)
 		return -errno;
-	snprintf(s->told, sizeof(s->told), "the database was damaged; %lld "
-		 "jobs were recovered, and nothing starts until start; what was "
-		 "there is kept as %.200s", (long long)n, aside);
+	snprintf(s->told, sizeof(s->told),
+		 "the database was damaged; %lld jobs were recovered, and "
+		 "nothing starts until start; what was there is kept as %.200s",
+		 (long long)n, aside);
 	log_error("store: %s", s->told);
 	return 0;
 }

@@ -108,8 +108,8 @@ void store_close(struct store *s)
 	if (!s)
 		return;
 	if (s->kept.n)
-		log_error("store: %u entries could not be stored: %s", s->kept.n,
-			  store_why(s));
+		log_error("store: %u entries could not be stored: %s",
+			  s->kept.n, store_why(s));
 	store_writes_free(&s->group);
 	store_writes_free(&s->kept);
 	sqlite3_close_v2(s->db);
@@ -158,9 +158,10 @@ void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us)
 		 "AND (ended_us<?1 OR n NOT IN (SELECT n FROM job WHERE state "
 		 "IN ('done', 'stopped', 'fault') ORDER BY n DESC LIMIT ?2)) "
 		 "ORDER BY n LIMIT 10)", "ii", before, jobs ? jobs : -1);
-	store_do(s, STORE_MAY_GO, "DELETE FROM event WHERE rowid IN (SELECT "
-		 "rowid FROM event WHERE utime<? ORDER BY rowid LIMIT 100)", "i",
-		 before);
+	store_do(s, STORE_MAY_GO,
+		 "DELETE FROM event WHERE rowid IN (SELECT rowid FROM event "
+		 "WHERE utime<? ORDER BY rowid LIMIT 100)",
+		 "i", before);
 	if (!s->in_memory)
 		sqlite3_exec(s->db, "PRAGMA incremental_vacuum(256)", NULL,
 			     NULL, NULL);

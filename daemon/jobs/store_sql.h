@@ -26,7 +26,8 @@
 enum store_keep {
 	STORE_MUST,			/* on the disk, or refused */
 	STORE_KEEP,			/* else in memory, until it can be */
-	STORE_MAY_GO			/* the same; dropped if there are many */
+	STORE_MAY_GO			/* the same; dropped if there are
+					 * many */
 };
 
 struct store_value {

@@ -167,9 +167,9 @@ static bool rate_allows(struct trust_rate *r, int most, int64_t now_us)
 
 /*
  * How many packets are looked at in a second.  All strangers share one limit.
- * Each key has one for packets that are signed for another time, as recorded ones
- * are.  A viewer has one for new packets.  So nobody uses up what belongs to
- * another.  NULL: no limit.
+ * Each key has one for packets that are signed for another time, as recorded
+ * ones are.  A viewer has one for new packets.  So nobody uses up what belongs
+ * to another.  NULL: no limit.
  */
 static struct trust_rate *rate_of(struct trust *t, const struct trust_packet *p,
 				  enum trust_cause cause, int *ret_most)

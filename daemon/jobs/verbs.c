@@ -64,8 +64,8 @@ int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 static const char *refusal(int code)
 {
 	static const char *const why[] = {
-		[SHM_NOT_HOMED] = "an axis is not homed; home first, a job that is "
-				  "held must be stopped for it",
+		[SHM_NOT_HOMED] = "an axis is not homed; home first, a job "
+				  "that is held must be stopped for it",
 		[SHM_AT_LIMIT] = "an axis is on its limit switch; jog it away "
 				 "from the switch",
 		[SHM_BEYOND] = "that is outside the axis's travel; a shorter "
@@ -131,8 +131,9 @@ static void on_answer(void *arg, int code)
 	else if (code == SHM_NO_PROGRAM)
 		verbs_answer(j, &c, REFUSED, "no job is loaded; submit one");
 	else if (code == SHM_NOT_UP)
-		verbs_answer(j, &c, REFUSED, "the drives are not up yet; edmd's "
-		       "journal tells which; again when they are");
+		verbs_answer(j, &c, REFUSED,
+			     "the drives are not up yet; edmd's journal tells "
+			     "which; again when they are");
 	else if (code == SHM_BAD_ARGUMENT)
 		verbs_answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
 		       "edmd refused the value: with the others in force, "
@@ -233,12 +234,13 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 		return;
 	free(a);
 	if (err == -EAGAIN)
-		verbs_answer(j, c, EX_TEMPFAIL, "too many commands under way; try "
-		       "again");
+		verbs_answer(j, c, EX_TEMPFAIL,
+			     "too many commands under way; try again");
 	else
-		verbs_answer(j, c, EX_UNAVAILABLE, j->link.state == LINK_ABSENT ?
-		       "edmd is not there; systemctl start edmd" :
-		       "edmd is lost; systemctl status edmd");
+		verbs_answer(j, c, EX_UNAVAILABLE,
+			     j->link.state == LINK_ABSENT ?
+			     "edmd is not there; systemctl start edmd" :
+			     "edmd is lost; systemctl status edmd");
 }
 
 static void verb_machine(struct jobs *j, const struct verb *v,
@@ -301,8 +303,9 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 	if (isfinite(c->arg) && c->arg > 0 && c->arg <= RETRACT_MAX_MM)
 		verb_machine(j, v, c);
 	else
-		verbs_answer(j, c, EX_DATAERR, "no such length; a number of mm above "
-		       "0, at most 10000");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such length; a number of mm above 0, at most "
+			     "10000");
 }
 
 static void verb_step(struct jobs *j, const struct verb *v,
@@ -312,8 +315,9 @@ static void verb_step(struct jobs *j, const struct verb *v,
 	    fabs(c->arg) <= STEP_MAX)
 		verb_machine(j, v, c);
 	else
-		verbs_answer(j, c, EX_DATAERR, "no such number of nodes; 1 to 100 "
-		       "ahead, -1 to -100 back");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such number of nodes; 1 to 100 ahead, -1 to "
+			     "-100 back");
 }
 
 static void verb_override(struct jobs *j, const struct verb *v,
@@ -322,7 +326,8 @@ static void verb_override(struct jobs *j, const struct verb *v,
 	if (c->arg >= 0 && c->arg <= OVERRIDE_MAX)
 		verb_machine(j, v, c);
 	else
-		verbs_answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such override; 0 to 200 percent");
 }
 
 /* The text must be the letter of an axis that the machine has; @n: its length.
@@ -351,8 +356,9 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 	int axis;
 
 	if (!isfinite(c->arg) || c->arg == 0) {
-		verbs_answer(j, c, EX_DATAERR, "no such length; a number of mm or "
-		       "degrees, + or -");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such length; a number of mm or "
+			     "degrees, + or -");
 		return;
 	}
 	axis = axis_of(j, c, strlen(c->text));
@@ -446,7 +452,8 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 		return;
 	}
 	if (job->state != JOB_QUEUED) {
-		verbs_answer(j, c, REFUSED, "this job has ended; submit it again");
+		verbs_answer(j, c, REFUSED,
+			     "this job has ended; submit it again");
 		return;
 	}
 	/* A start is one act: if the machine is not ready now, the operator
@@ -472,8 +479,8 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	if (refused_by_fault(j, c))
 		return;
 	if (*c->job && store_find(j->store, c->job, &job) < 0) {
-		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
-		       "them");
+		verbs_answer(j, c, EX_NOINPUT,
+			     "no such job; edmctl queue lists them");
 	} else if (*c->job && (!here || job.n != q->job.n)) {
 		start_behind(j, c, &job);
 	} else if (here) {

@@ -59,7 +59,8 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 static int copy_fill(char *to, int fd, size_t bytes)
 {
 	while (bytes > 0) {
-		ssize_t n = read(fd, to, bytes < COPY_BYTES ? bytes : COPY_BYTES);
+		ssize_t n = read(fd, to,
+				 bytes < COPY_BYTES ? bytes : COPY_BYTES);
 
 		if (n < 0 && errno == EINTR)
 			continue;

@@ -25,7 +25,8 @@
  * edmd that ends in order removes both objects.
  *
  * The jobs that ended last are kept in status as well: a service that could not
- * write that down, and was killed, does not take one of them for a job to be cut.
+ * write that down, and was killed, does not take one of them for a job to be
+ * cut.
  *
  * The ids of the last commands that were taken are kept in status too, with
  * what was answered: no edmd of this machine takes one of them again.
@@ -82,11 +83,13 @@ struct shm_snapshot {
 	uint64_t cycle;			/* since edmd started */
 	int64_t time_ns;		/* CLOCK_REALTIME of this cycle */
 	uint32_t state;			/* enum shm_state */
-	uint32_t fault;			/* the first; enum cycle_fault; 0 none */
+	uint32_t fault;			/* the first; enum cycle_fault; 0
+					 * none */
 	uint32_t outcome;		/* enum cycle_outcome of the last job */
 	uint32_t program;		/* program.<n>, until unloaded; or 0 */
 	uint32_t seg, tick;		/* place, exactly */
-	uint64_t faults;		/* all that are latched: bit n, fault n */
+	uint64_t faults;		/* all that are latched: bit n, fault
+					 * n */
 	uint32_t line;			/* of the source */
 	uint32_t cond_number;
 	char cond_letter;
@@ -100,7 +103,8 @@ struct shm_snapshot {
 	double pulse_mm[SHM_NAXES];
 	double place_mm, far_mm, length_mm;	/* along the path */
 	double feed_mm_s, gap_v;
-	double depth_mm;		/* travel of Z below the program's start */
+	double depth_mm;		/* travel of Z below the program's
+					 * start */
 	/* Sums of the job. */
 	uint64_t job_cycles, erode_cycles, jump_cycles;
 	uint32_t retracts, jumps, shorts, overruns;
@@ -163,12 +167,14 @@ struct shm_trace {
 };
 
 enum shm_event_kind {
-	SHM_EV_ANSWER = 1,		/* id: the command's; code: cycle_answer */
+	SHM_EV_ANSWER = 1,		/* id: the command's; code:
+					 * cycle_answer */
 	SHM_EV_STATE,			/* code: the new enum shm_state */
 	SHM_EV_FAULT,			/* code: cycle_fault */
 	SHM_EV_LOADED,			/* code: program n */
 	SHM_EV_ENDED,			/* code: cycle_outcome */
-	SHM_EV_CONDITION,		/* called; id: its letter; code: number */
+	SHM_EV_CONDITION,		/* called; id: its letter; code:
+					 * number */
 	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
 	SHM_EV_SELECT,			/* by the PLC; code: job n */
 	SHM_EV_HUNTING,			/* code: retracts in a row */
@@ -182,7 +188,8 @@ struct shm_event {
 	int32_t code;
 	uint32_t program, pad;
 	double place_mm;
-	double was, now;		/* set: values, NAN the generator's own */
+	double was, now;		/* set: values, NAN the generator's
+					 * own */
 };
 
 /*
@@ -292,7 +299,8 @@ struct shm_command {
 	uint32_t verb;
 	uint32_t arg;
 	double arg_mm;
-	int64_t until_ns;		/* CLOCK_MONOTONIC; then it is too late */
+	int64_t until_ns;		/* CLOCK_MONOTONIC; then it is too
+					 * late */
 	uint32_t instance;		/* of the edmd it is meant for */
 	uint32_t pad;
 };

@@ -112,7 +112,8 @@ struct cycle_jump_config {
 	double bad_share;		/* of the time between two jumps */
 	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	double a_down_mm_s2;		/* toward the cut; 0: a_max_mm_s2 */
-	double short_of_mm;		/* come back to this far above the cut */
+	double short_of_mm;		/* come back to this far above the
+					 * cut */
 };
 
 /* -- Probing the work: [probe] -------------------------------------------- */

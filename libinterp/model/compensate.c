@@ -89,8 +89,9 @@ static double predict(const struct interp_compensate *c, int axis,
 	struct interp_zpetc z = c->zpetc[axis];
 
 	for (int i = 0; i < c->horizon; i++, set++)
-		interp_axis_model_step(&m, demanded(c, axis, set, m.x[0],
-						    open_loop(c, &z, axis, set)));
+		interp_axis_model_step(&m,
+				       demanded(c, axis, set, m.x[0],
+						open_loop(c, &z, axis, set)));
 	return m.x[0];
 }
 

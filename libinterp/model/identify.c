@@ -215,7 +215,8 @@ static int shake(struct identify_fit *f, struct identify_normal *r)
 }
 
 static void find_sigmas(const struct identify_fit *f,
-			const struct identify_normal *r, double sigma[IDENTIFY_N])
+			const struct identify_normal *r,
+			double sigma[IDENTIFY_N])
 {
 	double dx[IDENTIFY_N], inverse[IDENTIFY_N][IDENTIFY_N];
 	const double left = r->ee / (double)(r->rows - (size_t)f->n);
@@ -284,14 +285,16 @@ static int check(const struct interp_identify_trace *t)
 		low = fmin(low, t->target_mm[k]);
 		high = fmax(high, t->target_mm[k]);
 	}
-	if (t->n < LEAST || (double)t->n * t->period_s < 2 * IDENTIFY_SETTLES_S ||
+	if (t->n < LEAST ||
+	    (double)t->n * t->period_s < 2 * IDENTIFY_SETTLES_S ||
 	    !(high > low))
 		return -ENODATA;
 	return 0;
 }
 
 static void report(const struct identify_fit *f,
-		   const struct identify_normal *r, struct interp_identified *ret)
+		   const struct identify_normal *r,
+		   struct interp_identified *ret)
 {
 	double sigma[IDENTIFY_N];
 

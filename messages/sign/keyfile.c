@@ -85,12 +85,13 @@ static int mode_check(const struct stat *st, const char *path, char *said)
 		return say(said, -EINVAL, "key file %s is not a plain file",
 			   path);
 	if (st->st_mode & 0007)
-		return say(said, -EPERM, "key file %s has mode %04o: everyone "
-			   "on this host may use it, and it counts as known to "
-			   "all; take the key back (edmctl keys remove NAME, or "
-			   "remove the host's key file and start edmd-jobs "
-			   "again), make a new one, and keep it at 0640 or "
-			   "0600", path, st->st_mode & 07777u);
+		return say(said, -EPERM,
+			   "key file %s has mode %04o: everyone on this host "
+			   "may use it, and it counts as known to all; take "
+			   "the key back (edmctl keys remove NAME, or remove "
+			   "the host's key file and start edmd-jobs again), "
+			   "make a new one, and keep it at 0640 or 0600",
+			   path, st->st_mode & 07777u);
 	if (st->st_mode & 0020)
 		return say(said, -EPERM, "key file %s has mode %04o: its group "
 			   "may write it; chmod g-w %s", path,

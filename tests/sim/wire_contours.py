@@ -154,8 +154,8 @@ class Contour:
     def is_close(self):
         return is_close(*self.about)
 
-    def left_by(self, path):
-        return left_by(*self.about, path)
+    def left_by(self, path, line=None):
+        return left_by(*self.about, path, line)
 
 
 def reverse(start, edges):

@@ -144,14 +144,15 @@ def left_out(poly, way, offset, inside):
     return ret
 
 
-def can_be_cut(poly, offset, inside, at, hidden=2 * UM, open_corner=2.1):
+def can_be_cut(poly, offset, inside, at, hidden=2 * UM, more=0):
     """A place that the wire does not come to must lie no farther from it than
     the point of an inner corner does (docs/taper.md)."""
     way = way_of(poly, offset, inside, at)
     if way is None:
         return False
     for far, turn, rise in left_out(poly, way, offset, inside):
-        turn = max(turn, rise if rise <= open_corner else 0)
+        if rise <= 2.1 + more or (rise <= turn + 0.5 + more and rise < 3):
+            turn = max(turn, rise)
         reach = offset / math.cos(turn / 2) if turn < 3 else offset
         if far > reach + hidden:
             return False
@@ -163,9 +164,9 @@ def is_close(poly, offset, inside, at):
     docs/taper.md, or farther by a micrometre?"""
     said = can_be_cut(poly, offset, inside, at)
     if can_be_cut(poly, max(offset - NEARER, UM), inside, at, 6 * UM,
-                  2.15) != said:
+                  0.05) != said:
         return True
-    return said and not can_be_cut(poly, offset + UM, inside, at, UM, 2.05)
+    return said and not can_be_cut(poly, offset + UM, inside, at, UM, -0.05)
 
 
 def verdict(poly, offset, inside, at):
@@ -175,12 +176,12 @@ def verdict(poly, offset, inside, at):
     return "cut" if can_be_cut(poly, offset, inside, at) else "refuse"
 
 
-def left_by(poly, offset, inside, at, path):
-    """How far a path is, beyond the offset, from places of the contour that a
-    wire can come to."""
+def left_by(poly, offset, inside, at, path, line=None):
+    """How far a path is, beyond the offset, from places of the contour, or of a
+    line that is a part of it, that a wire can come to."""
     way = way_of(poly, offset, inside, at)
     pts = shapely.points(np.asarray(
-        shapely.segmentize(poly.exterior, 0.1).coords))
+        shapely.segmentize(line or poly.exterior, 0.1).coords))
     reached = shapely.distance(pts, way) <= offset + TOUCHED
     return shapely.distance(pts[reached], path).max() - offset
 

@@ -228,7 +228,8 @@ static int take_steps(struct nc_orbit *c)
 	return 0;
 }
 
-static int refuse_letter(struct nc_orbit *c, enum nc_slot slot, const char *where)
+static int refuse_letter(struct nc_orbit *c, enum nc_slot slot,
+			 const char *where)
 {
 	struct nc_reader *r = c->r;
 

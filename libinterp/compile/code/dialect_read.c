@@ -125,9 +125,11 @@ static int read_rule(struct reading *f, struct piece key, struct piece value)
 			 r->words[2] ? r->words[2] : "");
 		return refuse(f, value.at, wanted, "a rule that is", value);
 	}
-	return refuse(f, key.at, "one of length_without_point centre end feed "
-		      "subprograms conditions_defined registers_defined "
-		      "ways_without_number top_of_wire macros dwell_p", "rule", key);
+	return refuse(f, key.at,
+		      "one of length_without_point centre end feed subprograms "
+		      "conditions_defined registers_defined "
+		      "ways_without_number top_of_wire macros dwell_p",
+		      "rule", key);
 }
 
 /* -- [letters] ------------------------------------------------------------ */

@@ -20,7 +20,8 @@ static void say(struct nc_reader *r, const struct interp_diag *d)
 
 static bool is_before(const struct interp_diag *a, const struct interp_diag *b)
 {
-	return a->line < b->line || (a->line == b->line && a->column < b->column);
+	return a->line < b->line ||
+	       (a->line == b->line && a->column < b->column);
 }
 
 void nc_tell(struct nc_reader *r)

@@ -5,9 +5,9 @@
  * Two languages use this: Custom Macro B in Fanuc's form, and the parameters
  * and O words of LinuxCNC.  Both work in front of the scanner.  A line with
  * variables is written again into a buffer, with numbers in the place of
- * expressions, and the scanner reads it there.  A map leads from the buffer back
- * to the columns of the text.  So the scanner and everything behind it need to
- * know nothing of macros.
+ * expressions, and the scanner reads it there.  A map leads from the buffer
+ * back to the columns of the text.  So the scanner and everything behind it
+ * need to know nothing of macros.
  *
  *	macro.c		a line into the buffer; assignments
  *	macro_expr.c	values of expressions

@@ -125,9 +125,11 @@ static int go_to(struct macro_line *l, const uint8_t *at)
 	if (err)
 		return err;
 	if (!to.at)
-		return macro_refuse(l, at, "the number of an N word that begins "
-				    "a line of this program", "GOTO %g, which "
-				    "is not there", n);
+		return macro_refuse(l, at,
+				    "the number of an N word that begins a "
+				    "line of this program",
+				    "GOTO %g, which is not there",
+				    n);
 	if (to.at < next.at)
 		err = macro_round(l, at);
 	go(r, to);
@@ -161,8 +163,10 @@ static int take_number(struct macro_line *l, uint32_t *ret)
 	macro_blanks(l);
 	p = nc_digits(l->p, l->end, &n);
 	if (p == l->p || n < 1 || n > 3)
-		return macro_refuse(l, l->p, "DO1, DO2 or DO3, and END with the "
-				    "same number", "DO or END without one");
+		return macro_refuse(l, l->p,
+				    "DO1, DO2 or DO3, and END with the same "
+				    "number",
+				    "DO or END without one");
 	l->p = p;
 	*ret = (uint32_t)n;
 	return 0;
@@ -273,9 +277,11 @@ static int take_argument(struct macro_line *l, struct call *c)
 	if (letter >= 'A' && letter <= 'Z' && letter != 'P')
 		which = variable_of(c, letter);
 	if (which >= MACRO_LOCALS || (!which && letter != 'P'))
-		return macro_refuse(l, at, "P, then A B C D E F H I J K M Q R S "
-				    "T U V W X Y Z with values", "'%c' behind "
-				    "G65", *at);
+		return macro_refuse(l, at,
+				    "P, then A B C D E F H I J K M Q R S T U V "
+				    "W X Y Z with values",
+				    "'%c' behind G65",
+				    *at);
 	err = macro_value(l, &v);
 	if (err)
 		return err;
@@ -336,6 +342,7 @@ int macro_flow(struct macro_line *l)
 		return 0;
 	err = macro_truth(l, &truth);
 	if (!err && !macro_word(l, "DO"))
-		err = macro_refuse(l, l->p, "WHILE [ ] DO1", "WHILE without DO");
+		err = macro_refuse(l, l->p, "WHILE [ ] DO1",
+				   "WHILE without DO");
 	return err ? err : take_while(l, at, truth);
 }

@@ -133,9 +133,9 @@ int macro_name(struct macro_line *l, char name[MACRO_NAME_MAX])
 		if (*l->p == ' ' || *l->p == '\t')
 			continue;
 		if (n == MACRO_NAME_MAX - 1 || *l->p <= ' ' || *l->p > '~')
-			return macro_refuse(l, at, "a name of up to 31 letters, "
-					    "and >", "a name too long or not "
-					    "ASCII");
+			return macro_refuse(l, at,
+					    "a name of up to 31 letters, and >",
+					    "a name too long or not ASCII");
 		name[n++] = (char)tolower(*l->p);
 	}
 	name[n] = '\0';

@@ -39,8 +39,8 @@ static void reset_modes(struct nc_reader *r)
 	       interp_dialect_by_name("generic")->nc;
 	memcpy(r->work_mm, o->work_offset_mm, sizeof(r->work_mm));
 	r->arc_incremental = !r->d->arc_places;
-	r->lengths = r->d->point != NC_POINT_FREE || (o->notes && o->notes->plan) ?
-		     NC_LENGTHS : 0;
+	r->lengths = r->d->point != NC_POINT_FREE ||
+		     (o->notes && o->notes->plan) ? NC_LENGTHS : 0;
 	r->feed_mm_s = first_feed(r);
 	r->feed_deg_s = r->feed_mm_s;
 	r->fresh = true;

@@ -198,9 +198,11 @@ int nc_curve_refuse_weight(struct nc_reader *r, enum nc_slot slot)
 {
 	const uint8_t *at = r->block.at[slot];
 
-	return nc_refuse(r, at, "a weight above 0: 0.000000001 or more, within "
-			 "a factor of 10000 of the others", "%s, a weight of %g",
-			 nc_quote_word(r, at).s, r->block.value[slot]);
+	return nc_refuse(r, at,
+			 "a weight above 0: 0.000000001 or more, within a "
+			 "factor of 10000 of the others",
+			 "%s, a weight of %g", nc_quote_word(r, at).s,
+			 r->block.value[slot]);
 }
 
 int nc_curve_check_points(struct nc_reader *r, const uint8_t *at)

@@ -46,7 +46,8 @@ int nc_run_register(struct nc_reader *r)
 	const enum nc_slot slot = nc_has(r, NC_D) ? NC_D : NC_H;
 
 	if (nc_has(r, NC_D) && nc_has(r, NC_H))
-		return nc_refuse(r, b->at[NC_H], "D or H", "H on a line with D");
+		return nc_refuse(r, b->at[NC_H], "D or H",
+				 "H on a line with D");
 	if (!nc_has(r, slot))
 		return set_side(r, r->line_at);
 	r->selected = (uint32_t)b->value[slot];

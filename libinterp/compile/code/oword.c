@@ -159,8 +159,8 @@ static int refuse_alone(struct macro_line *l, uint32_t i, const char *other)
 	char wanted[80];
 
 	snprintf(wanted, sizeof(wanted), "o%s %s behind it", w->name, other);
-	return macro_refuse(l, word_at(l, i), wanted, "o%s without its %s", w->name,
-			    other);
+	return macro_refuse(l, word_at(l, i), wanted, "o%s without its %s",
+			    w->name, other);
 }
 
 /* Go on at the line of @j, or behind it. */
@@ -256,8 +256,9 @@ static int take_endwhile(struct macro_line *l, uint32_t i)
 		err = macro_round(l, word_at(l, i));
 		return err ? err : go(l, j, false);
 	}
-	return macro_refuse(l, word_at(l, i), "while before it", "o%s endwhile of "
-			    "no loop", all[i].name);
+	return macro_refuse(l, word_at(l, i), "while before it",
+			    "o%s endwhile of no loop",
+			    all[i].name);
 }
 
 static int take_repeat(struct macro_line *l, uint32_t i)
@@ -357,12 +358,15 @@ static int take_call(struct macro_line *l, uint32_t i)
 				   strcmp(all[j].name, all[i].name) == 0))
 		j++;
 	if (j == m->nowords)
-		return macro_refuse(l, word_at(l, i), "a sub of this text; other "
-				    "files are not read", "a call of o%s, "
-				    "which is not there", all[i].name);
+		return macro_refuse(l, word_at(l, i),
+				    "a sub of this text; other files are not "
+				    "read",
+				    "a call of o%s, which is not there",
+				    all[i].name);
 	if (r->depth == INTERP_NC_DEPTH_MAX)
-		return macro_refuse(l, word_at(l, i), "up to 8 calls inside each "
-				    "other", "a call inside %d others",
+		return macro_refuse(l, word_at(l, i),
+				    "up to 8 calls inside each other",
+				    "a call inside %d others",
 				    INTERP_NC_DEPTH_MAX);
 	r->frame[++r->depth] = (struct nc_frame) {
 		.back = r->at, .return_line = r->line,

@@ -61,8 +61,9 @@ int nc_cavity(struct nc_reader *r)
 	if (refuse_inside(r))
 		return -EINVAL;
 	if (s->ncavities == NC_NCAVITIES)
-		return nc_refuse(r, my_word(r), "up to 256 contours, or another "
-				 "G152", "a contour too many");
+		return nc_refuse(r, my_word(r),
+				 "up to 256 contours, or another G152",
+				 "a contour too many");
 	if (!nc_has(r, NC_P) || !nc_has(r, NC_X) || !nc_has(r, NC_Y))
 		return nc_refuse(r, my_word(r), "the number of its subprogram "
 				 "and the place of its start hole, as in G151 "
@@ -79,9 +80,10 @@ int nc_cavity(struct nc_reader *r)
 
 static int refuse_contour(struct nc_reader *r, const struct nc_cavity *c)
 {
-	return nc_refuse_at(r, c->line, "a lead in under G41 or G42, a contour "
-			    "that ends where it begins, and a lead out under "
-			    "G40", "a contour P%g that is not whole", c->number);
+	return nc_refuse_at(r, c->line,
+			    "a lead in under G41 or G42, a contour that ends "
+			    "where it begins, and a lead out under G40",
+			    "a contour P%g that is not whole", c->number);
 }
 
 /* Afterwards the line of the G152 is the present line again. */
@@ -144,9 +146,11 @@ static int read_order(struct nc_reader *r)
 	s->order = l == 0 ? NC_BY_CONTOUR : l == 1 ? NC_ROUGHS_FIRST :
 		   NC_TABS_LAST;
 	if (l > 2 || (s->order == NC_TABS_LAST && !(s->tab_mm > 0)))
-		return nc_refuse(r, r->block.at[NC_L], "L1: all rough cuts "
-				 "first; L2 with a tab, as in R1: all tabs last",
-				 "G152 L%g%s", l, l > 2 ? "" : " without a tab");
+		return nc_refuse(r, r->block.at[NC_L],
+				 "L1: all rough cuts first; L2 with a tab, as "
+				 "in R1: all tabs last",
+				 "G152 L%g%s", l,
+				 l > 2 ? "" : " without a tab");
 	return 0;
 }
 

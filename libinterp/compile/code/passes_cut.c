@@ -130,7 +130,7 @@ static int play(const struct cutting *k, uint32_t i, bool back, uint32_t first,
 	const struct contour_pass how = { p->offset_mm, &p->word, back };
 
 	return contour_play(&k->r->contour, k->t,
-			    (const uint32_t[]) { first, end }, &how, k->r->diag);
+			    (const uint32_t[]){ first, end }, &how, k->r->diag);
 }
 
 /* The passes of a part, forward and backward; the first one goes back if

@@ -140,8 +140,8 @@ static int probe(struct nc_reader *r, int axis, double by_mm)
 	return go_sensed(r, axis, by_mm, INTERP_SEG_PROBE);
 }
 
-/* Only the machine knows in which direction the middle lies.  So both directions
- * are written, and the machine walks one of the two. */
+/* Only the machine knows in which direction the middle lies.  So both
+ * directions are written, and the machine walks one of the two. */
 static int half(struct nc_reader *r, int axis)
 {
 	const int err = go_sensed(r, axis, span_mm(r, axis), INTERP_SEG_HALF);
@@ -164,7 +164,8 @@ static int axis_of(struct nc_reader *r, const char *wanted)
 
 	if (axes && !(axes & (axes - 1)))
 		return __builtin_ctz(axes);
-	nc_refuse(r, word_at(r), wanted, "%s %s", nc_quote_word(r, word_at(r)).s,
+	nc_refuse(r, word_at(r), wanted, "%s %s",
+		  nc_quote_word(r, word_at(r)).s,
 		  axes ? "along several axes" : "without an axis");
 	return -1;
 }

@@ -200,7 +200,8 @@ static const uint8_t *shape(const struct threeb_text *t, const uint8_t *p,
 {
 	const uint8_t *next;
 
-	for (r->shape = 0; r->shape < 2 && (next = match(t, p, "D")); r->shape++)
+	for (r->shape = 0; r->shape < 2 && (next = match(t, p, "D"));
+	     r->shape++)
 		p = skip_blanks(t, next);
 	return p;
 }

@@ -45,7 +45,8 @@ struct threeb_writer {
 	struct place at;		/* where a reader would be now */
 	uint32_t line;			/* of the source, in hand */
 	uint16_t cond;
-	bool fourb;			/* with the radius and the shape of arcs */
+	bool fourb;			/* with the radius and the shape of
+					 * arcs */
 	bool clockwise;			/* the whole contour goes round
 					 * clockwise */
 };

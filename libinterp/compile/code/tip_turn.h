@@ -24,7 +24,8 @@ struct nc_pose {
 };
 
 struct nc_pose_way {
-	void (*at)(const void *of, double t, struct nc_pose *ret);	/* 0 ... 1 */
+	void (*at)(const void *of, double t, struct nc_pose *ret);	/* 0 ...
+									 * 1 */
 	const void *of;
 	bool body;			/* a rotary axis that rolls the tool, if
 					 * there is one, follows q */

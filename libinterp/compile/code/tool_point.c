@@ -117,8 +117,10 @@ int nc_tool_vector(struct nc_reader *r)
 	if (!angles)
 		return 0;
 	return nc_refuse(r, b->at[__builtin_ctz(angles)],
-			 "I J K, from the tip into the holder; G43.4 for angles",
-			 "an angle of a rotary that turns the tool, under G43.5");
+			 "I J K, from the tip into the holder; G43.4 for "
+			 "angles",
+			 "an angle of a rotary that turns the tool, under "
+			 "G43.5");
 }
 
 struct swing {

@@ -25,7 +25,8 @@ enum nc_slot {
 	NC_D, NC_H, NC_ANGLE,		/* offset registers; A of a taper */
 	NC_UI, NC_UJ,			/* I J behind a : */
 	NC_Q,
-	NC_SPARE,			/* a letter that only ignored words use */
+	NC_SPARE,			/* a letter that only ignored words
+					 * use */
 	NC_NSLOTS
 };
 

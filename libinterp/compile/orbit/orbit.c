@@ -382,7 +382,8 @@ static int vectors(struct walk *w)
 	int err = escape_home(w, both(w), 0);
 
 	for (uint32_t i = 0; i < o->directions && !err; i++) {
-		const double angle = (o->angle_deg + 360.0 * i / o->directions) *
+		const double angle = (o->angle_deg +
+				      360.0 * i / o->directions) *
 				     TURN / 360;
 
 		err = line_to(w, o->radius_mm * cos(angle),

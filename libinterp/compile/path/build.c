@@ -384,8 +384,8 @@ static int sensed_begin(struct interp_build *b, uint32_t moved,
 			struct interp_diag *diag)
 {
 	if (moved & (moved - 1)) {
-		return interp_diag_say(diag, "a probing motion, half or limit along "
-				       "several axes; one axis");
+		return interp_diag_say(diag, "a probing motion, half or limit "
+					     "along several axes; one axis");
 	}
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
 }

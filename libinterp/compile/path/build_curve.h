@@ -18,7 +18,8 @@
  * @ret gets the curve as it is stored, with no axes if none moves.  @ret_moved
  * has a bit for each axis.  Return: 0 or -ENOMEM.
  */
-int build_curve_store(struct interp_build *b, const struct interp_build_curve *c,
+int build_curve_store(struct interp_build *b,
+		      const struct interp_build_curve *c,
 		      struct interp_curve *ret, uint32_t *ret_moved);
 
 /* A NURBS while it is cut into segments. */

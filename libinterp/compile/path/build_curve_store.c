@@ -29,7 +29,8 @@ static bool column_moves(const struct interp_nurbs *n, uint32_t j)
 	for (uint32_t i = 1; i < n->npoints; i++) {
 		const double *q = n->points + i * row;
 
-		if (fabs(q[j] / q[n->naxes] - first) > 1e-12 * (1 + fabs(first)))
+		if (fabs(q[j] / q[n->naxes] - first) >
+		    1e-12 * (1 + fabs(first)))
 			return true;
 	}
 	return false;
@@ -96,7 +97,8 @@ static int store_numbers(struct store *p, const uint32_t from[INTERP_NAXES])
 	return err;
 }
 
-int build_curve_store(struct interp_build *b, const struct interp_build_curve *c,
+int build_curve_store(struct interp_build *b,
+		      const struct interp_build_curve *c,
 		      struct interp_curve *ret, uint32_t *ret_moved)
 {
 	const struct interp_nurbs *n = &c->nurbs;

@@ -261,7 +261,8 @@ int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 {
 	int err;
 
-	if (b->o.fit_mm > 0 && !w->rapid && !w->ends && !b->escape && b->lift_axis < 0)
+	if (b->o.fit_mm > 0 && !w->rapid && !w->ends && !b->escape &&
+	    b->lift_axis < 0)
 		return build_fit_add(b, end_mm, w, diag);
 	err = interp_build_flush(b, diag);
 	return err ? err : build_line(b, end_mm, w, diag);

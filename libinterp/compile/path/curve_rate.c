@@ -44,7 +44,8 @@ bool interp_program_curve_rate(const struct interp_program *p,
 	    piece->stops_at + piece->nstops > p->head->nstops)
 		return false;
 	u = s[at_end ? piece->nstops - 1 : 0].u;
-	inside = (s[piece->nstops - 1].u - s[0].u) * (at_end ? -INSIDE : INSIDE);
+	inside = (s[piece->nstops - 1].u - s[0].u) *
+		 (at_end ? -INSIDE : INSIDE);
 	interp_nurbs_open(&e, &c);
 	nurbs_span_enter(&e, at_end ? span_before(&c, u) :
 				      interp_nurbs_span(&c, u));

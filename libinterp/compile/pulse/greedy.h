@@ -9,9 +9,9 @@
  * pulse is legal at every place.  So the better of the two first axes is the
  * optimum; the other one costs a run more at the most.
  *
- * It cannot be walked back from its place alone, for two places may lead to one.
- * So the builder plans it, and the program keeps which input gives each pulse:
- * path/build_bits.h.
+ * It cannot be walked back from its place alone, for two places may lead to
+ * one.  So the builder plans it, and the program keeps which input gives each
+ * pulse: path/build_bits.h.
  *
  * Threads: any; planning takes as long as the line has runs.
  */

@@ -319,10 +319,10 @@ static int take_row(struct reading *r)
 	if (!row)
 		return -ENOMEM;
 	if (!tech_condition(&cell, &row->letter, &row->number))
-		return tech_refuse(&r->text, cell.at, "C, E or S and up to nine "
-				   "digits, as C120; or a key and =",
-				   "'%s' is no condition",
-				   tech_quote(&cell).s);
+		return tech_refuse(&r->text, cell.at,
+				   "C, E or S and up to nine digits, as C120; "
+				   "or a key and =",
+				   "'%s' is no condition", tech_quote(&cell).s);
 	return take_cells(r, row, at);
 }
 

@@ -71,8 +71,9 @@ int tech_finish(struct tech_text *t, struct interp_tech_table *table)
 	struct interp_tech nothing;
 
 	if (table->nrows == 0)
-		return tech_refuse(t, NULL, "at least one condition, as in "
-				   "C120, 30, 40", "a table without conditions");
+		return tech_refuse(t, NULL,
+				   "at least one condition, as in C120, 30, 40",
+				   "a table without conditions");
 	qsort(table->row, table->nrows, sizeof(*table->row), by_name);
 	for (uint32_t i = 1; i < table->nrows; i++) {
 		if (compare(table->row[i - 1].letter, table->row[i - 1].number,

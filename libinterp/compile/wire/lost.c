@@ -8,9 +8,9 @@
  * of an inner corner would.  Two corners are asked for that:
  *
  *	the one of the tangents in the two places
- *	the one that the outline itself makes between them, if it is open enough:
- *	beside a step or a rib that is lower than the wire, or between walls that
- *	bulge, it is sharper than that of the tangents
+ *	the one that the outline itself makes between them: beside a step or a
+ *	rib that is lower than the wire, if it is open enough, and between walls
+ *	that bulge, it may be sharper than that of the tangents
  *
  * The outline's own corner is the most by which it turns inward on the way from
  * the one place to the other; turns to and fro, as rounding makes them, do not
@@ -27,7 +27,9 @@
 #define HIDDEN_MM	0.002
 
 #define NO_CORNER	3.0		/* turns by more are slots */
-#define OPEN		2.1		/* the sharpest of the outline's own */
+#define OPEN		2.1		/* the outline's own may turn so far ... */
+#define CURVED		0.5		/* ... or by so much more than the way:
+					 * its walls bulge */
 #define ARC_PARTS	8
 
 const struct face_piece *track_piece(const struct track_work *w, uint32_t e)
@@ -130,9 +132,10 @@ static double reach_of(const struct between *k)
 	const double d = fmax(p->wire_mm, q->wire_mm);
 	const double other = fmin(p->wire_mm, q->wire_mm);
 	const double turn = turn_of(k->w, k->j), own = rise_of(k);
-	const double most = fmax(turn, own <= OPEN ? own : 0);
+	const bool counts = own <= OPEN || (own <= turn + CURVED &&
+					    own < NO_CORNER);
+	const double most = fmax(turn, counts ? own : 0);
 	double reach = most < NO_CORNER ? d / cos(most / 2) : d;
-	struct vec corner;
 
 	if (turn <= 0 || turn >= NO_CORNER)
 		return reach;
@@ -140,10 +143,6 @@ static double reach_of(const struct between *k)
 		reach = fmax(reach, sqrt(d * d + other * other -
 					 2 * d * other * cos(turn)) /
 				    fabs(sin(turn)));
-	if ((p->c.arc || q->c.arc) && own < NO_CORNER &&
-	    curve_meet(&p->c, &q->c, k->at, &corner) &&
-	    curve_distance(k->at, corner) < 3 * reach)
-		reach = fmax(reach, curve_distance(k->at, corner));
 	return reach;
 }
 

@@ -14,7 +14,8 @@ static const double *point(const struct interp_row *r, uint64_t i)
 }
 
 /* u counts the points. */
-static void chord_at(const void *arg, double u, struct interp_contour_point *ret)
+static void chord_at(const void *arg, double u,
+		     struct interp_contour_point *ret)
 {
 	const struct interp_row *r = arg;
 	const double last = (double)(r->n - 2);

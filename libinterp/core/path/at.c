@@ -109,8 +109,9 @@ bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
 		       struct interp_at_curve *last,
 		       struct interp_contour_point *ret)
 {
-	const struct interp_seg s = i < p->head->nsegs ? p->segs[i] :
-					(struct interp_seg) { .kind = INTERP_END };
+	const struct interp_seg s =
+		i < p->head->nsegs ? p->segs[i] :
+				     (struct interp_seg){ .kind = INTERP_END };
 	double part;
 
 	*ret = (struct interp_contour_point) { { 0 }, { 0 } };

@@ -42,8 +42,9 @@ static bool head_ok(const struct interp_program_head *h, size_t bytes)
 	    h->version != INTERP_PROGRAM_VERSION ||
 	    h->head_bytes != sizeof(*h) || h->bytes > bytes)
 		return false;
-	if (h->nsegs < 2 || h->nconds < 1 || h->nescapes < 1 || h->naxes > INTERP_NAXES ||
-	    h->strategy >= INTERP_NSTRATEGIES || !isfinite(h->length_mm))
+	if (h->nsegs < 2 || h->nconds < 1 || h->nescapes < 1 ||
+	    h->naxes > INTERP_NAXES || h->strategy >= INTERP_NSTRATEGIES ||
+	    !isfinite(h->length_mm))
 		return false;
 	if (h->tolerance_milli > INTERP_TOLERANCE_MAX ||
 	    h->perpendicular > 1 || h->coupling >= INTERP_NCOUPLINGS)

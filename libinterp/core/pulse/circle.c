@@ -34,7 +34,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define CIRCLE_R_MAX	(INT64_C(1) << 28)	/* keeps the swept area in range */
+#define CIRCLE_R_MAX	(INT64_C(1) << 28)	/* keeps the swept area in
+						 * range */
 #define CIRCLE_TURNS_MAX	8
 
 /* What the inward and the outward pulse are, for a quadrant and a direction. */

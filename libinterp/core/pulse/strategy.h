@@ -29,7 +29,8 @@ struct pulse_strategy {
 	/* Where a pair changes from one input to the other; NULL: toward the
 	 * line. */
 	void (*set)(struct interp_pair *p, int64_t half, bool at_end);
-	uint32_t least_milli;		/* the smallest tolerance, 1/1000 pulse */
+	uint32_t least_milli;		/* the smallest tolerance, 1/1000
+					 * pulse */
 
 	bool at_once;			/* all axes may pulse in one tick */
 	bool accumulates;		/* has an accumulator for each axis,

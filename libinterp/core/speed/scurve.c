@@ -189,8 +189,9 @@ double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s)
 	for (int i = c->n - 1; i >= 0; i--) {
 		const struct interp_scurve_state *s = &c->from[i];
 		const double j = c->j_mm_s3[i], a = s->a_mm_s2;
-		const double top = a > 0 && j < 0 ? s->v_mm_s - a * a / (2 * j) :
-						    s->v_mm_s;
+		const double top = a > 0 && j < 0 ?
+					   s->v_mm_s - a * a / (2 * j) :
+					   s->v_mm_s;
 
 		if (after <= v_mm_s && top >= v_mm_s)
 			return go(*s, j, falls_s(s, j, v_mm_s)).x_mm;

@@ -300,10 +300,9 @@ def recover(s, what):
         elif now == "hold" and "homed" in s.ctl("start")[1]:
             s.ctl("stop")
         elif now == "idle":
-            home(s, "X")
-            s.until(f"{what}: X homed", 10, state="idle")
-            home(s, "Y")
-            s.until(f"{what}: Y homed", 10, state="idle")
+            for axis in "XY":           # refused, unless its place is lost
+                s.ctl("home", axis)
+                s.until(f"{what}: {axis} homed", 10, state="idle")
             submit(s, "strict-faults")
         time.sleep(0.1)
     s.in_vain(f"{what}: recovered in vain: {s.status()}")
