@@ -88,6 +88,13 @@ int ctl_start(struct ctl *c)
 	});
 }
 
+int ctl_resume(struct ctl *c)
+{
+	return command(c, &(struct talk_question) {
+		.verb = "resume", .job = c->arg, .text = c->value,
+	});
+}
+
 int ctl_remove(struct ctl *c)
 {
 	return command(c, &(struct talk_question) {

@@ -38,6 +38,7 @@ int ctl_submit(struct ctl *c);
 int ctl_keys(struct ctl *c);
 int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);
+int ctl_resume(struct ctl *c);
 int ctl_retract(struct ctl *c);
 int ctl_remove(struct ctl *c);
 int ctl_move(struct ctl *c);

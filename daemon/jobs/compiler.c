@@ -68,6 +68,19 @@ static void take_note(void *arg, uint32_t line, const char *text)
 	r->nnotes++;
 }
 
+/* The values that were set are those of its conditions from now on. */
+static int go_on(struct compiler *c)
+{
+	const struct shm_sets *sets = &c->request.sets;
+	const uint64_t n = sets->n < SHM_SETS_MAX ? sets->n : SHM_SETS_MAX;
+
+	for (uint64_t i = 0; i < n; i++)
+		interp_build_set(c->result.build, sets->set[i].cond,
+				 sets->set[i].field, sets->set[i].value);
+	return interp_build_from(c->result.build, &c->request.from,
+				 &c->result.entry, &c->result.diag);
+}
+
 static int compiler_text(struct compiler *c, const struct config_tech *tech,
 			 const struct interp_dialect *dialect)
 {
@@ -78,6 +91,7 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	const struct interp_notes notes = { .say = take_note,
 					    .arg = &c->result };
 	struct config_compiling of;
+	int err;
 
 	config_compiling(c->request.config, tech, &of);
 	of.text.nc.notes = &notes;
@@ -88,8 +102,9 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	c->result.build = interp_build_create(&of.build);
 	if (!c->result.build)
 		return -ENOMEM;
-	return interp_compile(&text, &of.text, c->result.build,
-			      &c->result.lines, &c->result.diag);
+	err = interp_compile(&text, &of.text, c->result.build, &c->result.lines,
+			     &c->result.diag);
+	return err || !c->request.goes_on ? err : go_on(c);
 }
 
 /* The file of the dialect is read for each job, too. */

@@ -2,6 +2,7 @@
 /* interrupt.c - a job that a power cut or the death of edmd ended early */
 #include "interrupt.h"
 
+#include "again.h"
 #include "jobs.h"
 #include "jobs_log.h"
 
@@ -56,23 +57,19 @@ static void say_when(char *to, size_t size, int64_t utime)
 
 static void keep(struct jobs *j, const struct checkpoint *c)
 {
-	const size_t bytes = sizeof(c->base);
-	char *hex = malloc(2 * bytes + 1), reason[320], when[32];
+	static struct again a;
+	const struct shm_snapshot *s = &a.base.snap;
+	char reason[320], when[32];
 
-	if (!hex)
-		return;
+	again_interrupted(j, j->queue.job.n, &c->base, &a);
+	again_write(j, j->queue.job.n, &a);
+	take_sums(&j->queue, &a.base);
 	say_when(when, sizeof(when), c->utime);
-	sodium_bin2hex(hex, 2 * bytes + 1, (const unsigned char *)&c->base,
-		       bytes);
-	snprintf(reason, sizeof(reason),
-		 "interrupted in %s, line %u, at %.3f mm of %.3f, cut to %.3f "
-		 "mm; last seen %s; if the host did not go down, edmd's log "
-		 "says why",
-		 shm_state_name(c->base.snap.state), c->base.snap.line,
-		 c->base.snap.place_mm, c->base.snap.length_mm,
-		 c->base.snap.far_mm, when);
-	store_interrupt(j->store, j->queue.job.n, hex);
-	free(hex);
+	snprintf(reason, sizeof(reason), "interrupted in %s, line %u, at %.3f "
+		 "mm of %.3f, cut to %.3f mm; last seen %s; if the host did not "
+		 "go down, edmd's log says why",
+		 shm_state_name(s->state), s->line, s->place_mm, s->length_mm,
+		 s->far_mm, when);
 	queue_end(j, JOB_INTERRUPTED, reason);
 	interrupt_init(j);
 }

@@ -2,6 +2,7 @@
 /* load.c - takes a job from the store and loads it into edmd */
 #include "jobs.h"
 
+#include "again.h"
 #include "compiler.h"
 #include "jobs_log.h"
 
@@ -186,6 +187,7 @@ static void on_compiled(void *arg, const struct compiler_result *r)
 	struct jobs *j = arg;
 	struct queue *q = &j->queue;
 	struct store_job job = q->next, found;
+	const char *why;
 	char reason[640];
 
 	q->compile = NULL;
@@ -198,7 +200,11 @@ static void on_compiled(void *arg, const struct compiler_result *r)
 	if (r->err == 0) {
 		q->job = found;
 		store_set_tech(j->store, found.n, r->tech_sha256);
-		load_ask(j, r);
+		why = again_loaded(j, r);
+		if (why)
+			load_refuse(j, found, why);
+		else
+			load_ask(j, r);
 		queue_recount(j);
 		return;
 	}
@@ -223,13 +229,18 @@ void load_begin(struct jobs *j, int64_t now_us)
 		request.text = q->next_text;
 		for (int i = 0; i < INTERP_NAXES; i++)
 			request.start_mm[i] = s->pos[i] * s->pulse_mm[i];
+		err = again_request(j, &q->next, &request);
+	}
+	if (err == 0)
 		err = compiler_start(&q->compile, j->event, &request,
 				     on_compiled, j);
-	}
 	if (err == -EILSEQ) {
 		load_refuse(j, q->next,
 			    "its text in the store is not the one that was "
 			    "sent: the disk damaged it; send it again");
+	} else if (err == -ESTALE) {
+		free(q->next_text);
+		q->next_text = NULL;
 	} else if (err < 0) {
 		q->again_us = now_us + AGAIN_US;
 		free(q->next_text);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* queue.c - follows the job that is in the machine */
+#include "again.h"
 #include "faults.h"
 #include "hunting.h"
 #include "interrupt.h"
@@ -91,7 +92,7 @@ const char *queue_unready(const struct jobs *j)
 		return "a fault is latched: it wants a reset";
 	if (*j->interrupted)
 		return "a job was interrupted, and its work may still be "
-		       "there: remove it from the queue first";
+		       "there: resume it or remove it first";
 	if (j->config->require_home && j->link.snap.unhomed)
 		return "an axis is not homed: home it";
 	return NULL;
@@ -143,8 +144,16 @@ int queue_init(struct jobs *j)
 static void record_end(struct jobs *j, enum job_state state,
 		       const char *reason)
 {
-	const struct shm_snapshot *s = &j->queue.snap;
-	struct store_end e = {
+	struct shm_snapshot whole = j->queue.snap;
+	const struct shm_snapshot *s = &whole;
+	static struct again a;
+	struct store_end e;
+
+	/* Of an interrupted one interrupt.c has put them together. */
+	if (state != JOB_INTERRUPTED &&
+	    again_read(j, j->queue.job.n, &a) == 0)
+		again_whole(&a, &whole);
+	e = (struct store_end) {
 		.state = state,
 		.reason = reason,
 		.now_us = jobs_utime(),

@@ -261,6 +261,13 @@ int store_interrupt(struct store *s, uint32_t n, const char *at)
 			"(?, ?)", "Is", (int64_t)n, at);
 }
 
+int store_again(struct store *s, uint32_t n)
+{
+	return store_do(s, STORE_KEEP, "UPDATE job SET state='queued', hold=1, "
+			"begun_us=0 WHERE n=? AND state='interrupted'", "I",
+			(int64_t)n);
+}
+
 int store_interrupted(struct store *s, struct store_job *ret)
 {
 	int err;

@@ -83,7 +83,7 @@ static const char *what_next(const struct jobs *j, bool hold)
 	if (j->link.snap.state == SHM_FAULT)
 		return "a fault is latched: it wants a reset, then a start";
 	if (*j->interrupted)
-		return "a job was interrupted: remove it, then start";
+		return "a job was interrupted: resume it or remove it, then start";
 	if (queue_unready(j))
 		return "an axis is not homed: it wants a home, then a start";
 	if (j->queue.waiting)

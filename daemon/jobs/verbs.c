@@ -6,6 +6,7 @@
  * The other verbs are answered at once.
  */
 #include "act.h"
+#include "again.h"
 #include "keys.h"
 #include "verb.h"
 
@@ -436,8 +437,17 @@ static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 static void verb_resume(struct jobs *j, const struct verb *v,
 			const struct jobs_lcm_command *c)
 {
-	if (!refused_by_fault(j, c))
-		verb_machine(j, v, c);
+	struct store_job job;
+
+	if (!*c->job || strcmp(c->job, j->queue.job.id) == 0) {
+		if (!refused_by_fault(j, c))
+			verb_machine(j, v, c);
+	} else if (store_find(j->store, c->job, &job) < 0) {
+		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
+			     "them");
+	} else {
+		again_resume(j, c, &job);
+	}
 }
 
 /* A waiting job is started when its turn comes. */
@@ -448,7 +458,7 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 
 	if (job->state == JOB_INTERRUPTED) {
 		verbs_answer(j, c, REFUSED, "this job was interrupted; look at "
-			     "the work, remove it, and submit what is left");
+			     "the work, then resume it or remove it");
 		return;
 	}
 	if (job->state != JOB_QUEUED) {

@@ -436,8 +436,14 @@ def test_a_power_cut_is_told(p, page):
     show(page, "jobs")
     row = page.locator(".jobs li", has_text="night.ngc").first
     expect(row).to_contain_text("interrupted")
-    row.get_by_role("button", name="Remove").click()
-    expect(page.locator(".head h1")).to_have_text("Idle")
+    row.get_by_role("button", name="Resume").click()
+    press(page.locator("#resumejob"))
+    expect(page.locator(".head h1")).to_have_text("Ready")
+    client.status_where(lambda s: s.state == "hold", 20)
+    show(page, "cut")
+    press(page.locator("#start"))
+    client.status_where(lambda s: s.state == "erode", 60)
+    end_job(page, p)
 
 
 def test_the_daemon_dies_and_comes_back(p, page):

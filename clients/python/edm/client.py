@@ -237,9 +237,13 @@ class Client:
         """Power off, stop on the path."""
         self.ask("hold")
 
-    def resume(self) -> None:
-        """Go on after a hold."""
-        self.ask("resume")
+    def resume(self, job: str = "", axes: str = "") -> None:
+        """Go on after a hold; or with a job that was interrupted.
+
+        `axes`: letters of those that cannot be homed and whose places are
+        right all the same, as the caller has seen.
+        """
+        self.ask("resume", job, text=axes)
 
     def stop(self) -> None:
         """End the job where it stands."""

@@ -32,7 +32,7 @@ export const en = {
 	"why.idle": "No job is loaded. Drop a program anywhere to begin.",
 	"why.idle.queue": "Jobs wait in the queue. Press Start for 1 s to begin the next one.",
 	"why.idle.unhomed": "Axes are not homed: {axes}. Home them on Set up.",
-	"why.interrupted": "A job was cut off, by a power failure or by the death of edmd. Look at it on Jobs, then remove it.",
+	"why.interrupted": "A job was cut off, by a power failure or by the death of edmd. Look at the work; then resume the job on Jobs, or remove it.",
 	"why.store": "The store cannot write, so no job is taken or begun. {why}.",
 	"why.ready": "{job} is ready. Press Start for 1 s.",
 	"why.travel": "Moves without sparks to where the cut begins.",
@@ -101,6 +101,8 @@ export const en = {
 	"jobs.checkfirst": "The program has an error. Mend it first.",
 	"jobs.sum": "Cut {cut} mm, positioning {rapid} mm",
 	"jobs.waits": "waits for Start", "jobs.more": "Show more",
+	"jobs.resume": "Resume", "jobs.resume.about": "The job is read again and then stands ready. Start positions the electrode off the work and comes in along the path that was cut before.",
+	"jobs.resume.sure": "The machine stands where it shows: {axes}",
 	"jobs.ahead": "{name}: earlier", "jobs.behind": "{name}: later",
 
 	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",

@@ -25,7 +25,7 @@ export const zh: Record<Word, string> = {
 
 	"why.idle": "没有载入任务。把程序拖到页面任意处即可开始。",
 	"why.idle.queue": "队列中有任务等待。按住启动 1 秒开始下一个。",
-	"why.interrupted": "有任务因断电或 edmd 退出而中断。请在任务页查看,然后移除。",
+	"why.interrupted": "有任务因断电或 edmd 退出而中断。请检查工件,然后在任务页继续该任务或移除它。",
 	"why.store": "存储无法写入,不接收也不开始任务。{why}。",
 	"why.idle.unhomed": "这些轴没有回零:{axes}。请在装夹页回零。",
 	"why.ready": "{job} 已就绪。按住启动 1 秒。",
@@ -85,6 +85,8 @@ export const zh: Record<Word, string> = {
 	"jobs.length": "路径", "jobs.preview": "预览", "jobs.editor": "程序文本",
 	"jobs.large": "此程序太长,编辑器放不下;它会原样检查和发送。", "jobs.checkfirst": "程序有错误。请先改正。",
 	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动", "jobs.more": "显示更多",
+	"jobs.resume": "继续任务", "jobs.resume.about": "任务被重新读取并就绪。按启动后先定位到工件之外,再沿已加工的路径进入。",
+	"jobs.resume.sure": "机床确实停在所显示的位置:{axes}",
 	"jobs.ahead": "{name}:提前", "jobs.behind": "{name}:推后",
 
 	"job.queued": "排队", "job.ready": "就绪", "job.running": "运行", "job.held": "保持",
