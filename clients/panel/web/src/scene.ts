@@ -79,7 +79,7 @@ function upTo(kept: number[], i: number): number {
 	return low;
 }
 
-/** Lines with smooth edges cost a processor that has to draw them too much. */
+/** Does a processor draw, and no graphics card? */
 function isSoftware(): boolean {
 	const gl = document.createElement("canvas").getContext("webgl");
 	const names = gl?.getExtension("WEBGL_debug_renderer_info");
@@ -119,7 +119,7 @@ export class PathScene {
 	onMarks: (m: Marks) => void = () => {};
 
 	constructor(canvas: HTMLCanvasElement) {
-		this.renderer = new WebGLRenderer({ canvas, antialias: !this.software, alpha: true, powerPreference: "low-power" });
+		this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "low-power" });
 		this.camera.up.set(0, 0, 1);
 		this.controls = new OrbitControls(this.camera, canvas);
 		this.controls.enableDamping = false;
