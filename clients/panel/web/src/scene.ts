@@ -79,15 +79,6 @@ function upTo(kept: number[], i: number): number {
 	return low;
 }
 
-/** Does a processor draw, and no graphics card? */
-function isSoftware(): boolean {
-	const gl = document.createElement("canvas").getContext("webgl");
-	const names = gl?.getExtension("WEBGL_debug_renderer_info");
-	const name = gl && names ? String(gl.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
-	gl?.getExtension("WEBGL_lose_context")?.loseContext();
-	return /swiftshader|llvmpipe|softpipe|software/i.test(name);
-}
-
 export class PathScene {
 	frames = 0;
 	private renderer: WebGLRenderer;
@@ -106,8 +97,6 @@ export class PathScene {
 	private drawn = 0;
 	private took = 0;
 	private begun = false;
-	private readonly software = isSoftware();
-	private rendered = 0;
 	private look: Look = { place: 0, far: 0, back: false, electrode: null };
 	private span = 1;
 	private width = 1;
@@ -259,7 +248,7 @@ export class PathScene {
 			this.fill(this.edge, p, Math.max(p.s[i] as number, 0), l.back ? l.place : l.far, p.kind[Math.min(i + 1, p.n - 1)] === CUT);
 			this.fill(this.back, p, l.place, l.far, l.back);
 		}
-		this.ask(true);
+		this.ask();
 	}
 
 	private fill(line: LineSegments2, p: PathData, from: number, to: number, on: boolean): void {
@@ -347,16 +336,9 @@ export class PathScene {
 		return found < 0 ? null : { line: p.line[found] as number, s: p.s[found] as number };
 	}
 
-	/** Draw soon; only what has moved on, if drawing all of it would take long. */
-	ask(onlyLook = false): void {
-		const wait = onlyLook && this.software && this.path ? Math.min(5000, this.path.n / 50) : 0;
-		if (!onlyLook) this.rendered = 0;
+	ask(): void {
 		if (this.asked) return;
-		this.asked = requestAnimationFrame(() => {
-			this.asked = 0;
-			if (performance.now() - this.rendered > wait || this.rendered === 0) this.draw();
-			else this.mark();
-		});
+		this.asked = requestAnimationFrame(() => { this.asked = 0; this.draw(); });
 	}
 
 	draw(): void {
@@ -373,7 +355,6 @@ export class PathScene {
 		for (const o of [this.todo, this.rapid, this.upper]) if (o) o.visible = !coarse;
 		if (this.done) this.done.visible = !coarse && this.begun;
 		this.renderer.render(this.scene, this.camera);
-		this.rendered = performance.now();
 		this.frames++;
 		this.mark();
 	}
