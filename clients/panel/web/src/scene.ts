@@ -164,6 +164,7 @@ export class PathScene {
 		this.path = p;
 		this.back.visible = this.edge.visible = false;
 		if (p && p.n > 1) this.build(p);
+		this.setLook(this.look);	// it may have come before the path
 		this.colours();
 		this.view("3d");
 	}
