@@ -25,6 +25,9 @@ struct job_text {
 	const char *text;		/* lent until job_end() */
 	size_t bytes;			/* at most JOB_BYTES_MAX */
 	bool hold;			/* load it, but wait for "start" */
+	int from_line;			/* begin at this line; 0: from_mm */
+	double from_mm;			/* begin there along the path; 0: at the
+					 * beginning */
 	double silent_s;		/* give up without an ack; 0: 10 s; when
 					 * all was sent 15 s at least */
 };

@@ -184,7 +184,8 @@ int act_send(struct act *a, const struct act_job *j, act_done_fn done,
 {
 	struct sending *s = room_to_send(a);
 	struct job_text x = { .id = j->id, .name = j->name, .text = "",
-			      .bytes = j->bytes, .hold = j->hold };
+			      .bytes = j->bytes, .hold = j->hold,
+			      .from_line = j->from_line };
 	int err;
 
 	if (!a->talk)

@@ -52,6 +52,7 @@ struct act_job {
 	size_t bytes;
 	const char *id, *name;
 	bool hold;
+	int from_line;
 };
 
 typedef void (*act_done_fn)(void *arg, const struct act_answer *a);
