@@ -21,8 +21,6 @@
 
 #include <math.h>
 
-#define SAME_MM		1e-7
-
 /* What rounding to a micrometre may hide of the outline. */
 #define HIDDEN_MM	0.002
 
@@ -46,9 +44,22 @@ static double touch_of(const struct track_work *w, uint32_t e, struct vec at)
 {
 	const struct face_piece *p = track_piece(w, e);
 
-	if (w->elem[e].fill || curve_length(&p->c) < SAME_MM)
+	if (w->elem[e].fill || curve_length(&p->c) < CURVE_SAME_MM)
 		return 1;
 	return fmin(fmax(curve_share(&p->c, at), 0), 1);
+}
+
+/* By how much piece @p's parallel is to its left. */
+static double shift_of(const struct track_work *w, const struct face_piece *p)
+{
+	return track_shift(w, (uint32_t)(p - w->job->face->piece));
+}
+
+/* The side to which the pieces at both ends of a jump are moved: +1 left. */
+static int side_of(const struct track_work *w, const struct track_jump *j)
+{
+	return shift_of(w, track_piece(w, j->e)) +
+	       shift_of(w, track_piece(w, j->f)) < 0 ? -1 : 1;
 }
 
 /* By how much the way turns in a jump, + inward. */
@@ -57,8 +68,8 @@ static double turn_of(const struct track_work *w, const struct track_jump *j)
 	const struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
 	const struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
 
-	return w->job->side * curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
-					 j->tf < 1 ? &b : &w->elem[j->f].c);
+	return side_of(w, j) * curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
+					  j->tf < 1 ? &b : &w->elem[j->f].c);
 }
 
 /* What lies between the two places that the wire touches. */
@@ -105,18 +116,18 @@ static double share_of(const struct between *k, uint32_t i, double s)
 /* The most by which the outline turns inward. */
 static double rise_of(const struct between *k)
 {
+	const int side = side_of(k->w, k->j);
 	double heading = 0, low = 0, rise = 0;
 
 	for (uint32_t i = 0; i < k->n; i++) {
 		const struct curve *c = piece_of(k, i);
 
 		if (i)
-			heading += k->w->job->side *
-				   curve_turn(piece_of(k, i - 1), c);
+			heading += side * curve_turn(piece_of(k, i - 1), c);
 		low = fmin(low, heading);
 		rise = fmax(rise, heading - low);
 		if (c->arc)
-			heading += k->w->job->side * c->sweep *
+			heading += side * c->sweep *
 				   (share_of(k, i, 1) - share_of(k, i, 0));
 		low = fmin(low, heading);
 		rise = fmax(rise, heading - low);
@@ -127,10 +138,9 @@ static double rise_of(const struct between *k)
 /* How far the point of an inner corner is from a wire in it. */
 static double reach_of(const struct between *k)
 {
-	const struct face_piece *p = track_piece(k->w, k->j->e);
-	const struct face_piece *q = track_piece(k->w, k->j->f);
-	const double d = fmax(p->wire_mm, q->wire_mm);
-	const double other = fmin(p->wire_mm, q->wire_mm);
+	const double a = shift_of(k->w, track_piece(k->w, k->j->e));
+	const double b = shift_of(k->w, track_piece(k->w, k->j->f));
+	const double d = fmax(fabs(a), fabs(b));
 	const double turn = turn_of(k->w, k->j), own = rise_of(k);
 	const bool counts = own <= OPEN || (own <= turn + CURVED &&
 					    own < NO_CORNER);
@@ -139,10 +149,9 @@ static double reach_of(const struct between *k)
 
 	if (turn <= 0 || turn >= NO_CORNER)
 		return reach;
-	if (d - other > 1e-6 && fabs(sin(turn)) > 0.05)
-		reach = fmax(reach, sqrt(d * d + other * other -
-					 2 * d * other * cos(turn)) /
-				    fabs(sin(turn)));
+	if (fabs(a - b) > 1e-6 && fabs(sin(turn)) > 0.05)
+		reach = fmax(reach, sqrt(a * a + b * b - 2 * a * b *
+					 cos(turn)) / fabs(sin(turn)));
 	return reach;
 }
 

@@ -8,7 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SAME_MM		1e-7
 #define BACK_MAX	4096u		/* runs gone back from where it is stuck */
 #define BACK_REACHES	6.0		/* ... and so many offsets */
 #define STARTS_MAX	10000u		/* crossings tried to begin at */
@@ -105,7 +104,7 @@ static int check_jumps(struct walker *k)
 
 static double slack_of(const struct track_work *w, uint32_t e)
 {
-	return SAME_MM / fmax(curve_length(&w->elem[e].c), SAME_MM);
+	return CURVE_SAME_MM / fmax(curve_length(&w->elem[e].c), CURVE_SAME_MM);
 }
 
 static uint32_t hits_end(const struct track_work *w, uint32_t e)
@@ -140,7 +139,7 @@ static double next_place(const struct track_work *w, uint32_t e, double t)
 static bool is_clear(struct track_work *w, uint32_t e, double t0, double t1)
 {
 	if (!w->elem[e].dead && (t1 - t0) * curve_length(&w->elem[e].c) <
-				SAME_MM)
+				CURVE_SAME_MM)
 		return true;
 	return clear_is(w, e, t0, t1);
 }
