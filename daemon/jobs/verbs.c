@@ -552,6 +552,7 @@ static const struct verb verbs[] = {
 	{ "alarms", ROLE_VIEWER, VERB_ASKS, verbs_alarms, VERB_OWN, "" },
 	{ "queue", ROLE_VIEWER, VERB_ASKS, verbs_queue, VERB_OWN, "" },
 	{ "show", ROLE_VIEWER, VERB_ASKS, verbs_show, VERB_OWN, "" },
+	{ "trail", ROLE_VIEWER, VERB_ASKS, verbs_trail, VERB_OWN, "" },
 	{ "history", ROLE_VIEWER, VERB_ASKS, verbs_history, VERB_OWN, "" },
 	{ "store", ROLE_VIEWER, VERB_ASKS, verbs_store, VERB_OWN, "" },
 	{ "hello", ROLE_VIEWER, VERB_ASKS, keys_hello, VERB_OWN, "" },
