@@ -7,6 +7,7 @@
  */
 #include "act.h"
 #include "again.h"
+#include "electrode.h"
 #include "keys.h"
 #include "verb.h"
 
@@ -554,6 +555,15 @@ static const struct verb verbs[] = {
 	{ "show", ROLE_VIEWER, VERB_ASKS, verbs_show, VERB_OWN, "" },
 	{ "trail", ROLE_VIEWER, VERB_ASKS, verbs_trail, VERB_OWN, "" },
 	{ "history", ROLE_VIEWER, VERB_ASKS, verbs_history, VERB_OWN, "" },
+	{ "electrodes", ROLE_VIEWER, VERB_ASKS, electrode_list, VERB_OWN, "" },
+	{ "electrode-add", ROLE_OPERATOR, VERB_ACTS, electrode_add, VERB_OWN,
+	  "" },
+	{ "electrode-set", ROLE_OPERATOR, VERB_ACTS, electrode_set, VERB_OWN,
+	  "" },
+	{ "electrode-remove", ROLE_OPERATOR, VERB_ACTS, electrode_remove,
+	  VERB_OWN, "" },
+	{ "electrode-use", ROLE_OPERATOR, VERB_ACTS, electrode_use, VERB_OWN,
+	  "" },
 	{ "store", ROLE_VIEWER, VERB_ASKS, verbs_store, VERB_OWN, "" },
 	{ "hello", ROLE_VIEWER, VERB_ASKS, keys_hello, VERB_OWN, "" },
 	{ "keys", ROLE_SERVICE, VERB_ASKS, keys_list, VERB_OWN, "" },
@@ -565,7 +575,7 @@ static const struct verb verbs[] = {
 
 static void refuse_verb(struct jobs *j, const struct jobs_lcm_command *c)
 {
-	char reason[256];
+	char reason[512];
 	size_t n = (size_t)snprintf(reason, sizeof(reason),
 				    "no such verb; one of");
 
