@@ -15,7 +15,7 @@
 #define CALLED_US	60000000	/* a condition was called, then at most
 					 * so often */
 #define STOOD_US	10000000	/* it stands */
-#define TRAIL_US	600000000
+#define TRAIL_US	1800000000
 #define STEPS		2000.0		/* in the path, at first */
 #define STEP_MIN_MM	0.001
 
