@@ -190,7 +190,8 @@ static void choose_clearance(struct job *j)
 	j->clear_mm = j->o->clearance_mm >= 0 ? j->o->clearance_mm :
 		      j->config.sim.open_gap_mm + GAP_MORE_MM;
 	j->chord_mm = (j->o->chord_mm >= 0 ? j->o->chord_mm : guess) +
-		      j->part_found.grain_mm + j->tool_found.grain_mm;
+		      j->part_found.grain_mm + j->tool_found.grain_mm +
+		      j->part_found.joined_mm + j->tool_found.joined_mm;
 }
 
 int job_load(struct job *j, const struct job_options *o)
@@ -219,24 +220,41 @@ void job_free(struct job *j)
 
 /* -- Words ---------------------------------------------------------------- */
 
+/* admesh turns all as the first triangle of their shell; if that is the one that
+ * ran backward, the others did not. */
+static void describe_turned(const struct mesh *m, const struct mesh_findings *f,
+			    FILE *out)
+{
+	const bool odd = f->shells == 1 && f->inverted && f->turned;
+	const uint32_t turned = odd ? m->ntris - f->turned : f->turned;
+
+	if (turned)
+		fprintf(out, "           %u triangles that ran backward are "
+			"turned\n", turned);
+	if (!f->inverted || odd)
+		return;
+	fprintf(out, "           inside and outside are exchanged in %u of %u "
+		"shells: ", f->inverted, f->shells);
+	say_tri(m, f->inverted_tri, out);
+	fputc('\n', out);
+}
+
 static void describe_body(const char *what, const struct mesh *m,
 			  const struct mesh_findings *f, FILE *out)
 {
 	fprintf(out, "%-10s %s: %u triangles, %.4g x %.4g x %.4g mm, %.6g mm3\n",
 		what, m->name, m->ntris, m->max[0] - m->min[0],
 		m->max[1] - m->min[1], m->max[2] - m->min[2], f->volume_mm3);
+	if (f->doubled)
+		fprintf(out, "           %u triangles that are there twice are "
+			"removed\n", f->doubled);
 	if (f->degenerate)
 		fprintf(out, "           %u triangles without area are removed\n",
 			f->degenerate);
 	if (f->joined)
-		fprintf(out, "           %u edges a micrometre apart are joined\n",
-			f->joined);
-	if (f->inverted)
-		fprintf(out, "           inside and outside are exchanged: its "
-			"triangles all run backward\n");
-	else if (f->turned)
-		fprintf(out, "           %u triangles that ran backward are "
-			"turned\n", f->turned);
+		fprintf(out, "           %u edges that nearly meet are joined, by "
+			"%.4f mm at most\n", f->joined, f->joined_mm);
+	describe_turned(m, f, out);
 	if (f->open)
 		fprintf(out, "           %u open edges: it has no inside\n",
 			f->open);
