@@ -107,6 +107,9 @@ static const struct verb verbs[] = {
 	  "print the jobs that have ended, newest first" },
 	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
 	  "who may command; by role" },
+	{ "electrode", "list|show N|add N|set N|remove N|use N [KEY=VALUE...]",
+	  ctl_electrode, CTL_WORDS_MAX - 1, 1, false, "",
+	  "the table of electrodes, and which one is in the holder" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "plot",
 	  "find the loops of the axes in a file that record wrote" },
 };
@@ -151,7 +154,7 @@ static const struct cmdline_row rows[] = {
 
 /* The verb, its arguments, and one that would be too many. */
 struct words {
-	char *at[5];
+	char *at[CTL_WORDS_MAX + 1];
 	int n;
 };
 
@@ -206,6 +209,8 @@ static int arguments_take(struct ctl *c, const struct verb *v, int argc,
 		c->value = argv[1];
 	if (argc > 2 && v->takes > 2)
 		c->third = argv[2];
+	if (argc > 2 && argc <= v->takes)
+		memcpy(c->more, argv + 2, (size_t)(argc - 2) * sizeof(*argv));
 	if (argc > v->takes) {
 		fprintf(stderr, "edmctl: %s: '%s' is too much; edmctl %s%s%s\n",
 			v->name, argv[v->takes], v->name, *v->args ? " " : "",

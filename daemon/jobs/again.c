@@ -14,7 +14,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* -- In the store ------------------------------------------------------------ */
+/* -- In the store  --------------------------------------------------------- */
 
 int again_read(struct jobs *j, uint32_t n, struct again *ret)
 {
@@ -67,6 +67,21 @@ void again_whole(const struct again *a, struct shm_snapshot *s)
 	s->shorts += before->shorts;
 }
 
+/* What was set before the first interruption, unless it was set again. */
+static void keep_sets(const struct shm_sets *before, struct shm_sets *s)
+{
+	for (uint64_t i = 0; i < before->n && s->n < SHM_SETS_MAX; i++) {
+		const struct shm_set *b = &before->set[i];
+		bool again = false;
+
+		for (uint64_t k = 0; k < s->n; k++)
+			again = again || (s->set[k].cond == b->cond &&
+					  s->set[k].field == b->field);
+		if (!again)
+			s->set[s->n++] = *b;
+	}
+}
+
 void again_interrupted(struct jobs *j, uint32_t n,
 		       const struct checkpoint_base *last, struct again *ret)
 {
@@ -76,11 +91,12 @@ void again_interrupted(struct jobs *j, uint32_t n,
 	if (again_read(j, n, &before) < 0)
 		return;
 	again_whole(&before, &ret->base.snap);
+	keep_sets(&before.base.sets, &ret->base.sets);
 	memcpy(ret->base.job.start, before.base.job.start,
 	       sizeof(ret->base.job.start));
 }
 
-/* -- The verb ------------------------------------------------------------------ */
+/* -- The verb  ------------------------------------------------------------- */
 
 /* Axes that @text names; those that the machine has not do not count. */
 static uint32_t axes_named(const char *text)
@@ -189,7 +205,7 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 		     "will go in; then it waits for start");
 }
 
-/* -- Loading ---------------------------------------------------------------------- */
+/* -- Loading  -------------------------------------------------------------- */
 
 /* A sinker comes in from above; a wire stands in its kerf. */
 static int way_out(const struct machine_config *c)
@@ -198,6 +214,16 @@ static int way_out(const struct machine_config *c)
 			  c->sim.process == SIM_WIRE;
 
 	return wire || !(c->axes.present >> INTERP_Z & 1) ? -1 : INTERP_Z;
+}
+
+void again_refuse(struct jobs *j, const struct store_job *job, const char *why)
+{
+	store_set_state(j->store, job->n, JOB_INTERRUPTED);
+	interrupt_init(j);
+	queue_recount(j);
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "interrupted", .job = job->id,
+	}, "job %s cannot go on: %s", job->name, why);
 }
 
 int again_request(struct jobs *j, const struct store_job *job,
@@ -209,12 +235,8 @@ int again_request(struct jobs *j, const struct store_job *job,
 	if (again_read(j, job->n, &a) < 0)
 		return 0;
 	if (a.instance != j->link.instance) {
-		log_warning("load: job %s: edmd was started anew since it was "
-			    "resumed, so its axes have to be looked at again",
-			    job->id);
-		store_set_state(j->store, job->n, JOB_INTERRUPTED);
-		interrupt_init(j);
-		queue_recount(j);
+		again_refuse(j, job, "edmd was started anew since it was "
+			     "resumed, so its axes have to be looked at again");
 		return -ESTALE;
 	}
 	ret->goes_on = true;
@@ -241,14 +263,14 @@ static void say_way(const struct jobs *j, const struct interp_build_entry *e,
 		n += (size_t)snprintf(to + n, size - n, "; not done again:");
 	for (uint32_t i = 0; i < e->npassed && n < size; i++)
 		n += (size_t)snprintf(to + n, size - n, " M%u",
-				      e->passed[i] & 0xffu);
+				      interp_mcode_number(e->passed[i]));
 }
 
 const char *again_loaded(struct jobs *j, const struct compiler_result *r)
 {
 	const struct store_job *job = &j->queue.job;
 	uint8_t tech[sizeof(((struct checkpoint_job *)0)->tech)] = { 0 };
-	char way[400], in[160];
+	char way[400], in[200];
 	static struct again a;
 
 	if (again_read(j, job->n, &a) < 0)
@@ -257,16 +279,17 @@ const char *again_loaded(struct jobs *j, const struct compiler_result *r)
 		       strlen(r->tech_sha256), NULL, NULL, NULL);
 	if (memcmp(tech, a.base.job.tech, sizeof(tech)) != 0)
 		return "the technology table is another than when the job "
-		       "began; put that one back, and submit what is left";
+		       "began; put that one back, and resume again";
 	a.from_mm = r->entry.from_mm;
 	a.way_mm = r->entry.way_mm;
 	if (again_write(j, job->n, &a) != 0)
 		return "where it goes on cannot be stored";
 	say_way(j, &r->entry, way, sizeof(way));
 	if (a.base.snap.far_mm > a.from_mm)
-		snprintf(in, sizeof(in), "comes in along its path, %.3f mm up to "
+		snprintf(in, sizeof(in), "%scomes in along its path, %.3f mm up to "
 			 "line %u, and cuts on from the first spark",
-			 a.base.snap.far_mm - a.from_mm, r->entry.line);
+			 way_out(j->config) < 0 ? "stops for the wire to be "
+			 "threaded, " : "", a.base.snap.far_mm - a.from_mm, r->entry.line);
 	else
 		snprintf(in, sizeof(in), "goes on behind line %u",
 			 r->entry.line);

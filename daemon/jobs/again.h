@@ -44,13 +44,19 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 		  const struct store_job *job);
 
 /**
- * again_request() - fill in @ret->from if job @n does not begin at its beginning.
+ * again_request() - fill in @ret->from if @job does not begin at its
+ * beginning.
  *
- * Return: 0; -ESTALE: the axes are not where they were answered for, and the job
- * is interrupted again.
+ * Return: 0; -ESTALE: the axes are not where they were answered for, and the
+ * job is interrupted again.
  */
 int again_request(struct jobs *j, const struct store_job *job,
 		  struct compiler_request *ret);
+
+/** again_refuse() - it cannot go on, so @job is interrupted as before; tell
+ *  @why. */
+void again_refuse(struct jobs *j, const struct store_job *job,
+		  const char *why);
 
 /** again_loaded() - what was made of it: remember and tell.
  *  Return: NULL; else why it cannot go on, in words. */

@@ -27,14 +27,6 @@ def chromium():
         browser.close()
 
 
-@pytest.fixture(scope="module")
-def p(tmp_path_factory):
-    p = panel.Panel(tmp_path_factory.mktemp("page"))
-    p.start()
-    yield p
-    p.close()
-
-
 @pytest.fixture
 def page(p, chromium):
     """The page in English; nothing may go wrong in its console, and nothing

@@ -142,7 +142,10 @@ static int add_outputs(struct from *f)
 		else if (s[i].kind == INTERP_AUX)
 			pump = s[i].arg;
 	}
-	if (pump < INTERP_NAUX)
+	/* Without a way up there is a wire to be threaded. */
+	if (f->o->up < 0)
+		err = interp_build_action(f->way, INTERP_STOP, 0, &w, f->diag);
+	if (err == 0 && pump < INTERP_NAUX)
 		err = interp_build_action(f->way, INTERP_AUX, pump, &w,
 					  f->diag);
 	if (err == 0 && power < INTERP_NAUX)
@@ -205,10 +208,11 @@ static void forget(struct from *f, struct interp_seg *s)
 /* A part with a time that is over has none any more. */
 static void forget_time(const struct from *f, struct interp_seg *s)
 {
-	struct interp_seg *end = segs_of(f->b) + s->arg;
+	struct interp_seg *end;
 
 	if (s->kind != INTERP_TIMED || s->arg > f->far)
 		return;
+	end = segs_of(f->b) + s->arg;
 	s->kind = end->kind = INTERP_DWELL;
 	s->arg = end->arg = 0;
 }

@@ -4,11 +4,14 @@
  *
  * After a power cut the job has to go on where it was.  The electrode is first
  * positioned to the end of the last positioning motion before that place, which
- * is off the work: along one axis out of the work, over, and along the same axis
- * in.  Then it follows the program's own path.  The ground up to the place was
- * cut already, so the gap is open there and the servo comes on at its highest
- * feed, with the gap watched.  The first spark is where the material begins,
- * wherever that is.
+ * is off the work: along one axis out of the work, over, and along the same
+ * axis in.  Then it follows the program's own path.  The ground up to the place
+ * was cut already, so the gap is open there and the servo comes on at its
+ * highest feed, with the gap watched.  The first spark is where the material
+ * begins, wherever that is.
+ *
+ * The way up is straight.  Nothing here knows whether an electrode that still
+ * stands in the work can leave it so.
  *
  * The condition in force and the outputs that the program has switched (power,
  * polarity, pump) are those of the place.  Dwells, stops and M codes that were
@@ -29,7 +32,9 @@ struct interp_build_from {
 					 * whole program */
 	double now_mm[INTERP_NAXES];	/* where the axes stand */
 	int up;				/* axis whose + leads out of the work;
-					 * -1: none, the way is straight */
+					 * -1: a wire, which is cut off: the way
+					 * is straight, and at its end the
+					 * program stops (M0) for threading */
 };
 
 /** interp_build_set() - condition @cond of the program has @value in @field
