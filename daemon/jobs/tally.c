@@ -118,7 +118,7 @@ static double distance(const struct tally_point *a, const struct tally_point *b)
 }
 
 /* Ways back, jumps and escapes are no part of it. */
-static bool goes_on(const struct shm_snapshot *s)
+static bool is_on_its_way(const struct shm_snapshot *s)
 {
 	return s->state == SHM_TRAVEL || s->state == SHM_APPROACH ||
 	       s->state == SHM_ERODE || s->state == SHM_PROBE;
@@ -132,7 +132,7 @@ static void follow_trail(struct tally *t, const struct shm_snapshot *s,
 	struct tally_point p = { .place_mm = s->place_mm,
 				 .cut = s->state != SHM_TRAVEL };
 
-	if (!end && !goes_on(s))
+	if (!end && !is_on_its_way(s))
 		return;
 	for (int i = 0; i < 3; i++)
 		p.mm[i] = s->pos[i] * s->pulse_mm[i];
@@ -173,13 +173,12 @@ static void begin(struct jobs *j, uint32_t n)
 	if (n == 0)
 		return;
 	tally_read(j, t);
-	if (again_read(j, n, &t->again) < 0)
-		t->again.base.job.n = 0;
+	t->goes_on = again_read(j, n, &t->again) == 0;
 }
 
 static void make_whole(const struct tally *t, struct shm_snapshot *s)
 {
-	if (t->again.base.job.n)
+	if (t->goes_on)
 		again_whole(&t->again, s);
 }
 
@@ -188,7 +187,7 @@ static double whole_place_mm(const struct tally *t, double place_mm)
 {
 	const struct again *a = &t->again;
 
-	if (!a->base.job.n)
+	if (!t->goes_on)
 		return place_mm;
 	return fmax(a->from_mm, place_mm - a->way_mm + a->from_mm);
 }

@@ -57,7 +57,8 @@ struct tally_point {
 
 struct tally {
 	uint32_t n;			/* of the job; 0: none */
-	struct again again;		/* how it goes on; base.job.n 0: not */
+	bool goes_on;			/* not from its beginning, but as ... */
+	struct again again;		/* ... this says */
 	struct tally_sums seen;		/* the sum of the rows */
 	struct tally_row row[TALLY_CONDITIONS];
 	uint32_t nrows;
