@@ -3,14 +3,14 @@
  * lost.c - is a part of the outline missing where the way leaves something out?
  *
  * Where the way changes from one element to a later one, the wire stands in an
- * inner corner and touches the outline in two places.  What lies between them is
- * not cut.  That is no fault if it lies no farther from the wire than the point
- * of an inner corner would.  Two corners are asked for that:
+ * inner corner and touches the outline in two places.  What lies between them
+ * is not cut.  That is no fault if it lies no farther from the way than the
+ * point of an inner corner would.  Two corners are asked for that:
  *
- *	the one of the tangents in the two places
- *	the one that the outline itself makes between them: beside a step or a
- *	rib that is lower than the wire, if it is open enough, and between walls
- *	that bulge, it may be sharper than that of the tangents
+ *	the corner of the tangents in the two places
+ *	the corner that the outline itself makes between them: it may be the
+ *	sharper one beside a step or a rib that is lower than the wire, if it
+ *	is open enough, and between walls that bulge
  *
  * The outline's own corner is the most by which it turns inward on the way from
  * the one place to the other; turns to and fro, as rounding makes them, do not
@@ -25,10 +25,11 @@
 #define HIDDEN_MM	0.002
 
 #define NO_CORNER	3.0		/* turns by more are slots */
-#define OPEN		2.1		/* the outline's own may turn so far ... */
-#define CURVED		0.5		/* ... or by so much more than the way:
-					 * its walls bulge */
+#define OPEN		2.1		/* the outline's own may turn so far */
+#define CURVED		0.5		/* or by so much more than the way: its
+					 * walls bulge */
 #define ARC_PARTS	8
+#define NEAR_RUNS	16u		/* of the way, on either side */
 
 const struct face_piece *track_piece(const struct track_work *w, uint32_t e)
 {
@@ -155,6 +156,31 @@ static double reach_of(const struct between *k)
 	return reach;
 }
 
+/* Is @at no farther than @most from run @i of the way? */
+static bool is_near_run(const struct track_work *w, uint32_t i, struct vec at,
+			double most)
+{
+	const struct track_run *r = &w->run[i];
+	const struct curve c = curve_part(&w->elem[r->elem].c, r->t[0],
+					  r->t[1]);
+
+	return curve_from(&c, at) <= most;
+}
+
+/* ... or from the way close to the jump, on either side of it? */
+static bool is_near_way(const struct between *k, struct vec at, double most)
+{
+	const struct track_work *w = k->w;
+	const uint32_t run = k->j->run;
+
+	for (uint32_t i = 0; run && i < NEAR_RUNS; i++) {
+		if ((i < run && is_near_run(w, run - 1 - i, at, most)) ||
+		    (run + i < w->nruns && is_near_run(w, run + i, at, most)))
+			return true;
+	}
+	return false;
+}
+
 bool lost_is(const struct track_work *w, const struct track_jump *j)
 {
 	struct between k;
@@ -170,8 +196,10 @@ bool lost_is(const struct track_work *w, const struct track_jump *j)
 
 		for (int s = 1; s <= parts; s++) {
 			const double t = share_of(&k, i, (double)s / parts);
+			const struct vec at = curve_at(c, t);
 
-			if (curve_distance(curve_at(c, t), k.at) > most)
+			if (curve_distance(at, k.at) > most &&
+			    !is_near_way(&k, at, most))
 				return true;
 		}
 	}

@@ -150,7 +150,7 @@ bool clear_is(struct track_work *w, uint32_t e, double t0, double t1);
 struct track_jump {
 	uint32_t e, f;
 	double te, tf;			/* shares of them */
-	double e_from;			/* the way came along e from here */
+	uint32_t run;			/* the first run behind it; 0: none */
 };
 
 /** track_piece() - the piece of the outline that element @e goes along. */

@@ -91,8 +91,9 @@ static int check_jumps(struct walker *k)
 
 	for (uint32_t i = 1; !err && i < k->w->nruns; i++) {
 		const struct track_run *p = &k->w->run[i - 1], *q = p + 1;
-		struct track_jump j = { .e = p->elem, .f = q->elem, .te = p->t[1],
-				  .tf = q->t[0], .e_from = p->t[0] };
+		struct track_jump j = { .e = p->elem, .f = q->elem,
+					.te = p->t[1], .tf = q->t[0],
+					.run = i };
 
 		if (q->jump)
 			err = check_jump(k, &j);
@@ -309,10 +310,11 @@ static int find_start(struct walker *k)
 	struct track_work *w = k->w;
 	const uint32_t in = w->job->lead[0].there;
 
-	for (uint32_t i = w->elem[in].hit; i < w->nhits && i < STARTS_MAX; i++) {
+	for (uint32_t i = w->elem[in].hit;
+	     i < w->nhits && i < STARTS_MAX; i++) {
 		const struct track_hit *h = &w->hit[i];
-		struct track_jump j = { .e = h->other, .f = h->elem, .te = h->t_other,
-				  .tf = h->t };
+		struct track_jump j = { .e = h->other, .f = h->elem,
+					.te = h->t_other, .tf = h->t };
 
 		if (!may_begin(k, h))
 			continue;
