@@ -277,7 +277,7 @@ $(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
 	     apart.c box.c near.c motion.c sweep.c prove.c))
 
-$(B)/unit/test_plan_core: $(PLAN_CORE)
+$(B)/unit/test_plan_core $(B)/unit/test_plan_bounds: $(PLAN_CORE)
 
 $(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++

@@ -58,6 +58,7 @@ struct store_new {
 	size_t bytes;
 	uint32_t lines;
 	bool hold;
+	const char *begin_at;		/* for store_resume_at(); NULL: nothing */
 	int64_t now_us;
 };
 
