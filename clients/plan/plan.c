@@ -322,6 +322,11 @@ static void say_left_out(const struct plan *p)
 	const struct route_node *n = p->dense.node;
 	uint32_t said = 0;
 
+	if (p->written_dialect != p->j->o->dialect)
+		printf("note       %s is in the dialect generic; the other one "
+		       "does not have its words\n", p->j->o->output);
+	if (!p->j->o->program)
+		return;
 	if (!p->carried) {
 		printf("note       only positioning and blocks are written; "
 		       "conditions and other words of\n           %s are not\n",
@@ -353,8 +358,7 @@ static void describe(const struct plan *p, FILE *out)
 	say_way("fewest", &p->fewest);
 	say_way("written", &p->best);
 	say_pivot(&p->pivot);
-	if (p->j->o->program)
-		say_left_out(p);
+	say_left_out(p);
 	printf("%-10s %llu queries, %.1f s\n", p->stopped ? "stopped" : "planned",
 	       (unsigned long long)p->queries, p->planned_s);
 }
@@ -364,8 +368,8 @@ static void describe(const struct plan *p, FILE *out)
 /* What stands in the text is read back and proved, not what was computed. */
 static int prove_text(struct plan *p, const char *text)
 {
-	const struct route_text from = { .path = "planned program",
-				       .text = text };
+	const struct route_text from = { .path = p->written_path, .text = text,
+					 .dialect = p->written_dialect };
 	struct check_result r;
 	struct route w;
 	int rc = route_read(&w, &p->j->config, &from);

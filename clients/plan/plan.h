@@ -49,6 +49,8 @@ struct plan {
 	bool stopped;			/* by Ctrl-C */
 	bool carried;			/* text_write(): with the other lines of
 					 * the dense program */
+	const char *written_path;	/* its name and dialect, for who reads */
+	const char *written_dialect;	/* the text; as in struct route_text */
 };
 
 /** plan_program() - plan, prove, write. Return: 0, 1 no way; else sysexits. */
@@ -74,7 +76,8 @@ int plan_pivot(struct plan *p);
 /**
  * text_write() - the dense program with @w as its way in, allocated; where its
  * other lines cannot stand beside those blocks, its positioning and the blocks
- * alone.  It sets p->carried.  Return: NULL if out of memory.
+ * alone.  It sets p->carried and what the text is to be read with: the dialect
+ * of the dense program, or else "generic".  Return: NULL if out of memory.
  */
 char *text_write(struct plan *p, const struct plan_way *w);
 

@@ -51,7 +51,8 @@ void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES]);
 struct route_text {
 	const char *path;		/* as messages name it; - is stdin */
 	const char *text;		/* NULL: read it from there */
-	const char *dialect;		/* NULL: by the file's name */
+	const char *dialect;		/* NULL: by the end of path, or else the
+					 * machine file's */
 	bool quiet;			/* a refusal has no words */
 	const double *start;		/* of all axes; NULL: the machine
 					 * file's start_mm */

@@ -95,10 +95,9 @@ static double strays(const struct piece *x)
 static int add_chord(struct route *w, const struct route_curve *k,
 		     const struct piece *x, double off)
 {
-	struct route_node n = w->node[w->n - 1];
+	struct route_node n = k->at;
 
-	n.line = k->at.line;
-	n.rapid = k->at.rapid;
+	memcpy(n.q, w->node[w->n - 1].q, sizeof(n.q));
 	n.strays = (float)(off * (1 + 1e-6));
 	for (uint32_t j = 0; j < x->naxes; j++)
 		n.q[k->axis[j]] = x->at[x->n - 1][j];
