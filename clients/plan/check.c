@@ -176,10 +176,9 @@ int check_way(const struct job *j, const struct route *w,
 			return -EINTR;
 		}
 		check_next(&k, i);
-		if (i % 64)
+		if (i % 16)
 			continue;
-		snprintf(text, sizeof(text), "block %u of %u, least seen %.3f "
-			 "mm", i + 1, w->n - 1, ret->least_mm);
+		snprintf(text, sizeof(text), "proof: block %u of %u, %.3f mm", i + 1, w->n - 1, ret->least_mm);
 		bar_show(j, (double)i / w->n, text);
 	}
 	bar_end(j);
@@ -260,8 +259,9 @@ static int say_result(const struct job *j, const struct route *w,
 		return 1;
 	}
 	printf("proved     %u blocks keep %.3f mm%s, jumps and retracts along "
-	       "them too\n", w->n - 1, j->clear_mm,
-	       j->o->end_zone_mm > 0 ? " but in the end zone" : "");
+	       "them too%s\n", w->n - 1, j->clear_mm,
+	       j->o->end_zone_mm > 0 ? " but in the end zone" : "",
+	       w->beside ? "; not those beside them" : "");
 	printf("           %.4f mm more are kept for pulses and arcs\n",
 	       r->most_added_mm);
 	printf("least seen %.4f mm, line %u; %llu queries\n", r->least_mm,

@@ -86,6 +86,9 @@ void job_axes_find(const struct job *j, const double from[INTERP_NAXES],
 
 /** bar_show() - one line on stderr, rewritten; nothing with --quiet. */
 void bar_show(const struct job *j, double share, const char *text);
+
+/** bar_best() - from now on the bar tells the best way so far. */
+void bar_best(uint32_t blocks, double mm);
 void bar_end(const struct job *j);
 
 /** bar_interrupted() - was Ctrl-C pressed? */

@@ -234,7 +234,7 @@ static int try_shift(struct plan *p, const struct nodes *n,
 	struct job j;
 	int err = shifted_job(p->j, s, &j);
 
-	trial = (struct plan) { .j = &j };
+	trial = (struct plan) { .j = &j, .trial = true };
 	for (uint32_t i = 0; i < n->n && err == 0; i++) {
 		err = place(&p->j->kin, n->q[i], s, q[i]);
 		free_round(&p->j->config, q[i]);

@@ -212,6 +212,13 @@ static bool is_better(const struct plan *p, const struct plan_way *a)
 	return keeps(p, a);
 }
 
+static void take_best(struct plan *p, const struct plan_way *w)
+{
+	p->best = *w;
+	if (!p->trial)
+		bar_best(w->n - 1, w->least_mm);
+}
+
 /* Along the nodes @at, then off them. Return: is it to be written? */
 static bool try_free(struct plan *p, const struct fewest *f,
 		     const uint32_t *at)
@@ -231,7 +238,7 @@ static bool try_free(struct plan *p, const struct fewest *f,
 	plan_prove(f->j, &way, &p->queries);
 	if (!is_better(p, &way))
 		return false;
-	p->best = way;
+	take_best(p, &way);
 	return true;
 }
 
@@ -269,7 +276,7 @@ int plan_over(struct plan *p, const struct job *j,
 	if (blocks && blocks != UINT32_MAX) {
 		take_way(&p->greedy, "greedy", &f, at, blocks);
 		plan_prove(j, &p->greedy, &p->queries);
-		p->best = p->greedy;
+		take_best(p, &p->greedy);
 	}
 	blocks = bar_interrupted() ? 0 :
 		 fewest_search(&f, j->clear_mm, n - 1, at);
@@ -278,7 +285,7 @@ int plan_over(struct plan *p, const struct job *j,
 		take_way(&p->fewest, "fewest over nodes", &f, at, blocks);
 		plan_prove(j, &p->fewest, &p->queries);
 		if (is_better(p, &p->fewest))
-			p->best = p->fewest;
+			take_best(p, &p->fewest);
 	}
 	if (blocks && !j->o->on_path)
 		plan_free(p, &f, at);
@@ -415,11 +422,8 @@ static int write_all(struct plan *p)
 
 static void say_no_way(const struct plan *p)
 {
-	if (bar_interrupted()) {
-		fprintf(stderr, "edm-plan: interrupted before a way that keeps "
-			"%.3f mm was found\n", p->j->clear_mm);
+	if (bar_interrupted())
 		return;
-	}
 	fprintf(stderr, "edm-plan: no way near the program keeps %.3f mm; a "
 		"thinner electrode, less --clearance, or another program to "
 		"begin with\n", p->j->clear_mm);
@@ -495,6 +499,8 @@ int plan_program(struct job *j)
 		err = write_all(&p);
 	if (err == EX_OSERR)
 		fprintf(stderr, "edm-plan: out of memory\n");
+	if (err && p.stopped)
+		fprintf(stderr, "edm-plan: interrupted; nothing is written\n");
 	route_free(&p.dense);
 	return err;
 }

@@ -43,6 +43,7 @@ struct plan {
 	struct near_pair nearest;	/* of the last block refused by repair */
 	double dense_pass_s, dense_stop_s;
 	struct plan_way greedy, fewest, best;
+	bool trial;			/* best is not what will be written */
 	struct plan_pivot pivot;
 	uint64_t queries;
 	double seconds, planned_s;	/* when it began; how long it took */

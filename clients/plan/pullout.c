@@ -229,10 +229,8 @@ static int pull(struct pull *p, const struct clearance *c)
 
 static void say_stuck(const struct pull *p)
 {
-	fprintf(stderr, "edm-plan: no way out found%s: %.2f mm are left of the "
-		"way through the cavity, at",
-		bar_interrupted() ? " before it was interrupted" : "",
-		p->left_mm);
+	fprintf(stderr, "edm-plan: no way out found: %.2f mm are left of the "
+		"way through the cavity, at", p->left_mm);
 	for (uint32_t a = 0; a < p->axes.n; a++)
 		fprintf(stderr, " %c%.3f", INTERP_AXIS_LETTERS[p->axes.axis[a]],
 			p->q[p->axes.axis[a]]);
@@ -379,12 +377,12 @@ int pullout_way(struct plan *p)
 	job_axes_find(p->j, u.q, u.q, &u.axes);
 	err = pull_twice(&u, &c);
 	bar_end(p->j);
-	if (err == 1)
+	if (err == 1 && !bar_interrupted())
 		say_stuck(&u);
-	else if (err == 0 && u.out.n < 2)
-		err = refuse_outside();
-	else
-		err = err ? EX_OSERR : turn_round(p, &u, &c);
+	if (err == 0)
+		err = u.out.n < 2 ? refuse_outside() : turn_round(p, &u, &c);
+	else if (err < 0)
+		err = EX_OSERR;
 	air_free(&u.air);
 	route_free(&u.out);
 	return err;
