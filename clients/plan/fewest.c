@@ -167,8 +167,11 @@ uint32_t fewest_search(struct fewest *f, double mm, uint32_t most,
 	if (s.before && s.reached) {
 		memset(s.before, 0xff, f->n * sizeof(*s.before));
 		reach(&s, 0, 0);
-		for (uint32_t i = 0; i < most && !n && !bar_interrupted(); i++) {
+		for (uint32_t i = 0; i < most && !n; i++) {
 			const uint32_t to = s.nreached;
+
+			if (bar_interrupted())
+				break;
 
 			if (level(f, &s, mm, from, i + 1 == most))
 				n = trace_back(&s, f->n - 1, ret);

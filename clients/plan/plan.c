@@ -2,8 +2,9 @@
 /*
  * plan.c - from a dense program to the fewest blocks, in the order of trust
  *
- * The dense way is proved or refused; then greedy, fewest over its nodes, nodes
- * off it, a better pivot.  Ctrl-C ends the search, and the best so far is written.
+ * First the dense way is proved or refused.  Then it looks for the greedy way,
+ * for the fewest blocks over the nodes, for nodes beside the path, and for a
+ * better pivot.  Ctrl-C ends the search, and the best way so far is written.
  */
 #include "plan.h"
 
@@ -20,7 +21,7 @@
 #include <time.h>
 
 #define WIDEN_ROUNDS	12
-#define TOUCH_MM	0.01		/* less than that is as good as contact */
+#define TOUCH_MM	0.01		/* nearer is as good as contact */
 
 static double now_s(void)
 {
@@ -89,7 +90,7 @@ static void say_contact(const struct plan *p, const struct check_result *r)
 	job_say_pair(p->j, &r->pair, stderr);
 }
 
-/* An end pose that is too near is a mistake in electrode or program. */
+/* If the end pose is too near, the electrode or the program is wrong. */
 int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
 {
 	const double wanted = p->j->clear_mm + p->j->chord_mm;
@@ -121,7 +122,7 @@ int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
 	return 1;
 }
 
-/* Without one the search may still find a way round. */
+/* If only the way in is too near, the search may still find a way round. */
 static int check_dense(struct plan *p)
 {
 	struct check_result r;
@@ -187,7 +188,7 @@ static void from_free(struct plan_way *w, const struct free_way *f,
 		free_round(&j->config, w->q[i]);
 }
 
-/* In an end zone the least distance says nothing of the rest. */
+/* In an end zone the least distance does not tell what the rest keeps. */
 static bool keeps(const struct plan *p, const struct plan_way *w)
 {
 	struct near_pair pair = { 0 };
@@ -243,9 +244,9 @@ static bool try_free(struct plan *p, const struct fewest *f,
 }
 
 /*
- * A way of fewer blocks that only just does not touch is where nodes off the
- * path begin; linear programs then find it room.  Where that does not come to
- * the clearance, the way that has it gets more.
+ * The search for free nodes begins with a way of fewer blocks that only just
+ * does not touch.  Linear programs then find it room.  If that does not come
+ * to the clearance, they widen the way that has it.
  */
 static void plan_free(struct plan *p, struct fewest *f, const uint32_t *best)
 {
@@ -303,7 +304,8 @@ static void say_way(const char *name, const struct plan_way *w)
 	printf("%-10s %u blocks, proved %.4f mm (%s)\n", name, w->n - 1,
 	       w->least_mm, w->how);
 	if (w->time_pass_s > 0)
-		printf("           %.1f min, %.1f min with a stop at each node\n",
+		printf("           %.1f min, %.1f min with a stop at each "
+		       "node\n",
 		       w->time_pass_s / 60, w->time_stop_s / 60);
 }
 
@@ -322,7 +324,7 @@ static void say_pivot(const struct plan_pivot *v)
 	       v->outside ? "; beyond this machine's travel" : "");
 }
 
-/* What the dense program calls while it goes in has no place among fewer
+/* Words that the dense program has between its blocks have no place among fewer
  * blocks. */
 static void say_left_out(const struct plan *p)
 {
@@ -356,7 +358,8 @@ static void describe(const struct plan *p, FILE *out)
 	printf("dense      %u blocks, least seen %.4f mm\n", p->last - p->first,
 	       p->dense_least_mm);
 	if (p->dense_pass_s > 0)
-		printf("           %.1f min, %.1f min with a stop at each node\n",
+		printf("           %.1f min, %.1f min with a stop at each "
+		       "node\n",
 		       p->dense_pass_s / 60, p->dense_stop_s / 60);
 	if (p->repaired)
 		printf("repaired   %u nodes of the dense way are others now\n",
@@ -366,13 +369,14 @@ static void describe(const struct plan *p, FILE *out)
 	say_way("written", &p->best);
 	say_pivot(&p->pivot);
 	say_left_out(p);
-	printf("%-10s %llu queries, %.1f s\n", p->stopped ? "stopped" : "planned",
+	printf("%-10s %llu queries, %.1f s\n",
+	       p->stopped ? "stopped" : "planned",
 	       (unsigned long long)p->queries, p->planned_s);
 }
 
 /* -- Writing -------------------------------------------------------------- */
 
-/* What stands in the text is read back and proved, not what was computed. */
+/* The text is read back, and that is proved: not what was computed. */
 static int prove_text(struct plan *p, const char *text)
 {
 	const struct route_text from = { .path = p->written_path, .text = text,

@@ -78,8 +78,8 @@ static void act_once(struct route *w, uint32_t first)
 }
 
 /*
- * Between two places dp apart, of a motion whose second derivative is at most
- * d2, the motion strays by dp^2 d2 / 8 from the chord.
+ * Over a piece dp of the parameter, a motion whose second derivative is at
+ * most d2 strays from its chord by dp^2 d2 / 8 at most.
  */
 static int follow_arc(struct route *w, const struct interp_arc *a,
 		      const struct route_node *end)
@@ -114,7 +114,8 @@ static int follow_arc(struct route *w, const struct interp_arc *a,
 }
 
 static int follow_curve(struct route *w, const struct interp_program *p,
-			const struct interp_seg *s, const struct route_node *end)
+			const struct interp_seg *s,
+			const struct route_node *end)
 {
 	const struct interp_piece *piece = &p->pieces[s->arg];
 	const struct interp_nurbs_stop *stop = p->stops + piece->stops_at;
@@ -221,7 +222,8 @@ static int read_file(const char *path, char **text, size_t *bytes)
 			f ? "cannot be read" : strerror(errno));
 		err = EX_NOINPUT;
 	}
-	while (err == 0 && (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
+	while (err == 0 &&
+	       (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
 		*bytes += n;
 		if (*bytes < room)
 			continue;
@@ -262,7 +264,8 @@ static int lay_out(struct interp_build *b, const struct route_text *from,
 }
 
 static int compile(struct route *w, const struct machine_config *c,
-		   const struct route_text *from, const struct interp_text *text)
+		   const struct route_text *from,
+		   const struct interp_text *text)
 {
 	struct config_compiling of;
 	struct interp_diag diag = { 0 };

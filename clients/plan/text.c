@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* As many decimals as a pulse of any machine has, and no zeros behind.  The
- * point stays: C120 calls a condition, and to some readers X10 is ten pulses. */
+/* As many decimals as a pulse of any machine has, without zeros at the end.
+ * The point stays: C120 calls a condition, and some dialects read X10 as ten
+ * pulses. */
 static void put_number(FILE *f, char axis, double v)
 {
 	char s[40];
@@ -39,7 +40,7 @@ static bool same(const double *a, const double *b)
 	return memcmp(a, b, INTERP_NAXES * sizeof(*a)) == 0;
 }
 
-/* F is the ceiling of the dense program's first cut. */
+/* F is that of the first cut of the dense program. */
 static void put_way_in(FILE *f, const struct plan *p, const struct plan_way *w)
 {
 	const double feed = (double)p->dense.node[p->first + 1].feed_mm_s * 60;
@@ -117,8 +118,8 @@ static const char *behind_curve(const char *text)
 	return text;
 }
 
-/* The dense program with the blocks of @w instead of those of its way in; @modes:
- * the line before them. */
+/* The dense program with the blocks of @w instead of those of its way in.
+ * @modes is written before them. */
 static char *carried(const struct plan *p, const struct plan_way *w,
 		     const char *modes)
 {

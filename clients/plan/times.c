@@ -2,8 +2,8 @@
 /*
  * times.c - how long each way takes, by edmsim
  *
- * edmsim stands beside this program.  It gets the machine file as it is in force
- * with [speed] nodes set, and runs each program twice.
+ * edmsim is in the same folder as this program.  It runs each program twice,
+ * with the machine file and [speed] nodes set to the one value and the other.
  */
 #include "plan.h"
 
@@ -110,8 +110,8 @@ static int ask(const struct room *r, const struct machine_config *c,
 		err = outcome && strcmp(outcome, "done") == 0 ? 0 : EX_SOFTWARE;
 		if (err)
 			fprintf(stderr, "edm-plan: %s on %s: %s; a program "
-				"that it runs to its end\n", r->sim, program->path,
-				outcome ? outcome : "no report");
+				"that it runs to its end\n", r->sim,
+				program->path, outcome ? outcome : "no report");
 		json_decref(o);
 		if (err)
 			return err;

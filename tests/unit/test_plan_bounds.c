@@ -194,8 +194,8 @@ static void pulses_stray_no_farther_than_bounded(void **state)
 
 /* -- A motion of its own -------------------------------------------------- */
 
-/* A turn at a constant rate about a line that may pass anywhere, through what is
- * turned as well, and a shift. */
+/* A turn at a constant rate about any line, which may pass through what is
+ * turned, and a shift. */
 struct turn {
 	double dir[3], at[3], rate;	/* of the line, radian a unit of time */
 	double shift[3];
@@ -510,7 +510,7 @@ static void stretch(struct body *b, double x, double y, double z)
 	assert_int_equal(tree_build(&b->t, &b->m), 0);
 }
 
-/* Turns and shifts of all sizes, some about the electrode's own middle alone. */
+/* Turns and shifts of all sizes, and turns alone. */
 static void draw_block(double from[INTERP_NAXES], double to[INTERP_NAXES])
 {
 	const double size = draw_size(0.05, 50);
@@ -570,8 +570,8 @@ static double least_over(const struct block *b, const struct clearance *c,
 	return least;
 }
 
-/* A way out of the end pose: what is to be kept rises along it.  So much is asked
- * outside of the end zone that a pose just does not have what it is to have. */
+/* On a way out of the end pose, what is to be kept rises.  So much is asked
+ * outside of the end zone that one pose just does not have what it is to. */
 static void no_block_out_of_an_end_zone_keeps_more_than_a_pose_has(void **state)
 {
 	int tried = 0;
