@@ -456,6 +456,15 @@ kills: all
 	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
 		tests/system/test_kills.py
 
+# QEMU killed at random instants, 300 times: some three hours.
+CUTS ?= 100
+.PHONY: torture
+torture:
+	@tests/setup check
+	@$(MAKE) --no-print-directory vm
+	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(CUTS) .venv/bin/pytest -q -s \
+		tests/vm/test_torture.py
+
 # 100,000 packets from another host, and how late the cycle woke meanwhile.
 HOSTILE ?= 100000
 hostile: all
