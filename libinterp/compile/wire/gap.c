@@ -82,6 +82,20 @@ int curve_cross(const struct curve *a, const struct curve *b,
 	return kept;
 }
 
+bool curve_cross_near(const struct curve *a, const struct curve *b,
+		      struct vec near, struct vec *ret)
+{
+	struct curve_hit hit[2];
+	const int n = curve_cross(a, b, hit);
+
+	if (n == 0)
+		return false;
+	*ret = n == 2 && curve_distance(hit[1].at, near) <
+			 curve_distance(hit[0].at, near) ? hit[1].at :
+							   hit[0].at;
+	return true;
+}
+
 static bool arc_faces(const struct curve *c, struct vec at)
 {
 	const double t = curve_share(c, at);

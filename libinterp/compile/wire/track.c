@@ -131,21 +131,14 @@ static bool meet_behind(struct track_elem *a, struct track_elem *b,
 }
 
 /* Cut both off where they meet.  Return: false if they do not. */
-bool track_meet_inside(struct track_elem *a, struct track_elem *b,
-		       struct vec near)
+static bool meet_inside(struct track_elem *a, struct track_elem *b,
+			struct vec near)
 {
-	struct curve_hit hit[2];
-	const int n = a->dead || b->dead ? 0 : curve_cross(&a->c, &b->c, hit);
 	struct curve p = a->c, q = b->c;
-	int best = 0;
+	struct vec at;
 
-	if (n == 0)
-		return false;
-	if (n == 2 && curve_distance(hit[1].at, near) <
-		      curve_distance(hit[0].at, near))
-		best = 1;
-	if (!curve_trim(&p, a->c.from, hit[best].at) ||
-	    !curve_trim(&q, hit[best].at, b->c.to))
+	if (a->dead || b->dead || !curve_cross_near(&p, &q, near, &at) ||
+	    !curve_trim(&p, a->c.from, at) || !curve_trim(&q, at, b->c.to))
 		return false;
 	a->c = p;
 	b->c = q;
@@ -194,7 +187,7 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 		return lay_fill(w, &k, &gap, false);
 	if (k.turn * w->job->side > 0 &&
 	    fabs(k.turn) < 2 * RIGHT_ANGLE - ANGLE_SLACK) {
-		if (track_meet_inside(a, b, k.at) ||
+		if (meet_inside(a, b, k.at) ||
 		    meet_behind(a, b, k.at, w->slack_mm))
 			return 0;
 		/* A kink so slight that the one end is clear of the other. */

@@ -119,11 +119,6 @@ struct track_work {
 /** track_add() - one more element, not filled. Return: NULL: no memory. */
 struct track_elem *track_add(struct track_work *w);
 
-/** track_meet_inside() - cut both off where they cross, nearest to @near.
- *  Return: false if they do not. */
-bool track_meet_inside(struct track_elem *a, struct track_elem *b,
-		       struct vec near);
-
 /** track_shift() - piece @i's parallel is so far to its left. */
 double track_shift(const struct track_work *w, uint32_t i);
 
