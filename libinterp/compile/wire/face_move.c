@@ -33,7 +33,8 @@ struct mover {
 static void lay_piece(struct mover *k, uint32_t i, struct track_elem *ret)
 {
 	const struct face_piece *p = &k->still->piece[i];
-	const enum face_fate fate = face_piece_moved(k->from, p->owner, &ret->c);
+	const enum face_fate fate = face_piece_moved(k->from, p->owner,
+						     &ret->c);
 
 	ret->owner = p->owner;
 	ret->piece = i;
@@ -51,8 +52,8 @@ struct corner {
 	struct vec left[2];		/* of the ways to and from there */
 	double turn, shift[2];
 	bool same;			/* both are moved by the same */
-	bool outer;			/* the moved pieces part from each other */
-	bool edge;			/* ... or are prolonged until they meet */
+	bool outer;			/* the moved pieces part there */
+	bool edge;			/* they are prolonged until they meet */
 };
 
 static double most_of(const struct corner *c)

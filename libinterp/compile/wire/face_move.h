@@ -19,7 +19,7 @@ struct face_side {
 	uint32_t first, n;		/* its pieces that are no leads */
 	struct wind moved, as_was;
 	struct curve chord;		/* closes an open outline */
-	uint32_t *id;			/* of an element among the moved curves */
+	uint32_t *id;			/* element to moved curve */
 };
 
 /**

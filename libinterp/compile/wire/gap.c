@@ -41,8 +41,10 @@ static bool boxes_touch(const struct curve *a, const struct curve *b)
 {
 	const struct curve_box p = curve_bounds(a), q = curve_bounds(b);
 
-	return p.lo.x <= q.hi.x + CURVE_SAME_MM && q.lo.x <= p.hi.x + CURVE_SAME_MM &&
-	       p.lo.y <= q.hi.y + CURVE_SAME_MM && q.lo.y <= p.hi.y + CURVE_SAME_MM;
+	return p.lo.x - q.hi.x <= CURVE_SAME_MM &&
+	       q.lo.x - p.hi.x <= CURVE_SAME_MM &&
+	       p.lo.y - q.hi.y <= CURVE_SAME_MM &&
+	       q.lo.y - p.hi.y <= CURVE_SAME_MM;
 }
 
 static bool is_dot(const struct curve *c)

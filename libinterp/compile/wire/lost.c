@@ -99,7 +99,7 @@ struct between {
 	const struct track_jump *j;
 	struct vec at;			/* the wire */
 	uint32_t first, n;		/* pieces, the last one with them */
-	double t[2];			/* touched: shares of the first and last */
+	double t[2];			/* shares of the first and last */
 };
 
 static const struct curve *piece_of(const struct between *k, uint32_t i)

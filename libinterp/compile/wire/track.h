@@ -36,7 +36,7 @@ struct track_elem {
 	int64_t piece;			/* of the outline; -1: a lead */
 	bool fill;			/* leads to the next motion */
 	bool dead;			/* no way goes along it */
-	bool fitted;			/* a fillet of constant radius: face.h */
+	bool fitted;			/* a fillet that keeps its radius */
 	bool mitre;			/* prolonged at its end, as the next one
 					 * is at its start */
 	uint32_t hit;			/* its first crossing */
@@ -53,7 +53,7 @@ struct track_hit {
 struct track_run {
 	uint32_t elem;
 	double t[2];
-	bool jump;			/* something is left out in front of it */
+	bool jump;			/* behind a part that is left out */
 };
 
 enum track_fault_kind {
@@ -82,7 +82,7 @@ struct track {
 	uint32_t *owner;
 	bool *fill;
 	uint32_t n;
-	bool skipped;			/* something is left out: it is in fault */
+	bool skipped;			/* parts are left out: see fault */
 };
 
 /**
@@ -109,8 +109,8 @@ struct track_work {
 	double reach_mm;		/* the largest distance of a piece */
 	double total_mm;		/* along the outline */
 	double slack_mm;		/* nearer by this is no fault */
-	bool round;			/* no corner is prolonged ... */
-	bool *no_mitre;			/* ... or not that in front of a piece */
+	bool round;			/* no corner is prolonged */
+	bool *no_mitre;			/* not that in front of a piece */
 	uint32_t blocker;		/* the piece found too near last */
 	const struct face_side *sides;	/* NULL, or the pieces themselves are
 					 * moved: face_move.h */
