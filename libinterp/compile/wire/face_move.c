@@ -90,6 +90,7 @@ static void corner_init(struct corner *c, const struct mover *k, uint32_t i)
 			  fabs(c->turn) <= RIGHT_ANGLE + ANGLE_SLACK);
 	else
 		c->edge = reach_of(c) <= FAR_EDGE * most_of(c);
+	c->edge = c->edge && !k->w.no_mitre[i];
 }
 
 static int lay_fill(struct mover *k, uint32_t a, const struct curve *c,
@@ -207,6 +208,7 @@ static int lay_corner(struct mover *k, uint32_t i, const struct track_elem *b)
 	}
 	end_piece(k, at);
 	k->begin = at;
+	k->w.elem[k->w.n - 1].mitre = c.outer && c.edge;
 	return 0;
 }
 
@@ -214,6 +216,7 @@ static int lay_all(struct mover *k)
 {
 	int err = 0;
 
+	k->w.n = k->w.nhits = k->w.nruns = 0;
 	for (uint32_t i = 0; !err && i < k->still->n; i++) {
 		struct track_elem b = { .piece = i }, *e;
 
@@ -269,8 +272,10 @@ static int find_outline(struct mover *k, struct face_side *side,
 			struct face_fault *fault)
 {
 	struct track_fault bad = { .a = 0 };
-	int err = face_side_init(side, &k->w);
+	int err = lay_all(k);
 
+	if (!err)
+		err = face_side_init(side, &k->w);
 	if (!err)
 		err = clear_find_crossings(&k->w);
 	if (!err)
@@ -297,17 +302,23 @@ int face_move(struct face *f, const struct face_from *from,
 		.w = { .job = &job, .sides = &side, .slack_mm = SLACK_MM },
 		.from = from, .still = still,
 	};
-	int err = lay_all(&k);
+	uint32_t turns = 0;
+	int err;
 
+	k.w.no_mitre = calloc(still->n, sizeof(*k.w.no_mitre));
+	if (!k.w.no_mitre)
+		return -ENOMEM;
 	*fault = (struct face_fault) { .a = 0 };
 	for (uint32_t i = 0; i < still->n; i++)
 		k.w.reach_mm = fmax(k.w.reach_mm,
 				    fabs(still->piece[i].shift_mm));
-	if (!err)
+	do {
 		err = find_outline(&k, &side, fault);
+		face_side_free(&side);
+	} while (err == -EINVAL && turns++ < TRACK_MITRE_TURNS &&
+		 track_give_up_mitres(&k.w));
 	if (!err)
 		err = take_runs(f, &k);
-	face_side_free(&side);
 	track_forget(&k.w);
 	return err;
 }

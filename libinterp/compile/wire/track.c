@@ -18,7 +18,6 @@
 
 #define RIGHT_ANGLE	(M_PI / 2)
 #define ANGLE_SLACK	1e-6
-#define MITRE_TURNS	8u		/* ways found before mitres are left */
 
 /* Ends so near are one: half a pulse of rounding on either side, and more. */
 #define TINY_PULSES	1.5
@@ -394,7 +393,7 @@ static const struct attempt {
  * lies behind the corner.  From now on an arc goes round these.
  * Return: were there any?
  */
-static bool give_up_mitres(struct track_work *w)
+bool track_give_up_mitres(struct track_work *w)
 {
 	bool any = false;
 
@@ -436,8 +435,8 @@ static int attempt(struct track *t, const struct track_job *j, uint32_t i,
 		return -ENOMEM;
 	do
 		err = find_way(&w, fault);
-	while ((!err || err == -EINVAL) && turns++ < MITRE_TURNS &&
-	       give_up_mitres(&w));
+	while ((!err || err == -EINVAL) && turns++ < TRACK_MITRE_TURNS &&
+	       track_give_up_mitres(&w));
 	if (!err || (err == -EINVAL && j->skip && w.nruns &&
 		    fault->kind == TRACK_LOST)) {
 		t->skipped = err != 0;

@@ -22,6 +22,8 @@
 #include "wire/face.h"
 #include "wire/grid.h"
 
+#define TRACK_MITRE_TURNS	8u	/* ways found before mitres stay */
+
 /* A lead; the other end is where the track begins or ends. */
 struct track_lead {
 	bool there;
@@ -121,6 +123,10 @@ struct track_elem *track_add(struct track_work *w);
 
 /** track_shift() - piece @i's parallel is so far to its left. */
 double track_shift(const struct track_work *w, uint32_t i);
+
+/** track_give_up_mitres() - an arc goes from now on round the corners whose
+ *  point the way does not come to.  Return: are there any? */
+bool track_give_up_mitres(struct track_work *w);
 
 /** track_forget() - free what @w owns. */
 void track_forget(struct track_work *w);
