@@ -30,6 +30,7 @@ struct track_lead {
 	uint32_t owner;
 	struct vec far;			/* its end off the outline */
 	bool arc;			/* it touches the track in a tangent */
+	bool through;			/* it comes through the outline */
 };
 
 struct track_elem {
