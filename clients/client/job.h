@@ -25,6 +25,8 @@ struct job_text {
 	const char *text;		/* lent until job_end() */
 	size_t bytes;			/* at most JOB_BYTES_MAX */
 	bool hold;			/* load it, but wait for "start" */
+	int electrode;			/* it begins with; 0: the one in the
+					 * holder */
 	double silent_s;		/* give up without an ack; 0: 10 s; when
 					 * all was sent 15 s at least */
 };

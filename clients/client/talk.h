@@ -82,6 +82,7 @@ struct talk_chunk {
 	int chunk, chunks;
 	int64_t offset;
 	bool hold;
+	int electrode;
 	int size;
 	const char *data;
 };

@@ -21,6 +21,7 @@ struct ctl {
 	double timeout_s;
 	const char *name, *id;
 	bool hold, wait, once;
+	double electrode;		/* submit: its number; 0: not given */
 	unsigned int every;		/* record: cycles; 0: not given */
 	const char *plot;
 	const char *pulses;		/* doctor: CHIP:LINE */

@@ -53,7 +53,7 @@ struct verb {
 
 /* clang-format off */
 static const struct verb verbs[] = {
-	{ "submit", "FILE", ctl_submit, 1, 1, false, "name id hold wait",
+	{ "submit", "FILE", ctl_submit, 1, 1, false, "name id hold wait electrode",
 	  "send a job of NC code; - is standard input" },
 	{ "queue", "", ctl_queue, 0, 0, false, "",
 	  "print the loaded job and those that wait" },
@@ -138,6 +138,9 @@ static const struct cmdline_row rows[] = {
 	  "submit: load the job and wait for start" },
 	{ "wait", NULL, CMDLINE_FLAG, AT(wait), .help =
 	  "submit: follow the job; exit 0 if it is done, 1 if not" },
+	{ "electrode", "N", CMDLINE_NUMBER, AT(electrode), .min = 1,
+	  .max = 9999, .help =
+	  "submit: begin with electrode N, put in if it is another" },
 	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: print one line" },
 	{ "every", "N", CMDLINE_CALL, .take = take_every, .help =
 	  "record: write one cycle of N; default: 1" },

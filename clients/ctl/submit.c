@@ -177,7 +177,8 @@ static int send_text(struct ctl *c, const struct text *t,
 {
 	const struct job_text x = {
 		.id = c->id, .name = name_of(c), .text = t->bytes,
-		.bytes = t->size, .hold = c->hold, .silent_s = c->timeout_s,
+		.bytes = t->size, .hold = c->hold,
+		.electrode = (int)c->electrode, .silent_s = c->timeout_s,
 	};
 	struct job *j;
 	int err, rc;

@@ -77,6 +77,7 @@ static int go_on(struct compiler *c)
 	for (uint64_t i = 0; i < n; i++)
 		interp_build_set(c->result.build, sets->set[i].cond,
 				 sets->set[i].field, sets->set[i].value);
+	c->request.from.held = c->request.electrodes.held;
 	return interp_build_from(c->result.build, &c->request.from,
 				 &c->result.entry, &c->result.diag);
 }
@@ -97,6 +98,8 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	of.text.nc.notes = &notes;
 	of.text.nc.segs_max = SEGS_MAX;
 	of.text.nc.executed_max = EXECUTED_MAX;
+	c->request.electrodes.at = c->request.electrode;
+	of.text.nc.electrodes = &c->request.electrodes;
 	memcpy(of.build.start_mm, c->request.start_mm,
 	       sizeof(of.build.start_mm));
 	c->result.build = interp_build_create(&of.build);
@@ -112,8 +115,8 @@ static int compiler_read(struct compiler *c, const struct config_tech *tech)
 {
 	struct compiler_result *r = &c->result;
 	struct config_dialect d;
-	int err = config_dialect_load(&d, c->request.config, NULL,
-				      c->request.name);
+	int err = config_dialect_load(&d, c->request.config,
+				      c->request.dialect, c->request.name);
 
 	if (err == 0)
 		err = compiler_text(c, tech, d.use);

@@ -12,7 +12,9 @@
 
 #include "config.h"
 #include "interp/build_from.h"
+#include "interp/nc.h"
 #include "shm.h"
+#include "store_electrode.h"
 
 #include <systemd/sd-event.h>
 
@@ -27,6 +29,10 @@ struct compiler_request {
 	/* If it goes on where another one was interrupted: start_mm is where
 	 * that one began, and these values were set in it. */
 	bool goes_on;
+	/* Copies: the table may change meanwhile. */
+	struct interp_electrode electrode[STORE_ELECTRODES_MAX];
+	struct interp_electrodes electrodes;	/* but for `at` */
+	const char *dialect;		/* NULL: by machine file and name */
 	struct interp_build_from from;
 	struct shm_sets sets;
 };

@@ -95,6 +95,8 @@ const char *queue_unready(const struct jobs *j)
 		       "there: resume it or remove it first";
 	if (j->config->require_home && j->link.snap.unhomed)
 		return "an axis is not homed: home it";
+	if (*j->electrode.why)
+		return j->electrode.why;
 	return NULL;
 }
 
@@ -174,6 +176,9 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 {
 	struct queue *q = &j->queue;
 
+	/* What interrupted it has booked it: interrupt.c. */
+	if (state != JOB_INTERRUPTED)
+		electrode_book(j);
 	record_end(j, state, reason);
 	queue_recount(j);
 	q->ended = SHM_OUTCOME_NONE;
@@ -184,6 +189,7 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 		.place_mm = q->snap.place_mm,
 	}, "job %s %s%s%s", q->job.name, store_state_name(state),
 		  *reason ? ": " : "", reason);
+	electrode_tell(j);
 	if (state != JOB_DONE)
 		set_waiting(j, q->behind > 0);
 }
@@ -199,6 +205,7 @@ void queue_drop(struct jobs *j, bool again)
 	q->promised = 0;
 	shm_program_remove(j->machine, q->job.n);
 	store_set_loaded(j->store, q->job.n, false);
+	electrode_forget(j);
 	q->job = (struct store_job) { .n = 0 };
 	q->snap = (struct shm_snapshot) { .program = 0 };
 	q->depth_mm = 0;
@@ -485,6 +492,7 @@ void queue_step(struct jobs *j, int64_t now_us)
 		q->missing_us = 0;
 		q->snap = *s;
 		q->depth_mm = fmax(q->depth_mm, s->depth_mm);
+		electrode_follow(j);
 		if (queue_is_leaving(q))
 			follow_leaving(j, now_us);
 		else
@@ -495,7 +503,8 @@ void queue_step(struct jobs *j, int64_t now_us)
 		unload_stranger(j, now_us);
 	} else if (s->state == SHM_FAULT) {
 		fault_without_job(j);
-	} else if (!q->compile && now_us >= q->again_us && may_load(j)) {
+	} else if (!q->compile && now_us >= q->again_us && may_load(j) &&
+		   !electrode_waits(j)) {
 		load_begin(j, now_us);
 	}
 }

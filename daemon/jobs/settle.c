@@ -54,6 +54,7 @@ static void settle_one(void *arg, const struct shm_ended *e)
 		.jumps = e->jumps, .retracts = e->retracts,
 		.shorts = e->shorts,
 	});
+	electrode_settle(j, job.n, e->far_mm);
 	store_set_loaded(j->store, job.n, false);
 	if (j->queue.job.n == job.n) {
 		j->queue.job.state = done ? JOB_DONE : JOB_STOPPED;

@@ -53,6 +53,9 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 		       "turn the direction of writing");
 	else if (c->bytes < 0 || c->bytes > UPLOAD_BYTES_MAX)
 		refuse(a, EX_DATAERR, "job too long; at most 64 MiB");
+	else if (c->electrode < 0 || c->electrode > 9999)
+		refuse(a, EX_DATAERR, "no such electrode; 1 to 9999, or 0: the "
+		       "one in the holder");
 	else if (!place_is_inside(c))
 		refuse(a, EX_PROTOCOL, "chunk outside its job; at most "
 		       "32768 bytes, inside the size given");
@@ -165,6 +168,7 @@ static struct upload *upload_begin(struct uploads *u,
 	up->bytes = (size_t)c->bytes;
 	up->chunks = (uint32_t)c->chunks;
 	up->hold = c->hold;
+	up->electrode = (uint32_t)c->electrode;
 	up->seq_min = up->seq_max = c->seq;
 	return up;
 }

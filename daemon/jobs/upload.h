@@ -34,6 +34,7 @@ struct upload {
 	size_t bytes;
 	uint32_t chunks, have;
 	bool hold;
+	uint32_t electrode;
 	uint8_t *seen;			/* bit per chunk */
 	char *text;
 	int64_t last_us;		/* of the last new chunk, monotonic */

@@ -44,7 +44,7 @@ FILES = {
     "linuxcnc-pcb.ngc": ("G64", ["lengths", "G64", "T1", "M6", "M3"]),
     "linuxcnc-plasma.ngc": ("G64", ["G64", "M52", "M68", "G10", "X10", "M3",
                                     "M67"]),
-    "linuxcnc-vcarve.ngc": ("G64", ["G49", "G64", "M6", "T1", "M3"]),
+    "linuxcnc-vcarve.ngc": ("G64", ["G49", "G64", "T1", "M6", "M3"]),
     "makino.nc": ("M60", ["M60", "T84", "M50"]),
     "mastercam-wire-hsm.nc": (None, []),
     "mastercam-wire.nc": ("M60", ["M60", "M20", "M21", "M50"]),

@@ -305,8 +305,11 @@ class Client:
     # -- Jobs
 
     def submit(self, text: bytes, name: str, id: str | None = None,
-               hold: bool = False, timeout: float = 120.0) -> Job:
+               hold: bool = False, timeout: float = 120.0,
+               electrode: int = 0) -> Job:
         """Send a job; returns when it is in the queue.
+
+        electrode: it begins with this one; 0: with the one in the holder.
 
         id: the same id twice is one job; drawn without.
         name: for people; its end names the dialect.
@@ -322,7 +325,7 @@ class Client:
 
         def chunk(i: int) -> bytes:
             return Chunk(job, name, len(text), digest, i, len(pieces),
-                         i * CHUNK, hold, pieces[i]).encode(
+                         i * CHUNK, hold, pieces[i], electrode).encode(
                              self.name, seqs[i], time.time_ns() // 1000)
 
         try:

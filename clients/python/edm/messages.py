@@ -13,8 +13,8 @@ from dataclasses import dataclass
 SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
-JOB_CHUNK = bytes.fromhex("bb4ab1a64211c912")
-STATUS = bytes.fromhex("145ae31af6e30f78")
+JOB_CHUNK = bytes.fromhex("d747d3ccb6634ac4")
+STATUS = bytes.fromhex("d6afeb84f882f7aa")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -158,6 +158,9 @@ class Status:
     interrupted: str
     lost: str
     hunts: int
+    electrode: int
+    electrode_shift_mm: float
+    electrode_wear_mm: float
 
     @staticmethod
     def decode(data: bytes) -> Status:
@@ -196,6 +199,9 @@ class Status:
             r.string(),
             r.string(),
             r.int32(),
+            r.int32(),
+            r.double(),
+            r.double(),
         )
 
 
@@ -220,11 +226,13 @@ class Chunk:
     offset: int
     hold: bool
     data: bytes
+    electrode: int = 0
 
     def encode(self, client: str, seq: int, utime: int = 0) -> bytes:
         return (JOB_CHUNK + struct.pack(">q", utime) + string(client)
                 + struct.pack(">q", seq) + string(self.job)
                 + string(self.name) + struct.pack(">q", self.size)
                 + self.sha256
-                + struct.pack(">iiqbi", self.chunk, self.chunks, self.offset,
-                              self.hold, len(self.data)) + self.data)
+                + struct.pack(">iiqbii", self.chunk, self.chunks, self.offset,
+                              self.hold, self.electrode, len(self.data))
+                + self.data)
