@@ -277,7 +277,7 @@ $(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
 	     apart.c box.c near.c motion.c sweep.c prove.c))
 
-$(B)/unit/test_plan_core: $(PLAN_CORE)
+$(B)/unit/test_plan_core $(B)/unit/test_plan_bounds: $(PLAN_CORE)
 
 $(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
@@ -626,7 +626,8 @@ $(B)/fuzz_%: $(B)/watched/tests/fuzz/fuzz_%.o $(FUZZ_A)
 
 # -- Lint ---------------------------------------------------------------------
 
-HEADERS	 = $(wildcard common/*.h libinterp/*/include/interp/*.h daemon/*/*.h daemon/rt/*/*.h clients/*/*.h)
+HEADERS	 = $(wildcard common/*.h libinterp/*/*/*.h libinterp/*/include/interp/*.h \
+	   daemon/*/*.h daemon/rt/*/*.h clients/*/*.h messages/sign/*.h)
 
 # What an edmd must not have: a reader, messages, a database, another floor.
 NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
@@ -649,6 +650,8 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(Q)tests/symbol-prefixes $(B)
 	$(call say,LINT,no circle of calls in the cycle)
 	$(Q)tests/callgraph --most $(CIRCLE_MOST) $(RT_O)
+	$(call say,LINT,no two headers of one name)
+	$(Q)! printf '%s\n' $(notdir $(HEADERS)) | sort | uniq -d | grep .
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \

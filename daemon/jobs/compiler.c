@@ -77,7 +77,6 @@ static int go_on(struct compiler *c)
 	for (uint64_t i = 0; i < n; i++)
 		interp_build_set(c->result.build, sets->set[i].cond,
 				 sets->set[i].field, sets->set[i].value);
-	c->request.from.held = c->request.electrodes.held;
 	return interp_build_from(c->result.build, &c->request.from,
 				 &c->result.entry, &c->result.diag);
 }

@@ -33,9 +33,10 @@ static void put_asked(struct electrode *e, uint32_t number, double offset_mm)
 	e->asked[i] = (struct interp_electrode) { number, offset_mm };
 }
 
-/* A job that is resumed has the shifts with which it began, whatever was
- * measured since. */
-static uint32_t as_it_began(struct jobs *j, uint32_t n)
+/* A job that is resumed has the electrode and the shifts with which it began,
+ * whatever was measured since. */
+static void as_it_began(struct jobs *j, uint32_t n,
+			struct interp_electrodes *to)
 {
 	static struct store_worn w[INTERP_ELECTRODES_MAX];
 	static struct again a;
@@ -43,17 +44,19 @@ static uint32_t as_it_began(struct jobs *j, uint32_t n)
 	const size_t k = store_worn_list(j->store, n, w,
 					 INTERP_ELECTRODES_MAX);
 
+	/* Its sender named a place, and it has not begun yet. */
+	if (again_read(j, n, &a) < 0 || last->n == 0)
+		return;
 	for (size_t i = k; i-- > 0;)
 		if (w[i].electrode)
 			put_asked(&j->electrode, w[i].electrode,
 				  w[i].offset_mm);
-	if (k)
-		return w[0].electrode;
-	/* The store was damaged, and its rows are lost. */
-	if (again_read(j, n, &a) < 0 || last->electrode == 0)
-		return 0;
-	put_asked(&j->electrode, last->electrode, last->shift_mm);
-	return last->electrode;
+	/* If the store was damaged, its rows are lost. */
+	if (k == 0 && last->electrode)
+		put_asked(&j->electrode, last->electrode, last->shift_mm);
+	to->chosen = k ? w[0].electrode : last->electrode;
+	if (to->chosen == 0)
+		to->held = 0;
 }
 
 void electrode_request(struct jobs *j, const struct store_job *job,
@@ -68,12 +71,9 @@ void electrode_request(struct jobs *j, const struct store_job *job,
 		put_asked(e, all[i].n, all[i].length_mm - all[i].wear_mm);
 	ret->electrodes.held = electrode_held(j);
 	ret->electrodes.chosen = job ? job->electrode : chosen;
-	if (ret->goes_on) {
-		ret->electrodes.chosen = as_it_began(j, job->n);
-		ret->from.held = ret->electrodes.held;
-		if (ret->electrodes.chosen == 0)
-			ret->electrodes.held = 0;
-	}
+	ret->from.held = ret->electrodes.held;
+	if (ret->goes_on && job)
+		as_it_began(j, job->n, &ret->electrodes);
 	memcpy(ret->electrode, e->asked, sizeof(ret->electrode));
 	ret->electrodes.n = e->nasked;
 }

@@ -63,6 +63,13 @@ static int insert_text(struct store *s, const struct store_new *j, int64_t n)
 	return rc == SQLITE_DONE ? 0 : store_failed(s, rc);
 }
 
+static int insert_begin(struct store *s, const struct store_new *j, int64_t n)
+{
+	return !j->begin_at ? 0 :
+	       store_do(s, STORE_MUST, "INSERT INTO resume VALUES(?, ?)", "is",
+			n, j->begin_at);
+}
+
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 {
 	int64_t n = 0;
@@ -76,6 +83,8 @@ int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 		n = sqlite3_last_insert_rowid(s->db);
 		err = insert_text(s, j, n);
 	}
+	if (err == 0)
+		err = insert_begin(s, j, n);
 	if (err < 0) {
 		store_undo(s);
 		return err;

@@ -62,6 +62,7 @@ struct store_new {
 	size_t bytes;
 	uint32_t lines;
 	bool hold;
+	const char *begin_at;		/* for store_resume_at(); NULL: nothing */
 	int64_t now_us;
 	uint32_t electrode, measures;	/* as in struct store_job */
 };

@@ -8,9 +8,11 @@
  */
 #include "jobs.h"
 
+#include "again.h"
 #include "compiler.h"
-#include "verb.h"
+#include "entry.h"
 #include "jobs_log.h"
+#include "verb.h"
 
 #include <errno.h>
 #include <sodium.h>
@@ -128,12 +130,14 @@ static void accept_text(struct jobs *j, struct upload *up,
 {
 	const uint32_t lines = r->lines;
 	struct queue *q = &j->queue;
-	char hex[65], reason[160], *body;
+	char hex[65], reason[640], way[480] = "", *body;
 	struct store_new n = {
 		.id = up->id, .name = up->name, .sha256 = hex,
 		.text = up->text, .bytes = up->bytes, .lines = lines,
 		.tech_sha256 = r->tech_sha256,
-		.hold = up->hold, .electrode = up->electrode, .now_us = jobs_utime(),
+		.hold = up->hold, .now_us = jobs_utime(),
+		.begin_at = again_named(up->from_line, up->from_mm),
+		.electrode = up->electrode,
 	};
 	uint32_t number;
 
@@ -152,8 +156,10 @@ static void accept_text(struct jobs *j, struct upload *up,
 		  "job %s queued, %u lines, %zu bytes", n.name, lines,
 		  n.bytes);
 	tell_notes(j, up, r);
-	snprintf(reason, sizeof(reason), "accepted; %s",
-		 what_next(j, up->hold));
+	if (n.begin_at)
+		config_entry_words(j->config, &r->entry, way, sizeof(way));
+	snprintf(reason, sizeof(reason), "accepted; %s%s%s",
+		 what_next(j, up->hold), *way ? "; start " : "", way);
 	body = store_json(j->store, STORE_SHOW, n.id, 0);
 	answer_end(j, up, 0, reason, body);
 	free(body);
@@ -233,6 +239,8 @@ static void check_begin(struct jobs *j, struct upload *up)
 	int err = c ? 0 : -ENOMEM;
 
 	start_place(j, request.start_mm);
+	if (up->from_line > 0 || up->from_mm > 0)
+		again_begin_at(j, up->from_line, up->from_mm, &request);
 	electrode_request(j, NULL, up->electrode, &request);
 	if (c) {
 		*c = (struct check) { .jobs = j, .upload = up };

@@ -8,7 +8,7 @@
 #include "act.h"
 #include "again.h"
 #include "electrode.h"
-#include "keys.h"
+#include "keyring.h"
 #include "verb.h"
 
 #include "interp/tech_table.h"
@@ -564,10 +564,10 @@ static const struct verb verbs[] = {
 	{ "electrode-use", ROLE_OPERATOR, VERB_ACTS, electrode_use, VERB_OWN,
 	  "" },
 	{ "store", ROLE_VIEWER, VERB_ASKS, verbs_store, VERB_OWN, "" },
-	{ "hello", ROLE_VIEWER, VERB_ASKS, keys_hello, VERB_OWN, "" },
-	{ "keys", ROLE_SERVICE, VERB_ASKS, keys_list, VERB_OWN, "" },
-	{ "keys-add", ROLE_SERVICE, VERB_ACTS, keys_add, VERB_OWN, "" },
-	{ "keys-remove", ROLE_SERVICE, VERB_ACTS, keys_remove, VERB_OWN, "" },
+	{ "hello", ROLE_VIEWER, VERB_ASKS, keyring_hello, VERB_OWN, "" },
+	{ "keys", ROLE_SERVICE, VERB_ASKS, keyring_list, VERB_OWN, "" },
+	{ "keys-add", ROLE_SERVICE, VERB_ACTS, keyring_add, VERB_OWN, "" },
+	{ "keys-remove", ROLE_SERVICE, VERB_ACTS, keyring_remove, VERB_OWN, "" },
 };
 
 #define NVERBS	(sizeof(verbs) / sizeof(verbs[0]))

@@ -215,7 +215,7 @@ def test_through_a_power_cut_the_shift_stays(off):
     m.ctl("electrode", "use", "3")
     assert c.submit(DOWN, "cut").code == 0
     last = c.status_where(lambda s: s.job_state == "running"
-                          and s.place_mm > 3.4, 20)
+                          and s.place_mm > 4.2, 20)
     assert last.electrode_shift_mm == pytest.approx(0.75)
     die(m)
     m.start()
@@ -256,3 +256,26 @@ def test_a_dead_service_loses_no_wear(shop):
     job = c.job_where("cut", "done")
     assert job["electrodes"][0]["wear_after_mm"] == pytest.approx(0.1)
     assert table(m)[3]["wear_mm"] == pytest.approx(0.1)
+
+
+def test_a_place_in_the_middle_wants_the_electrode_that_cuts_there(shop):
+    m, c = shop, shop.client
+    add(m, 1, "length=1")
+    add(m, 2, "length=1.5")
+    m.ctl("electrode", "use", "1")
+    text = ("G21 G90\nG0 Z1\nC100 G1 Z0 F240\nG0 Z3\nT2\nG0 Z1\nG1 Z0\nX1\n"
+            "G0 Z3\nM30\n")
+    r = m.ctl("submit", "--id", "mid", "--from-line", "8", "-", input=text)
+    assert r.returncode == 0, r.stderr
+    c.job_where("mid", "ready")
+    assert c.ask("start").code == 0
+    # It stops for the second one, before it goes down.
+    s = c.status_where(lambda s: s.job_state == "held")
+    assert s.pos_mm[2] >= 2 and s.electrode == 1
+    assert c.ask("start").code == 0
+    job = c.job_where("mid", "done")
+    assert c.status().electrode == 2
+    assert c.status().pos_mm[2] == pytest.approx(4.5)
+    # What was cut before the place takes nothing off.
+    assert table(m)[2]["wear_mm"] == pytest.approx(0)
+    assert job["electrodes"][-1]["shift_mm"] == pytest.approx(1.5)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
-JOB_CHUNK = bytes.fromhex("d747d3ccb6634ac4")
+JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
 STATUS = bytes.fromhex("d6afeb84f882f7aa")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
@@ -226,6 +226,8 @@ class Chunk:
     offset: int
     hold: bool
     data: bytes
+    from_line: int = 0
+    from_mm: float = 0.0
     electrode: int = 0
 
     def encode(self, client: str, seq: int, utime: int = 0) -> bytes:
@@ -233,6 +235,7 @@ class Chunk:
                 + struct.pack(">q", seq) + string(self.job)
                 + string(self.name) + struct.pack(">q", self.size)
                 + self.sha256
-                + struct.pack(">iiqbii", self.chunk, self.chunks, self.offset,
-                              self.hold, self.electrode, len(self.data))
-                + self.data)
+                + struct.pack(">iiqbidii", self.chunk, self.chunks,
+                              self.offset, self.hold, self.from_line,
+                              self.from_mm, self.electrode,
+                              len(self.data)) + self.data)

@@ -69,9 +69,11 @@ int nc_electrode_begin(struct nc_reader *r)
 	const uint32_t number = !t ? 0 : t->chosen ? t->chosen : t->held;
 	int err;
 
-	if (number == 0 || nc_has_guides(r))
+	/* Where there is a table, the first mark says what cuts from the
+	 * beginning, even if that is none. */
+	if ((number == 0 && (!t || t->n == 0)) || nc_has_guides(r))
 		return 0;
-	if (!find(r, number))
+	if (number && !find(r, number))
 		return refuse_unknown(r, number, NULL);
 	r->segs++;
 	err = mark(r, number, number != t->held);
