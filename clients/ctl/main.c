@@ -122,7 +122,7 @@ static const struct verb verbs[] = {
 	  "print the jobs that have ended, newest first" },
 	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
 	  "who may command; by role" },
-	{ "electrode", "list|show N|add N|set N|remove N|use N [KEY=VALUE...]",
+	{ "electrode", "list|show N|add N|set N|remove N|use N|measure N",
 	  ctl_electrode, CTL_WORDS_MAX - 1, 1, false, "",
 	  "the table of electrodes, and which one is in the holder" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "plot",

@@ -110,7 +110,7 @@ static double need_of(const struct interp_wear *w, double cut_mm,
 	return mm;
 }
 
-static bool is_worn(const struct store_electrode *e)
+bool electrode_is_worn(const struct store_electrode *e)
 {
 	return (e->life_mm > 0 && e->wear_mm >= e->life_mm - NOTHING_MM) ||
 	       (e->life_s > 0 && e->spark_s >= e->life_s - NOTHING_MM);
@@ -118,7 +118,7 @@ static bool is_worn(const struct store_electrode *e)
 
 static bool lasts(const struct store_electrode *e, double need_mm)
 {
-	return e->state == ELECTRODE_THERE && !is_worn(e) &&
+	return e->state == ELECTRODE_THERE && !electrode_is_worn(e) &&
 	       (!(e->life_mm > 0) ||
 		e->life_mm - e->wear_mm >= need_mm - NOTHING_MM);
 }
@@ -150,7 +150,7 @@ static const char *say_why_not(struct jobs *j, const struct store_electrode *e,
 		snprintf(why, sizeof(why), "electrode %u %s is absent; bring it "
 			 "and electrode set %u state=there, or use %s", e->n,
 			 e->name, e->n, others);
-	else if (e->state == ELECTRODE_WORN || is_worn(e))
+	else if (e->state == ELECTRODE_WORN || electrode_is_worn(e))
 		snprintf(why, sizeof(why), "electrode %u %s is worn out: %.4f "
 			 "mm of wear, %.1f min of sparks; dress it and "
 			 "electrode set %u wear=0 sparked=0 state=there, or "
@@ -331,7 +331,8 @@ const char *electrode_load(struct jobs *j)
 
 	if (take(j, j->queue.job.n) < 0)
 		return "its program cannot be read; start tries again";
-	why = why_not(j, &j->electrode.wear, j->electrode.cut_mm);
+	why = j->queue.job.measures ? NULL :
+	      why_not(j, &j->electrode.wear, j->electrode.cut_mm);
 	if (!why && add_rows(j) < 0)
 		why = "the store failed";
 	if (!why)
@@ -386,7 +387,7 @@ static void write_down(struct jobs *j, const struct store_worn *w)
 		return;
 	e.wear_mm = w->after_mm;
 	e.spark_s = w->after_s;
-	if (is_worn(&e) && e.state == ELECTRODE_THERE)
+	if (electrode_is_worn(&e) && e.state == ELECTRODE_THERE)
 		e.state = ELECTRODE_WORN;
 	store_electrode_put(j->store, &e);
 }

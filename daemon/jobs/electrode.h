@@ -88,6 +88,13 @@ void electrode_interrupted(struct jobs *j, const struct checkpoint_base *b);
 /** electrode_settle() - the same of job @n, which ended at @far_mm unseen. */
 void electrode_settle(struct jobs *j, uint32_t n, double far_mm);
 
+/** electrode_measured() - the job is done: if it measured one, write that
+ *  down. */
+void electrode_measured(struct jobs *j);
+
+/** electrode_is_worn() - is its life used up? */
+bool electrode_is_worn(const struct store_electrode *e);
+
 /** electrode_forget() - the job is gone from edmd. */
 void electrode_forget(struct jobs *j);
 
@@ -106,5 +113,17 @@ void electrode_remove(struct jobs *j, const struct verb *v,
 /* 0: none. */
 void electrode_use(struct jobs *j, const struct verb *v,
 		   const struct jobs_lcm_command *c);
+
+/** electrode_find_named() - the one that a command names.  Return: false: the
+ *  sender was told why not. */
+bool electrode_find_named(struct jobs *j, const struct jobs_lcm_command *c,
+			  struct store_electrode *ret);
+
+/* -- electrode_measure.c -- */
+
+/* Makes a job that measures it.  The text is "new": it becomes the length of a
+ * new one. */
+void electrode_measure(struct jobs *j, const struct verb *v,
+		       const struct jobs_lcm_command *c);
 
 #endif /* JOBS_ELECTRODE_H */

@@ -257,6 +257,8 @@ void load_begin(struct jobs *j, int64_t now_us)
 	err = store_text(j->store, q->next.n, &q->next_text, &request.bytes);
 	if (err == 0) {
 		request.name = q->next.name;
+		/* What the service itself has written. */
+		request.dialect = q->next.measures ? "generic" : NULL;
 		request.text = q->next_text;
 		for (int i = 0; i < INTERP_NAXES; i++)
 			request.start_mm[i] = s->pos[i] * s->pulse_mm[i];

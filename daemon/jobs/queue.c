@@ -190,6 +190,8 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 	}, "job %s %s%s%s", q->job.name, store_state_name(state),
 		  *reason ? ": " : "", reason);
 	electrode_tell(j);
+	if (state == JOB_DONE)
+		electrode_measured(j);
 	if (state != JOB_DONE)
 		set_waiting(j, q->behind > 0);
 }

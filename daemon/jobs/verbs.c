@@ -563,6 +563,8 @@ static const struct verb verbs[] = {
 	  VERB_OWN, "" },
 	{ "electrode-use", ROLE_OPERATOR, VERB_ACTS, electrode_use, VERB_OWN,
 	  "" },
+	{ "electrode-measure", ROLE_OPERATOR, VERB_ACTS, electrode_measure,
+	  VERB_OWN, "" },
 	{ "store", ROLE_VIEWER, VERB_ASKS, verbs_store, VERB_OWN, "" },
 	{ "hello", ROLE_VIEWER, VERB_ASKS, keyring_hello, VERB_OWN, "" },
 	{ "keys", ROLE_SERVICE, VERB_ASKS, keyring_list, VERB_OWN, "" },

@@ -165,8 +165,8 @@ void electrode_list(struct jobs *j, const struct verb *v,
 }
 
 /* Find the one that is meant, or answer why not. */
-static bool find(struct jobs *j, const struct jobs_lcm_command *c,
-		 struct store_electrode *ret)
+bool electrode_find_named(struct jobs *j, const struct jobs_lcm_command *c,
+			  struct store_electrode *ret)
 {
 	const int err = store_electrode_ok(c->arg) ?
 		store_electrode_find(j->store, (uint32_t)c->arg, ret) :
@@ -237,7 +237,7 @@ void electrode_set(struct jobs *j, const struct verb *v,
 	char why[400];
 
 	(void)v;
-	if (!find(j, c, &e))
+	if (!electrode_find_named(j, c, &e))
 		return;
 	if (take_all(&e, c->text, why) < 0)
 		verbs_answer(j, c, EX_DATAERR, why);
@@ -252,7 +252,7 @@ void electrode_remove(struct jobs *j, const struct verb *v,
 	int err;
 
 	(void)v;
-	if (!find(j, c, &e) || is_busy(j, c))
+	if (!electrode_find_named(j, c, &e) || is_busy(j, c))
 		return;
 	err = store_electrode_remove(j->store, e.n);
 	j->electrode.why[0] = '\0';
@@ -269,7 +269,7 @@ void electrode_use(struct jobs *j, const struct verb *v,
 	int err;
 
 	(void)v;
-	if (c->arg != 0 && !find(j, c, &e))
+	if (c->arg != 0 && !electrode_find_named(j, c, &e))
 		return;
 	if (j->queue.job.n && !queue_is_leaving(&j->queue)) {
 		verbs_answer(j, c, REFUSED, "a job is loaded; when it has "

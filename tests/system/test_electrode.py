@@ -279,3 +279,85 @@ def test_a_place_in_the_middle_wants_the_electrode_that_cuts_there(shop):
     # What was cut before the place takes nothing off.
     assert table(m)[2]["wear_mm"] == pytest.approx(0)
     assert job["electrodes"][-1]["shift_mm"] == pytest.approx(1.5)
+
+
+MEASURES = """
+[machine]
+name = {name}
+backend = sim
+period_us = 1000
+cpu = -1
+overrun_limit = 0
+[probe]
+feed_mm_s = 2
+[sim]
+speed = 20
+noise_v = 0
+block = yes
+block_x_min_mm = 40
+block_x_max_mm = 60
+block_top_mm = 1.2
+[electrode]
+measure = yes
+measure_x_mm = 50
+clear_z_mm = 20
+measure_from_z_mm = 5
+measure_to_z_mm = -2
+reference_z_mm = 0
+[jobs]
+store = {store}
+"""
+
+
+@pytest.fixture
+def prober(tmp_path):
+    m = rig.Machine(tmp_path, MEASURES)
+    m.start()
+    yield m
+    m.close()
+    assert m.sweep() == [], "left in /dev/shm"
+
+
+def measured(m, *words):
+    c = m.client
+    r = m.ctl("electrode", "measure", "3", *words)
+    assert r.returncode == 0, r.stderr
+    job = r.stdout.split("job ")[1].split()[0]
+    c.job_where(job, "ready", 20)
+    assert c.ask("start").code == 0
+    # The electrode is put in.
+    if not c.job(job)["electrodes"]:
+        c.status_where(lambda s: s.job_state == "held" or s.place_mm > 0)
+        if c.status().job_state == "held":
+            assert c.ask("start").code == 0
+    c.job_where(job, "done", 60)
+    c.heard(lambda: [e for e in c.events if e.kind == "electrode"
+                     and "measured" in e.text])
+    return table(m)[3]
+
+
+def test_it_is_measured_at_the_reference(prober):
+    m = prober
+    add(m, 3, "state=worn", "life=0.4")
+    assert "not known yet" in m.ctl("electrode", "measure", "3").stderr
+    # As a new one: its length is what is measured.
+    e = measured(m, "new")
+    assert e["length_mm"] == pytest.approx(1.2, abs=2e-3)
+    assert (e["wear_mm"], e["state"], e["held"]) == (0, "there", True)
+    # It was longer when it was new: what is missing is wear.
+    m.ctl("electrode", "set", "3", "length=1.5", "wear=0.1")
+    e = measured(m)
+    assert e["wear_mm"] == pytest.approx(0.3, abs=2e-3)
+    assert e["state"] == "there"
+    m.ctl("electrode", "set", "3", "length=1.7")
+    e = measured(m)
+    assert e["wear_mm"] == pytest.approx(0.5, abs=2e-3)
+    assert e["state"] == "worn"
+
+
+def test_what_cannot_be_measured_is_refused(machine):
+    m = machine
+    add(m, 3, "length=1")
+    assert "measure = yes" in m.ctl("electrode", "measure", "3").stderr
+    assert m.ctl("electrode", "measure", "4").returncode == 66
+    assert "what?" in m.ctl("electrode", "measure", "3", "old").stderr
