@@ -256,7 +256,7 @@ $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
 $(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
-	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
+	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
 	$(call link,-llcm -lsodium -ljansson $(LIBGPIOD) -lm)

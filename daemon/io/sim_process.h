@@ -41,7 +41,7 @@ struct pulse_train {
 	double volts;			/* mean of the gap */
 	double waiting;			/* part of the time without a spark */
 	double wait_volts;		/* what that adds to the volts */
-	double waits;			/* pulses of chance in a wait, a period */
+	double waits;			/* random waits of pulses in a period */
 	double per_s;			/* pulses a second */
 	double burnt;			/* part of the on time that burns */
 };
@@ -49,7 +49,7 @@ struct pulse_train {
 /* Of one axis, in pulses of its drive. */
 struct sim_switches {
 	bool wired;
-	int toward;			/* the home switch is on from there on */
+	int toward;			/* the switch is on from there on */
 	double home, min, max, index;
 	int32_t was;			/* a period ago */
 };
@@ -59,7 +59,7 @@ struct sim {
 	double period_s;
 	double z_pulse_mm;		/* 0: no Z, the depth stays */
 	double pulse_mm[3];		/* of X Y Z */
-	double delay_us;		/* mean ignition delay at the best gap */
+	double delay_us;		/* mean delay at the best gap */
 	double late_us;			/* a longer wait is counted as open */
 	double best_u;			/* the best gap's place in the reach */
 	double reference_mm3;		/* crater of the reference pulse */
@@ -137,6 +137,9 @@ struct io_shares sim_pulses_shares(struct sim *s);
  * steady supply.
  */
 double sim_pulses_volts(struct sim *s, bool sparks);
+/** sim_pulses_j() - energy of the discharges of a period: sparks and arcs, by
+ *  the voltage across them.  A short has no voltage. */
+double sim_pulses_j(const struct sim *s);
 
 /* sim_erosion.c */
 double sim_area_mm2(const struct sim *s);

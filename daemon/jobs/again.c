@@ -81,6 +81,8 @@ void again_whole(const struct again *a, struct shm_snapshot *s)
 	s->jumps += before->jumps;
 	s->retracts += before->retracts;
 	s->shorts += before->shorts;
+	s->arcs += before->arcs;
+	s->energy_j += before->energy_j;
 }
 
 /* What was set before the first interruption, unless it was set again. */

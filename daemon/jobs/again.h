@@ -13,21 +13,9 @@
 #ifndef JOBS_AGAIN_H
 #define JOBS_AGAIN_H
 
-#include "checkpoint.h"
+#include "again_kept.h"
 #include "compiler.h"
 #include "verb.h"
-
-/* Where a job begins or goes on; kept in the store. */
-struct again {
-	struct checkpoint_base base;	/* places in mm of the whole program */
-	double from_mm, way_mm;		/* as in interp/build_from.h; the
-					 * program of this job; 0, 0: not made */
-	uint32_t line;			/* its sender named this line ... */
-	double place_mm;		/* ... or this place; 0, 0: none, it
-					 * was interrupted */
-	uint32_t instance;		/* of the edmd whose axes an operator
-					 * answered for; 0: nobody did */
-};
 
 /** again_read() - of job @n.  0; -ENOENT: it begins at its beginning. */
 int again_read(struct jobs *j, uint32_t n, struct again *ret);
@@ -43,10 +31,6 @@ int again_write(struct jobs *j, uint32_t n, const struct again *a);
  *  @last. */
 void again_interrupted(struct jobs *j, uint32_t n,
 		       const struct checkpoint_base *last, struct again *ret);
-
-/** again_whole() - @s of a job that goes on as @a says, as if it had never been
- *  interrupted: place, length and sums. */
-void again_whole(const struct again *a, struct shm_snapshot *s);
 
 /** again_resume() - the verb "resume" with a job. */
 void again_resume(struct jobs *j, const struct jobs_lcm_command *c,

@@ -501,19 +501,27 @@ void electrode_interrupted(struct jobs *j, const struct checkpoint_base *b)
 	}
 }
 
-void electrode_settle(struct jobs *j, uint32_t n, double far_mm)
+void electrode_settle(struct jobs *j, uint32_t n,
+		      const struct shm_ended *ended)
 {
+	const double all_s = (double)ended->erode_cycles *
+			     (double)ended->period_ns / 1e9;
 	struct electrode *e = &j->electrode;
+	double s;
 
 	if (take(j, n) < 0)
 		return;
 	find_rows(j);
 	for (int k = e->now < 0 ? 0 : e->now; k < (int)e->wear.nchanges &&
-	     e->wear.change[k].s_mm <= far_mm; k++) {
+	     e->wear.change[k].s_mm <= ended->far_mm; k++) {
 		if (k != e->now)
 			begin(j, k);
-		book(j, far_mm, sparked_before_s(e, k) +
-		     e->worn[k].after_s - e->worn[k].before_s);
+		/* When the electrode was changed is not known: the last one
+		 * has the time. */
+		s = sparked_before_s(e, k) + e->worn[k].after_s -
+		    e->worn[k].before_s;
+		book(j, ended->far_mm, end_of(&e->wear, (uint32_t)k) >
+		     ended->far_mm ? all_s : s);
 	}
 	electrode_forget(j);
 }

@@ -16,6 +16,7 @@
 #include "queue.h"
 #include "reply.h"
 #include "store.h"
+#include "tally.h"
 #include "trust.h"
 #include "twin.h"
 #include "upload.h"
@@ -35,6 +36,7 @@ struct jobs {
 	struct uploads uploads;
 	struct replies replies;
 	struct queue queue;
+	struct tally tally;
 	struct eta eta;
 	struct electrode electrode;
 	struct trust trust;

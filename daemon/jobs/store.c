@@ -241,8 +241,9 @@ int store_set_loaded(struct store *s, uint32_t n, bool loaded)
 
 int store_begin(struct store *s, uint32_t n, int64_t now_us)
 {
-	return store_do(s, STORE_KEEP, "UPDATE job SET begun_us=? WHERE n=?",
-			"iI", now_us, (int64_t)n);
+	return store_do(s, STORE_KEEP, "UPDATE job SET begun_us=?, first_us="
+			"iif(first_us=0, ?, first_us) WHERE n=?", "iiI",
+			now_us, now_us, (int64_t)n);
 }
 
 int store_may_begin(struct store *s, uint32_t n)
@@ -256,11 +257,21 @@ int store_end(struct store *s, uint32_t n, const struct store_end *e)
 {
 	return store_do(s, STORE_KEEP, "UPDATE job SET state=?, reason=?, "
 			"ended_us=?, place_mm=?, length_mm=?, depth_mm=?, "
-			"job_s=?, jumps=?, retracts=?, shorts=? WHERE n=?",
-			"ssiddddiiiI", state_names[e->state], e->reason,
+			"job_s=?, erode_s=?, energy_j=?, jumps=?, retracts=?, "
+			"shorts=?, arcs=? WHERE n=?",
+			"ssiddddddiiiiI", state_names[e->state], e->reason,
 			e->now_us, e->place_mm, e->length_mm, e->depth_mm,
-			e->job_s, (int64_t)e->jumps, (int64_t)e->retracts,
-			(int64_t)e->shorts, (int64_t)n);
+			e->job_s, e->erode_s, e->energy_j, (int64_t)e->jumps,
+			(int64_t)e->retracts, (int64_t)e->shorts,
+			(int64_t)e->arcs, (int64_t)n);
+}
+
+int store_give_up(struct store *s, uint32_t n, const char *reason,
+		  int64_t now_us)
+{
+	return store_do(s, STORE_KEEP, "UPDATE job SET state='stopped', "
+			"reason=?, ended_us=? WHERE n=?", "siI", reason, now_us,
+			(int64_t)n);
 }
 
 int store_set_tech(struct store *s, uint32_t n, const char *sha256)
