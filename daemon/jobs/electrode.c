@@ -41,7 +41,7 @@ static void as_it_began(struct jobs *j, uint32_t n,
 	static struct store_worn w[INTERP_ELECTRODES_MAX];
 	static struct again a;
 	const struct checkpoint_job *last = &a.base.job;
-	const size_t k = store_worn_list(j->store, n, w,
+	const size_t k = store_worn_list(j->store, n, 0, w,
 					 INTERP_ELECTRODES_MAX);
 
 	/* Its sender named a place, and it has not begun yet. */
@@ -76,6 +76,9 @@ void electrode_request(struct jobs *j, const struct store_job *job,
 		as_it_began(j, job->n, &ret->electrodes);
 	memcpy(ret->electrode, e->asked, sizeof(ret->electrode));
 	ret->electrodes.n = e->nasked;
+	/* A text that is sent is refused; a job that is there waits. */
+	ret->electrodes.unknown_ok = job != NULL;
+	ret->wants_wear = !job && e->nasked > 0;
 }
 
 /* -- May it begin? ---------------------------------------------------------- */
@@ -192,26 +195,10 @@ static const char *why_not(struct jobs *j, const struct interp_wear *w,
 
 const char *electrode_check(struct jobs *j, const struct compiler_result *r)
 {
-	const struct interp_build_about about = { .lines = r->lines };
-	const size_t bytes = interp_build_bytes(r->build);
-	struct interp_wear w = { .nparts = 0 };
-	struct store_electrode first;
-	struct interp_program p;
-	const char *why = NULL;
-	void *block;
+	const double cut_mm = r->entry.far_mm - r->entry.from_mm +
+			      r->entry.way_mm;
 
-	if (store_electrodes(j->store, &first, 1) == 0)
-		return NULL;
-	block = malloc(bytes);
-	if (!block)
-		return "no memory to look at its electrodes; try again";
-	interp_build_write(r->build, &about, block);
-	if (interp_program_map(&p, block, bytes) == 0 &&
-	    interp_wear_measure(&w, &p) == 0)
-		why = why_not(j, &w, 0);
-	interp_wear_free(&w);
-	free(block);
-	return why;
+	return why_not(j, &r->wear, cut_mm);
 }
 
 /* -- The program that is loaded --------------------------------------------- */
@@ -265,17 +252,19 @@ static double offset_of(const struct jobs *j, uint32_t number)
 /* Rows for all changes of this loading; -1 s: it has not begun to cut. */
 static int add_rows(struct jobs *j)
 {
-	static struct store_worn old[INTERP_ELECTRODES_MAX];
 	struct electrode *e = &j->electrode;
-	const size_t before = store_worn_list(j->store, e->n, old,
-					      INTERP_ELECTRODES_MAX);
+	uint32_t before;
 	int err = 0;
+
+	/* An earlier loading from which nothing came leaves no rows. */
+	store_worn_drop(j->store, e->n);
+	before = store_worn_next(j->store, e->n);
 
 	for (uint32_t k = 0; k < e->wear.nchanges && err == 0; k++) {
 		const uint32_t number = e->wear.change[k].number;
 
 		e->worn[k] = (struct store_worn) {
-			.job = e->n, .part = (uint32_t)before + k,
+			.job = e->n, .part = before + k,
 			.electrode = number,
 			.offset_mm = offset_of(j, number), .after_s = -1,
 		};
@@ -287,15 +276,18 @@ static int add_rows(struct jobs *j)
 /* A service before this one made them. */
 static void find_rows(struct jobs *j)
 {
-	static struct store_worn all[INTERP_ELECTRODES_MAX];
 	struct electrode *e = &j->electrode;
-	const size_t n = store_worn_list(j->store, e->n, all,
-					 INTERP_ELECTRODES_MAX);
 	const uint32_t k = e->wear.nchanges;
+	const uint32_t next = store_worn_next(j->store, e->n);
 
-	if (n < k)
-		return;
-	memcpy(e->worn, all + (n - k), k * sizeof(*all));
+	memset(e->worn, 0, sizeof(e->worn));
+	for (uint32_t i = 0; i < k; i++)
+		e->worn[i] = (struct store_worn) {
+			.job = e->n, .part = i, .after_s = -1,
+			.electrode = e->wear.change[i].number,
+		};
+	if (next >= k)
+		store_worn_list(j->store, e->n, next - k, e->worn, k);
 	for (uint32_t i = 0; i < k; i++)
 		if (e->worn[i].after_s >= 0)
 			e->now = (int)i;
@@ -482,14 +474,15 @@ void electrode_tell(struct jobs *j)
 void electrode_interrupted(struct jobs *j, const struct checkpoint_base *b)
 {
 	static struct store_worn all[INTERP_ELECTRODES_MAX];
-	const size_t n = store_worn_list(j->store, b->job.n, all,
+	const size_t n = store_worn_list(j->store, b->job.n,
+					 b->job.first_part, all,
 					 INTERP_ELECTRODES_MAX);
 	double before_s = 0;
 
 	for (size_t i = 0; i < n; i++) {
 		struct store_worn *w = &all[i];
 
-		if (w->part < b->job.first_part || w->after_s < 0)
+		if (w->after_s < 0)
 			continue;
 		if (w->part == b->job.part) {
 			w->after_mm = w->before_mm + b->wear_mm;

@@ -170,12 +170,25 @@ static void worn_get(sqlite3_stmt *q, struct store_worn *ret)
 	ret->known = sqlite3_column_int(q, 8) != 0;
 }
 
-size_t store_worn_list(struct store *s, uint32_t n, struct store_worn *to,
-		       size_t room)
+uint32_t store_worn_next(struct store *s, uint32_t n)
+{
+	return (uint32_t)store_number_of(s, 0, "SELECT ifnull(max(part) + 1, 0) "
+					 "FROM worn WHERE job=?", "i",
+					 (int64_t)n);
+}
+
+int store_worn_drop(struct store *s, uint32_t n)
+{
+	return store_do(s, STORE_KEEP, "DELETE FROM worn WHERE job=? AND "
+			"after_s<0", "i", (int64_t)n);
+}
+
+size_t store_worn_list(struct store *s, uint32_t n, uint32_t from,
+		       struct store_worn *to, size_t room)
 {
 	sqlite3_stmt *q = store_ask(s, NULL, "SELECT " WORN_COLUMNS " FROM "
-				    "worn WHERE job=? ORDER BY part", "i",
-				    (int64_t)n);
+				    "worn WHERE job=? AND part>=? ORDER BY "
+				    "part", "ii", (int64_t)n, (int64_t)from);
 	size_t k = 0;
 
 	if (!q)

@@ -73,8 +73,14 @@ struct store_worn {
 /** store_worn_add() - on the disk, or refused. */
 int store_worn_add(struct store *s, const struct store_worn *w);
 int store_worn_put(struct store *s, const struct store_worn *w);
-/** store_worn_list() - of job @n, by part, at most @room.  Return: how many. */
-size_t store_worn_list(struct store *s, uint32_t n, struct store_worn *to,
-		       size_t room);
+/** store_worn_list() - of job @n, by part, from part @from on, at most @room.
+ *  Return: how many. */
+size_t store_worn_list(struct store *s, uint32_t n, uint32_t from,
+		       struct store_worn *to, size_t room);
+/** store_worn_next() - the first part that job @n has not. */
+uint32_t store_worn_next(struct store *s, uint32_t n);
+/** store_worn_drop() - forget the parts of job @n that have not begun: their
+ *  after_s is below 0. */
+int store_worn_drop(struct store *s, uint32_t n);
 
 #endif /* JOBS_STORE_ELECTRODE_H */

@@ -23,6 +23,12 @@ static const struct interp_electrode *find(const struct nc_reader *r,
 	return NULL;
 }
 
+/* Is it in the table, or may it be missing? */
+static bool is_known(const struct nc_reader *r, uint64_t number)
+{
+	return number == 0 || r->o->electrodes->unknown_ok || find(r, number);
+}
+
 static int refuse_unknown(struct nc_reader *r, uint64_t number,
 			  const uint8_t *at)
 {
@@ -73,7 +79,7 @@ int nc_electrode_begin(struct nc_reader *r)
 	 * beginning, even if that is none. */
 	if ((number == 0 && (!t || t->n == 0)) || nc_has_guides(r))
 		return 0;
-	if (number && !find(r, number))
+	if (!is_known(r, number))
 		return refuse_unknown(r, number, NULL);
 	r->segs++;
 	err = mark(r, number, number != t->held);
@@ -132,7 +138,7 @@ int nc_run_electrode(struct nc_reader *r)
 
 	/* Such programs come from machines with a changer, and were cut here
 	 * before there was a table. */
-	if (next && (!t || t->n == 0)) {
+	if (next && (!t || (t->n == 0 && !t->held && !t->chosen))) {
 		nc_note_electrode(r, NC_ELECTRODE, "is ignored: there is no "
 				  "table of electrodes");
 		return 0;
@@ -148,7 +154,7 @@ int nc_run_electrode(struct nc_reader *r)
 		nc_note_electrode(r, NC_ELECTRODE, "shifts nothing: the length "
 				  "and the wear of electrodes are not known "
 				  "here");
-	else if (number && !find(r, number))
+	else if (!is_known(r, number))
 		return refuse_unknown(r, number, at);
 	r->next = (uint32_t)number;
 	return next || plc_changes(r) ? 0 : change(r, true, at);

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 
 #define SAME_SLOPE	1e-12		/* mm per mm */
+#define PARTS_MAX	(1u << 20)	/* 24 MiB; then every second one is
+					 * left out */
 
 static int part_add(struct interp_wear *w, const struct interp_wear_part *p)
 {
@@ -36,11 +38,25 @@ static bool is_straight(const struct interp_wear_part *a,
 		    (c->unknown_mm - b->unknown_mm) / bc) < SAME_SLOPE;
 }
 
+/* Between those that stay, the wear is then even. */
+static void thin(struct interp_wear *w)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < w->nparts; i += 2)
+		w->part[n++] = w->part[i];
+	w->nparts = n;
+}
+
 /* A part that goes on as the last one did replaces its end. */
 static int part_join(struct interp_wear *w, const struct interp_wear_part *p)
 {
 	const size_t n = w->nparts;
 
+	if (n == PARTS_MAX) {
+		thin(w);
+		return part_add(w, p);
+	}
 	if (n < 2 || !is_straight(&w->part[n - 2], &w->part[n - 1], p))
 		return part_add(w, p);
 	w->part[n - 1] = *p;

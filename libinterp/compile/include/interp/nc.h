@@ -63,6 +63,9 @@ struct interp_electrodes {
 					 * none */
 	uint32_t chosen;		/* the one that the program begins with;
 					 * 0: the one in the holder */
+	bool unknown_ok;		/* numbers that are not in the table are
+					 * taken, and shift nothing: the caller
+					 * looks at the marks in the program */
 };
 
 struct interp_nc_options {
