@@ -10,7 +10,7 @@ static const struct interp_electrode four[] = {
 	{ 1, 0 }, { 2, -0.125 }, { 3, 0.0304 }, { 7, -0.0996 },
 };
 
-static struct interp_electrodes table = { four, 4, 0, 0 };
+static struct interp_electrodes table = { .at = four, .n = 4 };
 
 static struct nc_read read_with(const char *text, uint32_t held,
 				uint32_t chosen)
