@@ -125,7 +125,8 @@ static void print_curve(const struct curve_data *d)
 	length_mm = interp_nurbs_length(&e, 0, 1, 1e-9);
 	for (int i = 0; i <= 100000; i++)
 		sharpest = fmax(sharpest,
-				interp_nurbs_curvature(&e, i / 100000.0));
+				interp_nurbs_curvature(&e, i / 100000.0,
+						       NULL));
 	printf("| %s | %u | %u | %.4f | %.4f |\n", d->name, d->degree,
 	       d->npoints, length_mm, 1 / sharpest);
 }

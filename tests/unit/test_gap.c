@@ -120,6 +120,7 @@ static void shares_at_their_set_value_hold_the_servo_voltage(void **st)
 	step(&r, 0);
 	assert_near(r.c.sensed.signal_v, k.gap.servo_v, 1e-5);
 	assert_int_equal(r.c.state, STATE_ERODE);
+	steps(&r, 0, 5);
 	for (int i = 0; i <= 40; i++) {
 		const double open = 0.3 + 0.01 * i;
 
@@ -128,7 +129,7 @@ static void shares_at_their_set_value_hold_the_servo_voltage(void **st)
 		assert_near(r.c.feed_mm_s, 0.1 * 60 * (open - 0.2), 1e-5);
 	}
 	shares(&r, 0.1, 0.5, 0.2, 0.2);
-	step(&r, 0);
+	steps(&r, 0, 5);
 	assert_true(r.c.feed_mm_s < 0);
 	shares(&r, 0, 0.5, 0, 0.5);
 	step(&r, 0);

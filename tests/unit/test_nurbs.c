@@ -143,7 +143,7 @@ static void a_circle_is_round_and_as_long_as_it_is(void **state)
 
 		interp_nurbs_at(&e, i / 1000.0, 0, &p);
 		assert_true(fabs(hypot(p.d[0][0], p.d[0][1]) - 50) < 1e-12);
-		assert_true(fabs(interp_nurbs_curvature(&e, i / 1000.0) -
+		assert_true(fabs(interp_nurbs_curvature(&e, i / 1000.0, NULL) -
 				 0.02) < 1e-12);
 	}
 	assert_true(fabs(interp_nurbs_length(&e, 0, 1, 1e-9) -

@@ -61,7 +61,18 @@ void retract_begin(struct cycle *c)
 	r->least_mm = arcing_retract_mm(c);
 	r->waited = 0;
 	r->cycles = 0;
+	r->leaves = c->gap.retract_escape && !escape_is_out(&c->escape);
 	count(c);
+}
+
+bool retract_leave(struct cycle *c)
+{
+	if (c->mover.v_mm_s != 0)
+		return false;
+	c->retract.leaves = false;
+	if (escape_begin(c))
+		c->retract.floor_mm = floor_of(c);
+	return true;
 }
 
 static double back_mm(const struct cycle *c)
@@ -78,7 +89,8 @@ static bool at_floor(const struct cycle *c)
 bool retract_is_clear(const struct cycle *c)
 {
 	return c->sensed.signal_v >= c->gap.servo_v &&
-	       (back_mm(c) >= c->retract.least_mm || at_floor(c));
+	       (c->retract.least_mm <= 0 ||
+		back_mm(c) >= c->retract.least_mm || at_floor(c));
 }
 
 /* The distance was used up, or there is no way left to go? */

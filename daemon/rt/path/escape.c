@@ -124,9 +124,13 @@ bool escape_begin(struct cycle *c)
 		&c->cursor.p.escapes[c->cursor.seg.escape];
 	struct escape *e = &c->escape;
 
-	*e = (struct escape) { .v_max_mm_s = x->v_max_mm_s };
+	*e = (struct escape) {
+		.v_max_mm_s = x->v_max_mm_s, .a_max_mm_s2 = x->a_max_mm_s2,
+		.j_max_mm_s3 = x->j_max_mm_s3,
+	};
 	memcpy(e->pos, c->cursor.pos, sizeof(e->pos));
-	if (!(x->v_max_mm_s > 0) || !legs(c, x))
+	if (!(x->v_max_mm_s > 0 && x->a_max_mm_s2 > 0 && x->j_max_mm_s3 > 0) ||
+	    !legs(c, x))
 		e->nlegs = 0;
 	memcpy(e->pos, c->cursor.pos, sizeof(e->pos));
 	return e->nlegs > 0;

@@ -43,11 +43,16 @@ static double curvature(const struct interp_nurbs *c, const double *d2)
 	return sqrt(interp_nurbs_dot(c, d2, d2));
 }
 
-double interp_nurbs_curvature(struct interp_nurbs_eval *e, double u)
+double interp_nurbs_curvature(struct interp_nurbs_eval *e, double u,
+			      double bends[INTERP_NAXES])
 {
 	double d[3][INTERP_NAXES];
 
-	return by_length(e, u, d) ? curvature(&e->c, d[1]) : HUGE_VAL;
+	if (!by_length(e, u, d))
+		return HUGE_VAL;
+	for (uint32_t j = 0; bends && j < e->c.naxes; j++)
+		bends[j] = d[1][j];
+	return curvature(&e->c, d[1]);
 }
 
 double interp_nurbs_feed_mm_s(struct interp_nurbs_eval *e, double u,

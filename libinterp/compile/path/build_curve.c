@@ -35,11 +35,26 @@
 
 /* -- What limits it ------------------------------------------------------------ */
 
+/* What column @k can do is for following the curve and for going along it. */
+static void share_out(struct curve_plan *p, uint32_t k,
+		      const struct interp_axis_limits *m)
+{
+	const bool along = k < p->curve.counted;
+
+	p->limits.a_mm_s2[k] = m->a_max_mm_s2 *
+		(along ? INTERP_BEND_ACROSS : INTERP_BESIDE_ACROSS);
+	p->along.a_mm_s2[k] = m->a_max_mm_s2 *
+		(along ? INTERP_BEND_ALONG : INTERP_BESIDE_ALONG);
+	p->limits.j_mm_s3[k] = INTERP_CURVE_JERK_ROUND * m->j_max_mm_s3;
+	p->along.j_mm_s3[k] = INTERP_CURVE_JERK_ALONG * m->j_max_mm_s3;
+	p->both_mm_s3[k] = INTERP_CURVE_JERK_BOTH * m->j_max_mm_s3;
+}
+
 static void set_limits(struct curve_plan *p)
 {
 	const struct interp_build_options *o = &p->b->o;
 	struct interp_nurbs_limits *l = &p->limits;
-	double jerk = HUGE_VAL;
+	double jerk = HUGE_VAL, acc = HUGE_VAL;
 
 	*l = (struct interp_nurbs_limits) {
 		.chord_error_mm = HUGE_VAL, .period_s = 1,
@@ -53,17 +68,37 @@ static void set_limits(struct curve_plan *p)
 			&o->machine->axis[p->curve.axis[k]];
 
 		l->v_mm_s[k] = m->v_max_mm_s;
-		l->a_mm_s2[k] = INTERP_BEND_ACROSS * m->a_max_mm_s2;
-		l->j_mm_s3[k] = m->j_max_mm_s3;
+		share_out(p, k, m);
 		p->pulses_mm[p->curve.axis[k]] = 1 / m->pulse_mm;
 		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
 		jerk = fmin(jerk, m->j_max_mm_s3);
+		acc = fmin(acc, m->a_max_mm_s2);
 		if (k < p->curve.counted)
 			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
 						    l->a_mm_s2[k]);
 	}
 	/* A bend of less than a pulse's radius is none that the axes see. */
 	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);
+	p->least_mm_s2 = INTERP_BEND_LEAST * acc;
+}
+
+/* What is 1 / (v * a) at least, for the jerk of speeding up on this bend. */
+static double jerk_of(const struct curve_plan *p, const double *bends)
+{
+	double most = 0;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++)
+		most = fmax(most, 3 * fabs(bends[k]) / p->both_mm_s3[k]);
+	return most;
+}
+
+static void learn_rate(struct curve_plan *p, uint32_t k, double rate)
+{
+	struct curve_seen *s = &p->seen;
+
+	s->rate = fmax(s->rate, rate * p->pulses_mm[p->curve.axis[k]]);
+	s->per_a = fmax(s->per_a, rate / p->along.a_mm_s2[k]);
+	s->per_j = fmax(s->per_j, rate / p->along.j_mm_s3[k]);
 }
 
 /* A look at @u: the feed its axes can do.  The piece in hand learns how sharp
@@ -71,24 +106,37 @@ static void set_limits(struct curve_plan *p)
 static double look(struct curve_plan *p, double u)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;
+	double bends[INTERP_NAXES] = { 0 }, speed, jerk, feed;
 	struct interp_nurbs_point at;
-	double speed;
 
-	p->bend = fmax(p->bend, interp_nurbs_curvature(e, u));
+	p->seen.bend = fmax(p->seen.bend, interp_nurbs_curvature(e, u, bends));
+	jerk = jerk_of(p, bends);
+	p->seen.jerk_s_mm = fmax(p->seen.jerk_s_mm, jerk);
 	interp_nurbs_at(e, u, 1, &at);
 	speed = sqrt(interp_nurbs_dot(&e->c, at.d[1], at.d[1]));
 	for (uint32_t k = 0; speed > 0 && k < e->c.naxes; k++)
-		p->rate = fmax(p->rate, fabs(at.d[1][k]) / speed *
-					p->pulses_mm[p->curve.axis[k]]);
-	return fmax(interp_nurbs_feed_mm_s(e, u, &p->limits), p->slowest_mm_s);
+		learn_rate(p, k, fabs(at.d[1][k]) / speed);
+	feed = interp_nurbs_feed_mm_s(e, u, &p->limits);
+	if (jerk > 0)
+		feed = fmin(feed, 1 / (jerk * p->least_mm_s2));
+	return fmax(feed, p->slowest_mm_s);
 }
 
 /* Of the piece in hand. */
 static double feed_of(const struct curve_plan *p)
 {
-	const double chord = p->chord_mm_s / sqrt(p->bend);
+	const double chord = p->chord_mm_s / sqrt(p->seen.bend);
 
 	return fmax(fmin(p->least_mm_s, chord), p->slowest_mm_s);
+}
+
+/* Of the piece in hand, at that feed: how fast to speed up along it. */
+static void along_of(const struct curve_plan *p, double feed_mm_s,
+		     struct interp_piece *ret)
+{
+	ret->a_mm_s2 = fmax(1 / (p->seen.jerk_s_mm * feed_mm_s), p->least_mm_s2);
+	ret->a_mm_s2 = fmin(ret->a_mm_s2, 1 / p->seen.per_a);
+	ret->j_mm_s3 = 1 / p->seen.per_j;
 }
 
 /* -- Pieces -------------------------------------------------------------------- */
@@ -173,7 +221,7 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 {
 	const struct interp_nurbs_stop *stops = stops_of(p, piece);
 	const double length_mm = stops[piece->nstops - 1].s_mm;
-	double places = ceil(length_mm * p->rate * MARGIN *
+	double places = ceil(length_mm * p->seen.rate * MARGIN *
 			     (p->turns > 1 ? 2 : 1)) + 1;
 
 	for (int i = 0; i < TRIES; i++) {
@@ -237,12 +285,13 @@ static int piece_add(struct curve_plan *p, double to)
 	if (err < 0)
 		return err;
 	step.seg.ticks = p->walk.places * p->turns;
+	step.feed_max_mm_s = feed_of(p);
+	along_of(p, step.feed_max_mm_s, &piece);
 	step.seg.arg = (uint32_t)p->b->pieces.n;
 	stored = build_table_add(&p->b->pieces);
 	if (!stored)
 		return -ENOMEM;
 	*stored = piece;
-	step.feed_max_mm_s = feed_of(p);
 	p->word.line = build_curve_line(p, p->from);
 	return build_step(p->b, &step, &p->word, p->diag);
 }
@@ -250,7 +299,7 @@ static int piece_add(struct curve_plan *p, double to)
 static void piece_begin(struct curve_plan *p, double u)
 {
 	p->from = u;
-	p->rate = p->bend = 0;
+	p->seen = (struct curve_seen) { .bend = 0 };
 	p->least_mm_s = p->most_mm_s = look(p, u);
 }
 
@@ -258,13 +307,13 @@ static void piece_begin(struct curve_plan *p, double u)
  * the last look was. */
 static int piece_extend(struct curve_plan *p, double last, double u)
 {
-	const double bend = p->bend, rate = p->rate, feed = look(p, u);
+	const struct curve_seen was = p->seen;
+	const double feed = look(p, u);
 	int err = 0;
 
 	if (last > p->from && fmax(p->most_mm_s, feed) >
 			      FEED_RATIO * fmin(p->least_mm_s, feed)) {
-		p->bend = bend;
-		p->rate = rate;
+		p->seen = was;
 		err = piece_add(p, last);
 		piece_begin(p, last);
 		look(p, u);

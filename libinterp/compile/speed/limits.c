@@ -71,50 +71,74 @@ static float soft(const struct pass *w, double v, const double *own)
 	return level(w, v);
 }
 
-/*
- * Along the path, what its axes leave: on a bend a part, beside what they need
- * to follow it.
- */
-static void soften_seg(const struct pass *w, struct interp_seg *s, double part,
+/* Shares of what the axes can do that are left for going along a segment, and
+ * the most that its bends allow. */
+struct along {
+	double a, j;
+	double a_mm_s2, j_mm_s3;
+};
+
+/* Along the path, what its axes leave. */
+static void soften_seg(const struct pass *w, struct interp_seg *s,
+		       const struct along *left,
 		       const double rates[INTERP_NAXES])
 {
-	double a = INFINITY, j = INFINITY;
+	double a = left->a_mm_s2, j = left->j_mm_s3;
 
 	for (uint32_t k = 0; k < w->n; k++) {
 		if (!(rates[k] > 0))
 			continue;
-		a = fmin(a, part * w->a_mm_s2[k] / rates[k]);
-		j = fmin(j, part * w->j_mm_s3[k] / rates[k]);
+		a = fmin(a, left->a * w->a_mm_s2[k] / rates[k]);
+		j = fmin(j, left->j * w->j_mm_s3[k] / rates[k]);
 	}
 	s->a_mm_s2 = soft(w, a, w->a_mm_s2);
 	s->j_mm_s3 = soft(w, j, w->j_mm_s3);
+}
+
+/* The ceiling of an arc, @v_mm_s at most, by the axes of its bend. */
+static double round_bend(const struct pass *w, const struct headings *h,
+			 double v_mm_s, struct along *ret)
+{
+	const double ss = h->share * h->share / h->bend_mm;
+	double a = INFINITY, j = INFINITY, v, both;
+
+	for (uint32_t k = 0; k < w->n; k++) {
+		if (h->first.rate[k] == 0 && h->last.rate[k] == 0)
+			continue;
+		a = fmin(a, w->a_mm_s2[k]);
+		j = fmin(j, w->j_mm_s3[k]);
+	}
+	v = fmin(v_mm_s, pass_round_mm_s(h->bend_mm, INTERP_BEND_ACROSS * a,
+					 INTERP_ARC_JERK_ROUND * j) / h->share);
+	/* The most of v * a. */
+	both = INTERP_ARC_JERK_BOTH * j / (3 * ss);
+	v = fmin(v, both / (INTERP_BEND_LEAST * a));
+	*ret = (struct along) {
+		INTERP_BEND_ALONG, INTERP_ARC_JERK_ALONG, both / v,
+		INFINITY
+	};
+	return v;
 }
 
 /* What the axes of its bend can do. */
 static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 {
 	struct interp_seg *s = &w->segs[i];
+	struct along left = { 1, 1, INFINITY, INFINITY };
 	double v = (double)s->feed_max_mm_s;
 	double rates[INTERP_NAXES];
 
 	pass_rates(w, i, h, rates);
 	if (s->kind == INTERP_LINE && pass_is_short(w, i))
 		v = fmax(v, pass_rate_mm_s(w, rates));
-	if (h->bend_mm > 0) {
-		double a = INFINITY, j = INFINITY;
-
-		for (uint32_t k = 0; k < w->n; k++) {
-			if (h->first.rate[k] == 0 && h->last.rate[k] == 0)
-				continue;
-			a = fmin(a, w->a_mm_s2[k]);
-			j = fmin(j, w->j_mm_s3[k]);
-		}
-		v = fmin(v, pass_round_mm_s(h->bend_mm,
-					    INTERP_BEND_ACROSS * a, j) /
-			    h->share);
-	}
-	soften_seg(w, s, h->bend_mm > 0 || s->kind == INTERP_CURVE ?
-			 INTERP_BEND_ALONG : 1, rates);
+	if (s->kind == INTERP_CURVE)
+		left = (struct along) { INTERP_BEND_ALONG,
+					INTERP_CURVE_JERK_ALONG,
+					w->p->pieces[s->arg].a_mm_s2,
+					w->p->pieces[s->arg].j_mm_s3 };
+	else if (h->bend_mm > 0)
+		v = round_bend(w, h, v, &left);
+	soften_seg(w, s, &left, rates);
 	s->feed_max_mm_s = level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;

@@ -30,7 +30,12 @@ struct interp_nurbs_limits {
 double interp_nurbs_feed_mm_s(struct interp_nurbs_eval *e, double u,
 			      const struct interp_nurbs_limits *l);
 
-/** interp_nurbs_curvature() - 1/mm, in the counted axes. */
-double interp_nurbs_curvature(struct interp_nurbs_eval *e, double u);
+/**
+ * interp_nurbs_curvature() - 1/mm, in the counted axes; HUGE_VAL at a cusp.
+ *
+ * @bends: gets x_ss of every axis, but at a cusp; may be NULL.
+ */
+double interp_nurbs_curvature(struct interp_nurbs_eval *e, double u,
+			      double bends[INTERP_NAXES]);
 
 #endif /* INTERP_NURBS_FEED_H */

@@ -53,6 +53,26 @@
  */
 #define INTERP_BEND_ACROSS	0.8
 #define INTERP_BEND_ALONG	0.6
+/* Of an axis beside the path they point one way. */
+#define INTERP_BESIDE_ACROSS	0.6
+#define INTERP_BESIDE_ALONG	0.4
+
+/*
+ * The same of its jerk, which has three parts: of the bend itself, v^3 / r^2; of
+ * the jerk along the path; and of speeding up on the bend, 3 * v * a / r.  On an
+ * arc the last is square to the others: (0.2 + 0.6)^2 + 0.6^2 = 1.  On a curve
+ * they may all point one way.
+ */
+#define INTERP_ARC_JERK_ROUND	0.2
+#define INTERP_ARC_JERK_ALONG	0.6
+#define INTERP_ARC_JERK_BOTH	0.6
+#define INTERP_CURVE_JERK_ROUND	0.2
+#define INTERP_CURVE_JERK_ALONG	0.4
+#define INTERP_CURVE_JERK_BOTH	0.4
+
+/* Of the acceleration, that must be left to speed up on a bend: one too tight
+ * for that is gone round slower, for a move has the least of all its way. */
+#define INTERP_BEND_LEAST	0.05
 
 struct interp_limits {
 	const struct interp_machine *machine;
