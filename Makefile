@@ -146,7 +146,7 @@ INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
 WORDS_O	 := $(call obj,$(WORDS))
 RT_O	 := $(call obj,$(RT)) $(WORDS_O)
 IO_O	 := $(call obj,$(IO))
-SIM_IO_O := $(filter-out %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
+SIM_IO_O := $(filter-out %/can402_lines.o %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
 LINES_O	 := $(filter %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG))
 COMPILING_O := $(call obj,$(COMPILING))
@@ -274,7 +274,8 @@ $(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG
 	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 # Of edm-plan, without its main().
-PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c near.c motion.c prove.c))
+PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
+	     apart.c box.c near.c motion.c sweep.c prove.c))
 
 $(B)/unit/test_plan_core: $(PLAN_CORE)
 
@@ -304,6 +305,10 @@ $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
+
+$(B)/tests/bench/plan.o: INC_bench += -Iclients/plan
+$(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN))) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lnlopt -lm)
@@ -461,14 +466,17 @@ hostile: all
 invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
 
-# Ten thousand random contours of a wire against shapely's geometry: some
-# minutes.
+# Ten thousand random contours of a wire against another geometry, a tenth as many
+# with other leads, a hundredth with a taper: half an hour.
 WIRE_RUNS ?= 10000
+WIRE_TEST = EDM_BUILD=$(B) $(if $(SEED),EDM_SEED=$(SEED)) \
+	EDM_RUNS=$$(( $(WIRE_RUNS) / $(1) )) .venv/bin/pytest -q -s tests/sim
 wire-random: $(B)/edmsim
 	@tests/setup check
-	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(WIRE_RUNS) \
-		$(if $(SEED),EDM_SEED=$(SEED)) .venv/bin/pytest -q -s \
-		tests/sim/test_wire_random.py
+	$(Q)$(call WIRE_TEST,1)/test_wire_random.py
+	$(Q)$(call WIRE_TEST,10)/test_wire_leads.py
+	$(Q)$(call WIRE_TEST,100)/test_wire_taper.py -k "tapers or taper"
+
 # What is accepted is walked, there and back: so many random programs of every
 # dialect, by every strategy.
 RUNS	?= 100000
@@ -488,6 +496,10 @@ clang:
 		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
 			$(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp)) $$f || exit 1; done
+
+bench-plan:
+	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/bench/plan
+	@EDM_BUILD=$(B) .venv/bin/python tests/bench/plan
 
 bench: vm
 	@tests/setup check
@@ -536,6 +548,13 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 # What many browsers cost, and how smoothly a long path is drawn: figures.
 panel-load: all panel
 	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-load
+
+# The page in Firefox, which is not among what `tests/setup check` installs.
+panel-firefox: all panel
+	@test -x /usr/bin/firefox-esr || { echo "firefox-esr is not here:" \
+		"apt-get install firefox-esr"; exit 1; }
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q \
+		tests/system/panel_firefox.py
 
 panel-frames: all panel
 	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-frames
@@ -703,7 +722,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
-.PHONY: all panel pictures-panel panel-load panel-frames demo check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: all panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo experiments-wire invariants \
 	walkable wire-random \

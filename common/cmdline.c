@@ -80,7 +80,7 @@ static int row_take(const struct cmdline *o, const struct cmdline_row *r,
 	return EX_SOFTWARE;
 }
 
-/* -- --help ----------------------------------------------------------------- */
+/* -- --help --------------------------------------------------------------- */
 
 static void help_row(const struct cmdline *o, const char *name,
 		     const char *arg, const char *text)
@@ -110,7 +110,7 @@ static int help(const struct cmdline *o)
 	return EX_OK;
 }
 
-/* -- The command line ------------------------------------------------------- */
+/* -- The command line ----------------------------------------------------- */
 
 static void longs_make(const struct cmdline *o,
 		       struct option longs[CMDLINE_MAX + 3])

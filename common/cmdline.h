@@ -28,9 +28,11 @@ enum cmdline_kind {
 
 struct cmdline_row {
 	const char *name;		/* without its -- */
-	const char *arg;		/* its value's name; NULL: it has none */
+	const char *arg;		/* its value's name; NULL: it has
+					 * none */
 	enum cmdline_kind kind;
-	size_t at;			/* of its value in the program's struct */
+	size_t at;			/* of its value in the program's
+					 * struct */
 	double min, max;		/* numbers only */
 	/* Calls only: @text is NULL for an option without a value.  Return:
 	 * -1 to go on, or the program's exit code. */
@@ -40,7 +42,8 @@ struct cmdline_row {
 
 struct cmdline {
 	const char *program;
-	const char *head, *tail;	/* of --help, before and after the rows */
+	const char *head, *tail;	/* of --help, before and after the
+					 * rows */
 	void (*more)(void);		/* prints after the head; NULL */
 	const struct cmdline_row *row;
 	size_t nrows;

@@ -11,8 +11,9 @@
 #define BETWEEN		"; "
 
 /*
- * The arguments are those of the whole sentence.  So it is made as a whole, and
- * once more without what is wanted: how long that is says where to cut.
+ * The arguments belong to the whole sentence.  So the sentence is printed as a
+ * whole, and then once more without the part that says what is wanted.  The
+ * length of the second says where to cut.
  */
 int interp_diag_say(struct interp_diag *d, const char *format, ...)
 {
@@ -24,7 +25,7 @@ int interp_diag_say(struct interp_diag *d, const char *format, ...)
 	snprintf(found, sizeof(found), "%.*s",
 		 cut ? (int)(cut - format) : (int)strlen(format), format);
 	va_start(ap, format);
-	/* Its arguments were checked by the compiler with the whole. */
+	/* The compiler has checked the arguments against the whole format. */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
 	vsnprintf(all, sizeof(all), found, ap);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* names.c - the rule of a machine's name, and words in a row */
+/* names.c - the rule for the name of a machine, and lists of words */
 #include "names.h"
 
 #include <stdio.h>

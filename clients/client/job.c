@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * job.c - send a job: a few chunks at a time, repeated until answered
+ * job.c - sends a job: a few chunks at a time, repeated until they are answered
  */
 #include "job.h"
 
@@ -10,12 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WINDOW		6		/* within a socket's default buffer */
+#define WINDOW		6		/* so that they fit a socket's default
+					 * buffer */
 #define REPEAT_S	0.3
 #define REMIND_S	1.0
-#define SILENT_S	10.0		/* the service is started again by then */
-#define STORE_S		15.0		/* while it writes 64 MiB to a busy disk */
-#define COMPILE_S	120.0		/* a text of 64 MiB takes its time */
+#define SILENT_S	10.0		/* by then the service was started
+					 * again */
+#define STORE_S		15.0		/* it may be writing 64 MiB to a busy
+					 * disk */
+#define COMPILE_S	120.0		/* compiling 64 MiB of text takes its
+					 * time */
 
 struct job {
 	struct talk *talk;
@@ -24,8 +28,9 @@ struct job {
 	uint8_t sha256[32];
 	int chunks, acked;
 	int64_t seq0;			/* of chunk 0; the others follow */
-	double *sent_s;			/* 0 not yet, < 0 acked */
-	int first;			/* all before it are acked */
+	double *sent_s;			/* when it was sent; 0: not yet, < 0:
+					 * acked */
+	int first;			/* all chunks before it are acked */
 	double silent_s, heard_s, whole_s, reminded_s;
 	struct talk_ack verdict;
 	char *reason, *body;
@@ -70,7 +75,8 @@ static bool send_chunk(struct job *j, int i)
 	return talk_send_chunk(j->talk, &c);
 }
 
-/* All but the acked ones, WINDOW from the first of them on. */
+/* Send all chunks of the window that are not acked; it has WINDOW chunks from
+ * the first such chunk on. */
 static void send_window(struct job *j, double now_s)
 {
 	while (j->first < j->chunks && j->sent_s[j->first] < 0)
@@ -84,7 +90,8 @@ static void send_window(struct job *j, double now_s)
 	}
 }
 
-/* All chunks are there: what becomes of them?  Ask, in case it was lost. */
+/* All chunks have arrived.  Ask what happened to the job, in case the answer
+ * was lost. */
 static void send_reminder(struct job *j, double now_s)
 {
 	if (j->whole_s == 0)
@@ -95,7 +102,7 @@ static void send_reminder(struct job *j, double now_s)
 	send_chunk(j, 0);
 }
 
-/* The service hears nothing while it writes a job. */
+/* While it writes a job, the service does not listen. */
 static bool waited_enough(const struct job *j, double now_s)
 {
 	const double silent_s = now_s - j->heard_s;
@@ -121,7 +128,7 @@ int job_step(struct job *j)
 	return 0;
 }
 
-/* Cut to what a name may be, and not in the middle of a character. */
+/* Shorten it to the length of a name, but not in the middle of a character. */
 static void name_take(struct job *j, const char *name)
 {
 	size_t n;

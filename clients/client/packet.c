@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * packet.c - our structs to LCM's generated messages and back
+ * packet.c - converts our structs to LCM's generated messages and back
  *
- * What comes in is decoded after its signature was found to be the machine's.
+ * A message is decoded only after its signature was found to be the machine's.
  */
 #include "packet.h"
 
@@ -26,7 +26,7 @@ static int64_t utime(void)
 	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
 }
 
-/* LCM strings are char *, though it only reads them. */
+/* LCM declares strings as char *, but only reads them. */
 static char *lent(const char *s)
 {
 	return (char *)(uintptr_t)(s ? s : "");

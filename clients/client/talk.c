@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * talk.c - speak with edmd-jobs over LCM
+ * talk.c - speaks with edmd-jobs over LCM
  *
- * The service's boot number and its clock are learnt from an ack that bears
- * our client's name, which was drawn a moment ago: nobody can have recorded
- * such an ack before.  A status or an event counts if it is of that boot, and
- * later than the one before.  Until the boot is known, and whenever a status
- * is of another one, "hello" is asked.
+ * The client learns the service's boot number and clock from an ack that has
+ * the client's own name.  The name was drawn a moment ago, so nobody can have
+ * recorded such an ack before.  A status or an event counts if it has that boot
+ * number and is later than that ack and than the previous one.  Until the boot
+ * number is known, and whenever a status has another one, the client asks
+ * "hello", signed for the boot number and the time of that status.  If these
+ * are the true ones, the service always answers, however many recorded packets
+ * of other times it has to answer.
  */
 #include "talk.h"
 
@@ -33,7 +36,7 @@
 #define LISTENERS	8
 #define CODE_AGAIN	100		/* sign it again; messages/README.md */
 
-/* A question under way. */
+/* A question that waits for its answer. */
 struct question {
 	int64_t seq;			/* 0: free */
 	char *verb, *job, *text;
@@ -50,19 +53,24 @@ struct listener {
 };
 
 struct talk {
-	lcm_t *lcm;			/* to send by; it hears nothing */
+	lcm_t *lcm;			/* used only for sending; it does not
+					 * listen */
 	struct udpm *in;
 	struct keyfile key;
 	char machine[32];
 	char client[TALK_WORD_MAX];
 	char why[TALK_SAID_MAX];
+	bool turned_away;		/* the service itself said why */
 	int64_t seq;
-	/* The service: known is its start and how its clock goes. */
+	/* Of the service: whether its start and its clock are known. */
 	bool known;
-	int64_t boot, ahead_us;		/* its clock less ours */
+	int64_t boot, ahead_us;		/* its clock minus ours */
 	int64_t count;			/* the last we signed with */
-	int64_t heard;			/* of its last status or event */
-	int64_t hello;			/* seq; 0: none under way */
+	int64_t heard;			/* count of its last status or event */
+	int64_t guess, guess_ahead_us;	/* boot and clock of a status that may
+					 * be a recording; 0: none */
+	int64_t hello;			/* seq of the hello; 0: none is under
+					 * way */
 	double hello_s;
 	struct question question[TALK_QUESTIONS];
 	struct listener listener[LISTENERS];
@@ -113,7 +121,7 @@ double talk_now_s(void)
 	return (double)now_us() * 1e-6;
 }
 
-/* -- Sending ---------------------------------------------------------------- */
+/* -- Sending -------------------------------------------------------------- */
 
 static void channel_name(const struct talk *t, const char *name,
 			 char ret[CHANNEL_MAX])
@@ -121,7 +129,7 @@ static void channel_name(const struct talk *t, const char *name,
 	snprintf(ret, CHANNEL_MAX, "EDM.%s.%s", t->machine, name);
 }
 
-/* Our count is the service's clock, as far as we know it; and it grows. */
+/* Our count is the service's clock, as far as we know it, and it must grow. */
 static int64_t next_count(struct talk *t)
 {
 	const int64_t now = t->known ? now_us() + t->ahead_us : 0;
@@ -131,17 +139,15 @@ static int64_t next_count(struct talk *t)
 }
 
 /* @data is freed. */
-static void sign_and_send(struct talk *t, const char *name, uint8_t *data,
-			  size_t bytes)
+static void sign_and_send(struct talk *t, const char *name, struct seal s,
+			  uint8_t *data)
 {
-	struct seal s = {
-		.key = t->key.public, .boot = t->known ? t->boot : 0,
-		.count = next_count(t), .data = data, .size = bytes,
-	};
-	uint8_t *packet = data ? malloc(SEAL_BYTES + bytes) : NULL;
+	uint8_t *packet = data ? malloc(SEAL_BYTES + s.size) : NULL;
 	char channel[CHANNEL_MAX];
 	size_t n = 0;
 
+	s.key = t->key.public;
+	s.data = data;
 	channel_name(t, name, channel);
 	if (packet)
 		n = seal_make(packet, &s, channel, t->key.secret);
@@ -151,24 +157,31 @@ static void sign_and_send(struct talk *t, const char *name, uint8_t *data,
 	free(data);
 }
 
+static struct seal next_seal(struct talk *t)
+{
+	return (struct seal) {
+		.boot = t->known ? t->boot : 0, .count = next_count(t),
+	};
+}
+
 static void send_question(struct talk *t, struct question *q)
 {
 	const struct packet_from f = { .client = t->client, .seq = q->seq };
 	const struct talk_question what = {
 		.verb = q->verb, .job = q->job, .text = q->text, .arg = q->arg,
 	};
-	size_t bytes;
-	uint8_t *data = packet_command(&f, &what, &bytes);
+	struct seal s = next_seal(t);
+	uint8_t *data = packet_command(&f, &what, &s.size);
 
 	q->sent_s = talk_now_s();
-	sign_and_send(t, "COMMAND", data, bytes);
+	sign_and_send(t, "COMMAND", s, data);
 }
 
 static void send_hello(struct talk *t)
 {
 	const struct talk_question what = { .verb = "hello" };
 	struct packet_from f;
-	size_t bytes;
+	struct seal s;
 	uint8_t *data;
 
 	if (talk_now_s() - t->hello_s < HELLO_S)
@@ -177,24 +190,31 @@ static void send_hello(struct talk *t)
 	if (!t->hello)
 		t->hello = ++t->seq;
 	f = (struct packet_from) { .client = t->client, .seq = t->hello };
-	data = packet_command(&f, &what, &bytes);
-	sign_and_send(t, "COMMAND", data, bytes);
+	if (t->guess && (!t->known || t->guess != t->boot))
+		s = (struct seal) {
+			.boot = t->guess, .count = now_us() + t->guess_ahead_us,
+		};
+	else
+		s = next_seal(t);
+	data = packet_command(&f, &what, &s.size);
+	sign_and_send(t, "COMMAND", s, data);
 }
 
 bool talk_send_chunk(struct talk *t, const struct talk_chunk *c)
 {
 	const struct packet_from f = { .client = t->client, .seq = c->seq };
-	size_t bytes;
+	struct seal s;
 	uint8_t *data;
 
 	if (!t->known)
 		return false;
-	data = packet_chunk(&f, c, &bytes);
-	sign_and_send(t, "JOB", data, bytes);
+	s = next_seal(t);
+	data = packet_chunk(&f, c, &s.size);
+	sign_and_send(t, "JOB", s, data);
 	return true;
 }
 
-/* -- Hearing ---------------------------------------------------------------- */
+/* -- Hearing -------------------------------------------------------------- */
 
 static void question_end(struct question *q, int err,
 			 const struct talk_ack *a)
@@ -217,18 +237,20 @@ static struct question *question_find(struct talk *t, int64_t seq)
 	return NULL;
 }
 
-/* The service as it is now: an ack to us was made in this minute. */
+/* Learn the present state of the service from an ack that was made in this
+ * minute. */
 static void learn(struct talk *t, const struct seal *s)
 {
 	if (!t->known || t->boot != s->boot) {
 		t->boot = s->boot;
-		t->heard = 0;
+		t->heard = s->count;
 		t->count = 0;
 	}
 	t->ahead_us = s->count - now_us();
 	t->known = true;
 	t->hello = 0;
 	t->why[0] = '\0';
+	t->turned_away = false;
 }
 
 static void send_waiting(struct talk *t)
@@ -262,18 +284,20 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 		return;
 	q = a->seq > 0 ? question_find(t, a->seq) : NULL;
 	if (a->code == CODE_AGAIN) {
-		/* Of an ack made long ago, the count would lead us astray. */
+		/* The count of an ack that was made long ago would be
+		 * misleading. */
 		if (!q && a->seq != t->hello)
 			return;
 		learn(t, s);
 		send_waiting(t);
 	} else if (a->seq == t->hello && a->seq) {
+		t->turned_away = a->code != 0;
 		if (a->code == 0)
 			learn(t, s);
 		else
 			snprintf(t->why, sizeof(t->why), "%s", a->reason);
 	} else if (q) {
-		/* Its clock and ours drift apart, a little in each hour. */
+		/* Its clock and ours drift apart, a little every hour. */
 		if (s->boot == t->boot)
 			t->ahead_us = s->count - now_us();
 		question_end(q, 0, a);
@@ -282,7 +306,11 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 	}
 }
 
-/* Signed by the machine of our key file, for this channel? */
+/*
+ * Is it signed by the machine of our key file, for this channel?  Anybody may
+ * sign with a key of their own: that explains why nothing was heard, and
+ * decides nothing.
+ */
 static bool is_machine(struct talk *t, struct seal *ret,
 		       const struct udpm_packet *u)
 {
@@ -300,10 +328,12 @@ static bool is_machine(struct talk *t, struct seal *ret,
 	return seal_holds(ret, u->channel);
 }
 
-/* Of this start of the service, and later than the one before. */
+/* Is it from this start of the service, and later than the previous one? */
 static bool is_news(struct talk *t, const struct seal *s)
 {
 	if (!t->known || s->boot != t->boot) {
+		t->guess = s->boot;
+		t->guess_ahead_us = s->count - now_us();
 		send_hello(t);
 		return false;
 	}
@@ -349,7 +379,7 @@ static void take(struct talk *t, const struct udpm_packet *u)
 	}
 }
 
-/* -- Opening ---------------------------------------------------------------- */
+/* -- Opening -------------------------------------------------------------- */
 
 static int key_take(struct talk *t, const char *path, char *said)
 {
@@ -440,9 +470,9 @@ const char *talk_why(const struct talk *t)
 	return t->why;
 }
 
-/* -- Questions -------------------------------------------------------------- */
+/* -- Questions ------------------------------------------------------------ */
 
-/* What is due again, and what has waited long enough. */
+/* Send again what is due, and give up what has waited long enough. */
 static void questions_turn(struct talk *t)
 {
 	const double now_s = talk_now_s();
@@ -521,10 +551,10 @@ static void on_asked(void *arg, int err, const struct talk_ack *a)
 	asking->ret->body = strdup(a->body);
 }
 
-/* The service will not have us: that is an answer too. */
+/* The service refuses us: that is an answer, too. */
 static bool is_turned_away(const struct talk *t, struct asking *asking)
 {
-	if (t->known || !t->why[0])
+	if (t->known || !t->turned_away)
 		return false;
 	*asking->ret = (struct talk_answer) {
 		.code = EX_NOPERM, .reason = strdup(t->why),
@@ -582,7 +612,7 @@ uint64_t talk_events(const struct talk *t)
 	return t->nevents;
 }
 
-/* -- For job.c -------------------------------------------------------------- */
+/* -- For job.c ------------------------------------------------------------ */
 
 int64_t talk_numbers(struct talk *t, int n)
 {

@@ -115,10 +115,13 @@ void talk_close(struct talk *t);
 /** talk_key() - the key in use. */
 const struct keyfile *talk_key(const struct talk *t);
 
-/** talk_why() - why nothing is received, if the service said so; else "". */
+/**
+ * talk_why() - why nothing is received: what the service said, or that somebody
+ * signs with another key, whoever that is; else "".
+ */
 const char *talk_why(const struct talk *t);
 
-/* -- Waiting for the answer ------------------------------------------------- */
+/* -- Waiting for the answer ----------------------------------------------- */
 
 /**
  * talk_ask() - ask until there is an answer, for at most @timeout_s.
@@ -132,7 +135,7 @@ void talk_answer_free(struct talk_answer *a);
 /** talk_wait() - take what comes, for at most @ms. */
 void talk_wait(struct talk *t, int ms);
 
-/* -- In an event loop ------------------------------------------------------- */
+/* -- In an event loop ----------------------------------------------------- */
 
 /** talk_fd() - readable when talk_step() has something to take. */
 int talk_fd(const struct talk *t);
@@ -158,7 +161,7 @@ void talk_on_event(struct talk *t,
 		   void (*fn)(void *arg, const struct talk_event *e),
 		   void *arg);
 
-/* -- Either way ------------------------------------------------------------- */
+/* -- Either way ----------------------------------------------------------- */
 
 /**
  * talk_status() - the last one; NULL before the first. @ret_count: how many
@@ -177,7 +180,7 @@ double talk_now_s(void);
 void talk_catch_signals(void);
 bool talk_interrupted(void);
 
-/* -- For job.c -------------------------------------------------------------- */
+/* -- For job.c ------------------------------------------------------------ */
 
 /** talk_numbers() - reserve @n seqs. Return: the first of them. */
 int64_t talk_numbers(struct talk *t, int n);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * alarms.c - the fault in words: what it is, why, what clears it
+ * alarms.c - the faults in words: what they are, why they came, what clears
+ * them
  */
 #include "ctl.h"
 #include "faults.h"
@@ -121,7 +122,8 @@ int ctl_alarms(struct ctl *c)
 	return err ? err : strcmp(s->fault, "none") != 0;
 }
 
-/* -- Every fault there is ------------------------------------------------------ */
+/* -- Every fault that exists
+ * ------------------------------------------------ */
 
 static json_t *row_json(enum cycle_fault f)
 {

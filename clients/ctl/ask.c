@@ -12,13 +12,21 @@
 #include <sysexits.h>
 #include <time.h>
 
+/* Then it does not come with the service. */
+static bool key_is_named(const struct ctl *c)
+{
+	const char *key = c->key ? c->key : getenv("EDM_KEY");
+
+	return key && *key;
+}
+
 int ctl_unanswered(const struct ctl *c, int err)
 {
 	if (err == -EINTR) {
 		fprintf(stderr, "edmctl: interrupted before an answer came\n");
 		return EX_TEMPFAIL;
 	}
-	if (!c->talk && c->talk_err != -ENOENT) {
+	if (!c->talk && (c->talk_err != -ENOENT || key_is_named(c))) {
 		fprintf(stderr, "edmctl: %s\n", c->said);
 		return c->talk_err == -ENETUNREACH ? EX_UNAVAILABLE :
 						     EX_NOPERM;
@@ -52,7 +60,7 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 	return code;
 }
 
-/* A verb whose answer is a word of its success. */
+/* For a verb whose answer is one word of success. */
 static int command(struct ctl *c, const struct talk_question *q)
 {
 	struct talk_answer a;
@@ -77,6 +85,13 @@ int ctl_start(struct ctl *c)
 {
 	return command(c, &(struct talk_question) {
 		.verb = "start", .job = c->arg,
+	});
+}
+
+int ctl_resume(struct ctl *c)
+{
+	return command(c, &(struct talk_question) {
+		.verb = "resume", .job = c->arg, .text = c->value,
 	});
 }
 
@@ -121,7 +136,7 @@ int ctl_set(struct ctl *c)
 	});
 }
 
-/* A number and nothing behind it; else it is said what is wrong. */
+/* Read a number with nothing behind it; otherwise print what is wrong. */
 static int number(const struct ctl *c, const char *text, const char *wanted,
 		  double *ret)
 {
@@ -307,7 +322,7 @@ static void print_rows(json_t *rows, const char *head,
 		print(row);
 }
 
-/* One answer's JSON. Return: 0, or a sysexits code, said. */
+/* The JSON of one answer.  Return: 0, or a sysexits code after a message. */
 static int ask_json(struct ctl *c, const struct talk_question *q, json_t **ret)
 {
 	struct talk_answer a;
@@ -329,7 +344,8 @@ static int put_json(json_t *o)
 	return err ? EX_IOERR : 0;
 }
 
-/* All pages of a list: each begins behind the last job of the one before. */
+/* Print all pages of a list: each begins after the last job of the previous
+ * page. */
 static int list(struct ctl *c, const char *verb, const char *head,
 		void (*print)(json_t *job))
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* contour.c - contour error along a trace: of the machine and of its models */
+/* contour.c - the contour error along a trace: of the machine and of its
+ * models */
 #include "columns.h"
 #include "plot.h"
 
@@ -11,7 +12,7 @@
 
 #define STRIPS	1500			/* of time, in the picture */
 
-/* The models of the axes to be followed, and whose they are. */
+/* The models of the axes that are followed, and which axes they are. */
 struct twin {
 	struct interp_shadow shadow;
 	struct interp_axis_loop loop[INTERP_NAXES];
@@ -29,7 +30,7 @@ static int twin_make(struct twin *w, const struct interp_axis_loop *loop,
 		w->axis[w->naxes] = i;
 		w->loop[w->naxes++] = loop[i];
 	}
-	/* One axis is on its path, wherever it is. */
+	/* A single axis is always on its path. */
 	if (w->naxes < 2)
 		return -ENOENT;
 	return interp_shadow_init(&w->shadow, w->loop, w->naxes, period_s);
@@ -95,7 +96,8 @@ void ctl_contour_print(const struct contour *k)
 	       sum[2] * 1e3);
 }
 
-/* The largest of each strip of time, so that a tip stays in the picture. */
+/* Write the largest value of each strip of time, so that a peak stays in the
+ * picture. */
 static void write_strips(FILE *f, const void *arg)
 {
 	const struct contour *k = arg;

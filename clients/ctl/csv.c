@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* csv.c - read a trace CSV, row by row */
+/* csv.c - reads a trace CSV, row by row */
 #include "csv.h"
 
 #include <errno.h>
@@ -12,8 +12,10 @@
 #define HEADING	"t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V"
 #define ACTUAL	",X_actual,Y_actual,Z_actual,A_actual,B_actual,C_actual," \
 		"U_actual,V_actual"
-#define MOST	1e10			/* a machine has no farther place */
-#define SLOW_BYTES	(16 << 20)	/* from here on progress is told */
+#define MOST	1e10			/* no machine has a place farther
+					 * away */
+#define SLOW_BYTES	(16 << 20)	/* for a larger file, progress is
+					 * shown */
 
 const char *const csv_state_word[CSV_NSTATES] = {
 	"idle", "travel", "approach", "erode", "retract", "jump", "hold",
@@ -29,8 +31,8 @@ static int refuse(const struct csv *c, size_t column, const char *found,
 }
 
 /*
- * A line, with its end, into c->text.  Return: its length; 0 at the end of the
- * file; -EINVAL for what no line of a trace is, told.
+ * Read a line, with its end, into c->text.  Return: its length; 0 at the end of
+ * the file; -EINVAL, after a message, if it cannot be a line of a trace.
  */
 static int read_line(struct csv *c)
 {
@@ -111,7 +113,7 @@ static void tell(struct csv *c)
 		percent);
 }
 
-/* One number and the comma behind it. */
+/* Read one number and the comma behind it. */
 static bool number(char **at, double *ret)
 {
 	char *end;
@@ -137,7 +139,7 @@ static bool place_number(char **at, double *ret)
 	return false;
 }
 
-/* A trace without a gap sensor leaves the voltage empty. */
+/* In a trace without a gap sensor the voltage is empty. */
 static bool gap_number(char **at, double *ret)
 {
 	if (**at != ',')
@@ -190,7 +192,8 @@ int csv_next(struct csv *c, struct csv_row *ret)
 	at = c->text;
 	if (parse(c, &at, ret))
 		return 1;
-	/* Whoever wrote the last line was stopped in its middle. */
+	/* The program that wrote the last line was stopped in the middle of
+	 * it. */
 	if (c->text[n - 1] != '\n' && feof(c->f))
 		return 0;
 	at[strcspn(at, ",\r\n")] = '\0';

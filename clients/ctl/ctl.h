@@ -28,8 +28,9 @@ struct ctl {
 	const char *arg;		/* NULL if there is none */
 	const char *value;		/* the second one; NULL too */
 	const char *third;
-	struct talk *talk;		/* NULL: it cannot be had, ... */
-	int talk_err;			/* ... as talk_open() */
+	struct talk *talk;		/* NULL: it could not be opened, ... */
+	int talk_err;			/* ... and this is the reason, from
+					 * talk_open() */
 	char said[TALK_SAID_MAX];
 };
 
@@ -37,6 +38,7 @@ int ctl_submit(struct ctl *c);
 int ctl_keys(struct ctl *c);
 int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);
+int ctl_resume(struct ctl *c);
 int ctl_retract(struct ctl *c);
 int ctl_remove(struct ctl *c);
 int ctl_move(struct ctl *c);
@@ -51,7 +53,8 @@ int ctl_faults(struct ctl *c);
 int ctl_doctor(struct ctl *c);
 
 /**
- * ctl_pulses() - send pulses to @line, CHIP:NUMBER, and print how fast it goes.
+ * ctl_pulses() - send pulses to @line, CHIP:NUMBER, and print how fast it can
+ * go.
  */
 int ctl_pulses(const char *line);
 int ctl_queue(struct ctl *c);
@@ -66,14 +69,14 @@ int ctl_latency(struct ctl *c);
 struct shm_status;
 
 /**
- * ctl_shm_open() - open edmd's status in the shared memory of this host; print
- * why that fails. Return: an exit code; 0: @ret is open.
+ * ctl_shm_open() - open edmd's status in the shared memory of this host.  If
+ * that fails, print why.  Return: an exit code; 0: @ret is open.
  */
 int ctl_shm_open(const struct ctl *c, const struct shm_status **ret);
 
 /**
- * ctl_ask() - ask, and print only what went wrong. Return: an exit code; 0:
- * @ret is filled, and the caller frees it.
+ * ctl_ask() - ask, and print only errors.  Return: an exit code; 0: @ret is
+ * filled, and the caller frees it.
  */
 int ctl_ask(struct ctl *c, const struct talk_question *q,
 	    struct talk_answer *ret);
@@ -81,10 +84,10 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 /** ctl_unanswered() - print that no service answers. Return: EX_*. */
 int ctl_unanswered(const struct ctl *c, int err);
 
-/** ctl_first_status() - the next status; NULL: none came in time. */
+/** ctl_first_status() - wait for the next status; NULL: none came in time. */
 const struct talk_status *ctl_first_status(struct ctl *c);
 
-/** ctl_when() - a JSON time in us as local time, "-" if there is none. */
+/** ctl_when() - a JSON time in us as local time; "-" if there is none. */
 void ctl_when(char to[32], json_t *row, const char *key);
 
 /** ctl_wait() - follow job @id to its end. */
@@ -97,20 +100,21 @@ void ctl_duration(char *to, size_t size, double s);
 
 struct line {
 	bool tty;
-	bool drawn;			/* something to wipe or end */
+	bool drawn;			/* there is something to erase or to
+					 * end */
 	double told_s;			/* when the last line was printed */
 	char state[3 * TALK_WORD_MAX];	/* of that line */
 };
 
 void line_init(struct line *l);
 /**
- * line_status() - draw it; if stderr is no terminal, once a second or on a
- * change.
+ * line_status() - draw the line.  If stderr is not a terminal, print it once a
+ * second or on a change.
  */
 void line_status(struct line *l, const struct talk_status *s);
 /** line_bar() - a bar for @done, from 0 to 1, with a text behind it. */
 void line_bar(struct line *l, double done, const char *text);
-/** line_end() - what is printed next begins on a new line. */
+/** line_end() - the next output begins on a new line. */
 void line_end(struct line *l);
 
 #endif /* CTL_CTL_H */

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * doctor.c - what this host has and lacks, and the command that mends it
+ * doctor.c - what this host has and lacks, and the command that helps
  *
- * One function per thing; each says what it found and judges it.  Nothing is
- * changed.  Limits are those of a living edmd, else those of this process.
+ * There is one function for each thing.  It says what it found and judges it.
+ * Nothing is changed.  The limits are those of a living edmd, or else those of
+ * this process.
  */
 #include "ctl.h"
 
@@ -30,9 +31,10 @@ struct finding {
 
 struct host {
 	struct ctl *ctl;
-	const struct shm_status *status;	/* NULL: no edmd was here */
+	const struct shm_status *status;	/* NULL: no edmd has run here */
 	bool alive;
-	char limits[64];		/* file of limits, and whose */
+	char limits[64];		/* the file of the limits, and whose
+					 * they are */
 };
 
 static void say(struct finding *f, enum verdict v, const char *found,
@@ -43,7 +45,7 @@ static void say(struct finding *f, enum verdict v, const char *found,
 	f->mend = v == BAD ? mend : "";
 }
 
-/* The first line of a file; empty if there is none. */
+/* The first line of a file; empty if there is no such file. */
 static void line_of(const char *path, char *to, int size)
 {
 	FILE *f = fopen(path, "re");
@@ -81,7 +83,7 @@ static void look_core(const struct host *h, struct finding *f)
 	    "= N");
 }
 
-/* The soft limit's column of /proc/PID/limits. */
+/* The soft limit, from its column of /proc/PID/limits. */
 static void limit_of(const struct host *h, const char *name, char to[32])
 {
 	FILE *f = fopen(h->limits, "re");
@@ -123,7 +125,7 @@ static void look_priority(const struct host *h, struct finding *f)
 		   "ulimit -r 99, or LimitRTPRIO=99 in edmd.service");
 }
 
-/* The interface that a packet to the group leaves by. */
+/* Find the interface by which a packet to the group leaves. */
 static bool route_find(char interface[16])
 {
 	const uint32_t group = inet_addr(GROUP);
@@ -213,10 +215,10 @@ static void look_can(const struct host *h, struct finding *f)
 
 static void look_objects(const struct host *h, struct finding *f)
 {
-	char found[sizeof(f->found)];
+	char found[sizeof(f->found)], path[SHM_PATH_MAX];
 
-	snprintf(found, sizeof(found), "/dev/shm/edmd.%s.status %s",
-		 h->ctl->machine, h->status ? "is there" :
+	shm_path(path, h->ctl->machine, "status");
+	snprintf(found, sizeof(found), "%s %s", path, h->status ? "is there" :
 		 "is not there, or not for this user");
 	say(f, h->status ? GOOD : BAD, found,
 	    "systemctl start edmd; usermod -aG edm USER");

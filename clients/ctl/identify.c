@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * identify.c - the loops of the axes, from a trace that record wrote
+ * identify.c - finds the loops of the axes in a trace that `record` wrote
  *
- * Asks no machine.  Each axis that moves is identified alone; the numbers are
- * printed with their standard deviation, and as lines of a machine file; then
- * the models they make are run beside the trace.
+ * No machine is needed.  Each axis that moves is identified alone.  The numbers
+ * are printed with their standard deviation, and as lines of a machine file.
+ * Then the models with these numbers are run beside the trace.
  */
 #include "columns.h"
 #include "ctl.h"
@@ -19,8 +19,10 @@
 #include <sysexits.h>
 #include <unistd.h>
 
-#define ROWS_MAX	(1 << 20)	/* 128 MiB; 17 minutes of milliseconds */
-#define SLOW_ROWS	10000		/* from here on progress is told */
+#define ROWS_MAX	(1 << 20)	/* 128 MiB; 17 minutes of
+					 * milliseconds */
+#define SLOW_ROWS	10000		/* for a longer trace, progress is
+					 * shown */
 
 static int refuse(const char *path, const char *found, const char *wanted)
 {
@@ -92,7 +94,7 @@ static int read_rows(struct csv *f, const char *path, struct columns *t)
 		return EX_DATAERR;
 	if (t->n < 2)
 		return refuse(path, "no two rows", "some seconds of motion");
-	/* Every cycle must be there, or the model would run beside another. */
+	/* No cycle may be missing, or the model would not match the trace. */
 	if (t->longest_s > 1.5 * (t->last_s - t->first_s) / (double)(t->n - 1))
 		return refuse(path, "cycles are missing",
 			      "a trace recorded with --every 1, none lost");
@@ -104,7 +106,7 @@ static const char *const keys[INTERP_NIDENTIFY] = {
 	"loop_feedforward", "friction_mm_s", "friction_s", "backlash_mm",
 };
 
-/* As in a machine file; what the trace does not tell is left out. */
+/* Print lines of a machine file; leave out what the trace does not show. */
 static void print_keys(const struct interp_identified *d, int axis)
 {
 	printf("\n[axis.%c]\n", INTERP_AXIS_LETTERS[axis]);
@@ -157,7 +159,7 @@ static const char *why_not(int err)
 	       "too short; some seconds of motion";
 }
 
-/* A line rewritten on a terminal, while it takes its time. */
+/* A line on a terminal that is rewritten while the work takes time. */
 struct progress {
 	int axis, passes;
 	bool shown;
@@ -199,7 +201,7 @@ static bool moves(const struct columns *t, int axis)
 	return false;
 }
 
-/* Return: axes identified. */
+/* Return: the number of identified axes. */
 static int identify_all(const struct ctl *c, const struct columns *t,
 			struct interp_axis_loop *loop, json_t *list)
 {
@@ -227,7 +229,7 @@ static int identify_all(const struct ctl *c, const struct columns *t,
 	return told;
 }
 
-/* What the models make of the path, beside what the machine made. */
+/* Compare what the models do on the path with what the machine did. */
 static int contour(const struct ctl *c, const struct columns *t,
 		   const struct interp_axis_loop *loop)
 {
@@ -251,7 +253,8 @@ static int identify(const struct ctl *c, const struct columns *t)
 	const int told = identify_all(c, t, loop, list);
 
 	if (c->json && told > 0) {
-		json_dumpf(list, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(7));
+		json_dumpf(list, stdout,
+			   JSON_INDENT(1) | JSON_REAL_PRECISION(7));
 		putchar('\n');
 	}
 	json_decref(list);

@@ -2,7 +2,7 @@
 /*
  * keys.c - who may command the machine: list, add, remove
  *
- * A new key pair is drawn here, and only its public half is sent.
+ * A new key pair is made here, and only its public half is sent.
  */
 #include "ctl.h"
 
@@ -56,8 +56,8 @@ static int refuse_file(const char *path, int err)
 	return EX_CANTCREAT;
 }
 
-/* The file first: a key that is known to the machine and to nobody else is no
- * use, and one that nobody knows does no harm. */
+/* The file is written first.  A key that only the machine knows is useless; a
+ * key that the machine does not know does no harm. */
 static int add(struct ctl *c)
 {
 	struct keyfile k = { .machine = "" };

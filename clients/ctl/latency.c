@@ -2,7 +2,7 @@
 /*
  * latency.c - how late the cycle woke: edmd's own histogram
  *
- * Read from shared memory, on the machine's own host.
+ * It is read from shared memory, on the machine's own host.
  */
 #include "ctl.h"
 #include "shm.h"
@@ -19,7 +19,7 @@ struct latency {
 	double mean_us;
 };
 
-/* Without what was there @before; NULL: all. */
+/* Take the histogram minus what was in it @before; NULL: all of it. */
 static void take(const struct shm_status *s, const uint32_t *before,
 		 struct latency *ret)
 {

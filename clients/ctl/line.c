@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * line.c - progress in one line: redrawn on a terminal, repeated elsewhere
- */
+/* line.c - progress in one line: redrawn on a terminal, repeated elsewhere */
 #include "ctl.h"
 
 #include <math.h>
@@ -33,7 +31,7 @@ void ctl_duration(char *to, size_t size, double s)
 		snprintf(to, size, "%ld s", n);
 }
 
-/* A line that wraps could not be wiped with \r. */
+/* \\r could not erase a line that wraps. */
 static int columns(void)
 {
 	struct winsize w;
@@ -109,7 +107,8 @@ static void describe(char *to, size_t size, const struct talk_status *s)
 	snprintf(to, size, "%s %s", b, rest);
 }
 
-/* The states of the gap come and go many times a second. */
+/* The states of the gap come and go many times a second, so they are left
+ * out. */
 static void what_changes(char *to, size_t size, const struct talk_status *s)
 {
 	snprintf(to, size, "%s %s %s", s->daemon, s->job, s->job_state);

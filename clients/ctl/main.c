@@ -16,7 +16,7 @@
 
 #define URL_DEFAULT	TALK_URL
 
-/* Cut short, two jobs would be one. */
+/* If the id were cut, two jobs could become one. */
 static int take_id(void *to, const char *id)
 {
 	struct ctl *c = to;
@@ -56,99 +56,100 @@ static const struct verb verbs[] = {
 	{ "submit", "FILE", ctl_submit, 1, 1, false, "name id hold wait",
 	  "send a job of NC code; - is standard input" },
 	{ "queue", "", ctl_queue, 0, 0, false, "",
-	  "the job loaded and those that wait" },
+	  "print the loaded job and those that wait" },
 	{ "show", "JOB", ctl_show, 1, 1, false, "",
-	  "all about one job" },
+	  "print everything about one job" },
 	{ "start", "[JOB]", ctl_start, 1, 0, false, "",
-	  "start the job that is ready or held, and the queue" },
+	  "start the job that is ready or held; the queue goes on" },
 	{ "hold", "", ctl_command, 0, 0, false, "",
-	  "power off, stop on the path" },
-	{ "resume", "", ctl_command, 0, 0, false, "",
-	  "go on after a hold" },
+	  "switch the power off and stop on the path" },
+	{ "resume", "[JOB [AXES]]", ctl_resume, 2, 0, false, "",
+	  "go on after a hold; or with a job that was interrupted" },
 	{ "stop", "", ctl_command, 0, 0, false, "",
 	  "end the job where it stands" },
 	{ "retract", "MM", ctl_retract, 1, 1, false, "",
-	  "back along the path, then held" },
+	  "go back along the path; the job is then held" },
 	{ "step", "+N|-N", ctl_step, 1, 1, false, "",
-	  "held: to the Nth node of the path, ahead or back" },
+	  "while held: go to the Nth node of the path, + or -" },
 	{ "jog", "AXIS MM", ctl_jog, 2, 2, false, "",
-	  "idle: move one axis so far" },
+	  "while idle: move one axis by this distance" },
 	{ "jog-on", "AXIS MM/S", ctl_jog_on, 2, 2, false, "",
-	  "idle: move one axis at that speed, until Ctrl-C" },
+	  "while idle: move one axis at this speed, until Ctrl-C" },
 	{ "home", "[AXIS]", ctl_home, 1, 0, false, "",
-	  "idle: find the place of one axis, or of all" },
+	  "while idle: home one axis, or all" },
 	{ "override", "PERCENT", ctl_override, 1, 1, false, "",
-	  "speed of positioning, of what is programmed" },
+	  "set the speed of positioning, in percent" },
 	{ "set", "KEY VALUE", ctl_set, 2, 2, false, "",
-	  "a value of the condition in force; VALUE default: back" },
+	  "set a value of the condition in force; `default` undoes it" },
 	{ "reset", "", ctl_command, 0, 0, false, "",
-	  "leave the fault, to held" },
+	  "leave the fault; the job is then held" },
 	{ "estop", "", ctl_command, 0, 0, false, "",
-	  "power off, no motion, until reset" },
+	  "switch the power off; no motion until a reset" },
 	{ "move", "JOB -1|+1", ctl_move, 2, 2, false, "",
-	  "a job that waits: one place ahead (-1) or back (+1)" },
+	  "move a waiting job one place ahead (-1) or back (+1)" },
 	{ "remove", "JOB", ctl_remove, 1, 1, false, "",
-	  "take a job that has not begun out of the queue" },
+	  "remove a job that has not begun, or was interrupted" },
 	{ "status", "", ctl_status, 0, 0, false, "",
-	  "the machine now; exits with 69 if edmd is not there" },
+	  "print the machine's state; exit 69 if there is no edmd" },
 	{ "alarms", "", ctl_alarms, 0, 0, false, "",
-	  "the fault, why and what clears it; and the last ones" },
+	  "print the faults, why they came and what clears them" },
 	{ "faults", "[FAULT]", ctl_faults, 1, 0, true, "",
-	  "what every fault, or one, means and what clears it" },
+	  "print what a fault, or each, means and what clears it" },
 	{ "doctor", "", ctl_doctor, 0, 0, false, "pulses",
-	  "what this host lacks for cutting, and the command that mends it" },
+	  "print what this host lacks, and the command that helps" },
 	{ "watch", "", ctl_watch, 0, 0, false, "once",
-	  "the machine as it goes, until Ctrl-C" },
+	  "show the machine while it runs, until Ctrl-C" },
 	{ "record", "CSV", ctl_record, 1, 1, false, "every plot until-end",
-	  "every cycle to a trace file, until Ctrl-C" },
+	  "write every cycle to a trace file, until Ctrl-C" },
 	{ "latency", "[S]", ctl_latency, 1, 0, false, "",
-	  "how late edmd woke, of S seconds from now or since its start" },
+	  "print how late edmd woke, in the next S seconds or ever" },
 	{ "history", "", ctl_history, 0, 0, false, "",
-	  "jobs that have ended, newest first" },
+	  "print the jobs that have ended, newest first" },
 	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
-	  "who may command: viewer, operator, service" },
+	  "who may command; by role" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "plot",
-	  "the loops of the axes, from what record wrote" },
+	  "find the loops of the axes in a file that record wrote" },
 };
 
 #define AT(field)	.at = offsetof(struct ctl, field)
 
-/* The first NCOMMON are for all verbs; a verb names the others it takes. */
+/* The first NCOMMON options are for all verbs.  A verb names the others that it
+ * takes. */
 static const struct cmdline_row rows[] = {
 	{ "machine", "NAME", CMDLINE_WORD, AT(machine), .help =
-	  "of the machine; default: edm" },
+	  "name of the machine; default: edm" },
 	{ "url", "URL", CMDLINE_WORD, AT(url), .help =
-	  "of LCM; default: " URL_DEFAULT },
+	  "URL of LCM; default: " URL_DEFAULT },
 	{ "key", "FILE", CMDLINE_WORD, AT(key), .help =
-	  "to sign with; default: EDM_KEY, or the host's" },
+	  "key to sign with; default: $EDM_KEY, or the host's key" },
 	{ "json", NULL, CMDLINE_FLAG, AT(json), .help =
 	  "print results as JSON" },
 	{ "timeout", "S", CMDLINE_NUMBER, AT(timeout_s), .min = 1e-3,
-	  .max = 3600, .help = "wait for an answer so long; default: 3" },
+	  .max = 3600, .help = "seconds to wait for an answer; default: 3" },
 #define NCOMMON	5
 	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
-	  "submit: of the job; default: the file's" },
+	  "submit: name of the job; default: that of the file" },
 	{ "id", "ID", CMDLINE_CALL, .take = take_id, .help =
-	  "submit: of the job; the same id twice is one job" },
+	  "submit: id of the job; the same id twice is one job" },
 	{ "hold", NULL, CMDLINE_FLAG, AT(hold), .help =
-	  "submit: load it, wait for start" },
+	  "submit: load the job and wait for start" },
 	{ "wait", NULL, CMDLINE_FLAG, AT(wait), .help =
-	  "submit: follow it; exit 0 if done, 1 if not" },
-	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: one line" },
+	  "submit: follow the job; exit 0 if it is done, 1 if not" },
+	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: print one line" },
 	{ "every", "N", CMDLINE_CALL, .take = take_every, .help =
-	  "record: one cycle of N; default: 1" },
+	  "record: write one cycle of N; default: 1" },
 	{ "plot", "FILE", CMDLINE_WORD, AT(plot), .help =
-	  "record, identify: then draw it, .png or .svg" },
+	  "record, identify: draw the result, .png or .svg" },
 	{ "pulses", "CHIP:LINE", CMDLINE_WORD, AT(pulses), .help =
-	  "doctor: instead, how fast an output line with nothing on it is" },
+	  "doctor: measure how fast an output line is; it must be free" },
 	{ "until-end", NULL, CMDLINE_FLAG, AT(until_end), .help =
-	  "record: until the job that runs, or the next, ends" },
+	  "record: go on until the running job, or the next, ends" },
 };
 /* clang-format on */
 
 #define NVERBS		(sizeof(verbs) / sizeof(verbs[0]))
 
-/* The verb, its arguments, and one that is too much. */
+/* The verb, its arguments, and one that would be too many. */
 struct words {
 	char *at[5];
 	int n;
@@ -180,7 +181,7 @@ static bool takes_option(const struct verb *v, const char *name)
 	return false;
 }
 
-/* A verb's options may stand before it, so they are checked at the end. */
+/* The options of a verb may stand before it, so they are checked at the end. */
 static int options_check(const struct verb *v, const struct cmdline_given *g)
 {
 	for (size_t i = NCOMMON; i < table.nrows; i++) {
@@ -220,8 +221,8 @@ static int arguments_take(struct ctl *c, const struct verb *v, int argc,
 }
 
 /*
- * A number below zero is no option.  With a blank in front getopt passes it by
- * and strtod() reads it the same.
+ * A negative number is not an option.  With a blank in front of it, getopt
+ * ignores it and strtod() still reads it.
  */
 static void negatives_keep(int argc, char **argv)
 {
@@ -248,12 +249,12 @@ static const struct verb *verb_find(const char *name)
 
 static void word_take(struct words *w, char *word)
 {
-	/* Of negatives_keep(). */
+	/* The blank of negatives_keep() is removed. */
 	if (w->n < (int)(sizeof(w->at) / sizeof(w->at[0])))
 		w->at[w->n++] = word + (word[0] == ' ' && word[1] == '-');
 }
 
-/* 0: @ret_verb is to be run; < 0: done; else what to exit with. */
+/* Return: 0: run @ret_verb; < 0: nothing is left to do; else the exit code. */
 static int parse(struct ctl *c, int argc, char **argv,
 		 const struct verb **ret_verb)
 {
@@ -306,7 +307,7 @@ int main(int argc, char **argv)
 			URL_DEFAULT "\n", c.url);
 		return EX_USAGE;
 	}
-	/* What is wrong with the words of the verb is said first. */
+	/* Errors in the words of the verb are reported first. */
 	c.talk_err = talk_open(&c.talk, &(struct talk_options) {
 		.machine = c.machine, .url = c.url, .key = c.key,
 		.program = "edmctl",

@@ -2,8 +2,8 @@
 /*
  * press.c - edmctl jog-on: an axis moves as long as this program runs
  *
- * It says so many times a second.  If it is killed, or the network fails, the
- * axis stands 0.2 s later.
+ * The program sends a sign many times a second.  If it is killed, or if the
+ * network fails, the axis stands still 0.2 s later.
  */
 #include "ctl.h"
 #include "verbs.h"
@@ -16,7 +16,7 @@
 #include <sysexits.h>
 
 #define SIGN_MS		40
-#define LATE_S		0.1		/* a sign is of no use any more */
+#define LATE_S		0.1		/* a sign that is older is useless */
 
 struct press {
 	struct ctl *ctl;
@@ -82,9 +82,10 @@ int ctl_jog_on(struct ctl *c)
 		say(&p, mm_s, number);
 		wait_a_bit(&p);
 	}
-	/* If this is lost, it stands a little later. */
+	/* If this message is lost, the axis stops a little later. */
 	say(&p, 0, number);
-	/* A refusal after it moved is where the travel ended. */
+	/* A refusal after the axis has moved means that the travel ended
+	 * there. */
 	if (p.code == 0 || p.begun)
 		return 0;
 	fprintf(stderr, "edmctl: jog-on: %s\n", p.reason);

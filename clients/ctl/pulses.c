@@ -2,9 +2,10 @@
 /*
  * pulses.c - how fast a GPIO line of this board can be driven
  *
- * One output line, to which nothing is wired, is written as the edge thread of
- * edmd would: at absolute times, without sleep between.  What is late by more
- * than half the time between two writes would be seen by a drive.
+ * One output line, to which nothing may be connected, is written as the edge
+ * thread of edmd would: at absolute times, without sleeping in between.  A
+ * drive would notice a write that is late by more than half the time between
+ * two writes.
  */
 #include "ctl.h"
 
@@ -43,7 +44,7 @@ static int by_size(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* "gpiochip0:5", with the chip as a name or a device file. */
+/* "gpiochip0:5"; the chip is a name or a device file. */
 static struct lines *line_open(const char *text, struct lines_chip **ret_chip)
 {
 	const char *colon = strrchr(text, ':');
@@ -73,7 +74,7 @@ static struct lines *line_open(const char *text, struct lines_chip **ret_chip)
 	return l;
 }
 
-/* As the thread has it; false: without. */
+/* Get the priority of the edge thread.  Return: false if that is refused. */
 static bool be_real(void)
 {
 	const struct sched_param p = { .sched_priority = PRIORITY };
@@ -102,7 +103,7 @@ static void writes_time(struct lines *l, int64_t *took_ns)
 	qsort(took_ns, WRITES, sizeof(took_ns[0]), by_size);
 }
 
-/* A slot that went by is not made up for. */
+/* A missed slot is not made up for. */
 static void trial_run(struct lines *l, struct trial *t)
 {
 	int64_t at = now_ns() + t->slot_ns, now;
@@ -123,7 +124,7 @@ static void trial_run(struct lines *l, struct trial *t)
 	qsort(t->late_ns, t->n, sizeof(t->late_ns[0]), by_size);
 }
 
-/* Return: the shortest time between two writes that was kept; 0: none. */
+/* Return: the shortest time between two writes that was kept; 0: none was. */
 static int64_t trials(struct lines *l, int64_t *room)
 {
 	int64_t best = 0;

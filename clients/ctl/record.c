@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * record.c - write the cycles of a running machine to a trace CSV
+ * record.c - writes the cycles of a running machine to a trace CSV
  *
- * Follows the trace ring in edmd's shared memory, so it runs on the machine's
- * own host.  The reader never slows the cycle: one that falls behind loses
- * records, and is told how many.
+ * It follows the trace ring in edmd's shared memory, so it runs on the
+ * machine's own host.  It never slows the cycle.  If it is too slow, it loses
+ * records and is told how many.
  */
 #include "ctl.h"
 #include "plot.h"
@@ -25,7 +25,8 @@ struct recording {
 	FILE *f;
 	struct plot *plot;		/* NULL: none is wanted */
 	struct shm_follow trace, events;
-	struct shm_snapshot about;	/* period and worth of a pulse */
+	struct shm_snapshot about;	/* the period, and the size of a
+					 * pulse */
 	uint64_t first_cycle, written;
 	uint32_t state;			/* of the last record */
 	bool begun;			/* a record was seen */
@@ -70,7 +71,7 @@ static int open_status(const struct ctl *c, struct recording *r)
 		return refuse(c, c->machine, "no whole status",
 			      EX_UNAVAILABLE);
 
-	/* Only what is new from here on. */
+	/* Begin with the next new record. */
 	r->trace.next = __atomic_load_n(&r->status->trace_next,
 					__ATOMIC_ACQUIRE);
 	r->events.next = __atomic_load_n(&r->status->event_next,
@@ -119,7 +120,7 @@ static void write_row(struct recording *r, const struct shm_trace *t)
 		plot_row(r, t, t_s);
 }
 
-/* Every n-th cycle, and each in which the state changes. */
+/* Take every n-th cycle, and each cycle in which the state changes. */
 static void take(const struct ctl *c, struct recording *r,
 		 const struct shm_trace *t)
 {
@@ -168,7 +169,7 @@ static void tell(struct recording *r)
 	line_bar(&r->line, s.length_mm > 0 ? s.far_mm / s.length_mm : 0, text);
 }
 
-/* What is in the ring now, up to the job's end if that is the aim. */
+/* Take what is in the ring now; if the aim is the job's end, up to there. */
 static void drain(const struct ctl *c, struct recording *r)
 {
 	struct shm_trace t;
@@ -233,7 +234,7 @@ static const char *state_name(int state)
 	return state <= SHM_PROBE ? shm_state_name((uint32_t)state) : NULL;
 }
 
-/* A picture that nothing was recorded for is not drawn. */
+/* If nothing was recorded, no picture is drawn. */
 static int draw(struct recording *r)
 {
 	struct plot *p = r->plot;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * submit.c - send a job, and say what became of it
- */
+/* submit.c - sends a job, and says what became of it */
 #include "ctl.h"
 
 #include "job.h"
@@ -14,7 +12,8 @@
 #include <sys/stat.h>
 #include <sysexits.h>
 
-#define SHOW_CHUNKS	64		/* less is gone before it is seen */
+#define SHOW_CHUNKS	64		/* a smaller job is sent before progress
+					 * could be seen */
 
 struct text {
 	char *bytes;
@@ -46,7 +45,7 @@ static int read_all(FILE *f, struct text *t)
 	return ferror(f) ? -errno : 0;
 }
 
-/* Return: what to exit with. */
+/* Return: the exit code. */
 static int read_text(const char *path, struct text *t)
 {
 	bool std = strcmp(path, "-") == 0;
@@ -92,7 +91,7 @@ static void show_progress(const struct ctl *c, const struct job *j,
 	line_bar(l, (double)arrived / chunks, text);
 }
 
-/* Return: 0 if the service has said something final, -ETIMEDOUT, -EINTR. */
+/* Return: 0 if the service has given a final answer, -ETIMEDOUT, -EINTR. */
 static int job_run(const struct ctl *c, struct job *j)
 {
 	struct line l;
@@ -109,7 +108,7 @@ static int job_run(const struct ctl *c, struct job *j)
 	return err < 0 ? err : err ? 0 : -EINTR;
 }
 
-/* The service says NAME:LINE:COLUMN; who sent it knows it as FILE. */
+/* The service says NAME:LINE:COLUMN, but the sender knows the text as FILE. */
 static void print_refusal(const struct ctl *c, const struct talk_ack *a)
 {
 	json_t *j = json_loads(a->body, 0, NULL);

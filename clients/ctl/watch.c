@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * watch.c - follow what edmd-jobs tells: status, watch, and submit --wait
+ * watch.c - follows the messages of edmd-jobs: status, watch, and submit --wait
  */
 #include "ctl.h"
 
@@ -10,7 +10,8 @@
 #include <sysexits.h>
 
 #define ASK_S		1.0
-#define GIVE_UP_S	60.0		/* a restarted service is back */
+#define GIVE_UP_S	60.0		/* by then a restarted service is
+					 * back */
 
 #define PRINT(name, value)	json_object_set_new(j, #name, value);
 #define PRINT_WORD(name)	PRINT(name, json_string(s->name))
@@ -69,8 +70,8 @@ static void print_text(const struct talk_status *s)
 		printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
 	printf(" (mm, degrees)\n");
 	if (*s->lost)
-		printf("not sure   %s: not homed, or nothing homes it, since the "
-		       "power went\n", s->lost);
+		printf("not sure   %s: not homed, or nothing homes it, since "
+		       "the power went\n", s->lost);
 	if (*s->interrupted)
 		printf("interrupted %s; edmctl show tells where\n",
 		       s->interrupted);
@@ -78,9 +79,9 @@ static void print_text(const struct talk_status *s)
 		printf("contour    off by %.1f um at most, predicted %.1f um\n",
 		       s->contour_mm * 1e3, s->contour_predicted_mm * 1e3);
 	printf("queue      %d\n"
-	       "condition  %s\nstore      %s\ntiming     woken late by %d us at most, %d overruns\n",
-	       s->queue_len, *s->condition ? s->condition : "none",
-	       s->store,
+	       "condition  %s\nstore      %s\ntiming     woken late by %d us "
+	       "at most, %d overruns\n",
+	       s->queue_len, *s->condition ? s->condition : "none", s->store,
 	       s->wake_late_max_us, s->overruns);
 }
 
@@ -135,7 +136,7 @@ static int watch_once(struct ctl *c, struct line *l,
 	return 0;
 }
 
-/* Return: 0 when interrupted, -ETIMEDOUT when no status came any more. */
+/* Return: 0 if interrupted, -ETIMEDOUT if no status came any more. */
 static int watch_on(struct ctl *c, struct line *l)
 {
 	double heard_s = talk_now_s();
@@ -195,7 +196,7 @@ static int report(const struct ctl *c, const char *body, json_t *job)
 	int jumps = 0, retracts = 0, shorts = 0;
 	char took[32];
 
-	/* What was never begun has no sums: null is left at 0. */
+	/* A job that was never begun has no totals: null leaves them 0. */
 	json_unpack(job, "{s:s,s:s,s:s}", "name", &name, "state", &state,
 		    "reason", &reason);
 	json_unpack(job, "{s:F,s:F,s:F,s:F,s:i,s:i,s:i}", "path_mm", &path,
@@ -214,7 +215,7 @@ static int report(const struct ctl *c, const char *body, json_t *job)
 	return strcmp(state, "done") == 0 ? 0 : 1;
 }
 
-/* Return: < 0 while it goes on, else what to exit with. */
+/* Return: < 0 while the job goes on, else the exit code. */
 static int look(struct ctl *c, const char *id, struct line *l, double *heard_s)
 {
 	struct talk_question q = { .verb = "show", .job = id };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * edm-dds - tell the fleet how one machine is
+ * edm-dds - publishes the state of one machine to the fleet
  *
- * Reads edmd's shared memory and publishes an edm::MachineState at a fixed
- * rate.  It only reads; nothing that comes over DDS reaches the machine.
+ * It reads edmd's shared memory and publishes an edm::MachineState at a fixed
+ * rate.  It only reads: nothing that comes over DDS reaches the machine.
  */
 #include "cmdline.h"
 #include "config.h"
@@ -20,7 +20,8 @@
 #include <unistd.h>
 
 #define NS	1000000000LL
-#define ONCE_NS	(2 * NS)		/* --once waits so long for a reader */
+#define ONCE_NS	(2 * NS)		/* --once waits this long for a
+					 * reader */
 
 struct options {
 	const char *machine;
@@ -80,17 +81,17 @@ static int take_domain(void *to, const char *text)
 /* clang-format off */
 static const struct cmdline_row rows[] = {
 	{ "config", "FILE", CMDLINE_CALL, .take = take_config, .help =
-	  "machine file: its name, [dds] domain and hz;\n"
-	  "options after it win" },
+	  "machine file: gives name, [dds] domain and hz;\n"
+	  "options after it replace them" },
 	{ "machine", "NAME", CMDLINE_CALL, .take = take_machine, .help =
-	  "which edmd to read (edm)" },
+	  "name of the machine to read (edm)" },
 	{ "domain", "N", CMDLINE_CALL, .take = take_domain, .help =
 	  "DDS domain, 0 to 230 (0)" },
 	{ "hz", "N", CMDLINE_NUMBER, AT(hz), .min = TOPIC_HZ_MIN, .max = 100,
 	  .help = "samples a second, 2 to 100 (10)" },
 	{ "once", NULL, CMDLINE_FLAG, AT(once), .help =
-	  "publish one sample to whoever listens within\n"
-	  "2 s, then leave; 1 if nobody does" },
+	  "publish one sample to everybody who listens\n"
+	  "within 2 s, then exit; 1 if nobody listens" },
 };
 /* clang-format on */
 
@@ -125,7 +126,8 @@ static int bridge_open(struct bridge *b, const struct options *o)
 	return b->writer < 0 ? b->writer : 0;
 }
 
-/* Deleting the writer disposes of its instance: readers see it leave. */
+/* Deleting the writer disposes of its instance, so readers see that it
+ * leaves. */
 static void bridge_close(struct bridge *b)
 {
 	if (b->participant > 0)
@@ -146,7 +148,7 @@ static bool is_missing(const char *state)
 	return !strcmp(state, "absent") || !strcmp(state, "lost");
 }
 
-/* A line for every time the machine comes or goes, not for every state. */
+/* Print a line each time the machine comes or goes, but not for every state. */
 static void say(struct bridge *b, const edm_MachineState *m)
 {
 	const char *word = is_missing(m->state) ? m->state : "here";
@@ -176,7 +178,7 @@ static int publish(struct bridge *b)
 	return dds_write(b->writer, &m);
 }
 
-/* Wait until @until_ns; true if told to stop meanwhile. */
+/* Wait until @until_ns.  Return: true if it was told to stop meanwhile. */
 static bool wait_until(const struct bridge *b, int64_t until_ns)
 {
 	const int64_t left = until_ns - now_ns();
@@ -192,7 +194,7 @@ static int run(struct bridge *b, double hz)
 
 	do {
 		err = publish(b);
-		/* A slow reader costs this sample, not the next. */
+		/* A slow reader costs this sample, but not the next one. */
 		if (err < 0 && err != DDS_RETCODE_TIMEOUT)
 			return err;
 		next += period;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * edm-fleet - the machines that are heard over DDS, one line each
+ * edm-fleet - lists the machines that are heard over DDS, one line each
  *
  * The reader's cache keeps the last sample of every machine, and whether its
- * writer is still there; each picture is that cache, read anew.
+ * writer is still there.  For each picture the cache is read again.
  */
 #include "cmdline.h"
 #include "table.h"
@@ -16,8 +16,10 @@
 
 #define MACHINES_MAX	256
 #define MS		1000000LL
-#define LOOK_NS		(200 * MS)	/* between two pictures on a terminal */
-#define LINE_NS		(1000 * MS)	/* between two where they pile up */
+#define LOOK_NS		(200 * MS)	/* time between two pictures on a
+					 * terminal */
+#define LINE_NS		(1000 * MS)	/* time between two lines where they
+					 * pile up */
 
 enum mode { MODE_AUTO, MODE_ONCE, MODE_WATCH };
 
@@ -68,13 +70,13 @@ static const struct cmdline_row rows[] = {
 	{ "domain", "N", CMDLINE_CALL, .take = take_domain, .help =
 	  "DDS domain, 0 to 230 (0)" },
 	{ "once", NULL, CMDLINE_CALL, .take = take_once, .help =
-	  "listen for a while, print a table, leave" },
+	  "listen for a while, print one table, exit" },
 	{ "watch", NULL, CMDLINE_CALL, .take = take_watch, .help =
-	  "go on until Ctrl-C (default on a terminal)" },
+	  "redraw until Ctrl-C (default on a terminal)" },
 	{ "wait", "S", CMDLINE_NUMBER, AT(wait_s), .min = 0.1, .max = 3600,
 	  .help = "how long --once listens, 0.1 to 3600 s (2)" },
 	{ "json", NULL, CMDLINE_FLAG, AT(json), .help =
-	  "one object a picture, on one line" },
+	  "print each table as JSON, on one line" },
 };
 /* clang-format on */
 
@@ -87,7 +89,7 @@ static const struct cmdline table = {
 	"\n",
 	.tail =
 	"\n"
-	"Exit code 0 if any machine was heard, 1 if none.\n"
+	"Exit code: 0 if any machine was heard, 1 if none.\n"
 	"CYCLONEDDS_URI chooses the network interface and peers;\n"
 	"see docs/fleet.md.\n",
 };
@@ -96,7 +98,7 @@ static int fleet_open(struct fleet *f, dds_domainid_t domain)
 {
 	dds_entity_t topic;
 
-	/* Taken by the wait between two pictures. */
+	/* The wait between two pictures takes them. */
 	tool_block_stops(&f->stops);
 
 	f->participant = dds_create_participant(domain, NULL, NULL);
@@ -109,7 +111,7 @@ static int fleet_open(struct fleet *f, dds_domainid_t domain)
 	return f->reader < 0 ? f->reader : 0;
 }
 
-/* The cache as rows, sorted.  Return: 0 or a negative DDS code. */
+/* Read the cache as rows, sorted.  Return: 0 or a negative DDS code. */
 static int fleet_look(struct fleet *f)
 {
 	static dds_sample_info_t info[MACHINES_MAX];
@@ -142,7 +144,7 @@ static void print(const struct fleet *f, bool json)
 	fflush(stdout);
 }
 
-/* Listen, with a line that says so where a person waits for it. */
+/* Listen, and say so in a line where a person waits. */
 static int run_once(struct fleet *f, const struct options *o)
 {
 	bool tty = isatty(STDERR_FILENO);

@@ -55,7 +55,7 @@ static void bar(char ret[BAR + 1], double progress)
 	ret[BAR] = '\0';
 }
 
-/* A hostile sample may carry numbers that wreck the columns. */
+/* A hostile sample may have numbers that would destroy the columns. */
 static double fit(double v, double most)
 {
 	if (isnan(v))
@@ -63,7 +63,7 @@ static double fit(double v, double most)
 	return fmax(-most, fmin(most, v));
 }
 
-/* A bar while a program is loaded, else how the last job ended. */
+/* A bar while a program is loaded; otherwise how the last job ended. */
 static void progress_of(const edm_MachineState *m, char *ret, size_t n)
 {
 	char done[BAR + 1];

@@ -2,8 +2,8 @@
 /*
  * table.h - machines as lines of text or as JSON
  *
- * What came over the network is printed with anything but printable ASCII
- * replaced, so that a sample cannot speak to the terminal.
+ * In text from the network everything that is not printable ASCII is replaced,
+ * so that a sample cannot control the terminal.
  *
  * Threads: any thread; nothing here has state.
  */
@@ -23,7 +23,7 @@ struct table_row {
 /** table_sort() - by the machine's name. */
 void table_sort(struct table_row *row, size_t n);
 
-/** table_print() - a heading and a line each. */
+/** table_print() - a heading, and a line for each machine. */
 void table_print(const struct table_row *row, size_t n, FILE *f);
 
 /** table_print_json() - {"machines": [...]} on one line. */

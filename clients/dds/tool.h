@@ -13,17 +13,25 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** tool_domain() - @text as a DDS domain.  Return: -1, or an exit code, said. */
+/**
+ * tool_domain() - @text as a DDS domain.  Return: -1, or an exit code after a
+ * message.
+ */
 int tool_domain(const char *program, const char *text, dds_domainid_t *ret);
 
-/** tool_fail() - say why DDS is not there.  Return: EX_UNAVAILABLE. */
+/** tool_fail() - say why DDS cannot be used.  Return: EX_UNAVAILABLE. */
 int tool_fail(const char *name, dds_domainid_t domain, dds_return_t code);
 
-/** tool_block_stops() - SIGINT and SIGTERM, in every thread from now on, so
- *  that tool_wait() takes them. */
+/**
+ * tool_block_stops() - block SIGINT and SIGTERM in every thread from now on, so
+ * that tool_wait() takes them.
+ */
 void tool_block_stops(sigset_t *ret);
 
-/** tool_wait() - Return: true if told to stop within @ns (not less than 0). */
+/**
+ * tool_wait() - Return: true if it was told to stop within @ns (not less than
+ * 0).
+ */
 bool tool_wait(const sigset_t *stops, int64_t ns);
 
 #endif /* DDS_TOOL_H */

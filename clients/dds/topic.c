@@ -5,7 +5,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
-/* Ports are 7400 + 250 * domain; above 230 there is no room for them. */
+/* The ports are 7400 + 250 * domain; above 230 they do not fit. */
 #define DOMAIN_MAX	230
 
 dds_entity_t topic_create(dds_entity_t participant)
@@ -25,8 +25,8 @@ static dds_qos_t *qos_create(void)
 }
 
 /*
- * Manual by topic: only a written sample is a sign of life, so a writer that
- * hangs is noticed like one that died.
+ * Manual by topic: only a written sample is a sign of life.  So a writer that
+ * hangs is noticed in the same way as one that died.
  */
 dds_entity_t topic_writer_create(dds_entity_t participant, dds_entity_t topic)
 {
@@ -41,7 +41,8 @@ dds_entity_t topic_writer_create(dds_entity_t participant, dds_entity_t topic)
 	return writer;
 }
 
-/* A reader asks for no deadline: it would not hear a slower publisher. */
+/* A reader must not ask for a deadline: it would not match a slower
+ * publisher. */
 dds_entity_t topic_reader_create(dds_entity_t participant, dds_entity_t topic)
 {
 	dds_qos_t *qos = qos_create();

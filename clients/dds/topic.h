@@ -2,8 +2,8 @@
 /*
  * topic.h - the fleet's one DDS topic and its quality of service
  *
- * What writer and reader have to agree on, in one place; docs/fleet.md is for
- * those who write another reader.
+ * Here is everything on which writer and reader have to agree.  docs/fleet.md
+ * is for those who write another reader.
  *
  * Threads: startup only.
  */
@@ -16,8 +16,8 @@
 #define TOPIC_NAME	"EDM_MachineState"
 
 /*
- * A writer promises a sample each second and gives a sign of life with each;
- * one that is silent for two seconds is gone.  edm-dds sends at least 2 Hz.
+ * A writer promises a sample each second, and each sample is a sign of life.  A
+ * writer that is silent for two seconds is gone.  edm-dds sends at least 2 Hz.
  */
 #define TOPIC_DEADLINE	DDS_SECS(1)
 #define TOPIC_LEASE	DDS_SECS(2)
@@ -35,7 +35,7 @@ dds_entity_t topic_reader_create(dds_entity_t participant, dds_entity_t topic);
 /**
  * topic_domain_parse() - a domain number from the command line.
  *
- * Return: 0, or -EINVAL if @word is no number from 0 to 230.
+ * Return: 0, or -EINVAL if @word is not a number from 0 to 230.
  */
 int topic_domain_parse(const char *word, dds_domainid_t *ret);
 

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A cycle that stands this long is as good as dead, whoever holds its pid. */
+/* A cycle that stands still for so long counts as dead, whoever has its pid. */
 #define STAND_NS	1000000000LL
 
 void watch_init(struct watch *w, const char *machine)
@@ -23,9 +23,9 @@ void watch_fini(struct watch *w)
 }
 
 /*
- * A new edmd may have made a new object under the old name, so a mapping
- * whose writer is dead is opened again at every look.  An edmd that stops in
- * order removes its object: the machine is absent then, not lost.
+ * A new edmd may have made a new object with the old name.  So a mapping whose
+ * writer is dead is opened again at every look.  An edmd that ends normally
+ * removes its object: then the machine is absent, not lost.
  */
 static void reopen(struct watch *w)
 {
@@ -37,7 +37,7 @@ static void reopen(struct watch *w)
 		w->heard = false;
 }
 
-/* Take the newest snapshot; a moving cycle is the sign of life. */
+/* Take the newest snapshot.  A cycle that moves is the sign of life. */
 static void refresh(struct watch *w, int64_t now_ns)
 {
 	uint32_t instance = w->status->head.instance;
@@ -131,7 +131,7 @@ void watch_look(struct watch *w, int64_t now_ns, edm_MachineState *ret)
 	ret->cycle = s->cycle;
 	fill_place(s, ret);
 	fill_sums(s, ret);
-	/* Of a generator that nobody drives nothing can be said. */
+	/* If nobody controls a generator, nothing can be said about it. */
 	if (here) {
 		ret->generator_state = generator(s);
 		ret->is_on = s->power;

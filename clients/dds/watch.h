@@ -2,11 +2,10 @@
 /*
  * watch.h - one machine, seen through its shared memory
  *
- * Opens edmd's status when it appears, again when another edmd has taken its
- * place, and says what there is to say: the machine's own words, "lost" or
- * "absent".
+ * It opens edmd's status when that appears, and again when another edmd has
+ * taken its place.  It gives the machine's own state, "lost" or "absent".
  *
- * Threads: one object belongs to one thread; ordinary, not for the cycle.
+ * Threads: one object belongs to one thread; ordinary code, not for the cycle.
  */
 #ifndef DDS_WATCH_H
 #define DDS_WATCH_H
@@ -32,9 +31,9 @@ void watch_init(struct watch *w, const char *machine);
 void watch_fini(struct watch *w);
 
 /**
- * watch_look() - look at the machine and put it in a sample's words.
+ * watch_look() - read the machine and write it into a sample.
  *
- * @now_ns: CLOCK_MONOTONIC.  @ret is filled whole but for the host.
+ * @now_ns: CLOCK_MONOTONIC.  @ret is filled except for the host.
  */
 void watch_look(struct watch *w, int64_t now_ns, edm_MachineState *ret);
 

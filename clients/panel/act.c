@@ -247,6 +247,12 @@ static void take_status(struct act *a)
 		snprintf(s->job_name, sizeof(s->job_name), "%s", t->job_name);
 		snprintf(s->job_state, sizeof(s->job_state), "%s",
 			 t->job_state);
+		snprintf(s->store, sizeof(s->store), "%s", t->store);
+		snprintf(s->interrupted, sizeof(s->interrupted), "%s",
+			 t->interrupted);
+		snprintf(s->lost, sizeof(s->lost), "%s", t->lost);
+		snprintf(s->faults, sizeof(s->faults), "%s", t->faults);
+		s->hunts = t->hunts;
 		s->lines = t->lines;
 		s->queue_len = t->queue_len;
 		s->eta_s = t->eta_s;

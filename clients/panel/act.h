@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #define ACT_WORD_MAX	64
+#define ACT_FAULTS_MAX	512
 #define ACT_ONCE	0x01u		/* send it once: what is late is no use */
 
 struct act;
@@ -25,7 +26,11 @@ struct act_status {
 	bool heard;
 	char job[ACT_WORD_MAX], job_name[ACT_WORD_MAX];
 	char job_state[ACT_WORD_MAX];
-	int lines, queue_len;
+	char store[ACT_WORD_MAX];	/* "ok", or "degraded: " and why */
+	char interrupted[ACT_WORD_MAX];	/* id of such a job, or "" */
+	char lost[ACT_WORD_MAX];	/* axes whose place is not certain */
+	char faults[ACT_FAULTS_MAX];	/* all that are latched */
+	int lines, queue_len, hunts;
 	double eta_s;			/* -1: there is no estimate */
 };
 

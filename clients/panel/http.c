@@ -44,7 +44,7 @@ size_t http_request_size(void)
 	return sizeof(struct request);
 }
 
-/* -- Whose request is it ------------------------------------------------------ */
+/* -- Whose request is it -------------------------------------------------- */
 
 /* "HOST:PORT" is us: the address, or a name of [panel] names. */
 static bool is_our_name(const struct panel *p, const char *host)
@@ -128,7 +128,7 @@ static bool read_arg(struct request *r, const char *key, char *to, size_t size)
 	return at != NULL;
 }
 
-/* -- Sessions ------------------------------------------------------------------ */
+/* -- Sessions ------------------------------------------------------------- */
 
 static int give_session(struct request *r, const struct session *s)
 {
@@ -257,7 +257,7 @@ static int post_logout(struct request *r)
 	return reply_json(r, 200, json_object());
 }
 
-/* -- Programs and paths --------------------------------------------------------- */
+/* -- Programs and paths --------------------------------------------------- */
 
 /* The eight places the machine stands at, for --start. */
 static void places(const struct panel *p, char *to, size_t size)
@@ -433,7 +433,7 @@ static const struct route routes[] = {
 	{ "/api/jobs", true, ROLE_OPERATOR, PANEL_BODY_MAX, post_job },
 };
 
-/* -- Taking one ------------------------------------------------------------------ */
+/* -- Taking one ----------------------------------------------------------- */
 
 static const struct route *route_of(const char *path)
 {

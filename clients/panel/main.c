@@ -4,6 +4,7 @@
  */
 #include "options.h"
 #include "panel.h"
+#include "plain.h"
 #include "reply.h"
 #include "words.h"
 #include "work.h"
@@ -33,7 +34,7 @@ static void on_signal(int number)
 	over = 1;
 }
 
-/* -- The log ---------------------------------------------------------------------- */
+/* -- The log -------------------------------------------------------------- */
 
 static int64_t utime_ms(void)
 {
@@ -52,9 +53,7 @@ void panel_note(struct panel *p, const char *text, ...)
 	va_start(ap, text);
 	vsnprintf(n->text, sizeof(n->text), text, ap);
 	va_end(ap);
-	for (char *at = n->text; *at; at++)
-		if ((unsigned char)*at < ' ' || *at == 0x7f)
-			*at = '?';
+	plain_copy(n->text, sizeof(n->text), n->text);
 	fprintf(stderr, SD_NOTICE "edm-panel: %s\n", n->text);
 }
 
@@ -73,7 +72,7 @@ json_t *panel_notes(const struct panel *p)
 	return rows;
 }
 
-/* -- The loop ---------------------------------------------------------------------- */
+/* -- The loop ------------------------------------------------------------- */
 
 static void on_tick(lws_sorted_usec_list_t *timer)
 {
@@ -227,7 +226,7 @@ static int serve(struct panel *p)
 	return err;
 }
 
-/* -- Users -------------------------------------------------------------------------- */
+/* -- Users ---------------------------------------------------------------- */
 
 static void read_password(char to[260])
 {

@@ -68,7 +68,7 @@ void panel_note(struct panel *p, const char *text, ...)
 /** panel_notes() - the newest first. */
 json_t *panel_notes(const struct panel *p);
 
-/* -- http.c: what is asked for by HTTP --------------------------------------- */
+/* -- http.c: what is asked for by HTTP ------------------------------------ */
 
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason,
 		  void *user, void *in, size_t len);
@@ -83,7 +83,7 @@ struct session *http_session(struct panel *p, struct lws *wsi);
 /** http_request_size() - of what HTTP keeps for a connection. */
 size_t http_request_size(void);
 
-/* -- socket.c: the web socket ------------------------------------------------ */
+/* -- socket.c: the web socket --------------------------------------------- */
 
 int socket_callback(struct lws *wsi, enum lws_callback_reasons reason,
 		    void *user, void *in, size_t len);
@@ -105,7 +105,7 @@ struct press *socket_press(struct browser *b);
 struct session *socket_session(struct browser *b);
 struct panel *socket_panel(struct browser *b);
 
-/* -- verbs.c: what a browser may ask for ------------------------------------- */
+/* -- verbs.c: what a browser may ask for ---------------------------------- */
 
 /** verbs_do() - one request. */
 void verbs_do(struct browser *b, const json_t *request);

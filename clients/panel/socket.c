@@ -69,7 +69,7 @@ struct session *socket_session(struct browser *b)
 	return session_by_id(b->panel->sessions, b->session);
 }
 
-/* -- Out --------------------------------------------------------------------- */
+/* -- Out ------------------------------------------------------------------ */
 
 static void queue_text(struct browser *b, const char *text)
 {
@@ -198,6 +198,11 @@ static json_t *state_of(struct panel *p)
 	json_object_set_new(o, "job", json_string(s->job));
 	json_object_set_new(o, "jobName", json_string(s->job_name));
 	json_object_set_new(o, "jobState", json_string(s->job_state));
+	json_object_set_new(o, "store", json_string(s->store));
+	json_object_set_new(o, "interrupted", json_string(s->interrupted));
+	json_object_set_new(o, "lost", json_string(s->lost));
+	json_object_set_new(o, "faults", json_string(s->faults));
+	json_object_set_new(o, "hunts", json_integer(s->hunts));
 	json_object_set_new(o, "lines", json_integer(s->lines));
 	json_object_set_new(o, "queue", json_integer(s->queue_len));
 	json_object_set_new(o, "left", json_real(s->eta_s));
@@ -223,7 +228,7 @@ void socket_tell_all(struct panel *p)
 		lws_callback_on_writable(b->wsi);
 }
 
-/* -- In ---------------------------------------------------------------------- */
+/* -- In ------------------------------------------------------------------- */
 
 static bool has_token(struct browser *b)
 {

@@ -118,53 +118,61 @@ enum role session_local_role(unsigned int uid, enum role most,
 }
 
 /* An address and port as /proc/net/tcp and tcp6 have them. */
-static int format_peer(int fd, char to[48], const char **ret_path)
+static const char *format_end(char to[48], const struct sockaddr_storage *a)
 {
-	struct sockaddr_storage a;
-	socklen_t n = sizeof(a);
-	const struct sockaddr_in *v4 = (const struct sockaddr_in *)&a;
-	const struct sockaddr_in6 *v6 = (const struct sockaddr_in6 *)&a;
+	const struct sockaddr_in *v4 = (const struct sockaddr_in *)a;
+	const struct sockaddr_in6 *v6 = (const struct sockaddr_in6 *)a;
 	uint32_t word[4];
 
-	if (getpeername(fd, (struct sockaddr *)&a, &n) < 0)
-		return -errno;
-	if (a.ss_family == AF_INET) {
-		*ret_path = "/proc/net/tcp";
+	if (a->ss_family == AF_INET) {
 		snprintf(to, 48, "%08X:%04X", v4->sin_addr.s_addr,
 			 ntohs(v4->sin_port));
-		return 0;
+		return "/proc/net/tcp";
 	}
-	if (a.ss_family != AF_INET6)
-		return -ENOENT;
+	if (a->ss_family != AF_INET6)
+		return NULL;
 	memcpy(word, &v6->sin6_addr, sizeof(word));
 	if (IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr)) {
-		*ret_path = "/proc/net/tcp";
 		snprintf(to, 48, "%08X:%04X", word[3], ntohs(v6->sin6_port));
-		return 0;
+		return "/proc/net/tcp";
 	}
-	*ret_path = "/proc/net/tcp6";
 	snprintf(to, 48, "%08X%08X%08X%08X:%04X", word[0], word[1], word[2],
 		 word[3], ntohs(v6->sin6_port));
-	return 0;
+	return "/proc/net/tcp6";
 }
 
-/* A connection its user has closed belongs to nobody, and is told as root's:
- * only one that is still held counts. */
+/* The file that has the peer's row of the connection @fd, and how its two ends
+ * stand there. */
+static const char *find_ends(int fd, char peer[48], char own[48])
+{
+	struct sockaddr_storage a, b;
+	socklen_t na = sizeof(a), nb = sizeof(b);
+
+	if (getpeername(fd, (struct sockaddr *)&a, &na) < 0 ||
+	    getsockname(fd, (struct sockaddr *)&b, &nb) < 0 ||
+	    !format_end(own, &b))
+		return NULL;
+	return format_end(peer, &a);
+}
+
+/*
+ * Both ends count: another user may have a connection to elsewhere from the same
+ * port.  A connection its user has closed belongs to nobody, and is told as
+ * root's: only one that is still held counts.
+ */
 int session_peer_uid(int fd, unsigned int *ret)
 {
-	char peer[48], local[48], text[320];
-	const char *path = "";
+	char peer[48], own[48], local[48], remote[48], text[320];
+	const char *path = find_ends(fd, peer, own);
+	FILE *f = path ? fopen(path, "re") : NULL;
 	unsigned int state;
 	bool found = false;
-	FILE *f;
 
-	if (format_peer(fd, peer, &path) < 0)
-		return -ENOENT;
-	f = fopen(path, "re");
 	while (f && !found && fgets(text, sizeof(text), f))
-		found = sscanf(text, " %*d: %47s %*s %x %*s %*s %*s %u", local,
-			       &state, ret) == 3 &&
-			strcmp(local, peer) == 0 && state == TCP_ESTABLISHED;
+		found = sscanf(text, " %*d: %47s %47s %x %*s %*s %*s %u",
+			       local, remote, &state, ret) == 4 &&
+			strcmp(local, peer) == 0 && strcmp(remote, own) == 0 &&
+			state == TCP_ESTABLISHED;
 	if (f)
 		fclose(f);
 	return found ? 0 : -ENOENT;

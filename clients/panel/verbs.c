@@ -93,7 +93,7 @@ static void refuse(struct browser *b, int64_t n, int code, const char *reason)
 	socket_answer(b, n, code, reason, NULL);
 }
 
-/* -- Of edmd-jobs -------------------------------------------------------------- */
+/* -- Of edmd-jobs --------------------------------------------------------- */
 
 static void on_answer(void *arg, const struct act_answer *a)
 {
@@ -143,7 +143,7 @@ static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 	       "too many requests are under way; try again");
 }
 
-/* -- Of the panel itself --------------------------------------------------------- */
+/* -- Of the panel itself -------------------------------------------------- */
 
 static double now_s(void)
 {
@@ -213,7 +213,7 @@ static void run_press(struct browser *b, const struct verb *v, int64_t n,
 	press_take(b, n, o);
 }
 
-/* -- Of other programs ------------------------------------------------------------ */
+/* -- Of other programs ---------------------------------------------------- */
 
 /* One JSON value, or one in each line. */
 static json_t *read_said(const char *text)
@@ -387,7 +387,7 @@ void verbs_do(struct browser *b, const json_t *o)
 	refuse(b, n, EX_USAGE, "no such request");
 }
 
-/* -- Hello ----------------------------------------------------------------------- */
+/* -- Hello ---------------------------------------------------------------- */
 
 static json_t *axis(const struct machine_config *c, int i)
 {

@@ -5,6 +5,7 @@
 #include "words.h"
 
 #include "faults.h"
+#include "hunting.h"
 #include "interp/tech.h"
 #include "shm.h"
 
@@ -45,10 +46,11 @@ static json_t *fields(void)
 
 int words_print(void)
 {
-	json_t *o = json_pack("{s:o,s:o,s:o,s:o}", "faults", faults(),
+	json_t *o = json_pack("{s:o,s:o,s:o,s:o,s:s}", "faults", faults(),
 			      "states", names(shm_state_name, SHM_IDLE),
 			      "outcomes", names(shm_outcome_name, 0),
-			      "fields", fields());
+			      "fields", fields(), "hunting",
+			      HUNTING_ADVICE);
 	const int err = json_dumpf(o, stdout, JSON_INDENT(1));
 
 	putchar('\n');

@@ -43,12 +43,13 @@ static void contact(struct checking *k, uint32_t i, const struct block *b,
 	struct pose pose;
 
 	r->ok = false;
+	r->given_up = p->given_up;
 	r->block = i;
 	r->t = p->t;
 	r->pair = p->pair;
 	block_at(b, p->t, r->q);
 	block_pose(b, p->t, &pose, NULL);
-	r->wanted_mm = clearance_at(c, &pose, 0);
+	r->wanted_mm = clearance_at(c, &pose);
 }
 
 static void see(struct checking *k, uint32_t i, double mm)
@@ -204,7 +205,7 @@ int check_clearance(const struct job *j, const double end[INTERP_NAXES],
 	return 0;
 }
 
-/* -- --check ------------------------------------------------------------------- */
+/* -- --check -------------------------------------------------------------- */
 
 static void say_axes(const struct job *j, const double q[INTERP_NAXES], FILE *f)
 {
@@ -223,6 +224,10 @@ static void say_contact(const struct job *j, const struct route *w,
 	if (r->inside) {
 		printf("%s: not free: %s at the start, at", j->o->program,
 		       r->say);
+	} else if (r->given_up) {
+		printf("%s:%u: not proved: given up, out of memory or after "
+		       "millions of steps; a shorter block, or coarser meshes, "
+		       "at", j->o->program, n->line);
 	} else if (r->pair.mm > 0) {
 		printf("%s:%u: not free: %.4f mm are left of %.4f, %.1f %% "
 		       "along the block, at", j->o->program, n->line,
@@ -233,7 +238,7 @@ static void say_contact(const struct job *j, const struct route *w,
 	}
 	say_axes(j, r->q, stdout);
 	putchar('\n');
-	if (!r->inside)
+	if (!r->inside && !r->given_up)
 		job_say_pair(j, &r->pair, stdout);
 }
 

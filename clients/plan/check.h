@@ -11,6 +11,7 @@
 
 struct check_result {
 	bool ok;
+	bool given_up;			/* on block; memory or patience ended */
 	bool inside;			/* the way begins inside: no distance */
 	char say[80];			/* then, which inside which */
 	uint32_t block;			/* of the first contact */

@@ -60,6 +60,7 @@ bool fewest_keeps(struct fewest *f, uint32_t i, uint32_t k, double mm)
 	more = motion_strays_mm(&b, f->lattice) + f->j->chord_mm;
 	c.end_mm += more + (c.zone_mm > 0 ? 0 : mm - c.mm);
 	c.mm = mm + more;
+	c.end_mm = fmin(c.end_mm, c.mm);
 	ok = !prove_refuted(&f->j->bodies, &b, &c, &p) &&
 	     prove_block(&f->j->bodies, &b, &c, &p);
 	f->queries += p.queries;
@@ -103,7 +104,7 @@ uint32_t fewest_greedy(struct fewest *f, double mm, uint32_t *ret)
 	return n;
 }
 
-/* -- Breadth first -------------------------------------------------------------- */
+/* -- Breadth first -------------------------------------------------------- */
 
 struct search {
 	uint32_t *before;		/* UINT32_MAX: not reached */

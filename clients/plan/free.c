@@ -54,12 +54,12 @@ void free_round(const struct machine_config *c, double q[INTERP_NAXES])
 	}
 }
 
-/* -- Trying ------------------------------------------------------------------- */
+/* -- Trying --------------------------------------------------------------- */
 
 /* How much less than outside of the end zone is wanted at @pose. */
 static double falls_mm(const struct free_way *w, const struct pose *pose)
 {
-	return w->c->mm - clearance_at(w->c, pose, 0);
+	return w->c->mm - clearance_at(w->c, pose);
 }
 
 /* The poses of block @i that are looked at: up to its end, but for an end pose
@@ -94,7 +94,7 @@ static double try_way(struct free_way *w, double stop)
 	return least;
 }
 
-/* -- The linear program ------------------------------------------------------- */
+/* -- The linear program --------------------------------------------------- */
 
 static void add_columns(struct lp *l, double room_mm)
 {
@@ -228,7 +228,7 @@ static void move_nodes(const struct lp *l, const struct free_way *from,
 				glp_get_col_prim(l->p, col(l, node, a));
 }
 
-/* -- More clearance ----------------------------------------------------------- */
+/* -- More clearance ------------------------------------------------------- */
 
 void free_widen(struct free_way *w, int rounds)
 {

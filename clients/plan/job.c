@@ -47,7 +47,7 @@ static int load_machine(struct job *j)
 	return 0;
 }
 
-/* -- Is it a body, and of a size that can be meant? ---------------------------- */
+/* -- Is it a body, and of a size that can be meant? ----------------------- */
 
 static void say_tri(const struct mesh *m, uint32_t i, FILE *f)
 {
@@ -187,7 +187,7 @@ void job_free(struct job *j)
 	mesh_free(&j->tool);
 }
 
-/* -- Words -------------------------------------------------------------------- */
+/* -- Words ---------------------------------------------------------------- */
 
 static void describe_body(const char *what, const struct mesh *m,
 			  const struct mesh_findings *f, FILE *out)
@@ -238,7 +238,7 @@ void job_say_pair(const struct job *j, const struct near_pair *pair, FILE *f)
 		pair->p[1], pair->p[2]);
 }
 
-/* -- Inside ------------------------------------------------------------------- */
+/* -- Inside --------------------------------------------------------------- */
 
 static bool any_inside(const struct mesh *of, const struct mesh *in,
 		       const struct pose *to_in, const uint32_t *vert,
@@ -291,7 +291,7 @@ int job_inside(const struct job *j, const struct pose *pose, char *say,
 	return err;
 }
 
-/* -- Blocks of a way ------------------------------------------------------------ */
+/* -- Blocks of a way ------------------------------------------------------ */
 
 void job_block(const struct job *j, const struct route *w, uint32_t i,
 	       struct block *ret)

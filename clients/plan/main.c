@@ -194,6 +194,9 @@ int main(int argc, char **argv)
 	err = judge(&o);
 	if (err >= 0)
 		return err;
+	err = put_check(&o);
+	if (err)
+		return err;
 	bar_catch();
 	err = job_load(&job, &o);
 	if (err == 0)

@@ -87,7 +87,7 @@ uint32_t mesh_shells(const struct mesh *m, uint32_t **ret)
 	return n;
 }
 
-/* -- Does it cross itself? ------------------------------------------------------ */
+/* -- Does it cross itself? ------------------------------------------------ */
 
 #define CROSSINGS_MAX	1000
 
@@ -95,27 +95,6 @@ struct crossing {
 	const struct tree *t;
 	uint32_t n, *first;
 };
-
-static bool overlap(const struct box *a, const struct box *b)
-{
-	double between[3], r[3][3];
-
-	v_sub(b->centre, a->centre, between);
-	for (int i = 0; i < 3; i++)
-		for (int j = 0; j < 3; j++)
-			r[i][j] = fabs(v_dot(a->axis.m[i], b->axis.m[j]));
-	for (int i = 0; i < 3; i++) {
-		const double ra = a->half[i] + b->half[0] * r[i][0] +
-				  b->half[1] * r[i][1] + b->half[2] * r[i][2];
-		const double rb = b->half[i] + a->half[0] * r[0][i] +
-				  a->half[1] * r[1][i] + a->half[2] * r[2][i];
-
-		if (fabs(v_dot(a->axis.m[i], between)) > ra ||
-		    fabs(v_dot(b->axis.m[i], between)) > rb)
-			return false;
-	}
-	return true;
-}
 
 static bool share_corner(const struct mesh *m, uint32_t i, uint32_t j)
 {
@@ -127,8 +106,8 @@ static bool share_corner(const struct mesh *m, uint32_t i, uint32_t j)
 	return false;
 }
 
-static void cross_leaves(struct crossing *c, const struct tree_node *a,
-			 const struct tree_node *b)
+static void cross_leaves(struct crossing *c, const struct box *a,
+			 const struct box *b)
 {
 	for (uint32_t i = a->first; i < a->first + a->n; i++) {
 		for (uint32_t j = b->first; j < b->first + b->n; j++) {
@@ -146,12 +125,12 @@ static void cross_leaves(struct crossing *c, const struct tree_node *a,
 	}
 }
 
-static void cross(struct crossing *c, const struct tree_node *a,
-		  const struct tree_node *b)
+static void cross(struct crossing *c, const struct box *a,
+		  const struct box *b)
 {
-	const struct tree_node *node = c->t->node;
+	const struct box *node = c->t->node;
 
-	if (c->n >= CROSSINGS_MAX || (a != b && !overlap(&a->box, &b->box)))
+	if (c->n >= CROSSINGS_MAX || (a != b && box_distance(a, b) > 0))
 		return;
 	if (a->n && b->n) {
 		cross_leaves(c, a, b);
@@ -159,8 +138,7 @@ static void cross(struct crossing *c, const struct tree_node *a,
 		cross(c, &node[a->first], &node[a->first]);
 		cross(c, &node[a->first], &node[a->first + 1]);
 		cross(c, &node[a->first + 1], &node[a->first + 1]);
-	} else if (b->n || (!a->n && v_dot(a->box.half, a->box.half) >
-				     v_dot(b->box.half, b->box.half))) {
+	} else if (b->n || (!a->n && a->half[3] > b->half[3])) {
 		cross(c, &node[a->first], b);
 		cross(c, &node[a->first + 1], b);
 	} else {

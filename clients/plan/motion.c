@@ -19,6 +19,7 @@ void motion_init(struct machine_motion *m, const struct interp_kinematics *kin,
 	m->ball_r_mm = 0;
 	for (int k = 0; k < 3; k++)
 		m->ball_mm[k] = (tool->min[k] + tool->max[k]) / 2;
+	m->corner_mm = v_distance(tool->max, m->ball_mm);
 	for (uint32_t i = 0; i < tool->nverts; i++) {
 		const double r = v_distance(tool->vert[i], m->ball_mm);
 
@@ -35,7 +36,7 @@ uint32_t motion_moves(const struct machine_motion *m)
 	return set;
 }
 
-/* -- Poses -------------------------------------------------------------------- */
+/* -- Poses ---------------------------------------------------------------- */
 
 /* pose = pose . joint at @q */
 static void append(struct pose *p, const struct interp_kin_joint *j, double q)
@@ -146,7 +147,7 @@ void motion_jacobian(const struct machine_motion *m,
 	}
 }
 
-/* -- Bounds ------------------------------------------------------------------- */
+/* -- Bounds --------------------------------------------------------------- */
 
 /*
  * A ball that holds the electrode is carried from the tool toward the work, one
@@ -220,14 +221,16 @@ void block_init(struct block *b, const struct machine_motion *m,
 	memcpy(b->from, from, sizeof(b->from));
 	memcpy(b->to, to, sizeof(b->to));
 	bound_reach(b);
-	b->way_mm = b->accel_mm = 0;
+	b->way_mm = b->corner_way_mm = b->accel_mm = 0;
 	for (uint32_t i = 0; i < m->kin->njoints; i++) {
 		const double way = joint_way(b, i);
 		double later = 0;
 
 		b->way_mm += way * b->reach_mm[i];
+		b->corner_way_mm += way * b->reach_mm[i];
 		if (!is_turn(&m->kin->joint[i]))
 			continue;
+		b->corner_way_mm += way * fmax(m->corner_mm - m->ball_r_mm, 0);
 		for (uint32_t l = i + 1; l < m->kin->njoints; l++)
 			later += joint_way(b, l) * b->reach_mm[l];
 		b->accel_mm += way * (way * b->reach_mm[i] + 2 * later);

@@ -20,6 +20,8 @@
 struct machine_motion {
 	const struct interp_kinematics *kin;	/* lent */
 	double ball_mm[3], ball_r_mm;	/* holds the electrode, axes at 0 */
+	double corner_mm;		/* how far a corner of the electrode's
+					 * bounds is from the ball's middle */
 };
 
 /* One block, with what bounds its points' ways. */
@@ -29,6 +31,8 @@ struct block {
 	double reach_mm[INTERP_NAXES];	/* by joint of the chain: how far a unit
 					 * (mm, radian) of it moves any point */
 	double way_mm;			/* no point goes farther in the block */
+	double corner_way_mm;		/* nor any corner of its bounds than
+					 * that */
 	double accel_mm;		/* no point's second derivative is more */
 };
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * near.h - how near the electrode is to the part, and how far it may go on
+ * near.h - how near the electrode is to the part
  *
- * Both walk the two trees of boxes at once.  A pose takes places of the
+ * Two trees of boxes are walked at once.  A pose takes places of the
  * electrode's mesh to places of the part's.
  *
- * Units: mm; time is the block's parameter, 0 at its start and 1 at its end.
+ * Units: mm.
  * Threads: any, each with its own struct near_pair.
  */
 #ifndef PLAN_NEAR_H
@@ -51,28 +51,19 @@ double near_distance(const struct bodies *b, const struct pose *pose,
 bool near_below(const struct bodies *b, const struct pose *pose, double mm,
 		struct near_pair *pair);
 
-struct near_step {
-	double keep_mm;			/* what the way on is to keep */
-	double refuse_mm;		/* nearer than that here: refused;
-					 * > keep_mm */
-	double until;			/* no step longer than that */
-};
-
-/**
- * near_step() - for how long no point comes nearer than keep_mm.
- *
- * Return: the time, > 0; or 0, and @pair is nearer than refuse_mm.  @pair is
- * used as in near_distance(), and gets the pair that ends the step.
- */
-double near_step(const struct bodies *b, const struct pose *pose,
-		 const struct pose_rate *rate, const struct near_step *s,
-		 struct near_pair *pair);
-
 /* Called with each pair; false ends the search. */
 typedef bool near_take(void *arg, const struct near_pair *pair);
 
 /** near_within() - all pairs of triangles nearer than @mm. */
 void near_within(const struct bodies *b, const struct pose *pose, double mm,
 		 near_take *take, void *arg);
+
+/** near_pose() - what boxes are placed with; @pose and @rate are lent. */
+void near_pose(const struct pose *pose, const struct pose_rate *rate,
+	       struct box_pose *ret);
+
+/** near_tri() - a triangle of the electrode in the part's frame. */
+void near_tri(const struct bodies *b, const struct pose *pose, uint32_t tool,
+	      struct triangle *ret);
 
 #endif /* PLAN_NEAR_H */

@@ -194,7 +194,7 @@ int picture_put(const struct plan *p)
 		p->best.least_mm);
 	put_curve(f, p);
 	fputs("</svg>\n", f);
-	err = fclose(f) ? EX_OSERR : text_put(p->j->o->picture, text);
+	err = fclose(f) ? EX_OSERR : put_text(p->j->o->picture, text);
 	free(text);
 	return err;
 }

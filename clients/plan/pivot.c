@@ -9,6 +9,7 @@
  * few nodes and by the share of the turn, are a problem of least squares with
  * six unknowns.  A shift that changes nothing stays 0: large ones cost a little.
  */
+#include "check.h"
 #include "plan.h"
 
 #include <errno.h>
@@ -81,7 +82,7 @@ static bool find_shares(struct nodes *n)
 	return sum > 1;
 }
 
-/* -- Least squares --------------------------------------------------------------- */
+/* -- Least squares -------------------------------------------------------- */
 
 struct squares {
 	double a[SHIFTS][SHIFTS + 1];
@@ -166,7 +167,7 @@ static void best_shift(const struct nodes *n, uint32_t blocks,
 	eliminate(&s, ret);
 }
 
-/* -- Trying a shift --------------------------------------------------------------- */
+/* -- Trying a shift ------------------------------------------------------- */
 
 static int shifted_body(const struct mesh *from, const double by[3],
 			struct mesh *ret, struct tree *tree)
@@ -218,6 +219,13 @@ static bool in_travel(const struct job *j, const struct plan_way *w)
 	return true;
 }
 
+/* A micrometre is not worth to clamp the work anew. */
+static bool is_better(const struct plan_way *a, const struct plan_way *b)
+{
+	return a->n < b->n ||
+	       (a->n == b->n && a->least_mm > b->least_mm + 0.001);
+}
+
 static int try_shift(struct plan *p, const struct nodes *n,
 		     const double s[SHIFTS])
 {
@@ -226,18 +234,19 @@ static int try_shift(struct plan *p, const struct nodes *n,
 	struct job j;
 	int err = shifted_job(p->j, s, &j);
 
-	trial = (struct plan) { .j = p->j, .c = p->c };
+	trial = (struct plan) { .j = &j };
 	for (uint32_t i = 0; i < n->n && err == 0; i++) {
 		err = place(&p->j->kin, n->q[i], s, q[i]);
 		free_round(&p->j->config, q[i]);
 	}
-	if (err == 0)
-		err = plan_over(&trial, &j, q,
-			      n->n);
+	if (err == 0) {
+		/* The end zone is about the end pose as it is then. */
+		check_clearance(&j, q[n->n - 1], &trial.c);
+		err = plan_over(&trial, &j, q, n->n);
+	}
 	p->queries += trial.queries;
-	if (err == 0 && (!p->pivot.way.how || trial.best.n < p->pivot.way.n ||
-		       (trial.best.n == p->pivot.way.n &&
-			trial.best.least_mm > p->pivot.way.least_mm))) {
+	if (err == 0 && is_better(&trial.best, &p->best) &&
+	    (!p->pivot.way.how || is_better(&trial.best, &p->pivot.way))) {
 		p->pivot.way = trial.best;
 		memcpy(p->pivot.part_mm, s, sizeof(p->pivot.part_mm));
 		memcpy(p->pivot.tool_mm, s + 3, sizeof(p->pivot.tool_mm));
@@ -268,6 +277,9 @@ static int try_all(struct plan *p, struct nodes *n)
 		if (err == -ENOMEM)
 			return err;
 	}
+	if (!p->pivot.way.how && !bar_interrupted())
+		snprintf(p->pivot.why, sizeof(p->pivot.why),
+			 "no better place of the work or the electrode found");
 	return 0;
 }
 
@@ -278,8 +290,6 @@ int plan_pivot(struct plan *p)
 							 FEWEST_NODES_MAX };
 	int err = -ENOMEM;
 
-	if (p->c.zone_mm > 0)
-		return 0;
 	n.q = malloc(n.n * sizeof(*n.q));
 	n.share = malloc(n.n * sizeof(*n.share));
 	n.by = malloc(n.n * sizeof(*n.by));

@@ -30,7 +30,7 @@ static double now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-/* -- The way in of a program --------------------------------------------------- */
+/* -- The way in of a program ---------------------------------------------- */
 
 /* From the last rapid before the first cut to the last cut. */
 static int find_way_in(struct plan *p)
@@ -138,7 +138,7 @@ static int check_dense(struct plan *p)
 	return 0;
 }
 
-/* -- Plans ------------------------------------------------------------------- */
+/* -- Plans ---------------------------------------------------------------- */
 
 void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries)
 {
@@ -151,8 +151,9 @@ void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries)
 		struct block b;
 
 		block_init(&b, &j->motion, w->q[i], w->q[i + 1]);
+		w->strays_mm[i] = motion_strays_mm(&b, lattice);
 		w->proved_mm[i] = prove_least(&j->bodies, &b, &p) -
-				  motion_strays_mm(&b, lattice) - j->chord_mm;
+				  w->strays_mm[i] - j->chord_mm;
 		w->t[i] = p.t;
 		w->pair[i] = p.pair;
 		*queries += p.queries;
@@ -279,7 +280,7 @@ int plan_over(struct plan *p, const struct job *j,
 	return p->best.how ? 0 : 1;
 }
 
-/* -- Words -------------------------------------------------------------------- */
+/* -- Words ---------------------------------------------------------------- */
 
 static void say_way(const char *name, const struct plan_way *w)
 {
@@ -351,7 +352,7 @@ static void describe(const struct plan *p, FILE *out)
 	       (unsigned long long)p->queries, p->planned_s);
 }
 
-/* -- Writing ------------------------------------------------------------------- */
+/* -- Writing -------------------------------------------------------------- */
 
 /* What stands in the text is read back and proved, not what was computed. */
 static int prove_text(struct plan *p, const char *text)
@@ -379,26 +380,26 @@ static int prove_text(struct plan *p, const char *text)
 static int write_all(struct plan *p)
 {
 	char *text = text_write(p, &p->best);
-	int r;
+	int err;
 
 	if (!text)
 		return EX_OSERR;
 	bar_forget();
-	r = prove_text(p, text);
-	if (r == 0 && p->j->o->times)
-		r = times_ask(p);
-	if (r == 0)
-		r = text_put(p->j->o->output, text);
+	err = prove_text(p, text);
+	if (err == 0 && p->j->o->times)
+		err = times_ask(p);
+	if (err == 0)
+		err = put_text(p->j->o->output, text);
 	free(text);
-	if (r == 0)
-		r = report_put(p);
-	if (r == 0)
-		r = picture_put(p);
-	if (r == 0)
-		r = view_put(p);
-	if (r == 0 && !p->j->o->quiet)
+	if (err == 0)
+		err = report_put(p);
+	if (err == 0)
+		err = picture_put(p);
+	if (err == 0)
+		err = view_put(p);
+	if (err == 0 && !p->j->o->quiet)
 		describe(p, stdout);
-	return r;
+	return err;
 }
 
 static void say_no_way(const struct plan *p)
@@ -422,38 +423,38 @@ static int plan_nodes(struct plan *p)
 {
 	static double q[FEWEST_NODES_MAX][INTERP_NAXES];
 	uint32_t n;
-	int r;
+	int err;
 
 	take_nodes(p, q, &n);
-	r = plan_over(p, p->j, q, n);
-	if (r == 1 && !bar_interrupted()) {
-		r = repair_nodes(p, q, &n);
-		if (r == 0)
-			r = plan_over(p, p->j, q, n);
+	err = plan_over(p, p->j, q, n);
+	if (err == 1 && !bar_interrupted()) {
+		err = repair_nodes(p, q, &n);
+		if (err == 0)
+			err = plan_over(p, p->j, q, n);
 	}
-	if (r == -ENOMEM)
+	if (err == -ENOMEM)
 		return EX_OSERR;
-	if (r) {
+	if (err) {
 		say_no_way(p);
 		return 1;
 	}
 	if (!p->j->o->no_pivot && !bar_interrupted())
-		r = plan_pivot(p) == -ENOMEM ? EX_OSERR : 0;
-	return r;
+		err = plan_pivot(p) == -ENOMEM ? EX_OSERR : 0;
+	return err;
 }
 
 static int load_way(struct plan *p)
 {
 	const struct route_text from = { .path = p->j->o->program,
 				       .dialect = p->j->o->dialect };
-	int r;
+	int err;
 
 	if (p->j->o->end_given)
-		r = pullout_way(p);
+		err = pullout_way(p);
 	else
-		r = route_read(&p->dense, &p->j->config, &from);
-	if (r)
-		return r;
+		err = route_read(&p->dense, &p->j->config, &from);
+	if (err)
+		return err;
 	if (!p->j->o->end_given &&
 	    !job_moves_known(p->j, &p->dense, p->j->o->program))
 		return EX_DATAERR;
@@ -463,26 +464,26 @@ static int load_way(struct plan *p)
 int plan_program(struct job *j)
 {
 	static struct plan p;
-	int r;
+	int err;
 
 	p.j = j;
 	p.seconds = now_s();
-	r = load_way(&p);
-	if (r == 0)
-		r = check_clearance(j, p.dense.node[p.last].q, &p.c);
-	if (r == 0)
-		r = plan_check_end(&p, p.dense.node[p.last].q);
-	if (r == 0)
-		r = check_dense(&p);
-	if (r == 0)
-		r = plan_nodes(&p);
+	err = load_way(&p);
+	if (err == 0)
+		err = check_clearance(j, p.dense.node[p.last].q, &p.c);
+	if (err == 0)
+		err = plan_check_end(&p, p.dense.node[p.last].q);
+	if (err == 0)
+		err = check_dense(&p);
+	if (err == 0)
+		err = plan_nodes(&p);
 	p.stopped = bar_interrupted();
 	p.planned_s = now_s() - p.seconds;
 	bar_end(j);
-	if (r == 0)
-		r = write_all(&p);
-	if (r == EX_OSERR)
+	if (err == 0)
+		err = write_all(&p);
+	if (err == EX_OSERR)
 		fprintf(stderr, "edm-plan: out of memory\n");
 	route_free(&p.dense);
-	return r;
+	return err;
 }

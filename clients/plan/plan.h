@@ -17,6 +17,7 @@ struct plan_way {
 	double q[FEWEST_NODES_MAX][INTERP_NAXES];
 	double proved_mm[FEWEST_NODES_MAX];	/* of each block; what strays
 						 * and the chords taken off */
+	double strays_mm[FEWEST_NODES_MAX];	/* taken off for pulses */
 	double t[FEWEST_NODES_MAX];	/* where it is nearest */
 	struct near_pair pair[FEWEST_NODES_MAX];
 	double least_mm;		/* of all blocks, proved */
@@ -68,7 +69,7 @@ void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries);
 /** plan_pivot() - look for a better place of the work. */
 int plan_pivot(struct plan *p);
 
-/* -- What is written ------------------------------------------------------------ */
+/* -- What is written ------------------------------------------------------ */
 
 /**
  * text_write() - the dense program with @w as its way in, allocated; where its
@@ -77,9 +78,13 @@ int plan_pivot(struct plan *p);
  */
 char *text_write(struct plan *p, const struct plan_way *w);
 
-/** text_put() - write @text to @path, - is standard output. Return: 0 or a
- *  sysexits code, and the reason is on stderr. */
-int text_put(const char *path, const char *text);
+/** put_text() - @text into the file @path, whole or not at all; - is standard
+ *  output. Return: 0 or a sysexits code, and the reason is on stderr. */
+int put_text(const char *path, const char *text);
+
+/** put_check() - can all that is asked for be written, and is none of it read?
+ *  Return: as put_text(). */
+int put_check(const struct job_options *o);
 
 /** report_put(), picture_put(), view_put() - the files asked for. */
 int report_put(const struct plan *p);

@@ -1,27 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * prove.c - conservative advancement along a block
+ * prove.c - what is to be kept along a block, and the most that is
  */
 #include "prove.h"
 
-#include "vec.h"
+#include "sweep.h"
 
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
 
-/* Steps after which a proof is given up; a block takes some dozens. */
-#define STEPS_MAX	1000000
-
 /* prove_least(): under the least distance that was seen. */
 #define LEAST_KEEP_MM	0.0016
 #define LEAST_EPS_MM	0.0008
 
-/* A step of the proof asks for so much more than its own pose does, at most,
- * where the clearance falls. */
-#define FALL_MM		0.001
-
-/* -- What is to be kept --------------------------------------------------------- */
+/* -- What is to be kept --------------------------------------------------- */
 
 void clearance_init(struct clearance *c, double mm)
 {
@@ -62,93 +55,67 @@ static double from_end(const struct clearance *c, const struct pose *pose)
 	return most;
 }
 
-double clearance_at(const struct clearance *c, const struct pose *pose,
-		    double way_mm)
+double clearance_at(const struct clearance *c, const struct pose *pose)
 {
 	double far;
 
 	if (!(c->zone_mm > 0))
 		return c->mm;
-	far = from_end(c, pose) + way_mm;
+	far = from_end(c, pose);
 	if (far >= c->zone_mm)
 		return c->mm;
 	return c->end_mm + (c->mm - c->end_mm) * far / c->zone_mm;
 }
 
-/* The clearance a step from here has to keep, and how long the step may be. */
-static double keep_from(const struct clearance *c, const struct block *b,
-			const struct pose *pose, double *until)
-{
-	double far, fall;
+/* -- Proofs --------------------------------------------------------------- */
 
-	*until = 2;
-	if (!(c->zone_mm > 0) || !(b->way_mm > 0))
-		return c->mm;
-	far = from_end(c, pose);
-	if (far - c->zone_mm > b->way_mm)
-		return c->mm;
-	fall = (c->mm - c->end_mm) / c->zone_mm;
-	*until = fmax(far / 8, fall > 0 ? FALL_MM / fall : far) / b->way_mm;
-	return clearance_at(c, pose, *until * b->way_mm);
-}
-
-/* -- Proofs ------------------------------------------------------------------ */
-
-struct march {
-	const struct bodies *bodies;
-	const struct block *b;
-	struct near_step s;
-	const struct clearance *clear;	/* NULL: s holds it */
-	struct near_pair pair;
-	struct proof *p;
-	double t;
+struct asked {
+	const struct clearance *clear;
+	const struct block *block;
 };
 
-/* As far as goes. Return: true at the end, false where it is too near. */
-static bool advance(struct march *m)
+/* The farther from the end, the more is to be kept; how far is told by the corners
+ * of the electrode's bounds. */
+static void keep_from(void *arg, const struct pose *pose,
+		      struct sweep_keep *ret)
 {
-	for (int i = 0; i < STEPS_MAX && m->t < 1; i++) {
-		struct pose_rate rate;
-		struct pose pose;
-		double x;
+	const struct asked *a = arg;
+	const struct clearance *c = a->clear;
+	const double way = a->block->corner_way_mm;
 
-		block_pose(m->b, m->t, &pose, &rate);
-		m->s.until = 2;
-		if (m->clear) {
-			m->s.keep_mm = keep_from(m->clear, m->b, &pose,
-						 &m->s.until);
-			m->s.refuse_mm = m->s.keep_mm + PROVE_EPS_MM;
-		}
-		m->p->queries++;
-		x = near_step(m->bodies, &pose, &rate, &m->s, &m->pair);
-		if (!(x > 0))
-			return false;
-		m->t = m->t + x < 1 ? m->t + x : 1;
-	}
-	return m->t >= 1;
+	ret->most_mm = c->zone_mm > 0 ? fmax(c->mm, c->end_mm) : c->mm;
+	ret->mm = ret->most_mm;
+	ret->rises = 0;
+	if (!(c->zone_mm > 0) || c->end_mm >= c->mm)
+		return;
+	ret->mm = clearance_at(c, pose);
+	ret->rises = (c->mm - c->end_mm) / c->zone_mm * way;
 }
 
 bool prove_block(const struct bodies *bodies, const struct block *b,
 		 const struct clearance *c, struct proof *p)
 {
-	struct march m = { .bodies = bodies, .b = b, .clear = c,
-			   .pair = p->pair, .p = p };
-	const bool ok = advance(&m);
+	struct asked asked = { c, b };
+	struct sweep s = { .bodies = bodies, .block = b, .keep = keep_from,
+			   .eps_mm = PROVE_EPS_MM, .arg = &asked };
+	const int kept = sweep_block(&s);
 
-	p->pair = m.pair;
-	if (!ok) {
-		p->t = m.t;
-		p->least_mm = m.pair.mm;
+	p->queries += s.poses;
+	p->given_up = kept < 0;
+	if (kept == 0) {
+		p->t = s.t;
+		p->pair = s.pair;
+		p->least_mm = s.pair.mm;
 	}
-	return ok;
+	return kept > 0;
 }
 
 bool prove_refuted(const struct bodies *bodies, const struct block *b,
 		   const struct clearance *c, struct proof *p)
 {
-	/* The middle first: there a block is farthest from the path. */
-	static const int order[] = { 8, 4, 12, 16, 6, 10, 2, 14, 7, 9, 5, 11,
-				     3, 13, 1, 15 };
+	/* The middle first: there a block is farthest from the path.  More
+	 * poses cost more than the proof itself. */
+	static const int order[] = { 8, 4, 12 };
 
 	for (unsigned int i = 0; i < sizeof(order) / sizeof(order[0]); i++) {
 		const double t = order[i] / 16.0;
@@ -156,7 +123,7 @@ bool prove_refuted(const struct bodies *bodies, const struct block *b,
 
 		block_pose(b, t, &pose, NULL);
 		p->queries++;
-		if (!near_below(bodies, &pose, clearance_at(c, &pose, 0),
+		if (!near_below(bodies, &pose, clearance_at(c, &pose),
 				&p->pair))
 			continue;
 		p->t = t;
@@ -166,63 +133,88 @@ bool prove_refuted(const struct bodies *bodies, const struct block *b,
 	return false;
 }
 
-static double see(struct march *m, double t)
+/* -- The most that can be proved ------------------------------------------ */
+
+struct least {
+	const struct bodies *bodies;
+	const struct block *b;
+	struct near_pair pair;
+	struct proof *p;
+	double keep_mm;
+};
+
+static double see(struct least *l, double t)
 {
 	struct pose pose;
 	double d;
 
-	block_pose(m->b, t, &pose, NULL);
-	m->p->queries++;
-	d = near_distance(m->bodies, &pose, &m->pair);
-	if (d < m->p->least_mm) {
-		m->p->least_mm = d;
-		m->p->t = t;
-		m->p->pair = m->pair;
+	block_pose(l->b, t, &pose, NULL);
+	l->p->queries++;
+	d = near_distance(l->bodies, &pose, &l->pair);
+	if (d < l->p->least_mm) {
+		l->p->least_mm = d;
+		l->p->t = t;
+		l->p->pair = l->pair;
 	}
 	return d;
 }
 
 /* Down to the bottom of the valley round @t, so that the proof does not meet
  * every point of the slope. */
-static void descend(struct march *m, double t)
+static void descend(struct least *l, double t)
 {
 	double h = 1.0 / 32;
 
-	while (h > 1e-7 && m->p->least_mm > 0) {
+	while (h > 1e-7 && l->p->least_mm > 0) {
 		const double at = t;
 
 		for (int side = -1; side <= 1; side += 2) {
 			const double to = fmin(fmax(at + side * h, 0), 1);
-			const double was = m->p->least_mm;
+			const double was = l->p->least_mm;
 
-			if (to != at && see(m, to) < was)
+			if (to != at && see(l, to) < was)
 				t = to;
 		}
 		if (t == at)
 			h /= 2;
 	}
+	l->keep_mm = l->p->least_mm - LEAST_KEEP_MM;
+}
+
+static void keep_least(void *arg, const struct pose *pose,
+		       struct sweep_keep *ret)
+{
+	const struct least *l = arg;
+
+	(void)pose;
+	*ret = (struct sweep_keep) { l->keep_mm, l->keep_mm, 0 };
+}
+
+static bool lower(void *arg, double t, const struct near_pair *pair)
+{
+	struct least *l = arg;
+
+	if (pair->mm >= l->keep_mm + LEAST_EPS_MM)
+		return true;	/* lowered since that moment was taken */
+	l->pair = *pair;
+	see(l, t);
+	descend(l, t);
+	return l->keep_mm > 0;
 }
 
 double prove_least(const struct bodies *bodies, const struct block *b,
 		   struct proof *p)
 {
-	struct march m = { .bodies = bodies, .b = b, .pair = p->pair, .p = p };
+	struct least l = { .bodies = bodies, .b = b, .pair = p->pair, .p = p };
+	struct sweep s = { .bodies = bodies, .block = b, .keep = keep_least,
+			   .lower = lower, .eps_mm = LEAST_EPS_MM, .arg = &l };
+	int kept;
 
 	p->least_mm = DBL_MAX;
 	for (int i = 0; i <= 8; i++)
-		see(&m, i / 8.0);
-	descend(&m, p->t);
-	while (m.t < 1) {
-		if (p->least_mm <= LEAST_KEEP_MM)
-			return -1;
-		m.s.keep_mm = p->least_mm - LEAST_KEEP_MM;
-		m.s.refuse_mm = m.s.keep_mm + LEAST_EPS_MM;
-		if (advance(&m))
-			break;
-		if (!(m.pair.mm < m.s.refuse_mm))
-			return -1;	/* given up */
-		see(&m, m.t);
-		descend(&m, m.t);
-	}
-	return m.s.keep_mm;
+		see(&l, i / 8.0);
+	descend(&l, p->t);
+	kept = l.keep_mm > 0 ? sweep_block(&s) : 0;
+	p->queries += s.poses;
+	return kept > 0 ? l.keep_mm : -1;
 }

@@ -34,7 +34,9 @@ struct proof {
 	double least_mm;		/* the least distance that was seen */
 	double t;			/* where */
 	struct near_pair pair;		/* of it; begin with a zeroed one */
-	uint64_t queries;		/* walks of the trees, added to */
+	bool given_up;			/* memory or patience ended; nothing is
+					 * too near */
+	uint64_t queries;		/* poses looked at; added to */
 };
 
 /** clearance_init() - of one value; clearance_end() lets it fall. */
@@ -42,10 +44,8 @@ void clearance_init(struct clearance *c, double mm);
 void clearance_end(struct clearance *c, const struct mesh *tool,
 		   const struct pose *end, double zone_mm, double end_mm);
 
-/** clearance_at() - what is to be kept at @pose, and as long as no point goes
- *  farther than @way_mm from there. */
-double clearance_at(const struct clearance *c, const struct pose *pose,
-		    double way_mm);
+/** clearance_at() - what is to be kept at @pose. */
+double clearance_at(const struct clearance *c, const struct pose *pose);
 
 /**
  * prove_block() - that no point of it comes nearer than @c.

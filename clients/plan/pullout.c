@@ -273,13 +273,13 @@ static int lead_in(struct plan *p, struct pull *u, const struct clearance *c)
 
 static int turn_round(struct plan *p, struct pull *u, const struct clearance *c)
 {
-	int r = lead_in(p, u, c);
+	int err = lead_in(p, u, c);
 
-	for (uint32_t i = u->out.n - 1; i-- > 0 && r == 0;)
-		r = route_add(&p->dense, &u->out.node[i]) ? EX_OSERR : 0;
+	for (uint32_t i = u->out.n - 1; i-- > 0 && err == 0;)
+		err = route_add(&p->dense, &u->out.node[i]) ? EX_OSERR : 0;
 	p->dense.lines = p->dense.n;
 	route_lattice(&p->j->config, p->dense.lattice);
-	return r;
+	return err;
 }
 
 /* Where the stem is at the end pose is out; a channel may have two ends. */
@@ -320,10 +320,10 @@ static int pull_twice(struct pull *u, const struct clearance *c)
 {
 	struct clearance touch = *c;
 	struct pull again = *u;
-	int r = pull(u, c);
+	int err = pull(u, c);
 
-	if (r != 1 || bar_interrupted())
-		return r;
+	if (err != 1 || bar_interrupted())
+		return err;
 	bar_end(u->j);
 	say_stuck(u);
 	fprintf(stderr, "edm-plan: trying to come out with less, and to widen "
@@ -341,26 +341,26 @@ int pullout_way(struct plan *p)
 	struct pull u = { .j = p->j, .keep_mm = p->j->clear_mm +
 						p->j->chord_mm };
 	struct clearance c;
-	int r;
+	int err;
 
 	memcpy(u.q, p->j->o->end, sizeof(u.q));
 	if (!in_travel(p->j, u.q))
 		return EX_DATAERR;
-	r = plan_check_end(p, u.q);
-	if (r)
-		return r;
+	err = plan_check_end(p, u.q);
+	if (err)
+		return err;
 	check_clearance(p->j, u.q, &c);
 	if (air_cut(&u.air, &p->j->part))
 		return EX_OSERR;
 	open_air(&u);
 	job_axes_find(p->j, u.q, u.q, &u.axes);
-	r = pull_twice(&u, &c);
+	err = pull_twice(&u, &c);
 	bar_end(p->j);
-	if (r == 1)
+	if (err == 1)
 		say_stuck(&u);
 	else
-		r = r ? EX_OSERR : turn_round(p, &u, &c);
+		err = err ? EX_OSERR : turn_round(p, &u, &c);
 	air_free(&u.air);
 	route_free(&u.out);
-	return r;
+	return err;
 }

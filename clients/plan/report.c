@@ -35,8 +35,9 @@ static json_t *block(const struct job *j, const struct plan_way *w, uint32_t i)
 
 	for (int k = 0; k < INTERP_NAXES; k++)
 		q[k] = w->q[i][k] + w->t[i] * (w->q[i + 1][k] - w->q[i][k]);
-	return json_pack("{s:f,s:f,s:o,s:o,s:i,s:i}",
-			 "proved_mm", w->proved_mm[i], "nearest_t", w->t[i],
+	return json_pack("{s:f,s:f,s:f,s:o,s:o,s:i,s:i}",
+			 "proved_mm", w->proved_mm[i], "strays_mm",
+			 w->strays_mm[i], "nearest_t", w->t[i],
 			 "nearest_axes", axes(j, q),
 			 "nearest_part_mm", point(w->pair[i].p),
 			 "part_triangle",
@@ -129,7 +130,7 @@ int report_put(const struct plan *p)
 	json_decref(o);
 	if (!text)
 		return EX_OSERR;
-	err = text_put(j->o->report, text);
+	err = put_text(j->o->report, text);
 	free(text);
 	return err;
 }

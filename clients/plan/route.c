@@ -54,7 +54,7 @@ void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES])
 		ret[i] = pulses * c->axes.axis[i].pulse_mm;
 }
 
-/* -- Segments ---------------------------------------------------------------- */
+/* -- Segments ------------------------------------------------------------- */
 
 static void node_of(const struct interp_program *p, uint32_t node,
 		    double q[INTERP_NAXES])
@@ -112,13 +112,13 @@ static int follow_curve(struct route *w, const struct interp_program *p,
 		.axis = p->curves[piece->curve].axis, .at = *end,
 		.from = stop[0].u, .to = stop[piece->nstops - 1].u,
 	};
-	int r;
+	int err;
 
 	if (!interp_program_curve(p, piece->curve, &k.curve))
 		return -EINVAL;
-	r = route_curve(w, &k);
+	err = route_curve(w, &k);
 	/* The node is rounded, the curve is not. */
-	return r ? r : route_add(w, end);
+	return err ? err : route_add(w, end);
 }
 
 static int refuse_seg(const struct route_text *from, uint32_t line,
@@ -145,7 +145,7 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 				.feed_mm_s = s->feed_mm_s,
 				.rapid = s->flags & INTERP_SEG_RAPID,
 				.cond = s->cond, .act_line = w->act_line };
-	int r;
+	int err;
 
 	if (s->flags & INTERP_SEG_SENSED)
 		return refuse_seg(from, s->line, "a move that ends at a "
@@ -162,35 +162,35 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 		w->beside_line = s->line;
 	node_of(p, i + 1, end.q);
 	if (s->kind == INTERP_LINE)
-		r = route_add(w, &end);
+		err = route_add(w, &end);
 	else if (s->kind == INTERP_ARC)
-		r = follow_arc(w, &p->arcs[s->arg], &end);
+		err = follow_arc(w, &p->arcs[s->arg], &end);
 	else if (s->kind == INTERP_CURVE)
-		r = follow_curve(w, p, s, &end);
+		err = follow_curve(w, p, s, &end);
 	else
 		return note_action(w, s);
 	w->act_line = 0;
-	if (r == -EINVAL)
+	if (err == -EINVAL)
 		return refuse_seg(from, s->line, "a curve that cannot be cut "
 				  "into chords", "a curve without a cusp");
-	return r ? EX_OSERR : 0;
+	return err ? EX_OSERR : 0;
 }
 
 static int follow(struct route *w, const struct interp_program *p,
 		  const struct route_text *from)
 {
 	struct route_node start = { .line = 0 };
-	int r = 0;
+	int err = 0;
 
 	node_of(p, 0, start.q);
 	if (route_add(w, &start))
 		return EX_OSERR;
-	for (uint32_t i = 0; i < p->head->nsegs && r == 0; i++)
-		r = follow_seg(w, p, i, from);
-	return r;
+	for (uint32_t i = 0; i < p->head->nsegs && err == 0; i++)
+		err = follow_seg(w, p, i, from);
+	return err;
 }
 
-/* -- Text -------------------------------------------------------------------- */
+/* -- Text ----------------------------------------------------------------- */
 
 static int read_file(const char *path, char **text, size_t *bytes)
 {
@@ -198,16 +198,16 @@ static int read_file(const char *path, char **text, size_t *bytes)
 	FILE *f = standard ? stdin : fopen(path, "rb");
 	struct stat st;
 	size_t room = 1 << 16, n;
-	int r = 0;
+	int err = 0;
 
 	*text = malloc(room);
 	*bytes = 0;
 	if (!f || !*text || fstat(fileno(f), &st) < 0 || S_ISDIR(st.st_mode)) {
 		fprintf(stderr, "edm-plan: %s: %s; a file of NC code\n", path,
 			f ? "cannot be read" : strerror(errno));
-		r = EX_NOINPUT;
+		err = EX_NOINPUT;
 	}
-	while (r == 0 && (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
+	while (err == 0 && (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
 		*bytes += n;
 		if (*bytes < room)
 			continue;
@@ -215,17 +215,17 @@ static int read_file(const char *path, char **text, size_t *bytes)
 		if (room > TEXT_BYTES_MAX) {
 			fprintf(stderr, "edm-plan: %s: more than 1 GiB; a file "
 				"of NC code\n", path);
-			r = EX_DATAERR;
+			err = EX_DATAERR;
 		} else {
 			void *more = realloc(*text, room);
 
 			*text = more ? more : *text;
-			r = more ? 0 : EX_OSERR;
+			err = more ? 0 : EX_OSERR;
 		}
 	}
 	if (f && !standard)
 		fclose(f);
-	return r;
+	return err;
 }
 
 static int lay_out(struct interp_build *b, const struct route_text *from,
@@ -236,15 +236,15 @@ static int lay_out(struct interp_build *b, const struct route_text *from,
 	const size_t bytes = interp_build_bytes(b);
 	struct interp_program p;
 	void *block = malloc(bytes);
-	int r;
+	int err;
 
 	if (!block)
 		return EX_OSERR;
 	interp_build_write(b, &about, block);
-	r = interp_program_map(&p, block, bytes) ? EX_SOFTWARE :
+	err = interp_program_map(&p, block, bytes) ? EX_SOFTWARE :
 						   follow(w, &p, from);
 	free(block);
-	return r;
+	return err;
 }
 
 static int compile(struct route *w, const struct machine_config *c,
@@ -254,7 +254,7 @@ static int compile(struct route *w, const struct machine_config *c,
 	struct interp_diag diag = { 0 };
 	struct config_tech tech;
 	struct interp_build *b;
-	int r;
+	int err;
 
 	if (config_tech_load(&tech, c, NULL)) {
 		config_tech_free(&tech);
@@ -267,19 +267,19 @@ static int compile(struct route *w, const struct machine_config *c,
 		memcpy(of.build.start_mm, from->start,
 		       sizeof(of.build.start_mm));
 	b = interp_build_create(&of.build);
-	r = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
-	if (r == -EINVAL) {
+	err = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
+	if (err == -EINVAL) {
 		if (!from->quiet)
 			fprintf(stderr, "%s:%u:%u: error: %s; %s\n", from->path,
 				diag.line, diag.column, diag.found,
 				diag.wanted);
-		r = EX_DATAERR;
+		err = EX_DATAERR;
 	} else {
-		r = r ? EX_OSERR : lay_out(b, from, w);
+		err = err ? EX_OSERR : lay_out(b, from, w);
 	}
 	interp_build_destroy(b);
 	config_tech_free(&tech);
-	return r;
+	return err;
 }
 
 /* What edm-plan has written itself is generic. */
@@ -307,30 +307,30 @@ int route_read(struct route *w, const struct machine_config *c,
 	};
 	struct config_dialect d;
 	char *mine = NULL;
-	int r = dialect_load(&d, c, from);
+	int err = dialect_load(&d, c, from);
 
 	text.dialect = d.use;
 	*w = (struct route) { 0 };
 	route_lattice(c, w->lattice);
-	if (r) {
+	if (err) {
 		config_dialect_free(&d);
-		return r;
+		return err;
 	}
 	if (from->text) {
 		text.bytes = strlen(from->text);
 	} else {
-		r = read_file(from->path, &mine, &text.bytes);
+		err = read_file(from->path, &mine, &text.bytes);
 		text.at = mine;
 	}
-	if (r == 0)
-		r = compile(w, c, from, &text);
-	if (r == EX_OSERR)
+	if (err == 0)
+		err = compile(w, c, from, &text);
+	if (err == EX_OSERR)
 		fprintf(stderr, "edm-plan: %s: out of memory\n", from->path);
 	config_dialect_free(&d);
 	if (mine)
 		mine[text.bytes] = '\0';
 	w->text = mine;
-	if (r)
+	if (err)
 		route_free(w);
-	return r;
+	return err;
 }

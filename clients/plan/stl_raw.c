@@ -102,7 +102,7 @@ static int read_binary(const struct source *s, uint32_t n,
 	return 0;
 }
 
-/* -- Text ------------------------------------------------------------------- */
+/* -- Text ----------------------------------------------------------------- */
 
 static bool is_blank(char c)
 {

@@ -4,13 +4,12 @@
  */
 #include "plan.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sysexits.h>
 
-/* As many decimals as a pulse of any machine has, and no zeros behind. */
+/* As many decimals as a pulse of any machine has, and no zeros behind.  The
+ * point stays: C120 calls a condition, and to some readers X10 is ten pulses. */
 static void put_number(FILE *f, char axis, double v)
 {
 	char s[40];
@@ -19,9 +18,7 @@ static void put_number(FILE *f, char axis, double v)
 	snprintf(s, sizeof(s), "%.6f", v);
 	for (n = strlen(s); s[n - 1] == '0'; n--)
 		s[n - 1] = '\0';
-	if (s[n - 1] == '.')
-		s[n - 1] = '\0';
-	fprintf(f, " %c%s", axis, strcmp(s, "-0") == 0 ? "0" : s);
+	fprintf(f, " %c%s", axis, strcmp(s, "-0.") == 0 ? "0." : s);
 }
 
 static void put_block(FILE *f, const struct plan *p, const char *word,
@@ -50,7 +47,7 @@ static void put_way_in(FILE *f, const struct plan *p, const struct plan_way *w)
 	for (uint32_t i = 1; i < w->n; i++) {
 		put_block(f, p, "G1", w->q[i - 1], w->q[i]);
 		if (i == 1 && feed > 0)
-			fprintf(f, " F%.6g", feed);
+			put_number(f, 'F', feed);
 		fprintf(f, "\t(keeps %.3f mm)\n", w->proved_mm[i - 1]);
 	}
 }
@@ -93,7 +90,7 @@ static char *plain(const struct plan *p, const struct plan_way *w)
 	return text;
 }
 
-/* -- The program's other lines -------------------------------------------------- */
+/* -- The program's other lines -------------------------------------------- */
 
 static const char *line_at(const char *text, uint32_t line)
 {
@@ -186,22 +183,4 @@ char *text_write(struct plan *p, const struct plan_way *w)
 		return text;
 	free(text);
 	return plain(p, w);
-}
-
-int text_put(const char *path, const char *text)
-{
-	const bool standard = strcmp(path, "-") == 0;
-	FILE *f = standard ? stdout : fopen(path, "w");
-
-	if (!f) {
-		fprintf(stderr, "edm-plan: %s: %s; a file to be written\n",
-			path, strerror(errno));
-		return EX_CANTCREAT;
-	}
-	fputs(text, f);
-	if (standard ? fflush(f) : fclose(f)) {
-		fprintf(stderr, "edm-plan: %s: %s\n", path, strerror(errno));
-		return EX_IOERR;
-	}
-	return 0;
 }

@@ -127,7 +127,7 @@ static int ask_way(struct plan *p, const struct room *r,
 	if (!w->how)
 		return 0;
 	text = text_write(p, w);
-	err = text ? text_put(r->ngc, text) : EX_OSERR;
+	err = text ? put_text(r->ngc, text) : EX_OSERR;
 	free(text);
 	if (err == 0)
 		err = ask(r, &p->j->config, r->ngc, s);

@@ -10,33 +10,35 @@
 
 #include <errno.h>
 #include <float.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Triangles. */
+#define MANY		32
 
 struct build {
 	struct tree *t;
 	double (*centre)[3];		/* of each triangle, in the tree's order */
 };
 
-static void swap_bytes(void *a, void *b, size_t n)
-{
-	unsigned char keep[sizeof(struct triangle)];
-
-	memcpy(keep, a, n);
-	memcpy(a, b, n);
-	memcpy(b, keep, n);
-}
-
 static void swap_tris(struct build *b, uint32_t i, uint32_t j)
 {
 	struct tree *t = b->t;
+	const struct triangle tri = t->tri[i];
+	const uint32_t id = t->id[i];
+	double centre[3];
 
-	swap_bytes(&t->tri[i], &t->tri[j], sizeof(*t->tri));
-	swap_bytes(&t->id[i], &t->id[j], sizeof(*t->id));
-	swap_bytes(b->centre[i], b->centre[j], sizeof(*b->centre));
+	memcpy(centre, b->centre[i], sizeof(centre));
+	t->tri[i] = t->tri[j];
+	t->id[i] = t->id[j];
+	memcpy(b->centre[i], b->centre[j], sizeof(centre));
+	t->tri[j] = tri;
+	t->id[j] = id;
+	memcpy(b->centre[j], centre, sizeof(centre));
 }
 
-/* -- Axes of a spread ------------------------------------------------------- */
+/* -- Axes of a spread ----------------------------------------------------- */
 
 /* One of Jacobi's rotations: it makes m[p][q] zero. */
 static void jacobi(double m[3][3], double v[3][3], int p, int q)
@@ -96,17 +98,43 @@ static void principal(double m[3][3], struct rot *ret)
 	v_cross(axis[0], axis[1], axis[2]);
 }
 
+/* One triangle lies along its longest edge. Return: false if it is too thin to
+ * have a normal. */
+static bool lie_along(const struct triangle *t, struct rot *ret)
+{
+	double edge[3][3], n[3], size[3];
+	int k = 0;
+
+	for (int i = 0; i < 3; i++) {
+		v_sub(t->at[(i + 1) % 3], t->at[i], edge[i]);
+		size[i] = v_length(edge[i]);
+		k = size[i] > size[k] ? i : k;
+	}
+	v_cross(edge[0], edge[1], n);
+	if (!(v_length(n) > 1e-6 * size[k] * size[k]))
+		return false;
+	for (int i = 0; i < 3; i++) {
+		ret->m[0][i] = edge[k][i] / size[k];
+		ret->m[2][i] = n[i] / v_length(n);
+	}
+	v_cross(ret->m[2], ret->m[0], ret->m[1]);
+	return true;
+}
+
+/* Of few triangles all corners count; of many the middle of each will do. */
 static void spread(const struct build *b, uint32_t from, uint32_t n,
 		   double mean[3], double m[3][3])
 {
 	double sum[3] = { 0 }, sq[6] = { 0 };
 	const double *o = b->centre[from];
+	const int corners = n > MANY ? 1 : 3;
 
 	for (uint32_t i = from; i < from + n; i++) {
-		for (int k = 0; k < 3; k++) {
+		for (int k = 0; k < corners; k++) {
 			double d[3];
 
-			v_sub(b->t->tri[i].at[k], o, d);
+			v_sub(corners == 1 ? b->centre[i] :
+					     b->t->tri[i].at[k], o, d);
 			v_add(sum, d, sum);
 			sq[0] += d[0] * d[0];
 			sq[1] += d[1] * d[1];
@@ -117,29 +145,42 @@ static void spread(const struct build *b, uint32_t from, uint32_t n,
 		}
 	}
 	for (int k = 0; k < 3; k++)
-		sum[k] /= 3.0 * n;
+		sum[k] /= corners * (double)n;
 	v_add(o, sum, mean);
 	for (int k = 0; k < 3; k++)
-		m[k][k] = sq[k] / (3.0 * n) - sum[k] * sum[k];
-	m[0][1] = m[1][0] = sq[3] / (3.0 * n) - sum[0] * sum[1];
-	m[0][2] = m[2][0] = sq[4] / (3.0 * n) - sum[0] * sum[2];
-	m[1][2] = m[2][1] = sq[5] / (3.0 * n) - sum[1] * sum[2];
+		m[k][k] = sq[k] / (corners * (double)n) - sum[k] * sum[k];
+	m[0][1] = m[1][0] = sq[3] / (corners * (double)n) - sum[0] * sum[1];
+	m[0][2] = m[2][0] = sq[4] / (corners * (double)n) - sum[0] * sum[2];
+	m[1][2] = m[2][1] = sq[5] / (corners * (double)n) - sum[1] * sum[2];
 }
 
-/* The box along @axis that holds them, a little more for rounding. */
+/* The axes as the box has them: in single precision. */
+static void take_axes(const struct rot *axis, struct box *b)
+{
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 3; i++)
+			b->axis[k][i] = (float)axis->m[i][k];
+}
+
+/* The box along its axes that holds them, a little more for rounding: the axes
+ * are of length 1 and square to each other to 2^-22. */
 static void enclose(const struct tree *t, uint32_t from, uint32_t n,
 		    struct box *b)
 {
 	const double *o = t->tri[from].at[0];
-	double lo[3] = { 0 }, hi[3] = { 0 }, mid[3], size = 0;
+	double lo[3] = { 0 }, hi[3] = { 0 }, mid[3] = { 0 }, size = 0;
+	double axis[3][3];
 
+	for (int j = 0; j < 3; j++)
+		for (int k = 0; k < 3; k++)
+			axis[j][k] = (double)b->axis[k][j];
 	for (uint32_t i = from; i < from + n; i++) {
 		for (int k = 0; k < 3; k++) {
 			double d[3];
 
 			v_sub(t->tri[i].at[k], o, d);
 			for (int j = 0; j < 3; j++) {
-				const double at = v_dot(b->axis.m[j], d);
+				const double at = v_dot(axis[j], d);
 
 				lo[j] = at < lo[j] ? at : lo[j];
 				hi[j] = at > hi[j] ? at : hi[j];
@@ -147,17 +188,21 @@ static void enclose(const struct tree *t, uint32_t from, uint32_t n,
 		}
 	}
 	for (int j = 0; j < 3; j++) {
-		mid[j] = (lo[j] + hi[j]) / 2;
-		b->half[j] = (hi[j] - lo[j]) / 2;
-		size += fabs(o[j]) + b->half[j];
+		size += 0x1p-20 * (hi[j] - lo[j]) +
+			16 * DBL_EPSILON * fabs(o[j]);
+		for (int k = 0; k < 3; k++)
+			mid[k] += axis[j][k] * (lo[j] + hi[j]) / 2;
 	}
-	rot_back(&b->axis, mid, b->centre);
-	v_add(b->centre, o, b->centre);
-	for (int j = 0; j < 3; j++)
-		b->half[j] += 8 * DBL_EPSILON * size;
+	v_add(mid, o, b->centre);
+	b->half[3] = 0;
+	for (int j = 0; j < 3; j++) {
+		b->half[j] = (float)(((hi[j] - lo[j]) / 2 + size) *
+				     (1 + 0x1p-22));
+		b->half[3] += b->half[j];
+	}
 }
 
-/* -- Cutting ------------------------------------------------------------------ */
+/* -- Cutting -------------------------------------------------------------- */
 
 static int longest(const struct box *b)
 {
@@ -187,20 +232,26 @@ static uint32_t cut(struct build *b, uint32_t from, uint32_t n,
 
 static void split(struct build *b, uint32_t node, uint32_t from, uint32_t n)
 {
-	struct tree_node *x = &b->t->node[node];
+	struct box *x = &b->t->node[node];
 	double mean[3], m[3][3];
+	struct rot axis;
 	uint32_t below;
+	int along;
 
-	spread(b, from, n, mean, m);
-	principal(m, &x->box.axis);
-	enclose(b->t, from, n, &x->box);
+	if (n > 1 || !lie_along(&b->t->tri[from], &axis)) {
+		spread(b, from, n, mean, m);
+		principal(m, &axis);
+	}
+	*x = (struct box) { 0 };
+	take_axes(&axis, x);
+	enclose(b->t, from, n, x);
 	if (n <= TREE_LEAF) {
 		x->first = from;
 		x->n = n;
 		return;
 	}
-	below = cut(b, from, n, x->box.axis.m[longest(&x->box)],
-		    v_dot(x->box.axis.m[longest(&x->box)], mean));
+	along = longest(x);
+	below = cut(b, from, n, axis.m[along], v_dot(axis.m[along], mean));
 	x->first = b->t->nnodes;
 	x->n = 0;
 	b->t->nnodes += 2;

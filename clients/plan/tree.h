@@ -11,27 +11,15 @@
 #ifndef PLAN_TREE_H
 #define PLAN_TREE_H
 
+#include "box.h"
 #include "mesh.h"
 #include "tri.h"
-#include "vec.h"
 
-#define TREE_LEAF	2		/* triangles in a leaf, at most */
-
-struct box {
-	double centre[3];
-	struct rot axis;		/* rows: unit vectors */
-	double half[3];
-};
-
-struct tree_node {
-	struct box box;
-	uint32_t first;			/* child, or triangle of a leaf */
-	uint32_t n;			/* triangles of a leaf; 0: not a leaf */
-};
+#define TREE_LEAF	1
 
 struct tree {
 	const struct mesh *mesh;	/* lent */
-	struct tree_node *node;		/* node[0] is the root */
+	struct box *node;		/* node[0] is the root */
 	uint32_t nnodes, ntris;
 	struct triangle *tri;
 	double (*plane)[4];		/* of each, its unit normal and its

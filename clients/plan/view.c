@@ -77,7 +77,7 @@ int view_put(const struct plan *p)
 			put_pose(f, p, i, k, &pair);
 	fputs("];\n", f);
 	fputs(view_page_tail, f);
-	err = fclose(f) ? EX_OSERR : text_put(p->j->o->view, text);
+	err = fclose(f) ? EX_OSERR : put_text(p->j->o->view, text);
 	free(text);
 	return err;
 }

@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* data.c - a thinned run as gnuplot's variables and data blocks */
+/* data.c - writes a thinned run as gnuplot's variables and data blocks */
 #include "data.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Marks closer than this share of the time, or of the path, are one mark. */
+/* Two marks that are closer than this share of the time, or of the path, become
+ * one. */
 #define MARK_TIME	(1.0 / 300)
 #define MARK_PATH	(1.0 / 150)
-#define FEW_JUMPS	60u		/* each can be seen */
+#define FEW_JUMPS	60u		/* so few that each can be seen */
 #define COLUMNS		240		/* of the states' shares */
 
-/* In single quotes gnuplot knows one escape: the quote, doubled. */
+/* In single quotes gnuplot knows one escape: a doubled quote. */
 static void write_text(FILE *f, const char *name, const char *s)
 {
 	fprintf(f, "%s = '", name);
@@ -30,8 +31,9 @@ static int by_value(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* What to show, so that a rare spike does not flatten all the rest: all but
- * one mean in a hundred on either side, and as much again. */
+/* Choose the range that is shown, so that a rare spike does not flatten
+ * everything else: leave out one mean in a hundred on either side, and then add
+ * as much again. */
 static void write_span(FILE *f, const struct thin *t, const char *name,
 		       size_t member)
 {
@@ -118,9 +120,9 @@ static double strip_time(const struct thin *t, double i)
 }
 
 /*
- * Strips to take together for a smooth mean: where jumps are many, a little
- * more than from one to the next, or strips with and without one would
- * alternate.
+ * How many strips are averaged for a smooth curve.  Where there are many jumps,
+ * it is a little more than the distance between two jumps; otherwise strips
+ * with and without a jump would alternate.
  */
 static size_t group_of(const struct thin *t)
 {
@@ -129,8 +131,8 @@ static size_t group_of(const struct thin *t)
 	return 2 + (size_t)(1.2 * (double)t->nstrips / (double)t->jumps.seen);
 }
 
-/* Time, least, greatest and mean of a quantity; a blank line where there is
- * nothing. */
+/* Time, smallest, largest and mean value of a quantity; a blank line where
+ * there is nothing. */
 static void write_strips(FILE *f, const struct thin *t, size_t member,
 			 size_t group)
 {
@@ -162,7 +164,7 @@ static void write_quantity(FILE *f, const struct thin *t, const char *name,
 	fputs("EOD\n", f);
 }
 
-/* Time, farthest place, and the mean of each axis. */
+/* Time, farthest place, and the mean place of each axis. */
 static void write_axes(FILE *f, const struct thin *t)
 {
 	fputs("$axes << EOD\n", f);
@@ -187,7 +189,7 @@ static void write_place(FILE *f, const double axis_mm[PLOT_NAXES])
 	fputc('\n', f);
 }
 
-/* Over time, and on the path. */
+/* Events over time, and on the path. */
 static void write_events(FILE *f, const struct thin *t, const char *name,
 			 const struct thin_events *e)
 {
@@ -213,7 +215,7 @@ static void write_events(FILE *f, const struct thin *t, const char *name,
 	fputs("EOD\n", f);
 }
 
-/* Pieces of one kind, each begun where the piece before it ended. */
+/* Write the pieces of one kind; each begins where the previous piece ended. */
 static void write_pieces(FILE *f, const struct thin *t, bool cut)
 {
 	bool open = false;
@@ -241,7 +243,8 @@ static void write_ends(FILE *f, const struct thin *t)
 	fputs("EOD\n", f);
 }
 
-/* Stacked: time, then the tops of all states, at a column's two edges. */
+/* Stacked: the time, then the upper edges of all states, at both sides of a
+ * column. */
 static void write_column(FILE *f, const struct data *d, size_t from, size_t to)
 {
 	double all = 0, top[PLOT_NSTATES] = { 0 };
@@ -271,8 +274,8 @@ static void write_shares(FILE *f, const struct data *d)
 }
 
 /*
- * A strip is two points, the one nearer to where the line stands first.  The
- * third column is the state; gnuplot parts the lines by it.
+ * A strip is two points; the one nearer to the present end of the line comes
+ * first.  The third column is the state; gnuplot separates the lines by it.
  */
 static void write_zoom(FILE *f, const struct thin_zoom *z)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* plot.c - a picture of a job: thin its rows, let gnuplot draw them */
+/* plot.c - a picture of a job: its rows are thinned, and gnuplot draws them */
 #include "plot.h"
 #include "data.h"
 
@@ -23,8 +23,8 @@ static bool ends_with(const char *s, const char *ending)
 }
 
 /*
- * gnuplot reads the script from @in and writes the picture to @out, so no
- * file name has to be quoted for it.  Return: its exit code or -errno.
+ * gnuplot reads the script from @in and writes the picture to @out.  So no file
+ * name has to be quoted for it.  Return: its exit code, or -errno.
  */
 static int run_gnuplot(char *const argv[], int in, int out)
 {
@@ -62,7 +62,8 @@ static int check_gnuplot(const char *program)
 	return -ENOPKG;
 }
 
-/* Where it would go: an old file to overwrite, or a folder for a new one. */
+/* Can the picture be written there?  An old file is overwritten; a new file
+ * needs its folder. */
 static int check_output(const char *program, const char *output)
 {
 	const char *slash = strrchr(output, '/');
@@ -97,8 +98,8 @@ int plot_check(const char *program, const char *output)
 }
 
 /*
- * Where @name of share/edmd is: below EDM_SHARE, beside the programs as they are
- * installed, or beside them as they are built.
+ * Find @name of share/edmd: below EDM_SHARE, beside the installed programs, or
+ * beside the programs in the build folder.
  */
 static int find_script(char path[PATH_MAX], const char *name)
 {
@@ -119,7 +120,7 @@ static int find_script(char path[PATH_MAX], const char *name)
 	return access(path, R_OK) < 0 ? -errno : 0;
 }
 
-/* Variables, data and script in memory, ready to be read. */
+/* Write variables, data and script to memory, ready to be read. */
 static int write_all(FILE *f, const struct plot_sheet *s)
 {
 	char path[PATH_MAX];
@@ -133,7 +134,7 @@ static int write_all(FILE *f, const struct plot_sheet *s)
 	}
 	fprintf(f, "svg = %d\n", ends_with(s->output, ".svg"));
 	s->write(f, s->arg);
-	/* gnuplot knows one escape in single quotes: the quote, doubled. */
+	/* In single quotes gnuplot knows one escape: a doubled quote. */
 	fputs("load '", f);
 	for (const char *p = path; *p; p++)
 		fputs(*p == '\'' ? "''" : (char[]) { *p, '\0' }, f);
@@ -197,7 +198,7 @@ int plot_draw(const struct plot_sheet *s)
 	err = draw(s, out);
 	if (close(out) < 0 && err == 0)
 		err = -errno;
-	/* Half a picture is none. */
+	/* Half a picture is worse than none. */
 	if (err < 0)
 		unlink(s->output);
 	return err;

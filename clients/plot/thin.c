@@ -8,7 +8,8 @@
 #define ZOOM_JUMPS	3ul
 #define ZOOM_S		3.0		/* of a retract, where nothing jumps */
 
-/* Called twenty times a row; fmin() and fmax() would be calls of libm. */
+/* This is called twenty times for each row; fmin() and fmax() would be calls of
+ * libm. */
 static inline void range_add(struct thin_range *r, double v)
 {
 	if (r->n++ == 0)
@@ -77,7 +78,8 @@ static void strips_join(struct thin *t)
 	t->width_s *= 2;
 }
 
-/* The strip of a row.  The first two rows say how wide a strip is. */
+/* The strip to which a row belongs.  The first two rows show how wide a strip
+ * is. */
 static struct thin_strip *strip_of(struct thin *t, double t_s)
 {
 	const double after_s = t_s - t->time.min;
@@ -88,7 +90,7 @@ static struct thin_strip *strip_of(struct thin *t, double t_s)
 	while (t->width_s > 0 && after_s / t->width_s >= THIN_STRIPS)
 		strips_join(t);
 	i = t->width_s > 0 ? (size_t)(after_s / t->width_s) : 0;
-	/* Strips that were passed over hold what was known before them. */
+	/* Strips that were skipped get what was known before them. */
 	for (; t->nstrips <= i; t->nstrips++)
 		t->strip[t->nstrips].far_mm = t->place.max;
 	return &t->strip[i];
@@ -100,9 +102,9 @@ static bool is_power(const struct thin *t, int state)
 }
 
 /*
- * Voltage and feed are shown of the cut alone: jumps are a hundred times as
- * fast and without power, and would hide what the servo does.  A run that cuts
- * nothing shows everything.
+ * Voltage and feed are shown only for the cut.  Jumps are a hundred times as
+ * fast and have no power, and would hide what the servo does.  For a run that
+ * cuts nothing, everything is shown.
  */
 static void begin_cut(struct thin *t, const struct plot_row *r)
 {
@@ -153,8 +155,8 @@ static void path_halve(struct thin *t)
 }
 
 /*
- * The path is drawn where new ground is gained, so each place of it is drawn
- * once however often jumps and retracts pass.
+ * The path is drawn where new ground is gained.  So each place is drawn once,
+ * however often jumps and retracts pass it.
  */
 static void take_path(struct thin *t, const struct plot_row *r)
 {
@@ -179,7 +181,8 @@ static void zoom_begin(struct thin *t, const struct plot_row *r, bool jump)
 	t->try_at = t->jumps.seen + 1 + t->jumps.seen / 2;
 }
 
-/* The later one is more of the job; one with a retract shows more. */
+/* A later zoom shows more of the job; a zoom with a retract shows more of the
+ * gap. */
 static void zoom_end(struct thin *t)
 {
 	t->trying.whole = true;
@@ -243,7 +246,8 @@ void thin_end(struct thin *t)
 		t->zoom = t->trying;
 }
 
-/* Before the row: t->place, t->time and t->state are those of the rows so far. */
+/* Called before the row counts: t->place, t->time and t->state are those of the
+ * previous rows. */
 static void take(struct thin *t, const struct plot_row *r)
 {
 	const bool jump = r->state == t->is.jump && r->state != t->state;

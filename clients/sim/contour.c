@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * contour.c - the contour error of a dry run: of the simulated axes as the
- * cycle led them, or, if there are none, of models that follow the job after it
+ * cycle led them, or, without these, of models that follow the job afterwards
  */
 #include "sim.h"
 
@@ -22,7 +22,7 @@ struct watch {
 	uint64_t n;
 };
 
-/* Standing is no error, and would only make the mean one small. */
+/* Standing still is no error, and would only make the mean smaller. */
 static void look(struct sim_run *r)
 {
 	struct watch *w = r->on_cycle_arg;

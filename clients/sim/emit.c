@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * emit.c - the compiled job back as text
- */
+/* emit.c - writes the compiled job as text again */
 #include "sim.h"
 
 #include <errno.h>
@@ -13,7 +11,7 @@ static int put(void *arg, const char *text, size_t bytes)
 	return fwrite(text, 1, bytes, arg) == bytes ? 0 : -EIO;
 }
 
-/* What records have no word for does not vanish unsaid. */
+/* Say what was left out because records have no word for it. */
 static void say_left(const struct interp_threeb_left *l)
 {
 	const struct {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * job.c - read and compile the job's text
- */
+/* job.c - reads and compiles the text of the job */
 #include "compiling.h"
 #include "sim.h"
 
@@ -91,7 +89,7 @@ static void say_one(void *arg, const struct interp_diag *d)
 		say_refusal(all->path, d);
 }
 
-/* Enough to see whether a dialect takes a text. */
+/* Enough to see whether a dialect accepts a text. */
 #define TRIED_SEGS_MAX	1000000u
 
 static bool is_taken(const struct interp_text *text, const char *name,
@@ -116,7 +114,7 @@ static bool is_taken(const struct interp_text *text, const char *name,
 	return err == 0;
 }
 
-/* How many they were, and which dialects have none. */
+/* Print how many there were, and which dialects refuse nothing. */
 static void say_all(const struct refusals *all, const struct interp_text *text,
 		    const struct config_compiling *of)
 {
@@ -166,7 +164,7 @@ static double trials_now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-/* What a job is compiled with. */
+/* Everything with which a job is compiled. */
 struct tables {
 	struct config_tech tech;
 	struct config_dialect dialect;
@@ -199,7 +197,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	job->compile_lines_s = job->lines / (trials_now_s() - from_s);
 	if (err == -EINVAL && o->check)
 		say_all(&all, &text, &of);
-	/* A million lines are as large as half their program. */
+	/* The text of a million lines is half as large as their program. */
 	free(t->at);
 	t->at = NULL;
 	if (err == -EINVAL && all.n == 0)
@@ -249,7 +247,7 @@ void job_unload(struct sim_job *job)
 	free(job->block);
 }
 
-/* Cuts that leave beside the path, and those that cannot. */
+/* Cuts that can be left beside the path, and those that cannot. */
 static void describe_escapes(const struct sim_job *job, FILE *f)
 {
 	const struct interp_program *p = &job->program;
@@ -268,7 +266,7 @@ static void describe_escapes(const struct sim_job *job, FILE *f)
 			"lift along the path\n", beside, cuts, cuts - beside);
 }
 
-/* Where a curve bends so much that its feed has to fall, that is said. */
+/* Say where a curve bends so much that its feed must be reduced. */
 static void describe_curves(const struct sim_job *job, FILE *f)
 {
 	const struct interp_seg *s = job->program.segs, *slowest = NULL;
@@ -290,7 +288,7 @@ static void describe_curves(const struct sim_job *job, FILE *f)
 		": slower than F, it bends too much\n" : "\n");
 }
 
-/* A dwell takes its time beside the path's. */
+/* A dwell takes time besides that of the path. */
 static void describe_dwells(const struct sim_job *job, FILE *f)
 {
 	const struct interp_program *p = &job->program;

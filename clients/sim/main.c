@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * main.c - edmsim: what is to be done with the options
- */
+/* main.c - edmsim: does what the options ask for */
 #include "plot.h"
 #include "sim.h"
 #include "tune_servo.h"
@@ -11,7 +9,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* What the command line says of pulses goes before the machine file. */
+/* Options about pulses replace the values of the machine file. */
 static void configure_pulses(struct machine_config *c,
 			     const struct sim_options *o)
 {
@@ -27,13 +25,15 @@ static void configure_pulses(struct machine_config *c,
 		c->perpendicular = 1;
 }
 
-/* Without axes that lag there is nothing to compensate: nothing is tried. */
+/* Without axes that lag there is nothing to compensate, so nothing is tried. */
 static void say_no_contouring(const struct machine_config *c)
 {
 	if (strcmp(c->contour.method, "none") != 0 && !c->sim.loops)
-		fprintf(stderr, "edmsim: [contour] method %s has no effect: the "
+		fprintf(stderr,
+			"edmsim: [contour] method %s has no effect: the "
 			"simulated axes do not lag; [sim] loops = yes gives "
-			"them the models of [axis.*]\n", c->contour.method);
+			"them the models of [axis.*]\n",
+			c->contour.method);
 }
 
 static int configure(struct machine_config *c, const struct sim_options *o)
@@ -46,7 +46,7 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 		err = config_read(c, o->machine_file, &d);
 	if (err == 0)
 		err = config_check_kinematics(c, &d);
-	/* Axes that are led by the cycle have what the cycle has. */
+	/* If the cycle leads the axes, the limits of the cycle apply. */
 	if (err == 0 && c->sim.loops && !o->tune)
 		err = config_check_contouring(c, &d);
 	if (err == -EINVAL) {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * options.c - edmsim: the table of its options, and what they ask for together
- */
+/* options.c - edmsim: the table of its options, and their combinations */
 #include "sim.h"
 
 #include "cmdline.h"
@@ -24,7 +22,7 @@ static int refuse(const char *what, const char *value, const char *wanted)
 	return cmdline_refuse("edmsim", what, value, wanted);
 }
 
-/* A line each; the names of what a file may say of its words. */
+/* One line for each, and the names of the meanings for files of dialects. */
 static int take_document_dialects(void *to, const char *text)
 {
 	(void)to, (void)text;
@@ -98,76 +96,78 @@ static int take_document_tech(void *to, const char *text)
 /* clang-format off */
 static const struct cmdline_row rows[] = {
 	{ "machine", "FILE", WORD(machine_file), .help =
-	  "machine file; without: eight axes, +-200 mm" },
+	  "machine file; default: eight axes, +-200 mm" },
 	{ "dialect", "NAME", WORD(dialect), .help =
-	  "what the job is written in: a name that\n"
-	  "--document-dialects lists, or a file .ini (.3b and\n"
-	  ".4b by the job's name, else the machine file's)" },
+	  "dialect of the job: a name that --document-dialects\n"
+	  "lists, or a file .ini (default: by the job's name for\n"
+	  ".3b and .4b, otherwise the machine file's)" },
 	{ "document-dialects", NULL, CALL(take_document_dialects), .help =
-	  "the dialects there are and what their words can mean,\n"
-	  "and exit" },
+	  "print the dialects and what their words can mean, and\n"
+	  "exit" },
 	{ "tech", "FILE", WORD(tech), .help =
 	  "technology table, .tech or .enc (machine file's)" },
 	{ "print-tech", NULL, FLAG(print_tech), .help =
-	  "that table as a .tech text, and exit" },
+	  "print that table as a .tech text, and exit" },
 	{ "document-tech", NULL, CALL(take_document_tech), .help =
-	  "the fields of a condition as Markdown, and exit" },
+	  "print the fields of a condition as Markdown, and exit" },
 	{ "unit-um", "N", NUMBER(unit_um, 0.001, 1000), .help =
 	  "unit of a 3B or 4B program (machine file's, 1)" },
 	{ "offset-um", "N", NUMBER(offset_um, 0, 10000), .help =
-	  "of the wire, for 4B (machine file's, 0)" },
+	  "offset of the wire, for 4B (machine file's, 0)" },
 	{ "emit", "FORMAT", CALL(take_emit), .help =
-	  "3b, 4b or iso: write the job as that to stdout, no run" },
+	  "3b, 4b or iso: write the job to stdout, do not run it" },
 	{ "strategy", "NAME", CALL(take_strategy), .help =
 	  "simultaneous, point-by-point, centred, dda,\n"
 	  "main-direction, min-switch (machine file's)" },
 	{ "tolerance", "PULSES",
 	  NUMBER(tolerance_pulses, 0, INTERP_TOLERANCE_MAX / 1000), .help =
-	  "how far main-direction and min-switch may stray along\n"
-	  "the shorter axis (machine file's, 2)" },
+	  "how far main-direction and min-switch may be off\n"
+	  "along the shorter axis (machine file's, 2)" },
 	{ "perpendicular", NULL, FLAG(perpendicular), .help =
-	  "the tolerance is square to the path instead" },
+	  "measure the tolerance square to the path instead" },
 	{ "coupling", "NAME", CALL(take_coupling), .help =
-	  "of three and more axes: star, tree, tube (machine\n"
+	  "of three or more axes: star, tree, tube (machine\n"
 	  "file's, star)" },
 	{ "fit", "UM", NUMBER(fit_um, 0, 1000), .help =
-	  "join cut lines in a row into curves this near to\n"
-	  "them (machine file's, 0: not)" },
+	  "join cut lines into curves that are this near to\n"
+	  "them (machine file's, 0: do not join)" },
 	{ "dry-run", NULL, FLAG(dry_run), .help =
-	  "no gap: walk at the programmed feed" },
+	  "run without a gap: walk at the programmed feed" },
 	{ "there-and-back", NULL, FLAG(there_and_back), .help =
-	  "with --dry-run: to the end, back, to the end again" },
+	  "with --dry-run: walk to the end, back, and to the end" },
 	{ "period-us", "N", NUMBER(period_us, 20, 20000), .help =
-	  "cycle period (machine file's, 1000)" },
+	  "period of the cycle (machine file's, 1000)" },
 	{ "seed", "N", WHOLE(seed), .help =
-	  "of every random process (machine file's, 1)" },
+	  "seed of all random processes (machine file's, 1)" },
 	{ "speed", "X", NUMBER(speed, 0, 1e6), .help =
-	  "pace at X times real time; 0 as fast as possible (0)" },
+	  "run at X times real time; 0: as fast as possible (0)" },
 	{ "limit-s", "S", NUMBER(limit_s, 1e-6, 1e9), .help =
 	  "stop after S virtual seconds" },
 	{ "pulses", "FILE", WORD(pulses), .help =
-	  "CSV of every lattice point passed" },
-	{ "trace", "FILE", WORD(trace), .help = "CSV of every cycle" },
+	  "write a CSV of every lattice point that was passed" },
+	{ "trace", "FILE", WORD(trace), .help =
+	  "write a CSV of every cycle" },
 	{ "report", "FILE", WORD(report), .help =
-	  "JSON report; - for stdout" },
+	  "write a JSON report; - for stdout" },
 	{ "plot", "FILE", WORD(plot), .help =
-	  "picture, PNG or SVG by the name" },
+	  "draw a picture, PNG or SVG according to the name" },
 	{ "tune-contour", NULL, FLAG(tune), .help =
 	  "find the gains of [contour] method on models of the\n"
 	  "axes along this job, and print them" },
 	{ "check", NULL, FLAG(check), .help =
-	  "read and compile only; print what it would do" },
+	  "only read and compile; print what the job would do" },
 	{ "tune", NULL, FLAG(tune_servo), .help =
-	  "look for the best servo and jump values of the machine\n"
-	  "file, print them as lines of it; --seed, --limit-s (60)" },
+	  "find the best servo and jump values and print them as\n"
+	  "lines of a machine file; --seed, --limit-s (60)" },
 	{ "budget", "N", NUMBER(budget, 1, 1e6), .help =
-	  "trials of --tune or --tune-contour (200)" },
-	{ "json", NULL, FLAG(json), .help = "what --tune came to as JSON" },
-	{ "quiet", NULL, FLAG(quiet), .help = "no progress, no summary" },
+	  "number of trials of --tune or --tune-contour (200)" },
+	{ "json", NULL, FLAG(json), .help = "print the result of --tune as JSON" },
+	{ "quiet", NULL, FLAG(quiet), .help =
+	  "print no progress and no summary" },
 	{ "print-config", NULL, FLAG(print_config), .help =
-	  "the machine file in force, and exit" },
+	  "print the machine file in force, and exit" },
 	{ "document-config", NULL, CALL(take_document_config), .help =
-	  "every key of a machine file as Markdown, and exit" },
+	  "print every key of a machine file as Markdown, and exit" },
 };
 /* clang-format on */
 
@@ -176,16 +176,16 @@ static const struct cmdline table = {
 	.args_max = 1, .column = 23,
 	.head =
 "Usage: edmsim [options] JOB\n"
-"Runs a job in virtual time: the daemon's own cycle on a simulated machine.\n"
-"JOB is NC code (.ngc .nc .iso .3b .4b), - for stdin.\n"
+"Runs a job in virtual time, with edmd's own cycle on a simulated machine.\n"
+"JOB is NC code (.ngc .nc .iso .3b .4b); - is stdin.\n"
 "\n",
 	.tail =
 "\n"
-"Exit: 0 done, 1 ended by a fault or the limit, 64 usage, 65 bad job,\n"
-"66 no such file, 73 cannot create, 78 bad machine file.\n",
+"Exit: 0 done, 1 ended by a fault or the limit, 64 wrong command line,\n"
+"65 job refused, 66 no such file, 73 cannot create, 78 machine file refused.\n",
 };
 
-/* What one option alone cannot tell. */
+/* Checks that need more than one option. */
 static int check_together(const struct sim_options *o)
 {
 	if (!o->job)

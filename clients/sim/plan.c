@@ -2,14 +2,15 @@
 /*
  * plan.c - what each call of a condition will cut, for --check
  *
- * Volume is way times frontal area; minutes are volume by the condition's own
- * removal.  Both are what the table promises, not what a gap will do.
+ * The volume is the way times the frontal area.  The minutes are the volume
+ * divided by the condition's own removal rate.  Both are what the table
+ * promises, not what a gap will do.
  */
 #include "sim.h"
 
 #include <math.h>
 
-/* One condition, from where it is called to the next one. */
+/* One condition, from its call to the next call. */
 struct stretch {
 	uint16_t cond;
 	uint32_t line;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * record.c - the files of lattice points and of cycles
- */
+/* record.c - the files of lattice points and of cycles */
 #include "plot.h"
 #include "sim.h"
 #include "path/place.h"
@@ -40,7 +38,7 @@ static char *put_int(char *p, int64_t v)
 	return p;
 }
 
-/* cycle,line,X,...,V: a million of these a second would be slow by printf. */
+/* cycle,line,X,...,V: printf would be slow for a million of these a second. */
 static void put_point(FILE *f, const struct cycle *c)
 {
 	char row[160], *p = put_int(row, (int64_t)c->totals.cycles);
@@ -104,7 +102,7 @@ void record_point(void *arg, const struct cycle *c)
 	struct sim_result *w = &r->result;
 
 	w->points++;
-	/* A change of axis: nothing that moved goes on. */
+	/* A change of axis: nothing that moved goes on moving. */
 	w->switches += w->last_moved && !(place_moved(c) & w->last_moved);
 	w->last_moved = place_moved(c);
 	if (r->deviation && !escape_is_out(&c->escape)) {
@@ -123,7 +121,7 @@ static double time_s(const struct cycle *c)
 	return (double)c->totals.cycles * (double)c->config.period_ns * 1e-9;
 }
 
-/* What the simulated gap was; nothing where there is none. */
+/* How the simulated gap was; nothing if there is no gap. */
 static void put_gap(const struct sim_run *r)
 {
 	const struct io_shares *s = &r->in.shares;
@@ -142,7 +140,7 @@ static void put_gap(const struct sim_run *r)
 	fprintf(r->trace, ",%.4f", g.debris);
 }
 
-/* What a dry run walks at a feed would be cut. */
+/* In a dry run, what is walked at a feed counts as cut. */
 static bool cuts(const struct cycle *c)
 {
 	return c->state == STATE_APPROACH || c->state == STATE_ERODE ||

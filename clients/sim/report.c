@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * report.c - what a run came to, for a person and as JSON
+ * report.c - the result of a run, for a person and as JSON
  *
- * The keys are a contract; a key that does not apply is absent.
+ * The keys are a contract.  A key that does not apply is absent.
  */
 #include "sim.h"
 #include "hunting.h"
@@ -84,7 +84,7 @@ static void add_cut(json_t *o, const struct sim_run *r)
 	add_int(o, "burns", r->result.cut.burns);
 }
 
-/* What each condition took; only of a program that calls some. */
+/* The time in each condition, if the program calls any. */
 static void add_conditions(json_t *o, const struct sim_run *r)
 {
 	const struct interp_program *p = &r->job.program;
@@ -153,7 +153,8 @@ int report_write(const struct sim_run *r, const char *path)
 	return err;
 }
 
-/* A servo that goes in and out on the spot cuts nothing and says nothing. */
+/* A servo that goes in and out at one place cuts nothing and causes no
+ * fault. */
 static void print_hunting(const struct sim_run *r, FILE *f)
 {
 	const struct cycle *c = &r->cycle;
@@ -170,13 +171,14 @@ static void print_hunting(const struct sim_run *r, FILE *f)
 		c->totals.in_row_max, g->servo_v, g->short_v, g->gain_mm_s_v);
 }
 
-/* As edmctl alarms says it, from the one table. */
+/* In the words of edmctl alarms, from the same table. */
 static void print_fault(const struct sim_run *r, FILE *f)
 {
 	const struct fault_row *row = &fault_table[r->cycle.fault.first];
 
-	fprintf(f, ": %s at line %u: %s\nwhy        %s\nclear      %s", row->name,
-		r->cycle.cursor.seg.line, row->what, row->why, row->clear);
+	fprintf(f, ": %s at line %u: %s\nwhy        %s\nclear      %s",
+		row->name, r->cycle.cursor.seg.line, row->what, row->why,
+		row->clear);
 }
 
 void report_print(const struct sim_run *r, FILE *f)

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * run.c - the cycle, as fast as the processor goes or at a pace
- */
+/* run.c - runs the cycle, as fast as the processor can or at a given speed */
 #include "sim.h"
 #include "trials.h"
 
@@ -32,7 +30,7 @@ static double virtual_s(const struct cycle *c)
 	return (double)c->totals.cycles * (double)c->config.period_ns * 1e-9;
 }
 
-/* What --limit-s counts: a job that stands held ends by it, too. */
+/* The time that --limit-s counts: the limit also ends a job that is held. */
 static double passed_s(const struct cycle *c)
 {
 	return (double)c->count * (double)c->config.period_ns * 1e-9;
@@ -45,7 +43,8 @@ static void command(struct sim_run *r, enum cycle_verb v, double arg_mm)
 	cycle_command(&r->cycle, &m);
 }
 
-/* Without a gap and with axes that do not lag there is no machine. */
+/* Without a gap, and with axes that do not lag, there is nothing to
+ * simulate. */
 static bool at_once(const struct sim_run *r)
 {
 	return r->config->backend == BACKEND_NULL ||
@@ -122,12 +121,13 @@ static void pace(const struct sim_run *r, double from_s)
 		nanosleep(&t, NULL);
 }
 
-/* Held: by a programmed stop, or at an end of there and back. */
+/* The job is held by a programmed stop, or at an end of there and back. */
 static void go_on(struct sim_run *r)
 {
 	struct cycle *c = &r->cycle;
 
-	if (c->hold.moving || c->mover.v_mm_s != 0 || c->hold.then != STATE_HOLD)
+	if (c->hold.moving || c->mover.v_mm_s != 0 ||
+	    c->hold.then != STATE_HOLD)
 		return;
 	if (r->o->there_and_back && r->leg == 0 &&
 	    c->far_mm >= r->job.program.head->length_mm - 1e-9) {
@@ -192,7 +192,7 @@ static void cycles(struct sim_run *r)
 	progress(r, true);
 }
 
-/* How far from the programmed end it stands. */
+/* The distance from the programmed end to the place where it stands. */
 static int32_t end_error(const struct sim_run *r)
 {
 	const struct interp_program *p = &r->job.program;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * trial.c - one set of values, run for some seeds side by side
+ * trial.c - runs one set of values with several seeds side by side
  *
- * The sum is taken in the order of the seeds, so that the number of processors
- * does not show in it.
+ * The results are added in the order of the seeds.  So the sum does not depend
+ * on the number of processors.
  */
 #include "tune_servo.h"
 
@@ -16,7 +16,7 @@
 #include <sysexits.h>
 #include <unistd.h>
 
-/* What is kept of a run. */
+/* What is kept of one run. */
 struct ran {
 	struct cycle_totals totals;
 	struct io_sim_result cut;

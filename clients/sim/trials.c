@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trials.c - how far a search is */
+/* trials.c - shows how far a search has come */
 #include "trials.h"
 
 #include <stdio.h>

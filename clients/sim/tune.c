@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tune.c - gains of the contour compensation, found along a job
+ * tune.c - finds gains of the contour compensation along a job
  *
- * The job is run dry for the place the cycle is at in every period; the
- * programmed path at those places is what the axes are set to.  The models of
- * [axis.*] follow it, off by [contour] model_error and with encoders of a pulse,
- * and the gains with the least contour error are printed as lines of a machine
- * file.
+ * The job is run dry to find the place of the cycle in every period.  The
+ * targets of the axes are the programmed path at these places.  The models of
+ * [axis.*] follow them, with errors of [contour] model_error and with encoders
+ * of one pulse.  The gains with the smallest contour error are printed as lines
+ * of a machine file.
  */
 #include "sim.h"
 #include "trials.h"
@@ -24,7 +24,7 @@
 #define LOOK_MM	0.02
 #define MOST	2000000			/* periods of a job to be tuned on */
 
-/* Set values of the axes that the job moves. */
+/* Targets of the axes that the job moves. */
 struct rows {
 	double *u, *mm[INTERP_NAXES];
 	size_t n, room;
@@ -43,7 +43,8 @@ struct tuning {
 	struct trials trials;
 };
 
-/* -- Set values --------------------------------------------------------------- */
+/* -- Targets
+ * ----------------------------------------------------------------- */
 
 static bool grow(struct rows *w)
 {
@@ -57,7 +58,8 @@ static bool grow(struct rows *w)
 	return true;
 }
 
-/* Standing teaches nothing, and would only make the mean error small. */
+/* Standing still teaches nothing, and would only make the mean error
+ * smaller. */
 static void sample(struct sim_run *r)
 {
 	struct tuning *t = r->on_cycle_arg;
@@ -73,7 +75,7 @@ static void sample(struct sim_run *r)
 	w->u[w->n++] = u;
 }
 
-/* The machine stands before the first place and after the last. */
+/* The machine stands still before the first place and after the last. */
 static bool fill(struct tuning *t)
 {
 	struct rows *w = &t->rows;
@@ -109,7 +111,7 @@ static bool fill(struct tuning *t)
 	return true;
 }
 
-/* -- The trial ---------------------------------------------------------------- */
+/* -- The trial ------------------------------------------------------------ */
 
 static int refuse(const char *found, const char *wanted)
 {
@@ -117,7 +119,7 @@ static int refuse(const char *found, const char *wanted)
 	return EX_DATAERR;
 }
 
-/* The first axis whose loops the machine file does not give; -1: none. */
+/* The first axis whose loops are not in the machine file; -1: none. */
 static int axis_unknown(const struct sim_run *r)
 {
 	const struct interp_program_head *h = r->job.program.head;
@@ -199,8 +201,8 @@ static void watch(struct tuning *t)
 	t->run->on_cycle_arg = t;
 }
 
-/* The first model whose position loop swings of itself, and the gain at which
- * it begins to; -1: none. */
+/* The first model whose position loop swings by itself, and the gain at which
+ * this begins; -1: none. */
 static int swings(const struct tuning *t, double *ret_max_1_s)
 {
 	for (int j = 0; j < t->path.naxes; j++) {
@@ -225,7 +227,8 @@ static int check_loops(const struct tuning *t)
 
 	if (j < 0)
 		return 0;
-	/* What is told is what the machine file has, not what may be true. */
+	/* The message has the value of the machine file, not the one that may
+	 * be true. */
 	gain_1_s = t->config.loop[j].gain_1_s;
 	max_1_s *= gain_1_s / t->trial.truth[j].gain_1_s;
 	snprintf(found, sizeof(found), "[axis.%c] loop_gain_1_s = %g swings of "
@@ -280,7 +283,8 @@ static void print_gains(const struct tuning *t,
 
 	printf("[contour]\nmethod = %s\n", t->run->config->contour.method);
 	if (m & INTERP_COMPENSATE_FEEDFORWARD)
-		printf("speed = %.*g\nacceleration = %.*g\nlead_periods = %.*g\n",
+		printf("speed = %.*g\nacceleration = %.*g\n"
+		       "lead_periods = %.*g\n",
 		       d, g->velocity, d, g->acceleration, d, g->lead_periods);
 	if (m & INTERP_COMPENSATE_CROSS)
 		printf("cross_1_s = %.*g\n", d, g->cross_1_s);
@@ -317,7 +321,7 @@ static void tell(void *arg, unsigned int used, double best_um)
 	trials_tell(&t->trials, used, best);
 }
 
-/* The least of the largest and ten times the mean contour error. */
+/* Find the smallest sum of the largest and ten times the mean contour error. */
 static int find(struct tuning *t, struct interp_compensate_gains *ret)
 {
 	const struct sim_options *o = t->run->o;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tune_servo.c - look for the values of [gap] and [jump] that do best
+ * tune_servo.c - finds the best values of [gap] and [jump]
  *
- * Over the logarithms of the values: first the points of a Halton sequence, a
- * third of the budget, for the region; then interp/minimise.h's local method from
- * the best of them.  No chance: the same job is tuned the same way.
+ * The search uses the logarithms of the values.  First it tries the points of a
+ * Halton sequence, a third of the budget, to find the region.  Then it uses the
+ * local method of interp/minimise.h from the best of them.  Nothing is random:
+ * the same job is always tuned in the same way.
  */
 #include "tune_servo.h"
 #include "keys.h"
@@ -19,14 +20,16 @@
 
 #define TRAIN_SEEDS	4
 #define TEST_SEEDS	8
-#define TEST_FROM	1000000		/* beyond the seeds it is tuned on */
+#define TEST_FROM	1000000		/* far from the seeds that are used for
+					 * tuning */
 #define BUDGET		200		/* trials */
 #define LIMIT_S		60
 #define DIGITS		3		/* of a value */
-#define SCREEN_PART	3		/* of the budget, one in so many */
+#define SCREEN_PART	3		/* one part of the budget in so many */
 #define COUNT(a)	(sizeof(a) / sizeof((a)[0]))
 
-/* -- What a trial is worth -------------------------------------------------- */
+/* -- How good a trial is
+ * ---------------------------------------------------- */
 
 /* A little less is a little better; more is ten times as bad. */
 static double worse(double now, double was)
@@ -51,7 +54,7 @@ double tune_score(const struct trial_sum *s, const struct trial_sum *ref)
 	       2 * faults;
 }
 
-/* -- Values ------------------------------------------------------------------- */
+/* -- Values --------------------------------------------------------------- */
 
 double tune_value(const struct tune_key *k, const struct machine_config *c)
 {
@@ -85,13 +88,14 @@ static double place_of(const struct tune_key *k, double v)
 	return fmin(fmax(log(v / k->min) / log(k->max / k->min), 0), 1);
 }
 
-/* -- Which keys ------------------------------------------------------------------ */
+/* -- Which keys ----------------------------------------------------------- */
 
 struct candidate {
 	enum config_section_id section;
 	const char *name;
 	double min, max, none_above;
-	int tech;			/* field that goes over it; -1: none */
+	int tech;			/* the field of a condition that
+					 * replaces it; -1: none */
 };
 
 static const struct candidate servo_keys[] = {
@@ -112,7 +116,8 @@ static const struct candidate adaptive_keys[] = {
 	{ SECTION_JUMP, "bad_share", 0.001, 0.3, 0, -1 },
 };
 
-/* A value that a condition gives is not the machine file's to tune. */
+/* A value that a condition gives does not come from the machine file, so it
+ * cannot be tuned there. */
 static bool is_given(const struct sim_job *job, int tech)
 {
 	const struct interp_program *p = &job->program;
@@ -142,7 +147,7 @@ static void take_keys(struct tune *t, const struct candidate *a, size_t n)
 static void choose_keys(struct tune *t)
 {
 	const struct cycle_gap_config *g = &t->was->gap;
-	/* The window's upper end, where it is set, is what is held. */
+	/* If the upper end of the window is set, the servo holds that. */
 	const struct candidate held = {
 		SECTION_GAP, g->window_high_v > 0 ? "window_high_v" : "servo_v",
 		fmax(g->short_v * 1.05, fmax(g->window_low_v, 0.1)),
@@ -161,7 +166,7 @@ static void choose_keys(struct tune *t)
 		take_keys(t, jump_keys, COUNT(jump_keys));
 }
 
-/* -- The search -------------------------------------------------------------------- */
+/* -- The search ----------------------------------------------------------- */
 
 static void progress(const struct tune *t)
 {
@@ -180,7 +185,7 @@ static bool can_be(const struct machine_config *c)
 	return config_check(c, &no_lines, &d) == 0;
 }
 
-/* NAN, and fast, once there is no going on. */
+/* Return NAN quickly after the search was told to stop. */
 static double cost(void *arg, const double *x)
 {
 	struct tune *t = arg;
@@ -219,7 +224,7 @@ static double radical_inverse(uint32_t i, uint32_t base)
 	return x;
 }
 
-/* The sequence's first points lie on a line in the later dimensions. */
+/* In the later dimensions, the first points of the sequence lie on a line. */
 static void screen(struct tune *t)
 {
 	static const uint32_t primes[] = { 2, 3, 5, 7, 11, 13, 17, 19 };

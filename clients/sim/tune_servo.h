@@ -46,7 +46,8 @@ int trial_run(const struct trial *t, const struct machine_config *c,
 struct tune_key {
 	int row;			/* for config_key() */
 	double min, max;
-	double none_above;		/* written as 0 from here on; 0: never */
+	double none_above;		/* written as 0 from here on; 0:
+					 * never */
 };
 
 struct tune {

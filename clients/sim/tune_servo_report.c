@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * tune_servo_report.c - what tuning came to: lines to paste, or JSON
- */
+/* tune_servo_report.c - the result of tuning: lines to paste, or JSON */
 #include "keys.h"
 #include "tune_servo.h"
 
@@ -48,20 +46,24 @@ static void print_keys(const struct tune *t, FILE *f)
 
 void tune_print(const struct tune *t, FILE *f)
 {
-	fprintf(f, "; edmsim --tune: %u trials of %u runs, %g s each, from seed "
+	fprintf(f,
+		"; edmsim --tune: %u trials of %u runs, %g s each, from seed "
 		"%llu%s\n; score %+.3f; shorts to burns are counts a minute, "
-		"wear is mm/mm3\n", t->used, t->train.seeds, t->train.limit_s,
+		"wear is mm/mm3\n",
+		t->used, t->train.seeds, t->train.limit_s,
 		(unsigned long long)t->train.seed,
 		t->interrupted ? "; interrupted" : "", t->score);
 	print_sums(t, f);
 	if (t->tested)
-		fprintf(f, "; score on the seeds of the test, %llu on: %+.3f%s\n",
+		fprintf(f,
+			"; score on the seeds of the test, %llu on: %+.3f%s\n",
 			(unsigned long long)t->test.seed, t->test_score,
 			t->test_score > 0 ? "" : ": no better than before");
 	if (t->better)
 		print_keys(t, f);
 	else
-		fprintf(f, "; nothing better than the machine file was found\n");
+		fprintf(f,
+			"; nothing better than the machine file was found\n");
 }
 
 static json_t *sum_json(const struct trial_sum *s)

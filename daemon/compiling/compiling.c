@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * compiling.c - a machine file as the options a job's text is compiled with
- */
+/* compiling.c - a machine file as the options with which a job is compiled */
 #include "compiling.h"
 
 #include <string.h>

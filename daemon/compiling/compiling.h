@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * compiling.h - a machine file as the options a job's text is compiled with
+ * compiling.h - a machine file as the options with which a job is compiled
  *
  * Threads: any, each with a struct of its own.
  */
@@ -11,7 +11,7 @@
 
 #include "interp/compile.h"
 
-/* What config_tech_load() came to. */
+/* The result of config_tech_load(). */
 struct config_tech {
 	struct interp_tech_table *table;	/* NULL: there is none */
 	char path[512];
@@ -34,7 +34,7 @@ int config_tech_load(struct config_tech *ret, const struct machine_config *c,
 		     const char *path);
 void config_tech_free(struct config_tech *t);
 
-/* What config_dialect_load() came to. */
+/* The result of config_dialect_load(). */
 struct config_dialect {
 	const struct interp_dialect *use;
 	struct interp_dialect *own;	/* read from a file; NULL: built in */
@@ -43,12 +43,14 @@ struct config_dialect {
 };
 
 /**
- * config_dialect_load() - the dialect that a job is written in.
+ * config_dialect_load() - find the dialect in which a job is written.
  *
- * @asked: a name, or a file that ends in .ini; NULL: by the end of @job's name,
- * else [nc] dialect.  A name that there is not is refused at line 0.
+ * @asked: a name, or a file that ends in .ini.  NULL: the end of @job's name
+ * decides, or else [nc] dialect.  A name that does not exist is refused at line
+ * 0.
+ *
  * Return: 0; -errno of the file; -EINVAL with ret->diag filled; -ENOMEM.  @ret
- * is to be handed to config_dialect_free() in any case.  Any thread.
+ * must be given to config_dialect_free() in any case.  Any thread.
  */
 int config_dialect_load(struct config_dialect *ret,
 			const struct machine_config *c, const char *asked,
@@ -72,14 +74,16 @@ int config_kinematics(const struct machine_config *c,
 /**
  * config_check_kinematics() - is [kinematics] a chain of this machine's axes?
  *
- * For the programs that compile; edmd has no use for it, and does not ask.
+ * Only programs that compile need this; edmd does not ask.
+ *
  * Return: 0, or -EINVAL with @diag filled.
  */
 int config_check_kinematics(const struct machine_config *c,
 			    struct interp_diag *diag);
 
-/* The options point into the rest, into the machine file and into the table:
- * it must stay where it was filled, and not outlive them. */
+/* The options point into the other members, into the machine file and into the
+ * table.  So the struct must stay where it was filled, and must not outlive
+ * them. */
 struct config_compiling {
 	struct interp_build_options build;
 	struct interp_compile_options text;
@@ -91,8 +95,8 @@ struct config_compiling {
 /**
  * config_compiling() - fill @ret.
  *
- * The path begins at start_mm of the axes; who knows better where the machine
- * stands sets build.start_mm after it.
+ * The path begins at start_mm of the axes.  A caller that knows better where
+ * the machine stands sets build.start_mm afterwards.
  */
 void config_compiling(const struct machine_config *c,
 		      const struct config_tech *tech,

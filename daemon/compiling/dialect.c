@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * dialect.c - which dialect a job is written in, and the file of one's own
+ * dialect.c - the dialect in which a job is written, and dialect files of users
  */
 #include "compiling.h"
 
@@ -14,7 +14,8 @@ static bool is_file(const char *name)
 {
 	const size_t n = strlen(name);
 
-	return strchr(name, '/') || (n > 4 && strcmp(name + n - 4, ".ini") == 0);
+	return strchr(name, '/') ||
+	       (n > 4 && strcmp(name + n - 4, ".ini") == 0);
 }
 
 static int read_file(struct config_dialect *d)

@@ -17,7 +17,7 @@ int config_kinematics(const struct machine_config *c,
 	return interp_kin_parse(ret, c->kinematics.chain, diag);
 }
 
-/* The chain's joints are axes that the machine has. */
+/* The joints of the chain must be axes of the machine. */
 int config_check_kinematics(const struct machine_config *c,
 			    struct interp_diag *diag)
 {

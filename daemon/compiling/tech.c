@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tech.c - the technology table's file, and what its conditions go over
+ * tech.c - the file of the technology table, and the values that its conditions
+ * replace
  */
 #include "compiling.h"
 
@@ -65,7 +66,7 @@ static bool is_enc(const char *path)
 	return n >= 4 && strcasecmp(path + n - 4, ".enc") == 0;
 }
 
-/* As check.c has it of [jump]. */
+/* The same checks as those of [jump] in check.c. */
 static int check_jumps(struct config_tech *t, const struct machine_config *c)
 {
 	char name[16];

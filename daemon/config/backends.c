@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* backends.c - the table of backends, as the machine file needs it */
+/* backends.c - the table of backends, for the machine file */
 #include "keys.h"
 
 static bool backend_has_gap(const struct machine_config *c)

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * check.c - what one key alone cannot tell
- */
+/* check.c - checks that need more than one key */
 #include "keys.h"
 
 #include "gap/gap.h"
@@ -12,7 +10,8 @@
 #include <errno.h>
 #include <math.h>
 
-#define PERIOD_MIN_US	20		/* a shorter one is a slip of units */
+#define PERIOD_MIN_US	20		/* a shorter period is a mistake of
+					 * units */
 #define COUNT(a)	(sizeof(a) / sizeof((a)[0]))
 
 /* @low is below @high in every instance of the section. */
@@ -37,7 +36,7 @@ static const struct order orders[] = {
 	{ SECTION_SIM, "best_gap_mm", "open_gap_mm", false },
 };
 
-/* The same of keys whose 0 is "as the machine has it". */
+/* The same for keys whose 0 means "as the machine has it". */
 static const struct order orders_if_set[] = {
 	{ SECTION_GAP, "window_low_v", "window_high_v", true },
 	{ SECTION_GAP, "short_v", "window_low_v", false },
@@ -61,7 +60,7 @@ static int key_of(enum config_section_id s, const char *name)
 	return k;
 }
 
-/* The file is to be mended where the later of the two keys stands. */
+/* The message points to the later of the two keys. */
 static void blame(struct check *q, int key_a, int key_b, int instance)
 {
 	uint32_t a = q->lines->at[key_a][instance];
@@ -193,7 +192,7 @@ double config_longest_mm(const struct machine_config *c, int *ret_axis)
 	return most;
 }
 
-/* A jump goes along the path, and the path is within the travel. */
+/* A jump goes along the path, and the path lies within the travel. */
 static int check_jump(struct check *q, const char *name)
 {
 	int k = key_of(SECTION_JUMP, name), axis;
@@ -213,7 +212,7 @@ static int check_jump(struct check *q, const char *name)
 			       config_section[SECTION_AXIS].instance[axis]);
 }
 
-/* Guides are X Y below and U V above. */
+/* The guides are X Y below and U V above. */
 static int check_guides(struct check *q)
 {
 	static const int four[] = { INTERP_X, INTERP_Y, INTERP_U, INTERP_V };
@@ -232,7 +231,8 @@ static int check_guides(struct check *q)
 	return 0;
 }
 
-/* The simulated generator counts pulses; a line is one of three, or none. */
+/* The simulated generator counts discharges; a line is one of three, or there
+ * is none. */
 static int check_lines(struct check *q)
 {
 	const int k = key_of(SECTION_GAP, "source");

@@ -54,9 +54,12 @@ static int check_node(struct check *q, int axis)
 	if (node == 0 || (present && !twice))
 		return 0;
 	snprintf(name, sizeof(name), "node_%c", INTERP_AXIS_LETTERS[axis]);
-	interp_diag_say(q->diag, "can402.%s %u %s; a node of its own for each "
-			"axis that is present, and not master_node", name, node,
-			present ? "a second time" : "for an axis that is not present");
+	interp_diag_say(q->diag,
+			"can402.%s %u %s; a node of its own for each axis that "
+			"is present, and not master_node",
+			name, node,
+			present ? "a second time" :
+				  "for an axis that is not present");
 	return refuse(q, SECTION_CAN402, name, 0);
 }
 
@@ -89,7 +92,8 @@ static int check_brake(struct check *q, int axis)
 	interp_diag_say(q->diag, "axis.Z.brake: not told; free: it stays "
 				 "where it is without power; drive: the "
 				 "drive's own brake holds it; none: it is "
-				 "held under torque");
+				 "held under torque; line: the brake on "
+				 "gpio.brake_Z holds it");
 	return refuse(q, SECTION_AXIS, "brake", axis);
 }
 
@@ -167,7 +171,7 @@ int config_check_can402(const struct machine_config *c,
 			return -EINVAL;
 		any = any || node_of(&q, i) > 0;
 	}
-	if (check_following(&q) ||
+	if (config_check_brakes(c, lines, diag) || check_following(&q) ||
 	    check_id(&q, "gap_id", k->gap_id, k->generator_id) ||
 	    check_id(&q, "generator_id", k->generator_id, k->gap_id))
 		return -EINVAL;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * check_sim.c - what cannot be in the simulated process
- */
+/* check_sim.c - values that the simulated process cannot have */
 #include "keys.h"
 
 #include <errno.h>
@@ -20,7 +18,7 @@ static uint32_t line_of(const struct check *q, enum config_section_id s,
 	return q->lines->at[config_key_find(s, key)][0];
 }
 
-/* The file is to be mended where the last of the keys stands. */
+/* The message points to the last of the keys. */
 static void blame(struct check *q, uint32_t a, uint32_t b, uint32_t c)
 {
 	q->diag->line = a > b ? a : b;
@@ -28,12 +26,12 @@ static void blame(struct check *q, uint32_t a, uint32_t b, uint32_t c)
 	q->diag->column = 0;
 }
 
-/* No area has less around it than a round one. */
+/* For its area, a circle has the smallest perimeter. */
 static int perimeter(struct check *q)
 {
 	const double round_mm = 2 * sqrt(M_PI * q->c->sim.area_mm2);
 
-	/* A round one may be given with two decimals. */
+	/* The perimeter of a circle may be given with two decimals. */
 	if (q->c->sim.perimeter_mm == 0 ||
 	    q->c->sim.perimeter_mm > 0.99 * round_mm)
 		return 0;
@@ -47,7 +45,7 @@ static int perimeter(struct check *q)
 			       round_mm);
 }
 
-/* Or hardly a pulse would ignite even at the best gap. */
+/* Otherwise hardly any discharge would ignite even at the best gap. */
 static int ignition_wait(struct check *q)
 {
 	const double least = (q->c->sim.on_us + q->c->sim.off_us) / 4;
@@ -65,7 +63,7 @@ static int ignition_wait(struct check *q)
 			       q->c->sim.off_us, least);
 }
 
-/* A gap that stands open must look wider than the one to be held. */
+/* An open gap must look wider than the gap that the servo holds. */
 static int open_mean(struct check *q)
 {
 	const struct config_sim *s = &q->c->sim;
@@ -84,7 +82,7 @@ static int open_mean(struct check *q)
 			       q->c->gap.servo_v, mean_v, s->off_us);
 }
 
-/* Its sides, by their keys. */
+/* One pair of sides, by their keys. */
 static int block_side(struct check *q, int i, const char *min, const char *max)
 {
 	const double low = q->c->sim.block_min_mm[i];

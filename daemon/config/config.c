@@ -14,7 +14,7 @@
 
 #define POINTS_MAX	4096		/* lattice points in one cycle */
 
-/* Pulses a limit may be off by the division alone, far below one. */
+/* An error of the division, in pulses; far below one. */
 #define ROUNDING	1e-6
 
 void config_defaults(struct machine_config *c)
@@ -48,7 +48,8 @@ static bool has(const struct machine_config *c, enum interp_axis a)
 	return c->axes.present >> a & 1;
 }
 
-/* The weakest of the axes present; rotary ones only if there are no others. */
+/* Use the weakest of the axes that exist; rotary axes only if there are no
+ * others. */
 static void travel_of(const struct machine_config *c, struct cycle_config *ret)
 {
 	double a[2] = { INFINITY, INFINITY };	/* linear, rotary */
@@ -72,7 +73,7 @@ static uint64_t cycles_of(double s, int64_t period_ns)
 	return (uint64_t)round(s * 1e9 / (double)period_ns);
 }
 
-/* 0 in the file is "as the machine has it". */
+/* 0 in the file means "as the machine has it". */
 static double or_own(double x, double own)
 {
 	return x > 0 ? x : own;
@@ -167,7 +168,8 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 	ret->probe.settle_cycles = cycles_of(c->seconds.probe_settle,
 					     ret->period_ns);
 
-	/* Inward: the last pulse inside the limit, never the first outside. */
+	/* Round inward: to the last pulse inside the limit, never to the first
+	 * outside. */
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const struct interp_axis_limits *l = &c->axes.axis[i];
 

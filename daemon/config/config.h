@@ -66,7 +66,9 @@ struct config_plc {
 };
 
 /* [axis.*]: so many increments of a drive are so many pulses. */
-enum config_brake { BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE };
+enum config_brake {
+	BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE, BRAKE_LINE
+};
 
 struct config_drive {
 	double increments, pulses;
@@ -93,7 +95,8 @@ enum sim_electrode { ELECTRODE_FLAT, ELECTRODE_BALL, ELECTRODE_CONE };
 /* [sim]: the simulated machine; docs/process-model.md says what each does. */
 struct config_sim {
 	double seed;			/* whole number */
-	double speed;			/* periods run for each period of time */
+	double speed;			/* periods run for each period of
+					 * time */
 	int process;			/* enum sim_process */
 
 	/* The generator. */
@@ -123,19 +126,22 @@ struct config_sim {
 	double negative_removal, negative_wear;	/* times as much */
 
 	/* Debris, bridges, arcs. */
-	double debris_per_mm;		/* debris made per mm eroded, 0..1 scale */
+	double debris_per_mm;		/* debris made per mm eroded, 0..1
+					 * scale */
 	double debris_settle_s;		/* time constant, undisturbed */
 	double debris_gap_mm;		/* gap lost at debris 1 */
 	double secondary;		/* sparks lost on it at debris 1 */
 	double flush_mm;		/* fast clean stroke that halves it */
 	double flush_mm_s;		/* stroke speed that carries half */
 	double flush_per_s;		/* driven out by the pump, at depth 0 */
-	double bridge_per_s;		/* debris bridges per second at debris 1 */
+	double bridge_per_s;		/* debris bridges per second at debris
+					 * 1 */
 	double bridge_mm;		/* mean length of a bridge */
 	double bridge_settle_s;		/* it shrinks with this time constant */
 	double deion_us;		/* recovery of a channel */
 	double arcing_gain;		/* above 1 at debris 1: arcs may stay */
-	double arcing_s;			/* time constant of a hot place */
+	double arcing_s;			/* time constant of a hot
+						 * place */
 	double break_per_j, rethread_s;	/* of the wire */
 
 	/* Sensors and axes. */
@@ -146,7 +152,7 @@ struct config_sim {
 	double home_off_mm, index_mm;	/* switches; sim_switches.c */
 	double measure_pulses;		/* sigma of the scales */
 
-	/* What a touch meets: sim_probe.c. */
+	/* What a probing motion meets: sim_probe.c. */
 	uint32_t block;			/* 1: there is a block */
 	double block_min_mm[2], block_max_mm[2];	/* X, Y; machine */
 	double block_top_mm;		/* Z; it has no bottom */
@@ -199,7 +205,8 @@ struct config_line_at {
 struct config_gpio {
 	char chip[64];			/* name, label or device file */
 	int signal;			/* 0 step and direction, 1 quadrature */
-	int pull;			/* of inputs: 0 as is, 1 up, 2 down, 3 no */
+	int pull;			/* of inputs: 0 as is, 1 up, 2 down, 3
+					 * no */
 	double high_cycles, low_cycles;	/* of a step */
 	double dir_setup_cycles, dir_hold_cycles;
 	char adc[64], adc_trigger[64];	/* of industrial I/O; "none" */
@@ -243,13 +250,16 @@ struct machine_config {
 	uint32_t optional_stop;		/* 1: M1 holds */
 	double threeb_unit_um;		/* of lengths in 3B and 4B programs */
 	double fourb_offset_um;		/* of the wire, by 4B's D and DD */
-	double cpu;			/* core the cycle is pinned to; -1: none */
+	double cpu;			/* core the cycle is pinned to; -1:
+					 * none */
 	double priority;		/* SCHED_FIFO */
-	double overrun_limit;		/* missed periods in a row; 0: no fault */
+	double overrun_limit;		/* missed periods in a row; 0: no
+					 * fault */
 	uint32_t require_home;		/* 1: no start before */
 
 	struct interp_machine axes;	/* [axis.X] ... [axis.V] */
-	struct manual_axis manual[INTERP_NAXES];	/* jog_*, home_* alone */
+	struct manual_axis manual[INTERP_NAXES];	/* jog_*, home_*
+							 * alone */
 	int home_dir[INTERP_NAXES];	/* 0 toward -, 1 toward + */
 	struct config_backlash backlash[INTERP_NAXES];
 	char pitch_map[INTERP_NAXES][128];	/* a file; "none" */
@@ -257,7 +267,8 @@ struct machine_config {
 	char maps[128];			/* [geometry] maps: a file; "none" */
 	double over_k;			/* temperature over that of the maps */
 	double maps_c;			/* that of the maps */
-	struct interp_errormap geometry;	/* of pitch_map and maps, read */
+	struct interp_errormap geometry;	/* of pitch_map and maps,
+						 * read */
 	double start_mm[INTERP_NAXES];	/* where a simulated machine begins */
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* [work] */
 
@@ -281,7 +292,8 @@ struct machine_config {
 	struct config_gpio gpio;
 
 	char dialect[256];		/* [nc] dialect: a name or a file */
-	char tech_table[256];		/* [tech] table; "none": there is none */
+	char tech_table[256];		/* [tech] table; "none": there is
+					 * none */
 	char folder[256];		/* of the machine file; "": here */
 
 	char lcm_url[128];		/* [lcm] url */
@@ -289,7 +301,8 @@ struct machine_config {
 	double dds_hz;
 	struct config_panel panel;
 	double keep_jobs, keep_days;	/* [jobs]; ended ones */
-	char store_dir[256];		/* [jobs] store: SQLite database's folder */
+	char store_dir[256];		/* [jobs] store: SQLite database's
+					 * folder */
 };
 
 /** config_defaults() - the built-in machine: eight axes, +-200 mm. */
@@ -304,7 +317,8 @@ int config_read(struct machine_config *c, const char *path,
 		struct interp_diag *diag);
 
 /**
- * config_longest_mm() - the longest travel of any linear axis; 0: there is none.
+ * config_longest_mm() - the longest travel of any linear axis; 0: there is
+ * none.
  * @ret_axis: which.
  */
 double config_longest_mm(const struct machine_config *c, int *ret_axis);
@@ -385,8 +399,8 @@ void config_contouring(const struct machine_config *c,
 		       struct contouring_config *ret);
 
 /**
- * config_loop_true() - what axis @axis may really be like: [contour] model_error
- * off what is believed of it.
+ * config_loop_true() - what axis @axis may really be like: [contour]
+ * model_error off what is believed of it.
  *
  * @odd: neighbours are off the other way, for what all axes do alike is no
  * contour error.  Gain and velocity loop are off together, the delay against

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * contouring.c - [contour] as the cycle has it, and what the cycle cannot have
+ * contouring.c - [contour] for the cycle, and values that the cycle cannot have
  */
 #include "config.h"
 #include "cycle.h"
@@ -9,10 +9,10 @@
 #include <errno.h>
 #include <math.h>
 
-/* Between a place that is measured and the target that heeds it. */
+/* From a measured place to the target that depends on it, in periods. */
 #define CAN402_PERIODS	2
 
-/* What interp_diag_say() said is of the line of `method`. */
+/* Refuse at the line of `method`, with the words of interp_diag_say(). */
 static int refuse(const struct machine_config *c, struct interp_diag *diag)
 {
 	diag->line = c->contour.line;
@@ -41,7 +41,7 @@ static int check_methods(const struct machine_config *c, int methods,
 	return refuse(c, diag);
 }
 
-/* Its axes lag, and take places. */
+/* The axes of the backend must lag, and must accept targets. */
 static int check_backend(const struct machine_config *c,
 			 struct interp_diag *diag)
 {
@@ -73,7 +73,7 @@ static int check_lead(const struct machine_config *c, int axis,
 	return refuse(c, diag);
 }
 
-/* Half of what makes the loop swing is left as its margin. */
+/* Half of the gain at which the loop would swing is kept as its margin. */
 static int check_margin(const struct machine_config *c, int axis,
 			struct interp_diag *diag)
 {
@@ -93,7 +93,7 @@ static int check_margin(const struct machine_config *c, int axis,
 	most = interp_axis_model_gain_max_1_s(&m) / 2;
 	if (gain <= most)
 		return 0;
-	/* Rounded down: what is told is taken. */
+	/* Round down, so that the value in the message is accepted. */
 	interp_diag_say(diag, "contour.cross_1_s %g and axis.%c.loop_gain_1_s "
 			"%g leave less than 6 dB before they swing; at most "
 			"%.4g 1/s together: cross_1_s %.4g and less",
@@ -177,7 +177,8 @@ void config_contouring(const struct machine_config *c,
 
 		ret->ahead = ahead > ret->ahead ? ahead : ret->ahead;
 		ret->loop[i] = c->loop[i];
-		ret->most_mm[i] = l->v_max_mm_s / fmax(c->loop[i].gain_1_s, 1e-3);
+		ret->most_mm[i] = l->v_max_mm_s /
+				  fmax(c->loop[i].gain_1_s, 1e-3);
 	}
 	for (int i = 0; i < INTERP_NAXES; i++)
 		ret->pulse_mm[i] = c->axes.axis[i].pulse_mm;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * drives.c - objects of a CiA 402 drive, as words of a line
- */
+/* drives.c - objects of a CiA 402 drive, as words in a line */
 #include "drives.h"
 
 #include <errno.h>
@@ -15,7 +13,7 @@ static int refuse(struct interp_diag *d, const char *word, const char *wanted)
 	return interp_diag_say(d, "\"%s\"; %s", word, wanted);
 }
 
-/* The next word into @ret; false: there is none. */
+/* Read the next word into @ret; false: there is none. */
 static bool next_word(const char **at, char ret[WORD_MAX])
 {
 	size_t n;
@@ -27,7 +25,7 @@ static bool next_word(const char **at, char ret[WORD_MAX])
 	return n > 0 && strcmp(ret, "none") != 0;
 }
 
-/* All of @text up to @end is a hexadecimal number of @most or less. */
+/* All of @text up to @end must be a hexadecimal number, at most @most. */
 static bool hex(const char **text, char end, uint32_t most, uint32_t *ret)
 {
 	char *stop;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * gpio.c - [gpio]: a line as text, and what its keys must agree on
- */
+/* gpio.c - [gpio]: a line as text, and keys that must agree */
 #include "keys.h"
 
 #include "cycle.h"
@@ -92,7 +90,7 @@ const char *config_line_name(int line)
 	return key_of_line(line)->name;
 }
 
-/* -- What the keys must agree on ---------------------------------------------- */
+/* -- What the keys must agree on ------------------------------------------ */
 
 struct check {
 	const struct machine_config *c;
@@ -139,7 +137,7 @@ static bool is_same(const struct check *q, int a, int b)
 		      *y->chip ? y->chip : chip) == 0;
 }
 
-/* Inputs may share a line: limit switches in a row. */
+/* Inputs may share a line: limit switches in series. */
 static int check_shared(struct check *q, int output)
 {
 	for (int i = output + 1; i < CONFIG_NLINES; i++) {
@@ -167,9 +165,10 @@ static int check_source(struct check *q)
 		return 0;
 	blame(q, k, 0);
 	if (!lines)
-		return interp_diag_say(q->diag, "gap.source is %s and the gap "
-				       "is read by gpio.adc; [gap] source = "
-				       "voltage", k->word((int)q->c->gap.source));
+		return interp_diag_say(q->diag,
+				       "gap.source is %s and the gap is read "
+				       "by gpio.adc; [gap] source = voltage",
+				       k->word((int)q->c->gap.source));
 	return interp_diag_say(q->diag, "gap.source is %s and there are gap "
 			       "lines; [gap] source = lines; or no gap_open, "
 			       "gap_spark, gap_short",
@@ -206,7 +205,7 @@ static bool has_line(const struct config_line_at *list, int n,
 	return false;
 }
 
-/* Edges and levels of a line cannot both be asked for. */
+/* One line cannot be asked for edges and for levels at once. */
 static int check_encoder(struct check *q, int axis)
 {
 	const struct config_key *k =
@@ -235,7 +234,8 @@ static int check_encoder(struct check *q, int axis)
 			       k->name, text, wrong);
 }
 
-/* Sparks that nobody ends when edmd is gone are the builder's to answer for. */
+/* If nothing ends the sparks after edmd is gone, the machine builder must say
+ * what does. */
 static int check_guard(struct check *q, int line, const char *by,
 		       const char *key)
 {
@@ -257,7 +257,7 @@ static int check_guards(struct check *q)
 	       check_guard(q, LINE_ESTOP, q->c->gpio.estop_by, "estop_by");
 }
 
-/* Pulses a second that the lines can make. */
+/* The number of pulses a second that the lines can make. */
 static double pulses_s(const struct machine_config *c)
 {
 	const double periods = c->gpio.high_cycles +
@@ -307,6 +307,79 @@ static int check_speeds(struct check *q)
 		    q->c->jump.height_mm > 0 && check_speed(q, jump, 0, most))
 			return -EINVAL;
 	}
+	return 0;
+}
+
+/* -- Beside drives on a bus --------------------------------------------------- */
+
+static bool has_brake_line(const struct machine_config *c, int axis)
+{
+	return c->can402.node[axis] > 0 && c->drive[axis].brake == BRAKE_LINE;
+}
+
+static int check_brake_line(struct check *q, int axis)
+{
+	const int line = LINE_BRAKE + axis;
+	const bool wired = q->at[line].wired;
+	const char letter = INTERP_AXIS_LETTERS[axis];
+
+	if (wired == has_brake_line(q->c, axis))
+		return 0;
+	if (wired)
+		blame(q, key_of_line(line), 0);
+	else
+		blame(q, config_key(config_key_find(SECTION_AXIS, "brake")),
+		      axis);
+	return wired ?
+		interp_diag_say(q->diag, "gpio.brake_%c of an axis that does "
+				"not have [axis.%c] brake = line; this, and "
+				"can402.node_%c, or none", letter, letter,
+				letter) :
+		interp_diag_say(q->diag, "axis.%c.brake = line and gpio.brake_%c "
+				"is none; gpio.brake_%c = the number of a "
+				"line, or another brake", letter, letter,
+				letter);
+}
+
+/* What nobody would read or write must not look as if somebody did. */
+static int refuse_unused(struct check *q, const struct config_key *k)
+{
+	blame(q, k, 0);
+	return interp_diag_say(q->diag, "gpio.%s with backend can402; of [gpio] "
+			       "it has chip, brake_X ... brake_V and brake_ms",
+			       k->name);
+}
+
+static int check_unused(struct check *q)
+{
+	const int adc = config_key_find(SECTION_GPIO, "adc");
+	const int encoder = config_key_find(SECTION_GPIO, "encoder_X");
+
+	for (int i = 0; i < CONFIG_NLINES; i++)
+		if (q->at[i].wired && (i < LINE_BRAKE ||
+				       i >= LINE_BRAKE + INTERP_NAXES))
+			return refuse_unused(q, key_of_line(i));
+	if (strcmp(q->c->gpio.adc, "none") != 0)
+		return refuse_unused(q, config_key(adc));
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (strcmp(q->c->gpio.encoder[i], "none") != 0)
+			return refuse_unused(q, config_key(encoder + i));
+	return 0;
+}
+
+int config_check_brakes(const struct machine_config *c,
+			const struct config_lines *lines,
+			struct interp_diag *diag)
+{
+	struct check q = { .c = c, .lines = lines, .diag = diag };
+
+	for (int i = 0; i < CONFIG_NLINES; i++)
+		config_line_read(c->gpio.line[i], &q.at[i]);
+	if (check_unused(&q))
+		return -EINVAL;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (check_brake_line(&q, i) || check_shared(&q, LINE_BRAKE + i))
+			return -EINVAL;
 	return 0;
 }
 

@@ -60,7 +60,7 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"the operator's page, edm-panel" },
 };
 
-/* Rows are counted through, file by file. */
+/* The rows are counted through all files. */
 static const struct config_keys *const part[] = {
 	&config_keys_machine,
 	&config_keys_axis,

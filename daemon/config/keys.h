@@ -71,6 +71,7 @@ struct config_key {
 	size_t stride;			/* from one instance to the next */
 	size_t bytes;			/* text only: room, with its NUL */
 	const char *def_rotary;		/* for A B C; NULL: as def */
+	const char *def_wire;		/* with process = wire; NULL: as def */
 	const char *(*word)(int i);	/* enums only; NULL past the last */
 	const char *help;
 };
@@ -155,6 +156,11 @@ int config_maps_read(struct machine_config *c,
 int config_check_gpio(const struct machine_config *c,
 		      const struct config_lines *lines,
 		      struct interp_diag *diag);
+
+/** config_check_brakes() - what [gpio] has beside drives on a bus. */
+int config_check_brakes(const struct machine_config *c,
+			const struct config_lines *lines,
+			struct interp_diag *diag);
 
 /** config_check_sim() - the same for [sim] alone, and for what it senses. */
 int config_check_sim(const struct machine_config *c,

@@ -33,6 +33,7 @@ static const char *brake_word(int i)
 	static const char *const words[] = {
 		[BRAKE_UNSAID] = "unsaid", [BRAKE_FREE] = "free",
 		[BRAKE_DRIVE] = "drive", [BRAKE_NONE] = "none",
+		[BRAKE_LINE] = "line",
 	};
 
 	return WORD_OF(words, i);
@@ -111,7 +112,8 @@ static const struct config_key row[] = {
 	      "the drive knows its place when it is switched on"),
 	WORDS(AXIS, "brake", "unsaid", DRIVE(brake), brake_word,
 	      "without power the axis stays where it is (free), the "
-	       "drive's own brake holds it (drive), or it would fall and "
+	       "drive's own brake holds it (drive), a brake on gpio.brake_ "
+	       "holds it (line), or it would fall and "
 	       "must be held under torque (none)"),
 	WORDS(AXIS, "drive_follow_bit", "yes", DRIVE(follow_bit), yes_word,
 	      "the drive reports with bit 12 of its statusword that it "

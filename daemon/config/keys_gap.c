@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * keys_gap.c - keys of the gap servo, its jumps, and touching
+ * keys_gap.c - keys of the gap servo, its jumps, and probing
  */
 #include "keys_rows.h"
 

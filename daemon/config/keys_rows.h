@@ -28,6 +28,9 @@
 #define ROTARY(section, key, unit_, def_, def_abc, low, high, place, what) \
 	{ SECTION_##section, key, KEY_NUMBER, unit_, def_, low, high, place, \
 	  .def_rotary = def_abc, .help = what }
+#define OF_WIRE(section, key, unit_, def_, def_cut, low, high, place, what) \
+	{ SECTION_##section, key, KEY_NUMBER, unit_, def_, low, high, place, \
+	  .def_wire = def_cut, .help = what }
 #define WHOLE(section, key, unit_, def_, low, high, place, what) \
 	{ SECTION_##section, key, KEY_WHOLE, unit_, def_, low, high, place, \
 	  .help = what }

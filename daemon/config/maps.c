@@ -2,10 +2,10 @@
 /*
  * maps.c - the files of geometric errors: [geometry] maps, [axis.X] pitch_map
  *
- * Rows of points, `MM UM`: where the axis was sent, and the error there.  In
- * the file of [geometry] maps each row has a head, which says whose error along
- * what; a pitch_map is one row without.  docs/homing.md has them.  # begins a
- * comment.
+ * They have rows of points, `MM UM`: where the axis was sent, and its error
+ * there.  In the file of [geometry] maps each row has a head that says which
+ * axis has the error, along which axis.  A pitch_map is one row without a
+ * head.  docs/homing.md describes them.  # begins a comment.
  */
 #include "keys.h"
 
@@ -14,7 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BOM		"\xef\xbb\xbf"	/* some editors begin UTF-8 so */
+#define BOM		"\xef\xbb\xbf"	/* some editors begin UTF-8 files with
+					 * it */
 #define ERROR_MAX_UM	10000.0
 #define LEAN_MAX_UM_M	(INTERP_ERRORMAP_SLOPE_MAX * 1e6)
 #define GROWTH_MAX_UM_M_K	100.0
@@ -22,7 +23,8 @@
 struct map {
 	const struct machine_config *c;
 	struct interp_diag *diag;
-	const char *key;		/* "geometry.maps", "axis.X.pitch_map" */
+	const char *key;		/* "geometry.maps",
+					 * "axis.X.pitch_map" */
 	const char *name;		/* of the file, as it was given */
 	uint32_t line, head_line;
 	const char *text, *at;		/* the line, and where it is read */
@@ -49,7 +51,7 @@ static int refuse(const struct map *m, const char *found, const char *wanted)
 	return refuse_at(m, m->line, found, wanted);
 }
 
-/* -- Words and numbers ----------------------------------------------------------- */
+/* -- Words and numbers ---------------------------------------------------- */
 
 static void blanks_skip(struct map *m)
 {
@@ -110,7 +112,7 @@ static int axis_take(struct map *m, uint8_t *ret)
 	return refuse_axis(m);
 }
 
-/* -- Rows ------------------------------------------------------------------------ */
+/* -- Rows ----------------------------------------------------------------- */
 
 static int row_end(struct map *m)
 {
@@ -186,7 +188,7 @@ static int point_take(struct map *m)
 	return 0;
 }
 
-/* -- Heads ----------------------------------------------------------------------- */
+/* -- Heads ---------------------------------------------------------------- */
 
 static int line_end(struct map *m)
 {
@@ -202,7 +204,7 @@ static int pitch_take(struct map *m)
 	       row_begin(m, axis, axis);
 }
 
-/* `Y along X`, two axes. */
+/* `Y along X`: two axes. */
 static int pair_take(struct map *m, uint8_t *across, uint8_t *along)
 {
 	const char *second;
@@ -240,7 +242,8 @@ static int value_take(struct map *m, double most, double *ret,
 	return refuse(m, "not a number in its range", wanted);
 }
 
-/* An angle is between two axes: given both ways it would be cured twice. */
+/* An angle is between two axes.  If it were given both ways, it would be
+ * corrected twice. */
 static bool same_axes(const struct interp_errormap_lean *a,
 		      const struct interp_errormap_lean *b)
 {
@@ -322,7 +325,7 @@ static int head_take(struct map *m)
 		      "UM, growth X UM MM, or two numbers");
 }
 
-/* -- Files ----------------------------------------------------------------------- */
+/* -- Files ---------------------------------------------------------------- */
 
 static int line_take(struct map *m, char *text)
 {
@@ -337,7 +340,7 @@ static int line_take(struct map *m, char *text)
 	       head_take(m) : point_take(m);
 }
 
-/* A file that was named is there to cure something. */
+/* A file that was named must contain something to correct. */
 static int file_end(const struct map *m)
 {
 	return m->heads && !m->any ?

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * nearest.c - edit distance of Levenshtein, case apart
- */
+/* nearest.c - edit distance of Levenshtein, ignoring case */
 #include "nearest.h"
 
 #include <ctype.h>
@@ -15,7 +13,8 @@ static size_t least(size_t a, size_t b, size_t c)
 	return ab < c ? ab : c;
 }
 
-/* One row at a time: d[j] is the distance to the first j bytes of @b. */
+/* One row of the table at a time: d[j] is the distance to the first j bytes of
+ * @b. */
 static size_t distance(const char *a, const char *b)
 {
 	size_t d[NEAREST_MAX], nb = strlen(b);
@@ -43,7 +42,7 @@ void nearest_init(struct nearest *n, const char *misspelt)
 {
 	size_t half = strlen(misspelt) / 2;
 
-	/* More than half of it changed is another word. */
+	/* If more than half of it changed, it is another word. */
 	*n = (struct nearest) {
 		.misspelt = misspelt,
 		.distance = half + 1,

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * plc.c - [plc]: the lists of M codes as a table, and what goes together
- */
+/* plc.c - [plc]: the lists of M codes as a table, and keys that must agree */
 #include "keys.h"
 
 #include <errno.h>
@@ -40,7 +38,7 @@ static int refuse(struct interp_diag *d, const struct list *l,
 	return interp_diag_say(d, "plc.%s: %.120s; %s", l->key, what, wanted);
 }
 
-/* M0 ... M5, M30, M98 and M99 are the program's own. */
+/* M0 ... M5, M30, M98 and M99 belong to the program itself. */
 static bool is_own(unsigned long n)
 {
 	return n <= 5 || n == 30 || n == 98 || n == 99;
@@ -68,7 +66,7 @@ static int put(struct interp_mcode *table, const struct list *l,
 	return 0;
 }
 
-/* "60" or "70-75" at @*at, which is moved behind it. */
+/* Read "60" or "70-75" at @*at, and move @*at behind it. */
 static bool range(const char **at, unsigned long *a, unsigned long *b)
 {
 	char *end;
@@ -133,7 +131,7 @@ bool config_has_plc(const struct machine_config *c)
 	return strcmp(c->plc.interface, "none") != 0;
 }
 
-/* -- Check --------------------------------------------------------------------- */
+/* -- Check ---------------------------------------------------------------- */
 
 static uint32_t line_of(const struct config_lines *lines, const char *key)
 {
@@ -149,7 +147,7 @@ static bool has_mcodes(const struct interp_mcode *table)
 	return false;
 }
 
-/* On the bus of the drives the node is none of theirs. */
+/* On the bus of the drives, the node must not be that of a drive. */
 static int check_node(const struct machine_config *c, struct interp_diag *d)
 {
 	bool taken = c->plc.node == c->can402.master_node;

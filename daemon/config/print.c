@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * print.c - a machine file from a struct machine_config, and docs/config.md
+ * print.c - writes a struct machine_config as a machine file, and
+ * docs/config.md
  */
 #include "keys.h"
 
@@ -44,6 +45,8 @@ static void document_key(const struct config_key *k, FILE *f)
 	fprintf(f, "| `%s` | %s | `%s`", k->name, k->unit, k->def);
 	if (k->def_rotary)
 		fprintf(f, ", A B C `%s`", k->def_rotary);
+	if (k->def_wire)
+		fprintf(f, ", wire `%s`", k->def_wire);
 	fprintf(f, " | %s | %s |\n", range, k->help);
 }
 
@@ -80,6 +83,8 @@ static const char intro[] =
 	"\n"
 	"On the rotary axes A B C, mm is degrees, in names and in values.\n"
 	"Ranges are those of linear axes; the same numbers hold in degrees.\n"
+	"A default behind the word wire holds if [gap] `process` or, for the\n"
+	"others, [sim] `process` is `wire`.\n"
 	"\n";
 
 static const char orders[] =

@@ -1,22 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * read.c - a machine file into a struct machine_config
+ * read.c - reads a machine file into a struct machine_config
  *
  * libinih knows the syntax.  It gets its lines from take_line(), which counts
- * them, because a handler is not told where it is, and which refuses what
- * libinih would pass over: text behind a heading, lines too long for it, NUL
- * bytes.
+ * them, because libinih does not tell a handler where it is.  take_line() also
+ * refuses what libinih would ignore: text behind a heading, lines that are too
+ * long for it, and NUL bytes.
  */
 #include "keys.h"
 #include "nearest.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <ini.h>
 #include <string.h>
 
 #define LINE_BYTES	1024		/* of a line, with its end and a NUL */
 #define BLANK		" \t\r\n\v\f"
-#define BOM		"\xef\xbb\xbf"	/* some editors begin UTF-8 so */
+#define BOM		"\xef\xbb\xbf"	/* some editors begin UTF-8 files with
+					 * it */
 
 struct reading {
 	FILE *f;
@@ -28,13 +30,13 @@ struct reading {
 	int err;			/* the first thing refused ends it */
 };
 
-/* Words that are accepted; with what goes before it, it fits a diag. */
+/* A list of the accepted words.  With the text before it, it fits a diag. */
 struct list {
 	char text[104];
 	bool full;
 };
 
-/* "a, b, c", or as much of it as fits and ", ..." */
+/* Append a word: "a, b, c", or as many as fit and ", ...". */
 static void append_word(struct list *l, const char *word)
 {
 	size_t n = strlen(l->text), left = sizeof(l->text) - n;
@@ -53,7 +55,7 @@ static void refuse(struct reading *r, size_t column)
 	r->err = -EINVAL;
 }
 
-/* @list is what is accepted, @near what was perhaps meant. */
+/* @list: what is accepted; @near: what was probably meant. */
 static void want_one_of(struct reading *r, const struct nearest *near,
 			const struct list *list)
 {
@@ -141,7 +143,7 @@ static void check_heading(struct reading *r, const char *bracket)
 			      "its keys from the next line on");
 }
 
-/* One line into r->text; false at the end of the file. */
+/* Read one line into r->text; false at the end of the file. */
 static bool get_line(struct reading *r)
 {
 	size_t n = 0;
@@ -217,7 +219,7 @@ static void set_key(struct reading *r, int row, int instance,
 		refuse(r, value_column(r));
 }
 
-/* Called by libinih; nonzero goes on. */
+/* libinih calls this; a return value that is not 0 means: go on. */
 static int take_key(void *user, const char *section, const char *name,
 		    const char *value)
 {
@@ -238,7 +240,7 @@ static int take_key(void *user, const char *section, const char *name,
 	return !r->err;
 }
 
-/* libinih's options are variables of the library. */
+/* The options of libinih are global variables of the library. */
 static void set_syntax(void)
 {
 	static char comment[] = ";#";
@@ -249,6 +251,27 @@ static void set_syntax(void)
 	ini_use_stack = false;		/* its stack buffer is 200 bytes */
 	ini_initial_alloc = LINE_BYTES;
 	ini_max_line = LINE_BYTES;
+}
+
+/* What is not written has other defaults on a wire machine: of [sim] process
+ * first, which the others depend on. */
+static void take_wire_defaults(struct reading *r)
+{
+	const int process = config_key_find(SECTION_SIM, "process");
+
+	if (r->config.gap.process == PROCESS_WIRE && !r->lines.at[process][0])
+		r->config.sim.process = SIM_WIRE;
+	if (r->config.sim.process != SIM_WIRE)
+		return;
+	for (int i = 0; config_key(i); i++) {
+		const struct config_key *k = config_key(i);
+
+		if (!k->def_wire || r->lines.at[i][0])
+			continue;
+		r->err = config_key_parse(k, 0, k->def_wire, &r->config,
+					  r->diag);
+		assert(!r->err);
+	}
 }
 
 static int read_all(struct reading *r)
@@ -272,12 +295,13 @@ static int read_all(struct reading *r)
 		config_key_find(SECTION_CONTOUR, "method")][0];
 	r->config.kinematics.line = r->lines.at[
 		config_key_find(SECTION_KINEMATICS, "chain")][0];
+	take_wire_defaults(r);
 	r->err = config_check(&r->config, &r->lines, r->diag);
 	return r->err ? r->err :
 	       config_maps_read(&r->config, &r->lines, r->diag);
 }
 
-/* With its /; what does not fit is looked for here. */
+/* The folder with its /.  If it does not fit, the current folder is used. */
 static void set_folder(struct machine_config *c, const char *path)
 {
 	const char *slash = strrchr(path, '/');

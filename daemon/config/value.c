@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * value.c - find a key, and turn its value from text and back
- */
+/* value.c - finds a key, and converts its value from text and to text */
 #include "keys.h"
 
 #include <errno.h>
@@ -150,7 +148,7 @@ void *config_key_at(const struct config_key *k, int instance,
 	return (char *)c + k->offset + k->stride * (size_t)instance;
 }
 
-/* -- Text to value: each returns NULL, or what is wrong with it ---------- */
+/* -- From text to value: each returns NULL, or what is wrong -------------- */
 
 static const char *parse_number(const struct config_key *k, const char *text,
 				double *ret)
@@ -158,7 +156,7 @@ static const char *parse_number(const struct config_key *k, const char *text,
 	char *end;
 	double x;
 
-	/* Keeps out what strtod() knows beside decimals: inf, nan, hex. */
+	/* strtod() also accepts inf, nan and hex; refuse these here. */
 	if (text[strspn(text, "+-.0123456789eE")])
 		return "is not a number";
 	x = strtod(text, &end);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * commands.c - commands from the ring, and what each comes to
+ * commands.c - takes commands from the ring, and answers them
  *
  * The other side is another process with fewer rights: every field is checked
- * here or in the cycle.  A command meant for an edmd that is gone never moves
+ * here or in the cycle.  A command for an edmd that has ended never moves
  * anything.
  */
 #include "loop.h"
@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-/* Taken in one period; the ring holds more, the period does not. */
+/* So many commands are taken in one period.  The ring may hold more. */
 #define COMMANDS_A_PERIOD	4
 
 static enum cycle_answer load_ask(struct loop *l, const struct shm_command *c)
@@ -28,7 +28,7 @@ static enum cycle_answer load_ask(struct loop *l, const struct shm_command *c)
 	return ANSWER_DONE;
 }
 
-/* The ring has room: one program is open at a time, one more is asked for. */
+/* The ring has room: at most one program is open, and one more is asked for. */
 static void program_retire(struct loop *l, struct program *p)
 {
 	struct ask a = { .close = p };
@@ -37,7 +37,7 @@ static void program_retire(struct loop *l, struct program *p)
 		crossing_ask(&l->crossing, &a);
 }
 
-/* A held job is stopped first, which takes the cycle a period. */
+/* A held job is stopped first; the cycle needs a period for that. */
 static enum cycle_answer unload_ask(struct loop *l,
 				    const struct shm_command *c)
 {
@@ -83,7 +83,7 @@ static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 
 	if (c->verb >= CYCLE_NVERBS)
 		return ANSWER_BAD_ARGUMENT;
-	/* A program on its way in begins where the axes stand. */
+	/* A program that is being opened begins where the axes stand now. */
 	if ((c->verb == CYCLE_JOG || c->verb == CYCLE_HOME ||
 	     c->verb == CYCLE_JOG_ON) && l->opening)
 		return ANSWER_WRONG_STATE;
@@ -101,7 +101,8 @@ static bool is_for_us(const struct loop *l, const struct shm_command *c)
 	return c->instance == l->status->head.instance && !l->ending;
 }
 
-/* Taken before, by this edmd or one before it: answered, and not done again. */
+/* It was taken before, by this edmd or an earlier one.  It is answered and not
+ * carried out again. */
 static bool is_repeat(struct loop *l, const struct shm_command *c)
 {
 	struct shm_done d;
@@ -115,14 +116,15 @@ static bool is_repeat(struct loop *l, const struct shm_command *c)
 	return true;
 }
 
-/* A stopped edmd finds what was sent long ago, by who no longer waits. */
+/* An edmd that was stopped finds old commands, whose senders do not wait any
+ * more. */
 static bool is_late(const struct shm_command *c)
 {
 	return setup_now_ns() > c->until_ns;
 }
 
-/* Many a second come of it, each is new, and none does any harm twice: the
- * record is kept for the others. */
+/* There are many signs in a second, each is new, and a repeated one does no
+ * harm.  So they are not recorded, to leave room for the other commands. */
 static bool is_sign(const struct shm_command *c)
 {
 	return c->verb == SHM_DO_JOG_ON;
@@ -133,7 +135,7 @@ static void carry_out(struct loop *l, const struct shm_command *c)
 	bool later = c->verb == SHM_LOAD || c->verb == SHM_UNLOAD;
 	enum cycle_answer answer = ANSWER_WRONG_STATE;
 
-	/* Without an id there is nothing to answer. */
+	/* A command without an id cannot be answered. */
 	if (c->id == 0 || is_repeat(l, c))
 		return;
 	if (!is_sign(c))
@@ -151,7 +153,7 @@ static void carry_out(struct loop *l, const struct shm_command *c)
 	else
 		answer = pass_on(l, c);
 
-	/* What is under way is answered when it is done. */
+	/* A command that is under way is answered when it is done. */
 	if (later && answer == ANSWER_DONE)
 		return;
 	loop_answer(l, c->id, (int32_t)answer);
@@ -177,7 +179,8 @@ static enum cycle_answer load(struct loop *l, struct program *p)
 
 	if (l->ending)
 		return ANSWER_WRONG_STATE;
-	/* Loading moves nothing, not even to where the program would begin. */
+	/* Loading moves nothing, not even to the place where the program
+	 * begins. */
 	if (memcmp(p->cursor.pos, l->cycle.out.target,
 		   sizeof(p->cursor.pos)) != 0)
 		return ANSWER_ELSEWHERE;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * key.c - numbers that tell whether something is the same as before
- */
+/* key.c - numbers that show whether something is the same as before */
 #include "key.h"
 
 #include <string.h>

@@ -8,7 +8,7 @@
 #include <signal.h>
 #include <time.h>
 
-/* Share of a period that simulated periods may take, in percent. */
+/* Percentage of a period that the simulated periods may take. */
 #define SPEED_SHARE	75
 
 static int64_t realtime_ns(void)
@@ -24,7 +24,8 @@ bool loop_stands(const struct loop *l)
 	const struct cycle *c = &l->cycle;
 
 	return (c->state == STATE_IDLE || c->state == STATE_HOLD ||
-		c->state == STATE_FAULT) && c->feed_mm_s == 0 && !c->hold.moving;
+		c->state == STATE_FAULT) &&
+	       c->feed_mm_s == 0 && !c->hold.moving;
 }
 
 static void count_latency(struct loop *l, int64_t late_ns)
@@ -39,8 +40,8 @@ static void count_latency(struct loop *l, int64_t late_ns)
 }
 
 /*
- * At another speed than 1 a missed period is only a slower picture, nothing
- * that happens to the simulated machine.
+ * At another speed than 1 a missed period only means a slower picture.  It does
+ * not happen to the simulated machine.
  */
 static void tell_missed(struct loop *l, uint64_t missed)
 {
@@ -65,7 +66,7 @@ static void step(struct loop *l)
 	loop_notice(l);
 }
 
-/* As many periods as the speed says, or as go into the time there is. */
+/* As many periods as the speed says, or as many as there is time for. */
 static void steps(struct loop *l, int64_t woke_ns)
 {
 	int64_t until_ns = woke_ns + l->clock.period_ns * SPEED_SHARE / 100;
@@ -77,7 +78,7 @@ static void steps(struct loop *l, int64_t woke_ns)
 	}
 }
 
-/* Bring the machine to a stand and let nothing start it again. */
+/* Stop all motion, and let nothing start it again. */
 static void end_if_asked(struct loop *l)
 {
 	static const struct cycle_command hold = { .verb = CYCLE_HOLD };
@@ -113,12 +114,12 @@ static void period(struct loop *l, const struct setup_wake *w)
 	__atomic_store_n(&x->beats, x->beats + 1, __ATOMIC_RELAXED);
 }
 
-/* Power and pump off, axes where they are and not under power. */
+/* Power and pump off; the axes stay where they are and lose their power. */
 static void outputs_safe(struct loop *l)
 {
 	struct io_outputs out = l->cycle.given;
 
-	/* Before the first period nothing was given. */
+	/* Before the first period the axes were given no targets. */
 	if (l->cycle.count == 0)
 		return;
 	out.power = false;
@@ -143,7 +144,7 @@ static void *run(void *arg)
 	return NULL;
 }
 
-/* No signal is ever delivered to the cycle. */
+/* No signal is delivered to the cycle. */
 static int thread_start(struct loop *l)
 {
 	pthread_attr_t attr;

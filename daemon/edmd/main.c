@@ -17,7 +17,8 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* Before any thread: the event loop reads them as a file. */
+/* This is done before there is any thread: the event loop reads signals as a
+ * file. */
 static void signals_block(void)
 {
 	sigset_t set;
@@ -40,7 +41,7 @@ static int machine_refuse(int err, const struct interp_diag *d)
 #define BACKEND_OPEN(id, name, open, period_ns, is, has_gap, check) \
 	[BACKEND_##id] = open,
 
-/* EX_OK, or the exit code. */
+/* Return: EX_OK, or the exit code. */
 static int machine_open(struct loop *l, const struct machine_config *c)
 {
 	static io_open_fn *const open[] = { CONFIG_BACKENDS(BACKEND_OPEN) };
@@ -74,15 +75,18 @@ static void loop_configure(struct loop *l, const struct machine_config *c)
 
 static int status_refuse(const char *name, int err)
 {
+	char path[SHM_PATH_MAX];
+
+	shm_path(path, name, "status");
 	if (err == -EBUSY)
 		log_line(LOG_ERROR, "edmd: machine %s has an edmd already; one "
 			 "with another --name, or end that one", name);
 	else if (err == -EPERM || err == -EACCES)
-		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status belongs to "
-			 "another user; run as that one, or remove it", name);
+		log_line(LOG_ERROR, "edmd: %s belongs to another user; run as "
+			 "that one, or remove it", path);
 	else
-		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.status: %s; remove "
-			 "it, or make room in /dev/shm", name, strerror(-err));
+		log_line(LOG_ERROR, "edmd: %s: %s; remove it, or make room in "
+			 "/dev/shm", path, strerror(-err));
 	return err == -EBUSY ? EX_UNAVAILABLE : EX_CANTCREAT;
 }
 
@@ -118,8 +122,8 @@ static int commands_open(struct loop *l, const char *name)
 				     l->status->head.instance);
 
 	if (err < 0)
-		log_line(LOG_ERROR, "edmd: /dev/shm/edmd.%s.command: %s",
-			 name, strerror(-err));
+		log_line(LOG_ERROR, "edmd: the socket for commands: %s",
+			 strerror(-err));
 	return err;
 }
 
@@ -139,7 +143,7 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 	return code;
 }
 
-/* It will be made anew: what is lost with it is told. */
+/* The object will be made again.  Say what is lost with it. */
 static void tell_foreign(const char *name)
 {
 	const struct shm_status *s;
@@ -148,10 +152,10 @@ static void tell_foreign(const char *name)
 	if (err == 0)
 		shm_close(s, sizeof(*s));
 	if (err == -EPROTO)
-		log_line(LOG_WARNING, "edmd: /dev/shm/edmd.%s.status is of "
+		log_line(LOG_WARNING, "edmd: the status in /dev/shm is of "
 			 "another version; where its axes stood, and its job, "
 			 "are lost: they are taken to stand at start_mm; move "
-			 "or home them", name);
+			 "or home them");
 }
 
 static int run_on(struct loop *l, const struct machine_config *c,
@@ -176,9 +180,9 @@ static int run_on(struct loop *l, const struct machine_config *c,
 }
 
 /*
- * The status comes first: who does not own it must not touch the machine.
- * After a failure, or with a job not ended, it stays: it is where the next
- * edmd finds the place to stand held at.
+ * The status comes first: who does not own it must not use the machine.  After
+ * a failure, or if the job has not ended, it stays.  There the next edmd finds
+ * the place at which it is held.
  */
 static int run_owner(struct loop *l, const struct machine_config *c)
 {

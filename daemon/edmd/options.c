@@ -16,13 +16,13 @@
 /* clang-format off */
 static const struct cmdline_row rows[] = {
 	{ "config", "FILE", CMDLINE_WORD, AT(config), .help =
-	  "machine file; without it, a built-in simulated machine" },
+	  "machine file; default: a built-in simulated machine" },
 	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
-	  "in place of [machine] name" },
+	  "name of the machine, instead of [machine] name" },
 	{ "check", NULL, CMDLINE_FLAG, AT(check), .help =
-	  "read the machine file, say whether it is good, end" },
+	  "read the machine file, say whether it is correct, exit" },
 	{ "print-config", NULL, CMDLINE_FLAG, AT(print_config), .help =
-	  "every key with its value, as a machine file, end" },
+	  "print every key with its value as a machine file, exit" },
 };
 /* clang-format on */
 
@@ -32,13 +32,13 @@ static const struct cmdline table = {
 	.head =
 "Usage: edmd [options]\n"
 "\n"
-"The controller of one machine: runs the cycle in real time and answers to\n"
-"edmd-jobs through shared memory, /dev/shm/edmd.<name>.*\n"
+"Controls one machine: runs the cycle in real time and takes commands from\n"
+"edmd-jobs, through edmd.<name>.* in /dev/shm\n"
 "\n",
 	.tail =
 "\n"
-"SIGTERM and SIGINT bring the machine to a stand, then end edmd; a second\n"
-"one ends it at once.  Exit codes are those of sysexits.h.\n",
+"SIGTERM and SIGINT stop all motion and then end edmd; a second signal ends\n"
+"it at once.  Exit codes are those of sysexits.h.\n",
 };
 
 int options_read(struct options *o, int argc, char **argv)

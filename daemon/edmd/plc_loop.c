@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * plc_loop.c - the PLC in the loop: what it asks, and what it is told
- */
+/* plc_loop.c - the PLC in the loop: what it asks for, and what it is told */
 #include "loop.h"
 
 #include <math.h>
@@ -16,7 +14,7 @@ void loop_plc_read(struct loop *l)
 		loop_event(l, SHM_EV_SELECT, 0, l->plc_in.program);
 }
 
-/* An edge is for one period, of however many a simulation runs. */
+/* An edge is valid for one period, also when a simulation runs several. */
 void loop_plc_input(struct loop *l, struct io_inputs *in)
 {
 	in->plc = l->plc_in;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * programs.c - programs from shared memory
- */
+/* programs.c - opens programs from shared memory */
 #include "programs.h"
 
 #include "key.h"
@@ -13,7 +11,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* A program counts in the pulses of the machine it was compiled for. */
+/* A program counts in the pulses of the machine for which it was compiled. */
 static int pulses_check(const struct machine_config *c,
 			const struct interp_program_head *h, uint32_t n)
 {
@@ -50,7 +48,7 @@ static int program_check(const struct machine_config *c, struct program *p)
 	return pulses_check(c, view.head, p->n);
 }
 
-/* A page fault in the cycle costs more than a period. */
+/* A page fault in the cycle would take longer than a period. */
 static void program_keep(const struct program *p)
 {
 	if (mlock(p->block, p->bytes) == 0)
@@ -73,8 +71,8 @@ struct program *program_open(const struct machine_config *c, uint32_t n)
 	p->n = n;
 	err = shm_program_open(&p->block, &p->bytes, c->name, n);
 	if (err < 0) {
-		log_line(LOG_ERROR, "program: /dev/shm/edmd.%s.program.%u: %s",
-			 c->name, n, strerror(-err));
+		log_line(LOG_ERROR, "program: %u of machine %s: %s", n,
+			 c->name, strerror(-err));
 		free(p);
 		return NULL;
 	}

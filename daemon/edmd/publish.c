@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * publish.c - the cycle's state in the words of shared memory
+ * publish.c - the state of the cycle in the words of shared memory
  *
- * The one file that knows both.  Their numbers are the same, so that they
- * need no table.
+ * This is the only file that knows both.  Their numbers are the same, so no
+ * table is needed.
  */
 #include "loop.h"
 
@@ -49,7 +49,7 @@ SAME(SHM_OUTCOME_FAULT, OUTCOME_FAULT);
 SAME(SHM_OUTCOME_STOPPED, OUTCOME_STOPPED);
 _Static_assert((int)CYCLE_NVERBS <= (int)SHM_LOAD, "verbs do not overlap");
 
-/* A job that has ended still shows its last place, until it is unloaded. */
+/* A job that has ended shows its last place until it is unloaded. */
 static double told_place_mm(const struct loop *l)
 {
 	return l->program ? interp_cursor_place_mm(&l->cycle.cursor) : 0;
@@ -108,8 +108,8 @@ void loop_answer(struct loop *l, uint64_t id, int32_t answer)
 }
 
 /*
- * A condition is called when the walk first comes to it.  On the way back one
- * that was told before is in force again; that is no call.
+ * A condition is called when the walk first comes to it.  On the way back an
+ * earlier condition is in force again, but that is not a call.
  */
 static void notice_condition(struct loop *l)
 {
@@ -133,7 +133,7 @@ static void notice_condition(struct loop *l)
 		   (int32_t)t->number);
 }
 
-/* Each one that was latched, whatever came after it. */
+/* Report each fault that was latched, whatever came after it. */
 static void notice_faults(struct loop *l)
 {
 	uint64_t f = l->cycle.fault.untold;
@@ -142,7 +142,7 @@ static void notice_faults(struct loop *l)
 		loop_event(l, SHM_EV_FAULT, 0, __builtin_ctzll(f));
 }
 
-/* A servo that hunts does so many times a minute: it is told the first time, the
+/* A servo hunts many times a minute.  So it is reported the first time, the
  * tenth, the hundredth ... */
 static bool is_power_of_ten(uint32_t n)
 {
@@ -171,7 +171,7 @@ static void notice_ended(const struct loop *l)
 	shm_ended_put(l->status, &e);
 }
 
-/* Faults first, so that who reads "state: fault" already knows which. */
+/* Faults come first, so that a reader of "state: fault" already knows which. */
 void loop_notice(struct loop *l)
 {
 	const struct cycle *c = &l->cycle;
@@ -218,7 +218,7 @@ static void snapshot_probe(const struct cycle *c, struct shm_snapshot *s)
 	s->back_mm = c->back_mm;
 }
 
-/* What the next edmd needs, if this one is killed. */
+/* What the next edmd needs if this one is killed. */
 static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 {
 	struct axis_state at;
@@ -316,7 +316,7 @@ void loop_trace(const struct loop *l, const struct io_inputs *in,
 		.state = c->state,
 	};
 	memcpy(ret->pos, c->out.target, sizeof(ret->pos));
-	/* On the path's side of shift and compensation, as pos is. */
+	/* Without shift and compensation, as pos is. */
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		ret->sent[i] = c->out.target[i] + c->contouring.added[i];
 		ret->actual[i] = comp_place(&c->comp.axis[i], in->actual[i]);

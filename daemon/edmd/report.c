@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * report.c - from events to words
- */
+/* report.c - events as lines of the log */
 #include "report.h"
 
 #include "clock.h"
@@ -13,7 +11,7 @@
 
 #define NS_PER_S	1000000000LL
 
-/* Gap states come and go many times a second in a bad gap. */
+/* In a bad gap its states come and go many times a second. */
 #define GAP_LINES_A_SECOND	10
 
 #define NOTES_A_LOOK	32
@@ -53,7 +51,7 @@ static bool is_gap_state(int32_t state)
 	       state == SHM_RETRACT || state == SHM_JUMP;
 }
 
-/* Begin a new second; say what the last one left unsaid. */
+/* Begin a new second.  Say how many lines the last one left out. */
 static void window_turn(struct report *r)
 {
 	int64_t now_ns = setup_now_ns();

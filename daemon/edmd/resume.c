@@ -2,9 +2,9 @@
 /*
  * resume.c - from the last snapshot of a predecessor to a held cycle
  *
- * First the axes: where they stand and what that rests on.  Then the job, whole
- * or not at all: one that went on in another place, or with other values, would
- * be worse than one that is lost.
+ * First the axes: where they stand, and how certain that is.  Then the job,
+ * completely or not at all: a job that goes on at another place, or with other
+ * values, would be worse than a lost one.
  */
 #include "resume.h"
 
@@ -23,9 +23,9 @@ static bool job_was_under_way(const struct shm_snapshot *s)
 	return s->cycle != 0 && s->program != 0 && s->loaded;
 }
 
-/* -- The axes ----------------------------------------------------------------- */
+/* -- The axes ------------------------------------------------------------- */
 
-/* Else a pulse is another way, or of another drive. */
+/* Otherwise a pulse means another distance, or belongs to another drive. */
 static bool same_axes(const struct loop *l, const struct shm_snapshot *s)
 {
 	const bool pulses = memcmp(l->pulse_mm, s->pulse_mm,
@@ -33,34 +33,38 @@ static bool same_axes(const struct loop *l, const struct shm_snapshot *s)
 
 	if (pulses && l->axes_key == s->axes_key)
 		return true;
-	log_line(LOG_ERROR, "resume: %s of the machine file is not what it was; "
-		 "the places of the edmd before mean nothing: the axes are "
-		 "taken to stand at start_mm; move or home them",
+	log_line(LOG_ERROR,
+		 "resume: %s of the machine file is not what it was; the "
+		 "places of the edmd before mean nothing: the axes are taken "
+		 "to stand at start_mm; move or home them",
 		 pulses ? "the backend, or a drive's node or increments," :
 			  "pulse_mm");
 	return false;
 }
 
-/* Pulses that nothing measures are a guess once the drives were alone. */
+/* If nothing measures the axes, their places are a guess once the drives were
+ * alone. */
 static bool is_sure(const struct loop *l, const struct shm_snapshot *s)
 {
 	return l->io.stays || (l->io.originate && s->has_origin);
 }
 
-/* Homed to other places is not homed. */
+/* An axis that was homed to other places does not count as homed. */
 static uint32_t homed(const struct loop *l, const struct shm_snapshot *s)
 {
 	if (!is_sure(l, s))
 		return 0;
 	if (l->home_key == s->home_key || s->homed == 0)
 		return s->homed;
-	log_line(LOG_WARNING, "resume: home_method or home_at_mm of the machine "
-		 "file is not what it was; the axes keep their places, but "
-		 "count as not homed: home them");
+	log_line(LOG_WARNING,
+		 "resume: home_method or home_at_mm of the machine file is not "
+		 "what it was; the axes keep their places, but count as not "
+		 "homed: home them");
 	return 0;
 }
 
-/* Where the machine file, or the crash, left it: it does not move by itself. */
+/* This is left as the machine file, or the crash, left it: nothing moves by
+ * itself. */
 static void tell_left(const struct cycle *c)
 {
 	static const char names[] = INTERP_AXIS_LETTERS;
@@ -82,7 +86,8 @@ static void tell_left(const struct cycle *c)
 static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 {
 	struct axis_state at = {
-		.homed = homed(l, s), .unplaced = s->unplaced, .limit.on = s->limit,
+		.homed = homed(l, s), .unplaced = s->unplaced,
+		.limit.on = s->limit,
 		.told_c = s->axes_c,
 	};
 
@@ -102,7 +107,8 @@ static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 	tell_left(&l->cycle);
 }
 
-/* Latched until an operator's reset, whoever latched it. */
+/* A fault stays latched until an operator's reset, whichever edmd latched
+ * it. */
 static void fault_restore(struct cycle *c, const struct shm_snapshot *s)
 {
 	if (s->fault == FAULT_NONE || s->fault >= CYCLE_NFAULTS)
@@ -112,7 +118,7 @@ static void fault_restore(struct cycle *c, const struct shm_snapshot *s)
 		 "reset", fault_name(s->fault));
 }
 
-/* -- The job ------------------------------------------------------------------ */
+/* -- The job -------------------------------------------------------------- */
 
 static struct cycle_past past_of(const struct shm_snapshot *s)
 {
@@ -138,7 +144,7 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 	return past;
 }
 
-/* Return: how many were `set` in the job, or -ESTALE. */
+/* Return: how many values were `set` in the job, or -ESTALE. */
 static int sets_read(const struct shm_status *status, uint64_t key,
 		     struct conditions_set set[CONDITIONS_SETS_MAX])
 {
@@ -165,7 +171,7 @@ static int program_same(const struct program *p, const struct shm_snapshot *s)
 	return -ESTALE;
 }
 
-/* Why the cycle could not take the job up. */
+/* Log why the cycle could not take the job up. */
 static int tell_refusal(const struct cycle *c, enum cycle_restored why,
 			enum cycle_answer answer, const struct shm_snapshot *s)
 {
@@ -222,9 +228,10 @@ static int place_restore(struct loop *l, struct program *p,
 
 static void tell(const struct loop *l, const struct shm_snapshot *s)
 {
-	log_line(LOG_WARNING, "resume: a job was under way; its program %u is "
-		 "held at %.3f mm of %.3f, line %u, %.3f mm beside the path; it "
-		 "was in %s; start goes on",
+	log_line(LOG_WARNING,
+		 "resume: a job was under way; its program %u is held at %.3f "
+		 "mm of %.3f, line %u, %.3f mm beside the path; it was in %s; "
+		 "start goes on",
 		 s->program, interp_cursor_place_mm(&l->cycle.cursor),
 		 l->cycle.cursor.p.head->length_mm, l->cycle.cursor.seg.line,
 		 l->cycle.escape.way_mm, shm_state_name(s->state));
@@ -255,7 +262,7 @@ void resume(struct loop *l, const struct machine_config *c,
 	axes_restore(l, before);
 	if (before->override >= 0 && before->override <= 2)
 		l->cycle.override = before->override;
-	/* What a PLC says as before is no change. */
+	/* If a PLC says the same as before, that is not a change. */
 	l->cycle.plc_override = before->plc_override;
 	if (job_was_under_way(before))
 		job_restore(l, c, before);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * serve.c - the main thread's event loop
+ * serve.c - the event loop of the main thread
  *
- * The cycle makes no system call to wake anyone, so this one looks every few
+ * The cycle makes no system call to wake anyone.  So this loop looks every few
  * milliseconds.
  */
 #include "serve.h"
@@ -16,14 +16,14 @@
 #include <systemd/sd-event.h>
 
 #define LOOK_US		10000
-#define STAND_NS	1000000000LL	/* the machine gets this to stop */
+#define STAND_NS	1000000000LL	/* time that the machine gets to stop */
 
 static uint64_t beats(const struct loop *l)
 {
 	return __atomic_load_n(&l->crossing.beats, __ATOMIC_RELAXED);
 }
 
-/* Power goes off with the hold, at once; motion ends within its limits. */
+/* With the hold, power goes off at once; the motion ends within its limits. */
 static bool end_is_due(const struct server *s)
 {
 	if (s->end_by_ns == 0)

@@ -16,7 +16,7 @@
 
 #define BUFFER_SAMPLES	"1024"
 
-/* -- A sample --------------------------------------------------------------------- */
+/* -- A sample ------------------------------------------------------------- */
 
 bool adc_format_read(const char *text, struct adc_format *ret)
 {
@@ -74,7 +74,7 @@ bool adc_read(struct adc *a, double *ret_v)
 	return a->age < a->stale_periods;
 }
 
-/* -- Its files --------------------------------------------------------------------- */
+/* -- Its files ------------------------------------------------------------ */
 
 static bool line_of(const char *path, char *ret, size_t size)
 {

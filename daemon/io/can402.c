@@ -2,9 +2,11 @@
 /*
  * can402.c - the master of CiA 402 drives
  *
- * A drive in trouble, a bus that is off or an interface that is down stops all
- * drives, by quick stop where they still listen and by their own watch on our
- * heartbeat where they do not.  Nothing moves again before a reset.
+ * A drive in trouble stops at once.  The others follow their targets on, as
+ * long as the cycle brakes on the path.  A bus that is off or an interface that
+ * is down stops all drives, by quick stop where they still listen and by their
+ * own watch on our heartbeat where they do not.  Nothing moves again before a
+ * reset.
  */
 #include "can402_bus.h"
 
@@ -17,7 +19,7 @@
 #define RX_MAX		512		/* frames taken in a period: more than a bus
 					 * carries in the longest one */
 
-/* -- The bus -------------------------------------------------------------------- */
+/* -- The bus -------------------------------------------------------------- */
 
 /* The first trouble stops everything; the end of it is only noted. */
 static void bus_is(struct can402 *s, enum can_got state)
@@ -143,7 +145,7 @@ static void drain(struct can402 *s)
 	}
 }
 
-/* -- The drives ----------------------------------------------------------------- */
+/* -- The drives ----------------------------------------------------------- */
 
 static bool all_up(const struct can402 *s)
 {
@@ -160,7 +162,7 @@ static bool all_arrived(const struct can402 *s)
 		if (s->drive[i].state != DRIVE_ENABLED || !s->drive[i].arrived)
 			return false;
 	}
-	return true;
+	return !can402_brake_opens(s);
 }
 
 static enum io_trouble trouble(const struct can402 *s)
@@ -174,6 +176,17 @@ static enum io_trouble trouble(const struct can402 *s)
 			return IO_DRIVE;
 	}
 	return IO_WELL;
+}
+
+/* A drive in trouble stops by itself; does any other still follow? */
+static bool steers(const struct can402 *s)
+{
+	bool any = false;
+
+	for (uint32_t i = 0; i < s->n; i++)
+		any = any || (s->drive[i].led && s->drive[i].arrived &&
+			      s->drive[i].trouble == DRIVE_WELL);
+	return any && !s->stopped;
 }
 
 /*
@@ -242,8 +255,9 @@ static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
 		.shares = s->shares,
 		.trouble = trouble(s),
 		.starting = !all_up(s),
-		.axes_off = !all_arrived(s),
+		.axes_off = !all_arrived(s), .steers = steers(s),
 		.unplaced = unplaced,
+		.lost = s->brakes_lost,
 	};
 	in->shares_valid = in->gap_valid && s->has_shares;
 	memcpy(in->actual, s->out.target, sizeof(in->actual));
@@ -272,7 +286,7 @@ void can402_read(void *self, struct io_inputs *in)
 	fill(s, in, unplaced);
 }
 
-/* -- What the cycle wants --------------------------------------------------------- */
+/* -- What the cycle wants ------------------------------------------------- */
 
 static void reset(struct can402 *s)
 {
@@ -318,7 +332,8 @@ static void tell_generator(struct can402 *s, bool safe)
 
 static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
 {
-	const bool braking = s->stopping > 0;
+	const bool braking = s->stopping > 0 ||
+			     (!s->were_on && s->closing > 0);
 	const int32_t target = braking ? can402_stop_target(s, i) :
 			       s->out.target[s->axis[i]];
 	struct can_msg m[DRIVE_EMITS];
@@ -336,16 +351,17 @@ void can402_write(void *self, const struct io_outputs *out)
 {
 	struct can402 *s = self;
 	const bool other = out->path != s->out.path;
-	bool well, on;
+	bool on;
 
+	can402_stop_follow(s, out);
 	s->out = *out;
 	if (out->reset)
 		reset(s);
-	well = trouble(s) == IO_WELL;
-	tell_generator(s, well);
+	tell_generator(s, trouble(s) == IO_WELL);
 	for (uint32_t i = 0; i < s->n && other; i++)
 		drive_depart(&s->drive[i]);
-	on = can402_stop_step(s, out->enable && well);
+	on = can402_stop_step(s, out->enable && !s->stopped);
+	on = can402_brake_step(s, on);
 	can402_stop_pace(s);
 	for (uint32_t i = 0; i < s->n; i++)
 		tell_drive(s, i, on ? DRIVE_GO_ON : DRIVE_GO_STOP);

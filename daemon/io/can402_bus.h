@@ -15,6 +15,9 @@
 
 #include <stdatomic.h>
 
+/* Opens the brakes of @axes, a bit each, and closes all others. */
+typedef bool can402_brake_fn(void *arg, uint32_t axes);
+
 enum can402_note_kind {
 	NOTE_TROUBLE, NOTE_ABORT, NOTE_PASSED, NOTE_EMERGENCY, NOTE_UP,
 	NOTE_SILENT, NOTE_LOST, NOTE_WARNING, NOTE_UNMAPPED, NOTE_BUS_OFF,
@@ -44,6 +47,8 @@ struct can402_stop {
 	double a;			/* ... a period^2, the axis may brake by */
 	double at;			/* increments, on the way to a stand */
 	int32_t coast;			/* pulses, farther than that by now */
+	bool ill;			/* its drive stops by itself, while the
+					 * others brake on the path */
 };
 
 struct can402 {
@@ -52,6 +57,7 @@ struct can402 {
 	struct drive drive[IO_NAXES];
 	uint8_t axis[IO_NAXES];
 	struct config_can402 c;
+	int64_t period_ns;
 	uint32_t beat_every, beat_in;
 	enum can_got bus;		/* CAN_NOTHING: well */
 	bool stopped;			/* bus trouble, until a reset */
@@ -60,6 +66,14 @@ struct can402 {
 	uint32_t stopping, stop_of;	/* periods left of the way to a stand,
 					 * and of all of it */
 	struct can402_stop stop[IO_NAXES];
+	/* can402_brake.c: brakes that lines open */
+	uint32_t braked, open;		/* bit per axis: has one; it is open */
+	uint32_t brake_periods;		/* until it is, or is not any more */
+	uint32_t opening[IO_NAXES];	/* periods left of that */
+	uint32_t closing;
+	bool brakes_lost;		/* their lines do not answer */
+	can402_brake_fn *brake;
+	void *brake_arg;
 	bool placed;			/* the drives' zeros are set */
 	int32_t resync_max[IO_NAXES];	/* pulses */
 	struct io_outputs out;
@@ -76,7 +90,7 @@ struct can402 {
 	_Atomic uint32_t put, taken;
 };
 
-/* -- can402_note.c ------------------------------------------------------------ */
+/* -- can402_note.c -------------------------------------------------------- */
 
 /** can402_tell() - say what the next line of the log is about. */
 void can402_tell(struct can402 *s, const struct can402_note *n);
@@ -95,7 +109,7 @@ void can402_watch(struct can402 *s, uint32_t i);
 /** can402_note() - io_machine.note */
 bool can402_note(void *self, char *buf, size_t size);
 
-/* -- can402.c ----------------------------------------------------------------- */
+/* -- can402.c ------------------------------------------------------------- */
 
 /* Of struct io_machine. */
 void can402_read(void *self, struct io_inputs *in);
@@ -104,12 +118,18 @@ void can402_close(void *self);
 bool can402_origin(void *self, int32_t ret[IO_NAXES]);
 void can402_originate(void *self, const int32_t zero[IO_NAXES]);
 
-/* -- can402_stop.c ------------------------------------------------------------ */
+/* -- can402_stop.c -------------------------------------------------------- */
+
+/**
+ * can402_stop_follow() - once a period, before @out becomes s->out: how far does
+ * a drive that stops by itself stay behind the targets of its axis?
+ */
+void can402_stop_follow(struct can402 *s, const struct io_outputs *out);
 
 /**
  * can402_stop_step() - once a period, before the drives get their targets.
  *
- * @on: the drives are to have power, and all is well.
+ * @on: the drives are to have power, and the bus works.
  *
  * Drives that can brake do so together: each loses the same part of its speed
  * in a period, so that they stay on the tangent of the path.
@@ -127,7 +147,31 @@ int32_t can402_stop_target(struct can402 *s, uint32_t i);
  */
 void can402_stop_pace(struct can402 *s);
 
-/* -- can402_open.c ------------------------------------------------------------ */
+/* -- can402_brake.c ------------------------------------------------------- */
+
+/**
+ * can402_brake_step() - once a period, after can402_stop_step() said @on.
+ *
+ * A brake is open while its drive is under torque and follows.
+ *
+ * Return: true as long as the drives must hold their axes: @on, or a brake
+ * needs its time to close.
+ */
+bool can402_brake_step(struct can402 *s, bool on);
+
+/** can402_brake_opens() - a brake is still opening: nothing may move. */
+bool can402_brake_opens(const struct can402 *s);
+
+/**
+ * can402_brake_close() - close all, and hold the axes for so long.  Not
+ * RT-safe.
+ */
+void can402_brake_close(struct can402 *s);
+
+/* -- can402_open.c -------------------------------------------------------- */
+
+/** can402_open() - the bus, without lines for brakes.  Startup only. */
+io_open_fn can402_open;
 
 /**
  * can402_attach() - the drives that @c names, on the open socket @fd, which

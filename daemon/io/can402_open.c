@@ -73,6 +73,12 @@ static uint32_t whole(double x)
 	return x < 0 ? 0 : x > UINT32_MAX ? UINT32_MAX : (uint32_t)(x + 0.5);
 }
 
+/* Until its brake is closed, if it has one. */
+static bool is_held(const struct config_drive *c)
+{
+	return c->brake == BRAKE_NONE || c->brake == BRAKE_LINE;
+}
+
 /* What it is to do by itself, and what its maker or ours wants besides. */
 static void add_writes(struct drive_config *d, const struct config_drive *c,
 		       double increments_mm)
@@ -82,7 +88,7 @@ static void add_writes(struct drive_config *d, const struct config_drive *c,
 	const int n = config_drive_sdo(c->sdo, own, &none);
 
 	want(d, (struct drive_write) { 0x605a, 0, 2,
-		c->brake == BRAKE_NONE ? STOP_AND_HOLD : STOP_AND_OFF,
+		is_held(c) ? STOP_AND_HOLD : STOP_AND_OFF,
 		c->brake != BRAKE_NONE });
 	if (c->connection_lost >= 0)
 		want(d, (struct drive_write) { 0x6007, 0, 2,
@@ -131,7 +137,7 @@ static struct drive_config drive_of(const struct machine_config *c, int axis)
 		.slew_increments = (int32_t)fmax(1, k->resync_mm_s *
 			increments_mm * period_us * 1e-6),
 		.limited_cycles = (uint32_t)(LIMITED_US / period_us),
-		.absolute = d->absolute, .held = d->brake == BRAKE_NONE,
+		.absolute = d->absolute, .held = is_held(d),
 		.no_follow_bit = !d->follow_bit,
 	};
 
@@ -177,6 +183,8 @@ static void add_drives(struct can402 *s, const struct machine_config *c)
 			continue;
 		d = drive_of(c, i);
 		s->axis[s->n] = (uint8_t)i;
+		if (c->drive[i].brake == BRAKE_LINE)
+			s->braked |= 1u << i;
 		s->resync_max[i] = (int32_t)(c->can402.resync_mm /
 					     c->axes.axis[i].pulse_mm);
 		s->stop[s->n].a = brakes_by(c, i, &d);
@@ -210,6 +218,9 @@ int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
 	s->fd = fd;
 	s->c = c->can402;
 	s->gap_age = CAN402_STALE;
+	s->period_ns = config_period_ns(c);
+	s->brake_periods = cycles_of(c->gpio.brake_ms,
+				     (double)s->period_ns * 1e-3) + 1;
 	if (config_has_plc(c) &&
 	    strcmp(c->plc.interface, c->can402.interface) == 0)
 		s->plc_node = (int32_t)c->plc.node;
@@ -225,8 +236,8 @@ int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
 	return 0;
 }
 
-int io_can402_open(struct io_machine *m, const struct machine_config *c,
-		   struct interp_diag *diag)
+int can402_open(struct io_machine *m, const struct machine_config *c,
+		struct interp_diag *diag)
 {
 	const struct config_can402 *k = &c->can402;
 	int err = check_load(c, diag), fd;

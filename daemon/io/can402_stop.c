@@ -2,10 +2,12 @@
 /*
  * can402_stop.c - drives that brake together, and go back together
  *
- * Where one has a fault, the others could each stop as fast as they can; then
- * all leave the path.  So they run out along its tangent instead, each by the
- * same part of its speed, in the time that the slowest of them needs.  The one
- * that has the fault stops by itself, as it must.
+ * Where one has a fault, it stops by itself, as it must, and the cycle brakes
+ * the others on the path before it takes their power.  Where power is taken from
+ * drives that move, as by an e-stop, each could stop as fast as it can; then
+ * they would leave the path at any angle.  So they run out along its tangent,
+ * each by the same part of its speed, in the time that the slowest of them
+ * needs.
  *
  * On the way back each goes the same part of what it is off, so that all go
  * along one line and arrive in the same period.
@@ -15,13 +17,18 @@
 #include <math.h>
 #include <stdlib.h>
 
-static double speed_of(const struct drive *d, const struct can402_stop *t)
+static int32_t minus(int32_t a, int32_t b)
 {
-	return (double)(int32_t)((uint32_t)d->target - (uint32_t)t->was);
+	return (int32_t)((uint32_t)a - (uint32_t)b);
 }
 
-/* Periods the slowest needs; what each may be off its place at the end. */
-static void begin(struct can402 *s)
+static double speed_of(const struct drive *d, const struct can402_stop *t)
+{
+	return (double)minus(d->target, t->was);
+}
+
+/* Periods the slowest needs. */
+static double measure(struct can402 *s)
 {
 	double most = 0;
 
@@ -33,14 +40,50 @@ static void begin(struct can402 *s)
 		t->at = d->target;
 		most = fmax(most, fabs(t->speed) / t->a);
 	}
+	return most;
+}
+
+/* So far it may be off its place at the end, or farther than it was. */
+static void allow(struct can402 *s, uint32_t i, double periods)
+{
+	struct can402_stop *t = &s->stop[i];
+	const struct drive *d = &s->drive[i];
+	const double way = fabs(t->speed) * periods + d->lag;
+
+	t->coast += (int32_t)(way * d->c.pulses / abs(d->c.increments));
+}
+
+static void begin(struct can402 *s)
+{
+	const double most = measure(s);
+
 	s->stop_of = (uint32_t)fmin(most, 1e6);
 	s->stopping = s->stop_of;
+	for (uint32_t i = 0; i < s->n; i++)
+		allow(s, i, most);
+}
+
+/* Drives that came into trouble in this period. */
+static void part(struct can402 *s)
+{
 	for (uint32_t i = 0; i < s->n; i++) {
 		struct can402_stop *t = &s->stop[i];
-		const struct drive *d = &s->drive[i];
-		const double way = fabs(t->speed) * most + d->lag;
+		const bool ill = s->drive[i].trouble != DRIVE_WELL;
 
-		t->coast = (int32_t)(way * d->c.pulses / abs(d->c.increments));
+		if (ill && !t->ill)
+			allow(s, i, measure(s));
+		t->ill = ill;
+	}
+}
+
+void can402_stop_follow(struct can402 *s, const struct io_outputs *out)
+{
+	for (uint32_t i = 0; i < s->n; i++) {
+		const uint8_t axis = s->axis[i];
+
+		if (s->were_on && s->stop[i].ill)
+			s->stop[i].coast += abs(minus(out->target[axis],
+						      s->out.target[axis]));
 	}
 }
 
@@ -48,6 +91,7 @@ bool can402_stop_step(struct can402 *s, bool on)
 {
 	if (on) {
 		s->stopping = 0;
+		part(s);
 	} else if (s->were_on) {
 		begin(s);
 	} else if (s->stopping > 0) {
@@ -58,7 +102,7 @@ bool can402_stop_step(struct can402 *s, bool on)
 	s->were_on = on;
 	for (uint32_t i = 0; i < s->n; i++) {
 		s->stop[i].was = s->drive[i].target;
-		if (on && s->drive[i].arrived)
+		if (on && s->drive[i].arrived && !s->stop[i].ill)
 			s->stop[i].coast = 0;
 	}
 	return on || s->stopping > 0;
@@ -79,7 +123,7 @@ int32_t can402_stop_target(struct can402 *s, uint32_t i)
 void can402_stop_pace(struct can402 *s)
 {
 	double periods = 1;
-	bool ready = true;
+	bool ready = !can402_brake_opens(s);
 
 	for (uint32_t i = 0; i < s->n; i++)
 		ready = ready && s->drive[i].led;

@@ -20,6 +20,7 @@
 #define AT_LIMIT	0x0800u
 #define NMT_OPERATIONAL	0x05
 #define ALARM_SYNCS	2		/* the answer of the first may be older */
+#define SURPLUS_MAX	2		/* answers that none was missing for */
 
 void drive_init(struct drive *d, const struct drive_config *c)
 {
@@ -34,7 +35,7 @@ static void trouble(struct drive *d, enum drive_trouble t)
 		d->trouble = t;
 }
 
-/* -- Places ------------------------------------------------------------------- */
+/* -- Places --------------------------------------------------------------- */
 
 /* Rounded down, so that pulses and increments go up and down together. */
 static int64_t floor_div(int64_t a, int64_t b)
@@ -83,7 +84,7 @@ void drive_keep_zero(struct drive *d, int32_t zero)
 	d->homed = true;
 }
 
-/* -- What it says ------------------------------------------------------------- */
+/* -- What it says --------------------------------------------------------- */
 
 /* Its count begins anew, and what was configured is gone. */
 static void hear_restart(struct drive *d)
@@ -121,6 +122,7 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 	d->state = state;
 	d->heard = true;
 	d->answered = true;
+	d->answers++;
 	d->warnings += (now & ~was & DRIVE_WARNS) != 0;
 	if (m->len > 6)
 		d->mode = m->data[6];
@@ -188,7 +190,7 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 	return false;
 }
 
-/* -- What did not come ---------------------------------------------------------- */
+/* -- What did not come ---------------------------------------------------- */
 
 /* What an axis lags dies away as slowly as it came. */
 static void watch_lag(struct drive *d)
@@ -271,10 +273,29 @@ static void watch_alarm(struct drive *d)
 		trouble(d, DRIVE_EMERGENCY);
 }
 
+/*
+ * Answers that are late come together, and were missing before.  More than one
+ * to each SYNC, of which none was missing, are of two drives.  What is missing
+ * for good is forgotten as slowly as it was lost.
+ */
+static void watch_answers(struct drive *d)
+{
+	const int32_t owed = (int32_t)d->c.answer_cycles;
+
+	d->surplus += (int32_t)d->answers - 1;
+	if (d->surplus < -owed ||
+	    (d->answers == 1 && d->surplus < -SURPLUS_MAX))
+		d->surplus++;
+	if (d->surplus > SURPLUS_MAX)
+		trouble(d, DRIVE_TWICE);
+	d->answers = 0;
+}
+
 void drive_sync(struct drive *d)
 {
 	if (d->phase != DRIVE_RUNNING)
 		return;
+	watch_answers(d);
 	if (++d->silent > d->c.beat_cycles)
 		trouble(d, DRIVE_MUTE);
 	watch_alarm(d);
@@ -293,7 +314,7 @@ void drive_sync(struct drive *d)
 	d->sent[0] = d->target;
 }
 
-/* -- What it is told ------------------------------------------------------------ */
+/* -- What it is told ------------------------------------------------------ */
 
 /* Not enabled in another mode; but some show theirs only when enabled. */
 static bool waits_for_mode(struct drive *d)
@@ -389,6 +410,7 @@ void drive_reset(struct drive *d)
 	d->alarmed = 0;
 	d->enabled_for = 0;
 	d->missing = 0;
+	d->surplus = 0;
 	d->silent = 0;
 	d->resetting = anew || d->state == DRIVE_FAULT ||
 		       d->state == DRIVE_FAULT_REACTION ? RESET_CYCLES : 0;

@@ -74,6 +74,8 @@ enum drive_trouble {
 	DRIVE_NOT_LED,			/* bit 12: it ignores its target */
 	DRIVE_LIMITED,			/* bit 11: its target is clipped */
 	DRIVE_NOT_STARTED,		/* NMT: not operational any more */
+	DRIVE_TWICE,			/* more answers than SYNCs: whose are
+					 * they? */
 	DRIVE_NTROUBLES
 };
 
@@ -175,6 +177,8 @@ struct drive {
 	uint32_t mode_waited;		/* cycles switched on, in another mode */
 	uint32_t warnings;		/* times a bit of DRIVE_WARNS came */
 	bool answered;			/* a TPDO came since the last SYNC */
+	uint32_t answers;		/* so many did */
+	int32_t surplus;		/* TPDOs more than SYNCs */
 	bool edge;			/* fault reset: bit 7 was high */
 	uint32_t resetting;		/* cycles it may still report a fault */
 	uint32_t malformed;		/* frames of a wrong length, and answers
@@ -263,7 +267,7 @@ const char *drive_trouble_name(enum drive_trouble t);
 /** drive_abort_text() - an abort code of CiA 301 in words. Any thread. */
 const char *drive_abort_text(uint32_t code);
 
-/* -- drive_setup.c: the SDO steps -------------------------------------------- */
+/* -- drive_setup.c: the SDO steps ----------------------------------------- */
 
 /** drive_setup_emit() - the request of the present step, if it is due. */
 size_t drive_setup_emit(struct drive *d, struct can_msg *ret);

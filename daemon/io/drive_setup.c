@@ -132,7 +132,7 @@ size_t drive_setup_remode(struct drive *d, struct can_msg *ret)
 	return 1;
 }
 
-/* -- Answers ------------------------------------------------------------------ */
+/* -- Answers -------------------------------------------------------------- */
 
 static void note_abort(struct drive *d, const struct drive_write *w,
 		       uint32_t code, enum drive_passed passed)

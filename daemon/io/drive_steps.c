@@ -109,7 +109,7 @@ static const struct row rows[] = {
 
 #define NROWS		(sizeof(rows) / sizeof(rows[0]))
 
-/* -- Where we are: rows before the machine file's, those, rows behind ---------- */
+/* -- Where we are: rows before the machine file's, those, rows behind ----- */
 
 static uint32_t file_row(void)
 {
@@ -137,7 +137,7 @@ static const struct row *row_at(const struct drive *d, uint32_t step,
 	return step < NROWS ? &rows[step] : NULL;
 }
 
-/* -- Interpolation time --------------------------------------------------------- */
+/* -- Interpolation time --------------------------------------------------- */
 
 #define NCHOICES	5		/* as it is; then from ms on down */
 
@@ -177,7 +177,7 @@ bool drive_step_choose(struct drive *d)
 	}
 }
 
-/* -- Which steps are due -------------------------------------------------------- */
+/* -- Which steps are due -------------------------------------------------- */
 
 static bool is_left(const struct drive *d, uint16_t index)
 {
@@ -284,7 +284,7 @@ bool drive_step_due(struct drive *d, struct drive_step *ret)
 	}
 }
 
-/* -- What came of them ------------------------------------------------------------ */
+/* -- What came of them ---------------------------------------------------- */
 
 static bool names_us(const struct drive *d)
 {

@@ -49,7 +49,7 @@ struct edges {
 _Static_assert(sizeof(struct edges_told) <= 4 * WORDS, "a box holds it");
 _Static_assert(sizeof(struct edges_shown) <= 4 * WORDS, "a box holds it");
 
-/* -- Between the threads --------------------------------------------------------- */
+/* -- Between the threads -------------------------------------------------- */
 
 static void post(struct mailbox *m, const void *what, size_t bytes)
 {
@@ -101,7 +101,7 @@ void edges_ask(struct edges *e, struct edges_shown *ret)
 	*ret = e->seen;
 }
 
-/* -- Time ------------------------------------------------------------------------ */
+/* -- Time ----------------------------------------------------------------- */
 
 static int64_t now_ns(void)
 {
@@ -133,7 +133,7 @@ static int64_t wait_until(int64_t ns)
 	return now;
 }
 
-/* -- The thread ------------------------------------------------------------------ */
+/* -- The thread ----------------------------------------------------------- */
 
 /* From the first word of a stop to the next target behind it. */
 static void heed_stop(struct edges *e)

@@ -19,7 +19,7 @@ static bool is_on(const struct gpio *g, int line)
 	return g->in >> line & 1;
 }
 
-/* -- Inputs ------------------------------------------------------------------ */
+/* -- Inputs --------------------------------------------------------------- */
 
 static void inputs_read(struct gpio *g)
 {
@@ -98,12 +98,13 @@ void gpio_read(void *self, struct io_inputs *in)
 		.limit = axes_on(g, LINE_LIMIT),
 		.home = axes_on(g, LINE_HOME),
 		.lost = g->lost,
+		.steers = !g->lost,
 		.busy = g->edges ? g->shown.busy : pulser_busy(&g->pulser),
 	};
 	gpio_axes_read(g, in);
 }
 
-/* -- Outputs ----------------------------------------------------------------- */
+/* -- Outputs -------------------------------------------------------------- */
 
 bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines)
 {
@@ -245,7 +246,7 @@ void gpio_write(void *self, const struct io_outputs *out)
 	gpio_outputs_write(g);
 }
 
-/* -- Close ------------------------------------------------------------------- */
+/* -- Close ---------------------------------------------------------------- */
 
 void gpio_close(void *self)
 {

@@ -35,7 +35,7 @@ static void tell(struct gpio *g, enum gpio_tell what, int axis)
 				 memory_order_relaxed);
 }
 
-/* -- Encoders ----------------------------------------------------------------- */
+/* -- Encoders ------------------------------------------------------------- */
 
 static void look(struct gpio *g, int i, uint64_t ns)
 {
@@ -94,7 +94,7 @@ void gpio_axes_counted(struct gpio *g, const int32_t *before)
 					(uint32_t)before[i]));
 }
 
-/* -- Power -------------------------------------------------------------------- */
+/* -- Power ---------------------------------------------------------------- */
 
 /* Lines that are on. */
 static uint64_t power(struct gpio *g, bool on)
@@ -140,7 +140,7 @@ void gpio_axes_close(struct gpio *g)
 	nanosleep(&brakes, NULL);
 }
 
-/* -- What to say of them ------------------------------------------------------ */
+/* -- What to say of them -------------------------------------------------- */
 
 bool gpio_note(void *self, char *buf, size_t size)
 {

@@ -368,8 +368,8 @@ static void configure(struct gpio *g, const struct machine_config *c)
 		g->quadrature[i].fd = -1;
 }
 
-int io_gpio_open(struct io_machine *m, const struct machine_config *c,
-		 struct interp_diag *diag)
+int gpio_open_outputs(struct gpio **ret, const struct machine_config *c,
+		      struct interp_diag *diag)
 {
 	struct gpio *g = calloc(1, sizeof(*g));
 	int err;
@@ -381,9 +381,23 @@ int io_gpio_open(struct io_machine *m, const struct machine_config *c,
 	g->adc.fd = -1;
 	configure(g, c);
 	err = lines_open(g, c, diag);
-	g->has_power = err == 0 && is_wired(g, LINE_ENABLE, 1 + IO_NAXES);
-	if (err == 0)
-		err = encoders_open(g, c, diag);
+	if (err < 0)
+		gpio_close(g);
+	else
+		*ret = g;
+	return err;
+}
+
+int io_gpio_open(struct io_machine *m, const struct machine_config *c,
+		 struct interp_diag *diag)
+{
+	struct gpio *g;
+	int err = gpio_open_outputs(&g, c, diag);
+
+	if (err < 0)
+		return err;
+	g->has_power = is_wired(g, LINE_ENABLE, 1 + IO_NAXES);
+	err = encoders_open(g, c, diag);
 	if (err == 0)
 		err = adc_begin(g, c, diag);
 	if (err == 0)

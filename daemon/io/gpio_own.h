@@ -94,6 +94,13 @@ void gpio_write(void *self, const struct io_outputs *out);
 void gpio_close(void *self);
 
 /**
+ * gpio_open_outputs() - lines alone, all off: no axes, no gap.  As
+ * io_gpio_open(); gpio_close() ends it.
+ */
+int gpio_open_outputs(struct gpio **ret, const struct machine_config *c,
+		      struct interp_diag *diag);
+
+/**
  * gpio_outputs_write() - write those of g->out that the cycle itself writes.
  */
 void gpio_outputs_write(struct gpio *g);
@@ -103,7 +110,7 @@ void gpio_outputs_write(struct gpio *g);
  */
 bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines);
 
-/* -- gpio_axes.c -------------------------------------------------------------- */
+/* -- gpio_axes.c ---------------------------------------------------------- */
 
 /** gpio_put() - pulses put out for axis @i, as the machine counts them. */
 int32_t gpio_put(const struct gpio *g, int i);

@@ -66,6 +66,9 @@ struct io_inputs {
 	uint32_t limit, home;		/* switches, a bit per axis: on */
 	uint32_t index;			/* index mark passed in this period */
 	enum io_trouble trouble;	/* until a reset */
+	bool steers;			/* axes without trouble still follow
+					 * their targets: they can brake on the
+					 * path */
 	bool starting;			/* not up yet: nothing can begin */
 	uint32_t unplaced;		/* bit per axis: its drive has lost count
 					 * of its place, as of this period */

@@ -41,7 +41,7 @@ void plc_beat(struct plc *p, uint16_t ms)
 	p->beat_in = p->beat_cycles > 0 ? p->beat_cycles - 1 : 0;
 }
 
-/* -- From the PLC ----------------------------------------------------------------- */
+/* -- From the PLC --------------------------------------------------------- */
 
 static void hear_request(struct plc *p, const struct can_msg *m)
 {
@@ -140,7 +140,7 @@ void plc_period(struct plc *p)
 	p->ask.command &= PLC_ALIVE;
 }
 
-/* -- To the PLC ------------------------------------------------------------------- */
+/* -- To the PLC ----------------------------------------------------------- */
 
 static struct can_msg tpdo(struct plc *p, int n)
 {

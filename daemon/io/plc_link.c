@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* -- Open ------------------------------------------------------------------------- */
+/* -- Open ----------------------------------------------------------------- */
 
 static int refuse(const struct machine_config *c, int err,
 		  struct interp_diag *d)
@@ -88,7 +88,7 @@ void plc_link_close(struct plc_link *l)
 	l->fd = -1;
 }
 
-/* -- Once a period ------------------------------------------------------------------ */
+/* -- Once a period -------------------------------------------------------- */
 
 static void count(struct plc_link *l, enum plc_count i, uint32_t n)
 {
@@ -193,7 +193,7 @@ void plc_link_write(struct plc_link *l, const struct plc_tell *tell)
 	}
 }
 
-/* -- The other thread ---------------------------------------------------------------- */
+/* -- The other thread ----------------------------------------------------- */
 
 static void say(const struct plc_link *l, enum plc_count i, uint32_t n,
 		char *buf, size_t size)

@@ -14,7 +14,7 @@
 
 #define ROUND_DEFAULT	(UINT64_C(1) << 32)
 
-/* -- Edges ------------------------------------------------------------------- */
+/* -- Edges ---------------------------------------------------------------- */
 
 int quadrature_edges(struct quadrature *q, struct lines *lines)
 {
@@ -68,7 +68,7 @@ static void read_edges(struct quadrature *q, uint64_t now_ns)
 	q->read_ns = now_ns;
 }
 
-/* -- A counter ---------------------------------------------------------------- */
+/* -- A counter ------------------------------------------------------------ */
 
 static bool number_read(int fd, uint64_t *ret)
 {
@@ -144,7 +144,7 @@ static void read_counter(struct quadrature *q)
 					 (int64_t)up - (int64_t)q->round;
 }
 
-/* -- Both --------------------------------------------------------------------- */
+/* -- Both ----------------------------------------------------------------- */
 
 bool quadrature_read(struct quadrature *q, uint64_t now_ns)
 {

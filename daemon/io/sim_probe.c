@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * sim_probe.c - what a touch meets: a block, with a bore or without
+ * sim_probe.c - what probing meets: a block, with a bore or without
  *
  * The electrode is a cylinder along Z, its lower end where Z stands.  It is in
  * contact when that end is at the block's upper face or below it and any of

@@ -9,7 +9,7 @@
  * 	sim_erosion.c	what the sparks take away, from work and electrode
  * 	sim_debris.c	where that goes; bridges, arcs that stay in one place
  *
- * What a touch meets is in sim_probe.c. docs/process-model.md describes the
+ * What probing meets is in sim_probe.c.  docs/process-model.md describes the
  * model, with sources and pictures.
  *
  * Units: in every name; debris is 0 (clean) to 1 (choked).

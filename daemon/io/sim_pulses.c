@@ -181,7 +181,7 @@ void sim_pulses_train(struct sim *s, double gap_mm)
 	};
 }
 
-/* -- As counted and read ------------------------------------------------------ */
+/* -- As counted and read -------------------------------------------------- */
 
 static double counted(struct sim *s, double part, double pulses)
 {

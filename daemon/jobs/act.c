@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * act.c - a command that does something is done once, whoever dies when
+ * act.c - a command that changes something is carried out once, whichever
+ * program dies
  */
 #include "act.h"
 
@@ -28,7 +29,7 @@ static uint64_t act_id(const struct jobs_lcm_command *c)
 				  strlen(c->client));
 	crypto_generichash_final(&h, out, sizeof(out));
 	memcpy(&id, out, sizeof(id));
-	/* As SQLite keeps it; 0 is no id. */
+	/* SQLite stores signed 64-bit numbers; 0 means "no id". */
 	id &= INT64_MAX;
 	return id ? id : 1;
 }
@@ -47,16 +48,16 @@ int act_answered(struct jobs *j, uint64_t id, int code, const char *reason)
 	return act_commit(j);
 }
 
-/* What edmd does is gone with the host's power; the rest is not.  Nor is the
- * promise that a job may begin. */
+/* What edmd does is lost with the host's power, everything else is not.  The
+ * promise that a job may begin is not lost either. */
 static bool is_durable(const struct verb *v)
 {
 	return v->machine == VERB_OWN || v->machine == SHM_DO_START ||
 	       v->machine == SHM_DO_RESUME;
 }
 
-/* edmd remembers what it was handed; what this service does itself would be
- * forgotten. */
+/* edmd remembers the commands that it was given.  What this service does by
+ * itself would be forgotten without a store. */
 static bool refuse_degraded(struct jobs *j, const struct verb *v,
 			    const struct jobs_lcm_command *c)
 {
@@ -86,7 +87,8 @@ static void act_begin(struct jobs *j, const struct verb *v,
 	act_commit(j);
 }
 
-/* Handed over by a service before this one, and not answered then. */
+/* A service before this one handed the command over and did not live to answer
+ * it. */
 static void act_settle(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c,
 		       const struct store_act *a)
@@ -109,7 +111,8 @@ static void act_settle(struct jobs *j, const struct verb *v,
 		else
 			verbs_settle(j, v, c, SHM_CUT_SHORT);
 	} else if (a->instance == j->link.instance) {
-		/* Not taken: if it is on its way, edmd takes one of them. */
+		/* edmd has not taken it.  If it is still on its way, edmd takes
+		 * only one of the two. */
 		v->run(j, v, c);
 	} else if (a->born == s->born) {
 		verbs_settle(j, v, c, -ENOTCONN);

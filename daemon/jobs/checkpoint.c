@@ -19,19 +19,20 @@
 #include <unistd.h>
 
 #define DAY_S		86400.0
-#define BURST_BYTES	1e6		/* saved up in quiet times */
+#define BURST_BYTES	1e6		/* may be saved up in quiet times */
 
 struct checkpoint_file {
 	int fd;
 	bool direct;			/* sectors go to the disk alone */
 	char machine[SHM_NAME_MAX];
-	uint64_t sequence, count;	/* of the last base, place */
-	/* The event loop's: what was written, or is on its way. */
+	uint64_t sequence, count;	/* of the last base and of the last
+					 * place */
+	/* Only for the event loop: what was written, or is being written. */
 	bool any;
 	struct checkpoint_base last;
 	double budget_bytes;
 	int64_t budget_us;
-	/* Between the two. */
+	/* Shared by the two threads. */
 	pthread_t thread;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
@@ -41,7 +42,7 @@ struct checkpoint_file {
 	struct checkpoint_stats stats;
 };
 
-/* -- The thread ---------------------------------------------------------------- */
+/* -- The thread ----------------------------------------------------------- */
 
 static int64_t now_us(void)
 {
@@ -58,7 +59,7 @@ static size_t bytes_written(const struct checkpoint_file *f,
 						       CHECKPOINT_BLOCK;
 }
 
-/* To the older of the two blocks of its kind. */
+/* Write to the older of the two blocks of its kind. */
 static int block_write(struct checkpoint_file *f, union checkpoint_block *b)
 {
 	const enum checkpoint_kind kind = (enum checkpoint_kind)b->head.kind;
@@ -137,7 +138,7 @@ static int thread_start(struct checkpoint_file *f)
 	return -err;
 }
 
-/* -- The file ------------------------------------------------------------------ */
+/* -- The file ------------------------------------------------------------- */
 
 static int file_read(int fd, union checkpoint_block block[4])
 {
@@ -145,7 +146,8 @@ static int file_read(int fd, union checkpoint_block block[4])
 	return pread(fd, block, 4 * sizeof(*block), 0) < 0 ? -errno : 0;
 }
 
-/* All of it is written once, so that it has its room on the disk. */
+/* All of the file is written once, so that its space on the disk is
+ * reserved. */
 static int file_make(int fd)
 {
 	static const union checkpoint_block zeros[4];
@@ -160,7 +162,8 @@ static int file_make(int fd)
 	return fsync(fd) < 0 ? -errno : 0;
 }
 
-/* A file system that does not take single sectors writes a whole page. */
+/* Some file systems do not take single sectors; there a whole page is
+ * written. */
 static bool takes_sectors(const char *path)
 {
 	_Alignas(CHECKPOINT_BLOCK) static uint8_t sector[CHECKPOINT_SECTOR];
@@ -175,7 +178,7 @@ static bool takes_sectors(const char *path)
 	return takes;
 }
 
-/* What cannot be written may still be read. */
+/* A file that cannot be written may still be read. */
 static void look_only(const char *path, const char *machine,
 		      struct checkpoint *ret)
 {
@@ -197,7 +200,8 @@ static int file_open(struct checkpoint_file *f, const char *path)
 
 	if (fd < 0)
 		return -errno;
-	/* Who may read it may lock it; an earlier one may be open to the group. */
+	/* Who may read a file may lock it.  A file of an earlier version may be
+	 * open to the group. */
 	err = fchmod(fd, 0600) < 0 ? -errno : file_make(fd);
 	f->direct = takes_sectors(path);
 	if (err == 0 && f->direct) {
@@ -269,9 +273,10 @@ void checkpoint_stats(struct checkpoint_file *f, struct checkpoint_stats *ret)
 	pthread_mutex_unlock(&f->lock);
 }
 
-/* -- When ------------------------------------------------------------------------ */
+/* -- When ----------------------------------------------------------------- */
 
-/* States between which a resumed job would make no difference. */
+/* A state belongs to a phase.  Between states of one phase a resumed job would
+ * not differ. */
 static int phase(uint32_t state)
 {
 	switch (state) {
@@ -285,7 +290,7 @@ static int phase(uint32_t state)
 	}
 }
 
-/* What a place does not hold. */
+/* Does anything differ that a place block does not hold? */
 static bool base_differs(const struct checkpoint_base *a,
 			 const struct checkpoint_base *b)
 {
@@ -316,7 +321,8 @@ static bool place_is_due(const struct checkpoint_base *now,
 
 	if (phase(s->state) != phase(t->state) || s->outcome != t->outcome)
 		return true;
-	/* Standing, it writes no more once it has come to rest. */
+	/* When the machine stands, nothing more is written after it has come to
+	 * rest. */
 	if (phase(s->state) != SHM_ERODE && passed_s < CHECKPOINT_S)
 		return memcmp(s->pos, t->pos, sizeof(s->pos)) != 0 &&
 		       now->utime - last->utime > 500000;
@@ -324,7 +330,8 @@ static bool place_is_due(const struct checkpoint_base *now,
 	       s->far_mm - t->far_mm >= CHECKPOINT_MM;
 }
 
-/* What a day may take, evenly, and some of it at once. */
+/* Take @bytes from the budget: it grows evenly over the day, and a part of it
+ * may be used at once. */
 static bool budget_take(struct checkpoint_file *f, size_t bytes, int64_t at_us)
 {
 	const double s = (double)(at_us - f->budget_us) / 1e6;
@@ -348,11 +355,12 @@ static void hand_over(struct checkpoint_file *f, enum checkpoint_kind kind,
 	pthread_mutex_lock(&f->lock);
 	memset(b, 0, sizeof(*b));
 	b->head.kind = (uint32_t)kind;
-	/* One that was not begun yet is replaced, under its own number. */
+	/* A write that was not begun yet is replaced and keeps its number. */
 	if (kind == CHECKPOINT_BASE) {
 		f->sequence += !f->due[kind];
 		b->base = *now;
-		/* A place of the base before means nothing any more. */
+		/* A place that belongs to the previous base means nothing any
+		 * more. */
 		f->due[CHECKPOINT_PLACE] = false;
 	} else {
 		f->count += !f->due[kind];

@@ -2,21 +2,21 @@
 /*
  * checkpoint.h - where the machine stands, on the disk
  *
- * One file beside the store, MACHINE.place, of four blocks that are made once and
- * then written in place, so that a full disk does not matter:
+ * One file beside the store, MACHINE.place, of four blocks that are made once
+ * and then written in place, so that a full disk does not matter:
  *
  *	base 0 | base 1 | place 0 | place 1
  *
  * A base is all that edmd would know after a crash: its snapshot, what was set,
  * which program of which text.  A place is the part of it that changes while it
  * cuts, and fits a sector.  Each has a sequence number and a hash, and is
- * written to the older of its two blocks; a place counts only with the base that
- * it was written for.  Torn or foreign blocks are told and left out.
+ * written to the older of its two blocks; a place counts only with the base
+ * that it was written for.  Torn or foreign blocks are told and left out.
  *
  * A place is written when the machine begins or ends to cut, travel, probe, or
  * stand, and then when CHECKPOINT_S of its time or CHECKPOINT_MM of ground have
- * passed.  A base is written when anything else changes.  Both at most as often as a
- * budget of CHECKPOINT_DAY_BYTES a day allows.
+ * passed.  A base is written when anything else changes.  Both at most as often
+ * as a budget of CHECKPOINT_DAY_BYTES a day allows.
  *
  * The writing is done by a thread of its own, because a memory card may take a
  * second for it; of what comes meanwhile the last is written.
@@ -98,7 +98,7 @@ void checkpoint_look(struct checkpoint_file *f,
 /** checkpoint_stats() - since it was opened. */
 void checkpoint_stats(struct checkpoint_file *f, struct checkpoint_stats *ret);
 
-/* -- checkpoint_block.c ------------------------------------------------------ */
+/* -- checkpoint_block.c --------------------------------------------------- */
 
 #define CHECKPOINT_BLOCK	4096
 #define CHECKPOINT_SECTOR	512
@@ -109,7 +109,8 @@ enum checkpoint_kind { CHECKPOINT_BASE, CHECKPOINT_PLACE };
 struct checkpoint_head {
 	char magic[8];			/* "edmplace" */
 	uint32_t version, kind;
-	uint64_t sequence;		/* of bases; a place has its base's ... */
+	uint64_t sequence;		/* of bases; a place has its base's
+					 * ... */
 	uint64_t count;			/* ... and one of its own */
 	char machine[SHM_NAME_MAX];
 	uint8_t hash[16];		/* of the block with this as zeros */

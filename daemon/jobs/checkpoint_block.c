@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * checkpoint_block.c - blocks of a checkpoint: sealed, checked, chosen
+ * checkpoint_block.c - the blocks of a checkpoint: sealed, checked, and the
+ * newest chosen
  */
 #include "checkpoint.h"
 
@@ -12,14 +13,16 @@
 #include <string.h>
 
 #define MAGIC	"edmplace"
-#define VERSION	(1 << 16 | SHM_LAYOUT)	/* it has shm.h's structs in it */
+#define VERSION	(1 << 16 | SHM_LAYOUT)	/* the blocks contain structs of
+					 * shm.h */
 
 _Static_assert(sizeof(struct checkpoint_head) +
 	       sizeof(struct checkpoint_base) <= CHECKPOINT_BLOCK, "a block");
 _Static_assert(sizeof(struct checkpoint_head) +
-	       sizeof(struct checkpoint_place) <= CHECKPOINT_SECTOR, "a sector");
+	       sizeof(struct checkpoint_place) <= CHECKPOINT_SECTOR,
+	       "a sector");
 
-/* A place is hashed as far as it is written. */
+/* The hash of a place covers the bytes that are written. */
 static size_t bytes_of(const union checkpoint_block *b)
 {
 	return b->head.kind == CHECKPOINT_BASE ? CHECKPOINT_BLOCK :
@@ -44,7 +47,8 @@ void checkpoint_seal(union checkpoint_block *b)
 	memcpy(b->head.hash, hash, sizeof(hash));
 }
 
-/* NULL: it is whole; "": it was never written. */
+/* NULL: the block is whole; "": it was never written; otherwise what is
+ * wrong. */
 static const char *wrong(const union checkpoint_block *b,
 			 enum checkpoint_kind kind, const char *machine)
 {

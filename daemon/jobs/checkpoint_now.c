@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * checkpoint_now.c - what there is to be written in a checkpoint
- */
+/* checkpoint_now.c - collects what has to be written in a checkpoint */
 #include "interrupt.h"
 
 #include "jobs.h"
@@ -27,13 +25,13 @@ static void fill_job(struct checkpoint_job *to, const struct jobs *j)
 	memcpy(to->start, j->eta.start, sizeof(to->start));
 }
 
-/* Times of single wakes are no part of the machine's place. */
+/* How late single wakes were does not belong to the place of the machine. */
 static void forget_timing(struct shm_snapshot *s)
 {
 	s->wake_late_ns = s->took_ns = 0;
 }
 
-/* The disk would not have it: perhaps now. */
+/* The disk did not accept the file before: try again. */
 static void try_open(struct jobs *j, int64_t now_us)
 {
 	static struct checkpoint ignored;
@@ -45,8 +43,8 @@ static void try_open(struct jobs *j, int64_t now_us)
 	err = checkpoint_open(&j->checkpoint, j->store_dir, j->machine,
 			      &ignored);
 	if (err != j->checkpoint_err && err)
-		log_error("checkpoint: %s/%s.place: %s; until it can be written "
-			  "a job is not found again after a power cut",
+		log_error("checkpoint: %s/%s.place: %s; until it can be "
+			  "written a job is not found again after a power cut",
 			  j->store_dir, j->machine, strerror(-err));
 	j->checkpoint_err = err;
 }
@@ -57,7 +55,8 @@ void checkpoint_tick(struct jobs *j, int64_t now_us)
 	const struct queue *q = &j->queue;
 
 	try_open(j, now_us);
-	/* Until it is known what became of the job, the last one stays. */
+	/* The last checkpoint stays until it is known what happened to the
+	 * job. */
 	if (!j->checkpoint || j->link.state != LINK_OK ||
 	    (q->job.n && j->link.snap.program != q->job.n))
 		return;
@@ -70,7 +69,7 @@ void checkpoint_tick(struct jobs *j, int64_t now_us)
 	if (j->link.status)
 		shm_sets(j->link.status, &now.sets);
 	checkpoint_look(j->checkpoint, &now, now_us);
-	/* As long as this service lives it knows better than its disk. */
+	/* As long as this service lives, it knows more than its disk. */
 	j->last.there = true;
 	j->last.base = now;
 	j->last.utime = now.utime;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * compile.c - NC code to a program, in a thread of its own
- */
+/* compiler.c - NC code to a program, in a thread of its own */
 #include "compiler.h"
 #include "compiling.h"
 
@@ -16,16 +14,17 @@
 #include <unistd.h>
 
 /*
- * A short text of calls inside calls asks for as much as it likes.  These are
- * some seconds, and below a GB; a text of 64 MiB that says each line itself
- * stays below them.
+ * A short text with calls inside calls can ask for any number of segments.
+ * This limit means some seconds of work and less than a GB.  A text of 64 MiB
+ * that has every line itself stays below it.
  */
 #define SEGS_MAX	8000000u
 #define EXECUTED_MAX	32000000u
 
 struct compiler {
 	pthread_t thread;
-	int fd;				/* readable when it is done */
+	int fd;				/* becomes readable when the thread is
+					 * done */
 	sd_event_source *source;
 	struct compiler_request request;
 	struct compiler_result result;
@@ -33,7 +32,7 @@ struct compiler {
 	void *arg;
 };
 
-/* The table is read for each job: one that was mended counts from the next
+/* The table is read for each job, so a corrected table is used from the next
  * job on. */
 static int read_tech(struct compiler *c, struct config_tech *t)
 {
@@ -69,6 +68,19 @@ static void take_note(void *arg, uint32_t line, const char *text)
 	r->nnotes++;
 }
 
+/* The values that were set are those of its conditions from now on. */
+static int go_on(struct compiler *c)
+{
+	const struct shm_sets *sets = &c->request.sets;
+	const uint64_t n = sets->n < SHM_SETS_MAX ? sets->n : SHM_SETS_MAX;
+
+	for (uint64_t i = 0; i < n; i++)
+		interp_build_set(c->result.build, sets->set[i].cond,
+				 sets->set[i].field, sets->set[i].value);
+	return interp_build_from(c->result.build, &c->request.from,
+				 &c->result.entry, &c->result.diag);
+}
+
 static int compiler_text(struct compiler *c, const struct config_tech *tech,
 			 const struct interp_dialect *dialect)
 {
@@ -79,6 +91,7 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	const struct interp_notes notes = { .say = take_note,
 					    .arg = &c->result };
 	struct config_compiling of;
+	int err;
 
 	config_compiling(c->request.config, tech, &of);
 	of.text.nc.notes = &notes;
@@ -89,11 +102,12 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	c->result.build = interp_build_create(&of.build);
 	if (!c->result.build)
 		return -ENOMEM;
-	return interp_compile(&text, &of.text, c->result.build, &c->result.lines,
-			      &c->result.diag);
+	err = interp_compile(&text, &of.text, c->result.build, &c->result.lines,
+			     &c->result.diag);
+	return err || !c->request.goes_on ? err : go_on(c);
 }
 
-/* The dialect's file is read for each job, too. */
+/* The file of the dialect is read for each job, too. */
 static int compiler_read(struct compiler *c, const struct config_tech *tech)
 {
 	struct compiler_result *r = &c->result;
@@ -120,7 +134,7 @@ static void *compiler_main(void *arg)
 	if (c->result.err == 0)
 		c->result.err = compiler_read(c, &tech);
 	config_tech_free(&tech);
-	/* An eventfd at 0 takes a 1 without fail. */
+	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
 	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
 		abort();
 	return NULL;
@@ -146,7 +160,7 @@ static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
 	return 0;
 }
 
-/* Signals are the event loop's: the thread blocks them all. */
+/* Signals belong to the event loop, so the thread blocks all of them. */
 static int thread_start(struct compiler *c)
 {
 	sigset_t all, old;

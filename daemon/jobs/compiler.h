@@ -11,7 +11,8 @@
 #define JOBS_COMPILE_H
 
 #include "config.h"
-#include "interp/build.h"
+#include "interp/build_from.h"
+#include "shm.h"
 
 #include <systemd/sd-event.h>
 
@@ -23,6 +24,11 @@ struct compiler_request {
 	const char *name;			/* of its file: the dialect */
 	const char *text;			/* lent, until the end */
 	size_t bytes;
+	/* If it goes on where another one was interrupted: start_mm is where
+	 * that one began, and these values were set in it. */
+	bool goes_on;
+	struct interp_build_from from;
+	struct shm_sets sets;
 };
 
 #define COMPILER_NOTES_MAX	16
@@ -44,6 +50,7 @@ struct compiler_result {
 	char tech_refusal[1024];		/* of the table or the
 					 * dialect; "": none */
 	struct interp_build *build;
+	struct interp_build_entry entry;	/* if it goes on */
 };
 
 typedef void (*compiler_done_fn)(void *arg, const struct compiler_result *r);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* eta.c - how long the job that runs will take yet */
+/* eta.c - how long the running job will still take */
 #include "eta.h"
 
 #include "shm.h"
@@ -20,7 +20,8 @@ static bool is_cut(const struct interp_seg *s)
 	return !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
 }
 
-/* Where it changes between the two, of the segments that have a length. */
+/* Find the places where cutting and positioning change, among the segments that
+ * have a length. */
 static size_t parts(const struct interp_program *p, struct eta_part *to)
 {
 	struct eta_part at = { .s_mm = 0 };
@@ -78,7 +79,7 @@ void eta_take(struct eta *l, const char *machine, uint32_t n)
 	l->n = n;
 }
 
-/* What is cut of the first @far_mm. */
+/* How much of the first @far_mm is cut. */
 static double cut_to(const struct eta *l, double far_mm)
 {
 	size_t low = 0, high = l->nparts;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * interrupt.c - a job that the power, or edmd's death, cut short
- */
+/* interrupt.c - a job that a power cut or the death of edmd ended early */
 #include "interrupt.h"
 
+#include "again.h"
 #include "jobs.h"
 #include "jobs_log.h"
 
@@ -13,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-/* The last checkpoint is of this very job. */
+/* Does the last checkpoint belong to this job? */
 static bool is_of_job(const struct checkpoint *c, const struct store_job *job)
 {
 	char hex[65];
@@ -24,7 +23,7 @@ static bool is_of_job(const struct checkpoint *c, const struct store_job *job)
 	       strcmp(hex, job->sha256) == 0;
 }
 
-/* A PLC starts a job without asking this service. */
+/* A PLC can start a job without asking this service. */
 bool interrupt_saw_begin(const struct jobs *j)
 {
 	return is_of_job(&j->last, &j->queue.job) &&
@@ -40,7 +39,7 @@ void interrupt_init(struct jobs *j)
 		snprintf(j->interrupted, sizeof(j->interrupted), "%s", job.id);
 }
 
-/* Its sums are those of the checkpoint. */
+/* Take the totals of the job from the checkpoint. */
 static void take_sums(struct queue *q, const struct checkpoint_base *b)
 {
 	q->snap = b->snap;
@@ -58,22 +57,19 @@ static void say_when(char *to, size_t size, int64_t utime)
 
 static void keep(struct jobs *j, const struct checkpoint *c)
 {
-	const size_t bytes = sizeof(c->base);
-	char *hex = malloc(2 * bytes + 1), reason[320], when[32];
+	static struct again a;
+	const struct shm_snapshot *s = &a.base.snap;
+	char reason[320], when[32];
 
-	if (!hex)
-		return;
+	again_interrupted(j, j->queue.job.n, &c->base, &a);
+	again_write(j, j->queue.job.n, &a);
+	take_sums(&j->queue, &a.base);
 	say_when(when, sizeof(when), c->utime);
-	sodium_bin2hex(hex, 2 * bytes + 1, (const unsigned char *)&c->base,
-		       bytes);
 	snprintf(reason, sizeof(reason), "interrupted in %s, line %u, at %.3f "
 		 "mm of %.3f, cut to %.3f mm; last seen %s; if the host did not "
 		 "go down, edmd's log says why",
-		 shm_state_name(c->base.snap.state), c->base.snap.line,
-		 c->base.snap.place_mm, c->base.snap.length_mm,
-		 c->base.snap.far_mm, when);
-	store_interrupt(j->store, j->queue.job.n, hex);
-	free(hex);
+		 shm_state_name(s->state), s->line, s->place_mm, s->length_mm,
+		 s->far_mm, when);
 	queue_end(j, JOB_INTERRUPTED, reason);
 	interrupt_init(j);
 }
@@ -90,7 +86,8 @@ void interrupt_take(struct jobs *j)
 		return;
 	}
 	take_sums(q, &c->base);
-	/* The end was written, and the store did not get it. */
+	/* The checkpoint has the end of the job, but the store did not get
+	 * it. */
 	if (!c->base.snap.loaded && c->base.snap.outcome == SHM_OUTCOME_DONE)
 		queue_end(j, JOB_DONE, "");
 	else if (!c->base.snap.loaded && c->base.snap.outcome)
@@ -108,7 +105,8 @@ const char *interrupt_lost(const struct jobs *j)
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (!(j->config->axes.present >> i & 1))
 			continue;
-		/* What nothing homes stands where somebody says. */
+		/* An axis that cannot be homed stands where an operator says
+		 * that it stands. */
 		if (j->link.snap.unhomed >> i & 1 ||
 		    (cut_short && j->config->manual[i].method == 0 &&
 		     !(j->vouched >> i & 1)))

@@ -20,7 +20,7 @@
 #define STORE		"/var/lib/edmd"
 #define HOST		"host"		/* the name of the host's key */
 
-/* -- At the start ----------------------------------------------------------- */
+/* -- At the start --------------------------------------------------------- */
 
 static int key_check(const struct jobs *j, const struct keyfile *k,
 		     const char *path)
@@ -175,7 +175,7 @@ void keys_close(struct jobs *j)
 	unlink(path);
 }
 
-/* -- Verbs ------------------------------------------------------------------ */
+/* -- Verbs ---------------------------------------------------------------- */
 
 static void answer_body(struct jobs *j, const struct jobs_lcm_command *c,
 			const char *body)
@@ -277,9 +277,10 @@ void keys_remove(struct jobs *j, const struct verb *v,
 		return;
 	}
 	if (store_key_remove(j->store, c->text) < 0) {
-		verbs_answer(j, c, EX_IOERR, "it is not taken any more, but the "
-			    "store failed: it comes back when edmd-jobs is "
-			    "started again; see its journal");
+		verbs_answer(j, c, EX_IOERR,
+			     "it is not taken any more, but the store failed: "
+			     "it comes back when edmd-jobs is started again; "
+			     "see its journal");
 		return;
 	}
 	log_notice("keys: %s removed %s, from %s", by.name, c->text, c->from);

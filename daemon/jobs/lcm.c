@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * lcm.c - generated LCM messages to our structs and back
- */
+/* lcm.c - converts generated LCM messages to our structs and back */
 #include "lcm.h"
 
 #include "jobs_log.h"
@@ -23,16 +21,18 @@
 #define CHANNEL_MAX	64
 
 struct jobs_lcm {
-	lcm_t *lcm;			/* to send by; it hears nothing */
+	lcm_t *lcm;			/* used only for sending; it does not
+					 * listen */
 	struct udpm *in;
 	char machine[32];
 	char command[CHANNEL_MAX], job[CHANNEL_MAX];
 	struct jobs_lcm_handlers handlers;
 	struct trust *trust;
-	uint64_t strange;		/* packets told of */
+	uint64_t strange;		/* number of malformed packets that were
+					 * reported */
 };
 
-/* What stands in front of every message: whose it is. */
+/* What comes before every message: who sent it. */
 struct origin {
 	enum trust_cause cause;
 	const struct trust_packet *packet;
@@ -54,18 +54,18 @@ static int64_t utime(void)
 	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
 }
 
-/* LCM strings are char *, though it only reads them. */
+/* LCM declares strings as char *, but only reads them. */
 static char *lent(const char *s)
 {
 	return (char *)(uintptr_t)(s ? s : "");
 }
 
 /*
- * The generated decoder trusts every length it reads: a negative one is
- * copied as a huge one, and a string need not end.  So each packet is walked
- * along its type's shape first:
+ * The generated decoder trusts every length that it reads: it copies a negative
+ * one as a huge one, and a string need not have an end.  So the shape of its
+ * type is checked for each packet first:
  *
- *	q 8 bytes, i 4 bytes, b 1 byte, H 32 bytes, s string,
+ *	q 8 bytes, i 4 bytes, b 1 byte, H 32 bytes, s a string,
  *	a as many bytes as the i before it says
  */
 static bool shape_step(char what, const uint8_t **at, size_t *left,
@@ -104,7 +104,7 @@ static bool shape_step(char what, const uint8_t **at, size_t *left,
 	return true;
 }
 
-/* @ret_count: what the last i or s said. */
+/* @ret_count: the value of the last i or s. */
 static bool shape_fits(const struct seal *m, const char *shape,
 		       uint32_t *ret_count)
 {
@@ -117,11 +117,11 @@ static bool shape_fits(const struct seal *m, const char *shape,
 	return left == 0;
 }
 
-/* The first q of a shape is the type's fingerprint. */
+/* The first q of a shape is the fingerprint of the type. */
 #define SHAPE_COMMAND	"qqsqssqs"
 #define SHAPE_CHUNK	"qqsqssqHiiqbia"
 
-/* Why a packet of a key is not taken, to who sent it. */
+/* Tell the sender why its packet is not accepted. */
 static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
 			 enum trust_cause cause)
 {
@@ -140,7 +140,8 @@ static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
 	});
 }
 
-/* Is it from a key, for now, and not heard before?  Else it is told. */
+/* Is the packet signed with a known key, for the present time, and new?  If
+ * not, say so. */
 static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 		     const char *client, int64_t seq)
 {
@@ -163,7 +164,7 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 	if (cause == TRUST_FINE)
 		return true;
 	trust_who(o->packet, who);
-	/* Who asks for the first time cannot know the boot number. */
+	/* A client that asks for the first time cannot know the boot number. */
 	if (cause != TRUST_BOOT || o->packet->seal.boot != 0)
 		trust_refuse(w->trust, cause, who, o->packet->from, now);
 	if (cause != TRUST_REPLAY)
@@ -171,7 +172,7 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 	return false;
 }
 
-/* Return: false if it has not the shape of the type. */
+/* Return: false if the packet does not have the shape of the type. */
 static bool on_command(struct jobs_lcm *w, const struct origin *o)
 {
 	const struct seal *s = &o->packet->seal;
@@ -195,8 +196,9 @@ static bool on_command(struct jobs_lcm *w, const struct origin *o)
 }
 
 /*
- * The generated decoder copies no bytes to NULL, which C does not allow: a
- * chunk without data, as of an empty file, is decoded as one with a byte.
+ * For a chunk without data, as from an empty file, the generated decoder copies
+ * 0 bytes to NULL, which C does not allow.  So such a chunk is decoded as one
+ * with a single byte.
  */
 static int chunk_decode(const struct seal *s, uint32_t size,
 			edm_job_chunk_t *ret)
@@ -210,7 +212,7 @@ static int chunk_decode(const struct seal *s, uint32_t size,
 	padded = calloc(n + 1, 1);
 	if (!padded)
 		return -1;
-	/* size is what the packet ends with, big-endian. */
+	/* The size is the last field of the packet, big-endian. */
 	memcpy(padded, s->data, n);
 	padded[n - 1] = 1;
 	got = edm_job_chunk_t_decode(padded, 0, (int)n + 1, ret);
@@ -251,7 +253,8 @@ static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u)
 	char who[KEYFILE_NAME_MAX] = "no key";
 	bool answer;
 
-	/* Of another machine, or what services send. */
+	/* It is for another machine, or it is something that only services
+	 * send. */
 	if (!command && strcmp(u->channel, w->job) != 0)
 		return;
 	o.cause = trust_look(w->trust, &packet, u->data, u->size, now,
@@ -328,7 +331,7 @@ void jobs_lcm_handle(struct jobs_lcm *w)
 			     now_us());
 }
 
-/* Sign what LCM has laid out in @bytes, and send it. */
+/* Sign the message that LCM has encoded in @bytes, and send it. */
 static void publish(struct jobs_lcm *w, const char *name, const void *data,
 		    int bytes)
 {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * link.c - follow edmd through its shared memory, and command it
- */
+/* link.c - watches edmd through its shared memory, and sends it commands */
 #include "link.h"
 
 #include "jobs_log.h"
@@ -12,10 +10,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#define STALE_US	500000		/* the cycle counter stands */
-#define LOOK_US		100000		/* between looks at the process */
-#define TAKE_US		1500000		/* later it does not take a command */
-#define ANSWER_US	500000		/* after that: it answers in a cycle */
+#define STALE_US	500000		/* if the cycle counter stands so long,
+					 * edmd is lost */
+#define LOOK_US		100000		/* between two checks of the process */
+#define TAKE_US		1500000		/* a command that comes later is not
+					 * taken */
+#define ANSWER_US	500000		/* after it took one: it answers within
+					 * a cycle */
 
 const char *link_state_name(enum link_state s)
 {
@@ -29,7 +30,7 @@ void link_init(struct link *l, const char *machine,
 		.state = LINK_ABSENT, .handlers = *h, .commands = -1,
 	};
 	snprintf(l->machine, sizeof(l->machine), "%s", machine);
-	/* Another start's answers may still lie in the ring. */
+	/* The answers to an earlier service may still be in the ring. */
 	randombytes_buf(&l->next_id, sizeof(l->next_id));
 }
 
@@ -65,8 +66,8 @@ static uint32_t instance_of(const struct link *l)
 }
 
 /*
- * A predecessor's snapshot stays until edmd's first own, so edmd is there
- * only when a cycle was seen to pass.
+ * The snapshot of a predecessor stays until edmd publishes its own.  So edmd
+ * counts as running only after a cycle has passed.
  */
 static int link_open(struct link *l, int64_t now_us)
 {
@@ -120,7 +121,8 @@ static void link_set(struct link *l, enum link_state state)
 	l->handlers.changed(l->handlers.arg);
 }
 
-/* What became of the commands that an edmd left behind: it is in its record. */
+/* Find out what became of the commands that an edmd left behind.  Its record
+ * says so. */
 static void pending_settle(struct link *l, int64_t now_us, int otherwise)
 {
 	for (int i = 0; i < LINK_PENDING; i++) {
@@ -194,7 +196,8 @@ void link_poll(struct link *l, int64_t now_us)
 	if (!l->status)
 		return;
 
-	/* Events before the snapshot: what ended is known before it is gone. */
+	/* Events come before the snapshot: then the end of a job is known
+	 * before the job disappears. */
 	if (l->state == LINK_OK)
 		take_events(l);
 	take_snapshot(l, now_us);

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * load.c - from the store into edmd: compile, lay out, load
- *
- * The text is compiled again although submit did so: the machine may stand
- * somewhere else by now, and the path begins there.
- */
+/* load.c - takes a job from the store and loads it into edmd */
 #include "jobs.h"
 
+#include "again.h"
 #include "compiler.h"
 #include "jobs_log.h"
 
@@ -63,7 +59,7 @@ static void on_asked(void *arg, int code)
 	}
 }
 
-/* A start is one act: refused, it waits for the next one. */
+/* A start is one act: if it is refused, the job waits for the next start. */
 static void on_started(void *arg, int code)
 {
 	struct jobs *j = arg;
@@ -93,7 +89,7 @@ int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us)
 	return err;
 }
 
-/* The job did not get as far as edmd. */
+/* The job did not reach edmd. */
 static void load_refuse(struct jobs *j, struct store_job job,
 			const char *reason)
 {
@@ -109,7 +105,7 @@ static void on_loaded(void *arg, int code)
 	struct jobs *j = arg;
 	char reason[128];
 
-	/* A large one takes its time. */
+	/* A large program takes its time. */
 	if (code == SHM_TAKEN && j->link.state == LINK_OK &&
 	    link_await(&j->link, &(struct link_command) {
 			.id = j->queue.load_id, .answer = on_loaded,
@@ -143,7 +139,8 @@ static int load_write(struct jobs *j, const struct compiler_result *r)
 
 	sodium_hex2bin(about.hash, sizeof(about.hash), q->job.sha256,
 		       strlen(q->job.sha256), NULL, NULL, NULL);
-	/* Before the object exists: a killed service finds and removes it. */
+	/* This is written before the object exists, so that a service that is
+	 * started after a kill finds the object and removes it. */
 	err = store_set_loaded(j->store, q->job.n, true);
 	if (err != 0)
 		return -EAGAIN;
@@ -167,7 +164,7 @@ static void load_ask(struct jobs *j, const struct compiler_result *r)
 	randombytes_buf(&c.id, sizeof(c.id));
 	j->queue.load_id = c.id |= 1;
 
-	/* The store failed: it waits in the queue as before. */
+	/* The store failed.  The job waits in the queue as before. */
 	if (err == -EAGAIN) {
 		queue_drop(j, true);
 		return;
@@ -190,19 +187,24 @@ static void on_compiled(void *arg, const struct compiler_result *r)
 	struct jobs *j = arg;
 	struct queue *q = &j->queue;
 	struct store_job job = q->next, found;
+	const char *why;
 	char reason[640];
 
 	q->compile = NULL;
 	free(q->next_text);
 	q->next_text = NULL;
-	/* It may have been removed, and edmd may have gone, meanwhile. */
+	/* Meanwhile the job may have been removed, and edmd may have ended. */
 	if (q->job.n || store_find(j->store, job.id, &found) < 0 ||
 	    found.state != JOB_QUEUED || j->link.state != LINK_OK)
 		return;
 	if (r->err == 0) {
 		q->job = found;
 		store_set_tech(j->store, found.n, r->tech_sha256);
-		load_ask(j, r);
+		why = again_loaded(j, r);
+		if (why)
+			load_refuse(j, found, why);
+		else
+			load_ask(j, r);
 		queue_recount(j);
 		return;
 	}
@@ -227,12 +229,18 @@ void load_begin(struct jobs *j, int64_t now_us)
 		request.text = q->next_text;
 		for (int i = 0; i < INTERP_NAXES; i++)
 			request.start_mm[i] = s->pos[i] * s->pulse_mm[i];
+		err = again_request(j, &q->next, &request);
+	}
+	if (err == 0)
 		err = compiler_start(&q->compile, j->event, &request,
 				     on_compiled, j);
-	}
 	if (err == -EILSEQ) {
-		load_refuse(j, q->next, "its text in the store is not the one "
-			    "that was sent: the disk damaged it; send it again");
+		load_refuse(j, q->next,
+			    "its text in the store is not the one that was "
+			    "sent: the disk damaged it; send it again");
+	} else if (err == -ESTALE) {
+		free(q->next_text);
+		q->next_text = NULL;
 	} else if (err < 0) {
 		q->again_us = now_us + AGAIN_US;
 		free(q->next_text);

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * main.c - edmd-jobs: options, the event loop, beginning and end
- */
+/* main.c - edmd-jobs: options, the event loop, start and end */
 #include "jobs.h"
 
 #include "cmdline.h"
@@ -34,11 +32,11 @@ struct options {
 /* clang-format off */
 static const struct cmdline_row rows[] = {
 	{ "config", "FILE", CMDLINE_WORD, AT(config), .help =
-	  "the machine file, the same as edmd's" },
+	  "machine file, the same as for edmd" },
 	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
-	  "of the machine; default: the file's [machine] name" },
+	  "name of the machine; default: [machine] name" },
 	{ "store", "DIR", CMDLINE_WORD, AT(store), .help =
-	  "for the database; default: the file's [jobs] store" },
+	  "folder of the database; default: [jobs] store" },
 };
 /* clang-format on */
 
@@ -48,8 +46,8 @@ static const struct cmdline table = {
 	.head =
 	"Usage: edmd-jobs --config FILE [options]\n"
 	"\n"
-	"Takes jobs over LCM, keeps them in a queue, loads them into edmd and\n"
-	"tells how they go.  A job that runs goes on without it.\n"
+	"Receives jobs over LCM, keeps them in a queue, loads them into edmd and\n"
+	"reports how they proceed.  A running job goes on without it.\n"
 	"\n",
 };
 
@@ -87,7 +85,8 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 		.outcome = n->outcome ? n->outcome : "", .text = words,
 		.place_mm = n->place_mm, .now_us = jobs_utime(),
 	});
-	/* What is told is true; that the disk does not know it is told, too. */
+	/* What is reported is true.  If the disk does not have it, that is
+	 * reported too. */
 	if (err != 0)
 		snprintf(words + strlen(words), sizeof(words) - strlen(words),
 			 " (kept in memory, not on the disk: %s)",
@@ -138,7 +137,7 @@ static void tell_mended(struct jobs *j)
 	}, "%s", store_mended(j->store));
 }
 
-/* Tell when the store is degraded, and when it is whole again. */
+/* Report when the store becomes degraded, and when it is whole again. */
 static void watch_store(struct jobs *j, int64_t now_us)
 {
 	const bool whole = store_tick(j->store, now_us);
@@ -152,7 +151,7 @@ static void watch_store(struct jobs *j, int64_t now_us)
 	}, "store %s%s", *why ? "degraded: " : "is whole again", why);
 	if (whole && *store_mended(j->store))
 		tell_mended(j);
-	/* Nothing was known of what is in it. */
+	/* Until now nothing was known of what is in the store. */
 	if (whole && j->queue.job.n == 0)
 		queue_init(j);
 }
@@ -182,7 +181,7 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 	return sd_event_source_set_time_relative(s, TICK_US);
 }
 
-/* -1 to go on, or what to exit with. */
+/* Return: -1 to go on, or the exit code. */
 static int parse(int argc, char **argv, struct options *o)
 {
 	struct cmdline_given given;
@@ -247,9 +246,11 @@ static int open_store(struct jobs *j, const char *dir)
 	return EX_CANTCREAT;
 }
 
-/* Two of them would give one machine two orders of jobs. */
+/* Two services would give one machine two different queues. */
 static int claim(struct jobs *j)
 {
+	char path[SHM_PATH_MAX];
+
 	j->claim = shm_writer_claim(j->machine);
 	if (j->claim >= 0)
 		return 0;
@@ -258,9 +259,9 @@ static int claim(struct jobs *j)
 			  "edmd-jobs for a machine", j->machine);
 		return EX_TEMPFAIL;
 	}
-	log_error("machine %s: /dev/shm/edmd.%s.writer: %s; remove it, or run "
-		  "as the user who made it", j->machine, j->machine,
-		  strerror(-j->claim));
+	shm_path(path, j->machine, "writer");
+	log_error("machine %s: %s: %s; remove it, or run as the user who made "
+		  "it", j->machine, path, strerror(-j->claim));
 	return EX_CANTCREAT;
 }
 
@@ -289,8 +290,8 @@ static int open_lcm(struct jobs *j)
 
 static const int signals[] = { SIGTERM, SIGINT };
 
-/* One that comes before the loop waits for it, so that a service that is ended
- * while it starts leaves nothing behind. */
+/* A signal that comes before the loop waits for the loop.  So a service that is
+ * ended while it starts leaves nothing behind. */
 static void block_signals(void)
 {
 	sigset_t set;
@@ -302,7 +303,7 @@ static void block_signals(void)
 	signal(SIGPIPE, SIG_IGN);
 }
 
-/* Signals end the loop; its exit code is the program's. */
+/* Signals end the loop.  The exit code of the loop is that of the program. */
 static int add_sources(struct jobs *j)
 {
 	int err;
@@ -357,7 +358,7 @@ static int run(struct jobs *j)
 	return err < 0 ? EX_SOFTWARE : EX_OK;
 }
 
-/* Zeros if it cannot be read. */
+/* The hash is zeros if the file cannot be read. */
 static void hash_file(uint8_t ret[32], const char *path)
 {
 	crypto_hash_sha256_state h;
@@ -385,7 +386,7 @@ int main(int argc, char **argv)
 		return err;
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;
-	/* What others may read says so itself. */
+	/* A file that others may read gets its mode explicitly. */
 	umask(0077);
 	err = configure(&jobs, &config, &o);
 	if (err)
@@ -397,7 +398,7 @@ int main(int argc, char **argv)
 	if (err == 0)
 		err = claim(&jobs);
 	jobs.store_dir = o.store ? o.store : config.store_dir;
-	/* A service without checkpoints is better than none. */
+	/* A service without checkpoints is better than no service. */
 	if (err == 0)
 		checkpoint_open(&jobs.checkpoint, jobs.store_dir, jobs.machine,
 				&jobs.last);

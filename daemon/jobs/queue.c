@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * queue.c - follow the job at the machine
- */
+/* queue.c - follows the job that is in the machine */
+#include "again.h"
 #include "faults.h"
 #include "hunting.h"
 #include "interrupt.h"
@@ -15,7 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MISSING_US	500000		/* edmd needs a moment to come back */
+#define MISSING_US	500000		/* time that edmd gets to come back */
 #define AGAIN_US	1000000
 
 bool queue_is_leaving(const struct queue *q)
@@ -60,7 +59,7 @@ int queue_promise(struct jobs *j)
 	return err;
 }
 
-/* It did not begin: that it may have is taken back. */
+/* The job did not begin, so the store is told that it has not begun. */
 void queue_unpromise(struct jobs *j)
 {
 	if (j->queue.promised)
@@ -72,7 +71,8 @@ void queue_started(struct jobs *j, int code)
 {
 	struct queue *q = &j->queue;
 
-	/* Whatever is not a clear no may have been done. */
+	/* Unless the answer is a clear no, the command may have been carried
+	 * out. */
 	if (code > 0 && code != SHM_CUT_SHORT && code != SHM_DONE)
 		queue_unpromise(j);
 	if (code != SHM_DONE)
@@ -92,13 +92,13 @@ const char *queue_unready(const struct jobs *j)
 		return "a fault is latched: it wants a reset";
 	if (*j->interrupted)
 		return "a job was interrupted, and its work may still be "
-		       "there: remove it from the queue first";
+		       "there: resume it or remove it first";
 	if (j->config->require_home && j->link.snap.unhomed)
 		return "an axis is not homed: home it";
 	return NULL;
 }
 
-/* Asked of edmd itself: the last look may be older than the fault. */
+/* Ask edmd's memory itself: the last snapshot may be older than the fault. */
 bool queue_is_faulted(const struct jobs *j)
 {
 	struct shm_snapshot s;
@@ -140,12 +140,20 @@ int queue_init(struct jobs *j)
 	return 0;
 }
 
-/* The sums of the job, as far as they are known. */
+/* Write the end of the job with its totals, as far as they are known. */
 static void record_end(struct jobs *j, enum job_state state,
 		       const char *reason)
 {
-	const struct shm_snapshot *s = &j->queue.snap;
-	struct store_end e = {
+	struct shm_snapshot whole = j->queue.snap;
+	const struct shm_snapshot *s = &whole;
+	static struct again a;
+	struct store_end e;
+
+	/* Of an interrupted one interrupt.c has put them together. */
+	if (state != JOB_INTERRUPTED &&
+	    again_read(j, j->queue.job.n, &a) == 0)
+		again_whole(&a, &whole);
+	e = (struct store_end) {
 		.state = state,
 		.reason = reason,
 		.now_us = jobs_utime(),
@@ -217,7 +225,7 @@ void queue_attach(struct jobs *j)
 	}
 }
 
-/* What edmd tells of conditions and sets, into the job's history. */
+/* Write what edmd says of conditions and sets into the history of the job. */
 static void follow_change(struct jobs *j, const struct shm_event *e)
 {
 	struct store_change c = {
@@ -238,15 +246,16 @@ static void follow_change(struct jobs *j, const struct shm_event *e)
 	store_change(j->store, j->queue.job.n, &c);
 }
 
-/* One that has not begun makes room: for another, or because nothing may begin
- * that cannot be stored. */
+/* A job that has not begun is put back: another one is wanted, or nothing may
+ * begin because it cannot be stored. */
 static void give_back(struct jobs *j)
 {
 	load_send(j, SHM_UNLOAD, j->queue.job.n, jobs_now_us());
 	queue_drop(j, true);
 }
 
-/* By the PLC.  One that has begun stays; one that has not makes room. */
+/* The PLC selects a job.  A job that has begun stays.  One that has not begun
+ * is put back. */
 static void follow_select(struct jobs *j, uint32_t n)
 {
 	struct queue *q = &j->queue;
@@ -259,7 +268,7 @@ static void follow_select(struct jobs *j, uint32_t n)
 	give_back(j);
 }
 
-/* The cut goes on, and somebody should look at it. */
+/* The cut goes on, but a person should look at it. */
 static void follow_hunting(struct jobs *j, const struct shm_event *e)
 {
 	struct queue *q = &j->queue;
@@ -281,7 +290,8 @@ void queue_event(struct jobs *j, const struct shm_event *e)
 		follow_hunting(j, e);
 	if (e->kind == SHM_EV_SELECT)
 		follow_select(j, (uint32_t)e->code);
-	/* May be an old one, of an earlier loading: only used if it is gone. */
+	/* The event may be an old one, of an earlier loading.  It is used only
+	 * when the program is gone. */
 	if (e->kind != SHM_EV_ENDED || !q->job.n || e->program != q->job.n)
 		return;
 	if (e->code == SHM_OUTCOME_DONE || e->code == SHM_OUTCOME_STOPPED)
@@ -301,7 +311,7 @@ static void follow_fault(struct jobs *j)
 		.place_mm = q->snap.place_mm,
 	}, "job %s: fault %s in line %u; reset, then start goes on, stop "
 		  "ends it", q->job.name, fault, q->snap.line);
-	/* A reset alone must not set it in motion. */
+	/* A reset alone must not start the job. */
 	set_waiting(j, true);
 }
 
@@ -339,7 +349,8 @@ static void follow_hold(struct jobs *j, int64_t now_us)
 	if (q->job.hold || q->waiting || q->asked || q->loading ||
 	    now_us < q->again_us)
 		return;
-	/* Asked for once: killed over it, or refused, it waits for a person. */
+	/* Start it only once.  If it was refused, or the service was killed
+	 * over it, the job waits for a person. */
 	if (store_number(j->store, "started", 0) == q->job.n) {
 		log_notice("queue: job %s was to start when this service "
 			   "ended; it waits for start", q->job.id);
@@ -392,14 +403,15 @@ static void follow_state(struct jobs *j, int64_t now_us)
 	}
 }
 
-/* It was handed a start, and nobody is left who knows what came of it. */
+/* A start was handed over, and nobody is left who knows what became of it. */
 static bool may_have_begun(const struct jobs *j)
 {
 	return j->queue.job.begun_us || interrupt_saw_begin(j) ||
 	       store_number(j->store, "started", 0) == j->queue.job.n;
 }
 
-/* edmd shows another program, or none: for a moment, or for good? */
+/* edmd has another program, or none.  Is that only for a moment, or for
+ * good? */
 static void follow_missing(struct jobs *j, int64_t now_us)
 {
 	struct queue *q = &j->queue;
@@ -420,7 +432,7 @@ static void follow_missing(struct jobs *j, int64_t now_us)
 	}
 }
 
-/* A program that this service did not load, or has forgotten. */
+/* edmd has a program that this service did not load, or has forgotten. */
 static void unload_stranger(struct jobs *j, int64_t now_us)
 {
 	struct queue *q = &j->queue;
@@ -437,13 +449,13 @@ static void unload_stranger(struct jobs *j, int64_t now_us)
 	}
 }
 
-/* In a jog, in homing, or one that was idle. */
+/* A fault in a jog, in homing, or while the machine was idle. */
 static void fault_without_job(struct jobs *j)
 {
 	struct queue *q = &j->queue;
 	const char *fault = fault_name(j->link.snap.fault);
 
-	/* A reset alone must set nothing in motion. */
+	/* A reset alone must not start anything. */
 	set_waiting(j, q->waiting || q->behind > 0);
 	if (q->fault_told == j->link.snap.fault)
 		return;
@@ -453,8 +465,8 @@ static void fault_without_job(struct jobs *j)
 	}, "fault %s without a job; reset leaves it", fault);
 }
 
-/* An axis under way has no place to begin at; nor one not homed, if it must;
- * nor one whose drive has lost it. */
+/* A path cannot begin while an axis moves, nor where an axis is not homed but
+ * must be, nor where a drive has lost its place. */
 static bool may_load(const struct jobs *j)
 {
 	return j->link.snap.state == SHM_IDLE && !j->link.snap.unplaced &&

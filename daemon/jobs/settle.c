@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * settle.c - what edmd knows of jobs that ended, and the store does not
+ * settle.c - jobs that edmd knows to have ended, and the store does not
  *
- * A service that could not write to the disk, and was killed, left jobs in the
- * store that are queued, ready or running there and have ended long ago.  edmd
- * remembers the last of them by number and text.
+ * If a service cannot write to the disk and is killed, the store has jobs as
+ * queued, ready or running that ended long ago.  edmd remembers the last of
+ * them by number and text.
  */
 #include "jobs.h"
 
@@ -18,8 +18,8 @@ static bool is_over(const struct store_job *job)
 	return job->state == JOB_DONE || job->state == JOB_STOPPED;
 }
 
-/* One that was unloaded before it began is still to be cut; so is one of the same
- * number and text that was sent later, to a store that began anew. */
+/* A job that was unloaded before it began still has to be cut.  So does one
+ * with the same number and text that was sent later, to a new store. */
 static bool is_of(const struct shm_ended *e, const struct store_job *job)
 {
 	char hex[65];
@@ -36,7 +36,7 @@ static void settle_one(void *arg, const struct shm_ended *e)
 	const bool done = e->outcome == SHM_OUTCOME_DONE;
 	struct store_job job;
 
-	/* The one that is there is followed by its snapshot. */
+	/* The program that is in edmd now is followed by its snapshot. */
 	if (e->program == j->link.snap.program ||
 	    store_find_number(j->store, e->program, &job) < 0 ||
 	    is_over(&job) || !is_of(e, &job))

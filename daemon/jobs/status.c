@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * status.c - edmd's snapshot and the job loaded, as STATUS
- */
+/* status.c - STATUS, from edmd's snapshot and the loaded job */
 #include "faults.h"
 #include "interrupt.h"
 #include "jobs.h"
@@ -12,9 +10,9 @@
 #include <string.h>
 
 #define STATUS_US	100000
-#define GRACE_US	300000		/* to find edmd, after a start */
+#define GRACE_US	300000		/* time to find edmd after the start */
 
-/* Whatever of this changes is told at once. */
+/* If anything of this changes, STATUS is sent at once. */
 static uint64_t key_of(const struct jobs *j)
 {
 	const struct shm_snapshot *s = &j->link.snap;
@@ -84,7 +82,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 
 	if (key == j->status_key && now_us - j->status_us < STATUS_US)
 		return;
-	/* "absent" would be a guess as yet. */
+	/* It is too early to say "absent": that would be a guess. */
 	if (j->link.state == LINK_ABSENT && now_us - j->begun_us < GRACE_US)
 		return;
 	j->status_key = key;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * store.c - jobs, events and a few numbers: what is written and asked
- */
+/* store.c - jobs, events and a few numbers: writing and asking */
 #include "store_sql.h"
 #include "store_turn.h"
 
@@ -37,7 +35,7 @@ static enum job_state state_of(const unsigned char *name)
 	return JOB_STOPPED;
 }
 
-/* -- A new one -------------------------------------------------------------- */
+/* -- A new one ------------------------------------------------------------ */
 
 static int insert(struct store *s, const struct store_new *j)
 {
@@ -83,13 +81,13 @@ int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 	*ret_n = (uint32_t)n;
 	if (store_commit(s) == 0)
 		return 0;
-	/* It may have reached the file all the same.  It is no job. */
+	/* The row may have reached the file even so, but it is not a job. */
 	store_do(s, STORE_KEEP, "DELETE FROM job WHERE id=? AND begun_us=0",
 		 "S", j->id);
 	return s->err;
 }
 
-/* -- One that is there ------------------------------------------------------ */
+/* -- One that is there ---------------------------------------------------- */
 
 static void column_copy(sqlite3_stmt *q, int i, char *to, size_t size)
 {
@@ -158,9 +156,9 @@ int store_head(struct store *s, struct store_job *ret)
 	return job_get(q, err, ret);
 }
 
-/* -- Its text --------------------------------------------------------------- */
+/* -- Its text ------------------------------------------------------------- */
 
-/* A page that came back with other bytes is not always noticed by SQLite. */
+/* SQLite does not always notice that a page comes back with other bytes. */
 static bool is_the_text(const char *text, size_t bytes, const char *sha256)
 {
 	unsigned char hash[crypto_hash_sha256_BYTES];
@@ -206,7 +204,7 @@ int store_text(struct store *s, uint32_t n, char **ret, size_t *ret_bytes)
 	return err;
 }
 
-/* -- What becomes of it ----------------------------------------------------- */
+/* -- What becomes of it --------------------------------------------------- */
 
 int store_set_state(struct store *s, uint32_t n, enum job_state state)
 {
@@ -263,6 +261,13 @@ int store_interrupt(struct store *s, uint32_t n, const char *at)
 			"(?, ?)", "Is", (int64_t)n, at);
 }
 
+int store_again(struct store *s, uint32_t n)
+{
+	return store_do(s, STORE_KEEP, "UPDATE job SET state='queued', hold=1, "
+			"begun_us=0 WHERE n=? AND state='interrupted'", "I",
+			(int64_t)n);
+}
+
 int store_interrupted(struct store *s, struct store_job *ret)
 {
 	int err;
@@ -283,17 +288,18 @@ char *store_resume_at(struct store *s, uint32_t n)
 	return at;
 }
 
-/* edmd's events come again when either side was restarted; their time tells
- * them.  NAN becomes NULL. */
+/* edmd's events come again when either program was restarted; their time shows
+ * that they are the same.  NAN becomes NULL. */
 int store_change(struct store *s, uint32_t n, const struct store_change *c)
 {
 	if (c->condition)
-		return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO change "
-				"VALUES(?1, ?2, 'condition', (SELECT now FROM "
-				"change WHERE n=?1 AND what='condition' AND "
-				"time_ns<?2 ORDER BY time_ns DESC LIMIT 1), ?3, "
-				"?4)", "iisd", (int64_t)n, c->time_ns,
-				c->condition, c->place_mm);
+		return store_do(s, STORE_MAY_GO,
+				"INSERT OR IGNORE INTO change VALUES(?1, ?2, "
+				"'condition', (SELECT now FROM change WHERE "
+				"n=?1 AND what='condition' AND time_ns<?2 "
+				"ORDER BY time_ns DESC LIMIT 1), ?3, ?4)",
+				"iisd", (int64_t)n, c->time_ns, c->condition,
+				c->place_mm);
 	return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO change "
 			"VALUES(?, ?, ?, ?, ?, ?)", "iisddd", (int64_t)n,
 			c->time_ns, c->field, c->was, c->now, c->place_mm);
@@ -306,7 +312,7 @@ int store_note(struct store *s, const struct store_note *e)
 			e->job, e->outcome, e->place_mm, e->text);
 }
 
-/* -- Numbers ---------------------------------------------------------------- */
+/* -- Numbers -------------------------------------------------------------- */
 
 uint32_t store_waiting(struct store *s)
 {

@@ -158,6 +158,8 @@ int store_end(struct store *s, uint32_t n, const struct store_end *e);
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
 /** store_interrupt() - @at: its checkpoint, hex, for store_resume_at(). */
 int store_interrupt(struct store *s, uint32_t n, const char *at);
+/** store_again() - the interrupted job @n is queued again, and has not begun. */
+int store_again(struct store *s, uint32_t n);
 /** store_interrupted() - the job that was interrupted last.  0 or -ENOENT. */
 int store_interrupted(struct store *s, struct store_job *ret);
 /** store_resume_at() - the checkpoint of job @n; to be freed.  NULL: none. */
@@ -169,8 +171,8 @@ int store_note(struct store *s, const struct store_note *e);
 /**
  * store_together() - what is written up to store_commit() is written at once.
  * @durable: through a power cut, not only through a kill.
- * Return: 0, or STORE_KEPT: what was written without a promise is in memory; what
- * must be on the disk is not.
+ * Return: 0, or STORE_KEPT: what was written without a promise is in memory;
+ * what must be on the disk is not.
  */
 int store_together(struct store *s, bool durable);
 int store_commit(struct store *s);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * store_file.c - the database's file: opened, brought up to date, copied
+ * store_file.c - the file of the database: opened, updated, copied
  *
- * A new shape of the tables is a new row of `steps`, never a change of an old
- * one: a new file goes through all of them, so that it has the same columns in
- * the same order as one that was made by the first edmd-jobs.
+ * A change of the tables is a new row of `steps`, never a change of an old
+ * row.  A new file goes through all steps.  So it has the same columns in the
+ * same order as a file that the first edmd-jobs made.
  */
 #include "store_sql.h"
 
@@ -18,9 +18,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define CHECK_BYTES	(256ll << 20)	/* larger ones take too long */
+#define CHECK_BYTES	(256ll << 20)	/* checking a larger file would take too
+					 * long */
 
-/* Step i brings a file of version i to version i + 1. */
+/* Step i changes a file of version i to version i + 1. */
 static const char *const steps[] = {
 	"CREATE TABLE job("
 	" n INTEGER PRIMARY KEY AUTOINCREMENT,"
@@ -37,8 +38,9 @@ static const char *const steps[] = {
 
 	"ALTER TABLE job ADD COLUMN tech_sha256 TEXT NOT NULL DEFAULT '';",
 
-	/* An update of a job writes its row anew, and must not write its text
-	 * anew.  What an earlier edmd-jobs made without a version may be there. */
+	/* The text has its own table, because an update of a job writes its
+	 * whole row again.  A table without a version, from an earlier
+	 * edmd-jobs, may be there. */
 	"CREATE TABLE text(n INTEGER PRIMARY KEY, text BLOB NOT NULL);"
 	"INSERT INTO text SELECT n, text FROM job;"
 	"ALTER TABLE job DROP COLUMN text;"
@@ -64,7 +66,7 @@ static const char *const steps[] = {
 	" DELETE FROM change WHERE n=old.n;"
 	" DELETE FROM event WHERE job=old.id; END;",
 
-	/* The checkpoint of a job that was interrupted, hex. */
+	/* The checkpoint of an interrupted job, in hex. */
 	"CREATE TABLE resume(n INTEGER PRIMARY KEY, at TEXT NOT NULL);"
 	"CREATE TRIGGER resume_gone AFTER DELETE ON job BEGIN"
 	" DELETE FROM resume WHERE n=old.n; END;",
@@ -157,7 +159,7 @@ static int bring_up(sqlite3 *db)
 	return step_up(db, version);
 }
 
-/* A page that is damaged is found now, not when its job's turn comes. */
+/* A damaged page is found now, not when the turn of its job comes. */
 static int check(struct store *s, sqlite3 *db)
 {
 	sqlite3_stmt *q = NULL;
@@ -208,7 +210,7 @@ static int open_once(struct store *s, sqlite3 **ret)
 		sqlite3_busy_timeout(db, STORE_BUSY_MS);
 		err = execute(db, set);
 	}
-	/* Not each time that there may be room again. */
+	/* This is not done each time that there may be room again. */
 	if (err == 0 && (!s->in_memory || s->err == -EILSEQ))
 		err = check(s, db);
 	if (err == 0)
@@ -252,7 +254,7 @@ int store_file_open(struct store *s, sqlite3 **ret)
 	return err < 0 ? err : open_once(s, ret);
 }
 
-/* -- The copy in memory ----------------------------------------------------- */
+/* -- The copy in memory --------------------------------------------------- */
 
 static int copy_row(sqlite3_stmt *from, sqlite3_stmt *to)
 {
@@ -307,7 +309,7 @@ sqlite3 *store_file_copy(struct store *s, sqlite3 *disk)
 {
 	sqlite3 *memory = NULL;
 
-	/* Without memory for a row there is none for the service. */
+	/* If there is no memory for a row, there is none for the service. */
 	if (sqlite3_open(":memory:", &memory) != SQLITE_OK ||
 	    step_up(memory, 0) < 0)
 		abort();
@@ -318,8 +320,8 @@ sqlite3 *store_file_copy(struct store *s, sqlite3 *disk)
 	return memory;
 }
 
-/* A log that nobody can lock or write is read into memory, by a database that
- * is nobody else's; without a log the file is all there is. */
+/* If the log cannot be locked or written, it is read into memory by a private
+ * database.  Without a log, the file has everything. */
 sqlite3 *store_file_look(struct store *s)
 {
 	char uri[600], log[520];

@@ -25,7 +25,7 @@
 			"'retracts', retracts, 'shorts', shorts, " \
 			"'tech_sha256', tech_sha256" MORE ")"
 
-/* Of one job alone: what was called and set, in the order of time. */
+/* For one job only: what it called and what was set, in order of time. */
 #define CHANGES_JSON	", 'changes', (SELECT json_group_array(json(c)) FROM " \
 			"(SELECT json_object('utime', time_ns / 1000, " \
 			"'place_mm', place_mm, 'what', what, 'was', was, " \
@@ -33,17 +33,18 @@
 			"change.n=job.n ORDER BY time_ns DESC LIMIT ?2) " \
 			"ORDER BY time_ns))"
 
-/* What is cut otherwise than it is written. */
+/* What is cut differently from what is written. */
 #define NOTES_JSON	", 'notes', (SELECT json_group_array(text) FROM " \
 			"(SELECT text FROM event WHERE event.job=job.id AND " \
 			"kind='note' ORDER BY event.rowid LIMIT ?2))"
 
-/* Where a job stands in a list, less is earlier. */
+/* The place of a job in a list; a smaller number is earlier. */
 #define IN_QUEUE	"1 - loaded, " STORE_TURN
 #define IN_HISTORY	"-ended_us, -n"
 
-/* So many jobs, those after job ?2 if one is given.  The order is found from few
- * columns, and the JSON made of the rows that are wanted alone. */
+/* As many jobs as asked for; those after job ?2 if one is given.  The order is
+ * found from a few columns, and JSON is made only of the rows that are
+ * wanted. */
 #define JOBS_SQL(WHICH, PLACE) \
 	"SELECT " JOB_JSON("") " FROM job JOIN (SELECT n AS m FROM job WHERE " \
 	"(" WHICH ") AND (?2='' OR (" PLACE ") > (SELECT " PLACE " FROM " \
@@ -63,12 +64,14 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				 "('done', 'stopped'))", IN_QUEUE), "is",
 				 (int64_t)rows, id);
 	case STORE_ALARMS:
-		return store_ask(s, ret_err, "SELECT json_object('utime', utime, "
-				 "'kind', kind, 'job', job, 'fault', outcome, "
+		return store_ask(s, ret_err,
+				 "SELECT json_object('utime', utime, 'kind', "
+				 "kind, 'job', job, 'fault', outcome, "
 				 "'place_mm', place_mm, 'text', text) FROM "
 				 "event WHERE kind IN ('alarm', 'warning', "
 				 "'lost', 'back') ORDER BY utime DESC, rowid "
-				 "DESC LIMIT ?", "i", (int64_t)ALARMS_MAX);
+				 "DESC LIMIT ?",
+				 "i", (int64_t)ALARMS_MAX);
 	case STORE_HISTORY:
 		break;
 	}
@@ -77,9 +80,9 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 }
 
 /*
- * A store of an earlier version, or of another hand, may have names that move a
- * terminal.  In the JSON that SQLite makes of them a control character is an
- * escape, and all others are what they were.
+ * A store of an earlier version, or one that somebody changed, may have names
+ * with control characters.  SQLite writes a control character in JSON as an
+ * escape; all other characters stay as they are.
  */
 static void make_plain(char *json)
 {
@@ -100,7 +103,7 @@ static void make_plain(char *json)
 	*to = '\0';
 }
 
-/* The first column of the row that a question stands at. */
+/* The first column of the row at which a query stands. */
 static char *row_text(sqlite3_stmt *q)
 {
 	char *text = strdup((const char *)sqlite3_column_text(q, 0));
@@ -110,7 +113,7 @@ static char *row_text(sqlite3_stmt *q)
 	return text;
 }
 
-/* All about one job: of what it called and set so much as fits. */
+/* Everything about one job, and of its calls and sets as many as fit. */
 static char *one(struct store *s, const char *id)
 {
 	for (int rows = LIST_MAX; rows > 0; rows -= rows / 8 + 1) {
@@ -126,7 +129,8 @@ static char *one(struct store *s, const char *id)
 	return NULL;
 }
 
-/* An array of as many rows as fit. Return: SQLITE_DONE; else it is not whole. */
+/* An array with as many rows as fit.  Return: SQLITE_DONE; otherwise the array
+ * is not complete. */
 static int put_rows(FILE *f, sqlite3_stmt *q)
 {
 	size_t bytes = 2;
@@ -163,7 +167,8 @@ static char *list_text(struct store *s, enum store_list what, const char *id,
 	if (f && fclose(f) == 0 && rc == SQLITE_DONE)
 		return text;
 	free(text);
-	/* A disk that fails in the middle: the copy in memory is asked then. */
+	/* The disk failed in the middle of the answer: ask the copy in
+	 * memory. */
 	if (rc != SQLITE_NOMEM && rc != SQLITE_DONE)
 		store_failed(s, rc);
 	return NULL;

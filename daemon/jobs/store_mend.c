@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * store_mend.c - a damaged database: set aside, recovered as far as it goes
+ * store_mend.c - sets a damaged database aside and recovers what can be read
  *
- * Every table is read by its row numbers, upward and then downward, with jumps
- * of growing length over what cannot be read.  So what is lost is what stood in
- * the damaged pages; with the first page, which has the names of the tables,
- * all of it.
+ * Every table is read by its row numbers, upward and then downward.  Jumps of
+ * growing length skip what cannot be read.  So only the rows in damaged pages
+ * are lost.  The first page has the names of the tables: if it is damaged,
+ * everything is lost.
  */
 #include "store_sql.h"
 
@@ -19,7 +19,7 @@
 
 #define JUMP_MAX	(INT64_C(1) << 40)
 
-/* Another name for @from's file; it need not be there. */
+/* Give the file of @from a second name; it may be missing. */
 static int name_too(const char *from, const char *to, const char *suffix)
 {
 	char a[600], b[600];
@@ -39,7 +39,7 @@ static void remove_with(const char *path, const char *suffix)
 	unlink(name);
 }
 
-/* -- Row by row --------------------------------------------------------------- */
+/* -- Row by row ----------------------------------------------------------- */
 
 struct rescue {
 	sqlite3 *from, *to;
@@ -139,8 +139,8 @@ static void rescue_tables(sqlite3 *from, sqlite3 *to)
 	sqlite3_finalize(names);
 }
 
-/* Numbers that were lost with their rows are not used again, nothing of what
- * was recovered moves by itself, and a job without its text is no job. */
+/* Numbers that were lost with their rows are not used again.  No recovered job
+ * starts by itself.  A job without its text is not a job. */
 static const char settle[] =
 	"INSERT OR IGNORE INTO sqlite_sequence SELECT 'job', 0 WHERE NOT EXISTS"
 	" (SELECT 1 FROM sqlite_sequence WHERE name='job');"
@@ -153,7 +153,7 @@ static const char settle[] =
 	"n NOT IN (SELECT n FROM text);"
 	"COMMIT;";
 
-/* Return: jobs that came out of it; -1: the new file cannot be made. */
+/* Return: the number of recovered jobs; -1: the new file cannot be made. */
 static int64_t recover(const char *aside, const char *fresh)
 {
 	sqlite3 *from = NULL, *to = NULL;
@@ -197,8 +197,9 @@ int store_mend(struct store *s)
 	snprintf(fresh, sizeof(fresh), "%s.recovered", s->path);
 	remove_with(fresh, "");
 	remove_with(fresh, "-journal");
-	/* Both names until the new file is whole: killed over it, the next
-	 * start finds the damaged one with its log, and begins again. */
+	/* The file has both names until the new file is whole.  If the service
+	 * is killed before, the next start finds the damaged file with its log
+	 * and begins again. */
 	err = name_too(s->path, aside, "");
 	if (err == 0)
 		err = name_too(s->path, aside, "-wal");
@@ -211,9 +212,10 @@ int store_mend(struct store *s)
 	remove_with(s->path, "-shm");
 	if (rename(fresh, s->path) < 0)
 		return -errno;
-	snprintf(s->told, sizeof(s->told), "the database was damaged; %lld "
-		 "jobs were recovered, and nothing starts until start; what was "
-		 "there is kept as %.200s", (long long)n, aside);
+	snprintf(s->told, sizeof(s->told),
+		 "the database was damaged; %lld jobs were recovered, and "
+		 "nothing starts until start; what was there is kept as %.200s",
+		 (long long)n, aside);
 	log_error("store: %s", s->told);
 	return 0;
 }

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * store_open.c - the store opened and closed, its size, and what it forgets
- */
+/* store_open.c - opens and closes the store; its size, and what it forgets */
 #include "store_sql.h"
 
 #include "jobs_log.h"
@@ -17,7 +15,7 @@
 #define RETAIN_US	INT64_C(10000000)
 #define DAY_US		INT64_C(86400000000)
 
-/* The disk's fault, not that of who wrote the path. */
+/* Is it a fault of the disk, not of the path that was given? */
 static bool is_of_disk(int err)
 {
 	return err == -ENOSPC || err == -EDQUOT || err == -EROFS ||
@@ -25,10 +23,10 @@ static bool is_of_disk(int err)
 }
 
 /*
- * The folder is open to the group, for the host's key; what else is in it is for
- * this user alone, as main() says by its umask.  An earlier version let the group
- * read it; and who may read a file may lock it, and so keep the service from
- * starting, or from writing a job.
+ * The folder is open to the group because of the host's key.  Everything else
+ * in it is for this user only: main() sets the umask.  An earlier version let
+ * the group read it.  But who may read a file may lock it, and so could keep
+ * the service from starting, or from writing a job.
  */
 static int folder_make(const struct store *s, const char *machine)
 {
@@ -39,7 +37,8 @@ static int folder_make(const struct store *s, const char *machine)
 		chmod(s->dir, 0750);
 	else if (errno != EEXIST)
 		return -errno;
-	/* What is not ours, or cannot be changed, is told when it is opened. */
+	/* If a file does not belong to us or cannot be changed, opening it will
+	 * report that. */
 	for (size_t i = 0; i < sizeof(old) / sizeof(old[0]); i++) {
 		snprintf(path, sizeof(path), "%s/%s.%s", s->dir, machine,
 			 old[i]);
@@ -48,7 +47,7 @@ static int folder_make(const struct store *s, const char *machine)
 	return 0;
 }
 
-/* On a disk that takes no new file there is still shm_writer_claim(). */
+/* On a disk that accepts no new file, shm_writer_claim() still protects. */
 static int lock_take(struct store *s, const char *machine)
 {
 	char path[512];
@@ -82,7 +81,7 @@ static int store_init(struct store *s, const char *dir, const char *machine)
 	err = store_file_open(s, &s->db);
 	if (err == 0 || err == -EPROTO || err == -EACCES)
 		return err;
-	/* The disk does not take it: begin with what can be read. */
+	/* The disk does not accept it: begin with what can be read. */
 	s->db = store_file_look(s);
 	store_degrade(s, err);
 	return 0;
@@ -109,8 +108,8 @@ void store_close(struct store *s)
 	if (!s)
 		return;
 	if (s->kept.n)
-		log_error("store: %u entries could not be stored: %s", s->kept.n,
-			  store_why(s));
+		log_error("store: %u entries could not be stored: %s",
+			  s->kept.n, store_why(s));
 	store_writes_free(&s->group);
 	store_writes_free(&s->kept);
 	sqlite3_close_v2(s->db);
@@ -144,7 +143,7 @@ void store_measure(struct store *s, struct store_size *ret)
 	snprintf(ret->path, sizeof(ret->path), "%s", s->path);
 }
 
-/* The last 20 stay, so that a clock that jumped takes not everything. */
+/* The last 20 jobs stay, so that a clock that jumped does not remove all. */
 void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us)
 {
 	const int64_t before = days ? now_us - days * DAY_US : 0;
@@ -159,9 +158,10 @@ void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us)
 		 "AND (ended_us<?1 OR n NOT IN (SELECT n FROM job WHERE state "
 		 "IN ('done', 'stopped', 'fault') ORDER BY n DESC LIMIT ?2)) "
 		 "ORDER BY n LIMIT 10)", "ii", before, jobs ? jobs : -1);
-	store_do(s, STORE_MAY_GO, "DELETE FROM event WHERE rowid IN (SELECT "
-		 "rowid FROM event WHERE utime<? ORDER BY rowid LIMIT 100)", "i",
-		 before);
+	store_do(s, STORE_MAY_GO,
+		 "DELETE FROM event WHERE rowid IN (SELECT rowid FROM event "
+		 "WHERE utime<? ORDER BY rowid LIMIT 100)",
+		 "i", before);
 	if (!s->in_memory)
 		sqlite3_exec(s->db, "PRAGMA incremental_vacuum(256)", NULL,
 			     NULL, NULL);

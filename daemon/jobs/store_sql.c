@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * store_sql.c - SQLite under the store: every result heard, none lost
- */
+/* store_sql.c - SQLite under the store: checks every result, loses no write */
 #include "store_sql.h"
 
 #include "jobs_log.h"
@@ -34,7 +32,7 @@ const char *store_why(const struct store *s)
 	}
 }
 
-/* -- Statements with their values ------------------------------------------- */
+/* -- Statements with their values ----------------------------------------- */
 
 static struct store_write *write_new(const char *sql, enum store_keep keep,
 				     const char *kinds, va_list ap)
@@ -42,7 +40,7 @@ static struct store_write *write_new(const char *sql, enum store_keep keep,
 	struct store_write *w = calloc(1, sizeof(*w));
 	const char *text;
 
-	/* Without memory for a row there is none for the service. */
+	/* If there is no memory for a row, there is none for the service. */
 	if (!w)
 		abort();
 	w->sql = sql;
@@ -119,7 +117,7 @@ static bool same_row(const struct store_write *a, const struct store_write *b)
 	       x->s && y->s && strcmp(x->s, y->s) == 0;
 }
 
-/* The oldest that may go makes room. */
+/* The oldest entry that may be dropped makes room. */
 static void keep_room(struct store *s)
 {
 	struct store_write **at = &s->kept.first;
@@ -132,7 +130,7 @@ static void keep_room(struct store *s)
 	s->dropped++;
 }
 
-/* Keep @w; what it makes needless goes. */
+/* Keep @w, and drop the entries that it replaces. */
 static void keep(struct store *s, struct store_write *w)
 {
 	for (struct store_write **at = &s->kept.first; *at;) {
@@ -160,7 +158,7 @@ static void bind_all(sqlite3_stmt *q, const struct store_write *w)
 	}
 }
 
-/* Up to its first row.  Return: SQLITE_ROW, SQLITE_DONE, or why not. */
+/* Run it up to its first row.  Return: SQLITE_ROW, SQLITE_DONE, or why not. */
 static int begin(sqlite3 *db, const struct store_write *w, sqlite3_stmt **ret)
 {
 	int rc = sqlite3_prepare_v2(db, w->sql, -1, ret, NULL);
@@ -180,7 +178,7 @@ static int carry_out(sqlite3 *db, const struct store_write *w)
 	return rc == SQLITE_ROW || rc == SQLITE_DONE ? SQLITE_OK : rc;
 }
 
-/* -- From the disk to memory, and back -------------------------------------- */
+/* -- From the disk to memory, and back ------------------------------------ */
 
 static void tell_degraded(const struct store *s)
 {
@@ -203,7 +201,7 @@ void store_degrade(struct store *s, int err)
 	s->in_memory = true;
 	s->err = err == -EIO ? store_file_probe(s) : err;
 	s->together = false;
-	/* A promise that was not kept is not made up for later. */
+	/* A promise that was not written in time is not written later. */
 	while ((w = s->group.first)) {
 		s->group.first = w->next;
 		if (w->keep == STORE_MUST) {
@@ -235,7 +233,7 @@ int store_replay(struct store *s, sqlite3 *db)
 	for (struct store_write *w = s->kept.first; w && rc == SQLITE_OK;
 	     w = w->next) {
 		rc = carry_out(db, w);
-		/* A row that is there already is there. */
+		/* If the row exists already, that is fine. */
 		if ((rc & 0xff) == SQLITE_CONSTRAINT)
 			rc = SQLITE_OK;
 	}
@@ -244,7 +242,7 @@ int store_replay(struct store *s, sqlite3 *db)
 	return rc;
 }
 
-/* Back on the disk, with all that was kept. */
+/* Go back to the disk and write everything that was kept. */
 static int come_back(struct store *s)
 {
 	sqlite3 *disk = NULL;
@@ -293,7 +291,7 @@ bool store_tick(struct store *s, int64_t now_us)
 	return true;
 }
 
-/* -- What the others call --------------------------------------------------- */
+/* -- What the others call ------------------------------------------------- */
 
 int store_do(struct store *s, enum store_keep k, const char *sql,
 	     const char *kinds, ...)
@@ -334,7 +332,7 @@ static sqlite3_stmt *ask(struct store *s, const struct store_write *w,
 	sqlite3_stmt *q = NULL;
 	int rc = begin(s->db, w, &q);
 
-	/* What cannot be read is asked of the copy. */
+	/* If it cannot be read, ask the copy in memory. */
 	if (rc != SQLITE_ROW && rc != SQLITE_DONE && !s->in_memory) {
 		sqlite3_finalize(q);
 		q = NULL;
@@ -388,7 +386,7 @@ int64_t store_number_of(struct store *s, int64_t otherwise, const char *sql,
 	return value;
 }
 
-/* -- Transactions ----------------------------------------------------------- */
+/* -- Transactions --------------------------------------------------------- */
 
 static int execute(struct store *s, const char *sql)
 {
@@ -419,7 +417,7 @@ void store_undo(struct store *s)
 	store_writes_free(&s->group);
 }
 
-/* If it fails, all of it goes on in memory. */
+/* If this fails, the whole transaction goes on in memory. */
 int store_commit(struct store *s)
 {
 	int err = STORE_KEPT;

@@ -26,7 +26,8 @@
 enum store_keep {
 	STORE_MUST,			/* on the disk, or refused */
 	STORE_KEEP,			/* else in memory, until it can be */
-	STORE_MAY_GO			/* the same; dropped if there are many */
+	STORE_MAY_GO			/* the same; dropped if there are
+					 * many */
 };
 
 struct store_value {
@@ -110,7 +111,7 @@ int store_replay(struct store *s, sqlite3 *db);
 /** store_writes_free() - forget the kept writes. */
 void store_writes_free(struct store_writes *w);
 
-/* -- store_file.c ----------------------------------------------------------- */
+/* -- store_file.c --------------------------------------------------------- */
 
 /** store_file_open() - open, mend, bring up to date.  Return: 0 or -errno. */
 int store_file_open(struct store *s, sqlite3 **ret);
@@ -132,7 +133,7 @@ int store_file_probe(const struct store *s);
 /** store_file_look() - to read only, where nothing can be written; or NULL. */
 sqlite3 *store_file_look(struct store *s);
 
-/* -- store_mend.c ----------------------------------------------------------- */
+/* -- store_mend.c --------------------------------------------------------- */
 
 /** store_mend() - set the damaged file aside, and put what can be recovered of
  *  it in its place.  Says in `told` what it did.  Return: 0 or -errno. */

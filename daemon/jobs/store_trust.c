@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * store_trust.c - keys, and commands handed over, in the store
- */
+/* store_trust.c - keys, and commands that were handed over, in the store */
 #include "store_sql.h"
 #include "store_trust.h"
 
@@ -11,10 +9,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Nobody repeats a command as old as this. */
+/* A command that is older than this is not repeated by anybody. */
 #define ACT_OLD_US	(3600 * INT64_C(1000000))
 
-/* -- Acts ------------------------------------------------------------------- */
+/* -- Acts ----------------------------------------------------------------- */
 
 int store_act_find(struct store *s, uint64_t id, struct store_act *ret)
 {
@@ -55,7 +53,7 @@ int store_act_end(struct store *s, uint64_t id, int code, const char *reason)
 			reason ? reason : "", (int64_t)id);
 }
 
-/* -- Keys ------------------------------------------------------------------- */
+/* -- Keys ----------------------------------------------------------------- */
 
 static bool key_get(sqlite3_stmt *q, struct trust_key *ret)
 {

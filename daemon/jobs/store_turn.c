@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * store_turn.c - whose turn it is in the queue, and lines of a job's text
- */
+/* store_turn.c - the order of the queue, and lines of a job's text */
 #include "store_turn.h"
 #include "plain.h"
 #include "store_sql.h"
@@ -10,9 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LINE_MAX	256		/* of a line, with its end */
+#define LINE_MAX	256		/* of a line that is shown, with its
+					 * NUL */
 #define TEXT_MAX	12000
-#define SHORT_MAX	(4 << 20)	/* of a text whose lines are told */
+#define SHORT_MAX	(4 << 20)	/* longer texts are not shown */
 
 static int set_turn(struct store *s, uint32_t n, int64_t turn)
 {
@@ -55,7 +54,7 @@ static const char *next_line(const char *at, const char *end)
 	return newline ? newline + 1 : end;
 }
 
-/* One line as it may be shown.  Return: its bytes. */
+/* Write one line as it may be shown.  Return: its bytes. */
 static size_t put_line(char *to, const char *at, const char *next)
 {
 	char line[LINE_MAX];
@@ -83,7 +82,7 @@ static char *as_json(struct store *s, uint32_t first, const char *text)
 	return json;
 }
 
-/* A long text is read as a whole; for that the service has no time. */
+/* A long text would be read as a whole; that would take too long. */
 static bool is_short(struct store *s, uint32_t n)
 {
 	return store_number_of(s, INT64_MAX, "SELECT length(text) FROM text "

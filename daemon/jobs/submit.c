@@ -2,8 +2,8 @@
 /*
  * submit.c - from the first chunk of a job to its place in the queue
  *
- * Each chunk is answered.  When the text is whole it is compiled, and the
- * chunk that made it whole is answered once more: accepted, with the job as
+ * Each chunk is answered.  When the text is complete, it is compiled.  Then the
+ * chunk that completed it is answered once more: accepted, with the job as
  * JSON, or refused, with line and column.
  */
 #include "jobs.h"
@@ -18,7 +18,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* Which upload a compile belongs to. */
+/* The upload to which a compilation belongs. */
 struct check {
 	struct jobs *jobs;
 	struct upload *upload;
@@ -42,7 +42,8 @@ static void answer_end(struct jobs *j, struct upload *up, int code,
 	upload_forget(&j->uploads, up, code, reason, body);
 }
 
-/* A JSON string's inside: what would end it or is no text, as \u00xx. */
+/* Write the inside of a JSON string.  A character that would end it, or that is
+ * not text, becomes \\u00xx. */
 static void json_put(char *to, size_t size, const char *from)
 {
 	size_t n = 0;
@@ -82,7 +83,7 @@ static const char *what_next(const struct jobs *j, bool hold)
 	if (j->link.snap.state == SHM_FAULT)
 		return "a fault is latched: it wants a reset, then a start";
 	if (*j->interrupted)
-		return "a job was interrupted: remove it, then start";
+		return "a job was interrupted: resume it or remove it, then start";
 	if (queue_unready(j))
 		return "an axis is not homed: it wants a home, then a start";
 	if (j->queue.waiting)
@@ -93,7 +94,8 @@ static const char *what_next(const struct jobs *j, bool hold)
 	       "it starts when those before it are done" : "it starts now";
 }
 
-/* They are events of the job: every client hears them, `show` lists them. */
+/* Notes are events of the job: every client gets them, and `show` lists
+ * them. */
 static void tell_notes(struct jobs *j, const struct upload *up,
 		       const struct compiler_result *r)
 {
@@ -137,7 +139,7 @@ static void accept_text(struct jobs *j, struct upload *up,
 		refuse_degraded(j, up);
 		return;
 	}
-	/* What a queue waited for is over when there is no queue. */
+	/* If the queue is empty, it does not wait for anything any more. */
 	if (queue_unready(j))
 		queue_wait(j);
 	else if (q->behind == 0 && (q->job.n == 0 || queue_is_leaving(q)))
@@ -154,7 +156,8 @@ static void accept_text(struct jobs *j, struct upload *up,
 	free(body);
 }
 
-/* Already there: 0 if it is the same text, else refused. */
+/* The id is known.  Return: 0 if the text is the same; otherwise it is
+ * refused. */
 static bool answer_known(struct jobs *j, const struct jobs_lcm_chunk *c)
 {
 	struct jobs_lcm_ack a = {
@@ -203,7 +206,8 @@ static void on_checked(void *arg, const struct compiler_result *r)
 	check_next(j);
 }
 
-/* From where the machine stands, or will when there is none yet. */
+/* The place where the machine stands, or where it will stand if there is no
+ * edmd yet. */
 static void start_place(const struct jobs *j, double ret_mm[INTERP_NAXES])
 {
 	const struct shm_snapshot *s = &j->link.snap;
@@ -234,7 +238,7 @@ static void check_begin(struct jobs *j, struct upload *up)
 	}
 }
 
-/* One at a time: eight at once would be eight times the memory. */
+/* One check at a time: eight at once would need eight times the memory. */
 static void check_next(struct jobs *j)
 {
 	struct upload *next = NULL;

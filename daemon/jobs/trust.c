@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * trust.c - whose packet it is, and whether it is a new one
- */
+/* trust.c - who signed a packet, and whether it is new */
 #include "trust.h"
 
 #include "jobs_log.h"
@@ -12,8 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define TELL_US		10000000	/* between two lines of one cause */
-#define ANSWERS_A_S	200		/* to packets that are not taken */
+#define TELL_US		10000000	/* between two lines of the log for one
+					 * cause */
+#define STRANGERS_A_S	200		/* of their packets looked at */
 
 static const char *const roles[] = {
 	[ROLE_NONE]	= "none",
@@ -83,7 +82,7 @@ int64_t trust_count(struct trust *t, int64_t now_us)
 	return t->sent;
 }
 
-/* -- Keys ------------------------------------------------------------------- */
+/* -- Keys ----------------------------------------------------------------- */
 
 const struct trust_key *trust_find(const struct trust *t,
 				   const uint8_t key[SEAL_KEY_BYTES])
@@ -130,7 +129,7 @@ int trust_remove(struct trust *t, const char *name)
 	return -ENOENT;
 }
 
-/* -- Refusals --------------------------------------------------------------- */
+/* -- Refusals ------------------------------------------------------------- */
 
 void trust_refuse(struct trust *t, enum trust_cause cause, const char *who,
 		  const char *from, int64_t now_us)
@@ -158,7 +157,7 @@ void trust_who(const struct trust_packet *p, char to[KEYFILE_NAME_MAX])
 	snprintf(to, KEYFILE_NAME_MAX, "key %.8s...", hex);
 }
 
-/* Fewer than @most in this second? */
+/* Were there fewer than @most in this second? */
 static bool rate_allows(struct trust_rate *r, int most, int64_t now_us)
 {
 	if (now_us - r->since_us > 1000000)
@@ -166,19 +165,27 @@ static bool rate_allows(struct trust_rate *r, int most, int64_t now_us)
 	return r->n < most;
 }
 
-/* A flood is not answered packet by packet. */
-static bool may_answer(struct trust *t, int64_t now_us)
+/*
+ * How many packets are looked at in a second.  All strangers share one limit.
+ * Each key has one for packets that are signed for another time, as recorded
+ * ones are.  A viewer has one for new packets.  So nobody uses up what belongs
+ * to another.  NULL: no limit.
+ */
+static struct trust_rate *rate_of(struct trust *t, const struct trust_packet *p,
+				  enum trust_cause cause, int *ret_most)
 {
-	return rate_allows(&t->answered, ANSWERS_A_S, now_us);
+	const bool viewer = p->key && p->key->role == ROLE_VIEWER;
+
+	*ret_most = !p->key ? STRANGERS_A_S :
+		    viewer ? TRUST_VIEWER_A_S : TRUST_AGAIN_A_S;
+	if (!p->key)
+		return &t->strangers;
+	if (cause != TRUST_FINE)
+		return &t->again[p->key - t->key];
+	return viewer ? &t->asked[p->key - t->key] : NULL;
 }
 
-static bool may_ask(struct trust *t, const struct trust_key *k, int64_t now_us)
-{
-	return k->role > ROLE_VIEWER ||
-	       rate_allows(&t->asked[k - t->key], TRUST_VIEWER_A_S, now_us);
-}
-
-/* What can be told without a signature being computed. */
+/* What can be seen before a signature is computed. */
 static enum trust_cause look_quickly(const struct trust *t,
 				     const struct trust_packet *p,
 				     int64_t now_us)
@@ -189,7 +196,7 @@ static enum trust_cause look_quickly(const struct trust *t,
 		return TRUST_KEY;
 	if (p->seal.boot != t->boot)
 		return TRUST_BOOT;
-	/* Not by a difference, which a packet could make overflow. */
+	/* Do not subtract: a packet could make the difference overflow. */
 	if (count < now - TRUST_OLD_US || count > now + TRUST_AHEAD_US)
 		return TRUST_TIME;
 	return TRUST_FINE;
@@ -199,27 +206,30 @@ enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 			    const void *packet, size_t bytes, int64_t now_us,
 			    bool *ret_answer)
 {
+	struct trust_rate *rate;
 	enum trust_cause cause;
+	int most;
 
 	*ret_answer = false;
 	if (!seal_read(&p->seal, packet, bytes))
 		return TRUST_SHAPE;
 	p->key = trust_find(t, p->seal.key);
 	cause = look_quickly(t, p, now_us);
-	if (cause != TRUST_FINE && !may_answer(t, now_us))
-		return cause;
-	if (p->key && !may_ask(t, p->key, now_us))
-		return TRUST_OFTEN;
+	rate = rate_of(t, p, cause, &most);
+	if (rate && !rate_allows(rate, most, now_us))
+		return cause == TRUST_FINE ? TRUST_OFTEN : cause;
+	/* A stranger's signature costs as much as a good one. */
+	if (!p->key)
+		rate->n++;
 	if (!seal_holds(&p->seal, p->channel))
 		return TRUST_SIGNATURE;
-	if (p->key)
-		t->asked[p->key - t->key].n++;
 	*ret_answer = cause != TRUST_FINE;
-	t->answered.n += *ret_answer;
+	if (p->key && *ret_answer)
+		rate->n++;
 	return cause;
 }
 
-/* -- Sessions --------------------------------------------------------------- */
+/* -- Sessions ------------------------------------------------------------- */
 
 static bool session_is_over(const struct trust_session *s, int64_t now)
 {
@@ -239,6 +249,7 @@ enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 			if (p->seal.count <= s->count)
 				return TRUST_REPLAY;
 			s->count = p->seal.count;
+			t->asked[p->key - t->key].n++;
 			return TRUST_FINE;
 		}
 		if (!room && session_is_over(s, now))
@@ -248,5 +259,6 @@ enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 		return TRUST_CROWD;
 	room->count = p->seal.count;
 	snprintf(room->client, sizeof(room->client), "%s", client);
+	t->asked[p->key - t->key].n++;
 	return TRUST_FINE;
 }

@@ -27,6 +27,8 @@
 #define TRUST_KEYS		64
 #define TRUST_SESSIONS		1024	/* of each key */
 #define TRUST_VIEWER_A_S	50	/* packets that are taken of a viewer */
+#define TRUST_AGAIN_A_S		1000	/* for another time, answered to a
+					 * key */
 #define TRUST_CLIENT_MAX	64	/* with its NUL */
 #define TRUST_OLD_US		30000000
 #define TRUST_AHEAD_US		10000000
@@ -73,7 +75,7 @@ struct trust {
 	/* Private. */
 	int64_t begun_us, sent;
 	struct trust_session session[TRUST_KEYS][TRUST_SESSIONS];
-	struct trust_rate asked[TRUST_KEYS], answered;
+	struct trust_rate asked[TRUST_KEYS], again[TRUST_KEYS], strangers;
 	struct trust_refusals refused[TRUST_NCAUSES];
 };
 

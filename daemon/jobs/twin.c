@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* twin.c - follow the trace ring with models of the axes */
+/* twin.c - runs models of the axes beside the trace ring */
 #include "twin.h"
 
 #include <math.h>
 
-#define MOST	2000			/* records of one poll */
+#define MOST	2000			/* records that one poll reads at
+					 * most */
 
 static const struct twin_error unknown = { -1, -1 };
 
@@ -25,7 +26,8 @@ static uint32_t instance_of(const struct shm_status *s)
 	return __atomic_load_n(&s->head.instance, __ATOMIC_RELAXED);
 }
 
-/* Another edmd, or the first: its period, and only what is new. */
+/* The first edmd, or another one: take its period, and begin with new
+ * records. */
 static bool begin(struct twin *t, const struct shm_status *s,
 		  const struct shm_snapshot *snap)
 {
@@ -64,7 +66,7 @@ static void take(struct twin *t, const struct shm_snapshot *snap,
 	t->now.predicted_mm = fmax(t->now.predicted_mm, e.predicted_mm);
 }
 
-/* A second is over: what was found in it is told. */
+/* A second is over: publish what was found in it. */
 static void turn(struct twin *t, uint64_t cycle)
 {
 	if ((int64_t)(cycle - t->since_cycle) * t->period_ns < 1000000000)

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * upload.c - a job's text put together from chunks
- */
+/* upload.c - puts the text of a job together from chunks */
 #include "upload.h"
 
 #include "plain.h"
@@ -45,7 +43,8 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 	if (client == 0 || client >= JOBS_LCM_CLIENT_MAX)
 		refuse(a, EX_PROTOCOL, "client name of no or too many bytes; "
 		       "1 to 63");
-	else if (id == 0 || id >= JOBS_LCM_ID_MAX || strspn(c->job, ID_CHARS) != id)
+	else if (id == 0 || id >= JOBS_LCM_ID_MAX ||
+		 strspn(c->job, ID_CHARS) != id)
 		refuse(a, EX_DATAERR, "job id not fit; 1 to 63 of A-Z a-z "
 		       "0-9 . _ -");
 	else if (!name_is_plain(c->name))
@@ -69,7 +68,8 @@ static bool upload_is(const struct upload *up, const struct jobs_lcm_chunk *c)
 	       strcmp(up->id, c->job) == 0;
 }
 
-static struct upload *upload_find(struct uploads *u, const struct jobs_lcm_chunk *c)
+static struct upload *upload_find(struct uploads *u,
+				  const struct jobs_lcm_chunk *c)
 {
 	for (int i = 0; i < UPLOAD_SLOTS; i++)
 		if (upload_is(&u->slot[i], c))
@@ -110,9 +110,9 @@ static int uploads_of(const struct uploads *u, const struct jobs_lcm_chunk *c)
 	return n;
 }
 
-/* A free one, else the one that has stood still the longest, and long enough
- * for its client to be gone: who begins eight and goes on with none does not
- * lock the others out. */
+/* Take a free slot.  Otherwise take the one that has stood still the longest,
+ * if that is long enough for its client to be gone.  So a client that begins
+ * eight uploads and continues none does not lock the others out. */
 static struct upload *upload_room(struct uploads *u, int64_t now_us)
 {
 	struct upload *oldest = NULL;
@@ -169,7 +169,8 @@ static struct upload *upload_begin(struct uploads *u,
 	return up;
 }
 
-static bool upload_agrees(const struct upload *up, const struct jobs_lcm_chunk *c)
+static bool upload_agrees(const struct upload *up,
+			  const struct jobs_lcm_chunk *c)
 {
 	return up->bytes == (size_t)c->bytes &&
 	       up->chunks == (uint32_t)c->chunks &&

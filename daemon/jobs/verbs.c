@@ -2,10 +2,11 @@
 /*
  * verbs.c - what a COMMAND may ask for: one table
  *
- * A verb of the machine goes to edmd and is answered when edmd has answered;
- * the others are answered at once.
+ * A verb of the machine goes to edmd, and is answered when edmd has answered.
+ * The other verbs are answered at once.
  */
 #include "act.h"
+#include "again.h"
 #include "keys.h"
 #include "verb.h"
 
@@ -25,7 +26,7 @@
 #define RETRACT_MAX_MM	10000.0
 #define STEP_MAX	100
 #define OVERRIDE_MAX	2.0
-#define SIGN_US		100000		/* a sign of a press is no older */
+#define SIGN_US		100000		/* a sign of a press may not be older */
 
 /* A command on its way to edmd. */
 struct asked {
@@ -59,12 +60,13 @@ int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 	return err;
 }
 
-/* What the cycle says no to in any state; NULL: it is the state. */
+/* Refusals of the cycle that do not depend on the state; NULL: the state
+ * refuses. */
 static const char *refusal(int code)
 {
 	static const char *const why[] = {
-		[SHM_NOT_HOMED] = "an axis is not homed; home first, a job that is "
-				  "held must be stopped for it",
+		[SHM_NOT_HOMED] = "an axis is not homed; home first, a job "
+				  "that is held must be stopped for it",
 		[SHM_AT_LIMIT] = "an axis is on its limit switch; jog it away "
 				 "from the switch",
 		[SHM_BEYOND] = "that is outside the axis's travel; a shorter "
@@ -86,7 +88,7 @@ static const char *refusal(int code)
 	       why[code] : NULL;
 }
 
-/* edmd did not say yes or no; NULL: it did. */
+/* edmd said neither yes nor no; NULL: it said one of them. */
 static const char *gone(int code)
 {
 	switch (code) {
@@ -130,8 +132,9 @@ static void on_answer(void *arg, int code)
 	else if (code == SHM_NO_PROGRAM)
 		verbs_answer(j, &c, REFUSED, "no job is loaded; submit one");
 	else if (code == SHM_NOT_UP)
-		verbs_answer(j, &c, REFUSED, "the drives are not up yet; edmd's "
-		       "journal tells which; again when they are");
+		verbs_answer(j, &c, REFUSED,
+			     "the drives are not up yet; edmd's journal tells "
+			     "which; again when they are");
 	else if (code == SHM_BAD_ARGUMENT)
 		verbs_answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
 		       "edmd refused the value: with the others in force, "
@@ -150,7 +153,7 @@ static void on_answer(void *arg, int code)
 	free(a);
 }
 
-/* NULL: told. */
+/* NULL: the client was told why. */
 static struct asked *asked_new(struct jobs *j, const struct verb *v,
 			       const struct jobs_lcm_command *c)
 {
@@ -190,7 +193,7 @@ void verbs_await(struct jobs *j, const struct verb *v,
 		on_answer(a, SHM_TAKEN);
 }
 
-/* A job begins only when the disk knows that it may have begun. */
+/* A job begins only after the disk has recorded that it may begin. */
 static bool may_start(struct jobs *j, const struct verb *v)
 {
 	const bool starts = v->machine == SHM_DO_START ||
@@ -232,12 +235,13 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 		return;
 	free(a);
 	if (err == -EAGAIN)
-		verbs_answer(j, c, EX_TEMPFAIL, "too many commands under way; try "
-		       "again");
+		verbs_answer(j, c, EX_TEMPFAIL,
+			     "too many commands under way; try again");
 	else
-		verbs_answer(j, c, EX_UNAVAILABLE, j->link.state == LINK_ABSENT ?
-		       "edmd is not there; systemctl start edmd" :
-		       "edmd is lost; systemctl status edmd");
+		verbs_answer(j, c, EX_UNAVAILABLE,
+			     j->link.state == LINK_ABSENT ?
+			     "edmd is not there; systemctl start edmd" :
+			     "edmd is lost; systemctl status edmd");
 }
 
 static void verb_machine(struct jobs *j, const struct verb *v,
@@ -268,7 +272,7 @@ static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
 	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
-/* NaN gives the field back to the condition. */
+/* NaN removes the set value; the condition's own value is valid again. */
 static void verb_set(struct jobs *j, const struct verb *v,
 		     const struct jobs_lcm_command *c)
 {
@@ -300,8 +304,9 @@ static void verb_retract(struct jobs *j, const struct verb *v,
 	if (isfinite(c->arg) && c->arg > 0 && c->arg <= RETRACT_MAX_MM)
 		verb_machine(j, v, c);
 	else
-		verbs_answer(j, c, EX_DATAERR, "no such length; a number of mm above "
-		       "0, at most 10000");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such length; a number of mm above 0, at most "
+			     "10000");
 }
 
 static void verb_step(struct jobs *j, const struct verb *v,
@@ -311,8 +316,9 @@ static void verb_step(struct jobs *j, const struct verb *v,
 	    fabs(c->arg) <= STEP_MAX)
 		verb_machine(j, v, c);
 	else
-		verbs_answer(j, c, EX_DATAERR, "no such number of nodes; 1 to 100 "
-		       "ahead, -1 to -100 back");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such number of nodes; 1 to 100 ahead, -1 to "
+			     "-100 back");
 }
 
 static void verb_override(struct jobs *j, const struct verb *v,
@@ -321,10 +327,12 @@ static void verb_override(struct jobs *j, const struct verb *v,
 	if (c->arg >= 0 && c->arg <= OVERRIDE_MAX)
 		verb_machine(j, v, c);
 	else
-		verbs_answer(j, c, EX_DATAERR, "no such override; 0 to 200 percent");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such override; 0 to 200 percent");
 }
 
-/* One letter of an axis the machine has, of @n in the text; -1: refused. */
+/* The text must be the letter of an axis that the machine has; @n: its length.
+ * Return: -1 if it was refused. */
 static int axis_of(struct jobs *j, const struct jobs_lcm_command *c, size_t n)
 {
 	const char *at = n == 1 ? strchr(INTERP_AXIS_LETTERS, c->text[0]) :
@@ -349,8 +357,9 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 	int axis;
 
 	if (!isfinite(c->arg) || c->arg == 0) {
-		verbs_answer(j, c, EX_DATAERR, "no such length; a number of mm or "
-		       "degrees, + or -");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such length; a number of mm or "
+			     "degrees, + or -");
 		return;
 	}
 	axis = axis_of(j, c, strlen(c->text));
@@ -358,7 +367,7 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 		ask_machine(j, v, c, (uint32_t)axis);
 }
 
-/* The text is the axis, the number of the press, and `begin`, if it begins. */
+/* The text is the axis, the number of the press, and `begin` if it begins. */
 static void verb_jog_on(struct jobs *j, const struct verb *v,
 			const struct jobs_lcm_command *c)
 {
@@ -416,7 +425,7 @@ static void verb_home(struct jobs *j, const struct verb *v,
 		       "it starts at is good");
 }
 
-/* A refused start must not set the queue going. */
+/* A refused start must not start the queue. */
 static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	if (!queue_is_faulted(j))
@@ -428,11 +437,20 @@ static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 static void verb_resume(struct jobs *j, const struct verb *v,
 			const struct jobs_lcm_command *c)
 {
-	if (!refused_by_fault(j, c))
-		verb_machine(j, v, c);
+	struct store_job job;
+
+	if (!*c->job || strcmp(c->job, j->queue.job.id) == 0) {
+		if (!refused_by_fault(j, c))
+			verb_machine(j, v, c);
+	} else if (store_find(j->store, c->job, &job) < 0) {
+		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
+			     "them");
+	} else {
+		again_resume(j, c, &job);
+	}
 }
 
-/* A job that waits: it is started when its turn comes. */
+/* A waiting job is started when its turn comes. */
 static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 			 const struct store_job *job)
 {
@@ -440,14 +458,16 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 
 	if (job->state == JOB_INTERRUPTED) {
 		verbs_answer(j, c, REFUSED, "this job was interrupted; look at "
-			     "the work, remove it, and submit what is left");
+			     "the work, then resume it or remove it");
 		return;
 	}
 	if (job->state != JOB_QUEUED) {
-		verbs_answer(j, c, REFUSED, "this job has ended; submit it again");
+		verbs_answer(j, c, REFUSED,
+			     "this job has ended; submit it again");
 		return;
 	}
-	/* A start is one act: what is not ready now must be started then. */
+	/* A start is one act: if the machine is not ready now, the operator
+	 * must start again later. */
 	if (queue_unready(j)) {
 		snprintf(reason, sizeof(reason), "%s; start it then",
 			 queue_unready(j));
@@ -469,8 +489,8 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	if (refused_by_fault(j, c))
 		return;
 	if (*c->job && store_find(j->store, c->job, &job) < 0) {
-		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
-		       "them");
+		verbs_answer(j, c, EX_NOINPUT,
+			     "no such job; edmctl queue lists them");
 	} else if (*c->job && (!here || job.n != q->job.n)) {
 		start_behind(j, c, &job);
 	} else if (here) {
@@ -482,7 +502,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	}
 }
 
-/* What each is, who may ask for it: the one table of rights. */
+/* The one table of rights: what each verb is, and who may ask for it. */
 static const struct verb verbs[] = {
 	{ "start", ROLE_OPERATOR, VERB_ACTS, verb_start, SHM_DO_START,
 	  "a job that is ready or held" },
@@ -559,7 +579,7 @@ static void refuse_role(struct jobs *j, const struct jobs_lcm_command *c,
 	verbs_answer(j, c, EX_NOPERM, reason);
 }
 
-/* Answered before, or under way: not done again. */
+/* It was answered before, or is under way: it is not done again. */
 static bool is_repeat(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	const struct reply *r = reply_find(&j->replies, c->key, c->client,

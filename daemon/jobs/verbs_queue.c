@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * verbs_queue.c - verbs that the service answers from its store
- */
+/* verbs_queue.c - verbs that the service answers from its store */
 #include "interrupt.h"
 #include "store_turn.h"
 #include "verb.h"
@@ -22,8 +20,8 @@ void verbs_remove(struct jobs *j, const struct verb *v,
 
 	(void)v;
 	if (store_find(j->store, c->job, &job) < 0) {
-		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
-		       "them");
+		verbs_answer(j, c, EX_NOINPUT,
+			     "no such job; edmctl queue lists them");
 	} else if (job.n == j->queue.job.n && job.state == JOB_READY) {
 		queue_end(j, JOB_STOPPED, e.reason);
 		if (!waiting)
@@ -35,8 +33,9 @@ void verbs_remove(struct jobs *j, const struct verb *v,
 		interrupt_init(j);
 		verbs_answer(j, c, 0, "removed");
 	} else if (job.state != JOB_QUEUED || job.loaded) {
-		verbs_answer(j, c, REFUSED, "it has begun or ended; stop ends a job "
-		       "that runs");
+		verbs_answer(j, c, REFUSED,
+			     "it has begun or ended; stop ends a job "
+			     "that runs");
 	} else {
 		store_end(j->store, job.n, &e);
 		queue_recount(j);
@@ -55,11 +54,11 @@ void verbs_move(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, EX_DATAERR, "no such way; -1 is ahead, 1 "
 			     "is back");
 	} else if (store_find(j->store, c->job, &job) < 0) {
-		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
-			     "them");
+		verbs_answer(j, c, EX_NOINPUT,
+			     "no such job; edmctl queue lists them");
 	} else if (job.state != JOB_QUEUED || job.loaded) {
-		verbs_answer(j, c, REFUSED, "only a job that waits in the queue "
-			     "can be moved");
+		verbs_answer(j, c, REFUSED,
+			     "only a job that waits in the queue can be moved");
 	} else {
 		err = store_move(j->store, job.n, c->arg < 0);
 		verbs_answer(j, c, err == 0 ? 0 : err == -ENOENT ? REFUSED :
@@ -96,10 +95,11 @@ void verbs_text(struct jobs *j, const struct verb *v,
 static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 			enum store_list what)
 {
-	/* Only history has it; anything but a few rows is as many as there are. */
+	/* Without a sensible argument, as many rows as fit. */
 	const int rows = c->arg > 0 && c->arg < 1000 ? (int)c->arg : 0;
 	struct store_job before;
-	const bool known = what == STORE_ALARMS || !*c->job ||
+	const bool known = what == STORE_ALARMS ||
+			   (!*c->job && what != STORE_SHOW) ||
 			   store_find(j->store, c->job, &before) != -ENOENT;
 	char *body = known ? store_json(j->store, what, c->job, rows) : NULL;
 	struct jobs_lcm_ack a = {
@@ -147,6 +147,7 @@ void verbs_history(struct jobs *j, const struct verb *v,
 	if (c->arg >= 0 && c->arg <= 1000)
 		answer_list(j, c, STORE_HISTORY);
 	else
-		verbs_answer(j, c, EX_DATAERR, "no such number of rows; 0 to 1000, "
-		       "0 is all that are kept");
+		verbs_answer(j, c, EX_DATAERR,
+			     "no such number of rows; 0 to 1000, 0 is all that "
+			     "are kept");
 }

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * verbs_store.c - "store": how the database is, and what it takes
- */
+/* verbs_store.c - verb "store": the state of the database, and its size */
 #include "jobs.h"
 #include "verb.h"
 
@@ -20,8 +18,8 @@ void verbs_store(struct jobs *j, const struct verb *v,
 	if (j->checkpoint)
 		checkpoint_stats(j->checkpoint, &place);
 	store_measure(j->store, &size);
-	/* No name of a machine or folder that is taken needs escaping but these:
-	 * a folder with a quote in it is shown without. */
+	/* Names of machines and folders need no other escapes.  A folder with a
+	 * quote in its name is shown without the quote. */
 	for (char *at = size.path; *at; at++)
 		if (*at == '"' || *at == '\\' || (unsigned char)*at < ' ')
 			*at = '?';

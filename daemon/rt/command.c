@@ -267,6 +267,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->back_mm = 0;
 	mcode_begin(c, at->index);
 	c->job.power_off = false;
+	c->job.rejoin_mm = 0;
 	c->probe = (struct probe) { .phase = PROBE_SETTLE };
 	for (int i = 0; i < INTERP_NAXES; i++)
 		c->out.target[i] = at->pos[i];

@@ -69,7 +69,7 @@ static enum cycle_event look_arrive(const struct cycle *c)
 static enum cycle_event look_out(struct cycle *c)
 {
 	if (guard_met(c))
-		c->withdraws = ground_is_cut(c);
+		c->withdraws = walk_rejoins(c) || ground_is_cut(c);
 	if (!c->withdraws)
 		return look_arrive(c);
 	return contouring_rests(&c->contouring) ? EVENT_SHORT : EVENT_NONE;

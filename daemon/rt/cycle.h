@@ -164,6 +164,8 @@ struct cycle_job {
 	bool dwelling;
 	uint64_t dwell_left;		/* cycles */
 	bool power_off;			/* the program switched it off (M5) */
+	double rejoin_mm;		/* cut before the wire broke: positioned
+					 * up to here; 0: nothing is */
 };
 
 struct cycle {

@@ -50,6 +50,9 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		c->free_seen = false;
 		c->withdraws = false;
 		break;
+	case STATE_APPROACH:
+		c->job.rejoin_mm = 0;
+		break;
 	case STATE_PROBE:
 		probe_begin(c);
 		break;
@@ -74,6 +77,8 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		break;
 	case STATE_IDLE:
 	case STATE_FAULT:
+		if (fault_any(c->fault.latched, fault_row_disables))
+			c->out.enable = false;
 		axes_forget(c);
 		mover_set(&c->mover, 0);
 		mover_set(&c->manual.mover, 0);
@@ -104,6 +109,7 @@ static void retreat(struct cycle *c)
 {
 	const double back = c->gap.wire_retreat_mm;
 
+	c->job.rejoin_mm = place_mm(c) - back;
 	switch (c->gap.wire_retreat_to) {
 	case RETREAT_HOLE:
 		hole_begin(c);
@@ -150,18 +156,25 @@ void cycle_end_reset(struct cycle *c)
 		cycle_reset(c);
 }
 
+/* Nothing can brake where no axis follows any more. */
+static bool ends_at_once(const struct cycle *c)
+{
+	return fault_any(c->fault.latched, fault_row_ends) ||
+	       (!c->axes.steers &&
+		fault_any(c->fault.latched, fault_row_disables));
+}
+
 void cycle_fail(struct cycle *c)
 {
 	const uint64_t fresh = c->fault.fresh;
 
 	c->fault.fresh = 0;
-	if (fault_any(fresh, fault_row_disables))
-		c->out.enable = false;
-	c->outcome = c->loaded ? OUTCOME_FAULT : c->outcome;
-	if (c->state == STATE_FAULT)
-		return;
-	if (fault_any(fresh, fault_row_ends))
+	if (fresh && c->loaded)
+		c->outcome = OUTCOME_FAULT;
+	if (c->state == STATE_FAULT || ends_at_once(c))
 		cycle_enter(c, STATE_FAULT);
+	else if (!fresh)
+		return;
 	else if (c->loaded)
 		brake(c);
 	else if (brakes_by_hand(c, fresh))

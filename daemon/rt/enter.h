@@ -46,7 +46,7 @@ static inline void cycle_react(struct cycle *c)
 {
 	if (c->fault.resetting)
 		cycle_end_reset(c);
-	if (c->fault.fresh)
+	if (c->fault.fresh || (c->fault.latched && c->state != STATE_FAULT))
 		cycle_fail(c);
 }
 

@@ -8,6 +8,7 @@
 #include "path/laws.h"
 #include "path/pace.h"
 #include "path/place.h"
+#include "path/walk.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -25,7 +26,8 @@ static double brake(struct cycle *c)
 static double travel(struct cycle *c)
 {
 	const struct ahead_move w = {
-		.toward = 1, .goal_mm = INFINITY, .positions = true,
+		.toward = 1, .positions = true,
+		.goal_mm = walk_rejoins(c) ? c->job.rejoin_mm : INFINITY,
 		.l = law_travel_limits(c, INFINITY),
 	};
 

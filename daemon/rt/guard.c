@@ -14,7 +14,7 @@ static void watch_wire(struct cycle *c)
 		return;
 	fault_note(&c->fault, FAULT_WIRE_BROKEN, FAULT_IN_POWER);
 	if (c->state == STATE_RETRACT ||
-	    (c->state == STATE_TRAVEL && walk_ahead(c) == AHEAD_CUT))
+	    (c->state == STATE_TRAVEL && walk_needs_wire(c)))
 		fault_latch(&c->fault, FAULT_WIRE_BROKEN);
 }
 

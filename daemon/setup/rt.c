@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * rt.c - real-time setup, all of it
- */
+/* rt.c - everything that sets up real time */
 #include "rt.h"
 
 #include <errno.h>
@@ -44,7 +42,7 @@ static const struct setup_item unasked[SETUP_NITEMS] = {
 	},
 };
 
-/* @err 0 is "got". */
+/* @err 0: the host gave it. */
 static void item_set(struct setup_report *r, enum setup_what what, int err,
 		     const char *call)
 {
@@ -64,9 +62,9 @@ static void item_unwanted(struct setup_report *r, enum setup_what what)
 }
 
 /*
- * With a limit on locked memory, "lock what comes later" makes later mappings
- * fail instead.  Reserving address space counts against the limit and costs
- * nothing.
+ * If there is a limit on locked memory, "lock what comes later" would make
+ * later mappings fail.  Reserving address space counts against the limit and
+ * costs nothing, so it shows whether there is room.
  */
 static bool later_is_allowed(void)
 {
@@ -97,7 +95,7 @@ static void memory_lock(struct setup_report *r)
 			 "locked what there is, not what comes");
 }
 
-/* The request holds while the file is open, so it is never closed. */
+/* The request is valid while the file is open, so it is never closed. */
 static void keep_awake(struct setup_report *r)
 {
 	int fd = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);

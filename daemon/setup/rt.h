@@ -38,7 +38,8 @@ struct setup_wanted {
 	int priority;			/* SCHED_FIFO; 0: none */
 };
 
-/* Stack of the real-time thread, and what of it is touched beforehand. */
+/* The stack of the real-time thread, and the part of it that is touched in
+ * advance. */
 #define SETUP_STACK_BYTES	(512 * 1024)
 #define SETUP_STACK_TOUCHED	(256 * 1024)
 

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * command.c - commands come through a socket, into a ring of edmd's own
+ * command.c - commands come through a socket into a ring that belongs to edmd
  *
- * The two sides differ in trust, so they share no memory here: nothing can be
- * changed after it was looked at, cut short while it is read, or turned back
- * to be read again.  The kernel keeps packets whole and in order, says who
- * connects, and ends the connection with the process.  A thread takes them
- * from the socket, so that the cycle makes no system call and waits for
- * nobody.
+ * The two sides do not trust each other equally, so they share no memory here.
+ * Nothing can be changed after it was checked, cut short while it is read, or
+ * set back to be read again.  The kernel keeps packets whole and in order, says
+ * who connects, and ends the connection with the process.  A thread reads the
+ * socket, so the cycle makes no system call and waits for nobody.
  */
 #include "object.h"
 
@@ -27,17 +26,18 @@
 #include <unistd.h>
 
 #define SERVICE_USER	"edm-jobs"
-#define FULL_MS		1		/* until a full ring is looked at again */
+#define FULL_MS		1		/* time until a full ring is tried
+					 * again */
 
 CK_RING_PROTOTYPE(command, shm_command)
 
 struct shm_commands {
 	ck_ring_t ring;
 	struct shm_command slot[SHM_COMMAND_SLOTS];
-	struct shm_head head;		/* said to who connects */
+	struct shm_head head;		/* sent to everybody who connects */
 	char path[OBJECT_PATH_MAX];
 	int listening, connected, end;	/* end: an eventfd */
-	uid_t service;			/* who may connect beside ourselves */
+	uid_t service;			/* may connect, besides our own user */
 	pthread_t thread;
 };
 
@@ -53,7 +53,7 @@ static int socket_address(struct sockaddr_un *ret, const char *machine)
 	return 0;
 }
 
-/* -- edmd: the thread ------------------------------------------------------- */
+/* -- edmd: the thread ----------------------------------------------------- */
 
 static bool peer_is_service(const struct shm_commands *c, int fd)
 {
@@ -66,7 +66,7 @@ static bool peer_is_service(const struct shm_commands *c, int fd)
 	       peer.uid == c->service;
 }
 
-/* A new one takes the place of the one before: that one is being ended. */
+/* A new connection takes the place of the old one, which is closed. */
 static void commands_accept(struct shm_commands *c)
 {
 	int fd = accept4(c->listening, NULL, NULL,
@@ -96,7 +96,7 @@ static void commands_receive(struct shm_commands *c)
 		c->connected = -1;
 		return;
 	}
-	/* There was room: this thread alone fills the ring. */
+	/* There was room, and only this thread fills the ring. */
 	ck_ring_enqueue_spsc_command(&c->ring, c->slot, &m);
 }
 
@@ -129,7 +129,7 @@ static void *commands_run(void *arg)
 	return NULL;
 }
 
-/* No signal is ever delivered to it. */
+/* No signal is delivered to this thread. */
 static int thread_start(struct shm_commands *c)
 {
 	sigset_t all, before;
@@ -142,9 +142,10 @@ static int thread_start(struct shm_commands *c)
 	return -err;
 }
 
-/* -- edmd: beginning and end ------------------------------------------------ */
+/* -- edmd: beginning and end ---------------------------------------------- */
 
-/* The socket takes its mode from the umask, which is not ours to change. */
+/* The mode of the socket comes from the umask, which this library must not
+ * change. */
 static int listen_at(struct shm_commands *c, const struct sockaddr_un *at)
 {
 	snprintf(c->path, sizeof(c->path), "%.95s", at->sun_path);
@@ -204,7 +205,7 @@ void shm_command_destroy(struct shm_commands *c)
 
 	if (!c)
 		return;
-	/* An eventfd at 0 takes a 1 without fail. */
+	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
 	if (write(c->end, &one, sizeof(one)) != sizeof(one))
 		abort();
 	pthread_join(c->thread, NULL);
@@ -217,7 +218,7 @@ bool shm_command_take(struct shm_commands *c, struct shm_command *ret)
 	return ck_ring_dequeue_spsc_command(&c->ring, c->slot, ret);
 }
 
-/* -- edmd-jobs -------------------------------------------------------------- */
+/* -- edmd-jobs ------------------------------------------------------------ */
 
 static int head_take(int fd, uint32_t *ret_instance)
 {
@@ -225,7 +226,7 @@ static int head_take(int fd, uint32_t *ret_instance)
 	struct shm_head h;
 	int err;
 
-	/* edmd's thread answers at once, unless edmd is stopped. */
+	/* edmd's thread answers at once, unless edmd was stopped. */
 	if (poll(&p, 1, 20) <= 0)
 		return -EAGAIN;
 	if (recv(fd, &h, sizeof(h), MSG_TRUNC) != sizeof(h))

@@ -16,28 +16,41 @@
 #include <unistd.h>
 
 #define FOLDER		"/dev/shm"
-#define CLAIM_TRIES	8		/* another one may remove it meanwhile */
+#define CLAIM_TRIES	8		/* somebody else may remove it
+					 * meanwhile */
 
 /* A view of a record that may alias anything. */
 typedef uint64_t __attribute__((may_alias)) word_t;
 
-/* Made by root, by edmd, or by this user: nobody else can do anything to it. */
-static bool maker_is_trusted(uid_t uid)
+/* Was it made by root, by @service, or by this user?  Then nobody else can
+ * change it. */
+static bool maker_is_trusted(uid_t uid, const char *service)
 {
-	const struct passwd *edmd;
+	const struct passwd *made;
 
 	if (uid == 0 || uid == geteuid())
 		return true;
-	edmd = getpwnam("edmd");
-	return edmd && uid == edmd->pw_uid;
+	made = getpwnam(service);
+	return made && uid == made->pw_uid;
 }
 
-static bool folder_is_ours(void)
+static const char *folder_of(const char *what)
 {
+	static const struct {
+		const char *path, *service;
+	} folder[] = {
+		{ FOLDER "/edmd", "edmd" },
+		{ FOLDER "/edmd-jobs", "edm-jobs" },
+	};
+	const bool jobs = strcmp(what, "writer") == 0 ||
+			  strncmp(what, "program.", 8) == 0;
 	struct stat st;
 
-	return lstat(FOLDER "/edmd", &st) == 0 && S_ISDIR(st.st_mode) &&
-	       !(st.st_mode & 0002) && maker_is_trusted(st.st_uid);
+	if (lstat(folder[jobs].path, &st) == 0 && S_ISDIR(st.st_mode) &&
+	    !(st.st_mode & 0022) &&
+	    maker_is_trusted(st.st_uid, folder[jobs].service))
+		return folder[jobs].path;
+	return FOLDER;
 }
 
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
@@ -48,9 +61,15 @@ int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 	if (!names_machine_ok(machine))
 		return -EINVAL;
 
-	snprintf(path, OBJECT_PATH_MAX, "%s/edmd.%.31s.%s",
-		 folder_is_ours() ? FOLDER "/edmd" : FOLDER, machine, what);
+	snprintf(path, OBJECT_PATH_MAX, "%s/edmd.%.31s.%s", folder_of(what),
+		 machine, what);
 	return 0;
+}
+
+void shm_path(char path[SHM_PATH_MAX], const char *machine, const char *what)
+{
+	if (object_path(path, machine, what) < 0)
+		path[0] = '\0';
 }
 
 int64_t object_size(int fd)
@@ -125,14 +144,14 @@ void object_leave(int fd, const char *machine, const char *what)
 }
 
 /*
- * The memory is taken at once: a sparse object would end its writer with
- * SIGBUS on the day /dev/shm is full.
+ * The memory is reserved at once.  A sparse object would end its writer with
+ * SIGBUS when /dev/shm is full one day.
  */
 int object_grow(int fd, size_t bytes, unsigned int mode)
 {
 	int err;
 
-	/* shm_open() has cut the mode by the umask. */
+	/* shm_open() has reduced the mode by the umask. */
 	if (fchmod(fd, mode) < 0 || ftruncate(fd, (off_t)bytes) < 0)
 		return -errno;
 
@@ -187,8 +206,8 @@ static int object_open_fd(void **ret, int fd, size_t bytes, bool writable)
 		return (int)size;
 	if (size == 0)
 		return -ENOENT;
-	/* Another user could cut it short, and end us by a signal. */
-	if (fstat(fd, &st) < 0 || !maker_is_trusted(st.st_uid))
+	/* Another user could truncate the file and so end us by a signal. */
+	if (fstat(fd, &st) < 0 || !maker_is_trusted(st.st_uid, "edmd"))
 		return -EPERM;
 	if ((uint64_t)size != bytes)
 		return -EPROTO;
@@ -223,10 +242,10 @@ int object_open(void **ret, const char *machine, const char *what,
 }
 
 /*
- * A record under a sequence is read while it may be written; the sequence
- * tells afterwards.  In C11 that is a race unless every word is atomic.
- * Release and acquire on the words also hold the order against the stamps, on
- * any processor, with no fence; on x86 they are plain moves.
+ * A record under a sequence number may be written while it is read; the
+ * sequence shows this afterwards.  In C11 that is a data race unless every word
+ * is atomic.  Release and acquire on the words also keep the order against the
+ * stamps, on any processor and without a fence.  On x86 they are plain moves.
  */
 void object_words_put(void *shared, const void *from, size_t bytes)
 {

@@ -2,46 +2,51 @@
 /*
  * object.h - what the shared objects have in common: name, head, mapping
  *
- * Private to this folder.  Startup only, but for the words.
+ * Private to this folder.  Startup only, except object_words_...().
  */
 #ifndef EDM_SHM_OBJECT_H
 #define EDM_SHM_OBJECT_H
 
 #include "shm.h"
 
-#define OBJECT_PATH_MAX	96
+#define OBJECT_PATH_MAX	SHM_PATH_MAX
 
 /**
  * object_path() - "/dev/shm/edmd.<machine>.<what>"; -EINVAL for a bad name.
  *
- * In /dev/shm/edmd, if there is such a folder that root, edmd or this user
- * made: anybody may make a file in /dev/shm, and would block its name.
+ * The path is in the folder of the object's maker, /dev/shm/edmd or
+ * /dev/shm/edmd-jobs, if there is one that belongs to that service, root or
+ * this user, and nobody else may write in it.  In /dev/shm anybody may make a
+ * file and so block its name.
  */
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what);
 
 /**
- * object_claim() - lock the object @what, which is empty, for this process.
+ * object_claim() - lock the empty object @what for this process.
  *
- * Only its maker may open it: a lock for reading, which any reader of an object
- * may take, would keep the next owner out.
- * Return: a descriptor that holds the lock, to the end of the process at most;
- * -EBUSY another living process has it; -EPERM another user made it; else
+ * Only its maker may open it.  Otherwise a read lock, which any reader of an
+ * object may take, would keep the next owner out.
+ *
+ * Return: a descriptor that holds the lock, until the end of the process at
+ * most; -EBUSY another living process has it; -EPERM another user made it; else
  * -errno.
  */
 int object_claim(const char *machine, const char *what);
 
-/** object_leave() - remove it and give the lock up; -1 is fine. */
+/** object_leave() - remove the object and release the lock; -1 is fine. */
 void object_leave(int fd, const char *machine, const char *what);
 
 /** object_lock() - lock @fd for writing.  Return: 0, -EBUSY, else -errno. */
 int object_lock(int fd);
 
-/** object_check() - 0 if @fd is ours and still has its name; -EAGAIN it was
- *  removed meanwhile, -EPERM it is another user's, else -errno. */
+/**
+ * object_check() - 0 if @fd is ours and still has its name; -EAGAIN if it was
+ * removed meanwhile; -EPERM if it belongs to another user; else -errno.
+ */
 int object_check(int fd);
 
-/* No link, and no pipe that waits for its other end. */
+/* Do not follow a link, and do not wait for the other end of a pipe. */
 #define OBJECT_FLAGS	(O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)
 
 /** object_size() - bytes of @fd, which must be a plain file; else -errno. */
@@ -53,7 +58,10 @@ int object_grow(int fd, size_t bytes, unsigned int mode);
 /** object_map() - map @bytes of @fd. */
 int object_map(void **ret, int fd, size_t bytes, bool writable);
 
-/** object_head_fill() - magic last, so that a reader sees all or nothing. */
+/**
+ * object_head_fill() - fill the head; the magic comes last, so that a reader
+ * sees all or nothing.
+ */
 void object_head_fill(struct shm_head *h, const char *machine,
 		      uint64_t bytes, uint32_t instance);
 

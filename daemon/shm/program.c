@@ -37,7 +37,8 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 		return -EINVAL;
 	if (bytes > SHM_PROGRAM_MAX)
 		return -EFBIG;
-	/* A new file: the old one must not change under who has it mapped. */
+	/* Make a new file: the old one must not change for those who have it
+	 * mapped. */
 	if (unlink(path) < 0 && errno != ENOENT)
 		return -errno;
 	fd = open(path, O_RDWR | O_CREAT | O_EXCL | OBJECT_FLAGS, 0640);
@@ -53,11 +54,13 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 	return err;
 }
 
-/* Read, not mapped: what is cut short meanwhile is an error, no signal. */
+/* The file is read, not mapped.  If somebody truncates it, that is an error and
+ * not a signal. */
 static int copy_fill(char *to, int fd, size_t bytes)
 {
 	while (bytes > 0) {
-		ssize_t n = read(fd, to, bytes < COPY_BYTES ? bytes : COPY_BYTES);
+		ssize_t n = read(fd, to,
+				 bytes < COPY_BYTES ? bytes : COPY_BYTES);
 
 		if (n < 0 && errno == EINTR)
 			continue;
@@ -88,8 +91,8 @@ static int copy_make(void **ret, int fd, size_t bytes)
 }
 
 /*
- * Its writer has taken all of its memory; a file with holes, or one larger than
- * any program, was not made by it, and would take all the memory there is.
+ * The writer has reserved all the memory of a program.  A file with holes, or
+ * one larger than any program, was not made by it, and would use up the memory.
  */
 static int64_t program_size(int fd)
 {

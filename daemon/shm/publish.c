@@ -2,8 +2,8 @@
 /*
  * publish.c - snapshot, trace and events: one writer, any number of readers
  *
- * No reader can hold the writer up.  A record may be overwritten while it is
- * read; the sequence or stamp, read before and after, tells.
+ * No reader can delay the writer.  A record may be overwritten while it is
+ * read.  The sequence or the stamp, which is read before and after, shows that.
  */
 #include "object.h"
 
@@ -13,10 +13,10 @@
 #define SNAPSHOT_TRIES	1000
 #define RING_TRIES	16
 
-/* A reader that was overtaken comes back this far ahead of the writer. */
+/* A reader that was overtaken continues this far behind the writer. */
 #define RING_MARGIN(slots)	((slots) - (slots) / 16)
 
-/* The two rings, as one: a stamp and the record's words behind it. */
+/* Both rings in one form: a stamp, and behind it the words of the record. */
 struct ring {
 	void *slots;
 	uint64_t *next;
@@ -44,7 +44,7 @@ static struct ring ring_of_events(const struct shm_status *s)
 	};
 }
 
-/* Of two, so that a writer killed in the middle of one leaves the other. */
+/* There are two of them: if a writer is killed in one, the other is whole. */
 static struct ring ring_of_sets(const struct shm_status *s)
 {
 	return (struct ring) {
@@ -92,7 +92,7 @@ static void ring_put(const struct ring *r, const void *record)
 	__atomic_store_n(r->next, n + 1, __ATOMIC_RELEASE);
 }
 
-/* Record @n whole, or false if it is gone. */
+/* Read record @n as a whole; false if it is gone. */
 static bool ring_get(const struct ring *r, uint64_t n, void *ret)
 {
 	uint64_t *stamp = ring_stamp(r, n);
@@ -185,8 +185,8 @@ bool shm_sets(const struct shm_status *s, struct shm_sets *ret)
 }
 
 /*
- * ck_sequence_read_begin() waits until the sequence is even, which it never
- * is again if the writer was killed inside: look once instead.
+ * ck_sequence_read_begin() waits until the sequence is even.  It never becomes
+ * even if the writer was killed inside, so look only once.
  */
 static bool snap_get(const struct shm_snap *from, struct shm_snapshot *ret)
 {
@@ -247,7 +247,8 @@ bool shm_ended_next(const struct shm_status *s, struct shm_follow *f,
 	return ring_follow(&r, f, ret);
 }
 
-/* The newest first; a torn record is one that nobody has begun to do. */
+/* Search from the newest.  A torn record belongs to a command that nobody has
+ * begun to carry out. */
 static bool done_find(const struct ring *r, uint64_t id, uint64_t *ret_n,
 		      struct shm_done *ret)
 {
@@ -280,7 +281,8 @@ void shm_done_end(struct shm_status *s, uint64_t id, int32_t code)
 
 	if (!done_find(&r, id, &n, &d) || d.code != SHM_TAKEN)
 		return;
-	/* One store: killed here, it is answered or not, but never lost. */
+	/* A single store: if edmd is killed here, the command is answered or
+	 * not, but never lost. */
 	__atomic_store_n(&s->done[n % SHM_DONE_SLOTS].record.code, code,
 			 __ATOMIC_RELEASE);
 }

@@ -2,7 +2,8 @@
 /*
  * shm.h - edmd's shared memory: layout and the three crossings
  *
- * Three objects in /dev/shm, named edmd.<machine>.*:
+ * Three objects in /dev/shm/edmd and /dev/shm/edmd-jobs, or in /dev/shm where
+ * there are no such folders, named edmd.<machine>.*:
  *
  *	status		edmd writes, anyone of the group reads: one snapshot,
  *			a ring of per-cycle trace records, a ring of events
@@ -24,7 +25,8 @@
  * edmd that ends in order removes both objects.
  *
  * The jobs that ended last are kept in status as well: a service that could not
- * write that down, and was killed, does not take one of them for a job to be cut.
+ * write that down, and was killed, does not take one of them for a job to be
+ * cut.
  *
  * The ids of the last commands that were taken are kept in status too, with
  * what was answered: no edmd of this machine takes one of them again.
@@ -51,6 +53,7 @@
 #define SHM_LAYOUT	8
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
+#define SHM_PATH_MAX	96
 
 #define SHM_TRACE_SLOTS		16384	/* powers of two */
 #define SHM_EVENT_SLOTS		1024
@@ -80,11 +83,13 @@ struct shm_snapshot {
 	uint64_t cycle;			/* since edmd started */
 	int64_t time_ns;		/* CLOCK_REALTIME of this cycle */
 	uint32_t state;			/* enum shm_state */
-	uint32_t fault;			/* the first; enum cycle_fault; 0 none */
+	uint32_t fault;			/* the first; enum cycle_fault; 0
+					 * none */
 	uint32_t outcome;		/* enum cycle_outcome of the last job */
 	uint32_t program;		/* program.<n>, until unloaded; or 0 */
 	uint32_t seg, tick;		/* place, exactly */
-	uint64_t faults;		/* all that are latched: bit n, fault n */
+	uint64_t faults;		/* all that are latched: bit n, fault
+					 * n */
 	uint32_t line;			/* of the source */
 	uint32_t cond_number;
 	char cond_letter;
@@ -98,7 +103,8 @@ struct shm_snapshot {
 	double pulse_mm[SHM_NAXES];
 	double place_mm, far_mm, length_mm;	/* along the path */
 	double feed_mm_s, gap_v;
-	double depth_mm;		/* travel of Z below the program's start */
+	double depth_mm;		/* travel of Z below the program's
+					 * start */
 	/* Sums of the job. */
 	uint64_t job_cycles, erode_cycles, jump_cycles;
 	uint32_t retracts, jumps, shorts, overruns;
@@ -109,7 +115,7 @@ struct shm_snapshot {
 	int64_t period_ns;
 	int64_t wake_late_ns, wake_late_max_ns;
 	int64_t took_ns, took_max_ns;
-	/* Of touches: pos less the program's own place, pulses; where the last
+	/* Of probing: pos less the program's own place, pulses; where the last
 	 * two contacts along each axis were, and which of them there are; no
 	 * way back beyond that place on the path. */
 	int32_t shift[SHM_NAXES], found[2][SHM_NAXES];
@@ -161,12 +167,14 @@ struct shm_trace {
 };
 
 enum shm_event_kind {
-	SHM_EV_ANSWER = 1,		/* id: the command's; code: cycle_answer */
+	SHM_EV_ANSWER = 1,		/* id: the command's; code:
+					 * cycle_answer */
 	SHM_EV_STATE,			/* code: the new enum shm_state */
 	SHM_EV_FAULT,			/* code: cycle_fault */
 	SHM_EV_LOADED,			/* code: program n */
 	SHM_EV_ENDED,			/* code: cycle_outcome */
-	SHM_EV_CONDITION,		/* called; id: its letter; code: number */
+	SHM_EV_CONDITION,		/* called; id: its letter; code:
+					 * number */
 	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
 	SHM_EV_SELECT,			/* by the PLC; code: job n */
 	SHM_EV_HUNTING,			/* code: retracts in a row */
@@ -180,7 +188,8 @@ struct shm_event {
 	int32_t code;
 	uint32_t program, pad;
 	double place_mm;
-	double was, now;		/* set: values, NAN the generator's own */
+	double was, now;		/* set: values, NAN the generator's
+					 * own */
 };
 
 /*
@@ -290,7 +299,8 @@ struct shm_command {
 	uint32_t verb;
 	uint32_t arg;
 	double arg_mm;
-	int64_t until_ns;		/* CLOCK_MONOTONIC; then it is too late */
+	int64_t until_ns;		/* CLOCK_MONOTONIC; then it is too
+					 * late */
 	uint32_t instance;		/* of the edmd it is meant for */
 	uint32_t pad;
 };
@@ -410,6 +420,9 @@ bool shm_trace_next(const struct shm_status *s, struct shm_follow *f,
 /** shm_event_next() - the same for events. */
 bool shm_event_next(const struct shm_status *s, struct shm_follow *f,
 		    struct shm_event *ret);
+
+/** shm_path() - the file of the object @what of @machine, to tell of it. */
+void shm_path(char path[SHM_PATH_MAX], const char *machine, const char *what);
 
 /**
  * shm_writer_claim() - become the only process that commands the machine and

@@ -2,9 +2,9 @@
 /*
  * status.c - make, take over, open and remove the status object
  *
- * The owner holds a write lock of its open file description on an object of
- * its own, and another on the status, which readers may ask for.  The kernel
- * drops both with the process, however that ends.
+ * The owner holds a write lock, of its open file description, on an object of
+ * its own, and another one on the status, about which readers may ask.  The
+ * kernel releases both with the process, in whatever way it ends.
  */
 #include "object.h"
 
@@ -31,8 +31,8 @@ static uint32_t instance_draw(void)
 }
 
 /*
- * The lock on the status itself only shows to readers that its edmd lives.  If
- * one of them has a lock for reading on it, there will be another object.
+ * The lock on the status itself only shows readers that its edmd lives.  If a
+ * reader has a read lock on it, a new object is made.
  */
 static int status_own(int fd)
 {
@@ -41,7 +41,7 @@ static int status_own(int fd)
 	return err ? err : object_lock(fd);
 }
 
-/* A whole object of this layout, left by a dead edmd of this machine? */
+/* Is it a whole object of this layout, left by a dead edmd of this machine? */
 static bool status_fits(const struct shm_status *s, const char *machine)
 {
 	return object_head_check(&s->head, sizeof(*s)) == 0 &&
@@ -49,9 +49,9 @@ static bool status_fits(const struct shm_status *s, const char *machine)
 }
 
 /*
- * The snapshots stay until the first new one: an edmd killed before that
- * loses nothing.  A slot the dead one was writing has an odd sequence, which
- * the next write would turn even in its middle.
+ * The snapshots stay until the first new one, so an edmd that is killed before
+ * that loses nothing.  A slot that the dead edmd was writing has an odd
+ * sequence.  The next write would make it even in the middle of writing.
  */
 static void status_adopt(struct shm_status *s)
 {
@@ -60,7 +60,7 @@ static void status_adopt(struct shm_status *s)
 		s->snap[i].seq.sequence += s->snap[i].seq.sequence & 1;
 }
 
-/* What cannot be made whole is not left half. */
+/* If the object cannot be completed, it is removed. */
 static int status_make(void **ret, int fd, const char *path,
 		       struct shm_status **before)
 {
@@ -75,7 +75,8 @@ static int status_make(void **ret, int fd, const char *path,
 	return err;
 }
 
-/* Keep what the object says, and make room for a new one of its name. */
+/* Keep the contents of the object, and make room for a new one with its
+ * name. */
 static int status_move(int fd, const char *path, struct shm_status **before)
 {
 	if (!*before)
@@ -90,7 +91,7 @@ static int status_move(int fd, const char *path, struct shm_status **before)
 	return unlink(path) < 0 && errno != ENOENT ? -errno : -EAGAIN;
 }
 
-/* -EAGAIN: of another layout, now removed; try again. */
+/* Return: -EAGAIN if it had another layout and was removed; try again. */
 static int status_take_over(void **ret, int fd, const char *path,
 			    const char *machine)
 {
@@ -107,7 +108,7 @@ static int status_take_over(void **ret, int fd, const char *path,
 	return unlink(path) < 0 && errno != ENOENT ? -errno : -EAGAIN;
 }
 
-/* One try.  The descriptor stays open if all is well: it carries the lock. */
+/* One try.  If all is well, the descriptor stays open: it holds the lock. */
 static int status_try(void **ret, const char *path, const char *machine,
 		      struct shm_status **before)
 {
@@ -188,10 +189,11 @@ int shm_status_open(const struct shm_status **ret, const char *machine)
 	return err;
 }
 
-/* Locked by another, and the object that @s maps: told by the instance. */
+/* Is it locked by another process, and is it the object that @s maps?  The
+ * instance shows the latter. */
 static bool status_is_owned(int fd, const struct shm_status *s)
 {
-	/* Only a writer's lock is in the way of a reader's. */
+	/* Only a write lock conflicts with a read lock. */
 	struct flock lock = { .l_type = F_RDLCK, .l_whence = SEEK_SET };
 	struct shm_head h;
 

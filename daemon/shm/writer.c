@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * writer.c - one writer of commands and programs for a machine
+ * writer.c - only one process may write commands and programs for a machine
  *
- * The lock is on an empty object of its own: edmd makes the command socket anew
- * when it starts, and programs come and go.
+ * The lock is on an empty object of its own, because edmd makes the command
+ * socket again at each start, and programs come and go.
  */
 #include "object.h"
 

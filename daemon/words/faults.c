@@ -44,8 +44,11 @@ const char *fault_motion_text(enum cycle_fault fault)
 		[FAULT_BACKS_OFF]	= "brakes, and goes back from the cut",
 	};
 
-	return fault_table[fault].disables ? "ends at once, drives off" :
-	       texts[fault_table[fault].motion];
+	if (!fault_table[fault].disables)
+		return texts[fault_table[fault].motion];
+	return fault_table[fault].motion == FAULT_ENDS ?
+	       "ends at once, drives off" :
+	       "the other axes brake, then drives off";
 }
 
 const char *fault_scope_text(enum cycle_fault fault)

@@ -16,12 +16,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* How the motion ends.  Sparks are off in the same period, whatever it is. */
+/* How the motion ends.  In each case the sparks are off in the same period. */
 enum fault_motion {
-	FAULT_BRAKES,			/* the axes are good: along the path */
+	FAULT_BRAKES,			/* along the path: the axes are good, or
+					 * all but one are */
 	FAULT_ENDS,			/* at once: no further lattice point */
-	FAULT_BACKS_OFF,		/* as BRAKES; out of a cut it goes back
-					 * along the path first, and stands */
+	FAULT_BACKS_OFF,		/* as FAULT_BRAKES; in a cut it then
+					 * goes back along the path, and
+					 * stands */
 };
 
 /* When a fault can come up. */
@@ -117,11 +119,11 @@ F(NO_CONTACT, "no-contact", FAULT_BRAKES, false, FAULT_IN_JOB, \
   "a probing motion met nothing", \
   "it came to its end, or to the end of the travel: the work stands elsewhere", \
   "edmctl reset; edmctl retract backs off; look where the work is; start probes again, stop ends the job") \
-F(DRIVE, "drive", FAULT_ENDS, true, FAULT_ALWAYS, \
+F(DRIVE, "drive", FAULT_BRAKES, true, FAULT_ALWAYS, \
   "a drive has a fault", \
   "it reports one, is silent, or was not enabled in time; edmd's log tells which", \
   "repair it; " FAULT_RESET) \
-F(FOLLOWING, "following", FAULT_ENDS, true, FAULT_ALWAYS, \
+F(FOLLOWING, "following", FAULT_BRAKES, true, FAULT_ALWAYS, \
   "an axis is not where it was sent", \
   "something holds it, or its drive is weak or badly tuned", \
   "find what holds it; " FAULT_RESET) \
@@ -165,10 +167,12 @@ enum cycle_fault {
 struct fault_row {
 	const char *name;		/* "short-not-cleared" */
 	enum fault_motion motion;
-	bool disables;			/* takes the power from the axes: one
-					 * may not be where it is thought */
+	bool disables;			/* it takes the power from the axes,
+					 * once the motion has ended, because
+					 * an axis may not be where it should
+					 * be */
 	enum fault_scope scope;
-	const char *what, *why;		/* half a sentence each */
+	const char *what, *why;		/* half a sentence each, for people */
 	const char *clear;		/* what the operator does */
 };
 

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * hunting.h - words for a gap servo that goes in and out on the spot
+ * hunting.h - words for a gap servo that goes in and out at one place
  *
- * It cuts nothing, and no fault tells it: a row of retracts between which the cut
- * got no deeper is a warning.
+ * Such a servo cuts nothing, and no fault reports it.  A number of retracts in
+ * a row between which the cut gets no deeper is a warning.
  */
 #ifndef WORDS_HUNTING_H
 #define WORDS_HUNTING_H
 
-/* So many retracts in a row without progress between: the gap servo hunts. */
+/* After this many retracts in a row without progress the gap servo hunts. */
 enum { HUNTING_ROW = 20 };
 
 /* %d: retracts in a row. */

@@ -15,7 +15,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* -- The gap: [gap] ---------------------------------------------------------- */
+/* -- The gap: [gap] ------------------------------------------------------- */
 
 /* Where the sparks are: in a cavity, or along a wire. */
 enum cycle_process {
@@ -100,7 +100,7 @@ struct cycle_gap_config {
 	double wire_retreat_mm;
 };
 
-/* -- Jumps: [jump] ----------------------------------------------------------- */
+/* -- Jumps: [jump] -------------------------------------------------------- */
 
 struct cycle_jump_config {
 	double height_mm;		/* 0: never */
@@ -112,10 +112,11 @@ struct cycle_jump_config {
 	double bad_share;		/* of the time between two jumps */
 	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	double a_down_mm_s2;		/* toward the cut; 0: a_max_mm_s2 */
-	double short_of_mm;		/* come back to this far above the cut */
+	double short_of_mm;		/* come back to this far above the
+					 * cut */
 };
 
-/* -- Touching the work: [probe] ---------------------------------------------- */
+/* -- Probing the work: [probe] -------------------------------------------- */
 
 struct probe_config {
 	double feed_mm_s;		/* to the first contact */
@@ -124,7 +125,7 @@ struct probe_config {
 	uint64_t settle_cycles;		/* of the sensing voltage, at first */
 };
 
-/* -- Jogs and homing: [axis.*] ------------------------------------------------ */
+/* -- Jogs and homing: [axis.*] -------------------------------------------- */
 
 enum home_method {
 	HOME_NONE,

@@ -19,23 +19,23 @@
 	V(RETRACT)	/* hold, go arg_mm back along the path */ \
 	V(ESTOP)	/* the software e-stop */ \
 	V(RESET)	/* leave the fault: held, or idle without a job */ \
-	V(SET)		/* field arg to arg_mm; NAN: as it was */ \
-	V(OVERRIDE)	/* of positioning, arg_mm: a factor of 0 ... 2 */ \
-	V(STEP)		/* held: arg_mm nodes on, - back */ \
+	V(SET)		/* field arg gets arg_mm; NAN: remove the set value */ \
+	V(OVERRIDE)	/* of positioning; arg_mm is a factor, 0 ... 2 */ \
+	V(STEP)		/* held: go on by arg_mm nodes; - goes back */ \
 	V(JOG)		/* idle: axis arg by arg_mm */ \
 	V(HOME)		/* idle: axis arg; 8: all axes */ \
-	V(JOG_ON)	/* axis at arg_mm mm/s while this comes again */
+	V(JOG_ON)	/* axis at arg_mm mm/s while this is repeated */
 
 /*
- * The argument of JOG_ON.  Only a sign that says so begins a motion; and a press
- * that has ended is never taken up again, so each has a number of its own, 1 or
- * more.
+ * The argument of JOG_ON.  Only a sign that says so begins a motion.  A press
+ * that has ended is never continued, so each press has a number of its own, 1
+ * or more.
  */
 #define VERB_PRESS_AXIS(arg)	((arg) & 0x7f)
 #define VERB_PRESS_BEGINS	0x80u
 #define VERB_PRESS(arg)		((arg) >> 8)
 #define VERB_PRESS_MAX		0xffffffu
-/* It stands so long after the last sign of the press. */
+/* The axis stands still this long after the last sign of the press. */
 #define VERB_PRESS_S		0.2
 
 #define VERB_ONE(verb)	+ 1

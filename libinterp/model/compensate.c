@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* compensate.c - feedforward, cross-coupling and prediction, added up */
+/* compensate.c - adds feedforward, cross-coupling and prediction up */
 #include "interp/compensate.h"
 
 #include <errno.h>
@@ -62,7 +62,7 @@ static double feedforward(const struct interp_compensate *c, int axis,
 					     c->config.period_s, set);
 }
 
-/* What is added without a look at where the axis is. */
+/* The part that does not depend on where the axis is. */
 static double open_loop(const struct interp_compensate *c,
 			struct interp_zpetc *z, int axis, const double *set)
 {
@@ -71,7 +71,7 @@ static double open_loop(const struct interp_compensate *c,
 	return has(c, INTERP_COMPENSATE_ZPETC) ? interp_zpetc_step(z, set) : 0;
 }
 
-/* All the drive is asked for, its own loop counted. */
+/* Everything that is asked of the drive, including its own loop. */
 static double demanded(const struct interp_compensate *c, int axis,
 		       const double *set, double place_mm, double added)
 {
@@ -89,8 +89,9 @@ static double predict(const struct interp_compensate *c, int axis,
 	struct interp_zpetc z = c->zpetc[axis];
 
 	for (int i = 0; i < c->horizon; i++, set++)
-		interp_axis_model_step(&m, demanded(c, axis, set, m.x[0],
-						    open_loop(c, &z, axis, set)));
+		interp_axis_model_step(&m,
+				       demanded(c, axis, set, m.x[0],
+						open_loop(c, &z, axis, set)));
 	return m.x[0];
 }
 

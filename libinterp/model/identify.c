@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * identify.c - the numbers of an axis model, from rough to sure
+ * identify.c - finds the numbers of an axis model, from rough to certain
  *
- * First the loops alone, from several bandwidths, then everything from the best
- * of them, then what kind the noise is; at the end without what the trace does
- * not tell.
+ * First only the loops are fitted, from several bandwidths.  Then everything is
+ * fitted from the best of them, and then the kind of noise is found.  At the
+ * end the numbers that the trace does not show are left out.
  */
 #include "identify_fit.h"
 
@@ -15,13 +15,15 @@
 #define LEAST	200			/* rows of a trace */
 #define STANDS_MM_S	0.01
 #define TELLS	0.25			/* sigma over value, at most */
-#define EXCITED	10			/* the error varies over what is left */
-#define WORTH	30			/* an unknown more, in variances */
-#define WORTH_PART	0.01		/* and in what is left: never white */
-#define ROUGH	1e-5			/* gained by a round of the search */
+#define EXCITED	10			/* the error varies over the rest */
+#define WORTH	30			/* gain that justifies one more unknown,
+					 * in variances */
+#define WORTH_PART	0.01		/* and as a share of the rest: it is
+					 * never white */
+#define ROUGH	1e-5			/* gain of a round of the search */
 #define SHAKES	4
-#define SHAKEN	1			/* variances gained: once more */
-#define FINE	1e-9			/* and of the last one */
+#define SHAKEN	1			/* variances gained: do it once more */
+#define FINE	1e-9			/* and gain of the last round */
 
 const struct interp_identify_field interp_identify_field[INTERP_NIDENTIFY] = {
 	[INTERP_IDENTIFY_GAIN] = { "position gain", "1/s" },
@@ -34,7 +36,7 @@ const struct interp_identify_field interp_identify_field[INTERP_NIDENTIFY] = {
 	[INTERP_IDENTIFY_BACKLASH] = { "backlash", "mm" },
 };
 
-/* The lag alone: p' = gain (target - p), summed over the trace. */
+/* Only the lag: p' = gain (target - p), summed over the trace. */
 static double rough_gain(const struct interp_identify_trace *t)
 {
 	double ev = 0, ee = 0;
@@ -50,7 +52,7 @@ static double rough_gain(const struct interp_identify_trace *t)
 	return fmin(fmax(ee > 0 ? ev / ee : 0, 1), 300);
 }
 
-/* The loops, then friction and backlash, from several bandwidths. */
+/* The loops, and then friction and backlash, from several bandwidths. */
 static int fit_plain(struct identify_fit *best, struct identify_normal *ret,
 		     bool reversals)
 {
@@ -86,12 +88,13 @@ static int fit_plain(struct identify_fit *best, struct identify_normal *ret,
 }
 
 /*
- * What is left of a loop over a noisy encoder is no white noise: the loop turns
- * its low frequencies into motion.  Told what the encoder said, the model
- * follows that motion, and errors of the model add up instead of being pulled
- * straight; they tell the more.  A drive that measures otherwise, or is pushed,
- * is better explained by a model drawn to the encoder.  The trace decides: how
- * much it is drawn is an unknown, and of the two the better one is kept.
+ * What is left of a loop over a noisy encoder is not white noise, because the
+ * loop turns the noise's low frequencies into motion.  If the model is told
+ * what the encoder said, it follows that motion.  Errors of the model then add
+ * up instead of being corrected, so they show more clearly.  A drive that
+ * measures in another way, or that is pushed, is better explained by a model
+ * that is drawn toward the encoder.  The trace decides: how strongly it is
+ * drawn is an unknown, and the better of the two is kept.
  */
 static int fit_noise(struct identify_fit *f, struct identify_normal *r)
 {
@@ -111,7 +114,7 @@ static int fit_noise(struct identify_fit *f, struct identify_normal *r)
 	return err;
 }
 
-/* One unknown more, true if the trace wants it. */
+/* Try one unknown more.  Return: true if the trace needs it. */
 static bool try_from(const struct identify_normal *r, int id,
 		     struct identify_fit *more, struct identify_normal *s)
 {
@@ -122,8 +125,9 @@ static bool try_from(const struct identify_normal *r, int id,
 }
 
 /*
- * A delay lags the axis as much as a slower loop does, 2 damping / w.  Each is
- * begun with the loop so much faster: the way there from no delay is too far.
+ * A delay lets the axis lag as much as a slower loop does, 2 damping / w.  So
+ * each try begins with a loop that is faster by as much: from no delay, the way
+ * there would be too far.
  */
 static void try_delay(struct identify_fit *f, struct identify_normal *r)
 {
@@ -156,7 +160,8 @@ static void try_feedforward(struct identify_fit *f, struct identify_normal *r)
 	*r = s;
 }
 
-/* Along the valley of one unknown, by @sigmas of it, the others adjusted. */
+/* Go along the valley of one unknown, by @sigmas of it, and adjust the
+ * others. */
 static bool stand_off(struct identify_fit *f, const struct identify_normal *r,
 		      int id, double sigmas)
 {
@@ -175,9 +180,9 @@ static bool stand_off(struct identify_fit *f, const struct identify_normal *r,
 }
 
 /*
- * Where an axis nearly stands it may turn many times, by its noise, and each
- * turn that the model has and the axis has not is a hill in the squares.  So
- * the least is sought anew from beside it.
+ * Where an axis almost stands still, noise may let it turn many times.  Each
+ * turn that the model makes and the axis does not make is a hill in the sum of
+ * squares.  So the minimum is searched again from a place beside it.
  */
 static bool shake_once(struct identify_fit *f, struct identify_normal *r)
 {
@@ -210,7 +215,8 @@ static int shake(struct identify_fit *f, struct identify_normal *r)
 }
 
 static void find_sigmas(const struct identify_fit *f,
-			const struct identify_normal *r, double sigma[IDENTIFY_N])
+			const struct identify_normal *r,
+			double sigma[IDENTIFY_N])
 {
 	double dx[IDENTIFY_N], inverse[IDENTIFY_N][IDENTIFY_N];
 	const double left = r->ee / (double)(r->rows - (size_t)f->n);
@@ -226,7 +232,7 @@ static bool is_told(const struct identify_fit *f, const double *sigma, int id)
 	return sigma[id] <= TELLS * fabs(f->x[id]);
 }
 
-/* An unknown that the trace does not tell makes the others less sure. */
+/* An unknown that the trace does not show makes the others less certain. */
 static int leave_out(struct identify_fit *f, struct identify_normal *r,
 		     const double *sigma)
 {
@@ -279,14 +285,16 @@ static int check(const struct interp_identify_trace *t)
 		low = fmin(low, t->target_mm[k]);
 		high = fmax(high, t->target_mm[k]);
 	}
-	if (t->n < LEAST || (double)t->n * t->period_s < 2 * IDENTIFY_SETTLES_S ||
+	if (t->n < LEAST ||
+	    (double)t->n * t->period_s < 2 * IDENTIFY_SETTLES_S ||
 	    !(high > low))
 		return -ENODATA;
 	return 0;
 }
 
 static void report(const struct identify_fit *f,
-		   const struct identify_normal *r, struct interp_identified *ret)
+		   const struct identify_normal *r,
+		   struct interp_identified *ret)
 {
 	double sigma[IDENTIFY_N];
 
@@ -305,7 +313,7 @@ static void report(const struct identify_fit *f,
 	}
 }
 
-/* Delay and feedforward, against the best there is without them. */
+/* Try delay and feedforward against the best result without them. */
 static int fit_more(struct identify_fit *f, struct identify_normal *r)
 {
 	const int n = f->n;
@@ -318,7 +326,7 @@ static int fit_more(struct identify_fit *f, struct identify_normal *r)
 	return f->n == n ? 0 : shake(f, r);
 }
 
-/* All unknowns; then without those that the trace does not tell. */
+/* Fit all unknowns, and then leave out those that the trace does not show. */
 static int fit_all(struct identify_fit *f, struct identify_normal *r,
 		   struct interp_identified *ret)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * identify_fit.c - passes over a trace, and Levenberg and Marquardt's steps
+ * identify_fit.c - passes over a trace, and steps of Levenberg and Marquardt
  *
- * The derivatives of the model's places are taken by running it once more for
- * each unknown, a little off, all in one pass over the trace; so no room is
- * needed that grows with it.
+ * To get the derivatives of the model's places, the model is run once more for
+ * each unknown, with the unknown a little changed, all in one pass over the
+ * trace.  So the memory does not grow with the trace.
  */
 #include "identify_fit.h"
 
@@ -13,7 +13,7 @@
 
 #define ROUNDS	40
 
-/* How a number is varied, and the range it is kept in. */
+/* How a number is varied, and the range in which it is kept. */
 static const struct {
 	double step, low, high;
 } vary[IDENTIFY_N] = {
@@ -43,7 +43,8 @@ struct interp_axis_loop identify_loop(const double *x)
 	};
 }
 
-/* Of the range's inside: a number at its end is varied away from it. */
+/* Toward the inside of the range: a number at its end is varied away from the
+ * end. */
 static double step_of(const double *x, int i)
 {
 	return x[i] + vary[i].step > vary[i].high ? -vary[i].step :
@@ -66,11 +67,11 @@ static int begin(const struct identify_fit *f, struct interp_axis_model *m,
 }
 
 /*
- * Where the drive closes its loop over the encoder, noise and all, the speed it
- * demanded is known from the trace, and with it when it turned.
+ * Where the drive closes its loop over the encoder, noise included, the trace
+ * shows the speed that the drive demanded, and so the time when it turned.
  *
- * The row the derivatives are taken of leads: a turn one period sooner would
- * be a step in them.
+ * The row for which the derivatives are taken leads.  Otherwise a turn one
+ * period earlier would be a step in them.
  */
 static void follow(const struct identify_fit *f, struct interp_axis_model *m,
 		   size_t k, const struct interp_axis_model *leader)
@@ -131,7 +132,7 @@ static int pass(const struct identify_fit *f, struct identify_normal *r)
 	return 0;
 }
 
-/* By Gauss and Jordan. */
+/* By the method of Gauss and Jordan. */
 bool identify_solve(const struct identify_normal *r, int n, double damp,
 		    double *x, double inverse[IDENTIFY_N][IDENTIFY_N])
 {
@@ -166,7 +167,8 @@ bool identify_solve(const struct identify_normal *r, int n, double damp,
 	return true;
 }
 
-/* One number alone cannot stop the rest: what nothing tells is left out. */
+/* One unknown must not stop the others: an unknown on which nothing depends is
+ * left out. */
 static void leave_out_untold(struct identify_normal *r, int n)
 {
 	for (int i = 0; i < n; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* kalman.c - predict by the model, correct by the encoder */
+/* kalman.c - predicts by the model, corrects by the encoder */
 #include "interp/kalman.h"
 
 #include <errno.h>

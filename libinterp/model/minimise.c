@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* minimise.c - NLopt's methods without derivatives, and a budget */
+/* minimise.c - NLopt's methods without derivatives, with a budget */
 #include "interp/minimise.h"
 
 #include <errno.h>
@@ -7,19 +7,21 @@
 #include <nlopt.h>
 #include <string.h>
 
-#define FIRST		0.15		/* of the box, the first step */
-#define SHRUNK		1e-6		/* of the box: begin anew */
-#define WORST		1e300		/* NLopt takes no infinity */
+#define FIRST		0.15		/* first step, as a share of the box */
+#define SHRUNK		1e-6		/* if it shrank below this share of the
+					 * box, begin again */
+#define WORST		1e300		/* NLopt accepts no infinity */
 
 struct search {
 	const struct interp_minimise *m;
-	nlopt_opt o;			/* the run that is on */
+	nlopt_opt o;			/* the present run */
 	unsigned int used;		/* evaluations */
 	double best[INTERP_MINIMISE_NMAX], least;
 };
 
-/* The best is kept and the budget is watched here: NLopt gives no place back
- * when it is ended, and some of its methods run on for a few evaluations. */
+/* The best place is stored and the budget is watched here.  NLopt returns no
+ * place when it is stopped, and some of its methods go on for a few
+ * evaluations. */
 static double look(unsigned int n, const double *x, double *gradient, void *arg)
 {
 	struct search *s = arg;
@@ -61,7 +63,7 @@ static nlopt_result set_up(nlopt_opt o, struct search *s, unsigned int budget)
 	return err > 0 ? nlopt_set_maxeval(o, (int)budget) : err;
 }
 
-/* One run of one method from @x; it leaves @x at the best place there is. */
+/* One run of one method from @x.  Afterwards @x is the best place so far. */
 static int run(struct search *s, nlopt_algorithm method, unsigned int budget,
 	       double *x)
 {
@@ -86,7 +88,8 @@ static void begin(struct search *s, const struct interp_minimise *m, double *x)
 	memcpy(s->best, x, (size_t)m->n * sizeof(*x));
 }
 
-/* A run that has shrunk begins anew around its best, while there is budget. */
+/* A run that has shrunk begins again around its best place, while there is
+ * budget. */
 static int run_local(struct search *s, double *x)
 {
 	int err = 0;
@@ -115,7 +118,8 @@ int interp_minimise_global(const struct interp_minimise *m, double *x,
 	int err;
 
 	begin(&s, m, x);
-	/* The search divides the box and never looks at the place given. */
+	/* This search divides the box and would never look at the given
+	 * place. */
 	look((unsigned int)m->n, x, NULL, &s);
 	err = run(&s, NLOPT_GN_DIRECT_L, m->budget / 2, x);
 	if (!err)

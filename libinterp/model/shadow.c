@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shadow.c - models and machine against the row of targets they follow */
+/* shadow.c - models and machine against the row of targets that they follow */
 #include "interp/shadow.h"
 
 #include <math.h>
@@ -24,7 +24,7 @@ void interp_shadow_forget(struct interp_shadow *s)
 	s->begun = false;
 }
 
-/* The models stand where the machine is; their loops were checked. */
+/* The models begin where the machine is.  Their loops were checked before. */
 static void begin(struct interp_shadow *s, const double *target,
 		  const double *sent, const double *actual)
 {

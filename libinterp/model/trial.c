@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trial.c - axis models, encoders and a compensation along a row of set values */
+/* trial.c - runs axis models, encoders and a compensation along a row of
+ * targets */
 #include "interp/trial.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Irwin and Hall: 12 uniform numbers, less 6, are near enough to normal. */
+/* Irwin and Hall: the sum of 12 uniform numbers minus 6 is almost normal. */
 static double normal(uint64_t *s)
 {
 	double sum = -6;

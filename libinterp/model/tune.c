@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* tune.c - gains as the unknowns of a minimum */
+/* tune.c - finds gains as the unknowns of a minimum */
 #include "interp/tune.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stddef.h>
 
-/* Which gains a method has, and where they are sought. */
+/* Which gains a method has, and where they are searched. */
 static const struct gain {
 	uint32_t methods;
 	size_t at;
@@ -50,7 +50,7 @@ static double high_of(const struct search *s, const struct gain *g)
 	       fmin(g->high, horizon) : g->high;
 }
 
-/* As a machine file has it: a gain that is tried is one that can be printed. */
+/* Rounded as in a machine file: a gain that is tried can be printed. */
 static double rounded(double x)
 {
 	double unit;

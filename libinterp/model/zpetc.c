@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * zpetc.c - the axis model turned over
+ * zpetc.c - the inverse of the axis model
  *
- * With the model B(z) / A(z) and B = B+ B-, B- the zeros that are not
- * cancelled, the speed is
+ * Let the model be B(z) / A(z), with B = B+ B-, where B- has the zeros that are
+ * not cancelled.  The speed is
  *
  *	u = A(z) B-(1/z) / (B+(z) B-(1)^2) set
  *
@@ -29,7 +29,7 @@ static struct poly product(const struct poly *a, const struct poly *b)
 	return r;
 }
 
-/* 1/z - @zero, divided by its worth at 1. */
+/* 1/z - @zero, divided by its value at 1. */
 static struct poly mirrored(double zero)
 {
 	const double at_one = 1 - zero;
@@ -37,7 +37,7 @@ static struct poly mirrored(double zero)
 	return (struct poly) { { 1 / at_one, -zero / at_one }, 2, -1 };
 }
 
-/* b[0] z^2 + b[1] z + b[2] with no real zeros, mirrored whole. */
+/* b[0] z^2 + b[1] z + b[2] without real zeros, mirrored as a whole. */
 static struct poly mirrored_whole(const double *b)
 {
 	const double one = b[0] + b[1] + b[2];
@@ -91,7 +91,7 @@ double interp_zpetc_step(struct interp_zpetc *z, const double *set_mm)
 
 	for (int i = 0; i < INTERP_ZPETC_NTAPS; i++)
 		u += z->tap[i] * s[i];
-	/* Two poles as two filters of first order in a row. */
+	/* Two poles are two filters of first order in series. */
 	for (int i = 0; i < 2; i++) {
 		u += z->pole[i] * z->past[i];
 		z->past[i] = u;

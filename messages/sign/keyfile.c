@@ -21,7 +21,7 @@
 #define NAME_CHARS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
 			"abcdefghijklmnopqrstuvwxyz0123456789._-"
 
-/* A line of the file: its word, and where its value goes. */
+/* One line of the file: its word, and where its value goes. */
 struct entry {
 	const char *word;
 	char *name;			/* a name, or ... */
@@ -77,7 +77,7 @@ void keyfile_shared_path(char path[KEYFILE_PATH_MAX], const char *machine)
 	snprintf(path, KEYFILE_PATH_MAX, "/dev/shm/edmd.%.31s.key", machine);
 }
 
-/* -- Reading ---------------------------------------------------------------- */
+/* -- Reading -------------------------------------------------------------- */
 
 static int mode_check(const struct stat *st, const char *path, char *said)
 {
@@ -85,12 +85,13 @@ static int mode_check(const struct stat *st, const char *path, char *said)
 		return say(said, -EINVAL, "key file %s is not a plain file",
 			   path);
 	if (st->st_mode & 0007)
-		return say(said, -EPERM, "key file %s has mode %04o: everyone "
-			   "on this host may use it, and it counts as known to "
-			   "all; take the key back (edmctl keys remove NAME, or "
-			   "remove the host's key file and start edmd-jobs "
-			   "again), make a new one, and keep it at 0640 or "
-			   "0600", path, st->st_mode & 07777u);
+		return say(said, -EPERM,
+			   "key file %s has mode %04o: everyone on this host "
+			   "may use it, and it counts as known to all; take "
+			   "the key back (edmctl keys remove NAME, or remove "
+			   "the host's key file and start edmd-jobs again), "
+			   "make a new one, and keep it at 0640 or 0600",
+			   path, st->st_mode & 07777u);
 	if (st->st_mode & 0020)
 		return say(said, -EPERM, "key file %s has mode %04o: its group "
 			   "may write it; chmod g-w %s", path,
@@ -118,8 +119,8 @@ static int owner_check(const struct stat *st, const char *path, char *said)
 		   path, (unsigned int)st->st_uid);
 }
 
-/* @shared: where anybody may have made it.  Checked when it is open: a name may
- * be another file a moment later. */
+/* @shared: the file is where anybody may have made it.  It is checked after it
+ * was opened, because a moment later its name may belong to another file. */
 static int open_check(int *ret, const char *path, bool shared, char *said)
 {
 	struct stat st;
@@ -261,7 +262,7 @@ int keyfile_read(struct keyfile *k, const char *path,
 	return file_take(k, path, false, said);
 }
 
-/* -- Writing ---------------------------------------------------------------- */
+/* -- Writing -------------------------------------------------------------- */
 
 static int text_write(const struct keyfile *k, int fd)
 {
@@ -303,7 +304,7 @@ int keyfile_write(const struct keyfile *k, const char *path,
 	return err;
 }
 
-/* -- Finding ---------------------------------------------------------------- */
+/* -- Finding -------------------------------------------------------------- */
 
 int keyfile_find(struct keyfile *k, const char *machine,
 		 char said[KEYFILE_SAID_MAX])

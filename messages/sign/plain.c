@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * plain.c - text that does nothing but show
- */
+/* plain.c - text without control characters */
 #include "plain.h"
 
 #include <stdint.h>
 #include <string.h>
 
-/* Characters that are not seen, and change what is seen. */
+/* Characters that are invisible but change what is seen. */
 static bool is_hidden(uint32_t c)
 {
 	static const struct {
@@ -16,12 +14,20 @@ static bool is_hidden(uint32_t c)
 		{ 0x00, 0x1f },			/* C0 */
 		{ 0x7f, 0x9f },			/* DEL, C1 */
 		{ 0xad, 0xad },			/* soft hyphen */
+		{ 0x34f, 0x34f },		/* joins, without a width */
 		{ 0x61c, 0x61c },		/* direction of writing */
+		{ 0x115f, 0x1160 },		/* letters that are blank */
+		{ 0x17b4, 0x17b5 },
+		{ 0x180b, 0x180f },		/* no width */
 		{ 0x200b, 0x200f },		/* no width, direction */
 		{ 0x2028, 0x202e },		/* ends of lines, direction */
 		{ 0x2060, 0x206f },		/* no width, direction */
+		{ 0x3164, 0x3164 },		/* a letter that is blank */
 		{ 0xfeff, 0xfeff },		/* no width */
+		{ 0xffa0, 0xffa0 },		/* a letter that is blank */
 		{ 0xfff9, 0xfffb },		/* notes between lines */
+		{ 0x1bca0, 0x1bca3 },		/* of shorthand, of music */
+		{ 0x1d173, 0x1d17a },
 		{ 0xe0000, 0xe0fff },		/* tags */
 	};
 
@@ -31,7 +37,8 @@ static bool is_hidden(uint32_t c)
 	return false;
 }
 
-/* Smallest character of so many bytes: a longer form of it is refused. */
+/* The smallest character with this many bytes; a longer form of it is
+ * refused. */
 static const uint32_t smallest[] = { 0, 0, 0x80, 0x800, 0x10000 };
 
 static size_t length_of(unsigned char first)

@@ -12,7 +12,7 @@
 #define CONTEXT		"edmd 1"
 #define HEAD_MAX	128		/* context, channel, boot, count */
 
-/* Where the parts lie in a packet. */
+/* Where the parts are in a packet. */
 enum {
 	AT_KEY = 8, AT_BOOT = 40, AT_COUNT = 48, AT_SIGNATURE = 56,
 	AT_SIZE = 120
@@ -33,7 +33,8 @@ static uint64_t get_64(const uint8_t *from)
 	return value;
 }
 
-/* What is signed before the data.  Return: bytes; 0: the channel is too long. */
+/* Make the bytes that are signed before the data.  Return: their number; 0: the
+ * channel is too long. */
 static size_t head_make(uint8_t head[HEAD_MAX], const struct seal *s,
 			const char *channel)
 {
@@ -46,7 +47,7 @@ static size_t head_make(uint8_t head[HEAD_MAX], const struct seal *s,
 	return (size_t)n + 16;
 }
 
-/* libsodium signs one piece of memory, so head and data are put in one. */
+/* libsodium signs one piece of memory, so head and data are copied into one. */
 static unsigned char *signed_bytes(const struct seal *s, const char *channel,
 				   size_t *ret_bytes)
 {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * udpm.c - LCM's packets from a socket of our own
- */
+/* udpm.c - reads LCM's packets from a socket of our own */
 #include "udpm.h"
 
 #include <arpa/inet.h>
@@ -17,13 +15,15 @@
 #define SHORT_MAGIC	0x4c433032u	/* "LC02" */
 #define HEAD_BYTES	8		/* magic, sequence number */
 #define PACKET_MAX	65507
-#define BUFFER_BYTES	(4 << 20)	/* the kernel gives what it allows */
+#define BUFFER_BYTES	(4 << 20)	/* the kernel gives as much as it
+					 * allows */
 #define ADDRESSES_MAX	64
-#define LOOK_S		1		/* between looks at the interfaces */
+#define LOOK_S		1		/* between two checks of the
+					 * interfaces */
 
 struct udpm {
 	int fd;
-	bool only_here;			/* packets of this host alone */
+	bool only_here;			/* accept only packets of this host */
 	in_addr_t here[ADDRESSES_MAX];
 	int nhere;
 	time_t looked_s;
@@ -32,7 +32,7 @@ struct udpm {
 	uint8_t packet[PACKET_MAX + 1];
 };
 
-/* -- The URL ---------------------------------------------------------------- */
+/* -- The URL -------------------------------------------------------------- */
 
 static const char *group_read(struct sockaddr_in *ret, const char *at,
 			      size_t bytes)
@@ -64,7 +64,8 @@ static const char *group_read(struct sockaddr_in *ret, const char *at,
 	return NULL;
 }
 
-/* LCM takes the last of several; here one is enough, and said. */
+/* LCM uses the last of several.  Here only one is accepted; the message says
+ * so. */
 static const char *ttl_read(unsigned int *ret, const char *at)
 {
 	unsigned long ttl;
@@ -96,7 +97,7 @@ const char *udpm_url_read(struct udpm_url *ret, const char *url)
 	return wrong ? wrong : ttl_read(&ret->ttl, query + 1);
 }
 
-/* -- The socket ------------------------------------------------------------- */
+/* -- The socket ----------------------------------------------------------- */
 
 static int set(int fd, int level, int option, int value)
 {
@@ -111,7 +112,8 @@ static int join(int fd, const struct udpm_url *url)
 	    set(fd, IPPROTO_IP, IP_MULTICAST_ALL, 0) < 0)
 		return -errno;
 	set(fd, SOL_SOCKET, SO_RCVBUF, BUFFER_BYTES);
-	/* Bound to the group, the socket gets nothing sent to one host. */
+	/* Bound to the group, the socket does not get packets sent to one
+	 * host. */
 	if (bind(fd, (const struct sockaddr *)&url->group,
 		 sizeof(url->group)) < 0 ||
 	    setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group,
@@ -152,7 +154,7 @@ int udpm_fd(const struct udpm *u)
 	return u->fd;
 }
 
-/* -- Whose packet it is ----------------------------------------------------- */
+/* -- Whose packet it is --------------------------------------------------- */
 
 static void addresses_look(struct udpm *u)
 {
@@ -177,10 +179,11 @@ static bool address_is_known(const struct udpm *u, in_addr_t address)
 }
 
 /*
- * What goes out by an interface without an address of its own, such as a
- * loopback, bears none.  From outside, the kernel takes such a packet for the
- * groups 224.0.0.x alone, which udpm_url_read() refuses.  Interfaces come and
- * go; a flood from outside makes no work of that.
+ * A packet that leaves by an interface without an address, such as a loopback,
+ * has no source address.  From outside, the kernel accepts such a packet only
+ * for the groups 224.0.0.x, which udpm_url_read() refuses.  Interfaces come and
+ * go, but they are checked at most once in LOOK_S, so a flood from outside
+ * causes no work.
  */
 static bool is_here(struct udpm *u, in_addr_t address)
 {

@@ -8,9 +8,9 @@
  * another source address is dropped before a byte of it is read. (The kernel
  * drops packets that come from outside with an address of this host.)
  *
- * Only LCM's short packets are read. Everything that clients and the service send
- * fits into one, and an attacker cannot leave one half sent. The library's reader
- * of long packets crashes on some that nobody signed.
+ * Only LCM's short packets are read. Everything that clients and the service
+ * send fits into one, and an attacker cannot leave one half sent. The library's
+ * reader of long packets crashes on some that nobody signed.
  *
  * Threads: one.
  */

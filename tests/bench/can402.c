@@ -25,7 +25,7 @@
 #define PERIODS		1000
 #define NODES		8
 
-/* -- The table ----------------------------------------------------------------- */
+/* -- The table ------------------------------------------------------------ */
 
 static struct can402_bus bus_of(uint32_t axes, bool frames)
 {
@@ -62,7 +62,7 @@ static void table(bool frames)
 	printf("\n");
 }
 
-/* -- Drives of our own ------------------------------------------------------------ */
+/* -- Drives of our own ---------------------------------------------------- */
 
 struct peer {
 	int fd;
@@ -113,7 +113,7 @@ static void answer(struct peer *p, double now_s)
 	}
 }
 
-/* -- The master ------------------------------------------------------------------- */
+/* -- The master ----------------------------------------------------------- */
 
 static void sleep_until(struct timespec *t)
 {

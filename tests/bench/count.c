@@ -36,7 +36,7 @@ static void end(const char *name, uint64_t units)
 	printf("%s %llu\n", name, (unsigned long long)units);
 }
 
-/* -- Lattice points ------------------------------------------------------------ */
+/* -- Lattice points ------------------------------------------------------- */
 
 static const struct bench_path paths[] = {
 	{ "simultaneous, 2 axes", INTERP_SIMULTANEOUS, 0, 2 },
@@ -89,7 +89,7 @@ static void count_path(const struct bench_path *p)
 	end(name, POINTS - 1000);
 }
 
-/* -- Lines ----------------------------------------------------------------------- */
+/* -- Lines ---------------------------------------------------------------- */
 
 static const char *const texts[] = {
 	"a line compiled: X Y Z", "a line compiled: arcs",
@@ -146,7 +146,7 @@ static void count_compile(int kind)
 	free(text);
 }
 
-/* -- Cycles ---------------------------------------------------------------------- */
+/* -- Cycles --------------------------------------------------------------- */
 
 static void steps(struct cycle *c, struct io_machine *m, uint64_t n)
 {

@@ -100,7 +100,7 @@ static void say_means(const struct interp_program *p)
 	bench_say("worst_ns", bench_median(worst, BENCH_RUNS) * 1e9);
 }
 
-/* -- Every cycle --------------------------------------------------------------- */
+/* -- Every cycle ---------------------------------------------------------- */
 
 static uint64_t now_ns(void)
 {

@@ -4,7 +4,7 @@
  */
 #include "make_program.h"
 
-/* -- Lines in several axes ------------------------------------------------------ */
+/* -- Lines in several axes ------------------------------------------------ */
 
 struct line_tally {
 	struct changes changes;
@@ -97,7 +97,7 @@ static void line_table(const int32_t to[INTERP_NAXES])
 	}
 }
 
-/* -- Circles ---------------------------------------------------------------------- */
+/* -- Circles -------------------------------------------------------------- */
 
 struct circle_tally {
 	struct changes changes;

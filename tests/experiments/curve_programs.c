@@ -14,7 +14,7 @@
 #define POINTS		16
 #define TEXT_MAX	(1 << 20)
 
-/* -- A closed path of six axes ------------------------------------------------ */
+/* -- A closed path of six axes -------------------------------------------- */
 
 struct closed {
 	double knots[POINTS + 6], points[POINTS * 7];
@@ -118,7 +118,7 @@ static void print_closed(enum interp_strategy strategy, uint32_t degree)
 	free(t.pos);
 }
 
-/* -- A blade's section, as a curve and as lines -------------------------------- */
+/* -- A blade's section, as a curve and as lines --------------------------- */
 
 static struct interp_build *compile(const char *text, size_t bytes)
 {

@@ -163,7 +163,7 @@ static struct cycle erode(const struct path *p, watch_fn watch, void *arg)
 	return c;
 }
 
-/* -- Tables ------------------------------------------------------------------ */
+/* -- Tables --------------------------------------------------------------- */
 
 static double minutes(uint64_t cycles)
 {
@@ -251,7 +251,7 @@ static void blisk_table(void)
 	row("channel, 360 degrees", &p, 0);
 }
 
-/* -- Nodes ------------------------------------------------------------------- */
+/* -- Nodes ---------------------------------------------------------------- */
 
 static void node_table(void)
 {
@@ -276,7 +276,7 @@ static void node_table(void)
 	}
 }
 
-/* -- As CAM systems write ----------------------------------------------------- */
+/* -- As CAM systems write ------------------------------------------------- */
 
 #define SPARSE_MM	1.0
 #define C_DEG_MM	7.0
@@ -379,7 +379,7 @@ static void tables(void)
 	printf("\n![speed in one jump](pictures/jump.svg)\n");
 }
 
-/* -- One jump ------------------------------------------------------------------ */
+/* -- One jump ------------------------------------------------------------- */
 
 struct profile {
 	uint64_t cycles;

@@ -97,7 +97,7 @@ static struct tally walk(enum rule rule, int64_t b, uint32_t mu)
 	return t;
 }
 
-/* -- Tables --------------------------------------------------------------------- */
+/* -- Tables --------------------------------------------------------------- */
 
 static void heading(const char *what, enum rule rule)
 {
@@ -153,7 +153,7 @@ static void table(const char *what, enum rule rule, print_fn print)
 	}
 }
 
-/* -- Random lines ---------------------------------------------------------------- */
+/* -- Random lines --------------------------------------------------------- */
 
 #define LINES	2000
 

@@ -22,7 +22,7 @@ static struct changes count(const int32_t to[INTERP_NAXES], struct how h)
 	return t;
 }
 
-/* -- Tables 4 and 5: removal rate ------------------------------------------------- */
+/* -- Tables 4 and 5: removal rate ----------------------------------------- */
 
 #define RATE_ALONE	12.75		/* mm3/min, one axis */
 #define VOLUME_2	598.125		/* mm3, two axes */
@@ -91,7 +91,7 @@ static void removal_table(void)
 		removal_row(&removals[i], tau_min);
 }
 
-/* -- Tables 2 and 3: time without sparks ------------------------------------------- */
+/* -- Tables 2 and 3: time without sparks ---------------------------------- */
 
 struct row {
 	double mm[3];

@@ -98,7 +98,7 @@ static struct rig plain(void)
 	return r;
 }
 
-/* -- Relations over the gap --------------------------------------------------- */
+/* -- Relations over the gap ----------------------------------------------- */
 
 static void gap(void)
 {
@@ -149,7 +149,7 @@ static void timing(void)
 	}
 }
 
-/* -- Relations over the pulse -------------------------------------------------- */
+/* -- Relations over the pulse --------------------------------------------- */
 
 static double best_rate(const struct rig *r)
 {
@@ -194,7 +194,7 @@ static void peak(void)
 	}
 }
 
-/* -- Debris and arcs -------------------------------------------------------------- */
+/* -- Debris and arcs ------------------------------------------------------ */
 
 /* Erode for @every_s, lift, come back; debris left after ten of them. */
 static double after_jumps(struct rig *r, double height_mm, double v_mm_s)
@@ -451,7 +451,7 @@ static void wire(void)
 	}
 }
 
-/* -- The command --------------------------------------------------------------------- */
+/* -- The command ---------------------------------------------------------- */
 
 static const struct relation {
 	const char *name;

@@ -67,7 +67,7 @@ static uint8_t take_byte(struct input *i)
 	return b;
 }
 
-/* -- The programs there are: 1 begins at zero, the others elsewhere ------------- */
+/* -- The programs there are: 1 begins at zero, the others elsewhere ------- */
 
 static const struct interp_program *program_of(uint32_t n)
 {
@@ -113,7 +113,7 @@ static void serve(void)
 	}
 }
 
-/* -- The property -------------------------------------------------------------- */
+/* -- The property --------------------------------------------------------- */
 
 static void note_motion(const struct shm_command *c)
 {
@@ -168,7 +168,7 @@ static void turn(void)
 		w.asked = false;
 }
 
-/* -- The records ---------------------------------------------------------------- */
+/* -- The records ---------------------------------------------------------- */
 
 static void put_command(struct input *i)
 {
@@ -242,7 +242,7 @@ static void change_inputs(uint8_t b)
 	w.in.gap_v = b & 16 ? SHORTED_V : b & 32 ? OPEN_V : SPARKING_V;
 }
 
-/* -- One machine ---------------------------------------------------------------- */
+/* -- One machine ---------------------------------------------------------- */
 
 static void begin_machine(bool dry)
 {

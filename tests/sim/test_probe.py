@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Promises of touches: the simulated block is found where it is."""
+"""What probing promises: the simulated block is found where it is."""
 import json
 import random
 
@@ -133,7 +133,7 @@ def test_a_block_without_an_inside_is_refused(tmp_path):
     assert b"block_x_min_mm 10 mm is not below" in r.stderr
 
 
-def test_a_dry_run_leaves_touches_out(tmp_path):
+def test_a_dry_run_leaves_probing_out(tmp_path):
     m = machine(tmp_path)
     assert report("--machine", m, "--dry-run",
                   text="G160\nG92 X0 Y0\nG90 G0 X3\n")["outcome"] == "done"

@@ -11,8 +11,8 @@ import pytest
 import shapely
 from edmsim import ROOT, done, run, seeded
 from shapely.geometry import LineString, Polygon
-from wire_contours import star
-from wire_oracle import UM, verdict
+from wire_contours import Contour, star
+from wire_oracle import UM, verdict, ways_of
 
 WIRE = ROOT / "examples/wire.ini"
 HEIGHT, LOWER, SPAN = 40, 20, 100   # of examples/wire.ini
@@ -157,6 +157,84 @@ def test_tapers_that_change_at_corners_keep_off_on_both_planes():
             assert off.min() > -BOUND_MM, (off.min(), about)
     print(f"{cut} of {RUNS} cut, nearer by {1000 * worst:.2f} um at the worst")
     assert cut > RUNS / 4
+
+
+class Cone:
+    """A random contour of lines with one taper all round."""
+
+    def __init__(self, rnd):
+        while True:
+            c = Contour(rnd)
+            if not any(e[2] for e in c.ring) and len(c.ring) < 80:
+                break
+        self.contour = c
+        self.deg = round(10 ** rnd.uniform(-1.3, 0.4), 2)
+        self.slope = math.tan(math.radians(self.deg))
+        self.wire = c.offset * math.sqrt(1 + self.slope ** 2)
+        # Toward the wire: the part is larger above.
+        self.toward = rnd.random() < 0.5
+        side = c.text.splitlines()[2].split()[0]
+        word = "G51" if (side == "G41") == self.toward else "G52"
+        self.text = c.text.replace("G90 G90.1 F200", "G90 G90.1 F200 ") \
+            .replace(f"{side} H1", f"{side} H1 {word} A{self.deg}")
+
+    def above(self):
+        """The outline on the second plane, but for its corners."""
+        c, by = self.contour, self.slope * HEIGHT
+        corners = shapely.points(np.asarray(c.poly.exterior.coords))
+        ret = []
+        for ring in ways_of(c.poly, by, c.inside == self.toward):
+            pts = shapely.points(np.asarray(shapely.segmentize(
+                ring, 0.01).coords))
+            tree = shapely.STRtree(corners)
+            off = tree.query_nearest(pts, all_matches=False,
+                                     return_distance=True)[1]
+            ret.append(pts[off > by + 5 * UM])
+        return np.concatenate(ret) if ret else np.array([])
+
+
+def test_a_taper_all_round_keeps_off_on_both_planes():
+    rnd = seeded() if "EDM_SEED" in os.environ else random.Random(4)
+    worst, cut = 0, 0
+    for i in range(RUNS):
+        k = Cone(rnd)
+        c = k.contour
+        r = run("--machine", WIRE, "--check", text=k.text)
+        about = f"{i}: {r.stderr.decode()}\n{k.text}"
+        assert r.returncode in (0, 65), about
+        if r.returncode:
+            continue
+        cut += 1
+        last = 3 + len(c.ring)
+        at = planes(rows_of(k.text))
+        for plane, outline in enumerate(
+                [[c.poly.exterior], k.above()]):
+            on = at[plane]
+            on = on[(on[:, 0] > 3) & (on[:, 0] <= last + 1)][::11, 1:]
+            near = shapely.STRtree(outline).query_nearest(
+                shapely.points(on), all_matches=False, return_distance=True)
+            worst = max(worst, k.wire - near[1].min())
+            assert near[1].min() > k.wire - BOUND_MM, \
+                (plane, near[1].min(), k.wire, about)
+    print(f"{cut} of {RUNS} cut, nearer by {1000 * worst:.2f} um at the worst")
+    assert cut > RUNS / 4
+
+
+def test_there_and_back_are_the_same_points_under_a_taper():
+    rnd = random.Random(4)
+    n = 0
+    while n < 3:
+        text = Cone(rnd).text
+        if run("--machine", WIRE, "--check", text=text).returncode:
+            continue
+        n += 1
+        rows = rows_of(text, "--there-and-back")[:, 1:]
+        there, back, again = np.array_split(rows, 3)
+        once = rows_of(text)[:, 1:]
+        assert len(rows) == 3 * len(once) - 2
+        assert (rows[:len(once)] == once).all()
+        assert (rows[len(once) - 1:2 * len(once) - 1] == once[::-1]).all()
+        assert (rows[-len(once):] == once).all()
 
 
 CHANGES = [("G51 A2", "G51 A4"), ("G51 A2", "G50"), ("G51 A2", "H2=0.2 H2"),

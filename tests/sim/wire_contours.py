@@ -5,7 +5,8 @@ import math
 
 from shapely.geometry import LineString, Point, Polygon
 
-from wire_oracle import UM, ring_of, verdict, way_of, write_job
+from wire_oracle import (UM, can_be_cut, is_close, left_by, ring_of, way_of,
+                         write_job)
 
 
 def star(rnd, n, low, high):
@@ -145,8 +146,16 @@ class Contour:
         self.text = write_job(self.start, self.far, self.ring,
                               "G41" if left else "G42", self.offset)
 
-    def verdict(self):
-        return verdict(self.poly, self.offset, self.inside, self.far)
+        self.about = poly, self.offset, self.inside, self.far
+
+    def can_be_cut(self):
+        return can_be_cut(*self.about)
+
+    def is_close(self):
+        return is_close(*self.about)
+
+    def left_by(self, path, line=None):
+        return left_by(*self.about, path, line)
 
 
 def reverse(start, edges):

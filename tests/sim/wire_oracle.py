@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """wire_oracle.py - contours for a wire, and what their offset should be.
 
-The geometry is shapely's (GEOS): buffers of polygons and distances.  Nothing
-here knows how edmd joins or leaves out anything.
+The geometry is that of two libraries that share nothing with edmd: parallels
+of polygons are pyclipper's (Clipper), distances shapely's (GEOS).
 
 A contour is a closed ring of edges (x, y, centre): a line to (x, y), or an arc
 round centre = (cx, cy, clockwise).
@@ -10,6 +10,7 @@ round centre = (cx, cy, clockwise).
 import math
 
 import numpy as np
+import pyclipper
 import shapely
 from shapely.geometry import LinearRing, LineString, Point, Polygon
 
@@ -64,112 +65,125 @@ def write_job(start, far, edges, side, offset, more="", feed=200):
 
 # -- What the wire can do -----------------------------------------------------
 
-def about(ring, pts, reach):
-    """Places on a ring, @reach before and behind those next to @pts."""
-    s = shapely.line_locate_point(ring, shapely.points(pts))
-    return [shapely.get_coordinates(shapely.line_interpolate_point(
-        ring, (s + d) % ring.length)) for d in (-reach, 0, reach)]
+SCALE = 2.0 ** 22       # places of Clipper are whole numbers
+ARC_MM = 0.0001        # its round corners are this near
 
 
-def turns_at(ring, pts, reach):
-    """How far a ring turns about each of its places, in radian."""
-    p = about(ring, pts, reach)
-    a, b = p[1] - p[0], p[2] - p[1]
-    return np.abs(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0],
-                             (a * b).sum(axis=1)))
-
-
-def corners_of(way):
-    """Places where the wire turns in a corner, by how much, and which way a
-    corner of the part lies from there (a unit vector)."""
-    c = np.asarray(way.coords)[:-1]
-    d = np.roll(c, -1, axis=0) - c
-    a = np.arctan2(d[:, 1], d[:, 0])
-    rough = np.abs((a - np.roll(a, 1) + np.pi) % (2 * np.pi) - np.pi)
-    at = c[rough > 0.01]
-    if not len(at):
-        return at, np.empty(0), at
-    p = about(way, at, 3 * UM)
-    v = at - (p[0] + p[2]) / 2
-    toward = v / np.maximum(np.hypot(*v.T), 1e-12)[:, None]
-    return at, turns_at(way, at, 3 * UM), toward
+def ways_of(poly, offset, inside):
+    """All rings that are @offset from a polygon's boundary, on one side."""
+    clipper = pyclipper.PyclipperOffset(2.0, ARC_MM * SCALE)
+    for ring in (poly.exterior, *poly.interiors):
+        at = np.rint(np.asarray(ring.coords)[:-1] * SCALE).astype(np.int64)
+        clipper.AddPath(at.tolist(), pyclipper.JT_ROUND,
+                        pyclipper.ET_CLOSEDPOLYGON)
+    rings = clipper.Execute((-offset if inside else offset) * SCALE)
+    return [LinearRing(np.array(r) / SCALE) for r in rings if len(r) > 2]
 
 
 def way_of(poly, offset, inside, at):
     """Where the wire's axis goes: the boundary, seen from at, of the places
-    that are offset or more from the part.  None if there are none."""
-    area = poly.buffer(-offset if inside else offset, quad_segs=256)
-    if area.is_empty:
+    that are offset or more from the part, counter-clockwise.  None if there
+    are none."""
+    rings = ways_of(poly, offset, inside)
+    if not rings:
         return None
-    parts = list(area.geoms) if hasattr(area, "geoms") else [area]
-    rings = [r for p in parts for r in ([p.exterior] if inside else
-                                        [p.exterior, *p.interiors])]
     # Outside, a lead from without meets the outermost ring.
-    if not inside:
-        return max(rings, key=lambda r: Polygon(r).area)
-    return min(rings, key=lambda r: r.distance(Point(at)))
+    way = min(rings, key=lambda r: r.distance(Point(at))) if inside else \
+        max(rings, key=lambda r: Polygon(r).area)
+    return way if way.is_ccw else LinearRing(list(way.coords)[::-1])
 
 
 NEARER = 3 * UM         # docs/taper.md: the wire may come nearer by this
+TOUCHED = 0.5 * UM      # a place so near to what the wire reaches is reached
+
+
+def rise_of(pts, side):
+    """The most by which a line string turns to its side (+1: left)."""
+    d = np.diff(pts, axis=0)
+    d = d[np.hypot(*d.T) > 1e-9]
+    a = np.arctan2(d[:, 1], d[:, 0])
+    turns = (np.diff(a) + np.pi) % (2 * np.pi) - np.pi
+    heading = np.concatenate([[0], np.cumsum(turns * side)])
+    return (heading - np.minimum.accumulate(heading)).max()
+
+
+def turn_at(way, at, side):
+    """The turn of a ring about one of its places."""
+    s, reach = way.project(Point(at)), 2 * UM
+    p = [np.array(way.interpolate((s + d) % way.length).coords[0])
+         for d in (-reach, 0, reach)]
+    a, b = p[1] - p[0], p[2] - p[1]
+    return math.atan2(a[0] * b[1] - a[1] * b[0], a @ b) * side
+
+
+def left_out(poly, way, offset, inside):
+    """Stretches of the contour that a wire on the way does not come to, each
+    (how far off it is, the turn of the way there, the most by which the
+    contour turns inward)."""
+    ring = poly.exterior
+    if not ring.is_ccw:
+        ring = LinearRing(list(ring.coords)[::-1])
+    side = 1 if inside else -1
+    pts = np.asarray(shapely.segmentize(ring, 0.02).coords)[:-1]
+    far = shapely.distance(shapely.points(pts), way)
+    if far.min() > offset + TOUCHED:
+        return [(math.inf, math.pi, math.pi)]
+    first = int(np.flatnonzero(far <= offset + TOUCHED)[0])
+    pts, far = np.roll(pts, -first, axis=0), np.roll(far, -first)
+    missed = np.concatenate([far > offset + TOUCHED, [False]]).astype(int)
+    ends = np.flatnonzero(np.diff(missed)) + 1
+    corners = np.asarray(way.coords)
+    ret = []
+    for a, b in zip(ends[::2], ends[1::2]):
+        run = np.concatenate([pts[a - 1:b], [pts[b % len(pts)]]])
+        # The wire stands as near as it can to both ends of it.
+        both = np.hypot(*(corners - run[0]).T) + \
+            np.hypot(*(corners - run[-1]).T)
+        ret.append((far[a:b].max(), turn_at(way, corners[both.argmin()], side),
+                    rise_of(run, side)))
+    return ret
+
+
+def can_be_cut(poly, offset, inside, at, hidden=2 * UM, more=0):
+    """A place that the wire does not come to must lie no farther from it than
+    the point of an inner corner does (docs/taper.md)."""
+    way = way_of(poly, offset, inside, at)
+    if way is None:
+        return False
+    for far, turn, rise in left_out(poly, way, offset, inside):
+        if rise <= 2.1 + more or (rise <= turn + 0.5 + more and rise < 3):
+            turn = max(turn, rise)
+        reach = offset / math.cos(turn / 2) if turn < 3 else offset
+        if far > reach + hidden:
+            return False
+    return True
+
+
+def is_close(poly, offset, inside, at):
+    """Is the answer another one for a wire that is nearer by the bound of
+    docs/taper.md, or farther by a micrometre?"""
+    said = can_be_cut(poly, offset, inside, at)
+    if can_be_cut(poly, max(offset - NEARER, UM), inside, at, 6 * UM,
+                  0.05) != said:
+        return True
+    return said and not can_be_cut(poly, offset + UM, inside, at, UM, -0.05)
 
 
 def verdict(poly, offset, inside, at):
-    """As verdict_of(), but a contour that a wire with an offset less by the bound
-    could cut is close to call: there it may go where it may not."""
-    said = verdict_of(poly, offset, inside, at)
-    if said == "refuse" and offset > NEARER and \
-            verdict_of(poly, offset - NEARER, inside, at) != "refuse":
+    """What is to be said of it: "cut", "refuse" or "close" to call."""
+    if is_close(poly, offset, inside, at):
         return "close"
-    return said
+    return "cut" if can_be_cut(poly, offset, inside, at) else "refuse"
 
 
-def verdict_of(poly, offset, inside, at):
-    """What is to be said of it: "cut", "refuse", or "close" to call.
-
-    A place of the contour is cut if the wire comes to it, or if it lies in an
-    inner corner: within offset / cos(turn / 2) of a place where the wire turns,
-    between the two places it touches there.  A place that is hidden by a
-    corner of the contour alone is close to call.
-
-    A buffer of GEOS leaves out hollows of a hundredth of its distance, so a
-    place that is missed by no more than that is close to call, too.
-    """
-    blur = max(0.5 * UM, 0.01 * offset)
-    sure = 4 * UM + blur
+def left_by(poly, offset, inside, at, path, line=None):
+    """How far a path is, beyond the offset, from places of the contour, or of a
+    line that is a part of it, that a wire can come to."""
     way = way_of(poly, offset, inside, at)
-    if way is None:
-        return "refuse" if way_of(poly, offset * 0.98, inside, at) is None \
-            else "close"
-    ring = poly.exterior
-    pts = np.asarray(shapely.segmentize(ring, 0.05).coords)
-    shapely.prepare(way)
-    shapely.prepare(ring)
-    far = shapely.distance(shapely.points(pts), way)
-    corners, turns, toward = corners_of(way)
-    if (turns > 3.0).any():
-        return "close"
-    reach = offset / np.cos(turns / 2)
-    vague = sure + reach * np.tan(turns / 2) * 0.004
-    result = "cut"
-    for i in np.flatnonzero(far > offset + 0.5 * UM):
-        v = pts[i] - corners
-        off = np.hypot(*v.T) if len(corners) else np.empty(0)
-        between = np.einsum("ij,ij->i", v, toward) >= \
-            off * np.cos(np.minimum(turns / 2 + 0.05, np.pi / 2))
-        if (between & (off < reach + UM)).any():
-            continue
-        if (off < reach + vague).any() or far[i] < offset + sure:
-            result = "close"
-            continue
-        order = np.argsort(np.hypot(*(pts - pts[i]).T))[:200]
-        near = pts[order][np.hypot(*(pts[order] - pts[i]).T) < offset]
-        own = max(turns_at(ring, near, w).max()
-                  for w in (UM, 10 * UM, 50 * UM, offset / 4, offset / 2,
-                            offset * 0.7))
-        if own < 3.0 and far[i] > 1.05 * offset / math.cos(own / 2) + sure:
-            return "refuse"
-        result = "close"
-    return result
+    pts = shapely.points(np.asarray(
+        shapely.segmentize(line or poly.exterior, 0.1).coords))
+    reached = shapely.distance(pts, way) <= offset + TOUCHED
+    return shapely.distance(pts[reached], path).max() - offset
 
 
 # -- What edmsim made of it -----------------------------------------------------

@@ -5,12 +5,14 @@ The client is PyPI's lcm with the types that lcm-gen makes for Python, so that
 what is tested is what is on the wire, not our own idea of it.
 """
 
+import contextlib
 import hashlib
 import json
 import os
 import pathlib
 import random
 import signal
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -378,3 +380,26 @@ class Machine:
             [str(BUILD / "edmctl"), "--machine", self.name, *args],
             capture_output=True, text=True, timeout=timeout, **more,
         )
+
+
+@contextlib.contextmanager
+def store_of(machine):
+    """While nobody else has it."""
+    machine.kill("jobs")
+    with sqlite3.connect(machine.store / f"{machine.name}.db") as db:
+        yield db
+    machine.start_jobs()
+
+
+def fill_queue(machine, like, count):
+    """So many copies of job @like that waits, job-000 and so on."""
+    with store_of(machine) as db:
+        cols = [c[1] for c in db.execute("PRAGMA table_info(job)")
+                if c[1] not in ("n", "id")]
+        for i in range(count):
+            db.execute(f"INSERT INTO job(id, {', '.join(cols)}) SELECT ?, "
+                       f"{', '.join(cols)} FROM job WHERE id=?",
+                       (f"job-{i:03}", like))
+        db.execute("INSERT INTO text SELECT job.n, text.text FROM job JOIN "
+                   "text ON text.n=(SELECT n FROM job WHERE id=?) WHERE "
+                   "job.id LIKE 'job-%'", (like,))

@@ -8,6 +8,7 @@ messages/edm.idl, so that what is tested is what is on the wire.
 import dataclasses
 import gc
 import json
+import math
 import signal
 import subprocess
 
@@ -24,6 +25,7 @@ from cyclonedds.idl.annotations import appendable, key  # noqa: E402
 from cyclonedds.idl.types import (  # noqa: E402
     array, bounded_str, float64, int64, uint32, uint64,
 )
+from cyclonedds.pub import DataWriter  # noqa: E402
 from cyclonedds.sub import DataReader  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
@@ -81,6 +83,7 @@ class Peer:
         self.topic = Topic(
             self.participant, "EDM_MachineState", MachineState
         )
+        self.writing = qos
         self.reader = DataReader(self.participant, self.topic, qos=qos)
 
     def close(self):
@@ -269,6 +272,28 @@ def test_edm_fleet_shows_who_is_gone(fleet, peer):
         finally:
             p.terminate()
         assert p.wait(5) == 0
+
+
+def test_a_hostile_sample_is_shown_as_harmless_text(peer):
+    """Nobody signs on DDS: any host may say what it likes."""
+    words = dict(machine="\x1b[2Jx", host="\u202ehost\x9b", state="\x9b2J\n",
+                 fault="\x1b]0;evil\x07", outcome="\x7f\r")
+    s = MachineState(
+        utime=-1, cycle=2**64 - 1, program=0, line=2**32 - 1,
+        progress=math.nan, place_mm=math.inf, length_mm=-math.inf,
+        depth_mm=1e308, feed_mm_s=-1e308, gap_v=math.nan,
+        position_mm=[math.nan] * 8,
+        generator_state=GeneratorState.GENERATOR_ERROR, is_on=True,
+        jumps=0, retracts=0, shorts=0, overruns=0, wake_late_max_us=-1e308,
+        **words)
+    writer = DataWriter(peer.participant, peer.topic, qos=peer.writing)
+    writer.write(s)
+    for more in ((), ("--json",)):
+        p = edm_fleet("--once", "--wait", "3", *more)
+        assert p.returncode == 0, p.stderr
+        assert "?[2Jx" in p.stdout
+        assert all(c == "\n" or " " <= c <= "~" for c in p.stdout), p.stdout
+    del writer
 
 
 def test_edm_fleet_hears_none(fleet):

@@ -125,6 +125,30 @@ def test_a_daemon_that_dies_is_told_and_found_again(p, me):
         rig.until(lambda: live.ask("queue")["code"] == 0, 20)
 
 
+def test_a_queue_longer_than_an_answer_is_told_page_by_page(tmp_path):
+    p = panel.Panel(tmp_path)
+    p.start()
+    try:
+        c = p.machine.client
+        for job in ("a", "b"):
+            assert c.submit(rig.QUICK_JOB, job, hold=True).code == 0
+        c.status_where(lambda s: s.job == "a" and s.job_state == "ready")
+        rig.fill_queue(p.machine, "b", 420)
+        wanted = ["a", "b"] + [f"job-{i:03}" for i in range(420)]
+        with p.session().live() as live:
+            rig.until(lambda: live.ask("queue")["code"] == 0, 20)
+            got, pages, page = [], 0, live.ask("queue")["body"]
+            while page:
+                got += [j["job"] for j in page]
+                pages += 1
+                page = live.ask("queue", job=got[-1])["body"]
+        assert got == wanted and pages > 1
+    finally:
+        with rig.store_of(p.machine) as db:
+            db.execute("DELETE FROM job WHERE id LIKE 'job-%'")
+        p.close()
+
+
 def test_pages_and_programs_of_the_host_are_told(p, me):
     with me.live() as live:
         live.where(lambda s: s.get("jobs"))
@@ -545,6 +569,42 @@ def test_another_user_of_the_host_only_looks_on(p):
                           group=65534, extra_groups=[], capture_output=True,
                           text=True, timeout=30)
     assert done.stdout.strip() == "viewer", done.stderr
+
+
+NOBODY = """
+import os, socket, sys
+port, own = int(sys.argv[1]), int(sys.argv[2])
+os.setgroups([]), os.setgid(65534), os.setuid(65534)
+s = socket.socket()
+s.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+s.bind(("127.0.0.1", own))
+s.connect(("127.0.0.1", port))
+s.sendall(b"GET /api/session HTTP/1.1\\r\\nHost: 127.0.0.1:%d\\r\\n"
+          b"Connection: close\\r\\n\\r\\n" % port)
+while got := s.recv(4096):
+    sys.stdout.buffer.write(got)
+"""
+
+
+def test_another_user_on_the_port_of_an_operator_only_looks_on(p):
+    """Root has connections to elsewhere from that very port."""
+    if os.getuid() != 0:
+        pytest.skip("needs root, to be another user")
+    for _ in range(3):
+        held, own = [], panel.free_port()
+        for _ in range(12):
+            there, here = socket.create_server(("127.0.0.1", 0)), \
+                socket.socket()
+            here.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            here.bind(("127.0.0.1", own))
+            here.connect(there.getsockname())
+            held += [there, here]
+        done = subprocess.run(
+            ["/usr/bin/python3", "-c", NOBODY, str(p.port), str(own)],
+            capture_output=True, text=True, timeout=30)
+        assert '"role":"viewer"' in done.stdout, done.stdout + done.stderr
+        for s in held:
+            s.close()
 
 
 def test_many_at_once_are_told(p, me):

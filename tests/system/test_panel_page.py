@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The panel's page in a browser, against the real gateway and daemons."""
 
+import json
 import re
 import signal
 
@@ -358,6 +359,37 @@ def test_jobs_that_wait_change_places(p, page):
     p.machine.client.status_where(lambda s: not s.job, 20)
 
 
+def test_a_long_queue_is_shown_page_by_page(p, page):
+    session = p.session()
+    for name in ("one.ngc", "two.ngc"):
+        session.post(f"/api/jobs?name={name}&hold=1", panel.JOB)
+    show(page, "jobs")
+    rows = page.locator(".jobs").first.locator(".job")
+    expect(rows).to_have_count(2)
+    more = page.locator(".two > :first-child").get_by_role(
+        "button", name="Show more")
+    expect(more).to_have_count(0)
+    waits = [j["job"] for j in json.loads(
+        p.machine.client.ask("queue").body)][1]
+    rig.fill_queue(p.machine, waits, 420)
+    expect(more).to_be_visible()
+    first = rows.count()
+    assert 100 < first < 422
+    while more.count():
+        shown = rows.count()
+        more.click()
+        expect(rows.nth(shown)).to_be_attached()
+        if rows.count() == 422:
+            expect(more).to_have_count(0)
+    expect(rows).to_have_count(422)
+    with rig.store_of(p.machine) as db:
+        db.execute("DELETE FROM job WHERE id LIKE 'job-%'")
+    expect(rows).to_have_count(2)
+    for _ in range(2):
+        end_job_of_queue(p)
+    p.machine.client.status_where(lambda s: not s.job, 20)
+
+
 def end_job_of_queue(p):
     """The job that is first in the queue, whatever it is."""
     with p.session().live() as live:
@@ -383,6 +415,35 @@ def test_the_panel_dies_and_comes_back(p, page):
     page.get_by_role("button", name="100 %", exact=True).click()
     expect(page.locator("#chip-override")).to_contain_text("100")
     assert page.evaluate("window.same") == 1
+
+
+def test_a_power_cut_is_told(p, page):
+    """All of the machine is gone at once, and nothing of it is in memory."""
+    client = p.machine.client
+    p.session().post("/api/jobs?name=night.ngc", panel.JOB)
+    client.status_where(lambda s: s.state == "erode", 60)
+    p.machine.kill("jobs")
+    p.machine.kill("edmd")
+    p.machine.sweep()
+    p.machine.start()
+    expect(page.locator(".head h1")).to_have_text("Interrupted")
+    expect(page.locator(".badge.warn")).to_be_visible()
+    page.locator("#start").click(force=True)
+    expect(page.locator(".toast.bad")).to_contain_text("cut off")
+    expect(page.locator(".positions")).to_contain_text("not certain")
+    show(page, "alarms")
+    expect(page.locator(".warnings")).to_contain_text("X Y Z")
+    show(page, "jobs")
+    row = page.locator(".jobs li", has_text="night.ngc").first
+    expect(row).to_contain_text("interrupted")
+    row.get_by_role("button", name="Resume").click()
+    press(page.locator("#resumejob"))
+    expect(page.locator(".head h1")).to_have_text("Ready")
+    client.status_where(lambda s: s.state == "hold", 20)
+    show(page, "cut")
+    press(page.locator("#start"))
+    client.status_where(lambda s: s.state == "erode", 60)
+    end_job(page, p)
 
 
 def test_the_daemon_dies_and_comes_back(p, page):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a touch found survives a crash of edmd."""
+"""What probing found survives a crash of edmd."""
 
 import pytest
 import rig
@@ -66,7 +66,7 @@ def test_places_still_count_from_the_contact(block):
     ends_over_the_face(block)
 
 
-def test_a_touch_that_was_under_way_is_made_again(block):
+def test_a_probing_motion_that_was_under_way_is_made_again(block):
     c = block.client
     assert c.submit(JOB, "job").code == 0
     c.status_where(lambda s: s.state == "probe" and s.pos_mm[2] < -1.1)

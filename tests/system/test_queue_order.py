@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The order of the queue, and lines of a job's text."""
 
-import contextlib
 import json
-import sqlite3
 
 import rig
 
@@ -60,35 +58,12 @@ def test_lines_of_a_job_are_told(machine):
     assert c.ask("text", "none", 1).code == 66
 
 
-@contextlib.contextmanager
-def store_of(machine):
-    """While nobody else has it."""
-    machine.kill("jobs")
-    with sqlite3.connect(machine.store / f"{machine.name}.db") as db:
-        yield db
-    machine.start_jobs()
-
-
-def fill(machine, count):
-    """Copies of the job that waits."""
-    with store_of(machine) as db:
-        cols = [c[1] for c in db.execute("PRAGMA table_info(job)")
-                if c[1] not in ("n", "id")]
-        for i in range(count):
-            db.execute(f"INSERT INTO job(id, {', '.join(cols)}) SELECT ?, "
-                       f"{', '.join(cols)} FROM job WHERE id='b'",
-                       (f"job-{i:03}",))
-        db.execute("INSERT INTO text SELECT job.n, text.text FROM job JOIN "
-                   "text ON text.n=(SELECT n FROM job WHERE id='b') WHERE "
-                   "job.id LIKE 'job-%'")
-
-
 def test_a_queue_longer_than_an_answer_is_listed_whole(machine):
     c = machine.client
     for job in ("a", "b"):
         assert c.submit(rig.QUICK_JOB, job, hold=True).code == 0
     c.status_where(lambda s: s.job == "a" and s.job_state == "ready")
-    fill(machine, 300)
+    rig.fill_queue(machine, "b", 300)
     wanted = ["a", "b"] + [f"job-{i:03}" for i in range(300)]
     assert rig.until(lambda: names(machine)) == wanted[:len(names(machine))]
     assert len(names(machine)) < len(wanted)
@@ -99,5 +74,5 @@ def test_a_queue_longer_than_an_answer_is_listed_whole(machine):
     after = json.loads(c.ask("queue", wanted[290]).body)
     assert [j["job"] for j in after] == wanted[291:]
     assert c.ask("queue", "never").code == 66
-    with store_of(machine) as db:
+    with rig.store_of(machine) as db:
         db.execute("DELETE FROM job WHERE id LIKE 'job-%'")

@@ -263,7 +263,7 @@ def test_what_a_log_reader_missed_is_counted(idle):
 
 
 MOUNT = """
-mount -t tmpfs tmpfs /dev/shm && mkdir -m 770 /dev/shm/edmd || exit 1
+mount -t tmpfs tmpfs /dev/shm && mkdir -m 750 /dev/shm/edmd /dev/shm/edmd-jobs || exit 1
 for what in status command owner writer program.1; do
         echo mine >/dev/shm/edmd.$1.$what || exit 1
 done

@@ -25,11 +25,9 @@ static inline const struct interp_tech_table *random_table(void)
 	return t;
 }
 
-/* Return: was it taken? */
-static inline bool random_compile(const struct script *text,
-				  const char *dialect,
-				  const struct interp_build_options *bo,
-				  struct made *ret)
+/* Return: NULL if it was not taken. */
+static inline struct interp_build *random_build(const struct script *text,
+		const char *dialect, const struct interp_build_options *bo)
 {
 	static const struct interp_wire wire = {
 		.guides = INTERP_GUIDES_ABSOLUTE, .z_lower_mm = -20,
@@ -56,10 +54,22 @@ static inline bool random_compile(const struct script *text,
 	assert_non_null(b);
 	if (interp_compile(&t, &o, b, &lines, &d) != 0) {
 		interp_build_destroy(b);
-		return false;
+		return NULL;
 	}
-	*ret = finish(b);
-	return true;
+	return b;
+}
+
+/* Return: was it taken? */
+static inline bool random_compile(const struct script *text,
+				  const char *dialect,
+				  const struct interp_build_options *bo,
+				  struct made *ret)
+{
+	struct interp_build *b = random_build(text, dialect, bo);
+
+	if (b)
+		*ret = finish(b);
+	return b != NULL;
 }
 
 #endif /* RANDOM_COMPILE_H */

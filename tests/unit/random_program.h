@@ -230,7 +230,7 @@ static inline void put_generic_word(struct script *t)
 			     (sizeof(words) / sizeof(words[0]))]);
 }
 
-static inline void put_touch(struct script *t)
+static inline void put_probe(struct script *t)
 {
 	static const char *const words[] = {
 		"G80 X-\nG92 X1\nG91", "G38.2 Z-0.1\nG92 Z0\nG91",
@@ -272,7 +272,7 @@ static inline void put_generic(struct script *t)
 			break;
 		case 10:
 			if (rnd(t->seed) % 8 == 0)
-				put_touch(t);
+				put_probe(t);
 			break;
 		default:
 			put_generic_word(t);

@@ -327,6 +327,8 @@ static inline void random_axes(struct rig *r, uint64_t *s)
 	else if (rnd(s) % 10 == 0)
 		r->in.axes_off = false;
 	r->in.starting = rnd(s) % 1000 == 0;
+	if (rnd(s) % 200 == 0)
+		r->in.steers = rnd(s) % 2;
 }
 
 /* It does what it is told, in its time, and loses things now and then. */

@@ -182,7 +182,7 @@ static void random_arcs_end_exactly_in_range_and_retrace(void **st)
 	}
 }
 
-/* -- Changes of axis ------------------------------------------------------------ */
+/* -- Changes of axis ------------------------------------------------------ */
 
 static size_t changes_of_circle(enum interp_strategy s, uint32_t milli, int r)
 {
@@ -224,7 +224,7 @@ static void circles_in_a_tube_change_axis_as_seldom_as_is_known(void **st)
 	}
 }
 
-/* -- Helices, refusals, damage --------------------------------------------------- */
+/* -- Helices, refusals, damage -------------------------------------------- */
 
 static struct made random_program(enum interp_strategy s, uint64_t *seed)
 {

@@ -136,6 +136,61 @@ static void troubles_are_faults_without_sparks_motion_or_power(void **st)
 	}
 }
 
+/* Positioning at speed, with the other axes still following. */
+static void where_the_others_follow_they_brake_before_power_is_taken(void **st)
+{
+	const enum io_trouble troubles[] = { IO_DRIVE, IO_FOLLOWING };
+
+	(void)st;
+	for (int t = 0; t < 2; t++) {
+		struct rig r;
+		double v;
+		int n = 0;
+
+		make(&r);
+		start(&r);
+		r.in.steers = true;
+		steps(&r, OPEN_V, 100);
+		v = r.c.mover.v_mm_s;
+		assert_true(v > 1);
+		r.in.trouble = troubles[t];
+		r.in.axes_off = true;
+		for (; r.c.state != STATE_FAULT; n++) {
+			step(&r, OPEN_V);
+			assert_false(r.out.power);
+			assert_true(r.c.mover.v_mm_s <= v + 1e-9);
+			assert_true(r.out.enable ||
+				    r.c.state == STATE_FAULT);
+			assert_int_equal(tell(&r, CYCLE_START),
+					 ANSWER_WRONG_STATE);
+		}
+		assert_in_range(n, 3, 100);
+		assert_false(r.out.enable);
+		rig_free(&r);
+	}
+}
+
+static void where_none_follows_any_more_the_braking_ends(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	start(&r);
+	r.in.steers = true;
+	steps(&r, OPEN_V, 60);
+	r.in.trouble = IO_DRIVE;
+	r.in.axes_off = true;
+	step(&r, OPEN_V);
+	assert_true(r.out.enable && r.c.state == STATE_HOLD);
+	r.in.steers = false;
+	step(&r, OPEN_V);
+	assert_true(!r.out.enable && r.c.state == STATE_FAULT);
+	assert_memory_equal(r.out.target, r.before.target,
+			    sizeof(r.out.target));
+	rig_free(&r);
+}
+
 static void a_reset_reaches_the_machine_and_starts_nothing(void **st)
 {
 	struct rig r;
@@ -265,6 +320,8 @@ int main(void)
 		cmocka_unit_test(drives_that_are_not_up_refuse_start_and_retract),
 		cmocka_unit_test(a_hold_or_stop_ends_the_wait),
 		cmocka_unit_test(troubles_are_faults_without_sparks_motion_or_power),
+		cmocka_unit_test(where_the_others_follow_they_brake_before_power_is_taken),
+		cmocka_unit_test(where_none_follows_any_more_the_braking_ends),
 		cmocka_unit_test(a_reset_reaches_the_machine_and_starts_nothing),
 		cmocka_unit_test(a_trouble_that_stays_is_not_cleared_by_a_reset),
 		cmocka_unit_test(axes_that_lose_power_in_motion_are_a_fault),

@@ -204,7 +204,7 @@ static void more_axes_go_back_as_they_came(void **state)
 	assert_true(kept > LINES / 40);
 }
 
-/* -- Against the line that was programmed ------------------------------------- */
+/* -- Against the line that was programmed --------------------------------- */
 
 /* What docs/interpolation.md promises, square to it, in pulses. */
 static double promised(const struct job *j)

@@ -220,6 +220,8 @@ static void ends_with(struct rig *r, enum io_trouble t)
 {
 	assert_int_equal(r->in.trouble, t);
 	assert_int_equal(r->generator.data[0] & 3, 0);
+	/* As the cycle does where nothing moves, or where none can brake. */
+	r->out.enable = false;
 	run(r, 3);
 	for (int i = 0; i < NDRIVES; i++)
 		assert_int_not_equal(r->p[i].status, 0x1027);
@@ -425,6 +427,172 @@ static void the_others_brake_along_the_path_and_come_back_along_it(void **st)
 	}
 	assert_int_equal(x, 0);
 	assert_int_equal(y, 0);
+	unmake(&r);
+}
+
+/* X has the fault.  Y follows until its power is taken; then it stops too. */
+static void the_drive_that_is_well_follows_while_the_cycle_brakes(void **st)
+{
+	struct rig r;
+	int32_t x;
+
+	(void)st;
+	begin(&r);
+	for (int i = 1; i <= 100; i++) {
+		r.out.target[INTERP_X] = 8 * i;
+		r.out.target[INTERP_Y] = 4 * i;
+		run(&r, 1);
+	}
+	r.p[0].status = 0x08;
+	run(&r, 2);
+	x = r.p[0].actual;
+	assert_int_equal(r.in.trouble, IO_DRIVE);
+	assert_true(r.in.steers);
+	assert_int_equal(r.generator.data[0] & 3, 0);
+	for (int i = 0; i < 40; i++) {
+		r.out.target[INTERP_X] += 4;
+		r.out.target[INTERP_Y] += 2;
+		run(&r, 1);
+	}
+	run(&r, 3);
+	assert_int_equal(r.p[0].actual, x);
+	assert_int_equal(r.p[1].actual, 777 + 480);
+	assert_int_equal(r.p[1].status, 0x1027);
+	ends_with(&r, IO_DRIVE);
+	assert_false(r.in.steers);
+	/* X is farther from its place than resync_mm, but by this way alone. */
+	((struct can402 *)r.m.self)->resync_max[INTERP_X] = 20;
+	r.out.reset = true;
+	run(&r, 150);
+	r.out.enable = true;
+	run(&r, 400);
+	assert_int_equal(r.in.trouble, IO_WELL);
+	assert_false(r.in.axes_off);
+	assert_int_equal(r.p[0].actual, 777 + 10 * r.out.target[INTERP_X]);
+	/* On its place again, that way counts no more. */
+	r.out.enable = false;
+	run(&r, 10);
+	r.p[0].actual += 10 * 21;
+	run(&r, 3);
+	r.out.enable = true;
+	run(&r, 20);
+	assert_int_equal(r.in.trouble, IO_FOLLOWING);
+	unmake(&r);
+}
+
+/* -- Brakes on lines ---------------------------------------------------------- */
+
+static uint32_t brakes_open;
+static bool brakes_answer;
+
+static bool brake(void *arg, uint32_t axes)
+{
+	(void)arg;
+	brakes_open = axes;
+	return brakes_answer;
+}
+
+#define BRAKE_PERIODS	10
+
+/* Drives that are up; Y's brake is on a line. */
+static void begin_braked(struct rig *r)
+{
+	struct can402 *s;
+
+	begin(r);
+	r->out.enable = r->out.power = false;
+	run(r, 20);
+	s = r->m.self;
+	s->braked = 1 << INTERP_Y;
+	s->brake = brake;
+	s->brake_periods = BRAKE_PERIODS;
+	brakes_open = 0;
+	brakes_answer = true;
+	run(r, 2);
+	assert_int_equal(brakes_open, 0);
+}
+
+static void enable_braked(struct rig *r)
+{
+	int n = 0;
+
+	r->out.enable = true;
+	for (; !brakes_open; n++) {
+		run(r, 1);
+		assert_true(r->in.axes_off && n < 50);
+	}
+	assert_int_equal(brakes_open, 1 << INTERP_Y);
+	assert_int_equal(r->p[1].status, 0x1027);
+	for (n = 0; r->in.axes_off; n++)
+		run(r, 1);
+	assert_in_range(n, BRAKE_PERIODS, BRAKE_PERIODS + 3);
+}
+
+static void a_brake_opens_under_torque_and_closes_before_it_ends(void **st)
+{
+	struct rig r;
+	int n = 0;
+
+	(void)st;
+	begin_braked(&r);
+	enable_braked(&r);
+	r.out.enable = false;
+	run(&r, 1);
+	assert_int_equal(brakes_open, 0);
+	for (; r.p[1].status == 0x1027; n++)
+		run(&r, 1);
+	assert_in_range(n, BRAKE_PERIODS - 1, BRAKE_PERIODS + 3);
+	run(&r, 3);
+	/* And again, with a start before it is closed. */
+	enable_braked(&r);
+	r.out.enable = false;
+	run(&r, 3);
+	enable_braked(&r);
+	assert_int_equal(r.in.trouble, IO_WELL);
+	unmake(&r);
+}
+
+static void the_brake_of_a_drive_in_trouble_closes_at_once(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin_braked(&r);
+	enable_braked(&r);
+	r.p[0].status = 0x08;
+	run(&r, 2);
+	/* X has no brake; Y holds on, and the cycle may brake on the path. */
+	assert_int_equal(r.in.trouble, IO_DRIVE);
+	assert_int_equal(brakes_open, 1 << INTERP_Y);
+	r.p[1].status = 0x08;
+	run(&r, 2);
+	assert_int_equal(brakes_open, 0);
+	unmake(&r);
+}
+
+static void brakes_that_do_not_answer_are_a_lost_machine(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin_braked(&r);
+	enable_braked(&r);
+	brakes_answer = false;
+	run(&r, 2);
+	assert_true(r.in.lost);
+	unmake(&r);
+}
+
+static void none_steers_where_the_bus_is_at_fault(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin(&r);
+	assert_true(r.in.steers);
+	put(&r, CAN_NMT, "\x02\x01", 2);
+	run(&r, 1);
+	assert_false(r.in.steers);
 	unmake(&r);
 }
 
@@ -863,6 +1031,11 @@ int main(void)
 		cmocka_unit_test(after_a_crash_a_drive_that_was_off_has_no_place),
 		cmocka_unit_test(a_restart_tells_that_the_place_is_lost_and_moves_nothing),
 		cmocka_unit_test(the_others_brake_along_the_path_and_come_back_along_it),
+		cmocka_unit_test(the_drive_that_is_well_follows_while_the_cycle_brakes),
+		cmocka_unit_test(none_steers_where_the_bus_is_at_fault),
+		cmocka_unit_test(a_brake_opens_under_torque_and_closes_before_it_ends),
+		cmocka_unit_test(the_brake_of_a_drive_in_trouble_closes_at_once),
+		cmocka_unit_test(brakes_that_do_not_answer_are_a_lost_machine),
 		cmocka_unit_test(a_plc_on_the_same_bus_is_no_other_master),
 		cmocka_unit_test(errors_on_the_bus_are_told_and_stop_nothing),
 		cmocka_unit_test(another_program_far_away_is_not_jumped_to),

@@ -88,7 +88,7 @@ static int32_t count_of(const struct drive_peer *p)
 	return p->state == NOT_READY ? 0 : p->place - p->offset;
 }
 
-/* -- A drive's life ------------------------------------------------------------ */
+/* -- A drive's life ------------------------------------------------------- */
 
 static void power_on(struct rig *r, struct drive_peer *p)
 {
@@ -235,7 +235,7 @@ static void live(struct rig *r, int i)
 		answer(r, i);
 }
 
-/* -- What it is told ------------------------------------------------------------- */
+/* -- What it is told ------------------------------------------------------ */
 
 static uint32_t *object(struct drive_peer *p, uint32_t key)
 {
@@ -327,7 +327,7 @@ static void on_frame(struct rig *r, const struct can_frame *f)
 	}
 }
 
-/* -- The cycle and the operator ---------------------------------------------------- */
+/* -- The cycle and the operator ------------------------------------------- */
 
 /* A home without a method is the operator's word that it stands where it is. */
 static void operate(struct rig *r)

@@ -213,7 +213,7 @@ static void a_new_name_for_a_place_makes_no_pulse(void **state)
 	assert_int_equal(b.out[0], pulses + 1 + 11);
 }
 
-/* -- Maps of several axes -------------------------------------------------------- */
+/* -- Maps of several axes ------------------------------------------------- */
 
 /* A worn machine: every kind of error, on places that are not even. */
 static void worn(struct bench *b)

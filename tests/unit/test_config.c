@@ -257,9 +257,28 @@ static void the_servo_takes_from_the_machine_what_is_not_given(void **state)
 	assert_true(cycle.jump.every_mm == 0.5 && cycle.jump.adaptive);
 }
 
+static void a_wire_machine_has_defaults_of_its_own(void **state)
+{
+	struct machine_config c;
+
+	(void)state;
+	read_good("[gap]\nprocess = wire\n[sim]\npeak_a = 30\n", &c);
+	assert_int_equal(c.sim.process, SIM_WIRE);
+	assert_true(c.sim.flush_per_s == 2 && c.sim.on_us == 2);
+	assert_true(c.sim.peak_a == 30);
+	/* A cavity in the simulation, whatever the control is told. */
+	read_good("[sim]\nprocess = sink\n[gap]\nprocess = wire\n", &c);
+	assert_int_equal(c.sim.process, SIM_SINK);
+	assert_true(c.sim.on_us == 8);
+	read_good("[sim]\nprocess = wire\n", &c);
+	assert_int_equal(c.gap.process, PROCESS_SINK);
+	assert_true(c.sim.on_us == 2);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_wire_machine_has_defaults_of_its_own),
 		cmocka_unit_test(the_built_in_machine_is_the_documented_one),
 		cmocka_unit_test(every_default_passes_the_check_between_keys),
 		cmocka_unit_test(a_key_changes_its_value_and_no_other),

@@ -143,6 +143,22 @@ static const struct refusal refusals[] = {
 	  5, 0, "can402.node_Z 5 a second time", "a node of its own" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_Z = 5\n", 2, 0,
 	  "axis.Z.brake: not told", "free: it stays where it is" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_Z = 5\n[axis.Z]\n"
+	  "brake = line\n", 6, 0, "axis.Z.brake = line and gpio.brake_Z is none",
+	  "gpio.brake_Z = the number of a line" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_Z = 5\n[axis.Z]\n"
+	  "brake = drive\n[gpio]\nbrake_Z = 7\n", 8, 0, "gpio.brake_Z of an axis "
+	  "that does not have [axis.Z] brake = line", "or none" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[gpio]\n"
+	  "estop = 7\n", 6, 0, "gpio.estop with backend can402",
+	  "chip, brake_X ... brake_V and brake_ms" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[gpio]\n"
+	  "encoder_X = 1 2\n", 6, 0, "gpio.encoder_X with backend can402",
+	  "chip, brake_X" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\nnode_Y = 6\n"
+	  "[axis.X]\nbrake = line\n[axis.Y]\nbrake = line\n[gpio]\n"
+	  "brake_X = 3\nbrake_Y = 3\n", 12, 0, "are both line 3",
+	  "a line of its own" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n"
 	  "following_mm = 0.2\n", 5, 0, "can402.following_mm 0.2 with resync_mm "
 	  "0.2", "following_mm below resync_mm" },

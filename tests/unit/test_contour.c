@@ -66,7 +66,7 @@ static void assert_refused(const struct interp_wire *w, const char *text,
 
 #define N(a)	(sizeof(a) / sizeof((a)[0]))
 
-/* -- Offset ------------------------------------------------------------------ */
+/* -- Offset --------------------------------------------------------------- */
 
 #define SQUARE	"G1 X5 Y0\nX10\nY10\nX0\nY0\nX5\nG40 X5 Y-5\n"
 
@@ -207,7 +207,7 @@ static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
 	/* A slot in the side of a plate. */
 	assert_refused(w, "F5 G0 X5 Y-5\nG42 D1\nG1 Y0\nX10\nY5\nX10.2\nY0\n"
 		       "X20\nM2\n", 5, "a width of 0.2000 mm between the "
-		       "motions of lines 5 and 8");
+		       "motions of lines 5 and 7");
 	assert_refused(w, "F5\nG41 D1 G1 X.11\nX8\n", 2,
 		       "a lead of 0.1100 mm for a change of offset of 0.1100");
 	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG40 Y.05\n", 3, "a lead of");
@@ -245,7 +245,7 @@ static void actions_stay_at_their_corner(void **st)
 	nc_done(&r);
 }
 
-/* -- Four axes in the dialects of wire machines -------------------------------- */
+/* -- Four axes in the dialects of wire machines --------------------------- */
 
 static void assert_lean(const char *dialect, const char *text, double u,
 			double v)
@@ -289,7 +289,7 @@ static void a_leaning_arc_without_its_centre_is_refused(void **st)
 	nc_done(&r);
 }
 
-/* -- Taper ---------------------------------------------------------------------- */
+/* -- Taper ---------------------------------------------------------------- */
 
 #define GO_SQUARE "G1 X5 Y0\nX10\nY10\nX0\nY0\nX5\n"
 
@@ -343,7 +343,7 @@ static void the_start_of_the_guides_is_the_start_of_the_wire(void **st)
 	nc_done(&n);
 }
 
-/* -- The wire in the work --------------------------------------------------------- */
+/* -- The wire in the work ------------------------------------------------- */
 
 /* 20 by 20 mm with corners of 3 mm, wire outside, 3 degrees, top smaller. */
 static const char punch[] =
@@ -414,7 +414,7 @@ static void the_wire_is_on_both_contours_all_the_way_round(void **st)
 	}
 }
 
-/* -- Other guides ------------------------------------------------------------------ */
+/* -- Other guides --------------------------------------------------------- */
 
 static void relative_upper_guides_move_by_the_difference(void **st)
 {
@@ -586,7 +586,7 @@ static void a_lean_beyond_the_machine_is_refused(void **st)
 		       "G50 X5 Y-5\n", 4, "leans by 8.049 degrees");
 }
 
-/* -- Corners --------------------------------------------------------------------- */
+/* -- Corners -------------------------------------------------------------- */
 
 static void a_corner_is_approached_slowly_and_waited_on(void **st)
 {

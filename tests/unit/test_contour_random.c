@@ -22,7 +22,7 @@ static struct nc_read ready(const struct interp_wire *w)
 	return n;
 }
 
-/* -- Sharp corners ---------------------------------------------------------- */
+/* -- Sharp corners -------------------------------------------------------- */
 
 struct polygon {
 	double x[12], y[12];
@@ -122,7 +122,7 @@ static void the_wire_keeps_clear_of_random_contours(void **st)
 	assert_in_range(taken, 900, 1000);
 }
 
-/* -- Rounded corners ---------------------------------------------------------- */
+/* -- Rounded corners ------------------------------------------------------ */
 
 struct corner {
 	double from[2], to[2], centre[2];	/* of the fillet */

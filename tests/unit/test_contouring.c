@@ -130,7 +130,7 @@ static double worst_of(const struct cycle_config *k)
 	return l.worst_mm;
 }
 
-/* -- What it is worth ------------------------------------------------------------ */
+/* -- What it is worth ----------------------------------------------------- */
 
 #define FORWARD	INTERP_COMPENSATE_FEEDFORWARD
 #define CROSS	INTERP_COMPENSATE_CROSS
@@ -213,7 +213,7 @@ static void the_path_is_the_same_one(void **state)
 	rig_free(&m.r);
 }
 
-/* -- As late as on a bus ---------------------------------------------------------- */
+/* -- As late as on a bus -------------------------------------------------- */
 
 #define LATE_PERIODS	8000
 
@@ -294,7 +294,7 @@ static void axes_behind_a_bus_are_led_by_what_was_identified(void **state)
 	assert_true(late_worst(&seen, FORWARD | CROSS) < l.worst_mm / 10);
 }
 
-/* -- What it never does ---------------------------------------------------------- */
+/* -- What it never does --------------------------------------------------- */
 
 static void at_rest_it_adds_nothing(void **state)
 {
@@ -515,7 +515,7 @@ static void a_jog_and_a_cut_get_nothing(void **state)
 	rig_free(&r);
 }
 
-/* -- What a machine file may ask the cycle for ----------------------------------- */
+/* -- What a machine file may ask the cycle for ---------------------------- */
 
 static void a_machine(struct machine_config *c, const char *method)
 {

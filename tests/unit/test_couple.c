@@ -72,7 +72,7 @@ static struct made make_move(const struct move *m)
 	return finish(b);
 }
 
-/* -- Star and tube: each axis against the longest ----------------------------- */
+/* -- Star and tube: each axis against the longest ------------------------- */
 
 static struct pair_tube axis_tube_of(const struct move *m)
 {
@@ -111,7 +111,7 @@ static void check_flat(const struct move *m, const struct interp_cursor *c)
 		assert_true(interp_cursor_deviation_mm(c) <= mu_mm + 1e-12);
 }
 
-/* -- Tree: every pair in its range, every leaf near its share ------------------ */
+/* -- Tree: every pair in its range, every leaf near its share ------------- */
 
 static double pair_strays(const struct move *m, const struct interp_pair *p)
 {
@@ -147,7 +147,7 @@ static void check_node(const struct move *m, const struct interp_cursor *c,
 	check_node(m, c, p->in_b, stray + bound * (double)p->b / total);
 }
 
-/* -- Moves ------------------------------------------------------------------------ */
+/* -- Moves ---------------------------------------------------------------- */
 
 static void check_move(const struct move *m, uint64_t *seed)
 {
@@ -193,7 +193,7 @@ static void random_moves_end_exactly_in_range_and_retrace(void **st)
 	}
 }
 
-/* -- Changes of axis ------------------------------------------------------------- */
+/* -- Changes of axis ------------------------------------------------------ */
 
 static size_t changes_of(const int32_t d[INTERP_NAXES],
 			 enum interp_coupling k, uint32_t milli)
@@ -241,7 +241,7 @@ static void couplings_change_axis_as_often_as_is_known(void **st)
 	assert_int_equal(changes_of(ramp, INTERP_TUBE, 2000), 10002);
 }
 
-/* -- Refusals ----------------------------------------------------------------------- */
+/* -- Refusals ------------------------------------------------------------- */
 
 static int try_line(enum interp_strategy s, enum interp_coupling k,
 		    uint32_t milli, struct interp_diag *d)

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* -- Lines ------------------------------------------------------------------ */
+/* -- Lines ---------------------------------------------------------------- */
 
 static const int planes[][2] = {
 	{ INTERP_X, INTERP_Y }, { INTERP_Y, INTERP_Z }, { INTERP_Z, INTERP_X },
@@ -78,7 +78,7 @@ static void lines_end_exactly_and_stay_near_in_all_octants_and_planes(void **st)
 	}
 }
 
-/* -- There and back ---------------------------------------------------------- */
+/* -- There and back ------------------------------------------------------- */
 
 static void walk_retraces(const struct made *m)
 {
@@ -163,7 +163,7 @@ static void arcs_from_every_start_end_exactly_and_retrace(void **st)
 	arcs_of(INTERP_POINT_BY_POINT, 40, 7);
 }
 
-/* -- Random programs --------------------------------------------------------- */
+/* -- Random programs ------------------------------------------------------ */
 
 static struct made random_program(enum interp_strategy s, uint64_t *seed,
 				  int segs)
@@ -288,7 +288,7 @@ static void a_place_can_be_sought(void **st)
 	unmake(&m);
 }
 
-/* -- Distrust ----------------------------------------------------------------- */
+/* -- Distrust ------------------------------------------------------------- */
 
 static void a_damaged_block_never_leads_astray(void **st)
 {

@@ -297,7 +297,7 @@ static void a_curve_may_stand_on_the_way(void **state)
 	unmake(&m);
 }
 
-/* -- Refusals ---------------------------------------------------------------- */
+/* -- Refusals ------------------------------------------------------------- */
 
 static void refused(const struct interp_build_curve *bc, struct interp_build *b,
 		    const char *found)

@@ -62,7 +62,7 @@ static bool on_path(const struct points *set, const int32_t *pos)
 	return bsearch(&here, set->at, set->n, sizeof(here), by_place) != NULL;
 }
 
-/* -- The way out that a segment allows ----------------------------------------- */
+/* -- The way out that a segment allows ------------------------------------ */
 
 /*
  * On the straight line between two places, in pulses: its ends, its points and
@@ -283,7 +283,11 @@ static void check_cycle(struct rig *r, const struct points *set)
 	if (r->c.config.dry_run)
 		assert_false(r->out.power);
 	if (r->in.axes_off) {
+		/* Those that follow may still brake. */
 		assert_false(r->out.power);
+		assert_true(r->c.fault.latched || !r->c.mover.v_mm_s);
+	}
+	if (r->in.axes_off && !(r->in.steers && r->c.fault.latched)) {
 		assert_memory_equal(r->c.out.target, r->path_before,
 				    sizeof(r->path_before));
 	}

@@ -180,7 +180,7 @@ static const struct bad {
 	{ "sodick", "G54; G90;\nM02;", 1, 6, "words behind the ;" },
 	{ "sodick", "G01 X5;\nM02;", 1, 5, "X5 without a decimal point" },
 	{ "sodick", "G28 X0;\nM02;", 1, 1, "G28: it goes to the start" },
-	{ "sodick", "M05;\nM02;", 1, 1, "M05: discharge, or a touch" },
+	{ "sodick", "M05;\nM02;", 1, 1, "M05: discharge, or a contact" },
 	{ "sodick", "G02 X2.0 R1.0;\nM02;", 1, 10, "unknown word R1.0" },
 	{ "chmer", "SC0100 004\nM02", 1, 1, "SC without a =" },
 	{ "chmer", "G1 G41 X1.0\nM02", 1, 4, "an offset by register 0" },

@@ -440,6 +440,59 @@ static void one_that_takes_its_time_to_begin_is_no_trouble(void **state)
 	assert_int_equal(r.d.trouble, DRIVE_NO_ANSWER);
 }
 
+/* The other one stands elsewhere, and says so after each answer. */
+static void answer_of_another(struct rig *r)
+{
+	struct can_msg a = { .id = CAN_TPDO1 + NODE,
+			     .len = (uint8_t)(r->p.ntpdo == 3 ? 7 : 6) };
+
+	can_put(a.data, 0x1237, 2);
+	can_put(a.data + 2, 500000, 4);
+	a.data[6] = 8;
+	drive_receive(&r->d, &a);
+}
+
+static void two_drives_with_one_node_never_get_power(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	for (int i = 0; i < 200; i++) {
+		if (r.d.phase == DRIVE_RUNNING)
+			answer_of_another(&r);
+		drive_aim(&r.d, DRIVE_GO_ON);
+		run(&r, 1, 0);
+		assert_int_not_equal(r.p.status & 0x6f, 0x27);
+	}
+	assert_int_equal(r.d.trouble, DRIVE_TWICE);
+}
+
+static void answers_that_come_late_are_not_of_two_drives(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.d.c.missing_max = 20;
+	for (int i = 0; i < 50; i++) {
+		r.p.mute = true;
+		run(&r, 1 + i % 15, 0);
+		r.p.mute = false;
+		/* One, and those that were late. */
+		for (int k = 0; k <= i % 15; k++) {
+			struct can_msg a = { .id = CAN_TPDO1 + NODE, .len = 7 };
+
+			can_put(a.data, r.p.status, 2);
+			can_put(a.data + 2, (uint32_t)r.p.actual, 4);
+			a.data[6] = r.p.mode;
+			drive_receive(&r.d, &a);
+		}
+		run(&r, 5, 0);
+		assert_int_equal(r.d.trouble, DRIVE_WELL);
+	}
+}
+
 static void one_switched_on_late_is_found(void **state)
 {
 	struct rig r;
@@ -789,6 +842,8 @@ int main(void)
 		cmocka_unit_test(one_that_reboots_is_brought_up_again_after_reset),
 		cmocka_unit_test(what_a_drive_may_not_have_is_no_trouble),
 		cmocka_unit_test(one_that_takes_its_time_to_begin_is_no_trouble),
+		cmocka_unit_test(two_drives_with_one_node_never_get_power),
+		cmocka_unit_test(answers_that_come_late_are_not_of_two_drives),
 		cmocka_unit_test(one_switched_on_late_is_found),
 		cmocka_unit_test(frames_of_a_wrong_length_are_counted_not_believed),
 		cmocka_unit_test(a_restart_loses_the_place_unless_it_is_absolute),

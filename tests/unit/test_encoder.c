@@ -17,7 +17,7 @@
 
 #include <cmocka.h>
 
-/* -- Lines, in place of a chip's ------------------------------------------------ */
+/* -- Lines, in place of a chip's ------------------------------------------ */
 
 struct lines {
 	struct lines_event queue[256];
@@ -125,7 +125,7 @@ static void an_edge_that_is_missing_is_noticed(void **state)
 	assert_false(quadrature_read(&q, ++now));
 }
 
-/* -- A counter ---------------------------------------------------------------- */
+/* -- A counter ------------------------------------------------------------ */
 
 static char root[] = "/tmp/test_encoder.XXXXXX";
 
@@ -208,7 +208,7 @@ static void a_counter_that_is_not_there_or_off_is_refused(void **state)
 	quadrature_close(&q);
 }
 
-/* -- What it means ------------------------------------------------------------ */
+/* -- What it means -------------------------------------------------------- */
 
 struct axis {
 	struct encoder e;

@@ -151,7 +151,7 @@ static bool on_legs(const struct beside *t, const int32_t *p)
 	return rise || in || out;
 }
 
-/* -- Out and back ----------------------------------------------------------- */
+/* -- Out and back --------------------------------------------------------- */
 
 static void a_jump_goes_out_by_the_centre_and_back_over_the_same_points(void **st)
 {
@@ -270,7 +270,7 @@ static void a_higher_jump_ends_where_the_escape_does(void **st)
 	end(&t);
 }
 
-/* -- What comes between ----------------------------------------------------- */
+/* -- What comes between --------------------------------------------------- */
 
 /* The same jump again, @i cycles into it; @ring stands at its beginning. */
 static void again(struct beside *t, const struct beside *at_ring, int i)
@@ -462,7 +462,7 @@ static void shorts_that_stay_end_as_a_fault_at_the_limit(void **st)
 	end(&t);
 }
 
-/* -- Where it does not go ---------------------------------------------------- */
+/* -- Where it does not go ------------------------------------------------- */
 
 static void beyond_the_travel_or_no_number_it_lifts_along_the_path(void **st)
 {
@@ -512,7 +512,7 @@ static void after_a_crash_every_point_of_it_is_found_again(void **st)
 	end(&t);
 }
 
-/* -- Straight up --------------------------------------------------------------- */
+/* -- Straight up ---------------------------------------------------------- */
 
 static const struct interp_escape *escape_of(const struct made *m, uint32_t seg)
 {

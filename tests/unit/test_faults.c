@@ -75,14 +75,16 @@ static void names_and_their_list_fit_where_they_go(void **st)
 		    sizeof(some));
 }
 
-/* An axis that is not told where to go, or not where it is thought to be,
- * does not brake on a path. */
-static void drives_are_taken_only_where_the_motion_ends_at_once(void **st)
+/* A single axis in trouble leaves others that can brake; no other fault does. */
+static void power_is_taken_after_braking_only_from_axes_in_trouble(void **st)
 {
 	(void)st;
 	EACH_FAULT(f)
 		if (fault_table[f].disables)
-			assert_int_equal(fault_table[f].motion, FAULT_ENDS);
+			assert_int_equal(fault_table[f].motion,
+					 f == FAULT_DRIVE ||
+					 f == FAULT_FOLLOWING ? FAULT_BRAKES :
+								FAULT_ENDS);
 }
 
 /* -- The latch ------------------------------------------------------------- */
@@ -147,7 +149,7 @@ int main(void)
 		cmocka_unit_test(every_fault_has_words),
 		cmocka_unit_test(no_two_faults_have_the_same_words),
 		cmocka_unit_test(names_and_their_list_fit_where_they_go),
-		cmocka_unit_test(drives_are_taken_only_where_the_motion_ends_at_once),
+		cmocka_unit_test(power_is_taken_after_braking_only_from_axes_in_trouble),
 		cmocka_unit_test(the_first_is_kept_and_the_worst_is_known),
 		cmocka_unit_test(one_that_is_latched_is_not_fresh_again),
 		cmocka_unit_test(what_is_seen_counts_by_what_the_machine_does),

@@ -10,7 +10,7 @@
 #include "fault.h"
 #include "path/walk.h"
 
-/* -- The states --------------------------------------------------------------- */
+/* -- The states ----------------------------------------------------------- */
 
 /* In the order of the columns below. */
 enum where {
@@ -63,7 +63,7 @@ static enum cycle_answer ask(struct rig *r, enum cycle_verb v)
 static void to_probe(struct interp_build *b)
 {
 	const struct interp_build_word w = {
-		.line = 1, .rapid = true, .ends = INTERP_SEG_TOUCH,
+		.line = 1, .rapid = true, .ends = INTERP_SEG_PROBE,
 	};
 	double end[INTERP_NAXES] = { [INTERP_X] = -10 };
 	struct interp_diag d;
@@ -167,7 +167,7 @@ static void drive_to(struct rig *r, enum where w)
 	assert_int_equal(r->c.fault.first, FAULT_NONE);
 }
 
-/* -- The causes --------------------------------------------------------------- */
+/* -- The causes ----------------------------------------------------------- */
 
 enum kind {
 	STAYS,			/* not reset while it is there */
@@ -278,7 +278,7 @@ static void put(struct rig *r, const struct cause *k)
 	k->put(r);
 }
 
-/* -- What must hold whatever is asked for ------------------------------------------ */
+/* -- What must hold whatever is asked for --------------------------------- */
 
 static bool drives_may_have_power(const struct cause *k)
 {
@@ -310,7 +310,7 @@ static void stands_in_fault(struct rig *r, const struct cause *k)
 	assert_true(fault_is_latched(&r->c.fault, k->fault));
 }
 
-/* -- States and causes ------------------------------------------------------------- */
+/* -- States and causes ---------------------------------------------------- */
 
 static void check_reaction(struct rig *r, const struct cause *k, char want)
 {
@@ -348,7 +348,7 @@ static void each_cause_is_a_fault_where_the_table_says_so(void **st)
 	}
 }
 
-/* -- Verbs ------------------------------------------------------------------------- */
+/* -- Verbs ---------------------------------------------------------------- */
 
 static void into_fault(struct rig *r, enum where w, const struct cause *k)
 {
@@ -443,7 +443,7 @@ static void nothing_begins_where_motion_is_forbidden(void **st)
 			}
 }
 
-/* -- Two at a time ----------------------------------------------------------------- */
+/* -- Two at a time -------------------------------------------------------- */
 
 /* Whatever is latched already, and wherever it stands for that. */
 static void what_counts_always_is_heard_in_a_fault_too(void **st)
@@ -504,7 +504,7 @@ static void one_that_ends_the_motion_ends_braking_too(void **st)
 		}
 }
 
-/* -- Before the first spark ---------------------------------------------------------- */
+/* -- Before the first spark ----------------------------------------------- */
 
 static void no_spark_is_made_where_it_is_forbidden(void **st)
 {

@@ -34,7 +34,7 @@ static bool one_in(uint64_t *s, unsigned int n)
 	return rnd(s) % n == 0;
 }
 
-/* -- The machine ----------------------------------------------------------------- */
+/* -- The machine ---------------------------------------------------------- */
 
 static struct cycle_config any_config(uint64_t *s)
 {
@@ -81,7 +81,7 @@ static struct made cutting(void)
 static struct made probing(void)
 {
 	const struct interp_build_word w = {
-		.line = 1, .rapid = true, .ends = INTERP_SEG_TOUCH,
+		.line = 1, .rapid = true, .ends = INTERP_SEG_PROBE,
 	};
 	double end[INTERP_NAXES] = { [INTERP_X] = -3 };
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
@@ -92,7 +92,7 @@ static struct made probing(void)
 	return finish(b);
 }
 
-/* -- What comes and goes ------------------------------------------------------------ */
+/* -- What comes and goes -------------------------------------------------- */
 
 static void flip(bool *b, bool rest, uint64_t *s, unsigned int seldom)
 {
@@ -132,6 +132,7 @@ static void inputs(struct world *w, uint64_t *s)
 	else if (one_in(s, 2500))
 		in->trouble = (enum io_trouble)(rnd(s) % IO_NTROUBLES);
 	in->axes_off = !w->r.out.enable || one_in(s, 2000);
+	flip(&in->steers, true, s, 500);
 	in->starting = one_in(s, 1000);
 }
 
@@ -162,7 +163,7 @@ static void load(struct world *w, uint64_t *s)
 	cycle_load(&w->r.c, w->job ? &w->r.m.p : &w->probing.p);
 }
 
-/* -- What must hold: told from the inputs alone -------------------------------------- */
+/* -- What must hold: told from the inputs alone --------------------------- */
 
 struct forbidden {
 	uint64_t always;		/* bits that must be latched */
@@ -203,10 +204,23 @@ static void check_sparks(const struct world *w, const struct forbidden *f)
 	assert_false(w->r.c.config.dry_run);
 }
 
+/* Those that end a motion at once. */
+static uint64_t ending(const struct world *w, const struct forbidden *f)
+{
+	const uint64_t brake = fault_bit(FAULT_FIRE) |
+			       (w->r.in.steers ? fault_bit(FAULT_DRIVE) |
+						 fault_bit(FAULT_FOLLOWING) :
+						 0);
+
+	return f->always & ~brake;
+}
+
 static void check_drives(const struct world *w, const struct forbidden *f)
 {
 	enabled += w->r.out.enable;
-	if (f->always & ~fault_bit(FAULT_FIRE))
+	if (ending(w, f) ||
+	    (f->always & ~fault_bit(FAULT_FIRE) &&
+	     w->r.c.state == STATE_FAULT))
 		assert_false(w->r.out.enable);
 }
 
@@ -217,7 +231,7 @@ static void check_motion(struct world *w, const struct forbidden *f)
 
 	moved += !stands;
 	w->forbidden = f->motion ? w->forbidden + 1 : 0;
-	if (w->forbidden > BRAKES_IN || f->always & ~fault_bit(FAULT_FIRE))
+	if (w->forbidden > BRAKES_IN || ending(w, f))
 		assert_true(stands);
 }
 
@@ -251,7 +265,7 @@ static void check_latch(struct world *w, const struct forbidden *f)
 	w->latched_before = s->latched;
 }
 
-/* -- A machine's life ------------------------------------------------------------------ */
+/* -- A machine's life ----------------------------------------------------- */
 
 static void period(struct world *w, uint64_t *s)
 {

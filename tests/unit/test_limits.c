@@ -135,7 +135,7 @@ static void a_polyline_is_slowed_as_the_curve_it_follows(void **st)
 	}
 }
 
-/* -- Random programs, to the end and back --------------------------------------- */
+/* -- Random programs, to the end and back --------------------------------- */
 
 static void random_line(struct interp_build *b, uint64_t *s)
 {
@@ -399,7 +399,7 @@ static void an_override_is_a_factor_from_0_to_2(void **st)
 	}
 }
 
-/* -- A hold at every cycle ------------------------------------------------------- */
+/* -- A hold at every cycle ------------------------------------------------ */
 
 static void a_hold_at_every_cycle_of_a_thousand_lines_stops_where_it_says(void **st)
 {
@@ -435,7 +435,7 @@ static void a_hold_at_every_cycle_of_a_thousand_lines_stops_where_it_says(void *
 	rig_free(&r);
 }
 
-/* -- A million segments ----------------------------------------------------------- */
+/* -- A million segments --------------------------------------------------- */
 
 #define MILLION	1000000
 #define PITCH	0.00019
@@ -492,7 +492,7 @@ static void a_million_nodes_on_a_line_cost_no_time_and_no_pulse(void **st)
 	assert_in_range(back, one_back - 2, one_back + 2);
 }
 
-/* -- Chains that lie ---------------------------------------------------------------- */
+/* -- Chains that lie ------------------------------------------------------ */
 
 static void spoil(struct interp_seg *g, uint64_t *s)
 {

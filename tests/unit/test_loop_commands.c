@@ -284,7 +284,7 @@ static void no_verb_is_no_command(void **state)
 	assert_int_equal(x_after(d, 100), 0);
 }
 
-/* -- A start that is refused ---------------------------------------------------- */
+/* -- A start that is refused ---------------------------------------------- */
 
 struct cause {
 	const char *what;

@@ -117,7 +117,7 @@ static void an_e_stop_ends_it_at_once(void **state)
 	assert_memory_equal(b.before, b.out.target, sizeof(b.before));
 }
 
-/* -- Limit switches ---------------------------------------------------------- */
+/* -- Limit switches ------------------------------------------------------- */
 
 static void a_limit_switch_stops_at_once_and_lets_away_alone(void **state)
 {
@@ -180,7 +180,7 @@ static void held_on_a_switch_only_the_way_away_is_gone(void **state)
 	rig_free(&r);
 }
 
-/* -- Steps ------------------------------------------------------------------- */
+/* -- Steps ---------------------------------------------------------------- */
 
 /* Nodes at 1, 3, 5 and 7 mm; an action at 5. */
 static void begin_nodes(struct rig *r, const struct cycle_config *k)

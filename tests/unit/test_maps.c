@@ -116,7 +116,7 @@ static void more_points_than_there_is_room_for_are_refused(void **state)
 	assert_non_null(strstr(d.found, "x.pitch:129:1: too many"));
 }
 
-/* -- [geometry] maps ----------------------------------------------------------- */
+/* -- [geometry] maps ------------------------------------------------------ */
 
 static int read_maps(const char *machine, const char *maps,
 		     struct machine_config *ret, struct interp_diag *diag)

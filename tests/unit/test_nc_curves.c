@@ -141,7 +141,7 @@ static void fanucs_curve_may_have_any_axes(void **state)
 	nc_done(&n);
 }
 
-/* -- Refusals ---------------------------------------------------------------- */
+/* -- Refusals ------------------------------------------------------------- */
 
 static const struct nc_refusal refusals[] = {
 	{ "F1\nG6.2 P11 K0 X1",	2, 6,	"order 11", "2 to 10" },

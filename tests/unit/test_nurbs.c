@@ -150,7 +150,7 @@ static void a_circle_is_round_and_as_long_as_it_is(void **state)
 			 100 * M_PI) < 1e-9);
 }
 
-/* -- Edits ------------------------------------------------------------------- */
+/* -- Edits ---------------------------------------------------------------- */
 
 struct made_curve {
 	struct interp_nurbs_own own;
@@ -256,7 +256,7 @@ static void a_degree_more_is_the_same_curve(void **state)
 	}
 }
 
-/* -- Lengths ----------------------------------------------------------------- */
+/* -- Lengths -------------------------------------------------------------- */
 
 static void stops_lead_to_their_places_and_never_back(void **state)
 {
@@ -328,7 +328,7 @@ static void stops_pass_a_cusp(void **state)
 			{ 80 }, { 1000 }, { 20000 } }) == 0);
 }
 
-/* -- Refusals ---------------------------------------------------------------- */
+/* -- Refusals ------------------------------------------------------------- */
 
 static void what_is_no_curve_is_refused(void **state)
 {

@@ -10,7 +10,7 @@
 
 #define PULSE	0.001
 
-/* -- Walking ------------------------------------------------------------------ */
+/* -- Walking -------------------------------------------------------------- */
 
 struct walked {
 	int32_t (*at)[INTERP_NAXES];
@@ -63,7 +63,7 @@ static double radius(const int32_t *p)
 	return hypot(p[0], p[1]) * PULSE;
 }
 
-/* -- Shapes -------------------------------------------------------------------- */
+/* -- Shapes --------------------------------------------------------------- */
 
 struct shape {
 	const char *text;		/* from Z1, or the plane's */
@@ -294,7 +294,7 @@ static void c_turns_as_it_sinks_and_back_as_it_leaves(void **st)
 	nc_done(&n);
 }
 
-/* -- Ways out --------------------------------------------------------------------- */
+/* -- Ways out ------------------------------------------------------------- */
 
 /*
  * A workpiece of columns, each cut down to the lowest place the electrode had
@@ -490,7 +490,7 @@ static void a_time_goes_round_the_whole_cycle(void **st)
 	nc_done(&n);
 }
 
-/* -- Refusals ---------------------------------------------------------------------- */
+/* -- Refusals ------------------------------------------------------------- */
 
 static const struct nc_refusal refusals[] = {
 	{ "G130 Z-1 R0 F5",	1, 10,	"radius 0", "a pulse" },

@@ -27,7 +27,7 @@ static double draw(double lo, double hi)
 	return lo + (hi - lo) * (double)(seed >> 11) * 0x1p-53;
 }
 
-/* -- Triangles ---------------------------------------------------------------- */
+/* -- Triangles ------------------------------------------------------------ */
 
 static void draw_triangle(struct triangle *t, double size)
 {
@@ -97,7 +97,7 @@ static void triangle_distance_is_exact(void **state)
 	assert_true(met > 0);
 }
 
-/* -- Bodies ------------------------------------------------------------------- */
+/* -- Bodies --------------------------------------------------------------- */
 
 struct body {
 	struct mesh m;
@@ -212,6 +212,15 @@ static double brute(const struct scene *s, const struct pose *pose)
 	return least;
 }
 
+static double along(const struct box *b, int axis, const double d[3])
+{
+	double sum = 0;
+
+	for (int k = 0; k < 3; k++)
+		sum += (double)b->axis[k][axis] * d[k];
+	return sum;
+}
+
 static void every_box_holds_its_triangles(void **state)
 {
 	struct body b;
@@ -219,18 +228,16 @@ static void every_box_holds_its_triangles(void **state)
 	(void)state;
 	make_lump(&b, 20, 10);
 	for (uint32_t i = 0; i < b.t.nnodes; i++) {
-		const struct tree_node *x = &b.t.node[i];
+		const struct box *x = &b.t.node[i];
 
 		for (uint32_t k = x->first; k < x->first + x->n; k++)
 			for (int c = 0; c < 3; c++)
 				for (int a = 0; a < 3; a++) {
 					double d[3];
 
-					v_sub(b.t.tri[k].at[c], x->box.centre,
-					      d);
-					assert_true(fabs(v_dot(d,
-						x->box.axis.m[a])) <=
-						x->box.half[a]);
+					v_sub(b.t.tri[k].at[c], x->centre, d);
+					assert_true(fabs(along(x, a, d)) <=
+						    (double)x->half[a]);
 				}
 	}
 	drop(&b);
@@ -282,7 +289,7 @@ static void pose_is_that_of_the_kinematics(void **state)
 	}
 }
 
-/* -- Blocks ------------------------------------------------------------------- */
+/* -- Blocks --------------------------------------------------------------- */
 
 static double least_sampled(const struct scene *s, const struct block *b,
 			    int n)
@@ -343,35 +350,78 @@ static void no_point_moves_more_than_bounded(void **state)
 	}
 }
 
-static void a_step_keeps_what_it_promises(void **state)
+/* A point of the box, often on its faces, edges and corners. */
+static void draw_in(const struct box *b, double ret[3])
 {
-	int stepped = 0;
+	for (int k = 0; k < 3; k++)
+		ret[k] = b->centre[k];
+	for (int i = 0; i < 3; i++) {
+		const double s = (double)b->half[i] * fmin(fmax(draw(-2, 2),
+								-1), 1);
+
+		for (int k = 0; k < 3; k++)
+			ret[k] += s * (double)b->axis[k][i];
+	}
+}
+
+/* Far from the origin as well, where single precision has little left. */
+static void boxes_stay_apart_as_long_as_they_say(void **state)
+{
+	int apart = 0, held = 0;
 
 	(void)state;
-	for (int i = 0; i < 16 * runs; i++) {
-		double from[INTERP_NAXES], to[INTERP_NAXES], x, least;
-		struct near_step step = { .keep_mm = 0.3, .refuse_mm = 0.302,
-					  .until = 1 };
-		struct near_pair pair = { 0 };
+	for (int i = 0; i < 40 * runs; i++) {
+		const double far = i % 2 ? 0 : 4e4;
+		double from[INTERP_NAXES], to[INTERP_NAXES];
+		struct box_keep keep = { .mm = 0.3f, .enough = 1 };
+		struct box_placed now;
+		struct box_pose at;
 		struct pose_rate rate;
 		struct pose pose;
 		struct scene s;
-		struct block b, part;
+		struct block b;
+		float x;
 
 		make_scene(&s, i);
 		draw_axes(from, 100);
 		draw_axes(to, 100);
+		from[INTERP_X] += far;
+		to[INTERP_X] += far;
 		block_init(&b, &s.motion, from, to);
 		block_pose(&b, 0, &pose, &rate);
-		x = near_step(&s.bodies, &pose, &rate, &step, &pair);
-		block_at(&b, x, to);
-		block_init(&part, &s.motion, from, to);
-		least = x > 0 ? least_sampled(&s, &part, 20) : 1;
-		assert_true(least >= 0.3 - 1e-9);
-		stepped += x > 0;
+		near_pose(&pose, &rate, &at);
+		keep.accel = (float)b.accel_mm;
+		for (int k = 0; k < 60; k++) {
+			struct box part = s.part.t.node[k];
+			const struct box *tool = &s.tool.t.node[k * 7 % 60];
+			double d;
+
+			part.centre[0] += far;
+			box_move(tool, &at, &now);
+			d = (double)box_distance(&part, &now.at);
+			x = box_time(&part, &now, &keep);
+			apart += d > 0;
+			held += x > 0;
+			for (int n = 0; n < 30; n++) {
+				double p[3], q[3], moved[3];
+				struct pose then;
+
+				draw_in(&part, p);
+				draw_in(tool, q);
+				rot_apply(&pose.r, q, moved);
+				v_add(moved, pose.t, moved);
+				assert_true(v_distance(p, moved) >= d);
+				block_pose(&b, (double)x * draw(0, 1), &then,
+					   NULL);
+				rot_apply(&then.r, q, moved);
+				v_add(moved, then.t, moved);
+				assert_true(x <= 0 ||
+					    v_distance(p, moved) >= 0.3);
+			}
+		}
 		drop_scene(&s);
 	}
-	assert_true(stepped > 2);
+	assert_true(apart > 500 && held > 500);
 }
 
 /* Of blocks that pass near: proved means no sample is nearer; the proved
@@ -416,6 +466,46 @@ static void what_is_proved_no_pose_breaks(void **state)
 		drop_scene(&s);
 	}
 	assert_true(proved > 0 && refused > 0);
+}
+
+/* More is asked for than the end pose has, but not there. */
+static void a_clearance_that_falls_is_kept(void **state)
+{
+	int proved = 0, by_fall = 0;
+
+	(void)state;
+	for (int i = 0; i < 40 * runs; i++) {
+		double from[INTERP_NAXES], to[INTERP_NAXES], end;
+		struct near_pair pair = { 0 };
+		struct proof p = { 0 };
+		struct clearance c, whole;
+		struct scene s;
+		struct pose pose;
+		struct block b;
+		bool ok;
+
+		make_scene(&s, i);
+		draw_axes(from, 60);
+		draw_axes(to, 60);
+		for (int k = 0; k < INTERP_NAXES; k++)
+			from[k] = to[k] + (from[k] - to[k]) * 0.15;
+		motion_pose(&s.motion, to, &pose);
+		end = near_distance(&s.bodies, &pose, &pair);
+		clearance_init(&c, 1.05 * end);
+		whole = c;
+		clearance_end(&c, &s.tool.m, &pose, 5, 0.5 * end);
+		block_init(&b, &s.motion, from, to);
+		ok = end > 0.1 && prove_block(&s.bodies, &b, &c, &p);
+		for (int k = 0; k <= 60 && ok; k++) {
+			block_pose(&b, k / 60.0, &pose, NULL);
+			assert_true(near_distance(&s.bodies, &pose, &pair) >=
+				    clearance_at(&c, &pose));
+		}
+		proved += ok;
+		by_fall += ok && !prove_block(&s.bodies, &b, &whole, &p);
+		drop_scene(&s);
+	}
+	assert_true(proved > 0 && by_fall > 0);
 }
 
 static void what_a_pose_refutes_is_not_proved(void **state)
@@ -489,8 +579,9 @@ int main(void)
 		cmocka_unit_test(distance_is_that_of_all_pairs),
 		cmocka_unit_test(pose_is_that_of_the_kinematics),
 		cmocka_unit_test(no_point_moves_more_than_bounded),
-		cmocka_unit_test(a_step_keeps_what_it_promises),
+		cmocka_unit_test(boxes_stay_apart_as_long_as_they_say),
 		cmocka_unit_test(what_is_proved_no_pose_breaks),
+		cmocka_unit_test(a_clearance_that_falls_is_kept),
 		cmocka_unit_test(what_a_pose_refutes_is_not_proved),
 		cmocka_unit_test(a_thin_wall_between_samples_is_met),
 	};

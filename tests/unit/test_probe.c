@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_touch.c - segments that end where the machine says
+ * test_probe.c - segments that end where the machine says
  *
  * The work is walls at scripted places: contact where an axis is at one or
  * beyond it.
@@ -76,26 +76,26 @@ static void feel_until(struct world *w, enum cycle_state s, int n)
 	assert_string_equal(state_duty[w->r.c.state].name, state_duty[s].name);
 }
 
-static struct interp_build *one_touch(double by_mm)
+static struct interp_build *one_probe(double by_mm)
 {
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 
-	x_by(b, by_mm, INTERP_SEG_TOUCH);
+	x_by(b, by_mm, INTERP_SEG_PROBE);
 	x_by(b, by_mm < 0 ? 5 : -5, 0);
 	return b;
 }
 
-/* -- Where it ends -------------------------------------------------------------- */
+/* -- Where it ends -------------------------------------------------------- */
 
 /* The contact that counts is met at 0.5 um a cycle: on the pulse. */
-static void touch_somewhere(uint64_t *s, bool by_input)
+static void probe_somewhere(uint64_t *s, bool by_input)
 {
 	const struct cycle_config k = probe_config();
 	const int sign = rnd(s) % 2 ? 1 : -1;
 	const int32_t wall = sign * (int32_t)(100 + rnd(s) % 2000);
 	struct world w;
 
-	load(&w, one_touch(sign * 10), &k);
+	load(&w, one_probe(sign * 10), &k);
 	w.by_input = by_input;
 	*(sign > 0 ? &w.high : &w.low) = wall;
 	feel_until(&w, STATE_IDLE, 20000);
@@ -112,7 +112,7 @@ static void test_what_follows_counts_from_the_contact(void **state)
 
 	(void)state;
 	for (int i = 0; i < 40; i++)
-		touch_somewhere(&s, i % 2);
+		probe_somewhere(&s, i % 2);
 }
 
 static void test_the_axes_never_step_where_the_rest_is_left_out(void **state)
@@ -122,7 +122,7 @@ static void test_the_axes_never_step_where_the_rest_is_left_out(void **state)
 	int32_t was = 0;
 
 	(void)state;
-	load(&w, one_touch(-100), &k);
+	load(&w, one_probe(-100), &k);
 	w.low = -1500;
 	while (w.r.c.state != STATE_IDLE) {
 		feel(&w);
@@ -143,7 +143,7 @@ static void test_it_goes_no_deeper_than_a_cycle_at_its_feed(void **state)
 
 	(void)state;
 	k.probe.feed_mm_s = 20;
-	load(&w, one_touch(-10), &k);
+	load(&w, one_probe(-10), &k);
 	w.low = -3003;
 	while (w.r.c.state != STATE_IDLE) {
 		feel(&w);
@@ -163,23 +163,23 @@ static void test_without_a_way_back_the_first_contact_counts(void **state)
 
 	(void)state;
 	k.probe.back_mm = 0;
-	load(&w, one_touch(-10), &k);
+	load(&w, one_probe(-10), &k);
 	w.low = -2000;
 	feel_until(&w, STATE_IDLE, 20000);
 	assert_in_range(-w.r.c.probe.found[0][INTERP_X], 2000, 2001);
 	rig_free(&w.r);
 }
 
-/* -- Half and limit ---------------------------------------------------------------- */
+/* -- Half and limit ------------------------------------------------------- */
 
-static struct interp_build *two_touches(bool first_low)
+static struct interp_build *two_probes(bool first_low)
 {
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	const double way = first_low ? -100 : 100;
 
-	x_by(b, way, INTERP_SEG_TOUCH);
+	x_by(b, way, INTERP_SEG_PROBE);
 	x_by(b, -way / 1000, 0);
-	x_by(b, -way, INTERP_SEG_TOUCH);
+	x_by(b, -way, INTERP_SEG_PROBE);
 	x_by(b, 100, INTERP_SEG_HALF);
 	x_by(b, -100, INTERP_SEG_HALF);
 	return b;
@@ -194,7 +194,7 @@ static void test_half_is_the_middle_between_two_contacts(void **state)
 	for (int i = 0; i < 20; i++) {
 		struct world w;
 
-		load(&w, two_touches(i % 2), &k);
+		load(&w, two_probes(i % 2), &k);
 		w.low = -(int32_t)(200 + rnd(&s) % 1500);
 		w.high = (int32_t)(200 + rnd(&s) % 1500);
 		feel_until(&w, STATE_IDLE, 30000);
@@ -212,7 +212,7 @@ static void test_a_half_without_two_contacts_is_a_fault(void **state)
 	struct world w;
 
 	(void)state;
-	x_by(b, -10, INTERP_SEG_TOUCH);
+	x_by(b, -10, INTERP_SEG_PROBE);
 	x_by(b, 0.5, 0);
 	x_by(b, 10, INTERP_SEG_HALF);
 	load(&w, b, &k);
@@ -229,7 +229,7 @@ static void test_something_in_the_way_of_a_half_is_a_contact(void **state)
 	struct world w;
 
 	(void)state;
-	load(&w, two_touches(true), &k);
+	load(&w, two_probes(true), &k);
 	w.low = -1500;
 	w.high = 1500;
 	while (w.r.c.probe.phase != PROBE_GO ||
@@ -252,7 +252,7 @@ static void test_a_limit_ends_where_the_travel_does(void **state)
 		struct world w;
 
 		/* Somewhere else than the program thinks. */
-		x_by(b, -100, INTERP_SEG_TOUCH);
+		x_by(b, -100, INTERP_SEG_PROBE);
 		x_by(b, 1, 0);
 		x_by(b, sign * 400, INTERP_SEG_LIMIT);
 		load(&w, b, &k);
@@ -267,7 +267,7 @@ static void test_a_limit_ends_where_the_travel_does(void **state)
 	}
 }
 
-/* -- Faults ------------------------------------------------------------------------- */
+/* -- Faults --------------------------------------------------------------- */
 
 static void test_no_contact_by_its_end_is_a_fault(void **state)
 {
@@ -275,7 +275,7 @@ static void test_no_contact_by_its_end_is_a_fault(void **state)
 	struct world w;
 
 	(void)state;
-	load(&w, one_touch(-2), &k);
+	load(&w, one_probe(-2), &k);
 	feel_until(&w, STATE_FAULT, 20000);
 	assert_int_equal(w.r.c.fault.first, FAULT_NO_CONTACT);
 	assert_string_equal(fault_name(w.r.c.fault.first), "no-contact");
@@ -300,7 +300,7 @@ static void test_no_contact_by_the_travels_end_is_a_fault(void **state)
 
 	(void)state;
 	k.travel_min[INTERP_X] = -1500;
-	load(&w, one_touch(-100), &k);
+	load(&w, one_probe(-100), &k);
 	feel_until(&w, STATE_FAULT, 20000);
 	assert_int_equal(w.r.c.fault.first, FAULT_NO_CONTACT);
 	assert_int_equal(w.r.out.target[INTERP_X], -1500);
@@ -313,7 +313,7 @@ static void test_contact_to_begin_with_is_a_fault(void **state)
 	struct world w;
 
 	(void)state;
-	load(&w, one_touch(-2), &k);
+	load(&w, one_probe(-2), &k);
 	w.low = 0;
 	feel_until(&w, STATE_FAULT, 20000);
 	assert_int_equal(w.r.c.fault.first, FAULT_CONTACT);
@@ -327,7 +327,7 @@ static void test_a_contact_that_does_not_open_is_a_fault(void **state)
 	struct world w;
 
 	(void)state;
-	load(&w, one_touch(-2), &k);
+	load(&w, one_probe(-2), &k);
 	w.low = -1000;
 	while (w.r.c.probe.phase != PROBE_BACK)
 		feel(&w);
@@ -344,7 +344,7 @@ static void test_feeling_blindly_is_a_fault(void **state)
 	struct world w;
 
 	(void)state;
-	load(&w, one_touch(-2), &k);
+	load(&w, one_probe(-2), &k);
 	for (int i = 0; i < 300; i++)
 		feel(&w);
 	w.r.in.gap_valid = false;
@@ -360,7 +360,7 @@ static void test_soft_limits_are_of_the_axes_not_of_the_program(void **state)
 	struct world w;
 
 	(void)state;
-	x_by(b, -100, INTERP_SEG_TOUCH);	/* ends at -1, is called -100 */
+	x_by(b, -100, INTERP_SEG_PROBE);	/* ends at -1, is called -100 */
 	x_by(b, 300, 0);			/* to 200, where it is 299 */
 	load(&w, b, &k);
 	w.low = -1000;
@@ -370,14 +370,14 @@ static void test_soft_limits_are_of_the_axes_not_of_the_program(void **state)
 	rig_free(&w.r);
 }
 
-/* -- Interruptions --------------------------------------------------------------------- */
+/* -- Interruptions -------------------------------------------------------- */
 
 static void hold_after(int cycles, uint64_t *s)
 {
 	const struct cycle_config k = probe_config();
 	struct world w;
 
-	load(&w, two_touches(true), &k);
+	load(&w, two_probes(true), &k);
 	w.low = -(int32_t)(200 + rnd(s) % 1500);
 	w.high = 800;
 	for (int i = 0; i < cycles && w.r.c.state != STATE_IDLE; i++)
@@ -410,7 +410,7 @@ static void test_an_estop_stands_at_once(void **state)
 	struct world w;
 
 	(void)state;
-	load(&w, one_touch(-10), &k);
+	load(&w, one_probe(-10), &k);
 	w.low = -3000;
 	for (int i = 0; i < 500; i++)
 		feel(&w);
@@ -427,13 +427,13 @@ static void test_an_estop_stands_at_once(void **state)
 	rig_free(&w.r);
 }
 
-static void test_no_way_back_leads_over_a_touch(void **state)
+static void test_no_way_back_leads_over_a_contact(void **state)
 {
 	const struct cycle_config k = probe_config();
 	struct world w;
 
 	(void)state;
-	load(&w, one_touch(-10), &k);
+	load(&w, one_probe(-10), &k);
 	w.low = -500;
 	while (w.r.out.target[INTERP_X] < 1000)
 		feel(&w);
@@ -451,16 +451,16 @@ static void test_no_way_back_leads_over_a_touch(void **state)
 }
 
 /* A cut before it and a cut behind it; M3 is on all the time. */
-static void test_a_cut_leads_into_a_touch_and_out_of_it(void **state)
+static void test_a_cut_leads_into_a_probe_and_out_of_it(void **state)
 {
 	const struct cycle_config k = probe_config();
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	struct world w;
-	int touched = 0;
+	int sensed = 0;
 
 	(void)state;
 	cut_to(b, -1);
-	x_by(b, -10, INTERP_SEG_TOUCH);
+	x_by(b, -10, INTERP_SEG_PROBE);
 	x_by(b, 1, 0);
 	cut_to(b, -2);
 	load(&w, b, &k);
@@ -468,34 +468,34 @@ static void test_a_cut_leads_into_a_touch_and_out_of_it(void **state)
 	for (int i = 0; i < 60000 && w.r.c.state != STATE_IDLE; i++) {
 		const bool sense = w.r.out.sense;
 
-		touched += sense;
+		sensed += sense;
 		step(&w.r, sense ? (against(&w) ? SHORTED_V : OPEN_V) :
 			   w.r.out.power ? SPARKING_V : OPEN_V);
 		if (w.r.c.state == STATE_PROBE)
 			assert_int_equal(w.r.out.target[INTERP_Z], -1000);
 	}
 	assert_int_equal(w.r.c.outcome, OUTCOME_DONE);
-	assert_true(touched > SETTLE);
+	assert_true(sensed > SETTLE);
 	assert_int_equal(w.r.out.target[INTERP_X], 600);
 	assert_int_equal(w.r.out.target[INTERP_Z], -2000);
 	rig_free(&w.r);
 }
 
-static void test_a_dry_run_touches_nothing_and_goes_nowhere(void **state)
+static void test_a_dry_run_probes_nothing_and_goes_nowhere(void **state)
 {
 	struct cycle_config k = probe_config();
 	struct world w;
 
 	(void)state;
 	k.dry_run = true;
-	load(&w, one_touch(-100), &k);
+	load(&w, one_probe(-100), &k);
 	feel_until(&w, STATE_IDLE, 5000);
 	assert_int_equal(w.r.c.outcome, OUTCOME_DONE);
 	assert_int_equal(w.r.out.target[INTERP_X], 5000);
 	rig_free(&w.r);
 }
 
-/* -- Programs that lie ------------------------------------------------------------------- */
+/* -- Programs that lie ---------------------------------------------------- */
 
 static void test_an_arc_cannot_end_at_contact(void **state)
 {
@@ -509,15 +509,15 @@ static void test_an_arc_cannot_end_at_contact(void **state)
 	m = finish(b);
 	seg = m.p.segs[1];
 	assert_true(interp_program_seg_ok(&m.p, 1, &seg));
-	seg.flags |= INTERP_SEG_TOUCH;
+	seg.flags |= INTERP_SEG_PROBE;
 	assert_false(interp_program_seg_ok(&m.p, 1, &seg));
 	unmake(&m);
 }
 
-static void test_a_touch_along_two_axes_is_refused(void **state)
+static void test_a_probe_along_two_axes_is_refused(void **state)
 {
 	const struct interp_build_word w = {
-		.line = 1, .rapid = true, .ends = INTERP_SEG_TOUCH,
+		.line = 1, .rapid = true, .ends = INTERP_SEG_PROBE,
 	};
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	const double end[INTERP_NAXES] = { 1, 1 };
@@ -553,12 +553,12 @@ int main(void)
 			test_soft_limits_are_of_the_axes_not_of_the_program),
 		cmocka_unit_test(test_a_hold_anywhere_in_it_changes_nothing),
 		cmocka_unit_test(test_an_estop_stands_at_once),
-		cmocka_unit_test(test_no_way_back_leads_over_a_touch),
-		cmocka_unit_test(test_a_cut_leads_into_a_touch_and_out_of_it),
+		cmocka_unit_test(test_no_way_back_leads_over_a_contact),
+		cmocka_unit_test(test_a_cut_leads_into_a_probe_and_out_of_it),
 		cmocka_unit_test(
-			test_a_dry_run_touches_nothing_and_goes_nowhere),
+			test_a_dry_run_probes_nothing_and_goes_nowhere),
 		cmocka_unit_test(test_an_arc_cannot_end_at_contact),
-		cmocka_unit_test(test_a_touch_along_two_axes_is_refused),
+		cmocka_unit_test(test_a_probe_along_two_axes_is_refused),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -17,7 +17,7 @@ static void begin_cavity(struct world *w)
 	go_on(w);
 }
 
-/* -- The axes ------------------------------------------------------------------ */
+/* -- The axes ------------------------------------------------------------- */
 
 static void wear_z(struct world *w)
 {
@@ -522,7 +522,7 @@ static void places_of_other_drives_are_not_believed(void **st)
 	}
 }
 
-/* -- The job ------------------------------------------------------------------ */
+/* -- The job -------------------------------------------------------------- */
 
 static void what_was_set_is_in_force_again(void **st)
 {

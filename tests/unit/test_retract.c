@@ -226,10 +226,83 @@ static void a_broken_wire_is_held_back_from_the_break_and_cut_on_there(void **st
 		tell(&r, CYCLE_RESET);
 		assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
 		until(&r, STATE_APPROACH, OPEN_V, 10000);
+		/* Positioned so far: nothing sparks where it is cut. */
+		assert_near(place(&r), fmax(fmax(at - ways[i].mm, 1),
+					    ways[i].end_mm), 0.003);
 		until(&r, STATE_ERODE, SPARKING_V, 20000);
 		assert_near(place(&r), at, 0.003);
 		rig_free(&r);
 	}
+}
+
+/* Broken at 3, led back to the motion's start at 2 and threaded there. */
+static void begin_again(struct rig *r)
+{
+	struct cycle_config k = wired();
+
+	k.gap.wire_retreat_to = RETREAT_MOTION;
+	cut_two_motions(r, &k, 3);
+	r->in.wire_broken = true;
+	until(r, STATE_FAULT, SPARKING_V, 20000);
+	r->in.wire_broken = false;
+	tell(r, CYCLE_RESET);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
+static void the_way_forward_from_a_break_is_positioned_and_then_cut(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin_again(&r);
+	for (int n = 0; n < 20000 && r.c.state != STATE_APPROACH; n++) {
+		step(&r, OPEN_V);
+		assert_false(r.out.power && place(&r) < 2.69);
+	}
+	assert_near(place(&r), 2.7, 0.003);
+	/* A retract from there on does not begin it anew. */
+	until(&r, STATE_ERODE, SPARKING_V, 20000);
+	until(&r, STATE_RETRACT, SHORTED_V, 10);
+	until(&r, STATE_APPROACH, OPEN_V, 1000);
+	step(&r, OPEN_V);
+	assert_true(r.out.power);
+	rig_free(&r);
+}
+
+/* Stress closes a kerf: where the wire touches, it has to be cut again. */
+static void a_kerf_that_has_closed_is_cut_again_from_there(void **st)
+{
+	struct rig r;
+	double met;
+
+	(void)st;
+	begin_again(&r);
+	for (int n = 0; n < 20000 && place(&r) < 2.4; n++)
+		step(&r, OPEN_V);
+	assert_int_equal(r.c.state, STATE_TRAVEL);
+	met = place(&r);
+	until(&r, STATE_RETRACT, SHORTED_V, 10);
+	until(&r, STATE_APPROACH, OPEN_V, 1000);
+	assert_true(place(&r) < met);
+	until(&r, STATE_ERODE, r.c.gap.servo_v, 1000);
+	assert_true(r.out.power && place(&r) < 2.69);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	rig_free(&r);
+}
+
+static void a_wire_lost_on_the_way_forward_is_met_at_once(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin_again(&r);
+	for (int n = 0; n < 20000 && place(&r) < 2.4; n++)
+		step(&r, OPEN_V);
+	r.in.wire_broken = true;
+	until(&r, STATE_FAULT, OPEN_V, 1000);
+	assert_int_equal(r.c.fault.first, FAULT_WIRE_BROKEN);
+	assert_true(place(&r) < 2.69);
+	rig_free(&r);
 }
 
 static void a_sinker_has_no_wire_to_break(void **st)
@@ -274,6 +347,9 @@ int main(void)
 		cmocka_unit_test(erosion_between_retracts_counts_them_anew),
 		cmocka_unit_test(a_wire_retracts_by_micrometres_and_never_jumps),
 		cmocka_unit_test(a_broken_wire_is_held_back_from_the_break_and_cut_on_there),
+		cmocka_unit_test(the_way_forward_from_a_break_is_positioned_and_then_cut),
+		cmocka_unit_test(a_kerf_that_has_closed_is_cut_again_from_there),
+		cmocka_unit_test(a_wire_lost_on_the_way_forward_is_met_at_once),
 		cmocka_unit_test(a_sinker_has_no_wire_to_break),
 		cmocka_unit_test(an_e_stop_ends_a_retreat_at_once),
 	};

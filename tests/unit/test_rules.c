@@ -19,7 +19,7 @@ static const uint32_t mus[] = { 500, 1000, 1500, 2000, 3000 };
 
 #define COUNT(x)	(sizeof(x) / sizeof((x)[0]))
 
-/* -- One rule, one line ------------------------------------------------------ */
+/* -- One rule, one line --------------------------------------------------- */
 
 /* Only in a tube that has a path at all is |e| <= M promised. */
 static struct range promised(enum interp_strategy rule, int64_t a, int64_t b,
@@ -173,7 +173,7 @@ static void a_line_of_two_metres_is_walked_whole(void **st)
 	}
 }
 
-/* -- The fewest changes of axis ---------------------------------------------- */
+/* -- The fewest changes of axis ------------------------------------------- */
 
 #define DP_MAX	31
 
@@ -281,7 +281,7 @@ static void greedy_walks_its_runs_both_ways(void **st)
 	assert_true(w.i == 0 && w.sent == 0);
 }
 
-/* -- Figures that are known --------------------------------------------------- */
+/* -- Figures that are known ----------------------------------------------- */
 
 struct known {
 	int64_t a, b;
@@ -339,7 +339,7 @@ static void main_direction_changes_axis_as_often_as_point_by_point(void **st)
 	}
 }
 
-/* -- Through the builder and the cursor --------------------------------------- */
+/* -- Through the builder and the cursor ----------------------------------- */
 
 static const enum interp_strategy all[] = {
 	INTERP_SIMULTANEOUS, INTERP_POINT_BY_POINT, INTERP_CENTRED, INTERP_DDA,

@@ -171,6 +171,7 @@ static void what_moves_a_terminal_is_not_plain(void **state)
 	static const char *const bad[] = {
 		"\x1b[2J", "\x9b" "2J", "\xc2\x9b" "2J", "a\xe2\x80\xae" "b",
 		"\xe2\x81\xa6", "\xc2\x85", "\x7f", "\n", "\xef\xbb\xbf",
+		"\xe1\xa0\x8e", "\xe3\x85\xa4", "\xcd\x8f", "\xef\xbe\xa0",
 		"\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x80",
 	};
 	char text[64];

@@ -96,7 +96,7 @@ static void one_in_five_waits_is_counted_as_open_at_the_best_gap(void **st)
 	close_sim(&b);
 }
 
-/* -- Removal ----------------------------------------------------------------- */
+/* -- Removal -------------------------------------------------------------- */
 
 static double removal_at(const struct machine_config *k, double gap_mm)
 {
@@ -227,7 +227,7 @@ static void the_generator_answers_after_its_delay(void **st)
 	close_sim(&b);
 }
 
-/* -- Volume is conserved: removed = front * area ------------------------------- */
+/* -- Volume is conserved: removed = front * area -------------------------- */
 
 static void check_volume(int electrode, double expected_mm3)
 {
@@ -292,7 +292,7 @@ static void wear_grows_with_the_depth_and_with_the_polarity(void **st)
 	near(wear_after(true, &depth), 5 * 0.02 * depth, 1e-12);
 }
 
-/* -- Flushing -------------------------------------------------------------------- */
+/* -- Flushing ------------------------------------------------------------- */
 
 /* Debris left of 1 by one stroke up and down. */
 static double left_by(struct bench *b, double height_mm, double v_mm_s)
@@ -391,7 +391,7 @@ static void the_cavity_is_as_deep_as_z_has_been(void **st)
 	close_sim(&b);
 }
 
-/* -- Arcs ---------------------------------------------------------------------- */
+/* -- Arcs ----------------------------------------------------------------- */
 
 static float arcs_with(struct bench *b, double off_us)
 {
@@ -470,7 +470,7 @@ static void a_pause_or_a_lift_ends_an_arc(void **st)
 	assert_true(hot_after(0, NAN, false) > hot_after(1, NAN, false));
 }
 
-/* -- Axes ---------------------------------------------------------------------- */
+/* -- Axes ----------------------------------------------------------------- */
 
 static int periods_to_follow(double lag_s, double start_s)
 {
@@ -521,7 +521,7 @@ static void measured_places_scatter_about_the_true_ones(void **st)
 	close_sim(&b);
 }
 
-/* -- Wire ------------------------------------------------------------------------ */
+/* -- Wire ----------------------------------------------------------------- */
 
 static void a_wire_breaks_by_shorts_and_is_threaded_without_power(void **st)
 {
@@ -547,7 +547,7 @@ static void a_wire_breaks_by_shorts_and_is_threaded_without_power(void **st)
 	close_sim(&b);
 }
 
-/* -- Nothing breaks it -------------------------------------------------------------- */
+/* -- Nothing breaks it ---------------------------------------------------- */
 
 static double random_in(struct rng *r, double min, double max)
 {

@@ -113,7 +113,7 @@ static int end(struct store *s, uint32_t n, enum job_state state)
 	});
 }
 
-/* -- A life of two jobs, and what must be true of it whatever fails ---------- */
+/* -- A life of two jobs, and what must be true of it whatever fails ------- */
 
 struct life {
 	bool added[2];			/* acknowledged */
@@ -232,7 +232,7 @@ static void a_disk_that_fails_at_any_write_loses_no_truth(void **state)
 				fail_at(k, failures[i], heals != 0);
 }
 
-/* -- The host dies at every write -------------------------------------------- */
+/* -- The host dies at every write ----------------------------------------- */
 
 #define CUTS_MAX	400
 
@@ -287,7 +287,7 @@ static void a_host_that_dies_at_any_write_leaves_a_store(void **state)
 	snprintf(dir, sizeof(dir), "%s", base);
 }
 
-/* -- Other rows --------------------------------------------------------------- */
+/* -- Other rows ----------------------------------------------------------- */
 
 static void the_text_is_written_twice_at_most(void **state)
 {

@@ -98,7 +98,7 @@ static void an_iso_curve_lies_in_the_surface(void **state)
 	assert_int_equal(interp_surface_iso(&cylinder, 0, 0, &own), -ENOSPC);
 }
 
-/* -- Rigid bodies ------------------------------------------------------------ */
+/* -- Rigid bodies --------------------------------------------------------- */
 
 struct body {
 	double knots[8], move[16], turn[20];

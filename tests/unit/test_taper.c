@@ -188,7 +188,7 @@ static struct shown show(enum interp_strategy strategy, const struct pair *p,
 	return s;
 }
 
-/* -- Cones: concentric arcs ------------------------------------------------- */
+/* -- Cones: concentric arcs ----------------------------------------------- */
 
 static struct pair cone(double r1, double r2, double from, double sweep,
 			double phase)
@@ -303,7 +303,7 @@ static void random_cones_follow_end_exactly_and_retrace(void **st)
 		      worst);
 }
 
-/* -- Different contours, by share of length ---------------------------------- */
+/* -- Different contours, by share of length ------------------------------- */
 
 static struct pair different(const double a[3], const double b[3])
 {
@@ -399,7 +399,7 @@ static void a_contour_may_stand_while_the_other_moves(void **st)
 	assert_int_equal(show(INTERP_SIMULTANEOUS, &p, 0).kind, INTERP_ARC);
 }
 
-/* -- All at once ------------------------------------------------------------- */
+/* -- All at once ---------------------------------------------------------- */
 
 static void at_once_every_axis_is_within_half_a_pulse(void **st)
 {
@@ -420,7 +420,7 @@ static void at_once_every_axis_is_within_half_a_pulse(void **st)
 	}
 }
 
-/* -- Place, and distrust ------------------------------------------------------ */
+/* -- Place, and distrust -------------------------------------------------- */
 
 static void the_place_follows_the_length_on_x_y(void **st)
 {

@@ -71,6 +71,21 @@ static enum trust_cause send(struct world *w, const struct sent *s)
 	return cause;
 }
 
+/* Is what is not taken answered? */
+static bool is_answered(struct world *w, const struct sent *s, bool forged)
+{
+	const struct seal seal = { .key = s->by->public, .boot = s->boot,
+				   .count = s->count, .data = "x", .size = 1 };
+	struct trust_packet p = { .channel = CHANNEL, .from = "test" };
+	uint8_t packet[SEAL_BYTES + 1];
+	bool answer;
+
+	seal_make(packet, &seal, s->channel, s->by->secret);
+	packet[sizeof(packet) - 1] ^= forged;
+	trust_look(&w->t, &p, packet, sizeof(packet), w->now_us, &answer);
+	return answer;
+}
+
 static struct sent good(const struct world *w, int64_t count)
 {
 	return (struct sent) {
@@ -202,6 +217,64 @@ static void so_much_is_taken_of_a_viewer_and_all_of_an_operator(void **state)
 	assert_int_equal(send(w, &guest), TRUST_FINE);
 }
 
+/* What is answered to strangers, and to what was recorded of one key, is not
+ * taken from the answers to another key's first packet. */
+static void no_flood_uses_up_what_another_key_is_answered(void **state)
+{
+	struct world *w = *state;
+	struct sent mine = good(w, 1), guest = mine, stranger = mine;
+	struct keyfile nobody;
+	int n = 0;
+
+	keyfile_draw(&nobody);
+	add_other(w, ROLE_OPERATOR);
+	stranger.by = &nobody;
+	guest.by = &w->other;
+	mine.boot = guest.boot = 0;
+	for (int i = 0; i < 500; i++)
+		n += is_answered(w, &stranger, false);
+	assert_in_range(n, 1, 499);
+	assert_true(is_answered(w, &mine, false));
+	n = 0;
+	for (int i = 0; i < 2 * TRUST_AGAIN_A_S; i++)
+		n += is_answered(w, &guest, false);
+	assert_int_equal(n, TRUST_AGAIN_A_S);
+	assert_true(is_answered(w, &mine, false));
+	/* Nor is a signature that does not hold an answer of the key's. */
+	for (int i = 0; i < TRUST_AGAIN_A_S; i++)
+		assert_false(is_answered(w, &mine, true));
+	assert_true(is_answered(w, &mine, false));
+}
+
+/* A signature is as dear to look at if it is none. */
+static void so_many_signatures_of_strangers_are_computed(void **state)
+{
+	struct world *w = *state;
+	struct sent s = good(w, 1);
+	int n = 0;
+
+	s.by = &w->other;
+	s.channel = "EDM.other.COMMAND";
+	for (int i = 0; i < 500; i++)
+		n += send(w, &s) == TRUST_SIGNATURE;
+	assert_in_range(n, 1, 200);
+	assert_int_equal(send(w, &s), TRUST_KEY);
+}
+
+static void what_is_recorded_of_a_viewer_is_not_counted_as_his(void **state)
+{
+	struct world *w = *state;
+	struct sent s = good(w, 1);
+
+	add_other(w, ROLE_VIEWER);
+	s.by = &w->other;
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	for (int i = 0; i < 3 * TRUST_VIEWER_A_S; i++)
+		assert_int_equal(send(w, &s), TRUST_REPLAY);
+	s.count++;
+	assert_int_equal(send(w, &s), TRUST_FINE);
+}
+
 static void a_removed_key_is_out_at_once(void **state)
 {
 	struct world *w = *state;
@@ -240,6 +313,9 @@ int main(void)
 		T(a_crowd_lets_no_replay_through),
 		T(a_crowd_of_one_key_locks_no_other_out),
 		T(so_much_is_taken_of_a_viewer_and_all_of_an_operator),
+		T(no_flood_uses_up_what_another_key_is_answered),
+		T(so_many_signatures_of_strangers_are_computed),
+		T(what_is_recorded_of_a_viewer_is_not_counted_as_his),
 		T(a_removed_key_is_out_at_once),
 		T(no_two_starts_have_one_number),
 	};

@@ -18,6 +18,9 @@
 
 #define COUNTS_A_PULSE	2
 #define LOOK_US		20000		/* many rows in one look */
+#define COUNT_US	250		/* 2 mm/s of 0.5 um: no axis moves at
+					 * once, and the kernel keeps 16 edges
+					 * of a line */
 
 static const char *pull[2], *place_file;
 static int level[2], high[2], number[2];	/* encoder; step and dir */
@@ -42,6 +45,7 @@ static void count(int sign)
 	level[line] ^= 1;
 	put(pull[line], level[line] ? "pull-up" : "pull-down", 0);
 	place += sign;
+	usleep(COUNT_US);
 }
 
 static void move(int sign, long pulses)

@@ -182,13 +182,17 @@ DRIVES = {"X": (1, 524288, 5000), "Y": (2, -65536, 10000), "Z": (3, 10, 1),
           "A": (4, 3, 7), "B": (5, -1, 1), "C": (6, 1000, 360)}
 
 
-def drives(axes, tail="", absolute="yes", falls=""):
+def brake_of(axis, falls, braked):
+    return "none" if axis in falls else "line" if axis in braked else "free"
+
+
+def drives(axes, tail="", absolute="yes", falls="", braked=""):
     """A machine of drives, as many as there are letters."""
     nodes = "".join(f"node_{a} = {DRIVES[a][0]}\n" for a in axes)
     ratios = "".join(f"[axis.{a}]\ndrive_increments = {DRIVES[a][1]}\n"
                      f"drive_pulses = {DRIVES[a][2]}\n"
                      "travel_min_mm = -100\ntravel_max_mm = 100\n"
-                     f"brake = {'none' if a in falls else 'free'}\n"
+                     f"brake = {brake_of(a, falls, braked)}\n"
                      f"absolute = {absolute}\n"
                      for a in axes)
     absent = "".join(f"[axis.{a}]\npresent = no\n"
@@ -242,8 +246,13 @@ def lagging(method):
                   "[axis.Y]\nloop_gain_1_s = 19.3\nloop_hz = 1000\n")
 
 
+# Slow to brake: from 10 mm/s in 0.5 mm.
+BRAKES = ("[axis.X]\na_max_mm_s2 = 100\n[axis.Y]\na_max_mm_s2 = 100\n"
+          "[gpio]\nchip = sim0\nbrake_Z = 26\nbrake_ms = 100\n")
+
 CUT = "G21 G90\nG1 X10 Y3 F60\nM30\n"
 CIRCLE = "G21 G90 G17\nG3 X0 Y0 I-2 J0 F600\nM30\n"
+ROUNDS = "G21 G90 G17\n" + 5 * "G3 X0 Y0 I-2 J0 F600\n" + "M30\n"
 
 
 def checked(run):

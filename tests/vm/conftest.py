@@ -6,7 +6,7 @@ import shutil
 import subprocess
 
 import pytest
-from boot import (BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES,
+from boot import (BRAKES, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES, ROUNDS,
                   ENCODER, QUICK_JOB, ROOT, Run, SHARED, SLOW_JOB, STRICT_REFUSED, STRICT_UP,
                   VIRTUAL, checked, drives, lagging, machine)
 
@@ -70,6 +70,7 @@ def can402():
         "lagging.ini": lagging("none"), "lagging.ngc": CIRCLE,
         "led.ini": lagging("feedforward"), "led.ngc": CIRCLE,
         "coupled.ini": lagging("feedforward+cross-coupled"), "coupled.ngc": CIRCLE,
+        "brakes.ini": drives("XYZ", BRAKES, braked="Z"), "brakes.ngc": ROUNDS,
         "shared.ini": drives("XY", GAP_FRAMES + SHARED), "shared.ngc": CUT,
         "faults.ini": drives("XY", GAP_FRAMES),
         "faults.ngc": CUT,
@@ -91,10 +92,11 @@ def strict():
         "strict-faults.ini": drives("XY", GAP_FRAMES, "no"),
         "strict-faults.ngc": CUT,
         "strict-attack.ini": drives("XY", GAP_FRAMES, "no"),
+        "strict-noise.ini": drives("XY", GAP_FRAMES, "no"),
         "strict.env": f"SEED={os.environ.get('EDM_SEED', 1)}\n"
                       f"RUNS={os.environ.get('EDM_RUNS', 4)}\n"
                       "SCENES=" + os.environ.get(
-                          "EDM_SCENES", "up,refused,late,faults,attack") + "\n",
+                          "EDM_SCENES", "up,refused,late,faults,attack,noise") + "\n",
     }, "-d", copies=[guest / n for n in (
         "can402.py", "strict.py", "can402_strict.py")]))
 

@@ -108,6 +108,51 @@ def off_the_circle(run, name):
     return max(abs(math.hypot(x + 2, y) - 2) for x, y in mm)
 
 
+def places_mm(row, axes):
+    return [(row[3][i] - 1000 * DRIVES[a][0]) * DRIVES[a][2] / DRIVES[a][1] /
+            1000 for i, a in enumerate(axes)]
+
+
+def test_where_one_drive_has_a_fault_the_others_brake_on_the_path(can402):
+    """A circle of 2 mm at 10 mm/s; Z, which stands, has the fault."""
+    seen = Seen(can402, "brakes")
+    seen.went_as_planned()
+    rows = seen.between("3: harm", "3: stands")
+    mm = [places_mm(r, "XY") for r in rows]
+    ways = [math.dist(a, b) for a, b in zip(mm, mm[1:])]
+    off = max(abs(math.hypot(x + 2, y) - 2) for x, y in mm)
+    print(f"Z's fault: X and Y went on {sum(ways):.2f} mm, at most "
+          f"{off * 1e3:.1f} um off the circle")
+    assert ways[0] > 0.08 and 0.4 < sum(ways) < 1.2
+    assert off < 0.003
+    # Not on power any more, but only once they stood.
+    last = max(i for i, way in enumerate(ways) if way > 0)
+    assert all(r[2][:2] == ["enabled"] * 2 for r in rows[:last + 2])
+    assert "enabled" not in rows[-1][2]
+    assert not any(b > a + 0.02 for a, b in zip(ways, ways[1:]))
+
+
+def test_a_drive_that_stopped_behind_the_path_comes_back_and_the_job_ends(
+        can402):
+    seen = Seen(can402, "brakes")
+    rows = seen.between("1: harm", "1: stands")
+    ways = [math.dist(*w) for w in zip((places_mm(r, "XY") for r in rows),
+                                       (places_mm(r, "XY") for r in rows[1:]))]
+    assert sum(ways) > 0.1
+    assert "drive X (node 1) reports a fault" in seen.log
+    assert "program 1 ended: done" in seen.log
+    stands_at(seen, "XYZ")
+
+
+def test_a_brake_on_a_line_is_open_under_torque_alone(can402):
+    """Z's; after the faults of X and Y its own drive holds on until it has
+    closed."""
+    brake = json.loads(can402.text("brake.json"))
+    assert brake == {"before": 0, "idle": 1, "ended": 0} | {
+        f"{n}: {what}": is_open for n in (1, 2, 3)
+        for what, is_open in (("running", 1), ("stands", 0))}
+
+
 def test_drives_that_lag_are_led_along_the_path(can402):
     lagging, led, coupled = (off_the_circle(can402, n)
                              for n in ("lagging", "led", "coupled"))

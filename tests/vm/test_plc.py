@@ -32,7 +32,7 @@ def plc():
         "edmd.eds": (ROOT / "messages/edmd.eds").read_text(),
         "edmd.dbc": (ROOT / "messages/edmd.dbc").read_text(),
         "plc.py": (HERE / "guest/plc.py").read_text(),
-    }))
+    }, "-d"))
 
 
 def said(plc, kind):

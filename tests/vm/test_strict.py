@@ -180,3 +180,28 @@ def test_power_cycles_at_any_time_never_move_or_spark(attack):
     assert len(attack.d["done"]) >= 1
     for i, out in enumerate(attack.d["done"]):
         never_moves_unplaced(attack, f"attack {i}", out, out["node"])
+
+
+STEP_MM = 0.06      # feed_max_mm_s is 5: 0.05 mm in a period
+
+
+def test_whatever_is_on_the_bus_nothing_sparks_or_leaps(strict):
+    """Storms, wrong lengths, a second drive with the same node, NMT of others,
+    bus off: each may end the cut, and the operator gets back to it."""
+    seen = Seen(strict, "strict-noise")
+    for done in seen.d["done"]:
+        print(*done)
+    seen.went_as_planned()
+    ill = 0
+    for (_, _, was), (t, sparks, now) in zip(seen.rows, seen.rows[1:]):
+        well = all(d[0] == "enabled" and d[3] == 8 for d in now)
+        ill = 0 if well else ill + 1
+        assert not (sparks and ill > 4), (t, now)
+        for axis, a, b in zip("XY", was, now):
+            _, per, pulses = DRIVES[axis]
+            mm = abs((b[1] - a[1]) * pulses / per / 1000)
+            assert mm <= STEP_MM, (t, axis, mm, seen.log)
+    # What says nothing of a fault ends no cut.
+    for what, state, fault in seen.d["done"]:
+        if what in ("storm", "lengths", "answers", "strange_ids"):
+            assert fault == "none", (what, state, fault, seen.log)

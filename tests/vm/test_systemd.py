@@ -17,16 +17,30 @@ def test_it_runs_as_a_user_with_one_thread_in_real_time(systemd):
 
 
 def test_what_is_shared_is_made_for_the_group_and_nobody_else(systemd):
-    """By edmd.tmpfiles; the socket of commands is in it."""
+    """By edmd.tmpfiles; the socket of commands is in it.  Each of the two makes
+    its files in its own folder, and nobody else can take a name there."""
     rows = dict(r.split(" ", 1) for r in
                 systemd.text("shared").splitlines())
-    print(rows)
-    assert rows["."] == "drwxrwx--T edmd edm"
+    jobs = dict(r.split(" ", 1) for r in
+                systemd.text("shared-jobs").splitlines())
+    print(rows, jobs)
+    assert rows["."] == "drwxr-x--- edmd edm"
+    assert jobs["."] == "drwxr-x--- edm-jobs edm"
+    assert jobs["edmd.vm.writer"] == "-rw------- edm-jobs edm"
     assert rows["edmd.vm.command"] == "srw-rw---- edmd edm"
     assert rows["edmd.vm.status"] == "-rw-r----- edmd edm"
     assert all(r.split()[0].endswith("---") for n, r in rows.items()
                if n != "."), rows
     assert "Permission denied" in systemd.text("shared-nobody")
+
+
+def test_a_program_on_the_network_sees_no_key(systemd):
+    """It is in group edm, for the status."""
+    said = systemd.text("dds-sees")
+    print(said)
+    assert "(edm)" in said and "\n4\n" in said
+    assert "secret" not in said
+    assert said.count("Permission denied") == 3
 
 
 def test_the_unit_lets_it_have_its_chips(systemd):

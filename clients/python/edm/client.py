@@ -15,7 +15,7 @@ from typing import Any
 from nacl.exceptions import BadSignatureError
 from nacl.signing import VerifyKey
 
-from .keys import Key, find_key, read_key
+from .keys import Key, KeyFileError, find_key, read_key
 from .messages import (
     Ack, Chunk, Event, Signed, Status, command, to_be_signed,
 )
@@ -59,11 +59,18 @@ class Client:
     def __init__(self, machine: str = "edm", key: str | None = None,
                  url: str = URL, timeout: float = 3.0) -> None:
         self.key: Key = read_key(key) if key else find_key(machine)
+        if self.key.machine != machine:
+            raise KeyFileError(
+                f"the key is of machine {self.key.machine}, and machine "
+                f"{machine} is asked for; name the other key, or the other "
+                "machine")
         self.machine, self.timeout = machine, timeout
         self.name = f"python-{os.getpid()}-{secrets.token_hex(8)}"
         self._verify = VerifyKey(self.key.machine_key)
         self._seq = self._boot = self._ahead = self._count = self._heard = 0
         self._hello, self._hello_s = 0, 0.0
+        # Boot and clock of a status that may be a recording.
+        self._guess = self._guess_ahead = 0
         self._waits: dict[int, Ack | None] = {}
         self._status: Status | None = None
         self._statuses = 0
@@ -88,14 +95,16 @@ class Client:
         return time.monotonic_ns() // 1000
 
     def _publish(self, name: str, data: bytes) -> None:
-        channel = f"EDM.{self.machine}.{name}"
         now = self._now() + self._ahead if self._boot else 0
         self._count = max(self._count + 1, now)
+        self._sign(name, self._boot, self._count, data)
+
+    def _sign(self, name: str, boot: int, count: int, data: bytes) -> None:
+        channel = f"EDM.{self.machine}.{name}"
         signed = self.key.secret.sign(
-            to_be_signed(channel, self._boot, self._count, data))
+            to_be_signed(channel, boot, count, data))
         self._net.publish(channel, Signed(
-            self.key.public, self._boot, self._count, signed.signature,
-            data).encode())
+            self.key.public, boot, count, signed.signature, data).encode())
 
     def _take(self, channel: str, packet: bytes) -> None:
         take = self._takes.get(channel)
@@ -111,6 +120,7 @@ class Client:
 
     def _is_news(self, s: Signed) -> bool:
         if not self._boot or s.boot != self._boot:
+            self._guess, self._guess_ahead = s.boot, s.count - self._now()
             self._say_hello()
             return False
         if s.count <= self._heard:
@@ -120,7 +130,7 @@ class Client:
 
     def _learn(self, s: Signed) -> None:
         if s.boot != self._boot:
-            self._count = self._heard = 0
+            self._count, self._heard = 0, s.count
         self._boot, self._ahead = s.boot, s.count - self._now()
         self._hello = 0
 
@@ -151,7 +161,12 @@ class Client:
             return
         self._hello_s = time.monotonic()
         self._hello = self._hello or self._number()
-        self._publish("COMMAND", command(self.name, self._hello, "hello"))
+        hello = command(self.name, self._hello, "hello")
+        if self._guess and self._guess != self._boot:
+            self._sign("COMMAND", self._guess,
+                       self._now() + self._guess_ahead, hello)
+        else:
+            self._publish("COMMAND", hello)
 
     def _number(self) -> int:
         self._seq += 1
@@ -222,9 +237,13 @@ class Client:
         """Power off, stop on the path."""
         self.ask("hold")
 
-    def resume(self) -> None:
-        """Go on after a hold."""
-        self.ask("resume")
+    def resume(self, job: str = "", axes: str = "") -> None:
+        """Go on after a hold; or with a job that was interrupted.
+
+        `axes`: letters of those that cannot be homed and whose places are
+        right all the same, as the caller has seen.
+        """
+        self.ask("resume", job, text=axes)
 
     def stop(self) -> None:
         """End the job where it stands."""

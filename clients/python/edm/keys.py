@@ -80,6 +80,8 @@ def read_key(path: str | os.PathLike[str], shared: bool = False) -> Key:
             "may command: usermod -aG edm NAME, then log in again") from None
     except UnicodeDecodeError:
         raise KeyFileError(f"key file {at} is no text") from None
+    except OSError as e:
+        raise KeyFileError(f"key file {at}: {e.strerror}") from None
     return _parse(at, text)
 
 

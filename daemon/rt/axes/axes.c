@@ -28,6 +28,7 @@ void axes_guard(struct cycle *c, const struct io_inputs *in)
 {
 	c->axes.starting = in->starting;
 	c->axes.off = in->axes_off;
+	c->axes.steers = in->steers;
 	c->manual.unplaced |= in->unplaced;
 	c->manual.homed &= ~in->unplaced;
 	/* A reset goes out at the end of this cycle: what is told is old. */

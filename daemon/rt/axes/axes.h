@@ -3,7 +3,8 @@
  * axes.h - the power of the axes
  *
  * An operator's start or retract gives the axes power.  Faults in which they
- * may be wrong take it away.  The axes may need time until they have power and
+ * may be wrong take it away; where all but one axis still follow, they brake on
+ * the path first.  The axes may need time until they have power and
  * stand on their places.  Meanwhile the state is hold, and the start goes on by
  * itself afterwards.
  *
@@ -20,7 +21,7 @@
 struct cycle;
 
 struct axes {
-	bool starting, off;		/* as the machine says */
+	bool starting, off, steers;	/* as the machine says */
 	bool awaited;			/* asked for and not there: no motion */
 	bool start;			/* start the job once it is there */
 	uint64_t waited;		/* cycles */

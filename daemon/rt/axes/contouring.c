@@ -197,7 +197,8 @@ static bool applies(const struct cycle *c)
 {
 	return c->loaded && (c->state == STATE_TRAVEL ||
 			     c->state == STATE_HOLD) &&
-	       c->out.enable && !c->axes.off && !escape_is_out(&c->escape);
+	       c->out.enable && (!c->axes.off || c->axes.steers) &&
+	       !escape_is_out(&c->escape);
 }
 
 bool contouring_rests(const struct contouring *w)
@@ -283,7 +284,8 @@ static void go_on(struct cycle *c, const struct io_inputs *in)
 	struct row_ahead set;
 
 	w->share = fmin(w->share + TAKEN_UP, 1);
-	w->coupled = fmin(fmax(w->coupled + toward, 0), 1);
+	w->coupled = c->fault.latched & axes_faults() ? 0 :
+		     fmin(fmax(w->coupled + toward, 0), 1);
 	if (w->eases || !look_ahead(c, way_mm, &set)) {
 		ease_off(c);
 		return;

@@ -98,7 +98,7 @@ static void finish(struct cycle *c)
 
 	memcpy(was, c->cursor.pos, sizeof(was));
 	mover_set(&c->mover, 0);
-	if (segment(c)->flags & INTERP_SEG_TOUCH && !c->config.dry_run)
+	if (segment(c)->flags & INTERP_SEG_PROBE && !c->config.dry_run)
 		remember(c, axis, was[axis] + t->shift[axis]);
 	if (interp_cursor_seek_end(&c->cursor, index_of(c)) < 0) {
 		fault_latch(&c->fault, FAULT_PROGRAM);
@@ -226,8 +226,8 @@ static void begin_back(struct cycle *c)
 	c->probe.phase = PROBE_BACK;
 }
 
-/* Contact at the very beginning was not found by this touch, so it does not
- * count; but a hold may have ended in contact, farther on. */
+/* Contact before the motion begins was not found by this motion, so it does not
+ * count.  But a hold may have ended in contact, farther on. */
 static double settle(struct cycle *c)
 {
 	const struct interp_seg *s = segment(c);
@@ -235,7 +235,7 @@ static double settle(struct cycle *c)
 	mover_set(&c->mover, 0);
 	if (c->probe.settled++ < c->config.probe.settle_cycles)
 		return 0;
-	if (!(s->flags & INTERP_SEG_TOUCH)) {
+	if (!(s->flags & INTERP_SEG_PROBE)) {
 		begin_going(c);
 		return 0;
 	}

@@ -2,8 +2,8 @@
 /*
  * probe.h - segments that end where the machine says
  *
- * A touch looks for the work with the power off: fast to the first contact, a
- * little back, then slowly to the contact that counts.  A half ends in the
+ * A probing motion looks for the work with the power off: fast to the first
+ * contact, a little back, then slowly to the contact that counts.  A half ends in the
  * middle between the last two contacts along its axis.  A limit ends just
  * before the end of the travel.
  *

@@ -6,14 +6,26 @@
  * forward again does not do it twice.
  */
 #include "path/walk.h"
+#include "path/place.h"
 #include "path/timed.h"
 
 #include <string.h>
 
-bool walk_is_cut(const struct cycle *c, const struct interp_seg *s)
+bool walk_rejoins(const struct cycle *c)
+{
+	return place_mm(c) < c->job.rejoin_mm - 2 * MOVER_ONTO_MM;
+}
+
+static bool is_written_as_cut(const struct cycle *c, const struct interp_seg *s)
 {
 	return !c->config.dry_run && !c->job.power_off &&
 	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+}
+
+bool walk_is_cut(const struct cycle *c, const struct interp_seg *s)
+{
+	return is_written_as_cut(c, s) &&
+	       !(s->s_mm < c->job.rejoin_mm && walk_rejoins(c));
 }
 
 bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s)
@@ -22,15 +34,26 @@ bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s)
 	       (s->kind == INTERP_MCODE && mcode_again(c, i, s->arg));
 }
 
-enum walk_ahead walk_ahead(const struct cycle *c)
+/* The segment under way; at its end the next one. */
+static const struct interp_seg *seg_ahead(const struct interp_cursor *at)
 {
-	const struct interp_cursor *at = &c->cursor;
-	const struct interp_seg *s = &at->seg;
 	const uint32_t next = at->index + 1;
 
-	if (at->s_mm >= s->length_mm - MOVER_ONTO_MM &&
-	    next < at->p.head->nsegs)
-		s = &at->p.segs[next];
+	return at->s_mm >= at->seg.length_mm - MOVER_ONTO_MM &&
+	       next < at->p.head->nsegs ? &at->p.segs[next] : &at->seg;
+}
+
+bool walk_needs_wire(const struct cycle *c)
+{
+	const struct interp_seg *s = seg_ahead(&c->cursor);
+
+	return s->kind < INTERP_BEGIN && is_written_as_cut(c, s);
+}
+
+enum walk_ahead walk_ahead(const struct cycle *c)
+{
+	const struct interp_seg *s = seg_ahead(&c->cursor);
+
 	if (s->kind >= INTERP_BEGIN)
 		return AHEAD_ACTION;
 	if (s->flags & INTERP_SEG_SENSED)

@@ -32,6 +32,14 @@ enum walk_deed {
 	ACTION_END,			/* the program is over */
 };
 
+/** walk_rejoins() - is the machine on its way forward from a wire's break to the
+ *  place where the cut goes on? */
+bool walk_rejoins(const struct cycle *c);
+
+/** walk_needs_wire() - is what is ahead a cut, even if it is only positioned on
+ *  the way forward from a break? */
+bool walk_needs_wire(const struct cycle *c);
+
 bool walk_is_cut(const struct cycle *c, const struct interp_seg *s);
 
 /** walk_is_due() - is action @i still, or again, to be done? */

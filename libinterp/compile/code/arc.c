@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * arc.c - G2 and G3: the centre, from I J K or from R
- */
+/* arc.c - G2 and G3: finds the centre from I J K or from R */
 #include "code/reader.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* Shorter than this is no radius and no chord. */
+/* A shorter length is neither a radius nor a chord. */
 #define NOTHING_MM	1e-6
 
 const struct nc_plane nc_planes[3] = {
@@ -63,9 +61,9 @@ static int refuse_radius(struct nc_reader *r, double radius, double half)
 }
 
 /*
- * The centre lies on the chord's perpendicular bisector, on the left of a
- * counter-clockwise arc of less than half a turn.  Each of clockwise and
- * longer than half a turn swaps the side.
+ * The centre lies on the perpendicular bisector of the chord.  For a
+ * counter-clockwise arc of less than half a turn it is on the left side.  A
+ * clockwise arc changes the side, and so does an arc longer than half a turn.
  */
 static int by_radius(struct nc_reader *r, const struct nc_plane *p,
 		     const double end_mm[INTERP_NAXES],
@@ -111,8 +109,8 @@ static int centre(struct nc_reader *r, const struct nc_plane *p,
 	return by_radius(r, p, end_mm, arc);
 }
 
-/* The top: the G word behind the :, without one as the bottom; with U or V
- * alone straight. */
+/* The arc of the top.  Its direction is the G word behind the colon, or else
+ * that of the bottom.  If the line only has U or V, the top goes straight. */
 static int top(struct nc_reader *r, int motion, struct interp_build_contour *c)
 {
 	const struct nc_block *b = &r->block;

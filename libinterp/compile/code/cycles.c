@@ -2,8 +2,8 @@
 /*
  * cycles.c - orbits: G130 ... G135, and the way out: G140 ... G143
  *
- * Words are gathered and checked here, so that what is wrong with them is
- * said at their columns; interp/orbit.h makes the path.
+ * The words are collected and checked here, so that an error is reported at its
+ * column.  interp/orbit.h makes the path.
  */
 #include "code/reader.h"
 #include "interp/orbit.h"
@@ -34,7 +34,7 @@ void nc_set_lift(struct nc_reader *r)
 
 int nc_run_escape(struct nc_reader *r)
 {
-	/* Lines held back are still by the way out before. */
+	/* Lines that were held back still leave by the previous way out. */
 	const int err = interp_build_flush(r->build, r->diag);
 
 	r->escape = r->block.code[NC_ESCAPE]->value;
@@ -42,14 +42,14 @@ int nc_run_escape(struct nc_reader *r)
 	return err;
 }
 
-/* -- Words ---------------------------------------------------------------------- */
+/* -- Words ---------------------------------------------------------------- */
 
 struct nc_orbit {
 	struct nc_reader *r;
 	struct interp_orbit orbit;
-	const uint8_t *at;		/* of its G word */
+	const uint8_t *at;		/* position of its G word */
 	const uint8_t *radius_at;
-	bool is_sink;			/* G86: no orbit */
+	bool is_sink;			/* G86: there is no orbit */
 	uint32_t dwell_ms, most_ms;
 };
 
@@ -128,7 +128,7 @@ static int take_depth(struct nc_orbit *c)
 	return 0;
 }
 
-/* Undersize of the electrode: I, or the register D. */
+/* The undersize of the electrode: I, or the register D. */
 static int take_undersize(struct nc_orbit *c, double *ret_mm)
 {
 	struct nc_reader *r = c->r;
@@ -168,7 +168,8 @@ static int refuse_small(struct nc_orbit *c, double least_mm)
 			 c->orbit.radius_mm);
 }
 
-/* R, or undersize less gap (J) and allowance (K); all to one side. */
+/* R; or the undersize minus the gap (J) and the allowance (K), all on one
+ * side. */
 static int take_radius(struct nc_orbit *c)
 {
 	struct nc_reader *r = c->r;
@@ -227,7 +228,8 @@ static int take_steps(struct nc_orbit *c)
 	return 0;
 }
 
-static int refuse_letter(struct nc_orbit *c, enum nc_slot slot, const char *where)
+static int refuse_letter(struct nc_orbit *c, enum nc_slot slot,
+			 const char *where)
 {
 	struct nc_reader *r = c->r;
 
@@ -236,7 +238,7 @@ static int refuse_letter(struct nc_orbit *c, enum nc_slot slot, const char *wher
 			 nc_quote_word(r, r->block.at[slot]).s);
 }
 
-/* A and B; the cone must not close before its bottom or above it. */
+/* A and B.  The cone must not close at its bottom or above it. */
 static int take_angle(struct nc_orbit *c)
 {
 	struct nc_reader *r = c->r;
@@ -285,9 +287,10 @@ static int take_rest(struct nc_orbit *c)
 	return take_angle(c);
 }
 
-/* -- Out ------------------------------------------------------------------------ */
+/* -- The way out
+ * ------------------------------------------------------------ */
 
-/* The word to blame: the bottom, if that is what lies beyond the travel. */
+/* Point to the bottom word, if the bottom is what lies beyond the travel. */
 static int placed(struct nc_orbit *c, int rc)
 {
 	struct nc_reader *r = c->r;
@@ -336,7 +339,7 @@ static int to_escape(void *arg, const struct interp_escape *e)
 	return err ? err : interp_build_escape(c->r->build, e);
 }
 
-/* The most time it may take: S, in seconds. */
+/* The longest time that it may take: S, in seconds. */
 static int take_time(struct nc_orbit *c)
 {
 	struct nc_reader *r = c->r;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * dialect.c - pick the dialect of a text, and read it
- */
+/* dialect.c - chooses the dialect of a text, and reads the text */
 #include "code/dialect.h"
 
 #include <assert.h>
@@ -18,7 +16,7 @@ static struct nc_dialect tables[NDIALECTS_MAX];
 static size_t ndialects;
 static once_flag built = ONCE_FLAG_INIT;
 
-/* The files that are built in have been read by a test: they are sound. */
+/* A test has read the built-in files, so they are correct. */
 static void build(void)
 {
 	struct interp_diag diag;
@@ -138,7 +136,8 @@ int interp_compile(const struct interp_text *text,
 
 	if (err == 0)
 		err = interp_build_flush(b, diag);
-	/* The whole line is at its first column, the whole input at 1:1. */
+	/* An error of the whole line is at its first column, one of the whole
+	 * text at 1:1. */
 	if (err == -EINVAL && diag->line == 0)
 		diag->line = 1;
 	if (err == -EINVAL && diag->column == 0)

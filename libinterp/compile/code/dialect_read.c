@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A piece of a line. */
+/* A part of a line. */
 struct piece {
 	const char *at;
 	size_t n;
@@ -45,7 +45,8 @@ static int refuse(struct reading *f, const char *at, const char *wanted,
 	return -EINVAL;
 }
 
-/* -- Pieces ------------------------------------------------------------------ */
+/* -- Parts of a line
+ * -------------------------------------------------------- */
 
 static struct piece trim(struct piece p)
 {
@@ -61,8 +62,8 @@ static bool is(struct piece p, const char *word)
 	return strlen(word) == p.n && memcmp(p.at, word, p.n) == 0;
 }
 
-/* What stands before the first @c, which is taken off with it; all of it if
- * there is none. */
+/* Take off what stands before the first @c, and @c itself; everything if there
+ * is no @c. */
 static struct piece cut(struct piece *p, char c)
 {
 	const char *at = memchr(p->at, c, p->n);
@@ -73,14 +74,14 @@ static struct piece cut(struct piece *p, char c)
 	return trim(head);
 }
 
-/* The next word, up to a blank; n is 0 behind the last. */
+/* The next word, up to a blank.  After the last word, n is 0. */
 static struct piece next_word(struct piece *p)
 {
 	*p = trim(*p);
 	return cut(p, ' ');
 }
 
-/* -- [rules] ----------------------------------------------------------------- */
+/* -- [rules] -------------------------------------------------------------- */
 
 static const struct rule {
 	const char *key;
@@ -98,7 +99,7 @@ static const struct rule {
 	{ "subprograms", RULE(label), { "O", "N" }, { 'O', 'N' } },
 	{ "conditions_defined", RULE(defines), { "no", "yes" }, { 0, 1 } },
 	{ "registers_defined", RULE(registers), { "no", "yes" }, { 0, 1 } },
-	{ "ways_without_number", RULE(touches), { "no", "yes" }, { 0, 1 } },
+	{ "ways_without_number", RULE(lone_ways), { "no", "yes" }, { 0, 1 } },
 	{ "top_of_wire", RULE(lean), { "place", "lean" }, { 0, 1 } },
 	{ "macros", RULE(macros), { "none", "fanuc", "linuxcnc" },
 	  { MACRO_NONE, MACRO_FANUC, MACRO_LINUXCNC } },
@@ -124,12 +125,14 @@ static int read_rule(struct reading *f, struct piece key, struct piece value)
 			 r->words[2] ? r->words[2] : "");
 		return refuse(f, value.at, wanted, "a rule that is", value);
 	}
-	return refuse(f, key.at, "one of length_without_point centre end feed "
-		      "subprograms conditions_defined registers_defined "
-		      "ways_without_number top_of_wire macros dwell_p", "rule", key);
+	return refuse(f, key.at,
+		      "one of length_without_point centre end feed subprograms "
+		      "conditions_defined registers_defined "
+		      "ways_without_number top_of_wire macros dwell_p",
+		      "rule", key);
 }
 
-/* -- [letters] --------------------------------------------------------------- */
+/* -- [letters] ------------------------------------------------------------ */
 
 /* What may stand for a class, besides the name of a slot. */
 static const struct {
@@ -152,7 +155,7 @@ static const struct {
 	{ "none", NC_BAD },
 };
 
-/* X Y ...: the slot that bears the letter's own name. */
+/* X Y ...: the slot with the letter's own name. */
 static int slot_of(char letter)
 {
 	for (int i = 0; i < NC_NSLOTS; i++) {
@@ -196,7 +199,7 @@ static int keep_text(struct reading *f, struct piece text, uint16_t *ret)
 
 	if (text.n == 0)
 		return 0;
-	/* It is printed as it stands, and a NUL would end it. */
+	/* The text is printed as it is, and a NUL would end it. */
 	for (size_t i = 0; i < text.n; i++)
 		if (iscntrl((unsigned char)text.at[i]) && text.at[i] != '\t')
 			return refuse(f, text.at + i, "letters in a reason",
@@ -258,7 +261,7 @@ static int read_letter(struct reading *f, struct piece key, struct piece value)
 		      "a letter cannot be", value);
 }
 
-/* -- [words] ----------------------------------------------------------------- */
+/* -- [words] -------------------------------------------------------------- */
 
 static const struct meaning {
 	const char *name;
@@ -281,7 +284,7 @@ const char *interp_dialect_meaning(int i)
 	       meanings[i].name : NULL;
 }
 
-/* Letters behind `ignore`: the slots they fill. */
+/* The letters behind `ignore`: the slots that they fill. */
 static int read_drops(struct reading *f, struct piece letters, uint32_t *ret)
 {
 	struct piece w;
@@ -330,7 +333,7 @@ static int read_meaning(struct reading *f, struct piece value,
 	return err ? err : keep_text(f, text, &ret->text);
 }
 
-/* G59.1, M*: where its meaning is kept. */
+/* G59.1, M*: the place where its meaning is stored. */
 static struct nc_code *place_of(struct reading *f, struct piece w)
 {
 	struct nc_dialect *d = f->d->nc;
@@ -374,7 +377,7 @@ static int read_words(struct reading *f, struct piece key, struct piece value)
 	return err;
 }
 
-/* -- [dialect] --------------------------------------------------------------- */
+/* -- [dialect] ------------------------------------------------------------ */
 
 static void point_letters(struct nc_dialect *d)
 {
@@ -442,7 +445,7 @@ static int read_head(struct reading *f, struct piece key, struct piece value)
 	return 0;
 }
 
-/* -- Lines ------------------------------------------------------------------- */
+/* -- Lines ---------------------------------------------------------------- */
 
 static const struct section {
 	const char *name;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * emit.c - what the writers of programs share
- */
+/* emit.c - what the writers of programs have in common */
 #include "code/emitter.h"
 
 #include <errno.h>
@@ -66,7 +64,7 @@ int emit_refuse_sensed(struct interp_diag *diag, const struct interp_seg *seg)
 		return 0;
 	return emit_refuse(diag, seg->line, "moves with an end of their own",
 			   "a move until %s",
-			   seg->flags & INTERP_SEG_TOUCH ? "contact" :
+			   seg->flags & INTERP_SEG_PROBE ? "contact" :
 			   seg->flags & INTERP_SEG_HALF ?
 			   "half between two contacts" :
 			   "the end of the travel");

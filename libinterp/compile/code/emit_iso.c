@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * emit_iso.c - a program as NC code of dialect `generic`
- */
+/* emit_iso.c - writes a program as NC code of dialect `generic` */
 #include "code/emitter.h"
 
 #include <errno.h>
@@ -11,7 +9,7 @@
 
 #define TURN	(2 * M_PI)
 
-/* What stands in the text so far. */
+/* The values that are in force in the text so far. */
 struct iso_writer {
 	const struct interp_program *p;
 	const struct interp_sink *to;
@@ -21,7 +19,7 @@ struct iso_writer {
 	uint8_t plane;
 };
 
-/* One line being put together. */
+/* A line that is being put together. */
 struct words {
 	char s[400];
 	size_t n;
@@ -40,7 +38,7 @@ static void word(struct words *w, const char *format, ...)
 	w->n += n < 0 ? 0 : (size_t)n < room ? (size_t)n : room - 1;
 }
 
-/* A letter and up to six decimals, without those that are 0. */
+/* A letter and a number with up to six decimals, without zeros at the end. */
 static void number(struct words *w, char letter, double v)
 {
 	char s[40];

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * emit.h - what the writers of programs share
- */
+/* emitter.h - what the writers of programs have in common */
 #ifndef CODE_EMIT_H
 #define CODE_EMIT_H
 
@@ -33,8 +31,11 @@ int emit_refuse(struct interp_diag *diag, uint32_t line, const char *wanted,
 	__attribute__((cold, format(printf, 4, 5)));
 
 /**
- * emit_refuse_sensed() - refuse a move that ends where the machine says: as a
- * plain move it would cut to where it may at most lead.  Return: 0 or -EINVAL.
+ * emit_refuse_sensed() - refuse a motion that ends where the machine says.
+ *
+ * As a plain motion it would cut to the farthest place that it may reach.
+ *
+ * Return: 0 or -EINVAL.
  */
 int emit_refuse_sensed(struct interp_diag *diag, const struct interp_seg *seg);
 

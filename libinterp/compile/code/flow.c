@@ -2,9 +2,10 @@
 /*
  * flow.c - subprograms and the end
  *
- * A subprogram is O1000 ... M99, behind the main program's M2 or M30 in the
- * same text; in some dialects the label is N, which numbers other lines too.  M98 P1000 L3 carries it out three times; so does M98 P31000.
- * Where the O words stand is looked up once, at the first M98.
+ * A subprogram is O1000 ... M99.  It stands behind the M2 or M30 of the main
+ * program, in the same text.  In some dialects the label is N, which numbers
+ * other lines too.  M98 P1000 L3 carries it out three times, and so does M98
+ * P31000.  The places of the O words are found once, at the first M98.
  */
 #include "code/macro.h"
 #include "code/number.h"
@@ -23,7 +24,7 @@ const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end)
 	return p;
 }
 
-/* Over blanks and comments. */
+/* Skip blanks and comments. */
 static const uint8_t *skip_void(const uint8_t *p, const uint8_t *end)
 {
 	for (;;) {
@@ -44,8 +45,8 @@ static bool is_keyword(const uint8_t *p, const uint8_t *end)
 	       p + 1 < end && (p[1] & 0xdf) >= 'A' && (p[1] & 0xdf) <= 'Z';
 }
 
-/* The number behind an O (or an N, if @letter is that) that begins the line @p
- * to @end; 0: none does. */
+/* The number behind the O (or the N, if that is @letter) that begins the line
+ * from @p to @end; 0: the line does not begin so. */
 static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
 			 const uint8_t **ret_at)
 {
@@ -62,7 +63,7 @@ static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
 	*ret_at = p;
 	first = nc_skip_blanks(p + 1, end);
 	p = nc_digits(first, end, &n);
-	/* LinuxCNC's o100 sub is none. */
+	/* LinuxCNC's o100 sub is not a label. */
 	if (is_keyword(p, end))
 		return 0;
 	return p - first <= NC_DIGITS_MAX && n <= LABEL_MAX ? (uint32_t)n : 0;
@@ -105,7 +106,7 @@ static int note_label(struct nc_reader *r, struct nc_label l,
 	return 0;
 }
 
-/* One look at every line, as far as the second %. */
+/* Look at every line, up to the second %. */
 static int find_labels(struct nc_reader *r)
 {
 	struct nc_label l = { .at = r->text, .line = 1 };
@@ -129,7 +130,8 @@ static int find_labels(struct nc_reader *r)
 	return err;
 }
 
-/* Where the words end that must not stand in front of an O. */
+/* The first word of the line, among those that must not stand in front of an
+ * O. */
 static const uint8_t *first_word(const struct nc_block *b)
 {
 	const uint32_t codes = ~(NC_BIT(NC_LABEL) | NC_BIT(NC_FEED));
@@ -181,7 +183,7 @@ static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats,
 		return nc_refuse(r, at, "a number that one line has",
 				 "a call of N%u, which lines %u and %u have",
 				 number, l->line, l->second);
-	/* With variables it may end. */
+	/* With variables, a recursion may end. */
 	for (uint32_t i = 0; !r->d->macros && i <= r->depth; i++) {
 		if (r->frame[i].number == number)
 			return nc_refuse(r, at, "calls of other subprograms",

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * list.c - all refusals of a text
+ * list.c - lists all refusals of a text
  *
- * Behind the first one nobody knows where the machine would be, so places are
- * not looked at any more: the words of each line are, from the first line to
- * the last, subprograms where they stand.  Lines with variables are left out.
+ * After the first refusal nobody knows where the machine would be, so places
+ * are not checked any more.  The words of each line are checked, from the first
+ * line to the last, subprograms where they stand.  Lines with variables are
+ * left out.
  */
 #include "code/macro.h"
 
@@ -19,7 +20,8 @@ static void say(struct nc_reader *r, const struct interp_diag *d)
 
 static bool is_before(const struct interp_diag *a, const struct interp_diag *b)
 {
-	return a->line < b->line || (a->line == b->line && a->column < b->column);
+	return a->line < b->line ||
+	       (a->line == b->line && a->column < b->column);
 }
 
 void nc_tell(struct nc_reader *r)

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * macro.c - a line with variables into a line without
- */
+/* macro.c - converts a line with variables into a line without */
 #include "code/macro.h"
 #include "code/number.h"
 
@@ -15,10 +13,10 @@
 
 #define ASSIGNED_MAX	32
 
-/* What a line assigns takes effect behind it. */
+/* An assignment takes effect after the end of its line. */
 struct assigned {
 	const uint8_t *at;
-	char name[MACRO_NAME_MAX];	/* empty: by number */
+	char name[MACRO_NAME_MAX];	/* empty: the variable has a number */
 	double number, value;
 };
 
@@ -47,7 +45,8 @@ bool macro_word(struct macro_line *l, const char *word)
 	return true;
 }
 
-/* -- Has the line something to expand? --------------------------------------- */
+/* -- Has the line anything to expand?
+ * --------------------------------------- */
 
 static const uint8_t *skip_comment(const uint8_t *p, const uint8_t *end)
 {
@@ -56,7 +55,7 @@ static const uint8_t *skip_comment(const uint8_t *p, const uint8_t *end)
 	return p < end ? p + 1 : end;
 }
 
-/* IF GOTO WHILE DO END have letters side by side, which no word has. */
+/* IF GOTO WHILE DO END have letters side by side, which no other word has. */
 static bool is_keyword(const uint8_t *p, const uint8_t *end)
 {
 	return isalpha(*p) && p + 1 < end && isalpha(p[1]);
@@ -94,7 +93,7 @@ bool nc_macro_wanted(const struct nc_reader *r, const uint8_t *p,
 	return false;
 }
 
-/* -- The buffer -------------------------------------------------------------- */
+/* -- The buffer ----------------------------------------------------------- */
 
 static int put(struct macro_line *l, const uint8_t *at, const char *text,
 	       size_t n)
@@ -112,8 +111,8 @@ static int put(struct macro_line *l, const uint8_t *at, const char *text,
 	return 0;
 }
 
-/* Letters whose numbers are lengths, angles or feeds have a point: an
- * expression is never a length without one. */
+/* For letters whose numbers are lengths, angles or feeds, a point is written:
+ * the value of an expression is never a length without a point. */
 static int put_number(struct macro_line *l, const uint8_t *at, uint8_t letter,
 		      double v)
 {
@@ -131,9 +130,10 @@ static int put_number(struct macro_line *l, const uint8_t *at, uint8_t letter,
 	return put(l, at, text, n);
 }
 
-/* -- The line ---------------------------------------------------------------- */
+/* -- The line ------------------------------------------------------------- */
 
-/* Behind the letter @letter stands an expression: in its place its value. */
+/* An expression stands behind the letter @letter.  Write its value in its
+ * place. */
 static int expand_value(struct macro_line *l, uint8_t letter)
 {
 	const uint8_t *at = l->p - 1;
@@ -142,7 +142,7 @@ static int expand_value(struct macro_line *l, uint8_t letter)
 
 	if (err)
 		return err;
-	/* A vacant variable takes its letter along. */
+	/* If a variable is vacant, its letter is left out too. */
 	if (isnan(v)) {
 		l->m->used--;
 		return 0;

@@ -2,11 +2,12 @@
 /*
  * macro.h - variables, expressions and jumps in NC code
  *
- * Two languages share it: Custom Macro B as Fanuc has it, and the parameters
- * and O words of LinuxCNC.  Both work in front of the scanner: a line with
- * variables is written anew into a buffer, with numbers where expressions were,
- * and scanned there; a map leads from the buffer back to the columns of the
- * text.  So the scanner and all behind it know nothing of macros.
+ * Two languages use this: Custom Macro B in Fanuc's form, and the parameters
+ * and O words of LinuxCNC.  Both work in front of the scanner.  A line with
+ * variables is written again into a buffer, with numbers in the place of
+ * expressions, and the scanner reads it there.  A map leads from the buffer
+ * back to the columns of the text.  So the scanner and everything behind it
+ * need to know nothing of macros.
  *
  *	macro.c		a line into the buffer; assignments
  *	macro_expr.c	values of expressions
@@ -14,8 +15,9 @@
  *	macro_flow.c	IF GOTO WHILE DO END, G65
  *	oword.c		o100 sub, call, if, while, repeat, ...
  *
- * Bounded: variables, depth of calls and of brackets, rounds of loops, and
- * everything read counts as lines carried out.
+ * Everything is bounded: the number of variables, the depth of calls and of
+ * brackets, and the rounds of loops.  Every line that is read counts as a line
+ * carried out.
  */
 #ifndef CODE_MACRO_H
 #define CODE_MACRO_H
@@ -32,9 +34,10 @@
 #define MACRO_OWORDS_MAX 100000
 #define MACRO_ROUNDS_MAX 1000000u	/* jumps back, in all */
 
-/* A loop being carried out. */
+/* A loop that is being carried out. */
 struct macro_loop {
-	uint32_t id;			/* of DO; index of its o word */
+	uint32_t id;			/* number of DO, or index of its o
+					 * word */
 	uint32_t depth;			/* frame it is in */
 	uint32_t left;			/* rounds of a repeat */
 	const uint8_t *at;		/* its line */
@@ -54,7 +57,7 @@ enum oword_kind {
 	OWORD_BREAK, OWORD_CONTINUE, OWORD_NKINDS
 };
 
-/* Where an o word stands. */
+/* The place of an o word. */
 struct oword {
 	char name[MACRO_NAME_MAX];
 	const uint8_t *at;		/* its line */
@@ -72,17 +75,19 @@ struct nc_macro {
 	struct macro_loop loop[MACRO_LOOPS];
 	uint32_t nloops;
 	uint32_t rounds;
-	/* Behind a frame's call: what it was called by. */
+	/* For each frame, whether its call made local variables. */
 	bool own_level[INTERP_NC_DEPTH_MAX + 1];	/* with locals */
-	struct oword *oword;		/* NULL: not looked for */
+	struct oword *oword;		/* NULL: they were not searched for
+					 * yet */
 	uint32_t nowords;
 
 	uint8_t text[MACRO_BUFFER];
-	uint16_t column[MACRO_BUFFER + 1];	/* of each byte, from 1 */
+	uint16_t column[MACRO_BUFFER + 1];	/* column of each byte, from
+						 * 1 */
 	size_t used;
 };
 
-/* The source line being expanded. */
+/* The source line that is being expanded. */
 struct macro_line {
 	struct nc_reader *r;
 	struct nc_macro *m;
@@ -90,19 +95,24 @@ struct macro_line {
 	int brackets;
 };
 
-/* All return -EINVAL with the diag filled where they refuse. */
+/* All of these return -EINVAL, with the diag filled, if they refuse. */
 
-/** nc_macro_line() - expand the line @at ... @end, if it has something to
- *  expand.  Return: 1 if it did, into r->macro->text; 0 if not. */
+/**
+ * nc_macro_line() - expand the line from @at to @end, if it has anything to
+ * expand.  Return: 1 if it was written to r->macro->text; 0 if there was
+ * nothing to do.
+ */
 int nc_macro_line(struct nc_reader *r, const uint8_t *at, const uint8_t *end);
 
-/** nc_macro_wanted() - has the line @p ... @end something to expand? */
+/** nc_macro_wanted() - has the line from @p to @end anything to expand? */
 bool nc_macro_wanted(const struct nc_reader *r, const uint8_t *p,
 		     const uint8_t *end);
 
 void nc_macro_free(struct nc_reader *r);
 
-/** nc_macro_leave() - the frame r->depth ends: its locals go. */
+/**
+ * nc_macro_leave() - the frame r->depth ends, and its local variables with it.
+ */
 void nc_macro_leave(struct nc_reader *r);
 
 /* macro_expr.c */
@@ -134,11 +144,13 @@ static inline void macro_blanks(struct macro_line *l)
 		l->p++;
 }
 
-/** macro_word() - is the next word @word, in upper or lower case? Then behind
- *  it. */
+/**
+ * macro_word() - is the next word @word, in upper or lower case?  If so, go
+ * behind it.
+ */
 bool macro_word(struct macro_line *l, const char *word);
 
-/** macro_refuse() - what is found at @at, in columns of the text. */
+/** macro_refuse() - refuse what is at @at, in columns of the text. */
 int macro_refuse(struct macro_line *l, const uint8_t *at, const char *wanted,
 		 const char *found, ...)
 	__attribute__((cold, format(printf, 4, 5)));

@@ -2,8 +2,8 @@
 /*
  * macro_expr.c - values of expressions
  *
- * Angles are in degrees.  A vacant variable is NAN; in arithmetic it counts as
- * 0, and EQ and NE tell it from 0 where both sides are looked at as variables.
+ * Angles are in degrees.  A vacant variable is NAN.  In arithmetic it counts as
+ * 0.  EQ and NE can tell it from 0 if both sides are compared as variables.
  */
 #include "code/macro.h"
 #include "code/number.h"
@@ -13,7 +13,7 @@
 
 #define DEG	(M_PI / 180)
 
-/* From loose to tight; 0 ends an expression. */
+/* From loose to tight; NOTHING ends an expression. */
 enum { NOTHING, LOGIC, RELATION, SUM, PRODUCT, POWER };
 
 enum op { NONE, OR, XOR, AND, EQ, NE, GT, GE, LT, LE, ADD, SUB, MUL, DIV, MOD,
@@ -41,7 +41,7 @@ static bool is_fanuc(const struct macro_line *l)
 	return l->r->d->macros == MACRO_FANUC;
 }
 
-/* The operator at l->p; its tightness, or NOTHING. */
+/* The operator at l->p.  Return: how tightly it binds, or NOTHING. */
 static uint8_t next_op(struct macro_line *l, size_t *ret)
 {
 	const uint8_t *from;
@@ -66,7 +66,7 @@ static double number(double v)
 	return isnan(v) ? 0 : v;
 }
 
-/* Fanuc's work on bits, LinuxCNC's on truth. */
+/* In Fanuc's form it works on bits, in LinuxCNC's on truth values. */
 static double logic(bool bits, uint8_t op, double a, double b)
 {
 	const uint32_t i = bits ? (uint32_t)(int64_t)a : a != 0;
@@ -86,7 +86,7 @@ static double modulo(bool fanuc, double a, double b)
 {
 	const double left = fmod(a, b);
 
-	/* LinuxCNC's is never negative. */
+	/* In LinuxCNC's form it is never negative. */
 	return !fanuc && left < 0 ? left + fabs(b) : left;
 }
 
@@ -125,7 +125,8 @@ static int apply(struct macro_line *l, const uint8_t *at, size_t i,
 			    ops[i].word);
 }
 
-/* Operators at least as tight as @least, from left to right. */
+/* Evaluate operators that bind at least as tightly as @least, from left to
+ * right. */
 static int climb(struct macro_line *l, uint8_t least, double *ret)
 {
 	int err = macro_value(l, ret);
@@ -191,7 +192,7 @@ int macro_truth(struct macro_line *l, bool *ret)
 	return err;
 }
 
-/* -- Functions --------------------------------------------------------------- */
+/* -- Functions ------------------------------------------------------------ */
 
 static double fup(double v)
 {
@@ -214,11 +215,11 @@ static const struct {
 	{ "SQRT", sqrt, sqrt }, { "SQR", sqrt, NULL },
 	{ "ABS", fabs, fabs }, { "LN", log, log }, { "EXP", exp, exp },
 	{ "ROUND", round, round }, { "RND", round, NULL },
-	/* LinuxCNC's are floor and ceiling. */
+	/* In LinuxCNC's form they are floor and ceiling. */
 	{ "FIX", trunc, floor }, { "FUP", fup, ceil },
 };
 
-/* ATAN[1]/[2], and Fanuc's ATAN[1,2]. */
+/* ATAN[1]/[2], and in Fanuc's form also ATAN[1,2]. */
 static int atangent(struct macro_line *l, double *ret)
 {
 	double y, x = 1;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * macro_flow.c - IF GOTO WHILE DO END and G65, as Fanuc has them
- */
+/* macro_flow.c - IF GOTO WHILE DO END and G65, in Fanuc's form */
 #include "code/macro.h"
 #include "code/number.h"
 
@@ -9,7 +7,7 @@
 #include <errno.h>
 #include <math.h>
 
-/* -- Jumps ------------------------------------------------------------------- */
+/* -- Jumps ---------------------------------------------------------------- */
 
 int macro_round(struct macro_line *l, const uint8_t *at)
 {
@@ -23,7 +21,7 @@ int macro_round(struct macro_line *l, const uint8_t *at)
 			    "for %u rounds", most);
 }
 
-/* A line looked at counts as one carried out. */
+/* A line that is looked at counts as a line carried out. */
 static int count(struct macro_line *l, const uint8_t *at)
 {
 	if (l->r->executed++ < l->r->executed_max)
@@ -33,7 +31,7 @@ static int count(struct macro_line *l, const uint8_t *at)
 			    l->r->executed_max);
 }
 
-/* A line of the program at hand, when it is looked through. */
+/* A line of the present program, while it is searched. */
 struct place {
 	const uint8_t *at;
 	uint32_t line;
@@ -72,7 +70,7 @@ static bool is_end(const uint8_t *p, const uint8_t *end, uint32_t n)
 	return nc_digits(l.p, end, &found) > l.p && found == n;
 }
 
-/* From @from up to @stop, or where the next program begins. */
+/* Search from @from up to @stop, or up to the beginning of the next program. */
 static int search(struct macro_line *l, struct place from, const uint8_t *stop,
 		  match_fn *match, uint32_t n, struct place *ret)
 {
@@ -103,7 +101,7 @@ static void go(struct nc_reader *r, struct place to)
 	r->line = to.line - 1;
 }
 
-/* Forward to the end of the program, then from its begin. */
+/* Search forward to the end of the program, and then from its beginning. */
 static int go_to(struct macro_line *l, const uint8_t *at)
 {
 	struct nc_reader *r = l->r;
@@ -127,9 +125,11 @@ static int go_to(struct macro_line *l, const uint8_t *at)
 	if (err)
 		return err;
 	if (!to.at)
-		return macro_refuse(l, at, "the number of an N word that begins "
-				    "a line of this program", "GOTO %g, which "
-				    "is not there", n);
+		return macro_refuse(l, at,
+				    "the number of an N word that begins a "
+				    "line of this program",
+				    "GOTO %g, which is not there",
+				    n);
 	if (to.at < next.at)
 		err = macro_round(l, at);
 	go(r, to);
@@ -152,9 +152,9 @@ static int take_if(struct macro_line *l, const uint8_t *at)
 	return err ? err : 1;
 }
 
-/* -- Loops ------------------------------------------------------------------- */
+/* -- Loops ---------------------------------------------------------------- */
 
-/* The number of DO and END. */
+/* The number behind DO or END. */
 static int take_number(struct macro_line *l, uint32_t *ret)
 {
 	uint64_t n = 0;
@@ -163,8 +163,10 @@ static int take_number(struct macro_line *l, uint32_t *ret)
 	macro_blanks(l);
 	p = nc_digits(l->p, l->end, &n);
 	if (p == l->p || n < 1 || n > 3)
-		return macro_refuse(l, l->p, "DO1, DO2 or DO3, and END with the "
-				    "same number", "DO or END without one");
+		return macro_refuse(l, l->p,
+				    "DO1, DO2 or DO3, and END with the same "
+				    "number",
+				    "DO or END without one");
 	l->p = p;
 	*ret = (uint32_t)n;
 	return 0;
@@ -238,9 +240,9 @@ static int take_end(struct macro_line *l, const uint8_t *at)
 	return err ? err : 1;
 }
 
-/* -- Calls ------------------------------------------------------------------- */
+/* -- Calls ---------------------------------------------------------------- */
 
-/* The variables of A ... Z behind G65; 0: not an argument. */
+/* The variables of A ... Z behind G65; 0: the letter is not an argument. */
 static const uint8_t argument[26] = {
 	1, 2, 3, 7, 8, 9, 0, 11, 4, 5, 6, 0, 13, 0, 0, 0, 17, 18, 19, 20, 21,
 	22, 23, 24, 25, 26
@@ -249,11 +251,11 @@ static const uint8_t argument[26] = {
 struct call {
 	double local[MACRO_LOCALS];
 	double number;
-	uint32_t triples;		/* of I J K */
+	uint32_t triples;		/* how many groups of I J K began */
 	uint8_t last;			/* the last of I J K */
 };
 
-/* A second I, J or K that does not come behind its predecessor begins the next
+/* A second I, J or K that is not in the order I J K begins the next group of
  * three: #7 #8 #9, ... */
 static uint32_t variable_of(struct call *c, uint8_t letter)
 {
@@ -275,9 +277,11 @@ static int take_argument(struct macro_line *l, struct call *c)
 	if (letter >= 'A' && letter <= 'Z' && letter != 'P')
 		which = variable_of(c, letter);
 	if (which >= MACRO_LOCALS || (!which && letter != 'P'))
-		return macro_refuse(l, at, "P, then A B C D E F H I J K M Q R S "
-				    "T U V W X Y Z with values", "'%c' behind "
-				    "G65", *at);
+		return macro_refuse(l, at,
+				    "P, then A B C D E F H I J K M Q R S T U V "
+				    "W X Y Z with values",
+				    "'%c' behind G65",
+				    *at);
 	err = macro_value(l, &v);
 	if (err)
 		return err;
@@ -338,6 +342,7 @@ int macro_flow(struct macro_line *l)
 		return 0;
 	err = macro_truth(l, &truth);
 	if (!err && !macro_word(l, "DO"))
-		err = macro_refuse(l, l->p, "WHILE [ ] DO1", "WHILE without DO");
+		err = macro_refuse(l, l->p, "WHILE [ ] DO1",
+				   "WHILE without DO");
 	return err ? err : take_while(l, at, truth);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * macro_var.c - variables: #1, #100, #<name>, and what of the machine is known
+ * macro_var.c - variables: #1, #100, #<name>, and what is known of the machine
  * before the program runs
  */
 #include "code/macro.h"
@@ -11,9 +11,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* -- By number --------------------------------------------------------------- */
+/* -- By number ------------------------------------------------------------ */
 
-/* Where it is kept, or NULL. */
+/* The place where it is stored, or NULL. */
 static double *place_of(struct macro_line *l, uint32_t n)
 {
 	const bool fanuc = l->r->d->macros == MACRO_FANUC;
@@ -32,7 +32,8 @@ static double in_units(const struct nc_reader *r, uint32_t axis, double mm)
 	return mm / r->scale[axis];
 }
 
-/* Where the program stands: by the work offset in force, or the machine's. */
+/* The place where the program stands, in the work offset in force or in machine
+ * coordinates. */
 static bool position(const struct nc_reader *r, uint32_t n, uint32_t first,
 		     bool machine, double *ret)
 {
@@ -44,7 +45,7 @@ static bool position(const struct nc_reader *r, uint32_t n, uint32_t first,
 	return true;
 }
 
-/* #5221 and on, twenty a work offset. */
+/* From #5221 on; there are twenty numbers for each work offset. */
 static bool work_offset(const struct nc_reader *r, uint32_t n, double *ret)
 {
 	const uint32_t k = (n - 5221) / 20, i = (n - 5221) % 20;
@@ -119,7 +120,7 @@ int macro_set(struct macro_line *l, const uint8_t *at, double number, double v)
 	return 0;
 }
 
-/* -- By name ----------------------------------------------------------------- */
+/* -- By name -------------------------------------------------------------- */
 
 int macro_name(struct macro_line *l, char name[MACRO_NAME_MAX])
 {
@@ -132,9 +133,9 @@ int macro_name(struct macro_line *l, char name[MACRO_NAME_MAX])
 		if (*l->p == ' ' || *l->p == '\t')
 			continue;
 		if (n == MACRO_NAME_MAX - 1 || *l->p <= ' ' || *l->p > '~')
-			return macro_refuse(l, at, "a name of up to 31 letters, "
-					    "and >", "a name too long or not "
-					    "ASCII");
+			return macro_refuse(l, at,
+					    "a name of up to 31 letters, and >",
+					    "a name too long or not ASCII");
 		name[n++] = (char)tolower(*l->p);
 	}
 	name[n] = '\0';

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * mcode.c - M codes of the machine, for its PLC
- */
+/* mcode.c - M codes that the machine gives to its PLC */
 #include "code/reader.h"
 
 const struct nc_code *nc_mcode(struct nc_reader *r, uint64_t n)
@@ -12,7 +10,8 @@ const struct nc_code *nc_mcode(struct nc_reader *r, uint64_t n)
 	if (!all || n >= INTERP_NMCODES || all[n].sync == INTERP_MCODE_NONE)
 		return NULL;
 	after = all[n].sync == INTERP_MCODE_AFTER;
-	/* A second one of its kind leaves the first, which refuses it. */
+	/* A second one of its kind does not replace the first; it is refused as
+	 * a second word of its group. */
 	if (!(r->block.groups & NC_BIT(after ? NC_MCODE_AFTER : NC_MCODE)))
 		r->block.mcode[after] = (struct nc_code) {
 			.group = after ? NC_MCODE_AFTER : NC_MCODE,

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * meanings.h - what a G, M or T word can mean: the names that a dialect's file
- * gives to its words
+ * meanings.h - what a G, M or T word can mean: the names by which the file of a
+ * dialect gives a meaning to its words
  *
- * A row is the name, the group whose function carries it out, a value for that
- * function, and the slots that the word uses on its line.  Letters that a
- * dialect has not are never on a line, so one row does for all dialects.
+ * A row has the name, the group whose function carries it out, a value for that
+ * function, and the slots that the word uses on its line.  A letter that a
+ * dialect does not have is never on a line, so one row serves all dialects.
  */
 #ifndef CODE_MEANINGS_H
 #define CODE_MEANINGS_H
@@ -73,13 +73,13 @@
 	W("tool-tip-by-vector", TOOL_POINT, NC_TOOL_VECTOR, 0) \
 	W("tool-tip-off", TOOL_POINT, NC_TOOL_OFF, 0) \
 	W("machine-place", MACHINE, 0, 0) \
-	W("touch-at-feed", TOUCH, NC_TOUCH_FEED, NC_XYZ) \
-	W("touch", TOUCH, NC_TOUCH_ONE, NC_XYZ) \
-	W("to-limit", TOUCH, NC_TOUCH_LIMIT, NC_XYZ) \
-	W("half-way", TOUCH, NC_TOUCH_HALF, NC_XYZ) \
-	W("find-hole", TOUCH, NC_TOUCH_HOLE, NC_BIT(NC_R) | NC_LQ) \
-	W("find-block", TOUCH, NC_TOUCH_PILLAR, NC_CENTRE | NC_LQ) \
-	W("find-corner", TOUCH, NC_TOUCH_CORNER, \
+	W("probe-at-feed", PROBE, NC_PROBE_FEED, NC_XYZ) \
+	W("probe", PROBE, NC_PROBE_ONE, NC_XYZ) \
+	W("to-limit", PROBE, NC_PROBE_LIMIT, NC_XYZ) \
+	W("half-way", PROBE, NC_PROBE_HALF, NC_XYZ) \
+	W("find-hole", PROBE, NC_PROBE_HOLE, NC_BIT(NC_R) | NC_LQ) \
+	W("find-block", PROBE, NC_PROBE_PILLAR, NC_CENTRE | NC_LQ) \
+	W("find-corner", PROBE, NC_PROBE_CORNER, \
 	  NC_XY | NC_IJ | NC_BIT(NC_R) | NC_BIT(NC_Q)) \
 	W("sink-by-time", CYCLE, INTERP_NORBITS, NC_DOWN | NC_BIT(NC_P)) \
 	W("orbit-circle", CYCLE, INTERP_ORBIT_CIRCLE, NC_ROUND) \

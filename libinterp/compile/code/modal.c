@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * modal.c - carry a block out, group by group
- */
+/* modal.c - carries out a block, group by group */
 #include "code/reader.h"
 
 void nc_set_units(struct nc_reader *r, bool inches)
@@ -24,7 +22,7 @@ void nc_set_offset(struct nc_reader *r)
 	}
 }
 
-/* The first % begins the text, the second ends it. */
+/* The first % begins the text, and the second ends it. */
 static int run_tape(struct nc_reader *r)
 {
 	if (r->block.words || r->block.groups != NC_BIT(NC_TAPE))
@@ -83,7 +81,7 @@ static int run_condition(struct nc_reader *r)
 				 r->block.code_at[NC_CONDITION]);
 }
 
-/* Feed per minute is the only mode there is. */
+/* Feed per minute is the only feed mode. */
 static int run_nothing(struct nc_reader *r)
 {
 	(void)r;
@@ -112,7 +110,7 @@ static int run_pump(struct nc_reader *r)
 			 r->block.code_at[NC_PUMP]);
 }
 
-/* G53 itself is obeyed by nc_target(); this is who may use it. */
+/* nc_target() obeys G53.  This function checks who may use it. */
 static int run_machine(struct nc_reader *r)
 {
 	const struct nc_code *motion = nc_has_group(r, NC_MOTION) ?
@@ -151,7 +149,7 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_TOOL_POINT]		= nc_run_tool_point,
 	[NC_MACHINE]		= run_machine,
 	[NC_CYCLE]		= nc_run_cycle,
-	[NC_TOUCH]		= nc_run_touch,
+	[NC_PROBE]		= nc_run_probe,
 	[NC_ONE_SHOT]		= nc_run_one_shot,
 	[NC_MOTION]		= nc_run_motion,
 	[NC_MCODE_AFTER]	= run_mcode_after,
@@ -169,7 +167,7 @@ static int run_groups(struct nc_reader *r, uint32_t groups)
 	return 0;
 }
 
-/* Words of no use on this line: a mistake, so the line is refused. */
+/* Words that have no use on this line are a mistake, so the line is refused. */
 static int refuse_leftover(struct nc_reader *r, uint32_t left)
 {
 	const int slot = __builtin_ctz(left);
@@ -196,7 +194,8 @@ static int refuse_absent(struct nc_reader *r, uint32_t absent)
 			 nc_words[slot].letter);
 }
 
-/* A line with places but no motion word goes by the motion in force. */
+/* A line with places but without a motion word uses the motion mode in
+ * force. */
 static int add_motion(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
@@ -214,15 +213,15 @@ static int add_motion(struct nc_reader *r)
 	return 0;
 }
 
-/* Cycles and touches. */
+/* Cycles and probing motions must be alone. */
 static int check_alone(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
-	const uint32_t mine = NC_BIT(NC_CYCLE) | NC_BIT(NC_TOUCH);
+	const uint32_t mine = NC_BIT(NC_CYCLE) | NC_BIT(NC_PROBE);
 	const uint32_t others = NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE) |
 				NC_BIT(NC_ONE_SHOT);
 	const uint8_t *at = b->code_at[nc_has_group(r, NC_CYCLE) ? NC_CYCLE :
-								   NC_TOUCH];
+								   NC_PROBE];
 
 	if (!(b->groups & others) && (b->groups & mine) != mine)
 		return 0;
@@ -234,21 +233,21 @@ static int check_alone(struct nc_reader *r)
 static int complete(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
-	/* The knots of a body are P and Q is of its rotation. */
+	/* For a body, P is a knot and Q belongs to the rotation. */
 	const uint32_t moves = r->curve.open == NC_BODY ?
 			       NC_MOVES | NC_BIT(NC_P) | NC_BIT(NC_Q) :
 			       NC_MOVES;
 
-	if (nc_has_group(r, NC_CYCLE) || nc_has_group(r, NC_TOUCH))
+	if (nc_has_group(r, NC_CYCLE) || nc_has_group(r, NC_PROBE))
 		return check_alone(r);
 	if (nc_has_group(r, NC_ONE_SHOT)) {
 		if (b->groups & (NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE)))
-			return nc_refuse(r, b->code_at[NC_ONE_SHOT],
-					 "G4 G28 G92 G92.1 and G120 on lines "
-					 "of their own, without G0 G1 G2 G3 G53",
-					 "%s on a line with a motion word",
-					 nc_quote_word(r,
-					 b->code_at[NC_ONE_SHOT]).s);
+			return nc_refuse(
+				r, b->code_at[NC_ONE_SHOT],
+				"G4 G28 G92 G92.1 and G120 on lines of their "
+				"own, without G0 G1 G2 G3 G53",
+				"%s on a line with a motion word",
+				nc_quote_word(r, b->code_at[NC_ONE_SHOT]).s);
 		return 0;
 	}
 	if (b->words & moves && !nc_has_group(r, NC_MOTION))
@@ -290,7 +289,7 @@ int nc_run_line(struct nc_reader *r)
 	if (err)
 		return err;
 	if (b->toward | r->loose) {
-		err = nc_check_touched(r);
+		err = nc_check_probed(r);
 		if (err)
 			return err;
 	}

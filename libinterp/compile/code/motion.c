@@ -15,7 +15,7 @@ static const double zero_mm[INTERP_NAXES];
 	 left_ && (i = (uint32_t)__builtin_ctz(left_), true); \
 	 left_ &= left_ - 1)
 
-/* The top of the wire, where no word leads it, goes with the bottom. */
+/* Where no word leads the top of the wire, it moves with the bottom. */
 static void follow(const struct nc_reader *r, uint32_t named,
 		   double end_mm[INTERP_NAXES])
 {
@@ -31,7 +31,7 @@ static void follow(const struct nc_reader *r, uint32_t named,
 				   here[INTERP_Y];
 }
 
-/* U V of the line are the distance of the top from X Y, or its change. */
+/* U V of the line are the distance of the top from X Y, or the change of it. */
 static void lean(const struct nc_reader *r, double end_mm[INTERP_NAXES])
 {
 	const struct nc_block *b = &r->block;
@@ -62,8 +62,8 @@ void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 		lean(r, ret_end_mm);
 }
 
-/* F counts degrees per minute if nothing but rotary axes move, and these know
- * no inches. */
+/* F is in degrees per minute if only rotary axes move; inches do not apply to
+ * them. */
 static double feed_for(const struct nc_reader *r,
 		       const double end_mm[INTERP_NAXES])
 {
@@ -90,8 +90,8 @@ int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid)
 		return 0;
 	return nc_refuse(r, r->block.code_at[nc_has_group(r, NC_CYCLE) ?
 					     NC_CYCLE :
-					     nc_has_group(r, NC_TOUCH) ?
-					     NC_TOUCH :
+					     nc_has_group(r, NC_PROBE) ?
+					     NC_PROBE :
 					     nc_has_group(r, NC_ONE_SHOT) ?
 					     NC_ONE_SHOT : NC_MOTION],
 			 "an F word, such as F5, in this line or before it",
@@ -110,7 +110,8 @@ int nc_room(struct nc_reader *r)
 			    "more than %u segments in all", r->segs_max);
 }
 
-/* The word to blame: the axis beyond its travel, or the line's first. */
+/* The word to point to: that of the axis beyond its travel, or the first of the
+ * line. */
 static const uint8_t *blame(const struct nc_reader *r,
 			    const double end_mm[INTERP_NAXES])
 {
@@ -130,7 +131,7 @@ static const uint8_t *blame(const struct nc_reader *r,
 	}
 	if (at)
 		return at;
-	return b->code_at[nc_has_group(r, NC_TOUCH) ? NC_TOUCH :
+	return b->code_at[nc_has_group(r, NC_PROBE) ? NC_PROBE :
 			  nc_has_group(r, NC_ONE_SHOT) ? NC_ONE_SHOT :
 							 NC_MOTION];
 }
@@ -213,8 +214,8 @@ static int dwell(struct nc_reader *r)
 			 r->block.code_at[NC_ONE_SHOT]);
 }
 
-/* Through the place named, if one is, to machine zero of the axes named; of
- * all the program has moved, if none is. */
+/* Go through the given place, if there is one, to machine zero of the named
+ * axes.  If no axis is named, use all that the program has moved. */
 static int home(struct nc_reader *r)
 {
 	uint32_t axes = r->block.words & NC_AXES;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * nc.c - read NC code, line after line
- */
+/* nc.c - reads NC code, line after line */
 #include "code/dialect.h"
 #include "code/macro.h"
 
@@ -11,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A byte order mark is no part of the text. */
+/* A byte order mark does not belong to the text. */
 static void open_text(struct nc_reader *r, const char *text, size_t bytes)
 {
 	r->text = (const uint8_t *)text;
@@ -22,7 +20,7 @@ static void open_text(struct nc_reader *r, const char *text, size_t bytes)
 	r->line_at = r->text;
 }
 
-/* Where a program has no feed, the gap's is what limits it. */
+/* If a program has no feed, the gap is what limits the speed. */
 static double first_feed(const struct nc_reader *r)
 {
 	const struct interp_axis_limits *l = r->o->machine->axis;
@@ -32,7 +30,7 @@ static double first_feed(const struct nc_reader *r)
 	return fmin(l[INTERP_X].v_max_mm_s, l[INTERP_Y].v_max_mm_s);
 }
 
-/* As if G21 G17 G90 G91.1 G54 G94 stood in front. */
+/* As if G21 G17 G90 G91.1 G54 G94 stood at the beginning. */
 static void reset_modes(struct nc_reader *r)
 {
 	const struct interp_nc_options *o = r->o;
@@ -41,8 +39,8 @@ static void reset_modes(struct nc_reader *r)
 	       interp_dialect_by_name("generic")->nc;
 	memcpy(r->work_mm, o->work_offset_mm, sizeof(r->work_mm));
 	r->arc_incremental = !r->d->arc_places;
-	r->lengths = r->d->point != NC_POINT_FREE || (o->notes && o->notes->plan) ?
-		     NC_LENGTHS : 0;
+	r->lengths = r->d->point != NC_POINT_FREE ||
+		     (o->notes && o->notes->plan) ? NC_LENGTHS : 0;
 	r->feed_mm_s = first_feed(r);
 	r->feed_deg_s = r->feed_mm_s;
 	r->fresh = true;
@@ -88,7 +86,8 @@ static int read_lines(struct nc_reader *r)
 	return err ? err : nc_end_of_text(r);
 }
 
-/* Lines in the text: those the main program has come to, and the rest. */
+/* The number of lines in the text: those that the main program has read, and
+ * the rest. */
 static uint32_t count_lines(const struct nc_reader *r)
 {
 	const uint8_t *p = r->depth ? r->frame[1].back : r->at;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * note.c - say what is ignored, and what other controls read otherwise
- */
+/* note.c - notes what is ignored, and what other controls read differently */
 #include "code/reader.h"
 
 #include <stdarg.h>
@@ -38,7 +36,7 @@ void nc_note_code(struct nc_reader *r, const uint8_t *at,
 	    nc_quote_word(r, at).s, r->d->text + code->text);
 }
 
-/* Has this kind been told?  From now on it has. */
+/* Was this kind noted before?  From now on it was. */
 static bool told(struct nc_reader *r, enum nc_told kind)
 {
 	const bool was = r->told_once & NC_BIT(kind);
@@ -56,7 +54,7 @@ void nc_note_point(struct nc_reader *r, const uint8_t *at)
 	    nc_quote_word(r, at).s, r->unit_mm > 1 ? "inches" : "mm");
 }
 
-/* G0 C120: an axis for whoever wrote it? */
+/* G0 C120: did the author of the program mean an axis? */
 static void note_condition(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * number.c - numbers of more digits than anybody means
- */
+/* number.c - numbers with more digits than anybody needs */
 #include "code/number.h"
 
 const double nc_pow10[NC_POW10_MAX + 1] = {
@@ -9,8 +7,8 @@ const double nc_pow10[NC_POW10_MAX + 1] = {
 	1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 };
 
-/* Digits that no longer change a double are dropped behind the point; in
- * front of it they make the number too large for any word. */
+/* Behind the point, digits that do not change a double any more are dropped.
+ * In front of it, they make the number too large for every word. */
 double nc_number_long(const uint8_t *p, const uint8_t *end)
 {
 	uint64_t mantissa = 0;

@@ -10,11 +10,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Powers of ten that a double holds exactly. */
+/* A double holds these powers of ten exactly. */
 #define NC_POW10_MAX	22
 extern const double nc_pow10[NC_POW10_MAX + 1];
 
-/* Digits that surely fit a mantissa of 63 bits. */
+/* So many digits certainly fit a mantissa of 63 bits. */
 #define NC_DIGITS_MAX	18
 
 static inline const uint8_t *nc_skip_blanks(const uint8_t *p,
@@ -33,17 +33,18 @@ static inline const uint8_t *nc_digits(const uint8_t *p, const uint8_t *end,
 	return p;
 }
 
-/** nc_number_long() - the value of digits @p to @end, however many. */
+/** nc_number_long() - the value of the digits from @p to @end, however many. */
 double nc_number_long(const uint8_t *p, const uint8_t *end);
 
 /**
- * nc_number() - the number at @p, blanks before it and its digits allowed.
+ * nc_number() - the number at @p.  Blanks are allowed before it, and before its
+ * digits.
  *
  * A mantissa below 2^53 and a power of ten up to 22 are both exact, so their
- * quotient is the nearest double: every number of 15 digits comes out
- * correctly rounded.
+ * quotient is the nearest double: every number of 15 digits is rounded
+ * correctly.
  *
- * Return: behind the number; NULL if there is none.
+ * Return: the place behind the number; NULL if there is none.
  */
 static inline const uint8_t *nc_number(const uint8_t *p, const uint8_t *end,
 				       double *ret)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * nurbs.c - curves of control points and knots; G6.2 as Fanuc has it
+ * nurbs.c - curves of control points and knots; G6.2 in Fanuc's form
  *
- * A NURBS is put together block by block and built when it is whole: of G5.2
- * at G5.3, of G6.2 when it has as many knots as its control points and its
- * order ask for.  Until then no other word may stand on a line.
+ * A NURBS is put together block by block and built when it is complete: for
+ * G5.2 at G5.3; for G6.2 when it has as many knots as its control points and
+ * its order need.  Until then no other word may stand on a line.
  */
 #include "code/nurbs_words.h"
 #include "code/tip_turn.h"
@@ -19,7 +19,7 @@
 #define POINTS_MAX	1000000u
 #define END_PULSES	2.0
 
-/* -- Points and knots ------------------------------------------------------------ */
+/* -- Points and knots ----------------------------------------------------- */
 
 void nc_curve_free(struct nc_curve *c)
 {
@@ -28,7 +28,7 @@ void nc_curve_free(struct nc_curve *c)
 	free(c->marks);
 }
 
-/* Room for one more; the array may move. */
+/* Make room for one more; the array may move. */
 static bool grow(void **at, uint32_t n, uint32_t room, size_t bytes)
 {
 	void *more;
@@ -112,7 +112,7 @@ void nc_curve_target(const struct nc_reader *r, double ret_mm[INTERP_NAXES])
 			    b->value[i] * r->scale[i];
 }
 
-/* A curve moves along a line as soon as its control points do. */
+/* A curve moves along a line if its control points do. */
 static void set_feed(struct nc_reader *r)
 {
 	const struct nc_curve *c = &r->curve;
@@ -131,7 +131,8 @@ static void set_feed(struct nc_reader *r)
 	}
 }
 
-/* The line of a control point, where the curve is nearest to it. */
+/* The line of a control point is valid where the curve is nearest to the
+ * point. */
 void nc_curve_set_marks(struct nc_curve *c)
 {
 	for (uint32_t i = 0; i < c->npoints; i++) {
@@ -143,8 +144,8 @@ void nc_curve_set_marks(struct nc_curve *c)
 	}
 }
 
-/* Ends that are loose end elsewhere; what follows would begin in a place where
- * the machine does not stand. */
+/* A curve with loose ends ends at another place.  What follows would then begin
+ * where the machine does not stand. */
 int nc_curve_check_end(struct nc_reader *r, const double here[INTERP_NAXES])
 {
 	const double *last = r->curve.last_mm;
@@ -197,9 +198,11 @@ int nc_curve_refuse_weight(struct nc_reader *r, enum nc_slot slot)
 {
 	const uint8_t *at = r->block.at[slot];
 
-	return nc_refuse(r, at, "a weight above 0: 0.000000001 or more, within "
-			 "a factor of 10000 of the others", "%s, a weight of %g",
-			 nc_quote_word(r, at).s, r->block.value[slot]);
+	return nc_refuse(r, at,
+			 "a weight above 0: 0.000000001 or more, within a "
+			 "factor of 10000 of the others",
+			 "%s, a weight of %g", nc_quote_word(r, at).s,
+			 r->block.value[slot]);
 }
 
 int nc_curve_check_points(struct nc_reader *r, const uint8_t *at)
@@ -213,7 +216,7 @@ int nc_curve_check_points(struct nc_reader *r, const uint8_t *at)
 			 c->npoints, c->order);
 }
 
-/* -- G6.2 ------------------------------------------------------------------------ */
+/* -- G6.2 ----------------------------------------------------------------- */
 
 static int fanuc_open(struct nc_reader *r)
 {
@@ -311,7 +314,7 @@ int nc_curve_refuse_plane(struct nc_reader *r)
 			 r->block.code_at[NC_MOTION]).s);
 }
 
-/* -- Lines ----------------------------------------------------------------------------- */
+/* -- Lines ---------------------------------------------------------------- */
 
 int nc_curve_goes_on(struct nc_reader *r)
 {

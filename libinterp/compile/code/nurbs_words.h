@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * nurbs.h - a curve being put together: control points, knots, built
- */
+/* nurbs_words.h - a curve that is put together: control points, knots, built */
 #ifndef CODE_NURBS_H
 #define CODE_NURBS_H
 
@@ -9,34 +7,45 @@
 
 #define NC_WEIGHT_MIN	1e-9
 
-/** nc_curve_open() - begin one of @kind: NC_NURBS, NC_NURBS_BLOCK, NC_BODY. */
+/**
+ * nc_curve_open() - begin a curve of @kind: NC_NURBS, NC_NURBS_BLOCK, NC_BODY.
+ */
 void nc_curve_open(struct nc_reader *r, uint8_t kind, uint32_t order);
 
-/** nc_curve_point(), nc_curve_knot() - one more.
- *  Return: 0, -ENOMEM, or -EINVAL if they are too many. */
+/**
+ * nc_curve_point(), nc_curve_knot() - add one more.  Return: 0, -ENOMEM, or
+ * -EINVAL if there are too many.
+ */
 int nc_curve_point(struct nc_reader *r, const double at_mm[INTERP_NAXES],
 		   double weight);
 int nc_curve_knot(struct nc_reader *r, double u);
 
-/** nc_curve_target() - as nc_target(), from the last control point. */
+/**
+ * nc_curve_target() - as nc_target(), but counted from the last control point.
+ */
 void nc_curve_target(const struct nc_reader *r, double ret_mm[INTERP_NAXES]);
 
-/** nc_curve_next_knot() - that of the line, in @slot. */
+/** nc_curve_next_knot() - add the knot of the line, which is in @slot. */
 int nc_curve_next_knot(struct nc_reader *r, enum nc_slot slot);
 
 /** nc_curve_in_turn() - may a control point stand beside the knot in @slot? */
 int nc_curve_in_turn(struct nc_reader *r, enum nc_slot slot);
 
-/** nc_curve_set_marks() - the lines of its control points. */
+/** nc_curve_set_marks() - set the lines of its control points. */
 void nc_curve_set_marks(struct nc_curve *c);
 
-/** nc_curve_check_points() - are they enough?  The word @at ended the curve. */
+/**
+ * nc_curve_check_points() - are there enough?  The word @at ended the curve.
+ */
 int nc_curve_check_points(struct nc_reader *r, const uint8_t *at);
 
-/** nc_curve_check_end() - the curve ends @here: at its last control point? */
+/**
+ * nc_curve_check_end() - does the curve, which ends @here, end at its last
+ * control point?
+ */
 int nc_curve_check_end(struct nc_reader *r, const double here[INTERP_NAXES]);
 
-/** nc_curve_build() - the curve is whole: move along it. */
+/** nc_curve_build() - the curve is complete: move along it. */
 int nc_curve_build(struct nc_reader *r);
 
 int nc_curve_refuse_weight(struct nc_reader *r, enum nc_slot slot);

@@ -25,7 +25,7 @@ int nc_define_register(struct nc_reader *r, const uint8_t *at, uint32_t n,
 	return 0;
 }
 
-/* What is in force holds from the next motion on. */
+/* What is set here is in force from the next motion on. */
 static int set_side(struct nc_reader *r, const uint8_t *at)
 {
 	const struct nc_register *g = &r->registers[r->selected];
@@ -46,15 +46,16 @@ int nc_run_register(struct nc_reader *r)
 	const enum nc_slot slot = nc_has(r, NC_D) ? NC_D : NC_H;
 
 	if (nc_has(r, NC_D) && nc_has(r, NC_H))
-		return nc_refuse(r, b->at[NC_H], "D or H", "H on a line with D");
+		return nc_refuse(r, b->at[NC_H], "D or H",
+				 "H on a line with D");
 	if (!nc_has(r, slot))
 		return set_side(r, r->line_at);
 	r->selected = (uint32_t)b->value[slot];
-	/* With G41 on the line, that word sees to it. */
+	/* If G41 is on the line, that word does it. */
 	return nc_has_group(r, NC_OFFSET) ? 0 : set_side(r, b->at[slot]);
 }
 
-/* Left is 1 and right is 2 in the tables. */
+/* In the tables left is 1 and right is 2. */
 static int side_of(const struct nc_code *code)
 {
 	return code->value == 0 ? 0 : code->value == 1 ? 1 : -1;
@@ -100,7 +101,8 @@ static int refuse_angle(struct nc_reader *r, const uint8_t *at, double deg)
 	return nc_refuse(r, at, wanted, "a taper of %g degrees", deg);
 }
 
-/* The A of a taper is an axis in some dialects, in others nothing else. */
+/* In some dialects A is an axis and the angle of a taper; in others it is only
+ * the angle. */
 int nc_take_angle(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;

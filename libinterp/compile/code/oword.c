@@ -2,8 +2,8 @@
 /*
  * oword.c - o100 sub, call, if, while, repeat: LinuxCNC's flow
  *
- * All o words of the text are found once, in their order; what belongs together
- * has one name.
+ * All o words of the text are found once, in their order.  Words that belong
+ * together have the same name.
  */
 #include "code/macro.h"
 #include "code/number.h"
@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Longer ones first, where one begins as another does. */
+/* Longer words come first where one begins with another. */
 static const struct {
 	const char *word;
 	uint8_t kind;
@@ -32,9 +32,11 @@ static const struct {
 
 #define KIND(kind)	(1u << (kind))
 
-/* -- Found once -------------------------------------------------------------- */
+/* -- Found once
+ * ------------------------------------------------------------- */
 
-/* 1: @l is at an o word, and behind its name; 0: it is none. */
+/* Return: 1 if @l is at an o word, and then go behind its name; 0 if it is
+ * not. */
 static int take_name(struct macro_line *l, char name[MACRO_NAME_MAX])
 {
 	const uint8_t *p;
@@ -95,7 +97,7 @@ static int note(struct macro_line *l, const struct oword *w, size_t *room)
 	return 0;
 }
 
-/* Names that are wrong are refused where the program comes to them. */
+/* A wrong name is refused when the program comes to it. */
 static int find_all(struct macro_line *at)
 {
 	const struct nc_reader *r = at->r;
@@ -123,7 +125,8 @@ static int find_all(struct macro_line *at)
 	return err;
 }
 
-/* -- What belongs to it ------------------------------------------------------ */
+/* -- Words that belong together
+ * --------------------------------------------- */
 
 /* Where @i begins, for a refusal of its line. */
 static const uint8_t *word_at(struct macro_line *l, uint32_t i)
@@ -135,7 +138,8 @@ static const uint8_t *word_at(struct macro_line *l, uint32_t i)
 	return w->at;
 }
 
-/* The next one behind @i of its name and one of @kinds; nowords: none. */
+/* The next o word after @i that has its name and one of @kinds; nowords:
+ * none. */
 static uint32_t next_of(struct macro_line *l, uint32_t i, uint32_t kinds)
 {
 	const struct oword *all = l->m->oword;
@@ -155,11 +159,11 @@ static int refuse_alone(struct macro_line *l, uint32_t i, const char *other)
 	char wanted[80];
 
 	snprintf(wanted, sizeof(wanted), "o%s %s behind it", w->name, other);
-	return macro_refuse(l, word_at(l, i), wanted, "o%s without its %s", w->name,
-			    other);
+	return macro_refuse(l, word_at(l, i), wanted, "o%s without its %s",
+			    w->name, other);
 }
 
-/* On to the line of @j, or behind it. */
+/* Go on at the line of @j, or behind it. */
 static int go(struct macro_line *l, uint32_t j, bool behind)
 {
 	const struct oword *w = &l->m->oword[j];
@@ -179,7 +183,7 @@ static int skip_to(struct macro_line *l, uint32_t i, uint32_t kinds,
 	return j < l->m->nowords ? go(l, j, true) : refuse_alone(l, i, other);
 }
 
-/* -- if ---------------------------------------------------------------------- */
+/* -- if ------------------------------------------------------------------- */
 
 static int take_if(struct macro_line *l, uint32_t i)
 {
@@ -205,9 +209,9 @@ static int take_if(struct macro_line *l, uint32_t i)
 	return err ? err : j == i ? 1 : go(l, j, true);
 }
 
-/* -- Loops ------------------------------------------------------------------- */
+/* -- Loops ---------------------------------------------------------------- */
 
-/* The do that this while ends; nowords: it begins a loop of its own. */
+/* The do that this while ends; nowords: this while begins a loop of its own. */
 static uint32_t do_of(const struct macro_line *l, uint32_t i)
 {
 	const struct oword *all = l->m->oword;
@@ -252,8 +256,9 @@ static int take_endwhile(struct macro_line *l, uint32_t i)
 		err = macro_round(l, word_at(l, i));
 		return err ? err : go(l, j, false);
 	}
-	return macro_refuse(l, word_at(l, i), "while before it", "o%s endwhile of "
-			    "no loop", all[i].name);
+	return macro_refuse(l, word_at(l, i), "while before it",
+			    "o%s endwhile of no loop",
+			    all[i].name);
 }
 
 static int take_repeat(struct macro_line *l, uint32_t i)
@@ -320,7 +325,7 @@ static int take_break(struct macro_line *l, uint32_t i, bool leave)
 	return go(l, j, leave);
 }
 
-/* -- Calls ------------------------------------------------------------------- */
+/* -- Calls ---------------------------------------------------------------- */
 
 static int take_arguments(struct macro_line *l, double *local)
 {
@@ -353,12 +358,15 @@ static int take_call(struct macro_line *l, uint32_t i)
 				   strcmp(all[j].name, all[i].name) == 0))
 		j++;
 	if (j == m->nowords)
-		return macro_refuse(l, word_at(l, i), "a sub of this text; other "
-				    "files are not read", "a call of o%s, "
-				    "which is not there", all[i].name);
+		return macro_refuse(l, word_at(l, i),
+				    "a sub of this text; other files are not "
+				    "read",
+				    "a call of o%s, which is not there",
+				    all[i].name);
 	if (r->depth == INTERP_NC_DEPTH_MAX)
-		return macro_refuse(l, word_at(l, i), "up to 8 calls inside each "
-				    "other", "a call inside %d others",
+		return macro_refuse(l, word_at(l, i),
+				    "up to 8 calls inside each other",
+				    "a call inside %d others",
 				    INTERP_NC_DEPTH_MAX);
 	r->frame[++r->depth] = (struct nc_frame) {
 		.back = r->at, .return_line = r->line,
@@ -445,7 +453,7 @@ int macro_oword(struct macro_line *l)
 		err = find_all(l);
 	if (err < 0)
 		return err;
-	/* The one of this line. */
+	/* Find the o word of this line. */
 	for (high = m->nowords; low < high; ) {
 		const uint32_t mid = (low + high) / 2;
 

@@ -3,7 +3,7 @@
  * passes.c - G150 G151 G152: contours cut in several passes
  *
  * A contour is an ordinary subprogram under G41 or G42.  It is read once, onto
- * a tape, and cut from that as often as there are passes.
+ * a tape.  From the tape it is cut as many times as there are passes.
  */
 #include "code/passes.h"
 
@@ -18,7 +18,7 @@ static const uint8_t *my_word(const struct nc_reader *r)
 	return r->block.code_at[NC_ONE_SHOT];
 }
 
-/* The list must not grow while it is carried out. */
+/* The list must not grow while it is being carried out. */
 static int refuse_inside(struct nc_reader *r)
 {
 	if (!r->contour.recording)
@@ -61,8 +61,9 @@ int nc_cavity(struct nc_reader *r)
 	if (refuse_inside(r))
 		return -EINVAL;
 	if (s->ncavities == NC_NCAVITIES)
-		return nc_refuse(r, my_word(r), "up to 256 contours, or another "
-				 "G152", "a contour too many");
+		return nc_refuse(r, my_word(r),
+				 "up to 256 contours, or another G152",
+				 "a contour too many");
 	if (!nc_has(r, NC_P) || !nc_has(r, NC_X) || !nc_has(r, NC_Y))
 		return nc_refuse(r, my_word(r), "the number of its subprogram "
 				 "and the place of its start hole, as in G151 "
@@ -75,16 +76,17 @@ int nc_cavity(struct nc_reader *r)
 	return 0;
 }
 
-/* -- Onto the tape ------------------------------------------------------------ */
+/* -- Onto the tape -------------------------------------------------------- */
 
 static int refuse_contour(struct nc_reader *r, const struct nc_cavity *c)
 {
-	return nc_refuse_at(r, c->line, "a lead in under G41 or G42, a contour "
-			    "that ends where it begins, and a lead out under "
-			    "G40", "a contour P%g that is not whole", c->number);
+	return nc_refuse_at(r, c->line,
+			    "a lead in under G41 or G42, a contour that ends "
+			    "where it begins, and a lead out under G40",
+			    "a contour P%g that is not whole", c->number);
 }
 
-/* Behind it the line of the G152 is the one in hand again. */
+/* Afterwards the line of the G152 is the present line again. */
 static int record(struct nc_reader *r, const struct nc_cavity *c,
 		  struct contour_tape *t)
 {
@@ -135,7 +137,7 @@ static int record_all(struct nc_reader *r, struct contour_tape *tape)
 	return err;
 }
 
-/* L of a G152: in which order many contours are cut. */
+/* L of a G152: the order in which several contours are cut. */
 static int read_order(struct nc_reader *r)
 {
 	struct nc_passes *s = &r->passes;
@@ -144,9 +146,11 @@ static int read_order(struct nc_reader *r)
 	s->order = l == 0 ? NC_BY_CONTOUR : l == 1 ? NC_ROUGHS_FIRST :
 		   NC_TABS_LAST;
 	if (l > 2 || (s->order == NC_TABS_LAST && !(s->tab_mm > 0)))
-		return nc_refuse(r, r->block.at[NC_L], "L1: all rough cuts "
-				 "first; L2 with a tab, as in R1: all tabs last",
-				 "G152 L%g%s", l, l > 2 ? "" : " without a tab");
+		return nc_refuse(r, r->block.at[NC_L],
+				 "L1: all rough cuts first; L2 with a tab, as "
+				 "in R1: all tabs last",
+				 "G152 L%g%s", l,
+				 l > 2 ? "" : " without a tab");
 	return 0;
 }
 

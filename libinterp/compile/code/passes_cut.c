@@ -2,9 +2,9 @@
 /*
  * passes_cut.c - what G152 cuts, and in which order
  *
- * The work is done in rounds: each contour has its turn in the first round,
- * then each in the second, and so on.  A turn begins with the wire threaded in
- * the start hole and ends with it cut.
+ * The work is done in rounds.  Each contour has a turn in the first round, then
+ * each has one in the second, and so on.  A turn begins when the wire is
+ * threaded in the start hole, and ends when the wire is cut.
  */
 #include "code/passes.h"
 
@@ -14,7 +14,7 @@
 #define M_CUT		50	/* the wire */
 #define M_THREAD	60
 
-/* What of a contour is cut in a turn. */
+/* Which part of a contour is cut in a turn. */
 enum part {
 	PART_ALL,			/* with its tab, if there is one */
 	PART_OPEN,			/* without its tab */
@@ -37,7 +37,7 @@ struct cutting {
 	struct round round;
 };
 
-/* -- Between the turns ---------------------------------------------------------- */
+/* -- Between the turns ---------------------------------------------------- */
 
 static bool is_for_plc(const struct nc_reader *r, uint8_t number)
 {
@@ -51,7 +51,8 @@ static int stop(struct nc_reader *r)
 	return contour_action(&r->contour, INTERP_STOP, 0, &r->word, r->diag);
 }
 
-/* The PLC's M code; on a machine without one the job stops for a person. */
+/* The PLC's M code.  On a machine without it, the job stops so that a person
+ * does it. */
 static int wire_action(struct nc_reader *r, uint8_t number)
 {
 	if (!is_for_plc(r, number))
@@ -77,7 +78,8 @@ static int go_to(struct nc_reader *r, const double hole_mm[2])
 	return contour_line(&r->contour, end_mm, &r->word, r->diag);
 }
 
-/* With a person at the tab: the piece is held before it is cut free. */
+/* At a tab the job stops for a person, who holds the piece before it is cut
+ * free. */
 static int begin_turn(const struct cutting *k)
 {
 	struct nc_reader *r = k->r;
@@ -90,7 +92,8 @@ static int begin_turn(const struct cutting *k)
 	return err ? err : contour_release(&r->contour, NULL, r->diag);
 }
 
-/* Wherever the wire stands: without it the way to the next hole is free. */
+/* The wire is cut where it stands.  Without it the way to the next hole is
+ * free. */
 static int end_turn(const struct cutting *k)
 {
 	struct contour *c = &k->r->contour;
@@ -102,7 +105,7 @@ static int end_turn(const struct cutting *k)
 	return err ? err : wire_action(k->r, M_CUT);
 }
 
-/* -- A turn --------------------------------------------------------------------- */
+/* -- A turn --------------------------------------------------------------- */
 
 static void say_pass(const struct cutting *k, uint32_t i, bool back,
 		     const uint32_t range[2], const char *what)
@@ -127,11 +130,11 @@ static int play(const struct cutting *k, uint32_t i, bool back, uint32_t first,
 	const struct contour_pass how = { p->offset_mm, &p->word, back };
 
 	return contour_play(&k->r->contour, k->t,
-			    (const uint32_t[]) { first, end }, &how, k->r->diag);
+			    (const uint32_t[]){ first, end }, &how, k->r->diag);
 }
 
-/* The passes of a part, to and fro; the first goes back if @back.  What stands
- * collected leads to it. */
+/* The passes of a part, forward and backward; the first one goes back if
+ * @back.  Motions that are already collected lead to it. */
 static int to_and_fro(const struct cutting *k, const uint32_t range[2],
 		      bool back, const char *what)
 {
@@ -153,7 +156,7 @@ static int to_and_fro(const struct cutting *k, const uint32_t range[2],
 	return err;
 }
 
-/* In from the hole, and all but the tab. */
+/* From the hole to the contour, and everything but the tab. */
 static int cut_open(const struct cutting *k)
 {
 	const uint32_t open[2] = { 1, k->t->tab };
@@ -167,7 +170,8 @@ static int lead_out(const struct cutting *k)
 	return play(k, k->round.end - 1, false, k->t->n - 1, k->t->n);
 }
 
-/* In where it would lead out, which is the end of the tab, and back first. */
+/* Lead in where the contour's lead-out is, which is the end of the tab, and
+ * first go back. */
 static int cut_tab(const struct cutting *k)
 {
 	const uint32_t tab[2] = { k->t->tab, k->t->n - 1 };
@@ -178,8 +182,8 @@ static int cut_tab(const struct cutting *k)
 	return err || (k->round.end - k->round.first) % 2 ? err : lead_out(k);
 }
 
-/* The open part in all passes, a stop, then the tab; the wire stays in the
- * kerf.  It ends where the lead out begins. */
+/* All passes of the open part, a stop, and then the tab; the wire stays in the
+ * kerf.  It ends where the lead-out begins. */
 static int cut_with_tab(const struct cutting *k)
 {
 	const uint32_t tab[2] = { k->t->tab, k->t->n - 1 };
@@ -192,7 +196,7 @@ static int cut_with_tab(const struct cutting *k)
 	return err ? err : lead_out(k);
 }
 
-/* From the hole to the hole. */
+/* From the hole around and back to the hole. */
 static int cut_round(const struct cutting *k, uint32_t i)
 {
 	const uint32_t range[2] = { 1, k->t->n - 1 };
@@ -200,7 +204,7 @@ static int cut_round(const struct cutting *k, uint32_t i)
 
 	say_pass(k, i, i % 2, range, "");
 	err = play(k, i, i % 2, 0, k->t->n);
-	/* What falls out is taken away behind the rough cut. */
+	/* What falls out is taken away after the rough cut. */
 	if (!err && i == 0)
 		err = stop(k->r);
 	return err ? err : contour_release(&k->r->contour, NULL, k->r->diag);
@@ -236,9 +240,9 @@ static int take_turn(const struct cutting *k)
 	return err ? err : end_turn(k);
 }
 
-/* -- The rounds ------------------------------------------------------------------- */
+/* -- The rounds ----------------------------------------------------------- */
 
-/* Return: how many there are. */
+/* Return: the number of rounds. */
 static uint32_t rounds_of(const struct nc_passes *s,
 			  struct round ret[ROUNDS_MAX])
 {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * refuse.c - say what was found and what would be accepted
- */
+/* refuse.c - says what was found and what would be accepted */
 #include "code/macro.h"
 
 #include <errno.h>
@@ -79,7 +77,8 @@ struct nc_quote nc_quote_run(const struct nc_reader *r, const uint8_t *at)
 	return quote(r, at, is_visible);
 }
 
-/* -- What a letter may be followed by --------------------------------------- */
+/* -- What may follow a letter
+ * ----------------------------------------------- */
 
 static uint32_t next_code(const struct nc_letter *l, uint32_t i)
 {
@@ -103,7 +102,7 @@ const char *nc_codes_known(const struct nc_letter *l, char letter, char *buf,
 	size_t n = (size_t)snprintf(buf, size, "one of");
 	uint32_t i = next_code(l, 0);
 
-	/* Numbers that follow each other, G5 and G5.1 too, are one range. */
+	/* Numbers that follow each other, also G5 and G5.1, are one range. */
 	while (i < l->ncodes && n < size) {
 		uint32_t last = i, next = next_code(l, i + 1), many = 1;
 

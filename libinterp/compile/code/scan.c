@@ -2,7 +2,8 @@
 /*
  * scan.c - one line of text into a block of words
  *
- * One pass over the bytes; a byte's class picks what reads on from it.
+ * There is one pass over the bytes.  The class of a byte chooses the function
+ * that continues.
  */
 #include "code/macro.h"
 #include "code/number.h"
@@ -57,8 +58,9 @@ static bool has_point(const uint8_t *p, const uint8_t *end)
 	return p < end;
 }
 
-/* A length without a point: 0 is 0 everywhere.  Others are as they are, count
- * the last of their decimals (0.001 mm, 0.0001 inches), or are refused. */
+/* A length without a decimal point.  0 is 0 everywhere.  Other values are taken
+ * as they are, or in the last of their decimals (0.001 mm, 0.0001 inches), or
+ * are refused. */
 static bool pointed_length(struct nc_reader *r, const uint8_t *at,
 			   const uint8_t *end, double *v)
 {
@@ -77,8 +79,9 @@ static bool pointed_length(struct nc_reader *r, const uint8_t *at,
 }
 
 /*
- * X- and X: a way to go, without a place.  Which lines it may stand on is seen
- * when all of its words are known.  Return: behind it, or NULL if it is none.
+ * X- and X: a direction without a place.  It depends on the other words whether
+ * the line may have it, so this is checked when all words are known.  Return:
+ * the place behind it, or NULL if it is something else.
  */
 static const uint8_t *scan_toward(struct nc_reader *r, const uint8_t *at,
 				  unsigned int slot)
@@ -87,7 +90,7 @@ static const uint8_t *scan_toward(struct nc_reader *r, const uint8_t *at,
 	const uint8_t *p = at + 1;
 	const uint8_t sign = p < r->stop && (*p == '+' || *p == '-') ? *p++ : 0;
 
-	if (!r->d->touches || slot > NC_Z)
+	if (!r->d->lone_ways || slot > NC_Z)
 		return NULL;
 	if (p < r->stop && nc_classes[*p] != NC_BLANK &&
 	    nc_classes[*p] != NC_EOL && *p != '(' && *p != ';')
@@ -100,7 +103,7 @@ static const uint8_t *scan_toward(struct nc_reader *r, const uint8_t *at,
 	return p;
 }
 
-/* A word with a value. */
+/* Read a word with a value. */
 static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 					unsigned int slot)
 {
@@ -133,7 +136,7 @@ static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 	return p;
 }
 
-/* Behind a : the words are those of the second plane. */
+/* Behind a colon the words belong to the second plane. */
 static const uint8_t *scan_top(struct nc_reader *r, const uint8_t *at,
 			       unsigned int slot)
 {
@@ -194,7 +197,7 @@ static const struct nc_code *find_code(struct nc_reader *r,
 
 	if (code->group == NC_UNKNOWN)
 		code = &l->other;
-	/* The machine's own is more than a word that does nothing here. */
+	/* A machine's own M code is more than a word that does nothing here. */
 	if (l == &r->d->letter[1] &&
 	    (code->group == NC_UNKNOWN || code->group >= NC_NGROUPS)) {
 		const struct nc_code *mine = nc_mcode(r, n);
@@ -272,7 +275,7 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 	code = find_code(r, l, n);
 	if (code->group == NC_UNKNOWN || code->group == NC_REFUSED) {
 		refuse_code(r, at, l, code);
-		/* What its line has besides is looked at, too. */
+		/* The rest of its line is checked, too. */
 		if (!r->listing)
 			return NULL;
 		nc_tell(r);
@@ -282,7 +285,7 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 	return add_code(r, at, code) ? p : NULL;
 }
 
-/* Is this the = of a definition? Then behind it; else NULL. */
+/* Is this the = of a definition?  Return: the place behind it; else NULL. */
 static const uint8_t *behind_equals(const struct nc_reader *r,
 				    const uint8_t *p, bool allowed)
 {
@@ -318,7 +321,7 @@ static const uint8_t *scan_condition(struct nc_reader *r, const uint8_t *at)
 	return p;
 }
 
-/* C120 calls a condition, C12 and C120. are places of the axis. */
+/* C120 calls a condition; C12 and C120. are places of the axis. */
 static const uint8_t *scan_c(struct nc_reader *r, const uint8_t *at)
 {
 	const uint8_t *first = nc_skip_blanks(at + 1, r->stop), *p;
@@ -330,7 +333,7 @@ static const uint8_t *scan_c(struct nc_reader *r, const uint8_t *at)
 	return scan_value(r, at, NC_C);
 }
 
-/* S100 calls a condition, SC0100= defines one. */
+/* S100 calls a condition; SC0100= defines one. */
 static const uint8_t *scan_s(struct nc_reader *r, const uint8_t *at)
 {
 	const uint8_t *p = at + 1, *first, *value;
@@ -347,7 +350,7 @@ static const uint8_t *scan_s(struct nc_reader *r, const uint8_t *at)
 	return NULL;
 }
 
-/* H1 selects an offset register, H1=0.11 defines it. */
+/* H1 selects an offset register; H1=0.11 defines it. */
 static const uint8_t *scan_register(struct nc_reader *r, const uint8_t *at)
 {
 	const enum nc_slot slot = (*at | 0x20) == 'd' ? NC_D : NC_H;
@@ -403,7 +406,7 @@ static void refuse_stray(struct nc_reader *r, const uint8_t *at)
 		  nc_quote_word(r, at).s);
 }
 
-/* A digit, point or sign where a letter should be. */
+/* A digit, a point or a sign stands where a letter should be. */
 static const uint8_t *scan_stray(struct nc_reader *r, const uint8_t *at)
 {
 	if (at > r->line_at && nc_classes[at[-1]] == NC_NUMERIC)
@@ -432,7 +435,7 @@ static const uint8_t *scan_bad(struct nc_reader *r, const uint8_t *at)
 	return NULL;
 }
 
-/* Any byte but NUL may be in a comment. */
+/* A comment may have any byte except NUL. */
 static const uint8_t *scan_comment(struct nc_reader *r, const uint8_t *at)
 {
 	const uint8_t *p;
@@ -458,7 +461,7 @@ static const uint8_t *scan_to_end(struct nc_reader *r, const uint8_t *at)
 	return at;
 }
 
-/* ; ends a block, and there is one block on a line; with no block in front of
+/* A ; ends a block, and a line has one block.  If there is no block in front of
  * it, it begins a comment. */
 static const uint8_t *scan_block_end(struct nc_reader *r, const uint8_t *at)
 {
@@ -538,7 +541,7 @@ static scan_fn *const scan_other[NC_NCLASSES] = {
 	[NC_LETTER_REST] = scan_rest,
 };
 
-/* Words from @p to the end of the line, which is returned. */
+/* Read the words from @p to the end of the line.  Return: that end. */
 static const uint8_t *scan_words(struct nc_reader *r, const uint8_t *p)
 {
 	const uint8_t *classes = r->d->classes;
@@ -573,7 +576,7 @@ static void add_groups(struct nc_block *b)
 		b->groups |= NC_BIT(NC_REGISTER);
 }
 
-/* The line at r->at, or what macros make of it. */
+/* Begin the line at r->at, or what macros make of it. */
 static int begin_line(struct nc_reader *r)
 {
 	const uint8_t *p = r->at, *end;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * spline.c - curves as LinuxCNC has them: G5 G5.1 and G5.2 G5.3
+ * spline.c - curves in LinuxCNC's form: G5 G5.1 and G5.2 G5.3
  *
- * G5 and G5.1 are Bezier curves, whole on their line.
+ * G5 and G5.1 are Bezier curves that are complete on their line.
  */
 #include "code/nurbs_words.h"
 
@@ -10,7 +10,7 @@
 
 #define LINUXCNC_ORDER	3
 
-/* -- G5.2 and G5.3 ------------------------------------------------------------------ */
+/* -- G5.2 and G5.3 -------------------------------------------------------- */
 
 static int linuxcnc_weight(struct nc_reader *r, double *ret)
 {
@@ -18,8 +18,8 @@ static int linuxcnc_weight(struct nc_reader *r, double *ret)
 	return *ret >= NC_WEIGHT_MIN ? 0 : nc_curve_refuse_weight(r, NC_P);
 }
 
-/* The point it begins at is the first control point; its weight is that of a
- * block without X and Y. */
+/* The point where the curve begins is its first control point.  Its weight is
+ * that of a block without X and Y. */
 int nc_curve_block(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
@@ -63,17 +63,18 @@ int nc_curve_end(struct nc_reader *r)
 				 "G5.2 and control points before it",
 				 "G5.3 without G5.2");
 	err = nc_curve_check_points(r, r->block.code_at[NC_MOTION]);
-	/* Even knots, the ends as often as the order. */
+	/* Even knots; those at the ends are there as many times as the order
+	 * says. */
 	for (uint32_t i = 0; !err && i < c->npoints + c->order; i++)
 		err = nc_curve_knot(r, i < c->order ? 0 : i < c->npoints ?
 				 i - c->order + 1 : c->npoints - c->order + 1);
 	return err ? err : nc_curve_build(r);
 }
 
-/* -- G5 and G5.1 ---------------------------------------------------------------------- */
+/* -- G5 and G5.1 ---------------------------------------------------------- */
 
-/* Control points @p, rows of X and Y, behind where it stands; the last is the
- * curve's end. */
+/* The control points @p are rows of X and Y, after the place where it stands.
+ * The last one is the end of the curve. */
 static int bezier(struct nc_reader *r, const double *p, uint32_t n)
 {
 	double at_mm[INTERP_NAXES];
@@ -93,7 +94,7 @@ static int bezier(struct nc_reader *r, const double *p, uint32_t n)
 	return err ? err : nc_curve_build(r);
 }
 
-/* I and J of the line, or on from the last G5. */
+/* I and J of the line; without them the direction of the last G5 is kept. */
 static int handle(struct nc_reader *r, double ret_mm[2])
 {
 	const struct nc_block *b = &r->block;

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* -- Called ------------------------------------------------------------------ */
+/* -- Called --------------------------------------------------------------- */
 
 static struct nc_defined *defined_of(const struct nc_reader *r, char letter,
 				     uint32_t number)
@@ -54,9 +54,10 @@ int nc_call_condition(struct nc_reader *r, char letter, uint32_t number,
 	return 0;
 }
 
-/* -- Defined ----------------------------------------------------------------- */
+/* -- Defined -------------------------------------------------------------- */
 
-/* What the table has of it; the definition goes over that. */
+/* Begin with what the table has of it; the definition replaces values of
+ * that. */
 static void begin_definition(const struct nc_reader *r, struct nc_defined *d)
 {
 	const struct interp_tech_row *row = r->o->tech ?
@@ -117,7 +118,8 @@ static int check_definition(struct nc_reader *r, const struct nc_defined *d,
 	return 0;
 }
 
-/* Those called before keep the values they were called with. */
+/* Conditions that were called before keep the values with which they were
+ * called. */
 static int keep_definition(struct nc_reader *r, const struct nc_defined *d,
 			   const uint8_t *at)
 {
@@ -171,7 +173,8 @@ void nc_forget_conditions(struct nc_reader *r)
 	}
 }
 
-/* -- One after the other ------------------------------------------------------ */
+/* -- One after the other
+ * ---------------------------------------------------- */
 
 /* The sequence that P names, or NULL. */
 static const struct interp_tech_sequence *
@@ -199,7 +202,7 @@ sequence_of(struct nc_reader *r, const uint8_t *at)
 	return s;
 }
 
-/* Straight on, @short_mm in front of the end. */
+/* Straight on, up to @short_mm in front of the end. */
 static int sink_to(struct nc_reader *r, const double from_mm[INTERP_NAXES],
 		   const double end_mm[INTERP_NAXES], double share)
 {
@@ -210,7 +213,7 @@ static int sink_to(struct nc_reader *r, const double from_mm[INTERP_NAXES],
 	return nc_line_to(r, share < 1 ? to_mm : end_mm, false);
 }
 
-/* Conditions whose allowance is longer than the way have nothing to do. */
+/* A condition whose allowance is longer than the way has nothing to do. */
 static int sink_by(struct nc_reader *r, const struct interp_tech_sequence *s,
 		   const double end_mm[INTERP_NAXES], double way_mm)
 {

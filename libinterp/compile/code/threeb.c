@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * threeb.c - records to the builder
+ * threeb.c - gives records to the builder
  *
- * A line goes J along the counted axis and by the ratio X:Y along the other.
- * An arc's end comes from J, see threeb_arc.c.  Both ends are snapped to whole
- * units, so what was rounded when the records were written closes again, and
- * places are sums of whole numbers, which a double holds exactly.
+ * A line goes J along the counted axis, and along the other axis by the ratio
+ * X:Y.  The end of an arc follows from J, see threeb_arc.c.  Both ends are
+ * rounded to whole units.  So a contour that was rounded when the records were
+ * written closes again.  Places are sums of whole numbers, which a double holds
+ * exactly.
  *
  * 4B: the machine offsets the wire, and every corner has an arc.  Then lines
- * keep their length and an arc of radius R its angles: the record is carried
- * out with R + offset or R - offset.
+ * keep their length, and an arc of radius R keeps its angles: the record is
+ * carried out with R + offset or R - offset.
  */
 #include "code/threeb_reader.h"
 #include "interp/nc.h"
@@ -18,7 +19,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The machine's axes; places in units from where the program starts. */
+/* The axes of the machine; places are in units from where the program
+ * starts. */
 struct threeb_reader {
 	struct threeb_text text;
 	const struct interp_threeb_read *o;
@@ -46,7 +48,7 @@ static void place_mm(const struct threeb_reader *r, double x, double y,
 	ret_mm[INTERP_Y] += y * r->unit_mm;
 }
 
-/* What the builder said, with the record's place. */
+/* What the builder said, with the place of the record. */
 static int placed(struct threeb_reader *r, const struct threeb_record *c,
 		  int rc)
 {
@@ -60,7 +62,7 @@ static int placed(struct threeb_reader *r, const struct threeb_record *c,
 
 /* -- Lines ----------------------------------------------------------------- */
 
-/* 4B fields that only an arc has. */
+/* Only an arc may have the fields of 4B. */
 static int no_radius(struct threeb_reader *r, const struct threeb_record *c)
 {
 	if (c->r == 0 && c->shape == 0)
@@ -69,7 +71,7 @@ static int no_radius(struct threeb_reader *r, const struct threeb_record *c)
 			     "DD, on a line", "a radius on a line");
 }
 
-/* The way along both axes, without sign. */
+/* The distances along both axes, without sign. */
 static int line_way(struct threeb_reader *r, const struct threeb_record *c,
 		    int64_t *ret_counted, int64_t *ret_other)
 {
@@ -111,7 +113,7 @@ static int line(struct threeb_reader *r, const struct threeb_record *c)
 
 /* -- Arcs ------------------------------------------------------------------ */
 
-/* How much larger than its record an arc is carried out. */
+/* By what factor the arc that is carried out is larger than its record. */
 static int scale_of(struct threeb_reader *r, const struct threeb_record *c,
 		    double radius, double *ret)
 {
@@ -139,10 +141,11 @@ static int scale_of(struct threeb_reader *r, const struct threeb_record *c,
 }
 
 /*
- * Start and end are whole units, so their radii may differ by a unit.  That
- * is no matter to the builder where a pulse is as coarse.  Where pulses are
- * finer, the centre goes along the chord until both radii agree; but if that
- * took it far, as on a circle all but closed, the end goes onto the circle.
+ * Start and end are whole units, so their radii may differ by a unit.  Where a
+ * pulse is as coarse as that, the builder accepts it.  Where pulses are finer,
+ * the centre is moved along the chord until both radii are equal.  If that
+ * would move it far, as on a circle that is almost closed, the end is moved
+ * onto the circle instead.
  */
 static void even_radii(const struct threeb_reader *r,
 		       struct interp_build_arc *arc, bool far,
@@ -219,7 +222,8 @@ static int arc(struct threeb_reader *r, const struct threeb_record *c)
 		return refuse_end(r, c, "at most four times the radius, "
 				  "which is a full circle");
 	err = scale_of(r, c, hypot((double)a.x, (double)a.y), &scale);
-	/* An end that rounds to the start would be taken for a full turn. */
+	/* An end that is rounded to the start would be taken for a full
+	 * turn. */
 	if (err || (!e.full && e.x == a.x && e.y == a.y))
 		return err;
 	return build_arc(r, c, &a, &e, scale);

@@ -19,10 +19,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A radius off by a unit puts J of a whole turn off by four. */
+/* If the radius is off by a unit, J of a whole turn is off by four. */
 #define FULL_UNITS	4.0
 
-/* J is rounded: this near to where g turns the end is the turn itself. */
+/* J is rounded.  If the end is this near to the place where g turns, it is that
+ * place. */
 #define TURN_UNITS	0.5
 
 /* The same arc in g and h. */
@@ -47,7 +48,7 @@ static struct course course_of(const struct threeb_arc *a)
 	};
 }
 
-/* Does g rise (1) or fall (-1) away from the start? */
+/* Does g rise (1) or fall (-1) when it leaves the start? */
 static int leaving(const struct course *c)
 {
 	const int s = c->sense * sign_of(c->h);
@@ -55,7 +56,7 @@ static int leaving(const struct course *c)
 	return s ? s : -sign_of(c->g);
 }
 
-/* The same in front of the end. */
+/* The same, when it comes to the end. */
 static int arriving(const struct course *c, double g, double h)
 {
 	const int s = c->sense * sign_of(h);
@@ -63,7 +64,7 @@ static int arriving(const struct course *c, double g, double h)
 	return s ? s : sign_of(g);
 }
 
-/* h on the part of the circle where g moves by @up. */
+/* h on the part of the circle where g moves in the direction @up. */
 static double other(const struct course *c, double g, int up)
 {
 	const double h2 = (c->r - g) * (c->r + g);
@@ -132,7 +133,7 @@ bool threeb_count_y(int64_t x, int64_t y)
 
 uint8_t threeb_quadrant(enum threeb_kind kind, int64_t x, int64_t y)
 {
-	/* Clockwise is counter-clockwise seen in a mirror. */
+	/* Clockwise is the mirror image of counter-clockwise. */
 	if (kind == THREEB_CW)
 		return (uint8_t)(5 - threeb_quadrant(THREEB_CCW, x, -y));
 	if (x > 0 && y >= 0)

@@ -16,9 +16,10 @@ enum threeb_kind {
 	THREEB_LINE,			/* L */
 	THREEB_CCW,			/* NR */
 	THREEB_CW,			/* SR */
-	THREEB_END,			/* an end code; here on: no record */
+	THREEB_END,			/* an end code; from here on: not a
+					 * record */
 	THREEB_PAUSE,
-	THREEB_OVER,			/* the text is over */
+	THREEB_OVER,			/* the text is at its end */
 };
 
 struct threeb_record {
@@ -32,11 +33,12 @@ struct threeb_record {
 };
 
 struct threeb_text {
-	const uint8_t *p, *end;		/* next byte; behind the last */
+	const uint8_t *p, *end;		/* the next byte; the end of the text */
 	const uint8_t *line_at;
 	uint32_t line;			/* from 1 */
-	bool tail;			/* a record stood on this line */
-	bool begun, over;		/* a first record; an end code */
+	bool tail;			/* there was a record on this line */
+	bool begun, over;		/* the first record was read; an end
+					 * code was read */
 	const struct interp_threeb_options *o;
 	struct interp_diag *diag;
 };
@@ -44,7 +46,7 @@ struct threeb_text {
 /** threeb_open() - before the first byte. Return: 0 or -EINVAL. */
 int threeb_open(struct threeb_text *t, const char *text, size_t bytes);
 
-/** threeb_next() - the next record, or why there is none. */
+/** threeb_next() - the next record, or the reason why there is none. */
 int threeb_next(struct threeb_text *t, struct threeb_record *ret);
 
 /** threeb_refuse() - fill the diag for the byte at @at. Return: -EINVAL. */
@@ -65,7 +67,10 @@ struct threeb_end {
 	bool full;			/* a full circle: the start again */
 };
 
-/** threeb_arc_end() - where J leads. Return: 0, or -ERANGE: past the start. */
+/**
+ * threeb_arc_end() - the end to which J leads.  Return: 0, or -ERANGE if it
+ * goes past the start.
+ */
 int threeb_arc_end(const struct threeb_arc *a, int64_t j,
 		   struct threeb_end *ret);
 
@@ -76,10 +81,13 @@ int threeb_arc_end(const struct threeb_arc *a, int64_t j,
 int64_t threeb_arc_j(const struct threeb_arc *a, const struct threeb_end *e,
 		     bool far);
 
-/** threeb_count_y() - GY, by the rule for the end of an arc at (x, y). */
+/** threeb_count_y() - is it GY, by the rule for an arc that ends at (x, y)? */
 bool threeb_count_y(int64_t x, int64_t y);
 
-/** threeb_quadrant() - of a line's direction or an arc's start, by its sense. */
+/**
+ * threeb_quadrant() - of the direction of a line, or of the start of an arc
+ * with its sense.
+ */
 uint8_t threeb_quadrant(enum threeb_kind kind, int64_t x, int64_t y);
 
 #endif /* CODE_THREEB_H */

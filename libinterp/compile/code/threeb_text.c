@@ -2,12 +2,12 @@
 /*
  * threeb_text.c - text into records
  *
- * Records come as many posts write them: with and without blanks, in either
- * case, several on a line, behind a number such as `N1 :`, in full-width
- * letters and digits (UTF-8 or GB18030).  What stands around them is a comment
- * where that is harmless: behind a record, behind a mark, and in front of the
- * first record; never what holds a counting direction with an instruction,
- * for that is a record gone wrong.
+ * Records are accepted as the various post-processors write them: with and
+ * without blanks, in upper and lower case, several on a line, behind a number
+ * such as `N1 :`, in full-width letters and digits (UTF-8 or GB18030).  Other
+ * text is a comment where that is harmless: behind a record, behind a mark, and
+ * in front of the first record.  A text that has a counting direction with an
+ * instruction is never a comment, because it is a wrong record.
  */
 #include "code/threeb_reader.h"
 
@@ -47,7 +47,8 @@ struct letter {
 	uint8_t bytes;
 };
 
-/* Full-width forms are ASCII at an offset; so is the wide blank. */
+/* Full-width forms are ASCII characters plus an offset; so is the wide
+ * blank. */
 static struct letter wide(const uint8_t *p, size_t n)
 {
 	if (n >= 3 && p[0] == 0xef && p[1] == 0xbc && p[2] >= 0x81 &&
@@ -109,7 +110,8 @@ static bool is_eol(uint8_t c)
 	return c == 0 || c == '\n' || c == '\r';
 }
 
-/* Behind @word at @p, blanks between its letters allowed; NULL if not. */
+/* The place behind @word at @p; blanks between its letters are allowed.  NULL:
+ * it is not there. */
 static const uint8_t *match(const struct threeb_text *t, const uint8_t *p,
 			    const char *word)
 {
@@ -123,7 +125,7 @@ static const uint8_t *match(const struct threeb_text *t, const uint8_t *p,
 	return p;
 }
 
-/* Some of the line, fit to be quoted. */
+/* A part of the line that can be quoted. */
 struct quote {
 	char s[24];
 };
@@ -156,7 +158,7 @@ static int refuse_b(struct threeb_text *t, const uint8_t *p)
 			     quote(t, p).s);
 }
 
-/* The digits behind a B; none are 0.  NULL: refused. */
+/* The digits behind a B; no digits mean 0.  NULL: refused. */
 static const uint8_t *number(struct threeb_text *t, const uint8_t *p,
 			     int64_t *ret)
 {
@@ -198,7 +200,8 @@ static const uint8_t *shape(const struct threeb_text *t, const uint8_t *p,
 {
 	const uint8_t *next;
 
-	for (r->shape = 0; r->shape < 2 && (next = match(t, p, "D")); r->shape++)
+	for (r->shape = 0; r->shape < 2 && (next = match(t, p, "D"));
+	     r->shape++)
 		p = skip_blanks(t, next);
 	return p;
 }
@@ -210,7 +213,7 @@ static const struct {
 	{ "L", THREEB_LINE }, { "NR", THREEB_CCW }, { "SR", THREEB_CW },
 };
 
-/* Z; NULL if it is none. */
+/* Z; NULL if there is none. */
 static const uint8_t *instruction(const struct threeb_text *t,
 				  const uint8_t *p, struct threeb_record *r)
 {
@@ -279,7 +282,7 @@ static int record(struct threeb_text *t, const uint8_t *p,
 	return p ? direction(t, p, r) : -EINVAL;
 }
 
-/* Does a record begin here: B, and behind it a field or the next B? */
+/* Does a record begin here, with B and then a field or the next B? */
 static bool begins_record(const struct threeb_text *t, const uint8_t *p)
 {
 	struct letter l = letter_at(t, p);
@@ -292,7 +295,8 @@ static bool begins_record(const struct threeb_text *t, const uint8_t *p)
 	return is_digit(l.c) || (l.c && strchr("B+-.", l.c));
 }
 
-/* -- What is around them --------------------------------------------------- */
+/* -- Text around them
+ * ------------------------------------------------------- */
 
 static const struct {
 	const char *word;
@@ -302,7 +306,7 @@ static const struct {
 	{ "E", INTERP_THREEB_E }, { "MJ", INTERP_THREEB_MJ },
 };
 
-/* An end code, alone: none of its letters begins a longer word. */
+/* An end code that stands alone: its letters do not begin a longer word. */
 static const uint8_t *end_code(const struct threeb_text *t, const uint8_t *p,
 			       uint32_t *ret)
 {
@@ -338,7 +342,7 @@ static bool hides_record(const struct threeb_text *t, const uint8_t *p)
 	return false;
 }
 
-/* Past a comment, if what is here may be one. */
+/* Go past a comment, if what is here may be one. */
 static int comment(struct threeb_text *t)
 {
 	const uint8_t *p = t->p;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * threeb_write.c - a program to 3B records
+ * threeb_write.c - writes a program as 3B records
  *
  * Every record is read back by the reader's own rule, and the next one starts
- * where that leads.  A line ends where it should.  An arc says its end by J
- * alone: one coordinate is free, the other must fall on the circle about the
- * rounded centre.  If it falls a unit beside, the centre is sought among the
- * units around the nearest place that is as far from both ends.  Where none
- * fits, or more than half a circle would take the centre far, the arc is cut
- * in two, until what is left is as straight as a line.
+ * where that leads.  A line always ends where it should.  An arc gives its end
+ * only by J: one coordinate is free, and the other must be on the circle around
+ * the rounded centre.  If it is a unit off, the centre is searched among the
+ * units around the nearest place that is equally far from both ends.  If none
+ * fits, or if an arc of more than half a circle would move the centre far, the
+ * arc is cut in two, until the parts are as straight as a line.
  */
 #include "code/emitter.h"
 #include "code/threeb_reader.h"
@@ -20,13 +20,15 @@
 
 #define TURN	(2 * M_PI)
 
-/* Shorter than this an arc is as well a line. */
+/* A shorter arc can just as well be a line. */
 #define ARC_MIN_UNITS	4.0
 
-/* One that no record says, bent less than this, is as well a line. */
+/* If no record can say an arc, and it bends less than this, it can be a
+ * line. */
 #define BEND_MAX_UNITS	0.5
 
-/* Farther beside its end no arc is written, a short one; a long one must fit. */
+/* No short arc is written if its end would be farther off; a long arc must
+ * fit. */
 #define MISS_MAX_UNITS	2
 
 struct place {
@@ -40,14 +42,16 @@ struct threeb_writer {
 	struct interp_diag *diag;
 	double unit_mm;
 	double x0_mm, y0_mm;		/* the start */
-	struct place at;		/* where a reader would be */
+	struct place at;		/* where a reader would be now */
 	uint32_t line;			/* of the source, in hand */
 	uint16_t cond;
-	bool fourb;			/* with the radius and the shape of arcs */
-	bool clockwise;			/* the whole contour goes round so */
+	bool fourb;			/* with the radius and the shape of
+					 * arcs */
+	bool clockwise;			/* the whole contour goes round
+					 * clockwise */
 };
 
-/* An arc that goes from w->at to `end`. */
+/* An arc from w->at to `end`. */
 struct wanted {
 	struct place end;
 	double cx, cy;			/* centre, units from the start */
@@ -55,12 +59,13 @@ struct wanted {
 	bool full;
 };
 
-/* A choice of a centre, as records can say it. */
+/* A choice for the centre that records can express. */
 struct attempt {
 	struct threeb_arc arc;
 	struct threeb_end end;
 	int64_t j;
-	int64_t miss;			/* units from the end, squared */
+	int64_t miss;			/* squared distance from the end,
+					 * units */
 };
 
 static const char *direction(bool count_y)
@@ -72,7 +77,7 @@ static int put_line(struct threeb_writer *w, struct place to)
 {
 	const int64_t dx = to.x - w->at.x, dy = to.y - w->at.y;
 	const int64_t x = llabs(dx), y = llabs(dy);
-	/* At 45 degrees GY in quadrants 1 and 3, GX in 2 and 4. */
+	/* At 45 degrees it is GY in quadrants 1 and 3, and GX in 2 and 4. */
 	const bool count_y = x == y ? (dx > 0) == (dy > 0) : y > x;
 
 	if (dx == 0 && dy == 0)
@@ -123,7 +128,7 @@ static struct attempt try_centre(const struct threeb_writer *w,
 /* How far around a good centre others are tried. */
 #define RINGS	2
 
-/* The units around @centre, near ones first, until one fits. */
+/* Try the units around @centre, the near ones first, until one fits. */
 static struct attempt try_around(const struct threeb_writer *w,
 				 const struct wanted *want,
 				 const int64_t centre[2], struct attempt best)
@@ -145,7 +150,7 @@ static struct attempt try_around(const struct threeb_writer *w,
 	return best;
 }
 
-/* Those around the nearest place that is as far from both ends. */
+/* Try those around the nearest place that is equally far from both ends. */
 static struct attempt try_bisector(const struct threeb_writer *w,
 				   const struct wanted *want,
 				   struct attempt best)
@@ -188,7 +193,7 @@ static int put_attempt(struct threeb_writer *w, const struct attempt *t)
 
 static int put_arc(struct threeb_writer *w, const struct wanted *want);
 
-/* Two arcs of half the sweep, met at a whole unit. */
+/* Write two arcs of half the sweep, which meet at a whole unit. */
 static int put_halves(struct threeb_writer *w, const struct wanted *want)
 {
 	const double x = (double)w->at.x - want->cx;
@@ -234,7 +239,8 @@ static int put_arc(struct threeb_writer *w, const struct wanted *want)
 	return put_attempt(w, &t);
 }
 
-/* Halves go up, as a pulse between two does, noise of a double aside. */
+/* A half is rounded up, like a pulse between two units, except for the noise of
+ * a double. */
 static int64_t to_units(const struct threeb_writer *w, double mm)
 {
 	return (int64_t)floor(mm / w->unit_mm + 0.5 + 1e-4);
@@ -251,7 +257,7 @@ static struct place place_of(const struct threeb_writer *w, size_t node)
 				to_units(w, y - w->y0_mm) };
 }
 
-/* The sweep from where the reader is to the end, near the programmed one. */
+/* The sweep from where the reader is to the end; near the programmed sweep. */
 static double sweep_of(const struct threeb_writer *w,
 		       const struct wanted *want, double near)
 {
@@ -367,8 +373,8 @@ static int segment(struct threeb_writer *w,
 	}
 }
 
-/* Does the whole contour go round clockwise?  The area it goes round: of its
- * chords, and of what each arc has beside its chord. */
+/* Does the whole contour go round clockwise?  The sign of its area says so: the
+ * area of its chords, and what each arc has beside its chord. */
 static bool goes_clockwise(const struct interp_program *p)
 {
 	double twice = 0;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tip_body.c - G6.3: a rigid body along two NURBS of one parameter
+ * tip_body.c - G6.3: a rigid body along two NURBS with one parameter
  *
- * One leads the tip of the body, the other its rotation, a quaternion that is
- * brought to length 1 at every point (interp/pose.h).  They have their knots and
- * weights in common.  Both are walked by their length, degrees counted as mm, so
- * that what bends or turns sharply is not stepped over.
+ * One curve leads the tip of the body.  The other leads its rotation, a
+ * quaternion that is brought to length 1 at every point (interp/pose.h).  They
+ * have the same knots and weights.  Both are walked by their length, where
+ * degrees count as mm, so that sharp bends and turns are not stepped over.
  */
 #include "code/nurbs_words.h"
 #include "code/tip_turn.h"
@@ -33,7 +33,7 @@
 #define XYZ		(NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z))
 #define QUATERNION	(NC_BIT(NC_Q) | NC_CENTRE)
 
-/* -- Control points --------------------------------------------------------------- */
+/* -- Control points ------------------------------------------------------- */
 
 static int body_open(struct nc_reader *r)
 {
@@ -68,9 +68,9 @@ static int body_point(struct nc_reader *r)
 	return nc_curve_point(r, at, weight);
 }
 
-/* -- The walk --------------------------------------------------------------------- */
+/* -- The walk ------------------------------------------------------------- */
 
-/* Both curves, and both as one, for its length. */
+/* Both curves, and both as one curve, for its length. */
 struct pair {
 	double *move, *turn, *both;	/* rows with weights */
 	struct interp_pose_path path;
@@ -87,7 +87,7 @@ static struct interp_nurbs nurbs_of(const struct nc_curve *c, uint32_t naxes,
 	};
 }
 
-/* The largest rotation of a control point: what counts as length 1. */
+/* The largest rotation of a control point; lengths are compared with it. */
 static double largest(const struct nc_curve *c)
 {
 	double most = 0;
@@ -140,7 +140,7 @@ struct body_span {
 	size_t nstops;
 };
 
-/* The pose at the parameter @u; a rotation of length 0 has no direction. */
+/* The pose at the parameter @u.  A rotation of length 0 has no direction. */
 static void pose_at(struct pair *p, double u, struct nc_pose *ret)
 {
 	struct interp_pose pose;
@@ -185,17 +185,17 @@ static int go_span(struct nc_reader *r, struct pair *p)
 	if (!s.stops)
 		return -ENOMEM;
 	interp_nurbs_stops(e, &range, s.stops, s.nstops);
-	/* Where both stand there is no length to go by. */
+	/* Where both curves stand still, there is no length to walk by. */
 	if (s.stops[s.nstops - 1].s_mm > 0)
 		err = nc_pose_way(r, &w);
 	free(s.stops);
 	return err;
 }
 
-/* -- Checks -------------------------------------------------------------------------- */
+/* -- Checks --------------------------------------------------------------- */
 
-/* The angle between two poses of the body; without a rotary that rolls the
- * tool, between its directions. */
+/* The angle between two poses of the body.  Without a rotary axis that rolls
+ * the tool, it is the angle between their directions. */
 static double apart_deg(const struct interp_kinematics *k, const double a[4],
 			const double b[4])
 {

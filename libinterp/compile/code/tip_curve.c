@@ -2,9 +2,9 @@
 /*
  * tip_curve.c - lines, arcs and curves of the tool's tip under G43.4
  *
- * Of a line and an arc the other axes go in proportion to the tip; a curve
- * has them in its control points.  It is walked span by span, for a knot may
- * be a corner, and by length, so that what bends sharply is not stepped over.
+ * On a line or an arc, the other axes move in proportion to the tip.  A curve
+ * has them in its control points.  It is walked span by span, because a knot
+ * may be a corner, and by length, so that sharp bends are not stepped over.
  */
 #include "code/nurbs_words.h"
 #include "code/tip_way.h"
@@ -18,10 +18,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Ends of an arc as near as this are one place, in pulses. */
+/* If the ends of an arc are this near to each other, they are one place, in
+ * pulses. */
 #define SAME_PULSES	0.5
 
-/* -- Lines and arcs ------------------------------------------------------------- */
+/* -- Lines and arcs ------------------------------------------------------- */
 
 struct ends {
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
@@ -51,7 +52,7 @@ static void arc_at(const void *of, double t, double ret_mm[INTERP_NAXES])
 	ret_mm[a->axis_b] = a->b_mm + radius * sin(theta);
 }
 
-/* The farthest of the rotaries. */
+/* How far the rotary axis turns that turns most. */
 static double turn_deg(const struct ends *e)
 {
 	double turn = 0;
@@ -84,8 +85,8 @@ int nc_tip_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	return go(r, &w, end_mm);
 }
 
-/* A tip put somewhere by the axes has no place that a program names to the
- * last digit: what ends there is a full circle all the same. */
+/* If the axes put the tip somewhere, no program can name the place to the last
+ * digit.  An arc that ends there is a full circle all the same. */
 static void close_circle(const struct nc_reader *r, struct build_arc *p)
 {
 	const int plane[] = { (int)p->word->axis_a, (int)p->word->axis_b };
@@ -130,7 +131,7 @@ int nc_tip_arc(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	return go(r, &w, end_mm);
 }
 
-/* -- Curves ------------------------------------------------------------------------ */
+/* -- Curves --------------------------------------------------------------- */
 
 struct knot_span {
 	const struct interp_nurbs_eval *e;
@@ -156,7 +157,7 @@ static void span_at(const void *of, double t, double ret_mm[INTERP_NAXES])
 	memcpy(ret_mm, p.d[0], sizeof(p.d[0]));
 }
 
-/* The table by length of the span entered. */
+/* The table by length for the span that was entered. */
 static int make_stops(struct knot_span *k, struct interp_nurbs_eval *e,
 		      double error_mm)
 {
@@ -171,7 +172,7 @@ static int make_stops(struct knot_span *k, struct interp_nurbs_eval *e,
 	return 0;
 }
 
-/* What @at_mm lacks to be where the program says. */
+/* How far @at_mm is from the place that the program names. */
 static void lack(const double want_mm[INTERP_NAXES],
 		 const double at_mm[INTERP_NAXES], double ret[INTERP_NAXES])
 {
@@ -197,7 +198,7 @@ static int go_span(struct nc_reader *r, struct interp_nurbs_eval *e)
 		lack(r->curve.last_mm, at_mm, w.off_mm[1]);
 		memcpy(at_mm, r->curve.last_mm, sizeof(at_mm));
 	}
-	/* Where the curve stands there is no length to go by. */
+	/* Where the curve stands still, there is no length to walk by. */
 	if (w.turn_deg > 0)
 		err = go(r, &w, at_mm);
 	free(k.stops);

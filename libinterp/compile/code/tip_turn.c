@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tip_turn.c - a way of the tool's tip and direction: the rotaries are found
+ * tip_turn.c - a way of the tool's tip and direction: the rotary axes are found
  */
 #include "code/tip_turn.h"
 #include "code/tip_way.h"
@@ -13,13 +13,14 @@
 
 #define DEGREE		(180 / 3.14159265358979323846)
 
-/* A step along the way: no rotary turns farther in it, or it is short. */
+/* In one step along the way no rotary axis turns farther than this; otherwise
+ * the step is made shorter. */
 #define STEP_DEG	3.0
 #define STEP_MOST	(1.0 / 256)
 #define STEP_LEAST	1e-13
 #define NODES_MAX	1000000
 
-/* -- Rotations ------------------------------------------------------------------ */
+/* -- Rotations ------------------------------------------------------------ */
 
 void nc_pose_turn(const double q[4], double v[3])
 {
@@ -75,8 +76,9 @@ int nc_pose_roll(const struct interp_kinematics *k)
 	return -1;
 }
 
-/* The roll that is left of the rotation @want when the others have turned:
- * of any vector square to the tool. */
+/* Set the axis that rolls the tool.  The roll is what is left of the rotation
+ * @want after the other axes have turned; any vector that is square to the tool
+ * shows it. */
 static void roll(const struct interp_kinematics *k, const double want[4],
 		 double axes[INTERP_NAXES])
 {
@@ -99,7 +101,8 @@ static void roll(const struct interp_kinematics *k, const double want[4],
 	axes[j->axis] = deg + 360 * round((axes[j->axis] - deg) / 360);
 }
 
-/* -- The rotaries along a way --------------------------------------------------- */
+/* -- The rotary axes along a way
+ * -------------------------------------------- */
 
 struct node {
 	double t, deg[3];
@@ -110,10 +113,10 @@ struct track {
 	const struct nc_pose_way *w;
 	struct node *node;
 	size_t n, room;
-	double t0, t1;			/* of the section in hand */
+	double t0, t1;			/* of the present section */
 };
 
-/* The axes at @t, of solutions the nearest to what @q has. */
+/* Find the axes at @t.  Of several solutions, take the one nearest to @q. */
 static int solve(const struct track *k, double t, struct nc_pose *p,
 		 double q[INTERP_NAXES])
 {
@@ -186,7 +189,7 @@ static double turn_of(const double a[INTERP_NAXES],
 	return most;
 }
 
-/* Are two poses one, as far as anybody sees? */
+/* Are two poses the same, as far as anybody can see? */
 static bool same(const struct track *k, const struct nc_pose *a,
 		 const struct nc_pose *b)
 {
@@ -200,8 +203,9 @@ static bool same(const struct track *k, const struct nc_pose *a,
 		(vec_length(a->dir) * vec_length(b->dir)))) * DEGREE < bound;
 }
 
-/* A step of at most @h from @t, where the axes are @q: they are next in @q,
- * which may be a turn in place.  Return: 1 if it is one, 0, or an error. */
+/* Make a step of at most @h from @t, where the axes are @q.  Afterwards @q has
+ * the next place, which may be a turn in place.  Return: 1 if it is one, 0, or
+ * an error. */
 static int step(const struct track *k, double *t, double h,
 		double q[INTERP_NAXES])
 {
@@ -224,7 +228,7 @@ static int step(const struct track *k, double *t, double h,
 		jumps = same(k, &was, &p);
 		if (jumps)
 			break;
-		/* The direction jumps, not the rotaries alone. */
+		/* The direction itself jumps, not only the rotary axes. */
 		if (h < STEP_LEAST)
 			return -EDOM;
 		h /= 2;
@@ -234,8 +238,8 @@ static int step(const struct track *k, double *t, double h,
 	return jumps;
 }
 
-/* Nodes from @t on, to the end of the way or to a turn in place, which is then
- * in @q; @t is behind it.  Return: 1 if there is one, 0, or an error. */
+/* Write nodes from @t on, to the end of the way or to a turn in place, which is
+ * then in @q; @t is behind it.  Return: 1 if there is one, 0, or an error. */
 static int follow(struct track *k, double *t, double q[INTERP_NAXES])
 {
 	double h = STEP_MOST;
@@ -275,12 +279,12 @@ static void section_at(const void *of, double u, double ret_mm[INTERP_NAXES])
 			hi = mid;
 	}
 	memcpy(ret_mm + INTERP_A, k->node[lo].deg, sizeof(k->node[lo].deg));
-	/* It was solved nearly here before. */
+	/* Almost the same place was solved before. */
 	(void)solve(k, t, &p, ret_mm);
 	memcpy(ret_mm, p.mm, 3 * sizeof(*ret_mm));
 }
 
-/* How far the rotary goes that turns most, all its turns added up. */
+/* How far the rotary axis turns that turns most, with all its turns added. */
 static double turn_deg(const struct track *k)
 {
 	double sum[3] = { 0 };
@@ -310,7 +314,7 @@ static int go_section(struct track *k)
 	return err;
 }
 
-/* The tip stands, the rotaries turn to where @q has them. */
+/* The tip stands still while the rotary axes turn to @q. */
 static int turn_in_place(struct nc_reader *r, const double q[INTERP_NAXES])
 {
 	double end[INTERP_NAXES];

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tip_way.c - cut a way of the tool's tip into straight lines of the axes
+ * tip_way.c - cuts a way of the tool's tip into straight lines of the axes
  *
- * A line of the tip is a curve of the axes as soon as a rotary turns, a curve
- * of the tip always.  Each piece is so short that the tip stays within the
- * tolerance of its way: tried by putting the axes on the piece and looking
- * where the tip is.
+ * As soon as a rotary axis turns, a line of the tip is a curve of the axes; a
+ * curve of the tip always is.  Each piece is so short that the tip stays within
+ * the tolerance of its way.  This is tested: the axes are put on the piece, and
+ * the place of the tip is computed.
  */
 #include "code/tip_way.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Places of a piece that are looked at; between them the tip's way is smooth,
- * as long as a piece turns by no more than this: of whole turns every look may
- * meet the same place. */
+/* So many places of a piece are looked at.  Between them the way of the tip is
+ * smooth as long as a piece turns by no more than this.  If it made whole
+ * turns, every look might meet the same place. */
 #define LOOKS		15
 #define TURN_MAX_DEG	180.0
 
-/* One way makes no more pieces than this, and none shorter: a curve may bend
- * within a millionth of its length, a rounding is no bend. */
+/* One way makes at most so many pieces, and none is shorter.  A curve may bend
+ * within a millionth of its length; a rounding error is not a bend. */
 #define PIECES_MAX	100000
 #define PIECE_MIN	1e-10
 
@@ -30,7 +30,8 @@
 struct extent {
 	double tip_mm;
 	double turn_deg;		/* the farthest of the rotaries */
-	double other_mm;		/* of U and V, which no joint has */
+	double other_mm;		/* of U and V, which belong to no
+					 * joint */
 };
 
 static double lerp(double a, double b, double t)
@@ -46,7 +47,7 @@ static void place_at(const struct nc_tip_way *w, double t,
 		ret_mm[i] += lerp(w->off_mm[0][i], w->off_mm[1][i], t);
 }
 
-/* The axes at @t: those that no joint has are as named. */
+/* The axes at @t.  Axes that belong to no joint are as named. */
 static int axes_at(const struct nc_reader *r, const struct nc_tip_way *w,
 		   double t, double q[INTERP_NAXES])
 {
@@ -57,7 +58,7 @@ static int axes_at(const struct nc_reader *r, const struct nc_tip_way *w,
 	return interp_kin_place(&r->tool.k, tip, q);
 }
 
-/* Length from @a to @b along @n axes, @first and on. */
+/* The length from @a to @b along @n axes, from @first on. */
 static double span(const double *a, const double *b, int first, int n)
 {
 	double sum = 0;
@@ -67,7 +68,7 @@ static double span(const double *a, const double *b, int first, int n)
 	return sqrt(sum);
 }
 
-/* Of axes at @q and the tip where they put it, from where it should be. */
+/* How far the tip, where the axes at @q put it, is from where it should be. */
 static double off_mm(const struct interp_kinematics *k,
 		     const double q[INTERP_NAXES],
 		     const double want_mm[INTERP_NAXES])
@@ -82,13 +83,13 @@ static double off_mm(const struct interp_kinematics *k,
 	return off;
 }
 
-/* A piece: part of a way, and where the axes are at its ends. */
+/* A piece: a part of the way, and the axes at its ends. */
 struct piece {
 	double t0, t1;
 	double q0[INTERP_NAXES], q1[INTERP_NAXES];
 };
 
-/* How far the tip strays from its way while the axes go straight. */
+/* How far the tip leaves its way while the axes go straight. */
 static double stray_mm(const struct nc_reader *r, const struct nc_tip_way *w,
 		       const struct piece *p)
 {
@@ -106,7 +107,7 @@ static double stray_mm(const struct nc_reader *r, const struct nc_tip_way *w,
 	return most;
 }
 
-/* Linear axes that stand but for a rounding: they stand. */
+/* Linear axes that move only by a rounding error stand still. */
 static void settle(const double q0[INTERP_NAXES], double q1[INTERP_NAXES])
 {
 	for (int i = 0; i < 3; i++) {
@@ -134,7 +135,8 @@ static struct extent measure(const struct nc_tip_way *w, double t0, double t1)
 	return e;
 }
 
-/* F is that of the tip; where it stands on the whole way, of what moves. */
+/* F is the feed of the tip.  If the tip stands still on the whole way, F
+ * belongs to what moves. */
 static double seconds(const struct nc_reader *r, const struct extent *whole,
 		      const struct extent *part)
 {
@@ -145,7 +147,7 @@ static double seconds(const struct nc_reader *r, const struct extent *whole,
 	return part->other_mm / r->feed_mm_s;
 }
 
-/* The path's length is counted on the linear axes. */
+/* The length of the path is counted on the linear axes. */
 static double path_mm(const struct piece *p)
 {
 	double path = span(p->q0, p->q1, INTERP_X, 3);
@@ -157,7 +159,7 @@ static double path_mm(const struct piece *p)
 	return path;
 }
 
-/* The way may have begun in a line before this one. */
+/* The way may have begun in an earlier line. */
 static int blame_way(struct nc_reader *r, int rc)
 {
 	if (r->word.line != r->line) {
@@ -182,7 +184,8 @@ static int refuse_place(struct nc_reader *r)
 				      "the linear axes cannot reach"));
 }
 
-/* @p as long as it may be, up to the t1 it has: its end, and axes in q1. */
+/* Make @p as long as possible, at most up to its t1.  Set its end, and the axes
+ * in q1. */
 static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		     struct piece *p)
 {
@@ -233,7 +236,8 @@ int nc_tip_way(struct nc_reader *r, const struct nc_tip_way *w)
 					      cut_piece(r, w, &p);
 		if (!err)
 			err = emit_piece(r, w, &whole, &p);
-		/* What was long enough here may do, or more. */
+		/* The length that was right here may be right again, or
+		 * more. */
 		step = fmin(2 * (p.t1 - p.t0), most);
 		p.t0 = p.t1;
 		memcpy(p.q0, p.q1, sizeof(p.q0));

@@ -24,7 +24,7 @@ static bool has_xyz(const struct interp_kinematics *k)
 	return axes == (NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z));
 }
 
-/* The tool longer by a register: the tip farther from the holder. */
+/* A register makes the tool longer: the tip is then farther from the holder. */
 static int lengthen(struct nc_reader *r)
 {
 	const uint32_t n = nc_has(r, NC_H) ? (uint32_t)r->block.value[NC_H] : 0;
@@ -89,9 +89,9 @@ int nc_run_tool_point(struct nc_reader *r)
 	return 0;
 }
 
-/* -- G43.5 ---------------------------------------------------------------------- */
+/* -- G43.5 ---------------------------------------------------------------- */
 
-/* Rotaries that turn the tool. */
+/* The rotary axes that turn the tool. */
 static uint32_t turning(const struct interp_kinematics *k)
 {
 	uint32_t axes = 0;
@@ -117,14 +117,16 @@ int nc_tool_vector(struct nc_reader *r)
 	if (!angles)
 		return 0;
 	return nc_refuse(r, b->at[__builtin_ctz(angles)],
-			 "I J K, from the tip into the holder; G43.4 for angles",
-			 "an angle of a rotary that turns the tool, under G43.5");
+			 "I J K, from the tip into the holder; G43.4 for "
+			 "angles",
+			 "an angle of a rotary that turns the tool, under "
+			 "G43.5");
 }
 
 struct swing {
 	const double *from_mm, *to_mm;
 	double dir[3], side[3];		/* where it begins; square to that, the
-					 * way it turns */
+					 * direction in which it turns */
 	double angle;
 };
 
@@ -140,7 +142,8 @@ static void swing_at(const void *of, double t, struct nc_pose *ret)
 		ret->dir[i] = c * s->dir[i] + d * s->side[i];
 }
 
-/* The tool turns in the plane of both directions.  false: they are opposite. */
+/* The tool turns in the plane of both directions.  Return: false if they are
+ * opposite. */
 static bool swing_set(struct swing *s, const double from[3], const double to[3])
 {
 	double x[3], sine;
@@ -158,7 +161,7 @@ static bool swing_set(struct swing *s, const double from[3], const double to[3])
 	return true;
 }
 
-/* The direction that the line names, or the one before it. */
+/* The direction that the line names, or else the previous one. */
 static int direction(struct nc_reader *r, double ret[3])
 {
 	double n;

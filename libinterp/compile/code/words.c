@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * words.c - words with values, and the bytes that are equal in all dialects
+ * words.c - words with values, and the bytes that mean the same in all dialects
  */
 #include "code/words.h"
 

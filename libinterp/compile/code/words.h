@@ -2,12 +2,12 @@
 /*
  * words.h - the words of the dialects, as tables
  *
- * A word is a letter and a number.  Words with a value have a slot; G, M and T
- * words are codes, each of a modal group; C with three digits and E call a
- * condition.  A dialect is a table of what bytes begin, tables of its codes,
- * and a few rules: all of it read from a file of dialects/, by dialect_read.c.
- * What a code can mean is a row of meanings.h.  docs/nc-code.md says what each
- * does.
+ * A word is a letter and a number.  Words with a value have a slot.  G, M and T
+ * words are codes, and each belongs to a modal group.  C with three digits, and
+ * E, call a condition.  A dialect is a table of what bytes begin, tables of its
+ * codes, and a few rules.  dialect_read.c reads all of it from a file of
+ * dialects/.  What a code can mean is a row of meanings.h.  docs/nc-code.md
+ * says what each one does.
  */
 #ifndef CODE_WORDS_H
 #define CODE_WORDS_H
@@ -25,7 +25,8 @@ enum nc_slot {
 	NC_D, NC_H, NC_ANGLE,		/* offset registers; A of a taper */
 	NC_UI, NC_UJ,			/* I J behind a : */
 	NC_Q,
-	NC_SPARE,			/* a letter that only ignored words use */
+	NC_SPARE,			/* a letter that only ignored words
+					 * use */
 	NC_NSLOTS
 };
 
@@ -42,7 +43,7 @@ enum nc_slot {
 /* What may follow a letter. */
 struct nc_word {
 	char letter;
-	bool whole;			/* no fraction */
+	bool whole;			/* it must be a whole number */
 	double min, max;
 	const char *range;		/* the same in words */
 	const char *goes_with;		/* the lines it may stand on */
@@ -50,7 +51,7 @@ struct nc_word {
 
 extern const struct nc_word nc_words[NC_NSLOTS];
 
-/* What a byte can begin.  NC_WORD + slot for the letter of a value. */
+/* What a byte can begin.  For the letter of a value it is NC_WORD + slot. */
 enum nc_class {
 	NC_BAD,
 	NC_WORD,
@@ -65,22 +66,25 @@ enum nc_class {
 	NC_LETTER_S,			/* a condition, SC its definition */
 	NC_LETTER_D,			/* D or H: an offset register */
 	NC_LETTER_U,			/* U or V: only with a taper */
-	NC_NUMERIC,			/* digit, point or sign: a stray one */
+	NC_NUMERIC,			/* a digit, point or sign without a
+					 * letter */
 	NC_OPEN,			/* ( comment ) */
 	NC_SEMICOLON,			/* ; comment */
 	NC_BLOCK_END,			/* ; and nothing behind it */
 	NC_SLASH,
 	NC_PERCENT,
 	NC_COLON,
-	NC_LETTER_REFUSED,		/* known elsewhere: a reason */
+	NC_LETTER_REFUSED,		/* known in other dialects: there is a
+					 * reason */
 	NC_LETTER_REST,			/* the rest of the line is ignored */
 	NC_NCLASSES
 };
 
-/* Of digits, blanks, ends of lines and what else is equal in all dialects. */
+/* Digits, blanks, ends of lines, and everything else that all dialects
+ * share. */
 extern const uint8_t nc_classes[256];
 
-/* Modal groups, one word of each on a line; a line is carried out in this
+/* Modal groups.  A line may have one word of each.  It is carried out in this
  * order, whatever the order of its words. */
 enum nc_group {
 	NC_UNKNOWN,
@@ -98,37 +102,38 @@ enum nc_group {
 	NC_OFFSET,			/* G40 G41 G42 */
 	NC_TAPER,			/* G50 G51 G52 */
 	NC_TAPER_CORNER,		/* G60 G61 G62 */
-	NC_MCODE,			/* the PLC's, before the motion */
+	NC_MCODE,			/* for the PLC, before the motion */
 	NC_POWER,			/* M3 M4 M5 */
 	NC_PUMP,			/* T84 T85 */
 	NC_ESCAPE,			/* G140 ... G143 */
 	NC_TOOL_POINT,			/* G43.4 G43.5 G49 */
 	NC_MACHINE,			/* G53 */
 	NC_CYCLE,			/* G130 ... G135 */
-	NC_TOUCH,			/* G38.2 G80 G81 G82 G160 ... G162 */
+	NC_PROBE,			/* G38.2 G80 G81 G82 G160 ... G162 */
 	NC_ONE_SHOT,			/* G4 G10 G28 G92 G92.1 G120 */
 	NC_MOTION,			/* G0 ... G3, G5 ... G5.3, G6.2, G6.3 */
-	NC_MCODE_AFTER,			/* the PLC's, after it */
+	NC_MCODE_AFTER,			/* for the PLC, after the motion */
 	NC_STOP,			/* M0 M1 M2 M30 M98 M99 */
 	NC_NGROUPS,
-	NC_IGNORED = NC_NGROUPS,	/* not carried out: a note says so */
-	NC_REFUSED			/* known elsewhere: the file says what it
-					 * means there */
+	NC_IGNORED = NC_NGROUPS,	/* not carried out; a note says so */
+	NC_REFUSED			/* known in other dialects: the file
+					 * says what it means there */
 };
 
-/* What a member of NC_MOTION does; G0 ... G3 are their numbers. */
+/* What a member of NC_MOTION does; G0 ... G3 have their own numbers. */
 enum nc_motion {
 	NC_SPLINE = 5,			/* G5: a cubic */
 	NC_PARABOLA,			/* G5.1 */
 	NC_NURBS_BLOCK,			/* G5.2: a control point */
 	NC_NURBS_END,			/* G5.3 */
 	NC_NURBS,			/* G6.2: a control point or a knot */
-	NC_BODY,			/* G6.3: the same of a rigid body */
+	NC_BODY,			/* the same for a rigid body */
 };
 
 /*
- * Words done once: what a dialect's file calls it, an id, the function that does
- * it, the slots it uses.  A new one is a row and a function.
+ * Words that act once.  A row has the name in a dialect's file, an id, the
+ * function that carries it out, and the slots that it uses.  A new one is a row
+ * and a function.
  */
 #define NC_ONE_SHOTS(W) \
 	W("dwell", DWELL, dwell, NC_BIT(NC_P) | NC_BIT(NC_X)) \
@@ -146,12 +151,13 @@ enum nc_motion {
 #define NC_ONE_SHOT_ID(name, id, run, takes)	NC_##id,
 enum nc_one_shot { NC_ONE_SHOTS(NC_ONE_SHOT_ID) };
 
-/* What a member of NC_TOUCH does. */
-enum nc_touch {
-	NC_TOUCH_FEED,			/* at the programmed feed at the most */
-	NC_TOUCH_ONE, NC_TOUCH_LIMIT, NC_TOUCH_HALF,
-	NC_TOUCH_HOLE, NC_TOUCH_PILLAR, NC_TOUCH_CORNER,
-	NC_NTOUCHES
+/* What a member of NC_PROBE does. */
+enum nc_probe {
+	NC_PROBE_FEED,			/* not faster than the programmed
+					 * feed */
+	NC_PROBE_ONE, NC_PROBE_LIMIT, NC_PROBE_HALF,
+	NC_PROBE_HOLE, NC_PROBE_PILLAR, NC_PROBE_CORNER,
+	NC_NPROBES
 };
 /* What a member of NC_TOOL_POINT does. */
 enum nc_tool { NC_TOOL_OFF, NC_TOOL_ANGLES, NC_TOOL_VECTOR };
@@ -162,10 +168,11 @@ enum nc_stop { NC_HALT, NC_OPTIONAL_HALT, NC_FINISH, NC_CALL, NC_RETURN };
 /* One G, M or T word. */
 struct nc_code {
 	uint8_t group;			/* enum nc_group */
-	uint8_t value;			/* meant for the group's function */
-	uint16_t text;			/* why, in nc_dialect.text; 0: none */
-	uint32_t takes;			/* slots it uses on its line */
-	uint32_t drops;			/* ... and those it has no use for */
+	uint8_t value;			/* for the function of the group */
+	uint16_t text;			/* the reason, in nc_dialect.text; 0:
+					 * none */
+	uint32_t takes;			/* slots that it uses on its line */
+	uint32_t drops;			/* ... and slots that it ignores */
 };
 
 /* Index: ten times the number for G, the number itself for M and T. */
@@ -179,13 +186,13 @@ struct nc_letter {
 	struct nc_code *codes;
 	uint32_t ncodes;
 	uint32_t scale;			/* 10: one decimal may follow */
-	struct nc_code other;		/* every number without a code */
+	struct nc_code other;		/* for every number without a code */
 };
 
 #define NC_TEXT_MAX	12288
 
 /* A length without a decimal point is taken as it is, or in the last of its
- * decimals, or refused unless it is 0. */
+ * decimals, or is refused unless it is 0. */
 enum nc_point { NC_POINT_FREE, NC_POINT_LAST, NC_POINT_WANTED };
 
 /* Variables, expressions and jumps: none, Fanuc's or LinuxCNC's. */
@@ -197,11 +204,13 @@ struct nc_dialect {
 	uint8_t label;			/* of subprograms: O or N */
 	uint8_t point;			/* enum nc_point */
 	uint8_t arc_places;		/* I J are places */
-	uint8_t m2_ends;		/* M2 ends the text, nothing else */
-	uint8_t no_feed;		/* F is optional: the gap says */
+	uint8_t m2_ends;		/* M2 ends the text, and nothing else
+					 * does */
+	uint8_t no_feed;		/* F is optional: the gap decides */
 	uint8_t defines;		/* E001= and H001= lines */
 	uint8_t registers;		/* H001=0.11 alone */
-	uint8_t touches;		/* X- and X, without a number */
+	uint8_t lone_ways;		/* X- and X without a number are
+					 * allowed */
 	uint8_t lean;			/* U V: how far the top of the wire is
 					 * from X Y, not its place */
 	uint8_t dwell_ms;		/* P of a dwell is in ms, not s */

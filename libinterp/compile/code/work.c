@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * work.c - G10: work offsets written by the program
- */
+/* work.c - G10: work offsets that the program writes */
 #include "code/reader.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * feed.c - how fast a curve may be gone along at a point
+ * feed.c - how fast a curve may be followed at a point
  *
- * Derivatives by length from those by parameter: with g = |C'|,
+ * The derivatives by length follow from those by parameter.  With g = |C'|:
  *
  *	u_s = 1/g,  u_ss = -g'/g^3,  u_sss = (3 g'^2 - g g'')/g^5
  */

@@ -2,10 +2,11 @@
 /*
  * fit.c - one curve for many points, within a tolerance
  *
- * Least squares with the ends fixed: the normal equations have a band of seven,
- * so a round costs as much as there are points.  Knots stand at points, never
- * at the second and the last but one, so that with a knot at all others there
- * are as many unknowns as points, and every one has a point in its support.
+ * It is a least squares problem with fixed ends.  The normal equations have a
+ * band of seven, so the cost of a round is proportional to the number of
+ * points.  Knots are at points, but never at the second point nor at the last
+ * but one.  So even with a knot at all others there are as many unknowns as
+ * points, and each unknown has a point in its support.
  */
 #include "interp/nurbs_fit.h"
 
@@ -19,14 +20,14 @@
 #define P	3			/* degree */
 #define BAND	(P + 1)			/* diagonal and those beside it */
 #define ROUNDS	16
-#define BETWEEN	8			/* a line is looked at in its eighths */
+#define BETWEEN	8			/* a line is checked at its eighths */
 
 struct work {
 	const struct interp_fit *f;
 	struct interp_nurbs_own *o;
 	double *t;			/* parameter of each point */
-	uint32_t *knot;			/* points that have one, rising */
-	uint32_t nknots;		/* both ends among them */
+	uint32_t *knot;			/* points that have one, increasing */
+	uint32_t nknots;		/* both ends are included */
 	double (*m)[BAND];		/* of the inner control points */
 	double *rhs;			/* rows of naxes */
 	bool *bad;			/* between knot i and i + 1 */
@@ -47,8 +48,8 @@ static double distance(const struct interp_fit *f, const double *a,
 	return sqrt(sum);
 }
 
-/* A circle through a bend of angle a between lines of length L rises L a / 8
- * over them. */
+/* At a bend of angle a between lines of length L, a circle rises L a / 8 above
+ * them. */
 bool interp_fit_corner(const struct interp_fit *f, uint32_t at)
 {
 	const double *p = point(f, at);
@@ -63,7 +64,7 @@ bool interp_fit_corner(const struct interp_fit *f, uint32_t at)
 	return fmax(before, after) * acos(cosine) / 8 > f->tolerance_mm;
 }
 
-/* -- The system --------------------------------------------------------------- */
+/* -- The system ----------------------------------------------------------- */
 
 static void set_knots(struct work *w)
 {
@@ -84,7 +85,7 @@ static void set_knots(struct work *w)
 	};
 }
 
-/* One point's share.  Control points 0 and last are known. */
+/* Add the part of one point.  Control points 0 and last are known. */
 static void add_point(struct work *w, uint32_t i)
 {
 	const struct interp_fit *f = w->f;
@@ -176,7 +177,8 @@ static bool least_squares(struct work *w)
 	return true;
 }
 
-/* -- How near it is, and where a knot is missing ------------------------------- */
+/* -- How near it is, and where a knot is missing
+ * ---------------------------- */
 
 static double off_line(const struct interp_fit *f, const double *p,
 		       const double *a, const double *b)
@@ -213,7 +215,7 @@ static bool near_at(struct work *w, struct interp_nurbs_eval *e, uint32_t i)
 	return true;
 }
 
-/* Mark the spans that are too far off; how many. */
+/* Mark the spans that are too far off.  Return: how many there are. */
 static uint32_t judge(struct work *w)
 {
 	struct interp_nurbs_eval e;
@@ -232,7 +234,7 @@ static uint32_t judge(struct work *w)
 	return bad;
 }
 
-/* A knot in the middle of every span marked; false if none has room. */
+/* Add a knot in the middle of every marked span; false if none has room. */
 static bool add_knots(struct work *w)
 {
 	const uint32_t most = w->f->npoints - 3, was = w->nknots;

@@ -13,7 +13,8 @@
 #include <errno.h>
 #include <math.h>
 
-int interp_pose_open(struct interp_pose_path *p, const struct interp_nurbs *move,
+int interp_pose_open(struct interp_pose_path *p,
+		     const struct interp_nurbs *move,
 		     const struct interp_nurbs *turn)
 {
 	if (move->naxes != 3 || turn->naxes != 4 ||

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * chain.c - a chain of joints, and where it puts the tool
- */
+/* chain.c - a chain of joints, and where it puts the tool */
 #include "interp/kinematics.h"
 #include "kinematics/vector.h"
 
@@ -13,7 +11,7 @@
 
 #define RADIAN		(M_PI / 180)
 
-/* Directions nearer than this are one. */
+/* Directions that differ by less than this are equal. */
 #define SAME_DIR	1e-9
 
 static const double unit[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
@@ -35,7 +33,7 @@ void interp_kin_clear(struct interp_kinematics *k)
 	}
 }
 
-/* -- Is it a machine? --------------------------------------------------------- */
+/* -- Is it a machine? ----------------------------------------------------- */
 
 __attribute__((format(printf, 3, 4)))
 static int refuse(struct interp_diag *d, const char *wanted,
@@ -112,7 +110,8 @@ static int check_linear(struct interp_kinematics *k, struct interp_diag *diag)
 	return 0;
 }
 
-/* A rotary along the tool, with none behind it that is not, but rolls it. */
+/* A rotary axis along the tool that has no other kind of rotary behind it only
+ * rolls the tool. */
 static int check_turns(struct interp_kinematics *k, struct interp_diag *diag)
 {
 	bool rolls = true;
@@ -156,7 +155,7 @@ int interp_kin_prepare(struct interp_kinematics *k, struct interp_diag *diag)
 	return err;
 }
 
-/* -- Forward ---------------------------------------------------------------- */
+/* -- Forward -------------------------------------------------------------- */
 
 static void move(const struct interp_kin_joint *j, double q, double at[3])
 {

@@ -23,15 +23,16 @@
 
 #define DEGREE		(180 / M_PI)
 
-/* A tool points this well, or not at all. */
+/* The tool points at least this well, or the direction cannot be reached. */
 #define POINTS		1e-9
 
-/* A rotary this near to the tool's axis has no angle of its own. */
+/* If a rotary axis is this near to the tool's axis, it has no angle of its
+ * own. */
 #define SINGULAR	1e-7
 
-/* -- The linear joints --------------------------------------------------------- */
+/* -- The linear joints ---------------------------------------------------- */
 
-/* Which way joint @n moves the tip, seen from the work. */
+/* In which direction joint @n moves the tip, seen from the work. */
 static void column(const struct interp_kinematics *k, uint32_t n,
 		   const double q[INTERP_NAXES], double ret[3])
 {
@@ -71,9 +72,9 @@ int interp_kin_place(const struct interp_kinematics *k,
 	return 0;
 }
 
-/* -- The rotaries ------------------------------------------------------------- */
+/* -- The rotaries --------------------------------------------------------- */
 
-/* The angle about @u from @from to @to; false: any angle will do. */
+/* The angle about @u from @from to @to; false: any angle is right. */
 static bool angle(const double u[3], const double from[3], const double to[3],
 		  double *ret_deg)
 {
@@ -91,7 +92,7 @@ static bool angle(const double u[3], const double from[3], const double to[3],
 	return true;
 }
 
-/* @deg, on the turn nearest to @last. */
+/* @deg, plus the whole turns that bring it nearest to @last. */
 static double nearest(double deg, double last)
 {
 	return deg + 360 * round((last - deg) / 360);
@@ -116,7 +117,7 @@ static int turn_one(const struct interp_kinematics *k, const double d[3],
 	return 0;
 }
 
-/* One of the two ways: @g is the share of z along u1 x u2. */
+/* One of the two solutions: @g is the share of z along u1 x u2. */
 static void turn_way(const struct interp_kinematics *k, const double d[3],
 		     const double last[2], const double z[3],
 		     struct turns *ret)

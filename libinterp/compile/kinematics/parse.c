@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * parse.c - a chain as a machine file has it
- */
+/* parse.c - a chain of joints as the machine file writes it */
 #include "interp/kinematics.h"
 
 #include <errno.h>
@@ -76,7 +74,8 @@ static int joint(struct text *t, struct interp_kin_joint *j)
 	*j = (struct interp_kin_joint) {
 		.axis = (enum interp_axis)(letter - INTERP_AXIS_LETTERS)
 	};
-	/* X A U along or about X, Y B V along or about Y, Z C Z. */
+	/* X A U are along or about X, Y B V along or about Y, Z C along or
+	 * about Z. */
 	j->dir[j->axis < INTERP_U ? j->axis % 3 : j->axis - INTERP_U] = 1;
 	t->at++;
 	skip(t);

@@ -27,7 +27,7 @@ static inline void vec_cross(const double a[3], const double b[3],
 	ret[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* @v turned about @axis through the origin, in place (O. Rodrigues, 1840). */
+/* Turn @v about @axis through the origin, in place (O. Rodrigues, 1840). */
 static inline void vec_turn(const double axis[3], double angle, double v[3])
 {
 	const double c = cos(angle), s = sin(angle);

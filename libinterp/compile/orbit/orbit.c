@@ -2,8 +2,8 @@
 /*
  * orbit.c - planetary cycles of a sinker, as a path
  *
- * A round shape is a profile: radius and depth over the way u along it.  A
- * turn goes once round while u goes on by a step.
+ * A round shape is a profile: radius and depth as functions of the way u along
+ * the profile.  During one turn, u increases by one step.
  */
 #include "interp/orbit.h"
 
@@ -11,21 +11,23 @@
 #include <string.h>
 
 #define TURN		(2 * M_PI)
-#define CHORD_PULSES	0.4		/* a polyline's distance from its curve */
+#define CHORD_PULSES	0.4		/* distance of a polyline from its
+					 * curve */
 #define NEAR_MM		1e-9
 
 struct walk {
 	const struct interp_orbit *o;
 	const struct interp_machine *m;
 	const struct interp_orbit_to *to;
-	double depth_mm, side;		/* 0 and more; + 1: sinks toward + */
-	double length_mm;		/* of the profile */
-	double step_mm;			/* of it, each turn */
+	double depth_mm, side;		/* depth is 0 or more; side + 1: it
+					 * sinks toward + */
+	double length_mm;		/* length of the profile */
+	double step_mm;			/* along the profile, in each turn */
 	uint32_t steps;
-	double r_mm, h_mm;		/* where it has come to */
+	double r_mm, h_mm;		/* where it is now */
 };
 
-/* -- The profile -------------------------------------------------------------- */
+/* -- The profile ---------------------------------------------------------- */
 
 static double height_of(const struct interp_orbit *o)
 {
@@ -53,7 +55,7 @@ double interp_orbit_radius_mm(const struct interp_orbit *o, double h_mm)
 	return o->radius_mm;
 }
 
-/* The way down a sphere's wall, then along its quarter. */
+/* The way down the wall of a sphere, and then along its quarter. */
 static double sphere_length(const struct walk *w)
 {
 	const double b = w->o->bottom_mm, h = w->depth_mm;
@@ -103,7 +105,7 @@ static void plan_steps(struct walk *w)
 	w->step_mm = w->length_mm / w->steps;
 }
 
-/* -- Places --------------------------------------------------------------------- */
+/* -- Places --------------------------------------------------------------- */
 
 /* @x and @y from the centre, at height w->h_mm. */
 static void place(const struct walk *w, double x_mm, double y_mm,
@@ -136,9 +138,9 @@ static double pulse_mm(const struct walk *w)
 	return fmin(w->m->axis[w->o->a].pulse_mm, w->m->axis[w->o->b].pulse_mm);
 }
 
-/* -- Ways out --------------------------------------------------------------------- */
+/* -- Ways out ------------------------------------------------------------- */
 
-/* C turns back as it rises. */
+/* C turns back while it rises. */
 static void lead_out(const struct walk *w, struct interp_escape *e)
 {
 	const struct interp_orbit *o = w->o;
@@ -159,7 +161,7 @@ static int no_escape(const struct walk *w)
 	return w->to->escape(w->to->arg, NULL);
 }
 
-/* In the centre: straight up, by the way it came. */
+/* In the centre: straight up, the way it came. */
 static int escape_up(const struct walk *w)
 {
 	struct interp_escape e = { .out = 0 };
@@ -170,7 +172,7 @@ static int escape_up(const struct walk *w)
 	return w->to->escape(w->to->arg, &e);
 }
 
-/* Up by @rise_mm, the axes @home to the centre, out. */
+/* Up by @rise_mm, then the axes @home to the centre, then out. */
 static int escape_home(const struct walk *w, uint32_t home, double rise_mm)
 {
 	const struct interp_orbit *o = w->o;
@@ -190,7 +192,8 @@ static uint32_t both(const struct walk *w)
 	return 1u << w->o->a | 1u << w->o->b;
 }
 
-/* Does the electrode meet too much in the gate of a turn @by_mm smaller? */
+/* Does the electrode meet too much material in the gate of a turn that is
+ * @by_mm smaller? */
 static bool gate_ok(const struct walk *w, double by_mm)
 {
 	return by_mm * by_mm / (8 * w->o->radius_mm) <= pulse_mm(w);
@@ -198,14 +201,15 @@ static bool gate_ok(const struct walk *w, double by_mm)
 
 struct round {
 	double from_mm, to_mm;		/* of the profile */
-	uint32_t home;			/* axes of its way out; 0: none */
+	uint32_t home;			/* axes that its way out moves; 0:
+					 * none */
 	double rise_mm;
-	bool level;			/* of one radius */
+	bool level;			/* the radius is the same everywhere */
 };
 
 /*
- * Is the turn before round this one, at its depth or a step above it?  A
- * cone that grows with depth has smaller ones above it.
+ * Does the previous turn lie around this one, at the same depth or one step
+ * above it?  A cone that grows with the depth has smaller turns above it.
  */
 static void way_out(const struct walk *w, uint32_t nth, double r0, double r1,
 		    struct round *q)
@@ -222,7 +226,7 @@ static void way_out(const struct walk *w, uint32_t nth, double r0, double r1,
 	q->rise_mm = expand ? 0 : w->step_mm;
 }
 
-/* -- Once round --------------------------------------------------------------------- */
+/* -- Once round ----------------------------------------------------------- */
 
 static int turn_arc(struct walk *w, const struct round *q)
 {
@@ -238,7 +242,8 @@ static int turn_arc(struct walk *w, const struct round *q)
 	return w->to->arc(w->to->arg, end_mm, &arc);
 }
 
-/* Lines enough to keep within CHORD_PULSES: sagitta r dt^2 / 8. */
+/* So many lines that they stay within CHORD_PULSES: the sagitta is r dt^2 /
+ * 8. */
 static uint32_t chords(struct walk *w, const struct round *q)
 {
 	const double e = CHORD_PULSES * pulse_mm(w);
@@ -248,7 +253,7 @@ static uint32_t chords(struct walk *w, const struct round *q)
 	r0 = w->r_mm;
 	profile_at(w, q->to_mm);
 	r1 = w->r_mm;
-	/* A spiral is more curved than a circle, most of all inside. */
+	/* A spiral is more curved than a circle, most of all at its inside. */
 	r = fmax(r0, r1) + 2 * fabs(r1 - r0) / TURN;
 	n = ceil(TURN / sqrt(8 * e / r));
 	return n > 8 ? (uint32_t)n : 8;
@@ -270,7 +275,7 @@ static int turn_polyline(struct walk *w, const struct round *q)
 	return err;
 }
 
-/* From the middle of a side; square to it is one axis alone. */
+/* From the middle of a side; square to the side only one axis moves. */
 static int turn_square(struct walk *w, const struct round *q)
 {
 	static const struct { double t; int x, y, along_b; } corner[] = {
@@ -306,7 +311,7 @@ static int turn(struct walk *w, const struct round *q)
 	return q->level ? turn_arc(w, q) : turn_polyline(w, q);
 }
 
-/* -- The stages --------------------------------------------------------------------- */
+/* -- The stages ----------------------------------------------------------- */
 
 static int go_round(struct walk *w)
 {
@@ -329,7 +334,7 @@ static int go_round(struct walk *w)
 	return err;
 }
 
-/* The first after a helix has its last turn a step above it. */
+/* The first turn after a helix has the helix's last turn one step above it. */
 static int finish(struct walk *w)
 {
 	double r0;
@@ -355,7 +360,7 @@ static int finish(struct walk *w)
 	return err;
 }
 
-/* Straight down in the centre to @h_mm over the bottom. */
+/* Straight down in the centre, to @h_mm above the bottom. */
 static int sink(struct walk *w, double h_mm)
 {
 	int err = escape_up(w);
@@ -377,7 +382,8 @@ static int vectors(struct walk *w)
 	int err = escape_home(w, both(w), 0);
 
 	for (uint32_t i = 0; i < o->directions && !err; i++) {
-		const double angle = (o->angle_deg + 360.0 * i / o->directions) *
+		const double angle = (o->angle_deg +
+				      360.0 * i / o->directions) *
 				     TURN / 360;
 
 		err = line_to(w, o->radius_mm * cos(angle),
@@ -419,8 +425,8 @@ static int walk_round(struct walk *w)
 }
 
 /*
- * To the centre over a floor that is flat, else cutting; then out by the way
- * that is free.
+ * Go to the centre: rapidly over a flat floor, otherwise cutting.  Then go out
+ * by a way that is free.
  */
 static int go_home(struct walk *w)
 {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build.c - put a program together
+ * build.c - puts a program together
  *
- * Tables grow by doubling; a node gets a column when its axis first moves.
+ * Tables grow by doubling.  A node gets a column for an axis when the axis
+ * first moves.
  */
 #include "path/builder.h"
 #include "path/build_arc.h"
@@ -41,7 +42,7 @@ static struct interp_seg *seg_add(struct interp_build *b)
 	return build_table_add(&b->segs);
 }
 
-/* Append where the path stands as a node. */
+/* Append the place where the path stands as a node. */
 static int node_add(struct interp_build *b)
 {
 	for (uint32_t j = 0; j < b->naxes; j++) {
@@ -54,7 +55,7 @@ static int node_add(struct interp_build *b)
 	return 0;
 }
 
-/* Give axis @axis a column: every node so far has it where it started. */
+/* Give axis @axis a column.  Every node so far gets the axis's start place. */
 static int column_add(struct interp_build *b, uint32_t axis)
 {
 	const size_t rows = b->segs.n + 1;
@@ -174,7 +175,8 @@ int build_refuse_travel(const struct interp_machine *m, int axis,
 			       letter, l->travel_min_mm, l->travel_max_mm);
 }
 
-/* In pulses, as the cycle guards them: the last ones inside the limits. */
+/* Checked in pulses, as the cycle does it: the last pulses inside the
+ * limits. */
 bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
 {
 	const struct interp_machine *m = b->o.machine;
@@ -194,7 +196,7 @@ bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
 
 /* -- Segments ------------------------------------------------------------ */
 
-/* The number of the condition in force, added if it is new. */
+/* The number of the condition in force; it is added if it is new. */
 static int cond_of(struct interp_build *b, const struct interp_build_word *w)
 {
 	struct interp_cond *c = b->conds.at;
@@ -359,14 +361,15 @@ struct build_way build_way_to(const struct interp_build *b,
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		w.from[i] = interp_round_sub(b->here[i]);
 		w.to[i] = interp_round_sub(to[i]);
-		/* Those without a column get theirs in this order. */
+		/* Axes without a column get one in this order. */
 		if (!(b->columns & 1u << i))
 			w.order[n++] = (uint8_t)i;
 	}
 	return w;
 }
 
-/* Where a line that ends elsewhere leads to is no place to be held to. */
+/* A line that ends where the machine says does not lead to a known place, so
+ * that place cannot be checked. */
 static void loosen(struct interp_build *b, const double end_mm[INTERP_NAXES])
 {
 	for (int i = 0; i < INTERP_NAXES; i++) {
@@ -375,14 +378,14 @@ static void loosen(struct interp_build *b, const double end_mm[INTERP_NAXES])
 	}
 }
 
-/* A stop, so that nothing enters it at speed. */
+/* A stop, so that the machine does not come to it at speed. */
 static int sensed_begin(struct interp_build *b, uint32_t moved,
 			const struct interp_build_word *w,
 			struct interp_diag *diag)
 {
 	if (moved & (moved - 1)) {
-		return interp_diag_say(diag, "a touch, half or limit along "
-				       "several axes; one axis");
+		return interp_diag_say(diag, "a probing motion, half or limit "
+					     "along several axes; one axis");
 	}
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
 }
@@ -426,7 +429,7 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	build_descend(b, m.moved, end_mm);
 	b->stand_escape = w->ends ? 0 : build_escape_of(b, m.moved, end_mm);
 	build_stand_at(b, end_mm, to);
-	/* Nor is it known how far it came. */
+	/* It is also not known how far it came. */
 	if (w->ends)
 		b->descent.axis = -1;
 	return build_seg_finish(b, &seg, w, diag);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build_action.c - what is done where the path stands, and parts with a time
+ * build_action.c - actions at the place where the path stands, and parts with a
+ * time
  */
 #include "path/builder.h"
 

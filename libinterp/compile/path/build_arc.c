@@ -13,14 +13,16 @@
 
 #define TURN	(2 * M_PI)
 
-/* Start and end radius may differ by a rounding of the last digit, or this. */
+/* The radii at start and end may differ by a rounding of the last digit, or by
+ * this. */
 #define RADIUS_PULSES	2.0
 #define RADIUS_SHARE	0.001
 #define RADIUS_MOST	5.0
-/* Nor by more than this of the smaller. */
+/* They may not differ by more than this share of the smaller one. */
 #define RADIUS_SPIRAL	0.5
 
-/* Ends so near to each other's angle are at the same: of a pulse. */
+/* If the angles of both ends differ by less than this part of a pulse, they are
+ * equal. */
 #define SAME_ANGLE	1e-5
 
 static const struct interp_axis_limits *limits(const struct build_arc *p,
@@ -38,7 +40,8 @@ static int refuse_radius(double r0, double r1, struct interp_diag *diag)
 			       RADIUS_MOST);
 }
 
-/* Angle from theta0 on to theta1 in the arc's direction, whole turns added. */
+/* The angle from theta0 on to theta1 in the direction of the arc; whole turns
+ * are added. */
 static double sweep_of(const struct build_arc *p, double theta0, double theta1)
 {
 	const enum interp_axis a = p->word->axis_a, b = p->word->axis_b;
@@ -96,7 +99,8 @@ static bool passes(const struct interp_arc *arc, int quarter)
 				ahead - TURN > arc->sweep || ahead == 0;
 }
 
-/* The four places farthest out lie between the ends, where no node is. */
+/* The four places that lie farthest out are between the ends, where there is no
+ * node. */
 static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
 {
 	const struct interp_arc *arc = &p->arc;
@@ -143,7 +147,8 @@ static int refuse_ticks(struct interp_diag *diag)
 			       "segment; a smaller radius, or fewer turns");
 }
 
-/* Ticks closer than a pulse, by a margin no rounding can use up. */
+/* Ticks are closer than a pulse, with a margin that no rounding error can use
+ * up. */
 static int ticks_simultaneous(struct build_arc *p, struct interp_diag *diag)
 {
 	const struct interp_arc *arc = &p->arc;
@@ -160,7 +165,7 @@ static int ticks_simultaneous(struct build_arc *p, struct interp_diag *diag)
 	return 0;
 }
 
-/* The plane's ends from the centre, on the lattice. */
+/* Both ends in the plane, from the centre, on the lattice. */
 static void arc_ends(const struct build_arc *p, int64_t start[2],
 		     int64_t end[2])
 {
@@ -175,7 +180,7 @@ static void arc_ends(const struct build_arc *p, int64_t start[2],
 	end[1] = p->way.to[arc->axis_b] - b;
 }
 
-/* With fewer changes of axis, if the tolerance and the radius let it. */
+/* With fewer changes of axis, if tolerance and radius allow it. */
 static int measure_runs(struct build_arc *p, struct interp_diag *diag)
 {
 	const int64_t *s = p->runs.start;
@@ -185,7 +190,7 @@ static int measure_runs(struct build_arc *p, struct interp_diag *diag)
 	struct interp_arc arc = p->arc, other = p->arc;
 
 	p->runs.milli = milli;
-	/* A circle of a few pulses: comparison is within one of it. */
+	/* On a circle of a few pulses, comparison is within one pulse of it. */
 	if (milli >= 1000 && least > milli)
 		return 0;
 	if (least > milli)
@@ -209,7 +214,8 @@ void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 	circle_plan_runs(arc, &p->runs, runs, arc->nruns);
 }
 
-/* Round one pulse only comparison finds a way, whatever the strategy. */
+/* Around a single pulse only comparison finds a way, whatever the strategy
+ * is. */
 static bool is_tiny(const int64_t start[2])
 {
 	return start[0] * start[0] + start[1] * start[1] == 1;
@@ -231,7 +237,7 @@ static bool measure(struct build_arc *p, const int64_t start[2],
 	       circle_measure(&p->arc, start, end);
 }
 
-/* Pulses of the other axes come one at a time, but for the dda's. */
+/* Pulses of the other axes come one at a time, except with dda. */
 static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 {
 	uint64_t ticks = p->arc.circle_ticks;
@@ -265,7 +271,8 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	if (fabs(arc->sweep) * arc->r_mm / pulse > INTERP_PULSES_MAX / 2.0)
 		return refuse_ticks(diag);
 	arc_ends(p, start, end);
-	/* Nowhere to go round, or for a dda's helix no way to. */
+	/* There is nothing to go around, or the helix of a dda has no way
+	 * around it. */
 	if (start[0] == 0 && start[1] == 0) {
 		p->straight = true;
 		return 0;
@@ -276,7 +283,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 		return 0;
 	}
 	if (!measure(p, start, end)) {
-		/* Under a pulse or two an arc may have no way round. */
+		/* An arc of a pulse or two may have no way around. */
 		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
 		return p->straight ? 0 : refuse_ticks(diag);
 	}
@@ -288,7 +295,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	return err < 0 ? err : count_ticks(p, diag);
 }
 
-/* How far its chord is from it, at most. */
+/* How far the chord is from the arc, at most. */
 static double chord_off_mm(const struct interp_arc *arc)
 {
 	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
@@ -298,9 +305,10 @@ static double chord_off_mm(const struct interp_arc *arc)
 }
 
 /*
- * Of few pulses a rounding may make a circle a spiral into its centre, or a way
- * outward with hardly a turn: neither has a speed round it.  It is a line
- * where a line is as near to it as its radii may differ, else no arc is meant.
+ * On an arc of few pulses, a rounding can make the circle a spiral into its
+ * centre, or a way outward with hardly a turn.  No speed around such a spiral
+ * is possible.  If a line is as near to it as the radii may differ, it becomes
+ * a line; otherwise it is refused.
  */
 static int settle_spiral(struct build_arc *p, struct interp_diag *diag)
 {

@@ -14,7 +14,7 @@ struct build_arc {
 	const struct interp_build_options *o;
 	const struct interp_build_arc *word;
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
-	struct build_way way;	/* all but the plane's axes */
+	struct build_way way;	/* all axes except those of the plane */
 	/* Out. */
 	bool straight;		/* too short to be an arc: make it a line */
 	struct interp_arc arc;
@@ -24,17 +24,18 @@ struct build_arc {
 };
 
 /**
- * build_arc_shape() - from @p's word and ends: centre, radii, angles into arc.
+ * build_arc_shape() - fill the arc with centre, radii and angles, from @p's
+ * word and ends.
  *
- * Of o only the machine counts.  Return: 0, or -EINVAL with @diag's found and
- * wanted: radii that differ, or none.
+ * Of o only the machine is used.  Return: 0, or -EINVAL with @diag's found and
+ * wanted if the radii differ or are 0.
  */
 int build_arc_shape(struct build_arc *p, struct interp_diag *diag);
 
 /** build_arc_plan() - 0, or -EINVAL with @diag's found and wanted. */
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag);
 
-/** build_arc_runs() - the arc.nruns runs of a planned arc. */
+/** build_arc_runs() - write the arc.nruns runs of a planned arc. */
 void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 		    int32_t *runs);
 

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * build_arc_add.c - an arc as a segment, its plan into the tables
- */
+/* build_arc_add.c - adds an arc as a segment, and its plan to the tables */
 #include "path/build_arc.h"
 #include "path/builder.h"
 
 #include <errno.h>
 #include <stdlib.h>
 
-/* The runs of an arc that keeps them. */
+/* The runs of an arc that stores them. */
 static int runs_add(struct interp_build *b, const struct build_arc *plan,
 		    struct interp_arc *arc)
 {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * build_bits.c - lines whose changes of axis are planned and kept
- */
+/* build_bits.c - lines whose changes of axis are planned and stored */
 #include "path/build_bits.h"
 #include "pulse/couple.h"
 #include "pulse/greedy.h"
@@ -16,7 +14,8 @@ struct plan {
 	struct pair_tube tube;
 };
 
-/* The pairs as the cursor will have them; false: no bursts to be beaten. */
+/* The pairs as the cursor will have them; false: there are no bursts that could
+ * be improved. */
 static bool plan_pairs(struct plan *p, const struct interp_build_options *o,
 		       const struct build_way *w)
 {
@@ -97,7 +96,7 @@ static int bits_write(const struct greedy_line *l, uint64_t *bits)
 	return 0;
 }
 
-/* @n words of 0 at the end of the table, or NULL. */
+/* Add @n words of 0 at the end of the table.  Return: them, or NULL. */
 static uint64_t *words_add(struct table *t, size_t n)
 {
 	const size_t from = t->n;

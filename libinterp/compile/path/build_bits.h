@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build_bits.h - lines whose changes of axis are planned and kept
+ * build_bits.h - lines whose changes of axis are planned and stored
  *
  * min-switch sends bursts (pulse/pair.h), which need no memory.  They may have
- * many more changes of axis than the tolerance demands: then the program keeps
- * the fewest, a bit for each pulse of each pair of the line.
+ * many more changes of axis than the tolerance requires.  Then the program
+ * stores the walk with the fewest changes, one bit for each pulse of each pair
+ * of the line.
  */
 #ifndef PATH_BUILD_BITS_H
 #define PATH_BUILD_BITS_H
 
 #include "path/builder.h"
 
-/* Changes of axis of bursts, in percent of the fewest, that are let be. */
+/* Bursts are kept if they have at most so many changes of axis, in percent of
+ * the fewest. */
 #define BUILD_BITS_ENOUGH	103
 
 /**
  * build_bits_add() - plan the line @w and put its bits into the table.
  *
- * @ret_arg: for interp_seg.arg; 0: the line goes by bursts.
+ * @ret_arg: for interp_seg.arg; 0: the line uses bursts.
+ *
  * Return: 0 or -ENOMEM.
  */
 int build_bits_add(struct interp_build *b, const struct build_way *w,

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * build_block.c - lay a finished program out as one flat block
- */
+/* build_block.c - writes a finished program as one flat block */
 #include "interp/limits.h"
 #include "path/builder.h"
 
@@ -63,7 +61,8 @@ size_t interp_build_bytes(const struct interp_build *b)
 	return layout(b).bytes;
 }
 
-/* Its memory is given back at once: a large program is in memory once. */
+/* The table's memory is freed at once, so a large program is in memory only
+ * once. */
 static void move_table(char *to, struct table *t)
 {
 	if (t->n > 0)
@@ -106,7 +105,7 @@ static void write_limits(const struct interp_build *b, void *block,
 		interp_limits_write(&l, &p, segs);
 }
 
-/* Node 0 comes with the first column; the END has one of its own. */
+/* Node 0 comes with the first column.  The END has a node of its own. */
 static void write_nodes(struct interp_build *b, size_t rows,
 			const struct interp_program_head *h, int64_t *nodes)
 {

@@ -2,13 +2,14 @@
 /*
  * build_curve.c - from a NURBS to segments
  *
- * The curve is looked at in many places, span by span, and cut into pieces:
- * at a cusp, where the direction turns back; at a knot that may be a corner;
- * and where the feed it allows has changed by more than a half since the piece
- * began.  A piece gets its table of stops and so many places that no axis
- * leaps; every place is then tried, against the travel too, and the number
- * raised until it is so.  Where it is cut depends on the axes' limits alone,
- * not on the period, so the lattice points do not either.
+ * The curve is looked at in many places, span by span, and cut into pieces: at
+ * a cusp, where the direction turns back; at a knot that may be a corner; and
+ * where the feed that it allows has changed by more than a half since the piece
+ * began.  A piece gets its table of stops, and so many places that no axis
+ * jumps.  Then every place is tested, also against the travel, and the number
+ * of places is increased until all are right.  The cuts depend only on the
+ * limits of the axes, not on the period.  So the lattice points do not depend
+ * on the period either.
  */
 #include "curve/span.h"
 #include "path/build_arc.h"
@@ -25,15 +26,15 @@
 #include <string.h>
 
 #define LOOKS		64		/* in a span */
-#define FEED_RATIO	1.5		/* of fastest to slowest in a piece */
+#define FEED_RATIO	1.5		/* fastest to slowest feed in a piece */
 #define CUSP_HALVINGS	60
 #define STOP_PULSES	0.02		/* error of a stop's place */
-#define MARGIN		1.02		/* more places than the looks ask for */
+#define MARGIN		1.02		/* factor for the number of places */
 #define TRIES		24
-#define TRIED_MAX	200000000.0	/* places of a curve, all tries: some
+#define TRIED_MAX	200000000.0	/* places of a curve in all tries; about
 					 * twenty seconds */
 
-/* -- What limits it ------------------------------------------------------------ */
+/* -- What limits it ------------------------------------------------------- */
 
 /* What column @k can do is for following the curve and for going along it. */
 static void share_out(struct curve_plan *p, uint32_t k,
@@ -77,7 +78,7 @@ static void set_limits(struct curve_plan *p)
 			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
 						    l->a_mm_s2[k]);
 	}
-	/* A bend of less than a pulse's radius is none that the axes see. */
+	/* The axes do not notice a bend whose radius is less than a pulse. */
 	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);
 	p->least_mm_s2 = INTERP_BEND_LEAST * acc;
 }
@@ -101,8 +102,8 @@ static void learn_rate(struct curve_plan *p, uint32_t k, double rate)
 	s->per_j = fmax(s->per_j, rate / p->along.j_mm_s3[k]);
 }
 
-/* A look at @u: the feed its axes can do.  The piece in hand learns how sharp
- * it bends and how many pulses a mm of it has. */
+/* Look at @u: find the feed that its axes allow.  The present piece learns how
+ * sharply it bends there, and how many pulses a mm has. */
 static double look(struct curve_plan *p, double u)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;
@@ -122,7 +123,7 @@ static double look(struct curve_plan *p, double u)
 	return fmax(feed, p->slowest_mm_s);
 }
 
-/* Of the piece in hand. */
+/* The feed of the present piece. */
 static double feed_of(const struct curve_plan *p)
 {
 	const double chord = p->chord_mm_s / sqrt(p->seen.bend);
@@ -175,7 +176,8 @@ static int add_stops(struct curve_plan *p, double to,
 	return ok ? 0 : -ENOMEM;
 }
 
-/* Axis @k at @pulses, coming from @was: 1 if it leaps; or refused. */
+/* Axis @k is at @pulses and comes from @was.  Return: 1 if it jumps, or
+ * refused. */
 static int try_axis(struct curve_plan *p, uint32_t k, int32_t pulses,
 		    int32_t was)
 {
@@ -190,7 +192,8 @@ static int try_axis(struct curve_plan *p, uint32_t k, int32_t pulses,
 	return pulses - was > 1 || pulses - was < -1;
 }
 
-/* Does no axis leap, and none leave its travel?  1 if one leaps. */
+/* Does no axis jump, and does none leave its travel?  Return: 1 if one
+ * jumps. */
 static int try_places(struct curve_plan *p, const double end_mm[INTERP_NAXES])
 {
 	struct interp_curve_walk *w = &p->walk;
@@ -215,7 +218,7 @@ static int try_places(struct curve_plan *p, const double end_mm[INTERP_NAXES])
 	return err;
 }
 
-/* Places enough: 0, or what refuses. */
+/* Find a number of places that is enough.  Return: 0, or the refusal. */
 static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 		       const double end_mm[INTERP_NAXES])
 {
@@ -253,7 +256,7 @@ uint32_t build_curve_line(struct curve_plan *p, double u)
 	return c->marks[p->mark].line;
 }
 
-/* The end of the curve is its last control point, without a rounding. */
+/* The end of the curve is its last control point, without rounding. */
 static void end_of(struct curve_plan *p, double to,
 		   double end_mm[INTERP_NAXES])
 {
@@ -303,8 +306,8 @@ static void piece_begin(struct curve_plan *p, double u)
 	p->least_mm_s = p->most_mm_s = look(p, u);
 }
 
-/* The piece goes on to @u, if its feeds stay near enough; else it ends where
- * the last look was. */
+/* The piece goes on to @u if its feeds stay similar enough.  Otherwise it ends
+ * at the place of the last look. */
 static int piece_extend(struct curve_plan *p, double last, double u)
 {
 	const struct curve_seen was = p->seen;
@@ -331,9 +334,9 @@ static int piece_end(struct curve_plan *p, double u)
 	return err;
 }
 
-/* -- Along the curve ------------------------------------------------------------ */
+/* -- Along the curve ------------------------------------------------------ */
 
-/* Between two looks of a span the direction has turned back: where? */
+/* Between two looks at a span, the direction has turned back.  Find where. */
 static double cusp_of(const struct interp_nurbs_eval *e, double from,
 		      double to)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build_curve.h - a NURBS among those of the program
+ * build_curve.h - how a NURBS becomes a part of the program
  *
  * Private to libinterp/compile/path.
  */
@@ -12,12 +12,14 @@
 #include "pulse/pulse.h"
 
 /**
- * build_curve_store() - add the axes of a sound curve that move, and its knots.
+ * build_curve_store() - add those axes of a valid curve that move, and its
+ * knots.
  *
- * @ret gets it as stored, of no axes if none moves; @ret_moved a bit for each
- * axis.  Return: 0 or -ENOMEM.
+ * @ret gets the curve as it is stored, with no axes if none moves.  @ret_moved
+ * has a bit for each axis.  Return: 0 or -ENOMEM.
  */
-int build_curve_store(struct interp_build *b, const struct interp_build_curve *c,
+int build_curve_store(struct interp_build *b,
+		      const struct interp_build_curve *c,
 		      struct interp_curve *ret, uint32_t *ret_moved);
 
 /* Of each column, for going along the curve. */
@@ -62,22 +64,28 @@ struct curve_plan {
 int build_curve_refuse(struct curve_plan *p, const char *found,
 		       const char *wanted);
 
-/** build_curve_blame() - the line of diag is that of the curve at @u. */
+/** build_curve_blame() - set the line of diag to that of the curve at @u. */
 void build_curve_blame(struct curve_plan *p, double u);
 
-/** build_curve_line() - the line of the curve at @u, which never falls. */
+/** build_curve_line() - the line of the curve at @u; it never decreases. */
 uint32_t build_curve_line(struct curve_plan *p, double u);
 
-/** build_curve_check() - is it sound?  0, or -EINVAL with diag filled. */
+/**
+ * build_curve_check() - is the curve valid?  Return: 0, or -EINVAL with diag
+ * filled.
+ */
 int build_curve_check(struct curve_plan *p);
 
-/** build_curve_check_start() - does it begin where the program stands?  Of an
- *  opened curve; 0, or -EINVAL with diag filled. */
+/**
+ * build_curve_check_start() - does the curve, which is open, begin where the
+ * program stands?  Return: 0, or -EINVAL with diag filled.
+ */
 int build_curve_check_start(struct curve_plan *p);
 
 /**
- * build_curve_check_way() - has the machine its axes, does it begin where the
- * program stands, does it keep to the travel?  Of a stored curve.
+ * build_curve_check_way() - for a stored curve: does the machine have its axes,
+ * does it begin where the program stands, does it stay within the travel?
+ *
  * Return: 0, or -EINVAL with diag filled.
  */
 int build_curve_check_way(struct curve_plan *p);

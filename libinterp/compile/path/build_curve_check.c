@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * build_curve_check.c - what a NURBS is refused for before it is cut up
- */
+/* build_curve_check.c - checks a NURBS before it is cut into pieces */
 #include "path/build_arc.h"
 #include "path/build_curve.h"
 #include "path/builder.h"
@@ -10,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Places of a span that are looked at before any work is put into it. */
+/* So many places of a span are looked at before any other work. */
 #define FIRST_LOOKS	64
 
 #define START_PULSES	2.0
@@ -46,7 +44,8 @@ static int refuse_flaw(struct curve_plan *p, enum interp_nurbs_flaw f,
 
 	snprintf(found, sizeof(found), "%s, number %u of the curve's",
 		 interp_nurbs_flaw_text(f), at + 1);
-	/* Point and knot of a number stand in one block, while points last. */
+	/* As long as there are points, point and knot of the same number stand
+	 * in one block, and the line is that of the point. */
 	if (numbered && c->nmarks == c->nurbs.npoints && at < c->nmarks)
 		p->diag->line = c->marks[at].line;
 	return build_curve_refuse(p, numbered ? found :
@@ -98,7 +97,8 @@ static int check_place(struct curve_plan *p, double u)
 	return 0;
 }
 
-/* A first look all along: what leads far away is not cut up on the way. */
+/* A first look along the whole curve: a curve that leads far away is refused
+ * before it is cut. */
 static int check_travel(struct curve_plan *p)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build_curve_store.c - a NURBS among those of the program
+ * build_curve_store.c - stores a NURBS in the program
  *
- * Columns that stand still are left out.  Those that length counts come first:
- * the linear axes as elsewhere.  The others count a little, so that a stretch
- * where only those move has a length to be walked by.
+ * Columns that stand still are left out.  The axes that count for the length
+ * come first: the linear axes, as elsewhere.  The others count a little, so
+ * that a stretch where only they move has a length that can be walked.
  */
 #include "path/build_curve.h"
 #include "path/builder.h"
@@ -12,7 +12,7 @@
 #include <errno.h>
 #include <math.h>
 
-#define OTHERS	1e-3			/* what they weigh in length */
+#define OTHERS	1e-3			/* their weight in the length */
 
 struct store {
 	struct interp_build *b;
@@ -29,7 +29,8 @@ static bool column_moves(const struct interp_nurbs *n, uint32_t j)
 	for (uint32_t i = 1; i < n->npoints; i++) {
 		const double *q = n->points + i * row;
 
-		if (fabs(q[j] / q[n->naxes] - first) > 1e-12 * (1 + fabs(first)))
+		if (fabs(q[j] / q[n->naxes] - first) >
+		    1e-12 * (1 + fabs(first)))
 			return true;
 	}
 	return false;
@@ -44,7 +45,7 @@ static uint32_t counted_axes(uint32_t moved)
 	return moved & xyz ? xyz : moved & uv ? uv : ~0u;
 }
 
-/* The columns that move, those that count first. */
+/* The columns that move; those that count come first. */
 static uint32_t order(struct store *p, uint32_t from[INTERP_NAXES])
 {
 	const struct interp_nurbs *n = &p->c->nurbs;
@@ -96,7 +97,8 @@ static int store_numbers(struct store *p, const uint32_t from[INTERP_NAXES])
 	return err;
 }
 
-int build_curve_store(struct interp_build *b, const struct interp_build_curve *c,
+int build_curve_store(struct interp_build *b,
+		      const struct interp_build_curve *c,
 		      struct interp_curve *ret, uint32_t *ret_moved)
 {
 	const struct interp_nurbs *n = &c->nurbs;

@@ -3,8 +3,8 @@
  * build_escape.c - ways out that leave the path
  *
  * Straight up is free where the electrode came straight down: along one axis
- * alone, without a motion of another in between.  How far it came is kept
- * while the path is built, so that no search is needed.
+ * only, without a motion of another axis in between.  How far it came is
+ * recorded while the path is built, so no search is needed.
  */
 #include "path/builder.h"
 
@@ -65,7 +65,7 @@ static void bound(const struct interp_build *b, struct interp_escape *e)
 	}
 }
 
-/* So many of the last are looked through for an equal one. */
+/* So many of the last ones are searched for an equal one. */
 #define LOOK_BACK	8
 
 static int escape_add(struct interp_build *b, const struct interp_escape *e)
@@ -104,8 +104,8 @@ int interp_build_escape(struct interp_build *b, const struct interp_escape *e)
 }
 
 /*
- * Which side is out is told by where the electrode came to this line, if the
- * whole motion lies on the other side of it; else by new ground, which is in.
+ * The way out is on the side from which the electrode came to this line, if the
+ * whole motion lies on the other side.  Otherwise new ground lies inside.
  */
 uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
 			 const double end_mm[INTERP_NAXES])

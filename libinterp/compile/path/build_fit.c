@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build_fit.c - cut lines in a row, joined into curves within a tolerance
+ * build_fit.c - joins consecutive cut lines into curves within a tolerance
  *
- * Lines of one feed and condition are held back, a few thousand at most.  They
- * are parted at corners, and each part becomes a curve if one is found that
- * keeps to the tolerance; else its halves are tried, and what is left are the
- * lines themselves.
+ * Lines of the same feed and condition are held back, at most a few thousand.
+ * They are divided at corners.  Each part becomes a curve if one is found that
+ * stays within the tolerance.  Otherwise its halves are tried.  What is left
+ * stays as lines.
  */
 #include "interp/nurbs_fit.h"
 #include "path/build_arc.h"
@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Shorter rows of lines are left as they are. */
+/* Shorter rows of lines stay as they are. */
 #define PART_MIN	8
 
 struct part {
@@ -26,7 +26,8 @@ struct part {
 	uint8_t axis[INTERP_NAXES];
 };
 
-/* -- Take ---------------------------------------------------------------------- */
+/* -- Collecting
+ * ------------------------------------------------------------- */
 
 static bool same_word(const struct interp_build_word *a,
 		      const struct interp_build_word *b)
@@ -78,7 +79,8 @@ int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	return err;
 }
 
-/* -- Lay down -------------------------------------------------------------------- */
+/* -- Writing
+ * ---------------------------------------------------------------- */
 
 static int lay_lines(struct part *p, uint32_t from, uint32_t to)
 {
@@ -95,7 +97,7 @@ static int lay_lines(struct part *p, uint32_t from, uint32_t to)
 	return err;
 }
 
-/* What a builder was before a curve, to be that again. */
+/* The state of the builder before a curve, to return to it. */
 struct before {
 	size_t segs, curves, pieces, stops, numbers;
 	double here_mm[INTERP_NAXES], length_mm;
@@ -133,7 +135,7 @@ static void undo(struct interp_build *b, const struct before *was)
 	memcpy(b->here, was->here, sizeof(was->here));
 }
 
-/* The curve's parameter is the polygon's length. */
+/* The parameter of the curve is the length along the polygon. */
 static void set_marks(const struct part *p, uint32_t from, uint32_t n,
 		      struct interp_build_mark *marks)
 {
@@ -153,7 +155,7 @@ static void set_marks(const struct part *p, uint32_t from, uint32_t n,
 	}
 }
 
-/* 1: no curve does, or the lines take less room. */
+/* Return: 1: no curve fits, or the lines need less memory. */
 static int lay_curve(struct part *p, uint32_t from, uint32_t to)
 {
 	const uint32_t n = to - from + 1, axes = p->fit.naxes;
@@ -206,7 +208,7 @@ static int lay_part(struct part *p, uint32_t from, uint32_t to)
 	return err == 0 ? lay_part(p, middle, to) : err;
 }
 
-/* The axes that move, without the others. */
+/* Keep only the axes that move. */
 static int take_axes(struct part *p, uint32_t n)
 {
 	const double *all = p->b->fit.end_mm;
@@ -259,7 +261,8 @@ int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 {
 	int err;
 
-	if (b->o.fit_mm > 0 && !w->rapid && !w->ends && !b->escape && b->lift_axis < 0)
+	if (b->o.fit_mm > 0 && !w->rapid && !w->ends && !b->escape &&
+	    b->lift_axis < 0)
 		return build_fit_add(b, end_mm, w, diag);
 	err = interp_build_flush(b, diag);
 	return err ? err : build_line(b, end_mm, w, diag);

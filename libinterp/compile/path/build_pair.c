@@ -37,8 +37,8 @@
 
 #define TURN	(2 * M_PI)
 
-/* Arcs follow by angle if phase and sweep agree to this: so many pulses on
- * the smaller circle, which is what rounding can do, and never more than
+/* Arcs follow each other by angle if phase and sweep agree to this: so many
+ * pulses on the smaller circle, which rounding can cause, and never more than
  * so many radians. */
 #define SAME_PULSES	3.0
 #define SAME_MAX	0.5
@@ -119,7 +119,8 @@ static double v_max(const struct build_pair *p, int i)
 		    p->machine->axis[plane[i][1]].v_max_mm_s);
 }
 
-/* Contour @i into the couple; its length and the ticks an arc wants. */
+/* Put contour @i into the couple; find its length and the ticks that an arc
+ * needs. */
 static int side_plan(struct build_pair *p, int i, double *ret_mm,
 		     struct interp_diag *diag)
 {
@@ -200,7 +201,7 @@ static bool follow_init(struct follow *f, const struct build_pair *p)
 	return true;
 }
 
-/* The side with the next pulse; it takes it. */
+/* Find the side with the next pulse, and take the pulse from it. */
 static int follow_next(struct follow *f)
 {
 	struct interp_side *s = f->side;

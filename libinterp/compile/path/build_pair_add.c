@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build_pair_add.c - two contours as a segment, their plan into the tables
+ * build_pair_add.c - adds two contours as a segment, and their plan to the
+ * tables
  */
 #include "path/build_pair.h"
 #include "path/builder.h"
@@ -13,7 +14,7 @@
 #define XY	(1u << INTERP_X | 1u << INTERP_Y)
 #define UV	(1u << INTERP_U | 1u << INTERP_V)
 
-/* The couple and its bits, into the tables. */
+/* Add the couple and its bits to the tables. */
 static int couple_add(struct interp_build *b, struct build_pair *p)
 {
 	const size_t words = p->bits ? ((size_t)p->ticks + 63) / 64 : 0;
@@ -55,7 +56,8 @@ static int refuse_others(struct interp_diag *diag)
 			       "V alone");
 }
 
-/* One contour alone, the other stands: -ENOENT if both have a way to go. */
+/* Only one contour moves, the other stands still.  Return: -ENOENT if both
+ * move. */
 static int pair_alone(struct interp_build *b, const struct build_pair *p,
 		      const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,

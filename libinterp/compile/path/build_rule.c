@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * build_rule.c - what a strategy makes of a line, and which it refuses
- */
+/* build_rule.c - how a strategy walks a line, and which lines it refuses */
 #include "path/build_rule.h"
 #include "pulse/strategy.h"
 
@@ -68,7 +66,7 @@ uint32_t build_rule_inputs(const struct build_way *w, struct couple_input *in)
 	return n;
 }
 
-/* Beside a circle the other axes are always a tree. */
+/* Beside a circle the other axes always form a tree. */
 struct couple_rule build_rule_of(const struct interp_build_options *o,
 				 const struct build_way *w)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * builder.h - what a program is while it is put together
+ * builder.h - a program while it is put together
  *
  * Private to libinterp/compile/path.
  */
@@ -15,18 +15,20 @@ struct table {
 	size_t n, room, size;
 };
 
-/* Lines held back: see build_fit.c. */
+/* Lines that are held back: see build_fit.c. */
 struct build_fit {
-	double *end_mm;			/* rows of all axes; the start first */
+	double *end_mm;			/* rows of all axes; the start comes
+					 * first */
 	uint32_t *lines;		/* of the source */
-	uint32_t n;			/* points; 0: nothing held */
+	uint32_t n;			/* points; 0: nothing is held back */
 	struct interp_build_word word;
 };
 
-/* Motions in a row along one linear axis alone, up to here. */
+/* Consecutive motions along one linear axis only, up to here. */
 struct build_descent {
 	int axis;			/* -1: none */
-	double first_mm, low_mm, high_mm;	/* where it began; its extent */
+	double first_mm, low_mm, high_mm;	/* where it began, and how far
+						 * it reached */
 };
 
 struct interp_build {
@@ -35,11 +37,13 @@ struct interp_build {
 	int64_t here[INTERP_NAXES];	/* the same in subpulses */
 	int64_t first[INTERP_NAXES];
 	double sub_mm[INTERP_NAXES];	/* subpulses per mm */
-	double inside_mm[INTERP_NAXES][2];	/* travel less a pulse: good
-					 * without a closer look */
+	double inside_mm[INTERP_NAXES][2];	/* the travel minus a pulse:
+						 * places inside need no closer
+						 * check */
 	uint8_t column[INTERP_NAXES];
 	uint32_t naxes, columns;	/* columns: mask of axes */
-	uint32_t loose;			/* axes moved by what the machine says */
+	uint32_t loose;			/* axes that moved by what the machine
+					 * says */
 	double length_mm;
 	struct table segs, nodes, arcs;	/* nodes: n counts columns */
 	struct table conds, escapes, runs, couples, bits;
@@ -52,12 +56,13 @@ struct interp_build {
 	uint16_t escape;		/* set by interp_build_escape() */
 	uint16_t stand_escape;		/* of the last motion */
 	int lift_axis;			/* -1: none */
-	size_t timed;			/* the INTERP_TIMED last begun */
-	int64_t timed_at[INTERP_NAXES];	/* where, subpulses */
-	const struct interp_tech *tech;	/* what cond was made of */
+	size_t timed;			/* the INTERP_TIMED that was begun
+					 * last */
+	int64_t timed_at[INTERP_NAXES];	/* place of it, subpulses */
+	const struct interp_tech *tech;	/* from this cond was made */
 };
 
-/** build_table_add() - room for one more; NULL: out of memory. */
+/** build_table_add() - make room for one more; NULL: out of memory. */
 void *build_table_add(struct table *t);
 
 /* How far a motion goes. */
@@ -69,16 +74,19 @@ struct build_measure {
 };
 
 /**
- * build_measure() - how far every axis goes to @end_mm; @to gets it in
- * subpulses.
- * Return: 0, or -EINVAL with @diag filled if one would leave its travel.
+ * build_measure() - measure how far every axis goes to @end_mm; @to gets the
+ * end in subpulses.
+ *
+ * Return: 0, or -EINVAL with @diag filled if an axis would leave its travel.
  */
 int build_measure(const struct interp_build *b,
 		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
 		  struct build_measure *ret, struct interp_diag *diag);
 
-/** build_measure_next() - the same, of a motion that lines held back end at:
- *  they are added first. */
+/**
+ * build_measure_next() - the same for a motion before which lines are held
+ * back: they are added first.
+ */
 int build_measure_next(struct interp_build *b,
 		       const double end_mm[INTERP_NAXES],
 		       int64_t to[INTERP_NAXES], struct build_measure *ret,
@@ -88,26 +96,33 @@ int build_measure_next(struct interp_build *b,
 void build_mm(const struct interp_build *b, const int64_t at[INTERP_NAXES],
 	      double ret_mm[INTERP_NAXES]);
 
-/** build_way_to() - from here to @to, as the strategies see it. */
+/** build_way_to() - the way from here to @to, as the strategies need it. */
 struct build_way build_way_to(const struct interp_build *b,
 			      const int64_t to[INTERP_NAXES],
 			      const struct build_measure *m);
 
-/** build_seg_feed() - feed words: as programmed, and the fastest its axes
- *  allow. */
+/**
+ * build_seg_feed() - set the feeds: the programmed one, and the fastest that
+ * its axes allow.
+ */
 void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
 		    double feed_max_mm_s);
 
-/** build_columns() - a column for each axis in @moved.  0 or -ENOMEM. */
+/**
+ * build_columns() - give each axis in @moved a column.  Return: 0 or -ENOMEM.
+ */
 int build_columns(struct interp_build *b, uint32_t moved);
 
-/** build_stand_at() - the path ends at @end_mm, which is @to in subpulses. */
+/**
+ * build_stand_at() - the path now ends at @end_mm, which is @to in subpulses.
+ */
 void build_stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		    const int64_t to[INTERP_NAXES]);
 
 /**
- * build_seg_finish() - add @seg with what is the same for every segment: line,
- * condition, place, end node.
+ * build_seg_finish() - add @seg, with everything that is the same for all
+ * segments: line, condition, place, end node.
+ *
  * Return: 0, -ENOMEM, or -EINVAL with @diag filled.
  */
 int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
@@ -122,11 +137,11 @@ struct build_step {
 	const double *end_mm;		/* of all axes */
 };
 
-/** build_step() - add it; the path stands at its end. */
+/** build_step() - add it; the path then stands at its end. */
 int build_step(struct interp_build *b, const struct build_step *s,
 	       const struct interp_build_word *w, struct interp_diag *diag);
 
-/** build_line() - interp_build_line(), at once. */
+/** build_line() - interp_build_line() without holding the line back. */
 int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	       const struct interp_build_word *w, struct interp_diag *diag);
 
@@ -137,11 +152,11 @@ int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
 /** build_axis_ok() - may axis @axis stand at @at_mm? */
 bool build_axis_ok(const struct interp_build *b, int axis, double at_mm);
 
-/** build_descend() - a motion of the axes in @moved to @end_mm is next. */
+/** build_descend() - the next motion moves the axes in @moved to @end_mm. */
 void build_descend(struct interp_build *b, uint32_t moved,
 		   const double end_mm[INTERP_NAXES]);
 
-/** build_escape_of() - the escape of that motion: its index. */
+/** build_escape_of() - the index of the escape of that motion. */
 uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
 			 const double end_mm[INTERP_NAXES]);
 

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * curve_rate.c - which way a piece of a curve sets out, and arrives
- */
+/* curve_rate.c - the direction in which a piece of a curve starts, and ends */
 #include "curve/span.h"
 #include "interp/program.h"
 
 #include <math.h>
 
-/* Where C' is zero, so far inside the piece, as a share of its parameter. */
+/* Where C' is zero, look this far inside the piece, as a share of its
+ * parameter. */
 #define INSIDE	1e-6
 
-/* The span that ends at or behind @u, if that is not the first knot. */
+/* The span that ends at @u or after it, if @u is not the first knot. */
 static uint32_t span_before(const struct interp_nurbs *c, double u)
 {
 	uint32_t span = interp_nurbs_span(c, u);
@@ -45,11 +44,12 @@ bool interp_program_curve_rate(const struct interp_program *p,
 	    piece->stops_at + piece->nstops > p->head->nstops)
 		return false;
 	u = s[at_end ? piece->nstops - 1 : 0].u;
-	inside = (s[piece->nstops - 1].u - s[0].u) * (at_end ? -INSIDE : INSIDE);
+	inside = (s[piece->nstops - 1].u - s[0].u) *
+		 (at_end ? -INSIDE : INSIDE);
 	interp_nurbs_open(&e, &c);
 	nurbs_span_enter(&e, at_end ? span_before(&c, u) :
 				      interp_nurbs_span(&c, u));
-	/* A knot's two sides may differ, and a cusp has no direction. */
+	/* The two sides of a knot may differ, and a cusp has no direction. */
 	nurbs_span_at(&e, u, 1, &at);
 	speed = sqrt(interp_nurbs_dot(&c, at.d[1], at.d[1]));
 	if (!(speed * fabs(inside) > INSIDE * INSIDE * seg->length_mm)) {

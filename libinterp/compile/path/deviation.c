@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* All linear axes, or if none of them moves, all. */
+/* All linear axes; if none of them moves, all axes. */
 static uint32_t length_axes(const struct interp_cursor *c)
 {
 	const uint32_t linear = 1u << INTERP_X | 1u << INTERP_Y |
@@ -33,7 +33,7 @@ static double node_mm(const struct interp_cursor *c, uint32_t j, bool at_end)
 	       c->p.head->pulse_mm[c->p.head->column[j]];
 }
 
-/* Where the point's foot on the line is, as a share of it. */
+/* Where the foot of the point on the line is, as a share of the line. */
 static double line_foot(const struct interp_cursor *c, uint32_t axes)
 {
 	double d2 = 0, dr = 0;
@@ -53,8 +53,8 @@ static double line_foot(const struct interp_cursor *c, uint32_t axes)
 	return !(d2 > 0) || dr <= 0 ? 0 : dr >= d2 ? 1 : dr / d2;
 }
 
-/* Square to the line from node to node, axis by axis from the foot: no large
- * squares are subtracted. */
+/* The distance square to the line from node to node, axis by axis from the
+ * foot, so that no large squares are subtracted. */
 static double line_deviation(const struct interp_cursor *c, uint32_t axes)
 {
 	const double t = line_foot(c, axes);
@@ -99,8 +99,8 @@ static double arc_gap2(const struct interp_cursor *c, uint32_t axes, double t)
 	return d2;
 }
 
-/* A helix's nearest place lies near the point's own: a few ticks, or, where
- * it is steep, less than a quarter of a radian. */
+/* The nearest place of a helix is near the place of the point: within a few
+ * ticks or, where the helix is steep, less than a quarter of a radian. */
 static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
 {
 	const double at = (double)c->measure / (double)c->whole;
@@ -121,10 +121,10 @@ static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
 }
 
 /*
- * Off the circle, in its plane.  Where the two ends are off one circle by a
- * rounding, `simultaneous` walks the spiral between them; the other strategies
- * keep to the start's circle, and what lies between the two radii is on the
- * arc.
+ * The distance from the circle, in its plane.  If the two ends are not on one
+ * circle because of rounding, `simultaneous` walks the spiral between them, and
+ * the other strategies stay on the circle of the start.  A point between the
+ * two radii counts as on the arc.
  */
 static double circle_deviation(const struct interp_cursor *c,
 			       const struct interp_arc *arc)
@@ -156,7 +156,7 @@ static double arc_deviation(const struct interp_cursor *c, uint32_t axes)
 	return circle_deviation(c, arc);
 }
 
-/* Off the contour the length is counted on. */
+/* The distance from the contour whose length is counted. */
 static double pair_deviation(const struct interp_cursor *c, uint32_t axes)
 {
 	const uint32_t xy = 1u << INTERP_X | 1u << INTERP_Y;
@@ -169,7 +169,7 @@ static double pair_deviation(const struct interp_cursor *c, uint32_t axes)
 						 1u << arc->axis_b);
 }
 
-/* The nearest place lies a few pulses from the point's own. */
+/* The nearest place is a few pulses from the place of the point. */
 static double curve_deviation(const struct interp_cursor *c, uint32_t axes)
 {
 	struct interp_curve_walk k = c->curve;

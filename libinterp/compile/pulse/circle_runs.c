@@ -24,7 +24,7 @@ struct tube {
 	int64_t lo, hi;			/* of F = x*x + y*y - R*R */
 };
 
-/* Floor of 2*mu*R, and so of mu*mu +- 2*mu*R, in exact integers. */
+/* The floor of 2*mu*R, and so of mu*mu +- 2*mu*R, in exact integers. */
 static struct tube tube_of(int64_t r2, uint32_t milli)
 {
 	const int64_t square = (int64_t)milli * milli;
@@ -41,7 +41,8 @@ static struct tube tube_of(int64_t r2, uint32_t milli)
 	return t;
 }
 
-/* In and out at once change F by 2*(in + out), at most this. */
+/* An inward and an outward pulse together change F by 2*(in + out), at most
+ * this. */
 static bool tube_ok(int64_t r2, struct tube t)
 {
 	return t.hi - t.lo + 1 >= pair_isqrt(2, 2 * (uint64_t)(r2 + t.hi));
@@ -56,11 +57,11 @@ uint32_t circle_smallest_milli(int64_t r2, uint32_t milli)
 	return milli;
 }
 
-/* Where the runs go; counts them if there is no room. */
+/* Where the runs are written; without room they are only counted. */
 struct list {
 	int32_t *run;
 	uint32_t n, room;
-	int8_t axis;			/* of the run being made */
+	int8_t axis;			/* of the run that is being made */
 	int64_t pulses;
 	bool turned;			/* an axis came back on itself */
 };
@@ -87,7 +88,8 @@ static void list_add(struct list *l, const int8_t pulse[2])
 	l->pulses += pulse[axis];
 }
 
-/* May axis @axis pulse?  It is the shrinking coordinate's or the growing's. */
+/* May axis @axis pulse?  It is the axis of the shrinking or of the growing
+ * coordinate. */
 static bool legal(const struct interp_circle *k, struct tube t, int8_t axis)
 {
 	if (circle_inward_axis(k) == axis)
@@ -95,7 +97,7 @@ static bool legal(const struct interp_circle *k, struct tube t, int8_t axis)
 	return k->dev + 2 * circle_out(k) + 1 <= t.hi;
 }
 
-/* From home on the way is straight, the axis that runs first. */
+/* The tail is straight; the axis of the present run goes first. */
 static void plan_tail(struct interp_circle *k, struct interp_arc *arc,
 		      struct list *l)
 {
@@ -114,7 +116,7 @@ static void plan_tail(struct interp_circle *k, struct interp_arc *arc,
 	}
 }
 
-/* Plan from @k on, axis @first first if it may. */
+/* Plan from @k on; begin with axis @first if it may pulse. */
 static bool plan(struct interp_circle *k, struct interp_arc *arc,
 		 struct tube t, struct list *l)
 {

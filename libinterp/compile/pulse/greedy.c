@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * greedy.c - the fewest changes of axis a line in a tube can have
- */
+/* greedy.c - the fewest changes of axis that a line in a tube can have */
 #include "pulse/greedy.h"
 
 #include <stdlib.h>
@@ -11,7 +9,7 @@ static int64_t least(int64_t x, int64_t y)
 	return x < y ? x : y;
 }
 
-/* How many pulses @main may give from (m, s) in a row. */
+/* How many pulses @main may give in a row from (m, s). */
 static int64_t reach(const struct greedy_line *l, bool main, int64_t m,
 		     int64_t s)
 {
@@ -23,7 +21,8 @@ static int64_t reach(const struct greedy_line *l, bool main, int64_t m,
 	       least(l->a - m, (l->half_width - e) / l->b);
 }
 
-/* Nobody may: which axis strays less?  One that is home gives none. */
+/* If neither may pulse: which axis goes less far astray?  An axis at its end
+ * gives no pulse. */
 static bool lesser_evil(const struct greedy_line *l, int64_t m, int64_t s)
 {
 	const int64_t e = l->b * m - l->a * s;

@@ -9,9 +9,9 @@
  * pulse is legal at every place.  So the better of the two first axes is the
  * optimum; the other one costs a run more at the most.
  *
- * It cannot be walked back from its place alone, for two places may lead to one.
- * So the builder plans it, and the program keeps which input gives each pulse:
- * path/build_bits.h.
+ * It cannot be walked back from its place alone, for two places may lead to
+ * one.  So the builder plans it, and the program keeps which input gives each
+ * pulse: path/build_bits.h.
  *
  * Threads: any; planning takes as long as the line has runs.
  */
@@ -24,23 +24,25 @@
 
 struct greedy_line {
 	int64_t a, b;			/* pulses, a >= b >= 0, a > 0 */
-	int64_t half_width;		/* M; if too narrow the step that strays
-					 * least is taken */
+	int64_t half_width;		/* M; if it is too narrow, the step that
+					 * goes least astray is taken */
 };
 
-/* Runs alternate between main and secondary. */
+/* Runs alternate between the main and the secondary axis. */
 struct greedy_runs {
-	uint32_t *run;			/* the caller's; may be NULL to count */
+	uint32_t *run;			/* memory of the caller; NULL: only
+					 * count */
 	size_t room;
-	size_t n;			/* as many as there are, room or not */
+	size_t n;			/* how many runs there are, with or
+					 * without room */
 	bool main_first;
 };
 
-/** greedy_plan_from() - the path that begins on the axis said. */
+/** greedy_plan_from() - the path that begins on the given axis. */
 void greedy_plan_from(const struct greedy_line *l, bool main_first,
 		      struct greedy_runs *r);
 
-/** greedy_plan() - the better one. */
+/** greedy_plan() - the better of the two. */
 void greedy_plan(const struct greedy_line *l, struct greedy_runs *r);
 
 #endif /* PULSE_GREEDY_H */

@@ -134,7 +134,7 @@ static double step(const struct pass *w, const struct change *c)
 	return v;
 }
 
-/* -- Of short lines ---------------------------------------------------------- */
+/* -- Of short lines ------------------------------------------------------- */
 
 /* From node @from to @to: the length in the columns of ret->along, and the
  * rates of all by it. */

@@ -78,7 +78,7 @@ static int take_cell(struct tech_text *t, const struct tech_cell *c, size_t i,
 	return tech_value(t, c, (enum interp_tech_id)id, &row->tech.v[id]);
 }
 
-/* Midway in the window. */
+/* servo_v is the middle of the window. */
 static int find_servo_v(struct tech_text *t, struct interp_tech *tech)
 {
 	const double v = (tech->v[INTERP_TECH_WINDOW_LOW_V] +
@@ -94,7 +94,7 @@ static int find_servo_v(struct tech_text *t, struct interp_tech *tech)
 			   v);
 }
 
-/* A row, unless the line names the columns. */
+/* Take a row, unless the line has the names of the columns. */
 static int take_line(struct tech_text *t, struct interp_tech_table *table)
 {
 	struct interp_tech_row *row;

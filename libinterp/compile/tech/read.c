@@ -15,15 +15,15 @@
 struct reading {
 	struct tech_text text;
 	struct interp_tech_table *table;
-	uint32_t head_line;		/* 0: not yet */
+	uint32_t head_line;		/* 0: there was none yet */
 	int column[INTERP_NTECH];	/* field of each column of a row */
 	uint32_t ncolumns;
-	const char *value;		/* behind the = of the line in hand */
+	const char *value;		/* behind the = of the present line */
 };
 
 #define THE_KEYS	"electrode, workpiece, note, sequence Q1 or inline E"
 
-/* -- key = value ------------------------------------------------------------ */
+/* -- key = value ---------------------------------------------------------- */
 
 static int take_text(struct reading *r, struct tech_cell value, char *to)
 {
@@ -71,7 +71,7 @@ static int add_step(struct reading *r, struct interp_tech_sequence *s,
 	return 0;
 }
 
-/* Whether the conditions are there is seen at the end. */
+/* Whether the conditions exist is checked at the end. */
 static int take_sequence(struct reading *r, const struct tech_cell *name)
 {
 	struct interp_tech_table *t = r->table;
@@ -175,7 +175,7 @@ static int take_key(struct reading *r, const char *equals)
 		value++;
 	rest = (struct tech_cell) { value, (size_t)(r->text.line_end - value) };
 	tech_word(&r->text, &at, &key);
-	/* The = may be right behind the key, or be a word of its own. */
+	/* The = may follow the key directly, or be a word of its own. */
 	if (key.at + key.n > equals)
 		key.n = (size_t)(equals - key.at);
 	while (at < equals && *at == ' ')
@@ -199,7 +199,7 @@ static int take_key(struct reading *r, const char *equals)
 			   "unknown key '%s'", tech_quote(&key).s);
 }
 
-/* -- Head and rows ---------------------------------------------------------- */
+/* -- Head and rows -------------------------------------------------------- */
 
 static int check_unit(struct reading *r, const struct tech_cell *cell,
 		      const char *bracket, int id)
@@ -319,10 +319,10 @@ static int take_row(struct reading *r)
 	if (!row)
 		return -ENOMEM;
 	if (!tech_condition(&cell, &row->letter, &row->number))
-		return tech_refuse(&r->text, cell.at, "C, E or S and up to nine "
-				   "digits, as C120; or a key and =",
-				   "'%s' is no condition",
-				   tech_quote(&cell).s);
+		return tech_refuse(&r->text, cell.at,
+				   "C, E or S and up to nine digits, as C120; "
+				   "or a key and =",
+				   "'%s' is no condition", tech_quote(&cell).s);
 	return take_cells(r, row, at);
 }
 
@@ -330,7 +330,7 @@ static int take_line(struct reading *r)
 {
 	const char *p = r->text.line_at;
 
-	/* A key has its = before any separator. */
+	/* A line with a key has its = before any separator. */
 	while (p < r->text.line_end && *p != '=' && *p != ',' && *p != ';')
 		p++;
 	if (p < r->text.line_end && *p == '=')
@@ -338,7 +338,7 @@ static int take_line(struct reading *r)
 	return r->head_line ? take_row(r) : take_head(r);
 }
 
-/* -- The whole -------------------------------------------------------------- */
+/* -- The whole ------------------------------------------------------------ */
 
 static int refuse_step(struct reading *r, const struct interp_tech_sequence *s,
 		       uint32_t i)
@@ -356,7 +356,7 @@ static int refuse_step(struct reading *r, const struct interp_tech_sequence *s,
 					    sizeof(name)));
 }
 
-/* From rough to fine, each leaves less than the one before. */
+/* From rough to fine, each condition leaves less than the previous one. */
 static int check_sequence(struct reading *r,
 			  const struct interp_tech_sequence *s)
 {

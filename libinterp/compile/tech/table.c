@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * table.c - the rows of a table: put in, ordered, found
- */
+/* table.c - the rows of a table: added, sorted, found */
 #include "tech/text.h"
 
 #include <errno.h>
@@ -26,7 +24,7 @@ struct interp_tech_row *tech_row_add(struct tech_text *t,
 {
 	struct interp_tech_row *r;
 
-	/* Room doubles whenever the count is a power of two. */
+	/* The room doubles whenever the count is a power of two. */
 	if ((table->nrows & (table->nrows - 1)) == 0) {
 		const size_t room = table->nrows ? 2 * table->nrows : 1;
 
@@ -73,8 +71,9 @@ int tech_finish(struct tech_text *t, struct interp_tech_table *table)
 	struct interp_tech nothing;
 
 	if (table->nrows == 0)
-		return tech_refuse(t, NULL, "at least one condition, as in "
-				   "C120, 30, 40", "a table without conditions");
+		return tech_refuse(t, NULL,
+				   "at least one condition, as in C120, 30, 40",
+				   "a table without conditions");
 	qsort(table->row, table->nrows, sizeof(*table->row), by_name);
 	for (uint32_t i = 1; i < table->nrows; i++) {
 		if (compare(table->row[i - 1].letter, table->row[i - 1].number,
@@ -86,7 +85,7 @@ int tech_finish(struct tech_text *t, struct interp_tech_table *table)
 	return interp_tech_table_fits(table, &nothing, t->diag);
 }
 
-/* The first row that is not in front of the condition. */
+/* The first row that does not come before the condition. */
 static uint32_t place_of(const struct interp_tech_table *t, char letter,
 			 uint32_t number)
 {

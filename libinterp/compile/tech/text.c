@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * text.c - a table's text, line by line and cell by cell
- */
+/* text.c - the text of a table, line by line and cell by cell */
 #include "tech/text.h"
 
 #include "code/number.h"
@@ -38,7 +36,8 @@ static bool is_break(char c)
 	return c == '\n' || c == '\r';
 }
 
-/* From the line's start to its break; the rest of the text begins behind. */
+/* Take the text from the start of the line to its break; the rest begins behind
+ * the break. */
 static void cut_line(struct tech_text *t)
 {
 	const char *p = t->next;
@@ -66,7 +65,7 @@ static int check_line(struct tech_text *t)
 	return 0;
 }
 
-/* The comment goes, and blanks at the end. */
+/* Remove the comment, and blanks at the end. */
 static void cut_comment(struct tech_text *t)
 {
 	const char *p = t->line_at;
@@ -157,7 +156,7 @@ bool tech_number(const struct tech_cell *c, double *ret)
 	const uint8_t *p = (const uint8_t *)c->at;
 	const uint8_t *end = p + c->n;
 
-	/* No blank inside, though the reader of NC code allows some. */
+	/* No blank may be inside, though the reader of NC code allows some. */
 	return c->n && !memchr(p, ' ', c->n) && nc_number(p, end, ret) == end;
 }
 

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Decimals enough for any number of 15 digits from 1e-6 on. */
+/* Enough decimals for any number of 15 digits from 1e-6 on. */
 #define DECIMALS_MAX	21
 
 const char *interp_tech_number(double x, char *buf, size_t size)
@@ -24,7 +24,7 @@ const char *interp_tech_number(double x, char *buf, size_t size)
 		if (tech_number(&c, &back) && back == x)
 			return buf;
 	}
-	/* Fifteen digits, which are read and written as they are. */
+	/* Fifteen digits, which are read back as they were written. */
 	snprintf(buf, size, "%.*f", x < 1 && x > -1 ? 15 :
 		 14 - (int)fmin(14, log10(fabs(x))), x);
 	if (!strchr(buf, '.'))
@@ -61,7 +61,8 @@ const char *interp_tech_range(enum interp_tech_id id, char *buf, size_t size)
 	return buf;
 }
 
-/* -- Out as a .tech text --------------------------------------------------- */
+/* -- Written as a .tech text
+ * -------------------------------------------------- */
 
 #define CELL_MAX	40
 

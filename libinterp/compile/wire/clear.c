@@ -159,7 +159,7 @@ int clear_init(struct track_work *w)
 	return err ? err : enter_outline(w);
 }
 
-/* -- Questions --------------------------------------------------------------- */
+/* -- Questions ------------------------------------------------------------ */
 
 struct question {
 	struct track_work *w;

@@ -50,7 +50,7 @@ double contour_tangent(const struct contour *k, double deg)
 	return tan(deg * DEGREE);
 }
 
-/* -- Collected ---------------------------------------------------------------- */
+/* -- Collected ------------------------------------------------------------ */
 
 static bool is_on(double offset_mm, double slope)
 {

@@ -93,7 +93,7 @@ bool contour_leads(const struct contour *k);
 int contour_keep(struct contour *k, const struct contour_motion *m,
 		 struct interp_diag *diag);
 
-/* -- contour_curve.c -------------------------------------------------------- */
+/* -- contour_curve.c ------------------------------------------------------ */
 
 int contour_cut_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_curve *c,
@@ -106,7 +106,7 @@ int contour_cut_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 int contour_release(struct contour *k, const struct contour_motion *next,
 		    struct interp_diag *diag);
 
-/* -- contour_refuse.c -------------------------------------------------------- */
+/* -- contour_refuse.c ----------------------------------------------------- */
 
 struct track_fault;
 

@@ -61,7 +61,7 @@ static struct face_piece *add(struct face *f)
 	return &f->piece[f->n++];
 }
 
-/* -- A motion on this plane ------------------------------------------------- */
+/* -- A motion on this plane ----------------------------------------------- */
 
 static bool stands(const struct curve *c)
 {
@@ -121,7 +121,7 @@ static double wire_of(const struct face_from *from, uint32_t i)
 	return wire_at(m->offset_mm, most);
 }
 
-/* -- Fillets of constant radius ---------------------------------------------- */
+/* -- Fillets of constant radius ------------------------------------------- */
 
 /* The foot of @at on @c or its prolongation. */
 static struct vec foot_on(const struct curve *c, struct vec at)
@@ -182,7 +182,7 @@ static bool move(struct maker *k, uint32_t i, struct open *ret)
 	return !inside_out || ret->fitted;
 }
 
-/* -- Two neighbours ---------------------------------------------------------- */
+/* -- Two neighbours ------------------------------------------------------- */
 
 struct join {
 	struct vec end, start;
@@ -273,7 +273,7 @@ static bool cut(const struct open *o, struct vec to, struct curve *ret)
 	return curve_trim(ret, o->from, to);
 }
 
-/* -- The stack ---------------------------------------------------------------- */
+/* -- The stack ------------------------------------------------------------ */
 
 static int lay(struct maker *k, const struct open *o, const struct curve *c,
 	       const struct join *j)
@@ -384,7 +384,7 @@ static int take_all(struct maker *k)
 	return 0;
 }
 
-/* -- Where it closes ------------------------------------------------------------ */
+/* -- Where it closes ------------------------------------------------------ */
 
 /*
  * A part's outline ends where it begins.  What is programmed in front of that

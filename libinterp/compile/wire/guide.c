@@ -101,7 +101,7 @@ static int check_tilt(const struct guides *g, const struct curve c[2],
 	return 0;
 }
 
-/* -- To the builder ---------------------------------------------------------- */
+/* -- To the builder ------------------------------------------------------- */
 
 struct cut {
 	struct guides *g;

@@ -16,7 +16,7 @@
 
 #define DEGREE		(M_PI / 180)
 
-/* -- One motion, or a part of it --------------------------------------------- */
+/* -- One motion, or a part of it ------------------------------------------ */
 
 struct step {
 	struct contour *k;
@@ -104,7 +104,7 @@ static int do_corner(const struct step *s, bool corner)
 	return err < 0 ? err : do_todo(s);
 }
 
-/* -- One outline ---------------------------------------------------------------- */
+/* -- One outline ---------------------------------------------------------- */
 
 /* Motions @first to @end - 1; some of these at either end may be leads. */
 struct stretch {

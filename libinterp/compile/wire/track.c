@@ -19,6 +19,7 @@
 #define RIGHT_ANGLE	(M_PI / 2)
 #define ANGLE_SLACK	1e-6
 #define SAME_MM		1e-9
+#define MITRE_TURNS	8u		/* ways found before mitres are left */
 
 /* Ends so near are one: half a pulse of rounding on either side, and more. */
 #define TINY_PULSES	1.5
@@ -68,10 +69,11 @@ static int lay_piece(struct track_work *w, uint32_t i)
 	return 0;
 }
 
-/* -- Corners ------------------------------------------------------------------- */
+/* -- Corners -------------------------------------------------------------- */
 
 struct corner {
-	uint32_t a, b;			/* elements */
+	uint32_t a;			/* the element in front of it */
+	uint32_t b;			/* the piece behind it */
 	struct vec at;			/* where their pieces meet */
 	double turn, da, db;
 };
@@ -157,8 +159,9 @@ static bool meet_outside(const struct track_work *w, const struct corner *k,
 	struct curve p = a->c, q = b->c;
 	struct vec at;
 
-	if (w->round || fabs(k->turn) > RIGHT_ANGLE + ANGLE_SLACK || a->dead ||
-	    b->dead || (p.arc && p.r == 0) || (q.arc && q.r == 0))
+	if (w->round || w->no_mitre[k->b] || a->dead || b->dead ||
+	    fabs(k->turn) > RIGHT_ANGLE + ANGLE_SLACK ||
+	    (p.arc && p.r == 0) || (q.arc && q.r == 0))
 		return false;
 	if (!curve_meet(&p, &q, k->at, &at) ||
 	    curve_distance(at, k->at) > 1.5 * most / cos(k->turn / 2) ||
@@ -175,7 +178,7 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 {
 	const struct face_piece *p = &w->job->face->piece[i - 1], *q = p + 1;
 	const struct corner k = {
-		.a = w->n - 1, .at = q->c.from, .turn = curve_turn(&p->c, &q->c),
+		.a = w->n - 1, .b = i, .at = q->c.from, .turn = curve_turn(&p->c, &q->c),
 		.da = shift_of(w, i - 1), .db = shift_of(w, i),
 	};
 	struct track_elem *a = &w->elem[k.a];
@@ -199,7 +202,7 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 	return meet_outside(w, &k, a, b) ? 0 : lay_round(w, &k, b);
 }
 
-/* -- Leads ------------------------------------------------------------------------ */
+/* -- Leads ---------------------------------------------------------------- */
 
 /* From @from to @at, which it reaches the way @way goes. */
 static struct curve tangent_arc(struct vec from, struct vec at, struct vec way)
@@ -272,7 +275,7 @@ int track_lay(struct track_work *w)
 	return err;
 }
 
-/* -- The way as curves -------------------------------------------------------------- */
+/* -- The way as curves ---------------------------------------------------- */
 
 void track_free(struct track *t)
 {
@@ -343,6 +346,42 @@ static void forget(struct track_work *w)
 	free(w->hit);
 	free(w->run);
 	free(w->stamp);
+	free(w->no_mitre);
+}
+
+/* Share @t of element @e as a share of its piece: below 0 and above 1 where the
+ * element is prolonged. */
+static double share_of(const struct track_work *w, uint32_t e, double t)
+{
+	const struct track_elem *k = &w->elem[e];
+	const double len = curve_length(&k->c);
+	const double slack = SAME_MM / fmax(len, SAME_MM);
+	double share;
+
+	if (k->piece < 0 || k->fill)
+		return 0.5;
+	share = curve_share(&w->job->face->piece[k->piece].c,
+			    curve_at(&k->c, t));
+	return share > -slack && share < 1 + slack ? 0.5 : share;
+}
+
+/* The mitres of run @i that the way does not go along. */
+static bool give_up_mitre(struct track_work *w, uint32_t i)
+{
+	const struct track_run *r = &w->run[i];
+	const struct track_elem *k = &w->elem[r->elem];
+	const double from = share_of(w, r->elem, r->t[0]);
+	const double to = share_of(w, r->elem, r->t[1]);
+	const bool jump = i + 1 < w->nruns && r[1].jump;
+	const bool start = r->elem && w->elem[r->elem - 1].mitre &&
+			   (to < 0 || (r->jump && from < 0));
+	const bool end = k->mitre && (from > 1 || (jump && to > 1));
+
+	if (start)
+		w->no_mitre[k->piece] = true;
+	if (end)
+		w->no_mitre[k->piece + 1] = true;
+	return start || end;
 }
 
 /* What is tried in turn: nearer by rounding, then corners without points. */
@@ -355,24 +394,55 @@ static const struct attempt {
 
 #define NATTEMPTS	(sizeof(attempts) / sizeof(attempts[0]))
 
+/*
+ * A mitre that the way does not go along to its point keeps the wire off what
+ * lies behind the corner.  From now on an arc goes round these.
+ * Return: were there any?
+ */
+static bool give_up_mitres(struct track_work *w)
+{
+	bool any = false;
+
+	for (uint32_t i = 0; i < w->nruns; i++)
+		any = give_up_mitre(w, i) || any;
+	return any;
+}
+
+static int find_way(struct track_work *w, struct track_fault *fault)
+{
+	int err;
+
+	grid_free(&w->near);
+	free(w->stamp);
+	w->stamp = NULL;
+	w->nhits = w->nruns = 0;
+	err = track_lay(w);
+	if (!err)
+		err = clear_init(w);
+	if (err != -E2BIG)
+		return err ? err : way_find(w, fault);
+	*fault = (struct track_fault) {
+		.kind = TRACK_CROWDED, .a = w->elem[0].owner,
+		.b = w->elem[w->n - 1].owner,
+	};
+	return -EINVAL;
+}
+
 static int attempt(struct track *t, const struct track_job *j, uint32_t i,
 		   struct track_fault *fault)
 {
 	struct track_work w = { .job = j, .slack_mm = attempts[i].slack_mm,
 				.round = attempts[i].round };
-	int err = track_lay(&w);
+	uint32_t turns = 0;
+	int err;
 
-	if (!err)
-		err = clear_init(&w);
-	if (err == -E2BIG) {
-		*fault = (struct track_fault) {
-			.kind = TRACK_CROWDED, .a = w.elem[0].owner,
-			.b = w.elem[w.n - 1].owner,
-		};
-		err = -EINVAL;
-	} else if (!err) {
-		err = way_find(&w, fault);
-	}
+	w.no_mitre = calloc(j->face->n, sizeof(*w.no_mitre));
+	if (!w.no_mitre)
+		return -ENOMEM;
+	do
+		err = find_way(&w, fault);
+	while ((!err || err == -EINVAL) && turns++ < MITRE_TURNS &&
+	       give_up_mitres(&w));
 	if (!err || (err == -EINVAL && j->skip && w.nruns &&
 		    fault->kind == TRACK_LOST)) {
 		t->skipped = err != 0;

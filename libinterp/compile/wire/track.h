@@ -36,7 +36,8 @@ struct track_elem {
 	int64_t piece;			/* of the outline; -1: a lead */
 	bool fill;			/* leads to the next motion */
 	bool dead;			/* no way goes along it */
-	bool mitre;			/* prolonged at its end */
+	bool mitre;			/* prolonged at its end, as the next one
+					 * is at its start */
 	uint32_t hit;			/* its first crossing */
 };
 
@@ -92,7 +93,7 @@ int track_make(struct track *t, const struct track_job *j,
 
 void track_free(struct track *t);
 
-/* -- Between the files of the track ------------------------------------------ */
+/* -- Between the files of the track --------------------------------------- */
 
 struct track_work {
 	const struct track_job *job;
@@ -107,7 +108,8 @@ struct track_work {
 	double reach_mm;		/* the largest distance of a piece */
 	double total_mm;		/* along the outline */
 	double slack_mm;		/* nearer by this is no fault */
-	bool round;			/* no corner is prolonged */
+	bool round;			/* no corner is prolonged ... */
+	bool *no_mitre;			/* ... or not that in front of a piece */
 	uint32_t blocker;		/* the piece found too near last */
 };
 

@@ -23,7 +23,7 @@ struct walker {
 	uint32_t farthest;		/* element where it was stuck */
 };
 
-/* -- Faults -------------------------------------------------------------------- */
+/* -- Faults --------------------------------------------------------------- */
 
 static void tell(struct walker *k, enum track_fault_kind kind,
 		 const struct face_piece *p, const struct face_piece *q)
@@ -36,30 +36,53 @@ static void tell(struct walker *k, enum track_fault_kind kind,
 		k->fault->found_mm = curve_gap(&p->c, &q->c);
 }
 
+/* Element @i, a lead, comes too near to the blocker. */
+static void tell_lead(struct walker *k, uint32_t i)
+{
+	const struct track_elem *e = &k->w->elem[i];
+	const struct face_piece *q = &k->w->job->face->piece[k->w->blocker];
+
+	*k->fault = (struct track_fault) {
+		.kind = TRACK_LEAD, .a = e->owner, .b = q->owner,
+		.found_mm = curve_gap(&e->c, &q->c), .wanted_mm = q->wire_mm,
+	};
+}
+
 static void tell_stuck(struct walker *k)
 {
-	const struct track_elem *e = &k->w->elem[k->elem];
 	const struct face_piece *q = &k->w->job->face->piece[k->w->blocker];
 
 	if (k->elem < k->farthest)
 		return;
 	k->farthest = k->elem;
-	tell(k, e->piece < 0 ? TRACK_LEAD : TRACK_STUCK,
-	     track_piece(k->w, k->elem), q);
-	if (e->piece >= 0)
-		return;
-	k->fault->a = e->owner;
-	k->fault->found_mm = curve_gap(&e->c, &q->c);
-	k->fault->wanted_mm = q->wire_mm;
+	if (k->w->elem[k->elem].piece < 0)
+		tell_lead(k, k->elem);
+	else
+		tell(k, TRACK_STUCK, track_piece(k->w, k->elem), q);
 }
 
-/* -- Is something lost? ---------------------------------------------------------- */
+/* -- Is something lost? --------------------------------------------------- */
 
+/* The walls: behind a corner that the wire goes round is the first of them. */
 static int check_jump(struct walker *k, struct track_jump *j)
 {
+	const struct face *f = k->w->job->face;
+	const struct face_piece *p = track_piece(k->w, j->e);
+	const struct face_piece *q = track_piece(k->w, j->f);
+
 	if (!lost_is(k->w, j))
 		return 0;
-	tell(k, TRACK_LOST, track_piece(k->w, j->e), track_piece(k->w, j->f));
+	for (int i = 0; i < 2; i++) {
+		const uint32_t e = i ? j->f : j->e;
+
+		if (k->w->elem[e].piece >= 0 || clear_is(k->w, e, 0, 1))
+			continue;
+		tell_lead(k, e);
+		return -EINVAL;
+	}
+	if (k->w->elem[j->e].fill && p + 1 < f->piece + f->n && p + 1 != q)
+		p++;
+	tell(k, TRACK_LOST, p, q);
 	return -EINVAL;
 }
 
@@ -78,7 +101,7 @@ static int check_jumps(struct walker *k)
 	return err;
 }
 
-/* -- Along it ---------------------------------------------------------------------- */
+/* -- Along it ------------------------------------------------------------- */
 
 static double slack_of(const struct track_work *w, uint32_t e)
 {
@@ -233,7 +256,7 @@ static int walk(struct walker *k)
 	return err;
 }
 
-/* -- A contour begun in an inner corner ---------------------------------------------- */
+/* -- A contour begun in an inner corner ----------------------------------- */
 
 /* The lead, from its far end to @at. */
 static struct curve lead_to(const struct track_work *w, int i, struct vec at)

@@ -2,10 +2,11 @@
 /*
  * axis_model.c - an axis and its drive, period by period
  *
- * The held input makes the exact discretisation one matrix exponential: with
- * the input as a fourth state that stands still, exp([A B; 0 0] t) holds phi(t)
- * and gamma(t).  A delay that is no whole number of periods switches u within
- * the period: the old one for the first part, the new one for the rest.
+ * The input is held during a period, so the exact discretisation is one matrix
+ * exponential.  With the input as a fourth state that stands still, exp([A B; 0
+ * 0] t) contains phi(t) and gamma(t).  If the delay is not a whole number of
+ * periods, u changes within the period: the old value acts in the first part,
+ * and the new one in the rest.
  */
 #include "interp/axis_model.h"
 
@@ -15,9 +16,11 @@
 
 #define N	INTERP_AXIS_NSTATES
 #define M	(N + 1)			/* with the input */
-#define TERMS	12			/* of the series, below norm 1/2 */
-#define STANDS_MM_S	0.01		/* slower is no motion */
-#define SEARCH	200			/* halvings and looks, offline */
+#define TERMS	12			/* of the series, for a norm below
+					 * 1/2 */
+#define STANDS_MM_S	0.01		/* a slower motion counts as none */
+#define SEARCH	200			/* halvings and looks; not in the
+					 * cycle */
 
 struct matrix {
 	double at[M][M];
@@ -56,7 +59,7 @@ static double norm(struct matrix a)
 	return most;
 }
 
-/* The series of a small part of it, squared up again. */
+/* The series of a small part of the matrix, squared until it is whole. */
 static struct matrix exponential(struct matrix a)
 {
 	struct matrix sum = { 0 }, term;
@@ -79,7 +82,8 @@ static struct matrix exponential(struct matrix a)
 	return sum;
 }
 
-/* In natural units, w t for time, so that the series is well scaled. */
+/* In natural units, with w t for the time, so that the series is well
+ * scaled. */
 static void transition(const struct interp_axis_loop *l, double t,
 		       double phi[N][N], double gamma[N])
 {
@@ -89,7 +93,8 @@ static void transition(const struct interp_axis_loop *l, double t,
 		{ 0, 0, 1, 0 },
 		{ 0, -1, -2 * l->damping, 1 },
 	} };
-	/* Place in units of 1/w, acceleration of w, both per mm/s. */
+	/* The place in units of 1/w and the acceleration in units of w, both
+	 * per mm/s. */
 	const double unit[N] = { 1 / w, 1, w };
 	const struct matrix e = exponential(scale(a, w * t));
 
@@ -155,7 +160,8 @@ void interp_axis_model_stand(struct interp_axis_model *m, double place_mm)
 	m->direction = 0;
 }
 
-/* A turn of the motion kicks; slower than STANDS_MM_S it has not turned. */
+/* A turn of the motion gives a kick.  A motion slower than STANDS_MM_S has not
+ * turned. */
 static int turns(const struct interp_axis_model *m)
 {
 	const double v = m->x[1];
@@ -163,7 +169,8 @@ static int turns(const struct interp_axis_model *m)
 	return fabs(v) < STANDS_MM_S ? m->direction : v > 0 ? 1 : -1;
 }
 
-/* The part of this period in which it moved the other way, @before mm/s. */
+/* The part of this period in which it moved the other way; @before: its speed
+ * before, mm/s. */
 static double part_of(const struct interp_axis_model *m, int direction,
 		      double before)
 {
@@ -240,7 +247,7 @@ double interp_axis_model_follow(struct interp_axis_model *m, double target_mm,
 	return u;
 }
 
-/* -- In z --------------------------------------------------------------------- */
+/* -- In z ----------------------------------------------------------------- */
 
 /* One step of x = phi x. */
 static void advance(const struct interp_axis_model *m, double x[N])
@@ -259,7 +266,8 @@ void interp_axis_model_quotient(const struct interp_axis_model *m,
 	const double (*f)[N] = m->phi;
 	double phi[N][N], x[N], h[N];
 
-	/* phi[0][0] is 1 and nothing depends on the place: one pole at 1. */
+	/* phi[0][0] is 1 and nothing depends on the place, so one pole is at
+	 * 1. */
 	const double sum = f[1][1] + f[2][2];
 	const double det = f[1][1] * f[2][2] - f[1][2] * f[2][1];
 
@@ -268,7 +276,7 @@ void interp_axis_model_quotient(const struct interp_axis_model *m,
 	ret->a[2] = -det;
 	transition(&m->loop, m->period_s, phi, x);
 	for (int i = 0; i < N; i++) {
-		h[i] = x[0];		/* place, so many periods after */
+		h[i] = x[0];		/* the place, so many periods later */
 		advance(m, x);
 	}
 	ret->b[0] = h[0];
@@ -276,7 +284,7 @@ void interp_axis_model_quotient(const struct interp_axis_model *m,
 	ret->b[2] = h[2] + ret->a[0] * h[1] + ret->a[1] * h[0];
 }
 
-/* A sum of c[i] z^(n - 1 - i) on the unit circle. */
+/* The sum of c[i] z^(n - 1 - i) on the unit circle. */
 static void on_circle(const double *c, int n, double angle, double ret[2])
 {
 	ret[0] = ret[1] = 0;
@@ -286,7 +294,8 @@ static void on_circle(const double *c, int n, double angle, double ret[2])
 	}
 }
 
-/* Lag of the open loop beyond its integrator's quarter turn, and its size. */
+/* The lag of the open loop beyond the quarter turn of its integrator, and its
+ * size. */
 static double lag_at(const struct interp_axis_quotient *q, double delay,
 		     double angle, double *size)
 {
@@ -309,7 +318,7 @@ double interp_axis_model_gain_max_1_s(const struct interp_axis_model *m)
 	double low = 0, high = M_PI, size = 0;
 
 	interp_axis_model_quotient(m, &q);
-	/* The first angle where the lag comes to half a turn in all. */
+	/* The first angle at which the whole lag is half a turn. */
 	for (int i = 1; i <= SEARCH; i++) {
 		const double angle = M_PI * i / SEARCH;
 

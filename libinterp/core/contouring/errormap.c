@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* errormap.c - geometric errors added up, and solved for the place to command */
+/* errormap.c - adds the geometric errors up, and finds the place to command */
 #include "interp/errormap.h"
 
 #include <errno.h>
 #include <math.h>
 
-/* Moved by less, the place to command is found: 1 % of that is left. */
+/* If the place moves by less, it is found: 1 % of that is left as an error. */
 #define FOUND_MM	5e-7
 
 static bool point_ok(const struct interp_errormap_row *r, int i)
@@ -67,7 +67,8 @@ bool interp_errormap_is_empty(const struct interp_errormap *m)
 	return m->nrows == 0 && m->nleans == 0;
 }
 
-/* The last point at or before the place, but not the last of all. */
+/* The last point at or before the place, but never the last point of the
+ * row. */
 static int point_before(const struct interp_errormap_row *r, double place_mm)
 {
 	int low = 0, high = r->n - 1;
@@ -83,7 +84,7 @@ static int point_before(const struct interp_errormap_row *r, double place_mm)
 	return low;
 }
 
-/* The same from near it on. */
+/* The same, searched from a point near it. */
 static int point_near(const struct interp_errormap_row *r, int i,
 		      double place_mm)
 {
@@ -105,7 +106,7 @@ static double row_at(const struct interp_errormap_row *r, int i,
 				(r->error_mm[i + 1] - r->error_mm[i]);
 }
 
-/* @point: of each row, the one before the place; near it before. */
+/* @point: for each row, the point before the place; on entry, one near it. */
 static void error_at(const struct interp_errormap *m, const double *place_mm,
 		     int *point, double *ret_mm)
 {
@@ -142,7 +143,7 @@ void interp_errormap_error(const struct interp_errormap *m,
 	error_at(m, place_mm, point, ret_mm);
 }
 
-/* x = place - error(x), begun at x = place. */
+/* Iterate x = place - error(x), beginning with x = place. */
 void interp_errormap_apply(const struct interp_errormap *m,
 			   const double *place_mm, double *ret_mm)
 {

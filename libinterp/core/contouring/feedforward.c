@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* feedforward.c - the ways of compensation by name, and the feedforward */
+/* feedforward.c - the methods of compensation by name, and the feedforward */
 #include "interp/feedforward.h"
 
 #include <errno.h>
@@ -45,8 +45,8 @@ int interp_compensate_parse(const char *text)
 }
 
 /*
- * Speed and acceleration of the cubic through four set values, a part @f of a
- * period after the second.
+ * Speed and acceleration of the cubic through four targets, a part @f of a
+ * period after the second one.
  */
 double interp_compensate_feedforward(const struct interp_compensate_gains *g,
 				     const struct interp_axis_loop *l,

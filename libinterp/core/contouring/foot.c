@@ -20,13 +20,14 @@
 #include <math.h>
 #include <stddef.h>
 
-#define CLOSE_MM	1e-8		/* nearer than any sensor sees */
-#define BACK_MM		0.005		/* encoder noise, no branch */
+#define CLOSE_MM	1e-8		/* nearer than any sensor can see */
+#define BACK_MM		0.005		/* this is encoder noise, not a
+					 * branch */
 
-/* A look at the path. */
+/* One evaluation of the path. */
 struct look {
 	double u, g, speed;		/* speed: |C'|, mm per u */
-	double mm;			/* distance of q */
+	double mm;			/* distance from q */
 };
 
 static struct look look_at(const struct interp_contour_path *p, double u,
@@ -49,7 +50,8 @@ static struct look look_at(const struct interp_contour_path *p, double u,
 	return l;
 }
 
-/* Between @a, which is short of the foot, and @b, which is not. */
+/* Close in on the foot between @a, which is short of it, and @b, which is
+ * not. */
 static struct look close_in(const struct interp_contour_path *p,
 			    const double *q, struct look a, struct look b)
 {
@@ -74,7 +76,7 @@ static struct look close_in(const struct interp_contour_path *p,
 	return fabs(a.g) < fabs(b.g) ? a : b;
 }
 
-/* How far to look from @l on, having come from @before. */
+/* How far from @l the next look is; the look before was @before. */
 static double stride(const struct interp_contour *c, const struct look *l,
 		     const struct look *before)
 {
@@ -87,7 +89,8 @@ static double stride(const struct interp_contour *c, const struct look *l,
 	return fmin(du, longest);
 }
 
-/* The first foot from @l on in the direction of its g, not beyond @end_u. */
+/* The first foot from @l on, in the direction of its g, but not beyond
+ * @end_u. */
 static struct look search(const struct interp_contour *c, const double *q,
 			  struct look l, double end_u)
 {
@@ -130,7 +133,8 @@ static double bound(const struct interp_contour *c, const struct look *l)
 	return way * (back - end) > 0 ? end : back;
 }
 
-/* The point nearer than @foot between it and the set values, if any. */
+/* A point between @foot and the targets that is nearer than @foot, if there is
+ * one. */
 static struct look leap(const struct interp_contour *c, const double *q,
 			struct look foot, double set_u)
 {

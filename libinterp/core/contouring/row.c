@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* row.c - the last set values as a path of chords */
+/* row.c - the last targets as a path of chords */
 #include "interp/row.h"
 
 #include <math.h>
@@ -14,7 +14,8 @@ static const double *point(const struct interp_row *r, uint64_t i)
 }
 
 /* u counts the points. */
-static void chord_at(const void *arg, double u, struct interp_contour_point *ret)
+static void chord_at(const void *arg, double u,
+		     struct interp_contour_point *ret)
 {
 	const struct interp_row *r = arg;
 	const double last = (double)(r->n - 2);
@@ -57,7 +58,7 @@ static double way_mm(const struct interp_row *r, const double *a,
 	return sqrt(square);
 }
 
-/* The last point goes along with the targets until its chord is long enough. */
+/* The last point moves with the targets until its chord is long enough. */
 void interp_row_take(struct interp_row *r, const double *mm)
 {
 	const uint64_t last = r->n - 1;

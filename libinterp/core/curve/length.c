@@ -2,10 +2,11 @@
 /*
  * length.c - lengths of curves, and tables that lead from length to parameter
  *
- * Lengths are Gauss integrals of |C'|, halved until both halves together agree
- * with the whole.  A table is halved until its cubic is at the right place at
- * three points between its stops, or the way between them is shorter than the
- * error allowed: at a cusp |C'| passes zero, and no cubic of s follows u.
+ * A length is a Gauss integral of |C'|.  It is halved until both halves
+ * together agree with the whole.  A table is halved until its cubic is at the
+ * right place at three points between its stops, or until the way between two
+ * stops is shorter than the allowed error: at a cusp |C'| passes through zero,
+ * and no cubic of s follows u.
  */
 #include "interp/nurbs_length.h"
 
@@ -14,7 +15,8 @@
 #include <math.h>
 
 #define HALVINGS	40
-#define ROUNDING	1e-13		/* of a length, in its sums */
+#define ROUNDING	1e-13		/* relative rounding error of a
+					 * length */
 
 double nurbs_span_speed(const struct interp_nurbs_eval *e, double u)
 {
@@ -52,7 +54,7 @@ static double gauss(const struct interp_nurbs_eval *e, double from, double to)
 	return sum * half;
 }
 
-/* A part of a span, and what it came to in one piece. */
+/* A part of a span, and its length when it is computed in one piece. */
 struct part {
 	double from, to, whole, error_mm;
 };
@@ -73,7 +75,7 @@ static double refine(const struct interp_nurbs_eval *e, const struct part *p,
 	return refine(e, &a, halvings - 1) + refine(e, &b, halvings - 1);
 }
 
-/* In the span entered. */
+/* Within the present span. */
 static double span_length(const struct interp_nurbs_eval *e, double from,
 			  double to, double error_mm)
 {
@@ -99,9 +101,10 @@ double interp_nurbs_length(struct interp_nurbs_eval *e, double from, double to,
 	}
 }
 
-/* -- Tables ------------------------------------------------------------------ */
+/* -- Tables --------------------------------------------------------------- */
 
-/* A slope a monotone cubic may have at an end, for a chord of @secant. */
+/* The slope that a monotone cubic may have at an end, for a chord of slope
+ * @secant. */
 static double bounded(double slope, double secant)
 {
 	return slope < 3 * secant ? slope : 3 * secant;
@@ -144,7 +147,7 @@ struct table {
 	double error_mm;
 	struct interp_nurbs_stop *stops;
 	size_t n, room;
-	struct interp_nurbs_stop last;	/* the last one added */
+	struct interp_nurbs_stop last;	/* the stop that was added last */
 };
 
 static void add(struct table *t, struct interp_nurbs_stop stop)
@@ -200,7 +203,7 @@ static void divide(struct table *t, double to, double length_mm, int halvings)
 	divide(t, to, ab[1].s_mm - t->last.s_mm, halvings - 1);
 }
 
-/* Where |C'| leaps at a knot there are two stops, each with its own slope. */
+/* Where |C'| jumps at a knot there are two stops, each with its own slope. */
 size_t interp_nurbs_stops(struct interp_nurbs_eval *e,
 			  const struct interp_nurbs_range *r,
 			  struct interp_nurbs_stop *ret, size_t room)

@@ -18,10 +18,11 @@
 #include <math.h>
 
 #define WEIGHT_MOST	1e9
-#define WEIGHTS_PART	1e4		/* largest over smallest */
-#define KNOTS_NEAR	1e-9		/* of the way from the first to the last */
+#define WEIGHTS_PART	1e4		/* largest divided by smallest */
+#define KNOTS_NEAR	1e-9		/* share of the distance from first to
+					 * last */
 
-/* -- Check ------------------------------------------------------------------- */
+/* -- Check ---------------------------------------------------------------- */
 
 static const char *const flaw_text[INTERP_NURBS_NFLAWS] = {
 	[INTERP_NURBS_SOUND]		= "a sound curve",
@@ -115,7 +116,7 @@ static bool too_near(const struct interp_nurbs *c, uint32_t i)
 	return gap > 0 && gap <= KNOTS_NEAR * all;
 }
 
-/* Inside, degree + 1 equal knots would tear the curve. */
+/* Inside the curve, degree + 1 equal knots would tear it apart. */
 static enum interp_nurbs_flaw check_knots(const struct interp_nurbs *c,
 					  uint32_t *ret_at)
 {
@@ -155,7 +156,7 @@ enum interp_nurbs_flaw interp_nurbs_check(const struct interp_nurbs *c,
 	return f == INTERP_NURBS_SOUND ? check_knots(c, ret_at) : f;
 }
 
-/* -- Spans ------------------------------------------------------------------- */
+/* -- Spans ---------------------------------------------------------------- */
 
 uint32_t interp_nurbs_span(const struct interp_nurbs *c, double u)
 {
@@ -196,7 +197,8 @@ static void load_points(struct interp_nurbs_eval *e)
 	}
 }
 
-/* Control points of the k-th derivative from those of the one before. */
+/* Make the control points of the k-th derivative from those of the previous
+ * one. */
 static void load_derivative(struct interp_nurbs_eval *e, uint32_t k)
 {
 	const struct interp_nurbs *c = &e->c;
@@ -265,9 +267,9 @@ uint32_t nurbs_basis(const struct interp_nurbs *c, double u,
 	return span - p;
 }
 
-/* -- Points ------------------------------------------------------------------ */
+/* -- Points --------------------------------------------------------------- */
 
-/* Basis functions of degree p - k for every k asked for. */
+/* The basis functions of degree p - k, for every k that is asked for. */
 struct basis {
 	double of[INTERP_NURBS_DERIVS + 1][INTERP_NURBS_ORDER_MAX];
 };

@@ -57,7 +57,7 @@ static bool piece_ok(const struct interp_program *p,
 	       piece->nstops <= p->head->nstops - piece->stops_at;
 }
 
-/* With the span last looked at. */
+/* Open it in the span that was used last. */
 static bool open_curve(const struct interp_program *p, uint32_t curve,
 		       struct interp_at_curve *k)
 {
@@ -72,7 +72,7 @@ static bool open_curve(const struct interp_program *p, uint32_t curve,
 	return k->open;
 }
 
-/* At a cusp the direction is kept that the chord has. */
+/* At a cusp, keep the direction of the chord. */
 static bool along_curve(const struct interp_program *p,
 			const struct interp_seg *s, double part,
 			struct interp_at_curve *last,
@@ -109,8 +109,9 @@ bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
 		       struct interp_at_curve *last,
 		       struct interp_contour_point *ret)
 {
-	const struct interp_seg s = i < p->head->nsegs ? p->segs[i] :
-					(struct interp_seg) { .kind = INTERP_END };
+	const struct interp_seg s =
+		i < p->head->nsegs ? p->segs[i] :
+				     (struct interp_seg){ .kind = INTERP_END };
 	double part;
 
 	*ret = (struct interp_contour_point) { { 0 }, { 0 } };

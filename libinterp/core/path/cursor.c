@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * cursor.c - a place on the path, walked by a signed distance
+ * cursor.c - stands on a path, and is walked by a signed distance
  *
- * A place s in a segment belongs to the tick nearest to it: how far the walk
- * has come does not depend on the steps it came by.
+ * A place s in a segment belongs to the tick nearest to it.  So how far the
+ * walk has come does not depend on the steps by which it came.
  */
 #include "interp/cursor.h"
 #include "pulse/strategy.h"
@@ -12,7 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-/* -- Actions: no length, no points ---------------------------------------- */
+/* -- Actions: no length, no points
+ * ------------------------------------------ */
 
 static uint32_t none_run(struct interp_cursor *c, uint32_t ticks,
 			 uint16_t *ret)
@@ -48,7 +49,7 @@ static const struct interp_walk *pulse_of_line(const struct interp_cursor *c)
 	       axes_moving(c) < 3 ? s->line : s->flat;
 }
 
-/* A dda's arc that is too small for accumulators has no shift. */
+/* The arc of a dda that is too small for accumulators has no shift. */
 static const struct interp_walk *pulse_of_arc(const struct interp_cursor *c)
 {
 	const struct pulse_strategy *s = pulse_strategy(c->p.head->strategy);
@@ -71,8 +72,8 @@ static const struct interp_walk *pulse_of(const struct interp_cursor *c)
 }
 
 /*
- * Stand at the start or end of segment @i, if it is sound.  A cursor that met
- * an unsound one has no walk any more and never moves again.
+ * Stand at the start or the end of segment @i, if the segment is valid.  A
+ * cursor that meets an invalid one has no walk any more and never moves again.
  */
 static bool cursor_enter(struct interp_cursor *c, uint32_t i, bool at_end)
 {
@@ -96,7 +97,7 @@ static bool cursor_enter(struct interp_cursor *c, uint32_t i, bool at_end)
 	return true;
 }
 
-/* The place aimed at, in this segment's own measure. */
+/* The target place in the measure of this segment. */
 static void cursor_want(struct interp_cursor *c)
 {
 	const double len = c->seg.length_mm;
@@ -165,7 +166,7 @@ void interp_cursor_stop(struct interp_cursor *c)
 	c->want = c->measure;
 }
 
-/* Short of half a tick a place still belongs to its tick. */
+/* A place that is less than half a tick away still belongs to its tick. */
 #define SLIDE_TICKS	0.499
 
 bool interp_cursor_slide(struct interp_cursor *c)
@@ -178,7 +179,7 @@ bool interp_cursor_slide(struct interp_cursor *c)
 	const double high = fmin(c->seg.length_mm,
 				 at_mm + SLIDE_TICKS * tick_mm);
 
-	/* Never past the place aimed at, and never the other way. */
+	/* Never go past the target place, and never the other way. */
 	c->s_mm = c->backward ? fmax(c->want_mm, fmin(low, c->s_mm)) :
 				fmin(c->want_mm, fmax(high, c->s_mm));
 	c->want_mm = c->s_mm;
@@ -189,8 +190,8 @@ bool interp_cursor_slide(struct interp_cursor *c)
 /* -- Crossing from one segment into the next ------------------------------- */
 
 /*
- * Into the segment beside this one.  Both say where they meet; a block in which
- * they differ is damaged, and would be a jump.
+ * Go to the segment beside this one.  Both say where they meet.  A block in
+ * which they differ is damaged, and would cause a jump.
  */
 static bool cursor_follow(struct interp_cursor *c, uint32_t i, bool at_end)
 {
@@ -205,7 +206,7 @@ static bool cursor_follow(struct interp_cursor *c, uint32_t i, bool at_end)
 	return false;
 }
 
-/* MOVED here means: crossed, look again. */
+/* MOVED means here: a segment was crossed, look again. */
 static enum interp_step cross_forward(struct interp_cursor *c)
 {
 	const double over_mm = c->want_mm - c->seg.length_mm;
@@ -247,8 +248,8 @@ static bool may_go_on(const struct interp_cursor *c)
 	       (!c->walk->last || c->measure - c->walk->last(c) >= c->want);
 }
 
-/* Standing exactly on a segment's end is still in it, unless something is to
- * be done there. */
+/* If the cursor stands exactly on the end of a segment, it is still in it,
+ * unless something is to be done there. */
 static bool must_cross(const struct interp_cursor *c)
 {
 	if (c->backward || c->want_mm < c->seg.length_mm)
@@ -287,7 +288,7 @@ static uint32_t run_uneven(struct interp_cursor *c, uint16_t *ret,
 	return points;
 }
 
-/* Ticks of measure one: how many there are is known. */
+/* Ticks of measure one: their number is known. */
 static uint32_t run_even(struct interp_cursor *c, uint16_t *ret, uint32_t max)
 {
 	const int64_t left = c->backward ? c->measure - c->want :

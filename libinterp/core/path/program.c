@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * program.c - look at a block as a program, and distrust it
- */
+/* program.c - reads a block as a program, and does not trust it */
 #include "interp/program.h"
 
 #include <errno.h>
 #include <math.h>
 #include <string.h>
 
-/* Is a table of @n entries of @size bytes at @at wholly inside the block? */
+/* Is a table of @n entries of @size bytes at @at completely inside the
+ * block? */
 static bool table_ok(const struct interp_program_head *h, uint64_t at,
 		     uint64_t n, uint64_t size)
 {
@@ -28,7 +27,7 @@ static bool axes_ok(const struct interp_program_head *h)
 			return false;
 		if (i >= h->naxes)
 			continue;
-		/* One column for an axis: two would move it twice. */
+		/* An axis has one column: two would move it twice. */
 		if (h->column[i] >= INTERP_NAXES ||
 		    columns & 1u << h->column[i])
 			return false;
@@ -43,8 +42,9 @@ static bool head_ok(const struct interp_program_head *h, size_t bytes)
 	    h->version != INTERP_PROGRAM_VERSION ||
 	    h->head_bytes != sizeof(*h) || h->bytes > bytes)
 		return false;
-	if (h->nsegs < 2 || h->nconds < 1 || h->nescapes < 1 || h->naxes > INTERP_NAXES ||
-	    h->strategy >= INTERP_NSTRATEGIES || !isfinite(h->length_mm))
+	if (h->nsegs < 2 || h->nconds < 1 || h->nescapes < 1 ||
+	    h->naxes > INTERP_NAXES || h->strategy >= INTERP_NSTRATEGIES ||
+	    !isfinite(h->length_mm))
 		return false;
 	if (h->tolerance_milli > INTERP_TOLERANCE_MAX ||
 	    h->perpendicular > 1 || h->coupling >= INTERP_NCOUPLINGS)
@@ -128,7 +128,7 @@ bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 	       (seg->kind != INTERP_CURVE || seg->arg < p->head->npieces);
 }
 
-/* Are @n numbers from @at among those of the program? */
+/* Are @n numbers from @at on among those of the program? */
 static bool numbers_ok(const struct interp_program *p, uint64_t at, uint64_t n)
 {
 	return at <= p->head->nnumbers && n <= p->head->nnumbers - at;

@@ -18,11 +18,12 @@ struct plane {
 };
 
 /*
- * Ticks go in blocks.  The middle of a block is placed by sin and cos, once,
- * and its ticks are turned from there by a series: a few products instead of
- * a call of libm.  16 ticks are less than 16 pulses along the arc, so with a
- * radius of 160 pulses the angle is below 0.1 and the first term left out is
- * below 3e-15.  The middle depends on the tick alone, so a point still does.
+ * Ticks are computed in blocks.  sin and cos give the place of the middle of a
+ * block once.  From there its ticks are turned by a series: a few products
+ * instead of a call of libm.  16 ticks are less than 16 pulses along the arc.
+ * So with a radius of 160 pulses the angle is below 0.1, and the first omitted
+ * term is below 3e-15.  The middle depends only on the tick, so a point still
+ * does, too.
  */
 #define BLOCK_BITS	5
 #define BLOCK_HALF	(1 << (BLOCK_BITS - 1))
@@ -74,7 +75,7 @@ static int64_t nearest(double x)
 	return i - ((double)i > x + 0.5);
 }
 
-/* Where the plane's axes stand at tick c->tick. */
+/* Where the axes of the plane are at tick c->tick. */
 static struct plane arc_at(struct interp_cursor *c)
 {
 	const struct interp_arc *arc = &c->arc;
@@ -90,7 +91,8 @@ static struct plane arc_at(struct interp_cursor *c)
 	};
 }
 
-/* The node's own pulses at either end: exact, whatever sin and cos say. */
+/* At both ends, the pulses of the node itself: they are exact, whatever sin and
+ * cos give. */
 static struct plane arc_node(const struct interp_cursor *c, bool at_end)
 {
 	struct plane p = { 0, 0 };
@@ -140,7 +142,8 @@ bool pulse_plane_ok(const struct interp_cursor *c)
 	       isfinite(arc->sweep);
 }
 
-/* As many ticks as the builder gives, no more: no walk on the spot. */
+/* Not more ticks than the builder gives: otherwise it would walk on the
+ * spot. */
 static bool ticks_ok(const struct interp_cursor *c, uint32_t plane)
 {
 	const struct interp_arc *arc = &c->arc;

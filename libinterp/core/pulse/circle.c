@@ -34,12 +34,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define CIRCLE_R_MAX	(INT64_C(1) << 28)	/* keeps the swept area in range */
+#define CIRCLE_R_MAX	(INT64_C(1) << 28)	/* keeps the swept area in
+						 * range */
 #define CIRCLE_TURNS_MAX	8
 
-/* What the inward and the outward pulse are, in a quadrant and direction. */
+/* What the inward and the outward pulse are, for a quadrant and a direction. */
 struct circle_way {
-	int8_t in_x, in_y;		/* the shrinking coordinate's pulse */
+	int8_t in_x, in_y;		/* the pulse of the shrinking
+					 * coordinate */
 	int8_t out_x, out_y;
 };
 
@@ -81,7 +83,7 @@ void circle_toward(const struct interp_circle *k, bool inward, int8_t ret[2])
 	ret[1] = inward ? w->in_y : w->out_y;
 }
 
-/* Quadrant counter-clockwise motion is in when it leaves (x, y). */
+/* The quadrant in which counter-clockwise motion is when it leaves (x, y). */
 static int8_t quadrant_leaving(int64_t x, int64_t y)
 {
 	if (x > 0 && y >= 0)
@@ -91,7 +93,8 @@ static int8_t quadrant_leaving(int64_t x, int64_t y)
 	return x < 0 ? 2 : 3;
 }
 
-/* The same when it arrives there; clockwise, the two change places. */
+/* The same when it arrives there.  For clockwise motion, the two are
+ * exchanged. */
 static int8_t quadrant_arriving(int64_t x, int64_t y)
 {
 	if (x >= 0 && y > 0)
@@ -133,7 +136,7 @@ static void tail_forward(struct interp_circle *k, int8_t ret[2])
 	ret[1] = ret[0] ? 0 : toward(k->y, k->ye);
 }
 
-/* -- Along stored runs ------------------------------------------------------ */
+/* -- Along stored runs ---------------------------------------------------- */
 
 static void run_pulse(const struct interp_circle *k, uint32_t run,
 		      int8_t ret[2])
@@ -144,7 +147,7 @@ static void run_pulse(const struct interp_circle *k, uint32_t run,
 	ret[!axis] = 0;
 }
 
-/* Of a damaged block the runs may end early: then there is no pulse. */
+/* In a damaged block the runs may end too early: then there is no pulse. */
 static void runs_forward(struct interp_circle *k, int8_t ret[2])
 {
 	ret[0] = ret[1] = 0;
@@ -183,7 +186,7 @@ static void runs_back(struct interp_circle *k, int8_t ret[2])
 	}
 }
 
-/* -- By comparison ---------------------------------------------------------- */
+/* -- By comparison -------------------------------------------------------- */
 
 void circle_forward(struct interp_circle *k, int8_t ret[2])
 {
@@ -200,7 +203,7 @@ void circle_forward(struct interp_circle *k, int8_t ret[2])
 		circle_cross(k);
 }
 
-/* The way of the last pulse, and whether it ended in a crossing. */
+/* The direction of the last pulse, and whether it ended in a crossing. */
 static bool last_pulse(const struct interp_circle *k, int8_t ret[2])
 {
 	struct interp_circle before = *k;
@@ -245,7 +248,8 @@ void circle_back(struct interp_circle *k, int8_t ret[2])
 	k->tick--;
 }
 
-/* Twice the area swept by a pulse that ended at (x, y), and one for itself. */
+/* Twice the area that is swept by a pulse that ended at (x, y), plus one for
+ * the pulse itself. */
 int64_t circle_measure_of(const struct interp_circle *k, const int8_t was[2])
 {
 	const int64_t area = k->ccw * (k->x * was[1] - k->y * was[0]);
@@ -261,7 +265,7 @@ int64_t circle_last(const struct interp_circle *k)
 	return circle_measure_of(k, was);
 }
 
-/* Smallest n with n*n >= r2 - 1. */
+/* The smallest n with n*n >= r2 - 1. */
 static int64_t circle_meet(int64_t r2)
 {
 	int64_t n = (int64_t)sqrt((double)r2);
@@ -273,8 +277,8 @@ static int64_t circle_meet(int64_t r2)
 	return n;
 }
 
-/* A circle of one pulse as if its radius were a little more: else its first
- * pulse would lead to its centre. */
+/* A circle of one pulse is treated as if its radius were a little larger;
+ * otherwise its first pulse would lead to its centre. */
 static int64_t circle_r2(const int64_t start[2])
 {
 	const int64_t r2 = start[0] * start[0] + start[1] * start[1];
@@ -310,7 +314,7 @@ bool circle_enter(struct interp_circle *k, const struct interp_arc *arc,
 	return true;
 }
 
-/* How often the arc passes an axis through its centre. */
+/* How many times the arc crosses an axis through its centre. */
 static int64_t circle_crossings(const struct interp_arc *arc,
 				const int64_t start[2], const int64_t end[2])
 {
@@ -329,15 +333,16 @@ static int64_t circle_crossings(const struct interp_arc *arc,
 
 	if (ahead < 0)
 		ahead += turn;
-	/* Start and end at one place on an axis are quadrants apart. */
+	/* If start and end are at the same place on an axis, their quadrants
+	 * still differ. */
 	if (ahead < (quads - 1) * (turn / 4))
 		ahead += turn;
-	/* Same quadrant, but the end lies behind: once round. */
+	/* The same quadrant, but the end lies behind the start: once around. */
 	return quads + 4 * llround((fabs(arc->sweep) - ahead) / turn) +
 	       (quads == 0 && ahead > turn / 2 ? 4 : 0);
 }
 
-/* In the last quadrant: is an axis home, or past it? */
+/* In the last quadrant: is an axis at its end, or past it? */
 bool circle_home(const struct interp_circle *k)
 {
 	const struct circle_way *w = way(k);
@@ -379,8 +384,8 @@ bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 /* -- As a walk --------------------------------------------------------- */
 
 /*
- * Node @at_end of the plane's two axes, from the centre, pulses.  The centre
- * is rounded as the builder did, tie for tie: mm / pulse_mm.
+ * Node @at_end of the plane's two axes, from the centre, in pulses.  The centre
+ * is rounded exactly as the builder rounded it: mm / pulse_mm.
  */
 void pulse_circle_node(const struct interp_cursor *c, bool at_end,
 		       int64_t ret[2])
@@ -400,7 +405,7 @@ void pulse_circle_node(const struct interp_cursor *c, bool at_end,
 	}
 }
 
-/* Stand at the first or behind the last of the arc's stored runs. */
+/* Stand before the first or after the last of the arc's stored runs. */
 static bool circle_runs_set(struct interp_cursor *c, bool at_end)
 {
 	const struct interp_arc *arc = &c->arc;

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* The input with more pulses is main, of equals the first. */
+/* The input with more pulses is the main one; if they are equal, the first. */
 static struct couple_input join(struct interp_pair *pair, uint32_t i,
 				struct couple_input p, struct couple_input q)
 {
@@ -82,7 +82,8 @@ struct pair_tube couple_tube(const struct couple_rule *r, uint32_t npairs)
 
 /* -- Shared stops ---------------------------------------------------------- */
 
-/* Would @count bursts at the stops of @lead keep @p to its M of @half? */
+/* With @count bursts at the stops of @lead, would @p stay within its M of
+ * @half? */
 static bool shared_ok(const struct interp_pair *p,
 		      const struct interp_pair *lead, int64_t count,
 		      int64_t half)
@@ -96,13 +97,14 @@ static bool shared_ok(const struct interp_pair *p,
 	const int64_t last = pair_stop(p->a, lead->b, n,
 				       pair_stop_shared(n, count, count - 1));
 
-	/* A single burst has no gap, and the widest tube no bounds. */
+	/* A single burst has no gap, and the widest tube has no bounds. */
 	if (count > 1 && p->b * gap + p->a > 2 * half && half < p->a * p->b)
 		return false;
 	return p->b * first <= half && p->b * (p->a - last) <= half;
 }
 
-/* How few bursts at the lead's stops do for @p; 0 if no number does. */
+/* The smallest number of bursts at the stops of the lead that is enough for @p;
+ * 0 if none is. */
 static int64_t shared_bursts(const struct interp_pair *p,
 			     const struct interp_pair *lead, int64_t half)
 {
@@ -152,7 +154,7 @@ static bool tube_set(struct interp_pair *pair, uint32_t npairs,
 	return true;
 }
 
-/* Changes of axis, at most: to each burst, and from each stop. */
+/* Changes of axis, at most: one to each burst, and one from each stop. */
 static int64_t star_changes(const struct interp_pair *pair, uint32_t npairs,
 			    struct pair_tube t)
 {
@@ -179,7 +181,8 @@ static int64_t tube_changes(const struct interp_pair *pair, uint32_t npairs)
 	return n + stops;
 }
 
-/* The longest bursts of the lead that leave the others their tolerance. */
+/* The longest bursts of the lead that still leave the others their
+ * tolerance. */
 static bool tube_plan(struct interp_pair *pair, uint32_t npairs,
 		      struct pair_tube t, bool at_end)
 {
@@ -189,7 +192,7 @@ static bool tube_plan(struct interp_pair *pair, uint32_t npairs,
 	for (uint32_t i = 0; i < npairs; i++)
 		b = pair[i].b > b ? pair[i].b : b;
 	burst = pair_burst(pair[0].a, b, pair_half_width(pair[0].a, b, t));
-	/* Each pulse less gives an axis a pulse of room: two are enough. */
+	/* Each pulse less gives an axis a pulse of room; two are enough. */
 	for (int tries = 0; tries < 4 && burst >= 1; tries++, burst--) {
 		if (tube_set(pair, npairs, t, burst, at_end))
 			return tube_changes(pair, npairs) < star;
@@ -210,7 +213,8 @@ bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
 	return false;
 }
 
-/* -- What mu a line admits -------------------------------------------------- */
+/* -- Which mu a line allows
+ * ------------------------------------------------- */
 
 static bool couple_ok(const struct couple_rule *r,
 		      const struct couple_input *in, uint32_t n)

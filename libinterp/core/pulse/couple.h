@@ -41,18 +41,23 @@ struct couple_rule {
 	struct pair_tube tube;
 };
 
-/** couple_tree() - couple @n >= 1 inputs, written over; the root. */
+/**
+ * couple_tree() - couple @n >= 1 inputs, which are overwritten.  Return: the
+ * root.
+ */
 struct couple_input couple_tree(struct interp_pair *pair,
 				struct couple_input *in, uint32_t n);
 
 /**
- * couple_star() - pair every input with the longest, of equals the first.
- * Return: the longest's place in @in; the n - 1 pairs are in order.
+ * couple_star() - pair every input with the longest one; if several are equal,
+ * with the first of these.
+ *
+ * Return: the place of the longest in @in; the n - 1 pairs are in order.
  */
 uint32_t couple_star(struct interp_pair *pair, const struct couple_input *in,
 		     uint32_t n);
 
-/** couple_set() - every pair at its start or end, by a tree's rule. */
+/** couple_set() - set every pair to its start or end, by the rule of a tree. */
 void couple_set(struct interp_pair *pair, uint32_t npairs,
 		const struct couple_rule *r, bool at_end);
 
@@ -67,7 +72,7 @@ bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
 struct pair_tube couple_tube(const struct couple_rule *r, uint32_t npairs);
 
 /**
- * couple_smallest_milli() - the least mu that a line of these inputs admits.
+ * couple_smallest_milli() - the smallest mu that a line of these inputs allows.
  *
  * Return: the rule's own mu if that is enough, else more, in 1/1000 pulse.
  */

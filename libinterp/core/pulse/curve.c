@@ -20,7 +20,7 @@
 
 #include <math.h>
 
-/* More places to a pulse of way than this no builder gives. */
+/* No builder gives more places than this for a pulse of the way. */
 #define PLACES_MAX	4096.0
 
 static bool pieces_ok(const struct interp_program *p,
@@ -57,7 +57,7 @@ static bool ticks_ok(const struct interp_cursor *c, uint32_t turns)
 			       (c->seg.length_mm * pulses_mm + 1);
 }
 
-/* The node's own pulses at either end. */
+/* At both ends, the pulses of the node itself. */
 static void node_pos(struct interp_cursor *c, bool at_end,
 		     int32_t pos[INTERP_NAXES])
 {
@@ -79,7 +79,7 @@ static double parameter(struct interp_curve_walk *k, double s_mm)
 	return interp_nurbs_between_at(&k->between, s_mm);
 }
 
-/* floor(x + 0.5); what is beyond any axis is far away. */
+/* floor(x + 0.5); values beyond every axis become a place far away. */
 static int32_t nearest(double x)
 {
 	int32_t i;
@@ -133,7 +133,7 @@ static bool curve_enter(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
-/* Column @i goes to @to; PULSE_BAD if that is a leap. */
+/* Column @i goes to @to; PULSE_BAD if that is a jump. */
 static uint32_t go(struct interp_cursor *c, uint32_t i, int32_t to)
 {
 	const uint32_t axis = c->curve.axis[i];
@@ -145,7 +145,7 @@ static uint32_t go(struct interp_cursor *c, uint32_t i, int32_t to)
 	return d == 0 ? 0 : pulse_move(axis, d < 0);
 }
 
-/* Tick @tick, counted from 0, to place @place. */
+/* Tick @tick, counted from 0, on the way to place @place. */
 static uint32_t go_to(struct interp_cursor *c, uint32_t tick, uint32_t place)
 {
 	struct interp_curve_walk *k = &c->curve;

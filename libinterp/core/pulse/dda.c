@@ -30,7 +30,7 @@
 
 #define DDA_SHIFT_MAX	28
 
-/* -- Lines ------------------------------------------------------------------ */
+/* -- Lines ---------------------------------------------------------------- */
 
 int64_t pulse_dda_ticks(int64_t longest)
 {
@@ -53,9 +53,10 @@ const struct interp_walk pulse_dda_line = {
 	.back = pulse_dda_back,
 };
 
-/* -- Arcs ------------------------------------------------------------------- */
+/* -- Arcs ----------------------------------------------------------------- */
 
-/* Add @v, at most the modulus either way; the pulse it makes. */
+/* Add @v, at most the modulus either way.  Return: the pulse that this
+ * makes. */
 static int64_t rotor_add(int64_t *rest, int64_t v, uint32_t shift)
 {
 	const int64_t sum = *rest + v;
@@ -84,7 +85,8 @@ static bool rotor_in_range(const struct interp_rotor *k)
 	return llabs(k->x) <= most && llabs(k->y) <= most;
 }
 
-/* Tail tick number @u, from 1: does an axis with @forced to go pulse? */
+/* Tick @u of the tail, counted from 1: does an axis with @forced pulses to go
+ * make one? */
 static int64_t tail_pulse(int64_t forced, int64_t u)
 {
 	return u > llabs(forced) ? 0 : forced > 0 ? 1 : -1;
@@ -168,7 +170,7 @@ static bool dda_arc_enter(struct interp_cursor *c, bool at_end)
 	return rotor_in_range(k);
 }
 
-/* Tick u of the tail, forward or back; the rotor waits where it stopped. */
+/* Tick u of the tail, forward or back; the rotor stays where it stopped. */
 static uint32_t arc_tail(struct interp_cursor *c, int64_t u, int dir)
 {
 	const int64_t dx = tail_pulse(c->arc.tail_a, u) * dir;

@@ -19,7 +19,7 @@
 
 #include <stdlib.h>
 
-/* Stand at @node, on the way by @len, subpulses. */
+/* Stand at @node, on a way of length @len, in subpulses. */
 static void dda_set(struct interp_dda *d, int64_t node, int64_t len,
 		    int64_t ticks)
 {
@@ -72,13 +72,14 @@ bool pulse_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except)
 		d->given = 0;
 		c->ndda++;
 	}
-	/* Axes run two by two: one that stands beside the last. */
+	/* The axes run in pairs: the last one may have an axis that stands
+	 * still beside it. */
 	for (uint32_t i = c->ndda; i < INTERP_NAXES; i++)
 		c->dda[i] = (struct interp_dda) { .err = -1 };
 	return true;
 }
 
-/* One tick of one axis; its pulse, counted. */
+/* One tick of one axis.  Its pulse is returned and counted. */
 static inline uint32_t dda_forward(struct interp_dda *d, int64_t full)
 {
 	const int64_t next = d->err + d->step;
@@ -101,7 +102,7 @@ static inline uint32_t dda_back(struct interp_dda *d, int64_t full)
 
 typedef uint32_t dda_fn(struct interp_dda *d, int64_t full);
 
-/* Keep @d as it has come to be, its pulses in its axis's place. */
+/* Store the state of @d, and its pulses in the place of its axis. */
 static inline void dda_keep(struct interp_cursor *c, struct interp_dda *at,
 			    const struct interp_dda *d)
 {
@@ -110,9 +111,9 @@ static inline void dda_keep(struct interp_cursor *c, struct interp_dda *at,
 }
 
 /*
- * Many ticks of two axes at once: one has its sums in registers and is half
- * as fast, more of them have not.  Of an odd number the last goes with an axis
- * that stands.
+ * Many ticks of two axes at once.  One axis alone would be half as fast; more
+ * than two do not fit the registers.  If the number is odd, the last axis runs
+ * with one that stands still.
  */
 static inline __attribute__((always_inline)) void
 two_run(struct interp_cursor *c, uint32_t i, dda_fn *tick, uint32_t ticks,
@@ -132,7 +133,7 @@ two_run(struct interp_cursor *c, uint32_t i, dda_fn *tick, uint32_t ticks,
 	dda_keep(c, &c->dda[i + 1], &b);
 }
 
-/* A tick without a pulse is no point. */
+/* A tick without a pulse is not a point. */
 static uint32_t points_of(uint16_t *ret, uint32_t ticks)
 {
 	uint32_t points = 0;

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-/* Bit by bit: no division, the same time always. */
+/* Bit by bit: without a division, and always in the same time. */
 int64_t pair_isqrt(uint64_t n, uint64_t m)
 {
 	const pulse_uwide x = (pulse_uwide)n * n * m;
@@ -85,7 +85,7 @@ int64_t pair_stop(int64_t a, int64_t b, int64_t n, int64_t j)
 	return ((j * b / n + (j + 1) * b / n) * a + b) / (2 * b);
 }
 
-/* X(j); before the first and after the last there is none. */
+/* X(j); there is none before the first burst and after the last. */
 static int64_t burst_at(const struct interp_pair *p, int64_t j)
 {
 	if (j < 0)
@@ -98,7 +98,8 @@ static int64_t burst_at(const struct interp_pair *p, int64_t j)
 			 pair_stop_shared(p->stops, p->bursts, j));
 }
 
-/* Y(j).  Where another pair sets the stops: half way between two of them. */
+/* Y(j).  Where another pair sets the stops, it is half way between two of
+ * them. */
 static int64_t burst_from(const struct interp_pair *p, int64_t j)
 {
 	if (j <= 0)
@@ -119,7 +120,7 @@ static void burst_look(struct interp_pair *p)
 	p->due = burst_at(p, p->burst);
 }
 
-/* Two stops may be so near each other that nothing is due at the second. */
+/* Two stops may be so near to each other that nothing is due at the second. */
 static void burst_skip_empty(struct interp_pair *p)
 {
 	while (p->burst < p->bursts && p->to == p->from) {
@@ -136,7 +137,7 @@ void pair_burst_next(struct interp_pair *p)
 	burst_skip_empty(p);
 }
 
-/* The last burst that is not empty before @j, or -1. */
+/* The last burst before @j that is not empty, or -1. */
 static int64_t burst_before(const struct interp_pair *p, int64_t j)
 {
 	do
@@ -171,7 +172,7 @@ void pair_set_bursts(struct interp_pair *p, int64_t n,
 	p->done = burst_at(p, burst_before(p, p->burst));
 }
 
-/* -- Stored bits ------------------------------------------------------------ */
+/* -- Stored bits ---------------------------------------------------------- */
 
 void pair_set_bits(struct interp_pair *p, const uint64_t *bits)
 {
@@ -198,7 +199,8 @@ static int64_t least(int64_t a, int64_t b)
 	return a < b ? a : b;
 }
 
-/* At least one pulse: a run comes to its end, whatever a pair holds. */
+/* At least one pulse, so that a run comes to its end whatever the pair
+ * contains. */
 static int64_t row_of(int64_t n, int64_t row)
 {
 	return row > 1 ? least(n, row) : 1;
@@ -211,7 +213,7 @@ static void pair_add(struct interp_pair *p, int64_t m, int64_t s)
 	p->dev += p->b * m - p->a * s;
 }
 
-/* By bursts the pulses of an input come many in a row. */
+/* With bursts, an input gives many pulses in a row. */
 static void bursts_run(struct interp_pair *p, int64_t n, uint8_t *second)
 {
 	while (n > 0) {
@@ -245,11 +247,11 @@ static void bursts_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
 }
 
 /*
- * By a limit they change all the time, and which is next is hard to foretell:
- * no branch on it.  @over is how far below the limit e is, forward, or how far
- * above what tells the last pulse, back; either way it falls by b with the
- * main's pulses and rises by a with the secondary's, of which the number is
- * returned.
+ * With a limit, the inputs change all the time, and it is hard to predict which
+ * comes next.  So there is no branch.  @over is how far e is below the limit
+ * (forward), or above the value that tells the last pulse (back).  In both
+ * cases it falls by b with each pulse of the main input and rises by a with
+ * each of the secondary.  Return: the number of the latter.
  */
 static int64_t limit_run(const struct interp_pair *p, int64_t over, int64_t n,
 			 uint8_t *second)
@@ -267,7 +269,7 @@ static int64_t limit_run(const struct interp_pair *p, int64_t over, int64_t n,
 	return given;
 }
 
-/* Until the main input is home, the limit alone tells; then it is over. */
+/* Until the main input is at its end, the limit alone decides. */
 static void limits_run(struct interp_pair *p, int64_t n, uint8_t *second)
 {
 	while (n > 0) {
@@ -286,7 +288,7 @@ static void limits_run(struct interp_pair *p, int64_t n, uint8_t *second)
 	}
 }
 
-/* The same until the secondary is back at its start. */
+/* The same until the secondary input is back at its start. */
 static void limits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
 {
 	while (n > 0) {

@@ -41,11 +41,11 @@
  *	Y(j) = floor(j*b/n)				the secondary's count
  *	X(j) = floor(((Y(j) + Y(j+1))*a + b) / (2*b))	the main axis's place
  *
- * burst j leading from Y(j) to Y(j+1) at X(j), half a burst before the line
- * and half behind it.  What is next and what was last are functions of m and s
- * alone.  Bursts have 0.2 to 1.1 % more changes than there must be where mu is a
- * multiple of a half along the axis, and up to 80 % more where it is not, or is
- * square to the line.  There the program keeps the fewest, as a bit for each
+ * burst j leading from Y(j) to Y(j+1) at X(j), half a burst before the line and
+ * half behind it.  What is next and what was last are functions of m and s
+ * alone.  Bursts have 0.2 to 1.1 % more changes than there must be where mu is
+ * a multiple of a half along the axis, and up to 80 % more where it is not, or
+ * is square to the line.  There the program keeps the fewest, as a bit for each
  * pulse of the pair: 1 is the secondary's (path/build_bits.h).
  *
  * Threads: RT-safe.

@@ -24,23 +24,25 @@ typedef uint32_t pulse_run_fn(struct interp_cursor *c, uint32_t ticks,
 			      uint16_t *ret);
 
 struct interp_walk {
-	/* Stand at the segment's start or end; set whole and measure. */
+	/* Stand at the start or the end of the segment; set whole and
+	 * measure. */
 	bool (*enter)(struct interp_cursor *c, bool at_end);
-	/* @ticks of them; update pos, tick and measure; the points met, their
-	 * pulses in @ret. */
+	/* Walk @ticks of them; update pos, tick and measure.  Return: the
+	 * number of points that were met, with their pulses in @ret. */
 	pulse_run_fn *forward, *back;
 	/* What the last tick added to the measure; NULL: always one. */
 	int64_t (*last)(const struct interp_cursor *c);
 };
 
-/* Lines, every axis at once: line.c. */
+/* Lines, all axes at once: line.c. */
 extern const struct interp_walk pulse_line;
-/* Arcs, every axis at once: arc.c. */
+/* Arcs, all axes at once: arc.c. */
 extern const struct interp_walk pulse_arc;
-/* Lines by accumulators, arcs by two that feed each other: dda.c. */
+/* Lines by accumulators, and arcs by two accumulators that feed each other:
+ * dda.c. */
 extern const struct interp_walk pulse_dda_line;
 extern const struct interp_walk pulse_dda_arc;
-/* Lines of three and more axes by star or tube: flat.c. */
+/* Lines of three or more axes as a star or a tube: flat.c. */
 extern const struct interp_walk pulse_flat;
 /* Lines and helices, one axis at a time: tree.c. */
 extern const struct interp_walk pulse_tree;
@@ -56,10 +58,10 @@ extern const struct interp_walk pulse_curve;
 /* Actions: no points at all: cursor.c. */
 
 /**
- * pulse_ticks() - @ticks times @tick, which returns the pulses it made.
+ * pulse_ticks() - make @ticks times @tick, which returns its pulses.
  *
- * Inline, so that every walk has a loop of its own and no call in it.  A tick
- * without a pulse is no point.
+ * It is inline, so that every walk has its own loop without a call.  A tick
+ * without a pulse is not a point.
  */
 static inline __attribute__((always_inline)) uint32_t
 pulse_ticks(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
@@ -78,13 +80,17 @@ pulse_ticks(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
 	return points;
 }
 
-/** pulse_move() - the pulse of one axis, as struct interp_cursor has it. */
+/**
+ * pulse_move() - the pulse of one axis, in the form of struct interp_cursor.
+ */
 static inline uint32_t pulse_move(uint32_t axis, bool down)
 {
 	return (down ? 0x101u : 1u) << axis;
 }
 
-/** pulse_plane_move() - the same of an arc's plane; each -1, 0 or +1. */
+/**
+ * pulse_plane_move() - the same for the plane of an arc; each is -1, 0 or +1.
+ */
 static inline uint32_t pulse_plane_move(const struct interp_cursor *c,
 					int32_t da, int32_t db)
 {
@@ -101,7 +107,7 @@ static inline int64_t pulse_node(const struct interp_cursor *c, uint32_t j,
 	return c->p.nodes[((uint64_t)c->index + at_end) * c->p.head->naxes + j];
 }
 
-/** pulse_in_range() - a node no honest builder would exceed? */
+/** pulse_in_range() - no correct builder exceeds this. */
 static inline bool pulse_in_range(int64_t sub)
 {
 	const int64_t max = (int64_t)INTERP_PULSES_MAX << INTERP_SUB_BITS;
@@ -109,10 +115,13 @@ static inline bool pulse_in_range(int64_t sub)
 	return sub >= -max && sub <= max;
 }
 
-/** pulse_stand() - take the node's place on every axis; false: it has none. */
+/**
+ * pulse_stand() - take the place of the node on every axis; false: there is
+ * none.
+ */
 bool pulse_stand(struct interp_cursor *c, bool at_end);
 
-/* The dda of every axis but those in @except (a mask): line.c. */
+/* The dda of every axis except those in the mask @except: line.c. */
 bool pulse_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except);
 /** pulse_longest() - pulses of the longest axis, rounded up. */
 int64_t pulse_longest(const struct interp_cursor *c, uint32_t except);
@@ -124,22 +133,30 @@ uint32_t pulse_dda_tick_back(struct interp_cursor *c);
 struct couple_input;
 struct couple_rule;
 
-/** pulse_inputs() - every axis but @except with a pulse to give; signs set. */
+/**
+ * pulse_inputs() - the axes, except @except, that have pulses to give; sets the
+ * signs.
+ */
 uint32_t pulse_inputs(struct interp_cursor *c, uint32_t except,
 		      struct couple_input *in);
-/** pulse_bits() - @npairs pairs of a line by the bits of the program, if it has
- *  some for it; false: not as many as it needs. */
+/**
+ * pulse_bits() - set @npairs pairs of a line to the bits of the program, if it
+ * has bits for the line.  Return: false if there are fewer than needed.
+ */
 bool pulse_bits(struct interp_cursor *c, uint32_t npairs);
 /** pulse_rule() - strategy, coupling and tolerance of the program. */
 struct couple_rule pulse_rule(const struct interp_cursor *c);
 
-/** pulse_dda_ticks() - of a line of @longest pulses: a power of two, or 0. */
+/**
+ * pulse_dda_ticks() - the ticks of a line of @longest pulses: a power of two,
+ * or 0.
+ */
 int64_t pulse_dda_ticks(int64_t longest);
 
 /** pulse_plane_ok() - are an arc's axes and centre in range? */
 bool pulse_plane_ok(const struct interp_cursor *c);
 
-/* The circle alone, used by pulse_circle, by trees and by the builder. */
+/* The circle alone: used by pulse_circle, by trees, and by the builder. */
 bool circle_enter(struct interp_circle *k, const struct interp_arc *arc,
 		  const int64_t start[2], const int64_t end[2], bool at_end);
 /** One pulse; ret[0], ret[1] in -1, 0, +1. */
@@ -148,8 +165,9 @@ void circle_back(struct interp_circle *k, int8_t ret[2]);
 /** What the last pulse added to the measure: > 0. */
 int64_t circle_last(const struct interp_circle *k);
 /**
- * circle_measure() - walk the whole arc once and fill @arc's measure, ticks
- * and tail.  Not for the cycle: as long as the arc.
+ * circle_measure() - walk the whole arc once, and fill @arc's measure, ticks
+ * and tail.  Not for the cycle: it takes as long as the arc.
+ *
  * Return: false if the end cannot be reached.
  */
 bool circle_measure(struct interp_arc *arc, const int64_t start[2],
@@ -167,26 +185,29 @@ int64_t side_last(const struct interp_side *s);
 int64_t circle_in(const struct interp_circle *k);	/* shrinking, >= 0 */
 int64_t circle_out(const struct interp_circle *k);	/* growing, >= 0 */
 int8_t circle_inward_axis(const struct interp_circle *k);	/* 0: a, 1: b */
-/** circle_toward() - the pulse that goes inward, or outward. */
+/**
+ * circle_toward() - the pulse that goes inward, or the one that goes outward.
+ */
 void circle_toward(const struct interp_circle *k, bool inward, int8_t ret[2]);
 void circle_move(struct interp_circle *k, const int8_t pulse[2]);
-/** circle_cross() - into the next quadrant, if it is there. */
+/** circle_cross() - go to the next quadrant if the walk is at its border. */
 void circle_cross(struct interp_circle *k);
-/** circle_home() - in the last quadrant: is an axis home, or past it? */
+/** circle_home() - in the last quadrant: is an axis at its end, or past it? */
 bool circle_home(const struct interp_circle *k);
 /** circle_measure_of() - what a pulse that ended here adds to the measure. */
 int64_t circle_measure_of(const struct interp_circle *k, const int8_t was[2]);
 
-/* A path in a tube of +-mu, by runs: circle_runs.c.  For the builder. */
+/* A path in a tube of +-mu, made of runs: circle_runs.c.  For the builder. */
 struct circle_plan {
 	int64_t start[2], end[2];	/* from the centre, pulses */
 	uint32_t milli;			/* mu, 1/1000 pulse */
-	int8_t first;			/* the axis to begin with, 0: a, 1: b */
+	int8_t first;			/* the axis that begins; 0: a, 1: b */
 };
 /**
- * circle_plan_runs() - fill @arc's measure, ticks and number of runs, and
- * @runs as far as there is room.  arc->crossings is known.
- * Return: false if no path keeps to the tube.
+ * circle_plan_runs() - fill @arc's measure, ticks and number of runs, and as
+ * many of @runs as there is room for.  arc->crossings must be known.
+ *
+ * Return: false if no path stays in the tube.
  */
 bool circle_plan_runs(struct interp_arc *arc, const struct circle_plan *p,
 		      int32_t *runs, uint32_t room);
@@ -196,6 +217,7 @@ uint32_t circle_smallest_milli(int64_t r2, uint32_t milli);
 /**
  * dda_measure() - the same for a pair of accumulators: ticks, tail and rests;
  * at least @others ticks.
+ *
  * Return: false if it has too many ticks.  dda.c.
  */
 bool dda_measure(struct interp_arc *arc, const int64_t start[2],
@@ -205,24 +227,36 @@ bool dda_measure(struct interp_arc *arc, const int64_t start[2],
 void pulse_circle_node(const struct interp_cursor *c, bool at_end,
 		       int64_t ret[2]);
 
-/** pulse_circle_set() - aim c->circle at c->arc; false if it is unsound. */
+/**
+ * pulse_circle_set() - aim c->circle at c->arc; false if the arc is not valid.
+ */
 bool pulse_circle_set(struct interp_cursor *c, bool at_end);
 
-/** pulse_circle_move() - one pulse of c->circle, @dir +1 or -1; its bits. */
+/**
+ * pulse_circle_move() - one pulse of c->circle, @dir +1 or -1.  Return: its
+ * bits.
+ */
 uint32_t pulse_circle_move(struct interp_cursor *c, int dir);
 
-/** pulse_curve_aim() - a part of the curve k->eval is open for, in places. */
+/**
+ * pulse_curve_aim() - prepare a part of the curve for which k->eval is open, in
+ * places.
+ */
 void pulse_curve_aim(struct interp_curve_walk *k,
 		     const struct interp_nurbs_stop *stops, uint32_t nstops,
 		     uint32_t places, double length_mm);
 
-/** pulse_curve_place() - k->pos of a place between the ends; of a curve, for
- *  the walk and the builder. */
+/**
+ * pulse_curve_place() - set k->pos for a place between the ends of a curve; for
+ * the walk and the builder.
+ */
 void pulse_curve_place(struct interp_curve_walk *k, const double *pulses_mm,
 		       uint32_t place);
 
-/** pulse_curve_gap2() - square of the distance of c->pos from its curve, over
- *  the axes of @axes, at the place @s_mm. */
+/**
+ * pulse_curve_gap2() - the square of the distance of c->pos from its curve,
+ * over the axes of @axes, at the place @s_mm.
+ */
 double pulse_curve_gap2(const struct interp_cursor *c,
 			struct interp_curve_walk *k, uint32_t axes,
 			double s_mm);

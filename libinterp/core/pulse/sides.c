@@ -21,7 +21,7 @@
 
 #include <stdlib.h>
 
-/* Keeps a line's measure, the square of its length, in range. */
+/* Keeps the measure of a line, the square of its length, in range. */
 #define SIDE_MAX	(INT64_C(1) << 28)
 
 static bool line_enter(struct interp_side *s, const int64_t start[2],
@@ -91,7 +91,7 @@ bool side_forward(struct interp_side *s, int8_t ret[2])
 	else
 		line_forward(s, ret);
 	s->tick++;
-	/* Its own end point, or somebody tampered with it. */
+	/* At its own end point; otherwise the block was changed. */
 	return s->tick < s->ticks || !s->arc ||
 	       (s->circle.x == s->circle.xe && s->circle.y == s->circle.ye);
 }
@@ -117,7 +117,7 @@ int64_t side_last(const struct interp_side *s)
 
 /* -- As a walk ---------------------------------------------------------- */
 
-/* The axes beside the two contours stand. */
+/* The axes beside the two contours stand still. */
 static bool others_stand(const struct interp_cursor *c)
 {
 	const uint32_t four = 1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_U |
@@ -169,13 +169,13 @@ static bool pair_enter(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
-/* Whose tick number @k + 1 is. */
+/* Which contour has tick number @k + 1. */
 static int bit_at(const struct interp_cursor *c, uint32_t k)
 {
 	return c->p.bits[c->couple.bits_at + k / 64] >> k % 64 & 1;
 }
 
-/* What the last tick, a pulse of side @i, added. */
+/* What the last tick, a pulse of side @i, added to the measure. */
 static int64_t tick_measure(const struct interp_cursor *c, int i)
 {
 	return i ? 1 : side_last(&c->side[0]);
@@ -241,7 +241,7 @@ static int64_t pair_last(const struct interp_cursor *c)
 {
 	int i;
 
-	/* A damaged pair may want to go back from its start. */
+	/* A damaged pair may try to go back from its start. */
 	if (c->tick == 0)
 		return 1;
 	i = bit_at(c, c->tick - 1);

@@ -16,7 +16,7 @@ static uint32_t plane_of(const struct interp_arc *arc)
 	return 1u << arc->axis_a | 1u << arc->axis_b;
 }
 
-/* The longest an arc can be, in pulses of its finer axis. */
+/* The longest possible arc, in pulses of its finer axis. */
 static double arc_pulses(const struct interp_cursor *c,
 			 const struct interp_arc *arc)
 {
@@ -27,7 +27,8 @@ static double arc_pulses(const struct interp_cursor *c,
 	return (fabs(arc->sweep) * r + fabs(arc->dr_mm)) * pulses_mm;
 }
 
-/* As many ticks as the builder gives, no more: no walk on the spot. */
+/* Not more ticks than the builder gives: otherwise it would walk on the
+ * spot. */
 static bool ticks_ok(const struct interp_cursor *c, uint32_t curved)
 {
 	double n = (double)pulse_longest(c, curved);
@@ -57,8 +58,8 @@ static bool at_once_enter(struct interp_cursor *c, bool at_end)
 	return pulse_dda_enter(c, at_end, curved) && ticks_ok(c, curved);
 }
 
-/* One axis of an arc to where it stands at c->tick; at the ends to the node,
- * whatever sin and cos say. */
+/* Set one axis of an arc to its place at c->tick; at the ends to the node,
+ * whatever sin and cos give. */
 static bool axis_settle(struct interp_cursor *c, uint32_t axis, double at_mm,
 			uint32_t *moved)
 {

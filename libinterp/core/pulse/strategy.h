@@ -2,8 +2,8 @@
 /*
  * strategy.h - the strategies: how a path becomes pulses, one row for each
  *
- * A new strategy is its walk or its rule for a pair of axes in a file of this
- * folder, its number in interp/program.h, and a row in strategy.c.
+ * A new strategy needs its walk, or its rule for a pair of axes, in a file of
+ * this folder; its number in interp/program.h; and a row in strategy.c.
  *
  * Threads: plain data; RT-safe.
  */
@@ -16,33 +16,41 @@
 struct pulse_strategy {
 	const char *name;
 
-	/* Lines of one or two axes, and of any number coupled as a tree. */
+	/* Lines of one or two axes, and of any number that are coupled as a
+	 * tree. */
 	const struct interp_walk *line;
-	/* Lines of three and more axes, coupled as a star or a tube. */
+	/* Lines of three or more axes that are coupled as a star or a tube. */
 	const struct interp_walk *flat;
 	/* Arcs; NULL: a circle or a helix, one axis at a time. */
 	const struct interp_walk *arc;
 	/* Two contours together. */
 	const struct interp_walk *pair;
 
-	/* Where a pair of axes changes over; NULL: toward the line. */
+	/* Where a pair changes from one input to the other; NULL: toward the
+	 * line. */
 	void (*set)(struct interp_pair *p, int64_t half, bool at_end);
-	uint32_t least_milli;		/* the smallest tolerance, 1/1000 pulse */
+	uint32_t least_milli;		/* the smallest tolerance, 1/1000
+					 * pulse */
 
 	bool at_once;			/* all axes may pulse in one tick */
-	bool accumulates;		/* an accumulator for each axis; so too */
-	bool takes_tolerance;		/* mu says how far it may stray */
-	bool couples;			/* the coupling of axes is its choice */
-	bool runs;			/* stays with an axis for many pulses:
-					 * what a tube, and a walk round a
-					 * circle by runs, are made for */
+	bool accumulates;		/* has an accumulator for each axis,
+					 * which may pulse in one tick as
+					 * well */
+	bool takes_tolerance;		/* mu says how far it may be off */
+	bool couples;			/* the coupling of the axes can be
+					 * chosen */
+	bool runs;			/* stays with an axis for many pulses;
+					 * tubes, and runs around a circle, are
+					 * made for this */
 };
 
 /** pulse_strategy() - the row of @s, which is below INTERP_NSTRATEGIES. */
 const struct pulse_strategy *pulse_strategy(uint32_t s);
 
-/** pulse_curve_turns() - how many ticks of a curve a point may take: one for
- *  each axis, where they pulse one at a time. */
+/**
+ * pulse_curve_turns() - how many ticks of a curve one point may need: one for
+ * each axis, if they pulse one at a time.
+ */
 static inline uint32_t pulse_curve_turns(uint32_t strategy, uint32_t naxes)
 {
 	const struct pulse_strategy *s = pulse_strategy(strategy);

@@ -67,7 +67,7 @@ bool pulse_bits(struct interp_cursor *c, uint32_t npairs)
 	return true;
 }
 
-/* Aim the tree at all axes but @except; the sum of their pulses. */
+/* Aim the tree at all axes except @except.  Return: the sum of their pulses. */
 static int64_t tree_set(struct interp_cursor *c, uint32_t except, bool at_end)
 {
 	const struct couple_rule rule = pulse_rule(c);
@@ -77,7 +77,7 @@ static int64_t tree_set(struct interp_cursor *c, uint32_t except, bool at_end)
 	if (n == 0)
 		return 0;
 	for (uint32_t i = 0; i < n; i++) {
-		/* Of a damaged block: what no builder makes. */
+		/* No builder makes this; the block is damaged. */
 		if (in[i].pulses > INTERP_PULSES_MAX)
 			return -1;
 	}
@@ -125,9 +125,9 @@ static inline uint32_t tree_tick_back(struct interp_cursor *c)
 }
 
 /*
- * Many ticks at once go level by level: a pair says of each which input gives
- * it, then each input its own, and they are put in order.  Three levels hold
- * eight axes.
+ * Many ticks at once are made level by level.  For each tick, a pair says which
+ * input gives it; then each input makes its own ticks, and they are put in
+ * order.  Three levels hold eight axes.
  */
 #define RUN_MAX	64
 
@@ -142,7 +142,7 @@ static void leaf_run(struct interp_cursor *c, int8_t axis, int ticks,
 	c->pos[axis] += (c->backward ? -ticks : ticks) * c->sign[axis];
 }
 
-/* Both inputs are axes: no order to be put in. */
+/* Both inputs are axes, so there is no order to restore. */
 static void leaves_run(struct interp_cursor *c, const struct interp_pair *p,
 		       const uint8_t *second, uint32_t ticks, uint16_t *ret)
 {
@@ -196,7 +196,7 @@ static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
 	}
 }
 
-/* Of every tick a pulse. */
+/* Every tick makes a pulse. */
 static uint32_t tree_ticks(struct interp_cursor *c, uint32_t ticks,
 			   uint16_t *ret)
 {
@@ -231,7 +231,7 @@ const struct interp_walk pulse_tree = {
 	.back = tree_back,
 };
 
-/* -- Helices ---------------------------------------------------------------- */
+/* -- Helices -------------------------------------------------------------- */
 
 static bool helix_enter(struct interp_cursor *c, bool at_end)
 {
@@ -248,7 +248,7 @@ static bool helix_enter(struct interp_cursor *c, bool at_end)
 	       (c->circle.ticks == 0) == (c->arc.measure == 0);
 }
 
-/* The tree's pulses due when the circle is at measure @m. */
+/* The pulses of the tree that are due when the circle is at measure @m. */
 static int64_t helix_due(const struct interp_cursor *c, int64_t m)
 {
 	const pulse_wide whole = c->arc.measure;
@@ -278,7 +278,7 @@ static uint32_t helix_tick(struct interp_cursor *c)
 	return moved;
 }
 
-/* Was the last pulse the tree's? */
+/* Did the tree make the last pulse? */
 static bool helix_last_tree(const struct interp_cursor *c)
 {
 	return c->circle.tick == 0 ||

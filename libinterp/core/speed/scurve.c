@@ -27,14 +27,14 @@
 
 #include <math.h>
 
-/* Of a root between two ends; bisection alone would need some 50. */
+/* For a root between two ends; bisection alone would need about 50. */
 #define TRIES	100
 
 /*
- * Left so near to a root, of the way and of what leaving at once misses it by.
- * Rounding is 1e-13 of these: where all leads there but for that, no try would
- * be nearer.  What leaving last would miss it by does not count: it may be a
- * thousand times the whole plan.
+ * How near to a root it must be, relative to the way and to the error of
+ * leaving at once.  Rounding errors are 1e-13 of these: where they alone are
+ * left, no further try would come nearer.  The error of leaving last does not
+ * count, because it may be a thousand times the whole plan.
  */
 #define ENOUGH	1e-12
 
@@ -52,7 +52,7 @@ static struct interp_scurve_state go(struct interp_scurve_state s, double j,
 	};
 }
 
-/* Phase 0: an acceleration beyond its limit comes down to it. */
+/* Phase 0: an acceleration above its limit comes down to the limit. */
 static struct interp_scurve_state ease(struct ramp *r,
 				       const struct interp_scurve_limits *l,
 				       struct interp_scurve_state s)
@@ -89,7 +89,7 @@ static struct ramp ramp_to(const struct interp_scurve_limits *l,
 	return r;
 }
 
-/* The last phase ends with the speed it was made for, to the last bit. */
+/* The last phase ends exactly with the speed for which it was made. */
 static struct interp_scurve_state after(const struct ramp *r,
 					struct interp_scurve_state s, double v1)
 {
@@ -116,7 +116,7 @@ double interp_scurve_way_mm(const struct interp_scurve_limits *l,
 	return place_at(l, s, to_mm_s);
 }
 
-/* -- A plan, phase by phase --------------------------------------------------- */
+/* -- A plan, phase by phase ----------------------------------------------- */
 
 static void begin(struct interp_scurve *c, double v, double a)
 {
@@ -169,8 +169,8 @@ struct interp_scurve_state interp_scurve_at(const struct interp_scurve *c,
 }
 
 /*
- * From @s at constant jerk, the later time at which the speed is v1: what falls
- * is past its peak, if it has one.
+ * From @s at constant jerk, the later time at which the speed is v1.  If the
+ * motion has a peak, a falling speed is past it.
  */
 static double falls_s(const struct interp_scurve_state *s, double j, double v1)
 {
@@ -189,8 +189,9 @@ double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s)
 	for (int i = c->n - 1; i >= 0; i--) {
 		const struct interp_scurve_state *s = &c->from[i];
 		const double j = c->j_mm_s3[i], a = s->a_mm_s2;
-		const double top = a > 0 && j < 0 ? s->v_mm_s - a * a / (2 * j) :
-						    s->v_mm_s;
+		const double top = a > 0 && j < 0 ?
+					   s->v_mm_s - a * a / (2 * j) :
+					   s->v_mm_s;
 
 		if (after <= v_mm_s && top >= v_mm_s)
 			return go(*s, j, falls_s(s, j, v_mm_s)).x_mm;
@@ -199,32 +200,33 @@ double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s)
 	return 0;
 }
 
-/* -- To a place --------------------------------------------------------------- */
+/* -- To a place ----------------------------------------------------------- */
 
 struct leave {
 	const struct interp_scurve_limits *l;
 	struct interp_scurve_state from;
-	double j;			/* of the phase it is left in */
-	double way, toward;		/* the place; +1 or -1 */
-	double v1;			/* the speed there */
+	double j;			/* of the phase in which it is left */
+	double way, toward;		/* the place; the direction, +1 or -1 */
+	double v1;			/* the speed at the place */
 };
 
-/* Left at @t and slowed: how far beyond the place, in its direction. */
+/* If it is left at @t and then slowed: how far it ends beyond the place, in its
+ * direction. */
 static double beyond(const struct leave *k, double t)
 {
 	return k->toward * (place_at(k->l, go(k->from, k->j, t), k->v1) -
 			    k->way);
 }
 
-/* A place tried, and what became of it. */
+/* A time that was tried, and its result. */
 struct tried {
 	double t, f;
 };
 
 /*
- * Where between @a and @b to look next, as a share of the way: inverse
- * quadratic through all three where that is sure to fall between, else the
- * middle.
+ * Where between @a and @b to look next, as a share of the way: by inverse
+ * quadratic interpolation through all three points where the result is
+ * certainly between them, otherwise the middle.
  */
 static double share(const struct tried *a, const struct tried *b,
 		    const struct tried *c)
@@ -269,7 +271,7 @@ static double leave_at(const struct leave *k, double hi, double f_hi)
 	return a.f < 0 ? a.t : b.t;
 }
 
-/* The ramp, as far as it goes before it must slow down. */
+/* Add the ramp, as far as it goes before it must slow down. */
 static void go_toward(struct interp_scurve *c,
 		      const struct interp_scurve_limits *l, struct leave *k)
 {

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where the machine file has the same value, its span is the same. */
+/* Where the machine file has the same value, its range is the same. */
 /* clang-format off */
 const struct interp_tech_field interp_tech_field[INTERP_NTECH] = {
 	[INTERP_TECH_PEAK_A] = { "peak_a", "A", 0, 1000,
@@ -117,7 +117,7 @@ static const struct interp_tech_order orders[] = {
 	{ INTERP_TECH_OPEN_V, INTERP_TECH_IGNITION_V, false },
 };
 
-/* A window limit of 0 is one that the servo makes of servo_v. */
+/* A limit of the window that is 0 is derived from servo_v. */
 static bool counts(const struct interp_tech *t, enum interp_tech_id id)
 {
 	const bool window = id == INTERP_TECH_WINDOW_LOW_V ||

@@ -12,7 +12,7 @@
 #define PERIOD_S	0.001
 #define NORMAL_MM_S2	100.0		/* limit of the normal acceleration */
 
-/* -- spline.c: a rational B-spline in the plane ------------------------------ */
+/* -- spline.c: a rational B-spline in the plane --------------------------- */
 
 #define SPLINE_POINTS	64
 
@@ -29,7 +29,7 @@ void spline_load(struct spline *c, const char *name);
 /** spline_at() - place, first and second derivative at @u. */
 void spline_at(const struct spline *c, double u, double ret[3][2]);
 
-/* -- feed.c: set values along it -------------------------------------------- */
+/* -- feed.c: set values along it ------------------------------------------ */
 
 struct feed {
 	const struct spline *curve;
@@ -42,7 +42,7 @@ struct feed {
 void feed_make(struct feed *f, const struct spline *c, double mm_min);
 void feed_free(struct feed *f);
 
-/* -- bench.c: the machine of the experiment --------------------------------- */
+/* -- bench.c: the machine of the experiment ------------------------------- */
 
 extern const struct interp_axis_loop loop_believed[2];
 
@@ -67,7 +67,7 @@ struct interp_trial_result bench_run(struct bench *b);
 
 void *must(void *p);
 
-/* -- The tables ------------------------------------------------------------- */
+/* -- The tables ----------------------------------------------------------- */
 
 struct speeds {
 	struct feed feed[3];		/* 500, 1000, 1500 mm/min */

@@ -9,7 +9,7 @@
 
 #define COUNT(x)	(sizeof(x) / sizeof((x)[0]))
 
-/* -- Error maps --------------------------------------------------------------- */
+/* -- Error maps ----------------------------------------------------------- */
 
 /* A worn machine: pitch, straightness, a lean, and 3 K of growth. */
 static void worn(struct interp_errormap *m, double part)
@@ -117,7 +117,7 @@ void table_maps(struct speeds *s)
 	printf("\n");
 }
 
-/* -- Estimates ---------------------------------------------------------------- */
+/* -- Estimates ------------------------------------------------------------ */
 
 /* Following error square to the tangent at the set values. */
 static double tangent_mm(const struct feed *f, size_t i, const double *is)
@@ -197,7 +197,7 @@ void table_foot(struct speeds *s)
 	printf("\n");
 }
 
-/* -- Pictures ----------------------------------------------------------------- */
+/* -- Pictures ------------------------------------------------------------- */
 
 #define MAGNIFIED	20
 

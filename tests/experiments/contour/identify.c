@@ -165,7 +165,7 @@ static void identify_made(const char *what, struct feed *f, double (*at)(int),
 	made_free(&made);
 }
 
-/* -- The worst of many ---------------------------------------------------------- */
+/* -- The worst of many ---------------------------------------------------- */
 
 #define SEEDS	20
 

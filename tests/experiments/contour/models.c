@@ -10,7 +10,7 @@
 
 #define COUNT(x)	(sizeof(x) / sizeof((x)[0]))
 
-/* -- Tuning ------------------------------------------------------------------ */
+/* -- Tuning --------------------------------------------------------------- */
 
 #define BUDGET	150
 #define PIECE	6000			/* set values tuned on */
@@ -85,7 +85,7 @@ void table_tuning(struct speeds *s)
 	       "nowhere, and needs no seed.\n\n");
 }
 
-/* -- What history teaches ----------------------------------------------------- */
+/* -- What history teaches ------------------------------------------------- */
 
 #define PRICE	1e-4
 

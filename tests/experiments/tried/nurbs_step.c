@@ -65,7 +65,7 @@ void interp_nurbs_stepper_init(struct interp_nurbs_stepper *s,
 	interp_nurbs_at(&s->e, s->u, 2, &s->p);
 }
 
-/* -- Distances --------------------------------------------------------------- */
+/* -- Distances ------------------------------------------------------------ */
 
 static double distance(const struct interp_nurbs *c, const double *a,
 		       const double *b)
@@ -152,7 +152,7 @@ double interp_nurbs_chord_error_mm(struct interp_nurbs_eval *e, double from,
 	return chord_error(e, from, to, a.d[0], b.d[0]);
 }
 
-/* -- A step in hand ------------------------------------------------------------ */
+/* -- A step in hand ------------------------------------------------------- */
 
 struct search {
 	struct interp_nurbs_stepper *s;

@@ -42,6 +42,9 @@ class Scene:
         self.name, self.nodes, self.marks, self.more = name, nodes, [], {}
         self.began = time.monotonic()
         self.log = open(R / "log", "w+")
+        # Else this machine goes on with the job that the last one left.
+        for left in pathlib.Path("/dev/shm").glob("edmd.vm.*"):
+            left.unlink()
         if not FIFO.exists():
             os.mkfifo(FIFO)
         self.fifo = os.open(FIFO, os.O_RDWR)
@@ -161,6 +164,41 @@ def whole_job(name, nodes, lags=()):
         s.until("idle", 60, state="idle")
         if lags:
             time.sleep(1)           # 20 time constants: they arrive
+
+
+def level(line):
+    """What a program drives on a line of sim0."""
+    chip = pathlib.Path("/sys/kernel/config/gpio-sim/sim0")
+    return int(pathlib.Path(
+        "/sys/devices/platform", (chip / "dev_name").read_text().strip(),
+        (chip / "bank0/chip_name").read_text().strip(),
+        f"sim_gpio{line}/value").read_text())
+
+
+def brakes(name, nodes):
+    """One drive after the other has a fault while X and Y go round a circle:
+    first one that stands, then one that moves."""
+    with Scene(name, nodes) as s:
+        s.submit(str(R / f"{name}.ngc"))
+        brake = s.more["brake"] = {"before": level(26)}
+        s.start()
+        for node in reversed(nodes):
+            s.until(f"{node}: running", 10, state=RUNNING)
+            time.sleep(0.4)
+            brake[f"{node}: running"] = level(26)
+            s.mark(f"{node}: harm")
+            s.tell("emcy", node, "2310")
+            s.until(f"{node}: fault", 5, state="fault")
+            time.sleep(0.3)
+            brake[f"{node}: stands"] = level(26)
+            s.mark(f"{node}: stands")
+            s.ctl("reset")
+            s.until(f"{node}: reset", 5, state="hold")
+            s.start()
+        s.until("idle", 60, state="idle")
+        brake["idle"] = level(26)
+    brake["ended"] = level(26)
+    pathlib.Path("brake.json").write_text(json.dumps(brake))
 
 
 def interface(what):
@@ -322,5 +360,6 @@ if __name__ == "__main__":
     whole_job("six", [1, 2, 3, 4, 5, 6])
     for name in "lagging", "led", "coupled":
         whole_job(name, [1, 2], lags=(30, 21.5))
+    brakes("brakes", [1, 2, 3])
     shared("shared", [1, 2])
     faults("faults", [1, 2])

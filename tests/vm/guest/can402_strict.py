@@ -6,10 +6,11 @@ Leaves NAME.json and NAME.log, as can402.py does.
 import json
 import pathlib
 import random
+import struct
 import sys
 import time
 
-from can402 import CUTTING, FIFO, R, RUNNING, Scene
+from can402 import CUTTING, FIFO, R, RUNNING, Scene, frame
 
 
 def scene(name, traits):
@@ -194,8 +195,122 @@ def cycle_at_random(s, rng, what):
     return {"node": node} | lost(s, what, node)
 
 
+# -- What else may be on a bus ------------------------------------------------
+
+def storm(s, rng, n):
+    for _ in range(200):
+        frame(0x80 + n, rng.randbytes(8))
+
+
+def lengths(s, rng, n):
+    for _ in range(100):
+        base = rng.choice((0x080, 0x180, 0x580, 0x700, 0x3f0 - n))
+        size = rng.choice([k for k in range(9) if k not in (1, 2, 6, 7, 8)])
+        frame(base + n, rng.randbytes(size))
+
+
+def answers(s, rng, n):
+    """SDO answers to nothing: segments, toggled bits, blocks, aborts."""
+    for _ in range(200):
+        frame(0x580 + n, bytes([rng.randrange(256)]) + rng.randbytes(7))
+
+
+def beats(s, rng, n):
+    for _ in range(20):
+        frame(0x700 + n, bytes([rng.choice((4, 5, 127, 0x85, 3, 255))]))
+        time.sleep(0.01)
+
+
+def flicker(s, rng, n):
+    for _ in range(6):
+        s.tell("bits", n, f"{1 << rng.randrange(16):x}",
+               f"{1 << rng.randrange(16):x}")
+        time.sleep(rng.choice((0.005, 0.01, 0.03)))
+        s.tell("bits", n, "0", "0")
+        time.sleep(0.02)
+
+
+def other_mode(s, rng, n):
+    s.tell("mode", n, rng.choice((0, 1, 3, 6, 255)))
+    time.sleep(rng.choice((0.01, 0.1)))
+    s.tell("mode", n, 8)
+
+
+def double(s, rng, n):
+    """Another one with its node, which stands elsewhere."""
+    for _ in range(rng.choice((1, 3, 30))):
+        frame(0x180 + n, struct.pack("<HiB", rng.choice((0x1237, 0x0250)),
+                                     rng.randrange(-1 << 31, 1 << 31), 8))
+        time.sleep(0.01)
+
+
+def says_boot_up(s, rng, n):
+    frame(0x700 + n, b"\0")
+
+
+def off_bus(s, rng, n):
+    frame(0x20000040, bytes(8))
+    time.sleep(0.05)
+    frame(0x20000100, bytes(8))
+
+
+def foreign_nmt(s, rng, n):
+    s.tell("nmt", rng.choice(("80", "2", "1")), f"{rng.choice((0, n)):x}")
+
+
+def strange_ids(s, rng, n):
+    for _ in range(100):
+        frame(rng.choice((0x80000000, 0x40000000)) + 0x180 + n,
+              rng.randbytes(7))
+
+
+NOISE = [storm, lengths, answers, beats, flicker, other_mode, double,
+         says_boot_up, off_bus, foreign_nmt, strange_ids]
+
+
+def noise(seed, runs):
+    """Each in turn and then by chance, each time back to the cut, as an
+    operator would."""
+    rng = random.Random(seed)
+    with scene("strict-noise", {1: {}, 2: {}}) as s:
+        s.tell("gap", 25)
+        job(s, "strict-faults")
+        s.more["done"] = []
+        for i in range(runs):
+            what = NOISE[i] if i < len(NOISE) else rng.choice(NOISE)
+            recover(s, f"{i}")
+            time.sleep(rng.uniform(0, 0.3))
+            s.mark(f"{i} {what.__name__}: begins")
+            what(s, rng, rng.choice((1, 2)))
+            time.sleep(rng.uniform(0.05, 0.4))
+            s.more["done"].append([what.__name__, s.status()["state"],
+                                   s.status()["fault"]])
+        recover(s, "last")
+
+
+def recover(s, what):
+    """What the messages tell an operator to do, until it cuts again."""
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        now = s.status().get("state")
+        if now in CUTTING:
+            return
+        if now == "fault":
+            s.ctl("reset")
+        elif now == "hold" and "homed" in s.ctl("start")[1]:
+            s.ctl("stop")
+        elif now == "idle":
+            for axis in "XY":           # refused, unless its place is lost
+                s.ctl("home", axis)
+                s.until(f"{what}: {axis} homed", 10, state="idle")
+            submit(s, "strict-faults")
+        time.sleep(0.1)
+    s.in_vain(f"{what}: recovered in vain: {s.status()}")
+
+
 if __name__ == "__main__":
     SCENES = {"up": whole, "refused": refused, "late": late, "faults": faults,
-              "attack": lambda: attack(int(sys.argv[2]), int(sys.argv[3]))}
+              "attack": lambda: attack(int(sys.argv[2]), int(sys.argv[3])),
+              "noise": lambda: noise(int(sys.argv[2]), 3 * int(sys.argv[3]))}
     for which in sys.argv[4].split(","):
         SCENES[which]()

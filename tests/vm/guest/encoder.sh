@@ -17,7 +17,11 @@ axis=$!
 
 lines() { echo "brake $(level sim0 26) enable $(level sim0 27)"; }
 
-ended() { status_is 'state *idle' && echo "at $(cat place) $(ctl --json status)"; }
+# The axis looks each 20 ms: it may still be on its last pulses.
+ended() {
+	status_is 'state *idle' && sleep 0.2 &&
+		echo "at $(cat place) $(ctl --json status)"
+}
 
 for name in edmd edmd2; do
 	edmd_start ./$name encoder.ini

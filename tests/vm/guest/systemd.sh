@@ -37,8 +37,26 @@ pull sim0 20 up
 
 # Who may do what with what they share.
 (cd /dev/shm/edmd && stat -c '%n %A %U %G' . *) > shared 2>&1
+(cd /dev/shm/edmd-jobs && stat -c '%n %A %U %G' . *) > shared-jobs 2>&1
 setpriv --reuid=nobody --regid=nogroup --clear-groups \
 	ls /dev/shm/edmd > shared-nobody 2>&1
+
+# What a program that listens to the network sees: the unit of edm-dds, with
+# another program in it.
+mkdir -p /run/systemd/system/edm-dds.service.d
+cat > /run/systemd/system/edm-dds.service.d/look.conf <<END
+[Service]
+Type=oneshot
+Restart=no
+StandardOutput=file:$PWD/dds-sees
+StandardError=file:$PWD/dds-sees
+ExecStart=
+ExecStart=/bin/sh -c 'id; head -c 4 /dev/shm/edmd/edmd.vm.status | wc -c; \
+	cat /var/lib/edmd/vm.key; touch /dev/shm/edmd/edmd.vm.program.9; \
+	touch /dev/shm/edmd-jobs/edmd.vm.program.9; true'
+END
+systemctl daemon-reload
+systemctl start edm-dds.service
 
 {
 status_is 'edmd *ok' && ctl submit slow.ngc

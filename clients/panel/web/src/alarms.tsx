@@ -6,17 +6,20 @@ import { whyNot } from "./can";
 import { moment, number } from "./format";
 import { link } from "./link";
 import { Card, Key, PressKey, act } from "./parts";
+import { hasWarning, storeWhy } from "./stateline";
 import { useAsk } from "./use";
-import { faultWords, t } from "./words";
+import { faultWords, huntingWords, t } from "./words";
 
 interface Alarm { utime: number; kind: string; job: string; fault: string; place_mm: number; text: string }
 
 function Now(): JSX.Element {
 	const s = link.state, w = faultWords(s.fault);
+	const others = s.faults.split(" ").filter((f) => f && f !== s.fault);
 	if (s.fault === "none") return <Card title={t("alarms.now")}><p class="calm">{t("alarms.none")}</p></Card>;
 	return <Card title={t("alarms.now")} class="alarm-now">
 		<h3><span class="dot cross" aria-hidden="true" />{w.what} <code>{s.fault}</code></h3>
 		<dl><dt>{t("alarms.why")}</dt><dd>{w.why}</dd><dt>{t("alarms.clear")}</dt><dd>{w.clear}</dd>
+			{others.length > 0 && <><dt>{t("alarms.others")}</dt><dd>{others.map((f) => faultWords(f).what).join(", ")}</dd></>}
 			{s.job && <><dt>{t("alarms.where")}</dt><dd>{t("alarms.inline", { job: s.jobName, line: s.line, mm: number(s.place, 3) })}</dd></>}</dl>
 		<div class="keys"><Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key>
 			<PressKey id="start" why={whyNot("start")} onPress={() => void act("start")}>{t("resume")}</PressKey></div>
@@ -24,10 +27,27 @@ function Now(): JSX.Element {
 	</Card>;
 }
 
+function Warning(p: { title: string; text: string }): JSX.Element {
+	return <><h3>{p.title}</h3><p>{p.text}</p></>;
+}
+
+/** What a person should look at, though nothing is latched. */
+function Warnings(): JSX.Element | null {
+	const s = link.state, store = storeWhy();
+	if (!hasWarning()) return null;
+	return <Card title={t("alarms.warnings")} class="warnings">
+		{s.interrupted && <Warning title={t("alarms.interrupted")} text={t("why.interrupted")} />}
+		{s.lost && <Warning title={t("alarms.lost", { axes: [...s.lost].join(" ") })} text={t("alarms.lost.about")} />}
+		{store && <Warning title={t("alarms.store")} text={t("why.store", { why: store })} />}
+		{s.hunts > 0 && <Warning title={t("alarms.hunts")} text={huntingWords()} />}
+	</Card>;
+}
+
 export function Alarms(): JSX.Element {
 	const [rows, refused] = useAsk<Alarm[]>("alarms", { fault: link.state.fault }, 4000);
 	return <div class="column">
 		<Now />
+		<Warnings />
 		<Card title={t("alarms.history")}>
 			{refused && <p class="note">{refused}</p>}
 			{rows && rows.length === 0 && <p class="calm">{t("alarms.empty")}</p>}

@@ -13,7 +13,7 @@ import { link } from "./link";
 import { Machine } from "./machine";
 import { Icon, act } from "./parts";
 import { Setup } from "./setup";
-import { stateLine } from "./stateline";
+import { hasWarning, stateLine } from "./stateline";
 import { Tech } from "./tech";
 import { drop, say, useLink, useSettings, useToasts } from "./use";
 import { t, type Word } from "./words";
@@ -43,7 +43,7 @@ function Rail(p: { at: string }): JSX.Element {
 		{PAGES.map((page) => <a href={`#/${page.id}`} class={p.at === page.id ? "on" : ""}
 			aria-current={p.at === page.id ? "page" : undefined}>
 			<Icon name={page.id} /><span>{t(page.word)}</span>
-			{page.id === "alarms" && fault && <b class="badge" aria-label={t("event.alarm")}>!</b>}
+			{page.id === "alarms" && (fault || hasWarning()) && <b class={`badge ${fault ? "" : "warn"}`} aria-label={t(fault ? "event.alarm" : "alarms.warnings")}>!</b>}
 		</a>)}
 	</nav>;
 }

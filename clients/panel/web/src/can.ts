@@ -19,6 +19,7 @@ function word(act: Act): Word | "" {
 		if (s.state === "fault") return "no.fault";
 		if (runs) return "no.runs";
 		if (BY_HAND.has(s.state)) return "no.moving";
+		if (s.interrupted && !s.loaded) return "why.interrupted";
 		return s.state === "hold" || s.queue > 0 || s.job ? "" : "no.job";
 	case "hold": return runs || BY_HAND.has(s.state) ? "" : "no.still";
 	case "retract":

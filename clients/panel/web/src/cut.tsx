@@ -16,17 +16,23 @@ import { t } from "./words";
 
 const RETRACTS = [0.5, 1, 2, 5, 10];
 
+/* What changes from moment to moment is not shown as it was. */
+function isKnown(): boolean {
+	return link.connection === "open" && link.state.daemon === "ok";
+}
+
 function Gap(p: { onOpen: () => void }): JSX.Element {
 	const s = link.state, v = s.values;
+	const known = isKnown();
 	const top = Math.max(v.ignition_v ?? 0, (v.open_v ?? 60) * 1.3) * 0.5 > (v.open_v ?? 60) ? (v.open_v ?? 60) * 1.4 : (v.open_v ?? 60) * 1.25;
 	const share = (x: number) => `${Math.min(100, Math.max(0, x / top * 100))}%`;
 	const low = v.window_low_v || v.servo_v || 0, high = v.window_high_v || v.servo_v || 0;
 	return <Card class="gap" label={t("cut.gap")}>
-		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.gap")}</button></h2><p><b>{number(s.gap, 1)}</b> <u>V</u> <em>{t(s.power ? "cut.sparks" : "cut.nosparks")}</em></p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.gap")}</button></h2><p><b>{known ? number(s.gap, 1) : "\u2013"}</b> <u>V</u> {known && <em>{t(s.power ? "cut.sparks" : "cut.nosparks")}</em>}</p></div>
 		<div class="bar gapbar" aria-hidden="true">
 			<i class="window" style={{ left: share(Math.min(low, (v.servo_v ?? 0) - top * 0.01)), right: `calc(100% - ${share(Math.max(high, (v.servo_v ?? 0) + top * 0.01))})` }} />
 			<i class="mark" style={{ left: share(v.short_v ?? 0) }} /><i class="mark" style={{ left: share(v.open_v ?? 0) }} />
-			<i class={`pointer ${s.gap > top ? "over" : ""}`} style={{ left: share(s.gap) }} />
+			{known && <i class={`pointer ${s.gap > top ? "over" : ""}`} style={{ left: share(s.gap) }} />}
 		</div>
 		<div class="barwords" aria-hidden="true"><span style={{ left: share(v.short_v ?? 0) }}>{t("cut.short")}</span>
 			<span class="servo" style={{ left: share(v.servo_v ?? 0) }}>{t("cut.servo")} {short(v.servo_v ?? 0)}</span>
@@ -43,7 +49,7 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 	const share = Math.min(50, Math.abs(s.feed) / span * 50);
 	const way = s.feed > 1e-6 ? "cut.forward" : s.feed < -1e-6 ? "cut.back" : "cut.still";
 	return <Card class="feed" label={t("cut.feed")}>
-		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{number(s.feed, slow ? 3 : 1, true)}</b> <u>mm/s</u> <em>{t(way)}</em></p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{isKnown() ? number(s.feed, slow ? 3 : 1, true) : "\u2013"}</b> <u>mm/s</u> {isKnown() && <em>{t(way)}</em>}</p></div>
 		<div class="bar feedbar" aria-hidden="true"><i class={s.feed < 0 ? "flow back" : "flow"} style={s.feed < 0 ? { right: "50%", width: `${share}%` } : { left: "50%", width: `${share}%` }} /><i class="zero" /></div>
 		<button type="button" class="stripkey" onClick={p.onOpen} aria-label={t("chart.feed")}>
 			<Strip points={link.points} at={4} colour="--done" label={t("chart.feed")} height={44} span={60} lines={[0]} clip={[-most * 1.2, most * 1.2]} /></button>
@@ -55,7 +61,7 @@ function Positions(): JSX.Element {
 	return <Card class={`positions ${axes.length > 4 ? "many" : ""}`} label={t("cut.position")}><ul>
 		{axes.map((a) => <li key={a.name}><b>{a.name}</b>
 			<span class="n">{number(s.pos[a.index] ?? 0, 3, true)}</span><u>{a.rotary ? "deg" : "mm"}</u>
-			<em>{s.limit >> a.index & 1 ? t("setup.limit") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</em></li>)}
+			<em>{s.limit >> a.index & 1 ? t("setup.limit") : s.lost.includes(a.name) ? t("setup.lost") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</em></li>)}
 	</ul></Card>;
 }
 
@@ -125,7 +131,7 @@ function Foot(p: { open: (what: string) => void }): JSX.Element {
 		<div class="chips">{chips().map((c) => <button type="button" id={`chip-${c.id}`} class={`chip ${s.set.some((f) => c.open.split(" ").includes(f)) ? "set" : ""}`} onClick={() => p.open(c.open)}>
 			<span>{c.label}</span><b>{c.text}</b></button>)}</div>
 		<div class="keys">
-			<Key id="retract" onPress={() => p.open("retract")}>{t("retract")}</Key>
+			<Key id="retract" why={whyNot("retract")} onPress={() => p.open("retract")}>{t("retract")}</Key>
 			{fault ? <Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key> :
 				<Key id="hold" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}
 			<PressKey id="start" class={isRunning() ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}

@@ -9,7 +9,7 @@ import { duration, moment, number } from "./format";
 import { link } from "./link";
 import { Card, Key, PressKey, Sheet, act } from "./parts";
 import { PathView } from "./pathview";
-import { say, useAsk } from "./use";
+import { say, useAsk, usePages } from "./use";
 import { jobWord, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
@@ -156,24 +156,40 @@ function Details(p: { id: string; name: string; onClose: () => void }): JSX.Elem
 	</>}</Sheet>;
 }
 
+/** The operator answers for the places of axes that nothing can home. */
+function ResumeSheet(p: { job: Job; onClose: () => void }): JSX.Element {
+	const axes = link.state.lost, letters = [...axes].join(" ");
+	const go = () => void act("resume", { job: p.job.job, text: axes }).then(p.onClose);
+	return <Sheet title={`${t("jobs.resume")}: ${p.job.name}`} onClose={p.onClose}>
+		<p>{t("jobs.resume.about")}</p><p>{p.job.reason}</p>
+		{axes && <p class="note warn">{t("alarms.lost", { axes: letters })}</p>}
+		<div class="keys end"><PressKey id="resumejob" class="primary" why={whyNot("send")} onPress={go}>{axes ? t("jobs.resume.sure", { axes: letters }) : t("jobs.resume")}</PressKey></div>
+	</Sheet>;
+}
+
 function Queue(p: { open: (j: Job) => void }): JSX.Element {
 	const s = link.state;
-	const [rows, refused, again] = useAsk<Job[]>("queue", { turn: `${s.job}${s.jobState}${s.queue}` }, 3000);
+	const [resumed, resume] = useState<Job | null>(null);
+	const { rows, refused, again, next } = usePages<Job>("queue", { turn: `${s.job}${s.jobState}${s.queue}` }, 3000);
 	return <Card title={t("jobs.queue")}>{refused && <p class="note">{refused}</p>}
 		{rows && rows.length === 0 && <p class="calm">{t("jobs.empty")}</p>}
 		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b><span>{jobWord(j.state)}{j.hold && j.state !== "running" ? `, ${t("jobs.waits")}` : ""}</span></button>
 			{j.state === "queued" && (rows ?? []).filter((o) => o.state === "queued").length > 1 && [-1, 1].map((way) =>
 				<Key class="small quiet" label={t(way < 0 ? "jobs.ahead" : "jobs.behind", { name: j.name })} why={whyNot("send")} onPress={() => void act("move", { job: j.job, arg: way }).then(again)}>{way < 0 ? "\u2191" : "\u2193"}</Key>)}
-			{(j.state === "queued" || j.state === "ready") && <Key class="small quiet" why={whyNot("send")} onPress={() => void act("remove", { job: j.job }).then(again)}>{t("remove")}</Key>}</li>)}</ul>
+			{j.state === "interrupted" && <Key class="small" why={whyNot("send")} onPress={() => resume(j)}>{t("jobs.resume")}</Key>}
+			{["queued", "ready", "interrupted"].includes(j.state) && <Key class="small quiet" why={whyNot("send")} onPress={() => void act("remove", { job: j.job }).then(again)}>{t("remove")}</Key>}</li>)}</ul>
+		{next && <Key class="quiet" onPress={next}>{t("jobs.more")}</Key>}
+		{resumed && <ResumeSheet job={resumed} onClose={() => { resume(null); again(); }} />}
 	</Card>;
 }
 
 function History(p: { open: (j: Job) => void }): JSX.Element {
-	const [rows, refused] = useAsk<Job[]>("past", { arg: 50, text: "", turn: link.state.job + link.state.jobState }, 5000);
+	const { rows, refused, next } = usePages<Job>("past", { arg: 50, turn: link.state.job + link.state.jobState }, 5000);
 	return <Card title={t("jobs.history")}>{refused && <p class="note">{refused}</p>}
 		{rows && rows.length === 0 && <p class="calm">{t("jobs.nohistory")}</p>}
 		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b>
 			<span class={`job-${j.state}`}>{jobWord(j.state)}</span><span class="when">{moment(j.ended_us / 1000)}</span><span class="n">{duration(j.job_s)}</span></button></li>)}</ul>
+		{next && <Key class="quiet" onPress={next}>{t("jobs.more")}</Key>}
 	</Card>;
 }
 

@@ -29,7 +29,7 @@ function JogKey(p: { axis: Axis; way: number; step: string; speed: Speed }): JSX
 
 function AxisState(p: { axis: Axis }): JSX.Element {
 	const s = link.state, a = p.axis;
-	const word = s.limit >> a.index & 1 ? "setup.limit" : s.unhomed >> a.index & 1 ? "setup.unhomed" : a.homes ? "setup.homed" : "setup.nohome";
+	const word = s.limit >> a.index & 1 ? "setup.limit" : s.lost.includes(a.name) ? "setup.lost" : s.unhomed >> a.index & 1 ? "setup.unhomed" : a.homes ? "setup.homed" : "setup.nohome";
 	return <span class={`axis-state ${word === "setup.homed" || word === "setup.nohome" ? "" : "warn"}`}>{t(word)}</span>;
 }
 

@@ -16,6 +16,18 @@ function unhomed(): string {
 	return (link.hello?.axes ?? []).filter((a) => bits >> a.index & 1).map((a) => a.name).join(" ");
 }
 
+/** Why the store cannot write; "" if it can. */
+export function storeWhy(): string {
+	const s = link.state.store;
+	return s === "" || s === "ok" ? "" : s.replace(/^degraded: /, "");
+}
+
+/** Is there what a person should look at, though no fault is latched? */
+export function hasWarning(): boolean {
+	const s = link.state;
+	return !!(s.interrupted || s.lost || s.hunts > 0 || storeWhy());
+}
+
 function idle(): string {
 	if (!link.state.jobs) return t("why.nojobs");
 	if (unhomed()) return t("why.idle.unhomed", { axes: unhomed() });
@@ -41,6 +53,10 @@ export function stateLine(): StateLine {
 		const w = faultWords(s.fault);
 		return { title: w.what[0]!.toUpperCase() + w.what.slice(1), why: w.clear, tone: "bad", shape: "cross" };
 	}
+	if (s.state === "idle" && s.interrupted)
+		return { title: t("state.interrupted"), why: t("why.interrupted"), tone: "warn", shape: "bars" };
+	if (s.state === "idle" && storeWhy())
+		return { title: stateWord("idle"), why: t("why.store", { why: storeWhy() }), tone: "warn", shape: "ring" };
 	if (s.state === "idle") return { title: stateWord("idle"), why: idle(), tone: "calm", shape: "ring" };
 	if (s.state === "hold") return held();
 	const word = `why.${s.state}`;

@@ -34,6 +34,56 @@ export function useAsk<T>(what: string, more: Record<string, unknown> = {},
 	return [got, refused, () => again(turn + 1)];
 }
 
+const PAGES_MAX = 20;
+/** A list this short has always fitted one answer. */
+const SHORT = 20;
+const NO_SUCH_JOB = 66;
+
+interface Rows<T> { rows: T[] | null; refused: string; whole: boolean }
+
+/** All rows of so many pages: each begins behind the last job of the one before.
+ * If that job is there no more, the rest comes with the next look. */
+async function readPages<T extends { job: string }>(what: string, more: Record<string, unknown>,
+	pages: number): Promise<Rows<T>> {
+	const rows: T[] = [];
+	for (let page = 0; page <= pages; page++) {
+		const last = rows[rows.length - 1];
+		const peek = page === pages;
+		const a = await link.ask<T[]>(what, { ...more, ...(last ? { job: last.job } : {}), ...(peek ? { arg: 1 } : {}) });
+		if (page > 0 && a.code === NO_SUCH_JOB) return { rows, refused: "", whole: false };
+		if (a.code !== 0) return { rows: null, refused: a.reason, whole: true };
+		if (peek) return { rows, refused: "", whole: a.body.length === 0 };
+		rows.push(...a.body);
+		if (a.body.length === 0 || rows.length < SHORT) break;
+	}
+	return { rows, refused: "", whole: true };
+}
+
+/** A list that may not fit one answer, asked for again every `everyMs`. `next`
+ * asks for one page more; undefined if there is none. */
+export function usePages<T extends { job: string }>(what: string, more: Record<string, unknown>,
+	everyMs: number): { rows: T[] | null; refused: string; again: () => void; next?: () => void } {
+	const [got, set] = useState<Rows<T>>({ rows: null, refused: "", whole: true });
+	const [pages, want] = useState(1);
+	const [turn, again] = useState(0);
+	const open = link.connection === "open";
+	useEffect(() => {
+		let live = true, busy = false;
+		const ask = async () => {
+			if (busy || (document.hidden && got.rows)) return;
+			busy = true;
+			const r = await readPages<T>(what, more, pages);
+			busy = false;
+			if (live) set((was) => ({ ...r, rows: r.rows ?? was.rows }));
+		};
+		if (open) void ask();
+		const timer = open ? setInterval(() => void ask(), everyMs) : 0;
+		return () => { live = false; clearInterval(timer); };
+	}, [what, JSON.stringify(more), open, turn, pages]);
+	return { rows: got.rows, refused: got.refused, again: () => again(turn + 1),
+		...(got.whole || pages >= PAGES_MAX ? {} : { next: () => want(pages + 1) }) };
+}
+
 export interface Settings { language: "en" | "zh-CN"; theme: "auto" | "light" | "dark" }
 
 function read(): Settings {

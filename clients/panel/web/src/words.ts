@@ -6,7 +6,7 @@
 // machine.json is printed by `edm-panel --print-words`.
 import machine from "./machine.json";
 import { settings } from "./use";
-import { zh, zhFaults, zhFields } from "./zh";
+import { zh, zhFaults, zhFields, zhHunting } from "./zh";
 
 export const en = {
 	"page.cut": "Cut", "page.jobs": "Jobs", "page.setup": "Set up",
@@ -27,11 +27,13 @@ export const en = {
 	"state.erode": "Cutting", "state.retract": "Retract", "state.jump": "Jump",
 	"state.hold": "Held", "state.fault": "Fault", "state.jog": "Jog",
 	"state.home": "Homing", "state.probe": "Probing", "state.unknown": "No signal",
-	"state.ready": "Ready",
+	"state.ready": "Ready", "state.interrupted": "Interrupted",
 
 	"why.idle": "No job is loaded. Drop a program anywhere to begin.",
 	"why.idle.queue": "Jobs wait in the queue. Press Start for 1 s to begin the next one.",
 	"why.idle.unhomed": "Axes are not homed: {axes}. Home them on Set up.",
+	"why.interrupted": "A job was cut off, by a power failure or by the death of edmd. Look at the work; then resume the job on Jobs, or remove it.",
+	"why.store": "The store cannot write, so no job is taken or begun. {why}.",
 	"why.ready": "{job} is ready. Press Start for 1 s.",
 	"why.travel": "Moves without sparks to where the cut begins.",
 	"why.approach": "Moves up to the work until it sparks.",
@@ -98,16 +100,19 @@ export const en = {
 	"jobs.large": "This program is too long for the editor; it is checked and sent as it is.",
 	"jobs.checkfirst": "The program has an error. Mend it first.",
 	"jobs.sum": "Cut {cut} mm, positioning {rapid} mm",
-	"jobs.waits": "waits for Start",
+	"jobs.waits": "waits for Start", "jobs.more": "Show more",
+	"jobs.resume": "Resume", "jobs.resume.about": "The job is read again and then stands ready. Start positions the electrode off the work and comes in along the path that was cut before.",
+	"jobs.resume.sure": "The machine stands where it shows: {axes}",
 	"jobs.ahead": "{name}: earlier", "jobs.behind": "{name}: later",
 
 	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",
 	"job.done": "done", "job.fault": "fault", "job.stopped": "ended",
+	"job.interrupted": "interrupted",
 
 	"setup.jog": "Jog", "setup.step": "Step",
 	"setup.home": "Home", "setup.homeall": "Home all axes", "setup.probe": "Probing",
 	"setup.offsets": "Work offsets", "setup.position": "Position",
-	"setup.homed": "homed", "setup.unhomed": "not homed", "setup.limit": "on its limit switch",
+	"setup.homed": "homed", "setup.unhomed": "not homed", "setup.limit": "on its limit switch", "setup.lost": "not certain",
 	"setup.nohome": "needs no homing", "setup.run": "Send and start", "setup.make": "G code it runs",
 	"setup.offsetnote": "As the machine file gives them; a program can shift them by G92.",
 	"setup.nooffsets": "All work offsets are 0.",
@@ -139,6 +144,10 @@ export const en = {
 	"alarms.now": "Now", "alarms.none": "No fault.", "alarms.history": "Earlier",
 	"alarms.empty": "No alarm is recorded.", "alarms.what": "What", "alarms.why": "Why",
 	"alarms.clear": "What to do", "alarms.where": "Where", "alarms.inline": "{job}, line {line}, {mm} mm along the path",
+	"alarms.warnings": "Warnings", "alarms.store": "The store is degraded", "alarms.interrupted": "A job was interrupted",
+	"alarms.lost": "The place of {axes} is not certain", "alarms.lost.about": "Home those that have a home. See where the others stand before the next start.",
+	"alarms.hunts": "Many retracts without progress",
+	"alarms.others": "Latched as well",
 	"alarms.resetgo": "Reset, then Start goes on where it stands.",
 
 	"machine.latency": "Latency of the cycle", "machine.latency.about": "How late the cycle was woken, and how often.",
@@ -203,6 +212,11 @@ export function stateWord(state: string): string {
 export function jobWord(state: string): string {
 	const word = `job.${state}`;
 	return isWord(word) ? t(word) : state;
+}
+
+/** What helps against a servo that hunts. */
+export function huntingWords(): string {
+	return onPage(settings.language === "zh-CN" ? zhHunting : machine.hunting);
 }
 
 /** What a field of a condition is called. */

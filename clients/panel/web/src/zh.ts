@@ -21,10 +21,12 @@ export const zh: Record<Word, string> = {
 	"state.idle": "空闲", "state.travel": "定位", "state.approach": "趋近", "state.erode": "加工",
 	"state.retract": "回退", "state.jump": "抬刀", "state.hold": "保持", "state.fault": "故障",
 	"state.jog": "点动", "state.home": "回零", "state.probe": "测量", "state.unknown": "无信号",
-	"state.ready": "就绪",
+	"state.ready": "就绪", "state.interrupted": "中断",
 
 	"why.idle": "没有载入任务。把程序拖到页面任意处即可开始。",
 	"why.idle.queue": "队列中有任务等待。按住启动 1 秒开始下一个。",
+	"why.interrupted": "有任务因断电或 edmd 退出而中断。请检查工件,然后在任务页继续该任务或移除它。",
+	"why.store": "存储无法写入,不接收也不开始任务。{why}。",
 	"why.idle.unhomed": "这些轴没有回零:{axes}。请在装夹页回零。",
 	"why.ready": "{job} 已就绪。按住启动 1 秒。",
 	"why.travel": "不放电,移动到加工开始的位置。",
@@ -82,15 +84,17 @@ export const zh: Record<Word, string> = {
 	"jobs.details": "{name} 的详情", "jobs.changes": "调用的条件和设定的值", "jobs.nochanges": "没有。",
 	"jobs.length": "路径", "jobs.preview": "预览", "jobs.editor": "程序文本",
 	"jobs.large": "此程序太长,编辑器放不下;它会原样检查和发送。", "jobs.checkfirst": "程序有错误。请先改正。",
-	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动",
+	"jobs.sum": "加工 {cut} mm,定位 {rapid} mm", "jobs.waits": "等待启动", "jobs.more": "显示更多",
+	"jobs.resume": "继续任务", "jobs.resume.about": "任务被重新读取并就绪。按启动后先定位到工件之外,再沿已加工的路径进入。",
+	"jobs.resume.sure": "机床确实停在所显示的位置:{axes}",
 	"jobs.ahead": "{name}:提前", "jobs.behind": "{name}:推后",
 
 	"job.queued": "排队", "job.ready": "就绪", "job.running": "运行", "job.held": "保持",
-	"job.done": "完成", "job.fault": "故障", "job.stopped": "已结束",
+	"job.done": "完成", "job.fault": "故障", "job.stopped": "已结束", "job.interrupted": "中断",
 
 	"setup.jog": "点动", "setup.step": "步进", "setup.home": "回零",
 	"setup.homeall": "所有轴回零", "setup.probe": "测量", "setup.offsets": "工件偏置", "setup.position": "位置",
-	"setup.homed": "已回零", "setup.unhomed": "未回零", "setup.limit": "在限位开关上", "setup.nohome": "不需回零",
+	"setup.homed": "已回零", "setup.unhomed": "未回零", "setup.limit": "在限位开关上", "setup.lost": "位置不确定", "setup.nohome": "不需回零",
 	"setup.run": "发送并启动", "setup.make": "将运行的 G 代码", "setup.offsetnote": "由机床文件给出;程序可用 G92 移动。",
 	"setup.nooffsets": "所有工件偏置为 0。", "setup.faster": "步长",
 	"setup.held": "按住", "setup.speed": "速度", "setup.held.about": "按住时移动;松开或断线即停。",
@@ -116,7 +120,11 @@ export const zh: Record<Word, string> = {
 	"event.lost": "edmd 失联", "event.back": "edmd 已恢复",
 	"alarms.now": "当前", "alarms.none": "没有故障。", "alarms.history": "以前", "alarms.empty": "没有报警记录。",
 	"alarms.what": "内容", "alarms.why": "原因", "alarms.clear": "处理", "alarms.where": "位置",
-	"alarms.inline": "{job},第 {line} 行,路径 {mm} mm 处", "alarms.resetgo": "复位后按启动,从原处继续。",
+	"alarms.inline": "{job},第 {line} 行,路径 {mm} mm 处", "alarms.warnings": "警告", "alarms.store": "存储降级", "alarms.interrupted": "有任务被中断",
+	"alarms.lost": "{axes} 的位置不确定", "alarms.lost.about": "请为能回零的轴回零;下次启动前请确认其他轴的位置。",
+	"alarms.hunts": "多次回退而无进展",
+	"alarms.others": "同时锁存",
+	"alarms.resetgo": "复位后按启动,从原处继续。",
 
 	"machine.latency": "控制循环的延迟", "machine.latency.about": "循环被唤醒晚了多少,各有多少次。",
 	"machine.late": "最晚", "machine.took": "最长循环", "machine.missed": "错过的周期", "machine.period": "周期",
@@ -171,6 +179,8 @@ export const zhFaults: Record<Fault, FaultWords> = {
 	"m-code": { what: "PLC 没有及时执行 M 代码", why: "m_timeout_s 内没有应答", clear: "复位;启动会再次等待应答,结束任务放弃" },
 	"stuck": { what: "运动停住而没有原因", why: "应当移动,没有东西阻止,一秒钟没有走一个格点:路径或 edmd 的缺陷", clear: "连同程序一起报告;复位;启动重试,结束任务放弃" },
 };
+
+export const zhHunting = "提高 servo_v,降低 feed_gain_mm_s_v,或更频繁地抬刀(减小 [jump] every_s);edmsim --tune 可求得数值。";
 
 export const zhFields: Record<keyof typeof machine.fields, string> & Record<string, string> = {
 	peak_a: "脉冲峰值电流", on_us: "脉冲宽度", off_us: "脉冲后的间歇", polarity: "电极极性:1 正,-1 负",

@@ -32,7 +32,8 @@ struct interp_build_options {
 	double period_s;		/* period is no farther off than this;
 					 * if either is 0 there is no limit */
 	double fit_mm;			/* cut lines in a row become curves that
-					 * are this near to them; 0: they stay */
+					 * are this near to them; 0: they
+					 * stay */
 };
 
 /* What a segment carries beside its geometry. */
@@ -40,8 +41,8 @@ struct interp_build_word {
 	uint32_t line;			/* of the source, from 1 */
 	double feed_mm_s;		/* > 0; ignored for a rapid */
 	bool rapid;
-	uint8_t ends;			/* INTERP_SEG_TOUCH, _HALF or _LIMIT; 0: it
-					 * ends at its end */
+	uint8_t ends;			/* INTERP_SEG_PROBE, _HALF or _LIMIT; 0:
+					 * it ends at its end */
 	char cond_letter;		/* 0: none */
 	uint32_t cond_number;
 	const struct interp_tech *tech;	/* of that condition, copied; NULL:
@@ -54,7 +55,8 @@ struct interp_build_arc {
 	double centre_a_mm, centre_b_mm;
 	bool clockwise;			/* seen from +(a x b) */
 	uint32_t turns;			/* whole turns beside the rest; equal
-					 * ends with 0 turns make a full circle */
+					 * ends with 0 turns make a full
+					 * circle */
 };
 
 /** interp_build_create() - an empty program. Return: NULL if out of memory. */
@@ -99,8 +101,8 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 struct interp_build_contour {
 	bool arc;
 	bool clockwise;
-	double centre_mm[2];		/* X and Y, or U and V; arcs only.  Equal
-					 * ends make a full circle */
+	double centre_mm[2];		/* X and Y, or U and V; arcs only.
+					 * Equal ends make a full circle */
 };
 
 /**

@@ -19,11 +19,15 @@
 
 struct interp_dialect;
 
-/** interp_dialect_by_name() - the dialect called @name; NULL if there is none. */
+/**
+ * interp_dialect_by_name() - the dialect called @name; NULL if there is none.
+ */
 const struct interp_dialect *interp_dialect_by_name(const char *name);
 
-/** interp_dialect_by_suffix() - by the end of the file's name (.3b, .4b, in upper
- *  or lower case); else NULL. */
+/**
+ * interp_dialect_by_suffix() - by the end of the file's name (.3b, .4b, in
+ * upper or lower case); else NULL.
+ */
 const struct interp_dialect *interp_dialect_by_suffix(const char *path);
 
 /** interp_dialect_by_file() - the same; else generic. */

@@ -26,7 +26,8 @@
 
 #define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */
 #define INTERP_NC_LINE_MAX	4096		/* bytes in a line */
-#define INTERP_NC_SEGS_MAX	50000000u	/* segments a program may have */
+#define INTERP_NC_SEGS_MAX	50000000u	/* segments a program may
+						 * have */
 #define INTERP_NC_EXECUTED_MAX	100000000u	/* lines, repeats counted */
 
 struct interp_dialect;
@@ -54,7 +55,8 @@ struct interp_nc_options {
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
 	const struct interp_wire *wire;	/* lent; NULL: no guides, no corners */
 	double offset_mm[INTERP_NOFFSETS];	/* D and H; 0: not filled */
-	const struct interp_kinematics *kinematics;	/* lent; NULL: no G43.4 */
+	const struct interp_kinematics *kinematics;	/* lent; NULL: no
+							 * G43.4 */
 	double tip_tolerance_mm;	/* of the tip's way under G43.4, > 0 */
 	double feed_mm_s;	/* until the first F; 0: an F is demanded, or,
 				 * where programs have none, the fastest X and
@@ -76,7 +78,8 @@ struct interp_nc_options {
 
 struct interp_nc_result {
 	uint32_t lines;			/* lines in the text */
-	uint32_t executed;		/* lines executed, subprograms unrolled */
+	uint32_t executed;		/* lines executed, subprograms
+					 * unrolled */
 };
 
 /**

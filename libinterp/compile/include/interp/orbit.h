@@ -72,7 +72,8 @@ struct interp_orbit {
 					 * the start */
 };
 
-/* Where the path goes.  If one of these returns anything but 0, the cycle ends. */
+/* Where the path goes.  If one of these returns anything but 0, the cycle
+ * ends. */
 struct interp_orbit_to {
 	void *arg;
 	int (*line)(void *arg, const double end_mm[INTERP_NAXES], bool rapid);

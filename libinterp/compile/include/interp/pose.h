@@ -30,7 +30,8 @@ struct interp_pose {
  * must stay.
  * Return: 0, or -EINVAL if their axes or the ends of their domains differ.
  */
-int interp_pose_open(struct interp_pose_path *p, const struct interp_nurbs *move,
+int interp_pose_open(struct interp_pose_path *p,
+		     const struct interp_nurbs *move,
 		     const struct interp_nurbs *turn);
 
 /** interp_pose_at() - Return: 0, or -EDOM if the quaternion is 0 there. */

@@ -38,7 +38,8 @@ struct interp_axis_limits {
 	double j_max_mm_s3;		/* > 0 */
 };
 
-#define INTERP_NC_NWORK		9		/* work offsets: G54 ... G59.3 */
+#define INTERP_NC_NWORK		9		/* work offsets: G54 ...
+						 * G59.3 */
 
 struct interp_machine {
 	struct interp_axis_limits axis[INTERP_NAXES];

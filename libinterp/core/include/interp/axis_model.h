@@ -34,7 +34,8 @@ struct interp_axis_loop {
 	double velocity_hz;		/* velocity loop, > 0 */
 	double damping;			/* of it, > 0 */
 	double delay_s;			/* before it, 0 and more */
-	double feedforward;		/* of speed, by the drive itself; 0 ... 1 */
+	double feedforward;		/* of speed, by the drive itself; 0 ...
+					 * 1 */
 	double kick_mm_s;		/* friction at a reversal; 0: none */
 	double kick_s;			/* it decays with this time constant */
 	double backlash_mm;		/* 0: none */

@@ -49,7 +49,8 @@ struct interp_pair {
 	int64_t m, s;			/* of them, given */
 	int64_t dev;			/* deviation e = b*m - a*s */
 	int64_t limit;			/* the secondary is due above it */
-	int64_t bursts;			/* of the secondary; 0: none, by limit */
+	int64_t bursts;			/* of the secondary; 0: none, by
+					 * limit */
 	int64_t burst;			/* the one being sent, or next */
 	int64_t from, to;		/* s where it begins and ends */
 	int64_t due, done;		/* m where it is, where the last was */
@@ -91,7 +92,8 @@ struct interp_rotor {
 struct interp_side {
 	struct interp_circle circle;	/* if it is an arc */
 	int64_t a, b, dev;		/* if it is a line: pulses of the longer
-					 * and the shorter axis; b*m_a - a*m_b */
+					 * and the shorter axis; b*m_a -
+					 * a*m_b */
 	uint32_t tick, ticks;
 	int8_t longer;			/* 0 or 1 */
 	int8_t sign[2];			/* of the line's axes */
@@ -124,7 +126,8 @@ struct interp_cursor {
 	uint32_t index;
 	uint32_t tick;			/* 0 ... seg.ticks */
 	int32_t pos[INTERP_NAXES];	/* pulses */
-	uint32_t moved;			/* bit per axis moved by the last step */
+	uint32_t moved;			/* bit per axis moved by the last
+					 * step */
 	double s_mm;			/* place in the segment */
 	double want_mm;			/* place aimed at, from seg's start */
 	bool backward;			/* direction of the walk aimed at */

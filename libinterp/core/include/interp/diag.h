@@ -14,7 +14,8 @@
 
 struct interp_diag {
 	uint32_t line;			/* from 1; 0: the whole input */
-	uint32_t column;		/* from 1, in bytes; 0: the whole line */
+	uint32_t column;		/* from 1, in bytes; 0: the whole
+					 * line */
 	char found[160];
 	char wanted[240];		/* a list of words is long */
 };

@@ -68,10 +68,14 @@ struct interp_errormap {
 /** interp_errormap_is_empty() - is there no error, at any temperature? */
 bool interp_errormap_is_empty(const struct interp_errormap *m);
 
-/** interp_errormap_check() - Return: 0, or -EINVAL if a number is impossible. */
+/**
+ * interp_errormap_check() - Return: 0, or -EINVAL if a number is impossible.
+ */
 int interp_errormap_check(const struct interp_errormap *m);
 
-/** interp_errormap_error() - the error of a machine that is sent to @place_mm. */
+/**
+ * interp_errormap_error() - the error of a machine that is sent to @place_mm.
+ */
 void interp_errormap_error(const struct interp_errormap *m,
 			   const double *place_mm, double *ret_mm);
 

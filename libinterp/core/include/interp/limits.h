@@ -78,7 +78,8 @@ struct interp_limits {
 	const struct interp_machine *machine;
 	double corner_mm;		/* > 0 */
 	double tolerance_mm;		/* >= 0: what is less is a rounding */
-	double rotary_radius_mm;	/* > 0: where it is a rotary axis's, too */
+	double rotary_radius_mm;	/* > 0: where it is a rotary axis's,
+					 * too */
 };
 
 /**

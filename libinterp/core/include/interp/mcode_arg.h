@@ -19,7 +19,8 @@
 /* When it is told to the PLC, and what waits until that is done. */
 enum interp_mcode_sync {
 	INTERP_MCODE_NONE,		/* not one of the machine's */
-	INTERP_MCODE_BEFORE,		/* before its line's motion, which waits */
+	INTERP_MCODE_BEFORE,		/* before its line's motion, which
+					 * waits */
 	INTERP_MCODE_AFTER,		/* after it; what follows waits */
 	INTERP_MCODE_FREE,		/* before it; nothing waits but the next
 					 * M code */

@@ -77,7 +77,9 @@ enum interp_nurbs_flaw {
 enum interp_nurbs_flaw interp_nurbs_check(const struct interp_nurbs *c,
 					  uint32_t *ret_at);
 
-/** interp_nurbs_flaw_text() - what was found, as half a sentence. Any thread. */
+/**
+ * interp_nurbs_flaw_text() - what was found, as half a sentence. Any thread.
+ */
 const char *interp_nurbs_flaw_text(enum interp_nurbs_flaw f);
 
 /** interp_nurbs_flaw_wanted() - what would be accepted instead. Any thread. */

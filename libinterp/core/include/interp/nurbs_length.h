@@ -57,8 +57,10 @@ struct interp_nurbs_between {
 void interp_nurbs_between(const struct interp_nurbs_stop *stop,
 			  struct interp_nurbs_between *ret);
 
-/** interp_nurbs_stop_of() - the number of the stop before @s_mm.  It is never the
- *  last of the @n stops, so that one follows it.  RT-safe. */
+/**
+ * interp_nurbs_stop_of() - the number of the stop before @s_mm.  It is never
+ * the last of the @n stops, so that one follows it.  RT-safe.
+ */
 size_t interp_nurbs_stop_of(const struct interp_nurbs_stop *stop, size_t n,
 			    double s_mm);
 

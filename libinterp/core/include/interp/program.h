@@ -63,7 +63,8 @@ enum interp_strategy {
  */
 enum interp_coupling {
 	INTERP_STAR,			/* each axis against the longest one */
-	INTERP_TREE,			/* pairs of pairs, (((X,Y),(Z,A)),(B,C)) */
+	INTERP_TREE,			/* pairs of pairs,
+					 * (((X,Y),(Z,A)),(B,C)) */
 	INTERP_TUBE,			/* a star whose axes share their stops:
 					 * min-switch only */
 	INTERP_NCOUPLINGS
@@ -75,7 +76,8 @@ enum interp_coupling {
 enum interp_kind {
 	INTERP_LINE,			/* arg: 0, or 1 + the first word of its
 					 * bits */
-	INTERP_ARC,			/* circular or helical; arg: arc index */
+	INTERP_ARC,			/* circular or helical; arg: arc
+					 * index */
 	INTERP_PAIR,			/* X Y and U V, each a line or an arc;
 					 * arg: couple index */
 	INTERP_CURVE,			/* part of a NURBS; arg: piece index */
@@ -89,7 +91,8 @@ enum interp_kind {
 	INTERP_TIMED,			/* what is up to segment arg, which ends
 					 * where it begins, has a time ... */
 	INTERP_TIMED_END,		/* ... of arg milliseconds */
-	INTERP_END,			/* always the last: M2, M30, end of text */
+	INTERP_END,			/* always the last: M2, M30, end of
+					 * text */
 	INTERP_NKINDS
 };
 
@@ -105,24 +108,27 @@ enum interp_aux {
 
 #define INTERP_SEG_RAPID	0x01	/* G0: positioned, not eroded */
 
-/* Straight lines that end where the machine says, and not at their end node.  The
- * rest of such a line is not walked, and everything after it is shifted by that
- * rest.  The power is off. */
-#define INTERP_SEG_TOUCH	0x02	/* at contact */
+/* Straight lines that end where the machine says, and not at their end node.
+ * The rest of such a line is not walked, and everything after it is shifted by
+ * that rest.  The power is off. */
+#define INTERP_SEG_PROBE	0x02	/* at contact */
 #define INTERP_SEG_HALF		0x04	/* between the last two contacts along
 					 * its axis */
 #define INTERP_SEG_LIMIT	0x08	/* at the end of its axis's travel */
 #define INTERP_SEG_SENSED	0x0e	/* any of them */
 
 struct interp_seg {
-	double s_mm;			/* place of its first node on the path */
+	double s_mm;			/* place of its first node on the
+					 * path */
 	double length_mm;		/* 0 for an action */
-	float feed_mm_s;		/* as programmed; for a rapid, the ceiling */
+	float feed_mm_s;		/* as programmed; for a rapid, the
+					 * ceiling */
 	float feed_max_mm_s;		/* the fastest any of its axes allows */
 	uint32_t line;			/* of the source text, from 1 */
 	uint32_t ticks;			/* lattice points after the first */
 	uint32_t arg;			/* by kind */
-	uint16_t cond;			/* conditions[cond]; 0 is "none called" */
+	uint16_t cond;			/* conditions[cond]; 0 is "none
+					 * called" */
 	uint8_t kind;			/* enum interp_kind */
 	uint8_t flags;			/* INTERP_SEG_* */
 	/* Written by compile/speed when the program is whole: limits.h */
@@ -130,7 +136,8 @@ struct interp_seg {
 	uint16_t slower_ahead;		/* how many segments ahead is the next
 					 * one that is entered slower */
 	uint16_t slower_behind;		/* the same, going back; 0: none */
-	uint16_t slower_feed;		/* how many ahead has a smaller F; 0: none */
+	uint16_t slower_feed;		/* how many ahead has a smaller F; 0:
+					 * none */
 	uint16_t escape;		/* escapes[escape]; 0 is "along the
 					 * path" */
 	uint16_t softer_ahead;		/* so many on is an action, or one of
@@ -148,13 +155,18 @@ struct interp_seg {
 struct interp_arc {
 	double a_mm, b_mm;		/* centre */
 	double r_mm, dr_mm;
-	double theta;			/* radian, from a toward b, at the start */
-	double sweep;			/* radian, signed; + is counter-clockwise */
+	double theta;			/* radian, from a toward b, at the
+					 * start */
+	double sweep;			/* radian, signed; + is
+					 * counter-clockwise */
 	/* But for simultaneous, see pulse/circle.c and pulse/dda.c: */
-	int64_t measure;		/* of the whole circle: area and ticks */
+	int64_t measure;		/* of the whole circle: area and
+					 * ticks */
 	uint32_t circle_ticks;		/* pulses in the plane */
-	uint32_t tail;			/* ticks before the first forced pulse */
-	int32_t tail_a, tail_b;		/* forced pulses from there to the end */
+	uint32_t tail;			/* ticks before the first forced
+					 * pulse */
+	int32_t tail_a, tail_b;		/* forced pulses from there to the
+					 * end */
 	uint32_t crossings;		/* of the axes through the centre */
 	uint32_t run_at, nruns;		/* runs[run_at ...], min-switch only */
 	int64_t rest_a, rest_b;		/* dda: accumulators before the tail */
@@ -227,8 +239,10 @@ struct interp_escape {
 /* Which way out is wanted.  It is taken only where it is known to be free. */
 enum interp_escape_mode {
 	INTERP_ESCAPE_PATH,		/* back along the path */
-	INTERP_ESCAPE_NORMAL,		/* square to the wall of an orbit, then out */
-	INTERP_ESCAPE_CENTRE,		/* to the centre of an orbit, then out */
+	INTERP_ESCAPE_NORMAL,		/* square to the wall of an orbit, then
+					 * out */
+	INTERP_ESCAPE_CENTRE,		/* to the centre of an orbit, then
+					 * out */
 	INTERP_ESCAPE_AXIS,		/* straight up where it came straight
 					 * down */
 	INTERP_NESCAPE_MODES
@@ -240,7 +254,8 @@ struct interp_program_head {
 	uint32_t head_bytes;
 	uint64_t bytes;			/* of the whole block */
 	uint32_t nsegs, narcs, nconds, naxes;
-	uint64_t segs_at, nodes_at, arcs_at, conds_at;	/* bytes from the head */
+	uint64_t segs_at, nodes_at, arcs_at, conds_at;	/* bytes from the
+							 * head */
 	uint8_t column[INTERP_NAXES];	/* axis of node column j, j < naxes */
 	uint32_t strategy;		/* enum interp_strategy */
 	uint32_t lines;			/* of the source text */
@@ -258,7 +273,8 @@ struct interp_program_head {
 	uint64_t nstops, stops_at, nnumbers, numbers_at;
 	double pulse_mm[INTERP_NAXES];
 	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
-	uint8_t hash[32];		/* SHA-256 of the source text, or zeros */
+	uint8_t hash[32];		/* SHA-256 of the source text, or
+					 * zeros */
 	char name[64];			/* of the job; NUL-terminated */
 };
 
@@ -320,7 +336,9 @@ bool interp_program_curve_rate(const struct interp_program *p,
 			       const struct interp_seg *seg, bool at_end,
 			       double ret[INTERP_NAXES]);
 
-/** interp_strategy_name() - "simultaneous", ...; NULL if unknown. Any thread. */
+/**
+ * interp_strategy_name() - "simultaneous", ...; NULL if unknown. Any thread.
+ */
 const char *interp_strategy_name(enum interp_strategy s);
 
 /** interp_strategy_parse() - the reverse; -EINVAL if unknown. Any thread. */

@@ -74,8 +74,10 @@ double interp_scurve_way_mm(const struct interp_scurve_limits *l,
  */
 double interp_scurve_falls_mm(const struct interp_scurve *c, double v_mm_s);
 
-/** interp_scurve_at() - the state at the time @t_s; after the end of the plan it
- *  goes on at the last speed. */
+/**
+ * interp_scurve_at() - the state at the time @t_s; after the end of the plan it
+ * goes on at the last speed.
+ */
 struct interp_scurve_state interp_scurve_at(const struct interp_scurve *c,
 					    double t_s);
 

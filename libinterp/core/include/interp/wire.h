@@ -50,7 +50,8 @@ enum interp_taper_corner {
 struct interp_wire {
 	int guides;			/* enum interp_guides */
 	double z_lower_mm, z_upper_mm;	/* guides; lower below upper */
-	double z_program_mm, z_second_mm;	/* planes; program below second */
+	double z_program_mm, z_second_mm;	/* planes; program below
+						 * second */
 	double angle_max_deg;		/* of the wire from upright, < 90 */
 
 	/* Corner control; corner_angle_deg of 180 and more: none. */
@@ -60,9 +61,11 @@ struct interp_wire {
 	double corner_dwell_s;		/* and wait on it; 0: no wait */
 
 	int gouge;			/* enum interp_gouge */
-	int corner;			/* enum interp_taper_corner, to start with */
+	int corner;			/* enum interp_taper_corner, to start
+					 * with */
 };
 
-#define INTERP_NOFFSETS	100		/* registers D0 ... D99, also called H */
+#define INTERP_NOFFSETS	100		/* registers D0 ... D99, also called
+					 * H */
 
 #endif /* INTERP_WIRE_H */

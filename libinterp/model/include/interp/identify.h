@@ -66,7 +66,8 @@ struct interp_identified {
 	bool sought[INTERP_NIDENTIFY];	/* false: the trace needs none, 0 */
 	bool told[INTERP_NIDENTIFY];	/* the trace tells this number */
 	double left_mm;			/* rms of what the model misses */
-	double varies_mm;		/* the following error, about its mean */
+	double varies_mm;		/* the following error, about its
+					 * mean */
 	unsigned int reversals;
 };
 

@@ -4,9 +4,9 @@
  *
  * Two methods of NLopt over a box; neither asks for a derivative, and both do
  * the same again when they are asked again.  The local one is Nelder and Mead's
- * simplex, begun anew around its best when it has shrunk.  The global one spends
- * half of its budget on dividing the box (DIRECT-L, Gablonsky and Kelley), and
- * the rest on the local one from the best place that was found.
+ * simplex, begun anew around its best when it has shrunk.  The global one
+ * spends half of its budget on dividing the box (DIRECT-L, Gablonsky and
+ * Kelley), and the rest on the local one from the best place that was found.
  *
  * Threads: any thread, not in the cycle.
  */
@@ -16,9 +16,11 @@
 #define INTERP_MINIMISE_NMAX	8
 
 struct interp_minimise {
-	int n;				/* unknowns, 1 ... INTERP_MINIMISE_NMAX */
+	int n;				/* unknowns, 1 ...
+					 * INTERP_MINIMISE_NMAX */
 	double low[INTERP_MINIMISE_NMAX], high[INTERP_MINIMISE_NMAX];
-	double (*cost)(void *arg, const double *x);	/* NAN counts as worst */
+	double (*cost)(void *arg, const double *x);	/* NAN counts as
+							 * worst */
 	void *arg;
 	unsigned int budget;		/* evaluations, at the most */
 };

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * touch.c - touches: G38.2, G80 ... G82, G160 ... G162
+ * probing.c - probing motions: G38.2, G80 ... G82, G160 ... G162
  *
- * All are made of one touch along an axis, the half between two of them, and
- * rapid ways.  Where a touch ends is known to the machine alone, so what its
- * axis reads afterwards has to be said by G92, and places in machine
- * coordinates are of no use to that axis any more.
+ * Each word is made of three parts: a probing motion along one axis, the way to
+ * the middle between the last two contacts (a "half"), and rapid motions.
+ *
+ * Only the machine learns where a probing motion ends.  So the program must say
+ * by G92 what the axis reads afterwards, and it can no longer use machine
+ * coordinates for this axis.
  */
 #include "code/reader.h"
 
@@ -16,7 +18,7 @@
 
 #define OFF_MM		0.1		/* a wall, without Q */
 
-/* -- Lines after a touch ------------------------------------------------------- */
+/* -- Lines after a probing motion ------------------------------------------ */
 
 static int refuse_unnamed(struct nc_reader *r, uint32_t axes)
 {
@@ -26,8 +28,8 @@ static int refuse_unnamed(struct nc_reader *r, uint32_t axes)
 	snprintf(wanted, sizeof(wanted), "G92 %c... before it, or G91",
 		 INTERP_AXIS_LETTERS[axis]);
 	return nc_refuse(r, r->block.at[axis], wanted,
-			 "%s after a touch along %c, whose place has no number "
-			 "yet", nc_quote_word(r, r->block.at[axis]).s,
+			 "%s after a probing motion along %c, whose place has "
+			 "no number yet", nc_quote_word(r, r->block.at[axis]).s,
 			 INTERP_AXIS_LETTERS[axis]);
 }
 
@@ -36,11 +38,11 @@ static int refuse_machine(struct nc_reader *r, enum nc_group group)
 	const uint8_t *at = r->block.code_at[group];
 
 	return nc_refuse(r, at, "places that count from the contact",
-			 "%s after a touch, which machine coordinates do not "
-			 "know of", nc_quote_word(r, at).s);
+			 "%s after a probing motion, of which machine "
+			 "coordinates know nothing", nc_quote_word(r, at).s);
 }
 
-/* Is this a G4, whose X is a time, or a G92, which gives the number? */
+/* A G4, whose X is a time, or a G92, which gives the place its number. */
 static bool is_no_place(const struct nc_reader *r)
 {
 	const struct nc_code *c = r->block.code[NC_ONE_SHOT];
@@ -55,12 +57,12 @@ static bool by_distance(const struct nc_reader *r)
 	       r->block.code[NC_DISTANCE]->value : r->incremental;
 }
 
-int nc_check_touched(struct nc_reader *r)
+int nc_check_probed(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
 	const uint32_t named = b->words & NC_AXES & ~b->toward;
 
-	if (b->toward && !nc_has_group(r, NC_TOUCH)) {
+	if (b->toward && !nc_has_group(r, NC_PROBE)) {
 		const uint8_t *at = b->at[__builtin_ctz(b->toward)];
 
 		return nc_refuse(r, at, "a sign, digits and one decimal point; "
@@ -82,7 +84,7 @@ int nc_check_touched(struct nc_reader *r)
 	return refuse_unnamed(r, named & r->unnamed);
 }
 
-/* -- What they are made of ------------------------------------------------------ */
+/* -- What they are made of ------------------------------------------------- */
 
 static double length_of(const struct nc_reader *r, enum nc_slot slot,
 			double without_mm)
@@ -96,7 +98,7 @@ static double off_mm(const struct nc_reader *r)
 	return length_of(r, NC_Q, OFF_MM);
 }
 
-/* From one end of the travel to the other. */
+/* The length of the axis's whole travel. */
 static double span_mm(const struct nc_reader *r, int axis)
 {
 	const struct interp_axis_limits *l = &r->o->machine->axis[axis];
@@ -104,7 +106,7 @@ static double span_mm(const struct nc_reader *r, int axis)
 	return l->travel_max_mm - l->travel_min_mm;
 }
 
-/* G38.2 alone keeps to the feed, others to the machine's own. */
+/* G38.2 moves at the programmed feed; the others are rapid. */
 static int go(struct nc_reader *r, int axis, double by_mm)
 {
 	double end_mm[INTERP_NAXES];
@@ -113,14 +115,14 @@ static int go(struct nc_reader *r, int axis, double by_mm)
 	end_mm[axis] += by_mm;
 	r->moved |= NC_BIT(axis);
 	return nc_line_to(r, end_mm,
-			  r->block.code[NC_TOUCH]->value != NC_TOUCH_FEED);
+			  r->block.code[NC_PROBE]->value != NC_PROBE_FEED);
 }
 
 static int go_sensed(struct nc_reader *r, int axis, double by_mm, uint8_t ends)
 {
 	int err;
 
-	/* And the stop in front of it. */
+	/* Room for this line, and for the stop that is put in front of it. */
 	err = nc_room(r);
 	r->word.ends = ends;
 	if (!err)
@@ -131,14 +133,15 @@ static int go_sensed(struct nc_reader *r, int axis, double by_mm, uint8_t ends)
 	return err;
 }
 
-static int touch(struct nc_reader *r, int axis, double by_mm)
+static int probe(struct nc_reader *r, int axis, double by_mm)
 {
 	r->twice |= r->once & NC_BIT(axis);
 	r->once |= NC_BIT(axis);
-	return go_sensed(r, axis, by_mm, INTERP_SEG_TOUCH);
+	return go_sensed(r, axis, by_mm, INTERP_SEG_PROBE);
 }
 
-/* Which way it is, only the machine knows: one of the two is none. */
+/* Only the machine knows in which direction the middle lies.  So both
+ * directions are written, and the machine walks one of the two. */
 static int half(struct nc_reader *r, int axis)
 {
 	const int err = go_sensed(r, axis, span_mm(r, axis), INTERP_SEG_HALF);
@@ -147,31 +150,32 @@ static int half(struct nc_reader *r, int axis)
 				   INTERP_SEG_HALF);
 }
 
-/* -- One axis ------------------------------------------------------------------- */
+/* -- One axis -------------------------------------------------------------- */
 
 static const uint8_t *word_at(const struct nc_reader *r)
 {
-	return r->block.code_at[NC_TOUCH];
+	return r->block.code_at[NC_PROBE];
 }
 
-/* The axis of the line; -1 if it is not one. */
+/* The one axis of the line; -1 if there is none, or more than one. */
 static int axis_of(struct nc_reader *r, const char *wanted)
 {
 	const uint32_t axes = r->block.words & NC_AXES;
 
 	if (axes && !(axes & (axes - 1)))
 		return __builtin_ctz(axes);
-	nc_refuse(r, word_at(r), wanted, "%s %s", nc_quote_word(r, word_at(r)).s,
+	nc_refuse(r, word_at(r), wanted, "%s %s",
+		  nc_quote_word(r, word_at(r)).s,
 		  axes ? "along several axes" : "without an axis");
 	return -1;
 }
 
-/* G80 X- as far as there is travel; G80 X-5 and G38.2 X-5 to that place. */
-static int touch_one(struct nc_reader *r)
+/* G80 X- goes to the end of the travel; G80 X-5 and G38.2 X-5 to that place. */
+static int probe_one(struct nc_reader *r)
 {
 	static const char wanted[] = "one of X Y Z with a way to go, as in "
 				     "G80 X- or G80 X-5";
-	const bool feed = r->block.code[NC_TOUCH]->value == NC_TOUCH_FEED;
+	const bool feed = r->block.code[NC_PROBE]->value == NC_PROBE_FEED;
 	const int axis = axis_of(r, wanted);
 	double end_mm[INTERP_NAXES], by_mm;
 
@@ -187,8 +191,8 @@ static int touch_one(struct nc_reader *r)
 				  end_mm[axis] - nc_here(r)[axis];
 	if (fabs(by_mm) < r->o->machine->axis[axis].pulse_mm)
 		return nc_refuse(r, r->block.at[axis], wanted,
-				 "a touch without a way to go");
-	return touch(r, axis, by_mm);
+				 "a probing motion without a way to go");
+	return probe(r, axis, by_mm);
 }
 
 static int limit(struct nc_reader *r)
@@ -218,14 +222,15 @@ static int half_one(struct nc_reader *r)
 				 "%s is not an axis alone",
 				 nc_quote_run(r, r->block.at[axis]).s);
 	if (!(r->twice & NC_BIT(axis)))
-		return nc_refuse(r, word_at(r), "two touches along that axis "
-				 "before it", "a half with %s touch along %c",
+		return nc_refuse(r, word_at(r), "two probing motions along "
+				 "that axis before it",
+				 "a half with %s probing motion along %c",
 				 r->once & NC_BIT(axis) ? "one" : "no",
 				 INTERP_AXIS_LETTERS[axis]);
 	return half(r, axis);
 }
 
-/* -- Several -------------------------------------------------------------------- */
+/* -- Several --------------------------------------------------------------- */
 
 static int check_off(struct nc_reader *r)
 {
@@ -252,21 +257,21 @@ static uint32_t passes(const struct nc_reader *r)
 	return nc_has(r, NC_L) ? (uint32_t)r->block.value[NC_L] : 1;
 }
 
-static int touch_off(struct nc_reader *r, int axis, double by_mm)
+static int probe_and_back(struct nc_reader *r, int axis, double by_mm)
 {
-	const int err = touch(r, axis, by_mm);
+	const int err = probe(r, axis, by_mm);
 
 	return err ? err : go(r, axis, by_mm > 0 ? -off_mm(r) : off_mm(r));
 }
 
-/* From wall to wall, and half of it. */
+/* Find both walls along one axis, and go to the middle between them. */
 static int across_hole(struct nc_reader *r, int axis)
 {
 	const double most = length_of(r, NC_R, span_mm(r, axis));
-	int err = touch_off(r, axis, -most);
+	int err = probe_and_back(r, axis, -most);
 
 	if (!err)
-		err = touch(r, axis, most);
+		err = probe(r, axis, most);
 	return err ? err : half(r, axis);
 }
 
@@ -285,14 +290,14 @@ static int hole(struct nc_reader *r)
 	return err;
 }
 
-/* Down beside it, against it, off it and up again. */
+/* Go down beside the block, find its wall, go off it and up again. */
 static int against_pillar(struct nc_reader *r, int axis, double by_mm)
 {
 	const double down = length_of(r, NC_K, 0);
 	int err = go(r, INTERP_Z, -down);
 
 	if (!err)
-		err = touch_off(r, axis, by_mm);
+		err = probe_and_back(r, axis, by_mm);
 	return err ? err : go(r, INTERP_Z, down);
 }
 
@@ -341,18 +346,19 @@ static int pillar(struct nc_reader *r)
 	return err;
 }
 
-/* One wall of it, having gone to where it is in front, and back from there. */
+/* Find one wall of the corner: go in front of it first, and back at the end. */
 static int wall(struct nc_reader *r, int axis, int beside, double by_mm)
 {
 	const double most = length_of(r, NC_R, span_mm(r, axis));
 	int err = go(r, beside, by_mm);
 
 	if (!err)
-		err = touch_off(r, axis, r->block.value[axis] * most);
+		err = probe_and_back(r, axis, r->block.value[axis] * most);
 	return err ? err : go(r, beside, -by_mm);
 }
 
-/* An outer one: from beyond it, I and J lead in front of its walls. */
+/* At an outer corner, I and J lead from the start to places in front of its
+ * walls. */
 static int corner(struct nc_reader *r)
 {
 	const uint32_t xy = NC_BIT(NC_X) | NC_BIT(NC_Y);
@@ -389,21 +395,21 @@ static int refuse_mode(struct nc_reader *r)
 			 nc_quote_word(r, at).s);
 }
 
-int nc_run_touch(struct nc_reader *r)
+int nc_run_probe(struct nc_reader *r)
 {
-	static int (*const touches[NC_NTOUCHES])(struct nc_reader *) = {
-		[NC_TOUCH_FEED]		= touch_one,
-		[NC_TOUCH_ONE]		= touch_one,
-		[NC_TOUCH_LIMIT]	= limit,
-		[NC_TOUCH_HALF]		= half_one,
-		[NC_TOUCH_HOLE]		= hole,
-		[NC_TOUCH_PILLAR]	= pillar,
-		[NC_TOUCH_CORNER]	= corner,
+	static int (*const probes[NC_NPROBES])(struct nc_reader *) = {
+		[NC_PROBE_FEED]		= probe_one,
+		[NC_PROBE_ONE]		= probe_one,
+		[NC_PROBE_LIMIT]	= limit,
+		[NC_PROBE_HALF]		= half_one,
+		[NC_PROBE_HOLE]		= hole,
+		[NC_PROBE_PILLAR]	= pillar,
+		[NC_PROBE_CORNER]	= corner,
 	};
 	int err;
 
 	if (r->tool.on || nc_has_guides(r) || r->offset_side || r->taper_side)
 		return refuse_mode(r);
 	err = contour_flush(&r->contour, r->diag);
-	return err ? err : touches[r->block.code[NC_TOUCH]->value](r);
+	return err ? err : probes[r->block.code[NC_PROBE]->value](r);
 }

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_from.h - begin a program at a place inside it
+ *
+ * After a power cut the job has to go on where it was.  The electrode is first
+ * positioned to the end of the last positioning motion before that place, which
+ * is off the work: along one axis out of the work, over, and along the same axis
+ * in.  Then it follows the program's own path.  The ground up to the place was
+ * cut already, so the gap is open there and the servo comes on at its highest
+ * feed, with the gap watched.  The first spark is where the material begins,
+ * wherever that is.
+ *
+ * The condition in force and the outputs that the program has switched (power,
+ * polarity, pump) are those of the place.  Dwells, stops and M codes that were
+ * done before it are not done again.
+ *
+ * Units: mm, machine coordinates, degrees for rotary axes.
+ * Threads: as interp/build.h.
+ */
+#ifndef INTERP_BUILD_FROM_H
+#define INTERP_BUILD_FROM_H
+
+#include "interp/build.h"
+
+#define INTERP_PASSED_MAX	16
+
+struct interp_build_from {
+	double far_mm;			/* the place: along the path of the
+					 * whole program */
+	double now_mm[INTERP_NAXES];	/* where the axes stand */
+	int up;				/* axis whose + leads out of the work;
+					 * -1: none, the way is straight */
+};
+
+/** interp_build_set() - condition @cond of the program has @value in @field
+ *  (enum interp_tech_id); those that it has not are left alone. */
+void interp_build_set(struct interp_build *b, uint32_t cond, uint32_t field,
+		      double value);
+
+/* What became of it. */
+struct interp_build_entry {
+	uint32_t line;			/* of the place */
+	double entry_mm[INTERP_NAXES];	/* where it comes in */
+	double from_mm;			/* that point, along the path of the
+					 * whole program ... */
+	double way_mm;			/* ... and of the new one */
+	uint32_t passed[INTERP_PASSED_MAX];	/* M codes that are not done
+						 * again: as in the segments */
+	uint32_t npassed;
+};
+
+/**
+ * interp_build_from() - leave out what was cut before the place @o names.
+ *
+ * @b: a whole program, read from the same text, with the same start, as the one
+ * that was interrupted.
+ *
+ * Return: 0; -EINVAL with @diag filled: the place is not inside, or what the
+ * machine found by probing before it is not known; -ENOMEM.  After an error @b
+ * can only be destroyed.
+ */
+int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
+		      struct interp_build_entry *ret, struct interp_diag *diag);
+
+#endif /* INTERP_BUILD_FROM_H */

@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_from.c - a program that begins inside another one
+ *
+ * What was cut before is left out, but for the last run of cutting up to the
+ * place: the electrode comes in along it.  The tables (arcs, curves, conditions
+ * and so on) stay as they are; only segments and nodes are made anew.
+ */
+#include "interp/build_from.h"
+#include "path/builder.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One program, and the way that is put in front of its rest. */
+struct from {
+	struct interp_build *b, *way;
+	const struct interp_build_from *o;
+	struct interp_build_entry *entry;
+	struct interp_diag *diag;
+	uint32_t far;			/* the last segment that was begun */
+	uint32_t last;			/* the last that is left out */
+};
+
+static struct interp_seg *segs_of(const struct interp_build *b)
+{
+	return b->segs.at;
+}
+
+/* Before this place everything was done, and actions at it were not. */
+static uint32_t find_far(const struct interp_build *b, double far_mm)
+{
+	const struct interp_seg *s = segs_of(b);
+	uint32_t i = 0;
+
+	while (i + 1 < b->segs.n && s[i + 1].s_mm < far_mm)
+		i++;
+	return i;
+}
+
+/* The last positioning up to there: its end is off the work. */
+static uint32_t find_last(const struct interp_build *b, uint32_t far)
+{
+	const struct interp_seg *s = segs_of(b);
+
+	for (uint32_t i = far; i > 0; i--)
+		if (s[i].flags & INTERP_SEG_RAPID && s[i].length_mm > 0)
+			return i;
+	return 0;
+}
+
+static int check(const struct from *f)
+{
+	const struct interp_seg *s = segs_of(f->b);
+
+	if (f->o->far_mm >= f->b->length_mm)
+		return interp_diag_say(f->diag, "nothing of the path is left "
+				       "behind %.3f mm; a place before its end "
+				       "at %.3f mm", f->o->far_mm,
+				       f->b->length_mm);
+	for (uint32_t i = 0; i <= f->far; i++) {
+		f->diag->line = s[i].line;
+		if (s[i].flags & INTERP_SEG_SENSED)
+			return interp_diag_say(f->diag, "what was probed "
+				"before that place is not known any more; a "
+				"program that probes again, or G92 in place of "
+				"probing");
+		if (s[i].kind == INTERP_TIMED && i <= f->last &&
+		    s[i].arg > f->last)
+			return interp_diag_say(f->diag, "positioning inside a "
+				"part with a time, before that place; a place "
+				"before or behind that part");
+	}
+	return 0;
+}
+
+void interp_build_set(struct interp_build *b, uint32_t cond, uint32_t field,
+		      double value)
+{
+	struct interp_cond *c = b->conds.at;
+
+	if (cond < b->conds.n && field < INTERP_NTECH)
+		c[cond].tech.v[field] = value;
+}
+
+/* -- The way in --------------------------------------------------------------- */
+
+static void entry_of(const struct from *f, double to[INTERP_NAXES])
+{
+	const struct interp_build *b = f->b;
+	const int64_t *node = (const int64_t *)b->nodes.at +
+			      (size_t)(f->last + 1) * b->naxes;
+	int64_t at[INTERP_NAXES];
+
+	memcpy(at, b->first, sizeof(at));
+	for (uint32_t k = 0; k < b->naxes; k++)
+		at[b->column[k]] = node[k];
+	build_mm(b, at, to);
+}
+
+/* Out of the work along one axis, over, and in along the same axis. */
+static int add_legs(struct from *f)
+{
+	const struct interp_build_word w = { .rapid = true };
+	const int up = f->o->up;
+	double at[INTERP_NAXES], *to = f->entry->entry_mm;
+	int err = 0;
+
+	memcpy(at, f->o->now_mm, sizeof(at));
+	if (up >= 0) {
+		at[up] = fmax(at[up], to[up]);
+		err = interp_build_line(f->way, at, &w, f->diag);
+		for (int i = 0; i < INTERP_NAXES; i++)
+			at[i] = i == up ? at[i] : to[i];
+		if (err == 0)
+			err = interp_build_line(f->way, at, &w, f->diag);
+	}
+	return err ? err : interp_build_line(f->way, to, &w, f->diag);
+}
+
+static bool is_power(uint32_t aux)
+{
+	return aux == INTERP_AUX_POWER_OFF ||
+	       aux == INTERP_AUX_POWER_POSITIVE ||
+	       aux == INTERP_AUX_POWER_NEGATIVE;
+}
+
+/* The outputs are as the program has left them at the place. */
+static int add_outputs(struct from *f)
+{
+	const struct interp_seg *s = segs_of(f->b);
+	uint32_t power = INTERP_NAUX, pump = INTERP_NAUX;
+	const struct interp_build_word w = { .line = s[f->far].line };
+	int err = 0;
+
+	for (uint32_t i = 0; i <= f->far; i++) {
+		if (s[i].kind == INTERP_AUX && is_power(s[i].arg))
+			power = s[i].arg;
+		else if (s[i].kind == INTERP_AUX)
+			pump = s[i].arg;
+	}
+	if (pump < INTERP_NAUX)
+		err = interp_build_action(f->way, INTERP_AUX, pump, &w,
+					  f->diag);
+	if (err == 0 && power < INTERP_NAUX)
+		err = interp_build_action(f->way, INTERP_AUX, power, &w,
+					  f->diag);
+	return err;
+}
+
+/* Both have the same columns, in the same order. */
+static int add_columns(struct from *f)
+{
+	struct interp_build *b = f->b;
+	uint32_t moved = 0;
+	int err;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (llround(f->o->now_mm[i] * b->sub_mm[i]) !=
+		    llround(f->entry->entry_mm[i] * b->sub_mm[i]))
+			moved |= 1u << i;
+	err = build_columns(b, moved);
+	for (uint32_t k = 0; err == 0 && k < b->naxes; k++)
+		err = build_columns(f->way, 1u << b->column[k]);
+	return err;
+}
+
+static int make_way(struct from *f)
+{
+	struct interp_build_options o = f->b->o;
+	int err;
+
+	memcpy(o.start_mm, f->o->now_mm, sizeof(o.start_mm));
+	o.fit_mm = 0;
+	f->way = interp_build_create(&o);
+	if (!f->way)
+		return -ENOMEM;
+	err = add_columns(f);
+	if (err == 0)
+		err = add_legs(f);
+	if (err == 0)
+		err = add_outputs(f);
+	return err;
+}
+
+/* -- What is left of the program ------------------------------------------------ */
+
+/* Done before the place, and not done again: a dwell of no time. */
+static void forget(struct from *f, struct interp_seg *s)
+{
+	struct interp_build_entry *e = f->entry;
+
+	if (s->kind == INTERP_MCODE && e->npassed < INTERP_PASSED_MAX)
+		e->passed[e->npassed++] = s->arg;
+	if (s->kind == INTERP_DWELL || s->kind == INTERP_STOP ||
+	    s->kind == INTERP_OPTIONAL_STOP || s->kind == INTERP_MCODE) {
+		s->kind = INTERP_DWELL;
+		s->arg = 0;
+	}
+}
+
+/* A part with a time that is over has none any more. */
+static void forget_time(const struct from *f, struct interp_seg *s)
+{
+	struct interp_seg *end = segs_of(f->b) + s->arg;
+
+	if (s->kind != INTERP_TIMED || s->arg > f->far)
+		return;
+	s->kind = end->kind = INTERP_DWELL;
+	s->arg = end->arg = 0;
+}
+
+static void forget_all(struct from *f)
+{
+	struct interp_seg *s = segs_of(f->b);
+
+	for (uint32_t i = 0; i <= f->far; i++) {
+		forget(f, &s[i]);
+		forget_time(f, &s[i]);
+	}
+}
+
+/* Lines of the way may have bits: they go behind those of the program. */
+static int take_bits(struct from *f)
+{
+	struct interp_build *b = f->b, *way = f->way;
+	struct interp_seg *s = segs_of(way);
+	const uint64_t *words = way->bits.at;
+
+	for (size_t i = 0; i < way->segs.n; i++)
+		if (s[i].kind == INTERP_LINE && s[i].arg)
+			s[i].arg += (uint32_t)b->bits.n;
+	for (size_t i = 0; i < way->bits.n; i++) {
+		uint64_t *word = build_table_add(&b->bits);
+
+		if (!word)
+			return -ENOMEM;
+		*word = words[i];
+	}
+	return 0;
+}
+
+static int append(struct table *to, const struct table *from, size_t first)
+{
+	const char *at = from->at;
+
+	for (size_t i = first; i < from->n; i++) {
+		void *row = build_table_add(to);
+
+		if (!row)
+			return -ENOMEM;
+		memcpy(row, at + i * from->size, from->size);
+	}
+	return 0;
+}
+
+static void number_anew(const struct from *f, size_t nway)
+{
+	struct interp_build *b = f->b;
+	struct interp_seg *s = segs_of(b);
+	const size_t left_out = (size_t)f->last + 1;
+
+	b->length_mm = 0;
+	for (size_t i = 0; i < b->segs.n; i++) {
+		if (i >= nway && s[i].kind == INTERP_TIMED)
+			s[i].arg = (uint32_t)(s[i].arg - left_out + nway);
+		s[i].s_mm = b->length_mm;
+		b->length_mm += s[i].length_mm;
+	}
+}
+
+static void swap(struct table *a, struct table *b)
+{
+	const struct table t = *a;
+
+	*a = *b;
+	*b = t;
+}
+
+static int join(struct from *f)
+{
+	struct interp_build *b = f->b, *way = f->way;
+	const size_t nway = way->segs.n, left_out = (size_t)f->last + 1;
+	int err = take_bits(f);
+
+	if (err == 0)
+		err = append(&way->segs, &b->segs, left_out);
+	/* The last node of the way is the first of the rest. */
+	if (err == 0)
+		err = append(&way->nodes, &b->nodes,
+			     (left_out + 1) * b->naxes);
+	if (err < 0)
+		return err;
+	f->entry->way_mm = way->length_mm;
+	swap(&b->segs, &way->segs);
+	swap(&b->nodes, &way->nodes);
+	memcpy(b->first, way->first, sizeof(b->first));
+	number_anew(f, nway);
+	return 0;
+}
+
+int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
+		      struct interp_build_entry *ret, struct interp_diag *diag)
+{
+	struct from f = { .b = b, .o = o, .entry = ret, .diag = diag };
+	const struct interp_seg *s;
+	int err = interp_build_flush(b, diag);
+
+	*ret = (struct interp_build_entry) { .npassed = 0 };
+	if (err < 0)
+		return err;
+	f.far = find_far(b, o->far_mm);
+	f.last = find_last(b, f.far);
+	err = check(&f);
+	if (err < 0)
+		return err;
+	s = segs_of(b);
+	ret->line = s[f.far].line;
+	ret->from_mm = s[f.last].s_mm + s[f.last].length_mm;
+	entry_of(&f, ret->entry_mm);
+	err = make_way(&f);
+	forget_all(&f);
+	if (err == 0)
+		err = join(&f);
+	interp_build_destroy(f.way);
+	return err;
+}

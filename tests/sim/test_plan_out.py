@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What edm-plan writes: whole or not at all, and what its reader takes it for."""
+import resource
+import signal
+import subprocess
+
+import pytest
+
+from test_plan import B, TOOL, box, plan, write_stl
+
+CHAIN = """[machine]
+backend = sim
+[axis.C]
+travel_min_mm = -2000
+travel_max_mm = 2000
+[axis.U]
+present = no
+[axis.V]
+present = no
+[kinematics]
+chain = X Y Z C
+"""
+
+
+@pytest.fixture
+def bodies(tmp_path):
+    write_stl(tmp_path / "part.stl", box((30, 30, -5), (40, 40, 5)))
+    write_stl(tmp_path / "electrode.stl", TOOL)
+    (tmp_path / "m.ini").write_text(CHAIN)
+    (tmp_path / "p.ngc").write_text("G21 G90\nG0 X1\nG1 X5 Y5 C60. F60\n"
+                                    "X10 C120.\nM2\n")
+    return tmp_path
+
+
+def args(d, *more):
+    return ["--part", d / "part.stl", "--electrode", d / "electrode.stl",
+            "--machine", d / "m.ini", "--chord", "0", "--clearance", "0.1",
+            *more]
+
+
+def test_a_turn_of_whole_degrees_is_no_condition(bodies):
+    out = bodies / "w.ngc"
+    r = plan(*args(bodies, "--output", out, bodies / "p.ngc"))
+    assert r.returncode == 0, r.stderr
+    assert "C120." in out.read_text()
+    s = subprocess.run([B / "edmsim", "--check", "--machine",
+                        bodies / "m.ini", out], capture_output=True, text=True)
+    assert s.returncode == 0, s.stderr
+
+
+@pytest.mark.parametrize("name", ["part.stl", "electrode.stl", "m.ini",
+                                  "p.ngc"])
+def test_an_output_is_none_of_the_inputs(bodies, name):
+    was = (bodies / name).read_bytes()
+    (bodies / "link").symlink_to(bodies / name)
+    for out in (bodies / name, bodies / "link"):
+        r = plan(*args(bodies, "--output", out, bodies / "p.ngc"))
+        assert r.returncode == 64 and "another file" in r.stderr
+    r = plan(*args(bodies, "--output", bodies / "w.ngc", "--report",
+                   bodies / name, bodies / "p.ngc"))
+    assert r.returncode == 64 and not (bodies / "w.ngc").exists()
+    assert (bodies / name).read_bytes() == was
+
+
+def test_a_folder_that_is_not_there_is_said_before_all_else(bodies):
+    r = plan(*args(bodies, "--output", bodies / "w.ngc", "--view",
+                   bodies / "no" / "v.html", bodies / "none.ngc"))
+    assert r.returncode == 73 and "v.html" in r.stderr
+    assert "none.ngc" not in r.stderr
+
+
+def test_a_disk_that_is_full_leaves_no_half_program(bodies):
+    out = bodies / "w.ngc"
+    out.write_text("(as it was)\n")
+
+    def full():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (50, 50))
+
+    r = subprocess.run([B / "edm-plan", *map(str, args(
+        bodies, "--quiet", "--output", out, bodies / "p.ngc"))],
+        capture_output=True, text=True, preexec_fn=full)
+    assert r.returncode in (73, 74) and "w.ngc" in r.stderr
+    assert out.read_text() == "(as it was)\n"
+    assert sorted(p.name for p in bodies.iterdir()) == [
+        "electrode.stl", "m.ini", "p.ngc", "part.stl", "w.ngc"]
+
+
+@pytest.mark.parametrize("turn, free", [(-720, False), (-180, True),
+                                        (200, True), (720, False)])
+def test_a_turn_of_more_than_one_turn_is_followed(bodies, turn, free):
+    """A post at 298 degrees, passed at that angle alone."""
+    write_stl(bodies / "part.stl", box((8.8, -19.5, -1), (10.8, -17.5, 1)))
+    write_stl(bodies / "electrode.stl", box((20, -1, -1), (22, 1, 1)))
+    # Less than a turn passes it on the way down from 0 only beyond -50.
+    start = 5 if turn > 0 else -75
+    (bodies / "p.ngc").write_text("G21 G90\nG0 Z9\nC%d.\nZ0\nG1 C%d. F600\n"
+                                  "M2\n" % (start, turn))
+    r = plan(*args(bodies, "--check", bodies / "p.ngc"))
+    assert (r.returncode == 0) == free, r.stdout + r.stderr
+    if not free:
+        assert "p.ngc:5: not free" in r.stdout

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_build_from.c - a program that begins inside is the same from there on
+ *
+ * Random texts of every dialect, by every strategy, from a random place, with
+ * the axes anywhere.  The pulses behind the way in are those of the whole
+ * program.  The seed is printed; EDM_RUNS is how many texts are tried.
+ */
+#include "compile_help.h"
+#include "random_compile.h"
+#include "seed.h"
+
+#include "interp/build_from.h"
+#include "interp/cursor.h"
+
+#define RUNS		150
+#define POINTS_MAX	400000
+
+static uint64_t seed;
+
+static const struct interp_machine machine = {
+	.present = 0xff,
+	.axis = {
+		{ 0.001, -200, 200, 100, 500, 1e5 }, { 0.001, -200, 200, 100, 500, 1e5 },
+		{ 0.001, -200, 200, 100, 500, 1e5 }, { 0.001, -200, 200, 100, 500, 1e5 },
+		{ 0.001, -200, 200, 100, 500, 1e5 }, { 0.001, -200, 200, 100, 500, 1e5 },
+		{ 0.001, -200, 200, 100, 500, 1e5 }, { 0.001, -200, 200, 100, 500, 1e5 },
+	},
+};
+
+/* Where every lattice point is, and every action: as one number. */
+struct tale {
+	uint64_t hash;
+	uint32_t points, actions;
+	int32_t end[INTERP_NAXES];
+};
+
+static void mix(struct tale *t, uint64_t word)
+{
+	t->hash = (t->hash ^ word) * 0x100000001b3ull;
+}
+
+static bool is_done_again(const struct interp_seg *s)
+{
+	return s->kind != INTERP_DWELL || s->arg != 0;
+}
+
+static struct tale walk(const struct interp_program *p, uint32_t from)
+{
+	struct tale t = { .hash = 1469598103934665603ull };
+	struct interp_cursor c;
+	enum interp_step what;
+
+	assert_int_equal(interp_cursor_init(&c, p), 0);
+	assert_int_equal(interp_cursor_seek_end(&c, from), 0);
+	interp_cursor_aim(&c, 1e12);
+	while ((what = interp_cursor_step(&c)) != INTERP_AT_END &&
+	       t.points < POINTS_MAX) {
+		if (what == INTERP_AT_ACTION) {
+			interp_cursor_pass(&c);
+			interp_cursor_aim(&c, 1e12);
+			t.actions += is_done_again(&c.seg);
+			continue;
+		}
+		if (what == INTERP_ARRIVED) {	/* too early: many nodes */
+			interp_cursor_aim(&c, 1e12);
+			continue;
+		}
+		assert_int_equal(what, INTERP_MOVED);
+		for (int i = 0; i < INTERP_NAXES; i++)
+			mix(&t, (uint64_t)(uint32_t)c.pos[i]);
+		mix(&t, c.seg.line);
+		mix(&t, c.seg.cond);
+		t.points++;
+	}
+	memcpy(t.end, c.pos, sizeof(t.end));
+	return t;
+}
+
+/* Of the way in: it starts here, ends there, and is positioned. */
+static uint32_t check_way(const struct interp_program *p,
+			  const struct interp_build_from *o,
+			  const struct interp_build_entry *e)
+{
+	struct interp_cursor c;
+	uint32_t i = 1;
+
+	for (int k = 0; k < INTERP_NAXES; k++)
+		assert_int_equal(p->head->start_pulses[k],
+				 lround(o->now_mm[k] * 1000));
+	while (p->segs[i].length_mm > 0 && p->segs[i].s_mm < e->way_mm)
+		assert_int_equal(p->segs[i++].flags, INTERP_SEG_RAPID);
+	while (i < p->head->nsegs && p->segs[i].line == e->line &&
+	       p->segs[i].kind == INTERP_AUX)
+		i++;
+	assert_int_equal(interp_cursor_init(&c, p), 0);
+	assert_int_equal(interp_cursor_seek_end(&c, i - 1), 0);
+	for (int k = 0; k < INTERP_NAXES; k++)
+		assert_int_equal(c.pos[k], (int32_t)floor(e->entry_mm[k] * 1000 +
+						0.5 + 1e-9));
+	return i - 1;
+}
+
+static uint32_t first_left(const struct interp_program *p, double from_mm)
+{
+	uint32_t last = 0;
+
+	for (uint32_t i = 0; i < p->head->nsegs; i++)
+		if (p->segs[i].length_mm > 0 &&
+		    p->segs[i].flags & INTERP_SEG_RAPID &&
+		    p->segs[i].s_mm + p->segs[i].length_mm <= from_mm + 1e-12)
+			last = i;
+	return last;
+}
+
+/* Return: was it taken? */
+static bool try_one(const struct script *text, const char *dialect,
+		    enum interp_strategy how, uint64_t *s)
+{
+	const struct interp_build_options bo = {
+		.machine = &machine, .strategy = how, .tolerance_milli = 2000,
+		.chord_error_mm = 0.001, .period_s = 1e-3,
+		.fit_mm = rnd(text->seed) % 4 ? 0 : 0.01,
+	};
+	struct interp_build *whole = random_build(text, dialect, &bo), *part;
+	struct interp_build_from o = { .up = rnd(s) % 2 ? INTERP_Z : -1 };
+	struct interp_build_entry e;
+	struct interp_diag d = { 0 };
+	struct made a, b;
+	struct tale was, is;
+	uint32_t first;
+
+	if (!whole)
+		return false;
+	a = finish(whole);
+	o.far_mm = uniform(s, 0, 1.02 * a.p.head->length_mm);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		o.now_mm[i] = rnd(s) % 2 ? 0 : round(uniform(s, -9e3, 9e3)) / 1e3;
+	part = random_build(text, dialect, &bo);
+	assert_non_null(part);
+	if (interp_build_from(part, &o, &e, &d) != 0) {
+		assert_true(d.found[0] && d.wanted[0]);
+		interp_build_destroy(part);
+		free(a.block);
+		return false;
+	}
+	b = finish(part);
+	first = check_way(&b.p, &o, &e);
+	was = walk(&a.p, first_left(&a.p, e.from_mm));
+	is = walk(&b.p, first);
+	if (was.points < POINTS_MAX) {
+		assert_int_equal(is.points, was.points);
+		assert_true(is.hash == was.hash);
+		assert_memory_equal(is.end, was.end, sizeof(is.end));
+		assert_true(is.actions <= was.actions);
+	}
+	assert_true(fabs(b.p.head->length_mm - e.way_mm -
+			 (a.p.head->length_mm - e.from_mm)) < 1e-6);
+	free(a.block);
+	free(b.block);
+	return true;
+}
+
+static void from_a_place_on_it_is_the_same(void **st)
+{
+	const char *given = getenv("EDM_RUNS");
+	const int runs = given ? atoi(given) : RUNS;
+	int taken = 0;
+
+	(void)st;
+	for (int i = 0; i < runs; i++) {
+		uint64_t s = seed + (uint64_t)i * 1000003;
+		static struct script text;
+		const char *dialect = random_text(&text, &s);
+
+		for (int how = 0; how < INTERP_NSTRATEGIES; how++)
+			taken += try_one(&text, dialect,
+					 (enum interp_strategy)how, &s);
+	}
+	print_message("    %d of %d programs were taken\n", taken,
+		      runs * INTERP_NSTRATEGIES);
+	assert_true(taken > runs);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(from_a_place_on_it_is_the_same),
+	};
+
+	seed = seed_take();
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
