@@ -187,7 +187,7 @@ static bool on_command(struct jobs_lcm *w, const struct origin *o)
 		.key = s->key, .client = m.client, .seq = m.seq, .verb = m.verb,
 		.job = m.job, .text = m.text, .arg = m.arg,
 		.by = o->packet->key, .from = o->packet->from,
-		.age_us = trust_age_us(w->trust, s, now_us()),
+		.signed_us = trust_signed_us(w->trust, s),
 	};
 	if (is_taken(w, o, m.client, m.seq))
 		w->handlers.command(w->handlers.arg, &c);
@@ -236,6 +236,7 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 		.bytes = m.bytes, .sha256 = m.sha256, .chunk = m.chunk,
 		.chunks = m.chunks, .offset = m.offset, .hold = m.hold != 0,
 		.size = (uint32_t)m.size, .data = m.data,
+		.signed_us = trust_signed_us(w->trust, s),
 		.by = o->packet->key, .from = o->packet->from,
 	};
 	if (is_taken(w, o, m.client, m.seq))
@@ -310,6 +311,11 @@ void jobs_lcm_close(struct jobs_lcm *w)
 		lcm_destroy(w->lcm);
 	udpm_close(w->in);
 	free(w);
+}
+
+bool jobs_lcm_is_late(int64_t signed_us)
+{
+	return now_us() - signed_us > JOBS_LCM_LATE_US;
 }
 
 int jobs_lcm_fd(const struct jobs_lcm *w)

@@ -26,6 +26,9 @@
 #define JOBS_LCM_ID_MAX	64		/* with its NUL */
 #define JOBS_LCM_CHUNK_MAX	32768
 #define JOBS_LCM_AGAIN	100		/* ack code: sign it again */
+/* What sets something in motion is taken so long after it was signed: who asked
+ * may have given up since. */
+#define JOBS_LCM_LATE_US	1500000
 
 struct jobs_lcm;
 
@@ -38,7 +41,7 @@ struct jobs_lcm_command {
 	const struct trust_key *by;	/* the same key, in the table */
 	const char *from;		/* address and port */
 	uint64_t act;			/* its id, act.h; 0: none */
-	int64_t age_us;			/* since it was signed */
+	int64_t signed_us;		/* when, by our clock */
 };
 
 struct jobs_lcm_chunk {
@@ -53,6 +56,7 @@ struct jobs_lcm_chunk {
 	bool hold;
 	uint32_t size;
 	const uint8_t *data;
+	int64_t signed_us;		/* when, by our clock */
 	const struct trust_key *by;
 	const char *from;
 };
@@ -106,6 +110,11 @@ int jobs_lcm_fd(const struct jobs_lcm *w);
 
 /** jobs_lcm_handle() - take one message, if it may be taken. */
 void jobs_lcm_handle(struct jobs_lcm *w);
+
+/** jobs_lcm_is_late() - too long ago to set something in motion? */
+bool jobs_lcm_is_late(int64_t signed_us);
+
+#define JOBS_LCM_LATE_TEXT "it came too late to be done; sign it again"
 
 void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a);
 void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e);

@@ -272,6 +272,11 @@ void submit_take(void *arg, const struct jobs_lcm_chunk *c)
 			.code = EX_NOPERM,
 			.reason = "a job wants a key of role operator",
 		};
+	} else if (jobs_lcm_is_late(c->signed_us)) {
+		/* The last one may set the job in motion. */
+		answer = (struct upload_answer) {
+			.code = JOBS_LCM_AGAIN, .reason = JOBS_LCM_LATE_TEXT,
+		};
 	} else if (upload_check(c, &answer)) {
 		if (answer_known(j, c))
 			return;

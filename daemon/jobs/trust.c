@@ -68,10 +68,9 @@ static int64_t clock_of(const struct trust *t, int64_t now_us)
 	return now_us - t->begun_us;
 }
 
-int64_t trust_age_us(const struct trust *t, const struct seal *s,
-		     int64_t now_us)
+int64_t trust_signed_us(const struct trust *t, const struct seal *s)
 {
-	return clock_of(t, now_us) - s->count;
+	return t->begun_us + s->count;
 }
 
 int64_t trust_count(struct trust *t, int64_t now_us)

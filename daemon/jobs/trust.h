@@ -116,11 +116,10 @@ enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
 			     const char *client, int64_t now_us);
 
 /**
- * trust_age_us() - how long ago the client signed it, as far as the client
- * knows the clock of the service.
+ * trust_signed_us() - when the client signed it, by our clock, as far as the
+ * client knows that.
  */
-int64_t trust_age_us(const struct trust *t, const struct seal *s,
-		     int64_t now_us);
+int64_t trust_signed_us(const struct trust *t, const struct seal *s);
 
 /** trust_refuse() - count it, and write it to the log if that is due. */
 void trust_refuse(struct trust *t, enum trust_cause cause, const char *who,

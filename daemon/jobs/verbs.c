@@ -208,6 +208,17 @@ static bool may_start(struct jobs *j, const struct verb *v)
 	return err == 0 && committed == 0;
 }
 
+/*
+ * Who asked may have given up since, and nothing moves without somebody who
+ * waits for it.  A client that still waits signs it again.  What ends a motion is
+ * never too late.
+ */
+static bool is_late(const struct verb *v, const struct jobs_lcm_command *c)
+{
+	return v && v->kind == VERB_ACTS && v->machine != VERB_OWN &&
+	       jobs_lcm_is_late(c->signed_us);
+}
+
 static void ask_machine(struct jobs *j, const struct verb *v,
 			const struct jobs_lcm_command *c, uint32_t arg)
 {
@@ -228,6 +239,11 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 			 "job begins when that can be stored, one that has "
 			 "begun goes on", store_why(j->store));
 		verbs_answer(j, c, EX_IOERR, reason);
+		return;
+	}
+	/* The disk may have taken its time over the promise. */
+	if (is_late(v, c)) {
+		on_answer(a, SHM_LATE);
 		return;
 	}
 	err = link_send(&j->link, &m, jobs_now_us());
@@ -389,7 +405,7 @@ static void verb_jog_on(struct jobs *j, const struct verb *v,
 		return;
 	}
 	axis = axis_of(j, c, n);
-	if (axis >= 0 && c->age_us > SIGN_US)
+	if (axis >= 0 && jobs_now_us() - c->signed_us > SIGN_US)
 		verbs_answer(j, c, EX_UNAVAILABLE, "this sign of a press came "
 			     "too late; press again");
 	else if (axis >= 0)
@@ -601,6 +617,12 @@ void verbs_take(void *arg, const struct jobs_lcm_command *c)
 
 	if (is_repeat(j, c))
 		return;
+	if (is_late(v, c)) {
+		jobs_lcm_ack(j->lcm, &(struct jobs_lcm_ack) {
+			.key = c->key, .client = c->client, .seq = c->seq,
+			.code = JOBS_LCM_AGAIN, .reason = JOBS_LCM_LATE_TEXT });
+		return;
+	}
 	reply_expect(&j->replies, c);
 	if (!v)
 		refuse_verb(j, c);

@@ -12,6 +12,7 @@ import signal
 import socket
 import struct
 import subprocess
+import time
 
 import pytest
 import rig
@@ -58,6 +59,33 @@ def test_a_command_that_edmd_finds_too_late_is_not_done(machine):
     s = c.status_where(lambda s: s.daemon == "ok")
     c.hear(1.0)
     assert c.status().pos_mm[0] == s.pos_mm[0] == 0
+
+
+def test_what_nobody_waits_for_any_more_sets_nothing_in_motion(machine):
+    """edmd-jobs stands still, as over a disk that is slow; who asked for a jog
+    and sent a job has gone when it goes on."""
+    c = machine.client
+    c.status()
+    machine.jobs.send_signal(signal.SIGSTOP)
+    jog = c.send_command("jog", text="X", arg=3.0)
+    chunks = c.chunks(QUICK_JOB, "job")
+    c.send(chunks)
+    time.sleep(2)
+    machine.jobs.send_signal(signal.SIGCONT)
+    assert c.heard(lambda: c.acks_to(jog))[0].code == 100
+    assert c.heard(lambda: c.acks_to(chunks[0].seq))[0].code == 100
+    c.hear(1)
+    s = c.status()
+    assert (s.pos_mm[0], s.state, s.queue_len) == (0, "idle", 0)
+    # Who still waits signs it again, and what ends a motion is done anyway.
+    c.send_command("jog", text="X", arg=3.0, seq=jog)
+    assert c.heard(lambda: [a for a in c.acks_to(jog) if a.code == 0])
+    c.status_where(lambda s: s.pos_mm[0] == 3)
+    machine.jobs.send_signal(signal.SIGSTOP)
+    estop = c.send_command("estop")
+    time.sleep(2)
+    machine.jobs.send_signal(signal.SIGCONT)
+    assert c.heard(lambda: c.acks_to(estop))[0].code == 0
 
 
 def test_a_start_with_a_fault_latched_is_refused_for_good(machine):
