@@ -120,7 +120,7 @@ static struct made touch(int axis)
 	};
 	const struct interp_build_word w = {
 		.line = 1, .feed_mm_s = 60, .rapid = true,
-		.ends = INTERP_SEG_TOUCH,
+		.ends = INTERP_SEG_PROBE,
 	};
 	struct interp_build *b = interp_build_create(&o);
 	double end[INTERP_NAXES] = { 0 };
