@@ -46,19 +46,6 @@ static double left_mm(const struct cycle *c)
 	return s->s_mm + s->length_mm - SHY_MM - place_mm(c);
 }
 
-bool probe_in_travel(const struct cycle *c, int axis, int64_t pos)
-{
-	pos += c->probe.shift[axis];
-	return pos >= c->config.travel_min[axis] &&
-	       pos <= c->config.travel_max[axis];
-}
-
-void probe_target(struct cycle *c, const int32_t pos[INTERP_NAXES])
-{
-	for (int i = 0; i < INTERP_NAXES; i++)
-		c->out.target[i] = pos[i] + c->probe.shift[i];
-}
-
 /* Along which axis, and which way: 0 if along none. */
 static int axis_of(const struct cycle *c, int *ret_sign)
 {
