@@ -400,7 +400,8 @@ check:
 VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd can402)
 
 # A browser is driven in the tests' own process; LCM has one for itself.
-PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_page.py
+PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_login.py \
+	tests/system/test_panel_page.py
 
 # For somebody who changes code: most of what goes wrong, in 90 s.
 SLOW_UNITS = arcs cycle_random limits identify contouring taper \

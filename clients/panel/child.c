@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -93,6 +94,18 @@ static void limit(enum __rlimit_resource what, rlim_t most)
 	setrlimit(what, &l);
 }
 
+/* If memory ends, a child goes, and not the panel. */
+static void be_first_to_go(void)
+{
+	const int fd = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+
+	if (fd < 0)
+		return;
+	if (write(fd, "1000", 4) < 0)
+		_exit(127);
+	close(fd);
+}
+
 /* In the child: nothing but system calls, the panel has other threads. */
 static void become(const struct child_job *j, int out_fd)
 {
@@ -108,14 +121,19 @@ static void become(const struct child_job *j, int out_fd)
 	limit(RLIMIT_CPU, j->limit_s);
 	limit(RLIMIT_FSIZE, OUT_BYTES_MAX);
 	limit(RLIMIT_CORE, 0);
+	be_first_to_go();
 	setpgid(0, 0);
 	execvp(j->argv[0], (char *const *)(uintptr_t)j->argv);
 	_exit(127);
 }
 
-static struct child *free_one(struct children *c)
+/* The last ones are kept for what is small: a login must not wait behind
+ * programs that explode. */
+static struct child *free_one(struct children *c, bool large)
 {
-	for (int i = 0; i < CHILDREN_MAX; i++)
+	const int most = large ? CHILDREN_MAX - CHILDREN_KEPT : CHILDREN_MAX;
+
+	for (int i = 0; i < most; i++)
 		if (c->child[i].pid == 0)
 			return &c->child[i];
 	return NULL;
@@ -124,7 +142,7 @@ static struct child *free_one(struct children *c)
 int child_start(struct children *c, const struct child_job *j,
 		child_done_fn done, void *arg)
 {
-	struct child *n = free_one(c);
+	struct child *n = free_one(c, j->memory_bytes > 0);
 	int out_fd;
 	pid_t pid;
 

@@ -13,6 +13,7 @@
 #include <stddef.h>
 
 #define CHILDREN_MAX	6
+#define CHILDREN_KEPT	2	/* not for those with a limit of memory */
 
 struct children;
 

@@ -15,6 +15,7 @@
  * of this panel.
  */
 #include "panel.h"
+#include "plain.h"
 #include "reply.h"
 
 #include <arpa/inet.h>
@@ -30,6 +31,7 @@
 #define CHECK_S		30
 #define CHECK_BYTES	((size_t)1536 << 20)
 #define LOGIN_MAX	1024
+#define NAME_ROOM	320
 
 struct route {
 	const char *path;
@@ -87,14 +89,24 @@ bool http_is_ours(struct panel *p, struct lws *wsi, bool want_origin)
 	       strcasecmp(origin + strlen(scheme), host) == 0;
 }
 
+/* A browser sends its cookies to every port of a host, so another user's
+ * program on this host may have seen one. There it serves its own user alone.
+ */
 struct session *http_session(struct panel *p, struct lws *wsi)
 {
 	char cookie[1024];
+	struct session *s;
+	unsigned int uid;
 
 	if (lws_hdr_copy(wsi, cookie, sizeof(cookie),
 			 WSI_TOKEN_HTTP_COOKIE) <= 0)
 		return NULL;
-	return session_find(p->sessions, cookie);
+	s = session_find(p->sessions, cookie);
+	if (s && p->local &&
+	    (session_peer_uid(lws_get_socket_fd(wsi), &uid) < 0 ||
+	     uid != s->uid))
+		return NULL;
+	return s;
 }
 
 static bool has_token(struct request *r, const struct session *s)
@@ -119,7 +131,7 @@ static void peer_of(struct request *r, char to[SESSION_ADDRESS_MAX])
 /* What follows "KEY=" of the address; as it is if it is not there. */
 static bool read_arg(struct request *r, const char *key, char *to, size_t size)
 {
-	char room[320];
+	char room[NAME_ROOM];
 	const char *at = lws_get_urlarg_by_name(r->wsi, key, room,
 						sizeof(room));
 
@@ -151,7 +163,7 @@ static int get_session(struct request *r)
 	struct session *s = http_session(p, r->wsi);
 	char user[SESSION_USER_MAX], address[SESSION_ADDRESS_MAX];
 	enum role role = ROLE_VIEWER;
-	unsigned int uid;
+	unsigned int uid = SESSION_NOBODY;
 
 	if (s || !p->local)
 		return give_session(r, s);
@@ -159,7 +171,10 @@ static int get_session(struct request *r)
 	if (session_peer_uid(lws_get_socket_fd(r->wsi), &uid) == 0)
 		role = session_local_role(uid, p->local_role, user);
 	peer_of(r, address);
-	return give_session(r, session_begin(p->sessions, user, role, address));
+	s = session_begin(p->sessions, user, role, address);
+	if (s)
+		s->uid = uid;
+	return give_session(r, s);
 }
 
 static void on_verified(void *arg, int status, int out_fd)
@@ -167,6 +182,7 @@ static void on_verified(void *arg, int status, int out_fd)
 	struct request *r = arg;
 	struct panel *p = r->panel;
 	char address[SESSION_ADDRESS_MAX];
+	struct session *s;
 
 	close(out_fd);
 	peer_of(r, address);
@@ -180,8 +196,10 @@ static void on_verified(void *arg, int status, int out_fd)
 	session_try_ok(p->sessions, address);
 	panel_note(p, "%s: %s logged in as %s", address, r->user.name,
 		   role_name(r->user.role));
-	give_session(r, session_begin(p->sessions, r->user.name, r->user.role,
-				      address));
+	s = session_begin(p->sessions, r->user.name, r->user.role, address);
+	if (s)
+		snprintf(s->hash, sizeof(s->hash), "%s", r->user.hash);
+	give_session(r, s);
 }
 
 /* A hash no password fits, so that an unknown name takes as long. */
@@ -254,6 +272,7 @@ static int post_logout(struct request *r)
 
 	if (s)
 		session_end(s);
+	socket_drop_ended(r->panel);
 	return reply_json(r, 200, json_object());
 }
 
@@ -463,39 +482,49 @@ static int may_do(struct request *r, bool post)
 	return 0;
 }
 
-static void read_name(struct request *r)
+/* Return: is it a name that edmd-jobs takes? */
+static bool read_name(struct request *r)
 {
-	char hold[8] = "";
-	size_t n;
+	char hold[8] = "", name[NAME_ROOM] = "job.ngc";
 
-	snprintf(r->name, sizeof(r->name), "job.ngc");
-	read_arg(r, "name=", r->name, sizeof(r->name));
-	for (char *at = r->name; *at; at++)
-		if ((unsigned char)*at < ' ' || *at == 0x7f || *at == '/')
+	read_arg(r, "name=", name, sizeof(name));
+	for (char *at = name; *at; at++)
+		if (*at == '/')
 			*at = '_';
-	n = strlen(r->name);
-	/* Not in the middle of a character. */
-	while (n == sizeof(r->name) - 1 && n > 0 &&
-	       ((unsigned char)r->name[n - 1] & 0x80))
-		r->name[--n] = '\0';
 	read_arg(r, "hold=", hold, sizeof(hold));
 	r->hold = hold[0] == '1';
+	snprintf(r->name, sizeof(r->name), "%.63s", name);
+	/* lws does not tell one that is too long from none. */
+	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_URI_ARGS) >= NAME_ROOM)
+		return false;
+	return *name && strlen(name) < sizeof(r->name) && plain_is(name);
+}
+
+/* lws says it again, and serves nobody else meanwhile, as long as there are
+ * bytes behind the body.  No browser sends any before it has the answer. */
+static int end_body(struct request *r)
+{
+	if (r->whole)
+		return -1;
+	r->whole = true;
+	return r->has_body ? r->route->run(r) : 0;
 }
 
 static int open_body(struct request *r)
 {
-	char length[24] = "0";
+	char length[10] = "";
 
-	lws_hdr_copy(r->wsi, length, sizeof(length),
-		     WSI_TOKEN_HTTP_CONTENT_LENGTH);
-	if (strspn(length, "0123456789") != strlen(length) ||
-	    strlen(length) > 9 ||
+	/* Who comes behind another server must count its bytes as that does. */
+	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) >
+		    0 ||
+	    lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) <= 0)
+		return reply_refusal(r, 411, "a body of unknown length",
+				     "Content-Length");
+	if (lws_hdr_copy(r->wsi, length, sizeof(length),
+			 WSI_TOKEN_HTTP_CONTENT_LENGTH) <= 0 ||
+	    strspn(length, "0123456789") != strlen(length) ||
 	    strtoul(length, NULL, 10) > r->route->body_max)
 		return reply_refusal(r, 413, "too long", "at most 64 MiB");
-	/* Who comes behind another server must count its bytes as that does. */
-	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0)
-		return reply_refusal(r, 411, "a body in chunks",
-				     "Content-Length");
 	if (r->panel->bodies >= BODIES_MAX)
 		return reply_refusal(r, 503, "too many uploads at once",
 				     "try again");
@@ -504,8 +533,6 @@ static int open_body(struct request *r)
 		return reply_refusal(r, 503, "no room", "try again");
 	r->has_body = true;
 	r->panel->bodies++;
-	if (strtoul(length, NULL, 10) == 0)
-		return r->route->run(r);
 	lws_set_timeout(r->wsi, PENDING_TIMEOUT_HTTP_CONTENT, BODY_S);
 	return 0;
 }
@@ -524,6 +551,8 @@ static int take(struct request *r, const char *path)
 	const struct asset *asset;
 	int status;
 
+	if (!get && !post)
+		return reply_refusal(r, 405, "another method", reason_of(405));
 	r->route = route_of(path);
 	if (!r->route) {
 		asset = assets_find(r->panel->assets, path);
@@ -544,13 +573,16 @@ static int take(struct request *r, const char *path)
 	}
 	if (!post)
 		return r->route->run(r);
-	read_name(r);
+	if (!read_name(r))
+		return reply_refusal(r, 400, "this name does not fit", "1 to "
+				     "63 bytes of UTF-8 without characters of "
+				     "control or of the direction of writing");
 	return open_body(r);
 }
 
 static int take_body(struct request *r, const char *in, size_t len)
 {
-	if (!r->has_body || r->answered)
+	if (!r->has_body || r->whole)
 		return 0;
 	r->body_bytes += len;
 	if (r->body_bytes > r->route->body_max)
@@ -588,9 +620,7 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason,
 	case LWS_CALLBACK_HTTP_BODY:
 		return take_body(r, in, len);
 	case LWS_CALLBACK_HTTP_BODY_COMPLETION:
-		if (r->answered || !r->has_body)
-			return 0;
-		return r->route->run(r);
+		return end_body(r);
 	case LWS_CALLBACK_HTTP_WRITEABLE:
 		return reply_write(r);
 	case LWS_CALLBACK_CLOSED_HTTP:

@@ -92,6 +92,9 @@ size_t socket_browser_size(void);
 /** socket_tell_all() - the state of the machine, if something is new. */
 void socket_tell_all(struct panel *p);
 
+/** socket_drop_ended() - close those whose session has ended. */
+void socket_drop_ended(struct panel *p);
+
 /** socket_tell_event() - something happened. */
 void socket_tell_event(struct panel *p, const char *kind, const char *text);
 

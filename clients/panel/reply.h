@@ -23,7 +23,7 @@ struct request {
 	struct session_user user;	/* who logs in */
 	char id[33], name[64];
 	bool hold;
-	bool has_body;
+	bool has_body, whole;		/* a text; all of it is there */
 	int body_fd;
 	size_t body_bytes;
 	/* The answer. */

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 #define IDLE_S		3600		/* without a browser that holds it */
@@ -27,6 +28,7 @@ struct sessions {
 	struct session session[SESSIONS_MAX];
 	struct place place[PLACES];
 	struct place all;
+	struct stat users;		/* the file, as it was last looked at */
 };
 
 static int64_t now_s(void)
@@ -79,6 +81,33 @@ static bool is_over(const struct session *s, int64_t at_s)
 	if (at_s - s->begun_s > LONGEST_S)
 		return true;
 	return s->sockets == 0 && at_s - s->used_s > IDLE_S;
+}
+
+static bool is_same_file(const struct stat *a, const struct stat *b)
+{
+	return a->st_ino == b->st_ino && a->st_size == b->st_size &&
+	       a->st_mtim.tv_sec == b->st_mtim.tv_sec &&
+	       a->st_mtim.tv_nsec == b->st_mtim.tv_nsec;
+}
+
+void sessions_look(struct sessions *s, const char *path)
+{
+	struct stat now = { .st_ino = 0 };
+	struct session_user u;
+
+	if (stat(path, &now) < 0)
+		memset(&now, 0, sizeof(now));
+	if (is_same_file(&now, &s->users))
+		return;
+	s->users = now;
+	for (int i = 0; i < SESSIONS_MAX; i++) {
+		struct session *t = &s->session[i];
+
+		if (t->hash[0] && (session_user_find(path, t->user, &u) < 0 ||
+				   u.role != t->role ||
+				   strcmp(u.hash, t->hash) != 0))
+			session_end(t);
+	}
 }
 
 static struct session *make_room(struct sessions *s)

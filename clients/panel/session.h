@@ -27,6 +27,7 @@ enum role { ROLE_NONE, ROLE_VIEWER, ROLE_OPERATOR, ROLE_SERVICE };
 #define SESSION_ID_BYTES	65	/* hex, with its NUL */
 #define SESSION_HASH_MAX	160
 #define SESSION_ADDRESS_MAX	48
+#define SESSION_NOBODY		(~0u)
 
 struct session {
 	char id[SESSION_ID_BYTES];	/* of the cookie; "": free */
@@ -34,6 +35,8 @@ struct session {
 	char user[SESSION_USER_MAX];
 	char address[SESSION_ADDRESS_MAX];
 	enum role role;
+	unsigned int uid;		/* of this host, or SESSION_NOBODY */
+	char hash[SESSION_HASH_MAX];	/* as it was at the login; "": none */
 	int sockets;			/* browsers that hold it open */
 	int64_t begun_s, used_s;
 };
@@ -63,6 +66,10 @@ struct session *session_by_id(struct sessions *s, const char *id);
 
 /** session_end() - forget it. */
 void session_end(struct session *session);
+
+/** sessions_look() - if the file of users @path was changed, end the sessions of
+ *  those whose role or password it no longer has. */
+void sessions_look(struct sessions *s, const char *path);
 
 /** session_token_ok() - compares in a time that tells nothing. */
 bool session_token_ok(const struct session *session, const char *token);

@@ -15,6 +15,7 @@
 
 #define MESSAGE_MAX	65536		/* of a request */
 #define ANSWERS_MAX	(2u << 20)	/* bytes that wait for a browser */
+#define LOOK_EVERY	10		/* tellings: are the sessions over? */
 #define RATE_PER_S	60.0		/* requests of a browser */
 #define RATE_BURST	120.0
 #define ADDRESS_MAX	64		/* browsers of one address, not local */
@@ -71,6 +72,19 @@ struct session *socket_session(struct browser *b)
 
 /* -- Out ------------------------------------------------------------------ */
 
+static void drop(struct browser *b)
+{
+	lws_set_timeout(b->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT,
+			LWS_TO_KILL_ASYNC);
+}
+
+void socket_drop_ended(struct panel *p)
+{
+	for (struct browser *b = p->browsers; b; b = b->next)
+		if (!socket_session(b))
+			drop(b);
+}
+
 static void queue_text(struct browser *b, const char *text)
 {
 	const size_t bytes = strlen(text);
@@ -78,8 +92,7 @@ static void queue_text(struct browser *b, const char *text)
 
 	if (b->waiting + bytes > ANSWERS_MAX) {
 		/* It asks and does not read. */
-		lws_set_timeout(b->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT,
-				LWS_TO_KILL_ASYNC);
+		drop(b);
 		return;
 	}
 	a = malloc(sizeof(*a) + LWS_PRE + bytes);
@@ -224,6 +237,10 @@ void socket_tell_all(struct panel *p)
 	free(p->delta);
 	p->delta = text;
 	p->tellings++;
+	if (p->tellings % LOOK_EVERY == 0) {
+		sessions_look(p->sessions, p->config.panel.users);
+		socket_drop_ended(p);
+	}
 	for (struct browser *b = p->browsers; b; b = b->next)
 		lws_callback_on_writable(b->wsi);
 }

@@ -10,6 +10,7 @@
 #include "values.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,7 @@
 #define TEXT_MAX	(4u << 20)	/* of what a child says */
 #define PAST_SHARE	0.2		/* of the time, for the past */
 #define PAST_BURST_S	0.5
+#define NUMBER		0x100u		/* it needs arg */
 
 struct verb {
 	const char *name;
@@ -29,7 +31,7 @@ struct verb {
 		    const json_t *o);
 	const char *asks;		/* of edmd-jobs; NULL: its own name */
 	bool act;			/* it does something: journal it */
-	unsigned int flags;		/* ACT_* */
+	unsigned int flags;		/* ACT_*, NUMBER */
 };
 
 /* What was asked for, and is not answered yet. */
@@ -44,11 +46,30 @@ struct pending {
 
 static struct pending *all;
 
+/* Of what is there, a word is a short text, and a number is a number or null.
+ * Something else must not pass for nothing: home with no axis homes all. */
+static bool is_fit(const struct verb *v, const json_t *o)
+{
+	static const char *const words[] = { "job", "text" };
+	const json_t *arg = json_object_get(o, "arg");
+
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
+		const json_t *w = json_object_get(o, words[i]);
+
+		if (w && (!json_is_string(w) ||
+			  json_string_length(w) >= ACT_WORD_MAX))
+			return false;
+	}
+	if (!arg)
+		return !(v->flags & NUMBER);
+	return json_is_number(arg) || json_is_null(arg);
+}
+
 static const char *text_of(const json_t *o, const char *key)
 {
 	const char *s = json_string_value(json_object_get(o, key));
 
-	return s && strlen(s) < ACT_WORD_MAX ? s : "";
+	return s ? s : "";
 }
 
 static double number_of(const json_t *o, const char *key)
@@ -234,29 +255,54 @@ static json_t *read_said(const char *text)
 	return rows;
 }
 
-static void on_said(void *arg, int status, int out_fd)
+static void tell_said(struct pending *p, int status, const char *text)
 {
-	struct pending *p = arg;
-	char *text = child_read(out_fd, TEXT_MAX, NULL);
-
-	close(out_fd);
-	if (p->browser && text && status < 64)
+	if (!p->browser)
+		return;
+	if (text && status < 64)
 		socket_answer(p->browser, p->n, 0, "done", read_said(text));
-	else if (p->browser)
+	else
 		refuse(p->browser, p->n, EX_UNAVAILABLE, status == 127 ?
 		       "the program that tells it is not installed" :
 		       "the program that tells it failed");
-	free(text);
-	unpend(p);
 }
 
+/* To all who asked for it meanwhile. */
+static void on_said(void *arg, int status, int out_fd)
+{
+	const struct verb *verb = arg;
+	char *text = child_read(out_fd, TEXT_MAX, NULL);
+	struct pending *next;
+
+	close(out_fd);
+	for (struct pending *p = all; p; p = next) {
+		next = p->next;
+		if (p->verb != verb)
+			continue;
+		tell_said(p, status, text);
+		unpend(p);
+	}
+	free(text);
+}
+
+static bool is_under_way(const struct verb *v)
+{
+	for (const struct pending *p = all; p; p = p->next)
+		if (p->verb == v)
+			return true;
+	return false;
+}
+
+/* A program runs once, however many ask what it says. */
 static void say(struct browser *b, const struct verb *v, int64_t n,
 		const char *const argv[])
 {
 	const struct child_job j = { .argv = argv, .in_fd = -1, .limit_s = 15 };
+	const bool runs = is_under_way(v);
 	struct pending *p = pend(b, v, n);
 
-	if (p && child_start(socket_panel(b)->children, &j, on_said, p) == 0)
+	if (p && (runs || child_start(socket_panel(b)->children, &j, on_said,
+				      (void *)(uintptr_t)v) == 0))
 		return;
 	if (p)
 		unpend(p);
@@ -334,17 +380,17 @@ static const struct verb verbs[] = {
 	{ "hold",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "resume",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "stop",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "retract",  ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "step",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true, ACT_ONCE },
-	{ "press",    ROLE_OPERATOR, run_press, NULL, false, 0 },
+	{ "retract",  ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
+	{ "step",     ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
+	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true, ACT_ONCE | NUMBER },
+	{ "press",    ROLE_OPERATOR, run_press, NULL, false, NUMBER },
 	{ "home",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "override", ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "override", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
 	{ "estop",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "reset",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "set",      ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "set",      ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
 	{ "remove",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "move",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
+	{ "move",     ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
 	{ "text",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "queue",    ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "show",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
@@ -372,6 +418,11 @@ void verbs_do(struct browser *b, const json_t *o)
 	for (size_t i = 0; i < NVERBS; i++) {
 		if (strcmp(verbs[i].name, name) != 0)
 			continue;
+		if (!is_fit(&verbs[i], o)) {
+			refuse(b, n, EX_DATAERR, "job and text are words of "
+			       "less than 64 bytes, arg is a number");
+			return;
+		}
 		if (s->role >= verbs[i].role) {
 			verbs[i].run(b, &verbs[i], n, o);
 			return;

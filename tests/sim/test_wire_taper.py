@@ -179,9 +179,11 @@ class Cone:
             .replace(f"{side} H1", f"{side} H1 {word} A{self.deg}")
 
     def above(self):
-        """The outline on the second plane, but for its corners."""
+        """The outline on the second plane, or less than it: about outer
+        corners it may reach farther."""
         c, by = self.contour, self.slope * HEIGHT
         corners = shapely.points(np.asarray(c.poly.exterior.coords))
+        far = 0 if self.toward else 1.5 * by
         ret = []
         for ring in ways_of(c.poly, by, c.inside == self.toward):
             pts = shapely.points(np.asarray(shapely.segmentize(
@@ -189,7 +191,7 @@ class Cone:
             tree = shapely.STRtree(corners)
             off = tree.query_nearest(pts, all_matches=False,
                                      return_distance=True)[1]
-            ret.append(pts[off > by + 5 * UM])
+            ret.append(pts[off > far])
         return np.concatenate(ret) if ret else np.array([])
 
 
@@ -209,8 +211,10 @@ def test_a_taper_all_round_keeps_off_on_both_planes():
         at = planes(rows_of(k.text))
         for plane, outline in enumerate(
                 [[c.poly.exterior], k.above()]):
+            if not len(outline):
+                continue
             on = at[plane]
-            on = on[(on[:, 0] > 3) & (on[:, 0] <= last + 1)][::11, 1:]
+            on = on[(on[:, 0] > 4) & (on[:, 0] <= last + 1)][::11, 1:]
             near = shapely.STRtree(outline).query_nearest(
                 shapely.points(on), all_matches=False, return_distance=True)
             worst = max(worst, k.wire - near[1].min())

@@ -236,7 +236,7 @@ def test_a_session_that_was_ended_is_over(p, me):
     with me.live() as live:
         live.take()
         assert me.post("/api/logout")[0] == 200
-        live.ws.send(json.dumps({"n": 1, "token": me.token, "do": "queue"}))
+        # Nor is it told anything more.
         with pytest.raises(ConnectionClosed):
             while True:
                 live.take()
@@ -254,11 +254,13 @@ def test_no_path_leads_out_of_the_page(p, path):
     assert b"root:" not in got and b"[machine]" not in got
 
 
+@pytest.mark.parametrize("path", ["/api/jobs", "/api/session", "/"])
 @pytest.mark.parametrize("method", ["PUT", "DELETE", "OPTIONS", "TRACE",
-                                    "PATCH", "CONNECT"])
-def test_other_methods_do_nothing(p, me, method):
-    got = p.raw(f"{method} /api/jobs HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
-                f"Cookie: {me.cookie}\r\nConnection: close\r\n\r\n".encode(), timeout=4)
+                                    "PATCH", "CONNECT", "HEAD"])
+def test_other_methods_do_nothing(p, me, method, path):
+    got = p.raw(f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
+                f"Cookie: {me.cookie}\r\nConnection: close\r\n\r\n".encode(),
+                timeout=2 if method == "CONNECT" else 15)
     assert b" 200 " not in got.split(b"\r\n")[0]
     assert p.listens()
 
@@ -277,6 +279,37 @@ def test_a_body_in_chunks_is_refused(p, me):
                 f"{head}Transfer-Encoding: chunked\r\n\r\n"
                 "5\r\nG21\r\n\r\n0\r\n\r\n".encode(), timeout=3)
     assert b" 411 " in got.split(b"\r\n")[0], got[:200]
+
+
+@pytest.mark.parametrize("length", [
+    "", "Content-Length: -1\r\n", "Content-Length: 0x9\r\n",
+    f"Content-Length: {'9' * 40}\r\n", f"Content-Length: {'0' * 40}9\r\n",
+    "Content-Length: 9, 9\r\n"])
+def test_a_body_of_unknown_length_is_refused(p, me, length):
+    head = "".join(f"{k}: {v}\r\n" for k, v in me.headers().items())
+    got = p.raw(f"POST /api/check HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
+                f"{head}{length}\r\nG1 X1 F5\n".encode())
+    assert got.split(b" ")[1] in (b"411", b"413"), got[:200]
+    assert got.count(b"HTTP/1.1") == 1
+
+
+@pytest.mark.parametrize("path, body, behind", [
+    ("/api/check", panel.JOB, b"\n"), ("/api/login", b"{}", b"y" * 5000),
+    ("/api/nothing", b"x", b"y")])
+def test_bytes_behind_a_body_end_the_connection_alone(p, me, path, body,
+                                                      behind):
+    head = "".join(f"{k}: {v}\r\n" for k, v in me.headers().items())
+    p.raw(f"POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n{head}"
+          f"Content-Length: {len(body)}\r\n\r\n".encode() + body + behind)
+    assert me.post("/api/check", panel.JOB)[1]["ok"]
+
+
+@pytest.mark.parametrize("name", [
+    "", "%ff.ngc", "%ED%A0%80", "%E2%80%AEcgn.a", "%C2%9b31m", "x" * 64,
+    "x" * 900])
+def test_a_name_that_does_not_fit_is_refused(p, me, name):
+    status, got = me.post(f"/api/check?name={name}", b"M30\n")
+    assert status == 400 and "63 bytes" in got["wanted"]
 
 
 def test_a_connection_that_stays_holds_no_upload(p, me):
@@ -326,6 +359,30 @@ def test_no_such_request_and_no_such_value_are_refused_in_words(p, me):
         assert live.ask("retract", arg=-5)["code"] != 0
         assert live.ask("start", job="' OR 1=1 --")["code"] != 0
         assert live.ask("override", arg=99)["code"] == 65
+
+
+def test_what_is_not_understood_does_not_pass_for_nothing(p, me):
+    """Home without an axis homes all; an override of nothing stands still."""
+    with me.live() as live:
+        live.where(lambda s: s.get("daemon") == "ok" and s["jobs"])
+        for what in ({"do": "home", "text": "X" * 64},
+                     {"do": "home", "text": None},
+                     {"do": "start", "job": 5}, {"do": "start", "job": "x" * 99},
+                     {"do": "override"}, {"do": "override", "arg": "1"},
+                     {"do": "jog", "text": "X", "arg": True}):
+            a = live.ask(**what)
+            assert a["code"] == 65 and "words" in a["reason"], what
+        assert live.state["override"] == 1
+
+
+def test_what_a_program_says_is_told_to_all_who_ask(p, me):
+    with me.live() as live, me.live() as gone:
+        gone.send("doctor")
+        asked = [live.send("doctor") for _ in range(20)]
+        gone.ws.close()
+        rig.until(lambda: live.take(20) and
+                  all(n in live.answers for n in asked), 20, 0)
+        assert {live.answers[n]["code"] for n in asked} == {0}
 
 
 def test_a_browser_that_asks_too_much_is_slowed_down(p, me):
@@ -434,130 +491,6 @@ def test_a_program_that_explodes_is_ended_in_its_own_process(p, me):
     assert resident_kb(p) < 100000
 
 
-# -- Beyond this host
-
-def certificate(folder):
-    subprocess.run(
-        ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt",
-         "ec_paramgen_curve:P-256", "-nodes", "-days", "2", "-subj",
-         "/CN=test", "-keyout", folder / "key.pem", "-out",
-         folder / "cert.pem"], check=True, capture_output=True)
-
-
-@pytest.fixture(scope="module")
-def far(tmp_path_factory):
-    """A panel on all addresses: TLS, and users who log in."""
-    folder = tmp_path_factory.mktemp("far")
-    certificate(folder)
-    more = (f"address = 0.0.0.0\nnames = 127.0.0.1\n"
-            f"certificate = {folder}/cert.pem\nkey = {folder}/key.pem\n"
-            f"users = {folder}/users\n")
-    p = panel.Panel(folder, more=more)
-    p.start()
-    for name, role in (("anna", "operator"), ("ben", "viewer")):
-        done = subprocess.run(
-            [str(rig.BUILD / "edm-panel"), "--config",
-             str(p.machine.config), "--add-user", name, role],
-            input=f"{name} has a long word\n", text=True,
-            capture_output=True)
-        assert done.returncode == 0, done.stderr
-    yield p
-    p.close()
-
-
-def login(p, user, password):
-    status, headers, body = p.ask(
-        "POST", "/api/login", json.dumps({"user": user,
-                                          "password": password}),
-        {"Origin": p.url})
-    who = json.loads(body)
-    if status != 200:
-        return status, who
-    return status, panel.Session(p, headers["Set-Cookie"].split(";")[0], who)
-
-
-def test_beyond_the_host_it_wants_a_certificate(tmp_path):
-    p = panel.Panel(tmp_path, more="address = 0.0.0.0\n")
-    done = subprocess.run([str(rig.BUILD / "edm-panel"), "--config",
-                           str(p.machine.config)], capture_output=True,
-                          text=True, timeout=30)
-    assert done.returncode == 78
-    assert "certificate" in done.stderr
-
-
-def test_beyond_the_host_nobody_acts_without_a_login(far):
-    status, headers, body = far.ask("GET", "/api/session")
-    assert json.loads(body)["role"] == "none" and "Set-Cookie" not in headers
-    assert far.ask("POST", "/api/check", b"G1", {"Origin": far.url})[0] == 401
-
-
-def test_passwords_are_kept_as_argon2id(far):
-    text = (far.folder / "users").read_text()
-    assert "long word" not in text and text.count("$argon2id$") == 2
-    assert os.stat(far.folder / "users").st_mode & 0o77 == 0
-
-
-def test_a_short_password_is_refused(far):
-    done = subprocess.run(
-        [str(rig.BUILD / "edm-panel"), "--config", str(far.machine.config),
-         "--add-user", "eve", "viewer"], input="short\n", text=True,
-        capture_output=True)
-    assert done.returncode == 65 and "12" in done.stderr
-
-
-def test_a_viewer_looks_on(far):
-    import ssl
-    status, ben = login(far, "ben", "ben has a long word")
-    assert status == 200 and ben.who["role"] == "viewer"
-    assert ben.post("/api/jobs?name=a.ngc", panel.JOB)[0] == 403
-    context = ssl.create_default_context()
-    context.check_hostname = False
-    context.verify_mode = ssl.CERT_NONE
-    # This client reads in one thread and writes in another.  With TLS 1.3 a
-    # ticket arrives while the request is written, and Python's ssl, which has
-    # no lock before 3.13, may then lose the request.
-    context.maximum_version = ssl.TLSVersion.TLSv1_2
-    with ben.live(ssl=context) as live:
-        live.where(lambda s: s.get("daemon") == "ok")
-        assert live.ask("queue")["code"] == 0
-        refused = live.ask("estop")
-        assert refused["code"] == 77 and "viewer" in refused["reason"]
-        assert live.state["fault"] == "none"
-
-
-def test_who_logs_in_gets_a_new_session_that_ends(far):
-    status, one = login(far, "anna", "anna has a long word")
-    assert status == 200
-    status, two = login(far, "anna", "anna has a long word")
-    assert one.cookie != two.cookie and one.token != two.token
-    status, headers, _ = far.ask("GET", "/api/session",
-                                 headers={"Cookie": two.cookie})
-    assert "Secure" in headers["Set-Cookie"]
-    assert "max-age" in headers["Strict-Transport-Security"]
-    assert one.post("/api/logout")[0] == 200
-    assert one.post("/api/check", b"G1")[0] == 401
-    assert two.post("/api/check", b"M30\n")[0] == 200
-
-
-def test_guessing_is_slowed_down(far):
-    codes = [login(far, "anna", f"guess number {i}")[0] for i in range(8)]
-    assert 429 in codes and 200 not in codes
-    # Even the right word has to wait then.
-    assert login(far, "anna", "anna has a long word")[0] == 429
-    assert "was refused" in far.log()
-
-
-def test_the_word_in_clear_is_not_spoken(far):
-    plain = socket.create_connection(("127.0.0.1", far.port), 10)
-    plain.settimeout(20)
-    plain.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
-    try:
-        assert b"200" not in plain.recv(100)
-    except ConnectionError:
-        pass
-    plain.close()
-
-
 def test_another_user_of_the_host_only_looks_on(p):
     """Root of this test may become nobody; who may not, cannot show it."""
     if os.getuid() != 0:
@@ -569,6 +502,21 @@ def test_another_user_of_the_host_only_looks_on(p):
                           group=65534, extra_groups=[], capture_output=True,
                           text=True, timeout=30)
     assert done.stdout.strip() == "viewer", done.stderr
+
+
+def test_a_cookie_serves_its_own_user_alone(p, me):
+    """A browser sends it to every port of the host."""
+    if os.getuid() != 0:
+        pytest.skip("needs root, to be another user")
+    code = ("import http.client,json,sys; c=http.client.HTTPConnection("
+            f"'127.0.0.1',{p.port}); c.request('GET','/api/session',"
+            f"headers={{'Cookie': {me.cookie!r}}}); "
+            "print(json.load(c.getresponse()))")
+    done = subprocess.run(["/usr/bin/python3", "-c", code], user=65534,
+                          group=65534, extra_groups=[], capture_output=True,
+                          text=True, timeout=30)
+    assert "'viewer'" in done.stdout, done.stderr
+    assert me.token not in done.stdout
 
 
 NOBODY = """

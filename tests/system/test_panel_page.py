@@ -333,6 +333,29 @@ def test_few_clicks_lead_where_one_wants(p, page):
     end_job(page, p)
 
 
+def test_stop_is_reached_when_a_sheet_is_open(p, page):
+    page.locator("#chip-servo_v").click()
+    expect(page.locator(".sheet")).to_be_visible()
+    at = page.locator("#stop").bounding_box()
+    page.mouse.click(at["x"] + at["width"] / 2, at["y"] + at["height"] / 2)
+    expect(page.locator(".head .dot")).to_have_class(re.compile("cross"))
+    p.machine.client.status_where(lambda s: s.fault == "e-stop")
+    end_job(page, p)
+
+
+def test_a_file_of_another_system_has_its_error_where_it_stands(p, page):
+    """Ends of lines are two bytes there; a comment of three a character."""
+    page.goto(p.url + "/#/jobs")
+    text = "G21 G90\r\n" * 50 + "(\u7535\u6781) G1 Q77\r\nM30\r\n"
+    give(page, text.encode(), "\u7535" * 40 + "\u202e.ngc")
+    expect(page.locator(".refusal")).to_contain_text("Line 51")
+    expect(page.locator(".draft h2").first).to_have_text(
+        re.compile("\u7535+_?\\.ngc$"))
+    rig.until(lambda: page.evaluate("""() => {
+        const e = document.querySelector("#editor");
+        return e.value.slice(e.selectionStart).startsWith("Q77"); }"""))
+
+
 def test_a_program_is_dropped_on_any_page(p, page):
     show(page, "machine")
     page.evaluate("""() => { const d = new DataTransfer();

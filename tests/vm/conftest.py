@@ -34,6 +34,13 @@ def virtual():
 
 
 @pytest.fixture(scope="session")
+def wake():
+    """The same, for how late it wakes."""
+    return checked(Run("wake", {"line.ini": VIRTUAL["line.ini"],
+                                "line.ngc": VIRTUAL["line.ngc"]}, "-d"))
+
+
+@pytest.fixture(scope="session")
 def edges():
     """One CPU in virtual time, four times as fast."""
     return checked(Run("edges", EDGES, "-d", "-i", "0"))

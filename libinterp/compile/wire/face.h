@@ -68,6 +68,13 @@ struct face_fault {
 int face_make(struct face *f, const struct face_from *from,
 	      struct face_fault *fault);
 
+/**
+ * face_check() - does @f, made from @from, keep off the programmed contour?
+ * Return: 0, -ENOMEM, or -EINVAL with @fault filled.
+ */
+int face_check(const struct face *f, const struct face_from *from,
+	       struct face_fault *fault);
+
 void face_free(struct face *f);
 
 #endif /* WIRE_FACE_H */

@@ -171,6 +171,8 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 	struct face f = { .n = 0 };
 	int err = face_make(&f, &from, &bad);
 
+	if (!err)
+		err = face_check(&f, &from, &bad);
 	if (err == -EINVAL)
 		contour_refuse_faces(k, &bad, diag);
 	job.face = &f;

@@ -4,18 +4,17 @@
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { Alarms } from "./alarms";
-import { whyNot } from "./can";
 import { Cut } from "./cut";
 import { Fleet } from "./fleet";
 import { clock } from "./format";
 import { Jobs, takeFile } from "./jobs";
 import { link } from "./link";
 import { Machine } from "./machine";
-import { Icon, act } from "./parts";
+import { Icon, StopKey } from "./parts";
 import { Setup } from "./setup";
 import { hasWarning, stateLine } from "./stateline";
 import { Tech } from "./tech";
-import { drop, say, useLink, useSettings, useToasts } from "./use";
+import { drop, useLink, useSettings, useToasts } from "./use";
 import { t, type Word } from "./words";
 
 const PAGES: { id: string; word: Word; page: () => JSX.Element }[] = [
@@ -50,15 +49,12 @@ function Rail(p: { at: string }): JSX.Element {
 
 function Head(): JSX.Element {
 	const s = stateLine();
-	const why = whyNot("estop");
 	return <header class={`head ${s.tone}`}>
 		<span class={`dot ${s.shape}`} aria-hidden="true" />
 		<div class="state" role="status" aria-live="polite"><h1>{s.title}</h1><p title={s.why}>{s.why}</p></div>
 		<small class="who">{link.hello?.machine ?? ""} <time>{clock(Date.now())}</time><br />
 			{link.hello ? t(`role.${link.hello.role}`) : ""}</small>
-		<button type="button" class={`stop ${why ? "off" : ""}`} id="stop" title={t("stop.about")} aria-disabled={!!why}
-			onClick={() => why ? say(why, true) : void act("estop")}>
-			{t("stop")}<small>{t("stop.note")}</small></button>
+		<StopKey />
 	</header>;
 }
 

@@ -7,6 +7,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { whyNot } from "./can";
 import { duration, moment, number } from "./format";
 import { link } from "./link";
+import { fitName, ownLines, unitOf } from "./names";
 import { Card, Key, PressKey, Sheet, act } from "./parts";
 import { PathView } from "./pathview";
 import { say, useAsk, usePages } from "./use";
@@ -38,6 +39,10 @@ function useDraft(): Draft | null {
 	return draft;
 }
 
+function broken(e: unknown): string {
+	return e instanceof Error && e.message === "connection" ? t("no.connection") : String(e);
+}
+
 let turn = 0;
 
 async function check(): Promise<void> {
@@ -48,7 +53,7 @@ async function check(): Promise<void> {
 		const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(d.name)}`, d.file ?? new Blob([d.text]));
 		if (my === turn && draft) put({ ...draft, busy: "", checked: c });
 	} catch (e) {
-		if (my === turn && draft) put({ ...draft, busy: "", checked: { ok: false, line: 0, column: 0, found: String(e), wanted: "" } });
+		if (my === turn && draft) put({ ...draft, busy: "", checked: { ok: false, line: 0, column: 0, found: broken(e), wanted: t("again") } });
 	}
 }
 
@@ -56,16 +61,21 @@ async function check(): Promise<void> {
 export async function takeFile(f: File): Promise<void> {
 	if (f.size > FILE_MAX) { say(t("jobs.toolong"), true); return; }
 	const short = f.size <= EDITOR_MAX;
-	put({ name: f.name.slice(0, 60), text: short ? await f.text() : "", file: short ? null : f, checked: null, busy: "" });
+	put({ name: fitName(f.name), text: short ? ownLines(await f.text()) : "", file: short ? null : f, checked: null, busy: "" });
 	await check();
 }
 
 /** G code that a form made: checked, then sent. */
 export async function sendText(name: string, text: string, start: boolean): Promise<boolean> {
 	const d: Draft = { name, text, file: null, checked: null, busy: "" };
-	const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(name)}`, new Blob([text]));
-	if (!c.ok) { say(`${t("jobs.errorat", { line: c.line, column: c.column })}: ${c.found}; ${c.wanted}`, true); return false; }
-	return send(d, start);
+	try {
+		const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(name)}`, new Blob([text]));
+		if (c.ok) return await send(d, start);
+		say(`${c.line > 0 ? `${t("jobs.errorat", { line: c.line, column: c.column })}: ` : ""}${c.found}; ${c.wanted}`, true);
+	} catch (e) {
+		say(broken(e), true);
+	}
+	return false;
 }
 
 async function send(d: Draft, start: boolean): Promise<boolean> {
@@ -78,7 +88,7 @@ async function send(d: Draft, start: boolean): Promise<boolean> {
 		say(t("jobs.sent", { name: d.name }));
 		if (start) await begin(a.job as string);
 	} catch (e) {
-		say(String(e), true);
+		say(broken(e), true);
 		if (draft) put({ ...draft, busy: "" });
 		return false;
 	}
@@ -100,9 +110,10 @@ function Editor(p: { draft: Draft; error: Checked | null }): JSX.Element {
 	const goTo = () => {
 		const a = area.current, e = p.error;
 		if (!a || !e || e.line < 1) return;
-		const from = lines.slice(0, e.line - 1).reduce((n, l) => n + l.length + 1, 0) + Math.max(0, e.column - 1);
+		const line = lines[e.line - 1] ?? "", at = unitOf(line, e.column);
+		const from = lines.slice(0, e.line - 1).reduce((n, l) => n + l.length + 1, 0) + at;
 		a.focus();
-		a.setSelectionRange(from, from + Math.max(1, (lines[e.line - 1] ?? "").slice(e.column - 1).match(/^\S+/)?.[0].length ?? 1));
+		a.setSelectionRange(from, from + Math.max(1, line.slice(at).match(/^\S+/)?.[0].length ?? 1));
 		a.scrollTop = Math.max(0, (e.line - 4) * 22);
 	};
 	useEffect(goTo, [p.error]);

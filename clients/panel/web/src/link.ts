@@ -57,7 +57,8 @@ const EMPTY: State = {
 };
 
 const POINTS_KEPT = 620;
-const SILENT_MS = 3000;
+const SILENT_MS = 2000;
+const ASK_MS = 5000;
 
 type Listener = () => void;
 
@@ -93,7 +94,7 @@ class Link {
 
 	private async open(): Promise<void> {
 		try {
-			const r = await fetch("/api/session");
+			const r = await fetch("/api/session", { signal: AbortSignal.timeout(ASK_MS) });
 			this.session = await r.json() as Session;
 		} catch {
 			this.again();
@@ -107,12 +108,13 @@ class Link {
 		const scheme = location.protocol === "https:" ? "wss:" : "ws:";
 		const s = new WebSocket(`${scheme}//${location.host}/api/live`, "edm-panel");
 		this.socket = s;
+		this.heard = performance.now() + ASK_MS;
 		s.onopen = () => {
-			this.heard = Date.now();
+			this.heard = performance.now();
 			this.number = 0;
 			this.delay = 250;
 		};
-		s.onmessage = (m) => this.take(JSON.parse(m.data as string));
+		s.onmessage = (m) => { if (this.socket === s) this.take(JSON.parse(m.data as string)); };
 		s.onclose = () => { if (this.socket === s) this.again(); };
 	}
 
@@ -128,14 +130,16 @@ class Link {
 		this.delay = Math.min(this.delay * 1.6, 3000);
 	}
 
+	// A socket that fell silent may take minutes to end: it is left at once.
 	private watch(): void {
-		if (this.socket && this.connection === "open" &&
-		    Date.now() - this.heard > SILENT_MS)
-			this.socket.close();
+		const s = this.socket;
+		if (!s || performance.now() - this.heard < SILENT_MS) return;
+		this.again();
+		s.close();
 	}
 
 	private take(m: any): void {
-		this.heard = Date.now();
+		this.heard = performance.now();
 		if (m.hello) {
 			this.hello = m.hello as Hello;
 			this.connection = "open";

@@ -3,6 +3,7 @@
 // Keys, cards and sheets: what every page is made of.
 import type { ComponentChildren, JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { whyNot } from "./can";
 import { parse } from "./format";
 import { link } from "./link";
 import { say } from "./use";
@@ -112,6 +113,25 @@ export function HoldKey(p: Omit<KeyProps, "onPress"> & { onHold: (over: (why: st
 		<span>{p.children}</span></button>;
 }
 
+/** The same place on every page, and over a sheet too. */
+export function StopKey(p: { over?: boolean }): JSX.Element {
+	const why = whyNot("estop");
+	const [at, place] = useState<JSX.CSSProperties>({});
+	useEffect(() => {
+		if (!p.over) return;
+		const look = () => {
+			const r = document.getElementById("stop")?.getBoundingClientRect();
+			if (r) place({ left: `${r.left}px`, top: `${r.top}px`, width: `${r.width}px`, height: `${r.height}px` });
+		};
+		look();
+		addEventListener("resize", look);
+		return () => removeEventListener("resize", look);
+	}, [p.over]);
+	return <button type="button" class={`stop ${why ? "off" : ""} ${p.over ? "over" : ""}`} id={p.over ? "stop-over" : "stop"} style={at} title={t("stop.about")} aria-disabled={!!why}
+		onClick={() => why ? say(why, true) : void act("estop")}>
+		{t("stop")}<small>{t("stop.note")}</small></button>;
+}
+
 export function Sheet(p: { title: string; onClose: () => void; children: ComponentChildren; wide?: boolean }): JSX.Element {
 	const ref = useRef<HTMLDialogElement>(null);
 	useEffect(() => {
@@ -124,6 +144,7 @@ export function Sheet(p: { title: string; onClose: () => void; children: Compone
 		onCancel={(e) => { e.preventDefault(); p.onClose(); }}>
 		<header><h2>{p.title}</h2><Key class="small quiet" onPress={p.onClose}>{t("close")}</Key></header>
 		<div class="sheet-body">{p.children}</div>
+		<StopKey over />
 	</dialog>;
 }
 

@@ -48,8 +48,13 @@ export function pointAt(p: PathData, s: number): [number, number, number] {
 
 const known = new Map<string, Promise<PathData>>();
 
-async function load(query: string): Promise<PathData> {
+async function load(query: string, tries = 10): Promise<PathData> {
 	const r = await fetch(`/api/path?${query}`);
+	// Others are being drawn.
+	if (r.status === 503 && tries > 0) {
+		await new Promise((done) => setTimeout(done, 1000));
+		return load(query, tries - 1);
+	}
 	if (!r.ok) {
 		const o = await r.json().catch(() => ({ found: String(r.status) })) as { found: string };
 		throw new Error(o.found);
