@@ -89,8 +89,7 @@ static bool at_floor(const struct cycle *c)
 bool retract_is_clear(const struct cycle *c)
 {
 	return c->sensed.signal_v >= c->gap.servo_v &&
-	       (c->retract.least_mm <= 0 ||
-		back_mm(c) >= c->retract.least_mm || at_floor(c));
+	       (back_mm(c) >= c->retract.least_mm || at_floor(c));
 }
 
 /* The distance was used up, or there is no way left to go? */
