@@ -203,7 +203,7 @@ void logger_stop(void)
 
 	if (!line.started)
 		return;
-	clock_gettime(CLOCK_REALTIME, &until);
+	clock_gettime(CLOCK_MONOTONIC, &until);
 	until.tv_nsec += STOP_MS * 1000000L;
 	until.tv_sec += until.tv_nsec / 1000000000L;
 	until.tv_nsec %= 1000000000L;
@@ -214,7 +214,8 @@ void logger_stop(void)
 	line.ending = true;
 	pthread_cond_broadcast(&line.changed);
 	while (line.count > 0 &&
-	       pthread_cond_timedwait(&line.changed, &line.lock, &until) == 0)
+	       pthread_cond_clockwait(&line.changed, &line.lock,
+				      CLOCK_MONOTONIC, &until) == 0)
 		;
 	if (line.count == 0) {
 		pthread_mutex_unlock(&line.lock);

@@ -292,6 +292,11 @@ def test_nothing_is_cut_off(p, page, size):
     show(page, "cut")
     for key in ("#start", "#hold", "#retract"):
         assert page.locator(key).bounding_box()["height"] >= 48, key
+    # Stop lies over every sheet, but over none of its keys.
+    for opens in ("#chip-servo_v", "#chip-condition", ".gap h2 button"):
+        page.locator(opens).first.click()
+        page.locator("dialog[open] header button").click()
+        expect(page.locator("dialog[open]")).to_have_count(0)
 
 
 def clicks(page):

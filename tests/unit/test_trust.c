@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -292,6 +293,43 @@ static void a_removed_key_is_out_at_once(void **state)
 	assert_int_equal(send(w, &s), TRUST_KEY);
 }
 
+/* What is written to stderr while @n packets are refused. */
+static void refused_text(struct world *w, int n, char *to, size_t room)
+{
+	const int before = dup(STDERR_FILENO);
+	FILE *f = tmpfile();
+	size_t got;
+
+	assert_non_null(f);
+	dup2(fileno(f), STDERR_FILENO);
+	for (int i = 0; i < n; i++)
+		trust_refuse(&w->t, TRUST_REPLAY, "guest", "10.0.0.9:4711",
+			     w->now_us);
+	dup2(before, STDERR_FILENO);
+	close(before);
+	rewind(f);
+	got = fread(to, 1, room - 1, f);
+	to[got] = '\0';
+	fclose(f);
+}
+
+static void what_is_refused_is_counted_and_told_now_and_then(void **state)
+{
+	struct world *w = *state;
+	char text[512];
+
+	refused_text(w, 1000, text, sizeof(text));
+	assert_non_null(strstr(text, "refused 1 packets"));
+	assert_non_null(strstr(text, "of guest from 10.0.0.9:4711\n"));
+	assert_ptr_equal(strchr(text, '\n'), text + strlen(text) - 1);
+	w->now_us += 9 * S;
+	refused_text(w, 1, text, sizeof(text));
+	assert_string_equal(text, "");
+	w->now_us += 2 * S;
+	refused_text(w, 1, text, sizeof(text));
+	assert_non_null(strstr(text, "refused 1001 packets"));
+}
+
 static void no_two_starts_have_one_number(void **state)
 {
 	struct world *w = *state;
@@ -317,6 +355,7 @@ int main(void)
 		T(so_many_signatures_of_strangers_are_computed),
 		T(what_is_recorded_of_a_viewer_is_not_counted_as_his),
 		T(a_removed_key_is_out_at_once),
+		T(what_is_refused_is_counted_and_told_now_and_then),
 		T(no_two_starts_have_one_number),
 	};
 

@@ -3,7 +3,8 @@
 // The path in space: done, to do, walked back now, and where the electrode is.
 //
 // Thick lines are drawn for what is done as long as they are few; a path of
-// very many points is drawn by plain lines, and coarser while it is turned.
+// very many points is drawn by plain lines.  While it is turned it is drawn as
+// fine as this machine can in 30 frames a second.
 import {
 	BufferAttribute, BufferGeometry, Color, Line, LineBasicMaterial, LineSegments,
 	OrthographicCamera, Scene, Vector3, WebGLRenderer,
@@ -26,12 +27,56 @@ export interface Marks {
 }
 
 const THICK_MAX = 20000;
-const TURNING_MAX = 60000;
+// Points of the path while it is turned, from fine to coarse.
+const LEVELS = [60000, 20000, 7000, 2500, 900];
+const FRAME_MS = 30;
 const BACK_MAX = 3000;
 
 function cssColor(name: string): Color {
 	const c = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 	return new Color(c);
+}
+
+/** Every point that is farther than so much from the last one that was kept. */
+function thin(p: PathData, mm: number, most: number): number[] {
+	const kept = [0], at = p.at;
+	let x = at[0] as number, y = at[1] as number, z = at[2] as number;
+	for (let i = 1; i < p.n && kept.length <= most; i++) {
+		const dx = (at[3 * i] as number) - x, dy = (at[3 * i + 1] as number) - y, dz = (at[3 * i + 2] as number) - z;
+		if (dx * dx + dy * dy + dz * dz < mm * mm) continue;
+		kept.push(i);
+		x += dx; y += dy; z += dz;
+	}
+	return kept;
+}
+
+interface Level { kept: number[]; todo: Line; done: Line }
+
+/** The path by fewer points: details smaller than a step are left out. */
+function level(p: PathData, most: number, span: number): Level {
+	let mm = span / 1e5, kept = thin(p, mm, most);
+	while (kept.length > most) { mm *= 1.6; kept = thin(p, mm, most); }
+	const to = new Float32Array(3 * kept.length);
+	kept.forEach((i, k) => to.set(p.at.subarray(3 * i, 3 * i + 3), 3 * k));
+	const at = new BufferAttribute(to, 3);
+	const line = (colour: string, order: number) => {
+		const l = new Line(new BufferGeometry().setAttribute("position", at), new LineBasicMaterial({ color: cssColor(colour) }));
+		l.frustumCulled = false;
+		l.renderOrder = order;
+		return l;
+	};
+	return { kept, todo: line("--todo", 0), done: line("--done", 2) };
+}
+
+/** How many of them are not behind point i. */
+function upTo(kept: number[], i: number): number {
+	let low = 0, high = kept.length;
+	while (low < high) {
+		const k = (low + high) >> 1;
+		if ((kept[k] as number) <= i) low = k + 1;
+		else high = k;
+	}
+	return low;
 }
 
 export class PathScene {
@@ -47,7 +92,11 @@ export class PathScene {
 	private edge: LineSegments2;
 	private back: LineSegments2;
 	private upper: Line | null = null;
-	private coarse: Line | null = null;
+	private coarse: Level[] = [];
+	private level = 1;
+	private drawn = 0;
+	private took = 0;
+	private begun = false;
 	private look: Look = { place: 0, far: 0, back: false, electrode: null };
 	private span = 1;
 	private width = 1;
@@ -64,7 +113,7 @@ export class PathScene {
 		this.controls = new OrbitControls(this.camera, canvas);
 		this.controls.enableDamping = false;
 		this.controls.addEventListener("change", () => this.ask());
-		this.controls.addEventListener("start", () => { this.turning = true; this.follow = false; });
+		this.controls.addEventListener("start", () => { this.turning = true; this.drawn = 0; this.follow = false; });
 		this.controls.addEventListener("end", () => { this.turning = false; this.ask(); });
 		this.edge = this.thick(3);
 		this.back = this.thick(6);
@@ -82,8 +131,9 @@ export class PathScene {
 
 	colours(): void {
 		const done = cssColor("--done"), todo = cssColor("--todo"), back = cssColor("--amber");
-		for (const o of [this.todo, this.upper, this.coarse, this.rapid])
+		for (const o of [this.todo, this.upper, this.rapid, ...this.coarse.map((c) => c.todo)])
 			(o?.material as LineBasicMaterial | undefined)?.color.copy(todo);
+		this.coarse.forEach((c) => (c.done.material as LineBasicMaterial).color.copy(done));
 		if (this.done) (this.done.material as LineBasicMaterial).color.copy(done);
 		(this.edge.material as LineMaterial).color.copy(done);
 		(this.back.material as LineMaterial).color.copy(back);
@@ -102,16 +152,19 @@ export class PathScene {
 	}
 
 	setPath(p: PathData | null): void {
-		for (const o of [this.todo, this.rapid, this.done, this.upper, this.coarse]) {
+		for (const o of [this.todo, this.rapid, this.done, this.upper, ...this.coarse.flatMap((c) => [c.todo, c.done])]) {
 			if (!o) continue;
 			this.scene.remove(o);
 			o.geometry.dispose();
 			(o.material as LineBasicMaterial).dispose();
 		}
-		this.todo = this.rapid = this.done = this.upper = this.coarse = null;
+		this.todo = this.rapid = this.done = this.upper = null;
+		this.coarse = [];
+		this.begun = false;
 		this.path = p;
 		this.back.visible = this.edge.visible = false;
 		if (p && p.n > 1) this.build(p);
+		this.setLook(this.look);	// it may have come before the path
 		this.colours();
 		this.view("3d");
 	}
@@ -145,7 +198,6 @@ export class PathScene {
 		this.done.renderOrder = 2;
 		for (const o of [this.todo, this.rapid, this.done]) { o.frustumCulled = false; this.scene.add(o); }
 		if (p.upper) this.buildUpper(p, p.upper);
-		if (p.n > TURNING_MAX) this.buildCoarse(p);
 	}
 
 	private buildUpper(p: PathData, upper: Float32Array): void {
@@ -162,16 +214,26 @@ export class PathScene {
 		this.scene.add(this.upper);
 	}
 
-	private buildCoarse(p: PathData): void {
-		const step = Math.ceil(p.n / TURNING_MAX), n = Math.floor(p.n / step);
-		const at = new Float32Array(3 * n);
-		for (let i = 0; i < n; i++) at.set(p.at.subarray(3 * i * step, 3 * i * step + 3), 3 * i);
-		const g = new BufferGeometry();
-		g.setAttribute("position", new BufferAttribute(at, 3));
-		this.coarse = new Line(g, new LineBasicMaterial());
-		this.coarse.frustumCulled = false;
-		this.coarse.visible = false;
-		this.scene.add(this.coarse);
+	private coarser(): Level | null {
+		const p = this.path, most = LEVELS[this.level] as number, l = this.look;
+		if (!p || p.n <= most) return null;
+		let c = this.coarse[this.level];
+		if (!c) {
+			c = this.coarse[this.level] = level(p, most, this.span);
+			this.scene.add(c.todo, c.done);
+		}
+		c.done.geometry.setDrawRange(0, upTo(c.kept, indexAt(p, l.back ? l.place : l.far)));
+		return c;
+	}
+
+	// Slow frames make it coarser at once, quick ones finer after a while.
+	private choose(): void {
+		const now = performance.now(), ms = now - this.drawn;
+		if (this.drawn && ms < 2000) this.took += (ms - this.took) * (ms > this.took ? 0.5 : 0.1);
+		else this.took = 20;
+		this.drawn = now;
+		if (this.took > FRAME_MS && this.level < LEVELS.length - 1) { this.level++; this.took = 22; }
+		else if (this.took < 17.5 && this.level > 0) { this.level--; this.took = 22; }
 	}
 
 	/** Where the machine is: cheap enough for ten times a second. */
@@ -183,7 +245,7 @@ export class PathScene {
 			const done = this.done as LineSegments2;
 			if (done.isLineSegments2) done.geometry.instanceCount = n;
 			else this.done.geometry.setDrawRange(0, 2 * n);
-			this.done.visible = n > 0;
+			this.begun = n > 0;
 			this.fill(this.edge, p, Math.max(p.s[i] as number, 0), l.back ? l.place : l.far, p.kind[Math.min(i + 1, p.n - 1)] === CUT);
 			this.fill(this.back, p, l.place, l.far, l.back);
 		}
@@ -281,22 +343,30 @@ export class PathScene {
 	}
 
 	draw(): void {
-		const p = this.path, l = this.look;
-		const at = p && l.electrode ? new Vector3((l.electrode[0] as number) - (p.origin[0] as number),
-			(l.electrode[1] as number) - (p.origin[1] as number), (l.electrode[2] as number) - (p.origin[2] as number)) : null;
+		const at = this.electrode();
 		if (this.follow && at) {
 			const move = at.clone().sub(this.controls.target);
 			this.camera.position.add(move);
 			this.controls.target.copy(at);
 			this.camera.updateMatrixWorld();
 		}
-		const coarse = this.turning && !!this.coarse;
-		if (this.coarse) {
-			this.coarse.visible = coarse;
-			if (this.todo) this.todo.visible = !coarse;
-		}
+		if (this.turning) this.choose();
+		const coarse = this.turning ? this.coarser() : null;
+		this.coarse.forEach((c) => { c.todo.visible = c.done.visible = c === coarse; });
+		for (const o of [this.todo, this.rapid, this.upper]) if (o) o.visible = !coarse;
+		if (this.done) this.done.visible = !coarse && this.begun;
 		this.renderer.render(this.scene, this.camera);
 		this.frames++;
+		this.mark();
+	}
+
+	private electrode(): Vector3 | null {
+		const p = this.path, e = this.look.electrode;
+		return p && e ? new Vector3(...([0, 1, 2].map((i) => (e[i] as number) - (p.origin[i] as number)) as [number, number, number])) : null;
+	}
+
+	private mark(): void {
+		const at = this.electrode();
 		this.onMarks({
 			electrode: at ? this.project(at) : null,
 			axes: this.triad(),
