@@ -46,16 +46,21 @@ static double a_of_axes(const struct cycle *c, int toward)
 		s = s ? s : lookahead_toward(c, -toward);
 		a = s ? (double)s->a_mm_s2 : c->config.travel_a_mm_s2;
 	}
-	return fmin(a, A_MAX);
+	return a < A_MAX ? a : A_MAX;
 }
 
-/* A touch is not the servo's. */
-static double a_here(const struct cycle *c, int toward)
+/* What the law in force leaves of that.  A touch is not the servo's. */
+static double a_of_law(const struct cycle *c, double a_mm_s2)
 {
 	const double own = c->state == STATE_PROBE ? INFINITY :
 			   or_any(c->gap.feed_a_mm_s2);
 
-	return fmin(own, a_of_axes(c, toward));
+	return own < a_mm_s2 ? own : a_mm_s2;
+}
+
+static double a_here(const struct cycle *c, int toward)
+{
+	return a_of_law(c, a_of_axes(c, toward));
 }
 
 static int way_of(double v_mm_s)
@@ -208,21 +213,23 @@ double pace_go(struct cycle *c, double v_mm_s, double to_mm)
 {
 	const double was = c->mover.mean_mm_s;
 	const int from = way_of(was != 0 ? was : v_mm_s);
-	const double dv = a_here(c, from) * law_period_s(c);
+	const double axes = a_of_axes(c, from), a = a_of_law(c, axes);
+	const double dv = a * law_period_s(c);
 	const double v = fmin(fmax(v_mm_s, was - dv), was + dv);
 	struct ahead k = {
-		.c = c, .toward = way_of(v), .a_mm_s2 = a_here(c, way_of(v)),
+		.c = c, .toward = way_of(v), .a_mm_s2 = a,
 		.most_mm_s = fabs(v), .stop_mm = INFINITY,
 	};
 
 	if (v == 0)
 		return law_go_at(c, 0);
+	if (k.toward != from)
+		k.a_mm_s2 = a_here(c, k.toward);
 	k.dv_mm_s = k.a_mm_s2 * law_period_s(c);
 	look(&k, to_mm);
 	/* A planned move may have been quicker: no harder than the axes brake. */
 	if (was * v > 0)
 		k.most_mm_s = fmax(k.most_mm_s,
-				   fabs(was) - a_of_axes(c, from) *
-					       law_period_s(c));
+				   fabs(was) - axes * law_period_s(c));
 	return go(c, &k, k.toward * fmin(fabs(v), k.most_mm_s));
 }

@@ -36,19 +36,21 @@
 
 /* -- What limits it ------------------------------------------------------- */
 
-/* What column @k can do is for following the curve and for going along it. */
-static void share_out(struct curve_plan *p, uint32_t k,
-		      const struct interp_axis_limits *m)
+static const struct interp_axis_limits *axis_of(const struct curve_plan *p,
+						uint32_t k)
 {
-	const bool along = k < p->curve.counted;
+	return &p->b->o.machine->axis[p->curve.axis[k]];
+}
 
-	p->limits.a_mm_s2[k] = m->a_max_mm_s2 *
-		(along ? INTERP_BEND_ACROSS : INTERP_BESIDE_ACROSS);
-	p->along.a_mm_s2[k] = m->a_max_mm_s2 *
-		(along ? INTERP_BEND_ALONG : INTERP_BESIDE_ALONG);
-	p->limits.j_mm_s3[k] = INTERP_CURVE_JERK_ROUND * m->j_max_mm_s3;
-	p->along.j_mm_s3[k] = INTERP_CURVE_JERK_ALONG * m->j_max_mm_s3;
-	p->both_mm_s3[k] = INTERP_CURVE_JERK_BOTH * m->j_max_mm_s3;
+/* Shares of an axis's acceleration: to follow the curve, and to go along it. */
+static double across_part(const struct curve_plan *p, uint32_t k)
+{
+	return k < p->curve.counted ? INTERP_BEND_ACROSS : INTERP_BESIDE_ACROSS;
+}
+
+static double along_part(const struct curve_plan *p, uint32_t k)
+{
+	return k < p->curve.counted ? INTERP_BEND_ALONG : INTERP_BESIDE_ALONG;
 }
 
 static void set_limits(struct curve_plan *p)
@@ -65,11 +67,11 @@ static void set_limits(struct curve_plan *p)
 			sqrt(8 * o->chord_error_mm) / o->period_s : HUGE_VAL;
 	p->pulse_mm = HUGE_VAL;
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		const struct interp_axis_limits *m =
-			&o->machine->axis[p->curve.axis[k]];
+		const struct interp_axis_limits *m = axis_of(p, k);
 
 		l->v_mm_s[k] = m->v_max_mm_s;
-		share_out(p, k, m);
+		l->a_mm_s2[k] = across_part(p, k) * m->a_max_mm_s2;
+		l->j_mm_s3[k] = INTERP_CURVE_JERK_ROUND * m->j_max_mm_s3;
 		p->pulses_mm[p->curve.axis[k]] = 1 / m->pulse_mm;
 		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
 		jerk = fmin(jerk, m->j_max_mm_s3);
@@ -83,44 +85,42 @@ static void set_limits(struct curve_plan *p)
 	p->least_mm_s2 = INTERP_BEND_LEAST * acc;
 }
 
-/* What is 1 / (v * a) at least, for the jerk of speeding up on this bend. */
-static double jerk_of(const struct curve_plan *p, const double *bends)
-{
-	double most = 0;
-
-	for (uint32_t k = 0; k < p->curve.naxes; k++)
-		most = fmax(most, 3 * fabs(bends[k]) / p->both_mm_s3[k]);
-	return most;
-}
-
-static void learn_rate(struct curve_plan *p, uint32_t k, double rate)
+static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)
 {
 	struct curve_seen *s = &p->seen;
 
-	s->rate = fmax(s->rate, rate * p->pulses_mm[p->curve.axis[k]]);
-	s->per_a = fmax(s->per_a, rate / p->along.a_mm_s2[k]);
-	s->per_j = fmax(s->per_j, rate / p->along.j_mm_s3[k]);
+	s->bend = fmax(s->bend, w->cusp ? HUGE_VAL : w->curvature);
+	for (int n = 0; !w->cusp && n < 3; n++)
+		for (uint32_t k = 0; k < p->curve.naxes; k++)
+			s->d[n][k] = fmax(s->d[n][k], fabs(w->d[n][k]));
+}
+
+/* So slow that the jerk lets it speed up here, by no less than it must. */
+static double set_off_mm_s(const struct curve_plan *p,
+			   const struct interp_nurbs_way *w)
+{
+	double v = HUGE_VAL;
+
+	for (uint32_t k = 0; !w->cusp && k < p->curve.naxes; k++)
+		if (w->d[1][k] != 0)
+			v = fmin(v, INTERP_CURVE_JERK_BOTH *
+				    axis_of(p, k)->j_max_mm_s3 /
+				    (3 * fabs(w->d[1][k]) * p->least_mm_s2));
+	return v;
 }
 
 /* Look at @u: find the feed that its axes allow.  The present piece learns how
- * sharply it bends there, and how many pulses a mm has. */
+ * its axes go there. */
 static double look(struct curve_plan *p, double u)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;
-	double bends[INTERP_NAXES] = { 0 }, speed, jerk, feed;
-	struct interp_nurbs_point at;
+	struct interp_nurbs_way w;
+	double feed;
 
-	p->seen.bend = fmax(p->seen.bend, interp_nurbs_curvature(e, u, bends));
-	jerk = jerk_of(p, bends);
-	p->seen.jerk_s_mm = fmax(p->seen.jerk_s_mm, jerk);
-	interp_nurbs_at(e, u, 1, &at);
-	speed = sqrt(interp_nurbs_dot(&e->c, at.d[1], at.d[1]));
-	for (uint32_t k = 0; speed > 0 && k < e->c.naxes; k++)
-		learn_rate(p, k, fabs(at.d[1][k]) / speed);
-	feed = interp_nurbs_feed_mm_s(e, u, &p->limits);
-	if (jerk > 0)
-		feed = fmin(feed, 1 / (jerk * p->least_mm_s2));
-	return fmax(feed, p->slowest_mm_s);
+	interp_nurbs_way(e, u, &w);
+	learn(p, &w);
+	feed = interp_nurbs_feed_mm_s(&e->c, &w, &p->limits);
+	return fmax(fmin(feed, set_off_mm_s(p, &w)), p->slowest_mm_s);
 }
 
 /* The feed of the present piece. */
@@ -131,16 +131,67 @@ static double feed_of(const struct curve_plan *p)
 	return fmax(fmin(p->least_mm_s, chord), p->slowest_mm_s);
 }
 
-/* Of the piece in hand, at that feed: how fast to speed up along it. */
-static void along_of(const struct curve_plan *p, double feed_mm_s,
-		     struct interp_piece *ret)
+/* The most pulses of an axis in a mm. */
+static double rate_of(const struct curve_plan *p)
 {
-	ret->a_mm_s2 = fmax(1 / (p->seen.jerk_s_mm * feed_mm_s), p->least_mm_s2);
-	ret->a_mm_s2 = fmin(ret->a_mm_s2, 1 / p->seen.per_a);
-	ret->j_mm_s3 = 1 / p->seen.per_j;
+	double rate = 0;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++)
+		rate = fmax(rate, p->seen.d[0][k] *
+				  p->pulses_mm[p->curve.axis[k]]);
+	return rate;
 }
 
-/* -- Pieces -------------------------------------------------------------------- */
+/*
+ * What following the present piece at @v_mm_s leaves of the acceleration of
+ * column @k.  The ways along and across are square to each other, so a counted
+ * axis has what is left of both together.  A cusp is passed at the slowest speed
+ * whatever it takes, and leaves the share.
+ */
+static double left_mm_s2(const struct curve_plan *p, uint32_t k, double v_mm_s)
+{
+	const double a = axis_of(p, k)->a_max_mm_s2;
+	const double across = p->seen.bend * v_mm_s * v_mm_s;
+	const double left = a - p->seen.d[1][k] * v_mm_s * v_mm_s;
+
+	return fmax(fmax(left, along_part(p, k) * a),
+		    k < p->curve.counted && across < a ?
+		    sqrt(a * a - across * across) : 0);
+}
+
+/* The same of its jerk. */
+static double left_mm_s3(const struct curve_plan *p, uint32_t k, double v_mm_s)
+{
+	const double j = axis_of(p, k)->j_max_mm_s3;
+
+	return fmax(j - p->seen.d[2][k] * v_mm_s * v_mm_s * v_mm_s,
+		    (1 - INTERP_CURVE_JERK_ROUND) * j);
+}
+
+/* How fast to speed up along the present piece, at @v_mm_s at most: to speed up
+ * on a bend takes jerk, and no more than half of what is left. */
+static void along_of(const struct curve_plan *p, double v_mm_s,
+		     struct interp_piece *ret)
+{
+	double a = HUGE_VAL, j = HUGE_VAL;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		a = fmin(a, left_mm_s2(p, k, v_mm_s) / p->seen.d[0][k]);
+		a = fmin(a, fmax(left_mm_s3(p, k, v_mm_s) / 2 /
+				 (3 * p->seen.d[1][k] * v_mm_s),
+				 p->least_mm_s2));
+	}
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const double left = left_mm_s3(p, k, v_mm_s);
+
+		j = fmin(j, fmax(left - 3 * p->seen.d[1][k] * v_mm_s * a,
+				 left / 2) / p->seen.d[0][k]);
+	}
+	ret->a_mm_s2 = a;
+	ret->j_mm_s3 = j;
+}
+
+/* -- Pieces --------------------------------------------------------------- */
 
 static const struct interp_nurbs_stop *stops_of(const struct curve_plan *p,
 						const struct interp_piece *q)
@@ -224,7 +275,7 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 {
 	const struct interp_nurbs_stop *stops = stops_of(p, piece);
 	const double length_mm = stops[piece->nstops - 1].s_mm;
-	double places = ceil(length_mm * p->seen.rate * MARGIN *
+	double places = ceil(length_mm * rate_of(p) * MARGIN *
 			     (p->turns > 1 ? 2 : 1)) + 1;
 
 	for (int i = 0; i < TRIES; i++) {

@@ -22,18 +22,11 @@ int build_curve_store(struct interp_build *b,
 		      const struct interp_build_curve *c,
 		      struct interp_curve *ret, uint32_t *ret_moved);
 
-/* Of each column, for going along the curve. */
-struct curve_along {
-	double a_mm_s2[INTERP_NAXES], j_mm_s3[INTERP_NAXES];
-};
-
 /* What the looks at a piece have found; the largest of each. */
 struct curve_seen {
-	double bend;			/* curvature, 1/mm */
-	double rate;			/* pulses of an axis per mm */
-	double jerk_s_mm;		/* 3 * |x_ss| / jerk: v * a must not be
-					 * more than 1 of it */
-	double per_a, per_j;		/* |x_s| by its axis's own */
+	double bend;			/* curvature, 1/mm; HUGE_VAL at a cusp */
+	double d[3][INTERP_NAXES];	/* |x_s|, |x_ss| and |x_sss| of each
+					 * column */
 };
 
 /* A NURBS while it is cut into segments. */
@@ -45,12 +38,11 @@ struct curve_plan {
 	struct interp_curve curve;	/* as stored */
 	const double *here_mm;		/* where the program stands */
 	struct interp_nurbs_limits limits;	/* of the axes, on bends */
-	struct curve_along along;
-	double both_mm_s3[INTERP_NAXES];	/* jerk of speeding up on them */
 	double chord_mm_s;		/* the fastest round a radius of 1 mm
 					 * within the chord error */
-	double pulses_mm[INTERP_NAXES], pulse_mm;	/* the finest */
-	double slowest_mm_s, least_mm_s2;	/* no less speed, acceleration */
+	double pulses_mm[INTERP_NAXES];	/* of each axis */
+	double pulse_mm;		/* the finest */
+	double slowest_mm_s, least_mm_s2;	/* never less than these */
 	uint32_t moved, turns;
 	struct interp_curve_walk walk;
 	size_t mark;
