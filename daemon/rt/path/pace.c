@@ -6,7 +6,7 @@
  * After a cycle at the speed v, braking at once by dv = a * T in each cycle, a
  * place that lies ahead is met at the speed u if
  *
- *	v*v + 2*dv*v <= u*u + room
+ *	v <= u  or  v*v + 2*dv*v <= u*u + room
  *
  * where room is 2*a times the way there, summed over the segments between.  A
  * segment that allows more than one before it is counted with what that one
@@ -84,12 +84,13 @@ struct ahead {
 	double stop_mm;			/* left to where it has to stand */
 };
 
+/* What is no faster than the place meets it without braking. */
 static void meet(struct ahead *k, double v_mm_s)
 {
 	const double dv = k->dv_mm_s;
 	const double v = sqrt(dv * dv + v_mm_s * v_mm_s + k->room) - dv;
 
-	k->most_mm_s = fmin(k->most_mm_s, fmax(v, 0));
+	k->most_mm_s = fmin(k->most_mm_s, fmax(v, v_mm_s));
 }
 
 static void meet_stop(struct ahead *k)
