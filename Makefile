@@ -256,7 +256,7 @@ $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
 $(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
-	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
+	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
 	$(call link,-llcm -lsodium -ljansson $(LIBGPIOD) -lm)
@@ -277,7 +277,7 @@ $(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
 	     apart.c box.c near.c motion.c sweep.c prove.c))
 
-$(B)/unit/test_plan_core: $(PLAN_CORE)
+$(B)/unit/test_plan_core $(B)/unit/test_plan_bounds: $(PLAN_CORE)
 
 $(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
@@ -294,8 +294,8 @@ $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 
 # Of the store, without the rest of edmd-jobs.
-$(B)/unit/test_store: $(SIGN_O) $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/store*.c) daemon/jobs/trust.c daemon/jobs/jobs_log.c)
-$(B)/unit/test_store: UNIT_LIBS = -lsqlite3 -lsodium -lsystemd
+$(B)/unit/test_store $(B)/unit/test_store_electrode: $(SIGN_O) $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/store*.c) daemon/jobs/trust.c daemon/jobs/jobs_log.c)
+$(B)/unit/test_store $(B)/unit/test_store_electrode: UNIT_LIBS = -lsqlite3 -lsodium -lsystemd
 
 $(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
 $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
@@ -626,7 +626,8 @@ $(B)/fuzz_%: $(B)/watched/tests/fuzz/fuzz_%.o $(FUZZ_A)
 
 # -- Lint ---------------------------------------------------------------------
 
-HEADERS	 = $(wildcard common/*.h libinterp/*/include/interp/*.h daemon/*/*.h daemon/rt/*/*.h clients/*/*.h)
+HEADERS	 = $(wildcard common/*.h libinterp/*/*/*.h libinterp/*/include/interp/*.h \
+	   daemon/*/*.h daemon/rt/*/*.h clients/*/*.h messages/sign/*.h)
 
 # What an edmd must not have: a reader, messages, a database, another floor.
 NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|sqlite3_|json_|crypto_
@@ -649,6 +650,8 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(Q)tests/symbol-prefixes $(B)
 	$(call say,LINT,no circle of calls in the cycle)
 	$(Q)tests/callgraph --most $(CIRCLE_MOST) $(RT_O)
+	$(call say,LINT,no two headers of one name)
+	$(Q)! printf '%s\n' $(notdir $(HEADERS)) | sort | uniq -d | grep .
 	$(call say,LINT,each header alone)
 	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \

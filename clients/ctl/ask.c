@@ -61,7 +61,7 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 }
 
 /* For a verb whose answer is one word of success. */
-static int command(struct ctl *c, const struct talk_question *q)
+int ctl_say(struct ctl *c, const struct talk_question *q)
 {
 	struct talk_answer a;
 	int err = ctl_ask(c, q, &a);
@@ -78,26 +78,26 @@ static int command(struct ctl *c, const struct talk_question *q)
 
 int ctl_command(struct ctl *c)
 {
-	return command(c, &(struct talk_question) { .verb = c->verb });
+	return ctl_say(c, &(struct talk_question) { .verb = c->verb });
 }
 
 int ctl_start(struct ctl *c)
 {
-	return command(c, &(struct talk_question) {
+	return ctl_say(c, &(struct talk_question) {
 		.verb = "start", .job = c->arg,
 	});
 }
 
 int ctl_resume(struct ctl *c)
 {
-	return command(c, &(struct talk_question) {
+	return ctl_say(c, &(struct talk_question) {
 		.verb = "resume", .job = c->arg, .text = c->value,
 	});
 }
 
 int ctl_remove(struct ctl *c)
 {
-	return command(c, &(struct talk_question) {
+	return ctl_say(c, &(struct talk_question) {
 		.verb = "remove", .job = c->arg,
 	});
 }
@@ -112,7 +112,7 @@ int ctl_retract(struct ctl *c)
 			"mm above 0\n", c->arg);
 		return EX_USAGE;
 	}
-	return command(c, &(struct talk_question) {
+	return ctl_say(c, &(struct talk_question) {
 		.verb = "retract", .arg = mm,
 	});
 }
@@ -131,7 +131,7 @@ int ctl_set(struct ctl *c)
 			return EX_USAGE;
 		}
 	}
-	return command(c, &(struct talk_question) {
+	return ctl_say(c, &(struct talk_question) {
 		.verb = "set", .text = c->arg, .arg = value,
 	});
 }
@@ -155,7 +155,7 @@ int ctl_move(struct ctl *c)
 	double way;
 	int rc = number(c, c->value, "-1 or +1", &way);
 
-	return rc ? rc : command(c, &(struct talk_question) {
+	return rc ? rc : ctl_say(c, &(struct talk_question) {
 		.verb = "move", .job = c->arg, .arg = way,
 	});
 }
@@ -165,7 +165,7 @@ int ctl_step(struct ctl *c)
 	double n;
 	int err = number(c, c->arg, "nodes, as +1 or -2", &n);
 
-	return err ? err : command(c, &(struct talk_question) {
+	return err ? err : ctl_say(c, &(struct talk_question) {
 		.verb = "step", .arg = n,
 	});
 }
@@ -175,7 +175,7 @@ int ctl_override(struct ctl *c)
 	double percent;
 	int err = number(c, c->arg, "percent, 0 to 200", &percent);
 
-	return err ? err : command(c, &(struct talk_question) {
+	return err ? err : ctl_say(c, &(struct talk_question) {
 		.verb = "override", .arg = percent / 100,
 	});
 }
@@ -185,28 +185,28 @@ int ctl_jog(struct ctl *c)
 	double mm;
 	int err = number(c, c->value, "mm, or degrees of A B C, + or -", &mm);
 
-	return err ? err : command(c, &(struct talk_question) {
+	return err ? err : ctl_say(c, &(struct talk_question) {
 		.verb = "jog", .text = c->arg, .arg = mm,
 	});
 }
 
 int ctl_home(struct ctl *c)
 {
-	return command(c, &(struct talk_question) {
+	return ctl_say(c, &(struct talk_question) {
 		.verb = "home", .text = c->arg,
 	});
 }
 
 /* -- Lists ---------------------------------------------------------------- */
 
-static const char *text_of(json_t *job, const char *key)
+const char *ctl_text_of(json_t *job, const char *key)
 {
 	const char *s = json_string_value(json_object_get(job, key));
 
 	return s ? s : "";
 }
 
-static double number_of(json_t *job, const char *key)
+double ctl_number_of(json_t *job, const char *key)
 {
 	return json_number_value(json_object_get(job, key));
 }
@@ -227,9 +227,9 @@ static void print_queued(json_t *job)
 	char at[32];
 
 	ctl_when(at, job, "submitted_us");
-	printf("%-14s %-24s %-8s %9.0f  %s%s\n", text_of(job, "job"),
-	       text_of(job, "name"), text_of(job, "state"),
-	       number_of(job, "lines"), at,
+	printf("%-14s %-24s %-8s %9.0f  %s%s\n", ctl_text_of(job, "job"),
+	       ctl_text_of(job, "name"), ctl_text_of(job, "state"),
+	       ctl_number_of(job, "lines"), at,
 	       json_is_true(json_object_get(job, "hold")) ?
 	       "  waits for start" : "");
 }
@@ -239,11 +239,11 @@ static void print_ended(json_t *job)
 	char at[32], took[32];
 
 	ctl_when(at, job, "ended_us");
-	ctl_duration(took, sizeof(took), number_of(job, "job_s"));
-	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n", text_of(job, "job"),
-	       text_of(job, "name"), text_of(job, "state"), at,
-	       number_of(job, "depth_mm"), took,
-	       *text_of(job, "reason") ? "  " : "", text_of(job, "reason"));
+	ctl_duration(took, sizeof(took), ctl_number_of(job, "job_s"));
+	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n", ctl_text_of(job, "job"),
+	       ctl_text_of(job, "name"), ctl_text_of(job, "state"), at,
+	       ctl_number_of(job, "depth_mm"), took,
+	       *ctl_text_of(job, "reason") ? "  " : "", ctl_text_of(job, "reason"));
 }
 
 /* A condition's name, a number, or the generator's own setting. */
@@ -266,7 +266,7 @@ static void print_changes(json_t *rows)
 	json_array_foreach(rows, i, row) {
 		ctl_when(at, row, "utime");
 		printf("%-10s %s %10.3f mm  %s ", i ? "" : "changes", at,
-		       number_of(row, "place_mm"), text_of(row, "what"));
+		       ctl_number_of(row, "place_mm"), ctl_text_of(row, "what"));
 		print_value(json_object_get(row, "was"));
 		printf(" -> ");
 		print_value(json_object_get(row, "now"));
@@ -287,24 +287,24 @@ static void print_one(json_t *job)
 	size_t i;
 
 	printf("job        %s\nname       %s\nstate      %s\n",
-	       text_of(job, "job"), text_of(job, "name"),
-	       text_of(job, "state"));
-	if (*text_of(job, "reason"))
-		printf("reason     %s\n", text_of(job, "reason"));
-	printf("lines      %.0f\n", number_of(job, "lines"));
+	       ctl_text_of(job, "job"), ctl_text_of(job, "name"),
+	       ctl_text_of(job, "state"));
+	if (*ctl_text_of(job, "reason"))
+		printf("reason     %s\n", ctl_text_of(job, "reason"));
+	printf("lines      %.0f\n", ctl_number_of(job, "lines"));
 	for (i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
 		ctl_when(text, job, times[i].key);
 		printf("%-10s %s\n", times[i].label, text);
 	}
-	ctl_duration(text, sizeof(text), number_of(job, "job_s"));
+	ctl_duration(text, sizeof(text), ctl_number_of(job, "job_s"));
 	printf("path       %.3f mm of %.3f mm\ndepth      %.3f mm\n"
 	       "time       %s\njumps      %.0f\nretracts   %.0f\n"
-	       "shorts     %.0f\nsha256     %s\n", number_of(job, "path_mm"),
-	       number_of(job, "length_mm"), number_of(job, "depth_mm"), text,
-	       number_of(job, "jumps"), number_of(job, "retracts"),
-	       number_of(job, "shorts"), text_of(job, "sha256"));
-	if (*text_of(job, "tech_sha256"))
-		printf("table      %s\n", text_of(job, "tech_sha256"));
+	       "shorts     %.0f\nsha256     %s\n", ctl_number_of(job, "path_mm"),
+	       ctl_number_of(job, "length_mm"), ctl_number_of(job, "depth_mm"), text,
+	       ctl_number_of(job, "jumps"), ctl_number_of(job, "retracts"),
+	       ctl_number_of(job, "shorts"), ctl_text_of(job, "sha256"));
+	if (*ctl_text_of(job, "tech_sha256"))
+		printf("table      %s\n", ctl_text_of(job, "tech_sha256"));
 	json_array_foreach(json_object_get(job, "notes"), i, note)
 		printf("%-10s %s\n", i ? "" : "notes",
 		       json_string_value(note));
@@ -322,8 +322,7 @@ static void print_rows(json_t *rows, const char *head,
 		print(row);
 }
 
-/* The JSON of one answer.  Return: 0, or a sysexits code after a message. */
-static int ask_json(struct ctl *c, const struct talk_question *q, json_t **ret)
+int ctl_ask_json(struct ctl *c, const struct talk_question *q, json_t **ret)
 {
 	struct talk_answer a;
 	const int err = ctl_ask(c, q, &a);
@@ -335,7 +334,7 @@ static int ask_json(struct ctl *c, const struct talk_question *q, json_t **ret)
 	return *ret ? 0 : EX_PROTOCOL;
 }
 
-static int put_json(json_t *o)
+int ctl_put_json(json_t *o)
 {
 	const int err = json_dumpf(o, stdout, JSON_ENCODE_ANY |
 				   JSON_REAL_PRECISION(15));
@@ -357,14 +356,14 @@ static int list(struct ctl *c, const char *verb, const char *head,
 	do {
 		json_decref(page);
 		page = NULL;
-		err = ask_json(c, &q, &page);
+		err = ctl_ask_json(c, &q, &page);
 		json_array_extend(all, page);
 		n = json_array_size(page);
-		q.job = text_of(json_array_get(page, n ? n - 1 : 0), "job");
+		q.job = ctl_text_of(json_array_get(page, n ? n - 1 : 0), "job");
 	} while (err == 0 && n > 0);
 	json_decref(page);
 	if (err == 0 && c->json)
-		err = put_json(all);
+		err = ctl_put_json(all);
 	else if (err == 0)
 		print_rows(all, head, print);
 	json_decref(all);
@@ -388,12 +387,12 @@ int ctl_history(struct ctl *c)
 int ctl_show(struct ctl *c)
 {
 	json_t *job = NULL;
-	int err = ask_json(c, &(struct talk_question) {
+	int err = ctl_ask_json(c, &(struct talk_question) {
 		.verb = "show", .job = c->arg,
 	}, &job);
 
 	if (err == 0 && c->json)
-		err = put_json(job);
+		err = ctl_put_json(job);
 	else if (err == 0)
 		print_one(job);
 	json_decref(job);

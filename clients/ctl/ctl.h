@@ -12,6 +12,8 @@
 
 #include <jansson.h>
 
+#define CTL_WORDS_MAX	14		/* a verb and what follows it */
+
 struct ctl {
 	/* Options. */
 	const char *machine, *url, *key;
@@ -19,6 +21,8 @@ struct ctl {
 	double timeout_s;
 	const char *name, *id;
 	bool hold, wait, once;
+	int from_line;			/* 0: not given */
+	double from_mm;			/* 0: not given */
 	unsigned int every;		/* record: cycles; 0: not given */
 	const char *plot;
 	const char *pulses;		/* doctor: CHIP:LINE */
@@ -28,6 +32,8 @@ struct ctl {
 	const char *arg;		/* NULL if there is none */
 	const char *value;		/* the second one; NULL too */
 	const char *third;
+	char *more[CTL_WORDS_MAX];	/* the third and those after it, then
+					 * NULL */
 	struct talk *talk;		/* NULL: it could not be opened, ... */
 	int talk_err;			/* ... and this is the reason, from
 					 * talk_open() */
@@ -36,6 +42,7 @@ struct ctl {
 
 int ctl_submit(struct ctl *c);
 int ctl_keys(struct ctl *c);
+int ctl_electrode(struct ctl *c);
 int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);
 int ctl_resume(struct ctl *c);
@@ -80,6 +87,20 @@ int ctl_shm_open(const struct ctl *c, const struct shm_status **ret);
  */
 int ctl_ask(struct ctl *c, const struct talk_question *q,
 	    struct talk_answer *ret);
+
+/** ctl_ask_json() - the JSON of one answer.  Return: 0, or a sysexits code after
+ *  a message. */
+int ctl_ask_json(struct ctl *c, const struct talk_question *q, json_t **ret);
+
+/** ctl_put_json() - print it.  Return: an exit code. */
+int ctl_put_json(json_t *o);
+
+/** ctl_say() - ask, and print the one word of success. */
+int ctl_say(struct ctl *c, const struct talk_question *q);
+
+/** ctl_text_of(), ctl_number_of() - a member; "" and 0 if it is not there. */
+const char *ctl_text_of(json_t *o, const char *key);
+double ctl_number_of(json_t *o, const char *key);
 
 /** ctl_unanswered() - print that no service answers. Return: EX_*. */
 int ctl_unanswered(const struct ctl *c, int err);

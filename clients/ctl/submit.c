@@ -2,8 +2,9 @@
 /* submit.c - sends a job, and says what became of it */
 #include "ctl.h"
 
-#include "job.h"
+#include "cmdline.h"
 #include "plain.h"
+#include "submission.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -30,7 +31,7 @@ static int read_all(FILE *f, struct text *t)
 		char *more;
 
 		t->size += n;
-		if (t->size > JOB_BYTES_MAX)
+		if (t->size > SUBMISSION_BYTES_MAX)
 			return -EFBIG;
 		if (t->size < room)
 			continue;
@@ -73,33 +74,33 @@ static int read_text(const char *path, struct text *t)
 	       err == -ENOMEM ? EX_SOFTWARE : EX_IOERR;
 }
 
-static void show_progress(const struct ctl *c, const struct job *j,
+static void show_progress(const struct ctl *c, const struct submission *j,
 			  struct line *l)
 {
 	char text[96];
 	int arrived;
-	const int chunks = job_progress(j, &arrived);
+	const int chunks = submission_progress(j, &arrived);
 
 	if (chunks < SHOW_CHUNKS || c->json)
 		return;
 	if (arrived < chunks)
 		snprintf(text, sizeof(text), "sending %s: %d of %d chunks",
-			 job_name(j), arrived, chunks);
+			 submission_name(j), arrived, chunks);
 	else
 		snprintf(text, sizeof(text), "sent %s; edmd-jobs reads it",
-			 job_name(j));
+			 submission_name(j));
 	line_bar(l, (double)arrived / chunks, text);
 }
 
 /* Return: 0 if the service has given a final answer, -ETIMEDOUT, -EINTR. */
-static int job_run(const struct ctl *c, struct job *j)
+static int job_run(const struct ctl *c, struct submission *j)
 {
 	struct line l;
 	int err = 0;
 
 	line_init(&l);
 	while (err == 0 && !talk_interrupted()) {
-		err = job_step(j);
+		err = submission_step(j);
 		if (err == 0)
 			talk_wait(c->talk, 20);
 		show_progress(c, j, &l);
@@ -144,9 +145,9 @@ static void print_notes(const struct talk_ack *a)
 	json_decref(j);
 }
 
-static int print_outcome(const struct ctl *c, const struct job *j)
+static int print_outcome(const struct ctl *c, const struct submission *j)
 {
-	const struct talk_ack *a = job_verdict(j);
+	const struct talk_ack *a = submission_verdict(j);
 
 	if (a->code) {
 		print_refusal(c, a);
@@ -158,7 +159,7 @@ static int print_outcome(const struct ctl *c, const struct job *j)
 	if (c->json)
 		printf("%s\n", a->body);
 	else
-		printf("job %s, %s: %s\n", job_id(j), job_name(j), a->reason);
+		printf("job %s, %s: %s\n", submission_id(j), submission_name(j), a->reason);
 	fflush(stdout);
 	return 0;
 }
@@ -175,16 +176,17 @@ static const char *name_of(const struct ctl *c)
 static int send_text(struct ctl *c, const struct text *t,
 		     char id[TALK_WORD_MAX])
 {
-	const struct job_text x = {
+	const struct submission_text x = {
 		.id = c->id, .name = name_of(c), .text = t->bytes,
-		.bytes = t->size, .hold = c->hold, .silent_s = c->timeout_s,
+		.bytes = t->size, .hold = c->hold, .from_line = c->from_line,
+		.from_mm = c->from_mm, .silent_s = c->timeout_s,
 	};
-	struct job *j;
+	struct submission *j;
 	int err, rc;
 
 	if (!c->talk)
 		return ctl_unanswered(c, -ETIMEDOUT);
-	err = job_begin(&j, c->talk, &x);
+	err = submission_begin(&j, c->talk, &x);
 
 	if (err < 0) {
 		fprintf(stderr, "edmctl: %s: %s\n", c->arg, strerror(-err));
@@ -192,8 +194,8 @@ static int send_text(struct ctl *c, const struct text *t,
 	}
 	err = job_run(c, j);
 	rc = err < 0 ? ctl_unanswered(c, err) : print_outcome(c, j);
-	snprintf(id, TALK_WORD_MAX, "%s", job_id(j));
-	job_end(j);
+	snprintf(id, TALK_WORD_MAX, "%s", submission_id(j));
+	submission_end(j);
 	return rc;
 }
 
@@ -201,7 +203,12 @@ int ctl_submit(struct ctl *c)
 {
 	struct text t = { .size = 0 };
 	char id[TALK_WORD_MAX];
-	int err = read_text(c->arg, &t);
+	int err;
+
+	if (c->from_line && c->from_mm > 0)
+		return cmdline_refuse("edmctl", "--from-line", "with "
+				      "--from-place", "one of them");
+	err = read_text(c->arg, &t);
 
 	if (err == 0)
 		err = send_text(c, &t, id);

@@ -134,7 +134,7 @@ static void node_at(const struct walk *w, uint32_t i, double mm[5])
 static uint8_t kind_of(const struct interp_seg *s)
 {
 	if (s->flags & INTERP_SEG_SENSED)
-		return FLAT_TOUCH;
+		return FLAT_PROBE;
 	return s->flags & INTERP_SEG_RAPID ? FLAT_RAPID : FLAT_CUT;
 }
 

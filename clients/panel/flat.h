@@ -19,7 +19,7 @@
 #define FLAT_POINTS_MAX	400000
 
 /* How the way to a point is gone. */
-enum flat_kind { FLAT_CUT, FLAT_RAPID, FLAT_TOUCH };
+enum flat_kind { FLAT_CUT, FLAT_RAPID, FLAT_PROBE };
 
 struct flat {
 	size_t n, room;

@@ -7,7 +7,8 @@
  *	POST /api/login		{"user": ..., "password": ...}
  *	POST /api/logout
  *	POST /api/check?name=	a job's text: is it understood? its path
- *	POST /api/jobs?name=&hold=	a job's text: into the queue
+ *	POST /api/jobs?name=&hold=&line=  a job's text: into the queue, begun
+ *					at a line; without, at its beginning
  *	GET  /api/path?program=&tolerance=	of the program that is loaded
  *	GET  /api/path?check=	of a text that was checked
  *
@@ -16,7 +17,7 @@
  */
 #include "panel.h"
 #include "plain.h"
-#include "reply.h"
+#include "answer.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -154,7 +155,7 @@ static int give_session(struct request *r, const struct session *s)
 		snprintf(r->cookie, sizeof(r->cookie),
 			 "edm_session=%s; Path=/; HttpOnly; SameSite=Strict%s",
 			 s->id, r->panel->tls ? "; Secure" : "");
-	return reply_json(r, 200, o);
+	return answer_json(r, 200, o);
 }
 
 static int get_session(struct request *r)
@@ -189,7 +190,7 @@ static void on_verified(void *arg, int status, int out_fd)
 	if (status != 0) {
 		panel_note(p, "%s: login as %s was refused", address,
 			   r->user.name);
-		reply_refusal(r, 403, "name or password is wrong",
+		answer_refusal(r, 403, "name or password is wrong",
 			      "edm-panel --add-user makes users");
 		return;
 	}
@@ -219,14 +220,14 @@ static int verify(struct request *r, const char *name, const char *password)
 	}
 	j.in_fd = child_file("panel-login");
 	if (j.in_fd < 0)
-		return reply_refusal(r, 503, "no room", "try again");
+		return answer_refusal(r, 503, "no room", "try again");
 	dprintf(j.in_fd, "%s\n%s", r->user.hash, password);
 	err = child_start(r->panel->children, &j, on_verified, r);
 	close(j.in_fd);
 	if (err)
-		return reply_refusal(r, 503, "too much is under way",
+		return answer_refusal(r, 503, "too much is under way",
 				     "try again");
-	return reply_wait(r, BODY_S);
+	return answer_wait(r, BODY_S);
 }
 
 /* What a name may be: it goes into the journal. */
@@ -254,10 +255,10 @@ static int post_login(struct request *r)
 	wait_s = session_may_try(r->panel->sessions, address);
 	if (wait_s) {
 		snprintf(wait, sizeof(wait), "again in %d s", wait_s);
-		rc = reply_refusal(r, 429, "too many tries", wait);
+		rc = answer_refusal(r, 429, "too many tries", wait);
 	} else if (!name || !password || !is_plain(name, SESSION_USER_MAX) ||
 		   strlen(password) > 256) {
-		rc = reply_refusal(r, 400, "no user and password", "both");
+		rc = answer_refusal(r, 400, "no user and password", "both");
 	} else {
 		rc = verify(r, name, password);
 	}
@@ -273,7 +274,7 @@ static int post_logout(struct request *r)
 	if (s)
 		session_end(s);
 	socket_drop_ended(r->panel);
-	return reply_json(r, 200, json_object());
+	return answer_json(r, 200, json_object());
 }
 
 /* -- Programs and paths --------------------------------------------------- */
@@ -340,7 +341,7 @@ static void on_checked(void *arg, int status, int out_fd)
 	} else {
 		close(out_fd);
 	}
-	reply_json(r, 200, o);
+	answer_json(r, 200, o);
 }
 
 static int post_check(struct request *r)
@@ -357,21 +358,21 @@ static int post_check(struct request *r)
 	};
 
 	places(r->panel, start, sizeof(start));
-	reply_draw_id(r);
+	answer_draw_id(r);
 	if (child_start(r->panel->children, &j, on_checked, r))
-		return reply_refusal(r, 503, "too much is under way",
+		return answer_refusal(r, 503, "too much is under way",
 				     "try again");
-	return reply_wait(r, CHECK_S + 5);
+	return answer_wait(r, CHECK_S + 5);
 }
 
-static void on_sent(void *arg, const struct act_answer *a)
+static void on_sent(void *arg, const struct service_answer *a)
 {
 	struct request *r = arg;
 	json_t *body = json_loads(a->body, 0, NULL);
 
 	panel_note(r->panel, "%s (%s): sent job %s, %s: %.80s", r->who,
 		   role_name(r->role), r->id, r->name, a->reason);
-	reply_json(r, 200, json_pack("{s:i,s:s,s:s,s:o}", "code", a->code,
+	answer_json(r, 200, json_pack("{s:i,s:s,s:s,s:o}", "code", a->code,
 				     "reason", a->reason, "job", r->id, "body",
 				     body ? body : json_null()));
 }
@@ -379,34 +380,34 @@ static void on_sent(void *arg, const struct act_answer *a)
 static int post_job(struct request *r)
 {
 	struct stat st;
-	struct act_job j = {
+	struct service_job j = {
 		.fd = r->body_fd, .id = r->id, .name = r->name,
-		.hold = r->hold,
+		.hold = r->hold, .from_line = r->from_line,
 	};
 	int err;
 
 	if (fstat(r->body_fd, &st) < 0)
-		return reply_refusal(r, 500, "no text", "a text");
+		return answer_refusal(r, 500, "no text", "a text");
 	j.bytes = (size_t)st.st_size;
-	reply_draw_id(r);
+	answer_draw_id(r);
 	/* Twelve letters are enough, and can be read out. */
 	r->id[12] = '\0';
-	err = act_send(r->panel->act, &j, on_sent, r);
+	err = service_send(r->panel->service, &j, on_sent, r);
 	if (err == -ENOTCONN)
-		return reply_refusal(r, 503, act_why(r->panel->act),
+		return answer_refusal(r, 503, service_why(r->panel->service),
 				     "then try again");
 	if (err)
-		return reply_refusal(r, 503, "two jobs are being sent already",
+		return answer_refusal(r, 503, "two jobs are being sent already",
 				     "try again when one of them is there");
-	return reply_wait(r, 180);
+	return answer_wait(r, 180);
 }
 
 static void on_path(void *arg, int status, int out_fd)
 {
 	if (status == 0)
-		reply_file(arg, out_fd);
+		answer_file(arg, out_fd);
 	else
-		close(out_fd), reply_refusal(arg, 404, "there is no such path",
+		close(out_fd), answer_refusal(arg, 404, "there is no such path",
 					     "the program that is loaded");
 }
 
@@ -426,21 +427,21 @@ static int get_path(struct request *r)
 		for (int i = 0; i < 8; i++)
 			if (r->panel->checked_fd[i] > 0 &&
 			    strcmp(r->panel->checked_path[i], check) == 0)
-				return reply_file(r, dup(
+				return answer_file(r, dup(
 						  r->panel->checked_fd[i]));
-		return reply_refusal(r, 404, "that text is forgotten",
+		return answer_refusal(r, 404, "that text is forgotten",
 				     "check it again");
 	}
 	read_arg(r, "program=", number, sizeof(number));
 	read_arg(r, "tolerance=", tolerance, sizeof(tolerance));
 	if (!*number || strspn(number, "0123456789") != strlen(number))
-		return reply_refusal(r, 400, "no program", "its number");
+		return answer_refusal(r, 400, "no program", "its number");
 	if (strspn(tolerance, "0123456789.e-") != strlen(tolerance))
-		return reply_refusal(r, 400, "no tolerance", "mm");
+		return answer_refusal(r, 400, "no tolerance", "mm");
 	if (child_start(r->panel->children, &j, on_path, r))
-		return reply_refusal(r, 503, "too much is under way",
+		return answer_refusal(r, 503, "too much is under way",
 				     "try again");
-	return reply_wait(r, CHECK_S + 5);
+	return answer_wait(r, CHECK_S + 5);
 }
 
 static const struct route routes[] = {
@@ -485,7 +486,8 @@ static int may_do(struct request *r, bool post)
 /* Return: is it a name that edmd-jobs takes? */
 static bool read_name(struct request *r)
 {
-	char hold[8] = "", name[NAME_ROOM] = "job.ngc";
+	char hold[8] = "", line[16] = "", name[NAME_ROOM] = "job.ngc";
+	long from;
 
 	read_arg(r, "name=", name, sizeof(name));
 	for (char *at = name; *at; at++)
@@ -493,6 +495,10 @@ static bool read_name(struct request *r)
 			*at = '_';
 	read_arg(r, "hold=", hold, sizeof(hold));
 	r->hold = hold[0] == '1';
+	read_arg(r, "line=", line, sizeof(line));
+	from = strtol(line, NULL, 10);
+	/* The service refuses what is no line. */
+	r->from_line = from < 0 || from > INT32_MAX ? -1 : (int)from;
 	snprintf(r->name, sizeof(r->name), "%.63s", name);
 	/* lws does not tell one that is too long from none. */
 	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_URI_ARGS) >= NAME_ROOM)
@@ -518,19 +524,19 @@ static int open_body(struct request *r)
 	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) >
 		    0 ||
 	    lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) <= 0)
-		return reply_refusal(r, 411, "a body of unknown length",
+		return answer_refusal(r, 411, "a body of unknown length",
 				     "Content-Length");
 	if (lws_hdr_copy(r->wsi, length, sizeof(length),
 			 WSI_TOKEN_HTTP_CONTENT_LENGTH) <= 0 ||
 	    strspn(length, "0123456789") != strlen(length) ||
 	    strtoul(length, NULL, 10) > r->route->body_max)
-		return reply_refusal(r, 413, "too long", "at most 64 MiB");
+		return answer_refusal(r, 413, "too long", "at most 64 MiB");
 	if (r->panel->bodies >= BODIES_MAX)
-		return reply_refusal(r, 503, "too many uploads at once",
+		return answer_refusal(r, 503, "too many uploads at once",
 				     "try again");
 	r->body_fd = child_file("panel-body");
 	if (r->body_fd < 0)
-		return reply_refusal(r, 503, "no room", "try again");
+		return answer_refusal(r, 503, "no room", "try again");
 	r->has_body = true;
 	r->panel->bodies++;
 	lws_set_timeout(r->wsi, PENDING_TIMEOUT_HTTP_CONTENT, BODY_S);
@@ -552,29 +558,29 @@ static int take(struct request *r, const char *path)
 	int status;
 
 	if (!get && !post)
-		return reply_refusal(r, 405, "another method", reason_of(405));
+		return answer_refusal(r, 405, "another method", reason_of(405));
 	r->route = route_of(path);
 	if (!r->route) {
 		asset = assets_find(r->panel->assets, path);
 		if (!get || !asset)
-			return reply_refusal(r, get ? 404 : 405, "nothing here",
+			return answer_refusal(r, get ? 404 : 405, "nothing here",
 					     "/");
 		if (!http_is_ours(r->panel, r->wsi, false))
-			return reply_refusal(r, 403, "another name",
+			return answer_refusal(r, 403, "another name",
 					     "an address of [panel] names");
-		return reply_asset(r, asset);
+		return answer_asset(r, asset);
 	}
 	status = may_do(r, post);
 	if (status) {
 		if (status == 403)
 			panel_note(r->panel, "%s was refused: not from this "
 				   "panel's page, or not permitted", path);
-		return reply_refusal(r, status, "refused", reason_of(status));
+		return answer_refusal(r, status, "refused", reason_of(status));
 	}
 	if (!post)
 		return r->route->run(r);
 	if (!read_name(r))
-		return reply_refusal(r, 400, "this name does not fit", "1 to "
+		return answer_refusal(r, 400, "this name does not fit", "1 to "
 				     "63 bytes of UTF-8 without characters of "
 				     "control or of the direction of writing");
 	return open_body(r);
@@ -603,7 +609,7 @@ static int begin(struct lws *wsi, struct request *r, const char *path)
 	struct panel *p = lws_context_user(lws_get_context(wsi));
 
 	if (r->panel)
-		reply_forget(r);
+		answer_forget(r);
 	*r = (struct request) { .panel = p, .wsi = wsi, .body_fd = -1,
 				.fd = -1 };
 	return take(r, path);
@@ -622,11 +628,11 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason,
 	case LWS_CALLBACK_HTTP_BODY_COMPLETION:
 		return end_body(r);
 	case LWS_CALLBACK_HTTP_WRITEABLE:
-		return reply_write(r);
+		return answer_write(r);
 	case LWS_CALLBACK_CLOSED_HTTP:
 	case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
 		if (r && r->panel)
-			reply_forget(r);
+			answer_forget(r);
 		return 0;
 	default:
 		return lws_callback_http_dummy(wsi, reason, user, in, len);

@@ -2,11 +2,11 @@
 /*
  * main.c - edm-panel: the event loop, users
  */
-#include "options.h"
+#include "panel_options.h"
 #include "panel.h"
 #include "plain.h"
-#include "reply.h"
-#include "words.h"
+#include "answer.h"
+#include "page_words.h"
 #include "work.h"
 
 #include <errno.h>
@@ -78,7 +78,7 @@ static void on_tick(lws_sorted_usec_list_t *timer)
 {
 	struct panel *p = lws_container_of(timer, struct panel, timer);
 
-	act_look(p->act);
+	service_look(p->service);
 	children_look(p->children);
 	live_look(p->live);
 	if (live_is_new_point(p->live))
@@ -165,10 +165,10 @@ static int open_parts(struct panel *p)
 	p->children = children_create();
 	if (!p->sessions || !p->children || live_create(&p->live, c) < 0)
 		return fail(EX_OSERR, "out of memory", "some MB");
-	p->act = act_create(c->lcm_url, c->name);
-	if (!p->act)
+	p->service = service_create(c->lcm_url, c->name);
+	if (!p->service)
 		return fail(EX_OSERR, "out of memory", "some MB");
-	act_on_event(p->act, on_event, p);
+	service_on_event(p->service, on_event, p);
 	if (open_server(p) == 0)
 		return 0;
 	snprintf(what, sizeof(what), "cannot listen on %s port %d",
@@ -181,7 +181,7 @@ static void close_parts(struct panel *p)
 {
 	if (p->lws)
 		lws_context_destroy(p->lws);
-	act_destroy(p->act);
+	service_destroy(p->service);
 	children_destroy(p->children);
 	live_destroy(p->live);
 	sessions_destroy(p->sessions);
@@ -284,7 +284,7 @@ static int add_user(const struct panel *p, const char *name, const char *role)
 	return 0;
 }
 
-static int read_config(struct panel *p, const struct options *o)
+static int read_config(struct panel *p, const struct panel_options *o)
 {
 	struct interp_diag d = { .line = 0 };
 	const int err = config_read(&p->config, o->config, &d);
@@ -320,16 +320,16 @@ int main(int argc, char **argv)
 {
 	static struct panel p;
 	static char self[512];
-	struct options o;
+	struct panel_options o;
 	const struct sigaction sa = { .sa_handler = on_signal };
-	int rc = options_take(&o, argc, argv);
+	int rc = panel_options_take(&o, argc, argv);
 
 	if (rc >= 0)
 		return rc;
 	if (o.work.what)
 		return work_run(&o.work);
 	if (o.print_words)
-		return words_print();
+		return page_words_print();
 	rc = read_config(&p, &o);
 	if (rc)
 		return rc;

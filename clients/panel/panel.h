@@ -10,7 +10,7 @@
 #ifndef PANEL_PANEL_H
 #define PANEL_PANEL_H
 
-#include "act.h"
+#include "service.h"
 #include "assets.h"
 #include "child.h"
 #include "config.h"
@@ -42,7 +42,7 @@ struct panel {
 	struct lws_vhost *vhost;
 	lws_sorted_usec_list_t timer;
 	struct live *live;
-	struct act *act;
+	struct service *service;
 	struct assets *assets;
 	struct sessions *sessions;
 	struct children *children;

@@ -23,7 +23,7 @@ static double now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-static void on_answer(void *arg, const struct act_answer *a)
+static void on_answer(void *arg, const struct service_answer *a)
 {
 	struct press *p = arg;
 
@@ -41,14 +41,14 @@ static void pass_on(struct browser *b, double mm_s)
 {
 	struct press *p = socket_press(b);
 	char text[64];
-	const struct act_question q = {
+	const struct service_question q = {
 		.verb = "jog-on", .job = "", .text = text, .arg = mm_s,
-		.flags = ACT_ONCE,
+		.flags = SERVICE_ONCE,
 	};
 
 	snprintf(text, sizeof(text), "%s %u%s", p->axis, p->number,
 		 p->begun ? "" : " begin");
-	act_ask(socket_panel(b)->act, &q, on_answer, p);
+	service_ask(socket_panel(b)->service, &q, on_answer, p);
 }
 
 static void tell(struct browser *b, const char *what)
@@ -70,7 +70,7 @@ void press_end(struct browser *b)
 		pass_on(b, 0);
 		tell(b, p->code ? p->reason : "ends");
 	}
-	act_forget(socket_panel(b)->act, p);
+	service_forget(socket_panel(b)->service, p);
 	*p = (struct press) { .number = 0 };
 }
 

@@ -203,7 +203,7 @@ static json_t *changes(const json_t *was, json_t *now)
 
 static json_t *state_of(struct panel *p)
 {
-	const struct act_status *s = act_status(p->act);
+	const struct service_status *s = service_status(p->service);
 	json_t *o = json_object();
 
 	live_fill(p->live, o);

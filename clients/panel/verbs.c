@@ -57,7 +57,7 @@ static bool is_fit(const struct verb *v, const json_t *o)
 		const json_t *w = json_object_get(o, words[i]);
 
 		if (w && (!json_is_string(w) ||
-			  json_string_length(w) >= ACT_WORD_MAX))
+			  json_string_length(w) >= SERVICE_WORD_MAX))
 			return false;
 	}
 	if (!arg)
@@ -116,7 +116,7 @@ static void refuse(struct browser *b, int64_t n, int code, const char *reason)
 
 /* -- Of edmd-jobs --------------------------------------------------------- */
 
-static void on_answer(void *arg, const struct act_answer *a)
+static void on_answer(void *arg, const struct service_answer *a)
 {
 	struct pending *p = arg;
 
@@ -131,7 +131,7 @@ static void on_answer(void *arg, const struct act_answer *a)
 }
 
 static void describe(struct pending *p, const struct session *s,
-		     const struct act_question *q)
+		     const struct service_question *q)
 {
 	snprintf(p->what, sizeof(p->what), "%s (%s, %s): %s%s%.40s%s%.40s",
 		 s->user, role_name(s->role), s->address, q->verb,
@@ -145,7 +145,7 @@ static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 		    const json_t *o)
 {
 	/* A JSON null takes a value back: what messages/README.md calls NaN. */
-	const struct act_question q = {
+	const struct service_question q = {
 		.verb = v->asks ? v->asks : v->name, .flags = v->flags,
 		.job = text_of(o, "job"), .text = text_of(o, "text"),
 		.arg = json_is_null(json_object_get(o, "arg")) ? NAN :
@@ -155,12 +155,12 @@ static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 
 	if (p && v->act)
 		describe(p, socket_session(b), &q);
-	if (p && act_ask(socket_panel(b)->act, &q, on_answer, p) == 0)
+	if (p && service_ask(socket_panel(b)->service, &q, on_answer, p) == 0)
 		return;
 	if (p)
 		unpend(p);
-	refuse(b, n, EX_TEMPFAIL, *act_why(socket_panel(b)->act) ?
-	       act_why(socket_panel(b)->act) :
+	refuse(b, n, EX_TEMPFAIL, *service_why(socket_panel(b)->service) ?
+	       service_why(socket_panel(b)->service) :
 	       "too many requests are under way; try again");
 }
 
@@ -382,7 +382,7 @@ static const struct verb verbs[] = {
 	{ "stop",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "retract",  ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
 	{ "step",     ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true, ACT_ONCE | NUMBER },
+	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true, SERVICE_ONCE | NUMBER },
 	{ "press",    ROLE_OPERATOR, run_press, NULL, false, NUMBER },
 	{ "home",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "override", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
@@ -476,14 +476,12 @@ json_t *verbs_hello(struct panel *p, const struct session *s)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		if (c->axes.present >> i & 1)
 			json_array_append_new(axes, axis(c, i));
-	return json_pack("{s:s,s:s,s:s,s:s,s:o,s:o,s:o,s:i,s:f,s:f,s:b,s:b,"
-			 "s:s}",
+	return json_pack("{s:s,s:s,s:s,s:s,s:o,s:o,s:o,s:i,s:b,s:b,s:s}",
 			 "machine", c->name, "user", s->user, "role",
 			 role_name(s->role), "version", EDM_VERSION, "axes",
 			 axes, "fields", values_fields(), "offsets",
-			 offsets(c), "process", c->gap.process, "touchFeed",
-			 c->probe.feed_mm_s, "touchBack", c->probe.back_mm,
-			 "plc", config_has_plc(c), "simulated",
+			 offsets(c), "process", c->gap.process, "plc",
+			 config_has_plc(c), "simulated",
 			 c->backend == BACKEND_SIM || c->backend ==
 			 BACKEND_NULL, "table", c->tech_table);
 }

@@ -5,7 +5,7 @@
 #include "work.h"
 #include "child.h"
 #include "flat.h"
-#include "tech.h"
+#include "page_tech.h"
 
 #include "compiling.h"
 #include "config.h"
@@ -228,6 +228,6 @@ int work_run(const struct work *w)
 	if (strcmp(w->what, "check") == 0)
 		return work_check(&c, w);
 	if (strcmp(w->what, "tech") == 0)
-		return tech_put(&c);
+		return page_tech_put(&c);
 	return work_path(w);
 }

@@ -21,6 +21,7 @@
 #define WORDS		24
 #define TRIES		4
 #define IDLE_NS		500000		/* before the first target */
+#define QUICK_WRITES	32
 
 struct box {
 	_Atomic uint32_t word[WORDS];
@@ -29,6 +30,12 @@ struct box {
 struct mailbox {
 	struct box box[BOXES];
 	_Atomic uint32_t n;		/* boxes written; the last is n - 1 */
+};
+
+/* The shortest of the last QUICK_WRITES times, or of twice as many. */
+struct quickest {
+	int64_t before_ns, since_ns;	/* of the last full row; of the present */
+	int n;				/* in the present row */
 };
 
 struct edges {
@@ -40,7 +47,8 @@ struct edges {
 	int32_t from[IO_NAXES], to[IO_NAXES];	/* of the period played */
 	int32_t held_at[IO_NAXES];	/* target when a stop was told */
 	bool held;
-	int64_t write_ns;		/* of the last slot */
+	int64_t slot_at_ns;		/* the last slot may have begun so late */
+	struct quickest quickest;	/* from waking to the end of a write */
 	struct edges_shown seen;	/* by the cycle */
 	pthread_t thread;
 	_Atomic bool quit;
@@ -206,7 +214,43 @@ static void show(struct edges *e, bool end)
 	post(&e->shown, s, sizeof(*s));
 }
 
-/* Never closer to the one before than a slot, however late that was. */
+static int64_t shorter(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}
+
+static int64_t quickest_of(struct quickest *q, int64_t ns)
+{
+	if (q->n == QUICK_WRITES)
+		*q = (struct quickest) { q->since_ns, INT64_MAX, 0 };
+	q->since_ns = shorter(q->since_ns, ns);
+	q->n++;
+	return shorter(q->before_ns, q->since_ns);
+}
+
+/*
+ * The thread may lose its processor between waking and the change of the
+ * lines. Lines that are known to be written at the end of the call changed no
+ * later than the quickest write would have changed them, had it ended then.
+ */
+static bool write_lines(struct edges *e, int64_t woke_ns)
+{
+	const bool ok = e->c.write(e->c.arg, e->pulser.step, e->pulser.dir);
+	const int64_t end_ns = now_ns();
+
+	e->slot_at_ns = end_ns - quickest_of(&e->quickest, end_ns - woke_ns);
+	return ok;
+}
+
+/* Levels that the lines have already, to see how quick a write can be. */
+static void learn_quickest(struct edges *e)
+{
+	e->quickest = (struct quickest) { INT64_MAX, INT64_MAX, 0 };
+	for (int i = 0; i < QUICK_WRITES && !e->last_shown.lost; i++)
+		e->last_shown.lost = !write_lines(e, now_ns());
+}
+
+/* The lines keep each level for a slot at least, however late it came. */
 static void play_slot(struct edges *e, uint32_t slot, int64_t at_ns)
 {
 	const int64_t slot_ns = e->c.period_ns / e->c.slots;
@@ -214,17 +258,17 @@ static void play_slot(struct edges *e, uint32_t slot, int64_t at_ns)
 	int32_t target[IO_NAXES];
 	int64_t woke;
 
-	if (at_ns < e->write_ns + slot_ns)
-		at_ns = e->write_ns + slot_ns;
+	if (at_ns < e->slot_at_ns + slot_ns)
+		at_ns = e->slot_at_ns + slot_ns;
 	woke = wait_until(at_ns);
 	e->last_shown.late += woke - at_ns > slot_ns;
 	heed_stop(e);
 	aim(e, slot, target);
 	pulser_period(&e->pulser, target);
-	e->write_ns = woke;
+	e->slot_at_ns = woke;
 	if (step == e->pulser.step && dir == e->pulser.dir)
 		return;
-	if (!e->c.write(e->c.arg, e->pulser.step, e->pulser.dir))
+	if (!write_lines(e, woke))
 		e->last_shown.lost = 1;
 	show(e, false);
 }
@@ -243,7 +287,7 @@ static void play(struct edges *e, int64_t from_ns)
 	memcpy(e->to, e->last_told.target, sizeof(e->to));
 	heed_stop(e);
 	for (uint32_t s = 0; s < e->c.slots && !e->last_shown.lost &&
-	     !is_still(e) && e->write_ns < until_ns; s++)
+	     !is_still(e) && e->slot_at_ns < until_ns; s++)
 		play_slot(e, s, from_ns + (int64_t)s * e->c.period_ns /
 					  e->c.slots);
 	show(e, true);
@@ -270,6 +314,7 @@ static void *run(void *arg)
 	int64_t next;
 
 	be_real(&e->c);
+	learn_quickest(e);
 	while (!atomic_load(&e->quit) && atomic_load(&e->told.n) == 0)
 		sleep_until(now_ns() + IDLE_NS);
 	next = now_ns() + e->c.period_ns / 2;

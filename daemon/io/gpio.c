@@ -149,9 +149,9 @@ bool gpio_edges_write(void *self, uint32_t step, uint32_t dir)
 {
 	struct gpio *g = self;
 
-	return !gpio_levels(g, (uint64_t)step << LINE_STEP |
-			       (uint64_t)dir << LINE_DIR, PULSE_LINES) ||
-	       bulk_write(g, BULK_EDGES);
+	gpio_levels(g, (uint64_t)step << LINE_STEP | (uint64_t)dir << LINE_DIR,
+		    PULSE_LINES);
+	return bulk_write(g, BULK_EDGES);
 }
 
 void gpio_outputs_write(struct gpio *g)

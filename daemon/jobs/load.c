@@ -93,10 +93,16 @@ int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us)
 static void load_refuse(struct jobs *j, struct store_job job,
 			const char *reason)
 {
+	static struct again a;
+
 	j->queue.job = job;
 	j->queue.snap = (struct shm_snapshot) { .program = 0 };
 	j->queue.depth_mm = 0;
-	queue_end(j, JOB_FAULT, reason);
+	/* What was cut of an interrupted job is not thrown away. */
+	if (again_read(j, job.n, &a) == 0 && !again_is_named(&a))
+		again_refuse(j, &job, reason);
+	else
+		queue_end(j, JOB_FAULT, reason);
 	queue_drop(j, false);
 }
 
@@ -199,12 +205,13 @@ static void on_compiled(void *arg, const struct compiler_result *r)
 		return;
 	if (r->err == 0) {
 		q->job = found;
-		store_set_tech(j->store, found.n, r->tech_sha256);
 		why = again_loaded(j, r);
-		if (why)
+		if (why) {
 			load_refuse(j, found, why);
-		else
+		} else {
+			store_set_tech(j->store, found.n, r->tech_sha256);
 			load_ask(j, r);
+		}
 		queue_recount(j);
 		return;
 	}

@@ -5,7 +5,7 @@
 #include "cmdline.h"
 #include "compiling.h"
 #include "interrupt.h"
-#include "keys.h"
+#include "keyring.h"
 #include "jobs_log.h"
 #include "logger.h"
 #include "names.h"
@@ -404,14 +404,14 @@ int main(int argc, char **argv)
 				&jobs.last);
 	hash_file(jobs.config_hash, o.config);
 	if (err == 0)
-		err = keys_open(&jobs, o.store ? o.store : config.store_dir);
+		err = keyring_open(&jobs, o.store ? o.store : config.store_dir);
 	if (err == 0)
 		err = open_lcm(&jobs);
 	if (err == 0)
 		err = run(&jobs);
 	reply_fini(&jobs.replies);
 	jobs_lcm_close(jobs.lcm);
-	keys_close(&jobs);
+	keyring_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);
 	checkpoint_close(jobs.checkpoint);
 	store_close(jobs.store);

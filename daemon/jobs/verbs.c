@@ -7,7 +7,8 @@
  */
 #include "act.h"
 #include "again.h"
-#include "keys.h"
+#include "electrode.h"
+#include "keyring.h"
 #include "verb.h"
 
 #include "interp/tech_table.h"
@@ -552,19 +553,29 @@ static const struct verb verbs[] = {
 	{ "alarms", ROLE_VIEWER, VERB_ASKS, verbs_alarms, VERB_OWN, "" },
 	{ "queue", ROLE_VIEWER, VERB_ASKS, verbs_queue, VERB_OWN, "" },
 	{ "show", ROLE_VIEWER, VERB_ASKS, verbs_show, VERB_OWN, "" },
+	{ "trail", ROLE_VIEWER, VERB_ASKS, verbs_trail, VERB_OWN, "" },
 	{ "history", ROLE_VIEWER, VERB_ASKS, verbs_history, VERB_OWN, "" },
+	{ "electrodes", ROLE_VIEWER, VERB_ASKS, electrode_list, VERB_OWN, "" },
+	{ "electrode-add", ROLE_OPERATOR, VERB_ACTS, electrode_add, VERB_OWN,
+	  "" },
+	{ "electrode-set", ROLE_OPERATOR, VERB_ACTS, electrode_set, VERB_OWN,
+	  "" },
+	{ "electrode-remove", ROLE_OPERATOR, VERB_ACTS, electrode_remove,
+	  VERB_OWN, "" },
+	{ "electrode-use", ROLE_OPERATOR, VERB_ACTS, electrode_use, VERB_OWN,
+	  "" },
 	{ "store", ROLE_VIEWER, VERB_ASKS, verbs_store, VERB_OWN, "" },
-	{ "hello", ROLE_VIEWER, VERB_ASKS, keys_hello, VERB_OWN, "" },
-	{ "keys", ROLE_SERVICE, VERB_ASKS, keys_list, VERB_OWN, "" },
-	{ "keys-add", ROLE_SERVICE, VERB_ACTS, keys_add, VERB_OWN, "" },
-	{ "keys-remove", ROLE_SERVICE, VERB_ACTS, keys_remove, VERB_OWN, "" },
+	{ "hello", ROLE_VIEWER, VERB_ASKS, keyring_hello, VERB_OWN, "" },
+	{ "keys", ROLE_SERVICE, VERB_ASKS, keyring_list, VERB_OWN, "" },
+	{ "keys-add", ROLE_SERVICE, VERB_ACTS, keyring_add, VERB_OWN, "" },
+	{ "keys-remove", ROLE_SERVICE, VERB_ACTS, keyring_remove, VERB_OWN, "" },
 };
 
 #define NVERBS	(sizeof(verbs) / sizeof(verbs[0]))
 
 static void refuse_verb(struct jobs *j, const struct jobs_lcm_command *c)
 {
-	char reason[256];
+	char reason[512];
 	size_t n = (size_t)snprintf(reason, sizeof(reason),
 				    "no such verb; one of");
 

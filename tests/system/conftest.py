@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import panel
 import pytest
 import rig
 
@@ -59,3 +60,12 @@ def homing(tmp_path):
     yield m
     m.close()
     assert m.sweep() == []
+
+
+@pytest.fixture(scope="module")
+def p(tmp_path_factory):
+    """A panel with its machine, both started."""
+    p = panel.Panel(tmp_path_factory.mktemp("panel"))
+    p.start()
+    yield p
+    p.close()

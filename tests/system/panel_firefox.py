@@ -25,14 +25,6 @@ return document.documentElement.scrollWidth > window.innerWidth ?
 """
 
 
-@pytest.fixture(scope="module")
-def p(tmp_path_factory):
-    p = panel.Panel(tmp_path_factory.mktemp("page"))
-    p.start()
-    yield p
-    p.close()
-
-
 @pytest.fixture(params=["en-GB", "zh-CN"])
 def fox(request, tmp_path):
     fox = firefox.Firefox(tmp_path, request.param)

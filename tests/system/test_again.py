@@ -5,6 +5,7 @@ path, and from there on as if nothing had been."""
 import random
 
 import pytest
+import rig
 from test_power import LONG_JOB, die, seeds
 
 # Two cuts, each with a way down to the work.
@@ -104,3 +105,119 @@ def test_another_machine_file_is_refused(idle):
     a = c.ask("resume", "cut", text="XYZABCUV")
     assert a.code == 1 and "machine file" in a.reason
     assert c.job("cut")["state"] == "interrupted"
+
+
+def test_what_cannot_go_on_stays_interrupted(idle):
+    """Probed before: what was found is gone, but the job is not."""
+    m, c = idle, idle.client
+    interrupted(m, c, 5, b"G21 G90\nG38.2 X1 F60\nG92 X0\n"
+                b"G1 Y8 F60\nM30\n")
+    assert c.ask("resume", "cut", text="XYZABCUV").code == 0
+    told = c.heard(lambda: [e.text for e in c.events
+                            if e.kind == "interrupted"
+                            and "cannot go on" in e.text])[0]
+    assert "probed" in told and ":2:" in told
+    assert c.job("cut")["state"] == "interrupted"
+    assert c.ask("resume", "cut", text="XYZABCUV").code == 0
+    assert c.ask("remove", "cut").code == 0
+
+
+@pytest.mark.parametrize("where", [{"from_line": 9}, {"from_mm": 18.5}])
+def test_it_begins_where_its_sender_says(machine, where):
+    c = machine.client
+    a = c.submit(CUT, "cut", **where)
+    assert a.code == 0 and "X1.000 Y5.000" in a.reason, a.reason
+    c.job_where("cut", "ready")
+    c.hear(0.5)
+    assert not any(c.status().pos_mm), "it moves by itself"
+    assert "off the work" in way_in(c, "cut")
+    assert c.ask("start").code == 0
+    # Not where the first cut is: in front of the second, and then along it.
+    c.status_where(lambda s: s.state == "travel" and s.pos_mm[1] > 4, 20)
+    c.job_where("cut", "done", 60)
+    assert c.status().pos_mm[:3] == pytest.approx((5, 5, 0))
+    past = c.job("cut")
+    assert past["path_mm"] == pytest.approx(past["length_mm"])
+
+
+def test_a_begin_inside_survives_a_power_cut(idle):
+    m, c = idle, idle.client
+    m.start()
+    assert c.submit(CUT, "cut", from_line=9).code == 0
+    c.job_where("cut", "ready")
+    die(m)      # it has not begun: it waits as before
+    m.start()
+    c.status_where(lambda s: s.job_state == "ready" and s.state == "hold", 10)
+    assert c.ask("start").code == 0
+    last = c.status_where(lambda s: s.job_state == "running"
+                          and s.pos_mm[0] > 2 and s.pos_mm[1] > 4.9, 20)
+    c.hear(1.2)
+    die(m)
+    m.start()
+    c.status_where(lambda s: s.interrupted == "cut", 10)
+    # Places are those of the whole program: its second cut is behind 17 mm.
+    assert c.job("cut")["path_mm"] > 17 + last.pos_mm[0] - 1
+    resume(c)
+    assert "X1.000 Y5.000 Z0.000" in way_in(c, "cut")
+    assert c.ask("start").code == 0
+    c.job_where("cut", "done", 60)
+    assert c.status().pos_mm[:3] == pytest.approx((5, 5, 0))
+
+
+@pytest.mark.parametrize("where, code, why", [
+    ({"from_line": 10}, 65, "nothing moves in line 10"),
+    ({"from_mm": 1e6}, 65, "nothing of the path is left"),
+    ({"from_mm": -1}, 65, "not fit"),
+    ({"from_mm": float("nan")}, 65, "not fit"),
+    ({"from_line": -1}, 65, "not fit"),
+    ({"from_line": 9, "from_mm": 3}, 65, "not fit"),
+])
+def test_a_place_that_is_not_there_is_refused(machine, where, code, why):
+    c = machine.client
+    a = c.submit(CUT, "cut", **where)
+    assert a.code == code and why in a.reason, a.reason
+    assert c.ask("show", "cut").code == 66
+
+
+SPARKS = """
+[machine]
+name = {name}
+backend = sim
+overrun_limit = 0
+cpu = -1
+
+[sim]
+speed = 4
+
+[jobs]
+store = {store}
+"""
+
+
+@pytest.fixture
+def sparks(tmp_path):
+    """A machine with a gap; its programs are not started yet."""
+    m = rig.Machine(tmp_path, SPARKS)
+    yield m
+    m.close()
+    assert m.sweep() == [], "left in /dev/shm"
+
+
+def test_what_was_set_stays_set_through_two_power_cuts(sparks):
+    m, c = sparks, sparks.client
+    m.start()
+    assert c.submit(b"G21 G90\nM3\nG1 X-9 F5\nM30\n", "cut").code == 0
+    c.status_where(lambda s: s.state == "erode", 20)
+    assert c.ask("set", text="servo_v", arg=41).code == 0
+    for _ in range(2):
+        c.hear(1.5)     # the checkpoint has it
+        die(m)
+        m.start()
+        c.status_where(lambda s: s.interrupted == "cut", 10)
+        resume(c)
+        assert c.ask("start").code == 0
+        c.status_where(lambda s: s.state == "erode", 20)
+    assert c.ask("set", text="servo_v", arg=42).code == 0
+    c.hear(0.5)
+    sets = [x for x in c.job("cut")["changes"] if x["what"] == "servo_v"]
+    assert [(x["was"], x["now"]) for x in sets][-1] == (41, 42)

@@ -17,14 +17,6 @@ import rig
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 
-@pytest.fixture(scope="module")
-def p(tmp_path_factory):
-    p = panel.Panel(tmp_path_factory.mktemp("panel"))
-    p.start()
-    yield p
-    p.close()
-
-
 @pytest.fixture
 def me(p):
     return p.session()

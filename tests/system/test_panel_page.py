@@ -2,6 +2,7 @@
 """The panel's page in a browser, against the real gateway and daemons."""
 
 import json
+import os
 import re
 import signal
 
@@ -25,14 +26,6 @@ def chromium():
             executable_path=panel.CHROMIUM, args=panel.CHROMIUM_FLAGS)
         yield browser
         browser.close()
-
-
-@pytest.fixture(scope="module")
-def p(tmp_path_factory):
-    p = panel.Panel(tmp_path_factory.mktemp("page"))
-    p.start()
-    yield p
-    p.close()
 
 
 @pytest.fixture
@@ -301,6 +294,29 @@ def test_nothing_is_cut_off(p, page, size):
 
 def clicks(page):
     return page.evaluate("window.clicks")
+
+
+def test_a_program_begins_at_a_line(p, page):
+    page.goto(p.url + "/#/jobs")
+    give(page, panel.JOB)
+    expect(page.locator("#send")).to_have_attribute("aria-disabled", "false")
+    page.locator("#fromline").fill("seven")
+    expect(page.locator("#send")).to_have_attribute("aria-disabled", "true")
+    page.locator("#fromline").fill("99")
+    expect(page.locator("#sendstart")).to_have_attribute("aria-disabled",
+                                                         "true")
+    page.locator("#send").click()
+    expect(page.locator(".toasts")).to_contain_text(
+        "nothing moves in line 99")
+    page.locator("#fromline").fill("7")
+    page.locator("#send").click()
+    expect(page.locator(".toasts")).to_contain_text("off the work")
+    s = p.machine.client.status_where(lambda s: s.state == "hold", 10)
+    assert s.job_name == "part.ngc"
+    picture = os.environ.get("EDM_PICTURES")
+    if picture:
+        page.screenshot(path=f"{picture}/from-line.png")
+    end_job(page, p)
 
 
 def test_few_clicks_lead_where_one_wants(p, page):

@@ -116,11 +116,12 @@ def test_an_unknown_key_is_told_so_and_does_nothing(machine):
 def test_each_role_may_what_its_table_says(machine):
     viewer = Client(machine.name, add_key(machine, "eve", "viewer"))
     operator = Client(machine.name, add_key(machine, "otto", "operator"))
-    for verb in ("queue", "history", "alarms", "hello"):
+    for verb in ("queue", "history", "alarms", "hello", "electrodes"):
         assert viewer.ask(verb).code == 0
     for verb in ("start", "hold", "resume", "stop", "retract", "set", "estop",
                  "reset", "step", "jog", "home", "override", "remove", "keys",
-                 "keys-add", "keys-remove"):
+                 "keys-add", "keys-remove", "electrode-add", "electrode-set",
+                 "electrode-remove", "electrode-use"):
         a = viewer.ask(verb)
         assert a.code == 77, verb
         assert "viewer" in a.reason

@@ -10,6 +10,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -21,7 +22,37 @@ struct rig {
 	uint32_t step;			/* levels, the thread's own */
 	_Atomic int32_t at[IO_NAXES];	/* counted from the lines */
 	_Atomic bool gone;
+	uint32_t slow;			/* each so many writes is slow; 0: none */
+	uint32_t writes;		/* the thread's own, as what follows */
+	int64_t changed_ns, least_ns;	/* the last change; the shortest level */
 };
+
+#define PERIOD_NS	2000000
+#define SLOTS		40
+#define SLOT_NS		(PERIOD_NS / SLOTS)
+
+static int64_t now_ns(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
+}
+
+/* The lines change when a write ends, and some take longer than a slot. */
+static void take_time(struct rig *r)
+{
+	const int64_t until = now_ns() + SLOT_NS * 6 / 5;
+	int64_t now;
+
+	if (r->slow && ++r->writes % r->slow == 0)
+		while (now_ns() < until)
+			;
+	now = now_ns();
+	if (r->changed_ns && now - r->changed_ns < r->least_ns)
+		r->least_ns = now - r->changed_ns;
+	r->changed_ns = now;
+}
 
 /* Counts as a drive does, at each step that rises. */
 static bool lines(void *arg, uint32_t step, uint32_t dir)
@@ -29,6 +60,8 @@ static bool lines(void *arg, uint32_t step, uint32_t dir)
 	struct rig *r = arg;
 	const uint32_t rises = step & ~r->step;
 
+	if (step != r->step)
+		take_time(r);
 	r->step = step;
 	for (int i = 0; i < IO_NAXES; i++)
 		if (rises >> i & 1)
@@ -39,11 +72,11 @@ static bool lines(void *arg, uint32_t step, uint32_t dir)
 static void begin(struct rig *r)
 {
 	const struct edges_config c = {
-		.pulser = { 1, 1, 1, 1, false }, .period_ns = 2000000,
-		.slots = 40, .cpu = -1, .write = lines, .arg = r,
+		.pulser = { 1, 1, 1, 1, false }, .period_ns = PERIOD_NS,
+		.slots = SLOTS, .cpu = -1, .write = lines, .arg = r,
 	};
 
-	memset(r, 0, sizeof(*r));
+	*r = (struct rig) { .least_ns = INT64_MAX };
 	assert_int_equal(edges_start(&r->e, &c), 0);
 	edges_tell(r->e, &r->told);
 }
@@ -136,6 +169,23 @@ static void a_stop_ends_the_pulses_until_another_target(void **state)
 	edges_end(r.e);
 }
 
+/* A write that was interrupted before the lines changed is such a one. */
+static void a_level_is_long_enough_behind_a_slow_write_too(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	begin(&r);
+	settle(&r);
+	r.slow = 3;
+	r.told.target[0] = 400;
+	edges_tell(r.e, &r.told);
+	settle(&r);
+	edges_end(r.e);
+	assert_int_equal(r.at[0], 400);
+	assert_true(r.least_ns > SLOT_NS / 2);
+}
+
 static void lines_that_are_gone_are_told(void **state)
 {
 	struct rig r;
@@ -165,6 +215,8 @@ int main(void)
 		cmocka_unit_test(
 			more_than_a_period_holds_is_put_out_later_not_lost),
 		cmocka_unit_test(a_stop_ends_the_pulses_until_another_target),
+		cmocka_unit_test(
+			a_level_is_long_enough_behind_a_slow_write_too),
 		cmocka_unit_test(lines_that_are_gone_are_told),
 	};
 

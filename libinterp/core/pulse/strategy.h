@@ -3,7 +3,8 @@
  * strategy.h - the strategies: how a path becomes pulses, one row for each
  *
  * A new strategy needs its walk, or its rule for a pair of axes, in a file of
- * this folder; its number in interp/program.h; and a row in strategy.c.
+ * this folder; the declaration of that in pulse.h or pair.h; and a row in
+ * interp/strategies.h.
  *
  * Threads: plain data; RT-safe.
  */

@@ -15,7 +15,7 @@ export interface Field {
 export interface Hello {
 	machine: string; user: string; role: Role; version: string; axes: Axis[];
 	fields: Field[]; offsets: number[][]; plc: boolean; simulated: boolean;
-	table: string; touchFeed: number; touchBack: number;
+	table: string;
 }
 
 export type Role = "none" | "viewer" | "operator" | "service";

@@ -2,13 +2,17 @@
 /*
  * build_from.h - begin a program at a place inside it
  *
- * After a power cut the job has to go on where it was.  The electrode is first
+ * After a power cut the job has to go on where it was; and an operator may name
+ * a line or a place from which a program is to be cut.  The electrode is first
  * positioned to the end of the last positioning motion before that place, which
- * is off the work: along one axis out of the work, over, and along the same axis
- * in.  Then it follows the program's own path.  The ground up to the place was
- * cut already, so the gap is open there and the servo comes on at its highest
- * feed, with the gap watched.  The first spark is where the material begins,
- * wherever that is.
+ * is off the work: along one axis out of the work, over, and along the same
+ * axis in.  Then it follows the program's own path.  The ground up to the place
+ * was cut already, so the gap is open there and the servo comes on at its
+ * highest feed, with the gap watched.  The first spark is where the material
+ * begins, wherever that is.
+ *
+ * The way up is straight.  Nothing here knows whether an electrode that still
+ * stands in the work can leave it so.
  *
  * The condition in force and the outputs that the program has switched (power,
  * polarity, pump) are those of the place.  Dwells, stops and M codes that were
@@ -25,11 +29,17 @@
 #define INTERP_PASSED_MAX	16
 
 struct interp_build_from {
+	uint32_t line;			/* the place: where this line of the
+					 * text begins, when it is done for the
+					 * first time; if nothing is done in
+					 * it, the next one; 0: far_mm */
 	double far_mm;			/* the place: along the path of the
 					 * whole program */
 	double now_mm[INTERP_NAXES];	/* where the axes stand */
 	int up;				/* axis whose + leads out of the work;
-					 * -1: none, the way is straight */
+					 * -1: a wire, which is cut off: the way
+					 * is straight, and at its end the
+					 * program stops (M0) for threading */
 };
 
 /** interp_build_set() - condition @cond of the program has @value in @field
@@ -40,6 +50,11 @@ void interp_build_set(struct interp_build *b, uint32_t cond, uint32_t field,
 /* What became of it. */
 struct interp_build_entry {
 	uint32_t line;			/* of the place */
+	uint32_t next_line;		/* the first that moves behind the way
+					 * in */
+	double far_mm;			/* the place, along the path of ... */
+	double length_mm;		/* ... and the length of the whole
+					 * program */
 	double entry_mm[INTERP_NAXES];	/* where it comes in */
 	double from_mm;			/* that point, along the path of the
 					 * whole program ... */

@@ -33,6 +33,7 @@
 #include "interp/axis.h"
 #include "interp/mcode_arg.h"
 #include "interp/nurbs_length.h"
+#include "interp/strategies.h"
 #include "interp/tech.h"
 
 #include <stdbool.h>
@@ -44,18 +45,6 @@
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
 #define INTERP_PROGRAM_VERSION	8
-
-/* How a path becomes pulses. */
-enum interp_strategy {
-	INTERP_SIMULTANEOUS,		/* every axis may pulse at once */
-	/* One axis, one pulse at a time, but for the dda; see pulse/pair.h: */
-	INTERP_POINT_BY_POINT,		/* toward the line, within a pulse */
-	INTERP_CENTRED,			/* as near as one axis at a time can */
-	INTERP_DDA,			/* an accumulator for each axis */
-	INTERP_MAIN_DIRECTION,		/* the main axis as far as mu allows */
-	INTERP_MIN_SWITCH,		/* few changes of axis, within mu */
-	INTERP_NSTRATEGIES
-};
 
 /*
  * How three and more axes make a line, one at a time.  Point-by-point is a

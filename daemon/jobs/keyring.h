@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * keys.h - the service's own keys, and the verbs that manage the keys of others
+ * keyring.h - the service's own keys, and the verbs that manage the keys of
+ * others
  *
  * Beside the store there are two files. <machine>.machine-key is the key that
  * the service signs with; only its own user may read it. <machine>.key is the
@@ -10,32 +11,34 @@
  *
  * Threads: one, that of the event loop.
  */
-#ifndef JOBS_KEYS_H
-#define JOBS_KEYS_H
+#ifndef JOBS_KEYRING_H
+#define JOBS_KEYRING_H
 
 struct jobs;
 struct verb;
 struct jobs_lcm_command;
 
 /**
- * keys_open() - read the keys, or make them. Return: 0, or an exit code; then
- * the log says what is wrong and how to mend it.
+ * keyring_open() - read the keys, or make them.
+ *
+ * Return: 0, or an exit code; then the log says what is wrong and how to mend
+ * it.
  */
-int keys_open(struct jobs *j, const char *dir);
+int keyring_open(struct jobs *j, const char *dir);
 
-/** keys_close() - remove the copy. */
-void keys_close(struct jobs *j);
+/** keyring_close() - remove the copy. */
+void keyring_close(struct jobs *j);
 
 /* Verbs: "keys", "keys-add" with text NAME ROLE HEX, "keys-remove" NAME. */
-void keys_list(struct jobs *j, const struct verb *v,
+void keyring_list(struct jobs *j, const struct verb *v,
 	       const struct jobs_lcm_command *c);
-void keys_add(struct jobs *j, const struct verb *v,
+void keyring_add(struct jobs *j, const struct verb *v,
 	      const struct jobs_lcm_command *c);
-void keys_remove(struct jobs *j, const struct verb *v,
+void keyring_remove(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 
-/** keys_hello() - verb "hello": tell a client who it is to this service. */
-void keys_hello(struct jobs *j, const struct verb *v,
+/** keyring_hello() - verb "hello": tell a client who it is to this service. */
+void keyring_hello(struct jobs *j, const struct verb *v,
 		const struct jobs_lcm_command *c);
 
-#endif /* JOBS_KEYS_H */
+#endif /* JOBS_KEYRING_H */

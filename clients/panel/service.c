@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * act.c - ask edmd-jobs, and send it jobs, without waiting
+ * service.c - ask edmd-jobs, and send it jobs, without waiting
  */
-#include "act.h"
+#include "service.h"
 
-#include "job.h"
+#include "submission.h"
 #include "talk.h"
 
 #include <errno.h>
@@ -23,42 +23,42 @@
 /* A question under way; the library calls back with it. */
 struct asking {
 	struct asking *next;
-	struct act *act;
-	act_done_fn done;		/* NULL: forgotten */
+	struct service *service;
+	service_done_fn done;		/* NULL: forgotten */
 	void *arg;
 };
 
 struct sending {
-	struct job *job;		/* NULL: free */
+	struct submission *job;		/* NULL: free */
 	void *text;
 	size_t bytes;
-	act_done_fn done;
+	service_done_fn done;
 	void *arg;
 };
 
-struct act {
+struct service {
 	const char *url, *machine;
 	struct talk *talk;		/* NULL: not yet */
 	char why[TALK_SAID_MAX];
 	double tried_s;
 	struct asking *askings;
 	struct sending sending[SENDINGS];
-	struct act_status status;
+	struct service_status status;
 	uint64_t heard;
 	double heard_s;
-	act_event_fn on_event;
+	service_event_fn on_event;
 	void *on_event_arg;
 };
 
 static void on_event(void *arg, const struct talk_event *e)
 {
-	struct act *a = arg;
+	struct service *a = arg;
 
 	if (a->on_event)
 		a->on_event(a->on_event_arg, e->kind, e->text);
 }
 
-static void try_open(struct act *a)
+static void try_open(struct service *a)
 {
 	const struct talk_options o = {
 		.machine = a->machine, .url = a->url, .program = "panel",
@@ -73,9 +73,9 @@ static void try_open(struct act *a)
 	talk_on_event(a->talk, on_event, a);
 }
 
-struct act *act_create(const char *url, const char *machine)
+struct service *service_create(const char *url, const char *machine)
 {
-	struct act *a = calloc(1, sizeof(*a));
+	struct service *a = calloc(1, sizeof(*a));
 
 	if (!a)
 		return NULL;
@@ -88,13 +88,13 @@ struct act *act_create(const char *url, const char *machine)
 
 static void free_sending(struct sending *s)
 {
-	job_end(s->job);
+	submission_end(s->job);
 	if (s->text)
 		munmap(s->text, s->bytes);
 	*s = (struct sending) { .job = NULL };
 }
 
-void act_destroy(struct act *a)
+void service_destroy(struct service *a)
 {
 	if (!a)
 		return;
@@ -110,13 +110,13 @@ void act_destroy(struct act *a)
 	free(a);
 }
 
-void act_on_event(struct act *a, act_event_fn fn, void *arg)
+void service_on_event(struct service *a, service_event_fn fn, void *arg)
 {
 	a->on_event = fn;
 	a->on_event_arg = arg;
 }
 
-const char *act_why(const struct act *a)
+const char *service_why(const struct service *a)
 {
 	return a->talk ? talk_why(a->talk) : a->why;
 }
@@ -124,8 +124,8 @@ const char *act_why(const struct act *a)
 static void on_answer(void *arg, int err, const struct talk_ack *ack)
 {
 	struct asking *q = arg;
-	struct asking **at = &q->act->askings;
-	const struct act_answer late = {
+	struct asking **at = &q->service->askings;
+	const struct service_answer late = {
 		.code = EX_UNAVAILABLE, .body = "",
 		.reason = "edmd-jobs did not answer: it may have been done, or "
 			  "not; systemctl status edmd-jobs",
@@ -137,15 +137,15 @@ static void on_answer(void *arg, int err, const struct talk_ack *ack)
 	if (q->done && err < 0)
 		q->done(q->arg, &late);
 	else if (q->done)
-		q->done(q->arg, &(struct act_answer) {
+		q->done(q->arg, &(struct service_answer) {
 			.code = ack->code, .reason = ack->reason,
 			.body = ack->body,
 		});
 	free(q);
 }
 
-int act_ask(struct act *a, const struct act_question *ask, act_done_fn done,
-	    void *arg)
+int service_ask(struct service *a, const struct service_question *ask,
+		service_done_fn done, void *arg)
 {
 	const struct talk_question q = {
 		.verb = ask->verb, .job = ask->job, .text = ask->text,
@@ -159,10 +159,10 @@ int act_ask(struct act *a, const struct act_question *ask, act_done_fn done,
 	n = calloc(1, sizeof(*n));
 	if (!n)
 		return -EAGAIN;
-	*n = (struct asking) { .next = a->askings, .act = a, .done = done,
+	*n = (struct asking) { .next = a->askings, .service = a, .done = done,
 			       .arg = arg };
 	a->askings = n;
-	err = talk_send(a->talk, &q, ask->flags & ACT_ONCE ? ONCE_S :
+	err = talk_send(a->talk, &q, ask->flags & SERVICE_ONCE ? ONCE_S :
 			GIVE_UP_S, on_answer, n);
 	if (err) {
 		a->askings = n->next;
@@ -171,7 +171,7 @@ int act_ask(struct act *a, const struct act_question *ask, act_done_fn done,
 	return err ? -EAGAIN : 0;
 }
 
-static struct sending *room_to_send(struct act *a)
+static struct sending *room_to_send(struct service *a)
 {
 	for (int i = 0; i < SENDINGS; i++)
 		if (!a->sending[i].job)
@@ -179,12 +179,13 @@ static struct sending *room_to_send(struct act *a)
 	return NULL;
 }
 
-int act_send(struct act *a, const struct act_job *j, act_done_fn done,
-	     void *arg)
+int service_send(struct service *a, const struct service_job *j,
+		 service_done_fn done, void *arg)
 {
 	struct sending *s = room_to_send(a);
-	struct job_text x = { .id = j->id, .name = j->name, .text = "",
-			      .bytes = j->bytes, .hold = j->hold };
+	struct submission_text x = { .id = j->id, .name = j->name, .text = "",
+			      .bytes = j->bytes, .hold = j->hold,
+			      .from_line = j->from_line };
 	int err;
 
 	if (!a->talk)
@@ -201,7 +202,7 @@ int act_send(struct act *a, const struct act_job *j, act_done_fn done,
 		s->bytes = j->bytes;
 		x.text = s->text;
 	}
-	err = job_begin(&s->job, a->talk, &x);
+	err = submission_begin(&s->job, a->talk, &x);
 	if (err) {
 		s->job = NULL;
 		free_sending(s);
@@ -214,8 +215,8 @@ int act_send(struct act *a, const struct act_job *j, act_done_fn done,
 
 static void go_on_sending(struct sending *s)
 {
-	const int r = s->job ? job_step(s->job) : 0;
-	struct act_answer answer = {
+	const int r = s->job ? submission_step(s->job) : 0;
+	struct service_answer answer = {
 		.code = EX_UNAVAILABLE, .body = "",
 		.reason = "edmd-jobs does not answer; the job was not sent",
 	};
@@ -223,9 +224,9 @@ static void go_on_sending(struct sending *s)
 	if (r == 0)
 		return;
 	if (r > 0) {
-		const struct talk_ack *ack = job_verdict(s->job);
+		const struct talk_ack *ack = submission_verdict(s->job);
 
-		answer = (struct act_answer) { .code = ack->code,
+		answer = (struct service_answer) { .code = ack->code,
 					       .reason = ack->reason,
 					       .body = ack->body };
 	}
@@ -234,9 +235,9 @@ static void go_on_sending(struct sending *s)
 	free_sending(s);
 }
 
-static void take_status(struct act *a)
+static void take_status(struct service *a)
 {
-	struct act_status *s = &a->status;
+	struct service_status *s = &a->status;
 	uint64_t count;
 	const struct talk_status *t = talk_status(a->talk, &count);
 
@@ -260,7 +261,7 @@ static void take_status(struct act *a)
 	s->heard = a->heard && talk_now_s() - a->heard_s < HEARD_S;
 }
 
-void act_look(struct act *a)
+void service_look(struct service *a)
 {
 	if (!a->talk) {
 		if (talk_now_s() - a->tried_s > OPEN_S)
@@ -283,7 +284,7 @@ void act_look(struct act *a)
 	}
 }
 
-void act_forget(struct act *a, void *arg)
+void service_forget(struct service *a, void *arg)
 {
 	for (struct asking *q = a->askings; q; q = q->next)
 		if (q->arg == arg)
@@ -294,7 +295,7 @@ void act_forget(struct act *a, void *arg)
 			free_sending(&a->sending[i]);
 }
 
-const struct act_status *act_status(const struct act *a)
+const struct service_status *service_status(const struct service *a)
 {
 	return &a->status;
 }

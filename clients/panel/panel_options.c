@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * options.c - the command line of edm-panel
+ * panel_options.c - the command line of edm-panel
  */
-#include "options.h"
+#include "panel_options.h"
 
 #include "cmdline.h"
 
@@ -11,7 +11,7 @@
 
 #define PROGRAM	"edm-panel"
 
-#define AT(field)	offsetof(struct options, field)
+#define AT(field)	offsetof(struct panel_options, field)
 
 static const struct cmdline_row rows[] = {
 	{ "config", "FILE", CMDLINE_WORD, AT(config), .help =
@@ -72,13 +72,13 @@ static const struct cmdline work_table = {
 	.nrows = sizeof(work_rows) / sizeof(work_rows[0]), .column = 24,
 };
 
-int options_take(struct options *ret, int argc, char **argv)
+int panel_options_take(struct panel_options *ret, int argc, char **argv)
 {
 	const bool work = argc > 1 && strcmp(argv[1], "--work") == 0;
 	struct cmdline_given given;
 	int rc;
 
-	*ret = (struct options) {
+	*ret = (struct panel_options) {
 		.config = "/etc/edmd/machine.ini",
 		.work = { .config = "/etc/edmd/machine.ini",
 			  .name = "job.ngc" },

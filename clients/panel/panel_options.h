@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * options.h - the command line of edm-panel
+ * panel_options.h - the command line of edm-panel
  */
-#ifndef PANEL_OPTIONS_H
-#define PANEL_OPTIONS_H
+#ifndef PANEL_PANEL_OPTIONS_H
+#define PANEL_PANEL_OPTIONS_H
 
 #include "work.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-struct options {
+struct panel_options {
 	const char *config, *machine, *assets;
 	double port;			/* 0: as the machine file says */
 	const char *add_user, *role;
@@ -18,7 +18,7 @@ struct options {
 	struct work work;		/* work.what: it is this that is wanted */
 };
 
-/** options_take() - Return: -1 to go on, or what to exit with. */
-int options_take(struct options *ret, int argc, char **argv);
+/** panel_options_take() - Return: -1 to go on, or what to exit with. */
+int panel_options_take(struct panel_options *ret, int argc, char **argv);
 
-#endif /* PANEL_OPTIONS_H */
+#endif /* PANEL_PANEL_OPTIONS_H */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tech.c - the machine's technology table as JSON
+ * page_tech.c - the machine's technology table as JSON
  */
-#include "tech.h"
+#include "page_tech.h"
 
 #include "compiling.h"
 #include "interp/tech_table.h"
@@ -62,7 +62,7 @@ static json_t *table(const struct interp_tech_table *t)
 			 rows, "sequences", sequences);
 }
 
-int tech_put(const struct machine_config *c)
+int page_tech_put(const struct machine_config *c)
 {
 	struct config_tech t;
 	struct interp_tech base;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * keys.c - the service's own keys, and the verbs that manage those of others
+ * keyring.c - the service's own keys, and the verbs that manage those of others
  */
-#include "keys.h"
+#include "keyring.h"
 
 #include "jobs_log.h"
 #include "store_trust.h"
@@ -153,7 +153,7 @@ static void leave_copy(struct jobs *j, const char *dir)
 			    j->machine);
 }
 
-int keys_open(struct jobs *j, const char *dir)
+int keyring_open(struct jobs *j, const char *dir)
 {
 	if (machine_key(j, dir) < 0 || host_key(j, dir) < 0)
 		return EX_CONFIG;
@@ -165,7 +165,7 @@ int keys_open(struct jobs *j, const char *dir)
 	return 0;
 }
 
-void keys_close(struct jobs *j)
+void keyring_close(struct jobs *j)
 {
 	char path[KEYFILE_PATH_MAX];
 
@@ -186,7 +186,7 @@ static void answer_body(struct jobs *j, const struct jobs_lcm_command *c,
 	});
 }
 
-void keys_hello(struct jobs *j, const struct verb *v,
+void keyring_hello(struct jobs *j, const struct verb *v,
 		const struct jobs_lcm_command *c)
 {
 	char body[256];
@@ -198,7 +198,7 @@ void keys_hello(struct jobs *j, const struct verb *v,
 	answer_body(j, c, body);
 }
 
-void keys_list(struct jobs *j, const struct verb *v,
+void keyring_list(struct jobs *j, const struct verb *v,
 	       const struct jobs_lcm_command *c)
 {
 	char body[TRUST_KEYS * 192], hex[KEYFILE_HEX];
@@ -220,7 +220,7 @@ void keys_list(struct jobs *j, const struct verb *v,
 	answer_body(j, c, body);
 }
 
-void keys_add(struct jobs *j, const struct verb *v,
+void keyring_add(struct jobs *j, const struct verb *v,
 	      const struct jobs_lcm_command *c)
 {
 	struct trust_key k = { .role = ROLE_NONE };
@@ -259,7 +259,7 @@ void keys_add(struct jobs *j, const struct verb *v,
 		trust_remove(&j->trust, k.name);
 }
 
-void keys_remove(struct jobs *j, const struct verb *v,
+void keyring_remove(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c)
 {
 	/* The row of who asks may be the one that goes. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * words.c - the machine's own words, for the page's catalogue
+ * page_words.c - the machine's own words, for the page's catalogue
  */
-#include "words.h"
+#include "page_words.h"
 
 #include "faults.h"
 #include "hunting.h"
@@ -44,7 +44,7 @@ static json_t *fields(void)
 	return all;
 }
 
-int words_print(void)
+int page_words_print(void)
 {
 	json_t *o = json_pack("{s:o,s:o,s:o,s:o,s:s}", "faults", faults(),
 			      "states", names(shm_state_name, SHM_IDLE),

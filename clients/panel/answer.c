@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * reply.c - the answer to a request of HTTP
+ * answer.c - the answer to a request of HTTP
  */
-#include "reply.h"
+#include "answer.h"
 
 #include <sodium.h>
 #include <stdio.h>
@@ -95,7 +95,7 @@ static int answer(struct request *r, int status, const char *type)
 	return 0;
 }
 
-int reply_json(struct request *r, int status, json_t *o)
+int answer_json(struct request *r, int status, json_t *o)
 {
 	r->text = json_dumps(o, JSON_COMPACT);
 	json_decref(o);
@@ -105,32 +105,32 @@ int reply_json(struct request *r, int status, json_t *o)
 	return answer(r, status, "application/json");
 }
 
-int reply_refusal(struct request *r, int status, const char *found,
+int answer_refusal(struct request *r, int status, const char *found,
 		  const char *wanted)
 {
-	return reply_json(r, status, json_pack("{s:s,s:s}", "found", found,
+	return answer_json(r, status, json_pack("{s:s,s:s}", "found", found,
 					       "wanted", wanted));
 }
 
-int reply_asset(struct request *r, const struct asset *a)
+int answer_asset(struct request *r, const struct asset *a)
 {
 	r->asset = a;
 	r->bytes = a->size;
 	return answer(r, 200, a->type);
 }
 
-int reply_file(struct request *r, int fd)
+int answer_file(struct request *r, int fd)
 {
 	struct stat st;
 
 	if (fd < 0 || fstat(fd, &st) < 0)
-		return reply_refusal(r, 503, "no room", "try again");
+		return answer_refusal(r, 503, "no room", "try again");
 	r->fd = fd;
 	r->bytes = (size_t)st.st_size;
 	return answer(r, 200, "application/octet-stream");
 }
 
-int reply_wait(struct request *r, int s)
+int answer_wait(struct request *r, int s)
 {
 	lws_set_timeout(r->wsi, PENDING_TIMEOUT_HTTP_CONTENT, s);
 	return 0;
@@ -144,7 +144,7 @@ static ssize_t fetch(const struct request *r, unsigned char *to, size_t n)
 	return (ssize_t)n;
 }
 
-int reply_write(struct request *r)
+int answer_write(struct request *r)
 {
 	unsigned char room[LWS_PRE + PART_BYTES];
 	struct lws *wsi;
@@ -175,14 +175,14 @@ int reply_write(struct request *r)
 	if (r->status >= 400)
 		return -1;
 	wsi = r->wsi;
-	reply_forget(r);
+	answer_forget(r);
 	return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
-void reply_forget(struct request *r)
+void answer_forget(struct request *r)
 {
 	child_forget(r->panel->children, r);
-	act_forget(r->panel->act, r);
+	service_forget(r->panel->service, r);
 	drop_body(r);
 	if (r->fd >= 0)
 		close(r->fd);
@@ -190,7 +190,7 @@ void reply_forget(struct request *r)
 	*r = (struct request) { .panel = NULL, .body_fd = -1, .fd = -1 };
 }
 
-void reply_draw_id(struct request *r)
+void answer_draw_id(struct request *r)
 {
 	uint8_t drawn[16];
 

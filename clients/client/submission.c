@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * job.c - sends a job: a few chunks at a time, repeated until they are answered
+ * submission.c - sends the chunks of a job, and repeats them until they are
+ * answered
  */
-#include "job.h"
+#include "submission.h"
 
 #include <errno.h>
 #include <sodium.h>
@@ -21,10 +22,10 @@
 #define COMPILE_S	120.0		/* compiling 64 MiB of text takes its
 					 * time */
 
-struct job {
+struct submission {
 	struct talk *talk;
-	struct job_text text;
-	char id[JOB_ID_MAX], name[JOB_ID_MAX];
+	struct submission_text text;
+	char id[SUBMISSION_ID_MAX], name[SUBMISSION_ID_MAX];
 	uint8_t sha256[32];
 	int chunks, acked;
 	int64_t seq0;			/* of chunk 0; the others follow */
@@ -39,7 +40,7 @@ struct job {
 
 static void on_ack(void *arg, const struct talk_ack *a)
 {
-	struct job *j = arg;
+	struct submission *j = arg;
 	int64_t i = a->seq - j->seq0;
 
 	if (i < 0 || i >= j->chunks || j->over)
@@ -60,7 +61,7 @@ static void on_ack(void *arg, const struct talk_ack *a)
 	};
 }
 
-static bool send_chunk(struct job *j, int i)
+static bool send_chunk(struct submission *j, int i)
 {
 	size_t at = (size_t)i * TALK_CHUNK_MAX;
 	size_t left = j->text.bytes - at;
@@ -68,7 +69,8 @@ static bool send_chunk(struct job *j, int i)
 		.seq = j->seq0 + i, .job = j->id, .name = j->name,
 		.bytes = (int64_t)j->text.bytes, .sha256 = j->sha256,
 		.chunk = i, .chunks = j->chunks, .offset = (int64_t)at,
-		.hold = j->text.hold, .data = j->text.text + at,
+		.hold = j->text.hold, .from_line = j->text.from_line,
+		.from_mm = j->text.from_mm, .data = j->text.text + at,
 		.size = left < TALK_CHUNK_MAX ? (int)left : TALK_CHUNK_MAX,
 	};
 
@@ -77,7 +79,7 @@ static bool send_chunk(struct job *j, int i)
 
 /* Send all chunks of the window that are not acked; it has WINDOW chunks from
  * the first such chunk on. */
-static void send_window(struct job *j, double now_s)
+static void send_window(struct submission *j, double now_s)
 {
 	while (j->first < j->chunks && j->sent_s[j->first] < 0)
 		j->first++;
@@ -92,7 +94,7 @@ static void send_window(struct job *j, double now_s)
 
 /* All chunks have arrived.  Ask what happened to the job, in case the answer
  * was lost. */
-static void send_reminder(struct job *j, double now_s)
+static void send_reminder(struct submission *j, double now_s)
 {
 	if (j->whole_s == 0)
 		j->whole_s = j->reminded_s = now_s;
@@ -103,7 +105,7 @@ static void send_reminder(struct job *j, double now_s)
 }
 
 /* While it writes a job, the service does not listen. */
-static bool waited_enough(const struct job *j, double now_s)
+static bool waited_enough(const struct submission *j, double now_s)
 {
 	const double silent_s = now_s - j->heard_s;
 
@@ -113,7 +115,7 @@ static bool waited_enough(const struct job *j, double now_s)
 	       now_s - j->whole_s > COMPILE_S;
 }
 
-int job_step(struct job *j)
+int submission_step(struct submission *j)
 {
 	double now_s = talk_now_s();
 
@@ -129,7 +131,7 @@ int job_step(struct job *j)
 }
 
 /* Shorten it to the length of a name, but not in the middle of a character. */
-static void name_take(struct job *j, const char *name)
+static void name_take(struct submission *j, const char *name)
 {
 	size_t n;
 
@@ -141,7 +143,7 @@ static void name_take(struct job *j, const char *name)
 		j->name[--n] = '\0';
 }
 
-static void id_take(struct job *j, const char *id)
+static void id_take(struct submission *j, const char *id)
 {
 	uint8_t drawn[6];
 
@@ -153,12 +155,13 @@ static void id_take(struct job *j, const char *id)
 	sodium_bin2hex(j->id, sizeof(j->id), drawn, sizeof(drawn));
 }
 
-int job_begin(struct job **ret, struct talk *t, const struct job_text *x)
+int submission_begin(struct submission **ret, struct talk *t,
+		     const struct submission_text *x)
 {
-	struct job *j;
+	struct submission *j;
 	int err;
 
-	if (x->bytes > JOB_BYTES_MAX)
+	if (x->bytes > SUBMISSION_BYTES_MAX)
 		return -EFBIG;
 	j = calloc(1, sizeof(*j));
 	if (!j)
@@ -178,35 +181,35 @@ int job_begin(struct job **ret, struct talk *t, const struct job_text *x)
 	err = j->sent_s ? talk_on_acks(t, j->seq0, j->chunks, on_ack, j) :
 			  -ENOMEM;
 	if (err < 0) {
-		job_end(j);
+		submission_end(j);
 		return err;
 	}
 	*ret = j;
 	return 0;
 }
 
-const struct talk_ack *job_verdict(const struct job *j)
+const struct talk_ack *submission_verdict(const struct submission *j)
 {
 	return &j->verdict;
 }
 
-const char *job_id(const struct job *j)
+const char *submission_id(const struct submission *j)
 {
 	return j->id;
 }
 
-const char *job_name(const struct job *j)
+const char *submission_name(const struct submission *j)
 {
 	return j->name;
 }
 
-int job_progress(const struct job *j, int *ret_arrived)
+int submission_progress(const struct submission *j, int *ret_arrived)
 {
 	*ret_arrived = j->acked;
 	return j->chunks;
 }
 
-void job_end(struct job *j)
+void submission_end(struct submission *j)
 {
 	if (!j)
 		return;
