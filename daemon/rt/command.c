@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * command.c - what a command asks for, and the loading of programs
- */
+/* command.c - carry out commands, and load programs */
 #include "cycle.h"
 #include "enter.h"
 #include "guard.h"
@@ -12,7 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* May anything begin to move?  Before it does, not a period later. */
+/* Do the guards allow that anything begins to move? This is asked before the
+ * motion, and not one period later. */
 static enum cycle_answer may_begin(const struct cycle *c)
 {
 	if (c->axes.starting)
@@ -20,7 +19,8 @@ static enum cycle_answer may_begin(const struct cycle *c)
 	return guard_forbids(c) ? ANSWER_LOCKED : ANSWER_DONE;
 }
 
-/* In order, and not on its way to a fault or to the job's end. */
+/* The machine works in order, and is not about to go to a fault or to end the
+ * job. */
 static bool stands_held(const struct cycle *c)
 {
 	return c->state == STATE_HOLD && c->hold.then == STATE_HOLD &&
@@ -140,8 +140,8 @@ static enum cycle_answer do_estop(struct cycle *c, double arg_mm)
 	return ANSWER_DONE;
 }
 
-/* What the drives report may end with the reset that they are given: it is
- * cleared once they say so. */
+/* A reset may end what the drives report. The fault is cleared when the drives
+ * say that it is gone. */
 static enum cycle_answer do_reset(struct cycle *c, double arg_mm)
 {
 	const uint64_t remains = fault_remains(&c->fault);

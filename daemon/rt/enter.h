@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * enter.h - from one state to another, for the cycle and its commands
+ * enter.h - how the machine goes from one state to another; for the cycle and
+ * its commands
  *
  * Private to the files of daemon/rt.
  *
@@ -11,13 +12,15 @@
 
 #include "cycle.h"
 
-/** cycle_enter() - make @s the state, and do what is done on entering it. */
+/** cycle_enter() - make @s the state, and do what entering it requires. */
 void cycle_enter(struct cycle *c, enum cycle_state s);
 
-/** cycle_end_job() - the program is out, the state idle. */
+/** cycle_end_job() - unload the program; the state is then idle. */
 void cycle_end_job(struct cycle *c, enum cycle_outcome o);
 
-/** cycle_happen() - enter the state that @ev leads to, if it is another. */
+/**
+ * cycle_happen() - enter the state that @ev leads to, if that is another one.
+ */
 static inline void cycle_happen(struct cycle *c, enum cycle_event ev)
 {
 	const enum cycle_state to = state_next(c->state, ev);
@@ -26,22 +29,26 @@ static inline void cycle_happen(struct cycle *c, enum cycle_event ev)
 		cycle_enter(c, to);
 }
 
-/** cycle_set_off() - from hold: on along the path, or first back to it. */
+/**
+ * cycle_set_off() - leave hold: go on along the path, or first go back to it.
+ */
 static inline void cycle_set_off(struct cycle *c)
 {
 	cycle_happen(c, escape_is_out(&c->escape) ? EVENT_RETURN :
 						    EVENT_START);
 }
 
-/** cycle_reset() - out of a fault: held, or idle without a job. */
+/** cycle_reset() - leave a fault: to hold, or to idle if there is no job. */
 void cycle_reset(struct cycle *c);
 
 /* For cycle_react(). */
 void cycle_end_reset(struct cycle *c);
 void cycle_fail(struct cycle *c);
 
-/** cycle_react() - to the faults latched since it was called last, and to a
- *  reset of the drives; at its two places in a period. */
+/**
+ * cycle_react() - react to the faults that were latched since the last call,
+ * and to a reset of the drives.  It is called at two places of a period.
+ */
 static inline void cycle_react(struct cycle *c)
 {
 	if (c->fault.resetting)

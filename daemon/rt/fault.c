@@ -4,7 +4,8 @@
  */
 #include "fault.h"
 
-/* Drives that may be wrong are worse than any fault that leaves them on. */
+/* A fault in which the drives may be wrong is worse than any fault that leaves
+ * them on. */
 static int rank(enum cycle_fault f)
 {
 	const struct fault_row *row = &fault_table[f];
@@ -32,7 +33,7 @@ static void latch_all(struct fault *s, uint64_t found)
 		fault_latch(s, (enum cycle_fault)__builtin_ctzll(found));
 }
 
-/* Of those that come together, what counts always is the first. */
+/* If several faults come together, those that always count come first. */
 void fault_judge(struct fault *s, bool moves, bool sparks)
 {
 	latch_all(s, s->seen[FAULT_ALWAYS]);
@@ -60,7 +61,7 @@ bool fault_any(uint64_t faults, bool (*holds)(const struct fault_row *))
 	return false;
 }
 
-/* What was not told yet will be. */
+/* Faults that were not reported yet will still be reported. */
 void fault_clear(struct fault *s)
 {
 	s->first = s->worst = FAULT_NONE;

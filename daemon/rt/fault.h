@@ -2,19 +2,20 @@
 /*
  * fault.h - the latch of faults: what was found, and nothing else
  *
- * Whoever finds a fault latches it here and goes on as if nothing had happened.
- * The state changes at two fixed places of a period (cycle.c): after the guards
- * and after the walk.  So no sparks and no motion of this period follow from
- * what a guard found, and a fault that the walk found ends the period in order.
+ * The code that finds a fault latches it here and goes on as if nothing had
+ * happened.  The state changes only at two fixed places of a period (cycle.c):
+ * after the guards and after the walk.  So a fault that a guard finds stops the
+ * sparks and the motion of this period, and a fault that the walk finds lets
+ * the period end in order.
  *
- * A guard does not ask what the machine is doing: it notes what it sees, with
- * the scope in which that is a fault.  fault_judge() then latches what counts
- * in the present state, and again once the state is another one: what forbids
- * sparks is known before the first spark.
+ * A guard does not ask what the machine is doing.  It notes what it sees, and
+ * in which scope that is a fault.  fault_judge() then latches the faults that
+ * count in the present state, and is called once more when the state has
+ * changed.  So whatever forbids sparks is known before the first spark.
  *
- * Several faults can be latched at a time.  The first one is the answer to
- * "why", the worst one decides how the motion ends.  A reset clears all of
- * them, but not while one of scope FAULT_ALWAYS is still seen.
+ * Several faults can be latched at a time.  The first one tells why the machine
+ * stopped, the worst one decides how the motion ends.  A reset clears all of
+ * them, but not while a guard still sees one of scope FAULT_ALWAYS.
  *
  * Threads: RT-safe; the object belongs to the cycle's thread.
  */
@@ -25,13 +26,16 @@
 
 struct fault {
 	enum cycle_fault first, worst;	/* FAULT_NONE: none is latched */
-	uint64_t latched;		/* bit per fault; all of them, ... */
-	uint64_t fresh;			/* ... not reacted to yet, and ... */
-	uint64_t untold;		/* ... not told outside; the teller
+	/* Sets with one bit for each fault: */
+	uint64_t latched;		/* all that are latched */
+	uint64_t fresh;			/* the cycle has not reacted to it
+					 * yet */
+	uint64_t untold;		/* not reported yet; whoever reports
 					 * clears it */
-	uint64_t seen[FAULT_ALWAYS + 1];	/* this period's notes */
-	bool resetting;			/* a reset went out to the drives: is
-					 * what they reported still there? */
+	uint64_t seen[FAULT_ALWAYS + 1];	/* noted in this period, by
+						 * scope */
+	bool resetting;			/* a reset was sent to the drives; do
+					 * they still report their faults? */
 };
 
 _Static_assert(CYCLE_NFAULTS <= 64, "a bit for each fault");
@@ -46,17 +50,17 @@ static inline bool fault_is_latched(const struct fault *s, enum cycle_fault f)
 	return s->latched & fault_bit(f);
 }
 
-/** fault_latch() - @f was found. */
+/** fault_latch() - the fault @f was found. */
 void fault_latch(struct fault *s, enum cycle_fault f);
 
-/** fault_look_anew() - a period begins: nothing is noted yet. */
+/** fault_look_anew() - a period begins: forget the notes of the last one. */
 static inline void fault_look_anew(struct fault *s)
 {
 	s->seen[FAULT_IN_POWER] = s->seen[FAULT_IN_MOTION] =
 		s->seen[FAULT_ALWAYS] = 0;
 }
 
-/** fault_note() - a guard sees what is a fault in @scope. */
+/** fault_note() - a guard sees @f, which is a fault in @scope. */
 static inline void fault_note(struct fault *s, enum cycle_fault f,
 			      enum fault_scope scope)
 {
@@ -70,23 +74,25 @@ static inline bool fault_is_seen(const struct fault *s)
 	       s->seen[FAULT_ALWAYS];
 }
 
-/** fault_judge() - latch what was noted and counts now. */
+/** fault_judge() - latch those of the noted faults that count now. */
 void fault_judge(struct fault *s, bool moves, bool sparks);
 
-/** fault_remains() - a reset would not clear these: they are still seen. */
+/**
+ * fault_remains() - the faults that a reset cannot clear: they are still seen.
+ */
 static inline uint64_t fault_remains(const struct fault *s)
 {
 	return s->seen[FAULT_ALWAYS];
 }
 
-/** fault_any() - one of the set @faults for which @holds is true? */
+/** fault_any() - is @holds true for one of the set @faults? */
 bool fault_any(uint64_t faults, bool (*holds)(const struct fault_row *));
 
 /* For fault_any(). */
 bool fault_row_disables(const struct fault_row *row);
 bool fault_row_ends(const struct fault_row *row);
 
-/** fault_clear() - an operator's reset. */
+/** fault_clear() - the operator resets. */
 void fault_clear(struct fault *s);
 
 #endif /* RT_FAULT_H */

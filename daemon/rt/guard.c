@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * guard.c - what is looked at in every period, before anything moves
+ * guard.c - the guards: they look at the inputs in every period, before
+ * anything moves
  */
 #include "guard.h"
 
 #include "path/walk.h"
 
-/* A cut that is about to begin needs a wire, and so does the way back out of
- * one: it would be felt by the gap. */
+/* A cut that is about to begin needs a wire, and so does the way back out of a
+ * cut: without a wire it could not feel the gap. */
 static void watch_wire(struct cycle *c)
 {
 	if (c->gap.process != PROCESS_WIRE)
@@ -64,9 +65,10 @@ bool guard_forbids(const struct cycle *c)
 }
 
 /*
- * A short while positioning is a collision, once the gap has been open: on the
- * way out of a cut, debris may still bridge it.  Over ground that was cut it is
- * no collision either, but a short as any other: look() has it first.
+ * A short while positioning is a collision if the gap was open since
+ * positioning began. Before that, on the way out of a cut, debris may still
+ * bridge the gap. Over ground that was cut it is not a collision either, but a
+ * short like any other: look() sees it first.
  */
 bool guard_met(const struct cycle *c)
 {

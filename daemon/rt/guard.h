@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * guard.h - what is looked at in every period, before anything moves
+ * guard.h - the guards: they look at the inputs in every period, before
+ * anything moves
  *
  * Each guard notes what it sees (fault.h); what the machine is doing decides
  * whether that is a fault.
@@ -12,10 +13,10 @@
 
 #include "cycle.h"
 
-/** guard_look() - at all inputs of this period, once. */
+/** guard_look() - look at all inputs of this period, once. */
 void guard_look(struct cycle *c, const struct io_inputs *in);
 
-/** guard_judge() - latch what of it counts in the present state. */
+/** guard_judge() - latch those of the notes that are faults in this state. */
 static inline void guard_judge(struct cycle *c)
 {
 	if (fault_is_seen(&c->fault))
@@ -23,13 +24,18 @@ static inline void guard_judge(struct cycle *c)
 			    state_duty[c->state].power);
 }
 
-/** guard_forbids() - would the guards not let anything move now? */
+/** guard_forbids() - do the guards forbid that anything begins to move now? */
 bool guard_forbids(const struct cycle *c);
 
-/** guard_met() - positioning, it met something that was not there before. */
+/**
+ * guard_met() - while positioning, did the electrode meet something that was
+ * not there when the motion began?
+ */
 bool guard_met(const struct cycle *c);
 
-/** guard_contact() - a collision on the way?  After the state is chosen. */
+/**
+ * guard_contact() - note a collision; to be called after the state is chosen.
+ */
 void guard_contact(struct cycle *c);
 
 #endif /* RT_GUARD_H */

@@ -49,7 +49,8 @@ static void command(struct cycle *c, enum cycle_verb verb, double arg)
 	cycle_command(c, &m);
 }
 
-/* Untold, or with the PLC gone, they stay as warm as they were last. */
+/* If the PLC does not say a temperature, or is gone, the axes keep the last
+ * one. */
 static void warm(struct cycle *c, double was_c)
 {
 	const double c_now = c->plc.axes_c;
@@ -73,14 +74,15 @@ void interlock_obey(struct cycle *c)
 		command(c, CYCLE_RESET, 0);
 	if (c->plc.hold && (!c->plc_held || state_duty[c->state].running))
 		command(c, CYCLE_HOLD, 0);
-	/* Another client may set it too: the last one to change it has it. */
+	/* Another client may set the override too: the last change counts. */
 	if (c->plc.override != c->plc_override)
 		command(c, CYCLE_OVERRIDE, c->plc.override);
 	c->plc_override = c->plc.override;
 	warm(c, c->plc_axes_c);
 	c->plc_held = c->plc.hold;
 	c->plc_axes_c = c->plc.axes_c;
-	/* A start that comes with the reset was not meant for what comes now. */
+	/* A start that comes together with the reset was not meant for what is
+	 * there now. */
 	if (c->plc.start && !c->plc.reset)
 		command(c, CYCLE_START, 0);
 }

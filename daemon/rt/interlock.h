@@ -2,14 +2,14 @@
 /*
  * interlock.h - what a PLC permits and asks for
  *
- * Sparks and motion need a PLC that is there, gives its permit, and has its
- * interlocks closed.  Losing one of them while anything moves is a fault:
- * sparks are off in the same period, and the motion ends on the path.  A
- * machine that stands needs none of them, but cannot begin to move without
- * them.
+ * Sparks and motion need a PLC that answers, gives its permit, and has its
+ * interlocks closed.  If one of these is lost while anything moves, that is a
+ * fault: the sparks are off in the same period, and the motion ends on the
+ * path.  A machine that stands needs none of them, but it cannot begin to move
+ * without them.
  *
- * What a PLC asks for - start, hold, reset, override - does the same as the
- * commands.  A machine without a PLC notices nothing of this.
+ * A PLC may ask for start, hold, reset and override.  These do the same as the
+ * commands.  On a machine without a PLC nothing here has an effect.
  *
  * Threads: RT-safe.
  */
@@ -20,10 +20,12 @@
 
 struct cycle;
 
-/** interlock_note() - what the PLC says, once a period, among the guards. */
+/**
+ * interlock_note() - note what the PLC says; one of the guards, once a period.
+ */
 void interlock_note(struct cycle *c, const struct io_inputs *in);
 
-/** interlock_obey() - do what it asks for, after the guards. */
+/** interlock_obey() - do what the PLC asks for; after the guards. */
 void interlock_obey(struct cycle *c);
 
 #endif /* RT_INTERLOCK_H */

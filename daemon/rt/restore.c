@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * restore.c - a cycle that goes on where another one was killed
- */
+/* restore.c - make a cycle that goes on where another one was killed */
 #include "restore.h"
 #include "path/place.h"
 #include "path/timed.h"
@@ -9,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Actions behind the farthest place are done, wherever the walk stands. */
+/* Actions before the farthest place were done, wherever the walk stands now. */
 static uint32_t last_done(const struct cycle *c)
 {
 	const struct interp_program *p = &c->cursor.p;
@@ -31,7 +29,7 @@ static void restore_aux(struct cycle *c, uint32_t what)
 	}
 }
 
-/* What the program has done on its way there. */
+/* Set what the program has done on its way there. */
 static void restore_actions(struct cycle *c)
 {
 	const struct interp_program *p = &c->cursor.p;
@@ -40,7 +38,8 @@ static void restore_actions(struct cycle *c)
 	for (uint32_t i = 0; i <= c->job.action_done; i++) {
 		const struct interp_seg *s = &p->segs[i];
 
-		/* How much of its time is over is not known: all of it again. */
+		/* Nobody knows how much of its time was over, so all of it
+		 * counts again. */
 		if (s->kind == INTERP_TIMED && s->arg > c->job.action_done) {
 			timed_begin(c, s->arg);
 			c->timed.from_mm = s->s_mm;
@@ -54,16 +53,17 @@ static void restore_actions(struct cycle *c)
 	}
 }
 
-/* The PLC is still told an M code that it was told and has not answered. */
+/* If the PLC was told an M code and has not answered, it is still told that
+ * code. */
 static void restore_mcode(struct cycle *c, const struct cycle_past *past)
 {
 	c->mcode.number = past->mcode;
 	c->mcode.at = past->mcode_at;
-	/* It was answered while the job stood. */
+	/* The code was answered while the job stood. */
 	c->mcode.done = past->mcode == 0 && past->mcode_at != 0;
 }
 
-/* Before anything is sent to the axes: it says where they stand. */
+/* This comes before anything is sent to the axes: it says where they stand. */
 static void restore_probe(struct cycle *c, const struct cycle_past *past)
 {
 	struct probe *t = &c->probe;
@@ -75,7 +75,8 @@ static void restore_probe(struct cycle *c, const struct cycle_past *past)
 	place_target(c, c->cursor.pos);
 }
 
-/* Beside the path it is on the escape that led there, or nobody knows where. */
+/* If the machine is beside the path, it must be on the escape that begins
+ * there; otherwise nobody knows where it is. */
 static bool restore_place(struct cycle *c, const struct cycle_past *past)
 {
 	int32_t pos[INTERP_NAXES];
@@ -93,8 +94,8 @@ enum cycle_restored cycle_restore(struct cycle *c,
 				  const struct cycle_past *past,
 				  enum cycle_answer *ret_answer)
 {
-	/* After a probing motion axes and program differ: restore_place()
-	 * compares. */
+	/* After a probing motion the axes and the program differ.
+	 * restore_place() compares them. */
 	c->manual.used = false;
 	*ret_answer = cycle_load_at(c, at, past->far_mm);
 	if (*ret_answer != ANSWER_DONE)
@@ -103,7 +104,8 @@ enum cycle_restored cycle_restore(struct cycle *c,
 	restore_probe(c, past);
 	if (!restore_place(c, past))
 		return RESTORE_ELSEWHERE;
-	/* All of them, or it would be another cut. */
+	/* All values must be restored; with some of them it would be another
+	 * cut. */
 	if (!conditions_restore(c, past->sets, past->nsets))
 		return RESTORE_OTHER_VALUES;
 	c->out.pump = past->pump;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * restore.h - a cycle that goes on where another one was killed
+ * restore.h - make a cycle that goes on where another one was killed
  *
- * The axes come first: axes/axis_state.h.  Then the job, whole or not at all:
- * one that went on in another place, or with other values, would be worse than
- * one that is lost.  Then the faults that were latched, until an operator's
- * reset.
+ * The axes come first: axes/axis_state.h.  Then comes the job, completely or
+ * not at all: a job that went on in another place or with other values would be
+ * worse than a lost one.  Last come the faults that were latched; they stay
+ * latched until the operator resets.
  *
  * Startup only: these calls look at the whole program.
  */
@@ -14,15 +14,16 @@
 
 #include "cycle.h"
 
-/* What the other one said last about its job. */
+/* What the killed cycle said last about its job. */
 struct cycle_past {
 	double far_mm, back_mm;
 	int32_t pos[INTERP_NAXES];	/* where the axes were sent, pulses */
 	int32_t shift[INTERP_NAXES], found[2][INTERP_NAXES];	/* probe.h */
 	uint32_t found_once, found_twice;
 	bool pump;
-	uint8_t mcode;			/* told to the PLC, not answered; or 0 */
-	uint32_t mcode_at;		/* its segment */
+	uint8_t mcode;			/* the PLC was told this code and has
+					 * not answered; 0: none */
+	uint32_t mcode_at;		/* the segment of that code */
 	struct cycle_totals totals;
 	const struct conditions_set *sets;
 	uint32_t nsets;
@@ -32,23 +33,27 @@ enum cycle_restored {
 	RESTORED,
 	RESTORE_NOT_LOADED,		/* see @ret_answer */
 	RESTORE_ELSEWHERE,		/* the axes are neither on the path nor
-					 * on the way out from there */
-	RESTORE_OTHER_VALUES,		/* what was `set` cannot be in force */
+					 * on the escape from there */
+	RESTORE_OTHER_VALUES,		/* the values that were `set` cannot be
+					 * in force now */
 };
 
 /**
- * cycle_restore() - a cycle with its axes restored, and without a job, stands
- * held with the program and at the place of @at.
+ * cycle_restore() - give a cycle its job back: it is then held, with the
+ * program and at the place of @at.  Its axes must be restored, and it must have
+ * no job.
  *
- * If it fails the cycle is of no use: give it a copy.
+ * If this fails, the cycle cannot be used any more.  So call it with a copy.
  */
 enum cycle_restored cycle_restore(struct cycle *c,
 				  const struct interp_cursor *at,
 				  const struct cycle_past *past,
 				  enum cycle_answer *ret_answer);
 
-/** cycle_restore_faults() - @first and the set @faults stay latched.  They were
- *  told already. */
+/**
+ * cycle_restore_faults() - keep @first and the set @faults latched.  They were
+ * reported before the crash.
+ */
 void cycle_restore_faults(struct cycle *c, enum cycle_fault first,
 			  uint64_t faults);
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * state.c - the tables
- */
+/* state.c - the tables of states */
 #include "state.h"
 
 #include <stdint.h>
@@ -15,9 +13,9 @@ const struct state_duty state_duty[CYCLE_NSTATES] = {
 };
 
 /*
- * Read a row as "while in this state, this event leads to...".  A fault, a
- * stop and a hold lead the same way from every running state; enter.c has
- * them, so no row has to remember them.
+ * Read a row as "while in this state, this event leads to...". A fault, a stop
+ * and a hold lead to the same state from every running state. The function
+ * below and enter.c do that, so no row has to say it.
  */
 static const uint8_t next[CYCLE_NSTATES][CYCLE_NEVENTS] = {
 	[STATE_TRAVEL] = {
@@ -63,7 +61,7 @@ static const uint8_t next[CYCLE_NSTATES][CYCLE_NEVENTS] = {
 
 enum cycle_state state_next(enum cycle_state s, enum cycle_event ev)
 {
-	/* Running states give way to a hold or a stop alike. */
+	/* A hold and a stop lead from every running state to hold. */
 	if (state_duty[s].running && (ev == EVENT_HOLD || ev == EVENT_STOP))
 		return STATE_HOLD;
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * state.h - the states of a machine on its path, and what leads to which
+ * state.h - the states of a machine on its path, and which event leads to which
+ * state
  *
- * Transitions and duties are tables (state.c); reading them is pure.
+ * The transitions and the duties are tables in state.c.
  * Threads: RT-safe.
  */
 #ifndef RT_STATE_H
@@ -15,7 +16,7 @@
 enum cycle_event {
 	EVENT_NONE,
 	EVENT_START,		/* start or resume */
-	EVENT_RETURN,		/* the same, held beside the path */
+	EVENT_RETURN,		/* the same, while held beside the path */
 	EVENT_HOLD,
 	EVENT_STOP,
 	EVENT_RESET,
@@ -26,9 +27,9 @@ enum cycle_event {
 	EVENT_OPEN,		/* gap voltage above open_v */
 	EVENT_SHORT,		/* below short_v */
 	EVENT_ARCING,		/* arcs that a jump did not end */
-	EVENT_CLEAR,		/* a retract's short is gone */
+	EVENT_CLEAR,		/* the short is gone, in a retract */
 	EVENT_JUMP_DUE,
-	EVENT_TIME_UP,		/* the time of a timed part is up */
+	EVENT_TIME_UP,		/* the time of a timed part is over */
 	EVENT_MOVE_DONE,	/* the mover is where it was sent */
 	EVENT_END,		/* end of the program */
 	CYCLE_NEVENTS

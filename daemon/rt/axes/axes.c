@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * axes.c - axes under power: asked for, awaited, lost
- */
+/* axes.c - the power of the axes: asked for, awaited, lost */
 #include "axes/axes.h"
 
 #include "cycle.h"
@@ -31,7 +29,8 @@ void axes_guard(struct cycle *c, const struct io_inputs *in)
 	c->axes.steers = in->steers;
 	c->manual.unplaced |= in->unplaced;
 	c->manual.homed &= ~in->unplaced;
-	/* A reset goes out at the end of this cycle: what is told is old. */
+	/* A reset goes out at the end of this cycle, so what the drives report
+	 * now is old. */
 	if (in->trouble != IO_WELL && !c->out.reset)
 		fault_note(&c->fault, fault_of(in->trouble), FAULT_ALWAYS);
 	if (in->axes_off && !c->axes.awaited && cycle_moves(c))

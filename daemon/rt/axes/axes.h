@@ -2,14 +2,13 @@
 /*
  * axes.h - the power of the axes
  *
- * An operator's start or retract gives the axes power.  Faults in which they
- * may be wrong take it away; where all but one axis still follow, they brake on
- * the path first.  The axes may need time until they have power and
- * stand on their places.  Meanwhile the state is hold, and the start goes on by
- * itself afterwards.
+ * The operator's start or retract gives the axes power.  Faults in which the
+ * axes may be wrong take it away.  If other axes still follow, they first brake
+ * on the path.  The axes may need time until they have power and stand on their
+ * places.  Meanwhile the state is hold; afterwards the start goes on by itself.
  *
- * A machine whose axes always have power never says `starting` or `axes_off`,
- * and none of this happens.
+ * A machine whose axes always have power never says `starting` or `axes_off`.
+ * Then none of this happens.
  *
  * Threads: RT-safe.
  */
@@ -22,15 +21,16 @@ struct cycle;
 
 struct axes {
 	bool starting, off, steers;	/* as the machine says */
-	bool awaited;			/* asked for and not there: no motion */
-	bool start;			/* start the job once it is there */
+	bool awaited;			/* power was asked for and has not come:
+					 * nothing may move */
+	bool start;			/* start the job when it comes */
 	uint64_t waited;		/* cycles */
 };
 
-/** axes_guard() - their troubles as faults. */
+/** axes_guard() - note the troubles of the axes as faults. */
 void axes_guard(struct cycle *c, const struct io_inputs *in);
 
-/** axes_faults() - those that drives report, and may end by a reset. */
+/** axes_faults() - the faults that drives report and a reset may clear. */
 uint64_t axes_faults(void);
 
 /**
@@ -39,14 +39,15 @@ uint64_t axes_faults(void);
  */
 bool axes_want(struct cycle *c, bool start);
 
-/** axes_forget() - wait no more; axes that have power keep it. */
+/** axes_forget() - stop waiting; axes that have power keep it. */
 void axes_forget(struct cycle *c);
 
 enum axes_await { AXES_READY, AXES_START, AXES_AWAITED };
 
 /**
- * axes_await() - once a cycle: may anything move?  AXES_START: yes, and the
- * start that waited for them is due now; it is said once.
+ * axes_await() - may anything move?  To be called once a cycle.
+ *
+ * Return: AXES_START, once, when the start that waited for the axes is due now.
  */
 enum axes_await axes_await(struct cycle *c);
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * axis_state.c - where the axes stand, and what that rests on
- */
+/* axis_state.c - where the axes stand, and how that is known */
 #include "axes/axis_state.h"
 
 #include "cycle.h"
@@ -22,14 +20,15 @@ void axis_state_get(const struct cycle *c, struct axis_state *ret)
 	ret->told_c = c->comp.told_c;
 }
 
-/* What is between place and drive, and no shift, is compensation. */
+/* The difference between place and drive that is not the shift is
+ * compensation. */
 static int32_t added(const struct axis_state *s, int i)
 {
 	return (int32_t)((uint32_t)s->drive[i] - (uint32_t)s->place[i] -
 			 (uint32_t)s->shift[i]);
 }
 
-/* comp stays as not begun: its first period then is no way. */
+/* comp has not begun: so its first period does not count as a motion. */
 void axis_state_set(struct cycle *c, const struct axis_state *s)
 {
 	memcpy(c->out.target, s->place, sizeof(c->out.target));
@@ -43,7 +42,7 @@ void axis_state_set(struct cycle *c, const struct axis_state *s)
 	}
 	c->limit = s->limit;
 	c->comp.resting = true;
-	/* Without a PLC nobody would ever tell another one. */
+	/* Without a PLC nobody would ever say another temperature. */
 	if (c->plc.present && s->told_c > 0)
 		comp_warm(&c->comp, &c->config.comp, s->told_c);
 	c->manual.homed = s->homed;

@@ -26,20 +26,21 @@ struct axis_state {
 	int32_t shift[INTERP_NAXES];	/* what homing found; comp.h */
 	int8_t toward[INTERP_NAXES];	/* of the last move; 0: none */
 	uint32_t homed, unplaced;	/* bit per axis */
-	struct limit limit;		/* switches they are on, and their sides */
-	double told_c;			/* temperature of the axes, as a PLC told
-					 * it; 0: not told */
+	struct limit limit;		/* the switches that they are on */
+	double told_c;			/* temperature of the axes, as the PLC
+					 * said it; 0: it did not */
 };
 
 /** axis_state_get() - after a period. */
 void axis_state_get(const struct cycle *c, struct axis_state *ret);
 
 /**
- * axis_state_set() - put a cycle that never ran there, idle.
+ * axis_state_set() - put the axes of a new, idle cycle there.
  *
- * From then on a program that begins elsewhere is refused, as after a jog.
- * Whatever the machine file says now, no axis moves for its compensation until
- * a command moves an axis; comp_left() says how much there is to do.
+ * From then on a program that begins at another place is refused, as after a
+ * jog.  Even if the machine file has changed, no axis moves for its
+ * compensation until a command moves an axis; comp_left() says how much is
+ * still to be added.
  */
 void axis_state_set(struct cycle *c, const struct axis_state *s);
 

@@ -29,7 +29,7 @@ static int32_t within(int64_t x, int64_t low, int64_t high)
 	return (int32_t)(x < low ? low : x > high ? high : x);
 }
 
-/* What may be added in this period, of @want. */
+/* How much of @want may be added in this period. */
 static int32_t part(const struct comp_axis *a, int32_t want, int32_t path,
 		    uint32_t edges)
 {
@@ -60,7 +60,7 @@ static void take_up(struct comp_axis *a, const struct comp_config *k, int axis,
 	a->room -= more < 0 ? -more : more;
 }
 
-/* Standing costs nothing. */
+/* An axis that stands costs nothing. */
 static void look_up(struct comp *c, const struct comp_config *k,
 		    const int32_t *place)
 {
@@ -93,7 +93,8 @@ void comp_apply(struct comp *c, const struct comp_config *k,
 		a->place = place[i];
 		if (path != 0)
 			a->toward = path < 0 ? -1 : 1;
-		/* Of an edmd before, something may be there to be taken off. */
+		/* An earlier edmd may have added something that now has to be
+		 * taken off. */
 		if (!frozen && (mapped || k->axis[i].backlash != 0 ||
 				a->added != 0))
 			take_up(a, k, i, path, p->edges);

@@ -8,16 +8,17 @@
 #include <math.h>
 
 #define TAKEN_UP	(1.0 / 16)	/* a period */
-#define SEGMENTS_MAX	64		/* looked at for one point */
+#define SEGMENTS_MAX	64		/* segments, looked at for one point */
 
 /* -- Set values ------------------------------------------------------------ */
 
-/* By axis: [0] is the period before, [1] the present one. */
+/* For each axis: [0] is the period before, [1] the present one. */
 struct row_ahead {
 	double mm[INTERP_NAXES][CONTOURING_AHEAD + 2];
 };
 
-/* The segment that has @s_mm, from segment @i on; an action has no point. */
+/* The segment that contains @s_mm, searched from segment @i on; an action has
+ * no point. */
 static uint32_t seg_near(const struct interp_program *p, uint32_t i,
 			 double s_mm)
 {
@@ -65,8 +66,9 @@ static void stand_all(const struct cycle *c, struct row_ahead *r)
 }
 
 /*
- * The speed along the path is taken to go on changing as it does now, but not
- * to change its sign: a motion that comes to a stand stays there.
+ * It is assumed that the speed along the path goes on changing as it does now,
+ * but that it does not change its sign: a motion that comes to a stop stays
+ * there.
  */
 static bool look_ahead(struct cycle *c, double way_mm,
 		       struct row_ahead *r)
@@ -97,7 +99,7 @@ static bool is_coupled(const struct contouring_config *k, int axis)
 	       !interp_axis_is_rotary((enum interp_axis)axis);
 }
 
-/* The linear axes with a loop, one after the other; how many. */
+/* Put the linear axes with a loop in a row. Return: how many there are. */
 static int pick(const struct contouring_config *k,
 		const double mm[INTERP_NAXES], double *ret)
 {
@@ -158,7 +160,8 @@ static double within(double x, double low, double high)
 	return isnan(x) ? fmin(fmax(0, low), high) : fmin(fmax(x, low), high);
 }
 
-/* The target stays inside the travel too: a drive may watch it by itself. */
+/* The target stays inside the travel too, because a drive may watch its travel
+ * itself. */
 static int32_t inside(const struct cycle *c, int axis, double pulses)
 {
 	const double low = (double)c->config.travel_min[axis] -
@@ -169,7 +172,7 @@ static int32_t inside(const struct cycle *c, int axis, double pulses)
 	return (int32_t)llround(within(pulses, fmin(low, 0), fmax(high, 0)));
 }
 
-/* In a period no farther than the way at v_max. */
+/* In a period an addition changes by no more than the distance at v_max. */
 static void put(struct cycle *c, int axis, double mm)
 {
 	const struct contouring_config *k = &c->config.contouring;
@@ -222,7 +225,8 @@ static void leave(struct contouring *w)
 	}
 }
 
-/* It moves at full speed, and the points of its path are not known here. */
+/* The axes move at full speed, and the points of their path are not known
+ * here. */
 static void ease_off(struct cycle *c)
 {
 	struct contouring *w = &c->contouring;
@@ -237,7 +241,7 @@ static void ease_off(struct cycle *c)
 		leave(w);
 }
 
-/* Begin here; step by step if it is moving. */
+/* Begin here; gradually, if the axes are moving. */
 static void begin(struct cycle *c, bool stood)
 {
 	struct contouring *w = &c->contouring;

@@ -27,13 +27,13 @@
  *
  * Two contours at once are not led; the addition fades out where they begin.
  *
- * It is never more than the lag of an axis at its v_max, and changes in a
- * period by no more than the way at v_max; but a fault takes all of it off at
- * once.  A target inside the travel stays inside.
+ * The addition is never more than the lag of an axis at its v_max.  In a period
+ * it changes by no more than the distance at v_max; only a fault takes all of
+ * it off at once.  A target inside the travel stays inside.
  *
  * Units: mm, s; pulses.
- * Threads: RT-safe.  At most CONTOURING_AHEAD + 2 points of the path and the
- * work of interp_contour_step() a period.
+ * Threads: RT-safe.  In a period a call looks at CONTOURING_AHEAD + 2 points of
+ * the path at most, and does the work of interp_contour_step().
  */
 #ifndef RT_CONTOURING_H
 #define RT_CONTOURING_H
@@ -46,7 +46,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The whole periods of lead and delay, and two. */
+/* Whole periods: lead, delay, and two more. */
 #define CONTOURING_AHEAD	8
 #define CONTOURING_LEAD_MAX	(CONTOURING_AHEAD - 2)
 
@@ -60,26 +60,28 @@ struct contouring_config {
 	struct interp_compensate_gains gains;
 	struct interp_axis_loop loop[INTERP_NAXES];
 	double pulse_mm[INTERP_NAXES];
-	double most_mm[INTERP_NAXES];	/* that is added */
+	double most_mm[INTERP_NAXES];	/* the largest addition */
 };
 
 struct contouring {
-	bool on;			/* in the last period too */
-	bool stood;			/* it did, before this period */
-	bool eases;			/* off, until nothing is added */
-	uint32_t path;			/* io_outputs.path then */
-	double place_mm, way_mm;	/* on it, and gone in the last period */
-	double share;			/* of feedforward; from 0 where it is
-					 * moving already */
-	double coupled;			/* of cross-coupling; 0 at rest */
+	bool on;			/* it acted in the last period */
+	bool stood;			/* the axes stood before this period */
+	bool eases;			/* it goes off, until nothing is
+					 * added */
+	uint32_t path;			/* io_outputs.path in the last period */
+	double place_mm, way_mm;	/* the place, and the distance gone, in
+					 * the last period */
+	double share;			/* of feedforward, 0 ... 1; it grows
+					 * from 0 if the axes move already */
+	double coupled;			/* share of cross-coupling; 0 at rest */
 	double added_mm[INTERP_NAXES];
 	int32_t added[INTERP_NAXES];	/* the same in pulses */
-	struct interp_at_curve curve;	/* looked at last */
-	struct interp_row row;		/* of linear axes */
+	struct interp_at_curve curve;	/* the last one that was looked at */
+	struct interp_row row;		/* set places of the linear axes */
 	struct interp_contour foot;
 };
 
-/** contouring_rests() - nothing is added. */
+/** contouring_rests() - is nothing added? */
 bool contouring_rests(const struct contouring *w);
 
 struct cycle;

@@ -15,8 +15,8 @@ void limit_guard(struct cycle *c, const struct io_inputs *in)
 	const uint32_t came = in->limit & ~c->limit.on;
 
 	/*
-	 * The direction of the last pulses tells which side the switch is on.
-	 * Before the first period there were none of this edmd.
+	 * The direction of the last pulses tells on which side of the axis the
+	 * switch lies. Before the first period this edmd has made no pulses.
 	 */
 	for (uint32_t m = came; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);

@@ -3,9 +3,10 @@
  * limit.h - hard limit switches
  *
  * A switch that comes on while anything moves ends the motion at once and
- * latches the fault `limit-switch`. An axis that stands on its switch moves
- * only away from it: not the way it came.  If a switch was on from the start,
- * nobody knows which way that is; then a jog may go both ways, slowly.
+ * latches the fault `limit-switch`.  An axis that stands on its switch may only
+ * move away from it, back where it came from.  If a switch was on from the
+ * start, nobody knows which direction that is; then a jog may go both ways,
+ * slowly.
  *
  * Threads: RT-safe.
  */
@@ -19,8 +20,8 @@
 
 struct limit {
 	uint32_t on;			/* bit per axis */
-	int8_t side[INTERP_NAXES];	/* the switch lies toward; 0: not
-					 * known */
+	int8_t side[INTERP_NAXES];	/* direction from the axis to its
+					 * switch, +1 or -1; 0: not known */
 };
 
 struct cycle;

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * manual.c - jogs, and what jogs and homing share
- */
+/* manual.c - jogs, and the code that jogs and homing share */
 #include "axes/manual.h"
 #include "path/laws.h"
 #include "verbs.h"
 
 #include <math.h>
 
-/* The lattice goes so far from 0. */
+/* The lattice ends at this distance from 0. */
 static bool in_lattice(double pulses)
 {
 	return fabs(pulses) <= INTERP_PULSES_MAX;
@@ -78,7 +76,8 @@ struct mover_limits manual_limits(const struct cycle *c, double v_mm_s)
 	};
 }
 
-/* An axis whose places mean nothing yet goes no farther than its travel. */
+/* An axis whose place is not known yet goes no farther than the length of its
+ * travel. */
 static bool reaches(const struct cycle *c, uint32_t axis, double mm)
 {
 	const double pulses = mm / c->config.axis[axis].pulse_mm;
@@ -109,8 +108,8 @@ int manual_jog(struct cycle *c, uint32_t axis, double mm)
 
 /* -- Jogs that last as long as a press ------------------------------------- */
 
-/* So long an axis brakes at most from @v, even if it is still speeding up:
- * that has to end first. */
+/* The longest time that an axis needs to brake from @v. It may still be
+ * speeding up, and that has to end first. */
 static double press_brake_s(const struct manual_axis *a, double v_mm_s)
 {
 	const double rise_s = a->a_max_mm_s2 / a->j_max_mm_s3;
@@ -120,7 +119,7 @@ static double press_brake_s(const struct manual_axis *a, double v_mm_s)
 	return v_mm_s / a->a_max_mm_s2 + 2 * rise_s;
 }
 
-/* From this speed it takes MANUAL_BRAKE_S: the other way round. */
+/* The inverse: the speed from which braking takes MANUAL_BRAKE_S. */
 static double press_max_mm_s(const struct manual_axis *a)
 {
 	const double t_s = MANUAL_BRAKE_S;
@@ -130,7 +129,7 @@ static double press_max_mm_s(const struct manual_axis *a)
 	return a->a_max_mm_s2 * (t_s - 2 * a->a_max_mm_s2 / a->j_max_mm_s3);
 }
 
-/* Where the place is not known, an axis moves as slowly as in homing. */
+/* If its place is not known, an axis moves as slowly as in homing. */
 static double jog_mm_s(const struct cycle *c)
 {
 	const struct manual_axis *a = manual_axis(c);
@@ -144,8 +143,8 @@ static double jog_mm_s(const struct cycle *c)
 	return v_mm_s;
 }
 
-/* The way to the end of the travel, or the whole of it where the place is not
- * known. */
+/* The distance to the end of the travel, or the whole travel if the place is
+ * not known. */
 static double press_goal_mm(const struct cycle *c, uint32_t axis, bool forward)
 {
 	const double min = c->config.travel_min[axis];
@@ -161,7 +160,8 @@ static double press_goal_mm(const struct cycle *c, uint32_t axis, bool forward)
 	return pulses * c->config.axis[axis].pulse_mm;
 }
 
-/* A sign of the press came: when it has to brake if no other comes. */
+/* A sign of the press came. Set when the axis has to brake if no other sign
+ * comes. */
 static void press_felt(struct cycle *c, double mm_s)
 {
 	struct manual *h = &c->manual;
@@ -198,7 +198,8 @@ static int press_begin(struct cycle *c, uint32_t arg, double mm_s)
 	return ANSWER_DONE;
 }
 
-/* Of the press under way: the same axis, the same way, and not braking yet. */
+/* Does this sign belong to the press that is under way? It must have the same
+ * axis and direction, and the axis must not be braking yet. */
 static bool goes_on(const struct cycle *c, uint32_t arg, double mm_s)
 {
 	const struct manual *h = &c->manual;
@@ -223,7 +224,7 @@ int manual_press(struct cycle *c, uint32_t arg, double mm_s, int may,
 		return ANSWER_DONE;
 	}
 	if (mm_s == 0) {
-		/* Its beginning may be on its way still. */
+		/* The first sign of this press may still be on its way. */
 		if (c->state != STATE_JOG)
 			h->press = VERB_PRESS(arg);
 		return ANSWER_DONE;
@@ -279,7 +280,7 @@ bool manual_go(struct cycle *c, const struct io_inputs *in)
 	struct manual *h = &c->manual;
 	struct mover_limits l;
 
-	/* While the axes wait for power this goes on to count. */
+	/* This goes on counting while the axes wait for power. */
 	if (c->state == STATE_JOG && h->pressed && c->count >= h->until)
 		h->halt = true;
 	if (!h->halt)

@@ -2,12 +2,12 @@
 /*
  * manual.h - one axis moved by an operator without a program: jogged or homed
  *
- * Only from idle.  The move is an S-curve with the axis's own limits.  A jog is
- * of a given length, or goes on while a person presses a key: then a sign of
- * that press comes again and again, and the axis stands VERB_PRESS_S after the
- * last one, whatever became of the person, the page or the network.  A hold
- * or a stop brakes it; so does a fault that leaves the axes good, but for a
- * contact, which ends the move at once.
+ * It begins only from idle.  The move is an S-curve with the axis's own limits.
+ * A jog has a given length, or it goes on while a person presses a key.  In the
+ * second case a sign of that press comes again and again, and the axis stands
+ * VERB_PRESS_S after the last sign, whatever happened to the person, the page
+ * or the network.  A hold or a stop brakes the axis.  A fault that leaves the
+ * axes good brakes it too; a contact ends the move at once.
  *
  * Homing, one axis at a time, by method (docs/homing.md):
  *
@@ -15,10 +15,10 @@
  * 			further, slowly onto it again: that edge is home_at_mm
  * 	switch-index	the same, and slowly on to the index mark: that mark is
  * 	absolute	no motion: the drive says where it stands
- * 	none		the place where it starts is good
+ * 	none		the operator says that the place shown is right
  *
- * What homing found is a shift between places and pulses (comp.h). Giving a
- * place another number makes no pulse.
+ * What homing found is a shift between places and pulses (comp.h).  Only the
+ * number of the place changes; the drive gets no pulse.
  *
  * Units: mm of the axis, deg if rotary; pulses.  Sign: + as the axis.
  * Threads: RT-safe.
@@ -36,8 +36,8 @@
 
 #define MANUAL_ALL_AXES	INTERP_NAXES	/* home: each that has a method */
 
-/* So long a jog that is pressed brakes at most, of the VERB_PRESS_S that it has
- * to stand in: it is no faster than that. */
+/* A jog by a pressed key must stand within VERB_PRESS_S.  Of this time it may
+ * brake for so long, which limits its speed. */
 #define MANUAL_BRAKE_S	0.1
 
 enum home_phase {
@@ -55,23 +55,25 @@ enum home_phase {
 struct manual {
 	uint32_t axis;
 	int32_t from;			/* its place when the move began */
-	double gone_mm;			/* since */
-	double goal_mm;			/* jog: to go, from there */
+	double gone_mm;			/* since then */
+	double goal_mm;			/* jog: the distance from there */
 	bool halt;			/* brake, then idle */
-	bool free_seen;			/* jog: the gap has been open */
+	bool free_seen;			/* jog: the gap was open since it
+					 * began */
 	bool pressed;			/* jog: only while its press lasts */
-	uint32_t press;			/* the last one, over or not */
+	uint32_t press;			/* number of the last press */
 	double press_mm_s;		/* the speed that it asks for */
-	uint64_t until;			/* cycle in which it begins to brake */
+	uint64_t until;			/* the cycle in which it brakes */
 	struct mover mover;
 	uint32_t todo;			/* home: bit per axis still to do */
 	enum home_phase phase;
-	double phase_mm;		/* gone_mm where the phase began */
+	double phase_mm;		/* gone_mm when the phase began */
 	int32_t met;			/* pulses at the switch or mark */
 	uint32_t homed;			/* bit per axis */
-	uint32_t unplaced;		/* ... whose drive lost its place; until
-					 * it is homed */
-	bool used;			/* places and programs may disagree */
+	uint32_t unplaced;		/* bit per axis whose drive lost its
+					 * place, until it is homed */
+	bool used;			/* an axis was moved: a program may not
+					 * begin where the axes stand */
 };
 
 struct cycle;
@@ -85,16 +87,17 @@ uint32_t manual_unhomed(const struct cycle *c);
 
 /**
  * manual_jog() - begin to move axis @axis by @mm.
- * Return: enum cycle_answer; the state is the caller's.
+ * Return: enum cycle_answer.  The caller changes the state.
  */
 int manual_jog(struct cycle *c, uint32_t axis, double mm);
 
 /**
  * manual_press() - a sign of a press: begin a jog at @mm_s, let it go on, or
- * end it (0).  @arg: words/verbs.h.
+ * end it (0).  @arg is described in words/verbs.h.  @may is what the guards say
+ * about a motion that begins.
  *
- * @may: what a guard says of a motion that begins.
- * Return: enum cycle_answer; *@ret_begun: the state is the caller's to change.
+ * Return: enum cycle_answer.  If *@ret_begun is set, the caller has to change
+ * the state.
  */
 int manual_press(struct cycle *c, uint32_t arg, double mm_s, int may,
 		 bool *ret_begun);

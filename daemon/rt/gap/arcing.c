@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * arcing.c - the ladder against arcs
- */
+/* arcing.c - the steps that are taken against arcs */
 #include "gap/arcing.h"
 #include "cycle.h"
 
 #include <math.h>
 
-#define LASTING_MEANS	5		/* in a row after a retract: a fault */
+#define LASTING_MEANS	5		/* so many in a row after a retract are
+					 * a fault */
 
 static double own_off_us(const struct cycle *c)
 {
@@ -43,7 +42,8 @@ static void climb(struct cycle *c)
 	fault_latch(&c->fault, FAULT_ARCING);
 }
 
-/* The arcs have ended: if they come again, jump and retract come again too. */
+/* The arcs have ended. If they come again, the jump and the retract are done
+ * again too. */
 static void end_deeds(struct cycle *c)
 {
 	struct arcing *a = &c->arcing;
@@ -55,7 +55,7 @@ static void end_deeds(struct cycle *c)
 						    ARCING_NONE;
 }
 
-/* Slowly: arcs like to come back to the place where they burned. */
+/* This is slow, because arcs often come back to the place where they burned. */
 static void descend(struct cycle *c)
 {
 	struct arcing *a = &c->arcing;
@@ -106,7 +106,7 @@ double arcing_retract_mm(const struct cycle *c)
 	return arcing_retract_due(c) ? c->gap.arcing_retract_mm : 0;
 }
 
-/* Power was off: the average starts from nothing. */
+/* The power was off, so the average begins anew. */
 void arcing_met(struct cycle *c)
 {
 	c->arcing.due = false;

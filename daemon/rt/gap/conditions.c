@@ -12,8 +12,8 @@
 
 #define AT(field)	offsetof(struct cycle, field)
 
-/* Fields that go as they are; jump_every_s, abort_count, iso and polarity do
- * not. */
+/* The fields that are used as they are. jump_every_s, abort_count, iso and
+ * polarity are not among them. */
 static const struct {
 	enum interp_tech_id id;
 	size_t at;
@@ -48,8 +48,8 @@ static double period_s(const struct cycle *c)
 	return (double)c->config.period_ns * 1e-9;
 }
 
-/* The condition of the place and what is set in it; a copy, for the program
- * is in memory that another process wrote. */
+/* The condition at this place and what is `set` in it. It is a copy, because
+ * the program is in memory that another process wrote. */
 static struct interp_tech wanted(const struct cycle *c, uint16_t cond)
 {
 	struct interp_tech t = c->cursor.p.conds[cond].tech;
@@ -107,7 +107,8 @@ static bool gives_nothing(const struct interp_tech *t)
 	return true;
 }
 
-/* The machine file's own; NAN for what is not in its [gap]. */
+/* The value of the machine file; NAN for a field that its [gap] does not
+ * have. */
 static double machine_value(const struct cycle *c, size_t row)
 {
 	const size_t at = rows[row].at - AT(gap);
@@ -117,7 +118,7 @@ static double machine_value(const struct cycle *c, size_t row)
 			((const char *)&c->config.gap + at) : NAN;
 }
 
-/* Over this machine's values, in order? */
+/* Are these values, put over those of this machine, in order? */
 static bool fits(const struct cycle *c, const struct interp_tech *t)
 {
 	struct interp_tech sum;
@@ -177,7 +178,8 @@ static bool is_used(uint32_t field)
 	       field == INTERP_TECH_ISO || field == INTERP_TECH_POLARITY;
 }
 
-/* Where it is set in this condition, or where it would be. */
+/* The slot where the field is set in this condition, or where it would be
+ * set. */
 static uint32_t place_of(const struct conditions *p, uint32_t field)
 {
 	uint32_t i = 0;

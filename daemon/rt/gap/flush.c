@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * flush.c - jumps: by time, by depth, or as the gap asks for them
- */
+/* flush.c - when to jump: by time, by depth, or because arcs ask for it */
 #include "gap/flush.h"
 #include "cycle.h"
 
 #include <math.h>
 
-#define TRIAL_JUMPS	4		/* to judge a period by */
-#define STEP		1.15		/* of the period, either way */
+#define TRIAL_JUMPS	4		/* jumps that judge a period */
+#define STEP		1.15		/* factor on the period, up or down */
 #define OFTENER		0.7		/* two steps halve the period */
 #define HIGHER		1.25
 #define LOWER		0.95
@@ -67,7 +65,8 @@ static void begin_anew(struct cycle *c)
 	f->trial = (struct flush_trial) { .seldomer = true };
 }
 
-/* A few jumps with one period, then a step on, or back if that was slower. */
+/* Make a few jumps with one period. Then change the period, or go back if the
+ * last change made it slower. */
 static void climb(struct cycle *c)
 {
 	struct flush *f = &c->flush;
@@ -114,7 +113,7 @@ double flush_begin(struct cycle *c)
 	return height;
 }
 
-/* What is spent on jumps counts as well. */
+/* The time that jumps take counts as well. */
 void flush_watch(struct cycle *c)
 {
 	struct flush *f = &c->flush;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * gap.c - sensing: from whatever the machine says to one reading
- */
+/* gap.c - from what the machine says, whatever its sensor, to one reading */
 #include "gap/gap.h"
 #include "path/laws.h"
 #include "path/place.h"
@@ -9,11 +7,14 @@
 #include <math.h>
 #include <string.h>
 
-#define BELOW_MAX_V	5.0		/* an amplifier's offset, no more */
+#define BELOW_MAX_V	5.0		/* the offset that an amplifier may
+					 * have */
 #define ABOVE_MAX	1.5		/* of the ignition voltage */
-#define SHARES_SLACK	0.01		/* rounding of who counts */
-#define CHANGE_CYCLES	1000.0		/* mean of the noise, in cycles */
-#define MOVED_MM	0.001		/* less is not a gap that changed */
+#define SHARES_SLACK	0.01		/* rounding by the sensor that counts */
+#define CHANGE_CYCLES	1000.0		/* cycles over which the mean of the
+					 * noise is taken */
+#define MOVED_MM	0.001		/* a smaller change is not a change of
+					 * the gap */
 
 double gap_window_high_v(const struct cycle *c)
 {
@@ -21,7 +22,7 @@ double gap_window_high_v(const struct cycle *c)
 					  c->gap.servo_v;
 }
 
-/* Derived, it is halfway down to the short. */
+/* If it is derived, it is halfway from the servo voltage down to the short. */
 double gap_window_low_v(const struct cycle *c)
 {
 	const double high = gap_window_high_v(c);
@@ -76,7 +77,7 @@ static void from_voltage(const struct cycle *c, const struct io_inputs *in,
 	r->is_open = r->valid && r->v > c->gap.open_v;
 }
 
-/* Where there were no pulses to count, a sensing voltage it is. */
+/* If there were no pulses to count, the sensing voltage is used. */
 static void from_shares(const struct cycle *c, const struct io_inputs *in,
 			struct gap_reading *r)
 {
@@ -96,7 +97,7 @@ static void from_shares(const struct cycle *c, const struct io_inputs *in,
 	r->is_open = open >= g->share_open;
 }
 
-/* Three comparators: each a line that is 0 or 1. */
+/* Three comparators, each of them a line that is 0 or 1. */
 static void from_lines(const struct cycle *c, const struct io_inputs *in,
 		       struct gap_reading *r)
 {
@@ -107,7 +108,8 @@ static void from_lines(const struct cycle *c, const struct io_inputs *in,
 	r->now_v = r->contact ? 0 :
 		   r->is_open ? 2 * c->gap.open_v :
 		   (gap_window_low_v(c) + gap_window_high_v(c)) / 2;
-	/* Out of a retract, where nothing sparks, not shorted is clear. */
+	/* In a retract nothing sparks, so a gap that is not shorted is
+	 * clear. */
 	if (!c->out.power && !r->contact)
 		r->now_v = 2 * c->gap.open_v;
 	r->valid = in->shares_valid &&
@@ -139,7 +141,7 @@ static void (*const sources[GAP_NSOURCES])(const struct cycle *,
 
 /* -- Filters --------------------------------------------------------------- */
 
-/* By insertion: it is 15 at the most. */
+/* Sort by insertion: there are at most 15 values. */
 static double median(const double *v, uint32_t n)
 {
 	double sorted[GAP_FILTER_MAX];
@@ -171,7 +173,8 @@ static double filtered(struct gap_memory *m, const struct cycle_gap_config *g,
 					      median(m->past_v, m->npast);
 }
 
-/* Power makes another signal of the same gap: what was before says nothing. */
+/* With power on, the same gap gives another signal; so the readings before say
+ * nothing. */
 static void forget(struct gap_memory *m, bool power)
 {
 	const bool same = (m->powered > 0) == power;
@@ -187,8 +190,9 @@ static void forget(struct gap_memory *m, bool power)
 /* -- Arcs ------------------------------------------------------------------ */
 
 /*
- * A spark's voltage scatters with its ignition delay; an arc has none and
- * stands in the plateau.  Only for a machine that counts no pulses.
+ * The voltage of sparks scatters with their ignition delay. An arc has no such
+ * delay, and its voltage stays on the plateau. This is only for a machine that
+ * does not count pulses.
  */
 static double arcing_by_voltage(const struct cycle *c, struct gap_memory *m,
 			     double v)
@@ -207,12 +211,14 @@ static double arcing_by_voltage(const struct cycle *c, struct gap_memory *m,
 	m->arcing_var_v2 += (d * d - m->arcing_var_v2) / n;
 	return (double)m->arcing_cycles > n && m->arcing_mean_v >= c->gap.short_v &&
 	       m->arcing_mean_v <= gap_window_high_v(c) &&
-	       m->arcing_var_v2 < c->gap.arcing_sigma_v * c->gap.arcing_sigma_v ? 1 : 0;
+	       m->arcing_var_v2 < c->gap.arcing_sigma_v *
+				  c->gap.arcing_sigma_v ? 1 : 0;
 }
 
 /* -- Is it alive? ---------------------------------------------------------- */
 
-/* Lines stand still by nature, and so do the shares of an open gap. */
+/* Lines do not change by themselves, and neither do the shares of an open
+ * gap. */
 static bool may_stand(const struct cycle *c, const struct gap_reading *r)
 {
 	return c->gap.source == GAP_LINES ||
@@ -239,13 +245,13 @@ static bool suspect(const struct cycle *c, struct gap_memory *m,
 	       fabs(place - m->same_mm) >= MOVED_MM;
 }
 
-/* Lines say nothing where nothing sparks, but must be read to be felt by. */
+/* Lines say nothing while nothing sparks. But to probe, they must be read. */
 static bool lines_unreadable(const struct cycle *c, const struct io_inputs *in)
 {
 	return c->out.power || (c->out.sense && !in->shares_valid);
 }
 
-/* A probe may have an input of its own, which is enough. */
+/* A probe may have an input of its own; then that input is enough. */
 bool gap_is_unreadable(const struct cycle *c, const struct io_inputs *in)
 {
 	if (c->config.dry_run || (c->state == STATE_PROBE && in->contact))

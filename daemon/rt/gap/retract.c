@@ -17,7 +17,7 @@ double retract_limit_mm(const struct cycle *c)
 
 double retract_motion_mm(const struct cycle *c)
 {
-	/* Beside the path nothing has begun but the way out. */
+	/* Beside the path only the way out has begun. */
 	return escape_is_out(&c->escape) ? place_outer_mm(c) :
 	       fmax(c->back_mm, c->cursor.seg.s_mm);
 }
@@ -36,7 +36,7 @@ static double floor_of(const struct cycle *c)
 	}
 }
 
-/* In a row are those between which the cut got no deeper. */
+/* Retracts are in a row if the cut got no deeper between them. */
 static void count(struct cycle *c)
 {
 	struct retract *r = &c->retract;
@@ -92,7 +92,7 @@ bool retract_is_clear(const struct cycle *c)
 	       (back_mm(c) >= c->retract.least_mm || at_floor(c));
 }
 
-/* The distance was used up, or there is no way left to go? */
+/* Is the whole distance used, or the end of the way back reached? */
 static enum cycle_fault blame(const struct cycle *c)
 {
 	return c->at_start || c->gap.retract_to != RETRACT_LIMIT ||
@@ -118,7 +118,8 @@ void retract_watch(struct cycle *c)
 	}
 	if (!r->waited && !at_floor(c))
 		return;
-	/* As far back as it may: stand, and give the short a little time. */
+	/* It is as far back as it may go: stand there and give the short a
+	 * little time. */
 	if (r->waited++ >= g->retract_wait_cycles)
 		fault_latch(&c->fault, blame(c));
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * escape.c - out of the cut and back beside the path
+ * escape.c - out of the cut and back, beside the path
  *
- * Tick k of n of a leg is from + k * (to - from) / n, each axis rounded to the
- * nearest pulse.  No axis has more than n pulses to go, so none makes more
- * than one in a tick.
+ * Tick k of n of a leg is at from + k * (to - from) / n, with each axis rounded
+ * to the nearest pulse. No axis has more than n pulses to go, so none makes
+ * more than one pulse in a tick.
  */
 #include "path/place.h"
 
@@ -12,7 +12,7 @@
 #include <string.h>
 
 
-/* Keeps 2 * ticks * pulses inside int64_t. */
+/* This keeps 2 * ticks * pulses inside int64_t. */
 #define TICKS_MAX	(INT64_C(1) << 30)
 
 static const uint32_t linear = 1u << INTERP_X | 1u << INTERP_Y |
@@ -25,7 +25,8 @@ static double pulse_mm(const struct cycle *c, int axis)
 	return c->cursor.p.head->pulse_mm[axis];
 }
 
-/* The lattice point at @mm; false outside the travel, or if @mm is no number. */
+/* The lattice point at @mm. Return: false if it is outside the travel, or if
+ * @mm is not a number. */
 static bool pulses_at(const struct cycle *c, int axis, double mm, int32_t *ret)
 {
 	const double at = mm / pulse_mm(c, axis);
@@ -49,7 +50,7 @@ static double leg_length(const struct cycle *c, const struct escape_leg *l)
 	return sqrt(sum);
 }
 
-/* A leg of no length is none. */
+/* A leg without a length is left out. */
 static bool leg_add(struct cycle *c, const int32_t to[INTERP_NAXES])
 {
 	struct escape *e = &c->escape;
@@ -77,9 +78,9 @@ static bool leg_add(struct cycle *c, const int32_t to[INTERP_NAXES])
 	return true;
 }
 
-/* The axes in @axes to @mm, all of the way or the share @share of it. */
-static bool leg_to(struct cycle *c, uint32_t axes, const double mm[INTERP_NAXES],
-		   double share)
+/* Move the axes in @axes toward @mm, by the share @share of the distance. */
+static bool leg_to(struct cycle *c, uint32_t axes,
+		   const double mm[INTERP_NAXES], double share)
 {
 	int32_t to[INTERP_NAXES];
 
@@ -94,7 +95,7 @@ static bool leg_to(struct cycle *c, uint32_t axes, const double mm[INTERP_NAXES]
 	return leg_add(c, to);
 }
 
-/* Share of the way to out_mm that the rise is. */
+/* The share of the way to out_mm that the rise takes. */
 static double rise_share(const struct cycle *c, const struct interp_escape *x)
 {
 	double sum = 0;
@@ -191,7 +192,8 @@ static double onto(double way_mm, const struct escape_leg *l)
 	return way_mm >= l->end_mm - MOVER_ONTO_MM ? l->end_mm : way_mm;
 }
 
-/* Point by point to @tick; false if a cycle may not have so many. */
+/* Go point by point to @tick. Return: false if that is more than one cycle may
+ * do. */
 static bool walk_to(struct cycle *c, int64_t tick)
 {
 	struct escape *e = &c->escape;
@@ -252,7 +254,8 @@ double escape_stop_mm(const struct cycle *c, double to_mm)
 
 /* -- After a crash --------------------------------------------------------- */
 
-/* The longest axis has a pulse in each tick, so it tells which one it is. */
+/* The longest axis has a pulse in each tick, so its place tells which tick it
+ * is. */
 static bool leg_find(struct escape *e, const int32_t pos[INTERP_NAXES])
 {
 	const struct escape_leg *l = &e->leg[e->at];

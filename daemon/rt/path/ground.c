@@ -11,13 +11,14 @@
 #define TURN		(2 * M_PI)
 #define TURNS_MAX	16
 
-/* A node of column @j, pulses. */
+/* The place of a node in column @j, in pulses. */
 static double node_at(const struct interp_program *p, uint32_t i, uint32_t j)
 {
 	return (double)p->nodes[(uint64_t)i * p->head->naxes + j] / INTERP_SUB;
 }
 
-/* At the share @t of segment @i, on every axis but those in @except? */
+/* Does the machine stand at the share @t of segment @i, on every axis but those
+ * in @except? */
 static bool is_at(const struct interp_cursor *at, uint32_t i, double t,
 		  uint32_t except)
 {
@@ -33,7 +34,7 @@ static bool is_at(const struct interp_cursor *at, uint32_t i, double t,
 	return true;
 }
 
-/* By the axis that goes farthest. */
+/* The share is found by the axis that goes farthest. */
 static bool is_on_line(const struct interp_cursor *at, uint32_t i)
 {
 	double most = 0, t = 0;
@@ -50,7 +51,7 @@ static bool is_on_line(const struct interp_cursor *at, uint32_t i)
 	return is_at(at, i, fmin(fmax(t, 0), 1), 0);
 }
 
-/* By its angle, in any of its turns. */
+/* The share is found by the angle, in any of the turns. */
 static bool is_on_arc(const struct interp_cursor *at, uint32_t i,
 		      const struct interp_arc *k)
 {

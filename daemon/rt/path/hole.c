@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* Into the positioning in front of the hole. */
+/* Go into the positioning before the hole. */
 #define PAST_PULSES	1.5
 
 static double past_mm(const struct cycle *c, const struct interp_seg *rapid)

@@ -12,7 +12,7 @@ void mcode_begin(struct cycle *c, uint32_t index)
 	c->mcode = (struct mcode) { .back_to = index };
 }
 
-/* A PLC that is gone says nothing, not even that its answer is gone. */
+/* A PLC that is gone says nothing, not even that its answer is withdrawn. */
 void mcode_hear(struct cycle *c)
 {
 	struct mcode *m = &c->mcode;

@@ -2,9 +2,9 @@
 /*
  * mover.c - an S-curve along the path, sampled cycle by cycle
  *
- * A plan to a place holds as long as the distance left is the one that the plan
- * expects.  Each cycle goes to where the plan is then, so roundings do not add
- * up.
+ * A plan to a place is valid as long as the distance left is the one that the
+ * plan expects. Each cycle goes to the place that the plan has then, so
+ * roundings do not add up.
  */
 #include "path/mover.h"
 
@@ -91,7 +91,7 @@ struct interp_scurve_state mover_peek(const struct mover *m, double period_s)
 	return s;
 }
 
-/* The distance leads to where the plan is then. */
+/* The distance leads to the place that the plan has then. */
 double mover_go(struct mover *m, double period_s)
 {
 	const struct interp_scurve_state s = mover_peek(m, period_s);

@@ -13,25 +13,26 @@
 #define STILL_S		1.0		/* at any speed */
 #define STILL_POINTS	8.0		/* at a low one */
 
-/* Another number at another lattice point, near the one before. */
+/* A number that differs between a lattice point and those near it. */
 static uint64_t stamp(const struct cycle *c)
 {
 	return (uint64_t)c->cursor.tick + ((uint64_t)c->cursor.index << 40) +
 	       ((uint64_t)c->escape.tick << 20);
 }
 
-/* The gap says how fast: a stand is one of its answers. */
+/* The gap says how fast to go, and it may say to stand. */
 static bool gap_stands(const struct cycle *c)
 {
 	if (!state_duty[c->state].power && c->state != STATE_RETRACT &&
 	    c->state != STATE_PROBE)
 		return false;
-	/* A way of a cycle that is lost in a rounding is a stand as well. */
+	/* A distance of a cycle that is lost in a rounding counts as a
+	 * stand. */
 	return place_mm(c) != c->progress.place_mm ||
 	       fabs(c->mover.v_mm_s) * law_period_s(c) < MOVER_ONTO_MM;
 }
 
-/* One that was begun is forgotten on the way back, and waited for again. */
+/* A wait that had begun is forgotten on the way back, and begins again. */
 static bool dwells(const struct cycle *c)
 {
 	return c->job.dwelling && (state_duty[c->state].power ||
@@ -47,7 +48,7 @@ static bool has_a_name(const struct cycle *c)
 				     c->state == STATE_PROBE));
 }
 
-/* The speed of what it is to do; jumps and moves by command are quick. */
+/* The speed of what it has to do; jumps and moves by command are fast. */
 static double speed_mm_s(const struct cycle *c, const struct interp_seg *s)
 {
 	return c->state == STATE_TRAVEL ?
@@ -56,7 +57,7 @@ static double speed_mm_s(const struct cycle *c, const struct interp_seg *s)
 					c->jump.v_max_mm_s;
 }
 
-/* So long that some points should have come? */
+/* A time after which some points should have come. */
 static bool is_long(const struct cycle *c)
 {
 	const double still_s = (double)c->progress.still * law_period_s(c);

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * step.c - held: from node to node of the path
- */
+/* step.c - go from node to node of the path, while held */
 #include "path/step.h"
 #include "path/laws.h"
 #include "path/place.h"
 
 #include <math.h>
 
-#define SEGMENTS_MAX	512		/* looked at in one command */
+#define SEGMENTS_MAX	512		/* segments, looked at in one command */
 
-/* The first node of a segment; that of the one after the last is the end. */
+/* The first node of a segment; after the last segment, the end of the
+ * program. */
 static double node_mm(const struct interp_program *p, uint32_t i)
 {
 	return i < p->head->nsegs ? p->segs[i].s_mm : p->head->length_mm;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * timed.c - a part of the program that ends by time as well as by depth
- */
+/* timed.c - a part of the program that may end by time as well as by depth */
 #include "path/timed.h"
 #include "cycle.h"
 
@@ -34,7 +32,7 @@ void timed_over(struct cycle *c, uint32_t end)
 		c->timed.end = 0;
 }
 
-/* At tick 0 a seek takes no steps. */
+/* To tick 0 a seek takes no steps. */
 void timed_skip(struct cycle *c)
 {
 	struct interp_cursor end = c->cursor;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * walk.c - walk the cursor, count the pulses, meet the actions
+ * walk.c - walk the cursor, count the pulses, do the actions
  *
- * An action is done when the walk first comes to it; going back over it and
- * forward again does not do it twice.
+ * An action is done when the walk first comes to it. If the walk goes back over
+ * it and forward again, it is not done twice.
  */
 #include "path/walk.h"
 #include "path/place.h"
@@ -34,7 +34,7 @@ bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s)
 	       (s->kind == INTERP_MCODE && mcode_again(c, i, s->arg));
 }
 
-/* The segment under way; at its end the next one. */
+/* The segment that is under way; at its end, the next one. */
 static const struct interp_seg *seg_ahead(const struct interp_cursor *at)
 {
 	const uint32_t next = at->index + 1;
@@ -80,7 +80,7 @@ static void count_pulses(struct cycle *c)
 		c->totals.pulses[__builtin_ctz(m)]++;
 }
 
-/* The last point was one too far: back to the one before. */
+/* The last point was one too many: go back to the one before. */
 static void undo_point(struct cycle *c)
 {
 	interp_cursor_aim(&c->cursor, c->cursor.backward ? 1e9 : -1e9);
@@ -92,7 +92,8 @@ static void undo_point(struct cycle *c)
 
 #define RUN	64
 
-/* So far inside its travel that no point of a run can be beyond it? */
+/* Is every axis so far inside its travel that no point of a run can be
+ * outside? */
 static bool well_inside(const struct cycle *c)
 {
 	const struct interp_cursor *at = &c->cursor;
@@ -106,7 +107,7 @@ static bool well_inside(const struct cycle *c)
 	return true;
 }
 
-/* Bit i of @mask as a 1 in byte i. */
+/* Put bit i of @mask as a 1 into byte i. */
 static uint64_t spread(uint64_t mask)
 {
 	const uint64_t ones = UINT64_C(0x0101010101010101);
@@ -115,7 +116,8 @@ static uint64_t spread(uint64_t mask)
 	return (bits + 0x7f * ones) >> 7 & ones;
 }
 
-/* The pulses of at most 255 points: a byte for each axis holds its sum. */
+/* Count the pulses of at most 255 points: a byte for each axis holds its
+ * sum. */
 static void count_run(struct cycle *c, const uint16_t *pulses, uint32_t n)
 {
 	uint64_t sums = 0;
@@ -126,7 +128,8 @@ static void count_run(struct cycle *c, const uint16_t *pulses, uint32_t n)
 		c->totals.pulses[i] += sums & 0xff;
 }
 
-/* If nobody looks at each point; 0: go by a step. */
+/* Make many points at once, if nobody looks at each point. Return: how many; 0
+ * means that single steps have to be made. */
 static uint32_t run(struct cycle *c, uint32_t max)
 {
 	uint16_t pulses[RUN];
@@ -141,7 +144,7 @@ static uint32_t run(struct cycle *c, uint32_t max)
 
 /* -- One by one ------------------------------------------------------------ */
 
-/* @left: points that this cycle may still go. */
+/* @left: how many points this cycle may still make. */
 static enum walk_result points(struct cycle *c, uint32_t *left)
 {
 	while (*left > 0) {
@@ -171,13 +174,15 @@ static enum walk_result points(struct cycle *c, uint32_t *left)
 			return WALK_BROKEN;
 		}
 	}
-	/* No more points in this cycle: on as far as goes without one. */
+	/* This cycle may make no more points: go on as far as possible without
+	 * one. */
 	if (!interp_cursor_slide(&c->cursor))
 		c->cut_short = true;
 	return WALK_ON;
 }
 
-/* What is done already is no reason to stop: the walk goes on behind it. */
+/* An action that is already done is no reason to stop: the walk goes on behind
+ * it. */
 static bool pass_done(struct cycle *c)
 {
 	const uint32_t next = c->cursor.index + 1;
