@@ -46,6 +46,28 @@ static double left_mm(const struct cycle *c)
 	return s->s_mm + s->length_mm - SHY_MM - place_mm(c);
 }
 
+bool probe_is_start(const struct cycle *c, const struct interp_cursor *at)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (c->out.target[i] !=
+		    at->pos[i] + at->p.head->probed.shift[i])
+			return false;
+	return true;
+}
+
+void probe_load(struct cycle *c)
+{
+	const struct interp_probed *was = &c->cursor.p.head->probed;
+	struct probe *t = &c->probe;
+
+	*t = (struct probe) {
+		.phase = PROBE_SETTLE, .once = was->once, .twice = was->twice,
+	};
+	memcpy(t->shift, was->shift, sizeof(t->shift));
+	memcpy(t->found, was->found, sizeof(t->found));
+	place_target(c, c->cursor.pos);
+}
+
 /* Along which axis, and which way: 0 if along none. */
 static int axis_of(const struct cycle *c, int *ret_sign)
 {
