@@ -44,7 +44,7 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	8
+#define INTERP_PROGRAM_VERSION	9
 
 /*
  * How three and more axes make a line, one at a time.  Point-by-point is a
