@@ -70,7 +70,7 @@ struct cycle_gap_config {
 	double integral_s;		/* reset time; 0: proportional alone */
 	double feed_max_mm_s;		/* fastest feed while eroding */
 	double creep_mm_s;		/* fastest back, while eroding */
-	double feed_a_mm_s2;		/* of the servo; 0: at once */
+	double feed_a_mm_s2;		/* of the servo; 0: that of the axes */
 	double approach_mm_s;		/* feed until the first spark */
 	double share_v;			/* worth of a share of 1 */
 	double share_set;		/* weighted share to hold */
