@@ -361,11 +361,11 @@ static int write_all(struct plan *p)
 		return EX_OSERR;
 	bar_forget();
 	err = prove_text(p, text);
-	if (err == 0 && p->j->o->times)
-		err = times_ask(p);
 	if (err == 0)
 		err = put_text(p->j->o->output, text);
 	free(text);
+	if (err == 0 && p->j->o->times)
+		err = times_ask(p);
 	if (err == 0)
 		err = report_put(p);
 	if (err == 0)
