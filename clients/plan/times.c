@@ -19,8 +19,8 @@ struct room {
 	char dir[64], ini[512], ngc[96], sim[512];
 };
 
-/* Beside the machine file, so that the files it names are found; where nothing can
- * be written there, in the room's own folder. */
+/* Beside the machine file, so that the files it names are found.  If nothing
+ * can be written there, in the room's own folder. */
 static void place_ini(struct room *r, const char *machine)
 {
 	const char *slash = machine ? strrchr(machine, '/') : NULL;
