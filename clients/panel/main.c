@@ -190,7 +190,7 @@ static void close_parts(struct panel *p)
 	free(p->delta);
 }
 
-/* Beyond this host: no word in clear, and nobody without a password. */
+/* Beyond this host nothing is sent in clear, and everybody needs a password. */
 static int check_reach(struct panel *p)
 {
 	const struct config_panel *c = &p->config.panel;
@@ -343,7 +343,7 @@ int main(int argc, char **argv)
 	sigaction(SIGINT, &sa, NULL);
 	sigaction(SIGTERM, &sa, NULL);
 	signal(SIGPIPE, SIG_IGN);
-	/* Passwords and keys are in this memory. */
+	/* This memory holds passwords and keys. */
 	prctl(PR_SET_DUMPABLE, 0);
 	return serve(&p);
 }

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * work.c - what the panel has a process of its own do
- */
+/* work.c - work that the panel does in a process of its own */
 #include "work.h"
 #include "child.h"
 #include "flat.h"
