@@ -20,7 +20,8 @@
 struct again {
 	struct checkpoint_base base;	/* places in mm of the whole program */
 	double from_mm, way_mm;		/* as in interp/build_from.h; the
-					 * program of this job; 0, 0: not made */
+					 * program of this job; 0, 0: not
+					 * made */
 	uint32_t instance;		/* of the edmd whose axes an operator
 					 * answered for; 0: nobody did */
 };
