@@ -256,7 +256,7 @@ $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
 $(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
-	$(call link,-linih -llcm -lsqlite3 -lsodium -lsystemd -lm)
+	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
 	$(call link,-llcm -lsodium -ljansson $(LIBGPIOD) -lm)
@@ -277,7 +277,7 @@ $(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
 	     apart.c box.c near.c motion.c sweep.c prove.c))
 
-$(B)/unit/test_plan_core: $(PLAN_CORE)
+$(B)/unit/test_plan_core $(B)/unit/test_plan_bounds: $(PLAN_CORE)
 
 $(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++

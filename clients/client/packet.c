@@ -65,8 +65,9 @@ uint8_t *packet_chunk(const struct packet_from *f, const struct talk_chunk *c,
 		.utime = utime(), .client = lent(f->client), .seq = f->seq,
 		.job = lent(c->job), .name = lent(c->name),
 		.bytes = c->bytes, .chunk = c->chunk, .chunks = c->chunks,
-		.offset = c->offset, .hold = c->hold, .size = c->size,
-		.data = (uint8_t *)(uintptr_t)c->data,
+		.offset = c->offset, .hold = c->hold,
+		.from_line = c->from_line, .from_mm = c->from_mm,
+		.size = c->size, .data = (uint8_t *)(uintptr_t)c->data,
 	};
 
 	memcpy(m.sha256, c->sha256, sizeof(m.sha256));

@@ -26,6 +26,9 @@ struct submission_text {
 	const char *text;		/* lent until submission_end() */
 	size_t bytes;			/* at most SUBMISSION_BYTES_MAX */
 	bool hold;			/* load it, but wait for "start" */
+	int from_line;			/* begin at this line; 0: from_mm */
+	double from_mm;			/* begin there along the path; 0: at the
+					 * beginning */
 	double silent_s;		/* give up after so long without an ack;
 					 * 0: 10 s.  At least 15 s, when the
 					 * whole text has been sent */

@@ -82,6 +82,8 @@ struct talk_chunk {
 	int chunk, chunks;
 	int64_t offset;
 	bool hold;
+	int from_line;
+	double from_mm;
 	int size;
 	const char *data;
 };

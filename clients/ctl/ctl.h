@@ -21,6 +21,8 @@ struct ctl {
 	double timeout_s;
 	const char *name, *id;
 	bool hold, wait, once;
+	int from_line;			/* 0: not given */
+	double from_mm;			/* 0: not given */
 	unsigned int every;		/* record: cycles; 0: not given */
 	const char *plot;
 	const char *pulses;		/* doctor: CHIP:LINE */

@@ -29,6 +29,20 @@ static int take_id(void *to, const char *id)
 	return EX_USAGE;
 }
 
+static int take_from_line(void *to, const char *word)
+{
+	struct ctl *c = to;
+	char *end;
+	long n = strtol(word, &end, 10);
+
+	if (end == word || *end || n < 1 || n > INT32_MAX)
+		return cmdline_refuse("edmctl", "--from-line", word,
+				      "the number of a line of the file, 1 is "
+				      "the first");
+	c->from_line = (int)n;
+	return -1;
+}
+
 static int take_every(void *to, const char *word)
 {
 	struct ctl *c = to;
@@ -53,7 +67,7 @@ struct verb {
 
 /* clang-format off */
 static const struct verb verbs[] = {
-	{ "submit", "FILE", ctl_submit, 1, 1, false, "name id hold wait",
+	{ "submit", "FILE", ctl_submit, 1, 1, false, "name id hold wait from-line from-place",
 	  "send a job of NC code; - is standard input" },
 	{ "queue", "", ctl_queue, 0, 0, false, "",
 	  "print the loaded job and those that wait" },
@@ -138,6 +152,11 @@ static const struct cmdline_row rows[] = {
 	  "submit: load the job and wait for start" },
 	{ "wait", NULL, CMDLINE_FLAG, AT(wait), .help =
 	  "submit: follow the job; exit 0 if it is done, 1 if not" },
+	{ "from-line", "N", CMDLINE_CALL, .take = take_from_line, .help =
+	  "submit: begin at line N, and wait for start" },
+	{ "from-place", "MM", CMDLINE_NUMBER, AT(from_mm), .min = 1e-6,
+	  .max = 1e9, .help =
+	  "submit: begin at this place of its path, and wait for start" },
 	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: print one line" },
 	{ "every", "N", CMDLINE_CALL, .take = take_every, .help =
 	  "record: write one cycle of N; default: 1" },

@@ -2,8 +2,9 @@
 /* submit.c - sends a job, and says what became of it */
 #include "ctl.h"
 
-#include "submission.h"
+#include "cmdline.h"
 #include "plain.h"
+#include "submission.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -177,7 +178,8 @@ static int send_text(struct ctl *c, const struct text *t,
 {
 	const struct submission_text x = {
 		.id = c->id, .name = name_of(c), .text = t->bytes,
-		.bytes = t->size, .hold = c->hold, .silent_s = c->timeout_s,
+		.bytes = t->size, .hold = c->hold, .from_line = c->from_line,
+		.from_mm = c->from_mm, .silent_s = c->timeout_s,
 	};
 	struct submission *j;
 	int err, rc;
@@ -201,7 +203,12 @@ int ctl_submit(struct ctl *c)
 {
 	struct text t = { .size = 0 };
 	char id[TALK_WORD_MAX];
-	int err = read_text(c->arg, &t);
+	int err;
+
+	if (c->from_line && c->from_mm > 0)
+		return cmdline_refuse("edmctl", "--from-line", "with "
+				      "--from-place", "one of them");
+	err = read_text(c->arg, &t);
 
 	if (err == 0)
 		err = send_text(c, &t, id);

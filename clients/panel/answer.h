@@ -23,6 +23,7 @@ struct request {
 	struct session_user user;	/* who logs in */
 	char id[33], name[64];
 	bool hold;
+	int from_line;			/* 0: at the beginning */
 	bool has_body, whole;		/* the request has a text; the whole
 					 * text has come */
 	int body_fd;

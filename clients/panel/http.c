@@ -7,7 +7,8 @@
  *	POST /api/login		{"user": ..., "password": ...}
  *	POST /api/logout
  *	POST /api/check?name=	a job's text: is it understood? its path
- *	POST /api/jobs?name=&hold=	a job's text: into the queue
+ *	POST /api/jobs?name=&hold=&line=  a job's text: into the queue, begun
+ *					at a line; without, at its beginning
  *	GET  /api/path?program=&tolerance=	of the program that is loaded
  *	GET  /api/path?check=	of a text that was checked
  *
@@ -383,7 +384,7 @@ static int post_job(struct request *r)
 	struct stat st;
 	struct service_job j = {
 		.fd = r->body_fd, .id = r->id, .name = r->name,
-		.hold = r->hold,
+		.hold = r->hold, .from_line = r->from_line,
 	};
 	int err;
 
@@ -487,7 +488,8 @@ static int may_do(struct request *r, bool post)
 /* Does edmd-jobs take this name? */
 static bool read_name(struct request *r)
 {
-	char hold[8] = "", name[NAME_ROOM] = "job.ngc";
+	char hold[8] = "", line[16] = "", name[NAME_ROOM] = "job.ngc";
+	long from;
 
 	read_arg(r, "name=", name, sizeof(name));
 	for (char *at = name; *at; at++)
@@ -495,6 +497,10 @@ static bool read_name(struct request *r)
 			*at = '_';
 	read_arg(r, "hold=", hold, sizeof(hold));
 	r->hold = hold[0] == '1';
+	read_arg(r, "line=", line, sizeof(line));
+	from = strtol(line, NULL, 10);
+	/* The service refuses what is no line. */
+	r->from_line = from < 0 || from > INT32_MAX ? -1 : (int)from;
 	snprintf(r->name, sizeof(r->name), "%.63s", name);
 	/* lws does not tell a text that is too long from no text. */
 	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_URI_ARGS) >= NAME_ROOM)

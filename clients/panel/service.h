@@ -54,6 +54,7 @@ struct service_job {
 	size_t bytes;
 	const char *id, *name;
 	bool hold;
+	int from_line;
 };
 
 typedef void (*service_done_fn)(void *arg, const struct service_answer *a);

@@ -216,6 +216,19 @@ static void say_axes(const struct job *j, const double q[INTERP_NAXES], FILE *f)
 			fprintf(f, " %c%.4f", INTERP_AXIS_LETTERS[k], q[k]);
 }
 
+void check_say_left(const struct check_result *r, FILE *f)
+{
+	if (!(r->pair.mm > 0))
+		fputs("they touch", f);
+	else if (r->pair.mm > r->wanted_mm - 1e-4)
+		/* The first such pose is as good as at the limit. */
+		fprintf(f, "they come nearer than the %.4f mm to be kept",
+			r->wanted_mm);
+	else
+		fprintf(f, "%.4f mm are left of %.4f", r->pair.mm,
+			r->wanted_mm);
+}
+
 static void say_contact(const struct job *j, const struct route *w,
 			const struct check_result *r)
 {
@@ -228,13 +241,10 @@ static void say_contact(const struct job *j, const struct route *w,
 		printf("%s:%u: not proved: given up, out of memory or after "
 		       "millions of steps; a shorter block, or coarser meshes, "
 		       "at", j->o->program, n->line);
-	} else if (r->pair.mm > 0) {
-		printf("%s:%u: not free: %.4f mm are left of %.4f, %.1f %% "
-		       "along the block, at", j->o->program, n->line,
-		       r->pair.mm, r->wanted_mm, 100 * r->t);
 	} else {
-		printf("%s:%u: not free: they touch, %.1f %% along the block, "
-		       "at", j->o->program, n->line, 100 * r->t);
+		printf("%s:%u: not free: ", j->o->program, n->line);
+		check_say_left(r, stdout);
+		printf(", %.1f %% along the block, at", 100 * r->t);
 	}
 	say_axes(j, r->q, stdout);
 	putchar('\n');

@@ -47,6 +47,9 @@ bool check_block(const struct job *j, const double from[INTERP_NAXES],
 		 const double to[INTERP_NAXES], const struct clearance *c,
 		 struct near_pair *pair);
 
+/** check_say_left() - of the first contact, what is left of what is to be kept. */
+void check_say_left(const struct check_result *r, FILE *f);
+
 /** check_program() - --check. Return: 0 proved, 1 not; else sysexits. */
 int check_program(struct job *j);
 

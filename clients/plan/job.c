@@ -60,11 +60,18 @@ static void say_tri(const struct mesh *m, uint32_t i, FILE *f)
 	}
 }
 
-static int refuse_flaw(const struct mesh *m, const char *what, uint32_t tri,
-		       const char *wanted)
+#define NO_TRI		UINT32_MAX
+
+/* @tri: one triangle or two. */
+static int refuse_flaw(const struct mesh *m, const char *what,
+		       const uint32_t tri[2], const char *wanted)
 {
 	fprintf(stderr, "edm-plan: %s: %s, ", m->name, what);
-	say_tri(m, tri, stderr);
+	say_tri(m, tri[0], stderr);
+	if (tri[1] != NO_TRI) {
+		fputs(" and ", stderr);
+		say_tri(m, tri[1], stderr);
+	}
 	fprintf(stderr, "; %s, or --accept-flaws\n", wanted);
 	return EX_DATAERR;
 }
@@ -73,6 +80,8 @@ static int check_body(const struct job *j, const struct tree *t,
 		      struct mesh_findings *f)
 {
 	const struct mesh *m = t->mesh;
+	const uint32_t first[2] = { 0, NO_TRI };
+	const uint32_t open[2] = { f->open_tri, NO_TRI };
 	const double size = mesh_size_mm(m);
 	char what[80];
 
@@ -80,17 +89,17 @@ static int check_body(const struct job *j, const struct tree *t,
 	if (j->o->accept_flaws)
 		return 0;
 	if (!(f->volume_mm3 > 1e-9 * size * size * size))
-		return refuse_flaw(m, "no volume", 0, "a closed body");
+		return refuse_flaw(m, "no volume", first, "a closed body");
 	if (f->open) {
 		snprintf(what, sizeof(what), "%u open edges", f->open);
-		return refuse_flaw(m, what, f->open_tri, "a closed body: an "
-				   "open one has no inside");
+		return refuse_flaw(m, what, open, "a closed body: an open one "
+				   "has no inside");
 	}
 	if (f->crossings) {
 		snprintf(what, sizeof(what), "%s%u pairs of triangles cross",
 			 f->crossings >= 1000 ? "over " : "", f->crossings);
-		return refuse_flaw(m, what, f->cross_tri[0],
-				   "a body that does not cross itself");
+		return refuse_flaw(m, what, f->cross_tri, "a body that does not "
+				   "cross itself");
 	}
 	return 0;
 }
@@ -107,6 +116,23 @@ static int check_size(const struct job *j, const struct mesh *m)
 	return EX_DATAERR;
 }
 
+static int check_place(const struct job *j, const struct mesh *m,
+		       const char *option)
+{
+	for (int k = 0; k < 3 && !j->o->any_size; k++) {
+		const double far = (m->min[k] + m->max[k]) / 2;
+
+		if (fabs(far) <= 10000)
+			continue;
+		fprintf(stderr, "edm-plan: %s: its middle is at %c %.6g mm; a "
+			"mesh in the frame of the machine, %s to move it, or "
+			"--any-size if it is meant\n", m->name, "XYZ"[k], far,
+			option);
+		return EX_DATAERR;
+	}
+	return 0;
+}
+
 static int check_sizes(const struct job *j)
 {
 	const double a = mesh_size_mm(&j->part), b = mesh_size_mm(&j->tool);
@@ -114,6 +140,10 @@ static int check_sizes(const struct job *j)
 
 	if (err == 0)
 		err = check_size(j, &j->tool);
+	if (err == 0)
+		err = check_place(j, &j->part, "--part-at");
+	if (err == 0)
+		err = check_place(j, &j->tool, "--electrode-at");
 	if (err || j->o->any_size || (a < 20 * b && b < 20 * a))
 		return err;
 	fprintf(stderr, "edm-plan: part and electrode are %.4g and %.4g mm "
@@ -160,7 +190,8 @@ static void choose_clearance(struct job *j)
 	j->clear_mm = j->o->clearance_mm >= 0 ? j->o->clearance_mm :
 		      j->config.sim.open_gap_mm + GAP_MORE_MM;
 	j->chord_mm = (j->o->chord_mm >= 0 ? j->o->chord_mm : guess) +
-		      j->part_found.grain_mm + j->tool_found.grain_mm;
+		      j->part_found.grain_mm + j->tool_found.grain_mm +
+		      j->part_found.joined_mm + j->tool_found.joined_mm;
 }
 
 int job_load(struct job *j, const struct job_options *o)
@@ -189,24 +220,41 @@ void job_free(struct job *j)
 
 /* -- Words ---------------------------------------------------------------- */
 
+/* admesh turns all as the first triangle of their shell; if that is the one that
+ * ran backward, the others did not. */
+static void describe_turned(const struct mesh *m, const struct mesh_findings *f,
+			    FILE *out)
+{
+	const bool odd = f->shells == 1 && f->inverted && f->turned;
+	const uint32_t turned = odd ? m->ntris - f->turned : f->turned;
+
+	if (turned)
+		fprintf(out, "           %u triangles that ran backward are "
+			"turned\n", turned);
+	if (!f->inverted || odd)
+		return;
+	fprintf(out, "           inside and outside are exchanged in %u of %u "
+		"shells: ", f->inverted, f->shells);
+	say_tri(m, f->inverted_tri, out);
+	fputc('\n', out);
+}
+
 static void describe_body(const char *what, const struct mesh *m,
 			  const struct mesh_findings *f, FILE *out)
 {
 	fprintf(out, "%-10s %s: %u triangles, %.4g x %.4g x %.4g mm, %.6g mm3\n",
 		what, m->name, m->ntris, m->max[0] - m->min[0],
 		m->max[1] - m->min[1], m->max[2] - m->min[2], f->volume_mm3);
+	if (f->doubled)
+		fprintf(out, "           %u triangles that are there twice are "
+			"removed\n", f->doubled);
 	if (f->degenerate)
 		fprintf(out, "           %u triangles without area are removed\n",
 			f->degenerate);
 	if (f->joined)
-		fprintf(out, "           %u edges a micrometre apart are joined\n",
-			f->joined);
-	if (f->inverted)
-		fprintf(out, "           inside and outside are exchanged: its "
-			"triangles all run backward\n");
-	else if (f->turned)
-		fprintf(out, "           %u triangles that ran backward are "
-			"turned\n", f->turned);
+		fprintf(out, "           %u edges that nearly meet are joined, by "
+			"%.4f mm at most\n", f->joined, f->joined_mm);
+	describe_turned(m, f, out);
 	if (f->open)
 		fprintf(out, "           %u open edges: it has no inside\n",
 			f->open);

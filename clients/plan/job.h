@@ -22,6 +22,7 @@ struct job_options {
 	double chord_mm;		/* < 0: guessed from the meshes */
 	double end_zone_mm;
 	double end[INTERP_NAXES];	/* --end-pose, with end_given */
+	uint32_t end_axes;		/* bit per axis that it names; others: 0 */
 	bool end_given;
 	bool any_size, accept_flaws, quiet, times, on_path, no_pivot;
 };

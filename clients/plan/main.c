@@ -67,6 +67,7 @@ static int take_end_pose(void *to, const char *text)
 		if (end == s + 1 || !(fabs(v) <= 1e6))
 			break;
 		o->end[axis - letters] = v;
+		o->end_axes |= 1u << (axis - letters);
 		if (*end == '\0')
 			return -1;
 		if (*end != ',')

@@ -39,52 +39,40 @@ double mesh_size_mm(const struct mesh *m)
 	return size;
 }
 
-/* The solid angle of each triangle, by A. van Oosterom and J. Strackee, 1983. */
+/* By A. van Oosterom and J. Strackee, 1983. */
+double mesh_angle_of(const struct mesh *m, uint32_t i, const double p[3])
+{
+	double a[3], b[3], c[3], x[3], na, nb, nc;
+
+	v_sub(mesh_corner(m, i, 0), p, a);
+	v_sub(mesh_corner(m, i, 1), p, b);
+	v_sub(mesh_corner(m, i, 2), p, c);
+	v_cross(b, c, x);
+	na = v_length(a);
+	nb = v_length(b);
+	nc = v_length(c);
+	return 2 * atan2(v_dot(a, x), na * nb * nc + v_dot(a, b) * nc +
+				      v_dot(a, c) * nb + v_dot(b, c) * na);
+}
+
 double mesh_winding(const struct mesh *m, const double p[3])
 {
 	double sum = 0;
 
-	for (uint32_t i = 0; i < m->ntris; i++) {
-		double a[3], b[3], c[3], x[3], na, nb, nc;
-
-		v_sub(mesh_corner(m, i, 0), p, a);
-		v_sub(mesh_corner(m, i, 1), p, b);
-		v_sub(mesh_corner(m, i, 2), p, c);
-		v_cross(b, c, x);
-		na = v_length(a);
-		nb = v_length(b);
-		nc = v_length(c);
-		sum += 2 * atan2(v_dot(a, x), na * nb * nc +
-				 v_dot(a, b) * nc + v_dot(a, c) * nb +
-				 v_dot(b, c) * na);
-	}
+	for (uint32_t i = 0; i < m->ntris; i++)
+		sum += mesh_angle_of(m, i, p);
 	return sum / (4 * M_PI);
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
+double mesh_volume_of(const struct mesh *m, uint32_t i)
 {
-	while (parent[i] != i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
+	double a[3], b[3], c[3], x[3];
 
-uint32_t mesh_shells(const struct mesh *m, uint32_t **ret)
-{
-	uint32_t *parent = malloc(m->nverts * sizeof(*parent)), n = 0;
-
-	*ret = parent;
-	if (!parent)
-		return 0;
-	for (uint32_t i = 0; i < m->nverts; i++)
-		parent[i] = i;
-	for (uint32_t i = 0; i < m->ntris; i++)
-		for (int k = 1; k < 3; k++)
-			parent[root_of(parent, m->tri[i][k])] =
-				root_of(parent, m->tri[i][0]);
-	for (uint32_t i = 0; i < m->nverts; i++)
-		if (parent[i] == i)
-			parent[n++] = i;
-	return n;
+	v_sub(mesh_corner(m, i, 0), m->min, a);
+	v_sub(mesh_corner(m, i, 1), m->min, b);
+	v_sub(mesh_corner(m, i, 2), m->min, c);
+	v_cross(b, c, x);
+	return v_dot(a, x) / 6;
 }
 
 /* -- Does it cross itself? ------------------------------------------------ */

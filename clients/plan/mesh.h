@@ -27,11 +27,15 @@ struct mesh {
 /* What was found in a file, and what was done about it. */
 struct mesh_findings {
 	uint32_t in_file;		/* triangles in the file */
+	uint32_t doubled;		/* there before, removed */
 	uint32_t degenerate;		/* without area, removed */
-	uint32_t joined;		/* edges whose ends were moved together,
-					 * by a micrometre at most */
-	uint32_t turned;		/* triangles whose corners ran backward */
-	bool inverted;			/* the whole: inside was outside */
+	uint32_t joined;		/* edges whose ends were moved together */
+	double joined_mm;		/* no corner was moved by more */
+	uint32_t turned;		/* triangles whose corners did not run as
+					 * those of their shell do */
+	uint32_t shells;
+	uint32_t inverted;		/* shells that were inside out */
+	uint32_t inverted_tri;		/* the first triangle of the first */
 	uint32_t open;			/* edges with one triangle only */
 	uint32_t open_tri;		/* a triangle with one of them */
 	uint32_t crossings;		/* pairs of triangles that cross */
@@ -72,6 +76,14 @@ void mesh_bounds(struct mesh *m);
 /** mesh_size_mm() - the longest side of its box. */
 double mesh_size_mm(const struct mesh *m);
 
+/** mesh_volume_of() - what triangle @i adds to the volume; the mesh's own, less
+ *  than 0 if it is inside out, is the sum. */
+double mesh_volume_of(const struct mesh *m, uint32_t i);
+
+/** mesh_angle_of() - the solid angle of triangle @i seen from @p, more than 0 from
+ *  inside. */
+double mesh_angle_of(const struct mesh *m, uint32_t i, const double p[3]);
+
 /** mesh_winding() - how often @m goes round @p: 0 outside, 1 inside. */
 double mesh_winding(const struct mesh *m, const double p[3]);
 
@@ -81,6 +93,14 @@ double mesh_winding(const struct mesh *m, const double p[3]);
  * @ret: allocated, for free().  Return: how many, or 0 if out of memory.
  */
 uint32_t mesh_shells(const struct mesh *m, uint32_t **ret);
+
+/**
+ * mesh_turn_shells() - turn those that are inside out, and fill what @f says of
+ * shells and of the volume.
+ *
+ * Return: 0 or -ENOMEM.
+ */
+int mesh_turn_shells(struct mesh *m, struct mesh_findings *f);
 
 struct tree;
 

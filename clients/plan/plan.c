@@ -81,10 +81,11 @@ static void say_contact(const struct plan *p, const struct check_result *r)
 {
 	const struct route_node *n = &p->dense.node[r->block + 1];
 
-	fprintf(stderr, "%s:%u: the program is not free itself: %.4f mm are "
-		"left of %.4f, %.1f %% along the block\n", p->j->o->program ?
-		p->j->o->program : "the way found", n->line, r->pair.mm,
-		r->wanted_mm, 100 * r->t);
+	fprintf(stderr, "%s:%u: the program is not free itself: ",
+		p->j->o->program ? p->j->o->program : "the way found",
+		n->line);
+	check_say_left(r, stderr);
+	fprintf(stderr, ", %.1f %% along the block\n", 100 * r->t);
 	job_say_pair(p->j, &r->pair, stderr);
 }
 
@@ -106,10 +107,16 @@ int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
 	if (p->end_mm >= wanted + PROVE_EPS_MM ||
 	    (p->end_mm > 0 && p->j->o->end_zone_mm > 0))
 		return 0;
-	fprintf(stderr, "edm-plan: end pose: %.4f mm are left of %.4f; an "
-		"electrode thinner all round by %.3f mm, --clearance, or "
-		"--end-zone to come nearer at the end\n", p->end_mm, wanted,
-		wanted - p->end_mm);
+	if (p->end_mm > 0)
+		fprintf(stderr, "edm-plan: end pose: %.4f mm are left of %.4f; "
+			"an electrode thinner all round by %.3f mm, "
+			"--clearance, or --end-zone to come nearer at the "
+			"end\n", p->end_mm, wanted, wanted - p->end_mm);
+	else
+		fprintf(stderr, "edm-plan: end pose: the electrode touches the "
+			"part; an end pose that leaves %.4f mm, a thinner "
+			"electrode, or meshes that stand elsewhere: "
+			"--part-at, --electrode-at\n", wanted);
 	job_say_pair(p->j, &pair, stderr);
 	return 1;
 }

@@ -14,6 +14,10 @@
 #define LEAST_KEEP_MM	0.0016
 #define LEAST_EPS_MM	0.0008
 
+/* prove_least() asks for no more than that: no gap is wider, and single
+ * precision could not tell LEAST_EPS_MM from nothing. */
+#define LEAST_MOST_MM	100.0
+
 /* -- What is to be kept --------------------------------------------------- */
 
 void clearance_init(struct clearance *c, double mm)
@@ -178,7 +182,7 @@ static void descend(struct least *l, double t)
 		if (t == at)
 			h /= 2;
 	}
-	l->keep_mm = l->p->least_mm - LEAST_KEEP_MM;
+	l->keep_mm = fmin(l->p->least_mm, LEAST_MOST_MM) - LEAST_KEEP_MM;
 }
 
 static void keep_least(void *arg, const struct pose *pose,

@@ -65,7 +65,8 @@ bool prove_refuted(const struct bodies *bodies, const struct block *b,
 		   const struct clearance *c, struct proof *p);
 
 /**
- * prove_least() - the largest clearance that can be proved, within 2 um.
+ * prove_least() - the largest clearance that can be proved, within 2 um; no more
+ * than 100 mm.
  *
  * Return: it, proved; less than 0 if the electrode touches.  @p tells where the
  * block is nearest.

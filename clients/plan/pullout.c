@@ -298,6 +298,22 @@ static void open_air(struct pull *u)
 	air_fill(&u->air);
 }
 
+static bool has_axes(const struct job *j)
+{
+	const uint32_t has = motion_moves(&j->motion) & j->config.axes.present;
+
+	for (int k = 0; k < INTERP_NAXES; k++) {
+		if (!(j->o->end_axes & ~has & 1u << k))
+			continue;
+		fprintf(stderr, "edm-plan: --end-pose: axis %c; an axis that "
+			"the machine has and that moves the electrode or the "
+			"part, by chain of [kinematics]\n",
+			INTERP_AXIS_LETTERS[k]);
+		return false;
+	}
+	return true;
+}
+
 static bool in_travel(const struct job *j, const double q[INTERP_NAXES])
 {
 	for (int k = 0; k < INTERP_NAXES; k++) {
@@ -336,6 +352,13 @@ static int pull_twice(struct pull *u, const struct clearance *c)
 	return pull(u, &touch);
 }
 
+static int refuse_outside(void)
+{
+	fprintf(stderr, "edm-plan: --end-pose: the electrode is outside of the "
+		"part there; an end pose in the cavity\n");
+	return EX_DATAERR;
+}
+
 int pullout_way(struct plan *p)
 {
 	struct pull u = { .j = p->j, .keep_mm = p->j->clear_mm +
@@ -344,7 +367,7 @@ int pullout_way(struct plan *p)
 	int err;
 
 	memcpy(u.q, p->j->o->end, sizeof(u.q));
-	if (!in_travel(p->j, u.q))
+	if (!has_axes(p->j) || !in_travel(p->j, u.q))
 		return EX_DATAERR;
 	err = plan_check_end(p, u.q);
 	if (err)
@@ -358,6 +381,8 @@ int pullout_way(struct plan *p)
 	bar_end(p->j);
 	if (err == 1)
 		say_stuck(&u);
+	else if (err == 0 && u.out.n < 2)
+		err = refuse_outside();
 	else
 		err = err ? EX_OSERR : turn_round(p, &u, &c);
 	air_free(&u.air);

@@ -65,14 +65,35 @@ static json_t *way(const struct job *j, const struct plan_way *w)
 	return ret;
 }
 
+/* A file's name may be any bytes; a JSON text is UTF-8. */
+static json_t *name_of(const char *name)
+{
+	json_t *ret = json_string(name);
+	char *plain = ret ? NULL : strdup(name);
+
+	for (char *s = plain; s && *s; s++)
+		if (*s & 0x80)
+			*s = '?';
+	if (plain)
+		ret = json_string(plain);
+	free(plain);
+	return ret;
+}
+
 static json_t *body(const struct mesh *m, const struct mesh_findings *f)
 {
-	return json_pack("{s:s,s:i,s:i,s:i,s:i,s:b,s:i,s:i,s:f}", "file",
-			 m->name, "triangles", (int)m->ntris, "degenerate",
-			 (int)f->degenerate, "joined", (int)f->joined, "turned",
-			 (int)f->turned, "inverted", f->inverted, "open_edges",
-			 (int)f->open, "crossings", (int)f->crossings, "chord_mm",
-			 f->chord_mm);
+	return json_pack("{s:o,s:i,s:i,s:i,s:i,s:i,s:b,s:i,s:i,s:i,s:f}",
+			 "file", name_of(m->name),
+			 "triangles", (int)m->ntris,
+			 "doubled", (int)f->doubled,
+			 "degenerate", (int)f->degenerate,
+			 "joined", (int)f->joined,
+			 "turned", (int)f->turned,
+			 "inverted", f->inverted > 0,
+			 "shells", (int)f->shells,
+			 "open_edges", (int)f->open,
+			 "crossings", (int)f->crossings,
+			 "chord_mm", f->chord_mm);
 }
 
 static json_t *dense(const struct plan *p)

@@ -2,10 +2,10 @@
 /*
  * stl.c - a mesh from an STL file, mended by admesh
  *
- * Corners that are equal become one, triangles without area go, edges a
- * micrometre apart are joined, and corners that run backward are turned.
- * Nothing is made up: holes are not filled, and no triangle is thrown away
- * because its neighbours are missing.
+ * Corners that are equal become one.  Triangles that are there twice or have no
+ * area are removed.  Edges a micrometre apart are joined, and triangles whose
+ * corners run backward are turned.  Nothing is made up: holes are not filled, and
+ * no triangle is removed because its neighbours are missing.
  */
 #include "mesh.h"
 #include "stl_raw.h"
@@ -59,19 +59,54 @@ static void scale(struct stl_raw *raw, const struct mesh_load *from)
 		}
 }
 
-static void mend(stl_file *s, struct mesh_findings *f)
+static double most_moved(const stl_file *s, const stl_facet *was)
 {
+	double most = 0;
+
+	for (int i = 0; i < s->stats.number_of_facets; i++) {
+		for (int k = 0; k < 3; k++) {
+			const stl_vertex *a = &was[i].vertex[k];
+			const stl_vertex *b = &s->facet_start[i].vertex[k];
+			const double d[3] = { (double)(a->x - b->x),
+					      (double)(a->y - b->y),
+					      (double)(a->z - b->z) };
+
+			most = fmax(most, v_length(d));
+		}
+	}
+	return most;
+}
+
+/* Corners are moved; how far goes into what is kept. */
+static int join_edges(stl_file *s, struct mesh_findings *f)
+{
+	const size_t n = (size_t)s->stats.number_of_facets;
+	stl_facet *was = malloc(n * sizeof(*was));
+
+	if (!was)
+		return EX_OSERR;
+	memcpy(was, s->facet_start, n * sizeof(*was));
+	stl_check_facets_nearby(s, fminf(s->stats.shortest_edge, JOIN_MM));
+	f->joined = (uint32_t)s->stats.edges_fixed;
+	f->joined_mm = f->joined ? most_moved(s, was) : 0;
+	free(was);
+	return 0;
+}
+
+static int mend(stl_file *s, struct mesh_findings *f)
+{
+	int err = 0;
+
 	stl_check_facets_exact(s);
 	f->degenerate = (uint32_t)s->stats.degenerate_facets;
 	if (s->stats.number_of_facets < 4)
-		return;
-	if (s->stats.connected_facets_3_edge < s->stats.number_of_facets) {
-		stl_check_facets_nearby(s, fminf(s->stats.shortest_edge, JOIN_MM));
-		f->joined = (uint32_t)s->stats.edges_fixed;
-	}
+		return 0;
+	if (s->stats.connected_facets_3_edge < s->stats.number_of_facets)
+		err = join_edges(s, f);
 	stl_fix_normal_directions(s);
 	f->turned = (uint32_t)s->stats.facets_reversed;
 	stl_generate_shared_vertices(s);
+	return err;
 }
 
 static int take(struct mesh *m, const stl_file *s, const double shift[3])
@@ -94,36 +129,6 @@ static int take(struct mesh *m, const stl_file *s, const double shift[3])
 	return 0;
 }
 
-/* Of the mesh about a corner of its own; less than 0 if it is inside out. */
-static double volume(const struct mesh *m)
-{
-	double sum = 0;
-
-	for (uint32_t i = 0; i < m->ntris; i++) {
-		double a[3], b[3], c[3], x[3];
-
-		v_sub(mesh_corner(m, i, 0), m->min, a);
-		v_sub(mesh_corner(m, i, 1), m->min, b);
-		v_sub(mesh_corner(m, i, 2), m->min, c);
-		v_cross(b, c, x);
-		sum += v_dot(a, x) / 6;
-	}
-	return sum;
-}
-
-/* A body whose inside is outside is turned as a whole. */
-static void turn_out(struct mesh *m, struct mesh_findings *f)
-{
-	f->volume_mm3 = volume(m);
-	for (uint32_t i = 0; i < m->ntris && f->inverted; i++) {
-		const uint32_t keep = m->tri[i][1];
-
-		m->tri[i][1] = m->tri[i][2];
-		m->tri[i][2] = keep;
-	}
-	f->volume_mm3 = fabs(f->volume_mm3);
-}
-
 static void normal_of(const struct mesh *m, uint32_t i, double ret[3])
 {
 	double u[3], v[3];
@@ -138,8 +143,7 @@ static void normal_of(const struct mesh *m, uint32_t i, double ret[3])
  * that bulges out of it by h tan(angle / 4) / 2.  Where the surface is hollow
  * it bulges into the body and takes nothing from the clearance.
  */
-static double bulge(const struct mesh *m, uint32_t i, uint32_t k, uint32_t j,
-		    int outward)
+static double bulge(const struct mesh *m, uint32_t i, uint32_t k, uint32_t j)
 {
 	const double *a = mesh_corner(m, i, k), *b = mesh_corner(m, i,
 								 (k + 1) % 3);
@@ -154,11 +158,21 @@ static double bulge(const struct mesh *m, uint32_t i, uint32_t k, uint32_t j,
 	v_sub(b, a, edge);
 	v_cross(n, o, x);
 	angle = atan2(v_dot(x, edge) / v_length(edge), v_dot(n, o));
-	angle *= outward;
 	if (angle <= 0 || angle > SMOOTH)
 		return 0;
 	h = fmin(area, other) / v_length(edge);
 	return h * tan(angle / 4) / 2;
+}
+
+/* A triangle of a shell that was turned has its corners in another order than
+ * admesh has them: @at is where its edge @k is now. */
+static uint32_t edge_now(const struct mesh *m, uint32_t i, uint32_t k,
+			 const stl_file *s)
+{
+	const bool turned = m->tri[i][1] !=
+			    (uint32_t)s->v_indices[i].vertex[1];
+
+	return turned ? 2 - k : k;
 }
 
 static void judge_edges(const struct mesh *m, const stl_file *s,
@@ -173,8 +187,8 @@ static void judge_edges(const struct mesh *m, const stl_file *s,
 				continue;
 			}
 			f->chord_mm = fmax(f->chord_mm,
-					   bulge(m, i, k, (uint32_t)j,
-						 f->inverted ? -1 : 1));
+					   bulge(m, i, edge_now(m, i, k, s),
+						 (uint32_t)j));
 		}
 	}
 }
@@ -186,25 +200,27 @@ static int mended(struct mesh *m, const struct mesh_load *from,
 	int err;
 
 	scale(raw, from);
+	err = stl_raw_drop_doubles(raw, &f->doubled);
+	if (err)
+		return err;
 	err = fill(&s, raw);
 	if (err == 0) {
-		mend(&s, f);
+		err = mend(&s, f);
 		if (s.stats.number_of_facets < 4) {
 			fprintf(stderr, "edm-plan: %s: %u triangles are left "
-				"of %u, the others have no area; a closed "
-				"body\n", from->path,
+				"of %u, the others have no area or are "
+				"there twice; a closed body\n", from->path,
 				(unsigned int)s.stats.number_of_facets,
-				raw->n);
+				f->in_file);
 			err = EX_DATAERR;
 		}
 	}
 	if (err == 0)
 		err = take(m, &s, from->shift_mm);
-	if (err == 0) {
-		f->inverted = volume(m) < 0;
+	if (err == 0)
+		err = mesh_turn_shells(m, f) ? EX_OSERR : 0;
+	if (err == 0)
 		judge_edges(m, &s, f);
-		turn_out(m, f);
-	}
 	stl_close(&s);
 	return err;
 }

@@ -21,4 +21,8 @@ struct stl_raw {
  */
 int stl_raw_read(const char *path, struct stl_raw *ret);
 
+/** stl_raw_drop_doubles() - triangles that were there before go. Return: 0 or
+ *  EX_OSERR. */
+int stl_raw_drop_doubles(struct stl_raw *raw, uint32_t *dropped);
+
 #endif /* PLAN_STL_RAW_H */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* job.c - reads and compiles the text of the job */
 #include "compiling.h"
+#include "entry.h"
 #include "sim.h"
 
 #include <errno.h>
@@ -170,6 +171,30 @@ struct tables {
 	struct config_dialect dialect;
 };
 
+/* What an operator would hear of a job that begins inside. */
+static int begin_inside(const struct sim_options *o,
+			const struct machine_config *c,
+			const struct config_compiling *of,
+			struct interp_build *b, struct interp_diag *diag)
+{
+	struct interp_build_from from = {
+		.line = (uint32_t)o->from_line, .far_mm = o->from_mm,
+		.up = config_way_out(c),
+	};
+	struct interp_build_entry entry;
+	char way[480];
+	int err;
+
+	memcpy(from.now_mm, of->build.start_mm, sizeof(from.now_mm));
+	err = interp_build_from(b, &from, &entry, diag);
+	if (err < 0 || o->quiet)
+		return err;
+	config_entry_words(c, &entry, way, sizeof(way));
+	fprintf(stderr, "%s:%u: note: the job begins here; start %s\n", o->job,
+		entry.line, way);
+	return 0;
+}
+
 static int compile(struct sim_job *job, const struct sim_options *o,
 		   const struct machine_config *c, struct text *t,
 		   const struct tables *with)
@@ -197,6 +222,8 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	job->compile_lines_s = job->lines / (trials_now_s() - from_s);
 	if (err == -EINVAL && o->check)
 		say_all(&all, &text, &of);
+	if (err == 0 && (o->from_line || o->from_mm > 0))
+		err = begin_inside(o, c, &of, b, &diag);
 	/* The text of a million lines is half as large as their program. */
 	free(t->at);
 	t->at = NULL;

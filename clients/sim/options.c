@@ -131,6 +131,10 @@ static const struct cmdline_row rows[] = {
 	{ "fit", "UM", NUMBER(fit_um, 0, 1000), .help =
 	  "join cut lines into curves that are this near to\n"
 	  "them (machine file's, 0: do not join)" },
+	{ "from-line", "N", WHOLE(from_line), .help =
+	  "begin at line N, as edmctl submit --from-line does" },
+	{ "from-place", "MM", NUMBER(from_mm, 1e-6, 1e9), .help =
+	  "begin at this place of the path" },
 	{ "dry-run", NULL, FLAG(dry_run), .help =
 	  "run without a gap: walk at the programmed feed" },
 	{ "there-and-back", NULL, FLAG(there_and_back), .help =
@@ -191,6 +195,10 @@ static int check_together(const struct sim_options *o)
 	if (!o->job)
 		return refuse("no", "JOB", "a file of NC code, or - for stdin; "
 			      "--help lists the options");
+	if (o->from_line > UINT32_MAX)
+		return refuse("--from-line", "too large", "a line of the job");
+	if (o->from_line && o->from_mm > 0)
+		return refuse("--from-line", "with --from-place", "one of them");
 	if (o->there_and_back && !o->dry_run)
 		return refuse("--there-and-back", "alone",
 			      "--dry-run beside it");

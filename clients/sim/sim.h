@@ -25,6 +25,8 @@ struct sim_options {
 	double unit_um, offset_um;	/* 0, -1: the machine file's */
 	const char *tech;		/* table; NULL: the machine file's */
 	const char *pulses, *trace, *report, *plot;
+	uint64_t from_line;		/* 0: from_mm */
+	double from_mm;			/* 0: at the beginning */
 	double period_us;		/* 0: the machine file's */
 	double speed, limit_s;		/* 0: as fast as possible; no limit */
 	uint64_t seed;

@@ -62,6 +62,7 @@ static struct shm_event event_of(const struct loop *l, uint32_t kind)
 		.time_ns = l->time_ns,
 		.kind = kind,
 		.program = l->program ? l->program->n : 0,
+		.line = l->program ? l->cycle.cursor.seg.line : 0,
 		.place_mm = told_place_mm(l),
 	};
 }
@@ -166,6 +167,8 @@ static void notice_ended(const struct loop *l)
 		.length_mm = s.length_mm, .depth_mm = s.depth_mm,
 		.job_cycles = s.job_cycles, .jumps = s.jumps,
 		.retracts = s.retracts, .shorts = s.shorts,
+		.arcs = s.arcs, .erode_cycles = s.erode_cycles,
+		.energy_j = s.energy_j,
 	};
 	memcpy(e.hash, l->cycle.cursor.p.head->hash, sizeof(e.hash));
 	shm_ended_put(l->status, &e);
@@ -254,6 +257,8 @@ static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
 	s->in_row = c->retract.in_row;
 	s->jumps = t->jumps;
 	s->shorts = t->shorts;
+	s->arcs = t->arcs;
+	s->energy_j = t->energy_j;
 	s->overruns = t->overruns;
 	s->retract_mm_max = t->retract_mm_max;
 }

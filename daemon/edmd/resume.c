@@ -133,7 +133,8 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 			.jump_cycles = s->jump_cycles,
 			.retracts = s->retracts, .jumps = s->jumps,
 			.shorts = s->shorts, .overruns = s->overruns,
-			.hunts = s->hunts,
+			.hunts = s->hunts, .arcs = s->arcs,
+			.energy_j = s->energy_j,
 			.retract_mm_max = s->retract_mm_max,
 		},
 	};

@@ -55,6 +55,9 @@ struct io_inputs {
 	bool gap_valid;			/* false: no gap sensor, or it is ill */
 	struct io_shares shares;	/* from a generator that counts */
 	bool shares_valid;
+	double energy_j;		/* of the discharges of the last period,
+					 * from a generator that counts it */
+	bool energy_valid;
 	bool wire_broken;
 	bool contact;			/* contact, by an input of its own */
 	bool estop;			/* true: stop everything */

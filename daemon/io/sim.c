@@ -99,6 +99,8 @@ static void sim_read(void *self, struct io_inputs *in)
 	*in = (struct io_inputs) {
 		.gap_v = sim_pulses_volts(s, sparks),
 		.gap_valid = true,
+		.energy_j = sparks && !s->broken ? sim_pulses_j(s) : 0,
+		.energy_valid = true,
 		.wire_broken = s->broken,
 	};
 	if (sparks) {

@@ -137,6 +137,9 @@ struct io_shares sim_pulses_shares(struct sim *s);
  * steady supply.
  */
 double sim_pulses_volts(struct sim *s, bool sparks);
+/** sim_pulses_j() - energy of the discharges of a period: sparks and arcs, by
+ *  the voltage across them.  A short has no voltage. */
+double sim_pulses_j(const struct sim *s);
 
 /* sim_erosion.c */
 double sim_area_mm2(const struct sim *s);

@@ -181,6 +181,14 @@ void sim_pulses_train(struct sim *s, double gap_mm)
 	};
 }
 
+double sim_pulses_j(const struct sim *s)
+{
+	const struct pulse_train *t = &s->train;
+
+	return t->per_s * s->period_s * s->pulse.crater_j *
+	       (t->spark * t->burnt + ARC_V * t->arc);
+}
+
 /* -- As counted and read -------------------------------------------------- */
 
 static double counted(struct sim *s, double part, double pulses)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* again.c - an interrupted job goes on */
 #include "again.h"
+#include "entry.h"
 #include "interrupt.h"
 #include "jobs_log.h"
 
@@ -14,7 +15,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* -- In the store  --------------------------------------------------------- */
+/* -- In the store ---------------------------------------------------------- */
 
 int again_read(struct jobs *j, uint32_t n, struct again *ret)
 {
@@ -28,24 +29,39 @@ int again_read(struct jobs *j, uint32_t n, struct again *ret)
 	sodium_hex2bin((uint8_t *)&ret->base, sizeof(ret->base), at,
 		       strlen(at), NULL, &bytes, &rest);
 	if (rest && *rest == ';' &&
-	    sscanf(rest, ";%lf;%lf;%u", &ret->from_mm, &ret->way_mm,
-		   &ret->instance) != 3)
+	    sscanf(rest, ";%lf;%lf;%u;%u;%lf", &ret->from_mm, &ret->way_mm,
+		   &ret->instance, &ret->line, &ret->place_mm) < 3)
 		ret->instance = 0;
 	free(at);
-	return bytes == sizeof(ret->base) ? 0 : -ENOENT;
+	return bytes == sizeof(ret->base) || again_is_named(ret) ? 0 : -ENOENT;
+}
+
+bool again_is_named(const struct again *a)
+{
+	return a->line > 0 || a->place_mm > 0;
+}
+
+const char *again_named(uint32_t line, double place_mm)
+{
+	static char at[80];
+
+	if (line == 0 && place_mm == 0)
+		return NULL;
+	snprintf(at, sizeof(at), ";0;0;0;%u;%.17g", line, place_mm);
+	return at;
 }
 
 int again_write(struct jobs *j, uint32_t n, const struct again *a)
 {
-	const size_t hex = 2 * sizeof(a->base) + 1, room = hex + 80;
+	const size_t hex = 2 * sizeof(a->base) + 1, room = hex + 140;
 	char *at = malloc(room);
 	int err;
 
 	if (!at)
 		return -ENOMEM;
 	sodium_bin2hex(at, hex, (const uint8_t *)&a->base, sizeof(a->base));
-	snprintf(at + hex - 1, room - hex + 1, ";%.17g;%.17g;%u", a->from_mm,
-		 a->way_mm, a->instance);
+	snprintf(at + hex - 1, room - hex + 1, ";%.17g;%.17g;%u;%u;%.17g",
+		 a->from_mm, a->way_mm, a->instance, a->line, a->place_mm);
 	err = store_interrupt(j->store, n, at);
 	free(at);
 	return err;
@@ -65,6 +81,8 @@ void again_whole(const struct again *a, struct shm_snapshot *s)
 	s->jumps += before->jumps;
 	s->retracts += before->retracts;
 	s->shorts += before->shorts;
+	s->arcs += before->arcs;
+	s->energy_j += before->energy_j;
 }
 
 /* What was set before the first interruption, unless it was set again. */
@@ -92,11 +110,12 @@ void again_interrupted(struct jobs *j, uint32_t n,
 		return;
 	again_whole(&before, &ret->base.snap);
 	keep_sets(&before.base.sets, &ret->base.sets);
-	memcpy(ret->base.job.start, before.base.job.start,
-	       sizeof(ret->base.job.start));
+	if (!again_is_named(&before))
+		memcpy(ret->base.job.start, before.base.job.start,
+		       sizeof(ret->base.job.start));
 }
 
-/* -- The verb  ------------------------------------------------------------- */
+/* -- The verb -------------------------------------------------------------- */
 
 /* Axes that @text names; those that the machine has not do not count. */
 static uint32_t axes_named(const char *text)
@@ -205,16 +224,7 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 		     "will go in; then it waits for start");
 }
 
-/* -- Loading  -------------------------------------------------------------- */
-
-/* A sinker comes in from above; a wire stands in its kerf. */
-static int way_out(const struct machine_config *c)
-{
-	const bool wire = c->wire.guides != INTERP_GUIDES_OFF ||
-			  c->sim.process == SIM_WIRE;
-
-	return wire || !(c->axes.present >> INTERP_Z & 1) ? -1 : INTERP_Z;
-}
+/* -- Loading --------------------------------------------------------------- */
 
 void again_refuse(struct jobs *j, const struct store_job *job, const char *why)
 {
@@ -234,68 +244,62 @@ int again_request(struct jobs *j, const struct store_job *job,
 
 	if (again_read(j, job->n, &a) < 0)
 		return 0;
+	again_begin_at(j, a.line, a.place_mm, ret);
+	if (again_is_named(&a))
+		return 0;
 	if (a.instance != j->link.instance) {
 		again_refuse(j, job, "edmd was started anew since it was "
 			     "resumed, so its axes have to be looked at again");
 		return -ESTALE;
 	}
-	ret->goes_on = true;
 	ret->sets = a.base.sets;
 	ret->from.far_mm = a.base.snap.far_mm;
-	ret->from.up = way_out(j->config);
-	memcpy(ret->from.now_mm, ret->start_mm, sizeof(ret->from.now_mm));
 	for (int i = 0; i < INTERP_NAXES; i++)
 		ret->start_mm[i] = a.base.job.start[i] * s->pulse_mm[i];
 	return 0;
 }
 
-static void say_way(const struct jobs *j, const struct interp_build_entry *e,
-		    char *to, size_t size)
+void again_begin_at(const struct jobs *j, uint32_t line, double place_mm,
+		    struct compiler_request *ret)
 {
-	size_t n = 0;
+	ret->goes_on = true;
+	ret->from.line = line;
+	ret->from.far_mm = place_mm;
+	ret->from.up = config_way_out(j->config);
+	memcpy(ret->from.now_mm, ret->start_mm, sizeof(ret->from.now_mm));
+}
 
-	for (int i = 0; i < INTERP_NAXES && n < size; i++)
-		if (j->config->axes.present >> i & 1)
-			n += (size_t)snprintf(to + n, size - n, " %c%.3f",
-					      INTERP_AXIS_LETTERS[i],
-					      e->entry_mm[i]);
-	if (e->npassed && n < size)
-		n += (size_t)snprintf(to + n, size - n, "; not done again:");
-	for (uint32_t i = 0; i < e->npassed && n < size; i++)
-		n += (size_t)snprintf(to + n, size - n, " M%u",
-				      interp_mcode_number(e->passed[i]));
+static bool is_same_table(const struct again *a, const char *sha256)
+{
+	uint8_t tech[sizeof(a->base.job.tech)] = { 0 };
+
+	sodium_hex2bin(tech, sizeof(tech), sha256, strlen(sha256), NULL, NULL,
+		       NULL);
+	return memcmp(tech, a->base.job.tech, sizeof(tech)) == 0;
 }
 
 const char *again_loaded(struct jobs *j, const struct compiler_result *r)
 {
 	const struct store_job *job = &j->queue.job;
-	uint8_t tech[sizeof(((struct checkpoint_job *)0)->tech)] = { 0 };
-	char way[400], in[200];
+	char way[480];
 	static struct again a;
 
 	if (again_read(j, job->n, &a) < 0)
 		return NULL;
-	sodium_hex2bin(tech, sizeof(tech), r->tech_sha256,
-		       strlen(r->tech_sha256), NULL, NULL, NULL);
-	if (memcmp(tech, a.base.job.tech, sizeof(tech)) != 0)
+	if (again_is_named(&a)) {
+		a.base.snap.far_mm = r->entry.far_mm;
+		a.base.snap.length_mm = r->entry.length_mm;
+	} else if (!is_same_table(&a, r->tech_sha256)) {
 		return "the technology table is another than when the job "
 		       "began; put that one back, and resume again";
+	}
 	a.from_mm = r->entry.from_mm;
 	a.way_mm = r->entry.way_mm;
 	if (again_write(j, job->n, &a) != 0)
 		return "where it goes on cannot be stored";
-	say_way(j, &r->entry, way, sizeof(way));
-	if (a.base.snap.far_mm > a.from_mm)
-		snprintf(in, sizeof(in), "%scomes in along its path, %.3f mm up to "
-			 "line %u, and cuts on from the first spark",
-			 way_out(j->config) < 0 ? "stops for the wire to be "
-			 "threaded, " : "", a.base.snap.far_mm - a.from_mm, r->entry.line);
-	else
-		snprintf(in, sizeof(in), "goes on behind line %u",
-			 r->entry.line);
+	config_entry_words(j->config, &r->entry, way, sizeof(way));
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "waits", .job = job->id,
-	}, "job %s: start positions it to%s, off the work; then it %s",
-		  job->name, way, in);
+	}, "job %s: start %s", job->name, way);
 	return NULL;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * again.h - an interrupted job goes on
+ * again.h - a job that does not begin at its beginning
  *
+ * It was interrupted and goes on, or its sender named a line or a place.
  * Its text is read again, and the program begins at the place of the last
  * checkpoint (interp/build_from.h).  Of such a program STATUS tells the places.
  * The store keeps those of the whole program, and the sums of all its parts, so
@@ -12,22 +13,17 @@
 #ifndef JOBS_AGAIN_H
 #define JOBS_AGAIN_H
 
-#include "checkpoint.h"
+#include "again_kept.h"
 #include "compiler.h"
 #include "verb.h"
 
-/* Where a job goes on; kept in the store. */
-struct again {
-	struct checkpoint_base base;	/* places in mm of the whole program */
-	double from_mm, way_mm;		/* as in interp/build_from.h; the
-					 * program of this job; 0, 0: not
-					 * made */
-	uint32_t instance;		/* of the edmd whose axes an operator
-					 * answered for; 0: nobody did */
-};
-
 /** again_read() - of job @n.  0; -ENOENT: it begins at its beginning. */
 int again_read(struct jobs *j, uint32_t n, struct again *ret);
+/** again_is_named() - was the place named by its sender? */
+bool again_is_named(const struct again *a);
+/** again_named() - what the store keeps of a new job, until the next call;
+ *  NULL: it begins at its beginning. */
+const char *again_named(uint32_t line, double place_mm);
 /** again_write() - 0, STORE_KEPT or -errno. */
 int again_write(struct jobs *j, uint32_t n, const struct again *a);
 
@@ -35,10 +31,6 @@ int again_write(struct jobs *j, uint32_t n, const struct again *a);
  *  @last. */
 void again_interrupted(struct jobs *j, uint32_t n,
 		       const struct checkpoint_base *last, struct again *ret);
-
-/** again_whole() - @s of a job that goes on as @a says, as if it had never been
- *  interrupted: place, length and sums. */
-void again_whole(const struct again *a, struct shm_snapshot *s);
 
 /** again_resume() - the verb "resume" with a job. */
 void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
@@ -53,6 +45,11 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
  */
 int again_request(struct jobs *j, const struct store_job *job,
 		  struct compiler_request *ret);
+
+/** again_begin_at() - a job whose axes stand at @ret->start_mm begins at @line,
+ *  or, if that is 0, at @place_mm. */
+void again_begin_at(const struct jobs *j, uint32_t line, double place_mm,
+		    struct compiler_request *ret);
 
 /** again_refuse() - it cannot go on, so @job is interrupted as before; tell
  *  @why. */

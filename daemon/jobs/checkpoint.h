@@ -62,7 +62,8 @@ struct checkpoint_place {
 	int32_t pos[SHM_NAXES], drive[SHM_NAXES], shift[SHM_NAXES];
 	int8_t toward[SHM_NAXES];
 	uint64_t job_cycles, erode_cycles, jump_cycles;
-	uint32_t retracts, jumps, shorts, outcome;
+	double energy_j;
+	uint32_t retracts, jumps, shorts, arcs, outcome;
 };
 
 /* What was read: the newest that is whole. */

@@ -92,7 +92,8 @@ struct checkpoint_place checkpoint_place_of(const struct checkpoint_base *b)
 		.depth_mm = s->depth_mm, .job_cycles = s->job_cycles,
 		.erode_cycles = s->erode_cycles, .jump_cycles = s->jump_cycles,
 		.retracts = s->retracts, .jumps = s->jumps,
-		.shorts = s->shorts, .outcome = s->outcome,
+		.shorts = s->shorts, .arcs = s->arcs,
+		.energy_j = s->energy_j, .outcome = s->outcome,
 	};
 
 	memcpy(p.pos, s->pos, sizeof(p.pos));
@@ -122,6 +123,8 @@ static void put_place(struct checkpoint_base *b,
 	s->retracts = p->retracts;
 	s->jumps = p->jumps;
 	s->shorts = p->shorts;
+	s->arcs = p->arcs;
+	s->energy_j = p->energy_j;
 	s->outcome = p->outcome;
 	memcpy(s->pos, p->pos, sizeof(s->pos));
 	memcpy(s->drive, p->drive, sizeof(s->drive));

@@ -15,6 +15,7 @@
 #include "queue.h"
 #include "reply.h"
 #include "store.h"
+#include "tally.h"
 #include "trust.h"
 #include "twin.h"
 #include "upload.h"
@@ -34,6 +35,7 @@ struct jobs {
 	struct uploads uploads;
 	struct replies replies;
 	struct queue queue;
+	struct tally tally;
 	struct eta eta;
 	struct trust trust;
 	struct keyfile host_key;

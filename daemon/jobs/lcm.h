@@ -54,6 +54,8 @@ struct jobs_lcm_chunk {
 	int32_t chunk, chunks;
 	int64_t offset;
 	bool hold;
+	int32_t from_line;		/* as in edm.lcm */
+	double from_mm;
 	uint32_t size;
 	const uint8_t *data;
 	int64_t signed_us;		/* when, by our clock */

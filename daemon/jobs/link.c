@@ -89,6 +89,8 @@ static int link_open(struct link *l, int64_t now_us)
 	}
 	l->instance = instance_of(l);
 	l->events = (struct shm_follow) { .next = 0 };
+	l->events_before = __atomic_load_n(&l->status->event_next,
+					   __ATOMIC_ACQUIRE);
 	l->moved = false;
 	l->moved_us = now_us;
 	shm_snapshot(l->status, &l->snap);
@@ -163,6 +165,11 @@ static void take_answer(struct link *l, const struct shm_event *e)
 	for (int i = 0; i < LINK_PENDING; i++)
 		if (l->pending[i].id == e->id && e->id)
 			pending_end(&l->pending[i], e->code);
+}
+
+bool link_is_repeat(const struct link *l)
+{
+	return l->events.next <= l->events_before;
 }
 
 static void take_events(struct link *l)

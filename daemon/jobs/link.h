@@ -52,6 +52,7 @@ struct link {
 	const struct shm_status *status;
 	int commands;			/* a socket; -1: none */
 	struct shm_follow events;
+	uint64_t events_before;		/* written before it was opened */
 	int64_t moved_us, looked_us;
 	bool moved;			/* a new cycle was seen since opening */
 	uint64_t next_id;
@@ -95,6 +96,10 @@ int link_await(struct link *l, const struct link_command *c, int64_t now_us);
  */
 void link_ended(struct link *l,
 		void (*each)(void *arg, const struct shm_ended *e), void *arg);
+
+/** link_is_repeat() - may the event that is being handed over have been handed
+ *  over before? */
+bool link_is_repeat(const struct link *l);
 
 /** link_state_name() - "ok", "lost", "absent". */
 const char *link_state_name(enum link_state s);

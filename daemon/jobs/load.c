@@ -99,7 +99,7 @@ static void load_refuse(struct jobs *j, struct store_job job,
 	j->queue.snap = (struct shm_snapshot) { .program = 0 };
 	j->queue.depth_mm = 0;
 	/* What was cut of an interrupted job is not thrown away. */
-	if (again_read(j, job.n, &a) == 0)
+	if (again_read(j, job.n, &a) == 0 && !again_is_named(&a))
 		again_refuse(j, &job, reason);
 	else
 		queue_end(j, JOB_FAULT, reason);

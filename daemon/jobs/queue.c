@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* queue.c - follows the job that is in the machine */
-#include "again.h"
 #include "faults.h"
 #include "hunting.h"
 #include "interrupt.h"
@@ -140,54 +139,6 @@ int queue_init(struct jobs *j)
 	return 0;
 }
 
-/* Write the end of the job with its totals, as far as they are known. */
-static void record_end(struct jobs *j, enum job_state state,
-		       const char *reason)
-{
-	struct shm_snapshot whole = j->queue.snap;
-	const struct shm_snapshot *s = &whole;
-	static struct again a;
-	struct store_end e;
-
-	/* Of an interrupted one interrupt.c has put them together. */
-	if (state != JOB_INTERRUPTED &&
-	    again_read(j, j->queue.job.n, &a) == 0)
-		again_whole(&a, &whole);
-	e = (struct store_end) {
-		.state = state,
-		.reason = reason,
-		.now_us = jobs_utime(),
-		.place_mm = s->far_mm,
-		.length_mm = s->length_mm,
-		.depth_mm = j->queue.depth_mm,
-		.job_s = (double)s->job_cycles * (double)s->period_ns / 1e9,
-		.jumps = s->jumps,
-		.retracts = s->retracts,
-		.shorts = s->shorts,
-	};
-
-	j->queue.job.state = state;
-	store_end(j->store, j->queue.job.n, &e);
-}
-
-void queue_end(struct jobs *j, enum job_state state, const char *reason)
-{
-	struct queue *q = &j->queue;
-
-	record_end(j, state, reason);
-	queue_recount(j);
-	q->ended = SHM_OUTCOME_NONE;
-	jobs_note(j, &(struct jobs_note) {
-		.kind = state == JOB_INTERRUPTED ? "interrupted" : "ended",
-		.job = q->job.id,
-		.outcome = store_state_name(state),
-		.place_mm = q->snap.place_mm,
-	}, "job %s %s%s%s", q->job.name, store_state_name(state),
-		  *reason ? ": " : "", reason);
-	if (state != JOB_DONE)
-		set_waiting(j, q->behind > 0);
-}
-
 void queue_drop(struct jobs *j, bool again)
 {
 	struct queue *q = &j->queue;
@@ -199,6 +150,7 @@ void queue_drop(struct jobs *j, bool again)
 	q->promised = 0;
 	shm_program_remove(j->machine, q->job.n);
 	store_set_loaded(j->store, q->job.n, false);
+	tally_forget(j);
 	q->job = (struct store_job) { .n = 0 };
 	q->snap = (struct shm_snapshot) { .program = 0 };
 	q->depth_mm = 0;
@@ -286,6 +238,7 @@ void queue_event(struct jobs *j, const struct shm_event *e)
 	struct queue *q = &j->queue;
 
 	follow_change(j, e);
+	tally_event(j, e, link_is_repeat(&j->link));
 	if (e->kind == SHM_EV_HUNTING)
 		follow_hunting(j, e);
 	if (e->kind == SHM_EV_SELECT)
@@ -305,7 +258,7 @@ static void follow_fault(struct jobs *j)
 
 	if (q->job.state == JOB_FAULT)
 		return;
-	record_end(j, JOB_FAULT, fault);
+	queue_record(j, JOB_FAULT, fault);
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "alarm", .job = q->job.id, .outcome = fault,
 		.place_mm = q->snap.place_mm,
@@ -485,6 +438,7 @@ void queue_step(struct jobs *j, int64_t now_us)
 		q->missing_us = 0;
 		q->snap = *s;
 		q->depth_mm = fmax(q->depth_mm, s->depth_mm);
+		tally_look(j, now_us);
 		if (queue_is_leaving(q))
 			follow_leaving(j, now_us);
 		else

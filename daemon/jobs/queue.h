@@ -86,11 +86,16 @@ bool queue_is_faulted(const struct jobs *j);
 /** queue_is_leaving() - ended, still to be unloaded. */
 bool queue_is_leaving(const struct queue *q);
 
-/** queue_end() - the job is over: record it, tell. */
+/** queue_end() - the job is over: record it, tell; ended.c. */
 void queue_end(struct jobs *j, enum job_state state, const char *reason);
 
 /** queue_drop() - edmd has no program of ours any more. */
 void queue_drop(struct jobs *j, bool again);
+
+/* -- ended.c -------------------------------------------------------------- */
+
+/** queue_record() - the job is over, or in a fault for now: write that. */
+void queue_record(struct jobs *j, enum job_state state, const char *reason);
 
 /* -- settle.c ------------------------------------------------------------- */
 

@@ -52,8 +52,12 @@ static void settle_one(void *arg, const struct shm_ended *e)
 		.length_mm = e->length_mm, .depth_mm = e->depth_mm,
 		.job_s = (double)e->job_cycles * (double)e->period_ns / 1e9,
 		.jumps = e->jumps, .retracts = e->retracts,
-		.shorts = e->shorts,
+		.shorts = e->shorts, .arcs = e->arcs,
+		.erode_s = (double)e->erode_cycles *
+			   (double)e->period_ns / 1e9,
+		.energy_j = e->energy_j,
 	});
+	tally_settle(j, job.n, e);
 	store_set_loaded(j->store, job.n, false);
 	if (j->queue.job.n == job.n) {
 		j->queue.job.state = done ? JOB_DONE : JOB_STOPPED;

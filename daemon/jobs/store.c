@@ -61,6 +61,13 @@ static int insert_text(struct store *s, const struct store_new *j, int64_t n)
 	return rc == SQLITE_DONE ? 0 : store_failed(s, rc);
 }
 
+static int insert_begin(struct store *s, const struct store_new *j, int64_t n)
+{
+	return !j->begin_at ? 0 :
+	       store_do(s, STORE_MUST, "INSERT INTO resume VALUES(?, ?)", "is",
+			n, j->begin_at);
+}
+
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 {
 	int64_t n = 0;
@@ -74,6 +81,8 @@ int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 		n = sqlite3_last_insert_rowid(s->db);
 		err = insert_text(s, j, n);
 	}
+	if (err == 0)
+		err = insert_begin(s, j, n);
 	if (err < 0) {
 		store_undo(s);
 		return err;
@@ -227,8 +236,9 @@ int store_set_loaded(struct store *s, uint32_t n, bool loaded)
 
 int store_begin(struct store *s, uint32_t n, int64_t now_us)
 {
-	return store_do(s, STORE_KEEP, "UPDATE job SET begun_us=? WHERE n=?",
-			"iI", now_us, (int64_t)n);
+	return store_do(s, STORE_KEEP, "UPDATE job SET begun_us=?, first_us="
+			"iif(first_us=0, ?, first_us) WHERE n=?", "iiI",
+			now_us, now_us, (int64_t)n);
 }
 
 int store_may_begin(struct store *s, uint32_t n)
@@ -242,11 +252,21 @@ int store_end(struct store *s, uint32_t n, const struct store_end *e)
 {
 	return store_do(s, STORE_KEEP, "UPDATE job SET state=?, reason=?, "
 			"ended_us=?, place_mm=?, length_mm=?, depth_mm=?, "
-			"job_s=?, jumps=?, retracts=?, shorts=? WHERE n=?",
-			"ssiddddiiiI", state_names[e->state], e->reason,
+			"job_s=?, erode_s=?, energy_j=?, jumps=?, retracts=?, "
+			"shorts=?, arcs=? WHERE n=?",
+			"ssiddddddiiiiI", state_names[e->state], e->reason,
 			e->now_us, e->place_mm, e->length_mm, e->depth_mm,
-			e->job_s, (int64_t)e->jumps, (int64_t)e->retracts,
-			(int64_t)e->shorts, (int64_t)n);
+			e->job_s, e->erode_s, e->energy_j, (int64_t)e->jumps,
+			(int64_t)e->retracts, (int64_t)e->shorts,
+			(int64_t)e->arcs, (int64_t)n);
+}
+
+int store_give_up(struct store *s, uint32_t n, const char *reason,
+		  int64_t now_us)
+{
+	return store_do(s, STORE_KEEP, "UPDATE job SET state='stopped', "
+			"reason=?, ended_us=? WHERE n=?", "siI", reason, now_us,
+			(int64_t)n);
 }
 
 int store_set_tech(struct store *s, uint32_t n, const char *sha256)

@@ -58,6 +58,7 @@ struct store_new {
 	size_t bytes;
 	uint32_t lines;
 	bool hold;
+	const char *begin_at;		/* for store_resume_at(); NULL: nothing */
 	int64_t now_us;
 };
 
@@ -66,8 +67,9 @@ struct store_end {
 	enum job_state state;
 	const char *reason;		/* in words; "" if done */
 	int64_t now_us;
-	double place_mm, length_mm, depth_mm, job_s;
-	uint32_t jumps, retracts, shorts;
+	double place_mm, length_mm, depth_mm, job_s, erode_s;
+	double energy_j;		/* NAN: the machine does not count it */
+	uint32_t jumps, retracts, shorts, arcs;
 };
 
 struct store_note {
@@ -85,7 +87,8 @@ struct store_change {
 	int64_t time_ns;
 };
 
-enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY, STORE_ALARMS };
+enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY, STORE_ALARMS,
+		  STORE_TRAIL };
 
 /** store_state_name() - "queued", ... */
 const char *store_state_name(enum job_state s);
@@ -155,6 +158,10 @@ int store_begin(struct store *s, uint32_t n, int64_t now_us);
  */
 int store_may_begin(struct store *s, uint32_t n);
 int store_end(struct store *s, uint32_t n, const struct store_end *e);
+/** store_give_up() - a job that was interrupted is not resumed; what was cut of
+ *  it stays in the history. */
+int store_give_up(struct store *s, uint32_t n, const char *reason,
+		  int64_t now_us);
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
 /** store_interrupt() - @at: its checkpoint, hex, for store_resume_at(). */
 int store_interrupt(struct store *s, uint32_t n, const char *at);
@@ -191,7 +198,8 @@ int store_set_number(struct store *s, const char *key, int64_t value);
 /**
  * store_json() - a list as JSON, to be freed.
  *
- * STORE_SHOW: the object of job @id. STORE_QUEUE and STORE_HISTORY: an array of
+ * STORE_SHOW: the object of job @id. STORE_TRAIL: where it was (tally_json.c).
+ * STORE_QUEUE and STORE_HISTORY: an array of
  * the jobs behind job @id in that order, or the first ones if it is ""; at most
  * @rows (0: 200), and no more than fit one answer. So a client asks again with
  * the last job it got, until the array is empty. STORE_ALARMS: the last 20.

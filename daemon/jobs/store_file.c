@@ -88,6 +88,24 @@ static const char *const steps[] = {
 	" known INTEGER NOT NULL, PRIMARY KEY(job, part));"
 	"CREATE TRIGGER worn_gone AFTER DELETE ON job BEGIN"
 	" DELETE FROM worn WHERE job=old.n; END;",
+
+	/* What a job came to.  Of a job that was resumed begun_us is when its
+	 * last part began, first_us its first.  energy_j is NULL if the machine
+	 * does not count it.  Both tables hold JSON: tally_json.c. */
+	"ALTER TABLE job ADD COLUMN first_us INTEGER NOT NULL DEFAULT 0;"
+	"ALTER TABLE job ADD COLUMN erode_s REAL;"
+	"ALTER TABLE job ADD COLUMN energy_j REAL;"
+	"ALTER TABLE job ADD COLUMN arcs INTEGER;"
+	"UPDATE job SET first_us=begun_us;"
+	"CREATE TABLE used(n INTEGER PRIMARY KEY, conditions TEXT NOT NULL);"
+	"CREATE TABLE trail(n INTEGER PRIMARY KEY, trail TEXT NOT NULL);"
+	"CREATE TABLE fault("
+	" n INTEGER NOT NULL, time_ns INTEGER NOT NULL, fault TEXT NOT NULL,"
+	" line INTEGER NOT NULL, place_mm REAL, PRIMARY KEY(n, time_ns, fault));"
+	"CREATE TRIGGER tally_gone AFTER DELETE ON job BEGIN"
+	" DELETE FROM used WHERE n=old.n;"
+	" DELETE FROM trail WHERE n=old.n;"
+	" DELETE FROM fault WHERE n=old.n; END;",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

@@ -25,6 +25,16 @@
 			"'retracts', retracts, 'shorts', shorts, " \
 			"'tech_sha256', tech_sha256" MORE ")"
 
+/* What it came to.  Energy is null where the machine does not count it. */
+#define SUMS_JSON	", 'first_us', first_us, 'erode_s', erode_s, " \
+			"'energy_j', energy_j, 'arcs', arcs, 'conditions', " \
+			"json(coalesce((SELECT conditions FROM used WHERE " \
+			"used.n=job.n), '[]')), 'faults', (SELECT " \
+			"json_group_array(json(f)) FROM (SELECT json_object(" \
+			"'utime', time_ns / 1000, 'fault', fault, 'line', " \
+			"line, 'place_mm', place_mm) AS f FROM fault WHERE " \
+			"fault.n=job.n ORDER BY time_ns LIMIT 50))"
+
 /* For one job only: what it called and what was set, in order of time. */
 #define CHANGES_JSON	", 'changes', (SELECT json_group_array(json(c)) FROM " \
 			"(SELECT json_object('utime', time_ns / 1000, " \
@@ -45,8 +55,8 @@
 /* As many jobs as asked for; those after job ?2 if one is given.  The order is
  * found from a few columns, and JSON is made only of the rows that are
  * wanted. */
-#define JOBS_SQL(WHICH, PLACE) \
-	"SELECT " JOB_JSON("") " FROM job JOIN (SELECT n AS m FROM job WHERE " \
+#define JOBS_SQL(MORE, WHICH, PLACE) \
+	"SELECT " JOB_JSON(MORE) " FROM job JOIN (SELECT n AS m FROM job WHERE " \
 	"(" WHICH ") AND (?2='' OR (" PLACE ") > (SELECT " PLACE " FROM " \
 	"job WHERE id=?2)) ORDER BY " PLACE " LIMIT ?1) ON n=m ORDER BY " PLACE
 
@@ -56,10 +66,10 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 	switch (what) {
 	case STORE_SHOW:
 		return store_ask(s, ret_err, "SELECT "
-				 JOB_JSON(CHANGES_JSON NOTES_JSON) " FROM job "
+				 JOB_JSON(SUMS_JSON CHANGES_JSON NOTES_JSON) " FROM job "
 				 "WHERE id=?1", "si", id, (int64_t)rows);
 	case STORE_QUEUE:
-		return store_ask(s, ret_err, JOBS_SQL("state IN ('queued', "
+		return store_ask(s, ret_err, JOBS_SQL("", "state IN ('queued', "
 				 "'interrupted') OR (loaded=1 AND state NOT IN "
 				 "('done', 'stopped'))", IN_QUEUE), "is",
 				 (int64_t)rows, id);
@@ -72,10 +82,13 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				 "'lost', 'back') ORDER BY utime DESC, rowid "
 				 "DESC LIMIT ?",
 				 "i", (int64_t)ALARMS_MAX);
+	case STORE_TRAIL:
+		return store_ask(s, ret_err, "SELECT trail FROM trail JOIN job "
+				 "USING(n) WHERE id=?", "s", id);
 	case STORE_HISTORY:
 		break;
 	}
-	return store_ask(s, ret_err, JOBS_SQL("state IN ('done', 'stopped', "
+	return store_ask(s, ret_err, JOBS_SQL(SUMS_JSON, "state IN ('done', 'stopped', "
 			 "'fault')", IN_HISTORY), "is", (int64_t)rows, id);
 }
 
@@ -110,6 +123,17 @@ static char *row_text(sqlite3_stmt *q)
 
 	if (text)
 		make_plain(text);
+	return text;
+}
+
+/* A job that has not moved has none. */
+static char *trail(struct store *s, const char *id)
+{
+	int err;
+	sqlite3_stmt *q = list_query(s, STORE_TRAIL, id, 0, &err);
+	char *text = q ? row_text(q) : err == -ENOENT ? strdup("{}") : NULL;
+
+	sqlite3_finalize(q);
 	return text;
 }
 
@@ -181,6 +205,8 @@ char *store_json(struct store *s, enum store_list what, const char *id,
 
 	if (what == STORE_SHOW)
 		return one(s, id);
+	if (what == STORE_TRAIL)
+		return trail(s, id);
 	if (rows <= 0 || rows > LIST_MAX)
 		rows = LIST_MAX;
 	text = list_text(s, what, id, rows);

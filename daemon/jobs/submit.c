@@ -8,7 +8,9 @@
  */
 #include "jobs.h"
 
+#include "again.h"
 #include "compiler.h"
+#include "entry.h"
 #include "jobs_log.h"
 
 #include <errno.h>
@@ -125,12 +127,13 @@ static void accept_text(struct jobs *j, struct upload *up,
 {
 	const uint32_t lines = r->lines;
 	struct queue *q = &j->queue;
-	char hex[65], reason[160], *body;
+	char hex[65], reason[640], way[480] = "", *body;
 	struct store_new n = {
 		.id = up->id, .name = up->name, .sha256 = hex,
 		.text = up->text, .bytes = up->bytes, .lines = lines,
 		.tech_sha256 = r->tech_sha256,
 		.hold = up->hold, .now_us = jobs_utime(),
+		.begin_at = again_named(up->from_line, up->from_mm),
 	};
 	uint32_t number;
 
@@ -149,8 +152,10 @@ static void accept_text(struct jobs *j, struct upload *up,
 		  "job %s queued, %u lines, %zu bytes", n.name, lines,
 		  n.bytes);
 	tell_notes(j, up, r);
-	snprintf(reason, sizeof(reason), "accepted; %s",
-		 what_next(j, up->hold));
+	if (n.begin_at)
+		config_entry_words(j->config, &r->entry, way, sizeof(way));
+	snprintf(reason, sizeof(reason), "accepted; %s%s%s",
+		 what_next(j, up->hold), *way ? "; start " : "", way);
 	body = store_json(j->store, STORE_SHOW, n.id, 0);
 	answer_end(j, up, 0, reason, body);
 	free(body);
@@ -227,6 +232,8 @@ static void check_begin(struct jobs *j, struct upload *up)
 	int err = c ? 0 : -ENOMEM;
 
 	start_place(j, request.start_mm);
+	if (up->from_line > 0 || up->from_mm > 0)
+		again_begin_at(j, up->from_line, up->from_mm, &request);
 	if (c) {
 		*c = (struct check) { .jobs = j, .upload = up };
 		err = compiler_start(&j->check[up - j->uploads.slot], j->event,

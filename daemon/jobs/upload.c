@@ -4,6 +4,7 @@
 
 #include "plain.h"
 
+#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,6 +37,12 @@ static bool place_is_inside(const struct jobs_lcm_chunk *c)
 	       (int64_t)c->size <= c->bytes - c->offset;
 }
 
+static bool begin_is_fit(const struct jobs_lcm_chunk *c)
+{
+	return c->from_line >= 0 && isfinite(c->from_mm) && c->from_mm >= 0 &&
+	       !(c->from_line > 0 && c->from_mm > 0);
+}
+
 bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 {
 	size_t client = strlen(c->client), id = strlen(c->job);
@@ -53,6 +60,9 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 		       "turn the direction of writing");
 	else if (c->bytes < 0 || c->bytes > UPLOAD_BYTES_MAX)
 		refuse(a, EX_DATAERR, "job too long; at most 64 MiB");
+	else if (!begin_is_fit(c))
+		refuse(a, EX_DATAERR, "place to begin at not fit; a line from 1 "
+		       "on, or mm along the path, not both");
 	else if (!place_is_inside(c))
 		refuse(a, EX_PROTOCOL, "chunk outside its job; at most "
 		       "32768 bytes, inside the size given");
@@ -164,7 +174,10 @@ static struct upload *upload_begin(struct uploads *u,
 	memcpy(up->sha256, c->sha256, sizeof(up->sha256));
 	up->bytes = (size_t)c->bytes;
 	up->chunks = (uint32_t)c->chunks;
-	up->hold = c->hold;
+	up->from_line = (uint32_t)c->from_line;
+	up->from_mm = c->from_mm;
+	/* An operator looks at the way in before it moves. */
+	up->hold = c->hold || up->from_line > 0 || up->from_mm > 0;
 	up->seq_min = up->seq_max = c->seq;
 	return up;
 }
@@ -174,6 +187,8 @@ static bool upload_agrees(const struct upload *up,
 {
 	return up->bytes == (size_t)c->bytes &&
 	       up->chunks == (uint32_t)c->chunks &&
+	       up->from_line == (uint32_t)c->from_line &&
+	       up->from_mm == c->from_mm &&
 	       memcmp(up->sha256, c->sha256, sizeof(up->sha256)) == 0;
 }
 

@@ -34,6 +34,8 @@ struct upload {
 	size_t bytes;
 	uint32_t chunks, have;
 	bool hold;
+	uint32_t from_line;		/* where it begins, as in edm.lcm */
+	double from_mm;
 	uint8_t *seen;			/* bit per chunk */
 	char *text;
 	int64_t last_us;		/* of the last new chunk, monotonic */

@@ -66,6 +66,8 @@ void verbs_queue(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 void verbs_show(struct jobs *j, const struct verb *v,
 		const struct jobs_lcm_command *c);
+void verbs_trail(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c);
 void verbs_alarms(struct jobs *j, const struct verb *v,
 		  const struct jobs_lcm_command *c);
 void verbs_history(struct jobs *j, const struct verb *v,

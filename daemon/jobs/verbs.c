@@ -553,6 +553,7 @@ static const struct verb verbs[] = {
 	{ "alarms", ROLE_VIEWER, VERB_ASKS, verbs_alarms, VERB_OWN, "" },
 	{ "queue", ROLE_VIEWER, VERB_ASKS, verbs_queue, VERB_OWN, "" },
 	{ "show", ROLE_VIEWER, VERB_ASKS, verbs_show, VERB_OWN, "" },
+	{ "trail", ROLE_VIEWER, VERB_ASKS, verbs_trail, VERB_OWN, "" },
 	{ "history", ROLE_VIEWER, VERB_ASKS, verbs_history, VERB_OWN, "" },
 	{ "electrodes", ROLE_VIEWER, VERB_ASKS, electrode_list, VERB_OWN, "" },
 	{ "electrode-add", ROLE_OPERATOR, VERB_ACTS, electrode_add, VERB_OWN,

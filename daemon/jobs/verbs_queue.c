@@ -28,8 +28,8 @@ void verbs_remove(struct jobs *j, const struct verb *v,
 			queue_go(j);
 		verbs_answer(j, c, 0, "removed");
 	} else if (job.state == JOB_INTERRUPTED) {
-		e.reason = "interrupted, then removed";
-		store_end(j->store, job.n, &e);
+		store_give_up(j->store, job.n, "interrupted, then removed",
+			      e.now_us);
 		interrupt_init(j);
 		verbs_answer(j, c, 0, "removed");
 	} else if (job.state != JOB_QUEUED || job.loaded) {
@@ -98,8 +98,8 @@ static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 	/* Without a sensible argument, as many rows as fit. */
 	const int rows = c->arg > 0 && c->arg < 1000 ? (int)c->arg : 0;
 	struct store_job before;
-	const bool known = what == STORE_ALARMS ||
-			   (!*c->job && what != STORE_SHOW) ||
+	const bool one = what == STORE_SHOW || what == STORE_TRAIL;
+	const bool known = what == STORE_ALARMS || (!*c->job && !one) ||
 			   store_find(j->store, c->job, &before) != -ENOENT;
 	char *body = known ? store_json(j->store, what, c->job, rows) : NULL;
 	struct jobs_lcm_ack a = {
@@ -131,6 +131,13 @@ void verbs_show(struct jobs *j, const struct verb *v,
 {
 	(void)v;
 	answer_list(j, c, STORE_SHOW);
+}
+
+void verbs_trail(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c)
+{
+	(void)v;
+	answer_list(j, c, STORE_TRAIL);
 }
 
 void verbs_alarms(struct jobs *j, const struct verb *v,

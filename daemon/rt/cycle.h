@@ -115,6 +115,8 @@ struct cycle_totals {
 	uint64_t erode_cycles, jump_cycles;
 	uint64_t pulses[INTERP_NAXES];
 	uint32_t retracts, jumps, shorts, arcs, overruns;
+	double energy_j;		/* of the discharges; NAN: the machine
+					 * does not count it */
 	uint32_t hunts;			/* rows of HUNTING_ROW retracts */
 	uint32_t in_row_max;		/* retracts without progress between */
 	double retract_mm_max;

@@ -50,7 +50,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	8
+#define SHM_LAYOUT	9
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 #define SHM_PATH_MAX	96
@@ -110,7 +110,12 @@ struct shm_snapshot {
 	uint32_t retracts, jumps, shorts, overruns;
 	uint32_t hunts, in_row;		/* rows of retracts without progress;
 					 * the row in hand */
+	uint32_t arcs;			/* times that the share of arcs was
+					 * above arcing_share */
+	uint32_t pad3;
 	double retract_mm_max;
+	double energy_j;		/* of the discharges; NAN: the machine
+					 * does not count it */
 	/* The cycle's own time, ns. */
 	int64_t period_ns;
 	int64_t wake_late_ns, wake_late_max_ns;
@@ -186,7 +191,7 @@ struct shm_event {
 	uint64_t id;
 	uint32_t kind;
 	int32_t code;
-	uint32_t program, pad;
+	uint32_t program, line;		/* line: of the source, at place_mm */
 	double place_mm;
 	double was, now;		/* set: values, NAN the generator's
 					 * own */
@@ -227,7 +232,9 @@ struct shm_ended {
 	int64_t time_ns, period_ns;
 	double place_mm, far_mm, length_mm, depth_mm;
 	uint64_t job_cycles;		/* 0: it had not begun */
-	uint32_t jumps, retracts, shorts, pad;
+	uint32_t jumps, retracts, shorts, arcs;
+	uint64_t erode_cycles;
+	double energy_j;		/* as in the snapshot */
 };
 
 struct shm_ended_slot {

@@ -48,6 +48,10 @@ def box(lo, hi):
                   for p in t) for t in CUBE]
 
 
+def at_x(tris, x):
+    return [tuple((p[0] + x, *p[1:]) for p in t) for t in tris]
+
+
 def write_stl(path, tris):
     with open(path, "wb") as f:
         f.write(b" " * 80 + struct.pack("<I", len(tris)))
@@ -144,10 +148,38 @@ def test_text_and_binary_are_one(tmp_path):
     assert r.stdout.split("\n")[1:] == s.stdout.split("\n")[1:]
 
 
-def test_an_inverted_body_is_turned_and_said(tmp_path):
-    r = check_boxes(tmp_path, [(a, c, b) for a, b, c in BESIDE], TOOL)
-    assert r.returncode == 0
-    assert "inside and outside are exchanged" in r.stdout
+def backward(tris):
+    return [(a, c, b) for a, b, c in tris]
+
+
+SMALL = box((30, 2, -5), (31, 3, -4))
+IN_IT = box((10, 5, -2), (15, 9, 2))
+
+
+@pytest.mark.parametrize("part, say, mm3", [
+    (backward(BESIDE), "in 1 of 1 shells: triangle 1 (", 2000),
+    (backward(BESIDE[:3]) + BESIDE[3:], "3 triangles that ran backward", 2000),
+    (BESIDE + backward(SMALL), "in 1 of 2 shells: triangle 13 (", 2001),
+    (backward(BESIDE) + SMALL, "in 1 of 2 shells: triangle 1 (", 2001),
+    # A cavity has its outside inside, and is no fault.
+    (BESIDE + backward(IN_IT), " mm3", 1920),
+    (backward(BESIDE) + IN_IT, "in 2 of 2 shells: triangle 1 (", 1920),
+    (BESIDE * 2, "12 triangles that are there twice", 2000),
+])
+def test_a_body_that_is_inside_out_is_turned_and_said(tmp_path, part, say, mm3):
+    r = check_boxes(tmp_path, part, TOOL)
+    assert r.returncode == 0, r.stderr
+    assert say in r.stdout
+    assert "%d mm3" % mm3 in r.stdout.splitlines()[0]
+    assert ("exchanged" in r.stdout) == ("shells" in say)
+
+
+def test_what_joining_edges_moves_is_kept_in_addition(tmp_path):
+    near = [tuple(tuple(x + 4e-4 * (i % 2) for x in p) for p in t)
+            for i, t in enumerate(box((0, 2, 0), (20, 12, 5)))]
+    joined = check_boxes(tmp_path, near, TOOL)
+    assert joined.returncode == 0, joined.stderr
+    assert "edges that nearly meet are joined, by 0.000" in joined.stdout
 
 
 def test_triangles_doubled_or_without_area_do_no_harm(tmp_path):
@@ -161,8 +193,8 @@ def test_triangles_doubled_or_without_area_do_no_harm(tmp_path):
 
 
 @pytest.mark.parametrize("part, say", [
-    (BESIDE[1:], "open edges"),
-    (BESIDE + box((20, 5, -9), (30, 9, 9)), "cross"),
+    (BESIDE[1:], "3 open edges, triangle "),
+    (BESIDE + box((20, 5, -9), (30, 9, 9)), " and triangle "),
     ([tuple(tuple(x / 1000 for x in p) for p in t) for t in BESIDE],
      "--unit inch"),
     ([tuple(tuple(x * 1000 for x in p) for p in t) for t in BESIDE],
@@ -172,7 +204,9 @@ def test_triangles_doubled_or_without_area_do_no_harm(tmp_path):
     ([((1e30, 2, -5),) + t[1:] if i == 0 else t
       for i, t in enumerate(BESIDE)], "triangle 1 has a corner at 1e+30"),
     ([], "fewer than 4 triangles"),
-    ([((0, 0, 0), (1, 1, 1), (2, 2, 2))] * 8, "no volume"),
+    (box((5, 2, 0), (25, 12, 0)), "no volume, triangle 1 ("),
+    ([((0, 0, 0), (1, 1, 1), (2, 2, 2))] * 8, "1 triangles are left of 8"),
+    (at_x(BESIDE, 3e4), "its middle is at X 30015 mm"),
 ])
 def test_a_bad_body_is_refused(tmp_path, part, say):
     r = check_boxes(tmp_path, part, TOOL)

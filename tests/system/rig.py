@@ -223,7 +223,8 @@ class Client:
 
         return self.heard(answered, timeout)[0]
 
-    def chunks(self, text, job, name="job.ngc", size=CHUNK, hold=False):
+    def chunks(self, text, job, name="job.ngc", size=CHUNK, hold=False,
+               from_line=0, from_mm=0):
         pieces = [text[i:i + size] for i in range(0, len(text), size)] or [b""]
         made = []
         for i, piece in enumerate(pieces):
@@ -235,6 +236,7 @@ class Client:
             m.sha256 = hashlib.sha256(text).digest()
             m.chunk, m.chunks, m.offset = i, len(pieces), i * size
             m.hold = hold
+            m.from_line, m.from_mm = from_line, from_mm
             m.size, m.data = len(piece), piece
             made.append(m)
         return made

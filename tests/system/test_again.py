@@ -122,6 +122,63 @@ def test_what_cannot_go_on_stays_interrupted(idle):
     assert c.ask("remove", "cut").code == 0
 
 
+@pytest.mark.parametrize("where", [{"from_line": 9}, {"from_mm": 18.5}])
+def test_it_begins_where_its_sender_says(machine, where):
+    c = machine.client
+    a = c.submit(CUT, "cut", **where)
+    assert a.code == 0 and "X1.000 Y5.000" in a.reason, a.reason
+    c.job_where("cut", "ready")
+    c.hear(0.5)
+    assert not any(c.status().pos_mm), "it moves by itself"
+    assert "off the work" in way_in(c, "cut")
+    assert c.ask("start").code == 0
+    # Not where the first cut is: in front of the second, and then along it.
+    c.status_where(lambda s: s.state == "travel" and s.pos_mm[1] > 4, 20)
+    c.job_where("cut", "done", 60)
+    assert c.status().pos_mm[:3] == pytest.approx((5, 5, 0))
+    past = c.job("cut")
+    assert past["path_mm"] == pytest.approx(past["length_mm"])
+
+
+def test_a_begin_inside_survives_a_power_cut(idle):
+    m, c = idle, idle.client
+    m.start()
+    assert c.submit(CUT, "cut", from_line=9).code == 0
+    c.job_where("cut", "ready")
+    die(m)      # it has not begun: it waits as before
+    m.start()
+    c.status_where(lambda s: s.job_state == "ready" and s.state == "hold", 10)
+    assert c.ask("start").code == 0
+    last = c.status_where(lambda s: s.job_state == "running"
+                          and s.pos_mm[0] > 2 and s.pos_mm[1] > 4.9, 20)
+    c.hear(1.2)
+    die(m)
+    m.start()
+    c.status_where(lambda s: s.interrupted == "cut", 10)
+    # Places are those of the whole program: its second cut is behind 17 mm.
+    assert c.job("cut")["path_mm"] > 17 + last.pos_mm[0] - 1
+    resume(c)
+    assert "X1.000 Y5.000 Z0.000" in way_in(c, "cut")
+    assert c.ask("start").code == 0
+    c.job_where("cut", "done", 60)
+    assert c.status().pos_mm[:3] == pytest.approx((5, 5, 0))
+
+
+@pytest.mark.parametrize("where, code, why", [
+    ({"from_line": 10}, 65, "nothing moves in line 10"),
+    ({"from_mm": 1e6}, 65, "nothing of the path is left"),
+    ({"from_mm": -1}, 65, "not fit"),
+    ({"from_mm": float("nan")}, 65, "not fit"),
+    ({"from_line": -1}, 65, "not fit"),
+    ({"from_line": 9, "from_mm": 3}, 65, "not fit"),
+])
+def test_a_place_that_is_not_there_is_refused(machine, where, code, why):
+    c = machine.client
+    a = c.submit(CUT, "cut", **where)
+    assert a.code == code and why in a.reason, a.reason
+    assert c.ask("show", "cut").code == 66
+
+
 SPARKS = """
 [machine]
 name = {name}

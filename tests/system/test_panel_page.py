@@ -2,6 +2,7 @@
 """The panel's page in a browser, against the real gateway and daemons."""
 
 import json
+import os
 import re
 import signal
 
@@ -293,6 +294,29 @@ def test_nothing_is_cut_off(p, page, size):
 
 def clicks(page):
     return page.evaluate("window.clicks")
+
+
+def test_a_program_begins_at_a_line(p, page):
+    page.goto(p.url + "/#/jobs")
+    give(page, panel.JOB)
+    expect(page.locator("#send")).to_have_attribute("aria-disabled", "false")
+    page.locator("#fromline").fill("seven")
+    expect(page.locator("#send")).to_have_attribute("aria-disabled", "true")
+    page.locator("#fromline").fill("99")
+    expect(page.locator("#sendstart")).to_have_attribute("aria-disabled",
+                                                         "true")
+    page.locator("#send").click()
+    expect(page.locator(".toasts")).to_contain_text(
+        "nothing moves in line 99")
+    page.locator("#fromline").fill("7")
+    page.locator("#send").click()
+    expect(page.locator(".toasts")).to_contain_text("off the work")
+    s = p.machine.client.status_where(lambda s: s.state == "hold", 10)
+    assert s.job_name == "part.ngc"
+    picture = os.environ.get("EDM_PICTURES")
+    if picture:
+        page.screenshot(path=f"{picture}/from-line.png")
+    end_job(page, p)
 
 
 def test_few_clicks_lead_where_one_wants(p, page):

@@ -93,7 +93,7 @@ static uint32_t check_way(const struct interp_program *p,
 		assert_int_equal(p->segs[i++].flags, INTERP_SEG_RAPID);
 	while (i < p->head->nsegs && p->segs[i].line == e->line &&
 	       (p->segs[i].kind == INTERP_AUX ||
-		(p->segs[i].kind == INTERP_STOP && o->up < 0 && !stops++)))
+		(p->segs[i].kind == INTERP_STOP && o->up < 0 && !stops && ++stops)))
 		i++;
 	assert_int_equal(stops, o->up < 0);
 	assert_int_equal(interp_cursor_init(&c, p), 0);
@@ -116,6 +116,15 @@ static uint32_t first_left(const struct interp_program *p, double from_mm)
 	return last;
 }
 
+static uint32_t lines_of(const struct script *text)
+{
+	uint32_t n = 0;
+
+	for (int i = 0; i < text->n; i++)
+		n += text->at[i] == '\n';
+	return n;
+}
+
 /* Return: was it taken? */
 static bool try_one(const struct script *text, const char *dialect,
 		    enum interp_strategy how, uint64_t *s)
@@ -136,7 +145,10 @@ static bool try_one(const struct script *text, const char *dialect,
 	if (!whole)
 		return false;
 	a = finish(whole);
-	o.far_mm = uniform(s, 0, 1.02 * a.p.head->length_mm);
+	if (rnd(s) % 2)
+		o.line = 1 + (uint32_t)(rnd(s) % (lines_of(text) + 2));
+	else
+		o.far_mm = uniform(s, 0, 1.02 * a.p.head->length_mm);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		o.now_mm[i] = rnd(s) % 2 ? 0 : round(uniform(s, -9e3, 9e3)) / 1e3;
 	part = random_build(text, dialect, &bo);

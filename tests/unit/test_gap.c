@@ -350,6 +350,31 @@ static void a_signal_that_is_noise_is_a_fault(void **st)
 	rig_free(&r);
 }
 
+static void energy_is_the_sum_of_what_was_counted_or_is_not_told(void **st)
+{
+	struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	cut_at(&r, &k, 2);
+	/* Up to here nobody counted, and the power was on. */
+	assert_true(isnan(r.c.totals.energy_j));
+	r.c.totals.energy_j = 0;
+	r.in.energy_valid = true;
+	r.in.energy_j = 0.5;
+	steps(&r, SPARKING_V, 4);
+	assert_near(r.c.totals.energy_j, 2, 1e-12);
+	/* Without power there is nothing to count. */
+	r.c.out.power = false;
+	r.in.energy_valid = false;
+	step(&r, SPARKING_V);
+	assert_near(r.c.totals.energy_j, 2, 1e-12);
+	assert_true(r.c.out.power);
+	step(&r, SPARKING_V);
+	assert_true(isnan(r.c.totals.energy_j));
+	rig_free(&r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -368,6 +393,7 @@ int main(void)
 		cmocka_unit_test(a_signal_may_stand_still_where_nothing_moves),
 		cmocka_unit_test(lines_and_open_shares_may_stand_still),
 		cmocka_unit_test(a_signal_that_is_noise_is_a_fault),
+		cmocka_unit_test(energy_is_the_sum_of_what_was_counted_or_is_not_told),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,6 +3,7 @@
  * test_store.c - the store on disks that are full, read-only, broken or cut off
  */
 #include "store.h"
+#include "store_tally.h"
 #include "store_turn.h"
 #include "store_trust.h"
 #include "disk_help.h"
@@ -368,6 +369,87 @@ static void a_store_of_0_1_0_is_brought_up(void **state)
 	store_close(s);
 }
 
+/* Nobody knows what its conditions came to, and nothing is guessed. */
+static void a_store_without_sums_by_condition_is_brought_up(void **state)
+{
+	struct store *s;
+	uint32_t n;
+	char *text;
+
+	(void)state;
+	by_file("tests/data/store-5.sql");
+	s = open_store();
+	text = store_json(s, STORE_SHOW, "old-done", 0);
+	assert_non_null(strstr(text, "\"job_s\":4.01"));
+	assert_non_null(strstr(text, "\"conditions\":[]"));
+	assert_non_null(strstr(text, "\"energy_j\":null"));
+	assert_non_null(strstr(text, "\"first_us\":1795357452615187"));
+	free(text);
+	text = store_json(s, STORE_TRAIL, "old-done", 0);
+	assert_string_equal(text, "{}");
+	free(text);
+	assert_int_equal(add(s, "new", &n), 0);
+	assert_int_equal(n, 4);
+	assert_int_equal(store_used_write(s, n, "[{\"condition\":\"C1\"}]"),
+			 0);
+	end(s, n, JOB_DONE);
+	store_close(s);
+	s = open_store();
+	text = store_json(s, STORE_HISTORY, "", 0);
+	assert_non_null(strstr(text, "\"conditions\":[{\"condition\":"
+			       "\"C1\"}]"));
+	free(text);
+	store_close(s);
+}
+
+static uint32_t rows_of(const char *table)
+{
+	char sql[80], path[200];
+	sqlite3_stmt *q = NULL;
+	sqlite3 *db = NULL;
+	uint32_t n;
+
+	snprintf(path, sizeof(path), "%s/m.db", dir);
+	snprintf(sql, sizeof(sql), "SELECT count(*) FROM %s", table);
+	assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+	assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &q, NULL), SQLITE_OK);
+	assert_int_equal(sqlite3_step(q), SQLITE_ROW);
+	n = (uint32_t)sqlite3_column_int64(q, 0);
+	sqlite3_finalize(q);
+	sqlite3_close(db);
+	return n;
+}
+
+static void what_a_job_came_to_goes_with_it(void **state)
+{
+	static const char *const tables[] = { "used", "trail", "fault" };
+	struct store_fault f = { 7, "short", 3, 0.5 };
+	struct store *s = open_store();
+	uint32_t n;
+	char *text;
+
+	(void)state;
+	assert_int_equal(add(s, "old", &n), 0);
+	disk.fail_from = 0;
+	assert_int_equal(store_used_write(s, n, "[]"), STORE_KEPT);
+	assert_int_equal(store_used_write(s, n, "[1]"), STORE_KEPT);
+	assert_int_equal(store_trail_write(s, n, "{}"), STORE_KEPT);
+	assert_int_equal(store_fault(s, n, &f), STORE_KEPT);
+	assert_int_equal(store_fault(s, n, &f), STORE_KEPT);
+	text = store_used(s, n);
+	assert_string_equal(text, "[1]");
+	free(text);
+	disk.fail_from = -1;
+	assert_true(store_tick(s, 1));
+	end(s, n, JOB_DONE);
+	store_close(s);
+	for (int i = 0; i < 3; i++)
+		assert_int_equal(rows_of(tables[i]), 1);
+	by_hand("DELETE FROM job");
+	for (int i = 0; i < 3; i++)
+		assert_int_equal(rows_of(tables[i]), 0);
+}
+
 static void many_jobs(struct store *s, int count)
 {
 	char id[32];
@@ -577,6 +659,8 @@ int main(void)
 		T(the_text_is_written_twice_at_most),
 		T(the_list_in_memory_is_bounded_and_keeps_what_counts),
 		T(a_store_of_0_1_0_is_brought_up),
+		T(a_store_without_sums_by_condition_is_brought_up),
+		T(what_a_job_came_to_goes_with_it),
 		T(a_long_list_comes_in_pages),
 		T(a_damaged_page_costs_what_is_in_it),
 		T(what_is_no_database_is_set_aside),

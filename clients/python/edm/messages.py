@@ -13,7 +13,7 @@ from dataclasses import dataclass
 SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
-JOB_CHUNK = bytes.fromhex("bb4ab1a64211c912")
+JOB_CHUNK = bytes.fromhex("939a006c067ff836")
 STATUS = bytes.fromhex("145ae31af6e30f78")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
@@ -220,11 +220,14 @@ class Chunk:
     offset: int
     hold: bool
     data: bytes
+    from_line: int = 0
+    from_mm: float = 0.0
 
     def encode(self, client: str, seq: int, utime: int = 0) -> bytes:
         return (JOB_CHUNK + struct.pack(">q", utime) + string(client)
                 + struct.pack(">q", seq) + string(self.job)
                 + string(self.name) + struct.pack(">q", self.size)
                 + self.sha256
-                + struct.pack(">iiqbi", self.chunk, self.chunks, self.offset,
-                              self.hold, len(self.data)) + self.data)
+                + struct.pack(">iiqbidi", self.chunk, self.chunks,
+                              self.offset, self.hold, self.from_line,
+                              self.from_mm, len(self.data)) + self.data)

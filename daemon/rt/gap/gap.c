@@ -264,6 +264,13 @@ void gap_forget(struct cycle *c)
 	c->gap_past = (struct gap_memory) { .powered = 0 };
 }
 
+/* A sum of which a part was not counted would be a guess. */
+static void sum_energy(struct cycle *c, const struct io_inputs *in)
+{
+	if (c->out.power)
+		c->totals.energy_j += in->energy_valid ? in->energy_j : NAN;
+}
+
 void gap_sense(struct cycle *c, const struct io_inputs *in)
 {
 	struct gap_memory *m = &c->gap_past;
@@ -280,6 +287,7 @@ void gap_sense(struct cycle *c, const struct io_inputs *in)
 	r.suspect = c->loaded && suspect(c, m, &r);
 	if (r.contact && !before && state_duty[c->state].power)
 		c->totals.shorts++;
+	sum_energy(c, in);
 	c->sensed = r;
 	c->gap_v = r.v;
 }

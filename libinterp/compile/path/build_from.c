@@ -21,7 +21,8 @@ struct from {
 	const struct interp_build_from *o;
 	struct interp_build_entry *entry;
 	struct interp_diag *diag;
-	uint32_t far;			/* the last segment that was begun */
+	uint32_t far;			/* the last segment that is not done
+					 * again as a whole */
 	uint32_t last;			/* the last that is left out */
 };
 
@@ -41,13 +42,32 @@ static uint32_t find_far(const struct interp_build *b, double far_mm)
 	return i;
 }
 
+/* The first segment of this line, or of the next that has any.  0: none.
+ * Subprograms may stand behind their calls, so the segments are not in the
+ * order of the lines. */
+static uint32_t find_line(const struct interp_build *b, uint32_t line)
+{
+	const struct interp_seg *s = segs_of(b);
+	uint32_t at = 0;
+
+	for (uint32_t i = 1; i < b->segs.n; i++)
+		if (s[i].line >= line && (!at || s[i].line < s[at].line))
+			at = i;
+	return at;
+}
+
+static bool is_positioning(const struct interp_seg *s)
+{
+	return s->flags & INTERP_SEG_RAPID && s->length_mm > 0;
+}
+
 /* The last positioning up to there: its end is off the work. */
 static uint32_t find_last(const struct interp_build *b, uint32_t far)
 {
 	const struct interp_seg *s = segs_of(b);
 
 	for (uint32_t i = far; i > 0; i--)
-		if (s[i].flags & INTERP_SEG_RAPID && s[i].length_mm > 0)
+		if (is_positioning(&s[i]))
 			return i;
 	return 0;
 }
@@ -56,10 +76,11 @@ static int check(const struct from *f)
 {
 	const struct interp_seg *s = segs_of(f->b);
 
-	if (f->o->far_mm >= f->b->length_mm)
+	f->diag->line = s[f->b->segs.n - 1].line;
+	if (f->entry->far_mm >= f->b->length_mm)
 		return interp_diag_say(f->diag, "nothing of the path is left "
 				       "behind %.3f mm; a place before its end "
-				       "at %.3f mm", f->o->far_mm,
+				       "at %.3f mm", f->entry->far_mm,
 				       f->b->length_mm);
 	for (uint32_t i = 0; i <= f->far; i++) {
 		f->diag->line = s[i].line;
@@ -133,7 +154,7 @@ static int add_outputs(struct from *f)
 {
 	const struct interp_seg *s = segs_of(f->b);
 	uint32_t power = INTERP_NAUX, pump = INTERP_NAUX;
-	const struct interp_build_word w = { .line = s[f->far].line };
+	const struct interp_build_word w = { .line = f->entry->line };
 	int err = 0;
 
 	for (uint32_t i = 0; i <= f->far; i++) {
@@ -306,6 +327,43 @@ static int join(struct from *f)
 	return 0;
 }
 
+/* Its lines are done in the order of the path, so the last is found there. */
+static int refuse_line(const struct from *f)
+{
+	const struct interp_seg *s = segs_of(f->b);
+	uint32_t last = 0;
+
+	for (uint32_t i = 0; i < f->b->segs.n; i++)
+		if (s[i].length_mm > 0 && s[i].line > last)
+			last = s[i].line;
+	f->diag->line = f->o->line;
+	return interp_diag_say(f->diag, "nothing moves in line %u or behind it; "
+			       "a line up to %u", f->o->line, last);
+}
+
+static int find_place(struct from *f)
+{
+	const struct interp_seg *s = segs_of(f->b);
+	struct interp_build_entry *e = f->entry;
+	uint32_t at;
+
+	e->length_mm = f->b->length_mm;
+	if (!f->o->line) {
+		f->far = find_far(f->b, f->o->far_mm);
+		e->far_mm = f->o->far_mm;
+		e->line = s[f->far].line;
+		return 0;
+	}
+	at = find_line(f->b, f->o->line);
+	if (!at || s[at].s_mm >= f->b->length_mm)
+		return refuse_line(f);
+	/* A positioning motion is not followed: the way in leads to its end. */
+	f->far = is_positioning(&s[at]) ? at : at - 1;
+	e->far_mm = s[at].s_mm;
+	e->line = s[at].line;
+	return 0;
+}
+
 int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
 		      struct interp_build_entry *ret, struct interp_diag *diag)
 {
@@ -314,16 +372,20 @@ int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
 	int err = interp_build_flush(b, diag);
 
 	*ret = (struct interp_build_entry) { .npassed = 0 };
+	diag->column = 1;
 	if (err < 0)
 		return err;
-	f.far = find_far(b, o->far_mm);
+	err = find_place(&f);
+	if (err < 0)
+		return err;
 	f.last = find_last(b, f.far);
 	err = check(&f);
 	if (err < 0)
 		return err;
 	s = segs_of(b);
-	ret->line = s[f.far].line;
 	ret->from_mm = s[f.last].s_mm + s[f.last].length_mm;
+	for (size_t i = f.last + 1; !ret->next_line && i < b->segs.n; i++)
+		ret->next_line = s[i].length_mm > 0 ? s[i].line : 0;
 	entry_of(&f, ret->entry_mm);
 	err = make_way(&f);
 	forget_all(&f);

@@ -8,13 +8,13 @@ import { whyNot } from "./can";
 import { duration, moment, number } from "./format";
 import { link } from "./link";
 import { fitName, ownLines, unitOf } from "./names";
-import { Card, Key, PressKey, Sheet, act } from "./parts";
+import { Card, Key, NumberField, PressKey, Sheet, act } from "./parts";
 import { PathView } from "./pathview";
 import { say, useAsk, usePages } from "./use";
 import { jobWord, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
-interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string }
+interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string }
 interface Job { n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; jumps: number; retracts: number; shorts: number; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
 
 const EDITOR_MAX = 2 << 20, FILE_MAX = 64 << 20;
@@ -61,13 +61,13 @@ async function check(): Promise<void> {
 export async function takeFile(f: File): Promise<void> {
 	if (f.size > FILE_MAX) { say(t("jobs.toolong"), true); return; }
 	const short = f.size <= EDITOR_MAX;
-	put({ name: fitName(f.name), text: short ? ownLines(await f.text()) : "", file: short ? null : f, checked: null, busy: "" });
+	put({ name: fitName(f.name), text: short ? ownLines(await f.text()) : "", file: short ? null : f, checked: null, busy: "", line: "" });
 	await check();
 }
 
 /** G code that a form made: checked, then sent. */
 export async function sendText(name: string, text: string, start: boolean): Promise<boolean> {
-	const d: Draft = { name, text, file: null, checked: null, busy: "" };
+	const d: Draft = { name, text, file: null, checked: null, busy: "", line: "" };
 	try {
 		const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(name)}`, new Blob([text]));
 		if (c.ok) return await send(d, start);
@@ -83,9 +83,9 @@ async function send(d: Draft, start: boolean): Promise<boolean> {
 	const progress = (share: number) => { if (draft) put({ ...draft, busy: t("jobs.sending", { share: Math.round(share * 100) }) }); };
 	try {
 		// Held first, so that what starts it is the press of a person.
-		const a = await link.post<Sent>(`/api/jobs?hold=1&name=${encodeURIComponent(d.name)}`, d.file ?? new Blob([d.text]), progress);
+		const a = await link.post<Sent>(`/api/jobs?hold=1&name=${encodeURIComponent(d.name)}&line=${Number(d.line) || 0}`, d.file ?? new Blob([d.text]), progress);
 		if (a.code !== 0) { say(a.reason ?? `${a.found}; ${a.wanted}`, true); if (draft) put({ ...draft, busy: "" }); return false; }
-		say(t("jobs.sent", { name: d.name }));
+		say(d.line ? a.reason ?? "" : t("jobs.sent", { name: d.name }));
 		if (start) await begin(a.job as string);
 	} catch (e) {
 		say(broken(e), true);
@@ -140,6 +140,7 @@ function New(): JSX.Element {
 	}, [d]);
 	if (!d) return <Card title={t("jobs.new")} class="dropzone"><p class="calm">{t("jobs.drop")}</p>{choose}</Card>;
 	const c = d.checked, why = c && !c.ok ? t("jobs.checkfirst") : d.busy || !c ? t("jobs.checking") : whyNot("send");
+	const line = d.line && !/^[1-9]\d{0,8}$/.test(d.line.trim()) ? t("jobs.line.wanted") : "";
 	return <Card title={d.name} class="draft" right={<div class="keys">{choose}<Key class="quiet" onPress={() => put(null)}>{t("close")}</Key></div>}>
 		<div class="draft-grid">
 			{d.file ? <p class="calm">{t("jobs.large")}</p> : <Editor draft={d} error={c && !c.ok ? c : null} />}
@@ -150,8 +151,9 @@ function New(): JSX.Element {
 			{!d.busy && c?.ok && <p class="good">{t("jobs.ok", { lines: c.lines ?? 0, mm: number(c.length ?? 0, 2) })} {t("jobs.sum", { cut: number(c.cut ?? 0, 2), rapid: number(c.rapid ?? 0, 2) })}</p>}
 			{!d.busy && c && !c.ok && <div class="refusal"><b>{c.line > 0 ? t("jobs.errorat", { line: c.line, column: c.column }) : c.where}</b><p>{c.found}</p><p><i>{t("jobs.accepted")}:</i> {c.wanted}</p></div>}
 		</div>
-		<div class="keys end"><Key id="send" why={why} onPress={() => void send(d, false).then((ok) => { if (ok) put(null); })}>{t("jobs.send")}</Key>
-			<PressKey id="sendstart" class="primary" why={why || (link.state.loaded ? t("no.loaded") : "")} onPress={() => void send(d, true).then((ok) => { if (ok) put(null); })}>{t("jobs.sendstart")}</PressKey></div>
+		<div class="keys end"><NumberField id="fromline" label={t("jobs.line")} value={d.line} onInput={(line) => put({ ...d, line })} />
+			<Key id="send" why={why || line} onPress={() => void send(d, false).then((ok) => { if (ok) put(null); })}>{t("jobs.send")}</Key>
+			<PressKey id="sendstart" class="primary" why={why || line || (d.line ? t("jobs.line.look") : link.state.loaded ? t("no.loaded") : "")} onPress={() => void send(d, true).then((ok) => { if (ok) put(null); })}>{t("jobs.sendstart")}</PressKey></div>
 	</Card>;
 }
 

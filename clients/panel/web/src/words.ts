@@ -87,6 +87,7 @@ export const en = {
 
 	"jobs.drop": "Drop a program anywhere on this page", "jobs.choose": "Choose a file",
 	"jobs.new": "New program", "jobs.queue": "Queue", "jobs.history": "History",
+	"jobs.line": "Begin at line", "jobs.line.wanted": "A line of the program: 1, 2, 3 \u2026", "jobs.line.look": "Send it first, and look which way it will go in.",
 	"jobs.check": "Check", "jobs.checking": "Checking\u2026", "jobs.send": "Send",
 	"jobs.sendstart": "Send and start", "jobs.ok": "Understood: {lines} lines, {mm} mm of path.",
 	"jobs.errorat": "Line {line}, column {column}", "jobs.toerror": "Go to line {line}",

@@ -76,6 +76,7 @@ export const zh: Record<Word, string> = {
 
 	"jobs.drop": "把程序拖到页面任意处", "jobs.choose": "选择文件", "jobs.new": "新程序",
 	"jobs.queue": "队列", "jobs.history": "历史", "jobs.check": "检查", "jobs.checking": "正在检查…",
+	"jobs.line": "从第几行开始", "jobs.line.wanted": "程序的行号:1、2、3……", "jobs.line.look": "请先发送,并查看它从哪条路径进入。",
 	"jobs.send": "发送", "jobs.sendstart": "发送并启动", "jobs.ok": "程序可用:{lines} 行,路径 {mm} mm。",
 	"jobs.errorat": "第 {line} 行第 {column} 列", "jobs.toerror": "到第 {line} 行", "jobs.accepted": "可接受的写法",
 	"jobs.name": "名称", "jobs.state": "状态", "jobs.time": "用时", "jobs.depth": "深度", "jobs.ended": "结束于",

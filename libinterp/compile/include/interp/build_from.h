@@ -2,7 +2,8 @@
 /*
  * build_from.h - begin a program at a place inside it
  *
- * After a power cut the job has to go on where it was.  The electrode is first
+ * After a power cut the job has to go on where it was; and an operator may name
+ * a line or a place from which a program is to be cut.  The electrode is first
  * positioned to the end of the last positioning motion before that place, which
  * is off the work: along one axis out of the work, over, and along the same
  * axis in.  Then it follows the program's own path.  The ground up to the place
@@ -28,6 +29,10 @@
 #define INTERP_PASSED_MAX	16
 
 struct interp_build_from {
+	uint32_t line;			/* the place: where this line of the
+					 * text begins, when it is done for the
+					 * first time; if nothing is done in
+					 * it, the next one; 0: far_mm */
 	double far_mm;			/* the place: along the path of the
 					 * whole program */
 	double now_mm[INTERP_NAXES];	/* where the axes stand */
@@ -45,6 +50,11 @@ void interp_build_set(struct interp_build *b, uint32_t cond, uint32_t field,
 /* What became of it. */
 struct interp_build_entry {
 	uint32_t line;			/* of the place */
+	uint32_t next_line;		/* the first that moves behind the way
+					 * in */
+	double far_mm;			/* the place, along the path of ... */
+	double length_mm;		/* ... and the length of the whole
+					 * program */
 	double entry_mm[INTERP_NAXES];	/* where it comes in */
 	double from_mm;			/* that point, along the path of the
 					 * whole program ... */

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* again_kept.h - what is kept of a job that does not begin at its beginning */
+#ifndef JOBS_AGAIN_KEPT_H
+#define JOBS_AGAIN_KEPT_H
+
+#include "checkpoint.h"
+
+/* Where a job begins or goes on; kept in the store. */
+struct again {
+	struct checkpoint_base base;	/* places in mm of the whole program */
+	double from_mm, way_mm;		/* as in interp/build_from.h; the
+					 * program of this job; 0, 0: not made */
+	uint32_t line;			/* its sender named this line ... */
+	double place_mm;		/* ... or this place; 0, 0: none, it
+					 * was interrupted */
+	uint32_t instance;		/* of the edmd whose axes an operator
+					 * answered for; 0: nobody did */
+};
+
+/** again_whole() - @s of a job that goes on as @a says, as if it had never been
+ *  interrupted: place, length and sums. */
+void again_whole(const struct again *a, struct shm_snapshot *s);
+
+#endif /* JOBS_AGAIN_KEPT_H */

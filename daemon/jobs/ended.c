@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* ended.c - a job is over: what is written of it, and told */
+#include "again.h"
+#include "jobs.h"
+
+/* With its totals, as far as they are known. */
+void queue_record(struct jobs *j, enum job_state state, const char *reason)
+{
+	struct shm_snapshot whole = j->queue.snap;
+	const struct shm_snapshot *s = &whole;
+	const double period_s = (double)s->period_ns / 1e9;
+	static struct again a;
+
+	/* Of an interrupted one interrupt.c has put them together. */
+	if (state != JOB_INTERRUPTED &&
+	    again_read(j, j->queue.job.n, &a) == 0)
+		again_whole(&a, &whole);
+	tally_end(j, s, state != JOB_INTERRUPTED);
+	j->queue.job.state = state;
+	store_end(j->store, j->queue.job.n, &(struct store_end) {
+		.state = state,
+		.reason = reason,
+		.now_us = jobs_utime(),
+		.place_mm = s->far_mm,
+		.length_mm = s->length_mm,
+		.depth_mm = j->queue.depth_mm,
+		.job_s = (double)s->job_cycles * period_s,
+		.erode_s = (double)s->erode_cycles * period_s,
+		.energy_j = s->energy_j,
+		.jumps = s->jumps,
+		.retracts = s->retracts,
+		.shorts = s->shorts,
+		.arcs = s->arcs,
+	});
+}
+
+void queue_end(struct jobs *j, enum job_state state, const char *reason)
+{
+	struct queue *q = &j->queue;
+
+	queue_record(j, state, reason);
+	queue_recount(j);
+	q->ended = SHM_OUTCOME_NONE;
+	jobs_note(j, &(struct jobs_note) {
+		.kind = state == JOB_INTERRUPTED ? "interrupted" : "ended",
+		.job = q->job.id,
+		.outcome = store_state_name(state),
+		.place_mm = q->snap.place_mm,
+	}, "job %s %s%s%s", q->job.name, store_state_name(state),
+		  *reason ? ": " : "", reason);
+	if (state == JOB_DONE)
+		return;
+	if (q->behind > 0)
+		queue_wait(j);
+	else
+		queue_go(j);
+}

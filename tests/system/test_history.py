@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the history tells of a job: conditions, faults, energy, trail."""
+
+import json
+
+import pytest
+import rig
+from test_power import die
+from test_tech import JOB, MACHINE, TABLE, running
+
+SUMS = ("job_s", "erode_s", "jumps", "retracts", "shorts", "arcs")
+
+
+@pytest.fixture
+def shop(tmp_path):
+    m = rig.Machine(tmp_path, MACHINE)
+    (tmp_path / "shop.tech").write_text(TABLE)
+    m.start()
+    yield m
+    m.close()
+    assert m.sweep() == [], "left in /dev/shm"
+
+
+def conditions_add_up(job):
+    for key in SUMS:
+        total = sum(c[key] for c in job["conditions"])
+        assert total == pytest.approx(job[key], abs=1e-6), key
+
+
+def trail(c, job):
+    a = c.ask("trail", job)
+    assert a.code == 0, a.reason
+    return json.loads(a.body)
+
+
+def test_conditions_have_their_times_and_add_up(shop):
+    c = running(shop)
+    job = c.job_where("job", "done")
+    by = {x["condition"]: x for x in job["conditions"]}
+    assert set(by) - {""} == {"C120", "C100"}
+    # Each cuts 2 mm at 1 mm/s; a look every 20 ms may come late.
+    assert by["C120"]["job_s"] > 0.5 and by["C100"]["job_s"] > 0.5
+    conditions_add_up(job)
+    # The power was never on.
+    assert job["energy_j"] == 0
+    assert job["faults"] == []
+    assert job["first_us"] == job["begun_us"] > job["submitted_us"]
+    listed = json.loads(c.ask("history").body)
+    assert listed[0]["conditions"] == job["conditions"]
+
+
+def test_a_fault_has_its_place_and_line(shop):
+    c = running(shop)
+    assert c.ask("estop").code == 0
+    job = c.job_where("job", "fault")
+    assert [f["fault"] for f in job["faults"]] == ["e-stop"]
+    assert job["faults"][0]["line"] == 2
+    assert job["faults"][0]["place_mm"] == pytest.approx(job["path_mm"])
+    assert c.ask("reset").code == 0 and c.ask("start").code == 0
+    job = c.job_where("job", "done")
+    assert len(job["faults"]) == 1
+    conditions_add_up(job)
+
+
+def test_the_sums_of_a_resumed_job_are_those_of_all_its_parts(shop):
+    c = running(shop)
+    last = c.status_where(lambda s: s.place_mm > 2.3)
+    first = c.job("job")["first_us"]
+    die(shop)
+    shop.start()
+    c.status_where(lambda s: s.interrupted == "job", 10)
+    assert c.ask("resume", "job", text="XYZABCUV").code == 0
+    c.job_where("job", "ready")
+    assert c.ask("start").code == 0
+    job = c.job_where("job", "done", 60)
+    conditions_add_up(job)
+    assert job["job_s"] > last.job_s
+    assert job["first_us"] == first < job["begun_us"]
+    points = trail(c, "job")["points_um"]
+    places = [p[3] for p in points]
+    assert places == sorted(places) and places[-1] == 4000
+    # From the beginning, not only from where it went on.
+    assert places[0] < 2000
+
+
+def test_an_interrupted_job_that_is_removed_keeps_what_it_cut(shop):
+    c = running(shop)
+    die(shop)
+    shop.start()
+    c.status_where(lambda s: s.interrupted == "job", 10)
+    before = c.job("job")
+    assert before["job_s"] > 0
+    assert c.ask("remove", "job").code == 0
+    after = c.job("job")
+    assert after["state"] == "stopped" and "removed" in after["reason"]
+    assert after["job_s"] == before["job_s"]
+    assert after["path_mm"] == before["path_mm"]
+
+
+def test_a_service_that_was_away_loses_no_sum(shop):
+    c = running(shop)
+    shop.kill("jobs")
+    shop.start_jobs()
+    job = c.job_where("job", "done", 20)
+    conditions_add_up(job)
+    assert {x["condition"] for x in job["conditions"]} - {""} <= {
+        "C120", "C100"}
+
+
+def test_the_trail_is_the_path_that_was_gone(shop):
+    c = running(shop, b"G21 G90\nG1 X1 F120\nY1\nX0\nY0\nM30\n")
+    c.job_where("job", "done")
+    points = trail(c, "job")["points_um"]
+    assert points[-1][:4] == [0, 0, 0, 4000]
+    assert max(p[0] for p in points) == pytest.approx(1000, abs=100)
+    assert max(p[1] for p in points) == pytest.approx(1000, abs=100)
+    assert trail(c, "job")["retracts_um"] == []
