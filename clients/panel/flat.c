@@ -153,8 +153,8 @@ static int steps_of(const struct walk *w, const struct interp_seg *s)
 }
 
 /* One side of a couple: a line, or an arc about its centre. */
-static void side_at(const struct interp_arc *arc, double t, const double from[2],
-		    const double to[2], double ret[2])
+static void side_at(const struct interp_arc *arc, double t,
+		    const double from[2], const double to[2], double ret[2])
 {
 	const double r = arc->r_mm + t * arc->dr_mm;
 	const double angle = arc->theta + t * arc->sweep;

@@ -566,8 +566,8 @@ static int take(struct request *r, const char *path)
 	if (!r->route) {
 		asset = assets_find(r->panel->assets, path);
 		if (!get || !asset)
-			return answer_refusal(r, get ? 404 : 405, "nothing here",
-					     "/");
+			return answer_refusal(r, get ? 404 : 405,
+					      "nothing here", "/");
 		if (!http_is_ours(r->panel, r->wsi, false))
 			return answer_refusal(r, 403, "another name",
 					     "an address of [panel] names");

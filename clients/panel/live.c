@@ -229,8 +229,9 @@ static void fill_sums(const struct live *l, json_t *to)
 	json_object_set_new(to, "tookMaxUs",
 			    json_integer(s->took_max_ns / 1000));
 	json_object_set_new(to, "periodUs", json_integer(s->period_ns / 1000));
-	json_object_set_new(to, "jobS", number((double)s->job_cycles *
-					       (double)s->period_ns / 1e9, 0.1));
+	json_object_set_new(to, "jobS",
+			    number((double)s->job_cycles *
+				   (double)s->period_ns / 1e9, 0.1));
 }
 
 void live_fill(struct live *l, json_t *to)

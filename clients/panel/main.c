@@ -213,7 +213,8 @@ static int serve(struct panel *p)
 	lws_set_log_level(LLL_ERR, NULL);
 	err = open_parts(p);
 	if (err == 0) {
-		fprintf(stderr, SD_INFO "edm-panel: machine %s at %s://%s:%d/\n",
+		fprintf(stderr,
+			SD_INFO "edm-panel: machine %s at %s://%s:%d/\n",
 			p->config.name, p->tls ? "https" : "http",
 			p->config.panel.address, (int)p->config.panel.port);
 		sd_notify(0, "READY=1");

@@ -67,7 +67,8 @@ static const struct cmdline_row work_rows[] = {
 
 static const struct cmdline work_table = {
 	.program = PROGRAM,
-	.head = "Usage: edm-panel --work WHAT ...; the panel calls it itself\n\n",
+	.head =
+"Usage: edm-panel --work WHAT ...; the panel calls it itself\n\n",
 	.tail = "", .row = work_rows,
 	.nrows = sizeof(work_rows) / sizeof(work_rows[0]), .column = 24,
 };

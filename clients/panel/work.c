@@ -47,7 +47,8 @@ static json_t *three(const double v[3])
 
 static void put_head(const struct flat *f, const struct interp_program *p)
 {
-	json_t *o = json_pack("{s:b,s:i,s:i,s:f,s:f,s:f,s:f,s:b,s:o,s:o,s:o,s:s}",
+	json_t *o = json_pack(
+		"{s:b,s:i,s:i,s:f,s:f,s:f,s:f,s:b,s:o,s:o,s:o,s:s}",
 		"ok", 1, "points", (int)f->n, "lines", (int)p->head->lines,
 		"length", p->head->length_mm, "cut", f->cut_mm, "rapid",
 		f->rapid_mm, "tolerance", f->tolerance_mm, "upper",
