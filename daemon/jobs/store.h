@@ -165,7 +165,9 @@ int store_give_up(struct store *s, uint32_t n, const char *reason,
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
 /** store_interrupt() - @at: its checkpoint, hex, for store_resume_at(). */
 int store_interrupt(struct store *s, uint32_t n, const char *at);
-/** store_again() - the interrupted job @n is queued again, and has not begun. */
+/**
+ * store_again() - the interrupted job @n is queued again, and has not begun.
+ */
 int store_again(struct store *s, uint32_t n);
 /** store_interrupted() - the job that was interrupted last.  0 or -ENOENT. */
 int store_interrupted(struct store *s, struct store_job *ret);

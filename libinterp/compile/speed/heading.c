@@ -62,8 +62,9 @@ static uint32_t column(const struct interp_program *p, uint32_t axis)
 }
 
 /* At the angle @turned on: along the circle, and outward as it grows. */
-static void tangent(const struct interp_program *p, const struct interp_arc *arc,
-		    double turned, double length_mm, struct heading *h)
+static void tangent(const struct interp_program *p,
+		    const struct interp_arc *arc, double turned,
+		    double length_mm, struct heading *h)
 {
 	const double r = arc->r_mm + arc->dr_mm * turned / arc->sweep;
 	const double angle = arc->theta + turned;
@@ -83,7 +84,8 @@ static void bend(struct headings *h, const struct interp_arc *arc,
 			     length_mm;
 
 	/* Of two, the one that is the sooner too fast: v*v*share^2/r. */
-	if (h->bend_mm > 0 && h->share * h->share * r > share * share * h->bend_mm)
+	if (h->bend_mm > 0 &&
+	    h->share * h->share * r > share * share * h->bend_mm)
 		return;
 	h->bend_mm = r;
 	h->share = share;

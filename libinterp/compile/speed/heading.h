@@ -16,8 +16,10 @@ struct heading {
 
 struct headings {
 	struct heading first, last;
-	double bend_mm;			/* smallest radius on the way; 0: straight */
-	double share;			/* of the path's speed, round that bend */
+	double bend_mm;			/* smallest radius on the way; 0:
+					 * straight */
+	double share;			/* of the path's speed, round that
+					 * bend */
 };
 
 /* A program, and what is the same for all of its segments. */
