@@ -2,29 +2,28 @@
 /*
  * node.c - how fast a node may be passed
  *
- * The ends of lines are rounded: to a pulse, or to the decimals of the program
- * that wrote them.  On short lines this rounding turns the direction at a node
- * by more than the curve does.  No axis follows anything that lies within a
- * rounding.  So what a rounding can cause does not count as a change.  Turns
- * are measured between chords of some length, minus what a rounding of their
- * ends can turn them by.  What a rounding hides on short chords is found on
- * longer ones.
+ * The ends of lines are rounded: to a pulse, or to the decimals of whoever wrote
+ * them.  On short lines that turns the way from node to node by more than the
+ * curve does.  No axis follows what lies within a rounding, so what a rounding
+ * can do is no change: turns are taken from chords of some length, less what a
+ * rounding of their ends can turn them by, and what that hides on short chords
+ * is found on longer ones.
  */
 #include "speed/pass.h"
 
 #include <math.h>
 
-/* Nodes that turn by less are on a line: (2*sin(phi/2))^2. */
+/* Nodes turned by less are on a line: (2*sin(phi/2))^2. */
 #define STRAIGHT	1e-12
 
-/* of the windows, to see the direction of a line itself */
+/* Of the windows: to see a line's own way. */
 #define AROUND		1
 
-/* Longer lines have no curve beside the one that their corners show. */
+/* Longer lines have no curve that their corners do not have. */
 #define LONG		5
 
-/* If all of a turn but this share is more than a rounding, a wider window shows
- * no more. */
+/* Where all but this of a turn is more than a rounding, no wider window says
+ * more. */
 #define CLEAR		0.02
 
 static double larger(double a, double b)
@@ -37,7 +36,7 @@ static double smaller(double a, double b)
 	return a < b ? a : b;
 }
 
-/* The greatest speed around a bend, if the axes have so much acceleration. */
+/* The fastest round a bend, where the axes give so much. */
 double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3)
 {
 	const double v = sqrt(a_mm_s2 * r_mm), jrr = j_mm_s3 * r_mm * r_mm;
@@ -51,28 +50,27 @@ bool pass_is_short(const struct pass *w, uint32_t i)
 }
 
 /*
- * How the direction changes at a node.  If both lines are short, a rounding of
- * their ends changes it as well.  So much does not count as a change.
+ * How a way changes at a node.  Where both its lines are short, a rounding of
+ * their ends changes it as well: by as much as that can, it has not changed.
  */
 struct change {
 	const struct heading *a, *b;	/* before and behind */
-	double d[INTERP_NAXES];		/* of the rate of each column; >= 0 */
+	double d[INTERP_NAXES];		/* of each column's rate; >= 0 */
 };
 
-/* For a corner: a change that is twice as much as a rounding counts
- * completely. */
+/* Of a corner: what is twice as much as a rounding is a change, all of it. */
 static double heard(double d, double noise)
 {
 	return d >= 2 * noise ? d : 2 * larger(d - noise, 0);
 }
 
-/* For a curve: only what is certain counts.  A wider window is more certain. */
+/* Of a curve: what is sure.  A wider window is surer. */
 static double sure(double d, double noise)
 {
 	return larger(d - noise, 0);
 }
 
-/* @per_mm: 1 / the length before the node, and 1 / the length behind it. */
+/* @per_mm: 1 by the length before, and 1 by the one behind. */
 static void change_of(const struct pass *w, double per_mm,
 		      double (*of)(double, double), struct change *c)
 {
@@ -83,8 +81,7 @@ static void change_of(const struct pass *w, double per_mm,
 		along = both >> j & 1 ? larger(along, w->tol[j]) : along;
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double a = c->a->rate[j], b = c->b->rate[j];
-		/* Of what lies beside the path, the rounding of the path counts
-		 * too. */
+		/* Of what is beside the path, the path's is rounded, too. */
 		const double by = both >> j & 1 ? 0 :
 				  along * larger(fabs(a), fabs(b));
 
@@ -92,7 +89,7 @@ static void change_of(const struct pass *w, double per_mm,
 	}
 }
 
-/* The columns that make both lengths: a corner is passed like an arc. */
+/* The columns both lengths are made of: a corner as an arc. */
 static double corner(const struct pass *w, const struct change *c)
 {
 	const struct heading *a = c->a, *b = c->b;
@@ -108,8 +105,7 @@ static double corner(const struct pass *w, const struct change *c)
 		turn = 2;
 	if (turn < STRAIGHT)
 		return INFINITY;
-	/* There is no branch here, because corners are like random. x/0 is no
-	 * limit. */
+	/* No branch in here: corners are as good as random.  x/0 is no limit. */
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double is = (double)(any >> j & 1);
 		const double d = is * c->d[j];
@@ -124,7 +120,7 @@ static double corner(const struct pass *w, const struct change *c)
 	return pass_round_mm_s(larger(r, w->corner_mm), acc * sqrt(turn), jerk);
 }
 
-/* The other columns: their speed makes a step. */
+/* The others: their speed steps. */
 static double step(const struct pass *w, const struct change *c)
 {
 	const uint32_t both = c->a->along & c->b->along;
@@ -141,7 +137,7 @@ static double step(const struct pass *w, const struct change *c)
 /* -- Of short lines ------------------------------------------------------- */
 
 /* From node @from to @to: the length in the columns of ret->along, and the
- * rates of all columns by that length. */
+ * rates of all by it. */
 static double chord(const struct pass *w, uint32_t from, uint32_t to,
 		    struct heading *ret)
 {
@@ -180,7 +176,7 @@ struct bow {
 	double per_mm;			/* as change_of() has it */
 };
 
-/* Return: false if there is no way to one of the sides. */
+/* Return: false if there is no way to a side. */
 static bool bow_of(const struct pass *w, uint32_t i, const struct around *k,
 		   uint32_t along, struct bow *ret)
 {
@@ -194,8 +190,7 @@ static bool bow_of(const struct pass *w, uint32_t i, const struct around *k,
 	return la > 0 && lb > 0;
 }
 
-/* The speed at which the axes can follow a bow.  @d is the change of each
- * column's rate. */
+/* As fast as the axes follow a bow; @d is what each column's rate changes by. */
 static double bow_mm_s(const struct pass *w, const struct bow *k,
 		       const double d[INTERP_NAXES])
 {
@@ -203,8 +198,7 @@ static double bow_mm_s(const struct pass *w, const struct bow *k,
 
 	for (uint32_t j = 0; j < w->n; j++) {
 		if (!(k->a.along >> j & 1)) {
-			/* A column that turns beside the path is limited by
-			 * itself. */
+			/* One that turns beside the path, by its own. */
 			if (d[j] * k->mm > w->tol[j])
 				v = smaller(v, pass_round_mm_s(k->mm / d[j],
 							  w->a_mm_s2[j],
@@ -224,7 +218,7 @@ static double bow_mm_s(const struct pass *w, const struct bow *k,
 				     acc, jerk));
 }
 
-/* Does a rounding hide a share of a change that counts? */
+/* Does a rounding hide a share of any change that counts? */
 static bool is_clear(const struct pass *w, const struct change *c,
 		     const double all[INTERP_NAXES])
 {
@@ -236,10 +230,9 @@ static bool is_clear(const struct pass *w, const struct change *c,
 }
 
 /*
- * Short lines may turn by any small amount at each node: their curve is that of
- * the chords to both sides.  A turn that is less than a rounding over one
- * window shows over a wider one, if it goes on.  @most: no need to look for
- * more speed than this.
+ * Short lines turn by as little as one likes at each node: their curve is that
+ * of the chords to both sides.  What is less than a rounding over one window
+ * shows over a wider one, if it goes on.  @most: faster needs no look.
  */
 static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 {
@@ -268,8 +261,7 @@ static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 	return v;
 }
 
-/* Look near the node, but not over a long line behind a short one: a long line
- * has its own turn. */
+/* Near by, but not over a long line behind a short one: it has its own turn. */
 static struct around look_near(struct pass *w, uint32_t i)
 {
 	const struct interp_seg *s = w->segs;
@@ -284,8 +276,7 @@ static struct around look_near(struct pass *w, uint32_t i)
 	return k;
 }
 
-/* The turn of a node between lines; between longer chords, if the lines are
- * short. */
+/* The turn of a node between lines: of longer chords, if they are short. */
 static double turn(struct pass *w, uint32_t last, uint32_t i,
 		   const struct change *change)
 {
@@ -306,8 +297,7 @@ static double turn(struct pass *w, uint32_t last, uint32_t i,
 	return smaller(corner(w, change), step(w, change));
 }
 
-/* The node in front of segment @i; @last is the segment before it that
- * moves. */
+/* In front of segment @i; @last is the one before that moves. */
 double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		      const struct heading *a, const struct heading *b)
 {
@@ -325,9 +315,8 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 }
 
 /*
- * On a short line the share of an axis is rounded.  If the share is the same as
- * on the ways around the line, but for a rounding, then the share of those ways
- * is used.
+ * On a short line an axis whose share of the way is that of the ways around it,
+ * but for a rounding, has the share it has there.
  */
 static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
 		       double ret[INTERP_NAXES])
@@ -358,7 +347,7 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		const bool bends = w->segs[i].kind != INTERP_LINE && ends > 0 &&
 				   (h->first.along | h->last.along) >> j & 1;
 
-		/* On its way it may go in the direction of the axis alone. */
+		/* On its way it may go all along the axis. */
 		ret[j] = bends ? larger(ends, larger(h->share, 1)) : ends;
 	}
 }
