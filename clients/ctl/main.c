@@ -157,8 +157,7 @@ static const struct cmdline_row rows[] = {
 	{ "from-place", "MM", CMDLINE_NUMBER, AT(from_mm), .min = 1e-6,
 	  .max = 1e9, .help =
 	  "submit: begin at this place of its path, and wait for start" },
-	{ "once", NULL, CMDLINE_FLAG, AT(once), .help =
-	  "watch: print one line" },
+	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: print one line" },
 	{ "every", "N", CMDLINE_CALL, .take = take_every, .help =
 	  "record: write one cycle of N; default: 1" },
 	{ "plot", "FILE", CMDLINE_WORD, AT(plot), .help =

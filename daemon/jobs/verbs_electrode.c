@@ -21,7 +21,7 @@ uint32_t electrode_held(struct jobs *j)
 	return (uint32_t)store_number(j->store, "electrode", 0);
 }
 
-/* -- KEY=VALUE ------------------------------------------------------------- */
+/* -- KEY=VALUE -------------------------------------------------------------- */
 
 struct key {
 	const char *name;
@@ -151,7 +151,7 @@ static int take_all(struct store_electrode *e, const char *text,
 	return err;
 }
 
-/* -- Verbs ----------------------------------------------------------------- */
+/* -- Verbs ------------------------------------------------------------------ */
 
 void electrode_list(struct jobs *j, const struct verb *v,
 		    const struct jobs_lcm_command *c)
