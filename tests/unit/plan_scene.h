@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * plan_scene.h - two bodies, a machine that moves one of them, and random
- * numbers
+ * plan_scene.h - two lumps, a machine that moves one of them, random numbers
  *
  * EDM_SEED repeats a run, EDM_RUNS makes it longer.
  */
