@@ -259,7 +259,7 @@ $(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) 
 	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
-	$(call link,-llcm -lsodium -ljansson $(LIBGPIOD) -lm)
+	$(call link,-llcm -lsodium -ljansson -larchive $(LIBGPIOD) -lm)
 
 $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -lm)

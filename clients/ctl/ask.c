@@ -3,6 +3,7 @@
  * ask.c - verbs that are one question and its answer
  */
 #include "ctl.h"
+#include "history.h"
 
 #include <errno.h>
 #include <math.h>
@@ -306,6 +307,7 @@ static void print_one(json_t *job)
 	       ctl_number_of(job, "depth_mm"), text,
 	       ctl_number_of(job, "jumps"), ctl_number_of(job, "retracts"),
 	       ctl_number_of(job, "shorts"), ctl_text_of(job, "sha256"));
+	history_print(job);
 	if (*ctl_text_of(job, "tech_sha256"))
 		printf("table      %s\n", ctl_text_of(job, "tech_sha256"));
 	json_array_foreach(json_object_get(job, "notes"), i, note)
@@ -346,25 +348,39 @@ int ctl_put_json(json_t *o)
 	return err ? EX_IOERR : 0;
 }
 
-/* Print all pages of a list: each begins after the last job of the previous
- * page. */
-static int list(struct ctl *c, const char *verb, const char *head,
-		void (*print)(json_t *job))
+int ctl_pages(struct ctl *c, const char *verb,
+	      int (*take)(void *arg, json_t *page), void *arg)
 {
 	struct talk_question q = { .verb = verb };
-	json_t *all = json_array(), *page = NULL;
+	json_t *page = NULL, *before;	/* q.job is a word of it */
 	size_t n;
 	int err;
 
 	do {
-		json_decref(page);
+		before = page;
 		page = NULL;
 		err = ctl_ask_json(c, &q, &page);
-		json_array_extend(all, page);
+		json_decref(before);
+		if (err == 0)
+			err = take(arg, page);
 		n = json_array_size(page);
 		q.job = ctl_text_of(json_array_get(page, n ? n - 1 : 0), "job");
 	} while (err == 0 && n > 0);
 	json_decref(page);
+	return err;
+}
+
+static int add_page(void *arg, json_t *page)
+{
+	return json_array_extend(arg, page) ? EX_SOFTWARE : 0;
+}
+
+static int list(struct ctl *c, const char *verb, const char *head,
+		void (*print)(json_t *job))
+{
+	json_t *all = json_array();
+	int err = ctl_pages(c, verb, add_page, all);
+
 	if (err == 0 && c->json)
 		err = ctl_put_json(all);
 	else if (err == 0)
@@ -380,7 +396,7 @@ int ctl_queue(struct ctl *c)
 		    "  SUBMITTED", print_queued);
 }
 
-int ctl_history(struct ctl *c)
+int ctl_ended(struct ctl *c)
 {
 	return list(c, "history",
 		    "JOB            NAME                     STATE    ENDED    "

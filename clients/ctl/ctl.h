@@ -26,6 +26,8 @@ struct ctl {
 	unsigned int every;		/* record: cycles; 0: not given */
 	const char *plot;
 	const char *pulses;		/* doctor: CHIP:LINE */
+	bool csv;			/* history */
+	const char *picture;		/* history: an SVG file */
 	bool until_end;
 	/* The verb, and what follows it. */
 	const char *verb;
@@ -67,11 +69,16 @@ int ctl_pulses(const char *line);
 int ctl_queue(struct ctl *c);
 int ctl_show(struct ctl *c);
 int ctl_history(struct ctl *c);
+
+/** ctl_ended() - the list of the jobs that have ended. */
+int ctl_ended(struct ctl *c);
+
 int ctl_identify(struct ctl *c);
 int ctl_status(struct ctl *c);
 int ctl_watch(struct ctl *c);
 int ctl_record(struct ctl *c);
 int ctl_latency(struct ctl *c);
+int ctl_support(struct ctl *c);
 
 struct shm_status;
 
@@ -103,6 +110,14 @@ int ctl_say(struct ctl *c, const struct talk_question *q);
 /** ctl_text_of(), ctl_number_of() - a member; "" and 0 if it is not there. */
 const char *ctl_text_of(json_t *o, const char *key);
 double ctl_number_of(json_t *o, const char *key);
+
+/**
+ * ctl_pages() - hand all pages of a list to @take, the last one empty: each
+ * begins after the last job of the page before.
+ * Return: an exit code; what @take returns, if it is not 0.
+ */
+int ctl_pages(struct ctl *c, const char *verb,
+	      int (*take)(void *arg, json_t *page), void *arg);
 
 /** ctl_unanswered() - print that no service answers. Return: EX_*. */
 int ctl_unanswered(const struct ctl *c, int err);

@@ -117,8 +117,10 @@ static const struct verb verbs[] = {
 	  "write every cycle to a trace file, until Ctrl-C" },
 	{ "latency", "[S]", ctl_latency, 1, 0, false, "",
 	  "print how late edmd woke, in the next S seconds or ever" },
-	{ "history", "", ctl_history, 0, 0, false, "",
-	  "print the jobs that have ended, newest first" },
+	{ "history", "[JOB]", ctl_history, 1, 0, false, "csv picture",
+	  "print the jobs that have ended, newest first; or one" },
+	{ "support", "[FILE]", ctl_support, 1, 0, false, "",
+	  "write one archive for who helps from afar; no secrets" },
 	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
 	  "who may command; by role" },
 	{ "electrode", "list|show N|add N|set N|remove N|use N [KEY=VALUE...]",
@@ -164,6 +166,10 @@ static const struct cmdline_row rows[] = {
 	  "record, identify: draw the result, .png or .svg" },
 	{ "pulses", "CHIP:LINE", CMDLINE_WORD, AT(pulses), .help =
 	  "doctor: measure how fast an output line is; it must be free" },
+	{ "csv", NULL, CMDLINE_FLAG, AT(csv), .help =
+	  "history: print a table for other programs" },
+	{ "picture", "FILE", CMDLINE_WORD, AT(picture), .help =
+	  "history: draw the way of one job, .svg" },
 	{ "until-end", NULL, CMDLINE_FLAG, AT(until_end), .help =
 	  "record: go on until the running job, or the next, ends" },
 };

@@ -8,13 +8,13 @@
 
 #include <float.h>
 
-/* Taken off the gap of two triangles, far more than their arithmetic is off. */
+/* Taken off the gap of two triangles: far more than its rounding error. */
 #define ROUNDING_MM	1e-9
 
 /* Directions in which a gap of two triangles is looked for. */
 #define BESIDE_STEPS	4
 
-/* Until s x + A x^2 / 2 is @gap > 0. */
+/* The time x at which s x + A x^2 / 2 reaches @gap, which is more than 0. */
 static double root(double gap, double s, double accel)
 {
 	double b;
@@ -25,8 +25,8 @@ static double root(double gap, double s, double accel)
 	return s > 0 ? 2 * gap / (s + b) : (b - s) / accel;
 }
 
-/* Until the gap along @n, a unit vector from the tool to the part, may be less
- * than is to be kept. */
+/* How long the gap along @n, a unit vector from the tool to the part, is
+ * enough. */
 static double time_along(const struct apart *a, const struct triangle *tool,
 			 const double n[3], double gap)
 {
@@ -47,8 +47,8 @@ static bool is_enough(const struct apart *a, const struct triangle *tool,
 	return time_along(a, tool, n, gap) >= a->time;
 }
 
-/* Over the plane of the part's triangle: along a wall that faces another it
- * mostly is. */
+/* Is the gap to the plane of the part's triangle enough?  Where two walls face
+ * each other it mostly is. */
 static bool is_over(const struct apart *a, const double plane[4],
 		    const struct triangle *tool)
 {
@@ -71,7 +71,7 @@ static void middle(const struct triangle *t, double ret[3])
 		ret[i] = (t->at[0][i] + t->at[1][i] + t->at[2][i]) / 3;
 }
 
-/* The way between the corners that are nearest along @v, as from @a to @b. */
+/* The vector between the corners of @a and @b that are nearest along @v. */
 static void nearest_along(const struct triangle *a, const struct triangle *b,
 			  const double v[3], double ret[3])
 {
@@ -87,9 +87,9 @@ static void nearest_along(const struct triangle *a, const struct triangle *b,
 }
 
 /*
- * A triangle that stands beside the other, not over it.  Any way v from one to
- * the other is a direction to measure the gap along; it is turned toward the
- * shortest by Frank and Wolfe's steps, and each costs a tenth of the distance.
+ * For a triangle that stands beside the other, not over it.  The gap can be
+ * measured along any vector v from one to the other.  The steps of Frank and
+ * Wolfe turn v toward the shortest one; a step costs a tenth of the distance.
  */
 static bool is_beside(const struct apart *a, const struct triangle *part,
 		      const struct triangle *tool)

@@ -2,8 +2,8 @@
 /*
  * apart.h - is a pair of triangles far enough apart, and for how long?
  *
- * Of most pairs this is seen without their distance: any direction in which
- * there is a gap between them will do.
+ * For most pairs the answer needs no distance: any direction in which there is
+ * a gap between them is enough.
  *
  * Units: mm; time is the block's parameter.  Any thread.
  */
@@ -16,13 +16,14 @@
 
 struct pose_rate;
 
-/* What is enough: a distance of least_mm; or, with a rate, that keep_mm is kept
- * for a time. */
+/* What is asked: without a rate, a distance of least_mm; with one, that
+ * keep_mm is kept for a time. */
 struct apart {
-	const struct pose_rate *rate;	/* NULL: distances are asked for */
-	double least_mm;		/* with a rate: nearer than that now is
-					 * not enough for any time; > keep_mm */
-	double keep_mm, rises, time;	/* rises: what is to be kept, by a unit of
+	const struct pose_rate *rate;	/* NULL: only the distance is asked */
+	double least_mm;		/* with a rate: a pair nearer than that
+					 * is refused; more than keep_mm */
+	double keep_mm, time;
+	double rises;			/* by so much keep_mm grows in a unit of
 					 * time */
 };
 

@@ -5,10 +5,11 @@
 #include "job.h"
 
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
-#define BAR	20
+#define BAR	12
 
 static volatile sig_atomic_t asked;
 
@@ -48,21 +49,53 @@ static double now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-void bar_show(const struct job *j, double share, const char *text)
+static struct {
+	uint32_t blocks;		/* 0: none yet */
+	double mm;
+} best;
+
+void bar_best(uint32_t blocks, double mm)
 {
-	static double last;
-	const double now = now_s();
-	char bar[BAR + 1];
+	best.blocks = blocks;
+	best.mm = mm;
+}
+
+/* Of the terminal.  A longer line could not be rewritten. */
+static int columns(void)
+{
+	struct winsize size;
+
+	if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) || size.ws_col < 30)
+		return 80;
+	return size.ws_col;
+}
+
+static void say_bar(double share, const char *text)
+{
+	char line[200], so_far[60] = "", bar[BAR + 1];
 	int full = (int)(share * BAR);
 
-	if (j->o->quiet || !isatty(STDERR_FILENO) || now - last < 0.1)
-		return;
-	last = now;
 	full = full < 0 ? 0 : full > BAR ? BAR : full;
 	for (int i = 0; i < BAR; i++)
 		bar[i] = i < full ? '=' : ' ';
 	bar[BAR] = '\0';
-	fprintf(stderr, "\r[%s] %3.0f %% %.100s\033[K", bar, share * 100, text);
+	if (best.blocks)
+		snprintf(so_far, sizeof(so_far), "; best: %u blocks, %.3f mm",
+			 best.blocks, best.mm);
+	snprintf(line, sizeof(line), "[%s] %3.0f %% %.80s%s", bar, share * 100,
+		 text, so_far);
+	fprintf(stderr, "\r%.*s\033[K", columns() - 1, line);
+}
+
+void bar_show(const struct job *j, double share, const char *text)
+{
+	static double last;
+	const double now = now_s();
+
+	if (j->o->quiet || !isatty(STDERR_FILENO) || now - last < 0.1)
+		return;
+	last = now;
+	say_bar(share, text);
 }
 
 void bar_end(const struct job *j)

@@ -20,14 +20,15 @@ void box_move(const struct box *in, const struct box_pose *pose,
 	for (int k = 0; k < 3; k++) {
 		const int l = (k + 1) % 3, m = (k + 2) % 3;
 
-		ret->spin[k] = wf[l] * ret->at.axis[m] - wf[m] * ret->at.axis[l];
+		ret->spin[k] = wf[l] * ret->at.axis[m] -
+			       wf[m] * ret->at.axis[l];
 		ret->go[k] = (float)(v[k] + turn[k]);
 		ret->off += fabsf(ret->go[k]) + fabsf(wf[k]) * in->half[3];
 	}
 	ret->off *= BOX_MARGIN;
 }
 
-/* Until s x + A x^2 / 2 is @gap. */
+/* The time x at which s x + A x^2 / 2 reaches @gap. */
 static float root(float gap, float s, float accel)
 {
 	float b;
@@ -40,8 +41,8 @@ static float root(float gap, float s, float accel)
 	return s > 0 ? 2 * gap / (s + b) : (b - s) / accel;
 }
 
-/* The greatest speed of the electrode's box toward the part's, along each of
- * three axes; @at: on which side of the part it is. */
+/* How fast the electrode's box comes nearer to the part's at most, along each
+ * of three axes; @at tells on which side of the part it is. */
 static box_v4 speed(const struct box_placed *tool, const box_v4 axis[3],
 		    box_v4 at)
 {
@@ -55,7 +56,7 @@ static box_v4 speed(const struct box_placed *tool, const box_v4 axis[3],
 	       box_reach(tool->spin, &tool->at.half, axis);
 }
 
-/* Along the way that leads past the gaps on three axes at once. */
+/* The time along the direction that joins the gaps on all three axes. */
 static float beside(const struct box_placed *tool, const box_v4 axis[3],
 		    box_v4 at, box_v4 gaps, const struct box_keep *keep)
 {

@@ -2,10 +2,11 @@
 /*
  * box.h - oriented boxes, and what the gap between two of them promises
  *
- * Boxes are in single precision, four numbers at a time: a walk of two trees
- * does little else than compare boxes.  Every bound is made smaller by more
- * than its arithmetic can be off (BOX_MARGIN), so that it stays a bound.
- * Centres are in double precision: what counts is the difference of two.
+ * A walk of two trees does little else than compare boxes, so boxes are in
+ * single precision and are computed four numbers at a time.  Each bound is made
+ * smaller by more than its rounding error (BOX_MARGIN), so that it stays a
+ * bound.  Centres are in double precision, because only the difference of two
+ * of them counts.
  *
  * Units: mm; time is the block's parameter.  Any thread.
  */
@@ -19,8 +20,8 @@
 typedef float box_v4 __attribute__((vector_size(16)));
 typedef int32_t box_i4 __attribute__((vector_size(16)));
 
-/* Of the sizes that go into a bound.  Each term of a bound is off by a few
- * times 2^-24 of them; this is 32 times that. */
+/* A share of the sizes that go into a bound.  Rounding makes each term of a
+ * bound wrong by a few times 2^-24 of them; this is 32 times 2^-24. */
 #define BOX_MARGIN	2e-6f
 
 struct box {
@@ -102,8 +103,8 @@ static inline void box_gaps(const struct box *part, const struct box *tool,
 		  box_reach(part->axis, &part->half, tool->axis);
 }
 
-/* The gaps on three axes together: boxes that stand beside each other on two
- * axes or three are farther apart than on any one. */
+/* The square of the distance that the gaps on three axes make together.  Boxes
+ * with gaps on two or three axes are farther apart than on any one of them. */
 static inline float box_beside2(box_v4 gaps)
 {
 	const box_v4 g = box_positive(gaps), sq = g * g;
@@ -144,17 +145,17 @@ void box_move(const struct box *in, const struct box_pose *pose,
 struct box_keep {
 	float mm;			/* to be kept now */
 	float rises;			/* more, by a unit of time */
-	float accel;			/* of the points, as in struct pose_rate */
+	float accel;			/* as in struct pose_rate */
 	float enough;			/* a longer time is not asked for */
 };
 
 /**
  * box_time() - for how long no point of @tool comes nearer to @part than @keep.
  *
- * What is in the electrode's box comes along n by at most s x + A x^2 / 2 in a
- * time x, where s is the greatest n . (v + w x p) in the box.  Until that is a
- * gap along n less @keep, the pair is not nearer than @keep.  Each axis gives
- * such a time, and the longest holds.
+ * In a time x, nothing in the electrode's box moves along n by more than s x +
+ * A x^2 / 2, where s is the greatest n . (v + w x p) in the box.  As long as
+ * this is less than the gap along n minus @keep, the pair is not nearer than
+ * @keep.  Each axis gives such a time, and the longest of them holds.
  * Return: it, or keep->enough as soon as it is known to be no less; 0: none.
  */
 float box_time(const struct box *part, const struct box_placed *tool,

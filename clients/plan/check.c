@@ -2,10 +2,10 @@
 /*
  * check.c - a whole way proved, or its first contact
  *
- * A dense program has thousands of blocks shorter than the room round the
- * electrode.  Of those no point goes farther than the sum of their ways, so one
- * distance covers many; only a block longer than the room left has a proof of
- * its own.
+ * A dense program has thousands of blocks that are shorter than the room round
+ * the electrode.  Over several of them no point moves farther than the sum of
+ * their ways, so one distance proves many blocks.  Only a block that is longer
+ * than the room that is left gets a proof of its own.
  */
 #include "check.h"
 
@@ -15,7 +15,8 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* The end pose's own distance less this is what the end zone comes down to. */
+/* In the end zone the clearance falls to the distance at the end pose, less
+ * this. */
 #define END_LESS_MM	0.005
 
 struct checking {
@@ -24,7 +25,7 @@ struct checking {
 	const struct clearance *c;
 	struct check_result *ret;
 	struct near_pair pair;		/* nearest at the node last looked at */
-	double room_mm;			/* round it, beyond what is to be kept */
+	double room_mm;			/* round it, over what is to be kept */
 };
 
 static struct clearance more(const struct clearance *c, double mm)
@@ -71,7 +72,7 @@ static void look(struct checking *k, uint32_t i, const struct block *b,
 	mm = near_distance(&k->j->bodies, &pose, &k->pair);
 	k->ret->queries++;
 	see(k, i, mm);
-	/* Round it all, not only here. */
+	/* The room is the same on all sides. */
 	k->room_mm = mm - c->mm - PROVE_EPS_MM;
 }
 
@@ -89,7 +90,8 @@ static bool prove_next(struct checking *k, uint32_t i, const struct block *b,
 		contact(k, i, b, &p, c);
 		return false;
 	}
-	/* A proof does not say how near it came; where it ends often is it. */
+	/* A proof does not say how near the block came.  Often that is its
+	 * end. */
 	block_pose(b, 1, &end, NULL);
 	k->pair = p.pair;
 	see(k, i, near_distance(&k->j->bodies, &end, &k->pair));
@@ -106,7 +108,7 @@ static bool check_next(struct checking *k, uint32_t i)
 	job_block(k->j, k->w, i, &b);
 	strays = job_strays_mm(k->w, i, &b);
 	k->ret->most_added_mm = fmax(k->ret->most_added_mm, strays);
-	/* What is added differs a little from block to block. */
+	/* What strays differs a little from block to block. */
 	if (b.way_mm + strays <= k->room_mm) {
 		k->room_mm -= b.way_mm;
 		return true;
@@ -176,10 +178,10 @@ int check_way(const struct job *j, const struct route *w,
 			return -EINTR;
 		}
 		check_next(&k, i);
-		if (i % 64)
+		if (i % 16)
 			continue;
-		snprintf(text, sizeof(text), "block %u of %u, least seen %.3f "
-			 "mm", i + 1, w->n - 1, ret->least_mm);
+		snprintf(text, sizeof(text), "proof: block %u of %u, %.3f mm",
+			 i + 1, w->n - 1, ret->least_mm);
 		bar_show(j, (double)i / w->n, text);
 	}
 	bar_end(j);
@@ -260,8 +262,9 @@ static int say_result(const struct job *j, const struct route *w,
 		return 1;
 	}
 	printf("proved     %u blocks keep %.3f mm%s, jumps and retracts along "
-	       "them too\n", w->n - 1, j->clear_mm,
-	       j->o->end_zone_mm > 0 ? " but in the end zone" : "");
+	       "them too%s\n", w->n - 1, j->clear_mm,
+	       j->o->end_zone_mm > 0 ? " but in the end zone" : "",
+	       w->beside ? "; not those beside them" : "");
 	printf("           %.4f mm more are kept for pulses and arcs\n",
 	       r->most_added_mm);
 	printf("least seen %.4f mm, line %u; %llu queries\n", r->least_mm,

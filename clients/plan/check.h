@@ -40,14 +40,16 @@ int check_clearance(const struct job *j, const double end[INTERP_NAXES],
 /**
  * check_block() - is the straight block from @from to @to proved to keep @c?
  *
- * What pulses stray and the meshes' chords are kept in addition.  @pair: as in
- * near_distance(); where not, the pair that is too near.
+ * It adds to @c what pulses may stray and the chord error of the meshes.
+ * @pair is as in near_distance(); if the answer is no, the pair that is too
+ * near.
  */
 bool check_block(const struct job *j, const double from[INTERP_NAXES],
 		 const double to[INTERP_NAXES], const struct clearance *c,
 		 struct near_pair *pair);
 
-/** check_say_left() - of the first contact, what is left of what is to be kept. */
+/** check_say_left() - how much of the clearance is left at the first
+ *  contact. */
 void check_say_left(const struct check_result *r, FILE *f);
 
 /** check_program() - --check. Return: 0 proved, 1 not; else sysexits. */

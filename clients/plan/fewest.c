@@ -73,13 +73,12 @@ bool fewest_keeps(struct fewest *f, uint32_t i, uint32_t k, double mm)
 	return ok;
 }
 
-static void show(const struct fewest *f, const char *what, uint32_t blocks,
-		 double share)
+static void show(const struct fewest *f, const char *what, double share)
 {
 	char text[100];
 
-	snprintf(text, sizeof(text), "%s: %u blocks so far, %llu tried", what,
-		 blocks, (unsigned long long)f->blocks);
+	snprintf(text, sizeof(text), "%s: %llu blocks tried", what,
+		 (unsigned long long)f->blocks);
 	bar_show(f->j, share, text);
 }
 
@@ -92,7 +91,7 @@ uint32_t fewest_greedy(struct fewest *f, double mm, uint32_t *ret)
 		uint32_t k = f->n - 1;
 
 		while (k > at && !fewest_keeps(f, at, k, mm)) {
-			show(f, "greedy", n, (double)at / f->n);
+			show(f, "greedy", (double)at / f->n);
 			k--;
 			if (bar_interrupted())
 				return UINT32_MAX;
@@ -147,7 +146,7 @@ static bool level(struct fewest *f, struct search *s, double mm, uint32_t from,
 		for (uint32_t k = end - 1; k > s->reached[i]; k--) {
 			if (bar_interrupted())
 				return false;
-			show(f, "fewest", 0, (double)i / to);
+			show(f, "fewest", (double)i / to);
 			if (s->before[k] == UINT32_MAX &&
 			    fewest_keeps(f, s->reached[i], k, mm))
 				reach(s, k, s->reached[i]);
@@ -168,8 +167,11 @@ uint32_t fewest_search(struct fewest *f, double mm, uint32_t most,
 	if (s.before && s.reached) {
 		memset(s.before, 0xff, f->n * sizeof(*s.before));
 		reach(&s, 0, 0);
-		for (uint32_t i = 0; i < most && !n && !bar_interrupted(); i++) {
+		for (uint32_t i = 0; i < most && !n; i++) {
 			const uint32_t to = s.nreached;
+
+			if (bar_interrupted())
+				break;
 
 			if (level(f, &s, mm, from, i + 1 == most))
 				n = trace_back(&s, f->n - 1, ret);

@@ -17,7 +17,7 @@
 
 struct fewest {
 	const struct job *j;
-	const struct clearance *c;	/* lent; its mm is asked with each call */
+	const struct clearance *c;	/* lent; each call gives its mm anew */
 	uint32_t n;
 	double (*q)[INTERP_NAXES];	/* own */
 	double lattice[INTERP_NAXES];

@@ -2,10 +2,10 @@
 /*
  * free.c - inner nodes off the path, by sequential linear programs
  *
- * At a pose of block k at time t each axis is off by (1 - t) d_k + t d_k+1, if
- * node k is moved by d_k.  A pair of triangles at distance g, with n from the
- * part to the electrode, then is at g + n . J d to the first order.  The least
- * of all those is made as large as it goes.
+ * If node k is moved by d_k, the axes at time t of block k move by d = (1 - t)
+ * d_k + t d_(k+1).  Two triangles at the distance g, with n from the part to
+ * the electrode, are then at g + n .  J d, to the first order.  A linear
+ * program makes the least of all these distances as large as possible.
  */
 #include "free.h"
 
@@ -62,8 +62,8 @@ static double falls_mm(const struct free_way *w, const struct pose *pose)
 	return w->c->mm - clearance_at(w->c, pose);
 }
 
-/* The poses of block @i that are looked at: up to its end, but for an end pose
- * with a clearance of its own, which no node can better. */
+/* How many poses of block @i are looked at.  The end pose is left out if it
+ * has a clearance of its own: no node can make it better. */
 static int poses(const struct free_way *w, uint32_t i)
 {
 	return w->c->zone_mm > 0 && i + 2 == w->n ? POSES - 1 : POSES;
@@ -224,7 +224,8 @@ static void move_nodes(const struct lp *l, const struct free_way *from,
 {
 	for (uint32_t node = 1; node + 1 < from->n; node++)
 		for (uint32_t a = 0; a < l->axes.n; a++)
-			to->q[node][l->axes.axis[a]] = from->q[node][l->axes.axis[a]] +
+			to->q[node][l->axes.axis[a]] =
+				from->q[node][l->axes.axis[a]] +
 				glp_get_col_prim(l->p, col(l, node, a));
 }
 

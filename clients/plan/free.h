@@ -2,9 +2,9 @@
 /*
  * free.h - inner nodes off the path, for more clearance
  *
- * All axes of the inner nodes are moved at once, by linear programs on the
- * gradients of many small distances, each step no longer than distances can be
- * trusted to be linear.  What comes out is tried at poses only: prove it.
+ * Linear programs on the gradients of many small distances move all axes of the
+ * inner nodes at once.  A step is only as long as distances are about linear.
+ * The result has been tried at poses only, so it still has to be proved.
  *
  * Units: mm and degrees.  Threads: one.
  */
@@ -17,11 +17,12 @@
 
 struct free_way {
 	const struct job *j;
-	const struct clearance *c;	/* lent: where it falls less is wanted */
+	const struct clearance *c;	/* lent */
 	uint32_t n;			/* nodes; first and last stay */
 	double q[FREE_NODES_MAX][INTERP_NAXES];
-	double least_mm;		/* at the poses tried; in an end zone,
-					 * and what the clearance falls there */
+	double least_mm;		/* the least distance at the poses that
+					 * were tried; in an end zone, plus what
+					 * the clearance falls there */
 	double enough_mm;		/* more is not looked for */
 	uint64_t queries, programs;	/* programs: linear ones */
 };

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* More than the gap itself, so that the walls are not eroded on the way in. */
+/* More than the gap, so that the walls are not eroded on the way in. */
 #define GAP_MORE_MM	0.05
 
 static int load_machine(struct job *j)
@@ -98,8 +98,8 @@ static int check_body(const struct job *j, const struct tree *t,
 	if (f->crossings) {
 		snprintf(what, sizeof(what), "%s%u pairs of triangles cross",
 			 f->crossings >= 1000 ? "over " : "", f->crossings);
-		return refuse_flaw(m, what, f->cross_tri, "a body that does not "
-				   "cross itself");
+		return refuse_flaw(m, what, f->cross_tri,
+				   "a body that does not cross itself");
 	}
 	return 0;
 }
@@ -110,8 +110,8 @@ static int check_size(const struct job *j, const struct mesh *m)
 
 	if (j->o->any_size || (size >= 1 && size <= 10000))
 		return 0;
-	fprintf(stderr, "edm-plan: %s: %.4g mm long; --unit inch or --unit m if "
-		"its numbers are not mm, --any-size if they are\n", m->name,
+	fprintf(stderr, "edm-plan: %s: %.4g mm long; --unit inch or --unit m "
+		"if its numbers are not mm, --any-size if they are\n", m->name,
 		size);
 	return EX_DATAERR;
 }
@@ -181,8 +181,7 @@ static int load_bodies(struct job *j)
 	return err ? err : check_sizes(j);
 }
 
-/* Half the gap between the electrode and the place where sparks still ignite is
- * no clearance: all of it is. */
+/* Sparks ignite over the whole gap, so the clearance has to be all of it. */
 static void choose_clearance(struct job *j)
 {
 	const double guess = j->part_found.chord_mm + j->tool_found.chord_mm;
@@ -220,8 +219,8 @@ void job_free(struct job *j)
 
 /* -- Words ---------------------------------------------------------------- */
 
-/* admesh turns all as the first triangle of their shell; if that is the one that
- * ran backward, the others did not. */
+/* admesh turns the triangles of a shell to run as its first one.  If the shell
+ * is inside out after that, it was the first one that ran backward. */
 static void describe_turned(const struct mesh *m, const struct mesh_findings *f,
 			    FILE *out)
 {
@@ -242,18 +241,18 @@ static void describe_turned(const struct mesh *m, const struct mesh_findings *f,
 static void describe_body(const char *what, const struct mesh *m,
 			  const struct mesh_findings *f, FILE *out)
 {
-	fprintf(out, "%-10s %s: %u triangles, %.4g x %.4g x %.4g mm, %.6g mm3\n",
-		what, m->name, m->ntris, m->max[0] - m->min[0],
+	fprintf(out, "%-10s %s: %u triangles, %.4g x %.4g x %.4g mm, "
+		"%.6g mm3\n", what, m->name, m->ntris, m->max[0] - m->min[0],
 		m->max[1] - m->min[1], m->max[2] - m->min[2], f->volume_mm3);
 	if (f->doubled)
 		fprintf(out, "           %u triangles that are there twice are "
 			"removed\n", f->doubled);
 	if (f->degenerate)
-		fprintf(out, "           %u triangles without area are removed\n",
-			f->degenerate);
+		fprintf(out, "           %u triangles without area are "
+			"removed\n", f->degenerate);
 	if (f->joined)
-		fprintf(out, "           %u edges that nearly meet are joined, by "
-			"%.4f mm at most\n", f->joined, f->joined_mm);
+		fprintf(out, "           %u edges that nearly meet are joined, "
+			"by %.4f mm at most\n", f->joined, f->joined_mm);
 	describe_turned(m, f, out);
 	if (f->open)
 		fprintf(out, "           %u open edges: it has no inside\n",
@@ -262,8 +261,8 @@ static void describe_body(const char *what, const struct mesh *m,
 		fprintf(out, "           %u pairs of triangles cross\n",
 			f->crossings);
 	if (f->grain_mm > 0.0005)
-		fprintf(out, "           so far from its origin its numbers are "
-			"%.4f mm coarse\n", f->grain_mm);
+		fprintf(out, "           so far from the origin its numbers "
+			"are %.4f mm coarse\n", f->grain_mm);
 }
 
 void job_describe(const struct job *j, FILE *f)
@@ -366,9 +365,10 @@ bool job_moves_known(const struct job *j, const struct route *w,
 			if (known & 1u << k ||
 			    w->node[i].q[k] == w->node[i - 1].q[k])
 				continue;
-			fprintf(stderr, "%s:%u: error: axis %c moves, and chain "
-				"of [kinematics] does not say what it moves; "
-				"a chain with %c\n", path, w->node[i].line,
+			fprintf(stderr, "%s:%u: error: axis %c moves, and "
+				"chain of [kinematics] does not say what it "
+				"moves; a chain with %c\n", path,
+				w->node[i].line,
 				INTERP_AXIS_LETTERS[k], INTERP_AXIS_LETTERS[k]);
 			return false;
 		}

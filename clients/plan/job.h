@@ -22,7 +22,8 @@ struct job_options {
 	double chord_mm;		/* < 0: guessed from the meshes */
 	double end_zone_mm;
 	double end[INTERP_NAXES];	/* --end-pose, with end_given */
-	uint32_t end_axes;		/* bit per axis that it names; others: 0 */
+	uint32_t end_axes;		/* bit per axis that --end-pose names;
+					 * the others are at 0 */
 	bool end_given;
 	bool any_size, accept_flaws, quiet, times, on_path, no_pivot;
 };
@@ -86,6 +87,9 @@ void job_axes_find(const struct job *j, const double from[INTERP_NAXES],
 
 /** bar_show() - one line on stderr, rewritten; nothing with --quiet. */
 void bar_show(const struct job *j, double share, const char *text);
+
+/** bar_best() - from now on the bar tells the best way so far. */
+void bar_best(uint32_t blocks, double mm);
 void bar_end(const struct job *j);
 
 /** bar_interrupted() - was Ctrl-C pressed? */

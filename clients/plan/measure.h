@@ -8,8 +8,10 @@
 #include "job.h"
 
 /**
- * measure_poses() - --measure: for each line of axes X Y Z A B C of the file the
- * distance, the two triangles (from 1) and the two points, to standard output.
+ * measure_poses() - what --measure does.
+ *
+ * For each line of axes X Y Z A B C of the file it prints the distance, the two
+ * triangles, counted from 1, and the two points.
  *
  * Return: 0 or a sysexits code.
  */

@@ -103,7 +103,8 @@ static void cross_leaves(struct crossing *c, const struct box *a,
 			double p[3], q[3];
 
 			if (i == j || share_corner(c->t->mesh, ti, tj) ||
-			    tri_distance(&c->t->tri[i], &c->t->tri[j], p, q) > 0)
+			    tri_distance(&c->t->tri[i], &c->t->tri[j], p,
+					 q) > 0)
 				continue;
 			if (c->n++ == 0) {
 				c->first[0] = ti;

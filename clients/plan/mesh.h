@@ -29,10 +29,10 @@ struct mesh_findings {
 	uint32_t in_file;		/* triangles in the file */
 	uint32_t doubled;		/* there before, removed */
 	uint32_t degenerate;		/* without area, removed */
-	uint32_t joined;		/* edges whose ends were moved together */
+	uint32_t joined;		/* edges with ends moved together */
 	double joined_mm;		/* no corner was moved by more */
-	uint32_t turned;		/* triangles whose corners did not run as
-					 * those of their shell do */
+	uint32_t turned;		/* triangles that ran the other way than
+					 * the first one of their shell */
 	uint32_t shells;
 	uint32_t inverted;		/* shells that were inside out */
 	uint32_t inverted_tri;		/* the first triangle of the first */
@@ -41,9 +41,10 @@ struct mesh_findings {
 	uint32_t crossings;		/* pairs of triangles that cross */
 	uint32_t cross_tri[2];		/* such a pair */
 	double volume_mm3;
-	double grain_mm;		/* between two floats at the far corner */
-	double chord_mm;		/* a guess from the bends: the true
-					 * surface bulges out by this much */
+	double grain_mm;		/* the step of a float at the corner
+					 * that is farthest from the origin */
+	double chord_mm;		/* so much the true surface bulges out
+					 * of the mesh, guessed by bends */
 };
 
 struct mesh_load {
@@ -76,12 +77,12 @@ void mesh_bounds(struct mesh *m);
 /** mesh_size_mm() - the longest side of its box. */
 double mesh_size_mm(const struct mesh *m);
 
-/** mesh_volume_of() - what triangle @i adds to the volume; the mesh's own, less
- *  than 0 if it is inside out, is the sum. */
+/** mesh_volume_of() - what triangle @i adds to the volume of its shell.  The
+ *  sum is less than 0 if the shell is inside out. */
 double mesh_volume_of(const struct mesh *m, uint32_t i);
 
-/** mesh_angle_of() - the solid angle of triangle @i seen from @p, more than 0 from
- *  inside. */
+/** mesh_angle_of() - the solid angle of triangle @i as seen from @p.  It is
+ *  more than 0 if @p is on the inner side. */
 double mesh_angle_of(const struct mesh *m, uint32_t i, const double p[3]);
 
 /** mesh_winding() - how often @m goes round @p: 0 outside, 1 inside. */

@@ -150,10 +150,10 @@ void motion_jacobian(const struct machine_motion *m,
 /* -- Bounds --------------------------------------------------------------- */
 
 /*
- * A ball that holds the electrode is carried from the tool toward the work, one
- * joint after the other, and grows by half of the way of its centre over the
- * block.  Before a rotary is passed, the ball tells how far from its line any
- * point of the electrode ever is.
+ * A ball holds the electrode.  It is carried from the tool toward the work,
+ * from joint to joint.  At each joint it grows by half of the way that its
+ * centre makes over the block.  Before it passes a rotary joint, the ball
+ * tells how far any point of the electrode ever is from the joint's line.
  */
 struct ball {
 	double centre[3], r;

@@ -31,9 +31,9 @@ struct block {
 	double reach_mm[INTERP_NAXES];	/* by joint of the chain: how far a unit
 					 * (mm, radian) of it moves any point */
 	double way_mm;			/* no point goes farther in the block */
-	double corner_way_mm;		/* nor any corner of its bounds than
-					 * that */
-	double accel_mm;		/* no point's second derivative is more */
+	double corner_way_mm;		/* no corner of the bounding box of the
+					 * electrode goes farther */
+	double accel_mm;		/* bounds every second derivative */
 };
 
 /** motion_init() - for an electrode. */

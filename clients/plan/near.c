@@ -2,9 +2,9 @@
 /*
  * near.c - two trees of boxes walked at once
  *
- * A pair of boxes is left out if it cannot better the best so far.  A box of
- * the electrode is brought into the part's frame once and is then compared with
- * as many boxes of the part as needed.
+ * A pair of boxes is left out if it cannot hold a nearer pair of triangles than
+ * the best so far.  A box of the electrode is brought into the part's frame
+ * once, and is then compared with several boxes of the part.
  */
 #include "near.h"
 

@@ -30,7 +30,7 @@ struct pose_rate {
 /* Two triangles and their nearest points, in the part's frame. */
 struct near_pair {
 	double mm;			/* 0: they meet */
-	uint32_t part, tool;		/* triangles, in the order of the trees */
+	uint32_t part, tool;		/* triangles: numbers of the trees */
 	double p[3], q[3];		/* on the part, on the electrode */
 };
 

@@ -2,9 +2,9 @@
 /*
  * near_set.h - some pairs of triangles that stand for all that are near
  *
- * Of the pairs within a band over the least distance, the nearest of each cell
- * of space.  The nearest pair alone would stall: what is moved away from one wall
- * comes too near to the other.
+ * These are the pairs within a band over the least distance; of those in one
+ * cell of space only the nearest.  With the nearest pair alone a search would
+ * stall: what it moves away from one wall comes too near to the other.
  *
  * Units: mm.
  */

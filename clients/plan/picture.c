@@ -133,8 +133,8 @@ static void put_scale(FILE *f, double high, double keep)
 		const double y = SIDE - 40 - (SIDE - 80) * i / 4;
 
 		fprintf(f, "<path d=\"M40 %.1fH%.0f\" stroke=\"#ddd\"/>"
-			"<text x=\"4\" y=\"%.1f\">%.2f</text>\n", y, SIDE, y + 4,
-			high * i / 4);
+			"<text x=\"4\" y=\"%.1f\">%.2f</text>\n", y, SIDE,
+			y + 4, high * i / 4);
 	}
 	fprintf(f, "<path d=\"M40 %.1fH%.0f\" stroke=\"#c00\" "
 		"stroke-dasharray=\"4 3\"/>\n", SIDE - 40 - (SIDE - 80) * keep /

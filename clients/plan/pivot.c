@@ -2,12 +2,12 @@
 /*
  * pivot.c - where the work, or the electrode in its holder, had better be
  *
- * A block is straight in the axes, so the way of the electrode on it depends on
- * where the lines of the rotaries pass.  For the same poses seen from the part,
- * the linear axes go linearly with a shift of the part by s and of the
- * electrode by e.  So the shifts that make the axes' ways straightest, between a
- * few nodes and by the share of the turn, are a problem of least squares with
- * six unknowns.  A shift that changes nothing stays 0: large ones cost a little.
+ * A block is straight in the axes, so the way of the electrode depends on where
+ * the lines of the rotary joints are.  Shift the part by s and the electrode by
+ * e, and keep all poses as seen from the part: then the positions of the linear
+ * axes change linearly with s and e.  So a problem of least squares with six
+ * unknowns gives the shifts with which the axes move straightest between a few
+ * nodes.  A small cost on long shifts keeps those at 0 that change nothing.
  */
 #include "check.h"
 #include "plan.h"
@@ -17,7 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SHIFTS		6		/* three of the part, three of the tool */
+#define SHIFTS		6		/* three of the part, three of the
+					 * electrode */
 #define COST		1e-6		/* of a mm of shift, to a mm of bend */
 #define SHIFT_LEAST_MM	0.001
 
@@ -28,8 +29,8 @@ struct nodes {
 	double (*by)[SHIFTS][3];	/* linear axes, per mm of shift */
 };
 
-/* The tip seen from the work, if the part is moved by @s and the electrode by
- * @e and the electrode keeps its place to the part. */
+/* The axes at which the electrode stands to the part as it did at @q, with the
+ * part moved by the first three of @s and the electrode by the others. */
 static int place(const struct interp_kinematics *k, const double *q,
 		 const double s[SHIFTS], double ret[INTERP_NAXES])
 {
@@ -63,7 +64,8 @@ static int find_columns(const struct job *j, struct nodes *n)
 	return 0;
 }
 
-/* By all rotaries together. Return: false if none turns. */
+/* The share of the turn is that of all rotaries together. Return: false if none
+ * turns. */
 static bool find_shares(struct nodes *n)
 {
 	double sum = 0;
@@ -219,7 +221,7 @@ static bool in_travel(const struct job *j, const struct plan_way *w)
 	return true;
 }
 
-/* A micrometre is not worth to clamp the work anew. */
+/* For one micrometre nobody clamps the work anew. */
 static bool is_better(const struct plan_way *a, const struct plan_way *b)
 {
 	return a->n < b->n ||
@@ -234,7 +236,7 @@ static int try_shift(struct plan *p, const struct nodes *n,
 	struct job j;
 	int err = shifted_job(p->j, s, &j);
 
-	trial = (struct plan) { .j = &j };
+	trial = (struct plan) { .j = &j, .trial = true };
 	for (uint32_t i = 0; i < n->n && err == 0; i++) {
 		err = place(&p->j->kin, n->q[i], s, q[i]);
 		free_round(&p->j->config, q[i]);

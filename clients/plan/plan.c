@@ -2,8 +2,9 @@
 /*
  * plan.c - from a dense program to the fewest blocks, in the order of trust
  *
- * The dense way is proved or refused; then greedy, fewest over its nodes, nodes
- * off it, a better pivot.  Ctrl-C ends the search, and the best so far is written.
+ * First the dense way is proved or refused.  Then it looks for the greedy way,
+ * for the fewest blocks over the nodes, for nodes beside the path, and for a
+ * better pivot.  Ctrl-C ends the search, and the best way so far is written.
  */
 #include "plan.h"
 
@@ -20,7 +21,7 @@
 #include <time.h>
 
 #define WIDEN_ROUNDS	12
-#define TOUCH_MM	0.01		/* less than that is as good as contact */
+#define TOUCH_MM	0.01		/* nearer is as good as contact */
 
 static double now_s(void)
 {
@@ -89,7 +90,7 @@ static void say_contact(const struct plan *p, const struct check_result *r)
 	job_say_pair(p->j, &r->pair, stderr);
 }
 
-/* An end pose that is too near is a mistake in electrode or program. */
+/* If the end pose is too near, the electrode or the program is wrong. */
 int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
 {
 	const double wanted = p->j->clear_mm + p->j->chord_mm;
@@ -121,7 +122,7 @@ int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
 	return 1;
 }
 
-/* Without one the search may still find a way round. */
+/* If only the way in is too near, the search may still find a way round. */
 static int check_dense(struct plan *p)
 {
 	struct check_result r;
@@ -187,7 +188,7 @@ static void from_free(struct plan_way *w, const struct free_way *f,
 		free_round(&j->config, w->q[i]);
 }
 
-/* In an end zone the least distance says nothing of the rest. */
+/* In an end zone the least distance does not tell what the rest keeps. */
 static bool keeps(const struct plan *p, const struct plan_way *w)
 {
 	struct near_pair pair = { 0 };
@@ -212,6 +213,13 @@ static bool is_better(const struct plan *p, const struct plan_way *a)
 	return keeps(p, a);
 }
 
+static void take_best(struct plan *p, const struct plan_way *w)
+{
+	p->best = *w;
+	if (!p->trial)
+		bar_best(w->n - 1, w->least_mm);
+}
+
 /* Along the nodes @at, then off them. Return: is it to be written? */
 static bool try_free(struct plan *p, const struct fewest *f,
 		     const uint32_t *at)
@@ -231,14 +239,14 @@ static bool try_free(struct plan *p, const struct fewest *f,
 	plan_prove(f->j, &way, &p->queries);
 	if (!is_better(p, &way))
 		return false;
-	p->best = way;
+	take_best(p, &way);
 	return true;
 }
 
 /*
- * A way of fewer blocks that only just does not touch is where nodes off the
- * path begin; linear programs then find it room.  Where that does not come to
- * the clearance, the way that has it gets more.
+ * The search for free nodes begins with a way of fewer blocks that only just
+ * does not touch.  Linear programs then find it room.  If that does not come
+ * to the clearance, they widen the way that has it.
  */
 static void plan_free(struct plan *p, struct fewest *f, const uint32_t *best)
 {
@@ -269,7 +277,7 @@ int plan_over(struct plan *p, const struct job *j,
 	if (blocks && blocks != UINT32_MAX) {
 		take_way(&p->greedy, "greedy", &f, at, blocks);
 		plan_prove(j, &p->greedy, &p->queries);
-		p->best = p->greedy;
+		take_best(p, &p->greedy);
 	}
 	blocks = bar_interrupted() ? 0 :
 		 fewest_search(&f, j->clear_mm, n - 1, at);
@@ -278,7 +286,7 @@ int plan_over(struct plan *p, const struct job *j,
 		take_way(&p->fewest, "fewest over nodes", &f, at, blocks);
 		plan_prove(j, &p->fewest, &p->queries);
 		if (is_better(p, &p->fewest))
-			p->best = p->fewest;
+			take_best(p, &p->fewest);
 	}
 	if (blocks && !j->o->on_path)
 		plan_free(p, &f, at);
@@ -296,7 +304,8 @@ static void say_way(const char *name, const struct plan_way *w)
 	printf("%-10s %u blocks, proved %.4f mm (%s)\n", name, w->n - 1,
 	       w->least_mm, w->how);
 	if (w->time_pass_s > 0)
-		printf("           %.1f min, %.1f min with a stop at each node\n",
+		printf("           %.1f min, %.1f min with a stop at each "
+		       "node\n",
 		       w->time_pass_s / 60, w->time_stop_s / 60);
 }
 
@@ -315,13 +324,18 @@ static void say_pivot(const struct plan_pivot *v)
 	       v->outside ? "; beyond this machine's travel" : "");
 }
 
-/* What the dense program calls while it goes in has no place among fewer
+/* Words that the dense program has between its blocks have no place among fewer
  * blocks. */
 static void say_left_out(const struct plan *p)
 {
 	const struct route_node *n = p->dense.node;
 	uint32_t said = 0;
 
+	if (p->written_dialect != p->j->o->dialect)
+		printf("note       %s is in the dialect generic; the other one "
+		       "does not have its words\n", p->j->o->output);
+	if (!p->j->o->program)
+		return;
 	if (!p->carried) {
 		printf("note       only positioning and blocks are written; "
 		       "conditions and other words of\n           %s are not\n",
@@ -344,7 +358,8 @@ static void describe(const struct plan *p, FILE *out)
 	printf("dense      %u blocks, least seen %.4f mm\n", p->last - p->first,
 	       p->dense_least_mm);
 	if (p->dense_pass_s > 0)
-		printf("           %.1f min, %.1f min with a stop at each node\n",
+		printf("           %.1f min, %.1f min with a stop at each "
+		       "node\n",
 		       p->dense_pass_s / 60, p->dense_stop_s / 60);
 	if (p->repaired)
 		printf("repaired   %u nodes of the dense way are others now\n",
@@ -353,19 +368,19 @@ static void describe(const struct plan *p, FILE *out)
 	say_way("fewest", &p->fewest);
 	say_way("written", &p->best);
 	say_pivot(&p->pivot);
-	if (p->j->o->program)
-		say_left_out(p);
-	printf("%-10s %llu queries, %.1f s\n", p->stopped ? "stopped" : "planned",
+	say_left_out(p);
+	printf("%-10s %llu queries, %.1f s\n",
+	       p->stopped ? "stopped" : "planned",
 	       (unsigned long long)p->queries, p->planned_s);
 }
 
 /* -- Writing -------------------------------------------------------------- */
 
-/* What stands in the text is read back and proved, not what was computed. */
+/* The text is read back, and that is proved: not what was computed. */
 static int prove_text(struct plan *p, const char *text)
 {
-	const struct route_text from = { .path = "planned program",
-				       .text = text };
+	const struct route_text from = { .path = p->written_path, .text = text,
+					 .dialect = p->written_dialect };
 	struct check_result r;
 	struct route w;
 	int rc = route_read(&w, &p->j->config, &from);
@@ -411,11 +426,8 @@ static int write_all(struct plan *p)
 
 static void say_no_way(const struct plan *p)
 {
-	if (bar_interrupted()) {
-		fprintf(stderr, "edm-plan: interrupted before a way that keeps "
-			"%.3f mm was found\n", p->j->clear_mm);
+	if (bar_interrupted())
 		return;
-	}
 	fprintf(stderr, "edm-plan: no way near the program keeps %.3f mm; a "
 		"thinner electrode, less --clearance, or another program to "
 		"begin with\n", p->j->clear_mm);
@@ -491,6 +503,8 @@ int plan_program(struct job *j)
 		err = write_all(&p);
 	if (err == EX_OSERR)
 		fprintf(stderr, "edm-plan: out of memory\n");
+	if (err && p.stopped)
+		fprintf(stderr, "edm-plan: interrupted; nothing is written\n");
 	route_free(&p.dense);
 	return err;
 }

@@ -12,7 +12,7 @@
 
 /* A way in, as it is written and proved. */
 struct plan_way {
-	const char *how;		/* "greedy", "fewest", ...; NULL: none */
+	const char *how;		/* "greedy" ...; NULL: there is none */
 	uint32_t n;			/* nodes */
 	double q[FEWEST_NODES_MAX][INTERP_NAXES];
 	double proved_mm[FEWEST_NODES_MAX];	/* of each block; what strays
@@ -39,23 +39,26 @@ struct plan {
 	struct clearance c;
 	double end_mm;			/* distance at the end pose */
 	double dense_least_mm;		/* least seen along the dense way */
-	uint32_t repaired;		/* nodes moved, or put instead of others */
-	struct near_pair nearest;	/* of the last block refused by repair */
+	uint32_t repaired;		/* nodes that repair moved or put in */
+	struct near_pair nearest;	/* of the last block that it refused */
 	double dense_pass_s, dense_stop_s;
 	struct plan_way greedy, fewest, best;
+	bool trial;			/* best is not what will be written */
 	struct plan_pivot pivot;
 	uint64_t queries;
 	double seconds, planned_s;	/* when it began; how long it took */
 	bool stopped;			/* by Ctrl-C */
 	bool carried;			/* text_write(): with the other lines of
 					 * the dense program */
+	/* How the text of text_write() is to be read: struct route_text. */
+	const char *written_path, *written_dialect;
 };
 
 /** plan_program() - plan, prove, write. Return: 0, 1 no way; else sysexits. */
 int plan_program(struct job *j);
 
-/** plan_check_end() - is @end a pose to be reached?  It fills end_mm. Return: 0;
- *  1, and the reason is on stderr. */
+/** plan_check_end() - may the way end at @end?  It fills end_mm.  Return: 0;
+ *  or 1, and the reason is on stderr. */
 int plan_check_end(struct plan *p, const double end[INTERP_NAXES]);
 
 /** plan_over() - the fewest blocks over the nodes @q; then, if @free, with
@@ -74,7 +77,8 @@ int plan_pivot(struct plan *p);
 /**
  * text_write() - the dense program with @w as its way in, allocated; where its
  * other lines cannot stand beside those blocks, its positioning and the blocks
- * alone.  It sets p->carried.  Return: NULL if out of memory.
+ * alone.  It sets p->carried and what the text is to be read with: the dialect
+ * of the dense program, or else "generic".  Return: NULL if out of memory.
  */
 char *text_write(struct plan *p, const struct plan_way *w);
 

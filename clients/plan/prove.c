@@ -44,8 +44,8 @@ void clearance_end(struct clearance *c, const struct mesh *tool,
 	}
 }
 
-/* No point of the electrode is farther from its end place than a corner of a box
- * round it. */
+/* How far the corners of a box round the electrode are from their end places.
+ * No point of the electrode is farther from its own. */
 static double from_end(const struct clearance *c, const struct pose *pose)
 {
 	double most = 0;
@@ -78,8 +78,8 @@ struct asked {
 	const struct block *block;
 };
 
-/* The farther from the end, the more is to be kept; how far is told by the corners
- * of the electrode's bounds. */
+/* What is to be kept rises with the distance of from_end(), and that by no more
+ * than the corners move. */
 static void keep_from(void *arg, const struct pose *pose,
 		      struct sweep_keep *ret)
 {
@@ -117,8 +117,8 @@ bool prove_block(const struct bodies *bodies, const struct block *b,
 bool prove_refuted(const struct bodies *bodies, const struct block *b,
 		   const struct clearance *c, struct proof *p)
 {
-	/* The middle first: there a block is farthest from the path.  More
-	 * poses cost more than the proof itself. */
+	/* The middle first: there a block is farthest from the path.  More than
+	 * a few poses would cost more than the proof. */
 	static const int order[] = { 8, 4, 12 };
 
 	for (unsigned int i = 0; i < sizeof(order) / sizeof(order[0]); i++) {
@@ -163,8 +163,8 @@ static double see(struct least *l, double t)
 	return d;
 }
 
-/* Down to the bottom of the valley round @t, so that the proof does not meet
- * every point of the slope. */
+/* Find the least distance near @t.  Otherwise the proof would find every step
+ * on the way down to it. */
 static void descend(struct least *l, double t)
 {
 	double h = 1.0 / 32;

@@ -2,8 +2,9 @@
 /*
  * prove.h - that a block keeps a clearance, or where it does not
  *
- * Conservative advancement: from each pose as far as no point can come nearer,
- * until the end.  Nothing is sampled.
+ * Conservative advancement: from each pose the proof goes on for the time in
+ * which no point can come too near, until the end of the block.  Nothing is
+ * sampled.
  *
  * Units: mm; time 0..1 of the block.  Any thread.
  * Source: B. Mirtich, Impulse-based dynamic simulation of rigid body systems,
@@ -14,8 +15,8 @@
 
 #include "motion.h"
 
-/* A pose is refused if it is nearer than the clearance plus this; so a way that
- * is not refused goes on by a step that is never arbitrarily short. */
+/* A pose that is nearer than the clearance plus this is refused.  So no step
+ * can become arbitrarily short. */
 #define PROVE_EPS_MM	0.002
 
 /*
@@ -26,8 +27,9 @@ struct clearance {
 	double mm;
 	double zone_mm;			/* 0: it does not fall */
 	double end_mm;			/* at the end pose itself */
-	double corner[8][3];		/* of a box round the electrode: its mesh */
-	double end[8][3];		/* and at the end pose: the part's frame */
+	double corner[8][3];		/* of a box round the electrode */
+	double end[8][3];		/* the same at the end pose, in the
+					 * part's frame */
 };
 
 struct proof {
@@ -65,8 +67,8 @@ bool prove_refuted(const struct bodies *bodies, const struct block *b,
 		   const struct clearance *c, struct proof *p);
 
 /**
- * prove_least() - the largest clearance that can be proved, within 2 um; no more
- * than 100 mm.
+ * prove_least() - the largest clearance that can be proved, within 2 um, up to
+ * 100 mm.
  *
  * Return: it, proved; less than 0 if the electrode touches.  @p tells where the
  * block is nearest.

@@ -2,10 +2,10 @@
 /*
  * pullout.c - pull the electrode out of the cavity, step by step
  *
- * Points of the electrode are each led outward by the air of the cavity.  What
- * all axes do in a step is a linear program: as much of that as goes, and toward
- * the middle of the cavity, with every near pair of triangles kept apart.  A step
- * counts once it is proved.
+ * The air of the cavity tells for each of some points of the electrode where
+ * out is.  A linear program finds the motion of all axes for a step: as far out
+ * as possible, toward the middle of the cavity, and with all near pairs of
+ * triangles kept apart.  A step counts only when it is proved.
  */
 #include "pullout.h"
 
@@ -28,7 +28,7 @@
 #define MIDDLE_MM	0.4		/* more clearance than that is not
 					 * looked for */
 #define MIDDLE_WORTH	4.0		/* of it, to a mm outward */
-#define TOUCH_MM	0.02		/* kept at least by a way to be repaired */
+#define TOUCH_MM	0.02		/* a way to be repaired keeps that */
 
 struct pull {
 	const struct job *j;
@@ -37,7 +37,7 @@ struct pull {
 	double q[INTERP_NAXES];
 	double left_mm;			/* to the open, mean of the points */
 	struct job_axes axes;
-	struct route out;			/* nodes, from the end outward */
+	struct route out;		/* nodes, from the end outward */
 	struct near_pair nearest;
 };
 
@@ -153,7 +153,7 @@ static bool step_to(const struct pull *p, double room_mm,
 	return ok;
 }
 
-/* Inward, as it will be gone. */
+/* The block is proved inward, as the machine will go. */
 static bool is_free(struct pull *p, const double from[INTERP_NAXES],
 		    const double to[INTERP_NAXES], const struct clearance *c)
 {
@@ -229,10 +229,8 @@ static int pull(struct pull *p, const struct clearance *c)
 
 static void say_stuck(const struct pull *p)
 {
-	fprintf(stderr, "edm-plan: no way out found%s: %.2f mm are left of the "
-		"way through the cavity, at",
-		bar_interrupted() ? " before it was interrupted" : "",
-		p->left_mm);
+	fprintf(stderr, "edm-plan: no way out found: %.2f mm are left of the "
+		"way through the cavity, at", p->left_mm);
 	for (uint32_t a = 0; a < p->axes.n; a++)
 		fprintf(stderr, " %c%.3f", INTERP_AXIS_LETTERS[p->axes.axis[a]],
 			p->q[p->axes.axis[a]]);
@@ -322,16 +320,17 @@ static bool in_travel(const struct job *j, const double q[INTERP_NAXES])
 		if (!(j->config.axes.present & 1u << k) ||
 		    (q[k] >= a->travel_min_mm && q[k] <= a->travel_max_mm))
 			continue;
-		fprintf(stderr, "edm-plan: --end-pose: %c%g; from %g to %g, the "
-			"travel of the axis\n", INTERP_AXIS_LETTERS[k], q[k],
-			a->travel_min_mm, a->travel_max_mm);
+		fprintf(stderr, "edm-plan: --end-pose: %c%g; from %g to %g, "
+			"the travel of the axis\n", INTERP_AXIS_LETTERS[k],
+			q[k], a->travel_min_mm, a->travel_max_mm);
 		return false;
 	}
 	return true;
 }
 
-/* With the clearance; where that sticks, just without touching: such a way is
- * then repaired as a program would be. Return: as pull(). */
+/* First with the clearance.  If the electrode gets stuck, once more, so that
+ * it only just does not touch; that way is then repaired like a program.
+ * Return: as pull(). */
 static int pull_twice(struct pull *u, const struct clearance *c)
 {
 	struct clearance touch = *c;
@@ -379,12 +378,12 @@ int pullout_way(struct plan *p)
 	job_axes_find(p->j, u.q, u.q, &u.axes);
 	err = pull_twice(&u, &c);
 	bar_end(p->j);
-	if (err == 1)
+	if (err == 1 && !bar_interrupted())
 		say_stuck(&u);
-	else if (err == 0 && u.out.n < 2)
-		err = refuse_outside();
-	else
-		err = err ? EX_OSERR : turn_round(p, &u, &c);
+	if (err == 0)
+		err = u.out.n < 2 ? refuse_outside() : turn_round(p, &u, &c);
+	else if (err < 0)
+		err = EX_OSERR;
 	air_free(&u.air);
 	route_free(&u.out);
 	return err;

@@ -2,9 +2,9 @@
 /*
  * put.c - write a file whole or not at all
  *
- * A program that is cut short by a full disk must not be taken for a program.
- * So a file is written beside its place and then moved there.  What is no file,
- * as a pipe or /dev/stdout, is written to as it is.
+ * Nobody must take the first half of a program, left by a full disk, for a
+ * program.  So a file is written beside its place and then moved there.  A pipe
+ * or a device is written to directly.
  */
 #include "plan.h"
 
@@ -124,13 +124,14 @@ int put_check(const struct job_options *o)
 	for (int i = 0; i < 4 && err == 0; i++) {
 		for (int k = 0; k < 4 && out[i]; k++) {
 			if (same_file(out[i], in[k])) {
-				fprintf(stderr, "edm-plan: %s: it is read, too; "
-					"another file to be written\n", out[i]);
+				fprintf(stderr, "edm-plan: %s: it is read, "
+					"too; another file to be written\n",
+					out[i]);
 				return EX_USAGE;
 			}
 			if (k < i && out[k] && strcmp(out[i], out[k]) == 0) {
-				fprintf(stderr, "edm-plan: %s: asked for twice; "
-					"a file of its own for each\n",
+				fprintf(stderr, "edm-plan: %s: asked for "
+					"twice; a file of its own for each\n",
 					out[i]);
 				return EX_USAGE;
 			}

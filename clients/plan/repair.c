@@ -36,8 +36,8 @@ static bool keeps(struct repair *r, const double from[INTERP_NAXES],
 	return check_block(r->p->j, from, to, &r->p->c, &r->pair);
 }
 
-/* The next stretch from node @at on: blocks that are too near, and some free
- * nodes on both sides. */
+/* The next stretch from node @at on: the blocks that are too near, with some
+ * free nodes on both sides. */
 static bool find_stretch(struct repair *r, uint32_t at, struct stretch *ret)
 {
 	while (at + 1 < r->n && keeps(r, r->q[at], r->q[at + 1]))
@@ -45,7 +45,7 @@ static bool find_stretch(struct repair *r, uint32_t at, struct stretch *ret)
 	if (at + 1 >= r->n)
 		return false;
 	ret->first = at > BESIDE ? at - BESIDE : 0;
-	/* Out of it again, when as many blocks in a row are free. */
+	/* It ends where so many blocks in a row are free. */
 	for (uint32_t good = 0; at + 1 < r->n && good < BESIDE; at++)
 		good = keeps(r, r->q[at], r->q[at + 1]) ? good + 1 : 0;
 	ret->last = at;

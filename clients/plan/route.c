@@ -69,14 +69,23 @@ static void node_of(const struct interp_program *p, uint32_t node,
 				  h->pulse_mm[h->column[j]];
 }
 
+/* Of the pieces of one motion from node @first on, only the first has the words
+ * before it. */
+static void act_once(struct route *w, uint32_t first)
+{
+	for (uint32_t i = first + 1; i < w->n; i++)
+		w->node[i].act_line = 0;
+}
+
 /*
- * Between two places dp apart, of a motion whose second derivative is at most
- * d2, the motion strays by dp^2 d2 / 8 from the chord.
+ * Over a piece dp of the parameter, a motion whose second derivative is at
+ * most d2 strays from its chord by dp^2 d2 / 8 at most.
  */
 static int follow_arc(struct route *w, const struct interp_arc *a,
 		      const struct route_node *end)
 {
 	const struct route_node from = w->node[w->n - 1];
+	const uint32_t first = w->n;
 	const double r = fabs(a->r_mm) + fabs(a->dr_mm);
 	const double bend = r * a->sweep * a->sweep +
 			    2 * fabs(a->dr_mm * a->sweep);
@@ -100,11 +109,13 @@ static int follow_arc(struct route *w, const struct interp_arc *a,
 		}
 		rc = route_add(w, &at);
 	}
+	act_once(w, first);
 	return rc;
 }
 
 static int follow_curve(struct route *w, const struct interp_program *p,
-			const struct interp_seg *s, const struct route_node *end)
+			const struct interp_seg *s,
+			const struct route_node *end)
 {
 	const struct interp_piece *piece = &p->pieces[s->arg];
 	const struct interp_nurbs_stop *stop = p->stops + piece->stops_at;
@@ -112,13 +123,17 @@ static int follow_curve(struct route *w, const struct interp_program *p,
 		.axis = p->curves[piece->curve].axis, .at = *end,
 		.from = stop[0].u, .to = stop[piece->nstops - 1].u,
 	};
+	const uint32_t first = w->n;
 	int err;
 
 	if (!interp_program_curve(p, piece->curve, &k.curve))
 		return -EINVAL;
 	err = route_curve(w, &k);
 	/* The node is rounded, the curve is not. */
-	return err ? err : route_add(w, end);
+	if (err == 0)
+		err = route_add(w, end);
+	act_once(w, first);
+	return err;
 }
 
 static int refuse_seg(const struct route_text *from, uint32_t line,
@@ -207,7 +222,8 @@ static int read_file(const char *path, char **text, size_t *bytes)
 			f ? "cannot be read" : strerror(errno));
 		err = EX_NOINPUT;
 	}
-	while (err == 0 && (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
+	while (err == 0 &&
+	       (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
 		*bytes += n;
 		if (*bytes < room)
 			continue;
@@ -248,7 +264,8 @@ static int lay_out(struct interp_build *b, const struct route_text *from,
 }
 
 static int compile(struct route *w, const struct machine_config *c,
-		   const struct route_text *from, const struct interp_text *text)
+		   const struct route_text *from,
+		   const struct interp_text *text)
 {
 	struct config_compiling of;
 	struct interp_diag diag = { 0 };
@@ -282,14 +299,11 @@ static int compile(struct route *w, const struct machine_config *c,
 	return err;
 }
 
-/* What edm-plan has written itself is generic. */
 static int dialect_load(struct config_dialect *d,
 			const struct machine_config *c,
 			const struct route_text *from)
 {
-	const char *asked = from->dialect ? from->dialect :
-			    from->text ? "generic" : NULL;
-	const int err = config_dialect_load(d, c, asked, from->path);
+	const int err = config_dialect_load(d, c, from->dialect, from->path);
 	char why[1024];
 
 	if (err == 0)

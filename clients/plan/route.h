@@ -2,9 +2,9 @@
 /*
  * route.h - a program as a row of poses with straight blocks between them
  *
- * The poses are those of the compiled program, as rounded as the machine has
- * them.  Arcs and curves become short blocks; how far the axes stray from those
- * is bounded, not sampled, and kept with each.
+ * The poses are those of the compiled program, rounded as on the machine.
+ * Arcs and curves become short blocks.  Each block has a bound, not a sample,
+ * of how far the axes stray from it.
  *
  * Units: mm, and degrees of a rotary axis; machine coordinates.
  * Threads: one at a time.
@@ -19,12 +19,13 @@
 struct route_node {
 	double q[INTERP_NAXES];
 	uint32_t line;			/* of the block that leads here */
-	float feed_mm_s;		/* F on it, as the path's length counts */
+	float feed_mm_s;		/* F, by the length of the path */
 	float strays;			/* mm, and degrees: of any axis on it */
 	bool rapid;			/* it is positioned, not eroded */
 	uint32_t cond;			/* number of its conditions; 0: none */
 	uint32_t act_line;		/* of the last M word, dwell ... between
-					 * the block before and this one; 0: none */
+					 * the block before and this one; 0:
+					 * none */
 };
 
 struct route {
@@ -35,8 +36,8 @@ struct route {
 	uint32_t lines;			/* of the text */
 	char *text;			/* as it was read; NULL: it was given */
 	uint32_t act_line;		/* as a node's, since the last node */
-	uint32_t beside;		/* segments that leave beside the path */
-	uint32_t beside_line;		/* the first of them */
+	uint32_t beside;		/* segments with lifts off the path */
+	uint32_t beside_line;		/* of the first */
 };
 
 /** route_free() - a zeroed one is fine. */
@@ -45,13 +46,14 @@ void route_free(struct route *w);
 /** route_add() - Return: 0 or -ENOMEM. */
 int route_add(struct route *w, const struct route_node *node);
 
-/** route_lattice() - how far the machine's pulses stray from a straight block. */
+/** route_lattice() - how far pulses may stray from a straight block. */
 void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES]);
 
 struct route_text {
 	const char *path;		/* as messages name it; - is stdin */
 	const char *text;		/* NULL: read it from there */
-	const char *dialect;		/* NULL: by the file's name */
+	const char *dialect;		/* NULL: by the end of path, or else the
+					 * machine file's */
 	bool quiet;			/* a refusal has no words */
 	const double *start;		/* of all axes; NULL: the machine
 					 * file's start_mm */

@@ -2,11 +2,11 @@
 /*
  * route_curve.c - cut a NURBS until its control points lie on a chord
  *
- * Between two parameters of one knot span a curve is an average of its Bezier
- * points there, with weights that are positive and sum to one.  If point k is
- * chord(t_k) + e_k, whatever t_k was chosen, the curve is chord(t) + e with t
- * and e the same averages: no e is larger than the largest e_k.  So that is
- * how far each axis strays.
+ * Between two parameters of one knot span, a point of a curve is an average of
+ * its Bezier points there; the weights are positive and their sum is 1.  Write
+ * Bezier point k as chord(t_k) + e_k, with any t_k.  Then the curve is
+ * chord(t) + e, where t and e are the same averages of t_k and e_k.  So no
+ * axis strays from the chord by more than in the largest e_k.
  *
  * A Bezier point is the blossom of the span at so many times the one parameter
  * and so many times the other (L. Ramshaw, 1987).
@@ -95,10 +95,9 @@ static double strays(const struct piece *x)
 static int add_chord(struct route *w, const struct route_curve *k,
 		     const struct piece *x, double off)
 {
-	struct route_node n = w->node[w->n - 1];
+	struct route_node n = k->at;
 
-	n.line = k->at.line;
-	n.rapid = k->at.rapid;
+	memcpy(n.q, w->node[w->n - 1].q, sizeof(n.q));
 	n.strays = (float)(off * (1 + 1e-6));
 	for (uint32_t j = 0; j < x->naxes; j++)
 		n.q[k->axis[j]] = x->at[x->n - 1][j];

@@ -2,9 +2,9 @@
 /*
  * shells.c - the shells of a mesh, and which of them are inside out
  *
- * Triangles that hang together are a shell.  A shell that no other one holds has a
- * volume of more than 0, or it is inside out; and so is all that it holds, the
- * cavities in it.
+ * Triangles that hang together are a shell.  If a shell is in no other one and
+ * its volume is less than 0, it is inside out; and so are all shells in it,
+ * its cavities.
  */
 #include "mesh.h"
 

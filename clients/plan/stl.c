@@ -3,9 +3,9 @@
  * stl.c - a mesh from an STL file, mended by admesh
  *
  * Corners that are equal become one.  Triangles that are there twice or have no
- * area are removed.  Edges a micrometre apart are joined, and triangles whose
- * corners run backward are turned.  Nothing is made up: holes are not filled, and
- * no triangle is removed because its neighbours are missing.
+ * area are removed.  Edges that are a micrometre apart are joined.  Triangles
+ * whose corners run backward are turned.  Nothing is made up: holes are not
+ * filled, and no triangle is removed because its neighbours are missing.
  */
 #include "mesh.h"
 #include "stl_raw.h"
@@ -139,9 +139,9 @@ static void normal_of(const struct mesh *m, uint32_t i, double ret[3])
 }
 
 /*
- * A chord of length h that turns by @angle into the next one belongs to a circle
- * that bulges out of it by h tan(angle / 4) / 2.  Where the surface is hollow
- * it bulges into the body and takes nothing from the clearance.
+ * A chord of length h, with an angle to the next one, belongs to a circle that
+ * bulges out of it by h tan(angle / 4) / 2.  Where the surface is hollow, it
+ * bulges into the body and takes nothing from the clearance.
  */
 static double bulge(const struct mesh *m, uint32_t i, uint32_t k, uint32_t j)
 {

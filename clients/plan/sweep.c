@@ -2,12 +2,12 @@
 /*
  * sweep.c - pairs of boxes in the order of the time until which they are apart
  *
- * The bounds of box.h and apart.h hold from a moment for a time, whatever else
- * happens.  So every pair has its own time to be looked at next, and only then it
- * is.  Times are kept in BINS bins: all pairs of a bin are looked at where it
- * begins, which is never too late, with one pose for all.  A pair that holds for
- * a short time only is split; two leaves are followed on their own through the
- * bin.
+ * The bounds of box.h and apart.h hold for a time, whatever else happens.  So
+ * each pair has its own time at which it is looked at again.  These times are
+ * sorted into BINS bins.  All pairs of a bin are looked at where the bin
+ * begins, with one pose; that is never too late.  A pair of boxes whose bound
+ * holds for a short time only is split.  A pair of leaves is followed by
+ * itself through the bin.
  */
 #include "sweep.h"
 
@@ -89,7 +89,8 @@ static void put(struct state *x, uint32_t part, uint32_t tool, double t)
 
 /* -- One pair ------------------------------------------------------------- */
 
-/* Too near.  True: once more, for less is asked now. */
+/* The pair is too near.  Return: true if less is asked now, so it is to be
+ * looked at once more. */
 static bool refuse(struct state *x, struct moment *m,
 		   const struct near_pair *pair)
 {
@@ -106,8 +107,8 @@ static bool refuse(struct state *x, struct moment *m,
 	return false;
 }
 
-/* For how long two triangles are as far apart as @far says; 0: they are too near
- * now, and are in @pair. */
+/* For how long two triangles are as far apart as @far says. 0: they are too
+ * near now, and @pair has them. */
 static double tri_time(const struct bodies *b, const struct apart *far,
 		       const struct triangle *at, struct near_pair *pair)
 {
@@ -145,8 +146,8 @@ static double leaf_time(const struct state *x, const struct moment *m,
 	return far.time;
 }
 
-/* For how long boxes keep what is asked: the most of the block, or what is asked
- * here and rises. */
+/* For how long two boxes keep what is asked: the most on the block, or else
+ * what is asked here, as it rises. */
 static double pair_time(const struct moment *m, const struct box *part,
 			const struct box_placed *tool)
 {
@@ -196,7 +197,8 @@ static void split(struct state *x, struct moment *m, uint32_t part,
 	}
 }
 
-/* From @m on, until it is in a later bin, or split, or apart for good. */
+/* Follow a pair from @m on, until it is put into a later bin, or split, or
+ * apart until the end. */
 static void settle(struct state *x, struct moment *m, uint32_t part,
 		   uint32_t tool)
 {

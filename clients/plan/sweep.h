@@ -2,9 +2,9 @@
 /*
  * sweep.h - a block followed from its start to its end, pair of boxes by pair
  *
- * Each pair of boxes is looked at only when it may be too near again: a wall that
- * is far, or that the electrode goes along, once or twice in a block, the
- * narrowest place often.
+ * Each pair of boxes is looked at again only when it may be too near.  For a
+ * wall that is far, or that the electrode moves along, that is once or twice
+ * in a block; for the narrowest place it is often.
  *
  * Units: mm; time is the block's parameter, 0 at its start and 1 at its end.
  * Threads: any, each with its own.
@@ -20,15 +20,15 @@
 struct sweep_keep {
 	double most_mm;			/* anywhere on the block */
 	double mm;			/* at this moment */
-	double rises;			/* a unit of time on it is no more than
-					 * mm and that */
+	double rises;			/* in a unit of time it grows by no more
+					 * than that */
 };
 
 struct sweep {
 	const struct bodies *bodies;
 	const struct block *block;
-	double eps_mm;			/* nearer than what is kept and this: too
-					 * near */
+	double eps_mm;			/* a pair nearer than what is to be kept
+					 * plus this is too near */
 	/* What is to be kept at a pose of the block. */
 	void (*keep)(void *arg, const struct pose *pose,
 		     struct sweep_keep *ret);

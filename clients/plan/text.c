@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* As many decimals as a pulse of any machine has, and no zeros behind.  The
- * point stays: C120 calls a condition, and to some readers X10 is ten pulses. */
+/* As many decimals as a pulse of any machine has, without zeros at the end.
+ * The point stays: C120 calls a condition, and some dialects read X10 as ten
+ * pulses. */
 static void put_number(FILE *f, char axis, double v)
 {
 	char s[40];
@@ -39,7 +40,7 @@ static bool same(const double *a, const double *b)
 	return memcmp(a, b, INTERP_NAXES * sizeof(*a)) == 0;
 }
 
-/* F is the ceiling of the dense program's first cut. */
+/* F is that of the first cut of the dense program. */
 static void put_way_in(FILE *f, const struct plan *p, const struct plan_way *w)
 {
 	const double feed = (double)p->dense.node[p->first + 1].feed_mm_s * 60;
@@ -101,12 +102,31 @@ static const char *line_at(const char *text, uint32_t line)
 	return text;
 }
 
-/* The dense program with the blocks of @w instead of those of its way in. */
-static char *carried(const struct plan *p, const struct plan_way *w)
+/* A curve has the line of its G6.2; the lines of its other control points begin
+ * with K. */
+static const char *behind_curve(const char *text)
+{
+	while (text) {
+		const char *s = text + strspn(text, " \t");
+
+		if (*s == 'N' || *s == 'n')
+			s += 1 + strspn(s + 1, "0123456789 \t");
+		if (*s != 'K' && *s != 'k')
+			break;
+		text = line_at(text, 2);
+	}
+	return text;
+}
+
+/* The dense program with the blocks of @w instead of those of its way in.
+ * @modes is written before them. */
+static char *carried(const struct plan *p, const struct plan_way *w,
+		     const char *modes)
 {
 	const char *text = p->dense.text;
 	const char *from = line_at(text, p->dense.node[p->first + 1].line);
-	const char *to = line_at(text, p->dense.node[p->last].line + 1);
+	const char *to = behind_curve(line_at(text,
+					p->dense.node[p->last].line + 1));
 	char *ret = NULL;
 	size_t size;
 	FILE *f;
@@ -116,9 +136,9 @@ static char *carried(const struct plan *p, const struct plan_way *w)
 	f = open_memstream(&ret, &size);
 	if (!f)
 		return NULL;
-	put_head(f, p, w);
 	fwrite(text, 1, (size_t)(from - text), f);
-	fputs("G21 G90 G94\n", f);
+	put_head(f, p, w);
+	fputs(modes, f);
 	put_way_in(f, p, w);
 	if (to)
 		fputs(to, f);
@@ -162,25 +182,62 @@ static bool goes_same_way(const struct plan *p, const struct plan_way *w,
 	return true;
 }
 
+/* Is the end of @r the way @w? */
+static bool ends_with(const struct plan *p, const struct plan_way *w,
+		      const struct route *r)
+{
+	if (r->n < w->n)
+		return false;
+	for (uint32_t i = 0; i < w->n; i++) {
+		const struct route_node *n = &r->node[r->n - w->n + i];
+
+		if (!is_at(n, p, w->q[i]) || (i > 0 && n->rapid))
+			return false;
+	}
+	return true;
+}
+
+/* Is @text, read in that dialect, what it is meant to be? */
+static bool reads(struct plan *p, const struct plan_way *w, const char *text,
+		  const char *dialect)
+{
+	const struct route_text from = {
+		.path = p->carried ? p->j->o->program : p->j->o->output,
+		.text = text, .dialect = dialect, .quiet = true,
+	};
+	struct route r = { 0 };
+	const bool ok = route_read(&r, &p->j->config, &from) == 0 &&
+			(p->carried ? goes_same_way(p, w, &r) :
+				      ends_with(p, w, &r));
+
+	route_free(&r);
+	p->written_path = from.path;
+	p->written_dialect = dialect;
+	return ok;
+}
+
 /*
  * Lines are carried over as they stand, and what comes out is read back: where
  * inches, increments or subprograms give the blocks or the lines another sense,
- * it goes another way.
+ * it goes another way.  The same of a dialect that has other words than those
+ * that plain() writes.
  */
 char *text_write(struct plan *p, const struct plan_way *w)
 {
-	char *text = p->dense.text ? carried(p, w) : NULL;
-	const struct route_text from = { .path = p->j->o->program,
-				       .text = text,
-				       .dialect = p->j->o->dialect,
-				       .quiet = true };
-	struct route r = { 0 };
+	/* Not every dialect has the words of the second, or needs them. */
+	static const char *const modes[] = { "", "G21 G90 G94\n" };
+	char *text;
 
-	p->carried = text && route_read(&r, &p->j->config, &from) == 0 &&
-		     goes_same_way(p, w, &r);
-	route_free(&r);
-	if (p->carried)
-		return text;
-	free(text);
-	return plain(p, w);
+	p->carried = true;
+	for (int i = 0; i < 2 && p->dense.text; i++) {
+		text = carried(p, w, modes[i]);
+		if (text && reads(p, w, text, p->j->o->dialect))
+			return text;
+		free(text);
+	}
+	p->carried = false;
+	text = plain(p, w);
+	if (text && !reads(p, w, text, p->j->o->dialect))
+		reads(p, w, text, "generic");
+	return text;
 }

@@ -2,8 +2,8 @@
 /*
  * times.c - how long each way takes, by edmsim
  *
- * edmsim stands beside this program.  It gets the machine file as it is in force
- * with [speed] nodes set, and runs each program twice.
+ * edmsim is in the same folder as this program.  It runs each program twice,
+ * with the machine file and [speed] nodes set to the one value and the other.
  */
 #include "plan.h"
 
@@ -60,7 +60,8 @@ static int put_machine(const struct room *r, const struct machine_config *c,
 }
 
 /* What edmsim writes to its standard output. */
-static json_t *run(const struct room *r, const char *program)
+static json_t *run(const struct room *r, const char *program,
+		   const char *dialect)
 {
 	json_t *o = NULL;
 	int end[2], status;
@@ -75,7 +76,8 @@ static json_t *run(const struct room *r, const char *program)
 		close(end[0]);
 		close(end[1]);
 		execl(r->sim, "edmsim", "--quiet", "--seed", "1", "--machine",
-		      r->ini, "--report", "-", program, (char *)NULL);
+		      r->ini, "--report", "-", program,
+		      dialect ? "--dialect" : NULL, dialect, (char *)NULL);
 		_exit(127);
 	}
 	close(end[1]);
@@ -92,7 +94,7 @@ static json_t *run(const struct room *r, const char *program)
 }
 
 static int ask(const struct room *r, const struct machine_config *c,
-	       const char *program, double ret_s[2])
+	       const struct route_text *program, double ret_s[2])
 {
 	for (int nodes = 0; nodes < 2; nodes++) {
 		const char *outcome;
@@ -101,15 +103,15 @@ static int ask(const struct room *r, const struct machine_config *c,
 
 		if (err)
 			return err;
-		o = run(r, program);
+		o = run(r, program->path, program->dialect);
 		outcome = json_string_value(json_object_get(o, "outcome"));
 		ret_s[nodes] = json_number_value(json_object_get(o,
 							"virtual_s"));
 		err = outcome && strcmp(outcome, "done") == 0 ? 0 : EX_SOFTWARE;
 		if (err)
 			fprintf(stderr, "edm-plan: %s on %s: %s; a program "
-				"that it runs to its end\n", r->sim, program,
-				outcome ? outcome : "no report");
+				"that it runs to its end\n", r->sim,
+				program->path, outcome ? outcome : "no report");
 		json_decref(o);
 		if (err)
 			return err;
@@ -120,6 +122,7 @@ static int ask(const struct room *r, const struct machine_config *c,
 static int ask_way(struct plan *p, const struct room *r,
 		   struct plan_way *w)
 {
+	struct route_text from = { .path = r->ngc };
 	double s[2] = { 0, 0 };
 	char *text;
 	int err;
@@ -129,8 +132,9 @@ static int ask_way(struct plan *p, const struct room *r,
 	text = text_write(p, w);
 	err = text ? put_text(r->ngc, text) : EX_OSERR;
 	free(text);
+	from.dialect = p->written_dialect;
 	if (err == 0)
-		err = ask(r, &p->j->config, r->ngc, s);
+		err = ask(r, &p->j->config, &from, s);
 	w->time_pass_s = s[0];
 	w->time_stop_s = s[1];
 	return err;
@@ -138,6 +142,8 @@ static int ask_way(struct plan *p, const struct room *r,
 
 int times_ask(struct plan *p)
 {
+	const struct route_text dense = { .path = p->j->o->program,
+					  .dialect = p->j->o->dialect };
 	double s[2] = { 0, 0 };
 	struct room r;
 	int err = make_room(&r);
@@ -149,7 +155,7 @@ int times_ask(struct plan *p)
 	}
 	bar_show(p->j, 0.1, "edmsim runs the dense way");
 	if (p->j->o->program)
-		err = ask(&r, &p->j->config, p->j->o->program, s);
+		err = ask(&r, &p->j->config, &dense, s);
 	p->dense_pass_s = s[0];
 	p->dense_stop_s = s[1];
 	bar_show(p->j, 0.4, "edmsim runs the greedy way");

@@ -19,8 +19,8 @@
 #define SAMPLE		512u
 
 struct middle {
-	float at[3];			/* of a triangle, seen from the middle of
-					 * the mesh */
+	float at[3];			/* of a triangle, as seen from the
+					 * middle of the mesh */
 	uint32_t id;			/* its number in the mesh */
 };
 
@@ -186,9 +186,9 @@ static box_v4 choose(box_i4 which, box_v4 yes, box_v4 no)
 	return (box_v4)(((box_i4)yes & which) | ((box_i4)no & ~which));
 }
 
-/* The box from @lo to @hi along its axes, seen from @o, and a little more: the
- * axes are of length 1 and square to each other to 2^-22, and each place has been
- * rounded to 2^-21 of the sum of the sides. */
+/* The box from @lo to @hi along its axes, as seen from @o, and a little more.
+ * The axes have length 1 and are square to each other within 2^-22.  Each
+ * place was rounded by less than 2^-21 of the sum of the sides. */
 static void close_box(struct box *b, const double o[3], box_v4 lo, box_v4 hi)
 {
 	double mid[3] = { 0 }, more = 0;
@@ -321,12 +321,15 @@ static void copy_tris(struct build *b)
 		struct triangle *x = &b->t->tri[i];
 
 		for (uint32_t k = 0; k < 3; k++)
-			memcpy(x->at[k], mesh_corner(m, i, k), sizeof(x->at[k]));
+			memcpy(x->at[k], mesh_corner(m, i, k),
+			       sizeof(x->at[k]));
 		b->middle[i].id = i;
-		for (int k = 0; k < 3; k++)
-			b->middle[i].at[k] = (float)((x->at[0][k] + x->at[1][k] +
-						      x->at[2][k]) / 3 -
-						     b->mid[k]);
+		for (int k = 0; k < 3; k++) {
+			const double sum = x->at[0][k] + x->at[1][k] +
+					   x->at[2][k];
+
+			b->middle[i].at[k] = (float)(sum / 3 - b->mid[k]);
+		}
 	}
 }
 

@@ -38,9 +38,9 @@ static double clamp01(double x)
 }
 
 /*
- * Points p = a + s u and q = b + t v, with s and t in 0..1.  For a given s the
- * best t is a projection, and the reverse; where the lines are not parallel the
- * free optimum of s is tried first.
+ * The points are p = a + s u and q = b + t v, with s and t in 0..1.  For a
+ * given s the best t is a projection, and the other way round.  If the lines
+ * are not parallel, s begins at the optimum of the whole lines.
  */
 static void edges(const double a[3], const double u[3], const double b[3],
 		  const double v[3], struct nearest *n)
@@ -79,7 +79,8 @@ static void face_of(const struct triangle *at, struct face *f)
 	f->area2 = v_dot(f->normal, f->normal);
 }
 
-/* Thinner than rounding can tell from a segment: its edges are all of it. */
+/* It is so thin that rounding cannot tell it from a segment: its edges are all
+ * there is. */
 static bool is_flat(const struct face *f)
 {
 	const double e0 = v_dot(f->edge[0], f->edge[0]);

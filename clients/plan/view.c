@@ -2,9 +2,9 @@
 /*
  * view.c - an HTML page to turn the bodies and step along the way
  *
- * One file, nothing from outside: both meshes, the poses of the electrode and a
- * small WebGL program.  Meshes beyond TRIS_MAX triangles are thinned, for the
- * eye alone.
+ * The page is one file and needs nothing from outside: it has both meshes, the
+ * poses of the electrode and a small WebGL program.  Of a mesh with more than
+ * TRIS_MAX triangles only some are drawn.
  */
 #include "plan.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * adc.c - samples of industrial I/O, from its files
+ * adc.c - read samples of the kernel's industrial I/O from its files
  */
 #include "adc.h"
 
@@ -41,7 +41,8 @@ int64_t adc_count(const struct adc_format *f, const uint8_t *at)
 	uint64_t x = 0;
 
 	for (uint32_t i = 0; i < f->bytes; i++)
-		x |= (uint64_t)at[f->big_endian ? f->bytes - 1 - i : i] << 8 * i;
+		x |= (uint64_t)at[f->big_endian ? f->bytes - 1 - i : i] <<
+		     8 * i;
 	x = x >> f->shift & ((UINT64_C(1) << f->bits) - 1);
 	if (f->is_signed && x >> (f->bits - 1))
 		return (int64_t)x - (INT64_C(1) << f->bits);
@@ -146,7 +147,7 @@ static int refuse(struct interp_diag *d, int err, const char *what,
 	return -err;
 }
 
-/* Only this channel: with one alone samples stand side by side. */
+/* Enable only this channel, so that its samples follow each other directly. */
 static bool only_channel(const char *dir, uint32_t channel)
 {
 	char path[192], own[32];

@@ -2,11 +2,10 @@
 /*
  * can402.c - the master of CiA 402 drives
  *
- * A drive in trouble stops at once.  The others follow their targets on, as
- * long as the cycle brakes on the path.  A bus that is off or an interface that
- * is down stops all drives, by quick stop where they still listen and by their
- * own watch on our heartbeat where they do not.  Nothing moves again before a
- * reset.
+ * A drive in trouble stops at once.  The other drives keep following their
+ * targets while the cycle brakes on the path.  When the bus is off or the
+ * interface is down, all drives stop: by a quick stop if they still hear edmd,
+ * else because they miss its heartbeat.  Nothing moves again before a reset.
  */
 #include "can402_bus.h"
 
@@ -16,12 +15,12 @@
 #include <unistd.h>
 
 #define GAP_NONE	0xffff
-#define RX_MAX		512		/* frames taken in a period: more than a bus
-					 * carries in the longest one */
+#define RX_MAX		512		/* frames taken in a period: a bus does
+					 * not carry more in the longest one */
 
 /* -- The bus -------------------------------------------------------------- */
 
-/* The first trouble stops everything; the end of it is only noted. */
+/* Trouble on the bus stops everything until a reset; its end only is told. */
 static void bus_is(struct can402 *s, enum can_got state)
 {
 	if (state == s->bus)
@@ -46,7 +45,7 @@ static void send(struct can402 *s, const struct can_msg *m)
 		bus_is(s, CAN_NOTHING);
 }
 
-/* What comes over the bus shows that there is one. */
+/* A frame came, so the bus works. */
 static void bus_is_back(struct can402 *s)
 {
 	if (s->bus == CAN_BUS_OFF)
@@ -59,7 +58,7 @@ static void hear_gap(struct can402 *s, const struct can_msg *m)
 		can402_count(s, NOTE_MALFORMED, ++s->malformed);
 		return;
 	}
-	/* A sensor that has no reading says so, and is as one that is gone. */
+	/* The sensor says that it has no reading: this counts as no sensor. */
 	if (can_get(m->data, 2) == GAP_NONE) {
 		s->gap_age = CAN402_STALE;
 		return;
@@ -73,14 +72,14 @@ static void hear_gap(struct can402 *s, const struct can_msg *m)
 	s->gap_age = 0;
 }
 
-/* A PLC of ours on this bus commands our own node, and may call all. */
+/* A PLC on this bus may command edmd's own node, and all nodes at once. */
 static bool is_the_plcs(const struct can402 *s, const struct can_msg *m)
 {
 	return m->id == CAN_NMT && m->len == 2 && s->plc_node > 0 &&
 	       (m->data[1] == 0 || m->data[1] == s->plc_node);
 }
 
-/* NMT, SYNC, targets and one heartbeat are the master's to send: ours. */
+/* Only edmd, the master, may send NMT, SYNC, targets and its own heartbeat. */
 static bool is_foreign(const struct can402 *s, const struct can_msg *m)
 {
 	if (is_the_plcs(s, m))
@@ -95,6 +94,17 @@ static bool is_foreign(const struct can402 *s, const struct can_msg *m)
 	return false;
 }
 
+/*
+ * A command to all nodes may have started drives that are still being set up,
+ * and these refuse the rest of the set-up then.  So it begins again.
+ */
+static void hear_plc(struct can402 *s, const struct can_msg *m)
+{
+	for (uint32_t i = 0; i < s->n && m->data[1] == 0; i++)
+		if (s->drive[i].phase < DRIVE_RUNNING)
+			drive_setup_again(&s->drive[i]);
+}
+
 static void hear(struct can402 *s, const struct can_msg *m)
 {
 	if (s->c.gap_id > 0 && m->id == (uint16_t)s->c.gap_id) {
@@ -106,6 +116,8 @@ static void hear(struct can402 *s, const struct can_msg *m)
 		s->stopped = true;
 		return;
 	}
+	if (m->id == CAN_NMT)
+		hear_plc(s, m);
 	for (uint32_t i = 0; i < s->n; i++) {
 		const uint32_t before = s->drive[i].malformed;
 
@@ -113,7 +125,7 @@ static void hear(struct can402 *s, const struct can_msg *m)
 			continue;
 		if (s->drive[i].malformed != before)
 			can402_count(s, NOTE_MALFORMED, ++s->malformed);
-		/* Now: of several emergencies each has its code. */
+		/* At once: the next emergency replaces the code of this one. */
 		can402_watch(s, i);
 		return;
 	}
@@ -178,7 +190,10 @@ static enum io_trouble trouble(const struct can402 *s)
 	return IO_WELL;
 }
 
-/* A drive in trouble stops by itself; does any other still follow? */
+/*
+ * Does any drive still follow its targets?  Then the cycle can brake on the
+ * path; a drive in trouble stops by itself.
+ */
 static bool steers(const struct can402 *s)
 {
 	bool any = false;
@@ -190,9 +205,9 @@ static bool steers(const struct can402 *s)
 }
 
 /*
- * The first time they are all heard, they stand where the machine begins.  One
- * that lost its place stands where it was sent last, by word: whoever asks is
- * told that it is not homed.
+ * When all drives are heard for the first time, they stand where the machine
+ * begins.  A drive that lost its place gets the place that it was sent to last,
+ * so that the numbers go on; the cycle was told that this axis is not homed.
  */
 static void place(struct can402 *s)
 {
@@ -297,7 +312,7 @@ static void reset(struct can402 *s)
 	}
 }
 
-/* One that was moved by hand is not driven back over any distance. */
+/* An axis that was moved far by hand is not driven back. */
 static void watch_place(struct can402 *s, uint32_t i, int32_t target)
 {
 	struct drive *d = &s->drive[i];
@@ -367,7 +382,7 @@ void can402_write(void *self, const struct io_outputs *out)
 		tell_drive(s, i, on ? DRIVE_GO_ON : DRIVE_GO_STOP);
 }
 
-/* A quick stop, and nothing they would miss when we are gone. */
+/* Quick stop, and the drives stop waiting for a heartbeat of edmd. */
 static void leave(struct can402 *s)
 {
 	struct can_msg m[DRIVE_ENDS];

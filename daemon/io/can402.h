@@ -2,17 +2,19 @@
 /*
  * can402.h - the master of up to eight CiA 402 drives on one bus
  *
- * A period: SYNC as its first act, then what has come since the last one,
- * then the cycle, then one target for each drive.  A target is taken with the
- * next SYNC and reached with the one after.
+ * A period begins with SYNC.  Then the master reads the frames that have come
+ * since the last SYNC, the cycle runs, and each drive is sent its target.  A
+ * drive takes this target at the next SYNC and reaches it at the one after.
  *
- * The bus may carry two frames more.  The gap: voltage in 0.01 V as two bytes
- * and, if it has six, the shares of open, spark, arc and short pulses in
- * 1/255.  The generator: a byte of flags (1 power, 2 pump, 4 negative), a byte
- * that counts, then peak current in 0.1 A, on and off time in 0.1 us as two
- * bytes each, 0xffff for its own setting.
+ * Two more frames may be on the bus.
+ * - Gap: two bytes are the voltage in 0.01 V.  If there are six bytes, the
+ *   other four are the shares of open, spark, arc and short pulses in 1/255.
+ * - Generator: a byte of flags (1 power, 2 pump, 4 negative); a byte that
+ *   counts; then peak current in 0.1 A, on time and off time in 0.1 us, two
+ *   bytes each.  0xffff leaves the generator its own setting.
  *
- * Threads: can402_load() and can402_period_us() any; the rest as io.h.
+ * Threads: can402_load() and can402_period_us() may be called by any thread;
+ * for the rest see io.h.
  */
 #ifndef IO_CAN402_H
 #define IO_CAN402_H
@@ -20,7 +22,7 @@
 #include "drive.h"
 #include "io.h"
 
-/* The largest share of the bus that is taken. */
+/* edmd refuses to start if it needs a larger share of the bus. */
 #define CAN402_LOAD_MAX		0.8
 
 struct can402_bus {
@@ -33,7 +35,7 @@ struct can402_bus {
 /** can402_load() - share of the bus at this period: 1 is all of it. */
 double can402_load(const struct can402_bus *b, double period_us);
 
-/** can402_period_us() - the shortest period, whole 0.1 ms, that it can bear. */
+/** can402_period_us() - the shortest period that fits, in whole 0.1 ms. */
 double can402_period_us(const struct can402_bus *b);
 
 #endif /* IO_CAN402_H */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * can402_brake.c - brakes that lines of this host open, beside drives on a bus
+ * can402_brake.c - brakes that GPIO lines of this host open
  *
- * A drive takes its axis first, then the brake opens, and nothing moves before
- * it is open.  The other way round the brake closes first, and the drive holds
- * the axis until it is closed.  The brake of a drive that is in trouble closes
- * at once: its torque may be gone.
+ * First the drive holds its axis, then the brake opens, and nothing moves
+ * before the brake is open.  In a stop the brake closes first, and the drive
+ * holds the axis until the brake is closed.  If a drive is in trouble, its
+ * brake closes at once, because the drive may have no torque any more.
  */
 #include "can402_bus.h"
 

@@ -33,20 +33,21 @@ struct can402_note {
 
 #define CAN402_NOTES	256		/* a power of two */
 
-/* What was said of a drive. */
+/* What the log has said about a drive so far. */
 struct can402_told {
 	bool up, lost;
 	enum drive_trouble trouble;
 	uint32_t emergencies, unanswered, aborts, warnings;
 };
 
-/* One drive on the way to a stand, or back to its place; can402_stop.c. */
+/* One drive that brakes, or goes back to its place; can402_stop.c. */
 struct can402_stop {
-	int32_t was;			/* increments, the target before */
-	double speed;			/* increments a period, when it began */
-	double a;			/* ... a period^2, the axis may brake by */
-	double at;			/* increments, on the way to a stand */
-	int32_t coast;			/* pulses, farther than that by now */
+	int32_t was;			/* increments: the previous target */
+	double speed;			/* increments a period, at the start */
+	double a;			/* ... a period^2: how hard it brakes */
+	double at;			/* increments: where it is by now */
+	int32_t coast;			/* pulses it may be off its place by
+					 * more than resync_max, after a stop */
 	bool ill;			/* its drive stops by itself, while the
 					 * others brake on the path */
 };
@@ -61,17 +62,19 @@ struct can402 {
 	uint32_t beat_every, beat_in;
 	enum can_got bus;		/* CAN_NOTHING: well */
 	bool stopped;			/* bus trouble, until a reset */
-	int32_t plc_node;		/* of ours, on the same bus; 0: none */
-	bool were_on;			/* under power and well, a period ago */
-	uint32_t stopping, stop_of;	/* periods left of the way to a stand,
-					 * and of all of it */
+	int32_t plc_node;		/* our node for a PLC on this bus;
+					 * 0: no PLC on it */
+	bool were_on;			/* a period ago the drives had power */
+	uint32_t stopping, stop_of;	/* periods left until all stand, and
+					 * periods that braking takes */
 	struct can402_stop stop[IO_NAXES];
 	/* can402_brake.c: brakes that lines open */
-	uint32_t braked, open;		/* bit per axis: has one; it is open */
-	uint32_t brake_periods;		/* until it is, or is not any more */
-	uint32_t opening[IO_NAXES];	/* periods left of that */
+	uint32_t braked, open;		/* bit per axis: has a brake; it is
+					 * open */
+	uint32_t brake_periods;		/* that a brake needs to open */
+	uint32_t opening[IO_NAXES];	/* periods left until it is open */
 	uint32_t closing;
-	bool brakes_lost;		/* their lines do not answer */
+	bool brakes_lost;		/* the lines of brakes do not answer */
 	can402_brake_fn *brake;
 	void *brake_arg;
 	bool placed;			/* the drives' zeros are set */
@@ -121,8 +124,8 @@ void can402_originate(void *self, const int32_t zero[IO_NAXES]);
 /* -- can402_stop.c -------------------------------------------------------- */
 
 /**
- * can402_stop_follow() - once a period, before @out becomes s->out: how far does
- * a drive that stops by itself stay behind the targets of its axis?
+ * can402_stop_follow() - note how far a drive that stops by itself stays behind
+ * the targets of its axis.  Once a period, before @out becomes s->out.
  */
 void can402_stop_follow(struct can402 *s, const struct io_outputs *out);
 
@@ -131,19 +134,19 @@ void can402_stop_follow(struct can402 *s, const struct io_outputs *out);
  *
  * @on: the drives are to have power, and the bus works.
  *
- * Drives that can brake do so together: each loses the same part of its speed
- * in a period, so that they stay on the tangent of the path.
+ * Drives that can brake do so together.  In a period each loses the same part
+ * of its speed, so that they stay on the tangent of the path.
  *
- * Return: true as long as they brake; then none may be stopped alone.
+ * Return: true while they brake; until then no drive may be stopped alone.
  */
 bool can402_stop_step(struct can402 *s, bool on);
 
-/** can402_stop_target() - where drive @i is sent to on that way, pulses. */
+/** can402_stop_target() - the target of drive @i while it brakes, pulses. */
 int32_t can402_stop_target(struct can402 *s, uint32_t i);
 
 /**
- * can402_stop_pace() - on the way back to their places all drives arrive at the
- * same time.
+ * can402_stop_pace() - set the speeds at which the drives go back to their
+ * places, so that all arrive at the same time.
  */
 void can402_stop_pace(struct can402 *s);
 
@@ -152,10 +155,10 @@ void can402_stop_pace(struct can402 *s);
 /**
  * can402_brake_step() - once a period, after can402_stop_step() said @on.
  *
- * A brake is open while its drive is under torque and follows.
+ * A brake is open while its drive has torque and follows its targets.
  *
- * Return: true as long as the drives must hold their axes: @on, or a brake
- * needs its time to close.
+ * Return: true while the drives must hold their axes, because @on is true or a
+ * brake is still closing.
  */
 bool can402_brake_step(struct can402 *s, bool on);
 
@@ -163,8 +166,8 @@ bool can402_brake_step(struct can402 *s, bool on);
 bool can402_brake_opens(const struct can402 *s);
 
 /**
- * can402_brake_close() - close all, and hold the axes for so long.  Not
- * RT-safe.
+ * can402_brake_close() - close all brakes; the drives hold the axes meanwhile.
+ * It waits, so it is not RT-safe.
  */
 void can402_brake_close(struct can402 *s);
 
@@ -179,7 +182,7 @@ io_open_fn can402_open;
  */
 int can402_attach(struct io_machine *m, const struct machine_config *c, int fd);
 
-/* Periods without a gap frame, then there is no gap. */
+/* After so many periods without a gap frame there is no gap. */
 #define CAN402_STALE	20
 
 #endif /* IO_CAN402_BUS_H */

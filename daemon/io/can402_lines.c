@@ -2,7 +2,8 @@
 /*
  * can402_lines.c - drives on a bus, whose brakes are on lines of a GPIO chip
  *
- * Apart from the rest of the master, which edmsim has too: it has no lines.
+ * This is a file of its own because edmsim uses the rest of the master and has
+ * no lines.
  */
 #include "can402_bus.h"
 #include "gpio_own.h"

@@ -2,7 +2,7 @@
 /*
  * can402_load.c - how full the bus is
  *
- * Every frame at its longest, with all the stuff bits it can have.
+ * Each frame is counted at its longest, with all the stuff bits it can have.
  */
 #include "can402.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * can402_note.c - what the master has to say, from the cycle to the log
+ * can402_note.c - what the cycle sees on the bus, as lines of the log
  */
 #include "can402_bus.h"
 
@@ -18,7 +18,7 @@ void can402_tell(struct can402 *s, const struct can402_note *n)
 	atomic_store_explicit(&s->put, put + 1, memory_order_release);
 }
 
-/* The first, the second, the fourth ... of its kind: a flood says little. */
+/* The first, second, fourth, eighth ...: a flood makes few lines. */
 static bool is_round(uint32_t n)
 {
 	return (n & (n - 1)) == 0;
@@ -27,7 +27,9 @@ static bool is_round(uint32_t n)
 void can402_count(struct can402 *s, enum can402_note_kind kind, uint32_t n)
 {
 	if (is_round(n))
-		can402_tell(s, &(struct can402_note) { .kind = kind, .number = n });
+		can402_tell(s, &(struct can402_note) {
+			.kind = kind, .number = n
+		});
 }
 
 static void say_drive(const struct can402_note *n, char *buf, size_t size)
@@ -76,8 +78,8 @@ static void say_drive(const struct can402_note *n, char *buf, size_t size)
 		break;
 	case NOTE_LOST:
 		snprintf(buf, size, "drive %c (node %u) was switched off: its "
-			 "place is lost; end the job, then edmctl home %c", axis,
-			 n->node, axis);
+			 "place is lost; end the job, then edmctl home %c",
+			 axis, n->node, axis);
 		break;
 	case NOTE_WARNING:
 		snprintf(buf, size, "drive %c (node %u) warns: statusword "
@@ -110,9 +112,9 @@ static void say_bus(const struct can402 *s, const struct can402_note *n,
 			 "then: ip link set %s type can restart", name, name);
 		break;
 	case NOTE_BUS_WARNING:
-		snprintf(buf, size, "%s: many errors on the bus (error warning, "
-			 "%u times); check cable and termination", name,
-			 n->number);
+		snprintf(buf, size, "%s: many errors on the bus (error "
+			 "warning, %u times); check cable and termination",
+			 name, n->number);
 		break;
 	case NOTE_BUS_PASSIVE:
 		snprintf(buf, size, "%s: the controller is error passive (%u "
@@ -120,23 +122,24 @@ static void say_bus(const struct can402 *s, const struct can402_note *n,
 			 "and bit rate", name, n->number);
 		break;
 	case NOTE_DOWN:
-		snprintf(buf, size, "%s is down; ip link set %s up", name, name);
+		snprintf(buf, size, "%s is down; ip link set %s up", name,
+			 name);
 		break;
 	case NOTE_BACK:
 		snprintf(buf, size, "%s is back", name);
 		break;
 	case NOTE_FULL:
-		snprintf(buf, size, "%s: %u frames not sent, its queue is full; "
-			 "nobody takes them, or ip link set %s txqueuelen 100",
-			 name, n->number, name);
+		snprintf(buf, size, "%s: %u frames not sent, its queue is "
+			 "full; nobody takes them, or ip link set %s "
+			 "txqueuelen 100", name, n->number, name);
 		break;
 	case NOTE_FOREIGN:
 		snprintf(buf, size, "%s: another master on the bus, %u frames "
 			 "of it", name, n->number);
 		break;
 	default:
-		snprintf(buf, size, "%s: %u frames of a wrong length, or answers "
-			 "nobody asked for", name, n->number);
+		snprintf(buf, size, "%s: %u frames of a wrong length, or "
+			 "answers nobody asked for", name, n->number);
 		break;
 	}
 }
@@ -192,7 +195,7 @@ static void tell_up(struct can402 *s, uint32_t i)
 		tell_of(s, i, (struct can402_note) { .kind = NOTE_UNMAPPED });
 }
 
-/* Of those that may come in a flood a few are told. */
+/* These may come in a flood, so only a few of them are told. */
 static void tell_counts(struct can402 *s, uint32_t i,
 			const struct can402_told *was)
 {

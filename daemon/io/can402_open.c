@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define LIMITED_US	100000	/* bit 11 may stand so long */
+#define LIMITED_US	100000	/* bit 11 may be 1 for so long */
 #define BEATS_MISSED	2.5
 #define STOP_AND_OFF	2		/* quick stop options, object 605A */
 #define STOP_AND_HOLD	6
@@ -192,7 +192,7 @@ static void add_drives(struct can402 *s, const struct machine_config *c)
 	}
 }
 
-/* All there is to hear on one bus: four kinds of each drive, and the rest. */
+/* Four kinds of frames of each drive, NMT, targets of others, and the gap. */
 static int open_bus(const struct config_can402 *k)
 {
 	static const uint16_t kinds[] = {
@@ -203,7 +203,7 @@ static int open_bus(const struct config_can402 *k)
 		{ k->gap_id > 0 ? (uint16_t)k->gap_id : CAN_NMT, 0x7ff },
 	};
 
-	/* By function code: the node is told from the frame. */
+	/* Filtered by function code only; drive_receive() looks at the node. */
 	for (size_t i = 0; i < 4; i++)
 		hear[3 + i] = (struct can_hear) { kinds[i], 0x780 };
 	return can_socket_open(k->interface, hear, 7);
@@ -249,7 +249,7 @@ int can402_open(struct io_machine *m, const struct machine_config *c,
 	fd = open_bus(k);
 	if (fd < 0)
 		return refuse(diag, fd, k->interface);
-	/* A period's frames; more would be old when they go out. */
+	/* The frames of one period: more would be too old when they go out. */
 	can_socket_queue(fd, 2 * INTERP_NAXES + 4);
 	err = can402_attach(m, c, fd);
 	if (err < 0) {

@@ -2,15 +2,14 @@
 /*
  * can402_stop.c - drives that brake together, and go back together
  *
- * Where one has a fault, it stops by itself, as it must, and the cycle brakes
- * the others on the path before it takes their power.  Where power is taken from
- * drives that move, as by an e-stop, each could stop as fast as it can; then
- * they would leave the path at any angle.  So they run out along its tangent,
- * each by the same part of its speed, in the time that the slowest of them
- * needs.
+ * A drive that has a fault stops by itself, and the cycle brakes the others on
+ * the path before it takes their power.  When power is taken from drives that
+ * move, as in an e-stop, they would leave the path at any angle if each stopped
+ * as fast as it can.  So they brake along the tangent of the path: in a period
+ * each loses the same part of its speed, and all need the time of the slowest.
  *
- * On the way back each goes the same part of what it is off, so that all go
- * along one line and arrive in the same period.
+ * On the way back each drive goes the same part of its distance in a period, so
+ * that all go along one line and arrive in the same period.
  */
 #include "can402_bus.h"
 
@@ -27,7 +26,7 @@ static double speed_of(const struct drive *d, const struct can402_stop *t)
 	return (double)minus(d->target, t->was);
 }
 
-/* Periods the slowest needs. */
+/* How many periods the slowest drive needs to stop. */
 static double measure(struct can402 *s)
 {
 	double most = 0;
@@ -43,7 +42,7 @@ static double measure(struct can402 *s)
 	return most;
 }
 
-/* So far it may be off its place at the end, or farther than it was. */
+/* After the stop drive @i may be so much farther off its place. */
 static void allow(struct can402 *s, uint32_t i, double periods)
 {
 	struct can402_stop *t = &s->stop[i];
@@ -63,7 +62,7 @@ static void begin(struct can402 *s)
 		allow(s, i, most);
 }
 
-/* Drives that came into trouble in this period. */
+/* Note the drives that came into trouble in this period. */
 static void part(struct can402 *s)
 {
 	for (uint32_t i = 0; i < s->n; i++) {

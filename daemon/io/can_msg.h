@@ -2,8 +2,8 @@
 /*
  * can_msg.h - a CAN frame with its meaning still unread
  *
- * Classic frames with 11-bit identifiers; what else is on the bus is not for
- * us.  Numbers in data are little-endian, as CANopen (CiA 301) has them.
+ * Classic frames with 11-bit identifiers; edmd ignores all other frames.
+ * Numbers in the data are little-endian, as in CANopen (CiA 301).
  */
 #ifndef CAN_MSG_H
 #define CAN_MSG_H
@@ -46,8 +46,8 @@ static inline void can_put(uint8_t *at, uint32_t x, int bytes)
 }
 
 /**
- * can_bits() - the most bits a frame of @len data bytes takes, stuffing and
- * the gap to the next one included: 135 for 8 bytes.
+ * can_bits() - the most bits that a frame of @len data bytes takes, with
+ * stuffing and the gap to the next frame: 135 for 8 bytes.
  */
 static inline uint32_t can_bits(uint32_t len)
 {

@@ -77,7 +77,7 @@ int can_socket_open(const char *interface, const struct can_hear *hear,
 	return err;
 }
 
-/* What the kernel takes for a frame that waits, half of what it is given. */
+/* Half of what the kernel counts for a waiting frame: it doubles SO_SNDBUF. */
 #define FRAME_ROOM	512
 
 void can_socket_queue(int fd, size_t frames)

@@ -18,7 +18,7 @@
 enum can_got {
 	CAN_NOTHING,
 	CAN_FRAME,
-	CAN_ODD,			/* a frame that is no classic 11-bit one */
+	CAN_ODD,			/* not a classic frame of 11 bits */
 	CAN_BUS_OFF,			/* the controller left the bus, */
 	CAN_RESTARTED,			/* ... and has come back to it */
 	CAN_WARNING,			/* it counts many errors, */

@@ -2,10 +2,10 @@
 /*
  * drive.c - one drive: what it says, and what it is told
  *
- * A target sent before a SYNC is taken with it; the answer to that SYNC shows
- * where the target before it has led.  So a measured place lies between the
- * last few targets if the drive is well, and the following error is how far it
- * is outside of them.
+ * A drive takes a target at the SYNC after it was sent.  Its answer to that
+ * SYNC shows where the target before has led.  So the measured place of a drive
+ * that is well lies between the last few targets, and the following error is
+ * how far it lies outside of them.
  */
 #include "drive.h"
 
@@ -13,14 +13,14 @@
 #include <stdlib.h>
 
 #define FAULT_RESET	0x80
-#define RESET_CYCLES	500		/* to leave a fault; edges all the way */
+#define RESET_CYCLES	500		/* so long bit 7 goes up and down */
 #define MODE_CSP	8
 #define FOLLOWS		0x1000u		/* bits of the statusword in mode 8 */
 #define FOLLOWING_ERROR	0x2000u
 #define AT_LIMIT	0x0800u
 #define NMT_OPERATIONAL	0x05
-#define ALARM_SYNCS	2		/* the answer of the first may be older */
-#define SURPLUS_MAX	2		/* answers that none was missing for */
+#define ALARM_SYNCS	2		/* an answer under way may be older */
+#define SURPLUS_MAX	2		/* answers more than SYNCs */
 
 void drive_init(struct drive *d, const struct drive_config *c)
 {
@@ -29,8 +29,17 @@ void drive_init(struct drive *d, const struct drive_config *c)
 	};
 }
 
+/* What the set-up wrote may be gone, or the drive may not run any more. */
+static bool ends_setup(enum drive_trouble t)
+{
+	return t == DRIVE_REBOOTED || t == DRIVE_MUTE ||
+	       t == DRIVE_NO_ANSWER || t == DRIVE_NOT_STARTED;
+}
+
+/* The first one is told, but none that ends the set-up is forgotten. */
 static void trouble(struct drive *d, enum drive_trouble t)
 {
+	d->unset = d->unset || ends_setup(t);
 	if (d->trouble == DRIVE_WELL)
 		d->trouble = t;
 }
@@ -86,7 +95,7 @@ void drive_keep_zero(struct drive *d, int32_t zero)
 
 /* -- What it says --------------------------------------------------------- */
 
-/* Its count begins anew, and what was configured is gone. */
+/* Its count begins anew, and its settings are gone. */
 static void hear_restart(struct drive *d)
 {
 	if (d->homed && !d->c.absolute)
@@ -113,7 +122,7 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 	const uint16_t now = (uint16_t)can_get(m->data, 2);
 	const enum drive_state state = drive_state_of(now);
 
-	/* Back in the state it has only after its power came on. */
+	/* It is in this state only after its power came on. */
 	if (state == DRIVE_NOT_READY && d->stands) {
 		hear_restart(d);
 		return;
@@ -145,7 +154,7 @@ static void hear_emergency(struct drive *d, const struct can_msg *m)
 	d->alarmed = ALARM_SYNCS;
 }
 
-/* State 0 is the boot-up message; all but 5 is not operational. */
+/* State 0 is the boot-up message; only 5 is operational. */
 static void hear_heartbeat(struct drive *d, const struct can_msg *m)
 {
 	const uint8_t state = m->data[0] & 0x7f;
@@ -158,7 +167,7 @@ static void hear_heartbeat(struct drive *d, const struct can_msg *m)
 		trouble(d, DRIVE_NOT_STARTED);
 }
 
-/* A TPDO is as long as what was mapped into it. */
+/* Its TPDO has one byte more if 6061 could be mapped. */
 static uint8_t length_of(const struct drive *d, uint16_t id, uint8_t len)
 {
 	return id == CAN_TPDO1 && d->shows_mode ? (uint8_t)(len + 1) : len;
@@ -192,7 +201,7 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 
 /* -- What did not come ---------------------------------------------------- */
 
-/* What an axis lags dies away as slowly as it came. */
+/* The lag of an axis goes away as slowly as it came. */
 static void watch_lag(struct drive *d)
 {
 	const int64_t way = llabs(wrapped((int64_t)d->sent[0] - d->sent[1]));
@@ -207,7 +216,7 @@ static void watch_following(struct drive *d)
 	int64_t low = INT32_MAX, high = INT32_MIN;
 
 	watch_lag(d);
-	/* Each as seen from the place: it counts round. */
+	/* Differences from the place, because places count round at 2^32. */
 	for (int i = 0; i < DRIVE_SENT; i++) {
 		const int64_t off = wrapped((int64_t)d->sent[i] - d->actual);
 
@@ -228,7 +237,7 @@ bool drive_follows(const struct drive *d)
 	       (d->c.no_follow_bit || d->status & FOLLOWS);
 }
 
-/* The bits of mode 8; they mean it once it has followed. */
+/* The bits of mode 8 mean something once the drive has followed. */
 static void watch_bits(struct drive *d)
 {
 	if (drive_follows(d))
@@ -261,8 +270,8 @@ static void watch_state(struct drive *d)
 }
 
 /*
- * Many drives send an emergency for a warning too.  Whether it is more than
- * that is in their statusword, which must follow at once.
+ * Many drives send an emergency for a warning too.  Their statusword tells
+ * whether it is a fault, so this must follow at once.
  */
 static void watch_alarm(struct drive *d)
 {
@@ -274,9 +283,9 @@ static void watch_alarm(struct drive *d)
 }
 
 /*
- * Answers that are late come together, and were missing before.  More than one
- * to each SYNC, of which none was missing, are of two drives.  What is missing
- * for good is forgotten as slowly as it was lost.
+ * Late answers come together, and were missing before.  If there is more than
+ * one answer to each SYNC and none was missing, two drives have this node.
+ * Answers that never came are forgotten as slowly as they were lost.
  */
 static void watch_answers(struct drive *d)
 {
@@ -305,7 +314,7 @@ void drive_sync(struct drive *d)
 		watch_following(d);
 	} else if (++d->missing > (d->heard ? d->c.missing_max :
 				   d->c.answer_cycles)) {
-		/* Its state as last heard: it may still take a quick stop. */
+		/* Its state stays as last heard, so it is sent a quick stop. */
 		trouble(d, DRIVE_NO_ANSWER);
 	}
 	d->answered = false;
@@ -316,7 +325,7 @@ void drive_sync(struct drive *d)
 
 /* -- What it is told ------------------------------------------------------ */
 
-/* Not enabled in another mode; but some show theirs only when enabled. */
+/* Wait for mode 8 before enabling; some drives show it only when enabled. */
 static bool waits_for_mode(struct drive *d)
 {
 	if (d->state != DRIVE_SWITCHED_ON || !d->shows_mode ||
@@ -332,20 +341,20 @@ static uint16_t control_word(struct drive *d)
 	const bool on = d->goal == DRIVE_GO_ON && d->trouble == DRIVE_WELL;
 
 	if (d->state == DRIVE_FAULT) {
-		/* A rising edge of bit 7; only after a reset was asked for. */
+		/* A rising edge of bit 7, after an operator's reset only. */
 		d->edge = d->resetting > 0 && !d->edge;
 		return d->edge ? FAULT_RESET : 0;
 	}
 	if (on && waits_for_mode(d))
 		return drive_control(DRIVE_GO_ON, DRIVE_READY);
-	/* Without power in between, what no brake holds would fall. */
+	/* An axis without a brake would fall if it lost torque in between. */
 	if (on && d->c.held && d->state == DRIVE_QUICK_STOP)
 		return drive_control(DRIVE_GO_ON, DRIVE_SWITCHED_ON);
 	return drive_control(on || d->goal != DRIVE_GO_ON ? d->goal :
 			     DRIVE_GO_STOP, d->state);
 }
 
-/* From where it stands when it is enabled, slowly, to where it is wanted. */
+/* Go slowly from where it stands to where it is wanted. */
 static void approach(struct drive *d, int32_t want)
 {
 	const int64_t left = wrapped((int64_t)want - d->target);
@@ -398,11 +407,7 @@ void drive_aim(struct drive *d, enum drive_goal goal)
 
 void drive_reset(struct drive *d)
 {
-	const bool anew = d->trouble == DRIVE_REBOOTED ||
-			  d->trouble == DRIVE_MISCONFIGURED ||
-			  d->trouble == DRIVE_MUTE ||
-			  d->trouble == DRIVE_NO_ANSWER ||
-			  d->trouble == DRIVE_NOT_STARTED;
+	const bool anew = d->unset || d->phase == DRIVE_REFUSED;
 
 	d->trouble = DRIVE_WELL;
 	d->emergency = 0;

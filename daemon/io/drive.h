@@ -104,8 +104,8 @@ struct drive_config {
 	double lag_cycles;		/* it may lag by its way in so many */
 	int32_t slew_increments;	/* a cycle, to its place when enabled */
 	uint32_t limited_cycles;	/* bit 11 may stand so long */
-	bool absolute;			/* it knows its place when switched on */
-	bool held;			/* no brake: power stays in quick stop */
+	bool absolute;			/* it keeps its place without power */
+	bool held;			/* no brake: torque in quick stop too */
 	bool no_follow_bit;		/* it does not have bit 12 */
 	uint32_t identity[4];		/* 1018:1 ... 4, where ... */
 	uint8_t identified;		/* ... this has bit 0 ... 3 */
@@ -135,11 +135,12 @@ struct drive {
 	enum drive_state state;
 	enum drive_goal goal;
 	enum drive_trouble trouble;
+	bool unset;			/* set it up again at the next reset */
 	uint16_t status;		/* statusword */
 	uint16_t emergency;		/* last EMCY code; 0: none */
 	uint32_t emergencies;		/* with a code, since a reset */
-	uint32_t alarmed;		/* SYNCs that must be answered after the
-					 * last one: is it more than a warning? */
+	uint32_t alarmed;		/* so many SYNCs after the last one must
+					 * be answered */
 	uint32_t aborts;		/* SDOs it refused, in all; the last: */
 	uint32_t abort, abort_value;	/* its code, 0: a value read does not
 					 * do; what was written, or read */
@@ -164,17 +165,18 @@ struct drive {
 	uint32_t word;			/* read last, for the steps after it */
 	uint32_t choice;		/* of interpolation times */
 	int8_t time_index;		/* ... as the drive has it */
-	uint32_t refused;		/* a write's abort, while it is read back */
+	uint32_t refused;		/* abort of a write that is read back */
 	bool reading_back;
 	bool remode;			/* write 6060 once more */
 	uint32_t waited;		/* cycles since the last request */
-	bool quiet, asked;		/* told to send no PDOs; a request out */
+	bool quiet, asked;		/* told to send no PDOs; a request is
+					 * not answered yet */
 	uint32_t unanswered;		/* steps given up, in all */
 	uint32_t silent;		/* cycles since a heartbeat */
 	uint32_t missing;		/* SYNCs without a TPDO */
 	uint32_t enabled_for;		/* cycles in operation enabled */
 	uint32_t limited_for;		/* ... at an internal limit */
-	uint32_t mode_waited;		/* cycles switched on, in another mode */
+	uint32_t mode_waited;		/* cycles switched on in another mode */
 	uint32_t warnings;		/* times a bit of DRIVE_WARNS came */
 	bool answered;			/* a TPDO came since the last SYNC */
 	uint32_t answers;		/* so many did */

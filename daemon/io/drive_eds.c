@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * drive_eds.c - what a drive will be asked, against its EDS (CiA 306)
+ * drive_eds.c - compare the set-up of a drive with its EDS (CiA 306)
  *
- * Only what the EDS says plainly is refused: an object or sub-index that it
- * does not have, one that is read-only, a value outside of its limits.  The
- * drive itself has the last word.
+ * A step is refused only if the EDS is clear: the object or sub-index is not
+ * there, it is read-only, or the value is outside of its limits.  All else is
+ * left to the drive itself.
  */
 #include "drive_steps.h"
 
@@ -45,7 +45,7 @@ static bool is_section(const struct object *o, const char *section)
 	return o->want.sub == 0 && strcasecmp(section, name) == 0;
 }
 
-/* A number, or one that is added to the node's. */
+/* A number, or "$NODEID+number". */
 static bool number(const char *text, uint8_t node, long long *ret)
 {
 	char *end;
@@ -80,7 +80,7 @@ static int on_key(void *user, const char *section, const char *name,
 	return 1;
 }
 
-/* Those whose value hangs on what is read are only looked for. */
+/* Values that depend on what is read are not compared with limits. */
 static void collect(struct eds *e, const struct drive_config *c)
 {
 	struct drive_step s;
@@ -103,7 +103,7 @@ static void collect(struct eds *e, const struct drive_config *c)
 
 static bool is_outside(const struct object *o)
 {
-	/* As signed as its limits are. */
+	/* Limits below 0 make the value a signed one. */
 	const long long x = o->has_low && o->low < 0 && o->want.bytes == 4 ?
 			    (int32_t)o->want.value : (long long)o->want.value;
 
@@ -133,8 +133,8 @@ int drive_eds_check(const char *path, const struct drive_config *c,
 	line = ini_parse(path, on_key, &e);
 	if (line != 0) {
 		interp_diag_say(diag, "%s: %s; the EDS of the drive, as its "
-				      "maker has it", path,
-				      line < 0 ? strerror(errno) : "not the lines of an EDS");
+				      "maker has it", path, line < 0 ?
+				strerror(errno) : "not the lines of an EDS");
 		return line < 0 ? -ENOENT : -EINVAL;
 	}
 	for (size_t i = 0; i < e.n; i++) {

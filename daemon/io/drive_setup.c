@@ -2,13 +2,13 @@
 /*
  * drive_setup.c - bring a drive up by SDO
  *
- * Expedited transfers of CiA 301, one in flight, in state pre-operational:
- * what PDOs carry may not change while they flow.  A request that is not
- * answered is repeated; after SETUP_TRIES the drive is asked from the first
- * one on, so that one which is switched on later is found.
+ * The requests are expedited transfers of CiA 301, one at a time.  The drive is
+ * pre-operational, because the mapping of PDOs may not change while they are
+ * sent.  A request that is not answered is repeated; after SETUP_TRIES the
+ * set-up begins again, so that a drive which is switched on later is found.
  *
- * A write that is refused is read back: an object that has the value already
- * will do, be it read-only or not.
+ * If a write is refused, the object is read: it is good if it has that value
+ * already.  So read-only objects are no obstacle.
  */
 #include "drive.h"
 #include "drive_steps.h"
@@ -23,7 +23,7 @@
 #define SDO_STORED	0x60
 #define SDO_ABORT	0x80
 
-/* Expedited, with its size: CiA 301. */
+/* An expedited transfer that says its size. */
 static struct can_msg download(const struct drive *d,
 			       const struct drive_write *w)
 {
@@ -58,10 +58,11 @@ void drive_setup_again(struct drive *d)
 	d->phase = DRIVE_SILENT;
 	d->step = d->tries = d->choice = 0;
 	d->quiet = d->asked = d->reading_back = d->remode = false;
+	d->unset = false;
 	d->shows_mode = false;
 }
 
-/* The heartbeat is no longer watched, but names us: the drive was not off. */
+/* Time 0: not watched.  Our node stays there, unless the drive loses power. */
 size_t drive_setup_end(const struct drive *d, struct can_msg *ret)
 {
 	const struct drive_write beat = {
@@ -159,7 +160,7 @@ static bool is_answer(const struct drive *d, const struct drive_write *w,
 	       m->data[3] == w->sub;
 }
 
-/* Of an upload, as many bytes as it says. */
+/* The value that was read, as many bytes as the answer says. */
 static uint32_t word_of(const struct can_msg *m)
 {
 	const int bytes = m->data[0] & 1 ? 4 - (m->data[0] >> 2 & 3) : 4;
@@ -167,7 +168,7 @@ static uint32_t word_of(const struct can_msg *m)
 	return can_get(m->data + 4, bytes);
 }
 
-/* The object is not there, or cannot be mapped; all else is a refusal. */
+/* These codes mean that the object is missing; all others are a refusal. */
 static bool is_missing(uint32_t code, const struct drive_step *s)
 {
 	return code == 0x06020000 || code == 0x06040041 ||
@@ -180,7 +181,7 @@ static void on_abort(struct drive *d, const struct drive_step *s,
 	const bool passes = s->write.may_miss && is_missing(code, s);
 
 	if (d->reading_back) {
-		/* It cannot be read either: what counts is the write. */
+		/* It cannot be read either: tell the code of the write. */
 		note_abort(d, &s->write, d->refused, DRIVE_NOT_PASSED);
 		refuse(d);
 		return;

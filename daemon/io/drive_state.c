@@ -100,8 +100,8 @@ const char *drive_trouble_name(enum drive_trouble t)
 					  "statusword is 0",
 		[DRIVE_LIMITED]		= "clips its target: bit 11 of its "
 					  "statusword stays 1",
-		[DRIVE_TWICE]		= "answers more often than it is asked: "
-					  "are there two with its node?",
+		[DRIVE_TWICE]		= "answers more often than it is "
+					  "asked: are there two with its node?",
 		[DRIVE_NOT_STARTED]	= "is no longer operational: somebody "
 					  "stopped it by NMT",
 	};

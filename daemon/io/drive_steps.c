@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * drive_steps.c - the table of what a drive is asked while it is brought up
+ * drive_steps.c - the table of all steps of the set-up
  */
 #include "drive_steps.h"
 
@@ -18,8 +18,8 @@ const struct drive_write drive_mode_csp = { 0x6060, 0, 1, MODE_CSP, false };
 enum what {
 	/* Reads. */
 	IS_402, HAS_CSP, IDENTITY,
-	WAS_ON,				/* does it still name us? */
-	COB_READ,			/* of a PDO, for the steps behind it */
+	WAS_ON,				/* is our node still in it? */
+	COB_READ,			/* of a PDO, for the next steps */
 	SYNC_READ, COUNTER_READ,
 	INDEX_READ,			/* of interpolation time */
 	INDEX_CHECK, VALUE_CHECK,
@@ -27,15 +27,15 @@ enum what {
 	LAST_READ = STILL_ON,
 	/* Writes. */
 	NUMBER,				/* the number beside it */
-	BEAT_MS,			/* how often it is to be heard */
-	MASTER_BEAT,			/* whose heartbeat it is to miss */
-	COB_OFF,			/* as it was, without power */
+	BEAT_MS,			/* time between its heartbeats */
+	MASTER_BEAT,			/* whose heartbeat it watches */
+	COB_OFF,			/* the same identifier, disabled */
 	COB_RPDO, COB_TPDO,		/* another identifier, if need be */
 	COB_RPDO_ON, COB_TPDO_ON,
 	MODE_MAPPED,			/* it can send 6061 */
 	TPDO_COUNT,
-	SYNC_ID,			/* if it is another */
-	CYCLE_OFF, COUNTER_OFF,		/* if its SYNCs are to be counted */
+	SYNC_ID,			/* if it is not 080 */
+	CYCLE_OFF, COUNTER_OFF,		/* if it expects counted SYNCs */
 	CYCLE_US,
 	FILE_WRITES,			/* those of the machine file */
 	TIME_INDEX, TIME_VALUE,		/* interpolation: value * 10^index s */
@@ -120,7 +120,7 @@ static uint32_t file_row(void)
 	return i;
 }
 
-/* NULL: a write of the machine file, number *ret_file, or behind the last. */
+/* NULL: write *ret_file of the machine file, or (UINT32_MAX) past the end. */
 static const struct row *row_at(const struct drive *d, uint32_t step,
 				uint32_t *ret_file)
 {
@@ -139,7 +139,7 @@ static const struct row *row_at(const struct drive *d, uint32_t step,
 
 /* -- Interpolation time --------------------------------------------------- */
 
-#define NCHOICES	5		/* as it is; then from ms on down */
+#define NCHOICES	5		/* the drive's own, then ms ... us */
 
 /* The period as value * 10^index s, one byte; 0: it does not fit. */
 static uint32_t time_value(uint32_t period_us, int index)
@@ -152,7 +152,7 @@ static uint32_t time_value(uint32_t period_us, int index)
 	       period_us / unit > 255 ? 0 : period_us / unit;
 }
 
-/* The drive's own index first: many have no other. */
+/* First the drive's own index, because many drives allow no other. */
 static int choice_index(const struct drive *d)
 {
 	return d->choice == 0 ? (int8_t)d->time_index : -2 - (int)d->choice;
@@ -291,7 +291,7 @@ static bool names_us(const struct drive *d)
 	return (d->word >> 16 & 0x7f) == d->c.master;
 }
 
-/* It was switched off since we set it up: its count is another. */
+/* If it was switched off since the last set-up, its count is another one. */
 static void heed_memory(struct drive *d)
 {
 	if (d->homed && !names_us(d) && !d->c.absolute)
@@ -359,7 +359,7 @@ void drive_step_missing(struct drive *d, const struct drive_step *s)
 
 	if (s->what == COUNTER_READ)
 		d->word = 0;
-	/* Of the mapping it is one entry that is missing. */
+	/* Here only this entry or value is missing, not the whole object. */
 	if (!r || s->what == MODE_MAPPED || s->what == COUNTER_READ ||
 	    s->what == CYCLE_OFF) {
 		d->step++;

@@ -2,9 +2,10 @@
 /*
  * drive_steps.h - what a drive is asked, in order, while it is brought up
  *
- * Private to drive_setup.c.  A step is a read that must fit, or a write; some
- * are left out by what was read before them, by what the machine file wants
- * left alone, or because the drive does not have the object.
+ * Private to drive_setup.c.  A step writes an object, or reads one that must
+ * have a certain value.  A step is left out if a value that was read before
+ * makes it needless, if the machine file says so, or if the drive does not have
+ * the object.
  */
 #ifndef IO_DRIVE_STEPS_H
 #define IO_DRIVE_STEPS_H
@@ -22,30 +23,31 @@ struct drive_step {
 extern const struct drive_write drive_mode_csp;
 
 /**
- * drive_step_due() - the step at hand; steps that are not due are passed.
- * Return: false: there is none left.
+ * drive_step_due() - get the present step; steps that are not due are skipped.
+ * Return: false if no step is left.
  */
 bool drive_step_due(struct drive *d, struct drive_step *ret);
 
-/** drive_step_fits() - d->word, which was read, is what it must be. */
+/** drive_step_fits() - has the object, read into d->word, a good value? */
 bool drive_step_fits(struct drive *d, const struct drive_step *s);
 
 /**
- * drive_step_finds_restart() - d->word, which was read, tells that it forgot
- * what was written before: all of it is to be done again.
+ * drive_step_finds_restart() - does d->word, which was read, show that the
+ * drive forgot what was written?  Then the set-up must begin again.
  */
-bool drive_step_finds_restart(const struct drive *d, const struct drive_step *s);
+bool drive_step_finds_restart(const struct drive *d,
+			      const struct drive_step *s);
 
 /**
- * drive_step_forgets() - is repeating it no way to go on?  What it writes over
- * would have told that the drive was switched off after it was read.
+ * drive_step_forgets() - may this step not be repeated alone?  It overwrites
+ * the value that shows whether the drive was switched off meanwhile.
  */
 bool drive_step_forgets(const struct drive_step *s);
 
-/** drive_step_done() - a write was stored: on to the next. */
+/** drive_step_done() - a write was stored: go to the next step. */
 void drive_step_done(struct drive *d, const struct drive_step *s);
 
-/** drive_step_missing() - on past all steps of this object. */
+/** drive_step_missing() - skip all steps of this object. */
 void drive_step_missing(struct drive *d, const struct drive_step *s);
 
 /** drive_step_choose() - try the next value. Return: false: there is none. */
@@ -54,7 +56,7 @@ bool drive_step_choose(struct drive *d);
 struct interp_diag;
 
 /**
- * drive_eds_check() - drive_eds.c: would the drive of this EDS take it all?
+ * drive_eds_check() - does this EDS allow all that the set-up writes?
  * Return: 0; -ENOENT; -EINVAL; with found and wanted of @diag filled.
  * Startup only.
  */

@@ -2,9 +2,10 @@
 /*
  * edges.c - the edge thread
  *
- * Each side writes into the next of a few boxes and then says which: a reader
- * that is interrupted for as long as the writer needs to come round reads
- * again, a few times, and else keeps what it had.
+ * The two threads exchange messages through a ring of boxes.  The writer fills
+ * the next box and then says which one it was.  A reader may be interrupted for
+ * so long that the writer comes round to its box; then it reads again, a few
+ * times, and if that fails it keeps the message before.
  */
 #include "edges.h"
 
@@ -34,8 +35,8 @@ struct mailbox {
 
 /* The shortest of the last QUICK_WRITES times, or of twice as many. */
 struct quickest {
-	int64_t before_ns, since_ns;	/* of the last full row; of the present */
-	int n;				/* in the present row */
+	int64_t before_ns, since_ns;	/* of the last full row; of this row */
+	int n;				/* times in this row */
 };
 
 struct edges {
@@ -47,7 +48,7 @@ struct edges {
 	int32_t from[IO_NAXES], to[IO_NAXES];	/* of the period played */
 	int32_t held_at[IO_NAXES];	/* target when a stop was told */
 	bool held;
-	int64_t slot_at_ns;		/* the last slot may have begun so late */
+	int64_t slot_at_ns;		/* the last slot began then or before */
 	struct quickest quickest;	/* from waking to the end of a write */
 	struct edges_shown seen;	/* by the cycle */
 	pthread_t thread;
@@ -143,7 +144,7 @@ static int64_t wait_until(int64_t ns)
 
 /* -- The thread ----------------------------------------------------------- */
 
-/* From the first word of a stop to the next target behind it. */
+/* A stop holds from when it is told to the next target after it. */
 static void heed_stop(struct edges *e)
 {
 	struct edges_told t = e->last_told;
@@ -159,7 +160,7 @@ static void heed_stop(struct edges *e)
 	}
 }
 
-/* @way pulses evenly over the slots, rounded to the nearest, ends alike. */
+/* Spread @way pulses evenly over the slots, rounded to the nearest. */
 static int64_t part(int64_t way, uint32_t slot, uint32_t slots)
 {
 	const int64_t n = (2 * llabs(way) * (slot + 1) + slots) / (2 * slots);
@@ -172,19 +173,19 @@ static void aim(const struct edges *e, uint32_t slot, int32_t ret[IO_NAXES])
 	for (int i = 0; i < IO_NAXES; i++) {
 		const int64_t way = (int64_t)e->to[i] - e->from[i];
 
-		/* The first and the last half a pulse's time off the ends. */
+		/* Half the time of a pulse is left at both ends. */
 		ret[i] = e->held ? e->pulser.put[i] :
 			 (int32_t)(e->from[i] + part(way, slot, e->c.slots));
 	}
 }
 
-/* All pulses have begun; the last may end in the next period. */
+/* Have all pulses begun?  The last one may end in the next period. */
 static bool is_put(const struct edges *e)
 {
 	return memcmp(e->pulser.put, e->to, sizeof(e->to)) == 0;
 }
 
-/* Of the axis that has most. */
+/* Pulses of the axis that has most to go. */
 static uint32_t left(const struct edges *e)
 {
 	int64_t most = 0;
@@ -208,7 +209,8 @@ static void show(struct edges *e, bool end)
 
 	memcpy(s->put, e->pulser.put, sizeof(s->put));
 	if (end) {
-		s->busy = left(e) > e->c.slots / (4 * pulser_periods(&e->c.pulser));
+		s->busy = left(e) > e->c.slots /
+				    (4 * pulser_periods(&e->c.pulser));
 		s->periods++;
 	}
 	post(&e->shown, s, sizeof(*s));
@@ -274,8 +276,8 @@ static void play_slot(struct edges *e, uint32_t slot, int64_t at_ns)
 }
 
 /*
- * One with nothing to do is slept through, lines as they are.  A slot that is
- * late may still be played behind the end: the next period keeps its distance.
+ * The thread sleeps through a period that has nothing to do.  A late slot may
+ * be played after the end of its period: the next one keeps its distance.
  */
 static void play(struct edges *e, int64_t from_ns)
 {
@@ -321,7 +323,7 @@ static void *run(void *arg)
 	while (!atomic_load(&e->quit)) {
 		int64_t late = now_ns() - next;
 
-		/* Periods that went by are not made up for. */
+		/* Periods that were missed are left out. */
 		if (late > e->c.period_ns)
 			next += late / e->c.period_ns * e->c.period_ns;
 		sleep_until(next);

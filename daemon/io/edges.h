@@ -49,7 +49,7 @@ struct edges_told {
 /* What the thread says, once a slot. */
 struct edges_shown {
 	int32_t put[IO_NAXES];		/* pulses put out */
-	uint32_t busy;			/* too many of the last period's are left */
+	uint32_t busy;			/* too many pulses are left over */
 	uint32_t lost;			/* the lines are gone */
 	uint32_t periods;		/* played; stands still: it is dead */
 	uint32_t late;			/* slots later than one slot, in all */

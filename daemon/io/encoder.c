@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * encoder.c - where an axis truly is, and what it has lost
+ * encoder.c - where an axis truly is, and how many pulses it has lost
  */
 #include "encoder.h"
 
@@ -43,7 +43,7 @@ static void stand_at(struct encoder *e, int32_t place)
 	e->stands = true;
 }
 
-/* As of a drive: what it lags dies away as slowly as it came. */
+/* As with a drive: the lag goes away as slowly as it came. */
 static void watch(struct encoder *e, int32_t put)
 {
 	const int32_t way = abs(minus(put, e->put));
@@ -51,7 +51,7 @@ static void watch(struct encoder *e, int32_t put)
 	const double left = k > 0 ? e->lag * k / (k + 1) : 0;
 	const int32_t off = abs(minus(minus(put, e->lost), e->at));
 
-	/* Two cycles of its way: the counts are that much older. */
+	/* Counts are two cycles older than pulses: allow the way of two. */
 	e->lag = fmax(left, (k + 2) * way);
 	if (e->c.following_max > 0 && off > e->c.following_max + e->lag)
 		e->too_far = true;

@@ -2,12 +2,12 @@
 /*
  * gpio.c - a machine on the lines of GPIO chips: pulses out, switches in
  *
- * All outputs of a chip are one request and one write a period, all inputs one
- * request and one read.  A write that would change nothing is left out, but
- * not longer than REFRESH_S: a chip that is gone is to be noticed.
+ * All outputs of a chip are one request and one write in a period, all inputs
+ * one request and one read.  A write that would change nothing is left out, but
+ * at least one is made each REFRESH_S, so that a lost chip is noticed.
  *
- * A chip that does not answer is lost for good: no pulses, no sparks, no
- * watchdog wave, whatever the chips that still answer.
+ * When one chip does not answer, the machine is lost until edmd is started
+ * again: no pulses, no sparks, no watchdog wave, also on the other chips.
  */
 #include "gpio_own.h"
 
@@ -40,7 +40,7 @@ static void inputs_read(struct gpio *g)
 	}
 }
 
-/* The worse one counts if several are on; none on is what it was. */
+/* If several are on, the worst one counts; if none is on, nothing changed. */
 static void gap_read(struct gpio *g)
 {
 	const bool power = g->out >> LINE_SPARK & 1;
@@ -63,7 +63,7 @@ static uint32_t axes_on(const struct gpio *g, int line)
 	return (uint32_t)(g->in >> line) & ((UINT32_C(1) << IO_NAXES) - 1);
 }
 
-/* A thread that plays nothing any more is as a chip that is gone. */
+/* An edge thread that plays nothing any more counts as a lost chip. */
 static void edges_look(struct gpio *g)
 {
 	const uint32_t periods = g->shown.periods;
@@ -131,7 +131,7 @@ _Static_assert(LINE_STEP == 0 && LINE_DIR == IO_NAXES, "the first lines");
 _Static_assert(LINE_BRAKE == LINE_ENABLE + 1, "the lines of power in a row");
 _Static_assert(CONFIG_NLINES <= 64, "a bit for each");
 
-/* Of each chip; false: one did not answer. */
+/* Write this kind of lines on each chip; false: a chip did not answer. */
 static bool bulk_write(struct gpio *g, enum bulk_kind kind)
 {
 	bool all = true;
@@ -172,7 +172,7 @@ static int32_t minus(int32_t a, int32_t b)
 	return (int32_t)((uint32_t)a - (uint32_t)b);
 }
 
-/* What stops at once stops between two pulses, not at the period's end. */
+/* An e-stop and a limit switch end the pulses at once, not with the period. */
 static void pulses_order(struct gpio *g, const int32_t *target, bool anew)
 {
 	const uint32_t ends = axes_on(g, LINE_LIMIT);
@@ -187,7 +187,7 @@ static void pulses_order(struct gpio *g, const int32_t *target, bool anew)
 	edges_tell(g->edges, &g->told);
 }
 
-/* Another program begins where the machine stands: no pulses to there. */
+/* A new program begins where the machine stands, so it makes no pulses. */
 static void pulses_make(struct gpio *g, const struct io_outputs *out)
 {
 	const bool anew = !g->placed || out->path != g->path;

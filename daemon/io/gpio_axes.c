@@ -2,9 +2,9 @@
 /*
  * gpio_axes.c - axes on lines: their encoders, power and brakes
  *
- * Power comes first, then the brakes open.  A brake needs brake_ms for that, and
- * nothing moves before.  The other way round the brakes close first, and power
- * goes when they have had their time.
+ * Power comes first, then the brakes open.  A brake needs brake_ms to open, and
+ * nothing moves before that.  In a stop the brakes close first, and power goes
+ * away brake_ms later.
  */
 #include "gpio_own.h"
 

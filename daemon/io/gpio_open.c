@@ -13,8 +13,8 @@
 #define COUNTERS	"/sys/bus/counter/devices"
 #define REFRESH_S	1e-3
 #define DEAD_S		0.02		/* the edge thread plays nothing */
-#define QUIET_S		0.1		/* no comparator on, with the power on; or
-					 * no sample of the converter */
+#define QUIET_S		0.1		/* power is on and no comparator is, or
+					 * no sample of the converter came */
 
 static int refuse(struct interp_diag *d, int err, const char *line,
 		  const char *found, const char *wanted)
@@ -38,8 +38,8 @@ static int refuse_chip(struct interp_diag *d, int err, const char *line,
 }
 
 /*
- * By label, for boards that number their chips anew at each start.  A chip that
- * may not be opened may be the one.
+ * Find a chip by its label, for boards that number their chips anew at each
+ * start.  If a chip may not be opened, it may be the one that is looked for.
  */
 static int chip_by_label(struct lines_chip **ret, const char *label)
 {
@@ -116,7 +116,7 @@ static int line_check(const struct chip *c, unsigned int offset,
 	return 0;
 }
 
-/* Inputs may share a line. */
+/* The slot of line @offset; inputs may share a line. */
 static uint8_t slot_find(struct bulk *b, unsigned int offset)
 {
 	size_t i = 0;
@@ -167,7 +167,7 @@ static int line_place(struct gpio *g, const struct config_gpio *k, int line,
 	return 0;
 }
 
-/* A line of this bulk, for a message about all of them. */
+/* The name of one line of this bulk, for a message about all of them. */
 static const char *line_of(const struct gpio *g, int chip, int kind)
 {
 	int l = 0;
@@ -253,7 +253,7 @@ static void encoder_configure(struct gpio *g, const struct machine_config *c,
 	g->encoders |= 1u << axis;
 }
 
-/* A and B, on the chip that both are of. */
+/* A and B must be lines of one chip. */
 static int encoder_lines(struct gpio *g, const struct machine_config *c,
 			 int axis, const struct config_encoder_at *at,
 			 struct interp_diag *d)
@@ -331,7 +331,7 @@ static struct pulser_config pulser_of(const struct config_gpio *k)
 	};
 }
 
-/* Behind the cycle, should they share a processor. */
+/* Its priority is below the cycle's, should they share a processor. */
 static int edges_open(struct gpio *g, const struct machine_config *c,
 		      struct interp_diag *d)
 {

@@ -63,7 +63,8 @@ struct gpio {
 	struct edges_shown shown;
 	uint32_t ends;			/* limit switches on, a period ago */
 	uint32_t adc_max;		/* periods without a sample */
-	uint32_t dead, dead_max;	/* periods in which it played none */
+	uint32_t dead, dead_max;	/* periods in which the thread did
+					 * nothing */
 	uint64_t in, out;		/* a bit per line: on */
 	uint32_t path;			/* program the pulser counts in */
 	bool placed;			/* a first target came */
@@ -71,7 +72,7 @@ struct gpio {
 	uint32_t watchdog_left, watchdog_periods;
 	uint32_t refresh_left, refresh_periods;
 	uint32_t quiet, quiet_max;	/* periods without a comparator */
-	struct io_shares shares;	/* as told last */
+	struct io_shares shares;	/* the last ones */
 	bool has_gap;			/* comparators */
 	struct adc adc;			/* fd -1: none */
 
@@ -85,7 +86,8 @@ struct gpio {
 	bool has_power;			/* lines that switch it */
 	uint32_t brake_periods;
 	int64_t brake_ns;
-	uint32_t open_left, close_left;	/* periods until the brakes are */
+	uint32_t open_left, close_left;	/* periods until the brakes are open,
+					 * or closed */
 };
 
 /* Of struct io_machine. */
@@ -94,19 +96,20 @@ void gpio_write(void *self, const struct io_outputs *out);
 void gpio_close(void *self);
 
 /**
- * gpio_open_outputs() - lines alone, all off: no axes, no gap.  As
- * io_gpio_open(); gpio_close() ends it.
+ * gpio_open_outputs() - request the lines, all off, without axes and gap.
+ * Return as io_gpio_open(); gpio_close() ends it.
  */
 int gpio_open_outputs(struct gpio **ret, const struct machine_config *c,
 		      struct interp_diag *diag);
 
 /**
- * gpio_outputs_write() - write those of g->out that the cycle itself writes.
+ * gpio_outputs_write() - write the lines of g->out that belong to the cycle.
  */
 void gpio_outputs_write(struct gpio *g);
 
 /**
- * gpio_levels() - turn the lines that are on, @on, into values for the chips.
+ * gpio_levels() - set the values of @lines: on if they are in @on.
+ * Return: true if any value has changed.
  */
 bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines);
 
@@ -115,16 +118,16 @@ bool gpio_levels(struct gpio *g, uint64_t on, uint64_t lines);
 /** gpio_put() - pulses put out for axis @i, as the machine counts them. */
 int32_t gpio_put(const struct gpio *g, int i);
 
-/** gpio_axes_read() - encoders, and what power and they mean for the axes. */
+/** gpio_axes_read() - read encoders; fill what @in says of the axes. */
 void gpio_axes_read(struct gpio *g, struct io_inputs *in);
 
-/** gpio_axes_write() - what to add to the targets; lines that are on. */
+/** gpio_axes_write() - update g->extra. Return: lines that are to be on. */
 uint64_t gpio_axes_write(struct gpio *g, const struct io_outputs *out);
 
-/** gpio_axes_counted() - pulses count from elsewhere than @before now. */
+/** gpio_axes_counted() - the count of pulses was @before and is another now. */
 void gpio_axes_counted(struct gpio *g, const int32_t *before);
 
-/** gpio_axes_close() - brakes first. */
+/** gpio_axes_close() - close the brakes, then take the power away. */
 void gpio_axes_close(struct gpio *g);
 
 /** gpio_note() - io_machine.note */

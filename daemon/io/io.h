@@ -22,7 +22,7 @@
 struct io_shares {
 	float open;			/* did not ignite, or not in time */
 	float spark;			/* ignited after a delay: good */
-	float arc;			/* burned on at once, in the same place */
+	float arc;			/* lit at once where the last one was */
 	float shorted;			/* no voltage at all */
 };
 
@@ -43,10 +43,10 @@ struct io_plc {
 	bool door_closed, level_ok, temperature_ok, no_fire, wire_whole;
 	bool hold;			/* as long as it is true */
 	bool start, reset;		/* asked for, in this period only */
-	uint8_t mcode_done;		/* the M code it has carried out; 0 */
+	uint8_t mcode_done;		/* M code carried out; 0: none */
 	uint16_t program;		/* to be loaded; 0: none */
 	double override;		/* 1: as programmed */
-	double axes_c;			/* temperature of the axes; 0: not told */
+	double axes_c;			/* temperature of axes; 0: unknown */
 };
 
 /* What the machine says, once a period. */
@@ -73,8 +73,8 @@ struct io_inputs {
 					 * their targets: they can brake on the
 					 * path */
 	bool starting;			/* not up yet: nothing can begin */
-	uint32_t unplaced;		/* bit per axis: its drive has lost count
-					 * of its place, as of this period */
+	uint32_t unplaced;		/* bit per axis: it lost its place in
+					 * this period */
 	bool axes_off;			/* not under power, or not yet on their
 					 * places: no motion can begin */
 	struct io_plc plc;
@@ -92,8 +92,8 @@ struct io_pulse {
 struct io_outputs {
 	int32_t target[IO_NAXES];	/* pulses, absolute */
 	double place_mm;		/* on the path; for a simulated gap */
-	uint32_t path;			/* counts the programs loaded, and the
-					 * parts skipped on them: place_mm
+	uint32_t path;			/* another number: another program, or
+					 * parts of it skipped; place_mm
 					 * begins anew */
 	bool rapid;			/* positioning through free space */
 	bool enable;			/* axes under power */
@@ -102,11 +102,11 @@ struct io_outputs {
 	bool sense;			/* the voltage to feel contact by */
 	bool negative;			/* electrode polarity */
 	bool pump;			/* dielectric */
-	char cond_letter;		/* technology condition called; 0: none */
+	char cond_letter;		/* condition in force; 0: none */
 	uint32_t cond_number;
 	struct io_pulse pulse;
-	double off_path_mm;		/* way along an escape, away from the
-					 * path; 0 on it */
+	double off_path_mm;		/* way that an escape has led away from
+					 * the path; 0: on the path */
 };
 
 struct io_machine {
@@ -115,20 +115,21 @@ struct io_machine {
 	void (*read)(void *self, struct io_inputs *in);
 	void (*write)(void *self, const struct io_outputs *out);
 	void (*close)(void *self);
-	/* The next thing worth a line in the log, into @buf; false: nothing.
-	 * NULL if it never has any.  Another thread's than read and write. */
+	/* Write the next line for the log into @buf; false: there is none.
+	 * NULL if there never is one.  It is called by another thread than
+	 * read and write. */
 	bool (*note)(void *self, char *buf, size_t size);
-	/* The drives' own counts at pulse 0, for the next edmd; false: not known
-	 * yet.  NULL if nothing counts but edmd.  RT-safe. */
+	/* The drives' own counts at pulse 0, for the next edmd; false: they
+	 * are not known yet.  NULL if only edmd counts.  RT-safe. */
 	bool (*origin)(void *self, int32_t ret[IO_NAXES]);
-	/* The same, of the edmd before: places go on from there.  Startup
-	 * only; NULL as origin. */
+	/* Take over these counts from the edmd before, so that places go on
+	 * from there.  Startup only; NULL if origin is. */
 	void (*originate)(void *self, const int32_t zero[IO_NAXES]);
 	bool stays;			/* nothing moves it while edmd is away:
 					 * it is simulated */
-	uint32_t edges_per_cycle;	/* most pulses an axis may make in one
-					 * period, where it is not busy; 0:
-					 * targets, no such limit */
+	uint32_t edges_per_cycle;	/* the most pulses of an axis in a
+					 * period in which it is not busy; 0:
+					 * no limit */
 };
 
 struct machine_config;

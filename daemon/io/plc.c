@@ -2,8 +2,7 @@
 /*
  * plc.c - the frames between edmd and a PLC
  *
- * A frame whose values are not all in range is dropped whole: half a request
- * is none.
+ * If one value of a frame is out of range, the whole frame is dropped.
  */
 #include "plc.h"
 
@@ -15,11 +14,11 @@
 #define STATE_OPERATES	0x05
 #define STATE_READY	0x7f		/* pre-operational */
 #define STATE_STOPPED	0x04
-#define FAULT_CODE	0xff00u		/* emergency: of the device, and which */
+#define FAULT_CODE	0xff00u		/* + number of the fault */
 
 static const uint16_t tpdo_id[NTPDO + 1] = { 0, 0x180, 0x280, 0x380, 0x480 };
 
-/* What an NMT reset makes of the objects that the PLC may write. */
+/* The objects that the PLC may write, as an NMT reset sets them. */
 static void reset(struct plc *p)
 {
 	p->emcy_id = CAN_EMCY + p->node;
@@ -84,7 +83,7 @@ static void hear_nmt(struct plc *p, const struct can_msg *m)
 		p->operational = p->stopped = p->booted = false;
 		p->ask = (struct plc_ask) { 0 };
 		reset(p);
-		/* What it asked is gone, and so is the PLC till it turns. */
+		/* All it asked for is void; it is lost until its toggle turns. */
 		p->alive = false;
 		p->since_turn = p->alive_cycles;
 		break;
@@ -94,7 +93,7 @@ static void hear_nmt(struct plc *p, const struct can_msg *m)
 	}
 }
 
-/* Another device has our node: nothing of what it says is ours. */
+/* Another device has our node, so its frames mean nothing to us. */
 static void hear_twin(struct plc *p, const struct can_msg *m)
 {
 	(void)m;
@@ -129,7 +128,7 @@ bool plc_receive(struct plc *p, const struct can_msg *m)
 	return false;
 }
 
-/* Dead until its toggle turns again; what it asked last is void. */
+/* Lost until its toggle turns again; what it asked for last is void. */
 void plc_period(struct plc *p)
 {
 	if (p->since_turn < p->alive_cycles) {
@@ -168,7 +167,7 @@ static struct can_msg beat(const struct plc *p, uint8_t state)
 				  .len = 1, .data = { state } };
 }
 
-/* A fault, and its end, once each; not while stopped. */
+/* A fault is told once, and its end too; nothing is sent while stopped. */
 static bool emergency_due(struct plc *p, struct can_msg *ret)
 {
 	const uint8_t fault = p->tell.fault;

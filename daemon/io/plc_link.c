@@ -23,12 +23,12 @@ static int refuse(const struct machine_config *c, int err,
 		 strerror(-err));
 	switch (err) {
 	case -ENODEV:
-		snprintf(d->wanted, sizeof(d->wanted), "a CAN interface that is "
-			 "there; ip -brief link show type can lists them");
+		snprintf(d->wanted, sizeof(d->wanted), "a CAN interface that "
+			 "is there; ip -brief link show type can lists them");
 		break;
 	case -ENETDOWN:
-		snprintf(d->wanted, sizeof(d->wanted), "one that is up; ip link "
-			 "set %s up type can bitrate 500000", name);
+		snprintf(d->wanted, sizeof(d->wanted), "one that is up; ip "
+			 "link set %s up type can bitrate 500000", name);
 		break;
 	case -EAFNOSUPPORT:
 		snprintf(d->wanted, sizeof(d->wanted),
@@ -207,8 +207,8 @@ static void say(const struct plc_link *l, enum plc_count i, uint32_t n,
 		[PLC_TWINS] = "frames of another device that has our node",
 		[PLC_UNSENT] = "frames not sent: is anything else on the bus? "
 			       "else its queue, txqueuelen 100",
-		[PLC_WARNINGS] = "many errors on the bus (error warning); check "
-				 "cable and termination",
+		[PLC_WARNINGS] = "many errors on the bus (error warning); "
+				 "check cable and termination",
 		[PLC_PASSIVE] = "the controller is error passive; bus off is "
 				"next; check cable, termination and bit rate",
 		[PLC_BUS_OFF] = "bus off; check cable and termination, then "

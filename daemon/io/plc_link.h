@@ -2,13 +2,14 @@
 /*
  * plc_link.h - the PLC of a machine: plc.h over a CAN interface
  *
- * Runs beside any backend, on an interface of its own or on that of the
- * drives.  Once a period: read what the PLC asks, later tell it how the
- * machine is.  What comes is bounded: PLC_LINK_FRAMES a period, the rest waits
- * in the socket.
+ * It works beside any backend, on an interface of its own or on that of the
+ * drives.  Once a period it reads what the PLC asks and later sends how the
+ * machine is.  It takes at most PLC_LINK_FRAMES frames in a period; the others
+ * wait in the socket.
  *
- * A start and a reset are the rising edges of their bits, seen as 0 since the
- * PLC came: one that comes back with the bit set starts nothing.
+ * A start and a reset are rising edges of their bits, and the bit must have
+ * been 0 once since the PLC came.  So a PLC that comes back with the bit set
+ * starts nothing.
  *
  * Threads: open and close are startup only; read and write are RT-safe, a
  * system call for each frame; plc_link_note() any one other thread.
@@ -24,13 +25,13 @@
 struct machine_config;
 struct interp_diag;
 
-/* What went by, counted; the thread that logs reads them. */
+/* Counters of events; the thread that logs reads them. */
 enum plc_count {
 	PLC_CAME,			/* times its toggle began to turn */
 	PLC_WENT,			/* times it stopped */
 	PLC_MALFORMED,			/* frames of a wrong length or kind */
 	PLC_REFUSED,			/* values and objects */
-	PLC_TWINS,			/* frames of another device of our node */
+	PLC_TWINS,			/* frames of another, with our node */
 	PLC_UNSENT,			/* frames, the queue was full */
 	PLC_WARNINGS, PLC_PASSIVE,	/* errors on the bus */
 	PLC_BUS_OFF,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * quadrature.c - an encoder's count, from edges or from a counter
+ * quadrature.c - count an encoder by edges, or read a counter
  */
 #include "quadrature.h"
 
@@ -129,7 +129,7 @@ int quadrature_counter(struct quadrature *q, const char *folder,
 	return 0;
 }
 
-/* The nearer way round. */
+/* The counter goes round: take the shorter way. */
 static void read_counter(struct quadrature *q)
 {
 	uint64_t raw, up;

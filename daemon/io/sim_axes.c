@@ -2,9 +2,10 @@
 /*
  * sim_axes.c - where the electrode really is
  *
- * At once where it was sent, unless the machine file says otherwise: a lag of
- * first order ([sim] lag_s), or the drive's whole loop ([sim] loops), a dead time whenever another axis takes over or
- * one turns back (start_s), noise of the scales (measure_pulses).
+ * It is at once where it was sent, unless the machine file says otherwise: a
+ * lag of first order ([sim] lag_s), or the drive's whole loop ([sim] loops); a
+ * dead time whenever another axis begins to move or one turns back (start_s);
+ * noise of the scales (measure_pulses).
  */
 #include "sim_process.h"
 

@@ -41,7 +41,7 @@ struct pulse_train {
 	double volts;			/* mean of the gap */
 	double waiting;			/* part of the time without a spark */
 	double wait_volts;		/* what that adds to the volts */
-	double waits;			/* pulses of chance in a wait, a period */
+	double waits;			/* random waits of pulses in a period */
 	double per_s;			/* pulses a second */
 	double burnt;			/* part of the on time that burns */
 };
@@ -49,7 +49,7 @@ struct pulse_train {
 /* Of one axis, in pulses of its drive. */
 struct sim_switches {
 	bool wired;
-	int toward;			/* the home switch is on from there on */
+	int toward;			/* the switch is on from there on */
 	double home, min, max, index;
 	int32_t was;			/* a period ago */
 };
@@ -59,7 +59,7 @@ struct sim {
 	double period_s;
 	double z_pulse_mm;		/* 0: no Z, the depth stays */
 	double pulse_mm[3];		/* of X Y Z */
-	double delay_us;		/* mean ignition delay at the best gap */
+	double delay_us;		/* mean delay at the best gap */
 	double late_us;			/* a longer wait is counted as open */
 	double best_u;			/* the best gap's place in the reach */
 	double reference_mm3;		/* crater of the reference pulse */

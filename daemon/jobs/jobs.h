@@ -21,6 +21,7 @@
 #include "upload.h"
 #include "lcm.h"
 
+#include <limits.h>
 #include <systemd/sd-event.h>
 
 struct jobs {
@@ -49,6 +50,7 @@ struct jobs {
 	int64_t begun_us;		/* of this service */
 	struct checkpoint_file *checkpoint;	/* NULL: there is none */
 	const char *store_dir;
+	char config_path[PATH_MAX];	/* of the machine file */
 	int64_t checkpoint_again_us;	/* not before */
 	int checkpoint_err;		/* of the last try */
 	struct checkpoint last;		/* as it was found at the start */

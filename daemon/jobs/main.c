@@ -218,6 +218,9 @@ static int configure(struct jobs *j, struct machine_config *config,
 		return EX_CONFIG;
 	}
 	j->config = config;
+	if (!realpath(o->config, j->config_path))
+		snprintf(j->config_path, sizeof(j->config_path), "%s",
+			 o->config);
 	j->machine = o->name ? o->name : config->name;
 	if (!names_machine_ok(j->machine))
 		return cmdline_refuse("edmd-jobs", "machine name", j->machine,

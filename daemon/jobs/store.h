@@ -91,7 +91,7 @@ struct store_change {
 };
 
 enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY, STORE_ALARMS,
-		  STORE_TRAIL };
+		  STORE_TRAIL, STORE_EVENTS };
 
 /** store_state_name() - "queued", ... */
 const char *store_state_name(enum job_state s);
@@ -212,6 +212,7 @@ int store_set_number(struct store *s, const char *key, int64_t value);
  * the jobs behind job @id in that order, or the first ones if it is ""; at most
  * @rows (0: 200), and no more than fit one answer. So a client asks again with
  * the last job it got, until the array is empty. STORE_ALARMS: the last 20.
+ * STORE_EVENTS: the last ones.
  * Return: NULL if there is no such job, no memory, or the store failed.
  */
 char *store_json(struct store *s, enum store_list what, const char *id,

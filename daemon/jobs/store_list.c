@@ -73,6 +73,13 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				 "'interrupted') OR (loaded=1 AND state NOT IN "
 				 "('done', 'stopped'))", IN_QUEUE), "is",
 				 (int64_t)rows, id);
+	case STORE_EVENTS:
+		return store_ask(s, ret_err,
+				 "SELECT json_object('utime', utime, 'kind', "
+				 "kind, 'job', job, 'outcome', outcome, "
+				 "'place_mm', place_mm, 'text', text) FROM "
+				 "event ORDER BY utime DESC, rowid DESC "
+				 "LIMIT ?", "i", (int64_t)rows);
 	case STORE_ALARMS:
 		return store_ask(s, ret_err,
 				 "SELECT json_object('utime', utime, 'kind', "

@@ -44,6 +44,10 @@ int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 void verbs_store(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 
+/** verbs_checkpoint() - the verb "checkpoint". */
+void verbs_checkpoint(struct jobs *j, const struct verb *v,
+		      const struct jobs_lcm_command *c);
+
 /** verbs_settle() - answer act @c according to the @code of edmd. */
 void verbs_settle(struct jobs *j, const struct verb *v,
 		  const struct jobs_lcm_command *c, int code);
@@ -68,6 +72,8 @@ void verbs_show(struct jobs *j, const struct verb *v,
 		const struct jobs_lcm_command *c);
 void verbs_trail(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
+void verbs_events(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c);
 void verbs_alarms(struct jobs *j, const struct verb *v,
 		  const struct jobs_lcm_command *c);
 void verbs_history(struct jobs *j, const struct verb *v,

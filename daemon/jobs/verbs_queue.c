@@ -99,7 +99,8 @@ static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 	const int rows = c->arg > 0 && c->arg < 1000 ? (int)c->arg : 0;
 	struct store_job before;
 	const bool one = what == STORE_SHOW || what == STORE_TRAIL;
-	const bool known = what == STORE_ALARMS || (!*c->job && !one) ||
+	const bool known = what == STORE_ALARMS || what == STORE_EVENTS ||
+			   (!*c->job && !one) ||
 			   store_find(j->store, c->job, &before) != -ENOENT;
 	char *body = known ? store_json(j->store, what, c->job, rows) : NULL;
 	struct jobs_lcm_ack a = {
@@ -145,6 +146,13 @@ void verbs_alarms(struct jobs *j, const struct verb *v,
 {
 	(void)v;
 	answer_list(j, c, STORE_ALARMS);
+}
+
+void verbs_events(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c)
+{
+	(void)v;
+	answer_list(j, c, STORE_EVENTS);
 }
 
 void verbs_history(struct jobs *j, const struct verb *v,

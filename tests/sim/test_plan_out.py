@@ -100,3 +100,50 @@ def test_a_turn_of_more_than_one_turn_is_followed(bodies, turn, free):
     assert (r.returncode == 0) == free, r.stdout + r.stderr
     if not free:
         assert "p.ngc:5: not free" in r.stdout
+
+
+def read_back(d, out, *more):
+    return subprocess.run([B / "edmsim", "--check", "--machine", d / "m.ini",
+                           *more, out], capture_output=True, text=True)
+
+
+SODICK = "%\nG21 G90 G54\nG0 X1.\nT84\nG1 X5. Y5. C60. F60\n"
+
+
+def test_a_program_of_another_dialect_stays_in_it(bodies):
+    """Its other lines, which generic does not know, are carried over."""
+    (bodies / "p.ngc").write_text(SODICK + "X10. C120.\nT85\nM2\n")
+    out = bodies / "w.ngc"
+    r = plan(*args(bodies, "--dialect", "sodick-sinker", "--output", out,
+                   bodies / "p.ngc"))
+    assert r.returncode == 0, r.stderr
+    text = out.read_text()
+    assert text.startswith("%\nG21 G90 G54\nG0 X1.\nT84\n")
+    assert text.endswith("T85\nM2\n") and "dialect generic" not in r.stdout
+    assert read_back(bodies, out, "--dialect", "sodick-sinker").returncode == 0
+
+
+def test_what_the_dialect_has_no_words_for_is_generic_and_said(bodies):
+    """Increments: only the blocks are written, and M3 is not a word of it."""
+    (bodies / "m.ini").write_text(CHAIN + "[nc]\ndialect = sodick-sinker\n")
+    (bodies / "p.ngc").write_text(SODICK + "G91 X5. C60.\nX-2.\nT85\n"
+                                  "G0 X5.\nM2\n")
+    out = bodies / "w.ngc"
+    r = plan(*args(bodies, "--on-path", "--output", out, bodies / "p.ngc"))
+    assert r.returncode == 0, r.stderr
+    assert "is in the dialect generic" in r.stdout
+    assert read_back(bodies, out).returncode != 0
+    assert read_back(bodies, out, "--dialect", "generic").returncode == 0
+
+
+def test_a_curve_is_planned_with_its_feed_and_its_other_lines(bodies):
+    curve = ("F60\nG6.2 P4 K0 X1 Y0\nK0 X1 Y5\nK0 X5 Y9\nK0 X10 Y9\nK1\nK1\nK1\n"
+             "K1\n")
+    (bodies / "p.ngc").write_text("G21 G90\nG0 X1\nM3\n" + curve +
+                                  "M5\nG0 Z20\nM2\n")
+    out = bodies / "w.ngc"
+    r = plan(*args(bodies, "--on-path", "--output", out, bodies / "p.ngc"))
+    assert r.returncode == 0, r.stderr
+    text = out.read_text()
+    assert "F60." in text and text.endswith("M5\nG0 Z20\nM2\n")
+    assert "K1" not in text and "what it calls" not in r.stdout

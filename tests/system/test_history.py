@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the history tells of a job: conditions, faults, energy, trail."""
 
+import csv
+import datetime
+import io
 import json
+import subprocess
+from xml.etree import ElementTree
 
 import pytest
 import rig
@@ -115,3 +120,100 @@ def test_the_trail_is_the_path_that_was_gone(shop):
     assert max(p[0] for p in points) == pytest.approx(1000, abs=100)
     assert max(p[1] for p in points) == pytest.approx(1000, abs=100)
     assert trail(c, "job")["retracts_um"] == []
+
+
+# -- As a table and as a picture
+
+EVIL = ['=cmd|"/c calc"!A1', "+1", "@SUM(A1)", "-2", 'a, "b"; c', "schön 漢字",
+        "\uff1dfull", " =1", "plain.ngc"]
+
+
+def table(machine, *args):
+    p = machine.ctl("history", "--csv", *args)
+    assert p.returncode == 0, p.stderr
+    # newline="" leaves the ends of lines as they are.
+    rows = list(csv.reader(io.StringIO(p.stdout, newline="")))
+    assert all(len(r) == len(rows[0]) for r in rows)
+    return [dict(zip(rows[0], r)) for r in rows[1:]]
+
+
+def test_names_of_others_are_text_in_the_table(shop):
+    c = shop.client
+    for i, name in enumerate(EVIL):
+        assert c.submit(JOB, f"e{i}", name=name, hold=True).code == 0
+        c.job_where(f"e{i}", "ready")
+        assert c.ask("remove", f"e{i}").code == 0
+    rows = {r["job"]: r for r in table(shop)}
+    assert len(rows) == len(EVIL)
+    for i, name in enumerate(EVIL):
+        got = rows[f"e{i}"]["name"]
+        assert not got.startswith(("=", "+", "-", "@", "\t", "\r", "\uff1d"))
+        wanted = name.replace("\n", "?").replace("\r", "?")
+        assert got in (wanted, "'" + wanted)
+    raw = subprocess.run(
+        [str(rig.BUILD / "edmctl"), "--machine", shop.name, "history",
+         "--csv"], capture_output=True, timeout=60).stdout
+    assert raw.count(b"\r\n") == raw.count(b"\n") == len(EVIL) + 1
+    # It never began: no time is told, and no energy.
+    assert rows["e0"]["begun"] == "" and rows["e0"]["energy_j"] in ("", "0.000")
+
+
+def test_the_table_has_what_the_json_has(shop):
+    c = running(shop)
+    assert c.ask("estop").code == 0
+    c.job_where("job", "fault")
+    assert c.ask("reset").code == 0 and c.ask("start").code == 0
+    job = c.job_where("job", "done")
+    row, = table(shop)
+    assert row == table(shop, "job")[0]
+    assert float(row["job_s"]) == pytest.approx(job["job_s"], abs=1e-3)
+    assert row["conditions"].split(";")[-1].startswith("C100=")
+    assert row["faults"].startswith("e-stop@") and row["faults"].endswith("/2")
+    assert row["begun"] == datetime.datetime.fromtimestamp(
+        job["first_us"] // 1000 / 1000, datetime.timezone.utc
+    ).strftime("%Y-%m-%dT%H:%M:%S.%f")[:-3] + "Z"
+    listed, = json.loads(shop.ctl("--json", "history").stdout)
+    assert listed["faults"] == job["faults"]
+    shown = shop.ctl("history", "job").stdout
+    assert "e-stop" in shown and "C120" in shown
+
+
+def test_a_picture_of_the_way_with_its_faults(shop):
+    text = b"G21 G90\nG1 X1 F120\nY1\nX0\nY0\nM30\n"
+    c = shop.client
+    assert c.submit(text, "job", name='<b>"&').code == 0
+    c.status_where(lambda s: s.job == "job" and s.place_mm > 0.5)
+    assert c.ask("estop").code == 0
+    c.job_where("job", "fault")
+    assert c.ask("reset").code == 0 and c.ask("start").code == 0
+    c.job_where("job", "done")
+    file = shop.folder / "job.svg"
+    p = shop.ctl("history", "job", "--picture", str(file))
+    assert p.returncode == 0, p.stderr
+    root = ElementTree.parse(file).getroot()
+    svg = "{http://www.w3.org/2000/svg}"
+    assert root.tag == svg + "svg"
+    assert '<b>"&' in [t.text for t in root.iter(svg + "text")]
+    way = [p.get("points").split() for p in root.iter(svg + "polyline")]
+    assert sum(len(p) for p in way) > 10
+    assert any("e-stop, line" in (t.text or "") for t in root.iter(
+        svg + "title"))
+    assert list(shop.folder.glob("*.part")) == []
+
+
+def test_what_the_history_cannot_draw_is_refused(shop):
+    c = shop.client
+    assert c.submit(JOB, "never", hold=True).code == 0
+    c.job_where("never", "ready")
+    assert c.ask("remove", "never").code == 0
+    file = shop.folder / "no.svg"
+    for args, code in (
+            (("history", "never", "--picture", str(file)), 66),
+            (("history", "nosuch", "--picture", str(file)), 66),
+            (("history", "--picture", str(file)), 64),
+            (("history", "never", "--picture", "a.png"), 64),
+            (("--json", "history", "--csv"), 64),
+            (("history", "never", "--picture", "/nowhere/a.svg"), 66)):
+        p = shop.ctl(*args)
+        assert p.returncode == code and p.stderr, args
+    assert not file.exists()

@@ -615,6 +615,29 @@ static void a_plc_on_the_same_bus_is_no_other_master(void **st)
 	unmake(&r);
 }
 
+/* It does so when it is switched on, at the same time as the drives. */
+static void drives_that_a_plc_starts_too_early_are_set_up_all_the_same(
+	void **st)
+{
+	struct can402 *s;
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	s = r.m.self;
+	s->plc_node = 32;
+	run(&r, 20);
+	assert_true(s->drive[0].step > 5);
+	put(&r, CAN_NMT, "\x01\x00", 2);
+	run(&r, 1);
+	assert_int_equal(s->drive[0].step, 0);
+	assert_int_equal(s->drive[1].step, 0);
+	run(&r, 200);
+	assert_int_equal(s->drive[0].phase, DRIVE_RUNNING);
+	assert_int_equal(s->drive[1].phase, DRIVE_RUNNING);
+	unmake(&r);
+}
+
 static void errors_on_the_bus_are_told_and_stop_nothing(void **st)
 {
 	static const uint8_t passive[8] = { 0, CAN_ERR_CRTL_TX_PASSIVE };
@@ -1037,6 +1060,8 @@ int main(void)
 		cmocka_unit_test(the_brake_of_a_drive_in_trouble_closes_at_once),
 		cmocka_unit_test(brakes_that_do_not_answer_are_a_lost_machine),
 		cmocka_unit_test(a_plc_on_the_same_bus_is_no_other_master),
+		cmocka_unit_test(
+			drives_that_a_plc_starts_too_early_are_set_up_all_the_same),
 		cmocka_unit_test(errors_on_the_bus_are_told_and_stop_nothing),
 		cmocka_unit_test(another_program_far_away_is_not_jumped_to),
 		cmocka_unit_test(the_gap_is_what_its_frames_say_until_they_stop),

@@ -369,17 +369,24 @@ static void a_drive_that_lags_is_stopped(void **state)
 	assert_int_equal(r.p.control, 0x02);
 }
 
-static void one_that_reboots_is_brought_up_again_after_reset(void **state)
+/* As it comes from its maker, and it sends nothing. */
+static void lose_power(struct rig *r)
 {
 	const struct can_msg boot = { .id = CAN_HEARTBEAT + NODE, .len = 1 };
+
+	r->p.operational = r->p.mapped = r->p.fault = false;
+	r->p.mode = 0;
+	r->p.status = 0x40;
+	drive_receive(&r->d, &boot);
+}
+
+static void one_that_reboots_is_brought_up_again_after_reset(void **state)
+{
 	struct rig r;
 
 	(void)state;
 	enable(&r);
-	r.p.operational = r.p.mapped = false;
-	r.p.mode = 0;
-	r.p.status = 0x40;
-	drive_receive(&r.d, &boot);
+	lose_power(&r);
 	run(&r, 100, 0);
 	assert_int_equal(r.d.trouble, DRIVE_REBOOTED);
 	assert_int_equal(r.p.mode, 0);
@@ -390,6 +397,27 @@ static void one_that_reboots_is_brought_up_again_after_reset(void **state)
 	drive_aim(&r.d, DRIVE_GO_ON);
 	run(&r, 20, 0);
 	assert_int_equal(r.d.state, DRIVE_ENABLED);
+}
+
+/* Supply too low, a fault, and then no supply: that is how power goes. */
+static void a_fault_before_it_reboots_does_not_cost_a_second_reset(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.fault = true;
+	run(&r, 3, 0);
+	assert_int_equal(r.d.trouble, DRIVE_EMERGENCY);
+	lose_power(&r);
+	run(&r, 3, 0);
+	assert_int_equal(r.d.trouble, DRIVE_EMERGENCY);
+	drive_aim(&r.d, DRIVE_GO_OFF);
+	drive_reset(&r.d);
+	run(&r, 100, 0);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	assert_int_equal(r.p.mode, 8);
+	assert_true(r.d.lost);
 }
 
 static void what_a_drive_may_not_have_is_no_trouble(void **state)
@@ -840,6 +868,8 @@ int main(void)
 		cmocka_unit_test(silence_is_trouble),
 		cmocka_unit_test(a_drive_that_lags_is_stopped),
 		cmocka_unit_test(one_that_reboots_is_brought_up_again_after_reset),
+		cmocka_unit_test(
+			a_fault_before_it_reboots_does_not_cost_a_second_reset),
 		cmocka_unit_test(what_a_drive_may_not_have_is_no_trouble),
 		cmocka_unit_test(one_that_takes_its_time_to_begin_is_no_trouble),
 		cmocka_unit_test(two_drives_with_one_node_never_get_power),

@@ -195,8 +195,8 @@ static void pulses_stray_no_farther_than_bounded(void **state)
 
 /* -- A motion of its own -------------------------------------------------- */
 
-/* A turn at a constant rate about a line that may pass anywhere, through what is
- * turned as well, and a shift. */
+/* A turn at a constant rate about any line, which may pass through what is
+ * turned, and a shift. */
 struct turn {
 	double dir[3], at[3], rate;	/* of the line, radian a unit of time */
 	double shift[3];
@@ -511,7 +511,7 @@ static void stretch(struct body *b, double x, double y, double z)
 	assert_int_equal(tree_build(&b->t, &b->m), 0);
 }
 
-/* Turns and shifts of all sizes, some about the electrode's own middle alone. */
+/* Turns and shifts of all sizes, and turns alone. */
 static void draw_block(double from[INTERP_NAXES], double to[INTERP_NAXES])
 {
 	const double size = draw_size(0.05, 50);
@@ -554,6 +554,65 @@ static void no_block_is_proved_to_keep_more_than_a_pose_has(void **state)
 	assert_true(tried > 20 * runs);
 }
 
+#define POSES	80
+
+/* Over all poses of the block, how much more is left than is to be kept. */
+static double least_over(const struct block *b, const struct clearance *c,
+			 const double mm[POSES + 1])
+{
+	double least = DBL_MAX;
+
+	for (int k = 0; k <= POSES; k++) {
+		struct pose pose;
+
+		block_pose(b, (double)k / POSES, &pose, NULL);
+		least = fmin(least, mm[k] - clearance_at(c, &pose));
+	}
+	return least;
+}
+
+/* On a way out of the end pose, what is to be kept rises.  So much is asked
+ * outside of the end zone that one pose just does not have what it is to. */
+static void no_block_out_of_an_end_zone_keeps_more_than_a_pose_has(void **state)
+{
+	int tried = 0;
+
+	(void)state;
+	for (int i = 0; i < 60 * runs; i++) {
+		double from[INTERP_NAXES], to[INTERP_NAXES], mm[POSES + 1];
+		double low = 0, high = 50;
+		struct near_pair pair = { 0 };
+		struct proof p = { 0 };
+		struct clearance c;
+		struct scene s;
+		struct pose pose;
+		struct block b;
+
+		make_scene(&s, i);
+		draw_block(from, to);
+		block_init(&b, &s.motion, from, to);
+		for (int k = 0; k <= POSES; k++) {
+			block_pose(&b, (double)k / POSES, &pose, NULL);
+			mm[k] = near_distance(&s.bodies, &pose, &pair);
+		}
+		block_pose(&b, 0, &pose, NULL);
+		clearance_init(&c, 0);
+		clearance_end(&c, &s.tool.m, &pose, draw_size(0.5, 30),
+			      mm[0] * draw(0, 0.95));
+		while (high - low > 1e-6) {
+			c.mm = (low + high) / 2;
+			*(least_over(&b, &c, mm) > -1e-4 ? &low : &high) = c.mm;
+		}
+		c.mm = high;
+		if (mm[0] > 0.01 && high < 49 && high > c.end_mm) {
+			assert_false(prove_block(&s.bodies, &b, &c, &p));
+			tried++;
+		}
+		drop_scene(&s);
+	}
+	assert_true(tried > 4 * runs);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -567,6 +626,8 @@ int main(void)
 			a_triangle_that_turns_comes_no_nearer_than_it_says),
 		cmocka_unit_test(
 			no_block_is_proved_to_keep_more_than_a_pose_has),
+		cmocka_unit_test(
+			no_block_out_of_an_end_zone_keeps_more_than_a_pose_has),
 	};
 
 	scene_seed();

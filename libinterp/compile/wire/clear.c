@@ -3,7 +3,7 @@
  * clear.c - where the raw track crosses itself, and how near it is to the
  *	     outline
  */
-#include "wire/track.h"
+#include "wire/face_move.h"
 
 #include <errno.h>
 #include <math.h>
@@ -103,7 +103,7 @@ static double cell_of(const struct track_work *w, double least)
 	return fmax(fmax(sum / w->n, least), 1e-4);
 }
 
-static int find_crossings(struct track_work *w)
+int clear_find_crossings(struct track_work *w)
 {
 	struct grid g;
 	int err = 0;
@@ -154,7 +154,7 @@ int clear_init(struct track_work *w)
 		w->elem[i].hit = 0;
 	if (w->job->side == 0)
 		return 0;
-	const int err = find_crossings(w);
+	const int err = clear_find_crossings(w);
 
 	return err ? err : enter_outline(w);
 }
@@ -169,7 +169,8 @@ struct question {
 };
 
 /* Along the outline from the one piece to the other. */
-static double way_between(const struct track_work *w, const struct face_piece *p,
+static double way_between(const struct track_work *w,
+			  const struct face_piece *p,
 			  const struct face_piece *q)
 {
 	const struct face_piece *a = p < q ? p : q, *b = p < q ? q : p;
@@ -248,6 +249,8 @@ bool clear_is(struct track_work *w, uint32_t e, double t0, double t1)
 
 	if (w->job->side == 0)
 		return true;
+	if (w->sides)
+		return face_side_is(w->sides, w, e, t0, t1);
 	if (k.e->dead)
 		return false;
 	k.c = t0 == 0 && t1 == 1 ? k.e->c : curve_part(&k.e->c, t0, t1);

@@ -11,7 +11,6 @@
 #include <string.h>
 
 #define DEGREE		(M_PI / 180)
-#define SAME_MM		1e-9		/* two places that are one */
 
 void contour_init(struct contour *k, const struct interp_wire *w,
 		  const struct interp_machine *m, struct interp_build *b)
@@ -171,7 +170,7 @@ static void motion_init(const struct contour *k, struct contour_motion *m,
 static bool moves(const struct contour *k, const double end_mm[INTERP_NAXES])
 {
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		if (fabs(end_mm[i] - k->here_mm[i]) > SAME_MM)
+		if (fabs(end_mm[i] - k->here_mm[i]) > CURVE_SAME_MM)
 			return true;
 	}
 	return false;
@@ -217,7 +216,7 @@ int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 		return err;
 	}
 	motion_init(k, &m, end_mm, w);
-	if (curve_length(&m.c[0]) < SAME_MM && curve_length(&m.c[1]) < SAME_MM)
+	if (curve_length(&m.c[0]) < CURVE_SAME_MM && curve_length(&m.c[1]) < CURVE_SAME_MM)
 		return stay(k, end_mm, w, diag);
 	return take(k, &m, diag);
 }

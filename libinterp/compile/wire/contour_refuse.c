@@ -97,6 +97,12 @@ int contour_refuse_faces(const struct contour *k, const struct face_fault *f,
 			 struct interp_diag *diag)
 {
 	diag->line = k->m[f->a].word.line;
+	if (f->crowded)
+		return interp_diag_say(diag, "a contour up to line %u that "
+				       "crosses itself too often under its "
+				       "taper; fewer motions that are short "
+				       "against the taper",
+				       k->m[f->b].word.line);
 	return interp_diag_say(diag, "the faces of lines %u and %u, which "
 				     "meet below the second plane; a smaller "
 				     "taper, or a second plane that is lower",

@@ -8,9 +8,6 @@
 
 #define TURN	(2 * M_PI)
 
-/* Nothing, against the 0.0001 mm of the finest pulse. */
-#define NOTHING_MM	1e-7
-
 /* Two that nearly touch and are written to a micrometre may miss so far. */
 #define MISS_MM		0.0015
 
@@ -46,8 +43,8 @@ struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 	const double end = atan2(to.y - centre.y, to.x - centre.x);
 	const double sweep = clockwise ? ahead(c.theta - end) :
 					 ahead(end - c.theta);
-	const bool whole = curve_distance(from, to) < NOTHING_MM ||
-			   sweep * c.r < NOTHING_MM;
+	const bool whole = curve_distance(from, to) < CURVE_SAME_MM ||
+			   sweep * c.r < CURVE_SAME_MM;
 
 	c.sweep = whole ? TURN : sweep;
 	if (clockwise)
@@ -65,7 +62,7 @@ struct curve curve_evened(const struct curve *c)
 				 (c->from.y + c->to.y) / 2 };
 	const struct vec off = { mid.x - c->centre.x, mid.y - c->centre.y };
 
-	if (!c->arc || len < NOTHING_MM)
+	if (!c->arc || len < CURVE_SAME_MM)
 		return *c;
 	return curve_arc(c->from, c->to,
 			 vec_add(c->centre, dot(off, chord) / (len * len),
@@ -127,11 +124,11 @@ bool curve_parallel(const struct curve *c, double d, struct curve *ret)
 	ret->to = vec_add(c->to, d, left_of(curve_way(c, true)));
 	if (!c->arc)
 		return true;
-	if (curve_distance(c->from, c->to) < NOTHING_MM)
+	if (curve_distance(c->from, c->to) < CURVE_SAME_MM)
 		ret->to = ret->from;	/* a full circle stays one */
 	/* The centre is on the left of a counter-clockwise arc. */
 	ret->r = c->sweep > 0 ? c->r - d : c->r + d;
-	if (fabs(ret->r) < NOTHING_MM)
+	if (fabs(ret->r) < CURVE_SAME_MM)
 		ret->r = 0;
 	return ret->r >= 0;
 }
@@ -176,7 +173,7 @@ static int circle_circle(const struct curve *a, const struct curve *b,
 	double x, h2, h;
 	struct vec foot;
 
-	if (d < NOTHING_MM)
+	if (d < CURVE_SAME_MM)
 		return 0;
 	x = (d * d + a->r * a->r - b->r * b->r) / (2 * d);
 	h2 = a->r * a->r - x * x;
@@ -228,7 +225,7 @@ static bool trim_arc(struct curve *c, struct vec from, struct vec to)
 	c->to = to;
 	if (c->r == 0)
 		return true;
-	if (left * c->r < NOTHING_MM)
+	if (left * c->r < CURVE_SAME_MM)
 		return false;
 	c->theta += c->sweep < 0 ? -start : start;
 	c->sweep = c->sweep < 0 ? -left : left;
@@ -243,7 +240,7 @@ bool curve_trim(struct curve *c, struct vec from, struct vec to)
 	if (c->arc)
 		return trim_arc(c, from, to);
 	*c = curve_line(from, to);
-	return dot(way, left) > NOTHING_MM;
+	return dot(way, left) > CURVE_SAME_MM;
 }
 
 struct curve curve_reversed(const struct curve *c)

@@ -10,6 +10,9 @@
 
 #include <stdbool.h>
 
+/* Places this near are one; the finest pulse is 0.0001 mm. */
+#define CURVE_SAME_MM	1e-7
+
 struct vec {
 	double x, y;
 };

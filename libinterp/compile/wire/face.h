@@ -36,6 +36,8 @@ struct face_piece {
 	bool lead;			/* no surface: it leads to or from it */
 	double wire_mm;			/* the wire's axis keeps so far off */
 	double way_mm;			/* along the outline to its start */
+	double shift_mm;		/* moved so far to its left between
+					 * the planes */
 };
 
 struct face {
@@ -56,9 +58,10 @@ struct face_from {
 	double pulse_mm;
 };
 
-/* Two neighbours that cannot be brought together: owners. */
+/* Motions between which nothing is left. */
 struct face_fault {
 	uint32_t a, b;
+	bool crowded;			/* too many crossings to look at */
 };
 
 /**
@@ -68,13 +71,22 @@ struct face_fault {
 int face_make(struct face *f, const struct face_from *from,
 	      struct face_fault *fault);
 
-/**
- * face_check() - does @f, made from @from, keep off the programmed contour?
- * Return: 0, -ENOMEM, or -EINVAL with @fault filled.
- */
-int face_check(const struct face *f, const struct face_from *from,
-	       struct face_fault *fault);
-
 void face_free(struct face *f);
+
+/** face_add() - one more piece of motion @owner; @fitted: a fillet that keeps
+ *  its radius.  Return: the piece, NULL: no memory. */
+struct face_piece *face_add(struct face *f, const struct face_from *from,
+			    uint32_t owner, const struct curve *c, bool fitted);
+
+enum face_fate {
+	FACE_MOVED,
+	FACE_FITTED,			/* a fillet that keeps its radius */
+	FACE_GONE,			/* an arc that would turn inside out */
+};
+
+/** face_piece_moved() - motion @i on the plane of @from, moved; FACE_GONE: with
+ *  the ends that it would have. */
+enum face_fate face_piece_moved(const struct face_from *from, uint32_t i,
+				struct curve *ret);
 
 #endif /* WIRE_FACE_H */

@@ -9,9 +9,6 @@
 #define TURN		(2 * M_PI)
 #define QUARTER		(TURN / 4)
 
-/* Places this near are one. */
-#define SAME_MM		1e-7
-
 static void box_add(struct curve_box *b, struct vec at)
 {
 	b->lo.x = fmin(b->lo.x, at.x);
@@ -44,20 +41,20 @@ static bool boxes_touch(const struct curve *a, const struct curve *b)
 {
 	const struct curve_box p = curve_bounds(a), q = curve_bounds(b);
 
-	return p.lo.x <= q.hi.x + SAME_MM && q.lo.x <= p.hi.x + SAME_MM &&
-	       p.lo.y <= q.hi.y + SAME_MM && q.lo.y <= p.hi.y + SAME_MM;
+	return p.lo.x <= q.hi.x + CURVE_SAME_MM && q.lo.x <= p.hi.x + CURVE_SAME_MM &&
+	       p.lo.y <= q.hi.y + CURVE_SAME_MM && q.lo.y <= p.hi.y + CURVE_SAME_MM;
 }
 
 static bool is_dot(const struct curve *c)
 {
 	return c->arc ? c->r == 0 || c->sweep == 0 :
-			curve_distance(c->from, c->to) < SAME_MM;
+			curve_distance(c->from, c->to) < CURVE_SAME_MM;
 }
 
 /* Is share @t on the curve, but for the rounding of its ends? */
 static bool is_on(const struct curve *c, double *t)
 {
-	const double slack = SAME_MM / curve_length(c);
+	const double slack = CURVE_SAME_MM / curve_length(c);
 
 	if (!(*t >= -slack && *t <= 1 + slack))
 		return false;
@@ -134,7 +131,7 @@ static double arc_to_arc(const struct curve *a, const struct curve *b)
 				 (b->centre.y - a->centre.y) / d };
 	double best = INFINITY;
 
-	if (d < SAME_MM)
+	if (d < CURVE_SAME_MM)
 		return best;
 	for (int i = 0; i < 4; i++) {
 		const struct vec p = vec_add(a->centre, i & 1 ? a->r : -a->r,

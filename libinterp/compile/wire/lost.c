@@ -3,14 +3,14 @@
  * lost.c - is a part of the outline missing where the way leaves something out?
  *
  * Where the way changes from one element to a later one, the wire stands in an
- * inner corner and touches the outline in two places.  What lies between them is
- * not cut.  That is no fault if it lies no farther from the wire than the point
- * of an inner corner would.  Two corners are asked for that:
+ * inner corner and touches the outline in two places.  What lies between them
+ * is not cut.  That is no fault if it lies no farther from the way than the
+ * point of an inner corner would.  Two corners are asked for that:
  *
- *	the one of the tangents in the two places
- *	the one that the outline itself makes between them: beside a step or a
- *	rib that is lower than the wire, if it is open enough, and between walls
- *	that bulge, it may be sharper than that of the tangents
+ *	the corner of the tangents in the two places
+ *	the corner that the outline itself makes between them: it may be the
+ *	sharper one beside a step or a rib that is lower than the wire, if it
+ *	is open enough, and between walls that bulge
  *
  * The outline's own corner is the most by which it turns inward on the way from
  * the one place to the other; turns to and fro, as rounding makes them, do not
@@ -21,16 +21,15 @@
 
 #include <math.h>
 
-#define SAME_MM		1e-7
-
 /* What rounding to a micrometre may hide of the outline. */
 #define HIDDEN_MM	0.002
 
 #define NO_CORNER	3.0		/* turns by more are slots */
-#define OPEN		2.1		/* the outline's own may turn so far ... */
-#define CURVED		0.5		/* ... or by so much more than the way:
-					 * its walls bulge */
+#define OPEN		2.1		/* the outline's own may turn so far */
+#define CURVED		0.5		/* or by so much more than the way: its
+					 * walls bulge */
 #define ARC_PARTS	8
+#define NEAR_RUNS	16u		/* of the way, on either side */
 
 const struct face_piece *track_piece(const struct track_work *w, uint32_t e)
 {
@@ -46,9 +45,22 @@ static double touch_of(const struct track_work *w, uint32_t e, struct vec at)
 {
 	const struct face_piece *p = track_piece(w, e);
 
-	if (w->elem[e].fill || curve_length(&p->c) < SAME_MM)
+	if (w->elem[e].fill || curve_length(&p->c) < CURVE_SAME_MM)
 		return 1;
 	return fmin(fmax(curve_share(&p->c, at), 0), 1);
+}
+
+/* By how much piece @p's parallel is to its left. */
+static double shift_of(const struct track_work *w, const struct face_piece *p)
+{
+	return track_shift(w, (uint32_t)(p - w->job->face->piece));
+}
+
+/* The side to which the pieces at both ends of a jump are moved: +1 left. */
+static int side_of(const struct track_work *w, const struct track_jump *j)
+{
+	return shift_of(w, track_piece(w, j->e)) +
+	       shift_of(w, track_piece(w, j->f)) < 0 ? -1 : 1;
 }
 
 /* By how much the way turns in a jump, + inward. */
@@ -57,8 +69,8 @@ static double turn_of(const struct track_work *w, const struct track_jump *j)
 	const struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
 	const struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
 
-	return w->job->side * curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
-					 j->tf < 1 ? &b : &w->elem[j->f].c);
+	return side_of(w, j) * curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
+					  j->tf < 1 ? &b : &w->elem[j->f].c);
 }
 
 /* What lies between the two places that the wire touches. */
@@ -105,18 +117,18 @@ static double share_of(const struct between *k, uint32_t i, double s)
 /* The most by which the outline turns inward. */
 static double rise_of(const struct between *k)
 {
+	const int side = side_of(k->w, k->j);
 	double heading = 0, low = 0, rise = 0;
 
 	for (uint32_t i = 0; i < k->n; i++) {
 		const struct curve *c = piece_of(k, i);
 
 		if (i)
-			heading += k->w->job->side *
-				   curve_turn(piece_of(k, i - 1), c);
+			heading += side * curve_turn(piece_of(k, i - 1), c);
 		low = fmin(low, heading);
 		rise = fmax(rise, heading - low);
 		if (c->arc)
-			heading += k->w->job->side * c->sweep *
+			heading += side * c->sweep *
 				   (share_of(k, i, 1) - share_of(k, i, 0));
 		low = fmin(low, heading);
 		rise = fmax(rise, heading - low);
@@ -127,10 +139,9 @@ static double rise_of(const struct between *k)
 /* How far the point of an inner corner is from a wire in it. */
 static double reach_of(const struct between *k)
 {
-	const struct face_piece *p = track_piece(k->w, k->j->e);
-	const struct face_piece *q = track_piece(k->w, k->j->f);
-	const double d = fmax(p->wire_mm, q->wire_mm);
-	const double other = fmin(p->wire_mm, q->wire_mm);
+	const double a = shift_of(k->w, track_piece(k->w, k->j->e));
+	const double b = shift_of(k->w, track_piece(k->w, k->j->f));
+	const double d = fmax(fabs(a), fabs(b));
 	const double turn = turn_of(k->w, k->j), own = rise_of(k);
 	const bool counts = own <= OPEN || (own <= turn + CURVED &&
 					    own < NO_CORNER);
@@ -139,11 +150,35 @@ static double reach_of(const struct between *k)
 
 	if (turn <= 0 || turn >= NO_CORNER)
 		return reach;
-	if (d - other > 1e-6 && fabs(sin(turn)) > 0.05)
-		reach = fmax(reach, sqrt(d * d + other * other -
-					 2 * d * other * cos(turn)) /
-				    fabs(sin(turn)));
+	if (fabs(a - b) > 1e-6 && fabs(sin(turn)) > 0.05)
+		reach = fmax(reach, sqrt(a * a + b * b - 2 * a * b *
+					 cos(turn)) / fabs(sin(turn)));
 	return reach;
+}
+
+/* Is @at no farther than @most from run @i of the way? */
+static bool is_near_run(const struct track_work *w, uint32_t i, struct vec at,
+			double most)
+{
+	const struct track_run *r = &w->run[i];
+	const struct curve c = curve_part(&w->elem[r->elem].c, r->t[0],
+					  r->t[1]);
+
+	return curve_from(&c, at) <= most;
+}
+
+/* ... or from the way close to the jump, on either side of it? */
+static bool is_near_way(const struct between *k, struct vec at, double most)
+{
+	const struct track_work *w = k->w;
+	const uint32_t run = k->j->run;
+
+	for (uint32_t i = 0; run && i < NEAR_RUNS; i++) {
+		if ((i < run && is_near_run(w, run - 1 - i, at, most)) ||
+		    (run + i < w->nruns && is_near_run(w, run + i, at, most)))
+			return true;
+	}
+	return false;
 }
 
 bool lost_is(const struct track_work *w, const struct track_jump *j)
@@ -161,8 +196,10 @@ bool lost_is(const struct track_work *w, const struct track_jump *j)
 
 		for (int s = 1; s <= parts; s++) {
 			const double t = share_of(&k, i, (double)s / parts);
+			const struct vec at = curve_at(c, t);
 
-			if (curve_distance(curve_at(c, t), k.at) > most)
+			if (curve_distance(at, k.at) > most &&
+			    !is_near_way(&k, at, most))
 				return true;
 		}
 	}

@@ -126,8 +126,8 @@ static double height_of(const struct contour *k)
 }
 
 /* Where the wire begins (or ends) along @m if nothing is beside it. */
-static struct vec beside(const struct contour *k, const struct contour_motion *m,
-			 int p, bool at_end)
+static struct vec beside(const struct contour *k,
+			 const struct contour_motion *m, int p, bool at_end)
 {
 	const struct curve *c = &m->c[curve_length(&m->c[p]) > 1e-9 ? p : !p];
 	const struct vec way = curve_way(c, at_end);
@@ -162,7 +162,7 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 		.height_mm = height_of(k), .pulse_mm = k->guides.pulse_mm,
 	};
 	struct track_job job = {
-		.side = k->m[a].offset_mm > 0 ? 1 : k->m[a].offset_mm < 0 ? -1 : 0,
+		.side = (k->m[a].offset_mm > 0) - (k->m[a].offset_mm < 0),
 		.pulse_mm = k->guides.pulse_mm,
 		.skip = k->guides.wire->gouge == INTERP_GOUGE_SKIP,
 	};
@@ -171,8 +171,6 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 	struct face f = { .n = 0 };
 	int err = face_make(&f, &from, &bad);
 
-	if (!err)
-		err = face_check(&f, &from, &bad);
 	if (err == -EINVAL)
 		contour_refuse_faces(k, &bad, diag);
 	job.face = &f;

@@ -18,13 +18,12 @@
 
 #define RIGHT_ANGLE	(M_PI / 2)
 #define ANGLE_SLACK	1e-6
-#define SAME_MM		1e-9
 #define MITRE_TURNS	8u		/* ways found before mitres are left */
 
 /* Ends so near are one: half a pulse of rounding on either side, and more. */
 #define TINY_PULSES	1.5
 
-static struct track_elem *add(struct track_work *w)
+struct track_elem *track_add(struct track_work *w)
 {
 	if (w->n == w->room) {
 		const uint32_t room = w->room ? w->room * 2 : 64;
@@ -39,8 +38,10 @@ static struct track_elem *add(struct track_work *w)
 	return &w->elem[w->n++];
 }
 
-static double shift_of(const struct track_work *w, uint32_t i)
+double track_shift(const struct track_work *w, uint32_t i)
 {
+	if (w->sides)
+		return w->job->face->piece[i].shift_mm;
 	return w->job->side * w->job->face->piece[i].wire_mm;
 }
 
@@ -49,14 +50,14 @@ static double shift_of(const struct track_work *w, uint32_t i)
 static int lay_piece(struct track_work *w, uint32_t i)
 {
 	const struct face_piece *p = &w->job->face->piece[i];
-	struct track_elem *e = add(w);
+	struct track_elem *e = track_add(w);
 
 	if (!e)
 		return -ENOMEM;
 	e->owner = p->owner;
 	e->piece = i;
 	e->fill = p->fill;
-	if (curve_parallel(&p->c, shift_of(w, i), &e->c))
+	if (curve_parallel(&p->c, track_shift(w, i), &e->c))
 		return 0;
 	if (e->c.r > -w->slack_mm) {
 		/* A wire as thick as the corner: all but a point. */
@@ -84,9 +85,9 @@ static int lay_fill(struct track_work *w, const struct corner *k,
 	const struct track_elem before = w->elem[k->a];
 	struct track_elem *e;
 
-	if (curve_distance(c->from, c->to) < SAME_MM)
+	if (curve_distance(c->from, c->to) < CURVE_SAME_MM)
 		return 0;
-	e = add(w);
+	e = track_add(w);
 	if (!e)
 		return -ENOMEM;
 	*e = (struct track_elem) { .c = *c, .owner = before.owner,
@@ -119,7 +120,7 @@ static bool meet_behind(struct track_elem *a, struct track_elem *b,
 	struct vec at;
 
 	if (a->dead || b->dead || a->c.arc ||
-	    curve_distance(a->c.from, a->c.to) < SAME_MM ||
+	    curve_distance(a->c.from, a->c.to) < CURVE_SAME_MM ||
 	    !curve_meet(&a->c, &b->c, near, &at) ||
 	    curve_distance(at, a->c.from) > slack_mm ||
 	    !curve_trim(&q, at, b->c.to))
@@ -130,8 +131,8 @@ static bool meet_behind(struct track_elem *a, struct track_elem *b,
 }
 
 /* Cut both off where they meet.  Return: false if they do not. */
-static bool meet_inside(struct track_elem *a, struct track_elem *b,
-			struct vec near)
+bool track_meet_inside(struct track_elem *a, struct track_elem *b,
+		       struct vec near)
 {
 	struct curve_hit hit[2];
 	const int n = a->dead || b->dead ? 0 : curve_cross(&a->c, &b->c, hit);
@@ -178,8 +179,9 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 {
 	const struct face_piece *p = &w->job->face->piece[i - 1], *q = p + 1;
 	const struct corner k = {
-		.a = w->n - 1, .b = i, .at = q->c.from, .turn = curve_turn(&p->c, &q->c),
-		.da = shift_of(w, i - 1), .db = shift_of(w, i),
+		.a = w->n - 1, .b = i, .at = q->c.from,
+		.turn = curve_turn(&p->c, &q->c),
+		.da = track_shift(w, i - 1), .db = track_shift(w, i),
 	};
 	struct track_elem *a = &w->elem[k.a];
 	const struct curve gap = curve_line(a->c.to, b->c.from);
@@ -187,12 +189,12 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 	const bool step = fabs(k.turn) * most < 2 * fabs(k.da - k.db);
 	const bool tiny = curve_length(&gap) < TINY_PULSES * w->job->pulse_mm;
 
-	if (curve_length(&gap) < SAME_MM || w->job->side == 0 || step ||
+	if (curve_length(&gap) < CURVE_SAME_MM || w->job->side == 0 || step ||
 	    (tiny && fabs(k.turn) < 0.1))
 		return lay_fill(w, &k, &gap, false);
 	if (k.turn * w->job->side > 0 &&
 	    fabs(k.turn) < 2 * RIGHT_ANGLE - ANGLE_SLACK) {
-		if (meet_inside(a, b, k.at) ||
+		if (track_meet_inside(a, b, k.at) ||
 		    meet_behind(a, b, k.at, w->slack_mm))
 			return 0;
 		/* A kink so slight that the one end is clear of the other. */
@@ -234,7 +236,7 @@ static int lay_lead(struct track_work *w, int i, uint32_t next)
 {
 	const struct track_lead *l = &w->job->lead[i];
 	const struct curve c = lead_curve(l, &w->elem[next].c, i);
-	struct track_elem *e = add(w);
+	struct track_elem *e = track_add(w);
 
 	if (!e)
 		return -ENOMEM;
@@ -250,7 +252,7 @@ int track_lay(struct track_work *w)
 	int err = 0;
 
 	w->n = 0;
-	if (in && !add(w))
+	if (in && !track_add(w))
 		return -ENOMEM;
 	for (uint32_t i = 0; !err && i < j->face->n; i++) {
 		struct track_elem e;
@@ -261,7 +263,7 @@ int track_lay(struct track_work *w)
 		/* It stands behind what fills the corner in front of it. */
 		e = w->elem[--w->n];
 		err = lay_corner(w, i, &e);
-		if (!err && add(w))
+		if (!err && track_add(w))
 			w->elem[w->n - 1] = e;
 		else if (!err)
 			err = -ENOMEM;
@@ -339,7 +341,7 @@ static int take_way(struct track *t, const struct track_work *w)
 	return 0;
 }
 
-static void forget(struct track_work *w)
+void track_forget(struct track_work *w)
 {
 	grid_free(&w->near);
 	free(w->elem);
@@ -355,7 +357,7 @@ static double share_of(const struct track_work *w, uint32_t e, double t)
 {
 	const struct track_elem *k = &w->elem[e];
 	const double len = curve_length(&k->c);
-	const double slack = SAME_MM / fmax(len, SAME_MM);
+	const double slack = CURVE_SAME_MM / fmax(len, CURVE_SAME_MM);
 	double share;
 
 	if (k->piece < 0 || k->fill)
@@ -448,7 +450,7 @@ static int attempt(struct track *t, const struct track_job *j, uint32_t i,
 		t->skipped = err != 0;
 		err = take_way(t, &w);
 	}
-	forget(&w);
+	track_forget(&w);
 	return err;
 }
 

@@ -36,6 +36,7 @@ struct track_elem {
 	int64_t piece;			/* of the outline; -1: a lead */
 	bool fill;			/* leads to the next motion */
 	bool dead;			/* no way goes along it */
+	bool fitted;			/* a fillet of constant radius: face.h */
 	bool mitre;			/* prolonged at its end, as the next one
 					 * is at its start */
 	uint32_t hit;			/* its first crossing */
@@ -111,7 +112,23 @@ struct track_work {
 	bool round;			/* no corner is prolonged ... */
 	bool *no_mitre;			/* ... or not that in front of a piece */
 	uint32_t blocker;		/* the piece found too near last */
+	const struct face_side *sides;	/* NULL, or the pieces themselves are
+					 * moved: face_move.h */
 };
+
+/** track_add() - one more element, not filled. Return: NULL: no memory. */
+struct track_elem *track_add(struct track_work *w);
+
+/** track_meet_inside() - cut both off where they cross, nearest to @near.
+ *  Return: false if they do not. */
+bool track_meet_inside(struct track_elem *a, struct track_elem *b,
+		       struct vec near);
+
+/** track_shift() - piece @i's parallel is so far to its left. */
+double track_shift(const struct track_work *w, uint32_t i);
+
+/** track_forget() - free what @w owns. */
+void track_forget(struct track_work *w);
 
 /** track_lay() - the raw track. Return: 0 or -ENOMEM. */
 int track_lay(struct track_work *w);
@@ -119,6 +136,10 @@ int track_lay(struct track_work *w);
 /** clear_init() - find crossings, make the outline ready for questions.
  *  Return: 0, -ENOMEM or -E2BIG: too many crossings. */
 int clear_init(struct track_work *w);
+
+/** clear_find_crossings() - of the elements with each other, into w->hit.
+ *  Return: 0, -ENOMEM or -E2BIG. */
+int clear_find_crossings(struct track_work *w);
 
 /** clear_is() - is share @t0 to @t1 of element @e far enough from all pieces?
  *  If not, w->blocker is one that is too near. */
@@ -129,7 +150,7 @@ bool clear_is(struct track_work *w, uint32_t e, double t0, double t1);
 struct track_jump {
 	uint32_t e, f;
 	double te, tf;			/* shares of them */
-	double e_from;			/* the way came along e from here */
+	uint32_t run;			/* the first run behind it; 0: none */
 };
 
 /** track_piece() - the piece of the outline that element @e goes along. */

@@ -8,7 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SAME_MM		1e-7
 #define BACK_MAX	4096u		/* runs gone back from where it is stuck */
 #define BACK_REACHES	6.0		/* ... and so many offsets */
 #define STARTS_MAX	10000u		/* crossings tried to begin at */
@@ -92,8 +91,9 @@ static int check_jumps(struct walker *k)
 
 	for (uint32_t i = 1; !err && i < k->w->nruns; i++) {
 		const struct track_run *p = &k->w->run[i - 1], *q = p + 1;
-		struct track_jump j = { .e = p->elem, .f = q->elem, .te = p->t[1],
-				  .tf = q->t[0], .e_from = p->t[0] };
+		struct track_jump j = { .e = p->elem, .f = q->elem,
+					.te = p->t[1], .tf = q->t[0],
+					.run = i };
 
 		if (q->jump)
 			err = check_jump(k, &j);
@@ -105,7 +105,7 @@ static int check_jumps(struct walker *k)
 
 static double slack_of(const struct track_work *w, uint32_t e)
 {
-	return SAME_MM / fmax(curve_length(&w->elem[e].c), SAME_MM);
+	return CURVE_SAME_MM / fmax(curve_length(&w->elem[e].c), CURVE_SAME_MM);
 }
 
 static uint32_t hits_end(const struct track_work *w, uint32_t e)
@@ -140,7 +140,7 @@ static double next_place(const struct track_work *w, uint32_t e, double t)
 static bool is_clear(struct track_work *w, uint32_t e, double t0, double t1)
 {
 	if (!w->elem[e].dead && (t1 - t0) * curve_length(&w->elem[e].c) <
-				SAME_MM)
+				CURVE_SAME_MM)
 		return true;
 	return clear_is(w, e, t0, t1);
 }
@@ -310,10 +310,11 @@ static int find_start(struct walker *k)
 	struct track_work *w = k->w;
 	const uint32_t in = w->job->lead[0].there;
 
-	for (uint32_t i = w->elem[in].hit; i < w->nhits && i < STARTS_MAX; i++) {
+	for (uint32_t i = w->elem[in].hit;
+	     i < w->nhits && i < STARTS_MAX; i++) {
 		const struct track_hit *h = &w->hit[i];
-		struct track_jump j = { .e = h->other, .f = h->elem, .te = h->t_other,
-				  .tf = h->t };
+		struct track_jump j = { .e = h->other, .f = h->elem,
+					.te = h->t_other, .tf = h->t };
 
 		if (!may_begin(k, h))
 			continue;

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * support.c - one archive with all that who helps from afar wants to see
+ *
+ * A file that cannot be had says why, and the others are there all the same.
+ */
+#include "support.h"
+
+#include "file.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/utsname.h>
+#include <sysexits.h>
+#include <time.h>
+
+static const char what_is_not_in_it[] =
+	"No keys, no passwords, no users of the panel, no programs of jobs.";
+
+struct pack {
+	struct support s;
+	struct ctl_file file;
+	struct archive *archive;
+	char folder[96];
+	char path[128];			/* if none was named */
+	time_t now;
+	struct line line;
+};
+
+void support_ready(struct support *s)
+{
+	const struct talk_question q = { .verb = "store" };
+	struct talk_answer a;
+
+	if (s->ctl->talk &&
+	    talk_ask(s->ctl->talk, &q, s->ctl->timeout_s, &a) == 0) {
+		s->store = a.code == 0 && a.body ?
+			   json_loads(a.body, 0, NULL) : NULL;
+		talk_answer_free(&a);
+	}
+	support_learn(s);
+}
+
+void support_fini(struct support *s)
+{
+	json_decref(s->store);
+	free(s->secrets.at);
+}
+
+static void fill_readme(const struct pack *p, struct support_text *to)
+{
+	char when[32];
+	struct utsname u = { .nodename = "?" };
+	struct tm tm;
+
+	uname(&u);
+	gmtime_r(&p->now, &tm);
+	strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S UTC", &tm);
+	support_say(to, "Support archive of machine %s, host %s, %s.\n%s\nIt "
+		    "has names of jobs, of files, of this host and of those "
+		    "who command.\n\n", p->s.ctl->machine, u.nodename, when,
+		    what_is_not_in_it);
+	for (int i = 0; i < support_nfiles; i++)
+		support_say(to, "%-18s %s\n", support_files[i].name,
+			    support_files[i].what);
+}
+
+/* -- The archive ----------------------------------------------------------- */
+
+static int failed(const struct pack *p)
+{
+	fprintf(stderr, "edmctl: %s: %s\n", p->file.path,
+		archive_error_string(p->archive));
+	return EX_IOERR;
+}
+
+static int pack_open(struct pack *p)
+{
+	p->archive = archive_write_new();
+	if (!p->archive)
+		return EX_SOFTWARE;
+	archive_write_add_filter_gzip(p->archive);
+	archive_write_set_format_pax_restricted(p->archive);
+	if (archive_write_open_FILE(p->archive, p->file.f) == ARCHIVE_OK)
+		return 0;
+	return failed(p);
+}
+
+static int pack_text(struct pack *p, const char *name,
+		     const struct support_text *t)
+{
+	struct archive_entry *e = archive_entry_new();
+	char path[200];
+	int err = 0;
+
+	snprintf(path, sizeof(path), "%s/%s", p->folder, name);
+	archive_entry_set_pathname(e, path);
+	archive_entry_set_size(e, (la_int64_t)t->bytes);
+	archive_entry_set_filetype(e, AE_IFREG);
+	archive_entry_set_perm(e, 0644);
+	archive_entry_set_mtime(e, p->now, 0);
+	if (archive_write_header(p->archive, e) != ARCHIVE_OK ||
+	    archive_write_data(p->archive, t->at, t->bytes) !=
+	    (la_ssize_t)t->bytes)
+		err = failed(p);
+	archive_entry_free(e);
+	return err;
+}
+
+static int pack_one(struct pack *p, int i)
+{
+	const struct support_file *f = &support_files[i];
+	struct support_text t = { .at = NULL };
+	int err;
+
+	if (!p->s.ctl->json)
+		line_bar(&p->line, (double)i / support_nfiles, f->name);
+	f->fill(&p->s, &t);
+	support_scrub(&p->s, &t);
+	err = pack_text(p, f->name, &t);
+	free(t.at);
+	return err ? err : talk_interrupted() ? EX_TEMPFAIL : 0;
+}
+
+static int pack_all(struct pack *p)
+{
+	struct support_text readme = { .at = NULL };
+	int err = pack_open(p);
+
+	fill_readme(p, &readme);
+	if (err == 0)
+		err = pack_text(p, "README.txt", &readme);
+	free(readme.at);
+	for (int i = 0; i < support_nfiles && err == 0; i++)
+		err = pack_one(p, i);
+	if (p->archive && archive_write_close(p->archive) != ARCHIVE_OK &&
+	    err == 0)
+		err = failed(p);
+	archive_write_free(p->archive);
+	return err;
+}
+
+/* -- The verb -------------------------------------------------------------- */
+
+static void name_it(struct pack *p)
+{
+	struct tm tm;
+	char when[32];
+
+	p->now = time(NULL);
+	localtime_r(&p->now, &tm);
+	strftime(when, sizeof(when), "%Y%m%d-%H%M%S", &tm);
+	snprintf(p->folder, sizeof(p->folder), "edmd-support-%s-%s",
+		 p->s.ctl->machine, when);
+	snprintf(p->path, sizeof(p->path), "%s.tar.gz", p->folder);
+}
+
+static void tell(const struct pack *p, const char *path)
+{
+	if (p->s.ctl->json) {
+		json_t *o = json_pack("{s:s,s:i}", "file", path, "files",
+				      support_nfiles + 1);
+
+		ctl_put_json(o);
+		json_decref(o);
+		return;
+	}
+	printf("%s: %d files:\n", path, support_nfiles + 1);
+	for (int i = 0; i < support_nfiles; i++)
+		printf("  %-18s %s\n", support_files[i].name,
+		       support_files[i].what);
+	printf("%s\nLook into it before you send it: it has names of jobs, of "
+	       "files, of this host and\nof those who command.\n",
+	       what_is_not_in_it);
+}
+
+int ctl_support(struct ctl *c)
+{
+	struct pack p = { .s.ctl = c };
+	const char *path;
+	int err;
+
+	name_it(&p);
+	path = c->arg ? c->arg : p.path;
+	err = ctl_file_open(&p.file, path, false);
+	if (err)
+		return err;
+	line_init(&p.line);
+	if (!c->json)
+		line_bar(&p.line, 0, "asking edmd-jobs");
+	support_ready(&p.s);
+	err = talk_interrupted() ? EX_TEMPFAIL : pack_all(&p);
+	err = ctl_file_close(&p.file, err);
+	line_end(&p.line);
+	if (err == 0)
+		tell(&p, path);
+	else if (err == EX_TEMPFAIL)
+		fprintf(stderr, "edmctl: support: interrupted; nothing is "
+			"written\n");
+	support_fini(&p.s);
+	return err;
+}

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * face_move.c - the outline on the second plane: each piece moved to its side
+ *
+ * All pieces are moved first, and joined at their corners without regard to
+ * anything else: the raw outline.  An arc round a corner is an element of it
+ * like any other.  Where there is no room for an element the raw outline
+ * crosses itself.  The outline of the part goes along the raw one, and changes
+ * at a crossing from one element to a later one; what lies between has
+ * vanished (way.c).  The changes must leave out no more than an inner corner
+ * would (lost.c).
+ */
+#include "wire/face_move.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#define RIGHT_ANGLE	(M_PI / 2)
+#define ANGLE_SLACK	1e-6		/* the rounding of a right angle */
+#define TINY_PULSES	1.5		/* ends so near are one */
+#define SLACK_MM	0.0002
+#define FAR_EDGE	3.0		/* an edge between two tapers: no
+					 * farther than so many moves */
+
+struct mover {
+	struct track_work w;
+	const struct face_from *from;
+	const struct face *still;
+};
+
+static int lay_piece(struct mover *k, uint32_t i, struct track_elem *ret)
+{
+	const struct face_piece *p = &k->still->piece[i];
+	const enum face_fate fate = face_piece_moved(k->from, p->owner, &ret->c);
+
+	ret->owner = p->owner;
+	ret->piece = i;
+	ret->fitted = fate == FACE_FITTED;
+	ret->dead = fate == FACE_GONE;
+	if (ret->dead)
+		ret->c = curve_line(ret->c.from, ret->c.to);
+	return 0;
+}
+
+/* -- Corners -------------------------------------------------------------- */
+
+struct corner {
+	uint32_t a;			/* the element in front of it */
+	struct vec at;			/* where the pieces meet */
+	struct vec left[2];		/* of the ways to and from there */
+	double turn, shift[2];
+	bool same;			/* both are moved by the same */
+	bool outer;			/* the moved pieces part from each other */
+	bool edge;			/* ... or are prolonged until they meet */
+};
+
+static double most_of(const struct corner *c)
+{
+	return fmax(fabs(c->shift[0]), fabs(c->shift[1]));
+}
+
+/* From the corner to where straight moved pieces meet. */
+static double reach_of(const struct corner *c)
+{
+	const double a = c->shift[0], b = c->shift[1];
+
+	return sqrt(a * a + b * b - 2 * a * b * cos(c->turn)) /
+	       fabs(sin(c->turn));
+}
+
+static void corner_init(struct corner *c, const struct mover *k, uint32_t i)
+{
+	const struct face_piece *p = &k->still->piece[i - 1], *q = p + 1;
+	const enum interp_taper_corner style = k->from->m[p->owner].corner;
+	const struct vec way[2] = { curve_way(&p->c, true),
+				    curve_way(&q->c, false) };
+
+	*c = (struct corner) {
+		.a = k->w.n - 1, .at = q->c.from,
+		.left = { { -way[0].y, way[0].x }, { -way[1].y, way[1].x } },
+		.turn = curve_turn(&p->c, &q->c),
+		.shift = { p->shift_mm, q->shift_mm },
+	};
+	c->same = fabs(p->shift_mm - q->shift_mm) < CURVE_SAME_MM;
+	c->outer = c->turn * (p->shift_mm + q->shift_mm) < 0;
+	if (c->same)
+		c->edge = c->outer && (style == INTERP_CORNER_SHARP ||
+			  fabs(c->turn) <= RIGHT_ANGLE + ANGLE_SLACK);
+	else
+		c->edge = reach_of(c) <= FAR_EDGE * most_of(c);
+}
+
+static int lay_fill(struct mover *k, uint32_t a, const struct curve *c,
+		    bool dead)
+{
+	const struct track_elem before = k->w.elem[a];
+	struct track_elem *e;
+
+	if (curve_distance(c->from, c->to) < CURVE_SAME_MM)
+		return 0;
+	e = track_add(&k->w);
+	if (!e)
+		return -ENOMEM;
+	*e = (struct track_elem) { .c = *c, .owner = before.owner,
+				   .piece = before.piece, .fill = true,
+				   .dead = dead };
+	return 0;
+}
+
+/* Prolong both, or cut them off, where they meet. */
+static bool meet_edge(const struct corner *c, struct track_elem *a,
+		      struct track_elem *b)
+{
+	struct curve p = a->c, q = b->c;
+	struct vec at;
+
+	if (!c->edge || a->dead || b->dead || (p.arc && p.r == 0) ||
+	    (q.arc && q.r == 0) || !curve_meet(&p, &q, c->at, &at) ||
+	    curve_distance(at, c->at) > 1.5 * reach_of(c) ||
+	    !curve_trim(&p, a->c.from, at) || !curve_trim(&q, at, b->c.to))
+		return false;
+	a->c = p;
+	b->c = q;
+	return true;
+}
+
+/*
+ * An arc round the corner at the smaller of both distances, and straight to
+ * and from it; the same on the way back.  With moves to both sides straight
+ * from the one end to the other.
+ */
+static int lay_round(struct mover *k, const struct corner *c,
+		     const struct track_elem *b)
+{
+	const bool first = fabs(c->shift[0]) < fabs(c->shift[1]);
+	const double r = c->outer && c->shift[0] * c->shift[1] > 0 ?
+			 c->shift[!first] : 0;
+	const struct vec p = k->w.elem[c->a].c.to, q = b->c.from;
+	const struct vec from = vec_add(c->at, r, c->left[0]);
+	const struct vec to = vec_add(c->at, r, c->left[1]);
+	const struct curve round = curve_arc(from, to, c->at, r > 0);
+	const struct curve step[2] = { curve_line(p, from),
+				       curve_line(to, q) };
+	const struct curve straight = curve_line(p, q);
+	int err;
+
+	if (r == 0)
+		return lay_fill(k, c->a, &straight, false);
+	err = lay_fill(k, c->a, &step[0], false);
+	if (!err)
+		err = lay_fill(k, c->a, &round, false);
+	return err ? err : lay_fill(k, c->a, &step[1], false);
+}
+
+/* By the corner that they had: no way goes along it. */
+static int lay_dead(struct mover *k, const struct corner *c,
+		    const struct track_elem *b)
+{
+	const struct curve to = curve_line(k->w.elem[c->a].c.to, c->at);
+	const struct curve from = curve_line(c->at, b->c.from);
+	const int err = lay_fill(k, c->a, &to, true);
+
+	return err ? err : lay_fill(k, c->a, &from, true);
+}
+
+/* Let @e begin, or end, at @at; a line that no way goes along if it runs
+ * backwards then. */
+static void move_end(struct track_elem *e, struct vec at, bool end)
+{
+	const struct vec from = end ? e->c.from : at, to = end ? at : e->c.to;
+	struct curve c = e->c;
+
+	if (!e->dead && curve_trim(&c, from, to)) {
+		e->c = c;
+		return;
+	}
+	e->c = curve_line(from, to);
+	e->dead = true;
+}
+
+/* Join the last element to @b, the moved piece @i. */
+static int lay_corner(struct mover *k, uint32_t i, struct track_elem *b)
+{
+	struct track_elem *a = &k->w.elem[k->w.n - 1];
+	const double gap = curve_distance(a->c.to, b->c.from);
+	struct corner c;
+	bool kink;
+
+	corner_init(&c, k, i);
+	if (gap < CURVE_SAME_MM)
+		return 0;
+	if (a->fitted || b->fitted) {
+		move_end(a->fitted ? b : a, a->fitted ? a->c.to : b->c.from,
+			 !a->fitted);
+		return 0;
+	}
+	kink = fabs(c.turn) < 0.1 && !a->dead && !b->dead &&
+	       (gap < TINY_PULSES * k->from->pulse_mm ||
+		most_of(&c) * c.turn * c.turn < SLACK_MM);
+	if (meet_edge(&c, a, b))
+		return 0;
+	if (c.outer || (!c.same && !c.edge))
+		return lay_round(k, &c, b);
+	if (track_meet_inside(a, b, c.at))
+		return 0;
+	return kink ? lay_round(k, &c, b) : lay_dead(k, &c, b);
+}
+
+static int lay_all(struct mover *k)
+{
+	int err = 0;
+
+	for (uint32_t i = 0; !err && i < k->still->n; i++) {
+		struct track_elem b = { .piece = i }, *e;
+
+		lay_piece(k, i, &b);
+		if (i)
+			err = lay_corner(k, i, &b);
+		e = err ? NULL : track_add(&k->w);
+		if (e)
+			*e = b;
+		else if (!err)
+			err = -ENOMEM;
+	}
+	return err;
+}
+
+/* -- The outline ---------------------------------------------------------- */
+
+/* Rounding parts the ends where two nearly touch: they meet half way. */
+static void close_gap(struct face_piece *p, struct face_piece *q)
+{
+	const struct vec at = { (p->c.to.x + q->c.from.x) / 2,
+				(p->c.to.y + q->c.from.y) / 2 };
+
+	p->c.to = q->c.from = at;
+}
+
+static int take_runs(struct face *f, const struct mover *k)
+{
+	for (uint32_t i = 0; i < k->w.nruns; i++) {
+		const struct track_run *r = &k->w.run[i];
+		const struct track_elem *e = &k->w.elem[r->elem];
+		const struct curve c = curve_part(&e->c, r->t[0], r->t[1]);
+		struct face_piece *p;
+
+		if (curve_length(&c) < CURVE_SAME_MM &&
+		    !(e->c.arc && e->c.r == 0))
+			continue;
+		p = face_add(f, k->from, e->owner, &c, e->fitted);
+		if (!p)
+			return -ENOMEM;
+		p->fill = e->fill;
+		if (f->n > 1)
+			close_gap(p - 1, p);
+	}
+	return 0;
+}
+
+static int find_outline(struct mover *k, struct face_side *side,
+			struct face_fault *fault)
+{
+	struct track_fault bad = { .a = 0 };
+	int err = face_side_init(side, &k->w);
+
+	if (!err)
+		err = clear_find_crossings(&k->w);
+	if (!err)
+		err = way_find(&k->w, &bad);
+	if (err == -EINVAL) {
+		fault->a = bad.a < bad.b ? bad.a : bad.b;
+		fault->b = bad.a < bad.b ? bad.b : bad.a;
+	} else if (err == -E2BIG) {
+		*fault = (struct face_fault) {
+			k->from->first, k->from->first + k->from->n - 1, true,
+		};
+		err = -EINVAL;
+	}
+	return err;
+}
+
+int face_move(struct face *f, const struct face_from *from,
+	      const struct face *still, struct face_fault *fault)
+{
+	const struct track_job job = { .face = still, .side = 1,
+				       .pulse_mm = from->pulse_mm };
+	struct face_side side = { .n = 0 };
+	struct mover k = {
+		.w = { .job = &job, .sides = &side, .slack_mm = SLACK_MM },
+		.from = from, .still = still,
+	};
+	int err = lay_all(&k);
+
+	*fault = (struct face_fault) { .a = 0 };
+	for (uint32_t i = 0; i < still->n; i++)
+		k.w.reach_mm = fmax(k.w.reach_mm,
+				    fabs(still->piece[i].shift_mm));
+	if (!err)
+		err = find_outline(&k, &side, fault);
+	if (!err)
+		err = take_runs(f, &k);
+	face_side_free(&side);
+	track_forget(&k.w);
+	return err;
+}
