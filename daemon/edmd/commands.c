@@ -181,8 +181,7 @@ static enum cycle_answer load(struct loop *l, struct program *p)
 		return ANSWER_WRONG_STATE;
 	/* Loading moves nothing, not even to the place where the program
 	 * begins. */
-	if (memcmp(p->cursor.pos, l->cycle.out.target,
-		   sizeof(p->cursor.pos)) != 0)
+	if (!probe_is_start(&l->cycle, &p->cursor))
 		return ANSWER_ELSEWHERE;
 	answer = cycle_load(&l->cycle, &p->cursor.p);
 	if (answer != ANSWER_DONE)

@@ -206,7 +206,8 @@ static void snapshot_place(const struct cycle *c, struct shm_snapshot *s)
 	s->place_mm = interp_cursor_place_mm(at);
 	s->far_mm = c->far_mm;
 	s->length_mm = h->length_mm;
-	s->depth_mm = ((double)h->start_pulses[INTERP_Z] - s->pos[INTERP_Z]) *
+	s->depth_mm = ((double)h->start_pulses[INTERP_Z] +
+		       h->probed.shift[INTERP_Z] - s->pos[INTERP_Z]) *
 		      s->pulse_mm[INTERP_Z];
 }
 

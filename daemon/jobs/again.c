@@ -236,6 +236,17 @@ void again_refuse(struct jobs *j, const struct store_job *job, const char *why)
 	}, "job %s cannot go on: %s", job->name, why);
 }
 
+static struct interp_probed probed_by(const struct shm_snapshot *s)
+{
+	struct interp_probed p = {
+		.once = s->found_once, .twice = s->found_twice,
+	};
+
+	memcpy(p.shift, s->shift, sizeof(p.shift));
+	memcpy(p.found, s->found, sizeof(p.found));
+	return p;
+}
+
 int again_request(struct jobs *j, const struct store_job *job,
 		  struct compiler_request *ret)
 {
@@ -254,6 +265,8 @@ int again_request(struct jobs *j, const struct store_job *job,
 	}
 	ret->sets = a.base.sets;
 	ret->from.far_mm = a.base.snap.far_mm;
+	ret->from.probed = probed_by(&a.base.snap);
+	ret->from.probed_known = true;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		ret->start_mm[i] = a.base.job.start[i] * s->pulse_mm[i];
 	return 0;

@@ -248,8 +248,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 {
 	if (c->state != STATE_IDLE)
 		return ANSWER_WRONG_STATE;
-	if (c->manual.used && memcmp(at->pos, c->out.target,
-				   sizeof(at->pos)) != 0)
+	if (c->manual.used && !probe_is_start(c, at))
 		return ANSWER_ELSEWHERE;
 	c->cursor = *at;
 	c->escape = (struct escape) { .nlegs = 0 };
@@ -268,9 +267,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	mcode_begin(c, at->index);
 	c->job.power_off = false;
 	c->job.rejoin_mm = 0;
-	c->probe = (struct probe) { .phase = PROBE_SETTLE };
-	for (int i = 0; i < INTERP_NAXES; i++)
-		c->out.target[i] = at->pos[i];
+	probe_load(c);
 	cycle_enter(c, STATE_HOLD);
 	return ANSWER_DONE;
 }

@@ -108,7 +108,7 @@ def test_another_machine_file_is_refused(idle):
 
 
 def test_what_cannot_go_on_stays_interrupted(idle):
-    """Probed before: what was found is gone, but the job is not."""
+    """No way in is known, but the job is not gone."""
     m, c = idle, idle.client
     interrupted(m, c, 5, b"G21 G90\nG38.2 X1 F60\nG92 X0\n"
                 b"G1 Y8 F60\nM30\n")
@@ -116,7 +116,7 @@ def test_what_cannot_go_on_stays_interrupted(idle):
     told = c.heard(lambda: [e.text for e in c.events
                             if e.kind == "interrupted"
                             and "cannot go on" in e.text])[0]
-    assert "probed" in told and ":2:" in told
+    assert "nothing was positioned" in told and ":2:" in told
     assert c.job("cut")["state"] == "interrupted"
     assert c.ask("resume", "cut", text="XYZABCUV").code == 0
     assert c.ask("remove", "cut").code == 0

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What probing found survives a crash of edmd."""
+"""What probing found survives a crash of edmd, and a power cut."""
 
 import pytest
 import rig
+from test_power import die
 
 # A block whose upper face is at Z -1.5, and an electrode 0.5 mm over it.
 BLOCK_MACHINE = """
@@ -71,4 +72,36 @@ def test_a_probing_motion_that_was_under_way_is_made_again(block):
     assert c.submit(JOB, "job").code == 0
     c.status_where(lambda s: s.state == "probe" and s.pos_mm[2] < -1.1)
     come_back(block)
+    ends_over_the_face(block)
+
+
+def power_cut(machine):
+    die(machine)
+    machine.start()
+    c = machine.client
+    c.status_where(lambda s: s.interrupted == "job", 10)
+    assert c.status().pos_mm[2] == pytest.approx(-1)
+    a = c.ask("resume", "job", text="XYZABCUV")
+    assert a.code == 0, a.reason
+    c.status_where(lambda s: s.state == "hold" and s.job_state == "ready", 10)
+
+
+def test_a_power_cut_behind_the_contact(block):
+    c = block.client
+    assert c.submit(JOB, "job").code == 0
+    c.status_where(lambda s: abs(s.pos_mm[2] + 1.1) < 0.0015)
+    c.hear(1.2)     # the checkpoint has it
+    power_cut(block)
+    told = c.heard(lambda: [e.text for e in c.events
+                            if e.kind == "waits"])[0]
+    # Where the axis will be, and not what the program calls it.
+    assert "Z-1.1" in told, told
+    ends_over_the_face(block)
+
+
+def test_a_power_cut_while_it_feels(block):
+    c = block.client
+    assert c.submit(JOB, "job").code == 0
+    c.status_where(lambda s: s.state == "probe" and s.pos_mm[2] < -1.2)
+    power_cut(block)
     ends_over_the_face(block)

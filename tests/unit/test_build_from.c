@@ -89,7 +89,8 @@ static uint32_t check_way(const struct interp_program *p,
 
 	for (int k = 0; k < INTERP_NAXES; k++)
 		assert_int_equal(p->head->start_pulses[k],
-				 lround(o->now_mm[k] * 1000));
+				 lround(o->now_mm[k] * 1000) -
+				 o->probed.shift[k]);
 	while (p->segs[i].length_mm > 0 && p->segs[i].s_mm < e->way_mm)
 		assert_int_equal(p->segs[i++].flags, INTERP_SEG_RAPID);
 	while (i < p->head->nsegs && p->segs[i].line == e->line &&
@@ -100,8 +101,10 @@ static uint32_t check_way(const struct interp_program *p,
 	assert_int_equal(interp_cursor_init(&c, p), 0);
 	assert_int_equal(interp_cursor_seek_end(&c, i - 1), 0);
 	for (int k = 0; k < INTERP_NAXES; k++)
-		assert_int_equal(c.pos[k], (int32_t)floor(e->entry_mm[k] * 1000 +
-						0.5 + 1e-9));
+		assert_int_equal(c.pos[k] + o->probed.shift[k],
+				 (int32_t)floor(e->entry_mm[k] * 1000 + 0.5 +
+						1e-9));
+	assert_memory_equal(&p->head->probed, &o->probed, sizeof(o->probed));
 	return i - 1;
 }
 
@@ -152,6 +155,9 @@ static bool try_one(const struct script *text, const char *dialect,
 		o.far_mm = uniform(s, 0, 1.02 * a.p.head->length_mm);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		o.now_mm[i] = rnd(s) % 2 ? 0 : round(uniform(s, -9e3, 9e3)) / 1e3;
+	o.probed_known = rnd(s) % 2;
+	for (int i = 0; o.probed_known && i < INTERP_NAXES; i++)
+		o.probed.shift[i] = (int32_t)uniform(s, -4e5, 4e5);
 	part = random_build(text, dialect, &bo);
 	assert_non_null(part);
 	if (interp_build_from(part, &o, &e, &d) != 0) {

@@ -58,6 +58,28 @@ void probe_target(struct cycle *c, const int32_t pos[INTERP_NAXES])
 		c->out.target[i] = pos[i] + c->probe.shift[i];
 }
 
+bool probe_is_start(const struct cycle *c, const struct interp_cursor *at)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (c->out.target[i] !=
+		    at->pos[i] + at->p.head->probed.shift[i])
+			return false;
+	return true;
+}
+
+void probe_load(struct cycle *c)
+{
+	const struct interp_probed *was = &c->cursor.p.head->probed;
+	struct probe *t = &c->probe;
+
+	*t = (struct probe) {
+		.phase = PROBE_SETTLE, .once = was->once, .twice = was->twice,
+	};
+	memcpy(t->shift, was->shift, sizeof(t->shift));
+	memcpy(t->found, was->found, sizeof(t->found));
+	probe_target(c, c->cursor.pos);
+}
+
 /* Along which axis, and which way: 0 if along none. */
 static int axis_of(const struct cycle *c, int *ret_sign)
 {

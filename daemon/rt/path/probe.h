@@ -57,6 +57,14 @@ struct probe {
 struct cycle;
 struct io_inputs;
 
+/** probe_is_start() - are the axes where a program begins that is loaded with
+ *  its cursor @at? */
+bool probe_is_start(const struct cycle *c, const struct interp_cursor *at);
+
+/** probe_load() - the program that is loaded begins, with what was probed before
+ *  it (struct interp_probed): its axes are taken to be there. */
+void probe_load(struct cycle *c);
+
 /** probe_sense() - is there contact? */
 void probe_sense(struct cycle *c, const struct io_inputs *in);
 

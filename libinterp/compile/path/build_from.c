@@ -72,6 +72,26 @@ static uint32_t find_last(const struct interp_build *b, uint32_t far)
 	return 0;
 }
 
+/* Was something felt that is not known, or that the way in would need? */
+static int check_probing(const struct from *f, uint32_t i)
+{
+	const struct interp_seg *s = segs_of(f->b) + i;
+	const bool ended = i < f->far || f->entry->far_mm >=
+			   s->s_mm + s->length_mm - 1e-9;
+
+	if (!(s->flags & INTERP_SEG_SENSED) || !ended)
+		return 0;
+	if (!f->o->probed_known)
+		return interp_diag_say(f->diag, "what was probed before that "
+			"place is not known; a program that probes again, or "
+			"G92 in place of probing");
+	if (i > f->last)
+		return interp_diag_say(f->diag, "nothing was positioned between "
+			"this probing and that place, so no way in is known "
+			"that is off the work; a G0 behind it");
+	return 0;
+}
+
 static int check(const struct from *f)
 {
 	const struct interp_seg *s = segs_of(f->b);
@@ -84,11 +104,8 @@ static int check(const struct from *f)
 				       f->b->length_mm);
 	for (uint32_t i = 0; i <= f->far; i++) {
 		f->diag->line = s[i].line;
-		if (s[i].flags & INTERP_SEG_SENSED)
-			return interp_diag_say(f->diag, "what was probed "
-				"before that place is not known any more; a "
-				"program that probes again, or G92 in place of "
-				"probing");
+		if (check_probing(f, i) < 0)
+			return -EINVAL;
 		if (s[i].kind == INTERP_TIMED && i <= f->last &&
 		    s[i].arg > f->last)
 			return interp_diag_say(f->diag, "positioning inside a "
@@ -122,7 +139,15 @@ static void entry_of(const struct from *f, double to[INTERP_NAXES])
 	build_mm(b, at, to);
 }
 
-/* Out of the work along one axis, over, and in along the same axis. */
+/* What the axes are further than the program's own place. */
+static double shift_mm(const struct from *f, int axis)
+{
+	return (double)f->b->probed.shift[axis] * INTERP_SUB /
+	       f->b->sub_mm[axis];
+}
+
+/* Out of the work along one axis, over, and in along the same axis; as places of
+ * the program. */
 static int add_legs(struct from *f)
 {
 	const struct interp_build_word w = { .rapid = true };
@@ -130,7 +155,7 @@ static int add_legs(struct from *f)
 	double at[INTERP_NAXES], *to = f->entry->entry_mm;
 	int err = 0;
 
-	memcpy(at, f->o->now_mm, sizeof(at));
+	memcpy(at, f->way->here_mm, sizeof(at));
 	if (up >= 0) {
 		at[up] = fmax(at[up], to[up]);
 		err = interp_build_line(f->way, at, &w, f->diag);
@@ -183,7 +208,7 @@ static int add_columns(struct from *f)
 	int err;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		if (llround(f->o->now_mm[i] * b->sub_mm[i]) !=
+		if (f->way->first[i] !=
 		    llround(f->entry->entry_mm[i] * b->sub_mm[i]))
 			moved |= 1u << i;
 	err = build_columns(b, moved);
@@ -197,16 +222,21 @@ static int make_way(struct from *f)
 	struct interp_build_options o = f->b->o;
 	int err;
 
-	memcpy(o.start_mm, f->o->now_mm, sizeof(o.start_mm));
+	for (int i = 0; i < INTERP_NAXES; i++)
+		o.start_mm[i] = f->o->now_mm[i] - shift_mm(f, i);
 	o.fit_mm = 0;
 	f->way = interp_build_create(&o);
 	if (!f->way)
 		return -ENOMEM;
+	/* The travel counts where the axes are, and the cycle checks it. */
+	f->way->loose = f->b->loose;
 	err = add_columns(f);
 	if (err == 0)
 		err = add_legs(f);
 	if (err == 0)
 		err = add_outputs(f);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		f->entry->entry_mm[i] += shift_mm(f, i);
 	return err;
 }
 
@@ -383,6 +413,7 @@ int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
 	if (err < 0)
 		return err;
 	s = segs_of(b);
+	b->probed = o->probed;
 	ret->from_mm = s[f.last].s_mm + s[f.last].length_mm;
 	for (size_t i = f.last + 1; !ret->next_line && i < b->segs.n; i++)
 		ret->next_line = s[i].length_mm > 0 ? s[i].line : 0;

@@ -44,6 +44,7 @@ struct interp_build {
 	uint32_t naxes, columns;	/* columns: mask of axes */
 	uint32_t loose;			/* axes that moved by what the machine
 					 * says */
+	struct interp_probed probed;	/* before it begins */
 	double length_mm;
 	struct table segs, nodes, arcs;	/* nodes: n counts columns */
 	struct table conds, escapes, runs, couples, bits;

@@ -25,6 +25,9 @@ static bool axes_ok(const struct interp_program_head *h)
 		if (h->start_pulses[i] > INTERP_PULSES_MAX ||
 		    h->start_pulses[i] < -INTERP_PULSES_MAX)
 			return false;
+		if (h->probed.shift[i] > INTERP_PULSES_MAX ||
+		    h->probed.shift[i] < -INTERP_PULSES_MAX)
+			return false;
 		if (i >= h->naxes)
 			continue;
 		/* An axis has one column: two would move it twice. */

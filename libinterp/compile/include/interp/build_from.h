@@ -36,6 +36,8 @@ struct interp_build_from {
 	double far_mm;			/* the place: along the path of the
 					 * whole program */
 	double now_mm[INTERP_NAXES];	/* where the axes stand */
+	struct interp_probed probed;	/* by the program, before the place */
+	bool probed_known;		/* false: nobody knows it */
 	int up;				/* axis whose + leads out of the work;
 					 * -1: a wire, which is cut off: the way
 					 * is straight, and at its end the
@@ -55,7 +57,7 @@ struct interp_build_entry {
 	double far_mm;			/* the place, along the path of ... */
 	double length_mm;		/* ... and the length of the whole
 					 * program */
-	double entry_mm[INTERP_NAXES];	/* where it comes in */
+	double entry_mm[INTERP_NAXES];	/* where it comes in: the axes */
 	double from_mm;			/* that point, along the path of the
 					 * whole program ... */
 	double way_mm;			/* ... and of the new one */
@@ -70,8 +72,12 @@ struct interp_build_entry {
  * @b: a whole program, read from the same text, with the same start, as the one
  * that was interrupted.
  *
- * Return: 0; -EINVAL with @diag filled: the place is not inside, or what the
- * machine found by probing before it is not known; -ENOMEM.  After an error @b
+ * What the machine found by probing before the place must be known, and the
+ * program must have positioned since.  A probing motion that the place is in the
+ * middle of is done again.
+ *
+ * Return: 0; -EINVAL with @diag filled: the place is not inside, or not behind
+ * such a positioning motion; -ENOMEM.  After an error @b
  * can only be destroyed.
  */
 int interp_build_from(struct interp_build *b, const struct interp_build_from *o,

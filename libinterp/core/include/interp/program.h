@@ -44,7 +44,7 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	7
+#define INTERP_PROGRAM_VERSION	8
 
 /*
  * How three and more axes make a line, one at a time.  Point-by-point is a
@@ -235,6 +235,16 @@ enum interp_escape_mode {
 	INTERP_NESCAPE_MODES
 };
 
+/* What was felt before a program begins, if it is the rest of one that was
+ * interrupted.  All 0: nothing. */
+struct interp_probed {
+	int32_t shift[INTERP_NAXES];	/* where the axes are, less the
+					 * program's own place; pulses */
+	int32_t found[2][INTERP_NAXES];	/* where each axis stood at its last
+					 * contacts, the last one first */
+	uint32_t once, twice;		/* bit per axis: so many there are */
+};
+
 struct interp_program_head {
 	char magic[8];
 	uint32_t version;
@@ -260,6 +270,7 @@ struct interp_program_head {
 	uint64_t nstops, stops_at, nnumbers, numbers_at;
 	double pulse_mm[INTERP_NAXES];
 	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
+	struct interp_probed probed;
 	uint8_t hash[32];		/* SHA-256 of the source text, or
 					 * zeros */
 	char name[64];			/* of the job; NUL-terminated */
