@@ -15,6 +15,15 @@
 #define LIST_MAX	200
 #define ALARMS_MAX	20
 
+/* Which electrodes cut it, and their wear before and after. */
+#define ELECTRODES_JSON	", 'electrodes', (SELECT json_group_array(json(e)) " \
+			"FROM (SELECT json_object('electrode', electrode, " \
+			"'shift_mm', offset_mm, 'wear_before_mm', before_mm, " \
+			"'wear_after_mm', after_mm, 'known', json(iif(known, " \
+			"'true', 'false')), 'sparked_s', after_s - before_s) " \
+			"AS e FROM worn WHERE worn.job=job.n AND after_s>=0 " \
+			"ORDER BY part))"
+
 #define JOB_JSON(MORE)	"json_object('n', n, 'job', id, 'name', name, " \
 			"'state', state, 'hold', json(iif(hold, 'true', " \
 			"'false')), 'lines', lines, 'sha256', sha256, " \
@@ -23,7 +32,7 @@
 			"place_mm, 'length_mm', length_mm, 'depth_mm', " \
 			"depth_mm, 'job_s', job_s, 'jumps', jumps, " \
 			"'retracts', retracts, 'shorts', shorts, " \
-			"'tech_sha256', tech_sha256" MORE ")"
+			"'tech_sha256', tech_sha256" ELECTRODES_JSON MORE ")"
 
 /* What it came to.  Energy is null where the machine does not count it. */
 #define SUMS_JSON	", 'first_us', first_us, 'erode_s', erode_s, " \
@@ -51,6 +60,12 @@
 /* The place of a job in a list; a smaller number is earlier. */
 #define IN_QUEUE	"1 - loaded, " STORE_TURN
 #define IN_HISTORY	"-ended_us, -n"
+
+/* SQLite finds the page by the index of that order, if it is told where the page
+ * begins, and that the index of the states is of no use (+). */
+#define HAS_ENDED	"+state IN ('done', 'stopped', 'fault') AND " \
+			"-ended_us >= coalesce((SELECT -ended_us FROM job " \
+			"WHERE id=?2), -9e18)"
 
 /* As many jobs as asked for; those after job ?2 if one is given.  The order is
  * found from a few columns, and JSON is made only of the rows that are
@@ -95,8 +110,8 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 	case STORE_HISTORY:
 		break;
 	}
-	return store_ask(s, ret_err, JOBS_SQL(SUMS_JSON, "state IN ('done', 'stopped', "
-			 "'fault')", IN_HISTORY), "is", (int64_t)rows, id);
+	return store_ask(s, ret_err, JOBS_SQL(SUMS_JSON, HAS_ENDED, IN_HISTORY),
+			 "is", (int64_t)rows, id);
 }
 
 /*
