@@ -21,7 +21,8 @@ struct submission;
 
 struct submission_text {
 	const char *id;			/* NULL: one is drawn */
-	const char *name;		/* for people; its ending is the dialect */
+	const char *name;		/* for people; its ending is the
+					 * dialect */
 	const char *text;		/* lent until submission_end() */
 	size_t bytes;			/* at most SUBMISSION_BYTES_MAX */
 	bool hold;			/* load it, but wait for "start" */

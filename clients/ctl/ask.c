@@ -242,10 +242,11 @@ static void print_ended(json_t *job)
 
 	ctl_when(at, job, "ended_us");
 	ctl_duration(took, sizeof(took), ctl_number_of(job, "job_s"));
-	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n", ctl_text_of(job, "job"),
-	       ctl_text_of(job, "name"), ctl_text_of(job, "state"), at,
-	       ctl_number_of(job, "depth_mm"), took,
-	       *ctl_text_of(job, "reason") ? "  " : "", ctl_text_of(job, "reason"));
+	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n",
+	       ctl_text_of(job, "job"), ctl_text_of(job, "name"),
+	       ctl_text_of(job, "state"), at, ctl_number_of(job, "depth_mm"),
+	       took, *ctl_text_of(job, "reason") ? "  " : "",
+	       ctl_text_of(job, "reason"));
 }
 
 /* A condition's name, a number, or the generator's own setting. */
@@ -268,7 +269,8 @@ static void print_changes(json_t *rows)
 	json_array_foreach(rows, i, row) {
 		ctl_when(at, row, "utime");
 		printf("%-10s %s %10.3f mm  %s ", i ? "" : "changes", at,
-		       ctl_number_of(row, "place_mm"), ctl_text_of(row, "what"));
+		       ctl_number_of(row, "place_mm"),
+		       ctl_text_of(row, "what"));
 		print_value(json_object_get(row, "was"));
 		printf(" -> ");
 		print_value(json_object_get(row, "now"));
@@ -318,8 +320,9 @@ static void print_one(json_t *job)
 	ctl_duration(text, sizeof(text), ctl_number_of(job, "job_s"));
 	printf("path       %.3f mm of %.3f mm\ndepth      %.3f mm\n"
 	       "time       %s\njumps      %.0f\nretracts   %.0f\n"
-	       "shorts     %.0f\nsha256     %s\n", ctl_number_of(job, "path_mm"),
-	       ctl_number_of(job, "length_mm"), ctl_number_of(job, "depth_mm"), text,
+	       "shorts     %.0f\nsha256     %s\n",
+	       ctl_number_of(job, "path_mm"), ctl_number_of(job, "length_mm"),
+	       ctl_number_of(job, "depth_mm"), text,
 	       ctl_number_of(job, "jumps"), ctl_number_of(job, "retracts"),
 	       ctl_number_of(job, "shorts"), ctl_text_of(job, "sha256"));
 	history_print(job);

@@ -96,8 +96,10 @@ int ctl_shm_open(const struct ctl *c, const struct shm_status **ret);
 int ctl_ask(struct ctl *c, const struct talk_question *q,
 	    struct talk_answer *ret);
 
-/** ctl_ask_json() - the JSON of one answer.  Return: 0, or a sysexits code after
- *  a message. */
+/**
+ * ctl_ask_json() - the JSON of one answer.  Return: 0, or a sysexits code after
+ * a message.
+ */
 int ctl_ask_json(struct ctl *c, const struct talk_question *q, json_t **ret);
 
 /** ctl_put_json() - print it.  Return: an exit code. */

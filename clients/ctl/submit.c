@@ -159,7 +159,8 @@ static int print_outcome(const struct ctl *c, const struct submission *j)
 	if (c->json)
 		printf("%s\n", a->body);
 	else
-		printf("job %s, %s: %s\n", submission_id(j), submission_name(j), a->reason);
+		printf("job %s, %s: %s\n", submission_id(j),
+		       submission_name(j), a->reason);
 	fflush(stdout);
 	return 0;
 }

@@ -135,8 +135,8 @@ static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
 	jobs_lcm_ack(w, &(struct jobs_lcm_ack) {
 		.key = to->key, .client = to->client, .seq = to->seq,
 		.reason = reason,
-		.code = again ? JOBS_LCM_AGAIN : cause == TRUST_KEY ? EX_NOPERM :
-			EX_TEMPFAIL,
+		.code = again ? JOBS_LCM_AGAIN :
+			cause == TRUST_KEY ? EX_NOPERM : EX_TEMPFAIL,
 	});
 }
 
@@ -232,7 +232,8 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 	if (!shape_fits(s, SHAPE_CHUNK, &size) || chunk_decode(s, size, &m) < 0)
 		return false;
 	c = (struct jobs_lcm_chunk) {
-		.key = s->key, .client = m.client, .seq = m.seq, .job = m.job, .name = m.name,
+		.key = s->key, .client = m.client, .seq = m.seq, .job = m.job,
+		.name = m.name,
 		.bytes = m.bytes, .sha256 = m.sha256, .chunk = m.chunk,
 		.chunks = m.chunks, .offset = m.offset, .hold = m.hold != 0,
 		.from_line = m.from_line, .from_mm = m.from_mm,

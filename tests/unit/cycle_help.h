@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * cycle_help.h - a cycle driven by hand-made inputs: no machine, no gap
+ * cycle_help.h - a cycle with inputs that the test makes: no machine, no gap
  *
- * Every step checks what must hold in all of them.
+ * Every step checks what must always hold.
  */
 #ifndef CYCLE_HELP_H
 #define CYCLE_HELP_H

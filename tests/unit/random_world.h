@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * random_world.h - programs, machine files, gaps, conditions and commands,
- * all at random
+ * random_world.h - random programs, machine files, gaps, conditions and
+ * commands
  */
 #ifndef RANDOM_WORLD_H
 #define RANDOM_WORLD_H

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_arcing.c - promises of the ladder against arcs
- */
+/* test_arcing.c - promises of the steps that are taken against arcs */
 #include "cycle_help.h"
 
 static struct cycle_config arcing(void)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_config.c - the machine file: what it takes, and what the cycle gets
+ * test_config.c - the machine file: what is accepted, and what the cycle gets
  */
 #include "config_help.h"
 

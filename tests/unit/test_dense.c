@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_dense.c - promises of programs of very short lines, rounded as they are
- * written
+ * test_dense.c - promises of programs of very short lines whose ends are
+ * rounded
  */
 #include "cycle_help.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_ground.c - a short while positioning: debris over ground that was cut, a
- * collision anywhere else
+ * test_ground.c - a short while positioning: over ground that was cut it is
+ * debris, anywhere else a collision
  */
 #include "cycle_help.h"
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_limits.c - promises of the speed ceilings of a program, and of moves
+ * test_limits.c - promises of the greatest speeds of a program, and of moves
  * that keep to them in both directions
  *
- * Random programs; the seed is printed.
+ * The programs are random; the seed is printed.
  */
 #include "cycle_help.h"
 

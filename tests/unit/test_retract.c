@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_retract.c - promises of the way back: its bounds, and a wire's
- */
+/* test_retract.c - promises of the way back: its bounds, and that of a wire */
 #include "cycle_help.h"
 
 /* Air, then cuts to 2 and to 5; cut to @mm. */

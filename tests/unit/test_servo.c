@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_servo.c - promises of the servo's laws: window, integral, approach
- */
+/* test_servo.c - promises of the servo's laws: window, integral, approach */
 #include "cycle_help.h"
 
 #define LOW_V	35.0

@@ -77,8 +77,8 @@ struct interp_build_entry {
  * that was interrupted.
  *
  * What the machine found by probing before the place must be known, and the
- * program must have positioned since.  A probing motion that the place is in the
- * middle of is done again.
+ * program must have positioned since.  A probing motion that the place is in
+ * the middle of is done again.
  *
  * Return: 0; -EINVAL with @diag filled: the place is not inside, or not behind
  * such a positioning motion; -ENOMEM.  After an error @b
