@@ -12,6 +12,7 @@
 #include <string.h>
 #include <sysexits.h>
 #include <time.h>
+#include <unistd.h>
 
 /* Then it does not come with the service. */
 static bool key_is_named(const struct ctl *c)
@@ -348,12 +349,24 @@ int ctl_put_json(json_t *o)
 	return err ? EX_IOERR : 0;
 }
 
+/* The first pages come at once, and most lists are no longer. */
+static void tell_progress(double since_s, size_t jobs, bool end)
+{
+	if (talk_now_s() - since_s < 1 || !isatty(STDERR_FILENO))
+		return;
+	if (end)
+		fputs("\r\033[K", stderr);
+	else
+		fprintf(stderr, "\r%zu jobs", jobs);
+}
+
 int ctl_pages(struct ctl *c, const char *verb,
 	      int (*take)(void *arg, json_t *page), void *arg)
 {
 	struct talk_question q = { .verb = verb };
 	json_t *page = NULL, *before;	/* q.job is a word of it */
-	size_t n;
+	const double since_s = talk_now_s();
+	size_t n, all = 0;
 	int err;
 
 	do {
@@ -364,6 +377,7 @@ int ctl_pages(struct ctl *c, const char *verb,
 		if (err == 0)
 			err = take(arg, page);
 		n = json_array_size(page);
+		tell_progress(since_s, all += n, n == 0);
 		q.job = ctl_text_of(json_array_get(page, n ? n - 1 : 0), "job");
 	} while (err == 0 && n > 0);
 	json_decref(page);

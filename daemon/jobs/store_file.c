@@ -106,6 +106,9 @@ static const char *const steps[] = {
 	" DELETE FROM used WHERE n=old.n;"
 	" DELETE FROM trail WHERE n=old.n;"
 	" DELETE FROM fault WHERE n=old.n; END;",
+
+	/* The history is read page by page in this order: store_list.c. */
+	"CREATE INDEX job_by_end ON job(-ended_us, -n);",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

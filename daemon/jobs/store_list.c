@@ -52,6 +52,12 @@
 #define IN_QUEUE	"1 - loaded, " STORE_TURN
 #define IN_HISTORY	"-ended_us, -n"
 
+/* SQLite finds the page by the index of that order, if it is told where the page
+ * begins, and that the index of the states is of no use (+). */
+#define HAS_ENDED	"+state IN ('done', 'stopped', 'fault') AND " \
+			"-ended_us >= coalesce((SELECT -ended_us FROM job " \
+			"WHERE id=?2), -9e18)"
+
 /* As many jobs as asked for; those after job ?2 if one is given.  The order is
  * found from a few columns, and JSON is made only of the rows that are
  * wanted. */
@@ -95,8 +101,8 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 	case STORE_HISTORY:
 		break;
 	}
-	return store_ask(s, ret_err, JOBS_SQL(SUMS_JSON, "state IN ('done', 'stopped', "
-			 "'fault')", IN_HISTORY), "is", (int64_t)rows, id);
+	return store_ask(s, ret_err, JOBS_SQL(SUMS_JSON, HAS_ENDED, IN_HISTORY),
+			 "is", (int64_t)rows, id);
 }
 
 /*

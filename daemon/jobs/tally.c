@@ -124,16 +124,19 @@ static bool is_on_its_way(const struct shm_snapshot *s)
 	       s->state == SHM_ERODE || s->state == SHM_PROBE;
 }
 
+/* @edge: it is the beginning or the end, whatever the state. */
 static void follow_trail(struct tally *t, const struct shm_snapshot *s,
-			 bool end)
+			 bool edge)
 {
 	const struct tally_point *last = t->npoints ?
 					 &t->point[t->npoints - 1] : NULL;
+	const bool under_power = is_on_its_way(s) && s->state != SHM_TRAVEL;
 	struct tally_point p = { .place_mm = s->place_mm,
-				 .cut = s->state != SHM_TRAVEL };
+				 .cut = t->under_power };
 
-	if (!end && !is_on_its_way(s))
+	if (!edge && !is_on_its_way(s))
 		return;
+	t->under_power = under_power;
 	for (int i = 0; i < 3; i++)
 		p.mm[i] = s->pos[i] * s->pulse_mm[i];
 	if (!last) {
@@ -141,7 +144,7 @@ static void follow_trail(struct tally *t, const struct shm_snapshot *s,
 		t->step_mm = fmax(s->length_mm / STEPS, STEP_MIN_MM);
 		keep_point(t, &p);
 	} else if (p.place_mm > last->place_mm &&
-		   (distance(&p, last) >= t->step_mm || end ||
+		   (distance(&p, last) >= t->step_mm || edge ||
 		    p.cut != last->cut)) {
 		keep_point(t, &p);
 	}
@@ -232,7 +235,13 @@ void tally_look(struct jobs *j, int64_t now_us)
 	char condition[16];
 
 	begin(j, j->queue.job.n);
-	if (t->n == 0 || whole.program != t->n || whole.job_cycles == 0)
+	if (t->n == 0 || whole.program != t->n)
+		return;
+	if (whole.job_cycles == 0 && !t->goes_on) {
+		t->npoints = 0;
+		follow_trail(t, &whole, true);
+	}
+	if (whole.job_cycles == 0)
 		return;
 	make_whole(t, &whole);
 	name_condition(condition, &whole);

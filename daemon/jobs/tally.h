@@ -66,6 +66,7 @@ struct tally {
 	struct tally_point point[TALLY_POINTS];
 	uint32_t npoints;
 	double step_mm, length_mm;
+	bool under_power;		/* at the look before */
 	int64_t retracted_ns;		/* time of the last one counted */
 	char written[16];		/* condition when `used` was written */
 	int64_t used_us, trail_us;	/* when, monotonic */

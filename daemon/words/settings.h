@@ -74,7 +74,7 @@ struct cycle_gap_config {
 	double integral_s;		/* reset time; 0: without an integral */
 	double feed_max_mm_s;		/* fastest feed while eroding */
 	double creep_mm_s;		/* fastest back, while eroding */
-	double feed_a_mm_s2;		/* of the servo; 0: at once */
+	double feed_a_mm_s2;		/* of the servo; 0: that of the axes */
 	double approach_mm_s;		/* feed until the first spark */
 	double share_v;			/* volts that a share of 1 is worth */
 	double share_set;		/* the weighted share to hold */

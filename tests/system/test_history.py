@@ -116,6 +116,7 @@ def test_the_trail_is_the_path_that_was_gone(shop):
     c = running(shop, b"G21 G90\nG1 X1 F120\nY1\nX0\nY0\nM30\n")
     c.job_where("job", "done")
     points = trail(c, "job")["points_um"]
+    assert points[0][:4] == [0, 0, 0, 0]
     assert points[-1][:4] == [0, 0, 0, 4000]
     assert max(p[0] for p in points) == pytest.approx(1000, abs=100)
     assert max(p[1] for p in points) == pytest.approx(1000, abs=100)

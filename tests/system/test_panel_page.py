@@ -125,7 +125,16 @@ def test_a_part_from_its_error_to_the_history(p, page):
     page.goto(p.url + "/#/jobs")
     expect(page.locator(".jobs").last).to_contain_text("part.ngc")
     page.locator(".jobs").last.locator(".job").first.click()
-    expect(page.locator("dialog")).to_contain_text("C120")
+    expect(page.locator("dialog #conditions")).to_contain_text("C120")
+    expect(page.locator("dialog #jobfaults tr")).to_have_count(1)
+    expect(page.locator("dialog")).to_contain_text("kJ")
+    page.keyboard.press("Escape")
+    with page.expect_download() as saved:
+        page.locator("#historycsv").click()
+    table = p.machine.ctl("history", "--csv")
+    assert table.returncode == 0 and "C120=" in table.stdout
+    with open(saved.value.path(), newline="") as f:
+        assert f.read() == table.stdout.replace("\n", "\r\n")
 
 
 def test_a_probing_form_makes_the_code_it_runs(p, page):

@@ -192,6 +192,20 @@ static inline double place(const struct rig *r)
 	return interp_cursor_place_mm(&r->c.cursor);
 }
 
+/* The way of @n cycles from one speed to another, changing it by the
+ * acceleration @a: as a servo goes. */
+static inline double ramp_mm(double from, double to, double a, int n)
+{
+	const double dv = a * PERIOD_S;
+	double mm = 0;
+
+	while (n-- > 0) {
+		from = from < to ? fmin(from + dv, to) : fmax(from - dv, to);
+		mm += from * PERIOD_S;
+	}
+	return mm;
+}
+
 /* Step until the state is @s; it must come within @n cycles. */
 static inline int until(struct rig *r, enum cycle_state s, double gap_v, int n)
 {

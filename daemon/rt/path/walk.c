@@ -68,7 +68,7 @@ static bool beyond(const struct cycle *c)
 	for (uint32_t m = at->moved; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
 
-		if (!probe_in_travel(c, i, at->pos[i]))
+		if (!place_in_travel(c, i, at->pos[i]))
 			return true;
 	}
 	return false;
@@ -100,8 +100,8 @@ static bool well_inside(const struct cycle *c)
 
 	for (uint32_t j = 0; j < at->p.head->naxes; j++) {
 		const uint8_t i = at->p.head->column[j];
-		if (!probe_in_travel(c, i, at->pos[i] - RUN) ||
-		    !probe_in_travel(c, i, at->pos[i] + RUN))
+		if (!place_in_travel(c, i, at->pos[i] - RUN) ||
+		    !place_in_travel(c, i, at->pos[i] + RUN))
 			return false;
 	}
 	return true;
@@ -211,7 +211,7 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 		c->feed_mm_s = 0;
 		return r;
 	}
-	probe_target(c, c->cursor.pos);
+	place_target(c, c->cursor.pos);
 	to = interp_cursor_place_mm(&c->cursor);
 	c->feed_mm_s = (to - from) * 1e9 / (double)c->config.period_ns;
 	if (to > c->far_mm)

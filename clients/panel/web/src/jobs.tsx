@@ -6,16 +6,18 @@ import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { whyNot } from "./can";
 import { duration, moment, number } from "./format";
+import { table } from "./history";
+import type { Came, Fault } from "./history";
 import { link } from "./link";
 import { fitName, ownLines, unitOf } from "./names";
 import { Card, Key, NumberField, PressKey, Sheet, act } from "./parts";
 import { PathView } from "./pathview";
-import { say, useAsk, usePages } from "./use";
-import { jobWord, t } from "./words";
+import { save, say, useAsk, usePages } from "./use";
+import { faultWords, jobWord, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
 interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string }
-interface Job { n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; jumps: number; retracts: number; shorts: number; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
+interface Job { n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
 
 const EDITOR_MAX = 2 << 20, FILE_MAX = 64 << 20;
 
@@ -157,12 +159,27 @@ function New(): JSX.Element {
 	</Card>;
 }
 
+function energy(j: number | null | undefined): string {
+	return typeof j === "number" ? `${number(j / 1000, 3)} kJ` : t("jobs.notcounted");
+}
+
+function Sums(p: { job: Job }): JSX.Element {
+	const came = p.job.conditions ?? [], faults = p.job.faults ?? [];
+	return <>{came.length > 0 && <><h3>{t("jobs.conditions")}</h3><div class="scroll"><table class="list" id="conditions"><tbody>{came.map((c) =>
+		<tr><td>{c.condition || "\u2013"}</td><td class="n">{duration(c.job_s)}</td><td class="n">{t("cut.retracts")} {c.retracts}</td><td class="n">{t("cut.shorts")} {c.shorts}</td><td class="n">{energy(c.energy_j)}</td></tr>)}</tbody></table></div></>}
+		{faults.length > 0 && <><h3>{t("jobs.faults")}</h3><div class="scroll"><table class="list" id="jobfaults"><tbody>{faults.map((f) =>
+			<tr><td class="when">{moment(f.utime / 1000)}</td><td>{faultWords(f.fault).what}</td><td class="n">{t("jobs.inline", { line: f.line })}</td><td class="n">{number(f.place_mm, 3)} mm</td></tr>)}</tbody></table></div></>}
+	</>;
+}
+
 function Details(p: { id: string; name: string; onClose: () => void }): JSX.Element {
 	const [j] = useAsk<Job>("show", { job: p.id });
 	return <Sheet title={t("jobs.details", { name: p.name })} onClose={p.onClose} wide>{j && <>
 		<dl class="facts"><dt>{t("jobs.state")}</dt><dd>{jobWord(j.state)}</dd>{j.reason && <><dt>{t("jobs.reason")}</dt><dd>{j.reason}</dd></>}
 			<dt>{t("jobs.time")}</dt><dd>{duration(j.job_s)}</dd><dt>{t("jobs.length")}</dt><dd>{number(j.path_mm ?? 0, 3)} {t("of")} {number(j.length_mm ?? 0, 3)} mm</dd>
-			<dt>{t("jobs.depth")}</dt><dd>{number(j.depth_mm ?? 0, 3)} mm</dd><dt>{t("cut.jumps")}</dt><dd>{j.jumps ?? 0}</dd><dt>{t("cut.retracts")}</dt><dd>{j.retracts ?? 0}</dd><dt>{t("cut.shorts")}</dt><dd>{j.shorts ?? 0}</dd></dl>
+			<dt>{t("jobs.depth")}</dt><dd>{number(j.depth_mm ?? 0, 3)} mm</dd><dt>{t("cut.jumps")}</dt><dd>{j.jumps ?? 0}</dd><dt>{t("cut.retracts")}</dt><dd>{j.retracts ?? 0}</dd><dt>{t("cut.shorts")}</dt><dd>{j.shorts ?? 0}</dd>
+			<dt>{t("jobs.arcs")}</dt><dd>{j.arcs ?? "\u2013"}</dd><dt>{t("jobs.energy")}</dt><dd>{energy(j.energy_j)}</dd></dl>
+		<Sums job={j} />
 		<h3>{t("jobs.changes")}</h3>
 		{(j.changes ?? []).length === 0 ? <p class="calm">{t("jobs.nochanges")}</p> : <div class="scroll"><table class="list"><tbody>{j.changes?.map((c) =>
 			<tr><td class="when">{moment(c.utime / 1000)}</td><td>{c.what}{c.now !== null && <> {c.was ?? "\u2013"} {"\u2192"} {c.now}</>}</td><td class="n">{number(c.place_mm, 3)} mm</td></tr>)}</tbody></table></div>}
@@ -198,7 +215,12 @@ function Queue(p: { open: (j: Job) => void }): JSX.Element {
 
 function History(p: { open: (j: Job) => void }): JSX.Element {
 	const { rows, refused, next } = usePages<Job>("past", { arg: 50, turn: link.state.job + link.state.jobState }, 5000);
-	return <Card title={t("jobs.history")}>{refused && <p class="note">{refused}</p>}
+	const [why, tell] = useState("");
+	const download = () => void table().then((a) => {
+		tell("refused" in a ? a.refused : "");
+		if ("csv" in a) save(`edm-${link.hello?.machine}-history.csv`, "text/csv", a.csv);
+	});
+	return <Card title={t("jobs.history")} right={rows && rows.length > 0 ? <Key id="historycsv" class="small quiet" label={t("jobs.csv")} onPress={download}>CSV</Key> : undefined}>{why && <p class="note">{why}</p>}{refused && <p class="note">{refused}</p>}
 		{rows && rows.length === 0 && <p class="calm">{t("jobs.nohistory")}</p>}
 		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b>
 			<span class={`job-${j.state}`}>{jobWord(j.state)}</span><span class="when">{moment(j.ended_us / 1000)}</span><span class="n">{duration(j.job_s)}</span></button></li>)}</ul>

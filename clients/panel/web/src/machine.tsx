@@ -5,7 +5,7 @@ import type { JSX } from "preact";
 import { moment, number } from "./format";
 import { link } from "./link";
 import { Card, Choice, Key } from "./parts";
-import { change, useAsk, useSettings, type Settings } from "./use";
+import { change, save, useAsk, useSettings, type Settings } from "./use";
 import { isWord, t } from "./words";
 
 interface Finding { what: string; verdict: string; found: string; mend: string }
@@ -55,10 +55,7 @@ async function bundle(): Promise<void> {
 	const what = ["doctor", "latency", "notes", "log", "alarms", "queue", "past", "tech"];
 	const got = await Promise.all(what.map((w) => link.ask(w, w === "past" ? { arg: 100 } : {})));
 	const all = { at: new Date().toISOString(), hello: link.hello, state: link.state, ...Object.fromEntries(what.map((w, i) => [w, got[i]?.body ?? got[i]?.reason])) };
-	const a = document.createElement("a");
-	a.href = URL.createObjectURL(new Blob([JSON.stringify(all, null, 1)], { type: "application/json" }));
-	a.download = `edm-${link.hello?.machine}-${Date.now()}.json`;
-	a.click();
+	save(`edm-${link.hello?.machine}-${Date.now()}.json`, "application/json", JSON.stringify(all, null, 1));
 }
 
 function Browser(): JSX.Element {

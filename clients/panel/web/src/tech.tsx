@@ -7,7 +7,7 @@ import { useState } from "preact/hooks";
 import { parse, short } from "./format";
 import { link, type Field } from "./link";
 import { Card, Key } from "./parts";
-import { useAsk } from "./use";
+import { save, useAsk } from "./use";
 import { unitWord } from "./values";
 import { fieldWord, t } from "./words";
 
@@ -31,14 +31,6 @@ export function techText(table: Table, fields: Field[], edits: Edits): string {
 		...table.notes.map((n) => `note = ${n}`), "", ["condition", ...used.map((f) => f.unit ? `${f.name} [${f.unit}]` : f.name)].join(", "), ...rows, "",
 		...table.sequences.map((q) => `sequence Q${q.number} = ${q.steps.join(" ")}`), "",
 	].join("\n");
-}
-
-function save(name: string, text: string): void {
-	const a = document.createElement("a");
-	a.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
-	a.download = name;
-	a.click();
-	setTimeout(() => URL.revokeObjectURL(a.href), 1000);
 }
 
 function Cell(p: { row: Row; field: Field; edits: Edits; onEdit: (e: Edits) => void }): JSX.Element {
@@ -79,7 +71,7 @@ export function Tech(): JSX.Element {
 	const edited = Object.keys(edits).length > 0, name = tech.file.split("/").pop() ?? "table.tech";
 	return <div class="column wide">
 		<Card title={`${t("tech.table")}: ${name}`} right={<div class="keys">{edited && <Key class="small quiet" onPress={() => setEdits({})}>{t("tech.discard")}</Key>}
-			<Key class="small" onPress={() => save(name.replace(/\.\w+$/, "") + ".tech", techText(table, all, edits))}>{t("tech.export")}</Key></div>}>
+			<Key class="small" onPress={() => save(name.replace(/\.\w+$/, "") + ".tech", "text/plain", techText(table, all, edits))}>{t("tech.export")}</Key></div>}>
 			<p class="facts-line">{t("tech.electrode")}: <b>{table.electrode || "\u2013"}</b> {"\u00b7"} {t("tech.workpiece")}: <b>{table.workpiece || "\u2013"}</b></p>
 			{edited && <p class="note warn">{t("tech.edited", { file: tech.file })}</p>}
 			<div class="scroll" tabIndex={0} role="region" aria-label={t("tech.table")}><table class="list techtable"><thead><tr><th scope="col">{t("tech.condition")}</th>{used.map((f) => <th scope="col" title={fieldWord(f.name, f.help)}>{f.name}<u>{unitWord(f.unit)}</u></th>)}</tr></thead>

@@ -152,3 +152,12 @@ export function useToasts(): Toast[] {
 	}, []);
 	return toasts;
 }
+
+/** Hands a text to the browser as a file. */
+export function save(name: string, type: string, text: string): void {
+	const a = document.createElement("a");
+	a.href = URL.createObjectURL(new Blob([text], { type }));
+	a.download = name;
+	a.click();
+	setTimeout(() => URL.revokeObjectURL(a.href), 1000);
+}

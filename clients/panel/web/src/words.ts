@@ -101,6 +101,8 @@ export const en = {
 	"jobs.large": "This program is too long for the editor; it is checked and sent as it is.",
 	"jobs.checkfirst": "The program has an error. Mend it first.",
 	"jobs.sum": "Cut {cut} mm, positioning {rapid} mm",
+	"jobs.conditions": "Conditions", "jobs.faults": "Faults", "jobs.inline": "line {line}",
+	"jobs.arcs": "Arcs", "jobs.energy": "Energy", "jobs.notcounted": "not counted", "jobs.csv": "Save the history as a CSV table",
 	"jobs.waits": "waits for Start", "jobs.more": "Show more",
 	"jobs.resume": "Resume", "jobs.resume.about": "The job is read again and then stands ready. Start positions the electrode off the work and comes in along the path that was cut before.",
 	"jobs.resume.sure": "The machine stands where it shows: {axes}",

@@ -44,7 +44,7 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	8
+#define INTERP_PROGRAM_VERSION	9
 
 /*
  * How three and more axes make a line, one at a time.  Point-by-point is a
@@ -197,6 +197,7 @@ struct interp_piece {
 	uint32_t curve;
 	uint32_t nstops;
 	uint64_t stops_at;
+	double a_mm_s2, j_mm_s3;	/* along it, that its axes allow */
 };
 
 /* A technology condition called by the program, such as C120 or E001. */
@@ -220,7 +221,8 @@ struct interp_escape {
 	double home_mm[INTERP_NAXES];	/* machine coordinates */
 	double out_mm[INTERP_NAXES];
 	double rise_mm;
-	double v_max_mm_s;		/* the fastest its axes allow */
+	/* The most that each of its axes allows: */
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 };
 
 /* Which way out is wanted.  It is taken only where it is known to be free. */
