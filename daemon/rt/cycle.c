@@ -62,9 +62,8 @@ static enum cycle_event look_arrive(const struct cycle *c)
 
 /*
  * While positioning, the electrode met something over ground that was cut
- * already.  That is a short like any other.  While a lead is added to the axes
- * it counts as a collision, because a retract has no lead and would drop it in
- * one step.
+ * already.  That is a short like any other.  A retract has no lead, so axes that
+ * have a lead first brake with it.
  */
 static enum cycle_event look_out(struct cycle *c)
 {
