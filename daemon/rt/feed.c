@@ -13,8 +13,7 @@
 
 /* -- Positioning, lifts and moves by command ------------------------------- */
 
-/* Brake with the limits of the motion that is under way.  Laws that set their
- * own speed brake as positioning does. */
+/* Brake with the limits of the motion that is under way. */
 static double brake(struct cycle *c)
 {
 	const struct mover_limits l = c->mover.l;

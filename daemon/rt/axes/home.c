@@ -4,6 +4,9 @@
  *
  * Each function does one period and says which phase the next period is in.
  * Each phase has a greatest distance; after that the fault is home-not-found.
+ *
+ * A phase that ends still moves in its last period: a period without motion
+ * would be a jolt.
  */
 #include "axes/manual.h"
 #include "io.h"
