@@ -278,6 +278,23 @@ static void print_changes(json_t *rows)
 	}
 }
 
+static void print_electrodes(json_t *rows)
+{
+	json_t *row;
+	size_t i;
+
+	json_array_foreach(rows, i, row)
+		printf("%-10s %.0f shifts Z by %+.4f mm; wear %.4f -> %.4f "
+		       "mm%s, %.1f min of sparks\n", i ? "" : "electrode",
+		       ctl_number_of(row, "electrode"),
+		       ctl_number_of(row, "shift_mm"),
+		       ctl_number_of(row, "wear_before_mm"),
+		       ctl_number_of(row, "wear_after_mm"),
+		       json_is_true(json_object_get(row, "known")) ? "" :
+		       " and more",
+		       ctl_number_of(row, "sparked_s") / 60);
+}
+
 static void print_one(json_t *job)
 {
 	static const struct {
@@ -314,6 +331,7 @@ static void print_one(json_t *job)
 	json_array_foreach(json_object_get(job, "notes"), i, note)
 		printf("%-10s %s\n", i ? "" : "notes",
 		       json_string_value(note));
+	print_electrodes(json_object_get(job, "electrodes"));
 	print_changes(json_object_get(job, "changes"));
 }
 

@@ -23,6 +23,7 @@ struct ctl {
 	bool hold, wait, once;
 	int from_line;			/* 0: not given */
 	double from_mm;			/* 0: not given */
+	double electrode;		/* submit: its number; 0: not given */
 	unsigned int every;		/* record: cycles; 0: not given */
 	const char *plot;
 	const char *pulses;		/* doctor: CHIP:LINE */

@@ -237,6 +237,14 @@ struct config_panel {
 	char assets[256];
 };
 
+/* [electrode]: where electrodes are measured. */
+struct config_measure {
+	uint32_t there;
+	double x_mm, y_mm;
+	double clear_z_mm, from_z_mm, to_z_mm;
+	double reference_z_mm;
+};
+
 struct machine_config {
 	/* [machine] */
 	char name[32];
@@ -298,6 +306,7 @@ struct machine_config {
 	char dialect[256];		/* [nc] dialect: a name or a file */
 	char tech_table[256];		/* [tech] table; "none": there is
 					 * none */
+	struct config_measure measure;
 	char folder[256];		/* of the machine file; "": here */
 
 	char lcm_url[128];		/* [lcm] url */

@@ -45,6 +45,10 @@ struct checkpoint_job {
 	uint8_t tech[32];		/* of the technology table, or zeros */
 	uint8_t config[32];		/* of the machine file */
 	int32_t start[SHM_NAXES];	/* pulses, where its path begins */
+	uint32_t electrode;		/* that cuts; 0: none */
+	uint32_t part, first_part;	/* store_electrode.h: of now, and of
+					 * this loading */
+	double shift_mm;		/* of Z, by the electrode; + is up */
 };
 
 struct checkpoint_base {
@@ -52,6 +56,7 @@ struct checkpoint_base {
 	int64_t utime;
 	struct shm_snapshot snap;
 	struct shm_sets sets;
+	double wear_mm;			/* what this part took off so far */
 };
 
 /* As in struct shm_snapshot. */
@@ -64,6 +69,7 @@ struct checkpoint_place {
 	uint64_t job_cycles, erode_cycles, jump_cycles;
 	double energy_j;
 	uint32_t retracts, jumps, shorts, arcs, outcome;
+	double wear_mm;			/* as in struct checkpoint_base */
 };
 
 /* What was read: the newest whole base and place. */

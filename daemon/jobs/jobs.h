@@ -10,6 +10,7 @@
 
 #include "checkpoint.h"
 #include "config.h"
+#include "electrode.h"
 #include "eta.h"
 #include "link.h"
 #include "queue.h"
@@ -38,6 +39,7 @@ struct jobs {
 	struct queue queue;
 	struct tally tally;
 	struct eta eta;
+	struct electrode electrode;
 	struct trust trust;
 	struct keyfile host_key;
 	bool key_shared;		/* a copy of it is in /dev/shm */

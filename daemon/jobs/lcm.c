@@ -119,7 +119,7 @@ static bool shape_fits(const struct seal *m, const char *shape,
 
 /* The first q of a shape is the fingerprint of the type. */
 #define SHAPE_COMMAND	"qqsqssqs"
-#define SHAPE_CHUNK	"qqsqssqHiiqbiqia"
+#define SHAPE_CHUNK	"qqsqssqHiiqbiqiia"
 
 /* Tell the sender why its packet is not accepted. */
 static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
@@ -237,6 +237,7 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 		.bytes = m.bytes, .sha256 = m.sha256, .chunk = m.chunk,
 		.chunks = m.chunks, .offset = m.offset, .hold = m.hold != 0,
 		.from_line = m.from_line, .from_mm = m.from_mm,
+		.electrode = m.electrode,
 		.size = (uint32_t)m.size, .data = m.data,
 		.signed_us = trust_signed_us(w->trust, s),
 		.by = o->packet->key, .from = o->packet->from,

@@ -50,6 +50,10 @@ struct store_job {
 	int64_t submitted_us;
 	int64_t begun_us;		/* 0: not yet */
 	uint32_t lines;			/* of the text */
+	uint32_t electrode;		/* it begins with; 0: the one in the
+					 * holder */
+	uint32_t measures;		/* this electrode; 0: it is a job to
+					 * cut */
 };
 
 struct store_new {
@@ -62,6 +66,7 @@ struct store_new {
 	const char *begin_at;		/* for store_resume_at(); NULL: there is
 					 * none */
 	int64_t now_us;
+	uint32_t electrode, measures;	/* as in struct store_job */
 };
 
 /* How a job ended. */

@@ -564,6 +564,8 @@ static const struct verb verbs[] = {
 	  VERB_OWN, "" },
 	{ "electrode-use", ROLE_OPERATOR, VERB_ACTS, electrode_use, VERB_OWN,
 	  "" },
+	{ "electrode-measure", ROLE_OPERATOR, VERB_ACTS, electrode_measure,
+	  VERB_OWN, "" },
 	{ "events", ROLE_VIEWER, VERB_ASKS, verbs_events, VERB_OWN, "" },
 	{ "checkpoint", ROLE_VIEWER, VERB_ASKS, verbs_checkpoint, VERB_OWN,
 	  "" },

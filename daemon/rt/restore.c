@@ -3,6 +3,7 @@
 #include "restore.h"
 #include "path/place.h"
 #include "path/timed.h"
+#include "path/walk.h"
 
 #include <math.h>
 #include <string.h>
@@ -48,6 +49,7 @@ static void restore_actions(struct cycle *c)
 			timed_over(c, i);
 		if (s->kind == INTERP_MCODE)
 			mcode_over(c, i);
+		walk_pass_change(c, s);
 		if (s->kind == INTERP_AUX)
 			restore_aux(c, s->arg);
 	}

@@ -9,6 +9,7 @@
 #include "path/place.h"
 #include "path/timed.h"
 
+#include <math.h>
 #include <string.h>
 
 bool walk_rejoins(const struct cycle *c)
@@ -256,6 +257,17 @@ static void switch_aux(struct cycle *c, uint32_t what)
 	}
 }
 
+static bool is_change(const struct interp_seg *s)
+{
+	return s->kind == INTERP_ELECTRODE && s->arg & INTERP_ELECTRODE_STOP;
+}
+
+void walk_pass_change(struct cycle *c, const struct interp_seg *s)
+{
+	if (is_change(s))
+		c->back_mm = fmax(c->back_mm, s->s_mm);
+}
+
 enum walk_deed walk_action(struct cycle *c)
 {
 	const uint32_t next = c->cursor.index + 1;
@@ -279,7 +291,8 @@ enum walk_deed walk_action(struct cycle *c)
 	}
 	if (first && s.kind == INTERP_TIMED)
 		timed_begin(c, s.arg);
-	if (first && (s.kind == INTERP_STOP ||
+	walk_pass_change(c, &s);
+	if (first && (s.kind == INTERP_STOP || is_change(&s) ||
 		      (s.kind == INTERP_OPTIONAL_STOP &&
 		       c->config.optional_stop)))
 		return ACTION_HOLD;

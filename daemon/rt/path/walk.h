@@ -53,6 +53,10 @@ enum walk_ahead walk_ahead(const struct cycle *c);
 /** walk_by() - @ds_mm along the path; updates out.target, feed and sums. */
 enum walk_result walk_by(struct cycle *c, double ds_mm);
 
+/** walk_pass_change() - if @s is a change of the electrode by a person, the way
+ *  back ends at it: another electrode would go where the last one has cut. */
+void walk_pass_change(struct cycle *c, const struct interp_seg *s);
+
 /** walk_action() - do the action in front, once. */
 enum walk_deed walk_action(struct cycle *c);
 

@@ -77,6 +77,8 @@ enum interp_kind {
 	INTERP_OPTIONAL_STOP,		/* M1 */
 	INTERP_AUX,			/* arg: enum interp_aux */
 	INTERP_MCODE,			/* the PLC's; arg: interp/mcode_arg.h */
+	INTERP_ELECTRODE,		/* this one cuts from here on; arg: its
+					 * number, and INTERP_ELECTRODE_STOP */
 	INTERP_TIMED,			/* what is up to segment arg, which ends
 					 * where it begins, has a time ... */
 	INTERP_TIMED_END,		/* ... of arg milliseconds */
@@ -84,6 +86,11 @@ enum interp_kind {
 					 * text */
 	INTERP_NKINDS
 };
+
+/* Hold, so that a person puts the electrode in; no way back leads over it. */
+#define INTERP_ELECTRODE_STOP	0x80000000u
+#define INTERP_ELECTRODE_MAX	9999u		/* 0: the holder is empty */
+#define INTERP_ELECTRODES_MAX	64u		/* changes in a program */
 
 /* Outputs a program may switch. */
 enum interp_aux {
