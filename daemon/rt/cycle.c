@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * cycle.c - one period: gap, guard, state, distance, walk, outputs
- */
+/* cycle.c - one period: gap, guards, state, distance, walk, outputs */
 #include "cycle.h"
 #include "enter.h"
 #include "feed.h"
@@ -41,8 +39,8 @@ void cycle_overrun(struct cycle *c, uint32_t missed)
 		fault_latch(&c->fault, FAULT_OVERRUN);
 }
 
-/* On ground that it has passed before, it has come to the cut only when the
- * signal is within the window. */
+/* On ground that was passed before, the cut is reached only when the signal is
+ * inside the window. */
 static enum cycle_event look_in(const struct cycle *c)
 {
 	const bool known = place_mm(c) < c->far_mm - MOVER_ONTO_MM;
@@ -63,8 +61,9 @@ static enum cycle_event look_arrive(const struct cycle *c)
 }
 
 /*
- * Positioning, it met something over ground that was cut already: a short as
- * any other.  A retract has no lead, so axes that have one brake with it first.
+ * While positioning, the electrode met something over ground that was cut
+ * already.  That is a short like any other.  A retract has no lead, so axes that
+ * have a lead first brake with it.
  */
 static enum cycle_event look_out(struct cycle *c)
 {
@@ -75,7 +74,7 @@ static enum cycle_event look_out(struct cycle *c)
 	return contouring_rests(&c->contouring) ? EVENT_SHORT : EVENT_NONE;
 }
 
-/* What this cycle's gap and place mean to the state; at most one thing. */
+/* The event that the gap and the place of this cycle mean; at most one. */
 static enum cycle_event look(struct cycle *c)
 {
 	const bool powered = state_duty[c->state].power;
@@ -124,7 +123,7 @@ static void stand_held(struct cycle *c)
 	mover_set(&c->mover, 0);
 }
 
-/* A job that is held does no action: it stands in front of it. */
+/* A held job does no action; it stands before the action. */
 static void meet_action(struct cycle *c)
 {
 	if (c->state == STATE_HOLD) {
@@ -153,7 +152,7 @@ static void meet_action(struct cycle *c)
 	}
 }
 
-/* Beside the path no segment ends and nothing is to be done. */
+/* Beside the path no segment ends, and there is no action. */
 static enum walk_result walk_on(struct cycle *c, double ds_mm)
 {
 	const double behind = c->back_mm - interp_cursor_place_mm(&c->cursor);
@@ -202,7 +201,7 @@ static void sum_up(struct cycle *c, bool running)
 	flush_watch(c);
 }
 
-/* A command moves the axes: their compensation may move with them. */
+/* Does a command move the axes?  Then their compensation may move them too. */
 static bool moves_by_will(const struct cycle *c)
 {
 	return !c->axes.awaited &&
@@ -212,7 +211,7 @@ static bool moves_by_will(const struct cycle *c)
 
 static void give(struct cycle *c, struct io_outputs *out)
 {
-	/* M5 is heeded in its own cycle, and in a way back that it met. */
+	/* M5 takes effect in its own cycle, also when a way back meets it. */
 	c->out.power = state_duty[c->state].power && !c->job.power_off &&
 		       c->fault.latched == 0;
 	c->out.sense = c->state == STATE_PROBE;
@@ -242,7 +241,7 @@ static void give(struct cycle *c, struct io_outputs *out)
 	c->out.reset = false;
 }
 
-/* Without a program. */
+/* Motion without a program. */
 static void go_manually(struct cycle *c, const struct io_inputs *in)
 {
 	c->feed_mm_s = 0;
@@ -250,7 +249,7 @@ static void go_manually(struct cycle *c, const struct io_inputs *in)
 		cycle_enter(c, c->fault.latched ? STATE_FAULT : STATE_IDLE);
 }
 
-/* Held until the axes are under power and on their places. */
+/* The machine is held until the axes have power and stand on their places. */
 static bool may_move(struct cycle *c)
 {
 	const enum axes_await a = axes_await(c);
@@ -262,7 +261,8 @@ static bool may_move(struct cycle *c)
 	return a != AXES_AWAITED;
 }
 
-/* What the gap and the place make of the state, unless a guard found more. */
+/* Choose the state by the gap and the place, unless a guard has found a
+ * fault. */
 static void choose_state(struct cycle *c)
 {
 	if (c->fault.fresh)

@@ -2,13 +2,14 @@
 /*
  * cycle.h - one period of the machine: (state, inputs) -> (state, outputs)
  *
- * The real-time thread calls cycle_step() once a period with the hardware's
- * inputs; edmsim calls the same object code with a simulated machine's.  The
- * order within: gap, guards, state, faults, walk along the path, faults,
- * outputs.
+ * The real-time thread calls cycle_step() once in each period with the inputs
+ * of the hardware.  edmsim calls the same object code with the inputs of a
+ * simulated machine.  A step does these things in this order: it reads the gap,
+ * asks the guards, chooses the state, reacts to faults, walks along the path,
+ * reacts to faults again, and fills the outputs.
  *
- * States and what leads from one to the next are tables in state.c.  Spark
- * power is on in approach and erode only.
+ * The states, and which event leads from one to another, are tables in state.c.
+ * Sparks are allowed only in approach and in erode.
  *
  * Units: in every name; time is counted in cycles.  Feed is signed along the
  * path: + toward the program's end, - back along it.
@@ -44,7 +45,7 @@
 
 /* How the last job ended. */
 enum cycle_outcome {
-	OUTCOME_NONE,			/* none yet, or it runs */
+	OUTCOME_NONE,			/* no job yet, or the job still runs */
 	OUTCOME_DONE,
 	OUTCOME_FAULT,
 	OUTCOME_STOPPED,		/* by command */
@@ -55,22 +56,27 @@ struct cycle_config {
 	struct cycle_gap_config gap;
 	struct cycle_jump_config jump;
 	struct probe_config probe;
-	double travel_a_mm_s2;		/* to start and stop positioning */
+	double travel_a_mm_s2;		/* of positioning, starts and stops */
 	double travel_j_mm_s3;
-	bool stop_at_nodes;		/* in a jump; for comparison */
+	bool stop_at_nodes;		/* of a jump; only to compare with */
 	int32_t travel_min[INTERP_NAXES];	/* soft limits, pulses */
 	int32_t travel_max[INTERP_NAXES];
-	int32_t start[INTERP_NAXES];	/* where it stands at first, pulses */
-	uint64_t axes_wait_cycles;	/* for power on the axes, then a fault */
-	uint32_t overrun_limit;		/* missed periods in a row; 0: no fault */
-	uint32_t points_max;		/* lattice points in one cycle */
-	bool dry_run;			/* no gap: walk at the programmed feed */
+	int32_t start[INTERP_NAXES];	/* where the axes stand first, pulses */
+	uint64_t axes_wait_cycles;	/* longest wait until the axes have
+					 * power; then it is a fault */
+	uint32_t overrun_limit;		/* missed periods in a row; 0: no
+					 * fault */
+	uint32_t points_max;		/* most lattice points in one cycle */
+	bool dry_run;			/* without a gap: walk at the programmed
+					 * feed */
 	bool optional_stop;		/* M1 holds */
-	uint64_t mcode_cycles;		/* longest wait for the PLC; 0: any */
-	bool hold_at_end;		/* at the end hold; the job does not end */
-	bool require_home;		/* no start before all are homed */
+	uint64_t mcode_cycles;		/* longest wait for the PLC; 0: no
+					 * limit */
+	bool hold_at_end;		/* hold at the end of the program; the
+					 * job does not end */
+	bool require_home;		/* start only if all axes are homed */
 	struct manual_axis axis[INTERP_NAXES];
-	uint64_t press_cycles;		/* VERB_PRESS_S of a person's time */
+	uint64_t press_cycles;		/* VERB_PRESS_S, in real time */
 	struct comp_config comp;
 	struct contouring_config contouring;
 };
@@ -83,7 +89,8 @@ enum cycle_verb {
 };
 
 struct cycle_command {
-	uint32_t id;			/* the sender's; answered with it */
+	uint32_t id;			/* chosen by the sender; the answer
+					 * bears it */
 	uint32_t verb;			/* enum cycle_verb */
 	uint32_t arg;			/* set: enum interp_tech_id; jog, home:
 					 * enum interp_axis */
@@ -91,7 +98,7 @@ struct cycle_command {
 					 * a factor; step: a number */
 };
 
-/* What a command came to. */
+/* The answer to a command. */
 enum cycle_answer {
 	ANSWER_DONE,
 	ANSWER_NO_PROGRAM,		/* nothing is loaded */
@@ -99,13 +106,15 @@ enum cycle_answer {
 	ANSWER_BAD_ARGUMENT,		/* out of range, or not finite */
 	ANSWER_NOT_HOMED,		/* start, and [machine] require_home */
 	ANSWER_AT_LIMIT,		/* an axis is on its limit switch */
-	ANSWER_BEYOND,			/* a jog out of the travel */
-	ANSWER_NO_NODE,			/* fewer on the path, that way */
-	ANSWER_NOT_PASSED,		/* a step over ground not cut yet */
-	ANSWER_ELSEWHERE,		/* a program begins where it is not */
+	ANSWER_BEYOND,			/* the jog would leave the travel */
+	ANSWER_NO_NODE,			/* the path has fewer nodes that way */
+	ANSWER_NOT_PASSED,		/* the step would go over ground that is
+					 * not cut yet */
+	ANSWER_ELSEWHERE,		/* the program does not begin where the
+					 * machine stands */
 	ANSWER_NOT_UP,			/* the drives are not up yet */
-	ANSWER_LOCKED,			/* a guard, or the PLC, is against it */
-	ANSWER_STILL_THERE,		/* reset: its cause is still there */
+	ANSWER_LOCKED,			/* a guard or the PLC forbids it */
+	ANSWER_STILL_THERE,		/* reset: the cause is still there */
 	CYCLE_NANSWERS
 };
 
@@ -117,125 +126,138 @@ struct cycle_totals {
 	uint32_t retracts, jumps, shorts, arcs, overruns;
 	double energy_j;		/* of the discharges; NAN: the machine
 					 * does not count it */
-	uint32_t hunts;			/* rows of HUNTING_ROW retracts */
-	uint32_t in_row_max;		/* retracts without progress between */
+	uint32_t hunts;			/* how often HUNTING_ROW retracts came
+					 * in a row */
+	uint32_t in_row_max;		/* most retracts in a row, without
+					 * progress between them */
 	double retract_mm_max;
 };
 
-/* A move along the path, while it lasts; ahead.c. */
+/* A move along the path, kept while it lasts; ahead.c. */
 struct cycle_ahead {
-	enum cycle_state state;		/* it belongs to */
+	enum cycle_state state;		/* that the move belongs to */
 	int toward;			/* +1 or -1 */
 	double goal_mm, override;
-	struct mover_limits l;		/* as they were when it began */
-	double entered_mm_s;		/* the fastest that it began with */
-	double room_mm;			/* so far nothing limits it, at constant
-					 * speed */
+	struct mover_limits l;		/* as they were when the move began */
+	double entered_mm_s;		/* greatest speed at which it began */
+	double room_mm;			/* at constant speed nothing limits it
+					 * for this distance */
 	bool to_place;			/* the plan is for a place: */
 	double place_mm, v_max_mm_s;
 };
 
 /* A jump: up, then down to just above the cut. */
 struct cycle_lift {
-	double from_mm, to_mm;		/* places: where it began, leads to */
+	double from_mm, to_mm;		/* the places where it began and ends */
 	bool up;			/* on its way up */
-	bool leaving;			/* the time of a part is up: it does not
-					 * come back */
+	bool leaving;			/* the time of a timed part is over: it
+					 * does not come back */
 };
 
 /* Held: standing, braking, or moved along the path by a command. */
 struct cycle_hold {
 	bool moving;
-	double to_mm;			/* place that it moves to */
-	uint32_t seek;			/* segments in front of this one are not
-					 * yet looked at for it; 0: all are */
-	bool braked;			/* it has stood since */
-	enum cycle_state then;		/* the state to follow the stand */
+	double to_mm;			/* the place that it moves to */
+	uint32_t seek;			/* that place is still searched for, in
+					 * the segments before this one; 0: it
+					 * is found */
+	bool braked;			/* it stood at least once since */
+	enum cycle_state then;		/* the state that follows when it
+					 * stands */
 };
 
-/* A part of the program that ends by time as well: timed.h. */
+/* A part of the program that may also end by time: timed.h. */
 struct timed {
 	uint32_t end;			/* segment where it ends; 0: none */
 	uint64_t left;			/* cycles */
 	double from_mm;			/* place where it began */
 };
 
-/* How far the program's actions are done. */
+/* Which actions of the program were done. */
 struct cycle_job {
-	uint32_t action_done;		/* all up to this segment are */
+	uint32_t action_done;		/* all actions up to this segment */
 	bool dwelling;
 	uint64_t dwell_left;		/* cycles */
 	bool power_off;			/* the program switched it off (M5) */
-	double rejoin_mm;		/* cut before the wire broke: positioned
-					 * up to here; 0: nothing is */
+	double rejoin_mm;		/* up to this place it was cut before
+					 * the wire broke, so the machine
+					 * positions there; 0: no break */
 };
 
 struct cycle {
 	struct cycle_config config;
-	struct cycle_gap_config gap;	/* in force: config's, and what the */
-	struct cycle_jump_config jump;	/* condition and `set` made of it */
-	struct conditions conditions;	/* gap, jump and out.pulse are theirs */
+	/* The values in force: those of `config`, changed by the condition and
+	 * by `set`.  conditions.c writes them, and out.pulse. */
+	struct cycle_gap_config gap;
+	struct cycle_jump_config jump;
+	struct conditions conditions;
 	struct interp_cursor cursor;
-	bool loaded;			/* cursor stands on a program */
+	bool loaded;			/* the cursor stands on a program */
 	enum cycle_state state;
 	struct fault fault;		/* what is latched */
 	enum cycle_outcome outcome;
 	uint64_t count;			/* cycles since cycle_init() */
 	struct cycle_totals totals;
-	double feed_mm_s;		/* of this cycle, as walked */
-	double gap_v;			/* as read; sensed.v */
+	double feed_mm_s;		/* what this cycle really walked */
+	double gap_v;			/* as read; it is sensed.v */
 	struct gap_reading sensed;	/* this cycle's gap */
 	struct gap_memory gap_past;
-	double far_mm;			/* farthest place eroded or passed */
-	struct cycle_lift lift;		/* a jump's, or a return's */
+	double far_mm;			/* farthest place that was reached */
+	struct cycle_lift lift;		/* of a jump, or of a return */
 	struct cycle_hold hold;
 	struct retract retract;		/* the one under way, or the last */
 	struct servo servo;
 	struct arcing arcing;
 	struct flush flush;
 	struct probe probe;
-	struct mover mover;		/* speed along the path, or along ... */
-	struct escape escape;		/* ... the way out beside it */
-	struct axes axes;		/* under power, or not yet */
+	struct mover mover;		/* speed along the path or the escape */
+	struct escape escape;		/* the way out beside the path */
+	struct axes axes;		/* their power */
 	struct cycle_ahead ahead;
-	struct manual manual;		/* without a program */
+	struct manual manual;		/* motion without a program */
 	struct limit limit;
 	struct comp comp;		/* from places to pulses */
 	struct contouring contouring;	/* for axes that lag */
-	double override;		/* of positioning; 1: as programmed */
+	double override;		/* factor on the speed of positioning */
 	struct timed timed;
-	struct io_plc plc;		/* as read */
-	bool plc_held;			/* it said so a period ago */
-	double plc_axes_c;		/* the temperature that it told then */
-	double plc_override;		/* it said last; NAN: nothing yet */
+	struct io_plc plc;		/* what the PLC says, as read */
+	bool plc_held;			/* one period ago it asked for a hold */
+	double plc_axes_c;		/* the temperature that it said then */
+	double plc_override;		/* the last one it asked for; NAN: none
+					 * yet */
 	struct mcode mcode;
 	struct progress progress;
-	double back_mm;			/* no way back beyond this place */
+	double back_mm;			/* the way back ends at this place */
 	struct cycle_job job;
 	uint32_t overruns_in_row;
 	bool overran;			/* since the last step */
 	bool free_seen;			/* the gap was open since positioning
 					 * began */
-	bool withdraws;			/* positioning, it met something over cut
-					 * ground: it brakes, to retract */
+	bool withdraws;			/* positioning, it met something over
+					 * cut ground: it brakes, to retract */
 	bool at_start;			/* the walk met the program's start */
 	bool busy;			/* the machine takes no point now */
-	bool cut_short;			/* the last walk fell short of its way */
+	bool cut_short;			/* the last walk fell short of its
+					 * way */
 	struct io_outputs out;		/* its target: places on the path */
 	struct io_outputs given;	/* its target: pulses of the drives */
 
-	/* Called after every lattice point with the cursor on it; may be NULL. */
+	/* It is called after every lattice point, with the cursor on that
+	 * point; may be NULL. */
 	void (*on_point)(void *arg, const struct cycle *c);
 	void *on_point_arg;
 };
 
-/** cycle_is_manual() - it moves, and not by a program. */
+/** cycle_is_manual() - is an axis moved without a program? */
 static inline bool cycle_is_manual(const struct cycle *c)
 {
 	return c->state == STATE_JOG || c->state == STATE_HOME;
 }
 
-/** cycle_moves() - anything moves, is braking, or waits for power to move. */
+/**
+ * cycle_moves() - does anything move or brake, or wait for power in order to
+ * move?
+ */
 static inline bool cycle_moves(const struct cycle *c)
 {
 	return state_duty[c->state].running || c->hold.moving ||
@@ -243,37 +265,38 @@ static inline bool cycle_moves(const struct cycle *c)
 	       c->mover.v_mm_s != 0;
 }
 
-/** cycle_init() - idle, nothing loaded.  Startup only. */
+/** cycle_init() - an idle machine without a program.  Startup only. */
 void cycle_init(struct cycle *c, const struct cycle_config *config);
 
 /**
- * cycle_load() - take a program, stand held at its start.
+ * cycle_load() - take a program; the machine is then held at its start.
  *
- * Return: ANSWER_DONE, ANSWER_WRONG_STATE while a job runs,
- * ANSWER_BAD_ARGUMENT if its first segment fails its check.
+ * Return: ANSWER_DONE; ANSWER_WRONG_STATE while a job runs;
+ * ANSWER_BAD_ARGUMENT if the first segment fails its check.
  */
 enum cycle_answer cycle_load(struct cycle *c, const struct interp_program *p);
 
 /**
- * cycle_load_at() - take a cursor that stands somewhere on its program, held.
+ * cycle_load_at() - take a cursor that stands somewhere on its program; the
+ * machine is then held there.
  *
- * For coming back after a crash: @at was placed by interp_cursor_seek()
+ * This is for coming back after a crash: interp_cursor_seek() has placed @at
  * outside the cycle.
  */
 enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 				double far_mm);
 
-/** cycle_command() - between two steps. */
+/** cycle_command() - carry out a command, between two steps. */
 enum cycle_answer cycle_command(struct cycle *c, const struct cycle_command *m);
 
-/** cycle_overrun() - tell of @missed periods that went by. */
+/** cycle_overrun() - say that @missed periods were missed. */
 void cycle_overrun(struct cycle *c, uint32_t missed);
 
-/** cycle_step() - one period.  @out is filled whole. */
+/** cycle_step() - one period.  All of @out is filled. */
 void cycle_step(struct cycle *c, const struct io_inputs *in,
 		struct io_outputs *out);
 
-/** Names for logs, messages and reports.  Any thread. */
+/* Names for logs, messages and reports.  Any thread. */
 const char *cycle_outcome_name(enum cycle_outcome o);
 const char *cycle_answer_text(enum cycle_answer a);
 

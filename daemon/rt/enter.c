@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * enter.c - what is done where a state is entered; how a job ends or fails
- */
+/* enter.c - what is done when a state is entered; how a job ends or fails */
 #include "enter.h"
 #include "path/hole.h"
 #include "path/timed.h"
@@ -15,7 +13,7 @@ static void lift(struct cycle *c)
 	const double height_mm = flush_begin(c);
 
 	c->lift.up = true;
-	/* Beside the path it is the way out that goes on; the time waits. */
+	/* Beside the path the way out goes on; the time waits. */
 	c->lift.leaving = timed_is_up(c) && !escape_is_out(&c->escape);
 	if (c->lift.leaving) {
 		c->lift.to_mm = c->timed.from_mm;
@@ -28,7 +26,7 @@ static void lift(struct cycle *c)
 	c->lift.to_mm = fmax(place_outer_mm(c), c->lift.from_mm - height_mm);
 }
 
-/* Held beside the path: back, as a jump comes back. */
+/* It is held beside the path: it goes back as a jump does. */
 static void come_back(struct cycle *c)
 {
 	c->lift.up = false;
@@ -98,7 +96,7 @@ void cycle_end_job(struct cycle *c, enum cycle_outcome o)
 
 /* -- Faults ---------------------------------------------------------------- */
 
-/* Out of a cut with a broken wire, and only then, it goes back a little. */
+/* Only out of a cut with a broken wire it goes back a little. */
 static bool backs_off(const struct cycle *c)
 {
 	return c->fault.latched == fault_bit(FAULT_WIRE_BROKEN) &&
@@ -127,7 +125,7 @@ static void brake(struct cycle *c)
 	const bool goes_back = backs_off(c);
 
 	if (c->hold.then == STATE_FAULT && c->state == STATE_HOLD) {
-		/* A second one while it goes back from the first. */
+		/* A second fault came while it goes back from the first. */
 		c->hold.moving = false;
 		return;
 	}
@@ -138,13 +136,14 @@ static void brake(struct cycle *c)
 	c->hold.then = STATE_FAULT;
 }
 
-/* A jogged or homed axis brakes too, but not on against what it met. */
+/* An axis that is jogged or homed brakes too, but it does not go on against
+ * something that it met. */
 static bool brakes_by_hand(const struct cycle *c, uint64_t fresh)
 {
 	return cycle_is_manual(c) && !(fresh & fault_bit(FAULT_CONTACT));
 }
 
-/* The drives have been told; what they say now is new. */
+/* The reset has reached the drives; what they report now is new. */
 void cycle_end_reset(struct cycle *c)
 {
 	if (c->out.reset)
@@ -156,7 +155,7 @@ void cycle_end_reset(struct cycle *c)
 		cycle_reset(c);
 }
 
-/* Nothing can brake where no axis follows any more. */
+/* If no axis follows any more, nothing can brake. */
 static bool ends_at_once(const struct cycle *c)
 {
 	return fault_any(c->fault.latched, fault_row_ends) ||

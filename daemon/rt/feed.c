@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * feed.c - feed laws: a table of one per state; lifts and holds
- */
+/* feed.c - the feed laws, a table with one for each state; jumps and holds */
 #include "path/ahead.h"
 #include "feed.h"
 #include "path/hole.h"
@@ -15,7 +13,7 @@
 
 /* -- Positioning, lifts and moves by command ------------------------------- */
 
-/* With the limits of the motion under way. */
+/* Brake with the limits of the motion that is under way. */
 static double brake(struct cycle *c)
 {
 	const struct mover_limits l = c->mover.l;
@@ -45,7 +43,7 @@ static double go_to(struct cycle *c, struct ahead_move *w, double to_mm)
 	return ahead_distance(c, w);
 }
 
-/* Beside the path the axes of the escape may allow less. */
+/* Beside the path, the axes of the escape may allow less. */
 static struct mover_limits escape_limits(const struct cycle *c)
 {
 	const struct cycle_jump_config *j = &c->jump;
@@ -100,7 +98,7 @@ static double hold(struct cycle *c)
 	if (!escape_is_out(&c->escape))
 		return c->hold.moving && c->hold.braked ?
 		       go_to(c, &w, c->hold.to_mm) : brake(c);
-	/* By a plan, so that it stops at a corner and before the cut. */
+	/* Brake by a plan, so that it stops at a corner and before the cut. */
 	beside = escape_limits(c);
 	if (!c->hold.moving)
 		return mover_stop(&c->mover, &beside);
@@ -149,7 +147,7 @@ static bool there(const struct cycle *c, double to_mm)
 	       fabs(to_mm - place_mm(c)) < 2 * MOVER_ONTO_MM;
 }
 
-/* Up, then back to just short of the cut. */
+/* A jump goes up, and then back until it is just before the cut. */
 static bool jump_done(struct cycle *c)
 {
 	if (!there(c, c->lift.to_mm))

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * home.c - homing: a table of one function per phase
+ * home.c - homing: a table with one function for each phase
  *
- * Each takes a period and says which phase the next one is in; each is bound
- * by a way, after which the fault is home-not-found.  A phase that ends goes on
- * moving in its last period too: a period without a way would be a jolt.
+ * Each function does one period and says which phase the next period is in.
+ * Each phase has a greatest distance; after that the fault is home-not-found.
+ *
+ * A phase that ends still moves in its last period: a period without motion
+ * would be a jolt.
  */
 #include "axes/manual.h"
 #include "io.h"
@@ -12,7 +14,7 @@
 
 #include <math.h>
 
-/* Of the drive, as the inputs of this period saw it. */
+/* What the drive reports, from the inputs of this period. */
 static int32_t pulses(const struct cycle *c)
 {
 	return comp_pulses(&c->comp.axis[c->manual.axis]);
@@ -38,7 +40,7 @@ static bool stop(struct cycle *c)
 	return c->manual.mover.v_mm_s == 0;
 }
 
-/* Farther than the whole travel there is no switch. */
+/* No switch can be farther away than the whole travel. */
 static void watch_way(struct cycle *c)
 {
 	const struct manual *h = &c->manual;
@@ -49,7 +51,8 @@ static void watch_way(struct cycle *c)
 		fault_latch(&c->fault, FAULT_HOME);
 }
 
-/* The first in order; of equals the first in name. */
+/* The axis that comes first in the order; if several have the same order, the
+ * first by name. */
 static uint32_t next_axis(const struct cycle *c)
 {
 	uint32_t best = INTERP_NAXES;
@@ -118,7 +121,7 @@ static enum home_phase leave(struct cycle *c, const struct io_inputs *in)
 	return is_on(c, in->home) ? HOME_LEAVE : HOME_CLEAR;
 }
 
-/* A switch that bounces begins it anew. */
+/* If the switch bounces, this phase begins anew. */
 static enum home_phase clear(struct cycle *c, const struct io_inputs *in)
 {
 	struct manual *h = &c->manual;

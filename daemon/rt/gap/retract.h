@@ -33,7 +33,9 @@ struct cycle;
 /** retract_begin() - where the state is entered. */
 void retract_begin(struct cycle *c);
 
-/** retract_leave() - by the escape, if it stands now; false: it has to brake. */
+/**
+ * retract_leave() - by the escape, if it stands now; false: it has to brake.
+ */
 bool retract_leave(struct cycle *c);
 
 /** retract_is_clear() - the gap is wide again, and it went far enough. */

@@ -17,7 +17,7 @@ static double seg_limit(const struct cycle *c, double v_mm_s)
 	return fmin(v_mm_s, law_seg_speed(&c->cursor.seg));
 }
 
-/* At a BEGIN or an action there is no segment's own speed yet. */
+/* A BEGIN or an action has no speed of its own. */
 static double cut_limit(const struct cycle *c, double v_mm_s)
 {
 	return c->cursor.seg.kind < INTERP_BEGIN ? seg_limit(c, v_mm_s) :
@@ -30,7 +30,7 @@ static double go_toward(struct cycle *c, double v_mm_s)
 	return pace_go(c, v_mm_s, INFINITY);
 }
 
-/* Back, onto a place and not beyond. */
+/* Go back to a place, and not beyond it. */
 static double go_back(struct cycle *c, double v_mm_s, double floor_mm)
 {
 	const double left = place_mm(c) - floor_mm;
@@ -55,8 +55,9 @@ static bool lifts(const struct cycle *c)
 /* -- Approach -------------------------------------------------------------- */
 
 /*
- * Open, at the approach speed; with signs of sparks no faster than the servo
- * would feed; at the window it stands.  A sign is taken as read, not filtered.
+ * While the gap is open, it goes at the approach speed.  When there are signs
+ * of sparks, it goes no faster than the servo would feed.  At the window it
+ * stands.  A sign is taken as it is read, without the filter.
  */
 double law_approach(struct cycle *c)
 {
@@ -82,7 +83,8 @@ static double forward(const struct servo_law *l, double v)
 	return l->gain_mm_s_v * (v - l->high_v);
 }
 
-/* A condition or `set` changed the values: the feed goes on from where it is. */
+/* A condition or `set` changed the values.  The feed goes on from where it
+ * is. */
 static void adopt(struct cycle *c, const struct servo_law *now, double v)
 {
 	struct servo *s = &c->servo;
@@ -107,10 +109,11 @@ static void integrate(struct cycle *c, double error_mm_s, double limit_mm_s)
 		s->integral_mm_s = 0;
 		return;
 	}
-	/* Asked for and not walked: an action is in front, or the end. */
+	/* The distance was asked for and not walked: an action or the end is
+	 * ahead. */
 	if (s->asked_mm_s > 0 && c->feed_mm_s <= 0 && error_mm_s > 0)
 		error_mm_s = 0;
-	/* At its limit already. */
+	/* The feed is already at its limit. */
 	if (error_mm_s > 0 && error_mm_s + s->integral_mm_s > limit_mm_s)
 		error_mm_s = 0;
 	s->integral_mm_s += error_mm_s * law_period_s(c) / reset;

@@ -13,9 +13,9 @@
  * kept and fades.
  *
  * In approach, erode and retract the speed changes by no more than feed_a_mm_s2
- * and than what the axes allow (path/pace.h).  So after a contact it goes on for
- * v * period + v * v / (2 * a); up to a speed of a * period that is no more than
- * the distance of one cycle.
+ * and than what the axes allow (path/pace.h).  So after a contact it goes on
+ * for v * period + v * v / (2 * a); up to a speed of a * period that is no more
+ * than the distance of one cycle.
  *
  * Threads: RT-safe.
  */
@@ -40,8 +40,8 @@ struct servo {
 struct cycle;
 
 /**
- * servo_rests() - it stands, or can within a cycle: a lift may begin.  While one
- * is due, the servo brakes.
+ * servo_rests() - it stands, or can within a cycle: a lift may begin.  While
+ * one is due, the servo brakes.
  */
 bool servo_rests(const struct cycle *c);
 

@@ -42,7 +42,8 @@ struct escape {
 	/* Its axes allow no more: */
 	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	int32_t pos[INTERP_NAXES];	/* pulses */
-	uint32_t moved;			/* bit per axis moved by the last point */
+	uint32_t moved;			/* bit per axis moved by the last
+					 * point */
 };
 
 /** escape_is_out() - beside the path, or about to leave it? */

@@ -94,7 +94,9 @@ void mover_aim_speed(struct mover *m, const struct mover_limits *l,
 void mover_aim_place(struct mover *m, const struct mover_limits *l,
 		     double left_mm, double pass_mm_s);
 
-/** mover_peek() - the state after the next cycle; its place counts from here. */
+/**
+ * mover_peek() - the state after the next cycle; its place counts from here.
+ */
 struct interp_scurve_state mover_peek(const struct mover *m, double period_s);
 
 /** mover_go() - go that cycle. Return: the distance. */

@@ -10,8 +10,8 @@
  * a bend, the end of the cut, an action or a corner of an escape could not be
  * met by braking at once with that acceleration.
  *
- * There is no limit of jerk: a gap closes within some micrometres, and a ramp of
- * the acceleration would take longer than the whole way out of a short.
+ * There is no limit of jerk: a gap closes within some micrometres, and a ramp
+ * of the acceleration would take longer than the whole way out of a short.
  *
  * Units: mm along the path, + toward the program's end.
  * Threads: RT-safe; looks at a bounded number of segments.
@@ -25,7 +25,8 @@ struct cycle;
 double pace_dv_mm_s(const struct cycle *c);
 
 /**
- * pace_go() - the distance of this cycle, at @v_mm_s or as near to it as can be.
+ * pace_go() - the distance of this cycle, at @v_mm_s or as near to it as can
+ * be.
  *
  * @to_mm: a place to stand at, if it is met; INFINITY or -INFINITY: none.
  */

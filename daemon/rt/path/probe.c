@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * probe.c - feel for the work; end segments where the machine says
- */
+/* probe.c - find the work by contact; end segments where the machine says */
 #include "path/probe.h"
 #include "path/laws.h"
 #include "path/pace.h"
@@ -11,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Stop so far before the end of a segment: its last point is reached, and the
- * next segment is not begun. */
+/* Stop so far before the end of a segment that its last point is reached and
+ * the next segment is not begun. */
 #define SHY_MM		(2 * MOVER_ONTO_MM)
 
 /* -- Sensing --------------------------------------------------------------- */
@@ -24,7 +22,7 @@ void probe_sense(struct cycle *c, const struct io_inputs *in)
 
 /* -- Places ---------------------------------------------------------------- */
 
-/* The one it is on or, from the stop in front of it, about to be on. */
+/* The segment that it is on or, at the stop before it, is about to enter. */
 static uint32_t index_of(const struct cycle *c)
 {
 	const struct interp_cursor *at = &c->cursor;
@@ -68,7 +66,8 @@ void probe_load(struct cycle *c)
 	place_target(c, c->cursor.pos);
 }
 
-/* Along which axis, and which way: 0 if along none. */
+/* Along which axis the segment goes, and in which direction; 0 if along
+ * none. */
 static int axis_of(const struct cycle *c, int *ret_sign)
 {
 	const struct interp_program_head *h = c->cursor.p.head;
@@ -97,7 +96,7 @@ static void remember(struct cycle *c, int axis, int32_t pos)
 	t->once |= 1u << axis;
 }
 
-/* What is left of the segment goes into the shift. */
+/* The rest of the segment goes into the shift. */
 static void finish(struct cycle *c)
 {
 	struct probe *t = &c->probe;
@@ -130,7 +129,7 @@ static void finish(struct cycle *c)
 
 /* -- To a place known beforehand ------------------------------------------- */
 
-/* The way to it, mm; below 0 if it lies behind. */
+/* The distance to it, in mm; below 0 if it lies behind. */
 static double way_mm(const struct cycle *c)
 {
 	const struct probe *t = &c->probe;
@@ -235,8 +234,9 @@ static void begin_back(struct cycle *c)
 	c->probe.phase = PROBE_BACK;
 }
 
-/* Contact before the motion begins was not found by this motion, so it does not
- * count.  But a hold may have ended in contact, farther on. */
+/* A contact that is there before the motion begins was not found by this
+ * motion, so it does not count.  But a hold may have ended in contact, farther
+ * on. */
 static double settle(struct cycle *c)
 {
 	const struct interp_seg *s = segment(c);
@@ -282,7 +282,7 @@ static double fast(struct cycle *c)
 	return stop(c);
 }
 
-/* A contact that does not open on the way back is not the work. */
+/* If the contact does not open on the way back, it is not the work. */
 static double back(struct cycle *c)
 {
 	if (!is_there(c))

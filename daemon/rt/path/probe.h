@@ -3,15 +3,15 @@
  * probe.h - segments that end where the machine says
  *
  * A probing motion looks for the work with the power off: fast to the first
- * contact, a little back, then slowly to the contact that counts.  A half ends in the
- * middle between the last two contacts along its axis.  A limit ends just
- * before the end of the travel.
+ * contact, a little back, then slowly to the contact that counts.  A half ends
+ * in the middle between the last two contacts along its axis.  A limit ends
+ * just before the end of the travel.
  *
  * The rest of such a segment is not walked.  The cursor goes to the segment's
  * end, the axes stay where they are, and `shift` is the difference from then
  * on:
  *
- * 	out.target = cursor.pos + shift
+ *	out.target = cursor.pos + shift
  *
  * So places in the program count from the contact, whatever the machine knew
  * before.  No way back leads over it.  In a dry run there is nothing to feel,
@@ -61,8 +61,10 @@ struct io_inputs;
  *  its cursor @at? */
 bool probe_is_start(const struct cycle *c, const struct interp_cursor *at);
 
-/** probe_load() - the program that is loaded begins, with what was probed before
- *  it (struct interp_probed): its axes are taken to be there. */
+/**
+ * probe_load() - the program that is loaded begins, with what was probed before
+ * it (struct interp_probed): its axes are taken to be there.
+ */
 void probe_load(struct cycle *c);
 
 /** probe_sense() - is there contact? */

@@ -2,28 +2,29 @@
 /*
  * node.c - how fast a node may be passed
  *
- * The ends of lines are rounded: to a pulse, or to the decimals of whoever wrote
- * them.  On short lines that turns the way from node to node by more than the
- * curve does.  No axis follows what lies within a rounding, so what a rounding
- * can do is no change: turns are taken from chords of some length, less what a
- * rounding of their ends can turn them by, and what that hides on short chords
- * is found on longer ones.
+ * The ends of lines are rounded: to a pulse, or to the decimals of the program
+ * that wrote them.  On short lines this rounding turns the direction at a node
+ * by more than the curve does.  No axis follows anything that lies within a
+ * rounding.  So what a rounding can cause does not count as a change.  Turns
+ * are measured between chords of some length, minus what a rounding of their
+ * ends can turn them by.  What a rounding hides on short chords is found on
+ * longer ones.
  */
 #include "speed/pass.h"
 
 #include <math.h>
 
-/* Nodes turned by less are on a line: (2*sin(phi/2))^2. */
+/* Nodes that turn by less are on a line: (2*sin(phi/2))^2. */
 #define STRAIGHT	1e-12
 
-/* Of the windows: to see a line's own way. */
+/* of the windows, to see the direction of a line itself */
 #define AROUND		1
 
-/* Longer lines have no curve that their corners do not have. */
+/* Longer lines have no curve beside the one that their corners show. */
 #define LONG		5
 
-/* Where all but this of a turn is more than a rounding, no wider window says
- * more. */
+/* If all of a turn but this share is more than a rounding, a wider window shows
+ * no more. */
 #define CLEAR		0.02
 
 static double larger(double a, double b)
@@ -36,7 +37,7 @@ static double smaller(double a, double b)
 	return a < b ? a : b;
 }
 
-/* The fastest round a bend, where the axes give so much. */
+/* The greatest speed around a bend, if the axes have so much acceleration. */
 double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3)
 {
 	const double v = sqrt(a_mm_s2 * r_mm), jrr = j_mm_s3 * r_mm * r_mm;
@@ -50,27 +51,28 @@ bool pass_is_short(const struct pass *w, uint32_t i)
 }
 
 /*
- * How a way changes at a node.  Where both its lines are short, a rounding of
- * their ends changes it as well: by as much as that can, it has not changed.
+ * How the direction changes at a node.  If both lines are short, a rounding of
+ * their ends changes it as well.  So much does not count as a change.
  */
 struct change {
 	const struct heading *a, *b;	/* before and behind */
-	double d[INTERP_NAXES];		/* of each column's rate; >= 0 */
+	double d[INTERP_NAXES];		/* of the rate of each column; >= 0 */
 };
 
-/* Of a corner: what is twice as much as a rounding is a change, all of it. */
+/* For a corner: a change that is twice as much as a rounding counts
+ * completely. */
 static double heard(double d, double noise)
 {
 	return d >= 2 * noise ? d : 2 * larger(d - noise, 0);
 }
 
-/* Of a curve: what is sure.  A wider window is surer. */
+/* For a curve: only what is certain counts.  A wider window is more certain. */
 static double sure(double d, double noise)
 {
 	return larger(d - noise, 0);
 }
 
-/* @per_mm: 1 by the length before, and 1 by the one behind. */
+/* @per_mm: 1 / the length before the node, and 1 / the length behind it. */
 static void change_of(const struct pass *w, double per_mm,
 		      double (*of)(double, double), struct change *c)
 {
@@ -81,7 +83,8 @@ static void change_of(const struct pass *w, double per_mm,
 		along = both >> j & 1 ? larger(along, w->tol[j]) : along;
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double a = c->a->rate[j], b = c->b->rate[j];
-		/* Of what is beside the path, the path's is rounded, too. */
+		/* Of what lies beside the path, the rounding of the path counts
+		 * too. */
 		const double by = both >> j & 1 ? 0 :
 				  along * larger(fabs(a), fabs(b));
 
@@ -89,7 +92,7 @@ static void change_of(const struct pass *w, double per_mm,
 	}
 }
 
-/* The columns both lengths are made of: a corner as an arc. */
+/* The columns that make both lengths: a corner is passed like an arc. */
 static double corner(const struct pass *w, const struct change *c)
 {
 	const struct heading *a = c->a, *b = c->b;
@@ -105,7 +108,8 @@ static double corner(const struct pass *w, const struct change *c)
 		turn = 2;
 	if (turn < STRAIGHT)
 		return INFINITY;
-	/* No branch in here: corners are as good as random.  x/0 is no limit. */
+	/* There is no branch here, because corners are like random. x/0 is no
+	 * limit. */
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double is = (double)(any >> j & 1);
 		const double d = is * c->d[j];
@@ -120,7 +124,7 @@ static double corner(const struct pass *w, const struct change *c)
 	return pass_round_mm_s(larger(r, w->corner_mm), acc * sqrt(turn), jerk);
 }
 
-/* The others: their speed steps. */
+/* The other columns: their speed makes a step. */
 static double step(const struct pass *w, const struct change *c)
 {
 	const uint32_t both = c->a->along & c->b->along;
@@ -137,7 +141,7 @@ static double step(const struct pass *w, const struct change *c)
 /* -- Of short lines ------------------------------------------------------- */
 
 /* From node @from to @to: the length in the columns of ret->along, and the
- * rates of all by it. */
+ * rates of all columns by that length. */
 static double chord(const struct pass *w, uint32_t from, uint32_t to,
 		    struct heading *ret)
 {
@@ -176,7 +180,7 @@ struct bow {
 	double per_mm;			/* as change_of() has it */
 };
 
-/* Return: false if there is no way to a side. */
+/* Return: false if there is no way to one of the sides. */
 static bool bow_of(const struct pass *w, uint32_t i, const struct around *k,
 		   uint32_t along, struct bow *ret)
 {
@@ -190,7 +194,8 @@ static bool bow_of(const struct pass *w, uint32_t i, const struct around *k,
 	return la > 0 && lb > 0;
 }
 
-/* As fast as the axes follow a bow; @d is what each column's rate changes by. */
+/* The speed at which the axes can follow a bow.  @d is the change of each
+ * column's rate. */
 static double bow_mm_s(const struct pass *w, const struct bow *k,
 		       const double d[INTERP_NAXES])
 {
@@ -198,7 +203,8 @@ static double bow_mm_s(const struct pass *w, const struct bow *k,
 
 	for (uint32_t j = 0; j < w->n; j++) {
 		if (!(k->a.along >> j & 1)) {
-			/* One that turns beside the path, by its own. */
+			/* A column that turns beside the path is limited by
+			 * itself. */
 			if (d[j] * k->mm > w->tol[j])
 				v = smaller(v, pass_round_mm_s(k->mm / d[j],
 							  w->a_mm_s2[j],
@@ -218,7 +224,7 @@ static double bow_mm_s(const struct pass *w, const struct bow *k,
 				     acc, jerk));
 }
 
-/* Does a rounding hide a share of any change that counts? */
+/* Does a rounding hide a share of a change that counts? */
 static bool is_clear(const struct pass *w, const struct change *c,
 		     const double all[INTERP_NAXES])
 {
@@ -230,9 +236,10 @@ static bool is_clear(const struct pass *w, const struct change *c,
 }
 
 /*
- * Short lines turn by as little as one likes at each node: their curve is that
- * of the chords to both sides.  What is less than a rounding over one window
- * shows over a wider one, if it goes on.  @most: faster needs no look.
+ * Short lines may turn by any small amount at each node: their curve is that of
+ * the chords to both sides.  A turn that is less than a rounding over one
+ * window shows over a wider one, if it goes on.  @most: no need to look for
+ * more speed than this.
  */
 static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 {
@@ -261,7 +268,8 @@ static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 	return v;
 }
 
-/* Near by, but not over a long line behind a short one: it has its own turn. */
+/* Look near the node, but not over a long line behind a short one: a long line
+ * has its own turn. */
 static struct around look_near(struct pass *w, uint32_t i)
 {
 	const struct interp_seg *s = w->segs;
@@ -276,7 +284,8 @@ static struct around look_near(struct pass *w, uint32_t i)
 	return k;
 }
 
-/* The turn of a node between lines: of longer chords, if they are short. */
+/* The turn of a node between lines; between longer chords, if the lines are
+ * short. */
 static double turn(struct pass *w, uint32_t last, uint32_t i,
 		   const struct change *change)
 {
@@ -297,7 +306,8 @@ static double turn(struct pass *w, uint32_t last, uint32_t i,
 	return smaller(corner(w, change), step(w, change));
 }
 
-/* In front of segment @i; @last is the one before that moves. */
+/* The node in front of segment @i; @last is the segment before it that
+ * moves. */
 double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		      const struct heading *a, const struct heading *b)
 {
@@ -315,8 +325,9 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 }
 
 /*
- * On a short line an axis whose share of the way is that of the ways around it,
- * but for a rounding, has the share it has there.
+ * On a short line the share of an axis is rounded.  If the share is the same as
+ * on the ways around the line, but for a rounding, then the share of those ways
+ * is used.
  */
 static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
 		       double ret[INTERP_NAXES])
@@ -348,7 +359,7 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		const bool bends = w->segs[i].kind != INTERP_LINE && ends > 0 &&
 				   (h->first.along | h->last.along) >> j & 1;
 
-		/* On its way it may go all along the axis. */
+		/* On its way it may go in the direction of the axis alone. */
 		ret->by[j] = bends ? larger(ends, larger(h->share, 1)) : ends;
 		ret->bends |= (uint32_t)bends << j;
 	}

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * pass.h - one pass over a program, node by node: how fast each may be passed
+ * pass.h - one pass over a program, node by node: how fast each node may be
+ * passed
  *
  * Private to compile/speed.
  */
@@ -11,16 +12,17 @@
 #include "speed/heading.h"
 
 /*
- * A curve of short lines is seen over windows of so many corners' width, either
- * way; each is twice as wide as the one before.
+ * A curve of short lines is looked at over windows of so many corners to each
+ * side.  Each window is twice as wide as the one before.
  */
 #define PASS_WINDOW	20
 #define PASS_WINDOWS	6
 
-/* What a rounding may turn a line of so many tolerances by is small. */
+/* A line that is so many tolerances long is turned only a little by a
+ * rounding. */
 #define PASS_NEAR	20
 
-/* Two nodes so far from here along the path, or a little farther. */
+/* Two nodes that are so far from here along the path, or a little farther. */
 struct around {
 	double mm;
 	uint32_t behind, ahead;
@@ -34,20 +36,29 @@ struct pass {
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;
 	/* Of each column: */
-	double tol[INTERP_NAXES];	/* mm or degrees that are no change */
+	double tol[INTERP_NAXES];	/* mm or degrees that do not count as a
+					 * change */
 	double v_mm_s[INTERP_NAXES], a_mm_s2[INTERP_NAXES];
 	double j_mm_s3[INTERP_NAXES];
 	double step_mm_s[INTERP_NAXES];	/* at a node */
 };
 
-/** pass_round_mm_s() - the fastest round a bend, where the axes give so much. */
+/**
+ * pass_round_mm_s() - the greatest speed around a bend, if the axes have so
+ * much acceleration.
+ */
 double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3);
 
-/** pass_is_short() - has segment @i a curve that its ends do not have? */
+/**
+ * pass_is_short() - is segment @i so short that its curve does not show in its
+ * ends?
+ */
 bool pass_is_short(const struct pass *w, uint32_t i);
 
-/** pass_node_mm_s() - over the node in front of segment @i; @last is the one
- *  before that moves.  INFINITY: as fast as one likes. */
+/**
+ * pass_node_mm_s() - the greatest speed over the node in front of segment @i;
+ * @last is the segment before it that moves.  INFINITY: any speed.
+ */
 double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		      const struct heading *a, const struct heading *b);
 
@@ -61,7 +72,9 @@ struct rates {
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		struct rates *ret);
 
-/** pass_rate_mm_s() - what the axes' own speeds allow at such rates. */
+/**
+ * pass_rate_mm_s() - the speed that the speeds of the axes allow at such rates.
+ */
 double pass_rate_mm_s(const struct pass *w, const struct rates *r);
 
 #endif /* SPEED_PASS_H */
