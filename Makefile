@@ -468,7 +468,8 @@ invariants: $(B)/unit/test_cycle_random
 	$(Q)$(if $(SEED),EDM_SEED=$(SEED)) $<
 
 # Ten thousand random contours of a wire against another geometry, a tenth as many
-# with other leads, a hundredth with a taper: half an hour.
+# with other leads, a hundredth with a taper, more with faces that lean to any
+# side: half an hour.
 WIRE_RUNS ?= 10000
 WIRE_TEST = EDM_BUILD=$(B) $(if $(SEED),EDM_SEED=$(SEED)) \
 	EDM_RUNS=$$(( $(WIRE_RUNS) / $(1) )) .venv/bin/pytest -q -s tests/sim
@@ -477,6 +478,7 @@ wire-random: $(B)/edmsim
 	$(Q)$(call WIRE_TEST,1)/test_wire_random.py
 	$(Q)$(call WIRE_TEST,10)/test_wire_leads.py
 	$(Q)$(call WIRE_TEST,100)/test_wire_taper.py -k "tapers or taper"
+	$(Q)$(call WIRE_TEST,20)/test_wire_faces.py -k faces
 
 # What is accepted is walked, there and back: so many random programs of every
 # dialect, by every strategy.

@@ -208,21 +208,16 @@ static double wanted_of(const struct track_work *w, const struct track_elem *e,
 
 /*
  * A lead touches the outline where it ends.  That is no fault of an open one,
- * nor of a lead that was programmed to come through the outline from its other
+ * nor of a lead that is programmed to come through the outline from its other
  * side.
  */
 static bool is_own_end(const struct track_work *w, const struct track_elem *e,
 		       uint32_t id)
 {
 	const struct face *f = w->job->face;
-	const bool out = e != w->elem;
-	const struct curve *c = &f->piece[out ? f->n - 1 : 0].c;
-	const struct vec way = curve_way(c, out), far = w->job->lead[out].far;
-	const struct vec end = out ? c->to : c->from;
-	const double left = (far.y - end.y) * way.x - (far.x - end.x) * way.y;
 
 	return (id == 0 || id == f->n - 1) &&
-	       (!f->closed || left * w->job->side <= 0);
+	       (!f->closed || w->job->lead[e != w->elem].through);
 }
 
 static bool ask(void *arg, uint32_t id)

@@ -216,7 +216,7 @@ int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 		return err;
 	}
 	motion_init(k, &m, end_mm, w);
-	if (curve_length(&m.c[0]) < CURVE_SAME_MM && curve_length(&m.c[1]) < CURVE_SAME_MM)
+	if (fmax(curve_length(&m.c[0]), curve_length(&m.c[1])) < CURVE_SAME_MM)
 		return stay(k, end_mm, w, diag);
 	return take(k, &m, diag);
 }

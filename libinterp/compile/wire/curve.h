@@ -106,6 +106,11 @@ struct curve_hit {
 int curve_cross(const struct curve *a, const struct curve *b,
 		struct curve_hit ret[2]);
 
+/** curve_cross_near() - where they cross, nearest to @near.
+ *  Return: false if they do not. */
+bool curve_cross_near(const struct curve *a, const struct curve *b,
+		      struct vec near, struct vec *ret);
+
 /** curve_from() - the distance of @at from @c. */
 double curve_from(const struct curve *c, struct vec at);
 

@@ -22,10 +22,10 @@ struct contour_motion {
 	double from_mm[INTERP_NAXES], end_mm[INTERP_NAXES];
 	struct interp_build_word word;
 	double offset_mm;		/* of the wire; + to the left */
-	double slope;			/* tangent of the taper; + to the left */
+	double slope;			/* tangent of the taper; + left */
 	enum interp_taper_corner corner;
 	bool lead;			/* the offset is reached or left here */
-	bool step;			/* a lead between two passes, on the spot */
+	bool step;			/* from pass to pass, on the spot */
 	uint32_t todo, ntodo;		/* actions behind it */
 };
 
@@ -44,8 +44,8 @@ struct face {
 	struct face_piece *piece;
 	uint32_t n, room;
 	bool closed;			/* it ends where it begins */
-	uint32_t nconstant;		/* fillets that would turn inside out and
-					 * got the constant radius instead */
+	uint32_t nconstant;		/* fillets that would turn inside out
+					 * and keep their radius instead */
 	uint32_t first_constant;	/* owner of the first of them */
 };
 

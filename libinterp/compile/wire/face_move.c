@@ -27,12 +27,14 @@ struct mover {
 	struct track_work w;
 	const struct face_from *from;
 	const struct face *still;
+	struct vec begin;		/* of the last piece, once it is cut */
 };
 
-static int lay_piece(struct mover *k, uint32_t i, struct track_elem *ret)
+static void lay_piece(struct mover *k, uint32_t i, struct track_elem *ret)
 {
 	const struct face_piece *p = &k->still->piece[i];
-	const enum face_fate fate = face_piece_moved(k->from, p->owner, &ret->c);
+	const enum face_fate fate = face_piece_moved(k->from, p->owner,
+						     &ret->c);
 
 	ret->owner = p->owner;
 	ret->piece = i;
@@ -40,7 +42,6 @@ static int lay_piece(struct mover *k, uint32_t i, struct track_elem *ret)
 	ret->dead = fate == FACE_GONE;
 	if (ret->dead)
 		ret->c = curve_line(ret->c.from, ret->c.to);
-	return 0;
 }
 
 /* -- Corners -------------------------------------------------------------- */
@@ -51,8 +52,8 @@ struct corner {
 	struct vec left[2];		/* of the ways to and from there */
 	double turn, shift[2];
 	bool same;			/* both are moved by the same */
-	bool outer;			/* the moved pieces part from each other */
-	bool edge;			/* ... or are prolonged until they meet */
+	bool outer;			/* the moved pieces part there */
+	bool edge;			/* they are prolonged until they meet */
 };
 
 static double most_of(const struct corner *c)
@@ -89,6 +90,7 @@ static void corner_init(struct corner *c, const struct mover *k, uint32_t i)
 			  fabs(c->turn) <= RIGHT_ANGLE + ANGLE_SLACK);
 	else
 		c->edge = reach_of(c) <= FAR_EDGE * most_of(c);
+	c->edge = c->edge && !k->w.no_mitre[i];
 }
 
 static int lay_fill(struct mover *k, uint32_t a, const struct curve *c,
@@ -108,21 +110,21 @@ static int lay_fill(struct mover *k, uint32_t a, const struct curve *c,
 	return 0;
 }
 
-/* Prolong both, or cut them off, where they meet. */
-static bool meet_edge(const struct corner *c, struct track_elem *a,
-		      struct track_elem *b)
+/* Where both meet: cut off there, or prolonged.  An outer corner must not
+ * shorten them. */
+static bool meet(const struct corner *c, const struct track_elem *a,
+		 const struct track_elem *b, struct vec *at)
 {
 	struct curve p = a->c, q = b->c;
-	struct vec at;
 
-	if (!c->edge || a->dead || b->dead || (p.arc && p.r == 0) ||
-	    (q.arc && q.r == 0) || !curve_meet(&p, &q, c->at, &at) ||
-	    curve_distance(at, c->at) > 1.5 * reach_of(c) ||
-	    !curve_trim(&p, a->c.from, at) || !curve_trim(&q, at, b->c.to))
+	if (a->dead || b->dead || (p.arc && p.r == 0) || (q.arc && q.r == 0))
 		return false;
-	a->c = p;
-	b->c = q;
-	return true;
+	if (c->edge && curve_meet(&p, &q, c->at, at) &&
+	    curve_distance(*at, c->at) <= 1.5 * reach_of(c) &&
+	    (!c->same || (curve_trim(&p, p.from, *at) &&
+			  curve_trim(&q, *at, q.to))))
+		return true;
+	return !c->outer && curve_cross_near(&p, &q, c->at, at);
 }
 
 /*
@@ -164,65 +166,73 @@ static int lay_dead(struct mover *k, const struct corner *c,
 	return err ? err : lay_fill(k, c->a, &from, true);
 }
 
-/* Let @e begin, or end, at @at; a line that no way goes along if it runs
- * backwards then. */
-static void move_end(struct track_elem *e, struct vec at, bool end)
+/* The last piece runs from its first corner to @to.  If that is backwards no
+ * way goes along it. */
+static void end_piece(struct mover *k, struct vec to)
 {
-	const struct vec from = end ? e->c.from : at, to = end ? at : e->c.to;
+	struct track_elem *e = &k->w.elem[k->w.n - 1];
 	struct curve c = e->c;
+	const bool whole = curve_distance(k->begin, c.from) < CURVE_SAME_MM &&
+			   curve_distance(to, c.to) < CURVE_SAME_MM;
 
-	if (!e->dead && curve_trim(&c, from, to)) {
+	if (whole || (!e->dead && curve_trim(&c, k->begin, to))) {
 		e->c = c;
 		return;
 	}
-	e->c = curve_line(from, to);
+	e->c = curve_line(k->begin, to);
 	e->dead = true;
 }
 
 /* Join the last element to @b, the moved piece @i. */
-static int lay_corner(struct mover *k, uint32_t i, struct track_elem *b)
+static int lay_corner(struct mover *k, uint32_t i, const struct track_elem *b)
 {
-	struct track_elem *a = &k->w.elem[k->w.n - 1];
-	const double gap = curve_distance(a->c.to, b->c.from);
+	const struct track_elem a = k->w.elem[k->w.n - 1];
+	const double gap = curve_distance(a.c.to, b->c.from);
 	struct corner c;
+	struct vec at;
 	bool kink;
 
 	corner_init(&c, k, i);
-	if (gap < CURVE_SAME_MM)
-		return 0;
-	if (a->fitted || b->fitted) {
-		move_end(a->fitted ? b : a, a->fitted ? a->c.to : b->c.from,
-			 !a->fitted);
-		return 0;
-	}
-	kink = fabs(c.turn) < 0.1 && !a->dead && !b->dead &&
+	kink = fabs(c.turn) < 0.1 && !a.dead && !b->dead &&
 	       (gap < TINY_PULSES * k->from->pulse_mm ||
 		most_of(&c) * c.turn * c.turn < SLACK_MM);
-	if (meet_edge(&c, a, b))
-		return 0;
-	if (c.outer || (!c.same && !c.edge))
-		return lay_round(k, &c, b);
-	if (track_meet_inside(a, b, c.at))
-		return 0;
-	return kink ? lay_round(k, &c, b) : lay_dead(k, &c, b);
+	if (a.fitted || b->fitted)
+		at = a.fitted ? a.c.to : b->c.from;
+	else if (gap < CURVE_SAME_MM)
+		at = a.c.to;
+	else if (!meet(&c, &a, b, &at)) {
+		end_piece(k, a.c.to);
+		k->begin = b->c.from;
+		return c.outer || kink || (!c.same && !c.edge) ?
+		       lay_round(k, &c, b) : lay_dead(k, &c, b);
+	}
+	end_piece(k, at);
+	k->begin = at;
+	k->w.elem[k->w.n - 1].mitre = c.outer && c.edge;
+	return 0;
 }
 
 static int lay_all(struct mover *k)
 {
 	int err = 0;
 
+	k->w.n = k->w.nhits = k->w.nruns = 0;
 	for (uint32_t i = 0; !err && i < k->still->n; i++) {
 		struct track_elem b = { .piece = i }, *e;
 
 		lay_piece(k, i, &b);
 		if (i)
 			err = lay_corner(k, i, &b);
+		else
+			k->begin = b.c.from;
 		e = err ? NULL : track_add(&k->w);
 		if (e)
 			*e = b;
 		else if (!err)
 			err = -ENOMEM;
 	}
+	if (!err)
+		end_piece(k, k->w.elem[k->w.n - 1].c.to);
 	return err;
 }
 
@@ -262,8 +272,10 @@ static int find_outline(struct mover *k, struct face_side *side,
 			struct face_fault *fault)
 {
 	struct track_fault bad = { .a = 0 };
-	int err = face_side_init(side, &k->w);
+	int err = lay_all(k);
 
+	if (!err)
+		err = face_side_init(side, &k->w);
 	if (!err)
 		err = clear_find_crossings(&k->w);
 	if (!err)
@@ -290,17 +302,23 @@ int face_move(struct face *f, const struct face_from *from,
 		.w = { .job = &job, .sides = &side, .slack_mm = SLACK_MM },
 		.from = from, .still = still,
 	};
-	int err = lay_all(&k);
+	uint32_t turns = 0;
+	int err;
 
+	k.w.no_mitre = calloc(still->n, sizeof(*k.w.no_mitre));
+	if (!k.w.no_mitre)
+		return -ENOMEM;
 	*fault = (struct face_fault) { .a = 0 };
 	for (uint32_t i = 0; i < still->n; i++)
 		k.w.reach_mm = fmax(k.w.reach_mm,
 				    fabs(still->piece[i].shift_mm));
-	if (!err)
+	do {
 		err = find_outline(&k, &side, fault);
+		face_side_free(&side);
+	} while (err == -EINVAL && turns++ < TRACK_MITRE_TURNS &&
+		 track_give_up_mitres(&k.w));
 	if (!err)
 		err = take_runs(f, &k);
-	face_side_free(&side);
 	track_forget(&k.w);
 	return err;
 }

@@ -18,8 +18,8 @@ struct face_side {
 	const struct face *still;	/* the outline before it is moved */
 	uint32_t first, n;		/* its pieces that are no leads */
 	struct wind moved, as_was;
-	struct curve chord;		/* closes an open outline */
-	uint32_t *id;			/* of an element among the moved curves */
+	struct curve back[2];		/* an open outline is closed so */
+	uint32_t *id;			/* element to moved curve */
 };
 
 /**

@@ -9,8 +9,9 @@
  * on the left of the piece before it was moved.  Where pieces have changed
  * places, as the walls of a rib that is thinner than they move, it is not.
  *
- * An open outline is closed by a chord, the same before and after; a place that
- * changes from one side of the chord to the other counts one turn more or less.
+ * An open outline is closed over a place far away, the same before and after; a
+ * place that changes from one side of this way back to the other counts one
+ * turn more or less.
  */
 #include "wire/face_move.h"
 
@@ -20,9 +21,33 @@
 /* A little off the ends of a piece. */
 #define INSIDE		0.01
 
+/* The place far away, in lengths of the outline: along its beginning and to the
+ * left of it.  No piece is likely to lie in this direction. */
+#define FAR_ALONG	3.7
+#define FAR_LEFT	8.3
+
 static bool is_lead(const struct track_work *w, uint32_t e)
 {
 	return track_piece(w, e)->lead;
+}
+
+static void find_way_back(struct face_side *s)
+{
+	const struct face_piece *p = &s->still->piece[s->first];
+	const struct vec from = p[s->n - 1].c.to, to = p->c.from;
+	const struct vec way = curve_way(&p->c, false);
+	double len = 0;
+	struct vec far = from;
+
+	for (uint32_t i = 0; i < s->n; i++)
+		len += curve_length(&p[i].c);
+	if (!s->still->closed) {
+		far = vec_add(to, FAR_ALONG * len, way);
+		far = vec_add(far, FAR_LEFT * len,
+			      (struct vec) { -way.y, way.x });
+	}
+	s->back[0] = curve_line(from, far);
+	s->back[1] = curve_line(far, to);
 }
 
 static int add_as_was(struct face_side *s)
@@ -38,9 +63,10 @@ static int add_as_was(struct face_side *s)
 	s->n -= s->first;
 	for (uint32_t i = 0; !err && i < s->n; i++)
 		err = wind_add(&s->as_was, &f->piece[s->first + i].c);
-	s->chord = curve_line(f->piece[s->first + s->n - 1].c.to,
-			      f->piece[s->first].c.from);
-	return err ? err : wind_add(&s->as_was, &s->chord);
+	find_way_back(s);
+	for (int k = 0; !err && k < 2; k++)
+		err = wind_add(&s->as_was, &s->back[k]);
+	return err;
 }
 
 static int add_moved(struct face_side *s, const struct track_work *w)
@@ -58,11 +84,11 @@ static int add_moved(struct face_side *s, const struct track_work *w)
 	}
 	if (err)
 		return err;
-	end = curve_line(s->moved.c[s->moved.n - 1].to, s->chord.from);
+	end = curve_line(s->moved.c[s->moved.n - 1].to, s->back[0].from);
 	err = wind_add(&s->moved, &end);
-	if (!err)
-		err = wind_add(&s->moved, &s->chord);
-	end = curve_line(s->chord.to, s->moved.c[0].from);
+	for (int k = 0; !err && k < 2; k++)
+		err = wind_add(&s->moved, &s->back[k]);
+	end = curve_line(s->back[1].to, s->moved.c[0].from);
 	return err ? err : wind_add(&s->moved, &end);
 }
 
@@ -95,14 +121,14 @@ static double side_of(const struct curve *line, struct vec at)
 	       (line->to.y - line->from.y) * (at.x - line->from.x);
 }
 
-/* From @a to @b: +1 if that comes to the left of the chord, -1 to the right. */
-static int over_chord(const struct curve *chord, struct vec a, struct vec b)
+/* From @a to @b: +1 if that comes to the left of @line, -1 to the right. */
+static int over(const struct curve *line, struct vec a, struct vec b)
 {
 	const struct curve way = curve_line(a, b);
-	const double from = side_of(chord, a), to = side_of(chord, b);
+	const double from = side_of(line, a), to = side_of(line, b);
 
-	if ((from > 0) == (to > 0) || (side_of(&way, chord->from) > 0) ==
-				      (side_of(&way, chord->to) > 0))
+	if ((from > 0) == (to > 0) || (side_of(&way, line->from) > 0) ==
+				      (side_of(&way, line->to) > 0))
 		return 0;
 	return to > 0 ? 1 : -1;
 }
@@ -125,7 +151,8 @@ static int wanted(const struct face_side *s, const struct track_work *w,
 		t = curve_share(c, at);
 	t = t < INSIDE ? INSIDE : t > 1 - INSIDE ? 1 - INSIDE : t;
 	return wind_left(&s->as_was, c, t, i - s->first) +
-	       over_chord(&s->chord, curve_at(c, t), at);
+	       over(&s->back[0], curve_at(c, t), at) +
+	       over(&s->back[1], curve_at(c, t), at);
 }
 
 bool face_side_is(const struct face_side *s, const struct track_work *w,

@@ -41,8 +41,10 @@ static bool boxes_touch(const struct curve *a, const struct curve *b)
 {
 	const struct curve_box p = curve_bounds(a), q = curve_bounds(b);
 
-	return p.lo.x <= q.hi.x + CURVE_SAME_MM && q.lo.x <= p.hi.x + CURVE_SAME_MM &&
-	       p.lo.y <= q.hi.y + CURVE_SAME_MM && q.lo.y <= p.hi.y + CURVE_SAME_MM;
+	return p.lo.x - q.hi.x <= CURVE_SAME_MM &&
+	       q.lo.x - p.hi.x <= CURVE_SAME_MM &&
+	       p.lo.y - q.hi.y <= CURVE_SAME_MM &&
+	       q.lo.y - p.hi.y <= CURVE_SAME_MM;
 }
 
 static bool is_dot(const struct curve *c)
@@ -80,6 +82,20 @@ int curve_cross(const struct curve *a, const struct curve *b,
 			ret[kept++] = h;
 	}
 	return kept;
+}
+
+bool curve_cross_near(const struct curve *a, const struct curve *b,
+		      struct vec near, struct vec *ret)
+{
+	struct curve_hit hit[2];
+	const int n = curve_cross(a, b, hit);
+
+	if (n == 0)
+		return false;
+	*ret = n == 2 && curve_distance(hit[1].at, near) <
+			 curve_distance(hit[0].at, near) ? hit[1].at :
+							   hit[0].at;
+	return true;
 }
 
 static bool arc_faces(const struct curve *c, struct vec at)

@@ -63,14 +63,34 @@ static int side_of(const struct track_work *w, const struct track_jump *j)
 	       shift_of(w, track_piece(w, j->f)) < 0 ? -1 : 1;
 }
 
-/* By how much the way turns in a jump, + inward. */
+static struct curve run_of(const struct track_work *w, uint32_t i)
+{
+	const struct track_run *r = &w->run[i];
+
+	return curve_part(&w->elem[r->elem].c, r->t[0], r->t[1]);
+}
+
+/* By how much the way turns in a jump, + inward.  What is shorter than rounding
+ * has no direction. */
 static double turn_of(const struct track_work *w, const struct track_jump *j)
 {
-	const struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
-	const struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
+	struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
+	struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
 
-	return side_of(w, j) * curve_turn(j->te > 0 ? &a : &w->elem[j->e].c,
-					  j->tf < 1 ? &b : &w->elem[j->f].c);
+	if (j->te <= 0)
+		a = w->elem[j->e].c;
+	if (j->tf >= 1)
+		b = w->elem[j->f].c;
+	if (j->run) {
+		uint32_t i = j->run - 1, k = j->run;
+
+		for (a = run_of(w, i); i && curve_length(&a) < HIDDEN_MM;)
+			a = run_of(w, --i);
+		for (b = run_of(w, k);
+		     k + 1 < w->nruns && curve_length(&b) < HIDDEN_MM;)
+			b = run_of(w, ++k);
+	}
+	return side_of(w, j) * curve_turn(&a, &b);
 }
 
 /* What lies between the two places that the wire touches. */
@@ -79,7 +99,7 @@ struct between {
 	const struct track_jump *j;
 	struct vec at;			/* the wire */
 	uint32_t first, n;		/* pieces, the last one with them */
-	double t[2];			/* touched: shares of the first and last */
+	double t[2];			/* shares of the first and last */
 };
 
 static const struct curve *piece_of(const struct between *k, uint32_t i)
@@ -160,9 +180,7 @@ static double reach_of(const struct between *k)
 static bool is_near_run(const struct track_work *w, uint32_t i, struct vec at,
 			double most)
 {
-	const struct track_run *r = &w->run[i];
-	const struct curve c = curve_part(&w->elem[r->elem].c, r->t[0],
-					  r->t[1]);
+	const struct curve c = run_of(w, i);
 
 	return curve_from(&c, at) <= most;
 }

@@ -152,6 +152,28 @@ static struct vec lead_end(const struct contour *k, uint32_t i,
 					   beside(k, m, p, true);
 }
 
+/*
+ * Is the lead in, or out, programmed to come through the outline?  On the second
+ * plane the outline may have moved beyond the far end of a lead that does not;
+ * so the programmed plane tells.
+ */
+static bool goes_through(const struct contour *k, const struct stretch *s,
+			 bool out)
+{
+	const struct contour_motion *lead = &k->m[out ? s->end - 1 : s->first];
+	const struct contour_motion *m = out ? lead - 1 : lead + 1;
+	const struct curve *c = &m->c[0];
+	const struct vec far = out ? lead->c[0].to : lead->c[0].from;
+	const struct vec end = out ? c->to : c->from;
+	struct vec way;
+
+	if (curve_length(c) < CURVE_SAME_MM)
+		return true;
+	way = curve_way(c, out);
+	return ((far.y - end.y) * way.x - (far.x - end.x) * way.y) *
+	       m->offset_mm <= 0;
+}
+
 static int make_track(struct contour *k, struct stretch *s, int p,
 		      const struct contour_motion *next,
 		      struct interp_diag *diag)
@@ -176,10 +198,12 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 	job.face = &f;
 	if (s->in)
 		job.lead[0] = (struct track_lead) {
-			true, s->first, k->at[p], k->m[s->first].c[p].arc };
+			true, s->first, k->at[p], k->m[s->first].c[p].arc,
+			goes_through(k, s, false) };
 	if (s->out)
 		job.lead[1] = (struct track_lead) {
-			true, b, lead_end(k, b, next, p), k->m[b].c[p].arc };
+			true, b, lead_end(k, b, next, p), k->m[b].c[p].arc,
+			goes_through(k, s, true) };
 	if (!err) {
 		err = track_make(&s->t[p], &job, &fault);
 		if (err == -EINVAL)

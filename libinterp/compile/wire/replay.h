@@ -17,7 +17,7 @@
 struct contour_tape {
 	struct contour_motion *m;	/* [0] leads in, [n - 1] out */
 	uint32_t n;
-	uint32_t tab;			/* the first motion of the tab; n - 1: none */
+	uint32_t tab;			/* its first motion; n - 1: no tab */
 };
 
 /* How a part of a tape is cut. */

@@ -18,7 +18,6 @@
 
 #define RIGHT_ANGLE	(M_PI / 2)
 #define ANGLE_SLACK	1e-6
-#define MITRE_TURNS	8u		/* ways found before mitres are left */
 
 /* Ends so near are one: half a pulse of rounding on either side, and more. */
 #define TINY_PULSES	1.5
@@ -131,21 +130,14 @@ static bool meet_behind(struct track_elem *a, struct track_elem *b,
 }
 
 /* Cut both off where they meet.  Return: false if they do not. */
-bool track_meet_inside(struct track_elem *a, struct track_elem *b,
-		       struct vec near)
+static bool meet_inside(struct track_elem *a, struct track_elem *b,
+			struct vec near)
 {
-	struct curve_hit hit[2];
-	const int n = a->dead || b->dead ? 0 : curve_cross(&a->c, &b->c, hit);
 	struct curve p = a->c, q = b->c;
-	int best = 0;
+	struct vec at;
 
-	if (n == 0)
-		return false;
-	if (n == 2 && curve_distance(hit[1].at, near) <
-		      curve_distance(hit[0].at, near))
-		best = 1;
-	if (!curve_trim(&p, a->c.from, hit[best].at) ||
-	    !curve_trim(&q, hit[best].at, b->c.to))
+	if (a->dead || b->dead || !curve_cross_near(&p, &q, near, &at) ||
+	    !curve_trim(&p, a->c.from, at) || !curve_trim(&q, at, b->c.to))
 		return false;
 	a->c = p;
 	b->c = q;
@@ -194,7 +186,7 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 		return lay_fill(w, &k, &gap, false);
 	if (k.turn * w->job->side > 0 &&
 	    fabs(k.turn) < 2 * RIGHT_ANGLE - ANGLE_SLACK) {
-		if (track_meet_inside(a, b, k.at) ||
+		if (meet_inside(a, b, k.at) ||
 		    meet_behind(a, b, k.at, w->slack_mm))
 			return 0;
 		/* A kink so slight that the one end is clear of the other. */
@@ -401,7 +393,7 @@ static const struct attempt {
  * lies behind the corner.  From now on an arc goes round these.
  * Return: were there any?
  */
-static bool give_up_mitres(struct track_work *w)
+bool track_give_up_mitres(struct track_work *w)
 {
 	bool any = false;
 
@@ -443,8 +435,8 @@ static int attempt(struct track *t, const struct track_job *j, uint32_t i,
 		return -ENOMEM;
 	do
 		err = find_way(&w, fault);
-	while ((!err || err == -EINVAL) && turns++ < MITRE_TURNS &&
-	       give_up_mitres(&w));
+	while ((!err || err == -EINVAL) && turns++ < TRACK_MITRE_TURNS &&
+	       track_give_up_mitres(&w));
 	if (!err || (err == -EINVAL && j->skip && w.nruns &&
 		    fault->kind == TRACK_LOST)) {
 		t->skipped = err != 0;

@@ -22,12 +22,15 @@
 #include "wire/face.h"
 #include "wire/grid.h"
 
+#define TRACK_MITRE_TURNS	8u	/* ways found before mitres stay */
+
 /* A lead; the other end is where the track begins or ends. */
 struct track_lead {
 	bool there;
 	uint32_t owner;
 	struct vec far;			/* its end off the outline */
 	bool arc;			/* it touches the track in a tangent */
+	bool through;			/* it comes through the outline */
 };
 
 struct track_elem {
@@ -36,7 +39,7 @@ struct track_elem {
 	int64_t piece;			/* of the outline; -1: a lead */
 	bool fill;			/* leads to the next motion */
 	bool dead;			/* no way goes along it */
-	bool fitted;			/* a fillet of constant radius: face.h */
+	bool fitted;			/* a fillet that keeps its radius */
 	bool mitre;			/* prolonged at its end, as the next one
 					 * is at its start */
 	uint32_t hit;			/* its first crossing */
@@ -53,7 +56,7 @@ struct track_hit {
 struct track_run {
 	uint32_t elem;
 	double t[2];
-	bool jump;			/* something is left out in front of it */
+	bool jump;			/* behind a part that is left out */
 };
 
 enum track_fault_kind {
@@ -82,7 +85,7 @@ struct track {
 	uint32_t *owner;
 	bool *fill;
 	uint32_t n;
-	bool skipped;			/* something is left out: it is in fault */
+	bool skipped;			/* parts are left out: see fault */
 };
 
 /**
@@ -109,8 +112,8 @@ struct track_work {
 	double reach_mm;		/* the largest distance of a piece */
 	double total_mm;		/* along the outline */
 	double slack_mm;		/* nearer by this is no fault */
-	bool round;			/* no corner is prolonged ... */
-	bool *no_mitre;			/* ... or not that in front of a piece */
+	bool round;			/* no corner is prolonged */
+	bool *no_mitre;			/* not that in front of a piece */
 	uint32_t blocker;		/* the piece found too near last */
 	const struct face_side *sides;	/* NULL, or the pieces themselves are
 					 * moved: face_move.h */
@@ -119,13 +122,12 @@ struct track_work {
 /** track_add() - one more element, not filled. Return: NULL: no memory. */
 struct track_elem *track_add(struct track_work *w);
 
-/** track_meet_inside() - cut both off where they cross, nearest to @near.
- *  Return: false if they do not. */
-bool track_meet_inside(struct track_elem *a, struct track_elem *b,
-		       struct vec near);
-
 /** track_shift() - piece @i's parallel is so far to its left. */
 double track_shift(const struct track_work *w, uint32_t i);
+
+/** track_give_up_mitres() - an arc goes from now on round the corners whose
+ *  point the way does not come to.  Return: are there any? */
+bool track_give_up_mitres(struct track_work *w);
 
 /** track_forget() - free what @w owns. */
 void track_forget(struct track_work *w);

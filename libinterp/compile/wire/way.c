@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define BACK_MAX	4096u		/* runs gone back from where it is stuck */
-#define BACK_REACHES	6.0		/* ... and so many offsets */
+#define BACK_MAX	4096u		/* the most runs to go back if stuck */
+#define BACK_REACHES	6.0		/* the same in offsets */
 #define STARTS_MAX	10000u		/* crossings tried to begin at */
 
 struct walker {

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Faces that lean to different sides, and parts that vanish on the second plane.
+
+EDM_SEED repeats a run, EDM_RUNS says how many.
+"""
+import os
+import random
+
+import pytest
+import shapely
+from edmsim import run, seeded
+from test_wire_taper import BOUND_MM, HEIGHT, WIRE, job_of, planes, rows_of
+from wire_faces import Faces
+
+RUNS = int(os.environ.get("EDM_RUNS", 8))
+
+
+def test_faces_that_lean_to_any_side_are_cut_as_geometry_has_it():
+    # The same in every `make check`; others with EDM_SEED.
+    rnd = seeded() if "EDM_SEED" in os.environ else random.Random(6)
+    cut, worst = 0, 0
+    for i in range(RUNS):
+        c = Faces(rnd, HEIGHT)
+        text = job_of(c.pts, c.start, c.far, c.degrees,
+                      "G41" if c.inside else "G42", c.offset)
+        r = run("--machine", WIRE, "--check", text=text)
+        about = f"{i}: {r.stderr.decode()}\n{text}"
+        assert r.returncode in (0, 65), about
+        if r.returncode:
+            assert b"leans" in r.stderr or b"a lead" in r.stderr or \
+                not c.can_be_cut(), about
+            continue
+        cut += 1
+        for outline, at in zip(c.outlines(), planes(rows_of(text))):
+            last = len(c.pts) + 4
+            on = at[(at[:, 0] >= 4) & (at[:, 0] <= last)][::13, 1:]
+            on = shapely.points(on)
+            near = shapely.distance(on, outline.exterior).min()
+            if outline == c.outlines()[1] and not c.judged:
+                continue
+            worst = max(worst, min(c.wires) - near)
+            assert near > min(c.wires) - BOUND_MM, about
+            assert (shapely.contains(outline, on) == c.inside).all(), about
+    print(f"{cut} of {RUNS} cut, nearer by {1000 * worst:.2f} um at the worst")
+    assert cut > RUNS / 4
+
+
+RIB = """F200 H1=0.2
+G0 X5 Y-4
+G42 H1 {taper} G1 X5 Y0
+X20
+Y15
+X{right}
+Y{tip}
+X10
+Y15
+X0
+Y0
+X5
+G40 G50 Y-4
+M2
+"""
+
+# The taper carries the faces 0.7 mm inward, 1 degree over 40 mm.
+RIBS = [
+    ("G51 A1", 11, 18, "the faces of lines 7 and 9"),  # too thin
+    ("G51 A1", 10.2, 15.2, "the faces of lines 7 and 9"),
+    ("G51 A1", 15, 15.3, None),                         # lower than they move
+    ("G51 A1", 15, 18, None),                           # thick
+    ("G52 A1", 11, 12, "the faces of lines 7 and 9"),  # a slot that closes
+    ("G52 A1", 15, 12, None),
+]
+
+
+@pytest.mark.parametrize("taper,right,tip,found", RIBS)
+def test_what_is_left_of_a_rib_or_a_slot_above(taper, right, tip, found):
+    text = RIB.format(taper=taper, right=right, tip=tip)
+    r = run("--machine", WIRE, "--check", text=text)
+    assert (r.returncode == 65) == bool(found), r.stderr
+    assert not found or found in r.stderr.decode(), r.stderr
+
+
+def test_a_hole_inside_the_part_above_is_no_place_to_begin():
+    text = RIB.format(taper="G52 A3", right=15, tip=18)
+    near = text.replace("Y-4", "Y-1")
+    assert run("--machine", WIRE, "--check", text=text).returncode == 0
+    r = run("--machine", WIRE, "--check", text=near)
+    assert r.returncode == 65
+    assert "a lead that comes within 0.0000 mm" in r.stderr.decode()
+    assert "on the second plane" in r.stderr.decode()
+
+
+def test_what_the_wire_reaches_from_beside_a_mouth_is_not_lost():
+    """A groove 13 um deep, wider than its mouth of 0.105 mm."""
+    text = """F200 H1=0.125
+G0 X2 Y4
+G41 H1 G1 X0 Y4
+Y0
+X5
+X4.98 Y-0.013
+X5.126 Y{deep}
+X5.105 Y0
+X10
+Y8
+X0
+Y4
+G40 X2
+M2
+"""
+    for deep, code in ((-0.013, 0), (-0.05, 65)):
+        r = run("--machine", WIRE, "--check", text=text.format(deep=deep))
+        assert r.returncode == code, r.stderr
