@@ -664,6 +664,8 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(Q)! grep -n '#include "\.\./' -r common daemon libinterp clients tests
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80
+	$(call say,LINT,no line over 80 columns)
+	$(Q)tests/line-lengths
 	$(call say,LINT,what documents name is there)
 	$(Q)tests/doc-links
 

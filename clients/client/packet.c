@@ -66,6 +66,7 @@ uint8_t *packet_chunk(const struct packet_from *f, const struct talk_chunk *c,
 		.job = lent(c->job), .name = lent(c->name),
 		.bytes = c->bytes, .chunk = c->chunk, .chunks = c->chunks,
 		.offset = c->offset, .hold = c->hold,
+		.electrode = c->electrode,
 		.from_line = c->from_line, .from_mm = c->from_mm,
 		.size = c->size, .data = (uint8_t *)(uintptr_t)c->data,
 	};

@@ -70,7 +70,8 @@ static bool send_chunk(struct submission *j, int i)
 		.bytes = (int64_t)j->text.bytes, .sha256 = j->sha256,
 		.chunk = i, .chunks = j->chunks, .offset = (int64_t)at,
 		.hold = j->text.hold, .from_line = j->text.from_line,
-		.from_mm = j->text.from_mm, .data = j->text.text + at,
+		.from_mm = j->text.from_mm, .electrode = j->text.electrode,
+		 .data = j->text.text + at,
 		.size = left < TALK_CHUNK_MAX ? (int)left : TALK_CHUNK_MAX,
 	};
 

@@ -21,10 +21,13 @@ struct submission;
 
 struct submission_text {
 	const char *id;			/* NULL: one is drawn */
-	const char *name;		/* for people; its ending is the dialect */
+	const char *name;		/* for people; its ending is the
+					 * dialect */
 	const char *text;		/* lent until submission_end() */
 	size_t bytes;			/* at most SUBMISSION_BYTES_MAX */
 	bool hold;			/* load it, but wait for "start" */
+	int electrode;			/* begin with this one; 0: with the one
+					 * in the holder */
 	int from_line;			/* begin at this line; 0: from_mm */
 	double from_mm;			/* begin there along the path; 0: at the
 					 * beginning */

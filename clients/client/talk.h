@@ -84,6 +84,7 @@ struct talk_chunk {
 	bool hold;
 	int from_line;
 	double from_mm;
+	int electrode;
 	int size;
 	const char *data;
 };

@@ -242,10 +242,11 @@ static void print_ended(json_t *job)
 
 	ctl_when(at, job, "ended_us");
 	ctl_duration(took, sizeof(took), ctl_number_of(job, "job_s"));
-	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n", ctl_text_of(job, "job"),
-	       ctl_text_of(job, "name"), ctl_text_of(job, "state"), at,
-	       ctl_number_of(job, "depth_mm"), took,
-	       *ctl_text_of(job, "reason") ? "  " : "", ctl_text_of(job, "reason"));
+	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n",
+	       ctl_text_of(job, "job"), ctl_text_of(job, "name"),
+	       ctl_text_of(job, "state"), at, ctl_number_of(job, "depth_mm"),
+	       took, *ctl_text_of(job, "reason") ? "  " : "",
+	       ctl_text_of(job, "reason"));
 }
 
 /* A condition's name, a number, or the generator's own setting. */
@@ -268,12 +269,30 @@ static void print_changes(json_t *rows)
 	json_array_foreach(rows, i, row) {
 		ctl_when(at, row, "utime");
 		printf("%-10s %s %10.3f mm  %s ", i ? "" : "changes", at,
-		       ctl_number_of(row, "place_mm"), ctl_text_of(row, "what"));
+		       ctl_number_of(row, "place_mm"),
+		       ctl_text_of(row, "what"));
 		print_value(json_object_get(row, "was"));
 		printf(" -> ");
 		print_value(json_object_get(row, "now"));
 		putchar('\n');
 	}
+}
+
+static void print_electrodes(json_t *rows)
+{
+	json_t *row;
+	size_t i;
+
+	json_array_foreach(rows, i, row)
+		printf("%-10s %.0f shifts Z by %+.4f mm; wear %.4f -> %.4f "
+		       "mm%s, %.1f min of sparks\n", i ? "" : "electrode",
+		       ctl_number_of(row, "electrode"),
+		       ctl_number_of(row, "shift_mm"),
+		       ctl_number_of(row, "wear_before_mm"),
+		       ctl_number_of(row, "wear_after_mm"),
+		       json_is_true(json_object_get(row, "known")) ? "" :
+		       " and more",
+		       ctl_number_of(row, "sparked_s") / 60);
 }
 
 static void print_one(json_t *job)
@@ -301,8 +320,9 @@ static void print_one(json_t *job)
 	ctl_duration(text, sizeof(text), ctl_number_of(job, "job_s"));
 	printf("path       %.3f mm of %.3f mm\ndepth      %.3f mm\n"
 	       "time       %s\njumps      %.0f\nretracts   %.0f\n"
-	       "shorts     %.0f\nsha256     %s\n", ctl_number_of(job, "path_mm"),
-	       ctl_number_of(job, "length_mm"), ctl_number_of(job, "depth_mm"), text,
+	       "shorts     %.0f\nsha256     %s\n",
+	       ctl_number_of(job, "path_mm"), ctl_number_of(job, "length_mm"),
+	       ctl_number_of(job, "depth_mm"), text,
 	       ctl_number_of(job, "jumps"), ctl_number_of(job, "retracts"),
 	       ctl_number_of(job, "shorts"), ctl_text_of(job, "sha256"));
 	history_print(job);
@@ -311,6 +331,7 @@ static void print_one(json_t *job)
 	json_array_foreach(json_object_get(job, "notes"), i, note)
 		printf("%-10s %s\n", i ? "" : "notes",
 		       json_string_value(note));
+	print_electrodes(json_object_get(job, "electrodes"));
 	print_changes(json_object_get(job, "changes"));
 }
 

@@ -23,6 +23,7 @@ struct ctl {
 	bool hold, wait, once;
 	int from_line;			/* 0: not given */
 	double from_mm;			/* 0: not given */
+	double electrode;		/* submit: its number; 0: not given */
 	unsigned int every;		/* record: cycles; 0: not given */
 	const char *plot;
 	const char *pulses;		/* doctor: CHIP:LINE */
@@ -95,8 +96,10 @@ int ctl_shm_open(const struct ctl *c, const struct shm_status **ret);
 int ctl_ask(struct ctl *c, const struct talk_question *q,
 	    struct talk_answer *ret);
 
-/** ctl_ask_json() - the JSON of one answer.  Return: 0, or a sysexits code after
- *  a message. */
+/**
+ * ctl_ask_json() - the JSON of one answer.  Return: 0, or a sysexits code after
+ * a message.
+ */
 int ctl_ask_json(struct ctl *c, const struct talk_question *q, json_t **ret);
 
 /** ctl_put_json() - print it.  Return: an exit code. */

@@ -11,7 +11,7 @@ static int what(void)
 {
 	fprintf(stderr, "edmctl: electrode: what? electrode list, show N, add "
 		"N KEY=VALUE..., set N KEY=VALUE..., remove N, use N (use 0: "
-		"the holder is empty); KEY is name, material, undersize, "
+		"the holder is empty), measure N [new]; KEY is name, material, undersize, "
 		"length, wear, life (mm), minutes, sparked (min), state or "
 		"note\n");
 	return EX_USAGE;
@@ -164,6 +164,12 @@ int ctl_electrode(struct ctl *c)
 
 	if (strcmp(c->arg, "list") == 0 && !c->value)
 		return list(c);
+	if (number && strcmp(c->arg, "measure") == 0 &&
+	    (!c->third || strcmp(c->third, "new") == 0))
+		return ctl_say(c, &(struct talk_question) {
+			.verb = "electrode-measure", .arg = n,
+			.text = c->third,
+		});
 	if (number && c->third && (strcmp(c->arg, "add") == 0 ||
 				   strcmp(c->arg, "set") == 0))
 		return change(c, n);

@@ -67,7 +67,8 @@ struct verb {
 
 /* clang-format off */
 static const struct verb verbs[] = {
-	{ "submit", "FILE", ctl_submit, 1, 1, false, "name id hold wait from-line from-place",
+	{ "submit", "FILE", ctl_submit, 1, 1, false, 
+	  "name id hold wait from-line from-place electrode",
 	  "send a job of NC code; - is standard input" },
 	{ "queue", "", ctl_queue, 0, 0, false, "",
 	  "print the loaded job and those that wait" },
@@ -123,7 +124,7 @@ static const struct verb verbs[] = {
 	  "write one archive for who helps from afar; no secrets" },
 	{ "keys", "list|add NAME ROLE|remove NAME", ctl_keys, 3, 1, false, "",
 	  "who may command; by role" },
-	{ "electrode", "list|show N|add N|set N|remove N|use N [KEY=VALUE...]",
+	{ "electrode", "list|show N|add N|set N|remove N|use N|measure N",
 	  ctl_electrode, CTL_WORDS_MAX - 1, 1, false, "",
 	  "the table of electrodes, and which one is in the holder" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "plot",
@@ -159,6 +160,9 @@ static const struct cmdline_row rows[] = {
 	{ "from-place", "MM", CMDLINE_NUMBER, AT(from_mm), .min = 1e-6,
 	  .max = 1e9, .help =
 	  "submit: begin at this place of its path, and wait for start" },
+	{ "electrode", "N", CMDLINE_NUMBER, AT(electrode), .min = 1,
+	  .max = 9999, .help =
+	  "submit: begin with electrode N, put in if it is another" },
 	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: print one line" },
 	{ "every", "N", CMDLINE_CALL, .take = take_every, .help =
 	  "record: write one cycle of N; default: 1" },

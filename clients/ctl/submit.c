@@ -159,7 +159,8 @@ static int print_outcome(const struct ctl *c, const struct submission *j)
 	if (c->json)
 		printf("%s\n", a->body);
 	else
-		printf("job %s, %s: %s\n", submission_id(j), submission_name(j), a->reason);
+		printf("job %s, %s: %s\n", submission_id(j),
+		       submission_name(j), a->reason);
 	fflush(stdout);
 	return 0;
 }
@@ -179,7 +180,8 @@ static int send_text(struct ctl *c, const struct text *t,
 	const struct submission_text x = {
 		.id = c->id, .name = name_of(c), .text = t->bytes,
 		.bytes = t->size, .hold = c->hold, .from_line = c->from_line,
-		.from_mm = c->from_mm, .silent_s = c->timeout_s,
+		.from_mm = c->from_mm, .electrode = (int)c->electrode,
+		.silent_s = c->timeout_s,
 	};
 	struct submission *j;
 	int err, rc;

@@ -102,7 +102,7 @@ static void blot_word(struct support_text *t, const char *word)
 static bool names_a_secret(const char *line, size_t n)
 {
 	static const char *const words[] = {
-		"password", "passwd", "passwort", "secret", "token", "pin ",
+		"password", "passwd", "passwort", "secret", "token",
 	};
 	char low[256];
 

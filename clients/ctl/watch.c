@@ -69,6 +69,10 @@ static void print_text(const struct talk_status *s)
 	for (int i = 0; i < TALK_NAXES; i++)
 		printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
 	printf(" (mm, degrees)\n");
+	if (s->electrode)
+		printf("electrode %u shifts Z by %+.4f mm, wear %.4f mm\n",
+		       s->electrode, s->electrode_shift_mm,
+		       s->electrode_wear_mm);
 	if (*s->lost)
 		printf("not sure   %s: not homed, or nothing homes it, since "
 		       "the power went\n", s->lost);

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * answer.c - the answer to a request of HTTP
- */
+/* answer.c - the answers to requests of HTTP */
 #include "answer.h"
 
 #include <sodium.h>
@@ -14,7 +12,8 @@
 #define HEAD_BYTES	2048
 #define PART_BYTES	16384
 
-/* Scripts, styles and connections of this panel alone; nothing inline. */
+/* Allow scripts, styles and connections of this panel alone, and nothing
+ * inline. */
 #define CSP	"default-src 'none'; script-src 'self'; style-src 'self'; " \
 		"img-src 'self' data:; font-src 'self'; connect-src 'self'; " \
 		"manifest-src 'self'; base-uri 'none'; form-action 'self'; " \
@@ -74,7 +73,7 @@ static int write_head(struct request *r)
 	return 0;
 }
 
-/* A connection that goes on to live has no upload under way any more. */
+/* A connection that stays open has no upload under way any more. */
 static void drop_body(struct request *r)
 {
 	if (!r->has_body)

@@ -2,8 +2,8 @@
 /*
  * assets.h - the files of the page, read once into memory
  *
- * What is not in the folder at the start does not exist: no name from outside
- * ever becomes a path.
+ * A file that is not in the folder at the start does not exist: no name from
+ * outside ever becomes a path.
  *
  * Threads: one.
  */
@@ -14,7 +14,8 @@
 #include <stddef.h>
 
 struct asset {
-	char name[96];			/* as asked for: "/assets/x.js" */
+	char name[96];			/* as a browser asks for it:
+					 * "/assets/x.js" */
 	const char *type;
 	char *bytes;
 	size_t size;
@@ -24,11 +25,17 @@ struct asset {
 
 struct assets;
 
-/** assets_read() - all files of @folder. Return: 0, -ENOENT, -EFBIG, -errno. */
+/**
+ * assets_read() - read all files of @folder. Return: 0, -ENOENT, -EFBIG,
+ * -errno.
+ */
 int assets_read(struct assets **ret, const char *folder);
 void assets_free(struct assets *a);
 
-/** assets_find() - "/" is index.html; NULL: there is none. */
+/**
+ * assets_find() - find a file; "/" means index.html. Return: NULL if there is
+ * none.
+ */
 const struct asset *assets_find(const struct assets *a, const char *name);
 
 #endif /* PANEL_ASSETS_H */

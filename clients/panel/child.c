@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * child.c - run another program within bounds
- */
+/* child.c - run other programs within limits */
 #include "child.h"
 
 #include <errno.h>
@@ -30,7 +28,7 @@ struct child {
 	pid_t pid;			/* 0: free */
 	int out_fd;
 	time_t until_s;
-	child_done_fn done;		/* NULL: forgotten */
+	child_done_fn done;		/* NULL: nobody waits for it any more */
 	void *arg;
 };
 
@@ -94,7 +92,7 @@ static void limit(enum __rlimit_resource what, rlim_t most)
 	setrlimit(what, &l);
 }
 
-/* If memory ends, a child goes, and not the panel. */
+/* If the host runs out of memory, it kills a child and not the panel. */
 static void be_first_to_go(void)
 {
 	const int fd = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
@@ -106,7 +104,8 @@ static void be_first_to_go(void)
 	close(fd);
 }
 
-/* In the child: nothing but system calls, the panel has other threads. */
+/* This runs in the child: it may only make system calls, because the panel has
+ * other threads. */
 static void become(const struct child_job *j, int out_fd)
 {
 	const int null_fd = open("/dev/null", O_RDWR);
@@ -127,8 +126,8 @@ static void become(const struct child_job *j, int out_fd)
 	_exit(127);
 }
 
-/* The last ones are kept for what is small: a login must not wait behind
- * programs that explode. */
+/* The last slots are kept for small programs: a login must not wait behind
+ * programs that use all they may. */
 static struct child *free_one(struct children *c, bool large)
 {
 	const int most = large ? CHILDREN_MAX - CHILDREN_KEPT : CHILDREN_MAX;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * child.h - other programs, run within bounds while the panel goes on
+ * child.h - run other programs within limits, while the panel goes on
  *
- * What reads a text of strangers, or takes long, is done by a process of its
- * own with limits of memory, processor time and time.
+ * A text from outside is read by a process of its own, with limits of memory,
+ * processor time and time. Work that takes long is done in the same way.
  *
  * Threads: one, that of the event loop.
  */
@@ -13,43 +13,54 @@
 #include <stddef.h>
 
 #define CHILDREN_MAX	6
-#define CHILDREN_KEPT	2	/* not for those with a limit of memory */
+#define CHILDREN_KEPT	2	/* not for programs with a limit of memory */
 
 struct children;
 
 struct child_job {
-	const char *const *argv;	/* argv[0] is looked for in PATH */
+	const char *const *argv;	/* argv[0] is searched for in PATH */
 	int in_fd;			/* its standard input; -1: none */
-	size_t memory_bytes;		/* 0: as the panel has it */
+	size_t memory_bytes;		/* 0: the same as the panel */
 	unsigned int limit_s;
 };
 
 /**
- * Called once.  @status: what it exited with; 128 and above: a signal ended
- * it, or the limits did.  @out_fd: a file of all it wrote to its standard
- * output; whoever gets it closes it.
+ * It is called once. @status is the exit status; 128 and above means that a
+ * signal or a limit ended the program. @out_fd is a file with all that it wrote
+ * to its standard output; the callee closes it.
  */
 typedef void (*child_done_fn)(void *arg, int status, int out_fd);
 
 struct children *children_create(void);
-/** children_destroy() - ends them all; no one is called. */
+/** children_destroy() - end all of them; no callback is called. */
 void children_destroy(struct children *c);
 
-/** child_start() - Return: 0; -EBUSY: too many run already; -errno. */
+/**
+ * child_start() - run a program. Return: 0; -EBUSY: too many run already;
+ * -errno.
+ */
 int child_start(struct children *c, const struct child_job *j,
 		child_done_fn done, void *arg);
 
-/** child_forget() - end what runs for @arg; it is not called. */
+/**
+ * child_forget() - end the program that runs for @arg; its callback is not
+ * called.
+ */
 void child_forget(struct children *c, void *arg);
 
-/** children_look() - has one ended?  Every 20 ms or so. */
+/**
+ * children_look() - handle the programs that have ended; to be called every 20
+ * ms or so.
+ */
 void children_look(struct children *c);
 
-/** child_file() - an empty file in memory; -errno. */
+/** child_file() - make an empty file in memory. Return: it, or -errno. */
 int child_file(const char *name);
 
-/** child_read() - all of a file as text, at most @most bytes; NULL: too long,
- *  or no memory.  The file stays open. */
+/**
+ * child_read() - the whole file as a text, at most @most bytes. The file stays
+ * open. Return: NULL if it is too long, or if there is no memory.
+ */
 char *child_read(int fd, size_t most, size_t *ret_bytes);
 
 #endif /* PANEL_CHILD_H */

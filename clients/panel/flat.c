@@ -11,16 +11,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STEPS_MAX	512		/* points of one curved segment */
+#define STEPS_MAX	512		/* most points of one curved segment */
 #define EXTENT_SHARE	2000.0
 
 struct walk {
 	struct flat *flat;
 	const struct interp_program *p;
 	struct interp_at_curve curve;
-	double last_mm[5];		/* X Y Z U V of the last point kept */
+	double last_mm[5];		/* X Y Z U V of the last point that was
+					 * kept */
 	bool any;
-	bool measure;			/* only the extent is looked for */
+	bool measure;			/* only find the extent */
 };
 
 struct spot {
@@ -28,7 +29,8 @@ struct spot {
 	double s_mm;
 	uint32_t line;
 	uint8_t kind;
-	bool keep;			/* a corner, whatever the distance */
+	bool keep;			/* turns by more than this are a corner
+					 * at any distance */
 };
 
 static int grow(struct flat *f)
@@ -93,7 +95,7 @@ static double distance(const double a[5], const double b[5])
 	return sqrt(sum);
 }
 
-/* A point nearer to the last one than the tolerance is not seen. */
+/* A point that is nearer to the last one than the tolerance is left out. */
 static int offer(struct walk *w, const struct spot *at)
 {
 	if (w->measure) {
@@ -151,8 +153,8 @@ static int steps_of(const struct walk *w, const struct interp_seg *s)
 }
 
 /* One side of a couple: a line, or an arc about its centre. */
-static void side_at(const struct interp_arc *arc, double t, const double from[2],
-		    const double to[2], double ret[2])
+static void side_at(const struct interp_arc *arc, double t,
+		    const double from[2], const double to[2], double ret[2])
 {
 	const double r = arc->r_mm + t * arc->dr_mm;
 	const double angle = arc->theta + t * arc->sweep;
@@ -200,7 +202,7 @@ static int walk_segment(struct walk *w, uint32_t i)
 	const int steps = steps_of(w, s);
 	int err = 0;
 
-	/* A change of kind is where the colour changes. */
+	/* The colour changes where the kind changes. */
 	if (before != at.kind) {
 		struct spot edge = at;
 
@@ -241,7 +243,7 @@ static int walk_all(struct walk *w)
 	}
 	if (err)
 		return err;
-	/* The end is drawn, however near it is to the last point. */
+	/* The end is drawn even if it is near to the last point. */
 	node_at(w, nsegs, at.mm);
 	at.s_mm = w->p->head->length_mm;
 	at.line = nsegs ? w->p->segs[nsegs - 1].line : 0;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * flat.h - a program's path as points to draw, no finer than asked for
+ * flat.h - the path of a program as points to draw, with a given tolerance
  *
  * Every point of the path lies within the tolerance of the lines that are
- * drawn.  What would need more points than there is room for is drawn coarser.
+ * drawn. A path that would need too many points is drawn with a larger
+ * tolerance.
  *
  * Threads: any; allocates.
  */
@@ -18,26 +19,31 @@
 
 #define FLAT_POINTS_MAX	400000
 
-/* How the way to a point is gone. */
+/* How the machine goes to a point. */
 enum flat_kind { FLAT_CUT, FLAT_RAPID, FLAT_PROBE };
 
 struct flat {
 	size_t n, room;
-	float *at_mm;			/* X Y Z of each, less origin_mm */
-	float *upper_mm;		/* U V of each, if the program has them */
+	float *at_mm;			/* X Y Z of each point, minus
+					 * origin_mm */
+	float *upper_mm;		/* U V of each point, if the program has
+					 * them */
 	double *s_mm;			/* place on the path */
-	uint32_t *line;			/* of the source, that leads to it */
+	uint32_t *line;			/* the line of the text that leads to
+					 * it */
 	uint8_t *kind;			/* enum flat_kind */
 	double origin_mm[3];
 	double min_mm[3], max_mm[3];	/* machine coordinates */
-	double tolerance_mm;		/* what came of it */
+	double tolerance_mm;		/* the one that was used */
 	double cut_mm, rapid_mm;
 	bool has_upper;
 };
 
 /**
- * flat_make() - @tolerance_mm; 0: a 2000th of the path's extent.
- * Return: 0 and @ret, to be handed to flat_fini() in any case; -ENOMEM.
+ * flat_make() - make the points. @tolerance_mm 0 means a 2000th of the path's
+ * extent.
+ *
+ * Return: 0 or -ENOMEM. In both cases call flat_fini() for @ret.
  */
 int flat_make(struct flat *ret, const struct interp_program *p,
 	      double tolerance_mm);

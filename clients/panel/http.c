@@ -27,7 +27,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define BODY_S		60		/* an upload may take so long */
+#define BODY_S		60		/* the longest time of an upload */
 #define BODIES_MAX	4
 #define CHECK_S		30
 #define CHECK_BYTES	((size_t)1536 << 20)
@@ -49,7 +49,7 @@ size_t http_request_size(void)
 
 /* -- Whose request is it -------------------------------------------------- */
 
-/* "HOST:PORT" is us: the address, or a name of [panel] names. */
+/* Does "HOST:PORT" mean this panel: its address, or a name in [panel] names? */
 static bool is_our_name(const struct panel *p, const char *host)
 {
 	static const char *const local[] = { "127.0.0.1", "localhost",
@@ -90,9 +90,9 @@ bool http_is_ours(struct panel *p, struct lws *wsi, bool want_origin)
 	       strcasecmp(origin + strlen(scheme), host) == 0;
 }
 
-/* A browser sends its cookies to every port of a host, so another user's
- * program on this host may have seen one. There it serves its own user alone.
- */
+/* A browser sends its cookies to every port of a host, so a program of another
+ * user on this host may have seen one. So on loopback a session serves only the
+ * user who began it. */
 struct session *http_session(struct panel *p, struct lws *wsi)
 {
 	char cookie[1024];
@@ -129,7 +129,8 @@ static void peer_of(struct request *r, char to[SESSION_ADDRESS_MAX])
 			strlen(to) - sizeof(mapped) + 2);
 }
 
-/* What follows "KEY=" of the address; as it is if it is not there. */
+/* The text after "KEY=" in the address, or the text as it is if there is no
+ * such key. */
 static bool read_arg(struct request *r, const char *key, char *to, size_t size)
 {
 	char room[NAME_ROOM];
@@ -203,7 +204,8 @@ static void on_verified(void *arg, int status, int out_fd)
 	give_session(r, s);
 }
 
-/* A hash no password fits, so that an unknown name takes as long. */
+/* No password fits this hash. It is used for unknown names, so that they take
+ * the same time. */
 #define NO_HASH	"$argon2id$v=19$m=65536,t=2,p=1$AAAAAAAAAAAAAAAAAAAAAA$" \
 		"AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"
 
@@ -230,7 +232,7 @@ static int verify(struct request *r, const char *name, const char *password)
 	return answer_wait(r, BODY_S);
 }
 
-/* What a name may be: it goes into the journal. */
+/* The characters that a name may have: names go into the journal. */
 static bool is_plain(const char *s, size_t most)
 {
 	const size_t n = strlen(s);
@@ -279,7 +281,7 @@ static int post_logout(struct request *r)
 
 /* -- Programs and paths --------------------------------------------------- */
 
-/* The eight places the machine stands at, for --start. */
+/* The eight places where the machine stands, for --start. */
 static void places(const struct panel *p, char *to, size_t size)
 {
 	const struct shm_snapshot *s = live_snapshot(p->live);
@@ -291,7 +293,7 @@ static void places(const struct panel *p, char *to, size_t size)
 				      p->config.start_mm[i]);
 }
 
-/* Kept for a look at its path: the last few. */
+/* Keep the last few, so that their paths can be looked at. */
 static void keep_check(struct request *r, int fd)
 {
 	struct panel *p = r->panel;
@@ -390,7 +392,7 @@ static int post_job(struct request *r)
 		return answer_refusal(r, 500, "no text", "a text");
 	j.bytes = (size_t)st.st_size;
 	answer_draw_id(r);
-	/* Twelve letters are enough, and can be read out. */
+	/* Twelve letters are enough, and a person can read them out. */
 	r->id[12] = '\0';
 	err = service_send(r->panel->service, &j, on_sent, r);
 	if (err == -ENOTCONN)
@@ -463,7 +465,7 @@ static const struct route *route_of(const char *path)
 	return NULL;
 }
 
-/* Return: 0, or an HTTP status to refuse it with. */
+/* Return: 0, or the HTTP status with which to refuse it. */
 static int may_do(struct request *r, bool post)
 {
 	const struct session *s = http_session(r->panel, r->wsi);
@@ -483,7 +485,7 @@ static int may_do(struct request *r, bool post)
 	return 0;
 }
 
-/* Return: is it a name that edmd-jobs takes? */
+/* Does edmd-jobs take this name? */
 static bool read_name(struct request *r)
 {
 	char hold[8] = "", line[16] = "", name[NAME_ROOM] = "job.ngc";
@@ -500,14 +502,14 @@ static bool read_name(struct request *r)
 	/* The service refuses what is no line. */
 	r->from_line = from < 0 || from > INT32_MAX ? -1 : (int)from;
 	snprintf(r->name, sizeof(r->name), "%.63s", name);
-	/* lws does not tell one that is too long from none. */
+	/* lws does not tell a text that is too long from no text. */
 	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_URI_ARGS) >= NAME_ROOM)
 		return false;
 	return *name && strlen(name) < sizeof(r->name) && plain_is(name);
 }
 
-/* lws says it again, and serves nobody else meanwhile, as long as there are
- * bytes behind the body.  No browser sends any before it has the answer. */
+/* As long as there are bytes behind the body, lws calls this again and serves
+ * nobody else. No browser sends such bytes before it has the answer. */
 static int end_body(struct request *r)
 {
 	if (r->whole)
@@ -520,7 +522,8 @@ static int open_body(struct request *r)
 {
 	char length[10] = "";
 
-	/* Who comes behind another server must count its bytes as that does. */
+	/* A browser behind another server must count its bytes as that server
+	 * does. */
 	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) >
 		    0 ||
 	    lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) <= 0)
@@ -563,8 +566,8 @@ static int take(struct request *r, const char *path)
 	if (!r->route) {
 		asset = assets_find(r->panel->assets, path);
 		if (!get || !asset)
-			return answer_refusal(r, get ? 404 : 405, "nothing here",
-					     "/");
+			return answer_refusal(r, get ? 404 : 405,
+					      "nothing here", "/");
 		if (!http_is_ours(r->panel, r->wsi, false))
 			return answer_refusal(r, 403, "another name",
 					     "an address of [panel] names");

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * live.c - follow edmd's shared memory
- */
+/* live.c - follow the shared memory of edmd */
 #include "live.h"
 #include "values.h"
 
@@ -14,7 +12,8 @@
 #include <string.h>
 #include <time.h>
 
-#define STAND_MS	1000		/* a cycle that stands so long is lost */
+#define STAND_MS	1000		/* after so long without a cycle, edmd
+					 * is lost */
 #define TRACES_MAX	SHM_TRACE_SLOTS	/* of one look */
 
 struct live {
@@ -23,7 +22,7 @@ struct live {
 	uint32_t instance;
 	struct shm_snapshot snap;
 	bool heard, alive;
-	int64_t moved_ms;		/* when the cycle was seen to go on */
+	int64_t moved_ms;		/* when it last saw a new cycle */
 	struct shm_follow follow;
 	struct values *values;
 	/* The point that is being filled. */
@@ -95,7 +94,7 @@ static void spread(float range[3], double x, bool first)
 
 static void add_sample(struct live *l, double gap_v, double feed_mm_s)
 {
-	/* An axis-only move has no gap; a NAN is no JSON either. */
+	/* A motion of rotary axes alone has no gap; JSON has no NAN. */
 	gap_v = isfinite(gap_v) ? gap_v : 0;
 	feed_mm_s = isfinite(feed_mm_s) ? feed_mm_s : 0;
 	spread(l->filling.gap_v, gap_v, l->n == 0);
@@ -162,7 +161,8 @@ void live_look(struct live *l)
 	if (at_ms - l->begun_ms < LIVE_POINT_MS)
 		return;
 	end_point(l);
-	/* Ten a second, however late each look is; what was missed is missed. */
+	/* Ten points a second, however late each look is; missed points are not
+	 * made up for. */
 	begin_point(l, at_ms - l->begun_ms < 2 * LIVE_POINT_MS ?
 		    l->begun_ms + LIVE_POINT_MS : at_ms);
 }
@@ -190,7 +190,7 @@ const uint32_t *live_latency(const struct live *l)
 	return l->status ? l->status->latency_us : NULL;
 }
 
-/* A number for people: a NAN or an infinity has no word in JSON. */
+/* A number for people. JSON has no word for a NAN or an infinity. */
 static json_t *number(double x, double step)
 {
 	return json_real(isfinite(x) ? round(x / step) * step : 0);
@@ -229,8 +229,9 @@ static void fill_sums(const struct live *l, json_t *to)
 	json_object_set_new(to, "tookMaxUs",
 			    json_integer(s->took_max_ns / 1000));
 	json_object_set_new(to, "periodUs", json_integer(s->period_ns / 1000));
-	json_object_set_new(to, "jobS", number((double)s->job_cycles *
-					       (double)s->period_ns / 1e9, 0.1));
+	json_object_set_new(to, "jobS",
+			    number((double)s->job_cycles *
+				   (double)s->period_ns / 1e9, 0.1));
 }
 
 void live_fill(struct live *l, json_t *to)
@@ -272,7 +273,7 @@ json_t *live_last_point(const struct live *l)
 			 json_null();
 }
 
-/* Points @from up to @to as one. */
+/* Make one point of the points @from up to @to. */
 static json_t *draw_together(const struct live *l, uint64_t from, uint64_t to)
 {
 	struct live_point p = l->point[from % LIVE_POINTS];

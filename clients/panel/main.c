@@ -190,7 +190,7 @@ static void close_parts(struct panel *p)
 	free(p->delta);
 }
 
-/* Beyond this host: no word in clear, and nobody without a password. */
+/* Beyond this host nothing is sent in clear, and everybody needs a password. */
 static int check_reach(struct panel *p)
 {
 	const struct config_panel *c = &p->config.panel;
@@ -213,7 +213,8 @@ static int serve(struct panel *p)
 	lws_set_log_level(LLL_ERR, NULL);
 	err = open_parts(p);
 	if (err == 0) {
-		fprintf(stderr, SD_INFO "edm-panel: machine %s at %s://%s:%d/\n",
+		fprintf(stderr,
+			SD_INFO "edm-panel: machine %s at %s://%s:%d/\n",
 			p->config.name, p->tls ? "https" : "http",
 			p->config.panel.address, (int)p->config.panel.port);
 		sd_notify(0, "READY=1");
@@ -343,7 +344,7 @@ int main(int argc, char **argv)
 	sigaction(SIGINT, &sa, NULL);
 	sigaction(SIGTERM, &sa, NULL);
 	signal(SIGPIPE, SIG_IGN);
-	/* Passwords and keys are in this memory. */
+	/* This memory holds passwords and keys. */
 	prctl(PR_SET_DUMPABLE, 0);
 	return serve(&p);
 }

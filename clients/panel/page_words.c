@@ -24,7 +24,7 @@ static json_t *faults(void)
 	return all;
 }
 
-/* A number that has no name is told as "?": there the names end. */
+/* A number without a name is called "?": the names end there. */
 static json_t *names(const char *(*name)(uint32_t), uint32_t first)
 {
 	json_t *all = json_object();

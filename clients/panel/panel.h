@@ -2,8 +2,8 @@
 /*
  * panel.h - edm-panel as a whole: what its parts share
  *
- * One event loop.  A browser that is slow, gone or hostile costs a bounded
- * part of it, and nothing here can hold edmd or edmd-jobs up.
+ * There is one event loop. A browser that is slow, gone or hostile takes a
+ * limited part of it. Nothing here can hold up edmd or edmd-jobs.
  *
  * Threads: one.
  */
@@ -36,7 +36,7 @@ struct panel {
 	struct machine_config config;
 	const char *config_path;
 	const char *self;		/* the program, to be run as --work */
-	bool tls, local;		/* local: 127.0.0.1 or ::1 alone */
+	bool tls, local;		/* local: only 127.0.0.1 or ::1 */
 	enum role local_role;
 	struct lws_context *lws;
 	struct lws_vhost *vhost;
@@ -46,26 +46,31 @@ struct panel {
 	struct assets *assets;
 	struct sessions *sessions;
 	struct children *children;
-	/* What is told to all. */
+	/* What is sent to all browsers. */
 	json_t *told;			/* as last told */
-	char *delta;			/* from the one before it */
+	char *delta;			/* changes since the message before
+					 * it */
 	uint64_t tellings;
 	struct browser *browsers;
 	int nbrowsers;
 	struct panel_note note[PANEL_NOTES];
 	uint64_t notes;
 	int bodies;			/* uploads under way */
-	double past_owed_s, past_at_s;	/* time spent on the past */
-	char checked_path[8][33];	/* ids of the texts checked last, ... */
-	int checked_fd[8];		/* ... and their paths */
+	double past_owed_s, past_at_s;	/* time spent on answers about the
+					 * past */
+	char checked_path[8][33];	/* ids of the last checked texts */
+	int checked_fd[8];		/* the paths of these texts */
 	unsigned int checked;
 };
 
-/** panel_note() - to the journal, and the log that Machine shows. */
+/**
+ * panel_note() - write to the journal and to the log that the page Machine
+ * shows.
+ */
 void panel_note(struct panel *p, const char *text, ...)
 	__attribute__((format(printf, 2, 3)));
 
-/** panel_notes() - the newest first. */
+/** panel_notes() - the lines of the log, the newest first. */
 json_t *panel_notes(const struct panel *p);
 
 /* -- http.c: what is asked for by HTTP ------------------------------------ */
@@ -73,14 +78,19 @@ json_t *panel_notes(const struct panel *p);
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason,
 		  void *user, void *in, size_t len);
 
-/** http_is_ours() - do Host and, where there is one, Origin name this panel?
- *  A page of another site, or a name that was bent to this address, does not. */
+/**
+ * http_is_ours() - does the header Host name this panel, and the header Origin,
+ * if there is one? It does not for a page of another site, nor for a foreign
+ * name that was made to point to this address.
+ */
 bool http_is_ours(struct panel *p, struct lws *wsi, bool want_origin);
 
-/** http_session() - of the request's cookie; NULL: none. */
+/**
+ * http_session() - the session of the request's cookie; NULL if there is none.
+ */
 struct session *http_session(struct panel *p, struct lws *wsi);
 
-/** http_request_size() - of what HTTP keeps for a connection. */
+/** http_request_size() - the bytes that HTTP keeps for a connection. */
 size_t http_request_size(void);
 
 /* -- socket.c: the web socket --------------------------------------------- */
@@ -89,20 +99,23 @@ int socket_callback(struct lws *wsi, enum lws_callback_reasons reason,
 		    void *user, void *in, size_t len);
 size_t socket_browser_size(void);
 
-/** socket_tell_all() - the state of the machine, if something is new. */
+/** socket_tell_all() - send the state of the machine, if something is new. */
 void socket_tell_all(struct panel *p);
 
-/** socket_drop_ended() - close those whose session has ended. */
+/** socket_drop_ended() - close the connections whose session has ended. */
 void socket_drop_ended(struct panel *p);
 
-/** socket_tell_event() - something happened. */
+/** socket_tell_event() - tell all browsers that something happened. */
 void socket_tell_event(struct panel *p, const char *kind, const char *text);
 
-/** socket_answer() - to request @n of a browser; @body is taken over. */
+/**
+ * socket_answer() - answer request @n of a browser; @body then belongs to this
+ * function.
+ */
 void socket_answer(struct browser *b, int64_t n, int code, const char *reason,
 		   json_t *body);
 
-/** socket_press() - the key of its page that is pressed. */
+/** socket_press() - the key that is pressed on the page of a browser. */
 struct press *socket_press(struct browser *b);
 
 struct session *socket_session(struct browser *b);
@@ -110,13 +123,13 @@ struct panel *socket_panel(struct browser *b);
 
 /* -- verbs.c: what a browser may ask for ---------------------------------- */
 
-/** verbs_do() - one request. */
+/** verbs_do() - carry out one request. */
 void verbs_do(struct browser *b, const json_t *request);
 
-/** verbs_forget() - this browser is gone. */
+/** verbs_forget() - say that this browser is gone. */
 void verbs_forget(struct browser *b);
 
-/** verbs_hello() - what a page has to know once. */
+/** verbs_hello() - what a page has to know, once. */
 json_t *verbs_hello(struct panel *p, const struct session *s);
 
 #endif /* PANEL_PANEL_H */

@@ -47,7 +47,7 @@ static const struct cmdline table = {
 	.column = 24,
 };
 
-/* What the panel asks of itself, in a process of its own: work.h. */
+/* The panel calls itself with these, in a process of its own: work.h. */
 static const struct cmdline_row work_rows[] = {
 	{ "work", "WHAT", CMDLINE_WORD, AT(work.what), .help =
 	  "check, path, verify or tech" },
@@ -67,7 +67,8 @@ static const struct cmdline_row work_rows[] = {
 
 static const struct cmdline work_table = {
 	.program = PROGRAM,
-	.head = "Usage: edm-panel --work WHAT ...; the panel calls it itself\n\n",
+	.head =
+"Usage: edm-panel --work WHAT ...; the panel calls it itself\n\n",
 	.tail = "", .row = work_rows,
 	.nrows = sizeof(work_rows) / sizeof(work_rows[0]), .column = 24,
 };

@@ -13,7 +13,8 @@
 #include <sysexits.h>
 #include <time.h>
 
-#define HEARD_S		0.15		/* an answer that is named is no older */
+#define HEARD_S		0.15		/* a sign may name an answer that is at
+					 * most so old */
 
 static double now_s(void)
 {
@@ -30,13 +31,13 @@ static void on_answer(void *arg, const struct service_answer *a)
 	if (a->code == 0) {
 		p->begun = true;
 	} else if (a->code != EX_UNAVAILABLE && p->code == 0) {
-		/* Of a sign that was lost or late, the next one decides. */
+		/* If a sign was lost or late, the next one decides. */
 		p->code = a->code;
 		snprintf(p->reason, sizeof(p->reason), "%s", a->reason);
 	}
 }
 
-/* To edmd; one that cannot be sent is as good as one that was lost. */
+/* Send it to edmd. A sign that cannot be sent is as good as a lost one. */
 static void pass_on(struct browser *b, double mm_s)
 {
 	struct press *p = socket_press(b);
@@ -121,8 +122,8 @@ void press_take(struct browser *b, int64_t n, const json_t *o)
 		socket_answer(b, n, 0, "done", NULL);
 		return;
 	}
-	/* The first sign only opens the way: when the page has heard that
-	 * this was answered, its next one can show that it is new. */
+	/* The first sign only begins the exchange. When the page has heard the
+	 * answer to it, its next sign can show that it is new. */
 	if (p->page_number != number)
 		begin(b, number, axis);
 	if (p->code) {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * service.c - ask edmd-jobs, and send it jobs, without waiting
- */
+/* service.c - the panel's connection to edmd-jobs */
 #include "service.h"
 
 #include "submission.h"
@@ -15,16 +13,18 @@
 #include <sysexits.h>
 
 #define GIVE_UP_S	6.0
-#define ONCE_S		0.25		/* shorter than talk.c repeats after */
+#define ONCE_S		0.25		/* shorter than the time after which
+					 * talk.c repeats */
 #define HEARD_S		2.0
-#define OPEN_S		1.0		/* between two tries to open */
+#define OPEN_S		1.0		/* between two tries to open the
+					 * channel */
 #define SENDINGS	2
 
-/* A question under way; the library calls back with it. */
+/* A question that is under way; the library calls back with it. */
 struct asking {
 	struct asking *next;
 	struct service *service;
-	service_done_fn done;		/* NULL: forgotten */
+	service_done_fn done;		/* NULL: nobody waits for it any more */
 	void *arg;
 };
 
@@ -272,7 +272,7 @@ void service_look(struct service *a)
 	for (int i = 0; i < SENDINGS; i++)
 		go_on_sending(&a->sending[i]);
 	take_status(a);
-	/* Keys that were made anew are read anew. */
+	/* If the keys were made anew, read them again. */
 	if (!a->status.heard && talk_why(a->talk)[0] && !a->askings &&
 	    talk_now_s() - a->tried_s > OPEN_S) {
 		for (int i = 0; i < SENDINGS; i++)
@@ -289,7 +289,8 @@ void service_forget(struct service *a, void *arg)
 	for (struct asking *q = a->askings; q; q = q->next)
 		if (q->arg == arg)
 			q->done = NULL;
-	/* Its text goes with who sent it, so the sending ends here. */
+	/* The text of the job belongs to the caller, who is gone; so the
+	 * sending ends here. */
 	for (int i = 0; i < SENDINGS; i++)
 		if (a->sending[i].job && a->sending[i].arg == arg)
 			free_sending(&a->sending[i]);

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * session.c - cookies, tokens, and tries to log in
- */
+/* session.c - cookies, tokens, and attempts to log in */
 #include "session.h"
 
 #include <sodium.h>
@@ -11,10 +9,11 @@
 #include <sys/stat.h>
 #include <time.h>
 
-#define IDLE_S		3600		/* without a browser that holds it */
+#define IDLE_S		3600		/* without a browser that holds the
+					 * session */
 #define LONGEST_S	(12 * 3600)
-#define TRIES_MAX	5		/* of an address, in TRY_S */
-#define TRIES_ALL	30		/* of all addresses, in TRY_S */
+#define TRIES_MAX	5		/* attempts of one address in TRY_S */
+#define TRIES_ALL	30		/* attempts of all addresses in TRY_S */
 #define TRY_S		60
 #define PLACES		64
 
@@ -28,7 +27,8 @@ struct sessions {
 	struct session session[SESSIONS_MAX];
 	struct place place[PLACES];
 	struct place all;
-	struct stat users;		/* the file, as it was last looked at */
+	struct stat users;		/* the time of the file at the last
+					 * look */
 };
 
 static int64_t now_s(void)

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * session.h - who is at a browser, and what they may do
+ * session.h - who is at a browser, and what that person may do
  *
- * Over the network a user logs in by a name and a password; the file of users
- * has a line `NAME ROLE HASH` for each, the hash by argon2id.  On the host's
- * own loopback address the kernel says which user of the host a connection
- * belongs to: who is root, or in group edm, or runs the panel, has the role of
- * [panel] local_role; everybody else looks on.
+ * Over the network a user logs in with a name and a password. The file of users
+ * has a line `NAME ROLE HASH` for each of them, with a hash by argon2id. On the
+ * loopback address of the host, the kernel says to which user of the host a
+ * connection belongs. Root, members of group edm, and the user who runs the
+ * panel have the role of [panel] local_role; everybody else may only look.
  *
- * A session is a random cookie.  Each act bears the session's token too, which
- * no other site can read.
+ * A session is a random cookie. Each request that does something also bears the
+ * token of the session, which no other site can read.
  *
  * Threads: one, that of the event loop.
  */
@@ -30,14 +30,17 @@ enum role { ROLE_NONE, ROLE_VIEWER, ROLE_OPERATOR, ROLE_SERVICE };
 #define SESSION_NOBODY		(~0u)
 
 struct session {
-	char id[SESSION_ID_BYTES];	/* of the cookie; "": free */
+	char id[SESSION_ID_BYTES];	/* of the cookie; "": the slot is
+					 * free */
 	char token[33];
 	char user[SESSION_USER_MAX];
 	char address[SESSION_ADDRESS_MAX];
 	enum role role;
-	unsigned int uid;		/* of this host, or SESSION_NOBODY */
-	char hash[SESSION_HASH_MAX];	/* as it was at the login; "": none */
-	int sockets;			/* browsers that hold it open */
+	unsigned int uid;		/* user of this host, or
+					 * SESSION_NOBODY */
+	char hash[SESSION_HASH_MAX];	/* the hash at the login; "": none */
+	int sockets;			/* browsers that hold the session
+					 * open */
 	int64_t begun_s, used_s;
 };
 
@@ -49,55 +52,80 @@ struct session_user {
 
 struct sessions;
 
-/** sessions_create() - NULL: no memory. */
+/** sessions_create() - Return: NULL if there is no memory. */
 struct sessions *sessions_create(void);
 void sessions_destroy(struct sessions *s);
 
-/** session_begin() - a new one; the one that was used longest ago makes room,
- *  unless a browser holds it.  NULL: all are held. */
+/**
+ * session_begin() - begin a session. If all slots are used, it takes the one
+ * that was not used for the longest time and is not held by a browser. Return:
+ * NULL if all are held.
+ */
 struct session *session_begin(struct sessions *s, const char *user,
 			      enum role role, const char *address);
 
-/** session_find() - by the value of a Cookie header; NULL: none, or too old. */
+/**
+ * session_find() - find a session by the value of a Cookie header; NULL if
+ * there is none, or if it is too old.
+ */
 struct session *session_find(struct sessions *s, const char *cookie);
 
-/** session_by_id() - NULL if it has ended. */
+/** session_by_id() - find a session by its id; NULL if it has ended. */
 struct session *session_by_id(struct sessions *s, const char *id);
 
-/** session_end() - forget it. */
+/** session_end() - end and forget a session. */
 void session_end(struct session *session);
 
-/** sessions_look() - if the file of users @path was changed, end the sessions of
- *  those whose role or password it no longer has. */
+/**
+ * sessions_look() - if the file of users @path has changed, end the sessions of
+ * those whose line, role or password has changed.
+ */
 void sessions_look(struct sessions *s, const char *path);
 
-/** session_token_ok() - compares in a time that tells nothing. */
+/**
+ * session_token_ok() - compare the token; the time that this takes tells
+ * nothing.
+ */
 bool session_token_ok(const struct session *session, const char *token);
 
-/** session_user_find() - a line of the file @path.
- *  Return: 0, -ENOENT: no such user or no such file; -EBADMSG; -errno. */
+/**
+ * session_user_find() - find a user in the file @path. Return: 0; -ENOENT: no
+ * such user or no such file; -EBADMSG; -errno.
+ */
 int session_user_find(const char *path, const char *name,
 		      struct session_user *ret);
 
-/** session_user_put() - add or change one: @path is written anew, mode 600. */
+/**
+ * session_user_put() - add or change a user: @path is written anew, with mode
+ * 600.
+ */
 int session_user_put(const char *path, const struct session_user *user);
 
-/** session_may_try() - count a try to log in from @address.
- *  Return: 0, or the seconds after which it may be tried again. */
+/**
+ * session_may_try() - count an attempt to log in from @address. Return: 0, or
+ * the seconds to wait before the next one.
+ */
 int session_may_try(struct sessions *s, const char *address);
-/** session_try_ok() - it was the right password. */
+/** session_try_ok() - the password was right. */
 void session_try_ok(struct sessions *s, const char *address);
 
-/** session_local_role() - of the host's user @uid, in [panel] local_role.
- *  @ret_name: what they are called. */
+/**
+ * session_local_role() - the role of the host's user @uid by [panel]
+ * local_role. @ret_name gets the name of the user.
+ */
 enum role session_local_role(unsigned int uid, enum role most,
 			     char ret_name[SESSION_USER_MAX]);
 
-/** session_peer_uid() - who of this host owns the other end of the loopback
- *  connection @fd.  Return: 0, or -ENOENT. */
+/**
+ * session_peer_uid() - the user of this host who owns the other end of the
+ * loopback connection @fd. Return: 0, or -ENOENT.
+ */
 int session_peer_uid(int fd, unsigned int *ret);
 
-/** role_name() - "viewer", ...; role_parse() - ROLE_NONE if there is none. */
+/**
+ * role_name() - "viewer" and so on. role_parse() - the reverse; ROLE_NONE if
+ * there is no such role.
+ */
 const char *role_name(enum role r);
 enum role role_parse(const char *name);
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * socket.c - the web socket: the state out, requests in
+ * socket.c - the web socket: the state goes out, requests come in
  *
- * All browsers are told the same.  Who has heard telling k is given what
- * changed since; who has missed one is given the whole.  So a slow browser
- * needs no queue, and is never more than one message behind.
+ * All browsers are told the same. A browser that has heard message k gets what
+ * has changed since; one that has missed a message gets everything. So a slow
+ * browser needs no queue, and is never more than one message behind.
  */
 #include "panel.h"
 #include "press.h"
@@ -14,11 +14,14 @@
 #include <time.h>
 
 #define MESSAGE_MAX	65536		/* of a request */
-#define ANSWERS_MAX	(2u << 20)	/* bytes that wait for a browser */
-#define LOOK_EVERY	10		/* tellings: are the sessions over? */
-#define RATE_PER_S	60.0		/* requests of a browser */
+#define ANSWERS_MAX	(2u << 20)	/* most bytes that wait for a browser */
+#define LOOK_EVERY	10		/* messages between two looks at the
+					 * sessions */
+#define RATE_PER_S	60.0		/* most requests of a browser at a
+					 * time */
 #define RATE_BURST	120.0
-#define ADDRESS_MAX	64		/* browsers of one address, not local */
+#define ADDRESS_MAX	64		/* most browsers of one address that is
+					 * not local */
 
 struct answer {
 	struct answer *next;
@@ -31,13 +34,14 @@ struct browser {
 	struct panel *panel;
 	struct lws *wsi;
 	char session[SESSION_ID_BYTES];
-	uint64_t heard;			/* telling; 0: none */
-	bool closing;			/* the browser has said so */
+	uint64_t heard;			/* number of the message; 0: none */
+	bool closing;			/* number that the browser has
+					 * confirmed */
 	struct answer *first, **last;
 	size_t waiting;
-	char *in;			/* a request in pieces */
+	char *in;			/* a request that comes in pieces */
 	size_t in_bytes;
-	int64_t number;			/* of the last request */
+	int64_t number;			/* number of the last request */
 	double tokens, tokens_s;
 	struct press press;
 };
@@ -91,7 +95,7 @@ static void queue_text(struct browser *b, const char *text)
 	struct answer *a;
 
 	if (b->waiting + bytes > ANSWERS_MAX) {
-		/* It asks and does not read. */
+		/* The browser asks and does not read the answers. */
 		drop(b);
 		return;
 	}
@@ -189,7 +193,7 @@ static int on_writable(struct browser *b)
 	return 0;
 }
 
-/* Of every key that changed, the new value. */
+/* The new values of all keys that have changed. */
 static json_t *changes(const json_t *was, json_t *now)
 {
 	json_t *o = json_object(), *v;
@@ -261,7 +265,8 @@ static bool has_token(struct browser *b)
 	return true;
 }
 
-/* A request bears the session's token, and a number above the last one's. */
+/* A request has the token of the session, and a number above that of the last
+ * one. */
 static int take_request(struct browser *b, const json_t *o)
 {
 	struct session *s = socket_session(b);
@@ -351,7 +356,8 @@ static bool is_crowded(struct panel *p, const char *address)
 	return !p->local && n >= ADDRESS_MAX;
 }
 
-/* Refused before it is a web socket: nothing of a stranger is kept. */
+/* This refuses before the web socket begins: so nothing of a stranger is
+ * kept. */
 static int filter(struct panel *p, struct lws *wsi)
 {
 	const struct session *s = http_session(p, wsi);

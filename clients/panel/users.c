@@ -20,7 +20,7 @@
 #define GROUPS_MAX	256
 #define LINE_MAX_BYTES	320
 
-/* Return: 0, -ENOENT for a line of nobody, -EBADMSG. */
+/* Return: 0; -ENOENT for a line of nobody; -EBADMSG. */
 static int read_line(const char *text, struct session_user *ret)
 {
 	char role[16];
@@ -117,7 +117,7 @@ enum role session_local_role(unsigned int uid, enum role most,
 	return ROLE_VIEWER;
 }
 
-/* An address and port as /proc/net/tcp and tcp6 have them. */
+/* An address and a port as /proc/net/tcp and tcp6 write them. */
 static const char *format_end(char to[48], const struct sockaddr_storage *a)
 {
 	const struct sockaddr_in *v4 = (const struct sockaddr_in *)a;
@@ -141,8 +141,8 @@ static const char *format_end(char to[48], const struct sockaddr_storage *a)
 	return "/proc/net/tcp6";
 }
 
-/* The file that has the peer's row of the connection @fd, and how its two ends
- * stand there. */
+/* Find the file that has the row of the other end of @fd, and how that file
+ * writes the two ends. */
 static const char *find_ends(int fd, char peer[48], char own[48])
 {
 	struct sockaddr_storage a, b;
@@ -156,9 +156,10 @@ static const char *find_ends(int fd, char peer[48], char own[48])
 }
 
 /*
- * Both ends count: another user may have a connection to elsewhere from the same
- * port.  A connection its user has closed belongs to nobody, and is told as
- * root's: only one that is still held counts.
+ * Both ends are compared, because another user may have a connection to
+ * somewhere else from the same port. A connection that its user has closed
+ * belongs to nobody, and the kernel shows it as root's. So only a connection
+ * that is still held counts.
  */
 int session_peer_uid(int fd, unsigned int *ret)
 {

@@ -15,9 +15,10 @@
 struct values {
 	const char *machine;
 	struct interp_tech base;
-	/* Of the program that is loaded. */
+	/* About the program that is loaded. */
 	uint32_t n;			/* 0: none */
-	uint16_t *cond_of_seg;		/* NULL: its block could not be read */
+	uint16_t *cond_of_seg;		/* NULL: the block of the program could
+					 * not be read */
 	uint32_t nsegs, nconds;
 	struct interp_tech *cond;
 };
@@ -50,7 +51,8 @@ void values_destroy(struct values *v)
 	free(v);
 }
 
-/* Of a program of a million segments two megabytes are kept, not the whole. */
+/* Two megabytes are kept of a program of a million segments, and not all of
+ * it. */
 static void copy_program(struct values *v, const struct interp_program *p)
 {
 	v->nsegs = p->head->nsegs;
@@ -84,7 +86,7 @@ static void take_program(struct values *v, uint32_t n)
 	v->n = n;
 }
 
-/* The number of the program's condition in force; 0: none was called. */
+/* The number of the condition in force; 0: the program has called none. */
 static uint32_t cond_of(const struct values *v, const struct shm_snapshot *s)
 {
 	uint32_t cond;

@@ -2,8 +2,8 @@
 /*
  * values.h - the condition in force, and the value of each of its fields
  *
- * A value is what was set while the job runs; else what the program's
- * condition gives; else the machine file's.
+ * A value is the one that was set while the job runs. Without one it is that of
+ * the program's condition, and without that it is that of the machine file.
  *
  * Threads: one, that of the event loop.
  */
@@ -17,20 +17,19 @@
 struct machine_config;
 struct values;
 
-/** values_create() - NULL if there is no memory. */
+/** values_create() - Return: NULL if there is no memory. */
 struct values *values_create(const struct machine_config *config);
-/** values_destroy() - NULL is fine. */
+/** values_destroy() - NULL is allowed. */
 void values_destroy(struct values *v);
 
 /**
- * values_fill() - "condition", "values" and "set" into @to.
- *
- * @status may be NULL: the machine file's values then.
+ * values_fill() - put "condition", "values" and "set" into @to. Without @status
+ * (NULL) they are the values of the machine file.
  */
 void values_fill(struct values *v, const struct shm_status *status,
 		 const struct shm_snapshot *s, json_t *to);
 
-/** values_fields() - name, unit, range of every field, for hello. */
+/** values_fields() - name, unit and range of every field, for hello. */
 json_t *values_fields(void);
 
 #endif /* PANEL_VALUES_H */

@@ -2,8 +2,8 @@
 /*
  * verbs.c - what a browser may ask for over the web socket: one table
  *
- * An act goes to edmd-jobs and is answered when that has answered; who did it
- * stands in the journal, with what became of it.
+ * A verb that does something goes to edmd-jobs. It is answered when edmd-jobs
+ * has answered. The journal says who did it, and with what result.
  */
 #include "panel.h"
 #include "press.h"
@@ -19,8 +19,9 @@
 #include <unistd.h>
 
 #define HISTORY_S_MAX	3600.0
-#define TEXT_MAX	(4u << 20)	/* of what a child says */
-#define PAST_SHARE	0.2		/* of the time, for the past */
+#define TEXT_MAX	(4u << 20)	/* of what a child may say */
+#define PAST_SHARE	0.2		/* share of the time, for answers about
+					 * the past */
 #define PAST_BURST_S	0.5
 #define NUMBER		0x100u		/* it needs arg */
 
@@ -29,25 +30,28 @@ struct verb {
 	enum role role;			/* the least */
 	void (*run)(struct browser *b, const struct verb *v, int64_t n,
 		    const json_t *o);
-	const char *asks;		/* of edmd-jobs; NULL: its own name */
-	bool act;			/* it does something: journal it */
+	const char *asks;		/* the verb of edmd-jobs; NULL: the same
+					 * name */
+	bool act;			/* it does something: note it in the
+					 * journal */
 	unsigned int flags;		/* ACT_*, NUMBER */
 };
 
-/* What was asked for, and is not answered yet. */
+/* A request that is not answered yet. */
 struct pending {
 	struct pending *next;
 	struct browser *browser;	/* NULL: gone */
 	struct panel *panel;
 	const struct verb *verb;
 	int64_t n;
-	char what[256];			/* who did what; "": not an act */
+	char what[256];			/* who did what; "": it does nothing */
 };
 
 static struct pending *all;
 
-/* Of what is there, a word is a short text, and a number is a number or null.
- * Something else must not pass for nothing: home with no axis homes all. */
+/* If a key is there, a word must be a short text, and a number must be a number
+ * or null. Anything else must not count as missing: "home" without an axis
+ * homes all axes. */
 static bool is_fit(const struct verb *v, const json_t *o)
 {
 	static const char *const words[] = { "job", "text" };
@@ -144,7 +148,7 @@ static void describe(struct pending *p, const struct session *s,
 static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 		    const json_t *o)
 {
-	/* A JSON null takes a value back: what messages/README.md calls NaN. */
+	/* A JSON null takes a value back; messages/README.md calls this NaN. */
 	const struct service_question q = {
 		.verb = v->asks ? v->asks : v->name, .flags = v->flags,
 		.job = text_of(o, "job"), .text = text_of(o, "text"),
@@ -174,8 +178,8 @@ static double now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-/* All browsers together get a part of the time for it: the state, and a stop,
- * must not wait behind a crowd that asks for the past. */
+/* All browsers together get a share of the time for this. The state, and a
+ * stop, must not wait for many who ask about the past. */
 static bool may_look_back(struct panel *p, double at_s)
 {
 	p->past_owed_s -= (at_s - p->past_at_s) * PAST_SHARE;
@@ -236,7 +240,7 @@ static void run_press(struct browser *b, const struct verb *v, int64_t n,
 
 /* -- Of other programs ---------------------------------------------------- */
 
-/* One JSON value, or one in each line. */
+/* Read one JSON value, or one in each line. */
 static json_t *read_said(const char *text)
 {
 	json_t *one = json_loads(text, 0, NULL), *rows;
@@ -267,7 +271,7 @@ static void tell_said(struct pending *p, int status, const char *text)
 		       "the program that tells it failed");
 }
 
-/* To all who asked for it meanwhile. */
+/* Answer everybody who has asked for it meanwhile. */
 static void on_said(void *arg, int status, int out_fd)
 {
 	const struct verb *verb = arg;
@@ -293,7 +297,7 @@ static bool is_under_way(const struct verb *v)
 	return false;
 }
 
-/* A program runs once, however many ask what it says. */
+/* A program runs only once, even if many ask what it says. */
 static void say(struct browser *b, const struct verb *v, int64_t n,
 		const char *const argv[])
 {
@@ -309,7 +313,7 @@ static void say(struct browser *b, const struct verb *v, int64_t n,
 	refuse(b, n, EX_TEMPFAIL, "too much is under way; try again");
 }
 
-/* A program that lies beside this one, or in PATH. */
+/* A program in the folder of this one, or in PATH. */
 static const char *beside(const struct panel *p, const char *name,
 			  char to[512])
 {
@@ -382,7 +386,8 @@ static const struct verb verbs[] = {
 	{ "stop",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "retract",  ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
 	{ "step",     ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true, SERVICE_ONCE | NUMBER },
+	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true,
+	  SERVICE_ONCE | NUMBER },
 	{ "press",    ROLE_OPERATOR, run_press, NULL, false, NUMBER },
 	{ "home",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "override", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },

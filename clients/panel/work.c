@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * work.c - what the panel has a process of its own do
- */
+/* work.c - work that the panel does in a process of its own */
 #include "work.h"
 #include "child.h"
 #include "flat.h"
@@ -49,7 +47,8 @@ static json_t *three(const double v[3])
 
 static void put_head(const struct flat *f, const struct interp_program *p)
 {
-	json_t *o = json_pack("{s:b,s:i,s:i,s:f,s:f,s:f,s:f,s:b,s:o,s:o,s:o,s:s}",
+	json_t *o = json_pack(
+		"{s:b,s:i,s:i,s:f,s:f,s:f,s:f,s:b,s:o,s:o,s:o,s:s}",
 		"ok", 1, "points", (int)f->n, "lines", (int)p->head->lines,
 		"length", p->head->length_mm, "cut", f->cut_mm, "rapid",
 		f->rapid_mm, "tolerance", f->tolerance_mm, "upper",

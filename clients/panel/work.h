@@ -24,14 +24,15 @@ struct work {
 	const char *what;
 	const char *config;		/* the machine file */
 	const char *machine;		/* its name */
-	const char *name;		/* check: of the file, for its dialect */
-	const char *start;		/* check: eight places, mm; NULL: the
-					 * machine file's */
-	uint64_t program;		/* path: its number */
-	double tolerance_mm;		/* 0: by the extent */
+	const char *name;		/* check: the name of the file, which
+					 * tells its dialect */
+	const char *start;		/* check: eight places, mm; NULL: those
+					 * of the machine file */
+	uint64_t program;		/* path: the number of the program */
+	double tolerance_mm;		/* 0: by the extent of the path */
 };
 
-/** work_run() - do it. Return: what to exit with. */
+/** work_run() - do it. Return: the exit code. */
 int work_run(const struct work *w);
 
 #endif /* PANEL_WORK_H */

@@ -287,19 +287,18 @@ static int try_all(struct plan *p, struct nodes *n)
 
 int plan_pivot(struct plan *p)
 {
-	const uint32_t all = p->last - p->first + 1;
-	struct nodes n = { .n = all < FEWEST_NODES_MAX ? all :
-							 FEWEST_NODES_MAX };
+	uint32_t at[FEWEST_NODES_MAX];
+	struct nodes n = { .n = plan_choose_nodes(p, at) };
 	int err = -ENOMEM;
 
+	if (n.n == 0)
+		return err;
 	n.q = malloc(n.n * sizeof(*n.q));
 	n.share = malloc(n.n * sizeof(*n.share));
 	n.by = malloc(n.n * sizeof(*n.by));
 	if (n.q && n.share && n.by) {
 		for (uint32_t i = 0; i < n.n; i++)
-			memcpy(n.q[i], p->dense.node[p->first +
-			       (uint32_t)((uint64_t)i * (all - 1) /
-					  (n.n - 1))].q, sizeof(n.q[i]));
+			memcpy(n.q[i], p->dense.node[at[i]].q, sizeof(n.q[i]));
 		err = try_all(p, &n);
 	}
 	free(n.q);

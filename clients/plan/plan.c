@@ -31,53 +31,6 @@ static double now_s(void)
 	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-/* -- The way in of a program ---------------------------------------------- */
-
-/* From the last rapid before the first cut to the last cut. */
-static int find_way_in(struct plan *p)
-{
-	const struct route *w = &p->dense;
-
-	p->first = p->last = 0;
-	for (uint32_t i = 1; i < w->n; i++) {
-		if (w->node[i].rapid)
-			continue;
-		if (p->last == 0)
-			p->first = i - 1;
-		else if (p->last != i - 1)
-			break;
-		p->last = i;
-	}
-	for (uint32_t i = p->last + 1; i < w->n && p->last; i++) {
-		if (w->node[i].rapid)
-			continue;
-		fprintf(stderr, "%s:%u: error: a second cut, after it was "
-			"positioned; a program of one way in\n",
-			p->j->o->program, w->node[i].line);
-		return EX_DATAERR;
-	}
-	if (p->last > 0)
-		return 0;
-	fprintf(stderr, "%s: error: no cut in it; a program of one way in, "
-		"as G1 or G6.2\n", p->j->o->program);
-	return EX_DATAERR;
-}
-
-static void take_nodes(const struct plan *p, double (*q)[INTERP_NAXES],
-		       uint32_t *n)
-{
-	const uint32_t all = p->last - p->first + 1;
-
-	*n = all < FEWEST_NODES_MAX ? all : FEWEST_NODES_MAX;
-	for (uint32_t i = 0; i < *n; i++) {
-		const uint32_t at = p->first + (uint32_t)((uint64_t)i *
-				    (all - 1) / (*n - 1));
-
-		memcpy(q[i], p->dense.node[at].q, sizeof(q[i]));
-		free_round(&p->j->config, q[i]);
-	}
-}
-
 static void say_contact(const struct plan *p, const struct check_result *r)
 {
 	const struct route_node *n = &p->dense.node[r->block + 1];
@@ -408,11 +361,11 @@ static int write_all(struct plan *p)
 		return EX_OSERR;
 	bar_forget();
 	err = prove_text(p, text);
-	if (err == 0 && p->j->o->times)
-		err = times_ask(p);
 	if (err == 0)
 		err = put_text(p->j->o->output, text);
 	free(text);
+	if (err == 0 && p->j->o->times)
+		err = times_ask(p);
 	if (err == 0)
 		err = report_put(p);
 	if (err == 0)
@@ -441,10 +394,16 @@ static void say_no_way(const struct plan *p)
 static int plan_nodes(struct plan *p)
 {
 	static double q[FEWEST_NODES_MAX][INTERP_NAXES];
-	uint32_t n;
+	uint32_t at[FEWEST_NODES_MAX], n;
 	int err;
 
-	take_nodes(p, q, &n);
+	n = plan_choose_nodes(p, at);
+	if (n == 0)
+		return EX_OSERR;
+	for (uint32_t i = 0; i < n; i++) {
+		memcpy(q[i], p->dense.node[at[i]].q, sizeof(q[i]));
+		free_round(&p->j->config, q[i]);
+	}
 	err = plan_over(p, p->j, q, n);
 	if (err == 1 && !bar_interrupted()) {
 		err = repair_nodes(p, q, &n);
@@ -477,7 +436,7 @@ static int load_way(struct plan *p)
 	if (!p->j->o->end_given &&
 	    !job_moves_known(p->j, &p->dense, p->j->o->program))
 		return EX_DATAERR;
-	return find_way_in(p);
+	return plan_find_way_in(p);
 }
 
 int plan_program(struct job *j)

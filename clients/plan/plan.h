@@ -57,6 +57,19 @@ struct plan {
 /** plan_program() - plan, prove, write. Return: 0, 1 no way; else sysexits. */
 int plan_program(struct job *j);
 
+/** plan_find_way_in() - from the last positioning before the first cut to the
+ *  last cut.  Return: 0; or EX_DATAERR, and the reason is on stderr. */
+int plan_find_way_in(struct plan *p);
+
+/**
+ * plan_choose_nodes() - the nodes of the way in that the search goes over.
+ *
+ * If there are more than FEWEST_NODES_MAX, those between which the electrode
+ * goes equally far.  @at: their numbers in p->dense.  Return: how many; 0: out
+ * of memory.
+ */
+uint32_t plan_choose_nodes(const struct plan *p, uint32_t at[FEWEST_NODES_MAX]);
+
 /** plan_check_end() - may the way end at @end?  It fills end_mm.  Return: 0;
  *  or 1, and the reason is on stderr. */
 int plan_check_end(struct plan *p, const double end[INTERP_NAXES]);

@@ -16,10 +16,29 @@
 #include <unistd.h>
 
 struct room {
-	char dir[64], ini[96], ngc[96], sim[512];
+	char dir[64], ini[512], ngc[96], sim[512];
 };
 
-static int make_room(struct room *r)
+/* Beside the machine file, so that the files it names are found.  If nothing
+ * can be written there, in the room's own folder. */
+static void place_ini(struct room *r, const char *machine)
+{
+	const char *slash = machine ? strrchr(machine, '/') : NULL;
+	const int n = slash ? (int)(slash - machine) + 1 : 0;
+	int fd = -1;
+
+	if (machine && n < (int)sizeof(r->ini) - 32) {
+		snprintf(r->ini, sizeof(r->ini), "%.*s.edm-plan-XXXXXX.ini", n,
+			 machine);
+		fd = mkstemps(r->ini, 4);
+	}
+	if (fd < 0)
+		snprintf(r->ini, sizeof(r->ini), "%s/machine.ini", r->dir);
+	else
+		close(fd);
+}
+
+static int make_room(struct room *r, const char *machine)
 {
 	const ssize_t n = readlink("/proc/self/exe", r->sim,
 				   sizeof(r->sim) - 8);
@@ -33,8 +52,8 @@ static int make_room(struct room *r)
 	snprintf(r->dir, sizeof(r->dir), "/tmp/edm-plan-XXXXXX");
 	if (!mkdtemp(r->dir))
 		return EX_CANTCREAT;
-	snprintf(r->ini, sizeof(r->ini), "%s/machine.ini", r->dir);
 	snprintf(r->ngc, sizeof(r->ngc), "%s/way.ngc", r->dir);
+	place_ini(r, machine);
 	return 0;
 }
 
@@ -146,7 +165,7 @@ int times_ask(struct plan *p)
 					  .dialect = p->j->o->dialect };
 	double s[2] = { 0, 0 };
 	struct room r;
-	int err = make_room(&r);
+	int err = make_room(&r, p->j->o->machine_file);
 
 	if (err) {
 		fprintf(stderr, "edm-plan: %s; a folder in /tmp\n",

@@ -165,7 +165,8 @@ static const struct cmdline_row rows[] = {
 	  "lines of a machine file; --seed, --limit-s (60)" },
 	{ "budget", "N", NUMBER(budget, 1, 1e6), .help =
 	  "number of trials of --tune or --tune-contour (200)" },
-	{ "json", NULL, FLAG(json), .help = "print the result of --tune as JSON" },
+	{ "json", NULL, FLAG(json), .help =
+	  "print the result of --tune as JSON" },
 	{ "quiet", NULL, FLAG(quiet), .help =
 	  "print no progress and no summary" },
 	{ "print-config", NULL, FLAG(print_config), .help =
@@ -198,7 +199,8 @@ static int check_together(const struct sim_options *o)
 	if (o->from_line > UINT32_MAX)
 		return refuse("--from-line", "too large", "a line of the job");
 	if (o->from_line && o->from_mm > 0)
-		return refuse("--from-line", "with --from-place", "one of them");
+		return refuse("--from-line", "with --from-place",
+			      "one of them");
 	if (o->there_and_back && !o->dry_run)
 		return refuse("--there-and-back", "alone",
 			      "--dry-run beside it");

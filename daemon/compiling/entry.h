@@ -2,8 +2,8 @@
 /*
  * entry.h - the way into a program that begins at a place inside it
  *
- * For a job that a power cut interrupted, and for one that begins at a line or a
- * place that its sender names: interp/build_from.h.
+ * This is for a job that a power cut interrupted, and for one that begins at a
+ * line or a place that its sender names: interp/build_from.h.
  *
  * Threads: any.
  */

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * check_can402.c - what cannot be on a CAN bus of drives
- */
+/* check_can402.c - checks of a CAN bus of drives */
 #include "drives.h"
 #include "keys.h"
 
@@ -9,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Either way from 0: a drive counts round at 2^32. */
+/* In both directions from 0; a drive counts modulo 2^32. */
 #define INCREMENTS_MAX	2147483647.0
 
 struct check {
@@ -24,7 +22,8 @@ static uint32_t line_of(const struct check *q, enum config_section_id s,
 	return q->lines->at[config_key_find(s, key)][instance];
 }
 
-/* Found and wanted are there: the line is where @key is, or the backend. */
+/* Found and wanted are filled; the line is that of @key, or that of the
+ * backend. */
 static int refuse(struct check *q, enum config_section_id s, const char *key,
 		  int instance)
 {
@@ -41,7 +40,8 @@ static uint32_t node_of(const struct check *q, int axis)
 	return (uint32_t)q->c->can402.node[axis];
 }
 
-/* Nodes of their own, each for an axis that is there. */
+/* Each axis has a node of its own, and each node belongs to an axis that is
+ * present. */
 static int check_node(struct check *q, int axis)
 {
 	const uint32_t node = node_of(q, axis);
@@ -63,7 +63,7 @@ static int check_node(struct check *q, int axis)
 	return refuse(q, SECTION_CAN402, name, 0);
 }
 
-/* The farthest place, as a drive counts it. */
+/* The farthest place of an axis, as a drive counts it. */
 static int check_increments(struct check *q, int axis)
 {
 	const struct interp_axis_limits *l = &q->c->axes.axis[axis];
@@ -83,7 +83,7 @@ static int check_increments(struct check *q, int axis)
 	return refuse(q, SECTION_AXIS, "drive_increments", axis);
 }
 
-/* What would fall must not be left to a guess. */
+/* An axis that may fall must say what holds it. */
 static int check_brake(struct check *q, int axis)
 {
 	if (node_of(q, axis) == 0 || axis != INTERP_Z ||
@@ -97,7 +97,7 @@ static int check_brake(struct check *q, int axis)
 	return refuse(q, SECTION_AXIS, "brake", axis);
 }
 
-/* Found has the word, behind the key it stands at. */
+/* Found has the word; the key comes before it. */
 static int refuse_list(struct check *q, const char *key, int axis)
 {
 	char word[sizeof(q->diag->found)];
@@ -127,7 +127,7 @@ static int check_lists(struct check *q, int axis)
 	return 0;
 }
 
-/* Else the fault of a lag could never be left by reset and start. */
+/* Otherwise the fault of a lag could never be left by reset and start. */
 static int check_following(struct check *q)
 {
 	const struct config_can402 *k = &q->c->can402;

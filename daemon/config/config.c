@@ -88,7 +88,6 @@ static void gap_of(const struct machine_config *m, struct cycle_config *c)
 	*g = m->gap;
 	g->ignition_v = or_own(g->ignition_v, sim ? m->sim.open_v : 0);
 	g->off_us = or_own(g->off_us, sim ? m->sim.off_us : 0);
-	g->feed_a_mm_s2 = or_own(g->feed_a_mm_s2, c->travel_a_mm_s2);
 	g->retract_wait_cycles = cycles_of(m->seconds.retract_wait, period_ns);
 	g->retract_max_cycles = cycles_of(m->seconds.retract_max, period_ns);
 	g->arcing_recover_cycles = cycles_of(m->seconds.arcing_recover,

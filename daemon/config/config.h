@@ -51,21 +51,22 @@ struct config_can402 {
 	double following_s;		/* ... and its speed times this */
 	double resync_mm, resync_mm_s;	/* back to its place when enabled */
 	double enable_s;		/* at most, from a start to motion */
-	double gap_id, generator_id;	/* of their frames; 0: none */
+	double gap_id, generator_id;	/* identifier of its frames; 0: none */
 };
 
 /* [plc]; docs/plc.md. */
 struct config_plc {
 	char interface[16];		/* "none": there is no PLC */
 	double node;
-	double alive_ms;		/* no turn of its toggle: lost */
+	double alive_ms;		/* so long without a turn of its toggle,
+					 * and it is lost */
 	double cycle_ms;		/* of the frames to it */
 	char m_before[96], m_after[96], m_free[96];	/* lists of M codes */
 	char m_redo[96], m_stop[96];
 	double m_timeout_s;		/* 0: never */
 };
 
-/* [axis.*]: so many increments of a drive are so many pulses. */
+/* [axis.*]: this number of increments of a drive is this number of pulses. */
 enum config_brake {
 	BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE, BRAKE_LINE
 };
@@ -95,16 +96,17 @@ enum sim_electrode { ELECTRODE_FLAT, ELECTRODE_BALL, ELECTRODE_CONE };
 /* [sim]: the simulated machine; docs/process-model.md says what each does. */
 struct config_sim {
 	double seed;			/* whole number */
-	double speed;			/* periods run for each period of
-					 * time */
+	double speed;			/* periods that run in each period of
+					 * real time */
 	int process;			/* enum sim_process */
 
 	/* The generator. */
 	double on_us, off_us, peak_a, open_v, spark_v;
 	uint32_t iso;			/* 1: on time begins at the ignition */
-	double wait_us;			/* for it, at most */
-	double open_us;			/* ... and longer counts as open */
-	double respond_s;		/* power asked for to sparks */
+	double wait_us;			/* longest ignition delay */
+	double open_us;			/* a longer one counts as open */
+	double respond_s;		/* time from the request of power to the
+					 * sparks */
 
 	/* The gap, for these pulses and clean. */
 	double short_gap_mm, best_gap_mm, open_gap_mm;
@@ -115,7 +117,7 @@ struct config_sim {
 	double area_mm2;		/* frontal area, of the whole */
 	double tip_mm;			/* length of the ball or cone */
 	double perimeter_mm;		/* 0: round */
-	double depth_mm;		/* of the cavity, to begin with */
+	double depth_mm;		/* depth of the cavity at first */
 	double side_gap_mm;		/* beside the electrode */
 	double wire_mm, height_mm;	/* diameter, work; wire only */
 
@@ -235,6 +237,14 @@ struct config_panel {
 	char assets[256];
 };
 
+/* [electrode]: where electrodes are measured. */
+struct config_measure {
+	uint32_t there;
+	double x_mm, y_mm;
+	double clear_z_mm, from_z_mm, to_z_mm;
+	double reference_z_mm;
+};
+
 struct machine_config {
 	/* [machine] */
 	char name[32];
@@ -245,16 +255,18 @@ struct machine_config {
 	uint32_t perpendicular;		/* 1: mu is square to the path */
 	int coupling;			/* enum interp_coupling */
 	double chord_error_um;		/* of curves; 0: no limit */
-	double fit_um;			/* lines joined into curves; 0: not */
-	double feed_default_mm_min;	/* before the first F; 0: F demanded */
+	double fit_um;			/* tolerance to join lines into curves;
+					 * 0: none */
+	double feed_default_mm_min;	/* feed before the first F; 0: an F is
+					 * required */
 	uint32_t optional_stop;		/* 1: M1 holds */
 	double threeb_unit_um;		/* of lengths in 3B and 4B programs */
 	double fourb_offset_um;		/* of the wire, by 4B's D and DD */
 	double cpu;			/* core the cycle is pinned to; -1:
 					 * none */
 	double priority;		/* SCHED_FIFO */
-	double overrun_limit;		/* missed periods in a row; 0: no
-					 * fault */
+	double overrun_limit;		/* so many missed periods in a row are a
+					 * fault; 0: never */
 	uint32_t require_home;		/* 1: no start before */
 
 	struct interp_machine axes;	/* [axis.X] ... [axis.V] */
@@ -294,6 +306,7 @@ struct machine_config {
 	char dialect[256];		/* [nc] dialect: a name or a file */
 	char tech_table[256];		/* [tech] table; "none": there is
 					 * none */
+	struct config_measure measure;
 	char folder[256];		/* of the machine file; "": here */
 
 	char lcm_url[128];		/* [lcm] url */
@@ -331,12 +344,12 @@ bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
 		      size_t size);
 
 /**
- * config_say() - what config_read() refused, on stderr: PATH:LINE:COLUMN, or
- * PATH alone where only defaults are against each other.  Any thread.
+ * config_say() - print what config_read() refused on stderr: PATH:LINE:COLUMN,
+ * or PATH alone if only default values disagree.  Any thread.
  */
 void config_say(const char *path, const struct interp_diag *d);
 
-/** config_period_ns() - the period in force. */
+/** config_period_ns() - the period that is in force. */
 int64_t config_period_ns(const struct machine_config *c);
 
 /**
@@ -375,7 +388,7 @@ void config_print(const struct machine_config *c, FILE *f);
 /** config_document() - docs/config.md. */
 void config_document(FILE *f);
 
-/** config_has_plc() - is there one to be heard? */
+/** config_has_plc() - is there a PLC? */
 bool config_has_plc(const struct machine_config *c);
 
 /** config_mcodes() - the M codes that the PLC carries out. */
@@ -394,22 +407,25 @@ struct contouring_config;
 int config_check_contouring(const struct machine_config *c,
 			    struct interp_diag *diag);
 
-/** config_contouring() - for the cycle; none if the check refuses it. */
+/**
+ * config_contouring() - [contour] for the cycle; no method if the check refuses
+ * it.
+ */
 void config_contouring(const struct machine_config *c,
 		       struct contouring_config *ret);
 
 /**
- * config_loop_true() - what axis @axis may really be like: [contour]
- * model_error off what is believed of it.
+ * config_loop_true() - what axis @axis may really be like: off by [contour]
+ * model_error from what is believed of it.
  *
- * @odd: neighbours are off the other way, for what all axes do alike is no
- * contour error.  Gain and velocity loop are off together, the delay against
- * them: so the axis is quicker in all, or slower.
+ * @odd: neighbours are off in the other direction, because an error that all
+ * axes share makes no contour error.  Gain and velocity loop are off together,
+ * the delay in the opposite direction: so the axis is faster in all, or slower.
  */
 struct interp_axis_loop config_loop_true(const struct machine_config *c,
 					 int axis, bool odd);
 
-/** config_gains() - of [contour]. */
+/** config_gains() - the gains of [contour]. */
 void config_gains(const struct machine_config *c,
 		  struct interp_compensate_gains *ret);
 
@@ -418,7 +434,10 @@ struct cycle_config;
 /** config_has_switch() - is axis @axis homed by a switch? */
 bool config_has_switch(const struct machine_config *c, int axis);
 
-/** config_cycle() - what the cycle needs of it, in pulses and cycles. */
+/**
+ * config_cycle() - what the cycle needs of the machine file, in pulses and
+ * cycles.
+ */
 void config_cycle(const struct machine_config *c, struct cycle_config *ret);
 
 #endif /* CONFIG_H */

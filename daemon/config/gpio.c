@@ -310,7 +310,7 @@ static int check_speeds(struct check *q)
 	return 0;
 }
 
-/* -- Beside drives on a bus --------------------------------------------------- */
+/* -- Beside drives on a bus ------------------------------------------------ */
 
 static bool has_brake_line(const struct machine_config *c, int axis)
 {
@@ -335,18 +335,19 @@ static int check_brake_line(struct check *q, int axis)
 				"not have [axis.%c] brake = line; this, and "
 				"can402.node_%c, or none", letter, letter,
 				letter) :
-		interp_diag_say(q->diag, "axis.%c.brake = line and gpio.brake_%c "
-				"is none; gpio.brake_%c = the number of a "
-				"line, or another brake", letter, letter,
-				letter);
+		interp_diag_say(q->diag, "axis.%c.brake = line and "
+				"gpio.brake_%c is none; gpio.brake_%c = the "
+				"number of a line, or another brake", letter,
+				letter, letter);
 }
 
 /* What nobody would read or write must not look as if somebody did. */
 static int refuse_unused(struct check *q, const struct config_key *k)
 {
 	blame(q, k, 0);
-	return interp_diag_say(q->diag, "gpio.%s with backend can402; of [gpio] "
-			       "it has chip, brake_X ... brake_V and brake_ms",
+	return interp_diag_say(q->diag, "gpio.%s with backend can402; of "
+			       "[gpio] it has chip, brake_X ... brake_V and "
+			       "brake_ms",
 			       k->name);
 }
 

@@ -46,6 +46,9 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"how programs are read; docs/nc-code.md" },
 	[SECTION_TECH] = { "tech", NULL, 1,
 		"technology conditions; docs/technology.md" },
+	[SECTION_ELECTRODE] = { "electrode", NULL, 1,
+		"the reference at which electrodes are measured; "
+		"docs/electrodes.md" },
 	[SECTION_SIM] = { "sim", NULL, 1,
 		"the simulated machine of backend sim" },
 	[SECTION_GPIO] = { "gpio", NULL, 1,

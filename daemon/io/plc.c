@@ -83,7 +83,8 @@ static void hear_nmt(struct plc *p, const struct can_msg *m)
 		p->operational = p->stopped = p->booted = false;
 		p->ask = (struct plc_ask) { 0 };
 		reset(p);
-		/* All it asked for is void; it is lost until its toggle turns. */
+		/* What it asked for is void; the PLC is lost until its toggle
+		 * turns. */
 		p->alive = false;
 		p->since_turn = p->alive_cycles;
 		break;

@@ -9,7 +9,8 @@
 struct again {
 	struct checkpoint_base base;	/* places in mm of the whole program */
 	double from_mm, way_mm;		/* as in interp/build_from.h; the
-					 * program of this job; 0, 0: not made */
+					 * program of this job; 0, 0: not
+					 * made */
 	uint32_t line;			/* its sender named this line ... */
 	double place_mm;		/* ... or this place; 0, 0: none, it
 					 * was interrupted */

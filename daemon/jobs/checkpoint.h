@@ -45,6 +45,10 @@ struct checkpoint_job {
 	uint8_t tech[32];		/* of the technology table, or zeros */
 	uint8_t config[32];		/* of the machine file */
 	int32_t start[SHM_NAXES];	/* pulses, where its path begins */
+	uint32_t electrode;		/* that cuts; 0: none */
+	uint32_t part, first_part;	/* store_electrode.h: of now, and of
+					 * this loading */
+	double shift_mm;		/* of Z, by the electrode; + is up */
 };
 
 struct checkpoint_base {
@@ -52,6 +56,7 @@ struct checkpoint_base {
 	int64_t utime;
 	struct shm_snapshot snap;
 	struct shm_sets sets;
+	double wear_mm;			/* what this part took off so far */
 };
 
 /* As in struct shm_snapshot. */
@@ -64,9 +69,10 @@ struct checkpoint_place {
 	uint64_t job_cycles, erode_cycles, jump_cycles;
 	double energy_j;
 	uint32_t retracts, jumps, shorts, arcs, outcome;
+	double wear_mm;			/* as in struct checkpoint_base */
 };
 
-/* What was read: the newest that is whole. */
+/* What was read: the newest whole base and place. */
 struct checkpoint {
 	bool there;
 	struct checkpoint_base base;	/* with the place in its snapshot */
@@ -91,12 +97,14 @@ int checkpoint_open(struct checkpoint_file **ret, const char *dir,
 /** checkpoint_close() - what is under way is written first.  NULL is fine. */
 void checkpoint_close(struct checkpoint_file *f);
 
-/** checkpoint_look() - @now may have to be written; never waits.
- *  @now_us: monotonic. */
+/**
+ * checkpoint_look() - look whether @now has to be written; never waits.
+ * @now_us: monotonic.
+ */
 void checkpoint_look(struct checkpoint_file *f,
 		     const struct checkpoint_base *now, int64_t now_us);
 
-/** checkpoint_stats() - since it was opened. */
+/** checkpoint_stats() - what was written since it was opened. */
 void checkpoint_stats(struct checkpoint_file *f, struct checkpoint_stats *ret);
 
 /* -- checkpoint_block.c --------------------------------------------------- */
@@ -128,11 +136,14 @@ union checkpoint_block {
 	uint8_t bytes[CHECKPOINT_BLOCK];
 };
 
-/** checkpoint_seal() - fill in the hash. */
+/** checkpoint_seal() - fill in the hash of a block. */
 void checkpoint_seal(union checkpoint_block *b);
 
-/** checkpoint_choose() - what the four blocks of a file come to.
- *  @ret_head: of the newest base, to go on from.  Logs what is not whole. */
+/**
+ * checkpoint_choose() - choose the newest whole base and place of the four
+ * blocks of a file.  @ret_head gets the head of the newest base, to go on from.
+ * The log tells which blocks are not whole.
+ */
 void checkpoint_choose(const union checkpoint_block block[4],
 		       const char *machine, struct checkpoint *ret,
 		       struct checkpoint_head *ret_head);

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define MAGIC	"edmplace"
-#define VERSION	(1 << 16 | SHM_LAYOUT)	/* the blocks contain structs of
+#define VERSION	(2 << 16 | SHM_LAYOUT)	/* the blocks contain structs of
 					 * shm.h */
 
 _Static_assert(sizeof(struct checkpoint_head) +
@@ -94,6 +94,7 @@ struct checkpoint_place checkpoint_place_of(const struct checkpoint_base *b)
 		.retracts = s->retracts, .jumps = s->jumps,
 		.shorts = s->shorts, .arcs = s->arcs,
 		.energy_j = s->energy_j, .outcome = s->outcome,
+		.wear_mm = b->wear_mm,
 	};
 
 	memcpy(p.pos, s->pos, sizeof(p.pos));
@@ -109,6 +110,7 @@ static void put_place(struct checkpoint_base *b,
 	struct shm_snapshot *s = &b->snap;
 
 	b->utime = p->utime;
+	b->wear_mm = p->wear_mm;
 	s->state = p->state;
 	s->seg = p->seg;
 	s->tick = p->tick;

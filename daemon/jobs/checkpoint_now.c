@@ -13,6 +13,7 @@
 static void fill_job(struct checkpoint_job *to, const struct jobs *j)
 {
 	const struct store_job *job = &j->queue.job;
+	const struct electrode *e = &j->electrode;
 
 	to->n = job->n;
 	to->begun = job->begun_us != 0;
@@ -23,6 +24,12 @@ static void fill_job(struct checkpoint_job *to, const struct jobs *j)
 		       strlen(job->tech_sha256), NULL, NULL, NULL);
 	memcpy(to->config, j->config_hash, sizeof(to->config));
 	memcpy(to->start, j->eta.start, sizeof(to->start));
+	if (e->n == job->n && e->now >= 0) {
+		to->electrode = e->worn[e->now].electrode;
+		to->part = e->worn[e->now].part;
+		to->first_part = e->worn[0].part;
+		to->shift_mm = e->worn[e->now].offset_mm;
+	}
 }
 
 /* How late single wakes were does not belong to the place of the machine. */
@@ -66,6 +73,7 @@ void checkpoint_tick(struct jobs *j, int64_t now_us)
 	forget_timing(&now.snap);
 	if (q->job.n)
 		fill_job(&now.job, j);
+	now.wear_mm = electrode_used_mm(j);
 	if (j->link.status)
 		shm_sets(j->link.status, &now.sets);
 	checkpoint_look(j->checkpoint, &now, now_us);

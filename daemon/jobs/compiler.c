@@ -81,6 +81,25 @@ static int go_on(struct compiler *c)
 				 &c->result.entry, &c->result.diag);
 }
 
+/* It takes as long as the compiling, so it is done in the thread. */
+static int measure_wear(struct compiler *c)
+{
+	const struct interp_build_about about = { .lines = c->result.lines };
+	const size_t bytes = interp_build_bytes(c->result.build);
+	void *block = malloc(bytes);
+	struct interp_program p;
+	int err;
+
+	if (!block)
+		return -ENOMEM;
+	interp_build_write(c->result.build, &about, block);
+	err = interp_program_map(&p, block, bytes);
+	if (err == 0)
+		err = interp_wear_measure(&c->result.wear, &p);
+	free(block);
+	return err;
+}
+
 static int compiler_text(struct compiler *c, const struct config_tech *tech,
 			 const struct interp_dialect *dialect)
 {
@@ -97,6 +116,8 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	of.text.nc.notes = &notes;
 	of.text.nc.segs_max = SEGS_MAX;
 	of.text.nc.executed_max = EXECUTED_MAX;
+	c->request.electrodes.at = c->request.electrode;
+	of.text.nc.electrodes = &c->request.electrodes;
 	memcpy(of.build.start_mm, c->request.start_mm,
 	       sizeof(of.build.start_mm));
 	c->result.build = interp_build_create(&of.build);
@@ -104,7 +125,9 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 		return -ENOMEM;
 	err = interp_compile(&text, &of.text, c->result.build, &c->result.lines,
 			     &c->result.diag);
-	return err || !c->request.goes_on ? err : go_on(c);
+	if (err == 0 && c->request.goes_on)
+		err = go_on(c);
+	return err || !c->request.wants_wear ? err : measure_wear(c);
 }
 
 /* The file of the dialect is read for each job, too. */
@@ -112,8 +135,8 @@ static int compiler_read(struct compiler *c, const struct config_tech *tech)
 {
 	struct compiler_result *r = &c->result;
 	struct config_dialect d;
-	int err = config_dialect_load(&d, c->request.config, NULL,
-				      c->request.name);
+	int err = config_dialect_load(&d, c->request.config,
+				      c->request.dialect, c->request.name);
 
 	if (err == 0)
 		err = compiler_text(c, tech, d.use);
@@ -146,6 +169,7 @@ static void compiler_free(struct compiler *c)
 	if (c->fd >= 0)
 		close(c->fd);
 	interp_build_destroy(c->result.build);
+	interp_wear_free(&c->result.wear);
 	free(c);
 }
 

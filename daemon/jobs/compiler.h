@@ -12,7 +12,10 @@
 
 #include "config.h"
 #include "interp/build_from.h"
+#include "interp/nc.h"
+#include "interp/wear.h"
 #include "shm.h"
+#include "store_electrode.h"
 
 #include <systemd/sd-event.h>
 
@@ -27,6 +30,12 @@ struct compiler_request {
 	/* If it goes on where another one was interrupted: start_mm is where
 	 * that one began, and these values were set in it. */
 	bool goes_on;
+	/* Copies: the table may change meanwhile. */
+	struct interp_electrode electrode[STORE_ELECTRODES_MAX];
+	struct interp_electrodes electrodes;	/* but for `at` */
+	bool wants_wear;		/* of its electrodes, for a text that is
+					 * not loaded */
+	const char *dialect;		/* NULL: by machine file and name */
 	struct interp_build_from from;
 	struct shm_sets sets;
 };
@@ -51,6 +60,8 @@ struct compiler_result {
 					 * dialect; "": none */
 	struct interp_build *build;
 	struct interp_build_entry entry;	/* if it goes on */
+	struct interp_wear wear;	/* if it was wanted; then @build is used
+					 * up */
 };
 
 typedef void (*compiler_done_fn)(void *arg, const struct compiler_result *r);

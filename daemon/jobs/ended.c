@@ -38,6 +38,9 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 {
 	struct queue *q = &j->queue;
 
+	/* What interrupted it has booked it: interrupt.c. */
+	if (state != JOB_INTERRUPTED)
+		electrode_book(j);
 	queue_record(j, state, reason);
 	queue_recount(j);
 	q->ended = SHM_OUTCOME_NONE;
@@ -48,8 +51,11 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 		.place_mm = q->snap.place_mm,
 	}, "job %s %s%s%s", q->job.name, store_state_name(state),
 		  *reason ? ": " : "", reason);
-	if (state == JOB_DONE)
+	electrode_tell(j);
+	if (state == JOB_DONE) {
+		electrode_measured(j);
 		return;
+	}
 	if (q->behind > 0)
 		queue_wait(j);
 	else

@@ -85,6 +85,7 @@ void interrupt_take(struct jobs *j)
 			  "not known");
 		return;
 	}
+	electrode_interrupted(j, &c->base);
 	take_sums(q, &c->base);
 	/* The checkpoint has the end of the job, but the store did not get
 	 * it. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * interrupt.h - a job that the power, or edmd's death, cut short
+ * interrupt.h - a job that a power cut, or the death of edmd, ended early
  *
- * Nobody who saw its end is left.  The last checkpoint says where it was: the
- * job is then "interrupted", waits, and keeps that checkpoint in the store.
+ * Nobody is left who saw its end.  The last checkpoint says where it was.  The
+ * job is then "interrupted": it waits, and keeps that checkpoint in the store.
  *
  * Threads: one, that of the event loop.
  */
@@ -16,24 +16,28 @@
 
 struct jobs;
 
-/** checkpoint_tick() - every 20 ms: a checkpoint, if one is due. */
+/**
+ * checkpoint_tick() - write a checkpoint if one is due; to be called every 20
+ * ms.
+ */
 void checkpoint_tick(struct jobs *j, int64_t now_us);
 
-/** interrupt_init() - find the one that waits.  Startup only. */
+/** interrupt_init() - find the job that waits.  Startup only. */
 void interrupt_init(struct jobs *j);
 
 /**
- * interrupt_saw_begin() - the last checkpoint has the job loaded, under way.
+ * interrupt_saw_begin() - does the last checkpoint show that the loaded job was
+ * under way?
  */
 bool interrupt_saw_begin(const struct jobs *j);
 
 /**
- * interrupt_take() - the job loaded has begun, and edmd has not got it: say
- * what is known of it, and drop it.
+ * interrupt_take() - the loaded job has begun, and edmd does not have it any
+ * more: say what is known of it, and drop it.
  */
 void interrupt_take(struct jobs *j);
 
-/** interrupt_lost() - the axes whose places are not certain, as letters. */
+/** interrupt_lost() - the letters of the axes whose places are not certain. */
 const char *interrupt_lost(const struct jobs *j);
 
 #endif /* JOBS_INTERRUPT_H */

@@ -10,6 +10,7 @@
 
 #include "checkpoint.h"
 #include "config.h"
+#include "electrode.h"
 #include "eta.h"
 #include "link.h"
 #include "queue.h"
@@ -38,12 +39,16 @@ struct jobs {
 	struct queue queue;
 	struct tally tally;
 	struct eta eta;
+	struct electrode electrode;
 	struct trust trust;
 	struct keyfile host_key;
 	bool key_shared;		/* a copy of it is in /dev/shm */
-	struct compiler *check[UPLOAD_SLOTS];	/* of uploads.slot[i] */
-	int64_t status_us;		/* when the last was sent, monotonic */
-	uint64_t status_key;		/* what a change of is sent at once */
+	struct compiler *check[UPLOAD_SLOTS];	/* the check of
+						 * uploads.slot[i] */
+	int64_t status_us;		/* when the last STATUS was sent,
+					 * monotonic */
+	uint64_t status_key;		/* if this changes, STATUS is sent at
+					 * once */
 	int64_t begun_us;		/* of this service */
 	struct checkpoint_file *checkpoint;	/* NULL: there is none */
 	const char *store_dir;
@@ -52,14 +57,18 @@ struct jobs {
 	int checkpoint_err;		/* of the last try */
 	struct checkpoint last;		/* as it was found at the start */
 	char interrupted[64];		/* id of the job that waits; or "" */
-	uint32_t vouched;		/* axes that an operator answers for */
+	uint32_t vouched;		/* axes whose places an operator has
+					 * answered for */
 	uint8_t config_hash[32];	/* of the machine file */
-	const char *store_told;		/* store_why() as it was told last */
-	bool act_open;			/* act.c: a transaction is */
+	const char *store_told;		/* store_why() as it was last
+					 * reported */
+	bool act_open;			/* act.c: a transaction is open */
 	int claim;			/* shm_writer_claim(); -1: none */
 };
 
-/** jobs_now_us() - monotonic; jobs_utime() - since 1970. */
+/**
+ * jobs_now_us() - time of the monotonic clock; jobs_utime() - time since 1970.
+ */
 int64_t jobs_now_us(void);
 int64_t jobs_utime(void);
 

@@ -119,7 +119,7 @@ static bool shape_fits(const struct seal *m, const char *shape,
 
 /* The first q of a shape is the fingerprint of the type. */
 #define SHAPE_COMMAND	"qqsqssqs"
-#define SHAPE_CHUNK	"qqsqssqHiiqbiqia"
+#define SHAPE_CHUNK	"qqsqssqHiiqbiqiia"
 
 /* Tell the sender why its packet is not accepted. */
 static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
@@ -135,8 +135,8 @@ static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
 	jobs_lcm_ack(w, &(struct jobs_lcm_ack) {
 		.key = to->key, .client = to->client, .seq = to->seq,
 		.reason = reason,
-		.code = again ? JOBS_LCM_AGAIN : cause == TRUST_KEY ? EX_NOPERM :
-			EX_TEMPFAIL,
+		.code = again ? JOBS_LCM_AGAIN :
+			cause == TRUST_KEY ? EX_NOPERM : EX_TEMPFAIL,
 	});
 }
 
@@ -232,10 +232,12 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 	if (!shape_fits(s, SHAPE_CHUNK, &size) || chunk_decode(s, size, &m) < 0)
 		return false;
 	c = (struct jobs_lcm_chunk) {
-		.key = s->key, .client = m.client, .seq = m.seq, .job = m.job, .name = m.name,
+		.key = s->key, .client = m.client, .seq = m.seq, .job = m.job,
+		.name = m.name,
 		.bytes = m.bytes, .sha256 = m.sha256, .chunk = m.chunk,
 		.chunks = m.chunks, .offset = m.offset, .hold = m.hold != 0,
 		.from_line = m.from_line, .from_mm = m.from_mm,
+		.electrode = m.electrode,
 		.size = (uint32_t)m.size, .data = m.data,
 		.signed_us = trust_signed_us(w->trust, s),
 		.by = o->packet->key, .from = o->packet->from,

@@ -65,8 +65,10 @@ struct link_command {
 	uint32_t verb;			/* enum shm_verb */
 	uint32_t arg;
 	double arg_mm;			/* or in the unit of the field set */
-	int64_t take_us;		/* later edmd leaves it; 0: the usual */
-	link_answer_fn answer;		/* once, never from link_send() */
+	int64_t take_us;		/* edmd does not take it later than
+					 * this; 0: the usual time */
+	link_answer_fn answer;		/* it is called once, and never from
+					 * link_send() */
 	void *answer_arg;
 };
 
@@ -78,8 +80,8 @@ void link_fini(struct link *l);
 void link_poll(struct link *l, int64_t now_us);
 
 /**
- * link_send() - Return: 0; -ENOTCONN: there is no edmd; -EAGAIN: too many
- * commands are under way.
+ * link_send() - send a command.  Return: 0; -ENOTCONN: there is no edmd;
+ * -EAGAIN: too many commands are under way.
  */
 int link_send(struct link *l, const struct link_command *c, int64_t now_us);
 

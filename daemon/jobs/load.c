@@ -158,6 +158,28 @@ static int load_write(struct jobs *j, const struct compiler_result *r)
 	return 0;
 }
 
+/* Does it wait for an electrode?  Nothing is lost: it stays in the queue, or
+ * interrupted. */
+static bool refused_electrode(struct jobs *j)
+{
+	const struct store_job job = j->queue.job;
+	const char *why = electrode_load(j);
+	static struct again a;
+
+	if (!why)
+		return false;
+	if (again_read(j, job.n, &a) == 0 && !again_is_named(&a)) {
+		load_refuse(j, job, why);
+		return true;
+	}
+	electrode_wait(j, job.n, why);
+	queue_drop(j, true);
+	queue_wait(j);
+	jobs_note(j, &(struct jobs_note) { .kind = "waits", .job = job.id },
+		  "job %s does not begin: %s; then start", job.name, why);
+	return true;
+}
+
 static void load_ask(struct jobs *j, const struct compiler_result *r)
 {
 	struct link_command c = {
@@ -181,6 +203,8 @@ static void load_ask(struct jobs *j, const struct compiler_result *r)
 		load_refuse(j, j->queue.job, reason);
 		return;
 	}
+	if (refused_electrode(j))
+		return;
 	j->queue.loading = true;
 	if (link_send(&j->link, &c, jobs_now_us()) < 0) {
 		j->queue.loading = false;
@@ -233,14 +257,18 @@ void load_begin(struct jobs *j, int64_t now_us)
 	err = store_text(j->store, q->next.n, &q->next_text, &request.bytes);
 	if (err == 0) {
 		request.name = q->next.name;
+		/* What the service itself has written. */
+		request.dialect = q->next.measures ? "generic" : NULL;
 		request.text = q->next_text;
 		for (int i = 0; i < INTERP_NAXES; i++)
 			request.start_mm[i] = s->pos[i] * s->pulse_mm[i];
 		err = again_request(j, &q->next, &request);
 	}
-	if (err == 0)
+	if (err == 0) {
+		electrode_request(j, &q->next, 0, &request);
 		err = compiler_start(&q->compile, j->event, &request,
 				     on_compiled, j);
+	}
 	if (err == -EILSEQ) {
 		load_refuse(j, q->next,
 			    "its text in the store is not the one that was "

@@ -94,6 +94,8 @@ const char *queue_unready(const struct jobs *j)
 		       "there: resume it or remove it first";
 	if (j->config->require_home && j->link.snap.unhomed)
 		return "an axis is not homed: home it";
+	if (*j->electrode.why)
+		return j->electrode.why;
 	return NULL;
 }
 
@@ -151,6 +153,7 @@ void queue_drop(struct jobs *j, bool again)
 	shm_program_remove(j->machine, q->job.n);
 	store_set_loaded(j->store, q->job.n, false);
 	tally_forget(j);
+	electrode_forget(j);
 	q->job = (struct store_job) { .n = 0 };
 	q->snap = (struct shm_snapshot) { .program = 0 };
 	q->depth_mm = 0;
@@ -439,6 +442,7 @@ void queue_step(struct jobs *j, int64_t now_us)
 		q->snap = *s;
 		q->depth_mm = fmax(q->depth_mm, s->depth_mm);
 		tally_look(j, now_us);
+		electrode_follow(j);
 		if (queue_is_leaving(q))
 			follow_leaving(j, now_us);
 		else
@@ -449,7 +453,8 @@ void queue_step(struct jobs *j, int64_t now_us)
 		unload_stranger(j, now_us);
 	} else if (s->state == SHM_FAULT) {
 		fault_without_job(j);
-	} else if (!q->compile && now_us >= q->again_us && may_load(j)) {
+	} else if (!q->compile && now_us >= q->again_us && may_load(j) &&
+		   !electrode_waits(j)) {
 		load_begin(j, now_us);
 	}
 }

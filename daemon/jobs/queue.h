@@ -29,8 +29,8 @@ struct jobs;
 /* Read, do not write. */
 struct queue {
 	struct store_job job;		/* loaded; n 0: none */
-	struct shm_snapshot snap;	/* the last one that was of that job */
-	double depth_mm;		/* deepest seen of that job */
+	struct shm_snapshot snap;	/* the last snapshot of that job */
+	double depth_mm;		/* greatest depth of that job */
 	uint32_t behind;		/* jobs that wait */
 	bool waiting;			/* for "start" */
 	uint32_t promised;		/* the job that was started, or 0 */
@@ -39,10 +39,12 @@ struct queue {
 	bool loading;			/* LOAD is under way, ... */
 	uint64_t load_id;		/* ... of this id */
 	bool asked;			/* START or UNLOAD is under way */
-	int64_t missing_us;		/* since when edmd has not got it */
-	uint32_t fault_told;		/* without a job: the one told of */
-	int64_t again_us;		/* not before: what was refused */
-	struct compiler *compile;	/* of `next`, to be loaded */
+	int64_t missing_us;		/* since when edmd does not have it */
+	uint32_t fault_told;		/* a fault without a job that was
+					 * reported */
+	int64_t again_us;		/* not before this time: it was
+					 * refused */
+	struct compiler *compile;	/* the text of `next`, to be loaded */
 	struct store_job next;
 	char *next_text;
 };
@@ -53,37 +55,44 @@ int queue_init(struct jobs *j);
 /** queue_fini() - leave running jobs alone, take the others back. */
 void queue_fini(struct jobs *j);
 
-/** queue_attach() - edmd came, or came back. */
+/** queue_attach() - edmd has come, or has come back. */
 void queue_attach(struct jobs *j);
 
-/** queue_event() - one of edmd's events. */
+/** queue_event() - take one of edmd's events. */
 void queue_event(struct jobs *j, const struct shm_event *e);
 
-/** queue_step() - every 20 ms while edmd is there. */
+/** queue_step() - to be called every 20 ms while edmd is there. */
 void queue_step(struct jobs *j, int64_t now_us);
 
 /** queue_recount() - jobs were added or removed. */
 void queue_recount(struct jobs *j);
 
-/** queue_go() - "start": the queue waits no more. */
+/** queue_go() - "start" was given: the queue does not wait any more. */
 void queue_go(struct jobs *j);
-/** queue_promise() - the job loaded is about to be started.
- *  Return: 0; -errno: it has not begun, and that it does cannot be stored. */
+/**
+ * queue_promise() - the loaded job is about to be started.  Return: 0; -errno:
+ * that it begins cannot be stored, so it must not begin.
+ */
 int queue_promise(struct jobs *j);
 /** queue_unpromise() - it was not started after all. */
 void queue_unpromise(struct jobs *j);
-/** queue_has_begun() - the job loaded, and that is known. */
+/** queue_has_begun() - has the loaded job begun, and is that known? */
 bool queue_has_begun(const struct jobs *j);
-/** queue_started() - what edmd answered to a start: enum link's codes. */
+/**
+ * queue_started() - edmd has answered a start with @code, one of struct link's.
+ */
 void queue_started(struct jobs *j, int code);
-/** queue_unready() - why no job could begin now, in words; NULL: one could. */
+/**
+ * queue_unready() - why no job could begin now, in words; NULL: a job could
+ * begin.
+ */
 const char *queue_unready(const struct jobs *j);
-/** queue_wait() - nothing starts until queue_go(). */
+/** queue_wait() - nothing starts until queue_go() is called. */
 void queue_wait(struct jobs *j);
 /** queue_is_faulted() - is edmd in fault at this moment? */
 bool queue_is_faulted(const struct jobs *j);
 
-/** queue_is_leaving() - ended, still to be unloaded. */
+/** queue_is_leaving() - has the job ended, and is it still to be unloaded? */
 bool queue_is_leaving(const struct queue *q);
 
 /** queue_end() - the job is over: record it, tell; ended.c. */
@@ -104,10 +113,13 @@ void settle_ended(struct jobs *j);
 
 /* -- load.c: from the store into edmd ------------------------------------- */
 
-/** load_begin() - compile the first that waits, if any, then load it. */
+/**
+ * load_begin() - compile the first job that waits, if there is one, and load
+ * it.
+ */
 void load_begin(struct jobs *j, int64_t now_us);
 
-/** load_send() - a command about program @n whose answer ends `asked`. */
+/** load_send() - send a command about program @n; its answer ends `asked`. */
 int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us);
 
 /** load_fini() - forget what is being compiled. */

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * reply.c - a command repeated is answered again, not done again
- */
+/* reply.c - a repeated command gets the same answer and is not done again */
 #include "reply.h"
 
 #include <stdio.h>

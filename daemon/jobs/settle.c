@@ -58,6 +58,7 @@ static void settle_one(void *arg, const struct shm_ended *e)
 		.energy_j = e->energy_j,
 	});
 	tally_settle(j, job.n, e);
+	electrode_settle(j, job.n, e);
 	store_set_loaded(j->store, job.n, false);
 	if (j->queue.job.n == job.n) {
 		j->queue.job.state = done ? JOB_DONE : JOB_STOPPED;

@@ -74,6 +74,23 @@ static void fill_machine(struct jobs_lcm_status *w, const struct link *l)
 	w->wake_late_max_us = (uint32_t)(s->wake_late_max_ns / 1000);
 }
 
+static void fill_electrode(struct jobs_lcm_status *w, struct jobs *j)
+{
+	const struct electrode *e = &j->electrode;
+	struct store_electrode is;
+
+	w->electrode = electrode_held(j);
+	if (e->n && e->wear.nchanges)
+		w->electrode_shift_mm = e->worn[e->now < 0 ? 0 : e->now]
+						.offset_mm;
+	if (e->n && e->now >= 0)
+		w->electrode_wear_mm = e->worn[e->now].before_mm +
+				       electrode_used_mm(j);
+	else if (w->electrode &&
+		 store_electrode_find(j->store, w->electrode, &is) == 0)
+		w->electrode_wear_mm = is.wear_mm;
+}
+
 void status_tick(struct jobs *j, int64_t now_us)
 {
 	uint64_t key = key_of(j);
@@ -97,6 +114,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 	snprintf(store, sizeof(store), "%s%s", *store_why(j->store) ?
 		 "degraded: " : "ok", store_why(j->store));
 	w.store = store;
+	fill_electrode(&w, j);
 	w.interrupted = j->interrupted;
 	w.lost = j->link.state == LINK_OK ? interrupt_lost(j) : "";
 	jobs_lcm_status(j->lcm, &w);

@@ -32,7 +32,8 @@
 enum job_state {
 	JOB_QUEUED, JOB_READY, JOB_RUNNING, JOB_HELD,
 	JOB_DONE, JOB_FAULT, JOB_STOPPED,
-	JOB_INTERRUPTED,		/* by the power: waits to be resumed */
+	JOB_INTERRUPTED,		/* by a power cut: it waits to be
+					 * resumed */
 	JOB_NSTATES
 };
 
@@ -49,6 +50,10 @@ struct store_job {
 	int64_t submitted_us;
 	int64_t begun_us;		/* 0: not yet */
 	uint32_t lines;			/* of the text */
+	uint32_t electrode;		/* it begins with; 0: the one in the
+					 * holder */
+	uint32_t measures;		/* this electrode; 0: it is a job to
+					 * cut */
 };
 
 struct store_new {
@@ -58,8 +63,10 @@ struct store_new {
 	size_t bytes;
 	uint32_t lines;
 	bool hold;
-	const char *begin_at;		/* for store_resume_at(); NULL: nothing */
+	const char *begin_at;		/* for store_resume_at(); NULL: there is
+					 * none */
 	int64_t now_us;
+	uint32_t electrode, measures;	/* as in struct store_job */
 };
 
 /* How a job ended. */
@@ -78,9 +85,10 @@ struct store_note {
 	int64_t now_us;
 };
 
-/* A condition called, or a value set while a job ran. */
+/* A condition that was called, or a value that was set, while a job ran. */
 struct store_change {
-	const char *condition;		/* called: its name; else NULL */
+	const char *condition;		/* the name of a called condition, or
+					 * NULL */
 	const char *field;		/* set: its name */
 	double was, now;		/* set; NAN: the generator's own */
 	double place_mm;
@@ -101,24 +109,26 @@ const char *store_state_name(enum job_state s);
  * made it; -errno if @dir cannot be used.
  */
 int store_open(struct store **ret, const char *dir, const char *machine);
-/** store_close() - NULL is fine. */
+/** store_close() - NULL is allowed. */
 void store_close(struct store *s);
 
-/** store_why() - it is degraded, because ...; "": it is whole. */
+/** store_why() - why the store is degraded; "": it is not. */
 const char *store_why(const struct store *s);
 
 /** store_mended() - what was done to a damaged file; "": nothing. */
 const char *store_mended(const struct store *s);
 
-/** store_tick() - every 20 ms: try to store what was kept.
- *  Return: true: it is whole again from now on. */
+/**
+ * store_tick() - try to store what was kept; to be called every 20 ms.  Return:
+ * true when nothing is kept any more.
+ */
 bool store_tick(struct store *s, int64_t now_us);
 
 /** store_retain() - forget ended jobs above @jobs and older than @days (0: any
  *  number), a few at a time, but never the last 20. */
 void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us);
 
-/* What it takes, and how it is. */
+/* What the store takes on the disk, and its state. */
 struct store_size {
 	char path[512];
 	int64_t bytes;			/* of the files */
@@ -132,7 +142,7 @@ void store_measure(struct store *s, struct store_size *ret);
 /** store_add() - a new job, queued, or not at all.  @ret_n its number. */
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n);
 
-/* Find one: 0, -ENOENT, or -EIO: it cannot be known. */
+/* Find a job: 0, -ENOENT, or -EIO: it cannot be known. */
 int store_find(struct store *s, const char *id, struct store_job *ret);
 int store_find_number(struct store *s, uint32_t n, struct store_job *ret);
 int store_loaded(struct store *s, struct store_job *ret);
@@ -146,15 +156,16 @@ int store_text(struct store *s, uint32_t n, char **ret, size_t *ret_bytes);
 
 int store_set_state(struct store *s, uint32_t n, enum job_state state);
 int store_set_hold(struct store *s, uint32_t n, bool hold);
-/** store_set_loaded() - true: on the disk, or refused. */
+/** store_set_loaded() - @loaded true is on the disk, or refused. */
 int store_set_loaded(struct store *s, uint32_t n, bool loaded);
 int store_begin(struct store *s, uint32_t n, int64_t now_us);
 
 /**
- * store_may_begin() - job @n is about to be started: on the disk, or refused.
+ * store_may_begin() - job @n is about to be started: this is on the disk, or
+ * refused.
  *
- * A job that this was not stored of has not begun, whatever happens after.
- * 0: it was not started after all.
+ * If it is not on the disk, the job has not begun, whatever happens afterwards.
+ * 0: no job was started after all.
  */
 int store_may_begin(struct store *s, uint32_t n);
 int store_end(struct store *s, uint32_t n, const struct store_end *e);
@@ -165,21 +176,24 @@ int store_give_up(struct store *s, uint32_t n, const char *reason,
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
 /** store_interrupt() - @at: its checkpoint, hex, for store_resume_at(). */
 int store_interrupt(struct store *s, uint32_t n, const char *at);
-/** store_again() - the interrupted job @n is queued again, and has not begun. */
+/**
+ * store_again() - the interrupted job @n is in the queue again, and has not
+ * begun.
+ */
 int store_again(struct store *s, uint32_t n);
 /** store_interrupted() - the job that was interrupted last.  0 or -ENOENT. */
 int store_interrupted(struct store *s, struct store_job *ret);
 /** store_resume_at() - the checkpoint of job @n; to be freed.  NULL: none. */
 char *store_resume_at(struct store *s, uint32_t n);
-/** store_change() - of job @n; the same one twice is kept once. */
+/** store_change() - add a change to job @n; the same change is kept once. */
 int store_change(struct store *s, uint32_t n, const struct store_change *c);
 int store_note(struct store *s, const struct store_note *e);
 
 /**
- * store_together() - what is written up to store_commit() is written at once.
- * @durable: through a power cut, not only through a kill.
- * Return: 0, or STORE_KEPT: what was written without a promise is in memory;
- * what must be on the disk is not.
+ * store_together() - whatever is written up to store_commit() is written at
+ * once.  @durable: it survives a power cut, and not only a kill.  Both
+ * return 0, or STORE_KEPT: what was written without a promise is in
+ * memory; what must be on the disk is not written.
  */
 int store_together(struct store *s, bool durable);
 int store_commit(struct store *s);
@@ -187,7 +201,9 @@ int store_commit(struct store *s);
 /** store_waiting() - jobs that are queued and not loaded. */
 uint32_t store_waiting(struct store *s);
 
-/** store_number() - a number kept by name; @otherwise if there is none. */
+/**
+ * store_number() - a number that is kept by name; @otherwise if there is none.
+ */
 int64_t store_number(struct store *s, const char *key, int64_t otherwise);
 int store_set_number(struct store *s, const char *key, int64_t value);
 

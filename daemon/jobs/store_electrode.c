@@ -130,3 +130,72 @@ char *store_electrodes_json(struct store *s, uint32_t after)
 	sqlite3_finalize(q);
 	return text;
 }
+
+/* -- How jobs used them ----------------------------------------------------- */
+
+#define WORN_COLUMNS	"job, part, electrode, offset_mm, before_mm, " \
+			"after_mm, before_s, after_s, known"
+
+static int worn_put(struct store *s, const struct store_worn *w,
+		    enum store_keep keep)
+{
+	return store_do(s, keep, "INSERT OR REPLACE INTO worn(" WORN_COLUMNS
+			") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)", "iiidddddi",
+			(int64_t)w->job, (int64_t)w->part,
+			(int64_t)w->electrode, w->offset_mm, w->before_mm,
+			w->after_mm, w->before_s, w->after_s,
+			(int64_t)w->known);
+}
+
+int store_worn_add(struct store *s, const struct store_worn *w)
+{
+	return worn_put(s, w, STORE_MUST);
+}
+
+int store_worn_put(struct store *s, const struct store_worn *w)
+{
+	return worn_put(s, w, STORE_KEEP);
+}
+
+static void worn_get(sqlite3_stmt *q, struct store_worn *ret)
+{
+	ret->job = (uint32_t)sqlite3_column_int64(q, 0);
+	ret->part = (uint32_t)sqlite3_column_int64(q, 1);
+	ret->electrode = (uint32_t)sqlite3_column_int64(q, 2);
+	ret->offset_mm = sqlite3_column_double(q, 3);
+	ret->before_mm = sqlite3_column_double(q, 4);
+	ret->after_mm = sqlite3_column_double(q, 5);
+	ret->before_s = sqlite3_column_double(q, 6);
+	ret->after_s = sqlite3_column_double(q, 7);
+	ret->known = sqlite3_column_int(q, 8) != 0;
+}
+
+uint32_t store_worn_next(struct store *s, uint32_t n)
+{
+	return (uint32_t)store_number_of(s, 0, "SELECT ifnull(max(part) + 1, 0) "
+					 "FROM worn WHERE job=?", "i",
+					 (int64_t)n);
+}
+
+int store_worn_drop(struct store *s, uint32_t n)
+{
+	return store_do(s, STORE_KEEP, "DELETE FROM worn WHERE job=? AND "
+			"after_s<0", "i", (int64_t)n);
+}
+
+size_t store_worn_list(struct store *s, uint32_t n, uint32_t from,
+		       struct store_worn *to, size_t room)
+{
+	sqlite3_stmt *q = store_ask(s, NULL, "SELECT " WORN_COLUMNS " FROM "
+				    "worn WHERE job=? AND part>=? ORDER BY "
+				    "part", "ii", (int64_t)n, (int64_t)from);
+	size_t k = 0;
+
+	if (!q)
+		return 0;
+	do
+		worn_get(q, &to[k++]);
+	while (k < room && sqlite3_step(q) == SQLITE_ROW);
+	sqlite3_finalize(q);
+	return k;
+}

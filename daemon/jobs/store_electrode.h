@@ -58,4 +58,29 @@ size_t store_electrodes(struct store *s, struct store_electrode *to,
  *  fit one answer; to be freed.  NULL: the store failed. */
 char *store_electrodes_json(struct store *s, uint32_t after);
 
+/* -- How jobs used them ----------------------------------------------------- */
+
+/* Part @part of job @job, from one change of the electrode to the next. */
+struct store_worn {
+	uint32_t job, part;
+	uint32_t electrode;		/* 0: none */
+	double offset_mm;		/* what Z was shifted by; + is up */
+	double before_mm, after_mm;	/* its wear */
+	double before_s, after_s;	/* how long it had sparked */
+	bool known;			/* after_mm counts all that was cut */
+};
+
+/** store_worn_add() - on the disk, or refused. */
+int store_worn_add(struct store *s, const struct store_worn *w);
+int store_worn_put(struct store *s, const struct store_worn *w);
+/** store_worn_list() - of job @n, by part, from part @from on, at most @room.
+ *  Return: how many. */
+size_t store_worn_list(struct store *s, uint32_t n, uint32_t from,
+		       struct store_worn *to, size_t room);
+/** store_worn_next() - the first part that job @n has not. */
+uint32_t store_worn_next(struct store *s, uint32_t n);
+/** store_worn_drop() - forget the parts of job @n that have not begun: their
+ *  after_s is below 0. */
+int store_worn_drop(struct store *s, uint32_t n);
+
 #endif /* JOBS_STORE_ELECTRODE_H */

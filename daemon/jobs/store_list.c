@@ -15,6 +15,15 @@
 #define LIST_MAX	200
 #define ALARMS_MAX	20
 
+/* Which electrodes cut it, and their wear before and after. */
+#define ELECTRODES_JSON	", 'electrodes', (SELECT json_group_array(json(e)) " \
+			"FROM (SELECT json_object('electrode', electrode, " \
+			"'shift_mm', offset_mm, 'wear_before_mm', before_mm, " \
+			"'wear_after_mm', after_mm, 'known', json(iif(known, " \
+			"'true', 'false')), 'sparked_s', after_s - before_s) " \
+			"AS e FROM worn WHERE worn.job=job.n AND after_s>=0 " \
+			"ORDER BY part))"
+
 #define JOB_JSON(MORE)	"json_object('n', n, 'job', id, 'name', name, " \
 			"'state', state, 'hold', json(iif(hold, 'true', " \
 			"'false')), 'lines', lines, 'sha256', sha256, " \
@@ -23,7 +32,7 @@
 			"place_mm, 'length_mm', length_mm, 'depth_mm', " \
 			"depth_mm, 'job_s', job_s, 'jumps', jumps, " \
 			"'retracts', retracts, 'shorts', shorts, " \
-			"'tech_sha256', tech_sha256" MORE ")"
+			"'tech_sha256', tech_sha256" ELECTRODES_JSON MORE ")"
 
 /* What it came to.  Energy is null where the machine does not count it. */
 #define SUMS_JSON	", 'first_us', first_us, 'erode_s', erode_s, " \

@@ -12,6 +12,7 @@
 #include "compiler.h"
 #include "entry.h"
 #include "jobs_log.h"
+#include "verb.h"
 
 #include <errno.h>
 #include <sodium.h>
@@ -86,6 +87,8 @@ static const char *what_next(const struct jobs *j, bool hold)
 		return "a fault is latched: it wants a reset, then a start";
 	if (*j->interrupted)
 		return "a job was interrupted: resume it or remove it, then start";
+	if (*j->electrode.why)
+		return "a job before it waits for an electrode";
 	if (queue_unready(j))
 		return "an axis is not homed: it wants a home, then a start";
 	if (j->queue.waiting)
@@ -134,6 +137,7 @@ static void accept_text(struct jobs *j, struct upload *up,
 		.tech_sha256 = r->tech_sha256,
 		.hold = up->hold, .now_us = jobs_utime(),
 		.begin_at = again_named(up->from_line, up->from_mm),
+		.electrode = up->electrode,
 	};
 	uint32_t number;
 
@@ -194,6 +198,7 @@ static void on_checked(void *arg, const struct compiler_result *r)
 	struct jobs *j = c->jobs;
 	struct upload *up = c->upload;
 	struct store_job job;
+	const char *why;
 
 	free(c);
 	j->check[up - j->uploads.slot] = NULL;
@@ -203,6 +208,8 @@ static void on_checked(void *arg, const struct compiler_result *r)
 		refuse_text(j, up, &r->diag);
 	else if (r->err < 0)
 		answer_end(j, up, EX_SOFTWARE, strerror(-r->err), NULL);
+	else if ((why = electrode_check(j, r)))
+		answer_end(j, up, REFUSED, why, NULL);
 	else if (store_find(j->store, up->id, &job) == 0)
 		answer_end(j, up, EX_TEMPFAIL, "another client sends this job "
 			   "id too; try again", NULL);
@@ -234,6 +241,7 @@ static void check_begin(struct jobs *j, struct upload *up)
 	start_place(j, request.start_mm);
 	if (up->from_line > 0 || up->from_mm > 0)
 		again_begin_at(j, up->from_line, up->from_mm, &request);
+	electrode_request(j, NULL, up->electrode, &request);
 	if (c) {
 		*c = (struct check) { .jobs = j, .upload = up };
 		err = compiler_start(&j->check[up - j->uploads.slot], j->event,

@@ -63,6 +63,9 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 	else if (!begin_is_fit(c))
 		refuse(a, EX_DATAERR, "place to begin at not fit; a line from 1 "
 		       "on, or mm along the path, not both");
+	else if (c->electrode < 0 || c->electrode > 9999)
+		refuse(a, EX_DATAERR, "no such electrode; 1 to 9999, or 0: the "
+		       "one in the holder");
 	else if (!place_is_inside(c))
 		refuse(a, EX_PROTOCOL, "chunk outside its job; at most "
 		       "32768 bytes, inside the size given");
@@ -176,6 +179,7 @@ static struct upload *upload_begin(struct uploads *u,
 	up->chunks = (uint32_t)c->chunks;
 	up->from_line = (uint32_t)c->from_line;
 	up->from_mm = c->from_mm;
+	up->electrode = (uint32_t)c->electrode;
 	/* An operator looks at the way in before it moves. */
 	up->hold = c->hold || up->from_line > 0 || up->from_mm > 0;
 	up->seq_min = up->seq_max = c->seq;

@@ -36,6 +36,7 @@ struct upload {
 	bool hold;
 	uint32_t from_line;		/* where it begins, as in edm.lcm */
 	double from_mm;
+	uint32_t electrode;
 	uint8_t *seen;			/* bit per chunk */
 	char *text;
 	int64_t last_us;		/* of the last new chunk, monotonic */

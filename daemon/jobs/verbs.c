@@ -211,8 +211,8 @@ static bool may_start(struct jobs *j, const struct verb *v)
 
 /*
  * Who asked may have given up since, and nothing moves without somebody who
- * waits for it.  A client that still waits signs it again.  What ends a motion is
- * never too late.
+ * waits for it.  A client that still waits signs it again.  What ends a motion
+ * is never too late.
  */
 static bool is_late(const struct verb *v, const struct jobs_lcm_command *c)
 {
@@ -564,6 +564,8 @@ static const struct verb verbs[] = {
 	  VERB_OWN, "" },
 	{ "electrode-use", ROLE_OPERATOR, VERB_ACTS, electrode_use, VERB_OWN,
 	  "" },
+	{ "electrode-measure", ROLE_OPERATOR, VERB_ACTS, electrode_measure,
+	  VERB_OWN, "" },
 	{ "events", ROLE_VIEWER, VERB_ASKS, verbs_events, VERB_OWN, "" },
 	{ "checkpoint", ROLE_VIEWER, VERB_ASKS, verbs_checkpoint, VERB_OWN,
 	  "" },

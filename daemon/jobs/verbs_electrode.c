@@ -16,11 +16,6 @@
 #define NUMBER_WANTED	"a whole number from 1 to 9999, but not 80 to 99: " \
 			"T80 to T99 are pumps and supplies in some dialects"
 
-uint32_t electrode_held(struct jobs *j)
-{
-	return (uint32_t)store_number(j->store, "electrode", 0);
-}
-
 /* -- KEY=VALUE -------------------------------------------------------------- */
 
 struct key {
@@ -170,8 +165,8 @@ void electrode_list(struct jobs *j, const struct verb *v,
 }
 
 /* Find the one that is meant, or answer why not. */
-static bool find(struct jobs *j, const struct jobs_lcm_command *c,
-		 struct store_electrode *ret)
+bool electrode_find_named(struct jobs *j, const struct jobs_lcm_command *c,
+			  struct store_electrode *ret)
 {
 	const int err = store_electrode_ok(c->arg) ?
 		store_electrode_find(j->store, (uint32_t)c->arg, ret) :
@@ -203,6 +198,7 @@ static void put(struct jobs *j, const struct jobs_lcm_command *c,
 {
 	const int err = store_electrode_put(j->store, e);
 
+	j->electrode.why[0] = '\0';
 	verbs_answer(j, c, err == 0 ? 0 : EX_IOERR,
 		     err == 0 ? "done" : "the store failed");
 }
@@ -241,7 +237,7 @@ void electrode_set(struct jobs *j, const struct verb *v,
 	char why[400];
 
 	(void)v;
-	if (!find(j, c, &e))
+	if (!electrode_find_named(j, c, &e))
 		return;
 	if (take_all(&e, c->text, why) < 0)
 		verbs_answer(j, c, EX_DATAERR, why);
@@ -256,9 +252,10 @@ void electrode_remove(struct jobs *j, const struct verb *v,
 	int err;
 
 	(void)v;
-	if (!find(j, c, &e) || is_busy(j, c))
+	if (!electrode_find_named(j, c, &e) || is_busy(j, c))
 		return;
 	err = store_electrode_remove(j->store, e.n);
+	j->electrode.why[0] = '\0';
 	if (err == 0 && electrode_held(j) == e.n)
 		err = store_set_number(j->store, "electrode", 0);
 	verbs_answer(j, c, err == 0 ? 0 : EX_IOERR,
@@ -272,7 +269,7 @@ void electrode_use(struct jobs *j, const struct verb *v,
 	int err;
 
 	(void)v;
-	if (c->arg != 0 && !find(j, c, &e))
+	if (c->arg != 0 && !electrode_find_named(j, c, &e))
 		return;
 	if (j->queue.job.n && !queue_is_leaving(&j->queue)) {
 		verbs_answer(j, c, REFUSED, "a job is loaded; when it has "
@@ -280,6 +277,7 @@ void electrode_use(struct jobs *j, const struct verb *v,
 		return;
 	}
 	err = store_set_number(j->store, "electrode", (int64_t)c->arg);
+	j->electrode.why[0] = '\0';
 	verbs_answer(j, c, err == 0 ? 0 : EX_IOERR, err != 0 ?
 		     "the store failed" : c->arg == 0 ?
 		     "the holder is empty" : "it is in the holder");

@@ -52,10 +52,11 @@ static enum cycle_event look_in(const struct cycle *c)
 	return c->sensed.is_open ? EVENT_OPEN : EVENT_SPARK;
 }
 
-/* Axes that lag come to rest before anything near the work begins. */
+/* It stands, and axes that lag come to rest, before anything near the work
+ * begins. */
 static enum cycle_event look_arrive(const struct cycle *c)
 {
-	if (!contouring_rests(&c->contouring))
+	if (!contouring_rests(&c->contouring) || !mover_is_standing(&c->mover))
 		return EVENT_NONE;
 	return walk_ahead(c) == AHEAD_CUT ? EVENT_CUT :
 	       walk_ahead(c) == AHEAD_PROBE ? EVENT_PROBE : EVENT_NONE;
@@ -63,15 +64,15 @@ static enum cycle_event look_arrive(const struct cycle *c)
 
 /*
  * Positioning, it met something over ground that was cut already: a short as
- * any other.  Where a lead is on the axes it stays a collision, because a
- * retract has no lead and would drop it in one step.
+ * any other.  A retract has no lead, so axes that have one brake with it first.
  */
-static enum cycle_event look_out(const struct cycle *c)
+static enum cycle_event look_out(struct cycle *c)
 {
-	if (guard_met(c) && contouring_rests(&c->contouring) &&
-	    (walk_rejoins(c) || ground_is_cut(c)))
-		return EVENT_SHORT;
-	return look_arrive(c);
+	if (guard_met(c))
+		c->withdraws = walk_rejoins(c) || ground_is_cut(c);
+	if (!c->withdraws)
+		return look_arrive(c);
+	return contouring_rests(&c->contouring) ? EVENT_SHORT : EVENT_NONE;
 }
 
 /* What this cycle's gap and place mean to the state; at most one thing. */
@@ -86,13 +87,14 @@ static enum cycle_event look(struct cycle *c)
 		return EVENT_FREE;
 	if (powered && arcing_retract_due(c))
 		return EVENT_ARCING;
-	if (powered && !escape_is_out(&c->escape) && timed_is_up(c))
+	if (powered && servo_rests(c) && !escape_is_out(&c->escape) &&
+	    timed_is_up(c))
 		return EVENT_TIME_UP;
 	switch (c->state) {
 	case STATE_APPROACH:
 		return look_in(c);
 	case STATE_ERODE:
-		return flush_due(c) ? EVENT_JUMP_DUE : EVENT_NONE;
+		return flush_due(c) && servo_rests(c) ? EVENT_JUMP_DUE : EVENT_NONE;
 	case STATE_TRAVEL:
 		return look_out(c);
 	case STATE_RETRACT:

@@ -216,6 +216,8 @@ struct cycle {
 	bool overran;			/* since the last step */
 	bool free_seen;			/* the gap was open since positioning
 					 * began */
+	bool withdraws;			/* positioning, it met something over cut
+					 * ground: it brakes, to retract */
 	bool at_start;			/* the walk met the program's start */
 	bool busy;			/* the machine takes no point now */
 	bool cut_short;			/* the last walk fell short of its way */

@@ -10,13 +10,6 @@
 
 #include <math.h>
 
-/* Leave by the escape if there is one here; it begins at a stand. */
-static void leave_path(struct cycle *c)
-{
-	if (!escape_is_out(&c->escape) && escape_begin(c))
-		mover_set(&c->mover, 0);
-}
-
 static void lift(struct cycle *c)
 {
 	const double height_mm = flush_begin(c);
@@ -25,13 +18,12 @@ static void lift(struct cycle *c)
 	/* Beside the path it is the way out that goes on; the time waits. */
 	c->lift.leaving = timed_is_up(c) && !escape_is_out(&c->escape);
 	if (c->lift.leaving) {
-		/* No further in. */
-		mover_set(&c->mover, 0);
 		c->lift.to_mm = c->timed.from_mm;
 		return;
 	}
 	c->totals.jumps++;
-	leave_path(c);
+	if (!escape_is_out(&c->escape))
+		escape_begin(c);
 	c->lift.from_mm = place_mm(c);
 	c->lift.to_mm = fmax(place_outer_mm(c), c->lift.from_mm - height_mm);
 }
@@ -50,18 +42,13 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 {
 	const enum cycle_state from = c->state;
 
-	/* The gap is narrower than a braking distance: stop at once if the
-	 * axes can. */
-	if ((state_duty[from].power || from == STATE_PROBE) &&
-	    (s == STATE_HOLD || s == STATE_JUMP) &&
-	    c->mover.v_mm_s <= servo_dv_mm_s(c))
-		mover_set(&c->mover, 0);
 	c->state = s;
 	c->ahead.state = STATE_STAY;
 	switch (s) {
 	case STATE_TRAVEL:
 		servo_reset(c);
 		c->free_seen = false;
+		c->withdraws = false;
 		break;
 	case STATE_APPROACH:
 		c->job.rejoin_mm = 0;
@@ -71,8 +58,6 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		break;
 	case STATE_RETRACT:
 		servo_reset(c);
-		if (c->gap.retract_escape)
-			leave_path(c);
 		retract_begin(c);
 		arcing_met(c);
 		break;

@@ -6,6 +6,7 @@
 #include "feed.h"
 #include "path/hole.h"
 #include "path/laws.h"
+#include "path/pace.h"
 #include "path/place.h"
 #include "path/walk.h"
 
@@ -13,6 +14,14 @@
 #include <stddef.h>
 
 /* -- Positioning, lifts and moves by command ------------------------------- */
+
+/* With the limits of the motion under way. */
+static double brake(struct cycle *c)
+{
+	const struct mover_limits l = c->mover.l;
+
+	return mover_stop(&c->mover, &l);
+}
 
 static double travel(struct cycle *c)
 {
@@ -22,7 +31,11 @@ static double travel(struct cycle *c)
 		.l = law_travel_limits(c, INFINITY),
 	};
 
-	return ahead_distance(c, &w);
+	/* Started while another move was still braking: that ends first. */
+	const bool other = c->ahead.state != STATE_TRAVEL &&
+			   !mover_is_standing(&c->mover);
+
+	return c->withdraws || other ? brake(c) : ahead_distance(c, &w);
 }
 
 static double go_to(struct cycle *c, struct ahead_move *w, double to_mm)
@@ -39,8 +52,10 @@ static struct mover_limits escape_limits(const struct cycle *c)
 	const double v = fmin(j->v_max_mm_s, c->escape.v_max_mm_s);
 
 	return (struct mover_limits) {
-		.v_max_mm_s = v, .a_max_mm_s2 = j->a_max_mm_s2,
-		.j_max_mm_s3 = j->j_max_mm_s3, .period_s = law_period_s(c),
+		.v_max_mm_s = v,
+		.a_max_mm_s2 = fmin(j->a_max_mm_s2, c->escape.a_max_mm_s2),
+		.j_max_mm_s3 = fmin(j->j_max_mm_s3, c->escape.j_max_mm_s3),
+		.period_s = law_period_s(c),
 	};
 }
 
@@ -70,16 +85,6 @@ static double jump(struct cycle *c)
 	if (escape_is_out(&c->escape))
 		return escape_to(c, &beside, c->lift.to_mm);
 	return go_to(c, &w, c->lift.to_mm);
-}
-
-/* With the limits of the motion under way; laws that set their own speed brake
- * as positioning does. */
-static double brake(struct cycle *c)
-{
-	const struct mover_limits l = c->mover.kind != MOVER_NO_PLAN ?
-				      c->mover.l : law_travel_limits(c, 1);
-
-	return mover_stop(&c->mover, &l);
 }
 
 static double hold(struct cycle *c)
@@ -123,8 +128,18 @@ static double (*const laws[CYCLE_NSTATES])(struct cycle *) = {
 	[STATE_PROBE]	 = probe_distance,
 };
 
+/* What a law of the gap left is braked as that law would. */
+static bool is_unplanned(const struct cycle *c)
+{
+	return c->mover.kind == MOVER_NO_PLAN && c->mover.v_mm_s != 0 &&
+	       (c->state == STATE_TRAVEL || c->state == STATE_JUMP ||
+		c->state == STATE_HOLD);
+}
+
 double feed_distance(struct cycle *c)
 {
+	if (is_unplanned(c))
+		return pace_go(c, 0, INFINITY);
 	return laws[c->state](c);
 }
 

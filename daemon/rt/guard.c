@@ -78,7 +78,7 @@ bool guard_met(const struct cycle *c)
 
 void guard_contact(struct cycle *c)
 {
-	if (guard_met(c))
+	if (guard_met(c) && !c->withdraws)
 		fault_latch(&c->fault, FAULT_CONTACT);
 	if (c->state == STATE_TRAVEL)
 		c->free_seen = c->free_seen || c->sensed.is_open;

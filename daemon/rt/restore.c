@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* restore.c - make a cycle that goes on where another one was killed */
 #include "restore.h"
+#include "path/place.h"
 #include "path/timed.h"
+#include "path/walk.h"
 
 #include <math.h>
 #include <string.h>
@@ -47,6 +49,7 @@ static void restore_actions(struct cycle *c)
 			timed_over(c, i);
 		if (s->kind == INTERP_MCODE)
 			mcode_over(c, i);
+		walk_pass_change(c, s);
 		if (s->kind == INTERP_AUX)
 			restore_aux(c, s->arg);
 	}
@@ -71,7 +74,7 @@ static void restore_probe(struct cycle *c, const struct cycle_past *past)
 	memcpy(t->found, past->found, sizeof(t->found));
 	t->once = past->found_once;
 	t->twice = past->found_twice;
-	probe_target(c, c->cursor.pos);
+	place_target(c, c->cursor.pos);
 }
 
 /* If the machine is beside the path, it must be on the escape that begins

@@ -59,43 +59,62 @@ struct cycle_gap_config {
 	enum gap_source source;
 	enum gap_filter filter;
 	uint32_t filter_cycles;		/* 0, 1: none */
-	uint32_t short_cycles;		/* in a row make a short; 0 as 1 */
-	double servo_v;			/* hold this mean gap voltage */
-	double short_v;			/* below: short circuit */
-	double open_v;			/* above: nothing to cut yet */
-	double window_low_v;		/* stand from here; 0: derived */
-	double window_high_v;		/* ... to here; 0: servo_v */
-	double ignition_v;		/* open circuit; 0: not known */
+	uint32_t short_cycles;		/* so many in a row make a short; 0
+					 * counts as 1 */
+	double servo_v;			/* the mean gap voltage to hold */
+	double short_v;			/* below it the gap is shorted */
+	double open_v;			/* above it there is nothing to cut
+					 * yet */
+	double window_low_v;		/* lower end of the window; 0:
+					 * derived */
+	double window_high_v;		/* upper end of the window; 0:
+					 * servo_v */
+	double ignition_v;		/* of an open circuit; 0: not known */
 	double gain_mm_s_v;		/* feed per volt outside the window */
-	double integral_s;		/* reset time; 0: proportional alone */
+	double integral_s;		/* reset time; 0: without an integral */
 	double feed_max_mm_s;		/* fastest feed while eroding */
 	double creep_mm_s;		/* fastest back, while eroding */
-	double feed_a_mm_s2;		/* of the servo; 0: at once */
+	double feed_a_mm_s2;		/* of the servo; 0: that of the axes */
 	double approach_mm_s;		/* feed until the first spark */
-	double share_v;			/* worth of a share of 1 */
-	double share_set;		/* weighted share to hold */
-	double share_weight;		/* of shorts and arcs, against opens */
-	double share_short;		/* this share of shorts is a short */
-	double share_open;		/* this share of opens is open */
-	double retract_mm_s;		/* back along the path on a short */
+	double share_v;			/* volts that a share of 1 is worth */
+	double share_set;		/* the weighted share to hold */
+	double share_weight;		/* weight of shorts and arcs against
+					 * opens */
+	double share_short;		/* from this share of shorts on it is a
+					 * short */
+	double share_open;		/* from this share of opens on it is
+					 * open */
+	double retract_mm_s;		/* speed of a retract */
 	enum retract_to retract_to;
-	double retract_limit_mm;	/* then stand, and wait ... */
-	uint64_t retract_wait_cycles;	/* ... then fault short-not-cleared */
-	uint64_t retract_max_cycles;	/* then fault retract-time; 0: never */
-	uint32_t retract_escape;	/* 1: out of a short by the escape */
-	uint32_t abort_count;		/* retracts without erosion; 0: any */
-	double progress_mm;		/* cut so much deeper is erosion */
-	double arcing_share;		/* more is arcing; 0: not looked at */
-	uint32_t arcing_cycles;		/* ... in a mean over so many */
-	double arcing_sigma_v;		/* steadier in a plateau: an arc; 0: not
-					 * judged by voltage */
-	double off_us;			/* the generator's own; 0: not known */
-	double arcing_off_max;		/* times the off time, against arcs */
-	uint64_t arcing_recover_cycles;	/* to a step down */
-	double arcing_retract_mm;		/* at least, out of an arc */
-	uint64_t stuck_cycles;		/* no change, then a fault; 0: never */
-	double noise_limit_v;		/* mean change of a cycle; 0: any */
-	double wire_retract_mm;		/* limit of a retract, if wire */
+	double retract_limit_mm;	/* there it stands and waits */
+	uint64_t retract_wait_cycles;	/* after that: fault
+					 * short-not-cleared */
+	uint64_t retract_max_cycles;	/* after that: fault retract-time; 0:
+					 * never */
+	uint32_t retract_escape;	/* 1: leave a short by the escape */
+	uint32_t abort_count;		/* most retracts without erosion; 0: any
+					 * number */
+	double progress_mm;		/* so much more depth counts as
+					 * erosion */
+	double arcing_share;		/* a greater share is arcing; 0: not
+					 * watched */
+	uint32_t arcing_cycles;		/* the share is a mean over so many */
+	double arcing_sigma_v;		/* a plateau that is steadier than
+					 * this is an arc; 0: not judged by
+					 * voltage */
+	double off_us;			/* off time of the generator; 0: not
+					 * known */
+	double arcing_off_max;		/* largest factor on the off time,
+					 * against arcs */
+	uint64_t arcing_recover_cycles;	/* until a step of the off time is given
+					 * back */
+	double arcing_retract_mm;		/* least retract out of an
+						 * arc */
+	uint64_t stuck_cycles;		/* so long without a change is a fault;
+					 * 0: never */
+	double noise_limit_v;		/* largest mean change in a cycle; 0:
+					 * any */
+	double wire_retract_mm;		/* limit of a retract of a wire */
 	enum retreat_to wire_retreat_to;	/* from a break */
 	double wire_retreat_mm;
 };
@@ -104,12 +123,14 @@ struct cycle_gap_config {
 
 struct cycle_jump_config {
 	double height_mm;		/* 0: never */
-	uint64_t every_cycles;		/* of erosion between two jumps */
-	double every_mm;		/* ... or of depth; 0: by time alone */
+	uint64_t every_cycles;		/* erosion between two jumps */
+	double every_mm;		/* depth between two jumps; 0: by time
+					 * alone */
 	uint32_t adaptive;		/* 1: flush.h */
 	uint64_t every_min_cycles, every_max_cycles;
 	double height_min_mm, height_max_mm;
-	double bad_share;		/* of the time between two jumps */
+	double bad_share;		/* bad share of the time between two
+					 * jumps */
 	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	double a_down_mm_s2;		/* toward the cut; 0: a_max_mm_s2 */
 	double short_of_mm;		/* come back to this far above the
@@ -119,10 +140,12 @@ struct cycle_jump_config {
 /* -- Probing the work: [probe] -------------------------------------------- */
 
 struct probe_config {
-	double feed_mm_s;		/* to the first contact */
-	double fine_mm_s;		/* to the one that counts */
-	double back_mm;			/* between them; 0: the first counts */
-	uint64_t settle_cycles;		/* of the sensing voltage, at first */
+	double feed_mm_s;		/* speed to the first contact */
+	double fine_mm_s;		/* speed to the contact that counts */
+	double back_mm;			/* distance between them; 0: the first
+					 * counts */
+	uint64_t settle_cycles;		/* wait for the sensing voltage at
+					 * first */
 };
 
 /* -- Jogs and homing: [axis.*] -------------------------------------------- */

@@ -42,7 +42,10 @@
 	WORD(store) \
 	WORD(interrupted) \
 	WORD(lost) \
-	COUNT(hunts)
+	COUNT(hunts) \
+	COUNT(electrode) \
+	NUMBER(electrode_shift_mm) \
+	NUMBER(electrode_wear_mm)
 
 #define STATUS_ONE(name)	+ 1
 

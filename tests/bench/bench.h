@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * bench.h - a clock, a median, a program laid out, and a line the script
- * tests/bench/run reads
+ * bench.h - a clock, a median, a program in memory, and the form of a result
+ * line that the script tests/bench/run reads
  */
 #ifndef BENCH_H
 #define BENCH_H

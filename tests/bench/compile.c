@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * compile.c - lines of NC code compiled a second, text to program
+ * compile.c - how many lines of NC code are compiled in a second, from text to
+ * program
  *
  *	compile JOB.ngc
  */

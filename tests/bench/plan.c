@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * plan.c - what the core of edm-plan costs on two bodies and a dense program
+ * plan.c - what the core of edm-plan costs with two bodies and a dense program
  *
  *	plan PART ELECTRODE MACHINE DENSE
  *
- * One line: triangles; seconds to load both bodies and to build both trees;
- * milliseconds of a distance at the poses of the program, median and worst, each
- * asked without a pair to begin with and with that of the pose before;
- * milliseconds of the proof of a block, the middle one of four, and of all blocks
- * how many poses were looked at.  CPU time, so that a busy machine matters less.
- * tests/bench/plan runs it.
+ * It prints one line: the number of triangles; the seconds to load both bodies
+ * and to build both trees; the milliseconds of a distance at the poses of the
+ * program, median and worst, each asked once without a first pair and once with
+ * the pair of the pose before; the milliseconds of the proof of a block, the
+ * middle one of four; and for all blocks how many poses were looked at.  The
+ * times are CPU time, so that a busy machine matters less. tests/bench/plan
+ * runs it.
  */
 #include "bench.h"
 #include "job.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * submit.c - time from `edmctl submit` to the first pulse of the job
+ * submit.c - the time from `edmctl submit` to the first pulse of the job
  *
- * Starts both daemons on the simulated machine, sends a short job a few times
- * and asks the trace ring in which cycle an axis first moved.  Run it inside a
- * network namespace (tests/netns), from the top folder.
+ * It starts both daemons on the simulated machine, sends a short job a few
+ * times, and asks the trace ring in which cycle an axis first moved.  Run it
+ * inside a network namespace (tests/netns), from the top folder.
  */
 #include "shm.h"
 

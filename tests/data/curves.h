@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * curves.h - three plane curves of the literature, for tests and experiments
+ * curves.h - three plane curves from the literature, for tests and experiments
  *
- * Rows of x, y in mm and the weight.
+ * A row has x, y in mm and the weight.
  */
 #ifndef DATA_CURVES_H
 #define DATA_CURVES_H

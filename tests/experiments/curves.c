@@ -117,15 +117,17 @@ static void print_curve(const struct curve_data *d)
 {
 	double points[CURVES_POINTS_MAX][3], length_mm;
 	struct interp_nurbs_eval e;
+	struct interp_nurbs_way way;
 	struct interp_nurbs c;
 	double sharpest = 0;
 
 	curve_load(d, points, &c);
 	interp_nurbs_open(&e, &c);
 	length_mm = interp_nurbs_length(&e, 0, 1, 1e-9);
-	for (int i = 0; i <= 100000; i++)
-		sharpest = fmax(sharpest,
-				interp_nurbs_curvature(&e, i / 100000.0));
+	for (int i = 0; i <= 100000; i++) {
+		interp_nurbs_way(&e, i / 100000.0, &way);
+		sharpest = fmax(sharpest, way.curvature);
+	}
 	printf("| %s | %u | %u | %.4f | %.4f |\n", d->name, d->degree,
 	       d->npoints, length_mm, 1 / sharpest);
 }

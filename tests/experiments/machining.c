@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * machining.c - the published machining times beside a model of them
+ * machining.c - the published machining times, beside a model of them
  *
  * The measured figures are those of tables 2 to 5 of the paper on the
  * main-direction perturbation algorithm (2025).

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * program.h - one line or circle as a program, walked and counted
- */
+/* make_program.h - make a program of one line or circle, walk it, and count */
 #ifndef EXPERIMENTS_PROGRAM_H
 #define EXPERIMENTS_PROGRAM_H
 

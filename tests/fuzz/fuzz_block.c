@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * fuzz_block.c - a program block with any bytes changed, through the cycle
+ * fuzz_block.c - run a program block with any bytes changed through the cycle
  *
- * The input says which of some random programs, by which strategy, how much of
- * its end is missing, and where to write what.  What the checks let through must
- * move nothing before its start, and keep to the travel after it.
+ * The input says which of some random programs is used, with which strategy,
+ * how much of its end is missing, and which bytes are written where.  If the
+ * checks accept the block, nothing may move before its start, and all motion
+ * must stay within the travel.
  */
 #include "cycle_help.h"
 #include "random_program.h"

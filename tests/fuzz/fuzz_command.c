@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * fuzz_command.c - any packets at all on edmd's command socket
+ * fuzz_command.c - send any packets to edmd's command socket
  *
- * The input is a row of records: a kind, and what it says.  Whole commands with
- * any values, packets that are none, periods that pass, programs that edmd's
- * main thread opens meanwhile, other states of the machine's switches.  Nothing
- * may move unless a verb of motion was answered "done", and then within the
- * travel.
+ * The input is a row of records: a kind, and its contents.  There are whole
+ * commands with any values, packets that are not commands, periods that pass,
+ * programs that edmd's main thread opens meanwhile, and other states of the
+ * machine's switches.  Nothing may move unless a verb of motion was answered
+ * "done", and then only within the travel.
  */
 #include "command.c"
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * fuzz_dialect.c - any bytes at all as a dialect's file
+ * fuzz_dialect.c - read any bytes as the file of a dialect
  *
- * What is refused must be refused with a place inside the text and in words;
- * what is taken must read a program.
+ * If the file is refused, the refusal must have a place inside the text, and
+ * words.  If it is accepted, it must be able to read a program.
  */
 #include "interp/compile.h"
 #include "fuzz_help.h"

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * fuzz_macro.c - any bytes at all through variables, expressions and jumps
+ * fuzz_macro.c - read any bytes with variables, expressions and jumps
  *
- * The first byte picks Fanuc's or LinuxCNC's.  Whatever loops must end.
+ * The first byte chooses the macros of Fanuc or of LinuxCNC.  Every loop must
+ * end.
  */
 #include "interp/compile.h"
 #include "fuzz_help.h"

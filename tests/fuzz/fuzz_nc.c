@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * fuzz_nc.c - any bytes at all through the NC reader
+ * fuzz_nc.c - read any bytes with the NC reader
  *
- * What it takes must be a sound program; what it refuses must be refused with
- * a place inside the text and in words.
+ * If the text is accepted, it must be a sound program.  If it is refused, the
+ * refusal must have a place inside the text, and words.
  */
 #include "interp/nc.h"
 #include "fuzz_help.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * fuzz_status.c - a status object with any bytes changed, through its readers
+ * fuzz_status.c - read a status object with any bytes changed
  *
- * The input is where to write what: five bytes each, a place and a byte.
+ * The input says what is written where: five bytes each, a place and a byte.
  */
 #include "shm.h"
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * fuzz_tech.c - any bytes at all through the readers of technology tables
+ * fuzz_tech.c - read any bytes with the readers of technology tables
  *
- * What is taken is within its ranges, and written and read again it is the
- * same; what is refused is refused with a place inside the text and in words.
- * The first byte picks the reader.
+ * If a table is accepted, its values are within their ranges, and written and
+ * read again it is the same.  If it is refused, the refusal has a place inside
+ * the text, and words.  The first byte chooses the reader.
  */
 #include "interp/tech_table.h"
 #include "fuzz_help.h"

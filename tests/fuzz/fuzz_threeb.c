@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * fuzz_threeb.c - any bytes at all through the readers of records and of wire
- * dialects, and what they take back out as records
+ * fuzz_threeb.c - read any bytes with the readers of records and of wire
+ * dialects, and write records of what they accept
  *
- * What is taken must be a sound program; its records must be taken again, and
- * end at the same pulse; what is refused must be refused with a place inside
- * the text and in words.  The first byte picks the dialect.
+ * If a text is accepted, it must be a sound program.  Its records must be
+ * accepted again, and end at the same pulse.  If it is refused, the refusal
+ * must have a place inside the text, and words.  The first byte chooses the
+ * dialect.
  */
 #include "interp/compile.h"
 #include "fuzz_help.h"

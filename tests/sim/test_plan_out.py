@@ -147,3 +147,30 @@ def test_a_curve_is_planned_with_its_feed_and_its_other_lines(bodies):
     text = out.read_text()
     assert "F60." in text and text.endswith("M5\nG0 Z20\nM2\n")
     assert "K1" not in text and "what it calls" not in r.stdout
+
+
+def test_times_find_the_files_that_the_machine_file_names(bodies):
+    """[nc] dialect stands beside the machine file; nothing is left there."""
+    (bodies / "own.ini").write_text("[dialect]\nabout = own\nbase = generic\n")
+    (bodies / "m.ini").write_text(CHAIN + "[nc]\ndialect = own.ini\n")
+    was = sorted(p.name for p in bodies.iterdir())
+    out = bodies / "w.ngc"
+    r = plan(*args(bodies, "--times", "--no-pivot", "--output", out,
+                   bodies / "p.ngc"))
+    assert r.returncode == 0, r.stderr
+    assert r.stdout.count("min with a stop at each node") == 3
+    assert sorted(p.name for p in bodies.iterdir()) == sorted(was + ["w.ngc"])
+
+
+def test_a_plan_is_written_though_its_times_cannot_be_told(bodies, tmp_path):
+    """There is no edmsim beside it."""
+    alone = tmp_path / "alone"
+    alone.mkdir()
+    (alone / "edm-plan").write_bytes((B / "edm-plan").read_bytes())
+    (alone / "edm-plan").chmod(0o755)
+    out = bodies / "w.ngc"
+    r = subprocess.run([alone / "edm-plan", *map(str, args(
+        bodies, "--times", "--output", out, bodies / "p.ngc"))],
+        capture_output=True, text=True)
+    assert r.returncode != 0 and "edmsim" in r.stderr
+    assert out.exists()

@@ -99,3 +99,31 @@ def test_nodes_leave_the_path_in_an_end_zone_too(channel, tmp_path):
     assert again.returncode == 0, again.stdout
     # The end pose is the nearest, and is told.
     assert "least seen %.4f mm" % report["end_mm"] in again.stdout
+
+
+def test_many_nodes_in_one_place_leave_none_out_elsewhere(channel, tmp_path):
+    """A program of more nodes than the search takes, nearly all in one block."""
+    lines, before = [], None
+    for line in (channel / "dense.ngc").read_text().splitlines():
+        q = [float(v) for v in re.findall(r"[XYZABC](-?[\d.]+)", line)]
+        if line.startswith("G1") and line.endswith("F30"):
+            n = 900
+            lines += ["G1 " + " ".join(
+                "%s%.5f" % (a, x + (y - x) * i / n)
+                for a, x, y in zip("XYZABC", before, q)) + " F30"
+                for i in range(1, n)]
+        if len(q) >= 6:
+            before = q
+        lines.append(line)
+    name, out = tmp_path / "uneven.ngc", tmp_path / "way.ngc"
+    name.write_text("\n".join(lines) + "\n")
+    base = args(channel, "--clearance", "0.3", "--on-path", "--no-pivot",
+                "--output", out, "--report", tmp_path / "r.json")
+    blocks = []
+    for program in (channel / "dense.ngc", name):
+        r = plan(*base, program)
+        assert r.returncode == 0, r.stderr
+        report = json.loads((tmp_path / "r.json").read_text())
+        assert report["dense"]["repaired_nodes"] == 0
+        blocks.append(report["written"]["blocks"])
+    assert blocks[1] <= blocks[0]

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * failing_disk.c - preloaded: a folder whose disk fails on demand
+ * failing_disk.c - a library to preload: it makes the disk of a folder fail on
+ * demand
  *
- * While the file $EDM_DISK_ERRNO exists, whatever changes a file below
- * $EDM_DISK fails with the number that stands in it.
+ * While the file $EDM_DISK_ERRNO exists, every call that changes a file below
+ * $EDM_DISK fails with the error number in that file.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>

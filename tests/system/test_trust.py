@@ -121,7 +121,7 @@ def test_each_role_may_what_its_table_says(machine):
     for verb in ("start", "hold", "resume", "stop", "retract", "set", "estop",
                  "reset", "step", "jog", "home", "override", "remove", "keys",
                  "keys-add", "keys-remove", "electrode-add", "electrode-set",
-                 "electrode-remove", "electrode-use"):
+                 "electrode-remove", "electrode-use", "electrode-measure"):
         a = viewer.ask(verb)
         assert a.code == 77, verb
         assert "viewer" in a.reason

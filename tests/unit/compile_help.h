@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * compile_help.h - compile text of any dialect in a test, write it back
+ * compile_help.h - compile a text of any dialect in a test, and write it back
  *
- * The machine has all axes, 0.001 mm or degree a pulse, travel of 200, but X
- * to the left 400 for the published drawing.
+ * The machine has all axes, with pulses of 0.001 mm or degree, and a travel of
+ * 200.  X has 400 to the left, for the published drawing.
  */
 #ifndef COMPILE_HELP_H
 #define COMPILE_HELP_H

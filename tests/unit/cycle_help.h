@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * cycle_help.h - a cycle driven by hand-made inputs: no machine, no gap
+ * cycle_help.h - a cycle with inputs that the test makes: no machine, no gap
  *
- * Every step checks what must hold in all of them.
+ * Every step checks what must always hold.
  */
 #ifndef CYCLE_HELP_H
 #define CYCLE_HELP_H
@@ -190,6 +190,20 @@ static inline void steps(struct rig *r, double gap_v, int n)
 static inline double place(const struct rig *r)
 {
 	return interp_cursor_place_mm(&r->c.cursor);
+}
+
+/* The way of @n cycles from one speed to another, changing it by the
+ * acceleration @a: as a servo goes. */
+static inline double ramp_mm(double from, double to, double a, int n)
+{
+	const double dv = a * PERIOD_S;
+	double mm = 0;
+
+	while (n-- > 0) {
+		from = from < to ? fmin(from + dv, to) : fmax(from - dv, to);
+		mm += from * PERIOD_S;
+	}
+	return mm;
 }
 
 /* Step until the state is @s; it must come within @n cycles. */

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * disk_help.h - a disk that fails at a chosen write, or is cut off at one
+ * disk_help.h - a disk that fails at a chosen write, or is cut off there
  *
- * A VFS of SQLite in front of the real one, as the default.  It counts what
- * changes the disk (writes, syncs, truncations), and from number `fail_from` on
- * refuses with `fail_rc`.  With `snoop` set, that is called before each of them.
+ * It is a VFS of SQLite in front of the real one, and the default.  It counts
+ * the calls that change the disk (writes, syncs, truncations).  From number
+ * `fail_from` on it refuses them with `fail_rc`.  If `snoop` is set, it is
+ * called before each of them.
  */
 #ifndef DISK_HELP_H
 #define DISK_HELP_H

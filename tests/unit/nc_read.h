@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * nc_read.h - read NC text in a test and look at what became of it
+ * nc_read.h - read NC text in a test, and look at the result
  *
- * The machine has all axes, 0.001 mm or degree a pulse, travel of 200.
+ * The machine has all axes, with pulses of 0.001 mm or degree, and a travel of
+ * 200.
  */
 #ifndef NC_READ_H
 #define NC_READ_H

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * plc_help.h - a cycle with a PLC that is there and has nothing against it
- */
+/* plc_help.h - a cycle with a PLC that answers and permits everything */
 #ifndef PLC_HELP_H
 #define PLC_HELP_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * random_compile.h - a text at random, compiled: a table of conditions, a wire's
- * planes
+ * random_compile.h - compile a random text, with a table of conditions and the
+ * planes of a wire
  */
 #ifndef RANDOM_COMPILE_H
 #define RANDOM_COMPILE_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * random_drives.h - any maps, backlash and leads, drives that lag or lie, and
- * what holds of the pulses they are sent
+ * random_drives.h - random maps, backlash and leads, drives that lag or report
+ * wrong places, and what must hold for the pulses that they are sent
  */
 #ifndef RANDOM_DRIVES_H
 #define RANDOM_DRIVES_H

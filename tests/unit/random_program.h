@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * random_program.h - NC texts and records at random, in every dialect
+ * random_program.h - random NC texts and records, in every dialect
  *
  * Short lines and tiny arcs are as frequent as long ones.  Not every text is
- * taken: a word may have no use where it stands.
+ * accepted: a word may have no use where it stands.
  */
 #ifndef RANDOM_PROGRAM_H
 #define RANDOM_PROGRAM_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * random_world.h - programs, machine files, gaps, conditions and commands,
- * all at random
+ * random_world.h - random programs, machine files, gaps, conditions and
+ * commands
  */
 #ifndef RANDOM_WORLD_H
 #define RANDOM_WORLD_H
@@ -33,9 +33,9 @@ static inline void random_action(struct interp_build *b, uint64_t *s)
 {
 	static const enum interp_kind kinds[] = {
 		INTERP_DWELL, INTERP_STOP, INTERP_OPTIONAL_STOP, INTERP_AUX,
-		INTERP_MCODE,
+		INTERP_MCODE, INTERP_ELECTRODE,
 	};
-	const enum interp_kind k = kinds[rnd(s) % 5];
+	const enum interp_kind k = kinds[rnd(s) % 6];
 	const struct interp_mcode m = {
 		.sync = (uint8_t)(1 + rnd(s) % (INTERP_MCODE_NSYNC - 1)),
 		.back = (uint8_t)(rnd(s) % INTERP_MCODE_NBACK),
@@ -44,6 +44,8 @@ static inline void random_action(struct interp_build *b, uint64_t *s)
 	action(b, k, k == INTERP_AUX ? (uint32_t)(rnd(s) % INTERP_NAUX) :
 		     k == INTERP_MCODE ? interp_mcode_arg(
 				(uint8_t)(1 + rnd(s) % 255), m) :
+		     k == INTERP_ELECTRODE && rnd(s) % 2 ?
+				INTERP_ELECTRODE_STOP | 3 :
 				       (uint32_t)(rnd(s) % 20));
 }
 

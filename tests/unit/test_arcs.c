@@ -2,8 +2,9 @@
 /*
  * test_arcs.c - promises of arcs by two accumulators and by stored runs
  *
- * Every lattice start of a radius up to 40 pulses, both ways round, ends all
- * around; whole circles, helices, and arcs of less than a pulse.
+ * The arcs are: every start on the lattice with a radius up to 40 pulses, in
+ * both directions, with ends all around; whole circles; helices; and arcs of
+ * less than a pulse.
  */
 #include "walk_help.h"
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_at.c - the programmed point at a place is where the walk is
- */
+/* test_at.c - the programmed point at a place is where the walk is */
 #include "nc_read.h"
 
 #include "interp/at.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_axes.c - promises of axes under power: a start that awaits them, faults
- * that take it away, and who may give it back
+ * test_axes.c - promises of the power of the axes: a start that waits for it,
+ * faults that take it away, and who may give it back
  */
 #include "cycle_help.h"
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_bits.c - min-switch has nearly the fewest changes of axis, whatever mu
+ * test_bits.c - min-switch has nearly the fewest changes of axis, with any mu
  *
- * Random lines of 2 to 8 axes, mu along an axis or square to the line, walked
- * there, back and about; and what each strategy keeps to against the line that
- * was programmed, between pulses.
+ * Random lines of 2 to 8 axes, with mu along an axis or square to the line, are
+ * walked there, back and about.  For each strategy it is also tested how far it
+ * stays from the programmed line if the ends lie between pulses.
  */
 #include "walk_help.h"
 

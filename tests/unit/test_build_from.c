@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_build_from.c - a program that begins inside is the same from there on
+ * test_build_from.c - a program that begins inside another one is the same from
+ * there on
  *
- * Random texts of every dialect, by every strategy, from a random place, with
- * the axes anywhere.  The pulses behind the way in are those of the whole
- * program.  The seed is printed; EDM_RUNS is how many texts are tried.
+ * Random texts of every dialect, with every strategy, begin at a random place,
+ * with the axes anywhere.  The pulses behind the way in are those of the whole
+ * program.  The seed is printed; EDM_RUNS is the number of texts.
  */
 #include "compile_help.h"
 #include "random_compile.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * test_can402.c - promises of the master, on a bus that is a pair of sockets:
- * the other end is drives, a gap, and whoever else talks
+ * at the other end are drives, a gap sensor, and others that talk
  */
 #include "can402_bus.h"
 

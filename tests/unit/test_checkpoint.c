@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_checkpoint.c - the place on the disk: late, torn, foreign, and how much
+ * test_checkpoint.c - the place on the disk: written late, torn or foreign, and
+ * how many bytes are written
  */
 #include "checkpoint.h"
 #include "seed.h"

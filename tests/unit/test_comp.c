@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_comp.c - backlash and geometric errors between the path and the pulses
+ * test_comp.c - backlash and geometric errors, between the path and the pulses
  */
 #include "cycle_help.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_process.c - the values in force: machine file, condition, `set`
+ * test_conditions_set.c - the values in force: machine file, condition, `set`
  */
 #include "cycle_help.h"
 

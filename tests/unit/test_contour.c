@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_contour.c - wire offset, taper, guides and corners, by hand
+ * test_contour.c - wire offset, taper, guides and corners, with programs
+ * written by hand
  */
 #include "wire_help.h"
 

@@ -2,8 +2,8 @@
 /*
  * test_contour_random.c - the wire keeps its distance from random contours
  *
- * Seeds are printed.  Where the wire's axis crosses a plane is computed back
- * from the guides by similar triangles.
+ * Seeds are printed.  The place where the axis of the wire crosses a plane is
+ * computed back from the guides by similar triangles.
  */
 #include "wire_help.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_contouring.c - the cycle leads axes that lag: nearer to the path, never
- * far, nothing at rest
+ * test_contouring.c - the cycle leads lagging axes: they are nearer to the
+ * path, an addition is never large, and nothing is added at rest
  */
 #include "cycle_help.h"
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_couple.c - promises of lines in three to eight axes, one at a time
+ * test_couple.c - promises of lines in three to eight axes, one axis at a time
  *
- * Random moves whose seed is printed, each walked there, back and about.
+ * The moves are random, and their seed is printed.  Each is walked there, back
+ * and about.
  */
 #include "walk_help.h"
 

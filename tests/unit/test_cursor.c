@@ -2,7 +2,8 @@
 /*
  * test_cursor.c - promises of a walk along a program
  *
- * Exhaustive where it can be, else over random programs whose seed is printed.
+ * All cases are tested where that is possible; otherwise random programs, whose
+ * seed is printed.
  */
 #include "walk_help.h"
 

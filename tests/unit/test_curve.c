@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_curve.c - promises of NURBS in a program: the same points both ways
+ * test_curve.c - promises of NURBS in a program: the points are the same in
+ * both directions
  *
- * Over random curves; the seed is printed.
+ * The curves are random; the seed is printed.
  */
 #include "walk_help.h"
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_cycle_damage.c - a program whose head is sound and a segment is not
- */
+/* test_cycle_damage.c - a program with a sound head and a damaged segment */
 #include "cycle_help.h"
 
 static void spoil(struct interp_seg *s, int how)

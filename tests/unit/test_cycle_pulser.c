@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_cycle_pulser.c - the cycle in front of lines: busy periods, switches
+ * test_cycle_pulser.c - the cycle with step and direction lines: busy periods,
+ * switches
  */
 #include "cycle_help.h"
 #include "pulser.h"

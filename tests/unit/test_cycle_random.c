@@ -13,6 +13,7 @@
 #include "random_compile.h"
 #include "guard.h"
 #include "seed.h"
+#include "path/pace.h"
 #include "path/place.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -139,8 +140,27 @@ static uint64_t powered, beside, beside_retract;	/* cycles */
 static uint64_t led, settled;
 static enum cycle_state last;
 
-static double v_before;			/* speed asked for, a cycle ago */
+static double v_before, dv_before;	/* speed asked for, a cycle ago, and
+					 * what the axes could change it by */
 static uint16_t cond_before;
+
+/* The servo's own acceleration may be another one by then. */
+static double axes_dv_mm_s(struct cycle *c)
+{
+	const double own = c->gap.feed_a_mm_s2;
+	double dv;
+
+	c->gap.feed_a_mm_s2 = 0;
+	dv = pace_dv_mm_s(c);
+	c->gap.feed_a_mm_s2 = own;
+	return dv;
+}
+
+static double dv_of(const struct cycle *c)
+{
+	return c->gap.feed_a_mm_s2 > 0 ?
+	       fmin(dv_before, c->gap.feed_a_mm_s2 * PERIOD_S) : dv_before;
+}
 
 /*
  * Asked for no more than @limit, or slowing down as fast as it can.  What is
@@ -149,13 +169,13 @@ static uint16_t cond_before;
 static bool at_most(const struct cycle *c, double limit)
 {
 	return c->mover.v_mm_s <= limit + 1e-6 ||
-	       c->mover.v_mm_s <= v_before - servo_dv_mm_s(c) + 1e-6;
+	       c->mover.v_mm_s <= v_before - dv_of(c) + 1e-6;
 }
 
 static bool at_least(const struct cycle *c, double limit)
 {
 	return c->mover.v_mm_s >= limit - 1e-6 ||
-	       c->mover.v_mm_s >= v_before + servo_dv_mm_s(c) - 1e-6;
+	       c->mover.v_mm_s >= v_before + dv_of(c) - 1e-6;
 }
 
 static void check_erode(const struct cycle *c)
@@ -241,11 +261,12 @@ static void count_states(const struct cycle *c)
 	last = c->state;
 }
 
-static void check_cycle(const struct rig *r, const struct points *set)
+static void check_cycle(struct rig *r, const struct points *set)
 {
 	check_feed(r);
 	check_plc(r);
 	v_before = r->c.mover.v_mm_s;
+	dv_before = axes_dv_mm_s(&r->c);
 	cond_before = r->c.conditions.cond;
 	/* Stopped beside the path the job is over, and it stands there. */
 	if (r->c.loaded || memcmp(r->c.out.target, r->path_before,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_dense.c - promises of programs of very short lines, rounded as they are
- * written
+ * test_dense.c - promises of programs of very short lines whose ends are
+ * rounded
  */
 #include "cycle_help.h"
 
@@ -14,6 +14,7 @@ struct dense {
 	double mm;			/* of a line */
 	int decimals;
 	double deg_mm;			/* of C beside it */
+	bool cut;			/* not positioned */
 };
 
 static const double steps_mm[] = { 0.1, 0.02, 0.01, 0.005 };
@@ -25,9 +26,11 @@ static double rounded(double v, int decimals)
 	return round(v * grain) / grain;
 }
 
-static void dense_line(struct interp_build *b, const double *end)
+static void dense_line(struct interp_build *b, const double *end, bool rapid)
 {
-	const struct interp_build_word w = { .line = 1, .rapid = true };
+	const struct interp_build_word w = {
+		.line = 1, .rapid = rapid, .feed_mm_s = 80,
+	};
 	struct interp_diag d;
 
 	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
@@ -47,7 +50,7 @@ static struct interp_build *dense_arc(const struct dense *k)
 			[INTERP_C] = rounded(k->deg_mm * s, k->decimals),
 		};
 
-		dense_line(b, end);
+		dense_line(b, end, !k->cut);
 	}
 	return b;
 }
@@ -74,14 +77,14 @@ static void walk_there_and_back(struct interp_build *b, uint64_t ret[2])
 
 static void three_decimals_cost_no_more_than_long_lines(double deg_mm)
 {
-	const struct dense sparse = { 0.5, 6, deg_mm };
+	const struct dense sparse = { 0.5, 6, deg_mm, false };
 	uint64_t once[2], c[2];
 
 	walk_there_and_back(dense_arc(&sparse), once);
 	for (int i = 0; i < 4; i++) {
 		for (int decimals = 3; decimals <= 6; decimals++) {
 			const struct dense k = { steps_mm[i], decimals,
-						 deg_mm };
+						 deg_mm, false };
 
 			walk_there_and_back(dense_arc(&k), c);
 			for (int leg = 0; leg < 2; leg++)
@@ -91,6 +94,52 @@ static void three_decimals_cost_no_more_than_long_lines(double deg_mm)
 						 "%d cycles, long lines %d",
 						 k.mm, decimals, leg,
 						 (int)c[leg], (int)once[leg]);
+		}
+	}
+}
+
+/* Cycles of a retract under the gap servo, over most of the arc. */
+static int retract(const struct dense *d)
+{
+	struct cycle_config k = usual_config();
+	struct rig r;
+	int n = 0;
+
+	k.gap.retract_mm_s = 80;
+	k.gap.retract_limit_mm = 100;
+	k.gap.feed_max_mm_s = 40;
+	k.gap.gain_mm_s_v = 10;
+	rig_load(&r, dense_arc(d), &k);
+	tell(&r, CYCLE_START);
+	for (int i = 0; i < 10000 && place(&r) < 0.9 * ARC_MM; i++)
+		step(&r, SPARKING_V);
+	while (n < 10000 && place(&r) > 0.1 * ARC_MM) {
+		step(&r, SHORTED_V);
+		n++;
+	}
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	rig_free(&r);
+	return n;
+}
+
+static void in_retracts_three_decimals_are_as_quick(void **st)
+{
+	(void)st;
+	for (int deg = 0; deg < 10; deg += 7) {
+		const int once = retract(&(struct dense) { 0.5, 6, deg, true });
+
+		assert_in_range(once, 10, 9999);
+		for (int i = 0; i < 4; i++) {
+			for (int decimals = 3; decimals <= 6; decimals++) {
+				const struct dense k = { steps_mm[i], decimals,
+							 deg, true };
+				const int n = retract(&k);
+
+				if (n > 1.005 * once + 1)
+					fail_msg("%g mm, %d decimals, %d deg/mm: "
+						 "%d cycles, long lines %d",
+						 k.mm, decimals, deg, n, once);
+			}
 		}
 	}
 }
@@ -105,6 +154,7 @@ static void with_a_rotary_axis_too(void **st)
 {
 	(void)st;
 	three_decimals_cost_no_more_than_long_lines(1);
+	three_decimals_cost_no_more_than_long_lines(6);
 	three_decimals_cost_no_more_than_long_lines(7);
 }
 
@@ -123,7 +173,7 @@ static double slowest(double mm, double turn, double deg_mm)
 		end[INTERP_X] = rounded(s + t * cos(turn), 3);
 		end[INTERP_Y] = rounded(t * sin(turn), 3);
 		end[INTERP_C] = rounded(deg_mm * t, 3);
-		dense_line(b, end);
+		dense_line(b, end, true);
 	}
 	m = finish(b);
 	for (uint32_t i = 1; i + 2 < m.p.head->nsegs; i++)
@@ -153,6 +203,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(lines_of_three_decimals_are_as_quick),
 		cmocka_unit_test(with_a_rotary_axis_too),
+		cmocka_unit_test(in_retracts_three_decimals_are_as_quick),
 		cmocka_unit_test(true_corners_are_as_slow_as_between_long_lines),
 	};
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_dialect_read.c - dialects as files: those built in, and one's own
+ * test_dialect_read.c - dialects as files: those that are built in, and one of
+ * a user
  */
 #include "compile_help.h"
 

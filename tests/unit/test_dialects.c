@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_dialects.c - the dialects of wire machines, in small programs of each
+ * test_dialects.c - the dialects of wire machines, with small programs in each
  */
 #include "compile_help.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * test_edges.c - promises of io/edges.h, with a real thread: what it puts out,
- * however late it comes; how evenly is judged in the virtual machine
+ * with any lateness.  How even it is, is tested in the virtual machine.
  */
 #include "edges.h"
 

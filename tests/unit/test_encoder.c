@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_encoder.c - an encoder on an axis of pulses: counting, losing, making
- * good.  The lines are of this file, the counter is a file.
+ * test_encoder.c - an encoder on an axis of pulses: it counts, loses counts,
+ * and makes up for them.  The lines are made by this file, the counter is a
+ * file.
  */
 #include "encoder.h"
 #include "quadrature.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* test_eta.c - daemon/jobs/eta.h */
+/* test_eta.c - promises of daemon/jobs/eta.h */
 #include "compile_help.h"
 
 #include "eta.c"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_fit.c - promises of curves laid through points
- */
+/* test_fit.c - promises of curves through points */
 #include "walk_help.h"
 
 #include "curves.h"

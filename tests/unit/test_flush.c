@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_flush.c - promises of when a jump is due, and how high it goes
- */
+/* test_flush.c - promises of jumps: when one is due, and how high it goes */
 #include "cycle_help.h"
 
 static struct cycle_config jumping(void)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_ground.c - a short while positioning: debris over ground that was cut, a
- * collision anywhere else
+ * test_ground.c - a short while positioning: over ground that was cut it is
+ * debris, anywhere else a collision
  */
 #include "cycle_help.h"
 
@@ -58,6 +58,69 @@ static void a_short_on_the_way_out_of_a_cut_is_a_retract(void **st)
 	rig_free(&r);
 }
 
+/* X and Z lag by 1/30 s and are led. */
+static struct cycle_config led(void)
+{
+	struct cycle_config k = usual_config();
+
+	k.contouring = (struct contouring_config) {
+		.methods = INTERP_COMPENSATE_FEEDFORWARD,
+		.axes = 1u << INTERP_X | 1u << INTERP_Z, .ahead = 2,
+		.gains = { .velocity = 1, .lead_periods = 0.5 },
+	};
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		k.contouring.pulse_mm[i] = PULSE_MM;
+		k.contouring.loop[i] = (struct interp_axis_loop) {
+			.gain_1_s = 30, .velocity_hz = 60, .damping = 0.7,
+		};
+		k.contouring.most_mm[i] = 80 / 30.0;
+	}
+	return k;
+}
+
+static void axes_with_a_lead_brake_before_they_retract(void **st)
+{
+	const struct cycle_config k = led();
+	int32_t leap = 0;
+	struct rig r;
+
+	(void)st;
+	begin_way_out(&r, &k);
+	steps(&r, OPEN_V, 40);
+	assert_int_equal(r.c.state, STATE_TRAVEL);
+	assert_true(r.c.mover.v_mm_s > 1);
+	assert_false(contouring_rests(&r.c.contouring));
+	for (int n = 0; n < 300 && r.c.state == STATE_TRAVEL; n++) {
+		step(&r, SHORTED_V);
+		for (int i = 0; i < INTERP_NAXES; i++)
+			leap = (int32_t)fmax(leap, abs(r.out.target[i] -
+						       r.before.target[i]));
+	}
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	assert_true(contouring_rests(&r.c.contouring));
+	/* As far as it goes in a cycle at this speed, and no farther. */
+	assert_true(leap < 100);
+	until(&r, STATE_IDLE, OPEN_V, 20000);
+	assert_int_equal(r.c.outcome, OUTCOME_DONE);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	rig_free(&r);
+}
+
+/* It brakes, and comes over ground that was not cut: a collision after all. */
+static void with_a_lead_too_new_ground_is_a_collision(void **st)
+{
+	const struct cycle_config k = led();
+	struct rig r;
+
+	(void)st;
+	begin_way_out(&r, &k);
+	for (int n = 0; n < 2000 && r.out.target[INTERP_X] < 1000; n++)
+		step(&r, OPEN_V);
+	steps(&r, SHORTED_V, 5);
+	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
+	rig_free(&r);
+}
+
 static void on_new_ground_it_is_a_collision(void **st)
 {
 	const struct cycle_config k = usual_config();
@@ -108,6 +171,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_short_on_the_way_out_of_a_cut_is_a_retract),
+		cmocka_unit_test(axes_with_a_lead_brake_before_they_retract),
+		cmocka_unit_test(with_a_lead_too_new_ground_is_a_collision),
 		cmocka_unit_test(on_new_ground_it_is_a_collision),
 		cmocka_unit_test(over_an_arc_that_was_cut_it_is_a_retract),
 	};

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_guards.c - what is found in which state, and which verb is answered how
+ * test_guards.c - which fault is found in which state, and how each verb is
+ * answered
  *
- * The whole table: each cause of a fault that comes from outside, in each state,
- * and each verb while the cause is there.
+ * This is the whole table: each cause of a fault that comes from outside, in
+ * each state, and each verb while the cause is there.
  */
 #include "plc_help.h"
 

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_guards_random.c - what no order of inputs, commands and faults can break
+ * test_guards_random.c - what must hold for any order of inputs, commands and
+ * faults
  *
- * All inputs come and go by themselves, every verb is given at any time, jobs are
- * loaded and stopped, and what is forbidden is told from the inputs alone.
- * EDM_RUNS is the number of machines, of 4000 cycles each.
+ * All inputs come and go by themselves, every verb is given at any time, and
+ * jobs are loaded and stopped.  The test decides from the inputs alone what is
+ * forbidden.  EDM_RUNS is the number of machines, of 4000 cycles each.
  */
 #include "plc_help.h"
 #include "seed.h"

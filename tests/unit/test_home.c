@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_home.c - homing, and what an unhomed machine does not do
- */
+/* test_home.c - homing, and what a machine refuses before it is homed */
 #include "manual_help.h"
 
 static struct cycle_config home_config(enum home_method method)

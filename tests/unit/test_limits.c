@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_limits.c - promises of the speed ceilings of a program, and of moves
+ * test_limits.c - promises of the greatest speeds of a program, and of moves
  * that keep to them in both directions
  *
- * Random programs; the seed is printed.
+ * The programs are random; the seed is printed.
  */
 #include "cycle_help.h"
 
@@ -80,7 +80,7 @@ static void an_arc_is_limited_by_what_its_axes_can_do(void **st)
 		const double end[INTERP_NAXES] = { r, r };
 		/* A part is left to go along it. */
 		const double most = fmin(V_MAX, fmin(sqrt(0.8 * A_MAX * r),
-						     cbrt(J_MAX * r * r)));
+						     cbrt(0.3 * J_MAX * r * r)));
 		struct made m;
 		double v;
 

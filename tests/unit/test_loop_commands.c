@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_loop_commands.c - what edmd does with a command that comes by the socket
+ * test_loop_commands.c - what edmd does with a command from the socket
  *
- * The loop is stepped by hand.  Each test sends what a service could send that
- * is out of order, and looks at the answer, at the record of it, and whether an
- * axis has moved.
+ * The test steps the loop.  Each test sends something that a service should not
+ * send, and looks at the answer, at the record of it, and whether an axis has
+ * moved.
  */
 #include "resume_help.h"
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_hand.c - jogs, limit switches, steps from node to node
- */
+/* test_manual.c - jogs, limit switches, steps from node to node */
 #include "manual_help.h"
 
 /* -- Jogs ------------------------------------------------------------------ */

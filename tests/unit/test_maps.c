@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_maps.c - [axis.X] pitch_map and [geometry] maps: read, refused, and as
- * the cycle gets them
+ * test_maps.c - [axis.X] pitch_map and [geometry] maps: how they are read and
+ * refused, and what the cycle gets
  */
 #include "config.h"
 #include "cycle.h"

@@ -79,7 +79,6 @@ static void what_is_not_in_the_table_is_refused(void **state)
 	assert_refused("M69", 1, "unknown word M69", "m_before");
 	assert_refused("M256", 1, "unknown word M256", "m_free");
 	assert_refused("G63", 1, "unknown word G63", "G120");
-	assert_refused("T60", 1, "T60: the number of a tool", "T84");
 }
 
 static void two_of_a_side_on_a_line_are_refused(void **state)

@@ -2,7 +2,7 @@
 /*
  * test_mover.c - promises of a move along the path
  *
- * Over random limits, places and speeds; the seed is printed.
+ * Limits, places and speeds are random; the seed is printed.
  */
 #include "walk_help.h"
 

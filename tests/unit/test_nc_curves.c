@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * test_nc_curves.c - G5 G5.1 G5.2 G5.3 and G6.2: what they make, what is
- * refused, and lines joined into curves
+ * refused, and lines that are joined into curves
  */
 #include "nc_read.h"
 

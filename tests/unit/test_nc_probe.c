@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_nc_probe.c - what G38.2, G80 ... G82 and G160 ... G162 are made of
- */
+/* test_nc_probe.c - what G38.2, G80 ...  G82 and G160 ...  G162 become */
 #include "interp/compile.h"
 #include "nc_read.h"
 

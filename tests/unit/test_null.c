@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_null.c - the machine that is none
- */
+/* test_null.c - backend null, which is no machine */
 #include "io.h"
 
 #include <setjmp.h>

@@ -140,11 +140,12 @@ static void a_circle_is_round_and_as_long_as_it_is(void **state)
 	interp_nurbs_open(&e, &c);
 	for (int i = 0; i <= 1000; i++) {
 		struct interp_nurbs_point p;
+		struct interp_nurbs_way way;
 
 		interp_nurbs_at(&e, i / 1000.0, 0, &p);
 		assert_true(fabs(hypot(p.d[0][0], p.d[0][1]) - 50) < 1e-12);
-		assert_true(fabs(interp_nurbs_curvature(&e, i / 1000.0) -
-				 0.02) < 1e-12);
+		interp_nurbs_way(&e, i / 1000.0, &way);
+		assert_true(fabs(way.curvature - 0.02) < 1e-12);
 	}
 	assert_true(fabs(interp_nurbs_length(&e, 0, 1, 1e-9) -
 			 100 * M_PI) < 1e-9);
@@ -301,6 +302,7 @@ static void stops_pass_a_cusp(void **state)
 	const struct interp_nurbs_range range = { 0, 1, 1e-5 };
 	static struct interp_nurbs_stop stops[1000];
 	struct interp_nurbs_eval e;
+	struct interp_nurbs_way way;
 	double last = 0;
 	size_t n;
 
@@ -323,7 +325,8 @@ static void stops_pass_a_cusp(void **state)
 		assert_true(fabs(p.d[0][0] - (s < 5 ? s : 10 - s)) < 1e-3);
 		last = u;
 	}
-	assert_true(interp_nurbs_feed_mm_s(&e, 0.5,
+	interp_nurbs_way(&e, 0.5, &way);
+	assert_true(way.cusp && interp_nurbs_feed_mm_s(&c, &way,
 		    &(struct interp_nurbs_limits) { 1e-3, 1e-3, 100,
 			{ 80 }, { 1000 }, { 20000 } }) == 0);
 }

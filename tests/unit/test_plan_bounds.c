@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * What motion.h, box.h and apart.h of edm-plan promise: for how long two things
- * stay apart.  Each is followed through that time and looked at.
+ * test_plan_bounds.c - what motion.h, box.h and apart.h of edm-plan promise:
+ * for how long two bodies stay apart.  Each pair is followed through that time
+ * and looked at.
  *
  * EDM_SEED repeats a run, EDM_RUNS makes it longer.
  */

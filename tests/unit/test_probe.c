@@ -2,8 +2,8 @@
 /*
  * test_probe.c - segments that end where the machine says
  *
- * The work is walls at scripted places: contact where an axis is at one or
- * beyond it.
+ * The work is made of walls at given places: there is contact where an axis is
+ * at a wall or beyond it.
  */
 #include "cycle_help.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_progress.c - promises of path/progress.h: what stands and should move is
- * told, and a wait that has a name is none
+ * test_progress.c - promises of path/progress.h: a motion that stands and
+ * should move is reported, and a wait that has a name is not
  */
 #include "plc_help.h"
 

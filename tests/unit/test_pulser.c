@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_pulser.c - levels on step and direction lines, read back as a drive does
+ * test_pulser.c - levels on step and direction lines, read as a drive reads
+ * them
  */
 #include "pulser.h"
 #include "seed.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_resume.c - a killed edmd, and the one that comes after it
- */
+/* test_resume.c - edmd is killed, and another edmd comes after it */
 #include "resume_help.h"
 
 #include "key.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_resume_mcodes.c - M codes of a PLC, when edmd was killed beside them
+ * test_resume_mcodes.c - M codes of a PLC, if edmd is killed while they are
+ * under way
  */
 #include "resume_help.h"
 

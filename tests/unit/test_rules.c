@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_rules.c - promises of the two-axis line rules
+ * test_rules.c - promises of the rules for lines of two axes
  *
- * The rules by themselves, exhaustively on small lines and over random ones
- * whose seed is printed; then through the builder and the cursor.
+ * First the rules alone: all small lines, and random ones whose seed is
+ * printed; then through the builder and the cursor.
  */
 #include "walk_help.h"
 

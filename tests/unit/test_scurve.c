@@ -2,7 +2,7 @@
 /*
  * test_scurve.c - promises of a plan of constant jerk
  *
- * Over random limits and states; the seed is printed.
+ * Limits and states are random; the seed is printed.
  */
 #include "walk_help.h"
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_setup.c - the clock's reckoning and the real-time report
- */
+/* test_setup.c - how the clock counts periods, and the real-time report */
 #include "clock.h"
 #include "rt.h"
 

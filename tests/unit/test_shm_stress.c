@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_shm_stress.c - the crossings with a writer and a reader at full speed
+ * test_shm_stress.c - the crossings between threads, with a writer and a reader
+ * at full speed
  *
- * Far faster than any machine's cycle, so that readers do get overtaken.
- * Clean under the thread sanitizer, which sees all of it but the sequence
- * counter of a snapshot: that one is inline assembly of ConcurrencyKit, and
- * what it guards is checked word by word here.
+ * They are far faster than the cycle of any machine, so that readers are
+ * overtaken.  The thread sanitizer finds nothing; it sees everything but the
+ * sequence counter of a snapshot, which is inline assembly of ConcurrencyKit.
+ * What that counter guards is compared here word by word.
  */
 #include "shm.h"
 

@@ -2,7 +2,7 @@
 /*
  * test_sim.c - promises of the simulated gap
  *
- * The electrode is put where the test wants it; what the gap says is read.
+ * The test puts the electrode somewhere and reads what the gap says.
  */
 #include "sim_help.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * test_sim_process.c - promises of the simulated process: pulses, craters,
- * flushing, arcs, axes, the wire; and that nothing breaks it
+ * flushing, arcs, axes, the wire; nothing may break it
  */
 #include "sim_help.h"
 

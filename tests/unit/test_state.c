@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_state.c - promises of the two tables
- */
+/* test_state.c - promises of the two tables of states */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_store.c - the store on disks that are full, read-only, broken or cut off
+ * test_store.c - the store on disks that are full, read-only, damaged or cut
+ * off
  */
 #include "store.h"
 #include "store_tally.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_tech.c - technology tables: read, refused, written, found
- */
+/* test_tech.c - technology tables: reading, refusing, writing, finding */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>

@@ -2,8 +2,8 @@
 /*
  * test_threeb.c - records of 3B and 4B, read and written
  *
- * The published vectors: twelve blocks of one drawing, given as 3B and as ISO
- * code side by side, and a circle of 10 mm cut 0.1 mm inside.
+ * The published examples are: twelve blocks of one drawing, given as 3B and as
+ * ISO code, and a circle of 10 mm that is cut 0.1 mm inside.
  */
 #include "compile_help.h"
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_threeb_refusals.c - 3B and 4B that is refused, and where
- */
+/* test_threeb_refusals.c - which 3B and 4B is refused, and where */
 #include "compile_help.h"
 
 static const struct bad {

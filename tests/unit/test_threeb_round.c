@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_threeb_round.c - ISO code to 3B and back to ISO code, at random
- */
+/* test_threeb_round.c - random ISO code to 3B and back to ISO code */
 #include "compile_help.h"
 
 #define NCONTOURS	10000

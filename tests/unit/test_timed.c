@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_timed.c - promises of a part that ends by time as well as by depth
+ * test_timed.c - promises of a part of a program that may end by time as well
+ * as by depth
  */
 #include "cycle_help.h"
 #include "path/place.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_tiny_arcs.c - promises of arcs of a few pulses, all of them
+ * test_tiny_arcs.c - promises of all arcs of a few pulses
  *
- * Every centre, start and end of a small lattice, both ways round, by every
- * strategy: each arc is walked to its end and back, the right way round, or
- * refused.
+ * Every centre, start and end of a small lattice, in both directions, with
+ * every strategy: each arc is walked in the right direction to its end and
+ * back, or refused.
  */
 #include "walk_help.h"
 #include "seed.h"

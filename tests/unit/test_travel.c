@@ -2,7 +2,7 @@
 /*
  * test_travel.c - promises of positioning over segments of many speeds
  *
- * Random programs; the seed is printed.
+ * The programs are random; the seed is printed.
  */
 #include "cycle_help.h"
 #include "seed.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * test_trust.c - whose packet is taken, and that none is taken twice
- */
+/* test_trust.c - whose packets are accepted, and that none is accepted twice */
 #include "trust.h"
 
 #include <errno.h>

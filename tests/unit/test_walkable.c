@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_walkable.c - what is accepted is walked to its end, there and back
+ * test_walkable.c - a program that is accepted can be walked to its end, there
+ * and back
  *
- * Random texts of every dialect, by every strategy, in periods of 50 us to 20
- * ms, with jerks of 1e4 to 1e8 mm/s3.  The seed is printed; EDM_RUNS is how
- * many texts are tried.
+ * Random texts of every dialect, with every strategy, in periods of 50 us to 20
+ * ms, with jerks of 1e4 to 1e8 mm/s3.  The seed is printed; EDM_RUNS is the
+ * number of texts.
  */
 #include "cycle_help.h"
 #include "random_compile.h"

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * axis-sim - an axis of a motor on step and direction, with an encoder
+ * axis-sim - an axis with a motor on step and direction lines, and an encoder
  *
  *	axis-sim TRACE-PIPE STEP DIR PULL-A PULL-B COMMANDS PLACE
  *
- * What is driven on lines STEP and DIR comes from the kernel's trace, events
- * gpio_value; A and B are moved by the pulls of a simulated chip.  A pulse is
- * two counts.  Each line of the FIFO COMMANDS is a number: the axis slips back
- * by so many pulses.  File PLACE has where the axis truly is, in counts.
+ * The kernel's trace, events gpio_value, says what is driven on the lines STEP
+ * and DIR.  The pulls of a simulated chip move A and B.  A pulse is two counts.
+ * Each line of the FIFO COMMANDS is a number: the axis slips back by so many
+ * pulses.  The file PLACE has the true place of the axis, in counts.
  */
 #include <fcntl.h>
 #include <poll.h>

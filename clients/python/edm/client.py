@@ -306,11 +306,13 @@ class Client:
 
     def submit(self, text: bytes, name: str, id: str | None = None,
                hold: bool = False, timeout: float = 120.0,
-               from_line: int = 0, from_mm: float = 0.0) -> Job:
+               from_line: int = 0, from_mm: float = 0.0,
+               electrode: int = 0) -> Job:
         """Send a job; returns when it is in the queue.
 
         from_line, from_mm: begin at this line of the text, or at this place
         of its path; the job then waits for start.
+        electrode: it begins with this one; 0: with the one in the holder.
         id: the same id twice is one job; drawn without.
         name: for people; its end names the dialect.
         timeout: for all of it, compiling too.
@@ -326,7 +328,7 @@ class Client:
         def chunk(i: int) -> bytes:
             return Chunk(job, name, len(text), digest, i, len(pieces),
                          i * CHUNK, hold, pieces[i], from_line,
-                         from_mm).encode(
+                         from_mm, electrode).encode(
                              self.name, seqs[i], time.time_ns() // 1000)
 
         try:

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
-JOB_CHUNK = bytes.fromhex("939a006c067ff836")
-STATUS = bytes.fromhex("145ae31af6e30f78")
+JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
+STATUS = bytes.fromhex("d6afeb84f882f7aa")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -158,6 +158,9 @@ class Status:
     interrupted: str
     lost: str
     hunts: int
+    electrode: int
+    electrode_shift_mm: float
+    electrode_wear_mm: float
 
     @staticmethod
     def decode(data: bytes) -> Status:
@@ -196,6 +199,9 @@ class Status:
             r.string(),
             r.string(),
             r.int32(),
+            r.int32(),
+            r.double(),
+            r.double(),
         )
 
 
@@ -222,12 +228,14 @@ class Chunk:
     data: bytes
     from_line: int = 0
     from_mm: float = 0.0
+    electrode: int = 0
 
     def encode(self, client: str, seq: int, utime: int = 0) -> bytes:
         return (JOB_CHUNK + struct.pack(">q", utime) + string(client)
                 + struct.pack(">q", seq) + string(self.job)
                 + string(self.name) + struct.pack(">q", self.size)
                 + self.sha256
-                + struct.pack(">iiqbidi", self.chunk, self.chunks,
+                + struct.pack(">iiqbidii", self.chunk, self.chunks,
                               self.offset, self.hold, self.from_line,
-                              self.from_mm, len(self.data)) + self.data)
+                              self.from_mm, self.electrode,
+                              len(self.data)) + self.data)

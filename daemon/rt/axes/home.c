@@ -3,7 +3,8 @@
  * home.c - homing: a table of one function per phase
  *
  * Each takes a period and says which phase the next one is in; each is bound
- * by a way, after which the fault is home-not-found.
+ * by a way, after which the fault is home-not-found.  A phase that ends goes on
+ * moving in its last period too: a period without a way would be a jolt.
  */
 #include "axes/manual.h"
 #include "io.h"
@@ -126,34 +127,37 @@ static enum home_phase clear(struct cycle *c, const struct io_inputs *in)
 	const double goal = h->phase_mm - a->home_toward * a->home_back_mm;
 
 	if (is_on(c, in->home))
-		return HOME_LEAVE;
+		return leave(c, in);
 	manual_move(c, mover_step(&h->mover, &l, goal - h->gone_mm));
 	return h->mover.v_mm_s == 0 &&
 	       fabs(goal - h->gone_mm) < 2 * MOVER_ONTO_MM ? HOME_ONTO :
 							    HOME_CLEAR;
 }
 
+/* What homing looks for is here. */
+static enum home_phase meet(struct cycle *c)
+{
+	c->manual.met = pulses(c);
+	stop(c);
+	return HOME_STAND;
+}
+
 static enum home_phase go_onto(struct cycle *c, const struct io_inputs *in)
 {
 	const struct manual_axis *a = manual_axis(c);
 
-	if (is_on(c, in->home)) {
-		c->manual.met = pulses(c);
-		return a->method == HOME_SWITCH_INDEX ? HOME_INDEX :
-							 HOME_STAND;
-	}
+	if (is_on(c, in->home) && a->method != HOME_SWITCH_INDEX)
+		return meet(c);
 	run(c, a->home_toward, a->home_slow_mm_s);
-	return HOME_ONTO;
+	return is_on(c, in->home) ? HOME_INDEX : HOME_ONTO;
 }
 
 static enum home_phase seek_index(struct cycle *c, const struct io_inputs *in)
 {
 	const struct manual_axis *a = manual_axis(c);
 
-	if (is_on(c, in->index)) {
-		c->manual.met = pulses(c);
-		return HOME_STAND;
-	}
+	if (is_on(c, in->index))
+		return meet(c);
 	run(c, a->home_toward, a->home_slow_mm_s);
 	return HOME_INDEX;
 }

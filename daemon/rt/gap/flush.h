@@ -31,7 +31,8 @@
 struct flush_trial {
 	uint32_t jumps;
 	double depth_mm, cycles;
-	double before;			/* rate of the trial before, mm a cycle */
+	double before;			/* rate of the trial before, mm a
+					 * cycle */
 	bool seldomer;			/* the period is growing */
 };
 

@@ -209,7 +209,8 @@ static double arcing_by_voltage(const struct cycle *c, struct gap_memory *m,
 	}
 	m->arcing_mean_v += d / n;
 	m->arcing_var_v2 += (d * d - m->arcing_var_v2) / n;
-	return (double)m->arcing_cycles > n && m->arcing_mean_v >= c->gap.short_v &&
+	return (double)m->arcing_cycles > n &&
+	       m->arcing_mean_v >= c->gap.short_v &&
 	       m->arcing_mean_v <= gap_window_high_v(c) &&
 	       m->arcing_var_v2 < c->gap.arcing_sigma_v *
 				  c->gap.arcing_sigma_v ? 1 : 0;

@@ -61,7 +61,18 @@ void retract_begin(struct cycle *c)
 	r->least_mm = arcing_retract_mm(c);
 	r->waited = 0;
 	r->cycles = 0;
+	r->leaves = c->gap.retract_escape && !escape_is_out(&c->escape);
 	count(c);
+}
+
+bool retract_leave(struct cycle *c)
+{
+	if (c->mover.v_mm_s != 0)
+		return false;
+	c->retract.leaves = false;
+	if (escape_begin(c))
+		c->retract.floor_mm = floor_of(c);
+	return true;
 }
 
 static double back_mm(const struct cycle *c)

@@ -25,12 +25,16 @@ struct retract {
 	uint32_t in_row;		/* retracts without erosion between */
 	double far_mm;			/* the farthest place when the first of
 					 * them began */
+	bool leaves;			/* by the escape, once it stands */
 };
 
 struct cycle;
 
 /** retract_begin() - where the state is entered. */
 void retract_begin(struct cycle *c);
+
+/** retract_leave() - by the escape, if it stands now; false: it has to brake. */
+bool retract_leave(struct cycle *c);
 
 /** retract_is_clear() - the gap is wide again, and it went far enough. */
 bool retract_is_clear(const struct cycle *c);

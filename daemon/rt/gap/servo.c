@@ -4,17 +4,13 @@
  */
 #include "gap/servo.h"
 #include "path/laws.h"
+#include "path/pace.h"
 #include "path/place.h"
+#include "path/timed.h"
 
 #include <math.h>
 
 #define FADE_S		0.1		/* of a change of gains */
-
-double servo_dv_mm_s(const struct cycle *c)
-{
-	return c->gap.feed_a_mm_s2 > 0 ?
-	       c->gap.feed_a_mm_s2 * law_period_s(c) : INFINITY;
-}
 
 static double seg_limit(const struct cycle *c, double v_mm_s)
 {
@@ -28,22 +24,10 @@ static double cut_limit(const struct cycle *c, double v_mm_s)
 						   v_mm_s;
 }
 
-/* Towards a speed, as fast as the axes may change theirs: usually at once. */
+/* Forward, as far as the path goes. */
 static double go_toward(struct cycle *c, double v_mm_s)
 {
-	const double dv = servo_dv_mm_s(c), was = c->mover.v_mm_s;
-
-	return law_go_at(c, fmin(fmax(v_mm_s, was - dv), was + dv));
-}
-
-/* The fastest speed that can still be braked within what is left, after a cycle
- * at that speed. */
-static double stop_within(const struct cycle *c, double left_mm)
-{
-	const double dv = servo_dv_mm_s(c);
-
-	return isinf(dv) ? INFINITY :
-	       sqrt(dv * dv + 2 * c->gap.feed_a_mm_s2 * left_mm) - dv;
+	return pace_go(c, v_mm_s, INFINITY);
 }
 
 /* Back, onto a place and not beyond. */
@@ -52,9 +36,20 @@ static double go_back(struct cycle *c, double v_mm_s, double floor_mm)
 	const double left = place_mm(c) - floor_mm;
 
 	if (left <= MOVER_ONTO_MM)
-		return fmax(go_toward(c, 0), 0);
-	return fmax(go_toward(c, -fmin(v_mm_s, stop_within(c, left))),
-		    -left - MOVER_ONTO_MM);
+		return fmax(pace_go(c, 0, floor_mm), 0);
+	return fmax(pace_go(c, -v_mm_s, floor_mm), -left - MOVER_ONTO_MM);
+}
+
+bool servo_rests(const struct cycle *c)
+{
+	return fabs(c->mover.v_mm_s) <= pace_dv_mm_s(c);
+}
+
+/* It would go on from here beside the path, or back along it. */
+static bool lifts(const struct cycle *c)
+{
+	return (c->state == STATE_ERODE && flush_due(c)) ||
+	       (timed_is_up(c) && !escape_is_out(&c->escape));
 }
 
 /* -- Approach -------------------------------------------------------------- */
@@ -69,7 +64,7 @@ double law_approach(struct cycle *c)
 	const double v = fmin(c->sensed.now_v, c->sensed.signal_v);
 	const double feed = g->gain_mm_s_v * (v - gap_window_high_v(c));
 
-	if (c->sensed.contact || feed < 0)
+	if (c->sensed.contact || feed < 0 || lifts(c))
 		return go_toward(c, 0);
 	return go_toward(c, cut_limit(c, c->sensed.is_open ? g->approach_mm_s :
 					 fmin(feed, g->approach_mm_s)));
@@ -152,6 +147,10 @@ double law_erode(struct cycle *c)
 
 	c->servo.fade_mm_s *= fmax(0, 1 - law_period_s(c) / FADE_S);
 	adopt(c, &l, v);
+	if (lifts(c)) {
+		c->servo.asked_mm_s = 0;
+		return go_toward(c, 0);
+	}
 	if (v > l.high_v)
 		return erode_forward(c, forward(&l, v));
 	if (v < l.low_v)
@@ -164,5 +163,8 @@ double law_erode(struct cycle *c)
 
 double law_retract(struct cycle *c)
 {
-	return go_back(c, c->gap.retract_mm_s, c->retract.floor_mm);
+	const bool waits = c->retract.leaves && !retract_leave(c);
+
+	return go_back(c, waits ? 0 : c->gap.retract_mm_s,
+		       c->retract.floor_mm);
 }

@@ -12,10 +12,10 @@
  * When the values in force change, the feed makes no step: the difference is
  * kept and fades.
  *
- * In approach, erode and retract the speed changes by no more than
- * feed_a_mm_s2. So after a contact it goes on for v * period + v * v / (2 *
- * feed_a); up to a speed of feed_a * period that is no more than the distance
- * of one cycle.
+ * In approach, erode and retract the speed changes by no more than feed_a_mm_s2
+ * and than what the axes allow (path/pace.h).  So after a contact it goes on for
+ * v * period + v * v / (2 * a); up to a speed of a * period that is no more than
+ * the distance of one cycle.
  *
  * Threads: RT-safe.
  */
@@ -39,11 +39,13 @@ struct servo {
 
 struct cycle;
 
+/**
+ * servo_rests() - it stands, or can within a cycle: a lift may begin.  While one
+ * is due, the servo brakes.
+ */
+bool servo_rests(const struct cycle *c);
+
 /** servo_reset() - forget the integral; a retract or positioning begins. */
 void servo_reset(struct cycle *c);
-
-/** servo_dv_mm_s() - the most that the speed may change in a cycle; INFINITY:
- *  any. */
-double servo_dv_mm_s(const struct cycle *c);
 
 #endif /* RT_SERVO_H */

@@ -51,18 +51,6 @@ static double speed_here(const struct cycle *c, const struct ahead_move *w,
 	return v;
 }
 
-static void soften(struct mover_limits *l, const struct interp_seg *s)
-{
-	const double a = (double)s->a_mm_s2, j = (double)s->j_mm_s3;
-
-	if (s->kind >= INTERP_BEGIN)
-		return;
-	l->a_max_mm_s2 = fmin(l->a_max_mm_s2, a);
-	if (l->a_back_mm_s2 > 0)
-		l->a_back_mm_s2 = fmin(l->a_back_mm_s2, a);
-	l->j_max_mm_s3 = fmin(l->j_max_mm_s3, j);
-}
-
 /*
  * What every axis allows, from here to where the move ends or has to stop: it
  * is the same for the whole of a move, so what can be met can be met to its end.
@@ -88,7 +76,7 @@ static struct mover_limits limits_of(const struct cycle *c,
 		    (w->toward > 0 ? s->s_mm >= w->goal_mm :
 				     s->s_mm + s->length_mm <= w->goal_mm))
 			break;
-		soften(&l, s);
+		law_soften(&l, s);
 		if (hop == 0 || (w->toward > 0 ? hop >= p->head->nsegs - i :
 						 hop > i))
 			break;
@@ -313,6 +301,7 @@ double ahead_distance(struct cycle *c, const struct ahead_move *w)
 	if (c->mover.v_mm_s == w->toward * v && c->mover.a_mm_s2 == 0 &&
 	    c->ahead.room_mm > step) {
 		c->ahead.room_mm -= step;
+		c->mover.mean_mm_s = c->mover.v_mm_s;
 		return w->toward * step;
 	}
 	if (w->toward * c->mover.v_mm_s >

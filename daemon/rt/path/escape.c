@@ -6,7 +6,7 @@
  * to the nearest pulse. No axis has more than n pulses to go, so none makes
  * more than one pulse in a tick.
  */
-#include "cycle.h"
+#include "path/place.h"
 
 #include <math.h>
 #include <string.h>
@@ -34,7 +34,7 @@ static bool pulses_at(const struct cycle *c, int axis, double mm, int32_t *ret)
 	if (!(fabs(at) <= INTERP_PULSES_MAX))
 		return false;
 	*ret = (int32_t)llround(at);
-	return probe_in_travel(c, axis, *ret);
+	return place_in_travel(c, axis, *ret);
 }
 
 static double leg_length(const struct cycle *c, const struct escape_leg *l)
@@ -125,9 +125,13 @@ bool escape_begin(struct cycle *c)
 		&c->cursor.p.escapes[c->cursor.seg.escape];
 	struct escape *e = &c->escape;
 
-	*e = (struct escape) { .v_max_mm_s = x->v_max_mm_s };
+	*e = (struct escape) {
+		.v_max_mm_s = x->v_max_mm_s, .a_max_mm_s2 = x->a_max_mm_s2,
+		.j_max_mm_s3 = x->j_max_mm_s3,
+	};
 	memcpy(e->pos, c->cursor.pos, sizeof(e->pos));
-	if (!(x->v_max_mm_s > 0) || !legs(c, x))
+	if (!(x->v_max_mm_s > 0 && x->a_max_mm_s2 > 0 && x->j_max_mm_s3 > 0) ||
+	    !legs(c, x))
 		e->nlegs = 0;
 	memcpy(e->pos, c->cursor.pos, sizeof(e->pos));
 	return e->nlegs > 0;
@@ -218,7 +222,7 @@ bool escape_by(struct cycle *c, double ds_mm)
 				(double)l->ticks)))
 		e->way_mm = l->start_mm + length * (double)e->tick /
 					  (double)l->ticks;
-	probe_target(c, e->pos);
+	place_target(c, e->pos);
 	c->feed_mm_s = (was - e->way_mm) / period_s;
 	if (ds_mm < 0)
 		more = e->way_mm < e->length_mm;
@@ -284,7 +288,7 @@ bool escape_find(struct cycle *c, const int32_t pos[INTERP_NAXES])
 			continue;
 		e->way_mm = l->start_mm + (l->end_mm - l->start_mm) *
 			    (double)e->tick / (double)l->ticks;
-		probe_target(c, e->pos);
+		place_target(c, e->pos);
 		return true;
 	}
 	e->nlegs = 0;

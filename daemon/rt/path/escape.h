@@ -39,7 +39,8 @@ struct escape {
 	int64_t tick;			/* on it */
 	double way_mm;			/* from the path, 0 ... length_mm */
 	double length_mm;
-	double v_max_mm_s;		/* its axes allow no more */
+	/* Its axes allow no more: */
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 	int32_t pos[INTERP_NAXES];	/* pulses */
 	uint32_t moved;			/* bit per axis moved by the last point */
 };

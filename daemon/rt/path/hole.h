@@ -22,7 +22,9 @@ struct cycle;
 /** hole_begin() - hold.to_mm and hold.seek for a way back from here. */
 void hole_begin(struct cycle *c);
 
-/** hole_follow() - once a cycle, until it is found: while hold.seek is not 0. */
+/**
+ * hole_follow() - once a cycle, until it is found: while hold.seek is not 0.
+ */
 void hole_follow(struct cycle *c);
 
 #endif /* RT_HOLE_H */

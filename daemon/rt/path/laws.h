@@ -13,6 +13,8 @@
 
 #include "cycle.h"
 
+#include <math.h>
+
 static inline double law_period_s(const struct cycle *c)
 {
 	return (double)c->config.period_ns * 1e-9;
@@ -41,6 +43,19 @@ static inline struct mover_limits law_travel_limits(const struct cycle *c,
 		.j_max_mm_s3 = c->config.travel_j_mm_s3,
 		.period_s = law_period_s(c),
 	};
+}
+
+/* By what the axes of a segment allow. */
+static inline void law_soften(struct mover_limits *l, const struct interp_seg *s)
+{
+	const double a = (double)s->a_mm_s2, j = (double)s->j_mm_s3;
+
+	if (s->kind >= INTERP_BEGIN)
+		return;
+	l->a_max_mm_s2 = fmin(l->a_max_mm_s2, a);
+	if (l->a_back_mm_s2 > 0)
+		l->a_back_mm_s2 = fmin(l->a_back_mm_s2, a);
+	l->j_max_mm_s3 = fmin(l->j_max_mm_s3, j);
 }
 
 /* servo.c: the gap. */

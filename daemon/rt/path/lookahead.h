@@ -33,8 +33,10 @@ struct lookahead {
 	struct interp_scurve_limits l;	/* in the direction of the move */
 	struct interp_scurve_state s;	/* after the cycle */
 	double let_go_mm_s;		/* without acceleration, after that */
-	double plan_mm_s;		/* of the plan's place; INFINITY: none */
-	struct interp_scurve brake;	/* to a stand at once, if there is one */
+	double plan_mm_s;		/* of the plan's place; INFINITY:
+					 * none */
+	struct interp_scurve brake;	/* to a stand at once, if there is
+					 * one */
 	double need_mm;			/* nothing beyond can be missed */
 	double scale;			/* of ceilings: the override, up to 1 */
 	bool guessing;			/* what follows was not looked at */
@@ -60,7 +62,9 @@ static inline double lookahead_override(const struct cycle *c,
  */
 const struct interp_seg *lookahead_toward(const struct cycle *c, int toward);
 
-/** lookahead_from() - fill in what is found, from @s, where the plan leads to. */
+/**
+ * lookahead_from() - fill in what is found, from @s, where the plan leads to.
+ */
 void lookahead_from(struct lookahead *k, struct interp_scurve_state s);
 
 #endif /* RT_LOOKAHEAD_H */

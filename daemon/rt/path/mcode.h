@@ -28,7 +28,8 @@ struct cycle;
 struct mcode {
 	uint8_t number;			/* told to the PLC; 0: none */
 	bool done;			/* that of segment `at` was answered */
-	bool busy;			/* the PLC's last answer is still there */
+	bool busy;			/* the PLC's last answer is still
+					 * there */
 	uint32_t at;			/* segment in front of which it waits */
 	uint32_t back_to;		/* lowest segment walked back to, or
 					 * that of the last code */

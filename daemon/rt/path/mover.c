@@ -22,7 +22,7 @@ struct interp_scurve_limits mover_curve(const struct mover_limits *l)
 
 void mover_set(struct mover *m, double v_mm_s)
 {
-	m->v_mm_s = v_mm_s;
+	m->v_mm_s = m->mean_mm_s = v_mm_s;
 	m->a_mm_s2 = 0;
 	m->kind = MOVER_NO_PLAN;
 }
@@ -96,6 +96,7 @@ double mover_go(struct mover *m, double period_s)
 {
 	const struct interp_scurve_state s = mover_peek(m, period_s);
 
+	m->mean_mm_s = s.x_mm / period_s;
 	if (stands_there(m))
 		return s.x_mm;
 	m->t_s += period_s;
@@ -115,8 +116,10 @@ double mover_step(struct mover *m, const struct mover_limits *l,
 
 double mover_run(struct mover *m, const struct mover_limits *l, double v_mm_s)
 {
-	if (m->v_mm_s == v_mm_s && m->a_mm_s2 == 0)
+	if (m->v_mm_s == v_mm_s && m->a_mm_s2 == 0) {
+		m->mean_mm_s = v_mm_s;
 		return v_mm_s * l->period_s;
+	}
 	mover_aim_speed(m, l, v_mm_s);
 	return mover_go(m, l->period_s);
 }

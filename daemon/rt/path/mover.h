@@ -38,7 +38,8 @@ struct mover_limits {
 };
 
 struct mover {
-	double v_mm_s, a_mm_s2;		/* signed */
+	double v_mm_s, a_mm_s2;		/* signed, at the end of the cycle */
+	double mean_mm_s;		/* of that cycle */
 	enum mover_plan kind;
 	double goal;			/* mm left when planned, or mm/s */
 	double pass_mm_s;		/* speed at the place; 0: stand there */

@@ -47,4 +47,19 @@ static inline uint32_t place_moved(const struct cycle *c)
 	return escape_is_out(&c->escape) ? c->escape.moved : c->cursor.moved;
 }
 
+/** place_in_travel() - may the axis be where the program's @pos is? */
+static inline bool place_in_travel(const struct cycle *c, int axis, int64_t pos)
+{
+	pos += c->probe.shift[axis];
+	return pos >= c->config.travel_min[axis] &&
+	       pos <= c->config.travel_max[axis];
+}
+
+/** place_target() - send the axes to where the program's @pos is. */
+static inline void place_target(struct cycle *c, const int32_t pos[INTERP_NAXES])
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		c->out.target[i] = pos[i] + c->probe.shift[i];
+}
+
 #endif /* RT_PLACE_H */

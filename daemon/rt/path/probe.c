@@ -4,6 +4,7 @@
  */
 #include "path/probe.h"
 #include "path/laws.h"
+#include "path/pace.h"
 #include "path/place.h"
 
 #include <math.h>
@@ -45,19 +46,6 @@ static double left_mm(const struct cycle *c)
 	return s->s_mm + s->length_mm - SHY_MM - place_mm(c);
 }
 
-bool probe_in_travel(const struct cycle *c, int axis, int64_t pos)
-{
-	pos += c->probe.shift[axis];
-	return pos >= c->config.travel_min[axis] &&
-	       pos <= c->config.travel_max[axis];
-}
-
-void probe_target(struct cycle *c, const int32_t pos[INTERP_NAXES])
-{
-	for (int i = 0; i < INTERP_NAXES; i++)
-		c->out.target[i] = pos[i] + c->probe.shift[i];
-}
-
 bool probe_is_start(const struct cycle *c, const struct interp_cursor *at)
 {
 	for (int i = 0; i < INTERP_NAXES; i++)
@@ -77,7 +65,7 @@ void probe_load(struct cycle *c)
 	};
 	memcpy(t->shift, was->shift, sizeof(t->shift));
 	memcpy(t->found, was->found, sizeof(t->found));
-	probe_target(c, c->cursor.pos);
+	place_target(c, c->cursor.pos);
 }
 
 /* Along which axis, and which way: 0 if along none. */
@@ -179,9 +167,17 @@ static bool is_there(const struct cycle *c)
 	       fabs(c->probe.to_mm - place_mm(c)) < 2 * MOVER_ONTO_MM;
 }
 
+static struct mover_limits limits(const struct cycle *c, double v_max_mm_s)
+{
+	struct mover_limits l = law_travel_limits(c, v_max_mm_s);
+
+	law_soften(&l, segment(c));
+	return l;
+}
+
 static double go_to(struct cycle *c, double v_max_mm_s)
 {
-	const struct mover_limits l = law_travel_limits(c, v_max_mm_s);
+	const struct mover_limits l = limits(c, v_max_mm_s);
 
 	return mover_step(&c->mover, &l, c->probe.to_mm - place_mm(c));
 }
@@ -189,7 +185,7 @@ static double go_to(struct cycle *c, double v_max_mm_s)
 static double go(struct cycle *c)
 {
 	const double by = fmin(c->override, 1);
-	const struct mover_limits l = law_travel_limits(c, 1);
+	const struct mover_limits l = limits(c, 1);
 
 	if (is_there(c)) {
 		finish(c);
@@ -223,19 +219,19 @@ static double feed_mm_s(const struct cycle *c)
 
 static double forward(struct cycle *c, double v_mm_s)
 {
-	const double v = fmin(v_mm_s, c->mover.v_mm_s + servo_dv_mm_s(c));
 	const double left = left_mm(c);
 
 	if (left > 0)
-		return law_go_at(c, fmin(v, left / law_period_s(c)));
+		return fmin(pace_go(c, v_mm_s, place_mm(c) + left), left);
 	fault_latch(&c->fault, FAULT_NO_CONTACT);
 	return 0;
 }
 
 static void begin_back(struct cycle *c)
 {
+	/* It may have braked farther than that beyond the contact. */
 	c->probe.to_mm = fmax(segment(c)->s_mm,
-			      place_mm(c) - c->config.probe.back_mm);
+			      c->probe.met_mm - c->config.probe.back_mm);
 	c->probe.phase = PROBE_BACK;
 }
 
@@ -266,10 +262,10 @@ static double settle(struct cycle *c)
 
 static double stop(struct cycle *c)
 {
-	const double v = fmax(0, c->mover.v_mm_s - servo_dv_mm_s(c));
+	const double left = left_mm(c);
 
-	if (v > 0 && left_mm(c) > 0)
-		return law_go_at(c, fmin(v, left_mm(c) / law_period_s(c)));
+	if (left > 0 && c->mover.v_mm_s > pace_dv_mm_s(c))
+		return fmin(pace_go(c, 0, place_mm(c) + left), left);
 	mover_set(&c->mover, 0);
 	begin_back(c);
 	if (c->config.probe.back_mm <= 0)
@@ -298,16 +294,21 @@ static double back(struct cycle *c)
 	return 0;
 }
 
-/* Farther than the first contact by all of back_mm: that was not the work. */
+/*
+ * So slow that it stands within the cycle of the contact.  Farther than the
+ * first contact by all of back_mm: that was not the work.
+ */
 static double fine(struct cycle *c)
 {
+	const double v = fmin(c->config.probe.fine_mm_s, pace_dv_mm_s(c));
+
 	if (c->probe.contact) {
 		finish(c);
 		return 0;
 	}
 	if (place_mm(c) > c->probe.met_mm + c->config.probe.back_mm)
 		c->probe.phase = PROBE_FAST;
-	return forward(c, fmin(c->config.probe.fine_mm_s, feed_mm_s(c)));
+	return forward(c, fmin(v, feed_mm_s(c)));
 }
 
 static double none(struct cycle *c)

@@ -74,10 +74,4 @@ void probe_begin(struct cycle *c);
 /** probe_distance() - how far to go in this cycle; it ends the segment, too. */
 double probe_distance(struct cycle *c);
 
-/** probe_in_travel() - may the axis be where the program's @pos is? */
-bool probe_in_travel(const struct cycle *c, int axis, int64_t pos);
-
-/** probe_target() - send the axes to where the program's @pos is. */
-void probe_target(struct cycle *c, const int32_t pos[INTERP_NAXES]);
-
 #endif /* RT_PROBE_H */

@@ -9,6 +9,7 @@
 #include "path/place.h"
 #include "path/timed.h"
 
+#include <math.h>
 #include <string.h>
 
 bool walk_rejoins(const struct cycle *c)
@@ -68,7 +69,7 @@ static bool beyond(const struct cycle *c)
 	for (uint32_t m = at->moved; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
 
-		if (!probe_in_travel(c, i, at->pos[i]))
+		if (!place_in_travel(c, i, at->pos[i]))
 			return true;
 	}
 	return false;
@@ -100,8 +101,8 @@ static bool well_inside(const struct cycle *c)
 
 	for (uint32_t j = 0; j < at->p.head->naxes; j++) {
 		const uint8_t i = at->p.head->column[j];
-		if (!probe_in_travel(c, i, at->pos[i] - RUN) ||
-		    !probe_in_travel(c, i, at->pos[i] + RUN))
+		if (!place_in_travel(c, i, at->pos[i] - RUN) ||
+		    !place_in_travel(c, i, at->pos[i] + RUN))
 			return false;
 	}
 	return true;
@@ -211,7 +212,7 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 		c->feed_mm_s = 0;
 		return r;
 	}
-	probe_target(c, c->cursor.pos);
+	place_target(c, c->cursor.pos);
 	to = interp_cursor_place_mm(&c->cursor);
 	c->feed_mm_s = (to - from) * 1e9 / (double)c->config.period_ns;
 	if (to > c->far_mm)
@@ -256,6 +257,17 @@ static void switch_aux(struct cycle *c, uint32_t what)
 	}
 }
 
+static bool is_change(const struct interp_seg *s)
+{
+	return s->kind == INTERP_ELECTRODE && s->arg & INTERP_ELECTRODE_STOP;
+}
+
+void walk_pass_change(struct cycle *c, const struct interp_seg *s)
+{
+	if (is_change(s))
+		c->back_mm = fmax(c->back_mm, s->s_mm);
+}
+
 enum walk_deed walk_action(struct cycle *c)
 {
 	const uint32_t next = c->cursor.index + 1;
@@ -279,7 +291,8 @@ enum walk_deed walk_action(struct cycle *c)
 	}
 	if (first && s.kind == INTERP_TIMED)
 		timed_begin(c, s.arg);
-	if (first && (s.kind == INTERP_STOP ||
+	walk_pass_change(c, &s);
+	if (first && (s.kind == INTERP_STOP || is_change(&s) ||
 		      (s.kind == INTERP_OPTIONAL_STOP &&
 		       c->config.optional_stop)))
 		return ACTION_HOLD;

@@ -11,7 +11,8 @@
 
 /* What the segment ahead is to the machine. */
 enum walk_ahead {
-	AHEAD_ACTION,			/* neither: something done on the spot */
+	AHEAD_ACTION,			/* neither: something done on the
+					 * spot */
 	AHEAD_FREE,			/* positioned */
 	AHEAD_CUT,			/* eroded */
 	AHEAD_PROBE,			/* it ends where the machine says */
@@ -21,7 +22,8 @@ enum walk_result {
 	WALK_ON,
 	WALK_ACTION,			/* it stands in front of an action */
 	WALK_START,			/* at the start of the program */
-	WALK_BEYOND,			/* the next point is outside the travel */
+	WALK_BEYOND,			/* the next point is outside the
+					 * travel */
 	WALK_BROKEN,			/* a segment failed its check */
 };
 
@@ -32,8 +34,10 @@ enum walk_deed {
 	ACTION_END,			/* the program is over */
 };
 
-/** walk_rejoins() - is the machine on its way forward from a wire's break to the
- *  place where the cut goes on? */
+/**
+ * walk_rejoins() - is the machine on its way forward from a wire's break to the
+ * place where the cut goes on?
+ */
 bool walk_rejoins(const struct cycle *c);
 
 /** walk_needs_wire() - is what is ahead a cut, even if it is only positioned on
@@ -48,6 +52,10 @@ enum walk_ahead walk_ahead(const struct cycle *c);
 
 /** walk_by() - @ds_mm along the path; updates out.target, feed and sums. */
 enum walk_result walk_by(struct cycle *c, double ds_mm);
+
+/** walk_pass_change() - if @s is a change of the electrode by a person, the way
+ *  back ends at it: another electrode would go where the last one has cut. */
+void walk_pass_change(struct cycle *c, const struct interp_seg *s);
 
 /** walk_action() - do the action in front, once. */
 enum walk_deed walk_action(struct cycle *c);

@@ -83,6 +83,7 @@ const char *emit_kind_name(uint8_t kind)
 		[INTERP_OPTIONAL_STOP]	= "an optional stop",
 		[INTERP_AUX]		= "a switched output",
 		[INTERP_MCODE]		= "an M code for the PLC",
+		[INTERP_ELECTRODE]	= "an electrode",
 		[INTERP_TIMED]		= "a cycle with a time (S)",
 		[INTERP_TIMED_END]	= "the end of a cycle with a time",
 		[INTERP_END]		= "the end",

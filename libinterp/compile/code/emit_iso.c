@@ -173,6 +173,10 @@ static int words_of(struct iso_writer *o, struct words *w, uint32_t i)
 	case INTERP_STOP:
 		word(w, "M0");
 		return 0;
+	case INTERP_ELECTRODE:
+		/* The places are the machine's: a T word would shift them. */
+		word(w, seg->arg & INTERP_ELECTRODE_STOP ? "M0" : "G4 P0");
+		return 0;
 	case INTERP_OPTIONAL_STOP:
 		word(w, "M1");
 		return 0;

@@ -24,7 +24,11 @@ int nc_run_mcode(struct nc_reader *r, enum nc_group group)
 {
 	const uint8_t number = r->block.code[group]->value;
 
-	return nc_action(r, INTERP_MCODE,
-			 interp_mcode_arg(number, r->o->mcode[number]),
-			 r->block.code_at[group]);
+	const uint8_t *at = r->block.code_at[group];
+	int err = nc_action(r, INTERP_MCODE,
+			    interp_mcode_arg(number, r->o->mcode[number]), at);
+
+	if (!err && number == NC_M_CHANGE)
+		err = nc_electrode_by_plc(r, at);
+	return err;
 }

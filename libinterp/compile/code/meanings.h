@@ -59,6 +59,9 @@
 	W("work-offset-7", WORK, 6, 0) \
 	W("work-offset-8", WORK, 7, 0) \
 	W("work-offset-9", WORK, 8, 0) \
+	W("electrode", ELECTRODE, NC_ELECTRODE_NOW, 0) \
+	W("electrode-next", ELECTRODE, NC_ELECTRODE_NEXT, 0) \
+	W("electrode-change", ELECTRODE_CHANGE, 0, 0) \
 	W("feed-per-minute", FEED_MODE, 0, 0) \
 	W("offset-off", OFFSET, 0, 0) \
 	W("offset-left", OFFSET, 1, 0) \

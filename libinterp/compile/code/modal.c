@@ -15,6 +15,9 @@ void nc_set_offset(struct nc_reader *r)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		r->offset_mm[i] = r->work_mm[r->work][i] +
 				  r->shift_mm[i];
+	/* Under G43.4 it is part of the tool. */
+	if (!r->tool.on)
+		r->offset_mm[INTERP_Z] += r->electrode_mm;
 	/* The second plane is measured from the same origin. */
 	if (nc_has_guides(r)) {
 		r->offset_mm[INTERP_U] = r->offset_mm[INTERP_X];
@@ -135,6 +138,8 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_DISTANCE]		= run_distance,
 	[NC_ARC_DISTANCE]	= run_arc_distance,
 	[NC_WORK]		= run_work,
+	[NC_ELECTRODE]		= nc_run_electrode,
+	[NC_ELECTRODE_CHANGE]	= nc_run_electrode_change,
 	[NC_FEED_MODE]		= run_nothing,
 	[NC_FEED]		= run_feed,
 	[NC_CONDITION]		= run_condition,

@@ -261,7 +261,8 @@ static int set_here(struct nc_reader *r)
 				 "G92 with U or V, which go with X and Y");
 	for EACH_AXIS(b->words & NC_AXES, i)
 		r->shift_mm[i] = here[i] - b->value[i] * r->scale[i] -
-				 r->work_mm[r->work][i];
+				 r->work_mm[r->work][i] -
+				 (i == INTERP_Z ? r->electrode_mm : 0);
 	nc_set_offset(r);
 	r->unnamed &= ~b->words;
 	return 0;

@@ -116,7 +116,9 @@ int interp_nc_compile(const char *text, size_t bytes,
 		};
 	open_text(&r, bytes ? text : "", bytes);
 	reset_modes(&r);
-	err = read_lines(&r);
+	err = nc_electrode_begin(&r);
+	if (!err)
+		err = read_lines(&r);
 	if (!err) {
 		ret->lines = count_lines(&r);
 		ret->executed = r.executed;

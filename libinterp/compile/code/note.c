@@ -54,6 +54,15 @@ void nc_note_point(struct nc_reader *r, const uint8_t *at)
 	    nc_quote_word(r, at).s, r->unit_mm > 1 ? "inches" : "mm");
 }
 
+void nc_note_electrode(struct nc_reader *r, enum nc_group group,
+		       const char *why)
+{
+	if (r->o->notes && !told(r, group == NC_ELECTRODE ?
+				 NC_TOLD_ELECTRODE : NC_TOLD_CHANGE))
+		say(r, "%s %s", nc_quote_word(r, r->block.code_at[group]).s,
+		    why);
+}
+
 /* G0 C120: did the author of the program mean an axis? */
 static void note_condition(struct nc_reader *r)
 {

@@ -5,6 +5,7 @@
  *	scan.c		one line of text into a block of words
  *	modal.c		carry a block out, group by group
  *	mcode.c		M codes of the machine
+ *	electrode.c	T words: which electrode cuts
  *	motion.c	lines, machine zero, dwell, offsets: what axis words do
  *	arc.c		G2 and G3
  *	cycles.c	G130 ... G135, and the way out: G140 ... G143
@@ -48,7 +49,8 @@ struct nc_tool_point {
 
 /* Kinds of notes; each is made once. */
 enum nc_told { NC_TOLD_POINT, NC_TOLD_INCHES, NC_TOLD_CONDITION,
-	       NC_TOLD_DWELL, NC_TOLD_OFFSET };
+	       NC_TOLD_DWELL, NC_TOLD_OFFSET, NC_TOLD_ELECTRODE,
+	       NC_TOLD_CHANGE };
 
 /* Why no more lines are read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
@@ -62,6 +64,7 @@ struct nc_block {
 	uint32_t drops;			/* ... that they ignore, with a note */
 	uint32_t cond_number;
 	char cond_letter;
+	uint64_t electrode;		/* number of its T word */
 	uint32_t angles;		/* A and B of a cycle: here they are not
 					 * axes */
 	uint32_t toward;		/* slots without a number: their value
@@ -209,6 +212,12 @@ struct nc_reader {
 	struct nc_passes passes;
 	enum interp_escape_mode escape;
 	struct nc_tool_point tool;
+
+	/* The electrode. */
+	uint32_t electrode;		/* in force; 0: none */
+	uint32_t next;			/* named by a T word, for the change */
+	double electrode_mm;		/* what it shifts Z by: whole pulses */
+	uint32_t nchanges;
 
 	/* Probing. */
 	uint32_t loose;			/* axes that count from a contact */
@@ -438,6 +447,18 @@ int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES]);
  * A number that the reader itself uses never belongs to the machine.
  */
 const struct nc_code *nc_mcode(struct nc_reader *r, uint64_t n);
+
+/** nc_electrode_begin() - the one that is in force as the program begins. */
+int nc_electrode_begin(struct nc_reader *r);
+int nc_run_electrode(struct nc_reader *r);
+int nc_run_electrode_change(struct nc_reader *r);
+
+/** nc_electrode_by_plc() - the PLC has put in the one named last. */
+int nc_electrode_by_plc(struct nc_reader *r, const uint8_t *at);
+
+/** nc_note_electrode() - note what a T word or a change is not, and why. */
+void nc_note_electrode(struct nc_reader *r, enum nc_group group,
+		       const char *why);
 
 /** nc_run_mcode() - carry out the M code of the line. */
 int nc_run_mcode(struct nc_reader *r, enum nc_group group);

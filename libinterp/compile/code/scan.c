@@ -199,7 +199,8 @@ static const struct nc_code *find_code(struct nc_reader *r,
 		code = &l->other;
 	/* A machine's own M code is more than a word that does nothing here. */
 	if (l == &r->d->letter[1] &&
-	    (code->group == NC_UNKNOWN || code->group >= NC_NGROUPS)) {
+	    (code->group == NC_UNKNOWN || code->group >= NC_NGROUPS ||
+	     code->group == NC_ELECTRODE_CHANGE)) {
 		const struct nc_code *mine = nc_mcode(r, n);
 
 		code = mine ? mine : code;
@@ -282,6 +283,8 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 		r->block.takes = UINT32_MAX;
 		return p;
 	}
+	if (code->group == NC_ELECTRODE)
+		r->block.electrode = n;
 	return add_code(r, at, code) ? p : NULL;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * threeb.h - records of 3B and 4B: text, geometry
+ * threeb_reader.h - records of 3B and 4B: text, geometry
  *
  *	threeb_text.c	text into records
  *	threeb_arc.c	the counting length of an arc, and its end from it

@@ -357,6 +357,9 @@ static int segment(struct threeb_writer *w,
 	case INTERP_MCODE:
 		w->left->outputs++;
 		return 0;
+	case INTERP_ELECTRODE:
+		return seg->arg & INTERP_ELECTRODE_STOP ?
+		       emit_line(w->to, "D\n") : 0;
 	case INTERP_STOP:
 		return emit_line(w->to, "D\n");
 	case INTERP_END:

@@ -24,7 +24,7 @@
 #define ORDER		4
 #define START_PULSES	2.0
 #define START_DEG	0.01
-#define DEGREE		(180 / 3.14159265358979323846)
+#define DEGREE		(180 / M_PI)
 
 /* Columns of a control point: X Y Z, then w x y z. */
 #define TURN		3

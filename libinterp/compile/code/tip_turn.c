@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEGREE		(180 / 3.14159265358979323846)
+#define DEGREE		(180 / M_PI)
 
 /* In one step along the way no rotary axis turns farther than this; otherwise
  * the step is made shorter. */

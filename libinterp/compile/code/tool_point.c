@@ -24,11 +24,15 @@ static bool has_xyz(const struct interp_kinematics *k)
 	return axes == (NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z));
 }
 
-/* A register makes the tool longer: the tip is then farther from the holder. */
+/* A register and the electrode make the tool longer: the tip is then farther
+ * from the holder. */
 static int lengthen(struct nc_reader *r)
 {
 	const uint32_t n = nc_has(r, NC_H) ? (uint32_t)r->block.value[NC_H] : 0;
 
+	for (int i = 0; i < 3; i++)
+		r->tool.k.tip_mm[i] -= r->electrode_mm *
+				       r->tool.k.tool_dir[i];
 	if (!nc_has(r, NC_H))
 		return 0;
 	if (!r->registers[n].known)
@@ -75,6 +79,7 @@ static int switch_on(struct nc_reader *r)
 	interp_kin_forward(&r->tool.k, r->contour.here_mm, &p);
 	memcpy(r->tool.here_mm, p.tip_mm, sizeof(p.tip_mm));
 	r->tool.on = true;
+	nc_set_offset(r);
 	r->tool.vector = r->block.code[NC_TOOL_POINT]->value == NC_TOOL_VECTOR;
 	nc_tool_looks(r);
 	return 0;
@@ -86,6 +91,7 @@ int nc_run_tool_point(struct nc_reader *r)
 	if (r->block.code[NC_TOOL_POINT]->value != NC_TOOL_OFF)
 		return switch_on(r);
 	r->tool.on = r->tool.vector = false;
+	nc_set_offset(r);
 	return 0;
 }
 

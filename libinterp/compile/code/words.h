@@ -95,6 +95,8 @@ enum nc_group {
 	NC_DISTANCE,			/* G90 G91 */
 	NC_ARC_DISTANCE,		/* G90.1 G91.1 */
 	NC_WORK,			/* G54 ... G59.3 */
+	NC_ELECTRODE,			/* T1 */
+	NC_ELECTRODE_CHANGE,		/* M6, where T alone changes nothing */
 	NC_FEED_MODE,			/* G94 */
 	NC_FEED,			/* F */
 	NC_CONDITION,			/* C120 E001 */
@@ -161,6 +163,11 @@ enum nc_probe {
 };
 /* What a member of NC_TOOL_POINT does. */
 enum nc_tool { NC_TOOL_OFF, NC_TOOL_ANGLES, NC_TOOL_VECTOR };
+
+#define NC_M_CHANGE	6		/* M6 of a PLC changes the electrode */
+
+/* When the electrode that a member of NC_ELECTRODE names is in force. */
+enum nc_electrode { NC_ELECTRODE_NOW, NC_ELECTRODE_NEXT };
 
 /* What a member of NC_STOP does. */
 enum nc_stop { NC_HALT, NC_OPTIONAL_HALT, NC_FINISH, NC_CALL, NC_RETURN };

@@ -33,7 +33,8 @@ int nc_write_offset(struct nc_reader *r)
 		if (!(b->words & NC_BIT(i)))
 			continue;
 		*mm = l == 2 ? (r->incremental ? *mm : 0) + to :
-			       here[i] - to - r->shift_mm[i];
+			       here[i] - to - r->shift_mm[i] -
+			       (i == INTERP_Z ? r->electrode_mm : 0);
 	}
 	nc_set_offset(r);
 	if (l == 20 && work == r->work)

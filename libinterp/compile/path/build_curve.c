@@ -36,11 +36,28 @@
 
 /* -- What limits it ------------------------------------------------------- */
 
+static const struct interp_axis_limits *axis_of(const struct curve_plan *p,
+						uint32_t k)
+{
+	return &p->b->o.machine->axis[p->curve.axis[k]];
+}
+
+/* Shares of an axis's acceleration: to follow the curve, and to go along it. */
+static double across_part(const struct curve_plan *p, uint32_t k)
+{
+	return k < p->curve.counted ? INTERP_BEND_ACROSS : INTERP_BESIDE_ACROSS;
+}
+
+static double along_part(const struct curve_plan *p, uint32_t k)
+{
+	return k < p->curve.counted ? INTERP_BEND_ALONG : INTERP_BESIDE_ALONG;
+}
+
 static void set_limits(struct curve_plan *p)
 {
 	const struct interp_build_options *o = &p->b->o;
 	struct interp_nurbs_limits *l = &p->limits;
-	double jerk = HUGE_VAL;
+	double jerk = HUGE_VAL, acc = HUGE_VAL;
 
 	*l = (struct interp_nurbs_limits) {
 		.chord_error_mm = HUGE_VAL, .period_s = 1,
@@ -50,46 +67,128 @@ static void set_limits(struct curve_plan *p)
 			sqrt(8 * o->chord_error_mm) / o->period_s : HUGE_VAL;
 	p->pulse_mm = HUGE_VAL;
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		const struct interp_axis_limits *m =
-			&o->machine->axis[p->curve.axis[k]];
+		const struct interp_axis_limits *m = axis_of(p, k);
 
 		l->v_mm_s[k] = m->v_max_mm_s;
-		l->a_mm_s2[k] = INTERP_BEND_ACROSS * m->a_max_mm_s2;
-		l->j_mm_s3[k] = m->j_max_mm_s3;
+		l->a_mm_s2[k] = across_part(p, k) * m->a_max_mm_s2;
+		l->j_mm_s3[k] = INTERP_CURVE_JERK_ROUND * m->j_max_mm_s3;
 		p->pulses_mm[p->curve.axis[k]] = 1 / m->pulse_mm;
 		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
 		jerk = fmin(jerk, m->j_max_mm_s3);
+		acc = fmin(acc, m->a_max_mm_s2);
 		if (k < p->curve.counted)
 			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
 						    l->a_mm_s2[k]);
 	}
 	/* The axes do not notice a bend whose radius is less than a pulse. */
 	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);
+	p->least_mm_s2 = INTERP_BEND_LEAST * acc;
+}
+
+static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)
+{
+	struct curve_seen *s = &p->seen;
+
+	s->bend = fmax(s->bend, w->cusp ? HUGE_VAL : w->curvature);
+	for (int n = 0; !w->cusp && n < 3; n++)
+		for (uint32_t k = 0; k < p->curve.naxes; k++)
+			s->d[n][k] = fmax(s->d[n][k], fabs(w->d[n][k]));
+}
+
+/* So slow that the jerk lets it speed up here, by no less than it must. */
+static double set_off_mm_s(const struct curve_plan *p,
+			   const struct interp_nurbs_way *w)
+{
+	double v = HUGE_VAL;
+
+	for (uint32_t k = 0; !w->cusp && k < p->curve.naxes; k++)
+		if (w->d[1][k] != 0)
+			v = fmin(v, INTERP_CURVE_JERK_BOTH *
+				    axis_of(p, k)->j_max_mm_s3 /
+				    (3 * fabs(w->d[1][k]) * p->least_mm_s2));
+	return v;
 }
 
 /* Look at @u: find the feed that its axes allow.  The present piece learns how
- * sharply it bends there, and how many pulses a mm has. */
+ * its axes go there. */
 static double look(struct curve_plan *p, double u)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;
-	struct interp_nurbs_point at;
-	double speed;
+	struct interp_nurbs_way w;
+	double feed;
 
-	p->bend = fmax(p->bend, interp_nurbs_curvature(e, u));
-	interp_nurbs_at(e, u, 1, &at);
-	speed = sqrt(interp_nurbs_dot(&e->c, at.d[1], at.d[1]));
-	for (uint32_t k = 0; speed > 0 && k < e->c.naxes; k++)
-		p->rate = fmax(p->rate, fabs(at.d[1][k]) / speed *
-					p->pulses_mm[p->curve.axis[k]]);
-	return fmax(interp_nurbs_feed_mm_s(e, u, &p->limits), p->slowest_mm_s);
+	interp_nurbs_way(e, u, &w);
+	learn(p, &w);
+	feed = interp_nurbs_feed_mm_s(&e->c, &w, &p->limits);
+	return fmax(fmin(feed, set_off_mm_s(p, &w)), p->slowest_mm_s);
 }
 
 /* The feed of the present piece. */
 static double feed_of(const struct curve_plan *p)
 {
-	const double chord = p->chord_mm_s / sqrt(p->bend);
+	const double chord = p->chord_mm_s / sqrt(p->seen.bend);
 
 	return fmax(fmin(p->least_mm_s, chord), p->slowest_mm_s);
+}
+
+/* The most pulses of an axis in a mm. */
+static double rate_of(const struct curve_plan *p)
+{
+	double rate = 0;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++)
+		rate = fmax(rate, p->seen.d[0][k] *
+				  p->pulses_mm[p->curve.axis[k]]);
+	return rate;
+}
+
+/*
+ * What following the present piece at @v_mm_s leaves of the acceleration of
+ * column @k.  The ways along and across are square to each other, so a counted
+ * axis has what is left of both together.  A cusp is passed at the slowest speed
+ * whatever it takes, and leaves the share.
+ */
+static double left_mm_s2(const struct curve_plan *p, uint32_t k, double v_mm_s)
+{
+	const double a = axis_of(p, k)->a_max_mm_s2;
+	const double across = p->seen.bend * v_mm_s * v_mm_s;
+	const double left = a - p->seen.d[1][k] * v_mm_s * v_mm_s;
+
+	return fmax(fmax(left, along_part(p, k) * a),
+		    k < p->curve.counted && across < a ?
+		    sqrt(a * a - across * across) : 0);
+}
+
+/* The same of its jerk. */
+static double left_mm_s3(const struct curve_plan *p, uint32_t k, double v_mm_s)
+{
+	const double j = axis_of(p, k)->j_max_mm_s3;
+
+	return fmax(j - p->seen.d[2][k] * v_mm_s * v_mm_s * v_mm_s,
+		    (1 - INTERP_CURVE_JERK_ROUND) * j);
+}
+
+/* How fast to speed up along the present piece, at @v_mm_s at most: to speed up
+ * on a bend takes jerk, and no more than half of what is left. */
+static void along_of(const struct curve_plan *p, double v_mm_s,
+		     struct interp_piece *ret)
+{
+	double a = HUGE_VAL, j = HUGE_VAL;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		a = fmin(a, left_mm_s2(p, k, v_mm_s) / p->seen.d[0][k]);
+		a = fmin(a, fmax(left_mm_s3(p, k, v_mm_s) / 2 /
+				 (3 * p->seen.d[1][k] * v_mm_s),
+				 p->least_mm_s2));
+	}
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const double left = left_mm_s3(p, k, v_mm_s);
+
+		j = fmin(j, fmax(left - 3 * p->seen.d[1][k] * v_mm_s * a,
+				 left / 2) / p->seen.d[0][k]);
+	}
+	ret->a_mm_s2 = a;
+	ret->j_mm_s3 = j;
 }
 
 /* -- Pieces --------------------------------------------------------------- */
@@ -176,7 +275,7 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 {
 	const struct interp_nurbs_stop *stops = stops_of(p, piece);
 	const double length_mm = stops[piece->nstops - 1].s_mm;
-	double places = ceil(length_mm * p->rate * MARGIN *
+	double places = ceil(length_mm * rate_of(p) * MARGIN *
 			     (p->turns > 1 ? 2 : 1)) + 1;
 
 	for (int i = 0; i < TRIES; i++) {
@@ -240,12 +339,13 @@ static int piece_add(struct curve_plan *p, double to)
 	if (err < 0)
 		return err;
 	step.seg.ticks = p->walk.places * p->turns;
+	step.feed_max_mm_s = feed_of(p);
+	along_of(p, step.feed_max_mm_s, &piece);
 	step.seg.arg = (uint32_t)p->b->pieces.n;
 	stored = build_table_add(&p->b->pieces);
 	if (!stored)
 		return -ENOMEM;
 	*stored = piece;
-	step.feed_max_mm_s = feed_of(p);
 	p->word.line = build_curve_line(p, p->from);
 	return build_step(p->b, &step, &p->word, p->diag);
 }
@@ -253,7 +353,7 @@ static int piece_add(struct curve_plan *p, double to)
 static void piece_begin(struct curve_plan *p, double u)
 {
 	p->from = u;
-	p->rate = p->bend = 0;
+	p->seen = (struct curve_seen) { .bend = 0 };
 	p->least_mm_s = p->most_mm_s = look(p, u);
 }
 
@@ -261,13 +361,13 @@ static void piece_begin(struct curve_plan *p, double u)
  * at the place of the last look. */
 static int piece_extend(struct curve_plan *p, double last, double u)
 {
-	const double bend = p->bend, rate = p->rate, feed = look(p, u);
+	const struct curve_seen was = p->seen;
+	const double feed = look(p, u);
 	int err = 0;
 
 	if (last > p->from && fmax(p->most_mm_s, feed) >
 			      FEED_RATIO * fmin(p->least_mm_s, feed)) {
-		p->bend = bend;
-		p->rate = rate;
+		p->seen = was;
 		err = piece_add(p, last);
 		piece_begin(p, last);
 		look(p, u);

@@ -22,6 +22,13 @@ int build_curve_store(struct interp_build *b,
 		      const struct interp_build_curve *c,
 		      struct interp_curve *ret, uint32_t *ret_moved);
 
+/* What the looks at a piece have found; the largest of each. */
+struct curve_seen {
+	double bend;			/* curvature, 1/mm; HUGE_VAL at a cusp */
+	double d[3][INTERP_NAXES];	/* |x_s|, |x_ss| and |x_sss| of each
+					 * column */
+};
+
 /* A NURBS while it is cut into segments. */
 struct curve_plan {
 	struct interp_build *b;
@@ -30,18 +37,19 @@ struct curve_plan {
 	struct interp_diag *diag;
 	struct interp_curve curve;	/* as stored */
 	const double *here_mm;		/* where the program stands */
-	struct interp_nurbs_limits limits;	/* of the axes */
-	double chord_mm_s;		/* the fastest around a radius of 1 mm
+	struct interp_nurbs_limits limits;	/* of the axes, on bends */
+	double chord_mm_s;		/* the fastest round a radius of 1 mm
 					 * within the chord error */
-	double pulses_mm[INTERP_NAXES], pulse_mm;	/* of each axis, and the
-							 * finest */
-	double slowest_mm_s;
+	double pulses_mm[INTERP_NAXES];	/* of each axis */
+	double pulse_mm;		/* the finest */
+	double slowest_mm_s, least_mm_s2;	/* never less than these */
 	uint32_t moved, turns;
 	struct interp_curve_walk walk;
 	size_t mark;
-	double tried;			/* places tested so far */
-	/* The present piece: */
-	double from, least_mm_s, most_mm_s, bend, rate;
+	double tried;			/* places so far */
+	/* The piece in hand: */
+	double from, least_mm_s, most_mm_s;
+	struct curve_seen seen;
 };
 
 /** build_curve_refuse() - fill diag; -EINVAL. */

@@ -44,17 +44,25 @@ void interp_build_lift(struct interp_build *b, int axis)
 	b->lift_axis = axis;
 }
 
-/* As fast as the slowest of its linear axes. */
-static double v_max(const struct interp_build *b, const struct interp_escape *e)
+/* What is given as 0 is not limited yet. */
+static double lower(double given, double axis)
 {
-	double v = e->v_max_mm_s > 0 ? e->v_max_mm_s : INFINITY;
+	return given > 0 ? fmin(given, axis) : axis;
+}
 
+/* As the weakest of its linear axes. */
+static void bound(const struct interp_build *b, struct interp_escape *e)
+{
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		if ((e->home | e->out) & 1u << i &&
-		    !interp_axis_is_rotary((enum interp_axis)i))
-			v = fmin(v, b->o.machine->axis[i].v_max_mm_s);
+		const struct interp_axis_limits *l = &b->o.machine->axis[i];
+
+		if (!((e->home | e->out) & 1u << i) ||
+		    interp_axis_is_rotary((enum interp_axis)i))
+			continue;
+		e->v_max_mm_s = lower(e->v_max_mm_s, l->v_max_mm_s);
+		e->a_max_mm_s2 = lower(e->a_max_mm_s2, l->a_max_mm_s2);
+		e->j_max_mm_s3 = lower(e->j_max_mm_s3, l->j_max_mm_s3);
 	}
-	return v;
 }
 
 /* So many of the last ones are searched for an equal one. */
@@ -87,7 +95,7 @@ int interp_build_escape(struct interp_build *b, const struct interp_escape *e)
 	if (!e)
 		return 0;
 	bounded = *e;
-	bounded.v_max_mm_s = v_max(b, e);
+	bound(b, &bounded);
 	i = escape_add(b, &bounded);
 	if (i < 0)
 		return i;
@@ -119,7 +127,7 @@ uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
 		e.out_mm[axis] = d->low_mm;
 	else
 		return 0;
-	e.v_max_mm_s = b->o.machine->axis[axis].v_max_mm_s;
+	bound(b, &e);
 	i = escape_add(b, &e);
 	return i < 0 ? 0 : (uint16_t)i;
 }

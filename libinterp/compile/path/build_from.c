@@ -139,6 +139,25 @@ static void entry_of(const struct from *f, double to[INTERP_NAXES])
 	build_mm(b, at, to);
 }
 
+/* The electrode that cuts at the place.  If another one is in the holder, a
+ * person puts it in. */
+static int add_electrode(struct from *f)
+{
+	const struct interp_seg *s = segs_of(f->b);
+	const struct interp_build_word w = { .line = s[f->far].line };
+	uint32_t number = 0;
+
+	for (uint32_t i = 0; i <= f->far; i++)
+		if (s[i].kind == INTERP_ELECTRODE)
+			number = s[i].arg & ~INTERP_ELECTRODE_STOP;
+	f->entry->electrode = number;
+	if (number == 0)
+		return 0;
+	return interp_build_action(f->way, INTERP_ELECTRODE, number |
+				   (number != f->o->held ?
+				    INTERP_ELECTRODE_STOP : 0), &w, f->diag);
+}
+
 /* What the axes are further than the program's own place. */
 static double shift_mm(const struct from *f, int axis)
 {
@@ -159,6 +178,8 @@ static int add_legs(struct from *f)
 	if (up >= 0) {
 		at[up] = fmax(at[up], to[up]);
 		err = interp_build_line(f->way, at, &w, f->diag);
+		if (err == 0)
+			err = add_electrode(f);
 		for (int i = 0; i < INTERP_NAXES; i++)
 			at[i] = i == up ? at[i] : to[i];
 		if (err == 0)
@@ -254,6 +275,8 @@ static void forget(struct from *f, struct interp_seg *s)
 		s->kind = INTERP_DWELL;
 		s->arg = 0;
 	}
+	if (s->kind == INTERP_ELECTRODE)
+		s->arg &= ~INTERP_ELECTRODE_STOP;
 }
 
 /* A part with a time that is over has none any more. */

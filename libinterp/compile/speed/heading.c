@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * heading.c - which way a segment sets out, and which way it arrives
- */
+/* heading.c - the direction in which a segment begins, and in which it ends */
 #include "speed/heading.h"
 
 #include <math.h>
@@ -28,14 +26,14 @@ void heading_ways_init(struct ways *w, const struct interp_program *p)
 			       INTERP_SUB;
 }
 
-/* Those that the length of a path is made of, as program.h says. */
+/* The axes that make the length of a path, as program.h says. */
 static uint32_t along_of(const struct ways *w, uint32_t moving)
 {
 	return moving & w->xyz ? w->xyz :
 	       moving & w->uv ? w->uv : ~(w->xyz | w->uv);
 }
 
-/* From node to node; @ret_moving: columns that do. */
+/* The way from node to node; @ret_moving gets the columns that move. */
 static void straight(const struct ways *w, uint32_t i, struct heading *h,
 		     uint32_t *ret_moving)
 {
@@ -61,9 +59,11 @@ static uint32_t column(const struct interp_program *p, uint32_t axis)
 	return j;
 }
 
-/* At the angle @turned on: along the circle, and outward as it grows. */
-static void tangent(const struct interp_program *p, const struct interp_arc *arc,
-		    double turned, double length_mm, struct heading *h)
+/* The direction at the angle @turned: along the circle, and outward if the
+ * radius grows. */
+static void tangent(const struct interp_program *p,
+		    const struct interp_arc *arc, double turned,
+		    double length_mm, struct heading *h)
 {
 	const double r = arc->r_mm + arc->dr_mm * turned / arc->sweep;
 	const double angle = arc->theta + turned;
@@ -82,8 +82,10 @@ static void bend(struct headings *h, const struct interp_arc *arc,
 			     fmax(arc->r_mm, arc->r_mm + arc->dr_mm) /
 			     length_mm;
 
-	/* Of two, the one that is the sooner too fast: v*v*share^2/r. */
-	if (h->bend_mm > 0 && h->share * h->share * r > share * share * h->bend_mm)
+	/* Of two bends, keep the one that becomes too fast first:
+	 * v*v*share^2/r. */
+	if (h->bend_mm > 0 &&
+	    h->share * h->share * r > share * share * h->bend_mm)
 		return;
 	h->bend_mm = r;
 	h->share = share;
@@ -100,7 +102,8 @@ static void round_arc(const struct interp_program *p,
 	bend(h, arc, length_mm);
 }
 
-/* Its own ways at both ends; its feed knows how it bends. */
+/* A curve has directions of its own at both ends; its feed takes its bends into
+ * account. */
 static void round_curve(const struct ways *w, const struct interp_seg *s,
 			struct headings *h)
 {

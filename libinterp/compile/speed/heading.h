@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * heading.h - which way a segment sets out, and which way it arrives
+ * heading.h - the direction in which a segment begins, and in which it ends
  *
  * Private to libinterp/compile/speed.
  */
@@ -10,14 +10,16 @@
 #include "interp/program.h"
 
 struct heading {
-	double rate[INTERP_NAXES];	/* mm of each column per mm of path */
-	uint32_t along;			/* columns whose rates make length 1 */
+	double rate[INTERP_NAXES];	/* mm of each column for a mm of path */
+	uint32_t along;			/* the columns that make the length */
 };
 
 struct headings {
 	struct heading first, last;
-	double bend_mm;			/* smallest radius on the way; 0: straight */
-	double share;			/* of the path's speed, round that bend */
+	double bend_mm;			/* smallest radius on the way; 0: it is
+					 * straight */
+	double share;			/* share of the path's speed in that
+					 * bend */
 };
 
 /* A program, and what is the same for all of its segments. */
@@ -29,7 +31,7 @@ struct ways {
 
 void heading_ways_init(struct ways *w, const struct interp_program *p);
 
-/** heading_find() - of segment @i, which is none that stands. */
+/** heading_find() - find the directions of segment @i, which must move. */
 void heading_find(const struct ways *w, uint32_t i, struct headings *ret);
 
 #endif /* SPEED_HEADING_H */

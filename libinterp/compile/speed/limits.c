@@ -72,49 +72,83 @@ static float soft(const struct pass *w, double v, const double *own)
 }
 
 /*
- * Along the path, what its axes leave: on a bend a part, beside what they need
- * to follow it.
+ * What bends leave for going along a segment: shares of what the axes that bend
+ * can do, and the most along the path.
  */
-static void soften_seg(const struct pass *w, struct interp_seg *s, double part,
-		       const double rates[INTERP_NAXES])
+struct along {
+	double a, j;
+	double a_mm_s2, j_mm_s3;
+};
+
+/* Along the path, what its axes leave. */
+static void soften_seg(const struct pass *w, struct interp_seg *s,
+		       const struct along *left, const struct rates *r)
 {
-	double a = INFINITY, j = INFINITY;
+	double a = left->a_mm_s2, j = left->j_mm_s3;
 
 	for (uint32_t k = 0; k < w->n; k++) {
-		if (!(rates[k] > 0))
+		const bool bends = r->bends >> k & 1;
+
+		if (!(r->by[k] > 0))
 			continue;
-		a = fmin(a, part * w->a_mm_s2[k] / rates[k]);
-		j = fmin(j, part * w->j_mm_s3[k] / rates[k]);
+		a = fmin(a, (bends ? left->a : 1) * w->a_mm_s2[k] / r->by[k]);
+		j = fmin(j, (bends ? left->j : 1) * w->j_mm_s3[k] / r->by[k]);
 	}
 	s->a_mm_s2 = soft(w, a, w->a_mm_s2);
 	s->j_mm_s3 = soft(w, j, w->j_mm_s3);
+}
+
+/*
+ * The ceiling of an arc, @v_mm_s at most, by the axes of its bend; and what it
+ * leaves at that speed.  Along and across are square to each other.
+ */
+static double round_bend(const struct pass *w, const struct headings *h,
+			 double v_mm_s, struct along *ret)
+{
+	const double r = h->bend_mm;
+	double a = INFINITY, j = INFINITY, v, across, both, speed_up;
+
+	for (uint32_t k = 0; k < w->n; k++) {
+		if (h->first.rate[k] == 0 && h->last.rate[k] == 0)
+			continue;
+		a = fmin(a, w->a_mm_s2[k]);
+		j = fmin(j, w->j_mm_s3[k]);
+	}
+	v = fmin(v_mm_s * h->share, pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
+						    INTERP_ARC_JERK_ROUND * j));
+	v = fmin(v, INTERP_ARC_JERK_BOTH * j * r /
+		    (3 * INTERP_BEND_LEAST * a));
+	across = v * v / (r * a);
+	speed_up = fmin(sqrt(1 - across * across) * a,
+			INTERP_ARC_JERK_BOTH * j * r / (3 * v));
+	both = 3 * v * speed_up / (r * j);
+	*ret = (struct along) {
+		speed_up / a, sqrt(1 - both * both) - v * v * v / (r * r * j),
+		INFINITY, INFINITY
+	};
+	return v / h->share;
 }
 
 /* What the axes of its bend can do. */
 static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 {
 	struct interp_seg *s = &w->segs[i];
+	struct along left = { 1, 1, INFINITY, INFINITY };
 	double v = (double)s->feed_max_mm_s;
-	double rates[INTERP_NAXES];
+	struct rates rates;
 
-	pass_rates(w, i, h, rates);
+	pass_rates(w, i, h, &rates);
 	if (s->kind == INTERP_LINE && pass_is_short(w, i))
-		v = fmax(v, pass_rate_mm_s(w, rates));
-	if (h->bend_mm > 0) {
-		double a = INFINITY, j = INFINITY;
-
-		for (uint32_t k = 0; k < w->n; k++) {
-			if (h->first.rate[k] == 0 && h->last.rate[k] == 0)
-				continue;
-			a = fmin(a, w->a_mm_s2[k]);
-			j = fmin(j, w->j_mm_s3[k]);
-		}
-		v = fmin(v, pass_round_mm_s(h->bend_mm,
-					    INTERP_BEND_ACROSS * a, j) /
-			    h->share);
+		v = fmax(v, pass_rate_mm_s(w, &rates));
+	if (s->kind == INTERP_CURVE) {
+		/* What its axes leave is known already. */
+		left.a_mm_s2 = w->p->pieces[s->arg].a_mm_s2;
+		left.j_mm_s3 = w->p->pieces[s->arg].j_mm_s3;
+		memset(rates.by, 0, sizeof(rates.by));
+	} else if (h->bend_mm > 0) {
+		v = round_bend(w, h, v, &left);
 	}
-	soften_seg(w, s, h->bend_mm > 0 || s->kind == INTERP_CURVE ?
-			 INTERP_BEND_ALONG : 1, rates);
+	soften_seg(w, s, &left, &rates);
 	s->feed_max_mm_s = level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;

@@ -335,10 +335,11 @@ static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
 }
 
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
-		double ret[INTERP_NAXES])
+		struct rates *ret)
 {
+	ret->bends = 0;
 	if (w->segs[i].kind == INTERP_LINE && pass_is_short(w, i)) {
-		line_rates(w, i, &h->first, ret);
+		line_rates(w, i, &h->first, ret->by);
 		return;
 	}
 	for (uint32_t j = 0; j < w->n; j++) {
@@ -348,17 +349,18 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 				   (h->first.along | h->last.along) >> j & 1;
 
 		/* On its way it may go all along the axis. */
-		ret[j] = bends ? larger(ends, larger(h->share, 1)) : ends;
+		ret->by[j] = bends ? larger(ends, larger(h->share, 1)) : ends;
+		ret->bends |= (uint32_t)bends << j;
 	}
 }
 
-double pass_rate_mm_s(const struct pass *w, const double rates[INTERP_NAXES])
+double pass_rate_mm_s(const struct pass *w, const struct rates *r)
 {
 	double v = INFINITY;
 
 	for (uint32_t j = 0; j < w->n; j++) {
-		if (rates[j] * v > w->v_mm_s[j])
-			v = w->v_mm_s[j] / rates[j];
+		if (r->by[j] * v > w->v_mm_s[j])
+			v = w->v_mm_s[j] / r->by[j];
 	}
 	return v;
 }

@@ -51,11 +51,17 @@ bool pass_is_short(const struct pass *w, uint32_t i);
 double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		      const struct heading *a, const struct heading *b);
 
-/** pass_rates() - the most that each column moves by, a mm of segment @i. */
+/* The most that each column moves by, a mm of a segment. */
+struct rates {
+	double by[INTERP_NAXES];
+	uint32_t bends;			/* columns that go round a bend */
+};
+
+/** pass_rates() - those of segment @i. */
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
-		double ret[INTERP_NAXES]);
+		struct rates *ret);
 
 /** pass_rate_mm_s() - what the axes' own speeds allow at such rates. */
-double pass_rate_mm_s(const struct pass *w, const double rates[INTERP_NAXES]);
+double pass_rate_mm_s(const struct pass *w, const struct rates *r);
 
 #endif /* SPEED_PASS_H */

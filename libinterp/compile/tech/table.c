@@ -152,6 +152,11 @@ interp_tech_inline(const struct interp_tech_table *t, char letter)
 	return &t->inlined[letter == 'C' ? 0 : letter == 'E' ? 1 : 2];
 }
 
+static const char *whose(const struct interp_tech *tech, uint32_t field)
+{
+	return interp_tech_given(tech, field) ? "" : " of the machine";
+}
+
 int interp_tech_fits(const struct interp_tech *tech,
 		     const struct interp_tech *base, const char *name,
 		     struct interp_diag *diag)
@@ -168,13 +173,11 @@ int interp_tech_fits(const struct interp_tech *tech,
 	high = &interp_tech_field[o->high];
 	return interp_diag_say(diag, "%s: %s %g %s%s is not %s %s %g %s%s; %s "
 			       "%s %s", name, low->name, sum.v[o->low],
-			       low->unit,
-			       interp_tech_given(tech, o->low) ? "" : " of the machine",
+			       low->unit, whose(tech, o->low),
 			       o->or_equal ? "at most" : "below", high->name,
 			       sum.v[o->high], high->unit,
-			       interp_tech_given(tech, o->high) ? "" : " of the machine",
-			       low->name, o->or_equal ? "at most" : "below",
-			       high->name);
+			       whose(tech, o->high), low->name,
+			       o->or_equal ? "at most" : "below", high->name);
 }
 
 int interp_tech_table_fits(const struct interp_tech_table *t,

@@ -118,7 +118,11 @@ bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,
 	if (seg->kind >= INTERP_BEGIN)
 		return seg->length_mm == 0 && seg->ticks == 0 &&
 		       isfinite(seg->s_mm) &&
-		       (seg->kind != INTERP_MCODE || interp_mcode_ok(seg->arg));
+		       (seg->kind != INTERP_MCODE ||
+			interp_mcode_ok(seg->arg)) &&
+		       (seg->kind != INTERP_ELECTRODE ||
+			(seg->arg & ~INTERP_ELECTRODE_STOP) <=
+			INTERP_ELECTRODE_MAX);
 	if (seg->flags & INTERP_SEG_SENSED && seg->kind != INTERP_LINE)
 		return false;
 	return isfinite(seg->s_mm) && isfinite(seg->length_mm) &&

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * walk.h - a way of turning one segment into lattice points
+ * pulse.h - the walks: each turns one kind of segment into lattice points
  *
- * The cursor owns the place; a walk owns the points.  It counts how far it is
- * in a measure of its own, 0 at the segment's start and c->whole at its end,
- * that grows with every tick: ticks for most, swept area for a circle by
- * point-by-point comparison, so that its place follows the arc's length.
+ * The cursor owns the place; a walk owns the points.  A walk counts how far it
+ * is in its own measure, which is 0 at the segment's start and c->whole at its
+ * end, and grows with every tick.  For most walks the measure is the number of
+ * ticks.  For a circle by point-by-point comparison it is the swept area, so
+ * that its place follows the length of the arc.
  *
  * Threads: RT-safe.
  */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bench.c - the machine of the experiment: believed, and as it is */
+/* bench.c - the machine of the experiment: as it is believed to be, and as it
+ * is */
 #include "contour_try.h"
 #include "tried/set_twin.h"
 

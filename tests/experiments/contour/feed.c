@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * feed.c - set values, one a period, along a curve
+ * feed.c - set values along a curve, one for each period
  *
- * The speed is that programmed, less at the start and where v^2 / radius would
- * be more than the limit.  The place advances by the midpoint rule in many small steps.
+ * The speed is the programmed one.  It is less at the start, and where v^2 /
+ * radius would be more than the limit.  The place goes on by the midpoint rule
+ * in many small steps.
  */
 #include "contour_try.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* identify.c - loops identified from traces, and the worst of many */
+/* identify.c - loops that are identified from traces, and the worst of many */
 #include "contour_try.h"
 #include "interp/identify.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* models.c - gains found, what history teaches */
+/* models.c - gains that are found by optimisers, and a model that learns from
+ * history */
 #include "contour_try.h"
 #include "tried/ridge.h"
 #include "interp/tune.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * greedy_walk.c - a list of runs, walked either way
- */
+/* greedy_walk.c - walk a list of runs in both directions */
 #include "tried/greedy_walk.h"
 
 static bool run_main(const struct greedy_walk *w)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * greedy_walk.h - a list of runs, walked either way
+ * greedy_walk.h - walk a list of runs in both directions
  *
- * Programs keep a bit for each pulse instead, see path/build_bits.h.
+ * Programs keep one bit for each pulse instead, see path/build_bits.h.
  *
  * Threads: any.
  */

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * edit.c - knots inserted, curves split, degrees raised
+ * nurbs_edit.c - insert knots, split curves, raise their degree
  *
- * Insertion is Boehm's: a knot more in span k changes p - s control points,
- * each to a point between two old ones, so it is as exact as the numbers are.
+ * Insertion is Boehm's: one more knot in span k changes p - s control points,
+ * each to a point between two old ones.  So it is as exact as the numbers are.
  *
- * A curve's blossom f(a1 ... ap) is what de Boor's triangle makes of p
- * different arguments; a control point is the blossom at the p knots inside
- * its support.  A curve raised by a degree has the blossom
+ * A curve's blossom f(a1 ... ap) is the result of de Boor's triangle with p
+ * different arguments.  A control point is the blossom at the p knots inside
+ * its support.  A curve whose degree is raised by one has the blossom
  *
  *	g(a1 ... ap+1) = 1/(p+1) sum of f(all of them but one)
  *
- * and so its control points.
+ * which gives its control points.
  */
 #include "tried/nurbs_edit.h"
 

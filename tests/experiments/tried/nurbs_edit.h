@@ -3,13 +3,13 @@
  * nurbs_edit.h - the same curve with other knots, in pieces, or of a higher
  * degree
  *
- * Each makes a new curve in room the caller lends; the old one stays as it is.
- * Return: 0, -ENOSPC if the room is too small, -EINVAL if it cannot be done.
+ * Each function makes a new curve in memory of the caller; the old one stays as
+ * it is.  Return: 0; -ENOSPC if the memory is too small; -EINVAL if it cannot
+ * be done.
  *
- * Units: as in nurbs.h.
- * Threads: as long as the curve; no allocation; not for the cycle.
- * Source: W. Boehm, Inserting new knots into B-spline curves, 1980; L.
- * Ramshaw, Blossoming, 1987 (degree elevation).
+ * Units: as in nurbs.h.  Threads: any, with a curve of their own; nothing is
+ * allocated; not for the cycle.  Source: W.  Boehm, Inserting new knots into
+ * B-spline curves, 1980; L.  Ramshaw, Blossoming, 1987 (degree elevation).
  */
 #ifndef INTERP_NURBS_EDIT_H
 #define INTERP_NURBS_EDIT_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * step.c - along a curve by steps of time
+ * nurbs_step.c - along a curve by steps of time
  *
  * A step is a search for du > 0 along the direction walked.  On most of a
  * curve Taylor's du is a good guess and one or two of Newton's corrections make

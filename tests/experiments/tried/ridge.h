@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * ridge.h - a model learned from history: what the axis model still misses
+ * ridge.h - a model that is learned from history: what the axis model still
+ * misses
  *
- * A weighted sum of features of the set motion, the weights by ridge
- * regression: least squares with a price on large weights.  It is trained
- * offline, row by row, in a fixed room; its use in the cycle is one product.
- * It is kept only if it predicts runs better that it was not trained on.
+ * It is a weighted sum of features of the set motion.  The weights come from
+ * ridge regression: least squares with a price on large weights.  It is trained
+ * beforehand, row by row, in memory of a fixed size; its use in the cycle is
+ * one product.  It is kept only if it predicts runs that it was not trained on
+ * better than the model alone.
  *
- * Units: the features' and the target's own.
- * Threads: _add() and _solve() any thread; _eval() and the features RT-safe.
+ * Units: those of the features and of the target.  Threads: _add() and _solve()
+ * any thread; _eval() and the features RT-safe.
  */
 #ifndef INTERP_RIDGE_H
 #define INTERP_RIDGE_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* twin.c - errors of a run of the model, put where their feet were */
+/* set_twin.c - put the errors of a run of the model where their feet were */
 #include "tried/set_twin.h"
 
 void interp_twin_correct(const struct interp_twin_set *set,

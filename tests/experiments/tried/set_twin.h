@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * twin.h - correct a path beforehand by what its twin, the model, makes of it
+ * set_twin.h - correct a path beforehand by a run of its twin, the model
  *
- * The set values are run through the axis models; the contour error found at a
- * place of the path is added, times a gain, to the set values of that place;
- * and again.  What is left is what the models do not know.
+ * The set values are run through the axis models.  The contour error that is
+ * found at a place of the path is multiplied by a gain and added to the set
+ * values of that place.  This is repeated.  What is left is what the models do
+ * not know.
  *
- * Units: mm.
- * Threads: any thread, not in the cycle: the work grows with the path.
+ * Units: mm.  Threads: any thread, but not in the cycle: the work grows with
+ * the path.
  */
 #ifndef TRIED_SET_TWIN_H
 #define TRIED_SET_TWIN_H

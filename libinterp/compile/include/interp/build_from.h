@@ -42,6 +42,9 @@ struct interp_build_from {
 					 * -1: a wire, which is cut off: the way
 					 * is straight, and at its end the
 					 * program stops (M0) for threading */
+	uint32_t held;			/* electrode in the holder: if another
+					 * one cuts at the place, the program
+					 * stops for it, up above */
 };
 
 /** interp_build_set() - condition @cond of the program has @value in @field
@@ -64,6 +67,7 @@ struct interp_build_entry {
 	uint32_t passed[INTERP_PASSED_MAX];	/* M codes that are not done
 						 * again: as in the segments */
 	uint32_t npassed;
+	uint32_t electrode;		/* that cuts at the place; 0: none */
 };
 
 /**
@@ -73,8 +77,8 @@ struct interp_build_entry {
  * that was interrupted.
  *
  * What the machine found by probing before the place must be known, and the
- * program must have positioned since.  A probing motion that the place is in the
- * middle of is done again.
+ * program must have positioned since.  A probing motion that the place is in
+ * the middle of is done again.
  *
  * Return: 0; -EINVAL with @diag filled: the place is not inside, or not behind
  * such a positioning motion; -ENOMEM.  After an error @b

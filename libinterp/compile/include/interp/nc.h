@@ -49,6 +49,25 @@ struct interp_refused {
 
 #define INTERP_NC_REFUSED_MAX	100
 
+/* An electrode as a program needs it: docs/electrodes.md. */
+struct interp_electrode {
+	uint32_t number;		/* of its T word */
+	double offset_mm;		/* its length minus its wear: what Z is
+					 * shifted by; + is up */
+};
+
+struct interp_electrodes {
+	const struct interp_electrode *at;
+	size_t n;
+	uint32_t held;			/* number of the one in the holder; 0:
+					 * none */
+	uint32_t chosen;		/* the one that the program begins with;
+					 * 0: the one in the holder */
+	bool unknown_ok;		/* numbers that are not in the table are
+					 * taken, and shift nothing: the caller
+					 * looks at the marks in the program */
+};
+
 struct interp_nc_options {
 	const struct interp_dialect *dialect;	/* NULL: generic */
 	const struct interp_machine *machine;
@@ -69,6 +88,9 @@ struct interp_nc_options {
 				 * looked at */
 	const struct interp_mcode *mcode;	/* lent, INTERP_NMCODES of
 				 * them by number: the PLC's; NULL: none */
+	const struct interp_electrodes *electrodes;	/* lent; NULL: their
+				 * sizes are not known, and T words shift
+				 * nothing */
 	const struct interp_notes *notes;	/* lent; NULL: nobody listens */
 	const struct interp_refused *refused;	/* lent; NULL: the first is
 				 * enough */

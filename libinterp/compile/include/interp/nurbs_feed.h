@@ -16,6 +16,8 @@
 
 #include "interp/nurbs.h"
 
+#include <stdbool.h>
+
 /* All > 0; HUGE_VAL is no limit. */
 struct interp_nurbs_limits {
 	double chord_error_mm, period_s;
@@ -25,12 +27,21 @@ struct interp_nurbs_limits {
 	double j_mm_s3[INTERP_NAXES];
 };
 
-/** interp_nurbs_feed_mm_s() - the fastest at @u; 0 at a point where the curve
- *  does not go on (a cusp). */
-double interp_nurbs_feed_mm_s(struct interp_nurbs_eval *e, double u,
-			      const struct interp_nurbs_limits *l);
+/* A point of a curve, by the length of the path. */
+struct interp_nurbs_way {
+	bool cusp;			/* the curve does not go on here; then
+					 * the rest says nothing */
+	double curvature;		/* 1/mm, in the counted axes */
+	double d[3][INTERP_NAXES];	/* x_s, x_ss and x_sss of each column */
+};
 
-/** interp_nurbs_curvature() - 1/mm, in the counted axes. */
-double interp_nurbs_curvature(struct interp_nurbs_eval *e, double u);
+/** interp_nurbs_way() - how the curve goes at @u. */
+void interp_nurbs_way(struct interp_nurbs_eval *e, double u,
+		      struct interp_nurbs_way *ret);
+
+/** interp_nurbs_feed_mm_s() - the fastest at that point of @c; 0 at a cusp. */
+double interp_nurbs_feed_mm_s(const struct interp_nurbs *c,
+			      const struct interp_nurbs_way *w,
+			      const struct interp_nurbs_limits *l);
 
 #endif /* INTERP_NURBS_FEED_H */

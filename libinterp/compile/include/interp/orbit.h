@@ -28,9 +28,9 @@
  *	- back to the centre, from the line that leads out, and from a vector;
  *	- anywhere on a turn, if the turn before it lies around it at the same
  *	  depth, or one step above it: then first up by that step.  If the turn
- *	  before is smaller, the way is a narrow gate.  An electrode as wide as the
- *	  orbit meets at most step^2 / 8R of material there.  If that is more than
- *	  a pulse, no way out is given.
+ *	  before is smaller, the way is a narrow gate.  An electrode as wide as
+ *	  the orbit meets at most step^2 / 8R of material there.  If that is
+ *	  more than a pulse, no way out is given.
  *
  * The electrode must nowhere be thinner than the orbit is wide (2R), and must
  * have no undercut.  Otherwise a core would be left standing in the middle.

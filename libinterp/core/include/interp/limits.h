@@ -48,11 +48,32 @@
 #define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
 
 /*
- * On a bend, shares of what an axis can do: to follow it, and to go along it.
- * Square to each other, together they are no more than all of it.
+ * On a bend, shares of an axis's acceleration: to follow it at most, and to go
+ * along it at least.  Square to each other, together they are no more than all
+ * of it.  What the bend does not need at its speed is left for going along it.
  */
 #define INTERP_BEND_ACROSS	0.8
 #define INTERP_BEND_ALONG	0.6
+/* Of an axis beside the path they point one way. */
+#define INTERP_BESIDE_ACROSS	0.6
+#define INTERP_BESIDE_ALONG	0.4
+
+/*
+ * The same of its jerk, which has three parts: of the bend itself, v^3 / r^2; of
+ * speeding up on the bend, 3 * v * a / r; and of the jerk along the path, which
+ * has what is left.  On an arc the second is square to the others, on a curve
+ * all may point one way.  All three are counted at the ceiling of the speed,
+ * because a move may brake with all of its acceleration where it comes to a bend
+ * at its ceiling.
+ */
+#define INTERP_ARC_JERK_ROUND	0.3
+#define INTERP_ARC_JERK_BOTH	0.66
+#define INTERP_CURVE_JERK_ROUND	0.2
+#define INTERP_CURVE_JERK_BOTH	0.4
+
+/* Of the acceleration, that must be left to speed up on a bend: one too tight
+ * for that is gone round slower, for a move has the least of all its way. */
+#define INTERP_BEND_LEAST	0.05
 
 struct interp_limits {
 	const struct interp_machine *machine;

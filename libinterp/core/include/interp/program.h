@@ -44,7 +44,7 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	8
+#define INTERP_PROGRAM_VERSION	9
 
 /*
  * How three and more axes make a line, one at a time.  Point-by-point is a
@@ -77,6 +77,8 @@ enum interp_kind {
 	INTERP_OPTIONAL_STOP,		/* M1 */
 	INTERP_AUX,			/* arg: enum interp_aux */
 	INTERP_MCODE,			/* the PLC's; arg: interp/mcode_arg.h */
+	INTERP_ELECTRODE,		/* this one cuts from here on; arg: its
+					 * number, and INTERP_ELECTRODE_STOP */
 	INTERP_TIMED,			/* what is up to segment arg, which ends
 					 * where it begins, has a time ... */
 	INTERP_TIMED_END,		/* ... of arg milliseconds */
@@ -84,6 +86,11 @@ enum interp_kind {
 					 * text */
 	INTERP_NKINDS
 };
+
+/* Hold, so that a person puts the electrode in; no way back leads over it. */
+#define INTERP_ELECTRODE_STOP	0x80000000u
+#define INTERP_ELECTRODE_MAX	9999u		/* 0: the holder is empty */
+#define INTERP_ELECTRODES_MAX	64u		/* changes in a program */
 
 /* Outputs a program may switch. */
 enum interp_aux {
@@ -197,6 +204,7 @@ struct interp_piece {
 	uint32_t curve;
 	uint32_t nstops;
 	uint64_t stops_at;
+	double a_mm_s2, j_mm_s3;	/* along it, that its axes allow */
 };
 
 /* A technology condition called by the program, such as C120 or E001. */
@@ -220,7 +228,8 @@ struct interp_escape {
 	double home_mm[INTERP_NAXES];	/* machine coordinates */
 	double out_mm[INTERP_NAXES];
 	double rise_mm;
-	double v_max_mm_s;		/* the fastest its axes allow */
+	/* The most that each of its axes allows: */
+	double v_max_mm_s, a_max_mm_s2, j_max_mm_s3;
 };
 
 /* Which way out is wanted.  It is taken only where it is known to be free. */

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * pace.c - speeds that a law sets anew in each cycle, within what the axes can
+ * do
+ *
+ * After a cycle at the speed v, braking at once by dv = a * T in each cycle, a
+ * place that lies ahead is met at the speed u if
+ *
+ *	v <= u  or  v*v + 2*dv*v <= u*u + room
+ *
+ * where room is 2*a times the way there, summed over the segments between.  A
+ * segment that allows more than one before it is counted with what that one
+ * allows.  So the room never shrinks by more than what a cycle of braking takes
+ * off v: what could be met once can be met from then on.  A stop that is nearer
+ * than a cycle at dv is gone onto at once: from dv it can stand.
+ */
+#include "path/pace.h"
+#include "path/laws.h"
+#include "path/lookahead.h"
+#include "path/place.h"
+#include "path/walk.h"
+
+#include "interp/limits.h"
+
+#include <math.h>
+
+/* Beyond so many segments it could always stop. */
+#define SEGMENTS_MAX	512
+
+/* Any is less; it keeps what is computed finite. */
+#define A_MAX		1e9
+
+static double or_any(double a_mm_s2)
+{
+	return a_mm_s2 > 0 ? a_mm_s2 : INFINITY;
+}
+
+/* Of all axes that move, the way it goes. */
+static double a_of_axes(const struct cycle *c, int toward)
+{
+	const struct interp_seg *s;
+	double a = c->escape.a_max_mm_s2;
+
+	if (!escape_is_out(&c->escape)) {
+		s = lookahead_toward(c, toward);
+		s = s ? s : lookahead_toward(c, -toward);
+		a = s ? (double)s->a_mm_s2 : c->config.travel_a_mm_s2;
+	}
+	return a < A_MAX ? a : A_MAX;
+}
+
+/* What the law in force leaves of that.  A touch is not the servo's. */
+static double a_of_law(const struct cycle *c, double a_mm_s2)
+{
+	const double own = c->state == STATE_PROBE ? INFINITY :
+			   or_any(c->gap.feed_a_mm_s2);
+
+	return own < a_mm_s2 ? own : a_mm_s2;
+}
+
+static double a_here(const struct cycle *c, int toward)
+{
+	return a_of_law(c, a_of_axes(c, toward));
+}
+
+static int way_of(double v_mm_s)
+{
+	return v_mm_s < 0 ? -1 : 1;
+}
+
+double pace_dv_mm_s(const struct cycle *c)
+{
+	return a_here(c, way_of(c->mover.v_mm_s)) * law_period_s(c);
+}
+
+/* -- What lies ahead --------------------------------------------------------- */
+
+struct ahead {
+	const struct cycle *c;
+	int toward;
+	double a_mm_s2, dv_mm_s;	/* here */
+	double left_mm, room;		/* up to where it looks; mm2/s2 */
+	double most_mm_s;		/* the fastest that meets all so far */
+	double stop_mm;			/* left to where it has to stand */
+};
+
+/* What is no faster than the place meets it without braking. */
+static void meet(struct ahead *k, double v_mm_s)
+{
+	const double dv = k->dv_mm_s;
+	const double v = sqrt(dv * dv + v_mm_s * v_mm_s + k->room) - dv;
+
+	k->most_mm_s = fmin(k->most_mm_s, fmax(v, v_mm_s));
+}
+
+static void meet_stop(struct ahead *k)
+{
+	const double was = k->most_mm_s, dv = k->dv_mm_s;
+	const double onto = k->left_mm / law_period_s(k->c);
+
+	meet(k, 0);
+	k->most_mm_s = fmax(k->most_mm_s, fmin(was, fmin(onto, dv)));
+	k->stop_mm = fmin(k->stop_mm, k->left_mm);
+}
+
+/* Return: false if all that is farther is met anyway. */
+static bool go_on(struct ahead *k, double way_mm)
+{
+	const double v = k->most_mm_s;
+
+	k->left_mm += fmax(way_mm, 0);
+	k->room += 2 * k->a_mm_s2 * fmax(way_mm, 0);
+	return v * v + 2 * k->dv_mm_s * v > k->room;
+}
+
+static void meet_place(struct ahead *k, double to_mm)
+{
+	const double left = k->toward * (to_mm - place_mm(k->c));
+	struct ahead there = *k;
+
+	/* It still has to turn round. */
+	if (left < -MOVER_ONTO_MM || !go_on(&there, left))
+		return;
+	meet_stop(&there);
+	k->most_mm_s = there.most_mm_s;
+}
+
+/* Is it no part of the cut, or something to be done first? */
+static bool stops(const struct ahead *k, uint32_t i, const struct interp_seg *s)
+{
+	if (!interp_program_seg_ok(&k->c->cursor.p, i, s))
+		return true;
+	if (k->toward < 0)
+		return i == 0;
+	return s->kind >= INTERP_BEGIN ? walk_is_due(k->c, i, s) ||
+					 s->kind == INTERP_END :
+					 !walk_is_cut(k->c, s);
+}
+
+static double into_mm_s(const struct ahead *k, uint32_t i,
+			const struct interp_seg *s)
+{
+	const struct interp_program *p = &k->c->cursor.p;
+
+	return k->toward > 0 ? fmin(interp_limits_into(p, i), law_seg_speed(s)) :
+			       interp_limits_back_into(p, i);
+}
+
+static void look_along(struct ahead *k)
+{
+	const struct interp_cursor *at = &k->c->cursor;
+	double way = k->toward > 0 ? at->seg.length_mm - at->s_mm : at->s_mm;
+	uint32_t i = at->index;
+
+	for (int n = 0; n < SEGMENTS_MAX; n++) {
+		const struct interp_seg *s;
+
+		if (!go_on(k, way))
+			return;
+		if (k->toward < 0 && i == 0)
+			break;
+		i += (uint32_t)k->toward;
+		s = &at->p.segs[i];
+		if (i >= at->p.head->nsegs || stops(k, i, s))
+			break;
+		way = s->length_mm;
+		if (s->kind >= INTERP_BEGIN)
+			continue;
+		meet(k, into_mm_s(k, i, s));
+		k->a_mm_s2 = fmin(k->a_mm_s2, (double)s->a_mm_s2);
+	}
+	meet_stop(k);
+}
+
+/* Beside the path it stands at corners, and where the path begins again: there
+ * any way onward ends the escape. */
+static void look_beside(struct ahead *k, double to_mm)
+{
+	const struct cycle *c = k->c;
+	const double end = k->toward > 0 ? interp_cursor_place_mm(&c->cursor) :
+					   place_outer_mm(c);
+
+	k->most_mm_s = fmin(k->most_mm_s, c->escape.v_max_mm_s);
+	if (k->toward < 0 || c->escape.way_mm > MOVER_ONTO_MM)
+		meet_place(k, escape_stop_mm(c, isinf(to_mm) ? end : to_mm));
+}
+
+/* How fast to go by now, and where to stand. */
+static void look(struct ahead *k, double to_mm)
+{
+	const struct interp_seg *s = lookahead_toward(k->c, k->toward);
+
+	if (escape_is_out(&k->c->escape)) {
+		look_beside(k, to_mm);
+		return;
+	}
+	if (s)
+		k->most_mm_s = fmin(k->most_mm_s, (double)s->feed_max_mm_s);
+	if (!isinf(to_mm))
+		meet_place(k, to_mm);
+	look_along(k);
+}
+
+/* Onto what stops it, so that it is met. */
+static double go(struct cycle *c, const struct ahead *k, double v_mm_s)
+{
+	const double ds = law_go_at(c, v_mm_s);
+
+	return fabs(ds) >= k->stop_mm - MOVER_ONTO_MM ?
+	       k->toward * (k->stop_mm + MOVER_ONTO_MM) : ds;
+}
+
+double pace_go(struct cycle *c, double v_mm_s, double to_mm)
+{
+	const double was = c->mover.mean_mm_s;
+	const int from = way_of(was != 0 ? was : v_mm_s);
+	const double axes = a_of_axes(c, from), a = a_of_law(c, axes);
+	const double dv = a * law_period_s(c);
+	const double v = fmin(fmax(v_mm_s, was - dv), was + dv);
+	struct ahead k = {
+		.c = c, .toward = way_of(v), .a_mm_s2 = a,
+		.most_mm_s = fabs(v), .stop_mm = INFINITY,
+	};
+
+	if (v == 0)
+		return law_go_at(c, 0);
+	if (k.toward != from)
+		k.a_mm_s2 = a_here(c, k.toward);
+	k.dv_mm_s = k.a_mm_s2 * law_period_s(c);
+	look(&k, to_mm);
+	/* A planned move may have been quicker: no harder than the axes brake. */
+	if (was * v > 0)
+		k.most_mm_s = fmax(k.most_mm_s,
+				   fabs(was) - axes * law_period_s(c));
+	return go(c, &k, k.toward * fmin(fabs(v), k.most_mm_s));
+}

@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * axis_track.h - random paths, and every axis's speed, acceleration and jerk
+ * along them, by differences from cycle to cycle
+ *
+ * A node steps, by the corner that it is passed as: what spans one is not looked
+ * at.
+ */
+#ifndef AXIS_TRACK_H
+#define AXIS_TRACK_H
+
+#include "cycle_help.h"
+#include "seed.h"
+
+#include "interp/at.h"
+#include "interp/limits.h"
+
+#define SEGS	12
+
+static struct interp_machine axes_machine;
+
+/* Axes as unequal as they come; C is slow to set off. */
+static inline void set_machine(uint64_t *s)
+{
+	axes_machine = (struct interp_machine) { .present = 0xff };
+	for (int i = 0; i < INTERP_NAXES; i++)
+		axes_machine.axis[i] = (struct interp_axis_limits) {
+			0.001, -1000, 1000, uniform(s, 20, 90),
+			pow(10, uniform(s, 2, 3.5)), pow(10, uniform(s, 3.5, 5))
+		};
+}
+
+static inline void random_line(struct interp_build *b, uint64_t *s)
+{
+	const struct interp_build_word w = {
+		.line = 1, .feed_mm_s = 60, .rapid = rnd(s) % 3 == 0,
+	};
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, interp_build_here(b), sizeof(end));
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (rnd(s) % 3 == 0)
+			end[i] += uniform(s, -6, 6);
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+}
+
+static inline void random_arc(struct interp_build *b, uint64_t *s)
+{
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
+	const double *here = interp_build_here(b);
+	const double r = pow(10, uniform(s, -0.5, 1)), t = uniform(s, 0, 6.28);
+	const struct interp_build_arc a = {
+		.axis_a = INTERP_X, .axis_b = INTERP_Y,
+		.centre_a_mm = here[0] + r * cos(t),
+		.centre_b_mm = here[1] + r * sin(t), .clockwise = rnd(s) % 2,
+	};
+	const double to = uniform(s, 0, 6.28);
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, here, sizeof(end));
+	end[0] = a.centre_a_mm + r * cos(to);
+	end[1] = a.centre_b_mm + r * sin(to);
+	end[INTERP_C] += rnd(s) % 2 ? uniform(s, -9, 9) : 0;
+	assert_int_equal(interp_build_arc(b, end, &a, &w, &d), 0);
+}
+
+/* A NURBS of X, Y, C and now and then Z: from here, gently. */
+static inline void random_nurbs(struct interp_build *b, uint64_t *s)
+{
+	enum { N = 5, COLUMNS = 4 };
+	static const uint8_t axis[COLUMNS] = { INTERP_X, INTERP_Y, INTERP_Z,
+					       INTERP_C };
+	static const double knots[N + 4] = { 0, 0, 0, 0, 0.5, 1, 1, 1, 1 };
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
+	const double *here = interp_build_here(b);
+	double points[N * (COLUMNS + 1)];
+	struct interp_build_curve c = { .nurbs = {
+		.degree = 3, .npoints = N, .naxes = COLUMNS, .counted = 3,
+		.knots = knots,
+		.points = points,
+	} };
+	struct interp_diag d;
+
+	memcpy(c.axis, axis, sizeof(axis));
+	for (int k = 0; k < N; k++) {
+		for (int j = 0; j < COLUMNS; j++)
+			points[k * (COLUMNS + 1) + j] = here[axis[j]] +
+				(k > 0 ? uniform(s, -4, 4) : 0);
+		points[k * (COLUMNS + 1) + COLUMNS] = 1;
+	}
+	if (interp_build_curve(b, &c, &w, &d) != 0)
+		fail_msg("%s; %s", d.found, d.wanted);
+}
+
+static inline struct made random_path(uint64_t *s)
+{
+	const struct interp_build_options o = {
+		.machine = &axes_machine, .strategy = INTERP_SIMULTANEOUS,
+	};
+	struct interp_build *b = interp_build_create(&o);
+
+	for (int i = 0; i < SEGS; i++) {
+		if (rnd(s) % 4 == 0)
+			random_arc(b, s);
+		else if (rnd(s) % 6 == 0)
+			random_nurbs(b, s);
+		else
+			random_line(b, s);
+		if (rnd(s) % 6 == 0)
+			action(b, INTERP_DWELL, 1);
+	}
+	return finish(b);
+}
+
+/* Where the axes are in four cycles; on one segment, in one kind of move. */
+struct track {
+	double at[4][INTERP_NAXES];
+	uint32_t index[4];
+	enum cycle_state state[4];
+	int n;
+	struct interp_at_curve curve;
+};
+
+/* Not by pulses: from where the cursor says it is. */
+static inline void places_of(struct track *k, const struct rig *r,
+			     double ret[INTERP_NAXES])
+{
+	const struct interp_cursor *at = &r->c.cursor;
+	struct interp_contour_point point;
+
+	memset(ret, 0, INTERP_NAXES * sizeof(*ret));
+	if (at->seg.kind >= INTERP_BEGIN)
+		return;
+	assert_true(interp_program_at(&at->p, at->index, at->s_mm, &k->curve,
+				      &point));
+	for (uint32_t j = 0; j < at->p.head->naxes; j++)
+		ret[at->p.head->column[j]] = point.mm[j];
+}
+
+static inline void note(struct track *k, const struct rig *r)
+{
+	for (int i = 0; i < 3; i++) {
+		memcpy(k->at[i], k->at[i + 1], sizeof(k->at[i]));
+		k->index[i] = k->index[i + 1];
+		k->state[i] = k->state[i + 1];
+	}
+	places_of(k, r, k->at[3]);
+	k->index[3] = r->c.cursor.index;
+	k->state[3] = r->c.state;
+	k->n++;
+}
+
+static inline bool is_whole(const struct track *k)
+{
+	for (int i = 0; i < 3; i++)
+		if (k->index[i] != k->index[3] || k->state[i] != k->state[3])
+			return false;
+	return k->n >= 4 && (k->state[3] == STATE_TRAVEL ||
+			     k->state[3] == STATE_JUMP ||
+			     k->state[3] == STATE_HOLD);
+}
+
+/* Slower is never gone: a bend of a curve with less than a pulse's radius is
+ * none that the axes see. */
+static inline double slowest_mm_s(void)
+{
+	double j = INFINITY;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		j = fmin(j, axes_machine.axis[i].j_max_mm_s3);
+	return cbrt(j * PULSE_MM * PULSE_MM);
+}
+
+/* A stop less than 1e-9 mm ahead is met: the last bit of time is cut. */
+static inline void check_axes(const struct track *k, const struct rig *r)
+{
+	const double t = PERIOD_S;
+	const bool floored = r->c.cursor.seg.kind == INTERP_CURVE &&
+			     fabs(r->c.mover.v_mm_s) < 2 * slowest_mm_s();
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const struct interp_axis_limits *l = &axes_machine.axis[i];
+		const double v[3] = { (k->at[1][i] - k->at[0][i]) / t,
+				      (k->at[2][i] - k->at[1][i]) / t,
+				      (k->at[3][i] - k->at[2][i]) / t };
+		const double a[2] = { (v[1] - v[0]) / t, (v[2] - v[1]) / t };
+		const double jerk = (a[1] - a[0]) / t;
+		const double cut = cbrt(6e-9 * l->j_max_mm_s3 *
+					l->j_max_mm_s3) + 1e-5 / t / t * 1e-3;
+
+		const bool beyond = fabs(a[0]) > l->a_max_mm_s2 * (1 + 1e-6) +
+						 cut ||
+				    fabs(jerk) > l->j_max_mm_s3 * (1 + 1e-6) +
+						 2 * cut / t;
+
+		if (fabs(v[0]) > l->v_max_mm_s * (1 + 1e-6) ||
+		    (beyond && !floored))
+			fail_msg("axis %c, %s, segment %u: %g mm/s, %g of %g "
+				 "mm/s2, %g of %g mm/s3",
+				 INTERP_AXIS_LETTERS[i],
+				 state_duty[r->c.state].name,
+				 (unsigned)k->index[3], v[0], a[0],
+				 l->a_max_mm_s2, jerk, l->j_max_mm_s3);
+	}
+}
+
+#endif /* AXIS_TRACK_H */
