@@ -166,6 +166,8 @@ struct drive {
 	uint32_t choice;		/* of interpolation times */
 	int8_t time_index;		/* ... as the drive has it */
 	uint32_t refused;		/* abort of a write that is read back */
+	uint32_t sized;			/* in this step the object has ... */
+	uint8_t bytes;			/* ... so many; 0: as usual */
 	bool reading_back;
 	bool remode;			/* write 6060 once more */
 	uint32_t waited;		/* cycles since the last request */

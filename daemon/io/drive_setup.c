@@ -58,6 +58,7 @@ void drive_setup_again(struct drive *d)
 	d->phase = DRIVE_SILENT;
 	d->step = d->tries = d->choice = 0;
 	d->quiet = d->asked = d->reading_back = d->remode = false;
+	d->bytes = 0;
 	d->unset = false;
 	d->shows_mode = false;
 }
@@ -160,12 +161,15 @@ static bool is_answer(const struct drive *d, const struct drive_write *w,
 	       m->data[3] == w->sub;
 }
 
-/* The value that was read, as many bytes as the answer says. */
-static uint32_t word_of(const struct can_msg *m)
+/* How many bytes were read. */
+static uint8_t size_of(const struct can_msg *m)
 {
-	const int bytes = m->data[0] & 1 ? 4 - (m->data[0] >> 2 & 3) : 4;
+	return m->data[0] & 1 ? (uint8_t)(4 - (m->data[0] >> 2 & 3)) : 4;
+}
 
-	return can_get(m->data + 4, bytes);
+static bool is_length(uint32_t code)
+{
+	return code == 0x06070010 || code == 0x06070012 || code == 0x06070013;
 }
 
 /* These codes mean that the object is missing; all others are a refusal. */
@@ -186,37 +190,56 @@ static void on_abort(struct drive *d, const struct drive_step *s,
 		refuse(d);
 		return;
 	}
-	if (!s->reads && !passes && !s->has_choice) {
+	if (!s->reads && !passes &&
+	    (is_length(code) || (!s->kept && !s->has_choice))) {
 		d->refused = code;
 		d->reading_back = true;
 		return;
 	}
 	note_abort(d, &s->write, code, passes ? DRIVE_WITHOUT :
+		   s->kept ? DRIVE_ALREADY :
 		   s->has_choice ? DRIVE_ANOTHER : DRIVE_NOT_PASSED);
 	if (passes)
 		drive_step_missing(d, s);
+	else if (s->kept)
+		d->step++;
 	else if (!s->has_choice || !drive_step_choose(d))
 		refuse(d);
 }
 
-static void on_word(struct drive *d, const struct drive_step *s, uint32_t word)
+static uint32_t mask_of(const struct drive_step *s)
 {
-	const uint32_t mask = s->write.bytes == 4 ? UINT32_MAX :
-			      (1u << 8 * s->write.bytes) - 1;
+	return s->write.bytes == 4 ? UINT32_MAX :
+	       (1u << 8 * s->write.bytes) - 1;
+}
 
-	if (d->reading_back) {
-		const bool same = (word & mask) == (s->write.value & mask);
+/*
+ * It refused a write.  If the object is of another size, the write is repeated
+ * with that size; if it has that value already, it will do.
+ */
+static void on_old_word(struct drive *d, const struct drive_step *s,
+			const struct can_msg *m)
+{
+	const uint32_t off = can_get(m->data + 4, size_of(m)) ^ s->write.value;
+	const bool same = (off & mask_of(s)) == 0;
+	const bool sized = is_length(d->refused) &&
+			   size_of(m) != s->write.bytes;
 
-		d->reading_back = false;
-		note_abort(d, &s->write, d->refused,
-			   same ? DRIVE_ALREADY : DRIVE_NOT_PASSED);
-		if (same)
-			d->step++;
-		else
-			refuse(d);
-		return;
-	}
-	d->word = word & mask;
+	d->reading_back = false;
+	d->bytes = sized ? size_of(m) : 0;
+	d->sized = d->step;
+	note_abort(d, &s->write, d->refused, sized ? DRIVE_ANOTHER :
+		   same ? DRIVE_ALREADY : DRIVE_NOT_PASSED);
+	if (same && !sized)
+		d->step++;
+	else if (!sized)
+		refuse(d);
+}
+
+static void on_word(struct drive *d, const struct drive_step *s,
+		    const struct can_msg *m)
+{
+	d->word = can_get(m->data + 4, size_of(m)) & mask_of(s);
 	if (drive_step_finds_restart(d, s)) {
 		drive_setup_again(d);
 		return;
@@ -273,8 +296,10 @@ void drive_setup_receive(struct drive *d, const struct can_msg *m)
 	d->asked = false;
 	if (m->data[0] == SDO_ABORT)
 		on_abort(d, &s, can_get(m->data + 4, 4));
+	else if (d->reading_back)
+		on_old_word(d, &s, m);
 	else if (reads)
-		on_word(d, &s, word_of(m));
+		on_word(d, &s, m);
 	else
 		drive_step_done(d, &s);
 }

@@ -212,8 +212,6 @@ static bool is_due(const struct drive *d, const struct row *r)
 	case CYCLE_OFF:
 	case COUNTER_OFF:
 		return d->word != 0;
-	case TIME_INDEX:
-		return d->choice > 0;
 	default:
 		return true;
 	}
@@ -242,7 +240,7 @@ static uint32_t value_of(const struct drive *d, const struct row *r)
 	case CYCLE_US:
 		return c->period_us;
 	case TIME_INDEX:
-		return (uint8_t)choice_index(d);
+		return (uint32_t)choice_index(d);
 	case TIME_VALUE:
 		return time_value(c->period_us, choice_index(d));
 	default:
@@ -252,14 +250,19 @@ static uint32_t value_of(const struct drive *d, const struct row *r)
 
 static struct drive_step step_of(const struct drive *d, const struct row *r)
 {
+	const uint8_t bytes = d->bytes > 0 && d->sized == d->step ? d->bytes :
+			      r->bytes;
+
 	return (struct drive_step) {
-		.write = { r->index, r->sub, r->bytes, value_of(d, r),
+		.write = { r->index, r->sub, bytes,
+			   value_of(d, r) & UINT32_MAX >> (32 - 8 * bytes),
 			   r->may_miss },
 		.what = (uint8_t)r->what,
 		.reads = r->what <= LAST_READ,
 		.has_choice = r->what == TIME_INDEX || r->what == TIME_VALUE ||
 			      r->what == INDEX_CHECK ||
 			      r->what == VALUE_CHECK,
+		.kept = r->what == TIME_INDEX && d->choice == 0,
 	};
 }
 

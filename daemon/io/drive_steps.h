@@ -17,6 +17,7 @@ struct drive_step {
 	uint8_t what;			/* private */
 	bool reads;
 	bool has_choice;		/* refused: another value may do */
+	bool kept;			/* refused: it has that value already */
 };
 
 /* Mode 8, cyclic synchronous position, into 6060. */

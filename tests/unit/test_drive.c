@@ -23,6 +23,9 @@ struct peer {
 	uint8_t ntpdo;			/* objects in its TPDO */
 	uint32_t cob;			/* of its TPDO */
 	bool rude;			/* ... has another mode, all the same */
+	bool wide;			/* 60C2:2 has two bytes, as in some drives */
+	uint16_t wide_index;
+	uint32_t index_writes;
 	int32_t actual, target, latched;
 	uint16_t control;
 	uint8_t mode;
@@ -111,13 +114,31 @@ static uint32_t peer_read(const struct peer *p, uint32_t at)
 	}
 }
 
+static void wide_index(struct peer *p, const struct can_msg *m,
+		       struct can_msg *a)
+{
+	if (m->data[0] == 0x40) {
+		a->data[0] = 0x4b;
+		can_put(a->data + 4, p->wide_index, 2);
+	} else if (m->data[0] != 0x2b) {
+		a->data[0] = 0x80;
+		can_put(a->data + 4, 0x06070010, 4);
+	} else {
+		a->data[0] = 0x60;
+		p->wide_index = (uint16_t)can_get(m->data + 4, 2);
+		p->index_writes++;
+	}
+}
+
 static void sdo(struct peer *p, struct drive *d, const struct can_msg *m)
 {
 	struct can_msg a = { .id = CAN_SDO_ANSWER + NODE, .len = 8 };
 	const uint32_t at = can_get(m->data + 1, 2) << 8 | m->data[3];
 
 	memcpy(a.data + 1, m->data + 1, 3);
-	if (at == p->refuses &&
+	if (p->wide && at == 0x60c202) {
+		wide_index(p, m, &a);
+	} else if (at == p->refuses &&
 	    (p->code != 0x06010002 || m->data[0] != 0x40)) {
 		a.data[0] = 0x80;
 		can_put(a.data + 4, p->code ? p->code : 0x06020000, 4);
@@ -796,6 +817,26 @@ static void the_period_is_told_in_a_unit_the_drive_has(void **state)
 	}
 }
 
+/* A maker may give an object another size than the standard does. */
+static void an_object_of_another_size_is_written_with_that_size(void **state)
+{
+	static const uint16_t before[] = { 1, 0xfffd };
+
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		struct rig r;
+
+		make(&r);
+		r.p.wide = true;
+		r.p.wide_index = before[i];
+		run(&r, 200, 0);
+		assert_int_equal(r.d.phase, DRIVE_RUNNING);
+		assert_int_equal(r.p.wide_index, 0xfffd);
+		assert_int_equal(r.p.time_value, 2);
+		assert_int_equal(r.p.index_writes, 1);
+	}
+}
+
 static void what_no_brake_holds_is_not_let_go(void **state)
 {
 	struct rig r;
@@ -887,6 +928,8 @@ int main(void)
 		cmocka_unit_test(one_that_is_not_in_mode_8_is_not_moved),
 		cmocka_unit_test(one_stopped_by_nmt_is_trouble),
 		cmocka_unit_test(the_period_is_told_in_a_unit_the_drive_has),
+		cmocka_unit_test(
+			an_object_of_another_size_is_written_with_that_size),
 		cmocka_unit_test(what_no_brake_holds_is_not_let_go),
 		cmocka_unit_test(a_billion_pulses_do_not_drift),
 		cmocka_unit_test(bits_are_those_of_the_standard),
