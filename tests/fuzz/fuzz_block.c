@@ -131,7 +131,7 @@ static void walk(const struct interp_program *p, bool dry, uint64_t x)
 	cycle_init(&c, &k);
 	/* As edmd does. */
 	if (interp_cursor_init(&at, p) < 0 ||
-	    memcmp(at.pos, c.out.target, sizeof(at.pos)) != 0 ||
+	    !probe_is_start(&c, &at) ||
 	    cycle_load(&c, p) != ANSWER_DONE)
 		return;
 	turns(&c, WAITS, true, &x);

@@ -9,6 +9,8 @@
 #include "axis_track.h"
 
 #define ROUNDS	40
+/* An axis of little jerk goes at half a mm a second. */
+#define CYCLES	1000000
 
 static uint64_t seed;
 
@@ -55,11 +57,11 @@ static void there_and_back_every_axis_keeps_its_limits(void **st)
 		k.gap.retract_mm_s = 1000;
 		rig_take(&r, random_path(&s), &k);
 		tell(&r, CYCLE_START);
-		for (int n = 0; n < 100000 && r.c.state == STATE_TRAVEL; n++)
+		for (int n = 0; n < CYCLES && r.c.state == STATE_TRAVEL; n++)
 			watch(&r, &t, OPEN_V);
 		assert_int_equal(r.c.state, STATE_HOLD);
 		tell_mm(&r, CYCLE_RETRACT, 1e9);
-		for (int n = 0; n < 100000 && r.c.hold.moving; n++)
+		for (int n = 0; n < CYCLES && r.c.hold.moving; n++)
 			watch(&r, &t, OPEN_V);
 		assert_true(place(&r) == 0);
 		rig_free(&r);

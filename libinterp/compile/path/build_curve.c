@@ -26,6 +26,9 @@
 #include <string.h>
 
 #define LOOKS		64		/* in a span */
+#define NEAR		0.1		/* between two looks feed and heading
+					 * change by no more */
+#define NEAR_HALVINGS	10
 #define FEED_RATIO	1.5		/* fastest to slowest feed in a piece */
 #define CUSP_HALVINGS	60
 #define STOP_PULSES	0.02		/* error of a stop's place */
@@ -111,16 +114,48 @@ static double set_off_mm_s(const struct curve_plan *p,
 
 /* Look at @u: find the feed that its axes allow.  The present piece learns how
  * its axes go there. */
-static double look(struct curve_plan *p, double u)
+static struct curve_look look(struct curve_plan *p, double u)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;
+	struct curve_look ret = { .u = u };
 	struct interp_nurbs_way w;
 	double feed;
 
 	interp_nurbs_way(e, u, &w);
 	learn(p, &w);
 	feed = interp_nurbs_feed_mm_s(&e->c, &w, &p->limits);
-	return fmax(fmin(feed, set_off_mm_s(p, &w)), p->slowest_mm_s);
+	ret.mm_s = fmax(fmin(feed, set_off_mm_s(p, &w)), p->slowest_mm_s);
+	memcpy(ret.heading, w.d[0], sizeof(ret.heading));
+	return ret;
+}
+
+static bool is_near(const struct curve_plan *p, const struct curve_look *a,
+		    const struct curve_look *b)
+{
+	double size = 0, turn = 0;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		size = fmax(size, fabs(a->heading[k]));
+		turn = fmax(turn, fabs(a->heading[k] - b->heading[k]));
+	}
+	return turn <= NEAR * size &&
+	       fmax(a->mm_s, b->mm_s) <= (1 + NEAR) * fmin(a->mm_s, b->mm_s);
+}
+
+/* The tightest place of a bend may lie between two looks: look there, until
+ * neighbours are alike. */
+static void look_between(struct curve_plan *p, const struct curve_look *a,
+			 const struct curve_look *b, int halvings)
+{
+	struct curve_look middle;
+
+	if (halvings == 0 || is_near(p, a, b))
+		return;
+	middle = look(p, (a->u + b->u) / 2);
+	p->least_mm_s = fmin(p->least_mm_s, middle.mm_s);
+	p->most_mm_s = fmax(p->most_mm_s, middle.mm_s);
+	look_between(p, a, &middle, halvings - 1);
+	look_between(p, &middle, b, halvings - 1);
 }
 
 /* The feed of the present piece. */
@@ -354,7 +389,8 @@ static void piece_begin(struct curve_plan *p, double u)
 {
 	p->from = u;
 	p->seen = (struct curve_seen) { .bend = 0 };
-	p->least_mm_s = p->most_mm_s = look(p, u);
+	p->last = look(p, u);
+	p->least_mm_s = p->most_mm_s = p->last.mm_s;
 }
 
 /* The piece goes on to @u if its feeds stay similar enough.  Otherwise it ends
@@ -362,7 +398,8 @@ static void piece_begin(struct curve_plan *p, double u)
 static int piece_extend(struct curve_plan *p, double last, double u)
 {
 	const struct curve_seen was = p->seen;
-	const double feed = look(p, u);
+	const struct curve_look here = look(p, u);
+	const double feed = here.mm_s;
 	int err = 0;
 
 	if (last > p->from && fmax(p->most_mm_s, feed) >
@@ -374,6 +411,9 @@ static int piece_extend(struct curve_plan *p, double last, double u)
 	}
 	p->least_mm_s = fmin(p->least_mm_s, feed);
 	p->most_mm_s = fmax(p->most_mm_s, feed);
+	if (err == 0)
+		look_between(p, &p->last, &here, NEAR_HALVINGS);
+	p->last = here;
 	return err;
 }
 

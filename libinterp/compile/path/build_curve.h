@@ -29,6 +29,12 @@ struct curve_seen {
 					 * column */
 };
 
+/* The feed that the axes allow at @u, and how far each goes in a mm. */
+struct curve_look {
+	double u, mm_s;
+	double heading[INTERP_NAXES];
+};
+
 /* A NURBS while it is cut into segments. */
 struct curve_plan {
 	struct interp_build *b;
@@ -49,6 +55,7 @@ struct curve_plan {
 	double tried;			/* places so far */
 	/* The piece in hand: */
 	double from, least_mm_s, most_mm_s;
+	struct curve_look last;
 	struct curve_seen seen;
 };
 

@@ -15,6 +15,11 @@ static bool table_ok(const struct interp_program_head *h, uint64_t at,
 	       n <= (h->bytes - at) / size;
 }
 
+static bool is_place(int64_t pulses)
+{
+	return pulses <= INTERP_PULSES_MAX && pulses >= -INTERP_PULSES_MAX;
+}
+
 static bool axes_ok(const struct interp_program_head *h)
 {
 	uint32_t columns = 0;
@@ -22,11 +27,11 @@ static bool axes_ok(const struct interp_program_head *h)
 	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
 		if (!(h->pulse_mm[i] > 0 && isfinite(h->pulse_mm[i])))
 			return false;
-		if (h->start_pulses[i] > INTERP_PULSES_MAX ||
-		    h->start_pulses[i] < -INTERP_PULSES_MAX)
+		if (!is_place(h->start_pulses[i]))
 			return false;
-		if (h->probed.shift[i] > INTERP_PULSES_MAX ||
-		    h->probed.shift[i] < -INTERP_PULSES_MAX)
+		if (!is_place(h->probed.shift[i]) ||
+		    !is_place((int64_t)h->start_pulses[i] +
+			      h->probed.shift[i]))
 			return false;
 		if (i >= h->naxes)
 			continue;
