@@ -83,13 +83,10 @@ static void change_of(const struct pass *w, double per_mm,
 		along = both >> j & 1 ? larger(along, w->tol[j]) : along;
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double a = c->a->rate[j], b = c->b->rate[j];
-		const double high = larger(fabs(a), fabs(b));
 		/* Of what lies beside the path, the rounding of the path counts
-		 * too.  But a way of next to nothing, on which an axis turns,
-		 * is not the same as one on which it stands. */
+		 * too. */
 		const double by = both >> j & 1 ? 0 :
-				  along * smaller(high, 2 * smaller(fabs(a),
-								    fabs(b)));
+				  along * larger(fabs(a), fabs(b));
 
 		c->d[j] = of(fabs(b - a), (w->tol[j] + by) * per_mm);
 	}
