@@ -15,7 +15,7 @@ import fs from "node:fs"
 const GROUP = "239.255.76.67", PORT = 7667
 const TYPE = {
 	signed: "49657b54b950317d", command: "633b130fba8a2ccf",
-	ack: "e7a36102b59e523d", chunk: "939a006c067ff836",
+	ack: "e7a36102b59e523d", chunk: "9e1f02d601e2f309",
 }
 
 // -- Laying out and reading
@@ -159,7 +159,7 @@ function submit(key, path) {
 	ask(key, "JOB", (client, seq) => all(hex(TYPE.chunk), i64(0), str(client), i64(seq),
 		str(job), str("job.ngc"), i64(text.length),
 		crypto.createHash("sha256").update(text).digest(), i32(0), i32(1), i64(0),
-		Buffer.from([0]), i32(0), f64(0), i32(text.length), text), (a) => a.code || a.body)
+		Buffer.from([0]), i32(0), f64(0), i32(0), i32(text.length), text), (a) => a.code || a.body)
 }
 
 const [what, verb, text = "", arg = "0"] = process.argv.slice(2)
