@@ -161,20 +161,23 @@ def test_an_electrode_that_does_not_last_is_refused(shop, words, says):
     assert m.client.ask("queue").body == "[]"
 
 
-def test_one_that_went_away_meanwhile_makes_the_job_wait(shop):
+def test_one_that_went_away_meanwhile_makes_the_job_wait(shop, tmp_path):
     m, c = shop, shop.client
+    add(m, 1)
     add(m, 2)
-    m.ctl("electrode", "use", "2")
+    m.ctl("electrode", "use", "1")
     assert c.submit(DOWN, "first").code == 0
-    assert c.submit(ENDS_LOW, "next").code == 0
     c.status_where(lambda s: s.job_state == "running")
+    (tmp_path / "next.ngc").write_bytes(ENDS_LOW)
+    assert m.ctl("submit", "--id", "next", "--electrode", "2",
+                 str(tmp_path / "next.ngc")).returncode == 0
     # The one in use is the job's, so another job's is taken away.
     assert "when the job has ended" in m.ctl(
-        "electrode", "set", "2", "state=absent").stderr
+        "electrode", "set", "1", "state=absent").stderr
+    assert m.ctl("electrode", "set", "2", "state=absent").returncode == 0
     c.ask("hold")
     c.ask("stop")
     c.job_where("first", "stopped")
-    m.ctl("electrode", "set", "2", "state=absent")
     a = c.ask("start", "next")
     c.heard(lambda: [e for e in c.events if e.kind == "waits"
                      and "is absent" in e.text])
@@ -183,6 +186,9 @@ def test_one_that_went_away_meanwhile_makes_the_job_wait(shop):
     assert a.code == 1 and "is absent" in a.reason
     m.ctl("electrode", "set", "2", "state=there")
     c.job_where("next", "ready")
+    assert c.ask("start").code == 0
+    # The other one is in the holder: it stops for the change.
+    c.status_where(lambda s: s.job == "next" and s.job_state == "held")
     assert c.ask("start").code == 0
     c.job_where("next", "done")
 
