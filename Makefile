@@ -15,6 +15,7 @@
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
 #   make wire-random  ten thousand contours of a wire against another geometry
+#   make shipped    each shipped machine file and its jobs, for 100 seeds
 #   make walkable   random programs of every dialect are walked, there and back
 #   make invariants what holds in every cycle, over ten million random ones
 #   make callgraph  draw which file of the cycle calls which
@@ -26,6 +27,7 @@
 #                   bounded time each
 #   make panel      the operator's page, into build/panel
 #   make lint       what the cycle may call, headers alone, who may include whom
+#   make deb        Debian packages, into build/deb
 #   make install    DESTDIR and PREFIX are honoured
 #
 #   V=1             show the commands
@@ -42,6 +44,9 @@ BINDIR	= $(DESTDIR)$(PREFIX)/bin
 UNITDIR	= $(DESTDIR)/usr/lib/systemd/system
 VERSION	:= $(shell sed -n 's/^\#\# \([0-9][0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)
 
+# How many tests run side by side.
+SIDE	?= $(shell n=$$(nproc); echo $$((n > 4 ? 4 : n)))
+
 SAN	?= 0
 TSAN	?= 0
 B	:= build$(if $(filter 1,$(SAN)),-san)$(if $(filter 1,$(TSAN)),-tsan)
@@ -52,13 +57,14 @@ SANFLAGS = $(if $(filter 1,$(SAN)),-fsanitize=address$(,)undefined -fno-sanitize
 OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
 CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
-	  -DEDM_VERSION='"$(VERSION)"' $(SANFLAGS)
+	  -DEDM_VERSION='"$(VERSION)"' -DEDM_DIALECTS='"$(DIALECTS)"' $(SANFLAGS)
 # A shim round a library of C++, whose own headers are not ours to mend.
 CXXFLAGS = -std=c++17 $(OPT) -g -Wall -Wextra -Wshadow $(if $(WERROR),-Werror) \
 	   -isystem /usr/include/eigen3 \
 	   $(subst -I,-isystem ,$(filter -I%,$(shell pkg-config --cflags ompl))) \
 	   -MMD -MP $(SANFLAGS)
-LDFLAGS	= -Wl,--gc-sections,--as-needed $(SANFLAGS)
+HARDEN	=
+LDFLAGS	= -Wl,--gc-sections,--as-needed $(HARDEN) $(SANFLAGS)
 
 # The parts, in the order data flows.
 # libinterp has a floor for each use: see docs/architecture.md.
@@ -83,6 +89,8 @@ GPIOD_INC := $(shell $(PKG_CONFIG) --cflags libgpiod 2>/dev/null)
 LIBGPIOD := $(shell $(PKG_CONFIG) --libs libgpiod 2>/dev/null || echo -lgpiod)
 CONFIG	:= $(wildcard daemon/config/*.c)
 COMPILING := $(wildcard daemon/compiling/*.c)
+# The values in force, for the programs that show them: edmd-jobs, edm-panel.
+VALUES	:= $(wildcard daemon/values/*.c)
 SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
@@ -115,20 +123,21 @@ INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
 WORDS_H		= -Idaemon/words
 INC_words	= $(WORDS_H)
 INC_rt		= -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
-INC_io		= -Idaemon/io -Idaemon/config $(WORDS_H) $(CORE_H) $(GPIOD_INC)
+INC_io		= -Idaemon/io -Icommon -Idaemon/config $(WORDS_H) $(CORE_H) $(GPIOD_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(WORDS_H) $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
-INC_setup	= -Idaemon/setup
+INC_values	= -Idaemon/values -Idaemon/shm $(INC_compiling)
+INC_setup	= -Idaemon/setup -Icommon
 INC_logger	= -Idaemon/logger -Imessages/sign
 INC_edmd	= -Idaemon/edmd $(INC_logger) -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon $(WORDS_H) $(INC_values) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign
-INC_client	= -Iclients/client $(WORDS_H) -Imessages/sign -I$(B)/messages
+INC_client	= -Iclients/client -Icommon $(WORDS_H) -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
 INC_ctl		= -Iclients/ctl -Icommon -Idaemon/io -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
 INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
-INC_panel	= -Iclients/panel -Icommon -Idaemon/shm $(WORDS_H) $(INC_compiling) -Iclients/client -Imessages/sign
+INC_panel	= -Iclients/panel -Icommon $(WORDS_H) $(INC_values) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan
@@ -255,11 +264,11 @@ $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $
 $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
+$(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
-	$(call link,-llcm -lsodium -ljansson -larchive $(LIBGPIOD) -lm)
+	$(call link,-llcm -lsodium -ljansson -larchive -lncursesw -ltinfo $(LIBGPIOD) -lm)
 
 $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -lm)
@@ -267,7 +276,7 @@ $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool
 $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
 	$(call link,-lddsc -ljansson -lm)
 
-$(B)/edm-panel: $(call obj,$(PANEL_C) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
+$(B)/edm-panel: $(call obj,$(PANEL_C) $(VALUES) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
 	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
 $(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
@@ -275,9 +284,10 @@ $(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG
 
 # Of edm-plan, without its main().
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
-	     apart.c box.c near.c motion.c sweep.c prove.c))
+	     apart.c box.c near.c near_set.c motion.c sweep.c prove.c \
+	     spread.c))
 
-$(B)/unit/test_plan_core $(B)/unit/test_plan_bounds: $(PLAN_CORE)
+$(B)/unit/test_plan_core $(B)/unit/test_plan_bounds $(B)/unit/test_plan_near: $(PLAN_CORE)
 
 $(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
@@ -300,7 +310,8 @@ $(B)/unit/test_store $(B)/unit/test_store_electrode: UNIT_LIBS = -lsqlite3 -lsod
 $(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
 $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
 
-# The lines of its encoder are its own.
+# The sockets and the lines of an encoder are the test's own.
+$(B)/unit/test_can_queue: UNIT_LIBS = -Wl,--wrap=can_socket_open
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
@@ -361,7 +372,9 @@ demo-plan:
 	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/edmsim
 	@EDM_BUILD=$(B) examples/demo-plan
 
-# Everything: ends with the test runner's own lines.  Random tests have a seed
+# Everything: ends with the test runner's own lines.  SIDE processes run tests side
+# by side: a whole file belongs to one of them, and each has a network of its own
+# (tests/conftest.py).  Files that take longest begin first.  Random tests have a seed
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
 # the tests run alone go on to look with others.
 check:
@@ -382,7 +395,7 @@ check:
 	@tests/stage check tsan
 	@$(MAKE) --no-print-directory TSAN=1 run-crossings
 	@tests/stage check fuzz
-	@$(MAKE) --no-print-directory fuzz FUZZ_SEED=1 \
+	@$(MAKE) --no-print-directory -j$(SIDE) fuzz FUZZ_SEED=1 \
 		FUZZ_RUNS=500000 FUZZ_S=120
 	@tests/stage check clang
 	@$(MAKE) --no-print-directory clang
@@ -392,12 +405,13 @@ check:
 	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
 	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/sim tests/system \
-		$(VM_TESTS) $(PANEL_TESTS:%=--ignore %)
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q -n $(SIDE) \
+		--dist loadfile --no-loadscope-reorder \
+		$(VM_TESTS) tests/system tests/sim $(PANEL_TESTS:%=--ignore %)
 
 # Of the virtual machine's tests those that were seen to pass again and again, some
-# 5 minutes.  The others, encoder among them, are in `make check-vm`.
-VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd can402)
+# 8 minutes.  The others, encoder and adc among them, are in `make check-vm`.
+VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd can402 torture)
 
 # A browser is driven in the tests' own process; LCM has one for itself.
 PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_login.py \
@@ -433,20 +447,18 @@ vm: all
 check-strict:
 	@tests/setup check
 	@$(MAKE) --no-print-directory vm
-	@EDM_BUILD=$(B) .venv/bin/pytest -q tests/vm/test_strict.py
+	@EDM_BUILD=$(B) .venv/bin/pytest -q tests/vm/test_strict.py \
+		tests/vm/test_unruly.py
 
 check-vm:
 	@tests/setup check
 	@$(MAKE) --no-print-directory vm
-	@EDM_BUILD=$(B) .venv/bin/pytest -q tests/vm
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/vm
 
 units: $(UNIT_X) $(PEER_X)
 
 run-units: $(UNIT_X) $(PEER_X)
-	$(Q)for t in $^; do $$t >$$t.log 2>&1 || \
-		{ cat $$t.log; echo "FAILED: $$t"; exit 1; }; \
-		echo "  UNIT    $$t$$(sed -n \
-		's/^\[==========\] \([0-9]* test(s) run\).*/: \1/p' $$t.log)"; done
+	$(Q)printf '%s\n' $^ | xargs -P $(SIDE) -n 1 tests/one-unit
 
 # 500 kills of edmd, edmd-jobs and both around every verb: half an hour.
 KILLS ?= 500
@@ -456,14 +468,17 @@ kills: all
 	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
 		tests/system/test_kills.py
 
-# QEMU killed at random instants, 300 times: some three hours.
-CUTS ?= 100
+# QEMU killed at random instants, 60 times in each of five jobs; then the disk cut
+# between 300 pairs of its writes: two to three hours on an idle host.
+CUTS ?= 300
 .PHONY: torture
 torture:
 	@tests/setup check
 	@$(MAKE) --no-print-directory vm
-	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(CUTS) .venv/bin/pytest -q -s \
-		tests/vm/test_torture.py
+	$(Q)EDM_BUILD=$(B) EDM_CUTS=$$(($(CUTS) / 5)) tests/netns \
+		.venv/bin/pytest -q -s tests/vm/test_torture.py
+	$(Q)EDM_BUILD=$(B) EDM_CUTS=$(CUTS) tests/netns \
+		.venv/bin/pytest -q -s tests/vm/test_disk_cut.py
 
 # 100,000 packets from another host, and how late the cycle woke meanwhile.
 HOSTILE ?= 100000
@@ -488,6 +503,15 @@ wire-random: $(B)/edmsim
 	$(Q)$(call WIRE_TEST,10)/test_wire_leads.py
 	$(Q)$(call WIRE_TEST,100)/test_wire_taper.py -k "tapers or taper"
 	$(Q)$(call WIRE_TEST,20)/test_wire_faces.py -k faces
+	$(Q)$(call WIRE_TEST,100)/test_wire_arcs.py
+
+# Each machine file that is shipped, and its jobs, for so many seeds: 20 min.
+SHIPPED ?= 100
+.PHONY: shipped
+shipped: $(B)/edmsim
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) EDM_RUNS=$(SHIPPED) .venv/bin/pytest -q \
+		tests/sim/test_shipped.py
 
 # What is accepted is walked, there and back: so many random programs of every
 # dialect, by every strategy.
@@ -503,11 +527,12 @@ run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
 # Another compiler's opinion: warnings are errors, nothing is linked.
 clang:
 	$(call say,CLANG,all sources)
-	$(Q)for f in $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(SHM) $(SETUP) $(EDMD) \
-		$(JOBS) $(SIM) $(CTL) $(PLOT) $(PANEL_C) $(PLAN) $(wildcard clients/dds/*.c); do \
-		clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
+	$(Q)printf '%s\n' $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) \
+		$(VALUES) $(SHM) $(SETUP) $(EDMD) $(JOBS) $(SIM) $(CTL) $(PLOT) \
+		$(PANEL_C) $(PLAN) $(wildcard clients/dds/*.c) | \
+		xargs -P $(SIDE) -n 8 clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
-			$(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp)) $$f || exit 1; done
+			$(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp))
 
 bench-plan:
 	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/bench/plan
@@ -671,6 +696,9 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
 		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'
 	$(Q)! grep -n '#include "\.\./' -r common daemon libinterp clients tests
+	$(call say,LINT,the Python package has the types of messages/edm.lcm)
+	$(Q)messages/make-python clients/python/edm/messages.py || { echo \
+		"messages/make-python > clients/python/edm/messages.py"; exit 1; }
 	$(call say,LINT,no function over 80 lines)
 	$(Q)tests/function-lengths 80
 	$(call say,LINT,no line over 80 columns)
@@ -679,6 +707,9 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(Q)tests/doc-links
 
 # -- Install ------------------------------------------------------------------
+
+BASH_COMPLETION = share/bash-completion/completions
+ZSH_COMPLETION = share/zsh/site-functions
 
 EXAMPLES = $(wildcard examples/*.ini examples/*.ngc examples/*.tech \
 	   examples/*.enc examples/*.maps)
@@ -719,8 +750,30 @@ install: all panel
 	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/dialects
 	$(Q)install -m 644 dialects/*.ini \
 		$(DESTDIR)$(PREFIX)/share/edmd/dialects
+	$(Q)install -d $(DESTDIR)$(PREFIX)/$(BASH_COMPLETION) \
+		$(DESTDIR)$(PREFIX)/$(ZSH_COMPLETION)
+	$(Q)for p in $(PROGRAMS); do n=$$(basename $$p); \
+		packaging/completion bash $$p > $(DESTDIR)$(PREFIX)/$(BASH_COMPLETION)/$$n && \
+		packaging/completion zsh $$p > $(DESTDIR)$(PREFIX)/$(ZSH_COMPLETION)/_$$n || exit 1; done
 	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
+
+# Debian packages, into build/deb.  They are built in a folder of their own, with
+# what Debian hardens programs by, and without the name of this folder.
+DEB_FLAGS = -g0 -fstack-protector-strong -D_FORTIFY_SOURCE=2 \
+	    -ffile-prefix-map=$(CURDIR)=.
+DEB_B	= build-deb
+DEB_MAKE = $(MAKE) --no-print-directory B=$(DEB_B) OPT="-O2 $(DEB_FLAGS)" \
+	   HARDEN=-Wl,-z,relro,-z,now PREFIX=/usr \
+	   DESTDIR=$(CURDIR)/$(DEB_B)/deb/root
+.PHONY: deb
+deb:
+	@tests/setup deb
+	@$(DEB_MAKE) all panel
+	$(Q)rm -rf $(DEB_B)/deb
+	@$(DEB_MAKE) install
+	$(Q)packaging/deb $(CURDIR)/$(DEB_B) $(CURDIR)/$(DEB_B)/deb/root \
+		$(CURDIR)/build/deb $(VERSION)
 
 # All that install brought, but for /etc/edmd, which is the user's.
 uninstall:
@@ -729,13 +782,15 @@ uninstall:
 		$(patsubst systemd/%.in,$(UNITDIR)/%,$(wildcard systemd/*.service.in)) \
 		$(DESTDIR)/usr/lib/sysusers.d/edmd.conf \
 		$(DESTDIR)/usr/lib/tmpfiles.d/edmd.conf \
+		$(PROGRAMS:$(B)/%=$(DESTDIR)$(PREFIX)/$(BASH_COMPLETION)/%) \
+		$(PROGRAMS:$(B)/%=$(DESTDIR)$(PREFIX)/$(ZSH_COMPLETION)/_%) \
 		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules \
 		$(patsubst docs/man/%,$(DESTDIR)$(PREFIX)/share/man/man1/%,$(wildcard docs/man/*.1)) \
 		$(patsubst docs/man/%,$(DESTDIR)$(PREFIX)/share/man/man8/%,$(wildcard docs/man/*.8))
 	$(Q)rm -rf $(DESTDIR)$(PREFIX)/share/edmd $(DESTDIR)$(PREFIX)/share/doc/edmd
 
 clean:
-	rm -rf build build-san build-tsan build-gpiod2 build-vm
+	rm -rf build build-deb build-san build-tsan build-gpiod2 build-vm
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 

@@ -149,12 +149,28 @@ static int option_take(const struct cmdline *o, int opt, char *to,
 	return row_take(o, &o->row[opt - FIRST_ROW], to, optarg);
 }
 
+/* For packaging/completion: a row a line, divided by tabs. */
+static int list_options(const struct cmdline *o)
+{
+	for (size_t i = 0; i < o->nrows; i++)
+		printf("option\t%s\t%s\t%.*s\n", o->row[i].name,
+		       o->row[i].arg ? o->row[i].arg : "-",
+		       (int)strcspn(o->row[i].help, "\n"), o->row[i].help);
+	printf("option\thelp\t-\tprint the options\n"
+	       "option\tversion\t-\tprint the version\n");
+	if (o->list)
+		o->list();
+	return EX_OK;
+}
+
 int cmdline_take(const struct cmdline *o, void *to, int argc, char **argv,
 		 struct cmdline_given *ret)
 {
 	struct option longs[CMDLINE_MAX + 3];
 	int opt, code;
 
+	if (argc == 2 && strcmp(argv[1], "--list-options") == 0)
+		return list_options(o);
 	*ret = (struct cmdline_given) { .first = 0 };
 	longs_make(o, longs);
 	while ((opt = getopt_long(argc, argv, ":", longs, NULL)) != -1) {

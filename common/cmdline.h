@@ -3,7 +3,8 @@
  * cmdline.h - the command line of a program as one table: parsed, checked,
  * printed
  *
- * --help and --version need no row. A refusal is printed on stderr as
+ * --help, --version and --list-options, from which the completion of shells is
+ * made, need no row. A refusal is printed on stderr as
  *
  * 	PROGRAM: error: OPTION VALUE; WHAT WOULD BE ACCEPTED
  *
@@ -45,6 +46,8 @@ struct cmdline {
 	const char *head, *tail;	/* of --help, before and after the
 					 * rows */
 	void (*more)(void);		/* prints after the head; NULL */
+	void (*list)(void);		/* prints more rows of
+					 * --list-options; NULL */
 	const struct cmdline_row *row;
 	size_t nrows;
 	int args_max;			/* arguments that are no options */

@@ -6,6 +6,7 @@
  */
 #include "packet.h"
 
+#include "clocks.h"
 #include "plain.h"
 
 #include "edm_ack_t.h"
@@ -17,14 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-static int64_t utime(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_REALTIME, &t);
-	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
 
 /* LCM declares strings as char *, but only reads them. */
 static char *lent(const char *s)
@@ -50,7 +43,8 @@ uint8_t *packet_command(const struct packet_from *f,
 			const struct talk_question *q, size_t *ret_bytes)
 {
 	edm_command_t m = {
-		.utime = utime(), .client = lent(f->client), .seq = f->seq,
+		.utime = clock_us(CLOCK_REALTIME),
+		.client = lent(f->client), .seq = f->seq,
 		.verb = lent(q->verb), .job = lent(q->job), .arg = q->arg,
 		.text = lent(q->text),
 	};
@@ -62,7 +56,8 @@ uint8_t *packet_chunk(const struct packet_from *f, const struct talk_chunk *c,
 		      size_t *ret_bytes)
 {
 	edm_job_chunk_t m = {
-		.utime = utime(), .client = lent(f->client), .seq = f->seq,
+		.utime = clock_us(CLOCK_REALTIME),
+		.client = lent(f->client), .seq = f->seq,
 		.job = lent(c->job), .name = lent(c->name),
 		.bytes = c->bytes, .chunk = c->chunk, .chunks = c->chunks,
 		.offset = c->offset, .hold = c->hold,

@@ -13,6 +13,7 @@
  */
 #include "talk.h"
 
+#include "clocks.h"
 #include "packet.h"
 #include "seal.h"
 #include "udpm.h"
@@ -108,17 +109,9 @@ bool talk_interrupted(void)
 	return interrupted;
 }
 
-static int64_t now_us(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
-
 double talk_now_s(void)
 {
-	return (double)now_us() * 1e-6;
+	return (double)clock_us(CLOCK_MONOTONIC) * 1e-6;
 }
 
 /* -- Sending -------------------------------------------------------------- */
@@ -132,7 +125,8 @@ static void channel_name(const struct talk *t, const char *name,
 /* Our count is the service's clock, as far as we know it, and it must grow. */
 static int64_t next_count(struct talk *t)
 {
-	const int64_t now = t->known ? now_us() + t->ahead_us : 0;
+	const int64_t now =
+		t->known ? clock_us(CLOCK_MONOTONIC) + t->ahead_us : 0;
 
 	t->count = now > t->count ? now : t->count + 1;
 	return t->count;
@@ -192,7 +186,9 @@ static void send_hello(struct talk *t)
 	f = (struct packet_from) { .client = t->client, .seq = t->hello };
 	if (t->guess && (!t->known || t->guess != t->boot))
 		s = (struct seal) {
-			.boot = t->guess, .count = now_us() + t->guess_ahead_us,
+			.boot = t->guess,
+			.count = clock_us(CLOCK_MONOTONIC) +
+				 t->guess_ahead_us,
 		};
 	else
 		s = next_seal(t);
@@ -246,7 +242,7 @@ static void learn(struct talk *t, const struct seal *s)
 		t->heard = s->count;
 		t->count = 0;
 	}
-	t->ahead_us = s->count - now_us();
+	t->ahead_us = s->count - clock_us(CLOCK_MONOTONIC);
 	t->known = true;
 	t->hello = 0;
 	t->why[0] = '\0';
@@ -299,7 +295,7 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 	} else if (q) {
 		/* Its clock and ours drift apart, a little every hour. */
 		if (s->boot == t->boot)
-			t->ahead_us = s->count - now_us();
+			t->ahead_us = s->count - clock_us(CLOCK_MONOTONIC);
 		question_end(q, 0, a);
 	} else {
 		hear_listeners(t, a);
@@ -333,7 +329,7 @@ static bool is_news(struct talk *t, const struct seal *s)
 {
 	if (!t->known || s->boot != t->boot) {
 		t->guess = s->boot;
-		t->guess_ahead_us = s->count - now_us();
+		t->guess_ahead_us = s->count - clock_us(CLOCK_MONOTONIC);
 		send_hello(t);
 		return false;
 	}
@@ -402,7 +398,9 @@ static int key_take(struct talk *t, const char *path, char *said)
 static int join(struct talk *t, const struct talk_options *o, char *said)
 {
 	const char *url = o->url ? o->url : TALK_URL, *wrong;
+	char why[UDPM_WHY_MAX];
 	struct udpm_url at;
+	int err;
 
 	snprintf(t->client, sizeof(t->client), "%.20s-%d-%08x%08x",
 		 o->program ? o->program : "client", (int)getpid(),
@@ -412,12 +410,15 @@ static int join(struct talk *t, const struct talk_options *o, char *said)
 		snprintf(said, TALK_SAID_MAX, "URL %s: %s", url, wrong);
 		return -EINVAL;
 	}
-	t->lcm = lcm_create(url);
-	if (t->lcm && udpm_open(&t->in, &at) == 0)
+	/* LCM's library prints pages where there is no way.  Our own socket
+	 * meets that first. */
+	err = udpm_open(&t->in, &at);
+	if (err == 0)
+		t->lcm = lcm_create(url);
+	if (t->lcm)
 		return 0;
-	snprintf(said, TALK_SAID_MAX, "cannot open %s; does the host have a "
-		 "multicast route? ip link set lo multicast on; ip route add "
-		 "224.0.0.0/4 dev lo", url);
+	udpm_why(&at, err, why, sizeof(why));
+	snprintf(said, TALK_SAID_MAX, "cannot open %s: %s", url, why);
 	return -ENETUNREACH;
 }
 

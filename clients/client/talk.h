@@ -183,7 +183,7 @@ double talk_now_s(void);
 void talk_catch_signals(void);
 bool talk_interrupted(void);
 
-/* -- For job.c ------------------------------------------------------------ */
+/* -- For submission.c ----------------------------------------------------- */
 
 /** talk_numbers() - reserve @n seqs. Return: the first of them. */
 int64_t talk_numbers(struct talk *t, int n);

@@ -3,6 +3,7 @@
  * ask.c - verbs that are one question and its answer
  */
 #include "ctl.h"
+#include "heard.h"
 #include "history.h"
 
 #include <errno.h>
@@ -14,12 +15,37 @@
 #include <time.h>
 #include <unistd.h>
 
+#define HEARD_MS	400
+
 /* Then it does not come with the service. */
 static bool key_is_named(const struct ctl *c)
 {
 	const char *key = c->key ? c->key : getenv("EDM_KEY");
 
 	return key && *key;
+}
+
+/*
+ * The name may be wrong: name those that are there.  Return: how many other
+ * machines there are.
+ */
+static int print_heard(const struct ctl *c)
+{
+	struct heard heard;
+	int n = 0;
+
+	if (heard_listen(&heard, c->url, HEARD_MS) < 0)
+		return 0;
+	for (int i = 0; i < heard.n; i++) {
+		if (strcmp(heard.name[i], c->machine) == 0)
+			continue;
+		fprintf(stderr, "%s%s", n++ ? ", " : "edmctl: heard machine ",
+			heard.name[i]);
+	}
+	if (n)
+		fprintf(stderr, "; --machine NAME or EDM_MACHINE=NAME chooses "
+			"one\n");
+	return n;
 }
 
 int ctl_unanswered(const struct ctl *c, int err)
@@ -39,7 +65,7 @@ int ctl_unanswered(const struct ctl *c, int err)
 	}
 	fprintf(stderr, "edmctl: no answer from edmd-jobs of machine %s; is it "
 		"running? systemctl start edmd-jobs\n", c->machine);
-	if (!c->talk)
+	if (print_heard(c) == 0 && !c->talk)
 		fprintf(stderr, "edmctl: %s\n", c->said);
 	return EX_UNAVAILABLE;
 }

@@ -25,7 +25,7 @@ struct contour_row {
 	float measured_mm, predicted_mm, missed_mm;
 };
 
-struct contour {
+struct contour_errors {
 	struct contour_row *row;
 	size_t n;
 	double period_s;
@@ -37,17 +37,17 @@ struct contour {
  *
  * Return: 0; -ENOENT if there are fewer than two of them; -ENOMEM.
  */
-int ctl_contour_make(struct contour *k, const struct columns *t,
+int ctl_contour_make(struct contour_errors *k, const struct columns *t,
 		     const struct interp_axis_loop *loop);
-void ctl_contour_free(struct contour *k);
+void ctl_contour_free(struct contour_errors *k);
 
 /** ctl_contour_print() - the largest and the mean error, for a person. */
-void ctl_contour_print(const struct contour *k);
+void ctl_contour_print(const struct contour_errors *k);
 
 /**
  * ctl_contour_draw() - the error over time, to a .png or .svg. Return: 0; or <
  * 0, and the reason was printed.
  */
-int ctl_contour_draw(const struct contour *k, const char *output);
+int ctl_contour_draw(const struct contour_errors *k, const char *output);
 
 #endif /* CTL_COLUMNS_H */

@@ -52,13 +52,13 @@ static struct contour_row follow(struct twin *w, const struct columns *t,
 	};
 }
 
-int ctl_contour_make(struct contour *k, const struct columns *t,
+int ctl_contour_make(struct contour_errors *k, const struct columns *t,
 		     const struct interp_axis_loop *loop)
 {
 	struct twin w;
 	int err;
 
-	*k = (struct contour) { .n = t->n, .period_s = columns_period_s(t) };
+	*k = (struct contour_errors) { .n = t->n, .period_s = columns_period_s(t) };
 	err = twin_make(&w, loop, k->period_s);
 	if (err < 0)
 		return err;
@@ -70,12 +70,12 @@ int ctl_contour_make(struct contour *k, const struct columns *t,
 	return 0;
 }
 
-void ctl_contour_free(struct contour *k)
+void ctl_contour_free(struct contour_errors *k)
 {
 	free(k->row);
 }
 
-void ctl_contour_print(const struct contour *k)
+void ctl_contour_print(const struct contour_errors *k)
 {
 	double most[3] = { 0 }, sum[3] = { 0 };
 
@@ -100,7 +100,7 @@ void ctl_contour_print(const struct contour *k)
  * picture. */
 static void write_strips(FILE *f, const void *arg)
 {
-	const struct contour *k = arg;
+	const struct contour_errors *k = arg;
 	const size_t wide = k->n / STRIPS + 1;
 
 	fputs("$error << EOD\n", f);
@@ -123,7 +123,7 @@ static void write_strips(FILE *f, const void *arg)
 	fputs("EOD\n", f);
 }
 
-int ctl_contour_draw(const struct contour *k, const char *output)
+int ctl_contour_draw(const struct contour_errors *k, const char *output)
 {
 	return plot_draw(&(struct plot_sheet) {
 		.program = "edmctl", .output = output,

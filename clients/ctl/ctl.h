@@ -8,6 +8,7 @@
 #ifndef CTL_CTL_H
 #define CTL_CTL_H
 
+#include "mean.h"
 #include "talk.h"
 
 #include <jansson.h>
@@ -20,7 +21,7 @@ struct ctl {
 	bool json;
 	double timeout_s;
 	const char *name, *id;
-	bool hold, wait, once;
+	bool hold, wait, once, in_line;
 	int from_line;			/* 0: not given */
 	double from_mm;			/* 0: not given */
 	double electrode;		/* submit: its number; 0: not given */
@@ -46,6 +47,9 @@ struct ctl {
 int ctl_submit(struct ctl *c);
 int ctl_keys(struct ctl *c);
 int ctl_electrode(struct ctl *c);
+int ctl_mdi(struct ctl *c);
+int ctl_new_machine(struct ctl *c);
+int ctl_offset(struct ctl *c);
 int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);
 int ctl_resume(struct ctl *c);
@@ -142,6 +146,7 @@ struct line {
 	bool drawn;			/* there is something to erase or to
 					 * end */
 	double told_s;			/* when the last line was printed */
+	struct mean feed;
 	char state[3 * TALK_WORD_MAX];	/* of that line */
 };
 
@@ -151,6 +156,8 @@ void line_init(struct line *l);
  * second or on a change.
  */
 void line_status(struct line *l, const struct talk_status *s);
+/** line_words() - the same for a text, every few seconds. */
+void line_words(struct line *l, const char *text);
 /** line_bar() - a bar for @done, from 0 to 1, with a text behind it. */
 void line_bar(struct line *l, double done, const char *text);
 /** line_end() - the next output begins on a new line. */

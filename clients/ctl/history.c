@@ -163,6 +163,20 @@ static void put_faults(json_t *v)
 		       ctl_number_of(row, "place_mm"), ctl_number_of(row, "line"));
 }
 
+/* By how much each electrode was worn; nothing where that is not known. */
+static void put_electrodes(json_t *v)
+{
+	json_t *row;
+	size_t i;
+
+	json_array_foreach(v, i, row) {
+		printf("%s%.0f=", i ? ";" : "", ctl_number_of(row, "electrode"));
+		if (json_is_true(json_object_get(row, "known")))
+			printf("%.4f", ctl_number_of(row, "wear_after_mm") -
+			       ctl_number_of(row, "wear_before_mm"));
+	}
+}
+
 /* A new column is put behind the last one: docs/history.md. */
 static const struct {
 	const char *head, *key;
@@ -190,6 +204,7 @@ static const struct {
 	{ "lines", "lines", put_whole },
 	{ "sha256", "sha256", put_string },
 	{ "tech_sha256", "tech_sha256", put_string },
+	{ "electrodes", "electrodes", put_electrodes },
 };
 
 #define NCOLUMNS	(sizeof(columns) / sizeof(columns[0]))

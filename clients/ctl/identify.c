@@ -233,7 +233,7 @@ static int identify_all(const struct ctl *c, const struct columns *t,
 static int contour(const struct ctl *c, const struct columns *t,
 		   const struct interp_axis_loop *loop)
 {
-	struct contour k;
+	struct contour_errors k;
 	int err = 0;
 
 	if (ctl_contour_make(&k, t, loop) < 0)

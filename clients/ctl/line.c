@@ -12,6 +12,7 @@
 #define BAR_LEAST	8
 #define LINE_MAX_CHARS	320
 #define PLAIN_EVERY_S	1.0
+#define WORDS_EVERY_S	5.0
 
 void line_init(struct line *l)
 {
@@ -80,7 +81,8 @@ void line_bar(struct line *l, double done, const char *text)
 	draw(l, whole);
 }
 
-static void describe(char *to, size_t size, const struct talk_status *s)
+static void describe(char *to, size_t size, const struct talk_status *s,
+		     double feed_mm_min)
 {
 	char left[32], b[BAR_CHARS + 3], rest[LINE_MAX_CHARS - BAR_CHARS - 3];
 
@@ -102,7 +104,7 @@ static void describe(char *to, size_t size, const struct talk_status *s)
 	snprintf(rest, sizeof(rest), "%5.1f %% %-8s left %s, depth %.3f mm, "
 		 "gap %.0f V, jumps %d, retracts %d, feed %.2f mm/min",
 		 s->progress * 100, s->state, left, s->depth_mm, s->gap_v,
-		 s->jumps, s->retracts, s->feed_mm_s * 60);
+		 s->jumps, s->retracts, feed_mm_min);
 	bar(b, s->progress, columns() - 3 - (int)strlen(rest));
 	snprintf(to, size, "%s %s", b, rest);
 }
@@ -119,13 +121,24 @@ void line_status(struct line *l, const struct talk_status *s)
 	char text[LINE_MAX_CHARS], state[sizeof(l->state)];
 	double now_s = talk_now_s();
 
+	mean_add(&l->feed, now_s, s->feed_mm_s * 60);
 	what_changes(state, sizeof(state), s);
 	if (!l->tty && now_s - l->told_s < PLAIN_EVERY_S &&
 	    strcmp(state, l->state) == 0)
 		return;
 	l->told_s = now_s;
 	memcpy(l->state, state, sizeof(state));
-	describe(text, sizeof(text), s);
+	describe(text, sizeof(text), s, mean_now(&l->feed, now_s));
+	draw(l, text);
+}
+
+void line_words(struct line *l, const char *text)
+{
+	const double now_s = talk_now_s();
+
+	if (!l->tty && now_s - l->told_s < WORDS_EVERY_S)
+		return;
+	l->told_s = now_s;
 	draw(l, text);
 }
 

@@ -112,8 +112,8 @@ static const struct verb verbs[] = {
 	  "print what a fault, or each, means and what clears it" },
 	{ "doctor", "", ctl_doctor, 0, 0, false, "pulses",
 	  "print what this host lacks, and the command that helps" },
-	{ "watch", "", ctl_watch, 0, 0, false, "once",
-	  "show the machine while it runs, until Ctrl-C" },
+	{ "watch", "", ctl_watch, 0, 0, false, "once line",
+	  "show the machine while it runs, until q or Ctrl-C" },
 	{ "record", "CSV", ctl_record, 1, 1, false, "every plot until-end",
 	  "write every cycle to a trace file, until Ctrl-C" },
 	{ "latency", "[S]", ctl_latency, 1, 0, false, "",
@@ -127,6 +127,13 @@ static const struct verb verbs[] = {
 	{ "electrode", "list|show N|add N|set N|remove N|use N|measure N",
 	  ctl_electrode, CTL_WORDS_MAX - 1, 1, false, "",
 	  "the table of electrodes, and which one is in the holder" },
+	{ "mdi", "LINE ...", ctl_mdi, CTL_WORDS_MAX - 1, 1, false, "",
+	  "while idle: carry out lines of NC code at once" },
+	{ "offset", "[G54 X=0|X@0|Z=probe|clear ...]", ctl_offset,
+	  CTL_WORDS_MAX - 1, 0, false, "",
+	  "print the work offsets; touch off an axis, or feel for it" },
+	{ "new-machine", "FILE", ctl_new_machine, 1, 1, true, "",
+	  "ask a few questions, and write a machine file" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "plot",
 	  "find the loops of the axes in a file that record wrote" },
 };
@@ -137,7 +144,7 @@ static const struct verb verbs[] = {
  * takes. */
 static const struct cmdline_row rows[] = {
 	{ "machine", "NAME", CMDLINE_WORD, AT(machine), .help =
-	  "name of the machine; default: edm" },
+	  "name of the machine; default: $EDM_MACHINE, or edm" },
 	{ "url", "URL", CMDLINE_WORD, AT(url), .help =
 	  "URL of LCM; default: " URL_DEFAULT },
 	{ "key", "FILE", CMDLINE_WORD, AT(key), .help =
@@ -164,6 +171,8 @@ static const struct cmdline_row rows[] = {
 	  .max = 9999, .help =
 	  "submit: begin with electrode N, put in if it is another" },
 	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: print one line" },
+	{ "line", NULL, CMDLINE_FLAG, AT(in_line), .help =
+	  "watch: one line, not the whole terminal" },
 	{ "every", "N", CMDLINE_CALL, .take = take_every, .help =
 	  "record: write one cycle of N; default: 1" },
 	{ "plot", "FILE", CMDLINE_WORD, AT(plot), .help =
@@ -195,9 +204,17 @@ static void print_verbs(void)
 	puts("\nOptions:");
 }
 
+static void list_verbs(void)
+{
+	for (size_t i = 0; i < NVERBS; i++)
+		printf("verb\t%s\t%s\t%s\n", verbs[i].name,
+		       *verbs[i].args ? verbs[i].args : "-", verbs[i].help);
+}
+
 static const struct cmdline table = {
 	.program = "edmctl", .row = rows, .nrows = sizeof(rows) / sizeof(*rows),
 	.args_max = 16, .column = 18, .more = print_verbs,
+	.list = list_verbs,
 	.head = "Usage: edmctl [--machine NAME] [--url URL] [--json] "
 		"[--timeout S] VERB ...\n\nVerbs:\n",
 };
@@ -324,9 +341,12 @@ int main(int argc, char **argv)
 	struct ctl c = {
 		.machine = "edm", .url = URL_DEFAULT, .timeout_s = 3,
 	};
+	const char *machine = getenv("EDM_MACHINE");
 	const struct verb *v = NULL;
 	int err;
 
+	if (machine && *machine)
+		c.machine = machine;
 	negatives_keep(argc, argv);
 	err = parse(&c, argc, argv, &v);
 	if (err)

@@ -9,6 +9,7 @@
  */
 #include "ctl.h"
 
+#include "clocks.h"
 #include "lines.h"
 
 #include <sched.h>
@@ -28,14 +29,6 @@ static const int64_t slots_ns[] = {
 };
 
 #define NSLOTS		(sizeof(slots_ns) / sizeof(slots_ns[0]))
-
-static int64_t now_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return t.tv_sec * 1000000000LL + t.tv_nsec;
-}
 
 static int by_size(const void *a, const void *b)
 {
@@ -94,11 +87,11 @@ static void writes_time(struct lines *l, int64_t *took_ns)
 	uint8_t level = 0;
 
 	for (int i = 0; i < WRITES; i++) {
-		const int64_t from = now_ns();
+		const int64_t from = clock_ns(CLOCK_MONOTONIC);
 
 		level = !level;
 		lines_set(l, &level);
-		took_ns[i] = now_ns() - from;
+		took_ns[i] = clock_ns(CLOCK_MONOTONIC) - from;
 	}
 	qsort(took_ns, WRITES, sizeof(took_ns[0]), by_size);
 }
@@ -106,12 +99,12 @@ static void writes_time(struct lines *l, int64_t *took_ns)
 /* A missed slot is not made up for. */
 static void trial_run(struct lines *l, struct trial *t)
 {
-	int64_t at = now_ns() + t->slot_ns, now;
+	int64_t at = clock_ns(CLOCK_MONOTONIC) + t->slot_ns, now;
 	uint8_t level = 0;
 
 	for (size_t i = 0; i < t->n; i++) {
 		do
-			now = now_ns();
+			now = clock_ns(CLOCK_MONOTONIC);
 		while (now < at);
 		level = !level;
 		lines_set(l, &level);

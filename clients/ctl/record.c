@@ -9,6 +9,7 @@
 #include "ctl.h"
 #include "plot.h"
 #include "shm.h"
+#include "written.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -198,11 +199,9 @@ static void follow(const struct ctl *c, struct recording *r)
 
 static int close_csv(const struct ctl *c, struct recording *r)
 {
-	int bad = ferror(r->f);
+	const int err = written_close(r->f);
 
-	if (fclose(r->f) != 0 || bad)
-		return refuse(c, c->arg, "could not be written", EX_IOERR);
-	return 0;
+	return err ? refuse(c, c->arg, strerror(-err), EX_IOERR) : 0;
 }
 
 static const char *why_ended(const struct ctl *c, const struct recording *r)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * support.c - one archive with all that who helps from afar wants to see
+ * support.c - one archive with everything that a helper far away wants to see
  *
- * A file that cannot be had says why, and the others are there all the same.
+ * If a file cannot be made, it says why instead, and the others are made.
  */
 #include "support.h"
 

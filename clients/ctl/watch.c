@@ -3,6 +3,9 @@
  * watch.c - follows the messages of edmd-jobs: status, watch, and submit --wait
  */
 #include "ctl.h"
+#include "screen.h"
+
+#include "plain.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -176,7 +179,10 @@ int ctl_watch(struct ctl *c)
 	line_init(&l);
 	if (c->once)
 		return watch_once(c, &l, s);
-	err = watch_on(c, &l);
+	err = c->json || c->in_line || !screen_can() ? -ENOTTY :
+						       screen_watch(c);
+	if (err == -ENOTTY)
+		err = watch_on(c, &l);
 	line_end(&l);
 	if (err < 0)
 		return ctl_unanswered(c, err);
@@ -219,6 +225,25 @@ static int report(const struct ctl *c, const char *body, json_t *job)
 	return strcmp(state, "done") == 0 ? 0 : 1;
 }
 
+/* What it waits for, and what ends that. */
+static void tell_why(struct ctl *c, const char *id, struct line *l)
+{
+	const struct talk_question q = { .verb = "why", .job = id };
+	char text[440] = "waits: ";
+	struct talk_answer a;
+	json_t *o;
+
+	if (c->json || talk_ask(c->talk, &q, c->timeout_s, &a) < 0)
+		return;
+	o = a.code ? NULL : json_loads(a.body, 0, NULL);
+	plain_copy(text + strlen(text), sizeof(text) - strlen(text),
+		   ctl_text_of(o, "why"));
+	if (*ctl_text_of(o, "why"))
+		line_words(l, text);
+	json_decref(o);
+	talk_answer_free(&a);
+}
+
 /* Return: < 0 while the job goes on, else the exit code. */
 static int look(struct ctl *c, const char *id, struct line *l, double *heard_s)
 {
@@ -240,6 +265,8 @@ static int look(struct ctl *c, const char *id, struct line *l, double *heard_s)
 		   is_over(state)) {
 		line_end(l);
 		err = report(c, a.body, job);
+	} else if (strcmp(state, "running") != 0) {
+		tell_why(c, id, l);
 	}
 	json_decref(job);
 	talk_answer_free(&a);
@@ -255,7 +282,9 @@ static void draw(struct ctl *c, struct line *l, const char *id,
 	if (count == *seen || c->json)
 		return;
 	*seen = count;
-	if (strcmp(s->job, id) == 0 || strcmp(s->daemon, "ok") != 0)
+	/* Otherwise tell_why() has the line. */
+	if ((strcmp(s->job, id) == 0 && strcmp(s->job_state, "running") == 0) ||
+	    strcmp(s->daemon, "ok") != 0)
 		line_status(l, s);
 }
 

@@ -6,6 +6,7 @@
  * rate.  It only reads: nothing that comes over DDS reaches the machine.
  */
 #include "cmdline.h"
+#include "clocks.h"
 #include "config.h"
 #include "names.h"
 #include "tool.h"
@@ -135,14 +136,6 @@ static void bridge_close(struct bridge *b)
 	watch_fini(&b->watch);
 }
 
-static int64_t now_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return t.tv_sec * NS + t.tv_nsec;
-}
-
 static bool is_missing(const char *state)
 {
 	return !strcmp(state, "absent") || !strcmp(state, "lost");
@@ -172,7 +165,7 @@ static int publish(struct bridge *b)
 {
 	edm_MachineState m;
 
-	watch_look(&b->watch, now_ns(), &m);
+	watch_look(&b->watch, clock_ns(CLOCK_MONOTONIC), &m);
 	memcpy(m.host, b->host, sizeof(m.host));
 	say(b, &m);
 	return dds_write(b->writer, &m);
@@ -181,7 +174,7 @@ static int publish(struct bridge *b)
 /* Wait until @until_ns.  Return: true if it was told to stop meanwhile. */
 static bool wait_until(const struct bridge *b, int64_t until_ns)
 {
-	const int64_t left = until_ns - now_ns();
+	const int64_t left = until_ns - clock_ns(CLOCK_MONOTONIC);
 
 	return tool_wait(&b->stops, left > 0 ? left : 0);
 }
@@ -189,7 +182,7 @@ static bool wait_until(const struct bridge *b, int64_t until_ns)
 static int run(struct bridge *b, double hz)
 {
 	int64_t period = (int64_t)((double)NS / hz);
-	int64_t next = now_ns();
+	int64_t next = clock_ns(CLOCK_MONOTONIC);
 	int err;
 
 	do {
@@ -198,8 +191,8 @@ static int run(struct bridge *b, double hz)
 		if (err < 0 && err != DDS_RETCODE_TIMEOUT)
 			return err;
 		next += period;
-		if (next < now_ns())
-			next = now_ns();
+		if (next < clock_ns(CLOCK_MONOTONIC))
+			next = clock_ns(CLOCK_MONOTONIC);
 	} while (!wait_until(b, next));
 	return 0;
 }
@@ -215,11 +208,11 @@ static bool has_reader(const struct bridge *b)
 /* Return: 0, 1 if nobody listened, or a negative DDS code. */
 static int run_once(struct bridge *b)
 {
-	int64_t until = now_ns() + ONCE_NS;
+	int64_t until = clock_ns(CLOCK_MONOTONIC) + ONCE_NS;
 	int err;
 
-	while (!has_reader(b) && now_ns() < until)
-		if (wait_until(b, now_ns() + NS / 50))
+	while (!has_reader(b) && clock_ns(CLOCK_MONOTONIC) < until)
+		if (wait_until(b, clock_ns(CLOCK_MONOTONIC) + NS / 50))
 			break;
 	if (!has_reader(b)) {
 		fputs("edm-dds: nobody listened within 2 s\n", stderr);

@@ -2,7 +2,7 @@
 /*
  * tool.h - what the programs on DDS have in common
  *
- * Threads: startup only, but tool_wait().
+ * Threads: startup only; tool_wait() in the main loop too.
  */
 #ifndef DDS_TOOL_H
 #define DDS_TOOL_H

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* child.c - run other programs within limits */
 #include "child.h"
+#include "clocks.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -35,14 +36,6 @@ struct child {
 struct children {
 	struct child child[CHILDREN_MAX];
 };
-
-static time_t now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return t.tv_sec;
-}
 
 struct children *children_create(void)
 {
@@ -161,7 +154,8 @@ int child_start(struct children *c, const struct child_job *j,
 		become(j, out_fd);
 	*n = (struct child) {
 		.pid = pid, .out_fd = out_fd, .done = done, .arg = arg,
-		.until_s = now_s() + (time_t)j->limit_s + 1,
+		.until_s = clock_ms(CLOCK_MONOTONIC) / 1000 +
+			   (time_t)j->limit_s + 1,
 	};
 	return 0;
 }
@@ -188,7 +182,7 @@ void children_look(struct children *c)
 			continue;
 		if (waitpid(n->pid, &status, WNOHANG) == n->pid)
 			reap(n, status);
-		else if (now_s() > n->until_s)
+		else if (clock_ms(CLOCK_MONOTONIC) / 1000 > n->until_s)
 			kill(n->pid, SIGKILL);
 	}
 }

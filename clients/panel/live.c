@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* live.c - follow the shared memory of edmd */
 #include "live.h"
+#include "clocks.h"
 #include "values.h"
 
 #include "config.h"
@@ -34,14 +35,6 @@ struct live {
 	uint64_t next;			/* points written so far */
 	struct live_point point[LIVE_POINTS];
 };
-
-static int64_t now_ms(clockid_t clock)
-{
-	struct timespec t;
-
-	clock_gettime(clock, &t);
-	return (int64_t)t.tv_sec * 1000 + t.tv_nsec / 1000000;
-}
 
 int live_create(struct live **ret, const struct machine_config *config)
 {
@@ -135,7 +128,7 @@ static void end_point(struct live *l)
 		add_sample(l, 0, 0);
 		l->n = 1;
 	}
-	p->utime_ms = now_ms(CLOCK_REALTIME);
+	p->utime_ms = clock_ms(CLOCK_REALTIME);
 	p->gap_v[1] = (float)(l->gap_sum / l->n);
 	p->feed_mm_s[1] = (float)(l->feed_sum / l->n);
 	p->depth_mm = (float)l->snap.depth_mm;
@@ -146,7 +139,7 @@ static void end_point(struct live *l)
 
 void live_look(struct live *l)
 {
-	const int64_t at_ms = now_ms(CLOCK_MONOTONIC);
+	const int64_t at_ms = clock_ms(CLOCK_MONOTONIC);
 
 	l->is_new = false;
 	l->alive = l->status && shm_alive(l->status);
@@ -180,7 +173,7 @@ const struct shm_snapshot *live_snapshot(const struct live *l)
 const char *live_daemon(const struct live *l)
 {
 	if (l->status && l->alive && l->heard)
-		return now_ms(CLOCK_MONOTONIC) - l->moved_ms > STAND_MS ?
+		return clock_ms(CLOCK_MONOTONIC) - l->moved_ms > STAND_MS ?
 		       "lost" : "ok";
 	return l->status && l->heard ? "lost" : "absent";
 }

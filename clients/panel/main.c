@@ -3,6 +3,7 @@
  * main.c - edm-panel: the event loop, users
  */
 #include "panel_options.h"
+#include "clocks.h"
 #include "panel.h"
 #include "plain.h"
 #include "answer.h"
@@ -36,20 +37,12 @@ static void on_signal(int number)
 
 /* -- The log -------------------------------------------------------------- */
 
-static int64_t utime_ms(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_REALTIME, &t);
-	return (int64_t)t.tv_sec * 1000 + t.tv_nsec / 1000000;
-}
-
 void panel_note(struct panel *p, const char *text, ...)
 {
 	struct panel_note *n = &p->note[p->notes++ % PANEL_NOTES];
 	va_list ap;
 
-	n->utime_ms = utime_ms();
+	n->utime_ms = clock_ms(CLOCK_REALTIME);
 	va_start(ap, text);
 	vsnprintf(n->text, sizeof(n->text), text, ap);
 	va_end(ap);

@@ -5,24 +5,13 @@
 #include "page_tech.h"
 
 #include "compiling.h"
+#include "values.h"
 #include "interp/tech_table.h"
 
 #include <errno.h>
 #include <jansson.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static json_t *values(const struct interp_tech *t)
-{
-	json_t *o = json_object();
-
-	for (int i = 0; i < INTERP_NTECH; i++)
-		if (isfinite(t->v[i]))
-			json_object_set_new(o, interp_tech_field[i].name,
-					    json_real(t->v[i]));
-	return o;
-}
 
 static json_t *row(const struct interp_tech_row *r)
 {
@@ -30,7 +19,7 @@ static json_t *row(const struct interp_tech_row *r)
 
 	interp_tech_name(r->letter, r->number, name, sizeof(name));
 	return json_pack("{s:s,s:i,s:o}", "name", name, "line", (int)r->line,
-			 "values", values(&r->tech));
+			 "values", values_json(&r->tech));
 }
 
 static json_t *sequence(const struct interp_tech_sequence *q)
@@ -70,7 +59,7 @@ int page_tech_put(const struct machine_config *c)
 	json_t *o = json_object();
 
 	config_tech_base(c, &base);
-	json_object_set_new(o, "base", values(&base));
+	json_object_set_new(o, "base", values_json(&base));
 	json_object_set_new(o, "file", json_string(t.path));
 	if (err == -EINVAL)
 		json_object_set_new(o, "refused", json_pack("{s:i,s:i,s:s,s:s}",

@@ -3,6 +3,7 @@
  * press.c - a key of the page that moves an axis while it is pressed
  */
 #include "press.h"
+#include "clocks.h"
 #include "panel.h"
 #include "verbs.h"
 
@@ -15,14 +16,6 @@
 
 #define HEARD_S		0.15		/* a sign may name an answer that is at
 					 * most so old */
-
-static double now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
 
 static void on_answer(void *arg, const struct service_answer *a)
 {
@@ -91,7 +84,7 @@ static void answer(struct browser *b, int64_t n, int code, const char *reason)
 	struct press *p = socket_press(b);
 
 	p->said[p->nsaid % PRESS_SAID].n = n;
-	p->said[p->nsaid++ % PRESS_SAID].at_s = now_s();
+	p->said[p->nsaid++ % PRESS_SAID].at_s = clock_s(CLOCK_MONOTONIC);
 	socket_answer(b, n, code, reason, NULL);
 }
 
@@ -99,7 +92,8 @@ static bool is_fresh(const struct press *p, int64_t heard)
 {
 	for (unsigned int i = 0; i < PRESS_SAID && i < p->nsaid; i++)
 		if (p->said[i].n == heard)
-			return now_s() - p->said[i].at_s < HEARD_S;
+			return clock_s(CLOCK_MONOTONIC) - p->said[i].at_s <
+			       HEARD_S;
 	return false;
 }
 

@@ -255,6 +255,7 @@ static void take_status(struct service *a)
 		snprintf(s->faults, sizeof(s->faults), "%s", t->faults);
 		s->hunts = t->hunts;
 		s->lines = t->lines;
+		s->electrode = t->electrode;
 		s->queue_len = t->queue_len;
 		s->eta_s = t->eta_s;
 	}

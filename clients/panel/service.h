@@ -32,6 +32,7 @@ struct service_status {
 	char lost[SERVICE_WORD_MAX];	/* axes whose place is not certain */
 	char faults[SERVICE_FAULTS_MAX];	/* all that are latched */
 	int lines, queue_len, hunts;
+	int electrode;			/* in the holder; 0: none */
 	double eta_s;			/* -1: there is no estimate */
 };
 

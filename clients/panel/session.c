@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* session.c - cookies, tokens, and attempts to log in */
 #include "session.h"
+#include "clocks.h"
 
 #include <sodium.h>
 #include <stdio.h>
@@ -30,14 +31,6 @@ struct sessions {
 	struct stat users;		/* the time of the file at the last
 					 * look */
 };
-
-static int64_t now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return t.tv_sec;
-}
 
 static const char *const names[] = {
 	[ROLE_NONE] = "none",
@@ -147,13 +140,13 @@ struct session *session_begin(struct sessions *s, const char *user,
 	snprintf(n->user, sizeof(n->user), "%s", user);
 	snprintf(n->address, sizeof(n->address), "%s", address);
 	n->role = role;
-	n->begun_s = n->used_s = now_s();
+	n->begun_s = n->used_s = clock_ms(CLOCK_MONOTONIC) / 1000;
 	return n;
 }
 
 struct session *session_by_id(struct sessions *s, const char *id)
 {
-	const int64_t at_s = now_s();
+	const int64_t at_s = clock_ms(CLOCK_MONOTONIC) / 1000;
 
 	if (strlen(id) != SESSION_ID_BYTES - 1)
 		return NULL;
@@ -207,14 +200,16 @@ static struct place *place_of(struct sessions *s, const char *address)
 		if (s->place[i].since_s < oldest->since_s)
 			oldest = &s->place[i];
 	}
-	*oldest = (struct place) { .since_s = now_s() };
+	*oldest = (struct place) {
+		.since_s = clock_ms(CLOCK_MONOTONIC) / 1000,
+	};
 	snprintf(oldest->address, sizeof(oldest->address), "%s", address);
 	return oldest;
 }
 
 static int count_try(struct place *p, int most)
 {
-	const int64_t at_s = now_s();
+	const int64_t at_s = clock_ms(CLOCK_MONOTONIC) / 1000;
 
 	if (at_s - p->since_s >= TRY_S) {
 		p->tries = 0;

@@ -7,6 +7,7 @@
  * browser needs no queue, and is never more than one message behind.
  */
 #include "panel.h"
+#include "clocks.h"
 #include "press.h"
 
 #include <stdlib.h>
@@ -45,14 +46,6 @@ struct browser {
 	double tokens, tokens_s;
 	struct press press;
 };
-
-static double now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
 
 size_t socket_browser_size(void)
 {
@@ -221,8 +214,9 @@ static json_t *state_of(struct panel *p)
 	json_object_set_new(o, "faults", json_string(s->faults));
 	json_object_set_new(o, "hunts", json_integer(s->hunts));
 	json_object_set_new(o, "lines", json_integer(s->lines));
+	json_object_set_new(o, "electrode", json_integer(s->electrode));
 	json_object_set_new(o, "queue", json_integer(s->queue_len));
-	json_object_set_new(o, "left", json_real(s->eta_s));
+	json_object_set_new(o, "eta", json_real(s->eta_s));
 	return o;
 }
 
@@ -253,7 +247,7 @@ void socket_tell_all(struct panel *p)
 
 static bool has_token(struct browser *b)
 {
-	const double at_s = now_s();
+	const double at_s = clock_s(CLOCK_MONOTONIC);
 
 	b->tokens += (at_s - b->tokens_s) * RATE_PER_S;
 	if (b->tokens > RATE_BURST)
@@ -378,7 +372,8 @@ static int begin(struct browser *b, struct panel *p, struct lws *wsi)
 	if (!s)
 		return -1;
 	*b = (struct browser) { .panel = p, .wsi = wsi, .next = p->browsers,
-				.tokens = RATE_BURST, .tokens_s = now_s() };
+				.tokens = RATE_BURST,
+				   .tokens_s = clock_s(CLOCK_MONOTONIC) };
 	b->last = &b->first;
 	memcpy(b->session, s->id, sizeof(b->session));
 	s->sockets++;

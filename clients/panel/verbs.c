@@ -6,6 +6,7 @@
  * has answered. The journal says who did it, and with what result.
  */
 #include "panel.h"
+#include "clocks.h"
 #include "press.h"
 #include "values.h"
 
@@ -24,6 +25,8 @@
 					 * the past */
 #define PAST_BURST_S	0.5
 #define NUMBER		0x100u		/* it needs arg */
+#define LINES		0x200u		/* its text has several lines */
+#define LINES_MAX	600
 
 struct verb {
 	const char *name;
@@ -34,7 +37,7 @@ struct verb {
 					 * name */
 	bool act;			/* it does something: note it in the
 					 * journal */
-	unsigned int flags;		/* ACT_*, NUMBER */
+	unsigned int flags;		/* SERVICE_*, NUMBER, LINES */
 };
 
 /* A request that is not answered yet. */
@@ -54,14 +57,20 @@ static struct pending *all;
  * homes all axes. */
 static bool is_fit(const struct verb *v, const json_t *o)
 {
-	static const char *const words[] = { "job", "text" };
+	const struct {
+		const char *key;
+		size_t max;
+	} words[] = {
+		{ "job", SERVICE_WORD_MAX },
+		{ "text", v->flags & LINES ? LINES_MAX : SERVICE_WORD_MAX },
+	};
 	const json_t *arg = json_object_get(o, "arg");
 
 	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
-		const json_t *w = json_object_get(o, words[i]);
+		const json_t *w = json_object_get(o, words[i].key);
 
 		if (w && (!json_is_string(w) ||
-			  json_string_length(w) >= SERVICE_WORD_MAX))
+			  json_string_length(w) >= words[i].max))
 			return false;
 	}
 	if (!arg)
@@ -170,14 +179,6 @@ static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 
 /* -- Of the panel itself -------------------------------------------------- */
 
-static double now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
 /* All browsers together get a share of the time for this. The state, and a
  * stop, must not wait for many who ask about the past. */
 static bool may_look_back(struct panel *p, double at_s)
@@ -195,7 +196,7 @@ static void run_history(struct browser *b, const struct verb *v, int64_t n,
 	const double s = number_of(o, "seconds");
 	const double points = number_of(o, "points");
 	struct panel *p = socket_panel(b);
-	const double begun_s = now_s();
+	const double begun_s = clock_s(CLOCK_MONOTONIC);
 
 	(void)v;
 	if (!(s > 0 && s <= HISTORY_S_MAX && points >= 10 && points <= 2000)) {
@@ -209,7 +210,7 @@ static void run_history(struct browser *b, const struct verb *v, int64_t n,
 		return;
 	}
 	socket_answer(b, n, 0, "done", live_history(p->live, s, (int)points));
-	p->past_owed_s += now_s() - begun_s;
+	p->past_owed_s += clock_s(CLOCK_MONOTONIC) - begun_s;
 }
 
 static void run_latency(struct browser *b, const struct verb *v, int64_t n,
@@ -396,6 +397,12 @@ static const struct verb verbs[] = {
 	{ "set",      ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
 	{ "remove",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
 	{ "move",     ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
+	{ "electrode-add", ROLE_OPERATOR, run_ask, NULL, true, NUMBER | LINES },
+	{ "electrode-set", ROLE_OPERATOR, run_ask, NULL, true, NUMBER | LINES },
+	{ "electrode-remove", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
+	{ "electrode-use", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
+	{ "electrode-measure", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
+	{ "electrodes", ROLE_VIEWER, run_ask, NULL, false, NUMBER },
 	{ "text",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "queue",    ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "show",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
@@ -425,7 +432,8 @@ void verbs_do(struct browser *b, const json_t *o)
 			continue;
 		if (!is_fit(&verbs[i], o)) {
 			refuse(b, n, EX_DATAERR, "job and text are words of "
-			       "less than 64 bytes, arg is a number");
+			       "less than 64 bytes (the values of an "
+			       "electrode: less than 600), arg is a number");
 			return;
 		}
 		if (s->role >= verbs[i].role) {
@@ -487,6 +495,5 @@ json_t *verbs_hello(struct panel *p, const struct session *s)
 			 axes, "fields", values_fields(), "offsets",
 			 offsets(c), "process", c->gap.process, "plc",
 			 config_has_plc(c), "simulated",
-			 c->backend == BACKEND_SIM || c->backend ==
-			 BACKEND_NULL, "table", c->tech_table);
+			 config_machine_is(c, MACHINE_NO_WIRES), "table", c->tech_table);
 }

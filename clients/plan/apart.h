@@ -2,8 +2,8 @@
 /*
  * apart.h - is a pair of triangles far enough apart, and for how long?
  *
- * For most pairs the answer needs no distance: any direction in which there is
- * a gap between them is enough.
+ * For most pairs the answer needs no distance: it is enough to find one
+ * direction in which they are far enough apart.
  *
  * Units: mm; time is the block's parameter.  Any thread.
  */
@@ -23,17 +23,18 @@ struct apart {
 	double least_mm;		/* with a rate: a pair nearer than that
 					 * is refused; more than keep_mm */
 	double keep_mm, time;
-	double rises;			/* by so much keep_mm grows in a unit of
+	double rises;			/* how much keep_mm grows in a unit of
 					 * time */
 };
 
-/** apart_seen() - is a gap found that is enough?  @plane: of @part, as a tree
- *  has them; @tool is in the part's frame. */
+/** apart_seen() - is a direction found in which they are far enough apart?
+ *  @plane: the plane of @part, as struct tree keeps it; @tool is in the part's
+ *  frame.  False: not found, which does not mean that they are near. */
 bool apart_seen(const struct apart *a, const struct triangle *part,
 		const double plane[4], const struct triangle *tool);
 
-/** apart_time() - until @tool, at the distance @mm from the point @q on it to
- *  @p on the part, may be nearer than keep_mm. */
+/** apart_time() - the time until which @tool stays at least keep_mm away.  Its
+ *  distance is @mm now, from its point @q to the point @p on the part. */
 double apart_time(const struct apart *a, const struct triangle *tool, double mm,
 		  const double p[3], const double q[3]);
 

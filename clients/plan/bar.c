@@ -3,6 +3,7 @@
  * bar.c - a bar while a person waits, and what Ctrl-C asks for
  */
 #include "job.h"
+#include "clocks.h"
 
 #include <signal.h>
 #include <sys/ioctl.h>
@@ -39,14 +40,6 @@ void bar_forget(void)
 bool bar_interrupted(void)
 {
 	return asked != 0;
-}
-
-static double now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
 static struct {
@@ -90,7 +83,7 @@ static void say_bar(double share, const char *text)
 void bar_show(const struct job *j, double share, const char *text)
 {
 	static double last;
-	const double now = now_s();
+	const double now = clock_s(CLOCK_MONOTONIC);
 
 	if (j->o->quiet || !isatty(STDERR_FILENO) || now - last < 0.1)
 		return;

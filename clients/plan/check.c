@@ -9,6 +9,8 @@
  */
 #include "check.h"
 
+#include "lifts.h"
+
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -94,7 +96,8 @@ static bool prove_next(struct checking *k, uint32_t i, const struct block *b,
 	 * end. */
 	block_pose(b, 1, &end, NULL);
 	k->pair = p.pair;
-	see(k, i, near_distance(&k->j->bodies, &end, &k->pair));
+	if (near_less(&k->j->bodies, &end, k->ret->least_mm, &k->pair))
+		see(k, i, k->pair.mm);
 	k->ret->queries++;
 	return true;
 }
@@ -184,8 +187,9 @@ int check_way(const struct job *j, const struct route *w,
 			 i + 1, w->n - 1, ret->least_mm);
 		bar_show(j, (double)i / w->n, text);
 	}
+	err = ret->ok ? lifts_check(j, w, c, ret) : 0;
 	bar_end(j);
-	return 0;
+	return err;
 }
 
 int check_clearance(const struct job *j, const double end[INTERP_NAXES],
@@ -229,6 +233,8 @@ void check_say_left(const struct check_result *r, FILE *f)
 	else
 		fprintf(f, "%.4f mm are left of %.4f", r->pair.mm,
 			r->wanted_mm);
+	if (r->lift)
+		fputs(" in a lift beside the path", f);
 }
 
 static void say_contact(const struct job *j, const struct route *w,
@@ -246,7 +252,8 @@ static void say_contact(const struct job *j, const struct route *w,
 	} else {
 		printf("%s:%u: not free: ", j->o->program, n->line);
 		check_say_left(r, stdout);
-		printf(", %.1f %% along the block, at", 100 * r->t);
+		printf(", %.1f %% along %s, at", 100 * r->t,
+		       r->lift ? "its leg" : "the block");
 	}
 	say_axes(j, r->q, stdout);
 	putchar('\n');
@@ -261,21 +268,22 @@ static int say_result(const struct job *j, const struct route *w,
 		say_contact(j, w, r);
 		return 1;
 	}
-	printf("proved     %u blocks keep %.3f mm%s, jumps and retracts along "
-	       "them too%s\n", w->n - 1, j->clear_mm,
-	       j->o->end_zone_mm > 0 ? " but in the end zone" : "",
-	       w->beside ? "; not those beside them" : "");
+	printf("proved     %u blocks keep %.3f mm%s, and so do jumps and "
+	       "retracts\n", w->n - 1, j->clear_mm,
+	       j->o->end_zone_mm > 0 ? " but in the end zone" : "");
+	if (w->nlifts)
+		printf("           along them and beside them, from "
+		       "everywhere\n");
 	printf("           %.4f mm more are kept for pulses and arcs\n",
 	       r->most_added_mm);
 	printf("least seen %.4f mm, line %u; %llu queries\n", r->least_mm,
 	       w->node[r->least_block + 1].line,
 	       (unsigned long long)r->queries);
-	if (!w->beside)
-		return 0;
-	printf("%s:%u: not proved: %u segments lift beside the path; G140, or "
-	       "[jump] escape = path\n", j->o->program, w->beside_line,
-	       w->beside);
-	return 1;
+	if (job_are_apart(j, r->least_mm))
+		printf("           That is more than one of the bodies is "
+		       "long: are unit and\n           place of the meshes "
+		       "right?  --unit, --part-at, --electrode-at\n");
+	return 0;
 }
 
 int check_program(struct job *j)

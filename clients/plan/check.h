@@ -12,6 +12,7 @@
 struct check_result {
 	bool ok;
 	bool given_up;			/* on block; memory or patience ended */
+	bool lift;			/* in a lift beside the path */
 	bool inside;			/* the way begins inside: no distance */
 	char say[80];			/* then, which inside which */
 	uint32_t block;			/* of the first contact */

@@ -4,6 +4,8 @@
  */
 #include "fewest.h"
 
+#include "spread.h"
+
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -12,12 +14,16 @@
 
 #define WIDEST_MM	0.005
 
+/* Put to a distance, so that a pair at it is nearer for certain. */
+#define ROUNDING_MM	1e-9
+
 int fewest_init(struct fewest *f, const struct job *j,
 		double (*q)[INTERP_NAXES], uint32_t n)
 {
 	const size_t edges = (size_t)n * n;
 
-	*f = (struct fewest) { .j = j, .n = n };
+	*f = (struct fewest) { .j = j, .n = n,
+			       .lock = PTHREAD_MUTEX_INITIALIZER };
 	route_lattice(&j->config, f->lattice);
 	f->q = malloc(n * sizeof(*f->q));
 	f->proved = malloc(edges * sizeof(*f->proved));
@@ -29,7 +35,7 @@ int fewest_init(struct fewest *f, const struct job *j,
 	memcpy(f->q, q, n * sizeof(*f->q));
 	for (size_t i = 0; i < edges; i++) {
 		f->proved[i] = -1;
-		f->refuted[i] = FLT_MAX;
+		f->refuted[i] = DBL_MAX;
 	}
 	return 0;
 }
@@ -42,63 +48,96 @@ void fewest_free(struct fewest *f)
 	*f = (struct fewest) { 0 };
 }
 
-bool fewest_keeps(struct fewest *f, uint32_t i, uint32_t k, double mm)
-{
-	float *proved = &f->proved[(size_t)i * f->n + k];
-	float *refuted = &f->refuted[(size_t)i * f->n + k];
-	struct clearance c = *f->c;
-	struct proof p = { .pair = f->nearest };
-	struct block b;
-	double more;
-	bool ok;
-
-	if ((double)*proved >= mm)
-		return true;
-	if ((double)*refuted <= mm)
-		return false;
-	block_init(&b, &f->j->motion, f->q[i], f->q[k]);
-	more = motion_strays_mm(&b, f->lattice) + f->j->chord_mm;
-	c.end_mm += more + (c.zone_mm > 0 ? 0 : mm - c.mm);
-	c.mm = mm + more;
-	c.end_mm = fmin(c.end_mm, c.mm);
-	ok = !prove_refuted(&f->j->bodies, &b, &c, &p) &&
-	     prove_block(&f->j->bodies, &b, &c, &p);
-	f->queries += p.queries;
-	f->blocks++;
-	f->nearest = p.pair;
-	if (ok)
-		*proved = (float)mm;
-	else
-		*refuted = (float)mm;
-	return ok;
-}
-
-static void show(const struct fewest *f, const char *what, double share)
+static void show(const struct fewest *f)
 {
 	char text[100];
 
-	snprintf(text, sizeof(text), "%s: %llu blocks tried", what,
+	snprintf(text, sizeof(text), "%s: %llu blocks tried", f->what,
 		 (unsigned long long)f->blocks);
-	bar_show(f->j, share, text);
+	bar_show(f->j, f->share, text);
+}
+
+/* @refuted: if it does not keep @mm, it does not keep that either. */
+static bool prove(const struct fewest *f, const struct block *b, double mm,
+		  struct proof *p, double *refuted)
+{
+	struct clearance c = *f->c;
+	const double more = motion_strays_mm(b, f->lattice) + f->j->chord_mm;
+
+	c.end_mm += more + (c.zone_mm > 0 ? 0 : mm - c.mm);
+	c.mm = mm + more;
+	c.end_mm = fmin(c.end_mm, c.mm);
+	if (!prove_refuted(&f->j->bodies, b, &c, p) &&
+	    prove_block(&f->j->bodies, b, &c, p))
+		return true;
+	*refuted = mm;
+	if (!p->given_up && !(c.zone_mm > 0))
+		*refuted = fmin(mm, p->least_mm - more + ROUNDING_MM);
+	return false;
+}
+
+bool fewest_keeps(struct fewest *f, uint32_t i, uint32_t k, double mm)
+{
+	double *proved = &f->proved[(size_t)i * f->n + k];
+	double *refuted = &f->refuted[(size_t)i * f->n + k];
+	struct proof p = { 0 };
+	struct block b;
+	bool ok;
+
+	if (*proved >= mm)
+		return true;
+	if (*refuted <= mm)
+		return false;
+	block_init(&b, &f->j->motion, f->q[i], f->q[k]);
+	pthread_mutex_lock(&f->lock);
+	p.pair = f->nearest;
+	pthread_mutex_unlock(&f->lock);
+	ok = prove(f, &b, mm, &p, refuted);
+	pthread_mutex_lock(&f->lock);
+	f->queries += p.queries;
+	f->blocks++;
+	f->nearest = p.pair;
+	show(f);
+	pthread_mutex_unlock(&f->lock);
+	if (ok)
+		*proved = mm;
+	return ok;
+}
+
+/* Blocks that are asked of together; none of them twice. */
+struct ask {
+	struct fewest *f;
+	double mm;
+	uint32_t from;			/* a node */
+	const uint32_t *at;		/* nodes */
+};
+
+/* From ask->from as far as node f->n - 1 - @i. */
+static bool reaches(void *arg, uint32_t i)
+{
+	const struct ask *a = arg;
+
+	return bar_interrupted() ||
+	       fewest_keeps(a->f, a->from, a->f->n - 1 - i, a->mm);
 }
 
 uint32_t fewest_greedy(struct fewest *f, double mm, uint32_t *ret)
 {
+	const uint32_t end = f->n - 1;
 	uint32_t n = 0, at = 0;
 
 	ret[0] = 0;
-	while (at + 1 < f->n) {
-		uint32_t k = f->n - 1;
+	f->what = "greedy";
+	while (at < end) {
+		struct ask a = { f, mm, at, NULL };
+		const uint32_t back = spread_first(end - at, reaches, &a);
 
-		while (k > at && !fewest_keeps(f, at, k, mm)) {
-			show(f, "greedy", (double)at / f->n);
-			k--;
-			if (bar_interrupted())
-				return UINT32_MAX;
-		}
-		if (k == at)
+		f->share = (double)at / f->n;
+		if (bar_interrupted())
+			return UINT32_MAX;
+		if (back == end - at)
 			return 0;
-		ret[++n] = at = k;
+		ret[++n] = at = end - back;
 	}
 	return n;
 }
@@ -109,6 +148,7 @@ struct search {
 	uint32_t *before;		/* UINT32_MAX: not reached */
 	uint32_t *reached;		/* in the order of their blocks */
 	uint32_t nreached;
+	uint32_t left;			/* blocks, after the next one */
 };
 
 static void reach(struct search *s, uint32_t node, uint32_t from)
@@ -129,28 +169,77 @@ static uint32_t trace_back(const struct search *s, uint32_t end, uint32_t *ret)
 	return n;
 }
 
-/* All that one more block reaches, from @from on in the order of reaching; at
- * the last level only the end counts. */
-static bool level(struct fewest *f, struct search *s, double mm, uint32_t from,
-		  bool last)
+/* From node ask->at[@i] to the end. */
+static bool ends(void *arg, uint32_t i)
 {
-	const uint32_t end = f->n - 1, to = s->nreached;
+	const struct ask *a = arg;
 
-	for (uint32_t i = from; i < to; i++) {
-		if (fewest_keeps(f, s->reached[i], end, mm)) {
-			reach(s, end, s->reached[i]);
-			return true;
-		}
+	return bar_interrupted() ||
+	       fewest_keeps(a->f, a->at[i], a->f->n - 1, a->mm);
+}
+
+/* From ask->from to ask->at[@i]; all are asked. */
+static bool learns(void *arg, uint32_t i)
+{
+	const struct ask *a = arg;
+
+	if (!bar_interrupted())
+		fewest_keeps(a->f, a->from, a->at[i], a->mm);
+	return false;
+}
+
+/* The fewest blocks from each node to the end, if all blocks keep @mm that are
+ * not known to come nearer. */
+static void hope(const struct fewest *f, double mm, uint32_t *ret)
+{
+	const uint32_t end = f->n - 1;
+
+	ret[end] = 0;
+	for (uint32_t i = end; i-- > 0;) {
+		const double *refuted = &f->refuted[(size_t)i * f->n];
+
+		ret[i] = f->n;
+		for (uint32_t k = i + 1; k <= end; k++)
+			if (refuted[k] > mm && ret[k] + 1 < ret[i])
+				ret[i] = ret[k] + 1;
 	}
-	for (uint32_t i = from; i < to && !last; i++) {
-		for (uint32_t k = end - 1; k > s->reached[i]; k--) {
-			if (bar_interrupted())
-				return false;
-			show(f, "fewest", (double)i / to);
-			if (s->before[k] == UINT32_MAX &&
-			    fewest_keeps(f, s->reached[i], k, mm))
-				reach(s, k, s->reached[i]);
-		}
+}
+
+/* All nodes that a block from node @from reaches, that were not reached before,
+ * and from which the blocks that are left may be enough. */
+static void reach_from(struct fewest *f, struct search *s, double mm,
+		       uint32_t from)
+{
+	uint32_t at[FEWEST_NODES_MAX], togo[FEWEST_NODES_MAX], n = 0;
+	struct ask a = { f, mm, from, at };
+
+	hope(f, mm, togo);
+	for (uint32_t k = f->n - 2; k > from; k--)
+		if (s->before[k] == UINT32_MAX && togo[k] <= s->left)
+			at[n++] = k;
+	spread_first(n, learns, &a);
+	for (uint32_t i = 0; i < n && !bar_interrupted(); i++)
+		if (fewest_keeps(f, from, at[i], mm))
+			reach(s, at[i], from);
+}
+
+/* All that one more block reaches, from the node reached @first on; if none is
+ * left after it, only the end counts. */
+static bool level(struct fewest *f, struct search *s, double mm, uint32_t first)
+{
+	const uint32_t to = s->nreached;
+	struct ask a = { f, mm, 0, s->reached + first };
+	uint32_t i = spread_first(to - first, ends, &a);
+
+	if (bar_interrupted())
+		return false;
+	if (i < to - first) {
+		reach(s, f->n - 1, s->reached[first + i]);
+		return true;
+	}
+	for (i = first; i < to && s->left && !bar_interrupted(); i++) {
+		f->share = (double)i / to;
+		reach_from(f, s, mm, s->reached[i]);
 	}
 	return false;
 }
@@ -164,6 +253,7 @@ uint32_t fewest_search(struct fewest *f, double mm, uint32_t most,
 	};
 	uint32_t from = 0, n = 0;
 
+	f->what = "fewest";
 	if (s.before && s.reached) {
 		memset(s.before, 0xff, f->n * sizeof(*s.before));
 		reach(&s, 0, 0);
@@ -172,8 +262,8 @@ uint32_t fewest_search(struct fewest *f, double mm, uint32_t most,
 
 			if (bar_interrupted())
 				break;
-
-			if (level(f, &s, mm, from, i + 1 == most))
+			s.left = most - i - 1;
+			if (level(f, &s, mm, from))
 				n = trace_back(&s, f->n - 1, ret);
 			else if (s.nreached == to)
 				break;

@@ -6,12 +6,16 @@
  * to any later one, if it can be proved.  Proofs are made when they are asked
  * for and kept.
  *
- * Units: mm and degrees.  Threads: one.
+ * Proofs run on all processors.
+ *
+ * Units: mm and degrees.  Threads: one caller.
  */
 #ifndef PLAN_FEWEST_H
 #define PLAN_FEWEST_H
 
 #include "job.h"
+
+#include <pthread.h>
 
 #define FEWEST_NODES_MAX	240
 
@@ -21,8 +25,11 @@ struct fewest {
 	uint32_t n;
 	double (*q)[INTERP_NAXES];	/* own */
 	double lattice[INTERP_NAXES];
-	float *proved, *refuted;	/* of block i * n + k: that clearance is
+	double *proved, *refuted;	/* of block i * n + k: that clearance is
 					 * kept, that one is not */
+	const char *what;		/* is being done; for the bar */
+	double share;			/* of it */
+	pthread_mutex_t lock;		/* of what follows */
 	uint64_t queries, blocks;	/* tried */
 	struct near_pair nearest;	/* of the last refusal */
 };
@@ -32,7 +39,8 @@ int fewest_init(struct fewest *f, const struct job *j,
 		double (*q)[INTERP_NAXES], uint32_t n);
 void fewest_free(struct fewest *f);
 
-/** fewest_keeps() - does the block from node @i to node @k keep @mm? */
+/** fewest_keeps() - does the block from node @i to node @k keep @mm?  It may be
+ *  asked of several blocks at once. */
 bool fewest_keeps(struct fewest *f, uint32_t i, uint32_t k, double mm);
 
 /**

@@ -20,8 +20,10 @@
 #define POSES		10		/* of a block */
 #define PAIRS		14		/* of triangles at each */
 #define BAND_MM		0.2		/* over the least distance */
+#define NEAR_MM		2.0		/* farther pairs do not matter */
 #define ROOM_FIRST_MM	1.5		/* of a step, at first */
 #define ROOM_LEAST_MM	0.01
+#define WORTH_MM	0.0005		/* a step that gains less is none */
 
 struct lp {
 	glp_prob *p;
@@ -42,6 +44,13 @@ int free_init(struct free_way *w, const struct job *j,
 	if (n > FREE_NODES_MAX)
 		return -E2BIG;
 	memcpy(w->q, q, n * sizeof(*w->q));
+	for (int k = 0; k < 2; k++) {
+		struct near_pair pair = { 0 };
+		struct pose pose;
+
+		motion_pose(&j->motion, q[k ? n - 1 : 0], &pose);
+		w->end_mm[k] = near_distance(&j->bodies, &pose, &pair);
+	}
 	return 0;
 }
 
@@ -62,33 +71,40 @@ static double falls_mm(const struct free_way *w, const struct pose *pose)
 	return w->c->mm - clearance_at(w->c, pose);
 }
 
-/* How many poses of block @i are looked at.  The end pose is left out if it
- * has a clearance of its own: no node can make it better. */
+/* The end pose counts only where the clearance does not fall toward it: no node
+ * can make it better. */
+static double ends_mm(const struct free_way *w)
+{
+	return w->c->zone_mm > 0 ? w->end_mm[0] :
+				   fmin(w->end_mm[0], w->end_mm[1]);
+}
+
+/* How many poses of block @i are looked at, beside its first. */
 static int poses(const struct free_way *w, uint32_t i)
 {
-	return w->c->zone_mm > 0 && i + 2 == w->n ? POSES - 1 : POSES;
+	return i + 2 == w->n ? POSES - 1 : POSES;
 }
 
 /* The least distance over poses of all blocks; gives up below @stop. */
 static double try_way(struct free_way *w, double stop)
 {
-	double least = DBL_MAX;
+	double least = ends_mm(w);
 
 	for (uint32_t i = 0; i + 1 < w->n; i++) {
 		struct near_pair pair = { 0 };
 		struct block b;
 
 		block_init(&b, &w->j->motion, w->q[i], w->q[i + 1]);
-		for (int k = i == 0 ? 0 : 1; k <= poses(w, i); k++) {
+		for (int k = 1; k <= poses(w, i) && least >= stop; k++) {
 			struct pose pose;
+			double falls;
 
 			block_pose(&b, (double)k / POSES, &pose, NULL);
+			falls = falls_mm(w, &pose);
 			w->queries++;
-			least = fmin(least, falls_mm(w, &pose) +
-				     near_distance(&w->j->bodies, &pose,
-						   &pair));
-			if (least < stop)
-				return least;
+			if (near_less(&w->j->bodies, &pose, least - falls,
+				      &pair))
+				least = pair.mm + falls;
 		}
 	}
 	return least;
@@ -96,15 +112,23 @@ static double try_way(struct free_way *w, double stop)
 
 /* -- The linear program --------------------------------------------------- */
 
-static void add_columns(struct lp *l, double room_mm)
+static void add_columns(struct lp *l)
 {
-	const struct machine_config *c = &l->w->j->config;
 	const uint32_t inner = l->w->n - 2;
 
 	glp_add_cols(l->p, (int)(inner * l->axes.n) + 1);
 	l->least = (int)(inner * l->axes.n) + 1;
-	glp_set_col_bnds(l->p, l->least, GLP_FR, 0, 0);
-	for (uint32_t node = 1; node <= inner; node++) {
+	glp_set_col_bnds(l->p, l->least, GLP_UP, 0, ends_mm(l->w));
+	glp_set_obj_dir(l->p, GLP_MAX);
+	glp_set_obj_coef(l->p, l->least, 1);
+}
+
+/* How far the nodes may go. */
+static void set_room(struct lp *l, double room_mm)
+{
+	const struct machine_config *c = &l->w->j->config;
+
+	for (uint32_t node = 1; node + 1 < l->w->n; node++) {
 		for (uint32_t a = 0; a < l->axes.n; a++) {
 			const uint32_t axis = l->axes.axis[a];
 			const double room = room_mm / l->axes.reach_mm[axis];
@@ -168,30 +192,36 @@ static void add_pair(struct lp *l, const struct moment *m,
 	glp_set_mat_row(l->p, at, r.n, r.index, r.value);
 }
 
-static void add_pairs(struct lp *l, struct free_way *w)
+static void add_moment(struct lp *l, struct free_way *w, struct moment *m,
+		       const struct pose *pose)
 {
 	static struct near_set set = { .max = PAIRS };
+	const struct near_asked near = { NEAR_MM, NEAR_SET_SLACK_MM };
+	const struct near_patch all = { 0 };
+	struct near_pair pair = { .mm = NEAR_MM };
 
+	m->falls_mm = falls_mm(w, pose);
+	near_between(&w->j->bodies, pose, &all, &near, &pair);
+	near_set_collect(&w->j->bodies, pose, pair.mm + BAND_MM, &set);
+	w->queries += 2;
+	for (uint32_t x = 0; x < set.n; x++)
+		add_pair(l, m, &set.pair[x]);
+}
+
+static void add_pairs(struct lp *l, struct free_way *w)
+{
 	for (uint32_t i = 0; i + 1 < w->n; i++) {
-		struct near_pair last = { 0 };
 		struct block b;
 
 		block_init(&b, &w->j->motion, w->q[i], w->q[i + 1]);
-		for (int k = i == 0 ? 0 : 1; k <= poses(w, i); k++) {
+		for (int k = 1; k <= poses(w, i); k++) {
 			struct moment m = { .block = i,
 					    .t = (double)k / POSES };
 			struct pose pose;
-			double mm;
 
 			block_at(&b, m.t, m.q);
 			block_pose(&b, m.t, &pose, NULL);
-			m.falls_mm = falls_mm(w, &pose);
-			mm = near_distance(&w->j->bodies, &pose, &last);
-			w->queries += 2;
-			near_set_collect(&w->j->bodies, &pose, fmin(mm, 2),
-					 BAND_MM, &set);
-			for (uint32_t x = 0; x < set.n; x++)
-				add_pair(l, &m, &set.pair[x]);
+			add_moment(l, w, &m, &pose);
 		}
 	}
 }
@@ -209,59 +239,76 @@ static bool solve(struct lp *l)
 		glp_get_status(l->p) == GLP_FEAS);
 }
 
-static void begin(struct lp *l, struct free_way *w, double room_mm)
+static void begin(struct lp *l, struct free_way *w)
 {
 	*l = (struct lp) { .p = glp_create_prob(), .w = w };
 	glp_term_out(GLP_OFF);
 	job_axes_find(w->j, w->q[0], w->q[w->n - 1], &l->axes);
-	add_columns(l, room_mm);
+	add_columns(l);
 	add_pairs(l, w);
-	w->programs++;
-}
-
-static void move_nodes(const struct lp *l, const struct free_way *from,
-		       struct free_way *to)
-{
-	for (uint32_t node = 1; node + 1 < from->n; node++)
-		for (uint32_t a = 0; a < l->axes.n; a++)
-			to->q[node][l->axes.axis[a]] =
-				from->q[node][l->axes.axis[a]] +
-				glp_get_col_prim(l->p, col(l, node, a));
 }
 
 /* -- More clearance ------------------------------------------------------- */
 
+static void move_nodes(const struct lp *l, struct free_way *w)
+{
+	for (uint32_t node = 1; node + 1 < w->n; node++)
+		for (uint32_t a = 0; a < l->axes.n; a++)
+			w->q[node][l->axes.axis[a]] +=
+				glp_get_col_prim(l->p, col(l, node, a));
+}
+
+/* A step of at most @room_mm. Return: by how much it made the way wider; if by
+ * too little, the way stays as it was. */
+static double step(struct lp *l, struct free_way *w, double room_mm)
+{
+	const struct free_way was = *w;
+	double wider;
+
+	set_room(l, room_mm);
+	w->programs++;
+	if (!solve(l))
+		return 0;
+	move_nodes(l, w);
+	w->least_mm = try_way(w, was.least_mm);
+	wider = w->least_mm - was.least_mm;
+	if (wider > WORTH_MM)
+		return wider;
+	memcpy(w->q, was.q, sizeof(w->q));
+	w->least_mm = was.least_mm;
+	return 0;
+}
+
+static void show(const struct free_way *w, double share)
+{
+	char text[100];
+
+	snprintf(text, sizeof(text), "free nodes: %u blocks, %.3f mm",
+		 w->n - 1, w->least_mm);
+	bar_show(w->j, share, text);
+}
+
 void free_widen(struct free_way *w, int rounds)
 {
 	double room = ROOM_FIRST_MM;
+	struct lp l = { 0 };
 
 	w->least_mm = try_way(w, 0);
 	for (int i = 0; i < rounds && room > ROOM_LEAST_MM && w->n > 2 &&
 	     w->least_mm < w->enough_mm && !bar_interrupted(); i++) {
-		struct free_way next = *w;
-		char text[100];
-		struct lp l;
+		double wider;
 
-		snprintf(text, sizeof(text), "free nodes: %u blocks, %.3f mm",
-			 w->n - 1, w->least_mm);
-		bar_show(w->j, (double)i / rounds, text);
-		begin(&l, w, room);
-		glp_set_obj_dir(l.p, GLP_MAX);
-		glp_set_obj_coef(l.p, l.least, 1);
-		if (solve(&l)) {
-			move_nodes(&l, w, &next);
-			next.least_mm = try_way(&next, w->least_mm);
-		}
+		show(w, (double)i / rounds);
+		if (!l.p)
+			begin(&l, w);
+		wider = step(&l, w, room);
+		if (wider < 0.01)
+			room /= wider > 0 ? 2 : 3;
+		if (!(wider > 0))
+			continue;	/* the program is as it was */
 		glp_delete_prob(l.p);
-		next.queries = w->queries > next.queries ? w->queries :
-							   next.queries;
-		next.programs = w->programs;
-		if (next.least_mm > w->least_mm + 0.0005) {
-			room = next.least_mm - w->least_mm < 0.01 ? room / 2 :
-								    room;
-			*w = next;
-		} else {
-			room /= 3;
-		}
+		l.p = NULL;
 	}
+	if (l.p)
+		glp_delete_prob(l.p);
 }

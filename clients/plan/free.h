@@ -23,17 +23,19 @@ struct free_way {
 	double least_mm;		/* the least distance at the poses that
 					 * were tried; in an end zone, plus what
 					 * the clearance falls there */
-	double enough_mm;		/* more is not looked for */
+	double enough_mm;		/* more clearance is not looked for */
+	double end_mm[2];		/* the distance at the first node, at
+					 * the last */
 	uint64_t queries, programs;	/* programs: linear ones */
 };
 
-/** free_init() - with no end to what is enough. Return: 0, or -E2BIG with too
+/** free_init() - enough_mm is infinite at first. Return: 0, or -E2BIG with too
  *  many nodes. */
 int free_init(struct free_way *w, const struct job *j,
 	      const struct clearance *c, double (*q)[INTERP_NAXES],
 	      uint32_t n);
 
-/** free_widen() - as much clearance as goes, in at most @rounds. */
+/** free_widen() - find as much clearance as possible, in at most @rounds. */
 void free_widen(struct free_way *w, int rounds);
 
 /** free_round() - to whole pulses. */

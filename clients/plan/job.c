@@ -133,6 +133,11 @@ static int check_place(const struct job *j, const struct mesh *m,
 	return 0;
 }
 
+bool job_are_apart(const struct job *j, double mm)
+{
+	return mm > mesh_size_mm(&j->part) || mm > mesh_size_mm(&j->tool);
+}
+
 static int check_sizes(const struct job *j)
 {
 	const double a = mesh_size_mm(&j->part), b = mesh_size_mm(&j->tool);

@@ -61,6 +61,10 @@ void job_say_pair(const struct job *j, const struct near_pair *pair, FILE *f);
 int job_inside(const struct job *j, const struct pose *pose, char *say,
 	       size_t size);
 
+/** job_are_apart() - is @mm more than one of the bodies is long?  Then they are
+ *  hardly where they are meant to be. */
+bool job_are_apart(const struct job *j, double mm);
+
 /** job_strays_mm() - what block @i of @w may be off, on any point. */
 double job_strays_mm(const struct route *w, uint32_t i, const struct block *b);
 

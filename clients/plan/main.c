@@ -158,7 +158,8 @@ static const struct cmdline table = {
 	.tail =
 "\n"
 "Exit: 0 done, 1 not free or no way found, 64 usage, 65 bad input, 66 no such\n"
-"file, 71 out of memory, 73 cannot create, 78 bad machine file.\n",
+"file, 70 no times, 71 out of memory, 73 cannot create, 74 cannot write,\n"
+"78 bad machine file.\n",
 	.row = rows, .nrows = sizeof(rows) / sizeof(rows[0]), .args_max = 1,
 	.column = 24,
 };

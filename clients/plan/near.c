@@ -19,9 +19,9 @@ struct walk {
 	struct box_pose at;
 	double best;			/* less wins */
 	double refuse;			/* what is no more than that ends it */
+	double slack;			/* a pair that is nearer by less is
+					 * not looked for */
 	struct near_pair *pair;
-	near_take *take;
-	void *arg;
 	bool over;
 };
 
@@ -52,7 +52,7 @@ static void offer(struct walk *w, uint32_t part, uint32_t tool,
 		  const struct triangle *at)
 {
 	const struct tree *t = w->b->part;
-	const struct apart far = { .least_mm = w->best };
+	const struct apart far = { .least_mm = w->best - w->slack };
 	struct near_pair x = { .part = part, .tool = tool };
 
 	if (apart_seen(&far, &t->tri[part], t->plane[part], at))
@@ -60,10 +60,6 @@ static void offer(struct walk *w, uint32_t part, uint32_t tool,
 	x.mm = tri_distance(&t->tri[part], at, x.p, x.q);
 	if (x.mm >= w->best)
 		return;
-	if (w->take) {
-		w->over = !w->take(w->arg, &x);
-		return;
-	}
 	w->best = x.mm;
 	*w->pair = x;
 	w->over = x.mm <= w->refuse;
@@ -101,7 +97,7 @@ static void visit_part(struct walk *w, const struct box *part,
 	for (int k = 0; k < 2; k++) {
 		const int at = k ? !first : first;
 
-		if (!w->over && bound[at] < w->best)
+		if (!w->over && bound[at] < w->best - w->slack)
 			visit(w, &child[at], placed);
 	}
 }
@@ -122,7 +118,7 @@ static void visit_tool(struct walk *w, const struct box *part,
 	for (int k = 0; k < 2; k++) {
 		const int at = k ? !first : first;
 
-		if (!w->over && bound[at] < w->best)
+		if (!w->over && bound[at] < w->best - w->slack)
 			visit(w, part, &placed[at]);
 	}
 }
@@ -185,11 +181,81 @@ bool near_below(const struct bodies *b, const struct pose *pose, double mm,
 	return w.over;
 }
 
-void near_within(const struct bodies *b, const struct pose *pose, double mm,
-		 near_take *take, void *arg)
+bool near_less(const struct bodies *b, const struct pose *pose, double mm,
+	       struct near_pair *pair)
 {
-	struct walk w = { .b = b, .pose = pose, .best = mm, .take = take,
-			  .arg = arg };
+	struct walk w = { .b = b, .pose = pose, .best = mm, .pair = pair };
 
 	walk_all(&w);
+	return w.best < mm;
+}
+
+bool near_between(const struct bodies *b, const struct pose *pose,
+		  const struct near_patch *patch,
+		  const struct near_asked *asked, struct near_pair *pair)
+{
+	struct walk w = { .b = b, .pose = pose, .best = asked->mm,
+			  .slack = asked->slack_mm, .pair = pair };
+	struct box placed;
+
+	near_pose(pose, NULL, &w.at);
+	box_place(&b->tool->node[patch->tool], &w.at, &placed);
+	visit(&w, &b->part->node[patch->part], &placed);
+	return w.best < asked->mm;
+}
+
+/* -- Patches -------------------------------------------------------------- */
+
+struct patches {
+	const struct bodies *b;
+	struct box_pose at;
+	double mm;
+	float size;
+	near_take *take;
+	void *arg;
+};
+
+static bool is_small(const struct patches *p, const struct box *x)
+{
+	return x->n || x->half[3] <= p->size;
+}
+
+/* Return: false to end the walk. */
+static bool patches(const struct patches *p, uint32_t part, uint32_t tool,
+		    const struct box *placed)
+{
+	const struct box *x = &p->b->part->node[part];
+	const float mm = box_distance(x, placed);
+	const bool small_part = is_small(p, x), small = is_small(p, placed);
+
+	if ((double)mm >= p->mm)
+		return true;
+	if (small_part && small) {
+		const struct near_patch ret = { mm, part, tool };
+
+		return p->take(p->arg, &ret);
+	}
+	if (small || (!small_part && x->half[3] > placed->half[3]))
+		return patches(p, x->first, tool, placed) &&
+		       patches(p, x->first + 1, tool, placed);
+	for (uint32_t i = placed->first; i < placed->first + 2; i++) {
+		struct box child;
+
+		box_place(&p->b->tool->node[i], &p->at, &child);
+		if (!patches(p, part, i, &child))
+			return false;
+	}
+	return true;
+}
+
+void near_patches(const struct bodies *b, const struct pose *pose, double mm,
+		  double size_mm, near_take *take, void *arg)
+{
+	struct patches p = { .b = b, .mm = mm, .size = (float)size_mm,
+			     .take = take, .arg = arg };
+	struct box placed;
+
+	near_pose(pose, NULL, &p.at);
+	box_place(b->tool->node, &p.at, &placed);
+	patches(&p, 0, 0, &placed);
 }

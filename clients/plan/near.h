@@ -51,12 +51,39 @@ double near_distance(const struct bodies *b, const struct pose *pose,
 bool near_below(const struct bodies *b, const struct pose *pose, double mm,
 		struct near_pair *pair);
 
-/* Called with each pair; false ends the search. */
-typedef bool near_take(void *arg, const struct near_pair *pair);
+/** near_less() - the nearest pair, if it is nearer than @mm; else @pair stays.
+ *  Return: whether. */
+bool near_less(const struct bodies *b, const struct pose *pose, double mm,
+	       struct near_pair *pair);
 
-/** near_within() - all pairs of triangles nearer than @mm. */
-void near_within(const struct bodies *b, const struct pose *pose, double mm,
-		 near_take *take, void *arg);
+/* Two nodes of the trees. */
+struct near_patch {
+	float mm;			/* no less is between them */
+	uint32_t part, tool;
+};
+
+/* Called with each; false ends the walk. */
+typedef bool near_take(void *arg, const struct near_patch *patch);
+
+/** near_patches() - all pairs of nodes that may be nearer than @mm, and neither
+ *  of which is much larger than @size_mm if it is not a single triangle. */
+void near_patches(const struct bodies *b, const struct pose *pose, double mm,
+		  double size_mm, near_take *take, void *arg);
+
+struct near_asked {
+	double mm, slack_mm;
+};
+
+/**
+ * near_between() - the nearest triangles of two nodes, if nearer than @mm.
+ *
+ * What it finds may be farther than the nearest by @slack_mm: where many pairs
+ * are about as near as each other, that saves most of the work.
+ * Return: whether; @pair is filled then only.
+ */
+bool near_between(const struct bodies *b, const struct pose *pose,
+		  const struct near_patch *patch,
+		  const struct near_asked *asked, struct near_pair *pair);
 
 /** near_pose() - what boxes are placed with; @pose and @rate are lent. */
 void near_pose(const struct pose *pose, const struct pose_rate *rate,

@@ -2,9 +2,9 @@
 /*
  * near_set.h - some pairs of triangles that stand for all that are near
  *
- * These are the pairs within a band over the least distance; of those in one
- * cell of space only the nearest.  With the nearest pair alone a search would
- * stall: what it moves away from one wall comes too near to the other.
+ * Of all pairs in one cell of space only the nearest one is taken, within
+ * NEAR_SET_SLACK_MM.  With the nearest pair of all alone a search would stall:
+ * what it moves away from one wall comes too near to the other.
  *
  * Units: mm.
  */
@@ -14,6 +14,7 @@
 #include "near.h"
 
 #define NEAR_SET_MAX	128
+#define NEAR_SET_SLACK_MM	0.005
 
 struct near_set {
 	uint32_t max;			/* the caller's, up to NEAR_SET_MAX */
@@ -21,8 +22,10 @@ struct near_set {
 	struct near_pair pair[NEAR_SET_MAX];
 };
 
-/** near_set_collect() - all within @band_mm over @least_mm at @pose. */
+/** near_set_collect() - collect the pairs that are nearer than @mm at @pose.
+ *  Some are missing if there is no memory, so a way that is made from them
+ *  must be proved. */
 void near_set_collect(const struct bodies *b, const struct pose *pose,
-		      double least_mm, double band_mm, struct near_set *ret);
+		      double mm, struct near_set *ret);
 
 #endif /* PLAN_NEAR_SET_H */

@@ -127,14 +127,23 @@ static double distance(const struct plan *p, uint32_t i, int k)
 	return near_distance(&p->j->bodies, &pose, &pair);
 }
 
-static void put_scale(FILE *f, double high, double keep)
+/* The next number of 1, 2 or 5 and zeros. */
+static double round_up(double mm)
 {
-	for (int i = 0; i <= 4; i++) {
-		const double y = SIDE - 40 - (SIDE - 80) * i / 4;
+	const double ten = pow(10, floor(log10(mm)));
+
+	return mm <= ten ? ten : mm <= 2 * ten ? 2 * ten :
+	       mm <= 5 * ten ? 5 * ten : 10 * ten;
+}
+
+static void put_scale(FILE *f, double step, double high, double keep)
+{
+	for (int i = 0; i * step <= high * 1.0001; i++) {
+		const double y = SIDE - 40 - (SIDE - 80) * i * step / high;
 
 		fprintf(f, "<path d=\"M40 %.1fH%.0f\" stroke=\"#ddd\"/>"
-			"<text x=\"4\" y=\"%.1f\">%.2f</text>\n", y, SIDE,
-			y + 4, high * i / 4);
+			"<text x=\"34\" y=\"%.1f\" text-anchor=\"end\">%g"
+			"</text>\n", y, SIDE, y + 4, i * step);
 	}
 	fprintf(f, "<path d=\"M40 %.1fH%.0f\" stroke=\"#c00\" "
 		"stroke-dasharray=\"4 3\"/>\n", SIDE - 40 - (SIDE - 80) * keep /
@@ -145,12 +154,14 @@ static void put_curve(FILE *f, const struct plan *p)
 {
 	const uint32_t n = p->best.n - 1;
 	const double keep = p->j->clear_mm + p->j->chord_mm;
-	const double high = fmax(3 * keep, 1.5 * p->best.least_mm);
+	const double most = fmax(fmax(3 * keep, 1.5 * p->best.least_mm), 0.01);
+	const double step = round_up(most / 6);
+	const double high = ceil(most / step) * step;
 
-	fputs("<g transform=\"translate(480 0)\" font-size=\"11\">"
-	      "<text x=\"40\" y=\"20\">distance along the blocks, mm; to be "
-	      "kept: dashed</text>\n", f);
-	put_scale(f, high, keep);
+	fprintf(f, "<g transform=\"translate(480 0)\" font-size=\"11\">"
+		"<text x=\"40\" y=\"20\">distance along each block, mm, up to "
+		"%g; dashed: %.3f, to be kept</text>\n", high, keep);
+	put_scale(f, step, high, keep);
 	fputs("<path fill=\"none\" stroke=\"#06c\" stroke-width=\"1.5\" d=\"",
 	      f);
 	for (uint32_t i = 0; i < n; i++) {

@@ -249,6 +249,7 @@ static int try_shift(struct plan *p, const struct nodes *n,
 	p->queries += trial.queries;
 	if (err == 0 && is_better(&trial.best, &p->best) &&
 	    (!p->pivot.way.how || is_better(&trial.best, &p->pivot.way))) {
+		plan_prove(&j, &trial.best, PROVE_FINE_MM, &p->queries);
 		p->pivot.way = trial.best;
 		memcpy(p->pivot.part_mm, s, sizeof(p->pivot.part_mm));
 		memcpy(p->pivot.tool_mm, s + 3, sizeof(p->pivot.tool_mm));

@@ -9,8 +9,10 @@
 #include "plan.h"
 
 #include "check.h"
+#include "clocks.h"
 #include "pullout.h"
 #include "repair.h"
+#include "spread.h"
 
 #include <errno.h>
 #include <float.h>
@@ -23,14 +25,6 @@
 #define WIDEN_ROUNDS	12
 #define TOUCH_MM	0.01		/* nearer is as good as contact */
 
-static double now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
 static void say_contact(const struct plan *p, const struct check_result *r)
 {
 	const struct route_node *n = &p->dense.node[r->block + 1];
@@ -39,8 +33,19 @@ static void say_contact(const struct plan *p, const struct check_result *r)
 		p->j->o->program ? p->j->o->program : "the way found",
 		n->line);
 	check_say_left(r, stderr);
-	fprintf(stderr, ", %.1f %% along the block\n", 100 * r->t);
+	fprintf(stderr, ", %.1f %% along %s\n", 100 * r->t,
+		r->lift ? "its leg" : "the block");
 	job_say_pair(p->j, &r->pair, stderr);
+}
+
+/* Meshes in inches are so far from the place where the program takes them. */
+static int refuse_apart(const struct plan *p)
+{
+	fprintf(stderr, "edm-plan: end pose: %.4g mm are left between part and "
+		"electrode, more than one of them is long; meshes in the unit "
+		"and the frame of the machine: --unit, --part-at, "
+		"--electrode-at; or --any-size if it is meant\n", p->end_mm);
+	return EX_DATAERR;
 }
 
 /* If the end pose is too near, the electrode or the program is wrong. */
@@ -53,6 +58,8 @@ int plan_check_end(struct plan *p, const double end[INTERP_NAXES])
 
 	motion_pose(&p->j->motion, end, &pose);
 	p->end_mm = near_distance(&p->j->bodies, &pose, &pair);
+	if (!p->j->o->any_size && job_are_apart(p->j, p->end_mm))
+		return refuse_apart(p);
 	if (p->end_mm > 0 && job_inside(p->j, &pose, say, sizeof(say)) == 1) {
 		fprintf(stderr, "edm-plan: end pose: %s; an end pose in the "
 			"cavity\n", say);
@@ -101,24 +108,43 @@ static int check_dense(struct plan *p)
 
 /* -- Plans ---------------------------------------------------------------- */
 
-void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries)
-{
+struct proving {
+	const struct job *j;
+	struct plan_way *w;
 	double lattice[INTERP_NAXES];
+	uint64_t queries[FEWEST_NODES_MAX];
+};
 
-	route_lattice(&j->config, lattice);
+static bool prove_one(void *arg, uint32_t i)
+{
+	struct proving *x = arg;
+	const struct job *j = x->j;
+	struct plan_way *w = x->w;
+	struct proof p = { 0 };
+	struct block b;
+
+	block_init(&b, &j->motion, w->q[i], w->q[i + 1]);
+	w->strays_mm[i] = motion_strays_mm(&b, x->lattice);
+	w->proved_mm[i] = prove_least(&j->bodies, &b, w->within_mm, &p) -
+			  w->strays_mm[i] - j->chord_mm;
+	w->t[i] = p.t;
+	w->pair[i] = p.pair;
+	x->queries[i] = p.queries;
+	return false;
+}
+
+void plan_prove(const struct job *j, struct plan_way *w, double within_mm,
+		uint64_t *queries)
+{
+	struct proving x = { .j = j, .w = w };
+
+	route_lattice(&j->config, x.lattice);
 	w->least_mm = DBL_MAX;
+	w->within_mm = within_mm;
+	spread_first(w->n - 1, prove_one, &x);
 	for (uint32_t i = 0; i + 1 < w->n; i++) {
-		struct proof p = { 0 };
-		struct block b;
-
-		block_init(&b, &j->motion, w->q[i], w->q[i + 1]);
-		w->strays_mm[i] = motion_strays_mm(&b, lattice);
-		w->proved_mm[i] = prove_least(&j->bodies, &b, &p) -
-				  w->strays_mm[i] - j->chord_mm;
-		w->t[i] = p.t;
-		w->pair[i] = p.pair;
-		*queries += p.queries;
 		w->least_mm = fmin(w->least_mm, w->proved_mm[i]);
+		*queries += x.queries[i];
 	}
 }
 
@@ -139,6 +165,45 @@ static void from_free(struct plan_way *w, const struct free_way *f,
 	memcpy(w->q, f->q, f->n * sizeof(*w->q));
 	for (uint32_t i = 1; i + 1 < w->n; i++)
 		free_round(&j->config, w->q[i]);
+}
+
+static void raise_to(struct plan_way *w, const double *proved_mm)
+{
+	w->least_mm = DBL_MAX;
+	for (uint32_t i = 0; i + 1 < w->n; i++) {
+		w->proved_mm[i] = fmax(w->proved_mm[i], proved_mm[i]);
+		w->least_mm = fmin(w->least_mm, w->proved_mm[i]);
+	}
+}
+
+/* Over nodes.  The search has proved some clearance of each block, which may be
+ * more than a proof within @within_mm comes to. */
+static void prove_nodes(struct plan *p, const struct fewest *f,
+			const uint32_t *at, struct plan_way *w,
+			double within_mm)
+{
+	double known[FEWEST_NODES_MAX];
+
+	plan_prove(f->j, w, within_mm, &p->queries);
+	for (uint32_t i = 0; i + 1 < w->n; i++)
+		known[i] = f->proved[(size_t)at[i] * f->n + at[i + 1]];
+	if (!(p->c.zone_mm > 0))
+		raise_to(w, known);
+}
+
+/* What is written is proved finely; the others have been compared only. */
+static void prove_best(struct plan *p)
+{
+	struct plan_way *others[] = { &p->greedy, &p->fewest };
+	double known[FEWEST_NODES_MAX];
+
+	memcpy(known, p->best.proved_mm, sizeof(known));
+	if (p->best.within_mm > PROVE_FINE_MM)
+		plan_prove(p->j, &p->best, PROVE_FINE_MM, &p->queries);
+	raise_to(&p->best, known);
+	for (int i = 0; i < 2; i++)
+		if (others[i]->how == p->best.how)
+			*others[i] = p->best;
 }
 
 /* In an end zone the least distance does not tell what the rest keeps. */
@@ -189,7 +254,7 @@ static bool try_free(struct plan *p, const struct fewest *f,
 	free_widen(&w, WIDEN_ROUNDS);
 	p->queries += w.queries;
 	from_free(&way, &w, f->j);
-	plan_prove(f->j, &way, &p->queries);
+	plan_prove(f->j, &way, PROVE_COARSE_MM, &p->queries);
 	if (!is_better(p, &way))
 		return false;
 	take_best(p, &way);
@@ -220,7 +285,7 @@ static void plan_free(struct plan *p, struct fewest *f, const uint32_t *best)
 int plan_over(struct plan *p, const struct job *j,
 	      double (*q)[INTERP_NAXES], uint32_t n)
 {
-	uint32_t at[FEWEST_NODES_MAX], blocks;
+	uint32_t at[FEWEST_NODES_MAX], blocks, most = n - 1;
 	struct fewest f;
 
 	if (fewest_init(&f, j, q, n))
@@ -228,16 +293,18 @@ int plan_over(struct plan *p, const struct job *j,
 	f.c = &p->c;
 	blocks = fewest_greedy(&f, j->clear_mm, at);
 	if (blocks && blocks != UINT32_MAX) {
+		most = blocks;
 		take_way(&p->greedy, "greedy", &f, at, blocks);
-		plan_prove(j, &p->greedy, &p->queries);
+		prove_nodes(p, &f, at, &p->greedy, PROVE_COARSE_MM);
 		take_best(p, &p->greedy);
 	}
 	blocks = bar_interrupted() ? 0 :
-		 fewest_search(&f, j->clear_mm, n - 1, at);
+		 fewest_search(&f, j->clear_mm, most, at);
 	if (blocks) {
 		fewest_widest(&f, j->clear_mm, blocks, at);
 		take_way(&p->fewest, "fewest over nodes", &f, at, blocks);
-		plan_prove(j, &p->fewest, &p->queries);
+		prove_nodes(p, &f, at, &p->fewest, j->o->on_path ?
+			    PROVE_FINE_MM : PROVE_COARSE_MM);
 		if (is_better(p, &p->fewest))
 			take_best(p, &p->fewest);
 	}
@@ -246,85 +313,6 @@ int plan_over(struct plan *p, const struct job *j,
 	p->queries += f.queries;
 	fewest_free(&f);
 	return p->best.how ? 0 : 1;
-}
-
-/* -- Words ---------------------------------------------------------------- */
-
-static void say_way(const char *name, const struct plan_way *w)
-{
-	if (!w->how)
-		return;
-	printf("%-10s %u blocks, proved %.4f mm (%s)\n", name, w->n - 1,
-	       w->least_mm, w->how);
-	if (w->time_pass_s > 0)
-		printf("           %.1f min, %.1f min with a stop at each "
-		       "node\n",
-		       w->time_pass_s / 60, w->time_stop_s / 60);
-}
-
-static void say_pivot(const struct plan_pivot *v)
-{
-	if (!v->way.how) {
-		if (v->why[0])
-			printf("pivot      %s\n", v->why);
-		return;
-	}
-	printf("pivot      %u blocks, proved %.4f mm, with the work moved by "
-	       "%.3f %.3f %.3f mm\n           and the electrode in its holder "
-	       "by %.3f %.3f %.3f mm%s\n", v->way.n - 1, v->way.least_mm,
-	       v->part_mm[0], v->part_mm[1], v->part_mm[2], v->tool_mm[0],
-	       v->tool_mm[1], v->tool_mm[2],
-	       v->outside ? "; beyond this machine's travel" : "");
-}
-
-/* Words that the dense program has between its blocks have no place among fewer
- * blocks. */
-static void say_left_out(const struct plan *p)
-{
-	const struct route_node *n = p->dense.node;
-	uint32_t said = 0;
-
-	if (p->written_dialect != p->j->o->dialect)
-		printf("note       %s is in the dialect generic; the other one "
-		       "does not have its words\n", p->j->o->output);
-	if (!p->j->o->program)
-		return;
-	if (!p->carried) {
-		printf("note       only positioning and blocks are written; "
-		       "conditions and other words of\n           %s are not\n",
-		       p->j->o->program);
-		return;
-	}
-	for (uint32_t i = p->first + 2; i <= p->last && said < 5; i++) {
-		if (!n[i].act_line && n[i].cond == n[i - 1].cond)
-			continue;
-		printf("note       line %u: what it calls within the way in is "
-		       "left out\n", n[i].act_line ? n[i].act_line : n[i].line);
-		said++;
-	}
-}
-
-static void describe(const struct plan *p, FILE *out)
-{
-	job_describe(p->j, out);
-	printf("end pose   %.4f mm are left\n", p->end_mm);
-	printf("dense      %u blocks, least seen %.4f mm\n", p->last - p->first,
-	       p->dense_least_mm);
-	if (p->dense_pass_s > 0)
-		printf("           %.1f min, %.1f min with a stop at each "
-		       "node\n",
-		       p->dense_pass_s / 60, p->dense_stop_s / 60);
-	if (p->repaired)
-		printf("repaired   %u nodes of the dense way are others now\n",
-		       p->repaired);
-	say_way("greedy", &p->greedy);
-	say_way("fewest", &p->fewest);
-	say_way("written", &p->best);
-	say_pivot(&p->pivot);
-	say_left_out(p);
-	printf("%-10s %llu queries, %.1f s\n",
-	       p->stopped ? "stopped" : "planned",
-	       (unsigned long long)p->queries, p->planned_s);
 }
 
 /* -- Writing -------------------------------------------------------------- */
@@ -373,7 +361,7 @@ static int write_all(struct plan *p)
 	if (err == 0)
 		err = view_put(p);
 	if (err == 0 && !p->j->o->quiet)
-		describe(p, stdout);
+		plan_describe(p);
 	return err;
 }
 
@@ -416,6 +404,7 @@ static int plan_nodes(struct plan *p)
 		say_no_way(p);
 		return 1;
 	}
+	prove_best(p);
 	if (!p->j->o->no_pivot && !bar_interrupted())
 		err = plan_pivot(p) == -ENOMEM ? EX_OSERR : 0;
 	return err;
@@ -445,7 +434,7 @@ int plan_program(struct job *j)
 	int err;
 
 	p.j = j;
-	p.seconds = now_s();
+	p.seconds = clock_s(CLOCK_MONOTONIC);
 	err = load_way(&p);
 	if (err == 0)
 		err = check_clearance(j, p.dense.node[p.last].q, &p.c);
@@ -456,7 +445,7 @@ int plan_program(struct job *j)
 	if (err == 0)
 		err = plan_nodes(&p);
 	p.stopped = bar_interrupted();
-	p.planned_s = now_s() - p.seconds;
+	p.planned_s = clock_s(CLOCK_MONOTONIC) - p.seconds;
 	bar_end(j);
 	if (err == 0)
 		err = write_all(&p);

@@ -21,6 +21,8 @@ struct plan_way {
 	double t[FEWEST_NODES_MAX];	/* where it is nearest */
 	struct near_pair pair[FEWEST_NODES_MAX];
 	double least_mm;		/* of all blocks, proved */
+	double within_mm;		/* more than that could not be proved
+					 * over proved_mm */
 	double time_pass_s, time_stop_s;	/* by edmsim; 0: not asked */
 };
 
@@ -79,8 +81,9 @@ int plan_check_end(struct plan *p, const double end[INTERP_NAXES]);
 int plan_over(struct plan *p, const struct job *j,
 	      double (*q)[INTERP_NAXES], uint32_t n);
 
-/** plan_prove() - fill proved_mm and what belongs to it. */
-void plan_prove(const struct job *j, struct plan_way *w, uint64_t *queries);
+/** plan_prove() - fill proved_mm and what belongs to it, within @within_mm. */
+void plan_prove(const struct job *j, struct plan_way *w, double within_mm,
+		uint64_t *queries);
 
 /** plan_pivot() - look for a better place of the work. */
 int plan_pivot(struct plan *p);
@@ -102,6 +105,9 @@ int put_text(const char *path, const char *text);
 /** put_check() - can all that is asked for be written, and is none of it read?
  *  Return: as put_text(). */
 int put_check(const struct job_options *o);
+
+/** plan_describe() - what was found and written, on standard output. */
+void plan_describe(const struct plan *p);
 
 /** report_put(), picture_put(), view_put() - the files asked for. */
 int report_put(const struct plan *p);

@@ -10,12 +10,14 @@
 #include <math.h>
 #include <stddef.h>
 
-/* prove_least(): under the least distance that was seen. */
-#define LEAST_KEEP_MM	0.0016
-#define LEAST_EPS_MM	0.0008
+/* prove_least(): shares of what it is to be within.  It proves so much under
+ * the least distance that was seen; a pair nearer than that by half is new. */
+#define LEAST_KEEP	0.8
+#define LEAST_EPS	0.4
+#define DESCEND		0.05		/* of the search for the least */
 
 /* prove_least() asks for no more than that: no gap is wider, and single
- * precision could not tell LEAST_EPS_MM from nothing. */
+ * precision could not tell its share of PROVE_FINE_MM from nothing. */
 #define LEAST_MOST_MM	100.0
 
 /* -- What is to be kept --------------------------------------------------- */
@@ -144,45 +146,46 @@ struct least {
 	const struct block *b;
 	struct near_pair pair;
 	struct proof *p;
+	double within_mm;
 	double keep_mm;
 };
 
-static double see(struct least *l, double t)
+/* Is it nearer at @t than all that was seen? */
+static bool see(struct least *l, double t)
 {
 	struct pose pose;
-	double d;
 
 	block_pose(l->b, t, &pose, NULL);
 	l->p->queries++;
-	d = near_distance(l->bodies, &pose, &l->pair);
-	if (d < l->p->least_mm) {
-		l->p->least_mm = d;
-		l->p->t = t;
-		l->p->pair = l->pair;
-	}
-	return d;
+	if (!near_less(l->bodies, &pose, l->p->least_mm, &l->pair))
+		return false;
+	l->p->least_mm = l->pair.mm;
+	l->p->t = t;
+	l->p->pair = l->pair;
+	return true;
 }
 
 /* Find the least distance near @t.  Otherwise the proof would find every step
- * on the way down to it. */
+ * on the way down to it.  No step is so short that it could not matter. */
 static void descend(struct least *l, double t)
 {
+	const double enough_mm = DESCEND * l->within_mm;
 	double h = 1.0 / 32;
 
-	while (h > 1e-7 && l->p->least_mm > 0) {
+	while (h * l->b->way_mm > enough_mm && l->p->least_mm > 0) {
 		const double at = t;
 
 		for (int side = -1; side <= 1; side += 2) {
 			const double to = fmin(fmax(at + side * h, 0), 1);
-			const double was = l->p->least_mm;
 
-			if (to != at && see(l, to) < was)
+			if (to != at && see(l, to))
 				t = to;
 		}
 		if (t == at)
 			h /= 2;
 	}
-	l->keep_mm = fmin(l->p->least_mm, LEAST_MOST_MM) - LEAST_KEEP_MM;
+	l->keep_mm = fmin(l->p->least_mm, LEAST_MOST_MM) -
+		     LEAST_KEEP * l->within_mm;
 }
 
 static void keep_least(void *arg, const struct pose *pose,
@@ -198,7 +201,7 @@ static bool lower(void *arg, double t, const struct near_pair *pair)
 {
 	struct least *l = arg;
 
-	if (pair->mm >= l->keep_mm + LEAST_EPS_MM)
+	if (pair->mm >= l->keep_mm + LEAST_EPS * l->within_mm)
 		return true;	/* lowered since that moment was taken */
 	l->pair = *pair;
 	see(l, t);
@@ -207,11 +210,13 @@ static bool lower(void *arg, double t, const struct near_pair *pair)
 }
 
 double prove_least(const struct bodies *bodies, const struct block *b,
-		   struct proof *p)
+		   double within_mm, struct proof *p)
 {
-	struct least l = { .bodies = bodies, .b = b, .pair = p->pair, .p = p };
+	struct least l = { .bodies = bodies, .b = b, .pair = p->pair, .p = p,
+			   .within_mm = within_mm };
 	struct sweep s = { .bodies = bodies, .block = b, .keep = keep_least,
-			   .lower = lower, .eps_mm = LEAST_EPS_MM, .arg = &l };
+			   .lower = lower, .eps_mm = LEAST_EPS * within_mm,
+			   .arg = &l };
 	int kept;
 
 	p->least_mm = DBL_MAX;

@@ -66,14 +66,20 @@ bool prove_block(const struct bodies *bodies, const struct block *b,
 bool prove_refuted(const struct bodies *bodies, const struct block *b,
 		   const struct clearance *c, struct proof *p);
 
+/* How sharp prove_least() is to be.  The finer one costs several times as
+ * much, where the electrode passes a wall at nearly the same distance all
+ * along. */
+#define PROVE_FINE_MM	0.002
+#define PROVE_COARSE_MM	0.02
+
 /**
- * prove_least() - the largest clearance that can be proved, within 2 um, up to
- * 100 mm.
+ * prove_least() - the largest clearance that can be proved, within @within_mm,
+ * up to 100 mm.
  *
  * Return: it, proved; less than 0 if the electrode touches.  @p tells where the
  * block is nearest.
  */
 double prove_least(const struct bodies *bodies, const struct block *b,
-		   struct proof *p);
+		   double within_mm, struct proof *p);
 
 #endif /* PLAN_PROVE_H */

@@ -129,7 +129,7 @@ static bool step_to(const struct pull *p, double room_mm,
 
 	motion_pose(&p->j->motion, p->q, &pose);
 	mm = near_distance(&p->j->bodies, &pose, &pair);
-	near_set_collect(&p->j->bodies, &pose, mm, 1.0, &set);
+	near_set_collect(&p->j->bodies, &pose, mm + 1.0, &set);
 	keep = fmin(p->keep_mm + 0.01, mm);
 	glp_term_out(GLP_OFF);
 	glp_set_obj_dir(lp, GLP_MAX);

@@ -54,9 +54,9 @@ static json_t *way(const struct job *j, const struct plan_way *w)
 		json_array_append_new(nodes, axes(j, w->q[i]));
 	for (uint32_t i = 0; i + 1 < w->n; i++)
 		json_array_append_new(blocks, block(j, w, i));
-	ret = json_pack("{s:s,s:i,s:f,s:o,s:o}", "how", w->how, "blocks",
-			(int)w->n - 1, "proved_mm", w->least_mm, "nodes", nodes,
-			"each", blocks);
+	ret = json_pack("{s:s,s:i,s:f,s:f,s:o,s:o}", "how", w->how, "blocks",
+			(int)w->n - 1, "proved_mm", w->least_mm, "within_mm",
+			w->within_mm, "nodes", nodes, "each", blocks);
 	if (w->time_pass_s > 0) {
 		json_object_set_new(ret, "time_s", json_real(w->time_pass_s));
 		json_object_set_new(ret, "time_node_stops_s",

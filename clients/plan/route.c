@@ -22,6 +22,7 @@
 void route_free(struct route *w)
 {
 	free(w->node);
+	free(w->lift);
 	free(w->text);
 	*w = (struct route) { 0 };
 }
@@ -48,7 +49,8 @@ void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES])
 	if (c->strategy == INTERP_POINT_BY_POINT ||
 	    c->strategy == INTERP_CENTRED)
 		pulses = 1;
-	else if (c->strategy >= INTERP_MAIN_DIRECTION)
+	else if (interp_strategy_takes_tolerance(
+			 (enum interp_strategy)c->strategy))
 		pulses = 1 + c->tolerance_pulses;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		ret[i] = pulses * c->axes.axis[i].pulse_mm;
@@ -173,8 +175,6 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 		return refuse_seg(from, s->line, "two contours at once",
 				  "motion of one rigid electrode, on X Y Z A "
 				  "B C");
-	if (s->escape && w->beside++ == 0)
-		w->beside_line = s->line;
 	node_of(p, i + 1, end.q);
 	if (s->kind == INTERP_LINE)
 		err = route_add(w, &end);
@@ -191,6 +191,35 @@ static int follow_seg(struct route *w, const struct interp_program *p,
 	return err ? EX_OSERR : 0;
 }
 
+/* Lifts from @first on to the last node, of segment @s. */
+static int note_lift(struct route *w, const struct interp_program *p,
+		     const struct interp_seg *s, uint32_t first)
+{
+	const struct interp_escape *way = &p->escapes[s->escape];
+	struct route_lift *last = w->nlifts ? &w->lift[w->nlifts - 1] : NULL;
+
+	if (!s->escape || s->flags & INTERP_SEG_RAPID)
+		return 0;
+	if (last && last->last == first &&
+	    memcmp(&last->way, way, sizeof(*way)) == 0) {
+		last->last = w->n - 1;
+		return 0;
+	}
+	if (w->nlifts == w->lifts_room) {
+		const uint32_t room = w->lifts_room ? 2 * w->lifts_room : 64;
+		void *more = realloc(w->lift, room * sizeof(*w->lift));
+
+		if (!more)
+			return EX_OSERR;
+		w->lift = more;
+		w->lifts_room = room;
+	}
+	w->lift[w->nlifts++] = (struct route_lift) {
+		.first = first, .last = w->n - 1, .way = *way,
+	};
+	return 0;
+}
+
 static int follow(struct route *w, const struct interp_program *p,
 		  const struct route_text *from)
 {
@@ -200,8 +229,13 @@ static int follow(struct route *w, const struct interp_program *p,
 	node_of(p, 0, start.q);
 	if (route_add(w, &start))
 		return EX_OSERR;
-	for (uint32_t i = 0; i < p->head->nsegs && err == 0; i++)
+	for (uint32_t i = 0; i < p->head->nsegs && err == 0; i++) {
+		const uint32_t first = w->n - 1;
+
 		err = follow_seg(w, p, i, from);
+		if (err == 0)
+			err = note_lift(w, p, &p->segs[i], first);
+	}
 	return err;
 }
 

@@ -20,12 +20,19 @@ struct route_node {
 	double q[INTERP_NAXES];
 	uint32_t line;			/* of the block that leads here */
 	float feed_mm_s;		/* F, by the length of the path */
-	float strays;			/* mm, and degrees: of any axis on it */
+	float strays;			/* how far any axis strays from that
+					 * block, mm or degrees */
 	bool rapid;			/* it is positioned, not eroded */
 	uint32_t cond;			/* number of its conditions; 0: none */
-	uint32_t act_line;		/* of the last M word, dwell ... between
-					 * the block before and this one; 0:
-					 * none */
+	uint32_t act_line;		/* line of the last M word or dwell
+					 * between the block before and this
+					 * one; 0: none */
+};
+
+/* Lifts from all places between two nodes leave the path the same way. */
+struct route_lift {
+	uint32_t first, last;		/* nodes; equal: from that place */
+	struct interp_escape way;
 };
 
 struct route {
@@ -36,8 +43,8 @@ struct route {
 	uint32_t lines;			/* of the text */
 	char *text;			/* as it was read; NULL: it was given */
 	uint32_t act_line;		/* as a node's, since the last node */
-	uint32_t beside;		/* segments with lifts off the path */
-	uint32_t beside_line;		/* of the first */
+	struct route_lift *lift;	/* lifts that leave the path */
+	uint32_t nlifts, lifts_room;
 };
 
 /** route_free() - a zeroed one is fine. */
@@ -54,7 +61,7 @@ struct route_text {
 	const char *text;		/* NULL: read it from there */
 	const char *dialect;		/* NULL: by the end of path, or else the
 					 * machine file's */
-	bool quiet;			/* a refusal has no words */
+	bool quiet;			/* print nothing about a refusal */
 	const double *start;		/* of all axes; NULL: the machine
 					 * file's start_mm */
 };

@@ -43,7 +43,7 @@ struct sweep {
 };
 
 /**
- * sweep_block() - follow it.
+ * sweep_block() - follow the block from its first pose to its last.
  *
  * Return: 1 all of it keeps what is asked; 0 it does not; -ENOMEM, -ELOOP it is
  * given up.

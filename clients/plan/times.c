@@ -9,6 +9,8 @@
 
 #include <errno.h>
 #include <jansson.h>
+#include <poll.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -78,6 +80,17 @@ static int put_machine(const struct room *r, const struct machine_config *c,
 	return fclose(f) ? EX_IOERR : 0;
 }
 
+/* It writes its report at its end; until then Ctrl-C is for it too. */
+static json_t *wait_report(FILE *f, pid_t pid)
+{
+	struct pollfd p = { .fd = fileno(f), .events = POLLIN };
+
+	while (poll(&p, 1, 200) <= 0)
+		if (bar_interrupted())
+			kill(pid, SIGINT);
+	return json_loadf(f, 0, NULL);
+}
+
 /* What edmsim writes to its standard output. */
 static json_t *run(const struct room *r, const char *program,
 		   const char *dialect)
@@ -102,7 +115,7 @@ static json_t *run(const struct room *r, const char *program,
 	close(end[1]);
 	f = pid > 0 ? fdopen(end[0], "r") : NULL;
 	if (f) {
-		o = json_loadf(f, 0, NULL);
+		o = wait_report(f, pid);
 		fclose(f);
 	} else {
 		close(end[0]);
@@ -127,13 +140,17 @@ static int ask(const struct room *r, const struct machine_config *c,
 		ret_s[nodes] = json_number_value(json_object_get(o,
 							"virtual_s"));
 		err = outcome && strcmp(outcome, "done") == 0 ? 0 : EX_SOFTWARE;
-		if (err)
+		if (bar_interrupted())
+			err = -EINTR;
+		else if (err)
 			fprintf(stderr, "edm-plan: %s on %s: %s; a program "
 				"that it runs to its end\n", r->sim,
 				program->path, outcome ? outcome : "no report");
 		json_decref(o);
-		if (err)
+		if (err) {
+			ret_s[0] = ret_s[1] = 0;
 			return err;
+		}
 	}
 	return 0;
 }
@@ -185,5 +202,9 @@ int times_ask(struct plan *p)
 		err = ask_way(p, &r, &p->best);
 	bar_end(p->j);
 	clear_room(&r);
-	return err;
+	if (err != -EINTR)
+		return err;
+	fprintf(stderr, "edm-plan: interrupted; the program is written, but "
+		"not all times are told\n");
+	return 0;
 }

@@ -21,7 +21,7 @@ const char view_page_head[] =
 
 const char view_page_tail[] =
 "const $=i=>document.getElementById(i),c=$('c');\n"
-"const gl=c.getContext('webgl',{antialias:true});\n"
+"const gl=c.getContext('webgl',{antialias:true,alpha:false});\n"
 "if(!gl)$('say').textContent='this browser has no WebGL';\n"
 "const VS='attribute vec3 p,n;uniform mat4 m,v;varying vec3 k;"
 "void main(){k=(v*m*vec4(n,0.)).xyz;gl_Position=v*m*vec4(p,1.);"

@@ -182,6 +182,36 @@ static int draw(const struct plot_sheet *s, int out)
 	return err > 0 ? -EIO : err;
 }
 
+static int copy_all(int to, int from)
+{
+	char part[16384];
+	ssize_t n, put;
+
+	if (lseek(from, 0, SEEK_SET) < 0)
+		return -errno;
+	while ((n = read(from, part, sizeof(part))) > 0) {
+		for (ssize_t at = 0; at < n; at += put) {
+			put = write(to, part + at, (size_t)(n - at));
+			if (put < 0)
+				return -errno;
+		}
+	}
+	return n < 0 ? -errno : 0;
+}
+
+/* gnuplot does not say when the disk is full, so it draws into memory. */
+static int draw_whole(const struct plot_sheet *s, int out)
+{
+	int mem = memfd_create("edm-picture", MFD_CLOEXEC);
+	int err = mem < 0 ? -errno : draw(s, mem);
+
+	if (err == 0)
+		err = copy_all(out, mem);
+	if (mem >= 0)
+		close(mem);
+	return err;
+}
+
 int plot_draw(const struct plot_sheet *s)
 {
 	int out = open(s->output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC,
@@ -195,9 +225,12 @@ int plot_draw(const struct plot_sheet *s)
 			strerror(-err));
 		return err;
 	}
-	err = draw(s, out);
+	err = draw_whole(s, out);
 	if (close(out) < 0 && err == 0)
 		err = -errno;
+	if (err == -ENOSPC || err == -EDQUOT)
+		fprintf(stderr, "%s: error: plot: %s: %s\n", s->program,
+			s->output, strerror(-err));
 	/* Half a picture is worse than none. */
 	if (err < 0)
 		unlink(s->output);

@@ -38,7 +38,8 @@ mark_size(n) = n <= 30 ? 1.3 : n <= 120 ? 0.9 : 0.6
 
 # -- Where the panels lie -----------------------------------------------------
 
-span(i) = axis_max[i] - axis_min[i]
+# As a real number: gnuplot divides whole numbers without a rest.
+span(i) = axis_max[i] - axis_min[i] + 0.0
 # The axes that are no X Y Z and move have a panel of their own.
 others = ''; other_n = 0
 do for [i = 4:8] { if (span(i) > 0) { others = others.sprintf('%d ', i); other_n = other_n + 1 } }
@@ -85,9 +86,19 @@ do for [group = 1:3] {
 }
 if (seen == 0) { seen = 2; view[1] = 1; view[2] = 2 }
 solid = seen == 3
+# On a wire machine U V are how far the upper guide is from above X Y.
+guided = !solid && has_cut && view[1] == 1 && view[2] == 2 && span(7) + span(8) > 0
+if (guided) {
+	do for [k = 1:2] {
+		stats $path1 using (column(k) + column(k + 6)) nooutput
+		if (STATS_min < axis_min[k]) { axis_min[k] = STATS_min }
+		if (STATS_max > axis_max[k]) { axis_max[k] = STATS_max }
+		most = larger(most, span(k))
+	}
+}
 
-least = span(view[1])
-do for [k = 1:seen] { least = span(view[k]) < least ? span(view[k]) : least }
+least = most
+do for [k = 1:seen] { least = span(view[k]) > 0 && span(view[k]) < least ? span(view[k]) : least }
 room(i) = span(i) <= most / 200 ? (most > 0 ? most / 2.0 : 1.0) : larger(span(i) * 0.06, most * 0.02)
 do for [k = 1:seen] {
 	i = view[k]
@@ -96,7 +107,9 @@ do for [k = 1:seen] {
 }
 bottom = zoom_n > 0 ? 0.46 : 0.10
 eval place_panel(left_from, left_to, bottom, 0.845)
-eval name_panel('Path', left_from, 0.920)
+# One scale for all axes, unless one of them is too short to be seen by it.
+equal = least > most / 20
+eval name_panel(equal ? 'Path' : 'Path; its axes have scales of their own', left_from, 0.920)
 eval key_below(0.920)
 if (solid) {
 	set view 62, 38, 1, 1
@@ -105,18 +118,22 @@ if (solid) {
 	set zlabel rotate by 90 offset 0.2,0
 	set xlabel offset -1,-0.8; set ylabel offset 1,-0.8
 	set xtics offset 0,-0.3; set ytics offset 0,-0.3
+	# The same marks on all three, or a short axis has no room for its own.
+	if (equal) {
+		decade = 10.0 ** floor(log10(most / 6))
+		mark = decade * (most / 6 / decade > 5 ? 10 : most / 6 / decade > 2 ? 5 : 2)
+		set xtics mark; set ytics mark; set ztics mark
+	}
 	set border 4095 lc rgb '#d0d0d0'
 }
-# Equal scales, where they do not waste the panel.
-if (least > most / 4) { if (solid) { set view equal xyz } else { set size ratio -1 } }
+if (equal) { if (solid) { set view equal xyz } else { set size ratio -1 } }
 u = solid ? sprintf('using %d:%d:%d', view[1], view[2], view[3]) : sprintf('using %d:%d', view[1], view[2])
 cmd = solid ? 'splot ' : 'plot '
 if (jumps > 0) cmd = cmd.sprintf("$jumpat %s with points pt 6 ps %f lw 1.3 lc rgb '%s' title 'jumps: %d', ", u, mark_size(jumps), yellow, jumps)
 if (retracts > 0) cmd = cmd.sprintf("$retractat %s with points pt 9 ps %f lc rgb '%s' title 'retracts: %d', ", u, mark_size(retracts), orange, retracts)
 if (has_positioned) cmd = cmd.sprintf("$path0 %s with lines lw 1.4 dt (6,4) lc rgb '#999999' title 'positioned', ", u)
 if (has_cut) cmd = cmd.sprintf("$path1 %s with lines lw 2.2 lc rgb '%s' title 'cut', ", u, blue)
-# On a wire machine U V are how far the upper guide is from above X Y.
-if (!solid && has_cut && view[1] == 1 && view[2] == 2 && span(7) + span(8) > 0) cmd = cmd."$path1 using ($1 + $7):($2 + $8) with lines lw 1.2 lc rgb green title 'upper guide', "
+if (guided) cmd = cmd."$path1 using ($1 + $7):($2 + $8) with lines lw 1.2 lc rgb green title 'upper guide', "
 cmd = cmd.sprintf("$begin %s with points pt 7 ps 1.3 lc rgb '#202020' title 'start', ", u)
 cmd = cmd.sprintf("$end %s with points pt 5 ps 1.2 lc rgb '#202020' title 'farthest'", u)
 eval cmd

@@ -51,7 +51,7 @@ bool edmsim_contour_look(struct sim_run *r)
 {
 	struct watch *w;
 
-	if (!r->config->sim.loops || r->config->backend == BACKEND_NULL)
+	if (!r->config->sim.loops || config_machine_is(r->config, MACHINE_NONE))
 		return false;
 	w = calloc(1, sizeof(*w));
 	if (!w)

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* job.c - reads and compiles the text of the job */
 #include "compiling.h"
+#include "clocks.h"
 #include "entry.h"
 #include "sim.h"
+#include "trials.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sysexits.h>
-#include <time.h>
 
 #define JOB_BYTES_MAX	(1u << 30)
 
@@ -157,14 +158,6 @@ static int lay_out(struct sim_job *job, struct interp_build *b,
 	       EX_SOFTWARE : 0;
 }
 
-static double trials_now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
 /* Everything with which a job is compiled. */
 struct tables {
 	struct config_tech tech;
@@ -208,7 +201,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 					    o->check };
 	struct config_compiling of;
 	struct interp_diag diag = { 0 };
-	const double from_s = trials_now_s();
+	const double from_s = clock_s(CLOCK_MONOTONIC);
 	struct interp_build *b;
 	int err;
 
@@ -219,7 +212,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	if (!b)
 		return EX_OSERR;
 	err = interp_compile(&text, &of.text, b, &job->lines, &diag);
-	job->compile_lines_s = job->lines / (trials_now_s() - from_s);
+	job->compile_lines_s = job->lines / (clock_s(CLOCK_MONOTONIC) - from_s);
 	if (err == -EINVAL && o->check)
 		say_all(&all, &text, &of);
 	if (err == 0 && (o->from_line || o->from_mm > 0))

@@ -96,10 +96,10 @@ static int print_tech(const struct sim_options *o,
 	return err;
 }
 
-static void check(const struct sim_run *r)
+static int check(const struct sim_run *r)
 {
 	job_describe(&r->job, stdout);
-	plan_print(&r->job, r->config, stdout);
+	return plan_print(&r->job, r->config, stdout);
 }
 
 static int run_whole(struct sim_run *r)
@@ -142,7 +142,7 @@ int main(int argc, char **argv)
 	run.config = &config;
 	err = job_load(&run.job, &o, &config);
 	if (err == 0 && o.check)
-		check(&run);
+		err = check(&run);
 	else if (err == 0 && o.tune)
 		err = tune_contour(&run);
 	else if (err == 0 && o.emit)

@@ -3,6 +3,7 @@
 #include "plot.h"
 #include "sim.h"
 #include "path/place.h"
+#include "written.h"
 
 #include <errno.h>
 #include <math.h>
@@ -193,11 +194,12 @@ void record_cycle(struct sim_run *r)
 
 static int close_out(FILE *f, const char *path)
 {
-	const bool bad = f && (ferror(f) | (f != stdout && fclose(f) != 0));
+	const int err = f ? written_close(f) : 0;
 
-	if (!bad)
+	if (err == 0)
 		return 0;
-	fprintf(stderr, "edmsim: %s: could not be written\n", path);
+	fprintf(stderr, "edmsim: %s: %s; it is not whole\n", path,
+		strerror(-err));
 	return EX_IOERR;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* run.c - runs the cycle, as fast as the processor can or at a given speed */
 #include "sim.h"
+#include "clocks.h"
 #include "trials.h"
 
 #include <signal.h>
@@ -47,7 +48,7 @@ static void command(struct sim_run *r, enum cycle_verb v, double arg_mm)
  * simulate. */
 static bool at_once(const struct sim_run *r)
 {
-	return r->config->backend == BACKEND_NULL ||
+	return config_machine_is(r->config, MACHINE_NONE) ||
 	       (r->o->dry_run && !r->config->sim.loops);
 }
 
@@ -72,7 +73,8 @@ static int set_up(struct sim_run *r)
 	if (err)
 		return err;
 	config_cycle(r->config, &cc);
-	cc.dry_run = r->o->dry_run || r->config->backend == BACKEND_NULL;
+	cc.dry_run = r->o->dry_run ||
+		     config_machine_is(r->config, MACHINE_NONE);
 	cc.overrun_limit = 0;
 	if (at_once(r))
 		cc.contouring.methods = 0;
@@ -111,7 +113,7 @@ static void progress(const struct sim_run *r, bool last)
 static void pace(const struct sim_run *r, double from_s)
 {
 	const double due_s = from_s + virtual_s(&r->cycle) / r->o->speed;
-	const double wait_s = due_s - trials_now_s();
+	const double wait_s = due_s - clock_s(CLOCK_MONOTONIC);
 	const struct timespec t = {
 		.tv_sec = (time_t)wait_s,
 		.tv_nsec = (long)((wait_s - (double)(time_t)wait_s) * 1e9),
@@ -168,7 +170,7 @@ static void spend(struct sim_run *r)
 
 static void cycles(struct sim_run *r)
 {
-	const double from_s = trials_now_s();
+	const double from_s = clock_s(CLOCK_MONOTONIC);
 	struct cycle *c = &r->cycle;
 	struct io_outputs out;
 
@@ -188,7 +190,7 @@ static void cycles(struct sim_run *r)
 		if (r->o->speed > 0 && n % 16 == 0)
 			pace(r, from_s);
 	}
-	r->result.wall_s = trials_now_s() - from_s;
+	r->result.wall_s = clock_s(CLOCK_MONOTONIC) - from_s;
 	progress(r, true);
 }
 

@@ -108,9 +108,12 @@ int job_load(struct sim_job *job, const struct sim_options *o,
 void job_unload(struct sim_job *job);
 /** job_describe() - what --check prints. */
 void job_describe(const struct sim_job *job, FILE *f);
-/** plan_print() - what each call of a condition will cut: plan.c. */
-void plan_print(const struct sim_job *job, const struct machine_config *c,
-		FILE *f);
+/**
+ * plan_print() - what each call of a condition will cut: plan.c.  Return: 0 or
+ * an exit code.
+ */
+int plan_print(const struct sim_job *job, const struct machine_config *c,
+	       FILE *f);
 
 /** job_emit() - the program as text to stdout. Return: 0 or an exit code. */
 int job_emit(const struct sim_job *job, const struct sim_options *o,

@@ -1,28 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* trials.c - shows how far a search has come */
 #include "trials.h"
+#include "clocks.h"
 
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
 
-double trials_now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
 struct trials trials_begin(bool quiet, unsigned int budget)
 {
 	return (struct trials) { quiet, isatty(STDERR_FILENO) == 1, budget,
-				 trials_now_s() };
+				 clock_s(CLOCK_MONOTONIC) };
 }
 
 void trials_tell(const struct trials *t, unsigned int used, const char *best)
 {
-	const double left_s = (trials_now_s() - t->from_s) / used *
+	const double left_s = (clock_s(CLOCK_MONOTONIC) - t->from_s) / used *
 			      (t->budget - used);
 
 	if (t->quiet || (!t->terminal && used % 20 != 0))

@@ -14,9 +14,6 @@ struct trials {
 	double from_s;
 };
 
-/** trials_now_s() - the time of a clock that never goes back. */
-double trials_now_s(void);
-
 /** trials_begin() - the search begins now. */
 struct trials trials_begin(bool quiet, unsigned int budget);
 

@@ -312,7 +312,7 @@ int tune_servo(const struct sim_options *o, const struct machine_config *c,
 	t.budget = o->budget > 0 ? (uint32_t)o->budget : BUDGET;
 	t.train = trial_from(o, job, seed, TRAIN_SEEDS);
 	t.test = trial_from(o, job, seed + TEST_FROM, TEST_SEEDS);
-	if (c->backend != BACKEND_SIM || o->dry_run)
+	if (!config_machine_is(c, MACHINE_MODEL) || o->dry_run)
 		return refuse("no gap to tune for",
 			      "[machine] backend = sim, and no --dry-run");
 	choose_keys(&t);

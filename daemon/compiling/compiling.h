@@ -42,6 +42,9 @@ struct config_dialect {
 	struct interp_diag diag;	/* filled with -EINVAL */
 };
 
+/** config_dialect_is_file() - is @name a file, not the name of a dialect? */
+bool config_dialect_is_file(const char *name);
+
 /**
  * config_dialect_load() - find the dialect in which a job is written.
  *

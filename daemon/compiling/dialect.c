@@ -10,7 +10,7 @@
 
 #define FILE_BYTES_MAX	(1u << 20)
 
-static bool is_file(const char *name)
+bool config_dialect_is_file(const char *name)
 {
 	const size_t n = strlen(name);
 
@@ -71,7 +71,8 @@ int config_dialect_load(struct config_dialect *ret,
 			const char *job)
 {
 	const char *name = asked ? asked : c->dialect;
-	const bool beside = !asked && name[0] != '/' && is_file(name);
+	const bool beside = !asked && name[0] != '/' &&
+			    config_dialect_is_file(name);
 
 	*ret = (struct config_dialect) {
 		.use = asked ? NULL : interp_dialect_by_suffix(job),
@@ -80,7 +81,7 @@ int config_dialect_load(struct config_dialect *ret,
 		 beside ? c->folder : "", name);
 	if (ret->use)
 		return 0;
-	return is_file(name) ? read_file(ret) : find_name(ret);
+	return config_dialect_is_file(name) ? read_file(ret) : find_name(ret);
 }
 
 void config_dialect_free(struct config_dialect *d)

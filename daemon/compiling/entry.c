@@ -12,7 +12,7 @@
 int config_way_out(const struct machine_config *c)
 {
 	const bool wire = c->wire.guides != INTERP_GUIDES_OFF ||
-			  c->sim.process == SIM_WIRE;
+			  c->sim.process == PROCESS_WIRE;
 
 	return wire || !(c->axes.present >> INTERP_Z & 1) ? -1 : INTERP_Z;
 }

@@ -24,7 +24,7 @@ void config_tech_base(const struct machine_config *c, struct interp_tech *ret)
 	ret->v[INTERP_TECH_FEED_MAX_MM_S] = c->gap.feed_max_mm_s;
 	ret->v[INTERP_TECH_RETRACT_MM_S] = c->gap.retract_mm_s;
 	ret->v[INTERP_TECH_JUMP_MM] = c->jump.height_mm;
-	ret->v[INTERP_TECH_JUMP_EVERY_S] = c->seconds.jump_every;
+	ret->v[INTERP_TECH_JUMP_EVERY_S] = c->jump.every.s;
 	ret->v[INTERP_TECH_JUMP_SHORT_OF_MM] = c->jump.short_of_mm;
 }
 

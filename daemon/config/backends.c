@@ -19,8 +19,8 @@ static bool backend_can402_has_gap(const struct machine_config *c)
 	return c->can402.gap_id > 0;
 }
 
-#define BACKEND(id, word, open, period, is, gap, checked) \
-	[BACKEND_##id] = { .name = word, .period_ns = period, is, \
+#define BACKEND(id, word, open, period, what, gap, checked) \
+	[BACKEND_##id] = { .name = word, .period_ns = period, .is = what, \
 			   .has_gap = gap, .check = checked },
 
 static const struct config_backend backend[CONFIG_NBACKENDS] = {
@@ -30,6 +30,12 @@ static const struct config_backend backend[CONFIG_NBACKENDS] = {
 const struct config_backend *config_backend(const struct machine_config *c)
 {
 	return &backend[c->backend];
+}
+
+bool config_machine_is(const struct machine_config *c,
+		       enum config_machine_is what)
+{
+	return config_backend(c)->is & what;
 }
 
 const char *config_backend_name(int i)

@@ -14,19 +14,21 @@
 
 /*
  * BACKEND_<id>, the word in a machine file, the function that opens it, the
- * period unless the file gives one, what it is (see struct config_backend),
+ * period unless the file gives one, what it is (enum config_machine_is),
  * whether it has a gap, what of the file is checked for it alone.
  *
  * A pulse of gpio is made of periods.  Six drives on a bus fit into 2 ms.
  */
 #define CONFIG_BACKENDS(ROW) \
-	ROW(SIM, "sim", io_sim_open, 1000000, .simulated = true, \
+	ROW(SIM, "sim", io_sim_open, 1000000, \
+	    MACHINE_NO_WIRES | MACHINE_MODEL, \
 	    backend_has_gap, NULL) \
-	ROW(NULL, "null", io_null_open, 1000000, .simulated = true, \
+	ROW(NULL, "null", io_null_open, 1000000, \
+	    MACHINE_NO_WIRES | MACHINE_NONE, \
 	    backend_has_no_gap, NULL) \
-	ROW(GPIO, "gpio", io_gpio_open, 50000, .simulated = false, \
+	ROW(GPIO, "gpio", io_gpio_open, 50000, 0, \
 	    config_gpio_has_gap, config_check_gpio) \
-	ROW(CAN402, "can402", io_can402_open, 2000000, .drives = true, \
+	ROW(CAN402, "can402", io_can402_open, 2000000, MACHINE_DRIVES, \
 	    backend_can402_has_gap, config_check_can402)
 
 #define CONFIG_BACKEND_ID(id, name, open, period_ns, is, has_gap, check) \
@@ -37,6 +39,15 @@ enum config_backend_id {
 	CONFIG_NBACKENDS
 };
 
+enum config_machine_is {
+	MACHINE_NO_WIRES = 1,		/* nothing outside is needed */
+	MACHINE_MODEL = 2,		/* [sim]: a model of gap and axes
+					 * answers, in a time of its own */
+	MACHINE_DRIVES = 4,		/* drives on a bus: they are sent
+					 * places, and follow with a lag */
+	MACHINE_NONE = 8,		/* every place is reached at once */
+};
+
 struct machine_config;
 struct config_lines;
 struct interp_diag;
@@ -44,9 +55,7 @@ struct interp_diag;
 struct config_backend {
 	const char *name;
 	int64_t period_ns;
-	bool simulated;		/* no wires: nothing outside is needed */
-	bool drives;		/* drives on a bus: they are sent places, and
-				 * follow with a lag */
+	uint32_t is;			/* set of enum config_machine_is */
 	bool (*has_gap)(const struct machine_config *c);
 	/* As config_check(); NULL: nothing to check. */
 	int (*check)(const struct machine_config *c,
@@ -56,6 +65,10 @@ struct config_backend {
 
 /** config_backend() - the row of the backend that @c names. */
 const struct config_backend *config_backend(const struct machine_config *c);
+
+/** config_machine_is() - whether the backend that @c names is @what. */
+bool config_machine_is(const struct machine_config *c,
+		       enum config_machine_is what);
 
 /** config_backend_name() - of row @i; NULL past the last. */
 const char *config_backend_name(int i);

@@ -237,7 +237,8 @@ static int check_lines(struct check *q)
 {
 	const int k = key_of(SECTION_GAP, "source");
 
-	if (q->c->gap.source != GAP_LINES || q->c->backend != BACKEND_SIM)
+	if (q->c->gap.source != GAP_LINES ||
+	    !config_machine_is(q->c, MACHINE_MODEL))
 		return 0;
 	blame(q, k, key_of(SECTION_MACHINE, "backend"), 0);
 	return interp_diag_say(q->diag, "gap.source lines on backend sim, "

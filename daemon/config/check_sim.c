@@ -70,7 +70,8 @@ static int open_mean(struct check *q)
 	const double wait_us = s->iso ? s->wait_us : s->on_us;
 	const double mean_v = s->open_v * wait_us / (wait_us + s->off_us);
 
-	if (q->c->backend != BACKEND_SIM || mean_v > q->c->gap.servo_v)
+	if (!config_machine_is(q->c, MACHINE_MODEL) ||
+	    mean_v > q->c->gap.servo_v)
 		return 0;
 
 	blame(q, line_of(q, SECTION_GAP, "servo_v"),

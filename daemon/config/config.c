@@ -79,31 +79,55 @@ static double or_own(double x, double own)
 	return x > 0 ? x : own;
 }
 
-static void gap_of(const struct machine_config *m, struct cycle_config *c)
-{
-	const bool sim = m->backend == BACKEND_SIM;
-	const int64_t period_ns = c->period_ns;
-	struct cycle_gap_config *g = &c->gap;
+/* The settings that the cycle has as the file gives them. */
+static const struct { size_t from, to, size; } settings[] = {
+#define SETTINGS(member) \
+	{ offsetof(struct machine_config, member), \
+	  offsetof(struct cycle_config, member), \
+	  sizeof(((struct cycle_config *)0)->member) }
+	SETTINGS(gap), SETTINGS(jump), SETTINGS(probe),
+#undef SETTINGS
+};
 
-	*g = m->gap;
-	g->ignition_v = or_own(g->ignition_v, sim ? m->sim.open_v : 0);
-	g->off_us = or_own(g->off_us, sim ? m->sim.off_us : 0);
-	g->retract_wait_cycles = cycles_of(m->seconds.retract_wait, period_ns);
-	g->retract_max_cycles = cycles_of(m->seconds.retract_max, period_ns);
-	g->arcing_recover_cycles = cycles_of(m->seconds.arcing_recover,
-					     period_ns);
-	g->stuck_cycles = cycles_of(m->seconds.stuck, period_ns);
+static void settings_of(const struct machine_config *m, struct cycle_config *c)
+{
+	for (size_t i = 0; i < sizeof(settings) / sizeof(settings[0]); i++)
+		memcpy((char *)c + settings[i].to,
+		       (const char *)m + settings[i].from, settings[i].size);
 }
 
-static void jump_of(const struct machine_config *m, struct cycle_config *c)
+/* The time that a row of the keys' table puts @at into a machine_config. */
+static struct cycle_time *time_at(struct cycle_config *c, size_t at)
 {
-	const struct config_seconds *s = &m->seconds;
-	const uint64_t every = cycles_of(s->jump_every, c->period_ns);
+	for (size_t i = 0; i < sizeof(settings) / sizeof(settings[0]); i++)
+		if (at >= settings[i].from &&
+		    at < settings[i].from + settings[i].size)
+			return (void *)((char *)c + settings[i].to + at -
+					settings[i].from);
+	return NULL;
+}
 
-	c->jump = m->jump;
-	c->jump.every_cycles = every ? every : 1;
-	c->jump.every_min_cycles = cycles_of(s->jump_every_min, c->period_ns);
-	c->jump.every_max_cycles = cycles_of(s->jump_every_max, c->period_ns);
+static void count_periods(struct cycle_config *c)
+{
+	const struct config_key *k;
+
+	for (int i = 0; (k = config_key(i)); i++) {
+		struct cycle_time *t = k->periods ? time_at(c, k->offset) :
+						    NULL;
+
+		if (t)
+			t->cycles = cycles_of(t->s, c->period_ns);
+	}
+	c->jump.every.cycles += c->jump.every.cycles == 0;
+}
+
+static void generator_of(const struct machine_config *m,
+			 struct cycle_gap_config *g)
+{
+	const bool sim = config_machine_is(m, MACHINE_MODEL);
+
+	g->ignition_v = or_own(g->ignition_v, sim ? m->sim.open_v : 0);
+	g->off_us = or_own(g->off_us, sim ? m->sim.off_us : 0);
 }
 
 static void manual_of(const struct machine_config *c, int axis,
@@ -155,18 +179,16 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 		.optional_stop = c->optional_stop,
 		.stop_at_nodes = c->nodes == 1,
 		.require_home = c->require_home,
-		.probe = c->probe,
 	};
 	ret->press_cycles = cycles_of(VERB_PRESS_S *
-				      (c->backend == BACKEND_SIM ?
+				      (config_machine_is(c, MACHINE_MODEL) ?
 				       (double)c->sim.speed : 1),
 				      ret->period_ns);
 	ret->mcode_cycles = cycles_of(c->plc.m_timeout_s, ret->period_ns);
+	settings_of(c, ret);
+	count_periods(ret);
 	travel_of(c, ret);
-	gap_of(c, ret);
-	jump_of(c, ret);
-	ret->probe.settle_cycles = cycles_of(c->seconds.probe_settle,
-					     ret->period_ns);
+	generator_of(c, &ret->gap);
 
 	/* Round inward: to the last pulse inside the limit, never to the first
 	 * outside. */

@@ -26,13 +26,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Times of the file that become cycles in struct cycle_config. */
-struct config_seconds {
-	double retract_wait, retract_max, arcing_recover, stuck;
-	double jump_every, jump_every_min, jump_every_max;
-	double probe_settle;
-};
-
 /* [axis.*] backlash_* */
 struct config_backlash {
 	double um, mm_s;
@@ -46,11 +39,14 @@ struct config_can402 {
 	double master_node;
 	double heartbeat_ms;
 	double missing_max;		/* answers missing in a row */
-	double sdo_ms;			/* a drive may take for an answer */
+	double sdo_ms;			/* time that a drive has for an
+					 * answer */
 	double following_mm;		/* 0: not supervised */
-	double following_s;		/* ... and its speed times this */
+	double following_s;		/* following_mm grows by the speed times
+					 * this */
 	double resync_mm, resync_mm_s;	/* back to its place when enabled */
-	double enable_s;		/* at most, from a start to motion */
+	double enable_s;		/* longest time from a start to
+					 * motion */
 	double gap_id, generator_id;	/* identifier of its frames; 0: none */
 };
 
@@ -58,21 +54,22 @@ struct config_can402 {
 struct config_plc {
 	char interface[16];		/* "none": there is no PLC */
 	double node;
-	double alive_ms;		/* so long without a turn of its toggle,
-					 * and it is lost */
+	double alive_ms;		/* its toggle must turn at least so
+					 * often, or it is lost */
 	double cycle_ms;		/* of the frames to it */
 	char m_before[96], m_after[96], m_free[96];	/* lists of M codes */
 	char m_redo[96], m_stop[96];
 	double m_timeout_s;		/* 0: never */
 };
 
-/* [axis.*]: this number of increments of a drive is this number of pulses. */
+/* [axis.*] brake: who holds the axis while its drive is off. */
 enum config_brake {
 	BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE, BRAKE_LINE
 };
 
 struct config_drive {
-	double increments, pulses;
+	double increments, pulses;	/* so many increments of the drive are
+					 * so many pulses */
 	double encoder_counts, encoder_pulses;	/* of [gpio] encoder_ */
 	int brake;			/* enum config_brake */
 	int absolute, follow_bit;	/* 1: yes */
@@ -90,7 +87,6 @@ struct config_contour {
 	double noise_mm, model_error;	/* of the machine it is tried on */
 };
 
-enum sim_process { SIM_SINK, SIM_WIRE };
 enum sim_electrode { ELECTRODE_FLAT, ELECTRODE_BALL, ELECTRODE_CONE };
 
 /* [sim]: the simulated machine; docs/process-model.md says what each does. */
@@ -98,7 +94,7 @@ struct config_sim {
 	double seed;			/* whole number */
 	double speed;			/* periods that run in each period of
 					 * real time */
-	int process;			/* enum sim_process */
+	int process;			/* enum cycle_process */
 
 	/* The generator. */
 	double on_us, off_us, peak_a, open_v, spark_v;
@@ -125,23 +121,28 @@ struct config_sim {
 	double removal_mm3_min;		/* at the best gap, clean */
 	double crater_peak_power, crater_on_power;
 	double wear_ratio;		/* electrode length lost per depth */
-	double negative_removal, negative_wear;	/* times as much */
+	double negative_removal, negative_wear;	/* factors, with a negative
+						 * electrode */
 
 	/* Debris, bridges, arcs. */
 	double debris_per_mm;		/* debris made per mm eroded, 0..1
 					 * scale */
 	double debris_settle_s;		/* time constant, undisturbed */
 	double debris_gap_mm;		/* gap lost at debris 1 */
-	double secondary;		/* sparks lost on it at debris 1 */
-	double flush_mm;		/* fast clean stroke that halves it */
-	double flush_mm_s;		/* stroke speed that carries half */
+	double secondary;		/* share of sparks that hit debris, at
+					 * debris 1 */
+	double flush_mm;		/* a fast stroke of this height halves
+					 * the debris */
+	double flush_mm_s;		/* a stroke at this speed carries half
+					 * as much out */
 	double flush_per_s;		/* driven out by the pump, at depth 0 */
 	double bridge_per_s;		/* debris bridges per second at debris
 					 * 1 */
 	double bridge_mm;		/* mean length of a bridge */
 	double bridge_settle_s;		/* it shrinks with this time constant */
 	double deion_us;		/* recovery of a channel */
-	double arcing_gain;		/* above 1 at debris 1: arcs may stay */
+	double arcing_gain;		/* arcs may stay if it is above 1, at
+					 * debris 1 */
 	double arcing_s;			/* time constant of a hot
 						 * place */
 	double break_per_j, rethread_s;	/* of the wire */
@@ -213,11 +214,12 @@ struct config_gpio {
 	double dir_setup_cycles, dir_hold_cycles;
 	char adc[64], adc_trigger[64];	/* of industrial I/O; "none" */
 	double adc_channel, adc_ratio;	/* V at the gap for a V at the input */
-	double edges_per_period;	/* writes by the edge thread; 1: none */
+	double edges_per_period;	/* writes by the edge thread in a
+					 * period; 1: there is no edge thread */
 	double edges_cpu;		/* -1: any */
 	double watchdog_us;		/* between two edges */
-	char watchdog_by[128], estop_by[128];	/* what does it without a line;
-						 * "none": nothing */
+	char watchdog_by[128], estop_by[128];	/* what does it, if no line
+						 * does; "none": nothing */
 	char line[CONFIG_NLINES][CONFIG_LINE_MAX];
 	double brake_ms;		/* to open, and to close */
 	char encoder[INTERP_NAXES][CONFIG_ENCODER_MAX];	/* as
@@ -296,7 +298,6 @@ struct machine_config {
 	int jump_escape;		/* enum interp_escape_mode */
 	struct config_contour contour;
 	struct probe_config probe;
-	struct config_seconds seconds;
 	double corner_um;		/* [speed] corner_um */
 	double tolerance_um, rotary_radius_mm;	/* [speed], of its ends */
 	int nodes;			/* [speed] nodes: 0 pass, 1 stop */

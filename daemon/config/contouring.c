@@ -45,8 +45,9 @@ static int check_methods(const struct machine_config *c, int methods,
 static int check_backend(const struct machine_config *c,
 			 struct interp_diag *diag)
 {
-	if (config_backend(c)->drives ||
-	    (c->backend == BACKEND_SIM && (c->sim.loops || c->sim.lag_s > 0)))
+	if (config_machine_is(c, MACHINE_DRIVES) ||
+	    (config_machine_is(c, MACHINE_MODEL) &&
+	     (c->sim.loops || c->sim.lag_s > 0)))
 		return 0;
 	interp_diag_say(diag, "contour.method %.40s on axes that do not lag; "
 			      "none; or backend = can402, or sim with [sim] "
@@ -82,7 +83,7 @@ static int check_margin(const struct machine_config *c, int axis,
 	struct interp_axis_model m;
 	double most;
 
-	if (config_backend(c)->drives)
+	if (config_machine_is(c, MACHINE_DRIVES))
 		l.delay_s += CAN402_PERIODS * period_s(c);
 	if (interp_axis_model_init(&m, &l, period_s(c), 0) < 0) {
 		interp_diag_say(diag, "axis.%c.loop_* are no loop; what "

@@ -161,6 +161,13 @@ static int check_source(struct check *q)
 
 	const bool lines = config_gpio_has_lines(q->c);
 
+	if (strcmp(q->c->gpio.adc, "none") != 0 && q->c->gpio.adc_ratio == 0) {
+		blame(q, config_key(config_key_find(SECTION_GPIO,
+						    "adc_ratio")), 0);
+		return interp_diag_say(q->diag, "gpio.adc_ratio is 0, which "
+				       "would read each gap as a short; the "
+				       "divider in front of the converter");
+	}
 	if (q->c->gap.source == (lines ? GAP_LINES : GAP_VOLTAGE))
 		return 0;
 	blame(q, k, 0);

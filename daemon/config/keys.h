@@ -75,6 +75,8 @@ struct config_key {
 	const char *def_wire;		/* with process = wire; NULL: as def */
 	const char *(*word)(int i);	/* enums only; NULL past the last */
 	const char *help;
+	bool periods;			/* of a struct cycle_time:
+					 * config_cycle() counts its periods */
 };
 
 #define CONFIG_NKEYS_MAX	512	/* rows the table may have; asserted */

@@ -6,7 +6,7 @@
 
 #include "cycle.h"
 
-static const char *process_word(int i)
+const char *config_process_word(int i)
 {
 	static const char *const words[CYCLE_NPROCESSES] = {
 		[PROCESS_SINK] = "sink",
@@ -76,8 +76,8 @@ static const char *escape_word(int i)
 static const struct config_key row[] = {
 	WORDS(GAP, "source", "sim", AT(gap.source), source_word,
 	      "where the gap signal comes from"),
-	NUMBER(GAP, "servo_v", "V", "15", 0.1, 500, AT(gap.servo_v),
-	       "mean gap voltage that the servo holds"),
+	OF_WIRE(GAP, "servo_v", "V", "25", "15", 0.1, 500, AT(gap.servo_v),
+		"mean gap voltage that the servo holds"),
 	NUMBER(GAP, "short_v", "V", "8", 0, 500, AT(gap.short_v),
 	       "a signal below this is a short circuit: the machine "
 	       "retracts"),
@@ -93,7 +93,7 @@ static const struct config_key row[] = {
 	NUMBER(GAP, "ignition_v", "V", "0", 0, 1000, AT(gap.ignition_v),
 	       "open-circuit voltage; a reading above 1.5 times as much is "
 	       "not believed; 0: every reading is believed"),
-	WORDS(GAP, "process", "sink", AT(gap.process), process_word,
+	WORDS(GAP, "process", "sink", AT(gap.process), config_process_word,
 	      "where the sparks are: in a cavity, or along a wire"),
 	WORDS(GAP, "filter", "median", AT(gap.filter), filter_word,
 	      "how the gap signal is smoothed"),
@@ -103,9 +103,9 @@ static const struct config_key row[] = {
 	COUNT(GAP, "short_cycles", "cycles", "1", 1, 1000, AT(gap.short_cycles),
 	      "this many shorted cycles in a row are a short; the feed "
 	       "ends at the first of them"),
-	NUMBER(GAP, "feed_gain_mm_s_v", "mm/s/V", "0.02", 1e-6, 10,
-	       AT(gap.gain_mm_s_v),
-	       "feed for each volt outside the window"),
+	OF_WIRE(GAP, "feed_gain_mm_s_v", "mm/s/V", "0.01", "0.02", 1e-6, 10,
+		AT(gap.gain_mm_s_v),
+		"feed for each volt outside the window"),
 	NUMBER(GAP, "integral_s", "s", "0", 0, 1000, AT(gap.integral_s),
 	       "reset time of the servo's integral part; 0: no integral "
 	       "part"),
@@ -138,10 +138,10 @@ static const struct config_key row[] = {
 	       AT(gap.retract_limit_mm),
 	       "a retract ends after this way, even if the gap is still "
 	       "short"),
-	NUMBER(GAP, "retract_wait_s", "s", "0.5", 0, 60, AT(seconds.retract_wait),
+	PERIODS(GAP, "retract_wait_s", "s", "0.5", 0, 60, gap.retract_wait,
 	       "still short so long after the end of a retract: fault "
 	       "short-not-cleared"),
-	NUMBER(GAP, "retract_max_s", "s", "60", 0, 86400, AT(seconds.retract_max),
+	PERIODS(GAP, "retract_max_s", "s", "60", 0, 86400, gap.retract_max,
 	       "a retract that lasts longer is fault retract-time; 0: no "
 	       "limit"),
 	WORDS(GAP, "retract_to", "limit", AT(gap.retract_to), retract_to_word,
@@ -167,12 +167,12 @@ static const struct config_key row[] = {
 	NUMBER(GAP, "arcing_off_max", "", "4", 1, 100, AT(gap.arcing_off_max),
 	       "against arcs the off time is made longer, at most by this "
 	       "factor"),
-	NUMBER(GAP, "arcing_recover_s", "s", "2", 0, 3600, AT(seconds.arcing_recover),
+	PERIODS(GAP, "arcing_recover_s", "s", "2", 0, 3600, gap.arcing_recover,
 	       "time without arcs, after which the off time is made one "
 	       "step shorter"),
 	NUMBER(GAP, "arcing_retract_mm", "mm", "0.5", 0, 1000,
 	       AT(gap.arcing_retract_mm), "smallest retract out of an arc"),
-	NUMBER(GAP, "stuck_s", "s", "5", 0, 3600, AT(seconds.stuck),
+	PERIODS(GAP, "stuck_s", "s", "5", 0, 3600, gap.stuck,
 	       "a signal that does not change for this time while the axes "
 	       "move is fault gap-stuck; 0: not watched"),
 	NUMBER(GAP, "noise_limit_v", "V", "100", 0, 1000, AT(gap.noise_limit_v),
@@ -193,17 +193,17 @@ static const struct config_key row[] = {
 
 	NUMBER(JUMP, "height_mm", "mm", "2", 0, 500, AT(jump.height_mm),
 	       "height of a jump, along its way out; 0: no jumps"),
-	NUMBER(JUMP, "every_s", "s", "2", 0.01, 86400, AT(seconds.jump_every),
+	PERIODS(JUMP, "every_s", "s", "2", 0.01, 86400, jump.every,
 	       "time of erosion between two jumps"),
 	NUMBER(JUMP, "every_mm", "mm", "0", 0, 1000, AT(jump.every_mm),
 	       "depth cut between two jumps; 0: jumps come by time alone"),
 	BIT(JUMP, "adaptive", "no", AT(jump.adaptive),
 	    "period and height follow the state of the gap"),
-	NUMBER(JUMP, "every_min_s", "s", "0.5", 0.01, 86400,
-	       AT(seconds.jump_every_min),
+	PERIODS(JUMP, "every_min_s", "s", "0.5", 0.01, 86400,
+	       jump.every_min,
 	       "adaptive: shortest time between two jumps"),
-	NUMBER(JUMP, "every_max_s", "s", "10", 0.01, 86400,
-	       AT(seconds.jump_every_max),
+	PERIODS(JUMP, "every_max_s", "s", "10", 0.01, 86400,
+	       jump.every_max,
 	       "adaptive: longest time between two jumps"),
 	NUMBER(JUMP, "height_min_mm", "mm", "0.5", 0.001, 500,
 	       AT(jump.height_min_mm), "adaptive: lowest jump"),
@@ -234,7 +234,7 @@ static const struct config_key row[] = {
 	       "speed until the second contact, which counts"),
 	NUMBER(PROBE, "back_mm", "mm", "0.1", 0, 10, AT(probe.back_mm),
 	       "way back between the two contacts; 0: the first one counts"),
-	NUMBER(PROBE, "settle_s", "s", "0.05", 0.002, 10, AT(seconds.probe_settle),
+	PERIODS(PROBE, "settle_s", "s", "0.05", 0.002, 10, probe.settle,
 	       "time for the sensing voltage to settle, before the motion "
 	       "begins"),
 };

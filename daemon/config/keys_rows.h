@@ -25,6 +25,10 @@
 #define NUMBER(section, key, unit_, def_, low, high, place, what) \
 	{ SECTION_##section, key, KEY_NUMBER, unit_, def_, low, high, place, \
 	  .help = what }
+/* A time that the cycle counts: @field is a struct cycle_time. */
+#define PERIODS(section, key, unit_, def_, low, high, field, what) \
+	{ SECTION_##section, key, KEY_NUMBER, unit_, def_, low, high, \
+	  AT(field.s), .help = what, .periods = true }
 #define ROTARY(section, key, unit_, def_, def_abc, low, high, place, what) \
 	{ SECTION_##section, key, KEY_NUMBER, unit_, def_, low, high, place, \
 	  .def_rotary = def_abc, .help = what }
@@ -49,6 +53,9 @@
 #define STRING(section, key, def_, field, what) \
 	{ SECTION_##section, key, KEY_STRING, "", def_, 0, 0, AT(field), \
 	  ROOM(field), .help = what }
+
+/* config_process_word() - sink, wire; for [gap] and [sim]. */
+const char *config_process_word(int i);
 
 /* The rows of one file. */
 struct config_keys {

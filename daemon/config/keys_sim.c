@@ -4,11 +4,6 @@
  */
 #include "keys_rows.h"
 
-static const char *sim_process_word(int i)
-{
-	return i == SIM_SINK ? "sink" : i == SIM_WIRE ? "wire" : NULL;
-}
-
 static const char *electrode_word(int i)
 {
 	static const char *const words[] = {
@@ -28,7 +23,7 @@ static const struct config_key row[] = {
 	      "how many times faster than real time the simulated machine "
 	       "runs"),
 	{ SECTION_SIM, "process", KEY_ENUM, "", "sink", 0, 0, AT(sim.process),
-	  .def_wire = "wire", .word = sim_process_word,
+	  .def_wire = "wire", .word = config_process_word,
 	  .help = "a sinker's electrode, or a wire through the work" },
 	OF_WIRE(SIM, "on_us", "us", "8", "2", 0.1, 10000, AT(sim.on_us),
 	       "on time of the generator's pulses"),
@@ -125,7 +120,7 @@ static const struct config_key row[] = {
 	       "crowding is above 1"),
 	NUMBER(SIM, "arcing_s", "s", "1", 1e-3, 1000, AT(sim.arcing_s),
 	       "time constant of a place heated by arcs"),
-	NUMBER(SIM, "break_per_j", "1/J", "0.000002", 0, 1, AT(sim.break_per_j),
+	NUMBER(SIM, "break_per_j", "1/J", "0.00000002", 0, 1, AT(sim.break_per_j),
 	       "probability per joule that the wire breaks; process wire"),
 	NUMBER(SIM, "rethread_s", "s", "30", 0, 3600, AT(sim.rethread_s),
 	       "time with the power off until a broken wire is threaded "

@@ -3,9 +3,9 @@
  * nearest.h - which known word was meant by a misspelt one
  *
  * Offer every known word; afterwards `word` is the nearest by edit distance,
- * or "" if none is near enough to be a slip.
+ * or "" if none is so near that it can have been meant.
  *
- * Threads: startup only.
+ * Threads: any thread, not in the cycle; one object belongs to one thread.
  */
 #ifndef CONFIG_NEAREST_H
 #define CONFIG_NEAREST_H
@@ -16,7 +16,8 @@
 
 struct nearest {
 	const char *misspelt;
-	size_t distance;		/* of word; one too many at first */
+	size_t distance;		/* of `word`; at first one more than is
+					 * near enough */
 	char word[NEAREST_MAX];
 };
 

@@ -154,7 +154,7 @@ static int check_node(const struct machine_config *c, struct interp_diag *d)
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		taken = taken || c->plc.node == c->can402.node[i];
-	if (!taken || !config_backend(c)->drives ||
+	if (!taken || !config_machine_is(c, MACHINE_DRIVES) ||
 	    strcmp(c->plc.interface, c->can402.interface) != 0)
 		return 0;
 	return interp_diag_say(d, "plc.node %g is a node of [can402] on %s; a "
@@ -176,7 +176,7 @@ int config_check_plc(const struct machine_config *c,
 	}
 	diag->line = line_of(lines, "interface");
 	if (!config_has_plc(c) && has_mcodes(table) &&
-	    !config_backend(c)->simulated)
+	    !config_machine_is(c, MACHINE_NO_WIRES))
 		return refuse(diag, &lists[0], "M codes and no PLC",
 			      "plc.interface, as in can1, or no M codes");
 	diag->line = line_of(lines, "node");

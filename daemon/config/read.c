@@ -260,8 +260,8 @@ static void take_wire_defaults(struct reading *r)
 	const int process = config_key_find(SECTION_SIM, "process");
 
 	if (r->config.gap.process == PROCESS_WIRE && !r->lines.at[process][0])
-		r->config.sim.process = SIM_WIRE;
-	if (r->config.sim.process != SIM_WIRE)
+		r->config.sim.process = PROCESS_WIRE;
+	if (r->config.sim.process != PROCESS_WIRE)
 		return;
 	for (int i = 0; config_key(i); i++) {
 		const struct config_key *k = config_key(i);

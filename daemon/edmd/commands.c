@@ -9,6 +9,7 @@
 #include "loop.h"
 
 #include "clock.h"
+#include "clocks.h"
 
 #include <string.h>
 
@@ -120,7 +121,7 @@ static bool is_repeat(struct loop *l, const struct shm_command *c)
  * more. */
 static bool is_late(const struct shm_command *c)
 {
-	return setup_now_ns() > c->until_ns;
+	return clock_ns(CLOCK_MONOTONIC) > c->until_ns;
 }
 
 /* There are many signs in a second, each is new, and a repeated one does no

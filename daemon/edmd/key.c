@@ -24,7 +24,7 @@ uint64_t key_axes(const struct machine_config *c)
 	double of[1 + 3 * INTERP_NAXES] = { c->backend };
 	double *at = of + 1;
 
-	if (!config_backend(c)->drives)
+	if (!config_machine_is(c, MACHINE_DRIVES))
 		return key_of(of, sizeof(of));
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		*at++ = c->can402.node[i];

@@ -3,6 +3,7 @@
  * loop.c - the real-time thread
  */
 #include "loop.h"
+#include "clocks.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -10,14 +11,6 @@
 
 /* Percentage of a period that the simulated periods may take. */
 #define SPEED_SHARE	75
-
-static int64_t realtime_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_REALTIME, &t);
-	return t.tv_sec * 1000000000LL + t.tv_nsec;
-}
 
 bool loop_stands(const struct loop *l)
 {
@@ -73,7 +66,7 @@ static void steps(struct loop *l, int64_t woke_ns)
 
 	for (uint32_t i = 0; i < l->speed; i++) {
 		step(l);
-		if (l->speed > 1 && setup_now_ns() >= until_ns)
+		if (l->speed > 1 && clock_ns(CLOCK_MONOTONIC) >= until_ns)
 			break;
 	}
 }
@@ -95,7 +88,7 @@ static void period(struct loop *l, const struct setup_wake *w)
 	struct crossing *x = &l->crossing;
 	struct shm_snapshot s;
 
-	l->time_ns = realtime_ns();
+	l->time_ns = clock_ns(CLOCK_REALTIME);
 	count_latency(l, w->late_ns);
 	tell_missed(l, w->missed);
 	end_if_asked(l);
@@ -105,7 +98,7 @@ static void period(struct loop *l, const struct setup_wake *w)
 	steps(l, w->woke_ns);
 	loop_plc_write(l);
 
-	l->timing.took_ns = setup_now_ns() - w->woke_ns;
+	l->timing.took_ns = clock_ns(CLOCK_MONOTONIC) - w->woke_ns;
 	if (l->timing.took_ns > l->timing.took_max_ns)
 		l->timing.took_max_ns = l->timing.took_ns;
 	loop_snapshot(l, &s);

@@ -70,7 +70,8 @@ static void loop_configure(struct loop *l, const struct machine_config *c)
 	l->home_key = key_home(c);
 	l->wanted.cpu = (int)c->cpu;
 	l->wanted.priority = (int)c->priority;
-	l->speed = c->backend == BACKEND_SIM ? (uint32_t)c->sim.speed : 1;
+	l->speed = config_machine_is(c, MACHINE_MODEL) ?
+			   (uint32_t)c->sim.speed : 1;
 }
 
 static int status_refuse(const char *name, int err)

@@ -3,6 +3,7 @@
 #include "report.h"
 
 #include "clock.h"
+#include "clocks.h"
 #include "cycle.h"
 #include "hunting.h"
 #include "log.h"
@@ -18,7 +19,7 @@
 
 void report_init(struct report *r, const struct shm_status *s)
 {
-	*r = (struct report) { .window_ns = setup_now_ns() };
+	*r = (struct report) { .window_ns = clock_ns(CLOCK_MONOTONIC) };
 	r->follow.next = __atomic_load_n(&s->event_next, __ATOMIC_ACQUIRE);
 	if (sd_watchdog_enabled(0, &r->watchdog_us) <= 0)
 		r->watchdog_us = 0;
@@ -54,7 +55,7 @@ static bool is_gap_state(int32_t state)
 /* Begin a new second.  Say how many lines the last one left out. */
 static void window_turn(struct report *r)
 {
-	int64_t now_ns = setup_now_ns();
+	int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
 
 	if (now_ns - r->window_ns < NS_PER_S)
 		return;
@@ -159,7 +160,7 @@ void report_events(struct report *r, const struct shm_status *s)
 
 void report_watchdog(struct report *r, uint64_t beats)
 {
-	int64_t now_ns = setup_now_ns();
+	int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
 
 	if (r->watchdog_us == 0 || now_ns < r->watchdog_due_ns)
 		return;

@@ -8,6 +8,7 @@
 #include "serve.h"
 
 #include "clock.h"
+#include "clocks.h"
 #include "log.h"
 #include "programs.h"
 
@@ -30,7 +31,7 @@ static bool end_is_due(const struct server *s)
 		return false;
 	if (crossing_flag(&s->loop->crossing.stands))
 		return true;
-	if (setup_now_ns() < s->end_by_ns)
+	if (clock_ns(CLOCK_MONOTONIC) < s->end_by_ns)
 		return false;
 	log_line(LOG_WARNING, "edmd: no stand within 1 s; ending");
 	return true;
@@ -64,7 +65,7 @@ static int on_signal(sd_event_source *src, const struct signalfd_siginfo *si,
 		 si->ssi_signo == SIGINT ? "interrupt" : "terminated");
 	report_stopping();
 	crossing_flag_set(&s->loop->crossing.hold, true);
-	s->end_by_ns = setup_now_ns() + STAND_NS;
+	s->end_by_ns = clock_ns(CLOCK_MONOTONIC) + STAND_NS;
 	return 0;
 }
 

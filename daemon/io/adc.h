@@ -4,22 +4,27 @@
  * kernel's industrial I/O
  *
  * One channel of one device is read. The kernel puts its samples into a buffer.
- * Each period reads the samples that have come, without waiting, and takes
+ * Each period reads all samples that have come, without waiting, and takes
  * their mean. The files are those of the kernel's documentation,
  * ABI/testing/sysfs-bus-iio.
  *
- * Threads: open and close are startup only; adc_read() is RT-safe: it makes at
- * most ADC_READS system calls.
+ * A full buffer keeps its oldest samples and loses the new ones. So what stands
+ * in a full buffer may be old, and is not taken for a reading.
+ *
+ * Threads: open and close are startup only; adc_read() is RT-safe: it makes one
+ * system call; adc_note() any one other thread.
  */
 #ifndef IO_ADC_H
 #define IO_ADC_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#define ADC_READS	4		/* of ADC_SAMPLES each, in a period */
-#define ADC_SAMPLES	64
+#define ADC_SAMPLES	4096		/* that the buffer may keep */
+#define ADC_WINDOW	1000		/* periods; over so many it is judged
+					 * whether samples come too seldom */
 
 struct interp_diag;
 
@@ -39,13 +44,28 @@ struct adc_format {
 	uint32_t bits, bytes, shift;
 };
 
+/* What the log is to say of it: a bit each. */
+enum adc_tell {
+	ADC_TELL_GONE	= 1,		/* it cannot be read any more */
+	ADC_TELL_SLOW	= 2,		/* most periods have no sample */
+	ADC_TELL_FULL	= 4,		/* samples were lost */
+	ADC_TELL_TOP	= 8,		/* the voltage is beyond its range */
+};
+
 struct adc {
 	int fd;				/* -1: there is none */
 	struct adc_format format;
 	double scale_v, offset;		/* V a count, counts */
-	uint32_t stale_periods, age;	/* periods since the last sample */
+	int64_t top;			/* the count of the highest voltage */
+	uint32_t samples;		/* that its buffer keeps */
+	uint32_t stale_periods, age;	/* periods since the last reading */
 	double v;			/* mean of the last that came */
+	uint32_t periods, empty;	/* of this window */
+	bool gone, slow, full, high;
+	_Atomic uint32_t tell;
+	char device[64];
 	char enable[160];		/* file that ends the buffer */
+	uint8_t bytes[ADC_SAMPLES * 4];
 };
 
 /** adc_open() - Return: 0, or -errno with @diag's found and wanted filled. */
@@ -55,8 +75,17 @@ int adc_open(struct adc *a, const struct adc_config *c,
 /** adc_close() - also for one that was never opened. */
 void adc_close(struct adc *a);
 
-/** adc_read() - once a period. Return: true if @ret_v is a reading. */
+/**
+ * adc_read() - once a period. Return: true if @ret_v is a reading.
+ *
+ * A device that was taken away is no reading at once; one that gives no samples
+ * is none after stale_periods.  If all samples of a period are the highest
+ * count that there is, the voltage is not known, as if there were none.
+ */
 bool adc_read(struct adc *a, double *ret_v);
+
+/** adc_note() - the next line for the log. Return: false if there is none. */
+bool adc_note(struct adc *a, char *buf, size_t size);
 
 /**
  * adc_format_read() - Return: false if @text is not a format that can be read.

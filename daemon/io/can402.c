@@ -72,11 +72,14 @@ static void hear_gap(struct can402 *s, const struct can_msg *m)
 	s->gap_age = 0;
 }
 
-/* A PLC on this bus may command edmd's own node, and all nodes at once. */
+/* A PLC on this bus may command all nodes at once, and each one but drives. */
 static bool is_the_plcs(const struct can402 *s, const struct can_msg *m)
 {
-	return m->id == CAN_NMT && m->len == 2 && s->plc_node > 0 &&
-	       (m->data[1] == 0 || m->data[1] == s->plc_node);
+	bool drives = false;
+
+	for (uint32_t i = 0; i < s->n; i++)
+		drives = drives || m->data[1] == s->drive[i].c.node;
+	return m->id == CAN_NMT && s->plc_node > 0 && !drives;
 }
 
 /* Only edmd, the master, may send NMT, SYNC, targets and its own heartbeat. */
@@ -107,11 +110,16 @@ static void hear_plc(struct can402 *s, const struct can_msg *m)
 
 static void hear(struct can402 *s, const struct can_msg *m)
 {
+	if (m->id == CAN_NMT && m->len != 2) {
+		can402_count(s, NOTE_MALFORMED, ++s->malformed);
+		return;
+	}
 	if (s->c.gap_id > 0 && m->id == (uint16_t)s->c.gap_id) {
 		hear_gap(s, m);
 		return;
 	}
 	if (is_foreign(s, m)) {
+		s->foreign_id = m->id;
 		can402_count(s, NOTE_FOREIGN, ++s->foreign);
 		s->stopped = true;
 		return;

@@ -30,6 +30,8 @@ struct can402_bus {
 	uint32_t axes;
 	uint32_t heartbeat_ms;
 	bool gap, generator;		/* their frames are on it too */
+	double plc_us;			/* a PLC on this bus: time between two
+					 * sets of frames; 0: there is none */
 };
 
 /** can402_load() - share of the bus at this period: 1 is all of it. */

@@ -87,6 +87,7 @@ struct can402 {
 	uint32_t gap_age;
 	struct can402_told told[IO_NAXES];
 	uint32_t malformed, foreign, lost;	/* all so far */
+	uint16_t foreign_id;		/* of another master's last frame */
 	uint32_t bus_warnings, bus_passives;
 	/* Written by read and write, taken by note. */
 	struct can402_note notes[CAN402_NOTES];

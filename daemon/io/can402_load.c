@@ -10,7 +10,20 @@
 
 #define RPDO_BYTES	6		/* controlword, position */
 #define TPDO_BYTES	7		/* statusword, position, mode */
-#define FRAME_BYTES	8		/* gap, generator */
+#define FRAME_BYTES	8		/* gap, generator, a PLC's frames */
+#define PLC_SET		4		/* frames of edmd, one in a period */
+#define PLC_BEAT_MS	100		/* edmd's to the PLC, and the PLC's */
+
+/* In a period; it is assumed that the PLC asks as often as it is told. */
+static double plc_bits(const struct can402_bus *b, double period_us)
+{
+	const double sets = b->plc_us > 0 ? period_us / b->plc_us : 0;
+
+	if (sets <= 0)
+		return 0;
+	return (fmin(PLC_SET * sets, 1) + sets) * can_bits(FRAME_BYTES) +
+	       2 * can_bits(1) * period_us / (PLC_BEAT_MS * 1e3);
+}
 
 double can402_load(const struct can402_bus *b, double period_us)
 {
@@ -21,7 +34,7 @@ double can402_load(const struct can402_bus *b, double period_us)
 	const double beats = (b->axes + 1) * can_bits(1) * period_us /
 			     (b->heartbeat_ms * 1e3);
 
-	return (can_bits(0) + pdos + others + beats) /
+	return (can_bits(0) + pdos + others + beats + plc_bits(b, period_us)) /
 	       (b->bitrate * period_us * 1e-6);
 }
 

@@ -28,7 +28,7 @@ void can402_count(struct can402 *s, enum can402_note_kind kind, uint32_t n)
 {
 	if (is_round(n))
 		can402_tell(s, &(struct can402_note) {
-			.kind = kind, .number = n
+			.kind = kind, .number = n, .more = s->foreign_id
 		});
 }
 
@@ -41,6 +41,7 @@ static void say_drive(const struct can402_note *n, char *buf, size_t size)
 		[DRIVE_WITHOUT] = "goes on without",
 		[DRIVE_ALREADY] = "it has that already",
 		[DRIVE_ANOTHER] = "another is tried",
+		[DRIVE_LATER] = "asked again",
 	};
 
 	switch (n->kind) {
@@ -135,11 +136,14 @@ static void say_bus(const struct can402 *s, const struct can402_note *n,
 		break;
 	case NOTE_FOREIGN:
 		snprintf(buf, size, "%s: another master on the bus, %u frames "
-			 "of it", name, n->number);
+			 "of it, the last has identifier %03x; end it%s", name,
+			 n->number, n->more, n->more > CAN_HEARTBEAT ?
+			 ", or give master_node another number" : "");
 		break;
 	default:
-		snprintf(buf, size, "%s: %u frames of a wrong length, or "
-			 "answers nobody asked for", name, n->number);
+		snprintf(buf, size, "%s: %u frames of a wrong length, "
+			 "statuswords that are no state, or answers nobody "
+			 "asked for", name, n->number);
 		break;
 	}
 }

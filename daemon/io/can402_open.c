@@ -39,6 +39,13 @@ static int refuse(struct interp_diag *diag, int err, const char *interface)
 	return err;
 }
 
+/* On the drives' own bus. */
+static bool has_plc(const struct machine_config *c)
+{
+	return config_has_plc(c) &&
+	       strcmp(c->plc.interface, c->can402.interface) == 0;
+}
+
 static int check_load(const struct machine_config *c, struct interp_diag *diag)
 {
 	struct can402_bus b = {
@@ -50,14 +57,17 @@ static int check_load(const struct machine_config *c, struct interp_diag *diag)
 	const double us = (double)config_period_ns(c) * 1e-3;
 	double load;
 
+	if (has_plc(c))
+		b.plc_us = c->plc.cycle_ms * 1e3;
 	for (int i = 0; i < IO_NAXES; i++)
 		b.axes += c->can402.node[i] > 0;
 	load = can402_load(&b, us);
 	if (load <= CAN402_LOAD_MAX)
 		return 0;
-	return interp_diag_say(diag, "%u drives every %.0f us take %.0f %% of "
-			       "%.0f kbit/s; at most %.0f %%: "
-			       "machine.period_us %.0f or more", b.axes, us,
+	return interp_diag_say(diag, "%u drives%s every %.0f us take %.0f %% "
+			       "of %.0f kbit/s; at most %.0f %%: "
+			       "machine.period_us %.0f or more", b.axes,
+			       b.plc_us > 0 ? " and the PLC" : "", us,
 			       100 * load, c->can402.bitrate_kbit,
 			       100 * CAN402_LOAD_MAX, can402_period_us(&b));
 }
@@ -221,8 +231,7 @@ int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
 	s->period_ns = config_period_ns(c);
 	s->brake_periods = cycles_of(c->gpio.brake_ms,
 				     (double)s->period_ns * 1e-3) + 1;
-	if (config_has_plc(c) &&
-	    strcmp(c->plc.interface, c->can402.interface) == 0)
+	if (has_plc(c))
 		s->plc_node = (int32_t)c->plc.node;
 	add_drives(s, c);
 	s->beat_every = (uint32_t)fmax(1, s->c.heartbeat_ms * 1e6 /
@@ -234,6 +243,15 @@ int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
 		.originate = can402_originate,
 	};
 	return 0;
+}
+
+/*
+ * So many frames are sent at once, at most: when edmd ends.  If more waited for
+ * the bus, they would be too old when they go out.
+ */
+static size_t at_once(const struct can402 *s)
+{
+	return s->n * (1 + DRIVE_ENDS) + 4;
 }
 
 int can402_open(struct io_machine *m, const struct machine_config *c,
@@ -249,12 +267,11 @@ int can402_open(struct io_machine *m, const struct machine_config *c,
 	fd = open_bus(k);
 	if (fd < 0)
 		return refuse(diag, fd, k->interface);
-	/* The frames of one period: more would be too old when they go out. */
-	can_socket_queue(fd, 2 * INTERP_NAXES + 4);
 	err = can402_attach(m, c, fd);
 	if (err < 0) {
 		close(fd);
-		refuse(diag, err, k->interface);
+		return refuse(diag, err, k->interface);
 	}
-	return err;
+	can_socket_queue(fd, at_once(m->self));
+	return 0;
 }

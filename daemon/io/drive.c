@@ -13,7 +13,8 @@
 #include <stdlib.h>
 
 #define FAULT_RESET	0x80
-#define RESET_CYCLES	500		/* so long bit 7 goes up and down */
+#define RESET_MS	1000		/* so long bit 7 goes up and down, */
+#define EDGE_MS		20		/* ... and stays for so long */
 #define MODE_CSP	8
 #define FOLLOWS		0x1000u		/* bits of the statusword in mode 8 */
 #define FOLLOWING_ERROR	0x2000u
@@ -122,6 +123,13 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 	const uint16_t now = (uint16_t)can_get(m->data, 2);
 	const enum drive_state state = drive_state_of(now);
 
+	d->answers++;
+	d->strange = state == DRIVE_NO_STATE;
+	/* As one that was lost: the next one may make sense again. */
+	if (d->strange) {
+		d->malformed++;
+		return;
+	}
 	/* It is in this state only after its power came on. */
 	if (state == DRIVE_NOT_READY && d->stands) {
 		hear_restart(d);
@@ -131,7 +139,6 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 	d->state = state;
 	d->heard = true;
 	d->answered = true;
-	d->answers++;
 	d->warnings += (now & ~was & DRIVE_WARNS) != 0;
 	if (m->len > 6)
 		d->mode = m->data[6];
@@ -201,10 +208,14 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 
 /* -- What did not come ---------------------------------------------------- */
 
-/* The lag of an axis goes away as slowly as it came. */
+/*
+ * The lag of an axis goes away as slowly as it came.  A drive that is not led
+ * has no lag: its target is where somebody has pushed it.
+ */
 static void watch_lag(struct drive *d)
 {
-	const int64_t way = llabs(wrapped((int64_t)d->sent[0] - d->sent[1]));
+	const int64_t way = d->led ? llabs(wrapped((int64_t)d->sent[0] -
+						   d->sent[1])) : 0;
 	const double k = d->c.lag_cycles;
 	const double left = k > 0 ? d->lag * k / (k + 1) : 0;
 
@@ -315,7 +326,7 @@ void drive_sync(struct drive *d)
 	} else if (++d->missing > (d->heard ? d->c.missing_max :
 				   d->c.answer_cycles)) {
 		/* Its state stays as last heard, so it is sent a quick stop. */
-		trouble(d, DRIVE_NO_ANSWER);
+		trouble(d, d->strange ? DRIVE_STRANGE : DRIVE_NO_ANSWER);
 	}
 	d->answered = false;
 	for (int i = DRIVE_SENT - 1; i > 0; i--)
@@ -336,15 +347,30 @@ static bool waits_for_mode(struct drive *d)
 	return d->mode_waited++ < d->c.answer_cycles;
 }
 
+static uint32_t cycles_of(const struct drive *d, uint32_t ms)
+{
+	const uint32_t n = ms * 1000 / d->c.period_us;
+
+	return n > 0 ? n : 1;
+}
+
+/*
+ * A rising edge of bit 7, after an operator's reset only.  Drives look at the
+ * controlword more rarely than a SYNC comes, so both levels stay for a while.
+ */
+static uint16_t fault_word(struct drive *d)
+{
+	if (d->resetting == 0)
+		return 0;
+	return d->edge_for++ / cycles_of(d, EDGE_MS) % 2 ? 0 : FAULT_RESET;
+}
+
 static uint16_t control_word(struct drive *d)
 {
 	const bool on = d->goal == DRIVE_GO_ON && d->trouble == DRIVE_WELL;
 
-	if (d->state == DRIVE_FAULT) {
-		/* A rising edge of bit 7, after an operator's reset only. */
-		d->edge = d->resetting > 0 && !d->edge;
-		return d->edge ? FAULT_RESET : 0;
-	}
+	if (d->state == DRIVE_FAULT)
+		return fault_word(d);
 	if (on && waits_for_mode(d))
 		return drive_control(DRIVE_GO_ON, DRIVE_READY);
 	/* An axis without a brake would fall if it lost torque in between. */
@@ -405,6 +431,12 @@ void drive_aim(struct drive *d, enum drive_goal goal)
 	d->goal = goal;
 }
 
+/* Mode 8 is not written then: some drives stop following for that while. */
+static bool surely_follows(const struct drive *d)
+{
+	return drive_follows(d) && (d->shows_mode || !d->c.no_follow_bit);
+}
+
 void drive_reset(struct drive *d)
 {
 	const bool anew = d->unset || d->phase == DRIVE_REFUSED;
@@ -418,11 +450,14 @@ void drive_reset(struct drive *d)
 	d->surplus = 0;
 	d->silent = 0;
 	d->resetting = anew || d->state == DRIVE_FAULT ||
-		       d->state == DRIVE_FAULT_REACTION ? RESET_CYCLES : 0;
-	d->edge = false;
+		       d->state == DRIVE_FAULT_REACTION ?
+		       cycles_of(d, RESET_MS) : 0;
+	d->edge_for = 0;
+	d->busy = 0;
+	d->strange = false;
 	d->led = false;
 	if (!anew) {
-		d->remode = d->phase == DRIVE_RUNNING;
+		d->remode = d->phase == DRIVE_RUNNING && !surely_follows(d);
 		return;
 	}
 	drive_setup_again(d);

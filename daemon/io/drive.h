@@ -41,7 +41,8 @@ enum drive_state {
 	DRIVE_QUICK_STOP,
 	DRIVE_FAULT_REACTION,
 	DRIVE_FAULT,
-	DRIVE_NSTATES
+	DRIVE_NSTATES,
+	DRIVE_NO_STATE = DRIVE_NSTATES	/* a statusword that is no state */
 };
 
 /* Where the master wants it. */
@@ -68,6 +69,7 @@ enum drive_trouble {
 	DRIVE_FOLLOWING,		/* too far from its target */
 	DRIVE_MUTE,			/* no heartbeat */
 	DRIVE_NO_ANSWER,		/* no TPDO for too many SYNCs */
+	DRIVE_STRANGE,			/* ... but with no state in them */
 	DRIVE_REBOOTED,			/* its settings are gone */
 	DRIVE_MISCONFIGURED,		/* an SDO refused */
 	DRIVE_OTHER_MODE,		/* left mode 8, or never came to it */
@@ -127,6 +129,7 @@ enum drive_passed {
 	DRIVE_WITHOUT,			/* it may be without that object */
 	DRIVE_ALREADY,			/* it has that value already */
 	DRIVE_ANOTHER,			/* another value is tried */
+	DRIVE_LATER,			/* the same is asked again */
 };
 
 struct drive {
@@ -174,6 +177,7 @@ struct drive {
 	bool quiet, asked;		/* told to send no PDOs; a request is
 					 * not answered yet */
 	uint32_t unanswered;		/* steps given up, in all */
+	uint32_t busy;			/* aborts that may pass */
 	uint32_t silent;		/* cycles since a heartbeat */
 	uint32_t missing;		/* SYNCs without a TPDO */
 	uint32_t enabled_for;		/* cycles in operation enabled */
@@ -181,9 +185,10 @@ struct drive {
 	uint32_t mode_waited;		/* cycles switched on in another mode */
 	uint32_t warnings;		/* times a bit of DRIVE_WARNS came */
 	bool answered;			/* a TPDO came since the last SYNC */
+	bool strange;			/* the last statusword was no state */
 	uint32_t answers;		/* so many did */
 	int32_t surplus;		/* TPDOs more than SYNCs */
-	bool edge;			/* fault reset: bit 7 was high */
+	uint32_t edge_for;		/* cycles since a fault reset began */
 	uint32_t resetting;		/* cycles it may still report a fault */
 	uint32_t malformed;		/* frames of a wrong length, and answers
 					 * to nothing asked, in all */
@@ -244,7 +249,9 @@ int32_t drive_place(const struct drive *d);
  */
 int32_t drive_to_increments(const struct drive_config *c, int32_t pulses);
 
-/** drive_state_of() - the state that a statusword shows. */
+/**
+ * drive_state_of() - the state that a statusword shows, or DRIVE_NO_STATE.
+ */
 enum drive_state drive_state_of(uint16_t status);
 
 /**

@@ -14,6 +14,7 @@
 #include "drive_steps.h"
 
 #define SETUP_TRIES	3
+#define BUSY_TRIES	10		/* of what a busy drive aborts */
 
 #define NMT_START	0x01
 #define NMT_QUIET	0x80		/* pre-operational */
@@ -80,6 +81,7 @@ size_t drive_setup_end(const struct drive *d, struct can_msg *ret)
 static size_t start(struct drive *d, struct can_msg *ret)
 {
 	d->phase = DRIVE_RUNNING;
+	d->busy = 0;
 	d->silent = 0;
 	d->missing = 0;
 	d->heard = d->stands = false;
@@ -179,11 +181,24 @@ static bool is_missing(uint32_t code, const struct drive_step *s)
 	       (code == 0x06090011 && s->write.sub > 0);
 }
 
+/* A drive that has just been switched on may not be ready for all requests. */
+static bool is_passing(uint32_t code)
+{
+	return code == 0x05040000 || code == 0x05040005 ||
+	       code == 0x060a0023 || code == 0x08000021 || code == 0x08000022;
+}
+
 static void on_abort(struct drive *d, const struct drive_step *s,
 		     uint32_t code)
 {
 	const bool passes = s->write.may_miss && is_missing(code, s);
 
+	if (is_passing(code) && d->busy < BUSY_TRIES) {
+		d->busy++;
+		d->asked = true;
+		note_abort(d, &s->write, code, DRIVE_LATER);
+		return;
+	}
 	if (d->reading_back) {
 		/* It cannot be read either: tell the code of the write. */
 		note_abort(d, &s->write, d->refused, DRIVE_NOT_PASSED);

@@ -52,7 +52,7 @@ enum drive_state drive_state_of(uint16_t status)
 		if ((status & states[i].mask) == states[i].value)
 			return states[i].state;
 	}
-	return DRIVE_NOT_READY;
+	return DRIVE_NO_STATE;
 }
 
 /* Before it is ready its count may be anything, and in a fault too. */
@@ -92,6 +92,8 @@ const char *drive_trouble_name(enum drive_trouble t)
 		[DRIVE_FOLLOWING]	= "is too far from its target",
 		[DRIVE_MUTE]		= "sends no heartbeat",
 		[DRIVE_NO_ANSWER]	= "does not answer to SYNC",
+		[DRIVE_STRANGE]		= "reports a statusword that is no state "
+					  "of CiA 402",
 		[DRIVE_REBOOTED]	= "has restarted",
 		[DRIVE_MISCONFIGURED]	= "refuses its configuration",
 		[DRIVE_OTHER_MODE]	= "is not in mode 8, cyclic "

@@ -8,6 +8,7 @@
  * times, and if that fails it keeps the message before.
  */
 #include "edges.h"
+#include "clocks.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -112,14 +113,6 @@ void edges_ask(struct edges *e, struct edges_shown *ret)
 
 /* -- Time ----------------------------------------------------------------- */
 
-static int64_t now_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
-}
-
 static void sleep_until(int64_t ns)
 {
 	const struct timespec t = { ns / 1000000000, ns % 1000000000 };
@@ -131,14 +124,14 @@ static void sleep_until(int64_t ns)
 
 static int64_t wait_until(int64_t ns)
 {
-	int64_t now = now_ns();
+	int64_t now = clock_ns(CLOCK_MONOTONIC);
 
 	if (ns - now > EDGES_SPIN_NS) {
 		sleep_until(ns - EDGES_SPIN_NS / 2);
-		now = now_ns();
+		now = clock_ns(CLOCK_MONOTONIC);
 	}
 	while (now < ns)
-		now = now_ns();
+		now = clock_ns(CLOCK_MONOTONIC);
 	return now;
 }
 
@@ -238,7 +231,7 @@ static int64_t quickest_of(struct quickest *q, int64_t ns)
 static bool write_lines(struct edges *e, int64_t woke_ns)
 {
 	const bool ok = e->c.write(e->c.arg, e->pulser.step, e->pulser.dir);
-	const int64_t end_ns = now_ns();
+	const int64_t end_ns = clock_ns(CLOCK_MONOTONIC);
 
 	e->slot_at_ns = end_ns - quickest_of(&e->quickest, end_ns - woke_ns);
 	return ok;
@@ -249,7 +242,7 @@ static void learn_quickest(struct edges *e)
 {
 	e->quickest = (struct quickest) { INT64_MAX, INT64_MAX, 0 };
 	for (int i = 0; i < QUICK_WRITES && !e->last_shown.lost; i++)
-		e->last_shown.lost = !write_lines(e, now_ns());
+		e->last_shown.lost = !write_lines(e, clock_ns(CLOCK_MONOTONIC));
 }
 
 /* The lines keep each level for a slot at least, however late it came. */
@@ -318,10 +311,10 @@ static void *run(void *arg)
 	be_real(&e->c);
 	learn_quickest(e);
 	while (!atomic_load(&e->quit) && atomic_load(&e->told.n) == 0)
-		sleep_until(now_ns() + IDLE_NS);
-	next = now_ns() + e->c.period_ns / 2;
+		sleep_until(clock_ns(CLOCK_MONOTONIC) + IDLE_NS);
+	next = clock_ns(CLOCK_MONOTONIC) + e->c.period_ns / 2;
 	while (!atomic_load(&e->quit)) {
-		int64_t late = now_ns() - next;
+		int64_t late = clock_ns(CLOCK_MONOTONIC) - next;
 
 		/* Periods that were missed are left out. */
 		if (late > e->c.period_ns)
@@ -332,7 +325,7 @@ static void *run(void *arg)
 	}
 	while (e->pulser.phase == PULSER_HIGH && !e->last_shown.lost) {
 		e->held = true;
-		play_slot(e, 0, now_ns());
+		play_slot(e, 0, clock_ns(CLOCK_MONOTONIC));
 	}
 	return NULL;
 }

@@ -7,20 +7,13 @@
  * away brake_ms later.
  */
 #include "gpio_own.h"
+#include "clocks.h"
 
 #include <string.h>
 #include <time.h>
 
 #define BIT(line)	(UINT64_C(1) << (line))
 #define ALL_AXES	((UINT64_C(1) << IO_NAXES) - 1)
-
-static uint64_t now_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (uint64_t)t.tv_sec * 1000000000 + (uint64_t)t.tv_nsec;
-}
 
 int32_t gpio_put(const struct gpio *g, int i)
 {
@@ -57,7 +50,7 @@ static bool is_ready(const struct gpio *g)
 
 void gpio_axes_read(struct gpio *g, struct io_inputs *in)
 {
-	const uint64_t ns = g->encoders ? now_ns() : 0;
+	const int64_t ns = g->encoders ? clock_ns(CLOCK_MONOTONIC) : 0;
 
 	in->axes_off = !is_ready(g);
 	in->unplaced = g->unplaced;
@@ -66,7 +59,7 @@ void gpio_axes_read(struct gpio *g, struct io_inputs *in)
 		in->actual[i] = gpio_put(g, i);
 		if (!(g->encoders >> i & 1))
 			continue;
-		look(g, i, ns);
+		look(g, i, (uint64_t)ns);
 		in->actual[i] = g->encoder[i].at;
 		if (g->encoder[i].too_far)
 			in->trouble = IO_FOLLOWING;
@@ -154,6 +147,8 @@ bool gpio_note(void *self, char *buf, size_t size)
 	};
 	struct gpio *g = self;
 
+	if (adc_note(&g->adc, buf, size))
+		return true;
 	for (int i = 0; i < GPIO_NTELLS * IO_NAXES; i++) {
 		const int what = i / IO_NAXES, axis = i % IO_NAXES;
 

@@ -18,10 +18,14 @@
 
 static const uint16_t tpdo_id[NTPDO + 1] = { 0, 0x180, 0x280, 0x380, 0x480 };
 
-/* The objects that the PLC may write, as an NMT reset sets them. */
+/*
+ * The objects that the PLC may write, as an NMT reset sets them. What had been
+ * told is told again: the PLC may have been switched on only now.
+ */
 static void reset(struct plc *p)
 {
 	p->emcy_id = CAN_EMCY + p->node;
+	p->fault_sent = p->nhistory = 0;
 	plc_beat(p, BEAT_MS);
 }
 
@@ -67,6 +71,13 @@ static void hear_request(struct plc *p, const struct can_msg *m)
 	}
 }
 
+/* What it asked for is void, until its toggle turns. */
+static void forget(struct plc *p)
+{
+	p->alive = false;
+	p->since_turn = p->alive_cycles;
+}
+
 static void hear_nmt(struct plc *p, const struct can_msg *m)
 {
 	if (m->data[1] != 0 && m->data[1] != p->node)
@@ -77,16 +88,16 @@ static void hear_nmt(struct plc *p, const struct can_msg *m)
 	case 0x80:
 		p->operational = m->data[0] == 0x01;
 		p->stopped = m->data[0] == 0x02;
+		/* Its requests do not reach us any more. */
+		if (!p->operational)
+			forget(p);
 		break;
 	case 0x81:
 	case 0x82:
 		p->operational = p->stopped = p->booted = false;
 		p->ask = (struct plc_ask) { 0 };
 		reset(p);
-		/* What it asked for is void; the PLC is lost until its toggle
-		 * turns. */
-		p->alive = false;
-		p->since_turn = p->alive_cycles;
+		forget(p);
 		break;
 	default:
 		p->refused++;

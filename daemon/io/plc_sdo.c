@@ -14,6 +14,7 @@ enum abort_code {
 	ABORT_LENGTH	= 0x06070010,
 	ABORT_RANGE	= 0x06090030,
 	ABORT_STATE	= 0x08000022,	/* PDOs write it now */
+	ABORT_NO_DATA	= 0x08000024,
 };
 
 #define DOWNLOAD	1		/* command specifiers, bits 7 ... 5 */
@@ -134,7 +135,7 @@ static void upload(struct plc *p, uint16_t index, uint8_t sub)
 		return;
 	}
 	if (c && c->live == PLC_ERROR && c->sub > p->nhistory) {
-		say_abort(p, ABORT_NO_SUB);
+		say_abort(p, ABORT_NO_DATA);
 		return;
 	}
 	bytes = plc_bytes(s ? s->type : c->type);
@@ -143,11 +144,12 @@ static void upload(struct plc *p, uint16_t index, uint8_t sub)
 		constant_value(p, c), 4);
 }
 
+/* CiA 301: 0 alone may be written, also while there are errors. */
 static bool take_history(struct plc *p, uint32_t x)
 {
 	if (x == 0)
 		p->nhistory = 0;
-	return x == p->nhistory;
+	return x == 0;
 }
 
 /* CiA 301: the id may be changed only in a value that has bit 31 set. */
@@ -179,7 +181,7 @@ static void download_constant(struct plc *p, const struct plc_constant *c,
 		[PLC_BEAT] = take_beat,
 	};
 
-	if (x == constant_value(p, c))
+	if (x == constant_value(p, c) && c->live != PLC_ERRORS)
 		p->answer.data[0] = 3 << 5;
 	else if (!take[c->live])
 		say_abort(p, ABORT_READ_ONLY);

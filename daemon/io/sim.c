@@ -7,8 +7,9 @@
  *
  *	gap = front + wear - place + off_path
  *
- * so every cut meets fresh material after [sim] standoff_mm of air, and
- * positioning (rapid) moves through free space and leaves the front there.
+ * so every cut meets material after [sim] standoff_mm of air, and positioning
+ * (rapid) moves through free space and leaves the front there.  How much of the
+ * frontal area meets material that was not eroded before: sim_ground.c.
  *
  * What happens in it each period: sim_process.h.
  */
@@ -24,6 +25,7 @@
 static void fresh(struct sim *s)
 {
 	sim_axes_place(s);
+	sim_ground_clear(s);
 	s->front_mm = s->out.place_mm - s->wear_mm + s->p.standoff_mm;
 	s->begin_mm = s->front_mm;
 	s->depth_mm = s->p.depth_mm;
@@ -63,6 +65,7 @@ static void sim_write(void *self, const struct io_outputs *out)
 		s->front_mm = out->place_mm - s->wear_mm + s->p.standoff_mm;
 		s->begin_mm = s->front_mm;
 	}
+	sim_ground_follow(s);
 	power(s);
 	sim_wash(s);
 }
@@ -146,6 +149,7 @@ int io_sim_open_seed(struct io_machine *m, const struct machine_config *c,
 	sim_pulses_init(s);
 	sim_switches_init(s, c);
 	sim_axes_init(s, c);
+	sim_ground_init(s);
 	rng_seed(&s->rng, seed);
 	*m = (struct io_machine) {
 		.name = "sim", .self = s, .read = sim_read,

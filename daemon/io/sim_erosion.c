@@ -4,8 +4,8 @@
  *
  *	volume = pulses/s * (sparks + a little of the arcs) * crater,
  *		 less the sparks that struck debris
- *	front  = volume / frontal area		area of what has entered so far
- *	wear   = front * wear_ratio
+ *	front  = volume / (frontal area * the part of it that is fresh ground)
+ *	wear   = volume / frontal area * wear_ratio
  *
  * The frontal area of a ball or cone grows with the way the front has gone.
  * A wire cuts its kerf over the height of the work, and may break.
@@ -16,11 +16,13 @@
 
 #define ARC_REMOVES	0.2	/* crater of an arc, of a spark's */
 #define BLUNT		0.01	/* least area of a tip, of the whole */
+#define AFTER		0.01	/* least part of an area that is fresh: what
+				 * was eroded before is not quite smooth */
 #define SHORT_J		0.5	/* energy of a short, of an arc's */
 
-static double whole_area_mm2(const struct config_sim *p)
+double sim_whole_area_mm2(const struct config_sim *p)
 {
-	if (p->process == SIM_WIRE)
+	if (p->process == PROCESS_WIRE)
 		return (p->wire_mm + 2 * p->best_gap_mm) * p->height_mm;
 	return p->area_mm2;
 }
@@ -30,7 +32,8 @@ static double tip_part(const struct config_sim *p, double way_mm)
 {
 	const double t = way_mm / p->tip_mm;
 
-	if (p->process == SIM_WIRE || p->electrode == ELECTRODE_FLAT || t >= 1)
+	if (p->process == PROCESS_WIRE ||
+	    p->electrode == ELECTRODE_FLAT || t >= 1)
 		return 1;
 	if (t <= 0)
 		return BLUNT;
@@ -40,7 +43,7 @@ static double tip_part(const struct config_sim *p, double way_mm)
 
 double sim_area_mm2(const struct sim *s)
 {
-	return whole_area_mm2(&s->p) *
+	return sim_whole_area_mm2(&s->p) *
 	       tip_part(&s->p, s->front_mm - s->begin_mm);
 }
 
@@ -58,7 +61,7 @@ static void deepen(struct sim *s)
 void sim_erode(struct sim *s)
 {
 	const struct pulse_train *t = &s->train;
-	const bool sink = s->p.process == SIM_SINK;
+	const bool sink = s->p.process == PROCESS_SINK;
 	const double polarity = s->out.negative ? s->p.negative_removal : 1;
 	const double volume = t->per_s * s->period_s * polarity *
 			      s->pulse.crater_mm3 *
@@ -69,7 +72,7 @@ void sim_erode(struct sim *s)
 	if (volume <= 0)
 		return;
 	deepen(s);
-	s->front_mm += d;
+	s->front_mm += d / fmax(AFTER, s->fresh);
 	s->removed_mm3 += volume;
 	if (sink)
 		s->wear_mm += d * s->p.wear_ratio *
@@ -87,7 +90,7 @@ void sim_wire(struct sim *s)
 	const double joules = t->per_s * s->period_s * s->pulse.crater_j *
 			      (t->arc + SHORT_J * t->shorted);
 
-	if (s->p.process != SIM_WIRE)
+	if (s->p.process != PROCESS_WIRE)
 		return;
 	if (s->broken)
 		s->broken = s->unpowered_s < s->p.rethread_s;

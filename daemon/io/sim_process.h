@@ -22,6 +22,7 @@
 #include "config.h"
 #include "io.h"
 #include "rng.h"
+#include "sim_map.h"
 
 /* The pulses in force, and what follows from them alone. */
 struct pulse_set {
@@ -87,6 +88,11 @@ struct sim {
 	double surface_z_mm;		/* where the first spark was */
 	double depth_mm;		/* of the cavity */
 	bool sparked;
+	struct sim_map map;		/* ground it has been over */
+	double over_mm;			/* on the path: as far as map knows */
+	double turned[IO_NAXES];	/* A B C U V as they stood there */
+	double fresh;			/* part of the area that meets ground
+					 * that was not eroded before */
 
 	/* Between them. */
 	double debris;
@@ -143,8 +149,19 @@ double sim_pulses_j(const struct sim *s);
 
 /* sim_erosion.c */
 double sim_area_mm2(const struct sim *s);
+/** sim_whole_area_mm2() - the same, behind the tip; of a wire its kerf. */
+double sim_whole_area_mm2(const struct config_sim *p);
 void sim_erode(struct sim *s);
 void sim_wire(struct sim *s);
+
+/* sim_ground.c */
+/** sim_map_of() - a map of fresh ground for the electrode or wire of @p. */
+void sim_map_of(struct sim_map *m, const struct config_sim *p);
+void sim_ground_init(struct sim *s);
+/** sim_ground_clear() - another workpiece: all of it is fresh. */
+void sim_ground_clear(struct sim *s);
+/** sim_ground_follow() - find out what the electrode meets where it is now. */
+void sim_ground_follow(struct sim *s);
 
 /* sim_debris.c */
 double sim_gap_mm(const struct sim *s);	/* electrode to front */

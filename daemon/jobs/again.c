@@ -2,6 +2,7 @@
 /* again.c - an interrupted job goes on */
 #include "again.h"
 #include "entry.h"
+#include "files.h"
 #include "interrupt.h"
 #include "jobs_log.h"
 
@@ -15,25 +16,73 @@
 #include <string.h>
 #include <sysexits.h>
 
+#define HASH_HEX	32		/* digits */
+
 /* -- In the store ---------------------------------------------------------- */
+
+/* What is kept is HASH;HEX;NUMBERS.  HEX is a struct, or nothing.  So the hash
+ * is of the version too: a struct of another layout would be another place. */
+static void hash_of(const char *body, char ret[HASH_HEX + 1])
+{
+	const uint32_t version = CHECKPOINT_VERSION;
+	crypto_generichash_state state;
+	uint8_t hash[HASH_HEX / 2];
+
+	crypto_generichash_init(&state, NULL, 0, sizeof(hash));
+	crypto_generichash_update(&state, (const uint8_t *)&version,
+				  sizeof(version));
+	crypto_generichash_update(&state, (const uint8_t *)body, strlen(body));
+	crypto_generichash_final(&state, hash, sizeof(hash));
+	sodium_bin2hex(ret, HASH_HEX + 1, hash, sizeof(hash));
+}
+
+/* @at: HASH_HEX + 1 bytes of room, then the body. */
+static void seal(char *at)
+{
+	char hash[HASH_HEX + 1];
+
+	hash_of(at + HASH_HEX + 1, hash);
+	memcpy(at, hash, HASH_HEX);
+	at[HASH_HEX] = ';';
+}
+
+static bool is_whole(const char *at)
+{
+	char hash[HASH_HEX + 1];
+
+	if (strlen(at) <= HASH_HEX || at[HASH_HEX] != ';')
+		return false;
+	hash_of(at + HASH_HEX + 1, hash);
+	return memcmp(at, hash, HASH_HEX) == 0;
+}
+
+static int take(const char *body, struct again *ret)
+{
+	const char *rest = NULL;
+	size_t bytes = 0;
+
+	if (sodium_hex2bin((uint8_t *)&ret->base, sizeof(ret->base), body,
+			   strlen(body), NULL, &bytes, &rest) < 0 ||
+	    sscanf(rest, ";%lf;%lf;%u;%u;%u;%lf", &ret->from_mm, &ret->way_mm,
+		   &ret->instance, &ret->run, &ret->line, &ret->place_mm) != 6)
+		return -EBADMSG;
+	return bytes == sizeof(ret->base) || again_is_named(ret) ? 0 : -EBADMSG;
+}
 
 int again_read(struct jobs *j, uint32_t n, struct again *ret)
 {
 	char *at = store_resume_at(j->store, n);
-	size_t bytes = 0;
-	const char *rest = NULL;
+	int err = -EBADMSG;
 
 	memset(ret, 0, sizeof(*ret));
 	if (!at)
 		return -ENOENT;
-	sodium_hex2bin((uint8_t *)&ret->base, sizeof(ret->base), at,
-		       strlen(at), NULL, &bytes, &rest);
-	if (rest && *rest == ';' &&
-	    sscanf(rest, ";%lf;%lf;%u;%u;%lf", &ret->from_mm, &ret->way_mm,
-		   &ret->instance, &ret->line, &ret->place_mm) < 3)
-		ret->instance = 0;
+	if (is_whole(at))
+		err = take(at + HASH_HEX + 1, ret);
+	if (err < 0)
+		memset(ret, 0, sizeof(*ret));
 	free(at);
-	return bytes == sizeof(ret->base) || again_is_named(ret) ? 0 : -ENOENT;
+	return err;
 }
 
 bool again_is_named(const struct again *a)
@@ -43,25 +92,29 @@ bool again_is_named(const struct again *a)
 
 const char *again_named(uint32_t line, double place_mm)
 {
-	static char at[80];
+	static char at[HASH_HEX + 80];
 
 	if (line == 0 && place_mm == 0)
 		return NULL;
-	snprintf(at, sizeof(at), ";0;0;0;%u;%.17g", line, place_mm);
+	snprintf(at + HASH_HEX + 1, sizeof(at) - HASH_HEX - 1,
+		 ";0;0;0;0;%u;%.17g", line, place_mm);
+	seal(at);
 	return at;
 }
 
 int again_write(struct jobs *j, uint32_t n, const struct again *a)
 {
 	const size_t hex = 2 * sizeof(a->base) + 1, room = hex + 140;
-	char *at = malloc(room);
+	char *at = malloc(HASH_HEX + 1 + room), *body = at + HASH_HEX + 1;
 	int err;
 
 	if (!at)
 		return -ENOMEM;
-	sodium_bin2hex(at, hex, (const uint8_t *)&a->base, sizeof(a->base));
-	snprintf(at + hex - 1, room - hex + 1, ";%.17g;%.17g;%u;%u;%.17g",
-		 a->from_mm, a->way_mm, a->instance, a->line, a->place_mm);
+	sodium_bin2hex(body, hex, (const uint8_t *)&a->base, sizeof(a->base));
+	snprintf(body + hex - 1, room - hex + 1, ";%.17g;%.17g;%u;%u;%u;%.17g",
+		 a->from_mm, a->way_mm, a->instance, a->run, a->line,
+		 a->place_mm);
+	seal(at);
 	err = store_interrupt(j->store, n, at);
 	free(at);
 	return err;
@@ -115,6 +168,10 @@ void again_interrupted(struct jobs *j, uint32_t n,
 		       sizeof(ret->base.job.start));
 }
 
+#define UNREADABLE	"its checkpoint is damaged or of another version of " \
+			"edmd-jobs; remove it, and submit it again with " \
+			"--from-place; edmctl show JOB says where it was"
+
 /* -- The verb -------------------------------------------------------------- */
 
 /* Axes that @text names; those that the machine has not do not count. */
@@ -160,10 +217,22 @@ static void say_axes(struct jobs *j, const char *vouched, char reason[320])
 			 say);
 }
 
-static bool is_same_file(const struct jobs *j, const struct again *a)
+static bool are_same_files(const struct jobs *j, const struct again *a)
 {
-	return memcmp(a->base.job.config, j->config_hash,
-		      sizeof(j->config_hash)) == 0;
+	uint8_t now[32];
+
+	files_hash(j, now);
+	return memcmp(a->base.job.config, now, sizeof(now)) == 0;
+}
+
+/* It may have come here from another store. */
+static bool is_of_job(const struct again *a, const struct store_job *job)
+{
+	char hex[65];
+
+	sodium_bin2hex(hex, sizeof(hex), a->base.job.sha256,
+		       sizeof(a->base.job.sha256));
+	return a->base.job.n == job->n && strcmp(hex, job->sha256) == 0;
 }
 
 static void why_not(struct jobs *j, const struct jobs_lcm_command *c,
@@ -183,12 +252,12 @@ static void why_not(struct jobs *j, const struct jobs_lcm_command *c,
 		now = "the machine is not idle; wait, or stop what it does";
 	else if (*store_why(j->store))
 		now = store_why(j->store);
-	else if (!a->base.job.n)
-		now = "no checkpoint of this job is left; remove it, and submit "
-		      "what is left of it";
-	else if (!is_same_file(j, a))
-		now = "the machine file is another than when the job began; put "
-		      "that one back, and restart the services";
+	else if (!is_of_job(a, job))
+		now = UNREADABLE;
+	else if (!are_same_files(j, a))
+		now = "the machine file, or a map or a dialect that it names, is "
+		      "another than when the job began; put that one back, "
+		      "and restart the services";
 	if (now)
 		snprintf(reason, 320, "%s", now);
 	else
@@ -210,6 +279,8 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 	}
 	a.instance = j->link.instance;
 	a.from_mm = a.way_mm = 0;
+	/* Places of the checkpoint before are not those of the new program. */
+	a.run = randombytes_random() | 1;
 	err = again_write(j, job->n, &a);
 	if (err == 0)
 		err = store_again(j->store, job->n);
@@ -218,6 +289,7 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 		return;
 	}
 	store_set_number(j->store, "selected", job->n);
+	interrupt_answered(j);
 	interrupt_init(j);
 	queue_recount(j);
 	verbs_answer(j, c, 0, "it is read again; an event says which way it "
@@ -252,9 +324,14 @@ int again_request(struct jobs *j, const struct store_job *job,
 {
 	const struct shm_snapshot *s = &j->link.snap;
 	static struct again a;
+	const int err = again_read(j, job->n, &a);
 
-	if (again_read(j, job->n, &a) < 0)
+	if (err == -ENOENT)
 		return 0;
+	if (err < 0) {
+		again_refuse(j, job, UNREADABLE);
+		return -ESTALE;
+	}
 	again_begin_at(j, a.line, a.place_mm, ret);
 	if (again_is_named(&a))
 		return 0;
@@ -297,8 +374,11 @@ const char *again_loaded(struct jobs *j, const struct compiler_result *r)
 	char way[480];
 	static struct again a;
 
+	j->queue.run = 0;
+	files_hash(j, j->config_hash);
 	if (again_read(j, job->n, &a) < 0)
 		return NULL;
+	j->queue.run = a.run;
 	if (again_is_named(&a)) {
 		a.base.snap.far_mm = r->entry.far_mm;
 		a.base.snap.length_mm = r->entry.length_mm;

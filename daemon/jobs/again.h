@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * again.h - a job that does not begin at its beginning
+ * again.h - a job whose cut does not begin at the start of its text
  *
- * It was interrupted and goes on, or its sender named a line or a place.
- * Its text is read again, and the program begins at the place of the last
- * checkpoint (interp/build_from.h).  Of such a program STATUS tells the places.
- * The store keeps those of the whole program, and the sums of all its parts, so
- * that it can be interrupted any number of times.
+ * The job was interrupted and goes on, or its sender named a line or a place.
+ * The text is read again, and a new program begins at that place, or at the
+ * place of the last checkpoint (interp/build_from.h).  STATUS gives places on
+ * the new program.  The store keeps places on the whole program, and the sums
+ * of all parts of the job.  So a job can be interrupted any number of times.
  *
  * Threads: one, that of the event loop.
  */
@@ -17,12 +17,18 @@
 #include "compiler.h"
 #include "verb.h"
 
-/** again_read() - of job @n.  0; -ENOENT: it begins at its beginning. */
+/**
+ * again_read() - read what the store keeps about the begin of job @n.
+ *
+ * Return: 0; -ENOENT: the job begins at the start of its text; -EBADMSG: it
+ * does not, but the record is damaged or of another version.  Then @ret is
+ * zeros.
+ */
 int again_read(struct jobs *j, uint32_t n, struct again *ret);
 /** again_is_named() - was the place named by its sender? */
 bool again_is_named(const struct again *a);
 /** again_named() - what the store keeps of a new job, until the next call;
- *  NULL: it begins at its beginning. */
+ *  NULL: the job begins at the start of its text. */
 const char *again_named(uint32_t line, double place_mm);
 /** again_write() - 0, STORE_KEPT or -errno. */
 int again_write(struct jobs *j, uint32_t n, const struct again *a);
@@ -40,8 +46,8 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
  * again_request() - fill in @ret->from if @job does not begin at its
  * beginning.
  *
- * Return: 0; -ESTALE: the axes are not where they were answered for, and the
- * job is interrupted again.
+ * Return: 0; -ESTALE: the axes are not where they were answered for, or what
+ * is kept of the job cannot be read; the job is interrupted again.
  */
 int again_request(struct jobs *j, const struct store_job *job,
 		  struct compiler_request *ret);

@@ -16,6 +16,7 @@ struct again {
 					 * was interrupted */
 	uint32_t instance;		/* of the edmd whose axes an operator
 					 * answered for; 0: nobody did */
+	uint32_t run;			/* as in struct checkpoint_job */
 };
 
 /** again_whole() - @s of a job that goes on as @a says, as if it had never been

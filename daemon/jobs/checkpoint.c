@@ -4,6 +4,7 @@
  */
 #include "checkpoint.h"
 
+#include "clocks.h"
 #include "jobs_log.h"
 
 #include <errno.h>
@@ -43,14 +44,6 @@ struct checkpoint_file {
 };
 
 /* -- The thread ----------------------------------------------------------- */
-
-static int64_t now_us(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
 
 static size_t bytes_written(const struct checkpoint_file *f,
 			    enum checkpoint_kind kind)
@@ -113,11 +106,12 @@ static void *writer(void *arg)
 		block = f->next[kind];
 		f->due[kind] = false;
 		pthread_mutex_unlock(&f->lock);
-		began_us = now_us();
+		began_us = clock_us(CLOCK_MONOTONIC);
 		err = block_write(f, &block);
 		pthread_mutex_lock(&f->lock);
-		note_written(f, err, bytes_written(f, (enum checkpoint_kind)
-						   kind), now_us() - began_us);
+		note_written(f, err,
+			     bytes_written(f, (enum checkpoint_kind)kind),
+			     clock_us(CLOCK_MONOTONIC) - began_us);
 	}
 	pthread_mutex_unlock(&f->lock);
 	return NULL;
@@ -325,7 +319,7 @@ static bool place_is_due(const struct checkpoint_base *now,
 	 * rest. */
 	if (phase(s->state) != SHM_ERODE && passed_s < CHECKPOINT_S)
 		return memcmp(s->pos, t->pos, sizeof(s->pos)) != 0 &&
-		       now->utime - last->utime > 500000;
+		       llabs(now->utime - last->utime) > 500000;
 	return passed_s >= CHECKPOINT_S ||
 	       s->far_mm - t->far_mm >= CHECKPOINT_MM;
 }

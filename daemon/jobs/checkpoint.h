@@ -11,15 +11,17 @@
  * which program of which text.  A place is the part of it that changes while it
  * cuts, and fits a sector.  Each has a sequence number and a hash, and is
  * written to the older of its two blocks; a place counts only with the base
- * that it was written for.  Torn or foreign blocks are told and left out.
+ * that it was written for.  A block that was written only in part, or is of
+ * another machine, is not used, and the log says so.
  *
  * A place is written when the machine begins or ends to cut, travel, probe, or
  * stand, and then when CHECKPOINT_S of its time or CHECKPOINT_MM of ground have
- * passed.  A base is written when anything else changes.  Both at most as often
- * as a budget of CHECKPOINT_DAY_BYTES a day allows.
+ * passed.  A base is written when anything else changes.  Both are written at
+ * most as often as a budget of CHECKPOINT_DAY_BYTES a day allows.
  *
- * The writing is done by a thread of its own, because a memory card may take a
- * second for it; of what comes meanwhile the last is written.
+ * A thread of its own writes, because a memory card may take a second for one
+ * write.  Of several checkpoints that come in this time only the last one is
+ * written.
  *
  * Units: in every name.  Threads: one, that of the event loop.
  */
@@ -32,7 +34,7 @@
 
 #define CHECKPOINT_S		0.8	/* of the machine's time */
 #define CHECKPOINT_MM		0.04	/* of ground, while it cuts */
-#define CHECKPOINT_DAY_BYTES	98e6
+#define CHECKPOINT_DAY_BYTES	64e6
 
 struct checkpoint_file;
 
@@ -48,6 +50,8 @@ struct checkpoint_job {
 	uint32_t electrode;		/* that cuts; 0: none */
 	uint32_t part, first_part;	/* store_electrode.h: of now, and of
 					 * this loading */
+	uint32_t run;			/* 0: the first run of the job; each
+					 * resume draws a number */
 	double shift_mm;		/* of Z, by the electrode; + is up */
 };
 
@@ -81,7 +85,9 @@ struct checkpoint {
 
 struct checkpoint_stats {
 	uint64_t handed, handed_bytes;	/* to the thread that writes */
-	uint64_t writes, bytes;		/* one that waits may be replaced */
+	uint64_t writes, bytes;		/* written; fewer than handed, because
+					 * a newer one replaces one that
+					 * waits */
 	int err;			/* of the last write; 0 */
 	int64_t slowest_us;
 };
@@ -89,7 +95,7 @@ struct checkpoint_stats {
 /**
  * checkpoint_open() - read what is there, make the file if it is not.
  *
- * Torn and foreign blocks are told in the log.  Return: 0; -errno: it cannot be
+ * The log tells which blocks are not used.  Return: 0; -errno: it cannot be
  * written; @ret_last is filled as far as it can be read.
  */
 int checkpoint_open(struct checkpoint_file **ret, const char *dir,
@@ -109,6 +115,8 @@ void checkpoint_stats(struct checkpoint_file *f, struct checkpoint_stats *ret);
 
 /* -- checkpoint_block.c --------------------------------------------------- */
 
+/* The blocks contain structs of shm.h. */
+#define CHECKPOINT_VERSION	(3 << 16 | SHM_LAYOUT)
 #define CHECKPOINT_BLOCK	4096
 #define CHECKPOINT_SECTOR	512
 
@@ -118,9 +126,9 @@ enum checkpoint_kind { CHECKPOINT_BASE, CHECKPOINT_PLACE };
 struct checkpoint_head {
 	char magic[8];			/* "edmplace" */
 	uint32_t version, kind;
-	uint64_t sequence;		/* of bases; a place has its base's
-					 * ... */
-	uint64_t count;			/* ... and one of its own */
+	uint64_t sequence;		/* of the base; in a place, of the base
+					 * that it belongs to */
+	uint64_t count;			/* of the place; grows with each */
 	char machine[SHM_NAME_MAX];
 	uint8_t hash[16];		/* of the block with this as zeros */
 };

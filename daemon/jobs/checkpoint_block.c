@@ -13,8 +13,6 @@
 #include <string.h>
 
 #define MAGIC	"edmplace"
-#define VERSION	(2 << 16 | SHM_LAYOUT)	/* the blocks contain structs of
-					 * shm.h */
 
 _Static_assert(sizeof(struct checkpoint_head) +
 	       sizeof(struct checkpoint_base) <= CHECKPOINT_BLOCK, "a block");
@@ -42,7 +40,7 @@ void checkpoint_seal(union checkpoint_block *b)
 	uint8_t hash[16];
 
 	memcpy(b->head.magic, MAGIC, sizeof(b->head.magic));
-	b->head.version = VERSION;
+	b->head.version = CHECKPOINT_VERSION;
 	hash_of(b, hash);
 	memcpy(b->head.hash, hash, sizeof(hash));
 }
@@ -59,7 +57,7 @@ static const char *wrong(const union checkpoint_block *b,
 		return "";
 	if (memcmp(b->head.magic, MAGIC, sizeof(b->head.magic)) != 0)
 		return "no checkpoint";
-	if (b->head.version != VERSION)
+	if (b->head.version != CHECKPOINT_VERSION)
 		return "of another version of edmd-jobs";
 	if (b->head.kind != (uint32_t)kind)
 		return "of another kind";

@@ -16,6 +16,7 @@ static void fill_job(struct checkpoint_job *to, const struct jobs *j)
 	const struct electrode *e = &j->electrode;
 
 	to->n = job->n;
+	to->run = j->queue.run;
 	to->begun = job->begun_us != 0;
 	memcpy(to->id, job->id, sizeof(to->id));
 	sodium_hex2bin(to->sha256, sizeof(to->sha256), job->sha256,

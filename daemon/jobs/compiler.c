@@ -114,8 +114,12 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 
 	config_compiling(c->request.config, tech, &of);
 	of.text.nc.notes = &notes;
-	of.text.nc.segs_max = SEGS_MAX;
-	of.text.nc.executed_max = EXECUTED_MAX;
+	of.text.nc.segs_max = c->request.segs_max ? c->request.segs_max :
+						    SEGS_MAX;
+	of.text.nc.executed_max = c->request.executed_max ?
+				  c->request.executed_max : EXECUTED_MAX;
+	memcpy(of.text.nc.work_offset_mm, c->request.work_mm,
+	       sizeof(of.text.nc.work_offset_mm));
 	c->request.electrodes.at = c->request.electrode;
 	of.text.nc.electrodes = &c->request.electrodes;
 	memcpy(of.build.start_mm, c->request.start_mm,
@@ -147,16 +151,39 @@ static int compiler_read(struct compiler *c, const struct config_tech *tech)
 	return err;
 }
 
-static void *compiler_main(void *arg)
+static void compiler_work(struct compiler *c)
 {
-	struct compiler *c = arg;
 	struct config_tech tech;
-	uint64_t one = 1;
 
 	c->result.err = read_tech(c, &tech);
 	if (c->result.err == 0)
 		c->result.err = compiler_read(c, &tech);
 	config_tech_free(&tech);
+}
+
+void compiler_now(const struct compiler_request *request,
+		  struct compiler_result *ret)
+{
+	static struct compiler c;
+
+	c = (struct compiler) { .request = *request };
+	compiler_work(&c);
+	*ret = c.result;
+}
+
+void compiler_forget(struct compiler_result *r)
+{
+	interp_build_destroy(r->build);
+	interp_wear_free(&r->wear);
+	r->build = NULL;
+}
+
+static void *compiler_main(void *arg)
+{
+	struct compiler *c = arg;
+	uint64_t one = 1;
+
+	compiler_work(c);
 	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
 	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
 		abort();

@@ -36,6 +36,9 @@ struct compiler_request {
 	bool wants_wear;		/* of its electrodes, for a text that is
 					 * not loaded */
 	const char *dialect;		/* NULL: by machine file and name */
+	double work_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* offset_request() */
+	uint32_t segs_max, executed_max;	/* 0: as many as a job may
+						 * have */
 	struct interp_build_from from;
 	struct shm_sets sets;
 };
@@ -74,6 +77,12 @@ typedef void (*compiler_done_fn)(void *arg, const struct compiler_result *r);
 int compiler_start(struct compiler **ret, sd_event *event,
 		   const struct compiler_request *request,
 		   compiler_done_fn done, void *arg);
+
+/** compiler_now() - the same at once, in this thread; for a short text. */
+void compiler_now(const struct compiler_request *request,
+		  struct compiler_result *ret);
+/** compiler_forget() - what compiler_now() made. */
+void compiler_forget(struct compiler_result *r);
 
 /**
  * compiler_destroy() - give up: wait for the thread; @done is not called.

@@ -8,6 +8,7 @@
 #include "act.h"
 #include "electrode.h"
 #include "jobs.h"
+#include "offset.h"
 #include "verb.h"
 
 #include <errno.h>
@@ -165,7 +166,7 @@ void electrode_measured(struct jobs *j)
 	const double z_mm = s->found[0][INTERP_Z] * s->pulse_mm[INTERP_Z];
 	struct store_electrode e;
 
-	if (measures == 0 ||
+	if (measures == 0 || measures >= OFFSET_TOUCHES ||
 	    store_electrode_find(j->store, measures % NEW, &e) < 0)
 		return;
 	if (s->found_once >> INTERP_Z & 1)

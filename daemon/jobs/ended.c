@@ -2,6 +2,16 @@
 /* ended.c - a job is over: what is written of it, and told */
 #include "again.h"
 #include "jobs.h"
+#include "offset.h"
+
+void queue_totals(struct jobs *j, struct shm_snapshot *ret)
+{
+	static struct again a;
+
+	*ret = j->queue.snap;
+	if (again_read(j, j->queue.job.n, &a) == 0)
+		again_whole(&a, ret);
+}
 
 /* With its totals, as far as they are known. */
 void queue_record(struct jobs *j, enum job_state state, const char *reason)
@@ -9,12 +19,10 @@ void queue_record(struct jobs *j, enum job_state state, const char *reason)
 	struct shm_snapshot whole = j->queue.snap;
 	const struct shm_snapshot *s = &whole;
 	const double period_s = (double)s->period_ns / 1e9;
-	static struct again a;
 
 	/* Of an interrupted one interrupt.c has put them together. */
-	if (state != JOB_INTERRUPTED &&
-	    again_read(j, j->queue.job.n, &a) == 0)
-		again_whole(&a, &whole);
+	if (state != JOB_INTERRUPTED)
+		queue_totals(j, &whole);
 	tally_end(j, s, state != JOB_INTERRUPTED);
 	j->queue.job.state = state;
 	store_end(j->store, j->queue.job.n, &(struct store_end) {
@@ -54,6 +62,7 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 	electrode_tell(j);
 	if (state == JOB_DONE) {
 		electrode_measured(j);
+		offset_touched(j);
 		return;
 	}
 	if (q->behind > 0)

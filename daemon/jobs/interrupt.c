@@ -6,27 +6,32 @@
 #include "jobs.h"
 #include "jobs_log.h"
 
+#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-/* Does the last checkpoint belong to this job? */
-static bool is_of_job(const struct checkpoint *c, const struct store_job *job)
+/* Does the last checkpoint belong to this run of this job? */
+static bool is_of_run(struct jobs *j, const struct store_job *job)
 {
+	const struct checkpoint *c = &j->last;
+	static struct again a;
 	char hex[65];
+
+	again_read(j, job->n, &a);
 
 	sodium_bin2hex(hex, sizeof(hex), c->base.job.sha256,
 		       sizeof(c->base.job.sha256));
 	return c->there && c->base.job.n == job->n &&
-	       strcmp(hex, job->sha256) == 0;
+	       c->base.job.run == a.run && strcmp(hex, job->sha256) == 0;
 }
 
 /* A PLC can start a job without asking this service. */
-bool interrupt_saw_begin(const struct jobs *j)
+bool interrupt_saw_begin(struct jobs *j)
 {
-	return is_of_job(&j->last, &j->queue.job) &&
+	return is_of_run(j, &j->queue.job) &&
 	       j->last.base.snap.job_cycles > 0;
 }
 
@@ -34,6 +39,7 @@ void interrupt_init(struct jobs *j)
 {
 	struct store_job job;
 
+	j->elsewhere |= (uint32_t)store_number(j->store, "elsewhere", 0);
 	j->interrupted[0] = '\0';
 	if (store_interrupted(j->store, &job) == 0)
 		snprintf(j->interrupted, sizeof(j->interrupted), "%s", job.id);
@@ -55,12 +61,86 @@ static void say_when(char *to, size_t size, int64_t utime)
 	strftime(to, size, "%Y-%m-%d %H:%M:%S", &tm);
 }
 
+/* -- Axes that nothing measures ------------------------------------------- */
+
+/* Axes that cannot be homed: they stand where an operator says. */
+static uint32_t unhomeable(const struct jobs *j)
+{
+	uint32_t axes = 0;
+
+	for (uint32_t i = 0; i < INTERP_NAXES; i++)
+		if (j->config->manual[i].method == 0)
+			axes |= 1u << i;
+	return axes & j->config->axes.present;
+}
+
+static void note_elsewhere(struct jobs *j, uint32_t axes)
+{
+	if (axes == j->elsewhere)
+		return;
+	j->elsewhere = axes;
+	store_set_number(j->store, "elsewhere", axes);
+}
+
+void interrupt_answered(struct jobs *j)
+{
+	note_elsewhere(j, 0);
+}
+
+/* Did this edmd take up the places of the one before?  After a power cut the
+ * object in which they were is a new one. */
+static bool goes_on(struct jobs *j, const struct shm_snapshot *before)
+{
+	const struct shm_snapshot *s = &j->link.snap;
+	const int64_t born = (int64_t)j->link.status->born;
+	const bool same = store_number(j->store, "born", 0) == born;
+
+	store_set_number(j->store, "born", born);
+	return same && s->axes_key == before->axes_key &&
+	       memcmp(s->pulse_mm, before->pulse_mm, sizeof(s->pulse_mm)) == 0;
+}
+
+void interrupt_attach(struct jobs *j)
+{
+	const struct shm_snapshot *was = &j->last.base.snap, *s = &j->link.snap;
+	char places[INTERP_NAXES * 48] = "";
+	uint32_t axes = 0;
+	size_t n = 0;
+
+	if (goes_on(j, was) || !j->last.there)
+		return;
+	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
+		const double then_mm = was->pos[i] * was->pulse_mm[i];
+		const double now_mm = s->pos[i] * s->pulse_mm[i];
+
+		if (!(unhomeable(j) >> i & 1) ||
+		    fabs(then_mm - now_mm) < 0.6 * s->pulse_mm[i])
+			continue;
+		axes |= 1u << i;
+		n += (size_t)snprintf(places + n, sizeof(places) - n,
+				      "%s%c at %.3f, now shown at %.3f",
+				      n ? "; " : "", INTERP_AXIS_LETTERS[i],
+				      then_mm, now_mm);
+	}
+	if (!axes)
+		return;
+	note_elsewhere(j, axes | j->elsewhere);
+	queue_wait(j);
+	jobs_note(j, &(struct jobs_note) { .kind = "waits" },
+		  "edmd was started anew, and nothing measures where the axes "
+		  "stand: last seen %s; see where the machine stands, then "
+		  "start", places);
+}
+
+/* -- The job -------------------------------------------------------------- */
+
 static void keep(struct jobs *j, const struct checkpoint *c)
 {
 	static struct again a;
 	const struct shm_snapshot *s = &a.base.snap;
 	char reason[320], when[32];
 
+	note_elsewhere(j, unhomeable(j));
 	again_interrupted(j, j->queue.job.n, &c->base, &a);
 	again_write(j, j->queue.job.n, &a);
 	take_sums(&j->queue, &a.base);
@@ -74,15 +154,34 @@ static void keep(struct jobs *j, const struct checkpoint *c)
 	interrupt_init(j);
 }
 
+/* It went down before a checkpoint of this run was on the disk. */
+static void keep_before(struct jobs *j)
+{
+	static struct again a;
+	char reason[320];
+
+	if (again_read(j, j->queue.job.n, &a) < 0 || again_is_named(&a)) {
+		queue_end(j, JOB_STOPPED, "the host or edmd went down in it, "
+			  "and no checkpoint of it is left: where it was is "
+			  "not known");
+		return;
+	}
+	take_sums(&j->queue, &a.base);
+	snprintf(reason, sizeof(reason), "interrupted again, and no checkpoint "
+		 "of what was done since the resume is left; before it, it was "
+		 "cut to %.3f mm", a.base.snap.far_mm);
+	note_elsewhere(j, unhomeable(j));
+	queue_end(j, JOB_INTERRUPTED, reason);
+	interrupt_init(j);
+}
+
 void interrupt_take(struct jobs *j)
 {
 	const struct checkpoint *c = &j->last;
 	struct queue *q = &j->queue;
 
-	if (!is_of_job(c, &q->job)) {
-		queue_end(j, JOB_STOPPED, "the host or edmd went down in it, "
-			  "and no checkpoint of it is left: where it was is "
-			  "not known");
+	if (!is_of_run(j, &q->job)) {
+		keep_before(j);
 		return;
 	}
 	electrode_interrupted(j, &c->base);
@@ -100,19 +199,13 @@ void interrupt_take(struct jobs *j)
 const char *interrupt_lost(const struct jobs *j)
 {
 	static char letters[INTERP_NAXES + 1];
-	const bool cut_short = *j->interrupted != '\0';
+	const uint32_t lost = j->link.snap.unhomed | j->elsewhere |
+			      (*j->interrupted ? unhomeable(j) : 0);
 	size_t n = 0;
 
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		if (!(j->config->axes.present >> i & 1))
-			continue;
-		/* An axis that cannot be homed stands where an operator says
-		 * that it stands. */
-		if (j->link.snap.unhomed >> i & 1 ||
-		    (cut_short && j->config->manual[i].method == 0 &&
-		     !(j->vouched >> i & 1)))
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (lost & j->config->axes.present & 1u << i)
 			letters[n++] = INTERP_AXIS_LETTERS[i];
-	}
 	letters[n] = '\0';
 	return letters;
 }

@@ -29,13 +29,22 @@ void interrupt_init(struct jobs *j);
  * interrupt_saw_begin() - does the last checkpoint show that the loaded job was
  * under way?
  */
-bool interrupt_saw_begin(const struct jobs *j);
+bool interrupt_saw_begin(struct jobs *j);
 
 /**
  * interrupt_take() - the loaded job has begun, and edmd does not have it any
  * more: say what is known of it, and drop it.
  */
 void interrupt_take(struct jobs *j);
+
+/**
+ * interrupt_attach() - edmd was started anew: does it show the axes where they
+ * were last seen?  To be called before the next checkpoint_tick().
+ */
+void interrupt_attach(struct jobs *j);
+
+/** interrupt_answered() - a person has seen where the machine stands. */
+void interrupt_answered(struct jobs *j);
 
 /** interrupt_lost() - the letters of the axes whose places are not certain. */
 const char *interrupt_lost(const struct jobs *j);

@@ -8,6 +8,7 @@
 #ifndef JOBS_JOBS_H
 #define JOBS_JOBS_H
 
+#include "calls.h"
 #include "checkpoint.h"
 #include "config.h"
 #include "electrode.h"
@@ -23,6 +24,7 @@
 #include "lcm.h"
 
 #include <limits.h>
+#include <sodium.h>
 #include <systemd/sd-event.h>
 
 struct jobs {
@@ -38,6 +40,7 @@ struct jobs {
 	struct replies replies;
 	struct queue queue;
 	struct tally tally;
+	struct calls calls;
 	struct eta eta;
 	struct electrode electrode;
 	struct trust trust;
@@ -57,12 +60,17 @@ struct jobs {
 	int checkpoint_err;		/* of the last try */
 	struct checkpoint last;		/* as it was found at the start */
 	char interrupted[64];		/* id of the job that waits; or "" */
-	uint32_t vouched;		/* axes whose places an operator has
-					 * answered for */
-	uint8_t config_hash[32];	/* of the machine file */
+	uint32_t elsewhere;		/* axes that cannot be homed and were
+					 * last seen at another place than
+					 * edmd shows; a start or a resume
+					 * answers for them */
+	crypto_hash_sha256_state files;	/* files.h */
+	uint8_t config_hash[32];	/* files_hash() for the job that is
+					 * loaded */
 	const char *store_told;		/* store_why() as it was last
 					 * reported */
 	bool act_open;			/* act.c: a transaction is open */
+	struct values *values;		/* NULL until they are asked for */
 	int claim;			/* shm_writer_claim(); -1: none */
 };
 
@@ -88,6 +96,9 @@ void jobs_answer(struct jobs *j, const struct jobs_lcm_ack *a);
 
 /** status_tick() - publish STATUS if it is due or has changed. */
 void status_tick(struct jobs *j, int64_t now_us);
+/** status_guest() - publish it soon, for a client that has just come; called by
+ * lcm.c. */
+void status_guest(void *jobs);
 
 /** verbs_take() - take a COMMAND; called by lcm.c. */
 void verbs_take(void *jobs, const struct jobs_lcm_command *c);

@@ -2,6 +2,7 @@
 /* lcm.c - converts generated LCM messages to our structs and back */
 #include "lcm.h"
 
+#include "clocks.h"
 #include "jobs_log.h"
 #include "udpm.h"
 
@@ -37,22 +38,6 @@ struct origin {
 	enum trust_cause cause;
 	const struct trust_packet *packet;
 };
-
-static int64_t now_us(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
-
-static int64_t utime(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_REALTIME, &t);
-	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
 
 /* LCM declares strings as char *, but only reads them. */
 static char *lent(const char *s)
@@ -150,10 +135,11 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 		.code = EX_PROTOCOL,
 		.reason = "client name of no or too many bytes; 1 to 63",
 	};
-	const int64_t now = now_us();
+	const int64_t now = clock_us(CLOCK_MONOTONIC);
 	enum trust_cause cause = o->cause;
 	const size_t n = strlen(client);
 	char who[KEYFILE_NAME_MAX];
+	bool is_guest;
 
 	if (cause == TRUST_FINE && (n == 0 || n >= TRUST_CLIENT_MAX)) {
 		jobs_lcm_ack(w, &to);
@@ -165,10 +151,13 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 		return true;
 	trust_who(o->packet, who);
 	/* A client that asks for the first time cannot know the boot number. */
-	if (cause != TRUST_BOOT || o->packet->seal.boot != 0)
+	is_guest = cause == TRUST_BOOT && o->packet->seal.boot == 0;
+	if (!is_guest)
 		trust_refuse(w->trust, cause, who, o->packet->from, now);
 	if (cause != TRUST_REPLAY)
 		tell_refused(w, &to, cause);
+	if (is_guest)
+		w->handlers.guest(w->handlers.arg);
 	return false;
 }
 
@@ -251,7 +240,7 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u)
 {
 	const bool command = strcmp(u->channel, w->command) == 0;
-	const int64_t now = now_us();
+	const int64_t now = clock_us(CLOCK_MONOTONIC);
 	struct trust_packet packet = { .channel = u->channel, .from = u->from };
 	struct origin o = { .packet = &packet };
 	char who[KEYFILE_NAME_MAX] = "no key";
@@ -296,8 +285,13 @@ int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
 	inet_ntop(AF_INET, &url->group.sin_addr, address, sizeof(address));
 	snprintf(text, sizeof(text), "udpm://%s:%u?ttl=%u", address,
 		 ntohs(url->group.sin_port), url->ttl);
-	w->lcm = lcm_create(text);
-	err = w->lcm ? udpm_open(&w->in, url) : -ENETUNREACH;
+	/* LCM's library prints pages where there is no way for multicast.  Our
+	 * own socket meets that first. */
+	err = udpm_open(&w->in, url);
+	if (err == 0) {
+		w->lcm = lcm_create(text);
+		err = w->lcm ? 0 : -ENETUNREACH;
+	}
 	if (err < 0) {
 		jobs_lcm_close(w);
 		return err;
@@ -318,7 +312,7 @@ void jobs_lcm_close(struct jobs_lcm *w)
 
 bool jobs_lcm_is_late(int64_t signed_us)
 {
-	return now_us() - signed_us > JOBS_LCM_LATE_US;
+	return clock_us(CLOCK_MONOTONIC) - signed_us > JOBS_LCM_LATE_US;
 }
 
 int jobs_lcm_fd(const struct jobs_lcm *w)
@@ -337,7 +331,7 @@ void jobs_lcm_handle(struct jobs_lcm *w)
 	strange = udpm_strange(w->in, &from);
 	for (; w->strange < strange; w->strange++)
 		trust_refuse(w->trust, TRUST_STRANGE, "nobody", from,
-			     now_us());
+			     clock_us(CLOCK_MONOTONIC));
 }
 
 /* Sign the message that LCM has encoded in @bytes, and send it. */
@@ -347,7 +341,8 @@ static void publish(struct jobs_lcm *w, const char *name, const void *data,
 	char channel[CHANNEL_MAX];
 	const struct seal s = {
 		.key = w->trust->machine.public, .boot = w->trust->boot,
-		.count = trust_count(w->trust, now_us()), .data = data,
+		.count = trust_count(w->trust, clock_us(CLOCK_MONOTONIC)),
+		.data = data,
 		.size = bytes < 0 ? 0 : (size_t)bytes,
 	};
 	uint8_t *packet = bytes < 0 ? NULL : malloc(SEAL_BYTES + s.size);
@@ -376,7 +371,7 @@ static void publish(struct jobs_lcm *w, const char *name, const void *data,
 void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a)
 {
 	edm_ack_t m = {
-		.utime = utime(),
+		.utime = clock_us(CLOCK_REALTIME),
 		.client = lent(a->client),
 		.seq = a->seq,
 		.code = a->code,
@@ -391,7 +386,7 @@ void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a)
 void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
 {
 	edm_event_t m = {
-		.utime = utime(),
+		.utime = clock_us(CLOCK_REALTIME),
 		.machine = w->machine,
 		.kind = lent(e->kind),
 		.job = lent(e->job),
@@ -411,7 +406,7 @@ void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 {
 	edm_status_t m = {
 		STATUS_FIELDS(SEND_WORD, SEND_COUNT, SEND_NUMBER)
-		.utime = utime(),
+		.utime = clock_us(CLOCK_REALTIME),
 		.machine = w->machine,
 		.faults = lent(s->faults),
 		.contour_mm = s->contour_mm,

@@ -5,6 +5,7 @@
 #include "again.h"
 #include "compiler.h"
 #include "jobs_log.h"
+#include "offset.h"
 
 #include <errno.h>
 #include <sodium.h>
@@ -266,6 +267,9 @@ void load_begin(struct jobs *j, int64_t now_us)
 	}
 	if (err == 0) {
 		electrode_request(j, &q->next, 0, &request);
+		err = offset_request(j, &q->next, &request);
+	}
+	if (err == 0) {
 		err = compiler_start(&q->compile, j->event, &request,
 				     on_compiled, j);
 	}

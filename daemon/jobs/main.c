@@ -2,13 +2,16 @@
 /* main.c - edmd-jobs: options, the event loop, start and end */
 #include "jobs.h"
 
+#include "clocks.h"
 #include "cmdline.h"
 #include "compiling.h"
+#include "files.h"
 #include "interrupt.h"
 #include "keyring.h"
 #include "jobs_log.h"
 #include "logger.h"
 #include "names.h"
+#include "values.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -50,14 +53,6 @@ static const struct cmdline table = {
 	"reports how they proceed.  A running job goes on without it.\n"
 	"\n",
 };
-
-static int64_t clock_us(clockid_t clock)
-{
-	struct timespec t;
-
-	clock_gettime(clock, &t);
-	return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
 
 int64_t jobs_now_us(void)
 {
@@ -152,8 +147,10 @@ static void watch_store(struct jobs *j, int64_t now_us)
 	if (whole && *store_mended(j->store))
 		tell_mended(j);
 	/* Until now nothing was known of what is in the store. */
-	if (whole && j->queue.job.n == 0)
+	if (whole && j->queue.job.n == 0) {
 		queue_init(j);
+		interrupt_init(j);
+	}
 }
 
 static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
@@ -272,8 +269,10 @@ static int open_lcm(struct jobs *j)
 {
 	struct jobs_lcm_handlers h = {
 		.command = verbs_take, .chunk = submit_take,
+		.guest = status_guest,
 		.trust = &j->trust, .arg = j,
 	};
+	char why[UDPM_WHY_MAX];
 	int err;
 
 	if (j->url.ttl > 0 && j->trust.nkeys < 2) {
@@ -283,11 +282,10 @@ static int open_lcm(struct jobs *j)
 		return EX_CONFIG;
 	}
 	err = jobs_lcm_open(&j->lcm, &j->url, j->machine, &h);
-	if (err < 0)
-		log_error("lcm: cannot open %s: %s; does the host have a "
-			  "multicast route? ip link set lo multicast on; "
-			  "ip route add 224.0.0.0/4 dev lo",
-			  j->config->lcm_url, strerror(-err));
+	if (err < 0) {
+		udpm_why(&j->url, err, why, sizeof(why));
+		log_error("lcm: cannot open %s: %s", j->config->lcm_url, why);
+	}
 	return err < 0 ? EX_UNAVAILABLE : 0;
 }
 
@@ -361,23 +359,6 @@ static int run(struct jobs *j)
 	return err < 0 ? EX_SOFTWARE : EX_OK;
 }
 
-/* The hash is zeros if the file cannot be read. */
-static void hash_file(uint8_t ret[32], const char *path)
-{
-	crypto_hash_sha256_state h;
-	unsigned char part[4096];
-	FILE *f = fopen(path, "re");
-	size_t n;
-
-	if (!f)
-		return;
-	crypto_hash_sha256_init(&h);
-	while ((n = fread(part, 1, sizeof(part), f)) > 0)
-		crypto_hash_sha256_update(&h, part, n);
-	crypto_hash_sha256_final(&h, ret);
-	fclose(f);
-}
-
 int main(int argc, char **argv)
 {
 	static struct machine_config config;
@@ -405,7 +386,7 @@ int main(int argc, char **argv)
 	if (err == 0)
 		checkpoint_open(&jobs.checkpoint, jobs.store_dir, jobs.machine,
 				&jobs.last);
-	hash_file(jobs.config_hash, o.config);
+	files_read(&jobs, o.config);
 	if (err == 0)
 		err = keyring_open(&jobs, o.store ? o.store : config.store_dir);
 	if (err == 0)
@@ -413,6 +394,7 @@ int main(int argc, char **argv)
 	if (err == 0)
 		err = run(&jobs);
 	reply_fini(&jobs.replies);
+	values_destroy(jobs.values);
 	jobs_lcm_close(jobs.lcm);
 	keyring_close(&jobs);
 	shm_writer_leave(jobs.claim, jobs.machine);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* queue.c - follows the job that is in the machine */
+#include "again.h"
 #include "faults.h"
 #include "hunting.h"
 #include "interrupt.h"
@@ -29,6 +30,8 @@ void queue_recount(struct jobs *j)
 
 static void set_waiting(struct jobs *j, bool waiting)
 {
+	/* Until a person has seen where the axes stand nothing begins. */
+	waiting = waiting || j->elsewhere;
 	if (j->queue.waiting == waiting)
 		return;
 	j->queue.waiting = waiting;
@@ -128,6 +131,7 @@ static void set_state(struct jobs *j, enum job_state state)
 
 int queue_init(struct jobs *j)
 {
+	static struct again a;
 	struct queue *q = &j->queue;
 	int err = store_loaded(j->store, &q->job);
 
@@ -135,6 +139,8 @@ int queue_init(struct jobs *j)
 		return err;
 	q->waiting = store_number(j->store, "waiting", 0) != 0;
 	queue_recount(j);
+	if (q->job.n && again_read(j, q->job.n, &a) == 0)
+		q->run = a.run;
 	if (q->job.n)
 		log_notice("queue: job %s was %s when last seen", q->job.id,
 			   store_state_name(q->job.state));
@@ -173,6 +179,7 @@ void queue_attach(struct jobs *j)
 	if (!anew)
 		return;
 	store_set_number(j->store, "instance", j->link.instance);
+	interrupt_attach(j);
 	if (q->job.n || q->behind) {
 		log_notice("queue: edmd was started anew; nothing moves until "
 			   "start");
@@ -187,14 +194,21 @@ static void follow_change(struct jobs *j, const struct shm_event *e)
 		.was = e->was, .now = e->now, .place_mm = e->place_mm,
 		.time_ns = e->time_ns,
 	};
+	struct call call = {
+		.place_mm = e->place_mm, .time_ns = e->time_ns,
+	};
 	char name[16];
 
 	if (!j->queue.job.n || e->program != j->queue.job.n)
 		return;
-	if (e->kind == SHM_EV_CONDITION)
-		c.condition = interp_tech_name((char)e->id, (uint32_t)e->code,
-					       name, sizeof(name));
-	else if (e->kind == SHM_EV_SET && e->id < INTERP_NTECH)
+	if (e->kind == SHM_EV_CONDITION) {
+		snprintf(call.condition, sizeof(call.condition), "%s",
+			 interp_tech_name((char)e->id, (uint32_t)e->code, name,
+					  sizeof(name)));
+		calls_add(j, j->queue.job.n, &call);
+		return;
+	}
+	if (e->kind == SHM_EV_SET && e->id < INTERP_NTECH)
 		c.field = interp_tech_field[e->id].name;
 	else
 		return;
@@ -282,6 +296,7 @@ static void follow_running(struct jobs *j)
 	q->job.begun_us = jobs_utime();
 	store_begin(j->store, q->job.n, q->job.begun_us);
 	queue_unpromise(j);
+	interrupt_answered(j);
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "begun", .job = q->job.id,
 	}, "job %s begun", q->job.name);
@@ -360,7 +375,7 @@ static void follow_state(struct jobs *j, int64_t now_us)
 }
 
 /* A start was handed over, and nobody is left who knows what became of it. */
-static bool may_have_begun(const struct jobs *j)
+static bool may_have_begun(struct jobs *j)
 {
 	return j->queue.job.begun_us || interrupt_saw_begin(j) ||
 	       store_number(j->store, "started", 0) == j->queue.job.n;
@@ -463,6 +478,7 @@ void queue_fini(struct jobs *j)
 {
 	struct queue *q = &j->queue;
 
+	calls_write(j);
 	load_fini(j);
 	eta_fini(&j->eta);
 	if (!q->job.n || (q->job.begun_us && !queue_is_leaving(q)))

@@ -31,6 +31,7 @@ struct queue {
 	struct store_job job;		/* loaded; n 0: none */
 	struct shm_snapshot snap;	/* the last snapshot of that job */
 	double depth_mm;		/* greatest depth of that job */
+	uint32_t run;			/* ... as in struct checkpoint_job */
 	uint32_t behind;		/* jobs that wait */
 	bool waiting;			/* for "start" */
 	uint32_t promised;		/* the job that was started, or 0 */
@@ -102,6 +103,10 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason);
 void queue_drop(struct jobs *j, bool again);
 
 /* -- ended.c -------------------------------------------------------------- */
+
+/** queue_totals() - the snapshot of the loaded job, with what was cut of it
+ *  before it was interrupted. */
+void queue_totals(struct jobs *j, struct shm_snapshot *ret);
 
 /** queue_record() - the job is over, or in a fault for now: write that. */
 void queue_record(struct jobs *j, enum job_state state, const char *reason);

@@ -317,14 +317,6 @@ char *store_resume_at(struct store *s, uint32_t n)
  * that they are the same.  NAN becomes NULL. */
 int store_change(struct store *s, uint32_t n, const struct store_change *c)
 {
-	if (c->condition)
-		return store_do(s, STORE_MAY_GO,
-				"INSERT OR IGNORE INTO change VALUES(?1, ?2, "
-				"'condition', (SELECT now FROM change WHERE "
-				"n=?1 AND what='condition' AND time_ns<?2 "
-				"ORDER BY time_ns DESC LIMIT 1), ?3, ?4)",
-				"iisd", (int64_t)n, c->time_ns, c->condition,
-				c->place_mm);
 	return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO change "
 			"VALUES(?, ?, ?, ?, ?, ?)", "iisddd", (int64_t)n,
 			c->time_ns, c->field, c->was, c->now, c->place_mm);

@@ -52,7 +52,8 @@ struct store_job {
 	uint32_t lines;			/* of the text */
 	uint32_t electrode;		/* it begins with; 0: the one in the
 					 * holder */
-	uint32_t measures;		/* this electrode; 0: it is a job to
+	uint32_t measures;		/* this electrode, or what it touches
+					 * off: offset.h; 0: it is a job to
 					 * cut */
 };
 
@@ -85,12 +86,10 @@ struct store_note {
 	int64_t now_us;
 };
 
-/* A condition that was called, or a value that was set, while a job ran. */
+/* A value that was set while a job ran. */
 struct store_change {
-	const char *condition;		/* the name of a called condition, or
-					 * NULL */
-	const char *field;		/* set: its name */
-	double was, now;		/* set; NAN: the generator's own */
+	const char *field;		/* its name */
+	double was, now;		/* NAN: the generator's own */
 	double place_mm;
 	int64_t time_ns;
 };

@@ -77,7 +77,7 @@ int store_worn_put(struct store *s, const struct store_worn *w);
  *  Return: how many. */
 size_t store_worn_list(struct store *s, uint32_t n, uint32_t from,
 		       struct store_worn *to, size_t room);
-/** store_worn_next() - the first part that job @n has not. */
+/** store_worn_next() - the number that the next part of job @n will have. */
 uint32_t store_worn_next(struct store *s, uint32_t n);
 /** store_worn_drop() - forget the parts of job @n that have not begun: their
  *  after_s is below 0. */

@@ -109,6 +109,14 @@ static const char *const steps[] = {
 
 	/* The history is read page by page in this order: store_list.c. */
 	"CREATE INDEX job_by_end ON job(-ended_us, -n);",
+
+	/* Work offsets that were touched off; job 0: those in force. */
+	"CREATE TABLE work("
+	" job INTEGER NOT NULL, work INTEGER NOT NULL,"
+	" axis INTEGER NOT NULL, mm REAL NOT NULL,"
+	" PRIMARY KEY(job, work, axis));"
+	"CREATE TRIGGER work_gone AFTER DELETE ON job BEGIN"
+	" DELETE FROM work WHERE job=old.n; END;",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

@@ -44,3 +44,16 @@ int store_fault(struct store *s, uint32_t n, const struct store_fault *f)
 			"(?, ?, ?, ?, ?)", "iisid", (int64_t)n, f->time_ns,
 			f->fault, (int64_t)f->line, f->place_mm);
 }
+
+/* edmd tells its events again after a restart; their time shows that they are
+ * the same. */
+int store_calls(struct store *s, uint32_t n, const char *json)
+{
+	return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO change "
+			"SELECT ?1, value->>0, 'condition', "
+			"coalesce(lag(value->>1) OVER (ORDER BY key), "
+			"(SELECT now FROM change WHERE n=?1 AND "
+			"what='condition' AND time_ns<value->>0 "
+			"ORDER BY time_ns DESC LIMIT 1)), value->>1, "
+			"value->>2 FROM json_each(?2)", "is", (int64_t)n, json);
+}

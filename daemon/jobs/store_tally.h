@@ -17,6 +17,12 @@ struct store_fault {
 	double place_mm;
 };
 
+/**
+ * store_calls() - conditions that job @n has called, in one transaction.
+ * @json: an array of [time in ns, name, place in mm], in the order of time.
+ */
+int store_calls(struct store *s, uint32_t n, const char *json);
+
 /** store_used_write() - the sums of job @n by condition; a JSON array. */
 int store_used_write(struct store *s, uint32_t n, const char *json);
 /** store_used() - to be freed; NULL: none, or it cannot be read. */

@@ -12,6 +12,7 @@
 #include "compiler.h"
 #include "entry.h"
 #include "jobs_log.h"
+#include "offset.h"
 #include "verb.h"
 
 #include <errno.h>
@@ -91,6 +92,9 @@ static const char *what_next(const struct jobs *j, bool hold)
 		return "a job before it waits for an electrode";
 	if (queue_unready(j))
 		return "an axis is not homed: it wants a home, then a start";
+	if (j->elsewhere)
+		return "an axis was last seen elsewhere: see where it stands, "
+		       "then start";
 	if (j->queue.waiting)
 		return "the queue waits for start";
 	if (hold)
@@ -242,7 +246,9 @@ static void check_begin(struct jobs *j, struct upload *up)
 	if (up->from_line > 0 || up->from_mm > 0)
 		again_begin_at(j, up->from_line, up->from_mm, &request);
 	electrode_request(j, NULL, up->electrode, &request);
-	if (c) {
+	if (offset_request(j, NULL, &request) < 0)
+		err = -EIO;
+	if (c && err == 0) {
 		*c = (struct check) { .jobs = j, .upload = up };
 		err = compiler_start(&j->check[up - j->uploads.slot], j->event,
 				    &request, on_checked, c);

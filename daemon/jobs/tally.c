@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define CALLED_US	60000000	/* a condition was called, then at most
+#define CALLED_US	180000000	/* a condition was called, then at most
 					 * so often */
 #define STOOD_US	10000000	/* it stands */
 #define TRAIL_US	1800000000
@@ -195,12 +195,14 @@ static double whole_place_mm(const struct tally *t, double place_mm)
 	return fmax(a->from_mm, place_mm - a->way_mm + a->from_mm);
 }
 
-static bool used_is_due(const struct tally *t, const char *condition,
+static bool used_is_due(const struct jobs *j, const char *condition,
 			bool stands, int64_t now_us)
 {
+	const struct tally *t = &j->tally;
+
 	if (stands && !t->stood)
 		return now_us - t->used_us >= STOOD_US;
-	return strcmp(condition, t->written) != 0 &&
+	return (j->calls.n > 0 || strcmp(condition, t->written) != 0) &&
 	       now_us - t->used_us >= CALLED_US;
 }
 
@@ -212,7 +214,8 @@ static void write_due(struct jobs *j, const struct shm_snapshot *s,
 	char condition[16];
 
 	name_condition(condition, s);
-	if (used_is_due(t, condition, stands, now_us)) {
+	if (used_is_due(j, condition, stands, now_us)) {
+		calls_write(j);
 		tally_write_used(j, t);
 		snprintf(t->written, sizeof(t->written), "%s", condition);
 		t->used_us = now_us;
@@ -273,6 +276,7 @@ void tally_event(struct jobs *j, const struct shm_event *e, bool again)
 
 static void write_all(struct jobs *j, const struct tally *t)
 {
+	calls_write(j);
 	if (t->nrows)
 		tally_write_used(j, t);
 	if (t->npoints)

@@ -3,8 +3,8 @@
  * twin.h - models of the axes beside the machine: contour error, measured and
  * predicted
  *
- * Follows the trace ring; the loops are those of the machine file.  Off if no
- * linear axis has its loop_gain_1_s.
+ * The twin reads the ring of trace records.  The loops of its axes are those of
+ * the machine file.  There is no twin if no linear axis has a loop_gain_1_s.
  *
  * Threads: one, that of the event loop.
  */
@@ -26,7 +26,7 @@ struct twin {
 	int axis[INTERP_NAXES], naxes;
 	struct interp_axis_loop loop[INTERP_NAXES];
 	struct interp_shadow shadow;
-	uint32_t instance;		/* of the edmd followed */
+	uint32_t instance;		/* of the edmd whose ring it reads */
 	int64_t period_ns;
 	struct shm_follow follow;
 	uint64_t lost;

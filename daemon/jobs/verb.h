@@ -9,6 +9,8 @@
 
 #include "jobs.h"
 
+#include <jansson.h>
+
 #define REFUSED		1		/* understood, and the answer is no */
 
 #define VERB_OWN	UINT32_MAX	/* the service does it itself */
@@ -40,9 +42,21 @@ struct verb {
 int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		 const char *reason);
 
+/** verbs_answer_json() - answer with @o, which it takes; NULL: no memory. */
+void verbs_answer_json(struct jobs *j, const struct jobs_lcm_command *c,
+		       json_t *o);
+
 /** verbs_store() - the verb "store". */
 void verbs_store(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
+
+/** verbs_why() - the verb "why": waits.c. */
+void verbs_why(struct jobs *j, const struct verb *v,
+	       const struct jobs_lcm_command *c);
+
+/** verbs_values() - the verb "values": the condition in force. */
+void verbs_values(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c);
 
 /** verbs_checkpoint() - the verb "checkpoint". */
 void verbs_checkpoint(struct jobs *j, const struct verb *v,

@@ -8,7 +8,10 @@
 #include "act.h"
 #include "again.h"
 #include "electrode.h"
+#include "interrupt.h"
 #include "keyring.h"
+#include "mdi.h"
+#include "offset.h"
 #include "verb.h"
 
 #include "interp/tech_table.h"
@@ -17,6 +20,7 @@
 #include "store_trust.h"
 #include "verbs.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -59,6 +63,21 @@ int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
 		.reason = reason,
 	});
 	return err;
+}
+
+void verbs_answer_json(struct jobs *j, const struct jobs_lcm_command *c,
+		       json_t *o)
+{
+	char *body = o ? json_dumps(o, JSON_COMPACT | JSON_REAL_PRECISION(15)) :
+			 NULL;
+
+	jobs_answer(j, &(struct jobs_lcm_ack) {
+		.key = c->key, .client = c->client, .seq = c->seq,
+		.code = body ? 0 : EX_SOFTWARE, .body = body,
+		.reason = body ? "done" : "no memory",
+	});
+	free(body);
+	json_decref(o);
 }
 
 /* Refusals of the cycle that do not depend on the state; NULL: the state
@@ -111,6 +130,25 @@ static const char *gone(int code)
 	}
 }
 
+/* What the machine does, behind "the machine". */
+static const char *state_words(uint32_t state)
+{
+	switch (state) {
+	case SHM_IDLE:
+		return "is idle: no job is loaded";
+	case SHM_HOLD:
+		return "is held";
+	case SHM_FAULT:
+		return "has a fault";
+	case SHM_JOG:
+		return "jogs an axis";
+	case SHM_HOME:
+		return "homes its axes";
+	default:
+		return "is at work on a job";
+	}
+}
+
 static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
@@ -146,8 +184,8 @@ static void on_answer(void *arg, int code)
 	else if (refusal(code))
 		verbs_answer(j, &c, REFUSED, refusal(code));
 	else {
-		snprintf(reason, sizeof(reason), "not in state %s; %s wants %s",
-			 shm_state_name(j->link.snap.state), a->verb->name,
+		snprintf(reason, sizeof(reason), "the machine %s; %s wants %s",
+			 state_words(j->link.snap.state), a->verb->name,
 			 a->verb->wants);
 		verbs_answer(j, &c, REFUSED, reason);
 	}
@@ -216,7 +254,10 @@ static bool may_start(struct jobs *j, const struct verb *v)
  */
 static bool is_late(const struct verb *v, const struct jobs_lcm_command *c)
 {
-	return v && v->kind == VERB_ACTS && v->machine != VERB_OWN &&
+	const bool moves = v && (v->machine != VERB_OWN ||
+				 v->run == mdi_take || v->run == offset_set);
+
+	return moves && v->kind == VERB_ACTS &&
 	       jobs_lcm_is_late(c->signed_us);
 }
 
@@ -352,7 +393,8 @@ static void verb_override(struct jobs *j, const struct verb *v,
  * Return: -1 if it was refused. */
 static int axis_of(struct jobs *j, const struct jobs_lcm_command *c, size_t n)
 {
-	const char *at = n == 1 ? strchr(INTERP_AXIS_LETTERS, c->text[0]) :
+	const char *at = n == 1 ? strchr(INTERP_AXIS_LETTERS,
+					 toupper((unsigned char)c->text[0])) :
 				  NULL;
 	char reason[96], has[INTERP_NAXES + 1] = "";
 	size_t k = 0;
@@ -455,8 +497,14 @@ static void verb_resume(struct jobs *j, const struct verb *v,
 			const struct jobs_lcm_command *c)
 {
 	struct store_job job;
+	const bool is_loaded = strcmp(c->job, j->queue.job.id) == 0;
 
-	if (!*c->job || strcmp(c->job, j->queue.job.id) == 0) {
+	/* An answer about axes that is given twice must not begin the job. */
+	if (*c->job && is_loaded &&
+	    (*c->text || j->queue.job.state == JOB_READY)) {
+		verbs_answer(j, c, REFUSED, "this job is not interrupted: it "
+			     "is loaded already; start begins it");
+	} else if (!*c->job || is_loaded) {
 		if (!refused_by_fault(j, c))
 			verb_machine(j, v, c);
 	} else if (store_find(j->store, c->job, &job) < 0) {
@@ -491,6 +539,7 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 		verbs_answer(j, c, REFUSED, reason);
 		return;
 	}
+	interrupt_answered(j);
 	queue_go(j);
 	store_set_hold(j->store, job->n, false);
 	verbs_answer(j, c, 0, "starts when its turn comes");
@@ -540,11 +589,12 @@ static const struct verb verbs[] = {
 	{ "step", ROLE_OPERATOR, VERB_ACTS, verb_step, SHM_DO_STEP,
 	  "a job held on its path" },
 	{ "jog", ROLE_OPERATOR, VERB_ACTS, verb_jog, SHM_DO_JOG,
-	  "idle: no job loaded, no fault" },
+	  "it idle: no job loaded, no fault" },
 	{ "jog-on", ROLE_OPERATOR, VERB_SIGNS, verb_jog_on, SHM_DO_JOG_ON,
-	  "idle, no job, no fault; and a press that is not over: press again" },
+	  "it idle, no job, no fault; and a press that is not over: press "
+	  "again" },
 	{ "home", ROLE_OPERATOR, VERB_ACTS, verb_home, SHM_DO_HOME,
-	  "idle: no job loaded, no fault" },
+	  "it idle: no job loaded, no fault" },
 	{ "override", ROLE_OPERATOR, VERB_ACTS, verb_override,
 	  SHM_DO_OVERRIDE, "nothing" },
 	{ "remove", ROLE_OPERATOR, VERB_ACTS, verbs_remove, VERB_OWN, "" },
@@ -553,6 +603,11 @@ static const struct verb verbs[] = {
 	{ "alarms", ROLE_VIEWER, VERB_ASKS, verbs_alarms, VERB_OWN, "" },
 	{ "queue", ROLE_VIEWER, VERB_ASKS, verbs_queue, VERB_OWN, "" },
 	{ "show", ROLE_VIEWER, VERB_ASKS, verbs_show, VERB_OWN, "" },
+	{ "mdi", ROLE_OPERATOR, VERB_ACTS, mdi_take, VERB_OWN, "" },
+	{ "offsets", ROLE_VIEWER, VERB_ASKS, offset_list, VERB_OWN, "" },
+	{ "offset", ROLE_OPERATOR, VERB_ACTS, offset_set, VERB_OWN, "" },
+	{ "why", ROLE_VIEWER, VERB_ASKS, verbs_why, VERB_OWN, "" },
+	{ "values", ROLE_VIEWER, VERB_ASKS, verbs_values, VERB_OWN, "" },
 	{ "trail", ROLE_VIEWER, VERB_ASKS, verbs_trail, VERB_OWN, "" },
 	{ "history", ROLE_VIEWER, VERB_ASKS, verbs_history, VERB_OWN, "" },
 	{ "electrodes", ROLE_VIEWER, VERB_ASKS, electrode_list, VERB_OWN, "" },

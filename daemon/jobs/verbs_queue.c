@@ -5,7 +5,9 @@
 #include "verb.h"
 
 #include <errno.h>
+#include <jansson.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sysexits.h>
 
 void verbs_remove(struct jobs *j, const struct verb *v,
@@ -92,6 +94,43 @@ void verbs_text(struct jobs *j, const struct verb *v,
 	free(body);
 }
 
+/*
+ * The store has the sums of a job from its end on, or from its last fault.  Of
+ * the job in the machine they are those of this moment.  Return: @body, or a
+ * new one in its place.
+ */
+static char *body_now(struct jobs *j, const char *id, char *body)
+{
+	const struct queue *q = &j->queue;
+	struct shm_snapshot s;
+	double period_s;
+	json_t *now, *o;
+
+	if (!body || !q->job.n || strcmp(id, q->job.id) != 0 ||
+	    queue_is_leaving(q) || q->job.state == JOB_FAULT ||
+	    q->snap.program != q->job.n)
+		return body;
+	queue_totals(j, &s);
+	period_s = (double)s.period_ns / 1e9;
+	o = json_loads(body, 0, NULL);
+	now = json_pack("{s:s,s:i,s:f,s:f,s:f,s:f,s:f,s:I,s:I,s:I,s:I}",
+			"reason", "", "ended_us", 0, "path_mm", s.far_mm,
+			"length_mm", s.length_mm, "depth_mm", q->depth_mm,
+			"job_s", (double)s.job_cycles * period_s,
+			"erode_s", (double)s.erode_cycles * period_s,
+			"jumps", (json_int_t)s.jumps,
+			"retracts", (json_int_t)s.retracts,
+			"shorts", (json_int_t)s.shorts,
+			"arcs", (json_int_t)s.arcs);
+	if (o && now && json_object_update(o, now) == 0) {
+		free(body);
+		body = json_dumps(o, JSON_COMPACT | JSON_REAL_PRECISION(15));
+	}
+	json_decref(now);
+	json_decref(o);
+	return body;
+}
+
 static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 			enum store_list what)
 {
@@ -104,10 +143,14 @@ static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 			   store_find(j->store, c->job, &before) != -ENOENT;
 	char *body = known ? store_json(j->store, what, c->job, rows) : NULL;
 	struct jobs_lcm_ack a = {
-		.key = c->key, .client = c->client, .seq = c->seq, .body = body,
+		.key = c->key, .client = c->client, .seq = c->seq,
 		.reason = "done",
 	};
 
+	calls_write(j);
+	if (what == STORE_SHOW)
+		body = body_now(j, c->job, body);
+	a.body = body;
 	if (!known) {
 		a.code = EX_NOINPUT;
 		a.reason = "no such job; edmctl queue and edmctl history list "

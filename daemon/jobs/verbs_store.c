@@ -4,29 +4,18 @@
  * checkpoint
  */
 #include "jobs.h"
+#include "values.h"
 #include "verb.h"
 
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sysexits.h>
 #include <unistd.h>
-
-static void answer(struct jobs *j, const struct jobs_lcm_command *c, json_t *o)
-{
-	char *body = o ? json_dumps(o, JSON_COMPACT | JSON_REAL_PRECISION(15)) :
-			 NULL;
-
-	jobs_answer(j, &(struct jobs_lcm_ack) {
-		.key = c->key, .client = c->client, .seq = c->seq,
-		.code = body ? 0 : EX_SOFTWARE, .body = body,
-		.reason = body ? "done" : "no memory",
-	});
-	free(body);
-	json_decref(o);
-}
 
 /* The name of a folder may be anything. */
 static json_t *path_put(const char *path)
@@ -46,7 +35,7 @@ void verbs_store(struct jobs *j, const struct verb *v,
 	if (j->checkpoint)
 		checkpoint_stats(j->checkpoint, &place);
 	store_measure(j->store, &size);
-	answer(j, c, json_pack(
+	verbs_answer_json(j, c, json_pack(
 		"{s:o,s:I,s:I,s:I,s:I,s:s,s:I,s:I,s:I,s:s,s:o,s:i,s:s}",
 		"path", path_put(size.path), "bytes", (json_int_t)size.bytes,
 		"jobs", (json_int_t)size.jobs, "kept", (json_int_t)size.kept,
@@ -58,6 +47,44 @@ void verbs_store(struct jobs *j, const struct verb *v,
 		"place_why", place.err ? strerror(-place.err) : "",
 		"machine_file", path_put(j->config_path),
 		"pid", (int)getpid(), "version", EDM_VERSION));
+}
+
+/* -- The values in force ---------------------------------------------------- */
+
+#define VALUES_BYTES_MAX	(64 << 20)
+
+/* A larger program would hold up the service while it is copied. */
+static bool is_large(const struct jobs *j)
+{
+	char path[SHM_PATH_MAX], name[32];
+	struct stat st;
+
+	snprintf(name, sizeof(name), "program.%u", j->link.snap.program);
+	shm_path(path, j->machine, name);
+	return j->link.snap.loaded && stat(path, &st) == 0 &&
+	       st.st_size > VALUES_BYTES_MAX;
+}
+
+void verbs_values(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c)
+{
+	static const struct shm_snapshot none;
+	const bool there = j->link.state == LINK_OK;
+	json_t *o;
+
+	(void)v;
+	if (there && is_large(j)) {
+		verbs_answer(j, c, EX_UNAVAILABLE, "the program is larger than "
+			     "64 MiB; its values are not read");
+		return;
+	}
+	o = json_object();
+	if (!j->values)
+		j->values = values_create(j->config);
+	if (o && j->values)
+		values_fill(j->values, there ? j->link.status : NULL,
+			    there ? &j->link.snap : &none, o);
+	verbs_answer_json(j, c, o);
 }
 
 /* -- The last checkpoint --------------------------------------------------- */
@@ -116,9 +143,9 @@ void verbs_checkpoint(struct jobs *j, const struct verb *v,
 
 	(void)v;
 	if (!last->there)
-		answer(j, c, json_object());
+		verbs_answer_json(j, c, json_object());
 	else
-		answer(j, c, json_pack("{s:I,s:o,s:o,s:o,s:I}", "utime",
+		verbs_answer_json(j, c, json_pack("{s:I,s:o,s:o,s:o,s:I}", "utime",
 				       (json_int_t)last->utime,
 				       "job", job_put(&last->base.job),
 				       "place", place_put(&last->base.snap),

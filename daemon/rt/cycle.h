@@ -138,7 +138,9 @@ struct cycle_ahead {
 	enum cycle_state state;		/* that the move belongs to */
 	int toward;			/* +1 or -1 */
 	double goal_mm, override;
-	struct mover_limits l;		/* as they were when the move began */
+	struct mover_limits l;		/* as they were when the move began, up
+					 * to the place where it stands: */
+	double stand_mm;		/* INFINITY: its goal is nearer */
 	double entered_mm_s;		/* greatest speed at which it began */
 	double room_mm;			/* at constant speed nothing limits it
 					 * for this distance */

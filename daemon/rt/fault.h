@@ -8,10 +8,11 @@
  * sparks and the motion of this period, and a fault that the walk finds lets
  * the period end in order.
  *
- * A guard does not ask what the machine is doing.  It notes what it sees, and
- * in which scope that is a fault.  fault_judge() then latches the faults that
- * count in the present state, and is called once more when the state has
- * changed.  So whatever forbids sparks is known before the first spark.
+ * A guard does not ask what the machine is doing.  It notes what it sees.  The
+ * table says in which scope that is a fault; a guard may name a wider one.
+ * fault_judge() then latches the faults that count in the present state, and is
+ * called once more when the state has changed.  So whatever forbids sparks is
+ * known before the first spark.
  *
  * Several faults can be latched at a time.  The first one tells why the machine
  * stopped, the worst one decides how the motion ends.  A reset clears all of
@@ -60,11 +61,17 @@ static inline void fault_look_anew(struct fault *s)
 		s->seen[FAULT_ALWAYS] = 0;
 }
 
-/** fault_note() - a guard sees @f, which is a fault in @scope. */
-static inline void fault_note(struct fault *s, enum cycle_fault f,
-			      enum fault_scope scope)
+/** fault_note_in() - a guard sees @f, and here it is a fault in @scope. */
+static inline void fault_note_in(struct fault *s, enum cycle_fault f,
+				 enum fault_scope scope)
 {
 	s->seen[scope] |= fault_bit(f);
+}
+
+/** fault_note() - a guard sees @f, which is a fault in the table's scope. */
+static inline void fault_note(struct fault *s, enum cycle_fault f)
+{
+	fault_note_in(s, f, fault_table[f].scope);
 }
 
 /** fault_is_seen() - is anything noted in this period? */

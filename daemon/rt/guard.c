@@ -13,7 +13,7 @@ static void watch_wire(struct cycle *c)
 {
 	if (c->gap.process != PROCESS_WIRE)
 		return;
-	fault_note(&c->fault, FAULT_WIRE_BROKEN, FAULT_IN_POWER);
+	fault_note(&c->fault, FAULT_WIRE_BROKEN);
 	if (c->state == STATE_RETRACT ||
 	    (c->state == STATE_TRAVEL && walk_needs_wire(c)))
 		fault_latch(&c->fault, FAULT_WIRE_BROKEN);
@@ -24,13 +24,13 @@ static void note_machine(struct cycle *c, const struct io_inputs *in)
 	struct fault *f = &c->fault;
 
 	if (in->estop)
-		fault_note(f, FAULT_ESTOP, FAULT_ALWAYS);
+		fault_note(f, FAULT_ESTOP);
 	if (in->lost)
-		fault_note(f, FAULT_IO_LOST, FAULT_ALWAYS);
+		fault_note(f, FAULT_IO_LOST);
 	if (in->door_open)
-		fault_note(f, FAULT_DOOR, FAULT_IN_MOTION);
+		fault_note(f, FAULT_DOOR);
 	if (in->dielectric_low)
-		fault_note(f, FAULT_DIELECTRIC, FAULT_IN_POWER);
+		fault_note(f, FAULT_DIELECTRIC);
 	if (in->wire_broken || (in->plc.alive && !in->plc.wire_whole))
 		watch_wire(c);
 }
@@ -38,9 +38,9 @@ static void note_machine(struct cycle *c, const struct io_inputs *in)
 static void note_gap(struct cycle *c, const struct io_inputs *in)
 {
 	if (!c->sensed.valid && gap_is_unreadable(c, in))
-		fault_note(&c->fault, FAULT_GAP_LOST, FAULT_IN_MOTION);
+		fault_note(&c->fault, FAULT_GAP_LOST);
 	if (c->sensed.suspect)
-		fault_note(&c->fault, FAULT_GAP_STUCK, FAULT_IN_POWER);
+		fault_note(&c->fault, FAULT_GAP_STUCK);
 }
 
 void guard_look(struct cycle *c, const struct io_inputs *in)

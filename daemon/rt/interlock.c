@@ -10,15 +10,12 @@
 static const struct {
 	size_t at;			/* of its bool in struct io_plc */
 	enum cycle_fault fault;
-	enum fault_scope scope;
 } rows[] = {
-	{ offsetof(struct io_plc, no_fire), FAULT_FIRE, FAULT_ALWAYS },
-	{ offsetof(struct io_plc, door_closed), FAULT_DOOR, FAULT_IN_MOTION },
-	{ offsetof(struct io_plc, level_ok), FAULT_DIELECTRIC,
-	  FAULT_IN_MOTION },
-	{ offsetof(struct io_plc, temperature_ok), FAULT_TEMPERATURE,
-	  FAULT_IN_MOTION },
-	{ offsetof(struct io_plc, permit), FAULT_PERMIT, FAULT_IN_MOTION },
+	{ offsetof(struct io_plc, no_fire), FAULT_FIRE },
+	{ offsetof(struct io_plc, door_closed), FAULT_DOOR },
+	{ offsetof(struct io_plc, level_ok), FAULT_DIELECTRIC },
+	{ offsetof(struct io_plc, temperature_ok), FAULT_TEMPERATURE },
+	{ offsetof(struct io_plc, permit), FAULT_PERMIT },
 };
 
 #define NROWS	(sizeof(rows) / sizeof(rows[0]))
@@ -33,13 +30,16 @@ static void note(struct cycle *c)
 	const struct io_plc *p = &c->plc;
 
 	if (!p->alive) {
-		fault_note(&c->fault, FAULT_PLC_LOST, FAULT_IN_MOTION);
+		fault_note(&c->fault, FAULT_PLC_LOST);
 		return;
 	}
 	for (size_t i = 0; i < NROWS; i++) {
 		if (!is_well(p, i))
-			fault_note(&c->fault, rows[i].fault, rows[i].scope);
+			fault_note(&c->fault, rows[i].fault);
 	}
+	/* A PLC that watches the level wants it for any motion. */
+	if (!p->level_ok)
+		fault_note_in(&c->fault, FAULT_DIELECTRIC, FAULT_IN_MOTION);
 }
 
 static void command(struct cycle *c, enum cycle_verb verb, double arg)

@@ -3,24 +3,19 @@
  * clock.c - the cycle's clock
  */
 #include "clock.h"
+#include "clocks.h"
 
 #include <errno.h>
 #include <time.h>
 
 #define NS_PER_S	1000000000LL
 
-int64_t setup_now_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return t.tv_sec * NS_PER_S + t.tv_nsec;
-}
-
 void setup_clock_start(struct setup_clock *c, int64_t period_ns)
 {
+	const int64_t from = clock_ns(CLOCK_MONOTONIC) + period_ns;
+
 	c->period_ns = period_ns;
-	c->next_ns = setup_now_ns() + period_ns;
+	c->next_ns = from - from % period_ns + period_ns / 2;
 }
 
 struct setup_wake setup_clock_woke(struct setup_clock *c, int64_t now_ns)
@@ -44,7 +39,7 @@ struct setup_wake setup_clock_wait(struct setup_clock *c)
 	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due,
 			       NULL) == EINTR)
 		;
-	return setup_clock_woke(c, setup_now_ns());
+	return setup_clock_woke(c, clock_ns(CLOCK_MONOTONIC));
 }
 
 size_t setup_latency_bin(int64_t late_ns, size_t nbins)

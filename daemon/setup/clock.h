@@ -28,10 +28,14 @@ struct setup_wake {
 	uint64_t missed;		/* whole periods that went by */
 };
 
-/** setup_now_ns() - CLOCK_MONOTONIC. */
-int64_t setup_now_ns(void);
-
-/** setup_clock_start() - the first wake is one period from now. */
+/**
+ * setup_clock_start() - the first wake is half a period to one and a half from
+ * now.
+ *
+ * It is in the middle between two multiples of the period.  The kernel's tick
+ * comes at multiples of 1, 4 or 10 ms, so with the usual periods no wake has to
+ * wait for a tick.
+ */
 void setup_clock_start(struct setup_clock *c, int64_t period_ns);
 
 /** setup_clock_wait() - sleep until the next wake is due. */

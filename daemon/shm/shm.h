@@ -108,8 +108,9 @@ struct shm_snapshot {
 	/* Sums of the job. */
 	uint64_t job_cycles, erode_cycles, jump_cycles;
 	uint32_t retracts, jumps, shorts, overruns;
-	uint32_t hunts, in_row;		/* rows of retracts without progress;
-					 * the row in hand */
+	uint32_t hunts, in_row;		/* how many times many retracts came in
+					 * a row without progress; how many
+					 * there are in the present row */
 	uint32_t arcs;			/* times that the share of arcs was
 					 * above arcing_share */
 	uint32_t pad3;
@@ -120,15 +121,17 @@ struct shm_snapshot {
 	int64_t period_ns;
 	int64_t wake_late_ns, wake_late_max_ns;
 	int64_t took_ns, took_max_ns;
-	/* Of probing: pos less the program's own place, pulses; where the last
-	 * two contacts along each axis were, and which of them there are; no
-	 * way back beyond that place on the path. */
+	/* Of probing, in pulses: the shift, which is pos minus the place in the
+	 * program; where the last two contacts along each axis were; the axes
+	 * that have one contact, and those that have two.  And in mm: the place
+	 * on the path where the way back ends. */
 	int32_t shift[SHM_NAXES], found[2][SHM_NAXES];
 	uint32_t found_once, found_twice;
 	double back_mm;
-	/* For the next edmd, after a crash: pulses the drives were sent to and
-	 * those of them that homing found; the way each axis came; the drives'
-	 * own counts at pulse 0, where they are known. */
+	/* For the next edmd, after a crash: the pulses that the drives were
+	 * sent to; the part of them that homing added; the drives' own counts
+	 * at pulse 0, if they are known; the direction in which each axis moved
+	 * last. */
 	int32_t drive[SHM_NAXES], home_shift[SHM_NAXES], origin[SHM_NAXES];
 	int8_t toward[SHM_NAXES];
 	int8_t limit_side[SHM_NAXES];	/* of the switches in `limit` */
@@ -138,8 +141,9 @@ struct shm_snapshot {
 	uint64_t program_key;		/* of all bytes of the program; or 0 */
 	double override;		/* of positioning; 1: as programmed */
 	double plc_override;		/* a PLC said last; NAN: nothing yet */
-	uint32_t mcode_at;		/* segment of ... */
-	uint8_t mcode;			/* ... the M code told, not answered */
+	uint32_t mcode_at;		/* segment of `mcode` */
+	uint8_t mcode;			/* M code that was sent to the PLC and
+					 * is not answered; 0: none */
 	uint8_t homed;			/* bit per axis */
 	bool has_origin;
 	uint8_t pad2;
@@ -290,8 +294,9 @@ enum shm_answer {
 	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE,
 	/* Not of the cycle: */
 	SHM_LATE = 50,			/* came after its until_ns: not done */
-	SHM_CUT_SHORT,			/* its edmd ended over it: done or not,
-					 * the place tells */
+	SHM_CUT_SHORT,			/* edmd ended while it did it; the place
+					 * of the machine tells whether it is
+					 * done */
 	SHM_TAKEN = -1,			/* in struct shm_done: no answer yet */
 };
 
@@ -339,7 +344,9 @@ void shm_status_destroy(struct shm_status *s, const char *machine);
 /** shm_publish() - publish a whole snapshot and its trace record. RT-safe. */
 void shm_publish(struct shm_status *s, const struct shm_snapshot *snap);
 
-/** The two halves of it, for one who has more of one than of the other. */
+/** shm_snapshot_put(), shm_trace_put() - publish only one of the two, because
+ *  there is a trace record for every cycle, and a snapshot for every period of
+ *  real time. */
 void shm_snapshot_put(struct shm_status *s, const struct shm_snapshot *snap);
 void shm_trace_put(struct shm_status *s, const struct shm_trace *t);
 
@@ -399,7 +406,8 @@ int shm_status_open(const struct shm_status **ret, const char *machine);
 
 /**
  * shm_snapshot() - the last whole snapshot.  A bounded number of tries.
- * Return: false if there is none yet.  Any thread.
+ * Return: false if there is none yet, or if the writer overtook every try; one
+ * that writes once in 50 us or more cannot.  Any thread.
  */
 bool shm_snapshot(const struct shm_status *s, struct shm_snapshot *ret);
 

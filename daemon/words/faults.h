@@ -171,7 +171,7 @@ struct fault_row {
 					 * once the motion has ended, because
 					 * an axis may not be where it should
 					 * be */
-	enum fault_scope scope;
+	enum fault_scope scope;		/* a guard may name a wider one */
 	const char *what, *why;		/* half a sentence each, for people */
 	const char *clear;		/* what the operator does */
 };

@@ -54,6 +54,12 @@ enum retreat_to {
 	RETREAT_NPLACES
 };
 
+/* A time of the machine file. */
+struct cycle_time {
+	double s;			/* as the file has it */
+	uint64_t cycles;		/* config_cycle() counts them */
+};
+
 struct cycle_gap_config {
 	enum cycle_process process;
 	enum gap_source source;
@@ -87,9 +93,9 @@ struct cycle_gap_config {
 	double retract_mm_s;		/* speed of a retract */
 	enum retract_to retract_to;
 	double retract_limit_mm;	/* there it stands and waits */
-	uint64_t retract_wait_cycles;	/* after that: fault
+	struct cycle_time retract_wait;	/* after that: fault
 					 * short-not-cleared */
-	uint64_t retract_max_cycles;	/* after that: fault retract-time; 0:
+	struct cycle_time retract_max;	/* after that: fault retract-time; 0:
 					 * never */
 	uint32_t retract_escape;	/* 1: leave a short by the escape */
 	uint32_t abort_count;		/* most retracts without erosion; 0: any
@@ -106,11 +112,12 @@ struct cycle_gap_config {
 					 * known */
 	double arcing_off_max;		/* largest factor on the off time,
 					 * against arcs */
-	uint64_t arcing_recover_cycles;	/* until a step of the off time is given
-					 * back */
+	struct cycle_time arcing_recover;	/* until a step of the
+						 * off time is given
+						 * back */
 	double arcing_retract_mm;		/* least retract out of an
 						 * arc */
-	uint64_t stuck_cycles;		/* so long without a change is a fault;
+	struct cycle_time stuck;		/* so long without a change is a fault;
 					 * 0: never */
 	double noise_limit_v;		/* largest mean change in a cycle; 0:
 					 * any */
@@ -123,11 +130,11 @@ struct cycle_gap_config {
 
 struct cycle_jump_config {
 	double height_mm;		/* 0: never */
-	uint64_t every_cycles;		/* erosion between two jumps */
+	struct cycle_time every;	/* erosion between two jumps */
 	double every_mm;		/* depth between two jumps; 0: by time
 					 * alone */
 	uint32_t adaptive;		/* 1: flush.h */
-	uint64_t every_min_cycles, every_max_cycles;
+	struct cycle_time every_min, every_max;
 	double height_min_mm, height_max_mm;
 	double bad_share;		/* bad share of the time between two
 					 * jumps */
@@ -144,7 +151,7 @@ struct probe_config {
 	double fine_mm_s;		/* speed to the contact that counts */
 	double back_mm;			/* distance between them; 0: the first
 					 * counts */
-	uint64_t settle_cycles;		/* wait for the sensing voltage at
+	struct cycle_time settle;	/* wait for the sensing voltage at
 					 * first */
 };
 

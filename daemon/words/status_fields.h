@@ -4,8 +4,8 @@
  * has them
  *
  * What fills, sends, receives and prints them is made of this table.  A new
- * field is a row here and in messages/edm.lcm, a line in jobs/status.c, and in
- * shm.h and edmd/publish.c where the snapshot does not have it yet.
+ * field is a row here and in messages/edm.lcm, a line in jobs/status.c, and a
+ * line in shm.h and edmd/publish.c if the snapshot does not have it yet.
  *
  * Not in the table: when and from whom, and what is no single number or word
  * (pos_mm, faults, contour_mm and contour_predicted_mm).

@@ -140,6 +140,25 @@ int udpm_open(struct udpm **ret, const struct udpm_url *url)
 	return 0;
 }
 
+void udpm_why(const struct udpm_url *url, int err, char *to, size_t size)
+{
+	const unsigned int port = ntohs(url->group.sin_port);
+
+	if (err == -EADDRINUSE)
+		snprintf(to, size, "another program holds port %u and does not "
+			 "share it; ss -ulpn 'sport = :%u' names it; end "
+			 "it, or choose another port, in [lcm] url and "
+			 "--url",
+			 port, port);
+	else if (err == 0 || err == -ENODEV || err == -ENETUNREACH ||
+		 err == -EADDRNOTAVAIL)
+		snprintf(to, size, "this host has no way for multicast; ip "
+			 "link set lo multicast on; ip route add 224.0.0.0/4 "
+			 "dev lo");
+	else
+		snprintf(to, size, "%s", strerror(-err));
+}
+
 void udpm_close(struct udpm *u)
 {
 	if (!u)

@@ -48,6 +48,14 @@ const char *udpm_url_read(struct udpm_url *ret, const char *url);
 /** udpm_open() - join the group.  Return: 0 or -errno. */
 int udpm_open(struct udpm **ret, const struct udpm_url *url);
 
+#define UDPM_WHY_MAX	256
+
+/**
+ * udpm_why() - what @err of udpm_open() means, and what helps, in words; 0:
+ * LCM's library could not open it.
+ */
+void udpm_why(const struct udpm_url *url, int err, char *to, size_t size);
+
 /** udpm_close() - @u may be NULL. */
 void udpm_close(struct udpm *u);
 

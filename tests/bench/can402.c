@@ -29,7 +29,10 @@
 
 static struct can402_bus bus_of(uint32_t axes, bool frames)
 {
-	return (struct can402_bus) { 1000000, axes, 100, frames, frames };
+	return (struct can402_bus) {
+		.bitrate = 1000000, .axes = axes, .heartbeat_ms = 100,
+		.gap = frames, .generator = frames
+	};
 }
 
 static void load_row(double us, bool frames)

@@ -144,9 +144,10 @@ static void circle_table(void)
 	static const int radii[] = { 10, 100, 1000, 10000 };
 	static const uint32_t mus[] = { 1000, 1500, 2000, 5000 };
 
-	printf("\n## Circles\n\nOnce round, clockwise from the axis.  "
-	       "Off the circle by, in pulses.\n\n"
-	       "| radius | rule | points | inward | outward | changes |\n"
+	printf("\n## Circles\n\nEach circle is walked once, clockwise, and "
+	       "begins on an axis. *Inward* and\n*outward* are the greatest "
+	       "distances from the circle, in pulses.\n\n| radius | rule | "
+	       "points | inward | outward | changes |\n"
 	       "|---|---|---|---|---|---|\n");
 	for (size_t i = 0; i < COUNT(radii); i++) {
 		circle_row(radii[i], (struct how) { INTERP_POINT_BY_POINT, 0,
@@ -169,12 +170,13 @@ int main(void)
 		{ 5000, 4700, 3100, 1900, 800, 333 },
 	};
 
-	printf("\n## Three and more axes\n\n"
-	       "Couplings are those of `libinterp/core/pulse/couple.h`.  Share is "
-	       "how far an axis is from\nits part of the pulses given so far, "
-	       "which a tree promises; against the longest axis\nis what star "
-	       "and tube promise.  A change of axis is counted when nothing "
-	       "that moved\ngoes on.\n");
+	printf("\n## Three and more axes\n\nThe couplings are those of "
+	       "`libinterp/core/pulse/couple.h`. *Share* is how far\nan axis "
+	       "is from its part of the pulses that were given so far; a tree "
+	       "keeps\nthis small. *Against the longest axis* is how far it is "
+	       "from its part of the\npulses of the longest axis; star and "
+	       "tube keep this small. A change of axis is\ncounted where none "
+	       "of the axes that have just moved moves again.\n");
 	for (size_t i = 0; i < COUNT(lines); i++)
 		line_table(lines[i]);
 	circle_table();

@@ -233,13 +233,13 @@ int main(int argc, char **argv)
 	machine_set();
 	if (argc == 4 && strcmp(argv[1], "lines") == 0)
 		return print_lines(argv[2], atof(argv[3]));
-	printf("\n## A closed path of six axes\n\nX Y Z A B C from 0 to a NURBS "
-	       "of 16 control points that ends where it\nbegins, and along it, "
-	       "forward in one go and back by 0.0137 mm at a time.\n*Differ*: "
-	       "points met on the way back that are not those of the way there.\n"
-	       "*Deviation* is that of X Y Z along the curve.\n\n"
-	       "| strategy | degree | points | differ | deviation, most um |\n"
-	       "|---|---|---|---|---|\n");
+	printf("\n## A closed path of six axes\n\nX Y Z A B C go from 0 to a "
+	       "NURBS of 16 control points that ends where it\nbegins, and "
+	       "then along it: forward at once, and back by 0.0137 mm at a "
+	       "time.\n*Differ* is how many points of the way back are not "
+	       "points of the way there.\n*Deviation* is the greatest distance "
+	       "of X Y Z from the curve.\n\n| strategy | degree | points | "
+	       "differ | deviation, most um |\n|---|---|---|---|---|\n");
 	for (uint32_t degree = 3; degree <= 5; degree += 2) {
 		print_closed(INTERP_SIMULTANEOUS, degree);
 		print_closed(INTERP_POINT_BY_POINT, degree);
@@ -248,10 +248,11 @@ int main(int argc, char **argv)
 		print_closed(INTERP_MAIN_DIRECTION, degree);
 		print_closed(INTERP_MIN_SWITCH, degree);
 	}
-	printf("\n## A blade's section\n\n`examples/blade.ngc` as it is, and its"
-	       " curve as G1 lines, each as long as the\nchord error lets it be."
-	       "\n\n| written as | text, bytes | share | program, bytes | share "
-	       "|\n|---|---|---|---|---|\n");
+	printf("\n## A blade's section\n\nThe table compares "
+	       "`examples/blade.ngc` with its curve as G1 lines. Each line\nis "
+	       "as long as the chord error allows.\n\n| written as | text, "
+	       "bytes | share | program, bytes | share |\n"
+	       "|---|---|---|---|---|\n");
 	print_blade(argc > 1 ? argv[1] : "examples/blade.ngc");
 	return 0;
 }

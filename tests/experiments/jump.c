@@ -117,11 +117,11 @@ static struct cycle_config config_of(const struct path *p)
 			.servo_v = 40, .short_v = 15, .open_v = 70,
 			.gain_mm_s_v = 1, .feed_max_mm_s = rate,
 			.approach_mm_s = rate, .retract_mm_s = 5,
-			.retract_limit_mm = 1, .retract_wait_cycles = 1000,
+			.retract_limit_mm = 1, .retract_wait.cycles = 1000,
 		},
 		.jump = {
 			.height_mm = HEIGHT_MM,
-			.every_cycles = (uint64_t)(EVERY_S * 1e9 / PERIOD_NS),
+			.every.cycles = (uint64_t)(EVERY_S * 1e9 / PERIOD_NS),
 			.v_max_mm_s = V_MAX_MM_S, .a_max_mm_s2 = A_MAX_MM_S2,
 			.j_max_mm_s3 = J_MAX_MM_S3,
 		},
@@ -335,11 +335,12 @@ static void dense_table(void)
 	static const double mm[] = { 0.1, 0.02, 0.01, 0.005 };
 	struct path p = { .length_mm = 30, .turn = 6, .discharge_min = 0.4 };
 
-	printf("\n## Lines as CAM systems write them\n\nThree to six decimals "
-	       "along 30 mm of a circle of 5 mm, alone and with C\nturning by "
-	       "%g degrees a mm; 4000 mm/min, and back at %g mm/s.\n\n"
-	       "| axes | mm a line | decimals | there, s | back, s | there, of "
-	       "%g mm a line | s a jump |\n|---|---|---|---|---|---|---|\n",
+	printf("\n## Lines as CAM systems write them\n\nPrograms with three to "
+	       "six decimals go along 30 mm of a circle of 5 mm, alone\nand "
+	       "with C turning by %g degrees a mm, at 4000 mm/min; and back at "
+	       "%g mm/s.\n\n| axes | mm a line | decimals | there, s | back, s "
+	       "| there, of %g mm a line | s a jump |\n"
+	       "|---|---|---|---|---|---|---|\n",
 	       C_DEG_MM, V_MAX_MM_S, SPARSE_MM);
 	for (int rotary = 0; rotary < 2; rotary++) {
 		p.deg_mm = rotary ? C_DEG_MM : 0;
@@ -352,23 +353,22 @@ static void dense_table(void)
 
 static void tables(void)
 {
-	printf("# Jumps over dense programs\n\n"
-	       "Printed by `make experiments`; docs/gap-servo.md says how a "
-	       "jump is planned.\n\n"
-	       "Liang, Kang, Xu and Zhao (2017) measured what the nodes of a "
-	       "program cost a\ncontroller that stops at each of them in a "
-	       "jump: 84 min with one line, 330 min\nwith a hundred; 106 min "
-	       "with 5 lines, 139 min with 63.  The speed, the\nacceleration, "
-	       "the time between jumps and the time of discharge are not in "
-	       "the\npaper.  Those below were found to give its times and "
-	       "are given here; then our\nlook ahead has the same machine.\n\n"
-	       "Jump %g mm, %g mm/s, %g mm/s2, %g mm/s3, after every td = %g "
-	       "s of discharge, and\nno higher than the path begins.  Discharge te = %g min "
-	       "over %g mm, and %g min over %g mm.  The gap is\nideal: it "
-	       "sparks always, at a constant rate.  The text is compiled and "
-	       "the cycle\nruns in virtual time, %g us a period.  `[speed] "
-	       "nodes = stop` is the paper's\ncontroller, `pass` is ours; "
-	       "corner_um is %g.\n",
+	printf("# Jumps over dense programs\n\nPrinted by `make experiments`; "
+	       "docs/gap-servo.md says how a jump is planned.\n\nLiang, Kang, "
+	       "Xu and Zhao (2017) measured what the nodes of a program cost "
+	       "a\ncontroller that stops at each of them in a jump: 84 min "
+	       "with one line, 330 min\nwith a hundred; 106 min with 5 lines, "
+	       "139 min with 63.  The paper does not tell the speed, the "
+	       "acceleration, the time between jumps and\nthe time of "
+	       "discharge. The values below were chosen so that they give its\n"
+	       "times. Then our look-ahead has the same machine.\n\nA jump has "
+	       "%g mm, %g mm/s, %g mm/s2 and %g mm/s3. It comes after every td "
+	       "= %g\ns of discharge, and goes no higher than the beginning of "
+	       "the path. The\ndischarge takes te = %g min over %g mm, and %g "
+	       "min over %g mm. The gap is\nideal: it always sparks, at a "
+	       "constant rate. The text is compiled, and the\ncycle runs in "
+	       "virtual time with a period of %g us.  `[speed] nodes = stop` "
+	       "is the paper's\ncontroller, `pass` is ours; corner_um is %g.\n",
 	       HEIGHT_MM, V_MAX_MM_S, A_MAX_MM_S2, J_MAX_MM_S3, EVERY_S,
 	       HOLE_MIN, HOLE_MM, BLISK_MIN, BLISK_MM,
 	       PERIOD_NS * 1e-3, 5.0);

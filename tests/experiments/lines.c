@@ -234,15 +234,18 @@ static void random_lines(void)
 	static const uint32_t at[] = { 1000, 1200, 1500, 2000, 2300, 3000,
 				       5000, 10000 };
 
-	printf("\n## Random lines\n\n"
-	       "%d lines of 1000 to 9999 main pulses, any slope, seed 1; mu "
-	       "along the secondary\naxis or square to the line.  Changes of "
-	       "axis: the fewest as a share of\npoint-by-point's; bursts beside "
-	       "the fewest, mean and worst; what a program by\nmin-switch has "
-	       "beside the fewest; and the share of lines that keep a bit for\n"
-	       "each pulse, for bursts had more than %d %% of the fewest.\n\n"
-	       "| mu | measured | the fewest | bursts | worst | program | with "
-	       "bits |\n|---|---|---|---|---|---|---|\n", LINES,
+	printf("\n## Random lines\n\n%d lines of 1000 to 9999 main pulses, of "
+	       "any slope, with seed 1. The tolerance\nmu is measured along "
+	       "the secondary axis or square to the line. All columns are\n"
+	       "about changes of axis. *The fewest* is a share of what "
+	       "point-by-point needs.\n*Bursts* is how many the bursts need "
+	       "for each one of the fewest, the mean of\nall lines, and "
+	       "*worst* is the worst line. *Program* is the same for a "
+	       "program\ncompiled with min-switch. *With bits* is the share of "
+	       "lines that store one bit\nfor each pulse, because their bursts "
+	       "needed more than %d %% of the fewest.\n\n| mu | measured | the "
+	       "fewest | bursts | worst | program | with bits |\n"
+	       "|---|---|---|---|---|---|---|\n", LINES,
 	       BUILD_BITS_ENOUGH);
 	for (int square = 0; square < 2; square++) {
 		for (size_t i = 0; i < COUNT(at); i++)
@@ -252,18 +255,19 @@ static void random_lines(void)
 
 int main(void)
 {
-	printf("# Pulse-increment rules, counted\n\n"
-	       "Printed by `make experiments`; every figure is counted on "
-	       "whole walks.\n\n"
-	       "## Two axes, lines of 10000 main pulses\n\n"
-	       "The rules are those of `libinterp/core/pulse/pair.h`; the fewest "
-	       "there can be is\n`libinterp/compile/pulse/greedy.h`, planned with a "
-	       "list of runs.  *Main direction as printed*\nis the paper's "
-	       "rule judged at the present point, each axis stopped at its "
-	       "total;\n`main-direction` judges the point after the next "
-	       "pulse.  Deviation is along the\nsecondary axis, in pulses.  "
-	       "A star marks a tolerance no walk of one axis at a\ntime can "
-	       "keep to: the builder refuses it.\n");
+	printf("# Pulse-increment rules, counted\n\n`make experiments` prints "
+	       "this page. Every figure is counted on whole walks, so\nit is "
+	       "the same on every machine.\n\n## Two axes, lines of 10000 main "
+	       "pulses\n\nThe rules are those of "
+	       "`libinterp/core/pulse/pair.h`. *The fewest there can be*\nis "
+	       "counted by `libinterp/compile/pulse/greedy.h`, which plans a "
+	       "list of runs.\n*Main direction as printed* is the rule of the "
+	       "paper: it judges the present\npoint, and each axis stops when "
+	       "it has given all its pulses. `main-direction`\njudges the "
+	       "point after the next pulse. The deviation is measured along "
+	       "the\nsecondary axis, in pulses. A star marks a tolerance that "
+	       "no walk of one axis at\na time can keep; the builder refuses "
+	       "it.\n");
 	for (int rule = PBP; rule <= GREEDY; rule++)
 		table("Changes of axis", (enum rule)rule, print_changes);
 	for (int rule = PBP; rule <= GREEDY; rule++)

@@ -70,19 +70,20 @@ static void removal_table(void)
 {
 	const double tau_min = (MINUTES_2 - VOLUME_2 / RATE_ALONE) / 20000;
 
-	printf("\n## Removal rate, tables 4 and 5\n\n"
-	       "T = V/Q + tau*S: V the volume, Q = %g mm3/min the rate of one "
-	       "axis alone, S the\nchanges of axis on the net path, tau = "
-	       "%.1f ms, from one figure, the two-axis time\nof "
-	       "point-by-point.  Its three-axis rate then follows within 1 %%. "
-	       " The paper's rule\nas printed has as many changes as "
-	       "point-by-point and cannot give the published\n11.73 and "
-	       "11.26; half the changes can.  Rates in mm3/min.\n\n"
-	       "| rule | S, two axes | S, three | rate, two axes | rate, three "
-	       "|\n|---|---|---|---|---|\n"
-	       "| measured, one axis | 0 | 0 | 12.75 | 12.75 |\n"
-	       "| measured, point-by-point | | | 10.87 | 10.06 |\n"
-	       "| measured, the paper's rule | | | 11.73 | 11.26 |\n",
+	printf("\n## Removal rate, tables 4 and 5\n\nThe time is T = V/Q + "
+	       "tau*S. V is the volume, Q = %g mm3/min is the rate with\none "
+	       "axis alone, and S is the number of changes of axis on the net "
+	       "path. tau =\n%.1f ms follows from one figure, the time of "
+	       "point-by-point with two axes. From\nthis tau, the rate of "
+	       "point-by-point with three axes follows within 1 %%. The\nrule "
+	       "of the paper, as it is printed, has as many changes as "
+	       "point-by-point. So\nit cannot give the published rates of "
+	       "11.73 and 11.26, but half as many changes\nwould give them. "
+	       "Rates are in mm3/min.\n\n| rule | S, two axes | S, three | "
+	       "rate, two axes | rate, three |\n|---|---|---|---|---|\n| "
+	       "measured, one axis | 0 | 0 | 12.75 | 12.75 |\n| measured, "
+	       "point-by-point | | | 10.87 | 10.06 |\n| measured, the paper's "
+	       "rule | | | 11.73 | 11.26 |\n",
 	       RATE_ALONE, tau_min * 60000);
 	printf("| half the changes of point-by-point | 10000 | 15000 | %.2f | "
 	       "%.2f |\n", rate(VOLUME_2, 10000, tau_min),
@@ -184,15 +185,15 @@ static void efficiency_table(void)
 {
 	const struct fit f = fit_times();
 
-	printf("\n## Linkage efficiency, tables 2 and 3\n\n"
-	       "t = L/v + c with 1/v = %.6f s/mm and c = %.3f s, fitted to the "
-	       "twelve times of table\n2.  One pulse at a time L is the sum "
-	       "of the pulses walked, together it is the path at\nthe same "
-	       "path speed.  The loss the paper measured is that ratio, and "
-	       "no rule of one\naxis at a time can avoid it.  Seconds, and in "
-	       "brackets the efficiency in %%, the\nsingle axis of equal "
-	       "length being 100.  mu is 2.\n\n"
-	       "| row, mm | measured s | measured %% |", f.s_mm, f.s);
+	printf("\n## Linkage efficiency, tables 2 and 3\n\nThe time is t = L/v "
+	       "+ c, where 1/v = %.6f s/mm and c = %.3f s are fitted to the\n"
+	       "twelve times of table 2. If the axes pulse one at a time, L is "
+	       "the sum of all\npulses; if they pulse together, L is the "
+	       "length of the path. The loss that the\npaper measured is the "
+	       "ratio of the two, and no rule that moves one axis at a\ntime "
+	       "can avoid it. The cells have seconds and, in brackets, the "
+	       "efficiency in\n%%: a single axis that goes the same length has "
+	       "100. mu is 2.\n\n| row, mm | measured s | measured %% |", f.s_mm, f.s);
 	for (int s = 0; s < INTERP_NSTRATEGIES; s++)
 		printf(" %s |", interp_strategy_name((enum interp_strategy)s));
 	printf("\n|---|---|---|");

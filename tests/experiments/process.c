@@ -424,7 +424,7 @@ static void bridge(void)
 static void wire(void)
 {
 	static const double offs[] = { 10, 20, 50 };
-	const double raised = 100000;
+	const double raised = 1e7;
 
 	printf("gap_um off10 off20 off50\n");
 	for (double um = 5; um <= 30; um += 1) {
@@ -433,7 +433,7 @@ static void wire(void)
 			struct rig r = plain();
 			int breaks = 0;
 
-			r.k.sim.process = SIM_WIRE;
+			r.k.sim.process = PROCESS_WIRE;
 			r.k.sim.off_us = offs[i];
 			r.k.sim.debris_per_mm = 0;
 			r.k.sim.rethread_s = 0;
@@ -444,7 +444,7 @@ static void wire(void)
 				breaks += r.in.wire_broken;
 				r.out.power = !r.in.wire_broken;
 			}
-			printf(" %.4f", breaks / raised / (100. / 3600));
+			printf(" %.3e", breaks / raised / (100. / 3600));
 			rig_close(&r);
 		}
 		printf("\n");

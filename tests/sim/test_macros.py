@@ -8,7 +8,7 @@ import shutil
 import subprocess
 
 import pytest
-from edmsim import PROGRAM, ROOT, run, seeded
+from edmsim import PROGRAM, ROOT, done, run, seeded
 
 RS274 = shutil.which("rs274")
 MACROS = ROOT / "tests/data/macros"
@@ -172,6 +172,40 @@ REFUSED = [
     ("linuxcnc", "G0 X[" + "[" * 40 + "1\n", b"brackets inside each other"[:8]),
     ("generic", "G0 X[1]\n", b":1:4: error: X[1] is not a word"),
 ]
+
+
+# Fanuc's argument specification I, letter by letter, and II.
+FIRST = dict(A=1, B=2, C=3, D=7, E=8, F=9, H=11, I=4, J=5, K=6, M=13, Q=17,
+             R=18, S=19, T=20, U=21, V=22, W=23, X=24, Y=25, Z=26)
+SECOND = [("A", 1), ("B", 2), ("C", 3)] + [("IJK"[n % 3], 4 + n)
+                                          for n in range(30)]
+
+
+def emitted(text):
+    return [row.split()[-1] for row in done(
+        "--machine", ROOT / "examples/machine.ini", "--dialect",
+        "fanuc-sinker", "--emit", "iso", text=text).stdout.decode()
+        .splitlines() if " X" in row]
+
+
+@pytest.mark.parametrize("words", [list(FIRST.items()), SECOND])
+def test_each_argument_fills_its_variable(words):
+    call = " ".join(f"{letter}{10 + n}." for letter, n in words)
+    text = f"G90 G21\nG0 X1.\nG65 P9010 {call}\nM30\nO9010\n" + \
+        "".join(f"X[#{n} + {n}]\n" for _, n in words) + "M99\n"
+    assert emitted(text) == ["X1"] + [f"X{10 + 2 * n}" for _, n in words]
+
+
+def test_of_two_values_for_one_variable_the_later_one_counts():
+    """The example of Fanuc's manual for mixed specifications."""
+    assert emitted("G90 G21\nG65 P1 A1. B2. I-3. I4. D5.\nM30\nO1\n"
+                   "G0 X#1\nX#2\nX#4\nX#7\nM99\n") == \
+        ["X1", "X2", "X-3", "X5"]
+
+
+def test_a_macro_is_gone_through_again_with_what_it_has_left():
+    assert emitted("G90 G21\nG65 P1 L3 A5.\nG65 P1 A1.\nM30\nO1\n"
+                   "G0 X#1\n#1 = #1 + 1\nM99\n") == ["X5", "X6", "X7", "X1"]
 
 
 @pytest.mark.parametrize("dialect, text, said", REFUSED)

@@ -128,7 +128,7 @@ def ends_of_rs274(tmp_path, text):
     r = subprocess.run([RS274, "-v", "rs274.var", "-g", "job.ngc"],
                        cwd=tmp_path, capture_output=True, text=True,
                        timeout=60)
-    assert "STRAIGHT_FEED" in r.stdout, r.stderr
+    assert "_FEED(" in r.stdout, r.stderr
     unit, plane, ends = 1.0, 17, []
     offset = {"SET_G5X_OFFSET": [0] * 3, "SET_G92_OFFSET": [0] * 3}
     for call, args in CALL.findall(r.stdout):

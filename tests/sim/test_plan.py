@@ -221,6 +221,23 @@ def test_bodies_in_two_units_are_asked_about(tmp_path):
     assert r.returncode == 65 and "--unit inch" in r.stderr
 
 
+def test_bodies_in_inches_are_asked_about(channel, tmp_path):
+    """At 2 mm they are not too small for a body, but not in each other."""
+    for name in ("part", "electrode"):
+        data = bytearray((channel / (name + ".stl")).read_bytes())
+        for i in range(84, len(data), 50):
+            at = struct.unpack_from("<9f", data, i + 12)
+            struct.pack_into("<9f", data, i + 12, *[v / 25.4 for v in at])
+        (tmp_path / (name + ".stl")).write_bytes(data)
+    for name in ("machine.ini", "dense.ngc"):
+        (tmp_path / name).write_bytes((channel / name).read_bytes())
+    out = tmp_path / "way.ngc"
+    r = plan(*args(tmp_path, "--clearance", "0.3", "--output", out,
+                   tmp_path / "dense.ngc"))
+    assert r.returncode == 65 and "--unit" in r.stderr, r.stderr
+    assert not out.exists()
+
+
 @pytest.mark.parametrize("cut", [0, 40, 83, 84, 130, -1, -50])
 def test_a_file_cut_short_is_refused(tmp_path, cut):
     check_boxes(tmp_path, BESIDE, TOOL)

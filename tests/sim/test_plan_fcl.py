@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Distances of edm-plan against those of FCL, another implementation."""
+"""Distances of edm-plan against those of FCL, another implementation; and those
+of FCL against all pairs of triangles."""
 import math
 import os
 import random
@@ -15,14 +16,19 @@ TOP = Path(__file__).resolve().parents[2]
 TABLE = np.array((0.0, 0.0, -60.0))     # examples/channel.py
 
 
-def model(path):
+def triangles(path):
     raw = Path(path).read_bytes()
     n = struct.unpack_from("<I", raw, 80)[0]
-    tris = np.array([struct.unpack_from("<9f", raw, 84 + 50 * i + 12)
-                     for i in range(n)]).reshape(-1, 3)
+    return np.array([struct.unpack_from("<9f", raw, 84 + 50 * i + 12)
+                     for i in range(n)]).reshape(-1, 3, 3)
+
+
+def model(path):
+    at = triangles(path).reshape(-1, 3)
+    n = len(at) // 3
     m = fcl.BVHModel()
     m.beginModel(n, 3 * n)
-    m.addSubModel(tris, np.arange(3 * n).reshape(-1, 3))
+    m.addSubModel(at, np.arange(3 * n).reshape(-1, 3))
     m.endModel()
     return m
 
@@ -74,3 +80,65 @@ def test_distances_are_those_of_fcl(tmp_path):
         assert abs(mine - max(theirs, 0)) < 1e-5, q
         apart += mine > 0
     assert apart > 20 and apart < len(poses)
+
+
+def dot(a, b):
+    return np.einsum("...i,...i->...", a, b)
+
+
+def edges_apart(p, q, r, s):
+    """Squared distances of segments p q from segments r s, all with all."""
+    p, q, r, s = p[:, None], q[:, None], r[None], s[None]
+    u, v, w = q - p, s - r, p - r
+    a, b, c, d, e = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
+    det = a * c - b * b
+    x = np.where(det > 1e-12 * a * c, np.clip(
+        (b * e - c * d) / np.where(det > 0, det, 1), 0, 1), 0)
+    y = np.clip((b * x + e) / c, 0, 1)
+    x = np.clip((b * y - d) / a, 0, 1)
+    gap = w + x[..., None] * u - y[..., None] * v
+    return dot(gap, gap)
+
+
+def corners_apart(at, tri):
+    """Squared distances of points from triangles over which they are."""
+    a, b, c = tri[None, :, 0], tri[None, :, 1], tri[None, :, 2]
+    n = np.cross(b - a, c - a)
+    p = at[:, None]
+    over = np.ones((len(at), len(tri)), bool)
+    for u, v in ((a, b), (b, c), (c, a)):
+        over &= dot(np.cross(v - u, p - u), n) >= 0
+    return np.where(over, dot(p - a, n) ** 2 / dot(n, n), np.inf)
+
+
+def brute(part, tool):
+    """All pairs of triangles.  Only for bodies that do not meet."""
+    least = min(corners_apart(part.reshape(-1, 3), tool).min(),
+                corners_apart(tool.reshape(-1, 3), part).min())
+    for i in range(3):
+        for k in range(3):
+            least = min(least, edges_apart(
+                part[:, i], part[:, (i + 1) % 3], tool[:, k],
+                tool[:, (k + 1) % 3]).min())
+    return math.sqrt(least)
+
+
+def test_distances_of_fcl_are_those_of_brute_force(tmp_path):
+    subprocess.run([TOP / "examples/channel.py", tmp_path, "--rings", "8",
+                    "--around", "12", "--nodes", "12"], check=True)
+    part, tool = tmp_path / "part.stl", tmp_path / "electrode.stl"
+    still, moving = triangles(part), triangles(tool)
+    fixed, body = fcl.CollisionObject(model(part), fcl.Transform()), model(tool)
+    draw, apart = random.Random(4).uniform, 0
+    for _ in range(25):
+        q = [draw(-40, 40), draw(-40, 40), draw(-40, 40), draw(-70, 70),
+             draw(-70, 70), draw(-180, 180)]
+        rot, shift = pose(q)
+        theirs = fcl.distance(fixed, fcl.CollisionObject(
+            body, fcl.Transform(rot, shift)), fcl.DistanceRequest(),
+            fcl.DistanceResult())
+        if theirs <= 0:
+            continue
+        apart += 1
+        assert abs(theirs - brute(still, moving @ rot.T + shift)) < 1e-5, q
+    assert apart > 5

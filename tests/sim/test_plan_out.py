@@ -35,7 +35,7 @@ def bodies(tmp_path):
 def args(d, *more):
     return ["--part", d / "part.stl", "--electrode", d / "electrode.stl",
             "--machine", d / "m.ini", "--chord", "0", "--clearance", "0.1",
-            *more]
+            "--any-size", *more]
 
 
 def test_a_turn_of_whole_degrees_is_no_condition(bodies):

@@ -34,12 +34,16 @@ offset_1_mm = 0.14
 # The file's name begins with its dialect.  What generic says of it first (None:
 # it takes it), and what is ignored or mentioned in its own.
 FILES = {
+    "3b.3b": ("B", []),
+    "4b.4b": ("B5000 behind a :", []),
     "agievision.iso": ("G71", []),
+    "charmilles-cmd.iso": (None, []),
     "charmilles-robofil.iso": ("G38", ["G60", "G38", "G39"]),
     "fanuc-sinker-fusion.nc": ("G80", ["G80", "T01", "M06", "M03", "G43"]),
     "fanuc-sinker-helman.nc": ("G80", ["T1", "M6", "G80", "M3", "G43"]),
     "fanuc-wire-taper.nc": ("I30.", ["G92", "M60", "M50"]),
     "fanuc-wire.nc": ("M78", ["M78", "M82", "M60", "M50", "M79"]),
+    "generic-gcodetools.ngc": (None, []),
     "heekscnc.ngc": ("G43", ["G43", "T1", "M06", "M03", "X-5"]),
     "linuxcnc-pcb.ngc": ("G64", ["lengths", "G64", "T1", "M6", "M3"]),
     "linuxcnc-plasma.ngc": ("G64", ["G64", "M52", "M68", "G10", "X10", "M3",
@@ -51,8 +55,9 @@ FILES = {
     "sodick-sinker.nc": (None, ["M05"]),
     "sodick-wire.nc": ("'='", ["Q", "G92", "G29", "T94"]),
 }
-DIALECTS = ["agievision", "charmilles-robofil", "fanuc-sinker", "fanuc-wire",
-            "heekscnc", "linuxcnc", "makino", "mastercam-wire",
+DIALECTS = ["3b", "4b", "agievision", "charmilles-cmd", "charmilles-robofil",
+            "fanuc-sinker", "fanuc-wire", "generic", "heekscnc", "linuxcnc",
+            "makino", "mastercam-wire",
             "sodick-sinker", "sodick-wire"]
 
 
@@ -68,8 +73,8 @@ def wire(tmp_path_factory):
 
 
 def check(name, dialect, wire):
-    sinks = dialect_of(name) in ("fanuc-sinker", "heekscnc", "linuxcnc",
-                                 "sodick-sinker")
+    sinks = dialect_of(name) in ("charmilles-cmd", "fanuc-sinker", "generic",
+                                 "heekscnc", "linuxcnc", "sodick-sinker")
     machine = ROOT / "examples/machine.ini" if sinks else wire
     return run("--machine", machine, "--dialect", dialect, "--check",
                POSTS / name)
@@ -88,7 +93,8 @@ def test_generic_says_what_a_word_means_elsewhere(name, wire):
     else:
         assert r.returncode == 65
         assert f"error: {word}".encode() in r.stderr or \
-            f"unknown word {word}".encode() in r.stderr, r.stderr
+            f"unknown word {word}".encode() in r.stderr or \
+            f"a second word {word}".encode() in r.stderr, r.stderr
 
 
 @pytest.mark.parametrize("name", FILES)

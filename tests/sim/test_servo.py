@@ -44,7 +44,7 @@ def test_an_integral_holds_the_gap_nearer_to_the_servo_voltage(cut, tmp_path):
 def test_the_window_is_where_the_gap_works(cut, tmp_path):
     trace = tmp_path / "t.csv"
     v = []
-    for high in (20, 26):
+    for high in (27, 33):
         cut(f"[gap]\nwindow_high_v = {high}\n", "--trace", trace)
         v.append(mean_erode_v(trace))
     assert 4 < v[1] - v[0] < 8

@@ -74,3 +74,11 @@ def test_the_trace_has_what_was_measured(tmp_path):
     off = [abs(float(r[sent]) - float(r[is_])) for r in rows]
     assert 0.1 < max(off) < 10     # it lags behind
     assert len(head) == len(rows[0])
+
+
+@pytest.mark.parametrize("option", ["--trace", "--pulses", "--report"])
+def test_a_full_disk_is_named(option):
+    r = said("--machine", ROOT / "examples/machine.ini", "--quiet", "--dry-run",
+             option, "/dev/full", CAVITY)
+    assert r.returncode != 0
+    assert "/dev/full: No space left on device" in r.stderr, r.stderr

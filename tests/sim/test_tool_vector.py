@@ -204,6 +204,20 @@ def test_a_body_goes_back_as_it_came(tmp_path):
     assert at[2 * n:] == at[:n + 1]
 
 
+@pytest.mark.parametrize("off", ["0.1", "0.02", "0.005", "0.0001", "0"])
+def test_from_a_pole_it_goes_in_any_direction(tmp_path, off):
+    """C jumps at the pole, by however little, and turns there in place."""
+    ini = INI.replace("C(0 0 -120) A(0 15 -80) X Y Z",
+                      "C(0 0 -120) X Y Z B(0 0 10)").replace(
+        "[axis.B]\npresent = no", "[axis.B]\nv_max_mm_s = 30")
+    (tmp_path / "m.ini").write_text(ini)
+    r = run("--dry-run", "--limit-s", "200", "--machine",
+            tmp_path / "m.ini", text="G43.5\nF6000\nG1 X0 Y0 Z0 I0 J0 K1\n"
+            f"G1 X-10 Y0 I-0.3 J{off} K1\nG1 X10 Y0 I0.3 J{off} K1\nG49\n"
+            "M2\n")
+    assert r.returncode == 0, r.stderr
+
+
 @pytest.mark.parametrize("text, column, told", [
     ("G43.5\nF120\nG1 X1 A5\n", 7, "G43.4 for angles"),
     ("G43.5\nF120\nG1 X1 I0 J0 K0\n", 1, "a direction of length 0"),

@@ -3,12 +3,14 @@
 
 EDM_SEED repeats a run, EDM_RUNS says how many.
 """
+import math
 import os
 import random
 
 import pytest
 import shapely
 from edmsim import run, seeded
+from shapely.geometry import LinearRing
 from test_wire_taper import BOUND_MM, HEIGHT, WIRE, job_of, planes, rows_of
 from wire_faces import Faces
 
@@ -63,12 +65,13 @@ M2
 
 # The taper carries the faces 0.7 mm inward, 1 degree over 40 mm.
 RIBS = [
-    ("G51 A1", 11, 18, "the faces of lines 7 and 9"),  # too thin
-    ("G51 A1", 10.2, 15.2, "the faces of lines 7 and 9"),
+    ("G51 A1", 11, 18, "the faces of lines 7 and 10"),  # too thin
+    ("G51 A1", 10.2, 15.2, "the faces of lines 7 and 10"),
     ("G51 A1", 15, 15.3, None),                         # lower than they move
     ("G51 A1", 15, 18, None),                           # thick
-    ("G52 A1", 11, 12, "the faces of lines 7 and 9"),  # a slot that closes
+    ("G52 A1", 11, 12, "the faces of lines 7 and 10"),  # a slot that closes
     ("G52 A1", 15, 12, None),
+    ("G52 A1", 11, 14.5, "the faces of lines 7 and 10"),  # lower than they move
 ]
 
 
@@ -78,6 +81,27 @@ def test_what_is_left_of_a_rib_or_a_slot_above(taper, right, tip, found):
     r = run("--machine", WIRE, "--check", text=text)
     assert (r.returncode == 65) == bool(found), r.stderr
     assert not found or found in r.stderr.decode(), r.stderr
+
+
+def test_an_edge_makes_a_short_face_long_enough_for_its_inner_corner():
+    """The face of line 9 is shorter than it moves; that of line 8 gives it the
+    length that it needs to meet the face of line 10."""
+    text = """F200 H1=0.5
+G0 X10 Y-6
+G42 H1 G51 A-3 G1 X10 Y0
+X20
+G51 A3 Y15
+G51 A1 X11.101
+G51 A2 Y16.623
+G51 A-1 X10
+G51 A-3 Y15
+X0
+G51 A3 Y0
+G51 A-3 X10
+G40 G50 Y-6
+M2
+"""
+    assert run("--machine", WIRE, "--check", text=text).returncode == 0
 
 
 def test_a_hole_inside_the_part_above_is_no_place_to_begin():
@@ -110,3 +134,34 @@ M2
     for deep, code in ((-0.013, 0), (-0.05, 65)):
         r = run("--machine", WIRE, "--check", text=text.format(deep=deep))
         assert r.returncode == code, r.stderr
+
+
+def rounded(radius, wave, chord):
+    """A wavy circle as chords, its places to a micrometre."""
+    n = int(2 * math.pi * radius / chord)
+    at = [2 * math.pi * i / n for i in range(n)]
+    return [(round(r * math.cos(a), 3), round(r * math.sin(a), 3))
+            for a in at for r in [radius + wave * math.sin(6 * a)]]
+
+
+@pytest.mark.parametrize("word,radius,chord", [
+    ("G52 A1", 2, 0.01), ("G51 A1", 2, 0.005), ("G51 A1", 3.1, 0.01),
+    ("G52 A1", 3.1, 0.02)])
+def test_chords_that_are_short_against_their_rounding(word, radius, chord):
+    """Moved by 0.7 mm, they lie on each other and cross hundreds of times."""
+    pts = rounded(radius, 0.02, chord)
+    out = [f"F200 H1=0.125\nG0 X{radius + 5} Y0",
+           f"G42 H1 {word} G1 X{pts[0][0]:.3f} Y{pts[0][1]:.3f}"]
+    out += [f"X{x:.3f} Y{y:.3f}" for x, y in pts[1:] + pts[:1]]
+    text = "\n".join(out + [f"G40 G50 X{radius + 5} Y0", "M2", ""])
+    rows = rows_of(text)
+    on = (rows[:, 0] >= 4) & (rows[:, 0] <= len(pts) + 3)
+    ring = LinearRing(pts)
+    slope = math.tan(math.radians(1))
+    wire = 0.125 * math.hypot(1, slope)
+    shift = HEIGHT * slope * (1 if word.startswith("G52") else -1)
+    for plane, by in zip(planes(rows), (0, shift)):
+        off = shapely.distance(shapely.points(plane[on][:, 1:][::7]), ring)
+        want = abs(wire + by)
+        assert off.min() > want - BOUND_MM - 0.002
+        assert off.max() < want + BOUND_MM + 0.01

@@ -96,3 +96,25 @@ def test_contours_of_one_program_are_each_judged_for_themselves(plain):
             path = affinity.translate(path_of(ways[a + 2:b - 1]), -40 * n)
             assert path.distance(c.poly.exterior) >= c.offset - BOUND_MM, about
             assert c.left_by(path) < BOUND_MM, about
+
+
+SQUARE = "X20\nY15\nX0\nY0\nX5\n"
+
+
+@pytest.mark.parametrize("hole,lead,end,found", [
+    ("X5 Y0", "G1 X5 Y0", "Y-8", "a lead of 0.0000 mm"),
+    ("X5 Y-0.1", "G1 X5 Y0", "Y-8", "a lead of 0.1000 mm"),
+    ("X5 Y0.05", "G1 X5 Y0", "Y-8", "a lead of 0.0500 mm"),
+    # Along the outline, not through it.
+    ("X12 Y0", "G1 X5 Y0", "Y-8", "a lead that comes within 0.0000 mm"),
+    ("X5 Y-8", "G1 X5 Y0", "X12 Y0", "a lead that comes within 0.0000 mm"),
+    ("X5 Y-8", "G1 X5 Y0", "Y-0.05", "a lead of 0.0500 mm"),
+    # Through it, as it is programmed.
+    ("X5 Y4", "G1 X5 Y0", "Y4", None),
+])
+def test_leads_from_odd_places(hole, lead, end, found):
+    text = f"G90 F200 H1=0.125\nG0 {hole}\nG42 H1\n{lead}\n{SQUARE}" \
+        f"G40 {end}\nM2\n"
+    r = run("--check", text=text)
+    assert r.returncode == (65 if found else 0), r.stderr
+    assert not found or found in r.stderr.decode(), r.stderr

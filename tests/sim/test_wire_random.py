@@ -4,14 +4,15 @@
 EDM_SEED repeats a run, EDM_RUNS says how many contours; `make wire-random`
 tries ten thousand.
 """
+import math
 import os
 import random
 
 import pytest
-from edmsim import done, run, seeded
+from edmsim import ROOT, done, run, seeded
 from shapely.geometry import LineString, Point
 from wire_contours import Contour
-from wire_oracle import UM, path_of, read_iso
+from wire_oracle import UM, path_of, read_iso, write_job
 
 RUNS = int(os.environ.get("EDM_RUNS", 120))
 
@@ -77,6 +78,30 @@ def test_4b_records_are_the_same_way_again(plain):
         again = emitted(plain, "iso", back, "--dialect", "4b")
         again = path_of([("G1", *w[1:]) for w in read_iso(again)][1:])
         assert way.hausdorff_distance(again) < 2.5 * UM, back
+
+
+@pytest.mark.parametrize("form", ["3b", "4b", "iso"])
+def test_nothing_comes_out_of_what_records_have_no_word_for(form):
+    r = run("--machine", ROOT / "examples/wire.ini", "--emit", form,
+            ROOT / "examples/wire-plate.ngc")
+    assert r.returncode == 65 and r.stdout == b""
+    assert b"two contours at once" in r.stderr
+
+
+@pytest.mark.parametrize("offset,code", [(2, 0), (2.84, 65), (3, 65)])
+def test_a_wire_begun_inside_a_spiral_does_not_leave_the_rest_out(
+        plain, offset, code):
+    """A wall wound up with 5.68 mm between its turns; the hole lies at its
+    inner end."""
+    wall = [(r + a, a) for r, turns in ((2, 1), (1.4, -1))
+            for a in [i / 10 for i in range(126)][::turns]]
+    ring = [(round(r * math.cos(a), 4), round(r * math.sin(a), 4), None)
+            for r, a in wall]
+    text = write_job((1.7, 0), (1.7, -0.01 - offset), [*ring, (1.7, 0, None)],
+                     "G42", offset)
+    r = run("--machine", plain, "--check", text=text)
+    assert r.returncode == code, r.stderr
+    assert not code or b"a width of" in r.stderr or b"no room" in r.stderr
 
 
 CURVES = [

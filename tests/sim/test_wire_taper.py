@@ -380,3 +380,54 @@ M2
     for y, at in zip((0, lean), planes(rows_of(text))):
         on = at[(at[:, 0] == 6)][5:-5]
         assert np.abs(y - on[:, 2] - wire).max() < 2.5 * UM
+
+
+@pytest.mark.parametrize("dialect", ["sodick-wire", "chmer", "fanuc-wire"])
+def test_g92_may_say_how_the_wire_stands(dialect):
+    text = "G92 X5. Y0. U{}. V0.\nG90 G01 X10. U1. F5.\nG92 X0. U1.\nM02\n"
+    for u, code in ((0, 0), (2, 65)):
+        r = run("--machine", WIRE, "--dialect", dialect, "--check",
+                text=text.format(u))
+        assert r.returncode == code, r.stderr
+        assert not code or b"G92 with U or V" in r.stderr
+
+
+BEZIER = [(10, 0), (16, 0), (20, 4), (20, 10)]
+NURBS = "\n".join(["G6.2 P4 K0 X10 Y0", "K0 X16 Y0", "K0 X20 Y4",
+                   "K0 X20 Y10", "K1", "K1", "K1", "K1"])
+
+
+@pytest.mark.parametrize("word", ["G5 X20 Y10 I6 J0 P0 Q-6", NURBS])
+@pytest.mark.parametrize("taper,side", [("G51 A1", -1), ("G52 A1", 1)])
+def test_a_curve_leans_with_an_offset_and_corner_control(word, taper, side):
+    text = f"""F200 H1=0.125
+G0 X5 Y-5
+G42 H1 {taper}
+G1 X5 Y0
+X10
+{word}
+G1 Y20
+X0
+Y0
+X5
+G40 G50 Y-5
+M2
+"""
+    rows = rows_of(text)
+    n = word.count("\n") + 1
+    curve = []
+    for i in range(2001):
+        t = i / 2000
+        w = (1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t ** 3
+        curve.append(tuple(sum(k * p[j] for k, p in zip(w, BEZIER))
+                           for j in (0, 1)))
+    curve = LineString(curve)
+    slope = math.tan(math.radians(1))
+    wire = 0.125 * math.hypot(1, slope)
+    on = (rows[:, 0] >= 6) & (rows[:, 0] < 6 + n)
+    for at, by in zip(planes(rows), (0, side * HEIGHT * slope)):
+        off = shapely.distance(shapely.points(at[on][::5, 1:]), curve)
+        assert np.abs(off - abs(wire + by)).max() < BOUND_MM
+    # Three corners of the contour and two of the leads; none on the curve.
+    r = run("--machine", WIRE, "--report", "-", "--check", text=text)
+    assert b"dwells     5, 0.500 s" in r.stdout

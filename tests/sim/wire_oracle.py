@@ -107,16 +107,27 @@ def rise_of(pts, side):
     return (heading - np.minimum.accumulate(heading)).max()
 
 
-def turn_at(way, at, side):
+def turn_at(way, at, side, reach):
     """The turn of a ring about one of its places."""
-    s, reach = way.project(Point(at)), 2 * UM
+    s = way.project(Point(at))
     p = [np.array(way.interpolate((s + d) % way.length).coords[0])
          for d in (-reach, 0, reach)]
     a, b = p[1] - p[0], p[2] - p[1]
     return math.atan2(a[0] * b[1] - a[1] * b[0], a @ b) * side
 
 
-def left_out(poly, way, offset, inside):
+def places_of(ring, way):
+    """Places along a ring, and those that the way comes nearest to in the middle
+    of each of its edges: it may touch the ring over less than a micrometre."""
+    corners = np.asarray(way.coords)
+    mid = shapely.points((corners[:-1] + corners[1:]) / 2)
+    even = shapely.points(np.asarray(shapely.segmentize(ring, 0.02).coords)[:-1])
+    at = np.unique(np.concatenate([shapely.line_locate_point(ring, even),
+                                   shapely.line_locate_point(ring, mid)]))
+    return shapely.get_coordinates(shapely.line_interpolate_point(ring, at))
+
+
+def left_out(poly, way, offset, inside, about=2 * UM):
     """Stretches of the contour that a wire on the way does not come to, each
     (how far off it is, the turn of the way there, the most by which the
     contour turns inward)."""
@@ -124,7 +135,7 @@ def left_out(poly, way, offset, inside):
     if not ring.is_ccw:
         ring = LinearRing(list(ring.coords)[::-1])
     side = 1 if inside else -1
-    pts = np.asarray(shapely.segmentize(ring, 0.02).coords)[:-1]
+    pts = places_of(ring, way)
     far = shapely.distance(shapely.points(pts), way)
     if far.min() > offset + TOUCHED:
         return [(math.inf, math.pi, math.pi)]
@@ -139,21 +150,25 @@ def left_out(poly, way, offset, inside):
         # The wire stands as near as it can to both ends of it.
         both = np.hypot(*(corners - run[0]).T) + \
             np.hypot(*(corners - run[-1]).T)
-        ret.append((far[a:b].max(), turn_at(way, corners[both.argmin()], side),
+        ret.append((far[a:b].max(), turn_at(way, corners[both.argmin()], side, about),
                     rise_of(run, side)))
     return ret
 
 
-def can_be_cut(poly, offset, inside, at, hidden=2 * UM, more=0):
+def can_be_cut(poly, offset, inside, at, hidden=2 * UM, more=0, about=2 * UM):
     """A place that the wire does not come to must lie no farther from it than
-    the point of an inner corner does (docs/taper.md)."""
+    the point of an inner corner does (docs/taper.md).  about: the way on which
+    a corner turns."""
     way = way_of(poly, offset, inside, at)
     if way is None:
         return False
-    for far, turn, rise in left_out(poly, way, offset, inside):
+    for far, turn, rise in left_out(poly, way, offset, inside, about):
         if rise <= 2.1 + more or (rise <= turn + 0.5 + more and rise < 3):
             turn = max(turn, rise)
         reach = offset / math.cos(turn / 2) if turn < 3 else offset
+        # What winds itself up goes on behind a neck.
+        if rise > turn + 3.3 + more:
+            reach = min(reach, offset / math.cos(2.1 / 2))
         if far > reach + hidden:
             return False
     return True
@@ -161,10 +176,13 @@ def can_be_cut(poly, offset, inside, at, hidden=2 * UM, more=0):
 
 def is_close(poly, offset, inside, at):
     """Is the answer another one for a wire that is nearer by the bound of
-    docs/taper.md, or farther by a micrometre?"""
+    docs/taper.md, or farther by a micrometre, or if corners are rounded?"""
     said = can_be_cut(poly, offset, inside, at)
     if can_be_cut(poly, max(offset - NEARER, UM), inside, at, 6 * UM,
                   0.05) != said:
+        return True
+    # Two corners of the way, so near to each other that they may be one.
+    if can_be_cut(poly, offset, inside, at, about=6 * UM) != said:
         return True
     return said and not can_be_cut(poly, offset + UM, inside, at, UM, -0.05)
 

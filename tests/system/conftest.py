@@ -39,11 +39,8 @@ store = {store}
 @pytest.fixture
 def idle(tmp_path):
     """A machine whose programs are not started yet."""
-    m = rig.Machine(tmp_path)
-    yield m
-    m.close()
-    if m.edmd or m.jobs:
-        assert m.sweep() == [], "left in /dev/shm"
+    with rig.Machine(tmp_path) as m:
+        yield m
 
 
 @pytest.fixture
@@ -56,10 +53,8 @@ def machine(idle):
 @pytest.fixture
 def homing(tmp_path):
     """A machine that must be homed; its programs are not started yet."""
-    m = rig.Machine(tmp_path, HOME_MACHINE)
-    yield m
-    m.close()
-    assert m.sweep() == []
+    with rig.Machine(tmp_path, HOME_MACHINE) as m:
+        yield m
 
 
 @pytest.fixture(scope="module")

@@ -208,6 +208,12 @@ class Client:
         self.publish("COMMAND", m.encode(), count=count)
         return m.seq
 
+    def send_guest(self):
+        """A hello of a client that knows no boot number yet."""
+        m = command_t()
+        m.client, m.seq, m.verb = self.name, self.number(), "hello"
+        self.publish("COMMAND", m.encode(), boot=0)
+
     def ask(self, verb, job="", arg=0.0, timeout=6.0, text=""):
         """Ask, and ask again with the same seq, until answered."""
         seq = self.send_command(verb, job, arg, text=text)
@@ -338,6 +344,14 @@ class Machine:
             return None
         p.send_signal(signal.SIGTERM)
         return p.wait(timeout=60)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+        if self.edmd or self.jobs:
+            assert self.sweep() == [], "left in /dev/shm"
 
     def close(self):
         """End both in order: a job that is still there is ended first."""

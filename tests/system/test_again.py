@@ -3,6 +3,7 @@
 path, and from there on as if nothing had been."""
 
 import random
+import sqlite3
 
 import pytest
 import rig
@@ -107,6 +108,47 @@ def test_another_machine_file_is_refused(idle):
     assert c.job("cut")["state"] == "interrupted"
 
 
+def test_a_checkpoint_from_before_the_resume_is_none_of_it(idle):
+    """A place in the whole program is another one in what is left of it."""
+    m, c = idle, idle.client
+    interrupted(m, c, 18.5)
+    was = c.job("cut")
+    (place,) = m.store.glob("*.place")
+    old = place.read_bytes()
+    resume(c)
+    assert c.ask("start").code == 0
+    c.status_where(lambda s: s.job_state == "running" and s.place_mm > 0.5)
+    die(m)
+    place.write_bytes(old)      # the disk had nothing of the second run
+    m.start()
+    c.status_where(lambda s: s.interrupted == "cut", 10)
+    now = c.job("cut")
+    assert now["path_mm"] == was["path_mm"]
+    assert now["job_s"] == was["job_s"]
+    assert "no checkpoint" in now["reason"]
+    resume(c)
+    assert "X1.000 Y5.000" in way_in(c, "cut")
+
+
+@pytest.mark.parametrize("damage", [
+    lambda at: at[:800] + 16 * "0" + at[800:-40] + at[-24:],    # moved by a word
+    lambda at: at[:-3], lambda at: "", lambda at: "0" + at,
+    lambda at: at[at.index(";") + 1:],
+])
+def test_a_damaged_place_is_not_resumed(idle, damage):
+    m, c = idle, idle.client
+    interrupted(m, c, 18.5)
+    die(m)
+    with sqlite3.connect(m.store / f"{m.name}.db") as db:
+        ((at,),) = db.execute("SELECT at FROM resume")
+        db.execute("UPDATE resume SET at=?", (damage(at),))
+    m.start()
+    c.status_where(lambda s: s.interrupted == "cut", 10)
+    a = c.ask("resume", "cut", text="XYZABCUV")
+    assert a.code == 1 and "checkpoint" in a.reason, a.reason
+    assert c.job("cut")["state"] == "interrupted"
+
+
 def test_what_cannot_go_on_stays_interrupted(idle):
     """No way in is known, but the job is not gone."""
     m, c = idle, idle.client
@@ -197,10 +239,8 @@ store = {store}
 @pytest.fixture
 def sparks(tmp_path):
     """A machine with a gap; its programs are not started yet."""
-    m = rig.Machine(tmp_path, SPARKS)
-    yield m
-    m.close()
-    assert m.sweep() == [], "left in /dev/shm"
+    with rig.Machine(tmp_path, SPARKS) as m:
+        yield m
 
 
 def test_what_was_set_stays_set_through_two_power_cuts(sparks):

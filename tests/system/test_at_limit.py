@@ -29,10 +29,8 @@ store = {store}
 
 @pytest.fixture
 def limited(tmp_path):
-    m = rig.Machine(tmp_path, LIMIT_MACHINE)
-    yield m
-    m.close()
-    assert m.sweep() == []
+    with rig.Machine(tmp_path, LIMIT_MACHINE) as m:
+        yield m
 
 
 def on_the_switch(c):

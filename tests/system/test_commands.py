@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands to a running job, each answered once."""
 
+import time
+
+import rig
 from rig import QUICK_JOB, SLOW_JOB
 
 
@@ -128,3 +131,29 @@ def test_a_waiting_job_is_removed(machine):
     c.job_where("job", "done")
     c.hear(0.5)
     assert [e.job for e in c.events if e.kind == "begun"] == ["job"]
+
+
+def test_a_client_that_has_just_come_hears_the_status_at_once(machine):
+    """Not only when the next tenth of a second is over."""
+    c = machine.client
+    c.status()
+    gaps = []
+
+    def came():
+        c.statuses.clear()
+        for _ in range(5):
+            c.send_guest()
+            c.hear(0.03)
+        at = [s.utime for s in c.statuses]
+        gaps.extend(b - a for a, b in zip(at, at[1:]))
+        return any(gap < 90000 for gap in gaps)
+
+    # Without a guest two are never less than 100 ms apart.
+    rig.until(came)
+    # However many come, there are no more than 100 a second.
+    c.statuses.clear()
+    begun = time.monotonic()
+    for _ in range(1000):
+        c.send_guest()
+    c.hear(0.3)
+    assert len(c.statuses) <= 100 * (time.monotonic() - begun) + 12

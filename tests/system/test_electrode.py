@@ -17,11 +17,9 @@ ENDS_LOW = b"G21 G90\nG0 Z1\nC100 G1 Z0 F240\nM30\n"
 @pytest.fixture
 def off(tmp_path):
     """A machine with a table of conditions; its programs are not started."""
-    m = rig.Machine(tmp_path, MACHINE)
-    (tmp_path / "shop.tech").write_text(TABLE)
-    yield m
-    m.close()
-    assert m.sweep() == [], "left in /dev/shm"
+    with rig.Machine(tmp_path, MACHINE) as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        yield m
 
 
 @pytest.fixture
@@ -246,6 +244,9 @@ def test_through_a_power_cut_the_shift_stays(off):
     # The ground that was cut is not counted twice.
     taken = sum(e["wear_after_mm"] - e["wear_before_mm"] for e in parts)
     assert taken == pytest.approx(0.1)
+    row = m.ctl("history", "--csv").stdout.splitlines()[1]
+    assert row.split(",")[-1] == ";".join(
+        f"3={e['wear_after_mm'] - e['wear_before_mm']:.4f}" for e in parts)
     assert table(m)[3]["wear_mm"] == pytest.approx(
         0.5 + 0.1 - (worn - 0.25))
 
@@ -317,11 +318,9 @@ store = {store}
 
 @pytest.fixture
 def prober(tmp_path):
-    m = rig.Machine(tmp_path, MEASURES)
-    m.start()
-    yield m
-    m.close()
-    assert m.sweep() == [], "left in /dev/shm"
+    with rig.Machine(tmp_path, MEASURES) as m:
+        m.start()
+        yield m
 
 
 def measured(m, *words):

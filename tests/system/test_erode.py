@@ -17,13 +17,11 @@ def sinker(tmp_path):
     """The example machine, under a name and with a store of its own."""
     text = (ROOT / "examples/machine.ini").read_text()
     lines = [x for x in text.splitlines() if not x.startswith("store")]
-    m = rig.Machine(tmp_path)
-    m.config.write_text("\n".join(
-        f"name = {m.name}" if x.startswith("name =") else x for x in lines
-    ))
-    yield m
-    m.close()
-    assert m.sweep() == [], "left in /dev/shm"
+    with rig.Machine(tmp_path) as m:
+        m.config.write_text("\n".join(
+            f"name = {m.name}" if x.startswith("name =") else x for x in lines
+        ))
+        yield m
 
 
 def start(m, speed=None):

@@ -18,12 +18,10 @@ SUMS = ("job_s", "erode_s", "jumps", "retracts", "shorts", "arcs")
 
 @pytest.fixture
 def shop(tmp_path):
-    m = rig.Machine(tmp_path, MACHINE)
-    (tmp_path / "shop.tech").write_text(TABLE)
-    m.start()
-    yield m
-    m.close()
-    assert m.sweep() == [], "left in /dev/shm"
+    with rig.Machine(tmp_path, MACHINE) as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        m.start()
+        yield m
 
 
 def conditions_add_up(job):

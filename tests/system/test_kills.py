@@ -23,7 +23,7 @@ SEED = int(os.environ.get("EDM_SEED", "1"))
 # To and fro: there is a way to go from wherever the round before left the axis,
 # and on a busy machine too it does not end before it is looked at.
 LONG_JOB = b"G21 G90\nF60\n" + 20 * b"G1 X9\nG1 X0\n" + b"M30\n"
-NOT_DONE = ("it is not done", "it was not done", "not in state")
+NOT_DONE = ("it is not done", "it was not done", "wants ")
 
 
 class Round:

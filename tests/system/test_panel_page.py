@@ -328,6 +328,59 @@ def test_a_program_begins_at_a_line(p, page):
     end_job(page, p)
 
 
+def electrode(p, n):
+    rows = json.loads(p.machine.ctl("electrode", "list", "--json").stdout)
+    return next((e for e in rows if e["n"] == n), None)
+
+
+def test_the_table_of_electrodes_is_kept_here(p, page):
+    page.goto(p.url + "/#/setup")
+    card = page.locator(".electrodes")
+    expect(card).to_contain_text("empty")
+    page.locator("#el-add").click()
+    sheet = page.locator("dialog[open]")
+    expect(page.locator("#el-save")).to_have_attribute("aria-disabled", "true")
+    for field, value in (("n", "3"), ("name", "rib"), ("material", "copper"),
+                         ("length", "42,5"), ("life", "0.5")):
+        page.locator(f"#el-{field}").fill(value)
+    page.locator("#el-save").click()
+    expect(sheet).to_have_count(0)
+    e = electrode(p, 3)
+    assert (e["name"], e["length_mm"], e["life_mm"]) == ("rib", 42.5, 0.5)
+    # A number that is taken is refused, and the form stays as it is.
+    page.locator("#el-add").click()
+    page.locator("#el-n").fill("3")
+    page.locator("#el-save").click()
+    expect(page.locator(".toast").last).to_contain_text("there already")
+    expect(page.locator("#el-n")).to_have_value("3")
+    page.locator("dialog[open] header button").click()
+    # Only what is changed here is sent: wear that came meanwhile stays.
+    card.get_by_role("button", name="Electrode 3").click()
+    p.machine.ctl("electrode", "set", "3", "wear=0.4")
+    page.locator("#el-note").fill("left of the box")
+    page.locator("#el-save").click()
+    expect(sheet).to_have_count(0)
+    e = electrode(p, 3)
+    assert (e["note"], e["wear_mm"]) == ("left of the box", 0.4)
+    expect(card).to_contain_text("20 %")
+    # Into the holder, measured, out of the table.
+    card.get_by_role("button", name="Electrode 3").click()
+    press(page.locator("#el-use"))
+    expect(card).to_contain_text("in the holder")
+    show(page, "cut")
+    expect(page.locator("#held")).to_contain_text("3")
+    show(page, "setup")
+    card.get_by_role("button", name="Electrode 3").click()
+    press(page.locator("#el-measure"))
+    expect(page.locator(".toast").last).to_contain_text(
+        "no reference to measure at")
+    page.locator("dialog[open] header button").click()
+    card.get_by_role("button", name="Electrode 3").click()
+    press(page.locator("#el-remove"))
+    expect(card).to_contain_text("empty")
+    assert electrode(p, 3) is None
+
+
 def test_few_clicks_lead_where_one_wants(p, page):
     page.goto(p.url + "/#/jobs")
     page.evaluate("""() => { window.clicks = 0;

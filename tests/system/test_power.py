@@ -128,6 +128,52 @@ def test_a_job_that_ended_in_time_is_done(idle):
     assert c.status().interrupted == ""
 
 
+def test_an_idle_machine_does_not_say_that_it_is_where_it_is_not(idle):
+    """Its axes stand at X0.2, and the new edmd shows 0."""
+    m, c = idle, idle.client
+    there = b"G21 G90\nG1 X0.2 F600\nM30\n"
+    m.start()
+    assert c.status().lost == ""
+    assert c.submit(there, "first").code == 0
+    c.job_where("first", "done")
+    c.hear(1)
+    for _ in range(2):          # it is not forgotten by the next power cut
+        die(m)
+        m.start()
+        s = c.status_where(lambda s: s.lost == "X", 10)
+        assert s.pos_mm[0] == 0 and not s.interrupted
+    assert any("X at 0.200, now shown at 0.000" in e.text for e in c.events)
+    # Nothing begins until a person has seen where it stands.
+    a = c.submit(there, "second")
+    assert a.code == 0 and "see where it stands" in a.reason, a.reason
+    c.job_where("second", "ready")
+    c.hear(0.5)
+    assert c.job("second")["state"] == "ready"
+    assert "last seen" in c.ask("why").body
+    assert c.ask("start").code == 0
+    c.job_where("second", "done")
+    assert c.status().lost == ""
+
+
+def test_what_was_interrupted_and_removed_leaves_the_axes_uncertain(idle):
+    m, c = idle, idle.client
+    m.start()
+    assert c.submit(LONG_JOB, "cut").code == 0
+    assert c.submit(QUICK_JOB, "behind").code == 0
+    c.status_where(lambda s: s.job_state == "running" and s.place_mm > 1)
+    die(m)
+    m.start()
+    c.status_where(lambda s: s.interrupted == "cut", 10)
+    assert c.ask("remove", "cut").code == 0
+    assert "X" in c.status_where(lambda s: not s.interrupted).lost
+    c.job_where("behind", "ready")
+    c.hear(0.5)
+    assert c.job("behind")["state"] == "ready"
+    assert c.ask("start").code == 0
+    c.job_where("behind", "done")
+    assert c.status().lost == ""
+
+
 def test_with_its_service_dead_the_cut_leaves_an_older_checkpoint(idle):
     """edmd-jobs writes it; the cut goes on without it."""
     m, c = idle, idle.client

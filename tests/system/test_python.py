@@ -53,9 +53,9 @@ def test_its_types_are_those_of_lcm_gen(tmp_path):
         print(*m.Status.__dataclass_fields__, sep=",")
         for k in ("SIGNED", "COMMAND", "ACK", "JOB_CHUNK", "STATUS", "EVENT"):
             print(getattr(m, k).hex())
-        print(m.command("me", 7, "jog", "j", 1.5, "X", 99).hex())
-        print(m.Chunk("j", "n", 3, bytes(32), 0, 1, 0, True, b"abc")
-              .encode("me", 8, 99).hex())
+        print(m.Command(99, "me", 7, "jog", "j", 1.5, "X").encode().hex())
+        print(m.JobChunk(99, "me", 8, "j", "n", 3, bytes(32), 0, 1, 0, True,
+                         data=b"abc").encode().hex())
     """).split()
     assert out.pop(0).split(",") == rig.status_t.__slots__
     kinds = (rig.signed_t, rig.command_t, rig.ack_t, rig.job_chunk_t,
@@ -75,7 +75,8 @@ def test_its_types_are_those_of_lcm_gen(tmp_path):
 def test_the_vectors_of_the_readme_hold():
     good("""
         from nacl.signing import SigningKey
-        from edm.messages import Signed, to_be_signed
+        from edm.layout import to_be_signed
+        from edm.messages import Signed
         v = dict(line.split() for line in open("messages/vectors.txt")
                  if not line.startswith("#"))
         key = SigningKey(bytes.fromhex(v["seed"]))

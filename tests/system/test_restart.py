@@ -128,7 +128,10 @@ def test_an_edmd_without_its_program_ends_the_job_without_motion(machine):
     s = c.status_where(lambda s: not s.job)
     assert s.state == "idle"
     assert c.ask("remove", "job").code == 0
+    # Its axes stand where the job was, and edmd shows another place.
     assert c.submit(QUICK_JOB, "next").code == 0
+    c.job_where("next", "ready")
+    assert c.ask("start").code == 0
     c.job_where("next", "done")
 
 

@@ -217,3 +217,28 @@ def test_what_a_store_began_anew_has_is_not_taken_for_what_ended(machine):
     assert c.job("after")["state"] in ("ready", "queued")
     assert c.ask("start").code == 0
     c.job_where("after", "done")
+
+
+@pytest.mark.parametrize("number", [errno.EROFS, errno.EIO])
+def test_an_interrupted_job_is_found_when_the_disk_comes_back(failing, number):
+    """Its service could not open the store, and the job behind must not begin."""
+    m, c = failing, failing.client
+    m.start()
+    assert c.submit(SLOW_JOB, "cut").code == 0
+    assert c.submit(QUICK_JOB, "behind").code == 0
+    c.status_where(lambda s: s.job_state == "running" and s.place_mm > 0.5)
+    for which in ("jobs", "edmd"):
+        m.kill(which)
+    m.sweep()
+    m.start()
+    c.status_where(lambda s: s.interrupted == "cut", 10)
+    assert m.end("jobs") == 0
+    m.fail(number)
+    m.start_jobs()
+    c.status_where(lambda s: s.store.startswith("degraded"), 10)
+    m.heal()
+    c.status_where(lambda s: s.store == "ok" and s.interrupted == "cut", 20)
+    c.hear(1)
+    assert c.job("behind")["state"] == "queued"
+    assert not c.status().job
+    assert c.ask("remove", "cut").code == 0

@@ -27,20 +27,19 @@ PASSWORD = "Correct-Horse-99"
 @pytest.fixture
 def shop(tmp_path):
     users = tmp_path / "panel.users"
-    m = rig.Machine(tmp_path, rig.NULL_MACHINE + f"""
+    with rig.Machine(tmp_path, rig.NULL_MACHINE + f"""
 [panel]
 users = {users}
 # the door's password: {PASSWORD}
-""")
-    added = subprocess.run(
-        [str(rig.BUILD / "edm-panel"), "--config", str(m.config),
-         "--add-user", "anna", "operator"], input=f"{PASSWORD}\n{PASSWORD}\n",
-        text=True, capture_output=True, timeout=60)
-    assert added.returncode == 0, added.stderr
-    m.start()
-    yield m
-    m.close()
-    assert m.sweep() == [], "left in /dev/shm"
+""") as m:
+        added = subprocess.run(
+            [str(rig.BUILD / "edm-panel"), "--config", str(m.config),
+             "--add-user", "anna", "operator"],
+            input=f"{PASSWORD}\n{PASSWORD}\n", text=True,
+            capture_output=True, timeout=60)
+        assert added.returncode == 0, added.stderr
+        m.start()
+        yield m
 
 
 def read(file):

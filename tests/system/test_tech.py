@@ -23,12 +23,10 @@ MACHINE = rig.NULL_MACHINE + "\n[tech]\ntable = shop.tech\n"
 @pytest.fixture
 def shop(tmp_path):
     """A machine with a table."""
-    m = rig.Machine(tmp_path, MACHINE)
-    (tmp_path / "shop.tech").write_text(TABLE)
-    m.start()
-    yield m
-    m.close()
-    assert m.sweep() == [], "left in /dev/shm"
+    with rig.Machine(tmp_path, MACHINE) as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        m.start()
+        yield m
 
 
 def running(machine, text=JOB, job="job"):

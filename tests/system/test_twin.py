@@ -21,8 +21,7 @@ M2
 
 
 def test_status_shows_what_is_measured_beside_what_is_predicted(tmp_path):
-    m = rig.Machine(tmp_path, rig.NULL_MACHINE + LOOPS)
-    try:
+    with rig.Machine(tmp_path, rig.NULL_MACHINE + LOOPS) as m:
         m.start()
         c = m.client
         assert c.submit(ROUND, "job").code == 0
@@ -34,8 +33,6 @@ def test_status_shows_what_is_measured_beside_what_is_predicted(tmp_path):
         assert told["contour_predicted_um"] > 100
         assert "predicted" in m.ctl("status").stdout
         c.job_where("job", "done", 20)
-    finally:
-        m.close()
 
 
 def test_without_loops_there_is_no_twin(machine):

@@ -17,6 +17,12 @@
 
 #define SEGS	12
 
+/* So many cycles between two looks. */
+static int track_stride = 1;
+
+/* Places of a curve are so far off: from cycle to cycle this hides its jerk. */
+#define CURVE_OFF_MM	(0.02 * PULSE_MM)
+
 static struct interp_machine axes_machine;
 
 /* Axes as unequal as they come; C is slow to set off. */
@@ -43,6 +49,40 @@ static inline void random_line(struct interp_build *b, uint64_t *s)
 		if (rnd(s) % 3 == 0)
 			end[i] += uniform(s, -6, 6);
 	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+}
+
+/* As little of X as there is, on which C turns far: by more than the rounding
+ * of a line counts for. */
+static inline void random_tiny(struct interp_build *b, uint64_t *s)
+{
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, interp_build_here(b), sizeof(end));
+	end[INTERP_X] += pow(10, uniform(s, -4, -1));
+	end[INTERP_C] += (rnd(s) % 2 ? 1 : -1) * uniform(s, 0.05, 20);
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+}
+
+/* By a pole of C, at a little distance: C turns ever faster, and slower again. */
+static inline void random_pole(struct interp_build *b, uint64_t *s)
+{
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
+	const double d = pow(10, uniform(s, -3, 0)), step = uniform(s, 2, 9);
+	const double *here = interp_build_here(b);
+	const double x = here[INTERP_X], c = here[INTERP_C];
+	double end[INTERP_NAXES];
+	struct interp_diag diag;
+
+	memcpy(end, here, sizeof(end));
+	for (double deg = 70; deg > -70; deg -= step) {
+		end[INTERP_X] = x + d * (tan(70 * M_PI / 180) -
+					 tan(deg * M_PI / 180));
+		end[INTERP_C] = c + 70 - deg;
+		assert_int_equal(interp_build_line(b, end, &w, &diag),
+				 0);
+	}
 }
 
 static inline void random_arc(struct interp_build *b, uint64_t *s)
@@ -106,6 +146,10 @@ static inline struct made random_path(uint64_t *s)
 			random_arc(b, s);
 		else if (rnd(s) % 6 == 0)
 			random_nurbs(b, s);
+		else if (rnd(s) % 8 == 0)
+			random_tiny(b, s);
+		else if (rnd(s) % 12 == 0)
+			random_pole(b, s);
 		else
 			random_line(b, s);
 		if (rnd(s) % 6 == 0)
@@ -123,6 +167,33 @@ struct track {
 	struct interp_at_curve curve;
 };
 
+/* On two contours at once: each goes by its own share of the way. */
+static inline void places_of_pair(const struct interp_cursor *at,
+				  double ret[INTERP_NAXES])
+{
+	const struct interp_program *p = &at->p;
+	const double part = at->s_mm / at->seg.length_mm;
+	const uint32_t n = p->head->naxes;
+
+	for (uint32_t j = 0; j < n; j++) {
+		const int64_t *from = &p->nodes[at->index * n + j];
+
+		ret[p->head->column[j]] =
+			((double)from[0] + part * (double)(from[n] - from[0])) /
+			INTERP_SUB * PULSE_MM;
+	}
+	for (int k = 0; k < 2; k++) {
+		const struct interp_arc *a = &at->couple.side[k];
+		const double turned = a->theta + part * a->sweep;
+		const double r = a->r_mm + part * a->dr_mm;
+
+		if (!(a->r_mm > 0) || a->sweep == 0)
+			continue;
+		ret[a->axis_a] = a->a_mm + r * cos(turned);
+		ret[a->axis_b] = a->b_mm + r * sin(turned);
+	}
+}
+
 /* Not by pulses: from where the cursor says it is. */
 static inline void places_of(struct track *k, const struct rig *r,
 			     double ret[INTERP_NAXES])
@@ -133,6 +204,10 @@ static inline void places_of(struct track *k, const struct rig *r,
 	memset(ret, 0, INTERP_NAXES * sizeof(*ret));
 	if (at->seg.kind >= INTERP_BEGIN)
 		return;
+	if (at->seg.kind == INTERP_PAIR) {
+		places_of_pair(at, ret);
+		return;
+	}
 	assert_true(interp_program_at(&at->p, at->index, at->s_mm, &k->curve,
 				      &point));
 	for (uint32_t j = 0; j < at->p.head->naxes; j++)
@@ -173,12 +248,43 @@ static inline double slowest_mm_s(void)
 	return cbrt(j * PULSE_MM * PULSE_MM);
 }
 
-/* A stop less than 1e-9 mm ahead is met: the last bit of time is cut. */
+/* How far an axis turns by a mm of the line that it is on; 1 at least. */
+static inline double rate_of(const struct rig *r, int axis)
+{
+	const struct interp_program *p = &r->c.cursor.p;
+	const uint32_t i = r->c.cursor.index, n = p->head->naxes;
+	double rate = 1;
+
+	for (uint32_t j = 0; j < n && r->c.cursor.seg.kind == INTERP_LINE; j++)
+		if (p->head->column[j] == axis)
+			rate = fabs((double)(p->nodes[(i + 1) * n + j] -
+					     p->nodes[i * n + j])) /
+			       INTERP_SUB * PULSE_MM / r->c.cursor.seg.length_mm;
+	return fmax(rate, 1);
+}
+
+/* How often more than the limit an axis may do: its share of a line is not known
+ * better than the ends of the line are, and not by more than 20 pulses of it. */
+static inline double rounding_of(const struct rig *r, int axis)
+{
+	const double mm = r->c.cursor.seg.length_mm;
+	const double rate = rate_of(r, axis);
+	const double off = PULSE_MM * (1 + fmin(rate, 20));
+
+	if (r->c.cursor.seg.kind != INTERP_LINE)
+		return 1;
+	return rate * mm > off ? rate * mm / (rate * mm - off) : INFINITY;
+}
+
+/* A stop less than 1e-9 mm ahead is met: the last bit of time is cut, and the
+ * axis moves by that. */
 static inline void check_axes(const struct track *k, const struct rig *r)
 {
-	const double t = PERIOD_S;
-	const bool floored = r->c.cursor.seg.kind == INTERP_CURVE &&
-			     fabs(r->c.mover.v_mm_s) < 2 * slowest_mm_s();
+	const double t = PERIOD_S * track_stride;
+	const bool curve = r->c.cursor.seg.kind == INTERP_CURVE;
+	const bool floored = curve && fabs(r->c.mover.v_mm_s) <
+				      2 * slowest_mm_s();
+	const double off = curve && track_stride > 1 ? CURVE_OFF_MM : 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const struct interp_axis_limits *l = &axes_machine.axis[i];
@@ -187,23 +293,42 @@ static inline void check_axes(const struct track *k, const struct rig *r)
 				      (k->at[3][i] - k->at[2][i]) / t };
 		const double a[2] = { (v[1] - v[0]) / t, (v[2] - v[1]) / t };
 		const double jerk = (a[1] - a[0]) / t;
-		const double cut = cbrt(6e-9 * l->j_max_mm_s3 *
-					l->j_max_mm_s3) + 1e-5 / t / t * 1e-3;
+		const double onto = 4e-9 * rate_of(r, i);
+		const double cut = cbrt(1.5 * onto * l->j_max_mm_s3 *
+					l->j_max_mm_s3) + onto / t / t +
+				   6e-9 / t / t;
+		const double more = rounding_of(r, i) * (1 + 1e-6);
 
-		const bool beyond = fabs(a[0]) > l->a_max_mm_s2 * (1 + 1e-6) +
-						 cut ||
-				    fabs(jerk) > l->j_max_mm_s3 * (1 + 1e-6) +
-						 2 * cut / t;
+		const bool beyond =
+			fabs(a[0]) > l->a_max_mm_s2 * more + cut +
+				     4 * off / t / t ||
+			fabs(jerk) > l->j_max_mm_s3 * more + 2 * cut / t +
+				     8 * off / t / t / t;
 
-		if (fabs(v[0]) > l->v_max_mm_s * (1 + 1e-6) ||
+		if (fabs(v[0]) > l->v_max_mm_s * more + 2 * off / t ||
 		    (beyond && !floored))
-			fail_msg("axis %c, %s, segment %u: %g mm/s, %g of %g "
-				 "mm/s2, %g of %g mm/s3",
+			fail_msg("axis %c, %s, segment %u: %g of %g mm/s, %g "
+				 "of %g mm/s2, %g of %g mm/s3",
 				 INTERP_AXIS_LETTERS[i],
 				 state_duty[r->c.state].name,
-				 (unsigned)k->index[3], v[0], a[0],
-				 l->a_max_mm_s2, jerk, l->j_max_mm_s3);
+				 (unsigned)k->index[3], v[0], l->v_max_mm_s,
+				 a[0], l->a_max_mm_s2, jerk, l->j_max_mm_s3);
 	}
+}
+
+/* At any moment: held, gone on, told another speed; and taken back in one cycle
+ * of @one_in in which it is held. */
+static inline void disturb(struct rig *r, uint64_t *s, unsigned int one_in)
+{
+	if (r->c.state == STATE_HOLD && !r->c.hold.moving &&
+	    mover_is_standing(&r->c.mover) && rnd(s) % 20 == 0)
+		tell(r, CYCLE_START);
+	else if (rnd(s) % 300 == 0)
+		tell(r, CYCLE_HOLD);
+	else if (rnd(s) % 200 == 0)
+		tell_mm(r, CYCLE_OVERRIDE, uniform(s, 0.02, 1.5));
+	else if (rnd(s) % one_in == 0 && r->c.state == STATE_HOLD)
+		tell_mm(r, CYCLE_RETRACT, uniform(s, 0.001, 9));
 }
 
 #endif /* AXIS_TRACK_H */

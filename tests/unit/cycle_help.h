@@ -42,10 +42,10 @@ static inline struct cycle_config usual_config(void)
 			.gain_mm_s_v = 0.1, .feed_max_mm_s = 4,
 			.creep_mm_s = 0.5,
 			.approach_mm_s = 2, .retract_mm_s = 5,
-			.retract_limit_mm = 0.5, .retract_wait_cycles = 50,
+			.retract_limit_mm = 0.5, .retract_wait.cycles = 50,
 		},
 		.jump = {
-			.every_cycles = 100, .v_max_mm_s = 50,
+			.every.cycles = 100, .v_max_mm_s = 50,
 			.a_max_mm_s2 = 1000, .j_max_mm_s3 = 20000,
 			.short_of_mm = 0.02,
 		},

@@ -182,7 +182,7 @@ static inline void random_sensor(struct cycle_gap_config *g, uint64_t *s)
 	g->share_short = uniform(s, 0.1, 0.9);
 	g->share_open = uniform(s, 0.5, 1);
 	g->ignition_v = rnd(s) % 2 ? 100 : 0;
-	g->stuck_cycles = rnd(s) % 2 ? 100 + rnd(s) % 500 : 0;
+	g->stuck.cycles = rnd(s) % 2 ? 100 + rnd(s) % 500 : 0;
 	g->noise_limit_v = rnd(s) % 2 ? uniform(s, 1, 40) : 0;
 }
 
@@ -205,14 +205,14 @@ static inline void random_bounds(struct cycle_gap_config *g, uint64_t *s)
 	g->process = rnd(s) % 4 ? PROCESS_SINK : PROCESS_WIRE;
 	g->retract_to = (enum retract_to)(rnd(s) % RETRACT_NPLACES);
 	g->retract_limit_mm = uniform(s, 0.05, 1);
-	g->retract_max_cycles = rnd(s) % 300;
+	g->retract_max.cycles = rnd(s) % 300;
 	g->progress_mm = uniform(s, 0, 0.1);
 	g->arcing_share = rnd(s) % 2 ? uniform(s, 0.05, 0.5) : 0;
 	g->arcing_cycles = (uint32_t)(rnd(s) % 30);
 	g->arcing_sigma_v = rnd(s) % 2 ? uniform(s, 0, 3) : 0;
 	g->off_us = rnd(s) % 2 ? 20 : 0;
 	g->arcing_off_max = uniform(s, 1, 5);
-	g->arcing_recover_cycles = rnd(s) % 200;
+	g->arcing_recover.cycles = rnd(s) % 200;
 	g->arcing_retract_mm = uniform(s, 0, 1);
 	g->retract_escape = rnd(s) % 2;
 	g->wire_retract_mm = uniform(s, 0.01, 0.1);
@@ -224,10 +224,10 @@ static inline void random_jump(struct cycle_jump_config *j, uint64_t *s)
 {
 	j->height_mm = rnd(s) % 3 ? uniform(s, 0, 1) : 0;
 	j->every_mm = rnd(s) % 3 ? 0 : uniform(s, 0.01, 0.1);
-	j->every_cycles = 1 + rnd(s) % 200;
+	j->every.cycles = 1 + rnd(s) % 200;
 	j->adaptive = rnd(s) % 2;
-	j->every_min_cycles = 1 + rnd(s) % 50;
-	j->every_max_cycles = 50 + rnd(s) % 200;
+	j->every_min.cycles = 1 + rnd(s) % 50;
+	j->every_max.cycles = 50 + rnd(s) % 200;
 	j->height_min_mm = uniform(s, 0.01, 0.5);
 	j->height_max_mm = uniform(s, 0.5, 2);
 	j->bad_share = uniform(s, 0.001, 0.5);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * resume_help.h - edmd's loop stepped by hand, killed, and followed by another
+ * resume_help.h - step edmd's loop by hand, kill it, and start the next one
  *
- * A crash is to go on from the last snapshot.
+ * After a crash the next loop has to go on from the last snapshot.
  */
 #ifndef RESUME_HELP_H
 #define RESUME_HELP_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * seed.h - what a random test begins with: told, so that it can be repeated
+ * seed.h - the seed of a random test, printed so that the test can be repeated
  */
 #ifndef SEED_H
 #define SEED_H
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-/** seed_take() - that of the environment, EDM_SEED; else the clock's. */
+/** seed_take() - the seed is $EDM_SEED, or else the time. */
 static inline uint64_t seed_take(void)
 {
 	const char *given = getenv("EDM_SEED");

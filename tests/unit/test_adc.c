@@ -72,6 +72,8 @@ static int make(void **state)
 	file("iio:device3/scan_elements/in_voltage0_en", "1");
 	file("iio:device3/scan_elements/in_voltage1_en", "0");
 	file("iio:device3/scan_elements/in_voltage1_type", "be:s12/16>>4\n");
+	file("iio:device3/scan_elements/in_timestamp_en", "1");
+	file("iio:device3/buffer/watermark", "8");
 	return mkfifo(at("dev/iio:device3"), 0600);
 }
 
@@ -117,7 +119,8 @@ static void formats_are_those_of_the_kernel(void **state)
 	};
 	static const char *const bad[] = {
 		"", "le", "me:u16/16>>0", "le:x16/16>>0", "le:u0/16>>0",
-		"le:u16/24>>0", "le:u16/16>>1", "le:u40/64>>0"
+		"le:u16/24>>0", "le:u16/16>>1", "le:u40/64>>0",
+		"le:s12/16X2>>4"
 	};
 	struct adc_format f;
 
@@ -143,6 +146,9 @@ static void the_mean_of_what_came_is_the_gap_until_nothing_comes(void **state)
 	has("iio:device3/buffer/enable", "1");
 	has("iio:device3/trigger/current_trigger", "timer1");
 	has("iio:device3/scan_elements/in_voltage0_en", "0");
+	has("iio:device3/scan_elements/in_timestamp_en", "0");
+	has("iio:device3/buffer/watermark", "1");
+	has("iio:device3/buffer/length", "4096");
 	has("iio:device3/scan_elements/in_voltage1_en", "1");
 	assert_false(adc_read(&a, &v));
 	fd = open(at("dev/iio:device3"), O_WRONLY | O_NONBLOCK);
@@ -155,9 +161,161 @@ static void the_mean_of_what_came_is_the_gap_until_nothing_comes(void **state)
 	assert_true(fabs(v - 5.4) < 1e-9);
 	assert_true(adc_read(&a, &v));
 	assert_false(adc_read(&a, &v));
+	/* It comes back with another voltage. */
+	assert_int_equal(write(fd, samples, 2), 2);
+	assert_true(adc_read(&a, &v));
+	assert_true(fabs(v - 5.0) < 1e-9);
 	adc_close(&a);
 	has("iio:device3/buffer/enable", "0");
 	close(fd);
+}
+
+static void puts_n(int fd, int count, int n)
+{
+	const uint8_t sample[] = { (uint8_t)(count >> 4),
+				   (uint8_t)(count * 16) };
+
+	for (int i = 0; i < n; i++)
+		assert_int_equal(write(fd, sample, 2), 2);
+}
+
+static bool told(struct adc *a, const char *what)
+{
+	char line[200] = "";
+
+	return adc_note(a, line, sizeof(line)) && strstr(line, what);
+}
+
+static void a_full_buffer_is_emptied_and_is_no_reading(void **state)
+{
+	struct interp_diag d;
+	struct adc a;
+	char line[8];
+	double v;
+	int fd;
+
+	(void)state;
+	assert_int_equal(open_it(&a, "adc1234", 1, &d), 0);
+	fd = open(at("dev/iio:device3"), O_WRONLY | O_NONBLOCK);
+	puts_n(fd, 600, ADC_SAMPLES);
+	assert_false(adc_read(&a, &v));
+	assert_true(told(&a, "samples were lost"));
+	assert_false(adc_note(&a, line, sizeof(line)));
+	/* Nothing old is left: the next one is what the gap is now. */
+	puts_n(fd, 300, 1);
+	assert_true(adc_read(&a, &v));
+	assert_true(fabs(v - 200 * 0.5e-3 * 20) < 1e-9);
+	puts_n(fd, 300, ADC_SAMPLES - 1);
+	assert_true(adc_read(&a, &v));
+	assert_false(adc_note(&a, line, sizeof(line)));
+	adc_close(&a);
+	close(fd);
+}
+
+static void the_end_of_the_range_is_no_voltage(void **state)
+{
+	struct interp_diag d;
+	struct adc a;
+	double v;
+	int fd;
+
+	(void)state;
+	assert_int_equal(open_it(&a, "adc1234", 1, &d), 0);
+	fd = open(at("dev/iio:device3"), O_WRONLY | O_NONBLOCK);
+	puts_n(fd, 2047, 3);
+	puts_n(fd, 1000, 1);
+	assert_true(adc_read(&a, &v));
+	for (int i = 0; i < 3; i++) {
+		puts_n(fd, 2047, 4);
+		assert_int_equal(adc_read(&a, &v), i < 2);
+	}
+	assert_true(told(&a, "end of its range"));
+	/* A short is at no end of it, unless the divider inverts. */
+	puts_n(fd, -2048, 4);
+	assert_true(adc_read(&a, &v));
+	adc_close(&a);
+	close(fd);
+}
+
+static void one_that_is_gone_is_no_reading_at_once(void **state)
+{
+	struct interp_diag d;
+	struct adc a;
+	double v;
+	int fd;
+
+	(void)state;
+	assert_int_equal(open_it(&a, "adc1234", 1, &d), 0);
+	fd = open(at("dev/iio:device3"), O_WRONLY | O_NONBLOCK);
+	puts_n(fd, 600, 1);
+	assert_true(adc_read(&a, &v));
+	close(fd);
+	close(a.fd);
+	a.fd = open(root, O_RDONLY);	/* read() fails */
+	assert_false(adc_read(&a, &v));
+	assert_true(told(&a, "start edmd again"));
+	assert_false(adc_read(&a, &v));
+	assert_false(told(&a, ""));
+	adc_close(&a);
+}
+
+static void samples_that_come_too_seldom_are_told_once(void **state)
+{
+	struct interp_diag d;
+	struct adc a;
+	double v;
+	int fd, n = 0;
+
+	(void)state;
+	assert_int_equal(open_it(&a, "adc1234", 1, &d), 0);
+	fd = open(at("dev/iio:device3"), O_WRONLY | O_NONBLOCK);
+	for (int i = 0; i < 5 * ADC_WINDOW; i++) {
+		if (i < ADC_WINDOW || i % 3 == 0)
+			puts_n(fd, 600, 1);
+		adc_read(&a, &v);
+		n += told(&a, "at least one in each");
+	}
+	assert_int_equal(n, 1);
+	adc_close(&a);
+	close(fd);
+}
+
+static void a_scan_of_more_than_its_channel_is_refused(void **state)
+{
+	struct interp_diag d;
+	struct adc a;
+
+	(void)state;
+	mkdir(at("iio:device3/scan_elements/in_voltage2_en"), 0700);
+	assert_true(open_it(&a, "iio:device3", 1, &d) < 0);
+	assert_non_null(strstr(d.found, "in_voltage2_en"));
+	assert_non_null(strstr(d.wanted, "one channel alone"));
+	adc_close(&a);
+	rmdir(at("iio:device3/scan_elements/in_voltage2_en"));
+}
+
+static void files_that_cannot_be_true_are_refused(void **state)
+{
+	static const struct {
+		const char *name, *bad, *good, *wanted;
+	} rows[] = {
+		{ "iio:device3/in_voltage_scale", "0\n", "0.5\n",
+		  "a scale that is not 0" },
+		{ "iio:device3/in_voltage_scale", "off\n", "0.5\n", "numbers" },
+		{ "iio:device3/scan_elements/in_voltage1_type",
+		  "le:s12/16X2>>4\n", "be:s12/16>>4\n", "one number" },
+	};
+	struct interp_diag d;
+	struct adc a;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		file(rows[i].name, rows[i].bad);
+		assert_true(open_it(&a, "iio:device3", 1, &d) < 0);
+		assert_non_null(strstr(d.wanted, rows[i].wanted));
+		adc_close(&a);
+		file(rows[i].name, rows[i].good);
+	}
 }
 
 static void what_is_not_there_is_refused_with_the_remedy(void **state)
@@ -180,6 +338,12 @@ int main(void)
 		cmocka_unit_test(formats_are_those_of_the_kernel),
 		cmocka_unit_test(
 			the_mean_of_what_came_is_the_gap_until_nothing_comes),
+		cmocka_unit_test(a_full_buffer_is_emptied_and_is_no_reading),
+		cmocka_unit_test(the_end_of_the_range_is_no_voltage),
+		cmocka_unit_test(one_that_is_gone_is_no_reading_at_once),
+		cmocka_unit_test(samples_that_come_too_seldom_are_told_once),
+		cmocka_unit_test(a_scan_of_more_than_its_channel_is_refused),
+		cmocka_unit_test(files_that_cannot_be_true_are_refused),
 		cmocka_unit_test(what_is_not_there_is_refused_with_the_remedy),
 	};
 

@@ -10,10 +10,10 @@ static struct cycle_config arcing(void)
 	k.gap.arcing_cycles = 20;
 	k.gap.off_us = 10;
 	k.gap.arcing_off_max = 5;
-	k.gap.arcing_recover_cycles = 100;
+	k.gap.arcing_recover.cycles = 100;
 	k.gap.arcing_retract_mm = 0.2;
 	k.jump.height_mm = 0.5;
-	k.jump.every_cycles = 1000000;
+	k.jump.every.cycles = 1000000;
 	return k;
 }
 

@@ -34,11 +34,25 @@ static struct cycle_config config_of(uint64_t *s)
 	k.travel_a_mm_s2 = k.jump.a_max_mm_s2 = 4000;
 	k.travel_j_mm_s3 = k.jump.j_max_mm_s3 = 2e5;
 	k.jump.height_mm = uniform(s, 0.5, 6);
-	k.jump.every_cycles = 300;
+	k.jump.every.cycles = 300;
 	k.jump.v_max_mm_s = 80;
 	k.gap.feed_max_mm_s = k.gap.approach_mm_s = 8;
 	k.gap.gain_mm_s_v = 1;
 	return k;
+}
+
+/* A random machine on a random path, without sparks. */
+static void begin_dry(struct rig *r, uint64_t *s, bool hold_at_end)
+{
+	struct cycle_config k;
+
+	set_machine(s);
+	k = config_of(s);
+	k.dry_run = true;
+	k.hold_at_end = hold_at_end;
+	k.gap.retract_mm_s = 1000;
+	rig_take(r, random_path(s), &k);
+	tell(r, CYCLE_START);
 }
 
 static void there_and_back_every_axis_keeps_its_limits(void **st)
@@ -47,16 +61,10 @@ static void there_and_back_every_axis_keeps_its_limits(void **st)
 
 	(void)st;
 	for (int i = 0; i < ROUNDS; i++) {
-		struct cycle_config k;
 		struct track t = { .n = 0 };
 		struct rig r;
 
-		set_machine(&s);
-		k = config_of(&s);
-		k.dry_run = k.hold_at_end = true;
-		k.gap.retract_mm_s = 1000;
-		rig_take(&r, random_path(&s), &k);
-		tell(&r, CYCLE_START);
+		begin_dry(&r, &s, true);
 		for (int n = 0; n < CYCLES && r.c.state == STATE_TRAVEL; n++)
 			watch(&r, &t, OPEN_V);
 		assert_int_equal(r.c.state, STATE_HOLD);
@@ -64,6 +72,25 @@ static void there_and_back_every_axis_keeps_its_limits(void **st)
 		for (int n = 0; n < CYCLES && r.c.hold.moving; n++)
 			watch(&r, &t, OPEN_V);
 		assert_true(place(&r) == 0);
+		rig_free(&r);
+	}
+}
+
+static void held_at_any_moment_every_axis_keeps_its_limits(void **st)
+{
+	uint64_t s = seed + 2;
+
+	(void)st;
+	for (int i = 0; i < ROUNDS; i++) {
+		struct track t = { .n = 0 };
+		struct rig r;
+
+		begin_dry(&r, &s, false);
+		for (int n = 0; n < 20000 && r.c.loaded; n++) {
+			disturb(&r, &s, 1000);
+			watch(&r, &t, OPEN_V);
+			assert_int_equal(r.c.fault.first, FAULT_NONE);
+		}
 		rig_free(&r);
 	}
 }
@@ -101,6 +128,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(there_and_back_every_axis_keeps_its_limits),
+		cmocka_unit_test(
+			held_at_any_moment_every_axis_keeps_its_limits),
 		cmocka_unit_test(in_jumps_every_axis_keeps_its_limits),
 	};
 

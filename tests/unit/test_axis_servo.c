@@ -25,16 +25,19 @@ static bool is_servo(const struct track *k, const struct rig *r)
 /* A place less than 1e-9 mm ahead is met; two of these in a difference. */
 static void check_servo(const struct track *k, const struct rig *r)
 {
-	const double t = PERIOD_S, onto = 4e-9 / (t * t);
+	const double t = PERIOD_S;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
+		const double onto = 4e-9 * rate_of(r, i) / (t * t);
 		const struct interp_axis_limits *l = &axes_machine.axis[i];
 		const double v[2] = { (k->at[2][i] - k->at[1][i]) / t,
 				      (k->at[3][i] - k->at[2][i]) / t };
 		const double a = (v[1] - v[0]) / t;
 
-		if (fabs(v[1]) > l->v_max_mm_s * (1 + 1e-6) ||
-		    fabs(a) > l->a_max_mm_s2 * (1 + 1e-6) + onto)
+		const double more = rounding_of(r, i) * (1 + 1e-6);
+
+		if (fabs(v[1]) > l->v_max_mm_s * more ||
+		    fabs(a) > l->a_max_mm_s2 * more + onto)
 			fail_msg("axis %c, %s, segment %u: %g mm/s, %g of %g "
 				 "mm/s2", INTERP_AXIS_LETTERS[i],
 				 state_duty[r->c.state].name,
@@ -54,7 +57,7 @@ static struct cycle_config config_of(uint64_t *s)
 	k.travel_a_mm_s2 = k.jump.a_max_mm_s2 = 4000;
 	k.travel_j_mm_s3 = k.jump.j_max_mm_s3 = 2e5;
 	k.jump.height_mm = uniform(s, 0, 3);
-	k.jump.every_cycles = 50 + rnd(s) % 500;
+	k.jump.every.cycles = 50 + rnd(s) % 500;
 	k.gap.feed_max_mm_s = pow(10, uniform(s, -0.5, 1));
 	k.gap.approach_mm_s = pow(10, uniform(s, -0.5, 1));
 	k.gap.retract_mm_s = pow(10, uniform(s, 0, 1.5));
@@ -137,7 +140,7 @@ static struct probe_config probe_of(uint64_t *s)
 		.feed_mm_s = pow(10, uniform(s, 0, 0.5)),
 		.fine_mm_s = pow(10, uniform(s, -1, 1)),
 		.back_mm = rnd(s) % 4 ? uniform(s, 0.1, 0.3) : 0,
-		.settle_cycles = 5,
+		.settle.cycles = 5,
 	};
 }
 

@@ -92,7 +92,8 @@ static uint32_t check_way(const struct interp_program *p,
 				 lround(o->now_mm[k] * 1000) -
 				 o->probed.shift[k]);
 	while (p->segs[i].length_mm > 0 && p->segs[i].s_mm < e->way_mm)
-		assert_int_equal(p->segs[i++].flags, INTERP_SEG_RAPID);
+		assert_int_equal(p->segs[i++].flags & ~INTERP_SEG_STAND,
+				 INTERP_SEG_RAPID);
 	while (i < p->head->nsegs && p->segs[i].line == e->line &&
 	       (p->segs[i].kind == INTERP_AUX ||
 		(p->segs[i].kind == INTERP_STOP && o->up < 0 && !stops && ++stops)))
@@ -127,6 +128,19 @@ static uint32_t lines_of(const struct script *text)
 	for (int i = 0; i < text->n; i++)
 		n += text->at[i] == '\n';
 	return n;
+}
+
+/* Nobody knows what stands where a probing motion would end. */
+static void check_entry(const struct interp_program *whole,
+			const struct interp_build_entry *e)
+{
+	for (uint32_t i = 0; i < whole->head->nsegs; i++) {
+		const struct interp_seg *s = &whole->segs[i];
+		const double end_mm = s->s_mm + s->length_mm;
+
+		if (s->flags & INTERP_SEG_SENSED && s->length_mm > 0)
+			assert_true(fabs(e->from_mm - end_mm) > 1e-9);
+	}
 }
 
 /* Return: was it taken? */
@@ -167,6 +181,7 @@ static bool try_one(const struct script *text, const char *dialect,
 		return false;
 	}
 	b = finish(part);
+	check_entry(&a.p, &e);
 	first = check_way(&b.p, &o, &e);
 	was = walk(&a.p, first_left(&a.p, e.from_mm));
 	is = walk(&b.p, first);
@@ -204,10 +219,50 @@ static void from_a_place_on_it_is_the_same(void **st)
 	assert_true(taken > runs);
 }
 
+/* It begins at 0, or at Z1; the place is 0.9 mm behind that, or its line. */
+static void a_probing_motion_is_made_again(void **st)
+{
+	static const char *const words[] = {
+		"G80 Z-\nG92 Z0", "G38.2 Z-5 F60\nG92 Z0",
+		"G80 X+\nG92 X0", "G81 Y-\nG92 Y0",
+	};
+	const struct interp_build_options bo = {
+		.machine = &machine, .strategy = INTERP_SIMULTANEOUS,
+		.chord_error_mm = 0.001, .period_s = 1e-3,
+	};
+
+	(void)st;
+	for (size_t i = 0; i < 4 * sizeof(words) / sizeof(*words); i++) {
+		static struct script text;
+		struct interp_build_from o = {
+			.up = INTERP_Z, .probed_known = true,
+		};
+		struct interp_build_entry e;
+		struct interp_diag d = { 0 };
+		struct interp_build *b;
+
+		text.n = 0;
+		put(&text, "G21 G90\n%s%s\nG0 Z9\nG1 Z8 F60\nM30\n",
+		    i % 2 ? "G0 Z1\n" : "", words[i / 4]);
+		if (i / 2 % 2)
+			o.line = i % 2 ? 3 : 2;
+		else
+			o.far_mm = i % 2 ? 1.9 : 0.9;
+		b = random_build(&text, "generic", &bo);
+		assert_non_null(b);
+		assert_int_equal(interp_build_from(b, &o, &e, &d), 0);
+		assert_true(e.entry_mm[INTERP_Z] == (i % 2 ? 1 : 0));
+		assert_true(e.entry_mm[INTERP_X] == 0);
+		assert_int_equal(e.next_line, i % 2 ? 3 : 2);
+		interp_build_destroy(b);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(from_a_place_on_it_is_the_same),
+		cmocka_unit_test(a_probing_motion_is_made_again),
 	};
 
 	seed = seed_take();

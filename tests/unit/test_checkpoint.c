@@ -4,6 +4,7 @@
  * how many bytes are written
  */
 #include "checkpoint.h"
+#include "folder_help.h"
 #include "seed.h"
 
 #include <errno.h>
@@ -18,24 +19,6 @@
 #include <unistd.h>
 
 #include <cmocka.h>
-
-static char dir[64];
-
-static int setup(void **state)
-{
-	(void)state;
-	snprintf(dir, sizeof(dir), "/tmp/edmd-place.XXXXXX");
-	return mkdtemp(dir) ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-	char line[100];
-
-	(void)state;
-	snprintf(line, sizeof(line), "rm -rf %s", dir);
-	return system(line);
-}
 
 static struct checkpoint_base base_at(double far_mm, uint64_t cycles)
 {
@@ -71,7 +54,7 @@ static struct checkpoint read_back(const char *machine)
 	struct checkpoint_file *f;
 	struct checkpoint c;
 
-	assert_int_equal(checkpoint_open(&f, dir, machine, &c), 0);
+	assert_int_equal(checkpoint_open(&f, folder, machine, &c), 0);
 	checkpoint_close(f);
 	return c;
 }
@@ -83,7 +66,7 @@ static void what_was_written_is_read(void **state)
 	struct checkpoint c;
 
 	(void)state;
-	assert_int_equal(checkpoint_open(&f, dir, "m", &c), 0);
+	assert_int_equal(checkpoint_open(&f, folder, "m", &c), 0);
 	assert_false(c.there);
 	checkpoint_look(f, &b, 1);
 	wait_written(f, 1);
@@ -169,7 +152,7 @@ static void lateness_and_load_are_bounded(void **state)
 	struct checkpoint c;
 
 	(void)state;
-	assert_int_equal(checkpoint_open(&f, dir, "m", &c), 0);
+	assert_int_equal(checkpoint_open(&f, folder, "m", &c), 0);
 	for (int64_t us = 0; us < (int64_t)(hours * 3600e6); us += 20000) {
 		far_mm += feed_mm_s * 0.02;
 		b = base_at(far_mm, (uint64_t)us / 1000);
@@ -204,7 +187,7 @@ static void the_worst_load_is_within_its_budget(void **state)
 	struct checkpoint c;
 
 	(void)state;
-	assert_int_equal(checkpoint_open(&f, dir, "m", &c), 0);
+	assert_int_equal(checkpoint_open(&f, folder, "m", &c), 0);
 	for (int64_t us = 0; us < (int64_t)3600e6; us += 20000) {
 		struct checkpoint_base b = base_at((double)us, (uint64_t)us);
 
@@ -229,7 +212,7 @@ static void one_that_stands_writes_nothing(void **state)
 
 	(void)state;
 	b.snap.state = SHM_IDLE;
-	assert_int_equal(checkpoint_open(&f, dir, "m", &c), 0);
+	assert_int_equal(checkpoint_open(&f, folder, "m", &c), 0);
 	for (int64_t us = 0; us < (int64_t)600e6; us += 20000) {
 		b.utime = us;
 		b.snap.cycle = (uint64_t)us;
@@ -245,7 +228,7 @@ static void one_that_stands_writes_nothing(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-#define T(f)	cmocka_unit_test_setup_teardown(f, setup, teardown)
+#define T(f)	cmocka_unit_test_setup_teardown(f, folder_make, folder_remove)
 		T(what_was_written_is_read),
 		T(a_torn_block_leaves_the_one_before),
 		T(lateness_and_load_are_bounded),

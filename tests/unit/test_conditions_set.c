@@ -77,7 +77,7 @@ static void check_c1(const struct rig *r)
 	assert_true(r->c.gap.servo_v == 30);
 	assert_true(r->c.gap.short_v == r->c.config.gap.short_v);
 	assert_true(r->c.gap.feed_max_mm_s == 4);
-	assert_int_equal(r->c.jump.every_cycles, 250);
+	assert_int_equal(r->c.jump.every.cycles, 250);
 	assert_true(r->c.out.pulse.on_us == 100);
 	assert_true(isnan(r->c.out.pulse.off_us));
 	assert_true(r->c.out.pulse.iso);
@@ -88,7 +88,7 @@ static void check_c2(const struct rig *r)
 {
 	assert_true(r->c.gap.servo_v == 35);
 	assert_true(r->c.gap.feed_max_mm_s == 0.5);
-	assert_int_equal(r->c.jump.every_cycles, 100);
+	assert_int_equal(r->c.jump.every.cycles, 100);
 	assert_true(isnan(r->c.out.pulse.on_us));
 	assert_false(r->out.negative);
 }

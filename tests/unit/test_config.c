@@ -29,7 +29,7 @@ static void the_built_in_machine_is_the_documented_one(void **state)
 		assert_true(l->j_max_mm_s3 == 20000);
 		assert_true(c.start_mm[i] == 0);
 	}
-	assert_true(c.gap.servo_v == 15 && c.gap.short_v == 8);
+	assert_true(c.gap.servo_v == 25 && c.gap.short_v == 8);
 	assert_true(c.sim.area_mm2 == 19.635);
 	assert_string_equal(c.lcm_url, "udpm://239.255.76.67:7667?ttl=0");
 	assert_string_equal(c.store_dir, "/var/lib/edmd");
@@ -200,7 +200,7 @@ static void the_cycle_gets_seconds_as_cycles_of_its_period(void **state)
 		  &c);
 	config_cycle(&c, &cycle);
 	assert_int_equal(cycle.period_ns, 250000);
-	assert_int_equal(cycle.jump.every_cycles, 6000);
+	assert_int_equal(cycle.jump.every.cycles, 6000);
 	assert_int_equal(cycle.overrun_limit, 7);
 	assert_int_equal(cycle.points_max, 4096);
 	assert_true(cycle.gap.gain_mm_s_v == 0.03);
@@ -250,7 +250,7 @@ static void the_servo_takes_from_the_machine_what_is_not_given(void **state)
 	config_cycle(&c, &cycle);
 	assert_true(cycle.gap.feed_a_mm_s2 == 5);
 	assert_true(cycle.gap.ignition_v == 90 && cycle.gap.off_us == 7);
-	assert_int_equal(cycle.gap.stuck_cycles, 2000);
+	assert_int_equal(cycle.gap.stuck.cycles, 2000);
 	assert_int_equal(cycle.gap.retract_to, RETRACT_MOTION);
 	assert_int_equal(cycle.gap.process, PROCESS_WIRE);
 	assert_int_equal(cycle.gap.source, GAP_LINES);
@@ -263,16 +263,36 @@ static void a_wire_machine_has_defaults_of_its_own(void **state)
 
 	(void)state;
 	read_good("[gap]\nprocess = wire\n[sim]\npeak_a = 30\n", &c);
-	assert_int_equal(c.sim.process, SIM_WIRE);
+	assert_int_equal(c.sim.process, PROCESS_WIRE);
 	assert_true(c.sim.flush_per_s == 2 && c.sim.on_us == 2);
 	assert_true(c.sim.peak_a == 30);
 	/* A cavity in the simulation, whatever the control is told. */
 	read_good("[sim]\nprocess = sink\n[gap]\nprocess = wire\n", &c);
-	assert_int_equal(c.sim.process, SIM_SINK);
+	assert_int_equal(c.sim.process, PROCESS_SINK);
 	assert_true(c.sim.on_us == 8);
 	read_good("[sim]\nprocess = wire\n", &c);
 	assert_int_equal(c.gap.process, PROCESS_SINK);
 	assert_true(c.sim.on_us == 2);
+}
+
+/* Neighbours the other way; faster in all, or slower in all. */
+static void what_is_believed_of_an_axis_is_off_by_the_model_error(void **state)
+{
+	struct machine_config c;
+
+	(void)state;
+	read_good("[contour]\nmodel_error = 0.25\n[axis.X]\n"
+		  "loop_gain_1_s = 40\nloop_hz = 80\n"
+		  "loop_delay_s = 0.004\n", &c);
+	for (int odd = 0; odd < 2; odd++) {
+		const double off = odd ? -0.25 : 0.25;
+		const struct interp_axis_loop l =
+			config_loop_true(&c, INTERP_X, odd);
+
+		assert_true(l.gain_1_s == 40 * (1 + off));
+		assert_true(l.velocity_hz == 80 * (1 + off));
+		assert_true(l.delay_s == 0.004 * (1 - off));
+	}
 }
 
 int main(void)
@@ -295,6 +315,8 @@ int main(void)
 			positioning_is_as_weak_as_the_weakest_linear_axis),
 		cmocka_unit_test(
 			the_servo_takes_from_the_machine_what_is_not_given),
+		cmocka_unit_test(
+			what_is_believed_of_an_axis_is_off_by_the_model_error),
 	};
 
 	return cmocka_run_group_tests_name("config", tests, make_file,

@@ -140,6 +140,8 @@ static void what_does_not_agree_is_refused_with_the_remedy(void **state)
 		{ "step_X = 1\ndir_X = 2\ngap_open = 3\ngap_short = 4\n",
 		  "gap.source is sim and there are gap lines",
 		  "source = lines" },
+		{ "step_X = 1\ndir_X = 2\nadc = a\nadc_ratio = 0\n[gap]\n"
+		  "source = voltage\n", "gpio.adc_ratio is 0", "the divider" },
 		{ "step_X = 1\ndir_X = 2\nspark = 3\nestop = 4\n",
 		  "gpio.spark without gpio.watchdog", "or gpio.watchdog_by" },
 		{ "step_X = 1\ndir_X = 2\nspark = 3\nwatchdog = 4\n",

@@ -270,10 +270,13 @@ static void u_and_v_are_the_lean_in_the_dialects(void **st)
 	assert_lean("skd2", "G90\nG01 X10.0 U1.0\nM02\n", 12, 0);
 	assert_lean("sodick", "G90\nG01 X10. Y0.:G01 X11. Y0.\nM02\n", 12, 0);
 	/* A half circle over another, one mm to the side. */
-	assert_lean("fanuc", "G90\nG01 X10. U1.\nG02 X20. I5. U1. K5.\nM30\n",
+	assert_lean("fanuc", "G90\nG01 X10. U1.\nG02 X20. I5. U1. K1.\nM30\n",
 		    22, 0);
 	assert_lean("robofil", "G90\nG01 X10. Y0. U1.\n"
-		    "G02 X20. Y0. I15. J0. U1. K16. L0.\nM02\n", 22, 0);
+		    "G02 X20. Y0. I15. J0. U1. K1. L0.\nM02\n", 22, 0);
+	/* A cone: both centres are one, half a turn, lean 1 mm outward. */
+	assert_lean("fanuc", "G90\nG01 X10. U1.\nG03 X-10. I-10. U-1. K0. L0.\n"
+		    "M30\n", -12, 0);
 }
 
 static void a_leaning_arc_without_its_centre_is_refused(void **st)
@@ -321,6 +324,27 @@ static void the_feed_is_that_of_the_faster_contour(void **st)
 	assert_near(nc_seg(&r, 2)->length_mm, 16 * acos(-1));
 	assert_true(fabs(nc_seg(&r, 2)->feed_mm_s - 8.0 / 14) < 1e-6);
 	nc_done(&r);
+}
+
+/* It has no direction to keep an offset from. */
+static void a_motion_of_no_length_changes_nothing(void **st)
+{
+	static const char *const more[] = { "", "G1 X10 Y0 : X10 Y-2\n" };
+	double length_mm[2];
+
+	(void)st;
+	for (int i = 0; i < 2; i++) {
+		struct nc_read r = ready(&guides);
+		char text[200];
+
+		snprintf(text, sizeof(text), "F6 G0 X10 Y-5\nG42 D1\n"
+			 "G1 X10 Y0 : X10 Y-2\n%sM2\n", more[i]);
+		nc_read(&r, text);
+		length_mm[i] = nc_seg(&r, 1)->length_mm;
+		assert_true(length_mm[i] > 1 && length_mm[i] < 20);
+		nc_done(&r);
+	}
+	assert_near(length_mm[0], length_mm[1]);
 }
 
 /* A machine that stands with the wire aslant knows where it stands. */
@@ -638,6 +662,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_square_grows_by_the_offset_outside),
 		cmocka_unit_test(a_square_shrinks_by_the_offset_inside),
+		cmocka_unit_test(a_motion_of_no_length_changes_nothing),
 		cmocka_unit_test(inches_hold_for_registers_too),
 		cmocka_unit_test(a_sharp_outer_corner_is_rounded),
 		cmocka_unit_test(going_back_goes_round_the_end),

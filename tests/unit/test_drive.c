@@ -371,6 +371,98 @@ static void silence_is_trouble(void **state)
 	assert_int_equal(r.d.trouble, DRIVE_MUTE);
 }
 
+static void a_statusword_that_is_no_state_costs_no_place(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.status = 0x1067;
+	run(&r, 2, 0);
+	r.p.status = 0x1027;
+	run(&r, 5, 0);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	r.p.status = 0x1067;
+	run(&r, 3, 0);
+	assert_int_equal(r.d.trouble, DRIVE_STRANGE);
+	assert_false(r.d.lost);
+	r.p.status = 0x40;
+	run(&r, 2, 0);
+	drive_reset(&r.d);
+	run(&r, 20, 0);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	assert_int_equal(r.d.state, DRIVE_ENABLED);
+}
+
+/* Some drives stop following for a while when their mode is written. */
+static void a_reset_writes_no_mode_to_one_that_follows(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	drive_reset(&r.d);
+	assert_false(r.d.remode);
+	r.p.status = 0x27;
+	run(&r, 2, 0);
+	drive_reset(&r.d);
+	assert_true(r.d.remode);
+}
+
+/* Its own task runs once in up to eight SYNCs, which is in 16 ms here. */
+static void one_that_looks_seldom_sees_the_fault_reset(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	for (int every = 2; every <= 8; every++) {
+		bool was = true, seen = false;
+
+		enable(&r);
+		r.p.fault = true;
+		r.p.status = 0x08;
+		run(&r, 5, 0);
+		drive_reset(&r.d);
+		for (int i = 0; i < 400 && !seen; i++) {
+			/* The peer takes no reset by itself. */
+			r.p.fault = true;
+			r.p.status = 0x08;
+			run(&r, 1, 0);
+			if (i % every != 0)
+				continue;
+			seen = !was && r.p.control & 0x80;
+			was = r.p.control & 0x80;
+		}
+		assert_true(seen);
+		assert_int_equal(r.d.trouble, DRIVE_WELL);
+	}
+}
+
+/* Just switched on, it is not ready for this yet. */
+static void one_that_is_busy_is_asked_again(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	r.p.refuses = 0x606000;
+	r.p.code = 0x08000022;
+	run(&r, 200, 0);
+	assert_int_equal(r.d.phase, DRIVE_CONFIGURED_NEXT);
+	assert_int_equal(r.d.passed, DRIVE_LATER);
+	r.p.refuses = 0;
+	run(&r, 100, 0);
+	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+	assert_int_equal(r.p.mode, 8);
+
+	make(&r);
+	r.p.refuses = 0x606000;
+	r.p.code = 0x08000022;
+	run(&r, 1000, 0);
+	assert_int_equal(r.d.phase, DRIVE_REFUSED);
+	assert_int_equal(r.d.abort, 0x08000022);
+}
+
 static void a_drive_that_lags_is_stopped(void **state)
 {
 	struct rig r;
@@ -883,12 +975,16 @@ static void bits_are_those_of_the_standard(void **state)
 	assert_int_equal(can_bits(0), 55);
 }
 
-static void every_statusword_is_a_state_and_every_state_has_a_way_on(
+static void statuswords_are_states_and_every_state_has_a_way_on(
 	void **state)
 {
 	(void)state;
 	for (uint32_t w = 0; w < 0x10000; w++)
-		assert_true(drive_state_of((uint16_t)w) < DRIVE_NSTATES);
+		assert_true(drive_state_of((uint16_t)w) <= DRIVE_NO_STATE);
+	/* Words that CiA 402 does not have are not taken for a restart. */
+	assert_int_equal(drive_state_of(0x1267), DRIVE_NO_STATE);
+	assert_int_equal(drive_state_of(0x0248), DRIVE_NO_STATE);
+	assert_int_equal(drive_state_of(0x0000), DRIVE_NOT_READY);
 	assert_int_equal(drive_state_of(0x0637), DRIVE_ENABLED);
 	assert_int_equal(drive_state_of(0x0250), DRIVE_DISABLED);
 	assert_int_equal(drive_state_of(0x0218), DRIVE_FAULT);
@@ -907,6 +1003,10 @@ int main(void)
 		cmocka_unit_test(troubles_are_seen_latched_and_end_by_reset),
 		cmocka_unit_test(one_that_leaves_its_state_is_not_enabled_again),
 		cmocka_unit_test(silence_is_trouble),
+		cmocka_unit_test(a_statusword_that_is_no_state_costs_no_place),
+		cmocka_unit_test(a_reset_writes_no_mode_to_one_that_follows),
+		cmocka_unit_test(one_that_looks_seldom_sees_the_fault_reset),
+		cmocka_unit_test(one_that_is_busy_is_asked_again),
 		cmocka_unit_test(a_drive_that_lags_is_stopped),
 		cmocka_unit_test(one_that_reboots_is_brought_up_again_after_reset),
 		cmocka_unit_test(
@@ -933,7 +1033,7 @@ int main(void)
 		cmocka_unit_test(what_no_brake_holds_is_not_let_go),
 		cmocka_unit_test(a_billion_pulses_do_not_drift),
 		cmocka_unit_test(bits_are_those_of_the_standard),
-		cmocka_unit_test(every_statusword_is_a_state_and_every_state_has_a_way_on),
+		cmocka_unit_test(statuswords_are_states_and_every_state_has_a_way_on),
 	};
 
 	return cmocka_run_group_tests_name("io/drive", tests, NULL, NULL);

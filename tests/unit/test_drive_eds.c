@@ -72,6 +72,49 @@ static void a_drive_that_has_all_of_it_is_taken(void **state)
 	assert_int_equal(check(path, &d), 0);
 	write_eds(0, "AccessType=rww\nLowLimit=0x3e8\nHighLimit=1000");
 	assert_int_equal(check(path, &d), 0);
+	/* Signed limits in hexadecimal: -2147483648 to 2147483647. */
+	write_eds(0, "AccessType=rw\nLowLimit=0x80000000\n"
+		     "HighLimit=0x7FFFFFFF\n");
+	assert_int_equal(check(path, &d), 0);
+}
+
+static void add(const char *text)
+{
+	FILE *f = fopen(path, "a");
+
+	assert_non_null(f);
+	fputs(text, f);
+	fclose(f);
+}
+
+/* CompactSubObj and CompactPDO of CiA 306; and a line longer than a reader of
+ * ini files takes. */
+static void a_compact_eds_is_understood(void **state)
+{
+	char line[700];
+	struct interp_diag d;
+
+	(void)state;
+	write_eds(0x1016, "AccessType=rw");
+	add("[1016]\nParameterName=Consumer heartbeat time\nObjectType=0x8\n"
+	    "DataType=0x0007\nAccessType=rw\nCompactSubObj=1\n");
+	assert_int_equal(check(path, &d), 0);
+	write_eds(0x1016, "AccessType=rw");
+	add("[1016]\nAccessType=ro\nCompactSubObj=1\n");
+	assert_int_equal(check(path, &d), -EINVAL);
+	assert_non_null(strstr(d.found, "1016:01, value 7f00fa: it is read"));
+	write_eds(0x1016, "AccessType=rw");
+	add("[1016]\nAccessType=rw\nCompactSubObj=0\n");
+	assert_int_equal(check(path, &d), -EINVAL);
+	write_eds(0x1a00, "AccessType=rw");
+	add("[DeviceInfo]\nCompactPDO=3\n");
+	assert_int_equal(check(path, &d), 0);
+	write_eds(0, "AccessType=rw");
+	memset(line, 'x', sizeof(line));
+	line[sizeof(line) - 1] = '\0';
+	add("[Comments]\nLine1=");
+	add(line);
+	assert_int_equal(check(path, &d), 0);
 }
 
 static void what_it_would_refuse_is_refused_at_the_start(void **state)
@@ -86,6 +129,8 @@ static void what_it_would_refuse_is_refused_at_the_start(void **state)
 		{ 0, "AccessType=ro", "object 6065:00, value 3e8: it is read" },
 		{ 0, "AccessType=rw\nHighLimit=999\n", "its limits are" },
 		{ 0, "AccessType=rw\nLowLimit=0x3e9\n", "its limits are" },
+		{ 0, "AccessType=rw\nLowLimit=0xfffffff0\nHighLimit=999\n",
+		  "its limits are" },
 	};
 
 	(void)state;
@@ -106,12 +151,16 @@ static void a_file_that_is_none_is_told(void **state)
 	(void)state;
 	assert_int_equal(check("/nowhere/x.eds", &d), -ENOENT);
 	assert_non_null(strstr(d.found, "/nowhere/x.eds"));
+	write_eds(0, "");
+	assert_int_equal(check("/etc/passwd", &d), -EINVAL);
+	assert_non_null(strstr(d.found, "not the lines"));
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_drive_that_has_all_of_it_is_taken),
+		cmocka_unit_test(a_compact_eds_is_understood),
 		cmocka_unit_test(what_it_would_refuse_is_refused_at_the_start),
 		cmocka_unit_test(a_file_that_is_none_is_told),
 	};

@@ -72,7 +72,7 @@ static struct cycle_config jumping(void)
 	struct cycle_config k = usual_config();
 
 	k.jump.height_mm = 1;
-	k.jump.every_cycles = 50;
+	k.jump.every.cycles = 50;
 	k.overrun_limit = 0;
 	return k;
 }

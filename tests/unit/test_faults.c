@@ -131,7 +131,7 @@ static void what_is_seen_counts_by_what_the_machine_does(void **st)
 			for (int sparks = 0; sparks <= moves; sparks++) {
 				struct fault s = { FAULT_NONE };
 
-				fault_note(&s, FAULT_DOOR,
+				fault_note_in(&s, FAULT_DOOR,
 					   (enum fault_scope)i);
 				fault_judge(&s, moves, sparks);
 				assert_int_equal(s.latched != 0,

@@ -7,9 +7,9 @@ static struct cycle_config jumping(void)
 	struct cycle_config k = usual_config();
 
 	k.jump.height_mm = 0.4;
-	k.jump.every_cycles = 200;
-	k.jump.every_min_cycles = 50;
-	k.jump.every_max_cycles = 1000;
+	k.jump.every.cycles = 200;
+	k.jump.every_min.cycles = 50;
+	k.jump.every_max.cycles = 1000;
 	k.jump.height_min_mm = 0.2;
 	k.jump.height_max_mm = 0.9;
 	k.jump.bad_share = 0.02;
@@ -41,7 +41,7 @@ static void a_jump_is_due_by_depth(void **st)
 	struct rig r;
 
 	(void)st;
-	k.jump.every_cycles = 1000000;
+	k.jump.every.cycles = 1000000;
 	k.jump.every_mm = 0.05;
 	cut_at(&r, &k, 1.5);
 	to_jump(&r, SPARKING_V);
@@ -75,7 +75,7 @@ static void new_values_count_at_once(void **st)
 	(void)st;
 	cut_at(&r, &k, 1.5);
 	to_jump(&r, 41);
-	r.c.jump.every_cycles = 70;
+	r.c.jump.every.cycles = 70;
 	r.c.jump.height_mm = 0.1;
 	assert_int_equal(to_jump(&r, 41), 70);
 	assert_near(height(&r), 0.1, 1e-9);
@@ -116,7 +116,7 @@ static void the_period_goes_where_most_depth_is_gained(void **st)
 		struct rig r;
 
 		k.jump.adaptive = true;
-		k.jump.every_cycles = starts[i];
+		k.jump.every.cycles = starts[i];
 		cut_at(&r, &k, 1.5);
 		for (int n = 0; n < 120;) {
 			const bool jumped = r.c.state == STATE_JUMP;
@@ -149,7 +149,7 @@ static void shorts_and_arcs_bring_jumps_sooner_and_higher(void **st)
 			to_jump(&r, 41);
 		}
 		assert_int_equal(r.c.flush.every_cycles,
-				 k.jump.every_min_cycles);
+				 k.jump.every_min.cycles);
 		assert_near(height(&r), k.jump.height_max_mm, 1e-9);
 		/* When it is calm again, the height is given back. */
 		shares(&r, 0.1, 0.9, 0, 0);
@@ -171,7 +171,7 @@ static void a_new_condition_begins_with_its_own_values(void **st)
 	for (int i = 0; i < 45; i++)
 		to_jump(&r, 40.5);
 	assert_true(r.c.flush.every_cycles > 300);
-	r.c.jump.every_cycles = 100;
+	r.c.jump.every.cycles = 100;
 	assert_int_equal(to_jump(&r, 40.5), 100);
 	rig_free(&r);
 }

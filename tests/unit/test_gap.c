@@ -290,7 +290,7 @@ static void a_signal_that_stands_still_while_it_moves_is_a_fault(void **st)
 
 	(void)st;
 	cut_at(&r, &k, 2);
-	r.c.gap.stuck_cycles = 300;
+	r.c.gap.stuck.cycles = 300;
 	step(&r, SPARKING_V - 1);
 	n = until(&r, STATE_FAULT, SPARKING_V, 400);
 	assert_in_range(n, 300, 330);
@@ -312,7 +312,7 @@ static void a_signal_may_stand_still_where_nothing_moves(void **st)
 
 	(void)st;
 	cut_at(&r, &k, 2);
-	r.c.gap.stuck_cycles = 300;
+	r.c.gap.stuck.cycles = 300;
 	steps(&r, k.gap.servo_v, 2000);
 	assert_int_equal(r.c.state, STATE_ERODE);
 	rig_free(&r);
@@ -326,7 +326,7 @@ static void lines_and_open_shares_may_stand_still(void **st)
 		struct rig r;
 
 		(void)st;
-		k.gap.stuck_cycles = 50;
+		k.gap.stuck.cycles = 50;
 		begin_cut(&r, &k);
 		shares(&r, 1, 0, 0, 0);
 		until(&r, STATE_APPROACH, OPEN_V, 1000);

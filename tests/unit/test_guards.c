@@ -33,7 +33,7 @@ static struct cycle_config all_config(void)
 
 	k.jump.height_mm = 0.5;
 	k.probe = (struct probe_config) { .feed_mm_s = 1, .fine_mm_s = 0.5,
-					  .back_mm = 0.1, .settle_cycles = 5 };
+					  .back_mm = 0.1, .settle.cycles = 5 };
 	for (int i = 0; i < 3; i++)
 		k.axis[i] = (struct manual_axis) {
 			.present = true, .method = HOME_SWITCH,

@@ -53,7 +53,7 @@ static struct cycle_config any_config(uint64_t *s)
 	k.dry_run = one_in(s, 8);
 	k.require_home = one_in(s, 8);
 	k.probe = (struct probe_config) { .feed_mm_s = 1, .fine_mm_s = 0.5,
-					  .back_mm = 0.1, .settle_cycles = 5 };
+					  .back_mm = 0.1, .settle.cycles = 5 };
 	for (int i = 0; i < 3; i++)
 		k.axis[i] = (struct manual_axis) {
 			.present = true, .method = HOME_SWITCH,

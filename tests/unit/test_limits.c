@@ -321,7 +321,7 @@ static void a_jump_stands_at_every_node_if_it_is_told_to(void **st)
 		k.stop_at_nodes = stop;
 		k.jump.height_mm = 1;
 		k.jump.short_of_mm = 0;
-		k.jump.every_cycles = 3000;
+		k.jump.every.cycles = 3000;
 		for (int i = 1; i <= 40; i++)
 			cut_to(b, -0.1 * i);
 		rig_load(&r, b, &k);

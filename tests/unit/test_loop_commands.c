@@ -9,6 +9,7 @@
 #include "resume_help.h"
 
 #include "clock.h"
+#include "clocks.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -81,7 +82,7 @@ static struct shm_command command(struct desk *d, uint32_t verb)
 {
 	return (struct shm_command) {
 		.id = ++d->id, .verb = verb, .instance = d->instance,
-		.until_ns = setup_now_ns() + SOON_NS,
+		.until_ns = clock_ns(CLOCK_MONOTONIC) + SOON_NS,
 	};
 }
 
@@ -244,7 +245,7 @@ static void a_late_one_is_not_done(void **state)
 	struct desk *d = *state;
 	struct shm_command c = jog(d, 0.1);
 
-	c.until_ns = setup_now_ns() - 1;
+	c.until_ns = clock_ns(CLOCK_MONOTONIC) - 1;
 	assert_int_equal(give(d, &c), SHM_LATE);
 	c = jog(d, 0.1);
 	c.until_ns = INT64_MIN;

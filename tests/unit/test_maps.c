@@ -5,6 +5,7 @@
  */
 #include "config.h"
 #include "cycle.h"
+#include "folder_help.h"
 
 #include <errno.h>
 #include <math.h>
@@ -16,8 +17,6 @@
 #include <unistd.h>
 
 #include <cmocka.h>
-
-static char folder[] = "/tmp/edmd-maps-XXXXXX";
 
 static void put(const char *name, const char *text)
 {
@@ -290,27 +289,6 @@ static void a_map_that_is_not_there_is_refused(void **state)
 	assert_non_null(strstr(d.found, "axis.Y.pitch_map: none.such"));
 }
 
-static int make_folder(void **state)
-{
-	(void)state;
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-	static const char *const names[] = {
-		"m.ini", "n.ini", "x.pitch", "m.maps"
-	};
-	char path[64];
-
-	(void)state;
-	for (int i = 0; i < 4; i++) {
-		snprintf(path, sizeof(path), "%s/%s", folder, names[i]);
-		unlink(path);
-	}
-	return rmdir(folder);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -327,5 +305,5 @@ int main(void)
 		cmocka_unit_test(a_map_that_is_not_there_is_refused),
 	};
 
-	return cmocka_run_group_tests(tests, make_folder, remove_folder);
+	return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }

@@ -165,7 +165,7 @@ static void what_is_proved_no_pose_breaks(void **state)
 		draw_axes(to, 60);
 		block_init(&b, &s.motion, from, to);
 		least = least_sampled(&s, &b, 150);
-		keep = prove_least(&s.bodies, &b, &p);
+		keep = prove_least(&s.bodies, &b, PROVE_FINE_MM, &p);
 		assert_true(keep <= least);
 		if (p.least_mm > 0.003) {
 			struct near_pair pair = { 0 };
@@ -288,7 +288,7 @@ static void a_thin_wall_between_samples_is_met(void **state)
 	assert_true(least_sampled(&s, &b, 64) > 0.1);
 	assert_false(prove_block(&s.bodies, &b, &c, &p));
 	assert_true(fabs(p.t - (20.31 - 0.012) / 40) < 1e-4);
-	assert_true(prove_least(&s.bodies, &b, &p) < 0);
+	assert_true(prove_least(&s.bodies, &b, PROVE_FINE_MM, &p) < 0);
 	tree_free(&s.part.t);
 	tree_free(&s.tool.t);
 }

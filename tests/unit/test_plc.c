@@ -158,6 +158,27 @@ static void a_reset_takes_the_permit_and_boots_again(void **state)
 	assert_false(plc_alive(&p));
 }
 
+static void a_stop_takes_the_permit_at_once(void **state)
+{
+	static const uint8_t stops[] = { 0x02, 0x80 };
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(stops); i++) {
+		struct plc p = working();
+
+		nmt(&p, stops[i], NODE);
+		plc_period(&p);
+		assert_false(plc_alive(&p));
+		assert_int_equal(p.ask.command & PLC_PERMIT, 0);
+		nmt(&p, 0x01, NODE);
+		plc_period(&p);
+		assert_false(plc_alive(&p));
+		request(&p, p.ask.command ^ (PLC_ALIVE | PLC_PERMIT), PLC_LOCKS,
+			1000);
+		assert_true(plc_alive(&p));
+	}
+}
+
 static void one_that_is_stopped_only_beats(void **state)
 {
 	struct plc p = working();
@@ -211,12 +232,61 @@ static void a_fault_is_an_emergency_and_in_the_history(void **state)
 	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 1), 0, &first), 0xff09);
 	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 2), 0, &first), 0xff07);
 	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 3), 0, &first),
-			 0x06090011);
-	assert_int_equal(ask(&p, 0x2f, OBJECT(0x1003, 0), 1, &first),
-			 0x06090030);
+			 0x08000024);
+	/* No value but 0, not even the one that it has. */
+	for (uint32_t i = 1; i <= 3; i++)
+		assert_int_equal(ask(&p, 0x2f, OBJECT(0x1003, 0), i, &first),
+				 0x06090030);
+	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 0), 0, &first), 2);
 	ask(&p, 0x2f, OBJECT(0x1003, 0), 0, &first);
 	assert_int_equal(first, 0x60);
 	assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 0), 0, &first), 0);
+}
+
+static int emergencies_in(struct plc *p, int periods, uint32_t *ret_code)
+{
+	struct can_msg out[PLC_EMITS];
+	int n = 0;
+
+	for (int i = 0; i < periods; i++) {
+		const size_t frames = plc_emit(p, out);
+
+		for (size_t k = 0; k < frames; k++) {
+			if (out[k].id != CAN_EMCY + NODE)
+				continue;
+			n++;
+			*ret_code = can_get(out[k].data, 2);
+		}
+	}
+	return n;
+}
+
+static void after_a_reset_a_fault_that_stands_is_told_again(void **state)
+{
+	static const uint8_t resets[] = { 0x81, 0x82 };
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(resets); i++) {
+		struct plc p = working();
+		uint32_t code = 0;
+		uint8_t first;
+
+		p.tell.fault = 7;
+		assert_int_equal(emergencies_in(&p, 50, &code), 1);
+		p.tell.fault = 9;
+		assert_int_equal(emergencies_in(&p, 50, &code), 1);
+		nmt(&p, resets[i], NODE);
+		assert_int_equal(emergencies_in(&p, 50, &code), 1);
+		assert_int_equal(code, 0xff09);
+		assert_int_equal(ask(&p, 0x40, OBJECT(0x1003, 0), 0, &first),
+				 1);
+		p.tell.fault = 0;
+		assert_int_equal(emergencies_in(&p, 50, &code), 1);
+		assert_int_equal(code, 0);
+		/* And one that is over is not told. */
+		nmt(&p, resets[i], NODE);
+		assert_int_equal(emergencies_in(&p, 50, &code), 0);
+	}
 }
 
 /* Tools write all they know of a node. */
@@ -656,8 +726,11 @@ int main(void)
 		cmocka_unit_test(
 			an_unknown_nmt_command_is_counted_and_changes_nothing),
 		cmocka_unit_test(a_reset_takes_the_permit_and_boots_again),
+		cmocka_unit_test(a_stop_takes_the_permit_at_once),
 		cmocka_unit_test(one_that_is_stopped_only_beats),
 		cmocka_unit_test(a_fault_is_an_emergency_and_in_the_history),
+		cmocka_unit_test(
+			after_a_reset_a_fault_that_stands_is_told_again),
 		cmocka_unit_test(what_an_object_has_may_be_written),
 		cmocka_unit_test(requests_count_when_operational_only),
 		cmocka_unit_test(frames_of_a_wrong_length_change_nothing),

@@ -24,7 +24,7 @@ static struct cycle_config probe_config(void)
 
 	k.probe = (struct probe_config) {
 		.feed_mm_s = 1, .fine_mm_s = 0.5, .back_mm = 0.1,
-		.settle_cycles = SETTLE,
+		.settle.cycles = SETTLE,
 	};
 	return k;
 }

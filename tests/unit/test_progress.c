@@ -89,6 +89,36 @@ static void a_slow_motion_is_not_stuck(void **st)
 	}
 }
 
+/* Over a line that its axes pass slowly a hold takes seconds, and less than a
+ * pulse. */
+static void a_slow_brake_is_not_stuck(void **st)
+{
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 2e-4 };
+	double end[INTERP_NAXES] = { 0 };
+	struct interp_diag d;
+	struct rig r;
+
+	(void)st;
+	k.dry_run = true;
+	k.travel_a_mm_s2 = 1e-4;
+	k.travel_j_mm_s3 = 1e-2;
+	end[INTERP_Z] = -5;
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+	rig_load(&r, b, &k);
+	tell(&r, CYCLE_START);
+	steps(&r, OPEN_V, SECONDS(20));
+	tell(&r, CYCLE_HOLD);
+	steps(&r, OPEN_V, SECONDS(1.5));
+	assert_true(r.c.mover.v_mm_s > 0);
+	steps(&r, OPEN_V, SECONDS(5));
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	assert_int_equal(r.c.state, STATE_HOLD);
+	assert_true(r.c.mover.v_mm_s == 0);
+	rig_free(&r);
+}
+
 static void hold_it(struct rig *r)
 {
 	tell(r, CYCLE_HOLD);
@@ -143,6 +173,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_should_move_and_stands_is_stuck),
 		cmocka_unit_test(a_slow_motion_is_not_stuck),
+		cmocka_unit_test(a_slow_brake_is_not_stuck),
 		cmocka_unit_test(a_wait_that_has_a_name_may_last),
 	};
 

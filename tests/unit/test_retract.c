@@ -82,7 +82,7 @@ static void a_retract_that_lasts_too_long_is_a_fault(void **st)
 
 	(void)st;
 	k.gap.retract_mm_s = 0.1;
-	k.gap.retract_max_cycles = 200;
+	k.gap.retract_max.cycles = 200;
 	cut_at(&r, &k, 3);
 	step(&r, SHORTED_V);
 	for (n = 1; r.c.fault.first == FAULT_NONE; n++)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* test_setup.c - how the clock counts periods, and the real-time report */
 #include "clock.h"
+#include "clocks.h"
 #include "rt.h"
 
 #include <pthread.h>
@@ -85,6 +86,9 @@ static void the_wait_wakes_when_due_and_not_before(void **state)
 
 	(void)state;
 	setup_clock_start(&c, MS / 2);
+	assert_int_equal(c.next_ns % (MS / 2), MS / 4);
+	assert_in_range(c.next_ns, clock_ns(CLOCK_MONOTONIC) - MS / 2,
+			clock_ns(CLOCK_MONOTONIC) + MS);
 	for (int n = 0; n < 20; n++) {
 		int64_t due = c.next_ns;
 		struct setup_wake w = setup_clock_wait(&c);

@@ -120,6 +120,7 @@ static void no_snapshot_is_ever_torn_or_older_than_the_last(void **state)
 	while (got < READS || last < SNAPSHOTS) {
 		struct shm_snapshot s, want;
 
+		/* This writer never rests, so every try may be overtaken. */
 		if (!shm_snapshot(st.status, &s)) {
 			none++;
 			continue;
@@ -134,7 +135,6 @@ static void no_snapshot_is_ever_torn_or_older_than_the_last(void **state)
 	print_message("snapshots: %llu written, %llu read, %llu not there\n",
 		      (unsigned long long)st.written, (unsigned long long)got,
 		      (unsigned long long)none);
-	assert_int_equal(none, 0);
 	shm_status_destroy(st.status, machine);
 }
 

@@ -530,7 +530,7 @@ static void a_wire_breaks_by_shorts_and_is_threaded_without_power(void **st)
 
 	(void)st;
 	quiet(&b.k);
-	b.k.sim.process = SIM_WIRE;
+	b.k.sim.process = PROCESS_WIRE;
 	b.k.sim.break_per_j = 0.01;
 	b.k.sim.rethread_s = 2;
 	open_sim(&b, 1);

@@ -139,8 +139,7 @@ static void live(struct store *s, struct life *l)
 	store_set_state(s, n[0], JOB_RUNNING);
 	store_begin(s, n[0], 2000);
 	store_may_begin(s, 0);
-	store_change(s, n[0], &(struct store_change) {
-		.condition = "C1", .time_ns = 1 });
+	store_calls(s, n[0], "[[1,\"C1\",0.5]]");
 	end(s, n[0], JOB_DONE);
 	l->ended = true;
 	store_set_loaded(s, n[0], false);
@@ -311,6 +310,43 @@ static void the_text_is_written_twice_at_most(void **state)
 		      (double)disk.bytes / (double)bytes);
 	assert_true(disk.bytes < (int64_t)bytes * 21 / 10);
 	free(text);
+}
+
+/* docs/power.md: with CHECKPOINT_DAY_BYTES, 100 MB a day. */
+#define STORE_DAY_MB	35
+
+/* What edmd-jobs stores of a cut that never ends, as tally.c does: each three
+ * minutes the sums and the conditions that were called, each half hour the
+ * trail. */
+static void a_cut_that_never_ends_writes_little(void **state)
+{
+	const int minutes = 240;
+	static char calls[8192], used[1200], trail[30000];
+	struct store *s = open_store();
+	double day_mb;
+	uint32_t n;
+
+	(void)state;
+	memset(used, '1', sizeof(used) - 1);
+	memset(trail, '1', sizeof(trail) - 1);
+	assert_int_equal(add(s, "cut", &n), 0);
+	disk.bytes = 0;
+	for (int at = 3; at <= minutes; at += 3) {
+		for (int i = 0, k = 0; i < 180; i++)
+			k += snprintf(calls + k, sizeof(calls) - (size_t)k,
+				      "%c[%d000000000,\"C%d\",%d.5]",
+				      i ? ',' : '[', at * 60 + i, i & 1, i);
+		strcat(calls, "]");
+		assert_int_equal(store_calls(s, n, calls), 0);
+		assert_int_equal(store_used_write(s, n, used), 0);
+		if (at % 30 == 0)
+			store_trail_write(s, n, trail);
+	}
+	store_close(s);
+	day_mb = (double)disk.bytes / 1e6 * 24 * 60 / minutes;
+	print_message("a cut that calls a condition each second: %.1f MB a "
+		      "day\n", day_mb);
+	assert_true(day_mb <= STORE_DAY_MB);
 }
 
 static void the_list_in_memory_is_bounded_and_keeps_what_counts(void **state)
@@ -658,6 +694,7 @@ int main(void)
 		T(a_disk_that_fails_at_any_write_loses_no_truth),
 		T(a_host_that_dies_at_any_write_leaves_a_store),
 		T(the_text_is_written_twice_at_most),
+		T(a_cut_that_never_ends_writes_little),
 		T(the_list_in_memory_is_bounded_and_keeps_what_counts),
 		T(a_store_of_0_1_0_is_brought_up),
 		T(a_store_without_sums_by_condition_is_brought_up),

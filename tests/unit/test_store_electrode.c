@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* test_store_electrode.c - the table of electrodes, in the store */
+#include "folder_help.h"
 #include "store_electrode.h"
 
 #include <errno.h>
@@ -14,29 +15,11 @@
 
 #include <cmocka.h>
 
-static char dir[64];
-
-static int setup(void **state)
-{
-	(void)state;
-	snprintf(dir, sizeof(dir), "/tmp/edmd-electrode.XXXXXX");
-	return mkdtemp(dir) ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-	char line[100];
-
-	(void)state;
-	snprintf(line, sizeof(line), "rm -rf %s", dir);
-	return system(line);
-}
-
 static struct store *open_store(void)
 {
 	struct store *s = NULL;
 
-	assert_int_equal(store_open(&s, dir, "m"), 0);
+	assert_int_equal(store_open(&s, folder, "m"), 0);
 	return s;
 }
 
@@ -135,7 +118,7 @@ static void a_store_without_electrodes_is_brought_up(void **state)
 	assert_non_null(f);
 	assert_true(fread(text, 1, sizeof(text) - 1, f) > 0);
 	fclose(f);
-	snprintf(path, sizeof(path), "%s/m.db", dir);
+	snprintf(path, sizeof(path), "%s/m.db", folder);
 	assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
 	assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
 	sqlite3_close(db);
@@ -155,7 +138,7 @@ static void a_store_without_electrodes_is_brought_up(void **state)
 	store_close(s);
 }
 
-#define T(f)	cmocka_unit_test_setup_teardown(f, setup, teardown)
+#define T(f)	cmocka_unit_test_setup_teardown(f, folder_make, folder_remove)
 
 int main(void)
 {

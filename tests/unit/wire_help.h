@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * wire_help.h - the guides that tests of wire contours suppose
+ * wire_help.h - the wire guides of the tests of wire contours
  */
 #ifndef WIRE_HELP_H
 #define WIRE_HELP_H

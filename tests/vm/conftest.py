@@ -5,10 +5,11 @@ import os
 import shutil
 import subprocess
 
+import power
 import pytest
-from boot import (BRAKES, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, GAP, GAP_FRAMES, HERE, LINES, ROUNDS,
-                  ENCODER, QUICK_JOB, ROOT, Run, SHARED, SLOW_JOB, STRICT_REFUSED, STRICT_UP,
-                  VIRTUAL, checked, drives, lagging, machine)
+from boot import (ADC, BRAKES, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, FAR, GAP, GAP_FRAMES, HERE, LINES, ROUNDS,
+                  ENCODER, QUICK_JOB, ROOT, Run, SHARED, SLOW_JOB, STRICT_REFUSED, STRICT_UP, TO_AND_FRO,
+                  UNRULY_SCENES, VIRTUAL, checked, drives, lagging, machine)
 
 
 @pytest.fixture(scope="session")
@@ -55,12 +56,14 @@ def compiled(name):
 
 @pytest.fixture(scope="session")
 def encoder():
-    """An axis that slips, one CPU in virtual time."""
+    """An axis that slips, and then a converter; one CPU in virtual time."""
     return checked(Run("encoder", {
         "encoder.ini": machine(tail=ENCODER),
         "encoder.ngc": "G21 G90\nG1 X0.3 F6\nG1 X0.1\nM30\n",
         "back.ngc": "G21 G90\nG1 X0.2 F6\nM30\n",
-    }, "-d", copies=(compiled("axis-sim"),)))
+        "adc.ini": machine(period_us=1000, v=0.5, tail=ADC),
+        "adc.ngc": SLOW_JOB,
+    }, "-d", copies=(compiled("axis-sim"), HERE / "guest/adc.sh")))
 
 
 @pytest.fixture(scope="session")
@@ -109,6 +112,29 @@ def strict():
 
 
 @pytest.fixture(scope="session")
+def unruly():
+    """Drives that judge their master, a PLC and others on their bus."""
+    guest = HERE / "guest"
+    tail = {"slow": GAP_FRAMES.replace("gap_id", "sdo_ms = 1000\ngap_id"),
+            "plc": GAP_FRAMES + SHARED, "stranger": GAP_FRAMES + SHARED}
+    return checked(Run("unruly", {
+        f"unruly-{name}.ini": drives(
+            "XY", tail.get(name, GAP_FRAMES),
+            "yes" if name == "absolute" else "no",
+            falls="Y" if name == "says" else "")
+        for name in UNRULY_SCENES
+    } | {
+        f"unruly-{name}.ngc": FAR if name == "stranger" else TO_AND_FRO
+        for name in UNRULY_SCENES
+    } | {
+        "unruly.env": f"SEED={os.environ.get('EDM_SEED', 1)}\n"
+                      f"RUNS={os.environ.get('EDM_RUNS', 0)}\n"
+                      f"SCENES={','.join(UNRULY_SCENES)}\n",
+    }, "-d", copies=[ROOT / "messages/edmd.eds"] + [guest / n for n in (
+        "can402.py", "unruly.py", "stranger.py", "can402_unruly.py")]))
+
+
+@pytest.fixture(scope="session")
 def systemd():
     """systemd as PID 1, with what `make install` installs."""
     root = BUILD_VM / "root"
@@ -119,3 +145,9 @@ def systemd():
     return checked(Run("systemd", {"service.ini": machine(cpu=1, tail=GAP),
                                    "slow.ngc": SLOW_JOB},
                        "-m", "systemd", copies=(root, compiled("stop-thread"))))
+
+
+@pytest.fixture(scope="session")
+def guest():
+    """What the guests whose power fails go on from."""
+    return power.Guest()

@@ -10,7 +10,7 @@ mkdir -p "$d/bin" "$d/mod" "$d/proc" "$d/sys" "$d/dev" "$d/m/host" "$d/m/rw" "$d
 cp "$(command -v busybox)" "$d/bin/busybox"
 for a in sh mount insmod mkdir rm cp ln ip mv sleep sync reboot setsid chroot switch_root cat chmod; do ln -s busybox "$d/bin/$a"; done
 cp "$files/init" "$files/devices" "$files/systemd-units" "$d/"; chmod 755 "$d/init"
-for m in ${VM_MODULES:-virtio_pci 9pnet_virtio 9p overlay virtio_console configfs vcan can-raw kfifo_buf virtio_blk ext4 crc32c_generic}; do
+for m in ${VM_MODULES:-virtio_pci 9pnet_virtio 9p overlay virtio_console configfs vcan can-raw sch_tbf kfifo_buf virtio_blk ext4 crc32c_generic}; do
 	modprobe -d "$img" -S "$krel" --show-depends "$m" | awk '$1 == "insmod" { print $2 }'
 done | awk '!s[$0]++' | while read -r p; do
 	strip --strip-debug -o "$d/mod/${p##*/}" "$p"

@@ -35,6 +35,14 @@ def test_what_it_cannot_have_is_refused_with_line_and_remedy(
     assert plain.text(f"{what}.rc{library}") == f"{code}\n"
 
 
+def test_doctor_tells_how_fast_a_line_goes(plain):
+    """What it measures is this host's; here a write of 100 us is seldom kept."""
+    text = plain.text("pulses")
+    assert plain.text("pulses.rc") == "0\n", text
+    assert "a write takes" in text and "100.00 us" in text, text
+    assert "edges_per_period = " in text, text
+
+
 @pytest.mark.parametrize("when, spark", [
     ("approach", 1), ("erode", 1), ("retract", 0), ("e-stop", 0),
     ("limit-switch", 0), ("door", 0), ("dielectric", 0)])

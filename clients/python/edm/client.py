@@ -16,9 +16,8 @@ from nacl.exceptions import BadSignatureError
 from nacl.signing import VerifyKey
 
 from .keys import Key, KeyFileError, find_key, read_key
-from .messages import (
-    Ack, Chunk, Event, Signed, Status, command, to_be_signed,
-)
+from .layout import to_be_signed
+from .messages import Ack, Command, Event, JobChunk, Signed, Status
 from .udpm import Udpm
 
 URL = "udpm://239.255.76.67:7667?ttl=0"
@@ -161,7 +160,7 @@ class Client:
             return
         self._hello_s = time.monotonic()
         self._hello = self._hello or self._number()
-        hello = command(self.name, self._hello, "hello")
+        hello = Command(0, self.name, self._hello, "hello").encode()
         if self._guess and self._guess != self._boot:
             self._sign("COMMAND", self._guess,
                        self._now() + self._guess_ahead, hello)
@@ -204,9 +203,9 @@ class Client:
         try:
             self._until(
                 lambda: self._waits[seq] is not None, timeout or self.timeout,
-                lambda: self._publish("COMMAND", command(
-                    self.name, seq, verb, job, arg, text,
-                    time.time_ns() // 1000)))
+                lambda: self._publish("COMMAND", Command(
+                    time.time_ns() // 1000, self.name, seq, verb, job, arg,
+                    text).encode()))
             answer = self._waits[seq]
         finally:
             del self._waits[seq]
@@ -326,10 +325,10 @@ class Client:
             self._waits[seq] = None
 
         def chunk(i: int) -> bytes:
-            return Chunk(job, name, len(text), digest, i, len(pieces),
-                         i * CHUNK, hold, pieces[i], from_line,
-                         from_mm, electrode).encode(
-                             self.name, seqs[i], time.time_ns() // 1000)
+            return JobChunk(
+                time.time_ns() // 1000, self.name, seqs[i], job, name,
+                len(text), digest, i, len(pieces), i * CHUNK, hold, from_line,
+                from_mm, electrode, pieces[i]).encode()
 
         try:
             verdict = self._send_chunks(seqs, chunk, timeout)

@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The messages of edm.lcm, and the signed envelope around them.
+"""The messages of edm.lcm; units are in the names, and edm.lcm says what each
+field means.
 
 A message is its fields in order, big-endian, as LCM lays them out, after eight
-bytes that stand for its type.
+bytes that stand for its type.  This file is what messages/make-python prints.
 """
 
 from __future__ import annotations
 
-import struct
 from dataclasses import dataclass
 
+from . import layout as put
+from .layout import Reader
+
+Bytes = bytes
 SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
@@ -18,155 +22,261 @@ STATUS = bytes.fromhex("d6afeb84f882f7aa")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
-class Reader:
-    """Takes fields off the front of a message."""
+@dataclass(frozen=True)
+class Signed:
+    """signed_t"""
 
-    def __init__(self, data: bytes, kind: bytes) -> None:
-        if data[:8] != kind:
-            raise ValueError("a message of another type")
-        self.data, self.at = data, 8
+    key: Bytes = b""
+    boot: int = 0
+    count: int = 0
+    signature: Bytes = b""
+    data: Bytes = b""
 
-    def take(self, n: int) -> bytes:
-        if n < 0 or self.at + n > len(self.data):
-            raise ValueError("a message that is cut short")
-        self.at += n
-        return self.data[self.at - n:self.at]
+    def encode(self) -> Bytes:
+        return (SIGNED
+                + put.exactly(32, self.key)
+                + put.int64_t(self.boot)
+                + put.int64_t(self.count)
+                + put.exactly(64, self.signature)
+                + put.int32_t(len(self.data)) + self.data)
 
-    def int32(self) -> int:
-        return int.from_bytes(self.take(4), "big", signed=True)
-
-    def int64(self) -> int:
-        return int.from_bytes(self.take(8), "big", signed=True)
-
-    def double(self) -> float:
-        return float(struct.unpack(">d", self.take(8))[0])
-
-    def string(self) -> str:
-        return self.take(self.int32())[:-1].decode("utf-8", "replace")
-
-
-def string(text: str) -> bytes:
-    """A string as LCM lays it out: its length with its NUL, and both."""
-    data = text.encode() + b"\0"
-    return struct.pack(">i", len(data)) + data
+    @staticmethod
+    def decode(data: Bytes) -> Signed:
+        r = Reader(data, SIGNED)
+        m = Signed(
+            r.take(32),
+            r.int64_t(),
+            r.int64_t(),
+            r.take(64),
+            r.take(r.int32_t()),
+        )
+        r.end()
+        return m
 
 
 @dataclass(frozen=True)
-class Signed:
-    """The envelope."""
+class Command:
+    """command_t"""
 
-    key: bytes
-    boot: int
-    count: int
-    signature: bytes
-    data: bytes
+    utime: int = 0
+    client: str = ""
+    seq: int = 0
+    verb: str = ""
+    job: str = ""
+    arg: float = 0.0
+    text: str = ""
 
-    def encode(self) -> bytes:
-        return (SIGNED + self.key + struct.pack(">qq", self.boot, self.count)
-                + self.signature + struct.pack(">i", len(self.data))
-                + self.data)
+    def encode(self) -> Bytes:
+        return (COMMAND
+                + put.int64_t(self.utime)
+                + put.string(self.client)
+                + put.int64_t(self.seq)
+                + put.string(self.verb)
+                + put.string(self.job)
+                + put.double(self.arg)
+                + put.string(self.text))
 
     @staticmethod
-    def decode(packet: bytes) -> Signed:
-        r = Reader(packet, SIGNED)
-        s = Signed(r.take(32), r.int64(), r.int64(), r.take(64),
-                   r.take(r.int32()))
-        if r.at != len(packet):
-            raise ValueError("a message with something behind it")
-        return s
-
-
-def to_be_signed(channel: str, boot: int, count: int, data: bytes) -> bytes:
-    """What a signature is over."""
-    return (b"edmd 1\n" + channel.encode() + b"\n"
-            + struct.pack(">qq", boot, count) + data)
+    def decode(data: Bytes) -> Command:
+        r = Reader(data, COMMAND)
+        m = Command(
+            r.int64_t(),
+            r.string(),
+            r.int64_t(),
+            r.string(),
+            r.string(),
+            r.double(),
+            r.string(),
+        )
+        r.end()
+        return m
 
 
 @dataclass(frozen=True)
 class Ack:
-    """What the service answers; codes as in messages/README.md."""
+    """ack_t"""
 
-    key: bytes
-    client: str
-    seq: int
-    code: int
-    reason: str
-    body: str
+    utime: int = 0
+    key: Bytes = b""
+    client: str = ""
+    seq: int = 0
+    code: int = 0
+    reason: str = ""
+    body: str = ""
+
+    def encode(self) -> Bytes:
+        return (ACK
+                + put.int64_t(self.utime)
+                + put.exactly(32, self.key)
+                + put.string(self.client)
+                + put.int64_t(self.seq)
+                + put.int32_t(self.code)
+                + put.string(self.reason)
+                + put.string(self.body))
 
     @staticmethod
-    def decode(data: bytes) -> Ack:
+    def decode(data: Bytes) -> Ack:
         r = Reader(data, ACK)
-        r.int64()
-        return Ack(r.take(32), r.string(), r.int64(), r.int32(), r.string(),
-                   r.string())
+        m = Ack(
+            r.int64_t(),
+            r.take(32),
+            r.string(),
+            r.int64_t(),
+            r.int32_t(),
+            r.string(),
+            r.string(),
+        )
+        r.end()
+        return m
 
 
 @dataclass(frozen=True)
-class Event:
-    """Something that happened."""
+class JobChunk:
+    """job_chunk_t"""
 
-    utime: int
-    machine: str
-    kind: str
-    job: str
-    outcome: str
-    place_mm: float
-    text: str
+    utime: int = 0
+    client: str = ""
+    seq: int = 0
+    job: str = ""
+    name: str = ""
+    bytes: int = 0
+    sha256: Bytes = b""
+    chunk: int = 0
+    chunks: int = 0
+    offset: int = 0
+    hold: bool = False
+    from_line: int = 0
+    from_mm: float = 0.0
+    electrode: int = 0
+    data: Bytes = b""
+
+    def encode(self) -> Bytes:
+        return (JOB_CHUNK
+                + put.int64_t(self.utime)
+                + put.string(self.client)
+                + put.int64_t(self.seq)
+                + put.string(self.job)
+                + put.string(self.name)
+                + put.int64_t(self.bytes)
+                + put.exactly(32, self.sha256)
+                + put.int32_t(self.chunk)
+                + put.int32_t(self.chunks)
+                + put.int64_t(self.offset)
+                + put.boolean(self.hold)
+                + put.int32_t(self.from_line)
+                + put.double(self.from_mm)
+                + put.int32_t(self.electrode)
+                + put.int32_t(len(self.data)) + self.data)
 
     @staticmethod
-    def decode(data: bytes) -> Event:
-        r = Reader(data, EVENT)
-        return Event(r.int64(), r.string(), r.string(), r.string(),
-                     r.string(), r.double(), r.string())
+    def decode(data: Bytes) -> JobChunk:
+        r = Reader(data, JOB_CHUNK)
+        m = JobChunk(
+            r.int64_t(),
+            r.string(),
+            r.int64_t(),
+            r.string(),
+            r.string(),
+            r.int64_t(),
+            r.take(32),
+            r.int32_t(),
+            r.int32_t(),
+            r.int64_t(),
+            r.boolean(),
+            r.int32_t(),
+            r.double(),
+            r.int32_t(),
+            r.take(r.int32_t()),
+        )
+        r.end()
+        return m
 
 
 @dataclass(frozen=True)
 class Status:
-    """How the machine is.  Units are in the names; pos_mm is X Y Z A B C U V,
-    degrees for rotary axes."""
+    """status_t"""
 
-    utime: int
-    machine: str
-    daemon: str
-    state: str
-    fault: str
-    faults: str
-    job: str
-    job_name: str
-    job_state: str
-    line: int
-    lines: int
-    place_mm: float
-    length_mm: float
-    progress: float
-    pos_mm: tuple[float, ...]
-    gap_v: float
-    feed_mm_s: float
-    depth_mm: float
-    contour_mm: float
-    contour_predicted_mm: float
-    jumps: int
-    retracts: int
-    shorts: int
-    job_s: float
-    eta_s: float
-    queue_len: int
-    overruns: int
-    wake_late_max_us: int
-    condition: str
-    store: str
-    interrupted: str
-    lost: str
-    hunts: int
-    electrode: int
-    electrode_shift_mm: float
-    electrode_wear_mm: float
+    utime: int = 0
+    machine: str = ""
+    daemon: str = ""
+    state: str = ""
+    fault: str = ""
+    faults: str = ""
+    job: str = ""
+    job_name: str = ""
+    job_state: str = ""
+    line: int = 0
+    lines: int = 0
+    place_mm: float = 0.0
+    length_mm: float = 0.0
+    progress: float = 0.0
+    pos_mm: tuple[float, ...] = ()
+    gap_v: float = 0.0
+    feed_mm_s: float = 0.0
+    depth_mm: float = 0.0
+    contour_mm: float = 0.0
+    contour_predicted_mm: float = 0.0
+    jumps: int = 0
+    retracts: int = 0
+    shorts: int = 0
+    job_s: float = 0.0
+    eta_s: float = 0.0
+    queue_len: int = 0
+    overruns: int = 0
+    wake_late_max_us: int = 0
+    condition: str = ""
+    store: str = ""
+    interrupted: str = ""
+    lost: str = ""
+    hunts: int = 0
+    electrode: int = 0
+    electrode_shift_mm: float = 0.0
+    electrode_wear_mm: float = 0.0
+
+    def encode(self) -> Bytes:
+        return (STATUS
+                + put.int64_t(self.utime)
+                + put.string(self.machine)
+                + put.string(self.daemon)
+                + put.string(self.state)
+                + put.string(self.fault)
+                + put.string(self.faults)
+                + put.string(self.job)
+                + put.string(self.job_name)
+                + put.string(self.job_state)
+                + put.int32_t(self.line)
+                + put.int32_t(self.lines)
+                + put.double(self.place_mm)
+                + put.double(self.length_mm)
+                + put.double(self.progress)
+                + b"".join(map(put.double, self.pos_mm))
+                + put.double(self.gap_v)
+                + put.double(self.feed_mm_s)
+                + put.double(self.depth_mm)
+                + put.double(self.contour_mm)
+                + put.double(self.contour_predicted_mm)
+                + put.int32_t(self.jumps)
+                + put.int32_t(self.retracts)
+                + put.int32_t(self.shorts)
+                + put.double(self.job_s)
+                + put.double(self.eta_s)
+                + put.int32_t(self.queue_len)
+                + put.int32_t(self.overruns)
+                + put.int32_t(self.wake_late_max_us)
+                + put.string(self.condition)
+                + put.string(self.store)
+                + put.string(self.interrupted)
+                + put.string(self.lost)
+                + put.int32_t(self.hunts)
+                + put.int32_t(self.electrode)
+                + put.double(self.electrode_shift_mm)
+                + put.double(self.electrode_wear_mm))
 
     @staticmethod
-    def decode(data: bytes) -> Status:
+    def decode(data: Bytes) -> Status:
         r = Reader(data, STATUS)
-        return Status(
-            r.int64(),
+        m = Status(
+            r.int64_t(),
             r.string(),
             r.string(),
             r.string(),
@@ -175,8 +285,8 @@ class Status:
             r.string(),
             r.string(),
             r.string(),
-            r.int32(),
-            r.int32(),
+            r.int32_t(),
+            r.int32_t(),
             r.double(),
             r.double(),
             r.double(),
@@ -186,56 +296,60 @@ class Status:
             r.double(),
             r.double(),
             r.double(),
-            r.int32(),
-            r.int32(),
-            r.int32(),
+            r.int32_t(),
+            r.int32_t(),
+            r.int32_t(),
             r.double(),
             r.double(),
-            r.int32(),
-            r.int32(),
-            r.int32(),
+            r.int32_t(),
+            r.int32_t(),
+            r.int32_t(),
             r.string(),
             r.string(),
             r.string(),
             r.string(),
-            r.int32(),
-            r.int32(),
+            r.int32_t(),
+            r.int32_t(),
             r.double(),
             r.double(),
         )
-
-
-def command(client: str, seq: int, verb: str, job: str = "",
-            arg: float = 0.0, text: str = "", utime: int = 0) -> bytes:
-    """A COMMAND."""
-    return (COMMAND + struct.pack(">q", utime) + string(client)
-            + struct.pack(">q", seq) + string(verb) + string(job)
-            + struct.pack(">d", arg) + string(text))
+        r.end()
+        return m
 
 
 @dataclass(frozen=True)
-class Chunk:
-    """A piece of a job's text."""
+class Event:
+    """event_t"""
 
-    job: str
-    name: str
-    size: int
-    sha256: bytes
-    chunk: int
-    chunks: int
-    offset: int
-    hold: bool
-    data: bytes
-    from_line: int = 0
-    from_mm: float = 0.0
-    electrode: int = 0
+    utime: int = 0
+    machine: str = ""
+    kind: str = ""
+    job: str = ""
+    outcome: str = ""
+    place_mm: float = 0.0
+    text: str = ""
 
-    def encode(self, client: str, seq: int, utime: int = 0) -> bytes:
-        return (JOB_CHUNK + struct.pack(">q", utime) + string(client)
-                + struct.pack(">q", seq) + string(self.job)
-                + string(self.name) + struct.pack(">q", self.size)
-                + self.sha256
-                + struct.pack(">iiqbidii", self.chunk, self.chunks,
-                              self.offset, self.hold, self.from_line,
-                              self.from_mm, self.electrode,
-                              len(self.data)) + self.data)
+    def encode(self) -> Bytes:
+        return (EVENT
+                + put.int64_t(self.utime)
+                + put.string(self.machine)
+                + put.string(self.kind)
+                + put.string(self.job)
+                + put.string(self.outcome)
+                + put.double(self.place_mm)
+                + put.string(self.text))
+
+    @staticmethod
+    def decode(data: Bytes) -> Event:
+        r = Reader(data, EVENT)
+        m = Event(
+            r.int64_t(),
+            r.string(),
+            r.string(),
+            r.string(),
+            r.string(),
+            r.double(),
+            r.string(),
+        )
+        r.end()
+        return m

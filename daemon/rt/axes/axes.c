@@ -32,7 +32,7 @@ void axes_guard(struct cycle *c, const struct io_inputs *in)
 	/* A reset goes out at the end of this cycle, so what the drives report
 	 * now is old. */
 	if (in->trouble != IO_WELL && !c->out.reset)
-		fault_note(&c->fault, fault_of(in->trouble), FAULT_ALWAYS);
+		fault_note(&c->fault, fault_of(in->trouble));
 	if (in->axes_off && !c->axes.awaited && cycle_moves(c))
 		fault_latch(&c->fault, FAULT_DRIVE);
 }

@@ -61,7 +61,7 @@ static void descend(struct cycle *c)
 	struct arcing *a = &c->arcing;
 
 	a->calm += c->gap.arcing_cycles;
-	if (a->rung == ARCING_NONE || a->calm < c->gap.arcing_recover_cycles)
+	if (a->rung == ARCING_NONE || a->calm < c->gap.arcing_recover.cycles)
 		return;
 	a->calm = 0;
 	a->rung--;

@@ -6,7 +6,7 @@
  * power.  An average above arcing_share takes the next step; one that is not
  * above it means that the jump and the retract have done their work, and they
  * may be taken again later.  While the average is below half of arcing_share,
- * one step of the off time is given back every arcing_recover_cycles:
+ * one step of the off time is given back every arcing_recover:
  *
  * 	1 to 4		the off time grows, in equal steps, to arcing_off_max
  * 			times its own length

@@ -93,7 +93,7 @@ static void put(struct cycle *c, const struct interp_tech *t)
 		c->gap.abort_count =
 			(uint32_t)t->v[INTERP_TECH_ABORT_COUNT];
 	if (every_s > 0)
-		c->jump.every_cycles = (uint64_t)fmax(1, floor(
+		c->jump.every.cycles = (uint64_t)fmax(1, floor(
 			every_s / period_s(c) + 0.5));
 	put_polarity(c);
 }
@@ -253,7 +253,7 @@ double conditions_value(const struct cycle *c, uint32_t field)
 {
 	switch (field) {
 	case INTERP_TECH_JUMP_EVERY_S:
-		return (double)c->jump.every_cycles * period_s(c);
+		return (double)c->jump.every.cycles * period_s(c);
 	case INTERP_TECH_ABORT_COUNT:
 		return c->gap.abort_count;
 	case INTERP_TECH_ISO:

@@ -21,13 +21,13 @@ static bool is_adapted(const struct cycle *c)
 	const struct flush *f = &c->flush;
 
 	return c->jump.adaptive && f->every_cycles &&
-	       f->from_cycles == c->jump.every_cycles &&
+	       f->from_cycles == c->jump.every.cycles &&
 	       f->from_mm == c->jump.height_mm;
 }
 
 static uint64_t every_cycles(const struct cycle *c)
 {
-	return is_adapted(c) ? c->flush.every_cycles : c->jump.every_cycles;
+	return is_adapted(c) ? c->flush.every_cycles : c->jump.every.cycles;
 }
 
 bool flush_due(const struct cycle *c)
@@ -51,7 +51,7 @@ static void scale(struct cycle *c, double period, double height)
 
 	f->every_cycles = (uint64_t)within(
 		floor((double)f->every_cycles * period + 0.5),
-		(double)j->every_min_cycles, (double)j->every_max_cycles);
+		(double)j->every_min.cycles, (double)j->every_max.cycles);
 	f->height_mm = within(f->height_mm * height, j->height_min_mm,
 			      j->height_max_mm);
 }
@@ -60,7 +60,7 @@ static void begin_anew(struct cycle *c)
 {
 	struct flush *f = &c->flush;
 
-	f->from_cycles = f->every_cycles = c->jump.every_cycles;
+	f->from_cycles = f->every_cycles = c->jump.every.cycles;
 	f->from_mm = f->height_mm = c->jump.height_mm;
 	f->trial = (struct flush_trial) { .seldomer = true };
 }

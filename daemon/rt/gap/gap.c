@@ -242,7 +242,7 @@ static bool suspect(const struct cycle *c, struct gap_memory *m,
 	m->same_cycles++;
 	if (c->gap.noise_limit_v > 0 && m->change_v > c->gap.noise_limit_v)
 		return true;
-	return c->gap.stuck_cycles && m->same_cycles > c->gap.stuck_cycles &&
+	return c->gap.stuck.cycles && m->same_cycles > c->gap.stuck.cycles &&
 	       fabs(place - m->same_mm) >= MOVED_MM;
 }
 

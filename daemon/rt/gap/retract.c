@@ -112,7 +112,7 @@ void retract_watch(struct cycle *c)
 		fault_latch(&c->fault, FAULT_RETRACT_COUNT);
 		return;
 	}
-	if (g->retract_max_cycles && ++r->cycles > g->retract_max_cycles) {
+	if (g->retract_max.cycles && ++r->cycles > g->retract_max.cycles) {
 		fault_latch(&c->fault, FAULT_RETRACT_TIME);
 		return;
 	}
@@ -120,6 +120,6 @@ void retract_watch(struct cycle *c)
 		return;
 	/* It is as far back as it may go: stand there and give the short a
 	 * little time. */
-	if (r->waited++ >= g->retract_wait_cycles)
+	if (r->waited++ >= g->retract_wait.cycles)
 		fault_latch(&c->fault, blame(c));
 }

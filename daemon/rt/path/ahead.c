@@ -51,31 +51,63 @@ static double speed_here(const struct cycle *c, const struct ahead_move *w,
 	return v;
 }
 
+/* Is segment @i beyond what counts for a move that begins here? */
+static bool is_beyond(const struct cycle *c, const struct ahead_move *w,
+		      uint32_t i)
+{
+	const struct interp_seg *s = &c->cursor.p.segs[i];
+
+	if (!interp_program_seg_ok(&c->cursor.p, i, s) ||
+	    (s->kind >= INTERP_BEGIN && w->toward > 0 && walk_is_due(c, i, s)))
+		return true;
+	return isfinite(w->goal_mm) &&
+	       (w->toward > 0 ? s->s_mm >= w->goal_mm :
+				s->s_mm + s->length_mm <= w->goal_mm);
+}
+
+/* Where segment @i begins, coming from the other side. */
+static double begin_mm(const struct cycle *c, int toward, uint32_t i)
+{
+	const struct interp_seg *s = &c->cursor.p.segs[i];
+
+	return toward > 0 ? s->s_mm : s->s_mm + s->length_mm;
+}
+
+/* Does a move stand between segment @i and the one before it? */
+static bool is_stand(const struct cycle *c, int toward, uint32_t i)
+{
+	const struct interp_seg *s = &c->cursor.p.segs[i];
+
+	return (toward > 0 ? s[-1].flags : s->flags) & INTERP_SEG_STAND;
+}
+
 /*
  * What every axis allows, from here to where the move ends or has to stop: it
  * is the same for the whole of a move, so what can be met can be met to its end.
+ * @ret_stand_mm: the place up to which that holds; INFINITY: everywhere.
  */
 static struct mover_limits limits_of(const struct cycle *c,
-				     const struct ahead_move *w)
+				     const struct ahead_move *w,
+				     double *ret_stand_mm)
 {
 	const struct interp_program *p = &c->cursor.p;
 	struct mover_limits l = w->l;
-	uint32_t i = c->cursor.index;
+	uint32_t i = lookahead_index(c, w->toward);
 
-	for (int n = 0; n < SOFTER_MAX; n++) {
+	*ret_stand_mm = INFINITY;
+	for (int n = 0; i < p->head->nsegs; n++) {
 		const struct interp_seg *s = &p->segs[i];
 		const uint32_t hop = w->toward > 0 ? s->softer_ahead :
 						     s->softer_behind;
 
-		if (!interp_program_seg_ok(p, i, s) ||
-		    (n > 0 && s->kind >= INTERP_BEGIN && w->toward > 0 &&
-		     walk_is_due(c, i, s)))
+		if (n > 0 && is_beyond(c, w, i)) {
+			*ret_stand_mm = w->goal_mm;
 			break;
-		/* Beyond its goal nothing counts. */
-		if (n > 0 && isfinite(w->goal_mm) &&
-		    (w->toward > 0 ? s->s_mm >= w->goal_mm :
-				     s->s_mm + s->length_mm <= w->goal_mm))
+		}
+		if (n == SOFTER_MAX || (n > 0 && is_stand(c, w->toward, i))) {
+			*ret_stand_mm = begin_mm(c, w->toward, i);
 			break;
+		}
 		law_soften(&l, s);
 		if (hop == 0 || (w->toward > 0 ? hop >= p->head->nsegs - i :
 						 hop > i))
@@ -83,6 +115,32 @@ static struct mover_limits limits_of(const struct cycle *c,
 		i = w->toward > 0 ? i + hop : i - hop;
 	}
 	return l;
+}
+
+static bool is_softer(const struct mover_limits *l,
+		      const struct mover_limits *than)
+{
+	return l->a_max_mm_s2 < than->a_max_mm_s2 ||
+	       l->a_back_mm_s2 < than->a_back_mm_s2 ||
+	       l->j_max_mm_s3 < than->j_max_mm_s3;
+}
+
+/* A move that goes on to another goal stands at the first one, if beyond it the
+ * axes allow less. */
+static void go_on_to(struct cycle *c, const struct ahead_move *w)
+{
+	double stand_mm;
+	const struct mover_limits l = limits_of(c, w, &stand_mm);
+
+	if (!is_softer(&l, &c->ahead.l))
+		c->ahead.stand_mm = stand_mm;
+}
+
+/* Does it still go the other way?  Up to where it stands, what it set out with
+ * holds. */
+static bool is_turning(const struct cycle *c, const struct ahead_move *w)
+{
+	return w->toward * c->mover.v_mm_s < 0;
 }
 
 /*
@@ -101,9 +159,10 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 	    a->override == by && a->goal_mm == w->goal_mm &&
 	    !mover_is_standing(&c->mover))
 		return;
-	if (a->state != c->state || a->toward != w->toward ||
-	    mover_is_standing(&c->mover))
-		a->l = limits_of(c, w);
+	if (a->state != c->state || mover_is_standing(&c->mover))
+		a->l = limits_of(c, w, &a->stand_mm);
+	else if (!is_turning(c, w))
+		go_on_to(c, w);
 	a->state = c->state;
 	a->toward = w->toward;
 	a->override = by;
@@ -295,7 +354,7 @@ double ahead_distance(struct cycle *c, const struct ahead_move *w)
 	begin(c, w);
 	v = speed_here(c, w, &most);
 	/* First to a stand: what lies between here and there is not seen. */
-	if (w->toward * c->mover.v_mm_s < 0)
+	if (is_turning(c, w))
 		v = 0;
 	step = v * w->l.period_s;
 	if (c->mover.v_mm_s == w->toward * v && c->mover.a_mm_s2 == 0 &&

@@ -5,10 +5,11 @@
 #include "path/ground.h"
 #include "path/laws.h"
 
+#include "interp/angle.h"
+
 #include <math.h>
 
 #define NEAR_PULSES	2.0
-#define TURN		(2 * M_PI)
 #define TURNS_MAX	16
 
 /* The place of a node in column @j, in pulses. */
@@ -60,13 +61,13 @@ static bool is_on_arc(const struct interp_cursor *at, uint32_t i,
 	const double y = at->pos[k->axis_b] * pulse[k->axis_b] - k->b_mm;
 	const double near = NEAR_PULSES * fmax(pulse[k->axis_a],
 					       pulse[k->axis_b]);
-	const double slack = k->r_mm > near ? near / k->r_mm : TURN;
+	const double slack = k->r_mm > near ? near / k->r_mm : ANGLE_TURN;
 	const int sense = k->sweep < 0 ? -1 : 1;
 	double turned = sense * (atan2(y, x) - k->theta);
 
-	turned -= TURN * floor((turned + slack) / TURN);
+	turned -= ANGLE_TURN * floor((turned + slack) / ANGLE_TURN);
 	for (int n = 0; n < TURNS_MAX && turned <= fabs(k->sweep) + slack;
-	     n++, turned += TURN) {
+	     n++, turned += ANGLE_TURN) {
 		const double t = fmin(fmax(turned / fabs(k->sweep), 0), 1);
 
 		if (fabs(hypot(x, y) - (k->r_mm + t * k->dr_mm)) <= near &&

@@ -224,7 +224,7 @@ static void look_back(struct lookahead *k)
 	guess_stop(k, left);
 }
 
-const struct interp_seg *lookahead_toward(const struct cycle *c, int toward)
+uint32_t lookahead_index(const struct cycle *c, int toward)
 {
 	const struct interp_cursor *at = &c->cursor;
 	const struct interp_seg *s = &at->seg;
@@ -232,19 +232,28 @@ const struct interp_seg *lookahead_toward(const struct cycle *c, int toward)
 
 	if (s->kind < INTERP_BEGIN &&
 	    (toward > 0 ? s->length_mm - at->s_mm : at->s_mm) > MOVER_ONTO_MM)
-		return s;
+		return i;
 	for (int n = 0; n < HOPS_MAX; n++) {
 		if (toward < 0 && i == 0)
-			return NULL;
+			return LOOKAHEAD_NONE;
 		i = toward > 0 ? i + 1 : i - 1;
 		s = &at->p.segs[i];
 		if (!interp_program_seg_ok(&at->p, i, s) ||
 		    s->kind == INTERP_END)
-			return NULL;
+			return LOOKAHEAD_NONE;
 		if (s->kind < INTERP_BEGIN)
-			return s;
+			return i;
 	}
-	return NULL;
+	return LOOKAHEAD_NONE;
+}
+
+const struct interp_seg *lookahead_toward(const struct cycle *c, int toward)
+{
+	const struct interp_cursor *at = &c->cursor;
+	const uint32_t i = lookahead_index(c, toward);
+
+	return i == LOOKAHEAD_NONE ? NULL : i == at->index ? &at->seg :
+							     &at->p.segs[i];
 }
 
 /* The next node; the one after it, standing on one. */
@@ -275,6 +284,8 @@ void lookahead_from(struct lookahead *k, struct interp_scurve_state s)
 		look_feeds(k);
 	if (isfinite(k->w->goal_mm))
 		consider(k, toward * (k->w->goal_mm - place_mm(c)), 0);
+	if (isfinite(c->ahead.stand_mm))
+		consider(k, toward * (c->ahead.stand_mm - place_mm(c)), 0);
 	if (k->w->stops_at_nodes)
 		consider(k, node_mm(c, toward), 0);
 }

@@ -37,12 +37,16 @@ struct lookahead {
 					 * none */
 	struct interp_scurve brake;	/* to a stand at once, if there is
 					 * one */
-	double need_mm;			/* nothing beyond can be missed */
+	double need_mm;			/* the look ends here: the move can
+					 * brake for all that lies beyond */
 	double scale;			/* of ceilings: the override, up to 1 */
 	bool guessing;			/* what follows was not looked at */
 	/* Found: */
-	double room_mm;			/* what is met is met by so much */
-	double missed_mm;		/* what is missed by most, if > 0: */
+	double room_mm;			/* the smallest distance that remains to
+					 * a place for which it can brake */
+	double missed_mm;		/* > 0: it cannot brake for a place; by
+					 * how much too short its way is, for
+					 * the worst of these places: */
 	struct lookahead_place worst;
 	/* Of every look in this cycle: */
 	double lowest_mm_s;		/* ceiling ahead, but for stops */
@@ -56,10 +60,15 @@ static inline double lookahead_override(const struct cycle *c,
 	return w->positions ? c->override : 1;
 }
 
+#define LOOKAHEAD_NONE	UINT32_MAX
+
 /**
- * lookahead_toward() - the segment it is on or, from its very end, about to be
- * on.  NULL: none.
+ * lookahead_index() - the segment it is on or, from its very end, about to be
+ * on.  LOOKAHEAD_NONE: none.
  */
+uint32_t lookahead_index(const struct cycle *c, int toward);
+
+/** lookahead_toward() - that segment.  NULL: none. */
 const struct interp_seg *lookahead_toward(const struct cycle *c, int toward);
 
 /**

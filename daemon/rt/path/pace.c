@@ -68,9 +68,15 @@ static int way_of(double v_mm_s)
 	return v_mm_s < 0 ? -1 : 1;
 }
 
+/* On a node it may turn round onto what it came along. */
+static double a_both_ways(const struct cycle *c)
+{
+	return fmin(a_of_axes(c, 1), a_of_axes(c, -1));
+}
+
 double pace_dv_mm_s(const struct cycle *c)
 {
-	return a_here(c, way_of(c->mover.v_mm_s)) * law_period_s(c);
+	return a_of_law(c, a_both_ways(c)) * law_period_s(c);
 }
 
 /* -- What lies ahead --------------------------------------------------------- */
@@ -84,18 +90,24 @@ struct ahead {
 	double stop_mm;			/* left to where it has to stand */
 };
 
-/* What is no faster than the place meets it without braking. */
+/*
+ * What is no faster than the place meets it without braking.  So near in front
+ * of a node that it counts as on it, it can no longer brake: behind it, it may
+ * have a thousandth of the acceleration.
+ */
 static void meet(struct ahead *k, double v_mm_s)
 {
-	const double dv = k->dv_mm_s;
-	const double v = sqrt(dv * dv + v_mm_s * v_mm_s + k->room) - dv;
+	const double onto = 2 * k->a_mm_s2 * MOVER_ONTO_MM;
+	const double dv = k->dv_mm_s, room = fmax(k->room - onto, 0);
+	const double v = sqrt(dv * dv + v_mm_s * v_mm_s + room) - dv;
 
 	k->most_mm_s = fmin(k->most_mm_s, fmax(v, v_mm_s));
 }
 
 static void meet_stop(struct ahead *k)
 {
-	const double was = k->most_mm_s, dv = k->dv_mm_s;
+	const double was = k->most_mm_s;
+	const double dv = fmin(k->dv_mm_s, k->a_mm_s2 * law_period_s(k->c));
 	const double onto = k->left_mm / law_period_s(k->c);
 
 	meet(k, 0);
@@ -146,17 +158,25 @@ static double into_mm_s(const struct ahead *k, uint32_t i,
 			       interp_limits_back_into(p, i);
 }
 
-static void look_along(struct ahead *k)
+/* Up to a place to stand at: what lies between may be braked on less. */
+static void look_along(struct ahead *k, double to_mm)
 {
 	const struct interp_cursor *at = &k->c->cursor;
 	double way = k->toward > 0 ? at->seg.length_mm - at->s_mm : at->s_mm;
+	double goal = k->toward * (to_mm - place_mm(k->c));
 	uint32_t i = at->index;
 
+	/* It still has to turn round. */
+	if (goal < -MOVER_ONTO_MM)
+		goal = INFINITY;
 	for (int n = 0; n < SEGMENTS_MAX; n++) {
+		const bool meets = goal <= k->left_mm + way;
 		const struct interp_seg *s;
 
-		if (!go_on(k, way))
+		if (!go_on(k, meets ? goal - k->left_mm : way))
 			return;
+		if (meets)
+			break;
 		if (k->toward < 0 && i == 0)
 			break;
 		i += (uint32_t)k->toward;
@@ -196,25 +216,25 @@ static void look(struct ahead *k, double to_mm)
 	}
 	if (s)
 		k->most_mm_s = fmin(k->most_mm_s, (double)s->feed_max_mm_s);
-	if (!isinf(to_mm))
-		meet_place(k, to_mm);
-	look_along(k);
+	look_along(k, to_mm);
 }
 
-/* Onto what stops it, so that it is met. */
+/* Onto what stops it, so that it is met; there it stands. */
 static double go(struct cycle *c, const struct ahead *k, double v_mm_s)
 {
 	const double ds = law_go_at(c, v_mm_s);
 
-	return fabs(ds) >= k->stop_mm - MOVER_ONTO_MM ?
-	       k->toward * (k->stop_mm + MOVER_ONTO_MM) : ds;
+	if (fabs(ds) < k->stop_mm - MOVER_ONTO_MM)
+		return ds;
+	c->mover.v_mm_s = 0;
+	return k->toward * (k->stop_mm + MOVER_ONTO_MM);
 }
 
 double pace_go(struct cycle *c, double v_mm_s, double to_mm)
 {
 	const double was = c->mover.mean_mm_s;
 	const int from = way_of(was != 0 ? was : v_mm_s);
-	const double axes = a_of_axes(c, from), a = a_of_law(c, axes);
+	const double axes = a_both_ways(c), a = a_of_law(c, axes);
 	const double dv = a * law_period_s(c);
 	const double v = fmin(fmax(v_mm_s, was - dv), was + dv);
 	struct ahead k = {
@@ -222,7 +242,9 @@ double pace_go(struct cycle *c, double v_mm_s, double to_mm)
 		.most_mm_s = fabs(v), .stop_mm = INFINITY,
 	};
 
-	if (v == 0)
+	/* It came to a stand in the last cycle, in front of a segment that
+	 * cannot brake from what that cycle still went. */
+	if (v == 0 || (mover_is_standing(&c->mover) && fabs(was) > dv))
 		return law_go_at(c, 0);
 	if (k.toward != from)
 		k.a_mm_s2 = a_here(c, k.toward);

@@ -242,7 +242,7 @@ static double settle(struct cycle *c)
 	const struct interp_seg *s = segment(c);
 
 	mover_set(&c->mover, 0);
-	if (c->probe.settled++ < c->config.probe.settle_cycles)
+	if (c->probe.settled++ < c->config.probe.settle.cycles)
 		return 0;
 	if (!(s->flags & INTERP_SEG_PROBE)) {
 		begin_going(c);

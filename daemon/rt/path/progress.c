@@ -48,9 +48,18 @@ static bool has_a_name(const struct cycle *c)
 				     c->state == STATE_PROBE));
 }
 
-/* The speed of what it has to do; jumps and moves by command are fast. */
+static bool brakes(const struct cycle *c)
+{
+	return c->mover.kind == MOVER_TO_SPEED && c->mover.goal == 0 &&
+	       !mover_is_standing(&c->mover);
+}
+
+/* The speed of what it has to do; jumps and moves by command are fast.  What
+ * brakes goes as slowly as it goes, and comes to an end. */
 static double speed_mm_s(const struct cycle *c, const struct interp_seg *s)
 {
+	if (brakes(c))
+		return fabs(c->mover.v_mm_s);
 	return c->state == STATE_TRAVEL ?
 	       law_seg_speed(s) * (c->override < 1 ? c->override : 1) :
 	       c->state == STATE_HOLD ? c->gap.retract_mm_s :

@@ -109,18 +109,33 @@ static int centre(struct nc_reader *r, const struct nc_plane *p,
 	return by_radius(r, p, end_mm, arc);
 }
 
+/* What the centre of the top's arc is counted from: as U V are, from that of
+ * the bottom's arc; behind a colon as I J are. */
+static double top_centre_from(const struct nc_reader *r, int i,
+			      const struct interp_build_contour *bottom)
+{
+	const int axis = i ? INTERP_V : INTERP_U;
+
+	if (r->d->lean && !r->block.colon)
+		return bottom->centre_mm[i];
+	return r->arc_incremental ? nc_here(r)[axis] : r->offset_mm[axis];
+}
+
 /* The arc of the top.  Its direction is the G word behind the colon, or else
  * that of the bottom.  If the line only has U or V, the top goes straight. */
-static int top(struct nc_reader *r, int motion, struct interp_build_contour *c)
+static int top(struct nc_reader *r, int motion,
+	       const struct interp_build_contour *bottom,
+	       struct interp_build_contour *c)
 {
 	const struct nc_block *b = &r->block;
+	const bool leans = r->d->lean && !b->colon;
 	const double *here = nc_here(r);
 
 	*c = (struct interp_build_contour) { .arc = false };
 	if (b->upper)
 		motion = b->upper->value;
 	if (!(b->colon || nc_has(r, NC_UI) || nc_has(r, NC_UJ)) || motion < 2) {
-		if (r->d->lean && !b->colon)
+		if (leans)
 			return nc_refuse_at(r, r->line, "K and L, the centre "
 					    "of the top's arc",
 					    "an arc with U or V and no centre "
@@ -134,13 +149,11 @@ static int top(struct nc_reader *r, int motion, struct interp_build_contour *c)
 	c->clockwise = motion == 2;
 	for (int i = 0; i < 2; i++) {
 		const enum nc_slot slot = i ? NC_UJ : NC_UI;
-		const int axis = i ? INTERP_V : INTERP_U;
 
-		if (!nc_has(r, slot) && !r->arc_incremental)
+		if (!nc_has(r, slot) && !r->arc_incremental && !leans)
 			return nc_refuse_at(r, r->line, "both I and J",
 					    "half a centre under G90.1");
-		c->centre_mm[i] = (r->arc_incremental ? here[axis] :
-				   r->offset_mm[axis]) +
+		c->centre_mm[i] = top_centre_from(r, i, bottom) +
 				  (nc_has(r, slot) ? b->value[slot] *
 				   r->unit_mm : 0);
 	}
@@ -155,7 +168,7 @@ static int go_two(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		  int motion, const struct interp_build_contour *bottom)
 {
 	struct interp_build_contour two[2] = { *bottom };
-	const int err = top(r, motion, &two[1]);
+	const int err = top(r, motion, bottom, &two[1]);
 
 	return err ? err : contour_two(&r->contour, end_mm, two, &r->word,
 				     r->diag);

@@ -2,12 +2,12 @@
 /* emit_iso.c - writes a program as NC code of dialect `generic` */
 #include "code/emitter.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-
-#define TURN	(2 * M_PI)
 
 /* The values that are in force in the text so far. */
 struct iso_writer {
@@ -105,10 +105,10 @@ static int arc(struct iso_writer *o, struct words *w, uint32_t i)
 	if (plane == 3)
 		return emit_refuse(o->diag, seg->line, "arcs in XY, ZX or YZ",
 				   "an arc in another plane");
-	if (fabs(a->sweep) > TURN * (1 + 1e-9))
+	if (fabs(a->sweep) > ANGLE_TURN * (1 + 1e-9))
 		return emit_refuse(o->diag, seg->line, "arcs of up to a turn",
 				   "an arc of %.2f turns",
-				   fabs(a->sweep) / TURN);
+				   fabs(a->sweep) / ANGLE_TURN);
 	if (plane != o->plane)
 		word(w, "G%u ", 17u + plane);
 	o->plane = plane;

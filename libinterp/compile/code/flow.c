@@ -205,7 +205,8 @@ static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats,
 	return 0;
 }
 
-int nc_call(struct nc_reader *r, double number, const uint8_t *at)
+int nc_call(struct nc_reader *r, double number, uint32_t times,
+	    const uint8_t *at)
 {
 	if (number != floor(number) || !(number >= 1 && number <= LABEL_MAX))
 		return nc_refuse(r, at, "a whole number of 1 to 9999",
@@ -216,7 +217,7 @@ int nc_call(struct nc_reader *r, double number, const uint8_t *at)
 		if (err)
 			return err;
 	}
-	return enter(r, (uint32_t)number, 1, at);
+	return enter(r, (uint32_t)number, times, at);
 }
 
 /* M98 P1000 L3, or P31000: the last four digits are the number. */

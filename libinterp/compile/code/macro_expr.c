@@ -8,10 +8,10 @@
 #include "code/macro.h"
 #include "code/number.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
-
-#define DEG	(M_PI / 180)
 
 /* From loose to tight; NOTHING ends an expression. */
 enum { NOTHING, LOGIC, RELATION, SUM, PRODUCT, POWER };
@@ -199,11 +199,11 @@ static double fup(double v)
 	return v < 0 ? floor(v) : ceil(v);
 }
 
-static double sin_deg(double v) { return sin(v * DEG); }
-static double cos_deg(double v) { return cos(v * DEG); }
-static double tan_deg(double v) { return tan(v * DEG); }
-static double asin_deg(double v) { return asin(v) / DEG; }
-static double acos_deg(double v) { return acos(v) / DEG; }
+static double sin_deg(double v) { return sin(v * ANGLE_DEGREE); }
+static double cos_deg(double v) { return cos(v * ANGLE_DEGREE); }
+static double tan_deg(double v) { return tan(v * ANGLE_DEGREE); }
+static double asin_deg(double v) { return asin(v) / ANGLE_DEGREE; }
+static double acos_deg(double v) { return acos(v) / ANGLE_DEGREE; }
 
 static const struct {
 	const char *name;
@@ -242,7 +242,7 @@ static int atangent(struct macro_line *l, double *ret)
 		err = macro_bracket(l, &x);
 	}
 	if (!err)
-		*ret = atan2(number(y), number(x)) / DEG;
+		*ret = atan2(number(y), number(x)) / ANGLE_DEGREE;
 	return err;
 }
 

@@ -248,9 +248,13 @@ static const uint8_t argument[26] = {
 	22, 23, 24, 25, 26
 };
 
+#define TIMES_MAX	9999
+
+/* With L the macro is gone through again with the variables that it has left:
+ * the arguments are set once. */
 struct call {
 	double local[MACRO_LOCALS];
-	double number;
+	double number, times;		/* P and L */
 	uint32_t triples;		/* how many groups of I J K began */
 	uint8_t last;			/* the last of I J K */
 };
@@ -274,21 +278,24 @@ static int take_argument(struct macro_line *l, struct call *c)
 	double v;
 	int err;
 
-	if (letter >= 'A' && letter <= 'Z' && letter != 'P')
+	if (letter >= 'A' && letter <= 'Z')
 		which = variable_of(c, letter);
-	if (which >= MACRO_LOCALS || (!which && letter != 'P'))
+	if (which >= MACRO_LOCALS || (!which && letter != 'P' && letter != 'L'))
 		return macro_refuse(l, at,
-				    "P, then A B C D E F H I J K M Q R S T U V "
-				    "W X Y Z with values",
+				    "P and L, and A B C D E F H I J K M Q R S "
+				    "T U V W X Y Z with values",
 				    "'%c' behind G65",
 				    *at);
 	err = macro_value(l, &v);
 	if (err)
 		return err;
-	if (letter == 'P')
-		c->number = v;
-	else
+	if (letter == 'L' && (v != floor(v) || !(v >= 1 && v <= TIMES_MAX)))
+		return macro_refuse(l, at, "a whole number of 1 to 9999",
+				    "L%g times", v);
+	if (which)
 		c->local[which] = v;
+	else
+		*(letter == 'P' ? &c->number : &c->times) = v;
 	return 0;
 }
 
@@ -296,7 +303,7 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 {
 	struct nc_reader *r = l->r;
 	struct nc_macro *m = l->m;
-	struct call c = { .number = 0 };
+	struct call c = { .times = 1 };
 	int err = 0;
 
 	for (int i = 0; i < MACRO_LOCALS; i++)
@@ -308,7 +315,7 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 		err = take_argument(l, &c);
 	}
 	if (!err)
-		err = nc_call(r, c.number, at);
+		err = nc_call(r, c.number, (uint32_t)c.times, at);
 	if (err)
 		return err;
 	m->level++;

@@ -244,10 +244,29 @@ static int home(struct nc_reader *r)
 	return nc_line_to(r, end_mm, true);
 }
 
+/* Many programs say U0 V0 here: the wire is upright.  That says nothing new if
+ * it leans so. */
+static bool leans_so(const struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+	const double *here = nc_here(r);
+
+	for (int k = 0; k < 2; k++) {
+		const int i = INTERP_U + k;
+		const double lean = here[i] - here[INTERP_X + k];
+
+		if (b->words & NC_BIT(NC_U + k) &&
+		    fabs(b->value[i] * r->scale[i] - lean) > 1e-6)
+			return false;
+	}
+	return r->d->lean;
+}
+
 static int set_here(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
 	const double *here = nc_here(r);
+	uint32_t axes = b->words & NC_AXES;
 
 	if (r->tool.on)
 		return nc_refuse(r, b->code_at[NC_ONE_SHOT], "G49 before it",
@@ -256,10 +275,14 @@ static int set_here(struct nc_reader *r)
 		return nc_refuse(r, b->code_at[NC_ONE_SHOT],
 				 "the place to call this one, as in G92 X0 Y0; "
 				 "G92.1 to cancel", "G92 without axis words");
-	if (nc_has_guides(r) && (b->words & (NC_BIT(NC_U) | NC_BIT(NC_V))))
-		return nc_refuse(r, b->code_at[NC_ONE_SHOT], "G92 with X and Y",
-				 "G92 with U or V, which go with X and Y");
-	for EACH_AXIS(b->words & NC_AXES, i)
+	if (nc_has_guides(r) && (axes & (NC_BIT(NC_U) | NC_BIT(NC_V)))) {
+		if (!leans_so(r))
+			return nc_refuse(r, b->code_at[NC_ONE_SHOT],
+					 "G92 with X and Y", "G92 with U or V, "
+					 "which go with X and Y");
+		axes &= ~(NC_BIT(NC_U) | NC_BIT(NC_V));
+	}
+	for EACH_AXIS(axes, i)
 		r->shift_mm[i] = here[i] - b->value[i] * r->scale[i] -
 				 r->work_mm[r->work][i] -
 				 (i == INTERP_Z ? r->electrode_mm : 0);

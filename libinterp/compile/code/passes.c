@@ -99,7 +99,7 @@ static int record(struct nc_reader *r, const struct nc_cavity *c,
 
 	contour_record(&r->contour, c->hole_mm);
 	r->selected = r->passes.pass[0].reg;
-	err = nc_call(r, c->number, code_at);
+	err = nc_call(r, c->number, 1, code_at);
 	while (!err && r->depth > depth && !r->over && r->at < r->end)
 		err = nc_read_line(r);
 	contour_recorded(&r->contour, t);

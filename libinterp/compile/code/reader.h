@@ -386,8 +386,12 @@ int nc_pass(struct nc_reader *r);
 int nc_cavity(struct nc_reader *r);
 int nc_cut(struct nc_reader *r);
 
-/** nc_call() - continue in subprogram @number; the word is at @at. */
-int nc_call(struct nc_reader *r, double number, const uint8_t *at);
+/**
+ * nc_call() - continue in subprogram @number, and go through it so many @times,
+ * 1 or more; the word is at @at.
+ */
+int nc_call(struct nc_reader *r, double number, uint32_t times,
+	    const uint8_t *at);
 
 /** nc_read_line() - read the next line and carry it out. */
 int nc_read_line(struct nc_reader *r);

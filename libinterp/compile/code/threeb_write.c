@@ -13,12 +13,12 @@
 #include "code/emitter.h"
 #include "code/threeb_reader.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#define TURN	(2 * M_PI)
 
 /* A shorter arc can just as well be a line. */
 #define ARC_MIN_UNITS	4.0
@@ -105,7 +105,7 @@ static struct attempt try_centre(const struct threeb_writer *w,
 		.end = { want->end.x - cx, want->end.y - cy, want->full },
 		.miss = INT64_MAX,
 	};
-	const bool far = fabs(want->sweep) > TURN / 2;
+	const bool far = fabs(want->sweep) > ANGLE_TURN / 2;
 	struct threeb_end back;
 	int64_t dx, dy;
 
@@ -164,7 +164,7 @@ static struct attempt try_bisector(const struct threeb_writer *w,
 			     (hypot(x1, y1) + hypot(x0, y0)) / (2 * chord);
 	int64_t centre[2];
 
-	if ((fabs(want->sweep) > TURN / 2 && fabs(shift) > 1) ||
+	if ((fabs(want->sweep) > ANGLE_TURN / 2 && fabs(shift) > 1) ||
 	    !(fabs(shift) < INTERP_THREEB_MAX))	/* nor from end to same end */
 		return best;
 	centre[0] = llround(want->cx + shift * (x1 - x0) / chord);
@@ -266,7 +266,7 @@ static double sweep_of(const struct threeb_writer *w,
 	const double to = atan2((double)want->end.y - want->cy,
 				(double)want->end.x - want->cx);
 
-	return to - from + TURN * round((near - (to - from)) / TURN);
+	return to - from + ANGLE_TURN * round((near - (to - from)) / ANGLE_TURN);
 }
 
 static int arc(struct threeb_writer *w, uint32_t i)
@@ -277,13 +277,13 @@ static int arc(struct threeb_writer *w, uint32_t i)
 		.cx = (a->a_mm - w->x0_mm) / w->unit_mm,
 		.cy = (a->b_mm - w->y0_mm) / w->unit_mm,
 	};
-	const double way = a->sweep < 0 ? -TURN : TURN;
+	const double way = a->sweep < 0 ? -ANGLE_TURN : ANGLE_TURN;
 	double rest = a->sweep;
 
 	if (a->axis_a != INTERP_X || a->axis_b != INTERP_Y)
 		return emit_refuse(w->diag, w->line, "arcs in XY",
 				   "an arc in another plane");
-	for (; fabs(rest) > TURN * (1 - 1e-9); rest -= way) {
+	for (; fabs(rest) > ANGLE_TURN * (1 - 1e-9); rest -= way) {
 		struct wanted turn = want;
 		int err;
 

@@ -10,6 +10,7 @@
 #include "code/nurbs_words.h"
 #include "code/tip_turn.h"
 #include "curve/span.h"
+#include "interp/angle.h"
 #include "interp/nurbs_length.h"
 #include "interp/pose.h"
 #include "kinematics/vector.h"
@@ -24,7 +25,6 @@
 #define ORDER		4
 #define START_PULSES	2.0
 #define START_DEG	0.01
-#define DEGREE		(180 / M_PI)
 
 /* Columns of a control point: X Y Z, then w x y z. */
 #define TURN		3
@@ -103,7 +103,7 @@ static double largest(const struct nc_curve *c)
 
 static bool pair_make(struct pair *p, const struct nc_curve *c)
 {
-	const double scale = 2 * DEGREE / largest(c);
+	const double scale = 2 * ANGLE_RADIAN / largest(c);
 
 	p->move = malloc((size_t)c->npoints * 4 * sizeof(double));
 	p->turn = malloc((size_t)c->npoints * 5 * sizeof(double));
@@ -204,14 +204,14 @@ static double apart_deg(const struct interp_kinematics *k, const double a[4],
 	if (nc_pose_roll(k) >= 0) {
 		for (int i = 0; i < 4; i++)
 			dot += a[i] * b[i];
-		return 2 * acos(fmin(1, fabs(dot))) * DEGREE;
+		return 2 * acos(fmin(1, fabs(dot))) * ANGLE_RADIAN;
 	}
 	memcpy(da, k->tool_dir, sizeof(da));
 	memcpy(db, k->tool_dir, sizeof(db));
 	nc_pose_turn(a, da);
 	nc_pose_turn(b, db);
 	vec_cross(da, db, x);
-	return atan2(vec_length(x), vec_dot(da, db)) * DEGREE;
+	return atan2(vec_length(x), vec_dot(da, db)) * ANGLE_RADIAN;
 }
 
 static int check_start(struct nc_reader *r, struct pair *p)

@@ -6,16 +6,17 @@
 #include "code/tip_way.h"
 #include "kinematics/vector.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define DEGREE		(180 / M_PI)
-
 /* In one step along the way no rotary axis turns farther than this; otherwise
  * the step is made shorter. */
 #define STEP_DEG	3.0
+#define UNEVEN		0.9		/* of a turn, on half of a step */
 #define STEP_MOST	(1.0 / 256)
 #define STEP_LEAST	1e-13
 #define NODES_MAX	1000000
@@ -49,7 +50,7 @@ void nc_pose_turned(const struct interp_kinematics *k,
 
 	for (uint32_t i = 0; i < k->njoints; i++) {
 		const struct interp_kin_joint *j = &k->joint[i];
-		const double half = axes[j->axis] / DEGREE / 2;
+		const double half = axes[j->axis] / ANGLE_RADIAN / 2;
 		const double turn[4] = { cos(half), sin(half) * j->dir[0],
 					 sin(half) * j->dir[1],
 					 sin(half) * j->dir[2] };
@@ -94,10 +95,10 @@ static void roll(const struct interp_kinematics *k, const double want[4],
 		const struct interp_kin_joint *o = &k->joint[i];
 
 		if (interp_axis_is_rotary(o->axis))
-			vec_turn(o->dir, -axes[o->axis] / DEGREE, v);
+			vec_turn(o->dir, -axes[o->axis] / ANGLE_RADIAN, v);
 	}
 	vec_cross(e, v, x);
-	deg = atan2(vec_dot(j->dir, x), vec_dot(e, v)) * DEGREE;
+	deg = atan2(vec_dot(j->dir, x), vec_dot(e, v)) * ANGLE_RADIAN;
 	axes[j->axis] = deg + 360 * round((axes[j->axis] - deg) / 360);
 }
 
@@ -200,7 +201,31 @@ static bool same(const struct track *k, const struct nc_pose *a,
 	for (int i = 0; i < 3; i++)
 		tip += (a->mm[i] - b->mm[i]) * (a->mm[i] - b->mm[i]);
 	return sqrt(tip) < bound && asin(fmin(1, vec_length(x) /
-		(vec_length(a->dir) * vec_length(b->dir)))) * DEGREE < bound;
+		(vec_length(a->dir) * vec_length(b->dir)))) * ANGLE_RADIAN < bound;
+}
+
+/* Nearly all of an axis's turn on one half of a step: a pole may lie there, and
+ * the axis jumps at it, however short the step is.  @t: the middle. */
+static bool hides_jump(const struct track *k, double t,
+		       const double here[INTERP_NAXES],
+		       const double next[INTERP_NAXES])
+{
+	const double bound = k->r->o->tip_tolerance_mm / 4;
+	double middle[INTERP_NAXES];
+	struct nc_pose p;
+
+	memcpy(middle, here, sizeof(middle));
+	if (turn_of(here, next) < bound || solve(k, t, &p, middle))
+		return false;
+	for (int i = INTERP_A; i <= INTERP_C; i++) {
+		const double turn = fabs(next[i] - here[i]);
+
+		if (turn > bound && fmax(fabs(middle[i] - here[i]),
+					 fabs(next[i] - middle[i])) >
+				    UNEVEN * turn)
+			return true;
+	}
+	return false;
 }
 
 /* Make a step of at most @h from @t, where the axes are @q.  Afterwards @q has
@@ -223,7 +248,8 @@ static int step(const struct track *k, double *t, double h,
 		err = solve(k, to, &p, next);
 		if (err)
 			return err;
-		if (turn_of(here, next) <= STEP_DEG)
+		if (turn_of(here, next) <= STEP_DEG &&
+		    !hides_jump(k, (*t + to) / 2, here, next))
 			break;
 		jumps = same(k, &was, &p);
 		if (jumps)

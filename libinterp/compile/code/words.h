@@ -135,7 +135,7 @@ enum nc_motion {
 /*
  * Words that act once.  A row has the name in a dialect's file, an id, the
  * function that carries it out, and the slots that it uses.  A new one is a row
- * and a function.
+ * and a function.  A dialect has it when its file in dialects/ names it.
  */
 #define NC_ONE_SHOTS(W) \
 	W("dwell", DWELL, dwell, NC_BIT(NC_P) | NC_BIT(NC_X)) \

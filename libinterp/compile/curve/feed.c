@@ -20,6 +20,7 @@ void interp_nurbs_way(struct interp_nurbs_eval *e, double u,
 	interp_nurbs_at(e, u, 3, &p);
 	g2 = interp_nurbs_dot(c, p.d[1], p.d[1]);
 	g = sqrt(g2);
+	ret->by_u_mm = g;
 	ret->cusp = !(g > 0);
 	if (ret->cusp)
 		return;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* chain.c - a chain of joints, and where it puts the tool */
+#include "interp/angle.h"
 #include "interp/kinematics.h"
 #include "kinematics/vector.h"
 
@@ -8,8 +9,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-#define RADIAN		(M_PI / 180)
 
 /* Directions that differ by less than this are equal. */
 #define SAME_DIR	1e-9
@@ -168,7 +167,7 @@ static void move(const struct interp_kin_joint *j, double q, double at[3])
 	}
 	for (int i = 0; i < 3; i++)
 		v[i] = at[i] - j->at_mm[i];
-	vec_turn(j->dir, q * RADIAN, v);
+	vec_turn(j->dir, q * ANGLE_DEGREE, v);
 	for (int i = 0; i < 3; i++)
 		at[i] = j->at_mm[i] + v[i];
 }
@@ -184,6 +183,6 @@ void interp_kin_forward(const struct interp_kinematics *k,
 
 		move(j, q[j->axis], ret->tip_mm);
 		if (is_turn(j))
-			vec_turn(j->dir, q[j->axis] * RADIAN, ret->dir);
+			vec_turn(j->dir, q[j->axis] * ANGLE_DEGREE, ret->dir);
 	}
 }

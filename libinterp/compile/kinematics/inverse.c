@@ -14,14 +14,13 @@
  *
  * with two values of g: the two ways a machine has to point.
  */
+#include "interp/angle.h"
 #include "interp/kinematics.h"
 #include "kinematics/vector.h"
 
 #include <math.h>
 #include <errno.h>
 #include <string.h>
-
-#define DEGREE		(180 / M_PI)
 
 /* The tool points at least this well, or the direction cannot be reached. */
 #define POINTS		1e-9
@@ -41,7 +40,7 @@ static void column(const struct interp_kinematics *k, uint32_t n,
 		const struct interp_kin_joint *j = &k->joint[i];
 
 		if (interp_axis_is_rotary(j->axis))
-			vec_turn(j->dir, q[j->axis] / DEGREE, ret);
+			vec_turn(j->dir, q[j->axis] / ANGLE_RADIAN, ret);
 	}
 }
 
@@ -88,7 +87,7 @@ static bool angle(const double u[3], const double from[3], const double to[3],
 	if (vec_length(a) < SINGULAR || vec_length(b) < SINGULAR)
 		return false;
 	vec_cross(a, b, x);
-	*ret_deg = atan2(vec_dot(u, x), vec_dot(a, b)) * DEGREE;
+	*ret_deg = atan2(vec_dot(u, x), vec_dot(a, b)) * ANGLE_RADIAN;
 	return true;
 }
 
@@ -222,7 +221,7 @@ double interp_kin_margin(const struct interp_kinematics *k,
 	interp_kin_forward(k, q, &pose);
 	memcpy(d, pose.dir, sizeof(d));
 	memcpy(u2, k->joint[k->turn[1]].dir, sizeof(u2));
-	vec_turn(u1, q[k->joint[k->turn[0]].axis] / DEGREE, u2);
+	vec_turn(u1, q[k->joint[k->turn[0]].axis] / ANGLE_RADIAN, u2);
 	vec_cross(u1, d, v1);
 	vec_cross(u2, d, v2);
 	/* The smaller singular value of the 3 x 2 matrix (v1 v2). */

@@ -5,12 +5,12 @@
  * A round shape is a profile: radius and depth as functions of the way u along
  * the profile.  During one turn, u increases by one step.
  */
+#include "interp/angle.h"
 #include "interp/orbit.h"
 
 #include <math.h>
 #include <string.h>
 
-#define TURN		(2 * M_PI)
 #define CHORD_PULSES	0.4		/* distance of a polyline from its
 					 * curve */
 #define NEAR_MM		1e-9
@@ -38,7 +38,7 @@ static double cone_radius(const struct interp_orbit *o, double h_mm)
 {
 	const double depth = height_of(o);
 	const double r = o->angle_given ?
-			 o->radius_mm + h_mm * tan(o->angle_deg * TURN / 360) :
+			 o->radius_mm + h_mm * tan(o->angle_deg * ANGLE_TURN / 360) :
 			 o->radius_mm * (depth - h_mm) / depth;
 
 	return r >= 0 ? r : NAN;
@@ -60,16 +60,16 @@ static double sphere_length(const struct walk *w)
 {
 	const double b = w->o->bottom_mm, h = w->depth_mm;
 
-	return h > b ? h - b + b * TURN / 4 : b * acos(1 - h / b);
+	return h > b ? h - b + b * ANGLE_TURN / 4 : b * acos(1 - h / b);
 }
 
 static void sphere_at(struct walk *w, double u_mm)
 {
 	const double b = w->o->bottom_mm, left = w->length_mm - u_mm;
 
-	w->h_mm = left > b * TURN / 4 ? left - b * TURN / 4 + b :
+	w->h_mm = left > b * ANGLE_TURN / 4 ? left - b * ANGLE_TURN / 4 + b :
 		  b * (1 - cos(left / b));
-	w->r_mm = left > b * TURN / 4 ? w->o->radius_mm :
+	w->r_mm = left > b * ANGLE_TURN / 4 ? w->o->radius_mm :
 		  w->o->radius_mm - b + b * sin(left / b);
 }
 
@@ -254,8 +254,8 @@ static uint32_t chords(struct walk *w, const struct round *q)
 	profile_at(w, q->to_mm);
 	r1 = w->r_mm;
 	/* A spiral is more curved than a circle, most of all at its inside. */
-	r = fmax(r0, r1) + 2 * fabs(r1 - r0) / TURN;
-	n = ceil(TURN / sqrt(8 * e / r));
+	r = fmax(r0, r1) + 2 * fabs(r1 - r0) / ANGLE_TURN;
+	n = ceil(ANGLE_TURN / sqrt(8 * e / r));
 	return n > 8 ? (uint32_t)n : 8;
 }
 
@@ -266,7 +266,7 @@ static int turn_polyline(struct walk *w, const struct round *q)
 
 	for (uint32_t j = 1; j <= n && !err; j++) {
 		const double t = (double)j / n;
-		const double angle = j == n ? 0 : TURN * t;
+		const double angle = j == n ? 0 : ANGLE_TURN * t;
 
 		profile_at(w, q->from_mm + t * (q->to_mm - q->from_mm));
 		err = line_to(w, w->r_mm * cos(angle), w->r_mm * sin(angle),
@@ -384,7 +384,7 @@ static int vectors(struct walk *w)
 	for (uint32_t i = 0; i < o->directions && !err; i++) {
 		const double angle = (o->angle_deg +
 				      360.0 * i / o->directions) *
-				     TURN / 360;
+				     ANGLE_TURN / 360;
 
 		err = line_to(w, o->radius_mm * cos(angle),
 			     o->radius_mm * sin(angle), false);

@@ -5,13 +5,13 @@
 #include "path/build_arc.h"
 #include "pulse/strategy.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define TURN	(2 * M_PI)
 
 /* The radii at start and end may differ by a rounding of the last digit, or by
  * this. */
@@ -53,12 +53,12 @@ static double sweep_of(const struct build_arc *p, double theta0, double theta1)
 		sweep = 0;
 	if (p->word->clockwise) {
 		while (sweep > -same)
-			sweep -= TURN;
-		return sweep - TURN * p->word->turns;
+			sweep -= ANGLE_TURN;
+		return sweep - ANGLE_TURN * p->word->turns;
 	}
 	while (sweep < same)
-		sweep += TURN;
-	return sweep + TURN * p->word->turns;
+		sweep += ANGLE_TURN;
+	return sweep + ANGLE_TURN * p->word->turns;
 }
 
 int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
@@ -92,11 +92,11 @@ int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
 /* Does the arc pass the angle @quarter * 90 degrees? */
 static bool passes(const struct interp_arc *arc, int quarter)
 {
-	double ahead = quarter * (TURN / 4) - arc->theta;
+	double ahead = quarter * (ANGLE_TURN / 4) - arc->theta;
 
-	ahead -= TURN * floor(ahead / TURN);
+	ahead -= ANGLE_TURN * floor(ahead / ANGLE_TURN);
 	return arc->sweep > 0 ? ahead < arc->sweep :
-				ahead - TURN > arc->sweep || ahead == 0;
+				ahead - ANGLE_TURN > arc->sweep || ahead == 0;
 }
 
 /* The four places that lie farthest out are between the ends, where there is no
@@ -299,7 +299,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 static double chord_off_mm(const struct interp_arc *arc)
 {
 	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
-	const double half = fmin(fabs(arc->sweep), TURN) / 2;
+	const double half = fmin(fabs(arc->sweep), ANGLE_TURN) / 2;
 
 	return r * (1 - cos(half));
 }

@@ -17,8 +17,6 @@
 #include "path/builder.h"
 #include "pulse/strategy.h"
 
-#include "interp/limits.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -26,205 +24,15 @@
 #include <string.h>
 
 #define LOOKS		64		/* in a span */
-#define NEAR		0.1		/* between two looks feed and heading
-					 * change by no more */
-#define NEAR_HALVINGS	10
 #define FEED_RATIO	1.5		/* fastest to slowest feed in a piece */
 #define CUSP_HALVINGS	60
-#define STOP_PULSES	0.02		/* error of a stop's place */
+#define STOP_PULSES	0.02		/* error of a stop's place, of the axis
+					 * that is fastest there */
+#define RATE_MOST	100		/* but near a cusp */
 #define MARGIN		1.02		/* factor for the number of places */
 #define TRIES		24
 #define TRIED_MAX	200000000.0	/* places of a curve in all tries; about
 					 * twenty seconds */
-
-/* -- What limits it ------------------------------------------------------- */
-
-static const struct interp_axis_limits *axis_of(const struct curve_plan *p,
-						uint32_t k)
-{
-	return &p->b->o.machine->axis[p->curve.axis[k]];
-}
-
-/* Shares of an axis's acceleration: to follow the curve, and to go along it. */
-static double across_part(const struct curve_plan *p, uint32_t k)
-{
-	return k < p->curve.counted ? INTERP_BEND_ACROSS : INTERP_BESIDE_ACROSS;
-}
-
-static double along_part(const struct curve_plan *p, uint32_t k)
-{
-	return k < p->curve.counted ? INTERP_BEND_ALONG : INTERP_BESIDE_ALONG;
-}
-
-static void set_limits(struct curve_plan *p)
-{
-	const struct interp_build_options *o = &p->b->o;
-	struct interp_nurbs_limits *l = &p->limits;
-	double jerk = HUGE_VAL, acc = HUGE_VAL;
-
-	*l = (struct interp_nurbs_limits) {
-		.chord_error_mm = HUGE_VAL, .period_s = 1,
-		.centripetal_mm_s2 = HUGE_VAL,
-	};
-	p->chord_mm_s = o->chord_error_mm > 0 && o->period_s > 0 ?
-			sqrt(8 * o->chord_error_mm) / o->period_s : HUGE_VAL;
-	p->pulse_mm = HUGE_VAL;
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		const struct interp_axis_limits *m = axis_of(p, k);
-
-		l->v_mm_s[k] = m->v_max_mm_s;
-		l->a_mm_s2[k] = across_part(p, k) * m->a_max_mm_s2;
-		l->j_mm_s3[k] = INTERP_CURVE_JERK_ROUND * m->j_max_mm_s3;
-		p->pulses_mm[p->curve.axis[k]] = 1 / m->pulse_mm;
-		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
-		jerk = fmin(jerk, m->j_max_mm_s3);
-		acc = fmin(acc, m->a_max_mm_s2);
-		if (k < p->curve.counted)
-			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
-						    l->a_mm_s2[k]);
-	}
-	/* The axes do not notice a bend whose radius is less than a pulse. */
-	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);
-	p->least_mm_s2 = INTERP_BEND_LEAST * acc;
-}
-
-static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)
-{
-	struct curve_seen *s = &p->seen;
-
-	s->bend = fmax(s->bend, w->cusp ? HUGE_VAL : w->curvature);
-	for (int n = 0; !w->cusp && n < 3; n++)
-		for (uint32_t k = 0; k < p->curve.naxes; k++)
-			s->d[n][k] = fmax(s->d[n][k], fabs(w->d[n][k]));
-}
-
-/* So slow that the jerk lets it speed up here, by no less than it must. */
-static double set_off_mm_s(const struct curve_plan *p,
-			   const struct interp_nurbs_way *w)
-{
-	double v = HUGE_VAL;
-
-	for (uint32_t k = 0; !w->cusp && k < p->curve.naxes; k++)
-		if (w->d[1][k] != 0)
-			v = fmin(v, INTERP_CURVE_JERK_BOTH *
-				    axis_of(p, k)->j_max_mm_s3 /
-				    (3 * fabs(w->d[1][k]) * p->least_mm_s2));
-	return v;
-}
-
-/* Look at @u: find the feed that its axes allow.  The present piece learns how
- * its axes go there. */
-static struct curve_look look(struct curve_plan *p, double u)
-{
-	struct interp_nurbs_eval *e = &p->walk.eval;
-	struct curve_look ret = { .u = u };
-	struct interp_nurbs_way w;
-	double feed;
-
-	interp_nurbs_way(e, u, &w);
-	learn(p, &w);
-	feed = interp_nurbs_feed_mm_s(&e->c, &w, &p->limits);
-	ret.mm_s = fmax(fmin(feed, set_off_mm_s(p, &w)), p->slowest_mm_s);
-	memcpy(ret.heading, w.d[0], sizeof(ret.heading));
-	return ret;
-}
-
-static bool is_near(const struct curve_plan *p, const struct curve_look *a,
-		    const struct curve_look *b)
-{
-	double size = 0, turn = 0;
-
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		size = fmax(size, fabs(a->heading[k]));
-		turn = fmax(turn, fabs(a->heading[k] - b->heading[k]));
-	}
-	return turn <= NEAR * size &&
-	       fmax(a->mm_s, b->mm_s) <= (1 + NEAR) * fmin(a->mm_s, b->mm_s);
-}
-
-/* The tightest place of a bend may lie between two looks: look there, until
- * neighbours are alike. */
-static void look_between(struct curve_plan *p, const struct curve_look *a,
-			 const struct curve_look *b, int halvings)
-{
-	struct curve_look middle;
-
-	if (halvings == 0 || is_near(p, a, b))
-		return;
-	middle = look(p, (a->u + b->u) / 2);
-	p->least_mm_s = fmin(p->least_mm_s, middle.mm_s);
-	p->most_mm_s = fmax(p->most_mm_s, middle.mm_s);
-	look_between(p, a, &middle, halvings - 1);
-	look_between(p, &middle, b, halvings - 1);
-}
-
-/* The feed of the present piece. */
-static double feed_of(const struct curve_plan *p)
-{
-	const double chord = p->chord_mm_s / sqrt(p->seen.bend);
-
-	return fmax(fmin(p->least_mm_s, chord), p->slowest_mm_s);
-}
-
-/* The most pulses of an axis in a mm. */
-static double rate_of(const struct curve_plan *p)
-{
-	double rate = 0;
-
-	for (uint32_t k = 0; k < p->curve.naxes; k++)
-		rate = fmax(rate, p->seen.d[0][k] *
-				  p->pulses_mm[p->curve.axis[k]]);
-	return rate;
-}
-
-/*
- * What following the present piece at @v_mm_s leaves of the acceleration of
- * column @k.  The ways along and across are square to each other, so a counted
- * axis has what is left of both together.  A cusp is passed at the slowest speed
- * whatever it takes, and leaves the share.
- */
-static double left_mm_s2(const struct curve_plan *p, uint32_t k, double v_mm_s)
-{
-	const double a = axis_of(p, k)->a_max_mm_s2;
-	const double across = p->seen.bend * v_mm_s * v_mm_s;
-	const double left = a - p->seen.d[1][k] * v_mm_s * v_mm_s;
-
-	return fmax(fmax(left, along_part(p, k) * a),
-		    k < p->curve.counted && across < a ?
-		    sqrt(a * a - across * across) : 0);
-}
-
-/* The same of its jerk. */
-static double left_mm_s3(const struct curve_plan *p, uint32_t k, double v_mm_s)
-{
-	const double j = axis_of(p, k)->j_max_mm_s3;
-
-	return fmax(j - p->seen.d[2][k] * v_mm_s * v_mm_s * v_mm_s,
-		    (1 - INTERP_CURVE_JERK_ROUND) * j);
-}
-
-/* How fast to speed up along the present piece, at @v_mm_s at most: to speed up
- * on a bend takes jerk, and no more than half of what is left. */
-static void along_of(const struct curve_plan *p, double v_mm_s,
-		     struct interp_piece *ret)
-{
-	double a = HUGE_VAL, j = HUGE_VAL;
-
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		a = fmin(a, left_mm_s2(p, k, v_mm_s) / p->seen.d[0][k]);
-		a = fmin(a, fmax(left_mm_s3(p, k, v_mm_s) / 2 /
-				 (3 * p->seen.d[1][k] * v_mm_s),
-				 p->least_mm_s2));
-	}
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		const double left = left_mm_s3(p, k, v_mm_s);
-
-		j = fmin(j, fmax(left - 3 * p->seen.d[1][k] * v_mm_s * a,
-				 left / 2) / p->seen.d[0][k]);
-	}
-	ret->a_mm_s2 = a;
-	ret->j_mm_s3 = j;
-}
 
 /* -- Pieces --------------------------------------------------------------- */
 
@@ -239,8 +47,10 @@ static const struct interp_nurbs_stop *stops_of(const struct curve_plan *p,
 static int add_stops(struct curve_plan *p, double to,
 		     struct interp_piece *piece)
 {
-	const struct interp_nurbs_range r = { p->from, to,
-					      STOP_PULSES * p->pulse_mm };
+	const double rate = fmin(build_curve_rate(p) * p->pulse_mm, RATE_MOST);
+	const struct interp_nurbs_range r = {
+		p->from, to, STOP_PULSES * p->pulse_mm / fmax(rate, 1)
+	};
 	struct interp_nurbs_eval *e = &p->walk.eval;
 	const size_t n = interp_nurbs_stops(e, &r, NULL, 0);
 	struct interp_nurbs_stop *s = malloc(n * sizeof(*s));
@@ -310,7 +120,7 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 {
 	const struct interp_nurbs_stop *stops = stops_of(p, piece);
 	const double length_mm = stops[piece->nstops - 1].s_mm;
-	double places = ceil(length_mm * rate_of(p) * MARGIN *
+	double places = ceil(length_mm * build_curve_rate(p) * MARGIN *
 			     (p->turns > 1 ? 2 : 1)) + 1;
 
 	for (int i = 0; i < TRIES; i++) {
@@ -374,8 +184,8 @@ static int piece_add(struct curve_plan *p, double to)
 	if (err < 0)
 		return err;
 	step.seg.ticks = p->walk.places * p->turns;
-	step.feed_max_mm_s = feed_of(p);
-	along_of(p, step.feed_max_mm_s, &piece);
+	step.feed_max_mm_s = build_curve_feed(p);
+	build_curve_along(p, step.feed_max_mm_s, &piece);
 	step.seg.arg = (uint32_t)p->b->pieces.n;
 	stored = build_table_add(&p->b->pieces);
 	if (!stored)
@@ -389,7 +199,7 @@ static void piece_begin(struct curve_plan *p, double u)
 {
 	p->from = u;
 	p->seen = (struct curve_seen) { .bend = 0 };
-	p->last = look(p, u);
+	p->last = build_curve_look(p, u);
 	p->least_mm_s = p->most_mm_s = p->last.mm_s;
 }
 
@@ -398,7 +208,7 @@ static void piece_begin(struct curve_plan *p, double u)
 static int piece_extend(struct curve_plan *p, double last, double u)
 {
 	const struct curve_seen was = p->seen;
-	const struct curve_look here = look(p, u);
+	const struct curve_look here = build_curve_look(p, u);
 	const double feed = here.mm_s;
 	int err = 0;
 
@@ -407,12 +217,12 @@ static int piece_extend(struct curve_plan *p, double last, double u)
 		p->seen = was;
 		err = piece_add(p, last);
 		piece_begin(p, last);
-		look(p, u);
+		build_curve_look(p, u);
 	}
 	p->least_mm_s = fmin(p->least_mm_s, feed);
 	p->most_mm_s = fmax(p->most_mm_s, feed);
 	if (err == 0)
-		look_between(p, &p->last, &here, NEAR_HALVINGS);
+		build_curve_look_between(p, &p->last, &here);
 	p->last = here;
 	return err;
 }
@@ -532,7 +342,7 @@ int interp_build_curve(struct interp_build *b,
 	interp_nurbs_open(&p.walk.eval, &n);
 	memcpy(p.walk.axis, p.curve.axis, sizeof(p.walk.axis));
 	p.turns = pulse_curve_turns(b->o.strategy, n.naxes);
-	set_limits(&p);
+	build_curve_limit(&p);
 	err = build_curve_check_way(&p);
 	return err == 0 ? along(&p) : err;
 }

@@ -29,10 +29,11 @@ struct curve_seen {
 					 * column */
 };
 
-/* The feed that the axes allow at @u, and how far each goes in a mm. */
+/* The feed that the axes allow at @u, how far each goes in a mm, and how that
+ * changes by parameter; 0 at a cusp. */
 struct curve_look {
 	double u, mm_s;
-	double heading[INTERP_NAXES];
+	double heading[INTERP_NAXES], turn[INTERP_NAXES];
 };
 
 /* A NURBS while it is cut into segments. */
@@ -88,5 +89,30 @@ int build_curve_check_start(struct curve_plan *p);
  * Return: 0, or -EINVAL with diag filled.
  */
 int build_curve_check_way(struct curve_plan *p);
+
+/* build_curve_feed.c: */
+
+/** build_curve_limit() - what the axes and the chord error allow on bends. */
+void build_curve_limit(struct curve_plan *p);
+
+/**
+ * build_curve_look() - look at @u: find the feed that its axes allow.  The piece
+ * in hand learns how its axes go there.
+ */
+struct curve_look build_curve_look(struct curve_plan *p, double u);
+
+/** build_curve_look_between() - and where it is tightest between two looks. */
+void build_curve_look_between(struct curve_plan *p, const struct curve_look *a,
+			      const struct curve_look *b);
+
+/** build_curve_feed() - the feed of the piece in hand, mm/s. */
+double build_curve_feed(const struct curve_plan *p);
+
+/** build_curve_rate() - the most pulses that one of its axes goes in a mm. */
+double build_curve_rate(const struct curve_plan *p);
+
+/** build_curve_along() - how fast to speed up along it, at @v_mm_s at most. */
+void build_curve_along(const struct curve_plan *p, double v_mm_s,
+		       struct interp_piece *ret);
 
 #endif /* PATH_BUILD_CURVE_H */

@@ -56,9 +56,11 @@ static uint32_t find_line(const struct interp_build *b, uint32_t line)
 	return at;
 }
 
+/* Where a rapid probing motion ends is not off the work but in it. */
 static bool is_positioning(const struct interp_seg *s)
 {
-	return s->flags & INTERP_SEG_RAPID && s->length_mm > 0;
+	return s->flags & INTERP_SEG_RAPID && s->length_mm > 0 &&
+	       !(s->flags & INTERP_SEG_SENSED);
 }
 
 /* The last positioning up to there: its end is off the work. */

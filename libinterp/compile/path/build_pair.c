@@ -29,13 +29,13 @@
 #include "path/build_arc.h"
 #include "pulse/strategy.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define TURN	(2 * M_PI)
 
 /* Arcs follow each other by angle if phase and sweep agree to this: so many
  * pulses on the smaller circle, which rounding can cause, and never more than
@@ -153,7 +153,7 @@ struct follow {
 
 static double wrapped(double angle)
 {
-	return angle - TURN * floor(angle / TURN + 0.5);
+	return angle - ANGLE_TURN * floor(angle / ANGLE_TURN + 0.5);
 }
 
 /* sigma, or 0 if the two must go by length. */
@@ -172,7 +172,7 @@ static int follow_sign(const struct build_pair *p)
 		return 0;
 	if (phase <= same)
 		return sigma;
-	return phase >= TURN / 2 - same ? -sigma : 0;
+	return phase >= ANGLE_TURN / 2 - same ? -sigma : 0;
 }
 
 static bool follow_init(struct follow *f, const struct build_pair *p)

@@ -74,19 +74,25 @@ static void tangent(const struct interp_program *p,
 	h->rate[column(p, arc->axis_b)] = out * sin(angle) + round * cos(angle);
 }
 
+/*
+ * Of two bends, one that takes as much as either: from r at a share to another
+ * share takes r times that ratio squared for the acceleration v*v*share^2/r, and
+ * to the power of 3/2 for the jerk v^3*share^3/r^2, which is less.
+ */
 static void bend(struct headings *h, const struct interp_arc *arc,
 		 double length_mm)
 {
-	const double r = fmin(arc->r_mm, arc->r_mm + arc->dr_mm);
-	const double share = fabs(arc->sweep) *
-			     fmax(arc->r_mm, arc->r_mm + arc->dr_mm) /
-			     length_mm;
+	double r = fmin(arc->r_mm, arc->r_mm + arc->dr_mm);
+	double share = fabs(arc->sweep) *
+		       fmax(arc->r_mm, arc->r_mm + arc->dr_mm) / length_mm;
 
-	/* Of two bends, keep the one that becomes too fast first:
-	 * v*v*share^2/r. */
-	if (h->bend_mm > 0 &&
-	    h->share * h->share * r > share * share * h->bend_mm)
-		return;
+	if (h->bend_mm > 0) {
+		const double most = fmax(share, h->share);
+
+		r = fmin(r * pow(most / share, 1.5),
+			 h->bend_mm * pow(most / h->share, 1.5));
+		share = most;
+	}
 	h->bend_mm = r;
 	h->share = share;
 }

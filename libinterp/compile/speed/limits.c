@@ -45,30 +45,36 @@ static void begin(struct pass *w, const struct interp_limits *l,
 	}
 }
 
-/* Down to a level; a speed of an axis stays as it is. */
-static float level(const struct pass *w, double v_mm_s)
+/* Down to a level. */
+static float down(double most)
 {
-	float v = (float)(v_mm_s * (1 + SAME));
+	float v = (float)(most * (1 + SAME));
 	uint32_t bits;
 
-	for (uint32_t j = 0; j < w->n; j++) {
-		if (fabs(v_mm_s - w->v_mm_s[j]) <= SAME * v_mm_s)
-			return (float)(w->v_mm_s[j] * (1 - 2 * SAME));
-	}
 	memcpy(&bits, &v, sizeof(bits));
 	bits &= ~((UINT32_C(1) << 18) - 1);
 	memcpy(&v, &bits, sizeof(v));
 	return v * (float)(1 - 2 * SAME);
 }
 
-/* Down to a level, but for the whole of an axis. */
-static float soft(const struct pass *w, double v, const double *own)
+/* A speed; that of an axis stays as it is. */
+static float level(const struct pass *w, double v_mm_s)
 {
 	for (uint32_t j = 0; j < w->n; j++) {
-		if (fabs(v - own[j]) <= SAME * v)
+		if (fabs(v_mm_s - w->v_mm_s[j]) <= SAME * v_mm_s)
+			return (float)(w->v_mm_s[j] * (1 - 2 * SAME));
+	}
+	return down(v_mm_s);
+}
+
+/* What an axis can do stays as it is. */
+static float soft(const struct pass *w, double most, const double *own)
+{
+	for (uint32_t j = 0; j < w->n; j++) {
+		if (fabs(most - own[j]) <= SAME * most)
 			return (float)own[j];
 	}
-	return level(w, v);
+	return down(most);
 }
 
 /*
@@ -267,6 +273,11 @@ static bool is_softer(const struct interp_seg *s, const struct interp_seg *than)
 	return s->a_mm_s2 < than->a_mm_s2 || s->j_mm_s3 < than->j_mm_s3;
 }
 
+static bool stands(const struct interp_seg *s)
+{
+	return s->flags & INTERP_SEG_STAND;
+}
+
 static void chain_softer(const struct pass *w)
 {
 	struct interp_seg *s = w->segs;
@@ -277,7 +288,8 @@ static void chain_softer(const struct pass *w)
 		uint32_t m = i + 1;
 
 		while (m < end && m - i < HOP_MAX && s[i].kind < INTERP_BEGIN &&
-		       s[m].kind < INTERP_BEGIN && !is_softer(&s[m], &s[i]))
+		       s[m].kind < INTERP_BEGIN && !stands(&s[m - 1]) &&
+		       !is_softer(&s[m], &s[i]))
 			m += s[m].softer_ahead;
 		s[i].softer_ahead = (uint16_t)(m - i < HOP_MAX ? m - i :
 							   HOP_MAX);
@@ -286,7 +298,8 @@ static void chain_softer(const struct pass *w)
 	for (uint32_t i = 1; i <= end; i++) {
 		uint32_t m = i - 1;
 
-		while (m > 0 && i - m < HOP_MAX && !is_softer(&s[m], &s[i]))
+		while (m > 0 && i - m < HOP_MAX && !stands(&s[m]) &&
+		       !is_softer(&s[m], &s[i]))
 			m = s[m].softer_behind ? m - s[m].softer_behind : 0;
 		s[i].softer_behind = (uint16_t)(m == 0 ? 0 :
 						i - m < HOP_MAX ? i - m :
@@ -305,5 +318,6 @@ void interp_limits_write(const struct interp_limits *l,
 	chain_ahead(&w);
 	chain_feed(&w);
 	chain_behind(&w);
+	pass_stretches(&w);
 	chain_softer(&w);
 }

@@ -27,6 +27,10 @@
  * no more. */
 #define CLEAR		0.02
 
+/* Of its own roundings, that an axis beside the path has from that of the
+ * path. */
+#define MOST_BESIDE	20
+
 static double larger(double a, double b)
 {
 	return a > b ? a : b;
@@ -56,6 +60,8 @@ bool pass_is_short(const struct pass *w, uint32_t i)
  */
 struct change {
 	const struct heading *a, *b;	/* before and behind */
+	double per_mm;			/* 1 / the length before, and 1 / the
+					 * length behind */
 	double d[INTERP_NAXES];		/* of the rate of each column; >= 0 */
 };
 
@@ -72,23 +78,34 @@ static double sure(double d, double noise)
 	return larger(d - noise, 0);
 }
 
-/* @per_mm: 1 / the length before the node, and 1 / the length behind it. */
-static void change_of(const struct pass *w, double per_mm,
-		      double (*of)(double, double), struct change *c)
+/* The rounding of the path: the largest of @columns. */
+static double along_tol(const struct pass *w, uint32_t columns)
 {
-	const uint32_t both = c->a->along & c->b->along;
-	double along = 0;
+	double most = 0;
 
 	for (uint32_t j = 0; j < w->n; j++)
-		along = both >> j & 1 ? larger(along, w->tol[j]) : along;
+		most = columns >> j & 1 ? larger(most, w->tol[j]) : most;
+	return most;
+}
+
+/*
+ * Of what lies beside the path, the rounding of the path counts too, but never
+ * for more than MOST_BESIDE roundings of its own: an axis that turns far on a
+ * tiny line really turns there.
+ */
+static void change_of(const struct pass *w, double (*of)(double, double),
+		      struct change *c)
+{
+	const uint32_t both = c->a->along & c->b->along;
+	const double along = along_tol(w, both);
+
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double a = c->a->rate[j], b = c->b->rate[j];
-		/* Of what lies beside the path, the rounding of the path counts
-		 * too. */
-		const double by = both >> j & 1 ? 0 :
-				  along * larger(fabs(a), fabs(b));
+		const double by = along * larger(fabs(a), fabs(b));
+		const double off = both >> j & 1 ? 0 :
+				   smaller(by, MOST_BESIDE * w->tol[j]);
 
-		c->d[j] = of(fabs(b - a), (w->tol[j] + by) * per_mm);
+		c->d[j] = of(fabs(b - a), (w->tol[j] + off) * c->per_mm);
 	}
 }
 
@@ -177,7 +194,7 @@ static void look_around(const struct pass *w, uint32_t i, struct around *k)
 struct bow {
 	struct heading a, b;
 	double mm;			/* half the way */
-	double per_mm;			/* as change_of() has it */
+	double per_mm;			/* as change has it */
 };
 
 /* Return: false if there is no way to one of the sides. */
@@ -260,7 +277,8 @@ static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 			return smaller(v, fast);
 		c.a = &k.a;
 		c.b = &k.b;
-		change_of(w, k.per_mm, sure, &c);
+		c.per_mm = k.per_mm;
+		change_of(w, sure, &c);
 		if (is_clear(w, &c, all))
 			return smaller(v, fast);
 		v = smaller(v, bow_mm_s(w, &k, c.d));
@@ -287,7 +305,7 @@ static struct around look_near(struct pass *w, uint32_t i)
 /* The turn of a node between lines; between longer chords, if the lines are
  * short. */
 static double turn(struct pass *w, uint32_t last, uint32_t i,
-		   const struct change *change)
+		   struct change *change)
 {
 	const struct interp_seg *s = w->segs;
 	struct bow k;
@@ -299,10 +317,12 @@ static double turn(struct pass *w, uint32_t last, uint32_t i,
 
 		if (change->a->along == change->b->along &&
 		    bow_of(w, i, &near, change->a->along, &k)) {
-			change_of(w, k.per_mm, heard, &c);
+			c.per_mm = k.per_mm;
+			change_of(w, heard, &c);
 			return smaller(corner(w, &c), step(w, &c));
 		}
 	}
+	change_of(w, heard, change);
 	return smaller(corner(w, change), step(w, change));
 }
 
@@ -312,10 +332,11 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		      const struct heading *a, const struct heading *b)
 {
 	const struct interp_seg *s = w->segs;
-	struct change c = { .a = a, .b = b };
+	struct change c = { .a = a, .b = b,
+			    .per_mm = 1 / s[last].length_mm +
+				      1 / s[i].length_mm };
 	double v;
 
-	change_of(w, 1 / s[last].length_mm + 1 / s[i].length_mm, heard, &c);
 	v = turn(w, last, i, &c);
 	if (pass_is_short(w, last) || pass_is_short(w, i))
 		v = smaller(v, curve(w, i, a->along & b->along,
@@ -332,17 +353,26 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
 		       double ret[INTERP_NAXES])
 {
-	const double per_mm = 1 / w->segs[i].length_mm;
 	struct around *k = &w->windows[AROUND];
 	struct heading around = { .along = h->along };
-	struct change c = { .a = h, .b = &around };
+	const double per_mm = 1 / w->segs[i].length_mm;
+	double along;
 
 	look_around(w, i, k);
 	if (!(chord(w, k->behind, k->ahead, &around) > 0))
 		around = *h;
-	change_of(w, per_mm, heard, &c);
-	for (uint32_t j = 0; j < w->n; j++)
-		ret[j] = fabs(c.d[j] > 0 ? h->rate[j] : around.rate[j]);
+	along = along_tol(w, h->along);
+	for (uint32_t j = 0; j < w->n; j++) {
+		/* So far the length and the axis may be off, if the share is
+		 * that of the ways around. */
+		const double off = h->along >> j & 1 ? 0 :
+			smaller(along * fabs(around.rate[j]),
+				MOST_BESIDE * w->tol[j]);
+		const double d = fabs(h->rate[j] - around.rate[j]);
+
+		ret[j] = fabs(d > (w->tol[j] + off) * per_mm ? h->rate[j] :
+							       around.rate[j]);
+	}
 }
 
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
@@ -356,8 +386,10 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double ends = larger(fabs(h->first.rate[j]),
 					   fabs(h->last.rate[j]));
+		/* U V go round a bend of their own. */
 		const bool bends = w->segs[i].kind != INTERP_LINE && ends > 0 &&
-				   (h->first.along | h->last.along) >> j & 1;
+				   (w->segs[i].kind == INTERP_PAIR ||
+				    (h->first.along | h->last.along) >> j & 1);
 
 		/* On its way it may go in the direction of the axis alone. */
 		ret->by[j] = bends ? larger(ends, larger(h->share, 1)) : ends;

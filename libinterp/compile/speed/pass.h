@@ -77,4 +77,10 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
  */
 double pass_rate_mm_s(const struct pass *w, const struct rates *r);
 
+/**
+ * pass_stretches() - set INTERP_SEG_STAND where a move has to stand; a_mm_s2 and
+ * j_mm_s3 of all segments are known.
+ */
+void pass_stretches(struct pass *w);
+
 #endif /* SPEED_PASS_H */

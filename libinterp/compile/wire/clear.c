@@ -100,7 +100,7 @@ static double cell_of(const struct track_work *w, double least)
 
 	for (uint32_t i = 0; i < w->n; i++)
 		sum += curve_length(&w->elem[i].c);
-	return fmax(fmax(sum / w->n, least), 1e-4);
+	return curve_max(curve_max(sum / w->n, least), 1e-4);
 }
 
 int clear_find_crossings(struct track_work *w)
@@ -147,8 +147,8 @@ int clear_init(struct track_work *w)
 		const double end = f->piece[i].way_mm +
 				   curve_length(&f->piece[i].c);
 
-		w->reach_mm = fmax(w->reach_mm, f->piece[i].wire_mm);
-		w->total_mm = fmax(w->total_mm, end);
+		w->reach_mm = curve_max(w->reach_mm, f->piece[i].wire_mm);
+		w->total_mm = curve_max(w->total_mm, end);
 	}
 	for (uint32_t i = 0; i < w->n; i++)
 		w->elem[i].hit = 0;
@@ -165,6 +165,8 @@ struct question {
 	struct track_work *w;
 	const struct track_elem *e;
 	struct curve c;
+	struct vec mid;			/* no place of it is farther from here */
+	double half_mm;			/* than this */
 	bool clear;
 };
 
@@ -174,11 +176,11 @@ static double way_between(const struct track_work *w,
 			  const struct face_piece *q)
 {
 	const struct face_piece *a = p < q ? p : q, *b = p < q ? q : p;
-	const double way = fmax(b->way_mm - a->way_mm - curve_length(&a->c), 0);
+	const double way = curve_max(b->way_mm - a->way_mm - curve_length(&a->c), 0);
 
 	if (!w->job->face->closed)
 		return way;
-	return fmin(way, fmax(w->total_mm - (b->way_mm - a->way_mm) -
+	return curve_min(way, curve_max(w->total_mm - (b->way_mm - a->way_mm) -
 			      curve_length(&b->c), 0));
 }
 
@@ -194,13 +196,13 @@ static double wanted_of(const struct track_work *w, const struct track_elem *e,
 	double other;
 
 	if (e->piece < 0) {
-		other = fmin(f->piece[0].wire_mm, f->piece[f->n - 1].wire_mm);
-		return fmin(other, q->wire_mm);
+		other = curve_min(f->piece[0].wire_mm, f->piece[f->n - 1].wire_mm);
+		return curve_min(other, q->wire_mm);
 	}
 	p = &f->piece[e->piece];
 	other = p->wire_mm;
 	if (e->fill && e->piece + 1 < f->n)
-		other = fmin(other, p[1].wire_mm);
+		other = curve_min(other, p[1].wire_mm);
 	if (other >= q->wire_mm || way_between(w, p, q) > w->reach_mm)
 		return q->wire_mm;
 	return other;
@@ -229,6 +231,8 @@ static bool ask(void *arg, uint32_t id)
 	if (w->stamp[id] == w->stamp_now)
 		return true;
 	w->stamp[id] = w->stamp_now;
+	if (curve_from(&q->c, k->mid) >= q->wire_mm + k->half_mm)
+		return true;
 	if (k->e->piece < 0 && is_own_end(w, k->e, id))
 		return true;
 	if (curve_gap(&k->c, &q->c) >= wanted_of(w, k->e, q) - w->slack_mm)
@@ -236,6 +240,12 @@ static bool ask(void *arg, uint32_t id)
 	w->blocker = id;
 	k->clear = false;
 	return false;
+}
+
+bool clear_is_nearly(const struct track_work *w, uint32_t e, double t0,
+		     double t1)
+{
+	return w->sides && face_side_is_near(w->sides, w, e, t0, t1);
 }
 
 bool clear_is(struct track_work *w, uint32_t e, double t0, double t1)
@@ -249,6 +259,8 @@ bool clear_is(struct track_work *w, uint32_t e, double t0, double t1)
 	if (k.e->dead)
 		return false;
 	k.c = t0 == 0 && t1 == 1 ? k.e->c : curve_part(&k.e->c, t0, t1);
+	k.mid = curve_at(&k.c, 0.5);
+	k.half_mm = curve_length(&k.c) / 2;
 	w->stamp_now++;
 	grid_near(&w->near, &k.c, w->reach_mm, ask, &k);
 	return k.clear;

@@ -4,13 +4,13 @@
  */
 #include "wire/contour.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define DEGREE		(M_PI / 180)
 
 void contour_init(struct contour *k, const struct interp_wire *w,
 		  const struct interp_machine *m, struct interp_build *b)
@@ -46,7 +46,7 @@ double contour_tangent(const struct contour *k, double deg)
 {
 	if (!(fabs(deg) <= k->guides.wire->angle_max_deg))
 		return NAN;
-	return tan(deg * DEGREE);
+	return tan(deg * ANGLE_DEGREE);
 }
 
 /* -- Collected ------------------------------------------------------------ */
@@ -202,6 +202,21 @@ static int stay(struct contour *k, const double end_mm[INTERP_NAXES],
 	return err;
 }
 
+/*
+ * A motion of no length has no direction, so no offset can be square to it.  As a
+ * lead it is refused: the next motion would be the lead, and cut into the part.
+ */
+static int take_or_stay(struct contour *k, struct contour_motion *m,
+			struct interp_diag *diag)
+{
+	if (fmax(curve_length(&m->c[0]), curve_length(&m->c[1])) >=
+	    CURVE_SAME_MM)
+		return take(k, m, diag);
+	if (contour_leads(k) && k->offset_mm != 0 && !moves(k, m->end_mm))
+		return contour_refuse_lead(m, fabs(k->offset_mm), diag);
+	return stay(k, m->end_mm, &m->word, diag);
+}
+
 int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 		 const struct interp_build_word *w, struct interp_diag *diag)
 {
@@ -216,9 +231,7 @@ int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 		return err;
 	}
 	motion_init(k, &m, end_mm, w);
-	if (fmax(curve_length(&m.c[0]), curve_length(&m.c[1])) < CURVE_SAME_MM)
-		return stay(k, end_mm, w, diag);
-	return take(k, &m, diag);
+	return take_or_stay(k, &m, diag);
 }
 
 /* Start and end at one distance from the centre, as the builder wants it. */
@@ -253,7 +266,7 @@ static int take_arc(struct contour *k, struct contour_motion *m,
 		diag->line = m->word.line;
 		return -EINVAL;
 	}
-	return take(k, m, diag);
+	return take_or_stay(k, m, diag);
 }
 
 int contour_arc(struct contour *k, const double end_mm[INTERP_NAXES],
@@ -295,7 +308,7 @@ int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
 			return -EINVAL;
 		}
 	}
-	return take(k, &m, diag);
+	return take_or_stay(k, &m, diag);
 }
 
 int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],

@@ -110,7 +110,7 @@ int contour_release(struct contour *k, const struct contour_motion *next,
 
 struct track_fault;
 
-/* Said of what is cut otherwise than it is written. */
+/* Tell the user about a contour that is not cut as it is written. */
 void contour_note_skip(const struct contour *k, const struct track_fault *f,
 		       int plane);
 void contour_note_constant(const struct contour *k, const struct face *f);

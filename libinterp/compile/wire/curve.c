@@ -4,17 +4,12 @@
  */
 #include "wire/curve.h"
 
-#include <math.h>
+#include "interp/angle.h"
 
-#define TURN	(2 * M_PI)
+#include <math.h>
 
 /* Two that nearly touch and are written to a micrometre may miss so far. */
 #define MISS_MM		0.0015
-
-double curve_distance(struct vec a, struct vec b)
-{
-	return hypot(b.x - a.x, b.y - a.y);
-}
 
 static double dot(struct vec a, struct vec b)
 {
@@ -29,7 +24,7 @@ struct curve curve_line(struct vec from, struct vec to)
 /* @angle in [0, one turn). */
 static double ahead(double angle)
 {
-	return angle - TURN * floor(angle / TURN);
+	return angle - ANGLE_TURN * floor(angle / ANGLE_TURN);
 }
 
 struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
@@ -46,7 +41,7 @@ struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 	const bool whole = curve_distance(from, to) < CURVE_SAME_MM ||
 			   sweep * c.r < CURVE_SAME_MM;
 
-	c.sweep = whole ? TURN : sweep;
+	c.sweep = whole ? ANGLE_TURN : sweep;
 	if (clockwise)
 		c.sweep = -c.sweep;
 	return c;
@@ -57,7 +52,7 @@ struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 struct curve curve_evened(const struct curve *c)
 {
 	const struct vec chord = { c->to.x - c->from.x, c->to.y - c->from.y };
-	const double len = hypot(chord.x, chord.y);
+	const double len = curve_hypot(chord.x, chord.y);
 	const struct vec mid = { (c->from.x + c->to.x) / 2,
 				 (c->from.y + c->to.y) / 2 };
 	const struct vec off = { mid.x - c->centre.x, mid.y - c->centre.y };
@@ -210,7 +205,7 @@ bool curve_meet(const struct curve *a, const struct curve *b, struct vec near,
 static double past(const struct curve *c, double theta, struct vec at)
 {
 	const double by = atan2(at.y - c->centre.y, at.x - c->centre.x) - theta;
-	const double near = by - TURN * floor(by / TURN + 0.5);
+	const double near = by - ANGLE_TURN * floor(by / ANGLE_TURN + 0.5);
 
 	return c->sweep < 0 ? -near : near;
 }

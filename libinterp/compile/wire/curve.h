@@ -8,6 +8,7 @@
 #ifndef WIRE_CURVE_H
 #define WIRE_CURVE_H
 
+#include <math.h>
 #include <stdbool.h>
 
 /* Places this near are one; the finest pulse is 0.0001 mm. */
@@ -31,7 +32,28 @@ static inline struct vec vec_add(struct vec a, double k, struct vec b)
 	return (struct vec) { a.x + k * b.x, a.y + k * b.y };
 }
 
-double curve_distance(struct vec a, struct vec b);
+/* hypot() guards against squares that overflow, at ten times the price; places
+ * are far from that. */
+static inline double curve_hypot(double x, double y)
+{
+	return sqrt(x * x + y * y);
+}
+
+static inline double curve_distance(struct vec a, struct vec b)
+{
+	return curve_hypot(b.x - a.x, b.y - a.y);
+}
+
+/* fmin() and fmax() of numbers that are no NAN. */
+static inline double curve_min(double a, double b)
+{
+	return a < b ? a : b;
+}
+
+static inline double curve_max(double a, double b)
+{
+	return a > b ? a : b;
+}
 
 /** curve_line() - a straight one. */
 struct curve curve_line(struct vec from, struct vec to);

@@ -4,11 +4,12 @@
  */
 #include "wire/face_move.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
-#define RIGHT_ANGLE	(M_PI / 2)
 #define TANGENT		0.02		/* neighbours whose turn is rounding */
 #define CLOSED_PULSES	3.0		/* an end written to a pulse */
 #define LEAD_PIECES	3u		/* before and behind a closed part */
@@ -47,7 +48,7 @@ static struct curve contour_on(const struct contour_motion *m, int plane)
 		return dot;
 	}
 	way = curve_way(other, false);
-	dot.theta = atan2(way.y, way.x) - RIGHT_ANGLE;
+	dot.theta = atan2(way.y, way.x) - ANGLE_RIGHT;
 	return dot;
 }
 

@@ -3,9 +3,9 @@
  * face.h - the outline of the part on one plane
  *
  * On the programmed plane it is the contour as written.  On the second plane
- * each piece is moved sideways by what the taper of its motion makes of the
- * height; neighbours meet, and pieces for which there is no room are left out.
- * The wire's own offset is not in it: track.h.
+ * each piece is moved sideways by the tangent of its taper times the height
+ * between the planes.  Neighbours then meet, and pieces for which there is no
+ * room are left out.  The offset of the wire is not in it; track.h adds that.
  *
  * Units: mm, radian.  Threads: allocates.  Never in the cycle.
  */
@@ -32,12 +32,15 @@ struct contour_motion {
 struct face_piece {
 	struct curve c;
 	uint32_t owner;			/* index of its motion */
-	bool fill;			/* leads to the motion behind its own */
-	bool lead;			/* no surface: it leads to or from it */
-	double wire_mm;			/* the wire's axis keeps so far off */
+	bool fill;			/* it leads from its own motion to the
+					 * next one */
+	bool lead;			/* not a surface of the part: a lead to
+					 * or from it */
+	double wire_mm;			/* distance of the wire's axis from
+					 * it */
 	double way_mm;			/* along the outline to its start */
-	double shift_mm;		/* moved so far to its left between
-					 * the planes */
+	double shift_mm;		/* how far to the left the second plane
+					 * has it */
 };
 
 struct face {
@@ -73,8 +76,11 @@ int face_make(struct face *f, const struct face_from *from,
 
 void face_free(struct face *f);
 
-/** face_add() - one more piece of motion @owner; @fitted: a fillet that keeps
- *  its radius.  Return: the piece, NULL: no memory. */
+/**
+ * face_add() - add one more piece of motion @owner.
+ * @fitted: it is a fillet that keeps its radius.
+ * Return: the piece, or NULL without memory.
+ */
 struct face_piece *face_add(struct face *f, const struct face_from *from,
 			    uint32_t owner, const struct curve *c, bool fitted);
 
@@ -84,8 +90,11 @@ enum face_fate {
 	FACE_GONE,			/* an arc that would turn inside out */
 };
 
-/** face_piece_moved() - motion @i on the plane of @from, moved; FACE_GONE: with
- *  the ends that it would have. */
+/**
+ * face_piece_moved() - move motion @i to the plane of @from.
+ * @ret: the moved curve.  With FACE_GONE its ends are those that the curve would
+ * have.
+ */
 enum face_fate face_piece_moved(const struct face_from *from, uint32_t i,
 				struct curve *ret);
 

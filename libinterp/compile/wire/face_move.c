@@ -12,14 +12,16 @@
  */
 #include "wire/face_move.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
-#define RIGHT_ANGLE	(M_PI / 2)
 #define ANGLE_SLACK	1e-6		/* the rounding of a right angle */
 #define TINY_PULSES	1.5		/* ends so near are one */
 #define SLACK_MM	0.0002
+#define SAME_MM		5e-5		/* two that touch may cross twice */
 #define FAR_EDGE	3.0		/* an edge between two tapers: no
 					 * farther than so many moves */
 
@@ -30,7 +32,7 @@ struct mover {
 	struct vec begin;		/* of the last piece, once it is cut */
 };
 
-static void lay_piece(struct mover *k, uint32_t i, struct track_elem *ret)
+static void lay_piece(const struct mover *k, uint32_t i, struct track_elem *ret)
 {
 	const struct face_piece *p = &k->still->piece[i];
 	const enum face_fate fate = face_piece_moved(k->from, p->owner,
@@ -72,7 +74,9 @@ static double reach_of(const struct corner *c)
 
 static void corner_init(struct corner *c, const struct mover *k, uint32_t i)
 {
-	const struct face_piece *p = &k->still->piece[i - 1], *q = p + 1;
+	const struct face_piece *p = &k->still->piece[i - 1];
+	const struct face_piece *q = i < k->still->n ? p + 1 :
+						       k->still->piece;
 	const enum interp_taper_corner style = k->from->m[p->owner].corner;
 	const struct vec way[2] = { curve_way(&p->c, true),
 				    curve_way(&q->c, false) };
@@ -87,10 +91,9 @@ static void corner_init(struct corner *c, const struct mover *k, uint32_t i)
 	c->outer = c->turn * (p->shift_mm + q->shift_mm) < 0;
 	if (c->same)
 		c->edge = c->outer && (style == INTERP_CORNER_SHARP ||
-			  fabs(c->turn) <= RIGHT_ANGLE + ANGLE_SLACK);
+			  fabs(c->turn) <= ANGLE_RIGHT + ANGLE_SLACK);
 	else
 		c->edge = reach_of(c) <= FAR_EDGE * most_of(c);
-	c->edge = c->edge && !k->w.no_mitre[i];
 }
 
 static int lay_fill(struct mover *k, uint32_t a, const struct curve *c,
@@ -110,21 +113,57 @@ static int lay_fill(struct mover *k, uint32_t a, const struct curve *c,
 	return 0;
 }
 
-/* Where both meet: cut off there, or prolonged.  An outer corner must not
- * shorten them. */
-static bool meet(const struct corner *c, const struct track_elem *a,
-		 const struct track_elem *b, struct vec *at)
+/* Does an edge make them meet?  An outer corner must not shorten them. */
+static bool meet_in_edge(const struct corner *c, const struct track_elem *a,
+			 const struct track_elem *b, struct vec *at)
 {
 	struct curve p = a->c, q = b->c;
 
-	if (a->dead || b->dead || (p.arc && p.r == 0) || (q.arc && q.r == 0))
+	if (!c->edge || a->dead || b->dead || (p.arc && p.r == 0) ||
+	    (q.arc && q.r == 0))
 		return false;
-	if (c->edge && curve_meet(&p, &q, c->at, at) &&
-	    curve_distance(*at, c->at) <= 1.5 * reach_of(c) &&
-	    (!c->same || (curve_trim(&p, p.from, *at) &&
-			  curve_trim(&q, *at, q.to))))
-		return true;
-	return !c->outer && curve_cross_near(&p, &q, c->at, at);
+	return curve_meet(&p, &q, c->at, at) &&
+	       curve_distance(*at, c->at) <= 1.5 * reach_of(c) &&
+	       (!c->same || (curve_trim(&p, p.from, *at) &&
+			     curve_trim(&q, *at, q.to)));
+}
+
+/* Moved piece @i as far as an edge behind it prolongs it. */
+static struct curve prolonged(const struct mover *k, uint32_t i,
+			      const struct track_elem *e)
+{
+	struct track_elem next = { .piece = -1 };
+	struct curve c = e->c;
+	struct corner edge;
+	struct vec at;
+
+	if (i + 1 >= k->still->n)
+		return c;
+	lay_piece(k, i + 1, &next);
+	corner_init(&edge, k, i + 1);
+	if (!meet_in_edge(&edge, e, &next, &at) ||
+	    !curve_trim(&c, c.from, at) ||
+	    curve_length(&c) < curve_length(&e->c))
+		return e->c;
+	return c;
+}
+
+/* Where the last element and @b, piece @i, cross: both are cut off there.  What
+ * the edges at their other ends prolong counts. */
+static bool meet_inside(const struct mover *k, const struct corner *c,
+			uint32_t i, const struct track_elem *b, struct vec *at)
+{
+	const struct track_elem *a = &k->w.elem[c->a];
+	struct curve p = a->c;
+	const struct curve q = prolonged(k, i, b);
+
+	if (c->outer || a->dead || b->dead || (p.arc && p.r == 0) ||
+	    (q.arc && q.r == 0))
+		return false;
+	if (!curve_trim(&p, k->begin, p.to) ||
+	    curve_length(&p) < curve_length(&a->c))
+		p = a->c;
+	return curve_cross_near(&p, &q, c->at, at);
 }
 
 /*
@@ -183,7 +222,8 @@ static void end_piece(struct mover *k, struct vec to)
 	e->dead = true;
 }
 
-/* Join the last element to @b, the moved piece @i. */
+/* Join the last element to @b, the moved piece @i; behind the last piece comes
+ * the first one. */
 static int lay_corner(struct mover *k, uint32_t i, const struct track_elem *b)
 {
 	const struct track_elem a = k->w.elem[k->w.n - 1];
@@ -200,7 +240,8 @@ static int lay_corner(struct mover *k, uint32_t i, const struct track_elem *b)
 		at = a.fitted ? a.c.to : b->c.from;
 	else if (gap < CURVE_SAME_MM)
 		at = a.c.to;
-	else if (!meet(&c, &a, b, &at)) {
+	else if (!meet_in_edge(&c, &a, b, &at) &&
+		 !meet_inside(k, &c, i, b, &at)) {
 		end_piece(k, a.c.to);
 		k->begin = b->c.from;
 		return c.outer || kink || (!c.same && !c.edge) ?
@@ -208,12 +249,37 @@ static int lay_corner(struct mover *k, uint32_t i, const struct track_elem *b)
 	}
 	end_piece(k, at);
 	k->begin = at;
-	k->w.elem[k->w.n - 1].mitre = c.outer && c.edge;
+	return 0;
+}
+
+/* A closed outline has a corner where it begins, too. */
+static int close_outline(struct mover *k)
+{
+	struct track_elem *e, b = k->w.elem[0];
+	int err = lay_corner(k, k->still->n, &b);
+
+	e = &k->w.elem[0];
+	b = *e;
+	if (err || curve_distance(k->begin, b.c.from) < CURVE_SAME_MM)
+		return err;
+	if (!b.dead && curve_trim(&b.c, k->begin, b.c.to)) {
+		e->c = b.c;
+		return 0;
+	}
+	e->c = curve_line(k->begin, e->c.to);
+	e->dead = true;
 	return 0;
 }
 
 static int lay_all(struct mover *k)
 {
+	const struct face *f = k->still;
+	const struct face_piece *last = &f->piece[f->n - 1];
+	/* Between two tapers the wire does not come along the step. */
+	const bool closes = f->closed && f->n > 1 && !f->piece[0].lead &&
+			    !last->lead &&
+			    last->shift_mm == f->piece[0].shift_mm;
+
 	int err = 0;
 
 	k->w.n = k->w.nhits = k->w.nruns = 0;
@@ -231,9 +297,12 @@ static int lay_all(struct mover *k)
 		else if (!err)
 			err = -ENOMEM;
 	}
-	if (!err)
-		end_piece(k, k->w.elem[k->w.n - 1].c.to);
-	return err;
+	if (err)
+		return err;
+	if (closes)
+		return close_outline(k);
+	end_piece(k, k->w.elem[k->w.n - 1].c.to);
+	return 0;
 }
 
 /* -- The outline ---------------------------------------------------------- */
@@ -299,24 +368,18 @@ int face_move(struct face *f, const struct face_from *from,
 				       .pulse_mm = from->pulse_mm };
 	struct face_side side = { .n = 0 };
 	struct mover k = {
-		.w = { .job = &job, .sides = &side, .slack_mm = SLACK_MM },
+		.w = { .job = &job, .sides = &side, .slack_mm = SLACK_MM,
+		       .same_mm = SAME_MM },
 		.from = from, .still = still,
 	};
-	uint32_t turns = 0;
 	int err;
 
-	k.w.no_mitre = calloc(still->n, sizeof(*k.w.no_mitre));
-	if (!k.w.no_mitre)
-		return -ENOMEM;
 	*fault = (struct face_fault) { .a = 0 };
 	for (uint32_t i = 0; i < still->n; i++)
 		k.w.reach_mm = fmax(k.w.reach_mm,
 				    fabs(still->piece[i].shift_mm));
-	do {
-		err = find_outline(&k, &side, fault);
-		face_side_free(&side);
-	} while (err == -EINVAL && turns++ < TRACK_MITRE_TURNS &&
-		 track_give_up_mitres(&k.w));
+	err = find_outline(&k, &side, fault);
+	face_side_free(&side);
 	if (!err)
 		err = take_runs(f, &k);
 	track_forget(&k.w);

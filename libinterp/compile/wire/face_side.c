@@ -21,6 +21,13 @@
 /* A little off the ends of a piece. */
 #define INSIDE		0.01
 
+/* Pieces so near lie on each other: a hundredth of a pulse. */
+#define BESIDE_MM	1e-5
+
+/* Contours are written to a micrometre: pieces that were made to lie on one
+ * line lie so near to it. */
+#define NEARLY_MM	0.001
+
 /* The place far away, in lengths of the outline: along its beginning and to the
  * left of it.  No piece is likely to lie in this direction. */
 #define FAR_ALONG	3.7
@@ -155,16 +162,41 @@ static int wanted(const struct face_side *s, const struct track_work *w,
 	       over(&s->back[1], curve_at(c, t), at);
 }
 
+/* Is the outline within @by of share @t of @c? */
+static bool is_beside(const struct face_side *s, const struct curve *c,
+		      double t, double by, int left)
+{
+	const struct curve part = curve_part(c, t, 1);
+	const struct vec way = curve_way(&part, false);
+	const struct vec to_left = { -way.y, way.x };
+
+	return wind_at(&s->moved, vec_add(part.from, by, to_left)) >= left &&
+	       wind_at(&s->moved, vec_add(part.from, -by, to_left)) < left;
+}
+
 bool face_side_is(const struct face_side *s, const struct track_work *w,
 		  uint32_t e, double t0, double t1)
 {
 	const struct curve *c = &w->elem[e].c;
 	const double t = (t0 + t1) / 2;
+	int left;
 
 	if (w->elem[e].dead)
 		return false;
 	if (is_lead(w, e) || curve_length(c) < CURVE_SAME_MM)
 		return true;
-	return wind_left(&s->moved, c, t, s->id[e]) ==
-	       wanted(s, w, e, curve_at(c, t));
+	left = wanted(s, w, e, curve_at(c, t));
+	/* Of pieces that lie on each other the way goes along any. */
+	return wind_left(&s->moved, c, t, s->id[e]) == left ||
+	       is_beside(s, c, t, BESIDE_MM, left);
+}
+
+bool face_side_is_near(const struct face_side *s, const struct track_work *w,
+		       uint32_t e, double t0, double t1)
+{
+	const struct curve *c = &w->elem[e].c;
+	const double t = (t0 + t1) / 2;
+
+	return !w->elem[e].dead &&
+	       is_beside(s, c, t, NEARLY_MM, wanted(s, w, e, curve_at(c, t)));
 }

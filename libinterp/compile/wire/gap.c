@@ -4,17 +4,16 @@
  */
 #include "wire/curve.h"
 
-#include <math.h>
+#include "interp/angle.h"
 
-#define TURN		(2 * M_PI)
-#define QUARTER		(TURN / 4)
+#include <math.h>
 
 static void box_add(struct curve_box *b, struct vec at)
 {
-	b->lo.x = fmin(b->lo.x, at.x);
-	b->lo.y = fmin(b->lo.y, at.y);
-	b->hi.x = fmax(b->hi.x, at.x);
-	b->hi.y = fmax(b->hi.y, at.y);
+	b->lo.x = curve_min(b->lo.x, at.x);
+	b->lo.y = curve_min(b->lo.y, at.y);
+	b->hi.x = curve_max(b->hi.x, at.x);
+	b->hi.y = curve_max(b->hi.y, at.y);
 }
 
 struct curve_box curve_bounds(const struct curve *c)
@@ -26,10 +25,10 @@ struct curve_box curve_bounds(const struct curve *c)
 	if (!c->arc || c->r == 0)
 		return b;
 	/* The arc comes by the ends of the circle's two diameters. */
-	first = ceil(fmin(c->theta, c->theta + c->sweep) / QUARTER);
-	last = floor(fmax(c->theta, c->theta + c->sweep) / QUARTER);
+	first = ceil(curve_min(c->theta, c->theta + c->sweep) / ANGLE_RIGHT);
+	last = floor(curve_max(c->theta, c->theta + c->sweep) / ANGLE_RIGHT);
 	for (int i = 0; i < 4 && first + i <= last; i++) {
-		const double a = (first + i) * QUARTER;
+		const double a = (first + i) * ANGLE_RIGHT;
 
 		box_add(&b, (struct vec) { c->centre.x + c->r * cos(a),
 					   c->centre.y + c->r * sin(a) });
@@ -60,7 +59,7 @@ static bool is_on(const struct curve *c, double *t)
 
 	if (!(*t >= -slack && *t <= 1 + slack))
 		return false;
-	*t = fmin(fmax(*t, 0), 1);
+	*t = curve_min(curve_max(*t, 0), 1);
 	return true;
 }
 
@@ -98,11 +97,12 @@ bool curve_cross_near(const struct curve *a, const struct curve *b,
 	return true;
 }
 
+/* A part of an arc that has no length faces nothing. */
 static bool arc_faces(const struct curve *c, struct vec at)
 {
 	const double t = curve_share(c, at);
 
-	return t >= 0 && t <= 1;
+	return c->sweep != 0 && t >= 0 && t <= 1;
 }
 
 static double from_line(const struct curve *c, struct vec at)
@@ -111,9 +111,9 @@ static double from_line(const struct curve *c, struct vec at)
 	const double len2 = dx * dx + dy * dy;
 	const double t = len2 > 0 ? ((at.x - c->from.x) * dx +
 				     (at.y - c->from.y) * dy) / len2 : 0;
-	const double on = fmin(fmax(t, 0), 1);
+	const double on = curve_min(curve_max(t, 0), 1);
 
-	return hypot(at.x - c->from.x - on * dx, at.y - c->from.y - on * dy);
+	return curve_hypot(at.x - c->from.x - on * dx, at.y - c->from.y - on * dy);
 }
 
 double curve_from(const struct curve *c, struct vec at)
@@ -122,9 +122,9 @@ double curve_from(const struct curve *c, struct vec at)
 
 	if (!c->arc)
 		return from_line(c, at);
-	ends = fmin(curve_distance(c->from, at), curve_distance(c->to, at));
+	ends = curve_min(curve_distance(c->from, at), curve_distance(c->to, at));
 	if (c->r > 0 && arc_faces(c, at))
-		return fmin(ends, fabs(curve_distance(c->centre, at) - c->r));
+		return curve_min(ends, fabs(curve_distance(c->centre, at) - c->r));
 	return ends;
 }
 
@@ -156,7 +156,7 @@ static double arc_to_arc(const struct curve *a, const struct curve *b)
 					     way);
 
 		if (arc_faces(a, p) && arc_faces(b, q))
-			best = fmin(best, curve_distance(p, q));
+			best = curve_min(best, curve_distance(p, q));
 	}
 	return best;
 }
@@ -168,11 +168,11 @@ double curve_gap(const struct curve *a, const struct curve *b)
 
 	if (curve_cross(a, b, hit))
 		return 0;
-	best = fmin(fmin(curve_from(a, b->from), curve_from(a, b->to)),
-		    fmin(curve_from(b, a->from), curve_from(b, a->to)));
+	best = curve_min(curve_min(curve_from(a, b->from), curve_from(a, b->to)),
+		    curve_min(curve_from(b, a->from), curve_from(b, a->to)));
 	if (is_dot(a) || is_dot(b) || (!a->arc && !b->arc))
 		return best;
 	if (a->arc && b->arc)
-		return fmin(best, arc_to_arc(a, b));
-	return fmin(best, a->arc ? line_to_arc(b, a) : line_to_arc(a, b));
+		return curve_min(best, arc_to_arc(a, b));
+	return curve_min(best, a->arc ? line_to_arc(b, a) : line_to_arc(a, b));
 }

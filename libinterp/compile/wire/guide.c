@@ -11,13 +11,13 @@
  */
 #include "wire/guide.h"
 
+#include "interp/angle.h"
+
 #include <complex.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define DEGREE		(M_PI / 180)
 
 #define CHORDS_MAX	20000.0
 #define TILT_SAMPLES	16		/* along an arc */
@@ -39,7 +39,7 @@ void guides_init(struct guides *g, const struct interp_wire *w,
 	const double upper = share_at(w, w->z_upper_mm);
 
 	g->height_mm = w->z_second_mm - w->z_program_mm;
-	g->slope_max = tan(w->angle_max_deg * DEGREE);
+	g->slope_max = tan(w->angle_max_deg * ANGLE_DEGREE);
 	g->guide[0] = (struct guide) { 1 - lower, lower };
 	g->guide[1] = (struct guide) { 1 - upper, upper };
 	if (w->guides == INTERP_GUIDES_RELATIVE)
@@ -81,7 +81,7 @@ static int refuse_tilt(const struct guides *g, double slope,
 	return interp_diag_say(diag, "the wire leans by %.3f degrees; up to "
 			       "%g degrees, wire.angle_max_deg of the "
 			       "machine; at a sharp corner both faces lean",
-			       atan(slope) / DEGREE, g->wire->angle_max_deg);
+			       atan(slope) / ANGLE_DEGREE, g->wire->angle_max_deg);
 }
 
 static int check_tilt(const struct guides *g, const struct curve c[2],

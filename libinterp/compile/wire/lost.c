@@ -26,6 +26,8 @@
 
 #define NO_CORNER	3.0		/* turns by more are slots */
 #define OPEN		2.1		/* the outline's own may turn so far */
+#define WOUND		3.3		/* by so much more than the way: it goes
+					 * on behind a neck, as a spiral does */
 #define CURVED		0.5		/* or by so much more than the way: its
 					 * walls bulge */
 #define ARC_PARTS	8
@@ -168,6 +170,8 @@ static double reach_of(const struct between *k)
 	const double most = fmax(turn, counts ? own : 0);
 	double reach = most < NO_CORNER ? d / cos(most / 2) : d;
 
+	if (own > turn + WOUND)
+		return fmin(reach, d / cos(OPEN / 2));
 	if (turn <= 0 || turn >= NO_CORNER)
 		return reach;
 	if (fabs(a - b) > 1e-6 && fabs(sin(turn)) > 0.05)

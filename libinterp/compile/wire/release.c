@@ -10,11 +10,11 @@
 #include "wire/contour.h"
 #include "wire/track.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <string.h>
-
-#define DEGREE		(M_PI / 180)
 
 /* -- One motion, or a part of it ------------------------------------------ */
 
@@ -65,10 +65,10 @@ static int cut_motion(const struct step *s, bool corner)
 static bool is_corner(const struct contour *k, const struct contour_motion *a,
 		      const struct contour_motion *b)
 {
-	const double least = k->guides.wire->corner_angle_deg * DEGREE;
+	const double least = k->guides.wire->corner_angle_deg * ANGLE_DEGREE;
 	int p;
 
-	if (!b || least >= 180 * DEGREE || a->word.rapid || b->word.rapid)
+	if (!b || least >= 180 * ANGLE_DEGREE || a->word.rapid || b->word.rapid)
 		return false;
 	p = curve_length(&a->c[0]) < 1e-9 || curve_length(&b->c[0]) < 1e-9;
 	if (curve_length(&a->c[p]) < 1e-9 || curve_length(&b->c[p]) < 1e-9)
@@ -153,9 +153,9 @@ static struct vec lead_end(const struct contour *k, uint32_t i,
 }
 
 /*
- * Is the lead in, or out, programmed to come through the outline?  On the second
- * plane the outline may have moved beyond the far end of a lead that does not;
- * so the programmed plane tells.
+ * Is the lead in, or out, programmed to come through the outline?  One that lies
+ * along the outline does not.  On the second plane the outline may have moved
+ * beyond the far end of a lead that does not; so the programmed plane tells.
  */
 static bool goes_through(const struct contour *k, const struct stretch *s,
 			 bool out)
@@ -171,7 +171,7 @@ static bool goes_through(const struct contour *k, const struct stretch *s,
 		return true;
 	way = curve_way(c, out);
 	return ((far.y - end.y) * way.x - (far.x - end.x) * way.y) *
-	       m->offset_mm <= 0;
+	       m->offset_mm < 0;
 }
 
 static int make_track(struct contour *k, struct stretch *s, int p,

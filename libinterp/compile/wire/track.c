@@ -11,13 +11,15 @@
  */
 #include "wire/track.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define RIGHT_ANGLE	(M_PI / 2)
 #define ANGLE_SLACK	1e-6
+#define MITRE_TURNS	8u	/* ways found before mitres stay */
 
 /* Ends so near are one: half a pulse of rounding on either side, and more. */
 #define TINY_PULSES	1.5
@@ -153,7 +155,7 @@ static bool meet_outside(const struct track_work *w, const struct corner *k,
 	struct vec at;
 
 	if (w->round || w->no_mitre[k->b] || a->dead || b->dead ||
-	    fabs(k->turn) > RIGHT_ANGLE + ANGLE_SLACK ||
+	    fabs(k->turn) > ANGLE_RIGHT + ANGLE_SLACK ||
 	    (p.arc && p.r == 0) || (q.arc && q.r == 0))
 		return false;
 	if (!curve_meet(&p, &q, k->at, &at) ||
@@ -185,7 +187,7 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 	    (tiny && fabs(k.turn) < 0.1))
 		return lay_fill(w, &k, &gap, false);
 	if (k.turn * w->job->side > 0 &&
-	    fabs(k.turn) < 2 * RIGHT_ANGLE - ANGLE_SLACK) {
+	    fabs(k.turn) < 2 * ANGLE_RIGHT - ANGLE_SLACK) {
 		if (meet_inside(a, b, k.at) ||
 		    meet_behind(a, b, k.at, w->slack_mm))
 			return 0;
@@ -205,7 +207,7 @@ static struct curve tangent_arc(struct vec from, struct vec at, struct vec way)
 	const double across = d.y * way.x - d.x * way.y;
 	const double r = (d.x * d.x + d.y * d.y) / (2 * across);
 
-	if (fabs(across) < 1e-9 * hypot(d.x, d.y))
+	if (fabs(across) < 1e-9 * curve_hypot(d.x, d.y))
 		return curve_line(from, at);
 	return curve_arc(from, at, vec_add(at, r, (struct vec) {
 			 -way.y, way.x }), r < 0);
@@ -393,7 +395,7 @@ static const struct attempt {
  * lies behind the corner.  From now on an arc goes round these.
  * Return: were there any?
  */
-bool track_give_up_mitres(struct track_work *w)
+static bool give_up_mitres(struct track_work *w)
 {
 	bool any = false;
 
@@ -426,6 +428,7 @@ static int attempt(struct track *t, const struct track_job *j, uint32_t i,
 		   struct track_fault *fault)
 {
 	struct track_work w = { .job = j, .slack_mm = attempts[i].slack_mm,
+				.same_mm = CURVE_SAME_MM,
 				.round = attempts[i].round };
 	uint32_t turns = 0;
 	int err;
@@ -435,8 +438,8 @@ static int attempt(struct track *t, const struct track_job *j, uint32_t i,
 		return -ENOMEM;
 	do
 		err = find_way(&w, fault);
-	while ((!err || err == -EINVAL) && turns++ < TRACK_MITRE_TURNS &&
-	       track_give_up_mitres(&w));
+	while ((!err || err == -EINVAL) && turns++ < MITRE_TURNS &&
+	       give_up_mitres(&w));
 	if (!err || (err == -EINVAL && j->skip && w.nruns &&
 		    fault->kind == TRACK_LOST)) {
 		t->skipped = err != 0;

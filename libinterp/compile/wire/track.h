@@ -22,8 +22,6 @@
 #include "wire/face.h"
 #include "wire/grid.h"
 
-#define TRACK_MITRE_TURNS	8u	/* ways found before mitres stay */
-
 /* A lead; the other end is where the track begins or ends. */
 struct track_lead {
 	bool there;
@@ -112,6 +110,7 @@ struct track_work {
 	double reach_mm;		/* the largest distance of a piece */
 	double total_mm;		/* along the outline */
 	double slack_mm;		/* nearer by this is no fault */
+	double same_mm;			/* crossings so near are one place */
 	bool round;			/* no corner is prolonged */
 	bool *no_mitre;			/* not that in front of a piece */
 	uint32_t blocker;		/* the piece found too near last */
@@ -124,10 +123,6 @@ struct track_elem *track_add(struct track_work *w);
 
 /** track_shift() - piece @i's parallel is so far to its left. */
 double track_shift(const struct track_work *w, uint32_t i);
-
-/** track_give_up_mitres() - an arc goes from now on round the corners whose
- *  point the way does not come to.  Return: are there any? */
-bool track_give_up_mitres(struct track_work *w);
 
 /** track_forget() - free what @w owns. */
 void track_forget(struct track_work *w);
@@ -146,6 +141,12 @@ int clear_find_crossings(struct track_work *w);
 /** clear_is() - is share @t0 to @t1 of element @e far enough from all pieces?
  *  If not, w->blocker is one that is too near. */
 bool clear_is(struct track_work *w, uint32_t e, double t0, double t1);
+
+/** clear_is_nearly() - if it is not: may the way go on along it, as there is no
+ *  other?  Moved pieces that nearly lie on each other cross each other to and
+ *  fro, and the way does not go back to an earlier one. */
+bool clear_is_nearly(const struct track_work *w, uint32_t e, double t0,
+		     double t1);
 
 /* A change of the way from one element to another; what lies between them is
  * left out. */

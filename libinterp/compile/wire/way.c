@@ -105,7 +105,7 @@ static int check_jumps(struct walker *k)
 
 static double slack_of(const struct track_work *w, uint32_t e)
 {
-	return CURVE_SAME_MM / fmax(curve_length(&w->elem[e].c), CURVE_SAME_MM);
+	return w->same_mm / curve_max(curve_length(&w->elem[e].c), w->same_mm);
 }
 
 static uint32_t hits_end(const struct track_work *w, uint32_t e)
@@ -140,7 +140,7 @@ static double next_place(const struct track_work *w, uint32_t e, double t)
 static bool is_clear(struct track_work *w, uint32_t e, double t0, double t1)
 {
 	if (!w->elem[e].dead && (t1 - t0) * curve_length(&w->elem[e].c) <
-				CURVE_SAME_MM)
+				w->same_mm)
 		return true;
 	return clear_is(w, e, t0, t1);
 }
@@ -181,13 +181,18 @@ static uint32_t first_at(const struct track_work *w, uint32_t i, double from)
 	return i;
 }
 
-/* A change from run @i, from its end back.  Return: the crossing, or none. */
-static struct track_hit *change_from(struct walker *k, uint32_t i)
+/* A change from run @i, from its end back over no more than @most_mm.
+ * Return: the crossing, or none. */
+static struct track_hit *change_from(struct walker *k, uint32_t i,
+				     double most_mm)
 {
 	struct track_work *w = k->w;
 	const struct track_run *r = &w->run[i];
 	const uint32_t begin = w->elem[r->elem].hit;
-	const double from = r->t[0] - slack_of(w, r->elem);
+	const double len = curve_max(curve_length(&w->elem[r->elem].c),
+				     w->same_mm);
+	const double from = curve_max(r->t[0], r->t[1] - most_mm / len) -
+			    slack_of(w, r->elem);
 	uint32_t end = hit_behind(w, r->elem, r->t[1]);
 
 	while (end > begin && w->hit[end - 1].t >= from) {
@@ -202,16 +207,15 @@ static struct track_hit *change_from(struct walker *k, uint32_t i)
 	return NULL;
 }
 
-static int change(struct walker *k)
+/* Go on along another element, from no more than @most_mm back. */
+static int change(struct walker *k, double most_mm)
 {
 	struct track_work *w = k->w;
 	const uint32_t least = w->nruns > BACK_MAX ? w->nruns - BACK_MAX : 0;
 	double back = 0;
 
-	tell_stuck(k);
-	for (uint32_t i = w->nruns; i-- > least &&
-	     back < BACK_REACHES * w->reach_mm;) {
-		struct track_hit *h = change_from(k, i);
+	for (uint32_t i = w->nruns; i-- > least && back < most_mm;) {
+		struct track_hit *h = change_from(k, i, most_mm - back);
 
 		back += (w->run[i].t[1] - w->run[i].t[0]) *
 			curve_length(&w->elem[w->run[i].elem].c);
@@ -227,20 +231,35 @@ static int change(struct walker *k)
 	return -EINVAL;
 }
 
+/* The way is not clear as far as @next: change.  Return: 1: it goes on along its
+ * element, because it is nearly clear and nothing crosses it here. */
+static int change_or_go(struct walker *k, double next)
+{
+	struct track_work *w = k->w;
+	const bool nearly = clear_is_nearly(w, k->elem, k->t, next);
+	int err;
+
+	if (!nearly)
+		tell_stuck(k);
+	err = change(k, nearly ? w->same_mm : BACK_REACHES * w->reach_mm);
+	return nearly && err == -EINVAL ? 1 : err;
+}
+
 static int walk(struct walker *k)
 {
 	struct track_work *w = k->w;
 	int err = add_run(w, k->elem, k->t, false);
 
-	while (!err) {
+	while (err >= 0) {
 		double next = next_place(w, k->elem, k->t);
 
 		if (k->elem == k->stop_elem && next > k->stop_t &&
 		    k->t <= k->stop_t + slack_of(w, k->elem))
-			next = fmax(k->stop_t, k->t);
+			next = curve_max(k->stop_t, k->t);
 		if (!is_clear(w, k->elem, k->t, next)) {
-			err = change(k);
-			continue;
+			err = change_or_go(k, next);
+			if (err <= 0)
+				continue;
 		}
 		k->t = w->run[w->nruns - 1].t[1] = next;
 		if (k->elem == k->stop_elem && next >= k->stop_t &&
@@ -291,7 +310,10 @@ static bool may_begin(struct walker *k, const struct track_hit *h)
 	uint32_t i = hit_behind(w, h->other, h->t_other);
 	double before = 0;
 
+	/* At the end of an element nothing of it would be asked about. */
 	if (h->other <= h->elem || w->elem[h->other].piece < 0 ||
+	    h->t > 1 - slack_of(w, h->elem) ||
+	    h->t_other < slack_of(w, h->other) ||
 	    !is_clear(w, h->elem, h->t, next_place(w, h->elem, h->t)))
 		return false;
 	while (i-- > w->elem[h->other].hit) {
@@ -309,6 +331,7 @@ static int find_start(struct walker *k)
 {
 	struct track_work *w = k->w;
 	const uint32_t in = w->job->lead[0].there;
+	int err = 0;
 
 	for (uint32_t i = w->elem[in].hit;
 	     i < w->nhits && i < STARTS_MAX; i++) {
@@ -317,6 +340,10 @@ static int find_start(struct walker *k)
 					.te = h->t_other, .tf = h->t };
 
 		if (!may_begin(k, h))
+			continue;
+		/* One of a loop of its own leaves all the rest out. */
+		err = check_jump(k, &j);
+		if (err)
 			continue;
 		k->elem = h->elem;
 		k->t = h->t;
@@ -327,9 +354,9 @@ static int find_start(struct walker *k)
 				w->elem[s ? w->n - 1 : 0].c =
 					lead_to(w, s, h->at);
 		}
-		return check_jump(k, &j);
+		return 0;
 	}
-	return 0;
+	return err;
 }
 
 /* Is the beginning of a closed outline out of reach? */

@@ -4,11 +4,12 @@
  */
 #include "wire/wind.h"
 
+#include "interp/angle.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
-#define QUARTER		(M_PI / 2)
 #define ROWS_MAX	(1u << 20)
 
 int wind_add(struct wind *w, const struct curve *c)
@@ -22,7 +23,11 @@ int wind_add(struct wind *w, const struct curve *c)
 		w->c = p;
 		w->room = room;
 	}
-	w->c[w->n++] = *c;
+	w->c[w->n] = *c;
+	/* A ray must not slip through between two curves. */
+	if (w->n)
+		w->c[w->n].from = w->c[w->n - 1].to;
+	w->n++;
 	return 0;
 }
 
@@ -49,15 +54,15 @@ static void span_of(const struct curve *c, int axis, double ret[2])
 	const struct curve_box b = curve_bounds(c);
 	const double lo = turned(b.lo, axis).y, hi = turned(b.hi, axis).y;
 
-	ret[0] = fmin(lo, hi);
-	ret[1] = fmax(lo, hi);
+	ret[0] = curve_min(lo, hi);
+	ret[1] = curve_max(lo, hi);
 }
 
 static uint32_t row_of(const struct wind_rows *r, double across)
 {
 	const double i = floor((across - r->low) / r->size);
 
-	return (uint32_t)fmin(fmax(i, 0), r->n - 1);
+	return (uint32_t)curve_min(curve_max(i, 0), r->n - 1);
 }
 
 /* Rows as high as the curves are on average. */
@@ -69,14 +74,14 @@ static void rows_size(const struct wind *w, int axis, struct wind_rows *r)
 		double span[2];
 
 		span_of(&w->c[i], axis, span);
-		low = fmin(low, span[0]);
-		high = fmax(high, span[1]);
+		low = curve_min(low, span[0]);
+		high = curve_max(high, span[1]);
 		sum += span[1] - span[0];
 	}
 	r->low = low;
-	r->size = fmax(fmax(sum / w->n, (high - low) / fmin(w->n, ROWS_MAX)),
+	r->size = curve_max(curve_max(sum / w->n, (high - low) / curve_min(w->n, ROWS_MAX)),
 		       1e-6);
-	r->n = (uint32_t)fmin((high - low) / r->size, ROWS_MAX) + 1;
+	r->n = (uint32_t)curve_min((high - low) / r->size, ROWS_MAX) + 1;
 }
 
 /* Call it twice: to count (id is NULL), and to enter. */
@@ -148,18 +153,18 @@ static int count_line(const struct ray *k, struct vec a, struct vec b)
 static int count_arc(const struct ray *k, const struct curve *c)
 {
 	const struct vec o = turned(c->centre, k->axis);
-	const double theta = c->theta - k->axis * QUARTER;
+	const double theta = c->theta - k->axis * ANGLE_RIGHT;
 	const double step = c->sweep < 0 ? -1 : 1;
 	/* Quarters of a turn, odd ones highest or lowest. */
-	double next = step * floor(step * theta / QUARTER) + step;
+	double next = step * floor(step * theta / ANGLE_RIGHT) + step;
 	const double end = theta + c->sweep;
 	struct vec a = turned(c->from, k->axis), b;
 	double from = theta;
 	int n = 0;
 
-	for (bool last = false; !last; from = next * QUARTER, next += step) {
-		const double past = step * (next * QUARTER - end);
-		const double to = past >= 0 ? end : next * QUARTER;
+	for (bool last = false; !last; from = next * ANGLE_RIGHT, next += step) {
+		const double past = step * (next * ANGLE_RIGHT - end);
+		const double to = past >= 0 ? end : next * ANGLE_RIGHT;
 		const double h2 = c->r * c->r -
 				  (k->at.y - o.y) * (k->at.y - o.y);
 		const double h = h2 > 0 ? sqrt(h2) : 0;
@@ -179,24 +184,38 @@ static int count_arc(const struct ray *k, const struct curve *c)
 	return n;
 }
 
+/* What the ray's curves count; curve @id is the place's own. */
+static int count(const struct wind *w, struct ray *k, uint32_t id)
+{
+	const struct wind_rows *r = &w->rows[k->axis];
+	const uint32_t row = row_of(r, k->at.y);
+	int n = 0;
+
+	for (uint32_t i = r->start[row]; i < r->start[row + 1]; i++) {
+		const struct curve *q = &w->c[r->id[i]];
+
+		k->own = r->id[i] == id;
+		n += q->arc ? count_arc(k, q) :
+			      count_line(k, turned(q->from, k->axis),
+					 turned(q->to, k->axis));
+	}
+	return n;
+}
+
+int wind_at(const struct wind *w, struct vec at)
+{
+	struct ray k = { .at = at };
+
+	return count(w, &k, WIND_NO_CURVE);
+}
+
 int wind_left(const struct wind *w, const struct curve *c, double t,
 	      uint32_t id)
 {
 	const struct curve part = curve_part(c, t, 1);
 	const struct vec way = curve_way(t > 0 ? &part : c, false);
 	const int axis = fabs(way.x) > fabs(way.y);
-	const struct wind_rows *r = &w->rows[axis];
 	struct ray k = { .at = turned(curve_at(c, t), axis), .axis = axis };
-	const uint32_t row = row_of(r, k.at.y);
-	int n = turned(way, axis).y > 0;
 
-	for (uint32_t i = r->start[row]; i < r->start[row + 1]; i++) {
-		const struct curve *q = &w->c[r->id[i]];
-
-		k.own = r->id[i] == id;
-		n += q->arc ? count_arc(&k, q) :
-			      count_line(&k, turned(q->from, axis),
-					 turned(q->to, axis));
-	}
-	return n;
+	return count(w, &k, id) + (turned(way, axis).y > 0);
 }

@@ -33,12 +33,16 @@ struct wind {
 
 #define WIND_NO_CURVE	UINT32_MAX
 
-/** wind_add() - one more curve. Return: 0 or -ENOMEM. */
+/** wind_add() - one more curve.  It begins where the one before it ends, but
+ *  for rounding. Return: 0 or -ENOMEM. */
 int wind_add(struct wind *w, const struct curve *c);
 
-/** wind_ready() - after the last wind_add().  Together the curves are closed.
- *  Return: 0 or -ENOMEM. */
+/** wind_ready() - after the last wind_add(), which ends where the first one
+ *  begins.  Return: 0 or -ENOMEM. */
 int wind_ready(struct wind *w);
+
+/** wind_at() - the winding number at a place off the curves. */
+int wind_at(const struct wind *w, struct vec at);
 
 /** wind_left() - the winding number just to the left of share @t of @c, which
  *  is a part of curve @id, or @id is WIND_NO_CURVE. */

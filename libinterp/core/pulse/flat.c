@@ -25,60 +25,108 @@ static bool flat_enter(struct interp_cursor *c, bool at_end)
 	c->root = in[couple_star(c->pair, in, n)].code;
 	c->npairs = n - 1;
 	couple_set_flat(c->pair, c->npairs, &rule, at_end);
-	return pulse_bits(c, c->npairs);
-}
-
-static inline uint32_t flat_move(struct interp_cursor *c, int8_t axis, int dir)
-{
-	c->tick += (uint32_t)dir;
-	c->measure += dir;
-	c->pos[axis] += dir * c->sign[axis];
-	return dir > 0 ? c->pulse[axis] : c->pulse_back[axis];
-}
-
-static inline uint32_t flat_main(struct interp_cursor *c, int dir)
-{
+	if (!pulse_bits(c, c->npairs))
+		return false;
+	c->by_limit = true;
 	for (uint32_t i = 0; i < c->npairs; i++)
-		pair_main(&c->pair[i], dir);
-	return flat_move(c, c->root, dir);
+		c->by_limit &= pair_is_by_limit(&c->pair[i]);
+	return true;
 }
 
-static inline uint32_t flat_tick(struct interp_cursor *c)
-{
-	for (uint32_t i = 0; i < c->npairs; i++) {
-		struct interp_pair *p = &c->pair[i];
+#define INLINE static inline __attribute__((always_inline))
 
-		if (pair_due(p)) {
-			pair_second(p, 1);
-			return flat_move(c, p->in_b, 1);
-		}
-	}
-	return flat_main(c, 1);
+/* Forward, a pulse of @axis and the bits of it. */
+INLINE uint16_t flat_give(struct interp_cursor *c, int8_t axis)
+{
+	c->pos[axis] += c->sign[axis];
+	return c->pulse[axis];
 }
 
-static inline uint32_t flat_tick_back(struct interp_cursor *c)
+INLINE uint16_t flat_take(struct interp_cursor *c, int8_t axis)
 {
-	for (uint32_t i = c->npairs; i-- > 0; ) {
+	c->pos[axis] -= c->sign[axis];
+	return c->pulse_back[axis];
+}
+
+/*
+ * A pair that has nothing due at a place has nothing due there later.  So the
+ * others are not looked at again until the main axis goes on.
+ */
+INLINE void flat_on(struct interp_cursor *c, uint32_t ticks, uint16_t *ret,
+		    bool by_limit)
+{
+	uint32_t n = 0, i = 0;
+
+	while (n < ticks) {
 		struct interp_pair *p = &c->pair[i];
 
-		if (pair_was_due(p)) {
-			pair_second(p, -1);
-			return flat_move(c, p->in_b, -1);
+		if (i == c->npairs) {
+			for (i = 0; i < c->npairs; i++)
+				pair_main(&c->pair[i], 1);
+			ret[n++] = flat_give(c, c->root);
+			i = 0;
+		} else if (by_limit ? pair_due_limit(p) : pair_due(p)) {
+			if (by_limit)
+				pair_second_limit(p, 1);
+			else
+				pair_second(p, 1);
+			ret[n++] = flat_give(c, p->in_b);
+		} else {
+			i++;
 		}
 	}
-	return flat_main(c, -1);
+	c->tick += ticks;
+	c->measure += ticks;
+}
+
+/* The same in the other order. */
+INLINE void flat_off(struct interp_cursor *c, uint32_t ticks, uint16_t *ret,
+		     bool by_limit)
+{
+	uint32_t n = 0, i = c->npairs;
+
+	while (n < ticks) {
+		struct interp_pair *p;
+
+		if (i == 0) {
+			for (; i < c->npairs; i++)
+				pair_main(&c->pair[i], -1);
+			ret[n++] = flat_take(c, c->root);
+			continue;
+		}
+		p = &c->pair[i - 1];
+		if (by_limit ? pair_was_due_limit(p) : pair_was_due(p)) {
+			if (by_limit)
+				pair_second_limit(p, -1);
+			else
+				pair_second(p, -1);
+			ret[n++] = flat_take(c, p->in_b);
+		} else {
+			i--;
+		}
+	}
+	c->tick -= ticks;
+	c->measure -= ticks;
 }
 
 static uint32_t flat_forward(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return pulse_ticks(c, flat_tick, ticks, ret);
+	if (c->by_limit)
+		flat_on(c, ticks, ret, true);
+	else
+		flat_on(c, ticks, ret, false);
+	return ticks;
 }
 
 static uint32_t flat_back(struct interp_cursor *c, uint32_t ticks,
 			  uint16_t *ret)
 {
-	return pulse_ticks(c, flat_tick_back, ticks, ret);
+	if (c->by_limit)
+		flat_off(c, ticks, ret, true);
+	else
+		flat_off(c, ticks, ret, false);
+	return ticks;
 }
 
 const struct interp_walk pulse_flat = {

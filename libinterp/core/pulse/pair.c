@@ -85,78 +85,151 @@ int64_t pair_stop(int64_t a, int64_t b, int64_t n, int64_t j)
 	return ((j * b / n + (j + 1) * b / n) * a + b) / (2 * b);
 }
 
-/* X(j); there is none before the first burst and after the last. */
-static int64_t burst_at(const struct interp_pair *p, int64_t j)
+/*
+ * The neighbours of a burst are found from what is known of it, because
+ * divisions are what bursts cost.  At stops of its own, a stop follows from the
+ * two Y beside it; where another pair sets the stops, a Y follows from the two
+ * X beside it.
+ */
+
+/* X(j), from Y(j) and Y(j + 1); there is none before the first burst and after
+ * the last. */
+static int64_t own_stop(const struct interp_pair *p, int64_t j, int64_t from,
+			int64_t to)
 {
 	if (j < 0)
 		return -1;
 	if (j >= p->bursts)
 		return PAIR_NEVER;
-	if (!p->stops)
-		return pair_stop(p->a, p->b, p->bursts, j);
+	return ((from + to) * p->a + p->b) / (2 * p->b);
+}
+
+/* Y(j). */
+static int64_t own_from(const struct interp_pair *p, int64_t j)
+{
+	if (j <= 0)
+		return 0;
+	return j >= p->bursts ? p->b : j * p->b / p->bursts;
+}
+
+static int64_t led_stop(const struct interp_pair *p, int64_t j)
+{
+	if (j < 0)
+		return -1;
+	if (j >= p->bursts)
+		return PAIR_NEVER;
 	return pair_stop(p->a, p->lead, p->stops,
 			 pair_stop_shared(p->stops, p->bursts, j));
 }
 
-/* Y(j).  Where another pair sets the stops, it is half way between two of
- * them. */
-static int64_t burst_from(const struct interp_pair *p, int64_t j)
+/* Half way between X(j - 1) and X(j). */
+static int64_t led_from(const struct interp_pair *p, int64_t j, int64_t before,
+			int64_t at)
 {
 	if (j <= 0)
 		return 0;
 	if (j >= p->bursts)
 		return p->b;
-	if (!p->stops)
-		return j * p->b / p->bursts;
-	return (p->b * (burst_at(p, j - 1) + burst_at(p, j)) + p->a) /
-	       (2 * p->a);
+	return (p->b * (before + at) + p->a) / (2 * p->a);
 }
 
 /* Look at burst j from its beginning. */
 static void burst_look(struct interp_pair *p)
 {
-	p->from = burst_from(p, p->burst);
-	p->to = burst_from(p, p->burst + 1);
-	p->due = burst_at(p, p->burst);
+	const int64_t j = p->burst;
+
+	if (!p->stops) {
+		p->from = own_from(p, j);
+		p->to = own_from(p, j + 1);
+		p->due = own_stop(p, j, p->from, p->to);
+		return;
+	}
+	p->before = led_stop(p, j - 1);
+	p->due = led_stop(p, j);
+	p->behind = led_stop(p, j + 1);
+	p->from = led_from(p, j, p->before, p->due);
+	p->to = led_from(p, j + 1, p->due, p->behind);
+}
+
+static void burst_on(struct interp_pair *p)
+{
+	const int64_t j = ++p->burst;
+
+	p->from = p->to;
+	if (!p->stops) {
+		p->to = own_from(p, j + 1);
+		p->due = own_stop(p, j, p->from, p->to);
+		return;
+	}
+	p->before = p->due;
+	p->due = p->behind;
+	p->behind = led_stop(p, j + 1);
+	p->to = led_from(p, j + 1, p->due, p->behind);
 }
 
 /* Two stops may be so near to each other that nothing is due at the second. */
-static void burst_skip_empty(struct interp_pair *p)
+static bool burst_is_empty(const struct interp_pair *p)
 {
-	while (p->burst < p->bursts && p->to == p->from) {
-		p->burst++;
-		burst_look(p);
-	}
+	return p->to == p->from;
+}
+
+/* Find the last burst before this one that is not empty, or -1. */
+static void burst_find_prior(struct interp_pair *p)
+{
+	const int64_t to = p->from;
+	int64_t j = p->burst, from, at = p->before;
+
+	do {
+		j--;
+		if (p->stops) {
+			p->done = at;
+			at = led_stop(p, j - 1);
+			from = led_from(p, j, at, p->done);
+		} else {
+			from = own_from(p, j);
+		}
+	} while (j >= 0 && from == to);
+	if (!p->stops)
+		p->done = own_stop(p, j, from, to);
+	p->prior = j;
+	p->prior_from = from;
+	p->prior_before = at;
 }
 
 void pair_burst_next(struct interp_pair *p)
 {
+	p->prior = p->burst;
+	p->prior_from = p->from;
+	p->prior_before = p->before;
 	p->done = p->due;
-	p->burst++;
-	burst_look(p);
-	burst_skip_empty(p);
-}
-
-/* The last burst before @j that is not empty, or -1. */
-static int64_t burst_before(const struct interp_pair *p, int64_t j)
-{
 	do
-		j--;
-	while (j >= 0 && burst_from(p, j) == burst_from(p, j + 1));
-	return j;
+		burst_on(p);
+	while (p->burst < p->bursts && burst_is_empty(p));
 }
 
 void pair_burst_back(struct interp_pair *p)
 {
-	p->burst = burst_before(p, p->burst);
-	burst_look(p);
-	p->done = burst_at(p, burst_before(p, p->burst));
+	if (p->stops)
+		p->behind = p->prior + 1 == p->burst ? p->due :
+			    led_stop(p, p->prior + 1);
+	p->burst = p->prior;
+	p->to = p->from;
+	p->from = p->prior_from;
+	p->due = p->done;
+	p->before = p->prior_before;
+	burst_find_prior(p);
+}
+
+static int64_t burst_stop(const struct interp_pair *p, int64_t j)
+{
+	return p->stops ? led_stop(p, j) :
+			  own_stop(p, j, own_from(p, j), own_from(p, j + 1));
 }
 
 int64_t pair_burst_changes(const struct interp_pair *p)
 {
-	return 2 * p->bursts - (burst_at(p, 0) == 0) -
-	       (burst_at(p, p->bursts - 1) == p->a);
+	return 2 * p->bursts - (burst_stop(p, 0) == 0) -
+	       (burst_stop(p, p->bursts - 1) == p->a);
 }
 
 void pair_set_bursts(struct interp_pair *p, int64_t n,
@@ -168,8 +241,9 @@ void pair_set_bursts(struct interp_pair *p, int64_t n,
 	p->stops = lead ? lead->bursts : 0;
 	p->burst = at_end ? n : 0;
 	burst_look(p);
-	burst_skip_empty(p);
-	p->done = burst_at(p, burst_before(p, p->burst));
+	while (p->burst < p->bursts && burst_is_empty(p))
+		burst_on(p);
+	burst_find_prior(p);
 }
 
 /* -- Stored bits ---------------------------------------------------------- */

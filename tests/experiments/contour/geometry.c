@@ -88,12 +88,11 @@ void table_maps(struct speeds *s)
 	static const char *const methods[] = { "none", "feedforward", "zpetc" };
 	static const double parts[] = { 0, 0.8, 1 };
 
-	printf("## Geometric errors\n\n"
-	       "Largest / mean contour error of the tool, um, 1000 mm/min, "
-	       "real machine with pitch\nerrors of 12 um, straightness of 4, "
-	       "500 urad out of square and 3 K warm.\n\n"
-	       "| method | no map | a map of 80 %% | the whole map |\n"
-	       "|---|---|---|---|\n");
+	printf("## Geometric errors\n\nThe largest and the mean contour error "
+	       "of the tool, um, at 1000 mm/min. The\nreal machine has pitch "
+	       "errors of 12 um, straightness errors of 4 um, axes that\nare "
+	       "500 urad out of square, and is 3 K too warm.\n\n| method | no "
+	       "map | a map of 80 %% | the whole map |\n|---|---|---|---|\n");
 	for (size_t i = 0; i < COUNT(methods); i++) {
 		printf("| %s |", methods[i]);
 		for (size_t k = 0; k < COUNT(parts); k++) {
@@ -158,12 +157,12 @@ static double nearest_mm(const struct feed *f, size_t i, const double *is)
 
 void table_foot(struct speeds *s)
 {
-	printf("## Estimates of the contour error\n\n"
-	       "Without compensation; how far each estimate is from the "
-	       "nearest of the last 120\nms of the path, um, largest / "
-	       "mean.  The foot is off only at tips, where the nearest lies\n"
-	       "on the branch already left.\n\n| mm/min | tangent at the set values | foot |\n"
-	       "|---|---|---|\n");
+	printf("## Estimates of the contour error\n\nWithout compensation. The "
+	       "cells tell how far each estimate is from the nearest\npoint of "
+	       "the last 120 ms of the path, um, largest and mean. The foot is "
+	       "wrong\nonly at tips, where the nearest point is on the branch "
+	       "that was left already.\n\n| mm/min | tangent at the set values "
+	       "| foot |\n|---|---|---|\n");
 	for (int v = 0; v < 3; v++) {
 		struct feed *f = &s->feed[v];
 		double (*is)[INTERP_NAXES] = must(calloc(f->n, sizeof(*is)));

@@ -234,10 +234,10 @@ static void table_worst(struct speeds *s)
 	struct feed rings;
 
 	made_make(&rings, &s->feed[1], in_rings);
-	printf("The worst of %d traces with noise of their own, %% off the "
-	       "truth; in brackets of how many,\nif the number was not told by "
-	       "all.\n\n| trace | gain | velocity loop | damping | delay | "
-	       "feedforward | kick | decay | backlash |\n"
+	printf("The worst of %d traces, each with its own noise, in %% of the "
+	       "truth. If not all\ntraces told the number, brackets have how "
+	       "many did.\n\n| trace | gain | velocity loop | damping | delay "
+	       "| feedforward | kick | decay | backlash |\n"
 	       "|---|---|---|---|---|---|---|---|---|\n", SEEDS);
 	for (int k = 0; k < 3; k++) {
 		char name[40];
@@ -249,21 +249,21 @@ static void table_worst(struct speeds *s)
 	worst_row("rings", &rings, 0, 0);
 	worst_row("rings, backlash 5 um", &rings, 0, 0.005);
 	worst_row("rings, delay 2 ms", &rings, 0.002, 0);
-	printf("\nThe slow butterfly hardly excites the velocity loop, and where "
-	       "an axis nearly stands the\nsquares have more than one least: "
-	       "there it may be off by several of its sigma.\n\n");
+	printf("\nThe slow butterfly hardly excites the velocity loop. Where "
+	       "an axis hardly\nmoves, the sum of squares has more than one "
+	       "minimum, and a value may be wrong\nby several of its sigma.\n\n");
 	made_free(&rings);
 }
 
 void table_identify(struct speeds *s)
 {
-	printf("## Loops identified from a trace\n\n"
-	       "Traces of the real machine, target and encoder (1 um, 0.5 um "
-	       "noise), position loops\nalone: value, one sigma, and how far "
-	       "from the truth.\n\n| trace | gain, 1/s | velocity loop, Hz | "
-	       "damping | delay, s | feedforward | kick, mm/s | decay, s | "
-	       "backlash, mm | left, um |\n"
-	       "|---|---|---|---|---|---|---|---|---|---|\n");
+	printf("## Loops identified from a trace\n\nWhat is found from traces "
+	       "of the real machine, of target and encoder (steps of\n1 um, "
+	       "noise of 0.5 um), with the position loops alone. Each cell has "
+	       "the value,\none sigma, and the distance from the truth.\n\n| "
+	       "trace | gain, 1/s | velocity loop, Hz | damping | delay, s | "
+	       "feedforward | kick, mm/s | decay, s | backlash, mm | left, um "
+	       "|\n|---|---|---|---|---|---|---|---|---|---|\n");
 	identify_pair("butterfly 500", &s->feed[0], 0, 0);
 	identify_pair("butterfly 1000", &s->feed[1], 0, 0);
 	identify_pair("butterfly 1500", &s->feed[2], 0, 0);
@@ -274,12 +274,12 @@ void table_identify(struct speeds *s)
 	identify_made("rings", &s->feed[1], in_rings, 0);
 	identify_made("rings, delay 2 ms", &s->feed[1], in_rings, 0.002);
 	identify_made("a line at one speed", &s->feed[1], at_one_speed, 0);
-	printf("\nThe rings are those of examples/identify.ngc, of 2 mm down to "
-	       "0.01 mm: many turns, and fast\nenough to tell the velocity loop "
-	       "from a delay.  Delay and feedforward are sought only where\nthe "
-	       "trace is not explained without them.  On the butterfly a delay "
-	       "of 2 ms is: it looks like a\nslower velocity loop.  On the ramp "
-	       "the axis never turns: nothing is told of friction and\n"
-	       "backlash.\n\n");
+	printf("\nThe rings are those of examples/identify.ngc, of 2 mm down "
+	       "to 0.01 mm. They\nreverse often, and fast enough to tell the "
+	       "velocity loop from a delay. Delay\nand feedforward are looked "
+	       "for only where the trace cannot be explained without\nthem. On "
+	       "the butterfly a delay of 2 ms can be explained without: it "
+	       "looks like\na slower velocity loop. On the ramp the axis never "
+	       "reverses, so it tells\nnothing of friction and backlash.\n\n");
 	table_worst(s);
 }

@@ -100,10 +100,9 @@ void table_baseline(struct speeds *s)
 {
 	static const double other[] = { 30, 24, 21.5, 21 };
 
-	printf("## Position loops alone\n\n"
-	       "Largest and mean contour error, um, without any compensation.\n"
-	       "\n| gains of X, Y, 1/s | 500 mm/min | 1000 | 1500 |\n"
-	       "|---|---|---|---|\n");
+	printf("## Position loops alone\n\nThe largest and the mean contour "
+	       "error, um, without any compensation.\n\n| gains of X, Y, 1/s | "
+	       "500 mm/min | 1000 | 1500 |\n|---|---|---|---|\n");
 	for (size_t i = 0; i < COUNT(other); i++) {
 		const struct row r = { .methods = "none",
 				       .gain_1_s = { 30, other[i] } };
@@ -113,21 +112,21 @@ void table_baseline(struct speeds *s)
 			print_cell(&r, &s->feed[k], false);
 		printf("\n");
 	}
-	printf("| the paper | 100 / - | 150 / 80 | 200 / - |\n\n"
-	       "Two axes that lag alike make a small error out of a large lag; "
-	       "a mean of half the\nlargest, as the paper has it, takes gains "
-	       "that differ.  30 and 21.5 are the machine\nof all tables "
-	       "below.\n\n");
+	printf("| the paper | 100 / - | 150 / 80 | 200 / - |\n\nIf two axes "
+	       "lag alike, a large lag makes only a small error. In the paper "
+	       "the\nmean is half the largest; that needs gains that differ. "
+	       "All tables below are of\nthe machine with 30 and 21.5.\n\n");
 }
 
 void table_methods(struct speeds *s)
 {
-	printf("## Every method at three speeds\n\n"
-	       "Largest / mean contour error, um.  *Ideal*: the loops are as "
-	       "believed.  *Real*:\nvelocity loops of 66 and 54 Hz where 60 "
-	       "are believed, an encoder of 1 um, 0.5 um of\nnoise, a friction "
-	       "kick of 0.3 mm/s that decays in 20 ms at every reversal.\n\n"
-	       "| method | ideal 500 | 1000 | 1500 | real 500 | 1000 | 1500 |\n"
+	printf("## Every method at three speeds\n\nThe largest and the mean "
+	       "contour error, um. *Ideal*: the loops are what the\ncontroller "
+	       "believes. *Real*: the velocity loops have 66 and 54 Hz while "
+	       "it\nbelieves 60, the encoder has steps of 1 um and noise of "
+	       "0.5 um, and at every\nreversal friction makes a kick of 0.3 "
+	       "mm/s that decays in 20 ms.\n\n| method | ideal 500 | 1000 | "
+	       "1500 | real 500 | 1000 | 1500 |\n"
 	       "|---|---|---|---|---|---|---|\n");
 	for (size_t i = 0; i < COUNT(rows); i++) {
 		printf("| %s |", rows[i].name);
@@ -143,12 +142,12 @@ void table_noise(struct speeds *s)
 {
 	static const double sigma_um[] = { 0.5, 2, 5, 10 };
 
-	printf("## What the Kalman filter is worth\n\n"
-	       "Largest / mean contour error, um, 1000 mm/min, real machine, "
-	       "feedforward and\ncross-coupled 150; sensor noise of the filter "
-	       "as it is, its drive noise in each head.\n\n"
-	       "| encoder noise, um | no filter | 5 mm/s | 1 mm/s | 0.3 mm/s "
-	       "|\n|---|---|---|---|---|\n");
+	printf("## What the Kalman filter is worth\n\nThe largest and the mean "
+	       "contour error, um, at 1000 mm/min on the real machine,\nwith "
+	       "feedforward and cross-coupled 150. The sensor noise of the "
+	       "filter is the\ntrue one; its drive noise is in the head of "
+	       "each column.\n\n| encoder noise, um | no filter | 5 mm/s | 1 "
+	       "mm/s | 0.3 mm/s |\n|---|---|---|---|---|\n");
 	for (size_t i = 0; i < COUNT(sigma_um); i++) {
 		printf("| %g |", sigma_um[i]);
 		for (int k = 0; k < 4; k++) {
@@ -180,11 +179,11 @@ void table_gains(struct speeds *s)
 	static const double cross[] = { 50, 100, 150, 200, 250, 300, 350, 400 };
 	static const double delay_ms[] = { 0, 1, 2, 4 };
 
-	printf("## Gain margin\n\n"
-	       "Largest contour error, um, 1000 mm/min, cross-coupled alone, "
-	       "loops as believed but\nfor a delay.  Cross-coupling adds to "
-	       "the position gain across the path; *limit* is the\nsum at "
-	       "which the loop swings of itself, from the model's own phase "
+	printf("## Gain margin\n\nThe largest contour error, um, at 1000 "
+	       "mm/min with cross-coupled alone. The\nloops are what the "
+	       "controller believes, except for a delay. Cross-coupling adds\n"
+	       "to the position gain across the path; *limit* is the sum at "
+	       "which the loop\nbegins to swing, from the phase of the model\n"
 	       "(`interp_axis_model_gain_max_1_s`).\n\n| delay, ms | limit, "
 	       "1/s |");
 	for (size_t i = 0; i < COUNT(cross); i++)

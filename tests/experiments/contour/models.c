@@ -61,14 +61,15 @@ void table_tuning(struct speeds *s)
 	const struct interp_compensate_gains none = { .horizon_s = 0.005 };
 	struct bench b;
 
-	printf("## Gains by an optimiser\n\n"
-	       "Feedforward, cross-coupled and predictive together, %d trials "
-	       "each on the first %d ms\nat 1000 mm/min on the real machine, "
-	       "begun with every gain 0 or with those of the table\nabove; "
-	       "then the whole path with other noise.  Gains: speed, "
-	       "acceleration, lead, cross,\nKff, Kfb, 1/s, horizon, ms.  Cost: "
-	       "largest and ten times the mean error, um.\n\n| by | gains | "
-	       "cost | 500 | 1000 | 1500 |\n|---|---|---|---|---|---|\n",
+	printf("## Gains by an optimiser\n\nFeedforward, cross-coupled and "
+	       "predictive work together. Each optimiser has %d\ntrials on the "
+	       "first %d ms of the path, at 1000 mm/min on the real machine; "
+	       "it\nbegins with all gains 0 or with the gains of the table "
+	       "above. The result is\nthen tried on the whole path with other "
+	       "noise. The gains are speed,\nacceleration, lead, cross, Kff, "
+	       "Kfb (1/s) and the horizon (ms). The cost is the\nlargest error "
+	       "plus ten times the mean error, um.\n\n| by | gains | cost | "
+	       "500 | 1000 | 1500 |\n|---|---|---|---|---|---|\n",
 	       BUDGET, PIECE);
 	bench_make(&b, &s->feed[1], true);
 	b.config.methods = INTERP_COMPENSATE_FEEDFORWARD |
@@ -81,9 +82,9 @@ void table_tuning(struct speeds *s)
 	tune_row(s, &b, "0", INTERP_TUNE_LOCAL);
 	tune_row(s, &b, "0", INTERP_TUNE_GLOBAL);
 	bench_free(&b);
-	printf("\nThe largest error has many local minima: where the local "
-	       "method ends depends on where it\nbegins.  The global one begins "
-	       "nowhere, and needs no seed.\n\n");
+	printf("\nThe largest error has many local minima, so where the local "
+	       "method ends depends\non where it begins. The global method "
+	       "does not depend on a beginning, and needs\nno seed.\n\n");
 }
 
 /* -- What history teaches ------------------------------------------------- */
@@ -213,15 +214,15 @@ void table_learned(struct speeds *s)
 	static const char *const names[] = { "infinity", "circle" };
 	struct interp_ridge ridge[2];
 
-	printf("## A model learned from history\n\n"
-	       "What the axis model misses of the encoder, um rms, before and "
-	       "after a ridge regression\nover features of the set motion, "
-	       "trained on the butterfly at 500 and 1500 mm/min.  It is\nkept "
-	       "only if it wins on runs it was not trained on.  Last, the "
-	       "contour error, um, with\nfeedforward alone, and with what it "
-	       "expects to be missed taken off the set values.\n\n"
-	       "| run | trained on | X before | after | Y before | after | "
-	       "wins | feedforward | and learned |\n"
+	printf("## A model learned from history\n\nThe difference between the "
+	       "axis model and the encoder, um rms, before and after\na ridge "
+	       "regression over features of the set motion, which was trained "
+	       "on the\nbutterfly at 500 and 1500 mm/min. The regression is "
+	       "kept only if it is better\non runs that it was not trained on. "
+	       "The last columns have the contour error,\num, with feedforward "
+	       "alone, and with the expected difference taken off the set\n"
+	       "values as well.\n\n| run | trained on | X before | after | Y "
+	       "before | after | wins | feedforward | and learned |\n"
 	       "|---|---|---|---|---|---|---|---|---|\n");
 	train(s, ridge);
 	for (int k = 0; k < 5; k++) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0
 /*
- * adc-sim - a converter of industrial I/O for the test VM: one channel, 12 bits
- * signed, a sample each 200 us of what /sys/module/adc_sim/parameters/raw says,
- * with a count of noise.
+ * adc-sim - a converter of industrial I/O for the test VM: two channels, 12 bits
+ * signed, and a time stamp.  Channel 0 is what /sys/module/adc_sim/parameters/raw
+ * says, with a count of noise; channel 1 is always 777.  There is a sample each
+ * .../us, and none while .../still is 1.
  */
 #include <linux/hrtimer.h>
 #include <linux/iio/buffer.h>
@@ -11,28 +12,45 @@
 #include <linux/module.h>
 #include <linux/platform_device.h>
 
-#define SAMPLE_US	200
+#define TOP		2047
 
+static int us = 200;
+module_param(us, int, 0644);
 static int raw = 1000;
 module_param(raw, int, 0644);
+static int still;
+module_param(still, int, 0644);
 
 struct adc {
 	struct iio_dev *dev;
 	struct hrtimer timer;
 	s16 noise;
+	struct {
+		s16 v[2];
+		s64 at __aligned(8);
+	} scan;
 };
+
+static ktime_t every(void)
+{
+	return ns_to_ktime(max(READ_ONCE(us), 20) * (s64)NSEC_PER_USEC);
+}
 
 static struct platform_device *platform;
 
 static enum hrtimer_restart sample(struct hrtimer *timer)
 {
 	struct adc *a = container_of(timer, struct adc, timer);
-	s16 v;
+	int v;
 
 	a->noise = !a->noise;
-	v = cpu_to_le16((READ_ONCE(raw) + a->noise) << 4);
-	iio_push_to_buffers(a->dev, &v);
-	hrtimer_forward_now(timer, ns_to_ktime(SAMPLE_US * NSEC_PER_USEC));
+	v = clamp(READ_ONCE(raw) + a->noise, -TOP - 1, TOP);
+	a->scan.v[0] = cpu_to_le16((u16)v << 4);
+	a->scan.v[1] = cpu_to_le16(777 << 4);
+	if (!READ_ONCE(still))
+		iio_push_to_buffers_with_timestamp(a->dev, &a->scan,
+						   iio_get_time_ns(a->dev));
+	hrtimer_forward_now(timer, every());
 	return HRTIMER_RESTART;
 }
 
@@ -40,7 +58,7 @@ static int begin(struct iio_dev *dev)
 {
 	struct adc *a = iio_priv(dev);
 
-	hrtimer_start(&a->timer, ns_to_ktime(SAMPLE_US * NSEC_PER_USEC), HRTIMER_MODE_REL_SOFT);
+	hrtimer_start(&a->timer, every(), HRTIMER_MODE_REL_SOFT);
 	return 0;
 }
 
@@ -60,7 +78,7 @@ static int read_raw(struct iio_dev *dev, struct iio_chan_spec const *chan,
 		    int *val, int *val2, long mask)
 {
 	if (mask == IIO_CHAN_INFO_RAW) {
-		*val = raw;
+		*val = chan->channel ? 777 : raw;
 		return IIO_VAL_INT;
 	}
 	*val = 0;
@@ -70,16 +88,21 @@ static int read_raw(struct iio_dev *dev, struct iio_chan_spec const *chan,
 
 static const struct iio_info info = { .read_raw = read_raw };
 
+#define CHANNEL(n) { \
+	.type = IIO_VOLTAGE, .indexed = 1, .channel = n, \
+	.info_mask_separate = BIT(IIO_CHAN_INFO_RAW), \
+	.info_mask_shared_by_type = BIT(IIO_CHAN_INFO_SCALE), \
+	.scan_index = n, \
+	.scan_type = { .sign = 's', .realbits = 12, .storagebits = 16, \
+		       .shift = 4, .endianness = IIO_LE }, \
+}
+
 static const struct iio_chan_spec channels[] = {
-	{
-		.type = IIO_VOLTAGE, .indexed = 1, .channel = 0,
-		.info_mask_separate = BIT(IIO_CHAN_INFO_RAW),
-		.info_mask_shared_by_type = BIT(IIO_CHAN_INFO_SCALE),
-		.scan_index = 0,
-		.scan_type = { .sign = 's', .realbits = 12, .storagebits = 16,
-			       .shift = 4, .endianness = IIO_LE },
-	},
+	CHANNEL(0), CHANNEL(1), IIO_CHAN_SOFT_TIMESTAMP(2)
 };
+
+/* It converts both always; the kernel gives a reader those it asked for. */
+static const unsigned long masks[] = { 3, 0 };
 
 static int probe(struct platform_device *p)
 {
@@ -97,6 +120,7 @@ static int probe(struct platform_device *p)
 	dev->info = &info;
 	dev->channels = channels;
 	dev->num_channels = ARRAY_SIZE(channels);
+	dev->available_scan_masks = masks;
 	dev->modes = INDIO_DIRECT_MODE;
 	err = devm_iio_kfifo_buffer_setup(&p->dev, dev, &ops);
 	return err ? err : devm_iio_device_register(&p->dev, dev);

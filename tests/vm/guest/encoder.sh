@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# One CPU in virtual time: an axis with an encoder, a brake and a line of power.
+# One CPU in virtual time: an axis with an encoder, a brake and a line of power;
+# then a converter for the gap.
 # ./axis-sim is the axis: it follows the pulses, and slips when it is told to.
 . ./lib.sh
 J=$PWD
+LOOK=0.25
 cp axis-sim $R/
 cd $R
 b=$(base sim0)
@@ -59,6 +61,8 @@ for name in edmd edmd2; do
 done
 kill $axis
 cp axis-sim.err $J/
+echo 0 > $T/events/gpio/gpio_value/enable
+. $J/adc.sh
 cd $J
 dmesg | grep -E 'Call Trace|WARNING:|BUG:|detected.*stall|soft lockup' > kernel
 true

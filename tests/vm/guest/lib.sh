@@ -44,6 +44,9 @@ trace_start() {	# [FILTER]
 	echo 1 > $T/events/gpio/gpio_value/enable
 }
 
+# A program that is stopped at once may not have written since the trace began.
+trace_has_writes() { turns 200 grep -q gpio_value: $T/trace; }
+
 # "TIME LINE LEVEL" of each write, lines counted from the chip's first
 trace_end() {	# CHIP FILE
 	echo 0 > $T/events/gpio/gpio_value/enable
@@ -56,13 +59,14 @@ trace_end() {	# CHIP FILE
 }
 
 # turns N COMMAND ... - until it succeeds, N times at the most: turns, not
-# seconds, because a turn takes as long as the host is slow.
+# seconds, because a turn takes as long as the host is slow.  LOOK: seconds between
+# two turns; in virtual time a long wait costs nothing, and a look costs much.
 turns() {
 	left=$1; shift
 	until "$@"; do
 		left=$((left - 1))
 		[ $left -gt 0 ] || return 1
-		sleep 0.05
+		sleep ${LOOK:-0.05}
 	done
 }
 

@@ -20,8 +20,10 @@ for plc in eds dbc bad; do
 	rm -f /dev/shm/edmd.vm.*
 done
 
-# Without the interface it is to be on.
+# Without the interface it is to be on.  No time limit: virtual time may run far
+# while a file is waited for.
 sed 's/vcan1/vcan7/' plc.ini > $R/nowhere.ini
-timeout 10 $R/edmd --config $R/nowhere.ini 2> nowhere.txt
+$R/edmd --config $R/nowhere.ini 2> $R/nowhere.txt
 echo $? > nowhere.rc
+cp $R/nowhere.txt .
 true

@@ -5,16 +5,9 @@
 unit() { systemctl show -P $1 edmd.service; }
 uptime_s() { read -r up _ < /proc/uptime; echo $up; }
 
-# restarted TIMES - wait until systemd has started edmd again so often, with
-# the sparks' level at each look
-restarted() {
-	n=0 levels=
-	until [ "$(unit NRestarts)" = $1 ] || [ $n -ge 600 ]; do
-		levels="$levels$(level sim1 0)"
-		n=$((n + 1)); sleep 0.1
-	done
-	levels="$levels$(level sim1 0)"
-}
+# restarted TIMES - wait until systemd has started edmd again so often
+restarted() { turns 600 restarts_are $1; }
+restarts_are() { [ "$(unit NRestarts)" = $1 ]; }
 {
 echo "pid1 $(cat /proc/1/comm)"
 cp -r root/. /
@@ -63,6 +56,7 @@ status_is 'edmd *ok' && ctl submit slow.ngc
 status_is 'state *approach'
 echo "spark $(level sim1 0)"
 trace_start
+trace_has_writes
 tid=$(chrt -a -p $pid | sed -n "s/.*pid \([0-9]*\)'s.*SCHED_FIFO/\1/p")
 echo "stopped-at $(uptime_s)"
 ./stop-thread $tid &
@@ -78,12 +72,12 @@ echo "active-again $(unit ActiveState)/$(unit SubState)"
 ctl start; status_is 'state *approach'
 echo "spark-again $(level sim1 0)"
 pid=$(unit MainPID)
-echo "frozen-at $(uptime_s)"
+trace_start
+trace_has_writes
 kill -STOP $pid
 restarted 2
-echo "replaced-at $(uptime_s)"
-echo "spark-levels $levels"
 status_is 'state *hold'
+trace_end sim1 frozen.trace
 ctl stop; status_is 'state *idle'
 echo "spark-idle $(level sim1 0)"
 systemctl stop edmd.service

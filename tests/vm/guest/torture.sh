@@ -1,51 +1,89 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# A host whose power fails: the machine runs its jobs, one after the other, and
-# goes on with what was interrupted, until this virtual machine is killed.  What
-# has to survive is on a disk of its own; what a test looks at goes to the
-# shared folder, a file a turn: torture.py.
-. ./lib.sh
+# A host whose power fails: the machine runs a job, and goes on with what was
+# interrupted, until this virtual machine is killed.  What has to survive is on
+# a disk of its own; what a test looks at goes to the shared folder, a file a
+# turn: test_torture.py.
 read -r turn < turn
-P=/run/power
-mkdir -p $P
+P=/power
 mount -t ext4 /dev/vda $P || exit 3
 mkdir -p $P/store
 
 say() { echo "$@" >> told.$turn; }
+name=$(sed -n "s/^name = //p" torture.ini)
+ctl() { edmctl --machine $name "$@"; }
 
-edmd_start $R/edmd torture.ini
-$R/edmd-jobs --config torture.ini --store $P/store 2>$R/jobs.log &
+# turns N COMMAND ... - until it succeeds, N times at the most: turns, not
+# seconds, because a turn takes as long as the host is slow.
+turns() {
+	left=$1; shift
+	until "$@"; do
+		left=$((left - 1))
+		[ $left -gt 0 ] || return 1
+		sleep 0.05
+	done
+}
+
+edmd_is_up() { grep -q 'edmd: machine' /edmd.log; }
+jobs_answer() { ctl --json queue > queue.$turn 2> /dev/null; }
+# A line of the watch: cycle, state, fault, loaded ...
+is_held() { case "$(tail -n 1 seen.$turn)" in *" hold 0 1 "*) ;; *) false ;; esac; }
+held() {
+	turns 400 is_held && return
+	say "not loaded: $(ctl status 2>&1; cat /jobs.log)"
+	exit 5
+}
+
+cp torture.ini job.ngc next.ngc /
+grep -q vcan1 torture.ini && torture-help plc vcan1 > plc.$turn &
+edmd --config /torture.ini 2> /edmd.log &
+edmd=$!
+turns 200 edmd_is_up || { cat /edmd.log; exit 4; }
+torture-help watch $name > seen.$turn &
+edmd-jobs --config /torture.ini --store $P/store 2> /jobs.log &
 jobs=$!
-turns 200 jobs_answer || { cat $R/edmd.log $R/jobs.log; exit 4; }
-ctl --json status > came.$turn
+turns 200 jobs_answer || { cat /edmd.log /jobs.log; exit 4; }
+ctl --json history > history.$turn
+# Longer than it takes to see what became of a job.
+sleep 0.3
 ctl --json queue > queue.$turn
-sleep 0.5
-ctl --json status > stood.$turn
 
-read -r job < job
-if grep -q '"interrupted": *"[^"]' came.$turn; then
-	id=$(sed 's/.*"interrupted": *"\([^"]*\)".*/\1/' came.$turn)
-	ctl --json show $id > show.$turn
-	say "resume $id: $(ctl resume $id XYZABCUV 2>&1)"
-	turns 200 status_has 'state *hold' || { say "not loaded: $(cat $R/status)"; cat $R/jobs.log; exit 5; }
-elif ! ctl --json history | grep -q '"job": *"cut"'; then
+if grep -q '"interrupted"' queue.$turn; then
+	say "resume: $(ctl resume cut XYZABCUV 2>&1)"
+	held
+elif ! grep -q '"job": *"cut"' history.$turn; then
 	# Held, or it would be hard to tell whether it begins by itself.
-	[ -s queue.$turn ] && grep -q '"cut"' queue.$turn ||
-		say "submit: $(ctl submit --id cut --hold $job 2>&1)"
-	turns 200 status_has 'state *hold' || { say "not loaded: $(cat $R/status)"; cat $R/jobs.log; exit 5; }
+	grep -q '"cut"' queue.$turn ||
+		say "cut: $(ctl submit --id cut --hold /job.ngc 2>&1)"
+	grep -q '"next"' queue.$turn ||
+		say "next: $(ctl submit --id next --hold /next.ngc 2>&1)"
+	held
+else
+	# The power failed when it was done: there is nothing to record.
+	say "done already"
+	rm -f record
 fi
-[ -e record ] && { $R/edmctl --machine vm record --until-end $R/trace.csv > /dev/null 2>&1 & record=$!; sleep 0.5; }
-say "start: $(ctl start 2>&1)"
+if [ -e record ]; then
+	ctl record --until-end /trace.csv > /dev/null 2>&1 &
+	record=$!
+	sleep 0.5
+fi
 : > begun.$turn
-# What an operator saw last.  A stop (M0) is answered by a start.
-until ctl --json history > $R/history 2>/dev/null && grep -q '"job": *"cut"' $R/history; do
-	ctl --json status > $R/seen 2>/dev/null && cp $R/seen seen.$turn.new && mv seen.$turn.new seen.$turn
-	grep -q '"state": *"hold"' $R/seen && grep -q '"fault": *"none"' $R/seen && ctl start > /dev/null 2>&1
-	grep -q '"state": *"fault"' $R/seen && { say "fault: $(cat $R/seen)"; break; }
-	sleep 0.1
+say "start: $(ctl start cut 2>&1)"
+cp history.$turn history
+# A stop (M0) is answered by a start.  The next job is loaded behind it.
+until grep -q '"job": *"cut"' history; do
+	set -- $(tail -n 1 seen.$turn)
+	case "$2 $3 $4" in
+	"hold 0 1") ctl start cut > /dev/null 2>&1 ||
+		{ ctl --json history > history.new && mv history.new history; } ;;
+	*" 0 "*) ;;
+	*) say "fault: $*"; break ;;
+	esac
+	sleep 0.5
 done
-[ -e record ] && { wait $record; cp $R/trace.csv trace.csv; }
-ctl --json status > end
-cp $R/history history
-daemons_end torture
+[ -e record ] && wait $record && cp /trace.csv trace.csv
+kill $jobs; wait $jobs
+kill $edmd; wait $edmd
+cat /edmd.log /jobs.log > log.$turn
 umount $P

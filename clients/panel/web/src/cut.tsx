@@ -70,9 +70,9 @@ function Sums(): JSX.Element {
 	return <Card class="sums" label={t("cut.done")}>
 		<div class="three"><div><span>{t("cut.depth")}</span><p><b>{number(s.depth, 3)}</b> <u>mm</u></p></div>
 			<div><span>{t("cut.done")}</span><p><b>{number(share, 1)}</b> <u>%</u></p></div>
-			<div><span>{t("cut.left")}</span><p><b>{duration(s.left)}</b></p></div></div>
+			<div><span>{t("cut.left")}</span><p><b>{duration(s.eta)}</b></p></div></div>
 		<div class="counts"><span>{t("cut.jumps")} <b>{s.jumps}</b></span><span>{t("cut.retracts")} <b>{s.retracts}</b></span>
-			<span>{t("cut.shorts")} <b>{s.shorts}</b></span><span>{t("cut.time")} <b>{duration(s.jobS)}</b></span></div>
+			<span>{t("cut.shorts")} <b>{s.shorts}</b></span><span>{t("cut.time")} <b>{duration(s.jobS)}</b></span>{s.electrode > 0 && <span id="held">{t("cut.electrode")} <b>{s.electrode}</b></span>}</div>
 	</Card>;
 }
 

@@ -2,12 +2,12 @@
 //
 // The machines that are heard over DDS: who needs a person comes first.
 import type { JSX } from "preact";
-import { duration, number } from "./format";
+import { number } from "./format";
 import { Card } from "./parts";
 import { useAsk } from "./use";
 import { faultWords, stateWord, t } from "./words";
 
-interface Row { machine: string; state: string; fault?: string; job?: string; progress?: number; left_s?: number; line?: number; depth_mm?: number; lost?: boolean; [k: string]: unknown }
+interface Row { machine: string; state: string; fault?: string; job?: string; progress?: number; line?: number; depth_mm?: number; lost?: boolean; [k: string]: unknown }
 
 const RANK = ["fault", "lost", "absent", "hold", "idle"];
 
@@ -23,7 +23,7 @@ function Tile(p: { row: Row }): JSX.Element {
 		<h2>{r.machine}</h2><p class="tile-state">{stateWord(r.state)}{needs && <em>{t("fleet.needs")}</em>}</p>
 		{r.fault && r.fault !== "none" && <p>{faultWords(r.fault).what}</p>}
 		<div class="bar"><i class="done" style={{ width: `${done * 100}%` }} /></div>
-		<p class="note">{number(done * 100, 1)} % {t("fleet.progress")}{typeof r.left_s === "number" && r.left_s >= 0 && `, ${t("cut.left")} ${duration(r.left_s)}`}</p>
+		<p class="note">{number(done * 100, 1)} % {t("fleet.progress")}</p>
 	</Card>;
 }
 

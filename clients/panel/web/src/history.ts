@@ -6,7 +6,8 @@ import { link } from "./link";
 
 export interface Came { condition: string; job_s: number; erode_s: number; energy_j: number | null; jumps: number; retracts: number; shorts: number; arcs: number }
 export interface Fault { utime: number; fault: string; line: number; place_mm: number }
-export interface Ended { job: string; conditions?: Came[]; faults?: Fault[]; [key: string]: unknown }
+export interface Used { electrode: number; shift_mm: number; wear_before_mm: number; wear_after_mm: number; known: boolean; sparked_s: number }
+export interface Ended { job: string; conditions?: Came[]; faults?: Fault[]; electrodes?: Used[]; [key: string]: unknown }
 
 /** The name of a job comes from who sent it; a formula would be carried out. */
 function text(v: unknown): string {
@@ -31,6 +32,7 @@ const columns: Column[] = [
 	["conditions", (j) => (j.conditions ?? []).map((c) => `${c.condition || "none"}=${c.job_s.toFixed(3)}`).join(";")],
 	["faults", (j) => (j.faults ?? []).map((f) => `${f.fault}@${f.place_mm.toFixed(3)}/${f.line}`).join(";")],
 	...of(whole, "lines"), ...of(text, "sha256", "tech_sha256"),
+	["electrodes", (j) => (j.electrodes ?? []).map((e) => `${e.electrode}=${e.known ? (e.wear_after_mm - e.wear_before_mm).toFixed(4) : ""}`).join(";")],
 ];
 
 /** All jobs that have ended, page by page; or why not. */

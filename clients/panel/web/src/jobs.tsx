@@ -7,7 +7,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { whyNot } from "./can";
 import { duration, moment, number } from "./format";
 import { table } from "./history";
-import type { Came, Fault } from "./history";
+import type { Came, Fault, Used } from "./history";
 import { link } from "./link";
 import { fitName, ownLines, unitOf } from "./names";
 import { Card, Key, NumberField, PressKey, Sheet, act } from "./parts";
@@ -17,7 +17,7 @@ import { faultWords, jobWord, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
 interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string }
-interface Job { n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
+interface Job { electrodes?: Used[]; n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
 
 const EDITOR_MAX = 2 << 20, FILE_MAX = 64 << 20;
 
@@ -164,11 +164,13 @@ function energy(j: number | null | undefined): string {
 }
 
 function Sums(p: { job: Job }): JSX.Element {
-	const came = p.job.conditions ?? [], faults = p.job.faults ?? [];
+	const came = p.job.conditions ?? [], faults = p.job.faults ?? [], used = p.job.electrodes ?? [];
 	return <>{came.length > 0 && <><h3>{t("jobs.conditions")}</h3><div class="scroll"><table class="list" id="conditions"><tbody>{came.map((c) =>
 		<tr><td>{c.condition || "\u2013"}</td><td class="n">{duration(c.job_s)}</td><td class="n">{t("cut.retracts")} {c.retracts}</td><td class="n">{t("cut.shorts")} {c.shorts}</td><td class="n">{energy(c.energy_j)}</td></tr>)}</tbody></table></div></>}
 		{faults.length > 0 && <><h3>{t("jobs.faults")}</h3><div class="scroll"><table class="list" id="jobfaults"><tbody>{faults.map((f) =>
 			<tr><td class="when">{moment(f.utime / 1000)}</td><td>{faultWords(f.fault).what}</td><td class="n">{t("jobs.inline", { line: f.line })}</td><td class="n">{number(f.place_mm, 3)} mm</td></tr>)}</tbody></table></div></>}
+		{used.length > 0 && <><h3>{t("el.used")}</h3><div class="scroll"><table class="list" id="jobelectrodes"><thead><tr><th scope="col">{t("el.n")}</th><th scope="col">{t("el.wear")}</th><th scope="col">{t("el.sparked")}</th><th scope="col">{t("el.shift")}</th></tr></thead><tbody>{used.map((e) =>
+			<tr><td class="n">{e.electrode || t("el.none")}</td><td class="n">{e.known ? `${number(e.wear_before_mm, 4)} \u2192 ${number(e.wear_after_mm, 4)} mm` : "\u2013"}</td><td class="n">{duration(e.sparked_s)}</td><td class="n">{number(e.shift_mm, 4, true)} mm</td></tr>)}</tbody></table></div></>}
 	</>;
 }
 

@@ -29,8 +29,9 @@ export interface State {
 	overruns: number; lateMaxUs: number; tookMaxUs: number; periodUs: number;
 	jobS: number; condition: string; values: Record<string, number>;
 	set: string[]; jobs: boolean; job: string; jobName: string; jobState: string;
-	lines: number; queue: number; left: number; store: string;
+	lines: number; queue: number; eta: number; store: string;
 	interrupted: string; lost: string; faults: string; hunts: number;
+	electrode: number;
 }
 
 // t ms, gap min mean max, feed min mean max, depth, state number
@@ -52,8 +53,8 @@ const EMPTY: State = {
 	program: 0, unhomed: 0, limit: 0, jumps: 0, retracts: 0, shorts: 0,
 	overruns: 0, lateMaxUs: 0, tookMaxUs: 0, periodUs: 0, jobS: 0, condition: "",
 	values: {}, set: [], jobs: false, job: "", jobName: "", jobState: "",
-	lines: 0, queue: 0, left: -1, store: "", interrupted: "", lost: "",
-	faults: "", hunts: 0,
+	lines: 0, queue: 0, eta: -1, store: "", interrupted: "", lost: "",
+	faults: "", hunts: 0, electrode: 0,
 };
 
 const POINTS_KEPT = 620;

@@ -4,6 +4,7 @@
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { whyNot } from "./can";
+import { ElectrodeCard } from "./electrodes";
 import { number, short } from "./format";
 import { sendText } from "./jobs";
 import { link, type Axis } from "./link";
@@ -101,5 +102,5 @@ function OffsetCard(): JSX.Element {
 }
 
 export function Setup(): JSX.Element {
-	return <div class="setup-grid"><div><JogCard /><HomeCard /></div><div><ProbeCard /><OffsetCard /></div></div>;
+	return <div class="setup-grid"><div><JogCard /><HomeCard /><ElectrodeCard /></div><div><ProbeCard /><OffsetCard /></div></div>;
 }

@@ -11,8 +11,8 @@
  * highest feed, with the gap watched.  The first spark is where the material
  * begins, wherever that is.
  *
- * The way up is straight.  Nothing here knows whether an electrode that still
- * stands in the work can leave it so.
+ * The way out of the work is straight.  Nothing here knows whether an electrode
+ * that still stands in the work can leave it on a straight way.
  *
  * The condition in force and the outputs that the program has switched (power,
  * polarity, pump) are those of the place.  Dwells, stops and M codes that were
@@ -37,26 +37,28 @@ struct interp_build_from {
 					 * whole program */
 	double now_mm[INTERP_NAXES];	/* where the axes stand */
 	struct interp_probed probed;	/* by the program, before the place */
-	bool probed_known;		/* false: nobody knows it */
+	bool probed_known;		/* false: it is not known what probing
+					 * found */
 	int up;				/* axis whose + leads out of the work;
 					 * -1: a wire, which is cut off: the way
 					 * is straight, and at its end the
 					 * program stops (M0) for threading */
 	uint32_t held;			/* electrode in the holder: if another
 					 * one cuts at the place, the program
-					 * stops for it, up above */
+					 * stops above the work, for a change */
 };
 
-/** interp_build_set() - condition @cond of the program has @value in @field
- *  (enum interp_tech_id); those that it has not are left alone. */
+/** interp_build_set() - field @field (enum interp_tech_id) of the program's
+ *  condition @cond becomes @value.  A condition that the program does not have
+ *  is ignored. */
 void interp_build_set(struct interp_build *b, uint32_t cond, uint32_t field,
 		      double value);
 
-/* What became of it. */
+/* Where and how the new program begins. */
 struct interp_build_entry {
 	uint32_t line;			/* of the place */
-	uint32_t next_line;		/* the first that moves behind the way
-					 * in */
+	uint32_t next_line;		/* the first line that moves after the
+					 * way in */
 	double far_mm;			/* the place, along the path of ... */
 	double length_mm;		/* ... and the length of the whole
 					 * program */

@@ -31,6 +31,7 @@ struct interp_nurbs_limits {
 struct interp_nurbs_way {
 	bool cusp;			/* the curve does not go on here; then
 					 * the rest says nothing */
+	double by_u_mm;			/* length, by parameter */
 	double curvature;		/* 1/mm, in the counted axes */
 	double d[3][INTERP_NAXES];	/* x_s, x_ss and x_sss of each column */
 };

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * wear.h - what a program takes off its electrodes, by estimate
+ * wear.h - an estimate of the length that electrodes lose in a program
  *
- *	wear(s) = sum over what is cut up to s: ratio x way down
+ *	wear(s) = sum over all cuts up to the place s: ratio x way down
  *
  * ratio is `wear` of the condition in force: the volume that the electrode
  * loses per volume of work removed.  Where an electrode sinks, both have the
  * same area, so it is also the length lost per depth.  Only the way down (-Z)
- * counts: what is cut sideways takes no length off the tip.  What is positioned
- * or probed, and what is cut with the power off (M5), counts nothing.
+ * counts: a cut sideways takes no length off the tip.  Positioning, probing, and
+ * a motion with the power off (M5) do not count.
  *
- * A condition without the value makes the wear unknown: the depth that is cut
- * with it is told apart.
+ * With a condition that has no such value the wear is unknown.  The depth that
+ * is cut with it is summed separately.
  *
  * Units: mm.  Threads: any, each with an object of its own; allocates.
  */

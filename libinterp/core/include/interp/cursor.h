@@ -54,6 +54,10 @@ struct interp_pair {
 	int64_t burst;			/* the one being sent, or next */
 	int64_t from, to;		/* s where it begins and ends */
 	int64_t due, done;		/* m where it is, where the last was */
+	int64_t before, behind;		/* m where its neighbours are, at
+					 * another pair's stops */
+	int64_t prior;			/* the one sent last; -1: none */
+	int64_t prior_from, prior_before;	/* its from and before */
 	int64_t lead, stops;		/* bursts at another pair's: its b and
 					 * bursts; 0: at places of its own */
 	const uint64_t *bits;		/* which input gives each pulse; NULL:
@@ -141,6 +145,8 @@ struct interp_cursor {
 	uint32_t ndda;
 	struct interp_pair pair[INTERP_NAXES];
 	uint32_t npairs;
+	bool by_limit;			/* no pair of a star has bursts or
+					 * bits */
 	int8_t root;			/* of a tree; main axis of a star */
 	int8_t sign[INTERP_NAXES];
 	uint16_t pulse[INTERP_NAXES];	/* of a tree or star, going forward */

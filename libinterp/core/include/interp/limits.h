@@ -36,6 +36,9 @@
  * speeds of the axes are levels too).  So at most a few hundred of them can
  * follow each other with each slower than the one before.
  *
+ * A move keeps the least acceleration and jerk of its way.  Where that would take
+ * much longer, INTERP_SEG_STAND cuts the way in two (compile/speed/stretch.c).
+ *
  * Units: in every name.
  */
 #ifndef INTERP_LIMITS_H
@@ -84,7 +87,8 @@ struct interp_limits {
 };
 
 /**
- * interp_limits_write() - fill node_mm_s, feed_max_mm_s and slower_* of @segs.
+ * interp_limits_write() - fill node_mm_s, feed_max_mm_s, a_mm_s2, j_mm_s3,
+ * slower_*, softer_* and INTERP_SEG_STAND of @segs.
  *
  * @segs: the segments of @p, writable.  Any thread, but not for the cycle.
  */

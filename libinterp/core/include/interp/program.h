@@ -13,9 +13,9 @@
  *	     | bits[nbits] | curves[ncurves] | pieces[npieces]
  *	     | stops[nstops] | numbers[nnumbers] | runs[nruns]
  *
- * Bits are strings of whole words, one bit a pulse.  Those of a line by
- * min-switch are one string for each of its pairs of axes, in their order
- * (pulse/couple.h): which pulses are the secondary input's.
+ * Bits are strings of whole words, with one bit for each pulse.  A line by
+ * min-switch has one string for each of its pairs of axes, in the order of
+ * pulse/couple.h.  A bit says whether the secondary input gives the pulse.
  *
  * Nodes are in fixed-point numbers: 1 pulse = INTERP_SUB subpulses.  So a
  * programmed point between two pulses is kept, and the way there and back is
@@ -44,11 +44,12 @@
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	9
+#define INTERP_PROGRAM_VERSION	10
 
 /*
- * How three and more axes make a line, one at a time.  Point-by-point is a
- * tree always; two axes are the same in each; simultaneous and dda need none.
+ * How three and more axes make a line when they move one at a time.
+ * Point-by-point is always a tree.  With two axes there is no difference.
+ * Simultaneous and dda do not need it.
  */
 enum interp_coupling {
 	INTERP_STAR,			/* each axis against the longest one */
@@ -79,15 +80,19 @@ enum interp_kind {
 	INTERP_MCODE,			/* the PLC's; arg: interp/mcode_arg.h */
 	INTERP_ELECTRODE,		/* this one cuts from here on; arg: its
 					 * number, and INTERP_ELECTRODE_STOP */
-	INTERP_TIMED,			/* what is up to segment arg, which ends
-					 * where it begins, has a time ... */
-	INTERP_TIMED_END,		/* ... of arg milliseconds */
+	INTERP_TIMED,			/* the part from here to segment arg has
+					 * a time; when it is over, the rest of
+					 * the part is left out.  It ends where
+					 * it begins */
+	INTERP_TIMED_END,		/* the end of the part; the time is arg
+					 * milliseconds */
 	INTERP_END,			/* always the last: M2, M30, end of
 					 * text */
 	INTERP_NKINDS
 };
 
-/* Hold, so that a person puts the electrode in; no way back leads over it. */
+/* It holds, so that a person puts the electrode in.  A retract does not go back
+ * over it. */
 #define INTERP_ELECTRODE_STOP	0x80000000u
 #define INTERP_ELECTRODE_MAX	9999u		/* 0: the holder is empty */
 #define INTERP_ELECTRODES_MAX	64u		/* changes in a program */
@@ -113,6 +118,10 @@ enum interp_aux {
 #define INTERP_SEG_LIMIT	0x08	/* at the end of its axis's travel */
 #define INTERP_SEG_SENSED	0x0e	/* any of them */
 
+/* Planned moves stand at its last node, either way, because the axes allow much
+ * less on one side of it than on the other.  The gap servo does not. */
+#define INTERP_SEG_STAND	0x10
+
 struct interp_seg {
 	double s_mm;			/* place of its first node on the
 					 * path */
@@ -132,12 +141,13 @@ struct interp_seg {
 	uint16_t slower_ahead;		/* how many segments ahead is the next
 					 * one that is entered slower */
 	uint16_t slower_behind;		/* the same, going back; 0: none */
-	uint16_t slower_feed;		/* how many ahead has a smaller F; 0:
-					 * none */
+	uint16_t slower_feed;		/* how many segments ahead is one with a
+					 * smaller F; 0: none */
 	uint16_t escape;		/* escapes[escape]; 0 is "along the
 					 * path" */
-	uint16_t softer_ahead;		/* so many on is an action, or one of
-					 * less a_mm_s2 or j_mm_s3 */
+	uint16_t softer_ahead;		/* how many segments ahead is an action,
+					 * a segment with less a_mm_s2 or
+					 * j_mm_s3, or one behind a stand */
 	uint16_t softer_behind;		/* the same, going back; 0: none */
 	float a_mm_s2, j_mm_s3;		/* along the path, that its axes allow;
 					 * INFINITY for an action */
@@ -155,7 +165,7 @@ struct interp_arc {
 					 * start */
 	double sweep;			/* radian, signed; + is
 					 * counter-clockwise */
-	/* But for simultaneous, see pulse/circle.c and pulse/dda.c: */
+	/* Not for simultaneous; see pulse/circle.c and pulse/dda.c: */
 	int64_t measure;		/* of the whole circle: area and
 					 * ticks */
 	uint32_t circle_ticks;		/* pulses in the plane */
@@ -251,7 +261,8 @@ struct interp_probed {
 					 * program's own place; pulses */
 	int32_t found[2][INTERP_NAXES];	/* where each axis stood at its last
 					 * contacts, the last one first */
-	uint32_t once, twice;		/* bit per axis: so many there are */
+	uint32_t once, twice;		/* bit per axis: it has one contact, or
+					 * two */
 };
 
 struct interp_program_head {
@@ -354,8 +365,8 @@ int interp_strategy_parse(const char *name);
 /** interp_strategy_takes_tolerance() - does mu change what it does? */
 bool interp_strategy_takes_tolerance(enum interp_strategy s);
 
-/** interp_strategy_couples() - is the coupling of three and more axes its
- *  choice? */
+/** interp_strategy_couples() - can it use every coupling of three and more
+ *  axes? */
 bool interp_strategy_couples(enum interp_strategy s);
 
 /** interp_coupling_name() - "star", ...; NULL if unknown. Any thread. */

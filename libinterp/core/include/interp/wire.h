@@ -52,13 +52,16 @@ struct interp_wire {
 	double z_lower_mm, z_upper_mm;	/* guides; lower below upper */
 	double z_program_mm, z_second_mm;	/* planes; program below
 						 * second */
-	double angle_max_deg;		/* of the wire from upright, < 90 */
+	double angle_max_deg;		/* largest lean of the wire, < 90 */
 
-	/* Corner control; corner_angle_deg of 180 and more: none. */
-	double corner_angle_deg;	/* the contour turns by this or more */
-	double corner_feed_percent;	/* of the programmed feed, before it */
-	double corner_before_mm;	/* so far */
-	double corner_dwell_s;		/* and wait on it; 0: no wait */
+	/* Corner control.  With corner_angle_deg of 180 or more there is
+	 * none. */
+	double corner_angle_deg;	/* a corner is where the contour turns
+					 * by this or more */
+	double corner_feed_percent;	/* of the programmed feed, before a
+					 * corner */
+	double corner_before_mm;	/* from this distance before it on */
+	double corner_dwell_s;		/* wait on a corner; 0: no wait */
 
 	int gouge;			/* enum interp_gouge */
 	int corner;			/* enum interp_taper_corner, to start

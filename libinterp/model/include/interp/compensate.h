@@ -15,8 +15,8 @@
  *	twin		the set values were corrected beforehand; see
  *			tests/experiments/tried/set_twin.h
  *
- * Any of them together, but feedforward and zpetc, which are the same cure.
- * A drive that takes places is given the result divided by its gain.
+ * They can be combined, except feedforward with zpetc, which correct the same
+ * error.  A drive that takes places gets the result divided by its gain.
  *
  * Units: mm, s.  Sign: + as the axis.
  * Threads: one object, one thread; _step() is RT-safe as far as the path's

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * kalman.h - place, speed and acceleration of an axis from what it was told
- * and what its encoder says
+ * kalman.h - estimate place, speed and acceleration of an axis from its target
+ * and its encoder
  *
- * The axis model predicts, the encoder corrects; the textbook filter with
+ * The axis model predicts, and the encoder corrects.  This is the textbook
+ * filter, with
  *
  *	process noise	an unknown part of the speed demanded, sigma drive_mm_s
  *	sensor noise	sigma sensor_mm
  *
- * A large drive_mm_s believes the encoder, a small one the model.
+ * With a large drive_mm_s the filter follows the encoder, with a small one the
+ * model.
  *
  * Units: mm, s.
  * Threads: one object, one thread; all but _init() RT-safe.
@@ -18,7 +20,7 @@
 
 #include "interp/axis_model.h"
 
-/* Fields are private but model, which holds the estimate. */
+/* All fields are private except model, which holds the estimate. */
 struct interp_kalman {
 	struct interp_axis_model model;
 	double p[INTERP_AXIS_NSTATES][INTERP_AXIS_NSTATES];	/* covariance */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * trial.h - run a path through axis models with a compensation, and see how
- * far off it comes out
+ * trial.h - run a path through axis models with a compensation, and measure the
+ * contour error
  *
- * Beside the models stand an encoder with steps and noise, so that a trial is
- * no better than the machine would be.  The contour error is that of the true
- * places, not of the encoder's.
+ * The compensation sees the places through an encoder with steps and noise, so
+ * that a trial is no better than the machine would be.  The contour error is
+ * that of the true places, not of those that the encoder shows.
  *
  * Units: mm, s.
  * Threads: any thread, not in the cycle: the work grows with the path.
@@ -17,8 +17,8 @@
 
 struct interp_trial {
 	const struct interp_contour_path *path;
-	struct interp_compensate_preview set;	/* at the first of them */
-	size_t n;			/* set values */
+	struct interp_compensate_preview set;	/* at the first set value */
+	size_t n;			/* number of set values */
 	const struct interp_compensate_config *compensate;
 	struct interp_axis_loop truth[INTERP_NAXES];
 	double encoder_mm;		/* step; 0: none */

@@ -111,7 +111,7 @@ static void apply_sets(struct interp_tech *t, const struct shm_sets *sets,
 	}
 }
 
-static json_t *as_json(const struct interp_tech *t)
+json_t *values_json(const struct interp_tech *t)
 {
 	json_t *o = json_object();
 
@@ -153,7 +153,7 @@ void values_fill(struct values *v, const struct shm_status *status,
 		interp_tech_name(s->cond_letter, s->cond_number, name,
 				 sizeof(name));
 	json_object_set_new(to, "condition", json_string(name));
-	json_object_set_new(to, "values", as_json(&t));
+	json_object_set_new(to, "values", values_json(&t));
 	json_object_set_new(to, "set", as_names(own));
 }
 

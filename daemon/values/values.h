@@ -7,13 +7,14 @@
  *
  * Threads: one, that of the event loop.
  */
-#ifndef PANEL_VALUES_H
-#define PANEL_VALUES_H
+#ifndef VALUES_VALUES_H
+#define VALUES_VALUES_H
 
 #include "shm.h"
 
 #include <jansson.h>
 
+struct interp_tech;
 struct machine_config;
 struct values;
 
@@ -29,7 +30,10 @@ void values_destroy(struct values *v);
 void values_fill(struct values *v, const struct shm_status *status,
 		 const struct shm_snapshot *s, json_t *to);
 
+/** values_json() - an object of the fields that @t has, by their names. */
+json_t *values_json(const struct interp_tech *t);
+
 /** values_fields() - name, unit and range of every field, for hello. */
 json_t *values_fields(void);
 
-#endif /* PANEL_VALUES_H */
+#endif /* VALUES_VALUES_H */

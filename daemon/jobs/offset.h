@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * offset.h - work offsets: touched off, kept, given to the compiler
+ *
+ *	machine place = programmed place + work offset + shift of the electrode
+ *
+ * Threads: one, that of the event loop.
+ */
+#ifndef JOBS_OFFSET_H
+#define JOBS_OFFSET_H
+
+#include "compiler.h"
+#include "jobs.h"
+#include "verb.h"
+
+/**
+ * store_job.measures of a job that touches off: this, plus 8 * system + axis.
+ * Numbers of electrodes are smaller.
+ */
+#define OFFSET_TOUCHES	100000u
+
+/**
+ * offset_request() - fill in the offsets for the compiler.
+ *
+ * @job: NULL if it is not in the store yet.  One that is loaded for the first
+ * time keeps those in force, for when it is interrupted.
+ *
+ * Return: 0; -errno: they cannot be known, or kept.
+ */
+int offset_request(struct jobs *j, const struct store_job *job,
+		   struct compiler_request *ret);
+
+/** offset_touched() - the job is done: if it touched off, write that down. */
+void offset_touched(struct jobs *j);
+
+/* -- Functions of rows in verbs.c -- */
+
+/* The array of all systems. */
+void offset_list(struct jobs *j, const struct verb *v,
+		 const struct jobs_lcm_command *c);
+/* text: the system, then lines X=5, X@5, X=probe, or clear. */
+void offset_set(struct jobs *j, const struct verb *v,
+		const struct jobs_lcm_command *c);
+
+#endif /* JOBS_OFFSET_H */

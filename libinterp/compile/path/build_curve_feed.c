@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * build_curve_feed.c - how fast a curve may be followed, and what that leaves
+ * for speeding up along it
+ */
+#include "path/build_curve.h"
+#include "path/builder.h"
+
+#include "interp/limits.h"
+
+#include <math.h>
+#include <string.h>
+
+#define NEAR		0.1		/* between two looks feed and heading
+					 * change by no more */
+#define NEAR_HALVINGS	10
+#define SLOWEST_BESIDE	0.05		/* of the slowest, at a cusp */
+#define LOOKED		0.995		/* of what neighbouring looks allow,
+					 * between them */
+
+static const struct interp_axis_limits *axis_of(const struct curve_plan *p,
+						uint32_t k)
+{
+	return &p->b->o.machine->axis[p->curve.axis[k]];
+}
+
+/* Shares of an axis's acceleration: to follow the curve, and to go along it. */
+static double across_part(const struct curve_plan *p, uint32_t k)
+{
+	return k < p->curve.counted ? INTERP_BEND_ACROSS : INTERP_BESIDE_ACROSS;
+}
+
+static double along_part(const struct curve_plan *p, uint32_t k)
+{
+	return k < p->curve.counted ? INTERP_BEND_ALONG : INTERP_BESIDE_ALONG;
+}
+
+void build_curve_limit(struct curve_plan *p)
+{
+	const struct interp_build_options *o = &p->b->o;
+	struct interp_nurbs_limits *l = &p->limits;
+	double jerk = HUGE_VAL, acc = HUGE_VAL;
+
+	*l = (struct interp_nurbs_limits) {
+		.chord_error_mm = HUGE_VAL, .period_s = 1,
+		.centripetal_mm_s2 = HUGE_VAL,
+	};
+	p->chord_mm_s = o->chord_error_mm > 0 && o->period_s > 0 ?
+			sqrt(8 * o->chord_error_mm) / o->period_s : HUGE_VAL;
+	p->pulse_mm = HUGE_VAL;
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const struct interp_axis_limits *m = axis_of(p, k);
+
+		l->v_mm_s[k] = m->v_max_mm_s;
+		l->a_mm_s2[k] = across_part(p, k) * m->a_max_mm_s2;
+		l->j_mm_s3[k] = INTERP_CURVE_JERK_ROUND * m->j_max_mm_s3;
+		p->pulses_mm[p->curve.axis[k]] = 1 / m->pulse_mm;
+		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
+		jerk = fmin(jerk, m->j_max_mm_s3);
+		acc = fmin(acc, m->a_max_mm_s2);
+		if (k < p->curve.counted)
+			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
+						    l->a_mm_s2[k]);
+	}
+	/* The axes do not notice a bend whose radius is less than a pulse. */
+	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);
+	p->least_mm_s2 = INTERP_BEND_LEAST * acc;
+}
+
+static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)
+{
+	struct curve_seen *s = &p->seen;
+
+	s->bend = fmax(s->bend, w->cusp ? HUGE_VAL : w->curvature);
+	for (int n = 0; !w->cusp && n < 3; n++)
+		for (uint32_t k = 0; k < p->curve.naxes; k++)
+			s->d[n][k] = fmax(s->d[n][k], fabs(w->d[n][k]));
+}
+
+/* So slow that the jerk lets it speed up here, by no less than it must; by
+ * columns @from up to, but not with, @to. */
+static double set_off_mm_s(const struct curve_plan *p,
+			   const struct interp_nurbs_way *w, uint32_t from,
+			   uint32_t to)
+{
+	double v = HUGE_VAL;
+
+	for (uint32_t k = from; !w->cusp && k < to; k++)
+		if (w->d[1][k] != 0)
+			v = fmin(v, INTERP_CURVE_JERK_BOTH *
+				    axis_of(p, k)->j_max_mm_s3 /
+				    (3 * fabs(w->d[1][k]) * p->least_mm_s2));
+	return v;
+}
+
+/* An axis beside the path notices every bend, because it goes on there. */
+static double beside_mm_s(const struct curve_plan *p,
+			  const struct interp_nurbs_way *w)
+{
+	const struct interp_nurbs_limits *l = &p->limits;
+	double v = set_off_mm_s(p, w, p->curve.counted, p->curve.naxes);
+
+	for (uint32_t k = p->curve.counted; !w->cusp && k < p->curve.naxes; k++)
+		v = fmin(v, fmin(l->v_mm_s[k] / fabs(w->d[0][k]),
+				 fmin(sqrt(l->a_mm_s2[k] / fabs(w->d[1][k])),
+				      cbrt(l->j_mm_s3[k] / fabs(w->d[2][k])))));
+	return fmax(w->cusp ? 0 : v, SLOWEST_BESIDE * p->slowest_mm_s);
+}
+
+struct curve_look build_curve_look(struct curve_plan *p, double u)
+{
+	struct interp_nurbs_eval *e = &p->walk.eval;
+	struct curve_look ret = { .u = u };
+	struct interp_nurbs_way w;
+	double v;
+
+	interp_nurbs_way(e, u, &w);
+	learn(p, &w);
+	v = fmin(interp_nurbs_feed_mm_s(&e->c, &w, &p->limits),
+		 set_off_mm_s(p, &w, 0, p->curve.counted));
+	ret.mm_s = fmax(v, p->slowest_mm_s);
+	if (p->curve.counted < p->curve.naxes)
+		ret.mm_s = fmin(ret.mm_s, beside_mm_s(p, &w));
+	if (w.cusp)
+		return ret;
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		ret.heading[k] = w.d[0][k];
+		ret.turn[k] = w.d[1][k] * w.by_u_mm;
+	}
+	return ret;
+}
+
+static bool is_near(const struct curve_plan *p, const struct curve_look *a,
+		    const struct curve_look *b)
+{
+	double size = 0, turn = 0;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		size = fmax(size, fabs(a->heading[k]));
+		turn = fmax(turn, fabs(a->heading[k] - b->heading[k]));
+	}
+	return turn <= NEAR * size &&
+	       fmax(a->mm_s, b->mm_s) <= (1 + NEAR) * fmin(a->mm_s, b->mm_s);
+}
+
+/* If column @k goes farthest in a mm between two looks that are alike, it goes
+ * so far as a parabola does that fits both; otherwise 0. */
+static double farthest(const struct curve_look *a, const struct curve_look *b,
+		       uint32_t k)
+{
+	const double sign = a->heading[k] < 0 ? -1 : 1;
+	const double up = sign * a->turn[k], down = -sign * b->turn[k];
+	const double most = fmax(fabs(a->heading[k]), fabs(b->heading[k]));
+
+	return up > 0 && down > 0 ?
+	       fmin(sign * a->heading[k] +
+		    up * up * (b->u - a->u) / (2 * (up + down)),
+		    (1 + NEAR) * most) : 0;
+}
+
+/* No axis is faster between two looks that are alike. */
+static void limit_between(struct curve_plan *p, const struct curve_look *a,
+			  const struct curve_look *b)
+{
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const double far = farthest(a, b, k);
+
+		p->seen.d[0][k] = fmax(p->seen.d[0][k], far);
+		if (far * p->least_mm_s > p->limits.v_mm_s[k])
+			p->least_mm_s = p->limits.v_mm_s[k] / far;
+	}
+}
+
+/* The tightest place of a bend may lie between two looks: look there, until
+ * neighbours are alike. */
+static void look_between(struct curve_plan *p, const struct curve_look *a,
+			 const struct curve_look *b, int halvings)
+{
+	struct curve_look middle;
+
+	if (is_near(p, a, b)) {
+		limit_between(p, a, b);
+		return;
+	}
+	if (halvings == 0)
+		return;
+	middle = build_curve_look(p, (a->u + b->u) / 2);
+	p->least_mm_s = fmin(p->least_mm_s, middle.mm_s);
+	p->most_mm_s = fmax(p->most_mm_s, middle.mm_s);
+	look_between(p, a, &middle, halvings - 1);
+	look_between(p, &middle, b, halvings - 1);
+}
+
+void build_curve_look_between(struct curve_plan *p, const struct curve_look *a,
+			      const struct curve_look *b)
+{
+	look_between(p, a, b, NEAR_HALVINGS);
+}
+
+double build_curve_feed(const struct curve_plan *p)
+{
+	const double chord = p->chord_mm_s / sqrt(p->seen.bend);
+
+	return fmin(p->least_mm_s, fmax(chord, p->slowest_mm_s));
+}
+
+double build_curve_rate(const struct curve_plan *p)
+{
+	double rate = 0;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++)
+		rate = fmax(rate, p->seen.d[0][k] *
+				  p->pulses_mm[p->curve.axis[k]]);
+	return rate;
+}
+
+/*
+ * How fast to speed up along the present piece, at @v_mm_s, by what column @k
+ * has left.  The ways along and across are square to each other.  So a counted
+ * axis, in whatever direction it is, has what is left of both together.  A cusp
+ * is passed at the slowest speed whatever it takes, and leaves the share.
+ */
+static double left_mm_s2(const struct curve_plan *p, uint32_t k, double v_mm_s)
+{
+	const double a = axis_of(p, k)->a_max_mm_s2, part = along_part(p, k);
+	const double across = p->seen.bend * v_mm_s * v_mm_s;
+	const double left = a - p->seen.d[1][k] * v_mm_s * v_mm_s;
+
+	if (k >= p->curve.counted)
+		return fmax(left, part * a) / p->seen.d[0][k];
+	return fmax(fmax(left / p->seen.d[0][k], part * a),
+		    across < a ? sqrt(a * a - across * across) : 0);
+}
+
+/* The same of its jerk. */
+static double left_mm_s3(const struct curve_plan *p, uint32_t k, double v_mm_s)
+{
+	const double j = axis_of(p, k)->j_max_mm_s3;
+
+	return fmax(j - p->seen.d[2][k] * v_mm_s * v_mm_s * v_mm_s,
+		    (1 - INTERP_CURVE_JERK_ROUND) * j);
+}
+
+/* How fast to speed up along the present piece, at @v_mm_s at most: to speed up
+ * on a bend takes jerk, and no more than half of what is left. */
+void build_curve_along(const struct curve_plan *p, double v_mm_s,
+		       struct interp_piece *ret)
+{
+	double a = HUGE_VAL, j = HUGE_VAL;
+
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		a = fmin(a, left_mm_s2(p, k, v_mm_s));
+		a = fmin(a, fmax(left_mm_s3(p, k, v_mm_s) / 2 /
+				 (3 * p->seen.d[1][k] * v_mm_s),
+				 p->least_mm_s2));
+	}
+	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const double left = left_mm_s3(p, k, v_mm_s);
+
+		j = fmin(j, fmax(left - 3 * p->seen.d[1][k] * v_mm_s * a,
+				 left / 2) / p->seen.d[0][k]);
+	}
+	ret->a_mm_s2 = LOOKED * a;
+	ret->j_mm_s3 = LOOKED * j;
+}

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * stretch.c - where a move stands because its axes allow much less from there on
+ *
+ * A move keeps the least acceleration and jerk of all segments that it goes
+ * over.  Near a pole, or on a tiny line on which a rotary axis turns far, that
+ * may be a millionth of what the rest allows, and the whole move would crawl.
+ * So a program is cut into stretches, with a stand between them, where that
+ * takes less time.
+ *
+ * Every segment belongs to a class.  From one class to the next, acceleration
+ * or jerk is eight times less.  Softer segments between harder ones are a
+ * stretch of their own, or they are not; whatever is quicker.
+ */
+#include "speed/pass.h"
+
+#include <math.h>
+
+/* A power of two, from class to class. */
+#define CLASS_BITS	3
+#define CLASSES_MAX	40
+
+/* Stands must save so much of the time. */
+#define WORTH		0.9
+
+/* Segments @from up to, but not with, @to. */
+struct stretch {
+	uint32_t from, to;
+	double mm, cruise_s;		/* at the speed that is allowed */
+	double a_mm_s2, j_mm_s3;	/* the least */
+};
+
+struct stretches {
+	struct interp_seg *segs;
+	double a_mm_s2, j_mm_s3;	/* the most of all segments */
+};
+
+static int class_of(const struct stretches *w, const struct interp_seg *s)
+{
+	const int a = ilogb(w->a_mm_s2 / (double)s->a_mm_s2);
+	const int j = ilogb(w->j_mm_s3 / (double)s->j_mm_s3);
+	const int c = (a > j ? a : j) / CLASS_BITS;
+
+	return c < CLASSES_MAX ? c : CLASSES_MAX;
+}
+
+static struct stretch none(uint32_t at)
+{
+	return (struct stretch) { at, at, 0, 0, INFINITY, INFINITY };
+}
+
+/* Actions have no length. */
+static void append(struct stretch *t, const struct interp_seg *s)
+{
+	t->to++;
+	if (s->kind >= INTERP_BEGIN)
+		return;
+	t->mm += s->length_mm;
+	t->cruise_s += s->length_mm / (double)s->feed_max_mm_s;
+	t->a_mm_s2 = fmin(t->a_mm_s2, (double)s->a_mm_s2);
+	t->j_mm_s3 = fmin(t->j_mm_s3, (double)s->j_mm_s3);
+}
+
+static struct stretch join(const struct stretch *a, const struct stretch *b)
+{
+	return (struct stretch) {
+		a->from, b->to, a->mm + b->mm, a->cruise_s + b->cruise_s,
+		fmin(a->a_mm_s2, b->a_mm_s2), fmin(a->j_mm_s3, b->j_mm_s3)
+	};
+}
+
+/* From a stand to a stand. */
+static double time_s(const struct stretch *t)
+{
+	const double a = t->a_mm_s2, j = t->j_mm_s3;
+	const double v = t->mm / t->cruise_s;
+	double top, up;
+
+	if (!(t->mm > 0))
+		return 0;
+	up = v * j >= a * a ? v / a + a / j : 2 * sqrt(v / j);
+	if (t->mm >= v * up)
+		return t->cruise_s + up;
+	top = a * (sqrt(a * a / (j * j) + 4 * t->mm / a) - a / j) / 2;
+	if (top * j >= a * a)
+		return 2 * (top / a + a / j);
+	return 4 * cbrt(t->mm / (2 * j));
+}
+
+static void set_stand(struct stretches *w, uint32_t i, bool stands)
+{
+	uint8_t *flags = &w->segs[i].flags;
+
+	*flags = (uint8_t)(stands ? *flags | INTERP_SEG_STAND :
+				    *flags & ~INTERP_SEG_STAND);
+}
+
+/* From @from on, as long as the class is @c, or as long as it is above it. */
+static struct stretch run(const struct stretches *w, uint32_t from, uint32_t to,
+			  int c, bool above)
+{
+	struct stretch t = none(from);
+
+	while (t.to < to && (w->segs[t.to].kind >= INTERP_BEGIN ||
+			     (class_of(w, &w->segs[t.to]) > c) == above))
+		append(&t, &w->segs[t.to]);
+	return t;
+}
+
+/* Softer ways that are so near to each other that a stand between them takes
+ * longer are one. */
+static struct stretch run_softer(const struct stretches *w, uint32_t from,
+				 uint32_t to, int c)
+{
+	struct stretch t = run(w, from, to, c, true);
+
+	while (t.to < to) {
+		const struct stretch gap = run(w, t.to, to, c, false);
+		const struct stretch next = run(w, gap.to, to, c, true);
+		struct stretch all = join(&t, &gap);
+
+		all = join(&all, &next);
+		if (next.to == next.from ||
+		    time_s(&all) > time_s(&t) + time_s(&gap) + time_s(&next))
+			break;
+		t = all;
+	}
+	return t;
+}
+
+/* Put stands into [@from, @to), where it is class @c at least.  Return: the
+ * time. */
+static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
+{
+	struct stretch all = none(from);
+	double sum = 0;
+
+	for (uint32_t i = from; i < to; ) {
+		const struct stretch hard = run(w, i, to, c, false);
+		const struct stretch soft = run_softer(w, hard.to, to, c);
+
+		all = join(&all, &hard);
+		all = join(&all, &soft);
+		sum += time_s(&hard);
+		if (soft.to > soft.from && c < CLASSES_MAX)
+			sum += divide(w, soft.from, soft.to, c + 1);
+		if (hard.mm > 0 && soft.mm > 0)
+			set_stand(w, soft.from - 1, true);
+		i = soft.to;
+		if (i < to)
+			set_stand(w, i - 1, true);
+	}
+	if (sum < WORTH * time_s(&all))
+		return sum;
+	for (uint32_t i = from; i + 1 < to; i++)
+		set_stand(w, i, false);
+	return time_s(&all);
+}
+
+void pass_stretches(struct pass *pass)
+{
+	struct stretches w = { .segs = pass->segs };
+	const uint32_t end = pass->p->head->nsegs - 1;
+	double a = INFINITY, j = INFINITY;
+
+	for (uint32_t i = 0; i <= end; i++) {
+		const struct interp_seg *s = &w.segs[i];
+
+		set_stand(&w, i, false);
+		if (s->kind >= INTERP_BEGIN || isinf(s->a_mm_s2) ||
+		    isinf(s->j_mm_s3))
+			continue;
+		w.a_mm_s2 = fmax(w.a_mm_s2, (double)s->a_mm_s2);
+		w.j_mm_s3 = fmax(w.j_mm_s3, (double)s->j_mm_s3);
+		a = fmin(a, (double)s->a_mm_s2);
+		j = fmin(j, (double)s->j_mm_s3);
+	}
+	if (w.a_mm_s2 >= a * (1 << CLASS_BITS) ||
+	    w.j_mm_s3 >= j * (1 << CLASS_BITS))
+		divide(&w, 0, end, 0);
+}

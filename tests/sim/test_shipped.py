@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is shipped works at the first try: machine files, and their jobs.
+
+EDM_RUNS=100, as `make shipped` sets it, tries so many seeds of each; three
+otherwise, of those that take no longer than a second.
+"""
+import json
+import os
+import subprocess
+
+import pytest
+
+from edmsim import PROGRAM, ROOT, done, run
+
+EXAMPLES = ROOT / "examples"
+JOBS = [("machine.ini", "cavity"), ("machine.ini", "orbit"),
+        ("probe.ini", "probe"), ("wire.ini", "taper"),
+        ("wire.ini", "wire-extrusion"), ("wire.ini", "wire-die"),
+        ("wire.ini", "wire-gear"), ("wire.ini", "wire-plate"),
+        ("five-axis.ini", "five-axis")]
+QUICK = 4
+RUNS = int(os.environ.get("EDM_RUNS", "0"))
+FIRST = int(os.environ.get("EDM_SEED", "1"))
+
+
+@pytest.mark.parametrize("machine, job", JOBS if RUNS else JOBS[:QUICK])
+def test_a_shipped_job_is_done_on_its_machine(machine, job):
+    bad = []
+    for seed in range(FIRST, FIRST + (RUNS or 3)):
+        r = run("--machine", EXAMPLES / machine, "--seed", seed, "--quiet",
+                "--report", "-", EXAMPLES / f"{job}.ngc")
+        outcome = json.loads(r.stdout)["outcome"] if r.stdout else r.stderr
+        if outcome != "done":
+            bad.append((seed, outcome))
+    assert bad == []
+
+
+# To start from.  Each is understood, and has the backend that its name says.
+START = {"machine-gpio.ini": "gpio", "machine-can402.ini": "can402",
+         "machine-wire.ini": "null", "machine-five-axis.ini": "null",
+         "template.ini": "null"}
+
+
+@pytest.mark.parametrize("name", START)
+def test_a_file_to_start_from_is_understood(name):
+    assert f"\nbackend = {START[name]}" in (EXAMPLES / name).read_text()
+    done("--machine", EXAMPLES / name, "--check",
+         text="G21 G90 G0 X5.\nG1 Y5. F10\nM2\n")
+
+
+@pytest.mark.parametrize("name, job", [("machine-wire.ini", "taper"),
+                                       ("machine-five-axis.ini", "five-axis")])
+def test_one_of_a_kind_takes_the_jobs_of_its_kind(name, job, tmp_path):
+    text = (EXAMPLES / name).read_text()
+    (tmp_path / "m.ini").write_text(text.replace("backend = null",
+                                                 "backend = sim "))
+    done("--machine", EXAMPLES / name, "--check", EXAMPLES / f"{job}.ngc")
+    if job == "taper":
+        r = run("--machine", tmp_path / "m.ini", "--quiet", "--report", "-",
+                EXAMPLES / f"{job}.ngc")
+        assert json.loads(r.stdout)["outcome"] == "done"
+
+
+def test_a_wire_machine_with_defaults_alone_cuts(tmp_path):
+    (tmp_path / "m.ini").write_text("[gap]\nprocess = wire\n")
+    for seed in (1, 2, 3):
+        r = run("--machine", tmp_path / "m.ini", "--seed", seed, "--quiet",
+                "--report", "-", text="G21 G90 F60\nG1 X3.\nY2.\nM2\n")
+        r = json.loads(r.stdout)
+        assert r["outcome"] == "done"
+        assert r["shorts"] < 400
+
+
+# The least and the most that the values of the machine file's defaults do in
+# five kinds of work; docs/gap-servo.md has the table.
+KINDS = {"shallow-open": (23, 5), "deep-poor-flushing": (5, 250),
+         "large-area": (200, 5), "fine-finish": (1.5, 5),
+         "arcing-steel": (27, 10)}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_defaults_sink_into_five_kinds_of_work(kind, tmp_path):
+    text = (ROOT / f"tests/experiments/conditions/{kind}.ini").read_text()
+    (tmp_path / "m.ini").write_text("\n".join(
+        x for x in text.splitlines()
+        if not x.startswith(("servo_v", "feed_gain"))))
+    r = run("--machine", tmp_path / "m.ini", "--seed", 101, "--limit-s", 60,
+            "--quiet", "--report", "-", ROOT / "tests/experiments/sink.ngc")
+    r = json.loads(r.stdout)
+    least_mm3, most_shorts = KINDS[kind]
+    assert r["removed_mm3"] > least_mm3 and r["shorts"] <= most_shorts, r
+
+
+# -- edmctl new-machine
+
+
+def new_machine(path, answers):
+    return subprocess.run(
+        [PROGRAM[:-len("edmsim")] + "edmctl", "new-machine", path], text=True,
+        input="".join(f"{a}\n" for a in answers), capture_output=True,
+        timeout=60)
+
+
+@pytest.mark.parametrize("backend", ["", "null", "sim", "gpio", "can402"])
+@pytest.mark.parametrize("kind", ["sinker", "wire"])
+def test_a_machine_file_comes_of_answers(tmp_path, kind, backend):
+    path = tmp_path / "new.ini"
+    p = new_machine(path, ["shop-2", kind, backend] + 100 * [""])
+    assert p.returncode == 0, p.stderr
+    assert f"\nname = shop-2\nbackend = {backend or 'null'}\n" in \
+        path.read_text()
+    done("--machine", path, "--check", text="G21 G90 G0 X5. Y5.\nM2\n")
+    if backend == "sim":
+        assert run("--machine", path, "--limit-s", 600,
+                   text="G21 G90 F30\nG1 X1. Z-0.2\nM2\n" if kind == "sinker"
+                   else "G21 G90 F30\nG1 X1.\nM2\n").returncode == 0
+
+
+def test_answers_are_judged_and_asked_for_again(tmp_path):
+    path = tmp_path / "new.ini"
+    p = new_machine(path, [
+        "a b", 400 * "m", "m", "lathe", "sinker wire", "sinker", "pneumatic", "gpio", "XY", "XXZ", "xz",
+        "10", "5 -5", "-5 5 7", "-5 5", "0", "2", "fast", "2.5",
+        "-20 -1", "1", "4", "chip ; 9", "chip9", "1", "1 x", "3 4", "5 6", "klingon",
+        "linuxcnc"])
+    assert p.returncode == 0, p.stderr
+    text = path.read_text()
+    for said in ("1 to 31 of A-Z", "one of sinker wire", "one of null sim",
+                 "a sinker machine has Z", "the lower one first",
+                 "2 numbers", "one of generic linuxcnc",
+                 "letters, digits and"):
+        assert said in p.stderr, said
+    assert "[axis.X]\npulse_mm = 0.002\ntravel_min_mm = -5\n" in text
+    assert "[axis.Z]\npulse_mm = 0.001\ntravel_min_mm = -20\n" \
+        "travel_max_mm = -1\n" in text and "start_mm = -10.5" in text
+    assert "step_Z = 5\ndir_Z = 6" in text and "chip = chip9" in text
+    done("--machine", path, "--check", text="G21 G90 G0 X5.\nM2\n")
+
+
+def test_nothing_is_written_without_all_answers(tmp_path):
+    path = tmp_path / "new.ini"
+    p = new_machine(path, ["m", "wire"])
+    assert p.returncode == 66 and "nothing is written" in p.stderr
+    assert not path.exists()
+    for where in (tmp_path / "no" / "such.ini", "/dev/full/x"):
+        p = new_machine(where, 100 * [""])
+        assert p.returncode == 73 and str(where) in p.stderr
+    path.write_text("mine")
+    p = new_machine(path, 100 * [""])
+    assert p.returncode == 73 and "there already" in p.stderr
+    assert path.read_text() == "mine"

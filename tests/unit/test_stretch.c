@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_stretch.c - a place where the axes allow little slows down that place,
+ * and not the whole move
+ */
+#include "axis_track.h"
+
+#define CYCLES	200000
+
+/* Jerk that hardly counts: times are easy to tell. */
+static void set_plain_machine(void)
+{
+	axes_machine = (struct interp_machine) { .present = 0xff };
+	for (int i = 0; i < INTERP_NAXES; i++)
+		axes_machine.axis[i] = (struct interp_axis_limits) {
+			0.001, -1000, 1000, 80, 500, 2e6
+		};
+}
+
+static void to(struct interp_build *b, double x_mm, double c_deg)
+{
+	const struct interp_build_word w = {
+		.line = 1, .feed_mm_s = 60, .rapid = true,
+	};
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, interp_build_here(b), sizeof(end));
+	end[INTERP_X] = x_mm;
+	end[INTERP_C] = c_deg;
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+}
+
+static struct interp_build *begin_plain(void)
+{
+	static const struct interp_build_options o = {
+		.machine = &axes_machine, .strategy = INTERP_SIMULTANEOUS,
+	};
+
+	set_plain_machine();
+	return interp_build_create(&o);
+}
+
+static struct cycle_config config_of(void)
+{
+	struct cycle_config k = usual_config();
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		k.travel_min[i] = -1000000;
+		k.travel_max[i] = 1000000;
+	}
+	k.travel_a_mm_s2 = 500;
+	k.travel_j_mm_s3 = 2e6;
+	k.dry_run = k.hold_at_end = true;
+	k.gap.retract_mm_s = 1000;
+	return k;
+}
+
+/* Walks it there and back, and checks each axis.  Return: the seconds of both
+ * ways. */
+static void walk(struct made m, double ret_s[2])
+{
+	const struct cycle_config k = config_of();
+	struct track t = { .n = 0 };
+	struct rig r;
+	int n;
+
+	rig_take(&r, m, &k);
+	tell(&r, CYCLE_START);
+	for (n = 0; n < CYCLES && r.c.state == STATE_TRAVEL; n++) {
+		step(&r, OPEN_V);
+		note(&t, &r);
+		if (is_whole(&t))
+			check_axes(&t, &r);
+	}
+	ret_s[0] = n * PERIOD_S;
+	assert_int_equal(r.c.state, STATE_HOLD);
+	tell_mm(&r, CYCLE_RETRACT, 1e9);
+	for (n = 0; n < CYCLES && r.c.hold.moving; n++) {
+		step(&r, OPEN_V);
+		note(&t, &r);
+		if (is_whole(&t))
+			check_axes(&t, &r);
+	}
+	ret_s[1] = n * PERIOD_S;
+	assert_true(place(&r) == 0);
+	rig_free(&r);
+}
+
+/* From a stand to a stand. */
+static double time_of(double mm)
+{
+	return mm < 80 * 80 / 500.0 ? 2 * sqrt(mm / 500) : mm / 80 + 80 / 500.0;
+}
+
+static void a_turn_on_a_tiny_line_costs_no_more_than_the_turn(void **st)
+{
+	static const double tiny_mm[] = { 0.00002, 0.001, 0.02 };
+
+	(void)st;
+	for (int i = 0; i < 3; i++) {
+		struct interp_build *b = begin_plain();
+		const double most_s = 2 * time_of(50) + time_of(40) + 0.05;
+		double s[2];
+
+		to(b, 50, 0);
+		to(b, 50 + tiny_mm[i], 40);
+		to(b, 100, 40);
+		walk(finish(b), s);
+		assert_true(s[0] < most_s);
+		assert_true(s[1] < most_s);
+	}
+}
+
+/* As past a pole: the nearer, the farther it turns by the way. */
+static void nearer_and_nearer_to_a_pole_it_comes_past(void **st)
+{
+	struct interp_build *b = begin_plain();
+	const double off_mm = 0.05;
+	double s[2];
+
+	(void)st;
+	for (double x = -20; x <= 20; x += fmin(fmax(fabs(x) / 10, 0.005), 0.5))
+		to(b, x, atan2(x, off_mm) * 180 / M_PI);
+	walk(finish(b), s);
+	/* With the limits of the pole all the way it took 42 s. */
+	assert_true(s[0] < 20);
+	assert_true(s[1] < 20);
+}
+
+static uint32_t stands_of(const struct made *m)
+{
+	uint32_t n = 0;
+
+	for (uint32_t i = 0; i < m->p.head->nsegs; i++)
+		n += (m->p.segs[i].flags & INTERP_SEG_STAND) != 0;
+	return n;
+}
+
+/* A stand in front of each of them would take longer. */
+static void what_is_soft_again_and_again_is_one_move(void **st)
+{
+	struct interp_build *b = begin_plain();
+	double x = 0, c = 0;
+	struct made m;
+
+	(void)st;
+	for (int i = 0; i < 300; i++) {
+		to(b, x += 0.05, c);
+		to(b, x += 0.01, c += 0.2);
+	}
+	m = finish(b);
+	assert_int_equal(stands_of(&m), 0);
+	unmake(&m);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(
+			a_turn_on_a_tiny_line_costs_no_more_than_the_turn),
+		cmocka_unit_test(nearer_and_nearer_to_a_pole_it_comes_past),
+		cmocka_unit_test(what_is_soft_again_and_again_is_one_move),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
