@@ -46,6 +46,8 @@
 
 #include "interp/program.h"
 
+#include <math.h>
+
 #define INTERP_CORNER_MM	0.005	/* where none is given */
 #define INTERP_TOLERANCE_MM	0.001
 #define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
@@ -74,9 +76,23 @@
 #define INTERP_CURVE_JERK_ROUND	0.2
 #define INTERP_CURVE_JERK_BOTH	0.4
 
-/* Of the acceleration, that must be left to speed up on a bend: one too tight
- * for that is gone round slower, for a move has the least of all its way. */
+/*
+ * Of the acceleration, that must be left to speed up on a bend: one too tight
+ * for that is gone round slower, for a move has the least of all its way.  Of
+ * an acceleration that the jerk lets no move come to, nothing is kept: from 0
+ * to the top speed none takes more than sqrt(v * j).
+ */
 #define INTERP_BEND_LEAST	0.05
+
+/** interp_bend_least() - that acceleration; @v_mm_s is the top speed. */
+static inline double interp_bend_least(double v_mm_s, double a_mm_s2,
+				       double j_mm_s3)
+{
+	const double most = v_mm_s * j_mm_s3 < a_mm_s2 * a_mm_s2 ?
+			    sqrt(v_mm_s * j_mm_s3) : a_mm_s2;
+
+	return INTERP_BEND_LEAST * most;
+}
 
 struct interp_limits {
 	const struct interp_machine *machine;
