@@ -12,6 +12,10 @@
 
 #define HOP_MAX		UINT16_MAX
 
+/* Fewer need no time.  The piece of a curve between two cusps may have some
+ * points and next to no length. */
+#define MANY_POINTS	64
+
 /* Of an axis: no less than a pulse of it. */
 static double tolerance(const struct interp_limits *l, uint8_t axis)
 {
@@ -26,6 +30,7 @@ static void begin(struct pass *w, const struct interp_limits *l,
 		  const struct interp_program *p, struct interp_seg *segs)
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
+			     .points_per_s = l->points_per_s,
 			     .n = p->head->naxes };
 	heading_ways_init(&w->ways, p);
 	for (int k = 0; k < PASS_WINDOWS; k++)
@@ -156,6 +161,9 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 		v = round_bend(w, h, v, &left);
 	}
 	soften_seg(w, s, &left, &rates);
+	/* A cycle that has no time for its points would break off the move. */
+	if (s->ticks >= MANY_POINTS)
+		v = fmin(v, w->points_per_s * s->length_mm / (double)s->ticks);
 	s->feed_max_mm_s = level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;

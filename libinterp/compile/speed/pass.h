@@ -31,7 +31,7 @@ struct around {
 struct pass {
 	const struct interp_program *p;
 	struct interp_seg *segs;
-	double corner_mm;
+	double corner_mm, points_per_s;
 	uint32_t n;			/* columns */
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;

@@ -32,6 +32,8 @@
  * of that length, and what could come from rounding is taken off.  To find what
  * that takes off a real curve, chords up to 32 times as long are looked at.
  *
+ * No segment of many points is faster than the machine makes them.
+ *
  * The speeds are rounded down to levels that are at most 1/32 apart (the top
  * speeds of the axes are levels too).  So at most a few hundred of them can
  * follow each other with each slower than the one before.
@@ -100,6 +102,7 @@ struct interp_limits {
 	double tolerance_mm;		/* >= 0: what is less is a rounding */
 	double rotary_radius_mm;	/* > 0: where it is a rotary axis's,
 					 * too */
+	double points_per_s;		/* lattice points; 0: no limit */
 };
 
 /**
