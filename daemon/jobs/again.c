@@ -161,6 +161,9 @@ void again_interrupted(struct jobs *j, uint32_t n,
 	*ret = (struct again) { .base = *last };
 	if (again_read(j, n, &before) < 0)
 		return;
+	/* It would have been told again at the end of the positioning. */
+	if (!last->snap.mcode && last->snap.far_mm <= before.way_mm)
+		ret->base.snap.mcode = before.base.snap.mcode;
 	again_whole(&before, &ret->base.snap);
 	keep_sets(&before.base.sets, &ret->base.sets);
 	if (!again_is_named(&before))
@@ -344,6 +347,7 @@ int again_request(struct jobs *j, const struct store_job *job,
 	ret->from.far_mm = a.base.snap.far_mm;
 	ret->from.probed = probed_by(&a.base.snap);
 	ret->from.probed_known = true;
+	ret->from.unanswered = a.base.snap.mcode;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		ret->start_mm[i] = a.base.job.start[i] * s->pulse_mm[i];
 	return 0;
