@@ -245,8 +245,8 @@ static void why_not(struct jobs *j, const struct jobs_lcm_command *c,
 	const char *now = NULL;
 
 	if (job->state != JOB_INTERRUPTED)
-		now = "this job was not interrupted; without a job, resume goes "
-		      "on after a hold";
+		now = "this job was not interrupted; without a job, resume "
+		      "goes on after a hold";
 	else if (j->link.state != LINK_OK)
 		now = "edmd is not there";
 	else if (queue_is_faulted(j))
@@ -258,9 +258,9 @@ static void why_not(struct jobs *j, const struct jobs_lcm_command *c,
 	else if (!is_of_job(a, job))
 		now = UNREADABLE;
 	else if (!are_same_files(j, a))
-		now = "the machine file, or a map or a dialect that it names, is "
-		      "another than when the job began; put that one back, "
-		      "and restart the services";
+		now = "the machine file, or a map or a dialect that it names, "
+		      "is another than when the job began; put that one "
+		      "back, and restart the services";
 	if (now)
 		snprintf(reason, 320, "%s", now);
 	else
