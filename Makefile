@@ -204,6 +204,10 @@ $(B)/%.o: %.cc
 	@mkdir -p $(@D)
 	$(Q)$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
 
+# From text to program there are many short loops over the axes.
+$(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
+	speed/*.c))): OPT = -O3
+
 # Generated messages: compiled without our warnings, they are not ours.
 LCM_TYPES := $(shell sed -n 's/^struct \([a-z_]*_t\).*/\1/p' messages/edm.lcm 2>/dev/null)
 LCM_C	  := $(LCM_TYPES:%=$(B)/messages/edm_%.c)
