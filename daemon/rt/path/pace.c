@@ -87,7 +87,7 @@ double pace_dv_mm_s(const struct cycle *c)
 	return a_of_law(c, a_both_ways(c)) * law_period_s(c);
 }
 
-/* -- What lies ahead --------------------------------------------------------- */
+/* -- What lies ahead ------------------------------------------------------- */
 
 struct ahead {
 	const struct cycle *c;
@@ -162,8 +162,9 @@ static double into_mm_s(const struct ahead *k, uint32_t i,
 {
 	const struct interp_program *p = &k->c->cursor.p;
 
-	return k->toward > 0 ? smaller(interp_limits_into(p, i), law_seg_speed(s)) :
-			       interp_limits_back_into(p, i);
+	return k->toward > 0 ?
+		       smaller(interp_limits_into(p, i), law_seg_speed(s)) :
+		       interp_limits_back_into(p, i);
 }
 
 /* Up to a place to stand at: what lies between may be braked on less. */
@@ -258,9 +259,10 @@ double pace_go(struct cycle *c, double v_mm_s, double to_mm)
 		k.a_mm_s2 = a_here(c, k.toward);
 	k.dv_mm_s = k.a_mm_s2 * law_period_s(c);
 	look(&k, to_mm);
-	/* A planned move may have been quicker: no harder than the axes brake. */
+	/* A planned move may have been quicker: no harder than the axes
+	 * brake. */
 	if (was * v > 0)
 		k.most_mm_s = larger(k.most_mm_s,
-				   fabs(was) - axes * law_period_s(c));
+				     fabs(was) - axes * law_period_s(c));
 	return go(c, &k, k.toward * smaller(fabs(v), k.most_mm_s));
 }

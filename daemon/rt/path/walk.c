@@ -211,8 +211,9 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 	r = points(c, &left);
 	for (int n = 0; n < INTERP_CROSS_MAX && r == WALK_ACTION &&
 	     pass_done(c); n++) {
-		interp_cursor_aim(&c->cursor, from + ds_mm -
-					      interp_cursor_place_mm(&c->cursor));
+		interp_cursor_aim(&c->cursor,
+				  from + ds_mm -
+					  interp_cursor_place_mm(&c->cursor));
 		r = points(c, &left);
 	}
 	if (r == WALK_BROKEN) {
