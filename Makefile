@@ -73,7 +73,8 @@ COMPILE	:= $(wildcard libinterp/compile/*/*.c)
 # Built into the reader, in this order: a base is in front of what begins from it.
 DIALECTS := generic linuxcnc heekscnc fanuc-sinker sodick-sinker \
 	    charmilles-robofil charmilles-cmd skd2 sodick-wire chmer \
-	    fanuc-wire mastercam-wire makino agie agievision 3b 4b
+	    fanuc-wire mastercam-wire makino charmilles-robofil-440 agie \
+	    agievision 3b 4b
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
 # What every program has in common.

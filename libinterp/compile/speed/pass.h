@@ -9,6 +9,7 @@
 #define SPEED_PASS_H
 
 #include "interp/limits.h"
+#include "interp/smaller.h"
 #include "speed/heading.h"
 
 /*
@@ -70,17 +71,6 @@ struct pass {
 	double tol_most;
 	struct pass_soft soft;		/* known after the last segment */
 };
-
-/* As fmin() and fmax(), for numbers. */
-static inline double smaller(double a, double b)
-{
-	return a < b ? a : b;
-}
-
-static inline double larger(double a, double b)
-{
-	return a > b ? a : b;
-}
 
 /**
  * pass_round_mm_s() - the greatest speed around a bend, if the axes have so
