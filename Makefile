@@ -207,7 +207,7 @@ $(B)/%.o: %.cc
 
 # From text to program there are many short loops over the axes.
 $(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
-	speed/*.c))): OPT = -O3
+	speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3
 
 # What runs each period is optimised as a whole where it is linked into a program.
 # Its objects have machine code too, for all that is linked without that.  Not for
