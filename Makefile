@@ -214,7 +214,9 @@ $(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
 # sanitizers, nor with a compiler that cannot do both.
 LTO	?= $(if $(filter 1,$(SAN) $(TSAN))$(findstring clang,$(CC)),0,1)
 ifeq ($(LTO),1)
-LTO_O	:= $(call obj,$(CORE) $(RT) $(IO) $(WORDS))
+# The walks are loops of their own, and some would be slower.
+LTO_O	:= $(call obj,$(filter-out libinterp/core/pulse/%,$(CORE)) $(RT) \
+	   $(IO) $(WORDS))
 $(LTO_O): CFLAGS += -flto -ffat-lto-objects
 # What was compiled before there was this would be linked as it is.
 $(LTO_O): Makefile
