@@ -2,11 +2,12 @@
 """What a wire may leave out of a contour without a word, at the limits of the rule
 in docs/taper.md: slots, necks and chambers in the floor of an opening."""
 import math
+import random
 
 import pytest
 from edmsim import run
-from wire_oracle import is_left_by_a_corner, left_out, ring_of, way_of, \
-    write_job
+from wire_oracle import (is_left_by_a_corner, left_out, path_of, read_iso,
+                         ring_of, way_of, write_job)
 
 OFFSET = 0.125
 HALF = math.radians(15)     # of the notch
@@ -96,3 +97,42 @@ def test_skip_leaves_it_out_with_a_note(what, tmp_path):
     r = said_of(MISSING[what], tmp_path, "[wire]\ngouge = skip\n")
     assert r.returncode == 0, r.stderr
     assert b"note" in r.stdout + r.stderr
+
+
+def wave(rnd, noise):
+    """A wavy circle whose inner corners are about as round as the wire, as short
+    chords with noise, to a micrometre: (places, inside or not)."""
+    inside = rnd.random() < 0.5
+    radius, waves = rnd.uniform(1, 4), rnd.randint(2, 30)
+    bend = 1 / (OFFSET * rnd.uniform(0.7, 1.5)) + (-1 if inside else 1) / radius
+    high = min(max(bend, 0) * (radius / waves) ** 2, 0.25 * radius)
+    n = min(int(2 * math.pi * radius / 10 ** rnd.uniform(-2.3, -0.8)), 2000)
+    out = []
+    for i in range(n):
+        a = 2 * math.pi * (i + 0.5) / n
+        r = radius + high * math.cos(waves * a) * (-1 if inside else 1) + \
+            rnd.uniform(-noise, noise)
+        at = round(r * math.sin(a), 3), round(-r * math.cos(a), 3)
+        if out[-1:] != [at]:
+            out.append(at)
+    return out, inside
+
+
+@pytest.mark.parametrize("noise", [0.0003, 0.001, 0.002])
+def test_noise_is_cut_where_corners_are_as_round_as_the_wire(noise, tmp_path):
+    ini = tmp_path / "plain.ini"
+    ini.write_text("[machine]\nname = plain\n")
+    rnd = random.Random(7)
+    for i in range(20):
+        pts, inside = wave(rnd, noise)
+        start = tuple(round((p + q) / 2, 4) for p, q in zip(pts[0], pts[-1]))
+        edges = [(*p, None) for p in [*pts, start]]
+        poly = ring_of(start, edges)
+        if not poly.is_valid:
+            continue
+        far = start[0], start[1] + (OFFSET + 0.3) * (1 if inside else -1)
+        text = write_job(start, far, edges, "G41" if inside else "G42", OFFSET)
+        r = run("--machine", ini, "--emit", "iso", text=text)
+        assert r.returncode == 0, f"{i}: {r.stderr}"
+        path = path_of(read_iso(r.stdout.decode())[2:-1])
+        assert path.distance(poly.exterior) > OFFSET - 0.003, i
