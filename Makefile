@@ -74,7 +74,8 @@ COMPILE	:= $(wildcard libinterp/compile/*/*.c)
 # Built into the reader, in this order: a base is in front of what begins from it.
 DIALECTS := generic linuxcnc heekscnc fanuc-sinker sodick-sinker \
 	    charmilles-robofil charmilles-cmd skd2 sodick-wire chmer \
-	    fanuc-wire mastercam-wire makino agie agievision 3b 4b
+	    fanuc-wire mastercam-wire makino charmilles-robofil-440 agie \
+	    agievision 3b 4b
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
 # What every program has in common.
@@ -763,6 +764,7 @@ install: all panel
 		examples/template.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
 		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
+		systemd/edmd-can.conf \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/examples \
 		$(DESTDIR)$(PREFIX)/share/doc/edmd
