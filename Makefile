@@ -746,6 +746,7 @@ install: all panel
 		examples/template.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
 		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
+		systemd/edmd-can.conf \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/examples \
 		$(DESTDIR)$(PREFIX)/share/doc/edmd

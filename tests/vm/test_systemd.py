@@ -49,6 +49,25 @@ def test_the_unit_lets_it_have_its_chips(systemd):
         systemd.text("watchdog") + systemd.text("journal")
 
 
+def test_systemd_waits_for_the_interface_of_the_drives(systemd):
+    """edmd is not even tried before it is there."""
+    text = systemd.text("late-can")
+    assert "udev 0\n" in text, text
+    assert "without it: waits, inactive\n" in text, text
+    assert "later: waits, inactive\ntold before: 0\n" in text, text
+    assert "it came: active\n" in text, text + systemd.text("journal")
+
+
+def test_edmd_is_not_given_up_while_the_interface_is_away_or_down(systemd):
+    """8 tries are more than systemd's usual limit of 5 in 10 s."""
+    text = systemd.text("late-can")
+    for line in "without it: tried", "down: tried again", "up: active":
+        assert f"{line}\n" in text, text + systemd.text("journal")
+    journal = systemd.text("journal")
+    assert "can402.interface can0: No such device" in journal
+    assert "can402.interface can0: Network is down" in journal
+
+
 SPARK, WATCHDOG = "0", "1"      # lines of chip sim1
 
 

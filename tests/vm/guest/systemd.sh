@@ -90,5 +90,6 @@ echo "spark-idle $(level sim1 0)"
 systemctl stop edmd.service
 echo "stop $? $(unit Result)"
 } > watchdog 2>&1
+. ./systemd_can.sh
 journalctl -u edmd -u edmd-jobs --no-pager -o short-monotonic > journal
 true
