@@ -492,8 +492,8 @@ json_t *verbs_hello(struct panel *p, const struct session *s)
 	return json_pack("{s:s,s:s,s:s,s:s,s:o,s:o,s:o,s:i,s:b,s:b,s:s}",
 			 "machine", c->name, "user", s->user, "role",
 			 role_name(s->role), "version", EDM_VERSION, "axes",
-			 axes, "fields", values_fields(), "offsets",
-			 offsets(c), "process", c->gap.process, "plc",
-			 config_has_plc(c), "simulated",
-			 config_machine_is(c, MACHINE_NO_WIRES), "table", c->tech_table);
+			 axes, "fields", values_fields(), "offsets", offsets(c),
+			 "process", c->gap.process, "plc", config_has_plc(c),
+			 "simulated", config_machine_is(c, MACHINE_NO_WIRES),
+			 "table", c->tech_table);
 }
