@@ -164,7 +164,8 @@ def test_an_axis_is_jogged_by_steps(p, page):
     page.locator("#jog-X-plus").click()
     p.machine.client.status_where(
         lambda s: abs(s.pos_mm[0] - before - 1) < 1e-6, 20)
-    expect(page.locator(".axes tr").first).to_contain_text("1.000")
+    expect(page.locator(".axes tr").first).to_contain_text(
+        f"{before + 1:.3f}")
     page.locator("#jog-X-minus").click()
     p.machine.client.status_where(lambda s: abs(s.pos_mm[0] - before) < 1e-6,
                                   20)
