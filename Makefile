@@ -73,7 +73,8 @@ COMPILE	:= $(wildcard libinterp/compile/*/*.c)
 # Built into the reader, in this order: a base is in front of what begins from it.
 DIALECTS := generic linuxcnc heekscnc fanuc-sinker sodick-sinker \
 	    charmilles-robofil charmilles-cmd skd2 sodick-wire chmer \
-	    fanuc-wire mastercam-wire makino agie agievision 3b 4b
+	    fanuc-wire mastercam-wire makino charmilles-robofil-440 agie \
+	    agievision 3b 4b
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
 # What every program has in common.
@@ -203,6 +204,10 @@ $(B)/%.o: %.cc
 	$(call say,CXX,$<)
 	@mkdir -p $(@D)
 	$(Q)$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
+
+# From text to program there are many short loops over the axes.
+$(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
+	speed/*.c))): OPT = -O3
 
 # Generated messages: compiled without our warnings, they are not ours.
 LCM_TYPES := $(shell sed -n 's/^struct \([a-z_]*_t\).*/\1/p' messages/edm.lcm 2>/dev/null)
@@ -745,6 +750,7 @@ install: all panel
 		examples/template.ini $(DESTDIR)/etc/edmd/machine.ini
 	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
 		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
+		systemd/edmd-can.conf \
 		$(DESTDIR)$(PREFIX)/share/edmd
 	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/examples \
 		$(DESTDIR)$(PREFIX)/share/doc/edmd

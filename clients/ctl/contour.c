@@ -58,7 +58,9 @@ int ctl_contour_make(struct contour_errors *k, const struct columns *t,
 	struct twin w;
 	int err;
 
-	*k = (struct contour_errors) { .n = t->n, .period_s = columns_period_s(t) };
+	*k = (struct contour_errors) {
+		.n = t->n, .period_s = columns_period_s(t),
+	};
 	err = twin_make(&w, loop, k->period_s);
 	if (err < 0)
 		return err;

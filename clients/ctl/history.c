@@ -45,9 +45,11 @@ static void print_conditions(json_t *rows)
 		printf("%-10s %-6s %s, eroding %.1f s, jumps %.0f, retracts "
 		       "%.0f, shorts %.0f, arcs %.0f, energy %s\n",
 		       i ? "" : "conditions", condition_of(row), took,
-		       ctl_number_of(row, "erode_s"), ctl_number_of(row, "jumps"),
-		       ctl_number_of(row, "retracts"), ctl_number_of(row, "shorts"),
-		       ctl_number_of(row, "arcs"), energy);
+		       ctl_number_of(row, "erode_s"),
+		       ctl_number_of(row, "jumps"),
+		       ctl_number_of(row, "retracts"),
+		       ctl_number_of(row, "shorts"), ctl_number_of(row, "arcs"),
+		       energy);
 	}
 }
 
@@ -73,7 +75,8 @@ void history_print(json_t *job)
 		return;
 	say_energy(energy, job);
 	printf("eroding    %.1f s\narcs       %.0f\nenergy     %s\n",
-	       ctl_number_of(job, "erode_s"), ctl_number_of(job, "arcs"), energy);
+	       ctl_number_of(job, "erode_s"), ctl_number_of(job, "arcs"),
+	       energy);
 	print_conditions(json_object_get(job, "conditions"));
 	print_faults(json_object_get(job, "faults"));
 }
@@ -159,8 +162,10 @@ static void put_faults(json_t *v)
 	size_t i;
 
 	json_array_foreach(v, i, row)
-		printf("%s%s@%.3f/%.0f", i ? ";" : "", ctl_text_of(row, "fault"),
-		       ctl_number_of(row, "place_mm"), ctl_number_of(row, "line"));
+		printf("%s%s@%.3f/%.0f", i ? ";" : "",
+		       ctl_text_of(row, "fault"),
+		       ctl_number_of(row, "place_mm"),
+		       ctl_number_of(row, "line"));
 }
 
 /* By how much each electrode was worn; nothing where that is not known. */
@@ -170,7 +175,8 @@ static void put_electrodes(json_t *v)
 	size_t i;
 
 	json_array_foreach(v, i, row) {
-		printf("%s%.0f=", i ? ";" : "", ctl_number_of(row, "electrode"));
+		printf("%s%.0f=", i ? ";" : "",
+		       ctl_number_of(row, "electrode"));
 		if (json_is_true(json_object_get(row, "known")))
 			printf("%.4f", ctl_number_of(row, "wear_after_mm") -
 			       ctl_number_of(row, "wear_before_mm"));

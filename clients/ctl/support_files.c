@@ -242,7 +242,8 @@ static json_t *snapshot_put(const struct shm_snapshot *s)
 		"{s:I,s:I,s:s,s:I,s:I,s:I,s:I,s:I,s:I,s:b,s:b,s:b}",
 		"cycle", (json_int_t)s->cycle,
 		"time_ns", (json_int_t)s->time_ns,
-		"state", shm_state_name(s->state), "fault", (json_int_t)s->fault,
+		"state", shm_state_name(s->state),
+		"fault", (json_int_t)s->fault,
 		"faults", (json_int_t)s->faults,
 		"program", (json_int_t)s->program, "line", (json_int_t)s->line,
 		"segment", (json_int_t)s->seg, "tick", (json_int_t)s->tick,
@@ -261,7 +262,8 @@ static json_t *snapshot_put(const struct shm_snapshot *s)
 		"job_cycles", (json_int_t)s->job_cycles,
 		"retracts", (json_int_t)s->retracts,
 		"shorts", (json_int_t)s->shorts, "jumps", (json_int_t)s->jumps,
-		"arcs", (json_int_t)s->arcs, "overruns", (json_int_t)s->overruns,
+		"arcs", (json_int_t)s->arcs,
+		"overruns", (json_int_t)s->overruns,
 		"period_ns", (json_int_t)s->period_ns,
 		"wake_late_max_ns", (json_int_t)s->wake_late_max_ns,
 		"took_max_ns", (json_int_t)s->took_max_ns));
@@ -293,7 +295,8 @@ static void fill_snapshot(struct support *s, struct support_text *to)
 /* -- The table ------------------------------------------------------------- */
 
 const struct support_file support_files[] = {
-	{ "versions.txt", "releases of edmd, kernel and system", fill_versions },
+	{ "versions.txt", "releases of edmd, kernel and system",
+	  fill_versions },
 	{ "machine.ini", "the machine file", fill_machine },
 	{ "doctor.txt", "what this host has and lacks", fill_doctor },
 	{ "latency.txt", "how late edmd woke", fill_latency },

@@ -50,6 +50,9 @@ void config_entry_words(const struct machine_config *c,
 		say(&w, "; not done again:");
 	for (uint32_t i = 0; i < e->npassed; i++)
 		say(&w, " M%u", interp_mcode_number(e->passed[i]));
+	if (e->again)
+		say(&w, "; told again, because the PLC had not answered: M%u",
+		    interp_mcode_number(e->again));
 	say(&w, ", off the work; then it ");
 	if (e->far_mm <= e->from_mm) {
 		say(&w, "goes on with line %u", e->next_line);

@@ -37,6 +37,17 @@ static bool end_is_due(const struct server *s)
 	return true;
 }
 
+/*
+ * A multiple of LOOK_US, where ticks of the kernel are too.  The cycle wakes in
+ * the middle of its period, so neither is in its way.
+ */
+static uint64_t next_look(void)
+{
+	const uint64_t now_us = (uint64_t)clock_ns(CLOCK_MONOTONIC) / 1000;
+
+	return (now_us / LOOK_US + 1) * LOOK_US;
+}
+
 static int on_look(sd_event_source *src, uint64_t usec, void *arg)
 {
 	struct server *s = arg;
@@ -51,7 +62,7 @@ static int on_look(sd_event_source *src, uint64_t usec, void *arg)
 	report_watchdog(&s->report, beats(s->loop));
 	if (end_is_due(s))
 		return sd_event_exit(sd_event_source_get_event(src), 0);
-	return sd_event_source_set_time_relative(src, LOOK_US);
+	return sd_event_source_set_time(src, next_look());
 }
 
 static int on_signal(sd_event_source *src, const struct signalfd_siginfo *si,
@@ -77,8 +88,8 @@ static int sources_add(sd_event *e, struct server *s)
 	if (err >= 0)
 		err = sd_event_add_signal(e, NULL, SIGINT, on_signal, s);
 	if (err >= 0)
-		err = sd_event_add_time_relative(e, &look, CLOCK_MONOTONIC,
-						 LOOK_US, 1000, on_look, s);
+		err = sd_event_add_time(e, &look, CLOCK_MONOTONIC,
+					next_look(), 1, on_look, s);
 	if (err >= 0)
 		err = sd_event_source_set_enabled(look, SD_EVENT_ON);
 	return err;

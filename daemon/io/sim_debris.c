@@ -44,7 +44,7 @@ double sim_side_mm(const struct sim *s)
 
 static double pumped(const struct sim *s, double side_mm)
 {
-	const double gap = fmax(0, sim_gap_mm(s));
+	const double gap = larger(0, sim_gap_mm(s));
 	const double speed = s->stroke_mm / s->period_s;
 	const double clean = gap > 0 ? gap / (gap + side_mm) : 0;
 
@@ -105,16 +105,15 @@ void sim_heat(struct sim *s)
 	double cool = 1;
 
 	if (s->powered_s > 0) {
-		const double crowd = s->debris +
-				     exp(-s->pulse.off_us / s->p.deion_us);
+		const double crowd = s->debris + s->pulse.channel;
 
 		s->hot += step * s->p.arcing_gain * crowd * crowd *
 			  s->train.arc * (1 - s->hot);
-		s->debris = fmin(1, s->debris + s->train.arc * ARC_DEBRIS_S *
+		s->debris = smaller(1, s->debris + s->train.arc * ARC_DEBRIS_S *
 						s->period_s);
 	}
 	if (s->powered_s == 0 || lifted)
 		cool = ARC_COOL;
-	s->hot = fmin(1, s->hot / (1 + step * cool));
+	s->hot = smaller(1, s->hot / (1 + step * cool));
 	count_burns(s);
 }

@@ -37,8 +37,8 @@ static double tip_part(const struct config_sim *p, double way_mm)
 		return 1;
 	if (t <= 0)
 		return BLUNT;
-	return fmax(BLUNT, p->electrode == ELECTRODE_BALL ? t * (2 - t) :
-							    t * t);
+	return larger(BLUNT, p->electrode == ELECTRODE_BALL ? t * (2 - t) :
+							      t * t);
 }
 
 double sim_area_mm2(const struct sim *s)
@@ -55,7 +55,8 @@ static void deepen(struct sim *s)
 	if (!s->sparked)
 		s->surface_z_mm = z_mm;
 	s->sparked = true;
-	s->depth_mm = fmax(s->depth_mm, s->p.depth_mm + s->surface_z_mm - z_mm);
+	s->depth_mm = larger(s->depth_mm,
+			     s->p.depth_mm + s->surface_z_mm - z_mm);
 }
 
 void sim_erode(struct sim *s)
@@ -72,12 +73,12 @@ void sim_erode(struct sim *s)
 	if (volume <= 0)
 		return;
 	deepen(s);
-	s->front_mm += d / fmax(AFTER, s->fresh);
+	s->front_mm += d / larger(AFTER, s->fresh);
 	s->removed_mm3 += volume;
 	if (sink)
 		s->wear_mm += d * s->p.wear_ratio *
 			      (s->out.negative ? s->p.negative_wear : 1);
-	s->debris = fmin(1, s->debris + d * s->p.debris_per_mm);
+	s->debris = smaller(1, s->debris + d * s->p.debris_per_mm);
 }
 
 /*

@@ -24,6 +24,8 @@
 #include "rng.h"
 #include "sim_map.h"
 
+#include "interp/smaller.h"
+
 /* The pulses in force, and what follows from them alone. */
 struct pulse_set {
 	double on_us, off_us, open_v;
@@ -33,6 +35,8 @@ struct pulse_set {
 	double reach_mm;		/* contact to where nothing ignites */
 	double crater_mm3;		/* of one spark */
 	double crater_j;		/* its energy */
+	double channel;			/* what is left of a spark's when the
+					 * next pulse begins, without debris */
 };
 
 /* What a train of pulses does in a gap: expected values. */
@@ -49,7 +53,6 @@ struct pulse_train {
 
 /* Of one axis, in pulses of its drive. */
 struct sim_switches {
-	bool wired;
 	int toward;			/* the switch is on from there on */
 	double home, min, max, index;
 	int32_t was;			/* a period ago */
@@ -79,6 +82,7 @@ struct sim {
 	double wait_s;			/* until an axis that starts moves */
 	double stroke_mm;		/* of this period */
 	struct sim_switches switches[IO_NAXES];
+	uint32_t wired;			/* bit per axis that has any */
 
 	/* Work and electrode. */
 	double begin_mm;		/* on the path: the surface */

@@ -76,6 +76,7 @@ void sim_pulses_set(struct sim *s)
 	q->open_v = given(o->ignition_v, p->open_v);
 	q->iso = isfinite(o->on_us) ? o->iso : p->iso != 0;
 	q->crater_mm3 = crater_mm3(s, peak_a, q->on_us);
+	q->channel = exp(-q->off_us / p->deion_us);
 	q->crater_j = peak_a * p->spark_v * q->on_us * 1e-6;
 	/* Larger craters, higher peaks. */
 	larger = cbrt(q->crater_mm3 / crater_mm3(s, p->peak_a, p->on_us));
@@ -147,7 +148,7 @@ static struct odds odds(const struct sim *s, double gap_mm)
 	}
 	o.ignites = -expm1(-limit / delay);
 	o.wait_us = delay * o.ignites;
-	o.late = exp(-fmin(limit, s->late_us) / delay);
+	o.late = exp(-smaller(limit, s->late_us) / delay);
 	o.arc = arc_part(s);
 	return o;
 }
@@ -167,7 +168,7 @@ void sim_pulses_train(struct sim *s, double gap_mm)
 	if (q->iso)
 		total_us += wait_us - open * q->on_us;
 	else
-		burn_us = fmax(0, (o.free - arc) * q->on_us - wait_us);
+		burn_us = larger(0, (o.free - arc) * q->on_us - wait_us);
 	s->train = (struct pulse_train) {
 		.spark = spark, .arc = arc, .shorted = 1 - o.free,
 		.late = (o.free - arc) * o.late,
@@ -175,7 +176,7 @@ void sim_pulses_train(struct sim *s, double gap_mm)
 			  ARC_V * s->p.spark_v * q->on_us * arc) / total_us,
 		.waiting = wait_us / total_us,
 		.wait_volts = q->open_v * wait_us / total_us,
-		.waits = s->period_s * 1e6 / total_us / fmax(o.ignites, 1e-9),
+		.waits = s->period_s * 1e6 / total_us / larger(o.ignites, 1e-9),
 		.per_s = 1e6 / total_us,
 		.burnt = spark > 0 ? burn_us / (spark * q->on_us) : 0,
 	};
@@ -195,7 +196,7 @@ static double counted(struct sim *s, double part, double pulses)
 {
 	const double sigma = sqrt(part * (1 - part) / pulses);
 
-	return fmax(0, part + sigma * rng_normal(&s->rng));
+	return larger(0, part + sigma * rng_normal(&s->rng));
 }
 
 struct io_shares sim_pulses_shares(struct sim *s)
@@ -207,7 +208,7 @@ struct io_shares sim_pulses_shares(struct sim *s)
 	double sum = 0;
 
 	for (int i = 0; i < 4; i++) {
-		n[i] = fmin(1, fmax(0, n[i]));
+		n[i] = smaller(1, larger(0, n[i]));
 		if (s->p.counted)
 			n[i] = counted(s, n[i], pulses);
 		sum += n[i];
@@ -226,8 +227,8 @@ struct io_shares sim_pulses_shares(struct sim *s)
  */
 static double gamma_part(struct sim *s, double n)
 {
-	const double v = 1 / (9 * fmax(n, 1));
-	const double root = fmax(0, 1 - v + sqrt(v) * rng_normal(&s->rng));
+	const double v = 1 / (9 * larger(n, 1));
+	const double root = larger(0, 1 - v + sqrt(v) * rng_normal(&s->rng));
 
 	return root * root * root;
 }
@@ -243,5 +244,5 @@ double sim_pulses_volts(struct sim *s, bool sparks)
 
 		v = (v + t->wait_volts * more) / (1 + t->waiting * more);
 	}
-	return fmax(0, v + s->p.noise_v * rng_normal(&s->rng));
+	return larger(0, v + s->p.noise_v * rng_normal(&s->rng));
 }

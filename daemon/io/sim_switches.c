@@ -19,8 +19,8 @@ void sim_switches_init(struct sim *s, const struct machine_config *c)
 		const struct manual_axis *h = &c->manual[i];
 		const double off_mm = s->p.home_off_mm;
 
+		s->wired |= (uint32_t)config_has_switch(c, i) << i;
 		s->switches[i] = (struct sim_switches) {
-			.wired = config_has_switch(c, i),
 			.toward = c->home_dir[i] ? 1 : -1,
 			.home = (h->home_at_mm + off_mm) / l->pulse_mm,
 			.min = (l->travel_min_mm + off_mm - OUTSIDE_MM) /
@@ -34,13 +34,12 @@ void sim_switches_init(struct sim *s, const struct machine_config *c)
 
 void sim_switches_read(struct sim *s, struct io_inputs *in)
 {
-	for (int i = 0; i < IO_NAXES; i++) {
+	for (uint32_t left = s->wired; left; left &= left - 1) {
+		const int i = __builtin_ctz(left);
 		struct sim_switches *w = &s->switches[i];
 		const int32_t at = s->out.target[i];
 		const uint32_t bit = 1u << i;
 
-		if (!w->wired)
-			continue;
 		if (w->toward * (at - w->home) >= 0)
 			in->home |= bit;
 		if (at < w->min || at > w->max)

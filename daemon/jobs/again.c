@@ -161,6 +161,9 @@ void again_interrupted(struct jobs *j, uint32_t n,
 	*ret = (struct again) { .base = *last };
 	if (again_read(j, n, &before) < 0)
 		return;
+	/* It would have been told again at the end of the positioning. */
+	if (!last->snap.mcode && last->snap.far_mm <= before.way_mm)
+		ret->base.snap.mcode = before.base.snap.mcode;
 	again_whole(&before, &ret->base.snap);
 	keep_sets(&before.base.sets, &ret->base.sets);
 	if (!again_is_named(&before))
@@ -242,8 +245,8 @@ static void why_not(struct jobs *j, const struct jobs_lcm_command *c,
 	const char *now = NULL;
 
 	if (job->state != JOB_INTERRUPTED)
-		now = "this job was not interrupted; without a job, resume goes "
-		      "on after a hold";
+		now = "this job was not interrupted; without a job, resume "
+		      "goes on after a hold";
 	else if (j->link.state != LINK_OK)
 		now = "edmd is not there";
 	else if (queue_is_faulted(j))
@@ -255,9 +258,9 @@ static void why_not(struct jobs *j, const struct jobs_lcm_command *c,
 	else if (!is_of_job(a, job))
 		now = UNREADABLE;
 	else if (!are_same_files(j, a))
-		now = "the machine file, or a map or a dialect that it names, is "
-		      "another than when the job began; put that one back, "
-		      "and restart the services";
+		now = "the machine file, or a map or a dialect that it names, "
+		      "is another than when the job began; put that one "
+		      "back, and restart the services";
 	if (now)
 		snprintf(reason, 320, "%s", now);
 	else
@@ -344,6 +347,7 @@ int again_request(struct jobs *j, const struct store_job *job,
 	ret->from.far_mm = a.base.snap.far_mm;
 	ret->from.probed = probed_by(&a.base.snap);
 	ret->from.probed_known = true;
+	ret->from.unanswered = a.base.snap.mcode;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		ret->start_mm[i] = a.base.job.start[i] * s->pulse_mm[i];
 	return 0;

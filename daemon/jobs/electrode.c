@@ -18,7 +18,7 @@ uint32_t electrode_held(struct jobs *j)
 	return (uint32_t)store_number(j->store, "electrode", 0);
 }
 
-/* -- What the compiler gets ------------------------------------------------- */
+/* -- What the compiler gets ------------------------------------------------ */
 
 static void put_asked(struct electrode *e, uint32_t number, double offset_mm)
 {
@@ -81,7 +81,7 @@ void electrode_request(struct jobs *j, const struct store_job *job,
 	ret->wants_wear = !job && e->nasked > 0;
 }
 
-/* -- May it begin? ---------------------------------------------------------- */
+/* -- May it begin? --------------------------------------------------------- */
 
 static double end_of(const struct interp_wear *w, uint32_t k)
 {
@@ -150,9 +150,10 @@ static const char *say_why_not(struct jobs *j, const struct store_electrode *e,
 
 	say_others(j, need_mm, others, sizeof(others));
 	if (e->state == ELECTRODE_ABSENT)
-		snprintf(why, sizeof(why), "electrode %u %s is absent; bring it "
-			 "and electrode set %u state=there, or use %s", e->n,
-			 e->name, e->n, others);
+		snprintf(why, sizeof(why),
+			 "electrode %u %s is absent; bring it "
+			 "and electrode set %u state=there, or use %s",
+			 e->n, e->name, e->n, others);
 	else if (e->state == ELECTRODE_WORN || electrode_is_worn(e))
 		snprintf(why, sizeof(why), "electrode %u %s is worn out: %.4f "
 			 "mm of wear, %.1f min of sparks; dress it and "
@@ -201,7 +202,7 @@ const char *electrode_check(struct jobs *j, const struct compiler_result *r)
 	return why_not(j, &r->wear, cut_mm);
 }
 
-/* -- The program that is loaded --------------------------------------------- */
+/* -- The program that is loaded -------------------------------------------- */
 
 /* Of a job that goes on, what was cut before. */
 static double cut_before_mm(struct jobs *j, uint32_t n)
@@ -308,9 +309,9 @@ static void tell_load(struct jobs *j)
 			continue;
 		jobs_note(j, &(struct jobs_note) {
 			.kind = "electrode", .job = j->queue.job.id,
-		}, "job %s: electrode %u %s shifts Z by %+.4f mm; the job takes "
-			  "about %.4f mm off it%s", j->queue.job.name, number,
-			  is.name, e->worn[k].offset_mm, u.wear_mm,
+		}, "job %s: electrode %u %s shifts Z by %+.4f mm; the job "
+			  "takes about %.4f mm off it%s", j->queue.job.name,
+			  number, is.name, e->worn[k].offset_mm, u.wear_mm,
 			  u.unknown_mm > NOTHING_MM ?
 			  ", and what the conditions without a wear ratio take "
 			  "is not known" : "");
@@ -351,7 +352,7 @@ bool electrode_waits(struct jobs *j)
 	return *e->why != '\0';
 }
 
-/* -- What it takes off ------------------------------------------------------ */
+/* -- What it takes off ----------------------------------------------------- */
 
 static double sparked_s(const struct shm_snapshot *s)
 {

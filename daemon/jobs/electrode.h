@@ -85,7 +85,8 @@ void electrode_tell(struct jobs *j);
 /** electrode_interrupted() - the same of a job whose last checkpoint is @b. */
 void electrode_interrupted(struct jobs *j, const struct checkpoint_base *b);
 
-/** electrode_settle() - the same of job @n, which ended as @ended says, unseen. */
+/** electrode_settle() - the same of job @n, which ended as @ended says,
+ *  unseen. */
 void electrode_settle(struct jobs *j, uint32_t n,
 		      const struct shm_ended *ended);
 

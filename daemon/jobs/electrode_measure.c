@@ -155,8 +155,8 @@ static void write_down(struct jobs *j, struct store_electrode *e,
 	store_electrode_put(j->store, e);
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "electrode", .job = j->queue.job.id,
-	}, "electrode %u %s measured: %.4f mm long, wear %.4f mm; the table had "
-		  "%.4f mm", e->n, e->name, length_mm, e->wear_mm, was_mm);
+	}, "electrode %u %s measured: %.4f mm long, wear %.4f mm; the table "
+		  "had %.4f mm", e->n, e->name, length_mm, e->wear_mm, was_mm);
 }
 
 void electrode_measured(struct jobs *j)

@@ -26,8 +26,8 @@ struct mdi {
 const char *mdi_why_not(const struct jobs *j);
 
 /**
- * mdi_run() - check it, and put it where it begins at once.  The sender of @c is
- * answered.
+ * mdi_run() - check it, and put it where it begins at once.  The sender of @c
+ * is answered.
  */
 void mdi_run(struct jobs *j, const struct jobs_lcm_command *c,
 	     const struct mdi *m);

@@ -131,7 +131,7 @@ char *store_electrodes_json(struct store *s, uint32_t after)
 	return text;
 }
 
-/* -- How jobs used them ----------------------------------------------------- */
+/* -- How jobs used them ---------------------------------------------------- */
 
 #define WORN_COLUMNS	"job, part, electrode, offset_mm, before_mm, " \
 			"after_mm, before_s, after_s, known"
@@ -172,9 +172,10 @@ static void worn_get(sqlite3_stmt *q, struct store_worn *ret)
 
 uint32_t store_worn_next(struct store *s, uint32_t n)
 {
-	return (uint32_t)store_number_of(s, 0, "SELECT ifnull(max(part) + 1, 0) "
-					 "FROM worn WHERE job=?", "i",
-					 (int64_t)n);
+	return (uint32_t)store_number_of(s, 0,
+					 "SELECT ifnull(max(part) + 1, 0) "
+					 "FROM worn WHERE job=?",
+					 "i", (int64_t)n);
 }
 
 int store_worn_drop(struct store *s, uint32_t n)

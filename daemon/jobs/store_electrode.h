@@ -58,7 +58,7 @@ size_t store_electrodes(struct store *s, struct store_electrode *to,
  *  fit one answer; to be freed.  NULL: the store failed. */
 char *store_electrodes_json(struct store *s, uint32_t after);
 
-/* -- How jobs used them ----------------------------------------------------- */
+/* -- How jobs used them ---------------------------------------------------- */
 
 /* Part @part of job @job, from one change of the electrode to the next. */
 struct store_worn {

@@ -61,8 +61,8 @@
 #define IN_QUEUE	"1 - loaded, " STORE_TURN
 #define IN_HISTORY	"-ended_us, -n"
 
-/* SQLite finds the page by the index of that order, if it is told where the page
- * begins, and that the index of the states is of no use (+). */
+/* SQLite finds the page by the index of that order, if it is told where the
+ * page begins, and that the index of the states is of no use (+). */
 #define HAS_ENDED	"+state IN ('done', 'stopped', 'fault') AND " \
 			"-ended_us >= coalesce((SELECT -ended_us FROM job " \
 			"WHERE id=?2), -9e18)"
@@ -81,8 +81,9 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 	switch (what) {
 	case STORE_SHOW:
 		return store_ask(s, ret_err, "SELECT "
-				 JOB_JSON(SUMS_JSON CHANGES_JSON NOTES_JSON) " FROM job "
-				 "WHERE id=?1", "si", id, (int64_t)rows);
+				 JOB_JSON(SUMS_JSON CHANGES_JSON
+					  NOTES_JSON) " FROM job WHERE id=?1",
+				 "si", id, (int64_t)rows);
 	case STORE_QUEUE:
 		return store_ask(s, ret_err, JOBS_SQL("", "state IN ('queued', "
 				 "'interrupted') OR (loaded=1 AND state NOT IN "

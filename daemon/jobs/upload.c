@@ -61,8 +61,9 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 	else if (c->bytes < 0 || c->bytes > UPLOAD_BYTES_MAX)
 		refuse(a, EX_DATAERR, "job too long; at most 64 MiB");
 	else if (!begin_is_fit(c))
-		refuse(a, EX_DATAERR, "place to begin at not fit; a line from 1 "
-		       "on, or mm along the path, not both");
+		refuse(a, EX_DATAERR,
+		       "place to begin at not fit; a line from 1 on, or mm "
+		       "along the path, not both");
 	else if (c->electrode < 0 || c->electrode > 9999)
 		refuse(a, EX_DATAERR, "no such electrode; 1 to 9999, or 0: the "
 		       "one in the holder");

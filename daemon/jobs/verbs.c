@@ -508,8 +508,8 @@ static void verb_resume(struct jobs *j, const struct verb *v,
 		if (!refused_by_fault(j, c))
 			verb_machine(j, v, c);
 	} else if (store_find(j->store, c->job, &job) < 0) {
-		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
-			     "them");
+		verbs_answer(j, c, EX_NOINPUT,
+			     "no such job; edmctl queue lists them");
 	} else {
 		again_resume(j, c, &job);
 	}
@@ -628,7 +628,8 @@ static const struct verb verbs[] = {
 	{ "hello", ROLE_VIEWER, VERB_ASKS, keyring_hello, VERB_OWN, "" },
 	{ "keys", ROLE_SERVICE, VERB_ASKS, keyring_list, VERB_OWN, "" },
 	{ "keys-add", ROLE_SERVICE, VERB_ACTS, keyring_add, VERB_OWN, "" },
-	{ "keys-remove", ROLE_SERVICE, VERB_ACTS, keyring_remove, VERB_OWN, "" },
+	{ "keys-remove", ROLE_SERVICE, VERB_ACTS, keyring_remove, VERB_OWN,
+	  "" },
 };
 
 #define NVERBS	(sizeof(verbs) / sizeof(verbs[0]))

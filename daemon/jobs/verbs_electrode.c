@@ -16,7 +16,7 @@
 #define NUMBER_WANTED	"a whole number from 1 to 9999, but not 80 to 99: " \
 			"T80 to T99 are pumps and supplies in some dialects"
 
-/* -- KEY=VALUE -------------------------------------------------------------- */
+/* -- KEY=VALUE ------------------------------------------------------------- */
 
 struct key {
 	const char *name;
@@ -146,7 +146,7 @@ static int take_all(struct store_electrode *e, const char *text,
 	return err;
 }
 
-/* -- Verbs ------------------------------------------------------------------ */
+/* -- Verbs ----------------------------------------------------------------- */
 
 void electrode_list(struct jobs *j, const struct verb *v,
 		    const struct jobs_lcm_command *c)

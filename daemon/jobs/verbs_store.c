@@ -49,7 +49,7 @@ void verbs_store(struct jobs *j, const struct verb *v,
 		"pid", (int)getpid(), "version", EDM_VERSION));
 }
 
-/* -- The values in force ---------------------------------------------------- */
+/* -- The values in force --------------------------------------------------- */
 
 #define VALUES_BYTES_MAX	(64 << 20)
 
@@ -145,8 +145,8 @@ void verbs_checkpoint(struct jobs *j, const struct verb *v,
 	if (!last->there)
 		verbs_answer_json(j, c, json_object());
 	else
-		verbs_answer_json(j, c, json_pack("{s:I,s:o,s:o,s:o,s:I}", "utime",
-				       (json_int_t)last->utime,
+		verbs_answer_json(j, c, json_pack("{s:I,s:o,s:o,s:o,s:I}",
+				       "utime", (json_int_t)last->utime,
 				       "job", job_put(&last->base.job),
 				       "place", place_put(&last->base.snap),
 				       "sums", sums_put(&last->base.snap),

@@ -128,8 +128,8 @@ void verbs_why(struct jobs *j, const struct verb *v,
 
 	(void)v;
 	if (err < 0 && *c->job) {
-		verbs_answer(j, c, EX_NOINPUT, "no such job; edmctl queue lists "
-			     "them");
+		verbs_answer(j, c, EX_NOINPUT,
+			     "no such job; edmctl queue lists them");
 		return;
 	}
 	if (err == 0)

@@ -62,8 +62,8 @@ static enum cycle_event look_arrive(const struct cycle *c)
 
 /*
  * While positioning, the electrode met something over ground that was cut
- * already.  That is a short like any other.  A retract has no lead, so axes that
- * have a lead first brake with it.
+ * already.  That is a short like any other.  A retract has no lead, so axes
+ * that have a lead first brake with it.
  */
 static enum cycle_event look_out(struct cycle *c)
 {
@@ -93,7 +93,8 @@ static enum cycle_event look(struct cycle *c)
 	case STATE_APPROACH:
 		return look_in(c);
 	case STATE_ERODE:
-		return flush_due(c) && servo_rests(c) ? EVENT_JUMP_DUE : EVENT_NONE;
+		return flush_due(c) && servo_rests(c) ? EVENT_JUMP_DUE :
+							EVENT_NONE;
 	case STATE_TRAVEL:
 		return look_out(c);
 	case STATE_RETRACT:

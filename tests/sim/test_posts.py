@@ -38,6 +38,7 @@ FILES = {
     "4b.4b": ("B5000 behind a :", []),
     "agievision.iso": ("G71", []),
     "charmilles-cmd.iso": (None, []),
+    "charmilles-robofil-440.iso": ("M15", ["M15", "M24", "M28", "G92"]),
     "charmilles-robofil.iso": ("G38", ["G60", "G38", "G39"]),
     "fanuc-sinker-fusion.nc": ("G80", ["G80", "T01", "M06", "M03", "G43"]),
     "fanuc-sinker-helman.nc": ("G80", ["T1", "M6", "G80", "M3", "G43"]),
@@ -49,14 +50,16 @@ FILES = {
     "linuxcnc-plasma.ngc": ("G64", ["G64", "M52", "M68", "G10", "X10", "M3",
                                     "M67"]),
     "linuxcnc-vcarve.ngc": ("G64", ["G49", "G64", "T1", "M6", "M3"]),
+    "makino-u32k.nc": ("M17", ["M06", "M17", "M07", "M18"]),
     "makino.nc": ("M60", ["M60", "T84", "M50"]),
     "mastercam-wire-hsm.nc": (None, []),
     "mastercam-wire.nc": ("M60", ["M60", "M20", "M21", "M50"]),
     "sodick-sinker.nc": (None, ["M05"]),
     "sodick-wire.nc": ("'='", ["Q", "G92", "G29", "T94"]),
 }
-DIALECTS = ["3b", "4b", "agievision", "charmilles-cmd", "charmilles-robofil",
-            "fanuc-sinker", "fanuc-wire", "generic", "heekscnc", "linuxcnc",
+DIALECTS = ["3b", "4b", "agievision", "charmilles-cmd",
+            "charmilles-robofil-440", "charmilles-robofil", "fanuc-sinker",
+            "fanuc-wire", "generic", "heekscnc", "linuxcnc",
             "makino", "mastercam-wire",
             "sodick-sinker", "sodick-wire"]
 

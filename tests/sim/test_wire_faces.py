@@ -115,14 +115,15 @@ def test_a_hole_inside_the_part_above_is_no_place_to_begin():
 
 
 def test_what_the_wire_reaches_from_beside_a_mouth_is_not_lost():
-    """A groove 13 um deep, wider than its mouth of 0.105 mm."""
+    """A groove wider than its mouth of 0.105 mm, into which the wire comes 11.6 um
+    deep.  Its walls lean by 30 degrees at the most, or by more."""
     text = """F200 H1=0.125
 G0 X2 Y4
 G41 H1 G1 X0 Y4
 Y0
 X5
-X4.98 Y-0.013
-X5.126 Y{deep}
+X{left} Y{deep}
+X{right} Y{deep}
 X5.105 Y0
 X10
 Y8
@@ -131,8 +132,10 @@ Y4
 G40 X2
 M2
 """
-    for deep, code in ((-0.013, 0), (-0.05, 65)):
-        r = run("--machine", WIRE, "--check", text=text.format(deep=deep))
+    for by, deep, code in ((0.007, 0.013, 0), (0.02, 0.013, 65),
+                           (0.007, 0.05, 65)):
+        r = run("--machine", WIRE, "--check", text=text.format(
+            left=5 - by, right=5.105 + by, deep=-deep))
         assert r.returncode == code, r.stderr
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import pyclipper
 import shapely
 from shapely.geometry import LinearRing, LineString, Point, Polygon
+from shapely.ops import nearest_points, substring
 
 CHORD_MM = 0.0001       # arcs become chords this near to them
 UM = 0.001
@@ -95,16 +96,29 @@ def way_of(poly, offset, inside, at):
 
 NEARER = 3 * UM         # docs/taper.md: the wire may come nearer by this
 TOUCHED = 0.5 * UM      # a place so near to what the wire reaches is reached
+AROUND = 200            # places that are kept on both sides of what is missed
 
 
-def rise_of(pts, side):
-    """The most by which a line string turns to its side (+1: left)."""
-    d = np.diff(pts, axis=0)
-    d = d[np.hypot(*d.T) > 1e-9]
-    a = np.arctan2(d[:, 1], d[:, 0])
-    turns = (np.diff(a) + np.pi) % (2 * np.pi) - np.pi
-    heading = np.concatenate([[0], np.cumsum(turns * side)])
-    return (heading - np.minimum.accumulate(heading)).max()
+def rise_of(pts, reached, side):
+    """The most by which a line string turns to its side (+1: left), without what
+    it turned before and at a place that is reached."""
+    heading, low, most, last = 0.0, 0.0, 0.0, None
+    for (x, y), here in zip(np.diff(pts, axis=0), reached):
+        if math.hypot(x, y) < 1e-9:
+            continue
+        way = math.atan2(y, x)
+        if last is not None:
+            heading += side * math.remainder(way - last, 2 * math.pi)
+        last = way
+        low = heading if here else min(low, heading)
+        most = max(most, heading - low)
+    return most
+
+
+def foot_of(pts, at, reach):
+    """The nearest to @at of the places along the first @reach mm of pts."""
+    line = substring(LineString(pts), 0, reach)
+    return np.array(nearest_points(line, Point(at))[0].coords[0])
 
 
 def turn_at(way, at, side, reach):
@@ -127,51 +141,77 @@ def places_of(ring, way):
     return shapely.get_coordinates(shapely.line_interpolate_point(ring, at))
 
 
-def left_out(poly, way, offset, inside, about=2 * UM):
-    """Stretches of the contour that a wire on the way does not come to, each
-    (how far off it is, the turn of the way there, the most by which the
-    contour turns inward)."""
+class Missed:
+    """A stretch of the contour that a wire on the way does not come to, from the
+    last place that it touches to the next one."""
+
+    def __init__(self, pts, far, reach):
+        self.pts, self.far, self.reach = pts, far, reach
+        self.run, self.off = pts[reach:-reach], far[reach:-reach]
+
+    def stand(self, way, side, about):
+        """Where the wire stands: as near as it can to both ends of it."""
+        corners = np.asarray(way.coords)
+        both = np.hypot(*(corners - self.run[0]).T) + \
+            np.hypot(*(corners - self.run[-1]).T)
+        self.at = corners[both.argmin()]
+        self.turn = turn_at(way, self.at, side, about)
+
+    def beyond(self, offset):
+        """How far each place is beyond a tangent of the wire where it touches
+        the contour at the two ends."""
+        most = 3 * math.sqrt(2 * TOUCHED * offset)
+        ret = np.full(len(self.run), -math.inf)
+        for pts in (self.pts[self.reach + 1::-1], self.pts[-self.reach - 2:]):
+            foot = foot_of(pts, self.at, most)
+            n = (foot - self.at) / math.dist(foot, self.at)
+            ret = np.maximum(ret, (self.run - foot) @ n)
+        return ret
+
+
+def left_out(poly, way, offset, inside, about):
+    """All Missed of a contour, or None if the wire touches nothing of it."""
     ring = poly.exterior
     if not ring.is_ccw:
         ring = LinearRing(list(ring.coords)[::-1])
-    side = 1 if inside else -1
     pts = places_of(ring, way)
     far = shapely.distance(shapely.points(pts), way)
     if far.min() > offset + TOUCHED:
-        return [(math.inf, math.pi, math.pi)]
+        return None
     first = int(np.flatnonzero(far <= offset + TOUCHED)[0])
     pts, far = np.roll(pts, -first, axis=0), np.roll(far, -first)
     missed = np.concatenate([far > offset + TOUCHED, [False]]).astype(int)
     ends = np.flatnonzero(np.diff(missed)) + 1
-    corners = np.asarray(way.coords)
     ret = []
     for a, b in zip(ends[::2], ends[1::2]):
-        run = np.concatenate([pts[a - 1:b], [pts[b % len(pts)]]])
-        # The wire stands as near as it can to both ends of it.
-        both = np.hypot(*(corners - run[0]).T) + \
-            np.hypot(*(corners - run[-1]).T)
-        ret.append((far[a:b].max(), turn_at(way, corners[both.argmin()], side, about),
-                    rise_of(run, side)))
+        i = np.arange(a - 1 - AROUND, b + 1 + AROUND) % len(pts)
+        ret.append(Missed(pts[i], far[i], AROUND))
+        ret[-1].stand(way, 1 if inside else -1, about)
     return ret
 
 
+def is_left_by_a_corner(m, offset, side, hidden, more):
+    """Is what is missed no more than an inner corner leaves (docs/taper.md)?"""
+    reached = m.off <= offset + hidden
+    rise, turn = rise_of(m.run, reached, side), m.turn
+    if rise <= 2.1 + more or (rise <= turn + 0.5 + more and rise < 3):
+        turn = max(turn, rise)
+    elif (m.beyond(offset)[~reached] > hidden).any():
+        return False
+    reach = offset / math.cos(turn / 2) if turn < 3 else offset
+    return m.off.max() <= reach + hidden
+
+
 def can_be_cut(poly, offset, inside, at, hidden=2 * UM, more=0, about=2 * UM):
-    """A place that the wire does not come to must lie no farther from it than
-    the point of an inner corner does (docs/taper.md).  about: the way on which
-    a corner turns."""
+    """Can a wire cut it, by the rule of docs/taper.md?  hidden: so much may be
+    missing anywhere; about: the way on which a corner turns."""
     way = way_of(poly, offset, inside, at)
     if way is None:
         return False
-    for far, turn, rise in left_out(poly, way, offset, inside, about):
-        if rise <= 2.1 + more or (rise <= turn + 0.5 + more and rise < 3):
-            turn = max(turn, rise)
-        reach = offset / math.cos(turn / 2) if turn < 3 else offset
-        # What winds itself up goes on behind a neck.
-        if rise > turn + 3.3 + more:
-            reach = min(reach, offset / math.cos(2.1 / 2))
-        if far > reach + hidden:
-            return False
-    return True
+    missed = left_out(poly, way, offset, inside, about)
+    return missed is not None and all(
+        is_left_by_a_corner(m, offset, 1 if inside else -1, hidden, more)
+        for m in missed)
 
 
 def is_close(poly, offset, inside, at):

@@ -13,6 +13,7 @@
 
 #include "interp/build_from.h"
 #include "interp/cursor.h"
+#include "interp/mcode_arg.h"
 
 #define RUNS		150
 #define POINTS_MAX	400000
@@ -258,11 +259,80 @@ static void a_probing_motion_is_made_again(void **st)
 	}
 }
 
+/* 0 G0 to Z1, M63, 1 mm down, G0 up and over, 2 mm down. */
+static struct interp_build *with_codes(uint32_t first, uint32_t second)
+{
+	const struct interp_build_options bo = {
+		.machine = &machine, .strategy = INTERP_SIMULTANEOUS,
+		.chord_error_mm = 0.001, .period_s = 1e-3,
+	};
+	static const double to[][INTERP_NAXES] = {
+		{ 0, 0, 1 }, { 0, 0, 0 }, { 0, 0, 1 }, { 5, 0, 1 }, { 5, 0, -1 },
+	};
+	struct interp_build *b = interp_build_create(&bo);
+	struct interp_diag d;
+
+	assert_non_null(b);
+	for (uint32_t i = 0; i < 5; i++) {
+		const struct interp_build_word w = {
+			.line = i + 1, .rapid = i != 1 && i != 4,
+		};
+		const uint32_t code = i == 1 ? first : i == 4 ? second : 0;
+
+		if (code)
+			assert_int_equal(interp_build_action(b, INTERP_MCODE,
+							     code, &w, &d), 0);
+		assert_int_equal(interp_build_line(b, to[i], &w, &d), 0);
+	}
+	return b;
+}
+
+/* Nobody knows whether the PLC heard it: it is told at the end of the
+ * positioning, before anything else, and not a second time. */
+static void an_unanswered_code_is_told_again(void **st)
+{
+	const struct interp_mcode m = { INTERP_MCODE_FREE, INTERP_MCODE_SKIP };
+	const uint32_t pump = interp_mcode_arg(63, m);
+	const uint32_t light = interp_mcode_arg(64, m);
+
+	(void)st;
+	for (uint32_t i = 0; i < 8; i++) {
+		const bool left_out = i & 1, asked = i & 2, other = i & 4;
+		struct interp_build *b = with_codes(left_out ? pump : light,
+						    left_out ? light : pump);
+		const struct interp_build_from o = {
+			/* 9 mm are before the second cut. */
+			.far_mm = 9.5, .up = INTERP_Z, .probed_known = true,
+			.unanswered = other ? 65 : asked ? 63 : 0,
+		};
+		struct interp_build_entry e;
+		struct interp_diag d;
+		struct made part;
+		uint32_t told = 0;
+
+		assert_int_equal(interp_build_from(b, &o, &e, &d), 0);
+		part = finish(b);
+		for (uint32_t k = 0; k < part.p.head->nsegs; k++) {
+			const struct interp_seg *s = &part.p.segs[k];
+
+			if (s->kind != INTERP_MCODE)
+				continue;
+			told++;
+			assert_int_equal(s->arg, pump);
+			assert_true(s->s_mm == e.way_mm);
+		}
+		assert_int_equal(told, asked && !other);
+		assert_int_equal(e.again, told ? pump : 0);
+		free(part.block);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(from_a_place_on_it_is_the_same),
 		cmocka_unit_test(a_probing_motion_is_made_again),
+		cmocka_unit_test(an_unanswered_code_is_told_again),
 	};
 
 	seed = seed_take();

@@ -27,6 +27,40 @@ static void robofil_has_centres_as_places(void **state)
 	compile_done(&c);
 }
 
+/* As the post of a Robofil 440 writes it. */
+static const char robofil_440[] =
+	"%\nO1234\nG21\nG90\nM15 P0\nM24\nM28\nG92 X0.000 Y0.000\n/M60\n"
+	"D0 S5\nG01 X5.000 Y0.000\nG03 X7.000 Y2.000 I0.000 J2.000\n"
+	"/0 M00\n/M50\nM99\n%\n";
+
+static void robofil_440_has_centres_from_the_start(void **state)
+{
+	struct compiled c = compile_ready("charmilles-robofil-440");
+
+	(void)state;
+	compile(&c, robofil_440);
+	assert_int_equal(compiled_count(&c), 2);
+	assert_near(compiled_end(&c, 0, INTERP_X), 5);
+	assert_near(compiled_arc(&c, 1)->b_mm, 2);
+	assert_near(compiled_arc(&c, 1)->r_mm, 2);
+	assert_int_equal(c.p.conds[compiled_seg(&c, 0)->cond].letter, 'S');
+	compile_done(&c);
+}
+
+/* As the post of a Makino U32K writes it; M6 and M7 are the wire. */
+static void makino_threads_by_m6(void **state)
+{
+	struct compiled c = compile_ready("makino");
+
+	(void)state;
+	compile(&c, "N10 O0001 (MAKINO_U32K)\nN20 G00 G90\nN40 M06\n"
+		"N50 M17\nN60 G01 X.3543 Y0.0\nN330 M07\nN1080 M30\n");
+	assert_int_equal(compiled_count(&c), 3);
+	assert_int_equal(compiled_seg(&c, 0)->kind, INTERP_STOP);
+	assert_int_equal(compiled_seg(&c, 2)->kind, INTERP_STOP);
+	compile_done(&c);
+}
+
 static const char skd2[] =
 	"(MATERIAL: STEEL 20 mm)\n( W_Sp I_Max Pul_On P_Ratio Voltage)\n"
 	"E001=   060    006    020    005    001    000    050\n"
@@ -162,6 +196,8 @@ static const struct bad {
 	{ "robofil", "G3 X1.0 I.5\nM02", 1, 1, "half a centre" },
 	{ "robofil", "G1 X1. U1.\nM02", 1, 8, "U1. on a machine without" },
 	{ "robofil", "E001\nM02", 1, 1, "unknown word E001" },
+	{ "robofil-440", "G2 X2. I1. K0. L0.\nM02", 1, 12, "K0.: no program" },
+	{ "makino", "G53\nM02", 1, 1, "G53: machine coordinates" },
 	{ "skd2", "H001=110\nG41H001\nG01X100Y0\nM02", 3, 4,
 	  "a lead of 0.1000 mm for a change of offset of 0.1100 mm" },
 	{ "skd2", "H001=0\nH001\nG41\nH002\nM02", 4, 1,
@@ -233,6 +269,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(robofil_has_centres_as_places),
+		cmocka_unit_test(robofil_440_has_centres_from_the_start),
+		cmocka_unit_test(makino_threads_by_m6),
 		cmocka_unit_test(skd2_counts_micrometres_and_calls_by_n),
 		cmocka_unit_test(sodick_ends_blocks_by_semicolons),
 		cmocka_unit_test(chmer_calls_conditions_by_s),

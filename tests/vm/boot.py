@@ -85,7 +85,8 @@ source = voltage
 """
 
 QUICK_JOB = "G21 G90\nG1 X0.02 F6\nG1 X0\nM30\n"
-SLOW_JOB = "G21 G90\nG1 X1 F2\nG1 X0\nM30\n"
+# Nobody sees its end, however slow the host is.
+SLOW_JOB = "G21 G90\nG1 X100 F2\nG1 X0\nM30\n"
 
 # Every octant, both directions of each axis, an arc each way, three axes.
 PULSES_JOB = """G21 G90 G17

@@ -143,8 +143,12 @@ def systemd():
                     f"DESTDIR={root}", "PREFIX=/usr/local"],
                    check=True, capture_output=True)
     return checked(Run("systemd", {"service.ini": machine(cpu=1, tail=GAP),
-                                   "slow.ngc": SLOW_JOB},
-                       "-m", "systemd", copies=(root, compiled("stop-thread"))))
+                                   "slow.ngc": SLOW_JOB,
+                                   "can.ini": drives("XY").replace(
+                                       "vcan0", "can0")},
+                       "-m", "systemd", copies=(
+                           root, compiled("stop-thread"),
+                           HERE / "guest/systemd_can.sh")))
 
 
 @pytest.fixture(scope="session")

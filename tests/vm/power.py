@@ -24,6 +24,7 @@ from boot import BUILD, BUILD_VM, HERE, ROOT
 RUNS = BUILD_VM / "runs"
 WATCH_S = 0.02
 MEMORY_MB = 320
+HANGS_S = 7200          # of the host: far above what a busy one needs for a boot
 APPLETS = "grep sed tail date umount"
 FIELDS = ("cycle", "state", "fault", "loaded", "place", "far", "length", "feed",
           "x", "y", "z")
@@ -77,7 +78,7 @@ def drive(disk, log=None):
 
 def connect(path):
     """To a socket of QEMU, which may not listen yet."""
-    end = time.monotonic() + 300
+    end = time.monotonic() + HANGS_S
     while True:
         s = socket.socket(socket.AF_UNIX)
         try:
@@ -243,7 +244,7 @@ class Power:
             (self.share / file).unlink(missing_ok=True)
         (self.share / "turn").write_text(f"{self.turn}\n")
         vm = self.guest.go_on(self.folder, drive(self.disk, log), self.share)
-        end = time.monotonic() + 900
+        end = time.monotonic() + HANGS_S
         while vm.poll() is None and time.monotonic() < end:
             if kill_after_s is not None and \
                     self.text("seen").count("\n") >= kill_after_s / WATCH_S:

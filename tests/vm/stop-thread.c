@@ -3,11 +3,24 @@
  * stop-thread.c - stop one thread of another process until that one ends
  *
  *	stop-thread TID
+ *
+ * Prints when it stood, on CLOCK_MONOTONIC, in s.
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/ptrace.h>
 #include <sys/wait.h>
+#include <time.h>
+
+/* It stands now, and nobody lets it go on: the next is its end. */
+static void say_stopped(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	printf("%lld.%09ld\n", (long long)t.tv_sec, t.tv_nsec);
+	fflush(stdout);
+}
 
 int main(int argc, char **argv)
 {
@@ -19,9 +32,8 @@ int main(int argc, char **argv)
 		perror("stop-thread");
 		return 1;
 	}
-	/* Stopped, and nobody lets it go on: the next is its end. */
-	while (waitpid(tid, &status, __WALL) == tid)
-		if (WIFEXITED(status) || WIFSIGNALED(status))
-			break;
+	while (waitpid(tid, &status, __WALL) == tid &&
+	       !WIFEXITED(status) && !WIFSIGNALED(status))
+		say_stopped();
 	return 0;
 }

@@ -15,7 +15,7 @@ def rises(text):
     """Times at which the one line traced goes up, and down."""
     up, down, was = [], [], "0"
     for row in text.splitlines():
-        t, _, level = row.split()
+        t, _, level, _ = row.split()
         if level != was:
             (up if level == "1" else down).append(float(t))
         was = level
@@ -83,7 +83,7 @@ def test_doctor_tells_how_fast_a_line_goes_and_the_kernel_agrees(edges):
     took = float(re.search(r"a write takes ([\d.]+) us", text)[1])
     rows = [tuple(map(float, m.groups())) for m in
             map(ROW.fullmatch, text.splitlines()) if m]
-    writes = [(float(t) * 1e6, level) for t, _, level in
+    writes = [(float(t) * 1e6, level) for t, _, level, _ in
               map(str.split, edges.text("pulses.trace").splitlines())]
     times = [t for t, _ in writes]
     # The chip's own first level is written when the line is requested.

@@ -25,6 +25,13 @@ class Seen:
     def between(self, a, b):
         return [r for r in self.rows if self.at[a] <= r[0] <= self.at[b]]
 
+    def since(self, mark, what, end):
+        """Rows from the first SYNC on after the drives were told @what, which
+        takes as long from the @mark as it takes."""
+        first = next(row for t, row, came in self.d["came"]
+                     if t >= self.at[mark] and came == what)
+        return [r for r in self.rows[first:] if r[0] <= self.at[end]]
+
     def went_as_planned(self):
         assert not [m for m in self.marks if "in vain" in m], \
             (self.marks, self.log)
@@ -107,6 +114,8 @@ def test_nothing_starts_when_a_drive_is_switched_on_late(strict):
 FAULTS = [("mode", "drive", 3), ("ignores", "drive", 3),
           ("lags", "following", 3), ("limit", "drive", 14),
           ("jam", "following", 25)]
+TOLD = {"mode": "mode", "ignores": "bits", "lags": "bits", "limit": "bits",
+        "jam": "jam"}
 
 
 def test_the_plan_was_done(faults):
@@ -116,7 +125,7 @@ def test_the_plan_was_done(faults):
 @pytest.mark.parametrize("what, fault, syncs", FAULTS)
 def test_what_the_drive_shows_ends_the_sparks(faults, what, fault, syncs):
     assert faults.d["out"][what]["fault"] == fault
-    after = faults.between(f"{what}: harm", f"{what}: stands")
+    after = faults.since(f"{what}: harm", TOLD[what], f"{what}: stands")
     off = next(i for i, r in enumerate(after) if not r[1])
     print(f"{what}: sparks off after {off} SYNCs")
     assert off <= syncs
@@ -159,7 +168,7 @@ def never_moves_unplaced(seen, what, out, node):
     assert all(s[0] != 0 for s in out["starts"] + out["steps"]), out
     assert out["home"][0] == 0, out
     assert out["again"][0] == 0, out
-    rows = seen.between(f"{what}: harm", f"{what}: homed")
+    rows = seen.since(f"{what}: harm", "off", f"{what}: homed")
     assert all(not r[1] for r in rows[6:]), "sparks with an unknown place"
     lost = next(i for i, r in enumerate(rows) if r[2][node - 1][0] in
                 ("off", "not-ready", "disabled"))
@@ -167,7 +176,7 @@ def never_moves_unplaced(seen, what, out, node):
     pushed = len(set(true)) - 1
     assert pushed <= 1, "it moved with an unknown place"
     # Under power it comes by the home alone, which is the operator's.
-    before = seen.between(f"{what}: harm", f"{what}: idle")
+    before = seen.since(f"{what}: harm", "off", f"{what}: idle")
     assert all(r[2][node - 1][0] not in ("enabled", "on")
                for r in before[lost:]), "under power with an unknown place"
 

@@ -86,7 +86,6 @@ JOBS = {
              "M63 G0 X1\nG0 Z0.1\nG1 Z-0.02\nM64 G1 Y0.04\nG0 Z1\nM30\n",
 }
 CODES = [60, 61, 62, 63, 64]
-FREE = 63
 
 ENDS = {"cuts": (2.1, 1.05, 1), "probe": (1, 0.05, 0.5),
         "curve": (0.05, 0.05, 1), "orbit": (1, 0.5, 1), "mcode": (1, 0.04, 1)}
@@ -215,10 +214,6 @@ def check_codes(p):
         for code in [int(line.split()[1]) for line in told
                      if line.startswith("ask ")]:
             i = CODES.index(code)
-            # Nobody waits for its answer: it is lost with the power, and
-            # docs/power.md says so.
-            if CODES[at + 1:i] == [FREE]:
-                at += 1
             assert i <= at + 1, (f"M{CODES[at + 1]} was left out", order)
             assert i >= at - 1, (f"M{code} was told again", order)
             at, order = i, order + [(turn, code)]

@@ -20,7 +20,7 @@ def writes(text):
     """The trace as writes: (time, {line: on}); one has each line once."""
     now, at = {}, 0.0
     for row in text.splitlines():
-        t, line, level = row.split()
+        t, line, level, _ = row.split()
         line = int(line)
         if line in now:
             yield at, now
@@ -121,7 +121,7 @@ def test_direction_stands_still_around_each_step(virtual):
 def test_no_edge_is_late_or_missing_in_100000_periods(virtual):
     rows = [r.split() for r in virtual.text("line.trace").splitlines()]
     edges, was = [], "0"
-    for t, _, level in rows:
+    for t, _, level, _ in rows:
         if level != was:
             edges.append(float(t))
         was = level

@@ -81,22 +81,24 @@ void comp_apply(struct comp *c, const struct comp_config *k,
 		const struct comp_period *p, int32_t ret[INTERP_NAXES])
 {
 	const int32_t *place = p->place;
-	const bool begun = c->begun, mapped = k->mapped;
 	const bool frozen = p->frozen || c->resting;
 
-	if (mapped)
+	if (k->mapped)
 		look_up(c, k, place);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		struct comp_axis *a = &c->axis[i];
-		const int32_t path = begun ? place[i] - a->place : 0;
+		int32_t path = 0;
 
-		a->place = place[i];
+		if (place[i] != a->place) {
+			path = c->begun ? place[i] - a->place : 0;
+			a->place = place[i];
+		}
 		if (path != 0)
 			a->toward = path < 0 ? -1 : 1;
 		/* An earlier edmd may have added something that now has to be
 		 * taken off. */
-		if (!frozen && (mapped || k->axis[i].backlash != 0 ||
-				a->added != 0))
+		if ((k->axis[i].backlash | a->added | k->mapped) != 0 &&
+		    !frozen)
 			take_up(a, k, i, path, p->edges);
 		ret[i] = comp_pulses(a);
 	}

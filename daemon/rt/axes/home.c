@@ -174,8 +174,9 @@ static enum home_phase stand(struct cycle *c, const struct io_inputs *in)
 	return HOME_BEGIN;
 }
 
-static enum home_phase (*const phases[HOME_NPHASES])(struct cycle *,
-						      const struct io_inputs *) = {
+typedef enum home_phase (*home_step)(struct cycle *, const struct io_inputs *);
+
+static const home_step phases[HOME_NPHASES] = {
 	[HOME_BEGIN]	= begin,
 	[HOME_SEEK]	= seek,
 	[HOME_BRAKE]	= brake,

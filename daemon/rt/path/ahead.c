@@ -82,8 +82,9 @@ static bool is_stand(const struct cycle *c, int toward, uint32_t i)
 }
 
 /*
- * What every axis allows, from here to where the move ends or has to stop: it
- * is the same for the whole of a move, so what can be met can be met to its end.
+ * What every axis allows, from here to where the move ends or has to stop.  It
+ * is the same for the whole of a move, so what can be met can be met to its
+ * end.
  * @ret_stand_mm: the place up to which that holds; INFINITY: everywhere.
  */
 static struct mover_limits limits_of(const struct cycle *c,
@@ -204,7 +205,8 @@ static void plan_speed(struct cycle *c, double v_mm_s)
  * For the place that would be missed.  One too near to be passed at its speed
  * exactly is passed slower, or, if that is no more to be had, braked for.
  */
-static void plan_place(struct cycle *c, const struct lookahead *k, double v_mm_s)
+static void plan_place(struct cycle *c, const struct lookahead *k,
+		       double v_mm_s)
 {
 	const int toward = c->ahead.toward;
 	const double now = toward * c->mover.v_mm_s;
@@ -317,7 +319,8 @@ static void choose(struct cycle *c, struct lookahead *k, double v_mm_s)
 		plan_speed(c, 0);
 }
 
-static struct lookahead look_of(const struct cycle *c, const struct ahead_move *w)
+static struct lookahead look_of(const struct cycle *c,
+				const struct ahead_move *w)
 {
 	const struct interp_scurve_limits l = mover_curve(&c->ahead.l);
 	const double by = lookahead_override(c, w);

@@ -46,7 +46,8 @@ static inline struct mover_limits law_travel_limits(const struct cycle *c,
 }
 
 /* By what the axes of a segment allow. */
-static inline void law_soften(struct mover_limits *l, const struct interp_seg *s)
+static inline void law_soften(struct mover_limits *l,
+			      const struct interp_seg *s)
 {
 	const double a = (double)s->a_mm_s2, j = (double)s->j_mm_s3;
 

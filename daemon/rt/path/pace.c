@@ -21,6 +21,7 @@
 #include "path/walk.h"
 
 #include "interp/limits.h"
+#include "interp/smaller.h"
 
 #include <math.h>
 
@@ -68,10 +69,17 @@ static int way_of(double v_mm_s)
 	return v_mm_s < 0 ? -1 : 1;
 }
 
-/* On a node it may turn round onto what it came along. */
+/* On a node it may turn round onto what it came along.  Between two of them
+ * there is one segment, both ways. */
 static double a_both_ways(const struct cycle *c)
 {
-	return fmin(a_of_axes(c, 1), a_of_axes(c, -1));
+	const struct interp_cursor *at = &c->cursor;
+
+	if (at->seg.kind < INTERP_BEGIN && at->s_mm > MOVER_ONTO_MM &&
+	    at->seg.length_mm - at->s_mm > MOVER_ONTO_MM &&
+	    !escape_is_out(&c->escape))
+		return smaller((double)at->seg.a_mm_s2, A_MAX);
+	return smaller(a_of_axes(c, 1), a_of_axes(c, -1));
 }
 
 double pace_dv_mm_s(const struct cycle *c)
@@ -79,7 +87,7 @@ double pace_dv_mm_s(const struct cycle *c)
 	return a_of_law(c, a_both_ways(c)) * law_period_s(c);
 }
 
-/* -- What lies ahead --------------------------------------------------------- */
+/* -- What lies ahead ------------------------------------------------------- */
 
 struct ahead {
 	const struct cycle *c;
@@ -98,21 +106,21 @@ struct ahead {
 static void meet(struct ahead *k, double v_mm_s)
 {
 	const double onto = 2 * k->a_mm_s2 * MOVER_ONTO_MM;
-	const double dv = k->dv_mm_s, room = fmax(k->room - onto, 0);
+	const double dv = k->dv_mm_s, room = larger(k->room - onto, 0);
 	const double v = sqrt(dv * dv + v_mm_s * v_mm_s + room) - dv;
 
-	k->most_mm_s = fmin(k->most_mm_s, fmax(v, v_mm_s));
+	k->most_mm_s = smaller(k->most_mm_s, larger(v, v_mm_s));
 }
 
 static void meet_stop(struct ahead *k)
 {
 	const double was = k->most_mm_s;
-	const double dv = fmin(k->dv_mm_s, k->a_mm_s2 * law_period_s(k->c));
+	const double dv = smaller(k->dv_mm_s, k->a_mm_s2 * law_period_s(k->c));
 	const double onto = k->left_mm / law_period_s(k->c);
 
 	meet(k, 0);
-	k->most_mm_s = fmax(k->most_mm_s, fmin(was, fmin(onto, dv)));
-	k->stop_mm = fmin(k->stop_mm, k->left_mm);
+	k->most_mm_s = larger(k->most_mm_s, smaller(was, smaller(onto, dv)));
+	k->stop_mm = smaller(k->stop_mm, k->left_mm);
 }
 
 /* Return: false if all that is farther is met anyway. */
@@ -120,8 +128,8 @@ static bool go_on(struct ahead *k, double way_mm)
 {
 	const double v = k->most_mm_s;
 
-	k->left_mm += fmax(way_mm, 0);
-	k->room += 2 * k->a_mm_s2 * fmax(way_mm, 0);
+	k->left_mm += larger(way_mm, 0);
+	k->room += 2 * k->a_mm_s2 * larger(way_mm, 0);
 	return v * v + 2 * k->dv_mm_s * v > k->room;
 }
 
@@ -154,8 +162,9 @@ static double into_mm_s(const struct ahead *k, uint32_t i,
 {
 	const struct interp_program *p = &k->c->cursor.p;
 
-	return k->toward > 0 ? fmin(interp_limits_into(p, i), law_seg_speed(s)) :
-			       interp_limits_back_into(p, i);
+	return k->toward > 0 ?
+		       smaller(interp_limits_into(p, i), law_seg_speed(s)) :
+		       interp_limits_back_into(p, i);
 }
 
 /* Up to a place to stand at: what lies between may be braked on less. */
@@ -187,7 +196,7 @@ static void look_along(struct ahead *k, double to_mm)
 		if (s->kind >= INTERP_BEGIN)
 			continue;
 		meet(k, into_mm_s(k, i, s));
-		k->a_mm_s2 = fmin(k->a_mm_s2, (double)s->a_mm_s2);
+		k->a_mm_s2 = smaller(k->a_mm_s2, (double)s->a_mm_s2);
 	}
 	meet_stop(k);
 }
@@ -200,7 +209,7 @@ static void look_beside(struct ahead *k, double to_mm)
 	const double end = k->toward > 0 ? interp_cursor_place_mm(&c->cursor) :
 					   place_outer_mm(c);
 
-	k->most_mm_s = fmin(k->most_mm_s, c->escape.v_max_mm_s);
+	k->most_mm_s = smaller(k->most_mm_s, c->escape.v_max_mm_s);
 	if (k->toward < 0 || c->escape.way_mm > MOVER_ONTO_MM)
 		meet_place(k, escape_stop_mm(c, isinf(to_mm) ? end : to_mm));
 }
@@ -215,7 +224,7 @@ static void look(struct ahead *k, double to_mm)
 		return;
 	}
 	if (s)
-		k->most_mm_s = fmin(k->most_mm_s, (double)s->feed_max_mm_s);
+		k->most_mm_s = smaller(k->most_mm_s, (double)s->feed_max_mm_s);
 	look_along(k, to_mm);
 }
 
@@ -236,7 +245,7 @@ double pace_go(struct cycle *c, double v_mm_s, double to_mm)
 	const int from = way_of(was != 0 ? was : v_mm_s);
 	const double axes = a_both_ways(c), a = a_of_law(c, axes);
 	const double dv = a * law_period_s(c);
-	const double v = fmin(fmax(v_mm_s, was - dv), was + dv);
+	const double v = smaller(larger(v_mm_s, was - dv), was + dv);
 	struct ahead k = {
 		.c = c, .toward = way_of(v), .a_mm_s2 = a,
 		.most_mm_s = fabs(v), .stop_mm = INFINITY,
@@ -250,9 +259,10 @@ double pace_go(struct cycle *c, double v_mm_s, double to_mm)
 		k.a_mm_s2 = a_here(c, k.toward);
 	k.dv_mm_s = k.a_mm_s2 * law_period_s(c);
 	look(&k, to_mm);
-	/* A planned move may have been quicker: no harder than the axes brake. */
+	/* A planned move may have been quicker: no harder than the axes
+	 * brake. */
 	if (was * v > 0)
-		k.most_mm_s = fmax(k.most_mm_s,
-				   fabs(was) - axes * law_period_s(c));
-	return go(c, &k, k.toward * fmin(fabs(v), k.most_mm_s));
+		k.most_mm_s = larger(k.most_mm_s,
+				     fabs(was) - axes * law_period_s(c));
+	return go(c, &k, k.toward * smaller(fabs(v), k.most_mm_s));
 }

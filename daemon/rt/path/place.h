@@ -56,7 +56,8 @@ static inline bool place_in_travel(const struct cycle *c, int axis, int64_t pos)
 }
 
 /** place_target() - send the axes to where the program's @pos is. */
-static inline void place_target(struct cycle *c, const int32_t pos[INTERP_NAXES])
+static inline void place_target(struct cycle *c,
+				const int32_t pos[INTERP_NAXES])
 {
 	for (int i = 0; i < INTERP_NAXES; i++)
 		c->out.target[i] = pos[i] + c->probe.shift[i];

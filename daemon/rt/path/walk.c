@@ -75,9 +75,9 @@ static bool beyond(const struct cycle *c)
 	return false;
 }
 
-static void count_pulses(struct cycle *c)
+static void count_point(struct cycle *c, uint32_t moved)
 {
-	for (uint32_t m = c->cursor.moved; m; m &= m - 1)
+	for (uint32_t m = moved; m; m &= m - 1)
 		c->totals.pulses[__builtin_ctz(m)]++;
 }
 
@@ -92,6 +92,7 @@ static void undo_point(struct cycle *c)
 /* -- Many points at once --------------------------------------------------- */
 
 #define RUN	64
+#define FEW	4			/* are counted one by one */
 
 /* Is every axis so far inside its travel that no point of a run can be
  * outside? */
@@ -123,6 +124,11 @@ static void count_run(struct cycle *c, const uint16_t *pulses, uint32_t n)
 {
 	uint64_t sums = 0;
 
+	if (n < FEW) {
+		for (uint32_t k = 0; k < n; k++)
+			count_point(c, INTERP_PULSE_MOVED(pulses[k]));
+		return;
+	}
 	for (uint32_t k = 0; k < n; k++)
 		sums += spread(INTERP_PULSE_MOVED(pulses[k]));
 	for (int i = 0; i < INTERP_NAXES; i++, sums >>= 8)
@@ -136,7 +142,8 @@ static uint32_t run(struct cycle *c, uint32_t max)
 	uint16_t pulses[RUN];
 	uint32_t n;
 
-	if (c->on_point || !well_inside(c))
+	if (!interp_cursor_is_due(&c->cursor) || c->on_point ||
+	    !well_inside(c))
 		return 0;
 	n = interp_cursor_run(&c->cursor, pulses, max < RUN ? max : RUN);
 	count_run(c, pulses, n);
@@ -160,7 +167,7 @@ static enum walk_result points(struct cycle *c, uint32_t *left)
 				undo_point(c);
 				return WALK_BEYOND;
 			}
-			count_pulses(c);
+			count_point(c, c->cursor.moved);
 			if (c->on_point)
 				c->on_point(c->on_point_arg, c);
 			break;
@@ -204,8 +211,9 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 	r = points(c, &left);
 	for (int n = 0; n < INTERP_CROSS_MAX && r == WALK_ACTION &&
 	     pass_done(c); n++) {
-		interp_cursor_aim(&c->cursor, from + ds_mm -
-					      interp_cursor_place_mm(&c->cursor));
+		interp_cursor_aim(&c->cursor,
+				  from + ds_mm -
+					  interp_cursor_place_mm(&c->cursor));
 		r = points(c, &left);
 	}
 	if (r == WALK_BROKEN) {

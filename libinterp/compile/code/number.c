@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* number.c - numbers with more digits than anybody needs */
+/* number.c - numbers of more than a few digits */
 #include "code/number.h"
 
 const double nc_pow10[NC_POW10_MAX + 1] = {
@@ -9,7 +9,7 @@ const double nc_pow10[NC_POW10_MAX + 1] = {
 
 /* Behind the point, digits that do not change a double any more are dropped.
  * In front of it, they make the number too large for every word. */
-double nc_number_long(const uint8_t *p, const uint8_t *end)
+static double many_digits(const uint8_t *p, const uint8_t *end)
 {
 	uint64_t mantissa = 0;
 	int fraction = 0;
@@ -28,4 +28,24 @@ double nc_number_long(const uint8_t *p, const uint8_t *end)
 		}
 	}
 	return (double)(int64_t)mantissa / nc_pow10[fraction];
+}
+
+const uint8_t *nc_number_any(const uint8_t *p, const uint8_t *end, double *ret)
+{
+	const uint8_t *first = p, *point = NULL;
+	uint64_t mantissa = 0;
+
+	p = nc_digits(p, end, &mantissa);
+	if (p < end && *p == '.') {
+		point = p + 1;
+		p = nc_digits(point, end, &mantissa);
+	}
+	if (p - first == (point != NULL))
+		return NULL;
+	if (p - first > NC_DIGITS_MAX)
+		*ret = many_digits(first, p);
+	else
+		*ret = (double)(int64_t)mantissa /
+		       nc_pow10[point ? p - point : 0];
+	return p;
 }

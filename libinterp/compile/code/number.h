@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 /* A double holds these powers of ten exactly. */
 #define NC_POW10_MAX	22
@@ -33,8 +34,67 @@ static inline const uint8_t *nc_digits(const uint8_t *p, const uint8_t *end,
 	return p;
 }
 
-/** nc_number_long() - the value of the digits from @p to @end, however many. */
-double nc_number_long(const uint8_t *p, const uint8_t *end);
+/* Of eight bytes: those that are above 9.  The first one is the lowest. */
+static inline uint64_t nc_no_digits(uint64_t w)
+{
+	const uint64_t below_top = UINT64_C(0x7f7f7f7f7f7f7f7f);
+	const uint64_t above_9 = UINT64_C(0x7676767676767676);
+
+	return (((w & below_top) + above_9) | w) & ~below_top;
+}
+
+/* Eight bytes with a digit in each; the first one, which is the lowest, counts
+ * most.  Neighbours are put together: bytes, then pairs, then fours. */
+static inline uint32_t nc_eight_digits(uint64_t w)
+{
+	const uint64_t every_fourth = UINT64_C(0x000000ff000000ff);
+
+	w = w * 10 + (w >> 8);
+	return (uint32_t)(((w & every_fourth) *
+			   (100 + (UINT64_C(1000000) << 32)) +
+			   (w >> 16 & every_fourth) *
+			   (1 + (UINT64_C(10000) << 32))) >> 32);
+}
+
+/**
+ * nc_number_short() - a number without a sign, of at most seven digits and a
+ * point, which is most numbers; all of its bytes are looked at together.
+ *
+ * Return: the place behind it; NULL if it is not so short, or no number.
+ */
+static inline const uint8_t *nc_number_short(const uint8_t *p,
+					     const uint8_t *end, double *ret)
+{
+	unsigned int whole, digits;
+	uint64_t w, no_digits;
+
+	if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ || end - p < 8)
+		return NULL;
+	memcpy(&w, p, sizeof(w));
+	w ^= UINT64_C(0x3030303030303030);
+	no_digits = nc_no_digits(w);
+	if (!no_digits)
+		return NULL;
+	whole = digits = (unsigned int)__builtin_ctzll(no_digits) / 8;
+	if (p[whole] == '.') {
+		const uint64_t before = (UINT64_C(1) << 8 * whole) - 1;
+
+		w = (w & before) | (w >> 8 & ~before);
+		no_digits &= no_digits - 1;
+		if (!no_digits)
+			return NULL;
+		digits = (unsigned int)__builtin_ctzll(no_digits) / 8 - 1;
+		p++;
+	}
+	if (!digits)
+		return NULL;
+	*ret = nc_eight_digits(w << (64 - 8 * digits)) /
+	       nc_pow10[digits - whole];
+	return p + digits;
+}
+
+/** nc_number_any() - the same of any length. */
+const uint8_t *nc_number_any(const uint8_t *p, const uint8_t *end, double *ret);
 
 /**
  * nc_number() - the number at @p.  Blanks are allowed before it, and before its
@@ -49,31 +109,20 @@ double nc_number_long(const uint8_t *p, const uint8_t *end);
 static inline const uint8_t *nc_number(const uint8_t *p, const uint8_t *end,
 				       double *ret)
 {
-	const uint8_t *first, *point = NULL;
-	uint64_t mantissa = 0;
+	const uint8_t *behind;
 	bool negative = false;
-	double value;
 
 	p = nc_skip_blanks(p, end);
 	if (p < end && (*p == '-' || *p == '+')) {
 		negative = *p == '-';
 		p = nc_skip_blanks(p + 1, end);
 	}
-	first = p;
-	p = nc_digits(p, end, &mantissa);
-	if (p < end && *p == '.') {
-		point = p + 1;
-		p = nc_digits(point, end, &mantissa);
-	}
-	if (p - first == (point != NULL))
-		return NULL;
-	if (p - first > NC_DIGITS_MAX)
-		value = nc_number_long(first, p);
-	else
-		value = (double)(int64_t)mantissa /
-			nc_pow10[point ? p - point : 0];
-	*ret = negative ? -value : value;
-	return p;
+	behind = nc_number_short(p, end, ret);
+	if (!behind)
+		behind = nc_number_any(p, end, ret);
+	if (behind && negative)
+		*ret = -*ret;
+	return behind;
 }
 
 #endif /* CODE_NUMBER_H */

@@ -18,18 +18,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-void *build_table_add(struct table *t)
+int build_table_room(struct table *t, size_t n)
 {
-	if (t->n == t->room) {
-		const size_t room = t->room ? 2 * t->room : 64;
-		void *at = realloc(t->at, room * t->size);
+	size_t room = t->room ? t->room : 64;
+	void *at;
 
-		if (!at)
-			return NULL;
-		t->at = at;
-		t->room = room;
-	}
-	return (char *)t->at + t->size * t->n++;
+	while (room < t->n + n)
+		room *= 2;
+	if (room == t->room)
+		return 0;
+	at = realloc(t->at, room * t->size);
+	if (!at)
+		return -ENOMEM;
+	t->at = at;
+	t->room = room;
+	return 0;
 }
 
 static int64_t *nodes_of(const struct interp_build *b)
@@ -45,13 +48,15 @@ static struct interp_seg *seg_add(struct interp_build *b)
 /* Append the place where the path stands as a node. */
 static int node_add(struct interp_build *b)
 {
-	for (uint32_t j = 0; j < b->naxes; j++) {
-		int64_t *n = build_table_add(&b->nodes);
+	struct table *t = &b->nodes;
+	int64_t *n;
 
-		if (!n)
-			return -ENOMEM;
-		*n = b->here[b->column[j]];
-	}
+	if (t->room - t->n < b->naxes && build_table_room(t, b->naxes) < 0)
+		return -ENOMEM;
+	n = nodes_of(b) + t->n;
+	for (uint32_t j = 0; j < b->naxes; j++)
+		n[j] = b->here[b->column[j]];
+	t->n += b->naxes;
 	return 0;
 }
 
@@ -62,15 +67,8 @@ static int column_add(struct interp_build *b, uint32_t axis)
 	const uint32_t from = b->naxes, to = b->naxes + 1;
 	int64_t *at;
 
-	while (b->nodes.room < rows * to + 64) {
-		const size_t room = b->nodes.room ? 2 * b->nodes.room : 64;
-
-		at = realloc(b->nodes.at, room * b->nodes.size);
-		if (!at)
-			return -ENOMEM;
-		b->nodes.at = at;
-		b->nodes.room = room;
-	}
+	if (build_table_room(&b->nodes, rows * to - b->nodes.n) < 0)
+		return -ENOMEM;
 	at = nodes_of(b);
 	for (size_t i = rows; i-- > 0; ) {
 		memmove(at + i * to, at + i * from, from * sizeof(*at));
@@ -109,7 +107,8 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 		const struct interp_axis_limits *l = &o->machine->axis[i];
 
 		b->sub_mm[i] = INTERP_SUB / l->pulse_mm;
-		b->inside_mm[i][0] = l->travel_min_mm + l->pulse_mm;
+		b->inside_mm[i][0] = o->machine->present & 1u << i ?
+				     l->travel_min_mm + l->pulse_mm : INFINITY;
 		b->inside_mm[i][1] = l->travel_max_mm - l->pulse_mm;
 		b->here_mm[i] = o->start_mm[i];
 		b->here[i] = b->first[i] =
@@ -175,6 +174,12 @@ int build_refuse_travel(const struct interp_machine *m, int axis,
 			       letter, l->travel_min_mm, l->travel_max_mm);
 }
 
+static inline bool is_inside(const struct interp_build *b, int axis,
+			     double at_mm)
+{
+	return at_mm > b->inside_mm[axis][0] && at_mm < b->inside_mm[axis][1];
+}
+
 /* Checked in pulses, as the cycle does it: the last pulses inside the
  * limits. */
 bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
@@ -183,8 +188,7 @@ bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
 	const struct interp_axis_limits *l = &m->axis[axis];
 	double at;
 
-	if (m->present & 1u << axis && at_mm > b->inside_mm[axis][0] &&
-	    at_mm < b->inside_mm[axis][1])
+	if (is_inside(b, axis, at_mm))
 		return true;
 	at = floor(at_mm / l->pulse_mm + 0.5);
 	if (m->present & b->loose & 1u << axis)
@@ -287,6 +291,17 @@ static double length_of(const double d[INTERP_NAXES], uint32_t moved)
 		    d[INTERP_C] * d[INTERP_C]);
 }
 
+/* A bit for each axis whose places differ. */
+static inline uint32_t other_axes(const double a_mm[INTERP_NAXES],
+				  const double b_mm[INTERP_NAXES])
+{
+	uint32_t axes = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		axes |= (uint32_t)(a_mm[i] != b_mm[i]) << i;
+	return axes;
+}
+
 int build_measure(const struct interp_build *b,
 		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
 		  struct build_measure *ret, struct interp_diag *diag)
@@ -295,16 +310,17 @@ int build_measure(const struct interp_build *b,
 	double d[INTERP_NAXES] = { 0 };
 
 	*ret = (struct build_measure) { 0 };
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		const double s = end_mm[i] * b->sub_mm[i];
+	memcpy(to, b->here, sizeof(b->here));
+	for (uint32_t left = other_axes(end_mm, b->here_mm); left;
+	     left &= left - 1) {
+		const int i = __builtin_ctz(left);
+		double s, t;
 		int64_t len;
-		double t;
 
-		to[i] = b->here[i];
-		if (end_mm[i] == b->here_mm[i])
-			continue;
-		if (!build_axis_ok(b, i, end_mm[i]))
+		if (!is_inside(b, i, end_mm[i]) &&
+		    !build_axis_ok(b, i, end_mm[i]))
 			return build_refuse_travel(m, i, end_mm[i], diag);
+		s = end_mm[i] * b->sub_mm[i];
 		to[i] = (int64_t)(s < 0 ? s - 0.5 : s + 0.5);
 		len = to[i] - b->here[i];
 		if (len == 0)
@@ -398,6 +414,7 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	struct build_measure m;
 	struct build_way way;
 	uint64_t ticks;
+	bool one_by_one;
 	int err;
 
 	if (w->ends)
@@ -409,11 +426,15 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		build_stand_at(b, end_mm, to);
 		return 0;
 	}
-	way = build_way_to(b, to, &m);
+	one_by_one = build_rule_one_by_one(b->o.strategy);
+	way.longest_sub = m.longest;
+	if (one_by_one)
+		way = build_way_to(b, to, &m);
 	ticks = build_rule_ticks(b->o.strategy, &way);
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_long(diag, m.length_mm);
-	err = build_rule_check(&b->o, &way, diag);
+	if (one_by_one)
+		err = build_rule_check(&b->o, &way, diag);
 	if (err < 0)
 		return err;
 	seg.ticks = (uint32_t)ticks;
@@ -421,7 +442,8 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	build_seg_feed(&seg, w, m.length_mm / m.seconds);
 	if (m.moved & ~b->columns && build_columns(b, m.moved) < 0)
 		return -ENOMEM;
-	err = build_bits_add(b, &way, &seg.arg);
+	if (one_by_one)
+		err = build_bits_add(b, &way, &seg.arg);
 	if (err == 0 && w->ends)
 		err = sensed_begin(b, m.moved, w, diag);
 	if (err < 0)

@@ -15,15 +15,8 @@ static int runs_add(struct interp_build *b, const struct build_arc *plan,
 	arc->run_at = (uint32_t)t->n;
 	if (arc->nruns == 0)
 		return 0;
-	if (t->n + arc->nruns > t->room) {
-		const size_t room = 2 * t->room + arc->nruns;
-		void *at = realloc(t->at, room * t->size);
-
-		if (!at)
-			return -ENOMEM;
-		t->at = at;
-		t->room = room;
-	}
+	if (build_table_room(t, arc->nruns) < 0)
+		return -ENOMEM;
 	build_arc_runs(plan, arc, (int32_t *)t->at + t->n);
 	t->n += arc->nruns;
 	return t->n > UINT32_MAX ? -ENOMEM : 0;

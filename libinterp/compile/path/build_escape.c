@@ -112,11 +112,12 @@ uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
 {
 	const struct build_descent *d = &b->descent;
 	const int axis = b->lift_axis;
-	struct interp_escape e = { .out = axis < 0 ? 0 : 1u << axis };
+	struct interp_escape e;
 	int i;
 
-	if (b->escape || axis < 0 || moved != e.out)
+	if (b->escape || axis < 0 || moved != 1u << axis)
 		return b->escape;
+	e = (struct interp_escape) { .out = moved };
 	if (d->first_mm >= fmax(b->here_mm[axis], end_mm[axis]))
 		e.out_mm[axis] = d->high_mm;
 	else if (d->first_mm <= fmin(b->here_mm[axis], end_mm[axis]))

@@ -232,7 +232,8 @@ static int take_axes(struct part *p, uint32_t n)
 	return p->fit.points ? 0 : -ENOMEM;
 }
 
-int interp_build_flush(struct interp_build *b, struct interp_diag *diag)
+/* At least two points. */
+static int flush(struct interp_build *b, struct interp_diag *diag)
 {
 	struct part p = { .b = b, .diag = diag,
 			  .fit = { .npoints = b->fit.n,
@@ -242,8 +243,6 @@ int interp_build_flush(struct interp_build *b, struct interp_diag *diag)
 	int err;
 
 	b->fit.n = 0;
-	if (n < 2)
-		return 0;
 	err = take_axes(&p, n);
 	for (uint32_t i = 1; err == 0 && i < n; i++) {
 		if (i + 1 < n && !interp_fit_corner(&p.fit, i))
@@ -253,6 +252,14 @@ int interp_build_flush(struct interp_build *b, struct interp_diag *diag)
 	}
 	free((void *)p.fit.points);
 	return err;
+}
+
+int interp_build_flush(struct interp_build *b, struct interp_diag *diag)
+{
+	if (b->fit.n >= 2)
+		return flush(b, diag);
+	b->fit.n = 0;
+	return 0;
 }
 
 int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],

@@ -7,6 +7,7 @@
  * and so on) stay as they are; only segments and nodes are made anew.
  */
 #include "interp/build_from.h"
+#include "interp/mcode_arg.h"
 #include "path/builder.h"
 
 #include <errno.h>
@@ -197,6 +198,18 @@ static bool is_power(uint32_t aux)
 	       aux == INTERP_AUX_POWER_NEGATIVE;
 }
 
+/* The argument of the last M code that was passed with this number.  0: none. */
+static uint32_t find_unanswered(const struct from *f)
+{
+	const struct interp_seg *s = segs_of(f->b);
+
+	for (uint32_t i = f->far; f->o->unanswered && i > 0; i--)
+		if (s[i].kind == INTERP_MCODE &&
+		    interp_mcode_number(s[i].arg) == f->o->unanswered)
+			return s[i].arg;
+	return 0;
+}
+
 /* The outputs are as the program has left them at the place. */
 static int add_outputs(struct from *f)
 {
@@ -214,6 +227,10 @@ static int add_outputs(struct from *f)
 	/* Without a way up there is a wire to be threaded. */
 	if (f->o->up < 0)
 		err = interp_build_action(f->way, INTERP_STOP, 0, &w, f->diag);
+	f->entry->again = find_unanswered(f);
+	if (err == 0 && f->entry->again)
+		err = interp_build_action(f->way, INTERP_MCODE,
+					  f->entry->again, &w, f->diag);
 	if (err == 0 && pump < INTERP_NAUX)
 		err = interp_build_action(f->way, INTERP_AUX, pump, &w,
 					  f->diag);
@@ -270,7 +287,8 @@ static void forget(struct from *f, struct interp_seg *s)
 {
 	struct interp_build_entry *e = f->entry;
 
-	if (s->kind == INTERP_MCODE && e->npassed < INTERP_PASSED_MAX)
+	if (s->kind == INTERP_MCODE && s->arg != e->again &&
+	    e->npassed < INTERP_PASSED_MAX)
 		e->passed[e->npassed++] = s->arg;
 	if (s->kind == INTERP_DWELL || s->kind == INTERP_STOP ||
 	    s->kind == INTERP_OPTIONAL_STOP || s->kind == INTERP_MCODE) {

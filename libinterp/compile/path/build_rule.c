@@ -18,6 +18,13 @@ static uint64_t pulses_of(const struct build_way *w)
 	return n;
 }
 
+bool build_rule_one_by_one(enum interp_strategy s)
+{
+	const struct pulse_strategy *how = pulse_strategy(s);
+
+	return !how->at_once && !how->accumulates;
+}
+
 uint64_t build_rule_ticks(enum interp_strategy s, const struct build_way *w)
 {
 	const int64_t longest = (w->longest_sub + INTERP_SUB - 1) >>

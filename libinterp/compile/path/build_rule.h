@@ -15,6 +15,12 @@ struct build_way {
 					 * columns, in which they are coupled */
 };
 
+/**
+ * build_rule_one_by_one() - do the axes move one at a time, so that it matters
+ * how far each goes?  If not, longest_sub of a way is enough.
+ */
+bool build_rule_one_by_one(enum interp_strategy s);
+
 /** build_rule_of() - strategy, coupling and tolerance of a way. */
 struct couple_rule build_rule_of(const struct interp_build_options *o,
 				 const struct build_way *w);

@@ -39,7 +39,8 @@ struct interp_build {
 	double sub_mm[INTERP_NAXES];	/* subpulses per mm */
 	double inside_mm[INTERP_NAXES][2];	/* the travel minus a pulse:
 						 * places inside need no closer
-						 * check */
+						 * check; no place, if the
+						 * machine has not the axis */
 	uint8_t column[INTERP_NAXES];
 	uint32_t naxes, columns;	/* columns: mask of axes */
 	uint32_t loose;			/* axes that moved by what the machine
@@ -63,8 +64,16 @@ struct interp_build {
 	const struct interp_tech *tech;	/* from this cond was made */
 };
 
+/** build_table_room() - make room for @n more.  Return: 0 or -ENOMEM. */
+int build_table_room(struct table *t, size_t n);
+
 /** build_table_add() - make room for one more; NULL: out of memory. */
-void *build_table_add(struct table *t);
+static inline void *build_table_add(struct table *t)
+{
+	if (t->n == t->room && build_table_room(t, 1) < 0)
+		return NULL;
+	return (char *)t->at + t->size * t->n++;
+}
 
 /* How far a motion goes. */
 struct build_measure {

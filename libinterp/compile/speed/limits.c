@@ -19,14 +19,24 @@ static double tolerance(const struct interp_limits *l, uint8_t axis)
 	const double at = interp_axis_is_rotary((enum interp_axis)axis) ?
 			  deg / l->rotary_radius_mm : 1;
 
-	return fmax(l->machine->axis[axis].pulse_mm, l->tolerance_mm * at);
+	return larger(l->machine->axis[axis].pulse_mm, l->tolerance_mm * at);
+}
+
+static void add_level(struct levels *l, double at)
+{
+	for (uint32_t k = 0; k < l->n; k++)
+		if (l->at[k] == at)
+			return;
+	l->at[l->n++] = at;
 }
 
 static void begin(struct pass *w, const struct interp_limits *l,
 		  const struct interp_program *p, struct interp_seg *segs)
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
-			     .n = p->head->naxes };
+			     .n = p->head->naxes, .a_least_mm_s2 = INFINITY,
+			     .j_least_mm_s3 = INFINITY,
+			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
 	for (int k = 0; k < PASS_WINDOWS; k++)
 		w->windows[k].mm = PASS_WINDOW * l->corner_mm * (1 << k);
@@ -36,12 +46,17 @@ static void begin(struct pass *w, const struct interp_limits *l,
 		const double six = 6 * l->corner_mm;
 
 		w->tol[j] = tolerance(l, axis);
-		w->near.mm = fmax(w->near.mm, PASS_NEAR * w->tol[j]);
+		w->near.mm = larger(w->near.mm, PASS_NEAR * w->tol[j]);
 		w->v_mm_s[j] = m->v_max_mm_s;
 		w->a_mm_s2[j] = m->a_max_mm_s2;
 		w->j_mm_s3[j] = m->j_max_mm_s3;
-		w->step_mm_s[j] = fmin(sqrt(8 * m->a_max_mm_s2 * l->corner_mm),
+		w->step_mm_s[j] = smaller(sqrt(8 * m->a_max_mm_s2 * l->corner_mm),
 				       cbrt(m->j_max_mm_s3 * six * six));
+		add_level(&w->v_levels, m->v_max_mm_s);
+		add_level(&w->a_levels, m->a_max_mm_s2);
+		add_level(&w->j_levels, m->j_max_mm_s3);
+		w->a_least_mm_s2 = smaller(w->a_least_mm_s2, m->a_max_mm_s2);
+		w->j_least_mm_s3 = smaller(w->j_least_mm_s3, m->j_max_mm_s3);
 	}
 }
 
@@ -60,19 +75,21 @@ static float down(double most)
 /* A speed; that of an axis stays as it is. */
 static float level(const struct pass *w, double v_mm_s)
 {
-	for (uint32_t j = 0; j < w->n; j++) {
-		if (fabs(v_mm_s - w->v_mm_s[j]) <= SAME * v_mm_s)
-			return (float)(w->v_mm_s[j] * (1 - 2 * SAME));
+	for (uint32_t k = 0; k < w->v_levels.n; k++) {
+		const double own = w->v_levels.at[k];
+
+		if (fabs(v_mm_s - own) <= SAME * v_mm_s)
+			return (float)(own * (1 - 2 * SAME));
 	}
 	return down(v_mm_s);
 }
 
 /* What an axis can do stays as it is. */
-static float soft(const struct pass *w, double most, const double *own)
+static float soft(double most, const struct levels *own)
 {
-	for (uint32_t j = 0; j < w->n; j++) {
-		if (fabs(most - own[j]) <= SAME * most)
-			return (float)own[j];
+	for (uint32_t k = 0; k < own->n; k++) {
+		if (fabs(most - own->at[k]) <= SAME * most)
+			return (float)own->at[k];
 	}
 	return down(most);
 }
@@ -86,8 +103,16 @@ struct along {
 	double a_mm_s2, j_mm_s3;
 };
 
+static void note_soft(struct pass_soft *k, double a, double j)
+{
+	k->a_least = smaller(a, k->a_least);
+	k->a_most = larger(a, k->a_most);
+	k->j_least = smaller(j, k->j_least);
+	k->j_most = larger(j, k->j_most);
+}
+
 /* Along the path, what its axes leave. */
-static void soften_seg(const struct pass *w, struct interp_seg *s,
+static void soften_seg(struct pass *w, struct interp_seg *s,
 		       const struct along *left, const struct rates *r)
 {
 	double a = left->a_mm_s2, j = left->j_mm_s3;
@@ -97,11 +122,13 @@ static void soften_seg(const struct pass *w, struct interp_seg *s,
 
 		if (!(r->by[k] > 0))
 			continue;
-		a = fmin(a, (bends ? left->a : 1) * w->a_mm_s2[k] / r->by[k]);
-		j = fmin(j, (bends ? left->j : 1) * w->j_mm_s3[k] / r->by[k]);
+		a = smaller(a, (bends ? left->a : 1) * w->a_mm_s2[k] / r->by[k]);
+		j = smaller(j, (bends ? left->j : 1) * w->j_mm_s3[k] / r->by[k]);
 	}
-	s->a_mm_s2 = soft(w, a, w->a_mm_s2);
-	s->j_mm_s3 = soft(w, j, w->j_mm_s3);
+	s->a_mm_s2 = soft(a, &w->a_levels);
+	s->j_mm_s3 = soft(j, &w->j_levels);
+	if (!isinf(s->a_mm_s2) && !isinf(s->j_mm_s3))
+		note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
 }
 
 /*
@@ -117,15 +144,15 @@ static double round_bend(const struct pass *w, const struct headings *h,
 	for (uint32_t k = 0; k < w->n; k++) {
 		if (h->first.rate[k] == 0 && h->last.rate[k] == 0)
 			continue;
-		a = fmin(a, w->a_mm_s2[k]);
-		j = fmin(j, w->j_mm_s3[k]);
+		a = smaller(a, w->a_mm_s2[k]);
+		j = smaller(j, w->j_mm_s3[k]);
 	}
-	v = fmin(v_mm_s * h->share, pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
+	v = smaller(v_mm_s * h->share, pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
 						    INTERP_ARC_JERK_ROUND * j));
-	v = fmin(v, INTERP_ARC_JERK_BOTH * j * r /
+	v = smaller(v, INTERP_ARC_JERK_BOTH * j * r /
 		    (3 * INTERP_BEND_LEAST * a));
 	across = v * v / (r * a);
-	speed_up = fmin(sqrt(1 - across * across) * a,
+	speed_up = smaller(sqrt(1 - across * across) * a,
 			INTERP_ARC_JERK_BOTH * j * r / (3 * v));
 	both = 3 * v * speed_up / (r * j);
 	*ret = (struct along) {
@@ -145,7 +172,7 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 
 	pass_rates(w, i, h, &rates);
 	if (s->kind == INTERP_LINE && pass_is_short(w, i))
-		v = fmax(v, pass_rate_mm_s(w, &rates));
+		v = larger(v, pass_rate_mm_s(w, &rates));
 	if (s->kind == INTERP_CURVE) {
 		/* What its axes leave is known already. */
 		left.a_mm_s2 = w->p->pieces[s->arg].a_mm_s2;
@@ -173,6 +200,7 @@ static void walk_nodes(struct pass *w)
 	for (uint32_t i = 1; i < nsegs; i++) {
 		w->segs[i].node_mm_s = INFINITY;
 		w->segs[i].a_mm_s2 = w->segs[i].j_mm_s3 = INFINITY;
+		w->segs[i].flags &= (uint8_t)~INTERP_SEG_STAND;
 		if (w->segs[i].kind >= INTERP_BEGIN)
 			continue;
 		heading_find(&w->ways, i, &h[now]);
@@ -182,9 +210,10 @@ static void walk_nodes(struct pass *w)
 							&h[!now].last,
 							&h[now].first);
 
+			const float most = isinf(v) ? INFINITY : level(w, v);
+
 			for (uint32_t k = last; k < i; k++)
-				w->segs[k].node_mm_s = isinf(v) ? INFINITY :
-							level(w, v);
+				w->segs[k].node_mm_s = most;
 		}
 		last = i;
 		now = !now;
@@ -231,13 +260,15 @@ static double feed_of(const struct interp_seg *s)
 static void chain_feed(const struct pass *w)
 {
 	const uint32_t end = w->p->head->nsegs - 1;
+	double next = 0, v;
 
 	w->segs[end].slower_feed = 0;
-	for (uint32_t i = end; i-- > 0; ) {
-		const double v = feed_of(&w->segs[i]);
+	for (uint32_t i = end; i-- > 0; next = v) {
 		uint32_t m = i + 1;
 
-		while (m - i < HOP_MAX && m < end && feed_of(&w->segs[m]) >= v)
+		v = feed_of(&w->segs[i]);
+		while (m - i < HOP_MAX && m < end &&
+		       (m == i + 1 ? next : feed_of(&w->segs[m])) >= v)
 			m = w->segs[m].slower_feed ?
 			    m + w->segs[m].slower_feed : end;
 		w->segs[i].slower_feed = (uint16_t)(m >= end ? 0 :
@@ -254,12 +285,15 @@ static double back_into(const struct pass *w, uint32_t i)
 
 static void chain_behind(const struct pass *w)
 {
+	double last = 0, v;
+
 	w->segs[0].slower_behind = 0;
-	for (uint32_t i = 1; i < w->p->head->nsegs; i++) {
-		const double v = back_into(w, i);
+	for (uint32_t i = 1; i < w->p->head->nsegs; i++, last = v) {
 		uint32_t m = i - 1;
 
-		while (i - m < HOP_MAX && back_into(w, m) >= v)
+		v = back_into(w, i);
+		while (i - m < HOP_MAX &&
+		       (m == i - 1 ? last : back_into(w, m)) >= v)
 			m -= w->segs[m].slower_behind;
 		w->segs[i].slower_behind = (uint16_t)(i - m < HOP_MAX ? i - m :
 							HOP_MAX);

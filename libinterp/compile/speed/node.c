@@ -31,16 +31,6 @@
  * path. */
 #define MOST_BESIDE	20
 
-static double larger(double a, double b)
-{
-	return a > b ? a : b;
-}
-
-static double smaller(double a, double b)
-{
-	return a < b ? a : b;
-}
-
 /* The greatest speed around a bend, if the axes have so much acceleration. */
 double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3)
 {
@@ -79,13 +69,16 @@ static double sure(double d, double noise)
 }
 
 /* The rounding of the path: the largest of @columns. */
-static double along_tol(const struct pass *w, uint32_t columns)
+static double along_tol(struct pass *w, uint32_t columns)
 {
-	double most = 0;
-
+	if (columns == w->tol_of)
+		return w->tol_most;
+	w->tol_of = columns;
+	w->tol_most = 0;
 	for (uint32_t j = 0; j < w->n; j++)
-		most = columns >> j & 1 ? larger(most, w->tol[j]) : most;
-	return most;
+		if (columns >> j & 1)
+			w->tol_most = larger(w->tol_most, w->tol[j]);
+	return w->tol_most;
 }
 
 /*
@@ -93,7 +86,7 @@ static double along_tol(const struct pass *w, uint32_t columns)
  * for more than MOST_BESIDE roundings of its own: an axis that turns far on a
  * tiny line really turns there.
  */
-static void change_of(const struct pass *w, double (*of)(double, double),
+static void change_of(struct pass *w, double (*of)(double, double),
 		      struct change *c)
 {
 	const uint32_t both = c->a->along & c->b->along;
@@ -157,24 +150,32 @@ static double step(const struct pass *w, const struct change *c)
 
 /* -- Of short lines ------------------------------------------------------- */
 
-/* From node @from to @to: the length in the columns of ret->along, and the
- * rates of all columns by that length. */
-static double chord(const struct pass *w, uint32_t from, uint32_t to,
-		    struct heading *ret)
+/* From node @from to @to: the length in the columns of @along, and the rates of
+ * all columns by that length. */
+static void chord_find(const struct pass *w, uint32_t from, uint32_t to,
+		       uint32_t along, struct chord *ret)
 {
 	const int64_t *a = w->p->nodes + (uint64_t)from * w->n;
 	const int64_t *b = w->p->nodes + (uint64_t)to * w->n;
-	double sum = 0, mm, per_mm;
+	double *rate = ret->h.rate, sum = 0, per_mm;
 
+	ret->from = from;
+	ret->to = to;
+	ret->h.along = along;
 	for (uint32_t j = 0; j < w->n; j++) {
-		ret->rate[j] = (double)(b[j] - a[j]) * w->ways.sub_mm[j];
-		sum += ret->along >> j & 1 ? ret->rate[j] * ret->rate[j] : 0;
+		rate[j] = (double)(b[j] - a[j]) * w->ways.sub_mm[j];
+		sum += along >> j & 1 ? rate[j] * rate[j] : 0;
 	}
-	mm = sqrt(sum);
-	per_mm = mm > 0 ? 1 / mm : 0;
+	ret->mm = sqrt(sum);
+	per_mm = ret->mm > 0 ? 1 / ret->mm : 0;
 	for (uint32_t j = 0; j < w->n; j++)
-		ret->rate[j] *= per_mm;
-	return mm;
+		rate[j] *= per_mm;
+}
+
+static bool chord_is(const struct chord *c, uint32_t from, uint32_t to,
+		     uint32_t along)
+{
+	return c->from == from && c->to == to && c->h.along == along;
 }
 
 static void look_around(const struct pass *w, uint32_t i, struct around *k)
@@ -192,23 +193,25 @@ static void look_around(const struct pass *w, uint32_t i, struct around *k)
 
 /* The chords to both sides of a node, over one window. */
 struct bow {
-	struct heading a, b;
+	const struct heading *a, *b;
 	double mm;			/* half the way */
 	double per_mm;			/* as change has it */
 };
 
-/* Return: false if there is no way to one of the sides. */
-static bool bow_of(const struct pass *w, uint32_t i, const struct around *k,
+/* It is valid until @k is used again.  Return: false if there is no way to one
+ * of the sides. */
+static bool bow_of(const struct pass *w, uint32_t i, struct around *k,
 		   uint32_t along, struct bow *ret)
 {
-	double la, lb;
+	struct chord *a = &k->chord[k->on], *b = &k->chord[!k->on];
 
-	ret->a.along = ret->b.along = along;
-	la = chord(w, k->behind, i, &ret->a);
-	lb = chord(w, i, k->ahead, &ret->b);
-	ret->mm = (la + lb) / 2;
-	ret->per_mm = 1 / la + 1 / lb;
-	return la > 0 && lb > 0;
+	if (!chord_is(a, k->behind, i, along))
+		chord_find(w, k->behind, i, along, a);
+	chord_find(w, i, k->ahead, along, b);
+	k->on = !k->on;
+	*ret = (struct bow) { &a->h, &b->h, (a->mm + b->mm) / 2,
+			      1 / a->mm + 1 / b->mm };
+	return a->mm > 0 && b->mm > 0;
 }
 
 /* The speed at which the axes can follow a bow.  @d is the change of each
@@ -219,7 +222,7 @@ static double bow_mm_s(const struct pass *w, const struct bow *k,
 	double turn = 0, acc = INFINITY, jerk = INFINITY, v = INFINITY;
 
 	for (uint32_t j = 0; j < w->n; j++) {
-		if (!(k->a.along >> j & 1)) {
+		if (!(k->a->along >> j & 1)) {
 			/* A column that turns beside the path is limited by
 			 * itself. */
 			if (d[j] * k->mm > w->tol[j])
@@ -230,7 +233,7 @@ static double bow_mm_s(const struct pass *w, const struct bow *k,
 			continue;
 		}
 		turn += d[j] * d[j];
-		if (k->a.rate[j] == 0 && k->b.rate[j] == 0)
+		if (k->a->rate[j] == 0 && k->b->rate[j] == 0)
 			continue;
 		acc = smaller(acc, w->a_mm_s2[j]);
 		jerk = smaller(jerk, w->j_mm_s3[j]);
@@ -271,12 +274,12 @@ static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 		if (!bow_of(w, i, &w->windows[n], along, &k))
 			break;
 		for (uint32_t j = 0; j < w->n; j++)
-			all[j] = fabs(k.b.rate[j] - k.a.rate[j]);
+			all[j] = fabs(k.b->rate[j] - k.a->rate[j]);
 		fast = bow_mm_s(w, &k, all);
 		if (fast >= most)
 			return smaller(v, fast);
-		c.a = &k.a;
-		c.b = &k.b;
+		c.a = k.a;
+		c.b = k.b;
 		c.per_mm = k.per_mm;
 		change_of(w, sure, &c);
 		if (is_clear(w, &c, all))
@@ -311,19 +314,49 @@ static double turn(struct pass *w, uint32_t last, uint32_t i,
 	struct bow k;
 
 	if (s[last].kind == INTERP_LINE && s[i].kind == INTERP_LINE &&
-	    fmin(s[last].length_mm, s[i].length_mm) < w->near.mm) {
-		const struct around near = look_near(w, i);
-		struct change c = { .a = &k.a, .b = &k.b };
+	    smaller(s[last].length_mm, s[i].length_mm) < w->near.mm) {
+		struct around near = look_near(w, i);
 
 		if (change->a->along == change->b->along &&
 		    bow_of(w, i, &near, change->a->along, &k)) {
-			c.per_mm = k.per_mm;
+			struct change c = { .a = k.a, .b = k.b,
+					    .per_mm = k.per_mm };
+
 			change_of(w, heard, &c);
 			return smaller(corner(w, &c), step(w, &c));
 		}
 	}
 	change_of(w, heard, change);
 	return smaller(corner(w, change), step(w, change));
+}
+
+/*
+ * Does turn() certainly allow @v_mm_s?  On most curves of lines it does, and
+ * the answer costs less than turn() itself.  Of a turn below 1 the radius of
+ * corner() is at least 6.46 * corner_mm / turn; all of a change counts here,
+ * and of all axes the one that can do least.
+ */
+static bool turns_faster(const struct pass *w, uint32_t last, uint32_t i,
+			 const struct change *c, double v_mm_s)
+{
+	const struct interp_seg *s = w->segs;
+	const double v = v_mm_s, far = 6.4 * w->corner_mm;
+	double turn = 0;
+
+	if (s[last].kind != INTERP_LINE || s[i].kind != INTERP_LINE ||
+	    c->a->along != c->b->along || s[last].length_mm < w->near.mm ||
+	    s[i].length_mm < w->near.mm)
+		return false;
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double d = c->b->rate[j] - c->a->rate[j];
+
+		if (c->a->along >> j & 1)
+			turn += d * d;
+		else if (!(fabs(d) * v < 0.99 * w->step_mm_s[j]))
+			return false;
+	}
+	return turn < 1 && v * v * turn < w->a_least_mm_s2 * far &&
+	       v * v * v * turn * turn < w->j_least_mm_s3 * far * far;
 }
 
 /* The node in front of segment @i; @last is the segment before it that
@@ -335,14 +368,14 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 	struct change c = { .a = a, .b = b,
 			    .per_mm = 1 / s[last].length_mm +
 				      1 / s[i].length_mm };
-	double v;
+	double v = INFINITY;
 
-	v = turn(w, last, i, &c);
 	if (pass_is_short(w, last) || pass_is_short(w, i))
-		v = smaller(v, curve(w, i, a->along & b->along,
-				     larger((double)s[last].feed_max_mm_s,
-					    (double)s[i].feed_max_mm_s)));
-	return v;
+		v = curve(w, i, a->along & b->along,
+			  larger((double)s[last].feed_max_mm_s,
+				 (double)s[i].feed_max_mm_s));
+	return turns_faster(w, last, i, &c, v) ? v :
+						 smaller(v, turn(w, last, i, &c));
 }
 
 /*
@@ -354,24 +387,25 @@ static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
 		       double ret[INTERP_NAXES])
 {
 	struct around *k = &w->windows[AROUND];
-	struct heading around = { .along = h->along };
 	const double per_mm = 1 / w->segs[i].length_mm;
+	const double *around;
+	struct chord c;
 	double along;
 
 	look_around(w, i, k);
-	if (!(chord(w, k->behind, k->ahead, &around) > 0))
-		around = *h;
+	chord_find(w, k->behind, k->ahead, h->along, &c);
+	around = c.mm > 0 ? c.h.rate : h->rate;
 	along = along_tol(w, h->along);
 	for (uint32_t j = 0; j < w->n; j++) {
 		/* So far the length and the axis may be off, if the share is
 		 * that of the ways around. */
 		const double off = h->along >> j & 1 ? 0 :
-			smaller(along * fabs(around.rate[j]),
+			smaller(along * fabs(around[j]),
 				MOST_BESIDE * w->tol[j]);
-		const double d = fabs(h->rate[j] - around.rate[j]);
+		const double d = fabs(h->rate[j] - around[j]);
 
 		ret[j] = fabs(d > (w->tol[j] + off) * per_mm ? h->rate[j] :
-							       around.rate[j]);
+							       around[j]);
 	}
 }
 

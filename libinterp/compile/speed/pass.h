@@ -9,6 +9,7 @@
 #define SPEED_PASS_H
 
 #include "interp/limits.h"
+#include "interp/smaller.h"
 #include "speed/heading.h"
 
 /*
@@ -22,10 +23,32 @@
  * rounding. */
 #define PASS_NEAR	20
 
+/* The straight way from node to node. */
+struct chord {
+	uint32_t from, to;
+	double mm;			/* in the columns of h.along */
+	struct heading h;
+};
+
 /* Two nodes that are so far from here along the path, or a little farther. */
 struct around {
 	double mm;
 	uint32_t behind, ahead;
+	/* To here and on from here.  The next node often has the second one
+	 * behind it. */
+	struct chord chord[2];
+	uint8_t on;
+};
+
+/* What the axes can do, each value once, in the order of the columns. */
+struct levels {
+	double at[INTERP_NAXES];
+	uint32_t n;
+};
+
+/* The least and the most of what the segments allow along the path. */
+struct pass_soft {
+	double a_least, a_most, j_least, j_most;
 };
 
 struct pass {
@@ -41,6 +64,12 @@ struct pass {
 	double v_mm_s[INTERP_NAXES], a_mm_s2[INTERP_NAXES];
 	double j_mm_s3[INTERP_NAXES];
 	double step_mm_s[INTERP_NAXES];	/* at a node */
+	struct levels v_levels, a_levels, j_levels;
+	double a_least_mm_s2, j_least_mm_s3;
+	uint32_t tol_of;		/* columns whose largest tol was asked
+					 * for last */
+	double tol_most;
+	struct pass_soft soft;		/* known after the last segment */
 };
 
 /**
@@ -78,8 +107,8 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 double pass_rate_mm_s(const struct pass *w, const struct rates *r);
 
 /**
- * pass_stretches() - set INTERP_SEG_STAND where a move has to stand; a_mm_s2 and
- * j_mm_s3 of all segments are known.
+ * pass_stretches() - set INTERP_SEG_STAND where a move has to stand; it is clear
+ * so far, and a_mm_s2 and j_mm_s3 of all segments are known.
  */
 void pass_stretches(struct pass *w);
 

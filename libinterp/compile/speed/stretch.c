@@ -159,23 +159,10 @@ static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
 
 void pass_stretches(struct pass *pass)
 {
-	struct stretches w = { .segs = pass->segs };
-	const uint32_t end = pass->p->head->nsegs - 1;
-	double a = INFINITY, j = INFINITY;
+	const struct pass_soft *k = &pass->soft;
+	struct stretches w = { pass->segs, k->a_most, k->j_most };
 
-	for (uint32_t i = 0; i <= end; i++) {
-		const struct interp_seg *s = &w.segs[i];
-
-		set_stand(&w, i, false);
-		if (s->kind >= INTERP_BEGIN || isinf(s->a_mm_s2) ||
-		    isinf(s->j_mm_s3))
-			continue;
-		w.a_mm_s2 = fmax(w.a_mm_s2, (double)s->a_mm_s2);
-		w.j_mm_s3 = fmax(w.j_mm_s3, (double)s->j_mm_s3);
-		a = fmin(a, (double)s->a_mm_s2);
-		j = fmin(j, (double)s->j_mm_s3);
-	}
-	if (w.a_mm_s2 >= a * (1 << CLASS_BITS) ||
-	    w.j_mm_s3 >= j * (1 << CLASS_BITS))
-		divide(&w, 0, end, 0);
+	if (k->a_most >= k->a_least * (1 << CLASS_BITS) ||
+	    k->j_most >= k->j_least * (1 << CLASS_BITS))
+		divide(&w, 0, pass->p->head->nsegs - 1, 0);
 }

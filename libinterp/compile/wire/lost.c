@@ -4,18 +4,21 @@
  *
  * Where the way changes from one element to a later one, the wire stands in an
  * inner corner and touches the outline in two places.  What lies between them
- * is not cut.  That is no fault if it lies no farther from the way than the
- * point of an inner corner would.  Two corners are asked for that:
+ * is not cut.  That is no fault if an inner corner would leave as much.  Two
+ * corners are asked for that:
  *
- *	the corner of the tangents in the two places
- *	the corner that the outline itself makes between them: it may be the
- *	sharper one beside a step or a rib that is lower than the wire, if it
- *	is open enough, and between walls that bulge
+ *	the corner that the outline itself makes between them, if it is open
+ *	enough, as beside a step or a rib that is lower than the wire, and
+ *	between walls that bulge: no place may be farther from the way than the
+ *	point of such a corner
+ *	the corner of the tangents in the two places: no place may be outside
+ *	of it
  *
  * The outline's own corner is the most by which it turns inward on the way from
  * the one place to the other; turns to and fro, as rounding makes them, do not
- * add up.  A slot turns by half a turn, a narrow notch by nearly as much: what
- * the wire only spans of these is missing.
+ * add up, nor do those on both sides of a place that the wire comes to.  A slot
+ * turns by half a turn, a narrow notch by nearly as much, a chamber behind a neck
+ * by more: what the wire only spans of these is missing.
  */
 #include "wire/track.h"
 
@@ -26,8 +29,6 @@
 
 #define NO_CORNER	3.0		/* turns by more are slots */
 #define OPEN		2.1		/* the outline's own may turn so far */
-#define WOUND		3.3		/* by so much more than the way: it goes
-					 * on behind a neck, as a spiral does */
 #define CURVED		0.5		/* or by so much more than the way: its
 					 * walls bulge */
 #define ARC_PARTS	8
@@ -100,9 +101,16 @@ struct between {
 	const struct track_work *w;
 	const struct track_jump *j;
 	struct vec at;			/* the wire */
+	double d;			/* the larger of its two distances */
 	uint32_t first, n;		/* pieces, the last one with them */
 	double t[2];			/* shares of the first and last */
 };
+
+/* Less than this is hidden by rounding. */
+static double hidden_by(const struct track_work *w)
+{
+	return HIDDEN_MM + w->slack_mm;
+}
 
 static const struct curve *piece_of(const struct between *k, uint32_t i)
 {
@@ -125,6 +133,8 @@ static void between_init(struct between *k, const struct track_work *w,
 	};
 	k->t[0] = touch_of(w, j->e, k->at);
 	k->t[1] = touch_of(w, j->f, k->at);
+	k->d = fmax(fabs(shift_of(w, track_piece(w, j->e))),
+		    fabs(shift_of(w, track_piece(w, j->f))));
 }
 
 /* Share @s of piece @i that is left out. */
@@ -136,50 +146,6 @@ static double share_of(const struct between *k, uint32_t i, double s)
 	return t0 + s * (t1 - t0);
 }
 
-/* The most by which the outline turns inward. */
-static double rise_of(const struct between *k)
-{
-	const int side = side_of(k->w, k->j);
-	double heading = 0, low = 0, rise = 0;
-
-	for (uint32_t i = 0; i < k->n; i++) {
-		const struct curve *c = piece_of(k, i);
-
-		if (i)
-			heading += side * curve_turn(piece_of(k, i - 1), c);
-		low = fmin(low, heading);
-		rise = fmax(rise, heading - low);
-		if (c->arc)
-			heading += side * c->sweep *
-				   (share_of(k, i, 1) - share_of(k, i, 0));
-		low = fmin(low, heading);
-		rise = fmax(rise, heading - low);
-	}
-	return rise;
-}
-
-/* How far the point of an inner corner is from a wire in it. */
-static double reach_of(const struct between *k)
-{
-	const double a = shift_of(k->w, track_piece(k->w, k->j->e));
-	const double b = shift_of(k->w, track_piece(k->w, k->j->f));
-	const double d = fmax(fabs(a), fabs(b));
-	const double turn = turn_of(k->w, k->j), own = rise_of(k);
-	const bool counts = own <= OPEN || (own <= turn + CURVED &&
-					    own < NO_CORNER);
-	const double most = fmax(turn, counts ? own : 0);
-	double reach = most < NO_CORNER ? d / cos(most / 2) : d;
-
-	if (own > turn + WOUND)
-		return fmin(reach, d / cos(OPEN / 2));
-	if (turn <= 0 || turn >= NO_CORNER)
-		return reach;
-	if (fabs(a - b) > 1e-6 && fabs(sin(turn)) > 0.05)
-		reach = fmax(reach, sqrt(a * a + b * b - 2 * a * b *
-					 cos(turn)) / fabs(sin(turn)));
-	return reach;
-}
-
 /* Is @at no farther than @most from run @i of the way? */
 static bool is_near_run(const struct track_work *w, uint32_t i, struct vec at,
 			double most)
@@ -189,12 +155,14 @@ static bool is_near_run(const struct track_work *w, uint32_t i, struct vec at,
 	return curve_from(&c, at) <= most;
 }
 
-/* ... or from the way close to the jump, on either side of it? */
+/* ... or from the wire, or the way close to it, on either side of the jump? */
 static bool is_near_way(const struct between *k, struct vec at, double most)
 {
 	const struct track_work *w = k->w;
 	const uint32_t run = k->j->run;
 
+	if (curve_distance(at, k->at) <= most)
+		return true;
 	for (uint32_t i = 0; run && i < NEAR_RUNS; i++) {
 		if ((i < run && is_near_run(w, run - 1 - i, at, most)) ||
 		    (run + i < w->nruns && is_near_run(w, run + i, at, most)))
@@ -203,25 +171,132 @@ static bool is_near_way(const struct between *k, struct vec at, double most)
 	return false;
 }
 
+/* The outline's turns, + inward, and the most of them since its lowest heading. */
+struct turns {
+	double heading, low, rise;
+};
+
+/* It turns, at a place that the wire comes to or not. */
+static void turns_add(struct turns *t, double turn, bool reached)
+{
+	t->heading += turn;
+	t->low = reached ? t->heading : fmin(t->low, t->heading);
+	t->rise = fmax(t->rise, t->heading - t->low);
+}
+
+/* ... along piece @i.  Does the wire come to its end? */
+static bool turns_along(struct turns *t, const struct between *k, uint32_t i,
+			double most)
+{
+	const double from = share_of(k, i, 0), to = share_of(k, i, 1);
+	const struct curve *c = piece_of(k, i);
+	const struct curve part = curve_part(c, from, to);
+	const int parts = c->arc ? ARC_PARTS : 1;
+	const double sweep = side_of(k->w, k->j) * c->sweep * (to - from);
+	bool reached = false;
+
+	for (int s = 1; s <= parts; s++) {
+		if (c->arc)
+			turns_add(t, sweep / parts, false);
+		reached = is_near_way(k, curve_at(&part, (double)s / parts),
+				      most);
+		if (reached || (!c->arc && curve_from(&part, k->at) <= most))
+			t->low = t->heading;
+	}
+	return reached;
+}
+
+/* The most by which the outline turns inward between places that the wire comes
+ * to. */
+static double rise_of(const struct between *k)
+{
+	const int side = side_of(k->w, k->j);
+	const double most = k->d + hidden_by(k->w);
+	struct turns t = { 0 };
+	bool reached = true;
+
+	for (uint32_t i = 0; i < k->n; i++) {
+		if (i)
+			turns_add(&t, side * curve_turn(piece_of(k, i - 1),
+							piece_of(k, i)),
+				  reached);
+		reached = turns_along(&t, k, i, most);
+	}
+	return t.rise;
+}
+
+/* A corner: how far from the way its places may be, and whether those beyond the
+ * tangents count as well. */
+struct corner {
+	double most;
+	bool beyond;
+};
+
+/* The corner that the wire stands in. */
+static struct corner corner_of(const struct between *k)
+{
+	const double a = shift_of(k->w, track_piece(k->w, k->j->e));
+	const double b = shift_of(k->w, track_piece(k->w, k->j->f));
+	const double turn = turn_of(k->w, k->j), own = rise_of(k);
+	const bool counts = own <= OPEN || (own <= turn + CURVED &&
+					    own < NO_CORNER);
+	const double most = fmax(turn, counts ? own : 0);
+	struct corner c = {
+		.most = most < NO_CORNER ? k->d / cos(most / 2) : k->d,
+		.beyond = counts,
+	};
+
+	if (turn > 0 && turn < NO_CORNER && fabs(a - b) > 1e-6 &&
+	    fabs(sin(turn)) > 0.05)
+		c.most = fmax(c.most, sqrt(a * a + b * b - 2 * a * b *
+					   cos(turn)) / fabs(sin(turn)));
+	return c;
+}
+
+/* Does @at lie beyond the tangent in one of the places that the wire touches? */
+static bool is_beyond(const struct between *k, struct vec at)
+{
+	for (int i = 0; i < 2; i++) {
+		const struct vec foot = curve_at(piece_of(k, i ? k->n - 1 : 0),
+						 k->t[i]);
+		const struct vec n = vec_add(foot, -1, k->at);
+		const struct vec d = vec_add(at, -1, foot);
+
+		if (n.x * d.x + n.y * d.y > hidden_by(k->w) *
+					    curve_hypot(n.x, n.y))
+			return true;
+	}
+	return false;
+}
+
+/* Is place @at missing?  Not if the wire comes to it. */
+static bool is_missing(const struct between *k, const struct corner *c,
+		       struct vec at)
+{
+	const double hidden = hidden_by(k->w);
+
+	if (!c->beyond && is_beyond(k, at))
+		return !is_near_way(k, at, k->d + hidden);
+	return !is_near_way(k, at, c->most + hidden);
+}
+
 bool lost_is(const struct track_work *w, const struct track_jump *j)
 {
+	struct corner corner;
 	struct between k;
-	double most;
 
 	between_init(&k, w, j);
 	if (k.n < 2)
 		return false;
-	most = reach_of(&k) + HIDDEN_MM + w->slack_mm;
+	corner = corner_of(&k);
 	for (uint32_t i = 0; i < k.n; i++) {
 		const struct curve *c = piece_of(&k, i);
 		const int parts = c->arc ? ARC_PARTS : 1;
 
 		for (int s = 1; s <= parts; s++) {
 			const double t = share_of(&k, i, (double)s / parts);
-			const struct vec at = curve_at(c, t);
 
-			if (curve_distance(at, k.at) > most &&
-			    !is_near_way(&k, at, most))
+			if (is_missing(&k, &corner, curve_at(c, t)))
 				return true;
 		}
 	}

@@ -189,7 +189,7 @@ def brakes(name, nodes):
             s.mark(f"{node}: harm")
             s.tell("emcy", node, "2310")
             s.until(f"{node}: fault", 5, state="fault")
-            time.sleep(0.3)
+            time.sleep(1)           # far longer than braking and the brake take
             brake[f"{node}: stands"] = level(26)
             s.mark(f"{node}: stands")
             s.ctl("reset")
@@ -266,6 +266,7 @@ def fault(s, what, harm, mend):
 
 def harmless(s):
     """What is on a bus and must change nothing."""
+    time.sleep(0.1)                 # else the drives may not have seen the sparks
     s.mark("harmless: begin")
     s.tell("drop", 1, 1)
     s.tell("skip", 2, 1)
@@ -320,6 +321,7 @@ def shared(name, nodes):
         time.sleep(0.2)
         s.start()
         s.until("cutting", 10, state=CUTTING)
+        time.sleep(0.1)
         s.mark("NMT")
         for node in Plc.NODE, 0:
             plc.nmt(1, node)
@@ -346,13 +348,15 @@ def taken(s, what, take, give):
     time.sleep(0.3)
     s.mark(f"{what}: harm")
     take()
-    got = s.until(f"{what}: fault", 5, state="fault")
+    s.until(f"{what}: fault", 5, state="fault")
     time.sleep(0.3)
+    alarms = json.loads(s.ctl("--json", "alarms")[1])
     give()
     time.sleep(0.3)
     s.ctl("reset")
     s.until(f"{what}: reset", 5, state="hold")
-    return {"fault": got["fault"], "start": s.start()}
+    return {"fault": alarms["fault"], "faults": alarms["faults"],
+            "start": s.start()}
 
 
 if __name__ == "__main__":

@@ -11,7 +11,9 @@ COMMANDS is a FIFO with a line for each thing to do or to go wrong:
     emcy N CODE | clear N | leave N | mute N | unmute N | skip N K | drop N K |
     jam N | unjam N | lag N GAIN | reboot N | gap V | report FILE | quit
 A report has a row for each SYNC: its time, the generator's flags, and of each
-drive its state and its place.
+drive its state and its place.  It also has what came between the rows: each line
+of COMMANDS, NMT, and the PLC's request where it is another than before, with its
+time and the number of rows before it.
 """
 import errno
 import json
@@ -28,7 +30,8 @@ from canopen.objectdictionary import (
     INTEGER16, INTEGER32, INTEGER8, ODRecord, ODVariable, ObjectDictionary, UNSIGNED8,
     UNSIGNED16, UNSIGNED32)
 
-GAP_ID, GENERATOR_ID = 0x3f0, 0x3f1
+GAP_ID, GENERATOR_ID, PLC_ID = 0x3f0, 0x3f1, 0x220
+ALIVE = 0x80                    # of the PLC's commands: turns with each request
 
 NOT_READY, DISABLED, READY, SWITCHED_ON, ENABLED, STOPPING, REACTING, FAULT = (
     "not-ready", "disabled", "ready", "switched-on", "enabled", "stopping",
@@ -308,10 +311,13 @@ class Stage:
         self.drives = {n: Drive(self.net, n) for n in nodes}
         self.fifo = os.open(commands, os.O_RDWR | os.O_NONBLOCK)
         self.rows, self.flags, self.synced = [], 0, 0.0
+        self.came, self.asked = [], None
         self.gap_v, self.noise = 0, 0
         self.rest = b""
         self.net.subscribe(0x80, self.on_sync)
         self.net.subscribe(GENERATOR_ID, self.on_generator)
+        self.net.subscribe(0, self.on_nmt)
+        self.net.subscribe(PLC_ID, self.on_request)
 
     def on_sync(self, can_id, data, timestamp):
         self.synced = time.monotonic()
@@ -327,8 +333,21 @@ class Stage:
     def on_generator(self, can_id, data, timestamp):
         self.flags = data[0]
 
+    def comes(self, what):
+        self.came.append((time.monotonic(), len(self.rows), what))
+
+    def on_nmt(self, can_id, data, timestamp):
+        self.comes(f"nmt {data.hex()}")
+
+    def on_request(self, can_id, data, timestamp):
+        asked = data[0] & ~ALIVE
+        if asked != self.asked:
+            self.comes(f"request {asked}")
+        self.asked = asked
+
     def obey(self, words):
         what, args = words[0], words[1:]
+        self.comes(" ".join(words))
         d = self.drives.get(int(args[0])) if len(args) > 0 and \
             what not in ("gap", "report") else None
         if what == "emcy":
@@ -351,9 +370,10 @@ class Stage:
             self.gap_v = float(args[0])
         elif what == "report":
             with open(args[0] + ".new", "w") as f:
-                json.dump({"nodes": list(self.drives), "rows": self.rows}, f)
+                json.dump({"nodes": list(self.drives), "rows": self.rows,
+                           "came": self.came}, f)
             os.rename(args[0] + ".new", args[0])
-            self.rows = []
+            self.rows, self.came = [], []
         elif what == "quit":
             sys.exit(0)
 

@@ -45,15 +45,16 @@ trace_start() {	# [FILTER]
 }
 
 # A program that is stopped at once may not have written since the trace began.
-trace_has_writes() { turns 200 grep -q gpio_value: $T/trace; }
+trace_has_writes() { turns 200 trace_is_long; }
+trace_is_long() { [ $(grep -c gpio_value: $T/trace) -ge 20 ]; }
 
-# "TIME LINE LEVEL" of each write, lines counted from the chip's first
+# "TIME LINE LEVEL THREAD" of each write, lines counted from the chip's first
 trace_end() {	# CHIP FILE
 	echo 0 > $T/events/gpio/gpio_value/enable
 	cat $T/per_cpu/cpu*/stats | grep overrun > $R/overrun
 	awk -v base=$(base $1) 'NF > 4 && $(NF - 3) == "gpio_value:" {
-		sub(":", "", $(NF - 4))
-		print $(NF - 4), $(NF - 2) - base, $NF }' $T/trace > $R/trace
+		sub(":", "", $(NF - 4)); sub(".*-", "", $1)
+		print $(NF - 4), $(NF - 2) - base, $NF, $1 }' $T/trace > $R/trace
 	cp $R/trace $2
 	awk '$NF != 0 { print "trace lost", $0 }' $R/overrun
 }
@@ -106,6 +107,12 @@ ctl() { $R/edmctl --machine vm "$@"; }
 status_is() {
 	turns 150 status_has "$1" || { echo "no '$1'"; cat $R/status; return 1; }
 }
+
+# goes_on - reset and start it, again until it cuts
+goes_on() { turns 50 goes_on_now; }
+
+cutting='state *\(approach\|erode\)'
+goes_on_now() { ctl reset; ctl start; status_has "$cutting"; }
 
 status_has() { ctl status > $R/status 2>&1 && grep -q "$1" $R/status; }
 

@@ -39,8 +39,6 @@ refused rights nobody
 ctl doctor --pulses gpiochip0:9 > pulses 2>&1
 echo $? > pulses.rc
 
-cutting='state *\(approach\|erode\)'
-
 # Switches: each is its fault; sparks and pump are off by then.
 pull sim0 20 up
 edmd_start $R/edmd gap.ini
@@ -60,7 +58,7 @@ for s in '16 e-stop' '17 limit-switch' '18 door' '19 dielectric'; do
 	status_is "fault *$2" && status_is 'state *fault' &&
 		echo "$2: spark $(level sim1 0)"
 	pull sim0 $1 down
-	ctl reset; ctl start
+	goes_on
 done
 } > switches 2>&1
 

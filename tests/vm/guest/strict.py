@@ -448,7 +448,7 @@ class Bus:
         self.sock.setblocking(False)
         self.sock.bind((interface,))
         self.aborts, self.rows, self.flags, self.gap_v = [], [], 0, 0.0
-        self.noise = 0
+        self.noise, self.came = 0, []   # harm: when, after how many rows
         self.drives = {int(n): Drive(self, int(n), t)
                        for n, t in traits.items()}
         self.fifo = os.open(commands, os.O_RDWR | os.O_NONBLOCK)
@@ -505,15 +505,16 @@ class Bus:
         elif what == "report":
             with open(args[0] + ".new", "w") as f:
                 json.dump({"nodes": list(self.drives), "rows": self.rows,
-                           "aborts": self.aborts}, f)
+                           "aborts": self.aborts, "came": self.came}, f)
             os.rename(args[0] + ".new", args[0])
-            self.rows, self.aborts = [], []
+            self.rows, self.aborts, self.came = [], [], []
         elif what == "quit":
             sys.exit(0)
         else:
             self.harm(self.drives[int(args[0])], what, args[1:])
 
     def harm(self, d, what, args):
+        self.came.append((time.monotonic(), len(self.rows), what))
         if what == "off":
             d.power_off()
         elif what == "on":

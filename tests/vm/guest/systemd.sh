@@ -3,11 +3,16 @@
 # systemd as PID 1, the units as `make install` puts them.
 . ./lib.sh
 unit() { systemctl show -P $1 edmd.service; }
-uptime_s() { read -r up _ < /proc/uptime; echo $up; }
 
-# restarted TIMES - wait until systemd has started edmd again so often
-restarted() { turns 600 restarts_are $1; }
-restarts_are() { [ "$(unit NRestarts)" = $1 ]; }
+# replaced PID - wait until systemd has started another edmd than that
+replaced() { turns 600 is_another $1; }
+is_another() {
+	now=$(unit MainPID)
+	[ "$now" != 0 ] && [ "$now" != $1 ] && [ "$(unit SubState)" = running ]
+}
+
+# cycle PID - its thread in real time
+cycle() { chrt -a -p $1 | sed -n "s/.*pid \([0-9]*\)'s.*SCHED_FIFO/\1/p"; }
 {
 echo "pid1 $(cat /proc/1/comm)"
 cp -r root/. /
@@ -57,25 +62,27 @@ status_is 'state *approach'
 echo "spark $(level sim1 0)"
 trace_start
 trace_has_writes
-tid=$(chrt -a -p $pid | sed -n "s/.*pid \([0-9]*\)'s.*SCHED_FIFO/\1/p")
-echo "stopped-at $(uptime_s)"
-./stop-thread $tid &
-restarted 1
-echo "restart-seen-at $(uptime_s)"
+pid=$(unit MainPID)
+tid=$(cycle $pid)
+echo "stopped $pid"
+echo "stopped-cycle $tid"
+./stop-thread $tid > stopped-at &
+replaced $pid
 wait
-echo "restarts $(unit NRestarts)"
 echo "spark-after-kill $(level sim1 0)"
 status_is 'state *hold'
 echo "spark-held $(level sim1 0)"
 trace_end sim1 watchdog.trace
 echo "active-again $(unit ActiveState)/$(unit SubState)"
-ctl start; status_is 'state *approach'
+goes_on
 echo "spark-again $(level sim1 0)"
 pid=$(unit MainPID)
+echo "frozen $pid"
+echo "frozen-cycle $(cycle $pid)"
 trace_start
 trace_has_writes
 kill -STOP $pid
-restarted 2
+replaced $pid
 status_is 'state *hold'
 trace_end sim1 frozen.trace
 ctl stop; status_is 'state *idle'
@@ -83,5 +90,6 @@ echo "spark-idle $(level sim1 0)"
 systemctl stop edmd.service
 echo "stop $? $(unit Result)"
 } > watchdog 2>&1
+. ./systemd_can.sh
 journalctl -u edmd -u edmd-jobs --no-pager -o short-monotonic > journal
 true

@@ -16,7 +16,8 @@
  *
  * The condition in force and the outputs that the program has switched (power,
  * polarity, pump) are those of the place.  Dwells, stops and M codes that were
- * done before it are not done again.
+ * done before it are not done again, but for an M code that the PLC was told and
+ * had not answered: nobody knows whether it was heard.
  *
  * Units: mm, machine coordinates, degrees for rotary axes.
  * Threads: as interp/build.h.
@@ -43,6 +44,9 @@ struct interp_build_from {
 					 * -1: a wire, which is cut off: the way
 					 * is straight, and at its end the
 					 * program stops (M0) for threading */
+	uint32_t unanswered;		/* M code that the PLC was told before
+					 * the place: it is told again at the
+					 * end of the positioning; 0: none */
 	uint32_t held;			/* electrode in the holder: if another
 					 * one cuts at the place, the program
 					 * stops above the work, for a change */
@@ -69,6 +73,8 @@ struct interp_build_entry {
 	uint32_t passed[INTERP_PASSED_MAX];	/* M codes that are not done
 						 * again: as in the segments */
 	uint32_t npassed;
+	uint32_t again;			/* M code that is told again, in the
+					 * same form; 0: none */
 	uint32_t electrode;		/* that cuts at the place; 0: none */
 };
 

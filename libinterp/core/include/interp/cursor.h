@@ -194,6 +194,13 @@ static inline double interp_cursor_place_mm(const struct interp_cursor *c)
 /** interp_cursor_aim() - aim at the place that is @ds_mm from here. */
 void interp_cursor_aim(struct interp_cursor *c, double ds_mm);
 
+/** interp_cursor_is_due() - does the place aimed at belong to another tick of
+ *  this segment? */
+static inline bool interp_cursor_is_due(const struct interp_cursor *c)
+{
+	return c->backward ? c->want < c->measure : c->want > c->measure;
+}
+
 /**
  * interp_cursor_step() - one lattice point toward the place aimed at.
  *

@@ -36,8 +36,9 @@
  * speeds of the axes are levels too).  So at most a few hundred of them can
  * follow each other with each slower than the one before.
  *
- * A move keeps the least acceleration and jerk of its way.  Where that would take
- * much longer, INTERP_SEG_STAND cuts the way in two (compile/speed/stretch.c).
+ * A move keeps the least acceleration and jerk of its way.  Where that would
+ * take much longer, INTERP_SEG_STAND cuts the way in two
+ * (compile/speed/stretch.c).
  *
  * Units: in every name.
  */
@@ -62,12 +63,12 @@
 #define INTERP_BESIDE_ALONG	0.4
 
 /*
- * The same of its jerk, which has three parts: of the bend itself, v^3 / r^2; of
- * speeding up on the bend, 3 * v * a / r; and of the jerk along the path, which
- * has what is left.  On an arc the second is square to the others, on a curve
- * all may point one way.  All three are counted at the ceiling of the speed,
- * because a move may brake with all of its acceleration where it comes to a bend
- * at its ceiling.
+ * The same of its jerk, which has three parts: of the bend itself, v^3 / r^2;
+ * of speeding up on the bend, 3 * v * a / r; and of the jerk along the path,
+ * which has what is left.  On an arc the second is square to the others, on a
+ * curve all may point one way.  All three are counted at the ceiling of the
+ * speed, because a move may brake with all of its acceleration where it comes
+ * to a bend at its ceiling.
  */
 #define INTERP_ARC_JERK_ROUND	0.3
 #define INTERP_ARC_JERK_BOTH	0.66
