@@ -34,6 +34,7 @@
 #   SAN=1           address and undefined sanitizers, into build-san/
 #   TSAN=1          thread sanitizer, into build-tsan/
 #   CC=clang        as usual
+#   LTO=0           files are optimised one by one: edmd and edmsim link quicker
 
 V	?= 0
 Q	:= $(if $(filter 1,$(V)),,@)
@@ -207,7 +208,23 @@ $(B)/%.o: %.cc
 
 # From text to program there are many short loops over the axes.
 $(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
-	speed/*.c))): OPT = -O3
+	speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3
+
+# What runs each period is optimised as a whole where it is linked into a program.
+# Its objects have machine code too, for all that is linked without that.  Not for
+# sanitizers, nor with a compiler that cannot do both.
+LTO	?= $(if $(filter 1,$(SAN) $(TSAN))$(findstring clang,$(CC)),0,1)
+ifeq ($(LTO),1)
+# The walks are loops of their own, and some would be slower.
+LTO_O	:= $(call obj,$(filter-out libinterp/core/pulse/%,$(CORE)) $(RT) \
+	   $(IO) $(WORDS))
+$(LTO_O): CFLAGS += -flto -ffat-lto-objects
+# What was compiled before there was this would be linked as it is.
+$(LTO_O): Makefile
+LTO_LINK = -fno-lto
+$(B)/edmd $(B)/edmsim $(B)/bench/count $(B)/bench/cycle $(B)/bench/points: \
+	LTO_LINK = -flto=auto $(OPT)
+endif
 
 # Generated messages: compiled without our warnings, they are not ours.
 LCM_TYPES := $(shell sed -n 's/^struct \([a-z_]*_t\).*/\1/p' messages/edm.lcm 2>/dev/null)
@@ -242,7 +259,7 @@ $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 define link
 $(call say,LD,$@)
 @mkdir -p $(@D)
-$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $1
+$(Q)$(CC) $(LDFLAGS) $(LTO_LINK) -o $@ $(filter %.o,$^) $(filter %.a,$^) $1
 endef
 
 # An archive for each floor of libinterp: what links one can reach no other.
@@ -683,11 +700,12 @@ CIRCLE_MOST = 3
 lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,what the cycle may call)
 	$(Q)$(LD) -r -o $(B)/rt.o $(RT_O) --whole-archive $(CORE_A)
+	$(Q)objcopy -w -R '.gnu.lto_*' -R '.gnu.debuglto_*' $(B)/rt.o
 	$(Q)nm -u $(B)/rt.o | awk '{print $$2}' | sort -u > $(B)/rt.undefined
 	$(Q)! grep -vxFf tests/rt-symbols $(B)/rt.undefined
 	$(call say,LINT,what edmd must not have)
 	$(Q)nm $(B)/edmd | awk '{print $$NF}' > $(B)/edmd.symbols
-	$(Q)grep -qx 'interp_cursor_step' $(B)/edmd.symbols
+	$(Q)grep -qx 'interp_cursor_init' $(B)/edmd.symbols
 	$(Q)! grep -E '^($(NOT_IN_EDMD))' $(B)/edmd.symbols
 	$(Q)! nm $(COMPILE_A) $(MODEL_A) | awk 'NF == 3 && $$2 ~ /[TDRB]/ \
 		{print $$3}' | grep -xFf $(B)/edmd.symbols

@@ -346,11 +346,14 @@ int build_measure_next(struct interp_build *b,
 	return err < 0 ? err : build_measure(b, end_mm, to, ret, diag);
 }
 
-void build_mm(const struct interp_build *b, const int64_t at[INTERP_NAXES],
-	      double ret_mm[INTERP_NAXES])
+void build_mm(const struct interp_build *b, uint32_t axes,
+	      const int64_t at[INTERP_NAXES], double ret_mm[INTERP_NAXES])
 {
-	for (int i = 0; i < INTERP_NAXES; i++)
+	for (; axes; axes &= axes - 1) {
+		const int i = __builtin_ctz(axes);
+
 		ret_mm[i] = (double)at[i] / b->sub_mm[i];
+	}
 }
 
 void build_stand_at(struct interp_build *b, const double end_mm[INTERP_NAXES],

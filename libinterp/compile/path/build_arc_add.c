@@ -2,6 +2,7 @@
 /* build_arc_add.c - adds an arc as a segment, and its plan to the tables */
 #include "path/build_arc.h"
 #include "path/builder.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -37,9 +38,11 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 
 	if (err < 0)
 		return err;
-	build_mm(b, b->here, plan.from_mm);
-	build_mm(b, to, plan.to_mm);
-	plan.way = build_way_to(b, to, &m);
+	build_mm(b, m.moved | plane, b->here, plan.from_mm);
+	build_mm(b, m.moved | plane, to, plan.to_mm);
+	plan.way.longest_sub = m.longest;
+	if (!pulse_strategy(b->o.strategy)->at_once)
+		plan.way = build_way_to(b, to, &m);
 	plan.way.except = plane;
 	err = build_arc_plan(&plan, diag);
 	if (err < 0)

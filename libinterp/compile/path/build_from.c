@@ -139,7 +139,7 @@ static void entry_of(const struct from *f, double to[INTERP_NAXES])
 	memcpy(at, b->first, sizeof(at));
 	for (uint32_t k = 0; k < b->naxes; k++)
 		at[b->column[k]] = node[k];
-	build_mm(b, at, to);
+	build_mm(b, BUILD_ALL_AXES, at, to);
 }
 
 /* The electrode that cuts at the place.  If another one is in the holder, a

@@ -99,8 +99,8 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	err = pair_alone(b, &plan, end_mm, w, diag);
 	if (err != -ENOENT)
 		return err;
-	build_mm(b, b->here, plan.from_mm);
-	build_mm(b, to, plan.to_mm);
+	build_mm(b, BUILD_ALL_AXES, b->here, plan.from_mm);
+	build_mm(b, BUILD_ALL_AXES, to, plan.to_mm);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		plan.from[i] = interp_round_sub(b->here[i]);
 		plan.to[i] = interp_round_sub(to[i]);

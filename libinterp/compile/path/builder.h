@@ -102,9 +102,11 @@ int build_measure_next(struct interp_build *b,
 		       int64_t to[INTERP_NAXES], struct build_measure *ret,
 		       struct interp_diag *diag);
 
-/** build_mm() - subpulses as mm. */
-void build_mm(const struct interp_build *b, const int64_t at[INTERP_NAXES],
-	      double ret_mm[INTERP_NAXES]);
+#define BUILD_ALL_AXES	((1u << INTERP_NAXES) - 1)
+
+/** build_mm() - subpulses as mm, of the axes in the mask @axes. */
+void build_mm(const struct interp_build *b, uint32_t axes,
+	      const int64_t at[INTERP_NAXES], double ret_mm[INTERP_NAXES]);
 
 /** build_way_to() - the way from here to @to, as the strategies need it. */
 struct build_way build_way_to(const struct interp_build *b,

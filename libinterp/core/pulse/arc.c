@@ -23,46 +23,32 @@ struct plane {
  * instead of a call of libm.  16 ticks are less than 16 pulses along the arc.
  * So with a radius of 160 pulses the angle is below 0.1, and the first omitted
  * term is below 3e-15.  The middle depends only on the tick, so a point still
- * does, too.
+ * does, too.  All ticks of a block are computed in one loop, two or more at a
+ * time, and kept: the walk goes to and fro over them.
  */
-#define BLOCK_BITS	5
-#define BLOCK_HALF	(1 << (BLOCK_BITS - 1))
+#define BLOCK		INTERP_ARC_BLOCK
+#define BLOCK_HALF	(BLOCK / 2)
 #define BLOCK_ANGLE	0.1
-
-static void block_enter(struct interp_cursor *c, uint32_t block)
-{
-	const double middle = (double)(block << BLOCK_BITS) + BLOCK_HALF;
-	const double theta = c->arc.theta + c->arc_turn * middle;
-
-	c->arc_block = block;
-	c->arc_cos = cos(theta);
-	c->arc_sin = sin(theta);
-}
 
 struct turn {
 	double cosine, sine;
 };
 
-static struct turn arc_turned(struct interp_cursor *c)
+static inline struct turn turned(struct turn middle, double x)
 {
-	const uint32_t block = c->tick >> BLOCK_BITS;
-	const double x = c->arc_turn *
-			 ((int)(c->tick & (2 * BLOCK_HALF - 1)) - BLOCK_HALF);
 	const double x2 = x * x;
 	const double s = x - x * x2 * (1.0 / 6 - x2 * (1.0 / 120 -
 						       x2 * (1.0 / 5040)));
 	const double k = 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 -
 				   x2 * (1.0 / 720 - x2 * (1.0 / 40320))));
 
-	if (block != c->arc_block)
-		block_enter(c, block);
-	return (struct turn) { c->arc_cos * k - c->arc_sin * s,
-			       c->arc_sin * k + c->arc_cos * s };
+	return (struct turn) { middle.cosine * k - middle.sine * s,
+			       middle.sine * k + middle.cosine * s };
 }
 
-static struct turn arc_direct(const struct interp_cursor *c)
+static struct turn arc_direct(const struct interp_cursor *c, double tick)
 {
-	const double theta = c->arc.theta + c->arc_turn * c->tick;
+	const double theta = c->arc.theta + c->arc_turn * tick;
 
 	return (struct turn) { cos(theta), sin(theta) };
 }
@@ -75,20 +61,51 @@ static int64_t nearest(double x)
 	return i - ((double)i > x + 0.5);
 }
 
+static void block_enter(struct interp_cursor *c, uint32_t block)
+{
+	const struct interp_arc *arc = &c->arc;
+	const double first = (double)(block * BLOCK);
+	const struct turn middle = arc_direct(c, first + BLOCK_HALF);
+	const double a_mm = arc->a_mm, b_mm = arc->b_mm, r_mm = arc->r_mm;
+	const double turn = c->arc_turn, grow_mm = c->arc_grow_mm;
+	const double a_pulses_mm = c->pulses_mm[arc->axis_a];
+	const double b_pulses_mm = c->pulses_mm[arc->axis_b];
+	double a[BLOCK], b[BLOCK];
+
+	for (int i = 0; i < BLOCK; i++) {
+		const struct turn at = turned(middle, turn * (i - BLOCK_HALF));
+		const double r = r_mm + grow_mm * (first + i);
+
+		a[i] = (a_mm + r * at.cosine) * a_pulses_mm;
+		b[i] = (b_mm + r * at.sine) * b_pulses_mm;
+	}
+	for (int i = 0; i < BLOCK; i++) {
+		c->arc_at[0][i] = nearest(a[i]);
+		c->arc_at[1][i] = nearest(b[i]);
+	}
+	c->arc_block = block;
+}
+
 /* Where the axes of the plane are at tick c->tick. */
 static struct plane arc_at(struct interp_cursor *c)
 {
 	const struct interp_arc *arc = &c->arc;
-	const bool small = fabs(c->arc_turn) * BLOCK_HALF > BLOCK_ANGLE;
-	const struct turn at = small ? arc_direct(c) : arc_turned(c);
-	const double r = arc->r_mm + c->arc_grow_mm * c->tick;
+	const uint32_t block = c->tick / BLOCK, i = c->tick % BLOCK;
 
-	return (struct plane) {
-		nearest((arc->a_mm + r * at.cosine) *
-			c->pulses_mm[arc->axis_a]),
-		nearest((arc->b_mm + r * at.sine) *
-			c->pulses_mm[arc->axis_b]),
-	};
+	if (fabs(c->arc_turn) * BLOCK_HALF > BLOCK_ANGLE) {
+		const struct turn at = arc_direct(c, c->tick);
+		const double r = arc->r_mm + c->arc_grow_mm * c->tick;
+
+		return (struct plane) {
+			nearest((arc->a_mm + r * at.cosine) *
+				c->pulses_mm[arc->axis_a]),
+			nearest((arc->b_mm + r * at.sine) *
+				c->pulses_mm[arc->axis_b]),
+		};
+	}
+	if (block != c->arc_block)
+		block_enter(c, block);
+	return (struct plane) { c->arc_at[0][i], c->arc_at[1][i] };
 }
 
 /* At both ends, the pulses of the node itself: they are exact, whatever sin and

@@ -60,6 +60,12 @@ static const struct circle_way *way(const struct interp_circle *k)
 	return &ways[k->ccw > 0][k->quad];
 }
 
+static void pulse_of_way(const struct circle_way *w, bool inward, int8_t ret[2])
+{
+	ret[0] = inward ? w->in_x : w->out_x;
+	ret[1] = inward ? w->in_y : w->out_y;
+}
+
 int64_t circle_in(const struct interp_circle *k)
 {
 	return llabs(way(k)->in_x ? k->x : k->y);
@@ -77,10 +83,7 @@ int8_t circle_inward_axis(const struct interp_circle *k)
 
 void circle_toward(const struct interp_circle *k, bool inward, int8_t ret[2])
 {
-	const struct circle_way *w = way(k);
-
-	ret[0] = inward ? w->in_x : w->out_x;
-	ret[1] = inward ? w->in_y : w->out_y;
+	pulse_of_way(way(k), inward, ret);
 }
 
 /* The quadrant in which counter-clockwise motion is when it leaves (x, y). */
@@ -206,9 +209,8 @@ void circle_forward(struct interp_circle *k, int8_t ret[2])
 /* The direction of the last pulse, and whether it ended in a crossing. */
 static bool last_pulse(const struct interp_circle *k, int8_t ret[2])
 {
-	struct interp_circle before = *k;
-	const int64_t in = circle_in(k), out = circle_out(k);
-	bool inward, crossed = false;
+	const struct circle_way *w = way(k);
+	int64_t in, out;
 
 	if (k->runs) {
 		runs_last(k, ret);
@@ -219,26 +221,26 @@ static bool last_pulse(const struct interp_circle *k, int8_t ret[2])
 		ret[0] = ret[1] ? 0 : toward(k->xt, k->x);
 		return false;
 	}
+	in = llabs(w->in_x ? k->x : k->y);
+	out = llabs(w->in_x ? k->y : k->x);
 	if (out == 0 && in == k->meet && k->left < k->crossings) {
-		crossed = true;
-		inward = true;
-		before.quad = (int8_t)((k->quad - k->ccw) & 3);
-	} else {
-		inward = out == 0 || k->dev <= 2 * out - 2 * in - 3;
+		pulse_of_way(&ways[k->ccw > 0][(k->quad - k->ccw) & 3], true,
+			     ret);
+		return true;
 	}
-	circle_toward(&before, inward, ret);
-	return crossed;
+	pulse_of_way(w, out == 0 || k->dev <= 2 * out - 2 * in - 3, ret);
+	return false;
 }
 
-void circle_back(struct interp_circle *k, int8_t ret[2])
+/* Undo the pulse that last_pulse() found. */
+static void undo(struct interp_circle *k, const int8_t was[2], bool crossed,
+		 int8_t ret[2])
 {
-	int8_t was[2];
-
 	if (k->runs) {
 		runs_back(k, ret);
 		return;
 	}
-	if (last_pulse(k, was)) {
+	if (crossed) {
 		k->left++;
 		k->quad = (int8_t)((k->quad - k->ccw) & 3);
 	}
@@ -246,6 +248,14 @@ void circle_back(struct interp_circle *k, int8_t ret[2])
 	ret[1] = (int8_t)-was[1];
 	circle_pulse(k, ret[0], ret[1]);
 	k->tick--;
+}
+
+void circle_back(struct interp_circle *k, int8_t ret[2])
+{
+	int8_t was[2];
+	const bool crossed = last_pulse(k, was);
+
+	undo(k, was, crossed, ret);
 }
 
 /* Twice the area that is swept by a pulse that ended at (x, y), plus one for
@@ -446,45 +456,57 @@ static bool pulse_circle_enter(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
+/* The circle gave @pulse: the axes follow. */
+static uint32_t plane_follow(struct interp_cursor *c, const int8_t pulse[2])
+{
+	if (pulse[0] == 0 && pulse[1] == 0)
+		return PULSE_BAD;
+	c->pos[c->arc.axis_a] += pulse[0];
+	c->pos[c->arc.axis_b] += pulse[1];
+	return pulse_plane_move(c, pulse[0], pulse[1]);
+}
+
 uint32_t pulse_circle_move(struct interp_cursor *c, int dir)
 {
-	int8_t was[2];
+	int8_t pulse[2];
 
 	if (dir > 0)
-		circle_forward(&c->circle, was);
+		circle_forward(&c->circle, pulse);
 	else
-		circle_back(&c->circle, was);
-	if (was[0] == 0 && was[1] == 0)
-		return PULSE_BAD;
-	c->pos[c->arc.axis_a] += was[0];
-	c->pos[c->arc.axis_b] += was[1];
-	return pulse_plane_move(c, was[0], was[1]);
+		circle_back(&c->circle, pulse);
+	return plane_follow(c, pulse);
 }
 
 static uint32_t pulse_circle_tick(struct interp_cursor *c)
 {
+	struct interp_circle *k = &c->circle;
+	int8_t pulse[2];
 	uint32_t moved;
 
-	if (c->circle.tick >= c->circle.ticks)
+	if (k->tick >= k->ticks)
 		return PULSE_BAD;
-	moved = pulse_circle_move(c, 1);
+	circle_forward(k, pulse);
+	moved = plane_follow(c, pulse);
 	if (moved == PULSE_BAD)
 		return PULSE_BAD;
-	c->measure += circle_last(&c->circle);
-	c->tick = c->circle.tick;
+	c->measure += circle_measure_of(k, pulse);
+	c->tick = k->tick;
 	return moved;
 }
 
 static uint32_t pulse_circle_tick_back(struct interp_cursor *c)
 {
-	uint32_t moved;
+	struct interp_circle *k = &c->circle;
+	int8_t was[2], pulse[2];
+	bool crossed;
 
-	if (c->circle.tick == 0)
+	if (k->tick == 0)
 		return PULSE_BAD;
-	c->measure -= circle_last(&c->circle);
-	moved = pulse_circle_move(c, -1);
-	c->tick = c->circle.tick;
-	return moved;
+	crossed = last_pulse(k, was);
+	c->measure -= circle_measure_of(k, was);
+	undo(k, was, crossed, pulse);
+	c->tick = k->tick;
+	return plane_follow(c, pulse);
 }
 
 static uint32_t pulse_circle_forward(struct interp_cursor *c, uint32_t ticks,

@@ -62,7 +62,7 @@ static int64_t rotor_add(int64_t *rest, int64_t v, uint32_t shift)
 	const int64_t sum = *rest + v;
 	const int64_t pulse = sum >> shift;
 
-	*rest = sum - pulse * (INT64_C(1) << shift);
+	*rest = sum & ((INT64_C(1) << shift) - 1);
 	return pulse;
 }
 
@@ -82,7 +82,8 @@ static bool rotor_in_range(const struct interp_rotor *k)
 {
 	const int64_t most = INT64_C(1) << k->shift;
 
-	return llabs(k->x) <= most && llabs(k->y) <= most;
+	return (uint64_t)(k->x + most) <= (uint64_t)(2 * most) &&
+	       (uint64_t)(k->y + most) <= (uint64_t)(2 * most);
 }
 
 /* Tick @u of the tail, counted from 1: does an axis with @forced pulses to go

@@ -121,6 +121,9 @@ struct interp_curve_walk {
 
 struct interp_walk;
 
+/* So many ticks of an arc are computed together. */
+#define INTERP_ARC_BLOCK	32
+
 /* Placed by the caller, filled by interp_cursor_init(); read, do not write. */
 struct interp_cursor {
 	struct interp_program p;
@@ -159,8 +162,8 @@ struct interp_cursor {
 					 * its circle alone */
 	double pulses_mm[INTERP_NAXES];	/* pulses per mm */
 	double arc_turn, arc_grow_mm;	/* angle, radius gained per tick */
-	double arc_cos, arc_sin;	/* of the middle of arc_block */
-	uint32_t arc_block;
+	uint32_t arc_block;		/* ticks whose places are known */
+	int64_t arc_at[2][INTERP_ARC_BLOCK];	/* pulses of axis_a, axis_b */
 };
 
 /**
