@@ -310,7 +310,7 @@ static void find_self(char to[512])
 	to[n > 0 ? n : 0] = '\0';
 }
 
-/* The page beside the installed program, or beside the one in the build folder. */
+/* The page that was installed with the program, or built beside it. */
 static void find_page(char to[256], const char *self)
 {
 	static const char *const from[] = { "../share/edmd/panel", "panel" };
