@@ -20,9 +20,12 @@ UM = 0.001
 
 
 def arc_points(start, end, centre, clockwise, chord=CHORD_MM):
-    """Places along an arc, without its start."""
+    """Places along an arc, without its start.  Where rounding has made its ends
+    unequally far from the centre, the radius goes from the one to the other: a
+    step at the end would be a corner of a small arc."""
     cx, cy = centre
     r = math.hypot(start[0] - cx, start[1] - cy)
+    more = math.hypot(end[0] - cx, end[1] - cy) - r
     a = math.atan2(start[1] - cy, start[0] - cx)
     b = math.atan2(end[1] - cy, end[0] - cx)
     sweep = (a - b if clockwise else b - a) % (2 * math.pi)
@@ -31,8 +34,8 @@ def arc_points(start, end, centre, clockwise, chord=CHORD_MM):
     step = 2 * math.acos(max(1 - chord / max(r, chord), -1))
     n = max(int(math.ceil(sweep / max(step, 1e-3))), 1)
     sign = -1 if clockwise else 1
-    pts = [(cx + r * math.cos(a + sign * sweep * i / n),
-            cy + r * math.sin(a + sign * sweep * i / n))
+    pts = [(cx + (r + more * i / n) * math.cos(a + sign * sweep * i / n),
+            cy + (r + more * i / n) * math.sin(a + sign * sweep * i / n))
            for i in range(1, n)]
     return pts + [end]
 
