@@ -10,7 +10,7 @@
 #include "interp/limits.h"
 #include "seed.h"
 
-#define ROUNDS	60
+#define ROUNDS	SEED_ROUNDS(60)
 #define SEGS	60
 
 static uint64_t seed;
@@ -488,7 +488,7 @@ static void a_hold_at_every_cycle_of_a_thousand_lines_stops_where_it_says(void *
 
 /* -- A million segments --------------------------------------------------- */
 
-#define MILLION	1000000
+#define MILLION	SEED_ROUNDS(1000000)
 #define PITCH	0.00019
 
 /* Cycles to walk back to the start, or on to the end. */
