@@ -68,8 +68,8 @@ static bool brakes(const struct cycle *c)
 	       !mover_is_standing(&c->mover);
 }
 
-/* In points a second, of what it has to do; 0: on nothing that has points.  What
- * brakes goes as slowly as it goes, and comes to an end. */
+/* In points a second, of what it has to do; 0: on nothing that has points.
+ * What brakes goes as slowly as it goes, and comes to an end. */
 static double points_s(const struct cycle *c)
 {
 	const struct interp_seg *s =
