@@ -88,9 +88,11 @@ def expression(rnd, depth):
 def test_random_expressions_come_to_what_linuxcnc_says(tmp_path):
     rnd = seeded()
     lines = ["G21 G90", "#1=2.5 #2=-1.25 #<a>=7"]
-    for _ in range(60):
-        # Within the travel, wherever it comes to; far from a rounding.
-        lines.append(f"G0 X[50 * sin[{expression(rnd, 3)}]]")
+    for i in range(60):
+        # Within the travel, wherever it comes to.  Y moves on each line: two
+        # values of X in a row may be equal for one of the two alone, who
+        # writes fewer decimals.
+        lines.append(f"G0 X[50 * sin[{expression(rnd, 3)}]] Y{i % 2 + 1}")
         lines.append(f"#{rnd.choice([1, 2])} = [5 * cos[{expression(rnd, 2)}]]")
     path = tmp_path / "e.ngc"
     path.write_text("\n".join(lines) + "\nM2\n")
