@@ -394,9 +394,7 @@ demo-plan:
 	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/edmsim
 	@EDM_BUILD=$(B) examples/demo-plan
 
-# Everything: ends with the test runner's own lines.  SIDE processes run tests side
-# by side: a whole file belongs to one of them, and each has a network of its own
-# (tests/conftest.py).  Files that take longest begin first.  Random tests have a seed
+# Everything: ends with the test runner's own lines.  Random tests have a seed
 # here, so that what fails has been changed; `make invariants`, `make fuzz` and
 # the tests run alone go on to look with others.
 check:
@@ -418,7 +416,7 @@ check:
 	@$(MAKE) --no-print-directory TSAN=1 run-crossings
 	@tests/stage check fuzz
 	@$(MAKE) --no-print-directory -j$(SIDE) fuzz FUZZ_SEED=1 \
-		FUZZ_RUNS=500000 FUZZ_S=120
+		FUZZ_RUNS=250000 FUZZ_S=60
 	@tests/stage check clang
 	@$(MAKE) --no-print-directory clang
 	@tests/stage check vm
@@ -426,10 +424,16 @@ check:
 	@tests/stage check panel
 	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q -n $(SIDE) \
-		--dist loadfile --no-loadscope-reorder \
-		$(VM_TESTS) tests/system tests/sim $(PANEL_TESTS:%=--ignore %)
+	@EDM_BUILD=$(B) tests/side-by-side $(B)/page.log \
+		"tests/netns .venv/bin/pytest -q $(PANEL_TESTS)" \
+		"tests/netns .venv/bin/pytest -q -n $(PYTEST_SIDE) --dist loadfile \
+		--no-loadscope-reorder $(VM_TESTS) tests/system tests/sim \
+		$(PANEL_TESTS:%=--ignore %)"
+
+# Processes of pytest: a whole file belongs to one of them, and each has a network of
+# its own (tests/conftest.py).  Files that take longest begin first.  They wait more
+# than they compute, so they are twice as many as those that compute.
+PYTEST_SIDE ?= $(shell echo $$((2 * $(SIDE))))
 
 # Of the virtual machine's tests those that were seen to pass again and again, some
 # 8 minutes.  The others, encoder and adc among them, are in `make check-vm`.
@@ -816,7 +820,7 @@ uninstall:
 clean:
 	rm -rf build build-deb build-san build-tsan build-gpiod2 build-vm
 
--include $(shell find $(B) -name '*.d' 2>/dev/null)
+-include $(shell find $(B) -name '*.d' -type f 2>/dev/null)
 
 .PHONY: all panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \

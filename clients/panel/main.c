@@ -310,6 +310,20 @@ static void find_self(char to[512])
 	to[n > 0 ? n : 0] = '\0';
 }
 
+/* The page that was installed with the program, or built beside it. */
+static void find_page(char to[256], const char *self)
+{
+	static const char *const from[] = { "../share/edmd/panel", "panel" };
+	const char *slash = strrchr(self, '/');
+	const int n = slash ? (int)(slash - self) : 0;
+
+	for (size_t i = 0; i < sizeof(from) / sizeof(from[0]); i++) {
+		snprintf(to, 256, "%.*s/%s", n, self, from[i]);
+		if (access(to, R_OK) == 0)
+			return;
+	}
+}
+
 int main(int argc, char **argv)
 {
 	static struct panel p;
@@ -333,6 +347,8 @@ int main(int argc, char **argv)
 		return add_user(&p, o.add_user, o.role);
 	find_self(self);
 	p.self = self;
+	if (strcmp(p.config.panel.assets, "none") == 0)
+		find_page(p.config.panel.assets, self);
 	p.config_path = o.config;
 	sigaction(SIGINT, &sa, NULL);
 	sigaction(SIGTERM, &sa, NULL);

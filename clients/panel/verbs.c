@@ -403,6 +403,8 @@ static const struct verb verbs[] = {
 	{ "electrode-use", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
 	{ "electrode-measure", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
 	{ "electrodes", ROLE_VIEWER, run_ask, NULL, false, NUMBER },
+	{ "offset",   ROLE_OPERATOR, run_ask, NULL, true, LINES },
+	{ "offsets",  ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "text",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "queue",    ROLE_VIEWER,   run_ask, NULL, false, 0 },
 	{ "show",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
@@ -432,8 +434,8 @@ void verbs_do(struct browser *b, const json_t *o)
 			continue;
 		if (!is_fit(&verbs[i], o)) {
 			refuse(b, n, EX_DATAERR, "job and text are words of "
-			       "less than 64 bytes (the values of an "
-			       "electrode: less than 600), arg is a number");
+			       "less than 64 bytes (values on lines "
+			       "of their own: less than 600), arg is a number");
 			return;
 		}
 		if (s->role >= verbs[i].role) {
@@ -466,21 +468,6 @@ static json_t *axis(const struct machine_config *c, int i)
 			 c->manual[i].method != 0);
 }
 
-static json_t *offsets(const struct machine_config *c)
-{
-	json_t *all_of = json_array();
-
-	for (int i = 0; i < INTERP_NC_NWORK; i++) {
-		json_t *row = json_array();
-
-		for (int a = 0; a < INTERP_NAXES; a++)
-			json_array_append_new(row,
-				json_real(c->work_offset_mm[i][a]));
-		json_array_append_new(all_of, row);
-	}
-	return all_of;
-}
-
 json_t *verbs_hello(struct panel *p, const struct session *s)
 {
 	const struct machine_config *c = &p->config;
@@ -489,11 +476,11 @@ json_t *verbs_hello(struct panel *p, const struct session *s)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		if (c->axes.present >> i & 1)
 			json_array_append_new(axes, axis(c, i));
-	return json_pack("{s:s,s:s,s:s,s:s,s:o,s:o,s:o,s:i,s:b,s:b,s:s}",
+	return json_pack("{s:s,s:s,s:s,s:s,s:o,s:o,s:i,s:b,s:b,s:s}",
 			 "machine", c->name, "user", s->user, "role",
 			 role_name(s->role), "version", EDM_VERSION, "axes",
-			 axes, "fields", values_fields(), "offsets", offsets(c),
-			 "process", c->gap.process, "plc", config_has_plc(c),
-			 "simulated", config_machine_is(c, MACHINE_NO_WIRES),
-			 "table", c->tech_table);
+			 axes, "fields", values_fields(), "process",
+			 c->gap.process, "plc", config_has_plc(c), "simulated",
+			 config_machine_is(c, MACHINE_NO_WIRES), "table",
+			 c->tech_table);
 }

@@ -18,6 +18,7 @@ static struct interp_build_options build_of(const struct machine_config *c)
 		.rotary_radius_mm = c->rotary_radius_mm,
 		.chord_error_mm = c->chord_error_um / 1000,
 		.period_s = (double)config_period_ns(c) / 1e9,
+		.points_per_s = config_points_s(c),
 		.fit_mm = c->fit_um / 1000,
 	};
 

@@ -43,6 +43,11 @@ int64_t config_period_ns(const struct machine_config *c)
 	return config_backend(c)->period_ns;
 }
 
+double config_points_s(const struct machine_config *c)
+{
+	return POINTS_MAX * 1e9 / (double)config_period_ns(c);
+}
+
 static bool has(const struct machine_config *c, enum interp_axis a)
 {
 	return c->axes.present >> a & 1;

@@ -353,6 +353,9 @@ void config_say(const char *path, const struct interp_diag *d);
 /** config_period_ns() - the period that is in force. */
 int64_t config_period_ns(const struct machine_config *c);
 
+/** config_points_s() - lattice points that the cycle makes in a second. */
+double config_points_s(const struct machine_config *c);
+
 /**
  * config_line_read() - `none`, or [!][CHIP:]NUMBER.
  * Return: NULL, or what is wrong with @text.

@@ -29,8 +29,9 @@ static const struct config_key row[] = {
 	       "who may log in; written by edm-panel --add-user"),
 	WORDS(PANEL, "local_role", "operator", AT(panel.local_role), role_word,
 	      "role of a user of this host who is root or in group edm"),
-	STRING(PANEL, "assets", "/usr/local/share/edmd/panel", panel.assets,
-	       "folder of the page's files"),
+	STRING(PANEL, "assets", "none", panel.assets,
+	       "folder of the page's files; none: that which came with the "
+	       "program"),
 };
 /* clang-format on */
 

@@ -16,6 +16,10 @@ AXES = "XYZABCUV"
 STRATEGIES = ["simultaneous", "point-by-point"]
 
 
+# Ends what hangs: far above what any run needs, because a busy host is slow.
+HANGS_S = 3600
+
+
 def run(*args, text=None, **more):
     """Run edmsim; text goes to its stdin as the job."""
     if text is not None:
@@ -23,7 +27,7 @@ def run(*args, text=None, **more):
         if isinstance(text, str):
             text = text.encode()
     return subprocess.run([PROGRAM, "--quiet", *map(str, args)], input=text,
-                          capture_output=True, timeout=170, **more)
+                          capture_output=True, timeout=HANGS_S, **more)
 
 
 def done(*args, text=None):

@@ -88,9 +88,11 @@ def expression(rnd, depth):
 def test_random_expressions_come_to_what_linuxcnc_says(tmp_path):
     rnd = seeded()
     lines = ["G21 G90", "#1=2.5 #2=-1.25 #<a>=7"]
-    for _ in range(60):
-        # Within the travel, wherever it comes to; far from a rounding.
-        lines.append(f"G0 X[50 * sin[{expression(rnd, 3)}]]")
+    for i in range(60):
+        # Within the travel, wherever it comes to.  Y moves on each line: two
+        # values of X in a row may be equal for one of the two alone, who
+        # writes fewer decimals.
+        lines.append(f"G0 X[50 * sin[{expression(rnd, 3)}]] Y{i % 2 + 1}")
         lines.append(f"#{rnd.choice([1, 2])} = [5 * cos[{expression(rnd, 2)}]]")
     path = tmp_path / "e.ngc"
     path.write_text("\n".join(lines) + "\nM2\n")
@@ -162,6 +164,13 @@ REFUSED = [
     ("fanuc-sinker", "IF[1 EQ 2] G0 X1.\n", b":1:12: error: an IF without"),
     ("fanuc-sinker", "G65 P77 X1.\nM30\n", b":1:1: error: a call of O77"),
     ("fanuc-sinker", "O5\nG65 P5\nM30\n", b":2:1: error: a call inside 8 oth"),
+    ("fanuc-sinker", "N1 G0 X1.\nM99 P1\n", b":2:5: error: a loop that has"),
+    ("fanuc-sinker", "M98 P2\nM30\nO2\nN7\nM99 P7\n",
+     b":1:5: error: M99 P7, which is not"),
+    ("fanuc-sinker", "M98 P2 L3\nN5 M30\nO2\nM99 P5\n",
+     b":4:5: error: M99 P with 2 times still to go; a call without L"),
+    ("fanuc-sinker", "M99 P1.5\n", b":1:5: error: M99 P1.5; the number of"),
+    ("generic", "M98 P2\nM2\nO2\nM99 P5\n", b":4:5: error: M99 with P; M99"),
     ("linuxcnc", "G0 X#<none>\n", b":1:5: error: #<none>, which has none; a"),
     ("linuxcnc", "o1 while [1]\no1 endwhile\n", b":2:1: error: a loop that has"),
     ("linuxcnc", "o1 call\nG0 X1\n", b":1:1: error: a call of o1, which"),
@@ -206,6 +215,46 @@ def test_of_two_values_for_one_variable_the_later_one_counts():
 def test_a_macro_is_gone_through_again_with_what_it_has_left():
     assert emitted("G90 G21\nG65 P1 L3 A5.\nG65 P1 A1.\nM30\nO1\n"
                    "G0 X#1\n#1 = #1 + 1\nM99\n") == ["X5", "X6", "X7", "X1"]
+
+
+def test_m99_p_goes_on_at_a_line_of_who_called():
+    """From two calls inside each other, over lines of the caller, and back to
+    one that ends; N90 of the callee itself is another one."""
+    assert emitted("""%
+O0001 (MAIN)
+G90 G21
+#1=0
+N10 #1=#1+1
+G65 P2 A#1
+G0 X99.
+N90 G0 X50.
+IF [#1 LT 3] GOTO 10
+M99 P95
+X98.
+N95 X0
+M30
+O2
+N90 G0 X#1
+M98 P3
+X97.
+N20 X10.
+M99 P90
+O3
+X20.
+M99 P20
+%
+""") == ["X1", "X20", "X10", "X50", "X2", "X20", "X10", "X50",
+         "X3", "X20", "X10", "X50", "X0"]
+
+
+def test_a_goto_stays_in_its_program_wherever_the_label_stands():
+    """The first line of a program may have its O word, and the line behind a
+    GOTO the O word of the next one."""
+    assert emitted("%\n\nO0001\n(A)\nN1 G90 G21 G0 X[5+#1]\n#1=#1+1\n"
+                   "IF [#1 LT 2] GOTO 1\nM30\n") == ["X5", "X6"]
+    r = run("--dialect", "fanuc-sinker", "--check",
+            text="G0 X1.\nGOTO 5\nN5 O2\nX2.\nM99\n")
+    assert r.returncode == 65 and b"GOTO 5, which is not there" in r.stderr
 
 
 @pytest.mark.parametrize("dialect, text, said", REFUSED)

@@ -392,10 +392,20 @@ class Machine:
         return left
 
     def ctl(self, *args, timeout=120, **more):
-        return subprocess.run(
-            [str(BUILD / "edmctl"), "--machine", self.name, *args],
-            capture_output=True, text=True, timeout=timeout, **more,
-        )
+        """On a busy host services that run answer late, and what edmd did not
+        take in time was not done: it is asked again."""
+        runs = [x is not None and x.poll() is None
+                for x in (self.jobs, self.edmd)]
+        patience = ["--timeout", str(3 * PATIENCE)] if runs[0] else []
+        for _ in range(PATIENCE):
+            p = subprocess.run(
+                [str(BUILD / "edmctl"), "--machine", self.name, *patience,
+                 *args],
+                capture_output=True, text=True, timeout=timeout, **more,
+            )
+            if not runs[1] or "did not take it in time" not in p.stderr:
+                break
+        return p
 
 
 @contextlib.contextmanager

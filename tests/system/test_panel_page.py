@@ -164,7 +164,8 @@ def test_an_axis_is_jogged_by_steps(p, page):
     page.locator("#jog-X-plus").click()
     p.machine.client.status_where(
         lambda s: abs(s.pos_mm[0] - before - 1) < 1e-6, 20)
-    expect(page.locator(".axes tr").first).to_contain_text("1.000")
+    expect(page.locator(".axes tr").first).to_contain_text(
+        f"{before + 1:.3f}")
     page.locator("#jog-X-minus").click()
     p.machine.client.status_where(lambda s: abs(s.pos_mm[0] - before) < 1e-6,
                                   20)
@@ -379,6 +380,57 @@ def test_the_table_of_electrodes_is_kept_here(p, page):
     press(page.locator("#el-remove"))
     expect(card).to_contain_text("empty")
     assert electrode(p, 3) is None
+
+
+def offset(p, work):
+    rows = json.loads(p.machine.ctl("offset", "--json").stdout)
+    return next(r for r in rows if r["work"] == work)
+
+
+def test_work_offsets_are_shown_and_changed_here(p, page):
+    """As `edmctl offset` has them, whoever changed them."""
+    end_job(page, p)
+    page.goto(p.url + "/#/setup")
+    card = page.locator(".offsets")
+    expect(card).to_contain_text("G59.3")
+    x = json.loads(p.machine.ctl("status", "--json").stdout)["pos_mm"][0]
+    card.get_by_role("button", name="Work offset G54").click()
+    sheet = page.locator("dialog[open]")
+    save = page.locator("#off-save")
+    expect(save).to_have_attribute("aria-disabled", "true")
+    page.locator("#off-X").fill("five")
+    expect(save).to_have_attribute("aria-disabled", "true")
+    page.locator("#off-X").fill("2,5")
+    save.click()
+    expect(sheet).to_have_count(0)
+    row = offset(p, "G54")
+    assert (row["touched"], row["X"]) == ("X", pytest.approx(x - 2.5))
+    expect(card).to_contain_text("*")
+    # The origin itself, of two axes; the third stays.
+    card.get_by_role("button", name="Work offset G54").click()
+    page.get_by_role("radio", name="Origin at").click()
+    page.locator("#off-X").fill("1.25")
+    page.locator("#off-Y").fill("-3")
+    save.click()
+    expect(sheet).to_have_count(0)
+    row = offset(p, "G54")
+    assert (row["touched"], row["X"], row["Y"]) == ("XY", 1.25, -3)
+    # What edmctl changes is seen here.
+    p.machine.ctl("offset", "G59.3", "Z@7.125")
+    expect(card).to_contain_text("7.125*")
+    for work in ("G54", "G59.3"):
+        card.get_by_role("button", name=f"Work offset {work}",
+                         exact=True).click()
+        page.locator("#off-clear").click()
+        expect(sheet).to_have_count(0)
+        assert offset(p, work)["touched"] == ""
+    # A refusal is told, and the sheet stays.
+    card.get_by_role("button", name="Work offset G55").click()
+    page.locator("#off-Y").fill("20000000")
+    save.click()
+    expect(page.locator(".toast").last).to_contain_text("'Y=20000000'")
+    expect(sheet).to_have_count(1)
+    assert offset(p, "G55")["touched"] == ""
 
 
 def test_few_clicks_lead_where_one_wants(p, page):

@@ -7,6 +7,7 @@
  * less than a pulse.
  */
 #include "walk_help.h"
+#include "seed.h"
 
 #include "pulse/pulse.h"
 
@@ -14,11 +15,10 @@
 
 #ifdef __SANITIZE_ADDRESS__
 #define RADIUS	12
-#define ARCS	10000
 #else
 #define RADIUS	40
-#define ARCS	100000
 #endif
+#define ARCS	SEED_ROUNDS(100000)
 
 /* The rounding of both ends, the ellipse and the two coordinates. */
 #define DDA_STRAYS	1.5

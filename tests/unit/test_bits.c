@@ -12,11 +12,7 @@
 #include "pulse/greedy.h"
 #include "seed.h"
 
-#ifdef __SANITIZE_ADDRESS__
-#define LINES	300
-#else
-#define LINES	3000
-#endif
+#define LINES	SEED_ROUNDS(3000)
 
 static uint64_t seed;
 

@@ -6,17 +6,14 @@
  * and about.
  */
 #include "walk_help.h"
+#include "seed.h"
 
 #include "pulse/couple.h"
 #include "rule_help.h"
 
 #include <errno.h>
 
-#ifdef __SANITIZE_ADDRESS__
-#define MOVES	1000
-#else
-#define MOVES	10000
-#endif
+#define MOVES	SEED_ROUNDS(10000)
 
 struct move {
 	struct interp_build_options o;

@@ -13,7 +13,7 @@
 
 #include <errno.h>
 
-#define ROUNDS	32
+#define ROUNDS	SEED_ROUNDS(32)
 
 static uint64_t seed;
 
@@ -352,7 +352,7 @@ static void damage_never_makes_an_axis_leap(void **state)
 	uint64_t s = seed;
 
 	(void)state;
-	for (int k = 0; k < 300; k++) {
+	for (int k = 0; k < SEED_ROUNDS(300); k++) {
 		const bool one = k % 2;
 		struct random_curve r;
 		struct interp_cursor c;

@@ -16,11 +16,7 @@
 #include "path/pace.h"
 #include "path/place.h"
 
-#ifdef __SANITIZE_ADDRESS__
-#define CYCLES		1000000
-#else
-#define CYCLES		10000000
-#endif
+#define CYCLES		SEED_ROUNDS(10000000)
 #define CYCLES_PER_JOB	10000
 
 static uint64_t seed;

@@ -10,7 +10,7 @@
 #include "interp/limits.h"
 #include "seed.h"
 
-#define ROUNDS	60
+#define ROUNDS	SEED_ROUNDS(60)
 #define SEGS	60
 
 static uint64_t seed;
@@ -85,6 +85,57 @@ static void an_arc_is_limited_by_what_its_axes_can_do(void **st)
 		double v;
 
 		arc(b, end, 0, r, false);
+		m = finish(b);
+		v = (double)m.p.segs[1].feed_max_mm_s;
+		assert_true(v <= most && v >= most * (1 - 1.0 / 31));
+		unmake(&m);
+	}
+}
+
+/* An acceleration that the jerk lets no move come to does not slow an arc. */
+static void an_arc_is_as_fast_where_only_jerk_binds(void **st)
+{
+	static const double radii[] = { 0.01, 0.1, 1 };
+
+	(void)st;
+	for (int i = 0; i < 3; i++) {
+		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+		const double r = radii[i];
+		const double end[INTERP_NAXES] = { r, r };
+		struct made m;
+
+		for (int k = 0; k < INTERP_NAXES; k++)
+			help_machine.axis[k].a_max_mm_s2 = 20 * A_MAX;
+		arc(b, end, 0, r, false);
+		m = finish(b);
+		assert_true((double)m.p.segs[1].feed_max_mm_s >
+			    0.6 * cbrt(0.3 * J_MAX * r * r));
+		unmake(&m);
+	}
+}
+
+/* All axes at once, or one after another with twice the points. */
+static void no_segment_is_faster_than_its_points_are_made(void **st)
+{
+	static const enum interp_strategy how[] = {
+		INTERP_SIMULTANEOUS, INTERP_POINT_BY_POINT,
+	};
+
+	(void)st;
+	for (int i = 0; i < 2; i++) {
+		const double end[INTERP_NAXES] = { 10, 10 };
+		const double most = 40000 * 0.001 * sqrt(2) / (i + 1);
+		struct interp_build_options o = {
+			.machine = &help_machine, .strategy = how[i],
+			.points_per_s = 40000,
+		};
+		struct interp_build *b;
+		struct made m;
+		double v;
+
+		interp_build_destroy(begin(how[i]));
+		b = interp_build_create(&o);
+		line(b, end);
 		m = finish(b);
 		v = (double)m.p.segs[1].feed_max_mm_s;
 		assert_true(v <= most && v >= most * (1 - 1.0 / 31));
@@ -437,7 +488,7 @@ static void a_hold_at_every_cycle_of_a_thousand_lines_stops_where_it_says(void *
 
 /* -- A million segments --------------------------------------------------- */
 
-#define MILLION	1000000
+#define MILLION	SEED_ROUNDS(1000000)
 #define PITCH	0.00019
 
 /* Cycles to walk back to the start, or on to the end. */
@@ -556,6 +607,8 @@ int main(void)
 		cmocka_unit_test(a_node_is_passed_as_the_arc_that_cuts_its_corner),
 		cmocka_unit_test(nodes_on_a_line_have_no_ceiling_and_turning_back_has_one),
 		cmocka_unit_test(an_arc_is_limited_by_what_its_axes_can_do),
+		cmocka_unit_test(an_arc_is_as_fast_where_only_jerk_binds),
+		cmocka_unit_test(no_segment_is_faster_than_its_points_are_made),
 		cmocka_unit_test(a_polyline_is_slowed_as_the_curve_it_follows),
 		cmocka_unit_test(no_ceiling_is_passed_there_and_back),
 		cmocka_unit_test(a_jump_keeps_to_every_ceiling),

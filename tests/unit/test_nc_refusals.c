@@ -60,7 +60,7 @@ static const struct refusal words[] = {
 	{ "G0 X1 /X2",		1, 7,	"a / inside", "first character" },
 	{ "G0 X1 %",		1, 7,	"% behind other words", "alone" },
 	{ "% G0 X1",		1, 1,	"words behind %", "alone" },
-	{ "G0 X1 P4",		1, 7,	"P4 has no use", "G4 or M98" },
+	{ "G0 X1 P4",		1, 7,	"P4 has no use", "M98 or M99" },
 	{ "G1 F1 X1 R4",	1, 10,	"R4 has no use", "G2 or G3" },
 	{ "G4 P1 Y1",		1, 7,	"Y1 has no use", "G28" },
 	{ "G4",			1, 1,	"without a time", "G4 P0.5" },

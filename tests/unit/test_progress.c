@@ -119,6 +119,54 @@ static void a_slow_brake_is_not_stuck(void **st)
 	rig_free(&r);
 }
 
+/* The first half pulse takes 1.4 s at this jerk. */
+static void a_soft_start_is_not_stuck(void **st)
+{
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct rig r;
+
+	(void)st;
+	k.dry_run = true;
+	k.travel_j_mm_s3 = 1e-3;
+	rapid_to(b, -2);
+	rig_load(&r, b, &k);
+	tell(&r, CYCLE_START);
+	steps(&r, OPEN_V, SECONDS(4));
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	assert_true(r.c.cursor.tick > 0);
+	freeze(&r);
+	until(&r, STATE_FAULT, OPEN_V, SECONDS(4));
+	assert_int_equal(r.c.fault.first, FAULT_STUCK);
+	rig_free(&r);
+}
+
+/* What was waited for a point of a slow feed does not count against the way
+ * back. */
+static void a_fast_move_after_a_slow_one_is_not_stuck(void **st)
+{
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 2e-4 };
+	double end[INTERP_NAXES] = { 0 };
+	struct interp_diag d;
+	struct rig r;
+
+	(void)st;
+	k.dry_run = true;
+	k.travel_a_mm_s2 = 0.1;
+	end[INTERP_Z] = -5;
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+	rig_load(&r, b, &k);
+	tell(&r, CYCLE_START);
+	steps(&r, OPEN_V, SECONDS(19));
+	tell(&r, CYCLE_HOLD);
+	tell_mm(&r, CYCLE_RETRACT, 1);
+	steps(&r, OPEN_V, SECONDS(2));
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	rig_free(&r);
+}
+
 static void hold_it(struct rig *r)
 {
 	tell(r, CYCLE_HOLD);
@@ -174,6 +222,8 @@ int main(void)
 		cmocka_unit_test(what_should_move_and_stands_is_stuck),
 		cmocka_unit_test(a_slow_motion_is_not_stuck),
 		cmocka_unit_test(a_slow_brake_is_not_stuck),
+		cmocka_unit_test(a_soft_start_is_not_stuck),
+		cmocka_unit_test(a_fast_move_after_a_slow_one_is_not_stuck),
 		cmocka_unit_test(a_wait_that_has_a_name_may_last),
 	};
 

@@ -6,6 +6,7 @@
  * printed; then through the builder and the cursor.
  */
 #include "walk_help.h"
+#include "seed.h"
 
 #include "rule_help.h"
 
@@ -128,11 +129,7 @@ static void check_ends(enum interp_strategy rule, int64_t a, int64_t b,
 	assert_true(p.m == 0 && p.s == 0 && p.dev == 0);
 }
 
-#ifdef __SANITIZE_ADDRESS__
-#define RANDOM_LINES	100000
-#else
-#define RANDOM_LINES	1000000
-#endif
+#define RANDOM_LINES	SEED_ROUNDS(1000000)
 
 static void random_lines_up_to_two_metres_hold_at_both_ends(void **st)
 {

@@ -3,6 +3,7 @@
  * test_taper.c - promises of two contours walked together
  */
 #include "walk_help.h"
+#include "seed.h"
 
 #define PULSE	0.001
 
@@ -289,7 +290,7 @@ static void random_cones_follow_end_exactly_and_retrace(void **st)
 
 	(void)st;
 	print_message("    seed %llu\n", (unsigned long long)seed);
-	for (int i = 0; i < 10000; i++) {
+	for (int i = 0; i < SEED_ROUNDS(10000); i++) {
 		const double r1 = exp(uniform(&s, log(8), log(300)));
 		const double r2 = exp(uniform(&s, log(8), log(300)));
 		const double small = fmin(r1, r2);
@@ -369,7 +370,7 @@ static void random_different_contours_end_exactly_and_retrace(void **st)
 
 	(void)st;
 	print_message("    seed %llu\n", (unsigned long long)seed);
-	for (int i = 0; i < 2000; i++) {
+	for (int i = 0; i < SEED_ROUNDS(2000); i++) {
 		double k[2][3];
 
 		for (int j = 0; j < 2; j++) {

@@ -11,7 +11,7 @@
 #include "random_compile.h"
 #include "seed.h"
 
-#define RUNS		120
+#define RUNS		SEED_ROUNDS(120)
 
 /* As many cycles may pass without a way while it should move. */
 #define STILL_MAX	2000

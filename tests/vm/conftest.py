@@ -152,6 +152,26 @@ def systemd():
 
 
 @pytest.fixture(scope="session")
+def packages():
+    """What `make deb` makes, and the same once more as a later version; without
+    python3-edm, whose python3-nacl the host need not have."""
+    make = ["make", "-s", "-C", ROOT, "deb"]
+    subprocess.run(make, check=True, capture_output=True)
+    old, new = BUILD_VM / "old", BUILD_VM / "new"
+    shutil.rmtree(old, ignore_errors=True)
+    shutil.copytree(ROOT / "build/deb", old)
+    subprocess.run([ROOT / "packaging/deb", ROOT / "build-deb",
+                    ROOT / "build-deb/deb/root", new, "0.1.1"],
+                   check=True, capture_output=True)
+    for deb in (*old.glob("python3*"), *new.glob("python3*")):
+        deb.unlink()
+    return checked(Run("packages", {
+        "settings.ini": "overrun_limit = 0\ncpu = -1\nperiod_us = 5000\n",
+        "job.ngc": "G21 G90\nG1 X0.2 F0.02\nG0 X0\nM30\n",
+    }, "-m", "systemd", copies=(old, new)))
+
+
+@pytest.fixture(scope="session")
 def guest():
     """What the guests whose power fails go on from."""
     return power.Guest()

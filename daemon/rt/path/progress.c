@@ -39,10 +39,24 @@ static bool dwells(const struct cycle *c)
 			       c->state == STATE_TRAVEL);
 }
 
+/*
+ * Where the axes have little jerk, an S-curve takes seconds for its first and
+ * its last pulse.  A plan that is made anew all the time gets no older, and one
+ * that nobody walks leaves the place where it is.
+ */
+static bool follows_plan(const struct cycle *c)
+{
+	const struct progress *p = &c->progress;
+
+	return c->mover.kind != MOVER_NO_PLAN &&
+	       c->mover.t_s > PROGRESS_EVERY * law_period_s(c) &&
+	       place_mm(c) != p->place_mm;
+}
+
 static bool has_a_name(const struct cycle *c)
 {
-	return gap_stands(c) || !cycle_moves(c) || c->busy || dwells(c) ||
-	       c->mcode.waits || c->axes.awaited ||
+	return gap_stands(c) || follows_plan(c) || !cycle_moves(c) ||
+	       c->busy || dwells(c) || c->mcode.waits || c->axes.awaited ||
 	       !contouring_rests(&c->contouring) ||
 	       (c->override == 0 && (c->state == STATE_TRAVEL ||
 				     c->state == STATE_PROBE));
@@ -54,47 +68,49 @@ static bool brakes(const struct cycle *c)
 	       !mover_is_standing(&c->mover);
 }
 
-/* The speed of what it has to do; jumps and moves by command are fast.  What
- * brakes goes as slowly as it goes, and comes to an end. */
-static double speed_mm_s(const struct cycle *c, const struct interp_seg *s)
+/* In points a second, of what it has to do; 0: on nothing that has points.
+ * What brakes goes as slowly as it goes, and comes to an end. */
+static double points_s(const struct cycle *c)
 {
+	const struct interp_seg *s =
+		lookahead_toward(c, c->mover.v_mm_s < 0 ? -1 : 1);
+	double v;
+
+	if (!s || s->ticks == 0)
+		return 0;
 	if (brakes(c))
-		return fabs(c->mover.v_mm_s);
-	return c->state == STATE_TRAVEL ?
-	       law_seg_speed(s) * (c->override < 1 ? c->override : 1) :
-	       c->state == STATE_HOLD ? c->gap.retract_mm_s :
-					c->jump.v_max_mm_s;
+		v = fabs(c->mover.v_mm_s);
+	else if (c->state == STATE_TRAVEL)
+		v = law_seg_speed(s) * (c->override < 1 ? c->override : 1);
+	else
+		v = fmin((double)s->feed_max_mm_s,
+			 c->state == STATE_HOLD ? c->gap.retract_mm_s :
+						  c->jump.v_max_mm_s);
+	return v * (double)s->ticks / s->length_mm;
 }
 
 /* A time after which some points should have come. */
 static bool is_long(const struct cycle *c)
 {
 	const double still_s = (double)c->progress.still * law_period_s(c);
-	const struct interp_seg *s;
-	double point_mm;
+	const double by_s = c->progress.points_s;
 
-	if (still_s < STILL_S)
-		return false;
-	s = lookahead_toward(c, c->mover.v_mm_s < 0 ? -1 : 1);
-	if (!s || s->ticks == 0)
-		return true;
-	point_mm = s->length_mm / (double)s->ticks;
-	return still_s * speed_mm_s(c, s) > STILL_POINTS * point_mm;
+	return still_s >= STILL_S &&
+	       (by_s == 0 || still_s * by_s > STILL_POINTS);
 }
 
 void progress_look(struct cycle *c)
 {
 	struct progress *p = &c->progress;
 	const uint64_t at = stamp(c);
+	const double by_s = points_s(c);
 
-	if (at != p->at) {
-		p->at = at;
-		p->still = 0;
-		return;
-	}
-	if (has_a_name(c))
+	/* A fast move may follow a slow one between two points. */
+	if (at != p->at || by_s != p->points_s || has_a_name(c))
 		p->still = 0;
 	else if ((p->still += PROGRESS_EVERY) && is_long(c))
 		fault_latch(&c->fault, FAULT_STUCK);
+	p->at = at;
+	p->points_s = by_s;
 	p->place_mm = place_mm(c);
 }

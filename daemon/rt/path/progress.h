@@ -5,7 +5,9 @@
  * The cycle may be told to move, plan, and yet come to no further lattice
  * point: a path or a plan with a defect.  Nothing would ever end that, so it is
  * the fault `stuck`, after a second, or after the time of some lattice points
- * where the speed asked for is that low.
+ * where the speed asked for is that low.  A plan that is followed and still
+ * moves the place within a pulse is no defect: axes of little jerk begin and
+ * end that slowly.
  *
  * A wait that has a name is none: a hold, a dwell, an M code, drives that are
  * enabled, a machine that is busy, an override of 0, axes that come to rest
@@ -24,6 +26,7 @@ struct progress {
 	uint64_t at;			/* stands for a lattice point */
 	double place_mm;		/* when it was looked at last */
 	uint64_t still;			/* cycles without a point and a name */
+	double points_s;		/* that it was to go by then */
 };
 
 #define PROGRESS_EVERY	16		/* cycles from look to look */

@@ -164,6 +164,8 @@ int nc_run_label(struct nc_reader *r)
 				 "the next program, %s, without an end of this "
 				 "one", nc_quote_word(r, at).s);
 	r->frame[r->depth].number = (uint32_t)b->value[NC_O];
+	r->frame[r->depth].entry = r->line_at;
+	r->frame[r->depth].entry_line = r->line;
 	return 0;
 }
 
@@ -249,10 +251,40 @@ static int call(struct nc_reader *r)
 	return enter(r, number, repeats, b->at[NC_P]);
 }
 
+static void leave(struct nc_reader *r)
+{
+	const struct nc_frame *f = &r->frame[r->depth];
+
+	nc_macro_leave(r);
+	r->at = f->back;
+	r->line = f->return_line;
+	r->depth--;
+}
+
+/* M99 P90: to N90 of the program that called, or of the main program itself.
+ * What becomes of the other times is told differently for each control. */
+static int back_to(struct nc_reader *r)
+{
+	const uint8_t *at = r->block.at[NC_P];
+
+	if (r->d->macros != MACRO_FANUC)
+		return nc_refuse(r, at, "M99 alone; dialect fanuc-sinker and "
+				 "others have M99 P", "M99 with P");
+	if (r->frame[r->depth].left > 0)
+		return nc_refuse(r, at, "a call without L, or M99 without P",
+				 "M99 P with %u times still to go",
+				 r->frame[r->depth].left);
+	if (r->depth > 0)
+		leave(r);
+	return nc_macro_jump(r, at, r->block.value[NC_P]);
+}
+
 static int back(struct nc_reader *r)
 {
 	struct nc_frame *f = &r->frame[r->depth];
 
+	if (nc_has(r, NC_P))
+		return back_to(r);
 	if (r->depth == 0)
 		return nc_refuse(r, r->block.code_at[NC_STOP],
 				 "M2 or M30 at the end of the main program",
@@ -264,10 +296,7 @@ static int back(struct nc_reader *r)
 		r->fresh = true;
 		return 0;
 	}
-	nc_macro_leave(r);
-	r->at = f->back;
-	r->line = f->return_line;
-	r->depth--;
+	leave(r);
 	return 0;
 }
 

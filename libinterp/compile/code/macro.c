@@ -250,17 +250,18 @@ static int expand(struct macro_line *l)
 	return err;
 }
 
-static struct nc_macro *create(const struct nc_reader *r)
+struct nc_macro *nc_macro_make(struct nc_reader *r)
 {
 	const bool fanuc = r->d->macros == MACRO_FANUC;
-	struct nc_macro *m = calloc(1, sizeof(*m));
+	struct nc_macro *m = r->macro ? r->macro : calloc(1, sizeof(*m));
 
-	if (!m)
-		return NULL;
+	if (!m || r->macro)
+		return m;
 	for (int i = 0; fanuc && i < MACRO_VARIABLES; i++)
 		m->variable[i] = NAN;
 	for (int i = 0; fanuc && i < MACRO_LOCALS; i++)
 		m->local[0][i] = NAN;
+	r->macro = m;
 	return m;
 }
 
@@ -271,11 +272,9 @@ int nc_macro_line(struct nc_reader *r, const uint8_t *at, const uint8_t *end)
 
 	if (!nc_macro_wanted(r, at, end))
 		return 0;
-	if (!r->macro)
-		r->macro = create(r);
-	if (!r->macro)
+	l.m = nc_macro_make(r);
+	if (!l.m)
 		return -ENOMEM;
-	l.m = r->macro;
 	l.m->used = 0;
 	err = r->d->macros == MACRO_FANUC ? macro_flow(&l) : macro_oword(&l);
 	if (err == 0) {

@@ -12,7 +12,7 @@
  *	macro.c		a line into the buffer; assignments
  *	macro_expr.c	values of expressions
  *	macro_var.c	variables
- *	macro_flow.c	IF GOTO WHILE DO END, G65
+ *	macro_flow.c	IF GOTO WHILE DO END, G65, M99 P
  *	oword.c		o100 sub, call, if, while, repeat, ...
  *
  * Everything is bounded: the number of variables, the depth of calls and of
@@ -108,7 +108,16 @@ int nc_macro_line(struct nc_reader *r, const uint8_t *at, const uint8_t *end);
 bool nc_macro_wanted(const struct nc_reader *r, const uint8_t *p,
 		     const uint8_t *end);
 
+/** nc_macro_make() - r->macro; NULL: no memory */
+struct nc_macro *nc_macro_make(struct nc_reader *r);
+
 void nc_macro_free(struct nc_reader *r);
+
+/**
+ * nc_macro_jump() - go on at line N@n of the program of frame r->depth.  @at:
+ * the word that asks for it, M99 P.
+ */
+int nc_macro_jump(struct nc_reader *r, const uint8_t *at, double n);
 
 /**
  * nc_macro_leave() - the frame r->depth ends, and its local variables with it.

@@ -70,12 +70,11 @@ static bool is_end(const uint8_t *p, const uint8_t *end, uint32_t n)
 	return nc_digits(l.p, end, &found) > l.p && found == n;
 }
 
-/* Search from @from up to @stop, or up to the beginning of the next program. */
+/* Search from @from up to @stop, or up to the beginning of another program. */
 static int search(struct macro_line *l, struct place from, const uint8_t *stop,
 		  match_fn *match, uint32_t n, struct place *ret)
 {
 	const struct nc_reader *r = l->r;
-	const uint8_t *begin = from.at;
 	int err = 0;
 
 	ret->at = NULL;
@@ -83,12 +82,13 @@ static int search(struct macro_line *l, struct place from, const uint8_t *stop,
 		const uint8_t *end = nc_line_end(from.at, r->end);
 
 		err = count(l, l->p);
+		if (from.at != r->frame[r->depth].entry &&
+		    nc_label_at(r, from.at, end))
+			return err;
 		if (match(from.at, end, n)) {
 			*ret = from;
 			return err;
 		}
-		if (from.at > begin && nc_label_at(r, from.at, end))
-			return err;
 		from.at = nc_line_next(end, r->end);
 		from.line++;
 	}
@@ -102,23 +102,21 @@ static void go(struct nc_reader *r, struct place to)
 }
 
 /* Search forward to the end of the program, and then from its beginning. */
-static int go_to(struct macro_line *l, const uint8_t *at)
+static int jump(struct macro_line *l, const uint8_t *at, const char *word,
+		double n)
 {
 	struct nc_reader *r = l->r;
 	const struct nc_frame *f = &r->frame[r->depth];
 	const struct place next = { r->at, r->line + 1 };
-	const struct place first = r->depth ?
+	const struct place first = f->entry ?
 		(struct place) { f->entry, f->entry_line } :
 		(struct place) { r->text, 1 };
 	struct place to;
-	double n;
-	int err = macro_value(l, &n);
+	int err;
 
-	if (err)
-		return err;
 	if (!(n >= 1 && n < 1e9 && n == floor(n)))
-		return macro_refuse(l, at, "GOTO and the number of an N word",
-				    "GOTO %g", n);
+		return macro_refuse(l, at, "the number of an N word behind it",
+				    "%s%g", word, n);
 	err = search(l, next, r->end, is_n, (uint32_t)n, &to);
 	if (!err && !to.at)
 		err = search(l, first, next.at, is_n, (uint32_t)n, &to);
@@ -128,12 +126,28 @@ static int go_to(struct macro_line *l, const uint8_t *at)
 		return macro_refuse(l, at,
 				    "the number of an N word that begins a "
 				    "line of this program",
-				    "GOTO %g, which is not there",
-				    n);
+				    "%s%g, which is not there", word, n);
 	if (to.at < next.at)
 		err = macro_round(l, at);
 	go(r, to);
+	return err;
+}
+
+static int go_to(struct macro_line *l, const uint8_t *at)
+{
+	double n;
+	int err = macro_value(l, &n);
+
+	if (!err)
+		err = jump(l, at, "GOTO ", n);
 	return err ? err : 1;
+}
+
+int nc_macro_jump(struct nc_reader *r, const uint8_t *at, double n)
+{
+	struct macro_line l = { .r = r, .m = nc_macro_make(r), .p = at };
+
+	return l.m ? jump(&l, at, "M99 P", n) : -ENOMEM;
 }
 
 static int take_if(struct macro_line *l, const uint8_t *at)

@@ -105,6 +105,6 @@
 	W("optional-stop", STOP, NC_OPTIONAL_HALT, 0) \
 	W("end", STOP, NC_FINISH, 0) \
 	W("call", STOP, NC_CALL, NC_BIT(NC_P) | NC_BIT(NC_L)) \
-	W("return", STOP, NC_RETURN, 0)
+	W("return", STOP, NC_RETURN, NC_BIT(NC_P))
 
 #endif /* CODE_MEANINGS_H */

@@ -28,7 +28,7 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_N] = { 'N', true, 0, 999999999, "0 to 999999999", "" },
 	[NC_S] = { 'S', false, 0, 999999999, "0 to 999999999", "" },
 	[NC_P] = { 'P', false, -99999999, 99999999, "-99999999 to 99999999",
-		   "P goes with G5 G5.2 G6.2 G6.3, G4 or M98, and with G120" },
+		   "P goes with G5 G5.2 G6.2 G6.3, G4, M98 or M99, and with G120" },
 	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats; with G5.2 and G6.3 an order of 2 to 10",
 		   "L goes with M98, G5.2, G6.3, G160 and G161" },
 	[NC_O] = { 'O', true, 0, 9999, "a program number of 0 to 9999", "" },

@@ -3,6 +3,7 @@
 #include "interp/limits.h"
 #include "path/builder.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,6 +100,8 @@ static void write_limits(const struct interp_build *b, void *block,
 							INTERP_TOLERANCE_MM,
 		.rotary_radius_mm = b->o.rotary_radius_mm > 0 ?
 				    b->o.rotary_radius_mm : INTERP_ROTARY_MM,
+		.points_per_s = b->o.points_per_s > 0 ? b->o.points_per_s :
+							INFINITY,
 	};
 	struct interp_program p;
 

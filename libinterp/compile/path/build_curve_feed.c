@@ -39,7 +39,7 @@ void build_curve_limit(struct curve_plan *p)
 {
 	const struct interp_build_options *o = &p->b->o;
 	struct interp_nurbs_limits *l = &p->limits;
-	double jerk = HUGE_VAL, acc = HUGE_VAL;
+	double jerk = HUGE_VAL, acc = HUGE_VAL, top = 0;
 
 	*l = (struct interp_nurbs_limits) {
 		.chord_error_mm = HUGE_VAL, .period_s = 1,
@@ -58,13 +58,14 @@ void build_curve_limit(struct curve_plan *p)
 		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
 		jerk = fmin(jerk, m->j_max_mm_s3);
 		acc = fmin(acc, m->a_max_mm_s2);
+		top = fmax(top, m->v_max_mm_s);
 		if (k < p->curve.counted)
 			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
 						    l->a_mm_s2[k]);
 	}
 	/* The axes do not notice a bend whose radius is less than a pulse. */
 	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);
-	p->least_mm_s2 = INTERP_BEND_LEAST * acc;
+	p->least_mm_s2 = interp_bend_least(top, acc, jerk);
 }
 
 static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)

@@ -12,6 +12,10 @@
 
 #define HOP_MAX		UINT16_MAX
 
+/* Fewer need no time.  The piece of a curve between two cusps may have some
+ * points and next to no length. */
+#define MANY_POINTS	64
+
 /* Of an axis: no less than a pulse of it. */
 static double tolerance(const struct interp_limits *l, uint8_t axis)
 {
@@ -34,6 +38,7 @@ static void begin(struct pass *w, const struct interp_limits *l,
 		  const struct interp_program *p, struct interp_seg *segs)
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
+			     .points_per_s = l->points_per_s,
 			     .n = p->head->naxes, .a_least_mm_s2 = INFINITY,
 			     .j_least_mm_s3 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
@@ -139,18 +144,19 @@ static double round_bend(const struct pass *w, const struct headings *h,
 			 double v_mm_s, struct along *ret)
 {
 	const double r = h->bend_mm;
-	double a = INFINITY, j = INFINITY, v, across, both, speed_up;
+	double a = INFINITY, j = INFINITY, top = 0, v, across, both, speed_up;
 
 	for (uint32_t k = 0; k < w->n; k++) {
 		if (h->first.rate[k] == 0 && h->last.rate[k] == 0)
 			continue;
 		a = smaller(a, w->a_mm_s2[k]);
 		j = smaller(j, w->j_mm_s3[k]);
+		top = fmax(top, w->v_mm_s[k]);
 	}
 	v = smaller(v_mm_s * h->share, pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
 						    INTERP_ARC_JERK_ROUND * j));
 	v = smaller(v, INTERP_ARC_JERK_BOTH * j * r /
-		    (3 * INTERP_BEND_LEAST * a));
+		    (3 * interp_bend_least(top, a, j)));
 	across = v * v / (r * a);
 	speed_up = smaller(sqrt(1 - across * across) * a,
 			INTERP_ARC_JERK_BOTH * j * r / (3 * v));
@@ -182,6 +188,10 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 		v = round_bend(w, h, v, &left);
 	}
 	soften_seg(w, s, &left, &rates);
+	/* A cycle that has no time for its points would break off the move. */
+	if (s->ticks >= MANY_POINTS)
+		v = smaller(v, w->points_per_s * s->length_mm /
+				   (double)s->ticks);
 	s->feed_max_mm_s = level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;

@@ -54,7 +54,7 @@ struct pass_soft {
 struct pass {
 	const struct interp_program *p;
 	struct interp_seg *segs;
-	double corner_mm;
+	double corner_mm, points_per_s;
 	uint32_t n;			/* columns */
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;

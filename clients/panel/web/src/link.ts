@@ -14,7 +14,7 @@ export interface Field {
 
 export interface Hello {
 	machine: string; user: string; role: Role; version: string; axes: Axis[];
-	fields: Field[]; offsets: number[][]; plc: boolean; simulated: boolean;
+	fields: Field[]; plc: boolean; simulated: boolean;
 	table: string;
 }
 

@@ -8,6 +8,7 @@ import { ElectrodeCard } from "./electrodes";
 import { number, short } from "./format";
 import { sendText } from "./jobs";
 import { link, type Axis } from "./link";
+import { OffsetCard } from "./offsets";
 import { Card, Choice, HoldKey, Key, NumberField, PressKey, act } from "./parts";
 import { beginPress } from "./press";
 import { PROBES, isWhole, type Probe, type ProbeId } from "./probes";
@@ -90,15 +91,6 @@ function ProbeCard(): JSX.Element {
 	return <Card title={t("setup.probe")} class="probing">
 		<Choice label={t("setup.probe")} value={at} onChange={set} of={PROBES.map((x) => ({ value: x.id, text: t(`probe.${x.id}`) }))} />
 		<ProbeForm probe={probe} key={at} /></Card>;
-}
-
-function OffsetCard(): JSX.Element {
-	const axes = link.hello?.axes ?? [], rows = link.hello?.offsets ?? [];
-	const some = rows.some((r) => r.some((x) => x !== 0));
-	return <Card title={t("setup.offsets")}><p class="note">{t("setup.offsetnote")}</p>
-		{some ? <div class="scroll"><table class="list"><thead><tr><th /><>{axes.map((a) => <th scope="col">{a.name}</th>)}</></tr></thead><tbody>{rows.map((r, i) =>
-			<tr><th scope="row">G{i < 6 ? 54 + i : `59.${i - 5}`}</th>{axes.map((a) => <td class="n">{number(r[a.index] ?? 0, 3, true)}</td>)}</tr>)}</tbody></table></div> : <p class="calm">{t("setup.nooffsets")}</p>}
-	</Card>;
 }
 
 export function Setup(): JSX.Element {

@@ -31,6 +31,8 @@ struct interp_build_options {
 	double chord_error_mm;		/* of curves: the straight way of one */
 	double period_s;		/* period is no farther off than this;
 					 * if either is 0 there is no limit */
+	double points_per_s;		/* lattice points that the machine can
+					 * make; 0: no limit */
 	double fit_mm;			/* cut lines in a row become curves that
 					 * are this near to them; 0: they
 					 * stay */

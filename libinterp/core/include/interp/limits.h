@@ -32,6 +32,8 @@
  * of that length, and what could come from rounding is taken off.  To find what
  * that takes off a real curve, chords up to 32 times as long are looked at.
  *
+ * No segment of many points is faster than the machine makes them.
+ *
  * The speeds are rounded down to levels that are at most 1/32 apart (the top
  * speeds of the axes are levels too).  So at most a few hundred of them can
  * follow each other with each slower than the one before.
@@ -46,6 +48,8 @@
 #define INTERP_LIMITS_H
 
 #include "interp/program.h"
+
+#include <math.h>
 
 #define INTERP_CORNER_MM	0.005	/* where none is given */
 #define INTERP_TOLERANCE_MM	0.001
@@ -75,9 +79,23 @@
 #define INTERP_CURVE_JERK_ROUND	0.2
 #define INTERP_CURVE_JERK_BOTH	0.4
 
-/* Of the acceleration, that must be left to speed up on a bend: one too tight
- * for that is gone round slower, for a move has the least of all its way. */
+/*
+ * Of the acceleration, that must be left to speed up on a bend: one too tight
+ * for that is gone round slower, for a move has the least of all its way.  Of
+ * an acceleration that the jerk lets no move come to, nothing is kept: from 0
+ * to the top speed none takes more than sqrt(v * j).
+ */
 #define INTERP_BEND_LEAST	0.05
+
+/** interp_bend_least() - that acceleration; @v_mm_s is the top speed. */
+static inline double interp_bend_least(double v_mm_s, double a_mm_s2,
+				       double j_mm_s3)
+{
+	const double most = v_mm_s * j_mm_s3 < a_mm_s2 * a_mm_s2 ?
+			    sqrt(v_mm_s * j_mm_s3) : a_mm_s2;
+
+	return INTERP_BEND_LEAST * most;
+}
 
 struct interp_limits {
 	const struct interp_machine *machine;
@@ -85,6 +103,7 @@ struct interp_limits {
 	double tolerance_mm;		/* >= 0: what is less is a rounding */
 	double rotary_radius_mm;	/* > 0: where it is a rotary axis's,
 					 * too */
+	double points_per_s;		/* lattice points; 0: no limit */
 };
 
 /**

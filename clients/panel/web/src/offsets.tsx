@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Work offsets: those in force, as `edmctl offset` shows and changes them.
+import type { JSX } from "preact";
+import { useState } from "preact/hooks";
+import { whyNot } from "./can";
+import { number, parse } from "./format";
+import { link, type Axis } from "./link";
+import { Card, Choice, Key, NumberField, Sheet, act } from "./parts";
+import { useAsk } from "./use";
+import { t } from "./words";
+
+/** Of each axis, where its origin is; `touched`: those not of the machine file. */
+interface Row { work: string; touched: string; [axis: string]: string | number }
+
+const LOOK_MS = 5000;
+// What a number means, as `edmctl offset` writes it: X=5, X@5.
+const MEANS = { here: "=", origin: "@" } as const;
+type Means = keyof typeof MEANS;
+
+function at(row: Row, axis: Axis): number {
+	const mm = row[axis.name];
+	return typeof mm === "number" ? mm : 0;
+}
+
+function OffsetSheet(p: { row: Row; axes: Axis[]; onClose: () => void }): JSX.Element {
+	const [means, mean] = useState<Means>("here"), [v, set] = useState<Record<string, string>>({});
+	const given = p.axes.filter((a) => (v[a.name] ?? "").trim() !== "");
+	const whole = given.every((a) => !Number.isNaN(parse(v[a.name] as string)));
+	const why = whyNot("send") || (given.length === 0 || !whole ? t("probe.bad") : "");
+	const go = (words: string[]) => void act("offset", { text: [p.row.work, ...words].join("\n") }).then((ok) => { if (ok) p.onClose(); });
+	return <Sheet title={t("off.edit", { work: p.row.work })} onClose={p.onClose}>
+		<Choice label={t("off.means")} value={means} onChange={mean} of={(Object.keys(MEANS) as Means[]).map((m) => ({ value: m, text: t(`off.${m}`) }))} />
+		<p class="note">{t(`off.${means}.about`)}</p>
+		<div class="fields">{p.axes.map((a) => <NumberField id={`off-${a.name}`} key={a.name} label={`${a.name} (${t("off.now")} ${number(at(p.row, a), 3, true)})`}
+			unit={a.rotary ? "deg" : "mm"} value={v[a.name] ?? ""} onInput={(x) => set({ ...v, [a.name]: x })} />)}</div>
+		<div class="keys end"><Key id="off-clear" why={whyNot("send") || (p.row.touched === "" ? t("off.asfile") : "")} onPress={() => go(["clear"])}>{t("off.clear")}</Key>
+			<Key id="off-save" class="primary" why={why} onPress={() => go(given.map((a) => a.name + MEANS[means] + parse(v[a.name] as string)))}>{t("el.save")}</Key></div>
+	</Sheet>;
+}
+
+export function OffsetCard(): JSX.Element {
+	const [rows, refused, again] = useAsk<Row[]>("offsets", {}, LOOK_MS);
+	const [open, set] = useState("");
+	const axes = link.hello?.axes ?? [], row = rows?.find((r) => r.work === open);
+	return <Card title={t("setup.offsets")} class="offsets"><p class="note">{refused || t("setup.offsetnote")}</p>
+		<div class="scroll"><table class="list"><thead><tr><th />{axes.map((a) => <th scope="col" key={a.name}>{a.name}</th>)}</tr></thead>
+			<tbody>{rows?.map((r) => <tr key={r.work}><th scope="row"><Key class="small" label={t("off.edit", { work: r.work })} onPress={() => set(r.work)}>{r.work}</Key></th>
+				{axes.map((a) => <td class="n" key={a.name}>{number(at(r, a), 3, true)}{r.touched.includes(a.name) ? "*" : ""}</td>)}</tr>)}</tbody></table></div>
+		{row && <OffsetSheet row={row} axes={axes} onClose={() => { set(""); again(); }} />}
+	</Card>;
+}
