@@ -432,10 +432,11 @@ int talk_open(struct talk **ret, const struct talk_options *o,
 	if (err == 0) {
 		snprintf(t->machine, sizeof(t->machine), "%s",
 			 o->machine ? o->machine : "edm");
-		err = key_take(t, o->key, said);
-	}
-	if (err == 0)
 		err = join(t, o, said);
+	}
+	/* Where there is no network, no service has made a key yet. */
+	if (err == 0)
+		err = key_take(t, o->key, said);
 	if (err < 0) {
 		talk_close(t);
 		return err;

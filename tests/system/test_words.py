@@ -57,12 +57,15 @@ def test_the_machine_may_come_from_the_environment(machine):
 # -- The network
 
 
-def test_no_multicast_is_told_in_our_words_alone(machine):
-    key = f"/dev/shm/edmd.{machine.name}.key"
+@pytest.mark.parametrize("known", [True, False])
+def test_no_multicast_is_told_in_our_words_alone(machine, known):
+    """Also to somebody on whose host no key is there yet."""
+    name = machine.name if known else "nosuch"
+    key = ["--key", f"/dev/shm/edmd.{name}.key"] if known else []
     p = subprocess.run(
         ["unshare", "-r", "-n", "sh", "-c", "ip link set lo up; exec \"$@\"",
-         "sh", str(BUILD / "edmctl"), "--machine", machine.name, "--key", key,
-         "status"], capture_output=True, text=True, timeout=60)
+         "sh", str(BUILD / "edmctl"), "--machine", name, *key, "status"],
+        capture_output=True, text=True, timeout=60)
     assert p.returncode == 69
     (line,) = p.stderr.splitlines()
     assert line.startswith("edmctl: cannot open udpm://")
