@@ -49,14 +49,14 @@ static struct interp_seg *seg_add(struct interp_build *b)
 static int node_add(struct interp_build *b)
 {
 	struct table *t = &b->nodes;
-	int64_t *n;
+	int64_t *at;
 
 	if (t->room - t->n < b->naxes && build_table_room(t, b->naxes) < 0)
 		return -ENOMEM;
-	n = nodes_of(b) + t->n;
+	/* There may be no axis yet, and then no table either. */
+	at = nodes_of(b);
 	for (uint32_t j = 0; j < b->naxes; j++)
-		n[j] = b->here[b->column[j]];
-	t->n += b->naxes;
+		at[t->n++] = b->here[b->column[j]];
 	return 0;
 }
 
