@@ -424,11 +424,10 @@ check:
 	@tests/stage check panel
 	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
-	@EDM_BUILD=$(B) tests/side-by-side $(B)/page.log \
-		"tests/netns .venv/bin/pytest -q $(PANEL_TESTS)" \
-		"tests/netns .venv/bin/pytest -q -n $(PYTEST_SIDE) --dist loadfile \
-		--no-loadscope-reorder $(VM_TESTS) tests/system tests/sim \
-		$(PANEL_TESTS:%=--ignore %)"
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
+	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q -n $(PYTEST_SIDE) \
+		--dist loadfile --no-loadscope-reorder \
+		$(VM_TESTS) tests/system tests/sim $(PANEL_TESTS:%=--ignore %)
 
 # Processes of pytest: a whole file belongs to one of them, and each has a network of
 # its own (tests/conftest.py).  Files that take longest begin first.  They wait more
@@ -439,7 +438,8 @@ PYTEST_SIDE ?= $(shell echo $$((2 * $(SIDE))))
 # 8 minutes.  The others, encoder and adc among them, are in `make check-vm`.
 VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd can402 torture)
 
-# A browser is driven in the tests' own process; LCM has one for itself.
+# A browser is driven in the tests' own process; LCM has one for itself.  They run
+# alone: a browser needs both cores at times.
 PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_login.py \
 	tests/system/test_panel_page.py
 

@@ -53,7 +53,8 @@ def test_a_command_that_edmd_finds_too_late_is_not_done(machine):
     try:
         a = machine.ctl("--timeout", "5", "jog", "X", "1")
         assert a.returncode == 69
-        assert "not done" in a.stderr
+        # A slow host may find first that edmd stands still.
+        assert "not done" in a.stderr or "edmd is lost" in a.stderr
     finally:
         machine.edmd.send_signal(signal.SIGCONT)
     s = c.status_where(lambda s: s.daemon == "ok")
