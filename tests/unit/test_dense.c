@@ -2,13 +2,24 @@
 /*
  * test_dense.c - promises of programs of very short lines whose ends are
  * rounded
+ *
+ * Some waves are random; the seed is printed.
  */
 #include "cycle_help.h"
 
 #include "interp/limits.h"
+#include "seed.h"
 
 #define ARC_MM		15.0
 #define RADIUS_MM	5.0
+
+/* Time of a wave, of that in lines of 0.2 mm. */
+#define UNEVEN		1.05
+#define WAVES		SEED_ROUNDS(100)
+
+/* Of the jerk, where an axis bends and the path speeds up (docs/gap-servo.md,
+ * "Not there yet"). */
+#define BOTH_JERK	2.5
 
 struct dense {
 	double mm;			/* of a line */
@@ -158,6 +169,128 @@ static void with_a_rotary_axis_too(void **st)
 	three_decimals_cost_no_more_than_long_lines(7);
 }
 
+/* -- An axis that turns unevenly ------------------------------------------- */
+
+/* X goes @mm, and beside it B a wave of @deg, or one smooth step; @w_mm says how
+ * wide they are. */
+struct wave {
+	double mm, deg, w_mm;
+	bool step;
+};
+
+static const struct wave waves[] = {
+	{ 30, 10, 0.15, false }, { 30, 2, 0.33, false }, { 20, 0.3, 1, false },
+	{ 30, 20, 0.35, true },
+};
+
+static double wave_at(const struct wave *k, double mm)
+{
+	return k->step ? k->deg / (1 + exp((k->mm / 2 - mm) * k->w_mm)) :
+			 k->deg * sin(k->w_mm * mm);
+}
+
+static struct interp_build *wave_build(const struct wave *k, double mm,
+				       int decimals)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	const int n = (int)lround(k->mm / mm);
+
+	for (int i = 1; i <= n; i++) {
+		const double x = k->mm * i / n;
+		const double end[INTERP_NAXES] = {
+			[INTERP_X] = rounded(x, decimals),
+			[INTERP_B] = rounded(wave_at(k, x) - wave_at(k, 0),
+					     decimals),
+		};
+
+		dense_line(b, end, true);
+	}
+	return b;
+}
+
+static void with_a_rotary_axis_that_turns_unevenly(void **st)
+{
+	(void)st;
+	for (int w = 0; w < 4; w++) {
+		uint64_t once[2], c[2];
+
+		walk_there_and_back(wave_build(&waves[w], 0.2, 6), once);
+		for (int i = 0; i < 4; i++) {
+			for (int decimals = 3; decimals <= 6; decimals++) {
+				walk_there_and_back(wave_build(&waves[w],
+							       steps_mm[i],
+							       decimals), c);
+				for (int leg = 0; leg < 2; leg++)
+					if ((double)c[leg] >
+					    UNEVEN * (double)once[leg])
+						fail_msg("wave %d, %g mm, %d "
+							 "decimals, leg %d: %d "
+							 "cycles, 0.2 mm: %d",
+							 w, steps_mm[i],
+							 decimals, leg,
+							 (int)c[leg],
+							 (int)once[leg]);
+			}
+		}
+	}
+}
+
+/* In lines of so many mm: the most of what B may do, by differences of the
+ * wave's own slope times the speed, because a place is rounded. */
+static void most_of_b(const struct wave *k, double mm, double ret[3])
+{
+	struct cycle_config c = usual_config();
+	double v[3] = { 0 }, s = 0;
+	struct rig r;
+
+	c.dry_run = c.hold_at_end = true;
+	ret[0] = ret[1] = ret[2] = 0;
+	rig_load(&r, wave_build(k, mm, 6), &c);
+	tell(&r, CYCLE_START);
+	for (int n = 0; n < 100000 && r.c.state != STATE_HOLD; n++) {
+		double at, from = s;
+
+		step(&r, OPEN_V);
+		s = place(&r);
+		at = (s + from) / 2;
+		v[0] = v[1];
+		v[1] = v[2];
+		v[2] = (wave_at(k, at + 1e-4) - wave_at(k, at - 1e-4)) / 2e-4 *
+		       (s - from) / PERIOD_S;
+		ret[0] = fmax(ret[0], fabs(v[2]) / 80);
+		/* Both ends are corners. */
+		if (n < 3 || s < 0.3 || s > k->mm - 0.3)
+			continue;
+		ret[1] = fmax(ret[1], fabs(v[2] - v[1]) / PERIOD_S / 1000);
+		ret[2] = fmax(ret[2], fabs(v[2] - 2 * v[1] + v[0]) / PERIOD_S /
+				      PERIOD_S / 20000);
+	}
+	assert_int_equal(r.c.state, STATE_HOLD);
+	rig_free(&r);
+}
+
+static void a_rotary_axis_that_turns_unevenly_keeps_its_limits(void **st)
+{
+	uint64_t s = seed_take();
+
+	(void)st;
+	for (int i = 0; i < WAVES; i++) {
+		const double w_mm = pow(10, uniform(&s, -1.3, 0.3));
+		const double slope = pow(10, uniform(&s, -1, 0.7));
+		const struct wave k = {
+			20, fmin(slope / w_mm, 90), w_mm, rnd(&s) % 5 == 0,
+		};
+		const double mm = pow(10, uniform(&s, -2, -0.7));
+		double most[3];
+
+		most_of_b(&k, mm, most);
+		if (most[0] > 1.03 || most[1] > 1.03 || most[2] > BOTH_JERK)
+			fail_msg("%g deg, %g, lines of %g mm: %g of v, %g of a, "
+				 "%g of the jerk", k.deg, w_mm, mm, most[0],
+				 most[1], most[2]);
+	}
+}
+
 /* Round a square corner, or one of the rotary axis alone. */
 static double slowest(double mm, double turn, double deg_mm)
 {
@@ -203,6 +336,9 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(lines_of_three_decimals_are_as_quick),
 		cmocka_unit_test(with_a_rotary_axis_too),
+		cmocka_unit_test(with_a_rotary_axis_that_turns_unevenly),
+		cmocka_unit_test(
+			a_rotary_axis_that_turns_unevenly_keeps_its_limits),
 		cmocka_unit_test(in_retracts_three_decimals_are_as_quick),
 		cmocka_unit_test(true_corners_are_as_slow_as_between_long_lines),
 	};

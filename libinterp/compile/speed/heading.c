@@ -148,3 +148,32 @@ void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
 	for (int k = 0; k < 2; k++)
 		round_arc(p, &p->couples[s->arg].side[k], s->length_mm, ret);
 }
+
+/* Which columns make the length of a line; 0: it is none. */
+static uint32_t line_along(const struct ways *w, uint32_t i)
+{
+	const uint32_t n = w->p->head->naxes;
+	const int64_t *a = w->p->nodes + (uint64_t)i * n, *b = a + n;
+	uint32_t moving = 0;
+
+	if (w->p->segs[i].kind != INTERP_LINE)
+		return 0;
+	for (uint32_t j = 0; j < n && !(moving & w->xyz); j++)
+		moving |= (uint32_t)(a[j] != b[j]) << j;
+	return along_of(w, moving);
+}
+
+uint32_t heading_run_end(const struct ways *w, uint32_t i)
+{
+	const uint32_t end = w->p->head->nsegs - 1;
+	uint32_t along = line_along(w, i), m = i + 1;
+
+	for (; m < end; m++) {
+		const uint32_t next = line_along(w, m);
+
+		if (along && next && next != along)
+			break;
+		along = next ? next : along;
+	}
+	return m;
+}

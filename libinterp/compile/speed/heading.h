@@ -34,4 +34,10 @@ void heading_ways_init(struct ways *w, const struct interp_program *p);
 /** heading_find() - find the directions of segment @i, which must move. */
 void heading_find(const struct ways *w, uint32_t i, struct headings *ret);
 
+/**
+ * heading_run_end() - the first segment from @i on whose length is in other
+ * columns than that of @i; only lines are asked.
+ */
+uint32_t heading_run_end(const struct ways *w, uint32_t i);
+
 #endif /* SPEED_HEADING_H */

@@ -41,6 +41,7 @@ static void begin(struct pass *w, const struct interp_limits *l,
 			     .points_per_s = l->points_per_s,
 			     .n = p->head->naxes, .a_least_mm_s2 = INFINITY,
 			     .j_least_mm_s3 = INFINITY,
+			     .a_linear_mm_s2 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
 	for (int k = 0; k < PASS_WINDOWS; k++)
@@ -62,6 +63,9 @@ static void begin(struct pass *w, const struct interp_limits *l,
 		add_level(&w->j_levels, m->j_max_mm_s3);
 		w->a_least_mm_s2 = smaller(w->a_least_mm_s2, m->a_max_mm_s2);
 		w->j_least_mm_s3 = smaller(w->j_least_mm_s3, m->j_max_mm_s3);
+		if (w->ways.xyz >> j & 1)
+			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
+						    m->a_max_mm_s2);
 	}
 }
 
@@ -197,6 +201,26 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 		s->feed_mm_s = s->feed_max_mm_s;
 }
 
+/* What a bend beside the path takes, the segments to both sides of its node do
+ * not have. */
+static void soften_node(struct pass *w, uint32_t last, uint32_t i, double v_mm_s)
+{
+	const uint32_t both[2] = { last, i };
+	double v = v_mm_s;
+	struct leave left;
+
+	for (int k = 0; k < 2; k++)
+		v = smaller(v, (double)w->segs[both[k]].feed_max_mm_s);
+	pass_leave(w, v, &left);
+	for (int k = 0; k < 2; k++) {
+		struct interp_seg *s = &w->segs[both[k]];
+
+		s->a_mm_s2 = fminf(s->a_mm_s2, soft(left.a_mm_s2, &w->a_levels));
+		s->j_mm_s3 = fminf(s->j_mm_s3, soft(left.j_mm_s3, &w->j_levels));
+		note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
+	}
+}
+
 /* An action stands on the node before it. */
 static void walk_nodes(struct pass *w)
 {
@@ -215,6 +239,7 @@ static void walk_nodes(struct pass *w)
 			continue;
 		heading_find(&w->ways, i, &h[now]);
 		limit_seg(w, i, &h[now]);
+		w->a_own_mm_s2[now] = (double)w->segs[i].a_mm_s2;
 		if (last > 0) {
 			const double v = pass_node_mm_s(w, last, i,
 							&h[!now].last,
@@ -224,6 +249,8 @@ static void walk_nodes(struct pass *w)
 
 			for (uint32_t k = last; k < i; k++)
 				w->segs[k].node_mm_s = most;
+			if (w->bends)
+				soften_node(w, last, i, v);
 		}
 		last = i;
 		now = !now;

@@ -68,8 +68,7 @@ static double sure(double d, double noise)
 	return larger(d - noise, 0);
 }
 
-/* The rounding of the path: the largest of @columns. */
-static double along_tol(struct pass *w, uint32_t columns)
+double pass_along_tol(struct pass *w, uint32_t columns)
 {
 	if (columns == w->tol_of)
 		return w->tol_most;
@@ -81,22 +80,25 @@ static double along_tol(struct pass *w, uint32_t columns)
 	return w->tol_most;
 }
 
-/*
- * Of what lies beside the path, the rounding of the path counts too, but never
- * for more than MOST_BESIDE roundings of its own: an axis that turns far on a
- * tiny line really turns there.
- */
+/* Never more than MOST_BESIDE roundings of its own: an axis that turns far on a
+ * tiny line really turns there. */
+double pass_off(const struct pass *w, uint32_t j, double along, double rate)
+{
+	return smaller(along * rate, MOST_BESIDE * w->tol[j]);
+}
+
+/* Of what lies beside the path, the rounding of the path counts too. */
 static void change_of(struct pass *w, double (*of)(double, double),
 		      struct change *c)
 {
 	const uint32_t both = c->a->along & c->b->along;
-	const double along = along_tol(w, both);
+	const double along = pass_along_tol(w, both);
 
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double a = c->a->rate[j], b = c->b->rate[j];
-		const double by = along * larger(fabs(a), fabs(b));
+		const double most = larger(fabs(a), fabs(b));
 		const double off = both >> j & 1 ? 0 :
-				   smaller(by, MOST_BESIDE * w->tol[j]);
+				   pass_off(w, j, along, most);
 
 		c->d[j] = of(fabs(b - a), (w->tol[j] + off) * c->per_mm);
 	}
@@ -150,10 +152,8 @@ static double step(const struct pass *w, const struct change *c)
 
 /* -- Of short lines ------------------------------------------------------- */
 
-/* From node @from to @to: the length in the columns of @along, and the rates of
- * all columns by that length. */
-static void chord_find(const struct pass *w, uint32_t from, uint32_t to,
-		       uint32_t along, struct chord *ret)
+void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
+		uint32_t along, struct chord *ret)
 {
 	const int64_t *a = w->p->nodes + (uint64_t)from * w->n;
 	const int64_t *b = w->p->nodes + (uint64_t)to * w->n;
@@ -178,25 +178,21 @@ static bool chord_is(const struct chord *c, uint32_t from, uint32_t to,
 	return c->from == from && c->to == to && c->h.along == along;
 }
 
+/* Not over a place from which the length is in other columns. */
 static void look_around(const struct pass *w, uint32_t i, struct around *k)
 {
 	const struct interp_seg *s = w->segs;
 	const double here = s[i].s_mm;
 
-	while (here - s[k->behind + 1].s_mm >= k->mm)
+	if (k->behind < w->run)
+		k->behind = w->run;
+	while (k->behind < i && here - s[k->behind + 1].s_mm >= k->mm)
 		k->behind++;
 	if (k->ahead < i)
 		k->ahead = i;
-	while (k->ahead < w->p->head->nsegs - 1 && s[k->ahead].s_mm - here < k->mm)
+	while (k->ahead < w->run_end && s[k->ahead].s_mm - here < k->mm)
 		k->ahead++;
 }
-
-/* The chords to both sides of a node, over one window. */
-struct bow {
-	const struct heading *a, *b;
-	double mm;			/* half the way */
-	double per_mm;			/* as change has it */
-};
 
 /* It is valid until @k is used again.  Return: false if there is no way to one
  * of the sides. */
@@ -206,8 +202,8 @@ static bool bow_of(const struct pass *w, uint32_t i, struct around *k,
 	struct chord *a = &k->chord[k->on], *b = &k->chord[!k->on];
 
 	if (!chord_is(a, k->behind, i, along))
-		chord_find(w, k->behind, i, along, a);
-	chord_find(w, i, k->ahead, along, b);
+		pass_chord(w, k->behind, i, along, a);
+	pass_chord(w, i, k->ahead, along, b);
 	k->on = !k->on;
 	*ret = (struct bow) { &a->h, &b->h, (a->mm + b->mm) / 2,
 			      1 / a->mm + 1 / b->mm };
@@ -216,20 +212,18 @@ static bool bow_of(const struct pass *w, uint32_t i, struct around *k,
 
 /* The speed at which the axes can follow a bow.  @d is the change of each
  * column's rate. */
-static double bow_mm_s(const struct pass *w, const struct bow *k,
+static double bow_mm_s(struct pass *w, const struct look *l,
 		       const double d[INTERP_NAXES])
 {
+	const struct bow *k = &l->bow;
 	double turn = 0, acc = INFINITY, jerk = INFINITY, v = INFINITY;
 
 	for (uint32_t j = 0; j < w->n; j++) {
-		if (!(k->a->along >> j & 1)) {
+		if (!(l->along >> j & 1)) {
 			/* A column that turns beside the path is limited by
 			 * itself. */
-			if (d[j] * k->mm > w->tol[j])
-				v = smaller(v, pass_round_mm_s(k->mm / d[j],
-							  w->a_mm_s2[j],
-							  w->j_mm_s3[j] *
-							  d[j]));
+			if (!l->certain || d[j] * k->mm > w->tol[j])
+				v = smaller(v, pass_beside_mm_s(w, l, j, d[j]));
 			continue;
 		}
 		turn += d[j] * d[j];
@@ -264,27 +258,33 @@ static bool is_clear(const struct pass *w, const struct change *c,
 static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 {
 	double v = INFINITY;
+	struct look l;
 
+	l.node = i;
+	l.along = along;
+	l.most_mm_s = most;
 	for (int n = 0; n < PASS_WINDOWS; n++) {
 		double all[INTERP_NAXES], fast;
 		struct change c;
-		struct bow k;
 
-		look_around(w, i, &w->windows[n]);
-		if (!bow_of(w, i, &w->windows[n], along, &k))
+		l.window = &w->windows[n];
+		l.certain = false;
+		look_around(w, i, l.window);
+		if (!bow_of(w, i, l.window, along, &l.bow))
 			break;
 		for (uint32_t j = 0; j < w->n; j++)
-			all[j] = fabs(k.b->rate[j] - k.a->rate[j]);
-		fast = bow_mm_s(w, &k, all);
+			all[j] = fabs(l.bow.b->rate[j] - l.bow.a->rate[j]);
+		fast = bow_mm_s(w, &l, all);
 		if (fast >= most)
 			return smaller(v, fast);
-		c.a = k.a;
-		c.b = k.b;
-		c.per_mm = k.per_mm;
+		c.a = l.bow.a;
+		c.b = l.bow.b;
+		c.per_mm = l.bow.per_mm;
 		change_of(w, sure, &c);
+		l.certain = true;
 		if (is_clear(w, &c, all))
-			return smaller(v, fast);
-		v = smaller(v, bow_mm_s(w, &k, c.d));
+			return smaller(v, bow_mm_s(w, &l, all));
+		v = smaller(v, bow_mm_s(w, &l, c.d));
 	}
 	return v;
 }
@@ -370,10 +370,15 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 				      1 / s[i].length_mm };
 	double v = INFINITY;
 
+	w->bends = 0;
+	if (i >= w->run_end) {
+		w->run = i;
+		w->run_end = heading_run_end(&w->ways, i);
+	}
 	if (pass_is_short(w, last) || pass_is_short(w, i))
 		v = curve(w, i, a->along & b->along,
-			  larger((double)s[last].feed_max_mm_s,
-				 (double)s[i].feed_max_mm_s));
+			  smaller((double)s[last].feed_max_mm_s,
+				  (double)s[i].feed_max_mm_s));
 	return turns_faster(w, last, i, &c, v) ? v :
 						 smaller(v, turn(w, last, i, &c));
 }
@@ -393,15 +398,14 @@ static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
 	double along;
 
 	look_around(w, i, k);
-	chord_find(w, k->behind, k->ahead, h->along, &c);
+	pass_chord(w, k->behind, k->ahead, h->along, &c);
 	around = c.mm > 0 ? c.h.rate : h->rate;
-	along = along_tol(w, h->along);
+	along = pass_along_tol(w, h->along);
 	for (uint32_t j = 0; j < w->n; j++) {
 		/* So far the length and the axis may be off, if the share is
 		 * that of the ways around. */
 		const double off = h->along >> j & 1 ? 0 :
-			smaller(along * fabs(around[j]),
-				MOST_BESIDE * w->tol[j]);
+			pass_off(w, j, along, fabs(around[j]));
 		const double d = fabs(h->rate[j] - around[j]);
 
 		ret[j] = fabs(d > (w->tol[j] + off) * per_mm ? h->rate[j] :

@@ -34,6 +34,7 @@ struct chord {
 struct around {
 	double mm;
 	uint32_t behind, ahead;
+	uint32_t before, beyond;	/* the same from there on */
 	/* To here and on from here.  The next node often has the second one
 	 * behind it. */
 	struct chord chord[2];
@@ -51,6 +52,30 @@ struct pass_soft {
 	double a_least, a_most, j_least, j_most;
 };
 
+/* The chords to both sides of a node, over one window. */
+struct bow {
+	const struct heading *a, *b;
+	double mm;			/* half the way */
+	double per_mm;			/* as change has it */
+};
+
+/* A node, as one window shows it. */
+struct look {
+	uint32_t node, along;
+	struct around *window;
+	struct bow bow;
+	bool certain;			/* what a rounding can be does not
+					 * count */
+	double most_mm_s;		/* more is not asked for */
+};
+
+/* How an axis beside the path bends at a node. */
+struct bent {
+	double bend;			/* change of its rate in a mm */
+	double change;			/* of its bend in a mm */
+	double rate;
+};
+
 struct pass {
 	const struct interp_program *p;
 	struct interp_seg *segs;
@@ -58,6 +83,7 @@ struct pass {
 	uint32_t n;			/* columns */
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;
+	uint32_t run, run_end;		/* nodes that windows look between */
 	/* Of each column: */
 	double tol[INTERP_NAXES];	/* mm or degrees that do not count as a
 					 * change */
@@ -66,6 +92,12 @@ struct pass {
 	double step_mm_s[INTERP_NAXES];	/* at a node */
 	struct levels v_levels, a_levels, j_levels;
 	double a_least_mm_s2, j_least_mm_s3;
+	double a_linear_mm_s2;		/* the least of X Y Z */
+	double a_own_mm_s2[2];		/* of the segments before and behind the
+					 * node, as if nothing bent */
+	uint32_t bends;			/* the columns that have this at the
+					 * node: */
+	struct bent bent[INTERP_NAXES];
 	uint32_t tol_of;		/* columns whose largest tol was asked
 					 * for last */
 	double tol_most;
@@ -83,6 +115,34 @@ double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3);
  * ends?
  */
 bool pass_is_short(const struct pass *w, uint32_t i);
+
+/** pass_along_tol() - the rounding of the path: the largest of @columns. */
+double pass_along_tol(struct pass *w, uint32_t columns);
+
+/**
+ * pass_off() - what @along, the rounding of the path, makes of column @j beside
+ * it that has this rate.
+ */
+double pass_off(const struct pass *w, uint32_t j, double along, double rate);
+
+/** pass_chord() - find the way from node @from to @to; @along makes its length. */
+void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
+		uint32_t along, struct chord *ret);
+
+/**
+ * pass_beside_mm_s() - how fast column @j, which does not count in the length,
+ * can follow the bow of @l; @d is the change of its rate.
+ */
+double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
+			double d);
+
+/* What bends beside the path leave for going along it. */
+struct leave {
+	double a_mm_s2, j_mm_s3;
+};
+
+/** pass_leave() - that of the last node, which is passed at @v_mm_s at most. */
+void pass_leave(const struct pass *w, double v_mm_s, struct leave *ret);
 
 /**
  * pass_node_mm_s() - the greatest speed over the node in front of segment @i;

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * beside.c - how fast a column beside the path can follow the bends of short
+ * lines
+ *
+ * Such a column has the place B(s) at the way s, and moves by
+ *
+ *	B'' v^2 + B' a			of its acceleration,
+ *	B''' v^3 + 3 B'' v a + B' j	of its jerk.
+ *
+ * B' is its rate, B'' its bend.  A bend that goes on over the windows before
+ * and behind takes no jerk of its own, however tight it is; one that is in this
+ * window alone comes and goes within it, and takes what the window shows.
+ */
+#include "speed/pass.h"
+
+#include <math.h>
+
+/* Of the acceleration along the path, what a bend leaves at least.  One that
+ * would need more is followed slower. */
+#define LEAST_ALONG	0.4
+
+/* The chords from node to node over three windows. */
+struct bows {
+	struct chord chord[4];
+	double along;			/* the rounding of the path */
+};
+
+static void bows_of(struct pass *w, const struct look *l, struct bows *ret)
+{
+	const struct interp_seg *s = w->segs;
+	struct around *k = l->window;
+
+	if (k->before < w->run)
+		k->before = w->run;
+	while (k->before < k->behind &&
+	       s[k->behind].s_mm - s[k->before + 1].s_mm >= k->mm)
+		k->before++;
+	if (k->beyond < k->ahead)
+		k->beyond = k->ahead;
+	while (k->beyond < w->run_end &&
+	       s[k->beyond].s_mm - s[k->ahead].s_mm < k->mm)
+		k->beyond++;
+	ret->along = pass_along_tol(w, l->along);
+	pass_chord(w, k->before, k->behind, l->along, &ret->chord[0]);
+	pass_chord(w, k->behind, l->node, l->along, &ret->chord[1]);
+	pass_chord(w, l->node, k->ahead, l->along, &ret->chord[2]);
+	pass_chord(w, k->ahead, k->beyond, l->along, &ret->chord[3]);
+}
+
+struct bend {
+	double is, rounding;		/* change of the rate in a mm */
+};
+
+/* Of column @j, between chord @at and the next one. */
+static struct bend bend_of(const struct pass *w, const struct bows *k, int at,
+			   uint32_t j)
+{
+	const struct chord *c = &k->chord[at];
+	const double a = c[0].h.rate[j], b = c[1].h.rate[j];
+	const double mm = (c[0].mm + c[1].mm) / 2;
+	const double off = w->tol[j] + pass_off(w, j, k->along,
+						larger(fabs(a), fabs(b)));
+
+	return (struct bend) {
+		(b - a) / mm, off * (1 / c[0].mm + 1 / c[1].mm) / mm
+	};
+}
+
+/* By how much the bend changes in a mm, before the node or behind it, whatever
+ * is more.  INFINITY: there is no room to see that. */
+static double bend_change(struct pass *w, const struct look *l, uint32_t j)
+{
+	struct bend here;
+	double most = -1;
+	struct bows k;
+
+	bows_of(w, l, &k);
+	here = bend_of(w, &k, 1, j);
+	for (int n = 0; n < 2; n++) {
+		struct bend next;
+		double d;
+
+		if (!(k.chord[3 * n].mm > 0))
+			continue;
+		next = bend_of(w, &k, 2 * n, j);
+		d = fabs(next.is - here.is);
+		if (l->certain)
+			d = larger(d - next.rounding - here.rounding, 0);
+		most = larger(most, d / k.chord[1 + n].mm);
+	}
+	return most < 0 ? INFINITY : most;
+}
+
+/* Along the path, of what a bend at the node may take a share. */
+static double own_mm_s2(const struct pass *w)
+{
+	return smaller(w->a_linear_mm_s2, smaller(w->a_own_mm_s2[0],
+						  w->a_own_mm_s2[1]));
+}
+
+static void note_bent(struct pass *w, const struct look *l, uint32_t j,
+		      double bend, double change)
+{
+	struct bent *b = &w->bent[j];
+
+	if (!(w->bends >> j & 1))
+		*b = (struct bent) { 0 };
+	w->bends |= 1u << j;
+	b->bend = larger(b->bend, bend);
+	b->change = larger(b->change, change);
+	b->rate = larger(fabs(l->bow.a->rate[j]), fabs(l->bow.b->rate[j]));
+}
+
+double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
+			double d)
+{
+	const double a = w->a_mm_s2[j], jerk = w->j_mm_s3[j];
+	const double mm = l->bow.mm, bend = d / mm, most = l->most_mm_s;
+	double change, set_off, alone, v;
+
+	if (most * most * bend <= a && most * most * most * bend <= jerk * mm)
+		return INFINITY;
+	alone = pass_round_mm_s(1 / bend, a, jerk * d);
+	if (alone * alone * bend >= a)
+		return alone;
+	change = bend_change(w, l, j);
+	set_off = INTERP_ARC_JERK_BOTH * jerk /
+		  (3 * bend * LEAST_ALONG * own_mm_s2(w));
+	v = smaller(cbrt(INTERP_ARC_JERK_ROUND * jerk / change), set_off);
+	v = smaller(v, sqrt(a / bend));
+	if (v <= alone)
+		return alone;
+	if (l->certain)
+		note_bent(w, l, j, bend, change);
+	return v;
+}
+
+/*
+ * An axis bends least where it is fastest, as in a wave: what it needs along the
+ * path and across count as square to each other, as on an arc.
+ */
+void pass_leave(const struct pass *w, double v_mm_s, struct leave *ret)
+{
+	const double v = v_mm_s, least = LEAST_ALONG * own_mm_s2(w);
+
+	*ret = (struct leave) { INFINITY, INFINITY };
+	for (uint32_t j = 0; j < w->n; j++) {
+		const struct bent *b = &w->bent[j];
+		const double jerk = w->j_mm_s3[j], a = w->a_mm_s2[j];
+		double across, left, both, round;
+
+		if (!(w->bends >> j & 1))
+			continue;
+		across = smaller(b->bend * v * v / a, 1);
+		left = INTERP_ARC_JERK_BOTH * jerk / (3 * b->bend * v);
+		if (b->rate > 0)
+			left = smaller(left, sqrt(1 - across * across) * a /
+						     b->rate);
+		left = larger(left, least);
+		both = smaller(3 * b->bend * v * left / jerk,
+			       INTERP_ARC_JERK_BOTH);
+		round = smaller(b->change * v * v * v / jerk,
+				INTERP_ARC_JERK_ROUND);
+		ret->a_mm_s2 = smaller(ret->a_mm_s2, left);
+		if (b->rate > 0)
+			ret->j_mm_s3 = smaller(ret->j_mm_s3,
+				(sqrt(1 - both * both) - round) * jerk /
+				b->rate);
+	}
+}
