@@ -4,9 +4,9 @@
  * acceleration and jerk
  *
  * By differences of the pulses that the drives get, over 1 to 16 cycles, with
- * random axes, switches that bounce, stops and speeds that change on the way; the
- * pulses are so small that some axes are faster than their pulses can be put out.
- * The seed is printed.
+ * random axes, switches that bounce, stops and speeds that change on the way.
+ * The pulses are so small that some axes are faster than their pulses can be
+ * put out.  The seed is printed.
  */
 #include "manual_help.h"
 #include "seed.h"
@@ -68,11 +68,11 @@ static void check(const struct way *w, const struct cycle *c, int over)
 	if (v > a->v_max_mm_s * t * (1 + 1e-6) ||
 	    acc > a->a_max_mm_s2 * t * t * (1 + 1e-6) ||
 	    j > a->j_max_mm_s3 * t * t * t * (1 + 1e-6))
-		fail_msg("%s, phase %d, over %d cycles: %g of %g mm/s, %g of %g "
-			 "mm/s2, %g of %g mm/s3", state_duty[c->state].name,
-			 (int)c->manual.phase, over, v / t, a->v_max_mm_s,
-			 acc / t / t, a->a_max_mm_s2, j / t / t / t,
-			 a->j_max_mm_s3);
+		fail_msg("%s, phase %d, over %d cycles: %g of %g mm/s, "
+			 "%g of %g mm/s2, %g of %g mm/s3",
+			 state_duty[c->state].name, (int)c->manual.phase, over,
+			 v / t, a->v_max_mm_s, acc / t / t, a->a_max_mm_s2,
+			 j / t / t / t, a->j_max_mm_s3);
 	looked[c->state]++;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_turning.c - a move that is told another goal behind it turns and comes to
- * it, at whatever moment, also if its braking ends exactly with a period
+ * test_turning.c - a move that is told another goal behind it turns and comes
+ * to it, at whatever moment, also if its braking ends exactly with a period
  */
 #include "cycle_help.h"
 
