@@ -141,27 +141,30 @@ static void what_does_not_agree_is_refused_with_the_remedy(void **state)
 		  "gap.source is sim and there are gap lines",
 		  "source = lines" },
 		{ "step_X = 1\ndir_X = 2\nadc = a\nadc_ratio = 0\n[gap]\n"
-		  "source = voltage\n", "gpio.adc_ratio is 0", "the divider" },
+		  "source = voltage\n",
+		  "gpio.adc_ratio is 0", "the divider" },
 		{ "step_X = 1\ndir_X = 2\nspark = 3\nestop = 4\n",
 		  "gpio.spark without gpio.watchdog", "or gpio.watchdog_by" },
 		{ "step_X = 1\ndir_X = 2\nspark = 3\nwatchdog = 4\n",
 		  "gpio.spark without gpio.estop", "or gpio.estop_by" },
 		{ "step_X = 1\ndir_X = 2\nhigh_cycles = 2\n",
-		  "axis.X.v_max_mm_s 10 mm/s is faster", "at most 6.66667 mm/s" },
+		  "axis.X.v_max_mm_s 10 mm/s is faster",
+		  "at most 6.66667 mm/s" },
 		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 2\n",
 		  "gpio.encoder_X \"3 2\" has a line that is used for "
-		  "something else too", "counter0/count0" },
+		  "something else too",
+		  "counter0/count0" },
 		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 gpiochip0:3\n",
 		  "two chips", "two lines of one chip" },
-		{ "step_X = 1\ndir_X = 2\nencoder_X = 3\n", "has no line number",
-		  "two lines" },
+		{ "step_X = 1\ndir_X = 2\nencoder_X = 3\n",
+		  "has no line number", "two lines" },
 		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 !4\n", "has a !",
 		  "two lines" },
 		{ "step_X = 1\ndir_X = 2\nencoder_Y = 3 4\n",
 		  "is of an axis that is not present", "two lines" },
 		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 4\n[axis.X]\n"
-		  "encoder_counts = 0\n", "has encoder_counts 0",
-		  "two lines" },
+		  "encoder_counts = 0\n",
+		  "has encoder_counts 0", "two lines" },
 		{ "step_X = 1\ndir_X = two\n", "gpio.dir_X 'two' has no line",
 		  "none, or [!][CHIP:]NUMBER" },
 	};
@@ -208,6 +211,25 @@ static void quadrature_is_twice_as_fast(void **state)
 				   "signal = quadrature\n", &c, &d), 0);
 }
 
+/* Where one axis moves at a time, all axes share these points. */
+static void it_makes_as_many_points_as_pulses(void **state)
+{
+	static const char lines[] = "step_X = 1\ndir_X = 2\n";
+	struct machine_config c;
+	struct interp_diag d;
+
+	(void)state;
+	assert_int_equal(read_with(lines, &c, &d), 0);
+	assert_true(config_points_s(&c) == 10000);
+	c.gpio.edges_per_period = 10;
+	assert_true(config_points_s(&c) == 100000);
+	c.gpio.edges_per_period = 1;
+	c.gpio.signal = 1;
+	assert_true(config_points_s(&c) == 20000);
+	c.backend = BACKEND_SIM;
+	assert_true(config_points_s(&c) > 1e6);
+}
+
 /* None of it is asked of a machine that has no lines. */
 static void other_backends_need_no_lines(void **state)
 {
@@ -235,6 +257,7 @@ int main(void)
 		cmocka_unit_test(what_does_not_agree_is_refused_with_the_remedy),
 		cmocka_unit_test(an_encoder_is_two_lines_or_a_counter),
 		cmocka_unit_test(quadrature_is_twice_as_fast),
+		cmocka_unit_test(it_makes_as_many_points_as_pulses),
 		cmocka_unit_test(other_backends_need_no_lines),
 	};
 

@@ -76,6 +76,23 @@ static void feel_until(struct world *w, enum cycle_state s, int n)
 	assert_string_equal(state_duty[w->r.c.state].name, state_duty[s].name);
 }
 
+/* With no more than X's 1000 mm/s2, which is a pulse; places are a half off. */
+static void feel_smoothly_until(struct world *w, enum cycle_state s, int n)
+{
+	int32_t x[3] = { w->r.out.target[INTERP_X], w->r.out.target[INTERP_X],
+			 w->r.out.target[INTERP_X] };
+
+	for (int i = 0; w->r.c.state != s && i < n; i++) {
+		feel(w);
+		x[0] = x[1];
+		x[1] = x[2];
+		x[2] = w->r.out.target[INTERP_X];
+		if (i > 0)
+			assert_in_range(x[2] - 2 * x[1] + x[0] + 3, 0, 6);
+	}
+	assert_string_equal(state_duty[w->r.c.state].name, state_duty[s].name);
+}
+
 static struct interp_build *one_probe(double by_mm)
 {
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
@@ -236,7 +253,7 @@ static void test_something_in_the_way_of_a_half_is_a_contact(void **state)
 	       w.r.out.target[INTERP_X] > 1000)
 		feel(&w);
 	w.low = 600;
-	feel_until(&w, STATE_FAULT, 1000);
+	feel_smoothly_until(&w, STATE_FAULT, 1000);
 	assert_int_equal(w.r.c.fault.first, FAULT_CONTACT);
 	assert_in_range(w.r.out.target[INTERP_X], 0, 600);
 	rig_free(&w.r);
@@ -296,15 +313,21 @@ static void test_no_contact_by_its_end_is_a_fault(void **state)
 static void test_no_contact_by_the_travels_end_is_a_fault(void **state)
 {
 	struct cycle_config k = probe_config();
-	struct world w;
 
 	(void)state;
-	k.travel_min[INTERP_X] = -1500;
-	load(&w, one_probe(-100), &k);
-	feel_until(&w, STATE_FAULT, 20000);
-	assert_int_equal(w.r.c.fault.first, FAULT_NO_CONTACT);
-	assert_int_equal(w.r.out.target[INTERP_X], -1500);
-	rig_free(&w.r);
+	k.probe.feed_mm_s = 20;
+	for (int sign = -1; sign <= 1; sign += 2) {
+		struct world w;
+
+		k.travel_min[INTERP_X] = -1500;
+		k.travel_max[INTERP_X] = 1500;
+		load(&w, one_probe(sign * 100), &k);
+		feel_smoothly_until(&w, STATE_FAULT, 20000);
+		assert_int_equal(w.r.c.fault.latched,
+				 fault_bit(FAULT_NO_CONTACT));
+		assert_int_equal(w.r.out.target[INTERP_X], sign * 1500);
+		rig_free(&w.r);
+	}
 }
 
 static void test_contact_to_begin_with_is_a_fault(void **state)
@@ -533,30 +556,24 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_what_follows_counts_from_the_contact),
-		cmocka_unit_test(
-			test_the_axes_never_step_where_the_rest_is_left_out),
-		cmocka_unit_test(
-			test_it_goes_no_deeper_than_a_cycle_at_its_feed),
-		cmocka_unit_test(
-			test_without_a_way_back_the_first_contact_counts),
+		cmocka_unit_test(test_the_axes_never_step_where_the_rest_is_left_out),
+		cmocka_unit_test(test_it_goes_no_deeper_than_a_cycle_at_its_feed),
+		cmocka_unit_test(test_without_a_way_back_the_first_contact_counts),
 		cmocka_unit_test(test_half_is_the_middle_between_two_contacts),
 		cmocka_unit_test(test_a_half_without_two_contacts_is_a_fault),
-		cmocka_unit_test(
-			test_something_in_the_way_of_a_half_is_a_contact),
+		cmocka_unit_test(test_something_in_the_way_of_a_half_is_a_contact),
 		cmocka_unit_test(test_a_limit_ends_where_the_travel_does),
 		cmocka_unit_test(test_no_contact_by_its_end_is_a_fault),
 		cmocka_unit_test(test_no_contact_by_the_travels_end_is_a_fault),
 		cmocka_unit_test(test_contact_to_begin_with_is_a_fault),
 		cmocka_unit_test(test_a_contact_that_does_not_open_is_a_fault),
 		cmocka_unit_test(test_feeling_blindly_is_a_fault),
-		cmocka_unit_test(
-			test_soft_limits_are_of_the_axes_not_of_the_program),
+		cmocka_unit_test(test_soft_limits_are_of_the_axes_not_of_the_program),
 		cmocka_unit_test(test_a_hold_anywhere_in_it_changes_nothing),
 		cmocka_unit_test(test_an_estop_stands_at_once),
 		cmocka_unit_test(test_no_way_back_leads_over_a_contact),
 		cmocka_unit_test(test_a_cut_leads_into_a_probe_and_out_of_it),
-		cmocka_unit_test(
-			test_a_dry_run_probes_nothing_and_goes_nowhere),
+		cmocka_unit_test(test_a_dry_run_probes_nothing_and_goes_nowhere),
 		cmocka_unit_test(test_an_arc_cannot_end_at_contact),
 		cmocka_unit_test(test_a_probe_along_two_axes_is_refused),
 	};
