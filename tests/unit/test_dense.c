@@ -172,8 +172,8 @@ static void with_a_rotary_axis_too(void **st)
 
 /* -- An axis that turns unevenly ------------------------------------------- */
 
-/* X goes @mm, and beside it B a wave of @deg, or one smooth step; @w_mm says how
- * wide they are. */
+/* X goes @mm, and beside it B a wave of @deg, or one smooth step; @w_mm says
+ * how wide they are. */
 struct wave {
 	double mm, deg, w_mm;
 	bool step;
@@ -286,8 +286,8 @@ static void a_rotary_axis_that_turns_unevenly_keeps_its_limits(void **st)
 
 		most_of_b(&k, mm, most);
 		if (most[0] > 1.03 || most[1] > 1.03 || most[2] > BOTH_JERK)
-			fail_msg("%g deg, %g, lines of %g mm: %g of v, %g of a, "
-				 "%g of the jerk", k.deg, w_mm, mm, most[0],
+			fail_msg("%g deg, %g, lines of %g mm: %g of v, %g of "
+				 "a, %g of the jerk", k.deg, w_mm, mm, most[0],
 				 most[1], most[2]);
 	}
 }

@@ -26,8 +26,8 @@
  * radius is found from the chords of 20 corner_mm on both sides of a node, and
  * is not taken smaller than corner_mm.  An axis beside the path has the
  * acceleration by which its share changes over those chords, and the jerk by
- * which that differs from the chords before and behind.  What it needs for that,
- * a_mm_s2 and j_mm_s3 leave to it.
+ * which that differs from the chords before and behind.  a_mm_s2 and j_mm_s3
+ * leave it what it needs for that.
  *
  * Rounding the nodes by tolerance_mm, or by a pulse, must not change the speed.
  * So turns and steps of lines shorter than 20 tolerances are taken over chords
