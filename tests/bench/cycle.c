@@ -74,7 +74,8 @@ static double cycles_s(const struct interp_program *p, bool dry)
 		struct cycle c;
 
 		begin(&c, p, dry);
-		if (dry ? io_null_open(&m, NULL, NULL) : io_sim_open_seed(&m, &machine, 1))
+		if (dry ? io_null_open(&m, NULL, NULL) :
+			  io_sim_open_seed(&m, &machine, 1))
 			exit(71);
 		m.write(m.self, &c.out);
 		while (state_duty[c.state].running ||

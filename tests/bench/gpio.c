@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * gpio.c - step pulses a second through libgpiod, period by period with no sleep
+ * gpio.c - step pulses a second through libgpiod, period by period with no
+ * sleep
  *
  *	gpio CHIP	lines 0 and 1 of it are step and direction of X
  */

@@ -85,7 +85,9 @@ static double proofs(const struct job *j, const struct route *w,
 int main(int argc, char **argv)
 {
 	static struct job j;
-	struct job_options o = { .unit_mm = 1, .any_size = true, .quiet = true };
+	struct job_options o = { .unit_mm = 1,
+				 .any_size = true,
+				 .quiet = true };
 	struct mesh_load load = { .unit_mm = 1 };
 	struct route_text text = { 0 };
 	struct mesh_findings found;

@@ -67,7 +67,7 @@ static double walk_ns(struct interp_cursor *c, double ds_mm)
 
 	interp_cursor_aim(c, ds_mm);
 	do
-		for (uint32_t some; (some = interp_cursor_run(c, pulses, RUN)); )
+		for (uint32_t some; (some = interp_cursor_run(c, pulses, RUN));)
 			n += some;
 	while (interp_cursor_step(c) == INTERP_MOVED && ++n);
 	return (bench_now_s() - from_s) * 1e9 / (double)n;

@@ -139,7 +139,9 @@ static void end(pid_t pid)
 int main(void)
 {
 	char dir[] = "/tmp/edmd-bench-XXXXXX", job[64], ini[64], cmd[128];
-	char *const edmd[] = { "edmd", "--config", ini, "--name", machine, NULL };
+	char *const edmd[] = {
+		"edmd", "--config", ini, "--name", machine, NULL
+	};
 	char *const jobs[] = { "edmd-jobs", "--config", ini, "--name", machine,
 			       "--store", dir, NULL };
 	pid_t a, b;

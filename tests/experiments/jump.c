@@ -154,7 +154,8 @@ static struct cycle erode(const struct path *p, watch_fn watch, void *arg)
 	do
 		cycle_step(&c, &in, &out);
 	while (state_duty[c.state].running && (!watch || watch(&c, arg)));
-	if (c.fault.first != FAULT_NONE || (!watch && c.outcome != OUTCOME_DONE)) {
+	if (c.fault.first != FAULT_NONE ||
+	    (!watch && c.outcome != OUTCOME_DONE)) {
 		fprintf(stderr, "experiment: fault %s\n",
 			fault_name(c.fault.first));
 		exit(1);
@@ -257,7 +258,9 @@ static void node_table(void)
 {
 	static const double degrees[] = { 0.5, 1, 2, 5, 10, 20, 45, 90, 135,
 					  180 };
-	struct path p = { .length_mm = HOLE_MM, .discharge_min = 1, .lines = 2 };
+	struct path p = { .length_mm = HOLE_MM,
+			  .discharge_min = 1,
+			  .lines = 2 };
 
 	printf("\n## Speed of a node\n\nBetween two lines of %g mm, the first "
 	       "along X, with the axes' limits above; mm/s.\n\n"

@@ -41,7 +41,8 @@ static const struct removal removals[] = {
 	  { INTERP_MAIN_DIRECTION, 1000, INTERP_TREE } },
 	{ "main-direction, mu 5, tree",
 	  { INTERP_MAIN_DIRECTION, 5000, INTERP_TREE } },
-	{ "min-switch, mu 1.5, star", { INTERP_MIN_SWITCH, 1500, INTERP_STAR } },
+	{ "min-switch, mu 1.5, star",
+	  { INTERP_MIN_SWITCH, 1500, INTERP_STAR } },
 	{ "min-switch, mu 2, tree", { INTERP_MIN_SWITCH, 2000, INTERP_TREE } },
 	{ "min-switch, mu 2, star", { INTERP_MIN_SWITCH, 2000, INTERP_STAR } },
 	{ "min-switch, mu 2, tube", { INTERP_MIN_SWITCH, 2000, INTERP_TUBE } },
@@ -193,7 +194,8 @@ static void efficiency_table(void)
 	       "ratio of the two, and no rule that moves one axis at a\ntime "
 	       "can avoid it. The cells have seconds and, in brackets, the "
 	       "efficiency in\n%%: a single axis that goes the same length has "
-	       "100. mu is 2.\n\n| row, mm | measured s | measured %% |", f.s_mm, f.s);
+	       "100. mu is 2.\n\n| row, mm | measured s | measured %% |",
+	       f.s_mm, f.s);
 	for (int s = 0; s < INTERP_NSTRATEGIES; s++)
 		printf(" %s |", interp_strategy_name((enum interp_strategy)s));
 	printf("\n|---|---|---|");

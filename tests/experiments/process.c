@@ -407,7 +407,8 @@ static void bridge(void)
 		fill(&r, full);
 		r.out.place_mm -= 2 * r.k.sim.open_gap_mm;
 		for (int i = 0; i < 3000000; i++) {
-			const bool is = (period(&r), r.in.shares.shorted > 0.5f);
+			const bool is = (period(&r),
+					 r.in.shares.shorted > 0.5f);
 
 			born += is && !was;
 			clear += !is;

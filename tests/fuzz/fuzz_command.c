@@ -23,7 +23,7 @@ static struct {
 	struct io_outputs out;
 	int fd;				/* the service's end */
 	struct shm_follow events;
-	uint64_t motion[MOTIONS];	/* ids that asked for it, the last ones */
+	uint64_t motion[MOTIONS]; /* ids that asked for it, the last ones */
 	unsigned int motions;
 	bool asked;			/* something may move */
 } w;
@@ -99,7 +99,7 @@ static void serve(void)
 			free(a.close);
 			continue;
 		}
-		r = (struct reply) { .id = a.id, .answer = ANSWER_BAD_ARGUMENT };
+		r = (struct reply){ .id = a.id, .answer = ANSWER_BAD_ARGUMENT };
 		if (a.n % 3) {
 			r.program = calloc(1, sizeof(*r.program));
 			assert(r.program);

@@ -42,7 +42,8 @@ static void check_written(const struct interp_tech_table *t)
 	struct interp_tech_table *again = NULL;
 	struct interp_diag d;
 
-	assert(interp_tech_write(t, &(struct interp_sink) { fuzz_put, &a }) == 0);
+	assert(interp_tech_write(t, &(struct interp_sink){ fuzz_put, &a }) ==
+	       0);
 	assert(interp_tech_read(&again, a.at, a.n, &d) == 0);
 	assert(again->nrows == t->nrows &&
 	       again->nsequences == t->nsequences);

@@ -21,7 +21,8 @@ static void *compile(const struct interp_text *text,
 {
 	const struct interp_build_options bo = { .machine = m };
 	const struct interp_compile_options o = {
-		.nc = { .machine = m, .tech = text->bytes % 3 ? fuzz_tech() : NULL,
+		.nc = { .machine = m,
+			.tech = text->bytes % 3 ? fuzz_tech() : NULL,
 			.segs_max = must_take ? UINT32_MAX : 1000,
 			.executed_max = must_take ? UINT32_MAX : 10000,
 			.feed_mm_s = 1 },

@@ -2,9 +2,9 @@
 /*
  * jumping_clock.c - a library to preload: the time of day jumps on demand
  *
- * The file $EDM_CLOCK has a number of seconds; the time of day is so much later.
- * Without the file it is right.  CLOCK_MONOTONIC is left alone, as it is when
- * somebody sets a host's clock.
+ * The file $EDM_CLOCK has a number of seconds; the time of day is so much
+ * later.  Without the file it is right.  CLOCK_MONOTONIC is left alone, as it
+ * is when somebody sets a host's clock.
  */
 #define _GNU_SOURCE
 #include <fcntl.h>

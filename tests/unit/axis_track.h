@@ -3,8 +3,8 @@
  * axis_track.h - random paths, and every axis's speed, acceleration and jerk
  * along them, by differences from cycle to cycle
  *
- * A node steps, by the corner that it is passed as: what spans one is not looked
- * at.
+ * A node steps, by the corner that it is passed as: what spans one is not
+ * looked at.
  */
 #ifndef AXIS_TRACK_H
 #define AXIS_TRACK_H
@@ -65,7 +65,7 @@ static inline void random_tiny(struct interp_build *b, uint64_t *s)
 	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
 }
 
-/* By a pole of C, at a little distance: C turns ever faster, and slower again. */
+/* Past a pole of C, close to it: C turns ever faster, and slower again. */
 static inline void random_pole(struct interp_build *b, uint64_t *s)
 {
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
@@ -259,12 +259,14 @@ static inline double rate_of(const struct rig *r, int axis)
 		if (p->head->column[j] == axis)
 			rate = fabs((double)(p->nodes[(i + 1) * n + j] -
 					     p->nodes[i * n + j])) /
-			       INTERP_SUB * PULSE_MM / r->c.cursor.seg.length_mm;
+			       INTERP_SUB * PULSE_MM /
+			       r->c.cursor.seg.length_mm;
 	return fmax(rate, 1);
 }
 
-/* How often more than the limit an axis may do: its share of a line is not known
- * better than the ends of the line are, and not by more than 20 pulses of it. */
+/* How often more than the limit an axis may do: its share of a line is not
+ * known better than the ends of the line are, and not by more than 20 pulses
+ * of it.  */
 static inline double rounding_of(const struct rig *r, int axis)
 {
 	const double mm = r->c.cursor.seg.length_mm;

@@ -238,7 +238,8 @@ static inline void begin_cut(struct rig *r, const struct cycle_config *k)
 	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
 }
 
-static inline void cut_at(struct rig *r, const struct cycle_config *k, double mm)
+static inline void cut_at(struct rig *r, const struct cycle_config *k,
+			  double mm)
 {
 	begin_cut(r, k);
 	until(r, STATE_APPROACH, OPEN_V, 1000);

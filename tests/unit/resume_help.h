@@ -100,8 +100,8 @@ static inline void periods(struct world *w, double gap_v, int n)
 		period(w, gap_v);
 }
 
-static inline enum cycle_answer ask(struct world *w, enum cycle_verb v, uint32_t arg,
-			     double mm)
+static inline enum cycle_answer ask(struct world *w, enum cycle_verb v,
+				    uint32_t arg, double mm)
 {
 	const struct cycle_command m = { .verb = v, .arg = arg, .arg_mm = mm };
 	const enum cycle_answer answer = cycle_command(&w->l.cycle, &m);

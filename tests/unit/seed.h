@@ -15,9 +15,9 @@
 #include <time.h>
 
 /*
- * SEED_ROUNDS() - of so many random rounds, those that are made.  Sanitizers make
- * a round some ten times slower and look at each access and sum of it, so they
- * are shown a tenth; the unit tests without them make all.
+ * SEED_ROUNDS() - of so many random rounds, those that are made.  Sanitizers
+ * make a round some ten times slower and look at each access and sum of it, so
+ * they are shown a tenth; the unit tests without them make all.
  */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define SEED_ROUNDS(n)	(((n) + 9) / 10)

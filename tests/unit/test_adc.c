@@ -336,8 +336,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(formats_are_those_of_the_kernel),
-		cmocka_unit_test(
-			the_mean_of_what_came_is_the_gap_until_nothing_comes),
+		cmocka_unit_test(the_mean_of_what_came_is_the_gap_until_nothing_comes),
 		cmocka_unit_test(a_full_buffer_is_emptied_and_is_no_reading),
 		cmocka_unit_test(the_end_of_the_range_is_no_voltage),
 		cmocka_unit_test(one_that_is_gone_is_no_reading_at_once),

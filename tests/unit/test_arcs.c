@@ -329,14 +329,11 @@ static void a_damaged_block_never_leads_astray(void **st)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			dda_arcs_from_every_start_end_exactly_and_retrace),
-		cmocka_unit_test(
-			tube_arcs_from_every_start_end_exactly_and_retrace),
+		cmocka_unit_test(dda_arcs_from_every_start_end_exactly_and_retrace),
+		cmocka_unit_test(tube_arcs_from_every_start_end_exactly_and_retrace),
 		cmocka_unit_test(arcs_of_the_line_rules_are_point_by_point),
 		cmocka_unit_test(random_arcs_end_exactly_in_range_and_retrace),
-		cmocka_unit_test(
-			circles_in_a_tube_change_axis_as_seldom_as_is_known),
+		cmocka_unit_test(circles_in_a_tube_change_axis_as_seldom_as_is_known),
 		cmocka_unit_test(random_programs_with_helices_are_walked_about),
 		cmocka_unit_test(a_steep_helix_keeps_its_axes_in_step),
 		cmocka_unit_test(a_tolerance_too_narrow_for_an_arc_is_refused),

@@ -96,7 +96,8 @@ static void the_whole_path_is_one_path(void **state)
 		path.at(path.arg, u + d, &b);
 		for (int j = 0; j < path.naxes; j++)
 			if (n.p.head->column[j] != INTERP_C)
-				way += (a.mm[j] - b.mm[j]) * (a.mm[j] - b.mm[j]);
+				way += (a.mm[j] - b.mm[j]) *
+				       (a.mm[j] - b.mm[j]);
 		assert_true(sqrt(way) <= d * 1.001);
 	}
 	nc_done(&n);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_axis_limits.c - every axis keeps its own speed, acceleration and jerk, in
- * positioning, in jumps and in moves by command
+ * test_axis_limits.c - every axis keeps its own speed, acceleration and jerk,
+ * in positioning, in jumps and in moves by command
  *
  * By differences of where each axis is from cycle to cycle, along random paths;
  * the seed is printed.
@@ -128,8 +128,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(there_and_back_every_axis_keeps_its_limits),
-		cmocka_unit_test(
-			held_at_any_moment_every_axis_keeps_its_limits),
+		cmocka_unit_test(held_at_any_moment_every_axis_keeps_its_limits),
 		cmocka_unit_test(in_jumps_every_axis_keeps_its_limits),
 	};
 

@@ -3,8 +3,8 @@
  * test_axis_manual.c - in jogs, presses and homing an axis keeps its own speed,
  * acceleration and jerk
  *
- * By differences of the way from cycle to cycle, with random axes, switches that
- * bounce, stops and speeds that change on the way; the seed is printed.
+ * By differences of the way from cycle to cycle, with random axes, switches
+ * that bounce, stops and speeds that change on the way; the seed is printed.
  */
 #include "manual_help.h"
 #include "seed.h"
@@ -41,7 +41,7 @@ static struct cycle_config random_axes(uint64_t *s)
 	return k;
 }
 
-/* A place less than 2e-9 mm ahead counts as met; four of them in a difference. */
+/* A place less than 2e-9 mm ahead counts as met; a difference has four. */
 static void check(const struct way *w, const struct cycle *c)
 {
 	const struct manual_axis *a = manual_axis(c);
@@ -55,10 +55,12 @@ static void check(const struct way *w, const struct cycle *c)
 	if (fabs(v[2]) > a->v_max_mm_s * (1 + 1e-6) ||
 	    fabs(acc[1]) > a->a_max_mm_s2 * (1 + 1e-6) + 4 * onto / (t * t) ||
 	    fabs(jerk) > a->j_max_mm_s3 * (1 + 1e-6) + 8 * onto / (t * t * t))
-		fail_msg("%s, phase %d: %g of %g mm/s, %g of %g mm/s2, %g of %g "
-			 "mm/s3", state_duty[c->state].name,
-			 (int)c->manual.phase, v[2], a->v_max_mm_s, acc[1],
-			 a->a_max_mm_s2, jerk, a->j_max_mm_s3);
+		fail_msg(
+			"%s, phase %d: %g of %g mm/s, %g of %g mm/s2, %g of %g "
+			"mm/s3",
+			state_duty[c->state].name, (int)c->manual.phase, v[2],
+			a->v_max_mm_s, acc[1], a->a_max_mm_s2, jerk,
+			a->j_max_mm_s3);
 	looked[c->state]++;
 }
 

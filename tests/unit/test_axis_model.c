@@ -243,8 +243,7 @@ int main(void)
 		cmocka_unit_test(nonsense_is_refused),
 		cmocka_unit_test(filter_is_nearer_than_the_encoder),
 		cmocka_unit_test(filter_finds_a_place_it_was_not_told),
-		cmocka_unit_test(
-			kick_begins_with_the_turn_and_not_with_the_period),
+		cmocka_unit_test(kick_begins_with_the_turn_and_not_with_the_period),
 	};
 
 	return cmocka_run_group_tests_name("interp/axis_model", tests, NULL,

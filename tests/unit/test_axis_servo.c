@@ -114,7 +114,7 @@ static void whatever_the_gap_says_every_axis_keeps_its_limits(void **st)
 	assert_true(retracts > ROUNDS);
 }
 
-/* -- Touches ----------------------------------------------------------------- */
+/* -- Touches -------------------------------------------------------------- */
 
 static struct made touch(int axis)
 {
@@ -179,8 +179,7 @@ static void in_touches_every_axis_keeps_its_limits(void **st)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			whatever_the_gap_says_every_axis_keeps_its_limits),
+		cmocka_unit_test(whatever_the_gap_says_every_axis_keeps_its_limits),
 		cmocka_unit_test(in_touches_every_axis_keeps_its_limits),
 	};
 

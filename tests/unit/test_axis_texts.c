@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * test_axis_texts.c - every axis keeps its own speed, acceleration and jerk in
- * programs of every dialect: orbits, splines, tapers, rotary axes and tiny lines
+ * programs of every dialect: orbits, splines, tapers, rotary axes and tiny
+ * lines
  *
- * By differences of where each axis is, eight cycles apart: places of a curve are
- * 0.02 pulses off, and that is a jerk from cycle to cycle.  The program is held
- * at any moment, gone on with, taken back, told another speed, and cut with jumps.
- * The seed is printed; EDM_RUNS is the number of texts.
+ * By differences of where each axis is, eight cycles apart: places of a curve
+ * are 0.02 pulses off, and that is a jerk from cycle to cycle.  The program is
+ * held at any moment, gone on with, taken back, told another speed, and cut
+ * with jumps.  The seed is printed; EDM_RUNS is the number of texts.
  */
 #include "axis_track.h"
 #include "random_compile.h"

@@ -99,7 +99,8 @@ static struct greedy_line line_of(const struct job *j)
 static void check_tube(const struct job *j, const struct points *p)
 {
 	const struct greedy_line l = line_of(j);
-	const int64_t x = llround(j->to[0] * 1000), y = llround(j->to[1] * 1000);
+	const int64_t x = llround(j->to[0] * 1000),
+		      y = llround(j->to[1] * 1000);
 
 	for (size_t i = 0; i < p->n; i++) {
 		const int64_t e = y * p->at[i].pos[0] - x * p->at[i].pos[1];

@@ -17,16 +17,14 @@
 
 #define RUNS		150
 #define POINTS_MAX	400000
+#define AXIS		{ 0.001, -200, 200, 100, 500, 1e5 }
 
 static uint64_t seed;
 
 static const struct interp_machine machine = {
 	.present = 0xff,
 	.axis = {
-		{ 0.001, -200, 200, 100, 500, 1e5 }, { 0.001, -200, 200, 100, 500, 1e5 },
-		{ 0.001, -200, 200, 100, 500, 1e5 }, { 0.001, -200, 200, 100, 500, 1e5 },
-		{ 0.001, -200, 200, 100, 500, 1e5 }, { 0.001, -200, 200, 100, 500, 1e5 },
-		{ 0.001, -200, 200, 100, 500, 1e5 }, { 0.001, -200, 200, 100, 500, 1e5 },
+		AXIS, AXIS, AXIS, AXIS, AXIS, AXIS, AXIS, AXIS,
 	},
 };
 
@@ -97,7 +95,8 @@ static uint32_t check_way(const struct interp_program *p,
 				 INTERP_SEG_RAPID);
 	while (i < p->head->nsegs && p->segs[i].line == e->line &&
 	       (p->segs[i].kind == INTERP_AUX ||
-		(p->segs[i].kind == INTERP_STOP && o->up < 0 && !stops && ++stops)))
+		(p->segs[i].kind == INTERP_STOP && o->up < 0 && !stops &&
+		 ++stops)))
 		i++;
 	assert_int_equal(stops, o->up < 0);
 	assert_int_equal(interp_cursor_init(&c, p), 0);
@@ -169,7 +168,8 @@ static bool try_one(const struct script *text, const char *dialect,
 	else
 		o.far_mm = uniform(s, 0, 1.02 * a.p.head->length_mm);
 	for (int i = 0; i < INTERP_NAXES; i++)
-		o.now_mm[i] = rnd(s) % 2 ? 0 : round(uniform(s, -9e3, 9e3)) / 1e3;
+		o.now_mm[i] = rnd(s) % 2 ? 0 :
+					   round(uniform(s, -9e3, 9e3)) / 1e3;
 	o.probed_known = rnd(s) % 2;
 	for (int i = 0; o.probed_known && i < INTERP_NAXES; i++)
 		o.probed.shift[i] = (int32_t)uniform(s, -4e5, 4e5);
@@ -267,7 +267,8 @@ static struct interp_build *with_codes(uint32_t first, uint32_t second)
 		.chord_error_mm = 0.001, .period_s = 1e-3,
 	};
 	static const double to[][INTERP_NAXES] = {
-		{ 0, 0, 1 }, { 0, 0, 0 }, { 0, 0, 1 }, { 5, 0, 1 }, { 5, 0, -1 },
+		{ 0, 0, 1 }, { 0, 0, 0 },  { 0, 0, 1 },
+		{ 5, 0, 1 }, { 5, 0, -1 },
 	};
 	struct interp_build *b = interp_build_create(&bo);
 	struct interp_diag d;

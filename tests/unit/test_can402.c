@@ -491,7 +491,7 @@ static void the_drive_that_is_well_follows_while_the_cycle_brakes(void **st)
 	unmake(&r);
 }
 
-/* -- Brakes on lines ---------------------------------------------------------- */
+/* -- Brakes on lines ------------------------------------------------------ */
 
 static uint32_t brakes_open;
 static bool brakes_answer;
@@ -1030,7 +1030,7 @@ static void a_bus_too_full_is_refused_with_the_period_that_fits(void **st)
 	assert_non_null(strstr(d.found, "can402.interface none"));
 }
 
-/* Axes, period, percent; worked out by hand from frames of 55, 115, 125 and 65. */
+/* Axes, period, percent; by hand from frames of 55, 115, 125 and 65 bits. */
 static void the_load_is_that_of_longest_frames(void **st)
 {
 	static const struct {
@@ -1041,7 +1041,7 @@ static void the_load_is_that_of_longest_frames(void **st)
 		{ 2, 2000, 27 }, { 4, 2000, 51 }, { 6, 2000, 75 },
 		{ 8, 4000, 50 },
 	};
-	/* A PLC on the bus: four frames and its own, of 135 bits, each 20 ms. */
+	/* A PLC: four frames and its own, of 135 bits, each 20 ms. */
 	struct can402_bus shared = { .bitrate = 1000000, .axes = 4,
 				     .heartbeat_ms = 100 };
 	double alone;
@@ -1076,8 +1076,7 @@ int main(void)
 		cmocka_unit_test(targets_reach_the_drives_as_increments_from_where_they_stood),
 		cmocka_unit_test(drives_stand_where_the_targets_begin),
 		cmocka_unit_test(after_a_crash_an_axis_goes_back_to_its_place),
-		cmocka_unit_test(
-			after_a_crash_an_axis_moved_far_is_not_enabled),
+		cmocka_unit_test(after_a_crash_an_axis_moved_far_is_not_enabled),
 		cmocka_unit_test(after_a_crash_a_drive_that_was_off_has_no_place),
 		cmocka_unit_test(a_restart_tells_that_the_place_is_lost_and_moves_nothing),
 		cmocka_unit_test(the_others_brake_along_the_path_and_come_back_along_it),
@@ -1087,13 +1086,11 @@ int main(void)
 		cmocka_unit_test(the_brake_of_a_drive_in_trouble_closes_at_once),
 		cmocka_unit_test(brakes_that_do_not_answer_are_a_lost_machine),
 		cmocka_unit_test(a_plc_on_the_same_bus_is_no_other_master),
-		cmocka_unit_test(
-			drives_that_a_plc_starts_too_early_are_set_up_all_the_same),
+		cmocka_unit_test(drives_that_a_plc_starts_too_early_are_set_up_all_the_same),
 		cmocka_unit_test(errors_on_the_bus_are_told_and_stop_nothing),
 		cmocka_unit_test(another_program_far_away_is_not_jumped_to),
 		cmocka_unit_test(the_gap_is_what_its_frames_say_until_they_stop),
-		cmocka_unit_test(
-			a_gap_sensor_without_a_reading_is_a_lost_gap_at_once),
+		cmocka_unit_test(a_gap_sensor_without_a_reading_is_a_lost_gap_at_once),
 		cmocka_unit_test(the_generator_is_told_each_period),
 		cmocka_unit_test(an_emergency_stops_all_drives_and_is_told_with_its_code),
 		cmocka_unit_test(an_emergency_of_a_warning_is_told_and_stops_nothing),

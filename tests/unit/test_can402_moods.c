@@ -457,8 +457,7 @@ static void whatever_they_do_nothing_moves_unplaced_or_sparks(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			whatever_they_do_nothing_moves_unplaced_or_sparks),
+		cmocka_unit_test(whatever_they_do_nothing_moves_unplaced_or_sparks),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

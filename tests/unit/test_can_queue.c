@@ -92,8 +92,7 @@ static void frames_to_a_plc_wait_for_two_periods_at_most(void **st)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			frames_to_drives_wait_only_as_many_as_are_sent_at_once),
+		cmocka_unit_test(frames_to_drives_wait_only_as_many_as_are_sent_at_once),
 		cmocka_unit_test(frames_to_a_plc_wait_for_two_periods_at_most),
 	};
 

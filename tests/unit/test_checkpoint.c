@@ -169,10 +169,11 @@ static void lateness_and_load_are_bounded(void **state)
 	}
 	checkpoint_close(f);
 	day_bytes = (double)s.handed_bytes * 24 / hours;
-	print_message("%g h of a cut with a jump each second: %llu writes, %.1f "
-		      "MB a day; late by %.2f s and %.4f mm at most\n", hours,
-		      (unsigned long long)s.handed, day_bytes / 1e6, worst_s,
-		      worst_mm);
+	print_message(
+		"%g h of a cut with a jump each second: %llu writes, %.1f "
+		"MB a day; late by %.2f s and %.4f mm at most\n",
+		hours, (unsigned long long)s.handed, day_bytes / 1e6, worst_s,
+		worst_mm);
 	assert_true(day_bytes <= CHECKPOINT_DAY_BYTES);
 	/* Where the disk takes sectors. */
 	if (s.handed_bytes < s.handed * CHECKPOINT_BLOCK / 2)

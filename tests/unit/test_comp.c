@@ -265,7 +265,8 @@ static void settled_the_machine_truly_is_at_its_place(void **state)
 	period(&b);
 	for (int n = 0; n < 300; n++) {
 		for (int i = 0; i < 3; i++) {
-			seed = seed * 6364136223846793005u + 1442695040888963407u;
+			seed = seed * 6364136223846793005u +
+			       1442695040888963407u;
 			b.at[i] = (int32_t)(seed >> 33) % 30000;
 		}
 		for (int k = 0; k < 200; k++)

@@ -219,17 +219,12 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_program_carries_what_the_table_gives),
-		cmocka_unit_test(
-			a_condition_that_is_not_there_is_refused_with_the_nearest),
-		cmocka_unit_test(
-			a_sequence_sinks_rough_to_fine_and_ends_at_the_end),
-		cmocka_unit_test(
-			a_sequence_goes_obliquely_and_skips_what_has_no_way),
-		cmocka_unit_test(
-			a_sequence_that_cannot_be_is_refused_at_its_place),
+		cmocka_unit_test(a_condition_that_is_not_there_is_refused_with_the_nearest),
+		cmocka_unit_test(a_sequence_sinks_rough_to_fine_and_ends_at_the_end),
+		cmocka_unit_test(a_sequence_goes_obliquely_and_skips_what_has_no_way),
+		cmocka_unit_test(a_sequence_that_cannot_be_is_refused_at_its_place),
 		cmocka_unit_test(a_definition_means_what_the_inline_line_says),
-		cmocka_unit_test(
-			a_definition_that_cannot_be_is_refused_at_its_place),
+		cmocka_unit_test(a_definition_that_cannot_be_is_refused_at_its_place),
 		cmocka_unit_test(so_many_definitions_end_somewhere),
 	};
 

@@ -332,17 +332,14 @@ static void a_damaged_condition_is_a_fault_and_no_value(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			the_condition_of_the_place_is_in_force_both_ways),
+		cmocka_unit_test(the_condition_of_the_place_is_in_force_both_ways),
 		cmocka_unit_test(a_condition_changes_what_the_servo_does),
-		cmocka_unit_test(
-			window_integral_and_counts_are_the_conditions),
+		cmocka_unit_test(window_integral_and_counts_are_the_conditions),
 		cmocka_unit_test(a_set_goes_over_and_is_taken_back),
 		cmocka_unit_test(a_set_belongs_to_its_condition),
 		cmocka_unit_test(a_set_that_cannot_be_leaves_all_as_it_was),
 		cmocka_unit_test(the_list_of_sets_is_bounded),
-		cmocka_unit_test(
-			polarity_is_the_sets_then_the_programs_then_the_conditions),
+		cmocka_unit_test(polarity_is_the_sets_then_the_programs_then_the_conditions),
 		cmocka_unit_test(a_damaged_condition_is_a_fault_and_no_value),
 	};
 

@@ -243,10 +243,11 @@ static void the_servo_takes_from_the_machine_what_is_not_given(void **state)
 	c.backend = BACKEND_NULL;
 	config_cycle(&c, &cycle);
 	assert_true(cycle.gap.ignition_v == 0 && cycle.gap.off_us == 0);
-	read_good("[machine]\nbackend = null\n[gap]\nfeed_a_mm_s2 = 5\nignition_v = 90\noff_us = 7\n"
-		  "stuck_s = 2\nretract_to = motion\nprocess = wire\n"
-		  "source = lines\n[jump]\nevery_mm = 0.5\nadaptive = yes\n",
-		  &c);
+	read_good(
+		"[machine]\nbackend = null\n[gap]\nfeed_a_mm_s2 = 5\nignition_v = 90\noff_us = 7\n"
+		"stuck_s = 2\nretract_to = motion\nprocess = wire\n"
+		"source = lines\n[jump]\nevery_mm = 0.5\nadaptive = yes\n",
+		&c);
 	config_cycle(&c, &cycle);
 	assert_true(cycle.gap.feed_a_mm_s2 == 5);
 	assert_true(cycle.gap.ignition_v == 90 && cycle.gap.off_us == 7);
@@ -305,18 +306,13 @@ int main(void)
 		cmocka_unit_test(comments_blanks_and_line_ends_do_not_matter),
 		cmocka_unit_test(the_longest_store_that_fits_is_taken_whole),
 		cmocka_unit_test(what_is_printed_reads_back_the_same),
-		cmocka_unit_test(
-			every_key_reads_back_at_its_smallest_and_largest),
+		cmocka_unit_test(every_key_reads_back_at_its_smallest_and_largest),
 		cmocka_unit_test(the_document_names_every_key_once),
 		cmocka_unit_test(soft_limits_are_rounded_inward),
-		cmocka_unit_test(
-			the_cycle_gets_seconds_as_cycles_of_its_period),
-		cmocka_unit_test(
-			positioning_is_as_weak_as_the_weakest_linear_axis),
-		cmocka_unit_test(
-			the_servo_takes_from_the_machine_what_is_not_given),
-		cmocka_unit_test(
-			what_is_believed_of_an_axis_is_off_by_the_model_error),
+		cmocka_unit_test(the_cycle_gets_seconds_as_cycles_of_its_period),
+		cmocka_unit_test(positioning_is_as_weak_as_the_weakest_linear_axis),
+		cmocka_unit_test(the_servo_takes_from_the_machine_what_is_not_given),
+		cmocka_unit_test(what_is_believed_of_an_axis_is_off_by_the_model_error),
 	};
 
 	return cmocka_run_group_tests_name("config", tests, make_file,

@@ -364,15 +364,13 @@ static void a_damaged_file_is_read_or_refused_with_its_line(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			a_refusal_says_where_what_and_what_is_accepted),
+		cmocka_unit_test(a_refusal_says_where_what_and_what_is_accepted),
 		cmocka_unit_test(every_number_is_refused_outside_its_range),
 		cmocka_unit_test(every_misspelt_key_is_met_with_the_right_one),
 		cmocka_unit_test(a_nul_byte_or_an_endless_line_is_refused),
 		cmocka_unit_test(a_refused_file_leaves_the_machine_alone),
 		cmocka_unit_test(a_missing_file_is_told_from_a_bad_one),
-		cmocka_unit_test(
-			a_damaged_file_is_read_or_refused_with_its_line),
+		cmocka_unit_test(a_damaged_file_is_read_or_refused_with_its_line),
 	};
 
 	return cmocka_run_group_tests_name("config", tests, make_file,

@@ -214,7 +214,8 @@ static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
 	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG40 Y.05\n", 3, "a lead of");
 	assert_refused(w, "F5 G41 D1 G1 X5\nG18 G2 X9 I2\n", 2, "plane XY");
 	assert_refused(w, "F5 G41 D1 G1 X5\nX6\nZ4\nX9\n", 3, "another axis");
-	assert_refused(w, "F5\nG41 G1 X5\n", 2, "register 0, which is not defined");
+	assert_refused(w, "F5\nG41 G1 X5\n", 2,
+		       "register 0, which is not defined");
 	assert_refused(w, "F5\nG41 D1 H1 G1 X5\n", 2, "H on a line with D");
 	assert_refused(w, "H1=160\n", 1, "an offset of 160 mm");
 	assert_refused(w, "H1000=1\n", 1, "out of range");
@@ -255,7 +256,7 @@ static void assert_lean(const char *dialect, const char *text, double u,
 
 	r.o.dialect = interp_dialect_by_name(dialect);
 	nc_read(&r, text);
-	/* The guides are 20 below and 40 above: twice the lean above the top. */
+	/* The guides are 20 below and 40 above: twice the lean over the top. */
 	assert_near(nc_end(&r, nc_count(&r) - 1, INTERP_U), u);
 	assert_near(nc_end(&r, nc_count(&r) - 1, INTERP_V), v);
 	nc_done(&r);
@@ -669,28 +670,22 @@ int main(void)
 		cmocka_unit_test(arcs_change_their_radius),
 		cmocka_unit_test(a_line_and_an_arc_meet_inside),
 		cmocka_unit_test(the_register_may_change_on_the_way),
-		cmocka_unit_test(
-		what_the_wire_cannot_reach_is_refused_with_its_line),
-		cmocka_unit_test(
-			an_inside_radius_equal_to_the_offset_is_a_point),
+		cmocka_unit_test(what_the_wire_cannot_reach_is_refused_with_its_line),
+		cmocka_unit_test(an_inside_radius_equal_to_the_offset_is_a_point),
 		cmocka_unit_test(u_and_v_are_the_lean_in_the_dialects),
 		cmocka_unit_test(a_leaning_arc_without_its_centre_is_refused),
 		cmocka_unit_test(actions_stay_at_their_corner),
 		cmocka_unit_test(the_guides_of_a_tapered_square),
 		cmocka_unit_test(relative_upper_guides_move_by_the_difference),
 		cmocka_unit_test(the_feed_is_that_of_the_faster_contour),
-		cmocka_unit_test(
-			the_start_of_the_guides_is_the_start_of_the_wire),
-		cmocka_unit_test(
-			the_wire_is_on_both_contours_all_the_way_round),
+		cmocka_unit_test(the_start_of_the_guides_is_the_start_of_the_wire),
+		cmocka_unit_test(the_wire_is_on_both_contours_all_the_way_round),
 		cmocka_unit_test(the_guides_of_a_cone_go_round_its_axis),
-		cmocka_unit_test(
-			both_contours_have_the_offset_of_the_leaning_wire),
+		cmocka_unit_test(both_contours_have_the_offset_of_the_leaning_wire),
 		cmocka_unit_test(a_different_top_is_led_by_u_and_v),
 		cmocka_unit_test(an_arc_under_a_line_is_cut_within_a_pulse),
 		cmocka_unit_test(a_colon_gives_the_top_words_of_its_own),
-		cmocka_unit_test(
-			guides_in_the_planes_walk_the_contours_themselves),
+		cmocka_unit_test(guides_in_the_planes_walk_the_contours_themselves),
 		cmocka_unit_test(a_lean_beyond_the_machine_is_refused),
 		cmocka_unit_test(a_corner_is_approached_slowly_and_waited_on),
 		cmocka_unit_test(a_short_motion_is_slow_as_a_whole),

@@ -116,7 +116,8 @@ static void the_wire_keeps_clear_of_random_contours(void **st)
 				fail_msg("too near: %s", text);
 		} else {
 			assert_int_equal(r.rc, -EINVAL);
-			assert_non_null(strstr(r.diag.found, "nothing is left"));
+			assert_non_null(
+				strstr(r.diag.found, "nothing is left"));
 			assert_in_range(r.diag.line, 4, 4 + p.n);
 		}
 		nc_done(&r);
@@ -174,7 +175,8 @@ static bool random_outline(struct outline *o, uint64_t *seed)
 	o->n = 3 + (int)(nc_random(seed) % 6);
 	o->r = random_in(seed, 0.5, 1.5);
 	for (int i = 0; i < o->n; i++) {
-		const double a = 2 * M_PI * (i + random_in(seed, -.3, .3)) / o->n;
+		const double a = 2 * M_PI * (i + random_in(seed, -.3, .3)) /
+				 o->n;
 		const double r = random_in(seed, 6, 12);
 
 		at[i][0] = r * cos(a);

@@ -433,7 +433,8 @@ static void scales_that_lie_are_bounded(void **state)
 	begin_circle(&l, &k);
 	for (int n = 0; n < 3000 && l.r.c.loaded; n++) {
 		for (int i = 0; i < 2; i++) {
-			seed = seed * 6364136223846793005u + 1442695040888963407u;
+			seed = seed * 6364136223846793005u +
+			       1442695040888963407u;
 			l.r.in.actual[i] = (int32_t)(seed >> 32);
 		}
 		step_on(&l.r);
@@ -570,7 +571,8 @@ static void what_the_cycle_has_not_is_refused_with_what_it_has(void **state)
 	(void)state;
 	for (int i = 2; interp_compensate_name(i); i++) {
 		a_machine(&c, interp_compensate_name(i));
-		refused(&c, interp_compensate_name(i), "feedforward+cross-coupled");
+		refused(&c, interp_compensate_name(i),
+			"feedforward+cross-coupled");
 	}
 	a_machine(&c, "feedforward");
 	c.backend = BACKEND_GPIO;

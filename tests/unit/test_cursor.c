@@ -308,16 +308,12 @@ static void a_damaged_block_never_leads_astray(void **st)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-		lines_end_exactly_and_stay_near_in_all_octants_and_planes),
+		cmocka_unit_test(lines_end_exactly_and_stay_near_in_all_octants_and_planes),
 		cmocka_unit_test(arcs_from_every_start_end_exactly_and_retrace),
-		cmocka_unit_test(
-			the_points_do_not_depend_on_how_the_walk_is_cut),
-		cmocka_unit_test(
-			a_random_walk_back_and_forth_stays_on_the_points),
+		cmocka_unit_test(the_points_do_not_depend_on_how_the_walk_is_cut),
+		cmocka_unit_test(a_random_walk_back_and_forth_stays_on_the_points),
 		cmocka_unit_test(no_axis_ever_moves_more_than_one_pulse),
-		cmocka_unit_test(
-		simultaneous_points_are_within_half_a_pulse_of_the_path),
+		cmocka_unit_test(simultaneous_points_are_within_half_a_pulse_of_the_path),
 		cmocka_unit_test(point_by_point_points_are_near_the_path),
 		cmocka_unit_test(a_place_can_be_sought),
 		cmocka_unit_test(a_damaged_block_never_leads_astray),

@@ -76,7 +76,8 @@ static void check_damaged(bool dry, int how)
 	rig_free(&r);
 }
 
-static void a_damaged_segment_is_a_fault_and_the_last_good_target_stays(void **st)
+static void
+a_damaged_segment_is_a_fault_and_the_last_good_target_stays(void **st)
 {
 	(void)st;
 	for (int how = 0; how < 8; how++) {

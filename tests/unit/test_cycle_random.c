@@ -2,11 +2,12 @@
 /*
  * test_cycle_random.c - what holds in every cycle, whatever happens
  *
- * Ten million cycles of random programs with ways out, planetary cycles, texts of
- * every dialect with curves, tapers and rotary axes, by every strategy, sensors, gaps that wander, stick, scatter or are no number, conditions,
+ * Ten million cycles of random programs with ways out, planetary cycles, texts
+ * of every dialect with curves, tapers and rotary axes, by every strategy,
+ * sensors, gaps that wander, stick, scatter or are no number, conditions,
  * values in force, commands, broken wires, losses and e-stops, maps, backlash,
- * leads and drives that lag; a million where a sanitizer watches.
- * `make invariants` runs it alone; the seed is printed.
+ * leads and drives that lag; a million where a sanitizer watches.  `make
+ * invariants` runs it alone; the seed is printed.
  */
 #include "random_world.h"
 #include "random_drives.h"
@@ -95,7 +96,8 @@ static bool on_way_out(const struct cycle *c, const int32_t *pos)
 {
 	const struct interp_escape *e =
 		&c->cursor.p.escapes[c->cursor.seg.escape];
-	const uint32_t rotary = 1u << INTERP_A | 1u << INTERP_B | 1u << INTERP_C;
+	const uint32_t rotary = 1u << INTERP_A | 1u << INTERP_B |
+				1u << INTERP_C;
 	double at[4][INTERP_NAXES], sum = 0, share = 1;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {

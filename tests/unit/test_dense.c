@@ -136,9 +136,10 @@ static void in_retracts_three_decimals_are_as_quick(void **st)
 				const int n = retract(&k);
 
 				if (n > 1.005 * once + 1)
-					fail_msg("%g mm, %d decimals, %d deg/mm: "
-						 "%d cycles, long lines %d",
-						 k.mm, decimals, deg, n, once);
+					fail_msg(
+						"%g mm, %d decimals, %d deg/mm: "
+						"%d cycles, long lines %d",
+						k.mm, decimals, deg, n, once);
 			}
 		}
 	}

@@ -24,9 +24,9 @@ static void every_file_that_is_built_in_is_read(void **state)
 	(void)state;
 	for (; nc_dialect_files[n].name; n++) {
 		if (read_text(nc_dialect_files[n].text, &d))
-			fail_msg("%s.ini:%u:%u: %s; %s", nc_dialect_files[n].name,
-				 diag.line, diag.column, diag.found,
-				 diag.wanted);
+			fail_msg("%s.ini:%u:%u: %s; %s",
+				 nc_dialect_files[n].name, diag.line,
+				 diag.column, diag.found, diag.wanted);
 		interp_dialect_free(d);
 	}
 	assert_int_equal(n, 18);
@@ -183,7 +183,8 @@ static void what_is_ignored_is_noted_once(void **state)
 	c.o.nc.notes = &notes;
 	compile_bytes(&c, text, sizeof(text) - 1);
 	assert_int_equal(c.rc, 0);
-	assert_string_equal(all, "1 G64 is ignored: ever|3 G80 is ignored: ther|");
+	assert_string_equal(all,
+			    "1 G64 is ignored: ever|3 G80 is ignored: ther|");
 	compile_done(&c);
 }
 
@@ -198,7 +199,8 @@ static void what_others_read_otherwise_is_noted_before_a_run(void **state)
 	c.o.nc.notes = &notes;
 	compile_bytes(&c, text, sizeof(text) - 1);
 	assert_int_equal(c.rc, 0);
-	assert_string_equal(all, "1 lengths and feeds ar|2 X1 has no decimal po|"
+	assert_string_equal(all,
+			    "1 lengths and feeds ar|2 X1 has no decimal po|"
 			    "2 C120 calls a conditi|4 a dwell of 500 s: P |");
 	compile_done(&c);
 }
@@ -227,8 +229,7 @@ int main(void)
 		cmocka_unit_test(a_rule_changes_what_numbers_mean),
 		cmocka_unit_test(a_mistake_in_a_file_is_refused_at_its_place),
 		cmocka_unit_test(what_is_ignored_is_noted_once),
-		cmocka_unit_test(
-			what_others_read_otherwise_is_noted_before_a_run),
+		cmocka_unit_test(what_others_read_otherwise_is_noted_before_a_run),
 		cmocka_unit_test(a_work_offset_is_written_by_the_program),
 	};
 

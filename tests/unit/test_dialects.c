@@ -277,8 +277,7 @@ int main(void)
 		cmocka_unit_test(agie_counts_inches_by_g70),
 		cmocka_unit_test(a_wire_program_needs_no_feed),
 		cmocka_unit_test(taper_and_offset_that_are_none_are_taken),
-		cmocka_unit_test(
-			what_a_dialect_has_not_is_refused_at_its_place),
+		cmocka_unit_test(what_a_dialect_has_not_is_refused_at_its_place),
 		cmocka_unit_test(a_dialect_is_found_by_name_and_by_file),
 	};
 

@@ -23,7 +23,7 @@ struct peer {
 	uint8_t ntpdo;			/* objects in its TPDO */
 	uint32_t cob;			/* of its TPDO */
 	bool rude;			/* ... has another mode, all the same */
-	bool wide;			/* 60C2:2 has two bytes, as in some drives */
+	bool wide;			/* 60C2:2 has two bytes, as some have */
 	uint16_t wide_index;
 	uint32_t index_writes;
 	int32_t actual, target, latched;
@@ -207,10 +207,11 @@ static void make(struct rig *r)
 
 	memset(r, 0, sizeof(*r));
 	drive_init(&r->d, &c);
-	r->p = (struct peer) { .status = 0x40, .profile = 0x20192, .modes = 0x3ff,
-			       .time_value = 1, .time_index = -3,
-			       .cob = 0x40000180 + NODE, .actual = 123456, .target = 123456,
-			       .latched = 123456 };
+	r->p = (struct peer) {
+		.status = 0x40, .profile = 0x20192, .modes = 0x3ff,
+		.time_value = 1, .time_index = -3, .cob = 0x40000180 + NODE,
+		.actual = 123456, .target = 123456, .latched = 123456,
+	};
 }
 
 static void run(struct rig *r, int cycles, int32_t target)
@@ -1009,8 +1010,7 @@ int main(void)
 		cmocka_unit_test(one_that_is_busy_is_asked_again),
 		cmocka_unit_test(a_drive_that_lags_is_stopped),
 		cmocka_unit_test(one_that_reboots_is_brought_up_again_after_reset),
-		cmocka_unit_test(
-			a_fault_before_it_reboots_does_not_cost_a_second_reset),
+		cmocka_unit_test(a_fault_before_it_reboots_does_not_cost_a_second_reset),
 		cmocka_unit_test(what_a_drive_may_not_have_is_no_trouble),
 		cmocka_unit_test(one_that_takes_its_time_to_begin_is_no_trouble),
 		cmocka_unit_test(two_drives_with_one_node_never_get_power),
@@ -1019,8 +1019,7 @@ int main(void)
 		cmocka_unit_test(frames_of_a_wrong_length_are_counted_not_believed),
 		cmocka_unit_test(a_restart_loses_the_place_unless_it_is_absolute),
 		cmocka_unit_test(a_restart_nobody_heard_is_seen_when_it_is_brought_up),
-		cmocka_unit_test(
-			a_restart_nobody_heard_in_the_set_up_is_seen_too),
+		cmocka_unit_test(a_restart_nobody_heard_in_the_set_up_is_seen_too),
 		cmocka_unit_test(a_place_counts_only_in_a_state_that_has_one),
 		cmocka_unit_test(a_restart_in_the_set_up_begins_it_again),
 		cmocka_unit_test(bits_and_mode_are_watched_in_every_answer),
@@ -1028,8 +1027,7 @@ int main(void)
 		cmocka_unit_test(one_that_is_not_in_mode_8_is_not_moved),
 		cmocka_unit_test(one_stopped_by_nmt_is_trouble),
 		cmocka_unit_test(the_period_is_told_in_a_unit_the_drive_has),
-		cmocka_unit_test(
-			an_object_of_another_size_is_written_with_that_size),
+		cmocka_unit_test(an_object_of_another_size_is_written_with_that_size),
 		cmocka_unit_test(what_no_brake_holds_is_not_let_go),
 		cmocka_unit_test(a_billion_pulses_do_not_drift),
 		cmocka_unit_test(bits_are_those_of_the_standard),

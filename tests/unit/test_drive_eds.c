@@ -123,7 +123,8 @@ static void what_it_would_refuse_is_refused_at_the_start(void **state)
 		uint16_t leave;
 		const char *keys, *found;
 	} cases[] = {
-		{ 0x1017, "AccessType=rw", "object 1017:00, value 64: it is not" },
+		{ 0x1017, "AccessType=rw",
+		  "object 1017:00, value 64: it is not" },
 		{ 0x1016, "AccessType=rw", "object 1016:01" },
 		{ 0x6065, "", "object 6065:00, value 3e8: it is not there" },
 		{ 0, "AccessType=ro", "object 6065:00, value 3e8: it is read" },

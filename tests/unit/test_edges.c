@@ -22,9 +22,9 @@ struct rig {
 	uint32_t step;			/* levels, the thread's own */
 	_Atomic int32_t at[IO_NAXES];	/* counted from the lines */
 	_Atomic bool gone;
-	uint32_t slow;			/* each so many writes is slow; 0: none */
+	uint32_t slow;			/* one of so many writes; 0: none */
 	uint32_t writes;		/* the thread's own, as what follows */
-	int64_t changed_ns, least_ns;	/* the last change; the shortest level */
+	int64_t changed_ns, least_ns;	/* last change; shortest level */
 };
 
 #define PERIOD_NS	2000000
@@ -221,11 +221,9 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_is_told_is_put_out_to_the_pulse),
-		cmocka_unit_test(
-			more_than_a_period_holds_is_put_out_later_not_lost),
+		cmocka_unit_test(more_than_a_period_holds_is_put_out_later_not_lost),
 		cmocka_unit_test(a_stop_ends_the_pulses_until_another_target),
-		cmocka_unit_test(
-			a_level_is_long_enough_behind_a_slow_write_too),
+		cmocka_unit_test(a_level_is_long_enough_behind_a_slow_write_too),
 		cmocka_unit_test(lines_that_are_gone_are_told),
 	};
 

@@ -352,12 +352,10 @@ int main(void)
 		cmocka_unit_test(a_counter_counts_round),
 		cmocka_unit_test(a_counter_that_is_not_there_or_off_is_refused),
 		cmocka_unit_test(it_goes_along_with_the_pulses),
-		cmocka_unit_test(
-			lost_pulses_are_a_trouble_and_are_put_out_once_more),
+		cmocka_unit_test(lost_pulses_are_a_trouble_and_are_put_out_once_more),
 		cmocka_unit_test(too_many_of_them_lose_the_place),
 		cmocka_unit_test(missed_counts_lose_the_place),
-		cmocka_unit_test(
-			a_fast_axis_may_lag_and_a_standing_one_may_not),
+		cmocka_unit_test(a_fast_axis_may_lag_and_a_standing_one_may_not),
 	};
 
 	return cmocka_run_group_tests(tests, counter_make, counter_drop);

@@ -153,7 +153,8 @@ static bool on_legs(const struct beside *t, const int32_t *p)
 
 /* -- Out and back --------------------------------------------------------- */
 
-static void a_jump_goes_out_by_the_centre_and_back_over_the_same_points(void **st)
+static void
+a_jump_goes_out_by_the_centre_and_back_over_the_same_points(void **st)
 {
 	const struct cycle_config k = jumping();
 	struct beside t;
@@ -348,7 +349,8 @@ static void hold(struct beside *t)
 	come_home(t);
 }
 
-static void a_hold_in_any_cycle_stays_on_the_legs_and_start_comes_back(void **st)
+static void
+a_hold_in_any_cycle_stays_on_the_legs_and_start_comes_back(void **st)
 {
 	(void)st;
 	in_any_cycle(hold);
@@ -387,7 +389,8 @@ static void short_it(struct beside *t)
 	assert_false(escape_is_out(&t->r.c.escape));
 }
 
-static void a_short_in_any_cycle_keeps_to_the_legs_and_is_retracted_from(void **st)
+static void
+a_short_in_any_cycle_keeps_to_the_legs_and_is_retracted_from(void **st)
 {
 	(void)st;
 	in_any_cycle(short_it);
@@ -436,7 +439,8 @@ static void a_short_is_retracted_from_by_the_escape_if_asked_for(void **st)
 	assert_int_equal(t.r.c.state, STATE_RETRACT);
 	/* 5 mm/s for 60 cycles, less what it takes to set off and to stop at
 	 * the corner. */
-	assert_true(t.r.out.off_path_mm > 0.22 && t.r.out.off_path_mm <= 0.3 + 1e-9);
+	assert_true(t.r.out.off_path_mm > 0.22 &&
+		    t.r.out.off_path_mm <= 0.3 + 1e-9);
 	check_ground(&t);
 	finish_job(&t);
 	end(&t);

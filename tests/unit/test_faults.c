@@ -75,7 +75,7 @@ static void names_and_their_list_fit_where_they_go(void **st)
 		    sizeof(some));
 }
 
-/* A single axis in trouble leaves others that can brake; no other fault does. */
+/* An axis in trouble leaves others that can brake; no other fault does. */
 static void power_is_taken_after_braking_only_from_axes_in_trouble(void **st)
 {
 	(void)st;

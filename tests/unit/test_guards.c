@@ -146,6 +146,9 @@ static void drive_to(struct rig *r, enum where w)
 		STATE_RETRACT, STATE_JUMP, STATE_HOLD, STATE_HOLD, STATE_HOLD,
 		STATE_JOG, STATE_HOME, STATE_PROBE,
 	};
+	const double volt = w == IN_RETRACT ? SHORTED_V :
+			    w == IN_APPROACH || w == IN_PROBE ? OPEN_V :
+			    SPARKING_V;
 
 	where_now = w;
 	begin_rig(r, w);
@@ -161,9 +164,7 @@ static void drive_to(struct rig *r, enum where w)
 		by_hand(r, w == IN_JOG ? CYCLE_JOG : CYCLE_HOME);
 	else if (w == IN_PROBE)
 		steps(r, OPEN_V, 200);
-	until(r, states[w], w == IN_RETRACT ? SHORTED_V :
-			    w == IN_APPROACH || w == IN_PROBE ? OPEN_V :
-								SPARKING_V, 2000);
+	until(r, states[w], volt, 2000);
 	r->c.out.enable = true;
 	assert_int_equal(r->c.fault.first, FAULT_NONE);
 }
@@ -182,7 +183,7 @@ struct cause {
 	const char *name;
 	enum cycle_fault fault;
 	enum kind kind;
-	const char *at;		/* by column: E ends at once, B brakes, . none */
+	const char *at;		/* a column: E ends at once, B brakes, . none */
 	void (*put)(struct rig *r);
 };
 
@@ -404,7 +405,8 @@ static void a_reset_clears_nothing_that_is_still_there(void **st)
 			if (k->at[w] == '.')
 				continue;
 			into_fault(&r, w, k);
-			assert_int_equal(ask(&r, CYCLE_RESET), k->kind == STAYS ?
+			assert_int_equal(ask(&r, CYCLE_RESET),
+					 k->kind == STAYS ?
 					 ANSWER_STILL_THERE : ANSWER_DONE);
 			nothing_comes(&r, k, 10);
 			assert_int_equal(is_cleared(&r, w), !remains);
@@ -528,7 +530,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_teardown(
-			each_cause_is_a_fault_where_the_table_says_so, tell_row),
+			each_cause_is_a_fault_where_the_table_says_so,
+			tell_row),
 		cmocka_unit_test_teardown(
 			no_verb_moves_a_machine_in_fault, tell_row),
 		cmocka_unit_test_teardown(

@@ -33,7 +33,8 @@ static void record(const struct interp_axis_loop *l, uint64_t seed)
 		const double before = target[k ? k - 1 : 0];
 
 		actual[k] = floor(mm / 0.001 + 0.5) * 0.001;
-		interp_axis_model_step(&m, l->gain_1_s * (target[k] - actual[k]) +
+		interp_axis_model_step(&m,
+				       l->gain_1_s * (target[k] - actual[k]) +
 				       l->feedforward * (target[k] - before) /
 					       PERIOD_S);
 	}
@@ -69,8 +70,9 @@ static void record_own(const struct interp_axis_loop *l, double push_mm_s)
 
 	assert_int_equal(interp_axis_model_init(&m, l, PERIOD_S, target[0]), 0);
 	for (int k = 0; k < ROWS; k++) {
-		actual[k] = floor((m.actual_mm + 0.0005 * noise(&seed)) / 0.001 +
-				  0.5) * 0.001;
+		const double mm = m.actual_mm + 0.0005 * noise(&seed);
+
+		actual[k] = floor(mm / 0.001 + 0.5) * 0.001;
 		push = 0.99 * push + push_mm_s * noise(&seed);
 		interp_axis_model_step(&m, l->gain_1_s *
 				       (target[k] - m.actual_mm) + push);

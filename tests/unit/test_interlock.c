@@ -134,8 +134,9 @@ static void a_stand_needs_nothing_but_no_fire(void **st)
 		load_job(&r);
 		*flag(&r, &losses[i]) = false;
 		steps(&r, OPEN_V, 5);
-		assert_int_equal(r.c.fault.first, losses[i].fault == FAULT_FIRE ?
-				 FAULT_FIRE : FAULT_NONE);
+		assert_int_equal(r.c.fault.first,
+				 losses[i].fault == FAULT_FIRE ? FAULT_FIRE :
+								 FAULT_NONE);
 		rig_free(&r);
 	}
 }
@@ -394,8 +395,7 @@ int main(void)
 		cmocka_unit_test(an_edge_of_reset_leaves_a_fault),
 		cmocka_unit_test(its_override_scales_positioning),
 		cmocka_unit_test(its_temperature_is_that_of_the_axes),
-		cmocka_unit_test(
-			an_override_of_a_client_stays_until_the_plc_changes_its_own),
+		cmocka_unit_test(an_override_of_a_client_stays_until_the_plc_changes_its_own),
 		cmocka_unit_test(what_a_dead_plc_says_last_is_void),
 		cmocka_unit_test(a_machine_without_a_plc_needs_none),
 		cmocka_unit_test(a_broken_wire_is_the_wire_machines_fault),

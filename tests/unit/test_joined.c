@@ -48,8 +48,8 @@ static void round_and_round(struct interp_build *b, double turns)
 	for (uint32_t i = 0; i <= N; i++) {
 		const double a = turns * 6.283185307179586 * i / N;
 
-		go(b, round(20000 * cos(a)) / 1000, round(20000 * sin(a)) / 1000,
-		   i + 2);
+		go(b, round(20000 * cos(a)) / 1000,
+		   round(20000 * sin(a)) / 1000, i + 2);
 	}
 }
 

@@ -49,7 +49,7 @@ static void a_node_is_passed_as_the_arc_that_cuts_its_corner(void **st)
 		const double phi = turns[i] * M_PI / 180;
 		const double half = cos(phi / 2);
 		const double r = corner * half / (1 - half);
-		/* What the weaker of X and Y leaves in the corner's direction. */
+		/* What the weaker of X and Y leaves in this direction. */
 		const double most = fmin(sqrt(A_MAX * sqrt(2) * r),
 					 cbrt(J_MAX * sqrt(2) * r * r));
 		const double least = fmin(sqrt(A_MAX * r), cbrt(J_MAX * r * r));
@@ -79,8 +79,9 @@ static void an_arc_is_limited_by_what_its_axes_can_do(void **st)
 		const double r = radii[i];
 		const double end[INTERP_NAXES] = { r, r };
 		/* A part is left to go along it. */
-		const double most = fmin(V_MAX, fmin(sqrt(0.8 * A_MAX * r),
-						     cbrt(0.3 * J_MAX * r * r)));
+		const double most = fmin(V_MAX,
+					 fmin(sqrt(0.8 * A_MAX * r),
+					      cbrt(0.3 * J_MAX * r * r)));
 		struct made m;
 		double v;
 
@@ -255,7 +256,8 @@ static void check_ceilings(const struct rig *r, uint32_t from, double v)
 {
 	const struct interp_seg *s = r->m.p.segs;
 	const uint32_t to = r->c.cursor.index;
-	const uint32_t low = from < to ? from : to, high = from < to ? to : from;
+	const uint32_t low = from < to ? from : to,
+		       high = from < to ? to : from;
 
 	for (uint32_t i = low; i < high; i++)
 		assert_below(v, (double)s[i].node_mm_s);
@@ -274,7 +276,7 @@ static void step_within(struct rig *r)
 	step(r, OPEN_V);
 	now = r->c.mover.v_mm_s;
 	assert_true(fabs(now - v) <= k->travel_a_mm_s2 * PERIOD_S * (1 + 1e-9));
-	/* A stop less than 1e-9 mm ahead is met: the last bit of time is cut. */
+	/* A stop less than 1e-9 mm ahead is met: the rest of time is cut. */
 	assert_true(fabs(r->c.mover.a_mm_s2 - a) <=
 		    k->travel_j_mm_s3 * PERIOD_S * (1 + 1e-9) +
 		    (now != 0 ? 0 : cbrt(6e-9 * k->travel_j_mm_s3 *
@@ -452,7 +454,8 @@ static void an_override_is_a_factor_from_0_to_2(void **st)
 
 /* -- A hold at every cycle ------------------------------------------------ */
 
-static void a_hold_at_every_cycle_of_a_thousand_lines_stops_where_it_says(void **st)
+static void
+a_hold_at_every_cycle_of_a_thousand_lines_stops_where_it_says(void **st)
 {
 	uint64_t s = seed + 3;
 	struct rig r;

@@ -235,8 +235,11 @@ static void a_map_may_come_from_any_editor(void **state)
 	struct interp_diag d;
 
 	(void)state;
-	assert_int_equal(read_maps("", "\xef\xbb\xbfpitch X\r\n"
-				   "\t0\t0\r\n10 \t 5 # um\r\n\r\n", &c, &d), 0);
+	assert_int_equal(read_maps("",
+				   "\xef\xbb\xbfpitch X\r\n"
+				   "\t0\t0\r\n10 \t 5 # um\r\n\r\n",
+				   &c, &d),
+			 0);
 	assert_int_equal(c.geometry.row[0].n, 2);
 	assert_int_equal(read_with("\xef\xbb\xbf" "0 0\r\n10 5", &c, &d), 0);
 	assert_int_equal(read_maps("", "\xef\xbb\xbfskew X\n", &c, &d),

@@ -402,10 +402,8 @@ int main(void)
 		cmocka_unit_test(the_path_waits_in_front_of_it_without_sparks),
 		cmocka_unit_test(a_free_one_is_not_waited_for),
 		cmocka_unit_test(another_number_is_no_answer),
-		cmocka_unit_test(
-			the_next_is_told_once_the_answer_is_taken_away),
-		cmocka_unit_test(
-			no_answer_in_time_is_a_fault_and_start_waits_again),
+		cmocka_unit_test(the_next_is_told_once_the_answer_is_taken_away),
+		cmocka_unit_test(no_answer_in_time_is_a_fault_and_start_waits_again),
 		cmocka_unit_test(a_hold_lets_it_wait_as_long_as_need_be),
 		cmocka_unit_test(one_of_skip_is_told_once),
 		cmocka_unit_test(one_of_redo_is_told_on_each_way_forward),

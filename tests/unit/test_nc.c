@@ -433,13 +433,11 @@ int main(void)
 		cmocka_unit_test(every_number_is_the_nearest_double),
 		cmocka_unit_test(more_digits_than_a_double_has_do_no_harm),
 		cmocka_unit_test(incremental_equals_absolute),
-		cmocka_unit_test(
-			inches_equal_millimetres_and_degrees_stay_degrees),
+		cmocka_unit_test(inches_equal_millimetres_and_degrees_stay_degrees),
 		cmocka_unit_test(a_program_written_back_reads_the_same),
 		cmocka_unit_test(a_positive_radius_is_the_shorter_arc),
 		cmocka_unit_test(a_centre_may_be_a_distance_or_a_place),
-		cmocka_unit_test(
-			a_plane_turns_its_first_axis_toward_its_second),
+		cmocka_unit_test(a_plane_turns_its_first_axis_toward_its_second),
 		cmocka_unit_test(offsets_add_up_and_g53_sees_none),
 		cmocka_unit_test(g28_goes_through_a_point_to_machine_zero),
 		cmocka_unit_test(inches_per_minute_but_degrees_per_minute),

@@ -217,16 +217,14 @@ int main(void)
 		cmocka_unit_test(a_direction_goes_as_far_as_there_is_travel),
 		cmocka_unit_test(a_place_is_as_far_as_it_goes),
 		cmocka_unit_test(g38_2_keeps_to_the_feed_and_g80_does_not),
-		cmocka_unit_test(
-			what_is_named_after_probing_counts_from_there),
+		cmocka_unit_test(what_is_named_after_probing_counts_from_there),
 		cmocka_unit_test(a_half_is_tried_both_ways),
 		cmocka_unit_test(every_one_has_a_stop_in_front),
 		cmocka_unit_test(a_hole_is_probed_from_wall_to_wall),
 		cmocka_unit_test(a_pillar_is_gone_round_over_its_top),
 		cmocka_unit_test(what_is_no_probing_is_refused_at_its_place),
 		cmocka_unit_test(other_places_go_on_after_probing),
-		cmocka_unit_test(
-			only_dialects_that_are_known_to_have_them_take_them),
+		cmocka_unit_test(only_dialects_that_are_known_to_have_them_take_them),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

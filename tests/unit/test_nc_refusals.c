@@ -40,7 +40,7 @@ static const struct refusal words[] = {
 	{ "G0 X1\n  W12",	2, 3,	"unknown word W12",
 	  "one of A B C D E F G H I J K L M N O P Q R S T U V X Y Z" },
 	{ "G34 X1",		1, 1,	"unknown word G34", "G160 ... G162" },
-	{ "G33.1 X1",		1, 1,	"G33.1: it cuts a thread", "no thread" },
+	{ "G33.1 X1",		1, 1,	"G33.1: it cuts", "no thread" },
 	{ "M10",		1, 1,	"unknown word M10", "M30" },
 	{ "M8",			1, 1,	"M8: coolant", "dialect linuxcnc" },
 	{ "T123456",		1, 1,	"number 123456", "T9999" },
@@ -324,8 +324,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_bad_number_is_refused_at_its_place),
 		cmocka_unit_test(a_word_without_sense_is_refused_at_its_place),
-		cmocka_unit_test(
-			an_arc_that_is_none_is_refused_with_its_numbers),
+		cmocka_unit_test(an_arc_that_is_none_is_refused_with_its_numbers),
 		cmocka_unit_test(a_program_that_goes_astray_is_refused),
 		cmocka_unit_test(a_ninth_call_inside_the_others_is_refused),
 		cmocka_unit_test(an_axis_the_machine_has_not_is_refused),

@@ -363,8 +363,10 @@ static void what_is_no_curve_is_refused(void **state)
 	c.degree = 10;
 	assert_int_equal(interp_nurbs_check(&c, &at), INTERP_NURBS_BAD_DEGREE);
 	for (int f = 1; f < INTERP_NURBS_NFLAWS; f++) {
-		assert_non_null(interp_nurbs_flaw_text((enum interp_nurbs_flaw)f));
-		assert_non_null(interp_nurbs_flaw_wanted((enum interp_nurbs_flaw)f));
+		assert_non_null(
+			interp_nurbs_flaw_text((enum interp_nurbs_flaw)f));
+		assert_non_null(
+			interp_nurbs_flaw_wanted((enum interp_nurbs_flaw)f));
 	}
 }
 

@@ -239,7 +239,8 @@ static void the_radius_is_undersize_less_gap_and_allowance(void **st)
 {
 	struct nc_read r = nc_read_text("G130 Z-1 R.2 P2 F5\n");
 	struct nc_read i = nc_read_text("G130 Z-1 I.25 J.03 K.02 P2 F5\n");
-	struct nc_read d = nc_read_text("D7=.25\nG130 Z-1 D7 J.03 K.02 P2 F5\n");
+	struct nc_read d = nc_read_text("D7=.25\n"
+					"G130 Z-1 D7 J.03 K.02 P2 F5\n");
 
 	(void)st;
 	assert_same_path(&r, &i, 0);
@@ -515,8 +516,8 @@ static const struct nc_refusal refusals[] = {
 	{ "G130 X-1 R.1 F5",	1, 6,	"X-1 of an orbit", "Z, along" },
 	{ "G18 G130 Z-1 R.1 F5", 1, 10,	"Z-1 of an orbit", "Y, along" },
 	{ "G130 Z-1 C9 Q.1 R.1 F5", 1, 10, "C in an orbit", "without Q" },
-	{ "G130 Z-500 R.1 F5",	1, 6,	"Z -500.0000 is beyond", "-200 to 200" },
-	{ "G130 Z-1 R300 F5",	1, 1,	"X 300.0000 is beyond", "-200 to 200" },
+	{ "G130 Z-500 R.1 F5",	1, 6,	"Z -500.0000 is", "-200 to 200" },
+	{ "G130 Z-1 R300 F5",	1, 1,	"X 300.0000 is", "-200 to 200" },
 	{ "G130 Z-1 R.1",	1, 1,	"no feed given", "F word" },
 	{ "G130 G1 Z-1 R.1 F5",	1, 1,	"G130 on a line with", "of its own" },
 	{ "G141 G142",		1, 6,	"G142 on a line with G141", "modal" },

@@ -620,14 +620,10 @@ int main(void)
 		cmocka_unit_test(pulses_stray_no_farther_than_bounded),
 		cmocka_unit_test(boxes_stay_apart_as_long_as_they_say),
 		cmocka_unit_test(a_box_that_turns_comes_no_nearer_than_it_says),
-		cmocka_unit_test(
-			a_box_that_only_bends_comes_no_nearer_than_it_says),
-		cmocka_unit_test(
-			a_triangle_that_turns_comes_no_nearer_than_it_says),
-		cmocka_unit_test(
-			no_block_is_proved_to_keep_more_than_a_pose_has),
-		cmocka_unit_test(
-			no_block_out_of_an_end_zone_keeps_more_than_a_pose_has),
+		cmocka_unit_test(a_box_that_only_bends_comes_no_nearer_than_it_says),
+		cmocka_unit_test(a_triangle_that_turns_comes_no_nearer_than_it_says),
+		cmocka_unit_test(no_block_is_proved_to_keep_more_than_a_pose_has),
+		cmocka_unit_test(no_block_out_of_an_end_zone_keeps_more_than_a_pose_has),
 	};
 
 	scene_seed();

@@ -215,7 +215,10 @@ static void a_fault_is_an_emergency_and_in_the_history(void **state)
 	for (int i = 0; i < 100; i++) {
 		const size_t n = plc_emit(&p, out);
 
-		p.tell.fault = (uint8_t)(i < 20 ? 0 : i < 50 ? 7 : i < 70 ? 0 : 9);
+		p.tell.fault = (uint8_t)(i < 20 ? 0 :
+					 i < 50 ? 7 :
+					 i < 70 ? 0 :
+						  9);
 		for (size_t k = 0; k < n; k++) {
 			if (out[k].id != CAN_EMCY + NODE)
 				continue;
@@ -720,24 +723,20 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(its_first_frame_is_the_boot_up_message),
-		cmocka_unit_test(
-			its_heartbeat_comes_in_time_and_says_the_nmt_state),
+		cmocka_unit_test(its_heartbeat_comes_in_time_and_says_the_nmt_state),
 		cmocka_unit_test(nmt_of_another_node_is_not_obeyed),
-		cmocka_unit_test(
-			an_unknown_nmt_command_is_counted_and_changes_nothing),
+		cmocka_unit_test(an_unknown_nmt_command_is_counted_and_changes_nothing),
 		cmocka_unit_test(a_reset_takes_the_permit_and_boots_again),
 		cmocka_unit_test(a_stop_takes_the_permit_at_once),
 		cmocka_unit_test(one_that_is_stopped_only_beats),
 		cmocka_unit_test(a_fault_is_an_emergency_and_in_the_history),
-		cmocka_unit_test(
-			after_a_reset_a_fault_that_stands_is_told_again),
+		cmocka_unit_test(after_a_reset_a_fault_that_stands_is_told_again),
 		cmocka_unit_test(what_an_object_has_may_be_written),
 		cmocka_unit_test(requests_count_when_operational_only),
 		cmocka_unit_test(frames_of_a_wrong_length_change_nothing),
 		cmocka_unit_test(frames_to_other_nodes_are_not_for_us),
 		cmocka_unit_test(another_device_of_our_node_is_counted),
-		cmocka_unit_test(
-			a_request_with_a_value_out_of_range_is_dropped_whole),
+		cmocka_unit_test(a_request_with_a_value_out_of_range_is_dropped_whole),
 		cmocka_unit_test(without_a_turn_of_its_toggle_the_plc_is_dead),
 		cmocka_unit_test(a_turn_in_time_keeps_it_alive),
 		cmocka_unit_test(tpdos_go_round_with_what_is_told),

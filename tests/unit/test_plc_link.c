@@ -251,13 +251,11 @@ int main(void)
 		cmocka_unit_test(start_and_reset_are_edges),
 		cmocka_unit_test(a_plc_that_comes_back_starts_nothing),
 		cmocka_unit_test(a_flood_is_taken_in_portions),
-		cmocka_unit_test(
-			frames_of_another_kind_are_counted_not_believed),
+		cmocka_unit_test(frames_of_another_kind_are_counted_not_believed),
 		cmocka_unit_test(what_repeats_is_said_ever_more_rarely),
 		cmocka_unit_test(a_full_queue_is_counted),
 		cmocka_unit_test(without_an_interface_there_is_no_plc),
-		cmocka_unit_test(
-			an_interface_there_is_not_is_refused_with_a_remedy),
+		cmocka_unit_test(an_interface_there_is_not_is_refused_with_a_remedy),
 	};
 
 	return cmocka_run_group_tests_name("io/plc_link", tests, NULL, NULL);

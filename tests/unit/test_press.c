@@ -15,8 +15,8 @@ static enum cycle_answer sign(struct bench *b, uint32_t axis, uint32_t press,
 	return ask(b, CYCLE_JOG_ON, axis | press << 8, mm_s);
 }
 
-static enum cycle_answer press_on(struct bench *b, uint32_t axis, uint32_t press,
-			       double mm_s)
+static enum cycle_answer press_on(struct bench *b, uint32_t axis,
+				  uint32_t press, double mm_s)
 {
 	return ask(b, CYCLE_JOG_ON, axis | VERB_PRESS_BEGINS | press << 8,
 		   mm_s);
@@ -266,8 +266,7 @@ int main(void)
 		cmocka_unit_test(a_release_ends_it_sooner),
 		cmocka_unit_test(a_press_that_is_over_is_not_taken_up_again),
 		cmocka_unit_test(a_sign_while_it_brakes_is_too_late),
-		cmocka_unit_test(
-			another_press_axis_or_way_is_refused_while_it_goes),
+		cmocka_unit_test(another_press_axis_or_way_is_refused_while_it_goes),
 		cmocka_unit_test(it_is_refused_where_it_cannot_go),
 		cmocka_unit_test(it_ends_at_the_end_of_the_travel),
 		cmocka_unit_test(power_that_comes_late_moves_nothing),

@@ -533,30 +533,24 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_what_follows_counts_from_the_contact),
-		cmocka_unit_test(
-			test_the_axes_never_step_where_the_rest_is_left_out),
-		cmocka_unit_test(
-			test_it_goes_no_deeper_than_a_cycle_at_its_feed),
-		cmocka_unit_test(
-			test_without_a_way_back_the_first_contact_counts),
+		cmocka_unit_test(test_the_axes_never_step_where_the_rest_is_left_out),
+		cmocka_unit_test(test_it_goes_no_deeper_than_a_cycle_at_its_feed),
+		cmocka_unit_test(test_without_a_way_back_the_first_contact_counts),
 		cmocka_unit_test(test_half_is_the_middle_between_two_contacts),
 		cmocka_unit_test(test_a_half_without_two_contacts_is_a_fault),
-		cmocka_unit_test(
-			test_something_in_the_way_of_a_half_is_a_contact),
+		cmocka_unit_test(test_something_in_the_way_of_a_half_is_a_contact),
 		cmocka_unit_test(test_a_limit_ends_where_the_travel_does),
 		cmocka_unit_test(test_no_contact_by_its_end_is_a_fault),
 		cmocka_unit_test(test_no_contact_by_the_travels_end_is_a_fault),
 		cmocka_unit_test(test_contact_to_begin_with_is_a_fault),
 		cmocka_unit_test(test_a_contact_that_does_not_open_is_a_fault),
 		cmocka_unit_test(test_feeling_blindly_is_a_fault),
-		cmocka_unit_test(
-			test_soft_limits_are_of_the_axes_not_of_the_program),
+		cmocka_unit_test(test_soft_limits_are_of_the_axes_not_of_the_program),
 		cmocka_unit_test(test_a_hold_anywhere_in_it_changes_nothing),
 		cmocka_unit_test(test_an_estop_stands_at_once),
 		cmocka_unit_test(test_no_way_back_leads_over_a_contact),
 		cmocka_unit_test(test_a_cut_leads_into_a_probe_and_out_of_it),
-		cmocka_unit_test(
-			test_a_dry_run_probes_nothing_and_goes_nowhere),
+		cmocka_unit_test(test_a_dry_run_probes_nothing_and_goes_nowhere),
 		cmocka_unit_test(test_an_arc_cannot_end_at_contact),
 		cmocka_unit_test(test_a_probe_along_two_axes_is_refused),
 	};

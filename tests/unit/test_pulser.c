@@ -189,7 +189,8 @@ static void straight_on_it_pulses_as_fast_as_it_says(void **state)
 			target[0] += !pulser_busy(&p);
 			pulser_period(&p, target);
 		}
-		assert_in_range((uint32_t)p.put[0] * pulser_periods(&configs[i]),
+		assert_in_range((uint32_t)p.put[0] *
+					pulser_periods(&configs[i]),
 				5980, 6000);
 	}
 }

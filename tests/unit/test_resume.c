@@ -653,22 +653,17 @@ int main(void)
 		cmocka_unit_test(idle_axes_stand_where_they_were_sent),
 		cmocka_unit_test(a_lead_is_gone_after_a_crash_in_motion),
 		cmocka_unit_test(a_limit_switch_is_on_the_side_it_was),
-		cmocka_unit_test(
-			a_limit_switch_met_meanwhile_has_no_known_side),
+		cmocka_unit_test(a_limit_switch_met_meanwhile_has_no_known_side),
 		cmocka_unit_test(axes_that_cannot_have_moved_stay_homed),
-		cmocka_unit_test(
-			axes_that_nothing_measures_are_to_be_homed_again),
-		cmocka_unit_test(
-		axes_that_are_homed_otherwise_now_are_to_be_homed_again),
+		cmocka_unit_test(axes_that_nothing_measures_are_to_be_homed_again),
+		cmocka_unit_test(axes_that_are_homed_otherwise_now_are_to_be_homed_again),
 		cmocka_unit_test(places_of_other_drives_are_not_believed),
-		cmocka_unit_test(
-			drives_that_count_are_told_where_their_zero_was),
+		cmocka_unit_test(drives_that_count_are_told_where_their_zero_was),
 		cmocka_unit_test(places_in_other_pulses_are_not_believed),
 		cmocka_unit_test(what_was_set_is_in_force_again),
 		cmocka_unit_test(an_override_of_a_client_stays_beside_a_plc),
 		cmocka_unit_test(a_job_whose_sets_do_not_fit_is_not_taken_up),
-		cmocka_unit_test(
-			another_program_under_its_number_is_not_taken_up),
+		cmocka_unit_test(another_program_under_its_number_is_not_taken_up),
 		cmocka_unit_test(a_latched_fault_stays_until_the_reset),
 	};
 

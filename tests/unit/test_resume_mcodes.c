@@ -160,14 +160,11 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(an_m_code_that_was_done_is_not_told_again),
-		cmocka_unit_test(
-			an_m_code_that_waits_is_told_still_and_done_once),
-		cmocka_unit_test(
-			one_answered_while_held_is_not_waited_for_again),
+		cmocka_unit_test(an_m_code_that_waits_is_told_still_and_done_once),
+		cmocka_unit_test(one_answered_while_held_is_not_waited_for_again),
 		cmocka_unit_test(one_not_waited_for_is_told_until_it_is_done),
 		cmocka_unit_test(no_way_leads_back_over_a_stop_after_a_crash),
-		cmocka_unit_test(
-			one_to_be_redone_is_told_after_a_crash_behind_it),
+		cmocka_unit_test(one_to_be_redone_is_told_after_a_crash_behind_it),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -183,7 +183,8 @@ static void a_wire_retracts_by_micrometres_and_never_jumps(void **st)
 	rig_free(&r);
 }
 
-static void a_broken_wire_is_held_back_from_the_break_and_cut_on_there(void **st)
+static void
+a_broken_wire_is_held_back_from_the_break_and_cut_on_there(void **st)
 {
 	static const struct {
 		enum retreat_to to;

@@ -484,22 +484,17 @@ static void the_least_tolerance_named_is_enough_and_no_less_is(void **st)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-		every_small_line_ends_exactly_in_range_and_retraces),
+		cmocka_unit_test(every_small_line_ends_exactly_in_range_and_retraces),
 		cmocka_unit_test(random_lines_end_exactly_in_range_and_retrace),
-		cmocka_unit_test(
-			random_lines_up_to_two_metres_hold_at_both_ends),
+		cmocka_unit_test(random_lines_up_to_two_metres_hold_at_both_ends),
 		cmocka_unit_test(a_line_of_two_metres_is_walked_whole),
 		cmocka_unit_test(greedy_is_the_optimum_on_every_small_line),
 		cmocka_unit_test(greedy_walks_its_runs_both_ways),
 		cmocka_unit_test(changes_of_axis_are_the_known_ones),
-		cmocka_unit_test(
-		main_direction_changes_axis_as_often_as_point_by_point),
+		cmocka_unit_test(main_direction_changes_axis_as_often_as_point_by_point),
 		cmocka_unit_test(every_strategy_walks_every_octant),
-		cmocka_unit_test(
-			a_tolerance_too_narrow_is_refused_with_the_least),
-		cmocka_unit_test(
-			the_least_tolerance_named_is_enough_and_no_less_is),
+		cmocka_unit_test(a_tolerance_too_narrow_is_refused_with_the_least),
+		cmocka_unit_test(the_least_tolerance_named_is_enough_and_no_less_is),
 	};
 
 	return cmocka_run_group_tests_name("interp/rules", tests, NULL, NULL);

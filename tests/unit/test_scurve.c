@@ -73,15 +73,17 @@ static void check_plan(const struct interp_scurve *c,
 	assert_true(c->n <= INTERP_SCURVE_PHASES);
 	assert_true(isfinite(c->end_s));
 	for (int i = 0; i <= SAMPLES; i++) {
-		const struct interp_scurve_state s = interp_scurve_at(c, step * i);
+		const struct interp_scurve_state s = interp_scurve_at(c,
+								      step * i);
 
 		assert_true(fabs(s.v_mm_s) <= l->v_max_mm_s * (1 + ROUNDING));
 		assert_true(s.a_mm_s2 <= l->a_up_mm_s2 * (1 + ROUNDING));
 		assert_true(s.a_mm_s2 >= -l->a_down_mm_s2 * (1 + ROUNDING));
 	}
 	for (int i = 0; i < c->n; i++) {
-		const struct interp_scurve_state before = interp_scurve_at(c, nextafter(
-			i + 1 < c->n ? c->t_s[i + 1] : c->end_s, 0));
+		const struct interp_scurve_state before = interp_scurve_at(
+			c,
+			nextafter(i + 1 < c->n ? c->t_s[i + 1] : c->end_s, 0));
 		const struct interp_scurve_state *at =
 			i + 1 < c->n ? &c->from[i + 1] : &c->end;
 
@@ -154,8 +156,8 @@ static void what_begins_beyond_its_limits_comes_within_them(void **st)
 		interp_scurve_to_place(&c, &l, v, a, way);
 		assert_true(c.end.x_mm == way);
 		for (int n = 0; n <= SAMPLES; n++) {
-			const struct interp_scurve_state at = interp_scurve_at(&c, c.end_s * n /
-							    SAMPLES);
+			const struct interp_scurve_state at = interp_scurve_at(
+				&c, c.end_s * n / SAMPLES);
 
 			assert_true(fabs(at.v_mm_s) <= top * (1 + ROUNDING));
 			assert_true(at.a_mm_s2 <= fmax(a, l.a_up_mm_s2) *

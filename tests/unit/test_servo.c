@@ -16,7 +16,8 @@ static struct cycle_config windowed(void)
 
 /* -- The window ---------------------------------------------------------- */
 
-static void outside_the_window_it_feeds_in_proportion_inside_it_stands(void **st)
+static void
+outside_the_window_it_feeds_in_proportion_inside_it_stands(void **st)
 {
 	const struct cycle_config k = windowed();
 	struct rig r;

@@ -145,15 +145,13 @@ static void what_is_refused_is_said_with_why_and_what_mends_it(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			a_wake_in_time_is_followed_by_one_a_period_later),
+		cmocka_unit_test(a_wake_in_time_is_followed_by_one_a_period_later),
 		cmocka_unit_test(lateness_within_a_period_is_not_carried_on),
 		cmocka_unit_test(missed_periods_are_counted_and_skipped),
 		cmocka_unit_test(every_period_is_either_a_wake_or_missed),
 		cmocka_unit_test(the_wait_wakes_when_due_and_not_before),
 		cmocka_unit_test(a_latency_falls_into_its_microsecond),
-		cmocka_unit_test(
-			what_is_refused_is_said_with_why_and_what_mends_it),
+		cmocka_unit_test(what_is_refused_is_said_with_why_and_what_mends_it),
 	};
 
 	return cmocka_run_group_tests_name("setup", tests, NULL, NULL);

@@ -501,8 +501,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(shared_structs_keep_their_size),
 		cmocka_unit_test(names_are_those_of_the_cycle),
-		cmocka_unit_test(
-			a_machine_name_with_other_characters_is_refused),
+		cmocka_unit_test(a_machine_name_with_other_characters_is_refused),
 		cmocka_unit_test(objects_are_for_owner_and_group_alone),
 		cmocka_unit_test(a_snapshot_is_read_as_it_was_published),
 		cmocka_unit_test(a_living_owner_is_not_displaced),

@@ -35,7 +35,8 @@ static int connect_to(int *ret, uint32_t *ret_instance)
 	return err;
 }
 
-static void commands_come_in_order_and_one_that_waits_does_not_block(void **state)
+static void
+commands_come_in_order_and_one_that_waits_does_not_block(void **state)
 {
 	struct shm_command c = { .verb = SHM_LOAD, .instance = 9 };
 	struct shm_commands *r;
@@ -186,12 +187,10 @@ static void a_program_with_holes_is_not_read(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			commands_come_in_order_and_one_that_waits_does_not_block),
+		cmocka_unit_test(commands_come_in_order_and_one_that_waits_does_not_block),
 		cmocka_unit_test(who_sends_no_command_is_cut_off),
 		cmocka_unit_test(the_last_ids_are_remembered_through_a_restart),
-		cmocka_unit_test(
-			a_program_is_read_as_written_and_kept_while_mapped),
+		cmocka_unit_test(a_program_is_read_as_written_and_kept_while_mapped),
 		cmocka_unit_test(a_program_with_holes_is_not_read),
 	};
 

@@ -245,10 +245,8 @@ static int remove_objects(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			no_snapshot_is_ever_torn_or_older_than_the_last),
-		cmocka_unit_test(
-			no_trace_record_is_torn_and_none_lost_uncounted),
+		cmocka_unit_test(no_snapshot_is_ever_torn_or_older_than_the_last),
+		cmocka_unit_test(no_trace_record_is_torn_and_none_lost_uncounted),
 		cmocka_unit_test(every_command_comes_once_in_order_and_whole),
 	};
 

@@ -32,7 +32,7 @@ static struct sim_map *fresh_map(double area_mm2, unsigned int across)
 	return m;
 }
 
-/* Cut straight to @to in steps.  Return: the volume, divided by the whole area. */
+/* Cut straight to @to in steps.  Return: the volume by the whole area. */
 static double cut_to(struct sim_map *m, const double to[3])
 {
 	const double from[3] = { m->at_mm[0], m->at_mm[1], m->at_mm[2] };
@@ -71,8 +71,10 @@ static void put(struct sim_map *m, double x, double y, double z)
 
 static void fresh_ground_meets_the_whole_area_whichever_way(void **st)
 {
-	const double to[][3] = { { 0, 0, -1 }, { 3, 0, 0 }, { 0, -3, 0 },
-				 { 2, 1, 0 }, { 1, 1, -1 }, { -1, 0.1, -0.01 } };
+	const double to[][3] = {
+		{ 0, 0, -1 }, { 3, 0, 0 },  { 0, -3, 0 },
+		{ 2, 1, 0 },  { 1, 1, -1 }, { -1, 0.1, -0.01 }
+	};
 
 	(void)st;
 	for (size_t i = 0; i < sizeof(to) / sizeof(to[0]); i++) {

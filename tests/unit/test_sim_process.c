@@ -483,7 +483,8 @@ static int periods_to_follow(double lag_s, double start_s)
 	open_sim(&b, 1);
 	cycle_at(&b, 0, false);
 	b.out.target[INTERP_X] = 1000;
-	while (cycle_at(&b, 0.5, false), result(&b).gap_mm > 0.5 + 0.5 * exp(-1))
+	while (cycle_at(&b, 0.5, false),
+	       result(&b).gap_mm > 0.5 + 0.5 * exp(-1))
 		assert_true(n++ < 1000);
 	assert_true(lag_s > 0 || start_s > 0 || b.in.actual[INTERP_X] == 1000);
 	close_sim(&b);

@@ -80,7 +80,8 @@ static void all_of_them_are_listed_in_pages_that_fit(void **state)
 			free(text);
 			break;
 		}
-		for (const char *at = text; (at = strstr(at, "{\"n\":")); at++) {
+		for (const char *at = text; (at = strstr(at, "{\"n\":"));
+		     at++) {
 			last = (uint32_t)strtoul(at + 5, NULL, 10);
 			seen++;
 		}

@@ -157,8 +157,7 @@ static void what_is_soft_again_and_again_is_one_move(void **st)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			a_turn_on_a_tiny_line_costs_no_more_than_the_turn),
+		cmocka_unit_test(a_turn_on_a_tiny_line_costs_no_more_than_the_turn),
 		cmocka_unit_test(nearer_and_nearer_to_a_pole_it_comes_past),
 		cmocka_unit_test(what_is_soft_again_and_again_is_one_move),
 	};

@@ -482,15 +482,12 @@ static void a_wrong_bit_is_met_as_a_bad_segment(void **st)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			full_circles_follow_within_a_pulse_of_the_smaller),
+		cmocka_unit_test(full_circles_follow_within_a_pulse_of_the_smaller),
 		cmocka_unit_test(every_start_quadrant_and_both_ways_round),
 		cmocka_unit_test(ratios_to_a_thousand_to_one),
 		cmocka_unit_test(random_cones_follow_end_exactly_and_retrace),
-		cmocka_unit_test(
-			different_contours_keep_equal_shares_of_length),
-		cmocka_unit_test(
-			random_different_contours_end_exactly_and_retrace),
+		cmocka_unit_test(different_contours_keep_equal_shares_of_length),
+		cmocka_unit_test(random_different_contours_end_exactly_and_retrace),
 		cmocka_unit_test(a_contour_may_stand_while_the_other_moves),
 		cmocka_unit_test(at_once_every_axis_is_within_half_a_pulse),
 		cmocka_unit_test(the_place_follows_the_length_on_x_y),

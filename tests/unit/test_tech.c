@@ -114,7 +114,8 @@ static const struct {
 	{ HEAD, 1, 1, "without conditions", "C120" },
 	{ "C120, 15\n", 1, 1, "'C120'", "condition, servo_v, ..." },
 	{ "condition\n", 1, 1, "without fields", "at least one" },
-	{ "condition, servo_x\n", 1, 12, "unknown column 'servo_x'", "servo_v" },
+	{ "condition, servo_x\n", 1, 12, "unknown column 'servo_x'",
+	  "servo_v" },
 	{ "condition, on_us [ns]\n", 1, 18, "on_us in the unit [ns]",
 	  "on_us [us]" },
 	{ "condition, iso [A]\n", 1, 16, "iso in the unit", "no unit" },
@@ -314,7 +315,8 @@ static void an_enc_row_that_is_none_is_refused(void **state)
 
 static void a_row_must_go_over_the_machines_values(void **state)
 {
-	struct interp_tech_table *t = taken("condition,servo_v\nC1,20\nC2,70\n");
+	struct interp_tech_table *t =
+		taken("condition,servo_v\nC1,20\nC2,70\n");
 	struct interp_diag d = { 0 };
 	struct interp_tech base;
 
@@ -379,8 +381,7 @@ int main(void)
 		cmocka_unit_test(an_enc_row_that_is_none_is_refused),
 		cmocka_unit_test(a_row_must_go_over_the_machines_values),
 		cmocka_unit_test(the_nearest_conditions_are_named),
-		cmocka_unit_test(
-			an_orbit_leaves_gap_and_allowance_and_is_never_negative),
+		cmocka_unit_test(an_orbit_leaves_gap_and_allowance_and_is_never_negative),
 	};
 
 	return cmocka_run_group_tests_name("tech", tests, NULL, NULL);

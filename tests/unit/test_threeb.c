@@ -433,8 +433,7 @@ static void a_concave_arc_shrinks(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(
-			the_published_records_end_where_their_iso_code_does),
+		cmocka_unit_test(the_published_records_end_where_their_iso_code_does),
 		cmocka_unit_test(the_published_records_are_written),
 		cmocka_unit_test(an_arc_too_flat_for_a_record_is_one_line),
 		cmocka_unit_test(each_form_of_a_record_is_the_same_record),
@@ -445,11 +444,9 @@ int main(void)
 		cmocka_unit_test(d_pauses_unless_it_ends),
 		cmocka_unit_test(an_end_code_that_is_not_known_is_refused),
 		cmocka_unit_test(a_feed_is_the_options_or_the_fastest),
-		cmocka_unit_test(
-			an_arc_of_any_start_sense_and_direction_comes_back),
+		cmocka_unit_test(an_arc_of_any_start_sense_and_direction_comes_back),
 		cmocka_unit_test(a_circle_of_an_irrational_radius_closes),
-		cmocka_unit_test(
-			radii_off_by_a_unit_are_taken_with_fine_pulses),
+		cmocka_unit_test(radii_off_by_a_unit_are_taken_with_fine_pulses),
 		cmocka_unit_test(an_offset_of_4b_alters_arcs_and_closes),
 		cmocka_unit_test(a_concave_arc_shrinks),
 	};

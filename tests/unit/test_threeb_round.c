@@ -59,7 +59,8 @@ static void add_arc(struct text *t, struct pen *p)
 {
 	const double r = pow(10, uniform(p->seed, -1.5, 1));
 	const double from = uniform(p->seed, 0, 2 * M_PI);
-	const bool cw = nc_random(p->seed) % 2, full = nc_random(p->seed) % 8 == 0;
+	const bool cw = nc_random(p->seed) % 2,
+		   full = nc_random(p->seed) % 8 == 0;
 	const double sweep = (full ? 2 * M_PI : uniform(p->seed, .05, 6.2)) *
 			     (cw ? -1 : 1);
 	const double i = on_grid(p, -r * cos(from));
@@ -330,7 +331,7 @@ static void iso_code_is_the_same_program_again(void **state)
 	compile_done(&b);
 }
 
-/* Ends and centres on each unit around: where a centre is tried, an end may be. */
+/* Ends and centres on each unit around: an end may be where a centre is. */
 static void arcs_of_some_units_are_written(void **state)
 {
 	struct compiled c = compile_ready("generic");
@@ -401,8 +402,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(whole_micrometres_come_back_to_the_pulse),
 		cmocka_unit_test(places_between_pulses_come_back_to_the_nearest),
-		cmocka_unit_test(
-			what_records_cannot_say_is_refused_with_its_line),
+		cmocka_unit_test(what_records_cannot_say_is_refused_with_its_line),
 		cmocka_unit_test(what_is_left_out_is_counted),
 		cmocka_unit_test(at_45_degrees_the_direction_is_fixed),
 		cmocka_unit_test(iso_code_is_the_same_program_again),

@@ -9,7 +9,8 @@
 /* From Z0 down to Z-5 and up again in @ms, then down to Z-1 beside it. */
 static void load(struct rig *r, const struct cycle_config *k, uint32_t ms)
 {
-	const double aside[INTERP_NAXES] = { 1 }, end[INTERP_NAXES] = { 1, 0, -1 };
+	const double aside[INTERP_NAXES] = { 1 },
+		     end[INTERP_NAXES] = { 1, 0, -1 };
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 10 };
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	struct interp_diag d;

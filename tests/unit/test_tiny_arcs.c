@@ -87,7 +87,8 @@ static void check_circle(const struct tiny *t, const struct points *p)
 			say(t, "off the circle");
 	}
 	/* Right round the centre the angle of a pulse is anything. */
-	if (fmin(r0, r1) > (rounded ? 2 : 0.9) && fabs(turned(t, p) - sweep_of(t)) > 3 / fmin(r0, r1))
+	if (fmin(r0, r1) > (rounded ? 2 : 0.9) &&
+	    fabs(turned(t, p) - sweep_of(t)) > 3 / fmin(r0, r1))
 		say(t, "the wrong way round");
 }
 

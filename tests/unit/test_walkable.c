@@ -78,8 +78,8 @@ static void watch(const struct job *j, struct rig *r, int *still)
 	step(r, OPEN_V);
 	if (r->c.state == STATE_FAULT)
 		say(j, r, "a fault");
-	*still = place(r) != was || r->c.job.action_done != done || r->c.job.dwelling ?
-		 0 : *still + 1;
+	*still = place(r) != was || r->c.job.action_done != done ||
+		 r->c.job.dwelling ? 0 : *still + 1;
 	if (*still > STILL_MAX)
 		say(j, r, "it stands");
 	if (r->c.count > CYCLES_MAX)

@@ -186,10 +186,14 @@ static inline void random_segment(struct interp_build *b, uint64_t *s,
 	} else {
 		const double r = round(uniform(s, 2, 300)) / 1000;
 		const double t0 = uniform(s, 0, 6.28), t1 = uniform(s, 0, 6.28);
-		const double grain = strategy == INTERP_SIMULTANEOUS && rnd(s) % 2
-				   ? 1e5 : 1e3;
-		const double ca = round((here[0] - r * cos(t0)) * grain) / grain;
-		const double cb = round((here[1] - r * sin(t0)) * grain) / grain;
+		const double grain = strategy == INTERP_SIMULTANEOUS &&
+						     rnd(s) % 2 ?
+					     1e5 :
+					     1e3;
+		const double ca = round((here[0] - r * cos(t0)) * grain) /
+				  grain;
+		const double cb = round((here[1] - r * sin(t0)) * grain) /
+				  grain;
 		const double rr = hypot(here[0] - ca, here[1] - cb);
 
 		end[0] = round((ca + rr * cos(t1)) * grain) / grain;

@@ -2,10 +2,10 @@
 /*
  * torture-help.c - what guest/torture.sh needs beside edmd and its clients
  *
- *	torture-help reseed		draw new random numbers from here on
- *	torture-help plc INTERFACE	a PLC that permits everything, and answers
- *					each M code after a while
- *	torture-help watch MACHINE	one line for each 20 ms of edmd's snapshot
+ *	torture-help reseed	draw new random numbers from here on
+ *	torture-help plc IFACE	a PLC that permits everything, and answers
+ *				each M code after a while
+ *	torture-help watch NAME	one line for each 20 ms of edmd's snapshot
  *
  * What it prints goes out line by line, because it ends when the power fails.
  */

@@ -266,7 +266,8 @@ static double sweep_of(const struct threeb_writer *w,
 	const double to = atan2((double)want->end.y - want->cy,
 				(double)want->end.x - want->cx);
 
-	return to - from + ANGLE_TURN * round((near - (to - from)) / ANGLE_TURN);
+	return to - from +
+	       ANGLE_TURN * round((near - (to - from)) / ANGLE_TURN);
 }
 
 static int arc(struct threeb_writer *w, uint32_t i)

@@ -195,13 +195,14 @@ static bool same(const struct track *k, const struct nc_pose *a,
 		 const struct nc_pose *b)
 {
 	const double bound = k->r->o->tip_tolerance_mm / 4;
-	double x[3], tip = 0;
+	double x[3], turn, tip = 0;
 
 	vec_cross(a->dir, b->dir, x);
 	for (int i = 0; i < 3; i++)
 		tip += (a->mm[i] - b->mm[i]) * (a->mm[i] - b->mm[i]);
-	return sqrt(tip) < bound && asin(fmin(1, vec_length(x) /
-		(vec_length(a->dir) * vec_length(b->dir)))) * ANGLE_RADIAN < bound;
+	turn = asin(fmin(1, vec_length(x) /
+			    (vec_length(a->dir) * vec_length(b->dir))));
+	return sqrt(tip) < bound && turn * ANGLE_RADIAN < bound;
 }
 
 /* Nearly all of an axis's turn on one half of a step: a pole may lie there, and

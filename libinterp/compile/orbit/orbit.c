@@ -37,8 +37,9 @@ static double height_of(const struct interp_orbit *o)
 static double cone_radius(const struct interp_orbit *o, double h_mm)
 {
 	const double depth = height_of(o);
+	const double slope = tan(o->angle_deg * ANGLE_TURN / 360);
 	const double r = o->angle_given ?
-			 o->radius_mm + h_mm * tan(o->angle_deg * ANGLE_TURN / 360) :
+			 o->radius_mm + h_mm * slope :
 			 o->radius_mm * (depth - h_mm) / depth;
 
 	return r >= 0 ? r : NAN;

@@ -24,7 +24,7 @@ int build_curve_store(struct interp_build *b,
 
 /* What the looks at a piece have found; the largest of each. */
 struct curve_seen {
-	double bend;			/* curvature, 1/mm; HUGE_VAL at a cusp */
+	double bend;			/* curvature; HUGE_VAL: a cusp */
 	double d[3][INTERP_NAXES];	/* |x_s|, |x_ss| and |x_sss| of each
 					 * column */
 };
@@ -96,8 +96,8 @@ int build_curve_check_way(struct curve_plan *p);
 void build_curve_limit(struct curve_plan *p);
 
 /**
- * build_curve_look() - look at @u: find the feed that its axes allow.  The piece
- * in hand learns how its axes go there.
+ * build_curve_look() - look at @u: find the feed that its axes allow.  The
+ * piece in hand learns how its axes go there.
  */
 struct curve_look build_curve_look(struct curve_plan *p, double u);
 

@@ -89,7 +89,8 @@ static int check_probing(const struct from *f, uint32_t i)
 			"place is not known; a program that probes again, or "
 			"G92 in place of probing");
 	if (i > f->last)
-		return interp_diag_say(f->diag, "nothing was positioned between "
+		return interp_diag_say(f->diag,
+			"nothing was positioned between "
 			"this probing and that place, so no way in is known "
 			"that is off the work; a G0 behind it");
 	return 0;
@@ -127,7 +128,7 @@ void interp_build_set(struct interp_build *b, uint32_t cond, uint32_t field,
 		c[cond].tech.v[field] = value;
 }
 
-/* -- The way in --------------------------------------------------------------- */
+/* -- The way in ----------------------------------------------------------- */
 
 static void entry_of(const struct from *f, double to[INTERP_NAXES])
 {
@@ -168,8 +169,8 @@ static double shift_mm(const struct from *f, int axis)
 	       f->b->sub_mm[axis];
 }
 
-/* Out of the work along one axis, over, and in along the same axis; as places of
- * the program. */
+/* Out of the work along one axis, over, and in along the same axis; as places
+ * of the program. */
 static int add_legs(struct from *f)
 {
 	const struct interp_build_word w = { .rapid = true };
@@ -198,7 +199,7 @@ static bool is_power(uint32_t aux)
 	       aux == INTERP_AUX_POWER_NEGATIVE;
 }
 
-/* The argument of the last M code that was passed with this number.  0: none. */
+/* The argument of the last M code that was passed with @number.  0: none. */
 static uint32_t find_unanswered(const struct from *f)
 {
 	const struct interp_seg *s = segs_of(f->b);
@@ -280,7 +281,7 @@ static int make_way(struct from *f)
 	return err;
 }
 
-/* -- What is left of the program ------------------------------------------------ */
+/* -- What is left of the program ------------------------------------------ */
 
 /* Done before the place, and not done again: a dwell of no time. */
 static void forget(struct from *f, struct interp_seg *s)
@@ -410,8 +411,10 @@ static int refuse_line(const struct from *f)
 		if (s[i].length_mm > 0 && s[i].line > last)
 			last = s[i].line;
 	f->diag->line = f->o->line;
-	return interp_diag_say(f->diag, "nothing moves in line %u or behind it; "
-			       "a line up to %u", f->o->line, last);
+	return interp_diag_say(f->diag,
+			       "nothing moves in line %u or behind it; "
+			       "a line up to %u",
+			       f->o->line, last);
 }
 
 static int find_place(struct from *f)

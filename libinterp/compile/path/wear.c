@@ -126,7 +126,8 @@ int interp_wear_measure(struct interp_wear *w, const struct interp_program *p)
 
 		if (s->kind == INTERP_ELECTRODE)
 			change(w, s, i);
-		if (s->kind == INTERP_AUX && s->arg <= INTERP_AUX_POWER_NEGATIVE)
+		if (s->kind == INTERP_AUX &&
+		    s->arg <= INTERP_AUX_POWER_NEGATIVE)
 			power = s->arg != INTERP_AUX_POWER_OFF;
 		if (power && is_eroded(s))
 			count(p, i, z, &at);

@@ -24,7 +24,8 @@ void *must(void *p)
 }
 
 /* du/dt at @u, @t_s after the start. */
-static double rate(const struct spline *c, double u, double feed_mm_s, double t_s)
+static double rate(const struct spline *c, double u, double feed_mm_s,
+		   double t_s)
 {
 	double d[3][2], speed, cross, v;
 
@@ -48,7 +49,8 @@ void feed_make(struct feed *f, const struct spline *c, double mm_min)
 		f->mm[k] = (double *)must(calloc(room, sizeof(u))) + before;
 	for (size_t i = 0; i < before; i++)
 		for (int k = 0; k < 2; k++)
-			f->mm[k][-(long)i - 1] = c->point[0][k] / c->point[0][2];
+			f->mm[k][-(long)i - 1] = c->point[0][k] /
+						 c->point[0][2];
 	for (size_t i = 0; i < MOST + INTERP_COMPENSATE_AHEAD; i++) {
 		double d[3][2];
 

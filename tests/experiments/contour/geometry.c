@@ -22,8 +22,10 @@ static void worn(struct interp_errormap *m, double part)
 		m->row[r].across = r == 2 ? 1 : r == 1;
 		for (int i = 0; i < 41; i++) {
 			m->row[r].at_mm[i] = -100 + i * 5;
-			m->row[r].error_mm[i] = part * (r == 2 ? 0.004 : 0.012) *
-				sin(i * (r == 2 ? 0.15 : 0.35) + r);
+			m->row[r].error_mm[i] = part *
+						(r == 2 ? 0.004 : 0.012) *
+						sin(i * (r == 2 ? 0.15 : 0.35) +
+						    r);
 		}
 	}
 	m->lean[0] = (struct interp_errormap_lean) { 0, 1, part * 500e-6 };
@@ -216,10 +218,12 @@ static FILE *plot_open(const char *folder, const char *name, const char *size)
 		fputs("gnuplot does not run\n", stderr);
 		exit(1);
 	}
-	fprintf(p, "set terminal svg size %s font 'sans,12' "
+	fprintf(p,
+		"set terminal svg size %s font 'sans,12' "
 		"background 'white'\nset output '%s/%s'\nset grid lc '#dddddd'\n"
 		"set style line 1 lc '#d55e00'\nset style line 2 lc '#0072b2'\n"
-		"set style line 3 lc '#009e73'\n", size, folder, name);
+		"set style line 3 lc '#009e73'\n",
+		size, folder, name);
 	return p;
 }
 

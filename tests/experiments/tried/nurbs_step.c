@@ -206,7 +206,8 @@ static bool within(struct search *k)
 	if (!(limit > 0))
 		return true;
 	ab = interp_nurbs_dot(c, a, b);
-	cos2 = ab * ab / (interp_nurbs_dot(c, a, a) * interp_nurbs_dot(c, b, b));
+	cos2 = ab * ab /
+	       (interp_nurbs_dot(c, a, a) * interp_nurbs_dot(c, b, b));
 	/* tan(a/2) < sin a for a below 90 degrees. */
 	if (ab > 0 && k->chord_mm * k->chord_mm / 4 * (1 - cos2) <
 		      limit * limit / 4)

@@ -40,7 +40,7 @@ enum interp_nurbs_method {
 /** interp_nurbs_method_name() - "equal-parameter", ... Any thread. */
 const char *interp_nurbs_method_name(enum interp_nurbs_method m);
 
-/** interp_nurbs_method_parse() - the reverse; -EINVAL if unknown. Any thread. */
+/** interp_nurbs_method_parse() - the reverse; or -EINVAL.  Any thread. */
 int interp_nurbs_method_parse(const char *name);
 
 struct interp_nurbs_stepper {

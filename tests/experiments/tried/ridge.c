@@ -57,7 +57,7 @@ int interp_ridge_solve(const struct interp_ridge_training *t, double price,
 
 	if (t->n == 0)
 		return -EDOM;
-	/* Each feature scaled to mean square 1; one that never was stays out. */
+	/* Scale each feature to mean square 1; one that never was stays out. */
 	for (int i = 0; i < N; i++)
 		scale[i] = t->xx[i][i] > 0 ?
 			   1 / sqrt(t->xx[i][i] / (double)t->n) : 0;

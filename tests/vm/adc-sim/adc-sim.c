@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0
 /*
- * adc-sim - a converter of industrial I/O for the test VM: two channels, 12 bits
- * signed, and a time stamp.  Channel 0 is what /sys/module/adc_sim/parameters/raw
- * says, with a count of noise; channel 1 is always 777.  There is a sample each
- * .../us, and none while .../still is 1.
+ * adc-sim - a converter of industrial I/O for the test VM: two channels, 12
+ * bits signed, and a time stamp.  Channel 0 is what
+ * /sys/module/adc_sim/parameters/raw says, with a count of noise; channel 1 is
+ * always 777.  There is a sample each .../us, and none while .../still is 1.
  */
 #include <linux/hrtimer.h>
 #include <linux/iio/buffer.h>
@@ -106,7 +106,8 @@ static const unsigned long masks[] = { 3, 0 };
 
 static int probe(struct platform_device *p)
 {
-	struct iio_dev *dev = devm_iio_device_alloc(&p->dev, sizeof(struct adc));
+	struct iio_dev *dev = devm_iio_device_alloc(&p->dev,
+						    sizeof(struct adc));
 	struct adc *a;
 	int err;
 

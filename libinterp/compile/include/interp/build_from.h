@@ -16,8 +16,8 @@
  *
  * The condition in force and the outputs that the program has switched (power,
  * polarity, pump) are those of the place.  Dwells, stops and M codes that were
- * done before it are not done again, but for an M code that the PLC was told and
- * had not answered: nobody knows whether it was heard.
+ * done before it are not done again, but for an M code that the PLC was told
+ * and had not answered: nobody knows whether it was heard.
  *
  * Units: mm, machine coordinates, degrees for rotary axes.
  * Threads: as interp/build.h.

@@ -7,8 +7,8 @@
  * ratio is `wear` of the condition in force: the volume that the electrode
  * loses per volume of work removed.  Where an electrode sinks, both have the
  * same area, so it is also the length lost per depth.  Only the way down (-Z)
- * counts: a cut sideways takes no length off the tip.  Positioning, probing, and
- * a motion with the power off (M5) do not count.
+ * counts: a cut sideways takes no length off the tip.  Positioning, probing,
+ * and a motion with the power off (M5) do not count.
  *
  * With a condition that has no such value the wear is unknown.  The depth that
  * is cut with it is summed separately.
