@@ -14,7 +14,7 @@ wire_retreat_mm = 0.05
 [sim]
 process = wire
 break_per_j = {often}
-rethread_s = 2
+rethread_s = 0.5
 """
 
 HOLE_MM, END_MM = 0.2, 0.5
@@ -27,7 +27,8 @@ M02
 """.encode()
 
 
-TRIES = 200
+# Some 7 breaks are expected, each with some 5 tries until the wire is threaded.
+TRIES = 400
 THREAD, CUT = 3, 5      # lines of M60, M50
 
 
@@ -66,6 +67,7 @@ def test_an_operator_threads_the_wire_until_the_job_is_done(tmp_path, to):
             assert c.ask("reset").code == 0
             assert c.ask("start").code == 0
         assert broken_at
+        assert s.job_state == "held"
         a = c.ask("resume")
         assert a.code == 0, a.reason
         j = c.job_where("job", "done")
