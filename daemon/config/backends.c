@@ -19,9 +19,10 @@ static bool backend_can402_has_gap(const struct machine_config *c)
 	return c->can402.gap_id > 0;
 }
 
-#define BACKEND(id, word, open, period, what, gap, checked) \
+#define BACKEND(id, word, open, period, what, gap, checked, points) \
 	[BACKEND_##id] = { .name = word, .period_ns = period, .is = what, \
-			   .has_gap = gap, .check = checked },
+			   .has_gap = gap, .check = checked, \
+			   .points_s = points },
 
 static const struct config_backend backend[CONFIG_NBACKENDS] = {
 	CONFIG_BACKENDS(BACKEND)

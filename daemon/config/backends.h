@@ -15,23 +15,25 @@
 /*
  * BACKEND_<id>, the word in a machine file, the function that opens it, the
  * period unless the file gives one, what it is (enum config_machine_is),
- * whether it has a gap, what of the file is checked for it alone.
+ * whether it has a gap, what of the file is checked for it alone, how many
+ * points it makes in a second.
  *
  * A pulse of gpio is made of periods.  Six drives on a bus fit into 2 ms.
  */
 #define CONFIG_BACKENDS(ROW) \
 	ROW(SIM, "sim", io_sim_open, 1000000, \
 	    MACHINE_NO_WIRES | MACHINE_MODEL, \
-	    backend_has_gap, NULL) \
+	    backend_has_gap, NULL, NULL) \
 	ROW(NULL, "null", io_null_open, 1000000, \
 	    MACHINE_NO_WIRES | MACHINE_NONE, \
-	    backend_has_no_gap, NULL) \
+	    backend_has_no_gap, NULL, NULL) \
 	ROW(GPIO, "gpio", io_gpio_open, 50000, 0, \
-	    config_gpio_has_gap, config_check_gpio) \
+	    config_gpio_has_gap, config_check_gpio, config_gpio_points_s) \
 	ROW(CAN402, "can402", io_can402_open, 2000000, MACHINE_DRIVES, \
-	    backend_can402_has_gap, config_check_can402)
+	    backend_can402_has_gap, config_check_can402, NULL)
 
-#define CONFIG_BACKEND_ID(id, name, open, period_ns, is, has_gap, check) \
+#define CONFIG_BACKEND_ID(id, name, open, period_ns, is, has_gap, check, \
+			  points_s) \
 	BACKEND_##id,
 
 enum config_backend_id {
@@ -61,6 +63,8 @@ struct config_backend {
 	int (*check)(const struct machine_config *c,
 		     const struct config_lines *lines,
 		     struct interp_diag *diag);
+	/* NULL: as many as the cycle. */
+	double (*points_s)(const struct machine_config *c);
 };
 
 /** config_backend() - the row of the backend that @c names. */

@@ -353,8 +353,12 @@ void config_say(const char *path, const struct interp_diag *d);
 /** config_period_ns() - the period that is in force. */
 int64_t config_period_ns(const struct machine_config *c);
 
-/** config_points_s() - lattice points that the cycle makes in a second. */
+/** config_points_s() - lattice points that the machine makes in a second. */
 double config_points_s(const struct machine_config *c);
+
+/** config_gpio_points_s() - that the lines of [gpio] make in a second: a point
+ *  takes the time of a pulse, however many axes it moves. */
+double config_gpio_points_s(const struct machine_config *c);
 
 /**
  * config_line_read() - `none`, or [!][CHIP:]NUMBER.

@@ -264,8 +264,7 @@ static int check_guards(struct check *q)
 	       check_guard(q, LINE_ESTOP, q->c->gpio.estop_by, "estop_by");
 }
 
-/* The number of pulses a second that the lines can make. */
-static double pulses_s(const struct machine_config *c)
+double config_gpio_points_s(const struct machine_config *c)
 {
 	const double periods = c->gpio.high_cycles +
 			       (c->gpio.signal ? 0 : c->gpio.low_cycles);
@@ -291,7 +290,7 @@ static int check_speed(struct check *q, const struct config_key *k,
 			       "of [gpio], %g pulses/s; at most %g%s; or a "
 			       "larger pulse_mm, a shorter period_us, signal "
 			       "= quadrature", section, k->name, v, unit,
-			       pulses_s(q->c), most, unit);
+			       config_gpio_points_s(q->c), most, unit);
 }
 
 /* A jump may go along any linear axis. */
@@ -303,7 +302,7 @@ static int check_speeds(struct check *q)
 		config_key(config_key_find(SECTION_JUMP, "v_max_mm_s"));
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		const double most = pulses_s(q->c) *
+		const double most = config_gpio_points_s(q->c) *
 				    q->c->axes.axis[i].pulse_mm;
 
 		if (!(q->c->axes.present >> i & 1))

@@ -38,7 +38,7 @@ static int machine_refuse(int err, const struct interp_diag *d)
 	       err == -ENOMEM ? EX_UNAVAILABLE : EX_CONFIG;
 }
 
-#define BACKEND_OPEN(id, name, open, period_ns, is, has_gap, check) \
+#define BACKEND_OPEN(id, name, open, period_ns, is, has_gap, check, points_s) \
 	[BACKEND_##id] = open,
 
 /* Return: EX_OK, or the exit code. */

@@ -124,12 +124,13 @@ static void stand_held(struct cycle *c)
 	mover_set(&c->mover, 0);
 }
 
-/* A held job does no action; it stands before the action. */
+/* A held job does no action; it stands before the action.  A way back that was
+ * told while it came here begins here. */
 static void meet_action(struct cycle *c)
 {
 	if (c->state == STATE_HOLD) {
 		mover_set(&c->mover, 0);
-		c->hold.moving = false;
+		c->hold.moving = c->hold.moving && c->hold.to_mm < place_mm(c);
 		return;
 	}
 	switch (walk_action(c)) {

@@ -144,6 +144,8 @@ struct cycle_ahead {
 	double entered_mm_s;		/* greatest speed at which it began */
 	double room_mm;			/* at constant speed nothing limits it
 					 * for this distance */
+	bool turns;			/* it went the other way, and has not
+					 * stood since */
 	bool to_place;			/* the plan is for a place: */
 	double place_mm, v_max_mm_s;
 };

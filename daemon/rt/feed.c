@@ -32,8 +32,12 @@ static double travel(struct cycle *c)
 	/* Started while another move was still braking: that ends first. */
 	const bool other = c->ahead.state != STATE_TRAVEL &&
 			   !mover_is_standing(&c->mover);
+	/* At less than 1e-9 mm in a period it may be there and not stand. */
+	const enum walk_ahead on = walk_ahead(c);
+	const bool there = on == AHEAD_CUT || on == AHEAD_PROBE;
 
-	return c->withdraws || other ? brake(c) : ahead_distance(c, &w);
+	return c->withdraws || other || there ? brake(c) :
+						ahead_distance(c, &w);
 }
 
 static double go_to(struct cycle *c, struct ahead_move *w, double to_mm)

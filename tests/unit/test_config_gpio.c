@@ -211,6 +211,25 @@ static void quadrature_is_twice_as_fast(void **state)
 				   "signal = quadrature\n", &c, &d), 0);
 }
 
+/* Where one axis moves at a time, all axes share these points. */
+static void it_makes_as_many_points_as_pulses(void **state)
+{
+	static const char lines[] = "step_X = 1\ndir_X = 2\n";
+	struct machine_config c;
+	struct interp_diag d;
+
+	(void)state;
+	assert_int_equal(read_with(lines, &c, &d), 0);
+	assert_true(config_points_s(&c) == 10000);
+	c.gpio.edges_per_period = 10;
+	assert_true(config_points_s(&c) == 100000);
+	c.gpio.edges_per_period = 1;
+	c.gpio.signal = 1;
+	assert_true(config_points_s(&c) == 20000);
+	c.backend = BACKEND_SIM;
+	assert_true(config_points_s(&c) > 1e6);
+}
+
 /* None of it is asked of a machine that has no lines. */
 static void other_backends_need_no_lines(void **state)
 {
@@ -238,6 +257,7 @@ int main(void)
 		cmocka_unit_test(what_does_not_agree_is_refused_with_the_remedy),
 		cmocka_unit_test(an_encoder_is_two_lines_or_a_counter),
 		cmocka_unit_test(quadrature_is_twice_as_fast),
+		cmocka_unit_test(it_makes_as_many_points_as_pulses),
 		cmocka_unit_test(other_backends_need_no_lines),
 	};
 

@@ -76,6 +76,23 @@ static void feel_until(struct world *w, enum cycle_state s, int n)
 	assert_string_equal(state_duty[w->r.c.state].name, state_duty[s].name);
 }
 
+/* With no more than X's 1000 mm/s2, which is a pulse; places are a half off. */
+static void feel_smoothly_until(struct world *w, enum cycle_state s, int n)
+{
+	int32_t x[3] = { w->r.out.target[INTERP_X], w->r.out.target[INTERP_X],
+			 w->r.out.target[INTERP_X] };
+
+	for (int i = 0; w->r.c.state != s && i < n; i++) {
+		feel(w);
+		x[0] = x[1];
+		x[1] = x[2];
+		x[2] = w->r.out.target[INTERP_X];
+		if (i > 0)
+			assert_in_range(x[2] - 2 * x[1] + x[0] + 3, 0, 6);
+	}
+	assert_string_equal(state_duty[w->r.c.state].name, state_duty[s].name);
+}
+
 static struct interp_build *one_probe(double by_mm)
 {
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
@@ -236,7 +253,7 @@ static void test_something_in_the_way_of_a_half_is_a_contact(void **state)
 	       w.r.out.target[INTERP_X] > 1000)
 		feel(&w);
 	w.low = 600;
-	feel_until(&w, STATE_FAULT, 1000);
+	feel_smoothly_until(&w, STATE_FAULT, 1000);
 	assert_int_equal(w.r.c.fault.first, FAULT_CONTACT);
 	assert_in_range(w.r.out.target[INTERP_X], 0, 600);
 	rig_free(&w.r);
@@ -296,15 +313,21 @@ static void test_no_contact_by_its_end_is_a_fault(void **state)
 static void test_no_contact_by_the_travels_end_is_a_fault(void **state)
 {
 	struct cycle_config k = probe_config();
-	struct world w;
 
 	(void)state;
-	k.travel_min[INTERP_X] = -1500;
-	load(&w, one_probe(-100), &k);
-	feel_until(&w, STATE_FAULT, 20000);
-	assert_int_equal(w.r.c.fault.first, FAULT_NO_CONTACT);
-	assert_int_equal(w.r.out.target[INTERP_X], -1500);
-	rig_free(&w.r);
+	k.probe.feed_mm_s = 20;
+	for (int sign = -1; sign <= 1; sign += 2) {
+		struct world w;
+
+		k.travel_min[INTERP_X] = -1500;
+		k.travel_max[INTERP_X] = 1500;
+		load(&w, one_probe(sign * 100), &k);
+		feel_smoothly_until(&w, STATE_FAULT, 20000);
+		assert_int_equal(w.r.c.fault.latched,
+				 fault_bit(FAULT_NO_CONTACT));
+		assert_int_equal(w.r.out.target[INTERP_X], sign * 1500);
+		rig_free(&w.r);
+	}
 }
 
 static void test_contact_to_begin_with_is_a_fault(void **state)

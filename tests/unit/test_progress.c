@@ -216,6 +216,68 @@ static void a_wait_that_has_a_name_may_last(void **st)
 	}
 }
 
+#define FAR_TURN	3
+
+/* Its third line has a pulse of X, on which C turns far. */
+static struct made far_turn(void)
+{
+	static const double axis[4][3] = { { 2.159, 78.53, 40245 },
+		{ 71.61, 86.29, 33080 }, { 24.34, 38.4, 9.8527e5 },
+		{ 0.2862, 1.957, 13214 } };
+	static const double by[][4] = { { 0.001, 0, 0, 0 },
+		{ -0.002, 0.001, 0, -0.002 }, { 0.001, 0, 0, 4.407 },
+		{ 0.001, -0.001, -0.001, 0 }, { 0.001, 0, 0, 0 },
+		{ 0, 0, -0.001, 0.001 }, { 0.002, 0, 0, 0.002 } };
+	const struct interp_build_options o = {
+		.machine = &help_machine, .strategy = INTERP_CENTRED,
+		.corner_mm = 0.02,
+	};
+	double end[INTERP_NAXES] = { 0 };
+	struct interp_build *b;
+
+	help_machine.present = 0xff;
+	for (int k = 0; k < 4; k++)
+		help_machine.axis[k < 3 ? k : INTERP_C] =
+			(struct interp_axis_limits) {
+				0.001, -200, 200, axis[k][0], axis[k][1],
+				axis[k][2]
+			};
+	b = interp_build_create(&o);
+	for (size_t i = 0; i < sizeof(by) / sizeof(by[0]); i++) {
+		for (int k = 0; k < 4; k++)
+			end[k < 3 ? k : INTERP_C] += by[i][k];
+		line(b, end);
+	}
+	return finish(b);
+}
+
+/* From a speed of a thousandth of what the segment allows, to a lower one. */
+static void slowing_down_for_a_slow_place_is_not_stuck(void **st)
+{
+	struct cycle_config k = usual_config();
+	struct interp_cursor at;
+	struct rig r;
+
+	(void)st;
+	k.period_ns = 50000;
+	k.dry_run = true;
+	r.m = far_turn();
+	rig_take(&r, r.m, &k);
+	at = r.c.cursor;
+	tell(&r, CYCLE_STOP);
+	step(&r, OPEN_V);
+	assert_int_equal(interp_cursor_seek_end(&at, at.p.head->nsegs - 2), 0);
+	assert_int_equal(cycle_load_at(&r.c, &at, at.p.head->length_mm),
+			 ANSWER_DONE);
+	memcpy(r.path_before, r.c.out.target, sizeof(r.path_before));
+	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 1e9), ANSWER_DONE);
+	for (int n = 0; n < 400000 && r.c.cursor.index > FAR_TURN; n++)
+		step(&r, OPEN_V);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	assert_int_equal(r.c.cursor.index, FAR_TURN);
+	rig_free(&r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -224,6 +286,7 @@ int main(void)
 		cmocka_unit_test(a_slow_brake_is_not_stuck),
 		cmocka_unit_test(a_soft_start_is_not_stuck),
 		cmocka_unit_test(a_fast_move_after_a_slow_one_is_not_stuck),
+		cmocka_unit_test(slowing_down_for_a_slow_place_is_not_stuck),
 		cmocka_unit_test(a_wait_that_has_a_name_may_last),
 	};
 

@@ -155,12 +155,34 @@ static void nodes_on_a_line_cost_no_time(void **st)
 		assert_in_range(cycles_of_pieces(n), one - 2, one + 2);
 }
 
+/* So slow that it stands within a rounding from anywhere. */
+static void the_slowest_override_does_not_enter_a_cut(void **state)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	const struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)state;
+	rapid_to(b, -2e-6);
+	cut_to(b, -1);
+	rig_load(&r, b, &k);
+	assert_int_equal(tell_mm(&r, CYCLE_OVERRIDE, 1e-9), ANSWER_DONE);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	for (int n = 0; n < 60000 && r.c.state == STATE_TRAVEL; n++) {
+		assert_true(place(&r) < 2e-6 + 4 * MOVER_ONTO_MM);
+		step(&r, OPEN_V);
+	}
+	assert_int_equal(r.c.state, STATE_APPROACH);
+	rig_free(&r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(it_keeps_to_each_segments_speed_without_a_step),
 		cmocka_unit_test(a_hold_at_any_instant_stops_where_it_says),
 		cmocka_unit_test(nodes_on_a_line_cost_no_time),
+		cmocka_unit_test(the_slowest_override_does_not_enter_a_cut),
 	};
 
 	seed = seed_take();

@@ -32,14 +32,6 @@ static void run(struct cycle *c, int toward, double v_mm_s)
 	manual_move(c, mover_run(&c->manual.mover, &l, toward * l.v_max_mm_s));
 }
 
-static bool stop(struct cycle *c)
-{
-	const struct mover_limits l = manual_limits(c, INFINITY);
-
-	manual_move(c, mover_stop(&c->manual.mover, &l));
-	return c->manual.mover.v_mm_s == 0;
-}
-
 /* No switch can be farther away than the whole travel. */
 static void watch_way(struct cycle *c)
 {
@@ -110,7 +102,7 @@ static enum home_phase seek(struct cycle *c, const struct io_inputs *in)
 static enum home_phase brake(struct cycle *c, const struct io_inputs *in)
 {
 	(void)in;
-	return stop(c) ? HOME_LEAVE : HOME_BRAKE;
+	return manual_stop(c) ? HOME_LEAVE : HOME_BRAKE;
 }
 
 static enum home_phase leave(struct cycle *c, const struct io_inputs *in)
@@ -141,7 +133,7 @@ static enum home_phase clear(struct cycle *c, const struct io_inputs *in)
 static enum home_phase meet(struct cycle *c)
 {
 	c->manual.met = pulses(c);
-	stop(c);
+	manual_stop(c);
 	return HOME_STAND;
 }
 
@@ -165,11 +157,14 @@ static enum home_phase seek_index(struct cycle *c, const struct io_inputs *in)
 	return HOME_INDEX;
 }
 
+/* The way of the last period has gone out before the place is called. */
 static enum home_phase stand(struct cycle *c, const struct io_inputs *in)
 {
 	(void)in;
-	if (!stop(c))
+	if (!mover_is_standing(&c->manual.mover)) {
+		manual_stop(c);
 		return HOME_STAND;
+	}
 	call(c, pulses(c) - c->manual.met, pulses(c));
 	return HOME_BEGIN;
 }

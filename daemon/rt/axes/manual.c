@@ -64,16 +64,28 @@ void manual_move(struct cycle *c, double ds_mm)
 	c->feed_mm_s = h->mover.v_mm_s;
 }
 
+/* No faster than the machine puts its pulses out: what it cannot put out would
+ * be left behind, and come when the axis has to stand. */
 struct mover_limits manual_limits(const struct cycle *c, double v_mm_s)
 {
 	const struct manual_axis *a = manual_axis(c);
+	const double most = c->config.points_max * a->pulse_mm /
+			    law_period_s(c);
 
 	return (struct mover_limits) {
-		.v_max_mm_s = fmin(v_mm_s, a->v_max_mm_s),
+		.v_max_mm_s = fmin(v_mm_s, fmin(a->v_max_mm_s, most)),
 		.a_max_mm_s2 = a->a_max_mm_s2,
 		.j_max_mm_s3 = a->j_max_mm_s3,
 		.period_s = law_period_s(c),
 	};
+}
+
+bool manual_stop(struct cycle *c)
+{
+	const struct mover_limits l = manual_limits(c, INFINITY);
+
+	manual_move(c, mover_stop(&c->manual.mover, &l));
+	return c->manual.mover.v_mm_s == 0;
 }
 
 /* An axis whose place is not known yet goes no farther than the length of its
@@ -278,16 +290,11 @@ static bool jog_go(struct cycle *c)
 bool manual_go(struct cycle *c, const struct io_inputs *in)
 {
 	struct manual *h = &c->manual;
-	struct mover_limits l;
 
 	/* This goes on counting while the axes wait for power. */
 	if (c->state == STATE_JOG && h->pressed && c->count >= h->until)
 		h->halt = true;
 	if (!h->halt)
 		return c->state == STATE_HOME ? home_go(c, in) : jog_go(c);
-	if (h->mover.v_mm_s == 0)
-		return true;
-	l = manual_limits(c, INFINITY);
-	manual_move(c, mover_stop(&h->mover, &l));
-	return h->mover.v_mm_s == 0;
+	return h->mover.v_mm_s == 0 || manual_stop(c);
 }

@@ -116,5 +116,7 @@ void manual_begin(struct cycle *c, uint32_t axis);
 const struct manual_axis *manual_axis(const struct cycle *c);
 void manual_move(struct cycle *c, double ds_mm);
 struct mover_limits manual_limits(const struct cycle *c, double v_mm_s);
+/** manual_stop() - brake. Return: does it stand? */
+bool manual_stop(struct cycle *c);
 
 #endif /* RT_MANUAL_H */

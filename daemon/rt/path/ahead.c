@@ -137,11 +137,16 @@ static void go_on_to(struct cycle *c, const struct ahead_move *w)
 		c->ahead.stand_mm = stand_mm;
 }
 
-/* Does it still go the other way?  Up to where it stands, what it set out with
- * holds. */
+/* Does it go the other way, or brake from that?  Up to where it stands, what it
+ * set out with holds.  The sign of a speed that is a rounding says nothing. */
 static bool is_turning(const struct cycle *c, const struct ahead_move *w)
 {
-	return w->toward * c->mover.v_mm_s < 0;
+	const struct cycle_ahead *a = &c->ahead;
+
+	return !mover_is_standing(&c->mover) &&
+	       (w->toward * c->mover.v_mm_s < 0 ||
+		(a->turns && a->state == c->state &&
+		 a->toward == w->toward));
 }
 
 /*
@@ -154,16 +159,19 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 	const double acc = w->toward * c->mover.a_mm_s2;
 	struct cycle_ahead *a = &c->ahead;
 	const bool short_of = c->cut_short;
+	bool turns;
 
 	c->cut_short = false;
 	if (!short_of && a->state == c->state && a->toward == w->toward &&
 	    a->override == by && a->goal_mm == w->goal_mm &&
 	    !mover_is_standing(&c->mover))
 		return;
+	turns = is_turning(c, w);
 	if (a->state != c->state || mover_is_standing(&c->mover))
 		a->l = limits_of(c, w, &a->stand_mm);
-	else if (!is_turning(c, w))
+	else if (!turns)
 		go_on_to(c, w);
+	a->turns = turns;
 	a->state = c->state;
 	a->toward = w->toward;
 	a->override = by;
@@ -357,7 +365,7 @@ double ahead_distance(struct cycle *c, const struct ahead_move *w)
 	begin(c, w);
 	v = speed_here(c, w, &most);
 	/* First to a stand: what lies between here and there is not seen. */
-	if (is_turning(c, w))
+	if (c->ahead.turns)
 		v = 0;
 	step = v * w->l.period_s;
 	if (c->mover.v_mm_s == w->toward * v && c->mover.a_mm_s2 == 0 &&

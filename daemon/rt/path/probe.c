@@ -37,13 +37,6 @@ static const struct interp_seg *segment(const struct cycle *c)
 	return &c->cursor.p.segs[index_of(c)];
 }
 
-static double left_mm(const struct cycle *c)
-{
-	const struct interp_seg *s = segment(c);
-
-	return s->s_mm + s->length_mm - SHY_MM - place_mm(c);
-}
-
 bool probe_is_start(const struct cycle *c, const struct interp_cursor *at)
 {
 	for (int i = 0; i < INTERP_NAXES; i++)
@@ -82,6 +75,35 @@ static int axis_of(const struct cycle *c, int *ret_sign)
 		return h->column[j];
 	}
 	return 0;
+}
+
+/* Where the segment begins, in pulses of its axis. */
+static double from_pulses(const struct cycle *c, int axis)
+{
+	const struct interp_program_head *h = c->cursor.p.head;
+	const int64_t *from = c->cursor.p.nodes +
+			      (uint64_t)index_of(c) * h->naxes;
+
+	for (uint32_t j = 0; j < h->naxes; j++)
+		if (h->column[j] == axis)
+			return (double)from[j] / INTERP_SUB;
+	return 0;
+}
+
+/* To the end of the segment, or of the travel. */
+static double left_mm(const struct cycle *c)
+{
+	const struct interp_seg *s = segment(c);
+	int sign;
+	const int axis = axis_of(c, &sign);
+	const double last = sign > 0 ? c->config.travel_max[axis] :
+				       c->config.travel_min[axis];
+	const double pulses = last - c->probe.shift[axis] -
+			      from_pulses(c, axis);
+	const double travel = sign * pulses *
+			      c->cursor.p.head->pulse_mm[axis];
+
+	return s->s_mm + fmin(s->length_mm, travel) - SHY_MM - place_mm(c);
 }
 
 /* -- The end --------------------------------------------------------------- */
@@ -192,7 +214,7 @@ static double go(struct cycle *c)
 	}
 	if (c->probe.contact && c->probe.open_seen) {
 		fault_latch(&c->fault, FAULT_CONTACT);
-		return 0;
+		return mover_stop(&c->mover, &l);
 	}
 	c->probe.open_seen = c->probe.open_seen || !c->probe.contact;
 	return by > 0 ? go_to(c, by * law_seg_speed(segment(c))) :

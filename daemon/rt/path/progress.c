@@ -68,6 +68,17 @@ static bool brakes(const struct cycle *c)
 	       !mover_is_standing(&c->mover);
 }
 
+/* What the plan comes to, where it is not to stand; a slower place ahead may be
+ * a thousandth as fast as this one, and is slowed down to long before. */
+static double planned_mm_s(const struct cycle *c)
+{
+	const struct mover *m = &c->mover;
+	const double v = m->kind == MOVER_TO_SPEED ? fabs(m->goal) :
+			 m->kind == MOVER_TO_PLACE ? fabs(m->pass_mm_s) : 0;
+
+	return v > 0 ? v : INFINITY;
+}
+
 /* In points a second, of what it has to do; 0: on nothing that has points.
  * What brakes goes as slowly as it goes, and comes to an end. */
 static double points_s(const struct cycle *c)
@@ -86,7 +97,7 @@ static double points_s(const struct cycle *c)
 		v = fmin((double)s->feed_max_mm_s,
 			 c->state == STATE_HOLD ? c->gap.retract_mm_s :
 						  c->jump.v_max_mm_s);
-	return v * (double)s->ticks / s->length_mm;
+	return fmin(v, planned_mm_s(c)) * (double)s->ticks / s->length_mm;
 }
 
 /* A time after which some points should have come. */
