@@ -197,6 +197,15 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 		s->feed_mm_s = s->feed_max_mm_s;
 }
 
+/* Those from the end of segment @first to the start of segment @i. */
+static void limit_nodes(struct pass *w, uint32_t first, uint32_t i, double v)
+{
+	const float most = isinf(v) ? INFINITY : level(w, v);
+
+	for (uint32_t k = first; k < i; k++)
+		w->segs[k].node_mm_s = fminf(w->segs[k].node_mm_s, most);
+}
+
 /* An action stands on the node before it. */
 static void walk_nodes(struct pass *w)
 {
@@ -216,14 +225,14 @@ static void walk_nodes(struct pass *w)
 		heading_find(&w->ways, i, &h[now]);
 		limit_seg(w, i, &h[now]);
 		if (last > 0) {
-			const double v = pass_node_mm_s(w, last, i,
-							&h[!now].last,
-							&h[now].first);
+			double v = pass_node_mm_s(w, last, i, &h[!now].last,
+						  &h[now].first);
 
-			const float most = isinf(v) ? INFINITY : level(w, v);
-
-			for (uint32_t k = last; k < i; k++)
-				w->segs[k].node_mm_s = most;
+			limit_nodes(w, last, i, v);
+			if (pass_is_tiny(w, last) && !pass_is_tiny(w, i)) {
+				v = pass_over_mm_s(w, &last, i, &h[now].first);
+				limit_nodes(w, last, i, v);
+			}
 		}
 		last = i;
 		now = !now;
