@@ -123,8 +123,8 @@ int contour_keep(struct contour *k, const struct contour_motion *m,
 	return 0;
 }
 
-static int take(struct contour *k, struct contour_motion *m,
-		struct interp_diag *diag)
+static int take_one(struct contour *k, struct contour_motion *m,
+		    struct interp_diag *diag)
 {
 	int err;
 
@@ -144,6 +144,52 @@ static int take(struct contour *k, struct contour_motion *m,
 	k->last_slope = k->slope;
 	memcpy(k->here_mm, m->end_mm, sizeof(k->here_mm));
 	return err;
+}
+
+/*
+ * On an arc that nearly comes back to its start, a rounding of its ends would
+ * move the centre by far more, to have both ends on one circle: a keyhole of 5 mm
+ * with a neck of 0.3 mm by 17 roundings.  Its halves have a diameter between
+ * their ends.
+ */
+static bool wants_halves(const struct contour *k, const struct curve *c)
+{
+	return fabs(c->sweep) > 2 * ANGLE_RIGHT &&
+	       fabs(curve_uneven(c)) > k->guides.pulse_mm / 2;
+}
+
+static int take_halves(struct contour *k, const struct contour_motion *m,
+		       struct interp_diag *diag)
+{
+	struct contour_motion half[2] = { *m, *m };
+	double *mid = half[0].end_mm;
+	int err;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		mid[i] = (m->from_mm[i] + m->end_mm[i]) / 2;
+	for (int p = 0; p < 2; p++) {
+		struct curve part[2];
+
+		curve_halved(&m->c[p], part);
+		half[0].c[p] = part[0];
+		half[1].c[p] = part[1];
+		if (p && !guides_on(&k->guides))
+			continue;
+		mid[p ? INTERP_U : INTERP_X] = part[0].to.x;
+		mid[p ? INTERP_V : INTERP_Y] = part[0].to.y;
+	}
+	memcpy(half[1].from_mm, mid, sizeof(half[1].from_mm));
+	err = take_one(k, &half[0], diag);
+	return err ? err : take_one(k, &half[1], diag);
+}
+
+static int take(struct contour *k, struct contour_motion *m,
+		struct interp_diag *diag)
+{
+	if (!contour_leads(k) && (wants_halves(k, &m->c[0]) ||
+				  wants_halves(k, &m->c[1])))
+		return take_halves(k, m, diag);
+	return take_one(k, m, diag);
 }
 
 /* -- In -------------------------------------------------------------------- */

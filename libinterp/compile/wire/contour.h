@@ -111,7 +111,7 @@ int contour_release(struct contour *k, const struct contour_motion *next,
 struct track_fault;
 
 /* Tell the user about a contour that is not cut as it is written. */
-void contour_note_skip(const struct contour *k, const struct track_fault *f,
+void contour_note_left(const struct contour *k, const struct track_fault *f,
 		       int plane);
 void contour_note_constant(const struct contour *k, const struct face *f);
 int contour_refuse_track(const struct contour *k, const struct track_fault *f,

@@ -67,17 +67,23 @@ int contour_refuse_track(const struct contour *k, const struct track_fault *f,
 	return refuse_stuck(k, f, plane, diag);
 }
 
-void contour_note_skip(const struct contour *k, const struct track_fault *f,
+void contour_note_left(const struct contour *k, const struct track_fault *f,
 		       int plane)
 {
+	const uint32_t a = k->m[f->a].word.line, b = k->m[f->b].word.line;
 	char text[160];
 
 	if (!k->notes)
 		return;
-	snprintf(text, sizeof(text), "what lies between lines %u and %u is too "
-		 "narrow for the wire%s and is left out (gouge = skip)",
-		 k->m[f->a].word.line, k->m[f->b].word.line, plane_name(plane));
-	k->notes->say(k->notes->arg, k->m[f->a].word.line, text);
+	if (f->kind == TRACK_POINT)
+		snprintf(text, sizeof(text), "the corner of lines %u and %u is "
+			 "so sharp that the wire leaves %.4f mm of its point%s",
+			 a, b, f->found_mm, plane_name(plane));
+	else
+		snprintf(text, sizeof(text), "what lies between lines %u and "
+			 "%u is too narrow for the wire%s and is left out "
+			 "(gouge = skip)", a, b, plane_name(plane));
+	k->notes->say(k->notes->arg, a, text);
 }
 
 void contour_note_constant(const struct contour *k, const struct face *f)

@@ -51,17 +51,42 @@ struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
  * other: the nearest place that is. */
 struct curve curve_evened(const struct curve *c)
 {
-	const struct vec chord = { c->to.x - c->from.x, c->to.y - c->from.y };
+	const struct vec chord = vec_add(c->to, -1, c->from);
 	const double len = curve_hypot(chord.x, chord.y);
-	const struct vec mid = { (c->from.x + c->to.x) / 2,
-				 (c->from.y + c->to.y) / 2 };
-	const struct vec off = { mid.x - c->centre.x, mid.y - c->centre.y };
 
 	if (!c->arc || len < CURVE_SAME_MM)
 		return *c;
 	return curve_arc(c->from, c->to,
-			 vec_add(c->centre, dot(off, chord) / (len * len),
-				 chord), c->sweep < 0);
+			 vec_add(c->centre, curve_uneven(c) / len, chord),
+			 c->sweep < 0);
+}
+
+double curve_uneven(const struct curve *c)
+{
+	const struct vec chord = vec_add(c->to, -1, c->from);
+	const double len = curve_hypot(chord.x, chord.y);
+	const struct vec off = {
+		(c->from.x + c->to.x) / 2 - c->centre.x,
+		(c->from.y + c->to.y) / 2 - c->centre.y,
+	};
+
+	return !c->arc || len < CURVE_SAME_MM ? 0 : dot(off, chord) / len;
+}
+
+void curve_halved(const struct curve *c, struct curve ret[2])
+{
+	const struct vec mid = curve_at(c, 0.5);
+	const double r1 = curve_distance(c->centre, c->to);
+	struct vec at;
+
+	ret[0] = curve_part(c, 0, 0.5);
+	ret[1] = curve_part(c, 0.5, 1);
+	if (!c->arc || c->r == 0)
+		return;
+	at = vec_add(c->centre, (c->r + r1) / (2 * c->r),
+		     vec_add(mid, -1, c->centre));
+	ret[0] = curve_arc(c->from, at, c->centre, c->sweep < 0);
+	ret[1] = curve_arc(at, c->to, c->centre, c->sweep < 0);
 }
 
 double curve_length(const struct curve *c)

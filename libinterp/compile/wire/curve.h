@@ -65,6 +65,13 @@ struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 /** curve_evened() - an arc with both ends on its circle; a line as it is. */
 struct curve curve_evened(const struct curve *c);
 
+/** curve_uneven() - how far curve_evened() moves its centre along the chord. */
+double curve_uneven(const struct curve *c);
+
+/** curve_halved() - both halves of it, each with its ends as they are; the
+ *  radius of an arc changes half way. */
+void curve_halved(const struct curve *c, struct curve ret[2]);
+
 double curve_length(const struct curve *c);
 
 /** curve_way() - the unit vector along it, at its start or end. */

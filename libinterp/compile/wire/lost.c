@@ -31,6 +31,7 @@
 #define OPEN		2.1		/* the outline's own may turn so far */
 #define CURVED		0.5		/* or by so much more than the way: its
 					 * walls bulge */
+#define PLAIN		0.01		/* two turns are one, but for rounding */
 #define ARC_PARTS	8
 #define NEAR_RUNS	16u		/* of the way, on either side */
 
@@ -73,9 +74,9 @@ static struct curve run_of(const struct track_work *w, uint32_t i)
 	return curve_part(&w->elem[r->elem].c, r->t[0], r->t[1]);
 }
 
-/* By how much the way turns in a jump, + inward.  What is shorter than rounding
- * has no direction. */
-static double turn_of(const struct track_work *w, const struct track_jump *j)
+/* By how much the way turns from the one element to the other, + inward. */
+static double turn_between(const struct track_work *w,
+			   const struct track_jump *j)
 {
 	struct curve a = curve_part(&w->elem[j->e].c, 0, j->te);
 	struct curve b = curve_part(&w->elem[j->f].c, j->tf, 1);
@@ -84,16 +85,38 @@ static double turn_of(const struct track_work *w, const struct track_jump *j)
 		a = w->elem[j->e].c;
 	if (j->tf >= 1)
 		b = w->elem[j->f].c;
-	if (j->run) {
-		uint32_t i = j->run - 1, k = j->run;
-
-		for (a = run_of(w, i); i && curve_length(&a) < HIDDEN_MM;)
-			a = run_of(w, --i);
-		for (b = run_of(w, k);
-		     k + 1 < w->nruns && curve_length(&b) < HIDDEN_MM;)
-			b = run_of(w, ++k);
-	}
 	return side_of(w, j) * curve_turn(&a, &b);
+}
+
+/* ... and from the runs in front of the jump and behind it. */
+static double turn_of_runs(const struct track_work *w,
+			   const struct track_jump *j)
+{
+	uint32_t i = j->run - 1, k = j->run;
+	struct curve a, b;
+
+	for (a = run_of(w, i); i && curve_length(&a) < HIDDEN_MM;)
+		a = run_of(w, --i);
+	for (b = run_of(w, k); k + 1 < w->nruns && curve_length(&b) < HIDDEN_MM;)
+		b = run_of(w, ++k);
+	return side_of(w, j) * curve_turn(&a, &b);
+}
+
+/*
+ * By how much the way turns in a jump, + inward.  What is shorter than rounding
+ * has no direction: a run of nanometres beside a jump would make a corner of
+ * what is none.  But between two jumps it may be all that is left of its
+ * element, and the turn of the other jump is not that of this one.
+ */
+static double turn_of(const struct track_work *w, const struct track_jump *j)
+{
+	const bool tiny = curve_length(&w->elem[j->e].c) < HIDDEN_MM ||
+			  curve_length(&w->elem[j->f].c) < HIDDEN_MM;
+
+	if (!j->run)
+		return turn_between(w, j);
+	return tiny ? turn_of_runs(w, j) :
+		      fmin(turn_of_runs(w, j), turn_between(w, j));
 }
 
 /* What lies between the two places that the wire touches. */
@@ -280,25 +303,47 @@ static bool is_missing(const struct between *k, const struct corner *c,
 	return !is_near_way(k, at, c->most + hidden);
 }
 
-bool lost_is(const struct track_work *w, const struct track_jump *j)
+static bool is_any_missing(const struct between *k)
 {
-	struct corner corner;
-	struct between k;
+	const struct corner corner = corner_of(k);
 
-	between_init(&k, w, j);
-	if (k.n < 2)
-		return false;
-	corner = corner_of(&k);
-	for (uint32_t i = 0; i < k.n; i++) {
-		const struct curve *c = piece_of(&k, i);
+	for (uint32_t i = 0; i < k->n; i++) {
+		const struct curve *c = piece_of(k, i);
 		const int parts = c->arc ? ARC_PARTS : 1;
 
 		for (int s = 1; s <= parts; s++) {
-			const double t = share_of(&k, i, (double)s / parts);
+			const double t = share_of(k, i, (double)s / parts);
 
-			if (is_missing(&k, &corner, curve_at(c, t)))
+			if (is_missing(k, &corner, curve_at(c, t)))
 				return true;
 		}
 	}
 	return false;
+}
+
+/* The corner of two straight walls, beside both of which the wire goes: it is
+ * one, however sharp. */
+static bool is_plain(const struct between *k)
+{
+	return k->n == 2 && !piece_of(k, 0)->arc && !piece_of(k, 1)->arc &&
+	       fabs(rise_of(k) - turn_of(k->w, k->j)) < PLAIN;
+}
+
+bool lost_is(const struct track_work *w, const struct track_jump *j)
+{
+	struct between k;
+
+	between_init(&k, w, j);
+	return k.n > 1 && !is_plain(&k) && is_any_missing(&k);
+}
+
+double lost_point(const struct track_work *w, const struct track_jump *j)
+{
+	struct between k;
+
+	between_init(&k, w, j);
+	if (k.n != 2 || w->elem[j->e].fill || w->elem[j->f].fill ||
+	    rise_of(&k) <= OPEN || !is_any_missing(&k))
+		return 0;
+	return curve_distance(piece_of(&k, 0)->to, k.at) - k.d;
 }

@@ -209,8 +209,8 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 		if (err == -EINVAL)
 			contour_refuse_track(k, &fault, p, diag);
 	}
-	if (!err && s->t[p].skipped)
-		contour_note_skip(k, &fault, p);
+	for (uint32_t i = 0; !err && i < s->t[p].nleft; i++)
+		contour_note_left(k, &s->t[p].left[i], p);
 	if (!err && f.nconstant)
 		contour_note_constant(k, &f);
 	face_free(&f);

@@ -278,6 +278,7 @@ void track_free(struct track *t)
 	free(t->c);
 	free(t->owner);
 	free(t->fill);
+	free(t->left);
 	*t = (struct track) { .n = 0 };
 }
 
@@ -317,7 +318,7 @@ static void close_gaps(struct track *t, double pulse_mm)
 	t->n = n;
 }
 
-static int take_way(struct track *t, const struct track_work *w)
+static int take_way(struct track *t, struct track_work *w)
 {
 	t->c = malloc(w->nruns * sizeof(*t->c));
 	t->owner = malloc(w->nruns * sizeof(*t->owner));
@@ -332,6 +333,9 @@ static int take_way(struct track *t, const struct track_work *w)
 		put(t, e, &part);
 	}
 	close_gaps(t, w->job->pulse_mm);
+	t->left = w->left;
+	t->nleft = w->nleft;
+	w->left = NULL;
 	return 0;
 }
 
@@ -341,6 +345,7 @@ void track_forget(struct track_work *w)
 	free(w->elem);
 	free(w->hit);
 	free(w->run);
+	free(w->left);
 	free(w->stamp);
 	free(w->no_mitre);
 }
@@ -411,7 +416,7 @@ static int find_way(struct track_work *w, struct track_fault *fault)
 	grid_free(&w->near);
 	free(w->stamp);
 	w->stamp = NULL;
-	w->nhits = w->nruns = 0;
+	w->nhits = w->nruns = w->nleft = 0;
 	err = track_lay(w);
 	if (!err)
 		err = clear_init(w);
@@ -440,11 +445,8 @@ static int attempt(struct track *t, const struct track_job *j, uint32_t i,
 		err = find_way(&w, fault);
 	while ((!err || err == -EINVAL) && turns++ < MITRE_TURNS &&
 	       give_up_mitres(&w));
-	if (!err || (err == -EINVAL && j->skip && w.nruns &&
-		    fault->kind == TRACK_LOST)) {
-		t->skipped = err != 0;
+	if (!err)
 		err = take_way(t, &w);
-	}
 	track_forget(&w);
 	return err;
 }

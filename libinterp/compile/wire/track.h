@@ -60,6 +60,8 @@ struct track_run {
 enum track_fault_kind {
 	TRACK_STUCK,			/* it cannot go on behind motion a */
 	TRACK_LOST,			/* what lies from a to b is left out */
+	TRACK_POINT,			/* found_mm of the point between a and b
+					 * are left: no fault, but told */
 	TRACK_LEAD,			/* lead a comes too near to b */
 	TRACK_CROWDED,			/* more crossings than are looked at */
 };
@@ -83,7 +85,8 @@ struct track {
 	uint32_t *owner;
 	bool *fill;
 	uint32_t n;
-	bool skipped;			/* parts are left out: see fault */
+	struct track_fault *left;	/* what is left out, in its order */
+	uint32_t nleft;
 };
 
 /**
@@ -105,6 +108,8 @@ struct track_work {
 	uint32_t nhits, hits_room;
 	struct track_run *run;
 	uint32_t nruns, runs_room;
+	struct track_fault *left;
+	uint32_t nleft, left_room;
 	struct grid near;		/* pieces of the outline */
 	uint32_t *stamp, stamp_now;	/* pieces asked about already */
 	double reach_mm;		/* the largest distance of a piece */
@@ -161,6 +166,10 @@ const struct face_piece *track_piece(const struct track_work *w, uint32_t e);
 
 /** lost_is() - would a part of the outline be missing by @j? */
 bool lost_is(const struct track_work *w, const struct track_jump *j);
+
+/** lost_point() - how much is left of the point of the corner of two neighbours,
+ *  if that is more than a corner may hide; otherwise 0. */
+double lost_point(const struct track_work *w, const struct track_jump *j);
 
 /** way_find() - fill w->run. Return: 0, -ENOMEM, -EINVAL with @fault. */
 int way_find(struct track_work *w, struct track_fault *fault);

@@ -85,6 +85,39 @@ static int check_jump(struct walker *k, struct track_jump *j)
 	return -EINVAL;
 }
 
+/* The fault is none: it is told. */
+static int leave(struct walker *k)
+{
+	struct track_work *w = k->w;
+
+	if (w->nleft == w->left_room) {
+		const uint32_t room = w->left_room ? w->left_room * 2 : 8;
+		struct track_fault *p = realloc(w->left, room * sizeof(*p));
+
+		if (!p)
+			return -ENOMEM;
+		w->left = p;
+		w->left_room = room;
+	}
+	w->left[w->nleft++] = *k->fault;
+	return 0;
+}
+
+/* A corner in which both motions are cut off where they meet may be too sharp,
+ * or too long a horn, to pass unsaid. */
+static int check_point(struct walker *k, const struct track_jump *j)
+{
+	const double left_mm = k->w->sides ? 0 : lost_point(k->w, j);
+
+	if (!(left_mm > 0))
+		return 0;
+	*k->fault = (struct track_fault) {
+		.kind = TRACK_POINT, .a = track_piece(k->w, j->e)->owner,
+		.b = track_piece(k->w, j->f)->owner, .found_mm = left_mm,
+	};
+	return leave(k);
+}
+
 static int check_jumps(struct walker *k)
 {
 	int err = 0;
@@ -95,8 +128,10 @@ static int check_jumps(struct walker *k)
 					.te = p->t[1], .tf = q->t[0],
 					.run = i };
 
-		if (q->jump)
-			err = check_jump(k, &j);
+		err = q->jump ? check_jump(k, &j) : check_point(k, &j);
+		if (err == -EINVAL && k->w->job->skip &&
+		    k->fault->kind == TRACK_LOST)
+			err = leave(k);
 	}
 	return err;
 }
@@ -345,6 +380,9 @@ static int find_start(struct walker *k)
 		err = check_jump(k, &j);
 		if (err)
 			continue;
+		err = check_point(k, &j);
+		if (err)
+			return err;
 		k->elem = h->elem;
 		k->t = h->t;
 		k->stop_elem = h->other;
