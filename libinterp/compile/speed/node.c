@@ -406,9 +406,9 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 	c.a = &before.last;
 	c.b = b;
 	c.per_mm = 1 / s[m].length_mm + 1 / s[i].length_mm;
-	change_of(w, heard, &c);
+	change_of(w, heard, &c, w->n);
 	*first = m;
-	return smaller(corner(w, &c), step(w, &c));
+	return smaller(corner(w, &c, w->n), step(w, &c, w->n));
 }
 
 /*
