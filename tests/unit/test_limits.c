@@ -98,7 +98,8 @@ static void tiny_lines_hide_no_corner(void **st)
 	for (int i = 0; i < 5 * 5 * 3 * 2; i++) {
 		const double turn = turns[i % 5], tiny = mm[i / 5 % 5];
 		const int n = 1 + i / 25 % 3;
-		const double v = (double)least_over_tiny(turn, n, tiny, i >= 75);
+		const double v = (double)least_over_tiny(turn, n, tiny,
+							 i >= 75);
 
 		/* Oblique to X and Y they leave sqrt(2) more. */
 		if (v > 1.43 * (double)node_of_turn(turn))
