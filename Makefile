@@ -206,9 +206,12 @@ $(B)/%.o: %.cc
 	@mkdir -p $(@D)
 	$(Q)$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
 
-# From text to program there are many short loops over the axes.
+# From text to program there are many short loops over the axes, and roots whose
+# errno nobody asks for.
 $(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
-	speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3
+	speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3 -fno-math-errno
+# Over two to four columns vectors take more than they give.
+$(call obj,$(wildcard libinterp/compile/speed/*.c)): OPT += -fno-tree-vectorize
 
 # What runs each period is optimised as a whole where it is linked into a program.
 # Its objects have machine code too, for all that is linked without that.  Not for

@@ -135,6 +135,8 @@ static const struct {
 	  2, 15 },
 	{ "[words]\nG7 = refuse: nothing", "not enough in refuse: nothing",
 	  2, 6 },
+	{ "[words]\nG7 = refuse: why ; ", "not enough in refuse: why ;", 2, 6 },
+	{ "[letters]\nW = refuse: why;", "not enough in refuse: why;", 2, 5 },
 	{ "[words]\nG7 = ignore h: why", "letter h", 2, 13 },
 	{ "[words]\nG7 = line H", "behind a meaning: H", 2, 11 },
 	{ "[dialect]\nbase = mine", "no base mine", 2, 8 },

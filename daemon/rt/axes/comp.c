@@ -5,6 +5,7 @@
 #include "axes/comp.h"
 
 #include <math.h>
+#include <string.h>
 
 void comp_map(const struct comp_config *k, const int32_t place[INTERP_NAXES],
 	      int32_t ret[INTERP_NAXES])
@@ -82,7 +83,12 @@ void comp_apply(struct comp *c, const struct comp_config *k,
 {
 	const int32_t *place = p->place;
 	const bool frozen = p->frozen || c->resting;
+	bool adds = k->mapped;
 
+	if (c->idle && memcmp(place, c->place, sizeof(c->place)) == 0) {
+		memcpy(ret, c->sent, sizeof(c->sent));
+		return;
+	}
 	if (k->mapped)
 		look_up(c, k, place);
 	for (int i = 0; i < INTERP_NAXES; i++) {
@@ -97,12 +103,17 @@ void comp_apply(struct comp *c, const struct comp_config *k,
 			a->toward = path < 0 ? -1 : 1;
 		/* An earlier edmd may have added something that now has to be
 		 * taken off. */
-		if ((k->axis[i].backlash | a->added | k->mapped) != 0 &&
-		    !frozen)
-			take_up(a, k, i, path, p->edges);
+		if ((k->axis[i].backlash | a->added | k->mapped) != 0) {
+			adds = true;
+			if (!frozen)
+				take_up(a, k, i, path, p->edges);
+		}
 		ret[i] = comp_pulses(a);
 	}
 	c->begun = true;
+	c->idle = !adds;
+	memcpy(c->place, place, sizeof(c->place));
+	memcpy(c->sent, ret, sizeof(c->sent));
 }
 
 void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
@@ -114,6 +125,7 @@ void comp_settle(struct comp *c, const struct comp_config *k, uint32_t axis,
 	if (k->mapped)
 		comp_map(k, place, map);
 	c->stale = true;
+	c->idle = false;
 	a->place = place[axis];
 	a->map = map[axis];
 	a->added = wanted(k, a, (int)axis);

@@ -57,6 +57,9 @@ struct comp {
 	double told_c;			/* temperature of the axes; 0: not
 					 * known */
 	struct comp_axis axis[INTERP_NAXES];
+	/* Of the last period: */
+	bool idle;			/* there was nothing to add */
+	int32_t place[INTERP_NAXES], sent[INTERP_NAXES];
 };
 
 /* One period, as it comes from the cycle. */

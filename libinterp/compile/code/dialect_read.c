@@ -214,6 +214,13 @@ static int keep_text(struct reading *f, struct piece text, uint16_t *ret)
 	return 0;
 }
 
+/* Behind the ; a refusal says what would be accepted. */
+static bool says_wanted(struct piece text)
+{
+	cut(&text, ';');
+	return trim(text).n > 0;
+}
+
 /* Q = refuse: ...; Q = ignore-line: ... */
 static int read_reason(struct reading *f, struct piece key, struct piece value)
 {
@@ -223,7 +230,7 @@ static int read_reason(struct reading *f, struct piece key, struct piece value)
 	if (key.n != 1 || !isupper((unsigned char)*key.at))
 		return refuse_letter(f, key);
 	text = trim(text);
-	if (text.n == 0 || (refused && !memchr(text.at, ';', text.n)))
+	if (text.n == 0 || (refused && !says_wanted(text)))
 		return refuse(f, value.at, "refuse: what it means elsewhere; "
 			      "what would be accepted here", "not enough in",
 			      value);
@@ -320,7 +327,7 @@ static int read_meaning(struct reading *f, struct piece value,
 			      "none", "no word means", w);
 	*ret = meanings[i].code;
 	text = trim(text);
-	if (ret->group == NC_REFUSED && !memchr(text.at, ';', text.n))
+	if (ret->group == NC_REFUSED && !says_wanted(text))
 		return refuse(f, value.at, "refuse: what it means elsewhere; "
 			      "what would be accepted here", "not enough in",
 			      value);

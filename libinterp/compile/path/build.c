@@ -11,6 +11,7 @@
 #include "path/build_pair.h"
 #include "path/build_rule.h"
 #include "pulse/pulse.h"
+#include "interp/smaller.h"
 
 #include <errno.h>
 #include <math.h>
@@ -297,8 +298,12 @@ static inline uint32_t other_axes(const double a_mm[INTERP_NAXES],
 {
 	uint32_t axes = 0;
 
-	for (int i = 0; i < INTERP_NAXES; i++)
-		axes |= (uint32_t)(a_mm[i] != b_mm[i]) << i;
+	/* Most stand, and equal numbers mostly have equal bits. */
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (memcmp(&a_mm[i], &b_mm[i], sizeof(*a_mm)) != 0 &&
+		    a_mm[i] != b_mm[i])
+			axes |= 1u << i;
+	}
 	return axes;
 }
 
@@ -306,33 +311,33 @@ int build_measure(const struct interp_build *b,
 		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
 		  struct build_measure *ret, struct interp_diag *diag)
 {
-	const struct interp_machine *m = b->o.machine;
-	double d[INTERP_NAXES] = { 0 };
+	const struct interp_axis_limits *axis = b->o.machine->axis;
+	double d[INTERP_NAXES] = { 0 }, seconds = 0;
+	uint32_t moved = 0;
+	int64_t longest = 0;
 
-	*ret = (struct build_measure) { 0 };
 	memcpy(to, b->here, sizeof(b->here));
 	for (uint32_t left = other_axes(end_mm, b->here_mm); left;
 	     left &= left - 1) {
 		const int i = __builtin_ctz(left);
-		double s, t;
+		const double at = end_mm[i], s = at * b->sub_mm[i];
 		int64_t len;
 
-		if (!is_inside(b, i, end_mm[i]) &&
-		    !build_axis_ok(b, i, end_mm[i]))
-			return build_refuse_travel(m, i, end_mm[i], diag);
-		s = end_mm[i] * b->sub_mm[i];
-		to[i] = (int64_t)(s < 0 ? s - 0.5 : s + 0.5);
+		if (!is_inside(b, i, at) && !build_axis_ok(b, i, at))
+			return build_refuse_travel(b->o.machine, i, at, diag);
+		to[i] = (int64_t)(s + copysign(0.5, s));
 		len = to[i] - b->here[i];
 		if (len == 0)
 			continue;
 		d[i] = (double)len / b->sub_mm[i];
-		ret->moved |= 1u << i;
-		t = fabs(d[i]) / m->axis[i].v_max_mm_s;
-		ret->seconds = t > ret->seconds ? t : ret->seconds;
+		moved |= 1u << i;
+		seconds = larger(fabs(d[i]) / axis[i].v_max_mm_s, seconds);
 		len = len < 0 ? -len : len;
-		ret->longest = len > ret->longest ? len : ret->longest;
+		longest = len > longest ? len : longest;
 	}
-	ret->length_mm = length_of(d, ret->moved);
+	*ret = (struct build_measure) {
+		moved, length_of(d, moved), seconds, longest
+	};
 	return 0;
 }
 

@@ -33,21 +33,20 @@ static uint32_t along_of(const struct ways *w, uint32_t moving)
 	       moving & w->uv ? w->uv : ~(w->xyz | w->uv);
 }
 
-/* The way from node to node; @ret_moving gets the columns that move. */
-static void straight(const struct ways *w, uint32_t i, struct heading *h,
-		     uint32_t *ret_moving)
+/* The way from node to node.  Return: the columns that move. */
+COLUMNS_INLINE uint32_t straight(const struct ways *w, uint32_t i, struct heading *h, uint32_t n)
 {
-	const uint32_t n = w->p->head->naxes;
 	const int64_t *from = w->p->nodes + (uint64_t)i * n, *to = from + n;
 	const double per_mm = 1 / w->p->segs[i].length_mm;
+	uint32_t moving = 0;
 
-	*ret_moving = 0;
 	for (uint32_t j = 0; j < n; j++) {
 		const int64_t d = to[j] - from[j];
 
 		h->rate[j] = (double)d * per_mm * w->sub_mm[j];
-		*ret_moving |= (uint32_t)(d != 0) << j;
+		moving |= (uint32_t)(d != 0) << j;
 	}
+	return moving;
 }
 
 static uint32_t column(const struct interp_program *p, uint32_t axis)
@@ -128,9 +127,9 @@ void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
 {
 	const struct interp_program *p = w->p;
 	const struct interp_seg *s = &p->segs[i];
-	uint32_t moving;
+	uint32_t moving = BY_COLUMNS(p->head->naxes, straight, w, i,
+				     &ret->first);
 
-	straight(w, i, &ret->first, &moving);
 	ret->bend_mm = 0;
 	if (s->kind == INTERP_ARC)
 		moving |= columns_of(p, 1u << p->arcs[s->arg].axis_a |

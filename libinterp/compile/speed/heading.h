@@ -9,6 +9,15 @@
 
 #include "interp/program.h"
 
+/* Most programs move two to four axes: for these @f is compiled with a constant
+ * number of columns, its last parameter. */
+#define BY_COLUMNS(n, f, ...) \
+	((n) == 3 ? f(__VA_ARGS__, 3) : (n) == 2 ? f(__VA_ARGS__, 2) : \
+	 (n) == 4 ? f(__VA_ARGS__, 4) : f(__VA_ARGS__, n))
+
+/* So that the constant gets there. */
+#define COLUMNS_INLINE static inline __attribute__((always_inline))
+
 struct heading {
 	double rate[INTERP_NAXES];	/* mm of each column for a mm of path */
 	uint32_t along;			/* the columns that make the length */

@@ -39,7 +39,9 @@ static void begin(struct pass *w, const struct interp_limits *l,
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
 			     .points_per_s = l->points_per_s,
-			     .n = p->head->naxes, .a_least_mm_s2 = INFINITY,
+			     .short_mm = PASS_LONG * PASS_WINDOW * l->corner_mm,
+			     .n = p->head->naxes, .end = p->head->nsegs - 1,
+			     .a_least_mm_s2 = INFINITY,
 			     .j_least_mm_s3 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
@@ -117,12 +119,13 @@ static void note_soft(struct pass_soft *k, double a, double j)
 }
 
 /* Along the path, what its axes leave. */
-static void soften_seg(struct pass *w, struct interp_seg *s,
-		       const struct along *left, const struct rates *r)
+COLUMNS_INLINE void soften_seg(struct pass *w, struct interp_seg *s,
+			    const struct along *left, const struct rates *r,
+			    uint32_t n)
 {
 	double a = left->a_mm_s2, j = left->j_mm_s3;
 
-	for (uint32_t k = 0; k < w->n; k++) {
+	for (uint32_t k = 0; k < n; k++) {
 		const bool bends = r->bends >> k & 1;
 
 		if (!(r->by[k] > 0))
@@ -173,12 +176,11 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 {
 	struct interp_seg *s = &w->segs[i];
 	struct along left = { 1, 1, INFINITY, INFINITY };
-	double v = (double)s->feed_max_mm_s;
 	struct rates rates;
+	double v;
 
 	pass_rates(w, i, h, &rates);
-	if (s->kind == INTERP_LINE && pass_is_short(w, i))
-		v = larger(v, pass_rate_mm_s(w, &rates));
+	v = larger((double)s->feed_max_mm_s, rates.v_mm_s);
 	if (s->kind == INTERP_CURVE) {
 		/* What its axes leave is known already. */
 		left.a_mm_s2 = w->p->pieces[s->arg].a_mm_s2;
@@ -187,7 +189,7 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 	} else if (h->bend_mm > 0) {
 		v = round_bend(w, h, v, &left);
 	}
-	soften_seg(w, s, &left, &rates);
+	BY_COLUMNS(w->n, soften_seg, w, s, &left, &rates);
 	/* A cycle that has no time for its points would break off the move. */
 	if (s->ticks >= MANY_POINTS)
 		v = smaller(v, w->points_per_s * s->length_mm /
@@ -200,18 +202,19 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 /* An action stands on the node before it. */
 static void walk_nodes(struct pass *w)
 {
-	const uint32_t nsegs = w->p->head->nsegs;
 	struct headings h[2];
 	uint32_t last = 0;		/* that moves; 0: none yet */
 	int now = 0;
 
 	w->segs[0].node_mm_s = INFINITY;
 	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
-	for (uint32_t i = 1; i < nsegs; i++) {
-		w->segs[i].node_mm_s = INFINITY;
-		w->segs[i].a_mm_s2 = w->segs[i].j_mm_s3 = INFINITY;
-		w->segs[i].flags &= (uint8_t)~INTERP_SEG_STAND;
-		if (w->segs[i].kind >= INTERP_BEGIN)
+	for (uint32_t i = 1; i <= w->end; i++) {
+		struct interp_seg *s = &w->segs[i];
+
+		s->node_mm_s = INFINITY;
+		s->a_mm_s2 = s->j_mm_s3 = INFINITY;
+		s->flags &= (uint8_t)~INTERP_SEG_STAND;
+		if (s->kind >= INTERP_BEGIN)
 			continue;
 		heading_find(&w->ways, i, &h[now]);
 		limit_seg(w, i, &h[now]);
@@ -222,8 +225,8 @@ static void walk_nodes(struct pass *w)
 
 			const float most = isinf(v) ? INFINITY : level(w, v);
 
-			for (uint32_t k = last; k < i; k++)
-				w->segs[k].node_mm_s = most;
+			while (last < i)
+				w->segs[last++].node_mm_s = most;
 		}
 		last = i;
 		now = !now;
@@ -232,122 +235,151 @@ static void walk_nodes(struct pass *w)
 
 /* -- The next slower ------------------------------------------------------- */
 
-/* Actions stop the way, and so may a cut after what is positioned. */
-static bool may_stop(const struct pass *w, uint32_t i)
+/*
+ * A hop leads from a segment to the next one that is slower.  What is between
+ * was skipped by the hops of faster ones.  Most segments are as fast as their
+ * neighbour: then its hop leads to the same place.
+ */
+static inline uint16_t hop_of(uint32_t hops)
 {
-	const struct interp_seg *s = &w->segs[i];
+	return (uint16_t)(hops < HOP_MAX ? hops : HOP_MAX);
+}
 
+/* Actions stop the way, and so may a cut after what is positioned. */
+static bool may_stop(const struct interp_seg *s)
+{
 	return s->kind >= INTERP_BEGIN ||
 	       (!(s->flags & INTERP_SEG_RAPID) &&
 		s[-1].kind < INTERP_BEGIN && s[-1].flags & INTERP_SEG_RAPID);
 }
 
-/* From the last to the first; what is between was skipped by a faster one. */
-static void chain_ahead(const struct pass *w)
+static inline float least(float a, float b)
 {
-	for (uint32_t i = w->p->head->nsegs - 1; i-- > 0; ) {
-		uint32_t m = i + 1;
-
-		if (w->segs[i].kind < INTERP_BEGIN) {
-			const double v = interp_limits_into(w->p, i);
-
-			while (m - i < HOP_MAX && !may_stop(w, m) &&
-			       interp_limits_into(w->p, m) >= v)
-				m += w->segs[m].slower_ahead;
-		}
-		w->segs[i].slower_ahead = (uint16_t)(m - i < HOP_MAX ? m - i :
-								       HOP_MAX);
-	}
-	w->segs[w->p->head->nsegs - 1].slower_ahead = 0;
+	return a < b ? a : b;
 }
 
-static double feed_of(const struct interp_seg *s)
+/* Entered over the node before it. */
+static inline float into(const struct interp_seg *s)
+{
+	return least(s[-1].node_mm_s, s->feed_max_mm_s);
+}
+
+static inline uint16_t hop_ahead(const struct interp_seg *s)
+{
+	uint32_t m = 1;
+	float v;
+
+	if (s->kind >= INTERP_BEGIN)
+		return 1;
+	v = into(s);
+	if (!may_stop(s + 1) && into(s + 1) == v)
+		return hop_of(1u + s[1].slower_ahead);
+	while (m < HOP_MAX && !may_stop(s + m) && into(s + m) >= v)
+		m += s[m].slower_ahead;
+	return hop_of(m);
+}
+
+static inline float feed_of(const struct interp_seg *s)
 {
 	return s->kind >= INTERP_BEGIN || s->flags & INTERP_SEG_RAPID ?
-	       INFINITY : (double)s->feed_mm_s;
+	       INFINITY : s->feed_mm_s;
 }
 
-static void chain_feed(const struct pass *w)
+/* @left: segments up to the last one. */
+static inline uint16_t hop_feed(const struct interp_seg *s, uint32_t left)
 {
-	const uint32_t end = w->p->head->nsegs - 1;
-	double next = 0, v;
+	const float v = feed_of(s);
+	uint32_t m = 1;
 
-	w->segs[end].slower_feed = 0;
-	for (uint32_t i = end; i-- > 0; next = v) {
-		uint32_t m = i + 1;
-
-		v = feed_of(&w->segs[i]);
-		while (m - i < HOP_MAX && m < end &&
-		       (m == i + 1 ? next : feed_of(&w->segs[m])) >= v)
-			m = w->segs[m].slower_feed ?
-			    m + w->segs[m].slower_feed : end;
-		w->segs[i].slower_feed = (uint16_t)(m >= end ? 0 :
-						    m - i < HOP_MAX ? m - i :
-								      HOP_MAX);
-	}
+	if (left > 1 && feed_of(s + 1) == v)
+		return s[1].slower_feed ? hop_of(1u + s[1].slower_feed) : 0;
+	while (m < HOP_MAX && m < left && feed_of(s + m) >= v)
+		m = s[m].slower_feed ? m + s[m].slower_feed : left;
+	return m >= left ? 0 : hop_of(m);
 }
 
-static double back_into(const struct pass *w, uint32_t i)
+static inline float back_into(const struct interp_seg *s)
 {
-	return i == 0 ? 0 : w->segs[i].kind >= INTERP_BEGIN ? INFINITY :
-	       interp_limits_back_into(w->p, i);
+	return s->kind >= INTERP_BEGIN ? INFINITY :
+	       least(s->node_mm_s, s->feed_max_mm_s);
 }
 
-static void chain_behind(const struct pass *w)
+/* @i: segments before it; the first one is entered by none. */
+static inline uint16_t hop_behind(const struct interp_seg *s, uint32_t i)
 {
-	double last = 0, v;
+	const float v = back_into(s);
+	uint32_t m = 1;
 
-	w->segs[0].slower_behind = 0;
-	for (uint32_t i = 1; i < w->p->head->nsegs; i++, last = v) {
-		uint32_t m = i - 1;
-
-		v = back_into(w, i);
-		while (i - m < HOP_MAX &&
-		       (m == i - 1 ? last : back_into(w, m)) >= v)
-			m -= w->segs[m].slower_behind;
-		w->segs[i].slower_behind = (uint16_t)(i - m < HOP_MAX ? i - m :
-							HOP_MAX);
-	}
+	if (i > 1 && back_into(s - 1) == v)
+		return hop_of(1u + s[-1].slower_behind);
+	while (m < HOP_MAX && m < i && back_into(s - m) >= v)
+		m += s[-(int64_t)m].slower_behind;
+	return hop_of(m);
 }
 
 /* -- The next softer ------------------------------------------------------- */
 
-static bool is_softer(const struct interp_seg *s, const struct interp_seg *than)
+static inline bool is_softer(const struct interp_seg *s,
+			     const struct interp_seg *than)
 {
 	return s->a_mm_s2 < than->a_mm_s2 || s->j_mm_s3 < than->j_mm_s3;
 }
 
-static bool stands(const struct interp_seg *s)
+static inline bool is_as_soft(const struct interp_seg *s,
+			      const struct interp_seg *as)
+{
+	return s->a_mm_s2 == as->a_mm_s2 && s->j_mm_s3 == as->j_mm_s3;
+}
+
+static inline bool stands(const struct interp_seg *s)
 {
 	return s->flags & INTERP_SEG_STAND;
 }
 
-static void chain_softer(const struct pass *w)
+static inline uint16_t softer_ahead(const struct interp_seg *s, uint32_t left)
 {
-	struct interp_seg *s = w->segs;
-	const uint32_t end = w->p->head->nsegs - 1;
+	uint32_t m = 1;
 
-	s[end].softer_ahead = 0;
+	if (s->kind >= INTERP_BEGIN)
+		return 1;
+	if (left > 1 && s[1].kind < INTERP_BEGIN && !stands(s) &&
+	    is_as_soft(s + 1, s))
+		return hop_of(1u + s[1].softer_ahead);
+	while (m < left && m < HOP_MAX && s[m].kind < INTERP_BEGIN &&
+	       !stands(s + m - 1) && !is_softer(s + m, s))
+		m += s[m].softer_ahead;
+	return hop_of(m);
+}
+
+static inline uint16_t softer_behind(const struct interp_seg *s, uint32_t i)
+{
+	uint32_t m = 1;
+
+	if (i > 1 && !stands(s - 1) && is_as_soft(s - 1, s))
+		return s[-1].softer_behind ?
+		       hop_of(1u + s[-1].softer_behind) : 0;
+	while (m < i && m < HOP_MAX && !stands(s - m) && !is_softer(s - m, s))
+		m = s[-(int64_t)m].softer_behind ?
+		    m + s[-(int64_t)m].softer_behind : i;
+	return m == i ? 0 : hop_of(m);
+}
+
+static void chain_ahead(struct interp_seg *s, uint32_t end)
+{
+	s[end].slower_ahead = s[end].slower_feed = s[end].softer_ahead = 0;
 	for (uint32_t i = end; i-- > 0; ) {
-		uint32_t m = i + 1;
-
-		while (m < end && m - i < HOP_MAX && s[i].kind < INTERP_BEGIN &&
-		       s[m].kind < INTERP_BEGIN && !stands(&s[m - 1]) &&
-		       !is_softer(&s[m], &s[i]))
-			m += s[m].softer_ahead;
-		s[i].softer_ahead = (uint16_t)(m - i < HOP_MAX ? m - i :
-							   HOP_MAX);
+		s[i].slower_ahead = hop_ahead(s + i);
+		s[i].slower_feed = hop_feed(s + i, end - i);
+		s[i].softer_ahead = softer_ahead(s + i, end - i);
 	}
-	s[0].softer_behind = 0;
-	for (uint32_t i = 1; i <= end; i++) {
-		uint32_t m = i - 1;
+}
 
-		while (m > 0 && i - m < HOP_MAX && !stands(&s[m]) &&
-		       !is_softer(&s[m], &s[i]))
-			m = s[m].softer_behind ? m - s[m].softer_behind : 0;
-		s[i].softer_behind = (uint16_t)(m == 0 ? 0 :
-						i - m < HOP_MAX ? i - m :
-								  HOP_MAX);
+static void chain_behind(struct interp_seg *s, uint32_t end)
+{
+	s[0].slower_behind = s[0].softer_behind = 0;
+	for (uint32_t i = 1; i <= end; i++) {
+		s[i].slower_behind = hop_behind(s + i, i);
+		s[i].softer_behind = softer_behind(s + i, i);
 	}
 }
 
@@ -359,9 +391,7 @@ void interp_limits_write(const struct interp_limits *l,
 
 	begin(&w, l, p, segs);
 	walk_nodes(&w);
-	chain_ahead(&w);
-	chain_feed(&w);
-	chain_behind(&w);
 	pass_stretches(&w);
-	chain_softer(&w);
+	chain_ahead(segs, w.end);
+	chain_behind(segs, w.end);
 }

@@ -20,9 +20,6 @@
 /* of the windows, to see the direction of a line itself */
 #define AROUND		1
 
-/* Longer lines have no curve beside the one that their corners show. */
-#define LONG		5
-
 /* If all of a turn but this share is more than a rounding, a wider window shows
  * no more. */
 #define CLEAR		0.02
@@ -37,11 +34,6 @@ double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3)
 	const double v = sqrt(a_mm_s2 * r_mm), jrr = j_mm_s3 * r_mm * r_mm;
 
 	return v * v * v <= jrr ? v : cbrt(jrr);
-}
-
-bool pass_is_short(const struct pass *w, uint32_t i)
-{
-	return w->segs[i].length_mm < LONG * PASS_WINDOW * w->corner_mm;
 }
 
 /*
@@ -86,13 +78,13 @@ static double along_tol(struct pass *w, uint32_t columns)
  * for more than MOST_BESIDE roundings of its own: an axis that turns far on a
  * tiny line really turns there.
  */
-static void change_of(struct pass *w, double (*of)(double, double),
-		      struct change *c)
+COLUMNS_INLINE void change_of(struct pass *w, double (*of)(double, double),
+			      struct change *c, uint32_t n)
 {
 	const uint32_t both = c->a->along & c->b->along;
 	const double along = along_tol(w, both);
 
-	for (uint32_t j = 0; j < w->n; j++) {
+	for (uint32_t j = 0; j < n; j++) {
 		const double a = c->a->rate[j], b = c->b->rate[j];
 		const double by = along * larger(fabs(a), fabs(b));
 		const double off = both >> j & 1 ? 0 :
@@ -103,13 +95,14 @@ static void change_of(struct pass *w, double (*of)(double, double),
 }
 
 /* The columns that make both lengths: a corner is passed like an arc. */
-static double corner(const struct pass *w, const struct change *c)
+COLUMNS_INLINE double corner(const struct pass *w, const struct change *c,
+			     uint32_t n)
 {
 	const struct heading *a = c->a, *b = c->b;
 	const uint32_t both = a->along & b->along, any = a->along | b->along;
 	double turn = 0, acc = INFINITY, jerk = INFINITY, half, r;
 
-	for (uint32_t j = 0; j < w->n; j++) {
+	for (uint32_t j = 0; j < n; j++) {
 		const double d = both >> j & 1 ? c->d[j] : 0;
 
 		turn += d * d;
@@ -120,7 +113,7 @@ static double corner(const struct pass *w, const struct change *c)
 		return INFINITY;
 	/* There is no branch here, because corners are like random. x/0 is no
 	 * limit. */
-	for (uint32_t j = 0; j < w->n; j++) {
+	for (uint32_t j = 0; j < n; j++) {
 		const double is = (double)(any >> j & 1);
 		const double d = is * c->d[j];
 		const double m = is * larger(fabs(a->rate[j]),
@@ -135,12 +128,13 @@ static double corner(const struct pass *w, const struct change *c)
 }
 
 /* The other columns: their speed makes a step. */
-static double step(const struct pass *w, const struct change *c)
+COLUMNS_INLINE double step(const struct pass *w, const struct change *c,
+			   uint32_t n)
 {
 	const uint32_t both = c->a->along & c->b->along;
 	double v = INFINITY;
 
-	for (uint32_t j = 0; j < w->n; j++) {
+	for (uint32_t j = 0; j < n; j++) {
 		if (!(both >> j & 1) && c->d[j] * v > w->step_mm_s[j] &&
 		    c->d[j] > 1e-9)
 			v = w->step_mm_s[j] / c->d[j];
@@ -152,24 +146,31 @@ static double step(const struct pass *w, const struct change *c)
 
 /* From node @from to @to: the length in the columns of @along, and the rates of
  * all columns by that length. */
-static void chord_find(const struct pass *w, uint32_t from, uint32_t to,
-		       uint32_t along, struct chord *ret)
+COLUMNS_INLINE void chord_by(const struct pass *w, uint32_t from, uint32_t to,
+			     uint32_t along, struct chord *ret, uint32_t n)
 {
-	const int64_t *a = w->p->nodes + (uint64_t)from * w->n;
-	const int64_t *b = w->p->nodes + (uint64_t)to * w->n;
-	double *rate = ret->h.rate, sum = 0, per_mm;
+	const int64_t *a = w->p->nodes + (uint64_t)from * n;
+	const int64_t *b = w->p->nodes + (uint64_t)to * n;
+	double mm[INTERP_NAXES], sum = 0;
 
 	ret->from = from;
 	ret->to = to;
 	ret->h.along = along;
-	for (uint32_t j = 0; j < w->n; j++) {
-		rate[j] = (double)(b[j] - a[j]) * w->ways.sub_mm[j];
-		sum += along >> j & 1 ? rate[j] * rate[j] : 0;
+	for (uint32_t j = 0; j < n; j++) {
+		mm[j] = (double)(b[j] - a[j]) * w->ways.sub_mm[j];
+		sum += along >> j & 1 ? mm[j] * mm[j] : 0;
 	}
 	ret->mm = sqrt(sum);
-	per_mm = ret->mm > 0 ? 1 / ret->mm : 0;
-	for (uint32_t j = 0; j < w->n; j++)
-		rate[j] *= per_mm;
+	ret->per_mm = ret->mm > 0 ? 1 / ret->mm : 0;
+	for (uint32_t j = 0; j < n; j++)
+		ret->h.rate[j] = mm[j] * ret->per_mm;
+}
+
+static __attribute__((noinline)) void
+chord_find(const struct pass *w, uint32_t from, uint32_t to, uint32_t along,
+	   struct chord *ret)
+{
+	BY_COLUMNS(w->n, chord_by, w, from, to, along, ret);
 }
 
 static bool chord_is(const struct chord *c, uint32_t from, uint32_t to,
@@ -181,14 +182,15 @@ static bool chord_is(const struct chord *c, uint32_t from, uint32_t to,
 static void look_around(const struct pass *w, uint32_t i, struct around *k)
 {
 	const struct interp_seg *s = w->segs;
-	const double here = s[i].s_mm;
+	const double here = s[i].s_mm, mm = k->mm;
+	uint32_t behind = k->behind, ahead = k->ahead > i ? k->ahead : i;
 
-	while (here - s[k->behind + 1].s_mm >= k->mm)
-		k->behind++;
-	if (k->ahead < i)
-		k->ahead = i;
-	while (k->ahead < w->p->head->nsegs - 1 && s[k->ahead].s_mm - here < k->mm)
-		k->ahead++;
+	while (here - s[behind + 1].s_mm >= mm)
+		behind++;
+	while (ahead < w->end && s[ahead].s_mm - here < mm)
+		ahead++;
+	k->behind = behind;
+	k->ahead = ahead;
 }
 
 /* The chords to both sides of a node, over one window. */
@@ -210,7 +212,7 @@ static bool bow_of(const struct pass *w, uint32_t i, struct around *k,
 	chord_find(w, i, k->ahead, along, b);
 	k->on = !k->on;
 	*ret = (struct bow) { &a->h, &b->h, (a->mm + b->mm) / 2,
-			      1 / a->mm + 1 / b->mm };
+			      a->per_mm + b->per_mm };
 	return a->mm > 0 && b->mm > 0;
 }
 
@@ -245,10 +247,10 @@ static double bow_mm_s(const struct pass *w, const struct bow *k,
 }
 
 /* Does a rounding hide a share of a change that counts? */
-static bool is_clear(const struct pass *w, const struct change *c,
-		     const double all[INTERP_NAXES])
+COLUMNS_INLINE bool is_clear(const struct change *c,
+			     const double all[INTERP_NAXES], uint32_t n)
 {
-	for (uint32_t j = 0; j < w->n; j++) {
+	for (uint32_t j = 0; j < n; j++) {
 		if (all[j] - c->d[j] > CLEAR * all[j])
 			return false;
 	}
@@ -261,19 +263,20 @@ static bool is_clear(const struct pass *w, const struct change *c,
  * window shows over a wider one, if it goes on.  @most: no need to look for
  * more speed than this.
  */
-static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
+COLUMNS_INLINE double curve(struct pass *w, uint32_t i, uint32_t along,
+			    double most, uint32_t n)
 {
 	double v = INFINITY;
 
-	for (int n = 0; n < PASS_WINDOWS; n++) {
+	for (int at = 0; at < PASS_WINDOWS; at++) {
 		double all[INTERP_NAXES], fast;
 		struct change c;
 		struct bow k;
 
-		look_around(w, i, &w->windows[n]);
-		if (!bow_of(w, i, &w->windows[n], along, &k))
+		look_around(w, i, &w->windows[at]);
+		if (!bow_of(w, i, &w->windows[at], along, &k))
 			break;
-		for (uint32_t j = 0; j < w->n; j++)
+		for (uint32_t j = 0; j < n; j++)
 			all[j] = fabs(k.b->rate[j] - k.a->rate[j]);
 		fast = bow_mm_s(w, &k, all);
 		if (fast >= most)
@@ -281,8 +284,8 @@ static double curve(struct pass *w, uint32_t i, uint32_t along, double most)
 		c.a = k.a;
 		c.b = k.b;
 		c.per_mm = k.per_mm;
-		change_of(w, sure, &c);
-		if (is_clear(w, &c, all))
+		change_of(w, sure, &c, n);
+		if (is_clear(&c, all, n))
 			return smaller(v, fast);
 		v = smaller(v, bow_mm_s(w, &k, c.d));
 	}
@@ -307,8 +310,8 @@ static struct around look_near(struct pass *w, uint32_t i)
 
 /* The turn of a node between lines; between longer chords, if the lines are
  * short. */
-static double turn(struct pass *w, uint32_t last, uint32_t i,
-		   struct change *change)
+COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
+			   struct change *change, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
 	struct bow k;
@@ -322,12 +325,13 @@ static double turn(struct pass *w, uint32_t last, uint32_t i,
 			struct change c = { .a = k.a, .b = k.b,
 					    .per_mm = k.per_mm };
 
-			change_of(w, heard, &c);
-			return smaller(corner(w, &c), step(w, &c));
+			change_of(w, heard, &c, n);
+			return smaller(corner(w, &c, n), step(w, &c, n));
 		}
 	}
-	change_of(w, heard, change);
-	return smaller(corner(w, change), step(w, change));
+	change->per_mm = 1 / s[last].length_mm + 1 / s[i].length_mm;
+	change_of(w, heard, change, n);
+	return smaller(corner(w, change, n), step(w, change, n));
 }
 
 /*
@@ -336,8 +340,8 @@ static double turn(struct pass *w, uint32_t last, uint32_t i,
  * corner() is at least 6.46 * corner_mm / turn; all of a change counts here,
  * and of all axes the one that can do least.
  */
-static bool turns_faster(const struct pass *w, uint32_t last, uint32_t i,
-			 const struct change *c, double v_mm_s)
+COLUMNS_INLINE bool turns_faster(const struct pass *w, uint32_t last, uint32_t i,
+				 const struct change *c, double v_mm_s, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
 	const double v = v_mm_s, far = 6.4 * w->corner_mm;
@@ -347,7 +351,7 @@ static bool turns_faster(const struct pass *w, uint32_t last, uint32_t i,
 	    c->a->along != c->b->along || s[last].length_mm < w->near.mm ||
 	    s[i].length_mm < w->near.mm)
 		return false;
-	for (uint32_t j = 0; j < w->n; j++) {
+	for (uint32_t j = 0; j < n; j++) {
 		const double d = c->b->rate[j] - c->a->rate[j];
 
 		if (c->a->along >> j & 1)
@@ -361,21 +365,28 @@ static bool turns_faster(const struct pass *w, uint32_t last, uint32_t i,
 
 /* The node in front of segment @i; @last is the segment before it that
  * moves. */
-double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
-		      const struct heading *a, const struct heading *b)
+COLUMNS_INLINE double node_mm_s(struct pass *w, uint32_t last, uint32_t i,
+				const struct heading *a, const struct heading *b,
+				uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
-	struct change c = { .a = a, .b = b,
-			    .per_mm = 1 / s[last].length_mm +
-				      1 / s[i].length_mm };
+	struct change c;
 	double v = INFINITY;
 
+	c.a = a;
+	c.b = b;
 	if (pass_is_short(w, last) || pass_is_short(w, i))
 		v = curve(w, i, a->along & b->along,
 			  larger((double)s[last].feed_max_mm_s,
-				 (double)s[i].feed_max_mm_s));
-	return turns_faster(w, last, i, &c, v) ? v :
-						 smaller(v, turn(w, last, i, &c));
+				 (double)s[i].feed_max_mm_s), n);
+	return turns_faster(w, last, i, &c, v, n) ?
+	       v : smaller(v, turn(w, last, i, &c, n));
+}
+
+double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
+		      const struct heading *a, const struct heading *b)
+{
+	return BY_COLUMNS(w->n, node_mm_s, w, last, i, a, b);
 }
 
 /*
@@ -383,8 +394,9 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
  * on the ways around the line, but for a rounding, then the share of those ways
  * is used.
  */
-static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
-		       double ret[INTERP_NAXES])
+COLUMNS_INLINE void line_rates(struct pass *w, uint32_t i,
+			       const struct heading *h, struct rates *ret,
+			       uint32_t n)
 {
 	struct around *k = &w->windows[AROUND];
 	const double per_mm = 1 / w->segs[i].length_mm;
@@ -396,33 +408,34 @@ static void line_rates(struct pass *w, uint32_t i, const struct heading *h,
 	chord_find(w, k->behind, k->ahead, h->along, &c);
 	around = c.mm > 0 ? c.h.rate : h->rate;
 	along = along_tol(w, h->along);
-	for (uint32_t j = 0; j < w->n; j++) {
+	ret->v_mm_s = INFINITY;
+	for (uint32_t j = 0; j < n; j++) {
 		/* So far the length and the axis may be off, if the share is
 		 * that of the ways around. */
 		const double off = h->along >> j & 1 ? 0 :
 			smaller(along * fabs(around[j]),
 				MOST_BESIDE * w->tol[j]);
 		const double d = fabs(h->rate[j] - around[j]);
+		const double by = fabs(d > (w->tol[j] + off) * per_mm ?
+				       h->rate[j] : around[j]);
 
-		ret[j] = fabs(d > (w->tol[j] + off) * per_mm ? h->rate[j] :
-							       around[j]);
+		ret->by[j] = by;
+		if (by * ret->v_mm_s > w->v_mm_s[j])
+			ret->v_mm_s = w->v_mm_s[j] / by;
 	}
 }
 
-void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
-		struct rates *ret)
+COLUMNS_INLINE void other_rates(const struct interp_seg *s,
+				const struct headings *h, struct rates *ret,
+				uint32_t n)
 {
-	ret->bends = 0;
-	if (w->segs[i].kind == INTERP_LINE && pass_is_short(w, i)) {
-		line_rates(w, i, &h->first, ret->by);
-		return;
-	}
-	for (uint32_t j = 0; j < w->n; j++) {
+	ret->v_mm_s = 0;
+	for (uint32_t j = 0; j < n; j++) {
 		const double ends = larger(fabs(h->first.rate[j]),
 					   fabs(h->last.rate[j]));
 		/* U V go round a bend of their own. */
-		const bool bends = w->segs[i].kind != INTERP_LINE && ends > 0 &&
-				   (w->segs[i].kind == INTERP_PAIR ||
+		const bool bends = s->kind != INTERP_LINE && ends > 0 &&
+				   (s->kind == INTERP_PAIR ||
 				    (h->first.along | h->last.along) >> j & 1);
 
 		/* On its way it may go in the direction of the axis alone. */
@@ -431,13 +444,14 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 	}
 }
 
-double pass_rate_mm_s(const struct pass *w, const struct rates *r)
+void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
+		struct rates *ret)
 {
-	double v = INFINITY;
+	const struct interp_seg *s = &w->segs[i];
 
-	for (uint32_t j = 0; j < w->n; j++) {
-		if (r->by[j] * v > w->v_mm_s[j])
-			v = w->v_mm_s[j] / r->by[j];
-	}
-	return v;
+	ret->bends = 0;
+	if (s->kind == INTERP_LINE && pass_is_short(w, i))
+		BY_COLUMNS(w->n, line_rates, w, i, &h->first, ret);
+	else
+		BY_COLUMNS(w->n, other_rates, s, h, ret);
 }

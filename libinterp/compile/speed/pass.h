@@ -26,7 +26,8 @@
 /* The straight way from node to node. */
 struct chord {
 	uint32_t from, to;
-	double mm;			/* in the columns of h.along */
+	double mm, per_mm;		/* in the columns of h.along, and its
+					 * inverse; 0: there is no way */
 	struct heading h;
 };
 
@@ -55,7 +56,9 @@ struct pass {
 	const struct interp_program *p;
 	struct interp_seg *segs;
 	double corner_mm, points_per_s;
+	double short_mm;		/* shorter lines: pass_is_short() */
 	uint32_t n;			/* columns */
+	uint32_t end;			/* the last segment */
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;
 	/* Of each column: */
@@ -78,11 +81,17 @@ struct pass {
  */
 double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3);
 
+/* Longer lines have no curve beside the one that their corners show. */
+#define PASS_LONG	5
+
 /**
  * pass_is_short() - is segment @i so short that its curve does not show in its
  * ends?
  */
-bool pass_is_short(const struct pass *w, uint32_t i);
+static inline bool pass_is_short(const struct pass *w, uint32_t i)
+{
+	return w->segs[i].length_mm < w->short_mm;
+}
 
 /**
  * pass_node_mm_s() - the greatest speed over the node in front of segment @i;
@@ -95,16 +104,14 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 struct rates {
 	double by[INTERP_NAXES];
 	uint32_t bends;			/* columns that go round a bend */
+	double v_mm_s;			/* of a short line: what the speeds of
+					 * the axes allow at such rates; 0:
+					 * nothing is said */
 };
 
 /** pass_rates() - those of segment @i. */
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		struct rates *ret);
-
-/**
- * pass_rate_mm_s() - the speed that the speeds of the axes allow at such rates.
- */
-double pass_rate_mm_s(const struct pass *w, const struct rates *r);
 
 /**
  * pass_stretches() - set INTERP_SEG_STAND where a move has to stand; it is clear
