@@ -127,7 +127,7 @@ static inline void random_actual(struct random_drives *d, struct rig *r,
 #define SETTLED	25
 
 /* At rest a lead comes off, as fast as the drive's own feedforward heeds it.
- * Coupling goes by a sixteenth in a period, from cross / gain times the error. */
+ * Coupling goes by a sixteenth in a period, from cross / gain of the error. */
 static inline int off_cycles(const struct contouring_config *k, int i)
 {
 	const struct interp_axis_loop *l = &k->loop[i];
