@@ -170,6 +170,21 @@ def test_skip_tells_what_is_left_out_on_the_second_plane_alone(tmp_path):
         "second plane and is left out (gouge = skip)"]
 
 
+def test_an_undercut_behind_a_cone_is_missing_on_the_second_plane(tmp_path):
+    """On the top a cone stands round each edge of the mouth, and the wire touches
+    it beside what it would leave out."""
+    ini = tmp_path / "wire.ini"
+    ini.write_text(WIRE)
+    floor = [(2, 0), (2.34, -0.665), (2.321, -0.665), (2.321, -0.828),
+             (2.671, -0.828), (2.671, -0.665), (2.651, -0.665), (2.992, 0)]
+    text = opening(floor)[2].replace("H1=0.125", "H1=0.1")
+    leaning = text.replace("G41 H1", "G41 H1 G51 A0.04119")
+    assert run("--machine", ini, "--check", text=text).returncode == 0
+    r = run("--machine", ini, "--check", text=leaning)
+    assert r.returncode == 65
+    assert b"on the second plane" in r.stderr
+
+
 # A point of 4 degrees, and a horn between two arcs.
 SHARP = {
     "walls": ([(0, 0), (0.2, -5.727), (0.4, 0)], 180 - 4),

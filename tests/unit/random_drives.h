@@ -126,11 +126,15 @@ static inline void random_actual(struct random_drives *d, struct rig *r,
 /* Longer than the slowest take-up waits for its next pulse. */
 #define SETTLED	25
 
-/* At rest a lead comes off, as fast as the drive's own feedforward heeds it. */
-static inline int off_cycles(const struct interp_axis_loop *l)
+/* At rest a lead comes off, as fast as the drive's own feedforward heeds it.
+ * Coupling goes by a sixteenth in a period, from cross / gain of the error. */
+static inline int off_cycles(const struct contouring_config *k, int i)
 {
+	const struct interp_axis_loop *l = &k->loop[i];
+	const double times = fmax(k->gains.cross_1_s / l->gain_1_s, 1);
+
 	return 40 + (int)(12 * fmax(l->feedforward, 0) /
-			  (l->gain_1_s * PERIOD_S));
+			  (l->gain_1_s * PERIOD_S) + 16 * log(times));
 }
 
 static inline void check_lead(const struct random_drives *d,
@@ -153,7 +157,7 @@ static inline void check_lead(const struct random_drives *d,
 	if (at >= r->c.config.travel_min[i] && at <= r->c.config.travel_max[i])
 		assert_true(at + added >= r->c.config.travel_min[i] &&
 			    at + added <= r->c.config.travel_max[i]);
-	assert_true(d->stood < off_cycles(&k->loop[i]));
+	assert_true(d->stood < off_cycles(k, i));
 }
 
 /* What was added is gone before a cut, a touch or the end of a job; what loses

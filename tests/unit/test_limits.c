@@ -60,6 +60,55 @@ static void a_node_is_passed_as_the_arc_that_cuts_its_corner(void **st)
 	}
 }
 
+/* Each node of the tiny lines turns by less than a rounding could; together
+ * they are no longer than a rounding shows on. */
+static float least_over_tiny(double degrees, int n, double mm, bool arcs)
+{
+	const double phi = degrees * M_PI / 180;
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	double end[INTERP_NAXES] = { 5, 5 };
+	float least = INFINITY;
+	struct made m;
+
+	if (arcs)
+		arc(b, end, 0, 5, false);
+	else
+		line(b, end);
+	for (int i = 0; i < n; i++) {
+		end[i % 2] += i < 2 ? mm : -mm;
+		line(b, end);
+	}
+	/* From the tangent of the arc, which goes along Y, or of the line. */
+	end[0] += 5 * cos(phi + M_PI / (arcs ? 2 : 4));
+	end[1] += 5 * sin(phi + M_PI / (arcs ? 2 : 4));
+	line(b, end);
+	m = finish(b);
+	for (int i = 1; i <= n + 1; i++)
+		least = fminf(least, m.p.segs[i].node_mm_s);
+	unmake(&m);
+	return least;
+}
+
+static void tiny_lines_hide_no_corner(void **st)
+{
+	static const double turns[] = { 20, 60, 90, 150, 180 };
+	static const double mm[] = { 0.0002, 0.001, 0.002, 0.003, 0.005 };
+
+	(void)st;
+	for (int i = 0; i < 5 * 5 * 3 * 2; i++) {
+		const double turn = turns[i % 5], tiny = mm[i / 5 % 5];
+		const int n = 1 + i / 25 % 3;
+		const double v = (double)least_over_tiny(turn, n, tiny,
+							 i >= 75);
+
+		/* Oblique to X and Y they leave sqrt(2) more. */
+		if (v > 1.43 * (double)node_of_turn(turn))
+			fail_msg("%g degrees over %d lines of %g mm%s: %g mm/s",
+				 turn, n, tiny, i < 75 ? "" : " behind an arc",
+				 v);
+	}
+}
+
 static void nodes_on_a_line_have_no_ceiling_and_turning_back_has_one(void **st)
 {
 	const double back = (double)node_of_turn(180);
@@ -608,6 +657,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_node_is_passed_as_the_arc_that_cuts_its_corner),
+		cmocka_unit_test(tiny_lines_hide_no_corner),
 		cmocka_unit_test(nodes_on_a_line_have_no_ceiling_and_turning_back_has_one),
 		cmocka_unit_test(an_arc_is_limited_by_what_its_axes_can_do),
 		cmocka_unit_test(an_arc_is_as_fast_where_only_jerk_binds),

@@ -223,6 +223,32 @@ static void soften_node(struct pass *w, uint32_t last, uint32_t i, double v_mm_s
 	}
 }
 
+/* Those from the end of segment @first to the start of segment @i. */
+static void limit_nodes(struct pass *w, uint32_t first, uint32_t i, double v)
+{
+	const float most = isinf(v) ? INFINITY : level(w, v);
+
+	for (uint32_t k = first; k < i; k++)
+		w->segs[k].node_mm_s = fminf(w->segs[k].node_mm_s, most);
+}
+
+/* The node in front of segment @i; @last is the segment before it that
+ * moves. */
+static void limit_node(struct pass *w, uint32_t last, uint32_t i,
+		       const struct heading *a, const struct heading *b)
+{
+	const double v = pass_node_mm_s(w, last, i, a, b);
+
+	limit_nodes(w, last, i, v);
+	if (w->bends)
+		soften_node(w, last, i, v);
+	if (pass_is_tiny(w, last) && !pass_is_tiny(w, i)) {
+		const double over = pass_over_mm_s(w, &last, i, b);
+
+		limit_nodes(w, last, i, over);
+	}
+}
+
 /* An action stands on the node before it. */
 static void walk_nodes(struct pass *w)
 {
@@ -247,18 +273,8 @@ static void walk_nodes(struct pass *w)
 		heading_find(&w->ways, i, &h[now]);
 		limit_seg(w, i, &h[now]);
 		w->a_own_mm_s2[now] = (double)w->segs[i].a_mm_s2;
-		if (last > 0) {
-			const double v = pass_node_mm_s(w, last, i,
-							&h[!now].last,
-							&h[now].first);
-
-			const float most = isinf(v) ? INFINITY : level(w, v);
-
-			if (w->bends)
-				soften_node(w, last, i, v);
-			while (last < i)
-				w->segs[last++].node_mm_s = most;
-		}
+		if (last > 0)
+			limit_node(w, last, i, &h[!now].last, &h[now].first);
 		last = i;
 		now = !now;
 	}

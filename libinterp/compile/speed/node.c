@@ -389,6 +389,28 @@ double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 	return BY_COLUMNS(w->n, node_mm_s, w, last, i, a, b);
 }
 
+double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
+		      const struct heading *b)
+{
+	const struct interp_seg *s = w->segs;
+	struct headings before;
+	struct change c;
+	uint32_t m = *first;
+
+	while (m > 0 && s[m].kind < INTERP_BEGIN && pass_is_tiny(w, m) &&
+	       s[i].s_mm - s[m].s_mm < w->near.mm)
+		m--;
+	if (s[m].kind >= INTERP_BEGIN || pass_is_tiny(w, m))
+		return INFINITY;
+	heading_find(&w->ways, m, &before);
+	c.a = &before.last;
+	c.b = b;
+	c.per_mm = 1 / s[m].length_mm + 1 / s[i].length_mm;
+	change_of(w, heard, &c, w->n);
+	*first = m;
+	return smaller(corner(w, &c, w->n), step(w, &c, w->n));
+}
+
 /*
  * On a short line the share of an axis is rounded.  If the share is the same as
  * on the ways around the line, but for a rounding, then the share of those ways

@@ -160,6 +160,25 @@ void pass_leave(const struct pass *w, double v_mm_s, struct leave *ret);
 double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		      const struct heading *a, const struct heading *b);
 
+/** pass_is_tiny() - is segment @i so short that it has no direction? */
+static inline bool pass_is_tiny(const struct pass *w, uint32_t i)
+{
+	return w->segs[i].length_mm < w->near.mm;
+}
+
+/**
+ * pass_over_mm_s() - the greatest speed over the tiny segments in front of
+ * segment @i, which is not tiny.
+ *
+ * A rounding hides the corners at their nodes.  What their neighbours turn by
+ * is passed as one corner.
+ *
+ * @first: the segment before @i that moves; ret: that in front of the tiny
+ * ones, if it is not tiny and nothing stops behind it.
+ */
+double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
+		      const struct heading *b);
+
 /* The most that each column moves by, a mm of a segment. */
 struct rates {
 	double by[INTERP_NAXES];

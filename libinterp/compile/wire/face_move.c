@@ -109,6 +109,7 @@ static int lay_fill(struct mover *k, uint32_t a, const struct curve *c,
 		return -ENOMEM;
 	*e = (struct track_elem) { .c = *c, .owner = before.owner,
 				   .piece = before.piece, .fill = true,
+				   .round = true,
 				   .dead = dead };
 	return 0;
 }

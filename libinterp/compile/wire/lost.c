@@ -49,7 +49,7 @@ static double touch_of(const struct track_work *w, uint32_t e, struct vec at)
 {
 	const struct face_piece *p = track_piece(w, e);
 
-	if (w->elem[e].fill || curve_length(&p->c) < CURVE_SAME_MM)
+	if (w->elem[e].round || curve_length(&p->c) < CURVE_SAME_MM)
 		return 1;
 	return fmin(fmax(curve_share(&p->c, at), 0), 1);
 }
@@ -342,7 +342,7 @@ double lost_point(const struct track_work *w, const struct track_jump *j)
 	struct between k;
 
 	between_init(&k, w, j);
-	if (k.n != 2 || w->elem[j->e].fill || w->elem[j->f].fill ||
+	if (k.n != 2 || w->elem[j->e].round || w->elem[j->f].round ||
 	    rise_of(&k) <= OPEN || !is_any_missing(&k))
 		return 0;
 	return curve_distance(piece_of(&k, 0)->to, k.at) - k.d;

@@ -93,7 +93,7 @@ static int lay_fill(struct track_work *w, const struct corner *k,
 		return -ENOMEM;
 	*e = (struct track_elem) { .c = *c, .owner = before.owner,
 				   .piece = before.piece, .fill = true,
-				   .dead = dead };
+				   .round = true, .dead = dead };
 	return 0;
 }
 

@@ -36,6 +36,9 @@ struct track_elem {
 	uint32_t owner;
 	int64_t piece;			/* of the outline; -1: a lead */
 	bool fill;			/* leads to the next motion */
+	bool round;			/* goes round the corner behind its piece;
+					 * a piece may lead to the next motion
+					 * by itself */
 	bool dead;			/* no way goes along it */
 	bool fitted;			/* a fillet that keeps its radius */
 	bool mitre;			/* prolonged at its end, as the next one

@@ -79,7 +79,7 @@ static int check_jump(struct walker *k, struct track_jump *j)
 		tell_lead(k, e);
 		return -EINVAL;
 	}
-	if (k->w->elem[j->e].fill && p + 1 < f->piece + f->n && p + 1 != q)
+	if (k->w->elem[j->e].round && p + 1 < f->piece + f->n && p + 1 != q)
 		p++;
 	tell(k, TRACK_LOST, p, q);
 	return -EINVAL;
