@@ -126,15 +126,14 @@ static inline void random_actual(struct random_drives *d, struct rig *r,
 /* Longer than the slowest take-up waits for its next pulse. */
 #define SETTLED	25
 
-/* At rest a lead comes off, as fast as the drive's own feedforward heeds it.
- * Coupling goes by a sixteenth in a period, from cross / gain of the error. */
+/* At rest a lead comes off as fast as the feedforward of the drive heeds it, or,
+ * where the points of the path are not known, by a sixteenth in a period. */
 static inline int off_cycles(const struct contouring_config *k, int i)
 {
 	const struct interp_axis_loop *l = &k->loop[i];
-	const double times = fmax(k->gains.cross_1_s / l->gain_1_s, 1);
 
-	return 40 + (int)(12 * fmax(l->feedforward, 0) /
-			  (l->gain_1_s * PERIOD_S) + 16 * log(times));
+	return 16 * (int)ceil(log(fmax(2 * k->most_mm[i] / PULSE_MM, 8))) +
+	       (int)(12 * fmax(l->feedforward, 0) / (l->gain_1_s * PERIOD_S));
 }
 
 static inline void check_lead(const struct random_drives *d,
