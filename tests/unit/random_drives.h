@@ -126,7 +126,7 @@ static inline void random_actual(struct random_drives *d, struct rig *r,
 /* Longer than the slowest take-up waits for its next pulse. */
 #define SETTLED	25
 
-/* At rest a lead comes off as fast as the feedforward of the drive heeds it, or,
+/* At rest a lead comes off: as fast as the feedforward of the drive heeds it;
  * where the points of the path are not known, by a sixteenth in a period. */
 static inline int off_cycles(const struct contouring_config *k, int i)
 {
