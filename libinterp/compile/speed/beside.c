@@ -137,8 +137,8 @@ double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
 }
 
 /*
- * An axis bends least where it is fastest, as in a wave: what it needs along the
- * path and across count as square to each other, as on an arc.
+ * An axis bends least where it is fastest, as in a wave: what it needs along
+ * the path and across count as square to each other, as on an arc.
  */
 void pass_leave(const struct pass *w, double v_mm_s, struct leave *ret)
 {

@@ -34,7 +34,8 @@ static uint32_t along_of(const struct ways *w, uint32_t moving)
 }
 
 /* The way from node to node.  Return: the columns that move. */
-COLUMNS_INLINE uint32_t straight(const struct ways *w, uint32_t i, struct heading *h, uint32_t n)
+COLUMNS_INLINE uint32_t straight(const struct ways *w, uint32_t i,
+				 struct heading *h, uint32_t n)
 {
 	const int64_t *from = w->p->nodes + (uint64_t)i * n, *to = from + n;
 	const double per_mm = 1 / w->p->segs[i].length_mm;
@@ -75,8 +76,8 @@ static void tangent(const struct interp_program *p,
 
 /*
  * Of two bends, one that takes as much as either: from r at a share to another
- * share takes r times that ratio squared for the acceleration v*v*share^2/r, and
- * to the power of 3/2 for the jerk v^3*share^3/r^2, which is less.
+ * share takes r times that ratio squared for the acceleration v*v*share^2/r,
+ * and to the power of 3/2 for the jerk v^3*share^3/r^2, which is less.
  */
 static void bend(struct headings *h, const struct interp_arc *arc,
 		 double length_mm)

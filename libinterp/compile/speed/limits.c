@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Directions of short lines differ by their rounding; their ceilings must not.*/
+/* Directions of short lines differ by their rounding.  Their ceilings must
+ * not. */
 #define SAME		4e-6
 
 #define HOP_MAX		UINT16_MAX
@@ -58,8 +59,9 @@ static void begin(struct pass *w, const struct interp_limits *l,
 		w->v_mm_s[j] = m->v_max_mm_s;
 		w->a_mm_s2[j] = m->a_max_mm_s2;
 		w->j_mm_s3[j] = m->j_max_mm_s3;
-		w->step_mm_s[j] = smaller(sqrt(8 * m->a_max_mm_s2 * l->corner_mm),
-				       cbrt(m->j_max_mm_s3 * six * six));
+		w->step_mm_s[j] = smaller(
+			sqrt(8 * m->a_max_mm_s2 * l->corner_mm),
+			cbrt(m->j_max_mm_s3 * six * six));
 		add_level(&w->v_levels, m->v_max_mm_s);
 		add_level(&w->a_levels, m->a_max_mm_s2);
 		add_level(&w->j_levels, m->j_max_mm_s3);
@@ -134,8 +136,10 @@ COLUMNS_INLINE void soften_seg(struct pass *w, struct interp_seg *s,
 
 		if (!(r->by[k] > 0))
 			continue;
-		a = smaller(a, (bends ? left->a : 1) * w->a_mm_s2[k] / r->by[k]);
-		j = smaller(j, (bends ? left->j : 1) * w->j_mm_s3[k] / r->by[k]);
+		a = smaller(a,
+			    (bends ? left->a : 1) * w->a_mm_s2[k] / r->by[k]);
+		j = smaller(j,
+			    (bends ? left->j : 1) * w->j_mm_s3[k] / r->by[k]);
 	}
 	s->a_mm_s2 = soft(a, &w->a_levels);
 	s->j_mm_s3 = soft(j, &w->j_levels);
@@ -160,8 +164,9 @@ static double round_bend(const struct pass *w, const struct headings *h,
 		j = smaller(j, w->j_mm_s3[k]);
 		top = fmax(top, w->v_mm_s[k]);
 	}
-	v = smaller(v_mm_s * h->share, pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
-						    INTERP_ARC_JERK_ROUND * j));
+	v = smaller(v_mm_s * h->share,
+		    pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
+				    INTERP_ARC_JERK_ROUND * j));
 	v = smaller(v, INTERP_ARC_JERK_BOTH * j * r /
 		    (3 * interp_bend_least(top, a, j)));
 	across = v * v / (r * a);
@@ -205,7 +210,8 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 
 /* What a bend beside the path takes, the segments to both sides of its node do
  * not have. */
-static void soften_node(struct pass *w, uint32_t last, uint32_t i, double v_mm_s)
+static void soften_node(struct pass *w, uint32_t last, uint32_t i,
+			double v_mm_s)
 {
 	const uint32_t both[2] = { last, i };
 	double v = v_mm_s;
@@ -217,8 +223,10 @@ static void soften_node(struct pass *w, uint32_t last, uint32_t i, double v_mm_s
 	for (int k = 0; k < 2; k++) {
 		struct interp_seg *s = &w->segs[both[k]];
 
-		s->a_mm_s2 = fminf(s->a_mm_s2, soft(left.a_mm_s2, &w->a_levels));
-		s->j_mm_s3 = fminf(s->j_mm_s3, soft(left.j_mm_s3, &w->j_levels));
+		s->a_mm_s2 = fminf(s->a_mm_s2,
+				   soft(left.a_mm_s2, &w->a_levels));
+		s->j_mm_s3 = fminf(s->j_mm_s3,
+				   soft(left.j_mm_s3, &w->j_levels));
 		note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
 	}
 }

@@ -235,8 +235,9 @@ static double bow_mm_s(struct pass *w, const struct look *l,
 	}
 	if (turn < STRAIGHT)
 		return v;
-	return smaller(v, pass_round_mm_s(larger(k->mm / sqrt(turn), w->corner_mm),
-				     acc, jerk));
+	return smaller(v,
+		       pass_round_mm_s(larger(k->mm / sqrt(turn), w->corner_mm),
+				       acc, jerk));
 }
 
 /* Does a rounding hide a share of a change that counts? */
@@ -339,8 +340,9 @@ COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
  * corner() is at least 6.46 * corner_mm / turn; all of a change counts here,
  * and of all axes the one that can do least.
  */
-COLUMNS_INLINE bool turns_faster(const struct pass *w, uint32_t last, uint32_t i,
-				 const struct change *c, double v_mm_s, uint32_t n)
+COLUMNS_INLINE bool turns_faster(const struct pass *w, uint32_t last,
+				 uint32_t i, const struct change *c,
+				 double v_mm_s, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
 	const double v = v_mm_s, far = 6.4 * w->corner_mm;
@@ -365,8 +367,8 @@ COLUMNS_INLINE bool turns_faster(const struct pass *w, uint32_t last, uint32_t i
 /* The node in front of segment @i; @last is the segment before it that
  * moves. */
 COLUMNS_INLINE double node_mm_s(struct pass *w, uint32_t last, uint32_t i,
-				const struct heading *a, const struct heading *b,
-				uint32_t n)
+				const struct heading *a,
+				const struct heading *b, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
 	struct change c;

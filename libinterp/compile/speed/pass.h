@@ -134,7 +134,8 @@ double pass_along_tol(struct pass *w, uint32_t columns);
  */
 double pass_off(const struct pass *w, uint32_t j, double along, double rate);
 
-/** pass_chord() - find the way from node @from to @to; @along makes its length. */
+/** pass_chord() - find the way from node @from to @to.  @along makes its
+ *  length. */
 void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
 		uint32_t along, struct chord *ret);
 
@@ -193,8 +194,8 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		struct rates *ret);
 
 /**
- * pass_stretches() - set INTERP_SEG_STAND where a move has to stand; it is clear
- * so far, and a_mm_s2 and j_mm_s3 of all segments are known.
+ * pass_stretches() - set INTERP_SEG_STAND where a move has to stand; it is
+ * clear so far, and a_mm_s2 and j_mm_s3 of all segments are known.
  */
 void pass_stretches(struct pass *w);
 

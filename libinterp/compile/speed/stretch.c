@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * stretch.c - where a move stands because its axes allow much less from there on
+ * stretch.c - where a move stands because its axes allow much less from there
+ * on
  *
  * A move keeps the least acceleration and jerk of all segments that it goes
  * over.  Near a pole, or on a tiny line on which a rotary axis turns far, that

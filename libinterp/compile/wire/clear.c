@@ -165,7 +165,7 @@ struct question {
 	struct track_work *w;
 	const struct track_elem *e;
 	struct curve c;
-	struct vec mid;			/* no place of it is farther from here */
+	struct vec mid;			/* its places are no farther off */
 	double half_mm;			/* than this */
 	bool clear;
 };
@@ -176,7 +176,8 @@ static double way_between(const struct track_work *w,
 			  const struct face_piece *q)
 {
 	const struct face_piece *a = p < q ? p : q, *b = p < q ? q : p;
-	const double way = curve_max(b->way_mm - a->way_mm - curve_length(&a->c), 0);
+	const double way = curve_max(
+		b->way_mm - a->way_mm - curve_length(&a->c), 0);
 
 	if (!w->job->face->closed)
 		return way;
@@ -196,7 +197,8 @@ static double wanted_of(const struct track_work *w, const struct track_elem *e,
 	double other;
 
 	if (e->piece < 0) {
-		other = curve_min(f->piece[0].wire_mm, f->piece[f->n - 1].wire_mm);
+		other = curve_min(f->piece[0].wire_mm,
+				  f->piece[f->n - 1].wire_mm);
 		return curve_min(other, q->wire_mm);
 	}
 	p = &f->piece[e->piece];

@@ -148,9 +148,9 @@ static int take_one(struct contour *k, struct contour_motion *m,
 
 /*
  * On an arc that nearly comes back to its start, a rounding of its ends would
- * move the centre by far more, to have both ends on one circle: a keyhole of 5 mm
- * with a neck of 0.3 mm by 17 roundings.  Its halves have a diameter between
- * their ends.
+ * move the centre by far more, to have both ends on one circle: a keyhole of 5
+ * mm with a neck of 0.3 mm by 17 roundings.  Its halves have a diameter
+ * between their ends.
  */
 static bool wants_halves(const struct contour *k, const struct curve *c)
 {
@@ -249,8 +249,9 @@ static int stay(struct contour *k, const double end_mm[INTERP_NAXES],
 }
 
 /*
- * A motion of no length has no direction, so no offset can be square to it.  As a
- * lead it is refused: the next motion would be the lead, and cut into the part.
+ * A motion of no length has no direction, so no offset can be square to it.  As
+ * a lead it is refused: the next motion would be the lead, and cut into the
+ * part.
  */
 static int take_or_stay(struct contour *k, struct contour_motion *m,
 			struct interp_diag *diag)

@@ -92,8 +92,8 @@ enum face_fate {
 
 /**
  * face_piece_moved() - move motion @i to the plane of @from.
- * @ret: the moved curve.  With FACE_GONE its ends are those that the curve would
- * have.
+ * @ret: the moved curve.  With FACE_GONE its ends are those that the curve
+ * would have.
  */
 enum face_fate face_piece_moved(const struct face_from *from, uint32_t i,
 				struct curve *ret);

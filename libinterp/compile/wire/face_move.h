@@ -37,7 +37,7 @@ int face_side_init(struct face_side *s, const struct track_work *w);
 bool face_side_is(const struct face_side *s, const struct track_work *w,
 		  uint32_t e, double t0, double t1);
 
-/** face_side_is_near() - or is the outline no farther from it than the slack? */
+/** face_side_is_near() - or is the outline no farther than the slack? */
 bool face_side_is_near(const struct face_side *s, const struct track_work *w,
 		       uint32_t e, double t0, double t1);
 

@@ -113,7 +113,8 @@ static double from_line(const struct curve *c, struct vec at)
 				     (at.y - c->from.y) * dy) / len2 : 0;
 	const double on = curve_min(curve_max(t, 0), 1);
 
-	return curve_hypot(at.x - c->from.x - on * dx, at.y - c->from.y - on * dy);
+	return curve_hypot(at.x - c->from.x - on * dx,
+			   at.y - c->from.y - on * dy);
 }
 
 double curve_from(const struct curve *c, struct vec at)
@@ -122,9 +123,11 @@ double curve_from(const struct curve *c, struct vec at)
 
 	if (!c->arc)
 		return from_line(c, at);
-	ends = curve_min(curve_distance(c->from, at), curve_distance(c->to, at));
+	ends = curve_min(curve_distance(c->from, at),
+			 curve_distance(c->to, at));
 	if (c->r > 0 && arc_faces(c, at))
-		return curve_min(ends, fabs(curve_distance(c->centre, at) - c->r));
+		return curve_min(ends,
+				 fabs(curve_distance(c->centre, at) - c->r));
 	return ends;
 }
 
@@ -168,8 +171,9 @@ double curve_gap(const struct curve *a, const struct curve *b)
 
 	if (curve_cross(a, b, hit))
 		return 0;
-	best = curve_min(curve_min(curve_from(a, b->from), curve_from(a, b->to)),
-		    curve_min(curve_from(b, a->from), curve_from(b, a->to)));
+	best = curve_min(
+		curve_min(curve_from(a, b->from), curve_from(a, b->to)),
+		curve_min(curve_from(b, a->from), curve_from(b, a->to)));
 	if (is_dot(a) || is_dot(b) || (!a->arc && !b->arc))
 		return best;
 	if (a->arc && b->arc)

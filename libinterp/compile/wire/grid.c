@@ -41,7 +41,8 @@ static struct span span_of(const struct grid *g, const struct curve *c,
 /* Long curves are cut, so that their boxes hold few cells beside them. */
 static uint32_t parts_of(const struct grid *g, const struct curve *c)
 {
-	return (uint32_t)curve_min(floor(curve_length(c) / g->cell_mm), 1e6) + 1;
+	return (uint32_t)curve_min(floor(curve_length(c) / g->cell_mm), 1e6) +
+	       1;
 }
 
 static struct curve part_of(const struct curve *c, uint32_t i, uint32_t n)

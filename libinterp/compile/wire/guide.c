@@ -78,10 +78,12 @@ static struct vec guide_at(struct guide k, struct vec p, struct vec q)
 static int refuse_tilt(const struct guides *g, double slope,
 		       struct interp_diag *diag)
 {
-	return interp_diag_say(diag, "the wire leans by %.3f degrees; up to "
+	return interp_diag_say(diag,
+			       "the wire leans by %.3f degrees; up to "
 			       "%g degrees, wire.angle_max_deg of the "
 			       "machine; at a sharp corner both faces lean",
-			       atan(slope) / ANGLE_DEGREE, g->wire->angle_max_deg);
+			       atan(slope) / ANGLE_DEGREE,
+			       g->wire->angle_max_deg);
 }
 
 static int check_tilt(const struct guides *g, const struct curve c[2],

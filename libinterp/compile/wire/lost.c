@@ -17,8 +17,8 @@
  * The outline's own corner is the most by which it turns inward on the way from
  * the one place to the other; turns to and fro, as rounding makes them, do not
  * add up, nor do those on both sides of a place that the wire comes to.  A slot
- * turns by half a turn, a narrow notch by nearly as much, a chamber behind a neck
- * by more: what the wire only spans of these is missing.
+ * turns by half a turn, a narrow notch by nearly as much, a chamber behind a
+ * neck by more: what the wire only spans of these is missing.
  */
 #include "wire/track.h"
 
@@ -31,7 +31,7 @@
 #define OPEN		2.1		/* the outline's own may turn so far */
 #define CURVED		0.5		/* or by so much more than the way: its
 					 * walls bulge */
-#define PLAIN		0.01		/* two turns are one, but for rounding */
+#define PLAIN		0.01		/* two turns are one but for rounding */
 #define ARC_PARTS	8
 #define NEAR_RUNS	16u		/* of the way, on either side */
 
@@ -97,7 +97,8 @@ static double turn_of_runs(const struct track_work *w,
 
 	for (a = run_of(w, i); i && curve_length(&a) < HIDDEN_MM;)
 		a = run_of(w, --i);
-	for (b = run_of(w, k); k + 1 < w->nruns && curve_length(&b) < HIDDEN_MM;)
+	for (b = run_of(w, k);
+	     k + 1 < w->nruns && curve_length(&b) < HIDDEN_MM;)
 		b = run_of(w, ++k);
 	return side_of(w, j) * curve_turn(&a, &b);
 }
@@ -194,7 +195,8 @@ static bool is_near_way(const struct between *k, struct vec at, double most)
 	return false;
 }
 
-/* The outline's turns, + inward, and the most of them since its lowest heading. */
+/* The outline's turns, + inward, and the most of them since its lowest
+ * heading. */
 struct turns {
 	double heading, low, rise;
 };
@@ -248,8 +250,8 @@ static double rise_of(const struct between *k)
 	return t.rise;
 }
 
-/* A corner: how far from the way its places may be, and whether those beyond the
- * tangents count as well. */
+/* A corner: how far from the way its places may be, and whether those beyond
+ * the tangents count as well. */
 struct corner {
 	double most;
 	bool beyond;
@@ -276,7 +278,8 @@ static struct corner corner_of(const struct between *k)
 	return c;
 }
 
-/* Does @at lie beyond the tangent in one of the places that the wire touches? */
+/* Does @at lie beyond the tangent in one of the places that the wire
+ * touches? */
 static bool is_beyond(const struct between *k, struct vec at)
 {
 	for (int i = 0; i < 2; i++) {

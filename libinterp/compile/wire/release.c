@@ -153,9 +153,10 @@ static struct vec lead_end(const struct contour *k, uint32_t i,
 }
 
 /*
- * Is the lead in, or out, programmed to come through the outline?  One that lies
- * along the outline does not.  On the second plane the outline may have moved
- * beyond the far end of a lead that does not; so the programmed plane tells.
+ * Is the lead in, or out, programmed to come through the outline?  One that
+ * lies along the outline does not.  On the second plane the outline may have
+ * moved beyond the far end of a lead that does not; so the programmed plane
+ * tells.
  */
 static bool goes_through(const struct contour *k, const struct stretch *s,
 			 bool out)

@@ -36,9 +36,9 @@ struct track_elem {
 	uint32_t owner;
 	int64_t piece;			/* of the outline; -1: a lead */
 	bool fill;			/* leads to the next motion */
-	bool round;			/* goes round the corner behind its piece;
-					 * a piece may lead to the next motion
-					 * by itself */
+	bool round;			/* goes round the corner behind its
+					 * piece; a piece may lead to the next
+					 * motion by itself */
 	bool dead;			/* no way goes along it */
 	bool fitted;			/* a fillet that keeps its radius */
 	bool mitre;			/* prolonged at its end, as the next one
@@ -170,8 +170,8 @@ const struct face_piece *track_piece(const struct track_work *w, uint32_t e);
 /** lost_is() - would a part of the outline be missing by @j? */
 bool lost_is(const struct track_work *w, const struct track_jump *j);
 
-/** lost_point() - how much is left of the point of the corner of two neighbours,
- *  if that is more than a corner may hide; otherwise 0. */
+/** lost_point() - how much is left of the point of the corner of two
+ *  neighbours, if that is more than a corner may hide; otherwise 0. */
 double lost_point(const struct track_work *w, const struct track_jump *j);
 
 /** way_find() - fill w->run. Return: 0, -ENOMEM, -EINVAL with @fault. */

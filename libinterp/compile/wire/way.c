@@ -266,8 +266,8 @@ static int change(struct walker *k, double most_mm)
 	return -EINVAL;
 }
 
-/* The way is not clear as far as @next: change.  Return: 1: it goes on along its
- * element, because it is nearly clear and nothing crosses it here. */
+/* The way is not clear as far as @next: change.  Return: 1: it goes on along
+ * its element, because it is nearly clear and nothing crosses it here. */
 static int change_or_go(struct walker *k, double next)
 {
 	struct track_work *w = k->w;

@@ -79,8 +79,9 @@ static void rows_size(const struct wind *w, int axis, struct wind_rows *r)
 		sum += span[1] - span[0];
 	}
 	r->low = low;
-	r->size = curve_max(curve_max(sum / w->n, (high - low) / curve_min(w->n, ROWS_MAX)),
-		       1e-6);
+	r->size = curve_max(curve_max(sum / w->n,
+				      (high - low) / curve_min(w->n, ROWS_MAX)),
+			    1e-6);
 	r->n = (uint32_t)curve_min((high - low) / r->size, ROWS_MAX) + 1;
 }
 
@@ -162,7 +163,8 @@ static int count_arc(const struct ray *k, const struct curve *c)
 	double from = theta;
 	int n = 0;
 
-	for (bool last = false; !last; from = next * ANGLE_RIGHT, next += step) {
+	for (bool last = false; !last;
+	     from = next * ANGLE_RIGHT, next += step) {
 		const double past = step * (next * ANGLE_RIGHT - end);
 		const double to = past >= 0 ? end : next * ANGLE_RIGHT;
 		const double h2 = c->r * c->r -
