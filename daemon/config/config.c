@@ -46,7 +46,6 @@ int64_t config_period_ns(const struct machine_config *c)
 double config_points_s(const struct machine_config *c)
 {
 	const double cycle = POINTS_MAX * 1e9 / (double)config_period_ns(c);
-
 	const struct config_backend *b = config_backend(c);
 
 	return b->points_s ? fmin(cycle, b->points_s(c)) : cycle;
