@@ -52,7 +52,6 @@ def step(behind):
     return (0.75, 0), (0.75, behind), (0.85, behind), (0.85, 0)
 
 
-# The wire comes 0.05 mm deep into a slot of 0.2 mm, 0.0010 into one of 0.032.
 def chamber(width, radius, at=0):
     """A round chamber, one arc, behind a mouth in the floor."""
     down = math.sqrt(radius ** 2 - width ** 2 / 4)
@@ -72,6 +71,7 @@ def nested(outer, inner):
             (outer + 0.6, -0.4), (outer, -0.4), (outer, 0)]
 
 
+# The wire comes 0.05 mm deep into a slot of 0.2 mm, 0.0010 into one of 0.032.
 CUT = {
     "a hook 2 um wider than the wire": hook(0.252),
     "a chamber behind a mouth as wide as the wire": chamber(0.2502, 0.6),
@@ -147,6 +147,35 @@ def test_skip_leaves_it_out_with_a_note(what, tmp_path):
 
 def notes_of(r):
     return re.findall(r"-:(\d+): note: (.*)", (r.stdout + r.stderr).decode())
+
+
+BEGUN_IN_A_SLOT = b"""G90 F5 H1=0.125
+G0 X0.0 Y1.0
+G41 H1 G1 X-0.1 Y-0.5
+Y-2.0
+X0.1
+Y0.0
+X10.0
+Y20.0
+X-10.0
+Y0.0
+X-0.1
+Y-0.5
+G40 X0.0 Y1.0
+M2
+"""
+
+
+def test_a_contour_begun_where_skip_leaves_out_is_told_another_beginning(
+        tmp_path):
+    for gouge, told in (("refuse", b"gouge = skip leaves out"),
+                        ("skip", b"begins where the wire fits")):
+        ini = tmp_path / "machine.ini"
+        ini.write_text(f"[machine]\nname = plain\n[wire]\ngouge = {gouge}\n")
+        r = run("--machine", ini, "--check", text=BEGUN_IN_A_SLOT)
+        assert r.returncode == 65
+        assert told in r.stderr, r.stderr
+        assert (b"gouge = skip" in r.stderr) == (gouge == "refuse")
 
 
 def test_skip_tells_each_part_that_it_leaves_out(tmp_path):

@@ -18,6 +18,7 @@ static int refuse_stuck(const struct contour *k, const struct track_fault *f,
 			int plane, struct interp_diag *diag)
 {
 	const uint32_t a = k->m[f->a].word.line, b = k->m[f->b].word.line;
+	const bool skips = k->guides.wire->gouge == INTERP_GOUGE_SKIP;
 
 	diag->line = a < b ? a : b;
 	if (f->found_mm >= 0)
@@ -29,8 +30,9 @@ static int refuse_stuck(const struct contour *k, const struct track_fault *f,
 			 "no room for the wire between the motions of lines %u "
 			 "and %u%s", a, b, plane_name(plane));
 	snprintf(diag->wanted, sizeof(diag->wanted),
-		 "%.4f mm for this offset, or a smaller one; [wire] gouge = "
-		 "skip leaves out what is too narrow", f->wanted_mm);
+		 "%.4f mm for this offset, or a smaller one; %s", f->wanted_mm,
+		 skips ? "or a contour that begins where the wire fits" :
+		 "[wire] gouge = skip leaves out what is too narrow");
 	return -EINVAL;
 }
 
