@@ -54,7 +54,7 @@ static void step_smoothly(struct rig *r)
 	step(r, OPEN_V);
 	assert_true(fabs(r->c.mover.v_mm_s - v) <=
 		    k->travel_a_mm_s2 * PERIOD_S * (1 + 1e-9));
-	/* A stop less than 1e-9 mm ahead is met: the rest of time is cut. */
+	/* A stop less than 1e-9 mm ahead is met, a little early. */
 	assert_true(fabs(r->c.mover.a_mm_s2 - a) <=
 		    k->travel_j_mm_s3 * PERIOD_S * (1 + 1e-9) +
 		    (r->c.mover.v_mm_s != 0 ? 0 :
