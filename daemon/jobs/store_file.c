@@ -117,6 +117,14 @@ static const char *const steps[] = {
 	" PRIMARY KEY(job, work, axis));"
 	"CREATE TRIGGER work_gone AFTER DELETE ON job BEGIN"
 	" DELETE FROM work WHERE job=old.n; END;",
+
+	/* The queue is read page by page in this order: store_list.c.  A turn
+	 * is that of a job that was moved. */
+	"ALTER TABLE job ADD COLUMN turn INTEGER;"
+	"UPDATE job SET turn=(SELECT value FROM number WHERE key='turn '||n);"
+	"DELETE FROM number WHERE key LIKE 'turn %';"
+	"CREATE INDEX job_by_turn ON job(coalesce(turn, n) - loaded * 1e15)"
+	" WHERE state IN ('queued', 'interrupted');",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

@@ -58,22 +58,33 @@
 			"kind='note' ORDER BY event.rowid LIMIT ?2))"
 
 /* The place of a job in a list; a smaller number is earlier. */
-#define IN_QUEUE	"1 - loaded, " STORE_TURN
+#define IN_QUEUE	STORE_TURN " - loaded * 1e15"
 #define IN_HISTORY	"-ended_us, -n"
 
-/* SQLite finds the page by the index of that order, if it is told where the
- * page begins, and that the index of the states is of no use (+). */
+/* SQLite finds a page by the index of its order, if it is told where the page
+ * begins, and that the index of the states is of no use (+).  Of the queue only
+ * those that wait are in that index, so that a job that runs does not change
+ * it. */
+#define LOADED		"state IN ('ready', 'running', 'held', 'fault') AND " \
+			"loaded=1"
+#define WAITS		"state IN ('queued', 'interrupted') AND " IN_QUEUE \
+			" >= coalesce((SELECT " IN_QUEUE " FROM job " \
+			"WHERE id=?2), -9e18)"
 #define HAS_ENDED	"+state IN ('done', 'stopped', 'fault') AND " \
 			"-ended_us >= coalesce((SELECT -ended_us FROM job " \
 			"WHERE id=?2), -9e18)"
 
-/* As many jobs as asked for; those after job ?2 if one is given.  The order is
- * found from a few columns, and JSON is made only of the rows that are
- * wanted. */
-#define JOBS_SQL(MORE, WHICH, PLACE) \
-	"SELECT " JOB_JSON(MORE) " FROM job JOIN (SELECT n AS m FROM job WHERE " \
-	"(" WHICH ") AND (?2='' OR (" PLACE ") > (SELECT " PLACE " FROM " \
-	"job WHERE id=?2)) ORDER BY " PLACE " LIMIT ?1) ON n=m ORDER BY " PLACE
+/* Which jobs, of those after job ?2 if one is given: as many as asked for. */
+#define SOME(JOB, WHICH, PLACE) \
+	"SELECT * FROM (SELECT n AS m FROM " JOB " WHERE (" WHICH ") AND " \
+	"(?2='' OR (" PLACE ") > (SELECT " PLACE " FROM job WHERE id=?2)) " \
+	"ORDER BY " PLACE " LIMIT ?1)"
+
+/* The order is found from a few columns, and JSON is made only of the rows that
+ * are wanted. */
+#define JOBS_SQL(MORE, SOME, PLACE) \
+	"SELECT " JOB_JSON(MORE) " FROM job JOIN (" SOME ") ON n=m ORDER BY " \
+	PLACE " LIMIT ?1"
 
 static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				const char *id, int rows, int *ret_err)
@@ -85,10 +96,11 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 					  NOTES_JSON) " FROM job WHERE id=?1",
 				 "si", id, (int64_t)rows);
 	case STORE_QUEUE:
-		return store_ask(s, ret_err, JOBS_SQL("", "state IN ('queued', "
-				 "'interrupted') OR (loaded=1 AND state NOT IN "
-				 "('done', 'stopped'))", IN_QUEUE), "is",
-				 (int64_t)rows, id);
+		return store_ask(s, ret_err, JOBS_SQL("",
+				 SOME("job", LOADED, IN_QUEUE) " UNION ALL "
+				 SOME("job INDEXED BY job_by_turn", WAITS,
+				      IN_QUEUE), IN_QUEUE),
+				 "is", (int64_t)rows, id);
 	case STORE_EVENTS:
 		return store_ask(s, ret_err,
 				 "SELECT json_object('utime', utime, 'kind', "
@@ -111,7 +123,8 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 	case STORE_HISTORY:
 		break;
 	}
-	return store_ask(s, ret_err, JOBS_SQL(SUMS_JSON, HAS_ENDED, IN_HISTORY),
+	return store_ask(s, ret_err, JOBS_SQL(SUMS_JSON,
+			 SOME("job", HAS_ENDED, IN_HISTORY), IN_HISTORY),
 			 "is", (int64_t)rows, id);
 }
 

@@ -4,7 +4,6 @@
 #include "plain.h"
 #include "store_sql.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,11 +14,9 @@
 
 static int set_turn(struct store *s, uint32_t n, int64_t turn)
 {
-	char key[32];
-	int err;
+	const int err = store_do(s, STORE_KEEP, "UPDATE job SET turn=? WHERE "
+				 "n=?", "iI", turn, (int64_t)n);
 
-	snprintf(key, sizeof(key), "turn %u", n);
-	err = store_set_number(s, key, turn);
 	return err < 0 ? err : 0;
 }
 

@@ -14,8 +14,7 @@
 struct store;
 
 /* The order of the queue, in SQL. */
-#define STORE_TURN	"coalesce((SELECT value FROM number WHERE " \
-			"key='turn '||n), n)"
+#define STORE_TURN	"coalesce(turn, n)"
 
 #define STORE_LINES	200		/* at once */
 

@@ -58,6 +58,8 @@ size_t plain_bytes(const char *s)
 	const size_t n = length_of(at[0]);
 	uint32_t c;
 
+	if (at[0] >= ' ' && at[0] < 0x7f)
+		return 1;
 	if (n == 0 || at[0] == '\0')
 		return 0;
 	c = n == 1 ? at[0] : at[0] & (0x7fu >> n);
@@ -89,10 +91,10 @@ void plain_copy(char *to, size_t room, const char *from)
 
 		if ((n ? n : 1) >= room)
 			break;
-		if (n == 0)
-			*to = '?';
-		else
+		if (n > 1)
 			memmove(to, from, n);
+		else
+			*to = n ? *from : '?';
 		n = n ? n : 1;
 		to += n;
 		from += n;

@@ -4,6 +4,7 @@
  * off
  */
 #include "store.h"
+#include "store_sql.h"
 #include "store_tally.h"
 #include "store_turn.h"
 #include "store_trust.h"
@@ -550,6 +551,58 @@ static void a_long_list_comes_in_pages(void **state)
 	store_close(s);
 }
 
+#define PAGE	50
+
+static int count_step(void *arg)
+{
+	++*(long *)arg;
+	return 0;
+}
+
+/* Instructions of SQLite for the page of @what behind job @id. */
+static long page_steps(struct store *s, enum store_list what, const char *id)
+{
+	long steps = 0;
+	char *text;
+
+	sqlite3_progress_handler(s->db, 1, count_step, &steps);
+	text = store_json(s, what, id, PAGE);
+	sqlite3_progress_handler(s->db, 0, NULL, NULL);
+	assert_non_null(text);
+	assert_non_null(strstr(text, "\"job\""));
+	free(text);
+	return steps;
+}
+
+/* A page of a queue of 10,000 jobs, of which one was moved, and one of the
+ * history behind as many. */
+static void a_page_costs_what_is_in_it(void **state)
+{
+	struct store *s = open_store();
+	static const int behind[] = { 100, 9998, 10001, 15001, 19900 };
+	char id[32];
+	long steps;
+
+	(void)state;
+	store_close(s);
+	by_hand("WITH RECURSIVE i(n) AS (SELECT 0 UNION ALL SELECT n + 1 FROM i"
+		" WHERE n < 19999) INSERT INTO job(id, name, sha256, lines, "
+		"hold, submitted_us, state, ended_us) SELECT 'job-' || n, "
+		"'part', '', 1, 0, 1, iif(n < 10000, 'done', 'queued'), n FROM "
+		"i; UPDATE job SET turn=15000 WHERE id='job-15001';");
+	s = open_store();
+	for (size_t i = 0; i < sizeof(behind) / sizeof(*behind); i++) {
+		const int n = behind[i];
+
+		snprintf(id, sizeof(id), "job-%d", n);
+		steps = page_steps(s, n < 10000 ? STORE_HISTORY : STORE_QUEUE,
+				   id);
+		print_message("%ld steps for a page behind %s\n", steps, id);
+		assert_in_range(steps, 1, 300 * PAGE);
+	}
+	store_close(s);
+}
+
 static void break_pages(const char *from, const char *count)
 {
 	char line[500];
@@ -700,6 +753,7 @@ int main(void)
 		T(a_store_without_sums_by_condition_is_brought_up),
 		T(what_a_job_came_to_goes_with_it),
 		T(a_long_list_comes_in_pages),
+		T(a_page_costs_what_is_in_it),
 		T(a_damaged_page_costs_what_is_in_it),
 		T(what_is_no_database_is_set_aside),
 		T(the_first_page_torn_is_no_end),
