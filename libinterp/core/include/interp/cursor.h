@@ -47,8 +47,10 @@ struct interp_dda {
 struct interp_pair {
 	int64_t a, b;			/* pulses of main and secondary */
 	int64_t m, s;			/* of them, given */
-	int64_t dev;			/* deviation e = b*m - a*s */
 	int64_t limit;			/* the secondary is due above it */
+	int64_t dev;			/* deviation e = b*m - a*s; not next to
+					 * s, or gcc adds to both in one go and
+					 * waits for the two stores before */
 	int64_t bursts;			/* of the secondary; 0: none, by
 					 * limit */
 	int64_t burst;			/* the one being sent, or next */
