@@ -374,14 +374,19 @@ static int check_unused(struct check *q)
 	return 0;
 }
 
+static void read_lines(struct check *q)
+{
+	for (int i = 0; i < CONFIG_NLINES; i++)
+		config_line_read(q->c->gpio.line[i], &q->at[i]);
+}
+
 int config_check_brakes(const struct machine_config *c,
 			const struct config_lines *lines,
 			struct interp_diag *diag)
 {
 	struct check q = { .c = c, .lines = lines, .diag = diag };
 
-	for (int i = 0; i < CONFIG_NLINES; i++)
-		config_line_read(c->gpio.line[i], &q.at[i]);
+	read_lines(&q);
 	if (check_unused(&q))
 		return -EINVAL;
 	for (int i = 0; i < INTERP_NAXES; i++)
@@ -396,8 +401,7 @@ int config_check_gpio(const struct machine_config *c,
 {
 	struct check q = { .c = c, .lines = lines, .diag = diag };
 
-	for (int i = 0; i < CONFIG_NLINES; i++)
-		config_line_read(c->gpio.line[i], &q.at[i]);
+	read_lines(&q);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		if (check_axis(&q, i))
 			return -EINVAL;

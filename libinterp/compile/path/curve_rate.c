@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* curve_rate.c - the direction in which a piece of a curve starts, and ends */
 #include "curve/span.h"
+#include "speed/heading.h"
 #include "interp/program.h"
 
 #include <math.h>
@@ -18,15 +19,6 @@ static uint32_t span_before(const struct interp_nurbs *c, double u)
 	       (c->knots[span] >= u || c->knots[span] == c->knots[span + 1]))
 		span--;
 	return span;
-}
-
-static uint32_t column_of(const struct interp_program *p, uint32_t axis)
-{
-	uint32_t j = 0;
-
-	while (j + 1 < p->head->naxes && p->head->column[j] != axis)
-		j++;
-	return j;
 }
 
 bool interp_program_curve_rate(const struct interp_program *p,
@@ -59,7 +51,7 @@ bool interp_program_curve_rate(const struct interp_program *p,
 	for (uint32_t j = 0; j < INTERP_NAXES; j++)
 		ret[j] = 0;
 	for (uint32_t k = 0; speed > 0 && k < c.naxes; k++)
-		ret[column_of(p, p->curves[piece->curve].axis[k])] =
+		ret[heading_column(p, p->curves[piece->curve].axis[k])] =
 			at.d[1][k] / speed;
 	return speed > 0;
 }

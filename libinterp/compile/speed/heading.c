@@ -50,7 +50,7 @@ COLUMNS_INLINE uint32_t straight(const struct ways *w, uint32_t i,
 	return moving;
 }
 
-static uint32_t column(const struct interp_program *p, uint32_t axis)
+uint32_t heading_column(const struct interp_program *p, uint32_t axis)
 {
 	uint32_t j = 0;
 
@@ -70,8 +70,10 @@ static void tangent(const struct interp_program *p,
 	const double round = arc->sweep * r / length_mm;
 	const double out = arc->dr_mm / length_mm;
 
-	h->rate[column(p, arc->axis_a)] = out * cos(angle) - round * sin(angle);
-	h->rate[column(p, arc->axis_b)] = out * sin(angle) + round * cos(angle);
+	h->rate[heading_column(p, arc->axis_a)] =
+		out * cos(angle) - round * sin(angle);
+	h->rate[heading_column(p, arc->axis_b)] =
+		out * sin(angle) + round * cos(angle);
 }
 
 /*

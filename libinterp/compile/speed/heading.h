@@ -40,6 +40,9 @@ struct ways {
 
 void heading_ways_init(struct ways *w, const struct interp_program *p);
 
+/** heading_column() - the column of @axis, which the program moves. */
+uint32_t heading_column(const struct interp_program *p, uint32_t axis);
+
 /** heading_find() - find the directions of segment @i, which must move. */
 void heading_find(const struct ways *w, uint32_t i, struct headings *ret);
 

@@ -166,34 +166,32 @@ uint32_t pulse_dda_back(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
 	return points_of(ret, ticks);
 }
 
-uint32_t pulse_dda_tick(struct interp_cursor *c)
+static inline __attribute__((always_inline)) uint32_t
+one_tick(struct interp_cursor *c, dda_fn *tick)
 {
 	uint32_t pulses = 0;
 
 	for (uint32_t i = 0; i < c->ndda; i++) {
 		struct interp_dda d = c->dda[i];
 
-		pulses |= dda_forward(&d, c->dda_full);
+		pulses |= tick(&d, c->dda_full);
 		dda_keep(c, &c->dda[i], &d);
 	}
+	return pulses;
+}
+
+uint32_t pulse_dda_tick(struct interp_cursor *c)
+{
 	c->tick++;
 	c->measure++;
-	return pulses;
+	return one_tick(c, dda_forward);
 }
 
 uint32_t pulse_dda_tick_back(struct interp_cursor *c)
 {
-	uint32_t pulses = 0;
-
-	for (uint32_t i = 0; i < c->ndda; i++) {
-		struct interp_dda d = c->dda[i];
-
-		pulses |= dda_back(&d, c->dda_full);
-		dda_keep(c, &c->dda[i], &d);
-	}
 	c->tick--;
 	c->measure--;
-	return pulses;
+	return one_tick(c, dda_back);
 }
 
 int64_t pulse_longest(const struct interp_cursor *c, uint32_t except)
