@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * air.h - how far it is from any place round a part to the open, through air
+ * air.h - how far it is from a place round a part into the open, through air
  *
- * Space is cut into cells; those that a triangle passes are walls.  What the
- * open air does not reach is solid.  A channel may be open at both ends: what
- * counts as the open can be chosen.
+ * Space is divided into cells.  A cell that a triangle passes through is a
+ * wall. A cell that air from the open does not reach is solid.  A channel may
+ * be open at both ends; air_open() chooses which end counts as the open.
  *
- * Units: mm.  Any thread once it is filled.
+ * Units: mm.  Any thread may ask once it is filled.
  */
 #ifndef PLAN_AIR_H
 #define PLAN_AIR_H
@@ -20,23 +20,26 @@ struct air {
 	int n[3];
 	size_t cells;
 	bool opened;			/* by air_open() */
-	float *way;			/* of each cell, mm; negative: solid */
+	float *way;			/* from each cell to the open, mm;
+					 * negative: the cell is solid */
 };
 
-/** air_cut() - the cells round @part, walls marked. Return: 0 or -ENOMEM. */
+/** air_cut() - make the cells round @part and mark the walls. Return: 0 or
+ *  -ENOMEM. */
 int air_cut(struct air *a, const struct mesh *part);
 
-/** air_open() - the cell at the border next to @p is in the open, if @p is
- *  outside of all cells. Return: whether. */
+/** air_open() - if @p is outside of all cells, the border cell next to it
+ *  counts as the open. Return: is @p outside? */
 bool air_open(struct air *a, const double p[3]);
 
-/** air_fill() - all ways; to any border, if nothing is open yet. */
+/** air_fill() - find the ways of all cells.  If nothing counts as the open yet,
+ *  every border does. */
 void air_fill(struct air *a);
 void air_free(struct air *a);
 
 /**
- * air_way() - from @p to the open, mm; 0 in the open; the nearest air counts if
- * @p is in a wall.  @toward: the direction that leads out.
+ * air_way() - the way from @p to the open, mm; 0 in the open.  If @p is in a
+ * wall, the nearest air counts.  @toward: the direction that leads out.
  */
 double air_way(const struct air *a, const double p[3], double toward[3]);
 

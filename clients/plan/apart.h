@@ -2,7 +2,7 @@
 /*
  * apart.h - is a pair of triangles far enough apart, and for how long?
  *
- * For most pairs the answer needs no distance: it is enough to find one
+ * For most pairs the distance need not be computed: it is enough to find one
  * direction in which they are far enough apart.
  *
  * Units: mm; time is the block's parameter.  Any thread.
@@ -16,8 +16,8 @@
 
 struct pose_rate;
 
-/* What is asked: without a rate, a distance of least_mm; with one, that
- * keep_mm is kept for a time. */
+/* The question: without a rate, are they least_mm apart now?  With a rate, do
+ * they stay keep_mm apart for a time? */
 struct apart {
 	const struct pose_rate *rate;	/* NULL: only the distance is asked */
 	double least_mm;		/* with a rate: a pair nearer than that
@@ -27,9 +27,9 @@ struct apart {
 					 * time */
 };
 
-/** apart_seen() - is a direction found in which they are far enough apart?
+/** apart_seen() - look for a direction in which they are far enough apart.
  *  @plane: the plane of @part, as struct tree keeps it; @tool is in the part's
- *  frame.  False: not found, which does not mean that they are near. */
+ *  frame.  Return: false if none was found; they may still be far apart. */
 bool apart_seen(const struct apart *a, const struct triangle *part,
 		const double plane[4], const struct triangle *tool);
 

@@ -2,11 +2,11 @@
 /*
  * box.h - oriented boxes, and what the gap between two of them promises
  *
- * A walk of two trees does little else than compare boxes, so boxes are in
- * single precision and are computed four numbers at a time.  Each bound is made
- * smaller by more than its rounding error (BOX_MARGIN), so that it stays a
- * bound.  Centres are in double precision, because only the difference of two
- * of them counts.
+ * A walk through two trees does little but compare boxes.  So boxes are in
+ * single precision, and four numbers are computed at a time.  Each bound is
+ * made smaller by more than its rounding error (BOX_MARGIN), so that it stays a
+ * bound.  Centres are in double precision, because what counts is the small
+ * difference of two of them.
  *
  * Units: mm; time is the block's parameter.  Any thread.
  */
@@ -112,7 +112,7 @@ static inline float box_beside2(box_v4 gaps)
 	return sq[0] + sq[1] + sq[2];
 }
 
-/** box_distance() - no less than this is between them; 0 if they may meet. */
+/** box_distance() - a lower bound of their distance; 0 if they may meet. */
 static inline float box_distance(const struct box *part, const struct box *tool)
 {
 	struct box_gaps g;
@@ -124,7 +124,7 @@ static inline float box_distance(const struct box *part, const struct box *tool)
 	return sqrtf(a > b ? a : b);
 }
 
-/** box_place() - a box of the electrode into the part's frame. */
+/** box_place() - bring a box of the electrode into the part's frame. */
 static inline void box_place(const struct box *in, const struct box_pose *pose,
 			     struct box *ret)
 {
@@ -138,15 +138,16 @@ static inline void box_place(const struct box *in, const struct box_pose *pose,
 	ret->n = in->n;
 }
 
-/** box_move() - box_place(), and how it moves there. */
+/** box_move() - as box_place(), and find how the box moves there. */
 void box_move(const struct box *in, const struct box_pose *pose,
 	      struct box_placed *ret);
 
 struct box_keep {
-	float mm;			/* to be kept now */
-	float rises;			/* more, by a unit of time */
+	float mm;			/* the distance to be kept now */
+	float rises;			/* how much it grows in a unit of
+					 * time */
 	float accel;			/* as in struct pose_rate */
-	float enough;			/* a longer time is not asked for */
+	float enough;			/* no longer time is needed */
 };
 
 /**
@@ -156,7 +157,7 @@ struct box_keep {
  * A x^2 / 2, where s is the greatest n . (v + w x p) in the box.  As long as
  * this is less than the gap along n minus @keep, the pair is not nearer than
  * @keep.  Each axis gives such a time, and the longest of them holds.
- * Return: it, or keep->enough as soon as it is known to be no less; 0: none.
+ * Return: that time, but no more than keep->enough; 0: not at all.
  */
 float box_time(const struct box *part, const struct box_placed *tool,
 	       const struct box_keep *keep);

@@ -23,26 +23,28 @@ struct corridor {
 	uint32_t naxes;
 	enum interp_axis axis[INTERP_NAXES];	/* those that may move */
 	double low[INTERP_NAXES], high[INTERP_NAXES];	/* travel, by axis */
-	double reach_mm[INTERP_NAXES];	/* a unit of the axis moves no point
-					 * farther */
-	const double (*guess)[INTERP_NAXES];	/* begins and ends free */
+	double reach_mm[INTERP_NAXES];	/* the most that a unit of the axis
+					 * moves any point */
+	const double (*guess)[INTERP_NAXES];	/* its first and its last pose
+						 * are free */
 	uint32_t nguess;
-	double wide_mm;			/* how far round the guess */
-	uint32_t tries;			/* poses drawn, at most */
+	double wide_mm;			/* how far from the guess poses are
+					 * drawn */
+	uint32_t tries;			/* poses that are drawn, at most */
+	/* Does the block keep its clearance?  With @to == @from: does the
+	 * pose? */
 	bool (*keeps)(void *arg, const double from[INTERP_NAXES],
-		      const double to[INTERP_NAXES]);	/* a block; or a pose,
-							 * with @to == @from */
-	bool (*stop)(void *arg);	/* asked often */
+		      const double to[INTERP_NAXES]);
+	bool (*stop)(void *arg);	/* true ends the search; asked often */
 	void *arg;
 };
 
 /**
- * corridor_find() - from guess[0] to guess[nguess - 1].
+ * corridor_find() - find a way from guess[0] to guess[nguess - 1].
  *
- * Every block of @ret was answered with true by keeps().  What is drawn is the
- * same in every run of the program.
- * Return: how many nodes, the ends among them; 0: none was found, or not in
- * @max nodes; -ENOMEM.
+ * keeps() was true for every block of @ret.  The same poses are drawn in every
+ * run of the program. Return: the number of nodes, with both ends; 0: no way
+ * with at most @max nodes was found; -ENOMEM.
  */
 int corridor_find(const struct corridor *c, double (*ret)[INTERP_NAXES],
 		  uint32_t max);

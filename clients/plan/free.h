@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * free.h - inner nodes off the path, for more clearance
+ * free.h - move the inner nodes of a way off the path, for more clearance
  *
- * Linear programs on the gradients of many small distances move all axes of the
- * inner nodes at once.  A step is only as long as distances are about linear.
- * The result has been tried at poses only, so it still has to be proved.
+ * Linear programs move all axes of the inner nodes at once, along the gradients
+ * of many small distances.  A step is so short that the distances are nearly
+ * linear in it.  The result has been tried at some poses only, so it still has
+ * to be proved.
  *
  * Units: mm and degrees.  Threads: one.
  */
@@ -21,24 +22,24 @@ struct free_way {
 	uint32_t n;			/* nodes; first and last stay */
 	double q[FREE_NODES_MAX][INTERP_NAXES];
 	double least_mm;		/* the least distance at the poses that
-					 * were tried; in an end zone, plus what
-					 * the clearance falls there */
-	double enough_mm;		/* more clearance is not looked for */
-	double end_mm[2];		/* the distance at the first node, at
-					 * the last */
-	uint64_t queries, programs;	/* programs: linear ones */
+					 * were tried; in an end zone, plus as
+					 * much as the clearance falls there */
+	double enough_mm;		/* the search ends at this clearance */
+	double end_mm[2];		/* the distance at the first node and at
+					 * the last one */
+	uint64_t queries, programs;	/* programs: linear programs solved */
 };
 
-/** free_init() - enough_mm is infinite at first. Return: 0, or -E2BIG with too
- *  many nodes. */
+/** free_init() - enough_mm is infinite at first. Return: 0; -E2BIG: too many
+ *  nodes. */
 int free_init(struct free_way *w, const struct job *j,
 	      const struct clearance *c, double (*q)[INTERP_NAXES],
 	      uint32_t n);
 
-/** free_widen() - find as much clearance as possible, in at most @rounds. */
+/** free_widen() - find as much clearance as possible in at most @rounds. */
 void free_widen(struct free_way *w, int rounds);
 
-/** free_round() - to whole pulses. */
+/** free_round() - round @q to whole pulses. */
 void free_round(const struct machine_config *c, double q[INTERP_NAXES]);
 
 #endif /* PLAN_FREE_H */

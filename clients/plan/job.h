@@ -13,7 +13,7 @@
 struct job_options {
 	bool check, measure;
 	const char *part, *electrode, *machine_file;
-	const char *program;		/* NC code; of --measure, the poses */
+	const char *program;		/* NC code; with --measure, the poses */
 	const char *dialect;		/* NULL: by the file's name */
 	const char *output, *report, *picture, *view;	/* NULL: none */
 	double unit_mm;			/* of the meshes' numbers */
@@ -46,34 +46,34 @@ int job_load(struct job *j, const struct job_options *o);
 
 void job_free(struct job *j);
 
-/** job_describe() - what was loaded, in words. */
+/** job_describe() - print what was loaded. */
 void job_describe(const struct job *j, FILE *f);
 
-/** job_say_pair() - the two triangles of @pair, in words. */
+/** job_say_pair() - print the two triangles of @pair. */
 void job_say_pair(const struct job *j, const struct near_pair *pair, FILE *f);
 
 /**
  * job_inside() - is a shell of one body inside the other at @pose?
  *
- * Distances cannot tell.  @say: where, in words.  Return: 1, 0, or -1 if out of
- * memory.
+ * A distance cannot show this.  @say: gets which one is inside which.  Return:
+ * 1: yes; 0: no; -1: out of memory.
  */
 int job_inside(const struct job *j, const struct pose *pose, char *say,
 	       size_t size);
 
-/** job_are_apart() - is @mm more than one of the bodies is long?  Then they are
- *  hardly where they are meant to be. */
+/** job_are_apart() - is @mm more than the length of one of the bodies?  Then
+ *  they are probably not where they are meant to be. */
 bool job_are_apart(const struct job *j, double mm);
 
-/** job_strays_mm() - what block @i of @w may be off, on any point. */
+/** job_strays_mm() - how far any point may be off block @i of @w. */
 double job_strays_mm(const struct route *w, uint32_t i, const struct block *b);
 
-/** job_block() - block @i of @w. */
+/** job_block() - fill @ret with block @i of @w. */
 void job_block(const struct job *j, const struct route *w, uint32_t i,
 	       struct block *ret);
 
-/** job_moves_known() - does @w move only axes that the chain has?  Else it is
- *  said on stderr. */
+/** job_moves_known() - does @w move only axes that the chain has?  If not, it
+ *  says so on stderr. */
 bool job_moves_known(const struct job *j, const struct route *w,
 		     const char *path);
 
@@ -81,18 +81,19 @@ bool job_moves_known(const struct job *j, const struct route *w,
 struct job_axes {
 	uint32_t n;
 	enum interp_axis axis[INTERP_NAXES];
-	double reach_mm[INTERP_NAXES];	/* by axis: a unit of it moves no point
-					 * farther */
+	double reach_mm[INTERP_NAXES];	/* by axis: the most that a unit of it
+					 * moves any point */
 };
 
-/** job_axes_find() - their reach is that between @from and @to. */
+/** job_axes_find() - find them, with their reach between @from and @to. */
 void job_axes_find(const struct job *j, const double from[INTERP_NAXES],
 		   const double to[INTERP_NAXES], struct job_axes *ret);
 
-/** bar_show() - one line on stderr, rewritten; nothing with --quiet. */
+/** bar_show() - rewrite the one line of progress on stderr; with --quiet, do
+ *  nothing. */
 void bar_show(const struct job *j, double share, const char *text);
 
-/** bar_best() - from now on the bar tells the best way so far. */
+/** bar_best() - from now on the line also shows the best way so far. */
 void bar_best(uint32_t blocks, double mm);
 void bar_end(const struct job *j);
 

@@ -10,9 +10,10 @@
 #include "check.h"
 
 /**
- * lifts_check() - prove that lifts from anywhere on @w keep @c, to their ends.
+ * lifts_check() - prove that lifts from every place on @w keep @c to their
+ * ends.
  *
- * Return: 0, and @ret says whether; -EINTR.
+ * Return: 0, and @ret says whether they do; -EINTR.
  */
 int lifts_check(const struct job *j, const struct route *w,
 		const struct clearance *c, struct check_result *ret);

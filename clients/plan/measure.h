@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * measure.h - the distance at given poses
+ * measure.h - print the distance at given poses
  */
 #ifndef PLAN_MEASURE_H
 #define PLAN_MEASURE_H
@@ -8,10 +8,11 @@
 #include "job.h"
 
 /**
- * measure_poses() - what --measure does.
+ * measure_poses() - do what --measure asks.
  *
- * For each line of axes X Y Z A B C of the file it prints the distance, the two
- * triangles, counted from 1, and the two points.
+ * Each line of the file has the places of X Y Z A B C.  For each it prints the
+ * distance, the two nearest triangles, counted from 1, and their nearest
+ * points.
  *
  * Return: 0 or a sysexits code.
  */

@@ -27,10 +27,12 @@ struct mesh {
 /* What was found in a file, and what was done about it. */
 struct mesh_findings {
 	uint32_t in_file;		/* triangles in the file */
-	uint32_t doubled;		/* there before, removed */
-	uint32_t degenerate;		/* without area, removed */
-	uint32_t joined;		/* edges with ends moved together */
-	double joined_mm;		/* no corner was moved by more */
+	uint32_t doubled;		/* triangles that were there twice;
+					 * removed */
+	uint32_t degenerate;		/* triangles without area; removed */
+	uint32_t joined;		/* edges whose ends were moved
+					 * together */
+	double joined_mm;		/* the most that a corner was moved */
 	uint32_t turned;		/* triangles that ran the other way than
 					 * the first one of their shell */
 	uint32_t shells;
@@ -43,8 +45,9 @@ struct mesh_findings {
 	double volume_mm3;
 	double grain_mm;		/* the step of a float at the corner
 					 * that is farthest from the origin */
-	double chord_mm;		/* so much the true surface bulges out
-					 * of the mesh, guessed by bends */
+	double chord_mm;		/* how far the true surface bulges out
+					 * of the mesh, guessed from the angles
+					 * between triangles */
 };
 
 struct mesh_load {
@@ -61,7 +64,7 @@ struct mesh_load {
 int mesh_load(struct mesh *m, const struct mesh_load *from,
 	      struct mesh_findings *f);
 
-/** mesh_free() - what mesh_load() took; a zeroed mesh is fine. */
+/** mesh_free() - free what mesh_load() allocated; @m may be all zeros. */
 void mesh_free(struct mesh *m);
 
 /** mesh_corner() - corner @k of triangle @i. */
@@ -96,8 +99,8 @@ double mesh_winding(const struct mesh *m, const double p[3]);
 uint32_t mesh_shells(const struct mesh *m, uint32_t **ret);
 
 /**
- * mesh_turn_shells() - turn those that are inside out, and fill what @f says of
- * shells and of the volume.
+ * mesh_turn_shells() - turn the shells that are inside out, and fill in what @f
+ * says about shells and the volume.
  *
  * Return: 0 or -ENOMEM.
  */

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * motion.h - where a block of the machine's own axes takes the electrode
+ * motion.h - how the electrode moves in a block of the machine's own axes
  *
- * A block is straight in the axes: every axis goes linearly with one time from
- * 0 to 1.  Its points do not go straight where a rotary turns.
+ * In a block every axis moves linearly with the same time, from 0 to 1.  The
+ * points of the electrode do not move on straight lines if a rotary axis turns.
  *
- * The electrode's mesh is given in the machine's frame with all axes at 0; the
- * part's in the frame of the work, which is the same one there.
+ * The electrode's mesh is given in the machine's frame with all axes at 0.  The
+ * part's mesh is given in the frame of the work, which is then the same frame.
  *
  * Units: mm; q is mm or, of a rotary, degrees.  Any thread.
  */
@@ -19,12 +19,13 @@
 
 struct machine_motion {
 	const struct interp_kinematics *kin;	/* lent */
-	double ball_mm[3], ball_r_mm;	/* holds the electrode, axes at 0 */
+	double ball_mm[3], ball_r_mm;	/* a ball that contains the electrode,
+					 * with all axes at 0 */
 	double corner_mm;		/* how far a corner of the electrode's
 					 * bounds is from the ball's middle */
 };
 
-/* One block, with what bounds its points' ways. */
+/* One block, with bounds of the ways of its points. */
 struct block {
 	const struct machine_motion *m;	/* lent */
 	double from[INTERP_NAXES], to[INTERP_NAXES];
@@ -36,7 +37,7 @@ struct block {
 	double accel_mm;		/* bounds every second derivative */
 };
 
-/** motion_init() - for an electrode. */
+/** motion_init() - for the electrode @tool. */
 void motion_init(struct machine_motion *m, const struct interp_kinematics *kin,
 		 const struct mesh *tool);
 
@@ -65,12 +66,12 @@ void motion_jacobian(const struct machine_motion *m,
 		     double ret[INTERP_NAXES][3]);
 
 /**
- * motion_strays_mm() - no point moves farther than that if every axis is off by
- * at most @off, anywhere on @b.
+ * motion_strays_mm() - the most that any point is off, anywhere on @b, if every
+ * axis is off by at most @off.
  */
 double motion_strays_mm(const struct block *b, const double off[INTERP_NAXES]);
 
-/** motion_moves() - bit per axis that the chain has. */
+/** motion_moves() - a bit for each axis that the chain has. */
 uint32_t motion_moves(const struct machine_motion *m);
 
 #endif /* PLAN_MOTION_H */

@@ -2,8 +2,8 @@
 /*
  * near.h - how near the electrode is to the part
  *
- * Two trees of boxes are walked at once.  A pose takes places of the
- * electrode's mesh to places of the part's.
+ * It walks through two trees of boxes at once.  A pose takes a place in the
+ * frame of the electrode's mesh to a place in the part's frame.
  *
  * Units: mm.
  * Threads: any, each with its own struct near_pair.
@@ -20,8 +20,8 @@ struct pose {
 	double t[3];
 };
 
-/* How the electrode moves at one moment: the point p (in the part's frame)
- * at v + w x p, and no point of it bends its way by more than accel. */
+/* How the electrode moves at one moment: the point p (in the part's frame) has
+ * the velocity v + w x p, and no point has more acceleration than accel. */
 struct pose_rate {
 	double v[3], w[3];		/* per unit of time */
 	double accel;			/* for the whole of the block */
@@ -41,32 +41,33 @@ struct bodies {
 /**
  * near_distance() - the least distance at @pose.
  *
- * @pair holds the triangles of the last answer, which are tried first, and
- * gets the new one: begin with a zeroed one.
+ * @pair has the triangles of the last answer, which are tried first, and gets
+ * those of the new answer.  It is zeros at first.
  */
 double near_distance(const struct bodies *b, const struct pose *pose,
 		     struct near_pair *pair);
 
-/** near_below() - is it less than @mm?  Then @pair is such a pair. */
+/** near_below() - is the distance less than @mm?  Then @pair is a pair that is
+ *  so near. */
 bool near_below(const struct bodies *b, const struct pose *pose, double mm,
 		struct near_pair *pair);
 
-/** near_less() - the nearest pair, if it is nearer than @mm; else @pair stays.
- *  Return: whether. */
+/** near_less() - find the nearest pair if it is nearer than @mm; otherwise
+ *  @pair stays as it is.  Return: was there one? */
 bool near_less(const struct bodies *b, const struct pose *pose, double mm,
 	       struct near_pair *pair);
 
 /* Two nodes of the trees. */
 struct near_patch {
-	float mm;			/* no less is between them */
+	float mm;			/* a lower bound of their distance */
 	uint32_t part, tool;
 };
 
-/* Called with each; false ends the walk. */
+/* Called for each patch; false ends the walk. */
 typedef bool near_take(void *arg, const struct near_patch *patch);
 
-/** near_patches() - all pairs of nodes that may be nearer than @mm, and neither
- *  of which is much larger than @size_mm if it is not a single triangle. */
+/** near_patches() - find all pairs of nodes that may be nearer than @mm.  A
+ *  node is not much larger than @size_mm, or is a single triangle. */
 void near_patches(const struct bodies *b, const struct pose *pose, double mm,
 		  double size_mm, near_take *take, void *arg);
 
@@ -75,21 +76,23 @@ struct near_asked {
 };
 
 /**
- * near_between() - the nearest triangles of two nodes, if nearer than @mm.
+ * near_between() - find the nearest triangles of two nodes, if they are nearer
+ * than @mm.
  *
- * What it finds may be farther than the nearest by @slack_mm: where many pairs
- * are about as near as each other, that saves most of the work.
- * Return: whether; @pair is filled then only.
+ * The pair that it finds may be farther apart than the nearest one by
+ * @slack_mm. This saves most of the work where many pairs are about equally
+ * near. Return: was one found?  Only then @pair is filled.
  */
 bool near_between(const struct bodies *b, const struct pose *pose,
 		  const struct near_patch *patch,
 		  const struct near_asked *asked, struct near_pair *pair);
 
-/** near_pose() - what boxes are placed with; @pose and @rate are lent. */
+/** near_pose() - prepare a pose for box_place() and box_move(); @pose and @rate
+ *  are lent. */
 void near_pose(const struct pose *pose, const struct pose_rate *rate,
 	       struct box_pose *ret);
 
-/** near_tri() - a triangle of the electrode in the part's frame. */
+/** near_tri() - get a triangle of the electrode in the part's frame. */
 void near_tri(const struct bodies *b, const struct pose *pose, uint32_t tool,
 	      struct triangle *ret);
 

@@ -2,9 +2,9 @@
 /*
  * near_set.h - some pairs of triangles that stand for all that are near
  *
- * Of all pairs in one cell of space only the nearest one is taken, within
- * NEAR_SET_SLACK_MM.  With the nearest pair of all alone a search would stall:
- * what it moves away from one wall comes too near to the other.
+ * Of all pairs in one cell of space only the nearest one is taken, to
+ * NEAR_SET_SLACK_MM.  A search that knew the one nearest pair alone would
+ * stall: what it moves away from one wall comes too near to the other.
  *
  * Units: mm.
  */

@@ -2,9 +2,9 @@
 /*
  * prove.h - that a block keeps a clearance, or where it does not
  *
- * Conservative advancement: from each pose the proof goes on for the time in
- * which no point can come too near, until the end of the block.  Nothing is
- * sampled.
+ * Conservative advancement: at each pose the proof finds a time in which no
+ * point can come too near, and goes on behind that time, until the end of the
+ * block.  Nothing is sampled.
  *
  * Units: mm; time 0..1 of the block.  Any thread.
  * Source: B. Mirtich, Impulse-based dynamic simulation of rigid body systems,
@@ -15,13 +15,14 @@
 
 #include "motion.h"
 
-/* A pose that is nearer than the clearance plus this is refused.  So no step
- * can become arbitrarily short. */
+/* A pose that is nearer than the clearance plus this is refused.  So steps do
+ * not become arbitrarily short. */
 #define PROVE_EPS_MM	0.002
 
 /*
- * What is to be kept.  Within zone_mm of the end pose, counted by the farthest
- * way of any point of the electrode, the clearance falls linearly to end_mm.
+ * The distance to be kept.  Within zone_mm of the end pose, the clearance falls
+ * linearly to end_mm.  How far a pose is from the end pose is the longest way
+ * of any point of the electrode between the two.
  */
 struct clearance {
 	double mm;
@@ -34,26 +35,28 @@ struct clearance {
 
 struct proof {
 	double least_mm;		/* the least distance that was seen */
-	double t;			/* where */
-	struct near_pair pair;		/* of it; begin with a zeroed one */
-	bool given_up;			/* memory or patience ended; nothing is
-					 * too near */
-	uint64_t queries;		/* poses looked at; added to */
+	double t;			/* where it was seen */
+	struct near_pair pair;		/* the pair there; zeros at first */
+	bool given_up;			/* memory ran out, or it took too many
+					 * steps; nothing was too near */
+	uint64_t queries;		/* the number of poses that were looked
+					 * at is added to this */
 };
 
-/** clearance_init() - of one value; clearance_end() lets it fall. */
+/** clearance_init() - the same clearance everywhere; clearance_end() lets it
+ *  fall towards the end pose. */
 void clearance_init(struct clearance *c, double mm);
 void clearance_end(struct clearance *c, const struct mesh *tool,
 		   const struct pose *end, double zone_mm, double end_mm);
 
-/** clearance_at() - what is to be kept at @pose. */
+/** clearance_at() - the distance to be kept at @pose. */
 double clearance_at(const struct clearance *c, const struct pose *pose);
 
 /**
- * prove_block() - that no point of it comes nearer than @c.
+ * prove_block() - prove that no point in it comes nearer than @c.
  *
- * Return: whether.  If not, @p has the first time, within a step of the proof,
- * at which the distance is less than the clearance + PROVE_EPS_MM.
+ * Return: is it proved?  If not, @p has the first time at which the distance is
+ * less than the clearance + PROVE_EPS_MM, to one step of the proof.
  */
 bool prove_block(const struct bodies *bodies, const struct block *b,
 		 const struct clearance *c, struct proof *p);
@@ -66,18 +69,17 @@ bool prove_block(const struct bodies *bodies, const struct block *b,
 bool prove_refuted(const struct bodies *bodies, const struct block *b,
 		   const struct clearance *c, struct proof *p);
 
-/* How sharp prove_least() is to be.  The finer one costs several times as
- * much, where the electrode passes a wall at nearly the same distance all
- * along. */
+/* How exact prove_least() is.  The finer value costs several times as much,
+ * where the electrode passes along a wall at nearly the same distance. */
 #define PROVE_FINE_MM	0.002
 #define PROVE_COARSE_MM	0.02
 
 /**
- * prove_least() - the largest clearance that can be proved, within @within_mm,
- * up to 100 mm.
+ * prove_least() - find the largest clearance that can be proved, to @within_mm
+ * and up to 100 mm.
  *
- * Return: it, proved; less than 0 if the electrode touches.  @p tells where the
- * block is nearest.
+ * Return: that clearance; less than 0 if the electrode touches the part.  @p
+ * tells where the block is nearest.
  */
 double prove_least(const struct bodies *bodies, const struct block *b,
 		   double within_mm, struct proof *p);

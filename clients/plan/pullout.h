@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * pullout.h - a way where none is given: pull the electrode out of the cavity
+ * pullout.h - find a way if none is given: pull the electrode out of the cavity
  *
- * The way in is the way out, backward.  Every step is a linear program: as far
- * out as goes while all near pairs of triangles keep their distance.  Out is
- * where the air of the cavity leads: a flood through small cells of space.
+ * The way in is the way out, backward.  Every step is a linear program: move as
+ * far outward as possible, while all near pairs of triangles keep their
+ * distance. Outward is the direction in which the air of the cavity leads to
+ * the open (air.h).
  *
  * Units: mm and degrees.
  */
@@ -14,10 +15,10 @@
 #include "plan.h"
 
 /**
- * pullout_way() - fill p->dense from the end pose of the options.
+ * pullout_way() - fill p->dense, from the end pose of the options.
  *
- * Return: 0; 1 no way, and how far it came and where it is narrow is on stderr;
- * else sysexits.
+ * Return: 0; 1: no way was found, and stderr says how far it came and where the
+ * cavity is narrow; else a sysexits code.
  */
 int pullout_way(struct plan *p);
 

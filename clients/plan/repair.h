@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * repair.h - a way that is too near in places, led round them
+ * repair.h - lead a way round the places at which it is too near
  *
  * Units: mm and degrees.  Threads: one.
  */
@@ -12,13 +12,13 @@
 /**
  * repair_nodes() - move the nodes of a way until all its blocks keep p->c.
  *
- * Linear programs move the nodes of each stretch that is too near, from a free
- * node before it to one behind it; where they find no room, OMPL looks for
- * another way in a corridor round the stretch.  The first and the last node
- * stay.  @q: *@n nodes, FEWEST_NODES_MAX at most before and after.
- * p->repaired tells how many of them are others.
+ * A stretch that is too near lies between two free nodes.  Linear programs move
+ * its nodes.  Where they find no room, OMPL looks for another way in a corridor
+ * round the stretch.  The first and the last node of the way stay.  @q: *@n
+ * nodes, at most FEWEST_NODES_MAX before and after.  p->repaired gets the
+ * number of nodes that were moved or added.
  *
- * Return: 0; 1, and a stretch is left for which nothing was found; -ENOMEM.
+ * Return: 0; 1: for at least one stretch nothing was found; -ENOMEM.
  */
 int repair_nodes(struct plan *p, double (*q)[INTERP_NAXES], uint32_t *n);
 

@@ -3,8 +3,8 @@
  * route.h - a program as a row of poses with straight blocks between them
  *
  * The poses are those of the compiled program, rounded as on the machine.
- * Arcs and curves become short blocks.  Each block has a bound, not a sample,
- * of how far the axes stray from it.
+ * Arcs and curves become short blocks.  Each block has a bound of how far the
+ * axes stray from it; this bound is computed, not sampled.
  *
  * Units: mm, and degrees of a rotary axis; machine coordinates.
  * Threads: one at a time.
@@ -25,11 +25,12 @@ struct route_node {
 	bool rapid;			/* it is positioned, not eroded */
 	uint32_t cond;			/* number of its conditions; 0: none */
 	uint32_t act_line;		/* line of the last M word or dwell
-					 * between the block before and this
+					 * between the previous block and this
 					 * one; 0: none */
 };
 
-/* Lifts from all places between two nodes leave the path the same way. */
+/* Lifts from all places between these two nodes leave the path in the same
+ * way. */
 struct route_lift {
 	uint32_t first, last;		/* nodes; equal: from that place */
 	struct interp_escape way;
@@ -41,13 +42,15 @@ struct route {
 	uint32_t n, room;
 	double lattice[INTERP_NAXES];	/* how far the pulses stray from it */
 	uint32_t lines;			/* of the text */
-	char *text;			/* as it was read; NULL: it was given */
-	uint32_t act_line;		/* as a node's, since the last node */
+	char *text;			/* as it was read; NULL: the caller gave
+					 * it */
+	uint32_t act_line;		/* as that of a node; since the last
+					 * node */
 	struct route_lift *lift;	/* lifts that leave the path */
 	uint32_t nlifts, lifts_room;
 };
 
-/** route_free() - a zeroed one is fine. */
+/** route_free() - @w may be all zeros. */
 void route_free(struct route *w);
 
 /** route_add() - Return: 0 or -ENOMEM. */
@@ -57,10 +60,10 @@ int route_add(struct route *w, const struct route_node *node);
 void route_lattice(const struct machine_config *c, double ret[INTERP_NAXES]);
 
 struct route_text {
-	const char *path;		/* as messages name it; - is stdin */
-	const char *text;		/* NULL: read it from there */
-	const char *dialect;		/* NULL: by the end of path, or else the
-					 * machine file's */
+	const char *path;		/* for messages; - is stdin */
+	const char *text;		/* NULL: read it from path */
+	const char *dialect;		/* NULL: the ending of path says it, or
+					 * else the machine file */
 	bool quiet;			/* print nothing about a refusal */
 	const double *start;		/* of all axes; NULL: the machine
 					 * file's start_mm */
@@ -69,9 +72,9 @@ struct route_text {
 /**
  * route_read() - compile a program and follow it.
  *
- * Refused: words that the readers do not know, motion that is not that of one
- * rigid electrode (guides of a wire), and moves that end at a contact.
- * Return: 0; else a sysexits code, and the reason is on stderr.
+ * It refuses words that the readers do not know, wire guides (there is no
+ * single rigid electrode then), and moves that end at a contact. Return: 0;
+ * else a sysexits code, and the reason is on stderr.
  */
 int route_read(struct route *w, const struct machine_config *c,
 	     const struct route_text *from);

@@ -9,20 +9,20 @@
 
 #include "route.h"
 
-/* Farther than that no axis strays from a block of a curve: 1 um, 0.001
- * degree. */
+/* The most that any axis strays from a block of a curve: 1 um, or 0.001
+ * degrees. */
 #define ROUTE_CURVE_STRAYS	0.001
 
 struct route_curve {
 	struct interp_nurbs curve;
 	const uint8_t *axis;		/* of each column */
 	double from, to;		/* part of its domain */
-	struct route_node at;		/* its line; and where it begins */
+	struct route_node at;		/* where it begins, and its line */
 };
 
 /**
- * route_curve() - add the blocks of @k, that begin where @w ends.
- * Return: 0, -ENOMEM, -EINVAL if it cannot be cut.
+ * route_curve() - add the blocks of @k, which begins where @w ends.
+ * Return: 0; -ENOMEM; -EINVAL: it cannot be divided into blocks.
  */
 int route_curve(struct route *w, const struct route_curve *k);
 

@@ -11,18 +11,19 @@
 
 struct stl_raw {
 	uint32_t n, room;
-	float (*corner)[3][3];		/* for free() */
+	float (*corner)[3][3];		/* the caller calls free() */
 };
 
 /**
- * stl_raw_read() - binary or text, by what is in it.
+ * stl_raw_read() - read the file; its content shows whether it is binary or
+ * text.
  *
  * Return: 0; else a sysexits code, and the reason is on stderr.
  */
 int stl_raw_read(const char *path, struct stl_raw *ret);
 
-/** stl_raw_drop_doubles() - triangles that were there before go. Return: 0 or
- *  EX_OSERR. */
+/** stl_raw_drop_doubles() - remove triangles that are in the file twice.
+ *  Return: 0 or EX_OSERR. */
 int stl_raw_drop_doubles(struct stl_raw *raw, uint32_t *dropped);
 
 #endif /* PLAN_STL_RAW_H */

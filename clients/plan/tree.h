@@ -2,9 +2,10 @@
 /*
  * tree.h - a mesh in a tree of oriented boxes
  *
- * Every box holds its triangles whole and is turned along their spread, so a
- * thin curved wall has thin boxes.  The two children of a node stand side by
- * side.  Triangles are copied in the order of the leaves.
+ * Every box contains its triangles completely.  It is turned so that it is thin
+ * where they are, so a thin curved wall has thin boxes.  The two children of a
+ * node are neighbours in the array.  Triangles are copied in the order of the
+ * leaves.
  *
  * Units: mm.  Threads: once built it is only read.
  */
@@ -22,15 +23,16 @@ struct tree {
 	struct box *node;		/* node[0] is the root */
 	uint32_t nnodes, ntris;
 	struct triangle *tri;
-	double (*plane)[4];		/* of each, its unit normal and its
-					 * height; zeros: it has no area */
-	uint32_t *id;			/* of each, its number in the mesh */
+	double (*plane)[4];		/* for each triangle, its unit normal
+					 * and its height; zeros: no area */
+	uint32_t *id;			/* for each triangle, its number in the
+					 * mesh */
 };
 
 /** tree_build() - Return: 0 or -ENOMEM; @m is not empty. */
 int tree_build(struct tree *t, const struct mesh *m);
 
-/** tree_free() - a zeroed tree is fine. */
+/** tree_free() - @t may be all zeros. */
 void tree_free(struct tree *t);
 
 #endif /* PLAN_TREE_H */

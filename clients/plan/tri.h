@@ -2,7 +2,7 @@
 /*
  * tri.h - the distance of two triangles
  *
- * A triangle without area counts as the segment or point it is.
+ * A triangle without area counts as the segment or the point that it is.
  * Units: mm.  Any thread.
  */
 #ifndef PLAN_TRI_H
@@ -13,9 +13,11 @@ struct triangle {
 };
 
 /**
- * tri_distance() - and where: @p on @a, @q on @b; 0 if they meet.
+ * tri_distance() - their distance, and the nearest points @p of @a and @q of
+ * @b; 0 if they meet.
  *
- * Exact up to rounding.  With distance 0 both are a point of contact.
+ * It is exact up to rounding.  If it is 0, both points are one point of
+ * contact.
  */
 double tri_distance(const struct triangle *a, const struct triangle *b,
 		    double p[3], double q[3]);

@@ -2,8 +2,8 @@
 /*
  * vec.h - vectors of three and rotation matrices
  *
- * rot_apply() turns a vector of its own frame
- * into the frame outside.  Units are the caller's.  Any thread.
+ * rot_apply() turns a vector from the inner frame into the outer one.  Units
+ * are the caller's.  Any thread.
  */
 #ifndef PLAN_VEC_H
 #define PLAN_VEC_H

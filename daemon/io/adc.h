@@ -11,8 +11,8 @@
  * A full buffer keeps its oldest samples and loses the new ones. So what stands
  * in a full buffer may be old, and is not taken for a reading.
  *
- * Threads: open and close are startup only; adc_read() is RT-safe: it makes one
- * system call; adc_note() any one other thread.
+ * Threads: adc_open() and adc_close() are startup only.  adc_read() is RT-safe;
+ * it makes one system call.  adc_note() may be called by one other thread.
  */
 #ifndef IO_ADC_H
 #define IO_ADC_H
@@ -35,7 +35,8 @@ struct adc_config {
 	uint32_t channel;		/* of in_voltageN */
 	const char *trigger;		/* its name; "none": it needs none */
 	double ratio;			/* V at the gap for a V at the input */
-	uint32_t stale_periods;		/* without a sample: no reading */
+	uint32_t stale_periods;		/* after so many periods without a
+					 * sample there is no reading */
 };
 
 /* How a sample stands in the buffer: "le:s12/16>>4". */
@@ -44,7 +45,7 @@ struct adc_format {
 	uint32_t bits, bytes, shift;
 };
 
-/* What the log is to say of it: a bit each. */
+/* What the log is to say about it: one bit each. */
 enum adc_tell {
 	ADC_TELL_GONE	= 1,		/* it cannot be read any more */
 	ADC_TELL_SLOW	= 2,		/* most periods have no sample */
@@ -78,9 +79,10 @@ void adc_close(struct adc *a);
 /**
  * adc_read() - once a period. Return: true if @ret_v is a reading.
  *
- * A device that was taken away is no reading at once; one that gives no samples
- * is none after stale_periods.  If all samples of a period are the highest
- * count that there is, the voltage is not known, as if there were none.
+ * A device that was unplugged gives no reading any more.  A device that sends
+ * no samples gives none after stale_periods.  If all samples of a period are
+ * the highest possible count, the voltage is not known, and there is no
+ * reading.
  */
 bool adc_read(struct adc *a, double *ret_v);
 

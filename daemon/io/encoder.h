@@ -2,15 +2,15 @@
 /*
  * encoder.h - where an axis of pulses truly is, and the pulses it has lost
  *
- * A motor on step and direction does not tell when it stalls.  An encoder on
- * the axis does: if its place and the pulses put out differ by more than
- * following_max, that is a trouble until an operator's reset.  The reset takes
- * the encoder's word: the pulses that moved nothing are put out once more,
- * slowly, after the next start.  If they are too many, or if the encoder itself
- * lost count, the place of the axis is lost.
+ * A stepper motor does not say that it has stalled.  An encoder on the axis
+ * shows it: the measured place and the pulses that were put out then differ by
+ * more than following_max.  The axis is in trouble until an operator resets it.
+ * The reset trusts the encoder: the pulses that moved nothing are put out once
+ * more, slowly, after the next start.  The place of the axis is lost if there
+ * are too many of them, or if the encoder itself has missed counts.
  *
  * Units: pulses, if nothing else is said; a count is a quarter period of the
- * encoder.  Threads: RT-safe, but encoder_init(), startup only.
+ * encoder.  Threads: encoder_init() is startup only; all others are RT-safe.
  */
 #ifndef IO_ENCODER_H
 #define IO_ENCODER_H
@@ -19,39 +19,44 @@
 #include <stdint.h>
 
 struct encoder_config {
-	int64_t counts, pulses;		/* so many counts are so many pulses;
-					 * counts < 0 turns it round */
+	int64_t counts, pulses;		/* this many counts are this many
+					 * pulses; counts < 0: the encoder
+					 * counts the other way */
 	int32_t following_max;		/* 0: not supervised */
-	double lag_cycles;		/* it may lag by its way in so many */
-	int32_t resync_max;		/* so many lost ones are made good */
-	double slew;			/* a cycle, to do that */
+	double lag_cycles;		/* the axis may lag by what it moves in
+					 * this many cycles */
+	int32_t resync_max;		/* at most this many lost pulses are put
+					 * out once more, ... */
+	double slew;			/* ... this many in a cycle */
 };
 
 struct encoder {
 	struct encoder_config c;
 	int64_t count, zero;		/* counts: now, and at pulse 0 */
 	int32_t at;			/* measured place */
-	int32_t lost;			/* put out in vain, as far as known */
-	int32_t extra;			/* put out once more for them, so far */
-	int32_t put;			/* put out in all, a cycle ago */
-	double owed;			/* of slew, less than one */
-	double lag;			/* the axis may lag by, now */
-	bool stands;			/* zero is set */
+	int32_t lost;			/* pulses known to have moved nothing */
+	int32_t extra;			/* of these, put out once more so far */
+	int32_t put;			/* all pulses put out, a cycle ago */
+	double owed;			/* the part of a pulse that slew has
+					 * not put out yet */
+	double lag;			/* how far the axis may lag now */
+	bool stands;			/* zero is known */
 	bool ill;			/* counts were missed */
-	bool too_far;			/* until a reset */
+	bool too_far;			/* it was too far off; until a reset */
 };
 
-/** encoder_init() - it counts, and stands nowhere yet. */
+/** encoder_init() - start with a place that is not known yet. */
 void encoder_init(struct encoder *e, const struct encoder_config *c);
 
 /**
- * encoder_look() - a cycle: @count as read, @put pulses put out by now.
+ * encoder_look() - once a cycle: compare the place with the pulses.
  *
- * @ok: no count was missed.  The first look says where the axis stands.
+ * @count: as read; @ok: no count was missed; @put: all pulses put out by now.
+ * The first call sets where the axis is.
  */
 void encoder_look(struct encoder *e, int64_t count, bool ok, int32_t put);
 
-/** encoder_shift() - the pulses count from elsewhere: by @by more. */
+/** encoder_shift() - from now on the place has a number greater by @by. */
 void encoder_shift(struct encoder *e, int32_t by);
 
 /**
@@ -60,10 +65,12 @@ void encoder_shift(struct encoder *e, int32_t by);
  */
 bool encoder_reset(struct encoder *e);
 
-/** encoder_extra() - what to add to the target; @go: on the way back. */
+/** encoder_extra() - the pulses to add to the target.  @go: put out lost pulses
+ *  now. */
 int32_t encoder_extra(struct encoder *e, bool go);
 
-/** encoder_is_well() - it is, and all that was lost is made good. */
+/** encoder_is_well() - is there no trouble, and was every lost pulse put out
+ *  once more? */
 bool encoder_is_well(const struct encoder *e);
 
 #endif /* IO_ENCODER_H */

@@ -42,15 +42,15 @@ struct lines_event {
 	bool high;			/* level after it */
 };
 
-/** lines_chip_open() - the chip of device file @path.  0 or -errno. */
+/** lines_chip_open() - open the chip @path.  Return: 0 or -errno. */
 int lines_chip_open(struct lines_chip **ret, const char *path);
 
-/** lines_chip_close() - lines that were requested from it stay. */
+/** lines_chip_close() - lines that were requested from it stay requested. */
 void lines_chip_close(struct lines_chip *chip);
 
 unsigned int lines_chip_count(struct lines_chip *chip);
 
-/** lines_chip_label() - its label into @buf; empty if it has none. */
+/** lines_chip_label() - put its label into @buf; "" if it has none. */
 void lines_chip_label(struct lines_chip *chip, char *buf, size_t size);
 
 /** lines_chip_user() - is a line in use? @buf gets the name of its user. */
@@ -72,8 +72,8 @@ int lines_set(struct lines *l, const uint8_t *value);
 int lines_get(struct lines *l, uint8_t *value);
 
 /**
- * lines_events() - edges that came since the last call; those of one line are
- * in their order.
+ * lines_events() - take the edges since the last call; those of one line are
+ * in the order in which they came.
  *
  * @room: LINES_EVENTS or more.
  * Return: how many, without waiting; -EOVERFLOW if the kernel may have dropped
@@ -81,7 +81,7 @@ int lines_get(struct lines *l, uint8_t *value);
  */
 int lines_events(struct lines *l, struct lines_event *ret, int room);
 
-/** lines_release() - @request may be NULL. */
+/** lines_release() - @l may be NULL. */
 void lines_release(struct lines *l);
 
 #endif /* IO_LINES_H */

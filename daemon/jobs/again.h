@@ -18,27 +18,27 @@
 #include "verb.h"
 
 /**
- * again_read() - read what the store keeps about the begin of job @n.
+ * again_read() - read what the store keeps about the beginning of job @n.
  *
  * Return: 0; -ENOENT: the job begins at the start of its text; -EBADMSG: it
  * does not, but the record is damaged or of another version.  Then @ret is
  * zeros.
  */
 int again_read(struct jobs *j, uint32_t n, struct again *ret);
-/** again_is_named() - was the place named by its sender? */
+/** again_is_named() - did the sender name the place? */
 bool again_is_named(const struct again *a);
-/** again_named() - what the store keeps of a new job, until the next call;
- *  NULL: the job begins at the start of its text. */
+/** again_named() - what the store is to keep about a new job, valid until the
+ *  next call; NULL: the job begins at the start of its text. */
 const char *again_named(uint32_t line, double place_mm);
 /** again_write() - 0, STORE_KEPT or -errno. */
 int again_write(struct jobs *j, uint32_t n, const struct again *a);
 
-/** again_interrupted() - what is to be kept of job @n, whose last checkpoint is
- *  @last. */
+/** again_interrupted() - what is to be kept about job @n, whose last checkpoint
+ *  is @last. */
 void again_interrupted(struct jobs *j, uint32_t n,
 		       const struct checkpoint_base *last, struct again *ret);
 
-/** again_resume() - the verb "resume" with a job. */
+/** again_resume() - carry out the verb "resume" for a job. */
 void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 		  const struct store_job *job);
 
@@ -57,13 +57,12 @@ int again_request(struct jobs *j, const struct store_job *job,
 void again_begin_at(const struct jobs *j, uint32_t line, double place_mm,
 		    struct compiler_request *ret);
 
-/** again_refuse() - it cannot go on, so @job is interrupted as before; tell
- *  @why. */
+/** again_refuse() - @job cannot go on and stays interrupted; say @why. */
 void again_refuse(struct jobs *j, const struct store_job *job,
 		  const char *why);
 
-/** again_loaded() - what was made of it: remember and tell.
- *  Return: NULL; else why it cannot go on, in words. */
+/** again_loaded() - the job was compiled: remember where it goes on, and say
+ *  it.  Return: NULL; or why it cannot go on, in words. */
 const char *again_loaded(struct jobs *j, const struct compiler_result *r);
 
 #endif /* JOBS_AGAIN_H */

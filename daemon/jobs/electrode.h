@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * electrode.h - the electrode in the machine: what a job asks for, what it
- * shifts, what the job takes off it
+ * electrode.h - the electrode in the machine: which one a job needs, by how
+ * much it shifts the path, and how much the job wears it
  *
- * docs/electrodes.md has the equations and the signs.  A job that is loaded has
- * a row for each part of it that one electrode cuts (struct store_worn): its
- * shift is fixed when the job is first loaded, and holds when it is resumed.
- * What a part takes off its electrode is estimated by the farthest place of the
- * path, so nothing is counted twice, whichever program dies.
+ * docs/electrodes.md has the equations and the signs.  A loaded job is divided
+ * into parts, each cut by one electrode, and each part has a row in the store
+ * (struct store_worn).  The shift is fixed when the job is first loaded, and
+ * stays the same when the job is resumed.  The wear of a part is estimated from
+ * the farthest place that the path has reached.  So no wear is counted twice,
+ * even if edmd or edmd-jobs dies.
  *
  * Units: in every name; mm along Z.  Threads: one, that of the event loop.
  */
@@ -31,67 +32,70 @@ struct compiler_result;
 
 /* All 0 at first. */
 struct electrode {
-	uint32_t n;			/* the program it is of; 0: none */
+	uint32_t n;			/* the program that this is about; 0:
+					 * none */
 	struct interp_wear wear;
-	struct store_worn worn[INTERP_ELECTRODES_MAX];	/* by change */
-	double cut_mm;			/* up to here it was cut before it was
-					 * resumed */
-	int now;			/* the change in force; -1: none yet */
-	/* As the job that is being compiled got it. */
+	struct store_worn worn[INTERP_ELECTRODES_MAX];	/* one for each change
+							 * of electrode */
+	double cut_mm;			/* the path was cut up to here before
+					 * the job was resumed */
+	int now;			/* the last change; -1: none yet */
+	/* The table that the job was compiled with. */
 	struct interp_electrode asked[STORE_ELECTRODES_MAX];
 	size_t nasked;
-	/* The job that was not loaded for want of an electrode, and why; "":
-	 * none. */
+	/* The job that was not loaded because an electrode is missing, and
+	 * why; "": none. */
 	uint32_t refused;
 	char why[ELECTRODE_WHY_MAX];
 };
 
-/** electrode_held() - the number of the one in the holder; 0: nobody said. */
+/** electrode_held() - the number of the electrode in the holder; 0: not
+ *  known. */
 uint32_t electrode_held(struct jobs *j);
 
 /** electrode_request() - fill in the table for the compiler.  @job: NULL if it
- *  is not in the store yet; then @chosen is what it asks for. */
+ *  is not in the store yet; then @chosen is the electrode that it names. */
 void electrode_request(struct jobs *j, const struct store_job *job,
 		       uint32_t chosen, struct compiler_request *ret);
 
-/** electrode_check() - may the text that was compiled be taken?
- *  Return: NULL; else why not, and what would be. */
+/** electrode_check() - may the compiled text be accepted?
+ *  Return: NULL; or why not, and what would be accepted. */
 const char *electrode_check(struct jobs *j, const struct compiler_result *r);
 
 /** electrode_load() - the program of the loaded job is in shared memory: may it
- *  begin?  Return: NULL; else why not, and what would be. */
+ *  begin?  Return: NULL; or why not, and what would be accepted. */
 const char *electrode_load(struct jobs *j);
 
-/** electrode_wait() - the job @n does not begin; nothing is tried again before
- *  the table changes. */
+/** electrode_wait() - job @n does not begin, and is not tried again before the
+ *  table changes. */
 void electrode_wait(struct jobs *j, uint32_t n, const char *why);
 
-/** electrode_waits() - does the job that is next wait for the table? */
+/** electrode_waits() - does the next job wait for a change of the table? */
 bool electrode_waits(struct jobs *j);
 
-/** electrode_follow() - every 20 ms, with the snapshot of the loaded job. */
+/** electrode_follow() - follow the loaded job; to be called every 20 ms. */
 void electrode_follow(struct jobs *j);
 
-/** electrode_used_mm() - what the present part has taken off so far. */
+/** electrode_used_mm() - the wear of the present part so far. */
 double electrode_used_mm(const struct jobs *j);
 
-/** electrode_book() - write down what the present part took off, so far or at
- *  its end. */
+/** electrode_book() - store the wear of the present part, so far or at its
+ *  end. */
 void electrode_book(struct jobs *j);
 
-/** electrode_tell() - the job is over: say what it took off. */
+/** electrode_tell() - the job is over: send an event with its wear. */
 void electrode_tell(struct jobs *j);
 
-/** electrode_interrupted() - the same of a job whose last checkpoint is @b. */
+/** electrode_interrupted() - the same for a job whose last checkpoint is @b. */
 void electrode_interrupted(struct jobs *j, const struct checkpoint_base *b);
 
-/** electrode_settle() - the same of job @n, which ended as @ended says,
- *  unseen. */
+/** electrode_settle() - the same for job @n, which ended as @ended says while
+ *  this service was away. */
 void electrode_settle(struct jobs *j, uint32_t n,
 		      const struct shm_ended *ended);
 
-/** electrode_measured() - the job is done: if it measured one, write that
- *  down. */
+/** electrode_measured() - the job is done: if it measured an electrode, store
+ *  the result. */
 void electrode_measured(struct jobs *j);
 
 /** electrode_is_worn() - is its life used up? */
@@ -102,7 +106,7 @@ void electrode_forget(struct jobs *j);
 
 /* -- verbs_electrode.c: functions of rows -- */
 
-/* The array of those above number arg. */
+/* Answers with the electrodes whose number is above arg. */
 void electrode_list(struct jobs *j, const struct verb *v,
 		    const struct jobs_lcm_command *c);
 /* arg is the number; text has lines KEY=VALUE. */
@@ -112,19 +116,19 @@ void electrode_set(struct jobs *j, const struct verb *v,
 		   const struct jobs_lcm_command *c);
 void electrode_remove(struct jobs *j, const struct verb *v,
 		      const struct jobs_lcm_command *c);
-/* 0: none. */
+/* arg is the number of the electrode in the holder; 0: it is empty. */
 void electrode_use(struct jobs *j, const struct verb *v,
 		   const struct jobs_lcm_command *c);
 
-/** electrode_find_named() - the one that a command names.  Return: false: the
- *  sender was told why not. */
+/** electrode_find_named() - find the electrode that a command names.
+ *  Return: false if there is none, and the sender was told. */
 bool electrode_find_named(struct jobs *j, const struct jobs_lcm_command *c,
 			  struct store_electrode *ret);
 
 /* -- electrode_measure.c -- */
 
-/* Makes a job that measures it.  The text is "new": it becomes the length of a
- * new one. */
+/* Puts a job into the queue that measures the electrode.  If the text is "new",
+ * the result is its length when it was new. */
 void electrode_measure(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c);
 

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * tally.h - what the job in the machine comes to: by condition, where it was,
- * where it retracted
+ * tally.h - the sums of the job in the machine: for each condition, with the
+ * trail of the axes and the places of the retracts
  *
  * edmd counts for the job as a whole.  Every 20 ms, what was added since the
- * last look goes to the condition in force.  So the conditions of a job add up
- * to the sums of the job, whatever was missed: what was counted while this
- * service was away goes to the condition that is in force when it comes back,
- * and what a checkpoint knows and the store does not goes to the condition of
- * that checkpoint.
+ * last look is counted for the condition in force.  So the sums of all
+ * conditions always add up to the sums of the job.  What edmd counted while
+ * this service was away belongs to the condition that is in force when the
+ * service comes back.  What a checkpoint has and the store has not belongs to
+ * the condition of that checkpoint.
  *
- * The trail is the way of X Y Z as it was gone, at most TALLY_POINTS places: if
- * there are more, every second one is dropped, and the distance between two of
- * them doubles.  Retracts are counted in TALLY_SPOTS equal parts of the path.
+ * The trail is the way that X Y Z went, as at most TALLY_POINTS places.  If
+ * there are more, every second one is dropped, and from then on they are twice
+ * as far apart.  Retracts are counted in TALLY_SPOTS equal parts of the path.
  *
- * Both go to the store at the end of the job; before that seldom, so that they
- * are no load on the disk.  Places are those of the whole program, also of a
+ * Sums and trail are stored at the end of the job.  Before that they are stored
+ * seldom, to spare the disk.  Places are those of the whole program, also for a
  * job that was resumed.
  *
  * Units: in every name.  Threads: one, that of the event loop.
@@ -41,7 +41,7 @@ struct tally_sums {
 };
 
 struct tally_row {
-	char condition[16];		/* "": none was called yet */
+	char condition[16];		/* "": before the first one */
 	struct tally_sums sums;
 };
 
@@ -52,12 +52,13 @@ struct tally_spot {
 
 struct tally_point {
 	double mm[3], place_mm;
-	bool cut;			/* the way to it was under power */
+	bool cut;			/* the axes went to it with power on */
 };
 
 struct tally {
 	uint32_t n;			/* of the job; 0: none */
-	bool goes_on;			/* not from its beginning, but as ... */
+	bool goes_on;			/* it did not begin at the start of its
+					 * text, but as ... */
 	struct again again;		/* ... this says */
 	struct tally_sums seen;		/* the sum of the rows */
 	struct tally_row row[TALLY_CONDITIONS];
@@ -66,26 +67,28 @@ struct tally {
 	struct tally_point point[TALLY_POINTS];
 	uint32_t npoints;
 	double step_mm, length_mm;
-	bool under_power;		/* at the look before */
-	int64_t retracted_ns;		/* time of the last one counted */
+	bool under_power;		/* at the last look */
+	int64_t retracted_ns;		/* time of the last retract that was
+					 * counted */
 	char written[16];		/* condition when `used` was written */
-	int64_t used_us, trail_us;	/* when, monotonic */
-	bool stood;			/* it was held, or in a fault, then */
+	int64_t used_us, trail_us;	/* when they were written, monotonic */
+	bool stood;			/* the job was held, or in a fault,
+					 * then */
 };
 
-/** tally_look() - every 20 ms: the snapshot of the job in the machine. */
+/** tally_look() - take the snapshot of the job; to be called every 20 ms. */
 void tally_look(struct jobs *j, int64_t now_us);
 
-/** tally_event() - one of edmd's events, of the job in the machine.
- *  @again: it may have been heard before. */
+/** tally_event() - take an event of edmd about the job in the machine.
+ *  @again: it may have been taken before. */
 void tally_event(struct jobs *j, const struct shm_event *e, bool again);
 
-/** tally_end() - the job is @over, or interrupted; @whole has its sums.  The
- *  trail of an interrupted one that was not written yet is made again on its
- *  way in. */
+/** tally_end() - the job is @over, or else interrupted; @whole has its sums.
+ *  If it is interrupted, the part of its trail that is not stored yet is
+ *  recorded again when the job comes to its place again. */
 void tally_end(struct jobs *j, const struct shm_snapshot *whole, bool over);
 
-/** tally_forget() - the job is no more in the machine. */
+/** tally_forget() - the job is not in the machine any more. */
 void tally_forget(struct jobs *j);
 
 /** tally_settle() - job @n ended while this service was away. */
@@ -93,7 +96,7 @@ void tally_settle(struct jobs *j, uint32_t n, const struct shm_ended *e);
 
 /* -- tally_json.c --------------------------------------------------------- */
 
-/** tally_read() - of job t->n, from the store.  What is not there is empty. */
+/** tally_read() - read the tally of job t->n.  What is not stored is empty. */
 void tally_read(struct jobs *j, struct tally *t);
 void tally_write_used(struct jobs *j, const struct tally *t);
 void tally_write_trail(struct jobs *j, const struct tally *t);
