@@ -207,6 +207,21 @@ static inline bool interp_cursor_is_due(const struct interp_cursor *c)
 }
 
 /**
+ * interp_cursor_creep() - go where it is aimed at, if no lattice point and no
+ * end of this segment comes before that.
+ *
+ * Return: false if one may come; then interp_cursor_step() goes on.
+ */
+static inline bool interp_cursor_creep(struct interp_cursor *c)
+{
+	if (!c->walk || interp_cursor_is_due(c) || c->want_mm <= 0 ||
+	    c->want_mm >= c->seg.length_mm)
+		return false;
+	c->s_mm = c->want_mm;
+	return true;
+}
+
+/**
  * interp_cursor_step() - one lattice point toward the place aimed at.
  *
  * It crosses at most INTERP_CROSS_MAX ends of segments without meeting a new
