@@ -33,7 +33,7 @@
 
 /* States of CiA 402, by the statusword. */
 enum drive_state {
-	DRIVE_NOT_READY,		/* to switch on; or never heard of */
+	DRIVE_NOT_READY,		/* to switch on; or not heard yet */
 	DRIVE_DISABLED,			/* switch on disabled */
 	DRIVE_READY,			/* to switch on */
 	DRIVE_SWITCHED_ON,
@@ -64,12 +64,14 @@ enum drive_phase {
 /* What is wrong with it; the first one stays until drive_reset(). */
 enum drive_trouble {
 	DRIVE_WELL,
-	DRIVE_EMERGENCY,		/* state fault; EMCY and no answer */
-	DRIVE_FELL_OFF,			/* out of operation enabled by itself */
+	DRIVE_EMERGENCY,		/* it is in the state fault, or sent an
+					 * EMCY and does not answer */
+	DRIVE_FELL_OFF,			/* it left operation enabled by
+					 * itself */
 	DRIVE_FOLLOWING,		/* too far from its target */
 	DRIVE_MUTE,			/* no heartbeat */
 	DRIVE_NO_ANSWER,		/* no TPDO for too many SYNCs */
-	DRIVE_STRANGE,			/* ... but with no state in them */
+	DRIVE_STRANGE,			/* its statusword is no state */
 	DRIVE_REBOOTED,			/* its settings are gone */
 	DRIVE_MISCONFIGURED,		/* an SDO refused */
 	DRIVE_OTHER_MODE,		/* left mode 8, or never came to it */
@@ -95,41 +97,45 @@ struct drive_write {
 struct drive_config {
 	uint8_t node;			/* 1 ... 127 */
 	uint8_t master;			/* our own node, for its heartbeat */
-	int32_t increments, pulses;	/* so many increments are so many
-					 * pulses; both not 0 */
+	int32_t increments, pulses;	/* this many increments are this many
+					 * pulses; neither is 0 */
 	uint32_t period_us;		/* of SYNC: interpolation time */
 	uint32_t heartbeat_ms;
-	uint32_t beat_cycles;		/* no heartbeat for so long: mute */
+	uint32_t beat_cycles;		/* no heartbeat for this long: mute */
 	uint32_t answer_cycles;		/* an SDO is repeated after this */
 	uint32_t missing_max;		/* TPDOs missing in a row */
 	int32_t following_max;		/* pulses; 0: not supervised */
-	double lag_cycles;		/* it may lag by its way in so many */
-	int32_t slew_increments;	/* a cycle, to its place when enabled */
-	uint32_t limited_cycles;	/* bit 11 may stand so long */
+	double lag_cycles;		/* it may lag by what it moves in this
+					 * many cycles */
+	int32_t slew_increments;	/* in a cycle, on the way to its place
+					 * after it was enabled */
+	uint32_t limited_cycles;	/* bit 11 may be set for this long */
 	bool absolute;			/* it keeps its place without power */
-	bool held;			/* no brake: torque in quick stop too */
+	bool held;			/* it has no brake and keeps its torque
+					 * in quick stop too */
 	bool no_follow_bit;		/* it does not have bit 12 */
 	uint32_t identity[4];		/* 1018:1 ... 4, where ... */
 	uint8_t identified;		/* ... this has bit 0 ... 3 */
 	struct drive_write write[DRIVE_WRITES];
 	uint32_t nwrites;
-	uint16_t leave[DRIVE_LEAVES];	/* objects set-up does not touch */
+	uint16_t leave[DRIVE_LEAVES];	/* objects that the set-up does not
+					 * touch */
 	uint32_t nleaves;
 };
 
 /* Bits of the statusword that are told when they come. */
 #define DRIVE_WARNS	0x0880u		/* warning, internal limit */
 
-/* Targets a measured place may belong to. */
+/* How many of the last targets a measured place may belong to. */
 #define DRIVE_SENT	3
 
-/* What comes of an SDO that is refused. */
+/* What happens after a refused SDO. */
 enum drive_passed {
-	DRIVE_NOT_PASSED,		/* it cannot be used so */
-	DRIVE_WITHOUT,			/* it may be without that object */
-	DRIVE_ALREADY,			/* it has that value already */
+	DRIVE_NOT_PASSED,		/* the drive cannot be used */
+	DRIVE_WITHOUT,			/* the object is not needed */
+	DRIVE_ALREADY,			/* the object has that value already */
 	DRIVE_ANOTHER,			/* another value is tried */
-	DRIVE_LATER,			/* the same is asked again */
+	DRIVE_LATER,			/* the same request is sent again */
 };
 
 struct drive {
@@ -194,7 +200,7 @@ struct drive {
 					 * to nothing asked, in all */
 };
 
-/** drive_init() - nothing is known of it, and it is asked for nothing. */
+/** drive_init() - nothing is known about the drive yet, and its goal is off. */
 void drive_init(struct drive *d, const struct drive_config *c);
 
 /**
@@ -210,7 +216,7 @@ bool drive_receive(struct drive *d, const struct can_msg *m);
 void drive_sync(struct drive *d);
 
 /**
- * drive_emit() - frames to send this period: SDO, NMT or RPDO.
+ * drive_emit() - get the frames to send in this period: SDO, NMT or RPDO.
  *
  * @target: pulses; used while the drive is enabled and @homed.
  * Return: how many, at most DRIVE_EMITS, into @ret.
@@ -228,7 +234,7 @@ void drive_aim(struct drive *d, enum drive_goal goal);
 void drive_reset(struct drive *d);
 
 /**
- * drive_depart() - its next target is far from the last one: go there slowly.
+ * drive_depart() - the next target is far from the last one: go there slowly.
  */
 void drive_depart(struct drive *d);
 

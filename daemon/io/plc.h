@@ -5,8 +5,8 @@
  * plc_signals.h is the table of all signals: each has its object in the
  * dictionary, its place in a frame (PDO) and its range.
  *
- * What the PLC asks for counts as long as its frames come and the bit `Alive`
- * in them turns: plc_alive().
+ * What the PLC asks for is valid while its frames come and the bit `Alive` in
+ * them changes: plc_alive().
  *
  * Units: in every name; counts are scaled as the table says.
  * Threads: RT-safe; one object belongs to one thread.
@@ -23,12 +23,13 @@
 
 #define PLC_NAXES	8		/* X Y Z A B C U V */
 
-/* What edmd tells, whole numbers in the units of the table. */
+/* What edmd tells the PLC: whole numbers in the units of the table. */
 struct plc_tell {
 	uint8_t state;			/* enum shm_state */
 	uint8_t flags;			/* PLC_TOGGLE ... PLC_LOADED */
 	uint8_t fault;			/* enum cycle_fault */
-	uint8_t mcode;			/* M code that waits for the PLC; 0 */
+	uint8_t mcode;			/* M code that waits for the PLC; 0:
+					 * none */
 	uint16_t gap;			/* 0.01 V */
 	int16_t feed;			/* um/s, signed along the path */
 	uint32_t job;			/* program n; 0: none */
@@ -36,7 +37,7 @@ struct plc_tell {
 	int32_t pos[PLC_NAXES];		/* pulses */
 };
 
-/* What the PLC asks. */
+/* What the PLC asks for. */
 struct plc_ask {
 	uint8_t command;		/* PLC_PERMIT ... PLC_ALIVE */
 	uint8_t locks;			/* PLC_DOOR ... PLC_WIRE: each 1 while
@@ -65,8 +66,9 @@ struct plc_signal {
 	uint16_t index;
 	uint8_t sub;
 	enum plc_type type;
-	uint8_t pdo;			/* 1 ... 4: TPDO or RPDO it is in; 0 */
-	uint8_t byte;			/* its first one there */
+	uint8_t pdo;			/* the TPDO or RPDO that it is in, 1 to
+					 * 4; 0: none */
+	uint8_t byte;			/* its first byte in that */
 	bool asked;			/* the PLC writes it */
 	uint16_t offset;		/* in struct plc_tell or plc_ask */
 	int64_t min, max;		/* counts */
@@ -85,7 +87,8 @@ struct plc {
 	uint16_t beat_ms;		/* 1017: own heartbeat; 0: none */
 	uint32_t beat_cycles, send_cycles;	/* heartbeat and TPDOs */
 	uint32_t emcy_id;		/* 1014; PLC_EMCY_OFF: none are sent */
-	uint32_t alive_cycles;		/* no turn of the toggle: dead */
+	uint32_t alive_cycles;		/* the PLC is dead if its toggle did not
+					 * change for so long */
 	uint32_t beat_in, send_in;
 	struct plc_tell tell;
 	struct plc_ask ask;
@@ -99,20 +102,21 @@ struct plc {
 	uint32_t history[PLC_HISTORY];	/* 1003: the newest first */
 	uint8_t nhistory;
 	uint32_t malformed, refused;	/* frames and values, in all */
-	uint32_t twins;			/* frames of another one of our node */
-	struct can_msg answer;		/* of the SDO server, if */
-	bool answers;
-	uint8_t next;			/* TPDO to send next, 0: none due */
+	uint32_t twins;			/* frames of another device with our
+					 * node */
+	struct can_msg answer;		/* of the SDO server, if ... */
+	bool answers;			/* ... this is set */
+	uint8_t next;			/* TPDO to send next; 0: none is due */
 };
 
-/** plc_init() - nothing heard yet; permit is off. */
+/** plc_init() - nothing was heard yet, and permit is off. */
 void plc_init(struct plc *p, uint8_t node);
 
 /**
- * plc_receive() - a frame; false if it is not for us.
+ * plc_receive() - take a frame. Return: false if it is not for us.
  *
- * One of a wrong length, or with a value out of range, changes nothing and is
- * counted.
+ * A frame of a wrong length, or with a value out of range, changes nothing and
+ * is counted.
  */
 bool plc_receive(struct plc *p, const struct can_msg *m);
 
@@ -128,7 +132,7 @@ size_t plc_emit(struct plc *p, struct can_msg *ret);
 /** plc_period() - once a period before the frames: time goes by. */
 void plc_period(struct plc *p);
 
-/** plc_beat() - heartbeats each @ms from now on; 0: none. */
+/** plc_beat() - send a heartbeat every @ms from now on; 0: none. */
 void plc_beat(struct plc *p, uint16_t ms);
 
 /** plc_alive() - is the PLC there? */
@@ -137,20 +141,20 @@ static inline bool plc_alive(const struct plc *p)
 	return p->alive;
 }
 
-/** plc_bytes() - of a type. */
+/** plc_bytes() - the size of a type. */
 size_t plc_bytes(enum plc_type t);
 
 /* -- plc_sdo.c ------------------------------------------------------------- */
 
 /**
- * plc_sdo() - a request; its answer is p->answer.
+ * plc_sdo() - take a request; the answer is p->answer.
  *
- * What the PLC asks may be written while the node is pre-operational only:
- * then PDOs do not come, and nobody is overruled.
+ * What the PLC asks for can be written by SDO only while the node is
+ * pre-operational: then no PDOs come that it would contradict.
  */
 void plc_sdo(struct plc *p, const struct can_msg *m);
 
-/** plc_value() - of a signal, as the wire has it. */
+/** plc_value() - the value of a signal, as it is sent. */
 uint32_t plc_value(const struct plc *p, const struct plc_signal *s);
 
 /** plc_take() - put @raw into its signal; false if it is out of range. */

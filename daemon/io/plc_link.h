@@ -3,16 +3,17 @@
  * plc_link.h - the PLC of a machine: plc.h over a CAN interface
  *
  * It works beside any backend, on an interface of its own or on that of the
- * drives.  Once a period it reads what the PLC asks and later sends how the
- * machine is.  It takes at most PLC_LINK_FRAMES frames in a period; the others
- * wait in the socket.
+ * drives.  Once a period it reads what the PLC asks for, and later sends the
+ * state of the machine.  It takes at most PLC_LINK_FRAMES frames in a period;
+ * the others wait in the socket.
  *
  * A start and a reset are rising edges of their bits, and the bit must have
- * been 0 once since the PLC came.  So a PLC that comes back with the bit set
- * starts nothing.
+ * been 0 at least once since the PLC came.  So a PLC that comes back with the
+ * bit set starts nothing.
  *
- * Threads: open and close are startup only; read and write are RT-safe, a
- * system call for each frame; plc_link_note() any one other thread.
+ * Threads: open and close are startup only; read and write are RT-safe, with a
+ * system call for each frame; plc_link_note() may be called by one other
+ * thread.
  */
 #ifndef PLC_LINK_H
 #define PLC_LINK_H
@@ -31,8 +32,10 @@ enum plc_count {
 	PLC_WENT,			/* times it stopped */
 	PLC_MALFORMED,			/* frames of a wrong length or kind */
 	PLC_REFUSED,			/* values and objects */
-	PLC_TWINS,			/* frames of another, with our node */
-	PLC_UNSENT,			/* frames, the queue was full */
+	PLC_TWINS,			/* frames of another device with our
+					 * node */
+	PLC_UNSENT,			/* frames not sent: the queue was
+					 * full */
 	PLC_WARNINGS, PLC_PASSIVE,	/* errors on the bus */
 	PLC_BUS_OFF,
 	PLC_DOWN,			/* times the interface went down */
@@ -46,7 +49,7 @@ struct plc_link {
 	uint8_t before;			/* its commands, a period ago */
 	bool was_alive, is_down;
 	uint32_t count[PLC_NCOUNTS];	/* atomic */
-	uint32_t told[PLC_NCOUNTS];	/* the other thread's */
+	uint32_t told[PLC_NCOUNTS];	/* belongs to the other thread */
 };
 
 /**
@@ -58,21 +61,23 @@ struct plc_link {
 int plc_link_open(struct plc_link *l, const struct machine_config *c,
 		  struct interp_diag *diag);
 
-/** plc_link_read() - once a period: what it asks; time goes by. */
+/** plc_link_read() - once a period: read what the PLC asks for, and count the
+ *  period. */
 void plc_link_read(struct plc_link *l, struct io_plc *ret);
 
-/** plc_link_write() - once a period: the frames that are due. */
+/** plc_link_write() - once a period: send the frames that are due. */
 void plc_link_write(struct plc_link *l, const struct plc_tell *tell);
 
 /**
- * plc_link_note() - the next thing worth a line in the log, into @buf.
+ * plc_link_note() - put the next line for the log into @buf.
  *
- * What comes again and again is said the first, second, fourth, ... time.
- * Return: false: nothing.
+ * An event that comes again and again is reported the first, second, fourth,
+ * eighth, ... time.
+ * Return: false if there is none.
  */
 bool plc_link_note(struct plc_link *l, char *buf, size_t size);
 
-/** plc_link_close() - also of one without a PLC. */
+/** plc_link_close() - also if there is no PLC. */
 void plc_link_close(struct plc_link *l);
 
 #endif /* PLC_LINK_H */

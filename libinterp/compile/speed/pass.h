@@ -23,7 +23,7 @@
  * rounding. */
 #define PASS_NEAR	20
 
-/* The straight way from node to node. */
+/* The straight line from one node to another. */
 struct chord {
 	uint32_t from, to;
 	double mm, per_mm;		/* in the columns of h.along, and its
@@ -31,7 +31,8 @@ struct chord {
 	struct heading h;
 };
 
-/* Two nodes that are so far from here along the path, or a little farther. */
+/* The first nodes behind and ahead that are at least this far from here along
+ * the path. */
 struct around {
 	double mm;
 	uint32_t behind, ahead;
@@ -134,8 +135,8 @@ double pass_along_tol(struct pass *w, uint32_t columns);
  */
 double pass_off(const struct pass *w, uint32_t j, double along, double rate);
 
-/** pass_chord() - find the way from node @from to @to.  @along makes its
- *  length. */
+/** pass_chord() - find the straight line from node @from to node @to.  Its
+ *  length is that of the columns @along. */
 void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
 		uint32_t along, struct chord *ret);
 
@@ -146,12 +147,14 @@ void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
 double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
 			double d);
 
-/* What bends beside the path leave for going along it. */
+/* The acceleration and jerk that bends beside the path leave for motion along
+ * it. */
 struct leave {
 	double a_mm_s2, j_mm_s3;
 };
 
-/** pass_leave() - that of the last node, which is passed at @v_mm_s at most. */
+/** pass_leave() - what the last node leaves, if it is passed at @v_mm_s at
+ *  most. */
 void pass_leave(const struct pass *w, double v_mm_s, struct leave *ret);
 
 /**
@@ -171,8 +174,8 @@ static inline bool pass_is_tiny(const struct pass *w, uint32_t i)
  * pass_over_mm_s() - the greatest speed over the tiny segments in front of
  * segment @i, which is not tiny.
  *
- * A rounding hides the corners at their nodes.  What their neighbours turn by
- * is passed as one corner.
+ * A rounding hides the corners at their nodes.  So the turn from the segment
+ * before them to the one behind them is passed as one corner.
  *
  * @first: the segment before @i that moves; ret: that in front of the tiny
  * ones, if it is not tiny and nothing stops behind it.
@@ -180,7 +183,7 @@ static inline bool pass_is_tiny(const struct pass *w, uint32_t i)
 double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 		      const struct heading *b);
 
-/* The most that each column moves by, a mm of a segment. */
+/* The most that each column moves in a mm of a segment. */
 struct rates {
 	double by[INTERP_NAXES];
 	uint32_t bends;			/* columns that go round a bend */
@@ -189,7 +192,7 @@ struct rates {
 					 * nothing is said */
 };
 
-/** pass_rates() - those of segment @i. */
+/** pass_rates() - find the rates of segment @i. */
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		struct rates *ret);
 

@@ -2,17 +2,19 @@
 /*
  * contour.h - between a reader and the builder: wire offset, taper, corners
  *
- * Takes programmed motions, moves each contour to its side by the offset and
- * the taper in force, joins neighbours at their corners and hands the result
+ * It takes programmed motions, moves each contour sideways by the offset and
+ * the taper in force, joins neighbours at their corners, and hands the result
  * to the guides.
  *
- * What is cut under one G41 or G42, lead to lead, is collected first: no part
- * of it may come too near to another, and pieces for which there is no room
- * are left out, so all of it must be known.  With nothing in force one motion
- * is held back until the next is known, or none.
+ * The motions under one G41 or G42, from lead to lead, are collected first,
+ * because all of them must be known: no part of the way may come too near to
+ * another part, and pieces for which there is no room are left out.  If neither
+ * an offset nor a taper is in force, at most one motion is held back until the
+ * next one is known.
  *
- * A function that refuses fills @diag's found, wanted and line (that of the
- * motion to blame, which may be one collected before) and returns -EINVAL.
+ * A function that refuses fills found, wanted and line of @diag, and returns
+ * -EINVAL.  The line is that of the motion to blame, which may be one that was
+ * collected before.
  *
  * Threads: allocates.  Never in the cycle.
  */
@@ -52,23 +54,25 @@ void contour_init(struct contour *k, const struct interp_wire *w,
 void contour_free(struct contour *k);
 
 /**
- * contour_side() - from the next motion on, @offset_mm to the left of the
- * contours and the wire leaning to the left by the tangent @slope; below 0 to
- * the right.
+ * contour_side() - from the next motion on, the wire is @offset_mm to the left
+ * of the contour, and leans to the left by the tangent @slope.  Values below 0
+ * mean to the right.
  */
 void contour_side(struct contour *k, double offset_mm, double slope);
 
-/** contour_tangent() - of a taper of @deg; NAN if beyond the machine. */
+/** contour_tangent() - the tangent of a taper of @deg; NAN: the machine cannot
+ *  cut it. */
 double contour_tangent(const struct contour *k, double deg);
 
-/* As the builder's functions of these names. */
+/* These are as the builder's functions of the same names. */
 int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 		 const struct interp_build_word *w, struct interp_diag *diag);
 int contour_arc(struct contour *k, const double end_mm[INTERP_NAXES],
 		const struct interp_build_arc *arc,
 		const struct interp_build_word *w, struct interp_diag *diag);
-/* With anything in force it is cut into arcs and lines and 1 is returned; a
- * curve of other axes than X and Y is refused then. */
+/* If an offset or a taper is in force, the curve is divided into arcs and
+ * lines, and 1 is returned.  Then a curve of other axes than X and Y is
+ * refused. */
 int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 		  const struct interp_build_curve *c,
 		  const struct interp_build_word *w, struct interp_diag *diag);
@@ -76,18 +80,18 @@ int contour_action(struct contour *k, enum interp_kind kind, uint32_t arg,
 		   const struct interp_build_word *w, struct interp_diag *diag);
 
 /**
- * contour_two() - bottom and top of different shape: contour[0] to X Y of
- * @end_mm, contour[1] to U V of it.
+ * contour_two() - bottom and top have different shapes: contour[0] leads to X Y
+ * of @end_mm, contour[1] to its U V.
  */
 int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
 		const struct interp_build_contour contour[2],
 		const struct interp_build_word *w, struct interp_diag *diag);
 
-/** contour_flush() - nothing follows: end what is collected. */
+/** contour_flush() - nothing follows: cut what is collected. */
 int contour_flush(struct contour *k, struct interp_diag *diag);
 
-/** contour_leads() - is the next motion a lead?  The offset is reached or left
- *  over it, or a taper without an offset. */
+/** contour_leads() - is the next motion a lead?  On a lead the offset, or a
+ *  taper without an offset, is reached or left. */
 bool contour_leads(const struct contour *k);
 
 /** contour_keep() - put @m behind what is collected. */

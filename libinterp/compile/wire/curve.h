@@ -55,10 +55,10 @@ static inline double curve_max(double a, double b)
 	return a > b ? a : b;
 }
 
-/** curve_line() - a straight one. */
+/** curve_line() - make a straight line. */
 struct curve curve_line(struct vec from, struct vec to);
 
-/** curve_arc() - a circular one; equal ends make a full circle. */
+/** curve_arc() - make an arc; equal ends make a full circle. */
 struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
 		       bool clockwise);
 
@@ -68,13 +68,13 @@ struct curve curve_evened(const struct curve *c);
 /** curve_uneven() - how far curve_evened() moves its centre along the chord. */
 double curve_uneven(const struct curve *c);
 
-/** curve_halved() - both halves of it, each with its ends as they are; the
- *  radius of an arc changes half way. */
+/** curve_halved() - divide it into two halves.  All ends stay where they are;
+ *  the radius of an arc changes in the middle. */
 void curve_halved(const struct curve *c, struct curve ret[2]);
 
 double curve_length(const struct curve *c);
 
-/** curve_way() - the unit vector along it, at its start or end. */
+/** curve_way() - its direction at the start or the end, as a unit vector. */
 struct vec curve_way(const struct curve *c, bool at_end);
 
 /** curve_at() - the place at share @t of its length. */
@@ -89,12 +89,13 @@ struct curve curve_part(const struct curve *c, double t0, double t1);
  */
 bool curve_parallel(const struct curve *c, double d, struct curve *ret);
 
-/** curve_meets() - where the two, prolonged, meet: up to two places.
- *  Return: how many.  Near misses count, up to 1.5 um. */
+/** curve_meets() - where the two meet if they are prolonged: up to two places.
+ *  Return: how many.  Curves that miss each other by up to 1.5 um meet too. */
 int curve_meets(const struct curve *a, const struct curve *b,
 		struct vec ret[2]);
 
-/** curve_meet() - where the two, prolonged, meet nearest to @near. */
+/** curve_meet() - of these places, the one nearest to @near. Return: false if
+ *  there is none. */
 bool curve_meet(const struct curve *a, const struct curve *b, struct vec near,
 		struct vec *ret);
 
@@ -130,8 +131,9 @@ struct curve_hit {
 	struct vec at;
 };
 
-/** curve_cross() - where @a and @b cross or touch with a point of both.
- *  Return: how many there are; those that lie upon each other do not. */
+/** curve_cross() - where @a and @b cross or touch.
+ *  Return: how many places there are; curves that lie on each other have
+ *  none. */
 int curve_cross(const struct curve *a, const struct curve *b,
 		struct curve_hit ret[2]);
 

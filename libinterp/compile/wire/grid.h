@@ -2,9 +2,9 @@
 /*
  * grid.h - which curves of many are near a place
  *
- * The plane is cut into square cells; each curve is entered in the cells that
- * it may pass.  With cells about as large as the curves are long, building and
- * asking take a time in proportion to the number of curves.
+ * The plane is divided into square cells, and each curve is entered in the
+ * cells that it may pass.  If cells are about as large as the curves are long,
+ * the time grows in proportion to the number of curves.
  *
  * Threads: allocates.  Never in the cycle.
  */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * replay.h - a contour kept, to be cut several times
+ * replay.h - keep a contour and cut it several times
  *
  * Between contour_record() and contour_recorded() motions are collected and
  * nothing is cut.  The tape has a lead in, the outline and a lead out.  Its
@@ -27,20 +27,23 @@ struct contour_pass {
 	bool back;			/* from the end to the beginning */
 };
 
-/** contour_record() - collect from here, at @here_mm on both planes. */
+/** contour_record() - collect motions from here on; the wire is at @here_mm on
+ *  both planes. */
 void contour_record(struct contour *k, const double here_mm[2]);
 
-/** contour_recorded() - what was collected since; the caller frees ret->m. */
+/** contour_recorded() - end that, and get what was collected; the caller frees
+ *  ret->m. */
 void contour_recorded(struct contour *k, struct contour_tape *ret);
 
-/** contour_tape_is_whole() - a lead in, a closed outline, a lead out? */
+/** contour_tape_is_whole() - does it have a lead in, a closed outline and a
+ *  lead out? */
 bool contour_tape_is_whole(const struct contour_tape *t, double pulse_mm);
 
 /** contour_tape_split() - the last @tab_mm of the outline become the tab.
  *  Return: 0, -ENOMEM, or -ERANGE: the outline is not longer. */
 int contour_tape_split(struct contour_tape *t, double tab_mm);
 
-/** contour_tape_length() - of its motions @first to @end - 1, mm. */
+/** contour_tape_length() - the length of motions @first to @end - 1, mm. */
 double contour_tape_length(const struct contour_tape *t, uint32_t first,
 			   uint32_t end);
 
@@ -50,7 +53,7 @@ int contour_play(struct contour *k, const struct contour_tape *t,
 		 const uint32_t range[2], const struct contour_pass *p,
 		 struct interp_diag *diag);
 
-/** contour_play_step() - to another offset, on the spot. */
+/** contour_play_step() - change to another offset, on the spot. */
 int contour_play_step(struct contour *k, const struct contour_pass *p,
 		      struct interp_diag *diag);
 

@@ -7,12 +7,12 @@
  *	lost.c		what it may leave out
  *	way.c		the way along it that is nowhere too near
  *
- * The parallels of neighbours are joined without regard to anything else, so
- * the raw track crosses itself where there is no room for all of it.  The way
- * goes along it, and where it would come too near to the outline it changes to
- * the later part that crosses it there; what lies between is left out.  It is
- * allowed to leave out what the wire cannot reach in an inner corner.  Anything
- * more is a part of the outline that would be missing.
+ * The parallels of neighbours are joined without regard to all others.  So the
+ * raw track crosses itself where there is no room for all of it.  The way goes
+ * along the raw track.  Where it would come too near to the outline, it changes
+ * to the later part that crosses it there, and leaves out what lies between. It
+ * may leave out what the wire cannot reach in an inner corner.  If more were
+ * left out, a part of the outline would be missing.
  *
  * Units: mm.  Threads: allocates.  Never in the cycle.
  */
@@ -64,7 +64,8 @@ enum track_fault_kind {
 	TRACK_STUCK,			/* it cannot go on behind motion a */
 	TRACK_LOST,			/* what lies from a to b is left out */
 	TRACK_POINT,			/* found_mm of the point between a and b
-					 * are left: no fault, but told */
+					 * are left; this is reported, and is no
+					 * fault */
 	TRACK_LEAD,			/* lead a comes too near to b */
 	TRACK_CROWDED,			/* more crossings than are looked at */
 };
@@ -72,7 +73,8 @@ enum track_fault_kind {
 struct track_fault {
 	enum track_fault_kind kind;
 	uint32_t a, b;			/* owners */
-	double found_mm, wanted_mm;	/* between them; found < 0: not known */
+	double found_mm, wanted_mm;	/* distance between them; found < 0: not
+					 * known */
 };
 
 struct track_job {
@@ -130,7 +132,7 @@ struct track_work {
 /** track_add() - one more element, not filled. Return: NULL: no memory. */
 struct track_elem *track_add(struct track_work *w);
 
-/** track_shift() - piece @i's parallel is so far to its left. */
+/** track_shift() - how far the parallel of piece @i is to its left. */
 double track_shift(const struct track_work *w, uint32_t i);
 
 /** track_forget() - free what @w owns. */
@@ -151,9 +153,10 @@ int clear_find_crossings(struct track_work *w);
  *  If not, w->blocker is one that is too near. */
 bool clear_is(struct track_work *w, uint32_t e, double t0, double t1);
 
-/** clear_is_nearly() - if it is not: may the way go on along it, as there is no
- *  other?  Moved pieces that nearly lie on each other cross each other to and
- *  fro, and the way does not go back to an earlier one. */
+/** clear_is_nearly() - if it is not far enough: may the way still go on along
+ *  it, because there is no other way?  Moved pieces that nearly lie on each
+ *  other cross each other many times, and the way never goes back to an earlier
+ *  one. */
 bool clear_is_nearly(const struct track_work *w, uint32_t e, double t0,
 		     double t1);
 
@@ -168,7 +171,7 @@ struct track_jump {
 /** track_piece() - the piece of the outline that element @e goes along. */
 const struct face_piece *track_piece(const struct track_work *w, uint32_t e);
 
-/** lost_is() - would a part of the outline be missing by @j? */
+/** lost_is() - would a part of the outline be missing after @j? */
 bool lost_is(const struct track_work *w, const struct track_jump *j);
 
 /** lost_point() - how much is left of the point of the corner of two

@@ -32,16 +32,16 @@
 
 struct interp_dialect;
 
-/* Takes what is to be said of a program that is accepted. */
+/* Takes remarks about a program that is accepted. */
 struct interp_notes {
 	void (*say)(void *arg, uint32_t line, const char *text);
 	void *arg;
 	bool plan;		/* the passes of G152 too */
 };
 
-/* Takes what a text is refused for, in its order: up to INTERP_NC_REFUSED_MAX.
- * The places of a program are known up to the first alone, so behind it only
- * words are looked at. */
+/* Takes the reasons for which a text is refused, in the order of the text: at
+ * most INTERP_NC_REFUSED_MAX.  The places of the axes are known only up to the
+ * first one.  So behind it only the words are checked. */
 struct interp_refused {
 	void (*say)(void *arg, const struct interp_diag *diag);
 	void *arg;
@@ -64,8 +64,9 @@ struct interp_electrodes {
 	uint32_t chosen;		/* the one that the program begins with;
 					 * 0: the one in the holder */
 	bool unknown_ok;		/* numbers that are not in the table are
-					 * taken, and shift nothing: the caller
-					 * looks at the marks in the program */
+					 * accepted, and shift nothing: the
+					 * caller checks the marks in the
+					 * program */
 };
 
 struct interp_nc_options {

@@ -1,26 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * compensate.h - contour compensation: what is added to the speeds demanded
+ * compensate.h - contour compensation: what is added to the demanded speeds
  *
- *	none		nothing
- *	feedforward	the set speed, the set acceleration times what the
- *			velocity loop lags, both half a period and the drive's
- *			delay ahead: the held output lags by as much
+ *	none		nothing is added
+ *	feedforward	the set speed, and the set acceleration times the lag of
+ *			the velocity loop.  Both are read half a period and the
+ *			drive's delay ahead, because the output is late by that
+ *			time
  *	cross-coupled	cross_1_s times the contour error vector (Koren)
- *	predictive	predicted_1_s times the contour error to come within
- *			the horizon, by the axis models from the Kalman
- *			estimate, and measured_1_s times the present one
+ *	predictive	predicted_1_s times the contour error that the axis
+ *			models, begun at the Kalman estimate, will have within
+ *			the horizon, and measured_1_s times the present error
  *			(u + Kff dy_pred + Kfb dy_meas)
  *	zpetc		the axis models inverted with zero phase (Tomizuka)
  *	twin		the set values were corrected beforehand; see
  *			tests/experiments/tried/set_twin.h
  *
- * They can be combined, except feedforward with zpetc, which correct the same
- * error.  A drive that takes places gets the result divided by its gain.
+ * They can be combined, except feedforward and zpetc, which correct the same
+ * error.  For a drive that takes places, the result is divided by its gain.
  *
  * Units: mm, s.  Sign: + as the axis.
- * Threads: one object, one thread; _step() is RT-safe as far as the path's
- * at() is, with a bounded work: the horizon times the axes, and two feet.
+ * Threads: one object, one thread; _step() is RT-safe if the path's at() is.
+ * Its work is bounded: the horizon times the axes, and two feet (foot.h).
  */
 #ifndef INTERP_COMPENSATE_H
 #define INTERP_COMPENSATE_H
@@ -37,7 +38,7 @@
 
 #define INTERP_COMPENSATE_HORIZON_MAX	64	/* periods */
 
-/* Set values a step may read before and after the present one. */
+/* How many set values a step may read before and after the present one. */
 #define INTERP_COMPENSATE_BEHIND	INTERP_ZPETC_BEHIND
 #define INTERP_COMPENSATE_AHEAD \
 	(INTERP_COMPENSATE_HORIZON_MAX + INTERP_AXIS_DELAY_MAX + 4)
@@ -47,8 +48,10 @@ struct interp_compensate_config {
 	struct interp_compensate_gains gains;
 	int naxes;
 	double period_s;
-	struct interp_axis_loop loop[INTERP_NAXES];	/* as believed */
-	bool filtered;			/* feet of the Kalman estimate */
+	struct interp_axis_loop loop[INTERP_NAXES];	/* as far as known */
+	bool filtered;			/* the contour error is that of the
+					 * Kalman estimate, not of the
+					 * encoder */
 	struct interp_kalman_noise noise;
 	double look_mm;			/* see interp_contour_begin() */
 };
@@ -66,9 +69,10 @@ struct interp_compensate {
 };
 
 /*
- * Set values of each axis, at[i][0] the present one; readable from
- * -INTERP_COMPENSATE_BEHIND to INTERP_COMPENSATE_AHEAD.  And where on the path
- * they are, u[0] the present one; readable up to the horizon.
+ * The set values of each axis.  at[i][0] is the present one; those from
+ * -INTERP_COMPENSATE_BEHIND to INTERP_COMPENSATE_AHEAD can be read.  u says
+ * where on the path they are.  u[0] is the present place; those up to the
+ * horizon can be read.
  */
 struct interp_compensate_preview {
 	const double *at[INTERP_NAXES];
@@ -76,7 +80,7 @@ struct interp_compensate_preview {
 };
 
 /**
- * interp_compensate_begin() - at rest at @place_mm, the path's point @u.
+ * interp_compensate_begin() - begin at rest at @place_mm, the path's point @u.
  *
  * Return: 0; -EINVAL for numbers out of range or methods that exclude each
  * other; -ERANGE for a horizon or delay that is too long.  Startup only.
@@ -87,9 +91,10 @@ int interp_compensate_begin(struct interp_compensate *c,
 			    const double *place_mm);
 
 /**
- * interp_compensate_step() - one period: what to add to each speed demanded.
+ * interp_compensate_step() - one period: find what to add to each demanded
+ * speed.
  *
- * @measured_mm: the encoders.
+ * @measured_mm: the places that the encoders show.
  */
 void interp_compensate_step(struct interp_compensate *c,
 			    const struct interp_compensate_preview *set,

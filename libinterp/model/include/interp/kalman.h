@@ -40,7 +40,7 @@ int interp_kalman_init(struct interp_kalman *k,
 /** interp_kalman_correct() - the encoder says @measured_mm now. */
 void interp_kalman_correct(struct interp_kalman *k, double measured_mm);
 
-/** interp_kalman_predict() - to the next period, @u_mm_s demanded. */
+/** interp_kalman_predict() - go to the next period; @u_mm_s is demanded. */
 void interp_kalman_predict(struct interp_kalman *k, double u_mm_s);
 
 /** interp_kalman_place_mm() - the estimate. */

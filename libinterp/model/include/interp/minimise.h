@@ -2,11 +2,11 @@
 /*
  * minimise.h - find the gains that make a cost least
  *
- * Two methods of NLopt over a box; neither asks for a derivative, and both do
- * the same again when they are asked again.  The local one is Nelder and Mead's
- * simplex, begun anew around its best when it has shrunk.  The global one
- * spends half of its budget on dividing the box (DIRECT-L, Gablonsky and
- * Kelley), and the rest on the local one from the best place that was found.
+ * Two methods of NLopt search a box.  Neither needs a derivative, and both find
+ * the same again if they are called again.  The local one is Nelder and Mead's
+ * simplex; when it has shrunk it begins anew around its best place.  The global
+ * one uses half of its budget to divide the box (DIRECT-L, Gablonsky and
+ * Kelley), and the rest for the local one, from the best place that was found.
  *
  * Threads: any thread, not in the cycle.
  */
@@ -26,8 +26,8 @@ struct interp_minimise {
 };
 
 /**
- * Both: @x holds the place to begin with, and then the best one found, whose
- * cost is @ret_least.  Return: 0, -ENOMEM, or -EINVAL for a box that is none.
+ * Both: @x is the place to begin at, and gets the best place that was found.
+ * Its cost is @ret_least.  Return: 0; -ENOMEM; -EINVAL: the box is empty.
  */
 int interp_minimise_local(const struct interp_minimise *m, double *x,
 			  double *ret_least);

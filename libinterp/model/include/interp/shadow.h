@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * shadow.h - the twin beside a machine that runs: predicted against measured
- * contour error
+ * shadow.h - models of the axes beside the running machine: predicted and
+ * measured contour error
  *
- * Fed with what a trace holds, target and measured place of every axis in every
- * period, it lets the axis models follow the same targets and measures how far
- * machine and models are from the path the targets took.  The path is the row
- * of the last targets, interp/row.h.
+ * It gets the target and the measured place of every axis in every period, as a
+ * trace has them.  The axis models follow the same targets.  It measures how
+ * far the machine and the models are from the path of the targets.  This path
+ * is the row of the last targets, interp/row.h.
  *
- * Targets are lattice points, so the path has steps of a pulse, and no error is
- * known better than that.
+ * Targets are lattice points.  So the path has steps of one pulse, and no error
+ * is known more exactly.
  *
  * Units: mm, s.
  * Threads: one object, one thread; bounded work a period.
@@ -38,7 +38,7 @@ struct interp_shadow {
 /* Contour errors of one period. */
 struct interp_shadow_error {
 	double measured_mm, predicted_mm;
-	double missed_mm;		/* machine to model */
+	double missed_mm;		/* from the machine to the model */
 };
 
 /**
@@ -49,15 +49,15 @@ int interp_shadow_init(struct interp_shadow *s,
 		       const struct interp_axis_loop *loop, int naxes,
 		       double period_s);
 
-/** interp_shadow_forget() - periods were lost: begin anew with the next. */
+/** interp_shadow_forget() - periods were lost: begin anew with the next one. */
 void interp_shadow_forget(struct interp_shadow *s);
 
 /**
  * interp_shadow_step() - one period.
  *
- * @target_mm: set in this period, a place of the path; @sent_mm: what the axes
- * were sent, the same and what a compensation added; @actual_mm: measured
- * before that.
+ * @target_mm: the place on the path in this period; @sent_mm: what was sent to
+ * the axes, which is @target_mm plus what a compensation added; @actual_mm: the
+ * places that were measured before that.
  */
 void interp_shadow_step(struct interp_shadow *s, const double *target_mm,
 			const double *sent_mm, const double *actual_mm,

@@ -2,11 +2,12 @@
 /*
  * zpetc.h - zero phase error tracking of one axis
  *
- * The speed to demand so that the modelled axis follows the set values without
- * lag: the model's quotient in z turned over.  Its zeros outside the circle of
- * INTERP_ZPETC_CANCEL cannot be turned into poles; they are answered by their
- * mirror, which leaves the size slightly wrong and the phase right (Tomizuka,
- * 1987).  The delay is answered by looking ahead, in whole periods.
+ * It finds the speed to demand so that the modelled axis follows the set values
+ * without lag: the inverse of the model's transfer function in z.  Zeros of the
+ * model outside the circle of INTERP_ZPETC_CANCEL would become poles that are
+ * not damped enough.  Each is replaced by its mirror, which leaves the phase
+ * right and the size slightly wrong (Tomizuka, 1987).  For the delay, set
+ * values are read ahead by whole periods.
  *
  * Units: mm, s.
  * Threads: one object, one thread; _step() is RT-safe.
@@ -17,7 +18,7 @@
 #include "interp/axis_model.h"
 
 #define INTERP_ZPETC_BEHIND	3
-#define INTERP_ZPETC_AHEAD	3	/* and the delay */
+#define INTERP_ZPETC_AHEAD	3	/* plus the delay */
 #define INTERP_ZPETC_NTAPS	(INTERP_ZPETC_BEHIND + INTERP_ZPETC_AHEAD + 1)
 
 #define INTERP_ZPETC_CANCEL	0.7
