@@ -415,7 +415,7 @@ static void millions_of_random_cycles_keep_every_promise(void **st)
 	assert_true(met[INTERP_CURVE] > 0 && met[INTERP_PAIR] > 0 &&
 		    met[INTERP_ARC] > 0 && turning > 0);
 	assert_true(powered > 0 && beside > 0 && beside_retract > 0);
-	/* test_hand.c has those of a machine without a job. */
+	/* test_manual.c has those of a machine without a job. */
 	for (int i = STATE_IDLE; i < STATE_JOG; i++) {
 		print_message("    %-10s %8llu cycles\n", state_duty[i].name,
 			      (unsigned long long)seen[i]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * What rt/mcode.h promises.
+ * What path/mcode.h promises.
  */
 #include "plc_help.h"
 

@@ -5,7 +5,7 @@
  * The PLC is told one code at a time.  It answers with the same number when the
  * code is done; then edmd takes the number away, and then the PLC its answer.
  * Only after that comes the next code.  A program that has to wait stands in
- * front of the code, without sparks.  interp/mcode.h says when each code is
+ * front of the code, without sparks.  interp/mcode_arg.h says when each code is
  * told and what waits for it.
  *
  * On the way back every code is passed.  On the way forward again, a "skip"
