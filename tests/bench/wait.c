@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * wait.c - what waiting alone costs: a thread that is set up as edmd's cycle is,
- * waits as it does, and does nothing else
+ * wait.c - what waiting alone costs: a thread that is set up as edmd's cycle
+ * is, waits as it does, and does nothing else
  *
  *	build/bench/wait PERIOD_US PERIODS
  */
