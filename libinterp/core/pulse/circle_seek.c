@@ -3,10 +3,10 @@
  * circle_seek.c - stands on a circle after any number of pulses
  *
  * In a quadrant each pulse goes to the next anti-diagonal d = out - in, so the
- * pulse tells the anti-diagonal.  With n(d) for the least `in` on it that is not
- * inside the circle, F(in, in + d) >= 0, the walk stands on n(d) or on the point
- * before it; from either it goes to in = n(d) - 1 on the next one.  It leaves a
- * quadrant at out = meet.
+ * pulse tells the anti-diagonal.  With n(d) for the least `in` on it that is
+ * not inside the circle, F(in, in + d) >= 0, the walk stands on n(d) or on the
+ * point before it; from either it goes to in = n(d) - 1 on the next one.  It
+ * leaves a quadrant at out = meet.
  *
  * The measure is the swept area.  An outward pulse adds the `in` at which it is
  * made, an inward one the `out`.  Their difference is that of the product
@@ -185,7 +185,8 @@ static int64_t along_runs(struct interp_circle *k, int64_t ticks)
 
 	for (uint32_t i = 0; ticks > 0; i++) {
 		const int64_t run = i < k->nruns ? k->runs[i] : 0;
-		const int64_t n = least(ticks, llabs(run)), dir = run < 0 ? -1 : 1;
+		const int64_t n = least(ticks, llabs(run));
+		const int64_t dir = run < 0 ? -1 : 1;
 		const bool in_y = (i + k->run_first) & 1;
 
 		if (n == 0)
