@@ -177,7 +177,7 @@ static void trace_cycle(const struct sim_run *r)
 		fprintf(r->trace, ",%.10g", place_axis(c, i) * pulse[i]);
 	put_gap(r);
 	for (int i = 0; i < INTERP_NAXES; i++)
-		fprintf(r->trace, ",%.10g", c->given.target[i] * pulse[i]);
+		fprintf(r->trace, ",%.10g", r->given.target[i] * pulse[i]);
 	/* As the machine measured it in this cycle, before it was sent on. */
 	for (int i = 0; i < INTERP_NAXES; i++)
 		fprintf(r->trace, ",%.10g", r->in.actual[i] * pulse[i]);

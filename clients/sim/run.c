@@ -172,15 +172,14 @@ static void cycles(struct sim_run *r)
 {
 	const double from_s = clock_s(CLOCK_MONOTONIC);
 	struct cycle *c = &r->cycle;
-	struct io_outputs out;
 
 	r->machine.write(r->machine.self, &c->out);
 	for (uint64_t n = 1; !over(r); n++) {
 		if (c->state == STATE_HOLD)
 			go_on(r);
 		r->machine.read(r->machine.self, &r->in);
-		cycle_step(c, &r->in, &out);
-		r->machine.write(r->machine.self, &out);
+		cycle_step(c, &r->in, &r->given);
+		r->machine.write(r->machine.self, &r->given);
 		record_cycle(r);
 		spend(r);
 		if (r->on_cycle)

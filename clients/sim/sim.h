@@ -69,6 +69,7 @@ struct sim_run {
 	struct cycle cycle;
 	struct io_machine machine;
 	struct io_inputs in;		/* of this cycle */
+	struct io_outputs given;	/* to the machine, in this cycle */
 	struct sim_result result;
 	struct sim_spent *spent;	/* by index of the condition */
 	FILE *pulses, *trace;

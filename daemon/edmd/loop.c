@@ -47,13 +47,12 @@ static void tell_missed(struct loop *l, uint64_t missed)
 static void step(struct loop *l)
 {
 	struct io_inputs in;
-	struct io_outputs out;
 	struct shm_trace t;
 
 	l->io.read(l->io.self, &in);
 	loop_plc_input(l, &in);
-	cycle_step(&l->cycle, &in, &out);
-	l->io.write(l->io.self, &out);
+	cycle_step(&l->cycle, &in, &l->given);
+	l->io.write(l->io.self, &l->given);
 	loop_trace(l, &in, &t);
 	shm_trace_put(l->status, &t);
 	loop_notice(l);
@@ -110,7 +109,7 @@ static void period(struct loop *l, const struct setup_wake *w)
 /* Power and pump off; the axes stay where they are and lose their power. */
 static void outputs_safe(struct loop *l)
 {
-	struct io_outputs out = l->cycle.given;
+	struct io_outputs out = l->given;
 
 	/* Before the first period the axes were given no targets. */
 	if (l->cycle.count == 0)

@@ -53,6 +53,7 @@ struct loop {
 	struct loop_told told;
 	struct loop_timing timing;
 	int64_t time_ns;		/* CLOCK_REALTIME of this period */
+	struct io_outputs given;	/* to the machine, in the last cycle */
 	struct io_plc plc_in;		/* what the PLC asks, this period */
 	bool opening;			/* a program was asked for */
 	uint64_t unloading;		/* command that waits for a stop */

@@ -52,14 +52,17 @@ static void sim_write(void *self, const struct io_outputs *out)
 {
 	struct sim *s = self;
 	const bool pulse = !same_pulse(&out->pulse, &s->out.pulse);
-	const struct io_outputs was = s->out;
+	const bool path = out->path != s->out.path;
+	const double was_off_mm = s->out.off_path_mm;
+	int32_t was[IO_NAXES];
 
+	memcpy(was, s->out.target, sizeof(was));
 	s->out = *out;
 	if (pulse)
 		sim_pulses_set(s);
-	if (out->path != was.path)
+	if (path)
 		fresh(s);
-	sim_axes_follow(s, &was);
+	sim_axes_follow(s, was, was_off_mm);
 	if (out->rapid && s->front_mm < out->place_mm - s->wear_mm +
 					s->p.standoff_mm) {
 		s->front_mm = out->place_mm - s->wear_mm + s->p.standoff_mm;
@@ -75,17 +78,16 @@ static bool is_short(const struct sim *s, double gap_mm)
 	return gap_mm <= s->pulse.short_mm || sim_gap_mm(s) < s->bridge_mm;
 }
 
-/* With the power off too: the sensing supply keeps the generator's time. */
-static void train(struct sim *s)
+/* What is left of the gap for the pulses. */
+static double left_mm(const struct sim *s)
 {
 	const double gap = sim_gap_mm(s) - s->p.debris_gap_mm * s->debris;
 
 	if (s->broken)
-		sim_pulses_train(s, INFINITY);
-	else if (s->out.sense)
-		sim_pulses_train(s, sim_probe(s) ? 0 : INFINITY);
-	else
-		sim_pulses_train(s, is_short(s, gap) ? 0 : gap);
+		return INFINITY;
+	if (s->out.sense)
+		return sim_probe(s) ? 0 : INFINITY;
+	return is_short(s, gap) ? 0 : gap;
 }
 
 static void sim_read(void *self, struct io_inputs *in)
@@ -94,7 +96,9 @@ static void sim_read(void *self, struct io_inputs *in)
 	const bool sparks = s->powered_s > s->p.respond_s;
 
 	sim_bridge(s);
-	train(s);
+	/* With the power off too: the sensing supply keeps the generator's
+	 * time. */
+	sim_pulses_train(s, left_mm(s));
 	if (sparks && !s->broken)
 		sim_erode(s);
 	sim_heat(s);

@@ -24,6 +24,8 @@ void sim_axes_init(struct sim *s, const struct machine_config *c)
 		    0)
 			s->modelled |= 1u << i;
 	}
+	s->exact = s->p.lag_s == 0 && s->p.start_s == 0 &&
+		   s->p.measure_pulses == 0 && s->modelled == 0;
 }
 
 void sim_axes_place(struct sim *s)
@@ -37,12 +39,6 @@ void sim_axes_place(struct sim *s)
 						s->axis[i] * s->drive_mm[i]);
 	}
 	s->wait_s = 0;
-}
-
-static bool exact(const struct sim *s)
-{
-	return s->p.lag_s == 0 && s->p.start_s == 0 &&
-	       s->p.measure_pulses == 0 && s->modelled == 0;
 }
 
 /*
@@ -98,29 +94,28 @@ static void follow_slowly(struct sim *s, const int32_t was[IO_NAXES])
 	s->wait_s -= s->period_s;
 }
 
-void sim_axes_follow(struct sim *s, const struct io_outputs *was)
+void sim_axes_follow(struct sim *s, const int32_t was[IO_NAXES],
+		     double was_off_mm)
 {
 	const double at = s->at_mm;
 
-	if (exact(s))
+	if (s->exact)
 		s->at_mm = s->out.place_mm;
 	else
-		follow_slowly(s, was->target);
+		follow_slowly(s, was);
 	s->stroke_mm = fabs(s->at_mm - at) +
-		       fabs(s->out.off_path_mm - was->off_path_mm);
+		       fabs(s->out.off_path_mm - was_off_mm);
 }
 
 double sim_axis(const struct sim *s, int i)
 {
-	return exact(s) ? s->out.target[i] : s->axis[i];
+	return s->exact ? s->out.target[i] : s->axis[i];
 }
 
 void sim_axes_measure(struct sim *s, struct io_inputs *in)
 {
-	const bool as_sent = exact(s);
-
 	memcpy(in->actual, s->out.target, sizeof(in->actual));
-	for (int i = 0; i < IO_NAXES && !as_sent; i++)
+	for (int i = 0; i < IO_NAXES && !s->exact; i++)
 		in->actual[i] = (int32_t)lround(s->axis[i] +
 				s->p.measure_pulses * rng_normal(&s->rng));
 }

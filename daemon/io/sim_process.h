@@ -44,9 +44,9 @@ struct pulse_train {
 	double spark, arc, shorted;	/* parts of 1; the rest stays open */
 	double late;			/* counted as open, in time or not */
 	double volts;			/* mean of the gap */
-	double waiting;			/* part of the time without a spark */
-	double wait_volts;		/* what that adds to the volts */
-	double waits;			/* random waits of pulses in a period */
+	double total_us;		/* of a pulse */
+	double wait_us;			/* part of that without a spark */
+	double ignites;			/* part of those that are no short */
 	double per_s;			/* pulses a second */
 	double burnt;			/* part of the on time that burns */
 };
@@ -76,6 +76,8 @@ struct sim {
 	double at_mm;			/* on the path, as the axes stand */
 	double axis[IO_NAXES];		/* pulses, as the axes stand */
 	uint32_t modelled;		/* bit per axis that is a model */
+	bool exact;			/* they are at once where they are
+					 * sent, and measured so */
 	double drive_mm[IO_NAXES];	/* pulse of each */
 	struct interp_axis_model model[IO_NAXES];
 	int32_t step[IO_NAXES];		/* of the last period that moved any */
@@ -115,7 +117,9 @@ struct sim {
 /* sim_axes.c */
 void sim_axes_init(struct sim *s, const struct machine_config *c);
 void sim_axes_place(struct sim *s);	/* at once where they are sent */
-void sim_axes_follow(struct sim *s, const struct io_outputs *was);
+/** sim_axes_follow() - @was, @was_off_mm: what was sent a period ago. */
+void sim_axes_follow(struct sim *s, const int32_t was[IO_NAXES],
+		     double was_off_mm);
 /** sim_axis() - where axis @i really is, pulses. */
 double sim_axis(const struct sim *s, int i);
 void sim_axes_measure(struct sim *s, struct io_inputs *in);

@@ -138,11 +138,12 @@ static struct odds odds(const struct sim *s, double gap_mm)
 	const double x = (gap_mm - s->pulse.short_mm) / s->pulse.peaks_mm;
 	const double limit = s->pulse.iso ? s->p.wait_us : s->pulse.on_us;
 	const double delay = delay_us(s, gap_mm);
+	const bool reaches = delay < INFINITY;
 	struct odds o = { .free = x > 0 ? -expm1(-PEAKS * x) : 0 };
 
-	if (isinf(delay) || o.free == 0) {
-		o.wait_us = isinf(delay) ? limit : 0;
-		o.ignites = isinf(delay) ? 0 : 1;
+	if (!reaches || !(o.free > 0)) {
+		o.wait_us = reaches ? 0 : limit;
+		o.ignites = reaches ? 1 : 0;
 		o.late = 1 - o.ignites;
 		return o;
 	}
@@ -174,9 +175,7 @@ void sim_pulses_train(struct sim *s, double gap_mm)
 		.late = (o.free - arc) * o.late,
 		.volts = (q->open_v * wait_us + s->p.spark_v * burn_us +
 			  ARC_V * s->p.spark_v * q->on_us * arc) / total_us,
-		.waiting = wait_us / total_us,
-		.wait_volts = q->open_v * wait_us / total_us,
-		.waits = s->period_s * 1e6 / total_us / larger(o.ignites, 1e-9),
+		.total_us = total_us, .wait_us = wait_us, .ignites = o.ignites,
 		.per_s = 1e6 / total_us,
 		.burnt = spark > 0 ? burn_us / (spark * q->on_us) : 0,
 	};
@@ -199,20 +198,25 @@ static double counted(struct sim *s, double part, double pulses)
 	return larger(0, part + sigma * rng_normal(&s->rng));
 }
 
+static double part(double x)
+{
+	return smaller(1, larger(0, x));
+}
+
 struct io_shares sim_pulses_shares(struct sim *s)
 {
 	const struct pulse_train *t = &s->train;
 	const double pulses = t->per_s * s->period_s;
-	double n[4] = { t->late, 1 - t->late - t->arc - t->shorted, t->arc,
-			t->shorted };
+	double n[4] = {
+		part(t->late), part(1 - t->late - t->arc - t->shorted),
+		part(t->arc), part(t->shorted),
+	};
 	double sum = 0;
 
-	for (int i = 0; i < 4; i++) {
-		n[i] = smaller(1, larger(0, n[i]));
-		if (s->p.counted)
-			n[i] = counted(s, n[i], pulses);
+	for (int i = 0; i < 4 && s->p.counted; i++)
+		n[i] = counted(s, n[i], pulses);
+	for (int i = 0; i < 4; i++)
 		sum += n[i];
-	}
 	if (sum <= 0)
 		return (struct io_shares) { .spark = 1 };
 	return (struct io_shares) {
@@ -233,16 +237,21 @@ static double gamma_part(struct sim *s, double n)
 	return root * root * root;
 }
 
-double sim_pulses_volts(struct sim *s, bool sparks)
+/* A longer wait leaves less of the period to the rest. */
+static double scattered(struct sim *s)
 {
 	const struct pulse_train *t = &s->train;
-	double v = t->volts;
+	const double waits = s->period_s * 1e6 / t->total_us /
+			     larger(t->ignites, 1e-9);
+	const double more = gamma_part(s, waits) - 1;
 
-	/* A longer wait leaves less of the period to the rest. */
-	if (sparks && s->p.counted) {
-		const double more = gamma_part(s, t->waits) - 1;
+	return (t->volts + s->pulse.open_v * t->wait_us / t->total_us * more) /
+	       (1 + t->wait_us / t->total_us * more);
+}
 
-		v = (v + t->wait_volts * more) / (1 + t->waiting * more);
-	}
+double sim_pulses_volts(struct sim *s, bool sparks)
+{
+	const double v = sparks && s->p.counted ? scattered(s) : s->train.volts;
+
 	return larger(0, v + s->p.noise_v * rng_normal(&s->rng));
 }

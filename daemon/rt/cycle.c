@@ -74,6 +74,13 @@ static enum cycle_event look_out(struct cycle *c)
 	return contouring_rests(&c->contouring) ? EVENT_SHORT : EVENT_NONE;
 }
 
+static bool leaves_cut(const struct cycle *c)
+{
+	const enum walk_ahead on = walk_ahead(c);
+
+	return on == AHEAD_FREE || on == AHEAD_PROBE;
+}
+
 /* The event that the gap and the place of this cycle mean; at most one. */
 static enum cycle_event look(struct cycle *c)
 {
@@ -81,13 +88,12 @@ static enum cycle_event look(struct cycle *c)
 
 	if (powered && c->sensed.is_short)
 		return EVENT_SHORT;
-	if (powered && !escape_is_out(&c->escape) &&
-	    (walk_ahead(c) == AHEAD_FREE || walk_ahead(c) == AHEAD_PROBE))
+	if (powered && !escape_is_out(&c->escape) && leaves_cut(c))
 		return EVENT_FREE;
 	if (powered && arcing_retract_due(c))
 		return EVENT_ARCING;
-	if (powered && servo_rests(c) && !escape_is_out(&c->escape) &&
-	    timed_is_up(c))
+	if (powered && timed_is_up(c) && servo_rests(c) &&
+	    !escape_is_out(&c->escape))
 		return EVENT_TIME_UP;
 	switch (c->state) {
 	case STATE_APPROACH:
@@ -230,16 +236,15 @@ static void give(struct cycle *c, struct io_outputs *out)
 	}
 	if (moves_by_will(c))
 		c->comp.resting = false;
-	c->given = c->out;
+	*out = c->out;
 	comp_apply(&c->comp, &c->config.comp, &(struct comp_period) {
 		.place = c->out.target,
 		.frozen = c->state == STATE_FAULT || c->busy,
 		.edges = c->config.points_max,
-	}, c->given.target);
+	}, out->target);
 	for (int i = 0; i < INTERP_NAXES && c->contouring.on; i++)
-		c->given.target[i] += c->contouring.added[i];
-	c->given.pulse.off_us = arcing_off_us(c);
-	*out = c->given;
+		out->target[i] += c->contouring.added[i];
+	out->pulse.off_us = arcing_off_us(c);
 	c->out.reset = false;
 }
 

@@ -244,7 +244,6 @@ struct cycle {
 	bool cut_short;			/* the last walk fell short of its
 					 * way */
 	struct io_outputs out;		/* its target: places on the path */
-	struct io_outputs given;	/* its target: pulses of the drives */
 
 	/* It is called after every lattice point, with the cursor on that
 	 * point; may be NULL. */

@@ -23,8 +23,11 @@ void cycle_end_job(struct cycle *c, enum cycle_outcome o);
  */
 static inline void cycle_happen(struct cycle *c, enum cycle_event ev)
 {
-	const enum cycle_state to = state_next(c->state, ev);
+	enum cycle_state to;
 
+	if (ev == EVENT_NONE)
+		return;
+	to = state_next(c->state, ev);
 	if (to != c->state)
 		cycle_enter(c, to);
 }

@@ -212,6 +212,44 @@ static void a_random_walk_back_and_forth_stays_on_the_points(void **st)
 	}
 }
 
+/* Aim at a place near by.  Return: did it creep there? */
+static bool creep_as_a_step_does(struct interp_cursor *c, double ds_mm)
+{
+	struct interp_cursor beside;
+	bool crept;
+
+	interp_cursor_aim(c, ds_mm);
+	beside = *c;
+	crept = interp_cursor_creep(c);
+	if (crept) {
+		assert_int_equal(interp_cursor_step(&beside), INTERP_ARRIVED);
+		assert_memory_equal(&beside, c, sizeof(beside));
+	}
+	while (!crept && interp_cursor_step(c) == INTERP_MOVED)
+		;
+	return crept;
+}
+
+static void a_creep_goes_where_a_step_would_arrive(void **st)
+{
+	int crept = 0;
+
+	(void)st;
+	for (uint64_t seed = 1; seed <= 60; seed++) {
+		uint64_t s = seed;
+		struct made m = random_program((seed & 1), &s, 30);
+		struct interp_cursor c;
+
+		print_on_failure("seed", seed);
+		assert_int_equal(interp_cursor_init(&c, &m.p), 0);
+		for (int i = 0; i < 4000; i++)
+			crept += creep_as_a_step_does(&c,
+						      uniform(&s, -3e-4, 1e-3));
+		unmake(&m);
+	}
+	assert_true(crept > 60 * 400);
+}
+
 static void no_axis_ever_moves_more_than_one_pulse(void **st)
 {
 	(void)st;
@@ -312,6 +350,7 @@ int main(void)
 		cmocka_unit_test(arcs_from_every_start_end_exactly_and_retrace),
 		cmocka_unit_test(the_points_do_not_depend_on_how_the_walk_is_cut),
 		cmocka_unit_test(a_random_walk_back_and_forth_stays_on_the_points),
+		cmocka_unit_test(a_creep_goes_where_a_step_would_arrive),
 		cmocka_unit_test(no_axis_ever_moves_more_than_one_pulse),
 		cmocka_unit_test(simultaneous_points_are_within_half_a_pulse_of_the_path),
 		cmocka_unit_test(point_by_point_points_are_near_the_path),

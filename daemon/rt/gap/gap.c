@@ -4,6 +4,8 @@
 #include "path/laws.h"
 #include "path/place.h"
 
+#include "interp/smaller.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -29,7 +31,7 @@ double gap_window_low_v(const struct cycle *c)
 	const double low = c->gap.window_low_v > 0 ? c->gap.window_low_v :
 			   (c->gap.short_v + c->gap.servo_v) / 2;
 
-	return fmin(low, high);
+	return smaller(low, high);
 }
 
 /* -- Can it be true? ------------------------------------------------------- */
@@ -49,18 +51,13 @@ static bool voltage_ok(const struct cycle *c, const struct io_inputs *in)
 	       in->gap_v >= -BELOW_MAX_V && (most <= 0 || in->gap_v <= most);
 }
 
-static bool share_ok(double x)
-{
-	return x >= 0 && x <= 1 + SHARES_SLACK;
-}
-
+/* None of them is over their sum. */
 static bool shares_ok(const struct io_inputs *in)
 {
 	const struct io_shares *s = &in->shares;
 
-	return in->shares_valid && share_ok((double)s->open) &&
-	       share_ok((double)s->spark) && share_ok((double)s->arc) &&
-	       share_ok((double)s->shorted) &&
+	return in->shares_valid && s->open >= 0 && s->spark >= 0 &&
+	       s->arc >= 0 && s->shorted >= 0 &&
 	       (double)s->open + (double)s->spark + (double)s->arc +
 	       (double)s->shorted <= 1 + SHARES_SLACK;
 }
@@ -71,7 +68,7 @@ static void from_voltage(const struct cycle *c, const struct io_inputs *in,
 			 struct gap_reading *r)
 {
 	r->valid = voltage_ok(c, in);
-	r->v = r->valid ? fmax(in->gap_v, 0) : 0;
+	r->v = r->valid ? larger(in->gap_v, 0) : 0;
 	r->now_v = r->v;
 	r->contact = r->valid && r->v < c->gap.short_v;
 	r->is_open = r->valid && r->v > c->gap.open_v;
@@ -275,20 +272,20 @@ static void sum_energy(struct cycle *c, const struct io_inputs *in)
 void gap_sense(struct cycle *c, const struct io_inputs *in)
 {
 	struct gap_memory *m = &c->gap_past;
-	const bool before = c->sensed.contact;
-	struct gap_reading r = { .valid = false };
+	struct gap_reading *r = &c->sensed;
+	const bool before = r->contact;
 
+	*r = (struct gap_reading) { .valid = false };
 	forget(m, c->out.power);
-	sources[c->gap.source](c, in, &r);
-	r.arc = shares_ok(in) ? (double)in->shares.arc :
-				arcing_by_voltage(c, m, r.now_v);
-	m->contacts = r.contact ? m->contacts + 1 : 0;
-	r.is_short = r.contact && m->contacts >= c->gap.short_cycles;
-	r.signal_v = filtered(m, &c->gap, r.now_v);
-	r.suspect = c->loaded && suspect(c, m, &r);
-	if (r.contact && !before && state_duty[c->state].power)
+	sources[c->gap.source](c, in, r);
+	r->arc = shares_ok(in) ? (double)in->shares.arc :
+				 arcing_by_voltage(c, m, r->now_v);
+	m->contacts = r->contact ? m->contacts + 1 : 0;
+	r->is_short = r->contact && m->contacts >= c->gap.short_cycles;
+	r->signal_v = filtered(m, &c->gap, r->now_v);
+	r->suspect = c->loaded && suspect(c, m, r);
+	if (r->contact && !before && state_duty[c->state].power)
 		c->totals.shorts++;
 	sum_energy(c, in);
-	c->sensed = r;
-	c->gap_v = r.v;
+	c->gap_v = r->v;
 }

@@ -8,13 +8,15 @@
 #include "path/place.h"
 #include "path/timed.h"
 
+#include "interp/smaller.h"
+
 #include <math.h>
 
 #define FADE_S		0.1		/* of a change of gains */
 
 static double seg_limit(const struct cycle *c, double v_mm_s)
 {
-	return fmin(v_mm_s, law_seg_speed(&c->cursor.seg));
+	return smaller(v_mm_s, law_seg_speed(&c->cursor.seg));
 }
 
 /* A BEGIN or an action has no speed of its own. */
@@ -36,8 +38,8 @@ static double go_back(struct cycle *c, double v_mm_s, double floor_mm)
 	const double left = place_mm(c) - floor_mm;
 
 	if (left <= MOVER_ONTO_MM)
-		return fmax(pace_go(c, 0, floor_mm), 0);
-	return fmax(pace_go(c, -v_mm_s, floor_mm), -left - MOVER_ONTO_MM);
+		return larger(pace_go(c, 0, floor_mm), 0);
+	return larger(pace_go(c, -v_mm_s, floor_mm), -left - MOVER_ONTO_MM);
 }
 
 bool servo_rests(const struct cycle *c)
@@ -62,13 +64,13 @@ static bool lifts(const struct cycle *c)
 double law_approach(struct cycle *c)
 {
 	const struct cycle_gap_config *g = &c->gap;
-	const double v = fmin(c->sensed.now_v, c->sensed.signal_v);
+	const double v = smaller(c->sensed.now_v, c->sensed.signal_v);
 	const double feed = g->gain_mm_s_v * (v - gap_window_high_v(c));
 
 	if (c->sensed.contact || feed < 0 || lifts(c))
 		return go_toward(c, 0);
 	return go_toward(c, cut_limit(c, c->sensed.is_open ? g->approach_mm_s :
-					 fmin(feed, g->approach_mm_s)));
+					 smaller(feed, g->approach_mm_s)));
 }
 
 /* -- Erode ----------------------------------------------------------------- */
@@ -94,8 +96,8 @@ static void adopt(struct cycle *c, const struct servo_law *now, double v)
 	    was->high_v == now->high_v)
 		return;
 	if (was->gain_mm_s_v > 0)
-		s->fade_mm_s += fmax(0, forward(was, v)) -
-				fmax(0, forward(now, v));
+		s->fade_mm_s += larger(0, forward(was, v)) -
+				larger(0, forward(now, v));
 	s->law = *now;
 }
 
@@ -117,7 +119,7 @@ static void integrate(struct cycle *c, double error_mm_s, double limit_mm_s)
 	if (error_mm_s > 0 && error_mm_s + s->integral_mm_s > limit_mm_s)
 		error_mm_s = 0;
 	s->integral_mm_s += error_mm_s * law_period_s(c) / reset;
-	s->integral_mm_s = fmin(fmax(s->integral_mm_s, 0), limit_mm_s);
+	s->integral_mm_s = smaller(larger(s->integral_mm_s, 0), limit_mm_s);
 }
 
 static double erode_forward(struct cycle *c, double error_mm_s)
@@ -126,8 +128,8 @@ static double erode_forward(struct cycle *c, double error_mm_s)
 	const double limit = cut_limit(c, c->gap.feed_max_mm_s);
 
 	integrate(c, error_mm_s, limit);
-	s->asked_mm_s = fmin(fmax(error_mm_s + s->integral_mm_s + s->fade_mm_s,
-				  0), limit);
+	s->asked_mm_s = error_mm_s + s->integral_mm_s + s->fade_mm_s;
+	s->asked_mm_s = smaller(larger(s->asked_mm_s, 0), limit);
 	if (c->sensed.contact)
 		s->asked_mm_s = 0;
 	return go_toward(c, s->asked_mm_s);
@@ -137,7 +139,7 @@ static double erode_back(struct cycle *c, double error_mm_s)
 {
 	c->servo.asked_mm_s = 0;
 	integrate(c, error_mm_s, cut_limit(c, c->gap.feed_max_mm_s));
-	return go_back(c, fmin(-error_mm_s, c->gap.creep_mm_s),
+	return go_back(c, smaller(-error_mm_s, c->gap.creep_mm_s),
 		       c->far_mm - retract_limit_mm(c));
 }
 
@@ -148,7 +150,7 @@ double law_erode(struct cycle *c)
 	};
 	const double v = c->sensed.signal_v;
 
-	c->servo.fade_mm_s *= fmax(0, 1 - law_period_s(c) / FADE_S);
+	c->servo.fade_mm_s *= larger(0, 1 - law_period_s(c) / FADE_S);
 	adopt(c, &l, v);
 	if (lifts(c)) {
 		c->servo.asked_mm_s = 0;

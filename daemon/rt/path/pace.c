@@ -239,9 +239,9 @@ static double go(struct cycle *c, const struct ahead *k, double v_mm_s)
 	return k->toward * (k->stop_mm + MOVER_ONTO_MM);
 }
 
-double pace_go(struct cycle *c, double v_mm_s, double to_mm)
+/* @was: the speed of the cycle before. */
+static double change(struct cycle *c, double was, double v_mm_s, double to_mm)
 {
-	const double was = c->mover.mean_mm_s;
 	const int from = way_of(was != 0 ? was : v_mm_s);
 	const double axes = a_both_ways(c), a = a_of_law(c, axes);
 	const double dv = a * law_period_s(c);
@@ -265,4 +265,12 @@ double pace_go(struct cycle *c, double v_mm_s, double to_mm)
 		k.most_mm_s = larger(k.most_mm_s,
 				     fabs(was) - axes * law_period_s(c));
 	return go(c, &k, k.toward * smaller(fabs(v), k.most_mm_s));
+}
+
+double pace_go(struct cycle *c, double v_mm_s, double to_mm)
+{
+	const double was = c->mover.mean_mm_s;
+
+	return was == 0 && v_mm_s == 0 ? law_go_at(c, 0) :
+					 change(c, was, v_mm_s, to_mm);
 }

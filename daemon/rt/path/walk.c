@@ -208,7 +208,9 @@ enum walk_result walk_by(struct cycle *c, double ds_mm)
 	double to;
 
 	interp_cursor_aim(&c->cursor, ds_mm);
-	r = points(c, &left);
+	/* A cut has no new lattice point in most cycles. */
+	r = left > 0 && interp_cursor_creep(&c->cursor) ? WALK_ON :
+							  points(c, &left);
 	for (int n = 0; n < INTERP_CROSS_MAX && r == WALK_ACTION &&
 	     pass_done(c); n++) {
 		interp_cursor_aim(&c->cursor,

@@ -352,7 +352,7 @@ static bool helix_circle(struct interp_cursor *c, uint32_t tick)
 	uint32_t low = 0, high = tick < start.ticks ? tick : start.ticks;
 
 	while (low < high) {
-		const uint32_t mid = low + (high - low + 1) / 2;
+		const uint32_t mid = high - (high - low) / 2;
 		const int64_t before = circle_seek(&c->circle, mid - 1);
 
 		c->circle = start;

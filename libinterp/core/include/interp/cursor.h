@@ -47,8 +47,10 @@ struct interp_dda {
 struct interp_pair {
 	int64_t a, b;			/* pulses of main and secondary */
 	int64_t m, s;			/* of them, given */
-	int64_t dev;			/* deviation e = b*m - a*s */
 	int64_t limit;			/* the secondary is due above it */
+	int64_t dev;			/* deviation e = b*m - a*s; not next to
+					 * s, or gcc adds to both in one go and
+					 * waits for the two stores before */
 	int64_t bursts;			/* of the secondary; 0: none, by
 					 * limit */
 	int64_t burst;			/* the one being sent, or next */
@@ -204,6 +206,21 @@ void interp_cursor_aim(struct interp_cursor *c, double ds_mm);
 static inline bool interp_cursor_is_due(const struct interp_cursor *c)
 {
 	return c->backward ? c->want < c->measure : c->want > c->measure;
+}
+
+/**
+ * interp_cursor_creep() - go where it is aimed at, if no lattice point and no
+ * end of this segment comes before that.
+ *
+ * Return: false if one may come; then interp_cursor_step() goes on.
+ */
+static inline bool interp_cursor_creep(struct interp_cursor *c)
+{
+	if (!c->walk || interp_cursor_is_due(c) || c->want_mm <= 0 ||
+	    c->want_mm >= c->seg.length_mm)
+		return false;
+	c->s_mm = c->want_mm;
+	return true;
 }
 
 /**
