@@ -187,8 +187,8 @@ static void load_ask(struct jobs *j, struct compiler_result *r)
 		return;
 	}
 	if (err < 0) {
-		snprintf(reason, sizeof(reason), "no room for its program: %s",
-			 strerror(-err));
+		snprintf(reason, sizeof(reason), "its program cannot be given "
+			 "to edmd: %s", strerror(-err));
 		load_refuse(j, j->queue.job, reason);
 		return;
 	}
@@ -229,11 +229,15 @@ static void on_compiled(void *arg, struct compiler_result *r)
 		queue_recount(j);
 		return;
 	}
-	snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s", job.name,
-		 r->diag.line, r->diag.column, r->diag.found, r->diag.wanted);
+	if (r->err == -EINVAL)
+		snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s",
+			 job.name, r->diag.line, r->diag.column, r->diag.found,
+			 r->diag.wanted);
+	else
+		snprintf(reason, sizeof(reason), "its program cannot be made: "
+			 "%s", strerror(-r->err));
 	load_refuse(j, job, r->tech_refusal[0] ? r->tech_refusal :
-		    r->err == -EINVAL ? reason :
-		    r->err == -EILSEQ ? DAMAGED : strerror(-r->err));
+		    r->err == -EILSEQ ? DAMAGED : reason);
 }
 
 /* A long one is read by the compiler's thread. */
