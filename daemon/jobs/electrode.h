@@ -62,9 +62,10 @@ void electrode_request(struct jobs *j, const struct store_job *job,
  *  Return: NULL; or why not, and what would be accepted. */
 const char *electrode_check(struct jobs *j, const struct compiler_result *r);
 
-/** electrode_load() - the program of the loaded job is in shared memory: may it
- *  begin?  Return: NULL; or why not, and what would be accepted. */
-const char *electrode_load(struct jobs *j);
+/** electrode_load() - the program of the loaded job wears its electrodes by
+ *  @wear, which now belongs to this module: may it begin?  Return: NULL; or why
+ *  not, and what would be accepted. */
+const char *electrode_load(struct jobs *j, struct interp_wear *wear);
 
 /** electrode_wait() - job @n does not begin, and is not tried again before the
  *  table changes. */
