@@ -93,7 +93,7 @@ static void count_path(const struct bench_path *p)
 
 static const char *const texts[] = {
 	"a line compiled: X Y Z", "a line compiled: arcs",
-	"a line compiled: X Y Z C",
+	"a line compiled: X Y Z C", "a line compiled: X Y, tiny",
 };
 
 static void write_text(FILE *f, int kind)
@@ -107,9 +107,12 @@ static void write_text(FILE *f, int kind)
 		else if (kind == 1)
 			fprintf(f, "G3 X%.3f I%.3f J0\n", i & 1 ? 0.4 : 0.0,
 				i & 1 ? 0.2 : -0.2);
-		else
+		else if (kind == 2)
 			fprintf(f, "G1 X%.3f Y%.3f Z%.3f C%.3f\n", x, y,
 				-i * 1e-3, i * 0.03);
+		else
+			fprintf(f, "G1 X%.4f Y%.4f\n", 20 * cos(a / 40),
+				20 * sin(a / 40));
 	}
 }
 
@@ -200,7 +203,7 @@ int main(void)
 		count_path(&paths[i]);
 	/* The first text in a process also reads the dialects. */
 	p = compile(cut, strlen(cut));
-	for (int i = 0; i < 3; i++)
+	for (int i = 0; i < (int)(sizeof(texts) / sizeof(*texts)); i++)
 		count_compile(i);
 	count_cycles(&p, true);
 	count_cycles(&p, false);

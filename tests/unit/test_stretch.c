@@ -127,8 +127,8 @@ static void a_turn_on_a_tiny_line_costs_no_more_than_the_turn(void **st)
 	}
 }
 
-/* X alone would know a place to 44 of its points, and to as much of C's jerk. */
-static void on_next_to_no_way_it_turns_one_way_only(void **st)
+/* X alone would know a place to 44 of C's points. */
+static void on_next_to_no_way_it_turns_one_way(void **st)
 {
 	static const double tiny_mm[] = { 2e-8, 1e-6, 2e-5, 0.001 };
 
@@ -206,7 +206,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_turn_on_a_tiny_line_costs_no_more_than_the_turn),
-		cmocka_unit_test(on_next_to_no_way_it_turns_one_way_only),
+		cmocka_unit_test(on_next_to_no_way_it_turns_one_way),
 		cmocka_unit_test(nearer_and_nearer_to_a_pole_it_comes_past),
 		cmocka_unit_test(what_is_soft_again_and_again_is_one_move),
 	};

@@ -26,8 +26,8 @@ void heading_ways_init(struct ways *w, const struct interp_program *p)
 			       INTERP_SUB;
 }
 
-/* The square of what those columns go by that make the length is 1 on each mm of
- * a line; round an arc it is as the radius is there. */
+/* The square of what those columns go by that make the length is 1 on each mm
+ * of a line; round an arc it is as the radius is there. */
 #define COUNTS_STRAIGHT	0.99
 #define COUNTS_ROUND	1e-6
 

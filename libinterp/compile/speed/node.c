@@ -294,18 +294,16 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, uint32_t along,
 
 /* Look near the node, but not over a long line behind a short one: a long line
  * has its own turn. */
-static struct around look_near(struct pass *w, uint32_t i)
+static void look_near(struct pass *w, uint32_t i)
 {
 	const struct interp_seg *s = w->segs;
-	struct around k;
+	struct around *k = &w->near;
 
-	look_around(w, i, &w->near);
-	k = w->near;
-	if (k.behind + 1 < i && s[i].s_mm - s[k.behind].s_mm > 2 * k.mm)
-		k.behind++;
-	if (k.ahead > i + 1 && s[k.ahead].s_mm - s[i].s_mm > 2 * k.mm)
-		k.ahead--;
-	return k;
+	look_around(w, i, k);
+	if (k->behind + 1 < i && s[i].s_mm - s[k->behind].s_mm > 2 * k->mm)
+		k->behind++;
+	if (k->ahead > i + 1 && s[k->ahead].s_mm - s[i].s_mm > 2 * k->mm)
+		k->ahead--;
 }
 
 /* The turn of a node between lines; between longer chords, if the lines are
@@ -318,10 +316,9 @@ COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
 
 	if (s[last].kind == INTERP_LINE && s[i].kind == INTERP_LINE &&
 	    smaller(s[last].length_mm, s[i].length_mm) < w->near.mm) {
-		struct around near = look_near(w, i);
-
+		look_near(w, i);
 		if (change->a->along == change->b->along &&
-		    bow_of(w, i, &near, change->a->along, &k)) {
+		    bow_of(w, i, &w->near, change->a->along, &k)) {
 			struct change c = { .a = k.a, .b = k.b,
 					    .per_mm = k.per_mm };
 

@@ -41,9 +41,9 @@ struct interp_build_options {
 /* What a segment carries beside its geometry. */
 struct interp_build_word {
 	uint32_t line;			/* of the source, from 1 */
-	double feed_mm_s;		/* > 0; ignored for a rapid; along X Y Z; if
-					 * none of these moves, U V; else A B C
-					 * (degrees) */
+	double feed_mm_s;		/* > 0; ignored for a rapid; along X Y
+					 * Z; if none of these moves, U V; else
+					 * A B C (degrees) */
 	bool rapid;
 	uint8_t ends;			/* INTERP_SEG_PROBE, _HALF or _LIMIT; 0:
 					 * it ends at its end */
