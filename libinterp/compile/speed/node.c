@@ -151,7 +151,8 @@ COLUMNS_INLINE void chord_by(const struct pass *w, uint32_t from, uint32_t to,
 {
 	const int64_t *a = w->p->nodes + (uint64_t)from * n;
 	const int64_t *b = w->p->nodes + (uint64_t)to * n;
-	double mm[INTERP_NAXES], sum = 0;
+	const double path = w->segs[to].s_mm - w->segs[from].s_mm;
+	double mm[INTERP_NAXES], sum = 0, per_path;
 
 	ret->from = from;
 	ret->to = to;
@@ -162,8 +163,11 @@ COLUMNS_INLINE void chord_by(const struct pass *w, uint32_t from, uint32_t to,
 	}
 	ret->mm = sqrt(sum);
 	ret->per_mm = ret->mm > 0 ? 1 / ret->mm : 0;
+	/* A chord cuts corners.  What is beside it goes all of the way. */
+	per_path = path > 0 ? 1 / path : 0;
 	for (uint32_t j = 0; j < n; j++)
-		ret->h.rate[j] = mm[j] * ret->per_mm;
+		ret->h.rate[j] = mm[j] * (along >> j & 1 ? ret->per_mm :
+							   per_path);
 }
 
 void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
