@@ -11,6 +11,7 @@
 #include "plot.h"
 
 #include "interp/identify.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -39,16 +40,15 @@ static int refuse_row(const struct csv *f, const char *found)
 
 static bool grow(struct columns *t)
 {
-	const size_t room = t->room ? 2 * t->room : 65536;
+	size_t room = 0;
 
 	for (int i = 0; i < 2 * CSV_NAXES; i++) {
 		double **at = i < CSV_NAXES ? &t->target[i] :
 					      &t->actual[i - CSV_NAXES];
-		double *more = realloc(*at, room * sizeof(*more));
 
-		if (!more)
+		room = t->room;
+		if (grow_array(at, &room, sizeof(**at)))
 			return false;
-		*at = more;
 	}
 	t->room = room;
 	return true;

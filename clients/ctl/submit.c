@@ -5,12 +5,12 @@
 #include "cmdline.h"
 #include "plain.h"
 #include "submission.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sysexits.h>
 
 #define SHOW_CHUNKS	64		/* a smaller job is sent before progress
@@ -21,36 +21,10 @@ struct text {
 	size_t size;
 };
 
-static int read_all(FILE *f, struct text *t)
-{
-	size_t room = 1 << 16, n;
-
-	t->bytes = malloc(room);
-	while (t->bytes && (n = fread(t->bytes + t->size, 1, room - t->size,
-				      f)) > 0) {
-		char *more;
-
-		t->size += n;
-		if (t->size > SUBMISSION_BYTES_MAX)
-			return -EFBIG;
-		if (t->size < room)
-			continue;
-		room *= 2;
-		more = realloc(t->bytes, room);
-		if (!more)
-			return -ENOMEM;
-		t->bytes = more;
-	}
-	if (!t->bytes)
-		return -ENOMEM;
-	return ferror(f) ? -errno : 0;
-}
-
 /* Return: the exit code. */
 static int read_text(const char *path, struct text *t)
 {
 	bool std = strcmp(path, "-") == 0;
-	struct stat st;
 	FILE *f = std ? stdin : fopen(path, "rbe");
 	int err;
 
@@ -59,10 +33,7 @@ static int read_text(const char *path, struct text *t)
 			"standard input\n", path, strerror(errno));
 		return EX_NOINPUT;
 	}
-	if (fstat(fileno(f), &st) == 0 && S_ISDIR(st.st_mode))
-		err = -EISDIR;
-	else
-		err = read_all(f, t);
+	err = grow_read(f, SUBMISSION_BYTES_MAX, &t->bytes, &t->size);
 	if (!std)
 		fclose(f);
 	if (err == 0)

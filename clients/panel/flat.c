@@ -5,6 +5,7 @@
 #include "flat.h"
 
 #include "interp/at.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -35,24 +36,23 @@ struct spot {
 
 static int grow(struct flat *f)
 {
-	const size_t room = f->room ? 2 * f->room : 4096;
-	float *at = realloc(f->at_mm, room * 3 * sizeof(*at));
-	float *up;
-	double *s;
-	uint32_t *line;
-	uint8_t *kind;
+	const struct {
+		void *at;
+		size_t bytes;
+	} all[] = {
+		{ &f->at_mm, 3 * sizeof(*f->at_mm) },
+		{ &f->upper_mm, 2 * sizeof(*f->upper_mm) },
+		{ &f->s_mm, sizeof(*f->s_mm) },
+		{ &f->line, sizeof(*f->line) },
+		{ &f->kind, sizeof(*f->kind) },
+	};
+	size_t room = 0;
 
-	f->at_mm = at ? at : f->at_mm;
-	up = realloc(f->upper_mm, room * 2 * sizeof(*up));
-	f->upper_mm = up ? up : f->upper_mm;
-	s = realloc(f->s_mm, room * sizeof(*s));
-	f->s_mm = s ? s : f->s_mm;
-	line = realloc(f->line, room * sizeof(*line));
-	f->line = line ? line : f->line;
-	kind = realloc(f->kind, room * sizeof(*kind));
-	f->kind = kind ? kind : f->kind;
-	if (!at || !up || !s || !line || !kind)
-		return -ENOMEM;
+	for (size_t i = 0; i < sizeof(all) / sizeof(*all); i++) {
+		room = f->room;
+		if (grow_array(all[i].at, &room, all[i].bytes))
+			return -ENOMEM;
+	}
 	f->room = room;
 	return 0;
 }

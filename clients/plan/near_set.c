@@ -9,6 +9,7 @@
 #include "near_set.h"
 
 #include "vec.h"
+#include "grow.h"
 
 #include <stdlib.h>
 
@@ -63,22 +64,16 @@ static double farthest(const struct near_set *s, double mm)
 
 struct list {
 	struct near_patch *at;
-	uint32_t n, room;
+	uint32_t n;
+	size_t room;
 };
 
 static bool take(void *arg, const struct near_patch *patch)
 {
 	struct list *l = arg;
 
-	if (l->n == l->room) {
-		const uint32_t room = l->room ? 2 * l->room : 1024;
-		void *more = realloc(l->at, room * sizeof(*l->at));
-
-		if (!more)
-			return false;
-		l->at = more;
-		l->room = room;
-	}
+	if (l->n == l->room && grow_array(&l->at, &l->room, sizeof(*l->at)))
+		return false;
 	l->at[l->n++] = *patch;
 	return true;
 }

@@ -6,12 +6,12 @@
 
 #include "compiling.h"
 #include "route_curve.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sysexits.h>
 
 #define TEXT_BYTES_MAX	(1u << 30)
@@ -29,15 +29,8 @@ void route_free(struct route *w)
 
 int route_add(struct route *w, const struct route_node *node)
 {
-	if (w->n == w->room) {
-		const uint32_t room = w->room ? 2 * w->room : 256;
-		void *more = realloc(w->node, room * sizeof(*w->node));
-
-		if (!more)
-			return -ENOMEM;
-		w->node = more;
-		w->room = room;
-	}
+	if (w->n == w->room && grow_array(&w->node, &w->room, sizeof(*w->node)))
+		return -ENOMEM;
 	w->node[w->n++] = *node;
 	return 0;
 }
@@ -205,15 +198,9 @@ static int note_lift(struct route *w, const struct interp_program *p,
 		last->last = w->n - 1;
 		return 0;
 	}
-	if (w->nlifts == w->lifts_room) {
-		const uint32_t room = w->lifts_room ? 2 * w->lifts_room : 64;
-		void *more = realloc(w->lift, room * sizeof(*w->lift));
-
-		if (!more)
-			return EX_OSERR;
-		w->lift = more;
-		w->lifts_room = room;
-	}
+	if (w->nlifts == w->lifts_room &&
+	    grow_array(&w->lift, &w->lifts_room, sizeof(*w->lift)))
+		return EX_OSERR;
 	w->lift[w->nlifts++] = (struct route_lift) {
 		.first = first, .last = w->n - 1, .way = *way,
 	};
@@ -245,37 +232,19 @@ static int read_file(const char *path, char **text, size_t *bytes)
 {
 	const bool standard = strcmp(path, "-") == 0;
 	FILE *f = standard ? stdin : fopen(path, "rb");
-	struct stat st;
-	size_t room = 1 << 16, n;
-	int err = 0;
+	int err;
 
-	*text = malloc(room);
+	*text = NULL;
 	*bytes = 0;
-	if (!f || !*text || fstat(fileno(f), &st) < 0 || S_ISDIR(st.st_mode)) {
-		fprintf(stderr, "edm-plan: %s: %s; a file of NC code\n", path,
-			f ? "cannot be read" : strerror(errno));
-		err = EX_NOINPUT;
-	}
-	while (err == 0 &&
-	       (n = fread(*text + *bytes, 1, room - *bytes, f)) > 0) {
-		*bytes += n;
-		if (*bytes < room)
-			continue;
-		room *= 2;
-		if (room > TEXT_BYTES_MAX) {
-			fprintf(stderr, "edm-plan: %s: more than 1 GiB; a file "
-				"of NC code\n", path);
-			err = EX_DATAERR;
-		} else {
-			void *more = realloc(*text, room);
-
-			*text = more ? more : *text;
-			err = more ? 0 : EX_OSERR;
-		}
-	}
+	err = f ? grow_read(f, TEXT_BYTES_MAX, text, bytes) : -errno;
 	if (f && !standard)
 		fclose(f);
-	return err;
+	if (err == 0)
+		return 0;
+	fprintf(stderr, "edm-plan: %s: %s; a file of NC code of at most 1 "
+		"GiB\n", path, strerror(-err));
+	return err == -EFBIG ? EX_DATAERR :
+	       err == -ENOMEM ? EX_OSERR : EX_NOINPUT;
 }
 
 static int lay_out(struct interp_build *b, const struct route_text *from,

@@ -38,13 +38,14 @@ struct route_lift {
 struct route {
 	struct route_node *node;		/* block i leads from node[i] to
 					 * node[i + 1] */
-	uint32_t n, room;
+	uint32_t n;
 	double lattice[INTERP_NAXES];	/* how far the pulses stray from it */
 	uint32_t lines;			/* of the text */
 	char *text;			/* as it was read; NULL: it was given */
 	uint32_t act_line;		/* as a node's, since the last node */
 	struct route_lift *lift;	/* lifts that leave the path */
-	uint32_t nlifts, lifts_room;
+	uint32_t nlifts;
+	size_t room, lifts_room;
 };
 
 /** route_free() - a zeroed one is fine. */

@@ -8,6 +8,7 @@
 #include "stl_raw.h"
 
 #include "mesh.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -172,15 +173,9 @@ static int take_facet(struct source *s, struct stl_raw *raw)
 
 	if (raw->n == MESH_TRIS_MAX)
 		return refuse(s, "more than 20 million triangles");
-	if (raw->n == raw->room) {
-		const uint32_t room = raw->room ? 2 * raw->room : 1024;
-		void *more = realloc(raw->corner, room * sizeof(*raw->corner));
-
-		if (!more)
-			return EX_OSERR;
-		raw->corner = more;
-		raw->room = room;
-	}
+	if (raw->n == raw->room &&
+	    grow_array(&raw->corner, &raw->room, sizeof(*raw->corner)))
+		return EX_OSERR;
 	if (!take_word(s, "normal"))
 		return refuse_line(s, "a facet without its normal", wanted);
 	/* Its direction is that of the corners; what stands here may be

@@ -7,10 +7,12 @@
 #ifndef PLAN_STL_RAW_H
 #define PLAN_STL_RAW_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 struct stl_raw {
-	uint32_t n, room;
+	uint32_t n;
+	size_t room;
 	float (*corner)[3][3];		/* for free() */
 };
 

@@ -12,6 +12,7 @@
 #include "sweep.h"
 
 #include "apart.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <float.h>
@@ -43,7 +44,8 @@ struct moment {
 struct state {
 	struct sweep *s;
 	struct pair *pair;
-	uint32_t npairs, room, unused;
+	uint32_t npairs, unused;
+	size_t room;
 	uint32_t bin[BINS];
 	double end;			/* of the bin that is gone through */
 	uint32_t looks;
@@ -69,18 +71,11 @@ static void put(struct state *x, uint32_t part, uint32_t tool, double t)
 
 	if (i != NONE) {
 		x->unused = x->pair[i].next;
-	} else if (x->npairs < x->room) {
-		i = x->npairs++;
+	} else if (x->npairs == x->room &&
+		   grow_array(&x->pair, &x->room, sizeof(*x->pair))) {
+		x->err = -ENOMEM;
+		return;
 	} else {
-		const uint32_t room = x->room ? 2 * x->room : 4096;
-		void *more = realloc(x->pair, room * sizeof(*x->pair));
-
-		if (!more) {
-			x->err = -ENOMEM;
-			return;
-		}
-		x->pair = more;
-		x->room = room;
 		i = x->npairs++;
 	}
 	x->pair[i] = (struct pair) { part, tool, *bin };

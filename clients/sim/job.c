@@ -5,6 +5,7 @@
 #include "entry.h"
 #include "sim.h"
 #include "trials.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -28,27 +29,12 @@ static int refuse_file(const char *path, const char *why)
 
 static int read_all(FILE *f, const char *path, struct text *t)
 {
-	size_t room = 0;
+	const int err = grow_read(f, JOB_BYTES_MAX, &t->at, &t->n);
 
-	for (;;) {
-		size_t n;
-
-		if (t->n == room) {
-			char *more = realloc(t->at, room = room ? 2 * room
-								: 65536);
-
-			if (!more)
-				return EX_OSERR;
-			t->at = more;
-		}
-		n = fread(t->at + t->n, 1, room - t->n, f);
-		if (n == 0)
-			break;
-		t->n += n;
-		if (t->n > JOB_BYTES_MAX)
-			return refuse_file(path, "more than 1 GiB");
-	}
-	return ferror(f) ? refuse_file(path, strerror(errno)) : 0;
+	return err == 0 ? 0 :
+	       err == -ENOMEM ? EX_OSERR :
+	       refuse_file(path, err == -EFBIG ? "more than 1 GiB" :
+						 strerror(-err));
 }
 
 static int text_load(const char *path, struct text *t)

@@ -13,8 +13,8 @@
 
 #include "interp/at.h"
 #include "interp/tune.h"
+#include "grow.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,20 +43,7 @@ struct tuning {
 	struct trials trials;
 };
 
-/* -- Targets
- * ----------------------------------------------------------------- */
-
-static bool grow(struct rows *w)
-{
-	const size_t room = w->room ? 2 * w->room : 65536;
-	double *more = realloc(w->u, room * sizeof(*more));
-
-	if (!more)
-		return false;
-	w->u = more;
-	w->room = room;
-	return true;
-}
+/* -- Targets -------------------------------------------------------------- */
 
 /* Standing still teaches nothing, and would only make the mean error
  * smaller. */
@@ -68,7 +55,8 @@ static void sample(struct sim_run *r)
 
 	if (w->n > 0 && u <= w->u[w->n - 1])
 		return;
-	if (w->n == MOST || (w->n == w->room && !grow(w))) {
+	if (w->n == MOST || (w->n == w->room &&
+			     grow_array(&w->u, &w->room, sizeof(*w->u)))) {
 		w->full = true;
 		return;
 	}

@@ -87,6 +87,10 @@ static void count_path(const struct bench_path *p)
 	walk(&c, -1e9, POINTS - 1000);
 	snprintf(name, sizeof(name), "a point back: %s", p->name);
 	end(name, POINTS - 1000);
+	begin();
+	bench_must(interp_cursor_seek(&c, 1, prog.segs[1].ticks / 4 * 3) == 0);
+	snprintf(name, sizeof(name), "a place sought: %s", p->name);
+	end(name, 1);
 }
 
 /* -- Lines ---------------------------------------------------------------- */

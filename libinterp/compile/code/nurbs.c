@@ -8,6 +8,7 @@
  */
 #include "code/nurbs_words.h"
 #include "code/tip_turn.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -28,19 +29,6 @@ void nc_curve_free(struct nc_curve *c)
 	free(c->marks);
 }
 
-/* Make room for one more; the array may move. */
-static bool grow(void **at, uint32_t n, uint32_t room, size_t bytes)
-{
-	void *more;
-
-	if (n < room)
-		return true;
-	more = realloc(*at, 2 * (size_t)(room ? room : 32) * bytes);
-	if (more)
-		*at = more;
-	return more != NULL;
-}
-
 static int refuse_many(struct nc_reader *r)
 {
 	return nc_refuse_at(r, r->line, "up to 1000000, in several curves",
@@ -48,23 +36,25 @@ static int refuse_many(struct nc_reader *r)
 			    POINTS_MAX);
 }
 
+/* Each point has a mark. */
+static bool grow_points(struct nc_curve *c)
+{
+	size_t room = c->points_room;
+
+	return grow_array(&c->points, &room, ROW * sizeof(*c->points)) ||
+	       grow_array(&c->marks, &c->points_room, sizeof(*c->marks));
+}
+
 int nc_curve_point(struct nc_reader *r, const double at_mm[INTERP_NAXES],
 		   double weight)
 {
 	struct nc_curve *c = &r->curve;
-	void *points = c->points, *marks = c->marks;
 	double *row;
 
 	if (c->npoints == POINTS_MAX)
 		return refuse_many(r);
-	if (!grow(&points, c->npoints, c->points_room, ROW * sizeof(double)))
+	if (c->npoints == c->points_room && grow_points(c))
 		return -ENOMEM;
-	c->points = points;
-	if (!grow(&marks, c->npoints, c->points_room, sizeof(*c->marks)))
-		return -ENOMEM;
-	c->marks = marks;
-	if (c->npoints == c->points_room)
-		c->points_room = 2 * (c->points_room ? c->points_room : 32);
 	row = c->points + (size_t)c->npoints * ROW;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		row[i] = at_mm[i] * weight;
@@ -77,15 +67,12 @@ int nc_curve_point(struct nc_reader *r, const double at_mm[INTERP_NAXES],
 int nc_curve_knot(struct nc_reader *r, double u)
 {
 	struct nc_curve *c = &r->curve;
-	void *knots = c->knots;
 
 	if (c->nknots == POINTS_MAX + INTERP_NURBS_ORDER_MAX)
 		return refuse_many(r);
-	if (!grow(&knots, c->nknots, c->knots_room, sizeof(double)))
+	if (c->nknots == c->knots_room &&
+	    grow_array(&c->knots, &c->knots_room, sizeof(*c->knots)))
 		return -ENOMEM;
-	c->knots = knots;
-	if (c->nknots == c->knots_room)
-		c->knots_room = 2 * (c->knots_room ? c->knots_room : 32);
 	c->knots[c->nknots++] = u;
 	return 0;
 }

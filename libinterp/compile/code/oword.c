@@ -7,12 +7,12 @@
  */
 #include "code/macro.h"
 #include "code/number.h"
+#include "grow.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Longer words come first where one begins with another. */
@@ -84,15 +84,9 @@ static int note(struct macro_line *l, const struct oword *w, size_t *room)
 	if (m->nowords == MACRO_OWORDS_MAX)
 		return macro_refuse(l, l->p, "up to 100000 of them", "an o "
 				    "word too many");
-	if (m->nowords == *room) {
-		struct oword *more;
-
-		*room = *room ? 2 * *room : 64;
-		more = realloc(m->oword, *room * sizeof(*more));
-		if (!more)
-			return -ENOMEM;
-		m->oword = more;
-	}
+	if (m->nowords == *room &&
+	    grow_array(&m->oword, room, sizeof(*m->oword)))
+		return -ENOMEM;
 	m->oword[m->nowords++] = *w;
 	return 0;
 }

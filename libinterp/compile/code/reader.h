@@ -152,8 +152,8 @@ struct nc_curve {
 	uint8_t open;			/* NC_NURBS, NC_NURBS_BLOCK; 0: none */
 	uint32_t order;			/* degree + 1 */
 	uint32_t line;			/* where it began */
-	uint32_t npoints, points_room;
-	uint32_t nknots, knots_room;
+	uint32_t npoints, nknots;
+	size_t points_room, knots_room;
 	double *points;			/* rows of all axes times the weight,
 					 * and then the weight */
 	double *knots;

@@ -7,6 +7,7 @@
 #include "kinematics/vector.h"
 
 #include "interp/angle.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -167,13 +168,8 @@ static int node_add(struct track *k, double t, const double q[INTERP_NAXES])
 	if (k->n == NODES_MAX)
 		return refuse(k->r, "fewer turns in one line",
 			      "too many turns of the rotaries");
-	if (k->n == k->room) {
-		k->room = k->room ? 2 * k->room : 256;
-		n = realloc(k->node, k->room * sizeof(*n));
-		if (!n)
-			return -ENOMEM;
-		k->node = n;
-	}
+	if (k->n == k->room && grow_array(&k->node, &k->room, sizeof(*k->node)))
+		return -ENOMEM;
 	n = &k->node[k->n++];
 	n->t = t;
 	memcpy(n->deg, q + INTERP_A, sizeof(n->deg));

@@ -12,6 +12,7 @@
 #include "path/build_rule.h"
 #include "pulse/pulse.h"
 #include "interp/smaller.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -21,18 +22,9 @@
 
 int build_table_room(struct table *t, size_t n)
 {
-	size_t room = t->room ? t->room : 64;
-	void *at;
-
-	while (room < t->n + n)
-		room *= 2;
-	if (room == t->room)
-		return 0;
-	at = realloc(t->at, room * t->size);
-	if (!at)
-		return -ENOMEM;
-	t->at = at;
-	t->room = room;
+	while (t->room < t->n + n)
+		if (grow_array(&t->at, &t->room, t->size))
+			return -ENOMEM;
 	return 0;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* wear.c - what a program takes off its electrodes, by estimate */
 #include "interp/wear.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -12,15 +13,9 @@
 
 static int part_add(struct interp_wear *w, const struct interp_wear_part *p)
 {
-	if (w->nparts == w->room) {
-		const size_t room = w->room ? 2 * w->room : 64;
-		void *at = realloc(w->part, room * sizeof(*w->part));
-
-		if (!at)
-			return -ENOMEM;
-		w->part = at;
-		w->room = room;
-	}
+	if (w->nparts == w->room &&
+	    grow_array(&w->part, &w->room, sizeof(*w->part)))
+		return -ENOMEM;
 	w->part[w->nparts++] = *p;
 	return 0;
 }

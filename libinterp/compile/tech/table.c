@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* table.c - the rows of a table: added, sorted, found */
 #include "tech/text.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -24,15 +25,9 @@ struct interp_tech_row *tech_row_add(struct tech_text *t,
 {
 	struct interp_tech_row *r;
 
-	/* The room doubles whenever the count is a power of two. */
-	if ((table->nrows & (table->nrows - 1)) == 0) {
-		const size_t room = table->nrows ? 2 * table->nrows : 1;
-
-		r = realloc(table->row, room * sizeof(*r));
-		if (!r)
-			return NULL;
-		table->row = r;
-	}
+	if (table->nrows == table->room &&
+	    grow_array(&table->row, &table->room, sizeof(*table->row)))
+		return NULL;
 	r = &table->row[table->nrows++];
 	*r = (struct interp_tech_row) { .line = t->line };
 	interp_tech_clear(&r->tech);

@@ -4,6 +4,7 @@
  *	     outline
  */
 #include "wire/face_move.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -14,15 +15,9 @@
 
 static int add_hit(struct track_work *w, const struct track_hit *h)
 {
-	if (w->nhits == w->hits_room) {
-		const uint32_t room = w->hits_room ? w->hits_room * 2 : 64;
-		struct track_hit *p = realloc(w->hit, room * sizeof(*p));
-
-		if (!p)
-			return -ENOMEM;
-		w->hit = p;
-		w->hits_room = room;
-	}
+	if (w->nhits == w->hits_room &&
+	    grow_array(&w->hit, &w->hits_room, sizeof(*w->hit)))
+		return -ENOMEM;
 	w->hit[w->nhits++] = *h;
 	return 0;
 }

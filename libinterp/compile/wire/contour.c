@@ -5,6 +5,7 @@
 #include "wire/contour.h"
 
 #include "interp/angle.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -110,15 +111,8 @@ int contour_keep(struct contour *k, const struct contour_motion *m,
 {
 	if (k->n == CONTOUR_MOTIONS_MAX)
 		return contour_refuse_length(&m->word, diag);
-	if (k->n == k->room) {
-		const uint32_t room = k->room ? k->room * 2 : 64;
-		struct contour_motion *p = realloc(k->m, room * sizeof(*p));
-
-		if (!p)
-			return -ENOMEM;
-		k->m = p;
-		k->room = room;
-	}
+	if (k->n == k->room && grow_array(&k->m, &k->room, sizeof(*k->m)))
+		return -ENOMEM;
 	k->m[k->n++] = *m;
 	return 0;
 }
@@ -377,15 +371,9 @@ int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 
 static int put_off(struct contour *k, const struct contour_action *a)
 {
-	if (k->ntodo == k->todo_room) {
-		const uint32_t room = k->todo_room ? k->todo_room * 2 : 16;
-		struct contour_action *p = realloc(k->todo, room * sizeof(*p));
-
-		if (!p)
-			return -ENOMEM;
-		k->todo = p;
-		k->todo_room = room;
-	}
+	if (k->ntodo == k->todo_room &&
+	    grow_array(&k->todo, &k->todo_room, sizeof(*k->todo)))
+		return -ENOMEM;
 	k->todo[k->ntodo++] = *a;
 	k->m[k->n - 1].ntodo++;
 	return 0;

@@ -37,9 +37,10 @@ struct contour {
 	enum interp_taper_corner corner;
 	double last_offset_mm, last_slope;	/* ... and for the last one */
 	struct contour_motion *m;	/* collected */
-	uint32_t n, room;
+	uint32_t n;
 	struct contour_action *todo;	/* behind them */
-	uint32_t ntodo, todo_room;
+	uint32_t ntodo;
+	size_t room, todo_room;
 	bool recording;			/* nothing is cut: replay.h */
 	struct vec at[2];		/* where the wire crosses the planes */
 	const struct interp_notes *notes;	/* lent; NULL: nobody listens */

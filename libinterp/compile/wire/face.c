@@ -5,6 +5,7 @@
 #include "wire/face_move.h"
 
 #include "interp/angle.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -142,21 +143,6 @@ enum face_fate face_piece_moved(const struct face_from *from, uint32_t i,
 
 /* -- Pieces --------------------------------------------------------------- */
 
-static bool has_room(struct face *f)
-{
-	const uint32_t room = f->room ? f->room * 2 : 64;
-	struct face_piece *p;
-
-	if (f->n < f->room)
-		return true;
-	p = realloc(f->piece, room * sizeof(*p));
-	if (!p)
-		return false;
-	f->piece = p;
-	f->room = room;
-	return true;
-}
-
 /* A fillet that keeps its radius leans to where its centre moves. */
 static double wire_of_fitted(const struct face_from *from, uint32_t owner,
 			     const struct curve *c)
@@ -174,7 +160,8 @@ struct face_piece *face_add(struct face *f, const struct face_from *from,
 	const bool told = fitted && m->corner != INTERP_CORNER_CONSTANT;
 	struct face_piece *p;
 
-	if (!has_room(f))
+	if (f->n == f->room &&
+	    grow_array(&f->piece, &f->room, sizeof(*f->piece)))
 		return NULL;
 	p = &f->piece[f->n++];
 	*p = (struct face_piece) {

@@ -45,7 +45,8 @@ struct face_piece {
 
 struct face {
 	struct face_piece *piece;
-	uint32_t n, room;
+	size_t room;
+	uint32_t n;
 	bool closed;			/* it ends where it begins */
 	uint32_t nconstant;		/* fillets that would turn inside out
 					 * and keep their radius instead */

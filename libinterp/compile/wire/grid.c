@@ -3,6 +3,7 @@
  * grid.c - which curves of many are near a place
  */
 #include "wire/grid.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -63,15 +64,9 @@ void grid_free(struct grid *g)
 
 static int enter(struct grid *g, uint64_t cell, uint32_t id)
 {
-	if (g->n == g->room) {
-		const size_t room = g->room ? g->room * 2 : 256;
-		struct grid_entry *e = realloc(g->entry, room * sizeof(*e));
-
-		if (!e)
-			return -ENOMEM;
-		g->entry = e;
-		g->room = room;
-	}
+	if (g->n == g->room &&
+	    grow_array(&g->entry, &g->room, sizeof(*g->entry)))
+		return -ENOMEM;
 	g->entry[g->n++] = (struct grid_entry) { cell, id };
 	return 0;
 }

@@ -27,7 +27,7 @@ void contour_recorded(struct contour *k, struct contour_tape *ret)
 	*ret = (struct contour_tape) { k->m, k->n, k->n ? k->n - 1 : 0 };
 	k->recording = false;
 	k->m = NULL;
-	k->n = k->room = k->ntodo = 0;
+	k->room = k->n = k->ntodo = 0;
 	k->last_offset_mm = k->last_slope = 0;
 }
 

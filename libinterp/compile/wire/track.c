@@ -12,6 +12,7 @@
 #include "wire/track.h"
 
 #include "interp/angle.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -26,15 +27,8 @@
 
 struct track_elem *track_add(struct track_work *w)
 {
-	if (w->n == w->room) {
-		const uint32_t room = w->room ? w->room * 2 : 64;
-		struct track_elem *e = realloc(w->elem, room * sizeof(*e));
-
-		if (!e)
-			return NULL;
-		w->elem = e;
-		w->room = room;
-	}
+	if (w->n == w->room && grow_array(&w->elem, &w->room, sizeof(*w->elem)))
+		return NULL;
 	w->elem[w->n] = (struct track_elem) { .piece = -1 };
 	return &w->elem[w->n++];
 }

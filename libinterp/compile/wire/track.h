@@ -106,13 +106,14 @@ void track_free(struct track *t);
 struct track_work {
 	const struct track_job *job;
 	struct track_elem *elem;
-	uint32_t n, room;
+	uint32_t n;
 	struct track_hit *hit;
-	uint32_t nhits, hits_room;
+	uint32_t nhits;
 	struct track_run *run;
-	uint32_t nruns, runs_room;
+	uint32_t nruns;
 	struct track_fault *left;
-	uint32_t nleft, left_room;
+	uint32_t nleft;
+	size_t room, hits_room, runs_room, left_room;
 	struct grid near;		/* pieces of the outline */
 	uint32_t *stamp, stamp_now;	/* pieces asked about already */
 	double reach_mm;		/* the largest distance of a piece */

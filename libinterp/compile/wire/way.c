@@ -3,10 +3,10 @@
  * way.c - the way along the raw track that is nowhere too near to the outline
  */
 #include "wire/track.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 
 #define BACK_MAX	4096u		/* the most runs to go back if stuck */
 #define BACK_REACHES	6.0		/* the same in offsets */
@@ -90,15 +90,9 @@ static int leave(struct walker *k)
 {
 	struct track_work *w = k->w;
 
-	if (w->nleft == w->left_room) {
-		const uint32_t room = w->left_room ? w->left_room * 2 : 8;
-		struct track_fault *p = realloc(w->left, room * sizeof(*p));
-
-		if (!p)
-			return -ENOMEM;
-		w->left = p;
-		w->left_room = room;
-	}
+	if (w->nleft == w->left_room &&
+	    grow_array(&w->left, &w->left_room, sizeof(*w->left)))
+		return -ENOMEM;
 	w->left[w->nleft++] = *k->fault;
 	return 0;
 }
@@ -182,15 +176,9 @@ static bool is_clear(struct track_work *w, uint32_t e, double t0, double t1)
 
 static int add_run(struct track_work *w, uint32_t e, double t, bool jump)
 {
-	if (w->nruns == w->runs_room) {
-		const uint32_t room = w->runs_room ? w->runs_room * 2 : 64;
-		struct track_run *r = realloc(w->run, room * sizeof(*r));
-
-		if (!r)
-			return -ENOMEM;
-		w->run = r;
-		w->runs_room = room;
-	}
+	if (w->nruns == w->runs_room &&
+	    grow_array(&w->run, &w->runs_room, sizeof(*w->run)))
+		return -ENOMEM;
 	w->run[w->nruns++] = (struct track_run) { e, { t, t }, jump };
 	return 0;
 }

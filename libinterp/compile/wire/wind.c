@@ -5,6 +5,7 @@
 #include "wire/wind.h"
 
 #include "interp/angle.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -14,15 +15,8 @@
 
 int wind_add(struct wind *w, const struct curve *c)
 {
-	if (w->n == w->room) {
-		const uint32_t room = w->room ? w->room * 2 : 64;
-		struct curve *p = realloc(w->c, room * sizeof(*p));
-
-		if (!p)
-			return -ENOMEM;
-		w->c = p;
-		w->room = room;
-	}
+	if (w->n == w->room && grow_array(&w->c, &w->room, sizeof(*w->c)))
+		return -ENOMEM;
 	w->c[w->n] = *c;
 	/* A ray must not slip through between two curves. */
 	if (w->n)

@@ -15,6 +15,7 @@
 
 #include "wire/curve.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* Curves by the rows that they pass, along one axis. */
@@ -27,7 +28,8 @@ struct wind_rows {
 
 struct wind {
 	struct curve *c;
-	uint32_t n, room;
+	uint32_t n;
+	size_t room;
 	struct wind_rows rows[2];	/* rays to +X, to +Y */
 };
 

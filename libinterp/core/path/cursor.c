@@ -128,13 +128,9 @@ int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick)
 		return -EBADMSG;
 	if (tick > c->seg.ticks)
 		return -ERANGE;
-	while (c->tick < tick) {
-		uint16_t pulses;
-
-		if (c->walk->forward(c, 1, &pulses) == PULSE_BAD) {
-			c->walk = NULL;
-			return -EBADMSG;
-		}
+	if (tick > 0 && !c->walk->seek(c, tick)) {
+		c->walk = NULL;
+		return -EBADMSG;
 	}
 	interp_cursor_stop(c);
 	return 0;

@@ -125,11 +125,15 @@ static struct plane arc_node(const struct interp_cursor *c, bool at_end)
 	return p;
 }
 
+static struct plane arc_here(struct interp_cursor *c)
+{
+	return c->tick == 0 ? arc_node(c, false) :
+	       c->tick == c->seg.ticks ? arc_node(c, true) : arc_at(c);
+}
+
 static uint32_t arc_settle(struct interp_cursor *c)
 {
-	const struct plane p = c->tick == 0 ? arc_node(c, false) :
-			       c->tick == c->seg.ticks ? arc_node(c, true) :
-			       arc_at(c);
+	const struct plane p = arc_here(c);
 	int32_t *a = &c->pos[c->arc.axis_a], *b = &c->pos[c->arc.axis_b];
 	const int64_t da = p.a - *a, db = p.b - *b;
 
@@ -216,8 +220,25 @@ static uint32_t arc_back(struct interp_cursor *c, uint32_t ticks,
 	return pulse_ticks(c, arc_tick_back, ticks, ret);
 }
 
+static bool fits(int64_t pulses)
+{
+	return pulses >= INT32_MIN && pulses <= INT32_MAX;
+}
+
+static bool arc_seek(struct interp_cursor *c, uint32_t tick)
+{
+	struct plane p;
+
+	pulse_dda_seek(c, tick);
+	p = arc_here(c);
+	c->pos[c->arc.axis_a] = (int32_t)p.a;
+	c->pos[c->arc.axis_b] = (int32_t)p.b;
+	return fits(p.a) && fits(p.b);
+}
+
 const struct interp_walk pulse_arc = {
 	.enter = arc_enter,
 	.forward = arc_forward,
 	.back = arc_back,
+	.seek = arc_seek,
 };

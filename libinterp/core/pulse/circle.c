@@ -521,6 +521,25 @@ static uint32_t pulse_circle_back(struct interp_cursor *c, uint32_t ticks,
 	return pulse_ticks(c, pulse_circle_tick_back, ticks, ret);
 }
 
+void pulse_plane_set(struct interp_cursor *c)
+{
+	int64_t start[2] = { 0, 0 };
+
+	pulse_circle_node(c, false, start);
+	c->pos[c->arc.axis_a] += (int32_t)(c->circle.x - start[0]);
+	c->pos[c->arc.axis_b] += (int32_t)(c->circle.y - start[1]);
+}
+
+static bool pulse_circle_seek(struct interp_cursor *c, uint32_t tick)
+{
+	c->measure = circle_seek(&c->circle, tick);
+	if (c->measure < 0)
+		return false;
+	pulse_plane_set(c);
+	c->tick = tick;
+	return true;
+}
+
 static int64_t pulse_circle_last(const struct interp_cursor *c)
 {
 	return circle_last(&c->circle);
@@ -530,5 +549,6 @@ const struct interp_walk pulse_circle = {
 	.enter = pulse_circle_enter,
 	.forward = pulse_circle_forward,
 	.back = pulse_circle_back,
+	.seek = pulse_circle_seek,
 	.last = pulse_circle_last,
 };

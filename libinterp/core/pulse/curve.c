@@ -145,19 +145,27 @@ static uint32_t go(struct interp_cursor *c, uint32_t i, int32_t to)
 	return d == 0 ? 0 : pulse_move(axis, d < 0);
 }
 
+/* Set k->pos for @place. */
+static void place_look(struct interp_cursor *c, uint32_t place)
+{
+	struct interp_curve_walk *k = &c->curve;
+
+	if (k->at == place)
+		return;
+	if (place == 0 || place == k->places)
+		node_pos(c, place > 0, k->pos);
+	else
+		pulse_curve_place(k, c->pulses_mm, place);
+	k->at = place;
+}
+
 /* Tick @tick, counted from 0, on the way to place @place. */
 static uint32_t go_to(struct interp_cursor *c, uint32_t tick, uint32_t place)
 {
 	struct interp_curve_walk *k = &c->curve;
 	uint32_t pulses = 0;
 
-	if (k->at != place) {
-		if (place == 0 || place == k->places)
-			node_pos(c, place > 0, k->pos);
-		else
-			pulse_curve_place(k, c->pulses_mm, place);
-		k->at = place;
-	}
+	place_look(c, place);
 	if (k->turns > 1)
 		return go(c, tick % k->turns, k->pos[tick % k->turns]);
 	for (uint32_t i = 0; i < k->eval.c.naxes; i++) {
@@ -186,6 +194,24 @@ static uint32_t curve_tick_back(struct interp_cursor *c)
 	return go_to(c, tick, tick / c->curve.turns);
 }
 
+/* In tick t the axis t mod turns goes on: those before it are at the next
+ * place, it and the others at the last. */
+static bool curve_seek(struct interp_cursor *c, uint32_t tick)
+{
+	struct interp_curve_walk *k = &c->curve;
+	const uint32_t place = tick / k->turns, ahead = tick % k->turns;
+
+	for (uint32_t next = 0; next <= (ahead > 0); next++) {
+		place_look(c, place + next);
+		for (uint32_t i = 0; i < k->eval.c.naxes; i++)
+			if (!next || i < ahead)
+				c->pos[k->axis[i]] = k->pos[i];
+	}
+	c->tick = tick;
+	c->measure = tick;
+	return true;
+}
+
 static uint32_t curve_forward(struct interp_cursor *c, uint32_t ticks,
 			      uint16_t *ret)
 {
@@ -202,6 +228,7 @@ const struct interp_walk pulse_curve = {
 	.enter = curve_enter,
 	.forward = curve_forward,
 	.back = curve_back,
+	.seek = curve_seek,
 };
 
 double pulse_curve_gap2(const struct interp_cursor *c,

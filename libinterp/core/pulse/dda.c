@@ -51,6 +51,7 @@ const struct interp_walk pulse_dda_line = {
 	.enter = dda_line_enter,
 	.forward = pulse_dda_forward,
 	.back = pulse_dda_back,
+	.seek = pulse_dda_seek,
 };
 
 /* -- Arcs ----------------------------------------------------------------- */
@@ -66,13 +67,15 @@ static int64_t rotor_add(int64_t *rest, int64_t v, uint32_t shift)
 	return pulse;
 }
 
-static void rotor_forward(struct interp_rotor *k)
+#define INLINE static inline __attribute__((always_inline))
+
+INLINE void rotor_forward(struct interp_rotor *k)
 {
 	k->x += rotor_add(&k->rest_x, -k->ccw * k->y, k->shift);
 	k->y += rotor_add(&k->rest_y, k->ccw * k->x, k->shift);
 }
 
-static void rotor_back(struct interp_rotor *k)
+INLINE void rotor_back(struct interp_rotor *k)
 {
 	k->y += rotor_add(&k->rest_y, -k->ccw * k->x, k->shift);
 	k->x += rotor_add(&k->rest_x, k->ccw * k->y, k->shift);
@@ -150,6 +153,15 @@ static bool arc_ok(const struct interp_cursor *c)
 	       llabs(arc->tail_a) <= forced && llabs(arc->tail_b) <= forced;
 }
 
+/* As the tail left it, from the end; walking back begins with the tail. */
+static void rotor_set_tail(struct interp_rotor *k, const struct interp_arc *arc)
+{
+	k->rest_x = arc->rest_a;
+	k->rest_y = arc->rest_b;
+	k->x -= arc->tail_a;
+	k->y -= arc->tail_b;
+}
+
 static bool dda_arc_enter(struct interp_cursor *c, bool at_end)
 {
 	const struct interp_arc *arc = &c->arc;
@@ -161,13 +173,8 @@ static bool dda_arc_enter(struct interp_cursor *c, bool at_end)
 		return false;
 	pulse_circle_node(c, at_end, at);
 	rotor_set(k, arc, at);
-	if (at_end) {
-		/* As the tail left it; walking back begins with the tail. */
-		k->rest_x = arc->rest_a;
-		k->rest_y = arc->rest_b;
-		k->x -= arc->tail_a;
-		k->y -= arc->tail_b;
-	}
+	if (at_end)
+		rotor_set_tail(k, arc);
 	return rotor_in_range(k);
 }
 
@@ -229,8 +236,54 @@ static uint32_t dda_arc_back(struct interp_cursor *c, uint32_t ticks,
 	return pulse_ticks(c, dda_arc_tick_back, ticks, ret);
 }
 
+/*
+ * A rotor's rounding follows from all of its ticks, so they are made one by
+ * one, from the nearer end.
+ */
+static bool rotor_seek(struct interp_cursor *c, uint32_t tick)
+{
+	const struct interp_arc *arc = &c->arc;
+	struct interp_rotor *k = &c->rotor;
+	int64_t at[2] = { 0, 0 };
+
+	if (tick <= arc->tail / 2) {
+		for (uint32_t i = 0; i < tick && rotor_in_range(k); i++)
+			rotor_forward(k);
+		return rotor_in_range(k);
+	}
+	pulse_circle_node(c, true, at);
+	rotor_set(k, arc, at);
+	rotor_set_tail(k, arc);
+	for (uint32_t i = tick; i < arc->tail && rotor_in_range(k); i++)
+		rotor_back(k);
+	return rotor_in_range(k);
+}
+
+static int64_t tail_pulses(int64_t forced, int64_t u)
+{
+	return forced > 0 ? (u < forced ? u : forced) :
+			    (-u > forced ? -u : forced);
+}
+
+static bool dda_arc_seek(struct interp_cursor *c, uint32_t tick)
+{
+	const struct interp_arc *arc = &c->arc;
+	const int64_t u = tick > arc->tail ? tick - arc->tail : 0;
+	const struct interp_rotor *k = &c->rotor;
+	int64_t x = k->x, y = k->y;
+
+	if (!rotor_seek(c, tick))
+		return false;
+	x = k->x - x + tail_pulses(arc->tail_a, u);
+	y = k->y - y + tail_pulses(arc->tail_b, u);
+	c->pos[arc->axis_a] += (int32_t)x;
+	c->pos[arc->axis_b] += (int32_t)y;
+	return pulse_dda_seek(c, tick);
+}
+
 const struct interp_walk pulse_dda_arc = {
 	.enter = dda_arc_enter,
 	.forward = dda_arc_forward,
 	.back = dda_arc_back,
+	.seek = dda_arc_seek,
 };

@@ -129,8 +129,57 @@ static uint32_t flat_back(struct interp_cursor *c, uint32_t ticks,
 	return ticks;
 }
 
+/* The tick in which the main axis comes to place @m. */
+static int64_t flat_tick_of(const struct interp_cursor *c, int64_t m)
+{
+	int64_t ticks = m;
+
+	for (uint32_t i = 0; m > 0 && i < c->npairs; i++)
+		ticks += pair_sent(&c->pair[i], m - 1);
+	return ticks;
+}
+
+/* The last place to which the main axis has come by @tick. */
+static int64_t flat_place(const struct interp_cursor *c, int64_t tick)
+{
+	int64_t low = 0, high = c->pair[0].a;
+
+	while (low < high) {
+		const int64_t mid = low + (high - low + 1) / 2;
+
+		if (flat_tick_of(c, mid) <= tick)
+			low = mid;
+		else
+			high = mid - 1;
+	}
+	return low;
+}
+
+/* What is left of @tick at that place is given in the order of the axes. */
+static bool flat_seek(struct interp_cursor *c, uint32_t tick)
+{
+	const int64_t m = c->npairs ? flat_place(c, tick) : tick;
+	int64_t left = tick - flat_tick_of(c, m);
+
+	for (uint32_t i = 0; i < c->npairs; i++) {
+		struct interp_pair *p = &c->pair[i];
+		const int64_t was = m > 0 ? pair_sent(p, m - 1) : 0;
+		const int64_t due = pair_sent(p, m) - was;
+		const int64_t given = due < left ? due : left;
+
+		pair_put(p, m, was + given);
+		left -= given;
+		c->pos[p->in_b] += (int32_t)(was + given) * c->sign[p->in_b];
+	}
+	c->pos[c->root] += (int32_t)m * c->sign[c->root];
+	c->tick = tick;
+	c->measure = tick;
+	return left == 0;
+}
+
 const struct interp_walk pulse_flat = {
 	.enter = flat_enter,
 	.forward = flat_forward,
 	.back = flat_back,
+	.seek = flat_seek,
 };

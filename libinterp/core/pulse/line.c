@@ -166,6 +166,24 @@ uint32_t pulse_dda_back(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
 	return points_of(ret, ticks);
 }
 
+bool pulse_dda_seek(struct interp_cursor *c, uint32_t tick)
+{
+	const int64_t full = c->dda_full;
+
+	for (uint32_t i = 0; i < c->ndda; i++) {
+		struct interp_dda *d = &c->dda[i];
+		const pulse_wide sum = (pulse_wide)d->step * tick + d->err +
+				       full;
+		const int64_t given = (int64_t)(sum / full);
+
+		d->err = (int64_t)(sum - (pulse_wide)given * full) - full;
+		c->pos[d->axis] += d->dir * (int32_t)given;
+	}
+	c->tick += tick;
+	c->measure += tick;
+	return true;
+}
+
 uint32_t pulse_dda_tick(struct interp_cursor *c)
 {
 	uint32_t pulses = 0;
@@ -221,4 +239,5 @@ const struct interp_walk pulse_line = {
 	.enter = line_enter,
 	.forward = pulse_dda_forward,
 	.back = pulse_dda_back,
+	.seek = pulse_dda_seek,
 };

@@ -266,6 +266,130 @@ static void bits_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
 		second[k] = !pair_back(p);
 }
 
+/* -- At once --------------------------------------------------------------- */
+
+int64_t pulse_ones(const uint64_t *bits, int64_t n)
+{
+	int64_t ones = 0;
+
+	for (int64_t at = 0; at < n; at += 64) {
+		uint64_t w = bits[at / 64];
+
+		if (n - at < 64)
+			w &= (UINT64_C(1) << (n - at)) - 1;
+		w -= w >> 1 & UINT64_C(0x5555555555555555);
+		w = (w & UINT64_C(0x3333333333333333)) +
+		    (w >> 2 & UINT64_C(0x3333333333333333));
+		w = (w + (w >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
+		ones += (int64_t)(w * UINT64_C(0x0101010101010101) >> 56);
+	}
+	return ones;
+}
+
+static int64_t within(int64_t v, int64_t low, int64_t high)
+{
+	return v < low ? low : v > high ? high : v;
+}
+
+/* Upward, for @by > 0. */
+static int64_t divided(int64_t v, int64_t by)
+{
+	return v > 0 ? (v + by - 1) / by : -(-v / by);
+}
+
+/* Look at the first burst that is not over when @n pulses are given: of the
+ * secondary input, or of both. */
+static void burst_seek(struct interp_pair *p, int64_t n, bool both)
+{
+	int64_t low = 0, high = p->bursts;
+
+	while (low < high) {
+		p->burst = low + (high - low) / 2;
+		burst_look(p);
+		if ((both ? p->due : 0) + p->to > n)
+			high = p->burst;
+		else
+			low = p->burst + 1;
+	}
+	p->burst = low;
+	burst_look(p);
+}
+
+void pair_put(struct interp_pair *p, int64_t m, int64_t s)
+{
+	p->m = m;
+	p->s = s;
+	p->dev = p->b * m - p->a * s;
+	if (!p->bursts)
+		return;
+	burst_seek(p, s, false);
+	burst_find_prior(p);
+}
+
+/* Of the first @n pulses, those of the secondary input. */
+static int64_t seconds(struct interp_pair *p, int64_t n)
+{
+	if (p->bits)
+		return pulse_ones(p->bits, n);
+	/* e = b*n - (a + b)*s is in its window. */
+	if (!p->bursts)
+		return divided(p->b * n - p->limit - p->b, p->a + p->b);
+	burst_seek(p, n, true);
+	return within(n - p->due, p->from, p->to);
+}
+
+void pair_seek(struct interp_pair *p, int64_t n)
+{
+	const int64_t least_s = n > p->a ? n - p->a : 0;
+	const int64_t most_s = n < p->b ? n : p->b;
+	const int64_t s = within(seconds(p, n), least_s, most_s);
+
+	pair_put(p, n - s, s);
+}
+
+/* Pulses in front of the 0 that has @zeros others in front of it. */
+static int64_t bit_of_zero(const uint64_t *bits, int64_t zeros, int64_t most)
+{
+	int64_t at = 0;
+
+	for (; at + 64 <= most; at += 64) {
+		const int64_t some = 64 - pulse_ones(bits + at / 64, 64);
+
+		if (some > zeros)
+			break;
+		zeros -= some;
+	}
+	for (; at < most; at++)
+		if (!(bits[at / 64] >> at % 64 & 1) && zeros-- == 0)
+			break;
+	return at;
+}
+
+int64_t pair_sent(const struct interp_pair *p, int64_t m)
+{
+	struct interp_pair at = *p;
+	int64_t low = 0, high = p->bursts;
+
+	if (m >= p->a)
+		return p->b;
+	if (p->bits)
+		return within(bit_of_zero(p->bits, m, p->a + p->b) - m, 0,
+			      p->b);
+	if (!p->bursts)
+		return within(divided(p->b * m - p->limit, p->a), 0, p->b);
+	while (low < high) {
+		at.burst = low + (high - low) / 2;
+		burst_look(&at);
+		if (at.due > m)
+			high = at.burst;
+		else
+			low = at.burst + 1;
+	}
+	at.burst = low;
+	burst_look(&at);
+	return at.from;
+}
+
 /* -- Many pulses ----------------------------------------------------------- */
 
 static int64_t least(int64_t a, int64_t b)

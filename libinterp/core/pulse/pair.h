@@ -230,6 +230,16 @@ static inline bool pair_back(struct interp_pair *p)
 	return true;
 }
 
+/** pair_put() - stand where @m and @s pulses are given, both of this path. */
+void pair_put(struct interp_pair *p, int64_t m, int64_t s);
+
+/** pair_seek() - give the first @n pulses, from the start. */
+void pair_seek(struct interp_pair *p, int64_t n);
+
+/** pair_sent() - how many pulses of the secondary input are sent before pulse
+ *  @m + 1 of the main input. */
+int64_t pair_sent(const struct interp_pair *p, int64_t m);
+
 /**
  * pair_run() - give the next @n pulses; pair_run_back() takes the last @n back.
  *

@@ -31,6 +31,10 @@ struct interp_walk {
 	/* Walk @ticks of them; update pos, tick and measure.  Return: the
 	 * number of points that were met, with their pulses in @ret. */
 	pulse_run_fn *forward, *back;
+	/* From the start to @tick at once, as forward would: at most a few
+	 * operations for each pulse in a quadrant, and mostly a few in all.
+	 * Return: false if the block is damaged.  Actions have none. */
+	bool (*seek)(struct interp_cursor *c, uint32_t tick);
 	/* What the last tick added to the measure; NULL: always one. */
 	int64_t (*last)(const struct interp_cursor *c);
 };
@@ -108,6 +112,9 @@ static inline int64_t pulse_node(const struct interp_cursor *c, uint32_t j,
 	return c->p.nodes[((uint64_t)c->index + at_end) * c->p.head->naxes + j];
 }
 
+/** pulse_ones() - how many of the first @n bits are 1. */
+int64_t pulse_ones(const uint64_t *bits, int64_t n);
+
 /** pulse_in_range() - no correct builder exceeds this. */
 static inline bool pulse_in_range(int64_t sub)
 {
@@ -127,6 +134,7 @@ bool pulse_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except);
 /** pulse_longest() - pulses of the longest axis, rounded up. */
 int64_t pulse_longest(const struct interp_cursor *c, uint32_t except);
 pulse_run_fn pulse_dda_forward, pulse_dda_back;
+bool pulse_dda_seek(struct interp_cursor *c, uint32_t tick);
 /* One tick of it. */
 uint32_t pulse_dda_tick(struct interp_cursor *c);
 uint32_t pulse_dda_tick_back(struct interp_cursor *c);
@@ -166,6 +174,14 @@ void circle_back(struct interp_circle *k, int8_t ret[2]);
 /** What the last pulse added to the measure: > 0. */
 int64_t circle_last(const struct interp_circle *k);
 /**
+ * circle_seek() - from the start, @tick pulses at once: circle_seek.c.
+ *
+ * Return: what they add to the measure; -1 if the circle is broken.
+ */
+int64_t circle_seek(struct interp_circle *k, uint32_t tick);
+/** pulse_plane_set() - the plane stands where c->circle does. */
+void pulse_plane_set(struct interp_cursor *c);
+/**
  * circle_measure() - walk the whole arc once, and fill @arc's measure, ticks
  * and tail.  Not for the cycle: it takes as long as the arc.
  *
@@ -180,6 +196,8 @@ bool side_enter(struct interp_side *s, const struct interp_arc *arc,
 /** One pulse; ret[0], ret[1] in -1, 0, +1; false: the contour is broken. */
 bool side_forward(struct interp_side *s, int8_t ret[2]);
 bool side_back(struct interp_side *s, int8_t ret[2]);
+/** As circle_seek(). */
+int64_t side_seek(struct interp_side *s, uint32_t tick);
 /** What the last pulse added to the side's measure: > 0. */
 int64_t side_last(const struct interp_side *s);
 /* One pulse of it, for planning: circle_runs.c. */

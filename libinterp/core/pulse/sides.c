@@ -108,6 +108,24 @@ bool side_back(struct interp_side *s, int8_t ret[2])
 	return true;
 }
 
+/* Of k pulses, m of the longer axis: dev = a*k - (a + b)*m is in its range. */
+static int64_t line_seek(struct interp_side *s, int64_t ticks)
+{
+	const int64_t longer = s->a + s->b ?
+			       (s->a * ticks + s->b) / (s->a + s->b) : 0;
+
+	s->dev = s->a * ticks - (s->a + s->b) * longer;
+	return s->a * longer + s->b * (ticks - longer);
+}
+
+int64_t side_seek(struct interp_side *s, uint32_t tick)
+{
+	if (tick > s->ticks)
+		return -1;
+	s->tick = tick;
+	return s->arc ? circle_seek(&s->circle, tick) : line_seek(s, tick);
+}
+
 int64_t side_last(const struct interp_side *s)
 {
 	if (s->arc)
@@ -248,9 +266,53 @@ static int64_t pair_last(const struct interp_cursor *c)
 	return c->side[i].tick == 0 ? 1 : tick_measure(c, i);
 }
 
+/* Where a side stands, from its start. */
+static void side_way(const struct interp_side *s, int64_t ret[2])
+{
+	const int64_t sum = s->a + s->b;
+	const int64_t longer = sum ? (s->a * s->tick - s->dev) / sum : 0;
+
+	ret[0] = s->circle.x;
+	ret[1] = s->circle.y;
+	if (s->arc)
+		return;
+	ret[s->longer] = longer * s->sign[s->longer];
+	ret[!s->longer] = (s->tick - longer) * s->sign[!s->longer];
+}
+
+static int64_t pair_side_seek(struct interp_cursor *c, int i, uint32_t tick)
+{
+	const struct interp_arc *arc = &c->couple.side[i];
+	int64_t from[2], to[2];
+	int64_t measure;
+
+	side_way(&c->side[i], from);
+	measure = side_seek(&c->side[i], tick);
+	if (measure < 0)
+		return -1;
+	side_way(&c->side[i], to);
+	c->pos[arc->axis_a] += (int32_t)(to[0] - from[0]);
+	c->pos[arc->axis_b] += (int32_t)(to[1] - from[1]);
+	return measure;
+}
+
+static bool pair_seek(struct interp_cursor *c, uint32_t tick)
+{
+	const uint32_t second = (uint32_t)
+		pulse_ones(c->p.bits + c->couple.bits_at, tick);
+	const int64_t measure = pair_side_seek(c, 0, tick - second);
+
+	if (measure < 0 || pair_side_seek(c, 1, second) < 0)
+		return false;
+	c->tick = tick;
+	c->measure = measure + second;
+	return true;
+}
+
 const struct interp_walk pulse_pair = {
 	.enter = pair_enter,
 	.forward = pair_forward,
 	.back = pair_back,
+	.seek = pair_seek,
 	.last = pair_last,
 };

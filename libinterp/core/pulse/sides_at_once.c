@@ -58,13 +58,12 @@ static bool at_once_enter(struct interp_cursor *c, bool at_end)
 	return pulse_dda_enter(c, at_end, curved) && ticks_ok(c, curved);
 }
 
-/* Set one axis of an arc to its place at c->tick; at the ends to the node,
+/* The place of one axis of an arc at c->tick; at the ends that of the node,
  * whatever sin and cos give. */
-static bool axis_settle(struct interp_cursor *c, uint32_t axis, double at_mm,
-			uint32_t *moved)
+static int64_t axis_at(const struct interp_cursor *c, uint32_t axis,
+		       double at_mm)
 {
 	int64_t to = (int64_t)floor(at_mm * c->pulses_mm[axis] + 0.5);
-	int64_t by;
 
 	if (c->tick == 0 || c->tick == c->seg.ticks) {
 		for (uint32_t j = 0; j < c->p.head->naxes; j++) {
@@ -73,7 +72,14 @@ static bool axis_settle(struct interp_cursor *c, uint32_t axis, double at_mm,
 							c->tick != 0));
 		}
 	}
-	by = to - c->pos[axis];
+	return to;
+}
+
+static bool axis_settle(struct interp_cursor *c, uint32_t axis, int64_t to,
+			uint32_t *moved)
+{
+	const int64_t by = to - c->pos[axis];
+
 	if (by > 1 || by < -1)
 		return false;
 	c->pos[axis] = (int32_t)to;
@@ -81,18 +87,26 @@ static bool axis_settle(struct interp_cursor *c, uint32_t axis, double at_mm,
 	return true;
 }
 
-static uint32_t arc_settle(struct interp_cursor *c,
-			   const struct interp_arc *arc)
+static void arc_at(const struct interp_cursor *c, const struct interp_arc *arc,
+		   int64_t ret[2])
 {
 	const double t = (double)c->tick / c->seg.ticks;
 	const double theta = arc->theta + arc->sweep * t;
 	const double r = arc->r_mm + arc->dr_mm * t;
-	uint32_t moved = 0;
 
-	return axis_settle(c, arc->axis_a, arc->a_mm + r * cos(theta),
-			   &moved) &&
-	       axis_settle(c, arc->axis_b, arc->b_mm + r * sin(theta),
-			   &moved) ? moved : PULSE_BAD;
+	ret[0] = axis_at(c, arc->axis_a, arc->a_mm + r * cos(theta));
+	ret[1] = axis_at(c, arc->axis_b, arc->b_mm + r * sin(theta));
+}
+
+static uint32_t arc_settle(struct interp_cursor *c,
+			   const struct interp_arc *arc)
+{
+	uint32_t moved = 0;
+	int64_t at[2];
+
+	arc_at(c, arc, at);
+	return axis_settle(c, arc->axis_a, at[0], &moved) &&
+	       axis_settle(c, arc->axis_b, at[1], &moved) ? moved : PULSE_BAD;
 }
 
 static uint32_t at_once_settle(struct interp_cursor *c, uint32_t moved)
@@ -133,8 +147,27 @@ static uint32_t at_once_back(struct interp_cursor *c, uint32_t ticks,
 	return pulse_ticks(c, at_once_tick_back, ticks, ret);
 }
 
+static bool at_once_seek(struct interp_cursor *c, uint32_t tick)
+{
+	pulse_dda_seek(c, tick);
+	for (int i = 0; i < 2; i++) {
+		const struct interp_arc *arc = &c->couple.side[i];
+		int64_t at[2];
+
+		if (!(arc->r_mm > 0))
+			continue;
+		arc_at(c, arc, at);
+		if (at[0] != (int32_t)at[0] || at[1] != (int32_t)at[1])
+			return false;
+		c->pos[arc->axis_a] = (int32_t)at[0];
+		c->pos[arc->axis_b] = (int32_t)at[1];
+	}
+	return true;
+}
+
 const struct interp_walk pulse_pair_at_once = {
 	.enter = at_once_enter,
 	.forward = at_once_forward,
 	.back = at_once_back,
+	.seek = at_once_seek,
 };

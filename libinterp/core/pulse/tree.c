@@ -225,10 +225,34 @@ static uint32_t tree_back(struct interp_cursor *c, uint32_t ticks,
 			    tree_ticks(c, ticks, ret);
 }
 
+/* From the start, @ticks of it. */
+static void tree_give(struct interp_cursor *c, int8_t code, int64_t ticks)
+{
+	struct interp_pair *p;
+
+	if (code >= 0) {
+		c->pos[code] += (int32_t)ticks * c->sign[code];
+		return;
+	}
+	p = &c->pair[~code];
+	pair_seek(p, ticks);
+	tree_give(c, p->in_a, p->m);
+	tree_give(c, p->in_b, p->s);
+}
+
+static bool tree_seek(struct interp_cursor *c, uint32_t tick)
+{
+	tree_give(c, c->root, tick);
+	c->tick = tick;
+	c->measure = tick;
+	return true;
+}
+
 const struct interp_walk pulse_tree = {
 	.enter = tree_enter,
 	.forward = tree_forward,
 	.back = tree_back,
+	.seek = tree_seek,
 };
 
 /* -- Helices -------------------------------------------------------------- */
@@ -318,9 +342,52 @@ static int64_t helix_last(const struct interp_cursor *c)
 	return helix_last_tree(c) ? 1 : circle_last(&c->circle);
 }
 
+/*
+ * @ticks are over.  Pulse j of the circle is followed by what is due of the
+ * tree, and by nothing before.  Stand at the circle's last pulse.
+ */
+static bool helix_circle(struct interp_cursor *c, uint32_t tick)
+{
+	const struct interp_circle start = c->circle;
+	uint32_t low = 0, high = tick < start.ticks ? tick : start.ticks;
+
+	while (low < high) {
+		const uint32_t mid = high - (high - low) / 2;
+		const int64_t before = circle_seek(&c->circle, mid - 1);
+
+		c->circle = start;
+		if (before < 0)
+			return false;
+		if (mid + helix_due(c, before) <= tick)
+			low = mid;
+		else
+			high = mid - 1;
+	}
+	c->circle_at = circle_seek(&c->circle, low);
+	return c->circle_at >= 0;
+}
+
+static bool helix_seek(struct interp_cursor *c, uint32_t tick)
+{
+	int64_t sent;
+
+	if (!helix_circle(c, tick))
+		return false;
+	sent = tick - c->circle.tick;
+	if (sent > helix_due(c, c->circle_at) || sent > c->others)
+		return false;
+	if (sent > 0)
+		tree_give(c, c->root, sent);
+	pulse_plane_set(c);
+	c->tick = tick;
+	c->measure = c->circle_at + sent;
+	return true;
+}
+
 const struct interp_walk pulse_helix = {
 	.enter = helix_enter,
 	.forward = helix_forward,
 	.back = helix_back,
+	.seek = helix_seek,
 	.last = helix_last,
 };

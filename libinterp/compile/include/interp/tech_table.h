@@ -64,6 +64,7 @@ struct interp_tech_table {
 	uint32_t nnotes;
 	struct interp_tech_row *row;	/* by letter, then number */
 	uint32_t nrows;
+	size_t room;			/* of rows */
 	struct interp_tech_sequence sequence[INTERP_TECH_SEQUENCES_MAX];
 	uint32_t nsequences;
 	struct interp_tech_inline inlined[3];	/* C, E, S */

@@ -178,7 +178,9 @@ int interp_cursor_init(struct interp_cursor *c, const struct interp_program *p);
 /**
  * interp_cursor_seek() - stand at tick @tick of segment @index.
  *
- * Takes as long as @tick in the worst case: startup only.
+ * By dda an arc takes as long as the way to its nearer end, a circle by one
+ * axis at a time as long as its radius, and stored bits and runs are counted:
+ * startup only.  Everything else takes no longer if @tick is large.
  * Return: 0, -ERANGE if there is no such place, -EBADMSG.
  */
 int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick);
