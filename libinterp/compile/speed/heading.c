@@ -27,8 +27,9 @@ void heading_ways_init(struct ways *w, const struct interp_program *p)
 }
 
 /* The square of what those columns go by that make the length is 1 on each mm
- * of a line; round an arc it is as the radius is there. */
-#define COUNTS_STRAIGHT	0.99
+ * of a line, of others before them far less; round an arc it is as the radius
+ * is there. */
+#define COUNTS_STRAIGHT	0.25
 #define COUNTS_ROUND	1e-6
 
 /* The axes that make the length of a path, as program.h says. */
@@ -45,7 +46,7 @@ static uint32_t idle(const struct ways *w, uint32_t columns,
 {
 	double sum = 0;
 
-	for (uint32_t j = 0; j < w->p->head->naxes; j++)
+	for (uint32_t j = 0; j < w->p->head->naxes && sum < counts; j++)
 		if (columns >> j & 1)
 			sum += h->rate[j] * h->rate[j];
 	return sum < counts ? columns : 0;
@@ -187,6 +188,8 @@ void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
 static uint32_t line_along(const struct ways *w, uint32_t i)
 {
 	const uint32_t n = w->p->head->naxes;
+	const int64_t *a = w->p->nodes + (uint64_t)i * n, *b = a + n;
+	const double half = w->p->segs[i].length_mm / 2;
 	struct heading h;
 	uint32_t moving;
 
@@ -194,6 +197,11 @@ static uint32_t line_along(const struct ways *w, uint32_t i)
 		return 0;
 	if (w->xyz == (1u << n) - 1)
 		return w->xyz;
+	/* Mostly one of X Y Z goes half of the length, and more. */
+	for (uint32_t j = 0; j < n; j++)
+		if (w->xyz >> j & 1 &&
+		    fabs((double)(b[j] - a[j])) * w->sub_mm[j] >= half)
+			return w->xyz;
 	moving = BY_COLUMNS(n, straight, w, i, &h);
 	return along_by(w, moving, &h, COUNTS_STRAIGHT);
 }
