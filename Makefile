@@ -11,6 +11,7 @@
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
 #   make bench      speed, as medians side by side
 #   make count      instructions of what is done most, into docs/performance.md
+#   make calls      system calls of edmd's threads, into docs/performance.md
 #   make experiments  count the pulse rules and the ways along curves, time the
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
@@ -346,6 +347,7 @@ $(B)/tests/bench/plan.o: INC_bench += -Iclients/plan
 $(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN))) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
 	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
+$(B)/bench/wait: $(SETUP_O)
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lnlopt -lm)
 
@@ -576,12 +578,21 @@ bench: vm
 # 5 % more than docs/performance.md says fails the check.
 .PHONY: count run-count
 count: $(B)/bench/count
-	@EDM_BUILD=$(B) tests/bench/count > $(B)/count.md
+	@EDM_BUILD=$(B) tests/bench/count --parts $(B)/parts.md > $(B)/count.md
 	@docs/put-table $(B)/count.md docs/performance.md
-	@cat $(B)/count.md
+	@docs/put-table $(B)/parts.md docs/performance.md
+	@cat $(B)/count.md $(B)/parts.md
 
 run-count: $(B)/bench/count
 	@EDM_BUILD=$(B) tests/bench/count --check docs/performance.md
+
+# System calls of edmd, which tests/system/test_calls.py holds to what is written.
+.PHONY: calls
+calls: $(B)/edmd $(B)/edmd-jobs
+	@tests/setup check
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/system/calls.py > $(B)/calls.md
+	@docs/put-table $(B)/calls.md docs/performance.md
+	@cat $(B)/calls.md
 
 include tests/experiments/Makefile
 

@@ -168,7 +168,8 @@ static int script_fd(const struct plot_sheet *s)
 
 static int draw(const struct plot_sheet *s, int out)
 {
-	char *argv[] = { "gnuplot", "-d", "-", NULL };
+	/* Of "-" it would read each byte by a system call of its own. */
+	char *argv[] = { "gnuplot", "-d", "/dev/stdin", NULL };
 	int in = script_fd(s);
 	int err;
 

@@ -17,15 +17,13 @@
 #include <string.h>
 #include <sysexits.h>
 
-/* This is done before there is any thread: the event loop reads signals as a
- * file. */
+/* This is done before there is any thread: a signal comes to the main thread as
+ * it waits for one. */
 static void signals_block(void)
 {
 	sigset_t set;
 
-	sigemptyset(&set);
-	sigaddset(&set, SIGTERM);
-	sigaddset(&set, SIGINT);
+	serve_signals(&set);
 	sigprocmask(SIG_BLOCK, &set, NULL);
 }
 
@@ -112,9 +110,9 @@ static int run(struct loop *l, const struct machine_config *c,
 		log_line(LOG_INFO, "edmd: no gap: no sparks, jobs walk at "
 			 "their programmed feed");
 	report_ready();
-	err = serve(&s);
+	serve(&s);
 	loop_stop(l);
-	return err < 0 ? EX_SOFTWARE : EX_OK;
+	return EX_OK;
 }
 
 static int commands_open(struct loop *l, const char *name)

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * serve.c - the event loop of the main thread
+ * serve.c - the loop of the main thread
  *
  * The cycle makes no system call to wake anyone.  So this loop looks every few
- * milliseconds.
+ * milliseconds.  A signal and the time of the next look are waited for by one
+ * system call.
  */
 #include "serve.h"
 
@@ -13,10 +14,9 @@
 #include "programs.h"
 
 #include <signal.h>
-#include <string.h>
-#include <systemd/sd-event.h>
+#include <sys/prctl.h>
 
-#define LOOK_US		10000
+#define LOOK_NS		10000000LL
 #define STAND_NS	1000000000LL	/* time that the machine gets to stop */
 
 static uint64_t beats(const struct loop *l)
@@ -38,76 +38,68 @@ static bool end_is_due(const struct server *s)
 }
 
 /*
- * A multiple of LOOK_US, where ticks of the kernel are too.  The cycle wakes in
- * the middle of its period, so neither is in its way.
+ * Until a multiple of LOOK_NS, where ticks of the kernel are too.  The cycle
+ * wakes in the middle of its period, so neither is in its way.
+ *
+ * Return: the signal that came before that; or -1.
  */
-static uint64_t next_look(void)
+static int wait_for_look(const sigset_t *ends)
 {
-	const uint64_t now_us = (uint64_t)clock_ns(CLOCK_MONOTONIC) / 1000;
+	const struct timespec left = {
+		.tv_nsec = LOOK_NS - clock_ns(CLOCK_MONOTONIC) % LOOK_NS,
+	};
 
-	return (now_us / LOOK_US + 1) * LOOK_US;
+	return sigtimedwait(ends, NULL, &left);
 }
 
-static int on_look(sd_event_source *src, uint64_t usec, void *arg)
+static void look(struct server *s)
 {
-	struct server *s = arg;
 	char note[160];
 
-	(void)usec;
 	programs_serve(&s->loop->crossing, s->config);
 	report_notes(&s->loop->io);
 	report_events(&s->report, s->loop->status);
 	while (plc_link_note(&s->loop->plc, note, sizeof(note)))
 		log_line(LOG_WARNING, "%s", note);
 	report_watchdog(&s->report, beats(s->loop));
-	if (end_is_due(s))
-		return sd_event_exit(sd_event_source_get_event(src), 0);
-	return sd_event_source_set_time(src, next_look());
 }
 
-static int on_signal(sd_event_source *src, const struct signalfd_siginfo *si,
-		     void *arg)
+static void begin_end(struct server *s, int signal)
 {
-	struct server *s = arg;
-
-	if (s->end_by_ns != 0)
-		return sd_event_exit(sd_event_source_get_event(src), 0);
 	log_line(LOG_INFO, "edmd: %s: hold, then end",
-		 si->ssi_signo == SIGINT ? "interrupt" : "terminated");
+		 signal == SIGINT ? "interrupt" : "terminated");
 	report_stopping();
 	crossing_flag_set(&s->loop->crossing.hold, true);
 	s->end_by_ns = clock_ns(CLOCK_MONOTONIC) + STAND_NS;
-	return 0;
 }
 
-static int sources_add(sd_event *e, struct server *s)
+void serve_signals(sigset_t *ret)
 {
-	sd_event_source *look = NULL;
-	int err = sd_event_add_signal(e, NULL, SIGTERM, on_signal, s);
-
-	if (err >= 0)
-		err = sd_event_add_signal(e, NULL, SIGINT, on_signal, s);
-	if (err >= 0)
-		err = sd_event_add_time(e, &look, CLOCK_MONOTONIC,
-					next_look(), 1, on_look, s);
-	if (err >= 0)
-		err = sd_event_source_set_enabled(look, SD_EVENT_ON);
-	return err;
+	sigemptyset(ret);
+	sigaddset(ret, SIGTERM);
+	sigaddset(ret, SIGINT);
 }
 
-int serve(struct server *s)
+void serve(struct server *s)
 {
-	sd_event *e = NULL;
-	int err = sd_event_default(&e);
+	bool over = false;
+	sigset_t ends;
 
-	if (err >= 0)
-		err = sources_add(e, s);
-	if (err >= 0)
-		err = sd_event_loop(e);
-	if (err < 0)
-		log_line(LOG_ERROR, "edmd: event loop: %s", strerror(-err));
+	serve_signals(&ends);
+	/* Otherwise a look may come 50 us late, where a cycle wakes. */
+	prctl(PR_SET_TIMERSLACK, 1);
+	while (!over) {
+		const int signal = wait_for_look(&ends);
+
+		if (signal < 0) {
+			look(s);
+			over = end_is_due(s);
+		} else if (s->end_by_ns == 0) {
+			begin_end(s, signal);
+		} else {
+			over = true;
+		}
+	}
 	report_notes(&s->loop->io);
 	report_events(&s->report, s->loop->status);
-	sd_event_unref(e);
-	return err;
 }

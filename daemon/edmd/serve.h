@@ -10,6 +10,8 @@
 
 #include "config.h"
 
+#include <signal.h>
+
 struct server {
 	struct loop *loop;
 	const struct machine_config *config;
@@ -20,9 +22,13 @@ struct server {
 /**
  * serve() - map programs, write the log and keep systemd's watchdog content,
  * until a signal comes; then wait until the machine stands.
- *
- * Return: 0 or a negative errno.
  */
-int serve(struct server *s);
+void serve(struct server *s);
+
+/**
+ * serve_signals() - those that end edmd.  serve() waits for them, so all
+ * threads block them.
+ */
+void serve_signals(sigset_t *ret);
 
 #endif /* EDMD_SERVE_H */

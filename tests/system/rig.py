@@ -305,6 +305,7 @@ class Machine:
         Machine.count += 1
         self.name = f"test{os.getpid()}-{Machine.count}"
         self.folder = pathlib.Path(folder)
+        self.folder.mkdir(exist_ok=True)
         self.store = self.folder / "store"
         self.config = self.folder / "machine.ini"
         self.config.write_text(
@@ -327,10 +328,13 @@ class Machine:
         self.start_jobs()
         self.client.status_where(lambda s: s.daemon == "ok")
 
+    def _command(self, program):
+        return [str(BUILD / program)]
+
     def _start(self, program, *args):
         with open(self.folder / f"{program}.log", "ab") as log:
             return subprocess.Popen(
-                [str(BUILD / program), *args], stdout=log, stderr=log
+                [*self._command(program), *args], stdout=log, stderr=log
             )
 
     def kill(self, which):

@@ -30,7 +30,8 @@ static double many_digits(const uint8_t *p, const uint8_t *end)
 	return (double)(int64_t)mantissa / nc_pow10[fraction];
 }
 
-const uint8_t *nc_number_any(const uint8_t *p, const uint8_t *end, double *ret)
+static const uint8_t *no_sign(const uint8_t *p, const uint8_t *end,
+			       double *ret)
 {
 	const uint8_t *first = p, *point = NULL;
 	uint64_t mantissa = 0;
@@ -47,5 +48,20 @@ const uint8_t *nc_number_any(const uint8_t *p, const uint8_t *end, double *ret)
 	else
 		*ret = (double)(int64_t)mantissa /
 		       nc_pow10[point ? p - point : 0];
+	return p;
+}
+
+const uint8_t *nc_number_any(const uint8_t *p, const uint8_t *end, double *ret)
+{
+	bool negative = false;
+
+	p = nc_skip_blanks(p, end);
+	if (p < end && (*p == '-' || *p == '+')) {
+		negative = *p == '-';
+		p = nc_skip_blanks(p + 1, end);
+	}
+	p = no_sign(p, end, ret);
+	if (p && negative)
+		*ret = -*ret;
 	return p;
 }

@@ -93,7 +93,7 @@ static inline const uint8_t *nc_number_short(const uint8_t *p,
 	return p + digits;
 }
 
-/** nc_number_any() - the same of any length. */
+/** nc_number_any() - nc_number() of any length, and with blanks or a +. */
 const uint8_t *nc_number_any(const uint8_t *p, const uint8_t *end, double *ret);
 
 /**
@@ -109,18 +109,12 @@ const uint8_t *nc_number_any(const uint8_t *p, const uint8_t *end, double *ret);
 static inline const uint8_t *nc_number(const uint8_t *p, const uint8_t *end,
 				       double *ret)
 {
-	const uint8_t *behind;
-	bool negative = false;
+	const bool negative = p < end && *p == '-';
+	const uint8_t *behind = nc_number_short(p + negative, end, ret);
 
-	p = nc_skip_blanks(p, end);
-	if (p < end && (*p == '-' || *p == '+')) {
-		negative = *p == '-';
-		p = nc_skip_blanks(p + 1, end);
-	}
-	behind = nc_number_short(p, end, ret);
 	if (!behind)
-		behind = nc_number_any(p, end, ret);
-	if (behind && negative)
+		return nc_number_any(p, end, ret);
+	if (negative)
 		*ret = -*ret;
 	return behind;
 }

@@ -6,6 +6,7 @@
 #include "pulse/strategy.h"
 
 #include "interp/angle.h"
+#include "interp/smaller.h"
 
 #include <errno.h>
 #include <math.h>
@@ -69,12 +70,12 @@ int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
 	const double a1 = p->to_mm[w->axis_a] - w->centre_a_mm;
 	const double b1 = p->to_mm[w->axis_b] - w->centre_b_mm;
 	const double r0 = hypot(a0, b0), r1 = hypot(a1, b1);
-	const double pulse = fmax(limits(p, w->axis_a)->pulse_mm,
-				  limits(p, w->axis_b)->pulse_mm);
+	const double pulse = larger(limits(p, w->axis_a)->pulse_mm,
+				    limits(p, w->axis_b)->pulse_mm);
+	const double share = smaller(RADIUS_SHARE * smaller(r0, r1),
+				     RADIUS_MOST * pulse);
 
-	if (!(fabs(r1 - r0) <= fmax(RADIUS_PULSES * pulse,
-				    fmin(RADIUS_SHARE * fmin(r0, r1),
-					 RADIUS_MOST * pulse))))
+	if (!(fabs(r1 - r0) <= larger(RADIUS_PULSES * pulse, share)))
 		return refuse_radius(r0, r1, diag);
 	if (r0 < pulse / 2) {
 		return interp_diag_say(diag, "an arc of radius %.6f mm; a "
@@ -104,7 +105,7 @@ static bool passes(const struct interp_arc *arc, int quarter)
 static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
 {
 	const struct interp_arc *arc = &p->arc;
-	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double r = larger(arc->r_mm, arc->r_mm + arc->dr_mm);
 
 	for (int q = 0; q < 4; q++) {
 		const enum interp_axis axis = q % 2 ? arc->axis_b : arc->axis_a;
@@ -112,8 +113,8 @@ static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
 		const double at = (q % 2 ? arc->b_mm : arc->a_mm) +
 				  (q < 2 ? r : -r);
 
-		if (passes(arc, q) && (at > l->travel_max_mm + l->pulse_mm ||
-				       at < l->travel_min_mm - l->pulse_mm))
+		if ((at > l->travel_max_mm + l->pulse_mm ||
+		     at < l->travel_min_mm - l->pulse_mm) && passes(arc, q))
 			return build_refuse_travel(p->o->machine, (int)axis, at,
 						   diag);
 	}
@@ -125,15 +126,15 @@ static void arc_length(struct build_arc *p)
 	const struct interp_arc *arc = &p->arc;
 	const double plane = fabs(arc->sweep) * (arc->r_mm + arc->dr_mm / 2);
 	double l2 = plane * plane;
-	double seconds = plane / fmin(limits(p, arc->axis_a)->v_max_mm_s,
-				      limits(p, arc->axis_b)->v_max_mm_s);
+	double seconds = plane / smaller(limits(p, arc->axis_a)->v_max_mm_s,
+					 limits(p, arc->axis_b)->v_max_mm_s);
 
 	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
 		const double d = p->to_mm[i] - p->from_mm[i];
 
-		if (i == arc->axis_a || i == arc->axis_b || d == 0)
+		if (d == 0 || i == arc->axis_a || i == arc->axis_b)
 			continue;
-		seconds = fmax(seconds, fabs(d) / limits(p, i)->v_max_mm_s);
+		seconds = larger(seconds, fabs(d) / limits(p, i)->v_max_mm_s);
 		if (i <= INTERP_Z)
 			l2 += d * d;
 	}
@@ -152,12 +153,12 @@ static int refuse_ticks(struct interp_diag *diag)
 static int ticks_simultaneous(struct build_arc *p, struct interp_diag *diag)
 {
 	const struct interp_arc *arc = &p->arc;
-	const double pulse = fmin(limits(p, arc->axis_a)->pulse_mm,
-				  limits(p, arc->axis_b)->pulse_mm);
-	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double pulse = smaller(limits(p, arc->axis_a)->pulse_mm,
+				     limits(p, arc->axis_b)->pulse_mm);
+	const double r = larger(arc->r_mm, arc->r_mm + arc->dr_mm);
 	const double plane = (fabs(arc->sweep) * r + fabs(arc->dr_mm)) / pulse;
 	const double other = (double)p->way.longest_sub / INTERP_SUB;
-	const double ticks = ceil(fmax(plane, other) * (1 + 1e-6)) + 1;
+	const double ticks = ceil(larger(plane, other) * (1 + 1e-6)) + 1;
 
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_ticks(diag);
@@ -298,8 +299,8 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 /* How far the chord is from the arc, at most. */
 static double chord_off_mm(const struct interp_arc *arc)
 {
-	const double r = fmax(arc->r_mm, arc->r_mm + arc->dr_mm);
-	const double half = fmin(fabs(arc->sweep), ANGLE_TURN) / 2;
+	const double r = larger(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double half = smaller(fabs(arc->sweep), ANGLE_TURN) / 2;
 
 	return r * (1 - cos(half));
 }
@@ -313,10 +314,10 @@ static double chord_off_mm(const struct interp_arc *arc)
 static int settle_spiral(struct build_arc *p, struct interp_diag *diag)
 {
 	const struct interp_arc *arc = &p->arc;
-	const double pulse = fmax(limits(p, arc->axis_a)->pulse_mm,
-				  limits(p, arc->axis_b)->pulse_mm);
+	const double pulse = larger(limits(p, arc->axis_a)->pulse_mm,
+				    limits(p, arc->axis_b)->pulse_mm);
 	const double r0 = arc->r_mm, r1 = arc->r_mm + arc->dr_mm;
-	const double least = fmin(r0, r1), off = fabs(arc->dr_mm);
+	const double least = smaller(r0, r1), off = fabs(arc->dr_mm);
 
 	if (off <= RADIUS_SPIRAL * least && off <= fabs(arc->sweep) * least)
 		return 0;

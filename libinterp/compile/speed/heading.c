@@ -2,6 +2,8 @@
 /* heading.c - the direction in which a segment begins, and in which it ends */
 #include "speed/heading.h"
 
+#include "interp/smaller.h"
+
 #include <math.h>
 
 static uint32_t columns_of(const struct interp_program *p, uint32_t axes)
@@ -112,15 +114,15 @@ static void tangent(const struct interp_program *p,
 static void bend(struct headings *h, const struct interp_arc *arc,
 		 double length_mm)
 {
-	double r = fmin(arc->r_mm, arc->r_mm + arc->dr_mm);
+	double r = smaller(arc->r_mm, arc->r_mm + arc->dr_mm);
 	double share = fabs(arc->sweep) *
-		       fmax(arc->r_mm, arc->r_mm + arc->dr_mm) / length_mm;
+		       larger(arc->r_mm, arc->r_mm + arc->dr_mm) / length_mm;
 
 	if (h->bend_mm > 0) {
-		const double most = fmax(share, h->share);
+		const double most = larger(share, h->share);
 
-		r = fmin(r * pow(most / share, 1.5),
-			 h->bend_mm * pow(most / h->share, 1.5));
+		r = smaller(r * pow(most / share, 1.5),
+			    h->bend_mm * pow(most / h->share, 1.5));
 		share = most;
 	}
 	h->bend_mm = r;

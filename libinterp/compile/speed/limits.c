@@ -162,7 +162,7 @@ static double round_bend(const struct pass *w, const struct headings *h,
 			continue;
 		a = smaller(a, w->a_mm_s2[k]);
 		j = smaller(j, w->j_mm_s3[k]);
-		top = fmax(top, w->v_mm_s[k]);
+		top = larger(top, w->v_mm_s[k]);
 	}
 	v = smaller(v_mm_s * h->share,
 		    pass_round_mm_s(r, INTERP_BEND_ACROSS * a,

@@ -205,14 +205,14 @@ static void look_around(const struct pass *w, uint32_t i, struct around *k)
 
 /* It is valid until @k is used again.  Return: false if there is no way to one
  * of the sides. */
-static bool bow_of(const struct pass *w, uint32_t i, struct around *k,
-		   uint32_t along, struct bow *ret)
+COLUMNS_INLINE bool bow_of(const struct pass *w, uint32_t i, struct around *k,
+			   uint32_t along, struct bow *ret, uint32_t n)
 {
 	struct chord *a = &k->chord[k->on], *b = &k->chord[!k->on];
 
 	if (!chord_is(a, k->behind, i, along))
-		pass_chord(w, k->behind, i, along, a);
-	pass_chord(w, i, k->ahead, along, b);
+		chord_by(w, k->behind, i, along, a, n);
+	chord_by(w, i, k->ahead, along, b, n);
 	k->on = !k->on;
 	*ret = (struct bow) { &a->h, &b->h, (a->mm + b->mm) / 2,
 			      a->per_mm + b->per_mm };
@@ -221,13 +221,13 @@ static bool bow_of(const struct pass *w, uint32_t i, struct around *k,
 
 /* The speed at which the axes can follow a bow.  @d is the change of each
  * column's rate. */
-static double bow_mm_s(struct pass *w, const struct look *l,
-		       const double d[INTERP_NAXES])
+COLUMNS_INLINE double bow_mm_s(struct pass *w, const struct look *l,
+			       const double d[INTERP_NAXES], uint32_t n)
 {
 	const struct bow *k = &l->bow;
 	double turn = 0, acc = INFINITY, jerk = INFINITY, v = INFINITY;
 
-	for (uint32_t j = 0; j < w->n; j++) {
+	for (uint32_t j = 0; j < n; j++) {
 		if (!(l->along >> j & 1)) {
 			/* A column that turns beside the path is limited by
 			 * itself. */
@@ -281,11 +281,11 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, uint32_t along,
 		l.window = &w->windows[at];
 		l.certain = false;
 		look_around(w, i, l.window);
-		if (!bow_of(w, i, l.window, along, &l.bow))
+		if (!bow_of(w, i, l.window, along, &l.bow, n))
 			break;
 		for (uint32_t j = 0; j < n; j++)
 			all[j] = fabs(l.bow.b->rate[j] - l.bow.a->rate[j]);
-		fast = bow_mm_s(w, &l, all);
+		fast = bow_mm_s(w, &l, all, n);
 		if (fast >= most)
 			return smaller(v, fast);
 		c.a = l.bow.a;
@@ -294,8 +294,8 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, uint32_t along,
 		change_of(w, sure, &c, n);
 		l.certain = true;
 		if (is_clear(&c, all, n))
-			return smaller(v, bow_mm_s(w, &l, all));
-		v = smaller(v, bow_mm_s(w, &l, c.d));
+			return smaller(v, bow_mm_s(w, &l, all, n));
+		v = smaller(v, bow_mm_s(w, &l, c.d, n));
 	}
 	return v;
 }
@@ -326,7 +326,7 @@ COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
 	    smaller(s[last].length_mm, s[i].length_mm) < w->near.mm) {
 		look_near(w, i);
 		if (change->a->along == change->b->along &&
-		    bow_of(w, i, &w->near, change->a->along, &k)) {
+		    bow_of(w, i, &w->near, change->a->along, &k, n)) {
 			struct change c = { .a = k.a, .b = k.b,
 					    .per_mm = k.per_mm };
 
@@ -434,7 +434,7 @@ COLUMNS_INLINE void line_rates(struct pass *w, uint32_t i,
 	double along;
 
 	look_around(w, i, k);
-	pass_chord(w, k->behind, k->ahead, h->along, &c);
+	chord_by(w, k->behind, k->ahead, h->along, &c, n);
 	around = c.mm > 0 ? c.h.rate : h->rate;
 	along = pass_along_tol(w, h->along);
 	ret->v_mm_s = INFINITY;
