@@ -27,6 +27,8 @@ struct compiler {
 					 * done */
 	sd_event_source *source;
 	struct compiler_request request;
+	char *text;			/* that was read */
+	struct interp_build *build;
 	struct compiler_result result;
 	compiler_done_fn done;
 	void *arg;
@@ -75,28 +77,53 @@ static int go_on(struct compiler *c)
 	const uint64_t n = sets->n < SHM_SETS_MAX ? sets->n : SHM_SETS_MAX;
 
 	for (uint64_t i = 0; i < n; i++)
-		interp_build_set(c->result.build, sets->set[i].cond,
+		interp_build_set(c->build, sets->set[i].cond,
 				 sets->set[i].field, sets->set[i].value);
-	return interp_build_from(c->result.build, &c->request.from,
+	return interp_build_from(c->build, &c->request.from,
 				 &c->result.entry, &c->result.diag);
 }
 
-/* It takes as long as the compiling, so it is done in the thread. */
-static int measure_wear(struct compiler *c)
+static int measure(struct compiler *c, const void *block, size_t bytes)
 {
-	const struct interp_build_about about = { .lines = c->result.lines };
-	const size_t bytes = interp_build_bytes(c->result.build);
-	void *block = malloc(bytes);
+	struct compiler_result *r = &c->result;
 	struct interp_program p;
-	int err;
+	int err = interp_program_map(&p, block, bytes);
 
-	if (!block)
-		return -ENOMEM;
-	interp_build_write(c->result.build, &about, block);
-	err = interp_program_map(&p, block, bytes);
-	if (err == 0)
-		err = interp_wear_measure(&c->result.wear, &p);
-	free(block);
+	if (err == 0 && c->request.wants_wear)
+		err = interp_wear_measure(&r->wear, &p);
+	if (err == 0 && c->request.wants_block)
+		err = eta_measure(&r->eta, &p);
+	return err;
+}
+
+/* For edmd, or for a measure alone. */
+static int block_make(struct compiler *c, void **ret, size_t bytes)
+{
+	if (c->request.wants_block)
+		return shm_program_begin(&c->result.block, ret,
+					 c->request.wants_block, bytes);
+	*ret = malloc(bytes);
+	return *ret ? 0 : -ENOMEM;
+}
+
+static int block_write(struct compiler *c)
+{
+	struct interp_build_about about = {
+		.lines = c->result.lines, .name = c->request.name,
+	};
+	const size_t bytes = interp_build_bytes(c->build);
+	void *block;
+	int err = block_make(c, &block, bytes);
+
+	if (err < 0)
+		return err;
+	memcpy(about.hash, c->request.sha256, sizeof(about.hash));
+	interp_build_write(c->build, &about, block);
+	err = measure(c, block, bytes);
+	if (c->request.wants_block)
+		shm_program_unmap(block, bytes);
+	else
+		free(block);
 	return err;
 }
 
@@ -124,14 +151,16 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	of.text.nc.electrodes = &c->request.electrodes;
 	memcpy(of.build.start_mm, c->request.start_mm,
 	       sizeof(of.build.start_mm));
-	c->result.build = interp_build_create(&of.build);
-	if (!c->result.build)
+	c->build = interp_build_create(&of.build);
+	if (!c->build)
 		return -ENOMEM;
-	err = interp_compile(&text, &of.text, c->result.build, &c->result.lines,
+	err = interp_compile(&text, &of.text, c->build, &c->result.lines,
 			     &c->result.diag);
 	if (err == 0 && c->request.goes_on)
 		err = go_on(c);
-	return err || !c->request.wants_wear ? err : measure_wear(c);
+	if (err || (!c->request.wants_wear && !c->request.wants_block))
+		return err;
+	return block_write(c);
 }
 
 /* The file of the dialect is read for each job, too. */
@@ -151,14 +180,54 @@ static int compiler_read(struct compiler *c, const struct config_tech *tech)
 	return err;
 }
 
-static void compiler_work(struct compiler *c)
+static bool is_the_text(const struct compiler_request *r)
 {
+	uint8_t hash[crypto_hash_sha256_BYTES];
+
+	if (!r->has_sha256)
+		return true;
+	crypto_hash_sha256(hash, (const uint8_t *)r->text, r->bytes);
+	return memcmp(hash, r->sha256, sizeof(hash)) == 0;
+}
+
+/* A long text is not read in the event loop. */
+static int take_text(struct compiler *c)
+{
+	struct compiler_request *r = &c->request;
+	int err;
+
+	if (r->text)
+		return is_the_text(r) ? 0 : -EILSEQ;
+	err = store_text_fetch(r->text_file, &c->text, &r->bytes);
+	r->text = c->text;
+	return err;
+}
+
+static void compile_and_keep(struct compiler *c)
+{
+	const struct compiler_request *r = &c->request;
+	const bool given = r->text != NULL;
 	struct config_tech tech;
 
+	c->result.err = take_text(c);
+	if (c->result.err < 0)
+		return;
 	c->result.err = read_tech(c, &tech);
 	if (c->result.err == 0)
 		c->result.err = compiler_read(c, &tech);
 	config_tech_free(&tech);
+	if (c->result.err == 0 && given && *r->text_file)
+		c->result.keep_err = store_text_keep(r->text_file, r->text,
+						     r->bytes);
+}
+
+/* To free the memory of a long program takes long, too. */
+static void compiler_work(struct compiler *c)
+{
+	c->result.block = -1;
+	compile_and_keep(c);
+	interp_build_destroy(c->build);
+	free(c->text);
 }
 
 void compiler_now(const struct compiler_request *request,
@@ -173,9 +242,11 @@ void compiler_now(const struct compiler_request *request,
 
 void compiler_forget(struct compiler_result *r)
 {
-	interp_build_destroy(r->build);
 	interp_wear_free(&r->wear);
-	r->build = NULL;
+	eta_fini(&r->eta);
+	if (r->block >= 0)
+		close(r->block);
+	r->block = -1;
 }
 
 static void *compiler_main(void *arg)
@@ -195,8 +266,7 @@ static void compiler_free(struct compiler *c)
 	sd_event_source_unref(c->source);
 	if (c->fd >= 0)
 		close(c->fd);
-	interp_build_destroy(c->result.build);
-	interp_wear_free(&c->result.wear);
+	compiler_forget(&c->result);
 	free(c);
 }
 
@@ -236,6 +306,7 @@ int compiler_start(struct compiler **ret, sd_event *event,
 	c->request = *request;
 	c->done = done;
 	c->arg = arg;
+	c->result.block = -1;
 	c->fd = eventfd(0, EFD_CLOEXEC);
 	err = c->fd < 0 ? -errno :
 	      sd_event_add_io(event, &c->source, c->fd, EPOLLIN, on_done, c);

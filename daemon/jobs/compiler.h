@@ -11,11 +11,13 @@
 #define JOBS_COMPILE_H
 
 #include "config.h"
+#include "eta.h"
 #include "interp/build_from.h"
 #include "interp/nc.h"
 #include "interp/wear.h"
 #include "shm.h"
 #include "store_electrode.h"
+#include "store_text.h"
 
 #include <systemd/sd-event.h>
 
@@ -27,14 +29,21 @@ struct compiler_request {
 	const char *name;			/* of its file: the dialect */
 	const char *text;			/* lent, until the end */
 	size_t bytes;
+	/* If not empty: a long text is read from this file, or, if it is given,
+	 * written to it when it is found good; store_text.h. */
+	char text_file[STORE_TEXT_PATH_MAX];
+	uint8_t sha256[32];			/* of the text, if that is
+						 * known ... */
+	bool has_sha256;			/* ... and to be compared */
 	/* If it goes on where another one was interrupted: start_mm is where
 	 * that one began, and these values were set in it. */
 	bool goes_on;
 	/* Copies: the table may change meanwhile. */
 	struct interp_electrode electrode[STORE_ELECTRODES_MAX];
 	struct interp_electrodes electrodes;	/* but for `at` */
-	bool wants_wear;		/* of its electrodes, for a text that is
-					 * not loaded */
+	bool wants_wear;		/* of its electrodes */
+	const char *wants_block;	/* to be loaded on this machine; NULL:
+					 * no */
 	const char *dialect;		/* NULL: by machine file and name */
 	double work_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* offset_request() */
 	uint32_t segs_max, executed_max;	/* 0: as many as a job may
@@ -51,9 +60,12 @@ struct compiler_note {
 	char text[200];
 };
 
-/* @build is lent; diag is filled if err is -EINVAL. */
+/* diag is filled if err is -EINVAL.  What is taken out of it has to be
+ * cleared. */
 struct compiler_result {
-	int err;
+	int err;			/* -EILSEQ: the text is not that of its
+					 * hash */
+	int keep_err;			/* why it could not be written */
 	struct interp_diag diag;
 	uint32_t lines;
 	struct compiler_note note[COMPILER_NOTES_MAX];
@@ -61,13 +73,14 @@ struct compiler_result {
 	char tech_sha256[65];		/* of the table, hex; "": none */
 	char tech_refusal[1024];		/* of the table or the
 					 * dialect; "": none */
-	struct interp_build *build;
 	struct interp_build_entry entry;	/* if it goes on */
-	struct interp_wear wear;	/* if it was wanted; then @build is used
-					 * up */
+	struct interp_wear wear;	/* if it was wanted */
+	int block;			/* the program, if it was wanted: what
+					 * shm_program_name() takes; -1 */
+	struct eta eta;			/* of it */
 };
 
-typedef void (*compiler_done_fn)(void *arg, const struct compiler_result *r);
+typedef void (*compiler_done_fn)(void *arg, struct compiler_result *r);
 
 /**
  * compiler_start() - begin; the event loop calls @done once.

@@ -214,9 +214,21 @@ static double cut_before_mm(struct jobs *j, uint32_t n)
 	return a.base.snap.far_mm - a.from_mm + a.way_mm;
 }
 
-static int take(struct jobs *j, uint32_t n)
+static void take_wear(struct jobs *j, uint32_t n, struct interp_wear *wear)
 {
 	struct electrode *e = &j->electrode;
+
+	electrode_forget(j);
+	e->wear = *wear;
+	memset(wear, 0, sizeof(*wear));
+	e->n = n;
+	e->now = -1;
+	e->cut_mm = cut_before_mm(j, n);
+}
+
+static int take(struct jobs *j, uint32_t n)
+{
+	struct interp_wear wear = { .nparts = 0 };
 	struct interp_program p;
 	const void *block;
 	size_t bytes;
@@ -228,14 +240,12 @@ static int take(struct jobs *j, uint32_t n)
 		return err;
 	err = interp_program_map(&p, block, bytes);
 	if (err == 0)
-		err = interp_wear_measure(&e->wear, &p);
+		err = interp_wear_measure(&wear, &p);
 	shm_program_unmap(block, bytes);
-	if (err < 0)
-		return err;
-	e->n = n;
-	e->now = -1;
-	e->cut_mm = cut_before_mm(j, n);
-	return 0;
+	if (err == 0)
+		take_wear(j, n, &wear);
+	interp_wear_free(&wear);
+	return err;
 }
 
 static double offset_of(const struct jobs *j, uint32_t number)
@@ -318,12 +328,11 @@ static void tell_load(struct jobs *j)
 	}
 }
 
-const char *electrode_load(struct jobs *j)
+const char *electrode_load(struct jobs *j, struct interp_wear *wear)
 {
 	const char *why;
 
-	if (take(j, j->queue.job.n) < 0)
-		return "its program cannot be read; start tries again";
+	take_wear(j, j->queue.job.n, wear);
 	why = j->queue.job.measures ? NULL :
 	      why_not(j, &j->electrode.wear, j->electrode.cut_mm);
 	if (!why && add_rows(j) < 0)

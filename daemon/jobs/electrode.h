@@ -58,9 +58,9 @@ void electrode_request(struct jobs *j, const struct store_job *job,
  *  Return: NULL; else why not, and what would be. */
 const char *electrode_check(struct jobs *j, const struct compiler_result *r);
 
-/** electrode_load() - the program of the loaded job is in shared memory: may it
- *  begin?  Return: NULL; else why not, and what would be. */
-const char *electrode_load(struct jobs *j);
+/** electrode_load() - the program of the loaded job has this @wear, which is
+ *  taken: may it begin?  Return: NULL; else why not, and what would be. */
+const char *electrode_load(struct jobs *j, struct interp_wear *wear);
 
 /** electrode_wait() - the job @n does not begin; nothing is tried again before
  *  the table changes. */

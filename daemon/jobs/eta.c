@@ -56,7 +56,16 @@ int eta_measure(struct eta *l, const struct interp_program *p)
 		return -ENOMEM;
 	l->nparts = parts(p, l->part);
 	l->cut_mm = l->part[n].cut_mm;
+	memcpy(l->start, p->head->start_pulses, sizeof(l->start));
 	return 0;
+}
+
+void eta_give(struct eta *l, struct eta *of, uint32_t n)
+{
+	eta_fini(l);
+	*l = *of;
+	l->n = n;
+	*of = (struct eta) { .n = 0 };
 }
 
 void eta_take(struct eta *l, const char *machine, uint32_t n)
@@ -69,11 +78,8 @@ void eta_take(struct eta *l, const char *machine, uint32_t n)
 		return;
 	eta_fini(l);
 	if (n && shm_program_open(&block, &bytes, machine, n) == 0) {
-		if (interp_program_map(&p, block, bytes) == 0) {
+		if (interp_program_map(&p, block, bytes) == 0)
 			eta_measure(l, &p);
-			memcpy(l->start, p.head->start_pulses,
-			       sizeof(l->start));
-		}
 		shm_program_unmap(block, bytes);
 	}
 	l->n = n;

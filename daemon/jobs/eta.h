@@ -30,6 +30,9 @@ struct eta {
 	int32_t start[INTERP_NAXES];	/* where it begins, pulses */
 };
 
+/** eta_give() - use @of for program @n; @of has nothing any more. */
+void eta_give(struct eta *l, struct eta *of, uint32_t n);
+
 /** eta_take() - use program @n of @machine, if it is not the one in use. */
 void eta_take(struct eta *l, const char *machine, uint32_t n);
 

@@ -14,6 +14,8 @@
 #include <string.h>
 
 #define AGAIN_US	1000000
+#define DAMAGED		"its text in the store is not the one that was sent: " \
+			"the disk damaged it; send it again"
 
 static const char *answer_text(int code)
 {
@@ -134,37 +136,23 @@ static void on_loaded(void *arg, int code)
 	}
 }
 
-static int load_write(struct jobs *j, const struct compiler_result *r)
+static int load_name(struct jobs *j, const struct compiler_result *r)
 {
-	struct queue *q = &j->queue;
-	struct interp_build_about about = {
-		.lines = r->lines, .name = q->job.name,
-	};
-	size_t bytes = interp_build_bytes(r->build);
-	void *block;
-	int err;
+	const uint32_t n = j->queue.job.n;
 
-	sodium_hex2bin(about.hash, sizeof(about.hash), q->job.sha256,
-		       strlen(q->job.sha256), NULL, NULL, NULL);
-	/* This is written before the object exists, so that a service that is
-	 * started after a kill finds the object and removes it. */
-	err = store_set_loaded(j->store, q->job.n, true);
-	if (err != 0)
+	/* This is written before the object has its name, so that a service
+	 * that is started after a kill finds the object and removes it. */
+	if (store_set_loaded(j->store, n, true) != 0)
 		return -EAGAIN;
-	err = shm_program_create(&block, j->machine, q->job.n, bytes);
-	if (err < 0)
-		return err;
-	interp_build_write(r->build, &about, block);
-	shm_program_unmap(block, bytes);
-	return 0;
+	return shm_program_name(r->block, j->machine, n);
 }
 
 /* Does it wait for an electrode?  Nothing is lost: it stays in the queue, or
  * interrupted. */
-static bool refused_electrode(struct jobs *j)
+static bool refused_electrode(struct jobs *j, struct interp_wear *wear)
 {
 	const struct store_job job = j->queue.job;
-	const char *why = electrode_load(j);
+	const char *why = electrode_load(j, wear);
 	static struct again a;
 
 	if (!why)
@@ -181,14 +169,14 @@ static bool refused_electrode(struct jobs *j)
 	return true;
 }
 
-static void load_ask(struct jobs *j, const struct compiler_result *r)
+static void load_ask(struct jobs *j, struct compiler_result *r)
 {
 	struct link_command c = {
 		.verb = SHM_LOAD, .arg = j->queue.job.n,
 		.answer = on_loaded, .answer_arg = j,
 	};
 	char reason[128];
-	int err = load_write(j, r);
+	int err = load_name(j, r);
 
 	randombytes_buf(&c.id, sizeof(c.id));
 	j->queue.load_id = c.id |= 1;
@@ -199,13 +187,14 @@ static void load_ask(struct jobs *j, const struct compiler_result *r)
 		return;
 	}
 	if (err < 0) {
-		snprintf(reason, sizeof(reason), "no room for its program: %s",
-			 strerror(-err));
+		snprintf(reason, sizeof(reason), "its program cannot be given "
+			 "to edmd: %s", strerror(-err));
 		load_refuse(j, j->queue.job, reason);
 		return;
 	}
-	if (refused_electrode(j))
+	if (refused_electrode(j, &r->wear))
 		return;
+	eta_give(&j->eta, &r->eta, j->queue.job.n);
 	j->queue.loading = true;
 	if (link_send(&j->link, &c, jobs_now_us()) < 0) {
 		j->queue.loading = false;
@@ -213,7 +202,7 @@ static void load_ask(struct jobs *j, const struct compiler_result *r)
 	}
 }
 
-static void on_compiled(void *arg, const struct compiler_result *r)
+static void on_compiled(void *arg, struct compiler_result *r)
 {
 	struct jobs *j = arg;
 	struct queue *q = &j->queue;
@@ -240,10 +229,27 @@ static void on_compiled(void *arg, const struct compiler_result *r)
 		queue_recount(j);
 		return;
 	}
-	snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s", job.name,
-		 r->diag.line, r->diag.column, r->diag.found, r->diag.wanted);
+	if (r->err == -EINVAL)
+		snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s",
+			 job.name, r->diag.line, r->diag.column, r->diag.found,
+			 r->diag.wanted);
+	else
+		snprintf(reason, sizeof(reason), "its program cannot be made: "
+			 "%s", strerror(-r->err));
 	load_refuse(j, job, r->tech_refusal[0] ? r->tech_refusal :
-		    r->err == -EINVAL ? reason : strerror(-r->err));
+		    r->err == -EILSEQ ? DAMAGED : reason);
+}
+
+/* A long one is read by the compiler's thread. */
+static int find_text(struct jobs *j, struct compiler_request *ret)
+{
+	struct queue *q = &j->queue;
+	int err;
+
+	q->next_text = NULL;
+	err = store_text_file(j->store, q->next.n, ret->text_file);
+	return err != -ENOENT ? err :
+	       store_text(j->store, q->next.n, &q->next_text, &ret->bytes);
 }
 
 void load_begin(struct jobs *j, int64_t now_us)
@@ -255,7 +261,7 @@ void load_begin(struct jobs *j, int64_t now_us)
 
 	if (!q->behind || store_head(j->store, &q->next) < 0)
 		return;
-	err = store_text(j->store, q->next.n, &q->next_text, &request.bytes);
+	err = find_text(j, &request);
 	if (err == 0) {
 		request.name = q->next.name;
 		/* What the service itself has written. */
@@ -267,6 +273,12 @@ void load_begin(struct jobs *j, int64_t now_us)
 	}
 	if (err == 0) {
 		electrode_request(j, &q->next, 0, &request);
+		request.wants_wear = true;
+		request.wants_block = j->machine;
+		request.has_sha256 =
+			sodium_hex2bin(request.sha256, sizeof(request.sha256),
+				       q->next.sha256, strlen(q->next.sha256),
+				       NULL, NULL, NULL) == 0;
 		err = offset_request(j, &q->next, &request);
 	}
 	if (err == 0) {
@@ -274,9 +286,7 @@ void load_begin(struct jobs *j, int64_t now_us)
 				     on_compiled, j);
 	}
 	if (err == -EILSEQ) {
-		load_refuse(j, q->next,
-			    "its text in the store is not the one that was "
-			    "sent: the disk damaged it; send it again");
+		load_refuse(j, q->next, DAMAGED);
 	} else if (err == -ESTALE) {
 		free(q->next_text);
 		q->next_text = NULL;

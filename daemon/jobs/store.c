@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* store.c - jobs, events and a few numbers: writing and asking */
 #include "store_sql.h"
+#include "store_text.h"
 #include "store_turn.h"
 
 #include "plain.h"
@@ -10,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char *const state_names[JOB_NSTATES] = {
 	[JOB_QUEUED]	= "queued",
@@ -56,7 +58,11 @@ static int insert_text(struct store *s, const struct store_new *j, int64_t n)
 
 	if (rc == SQLITE_OK) {
 		sqlite3_bind_int64(q, 1, n);
-		sqlite3_bind_blob64(q, 2, j->text, j->bytes, SQLITE_STATIC);
+		if (j->bytes > STORE_TEXT_INSIDE)
+			sqlite3_bind_int64(q, 2, 0);
+		else
+			sqlite3_bind_blob64(q, 2, j->text, j->bytes,
+					    SQLITE_STATIC);
 		rc = sqlite3_step(q);
 	}
 	sqlite3_finalize(q);
@@ -70,10 +76,27 @@ static int insert_begin(struct store *s, const struct store_new *j, int64_t n)
 			n, j->begin_at);
 }
 
+/* A long one has its file already, if it comes from an upload. */
+static int keep_long(struct store *s, const struct store_new *j)
+{
+	char path[STORE_TEXT_PATH_MAX];
+	struct stat st;
+
+	store_text_path(s, j->sha256, path);
+	if (j->bytes <= STORE_TEXT_INSIDE ||
+	    (stat(path, &st) == 0 && (size_t)st.st_size == j->bytes))
+		return 0;
+	return store_text_keep(path, j->text, j->bytes);
+}
+
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 {
 	int64_t n = 0;
-	int err = store_together(s, true);
+	int err = s->in_memory ? STORE_KEPT : keep_long(s, j);
+
+	if (err < 0)
+		return err;
+	err = store_together(s, true);
 
 	if (err == STORE_KEPT)
 		return s->err;
@@ -159,14 +182,20 @@ int store_loaded(struct store *s, struct store_job *ret)
 	return job_get(q, err, ret);
 }
 
+#define MAY_BE_NEXT	" AND state='queued' AND loaded=0"
+
 int store_head(struct store *s, struct store_job *ret)
 {
 	int err;
 	sqlite3_stmt *q = store_ask(s, &err, "SELECT " JOB_COLUMNS " FROM job "
-				    "WHERE state='queued' AND loaded=0 ORDER "
-				    "BY n=? DESC, " STORE_TURN " LIMIT 1", "i",
+				    "WHERE n=?" MAY_BE_NEXT, "i",
 				    store_number(s, "selected", 0));
 
+	if (!q && err == -ENOENT)
+		q = store_ask(s, &err, "SELECT " JOB_COLUMNS " FROM job "
+			      "INDEXED BY job_by_turn WHERE state IN ('queued',"
+			      " 'interrupted')" MAY_BE_NEXT " ORDER BY "
+			      STORE_IN_QUEUE " LIMIT 1", "");
 	return job_get(q, err, ret);
 }
 
@@ -204,11 +233,14 @@ static int text_get(sqlite3_stmt *q, char **ret, size_t *ret_bytes)
 
 int store_text(struct store *s, uint32_t n, char **ret, size_t *ret_bytes)
 {
+	char path[STORE_TEXT_PATH_MAX];
 	sqlite3_stmt *q;
 	int err;
 
 	if (s->in_memory)
 		return s->err;
+	if (store_text_file(s, n, path) == 0)
+		return store_text_fetch(path, ret, ret_bytes);
 	q = store_ask(s, &err, "SELECT text.text, sha256 FROM job JOIN text "
 		      "USING(n) WHERE n=?", "i", (int64_t)n);
 	if (!q)

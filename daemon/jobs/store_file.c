@@ -125,6 +125,9 @@ static const char *const steps[] = {
 	"DELETE FROM number WHERE key LIKE 'turn %';"
 	"CREATE INDEX job_by_turn ON job(coalesce(turn, n) - loaded * 1e15)"
 	" WHERE state IN ('queued', 'interrupted');",
+
+	/* Which jobs have a text of a file: store_text.c. */
+	"CREATE INDEX job_by_text ON job(sha256);",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

@@ -58,7 +58,6 @@
 			"kind='note' ORDER BY event.rowid LIMIT ?2))"
 
 /* The place of a job in a list; a smaller number is earlier. */
-#define IN_QUEUE	STORE_TURN " - loaded * 1e15"
 #define IN_HISTORY	"-ended_us, -n"
 
 /* SQLite finds a page by the index of its order, if it is told where the page
@@ -67,9 +66,9 @@
  * it. */
 #define LOADED		"state IN ('ready', 'running', 'held', 'fault') AND " \
 			"loaded=1"
-#define WAITS		"state IN ('queued', 'interrupted') AND " IN_QUEUE \
-			" >= coalesce((SELECT " IN_QUEUE " FROM job " \
-			"WHERE id=?2), -9e18)"
+#define WAITS		"state IN ('queued', 'interrupted') AND " \
+			STORE_IN_QUEUE " >= coalesce((SELECT " STORE_IN_QUEUE \
+			" FROM job WHERE id=?2), -9e18)"
 #define HAS_ENDED	"+state IN ('done', 'stopped', 'fault') AND " \
 			"-ended_us >= coalesce((SELECT -ended_us FROM job " \
 			"WHERE id=?2), -9e18)"
@@ -97,9 +96,10 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 				 "si", id, (int64_t)rows);
 	case STORE_QUEUE:
 		return store_ask(s, ret_err, JOBS_SQL("",
-				 SOME("job", LOADED, IN_QUEUE) " UNION ALL "
+				 SOME("job", LOADED, STORE_IN_QUEUE)
+				 " UNION ALL "
 				 SOME("job INDEXED BY job_by_turn", WAITS,
-				      IN_QUEUE), IN_QUEUE),
+				      STORE_IN_QUEUE), STORE_IN_QUEUE),
 				 "is", (int64_t)rows, id);
 	case STORE_EVENTS:
 		return store_ask(s, ret_err,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* store_open.c - opens and closes the store; its size, and what it forgets */
 #include "store_sql.h"
+#include "store_text.h"
 
 #include "jobs_log.h"
 
@@ -79,6 +80,8 @@ static int store_init(struct store *s, const char *dir, const char *machine)
 	if (err < 0)
 		return err;
 	err = store_file_open(s, &s->db);
+	if (err == 0)
+		store_text_sweep(s);
 	if (err == 0 || err == -EPROTO || err == -EACCES)
 		return err;
 	/* The disk does not accept it: begin with what can be read. */
@@ -135,7 +138,8 @@ static int64_t file_bytes(const char *path, const char *suffix)
 void store_measure(struct store *s, struct store_size *ret)
 {
 	*ret = (struct store_size) {
-		.bytes = file_bytes(s->path, "") + file_bytes(s->path, "-wal"),
+		.bytes = file_bytes(s->path, "") + file_bytes(s->path, "-wal") +
+			 store_text_bytes(s),
 		.jobs = (uint32_t)store_number_of(s, 0, "SELECT count(*) FROM "
 						  "job", ""),
 		.kept = s->kept.n, .dropped = s->dropped,
@@ -144,6 +148,30 @@ void store_measure(struct store *s, struct store_size *ret)
 }
 
 /* The last 20 jobs stay, so that a clock that jumped does not remove all. */
+static const char old_jobs[] =
+	"SELECT json_group_array(n), group_concat(sha256, ' ') FROM (SELECT n, "
+	"sha256 FROM job WHERE state IN ('done', 'stopped', 'fault') AND "
+	"loaded=0 AND n NOT IN (SELECT n FROM job ORDER BY n DESC LIMIT 20) "
+	"AND (ended_us<?1 OR n NOT IN (SELECT n FROM job WHERE state IN "
+	"('done', 'stopped', 'fault') ORDER BY n DESC LIMIT ?2)) "
+	"ORDER BY n LIMIT 10)";
+
+/* They go with their texts. */
+static void retain_jobs(struct store *s, int64_t jobs, int64_t before)
+{
+	sqlite3_stmt *q = store_ask(s, NULL, old_jobs, "ii", before,
+				    jobs ? jobs : -1);
+	const char *texts = q ? (const char *)sqlite3_column_text(q, 1) : NULL;
+
+	if (texts) {
+		store_do(s, STORE_MAY_GO, "DELETE FROM job WHERE n IN (SELECT "
+			 "value FROM json_each(?))", "s",
+			 sqlite3_column_text(q, 0));
+		store_text_drop(s, texts);
+	}
+	sqlite3_finalize(q);
+}
+
 void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us)
 {
 	const int64_t before = days ? now_us - days * DAY_US : 0;
@@ -152,12 +180,7 @@ void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us)
 	    llabs(now_us - s->retained_us) < RETAIN_US)
 		return;
 	s->retained_us = now_us;
-	store_do(s, STORE_MAY_GO, "DELETE FROM job WHERE n IN (SELECT n FROM "
-		 "job WHERE state IN ('done', 'stopped', 'fault') AND loaded=0 "
-		 "AND n NOT IN (SELECT n FROM job ORDER BY n DESC LIMIT 20) "
-		 "AND (ended_us<?1 OR n NOT IN (SELECT n FROM job WHERE state "
-		 "IN ('done', 'stopped', 'fault') ORDER BY n DESC LIMIT ?2)) "
-		 "ORDER BY n LIMIT 10)", "ii", before, jobs ? jobs : -1);
+	retain_jobs(s, jobs, before);
 	store_do(s, STORE_MAY_GO,
 		 "DELETE FROM event WHERE rowid IN (SELECT rowid FROM event "
 		 "WHERE utime<? ORDER BY rowid LIMIT 100)",

@@ -3,9 +3,11 @@
 #include "store_turn.h"
 #include "plain.h"
 #include "store_sql.h"
+#include "store_text.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define LINE_MAX	256		/* of a line that is shown, with its
 					 * NUL */
@@ -82,6 +84,11 @@ static char *as_json(struct store *s, uint32_t first, const char *text)
 /* A long text would be read as a whole; that would take too long. */
 static bool is_short(struct store *s, uint32_t n)
 {
+	char path[STORE_TEXT_PATH_MAX];
+	struct stat st;
+
+	if (store_text_file(s, n, path) == 0)
+		return stat(path, &st) == 0 && st.st_size <= SHORT_MAX;
 	return store_number_of(s, INT64_MAX, "SELECT length(text) FROM text "
 			       "WHERE n=?", "i", (int64_t)n) <= SHORT_MAX;
 }

@@ -16,6 +16,10 @@ struct store;
 /* The order of the queue, in SQL. */
 #define STORE_TURN	"coalesce(turn, n)"
 
+/* The place of a job in the queue, as index job_by_turn has it; a smaller
+ * number is earlier. */
+#define STORE_IN_QUEUE	STORE_TURN " - loaded * 1e15"
+
 #define STORE_LINES	200		/* at once */
 
 /** store_move() - job @n changes places with the one before or behind it.

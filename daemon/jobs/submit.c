@@ -129,6 +129,15 @@ static void refuse_degraded(struct jobs *j, struct upload *up)
 	answer_end(j, up, EX_IOERR, reason, NULL);
 }
 
+static void refuse_unkept(struct jobs *j, struct upload *up, int err)
+{
+	char reason[240];
+
+	snprintf(reason, sizeof(reason), "its text cannot be stored: %s; make "
+		 "room, then send it again", strerror(-err));
+	answer_end(j, up, EX_IOERR, reason, NULL);
+}
+
 static void accept_text(struct jobs *j, struct upload *up,
 			const struct compiler_result *r)
 {
@@ -196,7 +205,7 @@ static bool answer_known(struct jobs *j, const struct jobs_lcm_chunk *c)
 
 static void check_next(struct jobs *j);
 
-static void on_checked(void *arg, const struct compiler_result *r)
+static void on_checked(void *arg, struct compiler_result *r)
 {
 	struct check *c = arg;
 	struct jobs *j = c->jobs;
@@ -210,6 +219,9 @@ static void on_checked(void *arg, const struct compiler_result *r)
 		answer_end(j, up, EX_CONFIG, r->tech_refusal, NULL);
 	else if (r->err == -EINVAL)
 		refuse_text(j, up, &r->diag);
+	else if (r->err == -EILSEQ)
+		answer_end(j, up, EX_PROTOCOL, "the text does not fit its "
+			   "SHA-256; send the job again", NULL);
 	else if (r->err < 0)
 		answer_end(j, up, EX_SOFTWARE, strerror(-r->err), NULL);
 	else if ((why = electrode_check(j, r)))
@@ -217,6 +229,8 @@ static void on_checked(void *arg, const struct compiler_result *r)
 	else if (store_find(j->store, up->id, &job) == 0)
 		answer_end(j, up, EX_TEMPFAIL, "another client sends this job "
 			   "id too; try again", NULL);
+	else if (r->keep_err < 0)
+		refuse_unkept(j, up, r->keep_err);
 	else
 		accept_text(j, up, r);
 	check_next(j);
@@ -237,11 +251,16 @@ static void check_begin(struct jobs *j, struct upload *up)
 {
 	struct compiler_request request = {
 		.config = j->config, .name = up->name,
-		.text = up->text, .bytes = up->bytes,
+		.text = up->text, .bytes = up->bytes, .has_sha256 = true,
 	};
 	struct check *c = malloc(sizeof(*c));
 	int err = c ? 0 : -ENOMEM;
+	char hex[65];
 
+	memcpy(request.sha256, up->sha256, sizeof(request.sha256));
+	hash_hex(hex, up->sha256);
+	if (up->bytes > STORE_TEXT_INSIDE)
+		store_text_path(j->store, hex, request.text_file);
 	start_place(j, request.start_mm);
 	if (up->from_line > 0 || up->from_mm > 0)
 		again_begin_at(j, up->from_line, up->from_mm, &request);

@@ -216,28 +216,6 @@ static void upload_put(struct upload *up, const struct jobs_lcm_chunk *c,
 		memcpy(up->text + c->offset, c->data, c->size);
 }
 
-static bool upload_hash_fits(const struct upload *up)
-{
-	uint8_t hash[crypto_hash_sha256_BYTES];
-
-	crypto_hash_sha256(hash, (const unsigned char *)up->text, up->bytes);
-	return memcmp(hash, up->sha256, sizeof(hash)) == 0;
-}
-
-static void upload_finish(struct uploads *u, struct upload *up,
-			  struct upload **ret, struct upload_answer *a)
-{
-	if (upload_hash_fits(up)) {
-		up->state = UPLOAD_WHOLE;
-		snprintf(a->reason, sizeof(a->reason), "whole; compiling");
-		*ret = up;
-		return;
-	}
-	refuse(a, EX_PROTOCOL, "the text does not fit its SHA-256; send the "
-	       "job again");
-	upload_forget(u, up, a->code, a->reason, NULL);
-}
-
 void upload_take(struct uploads *u, const struct jobs_lcm_chunk *c,
 		 int64_t now_us, struct upload **ret, struct upload_answer *a)
 {
@@ -263,8 +241,11 @@ void upload_take(struct uploads *u, const struct jobs_lcm_chunk *c,
 	upload_put(up, c, now_us);
 	snprintf(a->reason, sizeof(a->reason), "%u of %u chunks", up->have,
 		 up->chunks);
-	if (up->state == UPLOAD_FILLING && up->have == up->chunks)
-		upload_finish(u, up, ret, a);
+	if (up->state == UPLOAD_FILLING && up->have == up->chunks) {
+		up->state = UPLOAD_WHOLE;
+		snprintf(a->reason, sizeof(a->reason), "whole; compiling");
+		*ret = up;
+	}
 }
 
 void upload_forget(struct uploads *u, struct upload *up, int code,

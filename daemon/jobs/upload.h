@@ -3,7 +3,8 @@
  * upload.h - put the text of a job together from chunks
  *
  * Chunks come in any order, twice, or never. An upload is whole when every
- * chunk is there and the text fits its hash; before that it has no effect. The
+ * chunk is there; before that it has no effect. Whether the text fits its hash
+ * is looked at before it is compiled (compiler.h), because that takes long. The
  * decision about an upload is remembered for a while, for a client that missed
  * the answer and repeats a chunk.
  *

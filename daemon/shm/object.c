@@ -26,12 +26,13 @@ typedef uint64_t __attribute__((may_alias)) word_t;
  * change it. */
 static bool maker_is_trusted(uid_t uid, const char *service)
 {
-	const struct passwd *made;
+	struct passwd entry, *made = NULL;
+	char names[4096];
 
 	if (uid == 0 || uid == geteuid())
 		return true;
-	made = getpwnam(service);
-	return made && uid == made->pw_uid;
+	return getpwnam_r(service, &entry, names, sizeof(names), &made) == 0 &&
+	       made && uid == made->pw_uid;
 }
 
 static const char *folder_of(const char *what)

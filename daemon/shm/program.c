@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,11 +25,18 @@ static int program_path(char path[OBJECT_PATH_MAX], const char *machine,
 	return object_path(path, machine, what);
 }
 
-int shm_program_create(void **ret, const char *machine, uint32_t n,
-		       size_t bytes)
+/* The folder of @path, which is changed. */
+static const char *folder_of(char *path)
+{
+	*strrchr(path, '/') = '\0';
+	return path;
+}
+
+int shm_program_begin(int *ret_fd, void **ret, const char *machine,
+		      size_t bytes)
 {
 	char path[OBJECT_PATH_MAX];
-	int err = program_path(path, machine, n);
+	int err = program_path(path, machine, 1);
 	int fd;
 
 	if (err < 0)
@@ -37,20 +45,48 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 		return -EINVAL;
 	if (bytes > SHM_PROGRAM_MAX)
 		return -EFBIG;
-	/* Make a new file: the old one must not change for those who have it
-	 * mapped. */
-	if (unlink(path) < 0 && errno != ENOENT)
-		return -errno;
-	fd = open(path, O_RDWR | O_CREAT | O_EXCL | OBJECT_FLAGS, 0640);
+	fd = open(folder_of(path), O_RDWR | O_TMPFILE | O_CLOEXEC, 0640);
 	if (fd < 0)
 		return -errno;
-
 	err = object_grow(fd, bytes, 0640);
 	if (err == 0)
 		err = object_map(ret, fd, bytes, true);
+	if (err < 0)
+		close(fd);
+	else
+		*ret_fd = fd;
+	return err;
+}
+
+int shm_program_name(int fd, const char *machine, uint32_t n)
+{
+	char path[OBJECT_PATH_MAX], of[32];
+	int err = program_path(path, machine, n);
+
+	if (err < 0)
+		return err;
+	/* The old one must not change for those who have it mapped. */
+	if (unlink(path) < 0 && errno != ENOENT)
+		return -errno;
+	snprintf(of, sizeof(of), "/proc/self/fd/%d", fd);
+	return linkat(AT_FDCWD, of, AT_FDCWD, path, AT_SYMLINK_FOLLOW) < 0 ?
+	       -errno : 0;
+}
+
+int shm_program_create(void **ret, const char *machine, uint32_t n,
+		       size_t bytes)
+{
+	int fd, err;
+
+	if (n == 0)
+		return -EINVAL;
+	err = shm_program_begin(&fd, ret, machine, bytes);
+	if (err < 0)
+		return err;
+	err = shm_program_name(fd, machine, n);
 	close(fd);
 	if (err < 0)
-		unlink(path);
+		shm_program_unmap(*ret, bytes);
 	return err;
 }
 

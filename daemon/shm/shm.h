@@ -497,6 +497,18 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 		       size_t bytes);
 
 /**
+ * shm_program_begin() - make one that has no name yet, @bytes to fill.
+ *
+ * If nobody names it, it is gone when @ret_fd is closed and it is unmapped, or
+ * with the process.  Return: as shm_program_create().  Any thread.
+ */
+int shm_program_begin(int *ret_fd, void **ret, const char *machine,
+		      size_t bytes);
+
+/** shm_program_name() - it is edmd.<machine>.program.<n> now, as it is. */
+int shm_program_name(int fd, const char *machine, uint32_t n);
+
+/**
  * shm_program_open() - a private copy of it, which nobody else can change.
  *
  * Return: 0; -ENOENT; -EPROTO if it was cut short meanwhile, or has holes;

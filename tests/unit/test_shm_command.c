@@ -163,6 +163,31 @@ static void a_program_is_read_as_written_and_kept_while_mapped(void **state)
 	assert_int_equal(shm_program_open(&old, &bytes, machine, 5), -ENOENT);
 }
 
+static void a_program_is_there_when_it_is_named(void **state)
+{
+	const void *at;
+	void *block;
+	size_t bytes;
+	int fd;
+
+	(void)state;
+	assert_int_equal(shm_program_begin(&fd, &block, machine, 0), -EINVAL);
+	assert_int_equal(shm_program_begin(&fd, &block, machine,
+					   SHM_PROGRAM_MAX + 1), -EFBIG);
+	assert_int_equal(shm_program_begin(&fd, &block, machine, 5000), 0);
+	memset(block, 0xa5, 5000);
+	shm_program_unmap(block, 5000);
+	assert_int_equal(shm_program_open(&at, &bytes, machine, 7), -ENOENT);
+	assert_int_equal(shm_program_name(fd, machine, 0), -EINVAL);
+	assert_int_equal(shm_program_name(fd, machine, 7), 0);
+	close(fd);
+	assert_int_equal(shm_program_open(&at, &bytes, machine, 7), 0);
+	assert_int_equal(bytes, 5000);
+	assert_int_equal(((const uint8_t *)at)[4999], 0xa5);
+	shm_program_unmap(at, bytes);
+	shm_program_remove(machine, 7);
+}
+
 /* A few bytes of a folder's own, which would be gigabytes of edmd's memory. */
 static void a_program_with_holes_is_not_read(void **state)
 {
@@ -191,6 +216,7 @@ int main(void)
 		cmocka_unit_test(who_sends_no_command_is_cut_off),
 		cmocka_unit_test(the_last_ids_are_remembered_through_a_restart),
 		cmocka_unit_test(a_program_is_read_as_written_and_kept_while_mapped),
+		cmocka_unit_test(a_program_is_there_when_it_is_named),
 		cmocka_unit_test(a_program_with_holes_is_not_read),
 	};
 

@@ -6,6 +6,7 @@
 #include "store.h"
 #include "store_sql.h"
 #include "store_tally.h"
+#include "store_text.h"
 #include "store_turn.h"
 #include "store_trust.h"
 #include "disk_help.h"
@@ -13,10 +14,13 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <sodium.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -291,26 +295,46 @@ static void a_host_that_dies_at_any_write_leaves_a_store(void **state)
 
 /* -- Other rows ----------------------------------------------------------- */
 
-static void the_text_is_written_twice_at_most(void **state)
+/* A job from its arrival to its end. */
+static void live_one(struct store *s, const char *id, const char *text,
+		     size_t bytes)
 {
-	const size_t bytes = 4 << 20;
-	char *text = calloc(1, bytes);
-	struct store *s = open_store();
+	struct store_job j;
 	uint32_t n;
 
-	(void)state;
-	memset(text, ' ', bytes);
-	disk.bytes = 0;
-	assert_int_equal(add_text(s, "large", text, bytes, &n), 0);
+	assert_int_equal(add_text(s, id, text, bytes, &n), 0);
+	assert_int_equal(store_head(s, &j), 0);
 	store_set_loaded(s, n, true);
 	for (int i = 0; i < 20; i++)
 		store_set_state(s, n, i % 2 ? JOB_HELD : JOB_RUNNING);
 	end(s, n, JOB_DONE);
+}
+
+/* Bytes that are written to the database for a job of a text of @bytes. */
+static int64_t life_bytes(const char *id, size_t bytes)
+{
+	char *text = calloc(1, bytes);
+	struct store *s = open_store();
+
+	memset(text, ' ', bytes);
+	disk.bytes = 0;
+	live_one(s, id, text, bytes);
 	store_close(s);
-	print_message("%.3f times the text\n",
-		      (double)disk.bytes / (double)bytes);
-	assert_true(disk.bytes < (int64_t)bytes * 21 / 10);
 	free(text);
+	return disk.bytes;
+}
+
+static void a_long_text_costs_the_database_nothing(void **state)
+{
+	int64_t one, ten;
+
+	(void)state;
+	store_close(open_store());
+	one = life_bytes("one", 1 << 20);
+	ten = life_bytes("ten", 10 << 20);
+	print_message("%lld bytes for 1 MiB, %lld for 10\n", (long long)one,
+		      (long long)ten);
+	assert_true(ten < one + one / 10);
 }
 
 /* docs/power.md: with CHECKPOINT_DAY_BYTES, 100 MB a day. */
@@ -574,6 +598,45 @@ static long page_steps(struct store *s, enum store_list what, const char *id)
 	return steps;
 }
 
+/* @count jobs, half of them done and half in the queue. */
+static void jobs_by_hand(int count)
+{
+	char sql[400];
+
+	snprintf(sql, sizeof(sql), "DELETE FROM job; WITH RECURSIVE i(n) AS "
+		 "(SELECT 0 UNION ALL SELECT n + 1 FROM i WHERE n < %d) INSERT "
+		 "INTO job(id, name, sha256, lines, hold, submitted_us, state, "
+		 "ended_us) SELECT 'job-' || n, 'part', n, 1, 0, 1, iif(n < %d,"
+		 "'done', 'queued'), n FROM i;", count - 1, count / 2);
+	by_hand(sql);
+}
+
+/* Instructions of SQLite for the life of a job beside @count others. */
+static long life_steps(int count)
+{
+	struct store *s;
+	long steps = 0;
+
+	store_close(open_store());
+	jobs_by_hand(count);
+	s = open_store();
+	sqlite3_progress_handler(s->db, 1, count_step, &steps);
+	live_one(s, "new", "G1 X1\n", 6);
+	sqlite3_progress_handler(s->db, 0, NULL, NULL);
+	store_close(s);
+	return steps;
+}
+
+static void a_job_costs_the_same_beside_ten_times_as_many(void **state)
+{
+	const long few = life_steps(1000), many = life_steps(10000);
+
+	(void)state;
+	print_message("%ld steps beside 1000 jobs, %ld beside 10000\n", few,
+		      many);
+	assert_true(many < few + few / 10);
+}
+
 /* A page of a queue of 10,000 jobs, of which one was moved, and one of the
  * history behind as many. */
 static void a_page_costs_what_is_in_it(void **state)
@@ -585,11 +648,8 @@ static void a_page_costs_what_is_in_it(void **state)
 
 	(void)state;
 	store_close(s);
-	by_hand("WITH RECURSIVE i(n) AS (SELECT 0 UNION ALL SELECT n + 1 FROM i"
-		" WHERE n < 19999) INSERT INTO job(id, name, sha256, lines, "
-		"hold, submitted_us, state, ended_us) SELECT 'job-' || n, "
-		"'part', '', 1, 0, 1, iif(n < 10000, 'done', 'queued'), n FROM "
-		"i; UPDATE job SET turn=15000 WHERE id='job-15001';");
+	jobs_by_hand(20000);
+	by_hand("UPDATE job SET turn=15000 WHERE id='job-15001'");
 	s = open_store();
 	for (size_t i = 0; i < sizeof(behind) / sizeof(*behind); i++) {
 		const int n = behind[i];
@@ -695,6 +755,237 @@ static void a_text_of_other_bytes_is_not_cut(void **state)
 	store_close(s);
 }
 
+/* -- Long texts ------------------------------------------------------------ */
+
+#define LONG	(3 * STORE_TEXT_INSIDE)
+
+/* A store with one job of a long text.  @path: its file. */
+static struct store *long_job(uint32_t *n, char path[STORE_TEXT_PATH_MAX])
+{
+	struct store *s = open_store();
+	char *text = calloc(1, LONG);
+
+	memset(text, ' ', LONG);
+	assert_int_equal(add_text(s, "long", text, LONG, n), 0);
+	assert_int_equal(store_text_file(s, *n, path), 0);
+	free(text);
+	return s;
+}
+
+static int fetch(struct store *s, uint32_t n)
+{
+	size_t bytes = 0;
+	char *text = NULL;
+	const int err = store_text(s, n, &text, &bytes);
+
+	if (err == 0)
+		assert_int_equal(bytes, LONG);
+	else
+		assert_null(text);
+	free(text);
+	return err;
+}
+
+/* Cut off, with another byte, longer, empty, gone: it is never read. */
+static void a_long_text_that_was_damaged_is_not_cut(void **state)
+{
+	static const char *const how[] = {
+		"truncate -s -1 %s", "truncate -s +1 %s", "truncate -s 0 %s",
+		"printf x | dd of=%s bs=1 seek=99999 conv=notrunc status=none",
+		"rm %s",
+	};
+	char path[STORE_TEXT_PATH_MAX], line[2 * STORE_TEXT_PATH_MAX];
+	uint32_t n;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(how) / sizeof(*how); i++) {
+		struct store *s = long_job(&n, path);
+
+		assert_int_equal(fetch(s, n), 0);
+		snprintf(line, sizeof(line), how[i], path);
+		assert_int_equal(system(line), 0);
+		assert_int_equal(fetch(s, n), -EILSEQ);
+		store_close(s);
+		in_dir("rm -rf %s/*");
+	}
+}
+
+/* Neither a job without a text, nor a part of a text. */
+static void a_long_text_that_does_not_fit_is_no_job(void **state)
+{
+	const struct rlimit small = { LONG / 2, RLIM_INFINITY };
+	struct store *s = open_store();
+	char *text = calloc(1, LONG);
+	struct rlimit was;
+	uint32_t n;
+
+	(void)state;
+	signal(SIGXFSZ, SIG_IGN);
+	assert_int_equal(getrlimit(RLIMIT_FSIZE, &was), 0);
+	assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+	assert_true(add_text(s, "long", text, LONG, &n) < 0);
+	assert_int_equal(setrlimit(RLIMIT_FSIZE, &was), 0);
+	assert_int_equal(state_in(s, "long"), JOB_NSTATES);
+	assert_int_equal(store_text_bytes(s), 0);
+	assert_int_equal(add_text(s, "long", text, LONG, &n), 0);
+	assert_int_equal(fetch(s, n), 0);
+	store_close(s);
+	free(text);
+}
+
+static void make_old(const char *path)
+{
+	const struct timespec then[2] = { { 1000, 0 }, { 1000, 0 } };
+
+	assert_int_equal(utimensat(AT_FDCWD, path, then, 0), 0);
+}
+
+/* A file stays as long as a job has it, or may come to have it. */
+static void a_long_text_goes_with_its_last_job(void **state)
+{
+	char path[STORE_TEXT_PATH_MAX], other[STORE_TEXT_PATH_MAX];
+	struct store *s;
+	uint32_t n;
+
+	(void)state;
+	s = long_job(&n, path);
+	store_text_path(s, "00", other);
+	assert_int_equal(store_text_keep(other, "G1", 2), 0);
+	make_old(path);
+	store_text_sweep(s);
+	assert_int_equal(access(path, F_OK), 0);
+	assert_int_equal(access(other, F_OK), 0);
+	store_close(s);
+	make_old(other);
+	s = open_store();
+	assert_int_equal(access(other, F_OK), -1);
+	assert_int_equal(fetch(s, n), 0);
+	store_close(s);
+	by_hand("DELETE FROM job");
+	s = open_store();
+	assert_int_equal(access(path, F_OK), -1);
+	store_close(s);
+}
+
+/* A database that was set aside may have the job of it. */
+static void a_long_text_stays_beside_a_damaged_database(void **state)
+{
+	char path[STORE_TEXT_PATH_MAX];
+	struct store *s;
+	uint32_t n;
+
+	(void)state;
+	s = long_job(&n, path);
+	store_close(s);
+	make_old(path);
+	in_dir("rm -f %s/m.db*");
+	in_dir("touch %s/m.db.damaged-20260101-000000");
+	store_close(open_store());
+	assert_int_equal(access(path, F_OK), 0);
+	in_dir("rm %s/m.db.damaged-*");
+	store_close(open_store());
+	assert_int_equal(access(path, F_OK), -1);
+}
+
+static void retain_often(struct store *s, int64_t jobs)
+{
+	for (int64_t i = 1; i < 10; i++)
+		store_retain(s, jobs, 0, 400 * INT64_C(86400000000) +
+			     (i + jobs) * 20000000);
+}
+
+/* Two jobs have it, and the first to go leaves it to the other. */
+static void two_jobs_of_the_same_long_text_share_it(void **state)
+{
+	char path[STORE_TEXT_PATH_MAX], *text = calloc(1, LONG);
+	struct store *s;
+	uint32_t n, other;
+
+	(void)state;
+	s = long_job(&n, path);
+	end(s, n, JOB_DONE);
+	many_jobs(s, 10);
+	memset(text, ' ', LONG);
+	assert_int_equal(add_text(s, "too", text, LONG, &other), 0);
+	free(text);
+	end(s, other, JOB_DONE);
+	add(s, "queued", &n);
+	for (int i = 0; i < 25; i++) {
+		char id[32];
+
+		snprintf(id, sizeof(id), "later-%d", i);
+		assert_int_equal(add(s, id, &n), 0);
+		end(s, n, JOB_DONE);
+	}
+	retain_often(s, 30);
+	assert_int_equal(state_in(s, "long"), JOB_NSTATES);
+	assert_int_equal(state_in(s, "too"), JOB_DONE);
+	assert_int_equal(fetch(s, other), 0);
+	retain_often(s, 20);
+	assert_int_equal(state_in(s, "too"), JOB_NSTATES);
+	assert_int_equal(access(path, F_OK), -1);
+	store_close(s);
+}
+
+#define KILLS		20
+
+/* The bytes of text @i, and the path that its hash says. */
+static void text_of(struct store *s, int i, char *text,
+		    char path[STORE_TEXT_PATH_MAX])
+{
+	unsigned char hash[32];
+	char hex[65];
+
+	memset(text, 'a' + i, LONG);
+	crypto_hash_sha256(hash, (const unsigned char *)text, LONG);
+	sodium_bin2hex(hex, sizeof(hex), hash, sizeof(hash));
+	store_text_path(s, hex, path);
+}
+
+/* Which is killed while it writes, at any place. */
+static void write_until_killed(struct store *s, char *text, int kill_us)
+{
+	char path[STORE_TEXT_PATH_MAX];
+	const pid_t pid = fork();
+	int status;
+
+	if (pid == 0)
+		for (int i = 0; ; i = (i + 1) % 3) {
+			text_of(s, i, text, path);
+			store_text_keep(path, text, LONG);
+		}
+	assert_true(pid > 0);
+	usleep((useconds_t)kill_us);
+	kill(pid, SIGKILL);
+	assert_int_equal(waitpid(pid, &status, 0), pid);
+}
+
+static void a_long_text_is_there_as_a_whole_or_not_at_all(void **state)
+{
+	char path[STORE_TEXT_PATH_MAX], *text = malloc(LONG), *got;
+	struct store *s = open_store();
+	size_t bytes;
+
+	(void)state;
+	assert_non_null(text);
+	for (int k = 0; k < KILLS; k++) {
+		write_until_killed(s, text, 1 + k * 700);
+		for (int i = 0; i < 3; i++) {
+			text_of(s, i, text, path);
+			if (access(path, F_OK) < 0)
+				continue;
+			assert_int_equal(store_text_fetch(path, &got, &bytes),
+					 0);
+			assert_int_equal(bytes, LONG);
+			assert_memory_equal(got, text, LONG);
+			free(got);
+			unlink(path);
+		}
+	}
+	store_close(s);
+	free(text);
+}
+
 static void what_is_old_goes_but_never_the_last(void **state)
 {
 	const int64_t day_us = 86400ll * 1000000, t0 = 400 * day_us;
@@ -746,7 +1037,7 @@ int main(void)
 #define T(f)	cmocka_unit_test_setup_teardown(f, setup, teardown)
 		T(a_disk_that_fails_at_any_write_loses_no_truth),
 		T(a_host_that_dies_at_any_write_leaves_a_store),
-		T(the_text_is_written_twice_at_most),
+		T(a_long_text_costs_the_database_nothing),
 		T(a_cut_that_never_ends_writes_little),
 		T(the_list_in_memory_is_bounded_and_keeps_what_counts),
 		T(a_store_of_0_1_0_is_brought_up),
@@ -754,10 +1045,17 @@ int main(void)
 		T(what_a_job_came_to_goes_with_it),
 		T(a_long_list_comes_in_pages),
 		T(a_page_costs_what_is_in_it),
+		T(a_job_costs_the_same_beside_ten_times_as_many),
 		T(a_damaged_page_costs_what_is_in_it),
 		T(what_is_no_database_is_set_aside),
 		T(the_first_page_torn_is_no_end),
 		T(a_text_of_other_bytes_is_not_cut),
+		T(a_long_text_that_was_damaged_is_not_cut),
+		T(a_long_text_that_does_not_fit_is_no_job),
+		T(a_long_text_goes_with_its_last_job),
+		T(a_long_text_stays_beside_a_damaged_database),
+		T(two_jobs_of_the_same_long_text_share_it),
+		T(a_long_text_is_there_as_a_whole_or_not_at_all),
 		T(what_is_old_goes_but_never_the_last),
 		T(a_key_that_cannot_be_stored_is_not_kept),
 	};
