@@ -6,6 +6,7 @@
  */
 #include "sim.h"
 #include "hunting.h"
+#include "path/probe_rest.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -175,10 +176,11 @@ static void print_hunting(const struct sim_run *r, FILE *f)
 static void print_fault(const struct sim_run *r, FILE *f)
 {
 	const struct fault_row *row = &fault_table[r->cycle.fault.first];
+	const struct interp_seg *beyond = probe_rest_beyond(&r->cycle);
 
 	fprintf(f, ": %s at line %u: %s\nwhy        %s\nclear      %s",
-		row->name, r->cycle.cursor.seg.line, row->what, row->why,
-		row->clear);
+		row->name, beyond ? beyond->line : r->cycle.cursor.seg.line,
+		row->what, row->why, row->clear);
 }
 
 void report_print(const struct sim_run *r, FILE *f)

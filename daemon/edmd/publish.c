@@ -9,6 +9,7 @@
 
 #include "axes/axis_state.h"
 #include "path/place.h"
+#include "path/probe_rest.h"
 
 #include <string.h>
 
@@ -139,8 +140,17 @@ static void notice_faults(struct loop *l)
 {
 	uint64_t f = l->cycle.fault.untold;
 
-	for (l->cycle.fault.untold = 0; f; f &= f - 1)
-		loop_event(l, SHM_EV_FAULT, 0, __builtin_ctzll(f));
+	for (l->cycle.fault.untold = 0; f; f &= f - 1) {
+		const struct interp_seg *beyond = probe_rest_beyond(&l->cycle);
+		struct shm_event e = event_of(l, SHM_EV_FAULT);
+
+		e.code = __builtin_ctzll(f);
+		if (beyond && e.code == FAULT_SOFT_LIMIT) {
+			e.line = beyond->line;
+			e.place_mm = beyond->s_mm;
+		}
+		shm_event(l->status, &e);
+	}
 }
 
 /* A servo hunts many times a minute.  So it is reported the first time, the

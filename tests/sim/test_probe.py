@@ -137,3 +137,14 @@ def test_a_dry_run_leaves_probing_out(tmp_path):
     m = machine(tmp_path)
     assert report("--machine", m, "--dry-run",
                   text="G160\nG92 X0 Y0\nG90 G0 X3\n")["outcome"] == "done"
+
+
+def test_what_would_leave_the_travel_is_told_at_the_contact(tmp_path):
+    m = machine(tmp_path, low=(3, -10), at=(0, 0, -2))
+    text = "G80 X+\nG92 X0\nG0 X-{}\nX0\nM2\n"
+    assert end(m, text.format(201))[0] == pytest.approx(1, abs=0.002)
+    r = run("--machine", m, "--pulses", tmp_path / "p.csv", "--report", "-",
+            text=text.format(202))
+    assert json.loads(r.stdout)["fault"] == "soft-limit"
+    rows = (tmp_path / "p.csv").read_text().splitlines()
+    assert int(rows[-1].split(",")[2]) == pytest.approx(1000, abs=2)

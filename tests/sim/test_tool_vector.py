@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 import pytest
-from edmsim import AXES, ROOT, pulses, run
+from edmsim import AXES, ROOT, pulses, report, run
 from geomdl import NURBS
 
 INI = (ROOT / "examples/five-axis.ini").read_text()
@@ -54,6 +54,21 @@ def walked(tmp_path, text, ini=INI, line=None):
 
 def unit(v):
     return np.array(v, float) / np.linalg.norm(v)
+
+
+def test_next_to_a_pole_f_is_kept_and_c_turns_one_way():
+    """The linear axes go by 1e-7 mm and C by 90 degrees, at 100 a minute."""
+    text = ("G0 X0 Y0 Z-5 A0.0010 C45\nG43.5\nF100\n"
+            "G1 I-0.0000007008 J-0.0000007133 K1\nM2\n")
+    machine = ("--machine", ROOT / "examples/machine-five-axis.ini",
+               "--period-us", 200, "--limit-s", 400, "--dry-run")
+    c = [r[1 + AXES.index("C")] for r in pulses(*machine, text=text)
+         if r[0] == 4]
+    assert c == sorted(c, reverse=True)
+    once = report(*machine, text=text)
+    assert 54 < once["virtual_s"] < 58
+    both = report("--there-and-back", *machine, text=text)
+    assert both["pulses"]["C"] == 3 * once["pulses"]["C"]
 
 
 def angle_deg(a, b):

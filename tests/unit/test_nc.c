@@ -321,6 +321,22 @@ static void inches_per_minute_but_degrees_per_minute(void **state)
 	nc_done(&n);
 }
 
+/* A whole circle ends where it began, but goes far.  Where X is next to nothing
+ * beside C, its F of 25.4 is along 0.00254 mm. */
+static void f_is_along_linear_axes_whatever_the_length_is(void **state)
+{
+	struct nc_read n = nc_read_text("G20 G1 F60 X1\nG2 I1 C10\n"
+					"G1 F0.0001 X1.0001 C80\n"
+					"F60 X1.1 C90\n");
+
+	(void)state;
+	assert_near(nc_seg(&n, 1)->feed_mm_s, (double)25.4f);
+	assert_float_equal(nc_seg(&n, 2)->feed_mm_s, 70. / 60, 1e-4);
+	assert_float_equal(nc_seg(&n, 2)->length_mm, 70, 1e-9);
+	assert_near(nc_seg(&n, 3)->feed_mm_s, (double)25.4f);
+	nc_done(&n);
+}
+
 static void a_given_feed_stands_in_for_the_first_f(void **state)
 {
 	struct nc_read n = nc_ready();
@@ -441,6 +457,7 @@ int main(void)
 		cmocka_unit_test(offsets_add_up_and_g53_sees_none),
 		cmocka_unit_test(g28_goes_through_a_point_to_machine_zero),
 		cmocka_unit_test(inches_per_minute_but_degrees_per_minute),
+		cmocka_unit_test(f_is_along_linear_axes_whatever_the_length_is),
 		cmocka_unit_test(a_given_feed_stands_in_for_the_first_f),
 		cmocka_unit_test(c_and_three_digits_call_a_condition),
 		cmocka_unit_test(actions_come_in_the_order_of_the_table),

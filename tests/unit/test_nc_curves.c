@@ -128,6 +128,46 @@ static void units_offsets_and_increments_count(void **state)
 	nc_done(&b);
 }
 
+/* Where it turns back: y is (1 - t/u)^2, and x as a cube.  At u = 0.5 a look at
+ * the curve may be just there. */
+static void at_a_cusp_a_piece_ends_and_is_slow(void **state)
+{
+	static const struct {
+		const char *text;
+		double x, y;
+	} row[] = {
+		{ "X10 Y10 L4\nX0 Y10\nX10 Y0\n", 5, 7.5 },
+		{ "X3.333333 Y-3.333333 L4\nX2.222222 Y-4.444444\n"
+		  "X2.592593 Y-3.333333\n", 2.5, -3.75 },
+		{ "X3.333333 Y-3.333333 L4\nX-20.433604 Y6.883469\n"
+		  "X149.026594 Y30.650406\n", 0.41, -0.615 },
+	};
+
+	(void)state;
+	for (int i = 0; i < 3; i++) {
+		char text[160];
+		struct nc_read n;
+		int there = 0;
+
+		snprintf(text, sizeof(text), "F6000\nG5.2 %sG5.3\n",
+			 row[i].text);
+		n = nc_read_text(text);
+		for (uint32_t k = 0; k + 1 < nc_count(&n); k++) {
+			const double off = hypot(
+				nc_end(&n, k, INTERP_X) - row[i].x,
+				nc_end(&n, k, INTERP_Y) - row[i].y);
+
+			if (fminf(nc_seg(&n, k)->node_mm_s,
+				  nc_seg(&n, k)->feed_max_mm_s) > 1)
+				continue;
+			assert_true(off < 0.1);
+			there += off < 1e-4;
+		}
+		assert_int_equal(there, 1);
+		nc_done(&n);
+	}
+}
+
 /* X Z and C turn together. */
 static void fanucs_curve_may_have_any_axes(void **state)
 {
@@ -227,6 +267,7 @@ int main(void)
 		cmocka_unit_test(a_cubic_goes_on_from_the_last),
 		cmocka_unit_test(a_parabola_is_as_long_as_it_is),
 		cmocka_unit_test(units_offsets_and_increments_count),
+		cmocka_unit_test(at_a_cusp_a_piece_ends_and_is_slow),
 		cmocka_unit_test(fanucs_curve_may_have_any_axes),
 		cmocka_unit_test(what_is_wrong_is_refused_where_it_stands),
 	};

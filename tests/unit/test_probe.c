@@ -7,6 +7,8 @@
  */
 #include "cycle_help.h"
 
+#include "path/probe_rest.h"
+
 #include <errno.h>
 
 #define NO_WALL		(1 << 28)
@@ -39,6 +41,15 @@ static void x_by(struct interp_build *b, double by_mm, uint8_t ends)
 
 	memcpy(end, interp_build_here(b), sizeof(end));
 	end[INTERP_X] += by_mm;
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+}
+
+static void xy_to(struct interp_build *b, double x_mm, double y_mm)
+{
+	const struct interp_build_word w = { .line = 1, .rapid = true };
+	const double end[INTERP_NAXES] = { x_mm, y_mm };
+	struct interp_diag d;
+
 	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
 }
 
@@ -384,13 +395,91 @@ static void test_soft_limits_are_of_the_axes_not_of_the_program(void **state)
 
 	(void)state;
 	x_by(b, -100, INTERP_SEG_PROBE);	/* ends at -1, is called -100 */
-	x_by(b, 300, 0);			/* to 200, where it is 299 */
+	x_by(b, 201, 0);			/* to 200 */
+	x_by(b, -1, INTERP_SEG_PROBE);		/* ends at 199.5, not 199 */
+	x_by(b, -398, 0);			/* to -198.5, not -199 */
 	load(&w, b, &k);
 	w.low = -1000;
-	feel_until(&w, STATE_FAULT, 20000);
-	assert_int_equal(w.r.c.fault.first, FAULT_SOFT_LIMIT);
-	assert_int_equal(w.r.out.target[INTERP_X], 200000);
+	while (w.r.out.target[INTERP_X] < 200000 && w.r.c.loaded)
+		feel(&w);
+	w.low = 199500;
+	feel_until(&w, STATE_IDLE, 20000);
+	assert_int_equal(w.r.c.fault.first, FAULT_NONE);
+	assert_int_equal(w.r.out.target[INTERP_X], -198500);
 	rig_free(&w.r);
+}
+
+/* From a contact at -1, which is called -100.  It stands there if it does not
+ * fit. */
+static void rest_fits_if(struct interp_build *b, bool fits)
+{
+	const struct cycle_config k = probe_config();
+	const struct interp_seg *beyond;
+	struct world w;
+
+	load(&w, b, &k);
+	w.low = -1000;
+	for (int n = 0; n < 40000 && w.r.c.loaded &&
+			w.r.c.state != STATE_FAULT; n++)
+		feel(&w);
+	beyond = probe_rest_beyond(&w.r.c);
+	assert_int_equal(w.r.c.fault.first,
+			 fits ? FAULT_NONE : FAULT_SOFT_LIMIT);
+	assert_true(!beyond == fits);
+	if (!fits) {
+		assert_int_equal(beyond->line, 7);
+		assert_int_equal(w.r.out.target[INTERP_X], -1000);
+	}
+	rig_free(&w.r);
+}
+
+static void test_leaving_the_travel_is_told_at_the_contact(void **st)
+{
+	(void)st;
+	for (int way = 201; way <= 202; way++) {
+		const struct interp_build_word w = { .line = 7, .rapid = true };
+		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+		double end[INTERP_NAXES] = { [INTERP_X] = way - 100 };
+		struct interp_diag d;
+
+		x_by(b, -100, INTERP_SEG_PROBE);
+		/* More than are looked at in one cycle. */
+		for (int i = 0; i < 1000; i++)
+			x_by(b, i % 2 ? -0.01 : 0.01, 0);
+		assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+		x_by(b, -10, 0);
+		rest_fits_if(b, way == 201);
+	}
+}
+
+/* Its ends are in the travel.  It comes to 200, or farther. */
+static void test_of_an_arc_the_farthest_place_counts(void **state)
+{
+	(void)state;
+	for (int clockwise = 0; clockwise < 2; clockwise++) {
+		for (int more = 0; more < 2; more++) {
+			const struct interp_build_word w = {
+				.line = 7, .rapid = true,
+			};
+			const struct interp_build_arc a = {
+				.axis_a = INTERP_X, .axis_b = INTERP_Y,
+				.centre_a_mm = 91 + more, .centre_b_mm = 0,
+				.clockwise = clockwise,
+			};
+			const double end[INTERP_NAXES] = {
+				[INTERP_X] = 91 + more,
+				[INTERP_Y] = clockwise ? -10 : 10,
+			};
+			struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+			struct interp_diag d;
+
+			x_by(b, -100, INTERP_SEG_PROBE);
+			xy_to(b, 91 + more, -end[INTERP_Y]);
+			assert_int_equal(interp_build_arc(b, end, &a, &w, &d),
+					 0);
+			rest_fits_if(b, !more);
+		}
+	}
 }
 
 /* -- Interruptions -------------------------------------------------------- */
@@ -569,6 +658,9 @@ int main(void)
 		cmocka_unit_test(test_a_contact_that_does_not_open_is_a_fault),
 		cmocka_unit_test(test_feeling_blindly_is_a_fault),
 		cmocka_unit_test(test_soft_limits_are_of_the_axes_not_of_the_program),
+		cmocka_unit_test(
+			test_leaving_the_travel_is_told_at_the_contact),
+		cmocka_unit_test(test_of_an_arc_the_farthest_place_counts),
 		cmocka_unit_test(test_a_hold_anywhere_in_it_changes_nothing),
 		cmocka_unit_test(test_an_estop_stands_at_once),
 		cmocka_unit_test(test_no_way_back_leads_over_a_contact),

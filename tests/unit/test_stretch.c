@@ -87,6 +87,21 @@ static void walk(struct made m, double ret_s[2])
 	rig_free(&r);
 }
 
+/* Where a turn on next to no way is looked at: C, pulse by pulse. */
+struct pulses {
+	int32_t at;
+	int back;			/* against the way that it goes */
+};
+
+static void count(struct pulses *k, const struct rig *r, int sign)
+{
+	const int32_t at = r->c.cursor.pos[INTERP_C];
+
+	if ((at - k->at) * sign < 0)
+		k->back++;
+	k->at = at;
+}
+
 /* From a stand to a stand. */
 static double time_of(double mm)
 {
@@ -95,10 +110,10 @@ static double time_of(double mm)
 
 static void a_turn_on_a_tiny_line_costs_no_more_than_the_turn(void **st)
 {
-	static const double tiny_mm[] = { 0.00002, 0.001, 0.02 };
+	static const double tiny_mm[] = { 1e-6, 0.00002, 0.001, 0.02 };
 
 	(void)st;
-	for (int i = 0; i < 3; i++) {
+	for (int i = 0; i < 4; i++) {
 		struct interp_build *b = begin_plain();
 		const double most_s = 2 * time_of(50) + time_of(40) + 0.05;
 		double s[2];
@@ -109,6 +124,39 @@ static void a_turn_on_a_tiny_line_costs_no_more_than_the_turn(void **st)
 		walk(finish(b), s);
 		assert_true(s[0] < most_s);
 		assert_true(s[1] < most_s);
+	}
+}
+
+/* X alone would know a place to 44 of C's points. */
+static void on_next_to_no_way_it_turns_one_way(void **st)
+{
+	static const double tiny_mm[] = { 2e-8, 1e-6, 2e-5, 0.001 };
+
+	(void)st;
+	for (int i = 0; i < 4; i++) {
+		const struct cycle_config k = config_of();
+		struct interp_build *b = begin_plain();
+		struct pulses c = { 0, 0 };
+		struct rig r;
+
+		to(b, 50, 0);
+		to(b, 50 + tiny_mm[i], 44);
+		to(b, 100, 44);
+		rig_take(&r, finish(b), &k);
+		tell(&r, CYCLE_START);
+		for (int n = 0; n < CYCLES && r.c.state == STATE_TRAVEL; n++) {
+			step(&r, OPEN_V);
+			count(&c, &r, 1);
+		}
+		assert_int_equal(c.at, 44000);
+		tell_mm(&r, CYCLE_RETRACT, 1e9);
+		for (int n = 0; n < CYCLES && r.c.hold.moving; n++) {
+			step(&r, OPEN_V);
+			count(&c, &r, -1);
+		}
+		assert_int_equal(c.at, 0);
+		assert_int_equal(c.back, 0);
+		rig_free(&r);
 	}
 }
 
@@ -158,6 +206,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_turn_on_a_tiny_line_costs_no_more_than_the_turn),
+		cmocka_unit_test(on_next_to_no_way_it_turns_one_way),
 		cmocka_unit_test(nearer_and_nearer_to_a_pole_it_comes_past),
 		cmocka_unit_test(what_is_soft_again_and_again_is_one_move),
 	};

@@ -4,6 +4,7 @@
 #include "path/laws.h"
 #include "path/pace.h"
 #include "path/place.h"
+#include "path/probe_rest.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -238,6 +239,27 @@ static double feed_mm_s(const struct cycle *c)
 	return fmin(c->config.probe.feed_mm_s, law_seg_speed(segment(c)));
 }
 
+static void begin_look(struct cycle *c)
+{
+	mover_set(&c->mover, 0);
+	c->probe.rest = index_of(c) + 1;
+	c->probe.phase = PROBE_LOOK;
+}
+
+/* The axes stand, and go on only if the rest of the program fits. */
+static double look(struct cycle *c)
+{
+	int sign;
+
+	if (!probe_rest_look(c, axis_of(c, &sign), index_of(c)))
+		return 0;
+	if (c->probe.beyond)
+		fault_latch(&c->fault, FAULT_SOFT_LIMIT);
+	else
+		finish(c);
+	return 0;
+}
+
 static double forward(struct cycle *c, double v_mm_s)
 {
 	const double left = left_mm(c);
@@ -291,7 +313,7 @@ static double stop(struct cycle *c)
 	mover_set(&c->mover, 0);
 	begin_back(c);
 	if (c->config.probe.back_mm <= 0)
-		finish(c);
+		begin_look(c);
 	return 0;
 }
 
@@ -325,7 +347,7 @@ static double fine(struct cycle *c)
 	const double v = fmin(c->config.probe.fine_mm_s, pace_dv_mm_s(c));
 
 	if (c->probe.contact) {
-		finish(c);
+		begin_look(c);
 		return 0;
 	}
 	if (place_mm(c) > c->probe.met_mm + c->config.probe.back_mm)
@@ -347,6 +369,7 @@ double probe_distance(struct cycle *c)
 		[PROBE_BACK]	= back,
 		[PROBE_FINE]	= fine,
 		[PROBE_GO]	= go,
+		[PROBE_LOOK]	= look,
 		[PROBE_DONE]	= none,
 	};
 

@@ -37,6 +37,7 @@ enum probe_phase {
 	PROBE_BACK,
 	PROBE_FINE,
 	PROBE_GO,			/* to a place known beforehand */
+	PROBE_LOOK,			/* it is known where the rest lies */
 	PROBE_DONE,
 	PROBE_NPHASES
 };
@@ -47,6 +48,9 @@ struct probe {
 	bool open_seen;			/* no contact, since it began to go */
 	uint64_t settled;		/* cycles */
 	double met_mm, to_mm;		/* places on the path */
+	uint32_t rest;			/* the next segment to look at */
+	uint32_t beyond;		/* the one that leaves the travel; 0:
+					 * none */
 	/* Of the whole job: */
 	int32_t shift[INTERP_NAXES];
 	int32_t found[2][INTERP_NAXES];	/* contacts along each axis, where the

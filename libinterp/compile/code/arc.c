@@ -222,6 +222,8 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 		err = nc_room(r);
 	if (err)
 		return err;
+	/* A whole circle ends where it began. */
+	r->word.feed_mm_s = r->feed_mm_s;
 	r->moved |= NC_BIT(p->a) | NC_BIT(p->b);
 	if (r->tool.on)
 		return nc_tip_arc(r, end_mm, &arc);

@@ -147,18 +147,6 @@ static double seconds(const struct nc_reader *r, const struct extent *whole,
 	return part->other_mm / r->feed_mm_s;
 }
 
-/* The length of the path is counted on the linear axes. */
-static double path_mm(const struct piece *p)
-{
-	double path = span(p->q0, p->q1, INTERP_X, 3);
-
-	if (!(path > 0))
-		path = span(p->q0, p->q1, INTERP_U, 2);
-	if (!(path > 0))
-		path = span(p->q0, p->q1, INTERP_A, 3);
-	return path;
-}
-
 /* The way may have begun in an earlier line. */
 static int blame_way(struct nc_reader *r, int rc)
 {
@@ -211,10 +199,12 @@ static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		return err;
 	if (!r->word.rapid) {
 		const struct extent part = measure(w, p->t0, p->t1);
-		const double s = seconds(r, whole, &part), path = path_mm(p);
+		const double s = seconds(r, whole, &part);
+		const double fed = interp_build_fed_mm(r->contour.guides.build,
+						       p->q0, p->q1);
 
-		if (s > 0)
-			r->word.feed_mm_s = path / s;
+		if (s > 0 && fed > 0)
+			r->word.feed_mm_s = fed / s;
 	}
 	err = contour_line(&r->contour, p->q1, &r->word, r->diag);
 	return nc_placed(r, err, p->q1);

@@ -271,17 +271,25 @@ void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
 	seg->feed_mm_s = w->rapid ? seg->feed_max_mm_s : (float)w->feed_mm_s;
 }
 
-static double length_of(const double d[INTERP_NAXES], uint32_t moved)
+/* As program.h says; and what F is along. */
+static double length_of(const double d[INTERP_NAXES], uint32_t moved,
+			double *ret_fed_mm)
 {
 	const uint32_t xyz = 1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_Z;
+	const double xyz2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+	double uv2, abc2;
 
-	if (moved & xyz)
-		return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-	if (moved & (1u << INTERP_U | 1u << INTERP_V))
-		return sqrt(d[INTERP_U] * d[INTERP_U] +
-			    d[INTERP_V] * d[INTERP_V]);
-	return sqrt(d[INTERP_A] * d[INTERP_A] + d[INTERP_B] * d[INTERP_B] +
-		    d[INTERP_C] * d[INTERP_C]);
+	*ret_fed_mm = sqrt(xyz2);
+	if (!(moved & ~xyz))
+		return *ret_fed_mm;
+	uv2 = d[INTERP_U] * d[INTERP_U] + d[INTERP_V] * d[INTERP_V];
+	abc2 = d[INTERP_A] * d[INTERP_A] + d[INTERP_B] * d[INTERP_B] +
+	       d[INTERP_C] * d[INTERP_C];
+	if (!(moved & xyz))
+		*ret_fed_mm = sqrt(uv2 > 0 ? uv2 : abc2);
+	if (build_counts(xyz2, larger(uv2, abc2)))
+		return sqrt(xyz2);
+	return sqrt(build_counts(uv2, abc2) ? uv2 : abc2);
 }
 
 /* A bit for each axis whose places differ. */
@@ -299,6 +307,32 @@ static inline uint32_t other_axes(const double a_mm[INTERP_NAXES],
 	return axes;
 }
 
+static inline int64_t sub_of(const struct interp_build *b, int axis,
+			     double at_mm)
+{
+	const double s = at_mm * b->sub_mm[axis];
+
+	return (int64_t)(s + copysign(0.5, s));
+}
+
+double interp_build_fed_mm(const struct interp_build *b,
+			   const double from_mm[INTERP_NAXES],
+			   const double to_mm[INTERP_NAXES])
+{
+	double d[INTERP_NAXES], fed;
+	uint32_t moved = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const int64_t len = sub_of(b, i, to_mm[i]) -
+				    sub_of(b, i, from_mm[i]);
+
+		d[i] = (double)len / b->sub_mm[i];
+		moved |= (uint32_t)(len != 0) << i;
+	}
+	length_of(d, moved, &fed);
+	return fed;
+}
+
 int build_measure(const struct interp_build *b,
 		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
 		  struct build_measure *ret, struct interp_diag *diag)
@@ -312,12 +346,12 @@ int build_measure(const struct interp_build *b,
 	for (uint32_t left = other_axes(end_mm, b->here_mm); left;
 	     left &= left - 1) {
 		const int i = __builtin_ctz(left);
-		const double at = end_mm[i], s = at * b->sub_mm[i];
+		const double at = end_mm[i];
 		int64_t len;
 
 		if (!is_inside(b, i, at) && !build_axis_ok(b, i, at))
 			return build_refuse_travel(b->o.machine, i, at, diag);
-		to[i] = (int64_t)(s + copysign(0.5, s));
+		to[i] = sub_of(b, i, at);
 		len = to[i] - b->here[i];
 		if (len == 0)
 			continue;
@@ -328,8 +362,9 @@ int build_measure(const struct interp_build *b,
 		longest = len > longest ? len : longest;
 	}
 	*ret = (struct build_measure) {
-		moved, length_of(d, moved), seconds, longest
+		.moved = moved, .seconds = seconds, .longest = longest,
 	};
+	ret->length_mm = length_of(d, moved, &ret->fed_mm);
 	return 0;
 }
 
@@ -440,6 +475,8 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	seg.ticks = (uint32_t)ticks;
 	seg.length_mm = m.length_mm;
 	build_seg_feed(&seg, w, m.length_mm / m.seconds);
+	if (!w->rapid)
+		seg.feed_mm_s *= (float)(m.length_mm / m.fed_mm);
 	if (m.moved & ~b->columns && build_columns(b, m.moved) < 0)
 		return -ENOMEM;
 	if (one_by_one)

@@ -27,6 +27,7 @@
  */
 #include "path/build_pair.h"
 #include "path/build_arc.h"
+#include "path/builder.h"
 #include "pulse/strategy.h"
 
 #include "interp/angle.h"
@@ -258,7 +259,9 @@ int build_pair_plan(struct build_pair *p, struct interp_diag *diag)
 			return err;
 		seconds = fmax(seconds, mm[i] / v_max(p, i));
 	}
-	p->length_mm = mm[0] > 0 ? mm[0] : mm[1];
+	p->fed_mm = mm[0] > 0 ? mm[0] : mm[1];
+	p->length_mm = build_counts(mm[0] * mm[0], mm[1] * mm[1]) ? mm[0] :
+								   mm[1];
 	p->feed_max_mm_s = p->length_mm / seconds;
 	if (at_once(p)) {
 		const int64_t n = (p->longest_sub + INTERP_SUB - 1) >>

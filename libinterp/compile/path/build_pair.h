@@ -20,7 +20,7 @@ struct build_pair {
 	struct interp_couple couple;
 	uint32_t ticks;
 	uint64_t *bits;		/* (ticks + 63) / 64 words, or NULL; free() */
-	double length_mm, feed_max_mm_s;
+	double length_mm, fed_mm, feed_max_mm_s;
 };
 
 /** build_pair_plan() - 0, -ENOMEM, or -EINVAL with @diag's found and wanted. */

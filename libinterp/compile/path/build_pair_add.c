@@ -43,6 +43,8 @@ static int pair_finish(struct interp_build *b, struct build_pair *p,
 				  .arg = (uint32_t)b->couples.n };
 
 	build_seg_feed(&seg, w, p->feed_max_mm_s);
+	if (!w->rapid)
+		seg.feed_mm_s *= (float)(p->length_mm / p->fed_mm);
 	b->descent.axis = -1;
 	b->stand_escape = 0;
 	if (build_columns(b, XY | UV) < 0 || couple_add(b, p) < 0)

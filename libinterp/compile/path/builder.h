@@ -79,6 +79,7 @@ static inline void *build_table_add(struct table *t)
 struct build_measure {
 	uint32_t moved;			/* mask of axes */
 	double length_mm;
+	double fed_mm;			/* what F is along */
 	double seconds;			/* at every axis's own v_max */
 	int64_t longest;		/* subpulses */
 };
@@ -101,6 +102,16 @@ int build_measure_next(struct interp_build *b,
 		       const double end_mm[INTERP_NAXES],
 		       int64_t to[INTERP_NAXES], struct build_measure *ret,
 		       struct interp_diag *diag);
+
+/**
+ * build_counts() - is a way of this length, squared, far enough beside the
+ * others of the same motion that it makes the length?  See program.h.
+ */
+static inline bool build_counts(double own2, double others2)
+{
+	return own2 > 0 &&
+	       own2 * (INTERP_FAR_BESIDE * INTERP_FAR_BESIDE) >= others2;
+}
 
 #define BUILD_ALL_AXES	((1u << INTERP_NAXES) - 1)
 

@@ -28,11 +28,41 @@ void heading_ways_init(struct ways *w, const struct interp_program *p)
 			       INTERP_SUB;
 }
 
+/* The square of what those columns go by that make the length is 1 on each mm
+ * of a line, of others before them far less; round an arc it is as the radius
+ * is there. */
+#define COUNTS_STRAIGHT	0.25
+#define COUNTS_ROUND	1e-6
+
 /* The axes that make the length of a path, as program.h says. */
 static uint32_t along_of(const struct ways *w, uint32_t moving)
 {
 	return moving & w->xyz ? w->xyz :
 	       moving & w->uv ? w->uv : ~(w->xyz | w->uv);
+}
+
+/* Those of @columns that do not make the length, because what moves beside them
+ * goes much farther. */
+static uint32_t idle(const struct ways *w, uint32_t columns,
+		     const struct heading *h, double counts)
+{
+	double sum = 0;
+
+	for (uint32_t j = 0; j < w->p->head->naxes && sum < counts; j++)
+		if (columns >> j & 1)
+			sum += h->rate[j] * h->rate[j];
+	return sum < counts ? columns : 0;
+}
+
+/* The same, if some move so little beside others that these make it. */
+static uint32_t along_by(const struct ways *w, uint32_t moving,
+			 const struct heading *h, double counts)
+{
+	if (moving & w->xyz && moving & ~w->xyz)
+		moving &= ~idle(w, w->xyz, h, counts);
+	if (moving & w->uv && moving & ~(w->xyz | w->uv))
+		moving &= ~idle(w, w->uv, h, counts);
+	return along_of(w, moving);
 }
 
 /* The way from node to node.  Return: the columns that move. */
@@ -141,16 +171,21 @@ void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
 					1u << p->arcs[s->arg].axis_b);
 	if (s->kind == INTERP_PAIR && p->couples[s->arg].side[0].r_mm > 0)
 		moving |= columns_of(p, 1u << INTERP_X);
-	ret->first.along = along_of(w, moving);
 	ret->last = ret->first;
+	if (s->kind == INTERP_CURVE) {
+		round_curve(w, s, ret);
+		return;
+	}
 	if (s->kind == INTERP_ARC)
 		round_arc(p, &p->arcs[s->arg], s->length_mm, ret);
-	if (s->kind == INTERP_CURVE)
-		round_curve(w, s, ret);
-	if (s->kind != INTERP_PAIR)
-		return;
-	for (int k = 0; k < 2; k++)
+	for (int k = 0; k < 2 && s->kind == INTERP_PAIR; k++)
 		round_arc(p, &p->couples[s->arg].side[k], s->length_mm, ret);
+	ret->first.along = s->kind == INTERP_ARC ?
+			   along_of(w, moving) :
+			   along_by(w, moving, &ret->first,
+				    s->kind == INTERP_LINE ? COUNTS_STRAIGHT :
+							     COUNTS_ROUND);
+	ret->last.along = ret->first.along;
 }
 
 /* Which columns make the length of a line; 0: it is none. */
@@ -158,13 +193,21 @@ static uint32_t line_along(const struct ways *w, uint32_t i)
 {
 	const uint32_t n = w->p->head->naxes;
 	const int64_t *a = w->p->nodes + (uint64_t)i * n, *b = a + n;
-	uint32_t moving = 0;
+	const double half = w->p->segs[i].length_mm / 2;
+	struct heading h;
+	uint32_t moving;
 
 	if (w->p->segs[i].kind != INTERP_LINE)
 		return 0;
-	for (uint32_t j = 0; j < n && !(moving & w->xyz); j++)
-		moving |= (uint32_t)(a[j] != b[j]) << j;
-	return along_of(w, moving);
+	if (w->xyz == (1u << n) - 1)
+		return w->xyz;
+	/* Mostly one of X Y Z goes half of the length, and more. */
+	for (uint32_t j = 0; j < n; j++)
+		if (w->xyz >> j & 1 &&
+		    fabs((double)(b[j] - a[j])) * w->sub_mm[j] >= half)
+			return w->xyz;
+	moving = BY_COLUMNS(n, straight, w, i, &h);
+	return along_by(w, moving, &h, COUNTS_STRAIGHT);
 }
 
 uint32_t heading_run_end(const struct ways *w, uint32_t i)

@@ -151,7 +151,8 @@ COLUMNS_INLINE void chord_by(const struct pass *w, uint32_t from, uint32_t to,
 {
 	const int64_t *a = w->p->nodes + (uint64_t)from * n;
 	const int64_t *b = w->p->nodes + (uint64_t)to * n;
-	double mm[INTERP_NAXES], sum = 0;
+	const uint32_t all = (1u << n) - 1;
+	double mm[INTERP_NAXES], sum = 0, path;
 
 	ret->from = from;
 	ret->to = to;
@@ -164,6 +165,13 @@ COLUMNS_INLINE void chord_by(const struct pass *w, uint32_t from, uint32_t to,
 	ret->per_mm = ret->mm > 0 ? 1 / ret->mm : 0;
 	for (uint32_t j = 0; j < n; j++)
 		ret->h.rate[j] = mm[j] * ret->per_mm;
+	if ((along & all) == all)
+		return;
+	/* A chord cuts corners.  What is beside it goes all of the way. */
+	path = w->segs[to].s_mm - w->segs[from].s_mm;
+	for (uint32_t j = 0; j < n; j++)
+		if (!(along >> j & 1))
+			ret->h.rate[j] = path > 0 ? mm[j] / path : 0;
 }
 
 void pass_chord(const struct pass *w, uint32_t from, uint32_t to,

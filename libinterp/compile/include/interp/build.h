@@ -41,7 +41,9 @@ struct interp_build_options {
 /* What a segment carries beside its geometry. */
 struct interp_build_word {
 	uint32_t line;			/* of the source, from 1 */
-	double feed_mm_s;		/* > 0; ignored for a rapid */
+	double feed_mm_s;		/* > 0; ignored for a rapid; along X Y
+					 * Z; if none of these moves, U V; else
+					 * A B C (degrees) */
 	bool rapid;
 	uint8_t ends;			/* INTERP_SEG_PROBE, _HALF or _LIMIT; 0:
 					 * it ends at its end */
@@ -69,6 +71,14 @@ void interp_build_destroy(struct interp_build *b);
 
 /** interp_build_here() - the end of the last segment, mm, absolute. */
 const double *interp_build_here(const struct interp_build *b);
+
+/**
+ * interp_build_fed_mm() - what the feed of a line is along, from place to
+ * place; 0: it moves nothing.
+ */
+double interp_build_fed_mm(const struct interp_build *b,
+			   const double from_mm[INTERP_NAXES],
+			   const double to_mm[INTERP_NAXES]);
 
 /**
  * interp_build_line() - a straight line to @end_mm.  A line without length is

@@ -24,7 +24,9 @@
  *
  * Units: mm, mm/s along the path; rotary axes in degrees.  The length of a path
  * is the length in X Y Z; if none of these moves, in U V; else in A B C
- * (degrees).
+ * (degrees).  Axes of a line that move less than a 10000th as far as one of
+ * those behind them in this order do not count as moving: a place on it would
+ * not say where the others are.
  * Threads: a mapped program is never written; any thread may read it.
  */
 #ifndef INTERP_PROGRAM_H
@@ -42,6 +44,9 @@
 
 #define INTERP_SUB_BITS		16
 #define INTERP_SUB		(1 << INTERP_SUB_BITS)
+
+/* Axes that move so many times as far as those before them make the length. */
+#define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
 #define INTERP_PROGRAM_VERSION	10
