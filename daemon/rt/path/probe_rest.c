@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-/* In one cycle. */
-#define SEGMENTS	128
+/* In one cycle; so a million lines take two seconds of a period of 1 ms. */
+#define SEGMENTS	512
 
 /* A point of an arc is so many pulses from its circle, at most. */
 #define ARC_OFF		1
