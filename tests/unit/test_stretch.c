@@ -176,6 +176,23 @@ static void nearer_and_nearer_to_a_pole_it_comes_past(void **st)
 	assert_true(s[1] < 20);
 }
 
+/* Of two that are not far apart, in mm and in degrees: C alone has 500 deg/s2,
+ * and beside X, where it turns by 6 degrees a mm, the path has 83 mm/s2. */
+static void a_turn_alone_is_not_as_soft_as_a_line_beside_it(void **st)
+{
+	struct interp_build *b = begin_plain();
+	const double most_s = 2 * time_of(90) + time_of(60) + 0.05;
+	double s[2];
+
+	(void)st;
+	to(b, 0, 90);
+	to(b, 10, 150);
+	to(b, 10, 60);
+	walk(finish(b), s);
+	assert_true(s[0] < most_s);
+	assert_true(s[1] < most_s);
+}
+
 static uint32_t stands_of(const struct made *m)
 {
 	uint32_t n = 0;
@@ -208,6 +225,7 @@ int main(void)
 		cmocka_unit_test(a_turn_on_a_tiny_line_costs_no_more_than_the_turn),
 		cmocka_unit_test(on_next_to_no_way_it_turns_one_way),
 		cmocka_unit_test(nearer_and_nearer_to_a_pole_it_comes_past),
+		cmocka_unit_test(a_turn_alone_is_not_as_soft_as_a_line_beside_it),
 		cmocka_unit_test(what_is_soft_again_and_again_is_one_move),
 	};
 

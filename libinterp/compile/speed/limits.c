@@ -240,6 +240,15 @@ static void limit_nodes(struct pass *w, uint32_t first, uint32_t i, double v)
 		w->segs[k].node_mm_s = fminf(w->segs[k].node_mm_s, most);
 }
 
+/* An action stops there anyway. */
+static void note_parts(struct pass *w, uint32_t last, uint32_t i)
+{
+	if (last + 1 != i)
+		return;
+	w->segs[last].flags |= INTERP_SEG_STAND;
+	w->parts = true;
+}
+
 /* The node in front of segment @i; @last is the segment before it that
  * moves. */
 static void limit_node(struct pass *w, uint32_t last, uint32_t i,
@@ -248,6 +257,8 @@ static void limit_node(struct pass *w, uint32_t last, uint32_t i,
 	const double v = pass_node_mm_s(w, last, i, a, b);
 
 	limit_nodes(w, last, i, v);
+	if (a->along != b->along)
+		note_parts(w, last, i);
 	if (w->bends)
 		soften_node(w, last, i, v);
 	if (pass_is_tiny(w, last) && !pass_is_tiny(w, i)) {

@@ -106,6 +106,7 @@ struct pass {
 					 * for last */
 	double tol_most;
 	struct pass_soft soft;		/* known after the last segment */
+	bool parts;			/* the length passes to other axes */
 };
 
 /**
@@ -197,8 +198,9 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		struct rates *ret);
 
 /**
- * pass_stretches() - set INTERP_SEG_STAND where a move has to stand; it is
- * clear so far, and a_mm_s2 and j_mm_s3 of all segments are known.
+ * pass_stretches() - set INTERP_SEG_STAND where a move has to stand.  So far it
+ * is set where the length passes to other axes.  a_mm_s2 and j_mm_s3 of all
+ * segments are known.
  */
 void pass_stretches(struct pass *w);
 

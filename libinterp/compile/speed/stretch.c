@@ -9,6 +9,10 @@
  * So a program is cut into stretches, with a stand between them, where that
  * takes less time.
  *
+ * Where the length of the path passes from some axes to others, from mm to
+ * degrees, a move is as slow as at a corner, and what both sides allow is hardly
+ * alike.  It stands there, too, if that is quicker.
+ *
  * Every segment belongs to a class.  From one class to the next, acceleration
  * or jerk is eight times less.  Softer segments between harder ones are a
  * stretch of their own, or they are not; whatever is quicker.
@@ -70,6 +74,14 @@ static struct stretch join(const struct stretch *a, const struct stretch *b)
 	};
 }
 
+/* From a stand to that speed, or back. */
+static double ramp_s(const struct stretch *t, double v)
+{
+	const double a = t->a_mm_s2, j = t->j_mm_s3;
+
+	return v * j >= a * a ? v / a + a / j : 2 * sqrt(v / j);
+}
+
 /* From a stand to a stand. */
 static double time_s(const struct stretch *t)
 {
@@ -79,7 +91,7 @@ static double time_s(const struct stretch *t)
 
 	if (!(t->mm > 0))
 		return 0;
-	up = v * j >= a * a ? v / a + a / j : 2 * sqrt(v / j);
+	up = ramp_s(t, v);
 	if (t->mm >= v * up)
 		return t->cruise_s + up;
 	top = a * (sqrt(a * a / (j * j) + 4 * t->mm / a) - a / j) / 2;
@@ -158,12 +170,68 @@ static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
 	return time_s(&all);
 }
 
+/* Up to the next node where the length passes to other axes. */
+static struct stretch part(const struct stretches *w, uint32_t from,
+			   uint32_t to)
+{
+	struct stretch t = none(from);
+
+	do
+		append(&t, &w->segs[t.to]);
+	while (t.to < to && !(w->segs[t.to - 1].flags & INTERP_SEG_STAND));
+	return t;
+}
+
+static struct stretch as_soft(const struct stretch *t,
+			      const struct stretch *as)
+{
+	struct stretch soft = *t;
+
+	soft.a_mm_s2 = as->a_mm_s2;
+	soft.j_mm_s3 = as->j_mm_s3;
+	return soft;
+}
+
+/* As one move both would be as soft as the softer one, and so slow between them
+ * that it is as good as two. */
+static bool parts_pay(const struct stretches *w, const struct stretch *a,
+		      const struct stretch *b)
+{
+	const double v = (double)w->segs[a->to - 1].node_mm_s;
+	const struct stretch both = join(a, b);
+	const struct stretch one = as_soft(a, &both), two = as_soft(b, &both);
+	const double stand = (ramp_s(a, v) + ramp_s(b, v)) / 2;
+
+	return time_s(a) + time_s(b) + stand < time_s(&one) + time_s(&two);
+}
+
+/* The nodes where the length passes to other axes have stands so far. */
+static void divide_parts(struct stretches *w, uint32_t end)
+{
+	struct stretch t = part(w, 0, end);
+
+	while (t.to < end) {
+		const struct stretch next = part(w, t.to, end);
+
+		if (parts_pay(w, &t, &next)) {
+			divide(w, t.from, t.to, 0);
+			t = next;
+			continue;
+		}
+		set_stand(w, t.to - 1, false);
+		t = join(&t, &next);
+	}
+	divide(w, t.from, t.to, 0);
+}
+
 void pass_stretches(struct pass *pass)
 {
 	const struct pass_soft *k = &pass->soft;
 	struct stretches w = { pass->segs, k->a_most, k->j_most };
 
-	if (k->a_most >= k->a_least * (1 << CLASS_BITS) ||
+	if (pass->parts)
+		divide_parts(&w, pass->p->head->nsegs - 1);
+	else if (k->a_most >= k->a_least * (1 << CLASS_BITS) ||
 	    k->j_most >= k->j_least * (1 << CLASS_BITS))
 		divide(&w, 0, pass->p->head->nsegs - 1, 0);
 }
