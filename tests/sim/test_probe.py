@@ -148,3 +148,57 @@ def test_what_would_leave_the_travel_is_told_at_the_contact(tmp_path):
     assert json.loads(r.stdout)["fault"] == "soft-limit"
     rows = (tmp_path / "p.csv").read_text().splitlines()
     assert int(rows[-1].split(",")[2]) == pytest.approx(1000, abs=2)
+
+
+ARC = "M5\nG92 X0\nG0 X-20\nG2 X-20 Y0 I{} J0 F600\nM2\n"
+
+
+@pytest.mark.parametrize("way, low, high", [
+    ("X+", 3, 10), ("X-", -10, -3), ("X20", 3, 10)])
+def test_an_arc_behind_a_contact_counts_from_it(tmp_path, way, low, high):
+    """As written it would lie a travel farther on."""
+    m = machine(tmp_path, low=(low, -10), high=(high, 10), at=(0, 0, -2))
+    at = end(m, f"G80 {way}\n" + ARC.format(5))
+    assert at[0] + 20 == pytest.approx(-1 if way == "X-" else 1, abs=0.002)
+
+
+def last_place(tmp_path, m, text, *args):
+    r = run("--machine", m, "--pulses", tmp_path / "p.csv", "--report", "-",
+            *args, text=text)
+    assert json.loads(r.stdout)["fault"] == "soft-limit"
+    last = (tmp_path / "p.csv").read_text().splitlines()[-1].split(",")
+    return [int(p) for p in last[2:5]]
+
+
+def test_an_arc_that_would_leave_the_travel_is_told_at_the_contact(tmp_path):
+    m = machine(tmp_path, low=(3, -10), at=(0, 0, -2))
+    end(m, "G80 X+\n" + ARC.format(-90.495))
+    for radius in (-90.51, -95, 110):
+        x = last_place(tmp_path, m, "G80 X+\n" + ARC.format(radius))[0]
+        assert x == pytest.approx(1000, abs=2)
+
+
+@pytest.mark.parametrize("beyond", ["G0 Y{}", "G1 Y{} F600",
+                                    "G1 Y-1 F60\nY{}\nY-1"])
+def test_what_would_leave_the_travel_is_told_at_a_limit(tmp_path, beyond):
+    m = machine(tmp_path)
+    text = f"M5\nG81 Y+\nG92 Y0\nG0 Y-2\n{beyond}\nM2\n"
+    places("--machine", m, text=text.format(0.001))
+    assert last_place(tmp_path, m, text.format(0.002))[1] == 199999
+
+
+def test_what_would_leave_the_travel_is_told_at_a_half(tmp_path):
+    m = machine(tmp_path, bore=(0, 0, 9), at=(0.7, 0, -2))
+    text = "G91\nG80 X-\nG0 X1\nG80 X+\nG82 X\nG90\nG92 X0\nG0 X{}\nM2\n"
+    assert end(m, text.format(199.9))[0] == pytest.approx(199.9, abs=0.002)
+    x = last_place(tmp_path, m, text.format(200.1))[0]
+    assert x == pytest.approx(0, abs=2)
+
+
+def test_a_dry_run_tells_where_it_stands_what_would_leave_the_travel(tmp_path):
+    m = machine(tmp_path, at=(1, 0, 5))
+    text = "G80 X-\nG92 X0\nG0 X{}\nM2\n"
+    assert places("--dry-run", "--machine", m,
+                  text=text.format(199))[-1][0] == 200000
+    assert last_place(tmp_path, m, text.format(199.001),
+                      "--dry-run") == [1000, 0, 5000]

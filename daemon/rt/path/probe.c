@@ -150,6 +150,29 @@ static void finish(struct cycle *c)
 	t->phase = PROBE_DONE;
 }
 
+/* -- The rest of the program ---------------------------------------------- */
+
+static void begin_look(struct cycle *c)
+{
+	mover_set(&c->mover, 0);
+	c->probe.rest = index_of(c) + 1;
+	c->probe.phase = PROBE_LOOK;
+}
+
+/* The axes stand, and go on only if the rest of the program fits. */
+static double look(struct cycle *c)
+{
+	int sign;
+
+	if (!probe_rest_look(c, axis_of(c, &sign), index_of(c)))
+		return 0;
+	if (c->probe.beyond)
+		fault_latch(&c->fault, FAULT_SOFT_LIMIT);
+	else
+		finish(c);
+	return 0;
+}
+
 /* -- To a place known beforehand ------------------------------------------- */
 
 /* The distance to it, in mm; below 0 if it lies behind. */
@@ -210,7 +233,7 @@ static double go(struct cycle *c)
 	const struct mover_limits l = limits(c, 1);
 
 	if (is_there(c)) {
-		finish(c);
+		begin_look(c);
 		return 0;
 	}
 	if (c->probe.contact && c->probe.open_seen) {
@@ -237,27 +260,6 @@ void probe_begin(struct cycle *c)
 static double feed_mm_s(const struct cycle *c)
 {
 	return fmin(c->config.probe.feed_mm_s, law_seg_speed(segment(c)));
-}
-
-static void begin_look(struct cycle *c)
-{
-	mover_set(&c->mover, 0);
-	c->probe.rest = index_of(c) + 1;
-	c->probe.phase = PROBE_LOOK;
-}
-
-/* The axes stand, and go on only if the rest of the program fits. */
-static double look(struct cycle *c)
-{
-	int sign;
-
-	if (!probe_rest_look(c, axis_of(c, &sign), index_of(c)))
-		return 0;
-	if (c->probe.beyond)
-		fault_latch(&c->fault, FAULT_SOFT_LIMIT);
-	else
-		finish(c);
-	return 0;
 }
 
 static double forward(struct cycle *c, double v_mm_s)
@@ -373,9 +375,7 @@ double probe_distance(struct cycle *c)
 		[PROBE_DONE]	= none,
 	};
 
-	if (c->config.dry_run) {
-		finish(c);
-		return 0;
-	}
+	if (c->config.dry_run && c->probe.phase < PROBE_LOOK)
+		begin_look(c);
 	return laws[c->probe.phase](c);
 }

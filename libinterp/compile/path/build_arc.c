@@ -101,7 +101,7 @@ static bool passes(const struct interp_arc *arc, int quarter)
 }
 
 /* The four places that lie farthest out are between the ends, where there is no
- * node. */
+ * node.  The cycle checks an axis that counts from a contact. */
 static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
 {
 	const struct interp_arc *arc = &p->arc;
@@ -113,6 +113,8 @@ static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
 		const double at = (q % 2 ? arc->b_mm : arc->a_mm) +
 				  (q < 2 ? r : -r);
 
+		if (p->loose & 1u << axis)
+			continue;
 		if ((at > l->travel_max_mm + l->pulse_mm ||
 		     at < l->travel_min_mm - l->pulse_mm) && passes(arc, q))
 			return build_refuse_travel(p->o->machine, (int)axis, at,

@@ -15,6 +15,7 @@ struct build_arc {
 	const struct interp_build_arc *word;
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
 	struct build_way way;	/* all axes except those of the plane */
+	uint32_t loose;		/* axes that count from a contact */
 	/* Out. */
 	bool straight;		/* too short to be an arc: make it a line */
 	struct interp_arc arc;

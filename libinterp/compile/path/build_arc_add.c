@@ -29,7 +29,7 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     struct interp_diag *diag)
 {
 	struct interp_seg seg = { .kind = INTERP_ARC };
-	struct build_arc plan = { .o = &b->o, .word = a };
+	struct build_arc plan = { .o = &b->o, .word = a, .loose = b->loose };
 	const uint32_t plane = 1u << a->axis_a | 1u << a->axis_b;
 	int64_t to[INTERP_NAXES];
 	struct interp_arc *arc;
