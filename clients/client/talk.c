@@ -324,6 +324,16 @@ static bool is_machine(struct talk *t, struct seal *ret,
 	return seal_holds(ret, u->channel);
 }
 
+/* What waited for us, while a long text was hashed, shows its clock as it was.
+ * Signed by that, a chunk would come too late. */
+static void hear_clock(struct talk *t, const struct seal *s)
+{
+	const int64_t ahead_us = s->count - clock_us(CLOCK_MONOTONIC);
+
+	if (ahead_us > t->ahead_us)
+		t->ahead_us = ahead_us;
+}
+
 /* Is it from this start of the service, and later than the previous one? */
 static bool is_news(struct talk *t, const struct seal *s)
 {
@@ -336,6 +346,7 @@ static bool is_news(struct talk *t, const struct seal *s)
 	if (s->count <= t->heard)
 		return false;
 	t->heard = s->count;
+	hear_clock(t, s);
 	return true;
 }
 

@@ -12,14 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #define HEX		(2 * crypto_hash_sha256_BYTES)
 #define PIECE		(1 << 20)
 #define BYTES_MAX	(64 << 20)	/* UPLOAD_BYTES_MAX */
-/* A text is checked before its job has a row.  Nothing takes that long. */
-#define YOUNG_S		3600
 
 void store_text_path(const struct store *s, const char *sha256,
 		     char ret[STORE_TEXT_PATH_MAX])
@@ -141,12 +138,13 @@ static bool is_whole(const char *path, const char *text, size_t bytes)
 
 int store_text_fetch(const char *path, char **ret, size_t *ret_bytes)
 {
-	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW |
+			    O_NONBLOCK);
 	char *text = NULL;
 	int err;
 
 	if (fd < 0)
-		return errno == ENOENT ? -EILSEQ : -errno;
+		return errno == ENOENT || errno == ELOOP ? -EILSEQ : -errno;
 	err = read_all(fd, &text, ret_bytes);
 	close(fd);
 	if (err < 0)
@@ -223,13 +221,13 @@ void store_text_drop(struct store *s, const char *sha256)
 	}
 }
 
-/* One that is being written has a name that is no hash. */
+/* One whose writing was cut short has a name that is no hash. */
 static bool sweep_one(void *arg, const char *path, const struct stat *st)
 {
 	struct store *s = arg;
 
-	if (time(NULL) - st->st_mtime > YOUNG_S && !is_wanted(s, path) &&
-	    !s->in_memory)
+	(void)st;
+	if (!is_wanted(s, path) && !s->in_memory)
 		unlink(path);
 	return !s->in_memory;
 }

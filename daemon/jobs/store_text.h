@@ -36,7 +36,7 @@ int store_text_keep(const char *path, const char *text, size_t bytes);
 /**
  * store_text_fetch() - read it; @ret to be freed.  Any.
  *
- * Return: -EILSEQ: it is not there any more, or has another hash.
+ * Return: -EILSEQ: it is not there any more, is no file, or has another hash.
  */
 int store_text_fetch(const char *path, char **ret, size_t *ret_bytes);
 
@@ -45,7 +45,8 @@ int store_text_fetch(const char *path, char **ret, size_t *ret_bytes);
 void store_text_drop(struct store *s, const char *sha256);
 
 /**
- * store_text_sweep() - remove all that no job has: for the start.
+ * store_text_sweep() - remove all that no job has: for the start, when none is
+ * being written.
  *
  * As long as a damaged database is kept beside this one, they all stay: it may
  * have their jobs.  That of the store.

@@ -33,6 +33,16 @@ static void hash_hex(char ret[65], const uint8_t hash[32])
 	sodium_bin2hex(ret, 65, hash, 32);
 }
 
+/* It may be a file already, and no job came of it. */
+static void drop_text(struct jobs *j, const struct upload *up)
+{
+	char hex[65];
+
+	hash_hex(hex, up->sha256);
+	if (up->bytes > STORE_TEXT_INSIDE)
+		store_text_drop(j->store, hex);
+}
+
 static void answer_end(struct jobs *j, struct upload *up, int code,
 		       const char *reason, const char *body)
 {
@@ -43,6 +53,8 @@ static void answer_end(struct jobs *j, struct upload *up, int code,
 	};
 
 	jobs_lcm_ack(j->lcm, &a);
+	if (code != 0)
+		drop_text(j, up);
 	upload_forget(&j->uploads, up, code, reason, body);
 }
 
@@ -259,7 +271,7 @@ static void check_begin(struct jobs *j, struct upload *up)
 
 	memcpy(request.sha256, up->sha256, sizeof(request.sha256));
 	hash_hex(hex, up->sha256);
-	if (up->bytes > STORE_TEXT_INSIDE)
+	if (up->bytes > STORE_TEXT_INSIDE && !*store_why(j->store))
 		store_text_path(j->store, hex, request.text_file);
 	start_place(j, request.start_mm);
 	if (up->from_line > 0 || up->from_mm > 0)

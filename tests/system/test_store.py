@@ -3,6 +3,7 @@
 what is told is true, and no job is ever cut a second time."""
 
 import errno
+import hashlib
 import json
 import os
 import subprocess
@@ -293,3 +294,61 @@ def test_a_long_text_without_room_is_refused(failing):
     m.heal()
     assert c.heard(lambda: c.submit(LONG_TEXT, "later").code == 0)
     c.job_where("later", "done")
+
+
+def text_file(m, text):
+    return m.store / f"{m.name}.text-{hashlib.sha256(text).hexdigest()}"
+
+
+def test_a_refused_or_interrupted_upload_leaves_no_text(machine):
+    m, c = machine, machine.client
+    assert c.submit(QUICK_JOB, "before", hold=True).code == 0
+    # One id for two texts: one of them is refused after it was written.
+    texts = [LONG_TEXT, b"(other)\n" + LONG_TEXT]
+    both = [rig.Client(m.name), rig.Client(m.name)]
+    sent = [d.chunks(t, "one") for d, t in zip(both, texts)]
+    for d in both:
+        d.status()
+    for pair in zip(*sent):
+        for d, chunk in zip(both, pair):
+            d.send([chunk])
+    codes = [d.heard(lambda d=d, s=s: d.verdict(s)).code
+             for d, s in zip(both, sent)]
+    assert 0 in codes and codes != [0, 0]
+    wanted = text_file(m, texts[codes.index(0)])
+    assert text_files(m) == [wanted]
+    # A service that was killed over an upload leaves these.
+    m.kill("jobs")
+    text_file(m, b"killed before its row").write_bytes(LONG_TEXT)
+    wanted.with_name(wanted.name + ".a1b2c3").write_bytes(b"half")
+    m.start_jobs()
+    c.status_where(lambda s: s.daemon == "ok")
+    assert text_files(m) == [wanted]
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir,
+                                  lambda path: path.symlink_to("/dev/zero")],
+                         ids=["fifo", "folder", "link"])
+def test_what_is_no_text_is_not_waited_for(machine, make):
+    m, c = machine, machine.client
+    assert c.submit(QUICK_JOB, "before", hold=True).code == 0
+    assert c.submit(LONG_TEXT, "long").code == 0
+    text_file(m, LONG_TEXT).unlink()
+    make(text_file(m, LONG_TEXT))
+    c.job_where("before", "ready")
+    assert c.ask("start").code == 0
+    assert "damaged" in c.job_where("long", "fault")["reason"]
+    assert m.end("jobs") == 0
+    m.start_jobs()
+    c.status_where(lambda s: s.daemon == "ok")
+
+
+def test_a_text_that_came_late_is_signed_by_the_present_clock(machine):
+    """What the service told edmctl meanwhile is old when edmctl reads it."""
+    m, c = machine, machine.client
+    with subprocess.Popen(
+            [str(rig.BUILD / "edmctl"), "--machine", m.name, "submit", "-"],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE) as p:
+        c.hear(3)               # a signature holds for 1.5 s
+        p.communicate(QUICK_JOB)
+    assert p.returncode == 0
