@@ -10,8 +10,8 @@
  * takes less time.
  *
  * Where the length of the path passes from some axes to others, from mm to
- * degrees, a move is as slow as at a corner, and what both sides allow is hardly
- * alike.  It stands there, too, if that is quicker.
+ * degrees, a move is as slow as at a corner, and what both sides allow is
+ * hardly alike.  It stands there, too, if that is quicker.
  *
  * Every segment belongs to a class.  From one class to the next, acceleration
  * or jerk is eight times less.  Softer segments between harder ones are a
