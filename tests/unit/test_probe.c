@@ -539,6 +539,81 @@ static void test_an_estop_stands_at_once(void **state)
 	rig_free(&w.r);
 }
 
+/* What comes behind takes several cycles to look at; its last line leaves the
+ * travel if @leaves. */
+static struct interp_build *long_rest(uint8_t ends, bool leaves)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	x_by(b, -400, ends);
+	for (int i = 0; i < 2000; i++)
+		x_by(b, i % 2 ? -0.01 : 0.01, 0);
+	x_by(b, leaves ? -500 : 1, 0);
+	return b;
+}
+
+static bool is_looking(const struct world *w)
+{
+	return w->r.c.state == STATE_PROBE &&
+	       w->r.c.probe.phase == PROBE_LOOK;
+}
+
+static void come_to_the_look(struct world *w)
+{
+	for (int n = 0; n < 20000 && !is_looking(w); n++)
+		feel(w);
+	assert_true(is_looking(w));
+}
+
+static void interrupt(struct world *w, bool by_estop)
+{
+	if (!by_estop) {
+		tell(&w->r, CYCLE_HOLD);
+		for (int i = 0; i < 50; i++)
+			feel(w);
+		assert_int_equal(w->r.c.state, STATE_HOLD);
+		return;
+	}
+	w->r.in.estop = true;
+	step(&w->r, OPEN_V);
+	assert_int_equal(w->r.c.state, STATE_FAULT);
+	w->r.in.estop = false;
+	step(&w->r, OPEN_V);
+	assert_int_equal(tell(&w->r, CYCLE_RESET), ANSWER_DONE);
+}
+
+static void interrupt_the_look(uint8_t ends, bool leaves, bool by_estop)
+{
+	const struct cycle_config k = probe_config();
+	struct world w;
+
+	load(&w, long_rest(ends, leaves), &k);
+	w.low = ends == INTERP_SEG_PROBE ? -1000 : -NO_WALL;
+	/* After a reset and another start the same. */
+	for (int again = 0; again < 2; again++) {
+		come_to_the_look(&w);
+		interrupt(&w, by_estop);
+		assert_int_equal(tell(&w.r, CYCLE_START), ANSWER_DONE);
+		feel_until(&w, leaves ? STATE_FAULT : STATE_IDLE, 90000);
+		if (!leaves)
+			break;
+		assert_int_equal(w.r.c.fault.first, FAULT_SOFT_LIMIT);
+		assert_int_equal(w.r.out.target[INTERP_X],
+				 ends == INTERP_SEG_PROBE ? -1000 : -199999);
+		assert_int_equal(tell(&w.r, CYCLE_RESET), ANSWER_DONE);
+		assert_int_equal(tell(&w.r, CYCLE_START), ANSWER_DONE);
+	}
+	rig_free(&w.r);
+}
+
+static void test_an_interrupted_look_is_made_again(void **state)
+{
+	(void)state;
+	for (int i = 0; i < 8; i++)
+		interrupt_the_look(i & 1 ? INTERP_SEG_PROBE : INTERP_SEG_LIMIT,
+				   i & 2, i & 4);
+}
+
 static void test_no_way_back_leads_over_a_contact(void **state)
 {
 	const struct cycle_config k = probe_config();
@@ -663,6 +738,7 @@ int main(void)
 		cmocka_unit_test(test_of_an_arc_the_farthest_place_counts),
 		cmocka_unit_test(test_a_hold_anywhere_in_it_changes_nothing),
 		cmocka_unit_test(test_an_estop_stands_at_once),
+		cmocka_unit_test(test_an_interrupted_look_is_made_again),
 		cmocka_unit_test(test_no_way_back_leads_over_a_contact),
 		cmocka_unit_test(test_a_cut_leads_into_a_probe_and_out_of_it),
 		cmocka_unit_test(test_a_dry_run_probes_nothing_and_goes_nowhere),
