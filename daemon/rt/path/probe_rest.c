@@ -2,11 +2,12 @@
 /* probe_rest.c - the rest of a program, looked through after a contact */
 #include "path/probe_rest.h"
 #include "cycle.h"
+#include "path/laws.h"
 
 #include <math.h>
 
-/* In one cycle; so a million lines take two seconds of a period of 1 ms. */
-#define SEGMENTS	512
+/* In a second, so that a short period is not filled by it. */
+#define SEGMENTS_S	500000.0
 
 /* A point of an arc is so many pulses from its circle, at most. */
 #define ARC_OFF		1
@@ -95,9 +96,10 @@ bool probe_rest_look(struct cycle *c, int axis, uint32_t sensed)
 		.low = (double)(c->config.travel_min[axis] - shift),
 		.high = (double)(c->config.travel_max[axis] - shift),
 	};
+	double left = ceil(SEGMENTS_S * law_period_s(c));
 
 	t->beyond = 0;
-	for (int looked = 0; looked < SEGMENTS; looked++, t->rest++) {
+	for (; left > 0; left--, t->rest++) {
 		const uint32_t i = t->rest;
 		const int64_t *from = node + (uint64_t)i * n;
 
