@@ -3,6 +3,7 @@
 #include "store_text.h"
 
 #include "store_sql.h"
+#include "upload.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -16,7 +17,6 @@
 
 #define HEX		(2 * crypto_hash_sha256_BYTES)
 #define PIECE		(1 << 20)
-#define BYTES_MAX	(64 << 20)	/* UPLOAD_BYTES_MAX */
 
 void store_text_path(const struct store *s, const char *sha256,
 		     char ret[STORE_TEXT_PATH_MAX])
@@ -102,7 +102,7 @@ static int read_all(int fd, char **ret, size_t *ret_bytes)
 
 	if (fstat(fd, &st) < 0)
 		return -errno;
-	if (!S_ISREG(st.st_mode) || st.st_size > BYTES_MAX)
+	if (!S_ISREG(st.st_mode) || st.st_size > UPLOAD_BYTES_MAX)
 		return -EILSEQ;
 	text = malloc((size_t)st.st_size + 1);
 	if (!text)
