@@ -10,9 +10,11 @@
 #include "code/macro.h"
 #include "code/number.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define LABEL_MAX	9999
 #define A_CALL		"M98 P1000, with L3 to repeat it; or M98 P31000"
@@ -300,8 +302,39 @@ static int back(struct nc_reader *r)
 	return 0;
 }
 
+/* Has a line words that would be carried out?  Of what has none: comments,
+ * the end of a tape, the bytes with which a file is filled up. */
+static bool has_words(const uint8_t *p, const uint8_t *end)
+{
+	p = skip_void(p, end);
+	return p < end && isalpha(*p);
+}
+
+/* Behind the end there may be subprograms.  Other words are a second program,
+ * or the end came too early. */
+static void note_rest(struct nc_reader *r)
+{
+	const char *label = r->d->label == 'N' ? "Nn" : "Oo";
+	const uint8_t *p = r->at, *end;
+	uint32_t line = r->line + 1;
+
+	for (; p < r->end; p = nc_line_next(end, r->end), line++) {
+		end = nc_line_end(p, r->end);
+		p = skip_void(p, end);
+		if (p < end && (*p == '%' || strchr(label, *p) ||
+				nc_label_at(r, p, end)))
+			return;
+		if (has_words(p, end)) {
+			nc_note_rest(r, line);
+			return;
+		}
+	}
+}
+
 static int finish(struct nc_reader *r)
 {
+	if (r->depth == 0 && !r->over)
+		note_rest(r);
 	r->over = NC_FINISHED;
 	r->word.line = r->line;
 	return contour_action(&r->contour, INTERP_END, 0, &r->word, r->diag);

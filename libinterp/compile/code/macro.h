@@ -93,6 +93,8 @@ struct macro_line {
 	struct nc_macro *m;
 	const uint8_t *p, *end;		/* its rest */
 	int brackets;
+	double parts;			/* ROUND rounds to 1 / parts; 0: to
+					 * whole numbers */
 };
 
 /* All of these return -EINVAL, with the diag filled, if they refuse. */

@@ -6,6 +6,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
+#include <string.h>
 
 /* -- Jumps ---------------------------------------------------------------- */
 
@@ -114,6 +115,9 @@ static int jump(struct macro_line *l, const uint8_t *at, const char *word,
 	struct place to;
 	int err;
 
+	if (isnan(n))
+		return macro_refuse(l, at, "the number of an N word",
+				    "%sa variable without a value", word);
 	if (!(n >= 1 && n < 1e9 && n == floor(n)))
 		return macro_refuse(l, at, "the number of an N word behind it",
 				    "%s%g", word, n);
@@ -285,6 +289,22 @@ static uint32_t variable_of(struct call *c, uint8_t letter)
 	return 4 + 3 * c->triples + (uint32_t)(letter - 'I');
 }
 
+/* A number behind @at that needs a decimal point, as a length in a word does:
+ * without one Fanuc counts it in the last decimal of its letter. */
+static bool wants_point(const struct macro_line *l, const uint8_t *at, double v)
+{
+	const uint8_t *p = nc_skip_blanks(at + 1, l->end);
+
+	if (l->r->d->point == NC_POINT_FREE || v == 0 ||
+	    !strchr("ABCIJKQRUVWXYZ", toupper(*at)))
+		return false;
+	for (; p < l->p; p++) {
+		if (!strchr("+-0123456789 \t", *p))
+			return false;
+	}
+	return true;
+}
+
 static int take_argument(struct macro_line *l, struct call *c)
 {
 	const uint8_t *at = l->p, letter = (uint8_t)toupper(*l->p++);
@@ -303,6 +323,10 @@ static int take_argument(struct macro_line *l, struct call *c)
 	err = macro_value(l, &v);
 	if (err)
 		return err;
+	if (wants_point(l, at, v))
+		return macro_refuse(l, at, "a decimal point, as in X10.0: "
+				    "without one Fanuc reads thousandths",
+				    "%c%g without a decimal point", *at, v);
 	if (letter == 'L' && (v != floor(v) || !(v >= 1 && v <= TIMES_MAX)))
 		return macro_refuse(l, at, "a whole number of 1 to 9999",
 				    "L%g times", v);

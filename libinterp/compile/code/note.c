@@ -54,6 +54,25 @@ void nc_note_point(struct nc_reader *r, const uint8_t *at)
 	    nc_quote_word(r, at).s, r->unit_mm > 1 ? "inches" : "mm");
 }
 
+void nc_note_skipped(struct nc_reader *r)
+{
+	if (r->o->notes && !told(r, NC_TOLD_SKIPPED))
+		say(r, "/: lines that begin with it are skipped, as with block "
+		    "delete switched on");
+}
+
+void nc_note_rest(struct nc_reader *r, uint32_t line)
+{
+	const uint32_t here = r->line;
+
+	if (!r->o->notes)
+		return;
+	r->line = line;
+	say(r, "nothing behind the end of the program is carried out, except "
+	    "subprograms that it calls");
+	r->line = here;
+}
+
 void nc_note_electrode(struct nc_reader *r, enum nc_group group,
 		       const char *why)
 {

@@ -266,6 +266,7 @@ static int take_repeat(struct macro_line *l, uint32_t i)
 	if (!(n < 1e9))
 		return macro_refuse(l, word_at(l, i), "fewer rounds",
 				    "a repeat of %g", n);
+	n = rint(n);
 	if (n < 1)
 		return skip_to(l, i, KIND(OWORD_ENDREPEAT), "endrepeat");
 	if (m->nloops == MACRO_LOOPS)

@@ -50,7 +50,7 @@ struct nc_tool_point {
 /* Kinds of notes; each is made once. */
 enum nc_told { NC_TOLD_POINT, NC_TOLD_INCHES, NC_TOLD_CONDITION,
 	       NC_TOLD_DWELL, NC_TOLD_OFFSET, NC_TOLD_ELECTRODE,
-	       NC_TOLD_CHANGE };
+	       NC_TOLD_CHANGE, NC_TOLD_SKIPPED };
 
 /* Why no more lines are read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
@@ -73,6 +73,8 @@ struct nc_block {
 	const struct nc_code *dropper;	/* a word that is carried out without
 					 * some of its letters, or NULL */
 	const uint8_t *dropper_at;
+	const uint8_t *alone_at;	/* an ignored word beside which nothing
+					 * may move, or NULL */
 	const uint8_t *at[NC_NSLOTS];	/* position of the letter */
 	const struct nc_code *code[NC_NGROUPS];
 	const uint8_t *code_at[NC_NGROUPS];
@@ -495,12 +497,18 @@ static inline const uint8_t *nc_line_next(const uint8_t *p, const uint8_t *end)
 	return p < end ? p + 1 : end;
 }
 
-/* note.c.  Nothing is noted twice.  All except nc_note_code() make notes only
- * for those who ask before a run: notes->plan. */
+/* note.c.  Nothing is noted twice.  nc_note_point() and nc_note_line() make
+ * notes only for those who ask before a run: notes->plan. */
 
 /** nc_note_code() - there is a reason to mention the word at @at. */
 void nc_note_code(struct nc_reader *r, const uint8_t *at,
 		  const struct nc_code *code);
+
+/** nc_note_skipped() - a line is not carried out because of its /. */
+void nc_note_skipped(struct nc_reader *r);
+
+/** nc_note_rest() - words behind the end, in line @line. */
+void nc_note_rest(struct nc_reader *r, uint32_t line);
 
 /** nc_note_point() - the length at @at has no decimal point. */
 void nc_note_point(struct nc_reader *r, const uint8_t *at);

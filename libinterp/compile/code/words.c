@@ -35,7 +35,7 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_D] = { 'D', true, 0, 999, "a register of 0 to 999", "" },
 	[NC_H] = { 'H', true, 0, 999, "a register of 0 to 999", "" },
 	[NC_ANGLE] = { 'A', false, -90, 90, "-90 to 90 degrees",
-		   "A goes with G51 or G52" },
+		   "the angle of a taper goes with G51 or G52" },
 	[NC_UI] = { 'I', false, ANY_PLACE, "I " CENTRE_LINES },
 	[NC_UJ] = { 'J', false, ANY_PLACE, "J " CENTRE_LINES },
 	[NC_Q] = { 'Q', false, ANY_PLACE,

@@ -14,6 +14,7 @@ int nc_write_offset(struct nc_reader *r)
 	const double *here = nc_here(r);
 	const double l = nc_has(r, NC_L) ? b->value[NC_L] : 0;
 	const double p = nc_has(r, NC_P) ? b->value[NC_P] : 0;
+	const bool moves = r->incremental && !r->d->g91_sets;
 	uint32_t work;
 
 	if (l != 2 && l != 20)
@@ -32,7 +33,7 @@ int nc_write_offset(struct nc_reader *r)
 
 		if (!(b->words & NC_BIT(i)))
 			continue;
-		*mm = l == 2 ? (r->incremental ? *mm : 0) + to :
+		*mm = l == 2 ? (moves ? *mm : 0) + to :
 			       here[i] - to - r->shift_mm[i] -
 			       (i == INTERP_Z ? r->electrode_mm : 0);
 	}
