@@ -76,7 +76,9 @@ int offset_request(struct jobs *j, const struct store_job *job,
 
 static int refuse(char why[600], const char *what)
 {
-	snprintf(why, 600, "'%.40s'; " WANTED, what);
+	const size_t n = strcspn(what, "\n");
+
+	snprintf(why, 600, "'%.*s'; " WANTED, n < 40 ? (int)n : 40, what);
 	return -EINVAL;
 }
 
@@ -85,7 +87,9 @@ static int take_probe(struct offset_ask *o, int axis, const char *way,
 {
 	char *end = NULL;
 
-	if (o->probe >= 0 || axis > INTERP_Z || !strchr("+-", *way))
+	/* Without a sign Z goes down; X and Y have no such side. */
+	if (o->probe >= 0 || axis > INTERP_Z || !strchr("+-", *way) ||
+	    (!*way && axis != INTERP_Z))
 		return refuse(why, word);
 	o->probe = axis;
 	o->way = *way ? *way : '-';

@@ -36,7 +36,7 @@ offset_1_mm = 0.14
 FILES = {
     "3b.3b": ("B", []),
     "4b.4b": ("B5000 behind a :", []),
-    "agievision.iso": ("G71", []),
+    "agievision.iso": ("G71", ["Y5000"]),
     "charmilles-cmd.iso": (None, []),
     "charmilles-robofil-440.iso": ("M15", ["M15", "M24", "M28", "G92", "/"]),
     "charmilles-robofil.iso": ("G38", ["G60", "G38", "G39"]),
@@ -164,6 +164,12 @@ def test_words_beside_a_refused_word_are_not_told_as_well():
     r = run("--dialect", "fanuc-sinker", "--check",
             text="G54\nG52 X0 Y0 Z0\nG0 X1.\nM30\n")
     assert r.stderr.count(b"error:") == 1, r.stderr
+
+
+def test_a_refused_number_with_decimals_is_told_once():
+    r = run("--dialect", "generic", "--check", text="M350.1 M8.\nG0 X1.\nM2\n")
+    assert r.returncode == 65
+    assert r.stderr.count(b"error:") == 2, r.stderr
 
 
 def test_a_place_that_is_refused_is_listed_among_the_words():

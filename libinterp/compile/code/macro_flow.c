@@ -154,6 +154,20 @@ int nc_macro_jump(struct nc_reader *r, const uint8_t *at, double n)
 	return l.m ? jump(&l, at, "M99 P", n) : -ENOMEM;
 }
 
+int macro_ends(struct macro_line *l, const uint8_t *behind, uint32_t line)
+{
+	const uint8_t *p = nc_skip_void(behind, l->end);
+
+	if (p < l->end && *p == ';' &&
+	    l->r->d->classes[';'] == NC_BLOCK_END)
+		p = nc_skip_void(p + 1, l->end);
+	if (p == l->end || *p == ';')
+		return 1;
+	l->r->line = line;
+	return macro_refuse(l, p, "them on a line of their own",
+			    "words behind a jump, a loop or a call");
+}
+
 static int take_if(struct macro_line *l, const uint8_t *at)
 {
 	bool truth;
@@ -161,13 +175,19 @@ static int take_if(struct macro_line *l, const uint8_t *at)
 
 	if (err)
 		return err;
-	if (macro_word(l, "GOTO"))
-		return truth ? go_to(l, at) : 1;
-	if (!macro_word(l, "THEN"))
+	if (macro_word(l, "GOTO")) {
+		if (truth)
+			return go_to(l, at);
+	} else if (!macro_word(l, "THEN")) {
 		return macro_refuse(l, l->p, "GOTO or THEN behind IF [ ]",
 				    "an IF without either");
-	err = truth ? macro_assign(l) : 0;
-	return err ? err : 1;
+	} else if (truth) {
+		err = macro_assign(l);
+		return err ? err : 1;
+	}
+	/* What is not done is not looked at. */
+	l->p = l->end;
+	return 1;
 }
 
 /* -- Loops ---------------------------------------------------------------- */
@@ -347,8 +367,8 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 	for (int i = 0; i < MACRO_LOCALS; i++)
 		c.local[i] = NAN;
 	for (;;) {
-		macro_blanks(l);
-		if (err || l->p == l->end || *l->p == '(' || *l->p == ';')
+		l->p = nc_skip_void(l->p, l->end);
+		if (err || l->p == l->end || *l->p == ';')
 			break;
 		err = take_argument(l, &c);
 	}
@@ -363,7 +383,7 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 	return 1;
 }
 
-int macro_flow(struct macro_line *l)
+static int take_flow(struct macro_line *l)
 {
 	uint64_t ignored = 0;
 	const uint8_t *at;
@@ -390,4 +410,12 @@ int macro_flow(struct macro_line *l)
 		err = macro_refuse(l, l->p, "WHILE [ ] DO1",
 				   "WHILE without DO");
 	return err ? err : take_while(l, at, truth);
+}
+
+int macro_flow(struct macro_line *l)
+{
+	const uint32_t line = l->r->line;
+	const int err = take_flow(l);
+
+	return err == 1 ? macro_ends(l, l->p, line) : err;
 }

@@ -50,7 +50,7 @@ struct nc_tool_point {
 /* Kinds of notes; each is made once. */
 enum nc_told { NC_TOLD_POINT, NC_TOLD_INCHES, NC_TOLD_CONDITION,
 	       NC_TOLD_DWELL, NC_TOLD_OFFSET, NC_TOLD_ELECTRODE,
-	       NC_TOLD_CHANGE, NC_TOLD_SKIPPED };
+	       NC_TOLD_CHANGE, NC_TOLD_SKIPPED, NC_TOLD_VACANT };
 
 /* Why no more lines are read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
@@ -476,6 +476,9 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 /** nc_end_of_text() - the text ends here: may it? */
 int nc_end_of_text(struct nc_reader *r);
 
+/** nc_skip_void() - the first byte from @p that is no blank and no comment. */
+const uint8_t *nc_skip_void(const uint8_t *p, const uint8_t *end);
+
 /**
  * nc_label_at() - does the line from @p to @end begin a program?  Return: its
  * number, or 0.
@@ -506,6 +509,9 @@ void nc_note_code(struct nc_reader *r, const uint8_t *at,
 
 /** nc_note_skipped() - a line is not carried out because of its /. */
 void nc_note_skipped(struct nc_reader *r);
+
+/** nc_note_vacant() - common variable #@n is read, and has no value. */
+void nc_note_vacant(struct nc_reader *r, uint32_t n);
 
 /** nc_note_rest() - words behind the end, in line @line. */
 void nc_note_rest(struct nc_reader *r, uint32_t line);

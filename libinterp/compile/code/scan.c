@@ -66,9 +66,9 @@ static bool pointed_length(struct nc_reader *r, const uint8_t *at,
 {
 	if (*v == 0 || has_point(at, end))
 		return true;
-	if (r->d->point == NC_POINT_FREE)
+	if (r->d->point != NC_POINT_WANTED)
 		nc_note_point(r, at);
-	else if (r->d->point == NC_POINT_LAST)
+	if (r->d->point == NC_POINT_LAST)
 		*v /= nc_pow10[r->unit_mm > 1 ? 4 : 3];
 	if (r->d->point != NC_POINT_WANTED)
 		return true;
@@ -284,6 +284,9 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 			return NULL;
 		nc_tell(r);
 		r->block.takes = UINT32_MAX;
+		r->word_at = at;
+		while (p < r->stop && nc_classes[*p] == NC_NUMERIC)
+			p++;
 		return p;
 	}
 	if (code->group == NC_ELECTRODE)

@@ -31,7 +31,9 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 		   "P goes with G5 G5.2 G6.2 G6.3, G4, M98 or M99, and with G120" },
 	[NC_L] = { 'L', true, 1, 9999, "1 to 9999 repeats; with G5.2 and G6.3 an order of 2 to 10",
 		   "L goes with M98, G5.2, G6.3, G160 and G161" },
-	[NC_O] = { 'O', true, 0, 9999, "a program number of 0 to 9999", "" },
+	[NC_O] = { 'O', true, 0, 99999999,
+		   "a program number of 0 to 99999999; 1 to 9999 for one that "
+		   "is called", "" },
 	[NC_D] = { 'D', true, 0, 999, "a register of 0 to 999", "" },
 	[NC_H] = { 'H', true, 0, 999, "a register of 0 to 999", "" },
 	[NC_ANGLE] = { 'A', false, -90, 90, "-90 to 90 degrees",
