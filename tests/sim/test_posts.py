@@ -162,7 +162,7 @@ def test_what_is_skipped_is_told_with_its_line():
 
 def test_words_beside_a_refused_word_are_not_told_as_well():
     r = run("--dialect", "fanuc-sinker", "--check",
-            text="G54\nG52 X0 Y0 Z0\nG0 X1.\nM30\n")
+            text="G54\nG51 X0 Y0 Z0\nG0 X1.\nM30\n")
     assert r.stderr.count(b"error:") == 1, r.stderr
 
 

@@ -219,6 +219,29 @@ static void g91_moves_an_origin_in_fanuc_and_not_in_linuxcnc(void **state)
 	}
 }
 
+/* As rs274 has it; G92 in force on an axis is the one thing that differs from
+ * Fanuc. */
+static void g52_shifts_all_work_offsets(void **state)
+{
+	static const char *const names[] = { "fanuc-sinker", "linuxcnc" };
+
+	(void)state;
+	for (size_t i = 0; i < 2; i++) {
+		struct compiled c = compile_ready(names[i]);
+
+		compile(&c, "G10 L2 P2 Y2.\nG52 X5. Y0 Z0\nG0 X1.\n"
+			"G55 G0 Y1.\nG53 G0 X3.\nG92 X1.\nG0 X2.\n"
+			"G92.1\nG52 X-1.\nG0 X1.\nG52 X0\nG0 X1.\nM30");
+		assert_near(compiled_end(&c, 0, INTERP_X), 6);
+		assert_near(compiled_end(&c, 1, INTERP_Y), 3);
+		assert_near(compiled_end(&c, 2, INTERP_X), 3);
+		assert_near(compiled_end(&c, 3, INTERP_X), 4);
+		assert_near(compiled_end(&c, 4, INTERP_X), 0);
+		assert_near(compiled_end(&c, 5, INTERP_X), 1);
+		compile_done(&c);
+	}
+}
+
 static const struct bad {
 	const char *dialect, *text;
 	uint32_t line, column;
@@ -243,6 +266,10 @@ static const struct bad {
 	{ "sodick", "G29 X1.\nM02", 1, 5, "X1. beside G29" },
 	{ "linuxcnc", "G0 X5\nG43.1 Z5\nM2", 2, 1, "G43.1: a length by" },
 	{ "fanuc-sinker", "G0 C90\nM30", 1, 4, "C90 without a decimal" },
+	{ "fanuc-sinker", "G0 X1.\nG92 X0\nG52 X1.\nM30", 3, 5,
+	  "G52 X where G92 is in force" },
+	{ "linuxcnc", "G91 G52 X1\nM2", 1, 5, "G52 under G91" },
+	{ "linuxcnc", "G52\nM2", 1, 1, "G52 without axis words" },
 	{ "sodick-sinker", "G0 C45\nM02", 1, 4, "C45 without a decimal" },
 	{ "fanuc-wire", "G2 X1. I.5 K1\nM02", 1, 12, "K1 without a decimal" },
 	{ "skd2", "H001=110\nG41H001\nG01X100Y0\nM02", 3, 4,
@@ -318,6 +345,7 @@ int main(void)
 		cmocka_unit_test(robofil_has_centres_as_places),
 		cmocka_unit_test(robofil_440_has_centres_from_the_start),
 		cmocka_unit_test(an_ignored_word_takes_its_letters_with_it),
+		cmocka_unit_test(g52_shifts_all_work_offsets),
 		cmocka_unit_test(g91_moves_an_origin_in_fanuc_and_not_in_linuxcnc),
 		cmocka_unit_test(makino_threads_by_m6),
 		cmocka_unit_test(skd2_counts_micrometres_and_calls_by_n),

@@ -255,8 +255,8 @@ static int complete(struct nc_reader *r)
 		if (b->groups & (NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE)))
 			return nc_refuse(
 				r, b->code_at[NC_ONE_SHOT],
-				"G4 G28 G92 G92.1 and G120 on lines of their "
-				"own, without G0 G1 G2 G3 G53",
+				"G4 G10 G28 G52 G92 G92.1 and G120 on lines of "
+				"their own, without G0 G1 G2 G3 G53",
 				"%s on a line with a motion word",
 				nc_quote_word(r, b->code_at[NC_ONE_SHOT]).s);
 		return 0;

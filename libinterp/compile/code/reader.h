@@ -196,7 +196,8 @@ struct nc_reader {
 					 * matters */
 	double unit_mm;			/* 1 or 25.4 */
 	double scale[INTERP_NAXES];	/* unit_mm; 1 for rotary axes */
-	double shift_mm[INTERP_NAXES];	/* by G92 */
+	double shift_mm[INTERP_NAXES];	/* by G92 or G52 */
+	uint32_t local;			/* axes that G52 has shifted */
 	double offset_mm[INTERP_NAXES];	/* work offset and shift together */
 	double feed_mm_s, feed_deg_s;	/* 0: there is none yet */
 	struct interp_build_word word;	/* its condition is modal, too */
@@ -521,6 +522,9 @@ void nc_note_point(struct nc_reader *r, const uint8_t *at);
 
 /** nc_note_line() - note what the present line means here and not elsewhere. */
 void nc_note_line(struct nc_reader *r);
+
+/** nc_local_place() - G52: a shift of all work offsets. */
+int nc_local_place(struct nc_reader *r);
 
 /** nc_write_offset() - G10 L2 and L20: a work offset of this program. */
 int nc_write_offset(struct nc_reader *r);

@@ -147,6 +147,7 @@ enum nc_motion {
 	W("home", HOME, home, NC_AXES) \
 	W("set-place", SET, set_here, NC_AXES) \
 	W("set-place-off", SET_CANCEL, set_cancel, 0) \
+	W("local-place", LOCAL, nc_local_place, NC_AXES) \
 	W("sink", SINK, nc_sink, NC_AXES | NC_BIT(NC_P)) \
 	W("pass", PASS, nc_pass, 0) \
 	W("cavity", CAVITY, nc_cavity, \
