@@ -2,6 +2,8 @@
 /* cmdline.c - a program's command line as one table */
 #include "cmdline.h"
 
+#include "standard.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <getopt.h>
@@ -169,6 +171,7 @@ int cmdline_take(const struct cmdline *o, void *to, int argc, char **argv,
 	struct option longs[CMDLINE_MAX + 3];
 	int opt, code;
 
+	standard_guard(o->program);
 	if (argc == 2 && strcmp(argv[1], "--list-options") == 0)
 		return list_options(o);
 	*ret = (struct cmdline_given) { .first = 0 };
