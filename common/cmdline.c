@@ -30,7 +30,9 @@ static int refuse_value(const struct cmdline *o, const char *name,
 	char option[40];
 
 	snprintf(option, sizeof(option), "--%s", name);
-	return cmdline_refuse(o->program, option, text, wanted);
+	/* edmctl puts a blank before a negative number. */
+	return cmdline_refuse(o->program, option, text + (text[0] == ' '),
+			      wanted);
 }
 
 int cmdline_number(const struct cmdline *o, const char *name, const char *text,
