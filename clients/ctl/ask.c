@@ -304,8 +304,9 @@ static void print_ended(json_t *job)
 
 	ctl_when(at, job, "ended_us");
 	ctl_duration(took, sizeof(took), ctl_number_of(job, "job_s"));
-	printf("%-8s %s  %10.3f mm  %s%s%s\n", ctl_text_of(job, "state"), at, ctl_number_of(job, "depth_mm"),
-	       took, *ctl_text_of(job, "reason") ? "  " : "",
+	printf("%-8s %s  %10.3f mm  %s%s%s\n", ctl_text_of(job, "state"), at,
+	       ctl_number_of(job, "depth_mm"), took,
+	       *ctl_text_of(job, "reason") ? "  " : "",
 	       ctl_text_of(job, "reason"));
 }
 

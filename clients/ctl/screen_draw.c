@@ -172,8 +172,8 @@ static int draw_job(int y, const struct talk_status *t)
 		ctl_duration(left, sizeof(left), t->eta_s);
 	ctl_duration(took, sizeof(took), t->job_s);
 	put_within(y, 0, NAME_EDGE - 1, A_BOLD, t->job_name);
-	say(y, NAME_EDGE, A_NORMAL, "%-8s line %d of %d   %d wait", t->job_state,
-	    t->line, t->lines, t->queue_len);
+	say(y, NAME_EDGE, A_NORMAL, "%-8s line %d of %d   %d wait",
+	    t->job_state, t->line, t->lines, t->queue_len);
 	draw_bar(y + 1, t->progress);
 	say(y + 2, 0, A_NORMAL, "place %.3f of %.3f mm, depth %.3f mm, time "
 	    "%s, left %s", t->place_mm, t->length_mm, t->depth_mm, took, left);

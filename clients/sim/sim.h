@@ -154,8 +154,8 @@ void record_point(void *arg, const struct cycle *c);
 void record_cycle(struct sim_run *r);
 int record_close(struct sim_run *r);
 
-/** record_shut() - close @f, the file at @path.  Return: 0, or an exit code whose
- *  reason is told. */
+/** record_shut() - close @f, the file at @path.  Return: 0, or an exit code
+ *  whose reason is told. */
 int record_shut(FILE *f, const char *path);
 
 /** report_print() - for a person; report_write() - JSON. */

@@ -79,7 +79,8 @@ void queue_started(struct jobs *j, int code)
 		queue_unpromise(j);
 	if (code != SHM_DONE)
 		return;
-	/* Who starts has seen where the axes stand; before that nothing goes. */
+	/* Who starts has seen where the axes stand.  Without that no job
+	 * goes. */
 	interrupt_answered(j);
 	queue_go(j);
 	if (!q->job.n || !q->job.hold)
