@@ -9,7 +9,8 @@
 /* In a second, so that a short period is not filled by it. */
 #define SEGMENTS_S	500000.0
 
-/* A point of an arc is so many pulses from its circle, at most. */
+/* By so many pulses more than its tolerance an arc by one axis at a time may be
+ * beside its circle, when its places are rounded. */
 #define ARC_OFF		1
 
 struct rest {
@@ -17,6 +18,7 @@ struct rest {
 	int axis;
 	double low, high;		/* of the travel, pulses of the
 					 * program */
+	double off;			/* of the points of an arc, outward */
 };
 
 static bool is_outside(const struct rest *k, double pulses)
@@ -32,6 +34,13 @@ static double turned_to(const struct interp_arc *a, double angle)
 
 	by -= floor(by);
 	return (a->sweep < 0 && by > 0 ? by - 1 : by) * 2 * M_PI;
+}
+
+/* With all axes in a point, less than half a pulse beyond is still inside. */
+static double off_of(const struct interp_program *p)
+{
+	return p->head->strategy == INTERP_SIMULTANEOUS ? -0.5 :
+	       ARC_OFF + p->head->tolerance_milli / 1000.0;
 }
 
 /* Where it is farthest along the axis. */
@@ -51,7 +60,7 @@ static bool arc_leaves(const struct rest *k, const struct interp_arc *a)
 		const double at = (centre + side * r) / pulse_mm;
 
 		if (fabs(turned) <= fabs(a->sweep) &&
-		    is_outside(k, at - side * ARC_OFF))
+		    is_outside(k, at + side * k->off))
 			return true;
 	}
 	return false;
@@ -92,7 +101,7 @@ bool probe_rest_look(struct cycle *c, int axis, uint32_t sensed)
 	const int64_t shift = (int64_t)t->shift[axis] + c->cursor.pos[axis] -
 			      interp_round_sub(end);
 	const struct rest k = {
-		.p = p, .axis = axis,
+		.p = p, .axis = axis, .off = off_of(p),
 		.low = (double)(c->config.travel_min[axis] - shift),
 		.high = (double)(c->config.travel_max[axis] - shift),
 	};

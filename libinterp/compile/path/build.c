@@ -173,6 +173,14 @@ static inline bool is_inside(const struct interp_build *b, int axis,
 	return at_mm > b->inside_mm[axis][0] && at_mm < b->inside_mm[axis][1];
 }
 
+static inline int64_t sub_of(const struct interp_build *b, int axis,
+			     double at_mm)
+{
+	const double s = at_mm * b->sub_mm[axis];
+
+	return (int64_t)(s + copysign(0.5, s));
+}
+
 /* Checked in pulses, as the cycle does it: the last pulses inside the
  * limits. */
 bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
@@ -183,9 +191,12 @@ bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
 
 	if (is_inside(b, axis, at_mm))
 		return true;
-	at = floor(at_mm / l->pulse_mm + 0.5);
+	at = at_mm / l->pulse_mm;
+	if (!(fabs(at) < INTERP_PULSES_MAX))
+		return false;
+	at = interp_round_sub(sub_of(b, axis, at_mm));
 	if (m->present & b->loose & 1u << axis)
-		return fabs(at) < INTERP_PULSES_MAX;
+		return true;
 	return m->present & 1u << axis &&
 	       at >= ceil(l->travel_min_mm / l->pulse_mm - 1e-6) &&
 	       at <= floor(l->travel_max_mm / l->pulse_mm + 1e-6);
@@ -305,14 +316,6 @@ static inline uint32_t other_axes(const double a_mm[INTERP_NAXES],
 			axes |= 1u << i;
 	}
 	return axes;
-}
-
-static inline int64_t sub_of(const struct interp_build *b, int axis,
-			     double at_mm)
-{
-	const double s = at_mm * b->sub_mm[axis];
-
-	return (int64_t)(s + copysign(0.5, s));
 }
 
 double interp_build_fed_mm(const struct interp_build *b,

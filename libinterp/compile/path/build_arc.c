@@ -26,6 +26,10 @@
  * equal. */
 #define SAME_ANGLE	1e-5
 
+/* A lattice point of an arc is no farther beside it, beside the tolerance: the
+ * radii may differ, and so may a centre and the nearest lattice point. */
+#define BESIDE_PULSES	(RADIUS_MOST + 5)
+
 static const struct interp_axis_limits *limits(const struct build_arc *p,
 					       uint32_t a)
 {
@@ -100,23 +104,49 @@ static bool passes(const struct interp_arc *arc, int quarter)
 				ahead - ANGLE_TURN > arc->sweep || ahead == 0;
 }
 
-/* The four places that lie farthest out are between the ends, where there is no
- * node.  The cycle checks an axis that counts from a contact. */
-static int arc_travel(const struct build_arc *p, struct interp_diag *diag)
+/* Is it so near to the end of the axis's travel that a lattice point beside the
+ * arc may lie beyond? */
+static bool is_near(const struct build_arc *p, uint32_t axis, double at_mm)
+{
+	const struct interp_axis_limits *l = limits(p, axis);
+	const double off = (BESIDE_PULSES + p->o->tolerance_milli / 1000.0) *
+			   l->pulse_mm;
+
+	return !(p->loose & 1u << axis) &&
+	       (at_mm > l->travel_max_mm - off ||
+		at_mm < l->travel_min_mm + off);
+}
+
+/* The place that lies farthest out at the angle @quarter * 90 degrees. */
+static double farthest(const struct interp_arc *arc, int quarter, double r_mm)
+{
+	return (quarter % 2 ? arc->b_mm : arc->a_mm) +
+	       (quarter < 2 ? r_mm : -r_mm);
+}
+
+/* Between the ends there is no node.  What lies beyond the travel by more than
+ * a rounding is refused; what is near its end is walked when it is added.  The
+ * cycle checks an axis that counts from a contact. */
+static int arc_travel(struct build_arc *p, struct interp_diag *diag)
 {
 	const struct interp_arc *arc = &p->arc;
-	const double r = larger(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double r[2] = { arc->r_mm, arc->r_mm + arc->dr_mm };
+	const uint32_t plane[2] = { arc->axis_a, arc->axis_b };
 
+	for (int j = 0; j < 2; j++)
+		p->near_edge |= is_near(p, plane[j], p->from_mm[plane[j]]) ||
+				is_near(p, plane[j], p->to_mm[plane[j]]);
 	for (int q = 0; q < 4; q++) {
-		const enum interp_axis axis = q % 2 ? arc->axis_b : arc->axis_a;
+		const uint32_t axis = plane[q % 2];
 		const struct interp_axis_limits *l = limits(p, axis);
-		const double at = (q % 2 ? arc->b_mm : arc->a_mm) +
-				  (q < 2 ? r : -r);
+		const double most = farthest(arc, q, larger(r[0], r[1]));
+		const double at = farthest(arc, q, smaller(r[0], r[1]));
 
-		if (p->loose & 1u << axis)
+		if (!is_near(p, axis, most) || !passes(arc, q))
 			continue;
-		if ((at > l->travel_max_mm + l->pulse_mm ||
-		     at < l->travel_min_mm - l->pulse_mm) && passes(arc, q))
+		p->near_edge = true;
+		if (at > l->travel_max_mm + l->pulse_mm ||
+		    at < l->travel_min_mm - l->pulse_mm)
 			return build_refuse_travel(p->o->machine, (int)axis, at,
 						   diag);
 	}

@@ -18,6 +18,7 @@ struct build_arc {
 	uint32_t loose;		/* axes that count from a contact */
 	/* Out. */
 	bool straight;		/* too short to be an arc: make it a line */
+	bool near_edge;		/* of the travel: ask build_edge_walk() */
 	struct interp_arc arc;
 	uint32_t ticks;
 	double length_mm, feed_max_mm_s;

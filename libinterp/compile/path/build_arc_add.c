@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* build_arc_add.c - adds an arc as a segment, and its plan to the tables */
 #include "path/build_arc.h"
+#include "path/build_edge.h"
 #include "path/builder.h"
 #include "pulse/strategy.h"
 
@@ -49,6 +50,11 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		return err;
 	if (plan.straight)
 		return interp_build_line(b, end_mm, w, diag);
+	if (plan.near_edge)
+		err = build_edge_walk(b, &(struct build_edge) {
+			.end_mm = end_mm, .arc = a, .word = w }, diag);
+	if (err < 0)
+		return err;
 	seg.ticks = plan.ticks;
 	seg.length_mm = plan.length_mm;
 	build_seg_feed(&seg, w, plan.feed_max_mm_s);

@@ -98,7 +98,8 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 	};
 	int err;
 
-	*plan = (struct build_arc) { .o = &o, .word = &word };
+	*plan = (struct build_arc) { .o = &o, .word = &word,
+				     .loose = p->loose };
 	for (int j = 0; j < 2; j++) {
 		const enum interp_axis a = plane[i][j];
 
@@ -135,6 +136,7 @@ static int side_plan(struct build_pair *p, int i, double *ret_mm,
 		return err;
 	if (plan.straight)
 		return side_line(p, i, &p->couple.side[i], ret_mm, diag);
+	p->near_edge |= plan.near_edge;
 	p->couple.side[i] = plan.arc;
 	*ret_mm = plan.length_mm;
 	if (at_once(p) && plan.ticks > p->ticks)
@@ -252,6 +254,7 @@ int build_pair_plan(struct build_pair *p, struct interp_diag *diag)
 
 	p->bits = NULL;
 	p->ticks = 0;
+	p->near_edge = false;
 	for (int i = 0; i < 2; i++) {
 		const int err = side_plan(p, i, &mm[i], diag);
 

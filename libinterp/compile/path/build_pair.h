@@ -15,8 +15,10 @@ struct build_pair {
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
 	int32_t from[INTERP_NAXES], to[INTERP_NAXES];	/* pulses */
 	uint32_t moved;		/* mask of axes */
+	uint32_t loose;		/* axes that count from a contact */
 	int64_t longest_sub;	/* of all four axes, subpulses */
 	/* Out. */
+	bool near_edge;		/* of the travel: ask build_edge_walk() */
 	struct interp_couple couple;
 	uint32_t ticks;
 	uint64_t *bits;		/* (ticks + 63) / 64 words, or NULL; free() */

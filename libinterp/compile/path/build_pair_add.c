@@ -4,6 +4,7 @@
  * tables
  */
 #include "path/build_pair.h"
+#include "path/build_edge.h"
 #include "path/builder.h"
 #include "pulse/strategy.h"
 
@@ -88,7 +89,8 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      struct interp_diag *diag)
 {
 	struct build_pair plan = { .machine = b->o.machine, .contour = contour,
-				   .strategy = b->o.strategy };
+				   .strategy = b->o.strategy,
+				   .loose = b->loose };
 	int64_t to[INTERP_NAXES];
 	struct build_measure m;
 	int err = build_measure_next(b, end_mm, to, &m, diag);
@@ -109,6 +111,10 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	}
 	plan.longest_sub = m.longest;
 	err = build_pair_plan(&plan, diag);
+	if (err == 0 && plan.near_edge)
+		err = build_edge_walk(b, &(struct build_edge) {
+			.end_mm = end_mm, .contour = contour, .word = w },
+			diag);
 	if (err == 0) {
 		build_stand_at(b, end_mm, to);
 		err = pair_finish(b, &plan, w, diag);
