@@ -128,8 +128,7 @@ static void go_on(struct sim_run *r)
 {
 	struct cycle *c = &r->cycle;
 
-	if (c->hold.moving || c->mover.v_mm_s != 0 ||
-	    c->hold.then != STATE_HOLD)
+	if (c->hold.moving || c->hold.fails || c->mover.v_mm_s != 0)
 		return;
 	if (r->o->there_and_back && r->leg == 0 &&
 	    c->far_mm >= r->job.program.head->length_mm - 1e-9) {

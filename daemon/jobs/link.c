@@ -160,11 +160,31 @@ static bool link_is_gone(struct link *l, int64_t now_us)
 	return !shm_alive(l->status);
 }
 
+/* Who hears that the state refuses is told the state.  The snapshot may be
+ * older than the command before this one, so the answer waits for a newer
+ * one. */
 static void take_answer(struct link *l, const struct shm_event *e)
 {
-	for (int i = 0; i < LINK_PENDING; i++)
-		if (l->pending[i].id == e->id && e->id)
-			pending_end(&l->pending[i], e->code);
+	for (int i = 0; i < LINK_PENDING; i++) {
+		struct link_pending *p = &l->pending[i];
+
+		if (p->id != e->id || !e->id)
+			continue;
+		if (e->code == SHM_WRONG_STATE && l->snap.cycle <= e->cycle)
+			p->refused = e->cycle + 1;
+		else
+			pending_end(p, e->code);
+	}
+}
+
+static void tell_refused(struct link *l)
+{
+	for (int i = 0; i < LINK_PENDING; i++) {
+		struct link_pending *p = &l->pending[i];
+
+		if (p->id && p->refused && l->snap.cycle >= p->refused)
+			pending_end(p, SHM_WRONG_STATE);
+	}
 }
 
 bool link_is_repeat(const struct link *l)
@@ -208,6 +228,7 @@ void link_poll(struct link *l, int64_t now_us)
 	if (l->state == LINK_OK)
 		take_events(l);
 	take_snapshot(l, now_us);
+	tell_refused(l);
 	if (l->moved && now_us - l->moved_us < STALE_US)
 		link_set(l, LINK_OK);
 	else if (l->state == LINK_OK)

@@ -39,6 +39,8 @@ struct link_pending {
 	int64_t until_us;
 	link_answer_fn answer;
 	void *arg;
+	uint64_t refused;		/* by the state; told with the snapshot
+					 * of this cycle; 0: not refused */
 };
 
 /* Placed by the caller; read, do not write. */

@@ -404,8 +404,8 @@ static int axis_of(struct jobs *j, const struct jobs_lcm_command *c, size_t n)
 			has[k++] = INTERP_AXIS_LETTERS[i];
 	if (at && strchr(has, *at))
 		return (int)(at - INTERP_AXIS_LETTERS);
-	snprintf(reason, sizeof(reason), "no axis '%.20s' here; one of %s",
-		 c->text, has);
+	snprintf(reason, sizeof(reason), "no axis '%.*s' here; one of %s",
+		 (int)(n < 20 ? n : 20), c->text, has);
 	verbs_answer(j, c, EX_DATAERR, reason);
 	return -1;
 }

@@ -23,7 +23,7 @@ static enum cycle_answer may_begin(const struct cycle *c)
  * job. */
 static bool stands_held(const struct cycle *c)
 {
-	return c->state == STATE_HOLD && c->hold.then == STATE_HOLD &&
+	return c->state == STATE_HOLD && !c->job.stopped &&
 	       !c->hold.moving && c->fault.latched == 0;
 }
 
@@ -76,16 +76,14 @@ static enum cycle_answer do_stop(struct cycle *c, double arg_mm)
 		return do_hold(c, arg_mm);
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
+	c->job.stopped = true;
 	if (c->state == STATE_FAULT) {
-		cycle_end_job(c, OUTCOME_STOPPED);
-		c->state = STATE_FAULT;
+		cycle_stand_failed(c);
 		return ANSWER_DONE;
 	}
 	cycle_happen(c, EVENT_STOP);
 	axes_forget(c);
 	c->hold.moving = false;
-	if (c->hold.then == STATE_HOLD)
-		c->hold.then = STATE_IDLE;
 	return ANSWER_DONE;
 }
 
@@ -95,7 +93,7 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 
 	if (!c->loaded)
 		return ANSWER_NO_PROGRAM;
-	if (c->fault.latched || c->hold.then != STATE_HOLD)
+	if (c->fault.latched || c->job.stopped)
 		return ANSWER_WRONG_STATE;
 	if (!(arg_mm > 0 && isfinite(arg_mm)))
 		return ANSWER_BAD_ARGUMENT;
@@ -266,6 +264,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->back_mm = 0;
 	mcode_begin(c, at->index);
 	c->job.power_off = false;
+	c->job.stopped = false;
 	c->job.rejoin_mm = 0;
 	probe_load(c);
 	cycle_enter(c, STATE_HOLD);

@@ -21,7 +21,6 @@ void cycle_init(struct cycle *c, const struct cycle_config *config)
 		.gap = config->gap,
 		.jump = config->jump,
 		.state = STATE_IDLE,
-		.hold.then = STATE_HOLD,
 		.override = 1,
 		.plc_override = NAN,
 		.out.pulse = { NAN, NAN, NAN, NAN, false },
@@ -117,10 +116,9 @@ static void stand(struct cycle *c)
 {
 	if (c->state != STATE_HOLD || c->hold.moving || c->mover.v_mm_s != 0)
 		return;
-	if (c->hold.then == STATE_FAULT)
-		cycle_enter(c, STATE_FAULT);
-	else if (c->hold.then == STATE_IDLE &&
-		 contouring_rests(&c->contouring))
+	if (c->hold.fails)
+		cycle_stand_failed(c);
+	else if (c->job.stopped && contouring_rests(&c->contouring))
 		cycle_end_job(c, OUTCOME_STOPPED);
 }
 
@@ -259,8 +257,12 @@ static void go_manually(struct cycle *c, const struct io_inputs *in)
 /* The machine is held until the axes have power and stand on their places. */
 static bool may_move(struct cycle *c)
 {
-	const enum axes_await a = axes_await(c);
+	enum axes_await a;
 
+	/* A jog or homing that ends before the axes have power needs none. */
+	if (c->axes.awaited && cycle_is_manual(c) && manual_ends(c))
+		axes_forget(c);
+	a = axes_await(c);
 	if (a == AXES_START)
 		cycle_set_off(c);
 	if (c->axes.start)

@@ -166,8 +166,8 @@ struct cycle_hold {
 					 * the segments before this one; 0: it
 					 * is found */
 	bool braked;			/* it stood at least once since */
-	enum cycle_state then;		/* the state that follows when it
-					 * stands */
+	bool fails;			/* when it stands, the state is
+					 * fault */
 };
 
 /* A part of the program that may also end by time: timed.h. */
@@ -183,6 +183,8 @@ struct cycle_job {
 	bool dwelling;
 	uint64_t dwell_left;		/* cycles */
 	bool power_off;			/* the program switched it off (M5) */
+	bool stopped;			/* by an operator: it is over where it
+					 * stands */
 	double rejoin_mm;		/* up to this place it was cut before
 					 * the wire broke, so the machine
 					 * positions there; 0: no break */

@@ -71,7 +71,7 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		c->hold.moving = false;
 		c->hold.seek = 0;
 		c->hold.braked = false;
-		c->hold.then = STATE_HOLD;
+		c->hold.fails = false;
 		break;
 	case STATE_IDLE:
 	case STATE_FAULT:
@@ -124,7 +124,7 @@ static void brake(struct cycle *c)
 {
 	const bool goes_back = backs_off(c);
 
-	if (c->hold.then == STATE_FAULT && c->state == STATE_HOLD) {
+	if (c->hold.fails && c->state == STATE_HOLD) {
 		/* A second fault came while it goes back from the first. */
 		c->hold.moving = false;
 		return;
@@ -133,7 +133,7 @@ static void brake(struct cycle *c)
 	if (goes_back)
 		retreat(c);
 	c->hold.moving = goes_back;
-	c->hold.then = STATE_FAULT;
+	c->hold.fails = true;
 }
 
 /* An axis that is jogged or homed brakes too, but it does not go on against
@@ -163,6 +163,15 @@ static bool ends_at_once(const struct cycle *c)
 		fault_any(c->fault.latched, fault_row_disables));
 }
 
+void cycle_stand_failed(struct cycle *c)
+{
+	cycle_enter(c, STATE_FAULT);
+	if (c->loaded && c->job.stopped) {
+		cycle_end_job(c, OUTCOME_STOPPED);
+		c->state = STATE_FAULT;
+	}
+}
+
 void cycle_fail(struct cycle *c)
 {
 	const uint64_t fresh = c->fault.fresh;
@@ -171,7 +180,7 @@ void cycle_fail(struct cycle *c)
 	if (fresh && c->loaded)
 		c->outcome = OUTCOME_FAULT;
 	if (c->state == STATE_FAULT || ends_at_once(c))
-		cycle_enter(c, STATE_FAULT);
+		cycle_stand_failed(c);
 	else if (!fresh)
 		return;
 	else if (c->loaded)

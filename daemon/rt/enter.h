@@ -15,6 +15,11 @@
 /** cycle_enter() - make @s the state, and do what entering it requires. */
 void cycle_enter(struct cycle *c, enum cycle_state s);
 
+/**
+ * cycle_stand_failed() - make fault the state; a job that was stopped is over.
+ */
+void cycle_stand_failed(struct cycle *c);
+
 /** cycle_end_job() - unload the program; the state is then idle. */
 void cycle_end_job(struct cycle *c, enum cycle_outcome o);
 

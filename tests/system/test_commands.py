@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands to a running job, each answered once."""
 
+import subprocess
 import time
 
 import rig
@@ -91,6 +92,20 @@ def test_estop_faults_and_the_job_goes_on_after_reset_and_start(machine):
     assert c.ask("start").code == 0
     c.job_where("job", "done")
     c.job_where("behind", "done")
+
+
+def test_a_refusal_tells_the_state_that_refused(machine):
+    """Two resets at once: the second one finds an idle machine."""
+    c = machine.client
+    for _ in range(4):
+        assert c.ask("estop").code == 0
+        c.status_where(lambda s: s.state == "fault")
+        both = [subprocess.Popen(
+            [str(rig.BUILD / "edmctl"), "--machine", machine.name, "reset"],
+            stderr=subprocess.PIPE, text=True) for _ in range(2)]
+        said = [p.communicate(timeout=30)[1] for p in both]
+        assert sorted(p.returncode for p in both) == [0, 1]
+        assert "the machine is idle" in "".join(said)
 
 
 def test_a_repeated_command_is_answered_again_not_done_again(machine):

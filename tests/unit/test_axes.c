@@ -3,7 +3,7 @@
  * test_axes.c - promises of the power of the axes: a start that waits for it,
  * faults that take it away, and who may give it back
  */
-#include "cycle_help.h"
+#include "manual_help.h"
 
 #define WAIT_CYCLES	40
 
@@ -107,6 +107,42 @@ static void a_hold_or_stop_ends_the_wait(void **st)
 		assert_int_equal(r.c.state, i ? STATE_IDLE : STATE_HOLD);
 		assert_int_equal(r.c.fault.first, FAULT_NONE);
 		rig_free(&r);
+	}
+}
+
+/* Nothing moves yet, so nothing has to brake: it is over before the drives have
+ * power, and the drives are not told to be at fault. */
+static void a_jog_or_homing_that_ends_waits_no_longer(void **st)
+{
+	(void)st;
+	for (int i = 0; i < 8; i++) {
+		const bool fails = i & 1, drive = i & 2, home = i & 4;
+		struct cycle_config k = manual_config();
+		struct bench b;
+
+		k.axes_wait_cycles = WAIT_CYCLES;
+		k.axis[INTERP_Z].method = HOME_SWITCH;
+		bench_init(&b, &k);
+		b.in.axes_off = b.in.steers = true;
+		period(&b);
+		assert_int_equal(ask(&b, home ? CYCLE_HOME : CYCLE_JOG,
+				     INTERP_Z, 1), ANSWER_DONE);
+		period(&b);
+		assert_true(b.out.enable);
+		b.in.door_open = fails && !drive;
+		b.in.trouble = fails && drive ? IO_FOLLOWING : IO_WELL;
+		if (!fails)
+			assert_int_equal(ask(&b, CYCLE_HOLD, 0, 0),
+					 ANSWER_DONE);
+		period(&b);
+		period(&b);
+		assert_int_equal(b.c.state, fails ? STATE_FAULT : STATE_IDLE);
+		assert_int_equal(b.out.enable, !(fails && drive));
+		for (int n = 0; n < 2 * WAIT_CYCLES; n++)
+			period(&b);
+		assert_int_equal(b.c.fault.first, !fails ? FAULT_NONE :
+				 drive ? FAULT_FOLLOWING : FAULT_DOOR);
+		assert_false(fault_is_latched(&b.c.fault, FAULT_DRIVE));
 	}
 }
 
@@ -319,6 +355,7 @@ int main(void)
 		cmocka_unit_test(a_second_start_does_not_begin_the_wait_anew),
 		cmocka_unit_test(drives_that_are_not_up_refuse_start_and_retract),
 		cmocka_unit_test(a_hold_or_stop_ends_the_wait),
+		cmocka_unit_test(a_jog_or_homing_that_ends_waits_no_longer),
 		cmocka_unit_test(troubles_are_faults_without_sparks_motion_or_power),
 		cmocka_unit_test(where_the_others_follow_they_brake_before_power_is_taken),
 		cmocka_unit_test(where_none_follows_any_more_the_braking_ends),

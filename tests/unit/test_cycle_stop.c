@@ -208,6 +208,36 @@ static void a_stop_ends_the_job_with_outcome_stopped(void **st)
 	}
 }
 
+/* Whichever comes first, in which period, and however the motion ends. */
+static void a_stop_counts_although_a_fault_comes_too(void **st)
+{
+	(void)st;
+	for (int way = 0; way < 12; way++) {
+		const bool ends = way % 2, fault_first = way / 2 % 2;
+		struct rig r;
+
+		drive_to(&r, STATE_TRAVEL);
+		if (fault_first)
+			r.in.door_open = true;
+		else
+			tell(&r, CYCLE_STOP);
+		steps(&r, OPEN_V, 1 + way / 4);
+		if (fault_first)
+			assert_int_equal(tell(&r, CYCLE_STOP), ANSWER_DONE);
+		r.in.door_open = !ends;
+		r.in.lost = ends;
+		steps(&r, OPEN_V, 300);
+		assert_int_equal(r.c.state, STATE_FAULT);
+		assert_false(r.c.loaded);
+		assert_int_equal(r.c.outcome, OUTCOME_STOPPED);
+		r.in.lost = r.in.door_open = false;
+		step(&r, OPEN_V);
+		assert_int_equal(tell(&r, CYCLE_RESET), ANSWER_DONE);
+		assert_int_equal(r.c.state, STATE_IDLE);
+		rig_free(&r);
+	}
+}
+
 static void held_at_mm(struct rig *r, double mm)
 {
 	drive_to(r, STATE_APPROACH);
@@ -469,6 +499,7 @@ int main(void)
 		cmocka_unit_test(a_hold_brakes_within_the_braking_distance),
 		cmocka_unit_test(a_held_job_goes_on_where_it_stood),
 		cmocka_unit_test(a_stop_ends_the_job_with_outcome_stopped),
+		cmocka_unit_test(a_stop_counts_although_a_fault_comes_too),
 		cmocka_unit_test(a_retract_by_command_goes_back_that_far_and_holds),
 		cmocka_unit_test(a_retract_by_command_works_while_the_job_runs),
 		cmocka_unit_test(a_retract_beyond_the_start_ends_at_the_start),

@@ -28,6 +28,8 @@ struct world {
 	uint64_t latched_before;
 	bool reset_went;		/* out to the drives, a cycle ago */
 	int forbidden, faulty;		/* cycles in a row */
+	int off;			/* cycles until the drives are on */
+	bool stopped;			/* a stop of this job was accepted */
 };
 
 static bool one_in(uint64_t *s, unsigned int n)
@@ -132,7 +134,12 @@ static void inputs(struct world *w, uint64_t *s)
 		in->trouble = IO_WELL;
 	else if (one_in(s, 2500))
 		in->trouble = (enum io_trouble)(rnd(s) % IO_NTROUBLES);
-	in->axes_off = !w->r.out.enable || one_in(s, 2000);
+	/* Drives take their time, and some come never. */
+	if (!w->r.out.enable)
+		w->off = (int)(rnd(s) % 80);
+	else if (w->off > 0)
+		w->off--;
+	in->axes_off = !w->r.out.enable || w->off > 0 || one_in(s, 2000);
 	flip(&in->steers, true, s, 500);
 	in->starting = one_in(s, 1000);
 }
@@ -150,8 +157,10 @@ static void command(struct world *w, uint64_t *s)
 	/* They would end what the others are to break. */
 	if ((m.verb == CYCLE_STOP || m.verb == CYCLE_ESTOP) && !one_in(s, 40))
 		return;
-	if (cycle_command(&w->r.c, &m) == ANSWER_DONE && reset)
-		resets++;
+	if (cycle_command(&w->r.c, &m) == ANSWER_DONE) {
+		resets += reset;
+		w->stopped = w->stopped || m.verb == CYCLE_STOP;
+	}
 	if (reset && w->r.c.fault.latched == before && before)
 		kept++;
 }
@@ -240,7 +249,7 @@ static void check_motion(struct world *w, const struct forbidden *f)
 static bool goes_to_fault(const struct cycle *c)
 {
 	return c->state == STATE_FAULT ||
-	       (c->state == STATE_HOLD && c->hold.then == STATE_FAULT) ||
+	       (c->state == STATE_HOLD && c->hold.fails) ||
 	       (cycle_is_manual(c) && c->manual.halt);
 }
 
@@ -264,6 +273,15 @@ static void check_latch(struct world *w, const struct forbidden *f)
 		latched[__builtin_ctzll(m)]++;
 	s->untold = 0;
 	w->latched_before = s->latched;
+}
+
+/* No start takes a stop back, and no fault with its reset does. */
+static void check_stop(struct world *w)
+{
+	if (!w->r.c.loaded)
+		w->stopped = false;
+	if (w->stopped)
+		assert_int_equal(w->r.c.state, STATE_HOLD);
 }
 
 /* -- A machine's life ----------------------------------------------------- */
@@ -291,6 +309,7 @@ static void period(struct world *w, uint64_t *s)
 	check_drives(w, &f);
 	check_motion(w, &f);
 	check_latch(w, &f);
+	check_stop(w);
 }
 
 static void live(uint64_t *s)

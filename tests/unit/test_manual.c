@@ -64,6 +64,25 @@ static void a_jog_waits_for_a_slow_machine(void **state)
 	assert_int_equal(b.out.target[INTERP_X], -1009);
 }
 
+/* It is busy for long, as where the host was late; then it takes any number. */
+static void what_waited_follows_no_faster_than_the_axis_may(void **state)
+{
+	struct cycle_config k = manual_config();
+	struct bench b;
+
+	(void)state;
+	k.axis[INTERP_X].jog_mm_s = k.axis[INTERP_X].v_max_mm_s;
+	bench_init(&b, &k);
+	jog(&b, INTERP_X, -20);
+	for (int i = 0; i < 2000; i++) {
+		b.in.busy = i % 100 < 30;
+		period(&b);
+	}
+	assert_int_equal(b.c.state, STATE_IDLE);
+	assert_int_equal(b.out.target[INTERP_X], -20000);
+	assert_int_equal(b.most, 50);
+}
+
 static void a_hold_brakes_a_jog_and_ends_it(void **state)
 {
 	const struct cycle_config k = manual_config();
@@ -274,6 +293,7 @@ int main(void)
 		cmocka_unit_test(a_jog_goes_as_far_as_told),
 		cmocka_unit_test(a_jog_is_refused_where_it_cannot_go),
 		cmocka_unit_test(a_jog_waits_for_a_slow_machine),
+		cmocka_unit_test(what_waited_follows_no_faster_than_the_axis_may),
 		cmocka_unit_test(a_hold_brakes_a_jog_and_ends_it),
 		cmocka_unit_test(a_touch_ends_a_jog_but_lets_it_come_away),
 		cmocka_unit_test(an_e_stop_ends_it_at_once),

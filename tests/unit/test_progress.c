@@ -216,6 +216,30 @@ static void a_wait_that_has_a_name_may_last(void **st)
 	}
 }
 
+/* The servo backs off the cut and comes on again, some periods each: at each
+ * look the machine may be found at one place, in travel. */
+static void a_narrow_gap_at_the_begin_of_a_cut_is_not_stuck(void **st)
+{
+	(void)st;
+	for (int i = 0; i < 40; i++) {
+		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+		struct cycle_config k = usual_config();
+		struct rig r;
+
+		k.gap.gain_mm_s_v = 0.005 + 0.0005 * i;
+		rapid_to(b, -2);
+		cut_to(b, -5);
+		rig_load(&r, b, &k);
+		r.in.plc = well();
+		step(&r, OPEN_V);
+		tell(&r, CYCLE_START);
+		until(&r, STATE_APPROACH, OPEN_V, SECONDS(2));
+		steps(&r, 20, SECONDS(3));
+		assert_int_equal(r.c.fault.first, FAULT_NONE);
+		rig_free(&r);
+	}
+}
+
 #define FAR_TURN	3
 
 /* Its third line has a pulse of X, on which C turns far. */
@@ -287,6 +311,7 @@ int main(void)
 		cmocka_unit_test(a_soft_start_is_not_stuck),
 		cmocka_unit_test(a_fast_move_after_a_slow_one_is_not_stuck),
 		cmocka_unit_test(slowing_down_for_a_slow_place_is_not_stuck),
+		cmocka_unit_test(a_narrow_gap_at_the_begin_of_a_cut_is_not_stuck),
 		cmocka_unit_test(a_wait_that_has_a_name_may_last),
 	};
 

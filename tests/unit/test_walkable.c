@@ -66,7 +66,7 @@ static bool compile(struct job *j, const struct interp_machine *m,
 static bool stands(const struct rig *r)
 {
 	return !r->c.hold.moving && r->c.mover.v_mm_s == 0 &&
-	       r->c.hold.then == STATE_HOLD;
+	       !r->c.hold.fails && !r->c.job.stopped;
 }
 
 /* A cycle; it comes on, or it waits for what it should. */

@@ -51,10 +51,21 @@ static int64_t left_pulses(const struct cycle *c)
 	       c->out.target[h->axis];
 }
 
+/* What waited while the machine was busy follows no faster than the axis may
+ * go. */
+static int64_t period_pulses(const struct cycle *c)
+{
+	const struct manual_axis *a = manual_axis(c);
+
+	return (int64_t)fmin(c->config.points_max,
+			     ceil(a->v_max_mm_s * law_period_s(c) /
+				  a->pulse_mm));
+}
+
 void manual_move(struct cycle *c, double ds_mm)
 {
 	struct manual *h = &c->manual;
-	const int64_t most = c->busy ? 0 : c->config.points_max;
+	const int64_t most = c->busy ? 0 : period_pulses(c);
 	int64_t left;
 
 	h->gone_mm += ds_mm;
@@ -287,13 +298,20 @@ static bool jog_go(struct cycle *c)
 	       fabs(h->goal_mm - h->gone_mm) < MOVER_ONTO_MM * 2;
 }
 
+/* The time of a press goes on counting while the axes wait for power. */
+bool manual_ends(const struct cycle *c)
+{
+	const struct manual *h = &c->manual;
+
+	return h->halt || (c->state == STATE_JOG && h->pressed &&
+			   c->count >= h->until);
+}
+
 bool manual_go(struct cycle *c, const struct io_inputs *in)
 {
 	struct manual *h = &c->manual;
 
-	/* This goes on counting while the axes wait for power. */
-	if (c->state == STATE_JOG && h->pressed && c->count >= h->until)
-		h->halt = true;
+	h->halt = manual_ends(c);
 	if (!h->halt)
 		return c->state == STATE_HOME ? home_go(c, in) : jog_go(c);
 	return h->mover.v_mm_s == 0 || manual_stop(c);

@@ -105,6 +105,9 @@ int manual_press(struct cycle *c, uint32_t arg, double mm_s, int may,
 /** manual_home() - begin to home @axis, or MANUAL_ALL_AXES. */
 int manual_home(struct cycle *c, uint32_t axis);
 
+/** manual_ends() - is it told to end, or the time of its press over? */
+bool manual_ends(const struct cycle *c);
+
 /** manual_go() - one period of what was begun. Return: true once it is over. */
 bool manual_go(struct cycle *c, const struct io_inputs *in);
 

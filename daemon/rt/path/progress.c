@@ -13,11 +13,16 @@
 #define STILL_S		1.0		/* at any speed */
 #define STILL_POINTS	8.0		/* at a low one */
 
-/* A number that differs between a lattice point and those near it. */
+/*
+ * A number that differs between a lattice point and those near it.  It differs
+ * too if the gap servo was at work: a narrow gap at the begin of a cut lets the
+ * machine go to and fro between travel and erode.
+ */
 static uint64_t stamp(const struct cycle *c)
 {
 	return (uint64_t)c->cursor.tick + ((uint64_t)c->cursor.index << 40) +
-	       ((uint64_t)c->escape.tick << 20);
+	       ((uint64_t)c->escape.tick << 20) +
+	       (c->totals.erode_cycles << 56);
 }
 
 /* The gap says how fast to go, and it may say to stand. */
