@@ -3,8 +3,10 @@
 #include "upload.h"
 
 #include "plain.h"
+#include "store_text.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -106,10 +108,29 @@ static const struct upload_verdict *verdict_find(const struct uploads *u,
 	return NULL;
 }
 
+static void *free_main(void *text)
+{
+	free(text);
+	return NULL;
+}
+
+/* To give 64 MiB back takes the kernel longer than all else that is done here,
+ * so a thread waits for it. */
+static void free_text(struct upload *up)
+{
+	pthread_t thread;
+
+	if (up->bytes > STORE_TEXT_INSIDE &&
+	    pthread_create(&thread, NULL, free_main, up->text) == 0)
+		pthread_detach(thread);
+	else
+		free(up->text);
+}
+
 static void upload_clear(struct upload *up)
 {
 	free(up->seen);
-	free(up->text);
+	free_text(up);
 	*up = (struct upload) { .state = UPLOAD_FREE };
 }
 
