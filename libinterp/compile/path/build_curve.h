@@ -49,7 +49,8 @@ struct curve_plan {
 					 * within the chord error */
 	double pulses_mm[INTERP_NAXES];	/* of each axis */
 	double pulse_mm;		/* the finest */
-	double slowest_mm_s, least_mm_s2;	/* never less than these */
+	double slowest_mm_s;			/* never less */
+	double a_mm_s2, j_mm_s3;		/* of the weakest axis */
 	uint32_t moved, turns;
 	struct interp_curve_walk walk;
 	size_t mark;

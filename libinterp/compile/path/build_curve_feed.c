@@ -39,8 +39,8 @@ void build_curve_limit(struct curve_plan *p)
 {
 	const struct interp_build_options *o = &p->b->o;
 	struct interp_nurbs_limits *l = &p->limits;
-	double jerk = HUGE_VAL, acc = HUGE_VAL, top = 0;
 
+	p->a_mm_s2 = p->j_mm_s3 = HUGE_VAL;
 	*l = (struct interp_nurbs_limits) {
 		.chord_error_mm = HUGE_VAL, .period_s = 1,
 		.centripetal_mm_s2 = HUGE_VAL,
@@ -56,16 +56,14 @@ void build_curve_limit(struct curve_plan *p)
 		l->j_mm_s3[k] = INTERP_CURVE_JERK_ROUND * m->j_max_mm_s3;
 		p->pulses_mm[p->curve.axis[k]] = 1 / m->pulse_mm;
 		p->pulse_mm = fmin(p->pulse_mm, m->pulse_mm);
-		jerk = fmin(jerk, m->j_max_mm_s3);
-		acc = fmin(acc, m->a_max_mm_s2);
-		top = fmax(top, m->v_max_mm_s);
+		p->j_mm_s3 = fmin(p->j_mm_s3, m->j_max_mm_s3);
+		p->a_mm_s2 = fmin(p->a_mm_s2, m->a_max_mm_s2);
 		if (k < p->curve.counted)
 			l->centripetal_mm_s2 = fmin(l->centripetal_mm_s2,
 						    l->a_mm_s2[k]);
 	}
 	/* The axes do not notice a bend whose radius is less than a pulse. */
-	p->slowest_mm_s = cbrt(jerk * p->pulse_mm * p->pulse_mm);
-	p->least_mm_s2 = interp_bend_least(top, acc, jerk);
+	p->slowest_mm_s = cbrt(p->j_mm_s3 * p->pulse_mm * p->pulse_mm);
 }
 
 static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)
@@ -88,9 +86,10 @@ static double set_off_mm_s(const struct curve_plan *p,
 
 	for (uint32_t k = from; !w->cusp && k < to; k++)
 		if (w->d[1][k] != 0)
-			v = fmin(v, INTERP_CURVE_JERK_BOTH *
-				    axis_of(p, k)->j_max_mm_s3 /
-				    (3 * fabs(w->d[1][k]) * p->least_mm_s2));
+			v = fmin(v, interp_bend_mm_s(
+				INTERP_CURVE_JERK_BOTH *
+					axis_of(p, k)->j_max_mm_s3,
+				3 * fabs(w->d[1][k]), p->a_mm_s2, p->j_mm_s3));
 	return v;
 }
 
@@ -253,7 +252,8 @@ void build_curve_along(const struct curve_plan *p, double v_mm_s,
 		a = fmin(a, left_mm_s2(p, k, v_mm_s));
 		a = fmin(a, fmax(left_mm_s3(p, k, v_mm_s) / 2 /
 				 (3 * p->seen.d[1][k] * v_mm_s),
-				 p->least_mm_s2));
+				 interp_bend_least(v_mm_s, p->a_mm_s2,
+						   p->j_mm_s3)));
 	}
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
 		const double left = left_mm_s3(p, k, v_mm_s);

@@ -155,20 +155,17 @@ static double round_bend(const struct pass *w, const struct headings *h,
 			 double v_mm_s, struct along *ret)
 {
 	const double r = h->bend_mm;
-	double a = INFINITY, j = INFINITY, top = 0, v, across, both, speed_up;
+	double a = INFINITY, j = INFINITY, v, across, both, speed_up;
 
 	for (uint32_t k = 0; k < w->n; k++) {
 		if (h->first.rate[k] == 0 && h->last.rate[k] == 0)
 			continue;
 		a = smaller(a, w->a_mm_s2[k]);
 		j = smaller(j, w->j_mm_s3[k]);
-		top = larger(top, w->v_mm_s[k]);
 	}
 	v = smaller(v_mm_s * h->share,
 		    pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
 				    INTERP_ARC_JERK_ROUND * j));
-	v = smaller(v, INTERP_ARC_JERK_BOTH * j * r /
-		    (3 * interp_bend_least(top, a, j)));
 	across = v * v / (r * a);
 	speed_up = smaller(sqrt(1 - across * across) * a,
 			INTERP_ARC_JERK_BOTH * j * r / (3 * v));

@@ -14,7 +14,7 @@
  * hardly alike.  It stands there, too, if that is quicker.
  *
  * Every segment belongs to a class.  From one class to the next, acceleration
- * or jerk is eight times less.  Softer segments between harder ones are a
+ * or jerk is half as much.  Softer segments between harder ones are a
  * stretch of their own, or they are not; whatever is quicker.
  */
 #include "speed/pass.h"
@@ -22,7 +22,7 @@
 #include <math.h>
 
 /* A power of two, from class to class. */
-#define CLASS_BITS	3
+#define CLASS_BITS	1
 #define CLASSES_MAX	40
 
 /* Stands must save so much of the time. */
@@ -141,12 +141,53 @@ static struct stretch run_softer(const struct stretches *w, uint32_t from,
 	return t;
 }
 
+static struct stretch as_soft(const struct stretch *t,
+			      const struct stretch *as)
+{
+	struct stretch soft = *t;
+
+	soft.a_mm_s2 = as->a_mm_s2;
+	soft.j_mm_s3 = as->j_mm_s3;
+	return soft;
+}
+
+/* What it saves not to stand between two ways that are as soft as @as. */
+static double pass_s(const struct stretch *a, const struct stretch *b,
+		     const struct stretch *as)
+{
+	const double v = fmin(a->mm / a->cruise_s, b->mm / b->cruise_s);
+
+	return a->mm > 0 && b->mm > 0 ? ramp_s(as, v) : 0;
+}
+
+/* The time of [@from, @to) as one move, @all.  Where a slow way lies between
+ * faster ones it slows down and sets off again as softly. */
+static double one_move_s(const struct stretches *w, uint32_t from, uint32_t to,
+			 int c, const struct stretch *all)
+{
+	struct stretch last = none(from);
+	double sum = 0;
+
+	for (uint32_t i = from; i < to; ) {
+		const struct stretch hard = run(w, i, to, c, false);
+		const struct stretch soft = run_softer(w, hard.to, to, c);
+		const struct stretch one = as_soft(&hard, all);
+		const struct stretch two = as_soft(&soft, all);
+
+		sum += time_s(&one) + time_s(&two) - pass_s(&last, &one, all) -
+		       pass_s(&one, &two, all);
+		last = two;
+		i = soft.to;
+	}
+	return fmax(sum, time_s(all));
+}
+
 /* Put stands into [@from, @to), where it is class @c at least.  Return: the
  * time. */
 static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
 {
 	struct stretch all = none(from);
-	double sum = 0;
+	double sum = 0, one;
 
 	for (uint32_t i = from; i < to; ) {
 		const struct stretch hard = run(w, i, to, c, false);
@@ -163,11 +204,12 @@ static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
 		if (i < to)
 			set_stand(w, i - 1, true);
 	}
-	if (sum < WORTH * time_s(&all))
+	one = one_move_s(w, from, to, c, &all);
+	if (sum < WORTH * one)
 		return sum;
 	for (uint32_t i = from; i + 1 < to; i++)
 		set_stand(w, i, false);
-	return time_s(&all);
+	return one;
 }
 
 /* Up to the next node where the length passes to other axes. */
@@ -180,16 +222,6 @@ static struct stretch part(const struct stretches *w, uint32_t from,
 		append(&t, &w->segs[t.to]);
 	while (t.to < to && !(w->segs[t.to - 1].flags & INTERP_SEG_STAND));
 	return t;
-}
-
-static struct stretch as_soft(const struct stretch *t,
-			      const struct stretch *as)
-{
-	struct stretch soft = *t;
-
-	soft.a_mm_s2 = as->a_mm_s2;
-	soft.j_mm_s3 = as->j_mm_s3;
-	return soft;
 }
 
 /* One move over both parts has the limits of the softer part all the way.  At

@@ -82,14 +82,15 @@
 #define INTERP_CURVE_JERK_BOTH	0.4
 
 /*
- * Of the acceleration, that must be left to speed up on a bend: one too tight
- * for that is gone round slower, for a move has the least of all its way.  Of
- * an acceleration that the jerk lets no move come to, nothing is kept: from 0
- * to the top speed none takes more than sqrt(v * j).
+ * Of the acceleration, that must be left to speed up on the bend of a curve:
+ * one too tight for that is gone round slower, for a move has the least of all
+ * its way.  Of an acceleration that the jerk lets no move come to, nothing is
+ * kept: from 0 to @v_mm_s none takes more than sqrt(v * j).  An arc always
+ * leaves more.
  */
 #define INTERP_BEND_LEAST	0.05
 
-/** interp_bend_least() - that acceleration; @v_mm_s is the top speed. */
+/** interp_bend_least() - that acceleration, where the speed is @v_mm_s. */
 static inline double interp_bend_least(double v_mm_s, double a_mm_s2,
 				       double j_mm_s3)
 {
@@ -97,6 +98,17 @@ static inline double interp_bend_least(double v_mm_s, double a_mm_s2,
 			    sqrt(v_mm_s * j_mm_s3) : a_mm_s2;
 
 	return INTERP_BEND_LEAST * most;
+}
+
+/** interp_bend_mm_s() - the speed at which that acceleration and @per_mm take
+ *  the jerk @left: per_mm * v * interp_bend_least(v) = left. */
+static inline double interp_bend_mm_s(double left_mm_s3, double per_mm,
+				      double a_mm_s2, double j_mm_s3)
+{
+	const double k = left_mm_s3 / (per_mm * INTERP_BEND_LEAST);
+	const double by_a = k / a_mm_s2, by_j = cbrt(k * k / j_mm_s3);
+
+	return by_a > by_j ? by_a : by_j;
 }
 
 struct interp_limits {
