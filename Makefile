@@ -42,8 +42,11 @@ Q	:= $(if $(filter 1,$(V)),,@)
 say	= $(if $(filter 1,$(V)),,@printf '  %-7s %s\n' '$1' '$2')
 
 PREFIX	?= /usr/local
-BINDIR	= $(DESTDIR)$(PREFIX)/bin
-UNITDIR	= $(DESTDIR)/usr/lib/systemd/system
+# For the shell, which would take a name with blanks for two.
+INTO	= '$(DESTDIR)'
+BELOW	= '$(DESTDIR)$(PREFIX)'
+BINDIR	= $(BELOW)/bin
+UNITDIR	= $(INTO)/usr/lib/systemd/system
 VERSION	:= $(shell sed -n 's/^\#\# \([0-9][0-9.]*\).*/\1/p' CHANGELOG.md | head -n 1)
 
 # How many tests run side by side.
@@ -138,7 +141,7 @@ INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon $(WORDS_H) $(INC_values) $(MODEL
 INC_sign	= -Imessages/sign
 INC_client	= -Iclients/client -Icommon $(WORDS_H) -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
-INC_ctl		= -Iclients/ctl -Icommon -Idaemon/io -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
+INC_ctl		= -Iclients/ctl -Icommon -Idaemon/config -Idaemon/io -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
 INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_panel	= -Iclients/panel -Icommon $(WORDS_H) $(INC_values) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
@@ -293,8 +296,8 @@ $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_
 $(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
-$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
-	$(call link,-llcm -lsodium -ljansson -larchive -lncursesw -ltinfo $(LIBGPIOD) -lm)
+$(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
+	$(call link,-linih -llcm -lsodium -ljansson -larchive -lncursesw -ltinfo $(LIBGPIOD) -lm)
 
 $(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -lm)
@@ -368,7 +371,7 @@ $(B)/web/node_modules.stamp: $(WEB)/package.json $(WEB)/package-lock.json
 	$(call say,NPM,$(WEB))
 	$(Q)mkdir -p $(B)/web
 	$(Q)cp $(WEB)/package.json $(WEB)/package-lock.json $(WEB)/.npmrc $(B)/web
-	$(Q)cd $(B)/web && npm ci --silent
+	$(Q)cd $(B)/web && npm ci --loglevel=error >/dev/null
 	$(Q)touch $@
 
 $(B)/panel.stamp: $(B)/web/node_modules.stamp $(WEB_SRC) $(B)/edm-panel
@@ -378,8 +381,8 @@ $(B)/panel.stamp: $(B)/web/node_modules.stamp $(WEB_SRC) $(B)/edm-panel
 		$(WEB)/*.mjs $(WEB)/tsconfig.json $(B)/web
 	$(Q)$(B)/edm-panel --print-words > $(B)/web/src/machine.json
 	$(Q)cd $(B)/web && npm run --silent check && \
-		EDM_PANEL_OUT=$(abspath $(B)/panel) npm run --silent build -- \
-			--logLevel warn && node finish.mjs $(abspath $(B)/panel)
+		EDM_PANEL_OUT='$(CURDIR)/$(B)/panel' npm run --silent build -- \
+			--logLevel warn && node finish.mjs '$(CURDIR)/$(B)/panel'
 	@touch $@
 
 # -- The commands -------------------------------------------------------------
@@ -754,82 +757,90 @@ ZSH_COMPLETION = share/zsh/site-functions
 
 EXAMPLES = $(wildcard examples/*.ini examples/*.ngc examples/*.tech \
 	   examples/*.enc examples/*.maps)
+SHARED	= messages/edm.lcm messages/edm.idl messages/edmd.eds \
+	  messages/edmd.dbc $(SHEETS) systemd/edmd-can.conf
+PAPERS	= README.md CHANGELOG.md LICENSE $(wildcard docs/*.md)
+DIALECT_FILES = $(wildcard dialects/*.ini)
 
 install: all panel
 	$(call say,INSTALL,$(DESTDIR)$(PREFIX))
-	$(Q)install -d $(BINDIR) $(UNITDIR) $(DESTDIR)/usr/lib/sysusers.d \
-		$(DESTDIR)/usr/lib/udev/rules.d $(DESTDIR)/etc/edmd \
-		$(DESTDIR)$(PREFIX)/share/man/man1 \
-		$(DESTDIR)$(PREFIX)/share/man/man8 \
-		$(DESTDIR)$(PREFIX)/share/edmd
+	$(Q)install -d $(BINDIR) $(UNITDIR) $(INTO)/usr/lib/sysusers.d \
+		$(INTO)/usr/lib/udev/rules.d $(INTO)/etc/edmd \
+		$(BELOW)/share/man/man1 \
+		$(BELOW)/share/man/man8 \
+		$(BELOW)/share/edmd
 	$(Q)install -m 755 $(PROGRAMS) $(BINDIR)
-	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/panel/assets
-	$(Q)install -m 644 $(B)/panel/*.gz $(DESTDIR)$(PREFIX)/share/edmd/panel
+	$(Q)install -d $(BELOW)/share/edmd/panel/assets
+	$(Q)install -m 644 $(B)/panel/*.gz $(BELOW)/share/edmd/panel
 	$(Q)install -m 644 $(B)/panel/assets/*.gz \
-		$(DESTDIR)$(PREFIX)/share/edmd/panel/assets
+		$(BELOW)/share/edmd/panel/assets
 	$(Q)for u in systemd/*.service.in; do \
 		sed 's,@BINDIR@,$(PREFIX)/bin,g' $$u \
 			> $(UNITDIR)/$$(basename $$u .in) && \
 		chmod 644 $(UNITDIR)/$$(basename $$u .in); done
 	$(Q)install -m 644 systemd/edmd.sysusers \
-		$(DESTDIR)/usr/lib/sysusers.d/edmd.conf
-	$(Q)install -d $(DESTDIR)/usr/lib/tmpfiles.d
+		$(INTO)/usr/lib/sysusers.d/edmd.conf
+	$(Q)install -d $(INTO)/usr/lib/tmpfiles.d
 	$(Q)install -m 644 systemd/edmd.tmpfiles \
-		$(DESTDIR)/usr/lib/tmpfiles.d/edmd.conf
+		$(INTO)/usr/lib/tmpfiles.d/edmd.conf
 	$(Q)install -m 644 systemd/edmd.rules \
-		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules
-	$(Q)[ -e $(DESTDIR)/etc/edmd/machine.ini ] || install -m 644 \
-		examples/template.ini $(DESTDIR)/etc/edmd/machine.ini
-	$(Q)install -m 644 messages/edm.lcm messages/edm.idl \
-		messages/edmd.eds messages/edmd.dbc $(SHEETS) \
-		systemd/edmd-can.conf \
-		$(DESTDIR)$(PREFIX)/share/edmd
-	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/examples \
-		$(DESTDIR)$(PREFIX)/share/doc/edmd
-	$(Q)install -m 644 $(EXAMPLES) $(DESTDIR)$(PREFIX)/share/edmd/examples
-	$(Q)install -m 644 README.md CHANGELOG.md LICENSE docs/*.md \
-		$(DESTDIR)$(PREFIX)/share/doc/edmd
-	$(Q)install -d $(DESTDIR)$(PREFIX)/share/edmd/dialects
-	$(Q)install -m 644 dialects/*.ini \
-		$(DESTDIR)$(PREFIX)/share/edmd/dialects
-	$(Q)install -d $(DESTDIR)$(PREFIX)/$(BASH_COMPLETION) \
-		$(DESTDIR)$(PREFIX)/$(ZSH_COMPLETION)
+		$(INTO)/usr/lib/udev/rules.d/60-edmd.rules
+	$(Q)[ -e $(INTO)/etc/edmd/machine.ini ] || install -m 644 \
+		examples/template.ini $(INTO)/etc/edmd/machine.ini
+	$(Q)install -m 644 $(SHARED) $(BELOW)/share/edmd
+	$(Q)install -d $(BELOW)/share/edmd/examples \
+		$(BELOW)/share/doc/edmd
+	$(Q)install -m 644 $(EXAMPLES) $(BELOW)/share/edmd/examples
+	$(Q)install -m 644 $(PAPERS) $(BELOW)/share/doc/edmd
+	$(Q)install -d $(BELOW)/share/edmd/dialects
+	$(Q)install -m 644 $(DIALECT_FILES) $(BELOW)/share/edmd/dialects
+	$(Q)cd $(BELOW)/share && sha256sum $(addprefix edmd/,$(notdir $(SHARED)) \
+		$(addprefix examples/,$(notdir $(EXAMPLES))) $(DIALECT_FILES)) \
+		$(addprefix doc/edmd/,$(notdir $(PAPERS))) > edmd/installed
+	$(Q)install -d $(BELOW)/$(BASH_COMPLETION) \
+		$(BELOW)/$(ZSH_COMPLETION)
 	$(Q)for p in $(PROGRAMS); do n=$$(basename $$p); \
-		packaging/completion bash $$p > $(DESTDIR)$(PREFIX)/$(BASH_COMPLETION)/$$n && \
-		packaging/completion zsh $$p > $(DESTDIR)$(PREFIX)/$(ZSH_COMPLETION)/_$$n || exit 1; done
-	$(Q)install -m 644 docs/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
-	$(Q)install -m 644 docs/man/*.8 $(DESTDIR)$(PREFIX)/share/man/man8
+		packaging/completion bash $$p > $(BELOW)/$(BASH_COMPLETION)/$$n && \
+		packaging/completion zsh $$p > $(BELOW)/$(ZSH_COMPLETION)/_$$n || exit 1; done
+	$(Q)install -m 644 docs/man/*.1 $(BELOW)/share/man/man1
+	$(Q)install -m 644 docs/man/*.8 $(BELOW)/share/man/man8
 
 # Debian packages, into build/deb.  They are built in a folder of their own, with
 # what Debian hardens programs by, and without the name of this folder.
 DEB_FLAGS = -g0 -fstack-protector-strong -D_FORTIFY_SOURCE=2 \
-	    -ffile-prefix-map=$(CURDIR)=.
+	    -ffile-prefix-map='$(CURDIR)'=.
 DEB_B	= build-deb
 DEB_MAKE = $(MAKE) --no-print-directory B=$(DEB_B) OPT="-O2 $(DEB_FLAGS)" \
 	   HARDEN=-Wl,-z,relro,-z,now PREFIX=/usr \
-	   DESTDIR=$(CURDIR)/$(DEB_B)/deb/root
+	   DESTDIR=$(DEB_B)/deb/root
 .PHONY: deb
 deb:
 	@tests/setup deb
-	@$(DEB_MAKE) all panel
+	+@$(DEB_MAKE) all panel
 	$(Q)rm -rf $(DEB_B)/deb
-	@$(DEB_MAKE) install
-	$(Q)packaging/deb $(CURDIR)/$(DEB_B) $(CURDIR)/$(DEB_B)/deb/root \
-		$(CURDIR)/build/deb $(VERSION)
+	+@$(DEB_MAKE) install
+	$(Q)packaging/deb $(DEB_B) $(DEB_B)/deb/root build/deb $(VERSION)
 
-# All that install brought, but for /etc/edmd, which is the user's.
+# All that install brought, but for /etc/edmd, which is the user's, and for
+# what he has changed or added beside it.
 uninstall:
 	$(call say,REMOVE,$(DESTDIR)$(PREFIX))
 	$(Q)rm -f $(PROGRAMS:$(B)/%=$(BINDIR)/%) \
 		$(patsubst systemd/%.in,$(UNITDIR)/%,$(wildcard systemd/*.service.in)) \
-		$(DESTDIR)/usr/lib/sysusers.d/edmd.conf \
-		$(DESTDIR)/usr/lib/tmpfiles.d/edmd.conf \
-		$(PROGRAMS:$(B)/%=$(DESTDIR)$(PREFIX)/$(BASH_COMPLETION)/%) \
-		$(PROGRAMS:$(B)/%=$(DESTDIR)$(PREFIX)/$(ZSH_COMPLETION)/_%) \
-		$(DESTDIR)/usr/lib/udev/rules.d/60-edmd.rules \
-		$(patsubst docs/man/%,$(DESTDIR)$(PREFIX)/share/man/man1/%,$(wildcard docs/man/*.1)) \
-		$(patsubst docs/man/%,$(DESTDIR)$(PREFIX)/share/man/man8/%,$(wildcard docs/man/*.8))
-	$(Q)rm -rf $(DESTDIR)$(PREFIX)/share/edmd $(DESTDIR)$(PREFIX)/share/doc/edmd
+		$(INTO)/usr/lib/sysusers.d/edmd.conf \
+		$(INTO)/usr/lib/tmpfiles.d/edmd.conf \
+		$(PROGRAMS:$(B)/%=$(BELOW)/$(BASH_COMPLETION)/%) \
+		$(PROGRAMS:$(B)/%=$(BELOW)/$(ZSH_COMPLETION)/_%) \
+		$(INTO)/usr/lib/udev/rules.d/60-edmd.rules \
+		$(patsubst docs/man/%,$(BELOW)/share/man/man1/%,$(wildcard docs/man/*.1)) \
+		$(patsubst docs/man/%,$(BELOW)/share/man/man8/%,$(wildcard docs/man/*.8))
+	$(Q)rm -rf $(BELOW)/share/edmd/panel
+	$(Q)cd $(BELOW)/share 2>/dev/null || exit 0; \
+	LC_ALL=C sha256sum -c edmd/installed 2>/dev/null | \
+		sed -n 's/: OK$$//p' | xargs rm -f edmd/installed; \
+	rmdir edmd/examples edmd/dialects edmd doc/edmd 2>/dev/null; \
+	find edmd doc/edmd -type f -printf '  KEPT    %H/%P: not what was installed\n' \
+		2>/dev/null || true
 
 clean:
 	rm -rf build build-deb build-san build-tsan build-gpiod2 build-vm

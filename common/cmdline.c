@@ -2,6 +2,8 @@
 /* cmdline.c - a program's command line as one table */
 #include "cmdline.h"
 
+#include "standard.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <getopt.h>
@@ -28,7 +30,9 @@ static int refuse_value(const struct cmdline *o, const char *name,
 	char option[40];
 
 	snprintf(option, sizeof(option), "--%s", name);
-	return cmdline_refuse(o->program, option, text, wanted);
+	/* edmctl puts a blank before a negative number. */
+	return cmdline_refuse(o->program, option, text + (text[0] == ' '),
+			      wanted);
 }
 
 int cmdline_number(const struct cmdline *o, const char *name, const char *text,
@@ -169,6 +173,7 @@ int cmdline_take(const struct cmdline *o, void *to, int argc, char **argv,
 	struct option longs[CMDLINE_MAX + 3];
 	int opt, code;
 
+	standard_guard(o->program);
 	if (argc == 2 && strcmp(argv[1], "--list-options") == 0)
 		return list_options(o);
 	*ret = (struct cmdline_given) { .first = 0 };

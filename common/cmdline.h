@@ -60,7 +60,8 @@ struct cmdline_given {
 };
 
 /**
- * cmdline_take() - read @argv into the struct at @to.
+ * cmdline_take() - guard what standard.h guards, and read @argv into the struct
+ * at @to.
  *
  * Return: -1 to go on with what @ret says, or the program's exit code: help or
  * version was asked for, or something was refused.

@@ -419,7 +419,7 @@ static int join(struct talk *t, const struct talk_options *o, char *said)
 	wrong = udpm_url_read(&at, url);
 	if (wrong) {
 		snprintf(said, TALK_SAID_MAX, "URL %s: %s", url, wrong);
-		return -EINVAL;
+		return -EDESTADDRREQ;
 	}
 	/* LCM's library prints pages where there is no way.  Our own socket
 	 * meets that first. */

@@ -57,7 +57,7 @@ int ctl_unanswered(const struct ctl *c, int err)
 	if (!c->talk && (c->talk_err != -ENOENT || key_is_named(c))) {
 		fprintf(stderr, "edmctl: %s\n", c->said);
 		return c->talk_err == -ENETUNREACH ? EX_UNAVAILABLE :
-						     EX_NOPERM;
+		       c->talk_err == -EDESTADDRREQ ? EX_USAGE : EX_NOPERM;
 	}
 	if (c->talk && *talk_why(c->talk)) {
 		fprintf(stderr, "edmctl: %s\n", talk_why(c->talk));
@@ -70,18 +70,33 @@ int ctl_unanswered(const struct ctl *c, int err)
 	return EX_UNAVAILABLE;
 }
 
+/* The verb as it was typed: `electrode add` asks electrode-add, and `history
+ * JOB` asks show. */
+static void typed(char to[64], const struct ctl *c,
+		  const struct talk_question *q)
+{
+	const size_t n = strlen(c->verb);
+	const bool part = strncmp(q->verb, c->verb, n) == 0 &&
+			  q->verb[n] == '-';
+
+	snprintf(to, 64, "%s%s%s", c->verb, part ? " " : "",
+		 part ? q->verb + n + 1 : "");
+}
+
 int ctl_ask(struct ctl *c, const struct talk_question *q,
 	    struct talk_answer *ret)
 {
 	int err = c->talk ? talk_ask(c->talk, q, c->timeout_s, ret) :
 			    -ETIMEDOUT;
+	char verb[64];
 	int code;
 
 	if (err < 0)
 		return ctl_unanswered(c, err);
 	if (ret->code == 0)
 		return 0;
-	fprintf(stderr, "edmctl: %s%s%s: %s\n", q->verb, q->job ? " " : "",
+	typed(verb, c, q);
+	fprintf(stderr, "edmctl: %s%s%s: %s\n", verb, q->job ? " " : "",
 		q->job ? q->job : "", ret->reason);
 	code = ret->code;
 	talk_answer_free(ret);
@@ -92,14 +107,16 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 int ctl_say(struct ctl *c, const struct talk_question *q)
 {
 	struct talk_answer a;
+	char verb[64];
 	int err = ctl_ask(c, q, &a);
 
 	if (err)
 		return err;
+	typed(verb, c, q);
 	if (c->json)
 		printf("{\"verb\": \"%s\", \"code\": 0}\n", q->verb);
 	else
-		printf("%s: %s\n", q->verb, a.reason);
+		printf("%s: %s\n", verb, a.reason);
 	talk_answer_free(&a);
 	return 0;
 }
@@ -250,13 +267,32 @@ void ctl_when(char to[32], json_t *job, const char *key)
 		strftime(to, 32, "%Y-%m-%d %H:%M:%S", &tm);
 }
 
+/* Of the two first columns of a list. */
+struct wide {
+	int job, name;
+};
+
+static int characters(const char *utf8)
+{
+	int n = 0;
+
+	for (; *utf8; utf8++)
+		n += (*utf8 & 0xc0) != 0x80;
+	return n;
+}
+
+static void print_names(const char *job, const char *name, struct wide w)
+{
+	printf("%s%*s%s%*s", job, w.job + 1 - characters(job), "", name,
+	       w.name + 1 - characters(name), "");
+}
+
 static void print_queued(json_t *job)
 {
 	char at[32];
 
 	ctl_when(at, job, "submitted_us");
-	printf("%-14s %-24s %-8s %9.0f  %s%s\n", ctl_text_of(job, "job"),
-	       ctl_text_of(job, "name"), ctl_text_of(job, "state"),
+	printf("%-8s %9.0f  %s%s\n", ctl_text_of(job, "state"),
 	       ctl_number_of(job, "lines"), at,
 	       json_is_true(json_object_get(job, "hold")) ?
 	       "  waits for start" : "");
@@ -268,10 +304,9 @@ static void print_ended(json_t *job)
 
 	ctl_when(at, job, "ended_us");
 	ctl_duration(took, sizeof(took), ctl_number_of(job, "job_s"));
-	printf("%-14s %-24s %-8s %s  %10.3f mm  %s%s%s\n",
-	       ctl_text_of(job, "job"), ctl_text_of(job, "name"),
-	       ctl_text_of(job, "state"), at, ctl_number_of(job, "depth_mm"),
-	       took, *ctl_text_of(job, "reason") ? "  " : "",
+	printf("%-8s %s  %10.3f mm  %s%s%s\n", ctl_text_of(job, "state"), at,
+	       ctl_number_of(job, "depth_mm"), took,
+	       *ctl_text_of(job, "reason") ? "  " : "",
 	       ctl_text_of(job, "reason"));
 }
 
@@ -361,15 +396,33 @@ static void print_one(json_t *job)
 	print_changes(json_object_get(job, "changes"));
 }
 
+static int larger(int a, int b)
+{
+	return a > b ? a : b;
+}
+
 static void print_rows(json_t *rows, const char *head,
 		       void (*print)(json_t *job))
 {
+	struct wide w = { 14, 24 };
 	json_t *row;
 	size_t i;
 
-	printf("%s\n", json_array_size(rows) ? head : "none");
-	json_array_foreach(rows, i, row)
+	if (json_array_size(rows) == 0) {
+		puts("none");
+		return;
+	}
+	json_array_foreach(rows, i, row) {
+		w.job = larger(w.job, characters(ctl_text_of(row, "job")));
+		w.name = larger(w.name, characters(ctl_text_of(row, "name")));
+	}
+	print_names("JOB", "NAME", w);
+	puts(head);
+	json_array_foreach(rows, i, row) {
+		print_names(ctl_text_of(row, "job"), ctl_text_of(row, "name"),
+			    w);
 		print(row);
+	}
 }
 
 int ctl_ask_json(struct ctl *c, const struct talk_question *q, json_t **ret)
@@ -449,16 +502,13 @@ static int list(struct ctl *c, const char *verb, const char *head,
 
 int ctl_queue(struct ctl *c)
 {
-	return list(c, "queue",
-		    "JOB            NAME                     STATE        LINES"
-		    "  SUBMITTED", print_queued);
+	return list(c, "queue", "STATE        LINES  SUBMITTED", print_queued);
 }
 
 int ctl_ended(struct ctl *c)
 {
-	return list(c, "history",
-		    "JOB            NAME                     STATE    ENDED    "
-		    "                   DEPTH  TIME", print_ended);
+	return list(c, "history", "STATE    ENDED                       DEPTH"
+		    "  TIME", print_ended);
 }
 
 int ctl_show(struct ctl *c)

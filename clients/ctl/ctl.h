@@ -141,6 +141,8 @@ void ctl_duration(char *to, size_t size, double s);
 
 /* -- line.c: progress in one line ----------------------------------------- */
 
+#define LINE_MAX_CHARS	320
+
 struct line {
 	bool tty;
 	bool drawn;			/* there is something to erase or to
@@ -148,12 +150,13 @@ struct line {
 	double told_s;			/* when the last line was printed */
 	struct mean feed;
 	char state[3 * TALK_WORD_MAX];	/* of that line */
+	char text[LINE_MAX_CHARS];	/* of the last status; tty: unused */
 };
 
 void line_init(struct line *l);
 /**
- * line_status() - draw the line.  If stderr is not a terminal, print it once a
- * second or on a change.
+ * line_status() - draw the line.  If stdout is not a terminal, print it once a
+ * second or on a change, and no text twice in a row.
  */
 void line_status(struct line *l, const struct talk_status *s);
 /** line_words() - the same for a text, every few seconds. */

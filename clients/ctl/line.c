@@ -4,19 +4,23 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #define BAR_CHARS	24
 #define BAR_LEAST	8
-#define LINE_MAX_CHARS	320
 #define PLAIN_EVERY_S	1.0
 #define WORDS_EVERY_S	5.0
 
 void line_init(struct line *l)
 {
-	*l = (struct line) { .tty = isatty(STDOUT_FILENO) };
+	const char *term = getenv("TERM");
+
+	/* A terminal that cannot erase takes lines, as a file does. */
+	*l = (struct line) { .tty = isatty(STDOUT_FILENO) && term && *term &&
+				    strcmp(term, "dumb") != 0 };
 }
 
 void ctl_duration(char *to, size_t size, double s)
@@ -129,6 +133,10 @@ void line_status(struct line *l, const struct talk_status *s)
 	l->told_s = now_s;
 	memcpy(l->state, state, sizeof(state));
 	describe(text, sizeof(text), s, mean_now(&l->feed, now_s));
+	/* What is not erased is told once. */
+	if (!l->tty && strcmp(text, l->text) == 0)
+		return;
+	memcpy(l->text, text, sizeof(text));
 	draw(l, text);
 }
 

@@ -6,6 +6,7 @@
 
 #include "cmdline.h"
 #include "names.h"
+#include "nearest.h"
 
 #include <math.h>
 #include <sodium.h>
@@ -298,6 +299,19 @@ static const struct verb *verb_find(const char *name)
 	return NULL;
 }
 
+static int refuse_verb(const char *name)
+{
+	struct nearest near;
+
+	nearest_init(&near, name);
+	for (size_t i = 0; i < NVERBS; i++)
+		nearest_offer(&near, verbs[i].name);
+	fprintf(stderr, "edmctl: no verb '%s'; %s%s%s--help lists them\n",
+		name, near.word[0] ? "did you mean " : "", near.word,
+		near.word[0] ? "? " : "");
+	return EX_USAGE;
+}
+
 static void word_take(struct words *w, char *word)
 {
 	/* The blank of negatives_keep() is removed. */
@@ -321,18 +335,16 @@ static int parse(struct ctl *c, int argc, char **argv,
 		return cmdline_refuse("edmctl", "no", "verb",
 				      "--help lists the verbs");
 	*ret_verb = verb_find(w.at[0]);
-	if (!*ret_verb) {
-		fprintf(stderr, "edmctl: no verb '%s'; --help lists them\n",
-			w.at[0]);
-		return EX_USAGE;
-	}
+	if (!*ret_verb)
+		return refuse_verb(w.at[0]);
 	c->verb = (*ret_verb)->name;
 	err = options_check(*ret_verb, &given);
 	if (err == 0)
 		err = arguments_take(c, *ret_verb, w.n - 1, w.at + 1);
 	if (err == 0 && !names_machine_ok(c->machine))
-		err = cmdline_refuse("edmctl", "--machine", c->machine,
-				    NAMES_MACHINE_WANTED);
+		err = cmdline_refuse("edmctl", cmdline_has(&table, &given,
+				     "machine") ? "--machine" : "EDM_MACHINE",
+				     c->machine, NAMES_MACHINE_WANTED);
 	return err;
 }
 

@@ -7,6 +7,7 @@
  */
 #include "ctl.h"
 
+#include "config.h"
 #include "names.h"
 #include "written.h"
 
@@ -157,7 +158,8 @@ static bool is_rotary(char axis)
 
 static bool ask_axis(struct machine *m, char axis)
 {
-	static const double any[] = { -1e5, 1e5 }, above[] = { 1e-4, 1e5 };
+	static const double any[] = { -1e5, 1e5 }, pulse[] = { 1e-3, 1e3 };
+	static const double fast[] = { 1e-3, 1e5 };
 	const int i = (int)(strchr(AXES, axis) - AXES);
 	const char *unit = is_rotary(axis) ? "degrees" : "mm";
 	char q[96];
@@ -172,11 +174,11 @@ static bool ask_axis(struct machine *m, char axis)
 	} while (!(m->from[i] < m->to[i]));
 	snprintf(q, sizeof(q), "%c: one pulse, in thousandths of %s", axis,
 		 unit);
-	if (!numbers(m, q, "1", 1, above, (double *[]) { &m->pulse_um[i] }))
+	if (!numbers(m, q, "1", 1, pulse, (double *[]) { &m->pulse_um[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: fastest, %s a second", axis, unit);
 	return numbers(m, q, strcmp(m->backend, "gpio") == 0 ? "5" : "10", 1,
-		       above, (double *[]) { &m->v_max[i] });
+		       fast, (double *[]) { &m->v_max[i] });
 }
 
 static bool ask_gpio(struct machine *m, char axis)
@@ -350,6 +352,24 @@ static void put_all(FILE *f, const struct machine *m)
 	fprintf(f, "[nc]\ndialect = %s\n", m->dialect);
 }
 
+/* Each answer was good; whether they go together edmd's own reader says. */
+static int judge(const char *path)
+{
+	static struct machine_config config;
+	struct interp_diag diag;
+	const int err = config_read(&config, path, &diag);
+
+	if (err == -EINVAL) {
+		config_say(path, &diag);
+		fprintf(stderr, "edmctl: %s is written; mend that line before "
+			"edmd takes it\n", path);
+		return EX_CONFIG;
+	}
+	printf("%s is written; edmsim --machine '%s' --check PROGRAM tries "
+	       "it\n", path, path);
+	return 0;
+}
+
 int ctl_new_machine(struct ctl *c)
 {
 	static struct machine m;
@@ -374,9 +394,10 @@ int ctl_new_machine(struct ctl *c)
 	err = f ? written_close(f) : -errno;
 	if (err < 0) {
 		fprintf(stderr, "edmctl: %s: %s\n", c->arg, strerror(-err));
+		/* Half a file would be in the way of the next attempt. */
+		if (f)
+			unlink(c->arg);
 		return EX_CANTCREAT;
 	}
-	printf("%s is written; edmsim --machine %s --check PROGRAM tries it\n",
-	       c->arg, c->arg);
-	return 0;
+	return judge(c->arg);
 }

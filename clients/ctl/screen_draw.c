@@ -17,19 +17,20 @@
 #define TEXT_MAX	512
 #define ROOMY		20		/* rows from which there are blank
 					 * ones */
+#define NAME_EDGE	30		/* behind the name of the job */
 #define LABEL		9		/* columns in front of a chart */
 #define BAR_MOST	50
 #define OPEN_V		100.0		/* as long as it is not known */
 
 /*
- * Write one line of text, cut at the edge.  What the locale of the terminal
- * cannot show is a question mark.
+ * Write one line of text, cut at @edge.  What the locale of the terminal cannot
+ * show is a question mark.
  */
-static void put(int y, int x, attr_t how, const char *text)
+static void put_within(int y, int x, int edge, attr_t how, const char *text)
 {
 	wchar_t wide[TEXT_MAX];
 	mbstate_t state = { 0 };
-	int room = COLS - x, n = 0;
+	int room = (edge < COLS ? edge : COLS) - x, n = 0;
 
 	while (*text && n < TEXT_MAX - 1) {
 		wchar_t w = L'?';
@@ -54,6 +55,11 @@ static void put(int y, int x, attr_t how, const char *text)
 	attron(how);
 	mvaddwstr(y, x, wide);
 	attroff(how);
+}
+
+static void put(int y, int x, attr_t how, const char *text)
+{
+	put_within(y, x, COLS, how, text);
 }
 
 __attribute__((format(printf, 4, 5)))
@@ -165,9 +171,9 @@ static int draw_job(int y, const struct talk_status *t)
 	if (t->eta_s >= 0)
 		ctl_duration(left, sizeof(left), t->eta_s);
 	ctl_duration(took, sizeof(took), t->job_s);
-	say(y, 0, A_BOLD, "%s", t->job_name);
-	say(y, 30, A_NORMAL, "%-8s line %d of %d   %d wait", t->job_state,
-	    t->line, t->lines, t->queue_len);
+	put_within(y, 0, NAME_EDGE - 1, A_BOLD, t->job_name);
+	say(y, NAME_EDGE, A_NORMAL, "%-8s line %d of %d   %d wait",
+	    t->job_state, t->line, t->lines, t->queue_len);
 	draw_bar(y + 1, t->progress);
 	say(y + 2, 0, A_NORMAL, "place %.3f of %.3f mm, depth %.3f mm, time "
 	    "%s, left %s", t->place_mm, t->length_mm, t->depth_mm, took, left);

@@ -132,6 +132,14 @@ static void goes_on(const struct ctl *c, const char *job)
 		*job ? "job " : "the machine", job, c->machine);
 }
 
+/* stop would end the one before it. */
+static void waits_on(const struct ctl *c, const char *job)
+{
+	fprintf(stderr, "edmctl: no longer watching; job %s waits on.  edmctl "
+		"--machine %s queue shows it, remove %s takes it away\n", job,
+		c->machine, job);
+}
+
 static int watch_once(struct ctl *c, struct line *l,
 		      const struct talk_status *s)
 {
@@ -244,8 +252,10 @@ static void tell_why(struct ctl *c, const char *id, struct line *l)
 	talk_answer_free(&a);
 }
 
-/* Return: < 0 while the job goes on, else the exit code. */
-static int look(struct ctl *c, const char *id, struct line *l, double *heard_s)
+/* Return: < 0 while the job goes on, else the exit code.
+ * @waits: it has not begun. */
+static int look(struct ctl *c, const char *id, struct line *l, double *heard_s,
+		bool *waits)
 {
 	struct talk_question q = { .verb = "show", .job = id };
 	struct talk_answer a;
@@ -257,6 +267,7 @@ static int look(struct ctl *c, const char *id, struct line *l, double *heard_s)
 		return -1;
 	*heard_s = talk_now_s();
 	job = a.code ? NULL : json_loads(a.body, 0, NULL);
+	*waits = ctl_number_of(job, "begun_us") <= 0;
 	if (a.code) {
 		line_end(l);
 		fprintf(stderr, "edmctl: job %s: %s\n", id, a.reason);
@@ -293,6 +304,7 @@ int ctl_wait(struct ctl *c, const char *id)
 	struct line l;
 	double heard_s = talk_now_s(), asked_s = 0;
 	uint64_t seen = 0, events = 0;
+	bool waits = true;
 	int err = -1;
 
 	line_init(&l);
@@ -302,7 +314,7 @@ int ctl_wait(struct ctl *c, const char *id)
 		if (told || talk_now_s() - asked_s > ASK_S) {
 			events = talk_events(c->talk);
 			asked_s = talk_now_s();
-			err = look(c, id, &l, &heard_s);
+			err = look(c, id, &l, &heard_s, &waits);
 		}
 		if (err < 0 && talk_now_s() - heard_s > GIVE_UP_S) {
 			line_end(&l);
@@ -316,6 +328,9 @@ int ctl_wait(struct ctl *c, const char *id)
 	line_end(&l);
 	if (err >= 0)
 		return err;
-	goes_on(c, id);
+	if (waits)
+		waits_on(c, id);
+	else
+		goes_on(c, id);
 	return EX_TEMPFAIL;
 }

@@ -583,9 +583,10 @@ static int take(struct request *r, const char *path)
 	if (!post)
 		return r->route->run(r);
 	if (!read_name(r))
-		return answer_refusal(r, 400, "this name does not fit", "1 to "
-				     "63 bytes of UTF-8 without characters of "
-				     "control or of the direction of writing");
+		return answer_refusal(r, 400, "this name of a job cannot be "
+				     "taken", "1 to 63 bytes of UTF-8 "
+				     "without characters of control or of "
+				     "the direction of writing");
 	return open_body(r);
 }
 

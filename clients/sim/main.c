@@ -78,7 +78,7 @@ static int finish(struct sim_run *r)
 	if (!r->o->quiet)
 		report_print(r, to_stdout ? stderr : stdout);
 	if (r->o->report)
-		err = report_write(r, r->o->report);
+		err = report_write(r);
 	if (err == 0 && r->o->plot)
 		err = plot_finish(r->plot) < 0 ? EX_CANTCREAT : 0;
 	return err ? err : strcmp(r->result.outcome, "done") != 0;

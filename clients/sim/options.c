@@ -201,6 +201,9 @@ static int check_together(const struct sim_options *o)
 	if (o->from_line && o->from_mm > 0)
 		return refuse("--from-line", "with --from-place",
 			      "one of them");
+	if (o->check + (o->emit != NULL) + o->tune_servo + o->tune > 1)
+		return refuse("two", "of --check, --emit, --tune and "
+			      "--tune-contour", "one of them");
 	if (o->there_and_back && !o->dry_run)
 		return refuse("--there-and-back", "alone",
 			      "--dry-run beside it");
@@ -226,6 +229,9 @@ int edmsim_options_read(struct sim_options *o, int argc, char **argv)
 	code = cmdline_take(&table, o, argc, argv, &given);
 	if (code >= 0)
 		return code;
+	if (cmdline_has(&table, &given, "from-line") && o->from_line == 0)
+		return refuse("--from-line", "0", "the number of a line of "
+			      "the file, 1 is the first");
 	o->job = argv[given.first];
 	o->dry_run = o->dry_run || o->tune;
 	o->budget = floor(o->budget);

@@ -73,16 +73,21 @@ static struct plot *begin_plot(const struct sim_run *r)
 int record_open(struct sim_run *r)
 {
 	const struct sim_options *o = r->o;
-	int err = 0;
+	const struct {
+		const char *path;
+		FILE **f;
+	} out[] = {
+		{ o->pulses, &r->pulses }, { o->trace, &r->trace },
+		{ o->report, &r->report },
+	};
 
-	if (o->pulses)
-		err = open_out(&r->pulses, o->pulses);
-	if (err)
-		return err;
-	if (o->trace)
-		err = open_out(&r->trace, o->trace);
-	if (err)
-		return err;
+	for (size_t i = 0; i < sizeof(out) / sizeof(out[0]); i++) {
+		const int err = out[i].path ? open_out(out[i].f, out[i].path) :
+					      0;
+
+		if (err)
+			return err;
+	}
 	if (o->plot && !(r->plot = begin_plot(r)))
 		return EX_OSERR;
 	if (r->pulses) {
@@ -192,22 +197,24 @@ void record_cycle(struct sim_run *r)
 		plot_cycle(r);
 }
 
-static int close_out(FILE *f, const char *path)
+int record_shut(FILE *f, const char *path)
 {
+	const bool out = f == stdout;
 	const int err = f ? written_close(f) : 0;
 
 	if (err == 0)
 		return 0;
-	fprintf(stderr, "edmsim: %s: %s; it is not whole\n", path,
-		strerror(-err));
+	if (!out)		/* of that standard_guard() tells */
+		fprintf(stderr, "edmsim: %s: %s; it is not whole\n", path,
+			strerror(-err));
 	return EX_IOERR;
 }
 
 int record_close(struct sim_run *r)
 {
-	const int err = close_out(r->pulses, r->o->pulses);
-	const int f = close_out(r->trace, r->o->trace ? r->o->trace :
-							"trace");
+	const int err = record_shut(r->pulses, r->o->pulses);
+	const int f = record_shut(r->trace, r->o->trace ? r->o->trace :
+							  "trace");
 
 	return err ? err : f;
 }

@@ -134,24 +134,16 @@ static json_t *report(const struct sim_run *r)
 	return o;
 }
 
-int report_write(const struct sim_run *r, const char *path)
+int report_write(const struct sim_run *r)
 {
 	json_t *o = report(r);
-	FILE *f = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
-	int err = 0;
+	const int bad = json_dumpf(o, r->report, JSON_INDENT(2));
+	int err;
 
-	if (!f) {
-		err = EX_CANTCREAT;
-	} else {
-		const bool bad = json_dumpf(o, f, JSON_INDENT(2)) < 0 ||
-				 fputc('\n', f) < 0 || fflush(f) != 0;
-
-		err = (f != stdout && fclose(f) != 0) || bad ? EX_IOERR : 0;
-	}
-	if (err)
-		fprintf(stderr, "edmsim: %s: %s\n", path, strerror(errno));
+	fputc('\n', r->report);
+	err = record_shut(r->report, r->o->report);
 	json_decref(o);
-	return err;
+	return err ? err : bad ? EX_OSERR : 0;
 }
 
 /* A servo that goes in and out at one place cuts nothing and causes no

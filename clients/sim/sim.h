@@ -72,7 +72,7 @@ struct sim_run {
 	struct io_outputs given;	/* to the machine, in this cycle */
 	struct sim_result result;
 	struct sim_spent *spent;	/* by index of the condition */
-	FILE *pulses, *trace;
+	FILE *pulses, *trace, *report;
 	struct plot *plot;		/* NULL: no picture is wanted */
 	bool deviation;			/* worth its time: a report is wanted */
 	void (*on_cycle)(struct sim_run *r);	/* NULL: nobody looks */
@@ -148,14 +148,18 @@ void tune_contour_measure(struct sim_run *r);
 bool edmsim_contour_look(struct sim_run *r);
 void edmsim_contour_looked(struct sim_run *r);
 
-/** record_*() - the files of lattice points and cycles: record.c. */
+/** record_*() - the files of points, cycles and totals: record.c. */
 int record_open(struct sim_run *r);
 void record_point(void *arg, const struct cycle *c);
 void record_cycle(struct sim_run *r);
 int record_close(struct sim_run *r);
 
+/** record_shut() - close @f, the file at @path.  Return: 0, or an exit code
+ *  whose reason is told. */
+int record_shut(FILE *f, const char *path);
+
 /** report_print() - for a person; report_write() - JSON. */
 void report_print(const struct sim_run *r, FILE *f);
-int report_write(const struct sim_run *r, const char *path);
+int report_write(const struct sim_run *r);
 
 #endif /* SIM_SIM_H */

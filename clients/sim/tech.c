@@ -42,10 +42,8 @@ int edmsim_tech_print(const struct config_tech *t)
 			"[tech] table in the machine file\n");
 		return EX_USAGE;
 	}
-	if (interp_tech_write(t->table, &to) == 0 && fflush(stdout) == 0)
-		return 0;
-	fprintf(stderr, "edmsim: stdout: cannot write\n");
-	return EX_IOERR;
+	/* standard_guard() says why it cannot be written. */
+	return interp_tech_write(t->table, &to) ? EX_IOERR : 0;
 }
 
 void edmsim_tech_document(void)

@@ -33,7 +33,8 @@ static bool end_is_due(const struct server *s)
 		return true;
 	if (clock_ns(CLOCK_MONOTONIC) < s->end_by_ns)
 		return false;
-	log_line(LOG_WARNING, "edmd: no stand within 1 s; ending");
+	log_line(LOG_WARNING, "edmd: the axes did not stop within 1 s; "
+		 "edmd ends while they move");
 	return true;
 }
 

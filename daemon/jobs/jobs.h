@@ -11,7 +11,6 @@
 #include "calls.h"
 #include "checkpoint.h"
 #include "config.h"
-#include "early.h"
 #include "electrode.h"
 #include "eta.h"
 #include "link.h"
@@ -43,7 +42,6 @@ struct jobs {
 	struct tally tally;
 	struct calls calls;
 	struct eta eta;
-	struct early early;
 	struct electrode electrode;
 	struct trust trust;
 	struct keyfile host_key;

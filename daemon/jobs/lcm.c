@@ -133,7 +133,8 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 	struct jobs_lcm_ack to = {
 		.key = o->packet->seal.key, .client = client, .seq = seq,
 		.code = EX_PROTOCOL,
-		.reason = "client name of no or too many bytes; 1 to 63",
+		.reason = "the client's name is empty or too long; "
+			  "1 to 63 bytes",
 	};
 	const int64_t now = clock_us(CLOCK_MONOTONIC);
 	enum trust_cause cause = o->cause;

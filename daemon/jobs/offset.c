@@ -74,9 +74,12 @@ int offset_request(struct jobs *j, const struct store_job *job,
 
 /* -- What a command asks for ----------------------------------------------- */
 
+/* @what: a word, which may have others behind it, each on a line. */
 static int refuse(char why[600], const char *what)
 {
-	snprintf(why, 600, "'%.40s'; " WANTED, what);
+	const int n = (int)strcspn(what, "\n");
+
+	snprintf(why, 600, "'%.*s'; " WANTED, n < 40 ? n : 40, what);
 	return -EINVAL;
 }
 

@@ -79,6 +79,9 @@ void queue_started(struct jobs *j, int code)
 		queue_unpromise(j);
 	if (code != SHM_DONE)
 		return;
+	/* Who starts has seen where the axes stand.  Without that no job
+	 * goes. */
+	interrupt_answered(j);
 	queue_go(j);
 	if (!q->job.n || !q->job.hold)
 		return;
@@ -452,7 +455,6 @@ void queue_step(struct jobs *j, int64_t now_us)
 
 	if (s->state != SHM_FAULT)
 		q->fault_told = 0;
-	early_step(j, now_us);
 	if (q->job.n && s->program == q->job.n) {
 		q->missing_us = 0;
 		q->snap = *s;
@@ -481,7 +483,6 @@ void queue_fini(struct jobs *j)
 
 	calls_write(j);
 	load_fini(j);
-	early_fini(j);
 	eta_fini(&j->eta);
 	if (!q->job.n || (q->job.begun_us && !queue_is_leaving(q)))
 		return;

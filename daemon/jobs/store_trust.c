@@ -78,9 +78,9 @@ int store_keys_load(struct store *s, struct trust *t)
 
 	for (int rc = SQLITE_ROW; q && rc == SQLITE_ROW; rc = sqlite3_step(q))
 		if (!key_get(q, &k) || trust_add(t, &k) < 0)
-			log_warning("trust: a key in the store is not fit and "
-				    "left out; edmctl keys list shows the "
-				    "others");
+			log_warning("trust: a key in the store is damaged "
+				    "and is left out; edmctl keys list "
+				    "shows the others");
 	sqlite3_finalize(q);
 	return err == -ENOENT ? 0 : err;
 }

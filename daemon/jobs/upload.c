@@ -3,8 +3,10 @@
 #include "upload.h"
 
 #include "plain.h"
+#include "store_text.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,22 +50,22 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 	size_t client = strlen(c->client), id = strlen(c->job);
 
 	if (client == 0 || client >= JOBS_LCM_CLIENT_MAX)
-		refuse(a, EX_PROTOCOL, "client name of no or too many bytes; "
-		       "1 to 63");
+		refuse(a, EX_PROTOCOL, "the client's name is empty or too "
+		       "long; 1 to 63 bytes");
 	else if (id == 0 || id >= JOBS_LCM_ID_MAX ||
 		 strspn(c->job, ID_CHARS) != id)
-		refuse(a, EX_DATAERR, "job id not fit; 1 to 63 of A-Z a-z "
-		       "0-9 . _ -");
+		refuse(a, EX_DATAERR, "this id of a job cannot be taken; 1 to "
+		       "63 of A-Z a-z 0-9 . _ -");
 	else if (!name_is_plain(c->name))
-		refuse(a, EX_DATAERR, "job name not fit; 1 to 63 bytes of "
-		       "UTF-8, without characters that control a terminal or "
-		       "turn the direction of writing");
+		refuse(a, EX_DATAERR, "this name of a job cannot be taken; 1 "
+		       "to 63 bytes of UTF-8, without characters that "
+		       "control a terminal or turn the direction of writing");
 	else if (c->bytes < 0 || c->bytes > UPLOAD_BYTES_MAX)
-		refuse(a, EX_DATAERR, "job too long; at most 64 MiB");
+		refuse(a, EX_DATAERR, "the job is too long; at most 64 MiB");
 	else if (!begin_is_fit(c))
 		refuse(a, EX_DATAERR,
-		       "place to begin at not fit; a line from 1 on, or mm "
-		       "along the path, not both");
+		       "a job cannot begin at this place; a line from 1 "
+		       "on, or mm along the path, not both");
 	else if (c->electrode < 0 || c->electrode > 9999)
 		refuse(a, EX_DATAERR, "no such electrode; 1 to 9999, or 0: the "
 		       "one in the holder");
@@ -106,10 +108,29 @@ static const struct upload_verdict *verdict_find(const struct uploads *u,
 	return NULL;
 }
 
+static void *free_main(void *text)
+{
+	free(text);
+	return NULL;
+}
+
+/* To give 64 MiB back takes the kernel longer than all else that is done here,
+ * so a thread waits for it. */
+static void free_text(struct upload *up)
+{
+	pthread_t thread;
+
+	if (up->bytes > STORE_TEXT_INSIDE &&
+	    pthread_create(&thread, NULL, free_main, up->text) == 0)
+		pthread_detach(thread);
+	else
+		free(up->text);
+}
+
 static void upload_clear(struct upload *up)
 {
 	free(up->seen);
-	free(up->text);
+	free_text(up);
 	*up = (struct upload) { .state = UPLOAD_FREE };
 }
 

@@ -442,15 +442,15 @@ static void verb_jog_on(struct jobs *j, const struct verb *v,
 		return;
 	}
 	if (press < 1 || press > VERB_PRESS_MAX || (*end && !begins)) {
-		verbs_answer(j, c, EX_DATAERR, "no such press; AXIS, a number "
-			     "that no press before it had, 1 to 16777215, and "
-			     "begin if it begins");
+		verbs_answer(j, c, EX_DATAERR, "this press cannot be read; "
+			     "AXIS, a number from 1 to 16777215 that no "
+			     "press before it had, and begin if it begins");
 		return;
 	}
 	axis = axis_of(j, c, n);
 	if (axis >= 0 && jobs_now_us() - c->signed_us > SIGN_US)
-		verbs_answer(j, c, EX_UNAVAILABLE, "this sign of a press came "
-			     "too late; press again");
+		verbs_answer(j, c, EX_UNAVAILABLE, "the message of this press "
+			     "came too late; press again");
 	else if (axis >= 0)
 		ask_machine(j, v, c, (uint32_t)axis | (uint32_t)press << 8 |
 			    (begins ? VERB_PRESS_BEGINS : 0));

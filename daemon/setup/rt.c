@@ -92,7 +92,7 @@ static void memory_lock(struct setup_report *r)
 		item_set(r, SETUP_MEMORY, errno, "mlockall");
 	else
 		item_set(r, SETUP_MEMORY, ENOMEM,
-			 "locked what there is, not what comes");
+			 "memory is locked, but memory taken later is not");
 }
 
 /* The request is valid while the file is open, so it is never closed. */

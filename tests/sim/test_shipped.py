@@ -6,6 +6,8 @@ otherwise, of those that take no longer than a second.
 """
 import json
 import os
+import random
+import resource
 import subprocess
 
 import pytest
@@ -94,11 +96,11 @@ def test_the_defaults_sink_into_five_kinds_of_work(kind, tmp_path):
 # -- edmctl new-machine
 
 
-def new_machine(path, answers):
+def new_machine(path, answers, **more):
     return subprocess.run(
         [PROGRAM[:-len("edmsim")] + "edmctl", "new-machine", path], text=True,
         input="".join(f"{a}\n" for a in answers), capture_output=True,
-        timeout=60)
+        timeout=60, **more)
 
 
 @pytest.mark.parametrize("backend", ["", "null", "sim", "gpio", "can402"])
@@ -135,6 +137,48 @@ def test_answers_are_judged_and_asked_for_again(tmp_path):
         "travel_max_mm = -1\n" in text and "start_mm = -10.5" in text
     assert "step_Z = 5\ndir_Z = 6" in text and "chip = chip9" in text
     done("--machine", path, "--check", text="G21 G90 G0 X5.\nM2\n")
+
+
+def test_what_edmd_refuses_is_told_by_who_writes_it(tmp_path):
+    """Answers that are good one by one."""
+    path = tmp_path / "new.ini"
+    p = new_machine(path, ["m", "sinker", "gpio", "Z"] + 4 * [""] + ["3 3"]
+                    + 9 * [""])
+    assert p.returncode == 78
+    assert "new.ini:" in p.stderr and "are both line 3" in p.stderr
+    assert "mend that line" in p.stderr and path.exists()
+
+
+def test_random_answers_become_files_that_edmd_takes_or_are_told(tmp_path):
+    draw = random.Random(int(os.environ.get("EDM_SEED", "1")))
+    path = tmp_path / "new.ini"
+    seen = set()
+    for _ in range(60):
+        axes = draw.sample("XYZABCUV", draw.randint(3, 8))
+        answers = ["m", draw.choice(["sinker", "wire"]),
+                   draw.choice(["null", "sim", "gpio", "can402"]),
+                   "".join(sorted({*axes, *"XYZ"}))]
+        for _ in answers[3]:
+            answers += [draw.choice(["", "-1 1", "5 20", "-100000 100000"]),
+                        draw.choice(["", "0.001", "1000", "2.5"]),
+                        draw.choice(["", "0.001", "100000", "1000"])]
+        p = new_machine(path, answers + 30 * [""])
+        good = subprocess.run(
+            [PROGRAM, "--machine", path, "--print-config"],
+            capture_output=True, timeout=60).returncode == 0
+        assert p.returncode == (0 if good else 78), p.stderr
+        seen.add(good)
+        path.unlink()
+    assert seen == {True, False}
+
+
+def test_half_a_file_is_not_left(tmp_path):
+    path = tmp_path / "new.ini"
+    p = new_machine(path, 100 * [""], restore_signals=False,
+                    preexec_fn=lambda: resource.setrlimit(
+                        resource.RLIMIT_FSIZE, (64, 64)))
+    assert p.returncode == 73 and "File too large" in p.stderr
+    assert not path.exists()
 
 
 def test_nothing_is_written_without_all_answers(tmp_path):

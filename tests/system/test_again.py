@@ -209,10 +209,10 @@ def test_a_begin_inside_survives_a_power_cut(idle):
 @pytest.mark.parametrize("where, code, why", [
     ({"from_line": 10}, 65, "nothing moves in line 10"),
     ({"from_mm": 1e6}, 65, "nothing of the path is left"),
-    ({"from_mm": -1}, 65, "not fit"),
-    ({"from_mm": float("nan")}, 65, "not fit"),
-    ({"from_line": -1}, 65, "not fit"),
-    ({"from_line": 9, "from_mm": 3}, 65, "not fit"),
+    ({"from_mm": -1}, 65, "cannot begin at this place"),
+    ({"from_mm": float("nan")}, 65, "cannot begin at this place"),
+    ({"from_line": -1}, 65, "cannot begin at this place"),
+    ({"from_line": 9, "from_mm": 3}, 65, "cannot begin at this place"),
 ])
 def test_a_place_that_is_not_there_is_refused(machine, where, code, why):
     c = machine.client

@@ -9,6 +9,7 @@ import subprocess
 import time
 from contextlib import contextmanager
 
+import pytest
 from rig import BUILD, QUICK_JOB, SLOW_JOB, until
 
 
@@ -181,11 +182,12 @@ def test_watch_ends_by_ctrl_c_with_0(machine):
         [str(BUILD / "edmctl"), "--machine", machine.name, "watch"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )
-    time.sleep(1.5)
+    time.sleep(2.5)
     p.send_signal(signal.SIGINT)
     out, err = p.communicate(timeout=60)
     assert p.returncode == 0
-    assert out.count("\n") >= 1
+    lines = out.splitlines()
+    assert lines and len(set(lines)) == len(lines), "told once"
     assert "goes on" in err
 
 
@@ -205,6 +207,31 @@ def test_no_service_is_told_within_the_timeout(idle):
         assert f"no answer from edmd-jobs of machine {idle.name}" in p.stderr
     path = write(idle, "q.ngc", QUICK_JOB)
     assert idle.ctl("--timeout", "1", "submit", path).returncode == 69
+
+
+def test_a_list_has_its_columns_whatever_the_names_are(machine):
+    c = machine.client
+    for i, name in enumerate(("kurz", "Gesenk für Läufer", 63 * "x")):
+        assert c.submit(QUICK_JOB, 20 * f"{i}", name=name, hold=True).code == 0
+    c.job_where(20 * "0", "ready")
+    head, *rows = machine.ctl("queue").stdout.splitlines()
+    assert len(rows) == 3
+    assert {r[head.index("STATE") - 1:][:3] for r in rows} <= {" re", " qu"}
+
+
+@pytest.mark.parametrize("url", [
+    "nonsense", "udpm://", "udpm://1.2.3.4:7667?ttl=0",
+    "udpm://239.255.76.67:0?ttl=0", "udpm://239.255.76.67:7667?ttl=300",
+    "udpm://239.255.76.67:7667"])
+def test_a_wrong_url_is_wrong_usage(idle, url):
+    p = idle.ctl("--url", url, "status")
+    assert p.returncode == 64 and url in p.stderr
+
+
+def test_a_verb_that_was_meant_is_named(idle):
+    assert "no verb 'statsu'; did you mean status? --help" in \
+        idle.ctl("statsu").stderr
+    assert "no verb 'xyzzy'; --help" in idle.ctl("xyzzy").stderr
 
 
 def test_usage(idle):

@@ -159,7 +159,7 @@ def test_g10_agrees_with_it_and_ends_with_its_program(machine):
 
 
 @pytest.mark.parametrize("words, says", [
-    (("G53", "X=0"), "G54 to G59.3"), (("G54",), "'G54'"),
+    (("G53", "X=0"), "'G53'; a system, G54 to G59.3"), (("G54",), "'G54'"),
     (("G54", "Q=0"), "'Q=0'"), (("G54", "X=zero"), "'X=zero'"),
     (("G54", "X=0", "X@1"), "'X@1'"), (("G54", "X=nan"), "'X=nan'"),
     (("G54", "X=0", "Z=probe"), "one axis at a time"),

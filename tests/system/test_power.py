@@ -150,8 +150,11 @@ def test_an_idle_machine_does_not_say_that_it_is_where_it_is_not(idle):
     c.hear(0.5)
     assert c.job("second")["state"] == "ready"
     assert "last seen" in c.ask("why").body
+    # One start is for all that wait.
+    assert c.submit(QUICK_JOB, "third").code == 0
     assert c.ask("start").code == 0
     c.job_where("second", "done")
+    c.job_where("third", "done")
     assert c.status().lost == ""
 
 

@@ -63,8 +63,8 @@ def test_a_queue_longer_than_an_answer_is_listed_whole(machine):
     for job in ("a", "b"):
         assert c.submit(rig.QUICK_JOB, job, hold=True).code == 0
     c.status_where(lambda s: s.job == "a" and s.job_state == "ready")
-    rig.fill_queue(machine, "b", 300)
-    wanted = ["a", "b"] + [f"job-{i:03}" for i in range(300)]
+    rig.fill_queue(machine, "b", 500)
+    wanted = ["a", "b"] + [f"job-{i:03}" for i in range(500)]
     assert rig.until(lambda: names(machine)) == wanted[:len(names(machine))]
     assert len(names(machine)) < len(wanted)
     r = machine.ctl("queue", "--json")

@@ -51,7 +51,7 @@ def test_the_machine_may_come_from_the_environment(machine):
             EDM_MACHINE=machine.name)
     assert "machine other" in p.stderr
     p = ctl("status", EDM_MACHINE="a b")
-    assert p.returncode == 64 and "a b" in p.stderr
+    assert p.returncode == 64 and "EDM_MACHINE a b; 1 to 31" in p.stderr
 
 
 # -- The network
@@ -108,6 +108,24 @@ def test_submit_wait_says_what_it_waits_for(machine):
     assert machine.ctl("start").returncode == 0
     out, _ = p.communicate(timeout=60)
     assert p.returncode == 0 and "job q.ngc: done" in out, out
+
+
+def test_who_no_longer_waits_is_told_how_to_take_his_own_job_back(machine):
+    c = machine.client
+    c.submit(QUICK_JOB, "first", hold=True)
+    c.job_where("first", "ready")
+    p = subprocess.Popen(
+        [str(BUILD / "edmctl"), "--machine", machine.name, "submit",
+         write(machine, "q.ngc", QUICK_JOB), "--wait", "--id", "mine"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not p.stdout.readline().startswith("waits: "):
+        assert p.poll() is None
+    p.send_signal(signal.SIGINT)
+    err = p.communicate(timeout=60)[1]
+    # stop would end the first one.
+    assert p.returncode == 75
+    assert "job mine waits on" in err and "remove mine takes it" in err
+    assert "stop" not in err
 
 
 def why(machine, job):
@@ -272,6 +290,18 @@ def test_watch_fills_a_terminal(machine):
     assert "goes on" in "".join(x.rstrip() for x in t.screen.display)
 
 
+def test_watch_shows_a_long_name_beside_the_state(machine):
+    c = machine.client
+    c.submit(LONG_JOB, "a", name=63 * "x", hold=True)
+    c.job_where("a", "ready")
+    t = Terminal(machine, 24, 80)
+    t.shows(" ready")
+    row, = [r for r in t.screen.display if "ready " in r and "line" in r]
+    assert row.startswith(29 * "x" + " ready ") and row.count("x") == 29
+    t.press(b"q")
+    assert t.end() == 0
+
+
 @pytest.mark.parametrize("rows, columns", [(4, 20), (5, 20), (24, 20),
                                            (4, 200)])
 def test_watch_on_a_small_terminal(machine, rows, columns):
@@ -290,6 +320,8 @@ def test_watch_without_a_screen_is_a_line(machine, term, more):
     t.p.send_signal(signal.SIGINT)
     assert t.end() == 0
     assert b"\x1b[?1049h" not in t.bytes
+    if term in ("dumb", ""):
+        assert b"\x1b" not in t.bytes
 
 
 def test_watch_gives_the_terminal_back_when_the_service_goes(machine):

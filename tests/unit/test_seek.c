@@ -24,6 +24,10 @@
 #define DAMAGES		50		/* of each program */
 #define LONGEST_MM	500		/* of 1e-6 mm a pulse */
 
+#define ROWS_R2		1000		/* circles of all rows */
+#define ROWS_R		100000		/* and some of larger ones */
+#define ROWS_RUNS	SEED_ROUNDS(1000)
+
 static uint64_t seed;
 static uint64_t seen[INTERP_BEGIN];	/* places, by kind */
 
@@ -460,6 +464,51 @@ static void a_place_in_a_damaged_segment_is_found_or_refused(void **state)
 	assert_true(found > 0);
 }
 
+/* Row by row: the greatest `in` of each, from that of the one before. */
+static int64_t rows_one_by_one(int64_t r2, int64_t from, int64_t to)
+{
+	int64_t in = 0, sum = 0;
+
+	for (int64_t out = to - 1; out >= from; out--) {
+		while ((in + 1) * (in + 1) + out * out < r2)
+			in++;
+		sum += in;
+	}
+	return sum;
+}
+
+static void compare_rows(int64_t r2, int64_t from, int64_t to)
+{
+	const int64_t one_by_one = rows_one_by_one(r2, from, to);
+	const int64_t at_once = circle_rows(r2, from, to);
+
+	if (one_by_one != at_once)
+		fail_msg("rows %lld ... %lld of r2 %lld: %lld, not %lld",
+			 (long long)from, (long long)to, (long long)r2,
+			 (long long)at_once, (long long)one_by_one);
+}
+
+static void rows_of_a_circle_are_counted_as_one_by_one(void **state)
+{
+	(void)state;
+	seed = seed_take();
+	for (int64_t r2 = 2, rows = 1; r2 < ROWS_R2; r2++) {
+		while (rows * rows < r2 - 1)
+			rows++;
+		for (int64_t from = 0; from < rows; from++)
+			for (int64_t to = from; to <= rows; to++)
+				compare_rows(r2, from, to);
+	}
+	for (int i = 0; i < ROWS_RUNS; i++) {
+		const int64_t r = 2 + (int64_t)(rnd(&seed) % ROWS_R);
+		const int64_t r2 = r * r + (int64_t)(rnd(&seed) % (uint64_t)r);
+		const int64_t from = (int64_t)(rnd(&seed) % (uint64_t)r);
+
+		compare_rows(r2, from, from + (int64_t)(rnd(&seed) %
+						(uint64_t)(r - from + 1)));
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -467,6 +516,7 @@ int main(void)
 		cmocka_unit_test(a_place_in_a_long_segment_is_the_same_too),
 		cmocka_unit_test(a_place_in_the_longest_segment_is_found),
 		cmocka_unit_test(a_place_in_a_damaged_segment_is_found_or_refused),
+		cmocka_unit_test(rows_of_a_circle_are_counted_as_one_by_one),
 	};
 
 	return cmocka_run_group_tests_name("interp/seek", tests, NULL, NULL);

@@ -344,15 +344,15 @@ static int take_bits(struct from *f)
 
 static int append(struct table *to, const struct table *from, size_t first)
 {
-	const size_t n = from->n - first;
+	const char *at = from->at;
 
-	if (n == 0)
-		return 0;
-	if (build_table_room(to, n) < 0)
-		return -ENOMEM;
-	memcpy((char *)to->at + to->n * to->size,
-	       (const char *)from->at + first * from->size, n * to->size);
-	to->n += n;
+	for (size_t i = first; i < from->n; i++) {
+		void *row = build_table_add(to);
+
+		if (!row)
+			return -ENOMEM;
+		memcpy(row, at + i * from->size, from->size);
+	}
 	return 0;
 }
 

@@ -11,7 +11,7 @@
  * The measure is the swept area.  An outward pulse adds the `in` at which it is
  * made, an inward one the `out`.  Their difference is that of the product
  * in*out, and `in` in a row is the greatest inside the circle: so the area is
- * twice the sum over the rows, less that difference.
+ * twice the sum over the rows (circle_rows.c), less that difference.
  */
 #include "pulse/pair.h"
 #include "pulse/pulse.h"
@@ -27,29 +27,10 @@ struct seek {
 	int64_t area;			/* twice the one swept so far */
 };
 
-/* The sum over the rows @from ... @to - 1 of the greatest `in` inside. */
-static int64_t rows(int64_t r2, int64_t from, int64_t to)
-{
-	int64_t in = from < to ?
-		     pair_isqrt(1, (uint64_t)(r2 - from * from - 1)) : 0;
-	int64_t in2 = in * in, sum = 0;
-
-	for (int64_t out = from; out < to; out++) {
-		const int64_t room = r2 - out * out;
-
-		while (in2 >= room && in > 0) {
-			in2 -= 2 * in - 1;
-			in--;
-		}
-		sum += in;
-	}
-	return sum;
-}
-
 /* Go to this place in the same quadrant. */
 static void stretch(struct seek *s, int64_t in, int64_t out)
 {
-	s->area += 2 * rows(s->r2, s->out, out) -
+	s->area += 2 * circle_rows(s->r2, s->out, out) -
 		   (in * out - s->in * s->out);
 	s->in = in;
 	s->out = out;
@@ -79,7 +60,7 @@ static int64_t cross(struct seek *s, int64_t ticks)
 
 	n = n < k->left - 1 ? n : k->left - 1;
 	if (n > 0)
-		s->area += n * 2 * rows(s->r2, 0, k->meet);
+		s->area += n * 2 * circle_rows(s->r2, 0, k->meet);
 	k->left -= (uint32_t)n + 1;
 	k->quad = (int8_t)((k->quad + k->ccw * ((n + 1) & 3)) & 3);
 	s->in = k->meet;

@@ -236,6 +236,42 @@ static uint32_t dda_arc_back(struct interp_cursor *c, uint32_t ticks,
 	return pulse_ticks(c, dda_arc_tick_back, ticks, ret);
 }
 
+/* @a, @b: a coordinate and what is left of it as one number.  Those above
+ * @shift are the coordinate. */
+INLINE bool turn(int64_t *a, int64_t *b, uint32_t shift, uint32_t ticks,
+		 int64_t ccw)
+{
+	const int64_t most = INT64_C(1) << 2 * shift;
+	const uint64_t range = (uint64_t)(2 * most + (INT64_C(1) << shift));
+	int64_t x = *a, y = *b;
+
+	for (; ticks > 0 && (uint64_t)(x + most) < range &&
+	       (uint64_t)(y + most) < range; ticks--) {
+		x -= ccw * (y >> shift);
+		y += ccw * (x >> shift);
+	}
+	*a = x;
+	*b = y;
+	return (uint64_t)(x + most) < range && (uint64_t)(y + most) < range;
+}
+
+/* To go back is to go forward with the coordinates exchanged. */
+static bool rotor_turn(struct interp_rotor *k, uint32_t ticks, bool back)
+{
+	const int64_t mask = (INT64_C(1) << k->shift) - 1;
+	int64_t x = k->x * (mask + 1) + k->rest_x;
+	int64_t y = k->y * (mask + 1) + k->rest_y;
+	int64_t *a = back ? &y : &x, *b = back ? &x : &y;
+	const bool ok = k->ccw > 0 ? turn(a, b, k->shift, ticks, 1) :
+				     turn(a, b, k->shift, ticks, -1);
+
+	k->x = x >> k->shift;
+	k->y = y >> k->shift;
+	k->rest_x = x & mask;
+	k->rest_y = y & mask;
+	return ok;
+}
+
 /*
  * A rotor's rounding follows from all of its ticks, so they are made one by
  * one, from the nearer end.
@@ -246,17 +282,12 @@ static bool rotor_seek(struct interp_cursor *c, uint32_t tick)
 	struct interp_rotor *k = &c->rotor;
 	int64_t at[2] = { 0, 0 };
 
-	if (tick <= arc->tail / 2) {
-		for (uint32_t i = 0; i < tick && rotor_in_range(k); i++)
-			rotor_forward(k);
-		return rotor_in_range(k);
-	}
+	if (tick <= arc->tail / 2)
+		return rotor_turn(k, tick, false);
 	pulse_circle_node(c, true, at);
 	rotor_set(k, arc, at);
 	rotor_set_tail(k, arc);
-	for (uint32_t i = tick; i < arc->tail && rotor_in_range(k); i++)
-		rotor_back(k);
-	return rotor_in_range(k);
+	return rotor_turn(k, tick < arc->tail ? arc->tail - tick : 0, true);
 }
 
 static int64_t tail_pulses(int64_t forced, int64_t u)

@@ -179,6 +179,10 @@ int64_t circle_last(const struct interp_circle *k);
  * Return: what they add to the measure; -1 if the circle is broken.
  */
 int64_t circle_seek(struct interp_circle *k, uint32_t tick);
+/** circle_rows() - the sum over the rows @from ... @to - 1 of a quadrant of the
+ *  greatest `in` inside the circle, in*in + out*out < @r2, which is at least 1
+ *  in each.  It takes about R^(2/3) steps. */
+int64_t circle_rows(int64_t r2, int64_t from, int64_t to);
 /** pulse_plane_set() - the plane stands where c->circle does. */
 void pulse_plane_set(struct interp_cursor *c);
 /**

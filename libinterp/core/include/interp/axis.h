@@ -28,7 +28,7 @@ enum interp_axis {
 /* Farthest place an axis may have; keeps every product inside int64_t. */
 #define INTERP_PULSES_MAX	(1 << 30)
 
-/* What one axis can do. */
+/* What one axis can do; an absent one has a pulse too. */
 struct interp_axis_limits {
 	double pulse_mm;		/* worth of one pulse, > 0 */
 	double travel_min_mm;		/* soft limits, machine coordinates */
