@@ -36,6 +36,11 @@ static const char *corner_word(int i)
 	return WORD_OF(words, i);
 }
 
+#define REGISTER(n) \
+	NUMBER(WIRE, "offset_" #n "_mm", "mm", "0", -50, 50, AT(offset_mm[n]), \
+	       "value of register D" #n ", H" #n " until a program sets it; " \
+	       "0: not set")
+
 #define ORIGIN(key, axis, unit) \
 	NUMBER(WORK, key, unit, "0", -1e7, 1e7, \
 	       EACH(work_offset_mm[0][INTERP_##axis], double[INTERP_NAXES]), \
@@ -86,12 +91,8 @@ static const struct config_key row[] = {
 	WORDS(WIRE, "gouge", "refuse", AT(wire.gouge), gouge_word,
 	      "a part of a contour that is too narrow for the wire: the "
 	       "job is refused, or the part is skipped"),
-	NUMBER(WIRE, "offset_0_mm", "mm", "0", -50, 50, AT(offset_mm[0]),
-	       "value of register D0, H0 until a program sets it; 0: not "
-	       "set"),
-	NUMBER(WIRE, "offset_1_mm", "mm", "0", -50, 50, AT(offset_mm[1]),
-	       "value of register D1, H1 until a program sets it; 0: not "
-	       "set"),
+	REGISTER(0), REGISTER(1), REGISTER(2), REGISTER(3), REGISTER(4),
+	REGISTER(5), REGISTER(6), REGISTER(7), REGISTER(8), REGISTER(9),
 
 	STRING(KINEMATICS, "chain", "none", kinematics.chain,
 	       "joints from work to tool, as C(0 0 -120) A(0 15 -80) X Y Z"),

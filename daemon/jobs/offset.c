@@ -88,7 +88,9 @@ static int take_probe(struct offset_ask *o, int axis, const char *way,
 {
 	char *end = NULL;
 
-	if (o->probe >= 0 || axis > INTERP_Z || !strchr("+-", *way))
+	/* Without a sign Z goes down; X and Y have no such side. */
+	if (o->probe >= 0 || axis > INTERP_Z || !strchr("+-", *way) ||
+	    (!*way && axis != INTERP_Z))
 		return refuse(why, word);
 	o->probe = axis;
 	o->way = *way ? *way : '-';

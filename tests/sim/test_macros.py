@@ -170,6 +170,23 @@ REFUSED = [
     ("fanuc-sinker", "M98 P2 L3\nN5 M30\nO2\nM99 P5\n",
      b":4:5: error: M99 P with 2 times still to go; a call without L"),
     ("fanuc-sinker", "M99 P1.5\n", b":1:5: error: M99 P1.5; the number of"),
+    ("fanuc-sinker", "G65 P1 A90 X5.\nM30\nO1\nG0 X#24\nM99\n",
+     b":1:8: error: A90 without a decimal point"),
+    ("fanuc-sinker", "IF[1 EQ 1]GOTO5 X3.\nN5 M30\n",
+     b":1:17: error: words behind a jump, a loop or a call; them on a line"),
+    ("fanuc-sinker", "WHILE[#1 LT 1]DO1 (a) X5.\n#1=1\nEND1\nM30\n",
+     b":1:23: error: words behind a jump"),
+    ("fanuc-sinker", "IF[1 EQ 1]THEN #1=1; #2=3\n",
+     b":1:22: error: words behind a jump"),
+    ("linuxcnc", "o1 if [1 EQ 1] (a) G0 X5\no1 endif\n",
+     b":1:20: error: words behind a jump"),
+    ("linuxcnc", "o1 call [1] [2] 3\nM2\no1 sub\no1 endsub\n",
+     b":1:17: error: words behind a jump"),
+    ("linuxcnc", "o1 repeat [2] X7\no1 endrepeat\n",
+     b":1:15: error: words behind a jump"),
+    ("fanuc-sinker", "O12345\nGOTO 7\nM30\nO23456\nN7 G0 X1.\nM30\n",
+     b":2:1: error: GOTO 7, which is not there"),
+    ("fanuc-sinker", "GOTO #5\n", b":1:1: error: GOTO a variable without"),
     ("generic", "M98 P2\nM2\nO2\nM99 P5\n", b":4:5: error: M99 with P; M99"),
     ("linuxcnc", "G0 X#<none>\n", b":1:5: error: #<none>, which has none; a"),
     ("linuxcnc", "o1 while [1]\no1 endwhile\n", b":2:1: error: a loop that has"),
@@ -210,6 +227,30 @@ def test_of_two_values_for_one_variable_the_later_one_counts():
     assert emitted("G90 G21\nG65 P1 A1. B2. I-3. I4. D5.\nM30\nO1\n"
                    "G0 X#1\nX#2\nX#4\nX#7\nM99\n") == \
         ["X1", "X2", "X-3", "X5"]
+
+
+def test_round_in_a_word_keeps_its_decimals_and_elsewhere_none():
+    """The example of Fanuc's manual: the way back is what was gone before."""
+    assert emitted("G91 G21\n#1=1.2345\n#2=2.3456\nG0 X-#1\nX-#2\n"
+                   "X[ROUND[#1]+ROUND[#2]]\nG20\nX[ROUND[.12345]]\n"
+                   "G21 G90 X[ROUND[#1]] Y[#[ROUND[1.4]]]\n#3=ROUND[#2]\n"
+                   "X#3\nM30\n") == \
+        ["X-1.2345", "X-3.5801", "X0.0009", "X3.1378", "Y1.2345", "X2"]
+
+
+def test_a_comment_ends_no_statement_and_a_main_program_has_any_number():
+    assert emitted("O12345678 (A)\nG90 G21\nG65 P1 (b) A1. (c) B2. ; (d)\n"
+                   "IF [1 EQ 1] GOTO 9 (e)\nX99.\nN9 M30\nO1\nG0 X#1\nX#2\n"
+                   "M99\n") == ["X1", "X2"]
+
+
+def test_a_common_variable_that_nobody_set_is_told():
+    def told(text):
+        r = run("--dialect", "fanuc-sinker", "--check", text=text)
+        assert r.returncode == 0, r.stderr
+        return re.findall(rb":(\d+): note: (#\d+) has no value", r.stderr)
+    assert told("G0 X1.\nX#500 Y2.\nX#501\nM30\n") == [(b"2", b"#500")]
+    assert told("#500=1\nG0 X#500 Y#1\nM30\n") == []
 
 
 def test_a_macro_is_gone_through_again_with_what_it_has_left():

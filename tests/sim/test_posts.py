@@ -36,9 +36,9 @@ offset_1_mm = 0.14
 FILES = {
     "3b.3b": ("B", []),
     "4b.4b": ("B5000 behind a :", []),
-    "agievision.iso": ("G71", []),
+    "agievision.iso": ("G71", ["Y5000"]),
     "charmilles-cmd.iso": (None, []),
-    "charmilles-robofil-440.iso": ("M15", ["M15", "M24", "M28", "G92"]),
+    "charmilles-robofil-440.iso": ("M15", ["M15", "M24", "M28", "G92", "/"]),
     "charmilles-robofil.iso": ("G38", ["G60", "G38", "G39"]),
     "fanuc-sinker-fusion.nc": ("G80", ["G80", "T01", "M06", "M03", "G43"]),
     "fanuc-sinker-helman.nc": ("G80", ["T1", "M6", "G80", "M3", "G43"]),
@@ -143,6 +143,33 @@ def test_check_lists_all_refusals_and_who_takes_the_text():
         ("2:13", "G64"), ("4:1", "M7"), ("14:1", "M9")]
     assert said[3].endswith(": 3 refusals")
     assert said[4].endswith(": taken by dialect linuxcnc heekscnc")
+
+
+def test_what_is_skipped_is_told_with_its_line():
+    def said(dialect, text):
+        r = run("--dialect", dialect, "--check", text=text)
+        assert r.returncode == 0, r.stderr
+        return re.findall(r":(\d+): note: (/|nothing behind)",
+                          r.stderr.decode())
+    assert said("generic", "G0 X1.\n/G0 X2.\n/X3.\nM2\n") == [("2", "/")]
+    assert said("fanuc-sinker", "G0 X1.\nM30\n(A)\n\nX2.\nM30\n") == \
+        [("5", "nothing behind")]
+    for text in ("%\nG0 X1.\nM30\n%\nrest\n", "G0 X1.\nM2\n\x1a",
+                 "M98 P1\nM30\n; a\n(b)\nN5 O1\nG0 X2.\nM99\n",
+                 "G0 X1.\nM2\n" + "\0" * 50):
+        assert said("generic", text) == []
+
+
+def test_words_beside_a_refused_word_are_not_told_as_well():
+    r = run("--dialect", "fanuc-sinker", "--check",
+            text="G54\nG51 X0 Y0 Z0\nG0 X1.\nM30\n")
+    assert r.stderr.count(b"error:") == 1, r.stderr
+
+
+def test_a_refused_number_with_decimals_is_told_once():
+    r = run("--dialect", "generic", "--check", text="M350.1 M8.\nG0 X1.\nM2\n")
+    assert r.returncode == 65
+    assert r.stderr.count(b"error:") == 2, r.stderr
 
 
 def test_a_place_that_is_refused_is_listed_among_the_words():

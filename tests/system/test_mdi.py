@@ -163,7 +163,8 @@ def test_g10_agrees_with_it_and_ends_with_its_program(machine):
     (("G54", "Q=0"), "'Q=0'"), (("G54", "X=zero"), "'X=zero'"),
     (("G54", "X=0", "X@1"), "'X@1'"), (("G54", "X=nan"), "'X=nan'"),
     (("G54", "X=0", "Z=probe"), "one axis at a time"),
-    (("G54", "C=probe"), "'C=probe'"), (("G54", "Z=probe*"), "'Z=probe*'"),
+    (("G54", "C=probe"), "'C=probe'"),
+    (("G54", "X=probe"), "'X=probe'"), (("G54", "Z=probe*"), "'Z=probe*'"),
     (("G54", "X=1e300"), "'X=1e300'"), (("G54", 70 * "X"), "'XXXX"),
 ])
 def test_what_cannot_be_is_refused(machine, words, says):

@@ -2,6 +2,7 @@
 """Standard input, output and error of every program: full, closed."""
 import os
 import pathlib
+import re
 import signal
 import subprocess
 
@@ -51,3 +52,16 @@ def test_no_file_of_edmd_becomes_its_standard_output(tmp_path):
     finally:
         p.send_signal(signal.SIGTERM)
         assert p.wait(timeout=60) == 0
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_the_manual_has_the_options_that_there_are(program):
+    p = subprocess.run([BUILD / program, "--list-options"], timeout=60,
+                       capture_output=True, text=True)
+    options = {line.split("\t")[1] for line in p.stdout.splitlines()
+               if line.startswith("option\t")}
+    page, = pathlib.Path("docs/man").glob(f"{program}.[18]")
+    shown = {x for line in page.read_text().splitlines()
+             if line.startswith(".It Fl")
+             for x in re.findall(r"Fl -([a-z-]+)", line)}
+    assert options == shown

@@ -117,7 +117,7 @@ static void a_rule_changes_what_numbers_mean(void **state)
 	refuse_in("[rules]\nlength_without_point = refused\n", "G0 X15",
 		       "X15 without a decimal point",
 		       "a decimal point, as in X10.0: without one some "
-		       "controls read micrometres");
+		       "controls read thousandths");
 }
 
 static const struct {

@@ -180,6 +180,68 @@ static void agie_counts_inches_by_g70(void **state)
 	compile_done(&c);
 }
 
+/* The places on their lines must not become motions. */
+static void an_ignored_word_takes_its_letters_with_it(void **state)
+{
+	static const char *const texts[][2] = {
+		{ "fanuc-sinker", "G1 X5. F10\nG50.1 X0 Y0\n"
+		  "G22 X9. Y9. Z9. I1. J1. K1.\nM30" },
+		{ "makino", "G1 X5.\nG22 X9. Y9. I1. J1.\nM30" },
+		{ "mastercam-wire", "G1 X5.\nG28 X9. Y9.\nM30" },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < 3; i++) {
+		struct compiled c = compile_ready(texts[i][0]);
+
+		compile(&c, texts[i][1]);
+		assert_int_equal(compiled_count(&c), 1);
+		compile_done(&c);
+	}
+}
+
+static void g91_moves_an_origin_in_fanuc_and_not_in_linuxcnc(void **state)
+{
+	static const struct {
+		const char *dialect;
+		double x_mm;
+	} each[] = { { "generic", 10 }, { "fanuc-sinker", 10 },
+		     { "linuxcnc", 5 }, { "heekscnc", 5 } };
+
+	(void)state;
+	for (size_t i = 0; i < 4; i++) {
+		struct compiled c = compile_ready(each[i].dialect);
+
+		compile(&c, "G91\nG10 L2 P1 X5.\nG10 L2 P1 X5.\nG90\n"
+			"G0 X0\nM30");
+		assert_near(compiled_end(&c, 0, INTERP_X), each[i].x_mm);
+		compile_done(&c);
+	}
+}
+
+/* As rs274 has it; G92 in force on an axis is the one thing that differs from
+ * Fanuc. */
+static void g52_shifts_all_work_offsets(void **state)
+{
+	static const char *const names[] = { "fanuc-sinker", "linuxcnc" };
+
+	(void)state;
+	for (size_t i = 0; i < 2; i++) {
+		struct compiled c = compile_ready(names[i]);
+
+		compile(&c, "G10 L2 P2 Y2.\nG52 X5. Y0 Z0\nG0 X1.\n"
+			"G55 G0 Y1.\nG53 G0 X3.\nG92 X1.\nG0 X2.\n"
+			"G92.1\nG52 X-1.\nG0 X1.\nG52 X0\nG0 X1.\nM30");
+		assert_near(compiled_end(&c, 0, INTERP_X), 6);
+		assert_near(compiled_end(&c, 1, INTERP_Y), 3);
+		assert_near(compiled_end(&c, 2, INTERP_X), 3);
+		assert_near(compiled_end(&c, 3, INTERP_X), 4);
+		assert_near(compiled_end(&c, 4, INTERP_X), 0);
+		assert_near(compiled_end(&c, 5, INTERP_X), 1);
+		compile_done(&c);
+	}
+}
+
 static const struct bad {
 	const char *dialect, *text;
 	uint32_t line, column;
@@ -197,7 +259,19 @@ static const struct bad {
 	{ "robofil", "G1 X1. U1.\nM02", 1, 8, "U1. on a machine without" },
 	{ "robofil", "E001\nM02", 1, 1, "unknown word E001" },
 	{ "robofil-440", "G2 X2. I1. K0. L0.\nM02", 1, 12, "K0.: no program" },
+	{ "robofil", "G91\nG3 X1. I0. J.5\nM02", 2, 1, "an arc under G91" },
+	{ "robofil-440", "M98 P1\nM02", 1, 1, "M98: M99 ends a program" },
 	{ "makino", "G53\nM02", 1, 1, "G53: machine coordinates" },
+	{ "agievision", "G1 X10\nG29 X20\nM02", 2, 5, "X20 beside G29" },
+	{ "sodick", "G29 X1.\nM02", 1, 5, "X1. beside G29" },
+	{ "linuxcnc", "G0 X5\nG43.1 Z5\nM2", 2, 1, "G43.1: a length by" },
+	{ "fanuc-sinker", "G0 C90\nM30", 1, 4, "C90 without a decimal" },
+	{ "fanuc-sinker", "G0 X1.\nG92 X0\nG52 X1.\nM30", 3, 5,
+	  "G52 X where G92 is in force" },
+	{ "linuxcnc", "G91 G52 X1\nM2", 1, 5, "G52 under G91" },
+	{ "linuxcnc", "G52\nM2", 1, 1, "G52 without axis words" },
+	{ "sodick-sinker", "G0 C45\nM02", 1, 4, "C45 without a decimal" },
+	{ "fanuc-wire", "G2 X1. I.5 K1\nM02", 1, 12, "K1 without a decimal" },
 	{ "skd2", "H001=110\nG41H001\nG01X100Y0\nM02", 3, 4,
 	  "a lead of 0.1000 mm for a change of offset of 0.1100 mm" },
 	{ "skd2", "H001=0\nH001\nG41\nH002\nM02", 4, 1,
@@ -270,6 +344,9 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(robofil_has_centres_as_places),
 		cmocka_unit_test(robofil_440_has_centres_from_the_start),
+		cmocka_unit_test(an_ignored_word_takes_its_letters_with_it),
+		cmocka_unit_test(g52_shifts_all_work_offsets),
+		cmocka_unit_test(g91_moves_an_origin_in_fanuc_and_not_in_linuxcnc),
 		cmocka_unit_test(makino_threads_by_m6),
 		cmocka_unit_test(skd2_counts_micrometres_and_calls_by_n),
 		cmocka_unit_test(sodick_ends_blocks_by_semicolons),

@@ -30,7 +30,7 @@ static const struct refusal numbers[] = {
 	{ "G0 X99999999999999999999999", 1, 4, "out of range", "999999999" },
 	{ "N1.5",		1, 1,	"N1.5 is not a whole", "0 to" },
 	{ "S-1",		1, 1,	"S-1 is out of range", "0 to" },
-	{ "O10000",		1, 1,	"O10000 is out of", "0 to 9999" },
+	{ "O100000000",		1, 1,	"O100000000 is out", "0 to 99999" },
 	{ "G1 F0 X1",		1, 4,	"F0 is out of range", "a feed of" },
 	{ "G1 F-3 X1",		1, 4,	"F-3 is out of range", "a feed of" },
 	{ "G4 P2000000",	1, 4,	"a dwell of 2e+06 s", "1000000 s" },

@@ -33,6 +33,10 @@ static int by_centre(struct nc_reader *r, const struct nc_plane *p,
 				 nc_quote_word(r, b->at[p->other]).s, p->name);
 	if (!has_a && !has_b)
 		return nc_refuse(r, at, p->centre, "an arc without a centre");
+	if (r->d->arc_places && r->incremental)
+		return nc_refuse(r, at, "arcs under G90: I J are places there; "
+				 "under G91 controls of this family differ",
+				 "an arc under G91");
 	if (!r->arc_incremental && !(has_a && has_b))
 		return nc_refuse(r, at, "both words of the centre; G91.1 makes "
 				 "them distances, where one may be missing",

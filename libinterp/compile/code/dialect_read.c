@@ -104,6 +104,7 @@ static const struct rule {
 	{ "macros", RULE(macros), { "none", "fanuc", "linuxcnc" },
 	  { MACRO_NONE, MACRO_FANUC, MACRO_LINUXCNC } },
 	{ "dwell_p", RULE(dwell_ms), { "seconds", "milliseconds" }, { 0, 1 } },
+	{ "g10_under_g91", RULE(g91_sets), { "moves", "sets" }, { 0, 1 } },
 };
 
 static int read_rule(struct reading *f, struct piece key, struct piece value)
@@ -128,7 +129,8 @@ static int read_rule(struct reading *f, struct piece key, struct piece value)
 	return refuse(f, key.at,
 		      "one of length_without_point centre end feed subprograms "
 		      "conditions_defined registers_defined "
-		      "ways_without_number top_of_wire macros dwell_p",
+		      "ways_without_number top_of_wire macros dwell_p "
+		      "g10_under_g91",
 		      "rule", key);
 }
 
@@ -281,6 +283,7 @@ static const struct meaning {
 	NC_MEANINGS(MEANING)
 	NC_ONE_SHOTS(ONE_SHOT)
 	{ "ignore", { NC_IGNORED, 0, 0, 0, 0 } },
+	{ "ignore-alone", { NC_IGNORED, 1, 0, 0, 0 } },
 	{ "refuse", { NC_REFUSED, 0, 0, 0, 0 } },
 	{ "none", { NC_UNKNOWN, 0, 0, 0, 0 } },
 };

@@ -50,7 +50,7 @@ int emit_refuse(struct interp_diag *diag, uint32_t line, const char *wanted,
 	va_list ap;
 
 	diag->line = line;
-	diag->column = 0;
+	diag->column = 1;		/* the whole line */
 	snprintf(diag->wanted, sizeof(diag->wanted), "%s", wanted);
 	va_start(ap, found);
 	vsnprintf(diag->found, sizeof(diag->found), found, ap);

@@ -10,11 +10,14 @@
 #include "code/macro.h"
 #include "code/number.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#define LABEL_MAX	9999
+#define NUMBER_MAX	99999999	/* of a program */
+#define LABEL_MAX	9999		/* of one that is called */
 #define A_CALL		"M98 P1000, with L3 to repeat it; or M98 P31000"
 
 const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end)
@@ -24,8 +27,7 @@ const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end)
 	return p;
 }
 
-/* Skip blanks and comments. */
-static const uint8_t *skip_void(const uint8_t *p, const uint8_t *end)
+const uint8_t *nc_skip_void(const uint8_t *p, const uint8_t *end)
 {
 	for (;;) {
 		p = nc_skip_blanks(p, end);
@@ -53,10 +55,10 @@ static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
 	uint64_t n = 0, ignored = 0;
 	const uint8_t *first;
 
-	p = skip_void(p, end);
+	p = nc_skip_void(p, end);
 	if (letter != 'N' && p < end && (*p | 0x20) == 'n') {
 		p = nc_skip_blanks(p + 1, end);
-		p = skip_void(nc_digits(p, end, &ignored), end);
+		p = nc_skip_void(nc_digits(p, end, &ignored), end);
 	}
 	if (p == end || (*p & 0xdf) != letter)
 		return 0;
@@ -66,7 +68,7 @@ static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
 	/* LinuxCNC's o100 sub is not a label. */
 	if (is_keyword(p, end))
 		return 0;
-	return p - first <= NC_DIGITS_MAX && n <= LABEL_MAX ? (uint32_t)n : 0;
+	return p - first <= NC_DIGITS_MAX && n <= NUMBER_MAX ? (uint32_t)n : 0;
 }
 
 uint32_t nc_label_at(const struct nc_reader *r, const uint8_t *p,
@@ -95,7 +97,7 @@ static int note_label(struct nc_reader *r, struct nc_label l,
 	const uint8_t *at;
 	const uint32_t n = label_of((char)r->d->label, l.at, end, &at);
 
-	if (n == 0)
+	if (n == 0 || n > LABEL_MAX)
 		return 0;
 	if (r->labels[n].line && r->d->label == 'O')
 		return refuse_second(r, l, at, n);
@@ -118,7 +120,7 @@ static int find_labels(struct nc_reader *r)
 		return -ENOMEM;
 	for (; !err && l.at < r->end; l.line++) {
 		const uint8_t *end = nc_line_end(l.at, r->end);
-		const uint8_t *p = skip_void(l.at, end);
+		const uint8_t *p = nc_skip_void(l.at, end);
 
 		if (p < end && *p == '%' && !fresh)
 			break;
@@ -300,8 +302,39 @@ static int back(struct nc_reader *r)
 	return 0;
 }
 
+/* Has a line words that would be carried out?  Of what has none: comments,
+ * the end of a tape, the bytes with which a file is filled up. */
+static bool has_words(const uint8_t *p, const uint8_t *end)
+{
+	p = nc_skip_void(p, end);
+	return p < end && isalpha(*p);
+}
+
+/* Behind the end there may be subprograms.  Other words are a second program,
+ * or the end came too early. */
+static void note_rest(struct nc_reader *r)
+{
+	const char *label = r->d->label == 'N' ? "Nn" : "Oo";
+	const uint8_t *p = r->at, *end;
+	uint32_t line = r->line + 1;
+
+	for (; p < r->end; p = nc_line_next(end, r->end), line++) {
+		end = nc_line_end(p, r->end);
+		p = nc_skip_void(p, end);
+		if (p < end && (*p == '%' || strchr(label, *p) ||
+				nc_label_at(r, p, end)))
+			return;
+		if (has_words(p, end)) {
+			nc_note_rest(r, line);
+			return;
+		}
+	}
+}
+
 static int finish(struct nc_reader *r)
 {
+	if (r->depth == 0 && !r->over)
+		note_rest(r);
 	r->over = NC_FINISHED;
 	r->word.line = r->line;
 	return contour_action(&r->contour, INTERP_END, 0, &r->word, r->diag);

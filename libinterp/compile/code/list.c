@@ -54,7 +54,9 @@ static void look_at(struct nc_reader *r, const uint8_t *end)
 {
 	int err = nc_scan_line(r);
 
-	if (err == 0)
+	/* Nobody knows what the other words of a line with a refused word
+	 * belong to. */
+	if (err == 0 && r->block.takes != UINT32_MAX)
 		err = nc_check_line(r);
 	if (err == -EINVAL)
 		nc_tell(r);

@@ -132,14 +132,30 @@ static int put_number(struct macro_line *l, const uint8_t *at, uint8_t letter,
 
 /* -- The line ------------------------------------------------------------- */
 
+/* ROUND in a word of Fanuc's goes to the last decimal of the word: 0.001 mm or
+ * degrees, 0.0001 inches. */
+static double parts_of(const struct nc_reader *r, uint8_t letter)
+{
+	if (r->d->macros != MACRO_FANUC)
+		return 0;
+	if (strchr("ABC", letter))
+		return 1000;
+	if (!strchr("XYZUVIJKR", letter))
+		return 0;
+	return r->unit_mm > 1 ? 10000 : 1000;
+}
+
 /* An expression stands behind the letter @letter.  Write its value in its
  * place. */
 static int expand_value(struct macro_line *l, uint8_t letter)
 {
 	const uint8_t *at = l->p - 1;
 	double v;
-	int err = macro_value(l, &v);
+	int err;
 
+	l->parts = parts_of(l->r, letter);
+	err = macro_value(l, &v);
+	l->parts = 0;
 	if (err)
 		return err;
 	/* If a variable is vacant, its letter is left out too. */

@@ -93,6 +93,8 @@ struct macro_line {
 	struct nc_macro *m;
 	const uint8_t *p, *end;		/* its rest */
 	int brackets;
+	double parts;			/* ROUND rounds to 1 / parts; 0: to
+					 * whole numbers */
 };
 
 /* All of these return -EINVAL, with the diag filled, if they refuse. */
@@ -142,6 +144,10 @@ int macro_set_named(struct macro_line *l, const uint8_t *at, const char *name,
 /* macro_flow.c: 1 if the line was one of these, 0 if not. */
 int macro_flow(struct macro_line *l);
 int macro_round(struct macro_line *l, const uint8_t *at);
+
+/* Refuse what stands at @behind, up to the end of the line, if it is more than
+ * comments: it would not be carried out.  @line: that line.  Return: 1. */
+int macro_ends(struct macro_line *l, const uint8_t *behind, uint32_t line);
 int macro_assign(struct macro_line *l);	/* one #.. = .., at the # */
 
 /* oword.c: the same. */

@@ -205,6 +205,13 @@ static double tan_deg(double v) { return tan(v * ANGLE_DEGREE); }
 static double asin_deg(double v) { return asin(v) / ANGLE_DEGREE; }
 static double acos_deg(double v) { return acos(v) / ANGLE_DEGREE; }
 
+/* In a word ROUND may keep some decimals: macro.c */
+static double rounded(const struct macro_line *l, double (*f)(double), double v)
+{
+	return f == round && l->parts > 0 ? round(v * l->parts) / l->parts :
+					    f(v);
+}
+
 static const struct {
 	const char *name;
 	double (*fanuc)(double v), (*linuxcnc)(double v);
@@ -309,7 +316,7 @@ static int function(struct macro_line *l, double *ret)
 		err = macro_bracket(l, &v);
 		if (err)
 			return err;
-		*ret = f(number(v));
+		*ret = rounded(l, f, number(v));
 		return isfinite(*ret) ? 0 :
 		       macro_refuse(l, at, "a value the function has",
 				    "%s[%g]", functions[i].name, v);
@@ -324,6 +331,7 @@ static int variable(struct macro_line *l, double *ret)
 	char name[MACRO_NAME_MAX];
 	const uint8_t *at = l->p++;
 	const struct macro_named *n;
+	const double parts = l->parts;
 	double which;
 	int err;
 
@@ -339,7 +347,9 @@ static int variable(struct macro_line *l, double *ret)
 	}
 	if (++l->brackets > MACRO_BRACKETS)
 		return macro_refuse(l, at, "up to 32 of them", "a # too many");
+	l->parts = 0;			/* the number of a variable is whole */
 	err = macro_value(l, &which);
+	l->parts = parts;
 	l->brackets--;
 	return err ? err : macro_get(l, at, number(which), ret);
 }

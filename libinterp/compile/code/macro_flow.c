@@ -6,6 +6,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
+#include <string.h>
 
 /* -- Jumps ---------------------------------------------------------------- */
 
@@ -114,6 +115,9 @@ static int jump(struct macro_line *l, const uint8_t *at, const char *word,
 	struct place to;
 	int err;
 
+	if (isnan(n))
+		return macro_refuse(l, at, "the number of an N word",
+				    "%sa variable without a value", word);
 	if (!(n >= 1 && n < 1e9 && n == floor(n)))
 		return macro_refuse(l, at, "the number of an N word behind it",
 				    "%s%g", word, n);
@@ -150,6 +154,20 @@ int nc_macro_jump(struct nc_reader *r, const uint8_t *at, double n)
 	return l.m ? jump(&l, at, "M99 P", n) : -ENOMEM;
 }
 
+int macro_ends(struct macro_line *l, const uint8_t *behind, uint32_t line)
+{
+	const uint8_t *p = nc_skip_void(behind, l->end);
+
+	if (p < l->end && *p == ';' &&
+	    l->r->d->classes[';'] == NC_BLOCK_END)
+		p = nc_skip_void(p + 1, l->end);
+	if (p == l->end || *p == ';')
+		return 1;
+	l->r->line = line;
+	return macro_refuse(l, p, "them on a line of their own",
+			    "words behind a jump, a loop or a call");
+}
+
 static int take_if(struct macro_line *l, const uint8_t *at)
 {
 	bool truth;
@@ -157,13 +175,19 @@ static int take_if(struct macro_line *l, const uint8_t *at)
 
 	if (err)
 		return err;
-	if (macro_word(l, "GOTO"))
-		return truth ? go_to(l, at) : 1;
-	if (!macro_word(l, "THEN"))
+	if (macro_word(l, "GOTO")) {
+		if (truth)
+			return go_to(l, at);
+	} else if (!macro_word(l, "THEN")) {
 		return macro_refuse(l, l->p, "GOTO or THEN behind IF [ ]",
 				    "an IF without either");
-	err = truth ? macro_assign(l) : 0;
-	return err ? err : 1;
+	} else if (truth) {
+		err = macro_assign(l);
+		return err ? err : 1;
+	}
+	/* What is not done is not looked at. */
+	l->p = l->end;
+	return 1;
 }
 
 /* -- Loops ---------------------------------------------------------------- */
@@ -285,6 +309,22 @@ static uint32_t variable_of(struct call *c, uint8_t letter)
 	return 4 + 3 * c->triples + (uint32_t)(letter - 'I');
 }
 
+/* A number behind @at that needs a decimal point, as a length in a word does:
+ * without one Fanuc counts it in the last decimal of its letter. */
+static bool wants_point(const struct macro_line *l, const uint8_t *at, double v)
+{
+	const uint8_t *p = nc_skip_blanks(at + 1, l->end);
+
+	if (l->r->d->point == NC_POINT_FREE || v == 0 ||
+	    !strchr("ABCIJKQRUVWXYZ", toupper(*at)))
+		return false;
+	for (; p < l->p; p++) {
+		if (!strchr("+-0123456789 \t", *p))
+			return false;
+	}
+	return true;
+}
+
 static int take_argument(struct macro_line *l, struct call *c)
 {
 	const uint8_t *at = l->p, letter = (uint8_t)toupper(*l->p++);
@@ -303,6 +343,10 @@ static int take_argument(struct macro_line *l, struct call *c)
 	err = macro_value(l, &v);
 	if (err)
 		return err;
+	if (wants_point(l, at, v))
+		return macro_refuse(l, at, "a decimal point, as in X10.0: "
+				    "without one Fanuc reads thousandths",
+				    "%c%g without a decimal point", *at, v);
 	if (letter == 'L' && (v != floor(v) || !(v >= 1 && v <= TIMES_MAX)))
 		return macro_refuse(l, at, "a whole number of 1 to 9999",
 				    "L%g times", v);
@@ -323,8 +367,8 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 	for (int i = 0; i < MACRO_LOCALS; i++)
 		c.local[i] = NAN;
 	for (;;) {
-		macro_blanks(l);
-		if (err || l->p == l->end || *l->p == '(' || *l->p == ';')
+		l->p = nc_skip_void(l->p, l->end);
+		if (err || l->p == l->end || *l->p == ';')
 			break;
 		err = take_argument(l, &c);
 	}
@@ -339,7 +383,7 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 	return 1;
 }
 
-int macro_flow(struct macro_line *l)
+static int take_flow(struct macro_line *l)
 {
 	uint64_t ignored = 0;
 	const uint8_t *at;
@@ -366,4 +410,12 @@ int macro_flow(struct macro_line *l)
 		err = macro_refuse(l, l->p, "WHILE [ ] DO1",
 				   "WHILE without DO");
 	return err ? err : take_while(l, at, truth);
+}
+
+int macro_flow(struct macro_line *l)
+{
+	const uint32_t line = l->r->line;
+	const int err = take_flow(l);
+
+	return err == 1 ? macro_ends(l, l->p, line) : err;
 }

@@ -96,6 +96,8 @@ int macro_get(struct macro_line *l, const uint8_t *at, double number,
 		return 0;
 	}
 	place = whole ? place_of(l, (uint32_t)number) : NULL;
+	if (place && isnan(*place) && number >= 100)
+		nc_note_vacant(l->r, (uint32_t)number);
 	if (place)
 		*ret = *place;
 	else if (!whole || !known(l, (uint32_t)number, ret))

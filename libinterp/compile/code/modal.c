@@ -199,13 +199,19 @@ static int refuse_absent(struct nc_reader *r, uint32_t absent)
 			 nc_words[slot].letter);
 }
 
-/* A line with places but without a motion word uses the motion mode in
- * force. */
+/* A line with places but without a motion word uses the motion mode in force.
+ * Places beside an ignored word may belong to that word. */
 static int add_motion(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
 	const int slot = __builtin_ctz(b->words);
 
+	if (b->alone_at)
+		return nc_refuse(r, b->at[slot], "places on a line of "
+				 "their own",
+				 "%s beside %s, which is ignored",
+				 nc_quote_word(r, b->at[slot]).s,
+				 nc_quote_word(r, b->alone_at).s);
 	if (!r->motion)
 		return nc_refuse(r, b->at[slot], "G0 G1 G2 or G3 in this line "
 				 "or before it",
@@ -249,8 +255,8 @@ static int complete(struct nc_reader *r)
 		if (b->groups & (NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE)))
 			return nc_refuse(
 				r, b->code_at[NC_ONE_SHOT],
-				"G4 G28 G92 G92.1 and G120 on lines of their "
-				"own, without G0 G1 G2 G3 G53",
+				"G4 G10 G28 G52 G92 G92.1 and G120 on lines of "
+				"their own, without G0 G1 G2 G3 G53",
 				"%s on a line with a motion word",
 				nc_quote_word(r, b->code_at[NC_ONE_SHOT]).s);
 		return 0;

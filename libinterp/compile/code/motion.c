@@ -288,12 +288,14 @@ static int set_here(struct nc_reader *r)
 				 (i == INTERP_Z ? r->electrode_mm : 0);
 	nc_set_offset(r);
 	r->unnamed &= ~b->words;
+	r->local &= ~b->words;
 	return 0;
 }
 
 static int set_cancel(struct nc_reader *r)
 {
 	memset(r->shift_mm, 0, sizeof(r->shift_mm));
+	r->local = 0;
 	r->unnamed |= r->loose;
 	nc_set_offset(r);
 	return 0;

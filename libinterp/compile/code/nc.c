@@ -41,6 +41,8 @@ static void reset_modes(struct nc_reader *r)
 	r->arc_incremental = !r->d->arc_places;
 	r->lengths = r->d->point != NC_POINT_FREE ||
 		     (o->notes && o->notes->plan) ? NC_LENGTHS : 0;
+	if (r->d->point == NC_POINT_WANTED)
+		r->lengths |= NC_ANGLES;
 	r->feed_mm_s = first_feed(r);
 	r->feed_deg_s = r->feed_mm_s;
 	r->fresh = true;

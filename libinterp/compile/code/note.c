@@ -47,11 +47,44 @@ static bool told(struct nc_reader *r, enum nc_told kind)
 
 void nc_note_point(struct nc_reader *r, const uint8_t *at)
 {
+	const bool inches = r->unit_mm > 1;
+
 	if (!r->o->notes || !r->o->notes->plan || told(r, NC_TOLD_POINT))
 		return;
-	say(r, "%s has no decimal point: it is read as %s here, and counts "
-	    "the last decimal on many controls of EDM machines",
-	    nc_quote_word(r, at).s, r->unit_mm > 1 ? "inches" : "mm");
+	if (r->d->point == NC_POINT_LAST)
+		say(r, "%s has no decimal point: it counts %s here, and %s on "
+		    "many other controls", nc_quote_word(r, at).s,
+		    inches ? "0.0001 inches" : "um", inches ? "inches" : "mm");
+	else
+		say(r, "%s has no decimal point: it is read as %s here, and "
+		    "counts the last decimal on many controls of EDM machines",
+		    nc_quote_word(r, at).s, inches ? "inches" : "mm");
+}
+
+void nc_note_skipped(struct nc_reader *r)
+{
+	if (r->o->notes && !told(r, NC_TOLD_SKIPPED))
+		say(r, "/: lines that begin with it are skipped, as with block "
+		    "delete switched on");
+}
+
+void nc_note_vacant(struct nc_reader *r, uint32_t n)
+{
+	if (r->o->notes && !told(r, NC_TOLD_VACANT))
+		say(r, "#%u has no value: nothing is kept from before the "
+		    "program; a word with it is left out", n);
+}
+
+void nc_note_rest(struct nc_reader *r, uint32_t line)
+{
+	const uint32_t here = r->line;
+
+	if (!r->o->notes)
+		return;
+	r->line = line;
+	say(r, "nothing behind the end of the program is carried out, except "
+	    "subprograms that it calls");
+	r->line = here;
 }
 
 void nc_note_electrode(struct nc_reader *r, enum nc_group group,

@@ -6,6 +6,9 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+
+#define NC_NKEYS	10	/* registers that the machine file has */
 
 int nc_refuse_wire(struct nc_reader *r, const uint8_t *at)
 {
@@ -25,16 +28,32 @@ int nc_define_register(struct nc_reader *r, const uint8_t *at, uint32_t n,
 	return 0;
 }
 
+static int refuse_register(struct nc_reader *r, const uint8_t *at)
+{
+	const uint32_t n = r->selected;
+	const bool defines = r->d->defines || r->d->registers;
+	const char letter = r->d->classes['H'] == NC_LETTER_D ? 'H' : 'D';
+	char wanted[96] = "";
+
+	if (defines)
+		snprintf(wanted, sizeof(wanted), "%c%u=0.11 before it%s",
+			 letter, n, n < NC_NKEYS ? "; or " : "");
+	if (n < NC_NKEYS)
+		snprintf(wanted + strlen(wanted), sizeof(wanted) -
+			 strlen(wanted), "[wire] offset_%u_mm of the machine "
+			 "file", n);
+	return nc_refuse(r, at, wanted[0] ? wanted : "one of D0 to D9, which "
+			 "the machine file can fill, [wire] offset_1_mm",
+			 "an offset by register %u, which is not defined", n);
+}
+
 /* What is set here is in force from the next motion on. */
 static int set_side(struct nc_reader *r, const uint8_t *at)
 {
 	const struct nc_register *g = &r->registers[r->selected];
 
 	if (r->offset_side && !g->known)
-		return nc_refuse(r, at, "a register filled before, as in "
-				 "H1=0.11 and G41 H1",
-				 "an offset by register %u, which is not "
-				 "defined", r->selected);
+		return refuse_register(r, at);
 	contour_side(&r->contour, r->offset_side * g->mm,
 		     r->taper_side * r->slope);
 	return 0;

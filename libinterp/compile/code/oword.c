@@ -266,6 +266,7 @@ static int take_repeat(struct macro_line *l, uint32_t i)
 	if (!(n < 1e9))
 		return macro_refuse(l, word_at(l, i), "fewer rounds",
 				    "a repeat of %g", n);
+	n = rint(n);
 	if (n < 1)
 		return skip_to(l, i, KIND(OWORD_ENDREPEAT), "endrepeat");
 	if (m->nloops == MACRO_LOOPS)
@@ -401,6 +402,23 @@ static int take_return(struct macro_line *l, uint32_t i)
 	return 1;
 }
 
+/* Behind the keyword there are at most brackets. */
+static int check_end(struct macro_line *l)
+{
+	const uint8_t *p = nc_skip_void(l->p, l->end);
+
+	while (p < l->end && *p == '[') {
+		int depth = 0;
+
+		do {
+			depth += (*p == '[') - (*p == ']');
+			p++;
+		} while (p < l->end && depth);
+		p = nc_skip_void(p, l->end);
+	}
+	return macro_ends(l, p, l->r->line);
+}
+
 static int carry_out(struct macro_line *l, uint32_t i)
 {
 	switch (l->m->oword[i].kind) {
@@ -443,7 +461,8 @@ int macro_oword(struct macro_line *l)
 
 	if (err != 1 || !take_kind(l, &kind))
 		return err < 0 ? err : 0;
-	if (!m->oword)
+	err = check_end(l);
+	if (err == 1 && !m->oword)
 		err = find_all(l);
 	if (err < 0)
 		return err;

@@ -50,7 +50,7 @@ struct nc_tool_point {
 /* Kinds of notes; each is made once. */
 enum nc_told { NC_TOLD_POINT, NC_TOLD_INCHES, NC_TOLD_CONDITION,
 	       NC_TOLD_DWELL, NC_TOLD_OFFSET, NC_TOLD_ELECTRODE,
-	       NC_TOLD_CHANGE };
+	       NC_TOLD_CHANGE, NC_TOLD_SKIPPED, NC_TOLD_VACANT };
 
 /* Why no more lines are read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
@@ -73,6 +73,8 @@ struct nc_block {
 	const struct nc_code *dropper;	/* a word that is carried out without
 					 * some of its letters, or NULL */
 	const uint8_t *dropper_at;
+	const uint8_t *alone_at;	/* an ignored word beside which nothing
+					 * may move, or NULL */
 	const uint8_t *at[NC_NSLOTS];	/* position of the letter */
 	const struct nc_code *code[NC_NGROUPS];
 	const uint8_t *code_at[NC_NGROUPS];
@@ -194,7 +196,8 @@ struct nc_reader {
 					 * matters */
 	double unit_mm;			/* 1 or 25.4 */
 	double scale[INTERP_NAXES];	/* unit_mm; 1 for rotary axes */
-	double shift_mm[INTERP_NAXES];	/* by G92 */
+	double shift_mm[INTERP_NAXES];	/* by G92 or G52 */
+	uint32_t local;			/* axes that G52 has shifted */
 	double offset_mm[INTERP_NAXES];	/* work offset and shift together */
 	double feed_mm_s, feed_deg_s;	/* 0: there is none yet */
 	struct interp_build_word word;	/* its condition is modal, too */
@@ -474,6 +477,9 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 /** nc_end_of_text() - the text ends here: may it? */
 int nc_end_of_text(struct nc_reader *r);
 
+/** nc_skip_void() - the first byte from @p that is no blank and no comment. */
+const uint8_t *nc_skip_void(const uint8_t *p, const uint8_t *end);
+
 /**
  * nc_label_at() - does the line from @p to @end begin a program?  Return: its
  * number, or 0.
@@ -495,18 +501,30 @@ static inline const uint8_t *nc_line_next(const uint8_t *p, const uint8_t *end)
 	return p < end ? p + 1 : end;
 }
 
-/* note.c.  Nothing is noted twice.  All except nc_note_code() make notes only
- * for those who ask before a run: notes->plan. */
+/* note.c.  Nothing is noted twice.  nc_note_point() and nc_note_line() make
+ * notes only for those who ask before a run: notes->plan. */
 
 /** nc_note_code() - there is a reason to mention the word at @at. */
 void nc_note_code(struct nc_reader *r, const uint8_t *at,
 		  const struct nc_code *code);
+
+/** nc_note_skipped() - a line is not carried out because of its /. */
+void nc_note_skipped(struct nc_reader *r);
+
+/** nc_note_vacant() - common variable #@n is read, and has no value. */
+void nc_note_vacant(struct nc_reader *r, uint32_t n);
+
+/** nc_note_rest() - words behind the end, in line @line. */
+void nc_note_rest(struct nc_reader *r, uint32_t line);
 
 /** nc_note_point() - the length at @at has no decimal point. */
 void nc_note_point(struct nc_reader *r, const uint8_t *at);
 
 /** nc_note_line() - note what the present line means here and not elsewhere. */
 void nc_note_line(struct nc_reader *r);
+
+/** nc_local_place() - G52: a shift of all work offsets. */
+int nc_local_place(struct nc_reader *r);
 
 /** nc_write_offset() - G10 L2 and L20: a work offset of this program. */
 int nc_write_offset(struct nc_reader *r);

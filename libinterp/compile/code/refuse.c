@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* refuse.c - says what was found and what would be accepted */
 #include "code/macro.h"
+#include "code/number.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -61,9 +62,11 @@ static struct nc_quote quote(const struct nc_reader *r, const uint8_t *at,
 	struct nc_quote q = { "" };
 	size_t n = 0;
 
-	do
+	q.s[n++] = (char)*at++;
+	if (belongs == is_number)	/* X 1 */
+		at = nc_skip_blanks(at, r->stop);
+	while (at < r->stop && n < sizeof(q.s) - 1 && belongs(*at))
 		q.s[n++] = (char)*at++;
-	while (at < r->stop && n < sizeof(q.s) - 1 && belongs(*at));
 	return q;
 }
 

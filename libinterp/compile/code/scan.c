@@ -60,20 +60,20 @@ static bool has_point(const uint8_t *p, const uint8_t *end)
 
 /* A length without a decimal point.  0 is 0 everywhere.  Other values are taken
  * as they are, or in the last of their decimals (0.001 mm, 0.0001 inches), or
- * are refused. */
+ * are refused; where they are refused, angles are, too. */
 static bool pointed_length(struct nc_reader *r, const uint8_t *at,
 			   const uint8_t *end, double *v)
 {
 	if (*v == 0 || has_point(at, end))
 		return true;
-	if (r->d->point == NC_POINT_FREE)
+	if (r->d->point != NC_POINT_WANTED)
 		nc_note_point(r, at);
-	else if (r->d->point == NC_POINT_LAST)
+	if (r->d->point == NC_POINT_LAST)
 		*v /= nc_pow10[r->unit_mm > 1 ? 4 : 3];
 	if (r->d->point != NC_POINT_WANTED)
 		return true;
 	nc_refuse(r, at, "a decimal point, as in X10.0: without one some "
-		  "controls read micrometres", "%s without a decimal point",
+		  "controls read thousandths", "%s without a decimal point",
 		  nc_quote_word(r, at).s);
 	return false;
 }
@@ -245,8 +245,11 @@ static bool add_code(struct nc_reader *r, const uint8_t *at,
 		nc_note_code(r, at, code);
 	}
 	r->word_at = at;
-	if (code->group == NC_IGNORED)
+	if (code->group == NC_IGNORED) {
+		if (code->value)
+			b->alone_at = at;
 		return true;
+	}
 	if (b->groups & NC_BIT(code->group)) {
 		refuse_group(r, at, code->group);
 		return false;
@@ -281,6 +284,9 @@ static const uint8_t *scan_code(struct nc_reader *r, const uint8_t *at)
 			return NULL;
 		nc_tell(r);
 		r->block.takes = UINT32_MAX;
+		r->word_at = at;
+		while (p < r->stop && nc_classes[*p] == NC_NUMERIC)
+			p++;
 		return p;
 	}
 	if (code->group == NC_ELECTRODE)
@@ -481,8 +487,10 @@ static const uint8_t *scan_block_end(struct nc_reader *r, const uint8_t *at)
 
 static const uint8_t *scan_slash(struct nc_reader *r, const uint8_t *at)
 {
-	if (nc_skip_blanks(r->line_at, at) == at)
+	if (nc_skip_blanks(r->line_at, at) == at) {
+		nc_note_skipped(r);
 		return scan_to_end(r, at);
+	}
 	nc_refuse(r, at, "/ as the first character of a line, to skip it",
 		  "a / inside a line");
 	return NULL;
@@ -619,6 +627,7 @@ int nc_scan_line(struct nc_reader *r)
 	b->toward = 0;
 	b->drops = 0;
 	b->dropper = NULL;
+	b->alone_at = NULL;
 
 	if (err)
 		return err;

@@ -35,7 +35,10 @@ enum nc_slot {
 #define NC_CENTRE	(NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_K))
 #define NC_MOVES	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
 #define NC_LENGTHS	(NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z) | \
-			 NC_CENTRE | NC_BIT(NC_R))
+			 NC_BIT(NC_U) | NC_BIT(NC_V) | NC_BIT(NC_UI) | \
+			 NC_BIT(NC_UJ) | NC_CENTRE | NC_BIT(NC_R))
+#define NC_ANGLES	(NC_BIT(NC_A) | NC_BIT(NC_B) | NC_BIT(NC_C) | \
+			 NC_BIT(NC_ANGLE))
 #define NC_OFFSETS	(NC_BIT(NC_D) | NC_BIT(NC_H))
 #define NC_ANYWHERE	(NC_BIT(NC_F) | NC_BIT(NC_N) | NC_BIT(NC_S) | \
 			 NC_BIT(NC_O) | NC_OFFSETS)
@@ -144,6 +147,7 @@ enum nc_motion {
 	W("home", HOME, home, NC_AXES) \
 	W("set-place", SET, set_here, NC_AXES) \
 	W("set-place-off", SET_CANCEL, set_cancel, 0) \
+	W("local-place", LOCAL, nc_local_place, NC_AXES) \
 	W("sink", SINK, nc_sink, NC_AXES | NC_BIT(NC_P)) \
 	W("pass", PASS, nc_pass, 0) \
 	W("cavity", CAVITY, nc_cavity, \
@@ -221,6 +225,8 @@ struct nc_dialect {
 	uint8_t lean;			/* U V: how far the top of the wire is
 					 * from X Y, not its place */
 	uint8_t dwell_ms;		/* P of a dwell is in ms, not s */
+	uint8_t g91_sets;		/* G10 L2 under G91 sets an origin, it
+					 * does not move it */
 	uint8_t macros;			/* enum nc_macros */
 	uint16_t reason[26];		/* of letters, in text */
 	struct nc_code code[NC_NCODES];	/* G, M, T */

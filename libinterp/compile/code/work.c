@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* work.c - G10: work offsets that the program writes */
+/* work.c - G10 and G52: work offsets that the program writes or shifts */
 #include "code/reader.h"
 
 #include <math.h>
@@ -14,6 +14,7 @@ int nc_write_offset(struct nc_reader *r)
 	const double *here = nc_here(r);
 	const double l = nc_has(r, NC_L) ? b->value[NC_L] : 0;
 	const double p = nc_has(r, NC_P) ? b->value[NC_P] : 0;
+	const bool moves = r->incremental && !r->d->g91_sets;
 	uint32_t work;
 
 	if (l != 2 && l != 20)
@@ -32,12 +33,40 @@ int nc_write_offset(struct nc_reader *r)
 
 		if (!(b->words & NC_BIT(i)))
 			continue;
-		*mm = l == 2 ? (r->incremental ? *mm : 0) + to :
+		*mm = l == 2 ? (moves ? *mm : 0) + to :
 			       here[i] - to - r->shift_mm[i] -
 			       (i == INTERP_Z ? r->electrode_mm : 0);
 	}
 	nc_set_offset(r);
 	if (l == 20 && work == r->work)
 		r->unnamed &= ~b->words;
+	return 0;
+}
+
+/* Fanuc keeps this apart from the shift by G92, and LinuxCNC has one shift for
+ * both.  So an axis has one or the other here. */
+int nc_local_place(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+	const uint8_t *at = b->code_at[NC_ONE_SHOT];
+
+	if (r->tool.on)
+		return nc_refuse(r, at, "G49 before it", "G52 under G43.4");
+	if (r->incremental)
+		return nc_refuse(r, at, "G90 before it", "G52 under G91");
+	if (!(b->words & NC_AXES))
+		return nc_refuse(r, at, "axis words, as in G52 X0 Y0, which "
+				 "cancels it", "G52 without axis words");
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (!(b->words & NC_BIT(i)))
+			continue;
+		if (r->shift_mm[i] != 0 && !(r->local & NC_BIT(i)))
+			return nc_refuse(r, b->at[i], "G92.1 before it",
+					 "G52 %c where G92 is in force",
+					 nc_words[i].letter);
+		r->shift_mm[i] = b->value[i] * r->scale[i];
+		r->local |= NC_BIT(i);
+	}
+	nc_set_offset(r);
 	return 0;
 }
