@@ -35,18 +35,19 @@ static int refuse_value(const struct cmdline *o, const char *name,
 			      wanted);
 }
 
-int cmdline_number(const struct cmdline *o, const char *name, const char *text,
-		   double min, double max, double *ret)
+static int number_take(const struct cmdline *o, const struct cmdline_row *r,
+		       const char *text, double *ret)
 {
 	char *end, wanted[80];
 
 	errno = 0;
 	*ret = strtod(text, &end);
-	if (end != text && *end == '\0' && errno == 0 && *ret >= min &&
-	    *ret <= max)
+	if (end != text && *end == '\0' && errno == 0 && *ret >= r->min &&
+	    *ret <= r->max)
 		return GO_ON;
-	snprintf(wanted, sizeof(wanted), "a number from %g to %g", min, max);
-	return refuse_value(o, name, text, wanted);
+	snprintf(wanted, sizeof(wanted), "a number from %g to %g", r->min,
+		 r->max);
+	return refuse_value(o, r->name, text, wanted);
 }
 
 static int whole_take(const struct cmdline *o, const struct cmdline_row *r,
@@ -75,7 +76,7 @@ static int row_take(const struct cmdline *o, const struct cmdline_row *r,
 		*(const char **)at = text;
 		return GO_ON;
 	case CMDLINE_NUMBER:
-		return cmdline_number(o, r->name, text, r->min, r->max, at);
+		return number_take(o, r, text, at);
 	case CMDLINE_WHOLE:
 		return whole_take(o, r, text, at);
 	case CMDLINE_CALL:

@@ -74,13 +74,6 @@ bool cmdline_has(const struct cmdline *o, const struct cmdline_given *g,
 		 const char *name);
 
 /**
- * cmdline_number() - @text as a number in the range. Return: -1, or an exit
- * code whose reason was printed.
- */
-int cmdline_number(const struct cmdline *o, const char *name, const char *text,
-		   double min, double max, double *ret);
-
-/**
  * cmdline_refuse() - print a refusal. Return: the exit code for wrong usage.
  */
 int cmdline_refuse(const char *program, const char *what, const char *value,

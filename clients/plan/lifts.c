@@ -5,9 +5,9 @@
  * A lift goes along up to three legs, which are straight in the axes.  Lifts
  * from two places of the path that are near each other are near each other all
  * along: at the same share of the same leg no axis is farther off than at the
- * beginning.  So the legs from the middle of a piece are proved, with so much
- * more clearance that it does for all of the piece.  Where that fails, both
- * halves of the piece are looked at, down to pieces of SMALL_MM.
+ * beginning.  So the legs from the middle of a piece are proved, with a
+ * clearance that is larger by as much as the piece needs.  Where that fails,
+ * both halves of the piece are looked at, down to pieces of SMALL_MM.
  */
 #include "lifts.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * prove.c - what is to be kept along a block, and the most that is
+ * prove.c - proves the clearance along a block, and finds the largest one
  */
 #include "prove.h"
 

@@ -20,7 +20,8 @@
 
 /* -- The bus -------------------------------------------------------------- */
 
-/* Trouble on the bus stops everything until a reset; its end only is told. */
+/* Trouble on the bus stops everything until a reset.  The end of the trouble is
+ * reported, and changes nothing. */
 static void bus_is(struct can402 *s, enum can_got state)
 {
 	if (state == s->bus)
@@ -72,7 +73,8 @@ static void hear_gap(struct can402 *s, const struct can_msg *m)
 	s->gap_age = 0;
 }
 
-/* A PLC on this bus may command all nodes at once, and each one but drives. */
+/* A PLC on this bus may send NMT to all nodes at once, and to each single node
+ * that is not a drive. */
 static bool is_the_plcs(const struct can402 *s, const struct can_msg *m)
 {
 	bool drives = false;

@@ -37,7 +37,8 @@ static bool ends_setup(enum drive_trouble t)
 	       t == DRIVE_NO_ANSWER || t == DRIVE_NOT_STARTED;
 }
 
-/* The first one is told, but none that ends the set-up is forgotten. */
+/* The first trouble is reported.  A later one that ends the set-up still counts
+ * for the set-up. */
 static void trouble(struct drive *d, enum drive_trouble t)
 {
 	d->unset = d->unset || ends_setup(t);
@@ -60,7 +61,7 @@ int32_t drive_to_increments(const struct drive_config *c, int32_t pulses)
 	return (int32_t)floor_div((int64_t)pulses * c->increments, c->pulses);
 }
 
-/* Increments count round at 2^32, as the drive's own number does. */
+/* The count of increments wraps at 2^32, as the drive's own number does. */
 static int32_t wrapped(int64_t x)
 {
 	return (int32_t)(uint32_t)(uint64_t)x;
@@ -125,7 +126,8 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 
 	d->answers++;
 	d->strange = state == DRIVE_NO_STATE;
-	/* As one that was lost: the next one may make sense again. */
+	/* This counts as an answer that was lost: the next answer may make
+	 * sense again. */
 	if (d->strange) {
 		d->malformed++;
 		return;
@@ -209,8 +211,8 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 /* -- What did not come ---------------------------------------------------- */
 
 /*
- * The lag of an axis goes away as slowly as it came.  A drive that is not led
- * has no lag: its target is where somebody has pushed it.
+ * The lag of an axis goes away as slowly as it came.  A drive that does not
+ * follow targets yet has no lag: its target is the place that it reports.
  */
 static void watch_lag(struct drive *d)
 {
@@ -227,7 +229,7 @@ static void watch_following(struct drive *d)
 	int64_t low = INT32_MAX, high = INT32_MIN;
 
 	watch_lag(d);
-	/* Differences from the place, because places count round at 2^32. */
+	/* Differences from the place are taken, because places wrap at 2^32. */
 	for (int i = 0; i < DRIVE_SENT; i++) {
 		const int64_t off = wrapped((int64_t)d->sent[i] - d->actual);
 

@@ -77,7 +77,8 @@ static void rise(struct pulser *p, uint32_t want, uint32_t down)
 	p->left = p->c.high;
 }
 
-/* Steps at once where no direction changes, else after the set-up. */
+/* If no direction changes, the steps begin at once; else they begin after the
+ * set-up time of the direction lines. */
 static void begin(struct pulser *p, const int32_t *target)
 {
 	uint32_t down;

@@ -177,7 +177,8 @@ void again_interrupted(struct jobs *j, uint32_t n,
 
 /* -- The verb -------------------------------------------------------------- */
 
-/* Axes that @text names; those that the machine has not do not count. */
+/* The axes that @text names.  Axes that the machine does not have do not
+ * count. */
 static uint32_t axes_named(const char *text)
 {
 	uint32_t axes = 0;

@@ -30,7 +30,7 @@ void queue_recount(struct jobs *j)
 
 static void set_waiting(struct jobs *j, bool waiting)
 {
-	/* Until a person has seen where the axes stand nothing begins. */
+	/* Nothing begins until a person has seen where the axes stand. */
 	waiting = waiting || j->elsewhere;
 	if (j->queue.waiting == waiting)
 		return;

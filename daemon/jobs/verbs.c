@@ -577,7 +577,7 @@ static const struct verb verbs[] = {
 	{ "resume", ROLE_OPERATOR, VERB_ACTS, verb_resume, SHM_DO_RESUME,
 	  "a job that is held" },
 	{ "stop", ROLE_OPERATOR, VERB_ENDS, verb_machine, SHM_DO_STOP,
-	  "a job, and no fault; reset first" },
+	  "a job" },
 	{ "retract", ROLE_OPERATOR, VERB_ACTS, verb_retract, SHM_DO_RETRACT,
 	  "a job, and no fault; reset first" },
 	{ "set", ROLE_OPERATOR, VERB_ACTS, verb_set, SHM_DO_SET,

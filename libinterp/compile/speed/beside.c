@@ -92,7 +92,8 @@ static double bend_change(struct pass *w, const struct look *l, uint32_t j)
 	return most < 0 ? INFINITY : most;
 }
 
-/* Along the path, of what a bend at the node may take a share. */
+/* The acceleration along the path, of which a bend at the node may take a
+ * share. */
 static double own_mm_s2(const struct pass *w)
 {
 	return smaller(w->a_linear_mm_s2, smaller(w->a_own_mm_s2[0],

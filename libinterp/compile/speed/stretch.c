@@ -120,8 +120,8 @@ static struct stretch run(const struct stretches *w, uint32_t from, uint32_t to,
 	return t;
 }
 
-/* Softer ways that are so near to each other that a stand between them takes
- * longer are one. */
+/* Two softer ways may be so near to each other that stands between them would
+ * take longer than one soft move over both.  Then they become one stretch. */
 static struct stretch run_softer(const struct stretches *w, uint32_t from,
 				 uint32_t to, int c)
 {
@@ -224,8 +224,9 @@ static struct stretch part(const struct stretches *w, uint32_t from,
 	return t;
 }
 
-/* As one move both would be as soft as the softer one, and so slow between them
- * that it is as good as two. */
+/* One move over both parts has the limits of the softer part all the way.  At
+ * the node between them it is about as slow as a stand, so its time is counted
+ * as that of two moves with these limits. */
 static bool parts_pay(const struct stretches *w, const struct stretch *a,
 		      const struct stretch *b)
 {

@@ -149,8 +149,8 @@ static struct curve prolonged(const struct mover *k, uint32_t i,
 	return c;
 }
 
-/* Where the last element and @b, piece @i, cross: both are cut off there.  What
- * the edges at their other ends prolong counts. */
+/* Find where the last element and @b, which is piece @i, cross; both are cut
+ * off there.  They count as long as the edges at their other ends make them. */
 static bool meet_inside(const struct mover *k, const struct corner *c,
 			uint32_t i, const struct track_elem *b, struct vec *at)
 {
@@ -195,7 +195,8 @@ static int lay_round(struct mover *k, const struct corner *c,
 	return err ? err : lay_fill(k, c->a, &step[1], false);
 }
 
-/* By the corner that they had: no way goes along it. */
+/* Join them over the corner that they had before they were moved.  These lines
+ * are dead: no way goes along them. */
 static int lay_dead(struct mover *k, const struct corner *c,
 		    const struct track_elem *b)
 {
@@ -206,8 +207,8 @@ static int lay_dead(struct mover *k, const struct corner *c,
 	return err ? err : lay_fill(k, c->a, &from, true);
 }
 
-/* The last piece runs from its first corner to @to.  If that is backwards no
- * way goes along it. */
+/* The last piece runs from its first corner to @to.  If it would run backwards,
+ * it is dead: no way goes along it. */
 static void end_piece(struct mover *k, struct vec to)
 {
 	struct track_elem *e = &k->w.elem[k->w.n - 1];

@@ -12,8 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* -- Actions: no length, no points
- * ------------------------------------------ */
+/* -- Actions: no length, no points ----------------------------------------- */
 
 static uint32_t none_run(struct interp_cursor *c, uint32_t ticks,
 			 uint16_t *ret)
