@@ -38,6 +38,8 @@ void config_tech_free(struct config_tech *t);
 struct config_dialect {
 	const struct interp_dialect *use;
 	struct interp_dialect *own;	/* read from a file; NULL: built in */
+	char *text;			/* of that file; NULL: built in */
+	size_t bytes;
 	char path[512];			/* of that file, or the name */
 	struct interp_diag diag;	/* filled with -EINVAL */
 };

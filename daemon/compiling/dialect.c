@@ -20,28 +20,27 @@ bool config_dialect_is_file(const char *name)
 
 static int read_file(struct config_dialect *d)
 {
-	struct interp_text text = { .bytes = 0 };
 	FILE *f = fopen(d->path, "re");
-	char *bytes;
 	int err = 0;
 
 	if (!f)
 		return -errno;
-	bytes = malloc(FILE_BYTES_MAX + 1);
-	if (bytes)
-		text.bytes = fread(bytes, 1, FILE_BYTES_MAX + 1, f);
-	if (!bytes)
+	d->text = malloc(FILE_BYTES_MAX + 1);
+	if (d->text)
+		d->bytes = fread(d->text, 1, FILE_BYTES_MAX + 1, f);
+	if (!d->text)
 		err = -ENOMEM;
 	else if (ferror(f))
 		err = errno ? -errno : -EIO;
-	else if (text.bytes > FILE_BYTES_MAX)
+	else if (d->bytes > FILE_BYTES_MAX)
 		err = -EFBIG;
 	fclose(f);
-	text.at = bytes;
 	if (!err)
-		err = interp_dialect_read(&d->own, "of a file", &text,
-					  &d->diag);
-	free(bytes);
+		err = interp_dialect_read(&d->own, "of a file",
+					  &(struct interp_text) {
+						.at = d->text,
+						.bytes = d->bytes,
+					  }, &d->diag);
 	d->use = d->own;
 	return err;
 }
@@ -87,7 +86,9 @@ int config_dialect_load(struct config_dialect *ret,
 void config_dialect_free(struct config_dialect *d)
 {
 	interp_dialect_free(d->own);
+	free(d->text);
 	d->own = NULL;
+	d->text = NULL;
 }
 
 void config_dialect_why(const struct config_dialect *d, int err, char *buf,

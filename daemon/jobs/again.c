@@ -323,6 +323,21 @@ static struct interp_probed probed_by(const struct shm_snapshot *s)
 	return p;
 }
 
+int again_check(struct jobs *j, const struct store_job *job)
+{
+	static struct again a;
+	const int err = again_read(j, job->n, &a);
+
+	if (err == -ENOENT)
+		return 0;
+	if (err == 0 && (again_is_named(&a) || a.instance == j->link.instance))
+		return 0;
+	again_refuse(j, job, err < 0 ? UNREADABLE :
+		     "edmd was started anew since it was resumed, so its axes "
+		     "have to be looked at again");
+	return -ESTALE;
+}
+
 int again_request(struct jobs *j, const struct store_job *job,
 		  struct compiler_request *ret)
 {
@@ -330,20 +345,11 @@ int again_request(struct jobs *j, const struct store_job *job,
 	static struct again a;
 	const int err = again_read(j, job->n, &a);
 
-	if (err == -ENOENT)
-		return 0;
-	if (err < 0) {
-		again_refuse(j, job, UNREADABLE);
-		return -ESTALE;
-	}
+	if (err < 0)
+		return err == -ENOENT ? 0 : err;
 	again_begin_at(j, a.line, a.place_mm, ret);
 	if (again_is_named(&a))
 		return 0;
-	if (a.instance != j->link.instance) {
-		again_refuse(j, job, "edmd was started anew since it was "
-			     "resumed, so its axes have to be looked at again");
-		return -ESTALE;
-	}
 	ret->sets = a.base.sets;
 	ret->from.far_mm = a.base.snap.far_mm;
 	ret->from.probed = probed_by(&a.base.snap);

@@ -43,12 +43,15 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 		  const struct store_job *job);
 
 /**
- * again_request() - fill in @ret->from if @job does not begin at its
- * beginning.
+ * again_check() - may @job be loaded?
  *
  * Return: 0; -ESTALE: the axes are not where they were answered for, or what
  * is kept of the job cannot be read; the job is interrupted again.
  */
+int again_check(struct jobs *j, const struct store_job *job);
+
+/** again_request() - fill in @ret->from if @job does not begin at its
+ *  beginning.  Return: 0; -EBADMSG: what is kept of it cannot be read. */
 int again_request(struct jobs *j, const struct store_job *job,
 		  struct compiler_request *ret);
 

@@ -163,23 +163,6 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	return block_write(c);
 }
 
-/* The file of the dialect is read for each job, too. */
-static int compiler_read(struct compiler *c, const struct config_tech *tech)
-{
-	struct compiler_result *r = &c->result;
-	struct config_dialect d;
-	int err = config_dialect_load(&d, c->request.config,
-				      c->request.dialect, c->request.name);
-
-	if (err == 0)
-		err = compiler_text(c, tech, d.use);
-	else
-		config_dialect_why(&d, err, r->tech_refusal,
-				   sizeof(r->tech_refusal));
-	config_dialect_free(&d);
-	return err;
-}
-
 static bool is_the_text(const struct compiler_request *r)
 {
 	uint8_t hash[crypto_hash_sha256_BYTES];
@@ -203,15 +186,58 @@ static int take_text(struct compiler *c)
 	return err;
 }
 
+/* Made before, of the same table and dialect. */
+static bool is_made(const struct compiler *c)
+{
+	const struct compiler_result *r = &c->result, *m = c->request.made;
+
+	return m && strcmp(m->tech_sha256, r->tech_sha256) == 0 &&
+	       memcmp(m->dialect_sha256, r->dialect_sha256,
+		      sizeof(r->dialect_sha256)) == 0;
+}
+
+static int compiler_make(struct compiler *c, const struct config_tech *tech,
+			 const struct config_dialect *d)
+{
+	int err = 0;
+
+	if (d->text)
+		crypto_hash_sha256(c->result.dialect_sha256,
+				   (const uint8_t *)d->text, d->bytes);
+	if (is_made(c)) {
+		c->result = *c->request.made;
+		compiler_take_out(c->request.made);
+	} else {
+		err = take_text(c);
+		if (err == 0)
+			err = compiler_text(c, tech, d->use);
+	}
+	return err;
+}
+
+/* The file of the dialect is read for each job, too. */
+static int compiler_read(struct compiler *c, const struct config_tech *tech)
+{
+	struct compiler_result *r = &c->result;
+	struct config_dialect d;
+	int err = config_dialect_load(&d, c->request.config,
+				      c->request.dialect, c->request.name);
+
+	if (err == 0)
+		err = compiler_make(c, tech, &d);
+	else
+		config_dialect_why(&d, err, r->tech_refusal,
+				   sizeof(r->tech_refusal));
+	config_dialect_free(&d);
+	return err;
+}
+
 static void compile_and_keep(struct compiler *c)
 {
 	const struct compiler_request *r = &c->request;
 	const bool given = r->text != NULL;
 	struct config_tech tech;
 
-	c->result.err = take_text(c);
-	if (c->result.err < 0)
-		return;
 	c->result.err = read_tech(c, &tech);
 	if (c->result.err == 0)
 		c->result.err = compiler_read(c, &tech);
@@ -238,6 +264,13 @@ void compiler_now(const struct compiler_request *request,
 	c = (struct compiler) { .request = *request };
 	compiler_work(&c);
 	*ret = c.result;
+}
+
+void compiler_take_out(struct compiler_result *r)
+{
+	r->wear = (struct interp_wear) { .nchanges = 0 };
+	r->eta = (struct eta) { .n = 0 };
+	r->block = -1;
 }
 
 void compiler_forget(struct compiler_result *r)
@@ -267,6 +300,9 @@ static void compiler_free(struct compiler *c)
 	if (c->fd >= 0)
 		close(c->fd);
 	compiler_forget(&c->result);
+	if (c->request.made)
+		compiler_forget(c->request.made);
+	free(c->request.made);
 	free(c);
 }
 

@@ -22,6 +22,7 @@
 #include <systemd/sd-event.h>
 
 struct compiler;
+struct compiler_result;
 
 struct compiler_request {
 	const struct machine_config *config;	/* lent, until the end */
@@ -50,6 +51,10 @@ struct compiler_request {
 						 * have */
 	struct interp_build_from from;
 	struct shm_sets sets;
+	/* By a request that was the same but for this; NULL: none.  It is on
+	 * the heap and belongs to the compiler.  It is the result if technology
+	 * table and dialect are the same too. */
+	struct compiler_result *made;
 };
 
 #define COMPILER_NOTES_MAX	16
@@ -71,6 +76,7 @@ struct compiler_result {
 	struct compiler_note note[COMPILER_NOTES_MAX];
 	uint32_t nnotes;		/* all of them, also those not kept */
 	char tech_sha256[65];		/* of the table, hex; "": none */
+	uint8_t dialect_sha256[32];	/* of its file; zeros: built in */
 	char tech_refusal[1024];		/* of the table or the
 					 * dialect; "": none */
 	struct interp_build_entry entry;	/* if it goes on */
@@ -96,6 +102,8 @@ void compiler_now(const struct compiler_request *request,
 		  struct compiler_result *ret);
 /** compiler_forget() - what compiler_now() made. */
 void compiler_forget(struct compiler_result *r);
+/** compiler_take_out() - what @r has belongs to the caller from now on. */
+void compiler_take_out(struct compiler_result *r);
 
 /**
  * compiler_destroy() - give up: wait for the thread; @done is not called.

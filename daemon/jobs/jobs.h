@@ -11,6 +11,7 @@
 #include "calls.h"
 #include "checkpoint.h"
 #include "config.h"
+#include "early.h"
 #include "electrode.h"
 #include "eta.h"
 #include "link.h"
@@ -42,6 +43,7 @@ struct jobs {
 	struct tally tally;
 	struct calls calls;
 	struct eta eta;
+	struct early early;
 	struct electrode electrode;
 	struct trust trust;
 	struct keyfile host_key;

@@ -240,60 +240,80 @@ static void on_compiled(void *arg, struct compiler_result *r)
 		    r->err == -EILSEQ ? DAMAGED : reason);
 }
 
-/* A long one is read by the compiler's thread. */
+int load_request(struct jobs *j, const struct store_job *job,
+		 struct compiler_request *ret)
+{
+	const struct shm_snapshot *s = &j->link.snap;
+	int err;
+
+	/* All of its bytes: early.c compares them. */
+	memset(ret, 0, sizeof(*ret));
+	ret->config = j->config;
+	ret->name = job->name;
+	/* What the service itself has written. */
+	ret->dialect = job->measures ? "generic" : NULL;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret->start_mm[i] = s->pos[i] * s->pulse_mm[i];
+	/* A short one is in the database. */
+	err = store_text_file(j->store, job->n, ret->text_file);
+	if (err == 0 || err == -ENOENT)
+		err = again_request(j, job, ret);
+	if (err < 0)
+		return err;
+	electrode_request(j, job, 0, ret);
+	ret->wants_wear = true;
+	ret->wants_block = j->machine;
+	ret->has_sha256 = sodium_hex2bin(ret->sha256, sizeof(ret->sha256),
+					 job->sha256, strlen(job->sha256),
+					 NULL, NULL, NULL) == 0;
+	return offset_request(j, job, ret);
+}
+
 static int find_text(struct jobs *j, struct compiler_request *ret)
 {
 	struct queue *q = &j->queue;
-	int err;
+	int err = 0;
 
-	q->next_text = NULL;
-	err = store_text_file(j->store, q->next.n, ret->text_file);
-	return err != -ENOENT ? err :
-	       store_text(j->store, q->next.n, &q->next_text, &ret->bytes);
+	if (!*ret->text_file)
+		err = store_text(j->store, q->next.n, &q->next_text,
+				 &ret->bytes);
+	ret->text = q->next_text;
+	return err;
+}
+
+static int compile(struct jobs *j)
+{
+	struct queue *q = &j->queue;
+	struct compiler_request request;
+	int err = again_check(j, &q->next);
+
+	if (err == 0)
+		err = load_request(j, &q->next, &request);
+	if (err == 0)
+		err = early_take(j, &q->next, &request);
+	if (err == 0)
+		err = find_text(j, &request);
+	return err ? err : compiler_start(&q->compile, j->event, &request,
+					  on_compiled, j);
 }
 
 void load_begin(struct jobs *j, int64_t now_us)
 {
-	const struct shm_snapshot *s = &j->link.snap;
 	struct queue *q = &j->queue;
-	struct compiler_request request = { .config = j->config };
 	int err;
 
 	if (!q->behind || store_head(j->store, &q->next) < 0)
 		return;
-	err = find_text(j, &request);
-	if (err == 0) {
-		request.name = q->next.name;
-		/* What the service itself has written. */
-		request.dialect = q->next.measures ? "generic" : NULL;
-		request.text = q->next_text;
-		for (int i = 0; i < INTERP_NAXES; i++)
-			request.start_mm[i] = s->pos[i] * s->pulse_mm[i];
-		err = again_request(j, &q->next, &request);
-	}
-	if (err == 0) {
-		electrode_request(j, &q->next, 0, &request);
-		request.wants_wear = true;
-		request.wants_block = j->machine;
-		request.has_sha256 =
-			sodium_hex2bin(request.sha256, sizeof(request.sha256),
-				       q->next.sha256, strlen(q->next.sha256),
-				       NULL, NULL, NULL) == 0;
-		err = offset_request(j, &q->next, &request);
-	}
-	if (err == 0) {
-		err = compiler_start(&q->compile, j->event, &request,
-				     on_compiled, j);
-	}
+	q->next_text = NULL;
+	err = compile(j);
+	if (err == 0)
+		return;
+	free(q->next_text);
+	q->next_text = NULL;
 	if (err == -EILSEQ) {
 		load_refuse(j, q->next, DAMAGED);
-	} else if (err == -ESTALE) {
-		free(q->next_text);
-		q->next_text = NULL;
-	} else if (err < 0) {
+	} else if (err != -ESTALE && err != -EAGAIN) {
 		q->again_us = now_us + AGAIN_US;
-		free(q->next_text);
-		q->next_text = NULL;
 		log_error("load: job %s: %s", q->next.id, strerror(-err));
 	}
 }

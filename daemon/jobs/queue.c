@@ -455,6 +455,7 @@ void queue_step(struct jobs *j, int64_t now_us)
 
 	if (s->state != SHM_FAULT)
 		q->fault_told = 0;
+	early_step(j, now_us);
 	if (q->job.n && s->program == q->job.n) {
 		q->missing_us = 0;
 		q->snap = *s;
@@ -483,6 +484,7 @@ void queue_fini(struct jobs *j)
 
 	calls_write(j);
 	load_fini(j);
+	early_fini(j);
 	eta_fini(&j->eta);
 	if (!q->job.n || (q->job.begun_us && !queue_is_leaving(q)))
 		return;

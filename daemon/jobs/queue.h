@@ -23,7 +23,7 @@
 #include "store.h"
 
 struct compiler;
-struct compiler_result;
+struct compiler_request;
 struct jobs;
 
 /* Read, do not write. */
@@ -123,6 +123,11 @@ void settle_ended(struct jobs *j);
  * it.
  */
 void load_begin(struct jobs *j, int64_t now_us);
+
+/** load_request() - what @job is compiled by, if it is loaded as the machine
+ *  stands now; but for a text in the database.  Return: 0 or -errno. */
+int load_request(struct jobs *j, const struct store_job *job,
+		 struct compiler_request *ret);
 
 /** load_send() - send a command about program @n; its answer ends `asked`. */
 int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us);

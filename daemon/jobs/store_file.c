@@ -274,7 +274,8 @@ static int open_once(struct store *s, sqlite3 **ret)
 	if (err == 0)
 		err = bring_up(db);
 	if (err < 0) {
-		if (!s->in_memory)
+		/* What SQLite has no error for, who asked says in words. */
+		if (!s->in_memory && sqlite3_errcode(db) != SQLITE_OK)
 			log_error("store: %s: %s", s->path,
 				  sqlite3_errmsg(db));
 		sqlite3_close_v2(db);

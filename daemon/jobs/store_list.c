@@ -13,6 +13,7 @@
 #include <string.h>
 
 #define LIST_MAX	200
+#define QUEUE_MAX	400		/* its rows are short */
 #define ALARMS_MAX	20
 
 /* Which electrodes cut it, and their wear before and after. */
@@ -33,6 +34,12 @@
 			"depth_mm, 'job_s', job_s, 'jumps', jumps, " \
 			"'retracts', retracts, 'shorts', shorts, " \
 			"'tech_sha256', tech_sha256" ELECTRODES_JSON MORE ")"
+
+/* Of a job that waits there may be thousands. */
+#define QUEUED_JSON	"json_object('n', n, 'job', id, 'name', name, " \
+			"'state', state, 'hold', json(iif(hold, 'true', " \
+			"'false')), 'lines', lines, 'submitted_us', " \
+			"submitted_us, 'reason', reason)"
 
 /* What it came to.  Energy is null where the machine does not count it. */
 #define SUMS_JSON	", 'first_us', first_us, 'erode_s', erode_s, " \
@@ -81,8 +88,8 @@
 
 /* The order is found from a few columns, and JSON is made only of the rows that
  * are wanted. */
-#define JOBS_SQL(MORE, SOME, PLACE) \
-	"SELECT " JOB_JSON(MORE) " FROM job JOIN (" SOME ") ON n=m ORDER BY " \
+#define JOBS_SQL(JSON, SOME, PLACE) \
+	"SELECT " JSON " FROM job JOIN (" SOME ") ON n=m ORDER BY " \
 	PLACE " LIMIT ?1"
 
 static sqlite3_stmt *list_query(struct store *s, enum store_list what,
@@ -95,7 +102,7 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 					  NOTES_JSON) " FROM job WHERE id=?1",
 				 "si", id, (int64_t)rows);
 	case STORE_QUEUE:
-		return store_ask(s, ret_err, JOBS_SQL("",
+		return store_ask(s, ret_err, JOBS_SQL(QUEUED_JSON,
 				 SOME("job", LOADED, STORE_IN_QUEUE)
 				 " UNION ALL "
 				 SOME("job INDEXED BY job_by_turn", WAITS,
@@ -123,7 +130,7 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 	case STORE_HISTORY:
 		break;
 	}
-	return store_ask(s, ret_err, JOBS_SQL(SUMS_JSON,
+	return store_ask(s, ret_err, JOBS_SQL(JOB_JSON(SUMS_JSON),
 			 SOME("job", HAS_ENDED, IN_HISTORY), IN_HISTORY),
 			 "is", (int64_t)rows, id);
 }
@@ -237,14 +244,15 @@ static char *list_text(struct store *s, enum store_list what, const char *id,
 char *store_json(struct store *s, enum store_list what, const char *id,
 		 int rows)
 {
+	const int most = what == STORE_QUEUE ? QUEUE_MAX : LIST_MAX;
 	char *text;
 
 	if (what == STORE_SHOW)
 		return one(s, id);
 	if (what == STORE_TRAIL)
 		return trail(s, id);
-	if (rows <= 0 || rows > LIST_MAX)
-		rows = LIST_MAX;
+	if (rows <= 0 || rows > most)
+		rows = most;
 	text = list_text(s, what, id, rows);
 	return text ? text : list_text(s, what, id, rows);
 }

@@ -145,8 +145,9 @@ def check_queue(p, accepted):
     assert accepted <= there <= {"cut", "next"}, (queue, done)
     accepted |= there
     assert not set(queue) & set(done), (queue, done)
-    for job in queue.values():
-        text = p.share / ("job.ngc" if job["job"] == "cut" else "next.ngc")
+    for name in queue:
+        job = queue[name] = p.json(f"show-{name}")
+        text = p.share / ("job.ngc" if name == "cut" else "next.ngc")
         sha256 = hashlib.sha256(text.read_bytes()).hexdigest()
         assert job["sha256"] == sha256, job
     assert all(job["state"] == "done" for job in history), history

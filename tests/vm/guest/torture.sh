@@ -47,6 +47,9 @@ ctl --json history > history.$turn
 # Longer than it takes to see what became of a job.
 sleep 0.3
 ctl --json queue > queue.$turn
+for job in cut next; do
+	ctl --json show $job > show-$job.$turn 2> /dev/null
+done
 
 if grep -q '"interrupted"' queue.$turn; then
 	say "resume: $(ctl resume cut XYZABCUV 2>&1)"

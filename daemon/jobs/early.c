@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* early.c - compiles an interrupted job before it is resumed */
+#include "early.h"
+
+#include "jobs.h"
+#include "jobs_log.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LOOK_US		500000		/* as long the axes stand before */
+
+static void forget(struct early *a)
+{
+	if (a->made)
+		compiler_forget(a->made);
+	free(a->made);
+	a->made = NULL;
+	a->tried = false;
+	a->job = (struct store_job) { .n = 0 };
+}
+
+/* All of its bytes were set, so they can be compared.  The names are at
+ * different places. */
+static bool is_same(const struct early *a, const struct store_job *job,
+		    const struct compiler_request *request)
+{
+	struct compiler_request r;
+
+	memcpy(&r, request, sizeof(r));
+	r.name = a->request.name;
+	return a->job.n == job->n && strcmp(a->job.name, job->name) == 0 &&
+	       memcmp(&a->request, &r, sizeof(r)) == 0;
+}
+
+static void on_made(void *arg, struct compiler_result *r)
+{
+	struct jobs *j = arg;
+	struct early *a = &j->early;
+
+	a->compile = NULL;
+	/* Why it cannot be compiled is told when it is resumed. */
+	if (r->err == 0)
+		a->made = malloc(sizeof(*a->made));
+	log_info("early: job %s is %scompiled before it is resumed", a->job.id,
+		 a->made ? "" : "not ");
+	if (!a->made)
+		return;
+	*a->made = *r;
+	compiler_take_out(r);
+}
+
+/* It is compiled when two looks have seen the same. */
+static void look(struct jobs *j)
+{
+	struct early *a = &j->early;
+	struct compiler_request r;
+	struct store_job job;
+
+	if (store_interrupted(j->store, &job) < 0 ||
+	    load_request(j, &job, &r) < 0 || !*r.text_file) {
+		forget(a);
+	} else if (!is_same(a, &job, &r)) {
+		forget(a);
+		a->job = job;
+		memcpy(&a->request, &r, sizeof(r));
+		a->request.name = a->job.name;
+	} else if (!a->tried) {
+		a->tried = true;
+		compiler_start(&a->compile, j->event, &a->request, on_made, j);
+	}
+}
+
+void early_step(struct jobs *j, int64_t now_us)
+{
+	struct early *a = &j->early;
+
+	if (a->compile || now_us < a->look_us)
+		return;
+	if (*j->interrupted && j->link.snap.state == SHM_IDLE) {
+		a->look_us = now_us + LOOK_US;
+		look(j);
+	} else if (!*j->interrupted && (j->queue.job.n || !j->queue.behind)) {
+		forget(a);
+	}
+}
+
+int early_take(struct jobs *j, const struct store_job *job,
+	       struct compiler_request *request)
+{
+	struct early *a = &j->early;
+	const bool same = is_same(a, job, request);
+
+	if (a->compile)
+		return same ? -EAGAIN : 0;
+	if (same) {
+		request->made = a->made;
+		a->made = NULL;
+	}
+	forget(a);
+	return 0;
+}
+
+void early_fini(struct jobs *j)
+{
+	compiler_destroy(j->early.compile);
+	j->early.compile = NULL;
+	forget(&j->early);
+}
