@@ -597,7 +597,7 @@ static const struct verb verbs[] = {
 	  "it idle: no job loaded, no fault" },
 	{ "override", ROLE_OPERATOR, VERB_ACTS, verb_override,
 	  SHM_DO_OVERRIDE, "nothing" },
-	{ "remove", ROLE_OPERATOR, VERB_ACTS, verbs_remove, VERB_OWN, "" },
+	{ "remove", ROLE_OPERATOR, VERB_ENDS, verbs_remove, VERB_OWN, "" },
 	{ "move", ROLE_OPERATOR, VERB_ACTS, verbs_move, VERB_OWN, "" },
 	{ "text", ROLE_VIEWER, VERB_ASKS, verbs_text, VERB_OWN, "" },
 	{ "alarms", ROLE_VIEWER, VERB_ASKS, verbs_alarms, VERB_OWN, "" },
