@@ -22,7 +22,7 @@
 #include "interp/kinematics.h"
 #include "interp/mcode_arg.h"
 #include "interp/tech_table.h"
-#include "interp/text.h"
+#include "interp/job_text.h"
 #include "interp/wire.h"
 
 #define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */

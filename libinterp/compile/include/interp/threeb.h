@@ -19,7 +19,7 @@
 
 #include "interp/build.h"
 #include "interp/emit.h"
-#include "interp/text.h"
+#include "interp/job_text.h"
 
 #define INTERP_THREEB_MAX	999999999	/* units in a field */
 

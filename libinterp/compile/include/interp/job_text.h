@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* text.h - the text of a program, and the dialect it is written in */
-#ifndef INTERP_TEXT_H
-#define INTERP_TEXT_H
+/* job_text.h - the text of a job, and the dialect it is written in */
+#ifndef INTERP_JOB_TEXT_H
+#define INTERP_JOB_TEXT_H
 
 #include <stddef.h>
 
@@ -13,4 +13,4 @@ struct interp_text {
 	const struct interp_dialect *dialect;	/* NULL: generic */
 };
 
-#endif /* INTERP_TEXT_H */
+#endif /* INTERP_JOB_TEXT_H */
