@@ -19,7 +19,8 @@ static bool same_cell(const struct near_pair *a, const struct near_pair *b)
 	double u[3], v[3];
 
 	for (int k = 0; k < 3; k++)
-		if (floor(a->q[k] / NEAR_CELL_MM) != floor(b->q[k] / NEAR_CELL_MM))
+		if (floor(a->q[k] / NEAR_CELL_MM) !=
+		    floor(b->q[k] / NEAR_CELL_MM))
 			return false;
 	/* Two walls that meet in a cell are two. */
 	v_sub(a->q, a->p, u);

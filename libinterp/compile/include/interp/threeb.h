@@ -57,8 +57,8 @@ struct interp_threeb_result {
 };
 
 /**
- * interp_threeb_compile() - read @text into @b; @o says which of the two dialects
- * it is.
+ * interp_threeb_compile() - read @text into @b; @o says which of the two
+ * dialects it is.
  *
  * Starts where @b stands.  Return: 0, -EINVAL with @diag filled, -ENOMEM.
  */
