@@ -120,8 +120,13 @@ double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
 	const double mm = l->bow.mm, bend = d / mm, most = l->most_mm_s;
 	double change, set_off, alone, v;
 
-	if (most * most * bend <= a && most * most * most * bend <= jerk * mm)
+	if (most * most * bend <= a && most * most * most * bend <= jerk * mm) {
+		/* To speed up on it takes jerk nevertheless. */
+		if (l->certain && 3 * bend * most * own_mm_s2(w) >
+				  INTERP_ARC_JERK_BOTH * jerk)
+			note_bent(w, l, j, bend, 0);
 		return INFINITY;
+	}
 	alone = pass_round_mm_s(1 / bend, a, jerk * d);
 	if (alone * alone * bend >= a)
 		return alone;

@@ -60,6 +60,12 @@ static double sure(double d, double noise)
 	return larger(d - noise, 0);
 }
 
+/* No rounding hides more than this. */
+static double at_most(double d, double noise)
+{
+	return d + noise;
+}
+
 double pass_along_tol(struct pass *w, uint32_t columns)
 {
 	if (columns == w->tol_of)
@@ -259,22 +265,48 @@ COLUMNS_INLINE bool is_clear(const struct change *c,
 	return true;
 }
 
+/* No column bends more than in a narrower window it may: a wide one sees a
+ * corner from beside it. */
+COLUMNS_INLINE void no_more(double d[INTERP_NAXES], const double *per_mm,
+			    double mm, uint32_t n)
+{
+	for (uint32_t j = 0; j < n; j++)
+		d[j] = smaller(d[j], per_mm[j] * mm);
+}
+
+/* Is there a column beside the path that may bend so much that it slows down
+ * what goes along?  Mostly the second window can tell that there is none. */
+COLUMNS_INLINE bool may_bend(const struct pass *w, const struct look *l,
+			     const double *per_mm, uint32_t n)
+{
+	const double v = l->most_mm_s;
+
+	for (uint32_t j = 0; j < n; j++)
+		if (!(l->along >> j & 1) &&
+		    3 * per_mm[j] * v * w->a_linear_mm_s2 >
+			    INTERP_ARC_JERK_BOTH * w->j_mm_s3[j])
+			return true;
+	return false;
+}
+
 /*
  * Short lines may turn by any small amount at each node: their curve is that of
  * the chords to both sides.  A turn that is less than a rounding over one
  * window shows over a wider one, if it goes on.  @most: no need to look for
- * more speed than this.
+ * more speed than this; but what goes beside the path is looked at until it is
+ * clear, because its bend leaves less for going along.
  */
 COLUMNS_INLINE double curve(struct pass *w, uint32_t i, uint32_t along,
 			    double most, uint32_t n)
 {
-	double v = INFINITY;
-	struct look l;
+	const bool beside = (~along & ((1u << n) - 1)) != 0;
+	double per_mm[INTERP_NAXES], v = INFINITY, enough = INFINITY;
+	struct look l = { .node = i, .along = along, .most_mm_s = most };
+	bool clear = false;
 
-	l.node = i;
-	l.along = along;
-	l.most_mm_s = most;
-	for (int at = 0; at < PASS_WINDOWS; at++) {
+	for (uint32_t j = 0; j < n; j++)
+		per_mm[j] = INFINITY;
+	for (int at = 0; at < PASS_WINDOWS && !clear; at++) {
 		double all[INTERP_NAXES], fast;
 		struct change c;
 
@@ -285,19 +317,29 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, uint32_t along,
 			break;
 		for (uint32_t j = 0; j < n; j++)
 			all[j] = fabs(l.bow.b->rate[j] - l.bow.a->rate[j]);
+		no_more(all, per_mm, l.bow.mm, n);
 		fast = bow_mm_s(w, &l, all, n);
 		if (fast >= most)
-			return smaller(v, fast);
+			enough = smaller(enough, fast);
+		if (fast >= most && !beside)
+			break;
 		c.a = l.bow.a;
 		c.b = l.bow.b;
 		c.per_mm = l.bow.per_mm;
 		change_of(w, sure, &c, n);
+		no_more(c.d, per_mm, l.bow.mm, n);
 		l.certain = true;
-		if (is_clear(&c, all, n))
-			return smaller(v, bow_mm_s(w, &l, all, n));
-		v = smaller(v, bow_mm_s(w, &l, c.d, n));
+		clear = is_clear(&c, all, n);
+		fast = bow_mm_s(w, &l, clear ? all : c.d, n);
+		if (isinf(enough))
+			v = smaller(v, fast);
+		change_of(w, at_most, &c, n);
+		for (uint32_t j = 0; j < n; j++)
+			per_mm[j] = smaller(per_mm[j], c.d[j] / l.bow.mm);
+		if (enough < INFINITY && !may_bend(w, &l, per_mm, n))
+			break;
 	}
-	return v;
+	return smaller(v, enough);
 }
 
 /* Look near the node, but not over a long line behind a short one: a long line
