@@ -614,6 +614,21 @@ static void a_lean_beyond_the_machine_is_refused(void **st)
 		       "G50 X5 Y-5\n", 4, "leans by 8.049 degrees");
 }
 
+static void an_outline_that_vanishes_above_is_refused(void **st)
+{
+	struct interp_wire w = guides;
+
+	(void)st;
+	w.z_second_mm = w.z_program_mm + 40;
+	assert_refused(&w, "H1=0.248 F60 G0 X5.185 Y-2.821\n"
+		       "G41 H1 G52 A6.88\n"
+		       "G1 X2.093 Y-1.657\nX1.498 Y-3.237\nX-1.043 Y-3.593\n"
+		       "X-2.972 Y-1.203\nX-2.268 Y1.886\nX-0.887 Y4.183\n"
+		       "X2.575 Y2.480\nX2.688 Y-0.076\nX2.093 Y-1.657\n"
+		       "G40 G50 X5.185 Y-2.821\n",
+		       4, "the faces of lines 4 and 11");
+}
+
 /* -- Corners -------------------------------------------------------------- */
 
 static void a_corner_is_approached_slowly_and_waited_on(void **st)
@@ -689,6 +704,7 @@ int main(void)
 		cmocka_unit_test(a_colon_gives_the_top_words_of_its_own),
 		cmocka_unit_test(guides_in_the_planes_walk_the_contours_themselves),
 		cmocka_unit_test(a_lean_beyond_the_machine_is_refused),
+		cmocka_unit_test(an_outline_that_vanishes_above_is_refused),
 		cmocka_unit_test(a_corner_is_approached_slowly_and_waited_on),
 		cmocka_unit_test(a_short_motion_is_slow_as_a_whole),
 	};

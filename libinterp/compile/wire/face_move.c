@@ -385,5 +385,12 @@ int face_move(struct face *f, const struct face_from *from,
 	if (!err)
 		err = take_runs(f, &k);
 	track_forget(&k.w);
+	/* All of it has vanished. */
+	if (!err && f->n == 0) {
+		*fault = (struct face_fault) { from->first,
+					       from->first + from->n - 1,
+					       false };
+		err = -EINVAL;
+	}
 	return err;
 }
