@@ -83,9 +83,14 @@ static bool choose(struct machine *m, const char *question, const char *words,
 	return false;
 }
 
-/* @n numbers, each within the range. */
+/* So many numbers, each within the range. */
+struct wanted {
+	int n;
+	double from, to;
+};
+
 static bool numbers(struct machine *m, const char *question, const char *plain,
-		    int n, const double range[2], double *const *ret)
+		    const struct wanted *w, double *const *ret)
 {
 	char word[WORD_MAX], *end;
 
@@ -93,17 +98,17 @@ static bool numbers(struct machine *m, const char *question, const char *plain,
 		const char *at = word;
 		int i;
 
-		for (i = 0; i < n; i++, at = end) {
+		for (i = 0; i < w->n; i++, at = end) {
 			*ret[i] = strtod(at, &end);
-			if (end == at || !(*ret[i] >= range[0]) ||
-			    !(*ret[i] <= range[1]))
+			if (end == at || !(*ret[i] >= w->from) ||
+			    !(*ret[i] <= w->to))
 				break;
 		}
-		if (i == n && at[strspn(at, " \t")] == '\0')
+		if (i == w->n && at[strspn(at, " \t")] == '\0')
 			return true;
 		fprintf(stderr, "%s%d number%s, from %g to %g\n",
-			i == n ? "no more than " : "", n, n > 1 ? "s" : "",
-			range[0], range[1]);
+			i == w->n ? "no more than " : "", w->n,
+			w->n > 1 ? "s" : "", w->from, w->to);
 	}
 	return false;
 }
@@ -158,8 +163,9 @@ static bool is_rotary(char axis)
 
 static bool ask_axis(struct machine *m, char axis)
 {
-	static const double any[] = { -1e5, 1e5 }, pulse[] = { 1e-3, 1e3 };
-	static const double fast[] = { 1e-3, 1e5 };
+	static const struct wanted travel = { 2, -1e5, 1e5 };
+	static const struct wanted pulse = { 1, 1e-3, 1e3 };
+	static const struct wanted fast = { 1, 1e-3, 1e5 };
 	const int i = (int)(strchr(AXES, axis) - AXES);
 	const char *unit = is_rotary(axis) ? "degrees" : "mm";
 	char q[96];
@@ -167,30 +173,30 @@ static bool ask_axis(struct machine *m, char axis)
 	snprintf(q, sizeof(q), "%c: travel from and to, %s", axis, unit);
 	do {
 		if (!numbers(m, q, is_rotary(axis) ? "-360 360" : "-100 100",
-			     2, any, (double *[]) { &m->from[i], &m->to[i] }))
+			     &travel, (double *[]) { &m->from[i], &m->to[i] }))
 			return false;
 		if (!(m->from[i] < m->to[i]))
 			fprintf(stderr, "the lower one first\n");
 	} while (!(m->from[i] < m->to[i]));
 	snprintf(q, sizeof(q), "%c: one pulse, in thousandths of %s", axis,
 		 unit);
-	if (!numbers(m, q, "1", 1, pulse, (double *[]) { &m->pulse_um[i] }))
+	if (!numbers(m, q, "1", &pulse, (double *[]) { &m->pulse_um[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: fastest, %s a second", axis, unit);
-	return numbers(m, q, strcmp(m->backend, "gpio") == 0 ? "5" : "10", 1,
-		       fast, (double *[]) { &m->v_max[i] });
+	return numbers(m, q, strcmp(m->backend, "gpio") == 0 ? "5" : "10",
+		       &fast, (double *[]) { &m->v_max[i] });
 }
 
 static bool ask_gpio(struct machine *m, char axis)
 {
-	static const double lines[] = { 0, 1023 };
+	static const struct wanted lines = { 2, 0, 1023 };
 	const int i = (int)(strchr(AXES, axis) - AXES);
 	double step = 0, dir = 0;
 	char q[96], plain[32];
 
 	snprintf(q, sizeof(q), "%c: lines of step and direction", axis);
 	snprintf(plain, sizeof(plain), "%d %d", 2 * i, 2 * i + 1);
-	if (!numbers(m, q, plain, 2, lines, (double *[]) { &step, &dir }))
+	if (!numbers(m, q, plain, &lines, (double *[]) { &step, &dir }))
 		return false;
 	m->step[i] = (int)step;
 	m->dir[i] = (int)dir;
@@ -199,19 +205,20 @@ static bool ask_gpio(struct machine *m, char axis)
 
 static bool ask_can(struct machine *m, char axis)
 {
-	static const double nodes[] = { 1, 127 }, all[] = { 1e-3, 1e9 };
+	static const struct wanted nodes = { 1, 1, 127 };
+	static const struct wanted all = { 1, 1e-3, 1e9 };
 	const int i = (int)(strchr(AXES, axis) - AXES);
 	double node = 0;
 	char q[96], plain[32];
 
 	snprintf(q, sizeof(q), "%c: node of the drive", axis);
 	snprintf(plain, sizeof(plain), "%d", i + 1);
-	if (!numbers(m, q, plain, 1, nodes, (double *[]) { &node }))
+	if (!numbers(m, q, plain, &nodes, (double *[]) { &node }))
 		return false;
 	m->step[i] = (int)node;
 	snprintf(q, sizeof(q), "%c: increments of the drive for a %s", axis,
 		 is_rotary(axis) ? "degree" : "mm");
-	if (!numbers(m, q, "10000", 1, all,
+	if (!numbers(m, q, "10000", &all,
 		     (double *[]) { &m->increments[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: what holds it without power", axis);

@@ -140,11 +140,16 @@ static int draw_places(int y, const struct talk_status *t)
 {
 	const int wide = 19, in_row = COLS / wide < 1 ? 1 :
 		COLS / wide > 4 ? 4 : COLS / wide;
+	int n = 0;
 
-	for (int i = 0; i < TALK_NAXES; i++)
-		say(y + i / in_row, i % in_row * wide, A_BOLD, "%c%12.4f",
+	for (int i = 0; i < TALK_NAXES; i++) {
+		if (!strchr(t->axes, "XYZABCUV"[i]))
+			continue;
+		say(y + n / in_row, n % in_row * wide, A_BOLD, "%c%12.4f",
 		    "XYZABCUV"[i], t->pos_mm[i]);
-	return y + (TALK_NAXES + in_row - 1) / in_row;
+		n++;
+	}
+	return y + (n + in_row - 1) / in_row;
 }
 
 /* -- The job --------------------------------------------------------------- */

@@ -70,7 +70,8 @@ static void print_text(const struct talk_status *s)
 	printf("gap        %.1f V\nfeed       %.3f mm/min\nposition  ",
 	       s->gap_v, s->feed_mm_s * 60);
 	for (int i = 0; i < TALK_NAXES; i++)
-		printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
+		if (strchr(s->axes, "XYZABCUV"[i]))
+			printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
 	printf(" (mm, degrees)\n");
 	if (s->electrode)
 		printf("electrode %u shifts Z by %+.4f mm, wear %.4f mm\n",

@@ -210,14 +210,13 @@ struct patches {
 	const struct bodies *b;
 	struct box_pose at;
 	double mm;
-	float size;
 	near_take *take;
 	void *arg;
 };
 
-static bool is_small(const struct patches *p, const struct box *x)
+static bool is_small(const struct box *x)
 {
-	return x->n || x->half[3] <= p->size;
+	return x->n || x->half[3] <= (float)NEAR_CELL_MM;
 }
 
 /* Return: false to end the walk. */
@@ -226,7 +225,7 @@ static bool patches(const struct patches *p, uint32_t part, uint32_t tool,
 {
 	const struct box *x = &p->b->part->node[part];
 	const float mm = box_distance(x, placed);
-	const bool small_part = is_small(p, x), small = is_small(p, placed);
+	const bool small_part = is_small(x), small = is_small(placed);
 
 	if ((double)mm >= p->mm)
 		return true;
@@ -249,10 +248,9 @@ static bool patches(const struct patches *p, uint32_t part, uint32_t tool,
 }
 
 void near_patches(const struct bodies *b, const struct pose *pose, double mm,
-		  double size_mm, near_take *take, void *arg)
+		  near_take *take, void *arg)
 {
-	struct patches p = { .b = b, .mm = mm, .size = (float)size_mm,
-			     .take = take, .arg = arg };
+	struct patches p = { .b = b, .mm = mm, .take = take, .arg = arg };
 	struct box placed;
 
 	near_pose(pose, NULL, &p.at);

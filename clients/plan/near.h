@@ -57,6 +57,8 @@ bool near_below(const struct bodies *b, const struct pose *pose, double mm,
 bool near_less(const struct bodies *b, const struct pose *pose, double mm,
 	       struct near_pair *pair);
 
+#define NEAR_CELL_MM		5.0
+
 /* Two nodes of the trees. */
 struct near_patch {
 	float mm;			/* a lower bound of their distance */
@@ -67,9 +69,9 @@ struct near_patch {
 typedef bool near_take(void *arg, const struct near_patch *patch);
 
 /** near_patches() - find all pairs of nodes that may be nearer than @mm.  A
- *  node is not much larger than @size_mm, or is a single triangle. */
+ *  node is not much larger than NEAR_CELL_MM, or is a single triangle. */
 void near_patches(const struct bodies *b, const struct pose *pose, double mm,
-		  double size_mm, near_take *take, void *arg);
+		  near_take *take, void *arg);
 
 struct near_asked {
 	double mm, slack_mm;

@@ -13,14 +13,14 @@
 
 #include <stdlib.h>
 
-#define CELL_MM		5.0
 
 static bool same_cell(const struct near_pair *a, const struct near_pair *b)
 {
 	double u[3], v[3];
 
 	for (int k = 0; k < 3; k++)
-		if (floor(a->q[k] / CELL_MM) != floor(b->q[k] / CELL_MM))
+		if (floor(a->q[k] / NEAR_CELL_MM) !=
+		    floor(b->q[k] / NEAR_CELL_MM))
 			return false;
 	/* Two walls that meet in a cell are two. */
 	v_sub(a->q, a->p, u);
@@ -92,7 +92,7 @@ void near_set_collect(const struct bodies *b, const struct pose *pose,
 	struct list l = { 0 };
 
 	ret->n = 0;
-	near_patches(b, pose, mm, CELL_MM, take, &l);
+	near_patches(b, pose, mm, take, &l);
 	if (l.n)
 		qsort(l.at, l.n, sizeof(*l.at), order);
 	for (uint32_t i = 0; i < l.n; i++) {

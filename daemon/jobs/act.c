@@ -57,13 +57,15 @@ static bool is_durable(const struct verb *v)
 }
 
 /* edmd remembers the commands that it was given.  What this service does by
- * itself would be forgotten without a store. */
+ * itself would be forgotten without a store, and what is done all the same
+ * (VERB_ENDS) says so itself. */
 static bool refuse_degraded(struct jobs *j, const struct verb *v,
 			    const struct jobs_lcm_command *c)
 {
 	char reason[240];
 
-	if (v->machine != VERB_OWN || !*store_why(j->store))
+	if (v->machine != VERB_OWN || v->kind == VERB_ENDS ||
+	    !*store_why(j->store))
 		return false;
 	snprintf(reason, sizeof(reason), "the store is degraded: %s; make room "
 		 "or mend it, then again; stop, hold and estop work",

@@ -201,11 +201,6 @@ const char *interrupt_lost(const struct jobs *j)
 	static char letters[INTERP_NAXES + 1];
 	const uint32_t lost = j->link.snap.unhomed | j->elsewhere |
 			      (*j->interrupted ? unhomeable(j) : 0);
-	size_t n = 0;
 
-	for (int i = 0; i < INTERP_NAXES; i++)
-		if (lost & j->config->axes.present & 1u << i)
-			letters[n++] = INTERP_AXIS_LETTERS[i];
-	letters[n] = '\0';
-	return letters;
+	return jobs_axes(lost & j->config->axes.present, letters);
 }

@@ -96,6 +96,9 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 /** jobs_answer() - answer a command; repeats of it get the same answer. */
 void jobs_answer(struct jobs *j, const struct jobs_lcm_ack *a);
 
+/** jobs_axes() - the letters of @axes, a bit for each, into @to.  Return: it */
+const char *jobs_axes(uint32_t axes, char to[INTERP_NAXES + 1]);
+
 /** status_tick() - publish STATUS if it is due or has changed. */
 void status_tick(struct jobs *j, int64_t now_us);
 /** status_guest() - publish it soon, for a client that has just come; called by

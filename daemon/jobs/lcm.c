@@ -245,15 +245,13 @@ static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u)
 	struct trust_packet packet = { .channel = u->channel, .from = u->from };
 	struct origin o = { .packet = &packet };
 	char who[KEYFILE_NAME_MAX] = "no key";
-	bool answer;
 
 	/* It is for another machine, or it is something that only services
 	 * send. */
 	if (!command && strcmp(u->channel, w->job) != 0)
 		return;
-	o.cause = trust_look(w->trust, &packet, u->data, u->size, now,
-			     &answer);
-	if (o.cause == TRUST_FINE || answer) {
+	o.cause = trust_look(w->trust, &packet, u->data, u->size, now);
+	if (o.cause == TRUST_FINE || packet.answers) {
 		if (command ? on_command(w, &o) : on_chunk(w, &o))
 			return;
 		o.cause = TRUST_SHAPE;

@@ -92,11 +92,22 @@ static void fill_electrode(struct jobs_lcm_status *w, struct jobs *j)
 		w->electrode_wear_mm = is.wear_mm;
 }
 
+const char *jobs_axes(uint32_t axes, char to[INTERP_NAXES + 1])
+{
+	size_t n = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (axes >> i & 1)
+			to[n++] = INTERP_AXIS_LETTERS[i];
+	to[n] = '\0';
+	return to;
+}
+
 void status_tick(struct jobs *j, int64_t now_us)
 {
 	uint64_t key = key_of(j);
 	struct jobs_lcm_status w = { .line = 0 };
-	char condition[16], store[64];
+	char condition[16], store[64], axes[INTERP_NAXES + 1];
 
 	if (key == j->status_key && now_us - j->status_us < STATUS_US)
 		return;
@@ -117,6 +128,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 	w.store = store;
 	fill_electrode(&w, j);
 	w.interrupted = j->interrupted;
+	w.axes = jobs_axes(j->config->axes.present, axes);
 	w.lost = j->link.state == LINK_OK ? interrupt_lost(j) : "";
 	jobs_lcm_status(j->lcm, &w);
 }

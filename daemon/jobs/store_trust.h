@@ -32,7 +32,7 @@ struct store_act {
 	/* Read back: */
 	bool answered;
 	int code;
-	char reason[256];
+	char reason[640];		/* as long as one may be: verbs.c */
 };
 
 /** store_act_find() - Return: 0 or -ENOENT. */

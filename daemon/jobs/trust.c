@@ -202,14 +202,13 @@ static enum trust_cause look_quickly(const struct trust *t,
 }
 
 enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
-			    const void *packet, size_t bytes, int64_t now_us,
-			    bool *ret_answer)
+			    const void *packet, size_t bytes, int64_t now_us)
 {
 	struct trust_rate *rate;
 	enum trust_cause cause;
 	int most;
 
-	*ret_answer = false;
+	p->answers = false;
 	if (!seal_read(&p->seal, packet, bytes))
 		return TRUST_SHAPE;
 	p->key = trust_find(t, p->seal.key);
@@ -222,8 +221,8 @@ enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 		rate->n++;
 	if (!seal_holds(&p->seal, p->channel))
 		return TRUST_SIGNATURE;
-	*ret_answer = cause != TRUST_FINE;
-	if (p->key && *ret_answer)
+	p->answers = cause != TRUST_FINE;
+	if (p->key && p->answers)
 		rate->n++;
 	return cause;
 }

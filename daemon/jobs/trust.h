@@ -84,6 +84,7 @@ struct trust_packet {
 	const char *channel, *from;
 	struct seal seal;
 	const struct trust_key *key;	/* NULL: not in the table */
+	bool answers;			/* one that is not taken is told why */
 };
 
 /**
@@ -106,8 +107,7 @@ int64_t trust_count(struct trust *t, int64_t now_us);
  * valid and the reason may be answered; any other value: drop it silently.
  */
 enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
-			    const void *packet, size_t bytes, int64_t now_us,
-			    bool *ret_answer);
+			    const void *packet, size_t bytes, int64_t now_us);
 
 /**
  * trust_fresh() - is it the next packet of @client? TRUST_FINE, else why not.

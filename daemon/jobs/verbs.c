@@ -396,12 +396,9 @@ static int axis_of(struct jobs *j, const struct jobs_lcm_command *c, size_t n)
 	const char *at = n == 1 ? strchr(INTERP_AXIS_LETTERS,
 					 toupper((unsigned char)c->text[0])) :
 				  NULL;
-	char reason[96], has[INTERP_NAXES + 1] = "";
-	size_t k = 0;
+	char reason[96], has[INTERP_NAXES + 1];
 
-	for (int i = 0; i < INTERP_NAXES; i++)
-		if (j->config->axes.present >> i & 1)
-			has[k++] = INTERP_AXIS_LETTERS[i];
+	jobs_axes(j->config->axes.present, has);
 	if (at && strchr(has, *at))
 		return (int)(at - INTERP_AXIS_LETTERS);
 	snprintf(reason, sizeof(reason), "no axis '%.*s' here; one of %s",
@@ -597,7 +594,7 @@ static const struct verb verbs[] = {
 	  "it idle: no job loaded, no fault" },
 	{ "override", ROLE_OPERATOR, VERB_ACTS, verb_override,
 	  SHM_DO_OVERRIDE, "nothing" },
-	{ "remove", ROLE_OPERATOR, VERB_ACTS, verbs_remove, VERB_OWN, "" },
+	{ "remove", ROLE_OPERATOR, VERB_ENDS, verbs_remove, VERB_OWN, "" },
 	{ "move", ROLE_OPERATOR, VERB_ACTS, verbs_move, VERB_OWN, "" },
 	{ "text", ROLE_VIEWER, VERB_ASKS, verbs_text, VERB_OWN, "" },
 	{ "alarms", ROLE_VIEWER, VERB_ASKS, verbs_alarms, VERB_OWN, "" },

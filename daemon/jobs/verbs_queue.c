@@ -1,14 +1,36 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* verbs_queue.c - verbs that the service answers from its store */
+#include "act.h"
 #include "interrupt.h"
+#include "store_trust.h"
 #include "store_turn.h"
 #include "verb.h"
 
 #include <errno.h>
 #include <jansson.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
+
+/* On a disk that takes nothing a job is removed from memory only. */
+static void answer_removed(struct jobs *j, const struct jobs_lcm_command *c)
+{
+	char reason[240] = "removed";
+
+	act_answered(j, c->act, 0, reason);
+	if (*store_why(j->store)) {
+		snprintf(reason, sizeof(reason), "removed in memory only: %s; "
+			 "if the power goes or edmd-jobs ends before that is "
+			 "mended, the job is there again",
+			 store_why(j->store));
+		store_act_end(j->store, c->act, 0, reason);
+	}
+	jobs_answer(j, &(struct jobs_lcm_ack) {
+		.key = c->key, .client = c->client, .seq = c->seq,
+		.reason = reason,
+	});
+}
 
 void verbs_remove(struct jobs *j, const struct verb *v,
 		  const struct jobs_lcm_command *c)
@@ -28,12 +50,12 @@ void verbs_remove(struct jobs *j, const struct verb *v,
 		queue_end(j, JOB_STOPPED, e.reason);
 		if (!waiting)
 			queue_go(j);
-		verbs_answer(j, c, 0, "removed");
+		answer_removed(j, c);
 	} else if (job.state == JOB_INTERRUPTED) {
 		store_give_up(j->store, job.n, "interrupted, then removed",
 			      e.now_us);
 		interrupt_init(j);
-		verbs_answer(j, c, 0, "removed");
+		answer_removed(j, c);
 	} else if (job.state != JOB_QUEUED || job.loaded) {
 		verbs_answer(j, c, REFUSED,
 			     "it has begun or ended; stop ends a job "
@@ -41,7 +63,7 @@ void verbs_remove(struct jobs *j, const struct verb *v,
 	} else {
 		store_end(j->store, job.n, &e);
 		queue_recount(j);
-		verbs_answer(j, c, 0, "removed");
+		answer_removed(j, c);
 	}
 }
 

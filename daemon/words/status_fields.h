@@ -42,6 +42,7 @@
 	WORD(store) \
 	WORD(interrupted) \
 	WORD(lost) \
+	WORD(axes) \
 	COUNT(hunts) \
 	COUNT(electrode) \
 	NUMBER(electrode_shift_mm) \

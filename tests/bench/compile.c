@@ -45,7 +45,8 @@ static double lines_s(const struct text *t, const struct machine_config *k)
 	void *block;
 	double s;
 
-	if (interp_nc_compile(t->at, t->n, &no, b, &done, &diag)) {
+	if (interp_nc_compile(&(struct interp_text) {
+			.at = t->at, .bytes = t->n }, &no, b, &done, &diag)) {
 		fprintf(stderr, "%u:%u: %s\n", diag.line, diag.column,
 			diag.found);
 		exit(65);

@@ -130,7 +130,8 @@ static struct interp_program compile(const char *text, size_t size)
 	struct interp_diag diag = { 0 };
 
 	bench_must(b != NULL);
-	if (interp_nc_compile(text, size, &no, b, &done, &diag)) {
+	if (interp_nc_compile(&(struct interp_text) {
+			.at = text, .bytes = size }, &no, b, &done, &diag)) {
 		fprintf(stderr, "count: %u:%u: %s\n", diag.line, diag.column,
 			diag.found);
 		exit(70);

@@ -34,7 +34,8 @@ static struct interp_program compile(const char *path)
 		exit(66);
 	n = fread(text, 1, sizeof(text), f);
 	fclose(f);
-	if (interp_nc_compile(text, n, &no, b, &done, &diag)) {
+	if (interp_nc_compile(&(struct interp_text) { .at = text, .bytes = n },
+			      &no, b, &done, &diag)) {
 		fprintf(stderr, "%s:%u:%u: %s\n", path, diag.line, diag.column,
 			diag.found);
 		exit(65);

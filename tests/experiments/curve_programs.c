@@ -128,7 +128,8 @@ static struct interp_build *compile(const char *text, size_t bytes)
 	struct interp_nc_result done;
 	struct interp_diag d = { .found = "" };
 
-	must(interp_nc_compile(text, bytes, &o, b, &done, &d), &d);
+	must(interp_nc_compile(&(struct interp_text) {
+		.at = text, .bytes = bytes }, &o, b, &done, &d), &d);
 	return b;
 }
 

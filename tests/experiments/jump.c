@@ -95,7 +95,8 @@ static struct interp_program compile(const struct path *path)
 
 	machine_set();
 	b = interp_build_create(&bo);
-	must(interp_nc_compile(t.at, t.n, &no, b, &done, &diag), &diag);
+	must(interp_nc_compile(&(struct interp_text) {
+		.at = t.at, .bytes = t.n }, &no, b, &done, &diag), &diag);
 	free(t.at);
 	n = interp_build_bytes(b);
 	block = malloc(n);

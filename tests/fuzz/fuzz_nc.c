@@ -39,7 +39,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
 	b = interp_build_create(&bo);
 	assert(b);
-	rc = interp_nc_compile((const char *)data, size, &o, b, &result, &diag);
+	rc = interp_nc_compile(&(struct interp_text) {
+		.at = (const char *)data, .bytes = size },
+		&o, b, &result, &diag);
 	if (rc)
 		fuzz_check_refusal(rc, &diag, size);
 	else

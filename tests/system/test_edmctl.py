@@ -10,7 +10,7 @@ import time
 from contextlib import contextmanager
 
 import pytest
-from rig import BUILD, QUICK_JOB, SLOW_JOB, until
+from rig import BUILD, NULL_MACHINE, QUICK_JOB, SLOW_JOB, Machine, until
 
 
 def write(machine, name, text):
@@ -175,6 +175,19 @@ def test_watch_once_status_and_lists(machine):
     assert "mine" in machine.ctl("history").stdout
     assert "done" in machine.ctl("show", "mine").stdout
     assert machine.ctl("show", "nobody").returncode == 66
+
+
+def test_status_has_the_axes_of_the_machine(tmp_path):
+    absent = "".join(f"[axis.{a}]\npresent = no\n" for a in "YABUV")
+    m = Machine(tmp_path, NULL_MACHINE + absent)
+    try:
+        m.start()
+        text = m.ctl("status").stdout
+        assert "X 0.000 Z 0.000 C 0.000 (mm, degrees)" in text
+        assert json.loads(m.ctl("status", "--json").stdout)["axes"] == "XZC"
+    finally:
+        m.close()
+        m.sweep()
 
 
 def test_watch_ends_by_ctrl_c_with_0(machine):

@@ -114,7 +114,8 @@ int main(void)
 		};
 	b = interp_build_create(&(struct interp_build_options) {
 		.machine = &m });
-	if (interp_nc_compile(text, sizeof(text) - 1, &o, b, &r, &d)) {
+	if (interp_nc_compile(&(struct interp_text) { .at = text,
+			.bytes = sizeof(text) - 1 }, &o, b, &r, &d)) {
 		printf("%s; %s\n", d.found, d.wanted);
 		return 1;
 	}

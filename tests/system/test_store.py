@@ -95,7 +95,7 @@ def test_a_disk_that_fails_in_a_cut_stops_nothing(failing, number):
     assert a.code == 74 and WORDS[number] in a.reason
     c.hear(0.5)
     assert c.job("behind")["state"] == "queued"
-    a = c.ask("remove", "behind")
+    a = c.ask("move", "behind", -1)
     assert a.code == 74 and WORDS[number] in a.reason
     # A service that is killed now has no disk to ask: edmd knows.
     m.kill("jobs")
@@ -120,6 +120,36 @@ def test_a_disk_that_fails_in_a_cut_stops_nothing(failing, number):
     c.job_where("behind", "done")
     begun = [e for e in c.events if e.kind == "begun" and e.job == "cut"]
     assert len(begun) <= 1
+
+
+def test_a_job_is_removed_though_the_disk_is_full(failing):
+    m = failing
+    m.start()
+    c = m.client
+    for name in ("ready", "second", "third"):
+        assert c.submit(QUICK_JOB, name, hold=True).code == 0
+    c.job_where("ready", "ready")
+    m.fail(errno.ENOSPC)
+    # The first write that fails is the removal itself.
+    for name in ("second", "ready"):
+        a = c.ask("remove", name)
+        assert a.code == 0, a.reason
+        assert "in memory only: the disk is full" in a.reason
+        assert c.job(name)["state"] == "stopped"
+    # As it was told: who knew of it is gone, so the job is there again.
+    m.kill("jobs")
+    m.start_jobs()
+    degraded(c, WORDS[errno.ENOSPC])
+    assert c.job("second")["state"] == "queued"
+    assert c.ask("remove", "second").code == 0
+    # There is room: what was in memory goes to the disk, and stays.
+    m.heal()
+    c.status_where(lambda s: s.store == "ok")
+    m.kill("jobs")
+    m.start_jobs()
+    c.status_where(lambda s: s.daemon == "ok")
+    assert c.job("second")["state"] == "stopped"
+    assert c.ask("remove", "third").reason == "removed"
 
 
 def test_a_ready_job_cannot_begin_that_cannot_be_stored(failing):

@@ -115,6 +115,23 @@ def test_not_a_number_takes_a_set_back_only(shop):
     assert "no such field" in a.reason
 
 
+def test_a_refusal_is_whole_when_it_is_repeated_to_another_service(shop):
+    c = running(shop)
+    a = c.ask("set", text="servo_x", arg=20)
+    assert a.reason.endswith("jump_short_of_mm")
+    shop.kill("jobs")
+    shop.start_jobs()
+    c.acks.clear()
+    c.status_where(lambda s: s.daemon == "ok")
+
+    def repeated():
+        c.send_command("set", "", 20, a.seq, "servo_x")
+        return [x for x in c.acks_to(a.seq) if x.code != 100]
+
+    (again, *_) = c.heard(repeated, 10)
+    assert again.reason == a.reason
+
+
 def test_a_condition_that_is_not_in_the_table_is_refused(shop):
     a = shop.client.submit(b"G21 G90\nC121 G1 X1 F60\nM30\n", "job")
     assert a.code == 65

@@ -27,6 +27,7 @@
 struct nc_read {
 	struct interp_machine machine;
 	struct interp_nc_options o;
+	const struct interp_dialect *dialect;	/* NULL: generic */
 	struct interp_nc_result result;
 	struct interp_diag diag;
 	struct interp_build *build;
@@ -60,8 +61,9 @@ static inline void nc_read_bytes(struct nc_read *n, const char *text,
 	n->o.machine = &n->machine;
 	n->build = interp_build_create(&bo);
 	assert_non_null(n->build);
-	n->rc = interp_nc_compile(text, bytes, &n->o, n->build, &n->result,
-				  &n->diag);
+	n->rc = interp_nc_compile(&(struct interp_text) {
+		.at = text, .bytes = bytes, .dialect = n->dialect },
+		&n->o, n->build, &n->result, &n->diag);
 	if (n->rc)
 		return;
 	size = interp_build_bytes(n->build);

@@ -254,7 +254,7 @@ static void assert_lean(const char *dialect, const char *text, double u,
 {
 	struct nc_read r = ready(&guides);
 
-	r.o.dialect = interp_dialect_by_name(dialect);
+	r.dialect = interp_dialect_by_name(dialect);
 	nc_read(&r, text);
 	/* The guides are 20 below and 40 above: twice the lean over the top. */
 	assert_near(nc_end(&r, nc_count(&r) - 1, INTERP_U), u);
@@ -286,7 +286,7 @@ static void a_leaning_arc_without_its_centre_is_refused(void **st)
 	const char *text = "G90\nG01 X10. Y0.\nG02 X20. I5. U1.\nM30\n";
 
 	(void)st;
-	r.o.dialect = interp_dialect_by_name("fanuc");
+	r.dialect = interp_dialect_by_name("fanuc");
 	nc_read_bytes(&r, text, strlen(text));
 	assert_int_equal(r.rc, -EINVAL);
 	assert_int_equal(r.diag.line, 3);
@@ -362,8 +362,9 @@ static void the_start_of_the_guides_is_the_start_of_the_wire(void **st)
 	(void)st;
 	n.o.machine = &n.machine;
 	n.build = interp_build_create(&bo);
-	assert_int_equal(interp_nc_compile(text, strlen(text), &n.o, n.build,
-					   &n.result, &n.diag), 0);
+	assert_int_equal(interp_nc_compile(&(struct interp_text) {
+			.at = text, .bytes = strlen(text) },
+		&n.o, n.build, &n.result, &n.diag), 0);
 	assert_near(interp_build_here(n.build)[INTERP_X], 8);
 	assert_near(interp_build_here(n.build)[INTERP_V], -8);
 	nc_done(&n);
@@ -402,8 +403,9 @@ static void punch_errors(enum interp_strategy s, double ret[2])
 
 	n.o.machine = &n.machine;
 	n.build = interp_build_create(&bo);
-	assert_int_equal(interp_nc_compile(punch, sizeof(punch) - 1, &n.o,
-					   n.build, &n.result, &n.diag), 0);
+	assert_int_equal(interp_nc_compile(&(struct interp_text) {
+			.at = punch, .bytes = sizeof(punch) - 1 },
+		&n.o, n.build, &n.result, &n.diag), 0);
 	bytes = interp_build_bytes(n.build);
 	n.block = malloc(bytes);
 	interp_build_write(n.build, &about, n.block);

@@ -100,9 +100,10 @@ static void walk_retraces(const struct made *m)
 	points_free(&out);
 }
 
-static void check_arc(enum interp_strategy s, int x0, int y0, int x1, int y1,
-		      bool clockwise)
+static void check_arc(enum interp_strategy s, const int from[2],
+		      const int to[2], bool clockwise)
 {
+	const int x0 = from[0], y0 = from[1], x1 = to[0], y1 = to[1];
 	struct interp_build *b = begin(s);
 	const double r0 = hypot(x0, y0), r1 = hypot(x1, y1);
 	double at[INTERP_NAXES] = { x0 * 0.001, y0 * 0.001 };
@@ -139,18 +140,19 @@ static void arcs_of(enum interp_strategy s, int rmax, int rstep)
 	for (int x = -rmax; x <= rmax; x += rstep) {
 		for (int y = -rmax; y <= rmax; y += rstep) {
 			const double r = hypot(x, y);
+			const int from[] = { x, y };
 
 			if (r < 1 || r > rmax)
 				continue;
 			for (int i = 0; i < 24; i++) {
 				const double t = i * 0.2618 + 0.03 * x;
-				const int x1 = (int)lround(r * cos(t));
-				const int y1 = (int)lround(r * sin(t));
+				const int to[] = { (int)lround(r * cos(t)),
+						   (int)lround(r * sin(t)) };
 
-				check_arc(s, x, y, x1, y1, false);
-				check_arc(s, x, y, x1, y1, true);
+				check_arc(s, from, to, false);
+				check_arc(s, from, to, true);
 			}
-			check_arc(s, x, y, x, y, i32_odd(x + y));
+			check_arc(s, from, from, i32_odd(x + y));
 		}
 	}
 }

@@ -212,8 +212,8 @@ static struct nc_read read_in(const char *dialect, const char *text,
 	table.chosen = 0;
 	n.o.electrodes = &table;
 	n.o.mcode = mcode;
-	n.o.dialect = interp_dialect_by_name(dialect);
-	assert_non_null(n.o.dialect);
+	n.dialect = interp_dialect_by_name(dialect);
+	assert_non_null(n.dialect);
 	nc_read(&n, text);
 	interp_build_destroy(n.build);
 	n.build = NULL;

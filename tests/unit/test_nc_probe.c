@@ -189,7 +189,7 @@ static int rc_in(const char *dialect, const char *text)
 {
 	struct nc_read n = nc_ready();
 
-	n.o.dialect = interp_dialect_by_name(dialect);
+	n.dialect = interp_dialect_by_name(dialect);
 	nc_read_bytes(&n, text, strlen(text));
 	interp_build_destroy(n.build);
 	free(n.block);

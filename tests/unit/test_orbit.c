@@ -552,8 +552,9 @@ static void an_orbit_is_made_for_every_strategy(void **st)
 		struct interp_build *b = interp_build_create(&o);
 
 		n.o.machine = &n.machine;
-		if (interp_nc_compile(text, strlen(text), &n.o, b, &n.result,
-				      &n.diag))
+		if (interp_nc_compile(&(struct interp_text) {
+					.at = text, .bytes = strlen(text) },
+				      &n.o, b, &n.result, &n.diag))
 			fail_msg("%s: %s; %s",
 				 interp_strategy_name((enum interp_strategy)s),
 				 n.diag.found, n.diag.wanted);

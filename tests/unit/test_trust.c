@@ -60,11 +60,9 @@ static enum trust_cause send(struct world *w, const struct sent *s)
 	struct trust_packet p = { .channel = CHANNEL, .from = "test" };
 	uint8_t packet[SEAL_BYTES + 1];
 	enum trust_cause cause;
-	bool answer;
 
 	seal_make(packet, &seal, s->channel, s->by->secret);
-	cause = trust_look(&w->t, &p, packet, sizeof(packet), w->now_us,
-			   &answer);
+	cause = trust_look(&w->t, &p, packet, sizeof(packet), w->now_us);
 	if (cause == TRUST_FINE)
 		cause = trust_fresh(&w->t, &p, s->client, w->now_us);
 	return cause;
@@ -77,12 +75,11 @@ static bool is_answered(struct world *w, const struct sent *s, bool forged)
 				   .count = s->count, .data = "x", .size = 1 };
 	struct trust_packet p = { .channel = CHANNEL, .from = "test" };
 	uint8_t packet[SEAL_BYTES + 1];
-	bool answer;
 
 	seal_make(packet, &seal, s->channel, s->by->secret);
 	packet[sizeof(packet) - 1] ^= forged;
-	trust_look(&w->t, &p, packet, sizeof(packet), w->now_us, &answer);
-	return answer;
+	trust_look(&w->t, &p, packet, sizeof(packet), w->now_us);
+	return p.answers;
 }
 
 static struct sent good(const struct world *w, int64_t count)

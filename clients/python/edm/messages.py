@@ -18,7 +18,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
-STATUS = bytes.fromhex("d6afeb84f882f7aa")
+STATUS = bytes.fromhex("cae2d38456811636")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -211,6 +211,7 @@ class Status:
     length_mm: float = 0.0
     progress: float = 0.0
     pos_mm: tuple[float, ...] = ()
+    axes: str = ""
     gap_v: float = 0.0
     feed_mm_s: float = 0.0
     depth_mm: float = 0.0
@@ -250,6 +251,7 @@ class Status:
                 + put.double(self.length_mm)
                 + put.double(self.progress)
                 + b"".join(map(put.double, self.pos_mm))
+                + put.string(self.axes)
                 + put.double(self.gap_v)
                 + put.double(self.feed_mm_s)
                 + put.double(self.depth_mm)
@@ -291,6 +293,7 @@ class Status:
             r.double(),
             r.double(),
             tuple(r.double() for _ in range(8)),
+            r.string(),
             r.double(),
             r.double(),
             r.double(),

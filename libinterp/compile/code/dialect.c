@@ -90,16 +90,13 @@ const char *interp_dialect_word(int i)
 }
 
 static int compile_nc(const struct interp_text *text,
-		      const struct interp_nc_options *options,
+		      const struct interp_nc_options *o,
 		      struct interp_build *b, uint32_t *ret_lines,
 		      struct interp_diag *diag)
 {
-	struct interp_nc_options o = *options;
 	struct interp_nc_result done = { 0 };
-	int err;
+	const int err = interp_nc_compile(text, o, b, &done, diag);
 
-	o.dialect = text->dialect;
-	err = interp_nc_compile(text->at, text->bytes, &o, b, &done, diag);
 	*ret_lines = done.lines;
 	return err;
 }
@@ -118,8 +115,7 @@ static int compile_records(const struct interp_text *text,
 	int err;
 
 	threeb.fourb = text->dialect->reads == DIALECT_4B;
-	err = interp_threeb_compile(text->at, text->bytes, &read, b, &done,
-				   diag);
+	err = interp_threeb_compile(text, &read, b, &done, diag);
 	*ret_lines = done.lines;
 	return err;
 }

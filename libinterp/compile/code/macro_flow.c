@@ -38,7 +38,11 @@ struct place {
 	uint32_t line;
 };
 
-typedef bool match_fn(const uint8_t *p, const uint8_t *end, uint32_t n);
+/* A line that is searched for: does @match say yes to it and @n? */
+struct sought {
+	bool (*match)(const uint8_t *p, const uint8_t *end, uint32_t n);
+	uint32_t n;
+};
 
 static const uint8_t *behind_n(const uint8_t *p, const uint8_t *end,
 			       uint64_t *n)
@@ -73,7 +77,7 @@ static bool is_end(const uint8_t *p, const uint8_t *end, uint32_t n)
 
 /* Search from @from up to @stop, or up to the beginning of another program. */
 static int search(struct macro_line *l, struct place from, const uint8_t *stop,
-		  match_fn *match, uint32_t n, struct place *ret)
+		  const struct sought *sought, struct place *ret)
 {
 	const struct nc_reader *r = l->r;
 	int err = 0;
@@ -86,7 +90,7 @@ static int search(struct macro_line *l, struct place from, const uint8_t *stop,
 		if (from.at != r->frame[r->depth].entry &&
 		    nc_label_at(r, from.at, end))
 			return err;
-		if (match(from.at, end, n)) {
+		if (sought->match(from.at, end, sought->n)) {
 			*ret = from;
 			return err;
 		}
@@ -112,6 +116,7 @@ static int jump(struct macro_line *l, const uint8_t *at, const char *word,
 	const struct place first = f->entry ?
 		(struct place) { f->entry, f->entry_line } :
 		(struct place) { r->text, 1 };
+	struct sought sought = { .match = is_n };
 	struct place to;
 	int err;
 
@@ -121,9 +126,10 @@ static int jump(struct macro_line *l, const uint8_t *at, const char *word,
 	if (!(n >= 1 && n < 1e9 && n == floor(n)))
 		return macro_refuse(l, at, "the number of an N word behind it",
 				    "%s%g", word, n);
-	err = search(l, next, r->end, is_n, (uint32_t)n, &to);
+	sought.n = (uint32_t)n;
+	err = search(l, next, r->end, &sought, &to);
 	if (!err && !to.at)
-		err = search(l, first, next.at, is_n, (uint32_t)n, &to);
+		err = search(l, first, next.at, &sought, &to);
 	if (err)
 		return err;
 	if (!to.at)
@@ -242,20 +248,20 @@ static int take_while(struct macro_line *l, const uint8_t *at, bool truth)
 {
 	struct nc_reader *r = l->r;
 	struct place next = { r->at, r->line + 1 }, to;
-	uint32_t id;
-	int err = take_number(l, &id);
+	struct sought sought = { .match = is_end };
+	int err = take_number(l, &sought.n);
 
 	if (err)
 		return err;
 	if (truth)
-		return begin_loop(l, at, id);
-	err = search(l, next, r->end, is_end, id, &to);
+		return begin_loop(l, at, sought.n);
+	err = search(l, next, r->end, &sought, &to);
 	if (err)
 		return err;
 	if (!to.at)
 		return macro_refuse(l, at, "END with the number of its DO, in "
 				    "the same program", "a WHILE without END%u",
-				    id);
+				    sought.n);
 	r->at = nc_line_next(nc_line_end(to.at, r->end), r->end);
 	r->line = to.line;
 	return 1;

@@ -35,8 +35,6 @@ static void reset_modes(struct nc_reader *r)
 {
 	const struct interp_nc_options *o = r->o;
 
-	r->d = o->dialect ? o->dialect->nc :
-	       interp_dialect_by_name("generic")->nc;
 	memcpy(r->work_mm, o->work_offset_mm, sizeof(r->work_mm));
 	r->arc_incremental = !r->d->arc_places;
 	r->lengths = r->d->point != NC_POINT_FREE ||
@@ -100,12 +98,14 @@ static uint32_t count_lines(const struct nc_reader *r)
 	return n;
 }
 
-int interp_nc_compile(const char *text, size_t bytes,
+int interp_nc_compile(const struct interp_text *text,
 		      const struct interp_nc_options *o,
 		      struct interp_build *b, struct interp_nc_result *ret,
 		      struct interp_diag *diag)
 {
-	struct nc_reader r = { .o = o, .build = b, .diag = diag };
+	const struct interp_dialect *d = text->dialect ? text->dialect :
+					 interp_dialect_by_name("generic");
+	struct nc_reader r = { .o = o, .d = d->nc, .build = b, .diag = diag };
 	static const struct interp_wire none = { .corner_angle_deg = 180 };
 	int err;
 
@@ -116,7 +116,7 @@ int interp_nc_compile(const char *text, size_t bytes,
 		r.registers[i] = (struct nc_register) {
 			o->offset_mm[i] != 0, o->offset_mm[i]
 		};
-	open_text(&r, bytes ? text : "", bytes);
+	open_text(&r, text->bytes ? text->at : "", text->bytes);
 	reset_modes(&r);
 	err = nc_electrode_begin(&r);
 	if (!err)

@@ -294,7 +294,7 @@ static void set_up(struct threeb_reader *r)
 		r->start_mm[i] = here[i];
 }
 
-int interp_threeb_compile(const char *text, size_t bytes,
+int interp_threeb_compile(const struct interp_text *text,
 			  const struct interp_threeb_read *o,
 			  struct interp_build *b,
 			  struct interp_threeb_result *ret,
@@ -306,7 +306,7 @@ int interp_threeb_compile(const char *text, size_t bytes,
 	int err;
 
 	set_up(&r);
-	err = threeb_open(&r.text, bytes ? text : "", bytes);
+	err = threeb_open(&r.text, text->bytes ? text->at : "", text->bytes);
 	if (!err)
 		err = read_records(&r);
 	if (!err && r.records == 0) {

@@ -12,6 +12,7 @@
 
 /* b[d][j]: the function span - d + j of degree d; those beside it are 0. */
 struct basis {
+	int at;				/* the span it is for */
 	double b[DEGREE_MAX + 1][DEGREE_MAX + 3];
 };
 
@@ -34,7 +35,7 @@ static void basis_at(const struct spline *c, int at, double u, struct basis *r)
 {
 	const double *k = c->knot;
 
-	*r = (struct basis) { { { 1 } } };
+	*r = (struct basis) { .at = at, .b = { { 1 } } };
 	for (int d = 1; d <= c->degree; d++)
 		for (int j = 0; j <= d; j++) {
 			const int i = at - d + j;
@@ -48,19 +49,19 @@ static void basis_at(const struct spline *c, int at, double u, struct basis *r)
 }
 
 /* Derivative of @order of function j of degree d. */
-static double slope(const struct spline *c, const struct basis *b, int at,
-		    int d, int j, int order)
+static double slope(const struct spline *c, const struct basis *b, int d,
+		    int j, int order)
 {
 	const double *k = c->knot;
-	const int i = at - d + j;
+	const int i = b->at - d + j;
 
 	if (j < 0 || j > d)
 		return 0;
 	if (order == 0)
 		return b->b[d][j];
-	return d * (divide(slope(c, b, at, d - 1, j - 1, order - 1),
+	return d * (divide(slope(c, b, d - 1, j - 1, order - 1),
 			   k[i + d] - k[i]) -
-		    divide(slope(c, b, at, d - 1, j, order - 1),
+		    divide(slope(c, b, d - 1, j, order - 1),
 			   k[i + d + 1] - k[i + 1]));
 }
 
@@ -73,7 +74,7 @@ void spline_at(const struct spline *c, double u, double ret[3][2])
 	basis_at(c, at, u, &b);
 	for (int j = 0; j <= p; j++)
 		for (int d = 0; d < 3 && d <= p; d++) {
-			const double n = slope(c, &b, at, p, j, d);
+			const double n = slope(c, &b, p, j, d);
 
 			for (int k = 0; k < 3; k++)
 				h[d][k] += n * c->point[at - p + j][k];

@@ -17,8 +17,6 @@
 #include "interp/nc.h"
 #include "interp/threeb.h"
 
-struct interp_dialect;
-
 /**
  * interp_dialect_by_name() - the dialect called @name; NULL if there is none.
  */
@@ -42,12 +40,6 @@ bool interp_dialect_is_nc(const struct interp_dialect *d);
 /** interp_dialect_word() - the name of dialect @i; NULL past the last. */
 const char *interp_dialect_word(int i);
 
-struct interp_text {
-	const char *at;			/* need not be NUL-terminated */
-	size_t bytes;
-	const struct interp_dialect *dialect;	/* NULL: generic */
-};
-
 /**
  * interp_dialect_read() - a dialect of the user's own, from a file's text.
  *
@@ -65,7 +57,7 @@ const char *interp_dialect_meaning(int i);
 
 struct interp_compile_options {
 	struct interp_nc_options nc;	/* machine, feed and limits: every
-					 * dialect's; its dialect is ignored */
+					 * dialect's */
 	struct interp_threeb_options threeb;	/* but fourb, which is `4b` */
 };
 

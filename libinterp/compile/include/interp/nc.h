@@ -22,6 +22,7 @@
 #include "interp/kinematics.h"
 #include "interp/mcode_arg.h"
 #include "interp/tech_table.h"
+#include "interp/job_text.h"
 #include "interp/wire.h"
 
 #define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */
@@ -30,7 +31,6 @@
 						 * have */
 #define INTERP_NC_EXECUTED_MAX	100000000u	/* lines, repeats counted */
 
-struct interp_dialect;
 
 /* Takes remarks about a program that is accepted. */
 struct interp_notes {
@@ -70,7 +70,6 @@ struct interp_electrodes {
 };
 
 struct interp_nc_options {
-	const struct interp_dialect *dialect;	/* NULL: generic */
 	const struct interp_machine *machine;
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
 	const struct interp_wire *wire;	/* lent; NULL: no guides, no corners */
@@ -106,14 +105,12 @@ struct interp_nc_result {
 };
 
 /**
- * interp_nc_compile() - read @bytes bytes at @text into @b.
- *
- * @text need not be NUL-terminated.  LF, CRLF and CR end a line.
+ * interp_nc_compile() - read @text into @b.  LF, CRLF and CR end a line.
  *
  * Return: 0, -EINVAL with all of @diag filled, or -ENOMEM.  @ret is filled only
  * with 0.
  */
-int interp_nc_compile(const char *text, size_t bytes,
+int interp_nc_compile(const struct interp_text *text,
 		      const struct interp_nc_options *o,
 		      struct interp_build *b, struct interp_nc_result *ret,
 		      struct interp_diag *diag);

@@ -19,6 +19,7 @@
 
 #include "interp/build.h"
 #include "interp/emit.h"
+#include "interp/job_text.h"
 
 #define INTERP_THREEB_MAX	999999999	/* units in a field */
 
@@ -56,11 +57,12 @@ struct interp_threeb_result {
 };
 
 /**
- * interp_threeb_compile() - read @bytes bytes at @text into @b.
+ * interp_threeb_compile() - read @text into @b; @o says which of the two
+ * dialects it is.
  *
  * Starts where @b stands.  Return: 0, -EINVAL with @diag filled, -ENOMEM.
  */
-int interp_threeb_compile(const char *text, size_t bytes,
+int interp_threeb_compile(const struct interp_text *text,
 			  const struct interp_threeb_read *o,
 			  struct interp_build *b,
 			  struct interp_threeb_result *ret,
