@@ -31,9 +31,6 @@ static void bows_of(struct pass *w, const struct look *l, struct bows *ret)
 	const struct interp_seg *s = w->segs;
 	struct around *k = l->window;
 
-	while (k->before > w->run &&
-	       s[k->behind].s_mm - s[k->before].s_mm < k->mm)
-		k->before--;
 	if (k->before < w->run)
 		k->before = w->run;
 	while (k->before < k->behind &&
@@ -41,11 +38,6 @@ static void bows_of(struct pass *w, const struct look *l, struct bows *ret)
 		k->before++;
 	if (k->beyond < k->ahead)
 		k->beyond = k->ahead;
-	if (k->beyond > w->run_end)
-		k->beyond = w->run_end;
-	while (k->beyond > k->ahead &&
-	       s[k->beyond - 1].s_mm - s[k->ahead].s_mm >= k->mm)
-		k->beyond--;
 	while (k->beyond < w->run_end &&
 	       s[k->beyond].s_mm - s[k->ahead].s_mm < k->mm)
 		k->beyond++;

@@ -312,6 +312,7 @@ static bool is_among(const struct pass *w, uint32_t i)
 	       pass_is_tiny(w, i - 1) == pass_is_tiny(w, i);
 }
 
+/* If it is faster now. */
 static void raise_node(struct pass *w, uint32_t i)
 {
 	struct interp_seg *s = &w->segs[i];
@@ -332,47 +333,51 @@ static void raise_node(struct pass *w, uint32_t i)
 		soften_node(w, i - 1, i, v);
 }
 
-/*
- * How fast node @i is without what lies beyond the corner at node @at, and
- * looked at as far to the other side.  What bends more slowly than that does
- * not count so near to a corner: no move is fast enough there.
- */
-static void look_again(struct pass *w, uint32_t at, uint32_t i, int way)
+static void look_between(struct pass *w, uint32_t run, uint32_t i,
+			 uint32_t run_end)
 {
-	const uint32_t run = w->run, run_end = w->run_end;
-	const uint32_t far = away(w, i, way, from_to(w, at, i));
-
-	w->run = way > 0 ? at : far;
-	w->run_end = way > 0 ? far : at;
-	raise_node(w, i);
 	w->run = run;
 	w->run_end = run_end;
+	w->near.behind = run;
+	w->near.ahead = i;
+	for (int k = 0; k < PASS_WINDOWS; k++) {
+		w->windows[k].behind = w->windows[k].before = run;
+		w->windows[k].ahead = w->windows[k].beyond = i;
+	}
 }
 
 /*
  * The windows of nodes beside a corner show the corner, too.  But only the
  * corner itself has to be passed slowly: a move that meets a slow place in
- * front of a slower one brakes in steps.
+ * front of a slower one brakes in steps.  So windows end in the corner, and are
+ * as long on the other side of the node.  What bends more slowly than that does
+ * not count so near to a corner: no move is fast enough there.
  */
 static void look_beside(struct pass *w)
 {
-	const double mm = SEES * w->windows[0].mm;
-	const double own[2] = { w->a_own_mm_s2[0], w->a_own_mm_s2[1] };
 	const uint32_t at = w->slow;
+	struct pass again;
 
 	w->slow = 0;
 	if (at == 0 || !is_corner(w, at))
 		return;
+	again = *w;
 	for (int way = -1; way <= 1; way += 2) {
+		const double mm = SEES * w->windows[0].mm;
 		uint32_t i = at + (uint32_t)way;
 
 		while (i > w->run && i < w->run_end &&
 		       from_to(w, at, i) < mm && is_among(w, i)) {
-			look_again(w, at, i, way);
+			const uint32_t far = away(w, i, way,
+						  from_to(w, at, i));
+
+			look_between(&again, way > 0 ? at : far, i,
+				     way > 0 ? far : at);
+			raise_node(&again, i);
 			i += (uint32_t)way;
 		}
 	}
-	memcpy(w->a_own_mm_s2, own, sizeof(own));
+	w->soft = again.soft;
 }
 
 /* The node in front of segment @i is known. */

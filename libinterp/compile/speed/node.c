@@ -199,16 +199,10 @@ static void look_around(const struct pass *w, uint32_t i, struct around *k)
 	const double here = s[i].s_mm, mm = k->mm;
 	uint32_t behind = k->behind, ahead = k->ahead > i ? k->ahead : i;
 
-	while (behind > w->run && here - s[behind].s_mm < mm)
-		behind--;
 	if (behind < w->run)
 		behind = w->run;
 	while (behind < i && here - s[behind + 1].s_mm >= mm)
 		behind++;
-	if (ahead > w->run_end)
-		ahead = w->run_end;
-	while (ahead > i && s[ahead - 1].s_mm - here >= mm)
-		ahead--;
 	while (ahead < w->run_end && s[ahead].s_mm - here < mm)
 		ahead++;
 	k->behind = behind;
