@@ -295,6 +295,22 @@ static void c_turns_as_it_sinks_and_back_as_it_leaves(void **st)
 	nc_done(&n);
 }
 
+/* The straight way up is the way it sank, so its axes allow the same; a segment
+ * keeps a percent for rounding. */
+static void c_keeps_its_limits_on_the_way_out(void **st)
+{
+	struct nc_read n = nc_read_text("G141\nG130 Z-2 C45. R.2 P2 F5\n");
+	const struct interp_seg *sunk = nc_seg(&n, 0);
+	const struct interp_escape *up = &n.p.escapes[sunk->escape];
+
+	(void)st;
+	assert_int_equal(up->out, 1u << INTERP_Z | 1u << INTERP_C);
+	assert_true(up->v_max_mm_s <= 1.02 * (double)sunk->feed_max_mm_s);
+	assert_true(up->a_max_mm_s2 <= 1.02 * (double)sunk->a_mm_s2);
+	assert_true(up->j_max_mm_s3 <= 1.02 * (double)sunk->j_mm_s3);
+	nc_done(&n);
+}
+
 /* -- Ways out ------------------------------------------------------------- */
 
 /*
@@ -572,6 +588,7 @@ int main(void)
 		cmocka_unit_test(the_radius_is_undersize_less_gap_and_allowance),
 		cmocka_unit_test(it_sinks_along_any_axis_in_either_sense),
 		cmocka_unit_test(c_turns_as_it_sinks_and_back_as_it_leaves),
+		cmocka_unit_test(c_keeps_its_limits_on_the_way_out),
 		cmocka_unit_test(no_way_out_meets_what_is_not_cut),
 		cmocka_unit_test(a_time_goes_round_the_whole_cycle),
 		cmocka_unit_test(what_is_wrong_is_said_at_its_word),

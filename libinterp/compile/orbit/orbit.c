@@ -145,6 +145,7 @@ static double pulse_mm(const struct walk *w)
 static void lead_out(const struct walk *w, struct interp_escape *e)
 {
 	const struct interp_orbit *o = w->o;
+	const struct interp_axis_limits *c = &w->m->axis[INTERP_C];
 	const double by_deg = fabs(o->c_end_deg - o->start_mm[INTERP_C]);
 
 	e->out = 1u << o->sink;
@@ -154,7 +155,9 @@ static void lead_out(const struct walk *w, struct interp_escape *e)
 	e->out |= 1u << INTERP_C;
 	e->out_mm[INTERP_C] = o->start_mm[INTERP_C];
 	e->out_mm[o->sink] = o->start_mm[o->sink];
-	e->v_max_mm_s = w->m->axis[INTERP_C].v_max_mm_s * w->depth_mm / by_deg;
+	e->v_max_mm_s = c->v_max_mm_s * w->depth_mm / by_deg;
+	e->a_max_mm_s2 = c->a_max_mm_s2 * w->depth_mm / by_deg;
+	e->j_max_mm_s3 = c->j_max_mm_s3 * w->depth_mm / by_deg;
 }
 
 static int no_escape(const struct walk *w)
