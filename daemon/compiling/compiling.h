@@ -34,6 +34,10 @@ int config_tech_load(struct config_tech *ret, const struct machine_config *c,
 		     const char *path);
 void config_tech_free(struct config_tech *t);
 
+/** config_tech_why() - what went wrong, as one line into @buf. */
+void config_tech_why(const struct config_tech *t, int err, char *buf,
+		     size_t size);
+
 /* The result of config_dialect_load(). */
 struct config_dialect {
 	const struct interp_dialect *use;

@@ -111,6 +111,18 @@ int config_tech_load(struct config_tech *ret, const struct machine_config *c,
 	return err ? err : check_jumps(ret, c);
 }
 
+void config_tech_why(const struct config_tech *t, int err, char *buf,
+		     size_t size)
+{
+	if (err == -EINVAL)
+		snprintf(buf, size, "%s:%u:%u: error: %s; %s", t->path,
+			 t->diag.line, t->diag.column, t->diag.found,
+			 t->diag.wanted);
+	else
+		snprintf(buf, size, "[tech] table %s: %s", t->path,
+			 strerror(-err));
+}
+
 void config_tech_free(struct config_tech *t)
 {
 	interp_tech_table_destroy(t->table);

@@ -215,10 +215,8 @@ int main(int argc, char **argv)
 		config_print(&config, stdout);
 		return EX_OK;
 	}
-	if (o.check) {
-		printf("%s: good\n", o.config ? o.config : "built-in machine");
-		return EX_OK;
-	}
+	if (o.check)
+		return options_check(&o);
 	signals_block();
 	loop_configure(&loop, &config);
 	logger_start();

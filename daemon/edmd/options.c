@@ -8,8 +8,10 @@
 #include "names.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <string.h>
 #include <sysexits.h>
+#include <unistd.h>
 
 #define AT(field)	.at = offsetof(struct options, field)
 
@@ -20,7 +22,8 @@ static const struct cmdline_row rows[] = {
 	{ "name", "NAME", CMDLINE_WORD, AT(name), .help =
 	  "name of the machine, instead of [machine] name" },
 	{ "check", NULL, CMDLINE_FLAG, AT(check), .help =
-	  "read the machine file, say whether it is correct, exit" },
+	  "check the machine file, and the technology table and\n"
+	  "the dialect that it names, exit" },
 	{ "print-config", NULL, CMDLINE_FLAG, AT(print_config), .help =
 	  "print every key with its value as a machine file, exit" },
 };
@@ -84,4 +87,29 @@ int options_config(const struct options *o, struct machine_config *c)
 	if (config_check_contouring(c, &diag) < 0)
 		return config_refuse(o->config, -EINVAL, &diag);
 	return o->name ? name_override(o->name, c) : -1;
+}
+
+/* The readers of tables and dialects are not in this program, but in the one
+ * beside it.  Does not return, if that is there. */
+static void check_beside(const char *config)
+{
+	char path[PATH_MAX];
+	const ssize_t n = readlink("/proc/self/exe", path, sizeof(path) - 6);
+
+	if (n <= 0)
+		return;
+	memcpy(path + n, "-jobs", 6);
+	execl(path, path, "--check", "--config", config, (char *)NULL);
+}
+
+int options_check(const struct options *o)
+{
+	if (!o->config) {
+		printf("built-in machine: good\n");
+		return EX_OK;
+	}
+	check_beside(o->config);
+	printf("%s: good; its technology table and its dialect were not read: "
+	       "no edmd-jobs beside edmd\n", o->config);
+	return EX_OK;
 }

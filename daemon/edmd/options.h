@@ -27,4 +27,10 @@ int options_read(struct options *o, int argc, char **argv);
  */
 int options_config(const struct options *o, struct machine_config *c);
 
+/**
+ * options_check() - the machine file is correct: is what it names, too?
+ * Return: the exit code, if it returns.
+ */
+int options_check(const struct options *o);
+
 #endif /* EDMD_OPTIONS_H */

@@ -42,13 +42,9 @@ static int read_tech(struct compiler *c, struct config_tech *t)
 	uint8_t hash[crypto_hash_sha256_BYTES];
 	const int err = config_tech_load(t, c->request.config, NULL);
 
-	if (err == -EINVAL)
-		snprintf(r->tech_refusal, sizeof(r->tech_refusal),
-			 "%s:%u:%u: error: %s; %s", t->path, t->diag.line,
-			 t->diag.column, t->diag.found, t->diag.wanted);
-	else if (err < 0)
-		snprintf(r->tech_refusal, sizeof(r->tech_refusal),
-			 "[tech] table %s: %s", t->path, strerror(-err));
+	if (err < 0)
+		config_tech_why(t, err, r->tech_refusal,
+				sizeof(r->tech_refusal));
 	if (err < 0 || !t->table)
 		return err;
 	crypto_hash_sha256(hash, (const uint8_t *)t->text, t->bytes);

@@ -28,6 +28,7 @@
 
 struct options {
 	const char *config, *name, *store;
+	bool check;
 };
 
 #define AT(field)	.at = offsetof(struct options, field)
@@ -40,6 +41,9 @@ static const struct cmdline_row rows[] = {
 	  "name of the machine; default: [machine] name" },
 	{ "store", "DIR", CMDLINE_WORD, AT(store), .help =
 	  "folder of the database; default: [jobs] store" },
+	{ "check", NULL, CMDLINE_FLAG, AT(check), .help =
+	  "check the machine file, and the technology table and\n"
+	  "the dialect that it names, exit" },
 };
 /* clang-format on */
 
@@ -359,6 +363,38 @@ static int run(struct jobs *j)
 	return err < 0 ? EX_SOFTWARE : EX_OK;
 }
 
+static int file_refuse(const char *why, int err)
+{
+	fprintf(stderr, "edmd-jobs: %s\n", why);
+	return err == -ENOENT ? EX_NOINPUT : err == -ENOMEM ? EX_OSERR :
+	       EX_CONFIG;
+}
+
+/* The files that are read for each job. */
+static int check_files(const struct machine_config *config,
+		       const struct options *o)
+{
+	struct config_tech tech;
+	struct config_dialect dialect;
+	char why[1024];
+	int code = EX_OK, err = config_tech_load(&tech, config, NULL);
+
+	if (err) {
+		config_tech_why(&tech, err, why, sizeof(why));
+		code = file_refuse(why, err);
+	}
+	config_tech_free(&tech);
+	err = config_dialect_load(&dialect, config, NULL, "");
+	if (err) {
+		config_dialect_why(&dialect, err, why, sizeof(why));
+		code = file_refuse(why, err);
+	}
+	config_dialect_free(&dialect);
+	if (code == EX_OK)
+		printf("%s: good\n", o->config);
+	return code;
+}
+
 int main(int argc, char **argv)
 {
 	static struct machine_config config;
@@ -375,6 +411,8 @@ int main(int argc, char **argv)
 	err = configure(&jobs, &config, &o);
 	if (err)
 		return err;
+	if (o.check)
+		return check_files(&config, &o);
 	block_signals();
 	logger_start();
 	err = open_store(&jobs, o.store ? o.store : config.store_dir);

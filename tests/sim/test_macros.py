@@ -298,6 +298,15 @@ def test_a_goto_stays_in_its_program_wherever_the_label_stands():
     assert r.returncode == 65 and b"GOTO 5, which is not there" in r.stderr
 
 
+def test_what_is_printed_is_ignored_with_one_note():
+    r = run("--dialect", "fanuc-sinker", "--check",
+            text="POPEN\nG0 X1.\nN5 DPRNT[X#100[44]*(A]\nPCLOS (end)\nM30\n")
+    assert r.returncode == 0, r.stderr
+    assert r.stderr.count(b"note: ") == 1
+    assert b":1: note: POPEN is ignored: nothing is printed" in r.stderr
+    assert emitted("DPRNT[X]\nG0 G90 G21 X1.\nM30\n") == ["X1"]
+
+
 @pytest.mark.parametrize("dialect, text, said", REFUSED)
 def test_what_cannot_be_carried_out_is_refused_at_its_place(dialect, text,
                                                             said):

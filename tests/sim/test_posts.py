@@ -182,3 +182,23 @@ def test_a_place_that_is_refused_is_listed_among_the_words():
             text="G999\n" * 150 + "G0 X900.\n")
     assert r.stderr.decode().splitlines()[100] == \
         "-: 100 refusals, and perhaps more"
+
+
+@pytest.mark.parametrize("dialect", ["fanuc-sinker", "fanuc-wire", "makino"])
+def test_a_colon_is_an_o_in_iso_code(dialect):
+    r = run("--dialect", dialect, "--check",
+            text="%\n:1234 (PART)\nG90 G1 X1. F60.\nM98 P100\nM2\n"
+                 ":100\nX2.\nM99\n%\n")
+    assert r.returncode == 0, r.stderr
+    assert b"path       2.000 mm" in r.stdout
+    r = run("--dialect", dialect, "--check", text=":1\nG1 X1. F60.\n:2\nM2\n")
+    assert r.returncode == 65 and b":3:1: error: the next program" in r.stderr
+
+
+@pytest.mark.parametrize("end", ["\x1a", "\x1a\x1a", "\x1a\r\n", "%\r\n\x1a"])
+def test_the_mark_behind_a_dos_file_is_no_word(end):
+    text = "%\r\nG90 G21\r\nG1 X1. F60.\r\n"
+    r = run("--check", text=text + end)
+    assert r.returncode == 0, r.stderr
+    r = run("--check", text=text + "\x1aX2.\r\n" + end)
+    assert r.returncode == 65 and b":4:1: error: byte 0x1a" in r.stderr

@@ -2,10 +2,11 @@
 """Technology tables: what conditions change, and what is refused."""
 
 import re
+import subprocess
 
 import edmsim
 import pytest
-from edmsim import ROOT
+from edmsim import PROGRAM, ROOT
 
 MACHINE = str(ROOT / "examples/machine.ini")
 JOB = b"G21 G90\nG0 Z1\nZ0\nC120 G1 Z-0.3 F30\nM2\n"
@@ -102,6 +103,33 @@ def test_the_table_of_the_machine_file_is_beside_it(tmp_path):
     r = edmsim.run(*args, text=JOB)
     assert r.returncode == 66
     assert b"shop.tech: No such file" in r.stderr
+
+
+def test_edmd_checks_the_files_that_its_machine_file_names(tmp_path):
+    """A table and a dialect that only a job needs, before there is a job."""
+    path = tmp_path / "m.ini"
+    (tmp_path / "bad.tech").write_text("condition,servo_v\nC1,much\n")
+    (tmp_path / "bad.ini").write_text("[dialect]\nbase = nobody\n")
+
+    def check(text):
+        path.write_text("[machine]\nname = m\n" + text)
+        p = subprocess.run([PROGRAM.replace("edmsim", "edmd"), "--config",
+                            str(path), "--check"], capture_output=True,
+                           text=True, timeout=20)
+        assert ("good" in p.stdout) == (p.returncode == 0)
+        return p.returncode, p.stderr
+
+    assert check("") == (0, "")
+    code, told = check("[tech]\ntable = no.tech\n")
+    assert code == 66 and f"{tmp_path}/no.tech: No such file" in told
+    code, told = check("[tech]\ntable = bad.tech\n")
+    assert code == 78 and f"{tmp_path}/bad.tech:2:4: error: " in told
+    code, told = check("[nc]\ndialect = bad.ini\n")
+    assert code == 78 and f"{tmp_path}/bad.ini:2:" in told
+    code, told = check("[nc]\ndialect = fanuk\n")
+    assert code == 78 and "dialect fanuk: no dialect" in told
+    code, told = check("[tech]\ntable = no.tech\n[nc]\ndialect = no.ini\n")
+    assert code == 66 and "no.tech" in told and "no.ini" in told
 
 
 def test_a_bad_table_is_refused_with_its_place(tmp_path):

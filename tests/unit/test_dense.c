@@ -19,6 +19,10 @@
  * "Not there yet"). */
 #define BOTH_JERK	2.5
 
+/* At a node an axis may step by 2.6 deg/s (corner_um); in a cycle it speeds up
+ * by 1 deg/s more. */
+#define CORNER_JOLT	3.6
+
 struct dense {
 	double mm;			/* of a line */
 	int decimals;
@@ -170,25 +174,35 @@ static void with_a_rotary_axis_too(void **st)
 
 /* -- An axis that turns unevenly ------------------------------------------- */
 
-/* X goes @mm, and beside it B a wave of @deg, or one smooth step; @w_mm says
- * how wide they are. */
+/* X goes @mm, and beside it B a wave of @deg, one smooth step, or to and fro
+ * with sharp corners; @w_mm says how wide they are. */
 struct wave {
 	double mm, deg, w_mm;
-	bool step;
+	enum { SINE, STEP, FRO } shape;
 };
 
 static const struct wave waves[] = {
-	{ 30, 10, 0.15, false }, { 30, 2, 0.33, false }, { 20, 0.3, 1, false },
-	{ 30, 20, 0.35, true },
+	{ 30, 10, 0.15, SINE }, { 30, 2, 0.33, SINE }, { 20, 0.3, 1, SINE },
+	{ 30, 20, 0.35, STEP }, { 30, 5, 0.2, FRO }, { 24, 0.4, 1, FRO },
 };
 
 /* Time of each, of that in lines of 0.2 mm. */
-static const double waves_most[] = { 1.016, 1.016, 1.035, 1.02 };
+static const double waves_most[] = {
+	1.016, 1.016, 1.035, 1.02, 1.005, 1.005,
+};
+
+#define NWAVES	(sizeof(waves) / sizeof(waves[0]))
 
 static double wave_at(const struct wave *k, double mm)
 {
-	return k->step ? k->deg / (1 + exp((k->mm / 2 - mm) * k->w_mm)) :
-			 k->deg * sin(k->w_mm * mm);
+	switch (k->shape) {
+	case STEP:
+		return k->deg / (1 + exp((k->mm / 2 - mm) * k->w_mm));
+	case FRO:
+		return k->deg * fabs(fmod(k->w_mm * mm, 2) - 1);
+	default:
+		return k->deg * sin(k->w_mm * mm);
+	}
 }
 
 static struct interp_build *wave_build(const struct wave *k, double mm,
@@ -213,7 +227,7 @@ static struct interp_build *wave_build(const struct wave *k, double mm,
 static void with_a_rotary_axis_that_turns_unevenly(void **st)
 {
 	(void)st;
-	for (int w = 0; w < 4; w++) {
+	for (size_t w = 0; w < NWAVES; w++) {
 		uint64_t once[2], c[2];
 
 		walk_there_and_back(wave_build(&waves[w], 0.2, 6), once);
@@ -229,7 +243,7 @@ static void with_a_rotary_axis_that_turns_unevenly(void **st)
 						fail_msg("wave %d, %g mm, %d "
 							 "decimals, leg %d: %d "
 							 "cycles, 0.2 mm: %d",
-							 w, steps_mm[i],
+							 (int)w, steps_mm[i],
 							 decimals, leg,
 							 (int)c[leg],
 							 (int)once[leg]);
@@ -281,7 +295,8 @@ static void a_rotary_axis_that_turns_unevenly_keeps_its_limits(void **st)
 		const double w_mm = pow(10, uniform(&s, -1.3, 0.3));
 		const double slope = pow(10, uniform(&s, -1, 0.7));
 		const struct wave k = {
-			20, fmin(slope / w_mm, 90), w_mm, rnd(&s) % 5 == 0,
+			20, fmin(slope / w_mm, 90), w_mm,
+			rnd(&s) % 5 == 0 ? STEP : SINE,
 		};
 		const double mm = pow(10, uniform(&s, -2, -0.7));
 		double most[3];
@@ -291,6 +306,57 @@ static void a_rotary_axis_that_turns_unevenly_keeps_its_limits(void **st)
 			fail_msg("%g deg, %g, lines of %g mm: %g of v, %g of "
 				 "a, %g of the jerk", k.deg, w_mm, mm, most[0],
 				 most[1], most[2]);
+	}
+}
+
+/*
+ * The most that the speed of B changes in a cycle.  Its rate is that of the
+ * line, so that corners between lines and in two nodes count as they are.
+ */
+static double most_jolt(const struct wave *k, double mm, int decimals)
+{
+	struct cycle_config c = usual_config();
+	double v = 0, s = 0, most = 0;
+	struct rig r;
+
+	c.dry_run = c.hold_at_end = true;
+	rig_load(&r, wave_build(k, mm, decimals), &c);
+	tell(&r, CYCLE_START);
+	for (int n = 0; n < 100000 && r.c.state != STATE_HOLD; n++) {
+		const double from = s, was = v;
+		const double first = floor((s + 1e-9) / mm) * mm;
+		double last;
+
+		step(&r, OPEN_V);
+		s = place(&r);
+		last = fmax(first, floor((s - 1e-9) / mm) * mm);
+		v = (wave_at(k, last + mm) - wave_at(k, last)) / mm *
+		    (s - from) / PERIOD_S;
+		if (first > mm && last < k->mm - 2 * mm)
+			most = fmax(most, fabs(v - was));
+	}
+	assert_int_equal(r.c.state, STATE_HOLD);
+	rig_free(&r);
+	return most;
+}
+
+static void a_corner_jolts_an_axis_no_more_in_short_lines(void **st)
+{
+	uint64_t s = seed_take();
+
+	(void)st;
+	for (int i = 0; i < WAVES; i++) {
+		const double w_mm = pow(10, uniform(&s, -0.7, 0));
+		const double slope = pow(10, uniform(&s, -0.5, 1));
+		const struct wave k = { 12, slope / w_mm, w_mm, FRO };
+		const double mm = pow(10, uniform(&s, -2.3, -1));
+		const double n = round(k.mm / mm);
+		const double most = most_jolt(&k, k.mm / n,
+					      3 + (int)(rnd(&s) % 4));
+
+		if (most > CORNER_JOLT)
+			fail_msg("%g deg, %g, lines of %g mm: %g deg/s in a "
+				 "cycle", k.deg, w_mm, mm, most);
 	}
 }
 
@@ -342,6 +408,7 @@ int main(void)
 		cmocka_unit_test(with_a_rotary_axis_that_turns_unevenly),
 		cmocka_unit_test(
 			a_rotary_axis_that_turns_unevenly_keeps_its_limits),
+		cmocka_unit_test(a_corner_jolts_an_axis_no_more_in_short_lines),
 		cmocka_unit_test(in_retracts_three_decimals_are_as_quick),
 		cmocka_unit_test(true_corners_are_as_slow_as_between_long_lines),
 	};

@@ -154,6 +154,7 @@ static const struct {
 	{ "of-ignored-words", NC_WORD + NC_SPARE },
 	{ "comment", NC_SEMICOLON }, { "block-end", NC_BLOCK_END },
 	{ "top-words", NC_COLON },
+	{ "program-number", NC_WORD + NC_O },
 	{ "none", NC_BAD },
 };
 
@@ -265,7 +266,8 @@ static int read_letter(struct reading *f, struct piece key, struct piece value)
 	return refuse(f, value.at, "code-G code-M code-T, condition, "
 		      "condition-or-axis, condition-S, register, top, "
 		      "top-centre-I, top-centre-J, taper-angle, "
-		      "of-ignored-words, comment, block-end, top-words, none, "
+		      "of-ignored-words, comment, block-end, top-words, "
+		      "program-number, none, "
 		      "refuse: or ignore-line:",
 		      "a letter cannot be", value);
 }

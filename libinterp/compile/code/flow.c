@@ -47,11 +47,12 @@ static bool is_keyword(const uint8_t *p, const uint8_t *end)
 	       p + 1 < end && (p[1] & 0xdf) >= 'A' && (p[1] & 0xdf) <= 'Z';
 }
 
-/* The number behind the O (or the N, if that is @letter) that begins the line
- * from @p to @end; 0: the line does not begin so. */
-static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
-			 const uint8_t **ret_at)
+/* The number behind the O (or the N, if the dialect has that) that begins the
+ * line from @p to @end; 0: the line does not begin so. */
+static uint32_t label_of(const struct nc_dialect *d, const uint8_t *p,
+			 const uint8_t *end, const uint8_t **ret_at)
 {
+	const char letter = (char)d->label;
 	uint64_t n = 0, ignored = 0;
 	const uint8_t *first;
 
@@ -60,7 +61,8 @@ static uint32_t label_of(char letter, const uint8_t *p, const uint8_t *end,
 		p = nc_skip_blanks(p + 1, end);
 		p = nc_skip_void(nc_digits(p, end, &ignored), end);
 	}
-	if (p == end || (*p & 0xdf) != letter)
+	if (p == end || ((*p & 0xdf) != letter &&
+			 !(*p == ':' && d->classes[':'] == NC_WORD + NC_O)))
 		return 0;
 	*ret_at = p;
 	first = nc_skip_blanks(p + 1, end);
@@ -76,7 +78,7 @@ uint32_t nc_label_at(const struct nc_reader *r, const uint8_t *p,
 {
 	const uint8_t *at;
 
-	return r->d->label == 'O' ? label_of('O', p, end, &at) : 0;
+	return r->d->label == 'O' ? label_of(r->d, p, end, &at) : 0;
 }
 
 static int refuse_second(struct nc_reader *r, struct nc_label l,
@@ -95,7 +97,7 @@ static int note_label(struct nc_reader *r, struct nc_label l,
 		      const uint8_t *end)
 {
 	const uint8_t *at;
-	const uint32_t n = label_of((char)r->d->label, l.at, end, &at);
+	const uint32_t n = label_of(r->d, l.at, end, &at);
 
 	if (n == 0 || n > LABEL_MAX)
 		return 0;

@@ -389,6 +389,22 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 	return 1;
 }
 
+/* What is sent to a printer or a computer beside the control. */
+static bool is_print(struct macro_line *l)
+{
+	static const char *const words[] = { "POPEN", "PCLOS", "DPRNT",
+					     "BPRNT" };
+
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
+		if (!macro_word(l, words[i]))
+			continue;
+		nc_note_print(l->r, words[i]);
+		l->p = l->end;
+		return true;
+	}
+	return false;
+}
+
 static int take_flow(struct macro_line *l)
 {
 	uint64_t ignored = 0;
@@ -399,6 +415,8 @@ static int take_flow(struct macro_line *l)
 	l->p = behind_n(l->p, l->end, &ignored);
 	macro_blanks(l);
 	at = l->p;
+	if (is_print(l))
+		return 1;
 	if (macro_word(l, "IF"))
 		return take_if(l, at);
 	if (macro_word(l, "GOTO"))

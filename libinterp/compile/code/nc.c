@@ -9,11 +9,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* CP/M and DOS ended a text with ^Z, and some posts still do. */
+static const uint8_t *end_of(const uint8_t *text, const uint8_t *end)
+{
+	for (const uint8_t *p = end; p > text; p--) {
+		if (p[-1] == 0x1a)
+			end = p - 1;
+		else if (nc_classes[p[-1]] != NC_BLANK &&
+			 nc_classes[p[-1]] != NC_EOL)
+			break;
+	}
+	return end;
+}
+
 /* A byte order mark does not belong to the text. */
 static void open_text(struct nc_reader *r, const char *text, size_t bytes)
 {
 	r->text = (const uint8_t *)text;
-	r->end = r->text + bytes;
+	r->end = end_of(r->text, r->text + bytes);
 	if (bytes >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
 		r->text += 3;
 	r->at = r->text;

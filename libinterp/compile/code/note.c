@@ -68,6 +68,13 @@ void nc_note_skipped(struct nc_reader *r)
 		    "delete switched on");
 }
 
+void nc_note_print(struct nc_reader *r, const char *word)
+{
+	if (r->o->notes && !told(r, NC_TOLD_PRINT))
+		say(r, "%s is ignored: nothing is printed or sent from a "
+		    "program here; edmctl history has what it came to", word);
+}
+
 void nc_note_vacant(struct nc_reader *r, uint32_t n)
 {
 	if (r->o->notes && !told(r, NC_TOLD_VACANT))

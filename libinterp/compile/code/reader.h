@@ -50,7 +50,8 @@ struct nc_tool_point {
 /* Kinds of notes; each is made once. */
 enum nc_told { NC_TOLD_POINT, NC_TOLD_INCHES, NC_TOLD_CONDITION,
 	       NC_TOLD_DWELL, NC_TOLD_OFFSET, NC_TOLD_ELECTRODE,
-	       NC_TOLD_CHANGE, NC_TOLD_SKIPPED, NC_TOLD_VACANT };
+	       NC_TOLD_CHANGE, NC_TOLD_SKIPPED, NC_TOLD_VACANT,
+	       NC_TOLD_PRINT };
 
 /* Why no more lines are read. */
 enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
@@ -513,6 +514,9 @@ void nc_note_skipped(struct nc_reader *r);
 
 /** nc_note_vacant() - common variable #@n is read, and has no value. */
 void nc_note_vacant(struct nc_reader *r, uint32_t n);
+
+/** nc_note_print() - DPRNT and its like, the first of them @word. */
+void nc_note_print(struct nc_reader *r, const char *word);
 
 /** nc_note_rest() - words behind the end, in line @line. */
 void nc_note_rest(struct nc_reader *r, uint32_t line);

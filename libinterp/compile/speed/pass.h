@@ -88,6 +88,7 @@ struct pass {
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;
 	uint32_t run, run_end;		/* nodes that windows look between */
+	uint32_t slow;			/* the slowest node of late; 0: none */
 	/* Of each column: */
 	double tol[INTERP_NAXES];	/* mm or degrees that do not count as a
 					 * change */
