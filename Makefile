@@ -424,7 +424,7 @@ check:
 	@$(MAKE) --no-print-directory TSAN=1 run-crossings
 	@tests/stage check fuzz
 	@$(MAKE) --no-print-directory -j$(SIDE) fuzz FUZZ_SEED=1 \
-		FUZZ_RUNS=250000 FUZZ_S=60
+		FUZZ_RUNS=160000 FUZZ_S=40
 	@tests/stage check clang
 	@$(MAKE) --no-print-directory clang
 	@tests/stage check vm
