@@ -214,6 +214,8 @@ $(B)/%.o: %.cc
 # errno nobody asks for.
 $(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
 	speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3 -fno-math-errno
+# Nothing here may trap, so several ticks of an arc may be rounded at a time.
+$(call obj,libinterp/core/pulse/arc.c): OPT += -fno-trapping-math
 # Over two to four columns vectors take more than they give.
 $(call obj,$(wildcard libinterp/compile/speed/*.c)): OPT += -fno-tree-vectorize
 

@@ -49,6 +49,7 @@ static const struct bench_path paths[] = {
 	{ "main-direction, 2 axes", INTERP_MAIN_DIRECTION, 0, 2 },
 	{ "main-direction, tree of 8", INTERP_MAIN_DIRECTION, INTERP_TREE, 8 },
 	{ "min-switch, 2 axes", INTERP_MIN_SWITCH, 0, 2 },
+	{ "min-switch, arc", INTERP_MIN_SWITCH, 0, 0 },
 	{ "min-switch, tree of 8", INTERP_MIN_SWITCH, INTERP_TREE, 8 },
 	{ "min-switch, tube of 8", INTERP_MIN_SWITCH, INTERP_TUBE, 8 },
 };

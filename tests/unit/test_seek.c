@@ -113,6 +113,7 @@ static void walk(const struct job *j, struct interp_cursor *c, bool back,
 		 uint16_t *ret)
 {
 	c->backward = back;
+	c->want = back ? INT64_MIN / 2 : INT64_MAX;
 	*ret = 0;
 	if ((back ? c->walk->back : c->walk->forward)(c, 1, ret) == PULSE_BAD)
 		say(j, c, "it cannot walk");

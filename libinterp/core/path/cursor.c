@@ -235,14 +235,6 @@ static enum interp_step cross_back(struct interp_cursor *c)
 	return INTERP_MOVED;
 }
 
-static bool may_go_on(const struct interp_cursor *c)
-{
-	if (!c->backward)
-		return c->measure < c->want;
-	return c->measure > c->want &&
-	       (!c->walk->last || c->measure - c->walk->last(c) >= c->want);
-}
-
 /* If the cursor stands exactly on the end of a segment, it is still in it,
  * unless something is to be done there. */
 static bool must_cross(const struct interp_cursor *c)
@@ -267,22 +259,6 @@ static uint32_t cursor_ticks(struct interp_cursor *c, uint32_t ticks,
 			     c->walk->forward(c, ticks, ret);
 }
 
-/* Ticks of any measure, one by one. */
-static uint32_t run_uneven(struct interp_cursor *c, uint16_t *ret,
-			   uint32_t max)
-{
-	uint32_t points = 0;
-
-	while (points < max && may_go_on(c)) {
-		const uint32_t n = cursor_ticks(c, 1, ret + points);
-
-		if (n == PULSE_BAD)
-			return PULSE_BAD;
-		points += n;
-	}
-	return points;
-}
-
 /* Ticks of measure one: their number is known. */
 static uint32_t run_even(struct interp_cursor *c, uint16_t *ret, uint32_t max)
 {
@@ -301,7 +277,7 @@ uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
 
 	if (!c->walk)
 		return 0;
-	n = c->walk->last ? run_uneven(c, ret, max) : run_even(c, ret, max);
+	n = c->walk->last ? cursor_ticks(c, max, ret) : run_even(c, ret, max);
 	if (n == PULSE_BAD) {
 		c->walk = NULL;
 		return 0;
@@ -318,7 +294,7 @@ enum interp_step interp_cursor_step(struct interp_cursor *c)
 	for (int crossed = 0; ; crossed++) {
 		enum interp_step s;
 
-		while (may_go_on(c)) {
+		while (pulse_may_go_on(c)) {
 			uint16_t pulses;
 			const uint32_t n = cursor_ticks(c, 1, &pulses);
 

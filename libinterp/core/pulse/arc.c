@@ -14,7 +14,7 @@
 #include <math.h>
 
 struct plane {
-	int64_t a, b;			/* pulses */
+	int32_t a, b;			/* pulses */
 };
 
 /*
@@ -23,8 +23,9 @@ struct plane {
  * instead of a call of libm.  16 ticks are less than 16 pulses along the arc.
  * So with a radius of 160 pulses the angle is below 0.1, and the first omitted
  * term is below 3e-15.  The middle depends only on the tick, so a point still
- * does, too.  All ticks of a block are computed in one loop, two or more at a
- * time, and kept: the walk goes to and fro over them.
+ * does, too.  All ticks of a block are computed in loops without a branch,
+ * several at a time, and kept with the pulses between them: the walk goes to
+ * and fro over them.
  */
 #define BLOCK		INTERP_ARC_BLOCK
 #define BLOCK_HALF	(BLOCK / 2)
@@ -34,16 +35,17 @@ struct turn {
 	double cosine, sine;
 };
 
-static inline struct turn turned(struct turn middle, double x)
+/* The ticks of a block from its middle: the same in every block of an arc. */
+static void block_turns(struct interp_cursor *c)
 {
-	const double x2 = x * x;
-	const double s = x - x * x2 * (1.0 / 6 - x2 * (1.0 / 120 -
-						       x2 * (1.0 / 5040)));
-	const double k = 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 -
-				   x2 * (1.0 / 720 - x2 * (1.0 / 40320))));
+	for (int i = 0; i < BLOCK; i++) {
+		const double x = c->arc_turn * (i - BLOCK_HALF), x2 = x * x;
 
-	return (struct turn) { middle.cosine * k - middle.sine * s,
-			       middle.sine * k + middle.cosine * s };
+		c->arc_sine[i] = x - x * x2 * (1.0 / 6 - x2 * (1.0 / 120 -
+						x2 * (1.0 / 5040)));
+		c->arc_cosine[i] = 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 -
+				x2 * (1.0 / 720 - x2 * (1.0 / 40320))));
+	}
 }
 
 static struct turn arc_direct(const struct interp_cursor *c, double tick)
@@ -53,59 +55,14 @@ static struct turn arc_direct(const struct interp_cursor *c, double tick)
 	return (struct turn) { cos(theta), sin(theta) };
 }
 
-/* floor(x + 0.5), without a call. */
-static int64_t nearest(double x)
+/* floor(x + 0.5), without a call or a branch.  A double above 2^52 has no room
+ * for a fraction: what is added to it is rounded. */
+static inline double nearest(double x)
 {
-	const int64_t i = (int64_t)(x + 0.5);
+	const double large = 0x1.8p52, up = x + 0.5;
+	const double even = (up + large) - large;
 
-	return i - ((double)i > x + 0.5);
-}
-
-static void block_enter(struct interp_cursor *c, uint32_t block)
-{
-	const struct interp_arc *arc = &c->arc;
-	const double first = (double)(block * BLOCK);
-	const struct turn middle = arc_direct(c, first + BLOCK_HALF);
-	const double a_mm = arc->a_mm, b_mm = arc->b_mm, r_mm = arc->r_mm;
-	const double turn = c->arc_turn, grow_mm = c->arc_grow_mm;
-	const double a_pulses_mm = c->pulses_mm[arc->axis_a];
-	const double b_pulses_mm = c->pulses_mm[arc->axis_b];
-	double a[BLOCK], b[BLOCK];
-
-	for (int i = 0; i < BLOCK; i++) {
-		const struct turn at = turned(middle, turn * (i - BLOCK_HALF));
-		const double r = r_mm + grow_mm * (first + i);
-
-		a[i] = (a_mm + r * at.cosine) * a_pulses_mm;
-		b[i] = (b_mm + r * at.sine) * b_pulses_mm;
-	}
-	for (int i = 0; i < BLOCK; i++) {
-		c->arc_at[0][i] = nearest(a[i]);
-		c->arc_at[1][i] = nearest(b[i]);
-	}
-	c->arc_block = block;
-}
-
-/* Where the axes of the plane are at tick c->tick. */
-static struct plane arc_at(struct interp_cursor *c)
-{
-	const struct interp_arc *arc = &c->arc;
-	const uint32_t block = c->tick / BLOCK, i = c->tick % BLOCK;
-
-	if (fabs(c->arc_turn) * BLOCK_HALF > BLOCK_ANGLE) {
-		const struct turn at = arc_direct(c, c->tick);
-		const double r = arc->r_mm + c->arc_grow_mm * c->tick;
-
-		return (struct plane) {
-			nearest((arc->a_mm + r * at.cosine) *
-				c->pulses_mm[arc->axis_a]),
-			nearest((arc->b_mm + r * at.sine) *
-				c->pulses_mm[arc->axis_b]),
-		};
-	}
-	if (block != c->arc_block)
-		block_enter(c, block);
-	return (struct plane) { c->arc_at[0][i], c->arc_at[1][i] };
+	return even - (even > up ? 1 : 0);
 }
 
 /* At both ends, the pulses of the node itself: they are exact, whatever sin and
@@ -125,22 +82,133 @@ static struct plane arc_node(const struct interp_cursor *c, bool at_end)
 	return p;
 }
 
-static struct plane arc_here(struct interp_cursor *c)
+/* The lattice points of the block that begins at tick @first. */
+static void block_points(struct interp_cursor *c, uint32_t first)
 {
-	return c->tick == 0 ? arc_node(c, false) :
-	       c->tick == c->seg.ticks ? arc_node(c, true) : arc_at(c);
+	const struct interp_arc *arc = &c->arc;
+	const struct turn middle = arc_direct(c, (double)first + BLOCK_HALF);
+	const double a_mm = arc->a_mm, b_mm = arc->b_mm, r_mm = arc->r_mm;
+	const double grow_mm = c->arc_grow_mm;
+	const double a_pulses_mm = c->pulses_mm[arc->axis_a];
+	const double b_pulses_mm = c->pulses_mm[arc->axis_b];
+	double a[BLOCK], b[BLOCK];
+
+	for (int i = 0; i < BLOCK; i++) {
+		const double r = r_mm + grow_mm * ((double)first + i);
+		const double along_a = middle.cosine * c->arc_cosine[i] -
+				       middle.sine * c->arc_sine[i];
+		const double along_b = middle.sine * c->arc_cosine[i] +
+				       middle.cosine * c->arc_sine[i];
+
+		a[i] = nearest((a_mm + r * along_a) * a_pulses_mm);
+		b[i] = nearest((b_mm + r * along_b) * b_pulses_mm);
+	}
+	for (int i = 0; i < BLOCK; i++) {
+		c->arc_at[0][i] = (int32_t)a[i];
+		c->arc_at[1][i] = (int32_t)b[i];
+	}
 }
 
-static uint32_t arc_settle(struct interp_cursor *c)
+/* Nodes are where they are, and beyond the last one nothing moves. */
+static void block_ends(struct interp_cursor *c, uint32_t first)
 {
-	const struct plane p = arc_here(c);
+	const struct plane from = arc_node(c, false), to = arc_node(c, true);
+	uint32_t i;
+
+	if (first == 0) {
+		c->arc_at[0][0] = from.a;
+		c->arc_at[1][0] = from.b;
+	}
+	for (i = c->seg.ticks - first; i < BLOCK; i++) {
+		c->arc_at[0][i] = to.a;
+		c->arc_at[1][i] = to.b;
+	}
+}
+
+/* Pulses of one axis of the plane; @d is -1, 0 or +1. */
+static inline uint32_t pulses_of(uint32_t d, uint32_t axis)
+{
+	return ((d & 1) | (d >> 31) << 8) << axis;
+}
+
+/* From each of its ticks to the next, the pulses.  There is none behind the
+ * last: as many as there are ticks are faster, several at a time. */
+static void block_pulses(struct interp_cursor *c)
+{
+	const uint32_t axis_a = c->arc.axis_a, axis_b = c->arc.axis_b;
+	int32_t *a = c->arc_at[0], *b = c->arc_at[1];
+	uint32_t broken = 0;
+
+	a[BLOCK] = a[BLOCK - 1];
+	b[BLOCK] = b[BLOCK - 1];
+	for (int i = 0; i < BLOCK; i++) {
+		const uint32_t da = (uint32_t)a[i + 1] - (uint32_t)a[i];
+		const uint32_t db = (uint32_t)b[i + 1] - (uint32_t)b[i];
+
+		broken |= (da + 1 > 2) | (db + 1 > 2);
+		c->arc_pulse[i] = (uint16_t)(pulses_of(da, axis_a) |
+					     pulses_of(db, axis_b));
+	}
+	c->arc_broken = broken;
+}
+
+static void block_enter(struct interp_cursor *c, uint32_t block)
+{
+	const uint32_t first = block * BLOCK;
+
+	if (c->arc_block == UINT32_MAX)
+		block_turns(c);
+	block_points(c, first);
+	if (first == 0 || c->seg.ticks - first < BLOCK)
+		block_ends(c, first);
+	block_pulses(c);
+	c->arc_block = block;
+}
+
+/* The lattice point of @x, and a point in range where there is none. */
+static int32_t in_range(double x)
+{
+	return (int32_t)fmin(fmax(nearest(x), INT32_MIN), INT32_MAX);
+}
+
+static struct plane arc_alone(const struct interp_cursor *c, uint32_t tick)
+{
+	const struct interp_arc *arc = &c->arc;
+	const struct turn at = arc_direct(c, tick);
+	const double r = arc->r_mm + c->arc_grow_mm * tick;
+
+	if (tick == 0 || tick == c->seg.ticks)
+		return arc_node(c, tick != 0);
+	return (struct plane) {
+		in_range((arc->a_mm + r * at.cosine) *
+			 c->pulses_mm[arc->axis_a]),
+		in_range((arc->b_mm + r * at.sine) *
+			 c->pulses_mm[arc->axis_b]),
+	};
+}
+
+static struct plane arc_at(struct interp_cursor *c, uint32_t tick)
+{
+	const uint32_t i = tick % BLOCK;
+
+	if (c->arc_alone)
+		return arc_alone(c, tick);
+	if (tick / BLOCK != c->arc_block)
+		block_enter(c, tick / BLOCK);
+	return (struct plane) { c->arc_at[0][i], c->arc_at[1][i] };
+}
+
+/* The plane goes to the lattice point of @tick.  Return: the pulses of it. */
+static uint32_t arc_settle(struct interp_cursor *c, uint32_t tick)
+{
+	const struct plane p = arc_at(c, tick);
 	int32_t *a = &c->pos[c->arc.axis_a], *b = &c->pos[c->arc.axis_b];
-	const int64_t da = p.a - *a, db = p.b - *b;
+	const int64_t da = (int64_t)p.a - *a, db = (int64_t)p.b - *b;
 
 	if (da > 1 || da < -1 || db > 1 || db < -1)
 		return PULSE_BAD;
-	*a = (int32_t)p.a;
-	*b = (int32_t)p.b;
+	*a = p.a;
+	*b = p.b;
 	return pulse_plane_move(c, (int32_t)da, (int32_t)db);
 }
 
@@ -177,6 +245,16 @@ static bool ticks_ok(const struct interp_cursor *c, uint32_t plane)
 	return c->seg.ticks > 0 && c->seg.ticks <= n * 1.00001 + 3;
 }
 
+/* Are there places that no int32_t holds?  Not in a sound program. */
+static bool is_far(const struct interp_arc *arc, const double *pulses_mm)
+{
+	const double r_mm = fabs(arc->r_mm) + fabs(arc->dr_mm);
+
+	return (fabs(arc->a_mm) + r_mm) * pulses_mm[arc->axis_a] >=
+		       INT32_MAX ||
+	       (fabs(arc->b_mm) + r_mm) * pulses_mm[arc->axis_b] >= INT32_MAX;
+}
+
 static bool arc_enter(struct interp_cursor *c, bool at_end)
 {
 	uint32_t plane;
@@ -188,41 +266,87 @@ static bool arc_enter(struct interp_cursor *c, bool at_end)
 		return false;
 	c->arc_turn = c->arc.sweep / c->seg.ticks;
 	c->arc_grow_mm = c->arc.dr_mm / c->seg.ticks;
+	c->arc_alone = fabs(c->arc_turn) * BLOCK_HALF > BLOCK_ANGLE ||
+		       is_far(&c->arc, c->pulses_mm);
 	c->arc_block = UINT32_MAX;
 	return true;
 }
 
-static uint32_t arc_tick(struct interp_cursor *c)
+/* So many of @most ticks from here need only what is known of this block. */
+static uint32_t ticks_known(const struct interp_cursor *c, uint32_t tick,
+			    uint32_t most, bool back)
 {
-	const uint32_t others = pulse_dda_tick(c);
-	const uint32_t plane = arc_settle(c);
+	const uint32_t i = tick % BLOCK, n = back ? i : BLOCK - 1 - i;
 
-	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
+	if (tick / BLOCK != c->arc_block || c->arc_broken)
+		return 0;
+	return pulse_fewer(n, most);
 }
 
-static uint32_t arc_tick_back(struct interp_cursor *c)
+/* Add the pulses of @n known ticks, @pulse and on, to those of the other axes
+ * in @ret, and keep the points of them at @to.  Return: their number. */
+INLINE uint32_t points_known(const uint16_t *pulse, uint32_t n,
+			     const uint16_t *ret, uint16_t *to, bool back)
 {
-	const uint32_t others = pulse_dda_tick_back(c);
-	const uint32_t plane = arc_settle(c);
+	uint32_t points = 0;
 
-	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
+	for (uint32_t k = 0; k < n; k++) {
+		const uint16_t plane = back ? pulse_turned(*pulse--) :
+					      *pulse++;
+
+		to[points] = ret[k] | plane;
+		points += to[points] != 0;
+	}
+	return points;
+}
+
+static void plane_stand(struct interp_cursor *c, uint32_t tick)
+{
+	c->pos[c->arc.axis_a] = c->arc_at[0][tick % BLOCK];
+	c->pos[c->arc.axis_b] = c->arc_at[1][tick % BLOCK];
+}
+
+/* The other axes first, then the plane beside them. */
+INLINE uint32_t arc_run(struct interp_cursor *c, uint32_t ticks, uint16_t *ret,
+			bool back)
+{
+	const uint32_t one = back ? UINT32_MAX : 1;
+	uint32_t tick = c->tick, points = 0, n;
+
+	(back ? pulse_dda_all_back : pulse_dda_all_forward)(c, ticks, ret);
+	for (uint32_t k = 0; k < ticks; k += n) {
+		n = ticks_known(c, tick, ticks - k, back);
+		if (n > 0) {
+			points += points_known(c->arc_pulse + tick % BLOCK -
+					       back, n, ret + k, ret + points,
+					       back);
+			tick += n * one;
+			plane_stand(c, tick);
+		} else {
+			uint32_t plane;
+
+			n = 1;
+			tick += one;
+			plane = arc_settle(c, tick);
+			if (plane == PULSE_BAD)
+				return PULSE_BAD;
+			ret[points] = (uint16_t)(ret[k] | plane);
+			points += ret[points] != 0;
+		}
+	}
+	return points;
 }
 
 static uint32_t arc_forward(struct interp_cursor *c, uint32_t ticks,
 			    uint16_t *ret)
 {
-	return pulse_ticks(c, arc_tick, ticks, ret);
+	return arc_run(c, ticks, ret, false);
 }
 
 static uint32_t arc_back(struct interp_cursor *c, uint32_t ticks,
 			 uint16_t *ret)
 {
-	return pulse_ticks(c, arc_tick_back, ticks, ret);
-}
-
-static bool fits(int64_t pulses)
-{
-	return pulses >= INT32_MIN && pulses <= INT32_MAX;
+	return arc_run(c, ticks, ret, true);
 }
 
 static bool arc_seek(struct interp_cursor *c, uint32_t tick)
@@ -230,10 +354,10 @@ static bool arc_seek(struct interp_cursor *c, uint32_t tick)
 	struct plane p;
 
 	pulse_dda_seek(c, tick);
-	p = arc_here(c);
-	c->pos[c->arc.axis_a] = (int32_t)p.a;
-	c->pos[c->arc.axis_b] = (int32_t)p.b;
-	return fits(p.a) && fits(p.b);
+	p = arc_at(c, tick);
+	c->pos[c->arc.axis_a] = p.a;
+	c->pos[c->arc.axis_b] = p.b;
+	return true;
 }
 
 const struct interp_walk pulse_arc = {

@@ -141,12 +141,11 @@ static void tail_forward(struct interp_circle *k, int8_t ret[2])
 
 /* -- Along stored runs ---------------------------------------------------- */
 
-static void run_pulse(const struct interp_circle *k, uint32_t run,
-		      int8_t ret[2])
+void circle_run_pulse(const struct interp_circle *k, int8_t ret[2])
 {
-	const int axis = (int)((run + k->run_first) & 1);
+	const int axis = (int)((k->run + k->run_first) & 1);
 
-	ret[axis] = k->runs[run] > 0 ? 1 : -1;
+	ret[axis] = k->runs[k->run] > 0 ? 1 : -1;
 	ret[!axis] = 0;
 }
 
@@ -161,7 +160,7 @@ static void runs_forward(struct interp_circle *k, int8_t ret[2])
 		k->sent = 0;
 	}
 	k->sent++;
-	run_pulse(k, k->run, ret);
+	circle_run_pulse(k, ret);
 	circle_move(k, ret);
 }
 
@@ -169,7 +168,7 @@ static void runs_last(const struct interp_circle *k, int8_t ret[2])
 {
 	ret[0] = ret[1] = 0;
 	if (k->sent > 0)
-		run_pulse(k, k->run, ret);
+		circle_run_pulse(k, ret);
 }
 
 static void runs_back(struct interp_circle *k, int8_t ret[2])
@@ -390,165 +389,3 @@ bool circle_measure(struct interp_arc *arc, const int64_t start[2],
 	arc->circle_ticks = k.tick;
 	return true;
 }
-
-/* -- As a walk --------------------------------------------------------- */
-
-/*
- * Node @at_end of the plane's two axes, from the centre, in pulses.  The centre
- * is rounded exactly as the builder rounded it: mm / pulse_mm.
- */
-void pulse_circle_node(const struct interp_cursor *c, bool at_end,
-		       int64_t ret[2])
-{
-	const struct interp_arc *arc = &c->arc;
-	const double *pulse_mm = c->p.head->pulse_mm;
-
-	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		const int64_t at = interp_round_sub(pulse_node(c, j, at_end));
-
-		if (c->p.head->column[j] == arc->axis_a)
-			ret[0] = at - llround(arc->a_mm /
-					      pulse_mm[arc->axis_a]);
-		if (c->p.head->column[j] == arc->axis_b)
-			ret[1] = at - llround(arc->b_mm /
-					      pulse_mm[arc->axis_b]);
-	}
-}
-
-/* Stand before the first or after the last of the arc's stored runs. */
-static bool circle_runs_set(struct interp_cursor *c, bool at_end)
-{
-	const struct interp_arc *arc = &c->arc;
-	struct interp_circle *k = &c->circle;
-
-	if (arc->nruns > c->p.head->nruns ||
-	    arc->run_at > c->p.head->nruns - arc->nruns ||
-	    arc->circle_ticks >= INTERP_PULSES_MAX)
-		return false;
-	k->runs = c->p.runs + arc->run_at;
-	k->nruns = arc->nruns;
-	k->run_first = arc->run_first & 1;
-	k->run = at_end ? k->nruns - 1 : 0;
-	k->sent = at_end ? llabs((int64_t)k->runs[k->run]) : 0;
-	return k->runs[k->run] != 0;
-}
-
-bool pulse_circle_set(struct interp_cursor *c, bool at_end)
-{
-	const struct interp_arc *arc = &c->arc;
-	int64_t start[2] = { 0, 0 }, end[2] = { 0, 0 };
-
-	if (!pulse_plane_ok(c))
-		return false;
-	pulse_circle_node(c, false, start);
-	pulse_circle_node(c, true, end);
-	return circle_enter(&c->circle, arc, start, end, at_end) &&
-	       (arc->nruns == 0 || circle_runs_set(c, at_end));
-}
-
-static bool pulse_circle_enter(struct interp_cursor *c, bool at_end)
-{
-	if (!pulse_stand(c, at_end) || !pulse_circle_set(c, at_end) ||
-	    c->seg.ticks != c->arc.circle_ticks)
-		return false;
-	c->whole = c->arc.measure;
-	c->measure = at_end ? c->whole : 0;
-	return true;
-}
-
-/* The circle gave @pulse: the axes follow. */
-static uint32_t plane_follow(struct interp_cursor *c, const int8_t pulse[2])
-{
-	if (pulse[0] == 0 && pulse[1] == 0)
-		return PULSE_BAD;
-	c->pos[c->arc.axis_a] += pulse[0];
-	c->pos[c->arc.axis_b] += pulse[1];
-	return pulse_plane_move(c, pulse[0], pulse[1]);
-}
-
-uint32_t pulse_circle_move(struct interp_cursor *c, int dir)
-{
-	int8_t pulse[2];
-
-	if (dir > 0)
-		circle_forward(&c->circle, pulse);
-	else
-		circle_back(&c->circle, pulse);
-	return plane_follow(c, pulse);
-}
-
-static uint32_t pulse_circle_tick(struct interp_cursor *c)
-{
-	struct interp_circle *k = &c->circle;
-	int8_t pulse[2];
-	uint32_t moved;
-
-	if (k->tick >= k->ticks)
-		return PULSE_BAD;
-	circle_forward(k, pulse);
-	moved = plane_follow(c, pulse);
-	if (moved == PULSE_BAD)
-		return PULSE_BAD;
-	c->measure += circle_measure_of(k, pulse);
-	c->tick = k->tick;
-	return moved;
-}
-
-static uint32_t pulse_circle_tick_back(struct interp_cursor *c)
-{
-	struct interp_circle *k = &c->circle;
-	int8_t was[2], pulse[2];
-	bool crossed;
-
-	if (k->tick == 0)
-		return PULSE_BAD;
-	crossed = last_pulse(k, was);
-	c->measure -= circle_measure_of(k, was);
-	undo(k, was, crossed, pulse);
-	c->tick = k->tick;
-	return plane_follow(c, pulse);
-}
-
-static uint32_t pulse_circle_forward(struct interp_cursor *c, uint32_t ticks,
-				     uint16_t *ret)
-{
-	return pulse_ticks(c, pulse_circle_tick, ticks, ret);
-}
-
-static uint32_t pulse_circle_back(struct interp_cursor *c, uint32_t ticks,
-				  uint16_t *ret)
-{
-	return pulse_ticks(c, pulse_circle_tick_back, ticks, ret);
-}
-
-void pulse_plane_set(struct interp_cursor *c)
-{
-	int64_t start[2] = { 0, 0 };
-
-	pulse_circle_node(c, false, start);
-	c->pos[c->arc.axis_a] += (int32_t)(c->circle.x - start[0]);
-	c->pos[c->arc.axis_b] += (int32_t)(c->circle.y - start[1]);
-}
-
-static bool pulse_circle_seek(struct interp_cursor *c, uint32_t tick)
-{
-	c->measure = circle_seek(&c->circle, tick);
-	if (c->measure < 0)
-		return false;
-	pulse_plane_set(c);
-	c->tick = tick;
-	return true;
-}
-
-static int64_t pulse_circle_last(const struct interp_cursor *c)
-{
-	return circle_last(&c->circle);
-}
-
-const struct interp_walk pulse_circle = {
-	.enter = pulse_circle_enter,
-	.forward = pulse_circle_forward,
-	.back = pulse_circle_back,
-	.seek = pulse_circle_seek,
-	.last = pulse_circle_last,
-};

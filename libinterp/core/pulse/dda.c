@@ -56,29 +56,63 @@ const struct interp_walk pulse_dda_line = {
 
 /* -- Arcs ----------------------------------------------------------------- */
 
-/* Add @v, at most the modulus either way.  Return: the pulse that this
- * makes. */
-static int64_t rotor_add(int64_t *rest, int64_t v, uint32_t shift)
-{
-	const int64_t sum = *rest + v;
-	const int64_t pulse = sum >> shift;
+/* A coordinate and what is left of it as one number.  Those above the shift are
+ * the coordinate. */
+struct sums {
+	int64_t first, second;		/* in the order of a tick */
+};
 
-	*rest = sum & ((INT64_C(1) << shift) - 1);
-	return pulse;
+static struct sums sums_of(const struct interp_rotor *k, bool back)
+{
+	const int64_t modulus = INT64_C(1) << k->shift;
+	const int64_t x = k->x * modulus + k->rest_x;
+	const int64_t y = k->y * modulus + k->rest_y;
+
+	return back ? (struct sums) { y, x } : (struct sums) { x, y };
 }
 
-#define INLINE static inline __attribute__((always_inline))
-
-INLINE void rotor_forward(struct interp_rotor *k)
+static void sums_keep(const struct sums *s, struct interp_rotor *k, bool back)
 {
-	k->x += rotor_add(&k->rest_x, -k->ccw * k->y, k->shift);
-	k->y += rotor_add(&k->rest_y, k->ccw * k->x, k->shift);
+	const int64_t mask = (INT64_C(1) << k->shift) - 1;
+	const int64_t x = back ? s->second : s->first;
+	const int64_t y = back ? s->first : s->second;
+
+	k->x = x >> k->shift;
+	k->y = y >> k->shift;
+	k->rest_x = x & mask;
+	k->rest_y = y & mask;
 }
 
-INLINE void rotor_back(struct interp_rotor *k)
+/* To go back is to go forward with the coordinates exchanged. */
+INLINE void sums_tick(struct sums *s, uint32_t shift, int64_t ccw)
 {
-	k->y += rotor_add(&k->rest_y, -k->ccw * k->x, k->shift);
-	k->x += rotor_add(&k->rest_x, k->ccw * k->y, k->shift);
+	s->first -= ccw * (s->second >> shift);
+	s->second += ccw * (s->first >> shift);
+}
+
+/* Many ticks without a place for their pulses. */
+INLINE bool spin(struct sums *at, uint32_t shift, uint32_t ticks, int64_t ccw)
+{
+	const int64_t most = INT64_C(1) << 2 * shift;
+	const uint64_t range = (uint64_t)(2 * most + (INT64_C(1) << shift));
+	struct sums s = *at;
+
+	for (; ticks > 0 && (uint64_t)(s.first + most) < range &&
+	       (uint64_t)(s.second + most) < range; ticks--)
+		sums_tick(&s, shift, ccw);
+	*at = s;
+	return (uint64_t)(s.first + most) < range &&
+	       (uint64_t)(s.second + most) < range;
+}
+
+static bool rotor_turn(struct interp_rotor *k, uint32_t ticks, bool back)
+{
+	struct sums s = sums_of(k, back);
+	const bool ok = k->ccw > 0 ? spin(&s, k->shift, ticks, 1) :
+				     spin(&s, k->shift, ticks, -1);
+
+	sums_keep(&s, k, back);
+	return ok;
 }
 
 static bool rotor_in_range(const struct interp_rotor *k)
@@ -126,8 +160,8 @@ bool dda_measure(struct interp_arc *arc, const int64_t start[2],
 		return false;
 	rotor_set(&k, arc, start);
 	arc->tail = (uint32_t)llround(ticks);
-	for (uint32_t i = 0; i < arc->tail; i++)
-		rotor_forward(&k);
+	if (!rotor_turn(&k, arc->tail, false))
+		return false;
 	arc->tail_a = (int32_t)(end[0] - k.x);
 	arc->tail_b = (int32_t)(end[1] - k.y);
 	arc->rest_a = k.rest_x;
@@ -178,8 +212,71 @@ static bool dda_arc_enter(struct interp_cursor *c, bool at_end)
 	return rotor_in_range(k);
 }
 
+/* Pulses of an axis by the lowest two bits of what it moves: -1, 0 or +1. */
+struct moves {
+	uint16_t of[4];
+};
+
+static struct moves moves_of(uint32_t axis)
+{
+	return (struct moves) { {
+		[1] = (uint16_t)pulse_move(axis, false),
+		[3] = (uint16_t)pulse_move(axis, true),
+	} };
+}
+
+/* A row of ticks: the pulses of the other axes at @others, in its place. */
+struct row {
+	const uint16_t *others;
+	uint16_t *to;			/* not behind @others */
+	uint32_t ticks;
+	bool back;
+};
+
+/* Return: the points in row->to, or PULSE_BAD. */
+INLINE uint32_t turn(struct interp_cursor *c, const struct row *row,
+		     int64_t ccw)
+{
+	const struct moves a = moves_of(c->arc.axis_a);
+	const struct moves b = moves_of(c->arc.axis_b);
+	const struct moves first = row->back ? b : a;
+	const struct moves second = row->back ? a : b;
+	const uint32_t shift = c->rotor.shift;
+	const int64_t most = INT64_C(1) << shift;
+	struct sums s = sums_of(&c->rotor, row->back);
+	int64_t x = s.first >> shift, y = s.second >> shift;
+	uint32_t points = 0;
+	bool ok = true;
+
+	for (uint32_t k = 0; k < row->ticks; k++) {
+		const int64_t was_x = x, was_y = y;
+
+		sums_tick(&s, shift, ccw);
+		x = s.first >> shift;
+		y = s.second >> shift;
+		ok &= (uint64_t)(x + most) <= (uint64_t)(2 * most) &&
+		      (uint64_t)(y + most) <= (uint64_t)(2 * most);
+		row->to[points] = row->others[k] | first.of[(x - was_x) & 3] |
+				  second.of[(y - was_y) & 3];
+		points += row->to[points] != 0;
+	}
+	sums_keep(&s, &c->rotor, row->back);
+	return ok ? points : PULSE_BAD;
+}
+
+static uint32_t arc_turn(struct interp_cursor *c, const struct row *row)
+{
+	const int64_t x = c->rotor.x, y = c->rotor.y;
+	const uint32_t points = c->rotor.ccw > 0 ? turn(c, row, 1) :
+						   turn(c, row, -1);
+
+	c->pos[c->arc.axis_a] += (int32_t)(c->rotor.x - x);
+	c->pos[c->arc.axis_b] += (int32_t)(c->rotor.y - y);
+	return points;
+}
+
 /* Tick u of the tail, forward or back; the rotor stays where it stopped. */
-static uint32_t arc_tail(struct interp_cursor *c, int64_t u, int dir)
+static uint32_t tail_tick(struct interp_cursor *c, int64_t u, int dir)
 {
 	const int64_t dx = tail_pulse(c->arc.tail_a, u) * dir;
 	const int64_t dy = tail_pulse(c->arc.tail_b, u) * dir;
@@ -189,87 +286,53 @@ static uint32_t arc_tail(struct interp_cursor *c, int64_t u, int dir)
 	return pulse_plane_move(c, (int32_t)dx, (int32_t)dy);
 }
 
-static uint32_t arc_turn(struct interp_cursor *c, int dir)
+/* @u: the tick of the tail that is made first, counted from 1. */
+static uint32_t arc_tail(struct interp_cursor *c, const struct row *row,
+			 int64_t u)
 {
-	struct interp_rotor *k = &c->rotor;
-	const int64_t x = k->x, y = k->y;
+	const int dir = row->back ? -1 : 1;
+	uint32_t points = 0;
 
-	if (dir > 0)
-		rotor_forward(k);
-	else
-		rotor_back(k);
-	if (!rotor_in_range(k))
-		return PULSE_BAD;
-	c->pos[c->arc.axis_a] += (int32_t)(k->x - x);
-	c->pos[c->arc.axis_b] += (int32_t)(k->y - y);
-	return pulse_plane_move(c, (int32_t)(k->x - x), (int32_t)(k->y - y));
-}
-
-static uint32_t dda_arc_tick(struct interp_cursor *c)
-{
-	const uint32_t others = pulse_dda_tick(c);
-	const uint32_t plane = c->tick <= c->arc.tail ? arc_turn(c, 1) :
-			       arc_tail(c, (int64_t)c->tick - c->arc.tail, 1);
-
-	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
-}
-
-static uint32_t dda_arc_tick_back(struct interp_cursor *c)
-{
-	const uint32_t tick = c->tick;
-	const uint32_t others = pulse_dda_tick_back(c);
-	const uint32_t plane = tick <= c->arc.tail ? arc_turn(c, -1) :
-			       arc_tail(c, (int64_t)tick - c->arc.tail, -1);
-
-	return plane == PULSE_BAD ? PULSE_BAD : others | plane;
+	for (uint32_t k = 0; k < row->ticks; k++, u += dir) {
+		row->to[points] = (uint16_t)(row->others[k] |
+					     tail_tick(c, u, dir));
+		points += row->to[points] != 0;
+	}
+	return points;
 }
 
 static uint32_t dda_arc_forward(struct interp_cursor *c, uint32_t ticks,
 				uint16_t *ret)
 {
-	return pulse_ticks(c, dda_arc_tick, ticks, ret);
+	const uint32_t tick = c->tick, tail = c->arc.tail;
+	const uint32_t turns = tick >= tail ? 0 :
+			       pulse_fewer(ticks, tail - tick);
+	uint32_t points;
+
+	pulse_dda_all_forward(c, ticks, ret);
+	points = arc_turn(c, &(struct row) { ret, ret, turns, false });
+	if (points == PULSE_BAD)
+		return PULSE_BAD;
+	return points + arc_tail(c, &(struct row) {
+		ret + turns, ret + points, ticks - turns, false
+	}, (int64_t)tick + turns - tail + 1);
 }
 
 static uint32_t dda_arc_back(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return pulse_ticks(c, dda_arc_tick_back, ticks, ret);
-}
+	const uint32_t tick = c->tick, tail = c->arc.tail;
+	const uint32_t forced = tick <= tail ? 0 :
+				pulse_fewer(ticks, tick - tail);
+	uint32_t points, turned;
 
-/* @a, @b: a coordinate and what is left of it as one number.  Those above
- * @shift are the coordinate. */
-INLINE bool turn(int64_t *a, int64_t *b, uint32_t shift, uint32_t ticks,
-		 int64_t ccw)
-{
-	const int64_t most = INT64_C(1) << 2 * shift;
-	const uint64_t range = (uint64_t)(2 * most + (INT64_C(1) << shift));
-	int64_t x = *a, y = *b;
-
-	for (; ticks > 0 && (uint64_t)(x + most) < range &&
-	       (uint64_t)(y + most) < range; ticks--) {
-		x -= ccw * (y >> shift);
-		y += ccw * (x >> shift);
-	}
-	*a = x;
-	*b = y;
-	return (uint64_t)(x + most) < range && (uint64_t)(y + most) < range;
-}
-
-/* To go back is to go forward with the coordinates exchanged. */
-static bool rotor_turn(struct interp_rotor *k, uint32_t ticks, bool back)
-{
-	const int64_t mask = (INT64_C(1) << k->shift) - 1;
-	int64_t x = k->x * (mask + 1) + k->rest_x;
-	int64_t y = k->y * (mask + 1) + k->rest_y;
-	int64_t *a = back ? &y : &x, *b = back ? &x : &y;
-	const bool ok = k->ccw > 0 ? turn(a, b, k->shift, ticks, 1) :
-				     turn(a, b, k->shift, ticks, -1);
-
-	k->x = x >> k->shift;
-	k->y = y >> k->shift;
-	k->rest_x = x & mask;
-	k->rest_y = y & mask;
-	return ok;
+	pulse_dda_all_back(c, ticks, ret);
+	points = arc_tail(c, &(struct row) { ret, ret, forced, true },
+			  (int64_t)tick - tail);
+	turned = arc_turn(c, &(struct row) {
+		ret + forced, ret + points, ticks - forced, true
+	});
+	return turned == PULSE_BAD ? PULSE_BAD : points + turned;
 }
 
 /*

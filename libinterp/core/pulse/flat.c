@@ -33,8 +33,6 @@ static bool flat_enter(struct interp_cursor *c, bool at_end)
 	return true;
 }
 
-#define INLINE static inline __attribute__((always_inline))
-
 /* Forward, a pulse of @axis and the bits of it. */
 INLINE uint16_t flat_give(struct interp_cursor *c, int8_t axis)
 {

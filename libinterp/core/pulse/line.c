@@ -18,6 +18,7 @@
 #include "pulse/pulse.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Stand at @node, on a way of length @len, in subpulses. */
 static void dda_set(struct interp_dda *d, int64_t node, int64_t len,
@@ -115,9 +116,8 @@ static inline void dda_keep(struct interp_cursor *c, struct interp_dda *at,
  * than two do not fit the registers.  If the number is odd, the last axis runs
  * with one that stands still.
  */
-static inline __attribute__((always_inline)) void
-two_run(struct interp_cursor *c, uint32_t i, dda_fn *tick, uint32_t ticks,
-	uint16_t *ret)
+INLINE void two_run(struct interp_cursor *c, uint32_t i, dda_fn *tick,
+		    uint32_t ticks, uint16_t *ret)
 {
 	const int64_t full = c->dda_full;
 	struct interp_dda a = c->dda[i], b = c->dda[i + 1];
@@ -145,24 +145,40 @@ static uint32_t points_of(uint16_t *ret, uint32_t ticks)
 	return points;
 }
 
+INLINE void all_run(struct interp_cursor *c, dda_fn *tick, uint32_t ticks,
+		    uint16_t *ret)
+{
+	if (c->ndda == 0)
+		memset(ret, 0, ticks * sizeof(*ret));
+	for (uint32_t i = 0; i < c->ndda; i += 2)
+		two_run(c, i, tick, ticks, ret);
+}
+
+void pulse_dda_all_forward(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret)
+{
+	all_run(c, dda_forward, ticks, ret);
+	c->tick += ticks;
+	c->measure += ticks;
+}
+
+void pulse_dda_all_back(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
+{
+	all_run(c, dda_back, ticks, ret);
+	c->tick -= ticks;
+	c->measure -= ticks;
+}
+
 uint32_t pulse_dda_forward(struct interp_cursor *c, uint32_t ticks,
 			   uint16_t *ret)
 {
-	two_run(c, 0, dda_forward, ticks, ret);
-	for (uint32_t i = 2; i < c->ndda; i += 2)
-		two_run(c, i, dda_forward, ticks, ret);
-	c->tick += ticks;
-	c->measure += ticks;
+	pulse_dda_all_forward(c, ticks, ret);
 	return points_of(ret, ticks);
 }
 
 uint32_t pulse_dda_back(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
 {
-	two_run(c, 0, dda_back, ticks, ret);
-	for (uint32_t i = 2; i < c->ndda; i += 2)
-		two_run(c, i, dda_back, ticks, ret);
-	c->tick -= ticks;
-	c->measure -= ticks;
+	pulse_dda_all_back(c, ticks, ret);
 	return points_of(ret, ticks);
 }
 
@@ -184,7 +200,7 @@ bool pulse_dda_seek(struct interp_cursor *c, uint32_t tick)
 	return true;
 }
 
-static inline __attribute__((always_inline)) uint32_t
+INLINE uint32_t
 one_tick(struct interp_cursor *c, dda_fn *tick)
 {
 	uint32_t pulses = 0;

@@ -21,6 +21,8 @@ __extension__ typedef unsigned __int128 pulse_uwide;
 
 #define PULSE_BAD	UINT32_MAX	/* instead of pulses, or of points */
 
+#define INLINE	static inline __attribute__((always_inline))
+
 typedef uint32_t pulse_run_fn(struct interp_cursor *c, uint32_t ticks,
 			      uint16_t *ret);
 
@@ -28,8 +30,9 @@ struct interp_walk {
 	/* Stand at the start or the end of the segment; set whole and
 	 * measure. */
 	bool (*enter)(struct interp_cursor *c, bool at_end);
-	/* Walk @ticks of them; update pos, tick and measure.  Return: the
-	 * number of points that were met, with their pulses in @ret. */
+	/* Walk @ticks of them; update pos, tick and measure.  One that has
+	 * last() walks fewer if it meets the aim.  Return: the number of points
+	 * that were met, with their pulses in @ret. */
 	pulse_run_fn *forward, *back;
 	/* From the start to @tick at once, as forward would: at most a few
 	 * operations for each pulse in a quadrant, and mostly a few in all.
@@ -68,7 +71,7 @@ extern const struct interp_walk pulse_curve;
  * It is inline, so that every walk has its own loop without a call.  A tick
  * without a pulse is not a point.
  */
-static inline __attribute__((always_inline)) uint32_t
+INLINE uint32_t
 pulse_ticks(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
 	    uint32_t ticks, uint16_t *ret)
 {
@@ -83,6 +86,43 @@ pulse_ticks(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
 		points += pulses != 0;
 	}
 	return points;
+}
+
+/** pulse_may_go_on() - is another tick of any measure wanted? */
+static inline bool pulse_may_go_on(const struct interp_cursor *c)
+{
+	if (!c->backward)
+		return c->measure < c->want;
+	return c->measure > c->want &&
+	       (!c->walk->last || c->measure - c->walk->last(c) >= c->want);
+}
+
+/** pulse_uneven() - as pulse_ticks(), of any measure: not beyond the aim. */
+INLINE uint32_t
+pulse_uneven(struct interp_cursor *c, uint32_t (*tick)(struct interp_cursor *c),
+	     uint32_t ticks, uint16_t *ret)
+{
+	uint32_t points = 0;
+
+	while (ticks-- > 0 && pulse_may_go_on(c)) {
+		const uint32_t n = pulse_ticks(c, tick, 1, ret + points);
+
+		if (n == PULSE_BAD)
+			return PULSE_BAD;
+		points += n;
+	}
+	return points;
+}
+
+static inline uint32_t pulse_fewer(uint32_t a, uint32_t b)
+{
+	return a < b ? a : b;
+}
+
+/** pulse_turned() - the pulses that undo @pulses. */
+static inline uint16_t pulse_turned(uint32_t pulses)
+{
+	return (uint16_t)(pulses ^ (pulses & 0xff) << 8);
 }
 
 /**
@@ -134,6 +174,12 @@ bool pulse_dda_enter(struct interp_cursor *c, bool at_end, uint32_t except);
 /** pulse_longest() - pulses of the longest axis, rounded up. */
 int64_t pulse_longest(const struct interp_cursor *c, uint32_t except);
 pulse_run_fn pulse_dda_forward, pulse_dda_back;
+/** pulse_dda_all_forward() - the same, with a place in @ret for each tick,
+ *  also for one without a pulse. */
+void pulse_dda_all_forward(struct interp_cursor *c, uint32_t ticks,
+			   uint16_t *ret);
+void pulse_dda_all_back(struct interp_cursor *c, uint32_t ticks,
+			uint16_t *ret);
 bool pulse_dda_seek(struct interp_cursor *c, uint32_t tick);
 /* One tick of it. */
 uint32_t pulse_dda_tick(struct interp_cursor *c);
@@ -179,6 +225,8 @@ int64_t circle_last(const struct interp_circle *k);
  * Return: what they add to the measure; -1 if the circle is broken.
  */
 int64_t circle_seek(struct interp_circle *k, uint32_t tick);
+/** circle_run_pulse() - the pulse of the stored run in which it is. */
+void circle_run_pulse(const struct interp_circle *k, int8_t ret[2]);
 /** circle_rows() - the sum over the rows @from ... @to - 1 of a quadrant of the
  *  greatest `in` inside the circle, in*in + out*out < @r2, which is at least 1
  *  in each.  It takes about R^(2/3) steps. */

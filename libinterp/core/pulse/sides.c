@@ -246,13 +246,13 @@ static uint32_t pair_tick_back(struct interp_cursor *c)
 static uint32_t pair_forward(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
-	return pulse_ticks(c, pair_tick, ticks, ret);
+	return pulse_uneven(c, pair_tick, ticks, ret);
 }
 
 static uint32_t pair_back(struct interp_cursor *c, uint32_t ticks,
 			  uint16_t *ret)
 {
-	return pulse_ticks(c, pair_tick_back, ticks, ret);
+	return pulse_uneven(c, pair_tick_back, ticks, ret);
 }
 
 static int64_t pair_last(const struct interp_cursor *c)

@@ -328,13 +328,13 @@ static uint32_t helix_tick_back(struct interp_cursor *c)
 static uint32_t helix_forward(struct interp_cursor *c, uint32_t ticks,
 			      uint16_t *ret)
 {
-	return pulse_ticks(c, helix_tick, ticks, ret);
+	return pulse_uneven(c, helix_tick, ticks, ret);
 }
 
 static uint32_t helix_back(struct interp_cursor *c, uint32_t ticks,
 			   uint16_t *ret)
 {
-	return pulse_ticks(c, helix_tick_back, ticks, ret);
+	return pulse_uneven(c, helix_tick_back, ticks, ret);
 }
 
 static int64_t helix_last(const struct interp_cursor *c)

@@ -165,7 +165,13 @@ struct interp_cursor {
 	double pulses_mm[INTERP_NAXES];	/* pulses per mm */
 	double arc_turn, arc_grow_mm;	/* angle, radius gained per tick */
 	uint32_t arc_block;		/* ticks whose places are known */
-	int64_t arc_at[2][INTERP_ARC_BLOCK];	/* pulses of axis_a, axis_b */
+	bool arc_alone;			/* each tick is computed for itself */
+	bool arc_broken;		/* there is a jump between two */
+	double arc_sine[INTERP_ARC_BLOCK];	/* from the middle of a block */
+	double arc_cosine[INTERP_ARC_BLOCK];
+	int32_t arc_at[2][INTERP_ARC_BLOCK + 1];	/* pulses of axis_a,
+						 * axis_b */
+	uint16_t arc_pulse[INTERP_ARC_BLOCK];	/* from each to the next */
 };
 
 /**
