@@ -32,8 +32,8 @@ static double go_toward(struct cycle *c, double v_mm_s)
 	return pace_go(c, v_mm_s, INFINITY);
 }
 
-/* Go back to a place.  It goes beyond it only if it came too fast out of another
- * state, and as far as the axes need to brake. */
+/* Go back to a place, and beyond it only if it came too fast out of another
+ * state: then as far as the axes need to brake. */
 static double go_back(struct cycle *c, double v_mm_s, double floor_mm)
 {
 	const bool is_there = place_mm(c) - floor_mm <= MOVER_ONTO_MM;
