@@ -335,6 +335,11 @@ static uint32_t dda_arc_back(struct interp_cursor *c, uint32_t ticks,
 	return turned == PULSE_BAD ? PULSE_BAD : points + turned;
 }
 
+bool dda_turn(struct interp_rotor *k, uint32_t ticks)
+{
+	return rotor_turn(k, ticks, false);
+}
+
 /*
  * A rotor's rounding follows from all of its ticks, so they are made one by
  * one, from the nearer end.
