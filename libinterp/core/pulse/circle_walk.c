@@ -292,7 +292,8 @@ static uint32_t some_forward(struct interp_cursor *c, uint32_t most,
 	const struct interp_circle *k = &c->circle;
 
 	if (k->runs)
-		return run_forward(c, pulse_fewer(most, k->ticks - k->tick), ret);
+		return run_forward(c, pulse_fewer(most, k->ticks - k->tick),
+				   ret);
 	return k->tick >= k->tail ? 0 :
 	       quadrant_forward(c, pulse_fewer(most, k->tail - k->tick), ret);
 }

@@ -150,7 +150,9 @@ INLINE void all_run(struct interp_cursor *c, dda_fn *tick, uint32_t ticks,
 {
 	if (c->ndda == 0)
 		memset(ret, 0, ticks * sizeof(*ret));
-	for (uint32_t i = 0; i < c->ndda; i += 2)
+	else
+		two_run(c, 0, tick, ticks, ret);
+	for (uint32_t i = 2; i < c->ndda; i += 2)
 		two_run(c, i, tick, ticks, ret);
 }
 
