@@ -175,20 +175,23 @@ static void with_a_rotary_axis_too(void **st)
 /* -- An axis that turns unevenly ------------------------------------------- */
 
 /* X goes @mm, and beside it B a wave of @deg, one smooth step, or to and fro
- * with sharp corners; @w_mm says how wide they are. */
+ * with sharp corners; @w_mm says how wide they are.  Beside TURN, a wave, Y goes
+ * the second half of the way. */
 struct wave {
 	double mm, deg, w_mm;
-	enum { SINE, STEP, FRO } shape;
+	enum { SINE, STEP, FRO, TURN } shape;
 };
 
 static const struct wave waves[] = {
 	{ 30, 10, 0.15, SINE }, { 30, 2, 0.33, SINE }, { 20, 0.3, 1, SINE },
 	{ 30, 20, 0.35, STEP }, { 30, 5, 0.2, FRO }, { 24, 0.4, 1, FRO },
+	{ 30, 6, 0.2, TURN },
 };
 
 /* Time of each, of that in lines of 0.2 mm. */
 static const double waves_most[] = {
-	1.016, 1.016, 1.035, 1.02, 1.005, 1.005,
+	1.03, 1.02, 1.02, 1.005, 1.005, 1.005,
+	1.015,
 };
 
 #define NWAVES	(sizeof(waves) / sizeof(waves[0]))
@@ -213,8 +216,10 @@ static struct interp_build *wave_build(const struct wave *k, double mm,
 
 	for (int i = 1; i <= n; i++) {
 		const double x = k->mm * i / n;
+		const double y = k->shape == TURN ? fmax(x - k->mm / 2, 0) : 0;
 		const double end[INTERP_NAXES] = {
-			[INTERP_X] = rounded(x, decimals),
+			[INTERP_X] = rounded(x - y, decimals),
+			[INTERP_Y] = rounded(y, decimals),
 			[INTERP_B] = rounded(wave_at(k, x) - wave_at(k, 0),
 					     decimals),
 		};

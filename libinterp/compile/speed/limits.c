@@ -205,6 +205,18 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 		s->feed_mm_s = s->feed_max_mm_s;
 }
 
+/* The most at the end of segment @i, because the node before it is passed no
+ * faster than its limit.  A rounding hides the bend of one node more than that
+ * of the next. */
+static double reach_mm_s(const struct pass *w, uint32_t i)
+{
+	const struct interp_seg *s = &w->segs[i];
+	const double v = (double)s[-1].node_mm_s;
+
+	return sqrt(v * v + 2 * s->length_mm *
+		    larger(w->a_own_mm_s2[0], w->a_own_mm_s2[1]));
+}
+
 /* What a bend beside the path takes, the segments to both sides of its node do
  * not have. */
 static void soften_node(struct pass *w, uint32_t last, uint32_t i,
@@ -216,7 +228,7 @@ static void soften_node(struct pass *w, uint32_t last, uint32_t i,
 
 	for (int k = 0; k < 2; k++)
 		v = smaller(v, (double)w->segs[both[k]].feed_max_mm_s);
-	pass_leave(w, v, &left);
+	pass_leave(w, smaller(v, reach_mm_s(w, last)), &left);
 	for (int k = 0; k < 2; k++) {
 		struct interp_seg *s = &w->segs[both[k]];
 
