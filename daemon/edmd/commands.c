@@ -29,7 +29,23 @@ static enum cycle_answer load_ask(struct loop *l, const struct shm_command *c)
 	return ANSWER_DONE;
 }
 
-/* The ring has room: at most one program is open, and one more is asked for. */
+/* Only what an idle machine has memory for.  It is answered before it is done,
+ * because nothing depends on it. */
+static enum cycle_answer ahead_ask(struct loop *l, const struct shm_command *c)
+{
+	const struct ask a = { .n = c->arg, .ahead = true };
+
+	if (c->arg == 0)
+		return ANSWER_BAD_ARGUMENT;
+	if (l->program || l->opening || l->ahead ||
+	    l->cycle.state != STATE_IDLE || !crossing_ask(&l->crossing, &a))
+		return ANSWER_WRONG_STATE;
+	l->ahead = true;
+	return ANSWER_DONE;
+}
+
+/* The ring has room: at most one program is open, and two more are asked
+ * for. */
 static void program_retire(struct loop *l, struct program *p)
 {
 	struct ask a = { .close = p };
@@ -151,6 +167,8 @@ static void carry_out(struct loop *l, const struct shm_command *c)
 		answer = load_ask(l, c);
 	else if (c->verb == SHM_UNLOAD)
 		answer = unload_ask(l, c);
+	else if (c->verb == SHM_AHEAD)
+		answer = ahead_ask(l, c);
 	else
 		answer = pass_on(l, c);
 
@@ -199,6 +217,10 @@ void loop_replies(struct loop *l)
 
 	if (!crossing_reply_take(&l->crossing, &r))
 		return;
+	if (r.ahead) {
+		l->ahead = false;
+		return;
+	}
 	l->opening = false;
 	if (r.answer == ANSWER_DONE) {
 		r.answer = load(l, r.program);

@@ -21,6 +21,7 @@
 struct program {
 	uint32_t n;			/* of program.<n> */
 	uint64_t key;			/* of all its bytes; never 0 */
+	uint64_t stamp;			/* of its file; 0: it changed */
 	const void *block;
 	size_t bytes;
 	struct interp_cursor cursor;
@@ -31,6 +32,7 @@ struct ask {
 	uint64_t id;			/* of the command behind it */
 	uint32_t n;			/* open program.<n>, ... */
 	struct program *close;		/* ... unless there is one to close */
+	bool ahead;			/* to be kept until it is loaded */
 };
 
 /* Main thread to cycle: an opened program, or why not. */
@@ -38,6 +40,7 @@ struct reply {
 	uint64_t id;
 	enum cycle_answer answer;
 	struct program *program;	/* NULL unless ANSWER_DONE */
+	bool ahead;			/* nothing but: that ask is done */
 };
 
 struct crossing {

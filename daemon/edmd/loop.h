@@ -56,6 +56,7 @@ struct loop {
 	struct io_outputs given;	/* to the machine, in the last cycle */
 	struct io_plc plc_in;		/* what the PLC asks, this period */
 	bool opening;			/* a program was asked for */
+	bool ahead;			/* ... that is to be loaded later */
 	uint64_t unloading;		/* command that waits for a stop */
 	bool ending;			/* no more commands: shutting down */
 	pthread_t thread;

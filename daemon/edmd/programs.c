@@ -69,6 +69,7 @@ struct program *program_open(const struct machine_config *c, uint32_t n)
 		return NULL;
 	}
 	p->n = n;
+	p->stamp = shm_program_stamp(c->name, n);
 	err = shm_program_open(&p->block, &p->bytes, c->name, n);
 	if (err < 0) {
 		log_line(LOG_ERROR, "program: %u of machine %s: %s", n,
@@ -80,6 +81,8 @@ struct program *program_open(const struct machine_config *c, uint32_t n)
 		program_close(p);
 		return NULL;
 	}
+	if (p->stamp != shm_program_stamp(c->name, n))
+		p->stamp = 0;
 	program_keep(p);
 	p->key = key_of(p->block, p->bytes);
 	return p;
@@ -93,24 +96,52 @@ void program_close(struct program *p)
 	free(p);
 }
 
-static void open_for(struct crossing *x, const struct machine_config *c,
-		     const struct ask *a)
+/* There is never memory for more than the one that is loaded and this one. */
+static void open_ahead(struct crossing *x, const struct machine_config *c,
+		       struct program **ahead, uint32_t n)
 {
-	struct reply r = { .id = a->id, .program = program_open(c, a->n) };
+	program_close(*ahead);
+	*ahead = program_open(c, n);
+	crossing_reply(x, &(struct reply) { .ahead = true });
+}
+
+static struct program *ahead_or_open(const struct machine_config *c,
+				     struct program **ahead, uint32_t n)
+{
+	struct program *p = *ahead;
+
+	*ahead = NULL;
+	if (p && p->stamp && p->stamp == shm_program_stamp(c->name, n)) {
+		p->n = n;
+		log_line(LOG_INFO, "program: %u was copied ahead", n);
+		return p;
+	}
+	program_close(p);
+	return program_open(c, n);
+}
+
+static void open_for(struct crossing *x, const struct machine_config *c,
+		     struct program **ahead, const struct ask *a)
+{
+	struct reply r = { .id = a->id,
+			   .program = ahead_or_open(c, ahead, a->n) };
 
 	r.answer = r.program ? ANSWER_DONE : ANSWER_BAD_ARGUMENT;
 	if (!crossing_reply(x, &r))
 		program_close(r.program);
 }
 
-void programs_serve(struct crossing *x, const struct machine_config *c)
+void programs_serve(struct crossing *x, const struct machine_config *c,
+		    struct program **ahead)
 {
 	struct ask a;
 
 	while (crossing_ask_take(x, &a)) {
 		if (a.close)
 			program_close(a.close);
+		else if (a.ahead)
+			open_ahead(x, c, ahead, a.n);
 		else
-			open_for(x, c, &a);
+			open_for(x, c, ahead, &a);
 	}
 }

@@ -57,7 +57,7 @@ static void look(struct server *s)
 {
 	char note[160];
 
-	programs_serve(&s->loop->crossing, s->config);
+	programs_serve(&s->loop->crossing, s->config, &s->ahead);
 	report_notes(&s->loop->io);
 	report_events(&s->report, s->loop->status);
 	while (plc_link_note(&s->loop->plc, note, sizeof(note)))
@@ -101,6 +101,7 @@ void serve(struct server *s)
 			over = true;
 		}
 	}
+	program_close(s->ahead);
 	report_notes(&s->loop->io);
 	report_events(&s->report, s->loop->status);
 }

@@ -16,6 +16,7 @@ struct server {
 	struct loop *loop;
 	const struct machine_config *config;
 	struct report report;
+	struct program *ahead;		/* copied before it is loaded */
 	int64_t end_by_ns;		/* 0: not being ended */
 };
 

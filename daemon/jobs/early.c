@@ -11,8 +11,12 @@
 
 #define LOOK_US		500000		/* as long the axes stand before */
 
-static void forget(struct early *a)
+static void forget(struct jobs *j)
 {
+	struct early *a = &j->early;
+
+	if (a->tried)
+		shm_program_remove(j->machine, SHM_PROGRAM_AHEAD);
 	if (a->made)
 		compiler_forget(a->made);
 	free(a->made);
@@ -34,6 +38,18 @@ static bool is_same(const struct early *a, const struct store_job *job,
 	       memcmp(&a->request, &r, sizeof(r)) == 0;
 }
 
+/* edmd copies it now, and not when it is loaded.  If it does not, it copies it
+ * then, as any other. */
+static void copy_ahead(struct jobs *j, int block)
+{
+	const struct link_command c = {
+		.verb = SHM_AHEAD, .arg = SHM_PROGRAM_AHEAD,
+	};
+
+	if (shm_program_name(block, j->machine, SHM_PROGRAM_AHEAD) == 0)
+		link_send(&j->link, &c, jobs_now_us());
+}
+
 static void on_made(void *arg, struct compiler_result *r)
 {
 	struct jobs *j = arg;
@@ -49,6 +65,7 @@ static void on_made(void *arg, struct compiler_result *r)
 		return;
 	*a->made = *r;
 	compiler_take_out(r);
+	copy_ahead(j, a->made->block);
 }
 
 /* It is compiled when two looks have seen the same. */
@@ -60,9 +77,9 @@ static void look(struct jobs *j)
 
 	if (store_interrupted(j->store, &job) < 0 ||
 	    load_request(j, &job, &r) < 0 || !*r.text_file) {
-		forget(a);
+		forget(j);
 	} else if (!is_same(a, &job, &r)) {
-		forget(a);
+		forget(j);
 		a->job = job;
 		memcpy(&a->request, &r, sizeof(r));
 		a->request.name = a->job.name;
@@ -82,7 +99,7 @@ void early_step(struct jobs *j, int64_t now_us)
 		a->look_us = now_us + LOOK_US;
 		look(j);
 	} else if (!*j->interrupted && (j->queue.job.n || !j->queue.behind)) {
-		forget(a);
+		forget(j);
 	}
 }
 
@@ -97,8 +114,10 @@ int early_take(struct jobs *j, const struct store_job *job,
 	if (same) {
 		request->made = a->made;
 		a->made = NULL;
+		/* A file that has lost its last name gets no other. */
+		a->tried = false;
 	}
-	forget(a);
+	forget(j);
 	return 0;
 }
 
@@ -106,5 +125,5 @@ void early_fini(struct jobs *j)
 {
 	compiler_destroy(j->early.compile);
 	j->early.compile = NULL;
-	forget(&j->early);
+	forget(j);
 }

@@ -10,7 +10,9 @@
  * are still the same.  Otherwise it compiles.
  *
  * At most one program is kept, in memory: a file would have to be trusted, and
- * is several times as long as the text that has to be read otherwise.
+ * is several times as long as the text that has to be read otherwise.  edmd is
+ * told to copy it, because to copy and hash it takes longer than all else that
+ * a resume does then.
  *
  * Threads: one, that of the event loop.
  */

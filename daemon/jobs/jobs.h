@@ -11,6 +11,7 @@
 #include "calls.h"
 #include "checkpoint.h"
 #include "config.h"
+#include "due.h"
 #include "early.h"
 #include "electrode.h"
 #include "eta.h"
@@ -50,10 +51,7 @@ struct jobs {
 	bool key_shared;		/* a copy of it is in /dev/shm */
 	struct compiler *check[UPLOAD_SLOTS];	/* the check of
 						 * uploads.slot[i] */
-	int64_t status_us;		/* when the last STATUS was sent,
-					 * monotonic */
-	uint64_t status_key;		/* if this changes, STATUS is sent at
-					 * once */
+	struct due status;
 	int64_t begun_us;		/* of this service */
 	struct checkpoint_file *checkpoint;	/* NULL: there is none */
 	const char *store_dir;

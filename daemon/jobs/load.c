@@ -139,12 +139,15 @@ static void on_loaded(void *arg, int code)
 static int load_name(struct jobs *j, const struct compiler_result *r)
 {
 	const uint32_t n = j->queue.job.n;
+	int err;
 
 	/* This is written before the object has its name, so that a service
 	 * that is started after a kill finds the object and removes it. */
 	if (store_set_loaded(j->store, n, true) != 0)
 		return -EAGAIN;
-	return shm_program_name(r->block, j->machine, n);
+	err = shm_program_name(r->block, j->machine, n);
+	shm_program_remove(j->machine, SHM_PROGRAM_AHEAD);
+	return err;
 }
 
 /* Does it wait for an electrode?  Nothing is lost: it stays in the queue, or

@@ -256,8 +256,10 @@ static int claim(struct jobs *j)
 	char path[SHM_PATH_MAX];
 
 	j->claim = shm_writer_claim(j->machine);
-	if (j->claim >= 0)
+	if (j->claim >= 0) {
+		shm_program_remove(j->machine, SHM_PROGRAM_AHEAD);
 		return 0;
+	}
 	if (j->claim == -EBUSY) {
 		log_error("machine %s: another edmd-jobs commands it; one "
 			  "edmd-jobs for a machine", j->machine);

@@ -9,8 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define STATUS_US	100000
-#define GUEST_US	10000		/* apart at least, however many come */
 #define GRACE_US	300000		/* time to find edmd after the start */
 
 /* If anything of this changes, STATUS is sent at once. */
@@ -109,13 +107,12 @@ void status_tick(struct jobs *j, int64_t now_us)
 	struct jobs_lcm_status w = { .line = 0 };
 	char condition[16], store[64], axes[INTERP_NAXES + 1];
 
-	if (key == j->status_key && now_us - j->status_us < STATUS_US)
+	if (!due_now(&j->status, key, now_us))
 		return;
 	/* It is too early to say "absent": that would be a guess. */
 	if (j->link.state == LINK_ABSENT && now_us - j->begun_us < GRACE_US)
 		return;
-	j->status_key = key;
-	j->status_us = now_us;
+	due_sent(&j->status, key, now_us);
 	fill_machine(&w, &j->link);
 	w.contour_mm = j->twin.last.measured_mm;
 	w.contour_predicted_mm = j->twin.last.predicted_mm;
@@ -136,10 +133,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 void status_guest(void *jobs)
 {
 	struct jobs *j = jobs;
-	const int64_t now_us = jobs_now_us();
 
-	if (now_us - j->status_us < GUEST_US)
-		return;
-	j->status_us = now_us - STATUS_US;
-	status_tick(j, now_us);
+	due_guest(&j->status);
+	status_tick(j, jobs_now_us());
 }

@@ -169,6 +169,18 @@ int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 	return 0;
 }
 
+/* No two living files have one inode, nor one after the other the same time. */
+uint64_t shm_program_stamp(const char *machine, uint32_t n)
+{
+	char path[OBJECT_PATH_MAX];
+	struct stat st;
+
+	if (program_path(path, machine, n) < 0 || lstat(path, &st) < 0)
+		return 0;
+	return ((uint64_t)st.st_ino << 32 ^ (uint64_t)st.st_mtim.tv_sec << 30 ^
+		(uint64_t)st.st_mtim.tv_nsec) | 1;
+}
+
 void shm_program_unmap(const void *block, size_t bytes)
 {
 	shm_close(block, bytes);

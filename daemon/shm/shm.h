@@ -285,6 +285,8 @@ enum shm_verb {
 	SHM_LOAD = 100,			/* arg: program n; when idle */
 	SHM_UNLOAD,			/* forget program n and unmap it; a
 					 * held one is stopped first */
+	SHM_AHEAD,			/* copy program n: it is to be loaded
+					 * later; when none is */
 };
 
 /* Mirrors enum cycle_answer: the code of an SHM_EV_ANSWER. */
@@ -517,6 +519,16 @@ int shm_program_name(int fd, const char *machine, uint32_t n);
 int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 		     uint32_t n);
 void shm_program_unmap(const void *block, size_t bytes);
+
+/** SHM_PROGRAM_AHEAD - a name until it is known which n it will have. */
+#define SHM_PROGRAM_AHEAD	UINT32_MAX
+
+/**
+ * shm_program_stamp() - a number for the file that has the name n now.
+ *
+ * Another name of the same file has the same number.  Return: 0: there is none.
+ */
+uint64_t shm_program_stamp(const char *machine, uint32_t n);
 void shm_program_remove(const char *machine, uint32_t n);
 
 /** shm_close() - unmap any of the above; @map may be NULL. */

@@ -24,6 +24,8 @@
 #define PERIOD_NS	2000000
 #define PERIODS		1000
 #define NODES		8
+#define OBJECTS		128
+#define PLACES_MODE	8
 
 /* -- The table ------------------------------------------------------------ */
 
@@ -67,9 +69,23 @@ static void table(bool frames)
 
 /* -- Drives of our own ---------------------------------------------------- */
 
+/* What a drive has in an object: what was written there. */
+struct object {
+	uint32_t at;		/* index * 256 + sub index; 0: free */
+	uint8_t bytes;
+	uint32_t value;
+};
+
+/* A drive that has every object of four bytes, and says zero in most. */
+static const struct object at_first[] = {
+	{ 0x100000, 4, 0x20192 },	/* servo drive of CiA 402 */
+	{ 0x650200, 4, 0x80 },		/* it knows cyclic places */
+};
+
 struct peer {
 	int fd;
 	bool running[NODES + 1];
+	struct object object[NODES + 1][OBJECTS];
 	double synced_s, longest_s, shortest_s;
 	uint32_t syncs;
 };
@@ -84,21 +100,47 @@ static void on_sync(struct peer *p, double now_s)
 	}
 	p->synced_s = now_s;
 	for (uint32_t i = 1; i <= NODES; i++) {
-		struct can_msg m = { .id = (uint16_t)(CAN_TPDO1 + i),
-				     .len = 6, .data = { 0x50, 0x02 } };
+		struct can_msg m = { .id = (uint16_t)(CAN_TPDO1 + i), .len = 7,
+				     .data = { 0x50, 0x02,
+					       [6] = PLACES_MODE } };
 
 		if (p->running[i])
 			can_socket_send(p->fd, &m);
 	}
 }
 
-static void on_sdo(const struct peer *p, const struct can_msg *m)
+/* Where there is none yet, it is made. */
+static struct object *object_of(struct object *o, uint32_t at)
 {
+	for (size_t i = 0; i < sizeof(at_first) / sizeof(at_first[0]); i++)
+		o[i] = at_first[i];
+	while (o->at && o->at != at)
+		o++;
+	if (!o->at)
+		*o = (struct object) { .at = at, .bytes = 4 };
+	return o;
+}
+
+static void on_sdo(struct peer *p, const struct can_msg *m)
+{
+	const uint32_t at = (uint32_t)m->data[2] << 16 |
+			    (uint32_t)m->data[1] << 8 | m->data[3];
+	struct object *o = object_of(p->object[m->id - CAN_SDO_ASK], at);
+	const uint8_t spare = (uint8_t)((4 - o->bytes) << 2);
 	struct can_msg a = *m;
 
 	a.id = (uint16_t)(m->id - CAN_SDO_ASK + CAN_SDO_ANSWER);
-	a.data[0] = m->data[0] == 0x40 ? 0x43 : 0x60;
-	can_put(a.data + 4, 0x20192, 4);
+	if (m->data[0] == 0x40) {
+		a.data[0] = 0x43 | spare;
+		can_put(a.data + 4, o->value, 4);
+	} else {
+		o->bytes = (uint8_t)(4 - (m->data[0] >> 2 & 3));
+		o->value = (uint32_t)m->data[4] | (uint32_t)m->data[5] << 8 |
+			   (uint32_t)m->data[6] << 16 |
+			   (uint32_t)m->data[7] << 24;
+		a.data[0] = 0x60;
+		can_put(a.data + 4, 0, 4);
+	}
 	can_socket_send(p->fd, &a);
 }
 
@@ -155,16 +197,26 @@ static double run(struct io_machine *m, struct peer *p)
 	return in.starting ? NAN : took_s / PERIODS;
 }
 
+static void say_why(const struct io_machine *m, uint32_t axes)
+{
+	char note[160];
+
+	fprintf(stderr, "can402: %u drives do not start\n", axes);
+	while (m->note(m->self, note, sizeof(note)))
+		fprintf(stderr, "can402: %s\n", note);
+}
+
 static int measure(const char *interface, uint32_t axes)
 {
 	static const struct can_hear all[] = { { 0, 0 } };
 	static struct machine_config c;
-	struct peer p = { .shortest_s = 1 };
+	static struct peer p;
 	struct interp_diag diag;
 	struct io_machine m;
 	char name[32];
 	double took_s;
 
+	p = (struct peer) { .shortest_s = 1 };
 	config_defaults(&c);
 	c.period_us = PERIOD_NS / 1000;
 	/* A bus without a limit: what is asked is the master's own time. */
@@ -181,8 +233,12 @@ static int measure(const char *interface, uint32_t axes)
 		return 69;
 	}
 	took_s = run(&m, &p);
+	if (isnan(took_s))
+		say_why(&m, axes);
 	m.close(m.self);
 	close(p.fd);
+	if (isnan(took_s))
+		return 69;
 	snprintf(name, sizeof(name), "us_%u", axes);
 	bench_say(name, took_s * 1e6);
 	snprintf(name, sizeof(name), "spread_us_%u", axes);

@@ -99,6 +99,19 @@ def test_random_expressions_come_to_what_linuxcnc_says(tmp_path):
     assert_same(path)
 
 
+@peer
+def test_what_is_nearly_equal_is_equal_as_in_linuxcnc(tmp_path):
+    lines = ["G21 G90"]
+    for i, off in enumerate(("0", "0.00000001", "0.00001", "0.00009", "0.00011",
+                             "0.001")):
+        for word in ("EQ", "NE", "GT", "GE", "LT", "LE"):
+            lines.append(f"G0 X[2 + [3 {word} [3 + {off}]]] Y{i}")
+            lines.append(f"G0 X[2 + [[3 + {off}] {word} 3]] Y{i + 9}")
+    path = tmp_path / "e.ngc"
+    path.write_text("\n".join(lines) + "\nM2\n")
+    assert_same(path)
+
+
 def written_out(text, tmp_path):
     path = tmp_path / "out.nc"
     path.write_text(text)
@@ -176,6 +189,12 @@ REFUSED = [
      b":1:17: error: words behind a jump, a loop or a call; them on a line"),
     ("fanuc-sinker", "WHILE[#1 LT 1]DO1 (a) X5.\n#1=1\nEND1\nM30\n",
      b":1:23: error: words behind a jump"),
+    ("fanuc-sinker", "PCLOS G1 X5.\n", b":1:7: error: words behind a jump"),
+    ("fanuc-sinker", "DPRNT[A[1]] X5.\n", b":1:13: error: words behind a j"),
+    ("fanuc-sinker", "DPRNT[A[1] X5.\n", b":1:6: error: a DPRNT or BPRNT wit"),
+    ("fanuc-sinker", "BPRNTG1 X5.\n", b":1:6: error: a DPRNT or BPRNT with"),
+    ("fanuc-sinker", "#1=5" + " " * 4092 + "GG1 X5.\n",
+     b":1:4097: error: a line longer than 4096 bytes"),
     ("fanuc-sinker", "IF[1 EQ 1]THEN #1=1; #2=3\n",
      b":1:22: error: words behind a jump"),
     ("linuxcnc", "o1 if [1 EQ 1] (a) G0 X5\no1 endif\n",

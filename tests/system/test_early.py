@@ -86,6 +86,7 @@ def test_it_is_the_program_that_a_resume_makes(shop):
     resume(c)
     assert kept(m) == 0
     early = program(m)
+    assert "was copied ahead" in (m.folder / "edmd.log").read_text()
     (m.folder / "away").rename(text)
     die(m)
     assert len(early) > 1000 and anew(m) == early
@@ -153,6 +154,7 @@ def test_the_service_is_killed_meanwhile(shop, after_s):
     resume(c)
     has_ended(m, c)
     assert kept(m) == 0
+    assert not m.shm("program.4")
 
 
 def test_a_job_that_is_removed_keeps_nothing(shop):
@@ -160,9 +162,11 @@ def test_a_job_that_is_removed_keeps_nothing(shop):
     dark(m)
     start(m)
     assert kept(m) == 1
+    assert m.shm("program.") == ["edmd.%s.program.4294967295" % m.name]
     assert c.submit(rig.QUICK_JOB, "behind").code == 0
     assert c.ask("remove", "cut").code == 0
     rig.until(lambda: kept(m) == 0)
+    assert not m.shm("program.4")
     c.job_where("behind", "ready")
     assert c.ask("start").code == 0
     c.job_where("behind", "done")

@@ -175,8 +175,8 @@ static void with_a_rotary_axis_too(void **st)
 /* -- An axis that turns unevenly ------------------------------------------- */
 
 /* X goes @mm, and beside it B a wave of @deg, one smooth step, or to and fro
- * with sharp corners; @w_mm says how wide they are.  Beside TURN, a wave, Y goes
- * the second half of the way. */
+ * with sharp corners; @w_mm says how wide they are.  Beside TURN, a wave, Y
+ * goes the second half of the way. */
 struct wave {
 	double mm, deg, w_mm;
 	enum { SINE, STEP, FRO, TURN } shape;

@@ -3,13 +3,16 @@
  * test_edge_arcs.c - paths that touch the end of the travel
  *
  * What lies inside is accepted; what leaves the travel by a lattice point is
- * refused.  Random texts of every dialect, by every
- * strategy: the travel is made as narrow as their walk.
+ * refused.  Random texts of every dialect, and random arcs of thousands of
+ * pulses, by every strategy: the travel is made as narrow as their walk.
  */
 #include "random_compile.h"
 #include "seed.h"
 
 #define ROUNDS		SEED_ROUNDS(300)
+#define LARGE_ROUNDS	SEED_ROUNDS(60)
+#define HUGE_MM		100	/* of 1e-6 mm a pulse */
+#define HUGE_CIRCLES	100
 
 static uint64_t seed;
 
@@ -138,6 +141,16 @@ static int try_edges(struct narrow *k)
 	return n;
 }
 
+static struct interp_build_options options(struct narrow *k, uint64_t *s)
+{
+	return (struct interp_build_options) {
+		.machine = &k->m, .tolerance_milli = 2000,
+		.strategy = (enum interp_strategy)
+			    (rnd(s) % INTERP_NSTRATEGIES),
+		.chord_error_mm = 0.001, .period_s = 0.001,
+	};
+}
+
 static void the_travel_counts_in_pulses(void **st)
 {
 	static struct narrow k;
@@ -148,22 +161,87 @@ static void the_travel_counts_in_pulses(void **st)
 	for (int i = 0; i < ROUNDS; i++) {
 		wide(&k);
 		k.dialect = random_text(&k.text, &s);
-		k.o = (struct interp_build_options) {
-			.machine = &k.m, .tolerance_milli = 2000,
-			.strategy = (enum interp_strategy)
-				    (rnd(&s) % INTERP_NSTRATEGIES),
-			.chord_error_mm = 0.001, .period_s = 0.001,
-		};
+		k.o = options(&k, &s);
 		n += try_edges(&k);
 	}
 	print_message("    %d ends of a travel\n", n);
 	assert_true(n > ROUNDS);
 }
 
+/* An arc of up to 30 mm; at times it is a helix, or a whole circle. */
+static void put_large(struct script *t)
+{
+	const double r = exp(uniform(t->seed, log(0.1), log(30)));
+	const double from = uniform(t->seed, 0, 6.283);
+	const double turn = rnd(t->seed) % 4 ? uniform(t->seed, 0, 6.283) : 0;
+	const double x = uniform(t->seed, -20, 20);
+
+	t->n = 0;
+	put(t, "G90 G21 F100\nG1 X%.3f Y%.3f\n", x + r * cos(from),
+	    r * sin(from));
+	put(t, "G%d X%.3f Y%.3f I%.3f J%.3f", rnd(t->seed) % 2 ? 2 : 3,
+	    x + r * cos(from + turn), r * sin(from + turn), -r * cos(from),
+	    -r * sin(from));
+	if (rnd(t->seed) % 3 == 0)
+		put(t, " Z%.3f", uniform(t->seed, -1, 1));
+	put(t, "\nM2\n");
+}
+
+static void an_arc_of_thousands_of_pulses_is_looked_at(void **st)
+{
+	static struct narrow k;
+	uint64_t s = seed;
+	int n = 0;
+
+	(void)st;
+	k.dialect = "generic";
+	k.text.seed = &s;
+	for (int i = 0; i < LARGE_ROUNDS; i++) {
+		wide(&k);
+		put_large(&k.text);
+		k.o = options(&k, &s);
+		n += try_edges(&k);
+	}
+	print_message("    %d ends of a travel\n", n);
+	assert_true(n > LARGE_ROUNDS);
+}
+
+/* Point by point, all of them would take a quarter of an hour. */
+static void a_huge_circle_takes_few_looks(void **st)
+{
+	static struct narrow k;
+	const struct interp_build_options o = {
+		.machine = &k.m, .strategy = INTERP_SIMULTANEOUS,
+	};
+	const struct interp_build_arc arc = {
+		.axis_a = INTERP_X, .axis_b = INTERP_Y,
+	};
+	const struct interp_build_word w = { .feed_mm_s = 1 };
+	const double there[INTERP_NAXES] = { HUGE_MM };
+	struct interp_diag d;
+	struct interp_build *b;
+
+	(void)st;
+	wide(&k);
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		k.m.axis[i].pulse_mm = 1e-6;
+		k.m.axis[i].travel_min_mm = -HUGE_MM;
+		k.m.axis[i].travel_max_mm = HUGE_MM;
+	}
+	b = interp_build_create(&o);
+	assert_non_null(b);
+	assert_int_equal(interp_build_line(b, there, &w, &d), 0);
+	for (int i = 0; i < HUGE_CIRCLES; i++)
+		assert_int_equal(interp_build_arc(b, there, &arc, &w, &d), 0);
+	interp_build_destroy(b);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_travel_counts_in_pulses),
+		cmocka_unit_test(an_arc_of_thousands_of_pulses_is_looked_at),
+		cmocka_unit_test(a_huge_circle_takes_few_looks),
 	};
 
 	seed = seed_take();

@@ -21,6 +21,7 @@ struct desk {
 	uint32_t instance;
 	int fd;
 	uint64_t id;			/* of the last command */
+	struct program *ahead;
 };
 
 /* -EAGAIN: the thread that answers is held up, by a busy machine. */
@@ -73,6 +74,7 @@ static int teardown(void **state)
 	struct desk *d = *state;
 
 	end_loop(d);
+	program_close(d->ahead);
 	world_free(&d->w);
 	free(d);
 	return 0;
@@ -90,7 +92,7 @@ static struct shm_command command(struct desk *d, uint32_t verb)
 static void turn(struct desk *d)
 {
 	loop_commands(&d->w.l);
-	programs_serve(&d->w.l.crossing, &d->w.config);
+	programs_serve(&d->w.l.crossing, &d->w.config, &d->ahead);
 	loop_replies(&d->w.l);
 	period(&d->w, OPEN_V);
 }
@@ -188,6 +190,85 @@ static void a_program_that_begins_elsewhere_is_not_loaded(void **state)
 	assert_true(x_after(d, 50) > 0);
 }
 
+/* The file of program.7, under its name for later. */
+static void name_ahead(struct desk *d)
+{
+	char of[SHM_PATH_MAX], to[SHM_PATH_MAX], what[24];
+
+	snprintf(what, sizeof(what), "program.%u", N);
+	shm_path(of, d->w.config.name, what);
+	snprintf(what, sizeof(what), "program.%u", SHM_PROGRAM_AHEAD);
+	shm_path(to, d->w.config.name, what);
+	unlink(to);
+	assert_int_equal(link(of, to), 0);
+}
+
+/* Whoever reads the file after that finds no program. */
+static void spoil(struct desk *d)
+{
+	char path[SHM_PATH_MAX], what[24];
+
+	snprintf(what, sizeof(what), "program.%u", N);
+	shm_path(path, d->w.config.name, what);
+	assert_int_equal(truncate(path, 8), 0);
+}
+
+static int32_t copy_it_ahead(struct desk *d)
+{
+	struct shm_command c = command(d, SHM_AHEAD);
+	int32_t code;
+
+	name_ahead(d);
+	c.arg = SHM_PROGRAM_AHEAD;
+	code = give(d, &c);
+	shm_program_remove(d->w.config.name, SHM_PROGRAM_AHEAD);
+	return code;
+}
+
+static void a_program_copied_ahead_is_not_read_again(void **state)
+{
+	struct desk *d = *state;
+	const void *block;
+
+	put_program(d, 0);
+	assert_int_equal(copy_it_ahead(d), SHM_DONE);
+	assert_non_null(d->ahead);
+	block = d->ahead->block;
+	assert_int_equal(load_it(d), SHM_DONE);
+	assert_null(d->ahead);
+	assert_ptr_equal(d->w.l.program->block, block);
+	assert_int_equal(d->w.l.program->n, N);
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_DONE);
+	assert_true(x_after(d, 50) > 0);
+}
+
+static void another_one_than_that_copied_ahead_is_read(void **state)
+{
+	struct desk *d = *state;
+
+	put_program(d, 5);
+	assert_int_equal(copy_it_ahead(d), SHM_DONE);
+	put_program(d, 0);
+	assert_int_equal(load_it(d), SHM_DONE);
+	assert_null(d->ahead);
+	assert_int_equal(copy_it_ahead(d), SHM_WRONG_STATE);
+	assert_null(d->ahead);
+}
+
+static void one_copied_ahead_and_spoiled_is_read_and_refused(void **state)
+{
+	struct desk *d = *state;
+
+	put_program(d, 0);
+	assert_int_equal(copy_it_ahead(d), SHM_DONE);
+	spoil(d);
+	assert_int_equal(load_it(d), SHM_BAD_ARGUMENT);
+	assert_null(d->ahead);
+	assert_null(d->w.l.program);
+	assert_int_equal(copy_it_ahead(d), SHM_DONE);
+	assert_null(d->ahead);
+}
+
 static void a_program_of_other_pulses_is_not_loaded(void **state)
 {
 	struct desk *d = *state;
@@ -276,7 +357,7 @@ static void one_for_another_edmd_or_without_an_id_is_not_done(void **state)
 static void no_verb_is_no_command(void **state)
 {
 	static const uint32_t none[] = {
-		CYCLE_NVERBS, 99, SHM_UNLOAD + 1, 0x80000000u, UINT32_MAX,
+		CYCLE_NVERBS, 99, SHM_AHEAD + 1, 0x80000000u, UINT32_MAX,
 	};
 	struct desk *d = *state;
 
@@ -366,6 +447,9 @@ int main(void)
 #define T(f)	cmocka_unit_test_setup_teardown(f, setup, teardown)
 	const struct CMUnitTest tests[] = {
 		T(a_program_that_begins_elsewhere_is_not_loaded),
+		T(a_program_copied_ahead_is_not_read_again),
+		T(another_one_than_that_copied_ahead_is_read),
+		T(one_copied_ahead_and_spoiled_is_read_and_refused),
 		T(a_program_of_other_pulses_is_not_loaded),
 		T(a_command_is_done_once),
 		T(nor_is_it_done_again_by_the_next_edmd),

@@ -4,6 +4,8 @@
  */
 #include "nc_read.h"
 
+#include "interp/compile.h"
+
 struct refusal {
 	const char *text;
 	uint32_t line, column;
@@ -319,6 +321,53 @@ static void runaway_repeats_are_bounded(void **state)
 	nc_done(&n);
 }
 
+/* How much is read is bounded, not only how many lines. */
+static void a_long_line_counts_as_many(void **state)
+{
+	static const char calls[] =
+		"M98 P1 L9999\nM2\nO1\n(%0*d)\nG4 P0\nM99\n";
+	struct nc_read n = nc_ready();
+	char text[5000];
+
+	(void)state;
+	n.o.executed_max = 100000;
+	snprintf(text, sizeof(text), calls, 10, 0);
+	nc_read_bytes(&n, text, strlen(text));
+	assert_int_equal(n.rc, 0);
+	nc_done(&n);
+	n.o.executed_max = 100000;
+	snprintf(text, sizeof(text), calls, 4000, 0);
+	nc_read_bytes(&n, text, strlen(text));
+	assert_int_equal(n.rc, -EINVAL);
+	assert_string_equal(n.diag.found, "more than 100000 lines carried out");
+	assert_non_null(strstr(n.diag.wanted, "for each 64 bytes"));
+	nc_done(&n);
+}
+
+/* Also where it is searched for a label, and where variables are in it. */
+static void a_long_line_of_a_loop_counts_as_many(void **state)
+{
+	static const char *const loops[] = {
+		"N1 G4 P0.\nGOTO 2\n(%0*d)\nN2 GOTO 1\n",
+		"N1 G4 P0.\n#1=[%0*d]\nGOTO 1\n",
+		"N1 G4 P[%0*d]\nGOTO 1\n",
+	};
+	struct nc_read n = nc_ready();
+	char text[5000];
+
+	(void)state;
+	n.dialect = interp_dialect_by_name("fanuc-sinker");
+	n.o.executed_max = 100000;
+	for (size_t i = 0; i < sizeof(loops) / sizeof(loops[0]); i++) {
+		snprintf(text, sizeof(text), loops[i], 4000, 0);
+		nc_read_bytes(&n, text, strlen(text));
+		assert_int_equal(n.rc, -EINVAL);
+		assert_int_equal(strncmp(n.diag.found, "more than 100000 lines",
+					 22), 0);
+		nc_done(&n);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -334,6 +383,8 @@ int main(void)
 		cmocka_unit_test(a_line_of_a_megabyte_is_refused),
 		cmocka_unit_test(a_line_of_just_the_limit_is_taken),
 		cmocka_unit_test(runaway_repeats_are_bounded),
+		cmocka_unit_test(a_long_line_counts_as_many),
+		cmocka_unit_test(a_long_line_of_a_loop_counts_as_many),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -112,6 +112,37 @@ static void a_retract_brakes_onto_its_limit(void **st)
 	rig_free(&r);
 }
 
+/* It is still going back out of one short when the next one comes, or when the
+ * gap is narrow, and it may go less far back than it needs to brake. */
+static void beyond_the_limit_it_brakes_as_the_axes_can(void **st)
+{
+	static const double then[] = { SHORTED_V, 20 };
+	static const enum cycle_state in[] = { STATE_RETRACT, STATE_ERODE };
+	const struct cycle_config k = windowed();
+	struct rig r;
+
+	(void)st;
+	for (int i = 0; i < 2; i++) {
+		double v = -5;
+
+		cut_at(&r, &k, 2);
+		steps(&r, SHORTED_V, 20);
+		assert_near(r.c.feed_mm_s, v, 1e-6);
+		r.c.gap.retract_limit_mm = 0.002;
+		until(&r, STATE_APPROACH, HIGH_V, 1);
+		v = r.c.feed_mm_s;
+		assert_true(v < -3);
+		for (int n = 0; n < 8; n++) {
+			step(&r, then[i]);
+			assert_int_equal(r.c.state, in[i]);
+			assert_near(r.c.feed_mm_s, v, 1 + 1e-6);
+			v = r.c.feed_mm_s;
+		}
+		assert_true(v == 0);
+		rig_free(&r);
+	}
+}
+
 /* -- The integral -------------------------------------------------------- */
 
 static void an_integral_adds_the_proportional_feed_in_its_reset_time(void **st)
@@ -372,6 +403,7 @@ int main(void)
 		cmocka_unit_test(a_window_that_stands_on_its_head_is_no_window),
 		cmocka_unit_test(a_servo_changes_its_speed_by_its_acceleration),
 		cmocka_unit_test(a_retract_brakes_onto_its_limit),
+		cmocka_unit_test(beyond_the_limit_it_brakes_as_the_axes_can),
 		cmocka_unit_test(an_integral_adds_the_proportional_feed_in_its_reset_time),
 		cmocka_unit_test(inside_the_window_the_integral_is_held),
 		cmocka_unit_test(an_integral_does_not_wind_up_at_the_feed_s_limit),

@@ -32,14 +32,13 @@ static double go_toward(struct cycle *c, double v_mm_s)
 	return pace_go(c, v_mm_s, INFINITY);
 }
 
-/* Go back to a place, and not beyond it. */
+/* Go back to a place, and beyond it only if it came too fast out of another
+ * state: then as far as the axes need to brake. */
 static double go_back(struct cycle *c, double v_mm_s, double floor_mm)
 {
-	const double left = place_mm(c) - floor_mm;
+	const bool is_there = place_mm(c) - floor_mm <= MOVER_ONTO_MM;
 
-	if (left <= MOVER_ONTO_MM)
-		return larger(pace_go(c, 0, floor_mm), 0);
-	return larger(pace_go(c, -v_mm_s, floor_mm), -left - MOVER_ONTO_MM);
+	return pace_go(c, is_there ? 0 : -v_mm_s, floor_mm);
 }
 
 bool servo_rests(const struct cycle *c)

@@ -96,6 +96,8 @@ struct ahead {
 	double left_mm, room;		/* up to where it looks; mm2/s2 */
 	double most_mm_s;		/* the fastest that meets all so far */
 	double stop_mm;			/* left to where it has to stand */
+	bool only_goal;			/* that is where it was sent: it may
+					 * still go beyond */
 };
 
 /*
@@ -184,6 +186,7 @@ static void look_along(struct ahead *k, double to_mm)
 
 		if (!go_on(k, meets ? goal - k->left_mm : way))
 			return;
+		k->only_goal = meets;
 		if (meets)
 			break;
 		if (k->toward < 0 && i == 0)
@@ -228,12 +231,18 @@ static void look(struct ahead *k, double to_mm)
 	look_along(k, to_mm);
 }
 
+/* It was sent there when it was too fast to stand there. */
+static bool passes(const struct ahead *k, double v_mm_s)
+{
+	return k->only_goal && fabs(v_mm_s) > k->dv_mm_s * (1 + 1e-6);
+}
+
 /* Onto what stops it, so that it is met; there it stands. */
 static double go(struct cycle *c, const struct ahead *k, double v_mm_s)
 {
 	const double ds = law_go_at(c, v_mm_s);
 
-	if (fabs(ds) < k->stop_mm - MOVER_ONTO_MM)
+	if (fabs(ds) < k->stop_mm - MOVER_ONTO_MM || passes(k, v_mm_s))
 		return ds;
 	c->mover.v_mm_s = 0;
 	return k->toward * (k->stop_mm + MOVER_ONTO_MM);

@@ -13,6 +13,9 @@
 #include <errno.h>
 #include <math.h>
 
+/* LinuxCNC's own TOLERANCE_EQUAL. */
+#define LINUXCNC_EQUAL	1e-4
+
 /* From loose to tight; NOTHING ends an expression. */
 enum { NOTHING, LOGIC, RELATION, SUM, PRODUCT, POWER };
 
@@ -79,7 +82,8 @@ static bool equal(bool vacant, double a, double b)
 {
 	if (vacant && (isnan(a) || isnan(b)))
 		return isnan(a) && isnan(b);
-	return vacant ? a == b : fabs(number(a) - number(b)) < 1e-6;
+	return vacant ? a == b :
+	       fabs(number(a) - number(b)) < LINUXCNC_EQUAL;
 }
 
 static double modulo(bool fanuc, double a, double b)

@@ -79,7 +79,7 @@ static bool is_end(const uint8_t *p, const uint8_t *end, uint32_t n)
 static int search(struct macro_line *l, struct place from, const uint8_t *stop,
 		  const struct sought *sought, struct place *ret)
 {
-	const struct nc_reader *r = l->r;
+	struct nc_reader *r = l->r;
 	int err = 0;
 
 	ret->at = NULL;
@@ -87,6 +87,7 @@ static int search(struct macro_line *l, struct place from, const uint8_t *stop,
 		const uint8_t *end = nc_line_end(from.at, r->end);
 
 		err = count(l, l->p);
+		nc_count_bytes(r, (size_t)(end - from.at));
 		if (from.at != r->frame[r->depth].entry &&
 		    nc_label_at(r, from.at, end))
 			return err;
@@ -389,20 +390,41 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 	return 1;
 }
 
-/* What is sent to a printer or a computer beside the control. */
-static bool is_print(struct macro_line *l)
+/* What is between [ and its ] is text: #1[53] in it says how a number is
+ * printed. */
+static int skip_printed(struct macro_line *l)
 {
-	static const char *const words[] = { "POPEN", "PCLOS", "DPRNT",
-					     "BPRNT" };
+	const uint8_t *at = l->p;
+	int open = 0;
 
-	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
-		if (!macro_word(l, words[i]))
+	macro_blanks(l);
+	do {
+		if (l->p == l->end)
+			return macro_refuse(l, at, "[ ] with what is printed",
+					    "a DPRNT or BPRNT without its ]");
+		open += (*l->p == '[') - (*l->p == ']');
+		l->p++;
+	} while (open > 0);
+	return l->p[-1] == ']' ? 1 :
+	       macro_refuse(l, at, "[ ] with what is printed",
+			    "a DPRNT or BPRNT without its [");
+}
+
+/* What is sent to a printer or a computer beside the control. */
+static int skip_print(struct macro_line *l)
+{
+	static const struct { const char *word; bool prints; } rows[] = {
+		{ "POPEN", false }, { "PCLOS", false },
+		{ "DPRNT", true }, { "BPRNT", true },
+	};
+
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		if (!macro_word(l, rows[i].word))
 			continue;
-		nc_note_print(l->r, words[i]);
-		l->p = l->end;
-		return true;
+		nc_note_print(l->r, rows[i].word);
+		return rows[i].prints ? skip_printed(l) : 1;
 	}
-	return false;
+	return 0;
 }
 
 static int take_flow(struct macro_line *l)
@@ -415,8 +437,9 @@ static int take_flow(struct macro_line *l)
 	l->p = behind_n(l->p, l->end, &ignored);
 	macro_blanks(l);
 	at = l->p;
-	if (is_print(l))
-		return 1;
+	err = skip_print(l);
+	if (err)
+		return err;
 	if (macro_word(l, "IF"))
 		return take_if(l, at);
 	if (macro_word(l, "GOTO"))

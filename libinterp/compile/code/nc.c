@@ -69,10 +69,11 @@ static void reset_modes(struct nc_reader *r)
 
 static int refuse_executed(struct nc_reader *r)
 {
-	char wanted[96];
+	char wanted[128];
 
-	snprintf(wanted, sizeof(wanted), "up to %u, with fewer repeats (L)",
-		 r->executed_max);
+	snprintf(wanted, sizeof(wanted), "up to %u, with fewer repeats (L); a "
+		 "long line counts once more for each %d bytes",
+		 r->executed_max, NC_COUNTED_BYTES);
 	return nc_refuse_at(r, r->line, wanted,
 			    "more than %u lines carried out", r->executed_max);
 }

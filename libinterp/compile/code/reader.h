@@ -243,7 +243,7 @@ struct nc_reader {
 	uint32_t absent;		/* axes that the machine does not
 					 * have */
 	uint32_t segs, segs_max;
-	uint32_t executed, executed_max;
+	uint32_t executed, executed_max;	/* nc_count_bytes() */
 
 	/* What was noted already: codes, then letters by the place of their
 	 * reason in d->text, then enum nc_told. */
@@ -254,6 +254,15 @@ struct nc_reader {
 	struct interp_build *build;
 	struct interp_diag *diag;
 };
+
+/* A text of a few long lines that are repeated may not take longer than one of
+ * many short lines. */
+#define NC_COUNTED_BYTES	64
+
+static inline void nc_count_bytes(struct nc_reader *r, size_t bytes)
+{
+	r->executed += (uint32_t)(bytes / NC_COUNTED_BYTES);
+}
 
 static inline bool nc_has(const struct nc_reader *r, enum nc_slot slot)
 {

@@ -587,6 +587,12 @@ static void add_groups(struct nc_block *b)
 		b->groups |= NC_BIT(NC_REGISTER);
 }
 
+static int refuse_long(struct nc_reader *r, const uint8_t *at)
+{
+	return nc_refuse(r, at, "lines of up to 4096 bytes",
+			 "a line longer than %d bytes", INTERP_NC_LINE_MAX);
+}
+
 /* Begin the line at r->at, or what macros make of it. */
 static int begin_line(struct nc_reader *r)
 {
@@ -600,12 +606,15 @@ static int begin_line(struct nc_reader *r)
 	if (!r->d->macros || r->listing)
 		return 0;
 	end = nc_line_end(p, r->stop);
+	if (end < r->end && nc_classes[*end] != NC_EOL)
+		return refuse_long(r, end);
 	r->at = nc_line_next(end, r->end);
 	err = nc_macro_line(r, p, end);
 	if (err <= 0) {
 		r->at = p;
 		return err;
 	}
+	nc_count_bytes(r, (size_t)(end - p));
 	r->mapped = true;
 	r->line_at = r->macro->text;
 	r->stop = r->line_at + r->macro->used;
@@ -639,12 +648,12 @@ int nc_scan_line(struct nc_reader *r)
 	b->words &= ~b->drops;
 	b->toward &= ~b->drops;
 	if (!r->mapped && p < r->end && nc_classes[*p] != NC_EOL)
-		return nc_refuse(r, p, "lines of up to 4096 bytes",
-				 "a line longer than %d bytes",
-				 INTERP_NC_LINE_MAX);
+		return refuse_long(r, p);
 	if (b->words & (NC_BIT(NC_F) | NC_BIT(NC_O) | NC_OFFSETS))
 		add_groups(b);
-	if (!r->mapped)
-		r->at = nc_line_next(p, r->end);
+	if (r->mapped)
+		return 0;
+	nc_count_bytes(r, (size_t)(p - r->line_at));
+	r->at = nc_line_next(p, r->end);
 	return 0;
 }

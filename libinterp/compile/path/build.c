@@ -181,25 +181,32 @@ static inline int64_t sub_of(const struct interp_build *b, int axis,
 	return (int64_t)(s + copysign(0.5, s));
 }
 
+void build_travel(const struct interp_build *b, int axis, double ret[2])
+{
+	const struct interp_axis_limits *l = &b->o.machine->axis[axis];
+	const bool loose = b->loose & 1u << axis;
+
+	ret[0] = loose ? -INFINITY :
+			 ceil(l->travel_min_mm / l->pulse_mm - 1e-6);
+	ret[1] = loose ? INFINITY :
+			 floor(l->travel_max_mm / l->pulse_mm + 1e-6);
+}
+
 /* Checked in pulses, as the cycle does it: the last pulses inside the
  * limits. */
 bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
 {
 	const struct interp_machine *m = b->o.machine;
-	const struct interp_axis_limits *l = &m->axis[axis];
-	double at;
+	double at, ends[2];
 
 	if (is_inside(b, axis, at_mm))
 		return true;
-	at = at_mm / l->pulse_mm;
+	at = at_mm / m->axis[axis].pulse_mm;
 	if (!(fabs(at) < INTERP_PULSES_MAX))
 		return false;
 	at = interp_round_sub(sub_of(b, axis, at_mm));
-	if (m->present & b->loose & 1u << axis)
-		return true;
-	return m->present & 1u << axis &&
-	       at >= ceil(l->travel_min_mm / l->pulse_mm - 1e-6) &&
-	       at <= floor(l->travel_max_mm / l->pulse_mm + 1e-6);
+	build_travel(b, axis, ends);
+	return m->present & 1u << axis && at >= ends[0] && at <= ends[1];
 }
 
 /* -- Segments ------------------------------------------------------------ */

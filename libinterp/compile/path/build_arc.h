@@ -14,11 +14,14 @@ struct build_arc {
 	const struct interp_build_options *o;
 	const struct interp_build_arc *word;
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
+	const double *end_mm;	/* of all axes */
+	const int64_t *to_sub;	/* the same in subpulses */
+	uint32_t moved;		/* mask of axes */
 	struct build_way way;	/* all axes except those of the plane */
 	uint32_t loose;		/* axes that count from a contact */
 	/* Out. */
 	bool straight;		/* too short to be an arc: make it a line */
-	bool near_edge;		/* of the travel: ask build_edge_walk() */
+	bool near_edge;		/* of the travel: ask build_edge_look() */
 	struct interp_arc arc;
 	uint32_t ticks;
 	double length_mm, feed_max_mm_s;
@@ -40,6 +43,11 @@ int build_arc_plan(struct build_arc *p, struct interp_diag *diag);
 /** build_arc_runs() - write the arc.nruns runs of a planned arc. */
 void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 		    int32_t *runs);
+
+/** build_arc_add() - add a planned arc as a segment.  Return: 0, -ENOMEM or
+ *  -EINVAL with @diag's found and wanted. */
+int build_arc_add(struct interp_build *b, const struct build_arc *p,
+		  const struct interp_build_word *w, struct interp_diag *diag);
 
 /** build_refuse_travel() - say that an axis leaves its travel; -EINVAL. */
 int build_refuse_travel(const struct interp_machine *m, int axis,

@@ -24,23 +24,46 @@ static int runs_add(struct interp_build *b, const struct build_arc *plan,
 	return t->n > UINT32_MAX ? -ENOMEM : 0;
 }
 
+int build_arc_add(struct interp_build *b, const struct build_arc *p,
+		  const struct interp_build_word *w, struct interp_diag *diag)
+{
+	struct interp_seg seg = { .kind = INTERP_ARC, .ticks = p->ticks,
+				  .length_mm = p->length_mm };
+	struct interp_arc *arc;
+
+	build_seg_feed(&seg, w, p->feed_max_mm_s);
+	if (build_columns(b, p->moved) < 0)
+		return -ENOMEM;
+	seg.arg = (uint32_t)b->arcs.n;
+	arc = build_table_add(&b->arcs);
+	if (!arc)
+		return -ENOMEM;
+	*arc = p->arc;
+	if (runs_add(b, p, arc) < 0)
+		return -ENOMEM;
+	build_descend(b, p->moved, p->end_mm);
+	b->stand_escape = b->escape;
+	build_stand_at(b, p->end_mm, p->to_sub);
+	return build_seg_finish(b, &seg, w, diag);
+}
+
 int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_arc *a,
 		     const struct interp_build_word *w,
 		     struct interp_diag *diag)
 {
-	struct interp_seg seg = { .kind = INTERP_ARC };
-	struct build_arc plan = { .o = &b->o, .word = a, .loose = b->loose };
-	const uint32_t plane = 1u << a->axis_a | 1u << a->axis_b;
 	int64_t to[INTERP_NAXES];
-	struct interp_arc *arc;
+	struct build_arc plan = { .o = &b->o, .word = a, .loose = b->loose,
+				  .end_mm = end_mm, .to_sub = to };
+	const uint32_t plane = 1u << a->axis_a | 1u << a->axis_b;
 	struct build_measure m;
 	int err = build_measure_next(b, end_mm, to, &m, diag);
 
 	if (err < 0)
 		return err;
-	build_mm(b, m.moved | plane, b->here, plan.from_mm);
-	build_mm(b, m.moved | plane, to, plan.to_mm);
+	plan.moved = m.moved | plane;
+	build_mm(b, plan.moved, b->here, plan.from_mm);
+	build_mm(b, plan.moved, to, plan.to_mm);
 	plan.way.longest_sub = m.longest;
 	if (!pulse_strategy(b->o.strategy)->at_once)
 		plan.way = build_way_to(b, to, &m);
@@ -51,24 +74,7 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	if (plan.straight)
 		return interp_build_line(b, end_mm, w, diag);
 	if (plan.near_edge)
-		err = build_edge_walk(b, &(struct build_edge) {
-			.end_mm = end_mm, .arc = a, .word = w }, diag);
-	if (err < 0)
-		return err;
-	seg.ticks = plan.ticks;
-	seg.length_mm = plan.length_mm;
-	build_seg_feed(&seg, w, plan.feed_max_mm_s);
-	if (build_columns(b, m.moved | plane) < 0)
-		return -ENOMEM;
-	seg.arg = (uint32_t)b->arcs.n;
-	arc = build_table_add(&b->arcs);
-	if (!arc)
-		return -ENOMEM;
-	*arc = plan.arc;
-	if (runs_add(b, &plan, arc) < 0)
-		return -ENOMEM;
-	build_descend(b, m.moved | plane, end_mm);
-	b->stand_escape = b->escape;
-	build_stand_at(b, end_mm, to);
-	return build_seg_finish(b, &seg, w, diag);
+		err = build_edge_look(b, &(struct build_edge) {
+				      .arc = &plan, .word = w }, diag);
+	return err < 0 ? err : build_arc_add(b, &plan, w, diag);
 }

@@ -6,25 +6,203 @@
  * may not be: they are rounded, and a strategy that moves one axis at a time
  * goes to both sides of the circle.  How far it goes just there, only the walk
  * tells.
+ *
+ * In a tick an axis makes a pulse at most.  So where it is n pulses from the
+ * end of its travel, the next n ticks stay inside, and are left out.  A circle
+ * of radius R that touches the end takes about the root of R looks.  Only
+ * accumulators have no closed form: they are turned on, which is as long as the
+ * arc, but they were turned to measure it, too.
  */
 #include "path/build_edge.h"
-#include "path/build_arc.h"
 #include "path/builder.h"
 
 #include "interp/cursor.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* As many ticks are walked faster than they are sought. */
+#define NEAR_TICKS	32
+
+/* -- The travel ------------------------------------------------------------ */
+
+struct look {
+	const struct interp_build *b;
+	struct interp_diag *diag;
+	struct interp_cursor c;		/* at the start of the arc */
+};
+
+static bool try_axis(const struct look *l, int axis, int64_t at, double *room)
+{
+	const struct interp_machine *m = l->b->o.machine;
+	double ends[2];
+
+	build_travel(l->b, axis, ends);
+	if ((double)at < ends[0] || (double)at > ends[1]) {
+		build_refuse_travel(m, axis,
+				    (double)at * m->axis[axis].pulse_mm,
+				    l->diag);
+		return false;
+	}
+	*room = fmin(*room, fmin((double)at - ends[0], ends[1] - (double)at));
+	return true;
+}
+
+/* Return: how many ticks on is the next point to look at; 0 if this one is
+ * outside. */
+static uint32_t try_plane(const struct look *l, const struct interp_arc *arc,
+			  int64_t a, int64_t b)
+{
+	double room = INTERP_PULSES_MAX;
+
+	if (!try_axis(l, arc->axis_a, a, &room) ||
+	    !try_axis(l, arc->axis_b, b, &room))
+		return 0;
+	return room < 1 ? 1 : (uint32_t)room;
+}
+
+static uint32_t least(uint32_t a, uint32_t b)
+{
+	return a < b ? a : b;
+}
+
+/* -- A circle, one axis at a time ------------------------------------------ */
+
+/* A run is straight, so its end tells. */
+static int look_along_runs(const struct look *l, const struct interp_arc *arc,
+			   const struct interp_circle *k)
+{
+	int64_t at[2] = { l->c.pos[arc->axis_a], l->c.pos[arc->axis_b] };
+
+	for (uint32_t i = 0; i < k->nruns; i++) {
+		at[(i + k->run_first) & 1] += k->runs[i];
+		if (!try_plane(l, arc, at[0], at[1]))
+			return -EINVAL;
+	}
+	return 0;
+}
+
+static int look_along_circle(const struct look *l, const struct interp_arc *arc,
+			     const struct interp_circle *start)
+{
+	const int64_t a = l->c.pos[arc->axis_a] - start->x;
+	const int64_t b = l->c.pos[arc->axis_b] - start->y;
+	uint32_t tick = 0, room = 1;
+
+	if (start->runs)
+		return look_along_runs(l, arc, start);
+	while (tick < start->ticks) {
+		struct interp_circle k = *start;
+
+		tick += least(room, start->ticks - tick);
+		if (!circle_stand(&k, tick))
+			return -EBADMSG;
+		room = try_plane(l, arc, a + k.x, b + k.y);
+		if (!room)
+			return -EINVAL;
+	}
+	return 0;
+}
+
+static int look_along_sides(const struct look *l)
+{
+	int err = 0;
+
+	for (int i = 0; i < 2 && err == 0; i++) {
+		if (l->c.side[i].arc)
+			err = look_along_circle(l, &l->c.couple.side[i],
+						&l->c.side[i].circle);
+	}
+	return err;
+}
+
+/* -- Accumulators, and all axes at once ------------------------------------ */
+
+/* The tail leads from where they stop to the end of the arc. */
+static int look_along_rotor(const struct look *l)
+{
+	const struct interp_arc *arc = &l->c.arc;
+	struct interp_rotor k = l->c.rotor;
+	const int64_t a = l->c.pos[arc->axis_a] - k.x;
+	const int64_t b = l->c.pos[arc->axis_b] - k.y;
+	uint32_t tick = 0, room = 1;
+
+	while (tick < arc->tail) {
+		const uint32_t n = least(room, arc->tail - tick);
+
+		tick += n;
+		if (!dda_turn(&k, n))
+			return -EBADMSG;
+		room = try_plane(l, arc, a + k.x, b + k.y);
+		if (!room)
+			return -EINVAL;
+	}
+	return 0;
+}
+
+static bool go_on(struct interp_cursor *c, uint32_t ticks)
+{
+	uint16_t pulses[NEAR_TICKS];
+	const uint32_t to = c->tick + least(ticks, c->seg.ticks - c->tick);
+
+	if (ticks > NEAR_TICKS)
+		return interp_cursor_seek(c, c->index, to) == 0;
+	interp_cursor_aim(c, c->seg.length_mm);
+	interp_cursor_run(c, pulses, ticks);
+	return c->walk;
+}
+
+/* One arc, or those of two contours. */
+static uint32_t try_arcs(const struct look *l)
+{
+	const struct interp_cursor *c = &l->c;
+	const bool pair = c->seg.kind == INTERP_PAIR;
+	const struct interp_arc *arc = pair ? c->couple.side : &c->arc;
+	uint32_t room = UINT32_MAX;
+
+	for (int i = 0; i <= pair && room > 0; i++, arc++) {
+		if (arc->r_mm > 0)
+			room = least(room, try_plane(l, arc,
+						     c->pos[arc->axis_a],
+						     c->pos[arc->axis_b]));
+	}
+	return room;
+}
+
+static int look_at_once(struct look *l)
+{
+	uint32_t room = 1;
+
+	while (l->c.tick < l->c.seg.ticks) {
+		if (!go_on(&l->c, room))
+			return -EBADMSG;
+		room = try_arcs(l);
+		if (!room)
+			return -EINVAL;
+	}
+	return 0;
+}
+
+static int look_along(struct look *l)
+{
+	const struct interp_walk *w = l->c.walk;
+
+	if (w == &pulse_circle || w == &pulse_helix)
+		return look_along_circle(l, &l->c.arc, &l->c.circle);
+	if (w == &pulse_pair)
+		return look_along_sides(l);
+	return w == &pulse_dda_arc ? look_along_rotor(l) : look_at_once(l);
+}
+
+/* -- A program that has only this ------------------------------------------ */
 
 /* A builder that stands there, too, and minds no travel. */
 static struct interp_build *stand_there(const struct interp_build *b)
 {
-	struct interp_build_options o = b->o;
-	struct interp_build *alone;
+	struct interp_build *alone = interp_build_create(&b->o);
 
-	o.fit_mm = 0;
-	alone = interp_build_create(&o);
 	if (!alone)
 		return NULL;
 	memcpy(alone->here_mm, b->here_mm, sizeof(b->here_mm));
@@ -34,7 +212,7 @@ static struct interp_build *stand_there(const struct interp_build *b)
 	return alone;
 }
 
-/* Return: the block of a program that has only this; NULL with an error. */
+/* Return: its block; NULL with an error. */
 static void *block_of(const struct interp_build *b, const struct build_edge *e,
 		      struct interp_program *ret, int *err,
 		      struct interp_diag *diag)
@@ -47,10 +225,8 @@ static void *block_of(const struct interp_build *b, const struct build_edge *e,
 	*err = -ENOMEM;
 	if (!alone)
 		return NULL;
-	*err = e->arc ? interp_build_arc(alone, e->end_mm, e->arc, e->word,
-					 diag) :
-			interp_build_pair(alone, e->end_mm, e->contour,
-					  e->word, diag);
+	*err = e->arc ? build_arc_add(alone, e->arc, e->word, diag) :
+			build_pair_add(alone, e->pair, e->word, diag);
 	bytes = interp_build_bytes(alone);
 	if (*err == 0) {
 		block = malloc(bytes);
@@ -64,44 +240,20 @@ static void *block_of(const struct interp_build *b, const struct build_edge *e,
 	return block;
 }
 
-static int try_point(const struct interp_build *b,
-		     const struct interp_cursor *c, struct interp_diag *diag)
-{
-	const struct interp_machine *m = b->o.machine;
-
-	for (uint32_t axes = c->moved; axes; axes &= axes - 1) {
-		const int axis = __builtin_ctz(axes);
-		const double at = c->pos[axis] * m->axis[axis].pulse_mm;
-
-		if (!build_axis_ok(b, axis, at))
-			return build_refuse_travel(m, axis, at, diag);
-	}
-	return 0;
-}
-
-static int walk(const struct interp_build *b, const struct interp_program *p,
-		struct interp_diag *diag)
-{
-	struct interp_cursor c;
-	int err = interp_cursor_init(&c, p);
-
-	if (err < 0)
-		return err;
-	interp_cursor_aim(&c, p->head->length_mm);
-	while (err == 0 && interp_cursor_step(&c) == INTERP_MOVED)
-		err = try_point(b, &c, diag);
-	return err;
-}
-
-int build_edge_walk(const struct interp_build *b, const struct build_edge *e,
+int build_edge_look(const struct interp_build *b, const struct build_edge *e,
 		    struct interp_diag *diag)
 {
+	struct look l = { .b = b, .diag = diag };
 	struct interp_program p;
 	int err;
 	void *block = block_of(b, e, &p, &err, diag);
 
 	if (err == 0)
-		err = walk(b, &p, diag);
+		err = interp_cursor_init(&l.c, &p);
+	if (err == 0)
+		err = interp_cursor_seek(&l.c, 1, 0);
+	if (err == 0)
+		err = look_along(&l);
 	free(block);
 	return err;
 }

@@ -7,23 +7,22 @@
 #ifndef PATH_BUILD_EDGE_H
 #define PATH_BUILD_EDGE_H
 
-#include "interp/build.h"
+#include "path/build_arc.h"
+#include "path/build_pair.h"
 
-/* An arc, or two contours, from where the path ends to @end_mm. */
+/* A planned arc, or two planned contours, from where the path ends. */
 struct build_edge {
-	const double *end_mm;
-	const struct interp_build_arc *arc;		/* or NULL, and */
-	const struct interp_build_contour *contour;	/* [2] */
+	const struct build_arc *arc;	/* or NULL, and */
+	const struct build_pair *pair;
 	const struct interp_build_word *word;
 };
 
 /**
- * build_edge_walk() - walk it, and see whether each of its lattice points lies
- * within the travel.  It takes as long as the arc.
+ * build_edge_look() - does each of its lattice points lie within the travel?
  *
  * Return: 0, -ENOMEM, or -EINVAL with @diag's found and wanted.
  */
-int build_edge_walk(const struct interp_build *b, const struct build_edge *e,
+int build_edge_look(const struct interp_build *b, const struct build_edge *e,
 		    struct interp_diag *diag);
 
 #endif /* PATH_BUILD_EDGE_H */

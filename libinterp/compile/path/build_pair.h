@@ -14,11 +14,13 @@ struct build_pair {
 	enum interp_strategy strategy;
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
 	int32_t from[INTERP_NAXES], to[INTERP_NAXES];	/* pulses */
+	const double *end_mm;	/* of all axes */
+	const int64_t *to_sub;	/* the same in subpulses */
 	uint32_t moved;		/* mask of axes */
 	uint32_t loose;		/* axes that count from a contact */
 	int64_t longest_sub;	/* of all four axes, subpulses */
 	/* Out. */
-	bool near_edge;		/* of the travel: ask build_edge_walk() */
+	bool near_edge;		/* of the travel: ask build_edge_look() */
 	struct interp_couple couple;
 	uint32_t ticks;
 	uint64_t *bits;		/* (ticks + 63) / 64 words, or NULL; free() */
@@ -27,5 +29,10 @@ struct build_pair {
 
 /** build_pair_plan() - 0, -ENOMEM, or -EINVAL with @diag's found and wanted. */
 int build_pair_plan(struct build_pair *p, struct interp_diag *diag);
+
+/** build_pair_add() - add the planned two as a segment.  Return: 0, -ENOMEM or
+ *  -EINVAL with @diag's found and wanted. */
+int build_pair_add(struct interp_build *b, const struct build_pair *p,
+		   const struct interp_build_word *w, struct interp_diag *diag);
 
 #endif /* PATH_BUILD_PAIR_H */

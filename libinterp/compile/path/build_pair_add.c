@@ -16,7 +16,7 @@
 #define UV	(1u << INTERP_U | 1u << INTERP_V)
 
 /* Add the couple and its bits to the tables. */
-static int couple_add(struct interp_build *b, struct build_pair *p)
+static int couple_add(struct interp_build *b, const struct build_pair *p)
 {
 	const size_t words = p->bits ? ((size_t)p->ticks + 63) / 64 : 0;
 	struct interp_couple *c = build_table_add(&b->couples);
@@ -35,14 +35,14 @@ static int couple_add(struct interp_build *b, struct build_pair *p)
 	return 0;
 }
 
-static int pair_finish(struct interp_build *b, struct build_pair *p,
-		       const struct interp_build_word *w,
-		       struct interp_diag *diag)
+int build_pair_add(struct interp_build *b, const struct build_pair *p,
+		   const struct interp_build_word *w, struct interp_diag *diag)
 {
 	struct interp_seg seg = { .kind = INTERP_PAIR, .ticks = p->ticks,
 				  .length_mm = p->length_mm,
 				  .arg = (uint32_t)b->couples.n };
 
+	build_stand_at(b, p->end_mm, p->to_sub);
 	build_seg_feed(&seg, w, p->feed_max_mm_s);
 	if (!w->rapid)
 		seg.feed_mm_s *= (float)(p->length_mm / p->fed_mm);
@@ -88,10 +88,11 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag)
 {
+	int64_t to[INTERP_NAXES];
 	struct build_pair plan = { .machine = b->o.machine, .contour = contour,
 				   .strategy = b->o.strategy,
+				   .end_mm = end_mm, .to_sub = to,
 				   .loose = b->loose };
-	int64_t to[INTERP_NAXES];
 	struct build_measure m;
 	int err = build_measure_next(b, end_mm, to, &m, diag);
 
@@ -112,13 +113,10 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	plan.longest_sub = m.longest;
 	err = build_pair_plan(&plan, diag);
 	if (err == 0 && plan.near_edge)
-		err = build_edge_walk(b, &(struct build_edge) {
-			.end_mm = end_mm, .contour = contour, .word = w },
-			diag);
-	if (err == 0) {
-		build_stand_at(b, end_mm, to);
-		err = pair_finish(b, &plan, w, diag);
-	}
+		err = build_edge_look(b, &(struct build_edge) {
+				      .pair = &plan, .word = w }, diag);
+	if (err == 0)
+		err = build_pair_add(b, &plan, w, diag);
 	free(plan.bits);
 	return err;
 }

@@ -172,6 +172,12 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		  const struct interp_build_word *w, struct interp_diag *diag);
 
+/**
+ * build_travel() - the first and the last pulse at which axis @axis of the
+ * machine may stand.
+ */
+void build_travel(const struct interp_build *b, int axis, double ret[2]);
+
 /** build_axis_ok() - may axis @axis stand at @at_mm? */
 bool build_axis_ok(const struct interp_build *b, int axis, double at_mm);
 

@@ -25,13 +25,15 @@ struct seek {
 	int64_t r2;
 	int64_t in, out;		/* in the quadrant */
 	int64_t area;			/* twice the one swept so far */
+	bool measures;			/* it is asked for */
 };
 
 /* Go to this place in the same quadrant. */
 static void stretch(struct seek *s, int64_t in, int64_t out)
 {
-	s->area += 2 * circle_rows(s->r2, s->out, out) -
-		   (in * out - s->in * s->out);
+	if (s->measures)
+		s->area += 2 * circle_rows(s->r2, s->out, out) -
+			   (in * out - s->in * s->out);
 	s->in = in;
 	s->out = out;
 }
@@ -59,7 +61,7 @@ static int64_t cross(struct seek *s, int64_t ticks)
 	int64_t n = ticks / all;
 
 	n = n < k->left - 1 ? n : k->left - 1;
-	if (n > 0)
+	if (n > 0 && s->measures)
 		s->area += n * 2 * circle_rows(s->r2, 0, k->meet);
 	k->left -= (uint32_t)n + 1;
 	k->quad = (int8_t)((k->quad + k->ccw * ((n + 1) & 3)) & 3);
@@ -95,11 +97,12 @@ static void take_place(struct seek *s)
 	k->dev = k->x * k->x + k->y * k->y - s->r2;
 }
 
-static int64_t by_comparison(struct interp_circle *k, int64_t ticks)
+static int64_t by_comparison(struct interp_circle *k, int64_t ticks,
+			     bool measures)
 {
 	struct seek s = {
 		.k = k, .r2 = k->x * k->x + k->y * k->y - k->dev,
-		.in = circle_in(k), .out = circle_out(k),
+		.in = circle_in(k), .out = circle_out(k), .measures = measures,
 	};
 	const int64_t border = k->meet - (s.out - s.in);
 
@@ -181,7 +184,7 @@ static int64_t along_runs(struct interp_circle *k, int64_t ticks)
 	return measure;
 }
 
-int64_t circle_seek(struct interp_circle *k, uint32_t tick)
+static int64_t go_to(struct interp_circle *k, uint32_t tick, bool measures)
 {
 	const int64_t compared = least(tick, k->tail);
 	int64_t measure, tail;
@@ -190,9 +193,19 @@ int64_t circle_seek(struct interp_circle *k, uint32_t tick)
 		return along_runs(k, tick);
 	if (k->meet < SMALL)
 		return one_by_one(k, tick);
-	measure = by_comparison(k, compared);
+	measure = by_comparison(k, compared, measures);
 	if (measure < 0 || tick == compared)
 		return measure < 0 ? -1 : measure + compared;
 	tail = along_tail(k, tick - compared);
 	return tail < 0 ? -1 : measure + compared + tail;
+}
+
+int64_t circle_seek(struct interp_circle *k, uint32_t tick)
+{
+	return go_to(k, tick, true);
+}
+
+bool circle_stand(struct interp_circle *k, uint32_t tick)
+{
+	return go_to(k, tick, false) >= 0;
 }

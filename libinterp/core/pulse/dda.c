@@ -272,6 +272,11 @@ static bool rotor_turn(struct interp_rotor *k, uint32_t ticks, bool back)
 	return ok;
 }
 
+bool dda_turn(struct interp_rotor *k, uint32_t ticks)
+{
+	return rotor_turn(k, ticks, false);
+}
+
 /*
  * A rotor's rounding follows from all of its ticks, so they are made one by
  * one, from the nearer end.

@@ -179,6 +179,13 @@ int64_t circle_last(const struct interp_circle *k);
  * Return: what they add to the measure; -1 if the circle is broken.
  */
 int64_t circle_seek(struct interp_circle *k, uint32_t tick);
+/**
+ * circle_stand() - the same without the measure.  By comparison it takes the
+ * same time for every radius.
+ *
+ * Return: false if the circle is broken.
+ */
+bool circle_stand(struct interp_circle *k, uint32_t tick);
 /** circle_rows() - the sum over the rows @from ... @to - 1 of a quadrant of the
  *  greatest `in` inside the circle, in*in + out*out < @r2, which is at least 1
  *  in each.  It takes about R^(2/3) steps. */
@@ -245,6 +252,12 @@ uint32_t circle_smallest_milli(int64_t r2, uint32_t milli);
  */
 bool dda_measure(struct interp_arc *arc, const int64_t start[2],
 		 const int64_t end[2], int64_t others);
+/**
+ * dda_turn() - make @ticks of a pair of accumulators.
+ *
+ * Return: false if they leave their range.
+ */
+bool dda_turn(struct interp_rotor *k, uint32_t ticks);
 
 /** pulse_circle_node() - start or end of c->arc's plane from its centre. */
 void pulse_circle_node(const struct interp_cursor *c, bool at_end,

@@ -29,7 +29,8 @@
 #define INTERP_NC_LINE_MAX	4096		/* bytes in a line */
 #define INTERP_NC_SEGS_MAX	50000000u	/* segments a program may
 						 * have */
-#define INTERP_NC_EXECUTED_MAX	100000000u	/* lines, repeats counted */
+#define INTERP_NC_EXECUTED_MAX	100000000u	/* lines, repeats counted; a
+						 * long one counts as many */
 
 
 /* Takes remarks about a program that is accepted. */
