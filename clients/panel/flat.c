@@ -152,41 +152,14 @@ static int steps_of(const struct walk *w, const struct interp_seg *s)
 	return n < 8 ? 8 : n > STEPS_MAX ? STEPS_MAX : (int)n;
 }
 
-/* One side of a couple: a line, or an arc about its centre. */
-static void side_at(const struct interp_arc *arc, double t,
-		    const double from[2], const double to[2], double ret[2])
-{
-	const double r = arc->r_mm + t * arc->dr_mm;
-	const double angle = arc->theta + t * arc->sweep;
-
-	if (!(arc->r_mm > 0)) {
-		ret[0] = from[0] + t * (to[0] - from[0]);
-		ret[1] = from[1] + t * (to[1] - from[1]);
-		return;
-	}
-	ret[0] = arc->a_mm + r * cos(angle);
-	ret[1] = arc->b_mm + r * sin(angle);
-}
-
 static bool point_at(struct walk *w, uint32_t i, double t, struct spot *at)
 {
 	const struct interp_seg *s = &w->p->segs[i];
 	struct interp_contour_point c;
-	double from[5], to[5];
 
-	node_at(w, i, from);
-	node_at(w, i + 1, to);
-	if (s->kind == INTERP_PAIR && s->arg < w->p->head->ncouples) {
-		const struct interp_couple *k = &w->p->couples[s->arg];
-
-		memcpy(at->mm, to, sizeof(at->mm));
-		side_at(&k->side[0], t, from, to, at->mm);
-		side_at(&k->side[1], t, from + 3, to + 3, at->mm + 3);
-		return true;
-	}
-	if (!interp_program_at(w->p, i, t * s->length_mm, &w->curve, &c))
+	if (!interp_program_any_at(w->p, i, t * s->length_mm, &w->curve, &c))
 		return false;
-	memcpy(at->mm, from, sizeof(at->mm));
+	node_at(w, i, at->mm);
 	for (uint32_t j = 0; j < w->p->head->naxes; j++)
 		if (slot_of(w->p->head->column[j]) >= 0)
 			at->mm[slot_of(w->p->head->column[j])] = c.mm[j];

@@ -46,6 +46,7 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 		return answer;
 	c->outcome = OUTCOME_NONE;
 	c->retract.in_row = 0;
+	c->turned_mm = 0;
 	c->arcing = (struct arcing) { .rung = ARCING_NONE };
 	gap_forget(c);
 	if (axes_want(c, true))

@@ -61,13 +61,15 @@ static enum cycle_event look_arrive(const struct cycle *c)
 
 /*
  * While positioning, the electrode met something over ground that was cut
- * already.  That is a short like any other.  A retract has no lead, so axes
- * that have a lead first brake with it.
+ * already, or that it comes back over out of a retract or a jump.  That is a
+ * short like any other.  A retract has no lead, so axes that have a lead first
+ * brake with it.
  */
 static enum cycle_event look_out(struct cycle *c)
 {
 	if (guard_met(c))
-		c->withdraws = walk_rejoins(c) || ground_is_cut(c);
+		c->withdraws = walk_rejoins(c) || place_mm(c) < c->turned_mm ||
+			       ground_is_cut(c);
 	if (!c->withdraws)
 		return look_arrive(c);
 	return contouring_rests(&c->contouring) ? EVENT_SHORT : EVENT_NONE;

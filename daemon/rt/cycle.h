@@ -234,6 +234,9 @@ struct cycle {
 	struct mcode mcode;
 	struct progress progress;
 	double back_mm;			/* the way back ends at this place */
+	double turned_mm;		/* the farthest place that a retract or
+					 * a jump left, since the start; it was
+					 * passed by then */
 	struct cycle_job job;
 	uint32_t overruns_in_row;
 	bool overran;			/* since the last step */

@@ -55,11 +55,13 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		probe_begin(c);
 		break;
 	case STATE_RETRACT:
+		c->turned_mm = fmax(c->turned_mm, place_mm(c));
 		servo_reset(c);
 		retract_begin(c);
 		arcing_met(c);
 		break;
 	case STATE_JUMP:
+		c->turned_mm = fmax(c->turned_mm, place_mm(c));
 		arcing_met(c);
 		if (from == STATE_HOLD)
 			come_back(c);

@@ -3,6 +3,9 @@
  * test_ground.c - a short while positioning: over ground that was cut it is
  * debris, anywhere else a collision
  */
+#include "compile_help.h"
+
+#undef assert_near			/* not with a fixed bound */
 #include "cycle_help.h"
 
 static void to(struct interp_build *b, double x, double z, bool rapid)
@@ -167,6 +170,127 @@ static void over_an_arc_that_was_cut_it_is_a_retract(void **st)
 	rig_free(&r);
 }
 
+/* -- Programs as texts ----------------------------------------------------- */
+
+struct way_out {
+	const char *text;
+	enum interp_strategy strategy;
+	uint32_t tolerance_milli;
+	bool wire;
+};
+
+static void load_text(struct rig *r, const struct way_out *w,
+		      const struct cycle_config *k)
+{
+	static const struct interp_wire wire = {
+		.guides = INTERP_GUIDES_RELATIVE, .z_lower_mm = -20,
+		.z_upper_mm = 80, .z_second_mm = 40, .angle_max_deg = 30,
+		.corner_angle_deg = 180,
+	};
+	struct compiled c = compile_ready("generic");
+
+	c.bo.strategy = w->strategy;
+	c.bo.tolerance_milli = w->tolerance_milli;
+	c.o.nc.wire = w->wire ? &wire : NULL;
+	compile(&c, w->text);
+	rig_take(r, (struct made) { .block = c.block, .p = c.p }, k);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
+static void every_way_back_over_what_was_cut_may_short(void **st)
+{
+	static const struct way_out ways[] = {
+		{ "F300\nG6.2 P3 K0 X0 Y0\nK0 X1 Y1\nK0 X2 Y0\nK1\nK1\nK1\nM5\n"
+		  "G6.2 P3 K0 X2 Y0\nK0 X1 Y1\nK0 X0 Y0\nK1\nK1\nK1\nM2\n",
+		  INTERP_SIMULTANEOUS, 0, false },
+		{ "F300\nG1 X2 Y1 U2.5 V0.5\nM5\nG1 X0 Y0 U0 V0\nM2\n",
+		  INTERP_POINT_BY_POINT, 0, true },
+		{ "F300\nG1 X0 Y0 U0.5\nG3 X1 Y1 I1 J0 : G3 X1.5 Y1 I1 J0\nM5\n"
+		  "G2 X0 Y0 I0 J-1 : G2 X0.5 Y0 I0 J-1\nM2\n",
+		  INTERP_POINT_BY_POINT, 0, true },
+		{ "F300\nG1 X2 Y1\nM5\nG1 X0 Y0\nM2\n",
+		  INTERP_MIN_SWITCH, 20000, false },
+		{ "F300\nG3 X0 Y0 I1 J0 Z1 C20.\nM5\n"
+		  "G2 X0 Y0 I1 J0 Z0 C0.\nM2\n", INTERP_SIMULTANEOUS,
+		  0, false },
+		{ "F300\nG0 Z0.1\nG130 Z-0.5 R0.3 Q0.1 P1\nM2\n",
+		  INTERP_SIMULTANEOUS, 0, false },
+	};
+	const struct cycle_config k = usual_config();
+
+	(void)st;
+	for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]); i++) {
+		bool cut = false;
+		struct rig r;
+
+		load_text(&r, &ways[i], &k);
+		for (int n = 0; n < 40000 && r.c.state != STATE_IDLE; n++) {
+			const bool out = cut && r.c.state == STATE_TRAVEL;
+
+			cut = cut || r.c.state == STATE_ERODE;
+			step(&r, out && n % 100 < 5 ? SHORTED_V :
+				 state_duty[r.c.state].power ? SPARKING_V :
+							       OPEN_V);
+			if (r.c.fault.first != FAULT_NONE)
+				fail_msg("%s: at %f", ways[i].text, place(&r));
+		}
+		if (r.c.outcome != OUTCOME_DONE || r.c.totals.retracts < 3)
+			fail_msg("%s: at %f, %u retracts", ways[i].text,
+				 place(&r), r.c.totals.retracts);
+		rig_free(&r);
+	}
+}
+
+/* The helix is left out by its time: what it would have cut is not cut. */
+static void what_a_time_left_out_is_new_ground(void **st)
+{
+	static const struct way_out w = {
+		"F300\nG0 Z0.1\nG130 Z-0.5 R0.3 Q0.1 P1 S0.05\n"
+		"G0 X0.3 Z-0.3\nM2\n",
+		INTERP_SIMULTANEOUS, 0, false
+	};
+	const struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	load_text(&r, &w, &k);
+	for (int n = 0; n < 5000 && r.out.target[INTERP_X] < 299; n++)
+		step(&r, state_duty[r.c.state].power ? SPARKING_V : OPEN_V);
+	assert_int_equal(r.c.state, STATE_TRAVEL);
+	step(&r, SHORTED_V);
+	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
+	rig_free(&r);
+}
+
+/* A retract goes back beyond the first place of the cut. */
+static void back_over_what_it_left_it_may_short(void **st)
+{
+	const struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	cut_at(&r, &k, 1.1);
+	steps(&r, SHORTED_V, 100);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	assert_true(place(&r) < 0.8);
+	until(&r, STATE_TRAVEL, OPEN_V, 200);
+	steps(&r, OPEN_V, 10);
+	assert_true(place(&r) < 0.8);
+	step(&r, SHORTED_V);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	/* After a start nobody knows who was there. */
+	steps(&r, OPEN_V, 10);
+	tell(&r, CYCLE_HOLD);
+	steps(&r, OPEN_V, 100);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	steps(&r, OPEN_V, 10);
+	assert_true(place(&r) < 0.9);
+	step(&r, SHORTED_V);
+	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
+	rig_free(&r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -175,6 +299,9 @@ int main(void)
 		cmocka_unit_test(with_a_lead_too_new_ground_is_a_collision),
 		cmocka_unit_test(on_new_ground_it_is_a_collision),
 		cmocka_unit_test(over_an_arc_that_was_cut_it_is_a_retract),
+		cmocka_unit_test(every_way_back_over_what_was_cut_may_short),
+		cmocka_unit_test(what_a_time_left_out_is_new_ground),
+		cmocka_unit_test(back_over_what_it_left_it_may_short),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,104 +1,128 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * ground.c - does the electrode stand on ground that was cut already?
+ *
+ * Along a segment it is looked where the electrode stands.  Each look says how
+ * far on it can be at the earliest, because along a mm of the path no axis of X
+ * Y Z goes more than a mm, and most axes go evenly.
  */
 #include "path/ground.h"
 #include "path/laws.h"
 
-#include "interp/angle.h"
+#include "interp/at.h"
 
 #include <math.h>
 
 #define NEAR_PULSES	2.0
-#define TURNS_MAX	16
+#define LAG_PULSES	2.0		/* of one contour of a pair behind the
+					 * other */
+#define LOOKS_MAX	64		/* along one segment */
 
-/* The place of a node in column @j, in pulses. */
-static double node_at(const struct interp_program *p, uint32_t i, uint32_t j)
+/* How far the lattice may be from the path, on every axis. */
+static double near_pulses(const struct interp_program *p,
+			  const struct interp_seg *s)
 {
-	return (double)p->nodes[(uint64_t)i * p->head->naxes + j] / INTERP_SUB;
+	const enum interp_strategy by = (enum interp_strategy)p->head->strategy;
+	double near = NEAR_PULSES;
+
+	if (interp_strategy_takes_tolerance(by))
+		near += 2 * p->head->tolerance_milli / 1000.0;
+	return s->kind == INTERP_PAIR ? near + LAG_PULSES : near;
 }
 
-/* Does the machine stand at the share @t of segment @i, on every axis but those
- * in @except? */
-static bool is_at(const struct interp_cursor *at, uint32_t i, double t,
-		  uint32_t except)
+/* The most that an axis goes along a mm of it; INFINITY: nobody knows. */
+static double most_rate(const struct interp_program *p,
+			const struct interp_seg *s, uint8_t axis, double rate)
 {
-	for (uint32_t j = 0; j < at->p.head->naxes; j++) {
-		const uint8_t axis = at->p.head->column[j];
-		const double a = node_at(&at->p, i, j);
-		const double b = node_at(&at->p, i + 1, j);
+	const struct interp_couple *k;
 
-		if (!(except >> axis & 1) &&
-		    !(fabs(at->pos[axis] - (a + t * (b - a))) <= NEAR_PULSES))
-			return false;
+	switch (s->kind) {
+	case INTERP_ARC:
+		return axis == p->arcs[s->arg].axis_a ||
+		       axis == p->arcs[s->arg].axis_b ? 1 : fabs(rate);
+	case INTERP_PAIR:
+		k = &p->couples[s->arg];
+		if (axis <= INTERP_Y)
+			return 1;
+		return k->side[1].r_mm > 0 ? INFINITY : fabs(rate);
+	case INTERP_CURVE:
+		return axis <= INTERP_Z ? 1 : INFINITY;
+	default:
+		return fabs(rate);
 	}
-	return true;
 }
 
-/* The share is found by the axis that goes farthest. */
-static bool is_on_line(const struct interp_cursor *at, uint32_t i)
+/* Return: 0, it stands at @point; else so far on, at least, INFINITY: never. */
+static double way_mm(const struct interp_cursor *at, uint32_t i,
+		     const struct interp_contour_point *point)
 {
-	double most = 0, t = 0;
+	const struct interp_program *p = &at->p;
+	const struct interp_seg *s = &p->segs[i];
+	double least = INFINITY, most = 0;
 
-	for (uint32_t j = 0; j < at->p.head->naxes; j++) {
-		const double a = node_at(&at->p, i, j);
-		const double d = node_at(&at->p, i + 1, j) - a;
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		const uint8_t axis = p->head->column[j];
+		const double pulse = p->head->pulse_mm[axis];
+		const double near = near_pulses(p, s) * pulse;
+		const double off = fabs(at->pos[axis] * pulse - point->mm[j]);
+		const double rate = most_rate(p, s, axis, point->per_u[j]);
 
-		if (fabs(d) <= most)
+		if (off <= near)
 			continue;
-		most = fabs(d);
-		t = (at->pos[at->p.head->column[j]] - a) / d;
+		if (isfinite(rate))
+			most = fmax(most, (off - near * 3 / 4) / rate);
+		else
+			least = fmin(least, near / 4 / fabs(point->per_u[j]));
 	}
-	return is_at(at, i, fmin(fmax(t, 0), 1), 0);
-}
-
-/* The share is found by the angle, in any of the turns. */
-static bool is_on_arc(const struct interp_cursor *at, uint32_t i,
-		      const struct interp_arc *k)
-{
-	const double *pulse = at->p.head->pulse_mm;
-	const double x = at->pos[k->axis_a] * pulse[k->axis_a] - k->a_mm;
-	const double y = at->pos[k->axis_b] * pulse[k->axis_b] - k->b_mm;
-	const double near = NEAR_PULSES * fmax(pulse[k->axis_a],
-					       pulse[k->axis_b]);
-	const double slack = k->r_mm > near ? near / k->r_mm : ANGLE_TURN;
-	const int sense = k->sweep < 0 ? -1 : 1;
-	double turned = sense * (atan2(y, x) - k->theta);
-
-	turned -= ANGLE_TURN * floor((turned + slack) / ANGLE_TURN);
-	for (int n = 0; n < TURNS_MAX && turned <= fabs(k->sweep) + slack;
-	     n++, turned += ANGLE_TURN) {
-		const double t = fmin(fmax(turned / fabs(k->sweep), 0), 1);
-
-		if (fabs(hypot(x, y) - (k->r_mm + t * k->dr_mm)) <= near &&
-		    is_at(at, i, t, 1u << k->axis_a | 1u << k->axis_b))
-			return true;
-	}
-	return false;
+	return most > 0 || isinf(least) ? most : least;
 }
 
 static bool is_on(const struct interp_cursor *at, uint32_t i)
 {
 	const struct interp_seg *s = &at->p.segs[i];
+	struct interp_at_curve last = { .open = false };
+	struct interp_contour_point point;
+	double mm = 0;
 
-	if (!interp_program_seg_ok(&at->p, i, s) ||
-	    s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED))
-		return false;
-	if (s->kind == INTERP_LINE)
-		return is_on_line(at, i);
-	return s->kind == INTERP_ARC &&
-	       at->p.arcs[s->arg].axis_a < INTERP_NAXES &&
-	       at->p.arcs[s->arg].axis_b < INTERP_NAXES &&
-	       is_on_arc(at, i, &at->p.arcs[s->arg]);
+	for (int n = 0; n < LOOKS_MAX; n++) {
+		double way;
+
+		if (!interp_program_any_at(&at->p, i, mm, &last, &point))
+			return false;
+		way = way_mm(at, i, &point);
+		if (way == 0)
+			return true;
+		if (mm >= s->length_mm)
+			return false;
+		mm = fmin(mm + way, s->length_mm);
+	}
+	return false;
+}
+
+static bool was_cut(const struct interp_seg *s)
+{
+	return s->kind < INTERP_BEGIN &&
+	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
 }
 
 bool ground_is_cut(const struct cycle *c)
 {
 	const struct interp_cursor *at = &c->cursor;
+	bool left_out = false;
 	uint32_t i = at->index;
 
+	if (at->seg.flags & INTERP_SEG_OUT)
+		return true;
 	for (int n = 0; n < GROUND_SEGMENTS_MAX && i > 0; n++) {
-		if (is_on(at, --i))
+		const struct interp_seg *s = &at->p.segs[--i];
+
+		/* Places counted from elsewhere, and another electrode. */
+		if (s->flags & INTERP_SEG_SENSED ||
+		    s->kind == INTERP_ELECTRODE)
+			return false;
+		if (s->kind == INTERP_TIMED_END || s->kind == INTERP_TIMED)
+			left_out = s->kind == INTERP_TIMED_END;
+		else if (!left_out && was_cut(s) && is_on(at, i))
 			return true;
 	}
 	return false;

@@ -17,11 +17,11 @@ struct cycle;
 #define GROUND_SEGMENTS_MAX	512
 
 /**
- * ground_is_cut() - within two pulses of a line or an arc behind that is no
- * rapid, on every axis.
+ * ground_is_cut() - is it, on every axis, as near to a cut behind as the
+ * strategy keeps, or on the way out of an orbit?
  *
- * Of GROUND_SEGMENTS_MAX behind; curves and pairs of contours are not looked
- * at: there the ground counts as new.
+ * Of GROUND_SEGMENTS_MAX behind, up to a probing motion or another electrode.
+ * What a time leaves out of a cycle counts as new.
  */
 bool ground_is_cut(const struct cycle *c);
 

@@ -312,10 +312,15 @@ static int to_line(void *arg, const double end_mm[INTERP_NAXES], bool rapid)
 	struct nc_reader *r = c->r;
 	int err = nc_word(r, end_mm, rapid);
 
-	if (!err)
+	if (err == 0)
 		err = nc_room(r);
-	return err ? err : placed(c, contour_line(&r->contour, end_mm, &r->word,
-						r->diag));
+	/* What an orbit positions has been cut by it. */
+	r->word.out = rapid;
+	if (err == 0)
+		err = placed(c, contour_line(&r->contour, end_mm, &r->word,
+					     r->diag));
+	r->word.out = false;
+	return err;
 }
 
 static int to_arc(void *arg, const double end_mm[INTERP_NAXES],

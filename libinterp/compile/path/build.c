@@ -284,7 +284,8 @@ int build_columns(struct interp_build *b, uint32_t moved)
 void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
 		    double feed_max_mm_s)
 {
-	seg->flags = (w->rapid ? INTERP_SEG_RAPID : 0) | w->ends;
+	seg->flags = (w->rapid ? INTERP_SEG_RAPID : 0) |
+		     (w->out ? INTERP_SEG_OUT : 0) | w->ends;
 	seg->feed_max_mm_s = (float)feed_max_mm_s;
 	seg->feed_mm_s = w->rapid ? seg->feed_max_mm_s : (float)w->feed_mm_s;
 }

@@ -27,10 +27,9 @@ static void along_line(const struct interp_program *p, uint32_t i,
 }
 
 static void along_arc(const struct interp_program *p,
-		      const struct interp_seg *s, double part,
-		      struct interp_contour_point *ret)
+		      const struct interp_seg *s, struct interp_arc a,
+		      double part, struct interp_contour_point *ret)
 {
-	const struct interp_arc a = p->arcs[s->arg];
 	const double angle = a.theta + a.sweep * part;
 	const double r = a.r_mm + a.dr_mm * part;
 	const double x = cos(angle), y = sin(angle);
@@ -105,9 +104,21 @@ static bool along_curve(const struct interp_program *p,
 	return true;
 }
 
-bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
-		       struct interp_at_curve *last,
+static void along_pair(const struct interp_program *p,
+		       const struct interp_seg *s, double part,
 		       struct interp_contour_point *ret)
+{
+	const struct interp_couple k = p->couples[s->arg];
+
+	for (int i = 0; i < 2; i++) {
+		if (k.side[i].r_mm > 0)
+			along_arc(p, s, k.side[i], part, ret);
+	}
+}
+
+bool interp_program_any_at(const struct interp_program *p, uint32_t i,
+			   double s_mm, struct interp_at_curve *last,
+			   struct interp_contour_point *ret)
 {
 	const struct interp_seg s =
 		i < p->head->nsegs ? p->segs[i] :
@@ -115,14 +126,24 @@ bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
 	double part;
 
 	*ret = (struct interp_contour_point) { { 0 }, { 0 } };
-	if (s.kind >= INTERP_BEGIN || s.kind == INTERP_PAIR ||
-	    !interp_program_seg_ok(p, i, &s))
+	if (s.kind >= INTERP_BEGIN || !interp_program_seg_ok(p, i, &s))
 		return false;
 	part = fmin(fmax(s_mm / s.length_mm, 0), 1);
 	along_line(p, i, &s, part, ret);
 	if (s.kind == INTERP_ARC)
-		along_arc(p, &s, part, ret);
+		along_arc(p, &s, p->arcs[s.arg], part, ret);
+	if (s.kind == INTERP_PAIR)
+		along_pair(p, &s, part, ret);
 	return s.kind != INTERP_CURVE || along_curve(p, &s, part, last, ret);
+}
+
+bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
+		       struct interp_at_curve *last,
+		       struct interp_contour_point *ret)
+{
+	*ret = (struct interp_contour_point) { { 0 }, { 0 } };
+	return i < p->head->nsegs && p->segs[i].kind != INTERP_PAIR &&
+	       interp_program_any_at(p, i, s_mm, last, ret);
 }
 
 /* The last segment with a length that begins at @u or before it. */

@@ -47,6 +47,7 @@ struct interp_build_word {
 	bool rapid;
 	uint8_t ends;			/* INTERP_SEG_PROBE, _HALF or _LIMIT; 0:
 					 * it ends at its end */
+	bool out;			/* it leaves what a cycle has cut */
 	char cond_letter;		/* 0: none */
 	uint32_t cond_number;
 	const struct interp_tech *tech;	/* of that condition, copied; NULL:

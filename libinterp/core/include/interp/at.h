@@ -39,6 +39,14 @@ bool interp_program_at(const struct interp_program *p, uint32_t i, double s_mm,
 		       struct interp_at_curve *last,
 		       struct interp_contour_point *ret);
 
+/**
+ * interp_program_any_at() - the same, and for two contours at once: both at the
+ * same share of their length.
+ */
+bool interp_program_any_at(const struct interp_program *p, uint32_t i,
+			   double s_mm, struct interp_at_curve *last,
+			   struct interp_contour_point *ret);
+
 /* Both belong to the caller. */
 struct interp_at_path {
 	const struct interp_program *program;

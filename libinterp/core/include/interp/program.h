@@ -127,6 +127,9 @@ enum interp_aux {
  * less on one side of it than on the other.  The gap servo does not. */
 #define INTERP_SEG_STAND	0x10
 
+/* Positioned out of what a cycle has cut: a short there is no collision. */
+#define INTERP_SEG_OUT		0x20
+
 struct interp_seg {
 	double s_mm;			/* place of its first node on the
 					 * path */
