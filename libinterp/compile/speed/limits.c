@@ -35,20 +35,30 @@ static void add_level(struct levels *l, double at)
 	l->at[l->n++] = at;
 }
 
+/* However small a corner is, a rounding hides the bend of short lines.  Over a
+ * window of so many tolerances it does not. */
+static void windows(struct pass *w)
+{
+	const uint32_t path = w->ways.xyz ? w->ways.xyz : UINT32_MAX;
+	const double mm = larger(PASS_WINDOW * w->corner_mm,
+				 PASS_FAR * pass_along_tol(w, path));
+
+	for (int k = 0; k < PASS_WINDOWS; k++)
+		w->windows[k].mm = mm * (1 << k);
+	w->short_mm = PASS_LONG * mm;
+}
+
 static void begin(struct pass *w, const struct interp_limits *l,
 		  const struct interp_program *p, struct interp_seg *segs)
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
 			     .points_per_s = l->points_per_s,
-			     .short_mm = PASS_LONG * PASS_WINDOW * l->corner_mm,
 			     .n = p->head->naxes, .end = p->head->nsegs - 1,
 			     .a_least_mm_s2 = INFINITY,
 			     .j_least_mm_s3 = INFINITY,
 			     .a_linear_mm_s2 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
-	for (int k = 0; k < PASS_WINDOWS; k++)
-		w->windows[k].mm = PASS_WINDOW * l->corner_mm * (1 << k);
 	for (uint32_t j = 0; j < w->n; j++) {
 		const uint8_t axis = p->head->column[j];
 		const struct interp_axis_limits *m = &l->machine->axis[axis];
@@ -71,6 +81,7 @@ static void begin(struct pass *w, const struct interp_limits *l,
 			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
 						    m->a_max_mm_s2);
 	}
+	windows(w);
 }
 
 /* Down to a level. */

@@ -14,7 +14,7 @@
 
 /*
  * A curve of short lines is looked at over windows of so many corners to each
- * side, and no less than PASS_NEAR tolerances.  Each window is twice as wide as
+ * side, and no less than PASS_FAR tolerances.  Each window is twice as wide as
  * the one before.
  */
 #define PASS_WINDOW	20
@@ -23,6 +23,7 @@
 /* A line that is so many tolerances long is turned only a little by a
  * rounding. */
 #define PASS_NEAR	20
+#define PASS_FAR	100
 
 /* The straight line from one node to another. */
 struct chord {
