@@ -12,6 +12,7 @@
 #define EDMD_CROSSING_H
 
 #include "cycle.h"
+#include "shm.h"
 
 #include <ck_ring.h>
 
@@ -21,7 +22,7 @@
 struct program {
 	uint32_t n;			/* of program.<n> */
 	uint64_t key;			/* of all its bytes; never 0 */
-	uint64_t stamp;			/* of its file; 0: it changed */
+	struct shm_stamp stamp;		/* of its file; none: it changed */
 	const void *block;
 	size_t bytes;
 	struct interp_cursor cursor;

@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sysexits.h>
 #include <unistd.h>
 
@@ -90,26 +91,34 @@ int options_config(const struct options *o, struct machine_config *c)
 }
 
 /* The readers of tables and dialects are not in this program, but in the one
- * beside it.  Does not return, if that is there. */
-static void check_beside(const char *config)
+ * beside it.  Does not return, if that is there.  Return: why they were not
+ * read. */
+static const char *check_beside(const char *config)
 {
 	char path[PATH_MAX];
 	const ssize_t n = readlink("/proc/self/exe", path, sizeof(path) - 6);
+	struct stat st;
 
-	if (n <= 0)
-		return;
-	memcpy(path + n, "-jobs", 6);
-	execl(path, path, "--check", "--config", config, (char *)NULL);
+	/* A pipe gives its text once. */
+	if (stat(config, &st) < 0 || !S_ISREG(st.st_mode))
+		return "it is not a file that can be read twice";
+	if (n > 0) {
+		memcpy(path + n, "-jobs", 6);
+		execl(path, path, "--check", "--config", config, (char *)NULL);
+	}
+	return "no edmd-jobs beside edmd";
 }
 
 int options_check(const struct options *o)
 {
+	const char *why;
+
 	if (!o->config) {
 		printf("built-in machine: good\n");
 		return EX_OK;
 	}
-	check_beside(o->config);
+	why = check_beside(o->config);
 	printf("%s: good; its technology table and its dialect were not read: "
-	       "no edmd-jobs beside edmd\n", o->config);
+	       "%s\n", o->config, why);
 	return EX_OK;
 }

@@ -81,8 +81,8 @@ struct program *program_open(const struct machine_config *c, uint32_t n)
 		program_close(p);
 		return NULL;
 	}
-	if (p->stamp != shm_program_stamp(c->name, n))
-		p->stamp = 0;
+	if (!shm_is_stamp(&p->stamp, c->name, n))
+		p->stamp.inode = 0;
 	program_keep(p);
 	p->key = key_of(p->block, p->bytes);
 	return p;
@@ -111,7 +111,7 @@ static struct program *ahead_or_open(const struct machine_config *c,
 	struct program *p = *ahead;
 
 	*ahead = NULL;
-	if (p && p->stamp && p->stamp == shm_program_stamp(c->name, n)) {
+	if (p && shm_is_stamp(&p->stamp, c->name, n)) {
 		p->n = n;
 		log_line(LOG_INFO, "program: %u was copied ahead", n);
 		return p;

@@ -7,6 +7,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <sodium.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +31,7 @@ struct compiler {
 	char *text;			/* that was read */
 	struct interp_build *build;
 	struct compiler_result result;
+	atomic_bool over;		/* the thread needs nothing any more */
 	compiler_done_fn done;
 	void *arg;
 };
@@ -284,6 +286,7 @@ static void *compiler_main(void *arg)
 	uint64_t one = 1;
 
 	compiler_work(c);
+	atomic_store(&c->over, true);
 	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
 	if (write(c->fd, &one, sizeof(one)) != sizeof(one))
 		abort();
@@ -356,7 +359,7 @@ void *compiler_destroy(struct compiler *c)
 {
 	void *arg;
 
-	if (!c)
+	if (!c || !atomic_load(&c->over))
 		return NULL;
 	arg = c->arg;
 	pthread_join(c->thread, NULL);

@@ -106,11 +106,15 @@ void compiler_forget(struct compiler_result *r);
 void compiler_take_out(struct compiler_result *r);
 
 /**
- * compiler_destroy() - give up: wait for the thread; @done is not called.
+ * compiler_destroy() - the service ends; @done is not called.
+ *
+ * A long text takes minutes, and nobody commands the machine while a service
+ * that ends waits.  So a thread that still works goes on until the process
+ * ends, and what was lent to it has to stay.
  *
  * Not for one whose @done was called: that one frees itself. NULL is allowed.
  *
- * Return: the @arg of compiler_start().
+ * Return: the @arg of compiler_start(); NULL: the thread still works.
  */
 void *compiler_destroy(struct compiler *c);
 

@@ -323,8 +323,11 @@ void load_begin(struct jobs *j, int64_t now_us)
 
 void load_fini(struct jobs *j)
 {
-	compiler_destroy(j->queue.compile);
+	const bool over = compiler_destroy(j->queue.compile) ||
+			  !j->queue.compile;
+
 	j->queue.compile = NULL;
-	free(j->queue.next_text);
+	if (over)
+		free(j->queue.next_text);
 	j->queue.next_text = NULL;
 }

@@ -144,8 +144,11 @@ static void make_plain(char *json)
 {
 	char *to = json;
 
-	plain_copy(json, strlen(json) + 1, json);
-	for (const char *at = json; *at; to++) {
+	/* Most rows are plain to their end. */
+	while (*to >= ' ' && *to < 0x7f && *to != '\\')
+		to++;
+	plain_copy(to, strlen(to) + 1, to);
+	for (const char *at = to; *at; to++) {
 		if (at[0] != '\\') {
 			*to = *at++;
 		} else if (at[1] == '"' || at[1] == '\\') {

@@ -344,9 +344,15 @@ void submit_take(void *arg, const struct jobs_lcm_chunk *c)
 
 void submit_fini(struct jobs *j)
 {
+	bool over = true;
+
 	for (int i = 0; i < UPLOAD_SLOTS; i++) {
-		free(compiler_destroy(j->check[i]));
+		void *check = compiler_destroy(j->check[i]);
+
+		over = over && (check || !j->check[i]);
+		free(check);
 		j->check[i] = NULL;
 	}
-	upload_fini(&j->uploads);
+	if (over)
+		upload_fini(&j->uploads);
 }

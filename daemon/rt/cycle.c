@@ -209,6 +209,15 @@ static void sum_up(struct cycle *c, bool running)
 	flush_watch(c);
 }
 
+/* Where it is on its way back to a cut there is none, nor in the cycle that
+ * ends the way. */
+static bool may_spark(const struct cycle *c)
+{
+	return state_duty[c->state].power && !c->job.power_off &&
+	       c->fault.latched == 0 &&
+	       (escape_is_out(&c->escape) || !leaves_cut(c));
+}
+
 /* Does a command move the axes?  Then their compensation may move them too. */
 static bool moves_by_will(const struct cycle *c)
 {
@@ -220,8 +229,7 @@ static bool moves_by_will(const struct cycle *c)
 static void give(struct cycle *c, struct io_outputs *out)
 {
 	/* M5 takes effect in its own cycle, also when a way back meets it. */
-	c->out.power = state_duty[c->state].power && !c->job.power_off &&
-		       c->fault.latched == 0;
+	c->out.power = may_spark(c);
 	c->out.sense = c->state == STATE_PROBE;
 	if (c->loaded) {
 		const struct interp_cond *cond =

@@ -169,16 +169,26 @@ int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 	return 0;
 }
 
-/* No two living files have one inode, nor one after the other the same time. */
-uint64_t shm_program_stamp(const char *machine, uint32_t n)
+struct shm_stamp shm_program_stamp(const char *machine, uint32_t n)
 {
 	char path[OBJECT_PATH_MAX];
 	struct stat st;
 
 	if (program_path(path, machine, n) < 0 || lstat(path, &st) < 0)
-		return 0;
-	return ((uint64_t)st.st_ino << 32 ^ (uint64_t)st.st_mtim.tv_sec << 30 ^
-		(uint64_t)st.st_mtim.tv_nsec) | 1;
+		return (struct shm_stamp) { .inode = 0 };
+	return (struct shm_stamp) {
+		.inode = st.st_ino, .s = st.st_mtim.tv_sec,
+		.ns = st.st_mtim.tv_nsec,
+	};
+}
+
+bool shm_is_stamp(const struct shm_stamp *stamp, const char *machine,
+		  uint32_t n)
+{
+	const struct shm_stamp now = shm_program_stamp(machine, n);
+
+	return now.inode && now.inode == stamp->inode && now.s == stamp->s &&
+	       now.ns == stamp->ns;
 }
 
 void shm_program_unmap(const void *block, size_t bytes)

@@ -523,12 +523,18 @@ void shm_program_unmap(const void *block, size_t bytes);
 /** SHM_PROGRAM_AHEAD - a name until it is known which n it will have. */
 #define SHM_PROGRAM_AHEAD	UINT32_MAX
 
-/**
- * shm_program_stamp() - a number for the file that has the name n now.
- *
- * Another name of the same file has the same number.  Return: 0: there is none.
- */
-uint64_t shm_program_stamp(const char *machine, uint32_t n);
+/* A file, whatever its names are.  No two that are there have one inode, and no
+ * two after each other the same time too.  inode 0: none. */
+struct shm_stamp {
+	uint64_t inode;
+	int64_t s, ns;			/* when it was made */
+};
+
+/** shm_program_stamp() - of the file that has the name n now. */
+struct shm_stamp shm_program_stamp(const char *machine, uint32_t n);
+/** shm_is_stamp() - has the name n now the file of @stamp? */
+bool shm_is_stamp(const struct shm_stamp *stamp, const char *machine,
+		  uint32_t n);
 void shm_program_remove(const char *machine, uint32_t n);
 
 /** shm_close() - unmap any of the above; @map may be NULL. */

@@ -132,6 +132,15 @@ def test_edmd_checks_the_files_that_its_machine_file_names(tmp_path):
     assert code == 66 and "no.tech" in told and "no.ini" in told
 
 
+def test_edmd_says_that_it_cannot_read_a_pipe_twice():
+    p = subprocess.run([PROGRAM.replace("edmsim", "edmd"), "--config",
+                        "/dev/stdin", "--check"], capture_output=True,
+                       input="[machine]\nname = m\n[tech]\ntable = no.tech\n",
+                       text=True, timeout=20)
+    assert p.returncode == 0
+    assert "were not read: it is not a file that can be read twice" in p.stdout
+
+
 def test_a_bad_table_is_refused_with_its_place(tmp_path):
     bad = table(tmp_path, "# one\ncondition,servo_v,open_v\nC120,70,\n")
     r = edmsim.run("--machine", MACHINE, "--tech", bad, "--check",

@@ -4,12 +4,13 @@
 The machine's joints, the great circle and the rotations are written anew here;
 the curves are geomdl's.
 """
+import csv
 import functools
 import math
 
 import numpy as np
 import pytest
-from edmsim import AXES, ROOT, pulses, report, run
+from edmsim import AXES, ROOT, done, pulses, report, run
 from geomdl import NURBS
 
 INI = (ROOT / "examples/five-axis.ini").read_text()
@@ -69,6 +70,21 @@ def test_next_to_a_pole_f_is_kept_and_c_turns_one_way():
     assert 54 < once["virtual_s"] < 58
     both = report("--there-and-back", *machine, text=text)
     assert both["pulses"]["C"] == 3 * once["pulses"]["C"]
+
+
+def test_past_a_pole_c_keeps_its_speed(tmp_path):
+    """Within a percent: of a narrower peak, a rounding explains as much."""
+    text = ("F140\nG0 X0 Y0 Z-5 A0.00008 C27.168\nG43.5\n"
+            "G1 Z-6.625 I0.0082033554 J0.0055285474 K1\n"
+            "G1 Y1.047 I0.0000006163 J0.0000112722 K1\nM2\n")
+    done("--dry-run", "--there-and-back", "--machine",
+         ROOT / "examples/machine-five-axis.ini", "--trace",
+         tmp_path / "t.csv", text=text)
+    with open(tmp_path / "t.csv") as f:
+        c = np.array([float(row["C"]) for row in csv.DictReader(f)])
+    ms = 20
+    fastest = np.abs(c[ms:] - c[:-ms]).max() / ms * 1e3
+    assert 59 < fastest < 60.6
 
 
 def angle_deg(a, b):

@@ -3,6 +3,7 @@
 
 import json
 import random
+import resource
 
 from rig import CHUNK, QUICK_JOB, SLOW_JOB, Client
 
@@ -236,3 +237,29 @@ def test_a_job_with_hold_waits_for_start(machine):
     assert c.job("patient")["state"] == "ready"
     assert c.ask("start").code == 0
     c.job_where("patient", "done")
+
+
+def test_a_text_that_is_compiled_for_long_holds_no_end_up(machine):
+    """The same text, to its end and not: the processor's time tells."""
+    text = (b"G21 G90\nG1 X1 F60\nM98 P1000 L9999\nM30\n"
+            b"O1000\nM98 P2000 L9999\nM99\nO2000\nG90\nM99\n")
+    c, used = machine.client, []
+    for is_whole in (True, False):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        if used:
+            machine.start_jobs()
+            c.status_where(lambda s: s.daemon == "ok")
+        chunks = c.chunks(text, "long")
+        c.send(chunks)
+        if is_whole:
+            a = c.heard(lambda chunks=chunks: c.verdict(chunks), 60)
+            assert a.code == 65 and "32000000 lines" in a.reason
+        else:
+            c.heard(lambda chunks=chunks: [
+                a for a in c.acks_to(chunks[0].seq)
+                if a.reason == "whole; compiling"])
+        assert machine.end("jobs") == 0
+        used.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+                    - before)
+    assert used[1] < used[0] / 2, used
+    machine.start_jobs()

@@ -8,15 +8,59 @@
  */
 #include "axis_track.h"
 
+#include "path/place.h"
+
 #define ROUNDS	40
 /* An axis of little jerk goes at half a mm a second. */
 #define CYCLES	1000000
 
 static uint64_t seed;
 
+/* Into segment @i; an action has no speed. */
+static double into_mm_s(const struct interp_program *p, uint32_t i, int toward)
+{
+	if (p->segs[i].kind >= INTERP_BEGIN ||
+	    p->segs[i - (uint32_t)toward].kind >= INTERP_BEGIN)
+		return INFINITY;
+	return toward > 0 ? interp_limits_into(p, i) :
+			    interp_limits_back_into(p, i);
+}
+
+/* Each node that was passed since @was: its speed, between those of both
+ * cycles.  A jerk bends that by this much. */
+static void check_nodes(const struct rig *r, const struct cycle *was)
+{
+	const struct cycle *c = &r->c;
+	const struct interp_program *p = &c->cursor.p;
+	const double from = place_mm(was), way = place_mm(c) - from;
+	const double v[2] = { was->mover.v_mm_s, c->mover.v_mm_s };
+	const double bent = c->ahead.l.j_max_mm_s3 * PERIOD_S * PERIOD_S / 4;
+	const int toward = c->cursor.index > was->cursor.index ? 1 : -1;
+
+	for (uint32_t i = was->cursor.index; i != c->cursor.index;
+	     i += (uint32_t)toward) {
+		const uint32_t into = i + (uint32_t)toward;
+		const double at = p->segs[toward > 0 ? into : i].s_mm;
+		const double part = way == 0 ? 1 :
+				    fmin(fmax((at - from) / way, 0), 1);
+		const double v2 = v[0] * v[0] +
+				  (v[1] * v[1] - v[0] * v[0]) * part;
+
+		if (sqrt(v2) > into_mm_s(p, into, toward) + bent + 1e-6)
+			fail_msg("segment %u is entered at %g of %g mm/s",
+				 (unsigned)into, sqrt(v2),
+				 into_mm_s(p, into, toward));
+	}
+}
+
 static void watch(struct rig *r, struct track *k, double gap_v)
 {
+	static struct cycle was;
+
+	was = r->c;
 	step(r, gap_v);
+	if (r->c.config.dry_run)
+		check_nodes(r, &was);
 	note(k, r);
 	if (is_whole(k))
 		check_axes(k, r);

@@ -221,6 +221,13 @@ static void check_plc(const struct rig *r)
 	assert_false(state_duty[r->c.state].running);
 }
 
+/* At the end of a rapid a cut may begin. */
+static bool is_on_rapid(const struct interp_cursor *at)
+{
+	return at->seg.flags & INTERP_SEG_RAPID &&
+	       at->s_mm < at->seg.length_mm - 2e-9;
+}
+
 /* No sparks but in a cut, and none that somebody or something forbids. */
 static void check_power(const struct rig *r)
 {
@@ -232,6 +239,7 @@ static void check_power(const struct rig *r)
 	assert_false(c->hold.moving);
 	assert_false(r->in.estop || r->in.lost || c->config.dry_run);
 	assert_false(c->job.power_off);
+	assert_true(escape_is_out(&c->escape) || !is_on_rapid(&c->cursor));
 	assert_int_equal(c->fault.first, FAULT_NONE);
 	powered++;
 }

@@ -50,6 +50,41 @@ static void it_creeps_back_no_farther_than_a_retract_may_go(void **st)
 	rig_free(&r);
 }
 
+/* The gap stays narrow.  In short lines too, and after a stop among them. */
+static void narrow_at_the_first_place_of_a_cut_it_stays_in_the_cut(void **st)
+{
+	const struct cycle_config k = windowed();
+
+	(void)st;
+	for (int i = 0; i < 3; i++) {
+		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+		struct rig r;
+
+		rapid_to(b, -1);
+		for (int n = 1; n <= 100 && i > 0; n++) {
+			cut_to(b, -1 - n * 0.003);
+			if (i == 2 && n == 10)
+				action(b, INTERP_DWELL, 1);
+		}
+		cut_to(b, -5);
+		rig_load(&r, b, &k);
+		assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+		until(&r, STATE_APPROACH, OPEN_V, 1000);
+		until(&r, STATE_ERODE, SPARKING_V, 100);
+		cut_until(&r, 1 + i * 0.1);
+		for (int n = 0; n < 2000; n++) {
+			step(&r, 20);
+			assert_int_equal(r.c.state, STATE_ERODE);
+			assert_true(r.out.power);
+			assert_true(place(&r) >= 1);
+		}
+		assert_near(place(&r), 1, 1e-8);
+		assert_true(r.c.feed_mm_s == 0);
+		cut_until(&r, 1.5);
+		rig_free(&r);
+	}
+}
+
 static void a_window_that_stands_on_its_head_is_no_window(void **st)
 {
 	struct rig r;
@@ -400,6 +435,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(outside_the_window_it_feeds_in_proportion_inside_it_stands),
 		cmocka_unit_test(it_creeps_back_no_farther_than_a_retract_may_go),
+		cmocka_unit_test(
+			narrow_at_the_first_place_of_a_cut_it_stays_in_the_cut),
 		cmocka_unit_test(a_window_that_stands_on_its_head_is_no_window),
 		cmocka_unit_test(a_servo_changes_its_speed_by_its_acceleration),
 		cmocka_unit_test(a_retract_brakes_onto_its_limit),

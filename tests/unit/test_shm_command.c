@@ -5,11 +5,13 @@
 #include "shm.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -209,6 +211,40 @@ static void a_program_with_holes_is_not_read(void **state)
 					    SHM_PROGRAM_MAX + 1), -EFBIG);
 }
 
+static struct shm_stamp stamp_at(uint32_t n, int64_t s)
+{
+	const struct timespec times[2] = { { .tv_sec = s }, { .tv_sec = s } };
+	char path[96];
+	void *block;
+
+	assert_int_equal(shm_program_create(&block, machine, n, 8), 0);
+	shm_program_unmap(block, 8);
+	snprintf(path, sizeof(path), "/dev/shm/edmd.%s.program.%u", machine, n);
+	assert_int_equal(utimensat(AT_FDCWD, path, times, 0), 0);
+	return shm_program_stamp(machine, n);
+}
+
+/* Inodes and seconds both go up: their sum or difference says nothing. */
+static void a_file_of_another_inode_or_time_is_another(void **state)
+{
+	const struct shm_stamp old = stamp_at(8, 4000);
+	struct shm_stamp now;
+
+	(void)state;
+	assert_true(shm_is_stamp(&old, machine, 8));
+	assert_false(shm_is_stamp(&old, machine, 9));
+	now = stamp_at(9, 0);
+	stamp_at(9, (int64_t)(1000 ^ old.inode ^ now.inode) << 2);
+	assert_false(shm_is_stamp(&old, machine, 9));
+	for (int64_t s = 3900; s < 4100; s++) {
+		stamp_at(9, s);
+		assert_false(shm_is_stamp(&old, machine, 9));
+	}
+	shm_program_remove(machine, 8);
+	assert_false(shm_is_stamp(&old, machine, 8));
+	shm_program_remove(machine, 9);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -216,6 +252,7 @@ int main(void)
 		cmocka_unit_test(who_sends_no_command_is_cut_off),
 		cmocka_unit_test(the_last_ids_are_remembered_through_a_restart),
 		cmocka_unit_test(a_program_is_read_as_written_and_kept_while_mapped),
+		cmocka_unit_test(a_file_of_another_inode_or_time_is_another),
 		cmocka_unit_test(a_program_is_there_when_it_is_named),
 		cmocka_unit_test(a_program_with_holes_is_not_read),
 	};

@@ -7,6 +7,7 @@
 #include "path/pace.h"
 #include "path/place.h"
 #include "path/timed.h"
+#include "path/walk.h"
 
 #include "interp/smaller.h"
 
@@ -134,12 +135,21 @@ static double erode_forward(struct cycle *c, double error_mm_s)
 	return go_toward(c, s->asked_mm_s);
 }
 
+/* No farther than a retract may go, and not off the cut: there is no power. */
+static double creep_to_mm(const struct cycle *c)
+{
+	const double least = c->far_mm - retract_limit_mm(c);
+
+	return escape_is_out(&c->escape) ? least :
+	       larger(least, walk_cut_mm(c, least) + MOVER_ONTO_MM);
+}
+
 static double erode_back(struct cycle *c, double error_mm_s)
 {
 	c->servo.asked_mm_s = 0;
 	integrate(c, error_mm_s, cut_limit(c, c->gap.feed_max_mm_s));
 	return go_back(c, smaller(-error_mm_s, c->gap.creep_mm_s),
-		       c->far_mm - retract_limit_mm(c));
+		       creep_to_mm(c));
 }
 
 double law_erode(struct cycle *c)

@@ -5,9 +5,9 @@
  * Above the window it feeds forward at gain * (v - high) plus an integral with
  * the reset time integral_s.  Inside the window it stands and keeps the
  * integral.  Below the window it creeps back at gain * (v - low), no faster
- * than creep_mm_s and no farther than a retract may go.  The integral stays
- * between 0 and the limit of the feed.  It does not grow while the feed is at
- * its limit, or while a feed is asked for but not walked.
+ * than creep_mm_s, no farther than a retract may go, and not off the cut.  The
+ * integral stays between 0 and the limit of the feed.  It does not grow while
+ * the feed is at its limit, or while a feed is asked for but not walked.
  *
  * When the values in force change, the feed makes no step: the difference is
  * kept and fades.

@@ -7,6 +7,10 @@
  * at once, to a stand, comes to it at its speed or less: braking for a slower
  * one beyond, it is passed with the brake on.  Braking at once therefore meets
  * all of them together, and is what is left if no plan is good.
+ *
+ * One that is passed on the way up, before it is too slow, is missed all the
+ * same if letting go of the acceleration comes too late for it: it may be slow
+ * because of what is behind it, and nodes that are no slower are not looked at.
  */
 #include "path/lookahead.h"
 #include "path/laws.h"

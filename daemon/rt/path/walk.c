@@ -12,6 +12,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Segments looked at, back from here. */
+#define BEHIND_MAX	512
+
 bool walk_rejoins(const struct cycle *c)
 {
 	return place_mm(c) < c->job.rejoin_mm - 2 * MOVER_ONTO_MM;
@@ -35,13 +38,16 @@ bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s)
 	       (s->kind == INTERP_MCODE && mcode_again(c, i, s->arg));
 }
 
+static bool is_at_end(const struct interp_cursor *at)
+{
+	return at->s_mm >= at->seg.length_mm - MOVER_ONTO_MM &&
+	       at->index + 1 < at->p.head->nsegs;
+}
+
 /* The segment that is under way; at its end, the next one. */
 static const struct interp_seg *seg_ahead(const struct interp_cursor *at)
 {
-	const uint32_t next = at->index + 1;
-
-	return at->s_mm >= at->seg.length_mm - MOVER_ONTO_MM &&
-	       next < at->p.head->nsegs ? &at->p.segs[next] : &at->seg;
+	return is_at_end(at) ? &at->p.segs[at->index + 1] : &at->seg;
 }
 
 bool walk_needs_wire(const struct cycle *c)
@@ -60,6 +66,23 @@ enum walk_ahead walk_ahead(const struct cycle *c)
 	if (s->flags & INTERP_SEG_SENSED)
 		return AHEAD_PROBE;
 	return walk_is_cut(c, s) ? AHEAD_CUT : AHEAD_FREE;
+}
+
+double walk_cut_mm(const struct cycle *c, double least_mm)
+{
+	const struct interp_program *p = &c->cursor.p;
+	uint32_t i = c->cursor.index + is_at_end(&c->cursor);
+
+	for (int n = 0; n < BEHIND_MAX && i > 0 && p->segs[i].s_mm > least_mm;
+	     n++) {
+		const struct interp_seg *s = &p->segs[i - 1];
+
+		if (!interp_program_seg_ok(p, i - 1, s) ||
+		    (s->kind < INTERP_BEGIN && !walk_is_cut(c, s)))
+			break;
+		i--;
+	}
+	return p->segs[i].s_mm;
 }
 
 static bool beyond(const struct cycle *c)

@@ -50,6 +50,13 @@ bool walk_is_cut(const struct cycle *c, const struct interp_seg *s);
 bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s);
 enum walk_ahead walk_ahead(const struct cycle *c);
 
+
+/**
+ * walk_cut_mm() - the first place of the cut that is ahead or under way; if it
+ * begins before @least_mm, any place before that.
+ */
+double walk_cut_mm(const struct cycle *c, double least_mm);
+
 /** walk_by() - @ds_mm along the path; updates out.target, feed and sums. */
 enum walk_result walk_by(struct cycle *c, double ds_mm);
 

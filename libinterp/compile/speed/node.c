@@ -19,6 +19,7 @@
 
 /* of the windows, to see the direction of a line itself */
 #define AROUND		1
+#define PEAK		0
 
 /* If all of a turn but this share is more than a rounding, a wider window shows
  * no more. */
@@ -462,6 +463,27 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 	return smaller(corner(w, &c, w->n), step(w, &c, w->n));
 }
 
+/* A peak of the share of an axis beside the path: over a shorter way it is more
+ * than over the longer one, by more than both are rounded. */
+COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i, double along,
+			       struct chord *around, uint32_t n)
+{
+	struct around *k = &w->windows[PEAK];
+	struct chord c;
+
+	look_around(w, i, k);
+	chord_by(w, k->behind, k->ahead, around->h.along, &c, n);
+	for (uint32_t j = 0; j < n; j++) {
+		double *rate = &around->h.rate[j];
+		const double off = pass_off(w, j, along, fabs(*rate));
+
+		if (!(c.h.along >> j & 1) &&
+		    fabs(c.h.rate[j]) - fabs(*rate) > (w->tol[j] + off) *
+					(c.per_mm + around->per_mm))
+			*rate = c.h.rate[j];
+	}
+}
+
 /*
  * On a short line the share of an axis is rounded.  If the share is the same as
  * on the ways around the line, but for a rounding, then the share of those ways
@@ -481,6 +503,8 @@ COLUMNS_INLINE void line_rates(struct pass *w, uint32_t i,
 	chord_by(w, k->behind, k->ahead, h->along, &c, n);
 	around = c.mm > 0 ? c.h.rate : h->rate;
 	along = pass_along_tol(w, h->along);
+	if (c.mm > 0 && ~h->along & ((1u << n) - 1))
+		find_peaks(w, i, along, &c, n);
 	ret->v_mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++) {
 		/* So far the length and the axis may be off, if the share is
