@@ -344,6 +344,26 @@ static void a_long_line_counts_as_many(void **state)
 	nc_done(&n);
 }
 
+/* A value costs more than a comment: it is four times as soon over. */
+static void a_long_expression_counts_as_more(void **state)
+{
+	static const char *const lines[] = { "(%0*d)", "#1=[%0*d]" };
+	struct nc_read n = nc_ready();
+	char format[100], text[5000];
+
+	(void)state;
+	n.dialect = interp_dialect_by_name("fanuc-sinker");
+	for (int i = 0; i < 2; i++) {
+		n.o.executed_max = 100000;
+		snprintf(format, sizeof(format), "M98 P1 L1000\nM2\nO1\n%s\n"
+			 "G4 P0\nM99\n", lines[i]);
+		snprintf(text, sizeof(text), format, 4000, 0);
+		nc_read_bytes(&n, text, strlen(text));
+		assert_int_equal(n.rc, i == 0 ? 0 : -EINVAL);
+		nc_done(&n);
+	}
+}
+
 /* Also where it is searched for a label, and where variables are in it. */
 static void a_long_line_of_a_loop_counts_as_many(void **state)
 {
@@ -384,6 +404,7 @@ int main(void)
 		cmocka_unit_test(a_line_of_just_the_limit_is_taken),
 		cmocka_unit_test(runaway_repeats_are_bounded),
 		cmocka_unit_test(a_long_line_counts_as_many),
+		cmocka_unit_test(a_long_expression_counts_as_more),
 		cmocka_unit_test(a_long_line_of_a_loop_counts_as_many),
 	};
 

@@ -87,7 +87,7 @@ static int search(struct macro_line *l, struct place from, const uint8_t *stop,
 		const uint8_t *end = nc_line_end(from.at, r->end);
 
 		err = count(l, l->p);
-		nc_count_bytes(r, (size_t)(end - from.at));
+		nc_count_bytes(r, (size_t)(end - from.at), NC_COUNTED_BYTES);
 		if (from.at != r->frame[r->depth].entry &&
 		    nc_label_at(r, from.at, end))
 			return err;

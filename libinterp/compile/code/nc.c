@@ -69,11 +69,12 @@ static void reset_modes(struct nc_reader *r)
 
 static int refuse_executed(struct nc_reader *r)
 {
-	char wanted[128];
+	char wanted[160];
 
 	snprintf(wanted, sizeof(wanted), "up to %u, with fewer repeats (L); a "
-		 "long line counts once more for each %d bytes",
-		 r->executed_max, NC_COUNTED_BYTES);
+		 "long line counts once more for each %d bytes, %d with "
+		 "variables", r->executed_max, NC_COUNTED_BYTES,
+		 NC_COUNTED_MACRO);
 	return nc_refuse_at(r, r->line, wanted,
 			    "more than %u lines carried out", r->executed_max);
 }

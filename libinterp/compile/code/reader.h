@@ -256,12 +256,13 @@ struct nc_reader {
 };
 
 /* A text of a few long lines that are repeated may not take longer than one of
- * many short lines. */
+ * many short lines.  Expressions take longer than words and comments. */
 #define NC_COUNTED_BYTES	64
+#define NC_COUNTED_MACRO	16
 
-static inline void nc_count_bytes(struct nc_reader *r, size_t bytes)
+static inline void nc_count_bytes(struct nc_reader *r, size_t bytes, size_t as)
 {
-	r->executed += (uint32_t)(bytes / NC_COUNTED_BYTES);
+	r->executed += (uint32_t)(bytes / as);
 }
 
 static inline bool nc_has(const struct nc_reader *r, enum nc_slot slot)

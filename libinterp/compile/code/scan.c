@@ -614,7 +614,7 @@ static int begin_line(struct nc_reader *r)
 		r->at = p;
 		return err;
 	}
-	nc_count_bytes(r, (size_t)(end - p));
+	nc_count_bytes(r, (size_t)(end - p), NC_COUNTED_MACRO);
 	r->mapped = true;
 	r->line_at = r->macro->text;
 	r->stop = r->line_at + r->macro->used;
@@ -653,7 +653,7 @@ int nc_scan_line(struct nc_reader *r)
 		add_groups(b);
 	if (r->mapped)
 		return 0;
-	nc_count_bytes(r, (size_t)(p - r->line_at));
+	nc_count_bytes(r, (size_t)(p - r->line_at), NC_COUNTED_BYTES);
 	r->at = nc_line_next(p, r->end);
 	return 0;
 }
