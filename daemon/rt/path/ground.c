@@ -54,7 +54,7 @@ static double most_rate(const struct interp_program *p,
 
 /* Return: 0, it stands at @point; else so far on, at least, INFINITY: never. */
 static double way_mm(const struct interp_cursor *at, uint32_t i,
-		     const struct interp_contour_point *point)
+		     double near_by, const struct interp_contour_point *point)
 {
 	const struct interp_program *p = &at->p;
 	const struct interp_seg *s = &p->segs[i];
@@ -63,12 +63,13 @@ static double way_mm(const struct interp_cursor *at, uint32_t i,
 	for (uint32_t j = 0; j < p->head->naxes; j++) {
 		const uint8_t axis = p->head->column[j];
 		const double pulse = p->head->pulse_mm[axis];
-		const double near = near_pulses(p, s) * pulse;
+		const double near = near_by * pulse;
 		const double off = fabs(at->pos[axis] * pulse - point->mm[j]);
-		const double rate = most_rate(p, s, axis, point->per_u[j]);
+		double rate;
 
 		if (off <= near)
 			continue;
+		rate = most_rate(p, s, axis, point->per_u[j]);
 		if (isfinite(rate))
 			most = fmax(most, (off - near * 3 / 4) / rate);
 		else
@@ -77,19 +78,39 @@ static double way_mm(const struct interp_cursor *at, uint32_t i,
 	return most > 0 || isinf(least) ? most : least;
 }
 
-static bool is_on(const struct interp_cursor *at, uint32_t i)
+/* Farther from its first node than it is long? */
+static bool is_far(const struct interp_cursor *at, uint32_t i, double near)
+{
+	const struct interp_program *p = &at->p;
+	const int64_t *node = p->nodes + (uint64_t)i * p->head->naxes;
+
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		const uint8_t axis = p->head->column[j];
+		const double off = (double)node[j] / INTERP_SUB - at->pos[axis];
+
+		if (axis <= INTERP_Z && (fabs(off) - near) *
+		    p->head->pulse_mm[axis] > p->segs[i].length_mm)
+			return true;
+	}
+	return false;
+}
+
+static bool is_on(const struct interp_cursor *at, uint32_t i,
+		  struct interp_at_curve *last)
 {
 	const struct interp_seg *s = &at->p.segs[i];
-	struct interp_at_curve last = { .open = false };
+	const double near = near_pulses(&at->p, s);
 	struct interp_contour_point point;
 	double mm = 0;
 
+	if (is_far(at, i, near))
+		return false;
 	for (int n = 0; n < LOOKS_MAX; n++) {
 		double way;
 
-		if (!interp_program_any_at(&at->p, i, mm, &last, &point))
+		if (!interp_program_any_at(&at->p, i, mm, last, &point))
 			return false;
-		way = way_mm(at, i, &point);
+		way = way_mm(at, i, near, &point);
 		if (way == 0)
 			return true;
 		if (mm >= s->length_mm)
@@ -108,6 +129,7 @@ static bool was_cut(const struct interp_seg *s)
 bool ground_is_cut(const struct cycle *c)
 {
 	const struct interp_cursor *at = &c->cursor;
+	struct interp_at_curve last = { .open = false };
 	bool left_out = false;
 	uint32_t i = at->index;
 
@@ -122,7 +144,7 @@ bool ground_is_cut(const struct cycle *c)
 			return false;
 		if (s->kind == INTERP_TIMED_END || s->kind == INTERP_TIMED)
 			left_out = s->kind == INTERP_TIMED_END;
-		else if (!left_out && was_cut(s) && is_on(at, i))
+		else if (!left_out && was_cut(s) && is_on(at, i, &last))
 			return true;
 	}
 	return false;
