@@ -59,8 +59,8 @@ static enum cycle_event look_arrive(const struct cycle *c)
 	       walk_ahead(c) == AHEAD_PROBE ? EVENT_PROBE : EVENT_NONE;
 }
 
-/* It comes back over it out of a retract or a jump, or was started in the middle
- * of a cut. */
+/* It comes back over it out of a retract or a jump, or was started in the
+ * middle of a cut. */
 static bool was_passed(const struct cycle *c)
 {
 	return place_mm(c) < c->turned_mm ||

@@ -30,6 +30,9 @@ struct dense {
 	bool cut;			/* not positioned */
 };
 
+/* Of the acceleration, round short lines whose ends are rounded. */
+#define MOST_ROUND	1.05
+
 static const double steps_mm[] = { 0.1, 0.02, 0.01, 0.005 };
 
 static double rounded(double v, int decimals)
@@ -175,20 +178,23 @@ static void with_a_rotary_axis_too(void **st)
 /* -- An axis that turns unevenly ------------------------------------------- */
 
 /* X goes @mm, and beside it B a wave of @deg, one smooth step, or to and fro
- * with sharp corners; @w_mm says how wide they are. */
+ * with sharp corners; @w_mm says how wide they are.  Beside TURN, a wave, Y
+ * goes the second half of the way. */
 struct wave {
 	double mm, deg, w_mm;
-	enum { SINE, STEP, FRO } shape;
+	enum { SINE, STEP, FRO, TURN } shape;
 };
 
 static const struct wave waves[] = {
 	{ 30, 10, 0.15, SINE }, { 30, 2, 0.33, SINE }, { 20, 0.3, 1, SINE },
 	{ 30, 20, 0.35, STEP }, { 30, 5, 0.2, FRO }, { 24, 0.4, 1, FRO },
+	{ 30, 6, 0.2, TURN },
 };
 
 /* Time of each, of that in lines of 0.2 mm. */
 static const double waves_most[] = {
-	1.016, 1.016, 1.035, 1.02, 1.005, 1.005,
+	1.03, 1.02, 1.02, 1.005, 1.005, 1.005,
+	1.015,
 };
 
 #define NWAVES	(sizeof(waves) / sizeof(waves[0]))
@@ -213,8 +219,10 @@ static struct interp_build *wave_build(const struct wave *k, double mm,
 
 	for (int i = 1; i <= n; i++) {
 		const double x = k->mm * i / n;
+		const double y = k->shape == TURN ? fmax(x - k->mm / 2, 0) : 0;
 		const double end[INTERP_NAXES] = {
-			[INTERP_X] = rounded(x, decimals),
+			[INTERP_X] = rounded(x - y, decimals),
+			[INTERP_Y] = rounded(y, decimals),
 			[INTERP_B] = rounded(wave_at(k, x) - wave_at(k, 0),
 					     decimals),
 		};
@@ -400,6 +408,66 @@ static void true_corners_are_as_slow_as_between_long_lines(void **st)
 	}
 }
 
+/* -- Corners below the rounding -------------------------------------------- */
+
+static struct interp_build *circle(double r_mm, double mm, double corner_mm)
+{
+	const struct interp_build_options o = {
+		.machine = &help_machine, .corner_mm = corner_mm,
+		.strategy = INTERP_SIMULTANEOUS,
+	};
+	struct interp_build *b = interp_build_create(&o);
+	const int n = (int)lround(ARC_MM / mm);
+	double end[INTERP_NAXES] = { 0 };
+
+	for (int i = 1; i <= n; i++) {
+		end[INTERP_X] = rounded(r_mm * sin(i * mm / r_mm), 3);
+		end[INTERP_Y] = rounded(r_mm * (1 - cos(i * mm / r_mm)), 3);
+		dense_line(b, end, true);
+	}
+	return b;
+}
+
+/* The most of the acceleration that it takes to go round. */
+static double most_round(double r_mm, double mm, double corner_mm)
+{
+	struct cycle_config c = usual_config();
+	double most = 0;
+	struct rig r;
+
+	c.dry_run = c.hold_at_end = true;
+	rig_load(&r, circle(r_mm, mm, corner_mm), &c);
+	tell(&r, CYCLE_START);
+	for (int n = 0; n < 100000 && r.c.state != STATE_HOLD; n++) {
+		step(&r, OPEN_V);
+		most = fmax(most, r.c.mover.v_mm_s * r.c.mover.v_mm_s / r_mm /
+				  1000);
+	}
+	assert_int_equal(r.c.state, STATE_HOLD);
+	rig_free(&r);
+	return most;
+}
+
+static void a_corner_below_the_rounding_shows_the_bend(void **st)
+{
+	static const double radii[] = { 0.5, 1, 2, 5 };
+
+	(void)st;
+	/* It sets the machine. */
+	interp_build_destroy(begin(INTERP_SIMULTANEOUS));
+	for (double corner_mm = 0.00003; corner_mm < 0.006; corner_mm *= 5)
+		for (int r = 0; r < 4; r++)
+			for (double mm = 0.005; mm < 0.3; mm *= 1.5) {
+				const double most = most_round(radii[r], mm,
+							       corner_mm);
+
+				if (most > MOST_ROUND)
+					fail_msg("radius %g, lines of %g mm, "
+						 "corner %g mm: %g of a_max",
+						 radii[r], mm, corner_mm, most);
+			}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -411,6 +479,7 @@ int main(void)
 		cmocka_unit_test(a_corner_jolts_an_axis_no_more_in_short_lines),
 		cmocka_unit_test(in_retracts_three_decimals_are_as_quick),
 		cmocka_unit_test(true_corners_are_as_slow_as_between_long_lines),
+		cmocka_unit_test(a_corner_below_the_rounding_shows_the_bend),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -17,8 +17,12 @@
 #include <math.h>
 
 /* Of the acceleration along the path, what a bend leaves at least.  One that
- * would need more is followed slower. */
-#define LEAST_ALONG	0.4
+ * would need more is followed slower.  More of it makes short moves quicker,
+ * such as jumps, and long ones slower. */
+#define LEAST_ALONG	0.525
+
+/* Of its jerk, what a bend may take and is not looked for. */
+#define HARDLY		0.1
 
 /* The chords from node to node over three windows. */
 struct bows {
@@ -58,21 +62,29 @@ static struct bend bend_of(const struct pass *w, const struct bows *k, int at,
 {
 	const struct chord *c = &k->chord[at];
 	const double a = c[0].h.rate[j], b = c[1].h.rate[j];
-	const double mm = (c[0].mm + c[1].mm) / 2;
+	const double mm = (c[0].way_mm + c[1].way_mm) / 2;
 	const double off = w->tol[j] + pass_off(w, j, k->along,
 						larger(fabs(a), fabs(b)));
 
 	return (struct bend) {
-		(b - a) / mm, off * (1 / c[0].mm + 1 / c[1].mm) / mm
+		(b - a) / mm, off * (1 / c[0].way_mm + 1 / c[1].way_mm) / mm
 	};
 }
 
-/* By how much the bend changes in a mm, before the node or behind it, whatever
- * is more.  INFINITY: there is no room to see that. */
-static double bend_change(struct pass *w, const struct look *l, uint32_t j)
+/* By how much the bend changes in a mm. */
+struct bend_change {
+	double most;			/* before the node or behind it,
+					 * whatever is more; INFINITY: there is
+					 * no room to see that */
+	double at;			/* at the node: from the bend before it
+					 * to that behind it */
+};
+
+static struct bend_change bend_change(struct pass *w, const struct look *l,
+				      uint32_t j)
 {
+	double most = -1, all = 0, rounding = 0, way_mm = 0;
 	struct bend here;
-	double most = -1;
 	struct bows k;
 
 	bows_of(w, l, &k);
@@ -84,12 +96,20 @@ static double bend_change(struct pass *w, const struct look *l, uint32_t j)
 		if (!(k.chord[3 * n].mm > 0))
 			continue;
 		next = bend_of(w, &k, 2 * n, j);
-		d = fabs(next.is - here.is);
+		d = next.is - here.is;
+		all += n == 0 ? -d : d;
+		rounding += next.rounding;
+		way_mm += k.chord[1 + n].way_mm;
+		d = fabs(d);
 		if (l->certain)
 			d = larger(d - next.rounding - here.rounding, 0);
-		most = larger(most, d / k.chord[1 + n].mm);
+		most = larger(most, d / k.chord[1 + n].way_mm);
 	}
-	return most < 0 ? INFINITY : most;
+	if (most < 0)
+		return (struct bend_change) { INFINITY, INFINITY };
+	return (struct bend_change) {
+		most, smaller(most, larger(fabs(all) - rounding, 0) / way_mm)
+	};
 }
 
 /* The acceleration along the path, of which a bend at the node may take a
@@ -100,31 +120,34 @@ static double own_mm_s2(const struct pass *w)
 						  w->a_own_mm_s2[1]));
 }
 
+/* If to speed up on it takes jerk. */
 static void note_bent(struct pass *w, const struct look *l, uint32_t j,
 		      double bend, double change)
 {
 	struct bent *b = &w->bent[j];
 
+	if (!l->certain || 3 * bend * l->most_mm_s * own_mm_s2(w) <=
+			   INTERP_ARC_JERK_BOTH * w->j_mm_s3[j])
+		return;
 	if (!(w->bends >> j & 1))
 		*b = (struct bent) { 0 };
 	w->bends |= 1u << j;
 	b->bend = larger(b->bend, bend);
 	b->change = larger(b->change, change);
-	b->rate = larger(fabs(l->bow.a->rate[j]), fabs(l->bow.b->rate[j]));
+	b->rate = fabs(l->bow.a->rate[j] + l->bow.b->rate[j]) / 2;
 }
 
 double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
 			double d)
 {
 	const double a = w->a_mm_s2[j], jerk = w->j_mm_s3[j];
-	const double mm = l->bow.mm, bend = d / mm, most = l->most_mm_s;
-	double change, set_off, alone, v;
+	const double mm = l->bow.way_mm, bend = d / mm, most = l->most_mm_s;
+	struct bend_change change;
+	double set_off, alone, v;
 
-	if (most * most * bend <= a && most * most * most * bend <= jerk * mm) {
-		/* To speed up on it takes jerk nevertheless. */
-		if (l->certain && 3 * bend * most * own_mm_s2(w) >
-				  INTERP_ARC_JERK_BOTH * jerk)
-			note_bent(w, l, j, bend, 0);
+	if (most * most * bend <= a &&
+	    most * most * most * bend <= HARDLY * jerk * mm) {
+		note_bent(w, l, j, bend, 0);
 		return INFINITY;
 	}
 	alone = pass_round_mm_s(1 / bend, a, jerk * d);
@@ -133,13 +156,12 @@ double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
 	change = bend_change(w, l, j);
 	set_off = INTERP_ARC_JERK_BOTH * jerk /
 		  (3 * bend * LEAST_ALONG * own_mm_s2(w));
-	v = smaller(cbrt(INTERP_ARC_JERK_ROUND * jerk / change), set_off);
+	v = smaller(cbrt(INTERP_ARC_JERK_ROUND * jerk / change.most), set_off);
 	v = smaller(v, sqrt(a / bend));
-	if (v <= alone)
-		return alone;
-	if (l->certain)
-		note_bent(w, l, j, bend, change);
-	return v;
+	/* A corner is no bend that takes jerk all of the way. */
+	if (v > alone || 2 * change.most * mm < bend)
+		note_bent(w, l, j, bend, change.at);
+	return larger(v, alone);
 }
 
 /*

@@ -35,20 +35,30 @@ static void add_level(struct levels *l, double at)
 	l->at[l->n++] = at;
 }
 
+/* However small a corner is, a rounding hides the bend of short lines.  Over a
+ * window of so many tolerances it does not. */
+static void windows(struct pass *w)
+{
+	const uint32_t path = w->ways.xyz ? w->ways.xyz : UINT32_MAX;
+	const double mm = larger(PASS_WINDOW * w->corner_mm,
+				 PASS_FAR * pass_along_tol(w, path));
+
+	for (int k = 0; k < PASS_WINDOWS; k++)
+		w->windows[k].mm = mm * (1 << k);
+	w->short_mm = PASS_LONG * mm;
+}
+
 static void begin(struct pass *w, const struct interp_limits *l,
 		  const struct interp_program *p, struct interp_seg *segs)
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
 			     .points_per_s = l->points_per_s,
-			     .short_mm = PASS_LONG * PASS_WINDOW * l->corner_mm,
 			     .n = p->head->naxes, .end = p->head->nsegs - 1,
 			     .a_least_mm_s2 = INFINITY,
 			     .j_least_mm_s3 = INFINITY,
 			     .a_linear_mm_s2 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
-	for (int k = 0; k < PASS_WINDOWS; k++)
-		w->windows[k].mm = PASS_WINDOW * l->corner_mm * (1 << k);
 	for (uint32_t j = 0; j < w->n; j++) {
 		const uint8_t axis = p->head->column[j];
 		const struct interp_axis_limits *m = &l->machine->axis[axis];
@@ -71,6 +81,7 @@ static void begin(struct pass *w, const struct interp_limits *l,
 			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
 						    m->a_max_mm_s2);
 	}
+	windows(w);
 }
 
 /* Down to a level. */
@@ -205,6 +216,18 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 		s->feed_mm_s = s->feed_max_mm_s;
 }
 
+/* The most at the end of segment @i, because the node before it is passed no
+ * faster than its limit.  A rounding hides the bend of one node more than that
+ * of the next. */
+static double reach_mm_s(const struct pass *w, uint32_t i)
+{
+	const struct interp_seg *s = &w->segs[i];
+	const double v = (double)s[-1].node_mm_s;
+
+	return sqrt(v * v + 2 * s->length_mm *
+		    larger(w->a_own_mm_s2[0], w->a_own_mm_s2[1]));
+}
+
 /* What a bend beside the path takes, the segments to both sides of its node do
  * not have. */
 static void soften_node(struct pass *w, uint32_t last, uint32_t i,
@@ -216,7 +239,7 @@ static void soften_node(struct pass *w, uint32_t last, uint32_t i,
 
 	for (int k = 0; k < 2; k++)
 		v = smaller(v, (double)w->segs[both[k]].feed_max_mm_s);
-	pass_leave(w, v, &left);
+	pass_leave(w, smaller(v, reach_mm_s(w, last)), &left);
 	for (int k = 0; k < 2; k++) {
 		struct interp_seg *s = &w->segs[both[k]];
 

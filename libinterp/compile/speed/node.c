@@ -169,13 +169,14 @@ COLUMNS_INLINE void chord_by(const struct pass *w, uint32_t from, uint32_t to,
 		sum += along >> j & 1 ? mm[j] * mm[j] : 0;
 	}
 	ret->mm = sqrt(sum);
+	ret->way_mm = ret->mm;
 	ret->per_mm = ret->mm > 0 ? 1 / ret->mm : 0;
 	for (uint32_t j = 0; j < n; j++)
 		ret->h.rate[j] = mm[j] * ret->per_mm;
 	if ((along & all) == all)
 		return;
 	/* A chord cuts corners.  What is beside it goes all of the way. */
-	path = w->segs[to].s_mm - w->segs[from].s_mm;
+	ret->way_mm = path = w->segs[to].s_mm - w->segs[from].s_mm;
 	for (uint32_t j = 0; j < n; j++)
 		if (!(along >> j & 1))
 			ret->h.rate[j] = path > 0 ? mm[j] / path : 0;
@@ -222,6 +223,7 @@ COLUMNS_INLINE bool bow_of(const struct pass *w, uint32_t i, struct around *k,
 	chord_by(w, i, k->ahead, along, b, n);
 	k->on = !k->on;
 	*ret = (struct bow) { &a->h, &b->h, (a->mm + b->mm) / 2,
+			      (a->way_mm + b->way_mm) / 2,
 			      a->per_mm + b->per_mm };
 	return a->mm > 0 && b->mm > 0;
 }

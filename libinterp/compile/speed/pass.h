@@ -14,7 +14,8 @@
 
 /*
  * A curve of short lines is looked at over windows of so many corners to each
- * side.  Each window is twice as wide as the one before.
+ * side, and no less than PASS_FAR tolerances.  Each window is twice as wide as
+ * the one before.
  */
 #define PASS_WINDOW	20
 #define PASS_WINDOWS	6
@@ -22,12 +23,15 @@
 /* A line that is so many tolerances long is turned only a little by a
  * rounding. */
 #define PASS_NEAR	20
+#define PASS_FAR	100
 
 /* The straight line from one node to another. */
 struct chord {
 	uint32_t from, to;
 	double mm, per_mm;		/* in the columns of h.along, and its
 					 * inverse; 0: there is no way */
+	double way_mm;			/* along the path, for what is beside
+					 * it */
 	struct heading h;
 };
 
@@ -57,7 +61,7 @@ struct pass_soft {
 /* The chords to both sides of a node, over one window. */
 struct bow {
 	const struct heading *a, *b;
-	double mm;			/* half the way */
+	double mm, way_mm;		/* half of both chords */
 	double per_mm;			/* as change has it */
 };
 

@@ -22,9 +22,10 @@
  *	step <= sqrt(8*a*corner), step <= cbrt(j*(6*corner)^2)
  *
  * A node on a straight line slows nothing down.  Lines shorter than 100
- * corner_mm are also limited by the radius of the curve that they follow.  That
- * radius is found from the chords of 20 corner_mm on both sides of a node, and
- * is not taken smaller than corner_mm.  An axis beside the path has the
+ * corner_mm, and 500 tolerance_mm, are also limited by the radius of the curve
+ * that they follow.  That radius is found from the chords of 20 corner_mm on
+ * both sides of a node, or 100 tolerance_mm if that is more, and is not taken
+ * smaller than corner_mm.  An axis beside the path has the
  * acceleration by which its share changes over those chords, and the jerk by
  * which that differs from the chords before and behind.  a_mm_s2 and j_mm_s3
  * leave it what it needs for that.
