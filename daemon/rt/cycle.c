@@ -59,16 +59,24 @@ static enum cycle_event look_arrive(const struct cycle *c)
 	       walk_ahead(c) == AHEAD_PROBE ? EVENT_PROBE : EVENT_NONE;
 }
 
+/* It comes back over it out of a retract or a jump, or was started in the
+ * middle of a cut. */
+static bool was_passed(const struct cycle *c)
+{
+	return place_mm(c) < c->turned_mm ||
+	       (place_mm(c) < c->far_mm - MOVER_ONTO_MM &&
+		walk_is_cut(c, &c->cursor.seg));
+}
+
 /*
- * While positioning, the electrode met something over ground that was cut
- * already, or that it comes back over out of a retract or a jump.  That is a
- * short like any other.  A retract has no lead, so axes that have a lead first
- * brake with it.
+ * While positioning, the electrode met something over ground that was cut or
+ * passed already.  That is a short like any other.  A retract has no lead, so
+ * axes that have a lead first brake with it.
  */
 static enum cycle_event look_out(struct cycle *c)
 {
 	if (guard_met(c))
-		c->withdraws = walk_rejoins(c) || place_mm(c) < c->turned_mm ||
+		c->withdraws = walk_rejoins(c) || was_passed(c) ||
 			       ground_is_cut(c);
 	if (!c->withdraws)
 		return look_arrive(c);

@@ -291,6 +291,25 @@ static void back_over_what_it_left_it_may_short(void **st)
 	rig_free(&r);
 }
 
+/* Started while it still moves, in the cut. */
+static void in_the_cut_itself_it_may_short(void **st)
+{
+	const struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	cut_at(&r, &k, 2);
+	steps(&r, SHORTED_V, 20);
+	tell(&r, CYCLE_HOLD);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	step(&r, OPEN_V);
+	assert_int_equal(r.c.state, STATE_TRAVEL);
+	step(&r, SHORTED_V);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	rig_free(&r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -302,6 +321,7 @@ int main(void)
 		cmocka_unit_test(every_way_back_over_what_was_cut_may_short),
 		cmocka_unit_test(what_a_time_left_out_is_new_ground),
 		cmocka_unit_test(back_over_what_it_left_it_may_short),
+		cmocka_unit_test(in_the_cut_itself_it_may_short),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
