@@ -326,9 +326,65 @@ static void a_damaged_block_never_leads_astray(void **st)
 	}
 }
 
+/* By differences of the places that are walked: the most that C, which turns by
+ * @deg beside a circle of @r_mm, goes farther in a step than it may. */
+static double most_of_c(enum interp_strategy strategy, double r_mm, double deg)
+{
+	struct interp_build *b = begin(strategy);
+	const double end[INTERP_NAXES] = { [INTERP_C] = deg };
+	enum interp_step is = INTERP_ARRIVED;
+	struct interp_cursor c;
+	double most = 0, ds_mm, may;
+	struct made m;
+
+	arc(b, end, r_mm, 0, false);
+	m = finish(b);
+	assert_int_equal(interp_cursor_init(&c, &m.p), 0);
+	ds_mm = c.seg.length_mm / 5000;
+	may = deg * 1000 / 5000;
+	for (int leg = 1; leg >= -1; leg -= 2) {
+		for (is = INTERP_ARRIVED; is == INTERP_ARRIVED; ) {
+			const int32_t from = c.pos[INTERP_C];
+
+			interp_cursor_aim(&c, leg * ds_mm);
+			do
+				is = interp_cursor_step(&c);
+			while (is == INTERP_MOVED);
+			most = fmax(most,
+				    abs(c.pos[INTERP_C] - from) - may);
+		}
+		assert_int_equal(is, leg > 0 ? INTERP_AT_END :
+					       INTERP_AT_START);
+	}
+	unmake(&m);
+	return most;
+}
+
+static void an_axis_beside_a_circle_goes_evenly(void **st)
+{
+	static const enum interp_strategy one_at_a_time[] = {
+		INTERP_POINT_BY_POINT, INTERP_CENTRED, INTERP_MAIN_DIRECTION,
+		INTERP_MIN_SWITCH,
+	};
+	static const double r_mm[] = { 0.02, 0.183, 1 };
+	static const double deg[] = { 1, 24.2, 242 };
+
+	(void)st;
+	for (int i = 0; i < 4 * 3 * 3; i++) {
+		const double most = most_of_c(one_at_a_time[i % 4],
+					      r_mm[i / 4 % 3], deg[i / 12]);
+
+		if (most > 3)
+			fail_msg("strategy %d, %g mm, %g degrees: %g pulses "
+				 "more", i % 4, r_mm[i / 4 % 3], deg[i / 12],
+				 most);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(an_axis_beside_a_circle_goes_evenly),
 		cmocka_unit_test(dda_arcs_from_every_start_end_exactly_and_retrace),
 		cmocka_unit_test(tube_arcs_from_every_start_end_exactly_and_retrace),
 		cmocka_unit_test(arcs_of_the_line_rules_are_point_by_point),

@@ -11,6 +11,12 @@
  * behind the circle's, measured by swept area so that it follows the arc's
  * length.  What is due depends on the circle's place alone, so the last pulse
  * was the tree's if more have been sent than were due one circle pulse ago.
+ *
+ * A pulse of the circle may sweep as much as hundreds of the tree's are due
+ * behind it.  If it took that much of the way by itself, these would come in a
+ * burst, and the axes of the tree would be much faster than they may.  So a
+ * pulse and what is due behind it are a group, and its ticks are spread evenly
+ * over what the group takes.
  */
 #include "pulse/couple.h"
 #include "pulse/pulse.h"
@@ -257,6 +263,53 @@ const struct interp_walk pulse_tree = {
 
 /* -- Helices -------------------------------------------------------------- */
 
+/* The pulses of the tree that are due when the circle is at measure @m; a
+ * damaged block never has more than there are. */
+static int64_t helix_due(const struct interp_cursor *c, int64_t m)
+{
+	const pulse_wide whole = c->arc.measure;
+	pulse_wide due;
+
+	if (whole == 0)
+		return c->others;
+	due = (2 * (pulse_wide)m * c->others + whole) / (2 * whole);
+	return due > c->others ? c->others : due < 0 ? 0 : (int64_t)due;
+}
+
+static int64_t helix_sent(const struct interp_cursor *c)
+{
+	return (int64_t)c->tick - c->circle.tick;
+}
+
+/* The circle is somewhere else now. */
+static void helix_group_set(struct interp_cursor *c)
+{
+	const bool any = c->circle.tick > 0;
+	const int64_t last = any ? circle_last(&c->circle) : 0;
+	const int64_t before = c->circle_at - last;
+	const int64_t due = helix_due(c, c->circle_at);
+
+	c->group.sent = any ? helix_due(c, before) : 0;
+	c->group.at = before + c->group.sent;
+	c->group.measure = last + due - c->group.sent;
+	c->group.tree = due - c->group.sent;
+	c->group.circle = any;
+}
+
+/* Ticks of the group. */
+static int64_t group_ticks(const struct interp_cursor *c)
+{
+	return helix_sent(c) - c->group.sent + c->group.circle;
+}
+
+/* Behind @ticks of the group.  Each adds one at least. */
+static int64_t group_measure(const struct interp_cursor *c, int64_t ticks)
+{
+	const int64_t all = c->group.tree + c->group.circle;
+
+	return c->group.at + (all > 0 ? c->group.measure * ticks / all : 0);
+}
+
 static bool helix_enter(struct interp_cursor *c, bool at_end)
 {
 	if (!pulse_stand(c, at_end) || !pulse_circle_set(c, at_end))
@@ -268,61 +321,50 @@ static bool helix_enter(struct interp_cursor *c, bool at_end)
 	c->circle_at = at_end ? c->arc.measure : 0;
 	c->whole = c->arc.measure + c->others;
 	c->measure = at_end ? c->whole : 0;
+	helix_group_set(c);
 	return c->seg.ticks == c->circle.ticks + c->others &&
 	       (c->circle.ticks == 0) == (c->arc.measure == 0);
 }
 
-/* The pulses of the tree that are due when the circle is at measure @m. */
-static int64_t helix_due(const struct interp_cursor *c, int64_t m)
+static uint32_t helix_circle_tick(struct interp_cursor *c, int dir)
 {
-	const pulse_wide whole = c->arc.measure;
+	uint32_t moved;
 
-	if (whole == 0)
-		return c->others;
-	return (int64_t)((2 * (pulse_wide)m * c->others + whole) / (2 * whole));
-}
-
-static int64_t helix_sent(const struct interp_cursor *c)
-{
-	return c->measure - c->circle_at;
+	if (dir < 0)
+		c->circle_at -= circle_last(&c->circle);
+	moved = pulse_circle_move(c, dir);
+	if (dir > 0)
+		c->circle_at += circle_last(&c->circle);
+	c->tick += (uint32_t)dir;
+	helix_group_set(c);
+	return moved;
 }
 
 static uint32_t helix_tick(struct interp_cursor *c)
 {
 	uint32_t moved;
 
-	if (helix_sent(c) < helix_due(c, c->circle_at))
-		return tree_tick(c);
-	if (c->circle.tick >= c->circle.ticks)
+	if (helix_sent(c) < c->group.sent + c->group.tree)
+		moved = tree_tick(c);
+	else if (c->circle.tick < c->circle.ticks)
+		moved = helix_circle_tick(c, 1);
+	else
 		return PULSE_BAD;
-	moved = pulse_circle_move(c, 1);
-	c->tick++;
-	c->circle_at += circle_last(&c->circle);
-	c->measure += circle_last(&c->circle);
+	c->measure = group_measure(c, group_ticks(c));
 	return moved;
-}
-
-/* Did the tree make the last pulse? */
-static bool helix_last_tree(const struct interp_cursor *c)
-{
-	return c->circle.tick == 0 ||
-	       helix_sent(c) >
-	       helix_due(c, c->circle_at - circle_last(&c->circle));
 }
 
 static uint32_t helix_tick_back(struct interp_cursor *c)
 {
-	int64_t last;
+	uint32_t moved;
 
 	if (c->tick == 0)
 		return PULSE_BAD;
-	if (helix_last_tree(c))
-		return tree_tick_back(c);
-	last = circle_last(&c->circle);
-	c->tick--;
-	c->circle_at -= last;
-	c->measure -= last;
-	return pulse_circle_move(c, -1);
+	/* Did the tree make the last pulse? */
+	moved = c->group.circle && helix_sent(c) <= c->group.sent ?
+		helix_circle_tick(c, -1) : tree_tick_back(c);
+	c->measure = group_measure(c, group_ticks(c));
+	return moved;
 }
 
 static uint32_t helix_forward(struct interp_cursor *c, uint32_t ticks,
@@ -339,7 +381,7 @@ static uint32_t helix_back(struct interp_cursor *c, uint32_t ticks,
 
 static int64_t helix_last(const struct interp_cursor *c)
 {
-	return helix_last_tree(c) ? 1 : circle_last(&c->circle);
+	return c->measure - group_measure(c, group_ticks(c) - 1);
 }
 
 /*
@@ -380,7 +422,8 @@ static bool helix_seek(struct interp_cursor *c, uint32_t tick)
 		tree_give(c, c->root, sent);
 	pulse_plane_set(c);
 	c->tick = tick;
-	c->measure = c->circle_at + sent;
+	helix_group_set(c);
+	c->measure = group_measure(c, group_ticks(c));
 	return true;
 }
 

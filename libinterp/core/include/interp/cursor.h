@@ -126,6 +126,15 @@ struct interp_walk;
 /* So many ticks of an arc are computed together. */
 #define INTERP_ARC_BLOCK	32
 
+/* The last pulse of a helix's circle and the others due behind it: see
+ * pulse/tree.c. */
+struct interp_group {
+	int64_t at, sent;		/* measure and others before it */
+	int64_t measure;		/* of all of it */
+	int64_t tree;			/* the others */
+	bool circle;			/* not if the circle has made none */
+};
+
 /* Placed by the caller, filled by interp_cursor_init(); read, do not write. */
 struct interp_cursor {
 	struct interp_program p;
@@ -162,6 +171,7 @@ struct interp_cursor {
 	struct interp_curve_walk curve;
 	int64_t others, circle_at;	/* a helix's other pulses; measure of
 					 * its circle alone */
+	struct interp_group group;	/* of a helix */
 	double pulses_mm[INTERP_NAXES];	/* pulses per mm */
 	double arc_turn, arc_grow_mm;	/* angle, radius gained per tick */
 	uint32_t arc_block;		/* ticks whose places are known */
