@@ -224,7 +224,8 @@ static void check_plc(const struct rig *r)
 /* The motion at @i, or the next one that way, past what is done on the spot. */
 static bool is_cut(const struct interp_program *p, uint32_t i, uint32_t way)
 {
-	while (i > 0 && i + 1 < p->head->nsegs && p->segs[i].kind >= INTERP_BEGIN)
+	while (i > 0 && i + 1 < p->head->nsegs &&
+	       p->segs[i].kind >= INTERP_BEGIN)
 		i += way;
 	return p->segs[i].kind < INTERP_BEGIN &&
 	       !(p->segs[i].flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
