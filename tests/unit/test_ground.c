@@ -338,6 +338,42 @@ static void back_over_what_it_left_it_may_short(void **st)
 	rig_free(&r);
 }
 
+/* Held, led back over the rapid to 0.9, and started: the place where a short
+ * comes next. */
+static void short_before_cut(struct rig *r, double cut_mm, double short_mm)
+{
+	const struct cycle_config k = usual_config();
+
+	cut_at(r, &k, cut_mm);
+	tell(r, CYCLE_HOLD);
+	steps(r, OPEN_V, 100);
+	assert_int_equal(tell_mm(r, CYCLE_RETRACT, place(r) - 0.9),
+			 ANSWER_DONE);
+	steps(r, OPEN_V, 1000);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+	for (int n = 0; n < 1000 && place(r) < short_mm; n++)
+		step(r, OPEN_V);
+	assert_int_equal(r->c.state, STATE_TRAVEL);
+	step(r, SHORTED_V);
+}
+
+/* The first place of a cut that has begun is cut ground, within two pulses. */
+static void before_a_cut_that_has_begun_it_may_short(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	short_before_cut(&r, 1.3, 0.9985);
+	assert_true(place(&r) < 1);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	until(&r, STATE_ERODE, r.c.gap.servo_v, 2000);
+	rig_free(&r);
+	short_before_cut(&r, 1.3, 0.98);
+	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
+	rig_free(&r);
+}
+
 /* Started while it still moves, in the cut. */
 static void in_the_cut_itself_it_may_short(void **st)
 {
@@ -369,6 +405,7 @@ int main(void)
 		cmocka_unit_test(what_a_time_left_out_is_new_ground),
 		cmocka_unit_test(nothing_sparks_over_what_is_positioned),
 		cmocka_unit_test(back_over_what_it_left_it_may_short),
+		cmocka_unit_test(before_a_cut_that_has_begun_it_may_short),
 		cmocka_unit_test(in_the_cut_itself_it_may_short),
 	};
 
