@@ -3,17 +3,26 @@
 #include "due.h"
 
 #define STATUS_US	100000
-#define GUEST_US	2000	/* apart at least, however many come */
+/* Whoever can send a packet can be a client that has come.  So there are not
+ * more than this. */
+#define GUEST_US	10000
+#define GUESTS_AT_ONCE	10
 
 bool due_now(const struct due *d, uint64_t key, int64_t now_us)
 {
-	return key != d->key ||
-	       now_us - d->sent_us >= (d->owed ? GUEST_US : STATUS_US);
+	return key != d->key || now_us - d->sent_us >= STATUS_US ||
+	       (d->owed && d->paid_us - now_us <= (GUESTS_AT_ONCE - 1) *
+						   GUEST_US);
 }
 
 void due_sent(struct due *d, uint64_t key, int64_t now_us)
 {
-	*d = (struct due) { .sent_us = now_us, .key = key };
+	if (d->owed)
+		d->paid_us = (d->paid_us > now_us ? d->paid_us : now_us) +
+			     GUEST_US;
+	d->sent_us = now_us;
+	d->key = key;
+	d->owed = false;
 }
 
 void due_guest(struct due *d)

@@ -8,17 +8,19 @@
 
 /** struct due - what decides it; all zero at the start */
 struct due {
-	int64_t sent_us;	/* when the last STATUS was sent */
-	uint64_t key;		/* of what it said */
-	bool owed;		/* a client came right behind it */
+	int64_t sent_us;		/* when the last STATUS was sent */
+	uint64_t key;			/* of what it said */
+	bool owed;			/* a client has come since then */
+	int64_t paid_us;		/* clients have had what is due until
+					 * then */
 };
 
 /**
  * due_now() - whether STATUS is sent now
  * @key:	of what it would say; another key is sent at once
  *
- * Otherwise STATUS is sent every 100 ms, and to a client that has come as soon
- * as the last one is 2 ms old.
+ * Otherwise STATUS is sent every 100 ms, and to a client that has come: at once
+ * to the first ten, to more of them 100 times a second.
  */
 bool due_now(const struct due *d, uint64_t key, int64_t now_us);
 

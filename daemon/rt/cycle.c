@@ -83,13 +83,6 @@ static enum cycle_event look_out(struct cycle *c)
 	return contouring_rests(&c->contouring) ? EVENT_SHORT : EVENT_NONE;
 }
 
-static bool leaves_cut(const struct cycle *c)
-{
-	const enum walk_ahead on = walk_ahead(c);
-
-	return on == AHEAD_FREE || on == AHEAD_PROBE;
-}
-
 /* The event that the gap and the place of this cycle mean; at most one. */
 static enum cycle_event look(struct cycle *c)
 {
@@ -97,7 +90,7 @@ static enum cycle_event look(struct cycle *c)
 
 	if (powered && c->sensed.is_short)
 		return EVENT_SHORT;
-	if (powered && !escape_is_out(&c->escape) && leaves_cut(c))
+	if (powered && !escape_is_out(&c->escape) && walk_positions(c))
 		return EVENT_FREE;
 	if (powered && arcing_retract_due(c))
 		return EVENT_ARCING;
@@ -106,7 +99,7 @@ static enum cycle_event look(struct cycle *c)
 		return EVENT_TIME_UP;
 	switch (c->state) {
 	case STATE_APPROACH:
-		return look_in(c);
+		return walk_positions(c) ? EVENT_NONE : look_in(c);
 	case STATE_ERODE:
 		return flush_due(c) && servo_rests(c) ? EVENT_JUMP_DUE :
 							EVENT_NONE;
@@ -218,12 +211,11 @@ static void sum_up(struct cycle *c, bool running)
 }
 
 /* Where it is on its way back to a cut there is none, nor in the cycle that
- * ends the way. */
+ * ends the way, nor beside what is positioned. */
 static bool may_spark(const struct cycle *c)
 {
 	return state_duty[c->state].power && !c->job.power_off &&
-	       c->fault.latched == 0 &&
-	       (escape_is_out(&c->escape) || !leaves_cut(c));
+	       c->fault.latched == 0 && !walk_positions(c);
 }
 
 /* Does a command move the axes?  Then their compensation may move them too. */

@@ -224,6 +224,23 @@ def test_a_body_keeps_to_both_curves(tmp_path, whole):
         assert angle_deg(rotation[-1, :, 0], true_turn[-1, :, 0]) < OFF_DEG
 
 
+def test_a_body_comes_to_a_pole_while_it_turns_about_itself(tmp_path):
+    """The table turns up to the pole; at the pole it may have any angle."""
+    to = [(30, 0, -60), (10, 5, -62), (0, -5, -60)]
+    text = BEGIN + "G43.4\nG0 X30. Y0. Z-60.\nF120\n" + (
+        "G6.3 L2 P0 X30. Y0. Z-60. Q1\n"
+        "P0 X10. Y5. Z-62. Q1 I-0.2 J0.1\n"
+        "P1 X0. Y-5. Z-60. Q1 K0.3\nP2\nP2\n") + END
+    tip, rotation = walked(tmp_path, text, line=(6, 7, 8))
+    off = []
+    for a, b in zip(np.array(to[:-1], float), np.array(to[1:], float)):
+        share = np.clip((tip - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
+        off.append(np.linalg.norm(tip - a - np.outer(share, b - a), axis=1))
+    assert np.min(off, axis=0).max() * 1e3 < OFF_UM
+    assert np.linalg.norm(tip[-1] - to[-1]) * 1e3 < OFF_UM
+    assert angle_deg(rotation[-1, :, 2], unit((0, 0, 1))) < OFF_DEG
+
+
 def test_a_body_goes_back_as_it_came(tmp_path):
     (tmp_path / "m.ini").write_text(INI)
     rows = pulses("--dry-run", "--there-and-back",

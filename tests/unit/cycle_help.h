@@ -157,9 +157,7 @@ static inline void check_always(const struct rig *r)
 	assert_true(r->c.state > STATE_STAY && r->c.state < CYCLE_NSTATES);
 	assert_int_equal(r->out.power,
 			 sparking_state(r->c.state) && !r->c.job.power_off &&
-			 (escape_is_out(&r->c.escape) ||
-			  walk_ahead(&r->c) == AHEAD_CUT ||
-			  walk_ahead(&r->c) == AHEAD_ACTION));
+			 !walk_positions(&r->c));
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const int32_t at = r->c.out.target[i];
 		const int64_t step = (int64_t)at - r->path_before[i];

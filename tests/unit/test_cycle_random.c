@@ -221,11 +221,24 @@ static void check_plc(const struct rig *r)
 	assert_false(state_duty[r->c.state].running);
 }
 
-/* At the end of a rapid a cut may begin. */
-static bool is_on_rapid(const struct interp_cursor *at)
+/* The motion at @i, or the next one that way, past what is done on the spot. */
+static bool is_cut(const struct interp_program *p, uint32_t i, uint32_t way)
 {
-	return at->seg.flags & INTERP_SEG_RAPID &&
-	       at->s_mm < at->seg.length_mm - 2e-9;
+	while (i > 0 && i + 1 < p->head->nsegs &&
+	       p->segs[i].kind >= INTERP_BEGIN)
+		i += way;
+	return p->segs[i].kind < INTERP_BEGIN &&
+	       !(p->segs[i].flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+}
+
+/* Within a cut, or at an end of one. */
+static bool is_at_cut(const struct interp_cursor *at)
+{
+	const bool begins = at->s_mm < 2e-9;
+	const bool ends = at->s_mm > at->seg.length_mm - 2e-9;
+
+	return is_cut(&at->p, at->index - (begins && at->index > 0), -1u) ||
+	       is_cut(&at->p, at->index + ends, 1);
 }
 
 /* No sparks but in a cut, and none that somebody or something forbids. */
@@ -239,7 +252,7 @@ static void check_power(const struct rig *r)
 	assert_false(c->hold.moving);
 	assert_false(r->in.estop || r->in.lost || c->config.dry_run);
 	assert_false(c->job.power_off);
-	assert_true(escape_is_out(&c->escape) || !is_on_rapid(&c->cursor));
+	assert_true(is_at_cut(&c->cursor));
 	assert_int_equal(c->fault.first, FAULT_NONE);
 	powered++;
 }

@@ -317,6 +317,75 @@ static void a_rotary_axis_that_turns_unevenly_keeps_its_limits(void **st)
 	}
 }
 
+/* -- A narrow peak --------------------------------------------------------- */
+
+/* U goes on evenly, @step_mm a line, and X waits for it: at the middle it keeps
+ * a share @rest of its speed, over about @w_mm of U. */
+struct wait {
+	double step_mm, w_mm, rest;
+};
+
+static struct made wait_made(const struct wait *k)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	double end[INTERP_NAXES] = { 0 };
+
+	for (int i = 1; i * k->step_mm < 6; i++) {
+		const double at = (i * k->step_mm - 3) / k->w_mm;
+
+		end[INTERP_X] += k->step_mm *
+				 (1 - (1 - k->rest) * exp(-at * at));
+		end[INTERP_U] = i * k->step_mm;
+		dense_line(b, end, true);
+	}
+	return finish(b);
+}
+
+/* The greatest speed of U over a way of @mm that the ceilings allow, by the
+ * places that are walked. */
+static double most_of_u(const struct wait *k, double mm)
+{
+	struct made m = wait_made(k);
+	enum interp_step is = INTERP_ARRIVED;
+	struct interp_cursor c;
+	double most = 0;
+
+	assert_int_equal(interp_cursor_init(&c, &m.p), 0);
+	while (is == INTERP_ARRIVED) {
+		const int32_t from = c.pos[INTERP_U];
+		double v = (double)c.seg.feed_max_mm_s;
+
+		interp_cursor_aim(&c, mm);
+		while ((is = interp_cursor_step(&c)) == INTERP_MOVED)
+			v = fmin(v, (double)c.seg.feed_max_mm_s);
+		if (is == INTERP_ARRIVED)
+			most = fmax(most, (c.pos[INTERP_U] - from) * 0.001 /
+						  mm * v);
+	}
+	unmake(&m);
+	return most;
+}
+
+/* In 10 um U goes 14 pulses and more: one of them is 7 %. */
+static void a_peak_narrower_than_any_window_keeps_the_speed(void **st)
+{
+	static const double step_mm[] = { 0.008, 0.012, 0.016 };
+	static const double w_mm[] = { 0.15, 0.3, 0.6 };
+	static const double rest[] = { 0.1, 0.15, 0.3 };
+
+	(void)st;
+	for (int i = 0; i < 27; i++) {
+		const struct wait k = {
+			step_mm[i % 3], w_mm[i / 3 % 3], rest[i / 9],
+		};
+		const double most = most_of_u(&k, 0.01);
+
+		if (most > 1.12 * 80)
+			fail_msg("lines of %g mm, %g mm, %g: U goes %g mm/s",
+				 k.step_mm, k.w_mm, k.rest, most);
+	}
+}
+
 /*
  * The most that the speed of B changes in a cycle.  Its rate is that of the
  * line, so that corners between lines and in two nodes count as they are.
@@ -476,6 +545,8 @@ int main(void)
 		cmocka_unit_test(with_a_rotary_axis_that_turns_unevenly),
 		cmocka_unit_test(
 			a_rotary_axis_that_turns_unevenly_keeps_its_limits),
+		cmocka_unit_test(
+			a_peak_narrower_than_any_window_keeps_the_speed),
 		cmocka_unit_test(a_corner_jolts_an_axis_no_more_in_short_lines),
 		cmocka_unit_test(in_retracts_three_decimals_are_as_quick),
 		cmocka_unit_test(true_corners_are_as_slow_as_between_long_lines),

@@ -262,6 +262,53 @@ static void what_a_time_left_out_is_new_ground(void **st)
 	rig_free(&r);
 }
 
+/* Out of a cut with a way out beside the path; it stands on the way, too. */
+static void load_air(struct rig *r, const struct cycle_config *k)
+{
+	const struct interp_escape aside = {
+		.out = 1u << INTERP_X, .out_mm = { 1 },
+	};
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	rapid_to(b, -1);
+	cut_to(b, -2);
+	assert_int_equal(interp_build_escape(b, &aside), 0);
+	rapid_to(b, -1.5);
+	action(b, INTERP_DWELL, 100);
+	rapid_to(b, -1);
+	rig_load(r, b, k);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+	until(r, STATE_APPROACH, OPEN_V, 1000);
+	until(r, STATE_TRAVEL, SPARKING_V, 20000);
+}
+
+/* Whatever the gap says on its way back, and wherever a short comes. */
+static void nothing_sparks_over_what_is_positioned(void **st)
+{
+	struct cycle_config k = usual_config();
+
+	(void)st;
+	for (int i = 0; i < 40; i++) {
+		bool beside = false;
+		struct rig r;
+
+		k.gap.retract_escape = i % 2 != 0;
+		load_air(&r, &k);
+		steps(&r, OPEN_V, 10 + 5 * i);
+		steps(&r, SHORTED_V, i % 5 + 1);
+		assert_int_equal(r.c.state, STATE_RETRACT);
+		for (int n = 0; n < 20000 && r.c.state != STATE_IDLE; n++) {
+			step(&r, r.c.state == STATE_RETRACT ? OPEN_V :
+				 i % 3 ? NARROW_V : SPARKING_V);
+			assert_false(r.out.power);
+			beside = beside || escape_is_out(&r.c.escape);
+		}
+		assert_int_equal(r.c.outcome, OUTCOME_DONE);
+		assert_true(i % 2 == 0 || i % 5 < 3 || beside);
+		rig_free(&r);
+	}
+}
+
 /* A retract goes back beyond the first place of the cut. */
 static void back_over_what_it_left_it_may_short(void **st)
 {
@@ -287,6 +334,42 @@ static void back_over_what_it_left_it_may_short(void **st)
 	steps(&r, OPEN_V, 10);
 	assert_true(place(&r) < 0.9);
 	step(&r, SHORTED_V);
+	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
+	rig_free(&r);
+}
+
+/* Held, led back over the rapid to 0.9, and started: the place where a short
+ * comes next. */
+static void short_before_cut(struct rig *r, double cut_mm, double short_mm)
+{
+	const struct cycle_config k = usual_config();
+
+	cut_at(r, &k, cut_mm);
+	tell(r, CYCLE_HOLD);
+	steps(r, OPEN_V, 100);
+	assert_int_equal(tell_mm(r, CYCLE_RETRACT, place(r) - 0.9),
+			 ANSWER_DONE);
+	steps(r, OPEN_V, 1000);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+	for (int n = 0; n < 1000 && place(r) < short_mm; n++)
+		step(r, OPEN_V);
+	assert_int_equal(r->c.state, STATE_TRAVEL);
+	step(r, SHORTED_V);
+}
+
+/* The first place of a cut that has begun is cut ground, within two pulses. */
+static void before_a_cut_that_has_begun_it_may_short(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	short_before_cut(&r, 1.3, 0.9985);
+	assert_true(place(&r) < 1);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	until(&r, STATE_ERODE, r.c.gap.servo_v, 2000);
+	rig_free(&r);
+	short_before_cut(&r, 1.3, 0.98);
 	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
 	rig_free(&r);
 }
@@ -320,7 +403,9 @@ int main(void)
 		cmocka_unit_test(over_an_arc_that_was_cut_it_is_a_retract),
 		cmocka_unit_test(every_way_back_over_what_was_cut_may_short),
 		cmocka_unit_test(what_a_time_left_out_is_new_ground),
+		cmocka_unit_test(nothing_sparks_over_what_is_positioned),
 		cmocka_unit_test(back_over_what_it_left_it_may_short),
+		cmocka_unit_test(before_a_cut_that_has_begun_it_may_short),
 		cmocka_unit_test(in_the_cut_itself_it_may_short),
 	};
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* test_retract.c - promises of the way back: its bounds, and that of a wire */
 #include "cycle_help.h"
+#include "hunting.h"
 
 /* Air, then cuts to 2 and to 5; cut to @mm. */
 static void cut_two_motions(struct rig *r, const struct cycle_config *k,
@@ -268,6 +269,35 @@ static void the_way_forward_from_a_break_is_positioned_and_then_cut(void **st)
 	rig_free(&r);
 }
 
+/* Every retract comes a little farther, up to the break and beyond. */
+static void retracts_in_a_kerf_that_is_cut_again_are_no_hunting(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	begin_again(&r);
+	for (int n = 0; n < 20000 && place(&r) < 2.4; n++)
+		step(&r, OPEN_V);
+	until(&r, STATE_RETRACT, SHORTED_V, 10);
+	until(&r, STATE_ERODE, r.c.gap.servo_v, 1000);
+	r.c.gap.abort_count = HUNTING_ROW;
+	r.c.gap.progress_mm = 0.001;
+	for (int i = 0; i < HUNTING_ROW + 5; i++) {
+		bounce(&r);
+		cut_until(&r, place(&r) + 0.003);
+	}
+	assert_true(place(&r) < 3);
+	assert_int_equal(r.c.totals.hunts, 0);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	/* On the spot they are. */
+	r.c.gap.progress_mm = 0.1;
+	for (int i = 0; i < HUNTING_ROW; i++)
+		bounce(&r);
+	assert_int_equal(r.c.totals.hunts, 1);
+	assert_int_equal(r.c.fault.first, FAULT_RETRACT_COUNT);
+	rig_free(&r);
+}
+
 /* Stress closes a kerf: where the wire touches, it has to be cut again. */
 static void a_kerf_that_has_closed_is_cut_again_from_there(void **st)
 {
@@ -350,6 +380,8 @@ int main(void)
 		cmocka_unit_test(a_broken_wire_is_held_back_from_the_break_and_cut_on_there),
 		cmocka_unit_test(the_way_forward_from_a_break_is_positioned_and_then_cut),
 		cmocka_unit_test(a_kerf_that_has_closed_is_cut_again_from_there),
+		cmocka_unit_test(
+			retracts_in_a_kerf_that_is_cut_again_are_no_hunting),
 		cmocka_unit_test(a_wire_lost_on_the_way_forward_is_met_at_once),
 		cmocka_unit_test(a_sinker_has_no_wire_to_break),
 		cmocka_unit_test(an_e_stop_ends_a_retreat_at_once),

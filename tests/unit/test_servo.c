@@ -56,11 +56,13 @@ static void narrow_at_the_first_place_of_a_cut_it_stays_in_the_cut(void **st)
 	const struct cycle_config k = windowed();
 
 	(void)st;
-	for (int i = 0; i < 3; i++) {
+	for (int i = 0; i < 4; i++) {
 		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 		struct rig r;
 
 		rapid_to(b, -1);
+		if (i == 3)
+			action(b, INTERP_DWELL, 1);
 		for (int n = 1; n <= 100 && i > 0; n++) {
 			cut_to(b, -1 - n * 0.003);
 			if (i == 2 && n == 10)

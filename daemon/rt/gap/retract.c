@@ -36,14 +36,15 @@ static double floor_of(const struct cycle *c)
 	}
 }
 
-/* Retracts are in a row if the cut got no deeper between them. */
+/* Retracts are in a row if it came no farther between them.  A kerf that is cut
+ * again is not new, and yet it goes on in it. */
 static void count(struct cycle *c)
 {
 	struct retract *r = &c->retract;
 
-	if (r->in_row == 0 || c->far_mm > r->far_mm + c->gap.progress_mm) {
+	if (r->in_row == 0 || r->from_mm > r->row_mm + c->gap.progress_mm) {
 		r->in_row = 0;
-		r->far_mm = c->far_mm;
+		r->row_mm = r->from_mm;
 	}
 	r->in_row++;
 	c->totals.hunts += r->in_row == HUNTING_ROW;

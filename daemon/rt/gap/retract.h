@@ -23,8 +23,7 @@ struct retract {
 	uint64_t waited;		/* cycles stood at the limit */
 	uint64_t cycles;		/* of it, in all */
 	uint32_t in_row;		/* retracts without erosion between */
-	double far_mm;			/* the farthest place when the first of
-					 * them began */
+	double row_mm;			/* place the first of them began */
 	bool leaves;			/* by the escape, once it stands */
 };
 

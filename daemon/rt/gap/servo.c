@@ -59,7 +59,8 @@ static bool lifts(const struct cycle *c)
 /*
  * While the gap is open, it goes at the approach speed.  When there are signs
  * of sparks, it goes no faster than the servo would feed.  At the window it
- * stands.  A sign is taken as it is read, without the filter.
+ * stands.  A sign is taken as it is read, without the filter.  Beside what is
+ * positioned nothing sparks, and no spark would make a narrow gap wide.
  */
 double law_approach(struct cycle *c)
 {
@@ -67,9 +68,12 @@ double law_approach(struct cycle *c)
 	const double v = smaller(c->sensed.now_v, c->sensed.signal_v);
 	const double feed = g->gain_mm_s_v * (v - gap_window_high_v(c));
 
-	if (c->sensed.contact || feed < 0 || lifts(c))
+	const bool sparks = !walk_positions(c);
+
+	if (c->sensed.contact || (feed < 0 && sparks) || lifts(c))
 		return go_toward(c, 0);
-	return go_toward(c, cut_limit(c, c->sensed.is_open ? g->approach_mm_s :
+	return go_toward(c, cut_limit(c, c->sensed.is_open || !sparks ?
+					 g->approach_mm_s :
 					 smaller(feed, g->approach_mm_s)));
 }
 

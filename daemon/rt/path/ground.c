@@ -95,11 +95,13 @@ static bool is_far(const struct interp_cursor *at, uint32_t i, double near)
 	return false;
 }
 
-static bool is_on(const struct interp_cursor *at, uint32_t i,
+/* On the first @most_mm of it? */
+static bool is_on(const struct interp_cursor *at, uint32_t i, double most_mm,
 		  struct interp_at_curve *last)
 {
 	const struct interp_seg *s = &at->p.segs[i];
 	const double near = near_pulses(&at->p, s);
+	const double end_mm = fmin(most_mm, s->length_mm);
 	struct interp_contour_point point;
 	double mm = 0;
 
@@ -113,9 +115,9 @@ static bool is_on(const struct interp_cursor *at, uint32_t i,
 		way = way_mm(at, i, near, &point);
 		if (way == 0)
 			return true;
-		if (mm >= s->length_mm)
+		if (mm >= end_mm)
 			return false;
-		mm = fmin(mm + way, s->length_mm);
+		mm = fmin(mm + way, end_mm);
 	}
 	return false;
 }
@@ -126,15 +128,29 @@ static bool was_cut(const struct interp_seg *s)
 	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
 }
 
-bool ground_is_cut(const struct cycle *c)
+/* The motion that comes next, if it is a cut that has begun. */
+static bool is_cut_ahead(const struct cycle *c)
 {
 	const struct interp_cursor *at = &c->cursor;
+	struct interp_at_curve last = { .open = false };
+	uint32_t i = at->index + 1;
+	double gone_mm;
+
+	for (int n = 0; n < GROUND_SEGMENTS_MAX && i < at->p.head->nsegs &&
+	     at->p.segs[i].kind >= INTERP_BEGIN; n++)
+		i++;
+	if (i >= at->p.head->nsegs || !was_cut(&at->p.segs[i]))
+		return false;
+	gone_mm = c->far_mm - at->p.segs[i].s_mm;
+	return gone_mm > MOVER_ONTO_MM && is_on(at, i, gone_mm, &last);
+}
+
+static bool is_cut_behind(const struct interp_cursor *at)
+{
 	struct interp_at_curve last = { .open = false };
 	bool left_out = false;
 	uint32_t i = at->index;
 
-	if (at->seg.flags & INTERP_SEG_OUT)
-		return true;
 	for (int n = 0; n < GROUND_SEGMENTS_MAX && i > 0; n++) {
 		const struct interp_seg *s = &at->p.segs[--i];
 
@@ -144,8 +160,15 @@ bool ground_is_cut(const struct cycle *c)
 			return false;
 		if (s->kind == INTERP_TIMED_END || s->kind == INTERP_TIMED)
 			left_out = s->kind == INTERP_TIMED_END;
-		else if (!left_out && was_cut(s) && is_on(at, i, &last))
+		else if (!left_out && was_cut(s) &&
+			 is_on(at, i, INFINITY, &last))
 			return true;
 	}
 	return false;
+}
+
+bool ground_is_cut(const struct cycle *c)
+{
+	return c->cursor.seg.flags & INTERP_SEG_OUT || is_cut_ahead(c) ||
+	       is_cut_behind(&c->cursor);
 }

@@ -3,7 +3,8 @@
  * ground.h - does the electrode stand on ground that was cut already?
  *
  * Where a program positions out of what it cut, a short is debris and no
- * collision.  Which ground that is, the program says: the segments behind.
+ * collision.  Which ground that is, the program says: the segments behind, and
+ * the cut that comes next, as far as it was cut before.
  *
  * Threads: RT-safe; looks at a bounded number of segments.
  */

@@ -68,6 +68,25 @@ enum walk_ahead walk_ahead(const struct cycle *c)
 	return walk_is_cut(c, s) ? AHEAD_CUT : AHEAD_FREE;
 }
 
+/* The motion that led to the actions it stands at. */
+static bool was_positioned(const struct cycle *c)
+{
+	const struct interp_seg *s = &c->cursor.seg;
+	uint32_t i = c->cursor.index;
+
+	for (int n = 0; n < BEHIND_MAX && i > 0 && s->kind >= INTERP_BEGIN; n++)
+		s = &c->cursor.p.segs[--i];
+	return s->kind < INTERP_BEGIN &&
+	       s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED);
+}
+
+bool walk_positions(const struct cycle *c)
+{
+	const enum walk_ahead on = walk_ahead(c);
+
+	return on == AHEAD_ACTION ? was_positioned(c) : on != AHEAD_CUT;
+}
+
 double walk_cut_mm(const struct cycle *c, double least_mm)
 {
 	const struct interp_program *p = &c->cursor.p;

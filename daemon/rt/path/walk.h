@@ -50,6 +50,11 @@ bool walk_is_cut(const struct cycle *c, const struct interp_seg *s);
 bool walk_is_due(const struct cycle *c, uint32_t i, const struct interp_seg *s);
 enum walk_ahead walk_ahead(const struct cycle *c);
 
+/**
+ * walk_positions() - is no cut ahead, nor an action that a cut has led to?
+ * There is no power then, beside the path neither.
+ */
+bool walk_positions(const struct cycle *c);
 
 /**
  * walk_cut_mm() - the first place of the cut that is ahead or under way; if it

@@ -116,16 +116,19 @@ struct track {
 	struct node *node;
 	size_t n, room;
 	double t0, t1;			/* of the present section */
+	bool free;			/* at its end a rotary axis may have
+					 * any angle: it keeps its last one */
 };
 
-/* Find the axes at @t.  Of several solutions, take the one nearest to @q. */
+/* Find the axes at @t.  Of several solutions, take the one nearest to @q.
+ * Return: 1 if a rotary axis may have any angle there, 0, or an error. */
 static int solve(const struct track *k, double t, struct nc_pose *p,
 		 double q[INTERP_NAXES])
 {
 	const struct interp_kinematics *kin = &k->r->tool.k;
 	const double was[3] = { q[INTERP_A], q[INTERP_B], q[INTERP_C] };
 	struct interp_kin_pose want;
-	int err;
+	int err, any;
 
 	k->w->at(k->w->of, t, p);
 	memcpy(q, p->mm, INTERP_NAXES * sizeof(*q));
@@ -137,7 +140,8 @@ static int solve(const struct track *k, double t, struct nc_pose *p,
 	memcpy(want.tip_mm, p->mm, sizeof(want.tip_mm));
 	memcpy(want.dir, p->dir, sizeof(want.dir));
 	err = interp_kin_inverse(kin, &want, q);
-	if (err && err != -ESRCH)
+	any = err == -ESRCH;
+	if (err && !any)
 		return err;
 	if (k->w->body && nc_pose_roll(kin) >= 0) {
 		q[kin->joint[nc_pose_roll(kin)].axis] =
@@ -145,7 +149,7 @@ static int solve(const struct track *k, double t, struct nc_pose *p,
 		roll(kin, p->q, q);
 		err = interp_kin_place(kin, p->mm, q);
 	}
-	return err == -ESRCH ? 0 : err;
+	return err && err != -ESRCH ? err : any;
 }
 
 static int refuse(struct nc_reader *r, const char *wanted, const char *found)
@@ -212,7 +216,7 @@ static bool hides_jump(const struct track *k, double t,
 	struct nc_pose p;
 
 	memcpy(middle, here, sizeof(middle));
-	if (turn_of(here, next) < bound || solve(k, t, &p, middle))
+	if (turn_of(here, next) < bound || solve(k, t, &p, middle) < 0)
 		return false;
 	for (int i = INTERP_A; i <= INTERP_C; i++) {
 		const double turn = fabs(next[i] - here[i]);
@@ -226,15 +230,16 @@ static bool hides_jump(const struct track *k, double t,
 }
 
 /* Make a step of at most @h from @t, where the axes are @q.  Afterwards @q has
- * the next place, which may be a turn in place.  Return: 1 if it is one, 0, or
- * an error. */
-static int step(const struct track *k, double *t, double h,
-		double q[INTERP_NAXES])
+ * the next place, which may be a turn in place.  It always is one between a
+ * place where a rotary axis may have any angle and one where it may not: what
+ * the axis keeps is not what it has on the other side.  Return: 1 if it is one,
+ * 0, or an error. */
+static int step(struct track *k, double *t, double h, double q[INTERP_NAXES])
 {
 	double next[INTERP_NAXES], here[INTERP_NAXES];
 	struct nc_pose p, was;
 	bool jumps = false;
-	int err;
+	int any;
 
 	memcpy(here, q, sizeof(here));
 	k->w->at(k->w->of, *t, &was);
@@ -242,10 +247,10 @@ static int step(const struct track *k, double *t, double h,
 		const double to = fmin(1, *t + h);
 
 		memcpy(next, here, sizeof(next));
-		err = solve(k, to, &p, next);
-		if (err)
-			return err;
-		if (turn_of(here, next) <= STEP_DEG &&
+		any = solve(k, to, &p, next);
+		if (any < 0)
+			return any;
+		if (any == k->free && turn_of(here, next) <= STEP_DEG &&
 		    !hides_jump(k, (*t + to) / 2, here, next))
 			break;
 		jumps = same(k, &was, &p);
@@ -258,6 +263,7 @@ static int step(const struct track *k, double *t, double h,
 	}
 	memcpy(q, next, sizeof(next));
 	*t = fmin(1, *t + h);
+	k->free = any;
 	return jumps;
 }
 
@@ -265,9 +271,12 @@ static int step(const struct track *k, double *t, double h,
  * then in @q; @t is behind it.  Return: 1 if there is one, 0, or an error. */
 static int follow(struct track *k, double *t, double q[INTERP_NAXES])
 {
-	double h = STEP_MOST;
+	double h = STEP_MOST, at[INTERP_NAXES];
+	struct nc_pose p;
 	int err;
 
+	memcpy(at, q, sizeof(at));
+	k->free = solve(k, *t, &p, at) > 0;
 	k->n = 0;
 	k->t0 = k->t1 = *t;
 	err = node_add(k, *t, q);

@@ -21,6 +21,9 @@
 #define AROUND		1
 #define PEAK		0
 
+/* Roundings of a chord over fewer lines than a window. */
+#define FEW_LINES	M_SQRT2
+
 /* If all of a turn but this share is more than a rounding, a wider window shows
  * no more. */
 #define CLEAR		0.02
@@ -463,25 +466,46 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 	return smaller(corner(w, &c, w->n), step(w, &c, w->n));
 }
 
-/* A peak of the share of an axis beside the path: over a shorter way it is more
- * than over the longer one, by more than both are rounded. */
-COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i, double along,
-			       struct chord *around, uint32_t n)
+/* A peak of the share of an axis beside the path: over the shorter way @c it is
+ * more than over the longer one, by more than @times what both are rounded. */
+COLUMNS_INLINE void raise_rates(struct pass *w, const struct chord *c,
+				double times, struct chord *around, uint32_t n)
 {
-	struct around *k = &w->windows[PEAK];
-	struct chord c;
+	const double along = pass_along_tol(w, around->h.along);
+	const double per_mm = times * (c->per_mm + around->per_mm);
 
-	look_around(w, i, k);
-	chord_by(w, k->behind, k->ahead, around->h.along, &c, n);
 	for (uint32_t j = 0; j < n; j++) {
 		double *rate = &around->h.rate[j];
 		const double off = pass_off(w, j, along, fabs(*rate));
 
-		if (!(c.h.along >> j & 1) &&
-		    fabs(c.h.rate[j]) - fabs(*rate) > (w->tol[j] + off) *
-					(c.per_mm + around->per_mm))
-			*rate = c.h.rate[j];
+		if (!(c->h.along >> j & 1) &&
+		    fabs(c->h.rate[j]) - fabs(*rate) >
+			    (w->tol[j] + off) * per_mm)
+			*rate = c->h.rate[j];
 	}
+}
+
+/* A peak may be narrower than any window, and yet so high that no rounding
+ * makes it: so the way around the line is halved down to its neighbours.  Over
+ * so few lines, the roundings of X and of Y both count in the way. */
+COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i,
+			       struct chord *around, uint32_t n)
+{
+	struct around *k = &w->windows[PEAK];
+	uint32_t behind, ahead;
+	double times = 1;
+	struct chord c;
+
+	look_around(w, i, k);
+	behind = i - k->behind;
+	ahead = k->ahead - i;
+	do {
+		chord_by(w, i - behind, i + ahead, around->h.along, &c, n);
+		raise_rates(w, &c, times, around, n);
+		times = FEW_LINES;
+		behind /= 2;
+		ahead = (ahead + 1) / 2;
+	} while (behind > 0 || ahead > 1);
 }
 
 /*
@@ -504,7 +528,7 @@ COLUMNS_INLINE void line_rates(struct pass *w, uint32_t i,
 	around = c.mm > 0 ? c.h.rate : h->rate;
 	along = pass_along_tol(w, h->along);
 	if (c.mm > 0 && ~h->along & ((1u << n) - 1))
-		find_peaks(w, i, along, &c, n);
+		find_peaks(w, i, &c, n);
 	ret->v_mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++) {
 		/* So far the length and the axis may be off, if the share is
