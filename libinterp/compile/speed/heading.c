@@ -166,6 +166,7 @@ void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
 				     &ret->first);
 
 	ret->bend_mm = 0;
+	ret->share = 1;
 	if (s->kind == INTERP_ARC)
 		moving |= columns_of(p, 1u << p->arcs[s->arg].axis_a |
 					1u << p->arcs[s->arg].axis_b);
