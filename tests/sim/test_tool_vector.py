@@ -252,6 +252,24 @@ def test_a_body_goes_back_as_it_came(tmp_path):
     assert at[2 * n:] == at[:n + 1]
 
 
+def test_turns_in_place_do_not_add_up(tmp_path):
+    """C turns by 170 degrees while the tip goes on by a tenth of a mm."""
+    ini = INI.replace("tolerance_um = 1", "tolerance_um = 20")
+    to = [(0, 0, -75), (1, 1, -75), (1, 0, -75)]
+    q = [(1, 0.0001, x, 0) for x in (-0.002, 0.003, 0.008)]
+    words = [" ".join(f"{a}{x}" for a, x in zip("XYZQIJK", (*p, *r)))
+             for p, r in zip(to, q)]
+    text = ("G43.5\nG1 F120 Z-75 I-0.004 J-0.0002 K0.999992\nG6.3 L3 " +
+            "\n".join("P0 " + w for w in words) + "\nP1\nP1\nP1\nM2\n")
+    tip, _ = walked(tmp_path, text, ini, range(3, 9))
+    c = NURBS.Curve(normalize_kv=False)
+    c.degree, c.ctrlpts = 2, [list(map(float, p)) for p in to]
+    c.knotvector = [0, 0, 0, 1, 1, 1]
+    true = np.array(c.evaluate_list(list(np.linspace(0, 1, 4000))))
+    off = [np.linalg.norm(true - p, axis=1).min() for p in tip[::41]]
+    assert max(off) * 1e3 < OFF_UM + 20 - UM
+
+
 @pytest.mark.parametrize("off", ["0.1", "0.02", "0.005", "0.0001", "0"])
 def test_from_a_pole_it_goes_in_any_direction(tmp_path, off):
     """C jumps at the pole, by however little, and turns there in place."""

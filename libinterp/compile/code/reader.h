@@ -334,6 +334,10 @@ int nc_run_tool_point(struct nc_reader *r);
  * the tip; r->word is filled.  A curve ends at r->curve.last_mm. */
 int nc_tip_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		bool rapid);
+
+/** nc_tip_turn() - as nc_tip_line(), for a turn in place: the tip goes on by
+ *  less than can be seen. */
+int nc_tip_turn(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
 int nc_tip_arc(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	       const struct interp_build_arc *arc);
 int nc_tip_curve(struct nc_reader *r, const struct interp_build_curve *c);

@@ -71,18 +71,29 @@ static int go(struct nc_reader *r, const struct nc_tip_way *w,
 	return err;
 }
 
-int nc_tip_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
-		bool rapid)
+static int line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		bool in_place)
 {
-	struct nc_tip_way w = { .at = line_at };
+	struct nc_tip_way w = { .at = line_at, .in_place = in_place };
 	struct ends e;
 
 	memcpy(e.from_mm, r->tool.here_mm, sizeof(e.from_mm));
 	memcpy(e.to_mm, end_mm, sizeof(e.to_mm));
 	w.of = &e;
 	w.turn_deg = turn_deg(&e);
-	r->word.rapid = rapid;
 	return go(r, &w, end_mm);
+}
+
+int nc_tip_line(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		bool rapid)
+{
+	r->word.rapid = rapid;
+	return line(r, end_mm, false);
+}
+
+int nc_tip_turn(struct nc_reader *r, const double end_mm[INTERP_NAXES])
+{
+	return line(r, end_mm, true);
 }
 
 /* If the axes put the tip somewhere, no program can name the place to the last

@@ -346,14 +346,17 @@ static int go_section(struct track *k)
 	return err;
 }
 
-/* The tip stands still while the rotary axes turn to @q. */
-static int turn_in_place(struct nc_reader *r, const double q[INTERP_NAXES])
+/* The rotary axes turn to @q.  The tip goes on to the place at @t, which is not
+ * to be told from where it stands.  If it stood still, what it leaves out would
+ * add up over several turns one behind the other. */
+static int turn_in_place(struct track *k, double t,
+			 const double q[INTERP_NAXES])
 {
-	double end[INTERP_NAXES];
+	struct nc_pose end;
 
-	memcpy(end, r->tool.here_mm, sizeof(end));
-	memcpy(end + INTERP_A, q + INTERP_A, 3 * sizeof(*end));
-	return nc_tip_line(r, end, r->word.rapid);
+	k->w->at(k->w->of, t, &end);
+	memcpy(end.mm + INTERP_A, q + INTERP_A, 3 * sizeof(*end.mm));
+	return nc_tip_turn(k->r, end.mm);
 }
 
 int nc_pose_way(struct nc_reader *r, const struct nc_pose_way *w)
@@ -368,7 +371,7 @@ int nc_pose_way(struct nc_reader *r, const struct nc_pose_way *w)
 		if (err >= 0)
 			err = k.t1 > k.t0 ? go_section(&k) : 0;
 		if (err == 0 && jumps)
-			err = turn_in_place(r, q);
+			err = turn_in_place(&k, t, q);
 	} while (err == 0 && jumps);
 	for (uint32_t i = 0; i < r->tool.k.njoints; i++)
 		r->moved |= NC_BIT(r->tool.k.joint[i].axis);

@@ -5,8 +5,8 @@
  * A direction gives the rotary axes, except for the branch of the solution.
  * They are followed from where they stand, in steps so small that the nearest
  * solution is on the same branch.  Where the tool comes to lie along a rotary
- * axis, that axis may have to turn at once.  Then it turns in place while the
- * tip stands still.
+ * axis, that axis may have to turn at once.  Then it turns in place: the tip
+ * goes on by less than can be seen.
  */
 #ifndef CODE_TIP_TURN_H
 #define CODE_TIP_TURN_H

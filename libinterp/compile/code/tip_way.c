@@ -23,6 +23,11 @@
 #define PIECES_MAX	100000
 #define PIECE_MIN	1e-10
 
+/* A quarter of the tolerance lies between the ends of a turn in place.  They
+ * are on the way: no place between them is farther from it than half of
+ * that. */
+#define IN_PLACE	(7.0 / 8)
+
 #define STANDS_MM	1e-7
 #define STILL_MM	1e-9		/* of a whole way: a rounding */
 
@@ -135,14 +140,16 @@ static struct extent measure(const struct nc_tip_way *w, double t0, double t1)
 	return e;
 }
 
-/* F is the feed of the tip.  If the tip stands still on the whole way, F
- * belongs to what moves. */
-static double seconds(const struct nc_reader *r, const struct extent *whole,
-		      const struct extent *part)
+/* F is the feed of the tip.  If the tip stands still on the whole way, as in a
+ * turn in place, F belongs to what moves. */
+static double seconds(const struct nc_reader *r, const struct nc_tip_way *w,
+		      const struct extent *whole, const struct extent *part)
 {
-	if (whole->tip_mm > STILL_MM)
+	const bool turns = whole->turn_deg > STILL_MM;
+
+	if (whole->tip_mm > STILL_MM && !(w->in_place && turns))
 		return part->tip_mm / r->feed_mm_s;
-	if (whole->turn_deg > STILL_MM)
+	if (turns)
 		return part->turn_deg / r->feed_deg_s;
 	return part->other_mm / r->feed_mm_s;
 }
@@ -177,10 +184,13 @@ static int refuse_place(struct nc_reader *r)
 static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		     struct piece *p)
 {
+	const double most = r->o->tip_tolerance_mm *
+			    (w->in_place ? IN_PLACE : 1);
+
 	for (;;) {
 		if (axes_at(r, w, p->t1, p->q1))
 			return refuse_place(r);
-		if (stray_mm(r, w, p) <= r->o->tip_tolerance_mm)
+		if (stray_mm(r, w, p) <= most)
 			break;
 		if (p->t1 - p->t0 < PIECE_MIN)
 			return refuse_pieces(r);
@@ -199,7 +209,7 @@ static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		return err;
 	if (!r->word.rapid) {
 		const struct extent part = measure(w, p->t0, p->t1);
-		const double s = seconds(r, whole, &part);
+		const double s = seconds(r, w, whole, &part);
 		const double fed = interp_build_fed_mm(r->contour.guides.build,
 						       p->q0, p->q1);
 

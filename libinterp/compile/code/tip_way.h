@@ -14,6 +14,9 @@ struct nc_tip_way {
 	void (*at)(const void *of, double t, double ret_mm[INTERP_NAXES]);
 	const void *of;
 	double turn_deg;		/* no rotary turns farther */
+	bool in_place;			/* the tip goes on by a quarter of the
+					 * tolerance at most: F belongs to the
+					 * turn */
 	/* The difference between its ends and the places that the program
 	 * names, too small to be seen.  It is spread along the way. */
 	double off_mm[2][INTERP_NAXES];
