@@ -393,7 +393,7 @@ static void in_the_cut_itself_it_may_short(void **st)
 	rig_free(&r);
 }
 
-/* -- Beside hundreds of curves ---------------------------------------------- */
+/* -- Beside hundreds of curves ------------------------------------------- */
 
 static uint32_t looked;			/* in this cycle */
 
