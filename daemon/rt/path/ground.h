@@ -6,7 +6,7 @@
  * collision.  Which ground that is, the program says: the segments behind, and
  * the cut that comes next, as far as it was cut before.
  *
- * Threads: RT-safe; a bounded number of segments and of looks at them in a call.
+ * Threads: RT-safe; in a call a bounded number of segments and of looks.
  */
 #ifndef RT_GROUND_H
 #define RT_GROUND_H
