@@ -212,8 +212,8 @@ $(B)/%.o: %.cc
 
 # From text to program there are many short loops over the axes, and roots whose
 # errno nobody asks for.
-$(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
-	speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3 -fno-math-errno
+$(call obj,$(wildcard $(addprefix libinterp/compile/,code/again.c code/scan.c \
+	path/*.c speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3 -fno-math-errno
 # Nothing here may trap, so several ticks of an arc may be rounded at a time.
 $(call obj,libinterp/core/pulse/arc.c): OPT += -fno-trapping-math
 # Over two to four columns vectors take more than they give.
