@@ -343,6 +343,8 @@ $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
 
 # The sockets and the lines of an encoder are the test's own.
 $(B)/unit/test_can_queue: UNIT_LIBS = -Wl,--wrap=can_socket_open
+# Looks at a program are counted.
+$(B)/unit/test_ground: UNIT_LIBS = -Wl,--wrap=interp_program_any_at
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
