@@ -96,7 +96,7 @@ static void take_form(struct nc_form *f, const uint8_t *p, const uint8_t *end)
 		*f = form;
 }
 
-/* The number at @first, of any form.  The next one is looked for in this form. */
+/* The number at @first, of any form; the next one is expected in that form. */
 static const uint8_t *read_any(struct nc_reader *r, struct nc_pattern_word *w,
 			       const uint8_t *first, double *ret)
 {
