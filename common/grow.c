@@ -8,9 +8,8 @@
 
 #define FIRST	64		/* elements */
 
-int grow_array(void *at, size_t *room, size_t bytes)
+int grow_to(void *at, size_t *room, size_t wanted, size_t bytes)
 {
-	const size_t wanted = *room ? 2 * *room : FIRST;
 	void *array;
 
 	/* A pointer to another type may not be read as a void *. */
@@ -21,6 +20,11 @@ int grow_array(void *at, size_t *room, size_t bytes)
 	memcpy(at, &array, sizeof(array));
 	*room = wanted;
 	return 0;
+}
+
+int grow_array(void *at, size_t *room, size_t bytes)
+{
+	return grow_to(at, room, *room ? 2 * *room : FIRST, bytes);
 }
 
 int grow_read(FILE *f, size_t most, char **at, size_t *n)

@@ -27,6 +27,9 @@
  */
 int grow_array(void *at, size_t *room, size_t bytes);
 
+/** grow_to() - the same, but give it room for @wanted elements. */
+int grow_to(void *at, size_t *room, size_t wanted, size_t bytes);
+
 /**
  * grow_read() - read all that is left of @f.
  *

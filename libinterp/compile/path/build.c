@@ -20,10 +20,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+/*
+ * A table that a short program does not fill is small.  Its next size is that
+ * of some thousand lines, so that what is in it is hardly ever copied; pages
+ * that nobody writes to take no memory.
+ */
+#define FIRST_ROOM	64		/* elements */
+#define NEXT_BYTES	(1u << 20)
+
+static size_t next_room(const struct table *t)
+{
+	const size_t twice = 2 * t->room, some = NEXT_BYTES / t->size;
+
+	if (!t->room)
+		return FIRST_ROOM;
+	return twice > some ? twice : some;
+}
+
 int build_table_room(struct table *t, size_t n)
 {
 	while (t->room < t->n + n)
-		if (grow_array(&t->at, &t->room, t->size))
+		if (grow_to(&t->at, &t->room, next_room(t), t->size))
 			return -ENOMEM;
 	return 0;
 }
@@ -47,9 +64,10 @@ static int node_add(struct interp_build *b)
 	if (t->room - t->n < b->naxes && build_table_room(t, b->naxes) < 0)
 		return -ENOMEM;
 	/* There may be no axis yet, and then no table either. */
-	at = nodes_of(b);
+	at = nodes_of(b) + t->n;
 	for (uint32_t j = 0; j < b->naxes; j++)
-		at[t->n++] = b->here[b->column[j]];
+		at[j] = b->here[b->column[j]];
+	t->n += b->naxes;
 	return 0;
 }
 
@@ -84,6 +102,7 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	if (!b)
 		return NULL;
 	b->o = *o;
+	b->how = pulse_strategy(o->strategy);
 	b->segs.size = sizeof(struct interp_seg);
 	b->nodes.size = sizeof(int64_t);
 	b->arcs.size = sizeof(struct interp_arc);
@@ -211,15 +230,12 @@ bool build_axis_ok(const struct interp_build *b, int axis, double at_mm)
 
 /* -- Segments ------------------------------------------------------------ */
 
-/* The number of the condition in force; it is added if it is new. */
+/* The number of the condition of @w; it is added if it is new. */
 static int cond_of(struct interp_build *b, const struct interp_build_word *w)
 {
 	struct interp_cond *c = b->conds.at;
 	struct interp_tech tech;
 
-	if (w->cond_letter == b->cond_letter &&
-	    w->cond_number == b->cond_number && w->tech == b->tech)
-		return b->cond;
 	interp_tech_clear(&tech);
 	if (w->tech)
 		tech = *w->tech;
@@ -240,12 +256,12 @@ static int cond_of(struct interp_build *b, const struct interp_build_word *w)
 	return (int)b->conds.n - 1;
 }
 
-int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
-		     const struct interp_build_word *w,
-		     struct interp_diag *diag)
+/* From here on, that of @w is in force. */
+static int change_cond(struct interp_build *b,
+		       const struct interp_build_word *w,
+		       struct interp_diag *diag)
 {
 	const int cond = cond_of(b, w);
-	struct interp_seg *s;
 
 	if (cond == -ENOSPC) {
 		return interp_diag_say(diag, "more than %d different "
@@ -257,6 +273,21 @@ int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
 	b->cond_letter = w->cond_letter;
 	b->cond_number = w->cond_number;
 	b->tech = w->tech;
+	return 0;
+}
+
+static inline int seg_finish(struct interp_build *b, struct interp_seg *seg,
+			     const struct interp_build_word *w,
+			     struct interp_diag *diag)
+{
+	const bool same = w->cond_letter == b->cond_letter &&
+			  w->cond_number == b->cond_number &&
+			  w->tech == b->tech;
+	const int err = same ? 0 : change_cond(b, w, diag);
+	struct interp_seg *s;
+
+	if (err < 0)
+		return err;
 	seg->cond = b->cond;
 	seg->line = w->line;
 	seg->s_mm = b->length_mm;
@@ -269,6 +300,13 @@ int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
 	*s = *seg;
 	b->length_mm += seg->length_mm;
 	return 0;
+}
+
+int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
+		     const struct interp_build_word *w,
+		     struct interp_diag *diag)
+{
+	return seg_finish(b, seg, w, diag);
 }
 
 int build_columns(struct interp_build *b, uint32_t moved)
@@ -291,8 +329,8 @@ void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
 }
 
 /* As program.h says; and what F is along. */
-static double length_of(const double d[INTERP_NAXES], uint32_t moved,
-			double *ret_fed_mm)
+static inline double length_of(const double d[INTERP_NAXES], uint32_t moved,
+			       double *ret_fed_mm)
 {
 	const uint32_t xyz = 1u << INTERP_X | 1u << INTERP_Y | 1u << INTERP_Z;
 	const double xyz2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
@@ -344,30 +382,33 @@ double interp_build_fed_mm(const struct interp_build *b,
 	return fed;
 }
 
-int build_measure(const struct interp_build *b,
-		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
-		  struct build_measure *ret, struct interp_diag *diag)
+static inline int measure(const struct interp_build *b,
+			  const double end_mm[INTERP_NAXES],
+			  int64_t to[INTERP_NAXES], struct build_measure *ret,
+			  struct interp_diag *diag)
 {
 	const struct interp_axis_limits *axis = b->o.machine->axis;
 	double d[INTERP_NAXES] = { 0 }, seconds = 0;
-	uint32_t moved = 0;
+	uint32_t moved = other_axes(end_mm, b->here_mm);
 	int64_t longest = 0;
 
 	memcpy(to, b->here, sizeof(b->here));
-	for (uint32_t left = other_axes(end_mm, b->here_mm); left;
-	     left &= left - 1) {
+	for (uint32_t left = moved; left; left &= left - 1) {
 		const int i = __builtin_ctz(left);
 		const double at = end_mm[i];
 		int64_t len;
 
-		if (!is_inside(b, i, at) && !build_axis_ok(b, i, at))
-			return build_refuse_travel(b->o.machine, i, at, diag);
+		if (!is_inside(b, i, at) && !build_axis_ok(b, i, at)) {
+			build_refuse_travel(b->o.machine, i, at, diag);
+			return -EINVAL;
+		}
 		to[i] = sub_of(b, i, at);
 		len = to[i] - b->here[i];
-		if (len == 0)
+		if (len == 0) {
+			moved &= ~(1u << i);
 			continue;
+		}
 		d[i] = (double)len / b->sub_mm[i];
-		moved |= 1u << i;
 		seconds = larger(fabs(d[i]) / axis[i].v_max_mm_s, seconds);
 		len = len < 0 ? -len : len;
 		longest = len > longest ? len : longest;
@@ -377,6 +418,13 @@ int build_measure(const struct interp_build *b,
 	};
 	ret->length_mm = length_of(d, moved, &ret->fed_mm);
 	return 0;
+}
+
+int build_measure(const struct interp_build *b,
+		  const double end_mm[INTERP_NAXES], int64_t to[INTERP_NAXES],
+		  struct build_measure *ret, struct interp_diag *diag)
+{
+	return measure(b, end_mm, to, ret, diag);
 }
 
 int build_measure_next(struct interp_build *b,
@@ -452,46 +500,63 @@ static int sensed_begin(struct interp_build *b, uint32_t moved,
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
 }
 
+/* The axes move one at a time, so it matters how far each goes. */
+static int plan_one_by_one(struct interp_build *b, const int64_t *to,
+			   const struct build_measure *m,
+			   struct interp_seg *seg, struct interp_diag *diag)
+{
+	const struct build_way way = build_way_to(b, to, m);
+	const uint64_t ticks = build_rule_pulses(&way);
+	int err;
+
+	if (ticks > INTERP_PULSES_MAX)
+		return refuse_long(diag, m->length_mm);
+	err = build_rule_check(&b->o, &way, diag);
+	if (err < 0)
+		return err;
+	seg->ticks = (uint32_t)ticks;
+	return build_columns(b, m->moved) < 0 ? -ENOMEM :
+	       build_bits_add(b, &way, &seg->arg);
+}
+
+static inline int plan_together(struct interp_build *b,
+				const struct build_measure *m,
+				struct interp_seg *seg,
+				struct interp_diag *diag)
+{
+	const uint64_t ticks = build_rule_ticks(b->how, m->longest);
+
+	if (ticks > INTERP_PULSES_MAX)
+		return refuse_long(diag, m->length_mm);
+	seg->ticks = (uint32_t)ticks;
+	return m->moved & ~b->columns && build_columns(b, m->moved) < 0 ?
+	       -ENOMEM : 0;
+}
+
 int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	       const struct interp_build_word *w, struct interp_diag *diag)
 {
 	struct interp_seg seg = { .kind = INTERP_LINE };
 	int64_t to[INTERP_NAXES];
 	struct build_measure m;
-	struct build_way way;
-	uint64_t ticks;
-	bool one_by_one;
 	int err;
 
 	if (w->ends)
 		loosen(b, end_mm);
-	err = build_measure(b, end_mm, to, &m, diag);
+	err = measure(b, end_mm, to, &m, diag);
 	if (err < 0)
 		return err;
 	if (!m.moved) {
 		build_stand_at(b, end_mm, to);
 		return 0;
 	}
-	one_by_one = build_rule_one_by_one(b->o.strategy);
-	way.longest_sub = m.longest;
-	if (one_by_one)
-		way = build_way_to(b, to, &m);
-	ticks = build_rule_ticks(b->o.strategy, &way);
-	if (ticks > INTERP_PULSES_MAX)
-		return refuse_long(diag, m.length_mm);
-	if (one_by_one)
-		err = build_rule_check(&b->o, &way, diag);
-	if (err < 0)
-		return err;
-	seg.ticks = (uint32_t)ticks;
 	seg.length_mm = m.length_mm;
 	build_seg_feed(&seg, w, m.length_mm / m.seconds);
 	if (!w->rapid)
 		seg.feed_mm_s *= (float)(m.length_mm / m.fed_mm);
-	if (m.moved & ~b->columns && build_columns(b, m.moved) < 0)
-		return -ENOMEM;
-	if (one_by_one)
-		err = build_bits_add(b, &way, &seg.arg);
+	err = build_rule_one_by_one(b->how) ?
+	      plan_one_by_one(b, to, &m, &seg, diag) :
+	      plan_together(b, &m, &seg, diag);
 	if (err == 0 && w->ends)
 		err = sensed_begin(b, m.moved, w, diag);
 	if (err < 0)
@@ -502,7 +567,7 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	/* It is also not known how far it came. */
 	if (w->ends)
 		b->descent.axis = -1;
-	return build_seg_finish(b, &seg, w, diag);
+	return seg_finish(b, &seg, w, diag);
 }
 
 int build_step(struct interp_build *b, const struct build_step *s,

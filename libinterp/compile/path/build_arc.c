@@ -280,7 +280,7 @@ static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 		err = build_rule_check(p->o, &p->way, diag);
 		if (err < 0)
 			return err;
-		ticks += build_rule_ticks(INTERP_POINT_BY_POINT, &p->way);
+		ticks += build_rule_pulses(&p->way);
 	}
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_ticks(diag);

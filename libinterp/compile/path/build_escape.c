@@ -12,13 +12,12 @@
 #include <math.h>
 #include <string.h>
 
-void build_descend(struct interp_build *b, uint32_t moved,
-		   const double end_mm[INTERP_NAXES])
+void build_descend_one(struct interp_build *b, int axis,
+		       const double end_mm[INTERP_NAXES])
 {
 	struct build_descent *d = &b->descent;
-	const int axis = moved & (moved - 1) ? -1 : __builtin_ctz(moved);
 
-	if (axis < 0 || interp_axis_is_rotary((enum interp_axis)axis)) {
+	if (interp_axis_is_rotary((enum interp_axis)axis)) {
 		d->axis = -1;
 		return;
 	}
@@ -107,17 +106,14 @@ int interp_build_escape(struct interp_build *b, const struct interp_escape *e)
  * The way out is on the side from which the electrode came to this line, if the
  * whole motion lies on the other side.  Otherwise new ground lies inside.
  */
-uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
-			 const double end_mm[INTERP_NAXES])
+uint16_t build_escape_lift(struct interp_build *b,
+			   const double end_mm[INTERP_NAXES])
 {
 	const struct build_descent *d = &b->descent;
 	const int axis = b->lift_axis;
-	struct interp_escape e;
+	struct interp_escape e = { .out = 1u << axis };
 	int i;
 
-	if (b->escape || axis < 0 || moved != 1u << axis)
-		return b->escape;
-	e = (struct interp_escape) { .out = moved };
 	if (d->first_mm >= fmax(b->here_mm[axis], end_mm[axis]))
 		e.out_mm[axis] = d->high_mm;
 	else if (d->first_mm <= fmin(b->here_mm[axis], end_mm[axis]))

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static uint64_t pulses_of(const struct build_way *w)
+uint64_t build_rule_pulses(const struct build_way *w)
 {
 	uint64_t n = 0;
 
@@ -16,26 +16,6 @@ static uint64_t pulses_of(const struct build_way *w)
 			n += (uint64_t)llabs((int64_t)w->to[i] - w->from[i]);
 	}
 	return n;
-}
-
-bool build_rule_one_by_one(enum interp_strategy s)
-{
-	const struct pulse_strategy *how = pulse_strategy(s);
-
-	return !how->at_once && !how->accumulates;
-}
-
-uint64_t build_rule_ticks(enum interp_strategy s, const struct build_way *w)
-{
-	const int64_t longest = (w->longest_sub + INTERP_SUB - 1) >>
-				INTERP_SUB_BITS;
-
-	if (pulse_strategy(s)->at_once)
-		return (uint64_t)longest;
-	if (!pulse_strategy(s)->accumulates)
-		return pulses_of(w);
-	return longest > INTERP_PULSES_MAX ? UINT64_MAX :
-					     (uint64_t)pulse_dda_ticks(longest);
 }
 
 int build_refuse_tolerance(const struct interp_build_options *o,

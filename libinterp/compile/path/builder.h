@@ -33,6 +33,7 @@ struct build_descent {
 
 struct interp_build {
 	struct interp_build_options o;
+	const struct pulse_strategy *how;	/* of o.strategy */
 	double here_mm[INTERP_NAXES];
 	int64_t here[INTERP_NAXES];	/* the same in subpulses */
 	int64_t first[INTERP_NAXES];
@@ -181,12 +182,31 @@ void build_travel(const struct interp_build *b, int axis, double ret[2]);
 /** build_axis_ok() - may axis @axis stand at @at_mm? */
 bool build_axis_ok(const struct interp_build *b, int axis, double at_mm);
 
+/** build_descend_one() - build_descend() along one axis only. */
+void build_descend_one(struct interp_build *b, int axis,
+		       const double end_mm[INTERP_NAXES]);
+
 /** build_descend() - the next motion moves the axes in @moved to @end_mm. */
-void build_descend(struct interp_build *b, uint32_t moved,
-		   const double end_mm[INTERP_NAXES]);
+static inline void build_descend(struct interp_build *b, uint32_t moved,
+				 const double end_mm[INTERP_NAXES])
+{
+	if (moved & (moved - 1))
+		b->descent.axis = -1;
+	else
+		build_descend_one(b, __builtin_ctz(moved), end_mm);
+}
+
+/** build_escape_lift() - build_escape_of() along the axis of the lift only. */
+uint16_t build_escape_lift(struct interp_build *b,
+			   const double end_mm[INTERP_NAXES]);
 
 /** build_escape_of() - the index of the escape of that motion. */
-uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
-			 const double end_mm[INTERP_NAXES]);
+static inline uint16_t build_escape_of(struct interp_build *b, uint32_t moved,
+				       const double end_mm[INTERP_NAXES])
+{
+	if (b->escape || b->lift_axis < 0 || moved != 1u << b->lift_axis)
+		return b->escape;
+	return build_escape_lift(b, end_mm);
+}
 
 #endif /* PATH_BUILDER_H */

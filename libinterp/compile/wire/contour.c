@@ -21,6 +21,7 @@ void contour_init(struct contour *k, const struct interp_wire *w,
 	guides_init(&k->guides, w, m, b);
 	memcpy(k->here_mm, interp_build_here(b), sizeof(k->here_mm));
 	guides_planes(&k->guides, k->here_mm, k->at);
+	k->plain = !guides_on(&k->guides) && !(w->corner_angle_deg < 180);
 	if (!guides_on(&k->guides))
 		return;
 	k->here_mm[INTERP_X] = k->at[0].x;
@@ -57,13 +58,21 @@ static bool is_on(double offset_mm, double slope)
 	return offset_mm != 0 || slope != 0;
 }
 
+/* All bits but that of the sign: 0 if @v is 0. */
+static uint64_t bits(double v)
+{
+	uint64_t b;
+
+	memcpy(&b, &v, sizeof(b));
+	return b << 1;
+}
+
 /* Nothing in force, nothing held: no business of this stage. */
 static bool is_idle(const struct contour *k)
 {
-	return !k->n && !k->recording && !guides_on(&k->guides) &&
-	       !is_on(k->offset_mm, k->slope) &&
-	       !is_on(k->last_offset_mm, k->last_slope) &&
-	       !(k->guides.wire->corner_angle_deg < 180);
+	return k->plain && !k->n && !k->recording &&
+	       !(bits(k->offset_mm) | bits(k->slope) |
+		 bits(k->last_offset_mm) | bits(k->last_slope));
 }
 
 static int refuse_record(const struct contour *k, struct interp_diag *diag)

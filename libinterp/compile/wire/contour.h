@@ -35,6 +35,8 @@ struct contour_action {
 struct contour {
 	struct guides guides;
 	double here_mm[INTERP_NAXES];	/* as programmed: U V on the top */
+	bool plain;			/* no guides, and no corners to round:
+					 * most motions are passed on */
 	double offset_mm, slope;	/* in force for the next motion ... */
 	enum interp_taper_corner corner;
 	double last_offset_mm, last_slope;	/* ... and for the last one */
