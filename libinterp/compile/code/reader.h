@@ -301,7 +301,7 @@ int nc_check_line(struct nc_reader *r);
  */
 void nc_list_refusals(struct nc_reader *r);
 
-/** nc_has_no_code() - are there at most a feed and a label beside its places? */
+/** nc_has_no_code() - has the line places, a feed and a label at most? */
 bool nc_has_no_code(const struct nc_reader *r);
 
 /** nc_tell() - send what r->diag has to o->refused. */
