@@ -14,8 +14,6 @@
  */
 #include "speed/pass.h"
 
-#include <math.h>
-
 /* Of the acceleration along the path, what a bend leaves at least.  One that
  * would need more is followed slower.  More of it makes short moves quicker,
  * such as jumps, and long ones slower. */

@@ -28,10 +28,8 @@ void heading_ways_init(struct ways *w, const struct interp_program *p)
 			       INTERP_SUB;
 }
 
-/* The square of what those columns go by that make the length is 1 on each mm
- * of a line, of others before them far less; round an arc it is as the radius
- * is there. */
-#define COUNTS_STRAIGHT	0.25
+/* HEADING_COUNTS of what is no line: round an arc it is as the radius is
+ * there. */
 #define COUNTS_ROUND	1e-6
 
 /* The axes that make the length of a path, as program.h says. */
@@ -69,16 +67,12 @@ static uint32_t along_by(const struct ways *w, uint32_t moving,
 COLUMNS_INLINE uint32_t straight(const struct ways *w, uint32_t i,
 				 struct heading *h, uint32_t n)
 {
-	const int64_t *from = w->p->nodes + (uint64_t)i * n, *to = from + n;
-	const double per_mm = 1 / w->p->segs[i].length_mm;
+	int64_t sub[INTERP_NAXES];
 	uint32_t moving = 0;
 
-	for (uint32_t j = 0; j < n; j++) {
-		const int64_t d = to[j] - from[j];
-
-		h->rate[j] = (double)d * per_mm * w->sub_mm[j];
-		moving |= (uint32_t)(d != 0) << j;
-	}
+	heading_straight(w, i, h, sub, n);
+	for (uint32_t j = 0; j < n; j++)
+		moving |= (uint32_t)(sub[j] != 0) << j;
 	return moving;
 }
 
@@ -158,7 +152,7 @@ static void round_curve(const struct ways *w, const struct interp_seg *s,
 	interp_program_curve_rate(p, s, true, h->last.rate);
 }
 
-void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
+void heading_of(const struct ways *w, uint32_t i, struct headings *ret)
 {
 	const struct interp_program *p = w->p;
 	const struct interp_seg *s = &p->segs[i];
@@ -184,7 +178,7 @@ void heading_find(const struct ways *w, uint32_t i, struct headings *ret)
 	ret->first.along = s->kind == INTERP_ARC ?
 			   along_of(w, moving) :
 			   along_by(w, moving, &ret->first,
-				    s->kind == INTERP_LINE ? COUNTS_STRAIGHT :
+				    s->kind == INTERP_LINE ? HEADING_COUNTS :
 							     COUNTS_ROUND);
 	ret->last.along = ret->first.along;
 }
@@ -200,22 +194,24 @@ static uint32_t line_along(const struct ways *w, uint32_t i)
 
 	if (w->p->segs[i].kind != INTERP_LINE)
 		return 0;
-	if (w->xyz == (1u << n) - 1)
-		return w->xyz;
 	/* Mostly one of X Y Z goes half of the length, and more. */
 	for (uint32_t j = 0; j < n; j++)
 		if (w->xyz >> j & 1 &&
 		    fabs((double)(b[j] - a[j])) * w->sub_mm[j] >= half)
 			return w->xyz;
 	moving = BY_COLUMNS(n, straight, w, i, &h);
-	return along_by(w, moving, &h, COUNTS_STRAIGHT);
+	return along_by(w, moving, &h, HEADING_COUNTS);
 }
 
 uint32_t heading_run_end(const struct ways *w, uint32_t i)
 {
 	const uint32_t end = w->p->head->nsegs - 1;
-	uint32_t along = line_along(w, i), m = i + 1;
+	uint32_t along, m = i + 1;
 
+	/* Every line's length is in X Y Z. */
+	if (w->xyz == (1u << w->p->head->naxes) - 1)
+		return m < end ? end : m;
+	along = line_along(w, i);
 	for (; m < end; m++) {
 		const uint32_t next = line_along(w, m);
 

@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * limits.c - speed ceilings of a finished program, and which comes next
+ * limits.c - speed ceilings of a finished program
  */
-#include "speed/pass.h"
+#include "speed/nearby.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Directions of short lines differ by their rounding.  Their ceilings must
  * not. */
 #define SAME		4e-6
-
-#define HOP_MAX		UINT16_MAX
 
 /* Fewer need no time.  The piece of a curve between two cusps may have some
  * points and next to no length. */
@@ -154,7 +151,7 @@ COLUMNS_INLINE void soften_seg(struct pass *w, struct interp_seg *s,
 	}
 	s->a_mm_s2 = soft(a, &w->a_levels);
 	s->j_mm_s3 = soft(j, &w->j_levels);
-	if (!isinf(s->a_mm_s2) && !isinf(s->j_mm_s3))
+	if (s->a_mm_s2 < INFINITY && s->j_mm_s3 < INFINITY)
 		note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
 }
 
@@ -188,8 +185,8 @@ static double round_bend(const struct pass *w, const struct headings *h,
 	return v / h->share;
 }
 
-/* What the axes of its bend can do. */
-static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
+/* What the axes of its bend can do.  Return: the speed. */
+static double limit_bend(struct pass *w, uint32_t i, const struct headings *h)
 {
 	struct interp_seg *s = &w->segs[i];
 	struct along left = { 1, 1, INFINITY, INFINITY };
@@ -207,6 +204,29 @@ static void limit_seg(struct pass *w, uint32_t i, const struct headings *h)
 		v = round_bend(w, h, v, &left);
 	}
 	BY_COLUMNS(w->n, soften_seg, w, s, &left, &rates);
+	return v;
+}
+
+/* The same of a short line whose length is in the usual columns. */
+COLUMNS_INLINE double limit_line(struct pass *w, uint32_t i,
+				 const struct heading *h, uint32_t n)
+{
+	const struct along left = { 1, 1, INFINITY, INFINITY };
+	struct rates rates = { .bends = 0 };
+
+	near_rates(w, i, h, &rates, near_usual(n), n);
+	soften_seg(w, &w->segs[i], &left, &rates, n);
+	return larger((double)w->segs[i].feed_max_mm_s, rates.v_mm_s);
+}
+
+COLUMNS_INLINE void limit_seg(struct pass *w, uint32_t i,
+			      const struct headings *h, uint32_t n)
+{
+	struct interp_seg *s = &w->segs[i];
+	const bool near = s->kind == INTERP_LINE && pass_is_short(w, i) &&
+			  h->first.along == near_usual(n);
+	double v = near ? limit_line(w, i, &h->first, n) : limit_bend(w, i, h);
+
 	/* A cycle that has no time for its points would break off the move. */
 	if (s->ticks >= MANY_POINTS)
 		v = smaller(v, w->points_per_s * s->length_mm /
@@ -243,9 +263,9 @@ static void soften_node(struct pass *w, uint32_t last, uint32_t i,
 	for (int k = 0; k < 2; k++) {
 		struct interp_seg *s = &w->segs[both[k]];
 
-		s->a_mm_s2 = fminf(s->a_mm_s2,
+		s->a_mm_s2 = pass_least(s->a_mm_s2,
 				   soft(left.a_mm_s2, &w->a_levels));
-		s->j_mm_s3 = fminf(s->j_mm_s3,
+		s->j_mm_s3 = pass_least(s->j_mm_s3,
 				   soft(left.j_mm_s3, &w->j_levels));
 		note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
 	}
@@ -254,10 +274,11 @@ static void soften_node(struct pass *w, uint32_t last, uint32_t i,
 /* Those from the end of segment @first to the start of segment @i. */
 static void limit_nodes(struct pass *w, uint32_t first, uint32_t i, double v)
 {
-	const float most = isinf(v) ? INFINITY : level(w, v);
+	const float most = v < INFINITY ? level(w, v) : INFINITY;
 
-	for (uint32_t k = first; k < i; k++)
-		w->segs[k].node_mm_s = fminf(w->segs[k].node_mm_s, most);
+	/* Mostly one. */
+	for (uint32_t k = i; k-- > first; )
+		w->segs[k].node_mm_s = pass_least(w->segs[k].node_mm_s, most);
 }
 
 /* An action stops there anyway. */
@@ -271,10 +292,11 @@ static void note_parts(struct pass *w, uint32_t last, uint32_t i)
 
 /* The node in front of segment @i; @last is the segment before it that
  * moves. */
-static void limit_node(struct pass *w, uint32_t last, uint32_t i,
-		       const struct heading *a, const struct heading *b)
+COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
+			       const struct heading *a, const struct heading *b,
+			       uint32_t n)
 {
-	const double v = pass_node_mm_s(w, last, i, a, b);
+	const double v = near_node_mm_s(w, last, i, a, b, n);
 
 	limit_nodes(w, last, i, v);
 	if (a->along != b->along)
@@ -344,7 +366,7 @@ static void raise_node(struct pass *w, uint32_t i)
 	double v;
 
 	for (uint32_t k = 0; k < 2; k++) {
-		heading_find(&w->ways, i - 1 + k, &h[k]);
+		heading_of(&w->ways, i - 1 + k, &h[k]);
 		w->a_own_mm_s2[k] = (double)w->segs[i - 1 + k].a_mm_s2;
 	}
 	v = pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first);
@@ -404,24 +426,23 @@ static void look_beside(struct pass *w)
 }
 
 /* The node in front of segment @i is known. */
-static void note_slow(struct pass *w, uint32_t i)
+static inline void note_slow(struct pass *w, uint32_t i)
 {
-	const struct interp_seg *s = w->segs;
+	const struct interp_seg *s = &w->segs[i];
 
 	if (w->slow > 0 &&
 	    from_to(w, w->slow, i) >= SEES * w->windows[0].mm)
 		look_beside(w);
-	if (s[i - 1].node_mm_s < s[i].feed_max_mm_s &&
-	    (w->slow == 0 || s[i - 1].node_mm_s < s[w->slow - 1].node_mm_s))
+	if (s[-1].node_mm_s < s->feed_max_mm_s &&
+	    (w->slow == 0 || s[-1].node_mm_s < w->segs[w->slow - 1].node_mm_s))
 		w->slow = i;
 }
 
 /* An action stands on the node before it. */
-static void walk_nodes(struct pass *w)
+COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t n)
 {
-	struct headings h[2];
+	struct headings h[2], *was = &h[0], *is = &h[1], *swap;
 	uint32_t last = 0;		/* that moves; 0: none yet */
-	int now = 0;
 
 	w->segs[0].node_mm_s = INFINITY;
 	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
@@ -438,167 +459,20 @@ static void walk_nodes(struct pass *w)
 			w->run = i;
 			w->run_end = heading_run_end(&w->ways, i);
 		}
-		heading_find(&w->ways, i, &h[now]);
-		limit_seg(w, i, &h[now]);
-		w->a_own_mm_s2[now] = (double)w->segs[i].a_mm_s2;
+		heading_find(&w->ways, i, is, n);
+		limit_seg(w, i, is, n);
+		w->a_own_mm_s2[0] = w->a_own_mm_s2[1];
+		w->a_own_mm_s2[1] = (double)w->segs[i].a_mm_s2;
 		if (last > 0) {
-			limit_node(w, last, i, &h[!now].last, &h[now].first);
+			limit_node(w, last, i, &was->last, &is->first, n);
 			note_slow(w, i);
 		}
 		last = i;
-		now = !now;
+		swap = was;
+		was = is;
+		is = swap;
 	}
 	look_beside(w);
-}
-
-/* -- The next slower ------------------------------------------------------- */
-
-/*
- * A hop leads from a segment to the next one that is slower.  What is between
- * was skipped by the hops of faster ones.  Most segments are as fast as their
- * neighbour: then its hop leads to the same place.
- */
-static inline uint16_t hop_of(uint32_t hops)
-{
-	return (uint16_t)(hops < HOP_MAX ? hops : HOP_MAX);
-}
-
-/* Actions stop the way, and so may a cut after what is positioned. */
-static bool may_stop(const struct interp_seg *s)
-{
-	return s->kind >= INTERP_BEGIN ||
-	       (!(s->flags & INTERP_SEG_RAPID) &&
-		s[-1].kind < INTERP_BEGIN && s[-1].flags & INTERP_SEG_RAPID);
-}
-
-static inline float least(float a, float b)
-{
-	return a < b ? a : b;
-}
-
-/* Entered over the node before it. */
-static inline float into(const struct interp_seg *s)
-{
-	return least(s[-1].node_mm_s, s->feed_max_mm_s);
-}
-
-static inline uint16_t hop_ahead(const struct interp_seg *s)
-{
-	uint32_t m = 1;
-	float v;
-
-	if (s->kind >= INTERP_BEGIN)
-		return 1;
-	v = into(s);
-	if (!may_stop(s + 1) && into(s + 1) == v)
-		return hop_of(1u + s[1].slower_ahead);
-	while (m < HOP_MAX && !may_stop(s + m) && into(s + m) >= v)
-		m += s[m].slower_ahead;
-	return hop_of(m);
-}
-
-static inline float feed_of(const struct interp_seg *s)
-{
-	return s->kind >= INTERP_BEGIN || s->flags & INTERP_SEG_RAPID ?
-	       INFINITY : s->feed_mm_s;
-}
-
-/* @left: segments up to the last one. */
-static inline uint16_t hop_feed(const struct interp_seg *s, uint32_t left)
-{
-	const float v = feed_of(s);
-	uint32_t m = 1;
-
-	if (left > 1 && feed_of(s + 1) == v)
-		return s[1].slower_feed ? hop_of(1u + s[1].slower_feed) : 0;
-	while (m < HOP_MAX && m < left && feed_of(s + m) >= v)
-		m = s[m].slower_feed ? m + s[m].slower_feed : left;
-	return m >= left ? 0 : hop_of(m);
-}
-
-static inline float back_into(const struct interp_seg *s)
-{
-	return s->kind >= INTERP_BEGIN ? INFINITY :
-	       least(s->node_mm_s, s->feed_max_mm_s);
-}
-
-/* @i: segments before it; the first one is entered by none. */
-static inline uint16_t hop_behind(const struct interp_seg *s, uint32_t i)
-{
-	const float v = back_into(s);
-	uint32_t m = 1;
-
-	if (i > 1 && back_into(s - 1) == v)
-		return hop_of(1u + s[-1].slower_behind);
-	while (m < HOP_MAX && m < i && back_into(s - m) >= v)
-		m += s[-(int64_t)m].slower_behind;
-	return hop_of(m);
-}
-
-/* -- The next softer ------------------------------------------------------- */
-
-static inline bool is_softer(const struct interp_seg *s,
-			     const struct interp_seg *than)
-{
-	return s->a_mm_s2 < than->a_mm_s2 || s->j_mm_s3 < than->j_mm_s3;
-}
-
-static inline bool is_as_soft(const struct interp_seg *s,
-			      const struct interp_seg *as)
-{
-	return s->a_mm_s2 == as->a_mm_s2 && s->j_mm_s3 == as->j_mm_s3;
-}
-
-static inline bool stands(const struct interp_seg *s)
-{
-	return s->flags & INTERP_SEG_STAND;
-}
-
-static inline uint16_t softer_ahead(const struct interp_seg *s, uint32_t left)
-{
-	uint32_t m = 1;
-
-	if (s->kind >= INTERP_BEGIN)
-		return 1;
-	if (left > 1 && s[1].kind < INTERP_BEGIN && !stands(s) &&
-	    is_as_soft(s + 1, s))
-		return hop_of(1u + s[1].softer_ahead);
-	while (m < left && m < HOP_MAX && s[m].kind < INTERP_BEGIN &&
-	       !stands(s + m - 1) && !is_softer(s + m, s))
-		m += s[m].softer_ahead;
-	return hop_of(m);
-}
-
-static inline uint16_t softer_behind(const struct interp_seg *s, uint32_t i)
-{
-	uint32_t m = 1;
-
-	if (i > 1 && !stands(s - 1) && is_as_soft(s - 1, s))
-		return s[-1].softer_behind ?
-		       hop_of(1u + s[-1].softer_behind) : 0;
-	while (m < i && m < HOP_MAX && !stands(s - m) && !is_softer(s - m, s))
-		m = s[-(int64_t)m].softer_behind ?
-		    m + s[-(int64_t)m].softer_behind : i;
-	return m == i ? 0 : hop_of(m);
-}
-
-static void chain_ahead(struct interp_seg *s, uint32_t end)
-{
-	s[end].slower_ahead = s[end].slower_feed = s[end].softer_ahead = 0;
-	for (uint32_t i = end; i-- > 0; ) {
-		s[i].slower_ahead = hop_ahead(s + i);
-		s[i].slower_feed = hop_feed(s + i, end - i);
-		s[i].softer_ahead = softer_ahead(s + i, end - i);
-	}
-}
-
-static void chain_behind(struct interp_seg *s, uint32_t end)
-{
-	s[0].slower_behind = s[0].softer_behind = 0;
-	for (uint32_t i = 1; i <= end; i++) {
-		s[i].slower_behind = hop_behind(s + i, i);
-		s[i].softer_behind = softer_behind(s + i, i);
-	}
 }
 
 void interp_limits_write(const struct interp_limits *l,
@@ -608,8 +482,7 @@ void interp_limits_write(const struct interp_limits *l,
 	struct pass w;
 
 	begin(&w, l, p, segs);
-	walk_nodes(&w);
+	BY_COLUMNS(w.n, walk_nodes, &w);
 	pass_stretches(&w);
-	chain_ahead(segs, w.end);
-	chain_behind(segs, w.end);
+	pass_hops(segs, w.end);
 }

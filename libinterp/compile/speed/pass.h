@@ -12,6 +12,8 @@
 #include "interp/smaller.h"
 #include "speed/heading.h"
 
+#include <math.h>
+
 /*
  * A curve of short lines is looked at over windows of so many corners to each
  * side, and no less than PASS_FAR tolerances.  Each window is twice as wide as
@@ -118,7 +120,13 @@ struct pass {
  * pass_round_mm_s() - the greatest speed around a bend, if the axes have so
  * much acceleration.
  */
-double pass_round_mm_s(double r_mm, double a_mm_s2, double j_mm_s3);
+static inline double pass_round_mm_s(double r_mm, double a_mm_s2,
+				     double j_mm_s3)
+{
+	const double v = sqrt(a_mm_s2 * r_mm), jrr = j_mm_s3 * r_mm * r_mm;
+
+	return v * v * v <= jrr ? v : cbrt(jrr);
+}
 
 /* Longer lines have no curve beside the one that their corners show. */
 #define PASS_LONG	5
@@ -132,14 +140,41 @@ static inline bool pass_is_short(const struct pass *w, uint32_t i)
 	return w->segs[i].length_mm < w->short_mm;
 }
 
+/* Neither is a NAN. */
+static inline float pass_least(float a, float b)
+{
+	return a < b ? a : b;
+}
+
 /** pass_along_tol() - the rounding of the path: the largest of @columns. */
-double pass_along_tol(struct pass *w, uint32_t columns);
+static inline double pass_along_tol(struct pass *w, uint32_t columns)
+{
+	if (columns == w->tol_of)
+		return w->tol_most;
+	w->tol_of = columns;
+	w->tol_most = 0;
+	for (uint32_t j = 0; j < w->n; j++)
+		if (columns >> j & 1)
+			w->tol_most = larger(w->tol_most, w->tol[j]);
+	return w->tol_most;
+}
+
+/* Of its own roundings, that an axis beside the path has from that of the
+ * path. */
+#define PASS_MOST_BESIDE	20
 
 /**
  * pass_off() - what @along, the rounding of the path, makes of column @j beside
  * it that has this rate.
+ *
+ * Never more than PASS_MOST_BESIDE roundings of its own: an axis that turns far
+ * on a tiny line really turns there.
  */
-double pass_off(const struct pass *w, uint32_t j, double along, double rate);
+static inline double pass_off(const struct pass *w, uint32_t j, double along,
+			      double rate)
+{
+	return smaller(along * rate, PASS_MOST_BESIDE * w->tol[j]);
+}
 
 /** pass_chord() - find the straight line from node @from to node @to.  Its
  *  length is that of the columns @along. */
@@ -162,6 +197,16 @@ struct leave {
 /** pass_leave() - what the last node leaves, if it is passed at @v_mm_s at
  *  most. */
 void pass_leave(const struct pass *w, double v_mm_s, struct leave *ret);
+
+/**
+ * pass_curve() - the greatest speed over the node in front of segment @i on the
+ * curve of its chords; no more than @most_mm_s is asked for.
+ */
+double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
+
+/** pass_turn() - the greatest speed over the same node by its own turn. */
+double pass_turn(struct pass *w, uint32_t last, uint32_t i,
+		 const struct heading *a, const struct heading *b);
 
 /**
  * pass_node_mm_s() - the greatest speed over the node in front of segment @i;
@@ -198,6 +243,10 @@ struct rates {
 					 * nothing is said */
 };
 
+/** pass_peaks() - what lies beside @around, the way around line @i, takes the
+ *  rates of peaks there. */
+void pass_peaks(struct pass *w, uint32_t i, struct chord *around);
+
 /** pass_rates() - find the rates of segment @i. */
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		struct rates *ret);
@@ -208,5 +257,9 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
  * segments are known.
  */
 void pass_stretches(struct pass *w);
+
+/** pass_hops() - write slower_* and softer_* of all segments up to @end, the
+ *  last one, when all else is known. */
+void pass_hops(struct interp_seg *segs, uint32_t end);
 
 #endif /* SPEED_PASS_H */

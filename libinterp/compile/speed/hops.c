@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* hops.c - which segment comes next that is slower, or softer */
+#include "speed/pass.h"
+
+#include <string.h>
+
+#define HOP_MAX		UINT16_MAX
+
+/* -- The next slower ------------------------------------------------------- */
+
+/*
+ * A hop leads from a segment to the next one that is slower.  What is between
+ * was skipped by the hops of faster ones.  Most segments are as fast as their
+ * neighbour: then its hop leads to the same place.
+ */
+static inline uint16_t hop_of(uint32_t hops)
+{
+	return (uint16_t)(hops < HOP_MAX ? hops : HOP_MAX);
+}
+
+/* From the neighbour of one with this hop. */
+static inline uint16_t hop_on(uint16_t hop)
+{
+	return (uint16_t)(hop + (hop < HOP_MAX));
+}
+
+/* Actions stop the way, and so may a cut after what is positioned. */
+static bool may_stop(const struct interp_seg *s)
+{
+	return s->kind >= INTERP_BEGIN ||
+	       (!(s->flags & INTERP_SEG_RAPID) &&
+		s[-1].kind < INTERP_BEGIN && s[-1].flags & INTERP_SEG_RAPID);
+}
+
+/* Entered over the node before it. */
+static inline float into(const struct interp_seg *s)
+{
+	return pass_least(s[-1].node_mm_s, s->feed_max_mm_s);
+}
+
+static inline float feed_of(const struct interp_seg *s)
+{
+	return s->kind >= INTERP_BEGIN || s->flags & INTERP_SEG_RAPID ?
+	       INFINITY : s->feed_mm_s;
+}
+
+/* What of a segment is compared with its neighbours. */
+struct pace {
+	float into, feed;		/* feed: INFINITY for a rapid */
+	bool moves, rapid;
+};
+
+static inline struct pace pace_of(const struct interp_seg *s)
+{
+	const bool moves = s->kind < INTERP_BEGIN;
+	const bool rapid = s->flags & INTERP_SEG_RAPID;
+
+	return (struct pace) { moves ? into(s) : 0, feed_of(s), moves, rapid };
+}
+
+static inline uint16_t hop_ahead(const struct interp_seg *s,
+				 const struct pace *now,
+				 const struct pace *next)
+{
+	const float v = now->into;
+	uint32_t m = 1;
+
+	if (!now->moves)
+		return 1;
+	if (next->moves && (!now->rapid || next->rapid) && next->into == v)
+		return hop_on(s[1].slower_ahead);
+	while (m < HOP_MAX && !may_stop(s + m) && into(s + m) >= v)
+		m += s[m].slower_ahead;
+	return hop_of(m);
+}
+
+/* @left: segments up to the last one. */
+static inline uint16_t hop_feed(const struct interp_seg *s, uint32_t left,
+				float v, float next)
+{
+	uint32_t m = 1;
+
+	if (left > 1 && next == v)
+		return s[1].slower_feed ? hop_on(s[1].slower_feed) : 0;
+	while (m < HOP_MAX && m < left && feed_of(s + m) >= v)
+		m = s[m].slower_feed ? m + s[m].slower_feed : left;
+	return m >= left ? 0 : hop_of(m);
+}
+
+static inline float back_into(const struct interp_seg *s)
+{
+	return s->kind >= INTERP_BEGIN ? INFINITY :
+	       pass_least(s->node_mm_s, s->feed_max_mm_s);
+}
+
+/* @i: segments before it; the first one is entered by none. */
+static inline uint16_t hop_behind(const struct interp_seg *s, uint32_t i,
+				  float v, float before)
+{
+	uint32_t m = 1;
+
+	if (i > 1 && before == v)
+		return hop_on(s[-1].slower_behind);
+	while (m < HOP_MAX && m < i && back_into(s - m) >= v)
+		m += s[-(int64_t)m].slower_behind;
+	return hop_of(m);
+}
+
+/* -- The next softer ------------------------------------------------------- */
+
+static inline bool is_softer(const struct interp_seg *s,
+			     const struct interp_seg *than)
+{
+	return s->a_mm_s2 < than->a_mm_s2 || s->j_mm_s3 < than->j_mm_s3;
+}
+
+static inline bool is_as_soft(const struct interp_seg *s,
+			      const struct interp_seg *as)
+{
+	/* Both numbers at once: equal ones have equal bits. */
+	return memcmp(&s->a_mm_s2, &as->a_mm_s2, 2 * sizeof(float)) == 0;
+}
+
+static inline bool stands(const struct interp_seg *s)
+{
+	return s->flags & INTERP_SEG_STAND;
+}
+
+static inline uint16_t softer_ahead(const struct interp_seg *s, uint32_t left)
+{
+	uint32_t m = 1;
+
+	if (s->kind >= INTERP_BEGIN)
+		return 1;
+	if (left > 1 && s[1].kind < INTERP_BEGIN && !stands(s) &&
+	    is_as_soft(s + 1, s))
+		return hop_on(s[1].softer_ahead);
+	while (m < left && m < HOP_MAX && s[m].kind < INTERP_BEGIN &&
+	       !stands(s + m - 1) && !is_softer(s + m, s))
+		m += s[m].softer_ahead;
+	return hop_of(m);
+}
+
+static inline uint16_t softer_behind(const struct interp_seg *s, uint32_t i)
+{
+	uint32_t m = 1;
+
+	if (i > 1 && !stands(s - 1) && is_as_soft(s - 1, s))
+		return s[-1].softer_behind ?
+		       hop_on(s[-1].softer_behind) : 0;
+	while (m < i && m < HOP_MAX && !stands(s - m) && !is_softer(s - m, s))
+		m = s[-(int64_t)m].softer_behind ?
+		    m + s[-(int64_t)m].softer_behind : i;
+	return m == i ? 0 : hop_of(m);
+}
+
+static void chain_ahead(struct interp_seg *s, uint32_t end)
+{
+	struct pace next = pace_of(s + end);
+
+	s[end].slower_ahead = s[end].slower_feed = s[end].softer_ahead = 0;
+	for (uint32_t i = end; i-- > 0; ) {
+		const struct pace now = pace_of(s + i);
+
+		s[i].slower_ahead = hop_ahead(s + i, &now, &next);
+		s[i].slower_feed = hop_feed(s + i, end - i, now.feed,
+					    next.feed);
+		s[i].softer_ahead = softer_ahead(s + i, end - i);
+		next = now;
+	}
+}
+
+static void chain_behind(struct interp_seg *s, uint32_t end)
+{
+	float before = back_into(s);
+
+	s[0].slower_behind = s[0].softer_behind = 0;
+	for (uint32_t i = 1; i <= end; i++) {
+		const float v = back_into(s + i);
+
+		s[i].slower_behind = hop_behind(s + i, i, v, before);
+		s[i].softer_behind = softer_behind(s + i, i);
+		before = v;
+	}
+}
+
+void pass_hops(struct interp_seg *segs, uint32_t end)
+{
+	chain_ahead(segs, end);
+	chain_behind(segs, end);
+}

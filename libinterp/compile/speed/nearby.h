@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * nearby.h - what most lines need: the ways around a node, the rates of a line,
+ * and the speed over a node that a near look settles
+ *
+ * It is here because it is compiled into the walk over the segments, for a
+ * constant number of columns.  What few nodes need is called (node.c).
+ *
+ * Private to compile/speed.
+ */
+#ifndef SPEED_NEARBY_H
+#define SPEED_NEARBY_H
+
+#include "speed/pass.h"
+
+#include <math.h>
+
+/* Nodes that turn by less are on a line: (2*sin(phi/2))^2. */
+#define NEAR_STRAIGHT	1e-12
+
+/* of the windows, to see the direction of a line itself */
+#define NEAR_AROUND	1
+
+/* Columns 0 to @n - 1. */
+static inline uint32_t near_all(uint32_t n)
+{
+	return (1u << n) - 1;
+}
+
+/* The columns that make the length, mostly: X Y Z are the first. */
+static inline uint32_t near_usual(uint32_t n)
+{
+	return near_all(n < 3 ? n : 3);
+}
+
+COLUMNS_INLINE void near_chord(const struct pass *w, uint32_t from, uint32_t to,
+			       uint32_t along, struct chord *ret, uint32_t n)
+{
+	const int64_t *a = w->p->nodes + (uint64_t)from * n;
+	const int64_t *b = w->p->nodes + (uint64_t)to * n;
+	double mm[INTERP_NAXES], sum = 0, path;
+
+	ret->from = from;
+	ret->to = to;
+	ret->h.along = along;
+	for (uint32_t j = 0; j < n; j++) {
+		mm[j] = (double)(b[j] - a[j]) * w->ways.sub_mm[j];
+		sum += along >> j & 1 ? mm[j] * mm[j] : 0;
+	}
+	ret->mm = sqrt(sum);
+	ret->way_mm = ret->mm;
+	ret->per_mm = ret->mm > 0 ? 1 / ret->mm : 0;
+	for (uint32_t j = 0; j < n; j++)
+		ret->h.rate[j] = mm[j] * ret->per_mm;
+	if ((along & near_all(n)) == near_all(n))
+		return;
+	/* A chord cuts corners.  What is beside it goes all of the way. */
+	ret->way_mm = path = w->segs[to].s_mm - w->segs[from].s_mm;
+	for (uint32_t j = 0; j < n; j++)
+		if (!(along >> j & 1))
+			ret->h.rate[j] = path > 0 ? mm[j] / path : 0;
+}
+
+static inline bool near_chord_is(const struct chord *c, uint32_t from,
+				 uint32_t to, uint32_t along)
+{
+	return c->from == from && c->to == to && c->h.along == along;
+}
+
+/* Not over a place from which the length is in other columns. */
+static inline void near_look(const struct pass *w, uint32_t i, struct around *k)
+{
+	const struct interp_seg *s = w->segs;
+	const double here = s[i].s_mm, mm = k->mm;
+	uint32_t behind = k->behind, ahead = k->ahead > i ? k->ahead : i;
+
+	if (behind < w->run)
+		behind = w->run;
+	while (behind < i && here - s[behind + 1].s_mm >= mm)
+		behind++;
+	while (ahead < w->run_end && s[ahead].s_mm - here < mm)
+		ahead++;
+	k->behind = behind;
+	k->ahead = ahead;
+}
+
+/*
+ * On a short line the share of an axis is rounded.  If the share is the same as
+ * on the ways around the line, but for a rounding, then the share of those ways
+ * is used.
+ */
+COLUMNS_INLINE void near_rates(struct pass *w, uint32_t i,
+			       const struct heading *h, struct rates *ret,
+			       uint32_t ways, uint32_t n)
+{
+	struct around *k = &w->windows[NEAR_AROUND];
+	const double per_mm = 1 / w->segs[i].length_mm;
+	const bool beside = (~ways & near_all(n)) != 0;
+	const double along = beside ? pass_along_tol(w, ways) : 0;
+	const double *around;
+	struct chord c;
+
+	near_look(w, i, k);
+	near_chord(w, k->behind, k->ahead, ways, &c, n);
+	around = c.mm > 0 ? c.h.rate : h->rate;
+	if (c.mm > 0 && beside)
+		pass_peaks(w, i, &c);
+	ret->v_mm_s = INFINITY;
+	for (uint32_t j = 0; j < n; j++) {
+		/* So far the length and the axis may be off, if the share is
+		 * that of the ways around. */
+		const double off = ways >> j & 1 ? w->tol[j] : w->tol[j] +
+			pass_off(w, j, along, fabs(around[j]));
+		const double d = fabs(h->rate[j] - around[j]);
+		const double by = fabs(d > off * per_mm ? h->rate[j] :
+							  around[j]);
+
+		ret->by[j] = by;
+		if (by * ret->v_mm_s > w->v_mm_s[j])
+			ret->v_mm_s = w->v_mm_s[j] / by;
+	}
+}
+
+/*
+ * Where every column makes the length, the narrowest window mostly shows enough
+ * speed, and nothing else has to be known.  Return: that, or less than @most.
+ */
+COLUMNS_INLINE double near_curve(struct pass *w, uint32_t i, double most,
+				 uint32_t n)
+{
+	struct around *k = &w->windows[0];
+	struct chord *a = &k->chord[k->on], *b = &k->chord[!k->on];
+	double turn = 0, acc = INFINITY, jerk = INFINITY, v;
+
+	near_look(w, i, k);
+	if (!near_chord_is(a, k->behind, i, near_all(n)))
+		near_chord(w, k->behind, i, near_all(n), a, n);
+	near_chord(w, i, k->ahead, near_all(n), b, n);
+	if (!(a->mm > 0 && b->mm > 0))
+		return 0;
+	for (uint32_t j = 0; j < n; j++) {
+		const double d = b->h.rate[j] - a->h.rate[j];
+
+		turn += d * d;
+		if (!(fabs(d) > 0) && b->h.rate[j] == 0)
+			continue;
+		acc = smaller(acc, w->a_mm_s2[j]);
+		jerk = smaller(jerk, w->j_mm_s3[j]);
+	}
+	v = turn < NEAR_STRAIGHT ? INFINITY :
+	    pass_round_mm_s(larger((a->mm + b->mm) / 2 / sqrt(turn),
+				   w->corner_mm), acc, jerk);
+	if (v >= most)
+		k->on = !k->on;
+	return v;
+}
+
+/*
+ * Does pass_turn() certainly allow @v_mm_s?  On most curves of lines it does,
+ * and the answer costs less than pass_turn() itself.  Of a turn below 1 the
+ * radius of a corner is at least 6.46 * corner_mm / turn; all of a change
+ * counts here, and of all axes the one that can do least.
+ */
+COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
+				      uint32_t i, const struct heading *a,
+				      const struct heading *b, double v_mm_s,
+				      uint32_t both, uint32_t n)
+{
+	const struct interp_seg *s = w->segs;
+	const double v = v_mm_s, far = 6.4 * w->corner_mm;
+	double turn = 0;
+
+	if (s[last].kind != INTERP_LINE || s[i].kind != INTERP_LINE ||
+	    a->along != b->along || s[last].length_mm < w->near.mm ||
+	    s[i].length_mm < w->near.mm)
+		return false;
+	for (uint32_t j = 0; j < n; j++) {
+		const double d = b->rate[j] - a->rate[j];
+
+		if (both >> j & 1)
+			turn += d * d;
+		else if (!(fabs(d) * v < 0.99 * w->step_mm_s[j]))
+			return false;
+	}
+	return turn < 1 && v * v * turn < w->a_least_mm_s2 * far &&
+	       v * v * v * turn * turn < w->j_least_mm_s3 * far * far;
+}
+
+/* As pass_node_mm_s(). */
+COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
+				     const struct heading *a,
+				     const struct heading *b, uint32_t n)
+{
+	const struct interp_seg *s = w->segs;
+	const double most = smaller((double)s[last].feed_max_mm_s,
+				    (double)s[i].feed_max_mm_s);
+	const bool curves = pass_is_short(w, last) || pass_is_short(w, i);
+	const uint32_t both = a->along & b->along;
+	const bool all = both == near_all(n);
+	double v = INFINITY;
+
+	w->bends = 0;
+	if (curves)
+		v = all ? near_curve(w, i, most, n) : 0;
+	if (curves && v < most)
+		v = pass_curve(w, i, both, most);
+	if (all ? near_turns_faster(w, last, i, a, b, v, near_all(n), n) :
+		  near_turns_faster(w, last, i, a, b, v, both, n))
+		return v;
+	return smaller(v, pass_turn(w, last, i, a, b));
+}
+
+#endif /* SPEED_NEARBY_H */
