@@ -157,6 +157,7 @@ double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
 	const double mm = l->bow.way_mm, bend = d / mm, most = l->most_mm_s;
 	struct bend_change change;
 	double set_off, alone, v;
+	bool goes_on;
 
 	if (most * most * bend <= a &&
 	    most * most * most * bend <= HARDLY * jerk * mm) {
@@ -164,17 +165,19 @@ double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
 		return INFINITY;
 	}
 	alone = pass_round_mm_s(1 / bend, a, jerk * d);
+	change = bend_change(w, l, j);
+	goes_on = 2 * change.most * mm < bend;
 	if (alone * alone * bend >= a) {
-		note_bent(w, l, j, bend, 0);
+		if (goes_on)
+			note_bent(w, l, j, bend, 0);
 		return alone;
 	}
-	change = bend_change(w, l, j);
 	set_off = INTERP_ARC_JERK_BOTH * jerk /
 		  (3 * bend * LEAST_ALONG * own_mm_s2(w));
 	v = smaller(cbrt(INTERP_ARC_JERK_ROUND * jerk / change.most), set_off);
 	v = smaller(v, sqrt(a / bend));
 	/* A corner is no bend that takes jerk all of the way. */
-	if (v > alone || 2 * change.most * mm < bend)
+	if (v > alone || goes_on)
 		note_bent(w, l, j, bend, change.at);
 	return larger(v, alone);
 }
