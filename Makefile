@@ -212,8 +212,8 @@ $(B)/%.o: %.cc
 
 # From text to program there are many short loops over the axes, and roots whose
 # errno nobody asks for.
-$(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan.c path/*.c \
-	speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3 -fno-math-errno
+$(call obj,$(wildcard $(addprefix libinterp/compile/,code/again.c code/scan.c \
+	path/*.c speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3 -fno-math-errno
 # Nothing here may trap, so several ticks of an arc may be rounded at a time.
 $(call obj,libinterp/core/pulse/arc.c): OPT += -fno-trapping-math
 # Over two to four columns vectors take more than they give.
@@ -343,6 +343,8 @@ $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
 
 # The sockets and the lines of an encoder are the test's own.
 $(B)/unit/test_can_queue: UNIT_LIBS = -Wl,--wrap=can_socket_open
+# Looks at a program are counted.
+$(B)/unit/test_ground: UNIT_LIBS = -Wl,--wrap=interp_program_any_at
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)

@@ -4,7 +4,6 @@
 #include "enter.h"
 #include "feed.h"
 #include "guard.h"
-#include "path/ground.h"
 #include "path/laws.h"
 #include "path/step.h"
 #include "path/timed.h"
@@ -68,19 +67,29 @@ static bool was_passed(const struct cycle *c)
 		walk_is_cut(c, &c->cursor.seg));
 }
 
+static bool may_withdraw(struct cycle *c)
+{
+	if (walk_rejoins(c) || was_passed(c))
+		c->ground.answer = GROUND_CUT;
+	else
+		ground_look(c);
+	return c->ground.answer != GROUND_NEW;
+}
+
 /*
  * While positioning, the electrode met something over ground that was cut or
  * passed already.  That is a short like any other.  A retract has no lead, so
- * axes that have a lead first brake with it.
+ * axes that have a lead first brake with it.  It brakes, too, for as long as it
+ * is not known whether it is a collision.
  */
 static enum cycle_event look_out(struct cycle *c)
 {
 	if (guard_met(c))
-		c->withdraws = walk_rejoins(c) || was_passed(c) ||
-			       ground_is_cut(c);
+		c->withdraws = may_withdraw(c);
 	if (!c->withdraws)
 		return look_arrive(c);
-	return contouring_rests(&c->contouring) ? EVENT_SHORT : EVENT_NONE;
+	return c->ground.answer != GROUND_ASKED &&
+	       contouring_rests(&c->contouring) ? EVENT_SHORT : EVENT_NONE;
 }
 
 /* The event that the gap and the place of this cycle mean; at most one. */

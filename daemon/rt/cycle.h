@@ -32,6 +32,7 @@
 #include "interlock.h"
 #include "io.h"
 #include "axes/limit.h"
+#include "path/ground.h"
 #include "path/mcode.h"
 #include "path/mover.h"
 #include "gap/conditions.h"
@@ -244,6 +245,7 @@ struct cycle {
 					 * began */
 	bool withdraws;			/* positioning, it met something over
 					 * cut ground: it brakes, to retract */
+	struct ground ground;		/* was it cut, where it met it? */
 	bool at_start;			/* the walk met the program's start */
 	bool busy;			/* the machine takes no point now */
 	bool cut_short;			/* the last walk fell short of its

@@ -47,6 +47,7 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		servo_reset(c);
 		c->free_seen = false;
 		c->withdraws = false;
+		c->ground.answer = GROUND_NONE;
 		break;
 	case STATE_APPROACH:
 		c->job.rejoin_mm = 0;

@@ -73,7 +73,8 @@ bool guard_forbids(const struct cycle *c)
 bool guard_met(const struct cycle *c)
 {
 	return c->state == STATE_TRAVEL && !c->config.dry_run &&
-	       c->sensed.contact && c->free_seen;
+	       c->free_seen &&
+	       (c->sensed.contact || ground_is_open(&c->ground));
 }
 
 void guard_contact(struct cycle *c)

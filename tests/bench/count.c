@@ -194,6 +194,69 @@ static void count_cycles(const struct interp_program *p, bool dry)
 	m.close(m.self);
 }
 
+/* -- The cycle that looks for cut ground ----------------------------------- */
+
+#define CURVES		100
+
+/* Curves of the highest degree in all axes, which hardly leave the place: C
+ * turns to and fro.  Then C turns away. */
+static void write_curves(FILE *f)
+{
+	fputs("G21 G90 F6000\nM3\nG0 Z0.1\nG1 Z0\n", f);
+	for (int i = 0; i < CURVES; i++) {
+		for (int k = 0; k < 10; k++) {
+			const double at = (i % 2 ? 9 - k : k) / 9.0;
+
+			fprintf(f, "%sK0 X%.6f Y%.6f Z%.6f U%.6f V%.6f A%.6f "
+				"B%.6f C%.6f\n", k ? "" : "G6.2 P10 ",
+				0.002 * at, 0.001 * at * at, 0.0015 * at,
+				0.002 * at * at, 0.001 * at, 0.001 * at,
+				0.002 * at, 3 * at);
+		}
+		fputs("K1\nK1\nK1\nK1\nK1\nK1\nK1\nK1\nK1\nK1\n", f);
+	}
+	fputs("G0 C-60\nM2\n", f);
+}
+
+static void step_at(struct cycle *c, double gap_v)
+{
+	const struct io_inputs in = { .gap_valid = true, .gap_v = gap_v };
+	struct io_outputs out;
+
+	cycle_step(c, &in, &out);
+}
+
+/* Of all cycles until it is known what the short is, the first: it also looks
+ * for the segments that count. */
+static void count_ground(void)
+{
+	const struct cycle_command start = { .verb = CYCLE_START };
+	struct interp_program p;
+	static struct cycle_config cc;
+	static struct cycle c;
+	char *text = NULL;
+	size_t size;
+	FILE *f = open_memstream(&text, &size);
+
+	bench_must(f != NULL);
+	write_curves(f);
+	bench_must(fclose(f) == 0);
+	p = compile(text, size);
+	free(text);
+	config_cycle(&machine, &cc);
+	cycle_init(&c, &cc);
+	cycle_load(&c, &p);
+	cycle_command(&c, &start);
+	for (int i = 0; i < 1000000 && (c.state != STATE_TRAVEL ||
+					c.out.target[INTERP_C] > -1000); i++)
+		step_at(&c, state_duty[c.state].power ?
+			    (cc.gap.servo_v + cc.gap.open_v) / 2 : 100);
+	bench_must(c.state == STATE_TRAVEL);
+	begin();
+	step_at(&c, 0);
+	end("a cycle that asks what was cut, beside 512 curves", 1);
+}
+
 int main(void)
 {
 	static const char cut[] = "G21 G90 F60\nM3\nG1 X1 Y-2 Z-4\nM2\n";
@@ -213,5 +276,6 @@ int main(void)
 		count_compile(i);
 	count_cycles(&p, true);
 	count_cycles(&p, false);
+	count_ground();
 	return 0;
 }

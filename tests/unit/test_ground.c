@@ -393,6 +393,114 @@ static void in_the_cut_itself_it_may_short(void **st)
 	rig_free(&r);
 }
 
+/* -- Beside hundreds of curves ------------------------------------------- */
+
+static uint32_t looked;			/* in this cycle */
+
+bool __real_interp_program_any_at(const struct interp_program *p, uint32_t i,
+				  double s_mm, struct interp_at_curve *last,
+				  struct interp_contour_point *ret);
+bool __wrap_interp_program_any_at(const struct interp_program *p, uint32_t i,
+				  double s_mm, struct interp_at_curve *last,
+				  struct interp_contour_point *ret);
+
+bool __wrap_interp_program_any_at(const struct interp_program *p, uint32_t i,
+				  double s_mm, struct interp_at_curve *last,
+				  struct interp_contour_point *ret)
+{
+	looked++;
+	return __real_interp_program_any_at(p, i, s_mm, last, ret);
+}
+
+/* Curves that hardly leave the place, where C turns to and fro. Nothing says
+ * how far C is from them but a look at every pulse. */
+static void begin_beside_curves(struct rig *r, const struct cycle_config *k,
+				double first_c)
+{
+	char *text;
+	size_t size;
+	FILE *f = open_memstream(&text, &size);
+
+	assert_non_null(f);
+	fprintf(f, "G21 G90 F6000\nM3\nG0 Z0.1\nG1 Z0\nG1 C%g\nG1 C0\n",
+		first_c);
+	for (int i = 0; i < 58; i++) {
+		const bool back = i % 2 != 0;
+
+		fprintf(f, "G6.2 P4 K0 X%g C%g\nK0 X0 C1\nK0 X0.002 C2\n"
+			"K0 X%g C%g\nK1\nK1\nK1\nK1\n",
+			back ? 0.002 : 0.0, back ? 3.0 : 0.0,
+			back ? 0.0 : 0.002, back ? 0.0 : 3.0);
+	}
+	fputs("G0 C-60\nM2\n", f);
+	assert_int_equal(fclose(f), 0);
+	load_text(r, &(struct way_out) { text, INTERP_SIMULTANEOUS, 0, false },
+		  k);
+	free(text);
+	for (int n = 0; n < 1000000 && (r->out.target[INTERP_C] > -1000 ||
+					r->c.state != STATE_TRAVEL ||
+					r->c.cursor.index < 450); n++)
+		step(r, state_duty[r->c.state].power ? SPARKING_V : OPEN_V);
+	assert_int_equal(r->c.state, STATE_TRAVEL);
+}
+
+/* Until it is known what the short is. Return: the most looks of a cycle. */
+static uint32_t most_looks(struct rig *r)
+{
+	uint32_t most = 0, sum = 0;
+
+	for (int n = 0; n < 1000 && r->c.state == STATE_TRAVEL &&
+	     r->c.fault.first == FAULT_NONE; n++) {
+		looked = 0;
+		step(r, SHORTED_V);
+		most = looked > most ? looked : most;
+		sum += looked;
+		/* It brakes for as long as it does not know. */
+		if (r->c.state == STATE_TRAVEL)
+			assert_true(r->c.mover.kind == MOVER_TO_SPEED &&
+				    r->c.mover.goal == 0);
+	}
+	/* There was a lot to look at. */
+	assert_true(sum > 20000);
+	return most;
+}
+
+static void beside_hundreds_of_curves_a_cycle_looks_at_few(void **st)
+{
+	const struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	begin_beside_curves(&r, &k, 0);
+	assert_true(most_looks(&r) <= GROUND_LOOKS_MAX);
+	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
+	rig_free(&r);
+	/* It was cut before all of them: no collision, however long it took. */
+	begin_beside_curves(&r, &k, -4);
+	assert_true(most_looks(&r) <= GROUND_LOOKS_MAX);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	until(&r, STATE_IDLE, OPEN_V, 20000);
+	assert_int_equal(r.c.outcome, OUTCOME_DONE);
+	rig_free(&r);
+}
+
+/* What it met is a collision, also if it is gone when that is known. */
+static void a_short_that_goes_while_it_looks_is_a_collision(void **st)
+{
+	const struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	begin_beside_curves(&r, &k, 0);
+	step(&r, SHORTED_V);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	steps(&r, OPEN_V, 300);
+	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
+	assert_true(r.out.target[INTERP_C] > -30000);
+	rig_free(&r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -407,6 +515,8 @@ int main(void)
 		cmocka_unit_test(back_over_what_it_left_it_may_short),
 		cmocka_unit_test(before_a_cut_that_has_begun_it_may_short),
 		cmocka_unit_test(in_the_cut_itself_it_may_short),
+		cmocka_unit_test(beside_hundreds_of_curves_a_cycle_looks_at_few),
+		cmocka_unit_test(a_short_that_goes_while_it_looks_is_a_collision),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -388,6 +388,74 @@ static void random_different_contours_end_exactly_and_retrace(void **st)
 	}
 }
 
+/* In a step of one of @steps equal parts of the path, no axis goes farther than
+ * its contour is long there, but for some pulses. Return: the most of them. */
+static double most_more(enum interp_strategy strategy, const double k[2][3],
+			int steps)
+{
+	const struct pair p = different(k[0], k[1]);
+	struct made m = make_pair(strategy, &p);
+	const uint32_t first = m.p.head->nsegs - 2;
+	const double ds_mm = m.p.segs[first].length_mm / steps;
+	struct interp_cursor c;
+	double most = 0;
+
+	assert_int_equal(m.p.segs[first].kind, INTERP_PAIR);
+	for (int leg = 1; leg >= -1; leg -= 2) {
+		const int from = leg > 0 ? 0 : steps;
+
+		assert_int_equal(interp_cursor_init(&c, &m.p), 0);
+		interp_cursor_aim(&c, m.p.segs[first].s_mm + from * ds_mm);
+		while (interp_cursor_step(&c) == INTERP_MOVED)
+			;
+		for (int n = 0; n < steps; n++) {
+			int32_t was[INTERP_NAXES];
+
+			memcpy(was, c.pos, sizeof(was));
+			interp_cursor_aim(&c, leg * ds_mm);
+			while (interp_cursor_step(&c) == INTERP_MOVED)
+				;
+			for (int i = 0; i < 4; i++) {
+				const int axis = axis_of[i / 2][i % 2];
+
+				most = fmax(most, abs(c.pos[axis] - was[axis]) -
+					    length_of(k[i / 2]) / steps);
+			}
+		}
+	}
+	unmake(&m);
+	return most;
+}
+
+static void each_axis_of_a_pair_goes_evenly(void **st)
+{
+	static const enum interp_strategy one_at_a_time[] = {
+		INTERP_POINT_BY_POINT, INTERP_DDA, INTERP_CENTRED,
+	};
+	static const double pairs[][2][3] = {
+		{ { 0, 40, 30 }, { 0, 9000, 2000 } },
+		{ { 0, 9000, 2000 }, { 0, 40, 30 } },
+		{ { 50, 0, 90 }, { 20000, 0, 90 } },
+		{ { 20000, 0, 90 }, { 50, 0, 90 } },
+		{ { 30, 20, 200 }, { 0, 5000, 9000 } },
+		{ { 0, 5000, 9000 }, { 30, 20, 200 } },
+		{ { 700, 10, 100 }, { 700, 10, -100 } },
+	};
+
+	(void)st;
+	for (size_t i = 0; i < 3 * sizeof(pairs) / sizeof(pairs[0]); i++) {
+		for (int steps = 50; steps <= 5000; steps *= 100) {
+			const double more = most_more(one_at_a_time[i % 3],
+						      pairs[i / 3], steps);
+
+			if (more > 3)
+				fail_msg("strategy %zu, pair %zu, %d steps: "
+					 "%g pulses more", i % 3, i / 3, steps,
+					 more);
+		}
+	}
+}
+
 /* A cone's point: one contour stands, the other goes round. */
 static void a_contour_may_stand_while_the_other_moves(void **st)
 {
@@ -488,6 +556,7 @@ int main(void)
 		cmocka_unit_test(random_cones_follow_end_exactly_and_retrace),
 		cmocka_unit_test(different_contours_keep_equal_shares_of_length),
 		cmocka_unit_test(random_different_contours_end_exactly_and_retrace),
+		cmocka_unit_test(each_axis_of_a_pair_goes_evenly),
 		cmocka_unit_test(a_contour_may_stand_while_the_other_moves),
 		cmocka_unit_test(at_once_every_axis_is_within_half_a_pulse),
 		cmocka_unit_test(the_place_follows_the_length_on_x_y),

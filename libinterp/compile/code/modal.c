@@ -161,7 +161,7 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_STOP]		= nc_run_stop,
 };
 
-static int run_groups(struct nc_reader *r, uint32_t groups)
+int nc_run_groups(struct nc_reader *r, uint32_t groups)
 {
 	for (; groups; groups &= groups - 1) {
 		const int err = run[__builtin_ctz(groups)](r);
@@ -315,11 +315,11 @@ int nc_run_line(struct nc_reader *r)
 	}
 
 	if (b->groups & first) {
-		err = run_groups(r, b->groups & first);
+		err = nc_run_groups(r, b->groups & first);
 		if (err)
 			return err;
 	}
 	if ((b->words | b->groups) && !nc_has_group(r, NC_TAPE))
 		r->fresh = false;
-	return run_groups(r, b->groups & ~first);
+	return nc_run_groups(r, b->groups & ~first);
 }

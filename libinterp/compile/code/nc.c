@@ -86,10 +86,17 @@ int nc_read_line(struct nc_reader *r)
 	r->line++;
 	if (r->executed++ >= r->executed_max)
 		return refuse_executed(r);
+	if (nc_scan_again(r))
+		return nc_run_groups(r, r->block.groups);
+	r->pattern.n = 0;
 	err = nc_scan_line(r);
 	if (!err && r->o->notes && r->o->notes->plan)
 		nc_note_line(r);
-	return err ? err : nc_run_line(r);
+	if (!err)
+		err = nc_run_line(r);
+	if (!err)
+		nc_note_pattern(r);
+	return err;
 }
 
 static int read_lines(struct nc_reader *r)

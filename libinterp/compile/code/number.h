@@ -65,7 +65,8 @@ static inline uint32_t nc_eight_digits(uint64_t w)
 static inline const uint8_t *nc_number_short(const uint8_t *p,
 					     const uint8_t *end, double *ret)
 {
-	unsigned int whole, digits;
+	unsigned int whole, bits;	/* in front of the point; behind the
+					 * number: the top bit of a byte */
 	uint64_t w, no_digits;
 
 	if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ || end - p < 8)
@@ -75,22 +76,28 @@ static inline const uint8_t *nc_number_short(const uint8_t *p,
 	no_digits = nc_no_digits(w);
 	if (!no_digits)
 		return NULL;
-	whole = digits = (unsigned int)__builtin_ctzll(no_digits) / 8;
-	if (p[whole] == '.') {
-		const uint64_t before = (UINT64_C(1) << 8 * whole) - 1;
+	whole = bits = (unsigned int)__builtin_ctzll(no_digits);
+	if (p[whole / 8] == '.') {
+		const uint64_t point = no_digits & -no_digits;
+		const uint64_t before = (point >> 7) - 1;
 
-		w = (w & before) | (w >> 8 & ~before);
-		no_digits &= no_digits - 1;
+		w = (((w >> 8) ^ w) & before) ^ (w >> 8);
+		no_digits ^= point;
 		if (!no_digits)
 			return NULL;
-		digits = (unsigned int)__builtin_ctzll(no_digits) / 8 - 1;
+		bits = (unsigned int)__builtin_ctzll(no_digits) - 8;
 		p++;
 	}
-	if (!digits)
+	if (bits < 8)
 		return NULL;
-	*ret = nc_eight_digits(w << (64 - 8 * digits)) /
-	       nc_pow10[digits - whole];
-	return p + digits;
+	*ret = nc_eight_digits(w << (71 - bits)) / nc_pow10[(bits - whole) / 8];
+	return p + bits / 8;
+}
+
+/** nc_is_whole() - @v is far below 2^63. */
+static inline bool nc_is_whole(double v)
+{
+	return v == (double)(int64_t)v;
 }
 
 /** nc_number_any() - nc_number() of any length, and with blanks or a +. */

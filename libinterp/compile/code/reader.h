@@ -3,6 +3,7 @@
  * reader.h - the state of the NC reader, and who does what
  *
  *	scan.c		one line of text into a block of words
+ *	again.c		the same for a line like the one before
  *	modal.c		carry a block out, group by group
  *	mcode.c		M codes of the machine
  *	electrode.c	T words: which electrode cuts
@@ -82,6 +83,26 @@ struct nc_block {
 	const struct nc_code *upper;	/* the G word behind a colon, or NULL */
 	struct nc_code mcode[2];	/* for the PLC: before and after */
 	bool colon;			/* the top has its own words */
+};
+
+/* A line up to its numbers: again.c. */
+#define NC_PATTERN_WORDS	8
+
+struct nc_pattern_word {
+	uint64_t text, mask;		/* what is in front of its number, with
+					 * its letter; and which bytes of it */
+	uint8_t bytes;			/* how many these are */
+	uint8_t slot;
+	bool narrow;			/* it does not take every number */
+};
+
+struct nc_pattern {
+	uint32_t n;			/* 0: the next line is not compared */
+	uint32_t words;			/* those of the last line, if it can be
+					 * a pattern */
+	struct nc_pattern_word word[NC_PATTERN_WORDS];
+	uint8_t behind, back;		/* the motion is so far in front of the
+					 * letter of that slot */
 };
 
 /* A program or subprogram that is being carried out. */
@@ -187,6 +208,7 @@ struct nc_reader {
 					 * last */
 	uint32_t line;			/* number of this line, from 1 */
 	struct nc_block block;
+	struct nc_pattern pattern;
 
 	/* Modes, until changed. */
 	const struct nc_code *motion;	/* NULL: none yet */
@@ -292,6 +314,16 @@ extern const struct nc_plane nc_planes[3];
  */
 int nc_scan_line(struct nc_reader *r);
 
+/**
+ * nc_scan_again() - the same as nc_scan_line() and nc_check_line(), if the line
+ * has the same words as the last one.  Return: it has, and they are right;
+ * false: nothing is known about it.
+ */
+bool nc_scan_again(struct nc_reader *r);
+
+/** nc_note_pattern() - r->block was carried out: the next may be like it. */
+void nc_note_pattern(struct nc_reader *r);
+
 /** nc_check_line() - do the words of r->block go together? */
 int nc_check_line(struct nc_reader *r);
 
@@ -307,8 +339,11 @@ bool nc_has_no_code(const struct nc_reader *r);
 /** nc_tell() - send what r->diag has to o->refused. */
 void nc_tell(struct nc_reader *r);
 
-/** nc_run_line() - carry out r->block. */
+/** nc_run_line() - check r->block, and carry it out. */
 int nc_run_line(struct nc_reader *r);
+
+/** nc_run_groups() - carry out the words of r->block that are in @groups. */
+int nc_run_groups(struct nc_reader *r, uint32_t groups);
 
 /**
  * nc_set_units(), nc_set_offset() - call these after a change of units; of
@@ -518,6 +553,24 @@ static inline const uint8_t *nc_line_next(const uint8_t *p, const uint8_t *end)
 	if (p < end && *p == '\r' && p + 1 < end && p[1] == '\n')
 		return p + 2;
 	return p < end ? p + 1 : end;
+}
+
+/* The line at r->at is read from the text, at most up to r->stop ... */
+static inline void nc_begin_line(struct nc_reader *r)
+{
+	const uint8_t *p = r->at;
+
+	r->mapped = false;
+	r->line_at = p;
+	r->stop = r->end - p > INTERP_NC_LINE_MAX ? p + INTERP_NC_LINE_MAX :
+						    r->end;
+}
+
+/* ... and ends at @p. */
+static inline void nc_end_line(struct nc_reader *r, const uint8_t *p)
+{
+	nc_count_bytes(r, (size_t)(p - r->line_at), NC_COUNTED_BYTES);
+	r->at = nc_line_next(p, r->end);
 }
 
 /* note.c.  Nothing is noted twice.  nc_note_point() and nc_note_line() make

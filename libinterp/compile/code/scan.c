@@ -127,7 +127,7 @@ static inline const uint8_t *scan_value(struct nc_reader *r, const uint8_t *at,
 		return refuse_range(r, at, w);
 	if (!w->whole)
 		r->value_end = p;
-	else if (v != floor(v))
+	else if (!nc_is_whole(v))
 		return refuse_fraction(r, at, w);
 	b->words |= NC_BIT(slot);
 	b->value[slot] = v;
@@ -599,10 +599,7 @@ static int begin_line(struct nc_reader *r)
 	const uint8_t *p = r->at, *end;
 	int err;
 
-	r->mapped = false;
-	r->line_at = p;
-	r->stop = r->end - p > INTERP_NC_LINE_MAX ? p + INTERP_NC_LINE_MAX :
-						    r->end;
+	nc_begin_line(r);
 	if (!r->d->macros || r->listing)
 		return 0;
 	end = nc_line_end(p, r->stop);
@@ -653,7 +650,6 @@ int nc_scan_line(struct nc_reader *r)
 		add_groups(b);
 	if (r->mapped)
 		return 0;
-	nc_count_bytes(r, (size_t)(p - r->line_at), NC_COUNTED_BYTES);
-	r->at = nc_line_next(p, r->end);
+	nc_end_line(r, p);
 	return 0;
 }

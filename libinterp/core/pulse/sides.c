@@ -14,12 +14,18 @@
  * The contours themselves are undone without memory: the circle as circle.c
  * says, the line by its deviation's range.
  *
- * The measure is that of X Y, a pulse of U V counts one: it follows the length
- * on X Y, and every tick adds to it.
+ * The measure is the share that each contour has of its own, so many times as
+ * it has pulses.  The two shares keep together, so a contour goes evenly along
+ * the path, within a pulse, however many pulses the other one has.  If only X Y
+ * counted, hundreds of U V behind one of its pulses would come in a burst.
+ * Every tick adds one besides, and so makes the measure grow.
  */
 #include "pulse/pulse.h"
 
 #include <stdlib.h>
+
+/* In the measure, for a pulse of either contour. */
+#define FINE	1024
 
 /* Keeps the measure of a line, the square of its length, in range. */
 #define SIDE_MAX	(INT64_C(1) << 28)
@@ -168,10 +174,31 @@ static bool couple_ok(struct interp_cursor *c)
 	       p->bits_at <= c->p.head->nbits - words;
 }
 
+/* Of one contour, behind @gone of its own measure. */
+static int64_t side_measure(const struct interp_side *s, int64_t whole,
+			    int64_t gone)
+{
+	const int64_t in = gone < 0 ? 0 : gone > whole ? whole : gone;
+
+	return whole > 0 ? (int64_t)((double)in / (double)whole * FINE *
+				     (double)s->ticks) : 0;
+}
+
+static int64_t pair_measure(const struct interp_cursor *c)
+{
+	int64_t sum = c->tick;
+
+	for (int i = 0; i < 2; i++)
+		sum += side_measure(&c->side[i], c->couple.side[i].measure,
+				    c->side[i].gone);
+	return sum;
+}
+
 static bool pair_enter(struct interp_cursor *c, bool at_end)
 {
 	if (!pulse_stand(c, at_end) || !couple_ok(c) || !others_stand(c))
 		return false;
+	c->whole = c->seg.ticks;
 	for (int i = 0; i < 2; i++) {
 		const struct interp_arc *arc = &c->couple.side[i];
 		int64_t start[2] = { 0, 0 }, end[2] = { 0, 0 };
@@ -181,8 +208,10 @@ static bool pair_enter(struct interp_cursor *c, bool at_end)
 		pulse_circle_node(c, true, end);
 		if (!side_enter(&c->side[i], arc, start, end, at_end))
 			return false;
+		c->side[i].gone = at_end ? arc->measure : 0;
+		c->whole += side_measure(&c->side[i], arc->measure,
+					 arc->measure);
 	}
-	c->whole = c->couple.side[0].measure + c->side[1].ticks;
 	c->measure = at_end ? c->whole : 0;
 	return true;
 }
@@ -191,12 +220,6 @@ static bool pair_enter(struct interp_cursor *c, bool at_end)
 static int bit_at(const struct interp_cursor *c, uint32_t k)
 {
 	return c->p.bits[c->couple.bits_at + k / 64] >> k % 64 & 1;
-}
-
-/* What the last tick, a pulse of side @i, added to the measure. */
-static int64_t tick_measure(const struct interp_cursor *c, int i)
-{
-	return i ? 1 : side_last(&c->side[0]);
 }
 
 static uint32_t pair_move(struct interp_cursor *c, int i, const int8_t d[2])
@@ -220,7 +243,8 @@ static uint32_t pair_tick(struct interp_cursor *c)
 	if (!side_forward(&c->side[i], d))
 		return PULSE_BAD;
 	c->tick++;
-	c->measure += tick_measure(c, i);
+	c->side[i].gone += side_last(&c->side[i]);
+	c->measure = pair_measure(c);
 	return pair_move(c, i, d);
 }
 
@@ -235,11 +259,12 @@ static uint32_t pair_tick_back(struct interp_cursor *c)
 	i = bit_at(c, c->tick - 1);
 	if (c->side[i].tick == 0)
 		return PULSE_BAD;
-	last = tick_measure(c, i);
+	last = side_last(&c->side[i]);
 	if (!side_back(&c->side[i], d))
 		return PULSE_BAD;
 	c->tick--;
-	c->measure -= last;
+	c->side[i].gone -= last;
+	c->measure = pair_measure(c);
 	return pair_move(c, i, d);
 }
 
@@ -257,13 +282,18 @@ static uint32_t pair_back(struct interp_cursor *c, uint32_t ticks,
 
 static int64_t pair_last(const struct interp_cursor *c)
 {
+	const struct interp_side *s;
+	int64_t whole;
 	int i;
 
 	/* A damaged pair may try to go back from its start. */
 	if (c->tick == 0)
 		return 1;
 	i = bit_at(c, c->tick - 1);
-	return c->side[i].tick == 0 ? 1 : tick_measure(c, i);
+	s = &c->side[i];
+	whole = c->couple.side[i].measure;
+	return s->tick == 0 ? 1 : 1 + side_measure(s, whole, s->gone) -
+	       side_measure(s, whole, s->gone - side_last(s));
 }
 
 /* Where a side stands, from its start. */
@@ -280,7 +310,7 @@ static void side_way(const struct interp_side *s, int64_t ret[2])
 	ret[!s->longer] = (s->tick - longer) * s->sign[!s->longer];
 }
 
-static int64_t pair_side_seek(struct interp_cursor *c, int i, uint32_t tick)
+static bool pair_side_seek(struct interp_cursor *c, int i, uint32_t tick)
 {
 	const struct interp_arc *arc = &c->couple.side[i];
 	int64_t from[2], to[2];
@@ -289,23 +319,24 @@ static int64_t pair_side_seek(struct interp_cursor *c, int i, uint32_t tick)
 	side_way(&c->side[i], from);
 	measure = side_seek(&c->side[i], tick);
 	if (measure < 0)
-		return -1;
+		return false;
 	side_way(&c->side[i], to);
 	c->pos[arc->axis_a] += (int32_t)(to[0] - from[0]);
 	c->pos[arc->axis_b] += (int32_t)(to[1] - from[1]);
-	return measure;
+	c->side[i].gone = measure;
+	return true;
 }
 
 static bool pair_seek(struct interp_cursor *c, uint32_t tick)
 {
 	const uint32_t second = (uint32_t)
 		pulse_ones(c->p.bits + c->couple.bits_at, tick);
-	const int64_t measure = pair_side_seek(c, 0, tick - second);
 
-	if (measure < 0 || pair_side_seek(c, 1, second) < 0)
+	if (!pair_side_seek(c, 0, tick - second) ||
+	    !pair_side_seek(c, 1, second))
 		return false;
 	c->tick = tick;
-	c->measure = measure + second;
+	c->measure = pair_measure(c);
 	return true;
 }
 
