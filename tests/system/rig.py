@@ -318,6 +318,18 @@ class Machine:
         self.edmd = self._start("edmd", "--config", str(self.config))
         until(lambda: self.shm("status"))
 
+    def come_back(self, what):
+        """Kill edmd and start it: the first status after that which is @what.
+
+        A status from before says that all is well, so the service must have
+        said that edmd is lost."""
+        self.kill("edmd")
+        self.client.status_where(lambda s: s.daemon != "ok")
+        self.start_edmd()
+        return self.client.status_where(
+            lambda s: s.daemon == "ok" and what(s), timeout=30
+        )
+
     def start_jobs(self, *more):
         self.jobs = self._start(
             "edmd-jobs", "--config", str(self.config), *more

@@ -61,11 +61,7 @@ def held_beside_the_path(sinker):
     c.hear(0.5)
     before = c.status()
     assert before.state == "hold"
-    sinker.kill("edmd")
-    sinker.start_edmd()
-    after = c.status_where(
-        lambda s: s.daemon == "ok" and s.job_state == "held"
-    )
+    after = sinker.come_back(lambda s: s.job_state == "held")
     assert after.pos_mm == before.pos_mm, "it moved by itself"
     said = (sinker.folder / "edmd.log").read_text()
     # On a busy machine the hold may come when the jump is over.

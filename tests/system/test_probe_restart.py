@@ -39,12 +39,7 @@ def block(tmp_path):
 
 
 def come_back(machine):
-    c = machine.client
-    machine.kill("edmd")
-    machine.start_edmd()
-    return c.status_where(
-        lambda s: s.daemon == "ok" and s.job_state == "held"
-    )
+    return machine.come_back(lambda s: s.job_state == "held")
 
 
 def ends_over_the_face(machine):

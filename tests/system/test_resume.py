@@ -18,19 +18,13 @@ def screws(homing):
     return homing
 
 
-def come_back(machine, what):
-    machine.kill("edmd")
-    machine.start_edmd()
-    return machine.client.status_where(lambda s: s.daemon == "ok" and what(s))
-
-
 def test_idle_axes_stand_where_they_stood_and_are_homed(screws):
     c = screws.client
     assert screws.ctl("jog", "X", "3").returncode == 0
     before = c.status_where(
         lambda s: s.state == "idle" and abs(s.pos_mm[0] + 17) < 0.1
     )
-    after = come_back(screws, lambda s: s.state == "idle")
+    after = screws.come_back(lambda s: s.state == "idle")
     assert after.pos_mm == before.pos_mm
     assert c.submit(CUT, "job", hold=True).code == 0
     c.job_where("job", "ready")
@@ -42,7 +36,7 @@ def test_a_job_goes_on_with_what_was_set_and_without_a_new_home(screws):
     assert c.submit(CUT, "job").code == 0
     c.status_where(lambda s: s.state == "erode", timeout=20)
     assert screws.ctl("set", "servo_v", "41").returncode == 0
-    held = come_back(screws, lambda s: s.job_state == "held")
+    held = screws.come_back(lambda s: s.job_state == "held")
     c.hear(0.5)
     assert c.status().pos_mm == held.pos_mm, "it moved by itself"
     # What is asked for again shows what it was.
@@ -77,7 +71,7 @@ def test_other_backlash_moves_nothing_and_is_told(screws):
     )
     c.hear(0.3)
     change(screws, "backlash_um = 30", "backlash_um = 45")
-    after = come_back(screws, lambda s: s.state == "idle")
+    after = screws.come_back(lambda s: s.state == "idle")
     assert after.pos_mm == before.pos_mm
     edmd_says(screws, "by X -15; taken up when a command")
 
@@ -85,7 +79,7 @@ def test_other_backlash_moves_nothing_and_is_told(screws):
 def test_axes_are_not_homed_to_a_place_that_is_another_now(screws):
     c = screws.client
     change(screws, "home_at_mm = -20", "home_at_mm = -21")
-    come_back(screws, lambda s: s.state == "idle")
+    screws.come_back(lambda s: s.state == "idle")
     edmd_says(screws, "home_at_mm of the machine file is not what")
     assert c.submit(CUT, "job", hold=True).code == 0
     c.hear(0.5)
@@ -114,7 +108,7 @@ def test_an_e_stop_stays_latched(screws):
     c.status_where(lambda s: s.state == "erode", timeout=20)
     assert screws.ctl("estop").returncode == 0
     c.status_where(lambda s: s.state == "fault")
-    s = come_back(screws, lambda s: s.state == "fault")
+    s = screws.come_back(lambda s: s.state == "fault")
     assert s.fault == "e-stop"
     r = screws.ctl("start")
     assert r.returncode == 1

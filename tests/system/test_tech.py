@@ -176,9 +176,7 @@ def test_edmd_comes_back_in_the_condition_of_its_place(shop):
     c = running(shop)
     assert shop.ctl("set", "servo_v", "17").returncode == 0
     c.status_where(lambda s: s.condition == "C100" and s.place_mm > 2.3)
-    shop.kill("edmd")
-    shop.start_edmd()
-    s = c.status_where(lambda s: s.daemon == "ok" and s.state == "hold")
+    s = shop.come_back(lambda s: s.state == "hold")
     assert s.condition == "C100"
     assert shop.ctl("set", "servo_v", "22").returncode == 0
     assert shop.ctl("start").returncode == 0

@@ -208,6 +208,7 @@ struct nc_reader {
 	uint32_t ntold;
 	struct nc_macro *macro;		/* NULL: nothing was expanded yet */
 	bool listing;			/* all refusals are wanted: list.c */
+	bool lost;			/* the motion in force was refused */
 	bool mapped;			/* the present line is in its buffer */
 
 	/* The text, and the present line. */
@@ -344,6 +345,9 @@ int nc_check_line(struct nc_reader *r);
  * o->refused.
  */
 void nc_list_refusals(struct nc_reader *r);
+
+/** nc_has_no_code() - has the line places, a feed and a label at most? */
+bool nc_has_no_code(const struct nc_reader *r);
 
 /** nc_tell() - send what r->diag has to o->refused. */
 void nc_tell(struct nc_reader *r);
