@@ -166,6 +166,24 @@ def test_words_beside_a_refused_word_are_not_told_as_well():
     assert r.stderr.count(b"error:") == 1, r.stderr
 
 
+BODY = "P0 X1. Q1\nP0 Y1. R2\nP0 Z1. K.4\nN8 P1\nP1\nP1\nP1 F7\nG1 X1. Q5\nM2\n"
+
+
+@pytest.mark.parametrize("first", [
+    "G43.4\nG6.3 P0 X9.",		# begins elsewhere
+    "G43.4\nG6.3 L11 P0",
+    "G43.4\nG6.3 P0 X..1",
+    "\nG6.3 P0 X0.",			# G43.4 is missing
+    "\nG6.4 P0 X0.",
+])
+def test_a_refused_curve_is_told_once(first):
+    """Its other lines are not, but the next mistake is."""
+    r = run("--machine", ROOT / "examples/five-axis.ini", "--check",
+            text="F60\n" + first + "\n" + BODY)
+    assert re.findall(r":(\d+):\d+: error:", r.stderr.decode()) == [
+        "3", "11"], r.stderr
+
+
 def test_a_refused_number_with_decimals_is_told_once():
     r = run("--dialect", "generic", "--check", text="M350.1 M8.\nG0 X1.\nM2\n")
     assert r.returncode == 65

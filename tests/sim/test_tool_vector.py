@@ -87,6 +87,39 @@ def test_past_a_pole_c_keeps_its_speed(tmp_path):
     assert 59 < fastest < 60.6
 
 
+CUSPS = """G90
+G43.5
+G0 X-18.2076 Y-14.2305 Z-62.9387 I0.267473484 J0.251806611 K0.930081376
+F4800
+G6.3 P0 R0.9693 X-18.2076 Y-14.2305 Z-62.9387 Q1 I-0.11297 J0.155051 K0.126238
+P0 R0.2 X-20.2085 Y-11.2578 Z-63.5488 Q1 I-0.11297 J0.155051 K0.126238
+P0 R1 X-18.207 Y-14.2299 Z-62.9386 Q1 I0.122856 J-0.12973 K0.502129
+P0 R0.2 X-20.208 Y-11.2579 Z-63.5497 Q1 I0.264092 J0.212041 K0.467024
+P0.01 R5 X-18.2144 Y-14.2609 Z-62.9729 Q0.5 I-0.095343 J0.006574 K0.091985
+P1.01 R1 X-20.2087 Y-11.2584 Z-63.5492 Q1 I-0.07491 J-0.328314 K-0.033617
+P1.0101 R30 X-18.2144 Y-14.2609 Z-62.9729 Q2 I0.018548 J-0.617916 K0.320059
+P2.0101 R1 X-20.2087 Y-11.2584 Z-63.5492 Q1 I0.083725 J0.329275 K-0.324489
+P2.3101 R30 X-2.2906 Y-7.7618 Z-66.0941 Q1 I0.074692 J0.034919 K-0.373502
+P2.3111
+P2.3111
+P2.3111
+P2.3111
+M2
+"""
+
+
+def test_at_a_cusp_a_keeps_its_acceleration(tmp_path):
+    """It bends and speeds up there at once."""
+    done("--dry-run", "--machine", ROOT / "examples/machine-five-axis.ini",
+         "--trace", tmp_path / "t.csv", text=CUSPS)
+    with open(tmp_path / "t.csv") as f:
+        a = np.array([float(row["A"]) for row in csv.DictReader(f)])
+    s = 0.02
+    n = round(s * 1e3)
+    most = np.abs(a[2 * n:] - 2 * a[n:-n] + a[:-2 * n]).max() / s**2
+    assert 200 < most < 1.05 * 300 + 2 * 0.001 / s**2
+
+
 def angle_deg(a, b):
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1),
                                  (a * b).sum(-1)))

@@ -13,6 +13,9 @@
 
 #define TEXT_MAX	20000
 
+/* So near the end of the text each line is read as any line. */
+#define REST	"(it is not the last line)\n"
+
 /* @text with a comment at the end of each line. */
 static void put_comments(const char *text, char *to)
 {
@@ -46,14 +49,15 @@ static void assert_same(const char *text, const struct nc_read *a,
 /* Return: was it taken? */
 static bool check(const char *text, const char *dialect)
 {
-	char with[2 * TEXT_MAX] = { 0 };
+	char plain[TEXT_MAX], with[2 * TEXT_MAX];
 	struct nc_read a = nc_ready(), b = nc_ready();
 	bool taken;
 
 	a.o.feed_mm_s = b.o.feed_mm_s = 1;
 	a.dialect = b.dialect = interp_dialect_by_name(dialect);
-	put_comments(text, with);
-	nc_read_bytes(&a, text, strlen(text));
+	snprintf(plain, sizeof(plain), "%s" REST, text);
+	put_comments(plain, with);
+	nc_read_bytes(&a, plain, strlen(plain));
 	nc_read_bytes(&b, with, strlen(with));
 	assert_same(text, &a, &b);
 	taken = a.rc == 0;
@@ -77,12 +81,20 @@ static const struct {
 	{ "generic", "G1\nX1\nX2\nX3.5.5\n", false },
 	{ "generic", "G1\nX1\nX2\nX3Y4\nX5Z6\nX7X8\n", false },
 	{ "generic", "G1\nX1\nX2\nX9999999999\n", false },
+	{ "generic", "G1\nX1.5\nX2.5\nX3.5\nX4.5\nX5,5\n", false },
+	{ "generic", "G1\nX1.5\nX2.5\nX3.5\nX4.5\nX5-5\n", false },
+	{ "generic", "G1\nX15\nX25\nX35\nX45\nX5:\n", false },
+	{ "generic", "G1\nX15\nX25\nX35\nX45\nX5/\n", false },
+	{ "generic", "G1\nX15\nX25\nX35\nX45\nX.5\nX5.\nX5\n", true },
+	{ "generic", "G1\nX1\nX2\nX00000001\nX00000002\nX3\n", true },
+	{ "generic", "G1\nX1\nX2\nX0000.003\nX0000.004\nX5\n", true },
+	{ "generic", "G1\nX1\nX2\nX00000.006\nX00000.007\nX8\n", true },
 	{ "generic", "G1\nX1\nX2\nX\n", false },
 	{ "generic", "G1\nX1\nX2\nX3E4\n", false },
 	{ "generic", "G1\nC10.\nC20.\nC120.\nC30\nC120\nC1\n", true },
-	{ "generic", "G1\nX1 F1\nX2 F2.5\nX3 F7\nX4\nX5\nX6 F0\n", false },
+	{ "generic", "G1\nX1 F1\nX2 F2\nX3 F3\nX4 F4\nX5 F6\nX7 F0\n", false },
 	{ "generic", "G1\nN1 X1\nN2 X2\nN3 X3\nN4.5 X4\n", false },
-	{ "generic", "G1\nN1 X1\nN2 X2\nN-3 X3\n", false },
+	{ "generic", "G1\nN1 X1\nN2 X2\nN3 X3\nN4 X4\nN-3 X3\n", false },
 	{ "generic", "G1 X1\nG1 X2\nG1 X3\nG91 X4\nX5\nX6\nG90\nX7\n", true },
 	{ "generic", "G1 X1\nX2\nX3\nG20 X1\nX2\nX3\nG92 X1\nX2\nX3\n", true },
 	{ "generic", "G2 X2 I1\nX4 I1\nX6 I1\nX8 I1\nX9 I1\n", false },

@@ -18,48 +18,122 @@
 
 #include <ctype.h>
 
-/* What every place may be. */
-#define WIDE	999999999
+/* A number of eight digits at most. */
+#define WIDE	99999999
 
-/* Is @v, from @first to @end, a value of @slot and nothing else?  A length
+static bool in_range(const struct nc_pattern_word *word, double v)
+{
+	const struct nc_word *w = &nc_words[word->slot];
+
+	return v >= w->min && v <= w->max && (!w->whole || nc_is_whole(v));
+}
+
+/* Is @v, from @first to @end, a value of @word and nothing else?  A length
  * without a point may be another one; C120 is a condition. */
-static bool takes(const struct nc_reader *r, unsigned int slot,
+static bool takes(const struct nc_reader *r, const struct nc_pattern_word *w,
 		  const uint8_t *first, const uint8_t *end, double v)
 {
-	const struct nc_word *w = &nc_words[slot];
+	return in_range(w, v) &&
+	       (!((r->lengths | NC_BIT(NC_C)) & NC_BIT(w->slot)) ||
+		memchr(first, '.', (size_t)(end - first)));
+}
 
-	if ((r->lengths | NC_BIT(NC_C)) & NC_BIT(slot) &&
-	    !memchr(first, '.', (size_t)(end - first)))
-		return false;
-	return v >= w->min && v <= w->max && (!w->whole || nc_is_whole(v));
+/*
+ * The number of the line before mostly had as many digits, and its point at the
+ * same place.  Less its form, its bytes are the digits and a 0 for the point;
+ * with `top` added, none of them comes to 0x80, and any other byte does.  What
+ * ends the number is compared as the text behind it.
+ *
+ * Return: the place behind the number, or NULL.
+ */
+static inline const uint8_t *read_like(const struct nc_form *f,
+				       const uint8_t *p, double *ret)
+{
+	const bool negative = *p == '-';
+	uint64_t w;
+
+	memcpy(&w, p + negative, sizeof(w));
+	w ^= f->text;
+	if (((w + f->top) | w) & f->bytes)
+		return NULL;
+	w = (((w >> 8) ^ w) & f->before) ^ (w >> 8);
+	*ret = nc_eight_digits(w << f->shift) / f->scale;
+	if (negative)
+		*ret = -*ret;
+	return p + negative + f->length;
+}
+
+/* It is never found. */
+static const struct nc_form no_form = { .top = 0x80, .bytes = 0x80 };
+
+/* The form of the number from @p to @end. */
+static void take_form(struct nc_form *f, const uint8_t *p, const uint8_t *end)
+{
+	struct nc_form form = { .before = ~UINT64_C(0), .length = 0 };
+	unsigned int digits = 0, point = 0;
+
+	p += *p == '-';
+	for (; p < end; p++, form.length++) {
+		const unsigned int at = 8u * form.length;
+		const bool is_point = *p == '.';
+
+		if (form.length == 8 || (!is_point && *p - (unsigned)'0' > 9))
+			return;
+		form.text |= (uint64_t)(is_point ? '.' : '0') << at;
+		form.top |= UINT64_C(0x76) << at;
+		form.bytes |= UINT64_C(0x80) << at;
+		if (is_point) {
+			form.top += UINT64_C(0x09) << at;
+			form.before = (UINT64_C(1) << at) - 1;
+			point = digits + 1;
+		} else {
+			digits++;
+		}
+	}
+	form.shift = (uint8_t)(64 - 8 * digits);
+	form.scale = nc_pow10[point ? digits - (point - 1) : 0];
+	if (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
+		*f = form;
+}
+
+/* The number at @first, of any form; the next one is expected in that form. */
+static const uint8_t *read_any(struct nc_reader *r, struct nc_pattern_word *w,
+			       const uint8_t *first, double *ret)
+{
+	const uint8_t *p = nc_number(first, r->stop, ret);
+
+	if (!p || !takes(r, w, first, p, *ret))
+		return NULL;
+	take_form(&w->form, first, p);
+	return p;
 }
 
 bool nc_scan_again(struct nc_reader *r)
 {
-	const struct nc_pattern *pattern = &r->pattern;
-	const uint8_t *p = r->at;
+	/* What is in front of a number, a sign, and the number. */
+	const ptrdiff_t least = 2 * sizeof(uint64_t) + 1;
+	struct nc_pattern *pattern = &r->pattern;
 	struct nc_block *b = &r->block;
-	double v;
+	const uint8_t *p = r->at;
 
 	if (!pattern->n)
 		return false;
 	nc_begin_line(r);
 	for (uint32_t i = 0; i < pattern->n; i++) {
-		const struct nc_pattern_word *w = &pattern->word[i];
-		const uint8_t *first;
+		struct nc_pattern_word *w = &pattern->word[i];
+		const uint8_t *first = p + w->bytes;
 		uint64_t text;
 
-		if (r->stop - p < (ptrdiff_t)sizeof(text))
+		if (r->stop - p < least)
 			return false;
 		memcpy(&text, p, sizeof(text));
 		if ((text ^ w->text) & w->mask)
 			return false;
-		first = p + w->bytes;
-		p = nc_number(first, r->stop, &v);
-		if (!p || !(w->narrow ? takes(r, w->slot, first, p, v) :
-					fabs(v) <= WIDE))
+		p = read_like(&w->form, first, &b->value[w->slot]);
+		if (!p)
+			p = read_any(r, w, first, &b->value[w->slot]);
+		if (!p || (w->narrow && !in_range(w, b->value[w->slot])))
 			return false;
-		b->value[w->slot] = v;
 		b->at[w->slot] = first - 1;
 	}
 	if (p == r->stop || nc_classes[*p] != NC_EOL)
@@ -119,8 +193,8 @@ static const uint8_t *add_word(struct nc_reader *r, const uint8_t *p,
 	memcpy(&w->text, text, sizeof(text));
 	memcpy(&w->mask, mask, sizeof(mask));
 	w->slot = (uint8_t)slot;
-	w->narrow = word->whole || word->min > -WIDE || word->max < WIDE ||
-		    (r->lengths | NC_BIT(NC_C)) & NC_BIT(slot);
+	w->narrow = word->whole || word->min > -WIDE || word->max < WIDE;
+	w->form = no_form;
 	r->pattern.n++;
 	return nc_number(p, r->stop, &v);
 }

@@ -50,13 +50,30 @@ static void begin_again(struct nc_reader *r)
 	r->curve.open = 0;
 }
 
+bool nc_has_no_code(const struct nc_reader *r)
+{
+	return !(r->block.groups & ~(NC_BIT(NC_FEED) | NC_BIT(NC_LABEL)));
+}
+
+/* Nobody knows what the other words of a line with a refused word belong to.
+ * If it was a motion, nobody knows what its next lines mean, either. */
+static bool is_known(struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+	const bool refused = b->takes == UINT32_MAX;
+
+	if (refused && b->words & NC_MOVES)
+		r->lost = true;
+	if (nc_has_group(r, NC_MOTION))
+		r->lost = false;
+	return !refused && !(r->lost && nc_has_no_code(r));
+}
+
 static void look_at(struct nc_reader *r, const uint8_t *end)
 {
 	int err = nc_scan_line(r);
 
-	/* Nobody knows what the other words of a line with a refused word
-	 * belong to. */
-	if (err == 0 && r->block.takes != UINT32_MAX)
+	if (err == 0 && is_known(r))
 		err = nc_check_line(r);
 	if (err == -EINVAL)
 		nc_tell(r);

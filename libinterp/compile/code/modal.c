@@ -241,11 +241,20 @@ static int check_alone(struct nc_reader *r)
 			 nc_quote_word(r, at).s);
 }
 
+/* Does the line go on with a body?  While refusals are listed, no curve is
+ * put together, and nobody knows where one ends. */
+static bool in_body(const struct nc_reader *r)
+{
+	return r->listing ? nc_has_no_code(r) && r->motion &&
+			    r->motion->value == NC_BODY :
+			    r->curve.open == NC_BODY;
+}
+
 static int complete(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
 	/* For a body, P is a knot and Q belongs to the rotation. */
-	const uint32_t moves = r->curve.open == NC_BODY ?
+	const uint32_t moves = in_body(r) ?
 			       NC_MOVES | NC_BIT(NC_P) | NC_BIT(NC_Q) :
 			       NC_MOVES;
 

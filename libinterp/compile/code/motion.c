@@ -4,7 +4,6 @@
  */
 #include "code/reader.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -21,8 +20,6 @@ static void follow(const struct nc_reader *r, uint32_t named,
 {
 	const double *here = nc_here(r);
 
-	if (!nc_has_guides(r))
-		return;
 	if (!(named & NC_BIT(NC_U)))
 		end_mm[INTERP_U] = here[INTERP_U] + end_mm[INTERP_X] -
 				   here[INTERP_X];
@@ -57,8 +54,10 @@ void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 	memcpy(ret_end_mm, here, sizeof(zero_mm));
 	for EACH_AXIS(b->words & NC_AXES, i)
 		ret_end_mm[i] = base[i] + b->value[i] * r->scale[i];
+	if (!nc_has_guides(r))
+		return;
 	follow(r, b->words, ret_end_mm);
-	if (r->d->lean && !b->colon && nc_has_guides(r))
+	if (r->d->lean && !b->colon)
 		lean(r, ret_end_mm);
 }
 
@@ -69,8 +68,6 @@ static double feed_for(const struct nc_reader *r,
 {
 	const double *here = nc_here(r);
 
-	if (r->feed_mm_s == r->feed_deg_s)
-		return r->feed_mm_s;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (!interp_axis_is_rotary((enum interp_axis)i) &&
 		    end_mm[i] != here[i])
@@ -79,15 +76,8 @@ static double feed_for(const struct nc_reader *r,
 	return r->feed_deg_s;
 }
 
-int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid)
+static int refuse_feed(struct nc_reader *r)
 {
-	r->word.line = r->line;
-	r->word.rapid = rapid;
-	if (rapid)
-		return 0;
-	r->word.feed_mm_s = feed_for(r, end_mm);
-	if (r->word.feed_mm_s > 0)
-		return 0;
 	return nc_refuse(r, r->block.code_at[nc_has_group(r, NC_CYCLE) ?
 					     NC_CYCLE :
 					     nc_has_group(r, NC_PROBE) ?
@@ -98,12 +88,27 @@ int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid)
 			 "a motion at a feed, and no feed given yet");
 }
 
-int nc_room(struct nc_reader *r)
+static inline int word(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		       bool rapid)
+{
+	r->word.line = r->line;
+	r->word.rapid = rapid;
+	if (rapid)
+		return 0;
+	r->word.feed_mm_s = r->feed_mm_s == r->feed_deg_s ? r->feed_mm_s :
+			    feed_for(r, end_mm);
+	return r->word.feed_mm_s > 0 ? 0 : refuse_feed(r);
+}
+
+int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid)
+{
+	return word(r, end_mm, rapid);
+}
+
+int nc_refuse_room(struct nc_reader *r)
 {
 	char wanted[96];
 
-	if (r->segs++ + r->contour.guides.cuts < r->segs_max)
-		return 0;
 	snprintf(wanted, sizeof(wanted), "up to %u, with fewer repeats (L)",
 		 r->segs_max);
 	return nc_refuse_at(r, r->line, wanted,
@@ -136,12 +141,10 @@ static const uint8_t *blame(const struct nc_reader *r,
 							 NC_MOTION];
 }
 
-int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES])
+void nc_blame(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 {
-	if (rc == -EINVAL && r->diag->line == r->line)
+	if (r->diag->line == r->line)
 		r->diag->column = nc_column(r, blame(r, end_mm));
-	r->moved |= r->block.words & NC_AXES;
-	return rc;
 }
 
 int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
@@ -162,7 +165,7 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	       bool rapid)
 {
-	int err = nc_word(r, end_mm, rapid);
+	int err = word(r, end_mm, rapid);
 
 	r->curve.smooth = false;
 	if (!err)
@@ -240,7 +243,8 @@ static int home(struct nc_reader *r)
 				 "G28 without axis words before any motion");
 	for EACH_AXIS(axes, i)
 		end_mm[i] = 0;
-	follow(r, axes, end_mm);
+	if (nc_has_guides(r))
+		follow(r, axes, end_mm);
 	return nc_line_to(r, end_mm, true);
 }
 

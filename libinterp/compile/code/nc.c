@@ -87,7 +87,8 @@ int nc_read_line(struct nc_reader *r)
 	if (r->executed++ >= r->executed_max)
 		return refuse_executed(r);
 	if (nc_scan_again(r))
-		return nc_run_groups(r, r->block.groups);
+		return r->block.groups == NC_BIT(NC_MOTION) ?
+		       nc_run_motion(r) : nc_run_groups(r, r->block.groups);
 	r->pattern.n = 0;
 	err = nc_scan_line(r);
 	if (!err && r->o->notes && r->o->notes->plan)

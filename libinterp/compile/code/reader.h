@@ -38,6 +38,8 @@
 #include "interp/nc.h"
 #include "wire/contour.h"
 
+#include <errno.h>
+
 /* Tool-centre-point programming. */
 struct nc_tool_point {
 	bool on;
@@ -88,12 +90,23 @@ struct nc_block {
 /* A line up to its numbers: again.c. */
 #define NC_PATTERN_WORDS	8
 
+/* A number up to its digits. */
+struct nc_form {
+	uint64_t text;			/* with 0 for each digit */
+	uint64_t top, bytes;		/* read_like() */
+	uint64_t before;		/* the bytes in front of its point */
+	double scale;			/* 10 for each digit behind it */
+	uint8_t shift, length;		/* bits to the top of a word; bytes */
+};
+
 struct nc_pattern_word {
 	uint64_t text, mask;		/* what is in front of its number, with
 					 * its letter; and which bytes of it */
-	uint8_t bytes;			/* how many these are */
+	struct nc_form form;		/* of the number it had last */
+	uint8_t bytes;			/* that are in front of it */
 	uint8_t slot;
-	bool narrow;			/* it does not take every number */
+	bool narrow;			/* it does not take every number of
+					 * eight digits */
 };
 
 struct nc_pattern {
@@ -195,6 +208,7 @@ struct nc_reader {
 	uint32_t ntold;
 	struct nc_macro *macro;		/* NULL: nothing was expanded yet */
 	bool listing;			/* all refusals are wanted: list.c */
+	bool lost;			/* the motion in force was refused */
 	bool mapped;			/* the present line is in its buffer */
 
 	/* The text, and the present line. */
@@ -331,6 +345,9 @@ int nc_check_line(struct nc_reader *r);
  * o->refused.
  */
 void nc_list_refusals(struct nc_reader *r);
+
+/** nc_has_no_code() - has the line places, a feed and a label at most? */
+bool nc_has_no_code(const struct nc_reader *r);
 
 /** nc_tell() - send what r->diag has to o->refused. */
 void nc_tell(struct nc_reader *r);
@@ -492,11 +509,28 @@ void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES]);
 /** nc_word() - prepare r->word for a motion to @end_mm. */
 int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid);
 
+/** nc_refuse_room() - there are too many segments. */
+int nc_refuse_room(struct nc_reader *r);
+
 /** nc_room() - count a segment; refuse it if there are too many. */
-int nc_room(struct nc_reader *r);
+static inline int nc_room(struct nc_reader *r)
+{
+	return r->segs++ + r->contour.guides.cuts < r->segs_max ?
+	       0 : nc_refuse_room(r);
+}
+
+/** nc_blame() - point to the word to which the builder has said no. */
+void nc_blame(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
 
 /** nc_placed() - what the builder said to a motion, together with its place. */
-int nc_placed(struct nc_reader *r, int rc, const double end_mm[INTERP_NAXES]);
+static inline int nc_placed(struct nc_reader *r, int rc,
+			    const double end_mm[INTERP_NAXES])
+{
+	if (rc == -EINVAL)
+		nc_blame(r, end_mm);
+	r->moved |= r->block.words & NC_AXES;
+	return rc;
+}
 
 /**
  * nc_mcode() - the machine's own M@n; NULL if it has none.

@@ -118,21 +118,36 @@ static double own_mm_s2(const struct pass *w)
 						  w->a_own_mm_s2[1]));
 }
 
-/* If to speed up on it takes jerk. */
+/* If to speed up on it takes jerk, or more acceleration than there is. */
 static void note_bent(struct pass *w, const struct look *l, uint32_t j,
 		      double bend, double change)
 {
+	const double v = l->most_mm_s, own = own_mm_s2(w);
+	const double rate = fabs(l->bow.a->rate[j] + l->bow.b->rate[j]) / 2;
 	struct bent *b = &w->bent[j];
 
-	if (!l->certain || 3 * bend * l->most_mm_s * own_mm_s2(w) <=
-			   INTERP_ARC_JERK_BOTH * w->j_mm_s3[j])
+	if (!l->certain ||
+	    (3 * bend * v * own <= INTERP_ARC_JERK_BOTH * w->j_mm_s3[j] &&
+	     bend * v * v + rate * own <= w->a_mm_s2[j]))
 		return;
 	if (!(w->bends >> j & 1))
 		*b = (struct bent) { 0 };
 	w->bends |= 1u << j;
 	b->bend = larger(b->bend, bend);
 	b->change = larger(b->change, change);
-	b->rate = fabs(l->bow.a->rate[j] + l->bow.b->rate[j]) / 2;
+	b->rate = rate;
+}
+
+/* What its bend may take.  What a move needs along the path may point the same
+ * way, and it has LEAST_ALONG. */
+static double for_bend_mm_s2(const struct pass *w, const struct look *l,
+			     uint32_t j)
+{
+	const double a = w->a_mm_s2[j];
+	const double rate = larger(fabs(l->bow.a->rate[j]),
+				   fabs(l->bow.b->rate[j]));
+
+	return a * (1 - LEAST_ALONG * smaller(rate * own_mm_s2(w) / a, 1));
 }
 
 static void limit(struct look *l, double round_mm_s, double firm_mm_s)
@@ -143,10 +158,11 @@ static void limit(struct look *l, double round_mm_s, double firm_mm_s)
 
 void pass_beside(struct pass *w, struct look *l, uint32_t j, double d)
 {
-	const double a = w->a_mm_s2[j], jerk = w->j_mm_s3[j];
+	const double a = for_bend_mm_s2(w, l, j), jerk = w->j_mm_s3[j];
 	const double mm = l->bow.way_mm, bend = d / mm, most = l->most_mm_s;
 	struct bend_change change;
 	double set_off, alone, round, firm;
+	bool goes_on;
 
 	if (most * most * bend <= a &&
 	    most * most * most * bend <= HARDLY * jerk * mm) {
@@ -154,25 +170,26 @@ void pass_beside(struct pass *w, struct look *l, uint32_t j, double d)
 		return;
 	}
 	alone = pass_round_mm_s(1 / bend, a, jerk * d);
+	change = bend_change(w, l, j);
+	goes_on = 2 * change.most * mm < bend;
 	if (alone * alone * bend >= a) {
+		if (goes_on)
+			note_bent(w, l, j, bend, 0);
 		limit(l, INFINITY, alone);
 		return;
 	}
-	change = bend_change(w, l, j);
 	set_off = INTERP_ARC_JERK_BOTH * jerk /
 		  (3 * bend * LEAST_ALONG * own_mm_s2(w));
 	round = cbrt(INTERP_ARC_JERK_ROUND * jerk / change.most);
 	firm = smaller(set_off, sqrt(a / bend));
 	/* A corner is no bend that takes jerk all of the way. */
-	if (smaller(round, firm) > alone || 2 * change.most * mm < bend)
+	if (smaller(round, firm) > alone || goes_on)
 		note_bent(w, l, j, bend, change.at);
 	limit(l, larger(round, alone), larger(firm, alone));
 }
 
-/*
- * An axis bends least where it is fastest, as in a wave: what it needs along
- * the path and across count as square to each other, as on an arc.
- */
+/* Unlike on an arc, what an axis needs along the path and for its bend may
+ * point one way. */
 void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
 		struct leave *ret)
 {
@@ -184,7 +201,7 @@ void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
 	double both, round;
 
 	if (b->rate > 0)
-		left = smaller(left, sqrt(1 - across * across) * a / b->rate);
+		left = smaller(left, (1 - across) * a / b->rate);
 	left = larger(left, least);
 	both = smaller(3 * b->bend * v * left / jerk, INTERP_ARC_JERK_BOTH);
 	round = smaller(b->change * v * v * v / jerk, INTERP_ARC_JERK_ROUND);

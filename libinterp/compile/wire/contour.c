@@ -59,7 +59,7 @@ static bool is_on(double offset_mm, double slope)
 }
 
 /* All bits but that of the sign: 0 if @v is 0. */
-static uint64_t bits(double v)
+static inline uint64_t bits(double v)
 {
 	uint64_t b;
 
@@ -68,7 +68,7 @@ static uint64_t bits(double v)
 }
 
 /* Nothing in force, nothing held: no business of this stage. */
-static bool is_idle(const struct contour *k)
+static inline bool is_idle(const struct contour *k)
 {
 	return k->plain && !k->n && !k->recording &&
 	       !(bits(k->offset_mm) | bits(k->slope) |
