@@ -59,15 +59,17 @@ static struct interp_seg *seg_add(struct interp_build *b)
 static int node_add(struct interp_build *b)
 {
 	struct table *t = &b->nodes;
+	const uint32_t naxes = b->naxes;
+	const size_t n = t->n;
 	int64_t *at;
 
-	if (t->room - t->n < b->naxes && build_table_room(t, b->naxes) < 0)
+	if (t->room - n < naxes && build_table_room(t, naxes) < 0)
 		return -ENOMEM;
 	/* There may be no axis yet, and then no table either. */
-	at = nodes_of(b) + t->n;
-	for (uint32_t j = 0; j < b->naxes; j++)
-		at[j] = b->here[b->column[j]];
-	t->n += b->naxes;
+	at = nodes_of(b);
+	for (uint32_t j = 0; j < naxes; j++)
+		at[n + j] = b->here[b->column[j]];
+	t->n = n + naxes;
 	return 0;
 }
 
