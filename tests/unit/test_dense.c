@@ -193,8 +193,8 @@ static const struct wave waves[] = {
 
 /* Time of each, of that in lines of 0.2 mm. */
 static const double waves_most[] = {
-	1.03, 1.02, 1.02, 1.02, 1.005, 1.005,
-	1.025,
+	1.02, 1.015, 1.015, 1.01, 1.005, 1.005,
+	1.033,
 };
 
 #define NWAVES	(sizeof(waves) / sizeof(waves[0]))

@@ -150,19 +150,24 @@ static double for_bend_mm_s2(const struct pass *w, const struct look *l,
 	return a * (1 - LEAST_ALONG * smaller(rate * own_mm_s2(w) / a, 1));
 }
 
-double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
-			double d)
+static void limit(struct look *l, double round_mm_s, double firm_mm_s)
+{
+	l->round_mm_s = smaller(l->round_mm_s, round_mm_s);
+	l->firm_mm_s = smaller(l->firm_mm_s, firm_mm_s);
+}
+
+void pass_beside(struct pass *w, struct look *l, uint32_t j, double d)
 {
 	const double a = for_bend_mm_s2(w, l, j), jerk = w->j_mm_s3[j];
 	const double mm = l->bow.way_mm, bend = d / mm, most = l->most_mm_s;
 	struct bend_change change;
-	double set_off, alone, v;
+	double set_off, alone, round, firm;
 	bool goes_on;
 
 	if (most * most * bend <= a &&
 	    most * most * most * bend <= HARDLY * jerk * mm) {
 		note_bent(w, l, j, bend, 0);
-		return INFINITY;
+		return;
 	}
 	alone = pass_round_mm_s(1 / bend, a, jerk * d);
 	change = bend_change(w, l, j);
@@ -170,45 +175,47 @@ double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
 	if (alone * alone * bend >= a) {
 		if (goes_on)
 			note_bent(w, l, j, bend, 0);
-		return alone;
+		limit(l, INFINITY, alone);
+		return;
 	}
 	set_off = INTERP_ARC_JERK_BOTH * jerk /
 		  (3 * bend * LEAST_ALONG * own_mm_s2(w));
-	v = smaller(cbrt(INTERP_ARC_JERK_ROUND * jerk / change.most), set_off);
-	v = smaller(v, sqrt(a / bend));
+	round = cbrt(INTERP_ARC_JERK_ROUND * jerk / change.most);
+	firm = smaller(set_off, sqrt(a / bend));
 	/* A corner is no bend that takes jerk all of the way. */
-	if (v > alone || goes_on)
+	if (smaller(round, firm) > alone || goes_on)
 		note_bent(w, l, j, bend, change.at);
-	return larger(v, alone);
+	limit(l, larger(round, alone), larger(firm, alone));
 }
 
 /* Unlike on an arc, what an axis needs along the path and for its bend may
  * point one way. */
-void pass_leave(const struct pass *w, double v_mm_s, struct leave *ret)
+void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
+		struct leave *ret)
 {
-	const double v = v_mm_s, least = LEAST_ALONG * own_mm_s2(w);
+	const double v = v_mm_s, least = LEAST_ALONG * (double)k->own_mm_s2;
+	const double jerk = w->j_mm_s3[k->column], a = w->a_mm_s2[k->column];
+	const struct bent *b = &k->is;
+	const double across = smaller(b->bend * v * v / a, 1);
+	double left = INTERP_ARC_JERK_BOTH * jerk / (3 * b->bend * v);
+	double both, round;
 
-	*ret = (struct leave) { INFINITY, INFINITY };
-	for (uint32_t j = 0; j < w->n; j++) {
-		const struct bent *b = &w->bent[j];
-		const double jerk = w->j_mm_s3[j], a = w->a_mm_s2[j];
-		double across, left, both, round;
+	if (b->rate > 0)
+		left = smaller(left, (1 - across) * a / b->rate);
+	left = larger(left, least);
+	both = smaller(3 * b->bend * v * left / jerk, INTERP_ARC_JERK_BOTH);
+	round = smaller(b->change * v * v * v / jerk, INTERP_ARC_JERK_ROUND);
+	ret->a_mm_s2 = left;
+	ret->j_mm_s3 = b->rate > 0 ? (sqrt(1 - both * both) - round) * jerk /
+				     b->rate : INFINITY;
+}
 
-		if (!(w->bends >> j & 1))
-			continue;
-		across = smaller(b->bend * v * v / a, 1);
-		left = INTERP_ARC_JERK_BOTH * jerk / (3 * b->bend * v);
-		if (b->rate > 0)
-			left = smaller(left, (1 - across) * a / b->rate);
-		left = larger(left, least);
-		both = smaller(3 * b->bend * v * left / jerk,
-			       INTERP_ARC_JERK_BOTH);
-		round = smaller(b->change * v * v * v / jerk,
-				INTERP_ARC_JERK_ROUND);
-		ret->a_mm_s2 = smaller(ret->a_mm_s2, left);
-		if (b->rate > 0)
-			ret->j_mm_s3 = smaller(ret->j_mm_s3,
-				(sqrt(1 - both * both) - round) * jerk /
-				b->rate);
-	}
+void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind)
+{
+	for (uint32_t j = 0; j < w->n; j++)
+		if (w->bends >> j & 1)
+			pass_bent_node(w, &(struct bent_node) {
+				w->bent[j], j, before, behind,
+				(float)own_mm_s2(w),
+			});
 }

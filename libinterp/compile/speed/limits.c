@@ -236,39 +236,13 @@ COLUMNS_INLINE void limit_seg(struct pass *w, uint32_t i,
 		s->feed_mm_s = s->feed_max_mm_s;
 }
 
-/* The most at the end of segment @i, because the node before it is passed no
- * faster than its limit.  A rounding hides the bend of one node more than that
- * of the next. */
-static double reach_mm_s(const struct pass *w, uint32_t i)
+void pass_soften_seg(struct pass *w, uint32_t i, const struct leave *left)
 {
-	const struct interp_seg *s = &w->segs[i];
-	const double v = (double)s[-1].node_mm_s;
+	struct interp_seg *s = &w->segs[i];
 
-	return sqrt(v * v + 2 * s->length_mm *
-		    larger(w->a_own_mm_s2[0], w->a_own_mm_s2[1]));
-}
-
-/* What a bend beside the path takes, the segments to both sides of its node do
- * not have. */
-static void soften_node(struct pass *w, uint32_t last, uint32_t i,
-			double v_mm_s)
-{
-	const uint32_t both[2] = { last, i };
-	double v = v_mm_s;
-	struct leave left;
-
-	for (int k = 0; k < 2; k++)
-		v = smaller(v, (double)w->segs[both[k]].feed_max_mm_s);
-	pass_leave(w, smaller(v, reach_mm_s(w, last)), &left);
-	for (int k = 0; k < 2; k++) {
-		struct interp_seg *s = &w->segs[both[k]];
-
-		s->a_mm_s2 = pass_least(s->a_mm_s2,
-				   soft(left.a_mm_s2, &w->a_levels));
-		s->j_mm_s3 = pass_least(s->j_mm_s3,
-				   soft(left.j_mm_s3, &w->j_levels));
-		note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
-	}
+	s->a_mm_s2 = pass_least(s->a_mm_s2, soft(left->a_mm_s2, &w->a_levels));
+	s->j_mm_s3 = pass_least(s->j_mm_s3, soft(left->j_mm_s3, &w->j_levels));
+	note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
 }
 
 /* Those from the end of segment @first to the start of segment @i. */
@@ -290,6 +264,23 @@ static void note_parts(struct pass *w, uint32_t last, uint32_t i)
 	w->parts = true;
 }
 
+/* Node @i is known, and so is what is near to one before it. */
+static void look_for_dip(struct pass *w, uint32_t i)
+{
+	const uint32_t k = i - DIP_NODES;
+	float *node, most;
+	double v;
+
+	pass_note_dip(w, i);
+	v = i > DIP_NODES ? pass_dip_mm_s(w, k) : 0;
+	if (!(v > 0))
+		return;
+	node = &w->segs[k - 1].node_mm_s;
+	most = v < INFINITY ? level(w, v) : INFINITY;
+	if (most > *node)
+		*node = most;
+}
+
 /* The node in front of segment @i; @last is the segment before it that
  * moves. */
 COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
@@ -302,11 +293,14 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 	if (a->along != b->along)
 		note_parts(w, last, i);
 	if (w->bends)
-		soften_node(w, last, i, v);
+		pass_note_bends(w, last, i);
+	if (last + 1 == i && (a->along & b->along) != near_all(n))
+		look_for_dip(w, i);
 	if (pass_is_tiny(w, last) && !pass_is_tiny(w, i)) {
 		const double over = pass_over_mm_s(w, &last, i, b);
 
 		limit_nodes(w, last, i, over);
+		pass_dip_firm(w, last, i, over);
 	}
 }
 
@@ -375,7 +369,7 @@ static void raise_node(struct pass *w, uint32_t i)
 		return;
 	s[-1].node_mm_s = most;
 	if (w->bends)
-		soften_node(w, i - 1, i, v);
+		pass_note_bends(w, i - 1, i);
 }
 
 static void look_between(struct pass *w, uint32_t run, uint32_t i,
@@ -422,7 +416,7 @@ static void look_beside(struct pass *w)
 			i += (uint32_t)way;
 		}
 	}
-	w->soft = again.soft;
+	w->bent_nodes = again.bent_nodes;
 }
 
 /* The node in front of segment @i is known. */
@@ -483,6 +477,7 @@ void interp_limits_write(const struct interp_limits *l,
 
 	begin(&w, l, p, segs);
 	BY_COLUMNS(w.n, walk_nodes, &w);
+	pass_soften(&w);
 	pass_stretches(&w);
 	pass_hops(segs, w.end);
 }

@@ -197,9 +197,11 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 	const bool curves = pass_is_short(w, last) || pass_is_short(w, i);
 	const uint32_t both = a->along & b->along;
 	const bool all = both == near_all(n);
-	double v = INFINITY;
+	double v = INFINITY, turn;
 
 	w->bends = 0;
+	if (!all)
+		w->dip.round_mm_s = w->dip.firm_mm_s = INFINITY;
 	if (curves)
 		v = all ? near_curve(w, i, most, n) : 0;
 	if (curves && v < most)
@@ -207,7 +209,9 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 	if (all ? near_turns_faster(w, last, i, a, b, v, near_all(n), n) :
 		  near_turns_faster(w, last, i, a, b, v, both, n))
 		return v;
-	return smaller(v, pass_turn(w, last, i, a, b));
+	turn = pass_turn(w, last, i, a, b);
+	w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)turn);
+	return smaller(v, turn);
 }
 
 #endif /* SPEED_NEARBY_H */

@@ -145,18 +145,17 @@ COLUMNS_INLINE bool bow_of(const struct pass *w, uint32_t i, struct around *k,
 
 /* The speed at which the axes beside the path can follow a bow.  @d is the
  * change of each column's rate. */
-COLUMNS_INLINE double bow_beside_mm_s(struct pass *w, const struct look *l,
+COLUMNS_INLINE double bow_beside_mm_s(struct pass *w, struct look *l,
 				      const double d[INTERP_NAXES],
 				      uint32_t along, uint32_t n)
 {
-	double v = INFINITY;
-
+	l->round_mm_s = l->firm_mm_s = INFINITY;
 	/* A column that turns beside the path is limited by itself. */
 	for (uint32_t j = 0; j < n; j++)
 		if (!(along >> j & 1) &&
 		    (!l->certain || d[j] * l->bow.mm > w->tol[j]))
-			v = smaller(v, pass_beside_mm_s(w, l, j, d[j]));
-	return v;
+			pass_beside(w, l, j, d[j]);
+	return smaller(l->round_mm_s, l->firm_mm_s);
 }
 
 /* The same of those that make its length. */
@@ -223,6 +222,17 @@ COLUMNS_INLINE bool may_bend(const struct pass *w, const struct look *l,
 	return false;
 }
 
+/* The window that shows the slowest. */
+static void note_round(struct pass *w, const struct look *l)
+{
+	struct dip *d = &w->dip;
+
+	if (!(l->round_mm_s < (double)d->round_mm_s))
+		return;
+	d->round_mm_s = (float)l->round_mm_s;
+	d->near_mm = (float)(DIP_NEAR * l->window->mm);
+}
+
 /*
  * Short lines may turn by any small amount at each node: their curve is that of
  * the chords to both sides.  A turn that is less than a rounding over one
@@ -234,10 +244,11 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 			    uint32_t along, uint32_t n)
 {
 	const bool beside = (~along & ((1u << n) - 1)) != 0;
-	double per_mm[INTERP_NAXES], v = INFINITY, enough = INFINITY;
+	double per_mm[INTERP_NAXES], firm = INFINITY, enough = INFINITY;
 	struct look l = { .node = i, .along = along, .most_mm_s = most };
 	bool clear = false;
 
+	w->dip.round_mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++)
 		per_mm[j] = INFINITY;
 	for (int at = 0; at < PASS_WINDOWS && !clear; at++) {
@@ -269,17 +280,21 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		clear = is_clear(&c, all, n);
 		d = clear ? all : c.d;
 		/* What bends beside the path is noted in any case. */
-		fast = bow_beside_mm_s(w, &l, d, along, n);
-		if (isinf(enough))
-			v = smaller(v, smaller(fast,
-				bow_along_mm_s(w, &l.bow, d, along, n)));
+		bow_beside_mm_s(w, &l, d, along, n);
+		if (isinf(enough)) {
+			fast = bow_along_mm_s(w, &l.bow, d, along, n);
+			firm = smaller(firm, smaller(fast, l.firm_mm_s));
+			note_round(w, &l);
+		}
 		change_of(w, at_most, &c, along, n);
 		for (uint32_t j = 0; j < n; j++)
 			per_mm[j] = smaller(per_mm[j], c.d[j] / l.bow.mm);
 		if (enough < INFINITY && !may_bend(w, &l, per_mm, along, n))
 			break;
 	}
-	return smaller(v, enough);
+	firm = smaller(firm, enough);
+	w->dip.firm_mm_s = (float)firm;
+	return smaller(firm, (double)w->dip.round_mm_s);
 }
 
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s)

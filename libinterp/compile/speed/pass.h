@@ -75,6 +75,9 @@ struct look {
 	bool certain;			/* what a rounding can be does not
 					 * count */
 	double most_mm_s;		/* more is not asked for */
+	/* Found of the columns beside the path: */
+	double round_mm_s;		/* by the change of a bend */
+	double firm_mm_s;		/* by all else */
 };
 
 /* How an axis beside the path bends at a node. */
@@ -83,6 +86,34 @@ struct bent {
 	double change;			/* of its bend in a mm */
 	double rate;
 };
+
+/* That of one column, at the node between two segments that move.  What it
+ * leaves is known when all nodes are (reach.c). */
+struct bent_node {
+	struct bent is;
+	uint32_t column, before, behind;
+	float own_mm_s2;		/* as if nothing bent */
+};
+
+struct bent_nodes {
+	struct bent_node *at;
+	size_t n, room;
+};
+
+/*
+ * What limits a node: in how the bend of an axis beside the path changes, a
+ * rounding shows most (dip.c).
+ */
+struct dip {
+	uint32_t node;
+	float round_mm_s, firm_mm_s;	/* by that; by all else */
+	float near_mm;			/* around it */
+};
+
+/* Nodes to each side of one, and how much of a window. */
+#define DIP_NODES	8
+#define DIP_NEAR	0.25
+#define DIP_RING	32
 
 struct pass {
 	const struct interp_program *p;
@@ -109,6 +140,8 @@ struct pass {
 	uint32_t bends;			/* the columns that have this at the
 					 * node: */
 	struct bent bent[INTERP_NAXES];
+	struct bent_nodes bent_nodes;
+	struct dip dip, dips[DIP_RING];	/* at the node, and of the last ones */
 	uint32_t tol_of;		/* columns whose largest tol was asked
 					 * for last */
 	double tol_most;
@@ -182,11 +215,10 @@ void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
 		uint32_t along, struct chord *ret);
 
 /**
- * pass_beside_mm_s() - how fast column @j, which does not count in the length,
- * can follow the bow of @l; @d is the change of its rate.
+ * pass_beside() - how fast column @j, which does not count in the length, can
+ * follow the bow of @l; @d is the change of its rate.
  */
-double pass_beside_mm_s(struct pass *w, const struct look *l, uint32_t j,
-			double d);
+void pass_beside(struct pass *w, struct look *l, uint32_t j, double d);
 
 /* The acceleration and jerk that bends beside the path leave for motion along
  * it. */
@@ -194,9 +226,33 @@ struct leave {
 	double a_mm_s2, j_mm_s3;
 };
 
-/** pass_leave() - what the last node leaves, if it is passed at @v_mm_s at
+/** pass_leave() - what a bend leaves, if its node is passed at @v_mm_s at
  *  most. */
-void pass_leave(const struct pass *w, double v_mm_s, struct leave *ret);
+void pass_leave(const struct pass *w, const struct bent_node *b, double v_mm_s,
+		struct leave *ret);
+
+/** pass_soften_seg() - segment @i has no more than that. */
+void pass_soften_seg(struct pass *w, uint32_t i, const struct leave *left);
+
+/** pass_note_bends() - soften the segments @before and @behind a node by its
+ *  bends, when pass_soften() is called. */
+void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind);
+
+/** pass_bent_node() - the same by one of them. */
+void pass_bent_node(struct pass *w, const struct bent_node *b);
+
+/** pass_soften() - the speeds of all nodes are known. */
+void pass_soften(struct pass *w);
+
+/** pass_note_dip() - remember what limits node @i. */
+void pass_note_dip(struct pass *w, uint32_t i);
+
+/** pass_dip_firm() - the nodes behind @first up to @i have this limit, too. */
+void pass_dip_firm(struct pass *w, uint32_t first, uint32_t i, double v_mm_s);
+
+/** pass_dip_mm_s() - the greatest speed over node @i if what only a rounding
+ *  can be does not count; 0: nothing is known of it. */
+double pass_dip_mm_s(const struct pass *w, uint32_t i);
 
 /**
  * pass_curve() - the greatest speed over the node in front of segment @i on the

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * dip.c - places that only a rounding makes slow
+ *
+ * How the bend of an axis beside the path changes is a difference of
+ * differences: roundings show in it most, by more at one node than at the next.
+ * It is measured over windows, so what is real shows at all nodes within such a
+ * window.  So a node is no slower by it than the fastest node near to it, on
+ * one side or on the other.
+ */
+#include "speed/pass.h"
+
+#include <math.h>
+
+/* The share by which that may be faster: a real bend comes and goes, too. */
+#define DIP_MOST	1.06f
+
+void pass_note_dip(struct pass *w, uint32_t i)
+{
+	w->dip.node = i;
+	w->dips[i % DIP_RING] = w->dip;
+}
+
+void pass_dip_firm(struct pass *w, uint32_t first, uint32_t i, double v_mm_s)
+{
+	for (uint32_t k = i; k > first && i - k < DIP_RING; k--) {
+		struct dip *d = &w->dips[k % DIP_RING];
+
+		if (d->node == k)
+			d->firm_mm_s = pass_least(d->firm_mm_s, (float)v_mm_s);
+	}
+}
+
+/* On one side of node @i; @way is 1 or -1. */
+static float fastest(const struct pass *w, uint32_t i, uint32_t way)
+{
+	const struct dip *d = &w->dips[i % DIP_RING];
+	const double mm = (double)d->near_mm, here = w->segs[i].s_mm;
+	const float enough = DIP_MOST * d->round_mm_s;
+	float most = d->round_mm_s;
+
+	for (uint32_t n = 0, k = i + way; n < DIP_NODES; n++, k += way) {
+		const struct dip *near = &w->dips[k % DIP_RING];
+
+		if (near->node != k || fabs(w->segs[k].s_mm - here) > mm)
+			break;
+		if (near->round_mm_s > most)
+			most = near->round_mm_s;
+	}
+	return pass_least(most, enough);
+}
+
+double pass_dip_mm_s(const struct pass *w, uint32_t i)
+{
+	const struct dip *d = &w->dips[i % DIP_RING];
+
+	if (d->node != i || d->round_mm_s >= d->firm_mm_s)
+		return 0;
+	return (double)pass_least(d->firm_mm_s,
+				  pass_least(fastest(w, i, UINT32_MAX),
+					     fastest(w, i, 1)));
+}
