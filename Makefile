@@ -217,7 +217,8 @@ $(call obj,$(wildcard $(addprefix libinterp/compile/,code/again.c code/scan.c \
 # Nothing here may trap, so several ticks of an arc may be rounded at a time.
 $(call obj,libinterp/core/pulse/arc.c): OPT += -fno-trapping-math
 # Over two to four columns vectors take more than they give.
-$(call obj,$(wildcard libinterp/compile/speed/*.c)): OPT += -fno-tree-vectorize
+$(call obj,$(wildcard $(addprefix libinterp/compile/,path/build.c speed/*.c))): \
+	OPT += -fno-tree-vectorize
 
 # What runs each period is optimised as a whole where it is linked into a program.
 # Its objects have machine code too, for all that is linked without that.  Not for

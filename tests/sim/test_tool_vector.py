@@ -303,6 +303,22 @@ def test_turns_in_place_do_not_add_up(tmp_path):
     assert max(off) * 1e3 < OFF_UM + 20 - UM
 
 
+
+def test_knots_far_from_0_are_as_fine(tmp_path):
+    """Uneven weights: most of the way lies in a small part of the span."""
+    def text(first, last):
+        at = [f"X{x} Y{y} Z-60 R{w} Q1 I{-i}" for x, y, w, i in (
+            (30, 0, 1, 0), (25, 5, 40, 0.1), (20, 0, 40, 0.2), (9, 0, 0.2, 0))]
+        return (BEGIN + "G43.4\nG0 X30 Y0 Z-60\nF6000\nG6.3 " +
+                "\n".join(f"P{first} {a}" for a in at) + "\n" +
+                4 * f"P{last}\n" + END)
+    near, _ = walked(tmp_path, text("0", "1"))
+    far, _ = walked(tmp_path, text("100000", "100000.000001"))
+    n, m = np.linspace(0, 1, 200), len(near)
+    at = [near[np.minimum((n * m).astype(int), m - 1)],
+          far[np.minimum((n * len(far)).astype(int), len(far) - 1)]]
+    assert np.abs(at[0] - at[1]).max() < 0.01
+
 @pytest.mark.parametrize("off", ["0.1", "0.02", "0.005", "0.0001", "0"])
 def test_from_a_pole_it_goes_in_any_direction(tmp_path, off):
     """C jumps at the pole, by however little, and turns there in place."""

@@ -4,7 +4,8 @@
  * a way of its own (again.c); it must be the same as if it were any line
  *
  * A comment behind the words changes nothing, but such lines are never read in
- * that way.  So each text is read with and without comments.
+ * that way.  So each text is read with and without comments.  (It makes a line
+ * with variables count as more lines, so no such line may be long.)
  */
 #include "nc_read.h"
 
@@ -141,7 +142,7 @@ static void put_number(char **to, char letter)
 	static const char *const odd[] = {
 		"", "-", "+1", "- 2", " 3", ".5", "-.5", "1.", "00001.5", "-0",
 		"0", "120", "1234567.8", "0.123456789", "12345678", "1e5",
-		"1.2.3", "1,5", "99999999999", "-0.00000001", "#1", "100",
+		"1.2.3", "1,5", "99999999999", "-0.00000001", "100",
 	};
 
 	if (any(200) == 0)

@@ -21,6 +21,9 @@
 /* A number of eight digits at most. */
 #define WIDE	99999999
 
+/* A line of such words is shorter, and so is what is left of it. */
+#define MOST_BYTES	(8 + NC_PATTERN_WORDS * 16)
+
 static bool in_range(const struct nc_pattern_word *word, double v)
 {
 	const struct nc_word *w = &nc_words[word->slot];
@@ -40,7 +43,7 @@ static bool takes(const struct nc_reader *r, const struct nc_pattern_word *w,
 
 /*
  * The number of the line before mostly had as many digits, and its point at the
- * same place.  Less its form, its bytes are the digits and a 0 for the point;
+ * same place.  Less its form, its bytes are the digits, and a 0 for the point;
  * with `top` added, none of them comes to 0x80, and any other byte does.  What
  * ends the number is compared as the text behind it.
  *
@@ -66,34 +69,30 @@ static inline const uint8_t *read_like(const struct nc_form *f,
 /* It is never found. */
 static const struct nc_form no_form = { .top = 0x80, .bytes = 0x80 };
 
-/* The form of the number from @p to @end. */
+/* The form of the number from @p to @end, if it is short, and digits and a
+ * point. */
 static void take_form(struct nc_form *f, const uint8_t *p, const uint8_t *end)
 {
-	struct nc_form form = { .before = ~UINT64_C(0), .length = 0 };
-	unsigned int digits = 0, point = 0;
+	const size_t n = (size_t)(end - (p += *p == '-'));
+	const uint64_t bytes = NC_ALL(0x01) >> (n < 8 ? 64 - 8 * n : 0);
+	uint64_t w, point;
 
-	p += *p == '-';
-	for (; p < end; p++, form.length++) {
-		const unsigned int at = 8u * form.length;
-		const bool is_point = *p == '.';
-
-		if (form.length == 8 || (!is_point && *p - (unsigned)'0' > 9))
-			return;
-		form.text |= (uint64_t)(is_point ? '.' : '0') << at;
-		form.top |= UINT64_C(0x76) << at;
-		form.bytes |= UINT64_C(0x80) << at;
-		if (is_point) {
-			form.top += UINT64_C(0x09) << at;
-			form.before = (UINT64_C(1) << at) - 1;
-			point = digits + 1;
-		} else {
-			digits++;
-		}
-	}
-	form.shift = (uint8_t)(64 - 8 * digits);
-	form.scale = nc_pow10[point ? digits - (point - 1) : 0];
-	if (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
-		*f = form;
+	if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ || n > 8)
+		return;
+	memcpy(&w, p, sizeof(w));
+	point = nc_no_digits(w ^ NC_ALL('0')) >> 7 & bytes;
+	if (point & (point - 1) || (point && !memchr(p, '.', n)))
+		return;
+	*f = (struct nc_form) {
+		.text = bytes * '0' ^ point * ('0' ^ '.'),
+		.top = bytes * 0x76 + point * 0x09,
+		.bytes = bytes * 0x80,
+		.before = point - 1,
+		.scale = nc_pow10[point ? n - 1 -
+				  (size_t)__builtin_ctzll(point) / 8 : 0],
+		.shift = (uint8_t)(64 - 8 * (n - (point != 0))),
+		.length = (uint8_t)n,
+	};
 }
 
 /* The number at @first, of any form; the next one is expected in that form. */
@@ -102,7 +101,7 @@ static const uint8_t *read_any(struct nc_reader *r, struct nc_pattern_word *w,
 {
 	const uint8_t *p = nc_number(first, r->stop, ret);
 
-	if (!p || !takes(r, w, first, p, *ret))
+	if (!p || r->stop - p < MOST_BYTES || !takes(r, w, first, p, *ret))
 		return NULL;
 	take_form(&w->form, first, p);
 	return p;
@@ -110,8 +109,6 @@ static const uint8_t *read_any(struct nc_reader *r, struct nc_pattern_word *w,
 
 bool nc_scan_again(struct nc_reader *r)
 {
-	/* What is in front of a number, a sign, and the number. */
-	const ptrdiff_t least = 2 * sizeof(uint64_t) + 1;
 	struct nc_pattern *pattern = &r->pattern;
 	struct nc_block *b = &r->block;
 	const uint8_t *p = r->at;
@@ -119,24 +116,25 @@ bool nc_scan_again(struct nc_reader *r)
 	if (!pattern->n)
 		return false;
 	nc_begin_line(r);
+	if (r->stop - p < MOST_BYTES)
+		return false;
 	for (uint32_t i = 0; i < pattern->n; i++) {
 		struct nc_pattern_word *w = &pattern->word[i];
 		const uint8_t *first = p + w->bytes;
+		const size_t slot = w->slot;
 		uint64_t text;
 
-		if (r->stop - p < least)
-			return false;
 		memcpy(&text, p, sizeof(text));
 		if ((text ^ w->text) & w->mask)
 			return false;
-		p = read_like(&w->form, first, &b->value[w->slot]);
+		p = read_like(&w->form, first, &b->value[slot]);
 		if (!p)
-			p = read_any(r, w, first, &b->value[w->slot]);
-		if (!p || (w->narrow && !in_range(w, b->value[w->slot])))
+			p = read_any(r, w, first, &b->value[slot]);
+		if (!p || (w->narrow && !in_range(w, b->value[slot])))
 			return false;
-		b->at[w->slot] = first - 1;
+		b->at[slot] = first - 1;
 	}
-	if (p == r->stop || nc_classes[*p] != NC_EOL)
+	if (nc_classes[*p] != NC_EOL)
 		return false;
 	b->code_at[NC_MOTION] = b->at[pattern->behind] - pattern->back;
 	nc_end_line(r, p);

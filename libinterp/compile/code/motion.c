@@ -43,7 +43,8 @@ static void lean(const struct nc_reader *r, double end_mm[INTERP_NAXES])
 	}
 }
 
-void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
+static inline void target(const struct nc_reader *r,
+			  double ret_end_mm[INTERP_NAXES])
 {
 	const struct nc_block *b = &r->block;
 	const double *here = nc_here(r);
@@ -59,6 +60,11 @@ void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 	follow(r, b->words, ret_end_mm);
 	if (r->d->lean && !b->colon)
 		lean(r, ret_end_mm);
+}
+
+void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
+{
+	target(r, ret_end_mm);
 }
 
 /* F is in degrees per minute if only rotary axes move; inches do not apply to
@@ -162,8 +168,8 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 	return err;
 }
 
-int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
-	       bool rapid)
+static inline int line_to(struct nc_reader *r,
+			  const double end_mm[INTERP_NAXES], bool rapid)
 {
 	int err = word(r, end_mm, rapid);
 
@@ -176,6 +182,12 @@ int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		return nc_tool_line(r, end_mm, rapid);
 	err = contour_line(&r->contour, end_mm, &r->word, r->diag);
 	return nc_placed(r, err, end_mm);
+}
+
+int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+	       bool rapid)
+{
+	return line_to(r, end_mm, rapid);
 }
 
 int nc_run_motion(struct nc_reader *r)
@@ -191,10 +203,10 @@ int nc_run_motion(struct nc_reader *r)
 		return 0;
 	if (motion->value >= 2)
 		return nc_arc(r, motion->value == 2);
-	nc_target(r, end_mm);
+	target(r, end_mm);
 	if (r->block.colon)
 		return nc_line_two(r, end_mm);
-	return nc_line_to(r, end_mm, motion->value == 0);
+	return line_to(r, end_mm, motion->value == 0);
 }
 
 static int dwell(struct nc_reader *r)

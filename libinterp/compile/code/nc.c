@@ -79,7 +79,7 @@ static int refuse_executed(struct nc_reader *r)
 			    "more than %u lines carried out", r->executed_max);
 }
 
-int nc_read_line(struct nc_reader *r)
+static inline int read_line(struct nc_reader *r)
 {
 	int err;
 
@@ -100,12 +100,17 @@ int nc_read_line(struct nc_reader *r)
 	return err;
 }
 
+int nc_read_line(struct nc_reader *r)
+{
+	return read_line(r);
+}
+
 static int read_lines(struct nc_reader *r)
 {
 	int err = 0;
 
 	while (!err && !r->over && r->at < r->end)
-		err = nc_read_line(r);
+		err = read_line(r);
 	return err ? err : nc_end_of_text(r);
 }
 

@@ -43,6 +43,9 @@ static inline uint64_t nc_no_digits(uint64_t w)
 	return (((w & below_top) + above_9) | w) & ~below_top;
 }
 
+/* A word of eight such bytes. */
+#define NC_ALL(byte)	(UINT64_C(0x0101010101010101) * (byte))
+
 /* Eight bytes with a digit in each; the first one, which is the lowest, counts
  * most.  Neighbours are put together: bytes, then pairs, then fours. */
 static inline uint32_t nc_eight_digits(uint64_t w)
@@ -72,7 +75,7 @@ static inline const uint8_t *nc_number_short(const uint8_t *p,
 	if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ || end - p < 8)
 		return NULL;
 	memcpy(&w, p, sizeof(w));
-	w ^= UINT64_C(0x3030303030303030);
+	w ^= NC_ALL('0');
 	no_digits = nc_no_digits(w);
 	if (!no_digits)
 		return NULL;

@@ -118,10 +118,21 @@ static void set_feed(struct nc_reader *r)
 	}
 }
 
+/* Only differences of knots count.  Far from 0, a short span between them would
+ * have few digits. */
+static void shift_knots(struct nc_curve *c)
+{
+	const double first = c->knots[0];
+
+	for (uint32_t i = 0; i < c->nknots; i++)
+		c->knots[i] -= first;
+}
+
 /* The line of a control point is valid where the curve is nearest to the
  * point. */
 void nc_curve_set_marks(struct nc_curve *c)
 {
+	shift_knots(c);
 	for (uint32_t i = 0; i < c->npoints; i++) {
 		double sum = 0;
 

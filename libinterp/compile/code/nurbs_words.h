@@ -31,7 +31,10 @@ int nc_curve_next_knot(struct nc_reader *r, enum nc_slot slot);
 /** nc_curve_in_turn() - may a control point stand beside the knot in @slot? */
 int nc_curve_in_turn(struct nc_reader *r, enum nc_slot slot);
 
-/** nc_curve_set_marks() - set the lines of its control points. */
+/**
+ * nc_curve_set_marks() - set the lines of its control points; its knots begin
+ * at 0 from here on.
+ */
 void nc_curve_set_marks(struct nc_curve *c);
 
 /**

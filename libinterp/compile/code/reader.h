@@ -92,7 +92,7 @@ struct nc_block {
 
 /* A number up to its digits. */
 struct nc_form {
-	uint64_t text;			/* with 0 for each digit */
+	uint64_t text;			/* 0 for each digit */
 	uint64_t top, bytes;		/* read_like() */
 	uint64_t before;		/* the bytes in front of its point */
 	double scale;			/* 10 for each digit behind it */

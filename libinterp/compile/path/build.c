@@ -59,15 +59,17 @@ static struct interp_seg *seg_add(struct interp_build *b)
 static int node_add(struct interp_build *b)
 {
 	struct table *t = &b->nodes;
+	const uint32_t naxes = b->naxes;
+	const size_t n = t->n;
 	int64_t *at;
 
-	if (t->room - t->n < b->naxes && build_table_room(t, b->naxes) < 0)
+	if (t->room - n < naxes && build_table_room(t, naxes) < 0)
 		return -ENOMEM;
 	/* There may be no axis yet, and then no table either. */
-	at = nodes_of(b) + t->n;
-	for (uint32_t j = 0; j < b->naxes; j++)
-		at[j] = b->here[b->column[j]];
-	t->n += b->naxes;
+	at = nodes_of(b);
+	for (uint32_t j = 0; j < naxes; j++)
+		at[n + j] = b->here[b->column[j]];
+	t->n = n + naxes;
 	return 0;
 }
 
@@ -119,9 +121,10 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 		const struct interp_axis_limits *l = &o->machine->axis[i];
 
 		b->sub_mm[i] = INTERP_SUB / l->pulse_mm;
-		b->inside_mm[i][0] = o->machine->present & 1u << i ?
-				     l->travel_min_mm + l->pulse_mm : INFINITY;
-		b->inside_mm[i][1] = l->travel_max_mm - l->pulse_mm;
+		b->v_max_mm_s[i] = l->v_max_mm_s;
+		b->above_mm[i] = o->machine->present & 1u << i ?
+				 l->travel_min_mm + l->pulse_mm : INFINITY;
+		b->below_mm[i] = l->travel_max_mm - l->pulse_mm;
 		b->here_mm[i] = o->start_mm[i];
 		b->here[i] = b->first[i] =
 			llround(o->start_mm[i] * b->sub_mm[i]);
@@ -189,7 +192,7 @@ int build_refuse_travel(const struct interp_machine *m, int axis,
 static inline bool is_inside(const struct interp_build *b, int axis,
 			     double at_mm)
 {
-	return at_mm > b->inside_mm[axis][0] && at_mm < b->inside_mm[axis][1];
+	return at_mm > b->above_mm[axis] && at_mm < b->below_mm[axis];
 }
 
 static inline int64_t sub_of(const struct interp_build *b, int axis,
@@ -387,7 +390,6 @@ static inline int measure(const struct interp_build *b,
 			  int64_t to[INTERP_NAXES], struct build_measure *ret,
 			  struct interp_diag *diag)
 {
-	const struct interp_axis_limits *axis = b->o.machine->axis;
 	double d[INTERP_NAXES] = { 0 }, seconds = 0;
 	uint32_t moved = other_axes(end_mm, b->here_mm);
 	int64_t longest = 0;
@@ -409,7 +411,7 @@ static inline int measure(const struct interp_build *b,
 			continue;
 		}
 		d[i] = (double)len / b->sub_mm[i];
-		seconds = larger(fabs(d[i]) / axis[i].v_max_mm_s, seconds);
+		seconds = larger(fabs(d[i]) / b->v_max_mm_s[i], seconds);
 		len = len < 0 ? -len : len;
 		longest = len > longest ? len : longest;
 	}
@@ -500,45 +502,65 @@ static int sensed_begin(struct interp_build *b, uint32_t moved,
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
 }
 
+/* How a line is walked. */
+struct walked {
+	uint32_t ticks, arg;		/* as in a segment */
+};
+
 /* The axes move one at a time, so it matters how far each goes. */
-static int plan_one_by_one(struct interp_build *b, const int64_t *to,
-			   const struct build_measure *m,
-			   struct interp_seg *seg, struct interp_diag *diag)
+static int walk_one_by_one(struct interp_build *b, const int64_t *to,
+			   struct build_measure m, struct walked *ret,
+			   struct interp_diag *diag)
 {
-	const struct build_way way = build_way_to(b, to, m);
+	const struct build_way way = build_way_to(b, to, &m);
 	const uint64_t ticks = build_rule_pulses(&way);
 	int err;
 
 	if (ticks > INTERP_PULSES_MAX)
-		return refuse_long(diag, m->length_mm);
+		return refuse_long(diag, m.length_mm);
 	err = build_rule_check(&b->o, &way, diag);
 	if (err < 0)
 		return err;
-	seg->ticks = (uint32_t)ticks;
-	return build_columns(b, m->moved) < 0 ? -ENOMEM :
-	       build_bits_add(b, &way, &seg->arg);
+	ret->ticks = (uint32_t)ticks;
+	return build_columns(b, m.moved) < 0 ? -ENOMEM :
+	       build_bits_add(b, &way, &ret->arg);
 }
 
-static inline int plan_together(struct interp_build *b,
+static inline int walk_together(struct interp_build *b,
 				const struct build_measure *m,
-				struct interp_seg *seg,
-				struct interp_diag *diag)
+				struct walked *ret, struct interp_diag *diag)
 {
 	const uint64_t ticks = build_rule_ticks(b->how, m->longest);
 
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_long(diag, m->length_mm);
-	seg->ticks = (uint32_t)ticks;
+	ret->ticks = (uint32_t)ticks;
 	return m->moved & ~b->columns && build_columns(b, m->moved) < 0 ?
 	       -ENOMEM : 0;
+}
+
+static inline struct interp_seg line_seg(const struct build_measure *m,
+					 const struct walked *walked,
+					 const struct interp_build_word *w)
+{
+	struct interp_seg seg = {
+		.kind = INTERP_LINE, .length_mm = m->length_mm,
+		.ticks = walked->ticks, .arg = walked->arg,
+	};
+
+	build_seg_feed(&seg, w, m->length_mm / m->seconds);
+	if (!w->rapid)
+		seg.feed_mm_s *= (float)(m->length_mm / m->fed_mm);
+	return seg;
 }
 
 int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	       const struct interp_build_word *w, struct interp_diag *diag)
 {
-	struct interp_seg seg = { .kind = INTERP_LINE };
+	struct walked walked = { .arg = 0 };
 	int64_t to[INTERP_NAXES];
 	struct build_measure m;
+	struct interp_seg seg;
 	int err;
 
 	if (w->ends)
@@ -550,13 +572,9 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		build_stand_at(b, end_mm, to);
 		return 0;
 	}
-	seg.length_mm = m.length_mm;
-	build_seg_feed(&seg, w, m.length_mm / m.seconds);
-	if (!w->rapid)
-		seg.feed_mm_s *= (float)(m.length_mm / m.fed_mm);
 	err = build_rule_one_by_one(b->how) ?
-	      plan_one_by_one(b, to, &m, &seg, diag) :
-	      plan_together(b, &m, &seg, diag);
+	      walk_one_by_one(b, to, m, &walked, diag) :
+	      walk_together(b, &m, &walked, diag);
 	if (err == 0 && w->ends)
 		err = sensed_begin(b, m.moved, w, diag);
 	if (err < 0)
@@ -567,6 +585,7 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	/* It is also not known how far it came. */
 	if (w->ends)
 		b->descent.axis = -1;
+	seg = line_seg(&m, &walked, w);
 	return seg_finish(b, &seg, w, diag);
 }
 

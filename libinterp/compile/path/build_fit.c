@@ -262,15 +262,22 @@ int interp_build_flush(struct interp_build *b, struct interp_diag *diag)
 	return 0;
 }
 
+/* A builder that may hold lines back. */
+static int fit_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		    const struct interp_build_word *w, struct interp_diag *diag)
+{
+	int err;
+
+	if (!w->rapid && !w->ends && !b->escape && b->lift_axis < 0)
+		return build_fit_add(b, end_mm, w, diag);
+	err = interp_build_flush(b, diag);
+	return err ? err : build_line(b, end_mm, w, diag);
+}
+
 int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag)
 {
-	int err;
-
-	if (b->o.fit_mm > 0 && !w->rapid && !w->ends && !b->escape &&
-	    b->lift_axis < 0)
-		return build_fit_add(b, end_mm, w, diag);
-	err = interp_build_flush(b, diag);
-	return err ? err : build_line(b, end_mm, w, diag);
+	return b->o.fit_mm > 0 ? fit_line(b, end_mm, w, diag) :
+				 build_line(b, end_mm, w, diag);
 }

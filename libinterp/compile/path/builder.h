@@ -38,10 +38,12 @@ struct interp_build {
 	int64_t here[INTERP_NAXES];	/* the same in subpulses */
 	int64_t first[INTERP_NAXES];
 	double sub_mm[INTERP_NAXES];	/* subpulses per mm */
-	double inside_mm[INTERP_NAXES][2];	/* the travel minus a pulse:
-						 * places inside need no closer
-						 * check; no place, if the
-						 * machine has not the axis */
+	double v_max_mm_s[INTERP_NAXES];
+	double above_mm[INTERP_NAXES];	/* the travel minus a pulse: places
+					 * ... */
+	double below_mm[INTERP_NAXES];	/* ... between them need no closer
+					 * check; there is none, if the machine
+					 * has not the axis */
 	uint8_t column[INTERP_NAXES];
 	uint32_t naxes, columns;	/* columns: mask of axes */
 	uint32_t loose;			/* axes that moved by what the machine

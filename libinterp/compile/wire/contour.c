@@ -274,10 +274,10 @@ int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 	int err;
 
 	if (is_idle(k)) {
+		stand(k, end_mm);
 		err = interp_build_line(k->guides.build, end_mm, w, diag);
 		if (err == -EINVAL)
 			diag->line = w->line;
-		stand(k, end_mm);
 		return err;
 	}
 	motion_init(k, &m, end_mm, w);
