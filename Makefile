@@ -325,7 +325,7 @@ $(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
 
 # Of edmd itself, without its main().
-$(B)/unit/test_resume $(B)/unit/test_resume_mcodes: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
+$(B)/unit/test_resume $(B)/unit/test_resume_mcodes $(B)/unit/test_kill_anywhere: $(call obj,$(addprefix daemon/edmd/,resume.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
 
 $(B)/unit/test_loop_commands: $(call obj,$(addprefix daemon/edmd/,commands.c loop.c plc_loop.c publish.c programs.c key.c crossing.c log.c)) $(LOGGER_O)
 $(B)/unit/test_loop_commands: UNIT_LIBS = -lsystemd

@@ -228,7 +228,7 @@ static bool is_cut(const struct interp_program *p, uint32_t i, uint32_t way)
 	       p->segs[i].kind >= INTERP_BEGIN)
 		i += way;
 	return p->segs[i].kind < INTERP_BEGIN &&
-	       !(p->segs[i].flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+	       !(p->segs[i].flags & INTERP_SEG_UNCUT);
 }
 
 /* Within a cut, or at an end of one. */

@@ -309,6 +309,55 @@ static void nothing_sparks_over_what_is_positioned(void **st)
 	}
 }
 
+/* Cut, a way without power, cut; between them actions. */
+static void load_off(struct rig *r, const struct cycle_config *k, bool dwells)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	cut_to(b, -1);
+	action(b, INTERP_AUX, INTERP_AUX_POWER_OFF);
+	cut_to(b, -1.2);
+	if (dwells)
+		action(b, INTERP_DWELL, 20);
+	action(b, INTERP_AUX, INTERP_AUX_POWER_POSITIVE);
+	if (dwells)
+		action(b, INTERP_DWELL, 20);
+	cut_to(b, -2);
+	rig_load(r, b, k);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
+/* Also where a retract comes back over M3 and M5, or ends just there. */
+static void nothing_sparks_over_what_m5_positions(void **st)
+{
+	struct cycle_config k = usual_config();
+	uint32_t back = 0;
+
+	(void)st;
+	for (int i = 0; i < 120; i++) {
+		struct rig r;
+
+		k.gap.retract_to = i % 3 == 2 ? RETRACT_MOTION : RETRACT_LIMIT;
+		load_off(&r, &k, i % 2);
+		for (int n = 0; n < 20000 && (z_mm(&r) > -1.2 ||
+					      !r.out.power); n++)
+			step(&r, SPARKING_V);
+		steps(&r, SPARKING_V, i / 20);
+		steps(&r, SHORTED_V, i % 50);
+		for (int n = 0; n < 40000 && r.c.state != STATE_IDLE; n++) {
+			step(&r, r.c.state == STATE_RETRACT ? OPEN_V :
+				 i % 4 && n < 400 ? NARROW_V : SPARKING_V);
+			if (z_mm(&r) < -1.0005 && z_mm(&r) > -1.1995) {
+				assert_false(r.out.power);
+				back++;
+			}
+		}
+		assert_int_equal(r.c.outcome, OUTCOME_DONE);
+		rig_free(&r);
+	}
+	assert_true(back > 100);
+}
+
 /* A retract goes back beyond the first place of the cut. */
 static void back_over_what_it_left_it_may_short(void **st)
 {
@@ -495,7 +544,7 @@ static void a_short_that_goes_while_it_looks_is_a_collision(void **st)
 	begin_beside_curves(&r, &k, 0);
 	step(&r, SHORTED_V);
 	assert_int_equal(r.c.fault.first, FAULT_NONE);
-	steps(&r, OPEN_V, 300);
+	steps(&r, OPEN_V, 1000);
 	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
 	assert_true(r.out.target[INTERP_C] > -30000);
 	rig_free(&r);
@@ -512,6 +561,7 @@ int main(void)
 		cmocka_unit_test(every_way_back_over_what_was_cut_may_short),
 		cmocka_unit_test(what_a_time_left_out_is_new_ground),
 		cmocka_unit_test(nothing_sparks_over_what_is_positioned),
+		cmocka_unit_test(nothing_sparks_over_what_m5_positions),
 		cmocka_unit_test(back_over_what_it_left_it_may_short),
 		cmocka_unit_test(before_a_cut_that_has_begun_it_may_short),
 		cmocka_unit_test(in_the_cut_itself_it_may_short),

@@ -143,7 +143,7 @@ static enum ground_answer look_along(struct search *k)
 static bool was_cut(const struct interp_seg *s)
 {
 	return s->kind < INTERP_BEGIN &&
-	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+	       !(s->flags & INTERP_SEG_UNCUT);
 }
 
 static void look_from(struct ground *g, uint32_t i, double most_mm)

@@ -19,7 +19,7 @@
 struct cycle;
 
 #define GROUND_SEGMENTS_MAX	512
-#define GROUND_LOOKS_MAX	128	/* in a cycle */
+#define GROUND_LOOKS_MAX	32	/* in a cycle */
 
 enum ground_answer {
 	GROUND_NONE,			/* nobody asked */

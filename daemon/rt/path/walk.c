@@ -23,7 +23,7 @@ bool walk_rejoins(const struct cycle *c)
 static bool is_written_as_cut(const struct cycle *c, const struct interp_seg *s)
 {
 	return !c->config.dry_run && !c->job.power_off &&
-	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+	       !(s->flags & INTERP_SEG_UNCUT);
 }
 
 bool walk_is_cut(const struct cycle *c, const struct interp_seg *s)
@@ -76,8 +76,7 @@ static bool was_positioned(const struct cycle *c)
 
 	for (int n = 0; n < BEHIND_MAX && i > 0 && s->kind >= INTERP_BEGIN; n++)
 		s = &c->cursor.p.segs[--i];
-	return s->kind < INTERP_BEGIN &&
-	       s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED);
+	return s->kind < INTERP_BEGIN && s->flags & INTERP_SEG_UNCUT;
 }
 
 bool walk_positions(const struct cycle *c)

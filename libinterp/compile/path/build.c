@@ -295,6 +295,8 @@ static inline int seg_finish(struct interp_build *b, struct interp_seg *seg,
 	seg->line = w->line;
 	seg->s_mm = b->length_mm;
 	seg->escape = b->stand_escape;
+	if (b->off && seg->kind < INTERP_BEGIN)
+		seg->flags |= INTERP_SEG_OFF;
 	if (node_add(b) < 0)
 		return -ENOMEM;
 	s = seg_add(b);

@@ -16,6 +16,8 @@ int interp_build_action(struct interp_build *b, enum interp_kind kind,
 	struct interp_seg seg = { .kind = (uint8_t)kind, .arg = arg };
 	const int err = interp_build_flush(b, diag);
 
+	if (kind == INTERP_AUX && arg <= INTERP_AUX_POWER_NEGATIVE)
+		b->off = arg == INTERP_AUX_POWER_OFF;
 	return err ? err : build_seg_finish(b, &seg, w, diag);
 }
 

@@ -60,6 +60,7 @@ struct interp_build {
 	struct build_descent descent;
 	uint16_t escape;		/* set by interp_build_escape() */
 	uint16_t stand_escape;		/* of the last motion */
+	bool off;			/* M5 is in force */
 	int lift_axis;			/* -1: none */
 	size_t timed;			/* the INTERP_TIMED that was begun
 					 * last */

@@ -130,6 +130,13 @@ enum interp_aux {
 /* Positioned out of what a cycle has cut: a short there is no collision. */
 #define INTERP_SEG_OUT		0x20
 
+/* Behind M5: written as a cut, and positioned. */
+#define INTERP_SEG_OFF		0x40
+
+/* Any of these: nothing is cut on it. */
+#define INTERP_SEG_UNCUT	(INTERP_SEG_RAPID | INTERP_SEG_SENSED | \
+				 INTERP_SEG_OFF)
+
 struct interp_seg {
 	double s_mm;			/* place of its first node on the
 					 * path */
