@@ -193,8 +193,8 @@ static bool is_at_node(const struct cycle *c)
 	       c->cursor.s_mm > c->cursor.seg.length_mm - 2e-9;
 }
 
-/* What may go wrong, and the cycles just after a change of state or at an end of
- * a segment more than any other. */
+/* What may go wrong, and just after a change of state or at an end of a segment
+ * more often than elsewhere. */
 static void attack(struct world *w, const struct cycle *was, uint64_t *s,
 		   unsigned int every)
 {
