@@ -17,7 +17,7 @@ void eta_fini(struct eta *l)
 
 static bool is_cut(const struct interp_seg *s)
 {
-	return !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+	return !(s->flags & INTERP_SEG_UNCUT);
 }
 
 /* Find the places where cutting and positioning change, among the segments that

@@ -219,9 +219,29 @@ static void random_lines(void **state)
 	assert_true(taken > SEED_ROUNDS(3000) / 10);
 }
 
+/* The end of the text is the end of the line, and nothing behind it is read. */
+static void a_text_ends_without_the_end_of_its_line(void **st)
+{
+	static const char text[] = "G1 F60\nX1\nX2.25";
+	const size_t bytes = sizeof(text) - 1;
+
+	(void)st;
+	for (size_t n = 0; n <= bytes; n++) {
+		struct nc_read a = nc_ready();
+
+		nc_read_bytes(&a, text, n);
+		if (n == bytes) {
+			assert_int_equal(a.rc, 0);
+			assert_int_equal(a.result.lines, 3);
+		}
+		nc_done(&a);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_text_ends_without_the_end_of_its_line),
 		cmocka_unit_test(words_that_only_look_the_same),
 		cmocka_unit_test(random_lines),
 	};

@@ -62,7 +62,7 @@ static bool has_a_name(const struct cycle *c)
 {
 	return gap_stands(c) || follows_plan(c) || !cycle_moves(c) ||
 	       c->busy || dwells(c) || c->mcode.waits || c->axes.awaited ||
-	       c->ground.answer == GROUND_ASKED ||
+	       (c->state == STATE_TRAVEL && c->ground.answer == GROUND_ASKED) ||
 	       !contouring_rests(&c->contouring) ||
 	       (c->override == 0 && (c->state == STATE_TRAVEL ||
 				     c->state == STATE_PROBE));

@@ -229,7 +229,7 @@ static bool make(struct nc_reader *r)
 			return false;
 		left &= ~NC_BIT(slot);
 	}
-	return nc_classes[*p] == NC_EOL && find_motion(r);
+	return p < r->stop && nc_classes[*p] == NC_EOL && find_motion(r);
 }
 
 void nc_note_pattern(struct nc_reader *r)

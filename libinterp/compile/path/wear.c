@@ -78,8 +78,7 @@ static double down_mm(const struct interp_program *p, uint32_t i, int z)
 
 static bool is_eroded(const struct interp_seg *s)
 {
-	return s->length_mm > 0 &&
-	       !(s->flags & (INTERP_SEG_RAPID | INTERP_SEG_SENSED));
+	return s->length_mm > 0 && !(s->flags & INTERP_SEG_UNCUT);
 }
 
 static void count(const struct interp_program *p, uint32_t i, int z,
@@ -111,7 +110,6 @@ int interp_wear_measure(struct interp_wear *w, const struct interp_program *p)
 {
 	struct interp_wear_part at = { .s_mm = 0 };
 	const int z = z_column(p);
-	bool power = true;
 	int err;
 
 	*w = (struct interp_wear) { .nparts = 0 };
@@ -121,10 +119,7 @@ int interp_wear_measure(struct interp_wear *w, const struct interp_program *p)
 
 		if (s->kind == INTERP_ELECTRODE)
 			change(w, s, i);
-		if (s->kind == INTERP_AUX &&
-		    s->arg <= INTERP_AUX_POWER_NEGATIVE)
-			power = s->arg != INTERP_AUX_POWER_OFF;
-		if (power && is_eroded(s))
+		if (is_eroded(s))
 			count(p, i, z, &at);
 		if (!(s->length_mm > 0))
 			continue;
