@@ -73,15 +73,20 @@ static inline void world_free(struct world *w)
 		unmake(&w->m);
 }
 
-static inline void load(struct world *w, struct interp_build *b)
+static inline void load_made(struct world *w, struct made m)
 {
-	w->m = finish(b);
+	w->m = m;
 	program_put(w, &w->m);
 	w->l.program = program_open(&w->config, N);
 	assert_non_null(w->l.program);
 	assert_int_equal(cycle_load(&w->l.cycle, &w->l.program->cursor.p),
 			 ANSWER_DONE);
 	loop_sets(&w->l);
+}
+
+static inline void load(struct world *w, struct interp_build *b)
+{
+	load_made(w, finish(b));
 }
 
 static inline void period(struct world *w, double gap_v)

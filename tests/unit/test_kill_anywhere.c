@@ -64,14 +64,8 @@ static void load_job(struct world *w, const struct job *j)
 	c.bo.tolerance_milli = j->strategy == INTERP_MIN_SWITCH ? 2000 : 0;
 	c.o.nc.wire = j->wire ? &wire : NULL;
 	compile(&c, j->text);
-	w->m = (struct made) { .block = c.block, .p = c.p,
-			       .bytes = c.p.head->bytes };
-	program_put(w, &w->m);
-	w->l.program = program_open(&w->config, N);
-	assert_non_null(w->l.program);
-	assert_int_equal(cycle_load(&w->l.cycle, &w->l.program->cursor.p),
-			 ANSWER_DONE);
-	loop_sets(&w->l);
+	load_made(w, (struct made) { .block = c.block, .p = c.p,
+				     .bytes = c.p.head->bytes });
 }
 
 static struct cycle_config config_of(uint64_t seed)
