@@ -72,6 +72,38 @@ static void an_absolute_drive_says_where_it_is(void **state)
 	assert_int_equal(manual_unhomed(&b.c), 0);
 }
 
+/* It counts from elsewhere, so that its other limit switch is near to the count
+ * at which the first one was. */
+static void a_limit_switch_is_where_the_drive_counts_now(void **state)
+{
+	const struct cycle_config k = home_config(HOME_ABSOLUTE);
+	const int32_t more = 10900;
+	struct bench b;
+
+	(void)state;
+	bench_init(&b, &k);
+	b.limit_min = -11000;
+	b.limit_max = 400;
+	jog(&b, INTERP_X, 20);
+	run_out(&b, STATE_FAULT);
+	ask(&b, CYCLE_RESET, 0, 0);
+	jog(&b, INTERP_X, -8);
+	run_out(&b, STATE_IDLE);
+	assert_int_equal(ask(&b, CYCLE_HOME, INTERP_X, 0), ANSWER_DONE);
+	b.in.actual[INTERP_X] += more;
+	cycle_step(&b.c, &b.in, &b.out);
+	b.limit_min += more;
+	b.limit_max += more;
+	run_out(&b, STATE_IDLE);
+	assert_in_range(b.out.target[INTERP_X], 0, b.limit_max);
+	jog(&b, INTERP_X, -20);
+	run_out(&b, STATE_FAULT);
+	assert_int_equal(b.c.fault.first, FAULT_LIMIT_SWITCH);
+	ask(&b, CYCLE_RESET, 0, 0);
+	assert_int_equal(jog(&b, INTERP_X, -1), ANSWER_AT_LIMIT);
+	assert_int_equal(jog(&b, INTERP_X, 1), ANSWER_DONE);
+}
+
 /* With lost motion too the same place is found from either side. */
 static void backlash_does_not_move_home(void **state)
 {
@@ -209,6 +241,7 @@ int main(void)
 		cmocka_unit_test(a_switch_is_home),
 		cmocka_unit_test(an_index_mark_is_home),
 		cmocka_unit_test(an_absolute_drive_says_where_it_is),
+		cmocka_unit_test(a_limit_switch_is_where_the_drive_counts_now),
 		cmocka_unit_test(backlash_does_not_move_home),
 		cmocka_unit_test(axes_are_homed_in_their_order),
 		cmocka_unit_test(no_switch_is_a_fault),

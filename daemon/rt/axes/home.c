@@ -67,6 +67,8 @@ static void call(struct cycle *c, int32_t beyond, int32_t drive)
 	const int32_t place = (int32_t)((uint32_t)llround(at) +
 					(uint32_t)beyond);
 
+	limit_recount(&c->limit, h->axis,
+		      (uint32_t)drive - (uint32_t)pulses(c));
 	c->out.target[h->axis] = place;
 	comp_settle(&c->comp, &c->config.comp, h->axis, c->out.target, drive);
 	h->homed |= 1u << h->axis;

@@ -9,6 +9,11 @@
 
 #define BOUNCE_MM	1.0		/* degrees of A B C */
 
+void limit_recount(struct limit *l, uint32_t axis, uint32_t more)
+{
+	l->at[axis] = (int32_t)((uint32_t)l->at[axis] + more);
+}
+
 bool limit_bars(const struct limit *l, uint32_t axis, int toward)
 {
 	return l->on >> axis & 1 && l->side[axis] == toward;

@@ -36,6 +36,10 @@ void limit_guard(struct cycle *c, const struct io_inputs *in);
 /** limit_watch() - after the motion: did an axis go farther onto its switch? */
 void limit_watch(struct cycle *c);
 
+/** limit_recount() - the drive of @axis, which stands, counts its pulses from
+ *  another place now: each is @more. */
+void limit_recount(struct limit *l, uint32_t axis, uint32_t more);
+
 /** limit_bars() - may @axis not move @toward +1 or -1? */
 bool limit_bars(const struct limit *l, uint32_t axis, int toward);
 
