@@ -45,14 +45,25 @@ static void windows(struct pass *w)
 	w->short_mm = PASS_LONG * mm;
 }
 
+/* Of a turn below 1 the radius of a corner is at least 6.46 * corner_mm /
+ * turn. */
+static void note_turn(struct pass *w, uint32_t j)
+{
+	const double far = 6.4 * w->corner_mm, step = w->step_mm_s[j];
+
+	w->turn_least[0] = smaller(w->turn_least[0],
+				   smaller(w->a_mm_s2[j] * far, step * step));
+	w->turn_least[1] = smaller(w->turn_least[1],
+				   w->j_mm_s3[j] * far * far);
+}
+
 static void begin(struct pass *w, const struct interp_limits *l,
 		  const struct interp_program *p, struct interp_seg *segs)
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
 			     .points_per_s = l->points_per_s,
 			     .n = p->head->naxes, .end = p->head->nsegs - 1,
-			     .a_least_mm_s2 = INFINITY,
-			     .j_least_mm_s3 = INFINITY,
+			     .turn_least = { INFINITY, INFINITY },
 			     .a_linear_mm_s2 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
@@ -72,8 +83,7 @@ static void begin(struct pass *w, const struct interp_limits *l,
 		add_level(&w->v_levels, m->v_max_mm_s);
 		add_level(&w->a_levels, m->a_max_mm_s2);
 		add_level(&w->j_levels, m->j_max_mm_s3);
-		w->a_least_mm_s2 = smaller(w->a_least_mm_s2, m->a_max_mm_s2);
-		w->j_least_mm_s3 = smaller(w->j_least_mm_s3, m->j_max_mm_s3);
+		note_turn(w, j);
 		if (w->ways.xyz >> j & 1)
 			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
 						    m->a_max_mm_s2);

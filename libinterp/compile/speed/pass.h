@@ -133,7 +133,7 @@ struct pass {
 	double j_mm_s3[INTERP_NAXES];
 	double step_mm_s[INTERP_NAXES];	/* at a node */
 	struct levels v_levels, a_levels, j_levels;
-	double a_least_mm_s2, j_least_mm_s3;
+	double turn_least[2];		/* near_turns_faster() */
 	double a_linear_mm_s2;		/* the least of X Y Z */
 	double a_own_mm_s2[2];		/* of the segments before and behind the
 					 * node, as if nothing bent */
@@ -259,6 +259,11 @@ double pass_dip_mm_s(const struct pass *w, uint32_t i);
  * curve of its chords; no more than @most_mm_s is asked for.
  */
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
+
+/** pass_arch() - the greatest speed over the node in front of segment @i, if it
+ *  is one of several between long lines that turn the same way. */
+double pass_arch(const struct pass *w, uint32_t i, uint32_t along,
+		 double most_mm_s);
 
 /** pass_turn() - the greatest speed over the same node by its own turn. */
 double pass_turn(struct pass *w, uint32_t last, uint32_t i,
