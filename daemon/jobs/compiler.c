@@ -125,6 +125,11 @@ static int block_write(struct compiler *c)
 	return err;
 }
 
+static bool wants_program(const struct compiler *c)
+{
+	return c->request.wants_wear || c->request.wants_block;
+}
+
 static int compiler_text(struct compiler *c, const struct config_tech *tech,
 			 const struct interp_dialect *dialect)
 {
@@ -149,6 +154,9 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	of.text.nc.electrodes = &c->request.electrodes;
 	memcpy(of.build.start_mm, c->request.start_mm,
 	       sizeof(of.build.start_mm));
+	/* Nobody would read the limits that a thread finds. */
+	if (c->request.goes_on || !wants_program(c))
+		of.build.threads = 1;
 	c->build = interp_build_create(&of.build);
 	if (!c->build)
 		return -ENOMEM;
@@ -156,7 +164,7 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 			     &c->result.diag);
 	if (err == 0 && c->request.goes_on)
 		err = go_on(c);
-	if (err || (!c->request.wants_wear && !c->request.wants_block))
+	if (err || !wants_program(c))
 		return err;
 	return block_write(c);
 }

@@ -58,18 +58,10 @@ static enum cycle_event look_arrive(const struct cycle *c)
 	       walk_ahead(c) == AHEAD_PROBE ? EVENT_PROBE : EVENT_NONE;
 }
 
-/* It comes back over it out of a retract or a jump, or was started in the
- * middle of a cut. */
-static bool was_passed(const struct cycle *c)
-{
-	return place_mm(c) < c->turned_mm ||
-	       (place_mm(c) < c->far_mm - MOVER_ONTO_MM &&
-		walk_is_cut(c, &c->cursor.seg));
-}
-
 static bool may_withdraw(struct cycle *c)
 {
-	if (walk_rejoins(c) || was_passed(c))
+	/* It comes back over it out of a retract or a jump. */
+	if (walk_rejoins(c) || place_mm(c) < c->turned_mm)
 		c->ground.answer = GROUND_CUT;
 	else
 		ground_look(c);

@@ -63,10 +63,30 @@ struct bench_path {
 	const char *name;
 	enum interp_strategy strategy;
 	enum interp_coupling coupling;
-	int axes;			/* 0: a circle in X and Y */
+	int axes;			/* 0: a circle in X and Y; BENCH_PAIR:
+					 * and a smaller one in U and V */
 };
 
+#define BENCH_PAIR	(-1)
 #define BENCH_REACH_MM	100.0
+
+/** bench_circle() - of @r_mm in X and Y, and, for a pair, the half in U V. */
+static inline int bench_circle(struct interp_build *b, double r_mm, bool pair)
+{
+	const double to[INTERP_NAXES] = { 0 };
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
+	const struct interp_build_arc arc = {
+		.axis_a = INTERP_X, .axis_b = INTERP_Y, .centre_a_mm = r_mm,
+	};
+	const struct interp_build_contour both[2] = {
+		{ .arc = true, .centre_mm = { r_mm } },
+		{ .arc = true, .centre_mm = { r_mm / 2 } },
+	};
+	struct interp_diag d;
+
+	return pair ? interp_build_pair(b, to, both, &w, &d) :
+		      interp_build_arc(b, to, &arc, &w, &d);
+}
 
 /** bench_path() - it alone as a program, of about 100 mm. */
 static inline struct interp_program
@@ -77,18 +97,14 @@ bench_path(const struct interp_machine *machine, const struct bench_path *p)
 		.tolerance_milli = 2000, .coupling = p->coupling,
 	};
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
-	const struct interp_build_arc arc = {
-		.axis_a = INTERP_X, .axis_b = INTERP_Y,
-		.centre_a_mm = BENCH_REACH_MM / 4,
-	};
 	struct interp_build *b = interp_build_create(&o);
 	double to[INTERP_NAXES] = { 0 };
 	struct interp_diag d;
 
 	for (int i = 0; i < p->axes; i++)
 		to[i] = BENCH_REACH_MM / (1 + 0.37 * i);
-	bench_must(b && !(p->axes ? interp_build_line(b, to, &w, &d) :
-				    interp_build_arc(b, to, &arc, &w, &d)));
+	bench_must(b && !(p->axes > 0 ? interp_build_line(b, to, &w, &d) :
+			  bench_circle(b, BENCH_REACH_MM / 4, p->axes != 0)));
 	return bench_program(b);
 }
 

@@ -52,6 +52,7 @@ static const struct bench_path paths[] = {
 	{ "min-switch, arc", INTERP_MIN_SWITCH, 0, 0 },
 	{ "min-switch, tree of 8", INTERP_MIN_SWITCH, INTERP_TREE, 8 },
 	{ "min-switch, tube of 8", INTERP_MIN_SWITCH, INTERP_TUBE, 8 },
+	{ "point-by-point, XYUV", INTERP_POINT_BY_POINT, 0, BENCH_PAIR },
 };
 
 /* The first points of a run on the way; the rest is not walked. */
@@ -124,7 +125,9 @@ static void write_text(FILE *f, int kind)
 /* As edmd-jobs makes a program of a text. */
 static struct interp_program compile(const char *text, size_t size)
 {
-	struct interp_build_options bo = { .machine = &machine.axes };
+	struct interp_build_options bo = {
+		.machine = &machine.axes, .threads = 1,
+	};
 	const struct interp_nc_options no = { .machine = &machine.axes };
 	struct interp_build *b = interp_build_create(&bo);
 	struct interp_nc_result done;

@@ -442,6 +442,59 @@ static void in_the_cut_itself_it_may_short(void **st)
 	rig_free(&r);
 }
 
+/* After M5 nothing sparks, wherever an operator leads it back to. */
+static void after_m5_the_cut_is_still_cut_ground(void **st)
+{
+	static const struct way_out w = {
+		"F300\nG1 X2\nM5\nG1 X2 Y1\nM2\n", INTERP_SIMULTANEOUS, 0,
+		false
+	};
+	const struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	load_text(&r, &w, &k);
+	until(&r, STATE_APPROACH, OPEN_V, 1000);
+	until(&r, STATE_TRAVEL, SPARKING_V, 20000);
+	steps(&r, OPEN_V, 50);
+	tell(&r, CYCLE_HOLD);
+	steps(&r, OPEN_V, 100);
+	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, place(&r) - 1),
+			 ANSWER_DONE);
+	steps(&r, OPEN_V, 1000);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	steps(&r, OPEN_V, 20);
+	assert_int_equal(r.c.state, STATE_TRAVEL);
+	assert_true(place(&r) < 1.9);
+	step(&r, SHORTED_V);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	rig_free(&r);
+}
+
+/* A retract led to the start of the program, in the air. */
+static void at_the_start_it_is_a_collision(void **st)
+{
+	struct cycle_config k = usual_config();
+	struct rig r;
+
+	(void)st;
+	k.gap.retract_to = RETRACT_START;
+	cut_at(&r, &k, 1.3);
+	steps(&r, SHORTED_V, 2000);
+	assert_int_equal(r.c.fault.first, FAULT_RETRACT_AT_START);
+	assert_int_equal(r.c.cursor.seg.kind, INTERP_BEGIN);
+	step(&r, OPEN_V);
+	assert_int_equal(tell(&r, CYCLE_RESET), ANSWER_DONE);
+	assert_int_equal(tell_mm(&r, CYCLE_OVERRIDE, 0), ANSWER_DONE);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	steps(&r, OPEN_V, 10);
+	assert_int_equal(r.c.state, STATE_TRAVEL);
+	step(&r, SHORTED_V);
+	assert_int_equal(r.c.fault.first, FAULT_CONTACT);
+	rig_free(&r);
+}
+
 /* -- Beside hundreds of curves ------------------------------------------- */
 
 static uint32_t looked;			/* in this cycle */
@@ -565,6 +618,8 @@ int main(void)
 		cmocka_unit_test(back_over_what_it_left_it_may_short),
 		cmocka_unit_test(before_a_cut_that_has_begun_it_may_short),
 		cmocka_unit_test(in_the_cut_itself_it_may_short),
+		cmocka_unit_test(after_m5_the_cut_is_still_cut_ground),
+		cmocka_unit_test(at_the_start_it_is_a_collision),
 		cmocka_unit_test(beside_hundreds_of_curves_a_cycle_looks_at_few),
 		cmocka_unit_test(a_short_that_goes_while_it_looks_is_a_collision),
 	};

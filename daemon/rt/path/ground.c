@@ -199,7 +199,8 @@ static void ask(const struct cycle *c, struct ground *g)
 		.left = GROUND_SEGMENTS_MAX,
 	};
 	memcpy(g->pos, c->cursor.pos, sizeof(g->pos));
-	if (c->cursor.seg.flags & INTERP_SEG_OUT)
+	/* Where it stands on a cut it was before, or brakes. */
+	if (c->cursor.seg.flags & INTERP_SEG_OUT || was_cut(&c->cursor.seg))
 		g->answer = GROUND_CUT;
 	else if (!find_ahead(c, g) && !find_behind(&c->cursor.p, g))
 		g->answer = GROUND_NEW;

@@ -3,8 +3,9 @@
  * ground.h - does the electrode stand on ground that was cut already?
  *
  * Where a program positions out of what it cut, a short is debris and no
- * collision.  Which ground that is, the program says: the segments behind, and
- * the cut that comes next, as far as it was cut before.
+ * collision.  Which ground that is, the program says: the cut that it stands
+ * on, the segments behind, and the cut that comes next, as far as it was cut
+ * before.
  *
  * Threads: RT-safe; in a call a bounded number of segments and of looks.
  */

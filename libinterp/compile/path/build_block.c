@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* build_block.c - writes a finished program as one flat block */
-#include "interp/limits.h"
-#include "path/builder.h"
+#include "path/build_limits.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,13 +62,18 @@ size_t interp_build_bytes(const struct interp_build *b)
 
 /* The table's memory is freed at once, so a large program is in memory only
  * once. */
+static void free_table(struct table *t)
+{
+	free(t->at);
+	t->at = NULL;
+	t->n = t->room = 0;
+}
+
 static void move_table(char *to, struct table *t)
 {
 	if (t->n > 0)
 		memcpy(to, t->at, t->n * t->size);
-	free(t->at);
-	t->at = NULL;
-	t->n = t->room = 0;
+	free_table(t);
 }
 
 static void write_head(const struct interp_build *b,
@@ -89,31 +92,12 @@ static void write_head(const struct interp_build *b,
 		 about->name ? about->name : "");
 }
 
-static void write_limits(const struct interp_build *b, void *block,
-			 size_t bytes, struct interp_seg *segs)
-{
-	const struct interp_limits l = {
-		.machine = b->o.machine,
-		.corner_mm = b->o.corner_mm > 0 ? b->o.corner_mm :
-						  INTERP_CORNER_MM,
-		.tolerance_mm = b->o.tolerance_mm > 0 ? b->o.tolerance_mm :
-							INTERP_TOLERANCE_MM,
-		.rotary_radius_mm = b->o.rotary_radius_mm > 0 ?
-				    b->o.rotary_radius_mm : INTERP_ROTARY_MM,
-		.points_per_s = b->o.points_per_s > 0 ? b->o.points_per_s :
-							INFINITY,
-	};
-	struct interp_program p;
-
-	if (interp_program_map(&p, block, bytes) == 0)
-		interp_limits_write(&l, &p, segs);
-}
-
 /* Node 0 comes with the first column.  The END has a node of its own. */
-static void write_nodes(struct interp_build *b, size_t rows,
+static void write_nodes(const struct interp_build *b, size_t rows,
 			const struct interp_program_head *h, int64_t *nodes)
 {
-	move_table((char *)nodes, &b->nodes);
+	if (b->nodes.n > 0)
+		memcpy(nodes, b->nodes.at, b->nodes.n * b->nodes.size);
 	for (size_t i = rows; i <= h->nsegs; i++) {
 		for (uint32_t j = 0; j < b->naxes; j++)
 			nodes[i * b->naxes + j] = b->here[b->column[j]];
@@ -128,11 +112,15 @@ void interp_build_write(struct interp_build *b,
 	struct interp_seg *segs = (void *)(base + h.segs_at);
 	const size_t n = b->segs.n;
 	const bool ended = ends(b);
+	struct interp_program p;
 
 	write_head(b, &h, about);
 	memcpy(base, &h, sizeof(h));
-	move_table((char *)segs, &b->segs);
+	build_limits_all(b);
 	write_nodes(b, n + 1, &h, (void *)(base + h.nodes_at));
+	build_limits_await(b);
+	free_table(&b->nodes);
+	move_table((char *)segs, &b->segs);
 	if (!ended) {
 		segs[n] = (struct interp_seg) {
 			.kind = INTERP_END, .s_mm = b->length_mm,
@@ -149,5 +137,6 @@ void interp_build_write(struct interp_build *b,
 	move_table(base + h.stops_at, &b->stops);
 	move_table(base + h.numbers_at, &b->numbers);
 	move_table(base + h.runs_at, &b->runs);
-	write_limits(b, block, h.bytes, segs);
+	if (interp_program_map(&p, block, h.bytes) == 0)
+		build_limits_write(b, &p, segs);
 }

@@ -221,7 +221,8 @@ static int follow_next(struct follow *f)
 			    (d[0] * across - d[1] * along);
 	else
 		f->length += (i ? (pulse_wide)f->total[0] :
-				  -(pulse_wide)f->total[1]) * side_last(&s[i]);
+				  -(pulse_wide)f->total[1]) *
+			     side_measure_of(&s[i], d);
 	return i;
 }
 

@@ -121,10 +121,16 @@ struct pass {
 	double corner_mm, points_per_s;
 	double short_mm;		/* shorter lines: pass_is_short() */
 	uint32_t n;			/* columns */
-	uint32_t end;			/* the last segment */
+	uint32_t end;			/* the last segment; 0: not known */
+	uint32_t at, last;		/* the next segment, and the last one
+					 * that moves; 0: none yet */
+	struct headings headings[2];	/* of the last one */
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;
-	uint32_t run, run_end;		/* nodes that windows look between */
+	uint32_t run, run_end;		/* nodes that windows look between;
+					 * UINT32_MAX: it is farther than any
+					 * window */
+	struct heading_run ahead;	/* how far that was looked for */
 	uint32_t slow;			/* the slowest node of late; 0: none */
 	/* Of each column: */
 	double tol[INTERP_NAXES];	/* mm or degrees that do not count as a
@@ -209,6 +215,30 @@ static inline double pass_off(const struct pass *w, uint32_t j, double along,
 	return smaller(along * rate, PASS_MOST_BESIDE * w->tol[j]);
 }
 
+/** pass_begin() - before the first segment.  @p and @segs are lent. */
+void pass_begin(struct pass *w, const struct interp_limits *l,
+		const struct interp_program *p, struct interp_seg *segs);
+
+/**
+ * pass_walk() - limit segments and nodes up to, but not with, segment @to.
+ *
+ * @known: segments that are whole; @to is no more than pass_seen() of it, or
+ *	   all are known
+ */
+void pass_walk(struct pass *w, uint32_t known, uint32_t to);
+
+/** pass_seen() - the segments for which no limit looks at more than the first
+ *  @known. */
+uint32_t pass_seen(const struct pass *w, uint32_t known);
+
+/** pass_move() - the program is now there. */
+void pass_move(struct pass *w, const struct interp_program *p,
+	       struct interp_seg *segs);
+
+/** pass_finish() - all is known: limit the rest, and find what needs the
+ *  end. */
+void pass_finish(struct pass *w);
+
 /** pass_chord() - find the straight line from node @from to node @to.  Its
  *  length is that of the columns @along. */
 void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
@@ -241,6 +271,9 @@ void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind);
 /** pass_bent_node() - the same by one of them. */
 void pass_bent_node(struct pass *w, const struct bent_node *b);
 
+/** pass_forget() - free what pass_soften() has not freed. */
+void pass_forget(struct pass *w);
+
 /** pass_soften() - the speeds of all nodes are known. */
 void pass_soften(struct pass *w);
 
@@ -253,6 +286,27 @@ void pass_dip_firm(struct pass *w, uint32_t first, uint32_t i, double v_mm_s);
 /** pass_dip_mm_s() - the greatest speed over node @i if what only a rounding
  *  can be does not count; 0: nothing is known of it. */
 double pass_dip_mm_s(const struct pass *w, uint32_t i);
+
+/** pass_level() - a speed, down to its level; that of an axis stays. */
+float pass_level(const struct pass *w, double v_mm_s);
+
+static inline double pass_from_to(const struct pass *w, uint32_t a, uint32_t b)
+{
+	return fabs(w->segs[b].s_mm - w->segs[a].s_mm);
+}
+
+/* Of the narrowest window. */
+#define PASS_SEES	2
+
+/** pass_sees_mm() - nodes so near to a corner may see it in there. */
+static inline double pass_sees_mm(const struct pass *w)
+{
+	return PASS_SEES * w->windows[0].mm;
+}
+
+/** pass_beside_corner() - if the slowest node of late is a corner, the nodes
+ *  beside it are no slower by it. */
+void pass_beside_corner(struct pass *w);
 
 /**
  * pass_curve() - the greatest speed over the node in front of segment @i on the

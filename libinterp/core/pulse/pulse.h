@@ -259,6 +259,8 @@ bool side_back(struct interp_side *s, int8_t ret[2]);
 int64_t side_seek(struct interp_side *s, uint32_t tick);
 /** What the last pulse added to the side's measure: > 0. */
 int64_t side_last(const struct interp_side *s);
+/** The same, if it is known that the last pulse was @was. */
+int64_t side_measure_of(const struct interp_side *s, const int8_t was[2]);
 /* One pulse of it, for planning: circle_runs.c. */
 int64_t circle_in(const struct interp_circle *k);	/* shrinking, >= 0 */
 int64_t circle_out(const struct interp_circle *k);	/* growing, >= 0 */

@@ -139,6 +139,13 @@ int64_t side_last(const struct interp_side *s)
 	return line_last_longer(s) ? s->a : s->b;
 }
 
+int64_t side_measure_of(const struct interp_side *s, const int8_t was[2])
+{
+	if (s->arc)
+		return circle_measure_of(&s->circle, was);
+	return was[s->longer] ? s->a : s->b;
+}
+
 /* -- As a walk ---------------------------------------------------------- */
 
 /* The axes beside the two contours stand still. */
@@ -174,24 +181,37 @@ static bool couple_ok(struct interp_cursor *c)
 	       p->bits_at <= c->p.head->nbits - words;
 }
 
-/* Of one contour, behind @gone of its own measure. */
-static int64_t side_measure(const struct interp_side *s, int64_t whole,
-			    int64_t gone)
+/* Of contour @i in the pair's measure, behind @gone of its own. */
+static int64_t share_of(const struct interp_cursor *c, int i, int64_t gone)
 {
+	const int64_t whole = c->couple.side[i].measure;
 	const int64_t in = gone < 0 ? 0 : gone > whole ? whole : gone;
 
 	return whole > 0 ? (int64_t)((double)in / (double)whole * FINE *
-				     (double)s->ticks) : 0;
+				     (double)c->side[i].ticks) : 0;
 }
 
-static int64_t pair_measure(const struct interp_cursor *c)
+/* Where contour @i was before its last pulse.  A damaged one may stand at its
+ * start and still have a pulse to undo. */
+static void side_look_back(struct interp_cursor *c, int i)
 {
-	int64_t sum = c->tick;
+	struct interp_side *s = &c->side[i];
 
-	for (int i = 0; i < 2; i++)
-		sum += side_measure(&c->side[i], c->couple.side[i].measure,
-				    c->side[i].gone);
-	return sum;
+	s->gone_before = s->tick ? s->gone - side_last(s) : 0;
+	s->share_before = s->tick ? share_of(c, i, s->gone_before) : s->share;
+}
+
+static void side_stand(struct interp_cursor *c, int i, int64_t gone)
+{
+	c->side[i].gone = gone;
+	c->side[i].share = share_of(c, i, gone);
+	side_look_back(c, i);
+}
+
+static void pair_stand(struct interp_cursor *c, uint32_t tick)
+{
+	c->tick = tick;
+	c->measure = tick + c->side[0].share + c->side[1].share;
 }
 
 static bool pair_enter(struct interp_cursor *c, bool at_end)
@@ -208,11 +228,10 @@ static bool pair_enter(struct interp_cursor *c, bool at_end)
 		pulse_circle_node(c, true, end);
 		if (!side_enter(&c->side[i], arc, start, end, at_end))
 			return false;
-		c->side[i].gone = at_end ? arc->measure : 0;
-		c->whole += side_measure(&c->side[i], arc->measure,
-					 arc->measure);
+		side_stand(c, i, at_end ? arc->measure : 0);
+		c->whole += share_of(c, i, arc->measure);
 	}
-	c->measure = at_end ? c->whole : 0;
+	pair_stand(c, c->tick);
 	return true;
 }
 
@@ -232,6 +251,25 @@ static uint32_t pair_move(struct interp_cursor *c, int i, const int8_t d[2])
 	       (d[1] ? pulse_move(arc->axis_b, d[1] < 0) : 0);
 }
 
+static void side_went(struct interp_cursor *c, int i, const int8_t by[2])
+{
+	struct interp_side *s = &c->side[i];
+
+	s->gone_before = s->gone;
+	s->share_before = s->share;
+	s->gone += side_measure_of(s, by);
+	s->share = share_of(c, i, s->gone);
+}
+
+static void side_came(struct interp_cursor *c, int i)
+{
+	struct interp_side *s = &c->side[i];
+
+	s->gone = s->gone_before;
+	s->share = s->share_before;
+	side_look_back(c, i);
+}
+
 static uint32_t pair_tick(struct interp_cursor *c)
 {
 	int8_t d[2];
@@ -242,29 +280,23 @@ static uint32_t pair_tick(struct interp_cursor *c)
 	i = bit_at(c, c->tick);
 	if (!side_forward(&c->side[i], d))
 		return PULSE_BAD;
-	c->tick++;
-	c->side[i].gone += side_last(&c->side[i]);
-	c->measure = pair_measure(c);
+	side_went(c, i, d);
+	pair_stand(c, c->tick + 1);
 	return pair_move(c, i, d);
 }
 
 static uint32_t pair_tick_back(struct interp_cursor *c)
 {
 	int8_t d[2];
-	int64_t last;
 	int i;
 
 	if (c->tick == 0)
 		return PULSE_BAD;
 	i = bit_at(c, c->tick - 1);
-	if (c->side[i].tick == 0)
-		return PULSE_BAD;
-	last = side_last(&c->side[i]);
 	if (!side_back(&c->side[i], d))
 		return PULSE_BAD;
-	c->tick--;
-	c->side[i].gone -= last;
-	c->measure = pair_measure(c);
+	side_came(c, i);
+	pair_stand(c, c->tick - 1);
 	return pair_move(c, i, d);
 }
 
@@ -283,17 +315,12 @@ static uint32_t pair_back(struct interp_cursor *c, uint32_t ticks,
 static int64_t pair_last(const struct interp_cursor *c)
 {
 	const struct interp_side *s;
-	int64_t whole;
-	int i;
 
 	/* A damaged pair may try to go back from its start. */
 	if (c->tick == 0)
 		return 1;
-	i = bit_at(c, c->tick - 1);
-	s = &c->side[i];
-	whole = c->couple.side[i].measure;
-	return s->tick == 0 ? 1 : 1 + side_measure(s, whole, s->gone) -
-	       side_measure(s, whole, s->gone - side_last(s));
+	s = &c->side[bit_at(c, c->tick - 1)];
+	return 1 + s->share - s->share_before;
 }
 
 /* Where a side stands, from its start. */
@@ -323,7 +350,7 @@ static bool pair_side_seek(struct interp_cursor *c, int i, uint32_t tick)
 	side_way(&c->side[i], to);
 	c->pos[arc->axis_a] += (int32_t)(to[0] - from[0]);
 	c->pos[arc->axis_b] += (int32_t)(to[1] - from[1]);
-	c->side[i].gone = measure;
+	side_stand(c, i, measure);
 	return true;
 }
 
@@ -335,8 +362,7 @@ static bool pair_seek(struct interp_cursor *c, uint32_t tick)
 	if (!pair_side_seek(c, 0, tick - second) ||
 	    !pair_side_seek(c, 1, second))
 		return false;
-	c->tick = tick;
-	c->measure = pair_measure(c);
+	pair_stand(c, tick);
 	return true;
 }
 

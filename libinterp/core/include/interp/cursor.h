@@ -100,7 +100,9 @@ struct interp_side {
 	int64_t a, b, dev;		/* if it is a line: pulses of the longer
 					 * and the shorter axis; b*m_a -
 					 * a*m_b */
-	int64_t gone;			/* in its own measure */
+	int64_t gone, gone_before;	/* in its own measure; where it was
+					 * before its last pulse */
+	int64_t share, share_before;	/* the same in the pair's measure */
 	uint32_t tick, ticks;
 	int8_t longer;			/* 0 or 1 */
 	int8_t sign[2];			/* of the line's axes */
