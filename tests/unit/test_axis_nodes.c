@@ -75,6 +75,34 @@ static void random_wave(struct interp_build *b, uint64_t *s)
 	}
 }
 
+/* Onto an arc that touches the line before it. */
+static void random_slot(struct interp_build *b, uint64_t *s)
+{
+	const struct interp_build_word w = {
+		.line = 1, .feed_mm_s = 60, .rapid = true,
+	};
+	const double r = pow(10, uniform(s, -0.5, 1.2));
+	const double way = uniform(s, 0, 6.28), sweep = uniform(s, 0.3, 3);
+	const double *here = interp_build_here(b);
+	struct interp_build_arc a = {
+		.axis_a = INTERP_X, .axis_b = INTERP_Y,
+		.clockwise = rnd(s) % 2,
+	};
+	const double side = a.clockwise ? -1 : 1;
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, here, sizeof(end));
+	end[0] += 5 * cos(way);
+	end[1] += 5 * sin(way);
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+	a.centre_a_mm = end[0] - side * r * sin(way);
+	a.centre_b_mm = end[1] + side * r * cos(way);
+	end[0] = a.centre_a_mm + side * r * sin(way + side * sweep);
+	end[1] = a.centre_b_mm - side * r * cos(way + side * sweep);
+	assert_int_equal(interp_build_arc(b, end, &a, &w, &d), 0);
+}
+
 static struct made random_nodes(uint64_t *s)
 {
 	const struct interp_build_options o = {
@@ -87,6 +115,8 @@ static struct made random_nodes(uint64_t *s)
 			random_arc(b, s);
 		else if (rnd(s) % 6 == 0)
 			random_wave(b, s);
+		else if (rnd(s) % 6 == 0)
+			random_slot(b, s);
 		else
 			random_turns(b, s);
 	}

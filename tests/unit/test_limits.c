@@ -220,7 +220,7 @@ static double slowest_of_circle(double r, double chord_mm)
 	return least;
 }
 
-/* However short its lines are, as long as they are as near to it as a corner. */
+/* However short its lines are, if they are as near to it as a corner. */
 static void a_polyline_is_slowed_as_the_curve_it_follows(void **st)
 {
 	static const double radii[] = { 0.3, 1, 3 };

@@ -83,6 +83,8 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 		add_level(&w->v_levels, m->v_max_mm_s);
 		add_level(&w->a_levels, m->a_max_mm_s2);
 		add_level(&w->j_levels, m->j_max_mm_s3);
+		w->curl_mm_s2[j] = cbrt(24 * l->corner_mm * m->j_max_mm_s3 *
+					m->j_max_mm_s3);
 		note_turn(w, j);
 		if (w->ways.xyz >> j & 1)
 			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
@@ -302,8 +304,11 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 			       const struct heading *a, const struct heading *b,
 			       uint32_t n)
 {
-	const double v = near_node_mm_s(w, last, i, a, b, n);
+	double v = near_node_mm_s(w, last, i, a, b, n);
 
+	if (!(w->segs[last].kind == INTERP_LINE &&
+	      w->segs[i].kind == INTERP_LINE))
+		v = smaller(v, pass_curl(w, last, i, a, b));
 	limit_nodes(w, last, i, v);
 	if (a->along != b->along)
 		note_parts(w, last, i);

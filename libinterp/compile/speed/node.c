@@ -358,7 +358,8 @@ static void turn_behind(const struct pass *w, uint32_t i,
 
 	memset(ret, 0, w->n * sizeof(*ret));
 	if (i < w->run || i + 1 >= w->run_end ||
-	    w->segs[i].kind != INTERP_LINE || w->segs[i + 1].kind != INTERP_LINE)
+	    w->segs[i].kind != INTERP_LINE ||
+	    w->segs[i + 1].kind != INTERP_LINE)
 		return;
 	for (uint32_t k = 0; k < 2; k++)
 		heading_straight(&w->ways, i + k, &h[k], sub, w->n);

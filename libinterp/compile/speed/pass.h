@@ -138,6 +138,7 @@ struct pass {
 	double v_mm_s[INTERP_NAXES], a_mm_s2[INTERP_NAXES];
 	double j_mm_s3[INTERP_NAXES];
 	double step_mm_s[INTERP_NAXES];	/* at a node */
+	double curl_mm_s2[INTERP_NAXES]; /* step of the acceleration there */
 	struct levels v_levels, a_levels, j_levels;
 	double turn_least[2];		/* near_turns_faster() */
 	double a_linear_mm_s2;		/* the least of X Y Z */
@@ -313,6 +314,11 @@ void pass_beside_corner(struct pass *w);
  * curve of its chords; no more than @most_mm_s is asked for.
  */
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
+
+/** pass_curl() - the greatest speed over the same node by how the bend of arcs
+ *  changes there. */
+double pass_curl(const struct pass *w, uint32_t last, uint32_t i,
+		 const struct heading *a, const struct heading *b);
 
 /** pass_arch() - the greatest speed over the node in front of segment @i, if it
  *  is one of several between long lines that turn the same way. */
