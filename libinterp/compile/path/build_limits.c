@@ -2,9 +2,10 @@
 /* build_limits.c - the limits of a program, if it is long while it is made */
 #include "path/build_limits.h"
 
+#include "both.h"
+
 #include <errno.h>
 #include <math.h>
-#include <sched.h>
 #include <string.h>
 
 /* A shorter program is done before a thread has begun. */
@@ -13,7 +14,14 @@
 /* After so many more the thread is told. */
 #define STEP		4096
 
-static struct interp_limits limits_of(const struct interp_build *b)
+uint32_t build_threads(const struct interp_build *b)
+{
+	return b->segs.n < LONG ? 1 :
+	       b->o.threads ? b->o.threads : both_processors();
+}
+
+static struct interp_limits limits_of(const struct interp_build *b,
+				      uint32_t threads)
 {
 	const struct interp_build_options *o = &b->o;
 
@@ -27,23 +35,15 @@ static struct interp_limits limits_of(const struct interp_build *b)
 				    o->rotary_radius_mm : INTERP_ROTARY_MM,
 		.points_per_s = o->points_per_s > 0 ? o->points_per_s :
 						      INFINITY,
+		.threads = threads,
 	};
-}
-
-/* A processor that is kept for a cycle in real time is not among them. */
-static uint32_t processors(void)
-{
-	cpu_set_t set;
-
-	return sched_getaffinity(0, sizeof(set), &set) == 0 ?
-	       (uint32_t)CPU_COUNT(&set) : 1;
 }
 
 /* Lines that are held back may be joined to curves, and these be taken back. */
 static bool may_follow(const struct interp_build *b)
 {
-	return b->segs.n >= LONG && b->pieces.n == 0 && !(b->o.fit_mm > 0) &&
-	       (b->o.threads ? b->o.threads : processors()) > 1;
+	return b->pieces.n == 0 && !(b->o.fit_mm > 0) &&
+	       !b->o.begins_inside && build_threads(b) > 1;
 }
 
 static void note_tables(struct interp_build *b)
@@ -56,7 +56,7 @@ static void note_tables(struct interp_build *b)
 
 static void follow(struct interp_build *b)
 {
-	const struct interp_limits l = limits_of(b);
+	const struct interp_limits l = limits_of(b, 2);
 	struct interp_program_head *h = &b->seen_head;
 
 	h->naxes = b->naxes;
@@ -110,15 +110,9 @@ int build_seen_room(struct interp_build *b, struct table *t, size_t n)
 
 void build_limits_await(struct interp_build *b)
 {
-	if (b->follow)
-		follow_await(b->follow);
-}
-
-void build_limits_all(struct interp_build *b)
-{
 	tell(b);
 	if (b->follow)
-		follow_all(b->follow);
+		follow_await(b->follow);
 }
 
 void build_limits_stop(struct interp_build *b)
@@ -128,9 +122,9 @@ void build_limits_stop(struct interp_build *b)
 }
 
 void build_limits_write(struct interp_build *b, const struct interp_program *p,
-			struct interp_seg *segs)
+			struct interp_seg *segs, uint32_t threads)
 {
-	const struct interp_limits l = limits_of(b);
+	const struct interp_limits l = limits_of(b, threads);
 
 	if (b->follow)
 		follow_write(b->follow, p, segs);

@@ -15,6 +15,9 @@
 
 #include "path/builder.h"
 
+/** build_threads() - how many threads pay for so long a program. */
+uint32_t build_threads(const struct interp_build *b);
+
 /** build_segs_room() - make room for one more segment.  All others are whole.
  *  Return: 0 or -ENOMEM. */
 int build_segs_room(struct interp_build *b);
@@ -30,19 +33,21 @@ static inline void *build_seen_add(struct interp_build *b, struct table *t)
 	return (char *)t->at + t->size * t->n++;
 }
 
-/** build_limits_all() - no more segments will come. */
-void build_limits_all(struct interp_build *b);
-
-/** build_limits_await() - wait until the thread has done what it can. */
+/** build_limits_await() - no more segments will come: wait until the thread
+ *  has done what it can. */
 void build_limits_await(struct interp_build *b);
 
 /** build_limits_stop() - the segments are what they were, and may be
  *  changed. */
 void build_limits_stop(struct interp_build *b);
 
-/** build_limits_write() - of the whole program @p, into @segs: copies of what
- *  build_limits_await() has left in the table. */
+/**
+ * build_limits_write() - of the whole program @p, into @segs: copies of what
+ * build_limits_await() has left in the table.
+ *
+ * @threads: what build_threads() has said of all of it
+ */
 void build_limits_write(struct interp_build *b, const struct interp_program *p,
-			struct interp_seg *segs);
+			struct interp_seg *segs, uint32_t threads);
 
 #endif /* PATH_BUILD_LIMITS_H */

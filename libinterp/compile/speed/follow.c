@@ -3,8 +3,9 @@
 #include "speed/follow.h"
 #include "speed/pass.h"
 
+#include "both.h"
+
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +23,7 @@ struct follow {
 	bool over;			/* no more is wanted */
 	/* The thread's own, while it walks: */
 	struct pass pass;
-	bool awaited;			/* by the owner */
+	bool joined;			/* by the owner */
 };
 
 /* The walk lowers it, and would have to know it to begin anew.  Hops are
@@ -44,6 +45,12 @@ static void restore_most(struct interp_seg *s)
 	memcpy(&s->feed_max_mm_s, &bits, sizeof(bits));
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;
+}
+
+static void restore(struct pass *w)
+{
+	for (uint32_t i = 1; i < w->at; i++)
+		restore_most(&w->segs[i]);
 }
 
 /* Up to segment @to at most. */
@@ -83,19 +90,6 @@ static void *follow(void *arg)
 	return NULL;
 }
 
-/* Signals are the owner's. */
-static int start(struct follow *f)
-{
-	sigset_t all, old;
-	int err;
-
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &old);
-	err = pthread_create(&f->thread, NULL, follow, f);
-	pthread_sigmask(SIG_SETMASK, &old, NULL);
-	return err;
-}
-
 struct follow *follow_begin(const struct interp_limits *l,
 			    const struct interp_program *p,
 			    struct interp_seg *segs)
@@ -108,9 +102,9 @@ struct follow *follow_begin(const struct interp_limits *l,
 	pthread_mutex_init(&f->lock, NULL);
 	pthread_cond_init(&f->more, NULL);
 	pthread_cond_init(&f->stands, NULL);
-	if (start(f) == 0)
+	if (both_start(&f->thread, follow, f) == 0)
 		return f;
-	f->awaited = true;
+	f->joined = true;
 	follow_stop(f);
 	return NULL;
 }
@@ -142,19 +136,24 @@ void follow_go_on(struct follow *f, struct interp_seg *segs)
 	pthread_mutex_unlock(&f->lock);
 }
 
-void follow_all(struct follow *f)
+static void set(struct follow *f, bool *flag)
 {
 	pthread_mutex_lock(&f->lock);
-	f->all = true;
+	*flag = true;
 	pthread_cond_signal(&f->more);
 	pthread_mutex_unlock(&f->lock);
 }
 
+static void join(struct follow *f)
+{
+	pthread_join(f->thread, NULL);
+	f->joined = true;
+}
+
 void follow_await(struct follow *f)
 {
-	if (!f->awaited)
-		pthread_join(f->thread, NULL);
-	f->awaited = true;
+	set(f, &f->all);
+	join(f);
 }
 
 static void forget(struct follow *f)
@@ -169,7 +168,6 @@ static void forget(struct follow *f)
 void follow_write(struct follow *f, const struct interp_program *p,
 		  struct interp_seg *segs)
 {
-	follow_await(f);
 	pass_move(&f->pass, p, segs);
 	pass_finish(&f->pass);
 	forget(f);
@@ -179,12 +177,10 @@ void follow_stop(struct follow *f)
 {
 	if (!f)
 		return;
-	pthread_mutex_lock(&f->lock);
-	f->over = true;
-	pthread_cond_signal(&f->more);
-	pthread_mutex_unlock(&f->lock);
-	follow_await(f);
-	for (uint32_t i = 1; i < f->pass.at; i++)
-		restore_most(&f->pass.segs[i]);
+	if (!f->joined) {
+		set(f, &f->over);
+		join(f);
+		restore(&f->pass);
+	}
 	forget(f);
 }

@@ -38,22 +38,18 @@ void follow_hold(struct follow *f);
 /** follow_go_on() - they have been moved: @p is again as it was lent. */
 void follow_go_on(struct follow *f, struct interp_seg *segs);
 
-/** follow_all() - more will not come before follow_write(). */
-void follow_all(struct follow *f);
-
-/**
- * follow_await() - wait for the thread, which ends.  The tables may be moved
- * from then on.
- */
+/** follow_await() - no more will come before follow_write(): the thread does
+ *  what it can, and ends.  The tables may be moved from then on. */
 void follow_await(struct follow *f);
 
-/** follow_write() - do the rest of interp_limits_write(), for the whole program
- *  @p, and free @f.  Its segments @segs are what the thread made of them. */
+/** follow_write() - after follow_await() do the rest of interp_limits_write(),
+ *  for the whole program @p, and free @f.  Its segments @segs are what the
+ *  thread made of them. */
 void follow_write(struct follow *f, const struct interp_program *p,
 		  struct interp_seg *segs);
 
-/** follow_stop() - end the thread and free @f; the segments become what they
- *  were.  NULL is fine. */
+/** follow_stop() - end the thread, if that is still there: then the segments
+ *  become what they were; and free @f.  NULL is fine. */
 void follow_stop(struct follow *f);
 
 #endif /* SPEED_FOLLOW_H */

@@ -62,6 +62,7 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
 			     .points_per_s = l->points_per_s,
+			     .threads = l->threads,
 			     .n = p->head->naxes, .at = 1,
 			     .turn_least = { INFINITY, INFINITY },
 			     .a_linear_mm_s2 = INFINITY,
@@ -440,7 +441,7 @@ void pass_finish(struct pass *w)
 	pass_beside_corner(w);
 	pass_soften(w);
 	pass_stretches(w);
-	pass_hops(w->segs, w->end);
+	pass_hops(w);
 }
 
 void interp_limits_write(const struct interp_limits *l,

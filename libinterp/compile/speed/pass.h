@@ -121,6 +121,7 @@ struct pass {
 	double corner_mm, points_per_s;
 	double short_mm;		/* shorter lines: pass_is_short() */
 	uint32_t n;			/* columns */
+	uint32_t threads;
 	uint32_t end;			/* the last segment; 0: not known */
 	uint32_t at, last;		/* the next segment, and the last one
 					 * that moves; 0: none yet */
@@ -379,8 +380,8 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
  */
 void pass_stretches(struct pass *w);
 
-/** pass_hops() - write slower_* and softer_* of all segments up to @end, the
- *  last one, when all else is known. */
-void pass_hops(struct interp_seg *segs, uint32_t end);
+/** pass_hops() - write slower_* and softer_* of all segments, when all else is
+ *  known. */
+void pass_hops(struct pass *w);
 
 #endif /* SPEED_PASS_H */
