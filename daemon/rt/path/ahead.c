@@ -183,7 +183,8 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 	a->to_place = false;
 }
 
-/* Is what was planned for still to come? */
+/* Is what was planned for still to come, and what is left of the plan no faster
+ * than that?  The ceilings of short lines change from line to line. */
 static bool plan_holds(struct cycle *c, double v_mm_s)
 {
 	const struct cycle_ahead *a = &c->ahead;
@@ -191,7 +192,7 @@ static bool plan_holds(struct cycle *c, double v_mm_s)
 	struct mover *m = &c->mover;
 
 	if (!a->to_place || m->kind != MOVER_TO_PLACE ||
-	    a->v_max_mm_s > v_mm_s ||
+	    (a->v_max_mm_s > v_mm_s && mover_most_mm_s(m) > v_mm_s) ||
 	    (a->toward * left < MOVER_ONTO_MM &&
 	     (m->pass_mm_s != 0 || mover_is_standing(&c->mover))) ||
 	    fabs(m->goal - m->gone_mm - left) > MOVER_ONTO_MM)
